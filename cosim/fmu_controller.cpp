@@ -119,7 +119,7 @@ class FmuLaw {
       const std::size_t at = 2 + static_cast<std::size_t>(num_outputs_);
       slave_->restore(unpack(in.data() + at + 1, static_cast<std::size_t>(in[at])));
     }
-    // What comes out is another state until all has gone well.
+    // A failure leaves the slave in an unknown state.
     last_out_.clear();
     slave_->set_inputs(inputs.data());
     slave_->step(begin + num_steps * step_, step_);

@@ -52,7 +52,7 @@ class Library {
   void* handle_;
 };
 
-/// What both versions share: status, message and the variables.
+/// Status, message, variables and state, alike in both versions.
 class SlaveBase : public Slave {
  public:
   SlaveBase(const fmu::ForeignModel& model, const std::string& folder, SlaveVariables variables)
@@ -67,6 +67,19 @@ class SlaveBase : public Slave {
           throw std::runtime_error("an error: its output '" + v.name + "' is " + std::to_string(values[i]));
       values += v.size;
     }
+  }
+
+  std::string save() override {
+    check(get_state_(own_, &state_), "GetFMUState");
+    std::size_t size = 0;
+    check(get_size_(own_, state_, &size), "SerializedFMUStateSize");
+    std::string bytes(size, '\0');
+    check(serialize_(own_, state_, bytes.data(), size), "SerializeFMUState");
+    return bytes;
+  }
+  void restore(const std::string& bytes) override {
+    check(deserialize_(own_, bytes.data(), bytes.size(), &state_), "DeserializeFMUState");
+    check(set_state_(own_, state_), "SetFMUState");
   }
 
  protected:
@@ -88,6 +101,28 @@ class SlaveBase : public Slave {
     message_.clear();
     throw std::runtime_error(what);
   }
+  /// Functions with the same arguments in both versions, but for the kind of their pointers.
+  void find_shared(const std::string& prefix, const std::string& state, const std::string& deserialize) {
+    library_.find((prefix + "FreeInstance").c_str(), free_);
+    library_.find((prefix + "ExitInitializationMode").c_str(), exit_);
+    library_.find((prefix + "Terminate").c_str(), terminate_);
+    if (!model_.can_save_state) return;
+    library_.find((prefix + "Get" + state).c_str(), get_state_);
+    library_.find((prefix + "Set" + state).c_str(), set_state_);
+    library_.find((prefix + "Free" + state).c_str(), free_state_);
+    library_.find((prefix + "Serialized" + state + "Size").c_str(), get_size_);
+    library_.find((prefix + "Serialize" + state).c_str(), serialize_);
+    library_.find((prefix + deserialize + state).c_str(), deserialize_);
+  }
+  void end() {
+    if (own_ != nullptr && !is_lost_) {
+      if (state_ != nullptr) free_state_(own_, &state_);
+      if (is_running_) terminate_(own_);
+      free_(own_);
+    }
+    own_ = state_ = nullptr;
+    is_running_ = false;
+  }
   [[noreturn]] static void fail_terminated() { throw std::runtime_error("the end of the simulation"); }
 
   const fmu::ForeignModel model_;
@@ -96,6 +131,18 @@ class SlaveBase : public Slave {
   Library library_;
   std::string message_;   ///< the last that the FMU gave
   bool is_lost_ = false;  ///< after a fatal error nothing may be called
+  void* own_ = nullptr;
+  void* state_ = nullptr;
+  bool is_running_ = false;
+  void (*free_)(void*) = nullptr;
+  int (*exit_)(void*) = nullptr;
+  int (*terminate_)(void*) = nullptr;
+  int (*get_state_)(void*, void**) = nullptr;
+  int (*set_state_)(void*, void*) = nullptr;
+  int (*free_state_)(void*, void**) = nullptr;
+  int (*get_size_)(void*, void*, std::size_t*) = nullptr;
+  int (*serialize_)(void*, void*, void*, std::size_t) = nullptr;
+  int (*deserialize_)(void*, const void*, std::size_t, void**) = nullptr;
 };
 
 template <class T>
@@ -119,11 +166,8 @@ class Slave2 final : public SlaveBase {
   Slave2(const fmu::ForeignModel& model, const std::string& folder, SlaveVariables variables)
       : SlaveBase(model, folder, std::move(variables)) {
     library_.find("fmi2Instantiate", instantiate_);
-    library_.find("fmi2FreeInstance", free_);
     library_.find("fmi2SetupExperiment", setup_);
     library_.find("fmi2EnterInitializationMode", enter_);
-    library_.find("fmi2ExitInitializationMode", exit_);
-    library_.find("fmi2Terminate", terminate_);
     library_.find("fmi2DoStep", do_step_);
     library_.find("fmi2GetBooleanStatus", get_status_);
     library_.find("fmi2SetReal", set_real_);
@@ -132,13 +176,7 @@ class Slave2 final : public SlaveBase {
     library_.find("fmi2GetInteger", get_integer_);
     library_.find("fmi2SetBoolean", set_boolean_);
     library_.find("fmi2GetBoolean", get_boolean_);
-    if (!model.can_save_state) return;
-    library_.find("fmi2GetFMUstate", get_state_);
-    library_.find("fmi2SetFMUstate", set_state_);
-    library_.find("fmi2FreeFMUstate", free_state_);
-    library_.find("fmi2SerializedFMUstateSize", get_size_);
-    library_.find("fmi2SerializeFMUstate", serialize_);
-    library_.find("fmi2DeSerializeFMUstate", deserialize_);
+    find_shared("fmi2", "FMUstate", "DeSerialize");
   }
   ~Slave2() override { end(); }
 
@@ -164,30 +202,8 @@ class Slave2 final : public SlaveBase {
       fail_terminated();
     check(status, "fmi2DoStep");
   }
-  std::string save() override {
-    check(get_state_(own_, &state_), "fmi2GetFMUstate");
-    std::size_t size = 0;
-    check(get_size_(own_, state_, &size), "fmi2SerializedFMUstateSize");
-    std::string bytes(size, '\0');
-    check(serialize_(own_, state_, bytes.data(), size), "fmi2SerializeFMUstate");
-    return bytes;
-  }
-  void restore(const std::string& bytes) override {
-    check(deserialize_(own_, bytes.data(), bytes.size(), &state_), "fmi2DeSerializeFMUstate");
-    check(set_state_(own_, state_), "fmi2SetFMUstate");
-  }
 
  private:
-  void end() {
-    if (own_ != nullptr && !is_lost_) {
-      if (state_ != nullptr) free_state_(own_, &state_);
-      if (is_running_) terminate_(own_);
-      free_(own_);
-    }
-    own_ = nullptr;
-    state_ = nullptr;
-    is_running_ = false;
-  }
   void set_one(const fmu::ForeignVariable& v, const double* values) override {
     switch (v.type) {
       case fmu::ValueType::Int32:
@@ -220,28 +236,16 @@ class Slave2 final : public SlaveBase {
   using Set = int(fmi2Component, const fmi2ValueReference*, std::size_t, const int*);
   fmi2Component (*instantiate_)(fmi2String, fmi2Type, fmi2String, fmi2String, const fmi2CallbackFunctions*, fmi2Boolean,
                                 fmi2Boolean) = nullptr;
-  void (*free_)(fmi2Component) = nullptr;
-  int (*setup_)(fmi2Component, fmi2Boolean, fmi2Real, fmi2Real, fmi2Boolean, fmi2Real) = nullptr;
   int (*enter_)(fmi2Component) = nullptr;
-  int (*exit_)(fmi2Component) = nullptr;
-  int (*terminate_)(fmi2Component) = nullptr;
+  int (*setup_)(fmi2Component, fmi2Boolean, fmi2Real, fmi2Real, fmi2Boolean, fmi2Real) = nullptr;
   int (*do_step_)(fmi2Component, fmi2Real, fmi2Real, fmi2Boolean) = nullptr;
   int (*get_status_)(fmi2Component, fmi2StatusKind, fmi2Boolean*) = nullptr;
   int (*set_real_)(fmi2Component, const fmi2ValueReference*, std::size_t, const fmi2Real*) = nullptr;
   int (*get_real_)(fmi2Component, const fmi2ValueReference*, std::size_t, fmi2Real*) = nullptr;
   Set *set_integer_ = nullptr, *set_boolean_ = nullptr;
   Get *get_integer_ = nullptr, *get_boolean_ = nullptr;
-  int (*get_state_)(fmi2Component, fmi2FMUstate*) = nullptr;
-  int (*set_state_)(fmi2Component, fmi2FMUstate) = nullptr;
-  int (*free_state_)(fmi2Component, fmi2FMUstate*) = nullptr;
-  int (*get_size_)(fmi2Component, fmi2FMUstate, std::size_t*) = nullptr;
-  int (*serialize_)(fmi2Component, fmi2FMUstate, fmi2Byte*, std::size_t) = nullptr;
-  int (*deserialize_)(fmi2Component, const fmi2Byte*, std::size_t, fmi2FMUstate*) = nullptr;
 
   fmi2CallbackFunctions callbacks_{log2, std::calloc, std::free, nullptr, &message_};
-  fmi2Component own_ = nullptr;
-  fmi2FMUstate state_ = nullptr;
-  bool is_running_ = false;
 };
 
 void log3(fmi3InstanceEnvironment environment, fmi3Status, fmi3String, fmi3String message) {
@@ -253,18 +257,9 @@ class Slave3 final : public SlaveBase {
   Slave3(const fmu::ForeignModel& model, const std::string& folder, SlaveVariables variables)
       : SlaveBase(model, folder, std::move(variables)) {
     library_.find("fmi3InstantiateCoSimulation", instantiate_);
-    library_.find("fmi3FreeInstance", free_);
     library_.find("fmi3EnterInitializationMode", enter_);
-    library_.find("fmi3ExitInitializationMode", exit_);
-    library_.find("fmi3Terminate", terminate_);
     library_.find("fmi3DoStep", do_step_);
-    if (!model.can_save_state) return;
-    library_.find("fmi3GetFMUState", get_state_);
-    library_.find("fmi3SetFMUState", set_state_);
-    library_.find("fmi3FreeFMUState", free_state_);
-    library_.find("fmi3SerializedFMUStateSize", get_size_);
-    library_.find("fmi3SerializeFMUState", serialize_);
-    library_.find("fmi3DeserializeFMUState", deserialize_);
+    find_shared("fmi3", "FMUState", "Deserialize");
   }
   ~Slave3() override { end(); }
 
@@ -290,33 +285,11 @@ class Slave3 final : public SlaveBase {
     if (status <= kDiscard && is_terminated) fail_terminated();
     check(status, "fmi3DoStep");
     if (is_early)
-      throw std::runtime_error("an error: an early return at t = " + std::to_string(reached) + ", which is not allowed");
-  }
-  std::string save() override {
-    check(get_state_(own_, &state_), "fmi3GetFMUState");
-    std::size_t size = 0;
-    check(get_size_(own_, state_, &size), "fmi3SerializedFMUStateSize");
-    std::string bytes(size, '\0');
-    check(serialize_(own_, state_, reinterpret_cast<fmi3Byte*>(bytes.data()), size), "fmi3SerializeFMUState");
-    return bytes;
-  }
-  void restore(const std::string& bytes) override {
-    check(deserialize_(own_, reinterpret_cast<const fmi3Byte*>(bytes.data()), bytes.size(), &state_),
-          "fmi3DeserializeFMUState");
-    check(set_state_(own_, state_), "fmi3SetFMUState");
+      throw std::runtime_error("an error: an early return at t = " + std::to_string(reached) +
+                               ", which is not allowed");
   }
 
  private:
-  void end() {
-    if (own_ != nullptr && !is_lost_) {
-      if (state_ != nullptr) free_state_(own_, &state_);
-      if (is_running_) terminate_(own_);
-      free_(own_);
-    }
-    own_ = nullptr;
-    state_ = nullptr;
-    is_running_ = false;
-  }
   /// Functions of a type are looked up when a variable has it.
   template <class T>
   void set_values(const char* name, const fmu::ForeignVariable& v, const std::vector<T>& values) {
@@ -398,22 +371,9 @@ class Slave3 final : public SlaveBase {
   fmi3Instance (*instantiate_)(fmi3String, fmi3String, fmi3String, fmi3Boolean, fmi3Boolean, fmi3Boolean, fmi3Boolean,
                                const fmi3ValueReference*, std::size_t, fmi3InstanceEnvironment, fmi3LogMessageCallback,
                                fmi3IntermediateUpdateCallback) = nullptr;
-  void (*free_)(fmi3Instance) = nullptr;
   int (*enter_)(fmi3Instance, fmi3Boolean, fmi3Float64, fmi3Float64, fmi3Boolean, fmi3Float64) = nullptr;
-  int (*exit_)(fmi3Instance) = nullptr;
-  int (*terminate_)(fmi3Instance) = nullptr;
   int (*do_step_)(fmi3Instance, fmi3Float64, fmi3Float64, fmi3Boolean, fmi3Boolean*, fmi3Boolean*, fmi3Boolean*,
                   fmi3Float64*) = nullptr;
-  int (*get_state_)(fmi3Instance, fmi3FMUState*) = nullptr;
-  int (*set_state_)(fmi3Instance, fmi3FMUState) = nullptr;
-  int (*free_state_)(fmi3Instance, fmi3FMUState*) = nullptr;
-  int (*get_size_)(fmi3Instance, fmi3FMUState, std::size_t*) = nullptr;
-  int (*serialize_)(fmi3Instance, fmi3FMUState, fmi3Byte*, std::size_t) = nullptr;
-  int (*deserialize_)(fmi3Instance, const fmi3Byte*, std::size_t, fmi3FMUState*) = nullptr;
-
-  fmi3Instance own_ = nullptr;
-  fmi3FMUState state_ = nullptr;
-  bool is_running_ = false;
 };
 
 }  // namespace

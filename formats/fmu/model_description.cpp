@@ -1,4 +1,5 @@
 #include "formats/fmu/model_description.hpp"
+#include "base/xml_text.hpp"
 
 #include <cctype>
 #include <charconv>
@@ -12,27 +13,8 @@ std::string number(double value) {
   return {text, std::to_chars(text, text + sizeof text, value).ptr};
 }
 
-std::string escape(const std::string& text) {
-  std::string escaped;
-  for (const char c : text) {
-    if (c == '&')
-      escaped += "&amp;";
-    else if (c == '<')
-      escaped += "&lt;";
-    else if (c == '>')
-      escaped += "&gt;";
-    else if (c == '"')
-      escaped += "&quot;";
-    else if (static_cast<unsigned char>(c) < 32)
-      escaped += ' ';
-    else
-      escaped += c;
-  }
-  return escaped;
-}
-
 std::string attribute(const std::string& name, const std::string& value) {
-  return " " + name + "=\"" + escape(value) + "\"";
+  return " " + name + "=\"" + escape_xml(value) + "\"";
 }
 
 std::string optional_attribute(const std::string& name, const std::string& value) {

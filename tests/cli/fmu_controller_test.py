@@ -1,6 +1,5 @@
 """FMUs as controllers: the law of a shared library bit for bit, states that are saved, and what goes wrong, in words."""
 import os
-import signal
 import unittest
 import zipfile
 
@@ -127,7 +126,11 @@ class FmuControllers(ProgramTest):
                 self.fails(3, "run", "s.toml", says=["controller 'law'", f"at t = 0.0{2 if fault == 4 else 3}", *says])
                 with h5py.File(self.path("s.h5")) as f:
                     self.assertFalse(f.attrs["completed"])
-        self.assertEqual([n for n in os.listdir(self.folder) if n.startswith("bough-fmu")], [])
+        os.mkdir(self.path("tmp"))
+        for fault, code in ((0, 0), (1, 3)):
+            self.make(fault=fault)
+            self.bough("run", "s.toml", code=code, env={"TMPDIR": self.path("tmp")})
+            self.assertEqual(os.listdir(self.path("tmp")), [])
 
     def test_refused_files(self):
         def refuse(error, *says, code=1, **more):
