@@ -82,10 +82,10 @@ TEST(ModelDescription, IdentifiersAreThoseOfC) {
 
 TEST(ModelDescription, TextIsEscaped) {
   fmu::ModelDescription model;
-  model.model_name = "a<b>&\"c\"\n";
+  model.model_name = "a<b>&\"c\"\x01";
   model.identifier = "m";
   for (const auto& text : {fmu::format_fmi2(model), fmu::format_fmi3(model)})
-    EXPECT_THAT(text, HasSubstr("modelName=\"a&lt;b&gt;&amp;&quot;c&quot; \""));
+    EXPECT_THAT(text, HasSubstr("modelName=\"a&lt;b&gt;&amp;&quot;c&quot;\""));
 }
 
 }  // namespace
