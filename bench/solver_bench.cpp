@@ -3,9 +3,9 @@
 
 #include <cmath>
 
-#include "solver/integrate/memory_sink.hpp"
-#include "solver/integrate/simulate.hpp"
-#include "solver/integrate/system_ode.hpp"
+#include "solver/simulate/hybrid_system.hpp"
+#include "solver/simulate/memory_sink.hpp"
+#include "solver/simulate/simulate.hpp"
 
 namespace {
 

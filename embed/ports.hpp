@@ -6,7 +6,7 @@
 
 #include "formats/records/results.hpp"
 #include "formats/records/system_spec.hpp"
-#include "solver/integrate/simulator.hpp"
+#include "solver/simulate/simulator.hpp"
 
 namespace bough::embed {
 

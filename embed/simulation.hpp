@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "embed/load.hpp"
-#include "solver/integrate/no_sink.hpp"
-#include "solver/integrate/simulator.hpp"
+#include "solver/simulate/no_sink.hpp"
+#include "solver/simulate/simulator.hpp"
 
 namespace bough::embed {
 

@@ -29,7 +29,7 @@
 #include "formats/nastran/reader.hpp"
 #include "formats/records/params.hpp"
 #include "formats/toml/specs.hpp"
-#include "solver/integrate/simulate.hpp"
+#include "solver/simulate/simulate.hpp"
 
 namespace bough::cli {
 

@@ -16,8 +16,8 @@
 #include "cli/verbs.hpp"
 #include "formats/hdf5/files.hpp"
 #include "formats/toml/specs.hpp"
-#include "solver/integrate/recorder.hpp"
 #include "solver/linear/linearize.hpp"
+#include "solver/simulate/outputs.hpp"
 
 namespace bough::cli {
 

@@ -17,7 +17,7 @@
 #include "formats/hdf5/linear_file.hpp"
 #include "formats/hdf5/sweep_file.hpp"
 #include "formats/toml/specs.hpp"
-#include "solver/integrate/timeline.hpp"
+#include "solver/simulate/time_events.hpp"
 
 namespace bough::cli {
 

@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include "cli/common/start_state.hpp"
-#include "solver/integrate/simulate.hpp"
-#include "solver/integrate/system_ode.hpp"
 #include "solver/linear/equilibrium.hpp"
+#include "solver/simulate/hybrid_system.hpp"
+#include "solver/simulate/simulate.hpp"
 
 namespace bough::cli {
 

@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "cli/common/run_bodies.hpp"
-#include "solver/forces/function.hpp"
+#include "solver/functions/function.hpp"
 
 namespace bough::cli {
 

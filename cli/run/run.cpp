@@ -22,7 +22,7 @@
 #include "formats/hdf5/files.hpp"
 #include "formats/toml/specs.hpp"
 #include "solver/control/user_code.hpp"
-#include "solver/integrate/simulate.hpp"
+#include "solver/simulate/simulate.hpp"
 
 namespace bough::cli {
 

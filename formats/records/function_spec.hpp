@@ -10,7 +10,7 @@ namespace bough::records {
 
 struct FunctionRecord {
   std::string name;
-  std::string type;                      ///< constant step ramp pulse sine ... (solver/forces/function.hpp)
+  std::string type;                      ///< constant step ramp pulse sine ... (solver/functions/function.hpp)
   std::map<std::string, double> values;  ///< parameters by key, after defaults
   std::vector<double> x, y;              ///< table
   std::string file;                      ///< table: where x and y come from; empty: from the system file

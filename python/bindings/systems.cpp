@@ -7,9 +7,9 @@
 #include "formats/hdf5/files.hpp"
 #include "python/bindings/controllers.hpp"
 #include "python/bindings/simulations.hpp"
-#include "solver/integrate/memory_sink.hpp"
-#include "solver/integrate/simulate.hpp"
 #include "solver/linear/linearize.hpp"
+#include "solver/simulate/memory_sink.hpp"
+#include "solver/simulate/simulate.hpp"
 
 namespace bough::python {
 

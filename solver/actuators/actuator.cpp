@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "solver/actuators/makers.hpp"
-#include "solver/system/build.hpp"
+#include "solver/build/build.hpp"
 #include "solver/tree/coordinates.hpp"
 
 namespace bough::solver {

@@ -3,9 +3,9 @@
 #include <memory>
 
 #include "formats/records/system_spec.hpp"
-#include "solver/control/settings.hpp"
 #include "solver/signals/block.hpp"
 #include "solver/system/system.hpp"
+#include "solver/text/settings.hpp"
 #include "solver/tree/tree.hpp"
 
 namespace bough::solver {

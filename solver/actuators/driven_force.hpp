@@ -2,8 +2,8 @@
 /// \file A [[force]] that follows a signal.
 #include <memory>
 
+#include "solver/build/build.hpp"
 #include "solver/signals/block.hpp"
-#include "solver/system/build.hpp"
 
 namespace bough::solver {
 

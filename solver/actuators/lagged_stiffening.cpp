@@ -1,6 +1,6 @@
 #include "solver/actuators/lagged_stiffening.hpp"
 
-#include "solver/system/stiffening_terms.hpp"
+#include "solver/motion/stiffening_terms.hpp"
 
 namespace bough::solver {
 namespace {

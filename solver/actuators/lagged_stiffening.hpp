@@ -3,8 +3,8 @@
 #include <memory>
 #include <vector>
 
+#include "solver/build/build.hpp"
 #include "solver/signals/block.hpp"
-#include "solver/system/build.hpp"
 
 namespace bough::solver {
 

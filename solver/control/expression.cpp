@@ -1,6 +1,6 @@
 // Formulas of the inputs u1, u2, ... and the time t.
 #include "solver/control/makers.hpp"
-#include "solver/forces/formulas.hpp"
+#include "solver/text/formulas.hpp"
 
 namespace bough::solver {
 namespace {

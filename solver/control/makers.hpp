@@ -1,7 +1,7 @@
 #pragma once
 /// \file Makers of the controllers' blocks, one a family; for controller.cpp.
 #include "solver/control/controller.hpp"
-#include "solver/control/settings.hpp"
+#include "solver/text/settings.hpp"
 
 namespace bough::solver {
 

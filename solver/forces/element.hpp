@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "solver/forces/function.hpp"
+#include "solver/functions/function.hpp"
 #include "solver/tree/data.hpp"
 
 namespace bough::solver {

@@ -9,8 +9,8 @@
 #include <cmath>
 #include <limits>
 
-#include "solver/forces/curve.hpp"
 #include "solver/forces/element.hpp"
+#include "solver/functions/curve.hpp"
 
 namespace bough::solver {
 

@@ -3,8 +3,8 @@
 ///
 /// T = preload + k (l - l0) + table(l) + c l̇ + table(l̇) + f(t): tension pulls A and B together. One that acts
 /// in tension only is slack where T without dampers is negative and never pushes; in compression only likewise.
-#include "solver/forces/curve.hpp"
 #include "solver/forces/element.hpp"
+#include "solver/functions/curve.hpp"
 
 namespace bough::solver {
 

@@ -14,7 +14,7 @@
 ///   quaternion, euler, dcm   of R_AS: the axes S of the sensor in A; w >= 0; R_AS = R_i(a) R_j(b) R_k(c)
 ///   gyro, accelerometer, direction   ω, a - g(p) of all gravity, the target's direction in S
 ///   horizon                  roll, pitch of S against the direction to the target, its z at zero
-///   element                  forces and stresses of an element (solver/system/recovery.hpp)
+///   element                  forces and stresses of an element (solver/motion/recovery.hpp)
 ///   hinge_angle, hinge_rate   coordinates as the user knows them (quaternion w, x, y, z) and rates; one, or all for 0
 ///
 /// With frame = A and relative_to = A, "turning" is what an observer who rides on A writes down. An empty frame means

@@ -20,10 +20,10 @@
 #include "solver/forces/gravity_field.hpp"
 #include "solver/forces/latch.hpp"
 #include "solver/loops/loops.hpp"
+#include "solver/motion/recovery.hpp"
 #include "solver/signals/graph.hpp"
 #include "solver/state/motion.hpp"
 #include "solver/state/state.hpp"
-#include "solver/system/recovery.hpp"
 #include "solver/tree/data.hpp"
 
 namespace bough::solver {

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "solver/bodies/marker.hpp"
-#include "solver/forces/function.hpp"
+#include "solver/functions/function.hpp"
 #include "solver/hinges/hinge.hpp"
 #include "solver/state/state.hpp"
 

@@ -29,7 +29,8 @@ MAY_INCLUDE = [
     ("modal", RECORDS + ["fe"]),
     ("stiffening", RECORDS + ["fe", "modal"]),
     ("solver/hinges", RECORDS + ["solver/bodies"]),
-    ("solver/integrate", RECORDS + ["solver"]),
+    ("solver/integrate", RECORDS),
+    ("solver/simulate", RECORDS + ["solver"]),
     ("solver/statespace", RECORDS),
     ("solver/linear", RECORDS + ["solver"]),
     ("solver", RECORDS),
@@ -48,7 +49,7 @@ OUTSIDE = [
     (r"^zip\.h", ["formats/fmu"]),
     (r"^pugixml", ["formats/fmu"]),
     (r"^nlohmann", ["formats/toml", "formats/report", "cli"]),
-    (r"^muParser", ["solver/forces/formulas.cpp"]),
+    (r"^muParser", ["solver/text/formulas.cpp"]),
     (r"^dlfcn", ["solver/control/library.cpp", "cosim/slave.cpp", "fe/linear/petsc.cpp", "cli/common/memory_limit.cpp"]),
     (r"^CLI/", ["cli"]),
     (r"^fmt/", ["cli", "formats"]),
@@ -61,7 +62,7 @@ def lies_in(path, folders):
 
 
 # Seen by nobody outside: the integrators and the linear models stand above the rest of the solver.
-TOP = ["solver/integrate", "solver/linear", "cli"]
+TOP = ["solver/simulate", "solver/linear", "cli"]
 ABOVE = ["embed"]  # stands above them
 
 findings = []

@@ -5,8 +5,8 @@
 
 #include "formats/records/body_spec.hpp"
 #include "formats/records/deck.hpp"
-#include "solver/integrate/memory_sink.hpp"
-#include "solver/integrate/simulate.hpp"
+#include "solver/simulate/memory_sink.hpp"
+#include "solver/simulate/simulate.hpp"
 
 namespace bough::test {
 

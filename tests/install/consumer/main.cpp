@@ -2,7 +2,7 @@
 #include <cstdio>
 
 #include "bough/formats/toml/specs.hpp"
-#include "bough/solver/integrate/simulate.hpp"
+#include "bough/solver/simulate/simulate.hpp"
 
 namespace {
 class LastSample final : public bough::records::ResultSink {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <functional>
 
-#include "solver/forces/curve.hpp"
+#include "solver/functions/curve.hpp"
 #include "tests/solver/support/models.hpp"
 
 namespace bough::solver::testing {

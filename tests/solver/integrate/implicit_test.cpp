@@ -3,10 +3,10 @@
 
 #include <cmath>
 
-#include "solver/integrate/memory_sink.hpp"
-#include "solver/integrate/simulate.hpp"
 #include "solver/integrate/stepper.hpp"
-#include "solver/integrate/system_ode.hpp"
+#include "solver/simulate/hybrid_system.hpp"
+#include "solver/simulate/memory_sink.hpp"
+#include "solver/simulate/simulate.hpp"
 #include "tests/solver/support/models.hpp"
 
 namespace bough::solver::testing {

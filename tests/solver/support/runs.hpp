@@ -2,8 +2,8 @@
 /// \file One body on one hinge, and whole runs in memory.
 #include <gtest/gtest.h>
 
-#include "solver/integrate/memory_sink.hpp"
-#include "solver/integrate/simulate.hpp"
+#include "solver/simulate/memory_sink.hpp"
+#include "solver/simulate/simulate.hpp"
 #include "tests/solver/support/models.hpp"
 
 namespace bough::solver::testing {

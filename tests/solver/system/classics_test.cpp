@@ -5,8 +5,8 @@
 #include <cmath>
 #include <tuple>
 
-#include "solver/integrate/memory_sink.hpp"
-#include "solver/integrate/simulate.hpp"
+#include "solver/simulate/memory_sink.hpp"
+#include "solver/simulate/simulate.hpp"
 #include "tests/solver/support/models.hpp"
 
 namespace bough::solver::testing {

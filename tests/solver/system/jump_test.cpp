@@ -1,8 +1,8 @@
 // Jumps of given rates: impulses by M⁻¹, momentum kept, what they did booked as work.
 #include <gtest/gtest.h>
 
-#include "solver/integrate/memory_sink.hpp"
-#include "solver/integrate/simulate.hpp"
+#include "solver/simulate/memory_sink.hpp"
+#include "solver/simulate/simulate.hpp"
 #include "tests/solver/support/models.hpp"
 
 namespace bough::solver::testing {

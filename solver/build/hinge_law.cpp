@@ -1,0 +1,201 @@
+// Preload, tables, stops, friction and motors of the coordinates of a hinge.
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "solver/build/build.hpp"
+#include "solver/forces/hinge_law.hpp"
+#include "solver/forces/latch_slack.hpp"
+
+namespace bough::solver {
+
+namespace {
+
+class LawBuilder {
+ public:
+  LawBuilder(const records::HingeRecord& record, const ElementContext& context, TreeBody& tb, Diagnostics& diagnostics)
+      : r_(record), context_(context), tb_(tb), diagnostics_(diagnostics), user_("hinge " + quote(record.name)) {}
+
+  void build(std::vector<std::unique_ptr<const ForceElement>>& elements, std::vector<Latch>& latches) {
+    const auto& law = r_.law;
+    bool is_given = law.has_stops || law.has_friction;
+    for (const auto* list : {&law.preload, &law.rotor_inertia}) is_given = is_given || !list->empty();
+    for (const auto* list : {&law.spring_table, &law.damper_table}) is_given = is_given || !list->empty();
+    if (!is_given) return;
+    if (!tb_.hinge->has_plain_coordinates()) {
+      refuse("is of a type without single coordinates: it takes no preload, tables, stops, friction or motor inertia",
+             "use hinges of angles and travels: gimbal and general (without q) among them");
+      return;
+    }
+    const int errors = diagnostics_.num_errors();
+    check_lists();
+    if (diagnostics_.num_errors() != errors) return;
+    set_rotor();
+    int ignored = 0;
+    for (int i = 0; i < tb_.num_hinge_u(); ++i) {
+      if (tb_.mode[static_cast<size_t>(i)] == HingeMode::Prescribed) ++ignored;
+      add(i, elements, latches);
+    }
+    if (ignored == tb_.num_hinge_u() && ignored > 0) {
+      diagnostics_.warning("system.ignored-spring", r_.at,
+                           user_ + " has a prescribed motion: what acts along its coordinates has no effect",
+                           "remove it");
+    }
+  }
+
+ private:
+  void refuse(const std::string& what, const std::string& advice) {
+    diagnostics_.error("system.bad-hinge-law", r_.at, user_ + " " + what, advice);
+  }
+
+  template <class T>
+  void check_count(const std::vector<T>& values, const char* key) {
+    const int nu = tb_.num_hinge_u(), size = static_cast<int>(values.size());
+    if (size == 0 || size == nu) return;
+    diagnostics_.error("system.bad-count", r_.at,
+                       user_ + ": " + key + " has " + std::to_string(size) + " values, expected " + std::to_string(nu));
+  }
+  void check_positive(const std::vector<double>& values, const char* key) {
+    check_count(values, key);
+    for (const double x : values) {
+      if (std::isfinite(x) && x >= 0) continue;
+      refuse("has a negative " + std::string(key), "give a value of at least zero");
+      return;
+    }
+  }
+
+  void check_lists() {
+    const auto& law = r_.law;
+    check_count(law.preload, "preload");
+    check_count(law.spring_table, "spring_table");
+    check_count(law.damper_table, "damper_table");
+    check_count(law.stop_lower, "lower of stops");
+    check_count(law.stop_upper, "upper of stops");
+    check_positive(law.stop_stiffness, "stiffness of stops");
+    check_positive(law.stop_damping, "damping of stops");
+    check_positive(law.stop_restitution, "restitution of stops");
+    check_positive(law.coulomb, "coulomb friction");
+    check_positive(law.static_friction, "static friction");
+    check_positive(law.stribeck_velocity, "stribeck_velocity");
+    check_positive(law.smoothing, "smoothing");
+    check_positive(law.rotor_inertia, "rotor_inertia");
+    check_count(law.gear_ratio, "gear_ratio");
+  }
+
+  double at(const std::vector<double>& values, int i, double otherwise = 0) const {
+    return values.empty() ? otherwise : values[static_cast<size_t>(i)];
+  }
+
+  void set_rotor() {
+    if (r_.law.rotor_inertia.empty()) return;
+    tb_.rotor = VectorXd::Zero(tb_.num_hinge_u());
+    for (int i = 0; i < tb_.num_hinge_u(); ++i) {
+      const double ratio = at(r_.law.gear_ratio, i, 1);
+      tb_.rotor[i] = at(r_.law.rotor_inertia, i) * ratio * ratio;
+    }
+  }
+
+  std::unique_ptr<const Curve> find_table(const std::vector<std::string>& names, int i) {
+    if (names.empty()) return nullptr;
+    return find_curve(context_, names[static_cast<size_t>(i)], r_.at, user_, diagnostics_);
+  }
+
+  void check_stops(const HingeLaw::Law& law, double restitution, bool is_rigid, const std::string& which) {
+    if (!(law.lower < law.upper))
+      refuse("has stops of coordinate " + which + " with lower above upper", "exchange them");
+    if (!is_rigid && !(law.stop_stiffness > 0))
+      refuse("has stops without stiffness", "give stops a stiffness > 0, or a restitution for rigid ones");
+    if (is_rigid && restitution > 1)
+      refuse("has stops with a restitution above 1", "give the speed after over the speed before, 0 .. 1");
+    if (is_rigid && (law.stop_stiffness > 0 || law.stop_damping > 0))
+      refuse("has stops with a restitution and a spring", "give stops a stiffness and damping, or a restitution");
+  }
+
+  void add(int i, std::vector<std::unique_ptr<const ForceElement>>& elements, std::vector<Latch>& latches) {
+    const auto& r = r_.law;
+    HingeLaw::Law law;
+    law.preload = at(r.preload, i);
+    law.null_position = tb_.null_position[i];
+    law.spring = find_table(r.spring_table, i);
+    law.damper = find_table(r.damper_table, i);
+    const double free = std::numeric_limits<double>::infinity();
+    law.lower = at(r.stop_lower, i, -free);
+    law.upper = at(r.stop_upper, i, free);
+    law.stop_stiffness = at(r.stop_stiffness, i);
+    law.stop_damping = at(r.stop_damping, i);
+    law.coulomb = at(r.coulomb, i);
+    law.static_friction = at(r.static_friction, i, law.coulomb);
+    law.stribeck_velocity = at(r.stribeck_velocity, i);
+    law.smoothing = at(r.smoothing, i);
+    const std::string which = std::to_string(i + 1);
+    const bool has_stop = std::isfinite(law.lower) || std::isfinite(law.upper);
+    const bool is_rigid = has_stop && !r.stop_restitution.empty();
+    if (has_stop) check_stops(law, at(r.stop_restitution, i), is_rigid, which);
+    const bool has_friction = law.coulomb > 0 || law.static_friction > 0;
+    law.is_dry = has_friction && !(law.smoothing > 0);
+    if (law.static_friction < law.coulomb)
+      refuse("has static friction below coulomb friction", "give static at least as much");
+    if (law.static_friction > law.coulomb && !(law.stribeck_velocity > 0) && !law.is_dry)
+      refuse("has static friction without stribeck_velocity", "give the rate over which it falls to coulomb's");
+    if (is_rigid || law.is_dry)
+      latches.push_back({"coordinate " + which + " of hinge " + quote(tb_.hinge_name), tb_.q_offset + i,
+                         tb_.u_offset + i, is_rigid ? law.lower : -free, is_rigid ? law.upper : free,
+                         at(r.stop_restitution, i), law.is_dry ? law.static_friction : 0});
+    if (!(law.stribeck_velocity > 0)) {
+      if (law.is_dry) law.static_friction = law.coulomb;  // as soon as it slides
+      law.stribeck_velocity = 1;
+    }
+    if (is_rigid) {
+      law.lower = -free;
+      law.upper = free;
+    }
+    const bool acts = law.preload != 0 || law.spring || law.damper || (has_stop && !is_rigid) || has_friction;
+    if (acts) {
+      elements.push_back(
+          std::make_unique<HingeLaw>(tb_.hinge_name + ":" + which, tb_.q_offset + i, tb_.u_offset + i, std::move(law)));
+    }
+  }
+
+  const records::HingeRecord& r_;
+  const ElementContext& context_;
+  TreeBody& tb_;
+  Diagnostics& diagnostics_;
+  std::string user_;
+};
+
+}  // namespace
+
+void build_hinge_laws(const records::HingeRecord& record, const ElementContext& context, TreeBody& tb,
+                      std::vector<std::unique_ptr<const ForceElement>>& elements, std::vector<Latch>& latches,
+                      Diagnostics& diagnostics) {
+  LawBuilder(record, context, tb, diagnostics).build(elements, latches);
+}
+
+void check_stops(System& system, Diagnostics& diagnostics) {
+  VectorXd q(system.tree.num_q), u(system.tree.num_u);
+  system.calc_initial_state(q, u);
+  for (const Latch& latch : system.latches) {
+    const auto carries = [&](const TreeBody& b) {
+      return latch.u_row >= b.u_offset && latch.u_row < b.u_offset + b.num_hinge_u();
+    };
+    TreeBody& tb = *std::find_if(system.tree.bodies.begin(), system.tree.bodies.end(), carries);
+    const int i = latch.u_row - tb.u_offset;
+    if (tb.mode[static_cast<size_t>(i)] == HingeMode::Prescribed) continue;
+    const double at = q[latch.q_row], inside = std::clamp(at, latch.lower, latch.upper);
+    if (at == inside) continue;
+    if (std::abs(at - inside) > calc_slack(inside)) {
+      std::ostringstream what;
+      what << latch.name << " starts at " << at << ", beyond its " << (at < inside ? "lower" : "upper") << " stop at "
+           << inside;
+      diagnostics.error("system.beyond-stop", tb.hinge_at, what.str(),
+                        system.initial_q.size() > 0
+                            ? "give the hinge a position within its stops, or close the loops so"
+                            : "give the hinge a position within its stops");
+      continue;
+    }
+    tb.initial_q[i] = inside;
+    if (system.initial_q.size() > 0) system.initial_q[latch.q_row] = inside;
+  }
+}
+
+}  // namespace bough::solver

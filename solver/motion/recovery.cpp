@@ -1,0 +1,93 @@
+#include "solver/motion/recovery.hpp"
+
+#include <algorithm>
+#include <set>
+
+#include "solver/motion/node_load.hpp"
+
+namespace bough::solver {
+
+struct Recovery::Loaded {
+  NodeSource source;
+  std::array<int, 6> locator{-1, -1, -1, -1, -1, -1};  ///< column of external_, -1: none
+};
+
+Recovery::Recovery(const records::FlexBody& flex, int body) : body_(body) {
+  Eigen::Index rows = 0;
+  for (const auto& block : flex.recovery) rows += block.num_rows();
+  matrix_.resize(rows, flex.num_modes());
+  inertial_.resize(rows, records::kNumInertialLoads);
+  external_.resize(rows, static_cast<Eigen::Index>(flex.locators.size()));
+  offset_.resize(rows);
+  if (flex.preload_A_I.size() > 0) preload_ = flex.preload_A_I;
+  int first = 0;
+  for (const auto& block : flex.recovery) {
+    const auto count = block.num_rows();
+    matrix_.middleRows(first, count) = block.matrix;
+    inertial_.middleRows(first, count) = block.inertial;
+    external_.middleRows(first, count) = block.external;
+    offset_.segment(first, count) = block.offset;
+    for (const int id : block.id) {
+      elements_.push_back({block.name + "/" + std::to_string(id), id, first, block.components, false});
+      first += elements_.back().size();
+    }
+  }
+}
+
+Recovery::~Recovery() = default;
+
+const Recovery::Element* Recovery::find(int id) const {
+  const auto found = std::find_if(elements_.begin(), elements_.end(), [&](const auto& e) { return e.id == id; });
+  return found == elements_.end() ? nullptr : &*found;
+}
+
+void Recovery::record(int id) {
+  for (auto& element : elements_)
+    if (element.id == id) element.is_recorded = true;
+}
+
+std::vector<int> Recovery::connect(const System& system, const records::FlexBody& flex,
+                                   const std::vector<records::ForceRecord>& forces) {
+  const auto& nodes = system.tree[body_].body.nodes();
+  std::set<int> unknown;
+  for (const auto& source : list_node_sources(system, body_)) {
+    const auto& node = nodes[static_cast<size_t>(source.node)];
+    Loaded loaded;
+    loaded.source = source;
+    for (int d = 1; d <= 6; ++d) loaded.locator[static_cast<size_t>(d) - 1] = flex.find_locator(node.id, d);
+    if (std::all_of(loaded.locator.begin(), loaded.locator.end(), [](int e) { return e < 0; })) {
+      if (node.moves) unknown.insert(node.id);
+      continue;
+    }
+    loaded_.push_back(loaded);
+  }
+  for (const auto& force : system.forces) {
+    if (force.body != body_ || force.pattern.size() == 0) continue;
+    for (const auto& record : forces)
+      for (size_t e = 0; record.name == force.name && e < flex.locators.size(); ++e)
+        if (flex.locators[e].name == record.locator)
+          patterns_.push_back({&force, external_.col(static_cast<Eigen::Index>(e))});
+  }
+  return {unknown.begin(), unknown.end()};
+}
+
+void Recovery::calc(const System& system, const SystemData& data, int first, int count, double* out) const {
+  const Eigen::Matrix<double, 12, 1> A_I =
+      system.gravity.calc_inertial_acceleration(system.tree, data.tree, body_) - preload_;
+  Eigen::Map<VectorXd> rows(out, count);
+  rows = offset_.segment(first, count);
+  rows.noalias() += matrix_.middleRows(first, count) * data.tree.q.segment(system.eta_offset(body_), matrix_.cols());
+  rows.noalias() += inertial_.middleRows(first, count) * A_I;
+  for (const auto& loaded : loaded_) {
+    const Vector6d load = calc_node_load(loaded.source, body_, system, data);
+    for (int d = 0; d < 6; ++d)
+      if (const int e = loaded.locator[static_cast<size_t>(d)]; e >= 0)
+        rows += load[d] * external_.col(e).segment(first, count);
+  }
+  for (const auto& pattern : patterns_) {
+    const auto* f = pattern.force->function;
+    rows += (f ? data.tree.functions[*f].calc(data.tree.t).f : 1.0) * pattern.rows.segment(first, count);
+  }
+}
+
+}  // namespace bough::solver

@@ -1,0 +1,136 @@
+#include "solver/simulate/event_actions.hpp"
+
+#include <algorithm>
+
+#include "solver/system/system.hpp"
+
+namespace bough::solver {
+namespace {
+
+using records::EventAction;
+
+template <class Name>
+std::string find_near(const std::string& wanted, int count, const Name& get_name) {
+  std::vector<std::string> names;
+  for (int i = 0; i < count; ++i) names.push_back(get_name(i));
+  const std::string near = find_nearest(wanted, names);
+  return near.empty() ? "declare it" : "did you mean '" + near + "'?";
+}
+
+void report(const records::TriggerRecord& r, const char* id, const std::string& what, const std::string& advice,
+            Diagnostics& diagnostics) {
+  diagnostics.error(id, r.at, "event '" + r.name + "' " + what, advice);
+}
+
+/// Rows of u of the coordinates an event names: all of an orientation, or none of it.
+std::vector<int> find_rows(const System& system, int body, const records::TriggerRecord& r, Diagnostics& diagnostics) {
+  const TreeBody& tb = system.tree[body];
+  const int num = tb.num_hinge_u();
+  std::vector<bool> named(static_cast<size_t>(num), r.coordinates.empty());
+  for (const int c : r.coordinates) {
+    if (c >= 1 && c <= num)
+      named[static_cast<size_t>(c) - 1] = true;
+    else
+      report(r, "run.bad-event",
+             "names coordinate " + std::to_string(c) + " of hinge '" + r.target + "', which has " + std::to_string(num),
+             "coordinates count from 1, as in 'rate'", diagnostics);
+  }
+  if (num == 0)
+    report(r, "run.bad-event", "names hinge '" + r.target + "', which has no coordinates",
+           "a body that is to come loose hangs on a free hinge that starts locked", diagnostics);
+  if (!tb.hinge->has_plain_coordinates() && (named[0] != named[1] || named[0] != named[2]))
+    report(r, "run.bad-event", "names some of the three rates of the orientation of hinge '" + r.target + "'",
+           "name all three or none", diagnostics);
+  std::vector<int> rows;
+  for (int i = 0; i < num; ++i) {
+    if (named[static_cast<size_t>(i)]) rows.push_back(tb.u_offset + i);
+  }
+  return rows;
+}
+
+/// Place of a controller in the signal graph; -1 with errors reported.
+int find_controller(const System& system, const records::TriggerRecord& r, Diagnostics& diagnostics) {
+  const auto& places = system.signals.places;
+  const std::string folder = "/controllers/";
+  std::vector<std::string> names;
+  for (size_t i = 0; i < places.size(); ++i) {
+    const Block& block = *places[i].block;
+    if (!block.path.starts_with(folder)) continue;
+    names.push_back(block.name);
+    if (block.name != r.target) continue;
+    if (r.action != EventAction::Switch) return static_cast<int>(i);
+    if (r.choice >= 1 && r.choice <= block.num_choices()) return static_cast<int>(i);
+    report(r, "run.bad-event",
+           block.num_choices() == 0 ? "switches controller '" + r.target + "', whose input no event chooses"
+                                    : "names input " + std::to_string(r.choice) + " of controller '" + r.target +
+                                          "', which has " + std::to_string(block.num_choices()),
+           "a controller of type switch with two inputs is switched by events; they count from 1", diagnostics);
+    return -1;
+  }
+  report(r, "run.unknown-target", "names controller '" + r.target + "', which does not exist",
+         find_near(r.target, static_cast<int>(names.size()), [&](int i) { return names[static_cast<size_t>(i)]; }),
+         diagnostics);
+  return -1;
+}
+
+}  // namespace
+
+Changes Changes::build(const System& system, const records::SystemSpec& spec, bool is_sound, Diagnostics& diagnostics) {
+  Changes made;
+  for (const auto& r : spec.events) {
+    Change change;
+    change.action = r.action;
+    const bool is_hinge = r.action == EventAction::Lock || r.action == EventAction::Release;
+    const bool is_constraint = r.action == EventAction::Break || r.action == EventAction::Close;
+    if (is_hinge) {
+      const int body = system.find_hinge(r.target);
+      if (body >= 0 && is_sound)
+        change.rows = find_rows(system, body, r, diagnostics);
+      else if (body < 0 && is_sound)
+        report(r, "run.unknown-target", "names hinge '" + r.target + "', which does not exist",
+               find_near(r.target, system.num_bodies(), [&](int i) { return system.hinge_name(i); }), diagnostics);
+      change.text = "hinge '" + r.target + "'";
+      for (size_t i = 0; i < r.coordinates.size(); ++i)
+        change.text += (i == 0 ? ": coordinate " : ", ") + std::to_string(r.coordinates[i]);
+      change.text += r.action == EventAction::Lock ? " is locked" : " is released";
+    } else if (is_constraint) {
+      change.constraint = system.find_constraint(r.target);
+      if (change.constraint < 0 && is_sound)
+        report(r, "run.unknown-target", "names constraint '" + r.target + "', which does not exist",
+               find_near(r.target, system.num_constraints(), [&](int i) { return system.constraint_name(i); }),
+               diagnostics);
+      change.text = "constraint '" + r.target + (r.action == EventAction::Break ? "' is broken" : "' is to close");
+    } else if (r.action == EventAction::Enable || r.action == EventAction::Disable || r.action == EventAction::Switch) {
+      if (is_sound) change.place = find_controller(system, r, diagnostics);
+      change.choice = r.choice - 1;
+      change.text = "controller '" + r.target + "'" +
+                    (r.action == EventAction::Enable    ? " is enabled"
+                     : r.action == EventAction::Disable ? " is disabled"
+                                                        : " passes on its input " + std::to_string(r.choice));
+    }
+    made.changes_.push_back(std::move(change));
+  }
+  return made;
+}
+
+Discrete Changes::apply(size_t trigger, SystemOde& ode, double t, const VectorXd& y) const {
+  const Change& change = changes_[trigger];
+  if (change.place >= 0) {
+    const BlockPlace& p = ode.system().signals.places[static_cast<size_t>(change.place)];
+    VectorXd& memory = ode.data().signals.memory;
+    if (change.action == EventAction::Switch)
+      p.block->choose(change.choice, memory.data() + p.memory);
+    else
+      memory[p.activity] = change.action == EventAction::Enable ? 1 : 0;
+  }
+  Discrete next = get_discrete(ode.data());
+  for (const int row : change.rows)
+    next.mode[static_cast<size_t>(row)] = change.action == EventAction::Lock ? HingeMode::Locked : HingeMode::Free;
+  if (change.constraint < 0) return next;
+  Closing& closing = next.closings[static_cast<size_t>(change.constraint)];
+  if (change.action == EventAction::Break) closing.is_closed = false;
+  if (change.action == EventAction::Close && !closing.is_closed) closing = ode.find_closing(t, y, change.constraint);
+  return next;
+}
+
+}  // namespace bough::solver

@@ -1,0 +1,33 @@
+#pragma once
+/// \file What events do to the system: hinges locked and released, constraints broken and closed, controllers
+/// enabled, disabled and switched.
+#include "solver/simulate/hybrid_system.hpp"
+
+namespace bough::solver {
+
+class Changes {
+ public:
+  /// By trigger. Reports "run.unknown-target" and "run.bad-event". `system_is_sound`: else targets may be missing that
+  /// are none to blame.
+  static Changes build(const System& system, const records::SystemSpec& spec, bool system_is_sound,
+                       Diagnostics& diagnostics);
+
+  /// Enables, disables, switches at once; what each coordinate and constraint does from now on; a constraint that
+  /// closes keeps what it is found off by.
+  Discrete apply(size_t trigger, SystemOde& ode, double t, const VectorXd& y) const;
+  /// "hinge 'root' is released", of the last build.
+  const std::string& describe(size_t trigger) const { return changes_[trigger].text; }
+
+ private:
+  struct Change {
+    records::EventAction action = records::EventAction::Log;
+    std::vector<int> rows;  ///< of u: lock, release
+    int constraint = -1;    ///< break, close
+    int place = -1;         ///< of the controller, in the signal graph
+    int choice = 0;         ///< switch: from 0
+    std::string text;
+  };
+  std::vector<Change> changes_;
+};
+
+}  // namespace bough::solver

@@ -1,0 +1,92 @@
+// Samples and switches of controllers, sensors and actuators (docs/theory/control.md).
+#include <algorithm>
+
+#include "solver/simulate/run.hpp"
+#include "solver/system/system.hpp"
+
+namespace bough::solver {
+namespace {
+/// Switches at one moment, beyond which they will not end.
+constexpr int kMostSwitches = 100;
+/// So many switches of one block within this share of the run are no regular working of it.
+constexpr int kManySwitches = 500;
+constexpr double kShortTime = 1e-2;
+/// Lags behind lags at the start: as many passes as there are in a row.
+constexpr int kMostLags = 50;
+}  // namespace
+
+void Run::settle_control(double t) {
+  const SignalGraph& signals = ode_.system().signals;
+  if (sampled_ == t || signals.places.empty()) return;
+  sampled_ = t;
+  if (signals.has_samples()) {
+    evaluate(t, true);
+    guard([&] {
+      if (signals.sample(ode_.system(), ode_.data(), timeline_.resolution())) has_switched_ = true;
+    });
+  }
+  settle_switches(t);
+}
+
+void Run::settle_lags(double t) {
+  const SignalGraph& signals = ode_.system().signals;
+  if (signals.num_states == 0) return;
+  VectorXd before;
+  for (int i = 0; i < kMostLags; ++i) {
+    bool is_done = true;
+    evaluate(t, true);
+    guard([&] {
+      before = ode_.data().signals.z;
+      is_done = !signals.settle(ode_.system(), ode_.data()) || ode_.data().signals.z == before;
+    });
+    y_.segment(ode_.num_coordinates(), ode_.num_z()) = ode_.data().signals.z;
+    if (is_done) return;
+  }
+}
+
+void Run::settle_switches(double t) {
+  const SignalGraph& signals = ode_.system().signals;
+  if (signals.num_guards == 0) return;
+  std::string what;
+  for (int i = 0; i < kMostSwitches; ++i) {
+    bool is_open = false;
+    calc_switches(t);
+    guard([&] { is_open = signals.switch_over(ode_.system(), ode_.data(), events_.switches, what); });
+    last_events_.switches = events_.switches;
+    if (!is_open) return;
+    has_switched_ = true;
+    count_switch(what, t);
+  }
+  finish_failed(t, "control.chatter", what + " switches without end at t = " + short_text(t),
+                "give it a hysteresis, or a lag on the way round its loop");
+}
+
+void Run::count_switch(const std::string& label, double t) {
+  Switching& s = switching_[label];
+  const double window = kShortTime * (timeline_.end() - timeline_.start());
+  if (s.count++ == 0) s.since = t;
+  if (s.count < kManySwitches) return;
+  s.count = 0;
+  if (s.is_told || t - s.since > window) return;
+  s.is_told = true;
+  const auto& places = ode_.system().signals.places;
+  const auto place = std::find_if(places.begin(), places.end(), [&](const auto& p) { return p.block->label == label; });
+  diagnostics_.warning("control.sliding", place == places.end() ? SourceLocation{} : place->block->at,
+                       label + " has switched " + std::to_string(kManySwitches) + " times from t = " +
+                           short_text(s.since) + " to " + short_text(t) + ": it slides along its switching line",
+                       "give it more hysteresis (relay: on and off further apart), or sample its inputs by a gain of 1 "
+                       "with sample_time");
+}
+
+void Run::get_control_memory(VectorXd& memory) const {
+  const VectorXd& own = ode_.data().signals.memory;
+  memory[0] = sampled_;
+  memory.tail(own.size()) = own;
+}
+
+void Run::set_control_memory(const VectorXd& memory) {
+  sampled_ = memory[0];
+  ode_.data().signals.memory = memory.tail(memory.size() - 1);
+}
+
+}  // namespace bough::solver

@@ -1,0 +1,174 @@
+#include "solver/simulate/hybrid_system.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "solver/system/derivative.hpp"
+
+namespace bough::solver {
+
+SystemOde::SystemOde(const System& system)
+    : system_(system),
+      data_(system.make_data()),
+      num_q_(system.num_q()),
+      num_u_(system.num_u()),
+      num_z_(system.num_z()) {
+  for (const TreeBody& tb : system.tree.bodies) has_motion_ = has_motion_ || !tb.motion.empty();
+  for (VectorXd* v : {&k_, &c_, &first_delta_, &first_u_, &delta_, &extra_}) v->setZero(num_u_);
+}
+
+void SystemOde::calc_derivative(double t, const Eigen::Ref<const VectorXd>& y, Eigen::Ref<VectorXd> y_dot) {
+  ++num_evaluations_;
+  solver::calc_derivative(system_, *data_, t, y, y_dot);
+}
+
+std::vector<std::string> SystemOde::cross_jump(double before, double t, Eigen::Ref<VectorXd> y) {
+  std::vector<std::string> events;
+  solver::cross_jump(system_, *data_, before, t, nullptr, y.head(num_q_), y.segment(num_q_, num_u_),
+                     y[num_coordinates() + num_z_], events);
+  return events;
+}
+
+void SystemOde::project(double t, Eigen::Ref<VectorXd> y) {
+  solver::project(system_, *data_, t, y.head(num_q_), y.segment(num_q_, num_u_));
+}
+
+void SystemOde::project_error(Eigen::Ref<VectorXd> error) {
+  solver::remove_normal(system_, *data_, error.head(num_q_), error.segment(num_q_, num_u_));
+}
+
+void SystemOde::strike(double t, std::vector<Blow>& blows, Eigen::Ref<VectorXd> y) {
+  const double before = get_work(y);
+  solver::strike(system_, *data_, t, y.head(num_q_), blows, y.segment(num_q_, num_u_), y[num_coordinates() + num_z_]);
+  y[num_coordinates() + num_z_ + 1] += std::max(0.0, before - get_work(y));
+}
+
+std::vector<std::string> SystemOde::change(double t, const Discrete& next, Eigen::Ref<VectorXd> y) {
+  // What was prescribed goes on from where its function left it.
+  calc_kinematics(system_, *data_, t, y.head(num_q_), y.segment(num_q_, num_u_));
+  y.head(num_q_) = data_->tree.q;
+  std::vector<std::string> events;
+  solver::cross_jump(system_, *data_, t, t, &next, y.head(num_q_), y.segment(num_q_, num_u_),
+                     y[num_coordinates() + num_z_], events);
+  return events;
+}
+
+void SystemOde::keep_modes(double t, Eigen::Ref<VectorXd> y) {
+  calc_kinematics(system_, *data_, t, y.head(num_q_), y.segment(num_q_, num_u_));
+  y.head(num_q_) = data_->tree.q;
+  y.segment(num_q_, num_u_) = data_->tree.u;
+}
+
+void SystemOde::bring_to_rest(double t, const Discrete& next, Eigen::Ref<VectorXd> y) {
+  const double before = get_work(y);
+  change(t, next, y);
+  y[num_coordinates() + num_z_ + 1] += std::max(0.0, before - get_work(y));
+}
+
+Closing SystemOde::find_closing(double t, const Eigen::Ref<const VectorXd>& y, int constraint) {
+  calc_kinematics(system_, *data_, t, y.head(num_q_), y.segment(num_q_, num_u_));
+  return solver::find_closing(system_.loops, system_.tree, data_->tree, constraint);
+}
+
+namespace {
+constexpr Eigen::Index kClosing = 22;       // numbers of a Closing: closed, R, p, gap, q
+constexpr Eigen::Index kClosingFrame = 15;  // without q
+}  // namespace
+
+VectorXd SystemOde::make_memory() const {
+  VectorXd memory = VectorXd::Zero(num_u_ + kClosing * static_cast<Eigen::Index>(data_->loops.constraints.size()));
+  get_memory(memory);
+  return memory;
+}
+
+bool SystemOde::is_alike(const VectorXd& memory) const {
+  VectorXd other = memory, own = make_memory();
+  if (other.size() != own.size()) return false;
+  for (Eigen::Index at = num_u_ + kClosingFrame; at < own.size(); at += kClosing)
+    other.segment(at, kClosing - kClosingFrame) = own.segment(at, kClosing - kClosingFrame);
+  return other == own;
+}
+
+void SystemOde::get_memory(VectorXd& memory) const {
+  for (int row = 0; row < num_u_; ++row) memory[row] = static_cast<double>(data_->tree.mode[static_cast<size_t>(row)]);
+  Eigen::Index at = num_u_;
+  for (const ConstraintData& constraint : data_->loops.constraints) {
+    const Closing& c = constraint.closing;
+    memory[at] = c.is_closed ? 1 : 0;
+    memory.segment<9>(at + 1) = c.R.reshaped();
+    memory.segment<3>(at + 10) = c.p;
+    memory.segment<2>(at + 13) = c.gap;
+    memory.segment(at + 15, c.q.size()) = c.q;
+    at += kClosing;
+  }
+}
+
+void SystemOde::set_memory(const VectorXd& memory) {
+  Discrete d = get_discrete(*data_);
+  for (int row = 0; row < num_u_; ++row)
+    d.mode[static_cast<size_t>(row)] = static_cast<HingeMode>(std::lround(memory[row]));
+  Eigen::Index at = num_u_;
+  for (Closing& c : d.closings) {
+    c.is_closed = memory[at] > 0.5;
+    c.R = memory.segment<9>(at + 1).reshaped(3, 3);
+    c.p = memory.segment<3>(at + 10);
+    c.gap = memory.segment<2>(at + 13);
+    c.q = memory.segment(at + 15, c.q.size());
+    at += kClosing;
+  }
+  set_modes(system_, *data_, d);
+}
+
+VectorXd SystemOde::make_initial_state() const { return system_.make_initial_state().x; }
+
+std::string SystemOde::name_row(int row) const {
+  const bool is_rate = row >= num_q_;
+  const int i = is_rate ? row - num_q_ : row;
+  for (int b = 0; b < system_.num_bodies(); ++b) {
+    const int hinge = is_rate ? system_.u_offset(b) : system_.q_offset(b);
+    const int hinge_size = is_rate ? system_.num_hinge_rates(b) : system_.num_hinge_q(b);
+    const int eta = is_rate ? system_.eta_dot_offset(b) : system_.eta_offset(b);
+    const std::string body = "body '" + system_.body_name(b) + "'";
+    if (i >= hinge && i < hinge + hinge_size)
+      return body + (is_rate ? " (hinge rate " : " (hinge coordinate ") + std::to_string(i - hinge + 1) + ")";
+    if (i >= eta && i < eta + system_.num_modes(b))
+      return body + (is_rate ? " (modal rate " : " (modal coordinate ") + std::to_string(i - eta + 1) + ")";
+  }
+  if (is_rate && i < num_u_ + num_z_) return system_.signals.name_state(i - num_u_);
+  return i == num_u_ + num_z_ ? "the work done" : "the energy dissipated";
+}
+
+std::string SystemOde::name_first_non_finite(double t, const Eigen::Ref<const VectorXd>& y) {
+  const auto find_bad = [](const auto& values) {
+    int row = 0;
+    while (row < values.size() && std::isfinite(values[row])) ++row;
+    return row < values.size() ? row : -1;
+  };
+  if (const int row = find_bad(y); row >= 0) return name_row(row);
+  for (const TreeBody& tb : system_.tree.bodies) {
+    for (const TimeFunction* f : tb.motion) {
+      if (f == nullptr) continue;
+      const auto value = data_->tree.functions[*f].calc(t);
+      if (!std::isfinite(value.f + value.f_dot + value.f_ddot)) return "the motion of hinge '" + tb.hinge_name + "'";
+    }
+  }
+  for (const AppliedForce& force : system_.forces) {
+    const double value = force.function ? data_->tree.functions[*force.function].calc(t).f : 1;
+    if (!std::isfinite(value * force.direction.norm())) return "force '" + force.name + "'";
+  }
+  VectorXd y_dot = VectorXd::Zero(size());
+  calc_derivative(t, y, y_dot);
+  for (size_t i = 0; i < data_->elements.size(); ++i) {
+    const ForceResult& r = data_->elements[i];
+    if (!std::isfinite(r.power + r.dissipated + r.strain + r.potential))
+      return "force '" + system_.elements[i]->name() + "'";
+  }
+  for (const TreeBody& tb : system_.tree.bodies) {
+    if (!data_->tree.applied.segment(tb.v_offset, 6 + tb.num_modes()).allFinite())
+      return "the load on body '" + tb.name + "'";
+  }
+  const int row = find_bad(y_dot.tail(size() - num_q_));
+  return row < 0 ? "" : "the derivative of " + name_row(num_q_ + row);
+}
+
+}  // namespace bough::solver

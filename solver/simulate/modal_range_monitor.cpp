@@ -1,0 +1,137 @@
+#include "solver/simulate/modal_range_monitor.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "solver/simulate/run.hpp"
+#include "solver/system/system.hpp"
+
+namespace bough::solver {
+namespace {
+
+const TreeBody& get_body(const System& system, int body) { return system.tree.bodies[static_cast<size_t>(body)]; }
+
+}  // namespace
+
+double calc_body_size(const System& system, int b) {
+  const TreeBody& tb = get_body(system, b);
+  const Body& body = tb.body;
+  Eigen::AlignedBox3d box;
+  double farthest = 0;  // from Bo
+  for (const Node& node : body.nodes()) {
+    if (node.id != 0) box.extend(node.p);
+    farthest = std::max(farthest, node.p.norm());
+  }
+  if (tb.on_child.node == 0 && tb.hinge->num_u() < 6) box.extend(tb.on_child.p_KM);
+  double size = box.isEmpty() ? 0 : box.diagonal().norm();
+  if (body.mass() > 0) {
+    // A box of edges a, b, c has tr I = m (a² + b² + c²) / 6 about its middle.
+    const Vector3d cg = Vector3d(body.M6()(1, 5), body.M6()(2, 3), body.M6()(0, 4)) / body.mass();
+    const double trace = body.M6().bottomRightCorner<3, 3>().trace() - 2 * body.mass() * cg.squaredNorm();
+    size = std::max(size, std::sqrt(6 * std::max(0.0, trace) / body.mass()));
+  }
+  return farthest > 0 && size > 0 ? std::min(farthest, size) : std::max(farthest, size);
+}
+
+double calc_first_frequency(const System& system, int b) {
+  const Body& body = get_body(system, b).body;
+  const int n = body.num_modes();
+  if (n == 0) return 0;
+  const MatrixXd M = body.make_inertia().M_modal.topLeftCorner(n, n);
+  if (Eigen::LLT<MatrixXd>(M).info() != Eigen::Success) return 0;
+  const MatrixXd K = 0.5 * (body.K() + body.K().transpose());
+  const VectorXd values = Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd>(K, M).eigenvalues();
+  for (const double value : values) {
+    if (value > 1e-9 * values[n - 1]) return std::sqrt(value);
+  }
+  return 0;
+}
+
+LinearLimit::LinearLimit(const System& system) : system_(system) {
+  for (int b = 0; b < system.num_bodies(); ++b) {
+    if (system.num_modes(b) == 0) continue;
+    const bool is_stiffened = get_body(system, b).body.stiffened() || system.is_lagged;
+    watched_.push_back({b, calc_body_size(system, b), is_stiffened ? 0 : calc_first_frequency(system, b)});
+  }
+}
+
+std::vector<LinearLimit::Crossing> LinearLimit::find_crossings(double t, const SystemData& data,
+                                                               const Eigen::Ref<const VectorXd>& q) {
+  std::vector<Crossing> found;
+  for (Watched& w : watched_) {
+    if (!w.deflection_reported && w.size > 0) {
+      const auto eta = q.segment(system_.eta_offset(w.body), system_.num_modes(w.body));
+      double largest = 0;
+      int where = 0;
+      for (const Node& node : get_body(system_, w.body).body.nodes()) {
+        if (!node.moves) continue;
+        Vector3d d = Vector3d::Zero();
+        for (int j = 0; j < eta.size(); ++j) d += node.phi.col(j) * eta[j];
+        if (d.norm() <= largest) continue;
+        largest = d.norm();
+        where = node.id;
+      }
+      if (largest > kLinearLimit * w.size) {
+        w.deflection_reported = true;
+        found.push_back({w.body, "run.linear-limit",
+                         "body '" + system_.body_name(w.body) + "' deflects by " + short_text(largest) + " at node " +
+                             std::to_string(where) + " at t = " + short_text(t) + ", more than 10 % of its size " +
+                             short_text(w.size),
+                         "linear modes lose their meaning there; split the body into several"});
+      }
+    }
+  }
+  for (Crossing& spin : find_spins(t, data)) found.push_back(std::move(spin));
+  return found;
+}
+
+std::vector<LinearLimit::Crossing> LinearLimit::find_spins(double t, const SystemData& data) {
+  std::vector<Crossing> found;
+  for (Watched& w : watched_) {
+    const double spin = get_body_state(data, w.body).w_B.norm();
+    if (!w.spin_reported && w.frequency > 0 && spin > kSpinLimit * w.frequency) {
+      w.spin_reported = true;
+      found.push_back({w.body, spin_id,
+                       "body '" + system_.body_name(w.body) + "' has no stiffening and turns at " + short_text(spin) +
+                           " at t = " + short_text(t) + ", more than half of its first frequency " +
+                           short_text(w.frequency) +
+                           " (radians per unit of time): without it its modes soften where the body stiffens",
+                       "set stiffening = true for this body"});
+    }
+  }
+  return found;
+}
+
+bool LinearLimit::watches_spins() const {
+  return std::any_of(watched_.begin(), watched_.end(), [](const Watched& w) { return w.frequency > 0; });
+}
+
+VectorXd LinearLimit::calc_reach() const {
+  VectorXd reach = VectorXd::Constant(system_.num_q(), std::numeric_limits<double>::infinity());
+  for (const Watched& w : watched_) {
+    for (int j = 0; j < system_.num_modes(w.body); ++j) {
+      double largest = 0;
+      for (const Node& node : get_body(system_, w.body).body.nodes())
+        largest = std::max(largest, node.phi.col(j).norm());
+      if (largest > 0 && w.size > 0) reach[system_.eta_offset(w.body) + j] = w.size / largest;
+    }
+  }
+  return reach;
+}
+
+void LinearLimit::get_memory(Eigen::Ref<VectorXd> memory) const {
+  for (size_t i = 0; i < watched_.size(); ++i) {
+    memory[static_cast<Eigen::Index>(2 * i)] = watched_[i].deflection_reported;
+    memory[static_cast<Eigen::Index>(2 * i + 1)] = watched_[i].spin_reported;
+  }
+}
+
+void LinearLimit::set_memory(const VectorXd& memory) {
+  for (size_t i = 0; i < watched_.size(); ++i) {
+    watched_[i].deflection_reported = memory[static_cast<Eigen::Index>(2 * i)] != 0;
+    watched_[i].spin_reported = memory[static_cast<Eigen::Index>(2 * i + 1)] != 0;
+  }
+}
+
+}  // namespace bough::solver

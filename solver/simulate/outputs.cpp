@@ -1,0 +1,230 @@
+#include "solver/simulate/outputs.hpp"
+
+#include <algorithm>
+
+#include "solver/system/system.hpp"
+#include "solver/tree/coordinates.hpp"
+
+namespace bough::solver {
+
+Recorder::Recorder(const System& system) : system_(system) {
+  add_channel("/time", 1, "time", "T");
+  for (int b = 0; b < system.num_bodies(); ++b) {
+    const std::string path = "/bodies/" + system.body_name(b) + "/";
+    add_channel(path + "position", 3, "position of the body origin Bo, in the inertial frame", "L");
+    add_channel(path + "quaternion", 4, "orientation of the body frame B in the inertial frame: w, x, y, z", "1");
+    add_channel(path + "velocity", 3, "velocity of the body origin Bo, in the inertial frame", "L/T");
+    add_channel(path + "angular_velocity", 3, "angular velocity of the body frame B, components in B", "1/T");
+    if (const int n = system.num_modes(b); n > 0) {
+      add_channel(path + "eta", n, "modal coordinates", "by normalisation");
+      add_channel(path + "eta_dot", n, "rates of the modal coordinates", "by normalisation");
+      add_channel(path + "strain_energy", 1, "strain energy of its modes", "F L");
+    }
+    add_recovery(path, b);
+  }
+  for (int b = 0; b < system.num_bodies(); ++b) {
+    const std::string path = "/hinges/" + system.hinge_name(b) + "/";
+    if (const int nq = system.num_hinge_q(b), nu = system.num_hinge_rates(b); nq > 0) {
+      const TreeBody& tb = system.tree[b];
+      add_channel(path + "q", nq, "hinge coordinates, child relative to parent; quaternion as w, x, y, z",
+                  list_hinge_dims(tb, HingeQuantity::Position, 0, nq));
+      add_channel(path + "qdot", nu,
+                  "hinge rates; spherical and free: angular velocity of the child's hinge frame in the parent's",
+                  list_hinge_dims(tb, HingeQuantity::Rate, 0, nu));
+      add_channel(
+          path + "force", nu,
+          "generalized hinge force: spring and damper; all that crosses the hinge where it is locked or prescribed",
+          list_hinge_dims(tb, HingeQuantity::Force, 0, nu));
+    }
+    add_channel(path + "reaction_force", 3,
+                "force of the parent on the child at the child's hinge frame, in the hinge axes of the parent", "F");
+    add_channel(path + "reaction_moment", 3,
+                "moment of the parent on the child about the child's hinge frame, in the hinge axes of the parent",
+                "F L");
+  }
+  for (int c = 0; c < system.num_constraints(); ++c) {
+    const std::string path = "/constraints/" + system.constraint_name(c) + "/";
+    if (system.is_coupler(c)) {
+      add_channel(path + "force", 1, "generalized force per unit of ratio on the coupled coordinates", "F L or F");
+      continue;
+    }
+    add_channel(path + "reaction_force", 3,
+                "force of the parent on the child at the child's frame, in the axes of the parent's", "F");
+    add_channel(path + "reaction_moment", 3,
+                "moment of the parent on the child about the child's frame, in the axes of the parent's", "F L");
+  }
+  for (const auto& element : system.elements) {
+    for (const ForceChannel& c : element->channels())
+      add_channel("/forces/" + element->name() + "/" + c.name, c.size, c.description, c.dims);
+  }
+  for (const auto& p : system.signals.places)
+    add_channel(p.block->path, p.block->sizes.outputs, p.block->description, p.block->dims);
+  add_channel("/energy/kinetic", 1, "kinetic energy", "F L");
+  add_channel("/energy/strain", 1, "strain energy of the modes, of springs and of contacts", "F L");
+  add_channel("/energy/potential", 1, "potential energy of gravity", "F L");
+  add_channel("/energy/work", 1, "work done since the start by applied forces, dampers and prescribed motions", "F L");
+  add_channel("/energy/dissipated", 1, "what dampers took since the start; part of work with its minus", "F L");
+  add_channel("/momentum/linear", 3, "linear momentum, in the inertial frame", "M L/T");
+  add_channel("/momentum/angular", 3, "angular momentum about the inertial origin, in the inertial frame", "M L^2/T");
+  add_channel("/system_mass/mass", 1, "mass of the system", "M");
+  add_channel("/system_mass/cg", 3, "centre of mass of the system, in the inertial frame", "L");
+  add_channel("/system_mass/inertia", 9,
+              "inertia of the system about its centre of mass, in the inertial frame: three rows", "M L^2");
+  for (const auto& element : system.elements) {
+    std::vector<int> sizes;
+    for (const ForceChannel& c : element->channels()) sizes.push_back(c.size);
+    element_sizes_.push_back(std::move(sizes));
+  }
+  int size = 0;
+  for (const auto& channel : channels_) size += channel.size;
+  sample_.setZero(size);
+  quaternions = VectorXd::Zero(4 * system.num_bodies());
+  quaternion_at_.resize(static_cast<size_t>(system.num_bodies()));
+  chosen_ = channels_;
+  ranges_ = {{0, size}};
+  kept_ = sample_;
+}
+
+int Recorder::find(const std::string& path, int component) const {
+  int first = 0;
+  for (const auto& channel : channels_) {
+    if (channel.path == path) return component >= 0 && component < channel.size ? first + component : -1;
+    first += channel.size;
+  }
+  return -1;
+}
+
+void Recorder::choose(const std::vector<std::string>& groups, const SourceLocation& where, Diagnostics& diagnostics) {
+  if (groups.empty()) return;
+  const auto lies_in = [](const std::string& path, const std::string& group) {
+    const std::string whole = (group.starts_with('/') ? "" : "/") + group;
+    return path == whole || path.starts_with(whole + "/");
+  };
+  std::vector<std::string> known;
+  for (const auto& channel : channels_) {
+    for (auto end = channel.path.find('/', 1); end != std::string::npos; end = channel.path.find('/', end + 1))
+      known.push_back(channel.path.substr(1, end - 1));
+    known.push_back(channel.path.substr(1));
+  }
+  for (const auto& group : groups) {
+    const auto is_in = [&](const auto& channel) { return lies_in(channel.path, group); };
+    if (std::any_of(channels_.begin(), channels_.end(), is_in)) continue;
+    const std::string near = find_nearest(group, known);
+    diagnostics.error(
+        "run.unknown-group", where, "record names '" + group + "', which the results do not hold",
+        near.empty() ? "name bodies, hinges, constraints, sensors, energy, momentum or a part of them, as bodies/NAME"
+                     : "did you mean '" + near + "'?");
+  }
+  chosen_.clear();
+  ranges_.clear();
+  int first = 0, size = 0;
+  for (const auto& channel : channels_) {
+    const auto holds = [&](const std::string& group) { return lies_in(channel.path, group); };
+    if (channel.path == "/time" || std::any_of(groups.begin(), groups.end(), holds)) {
+      chosen_.push_back(channel);
+      ranges_.emplace_back(first, channel.size);
+      size += channel.size;
+    }
+    first += channel.size;
+  }
+  kept_ = VectorXd::Zero(size);
+}
+
+const VectorXd& Recorder::keep_sample() {
+  int at = 0;
+  for (const auto& [first, size] : ranges_) {
+    kept_.segment(at, size) = sample_.segment(first, size);
+    at += size;
+  }
+  for (int b = 0; b < system_.num_bodies(); ++b)
+    quaternions.segment<4>(4 * b) = sample_.segment<4>(quaternion_at_[static_cast<size_t>(b)]);
+  return kept_;
+}
+
+void Recorder::add_recovery(const std::string& path, int body) {
+  const auto& recovery = system_.recoveries[static_cast<size_t>(body)];
+  if (!recovery) return;
+  for (const auto& element : recovery->elements()) {
+    if (!element.is_recorded) continue;
+    std::string names;
+    for (const auto& name : element.components) names += (names.empty() ? "" : ", ") + name;
+    add_channel(path + "recovery/" + element.path, element.size(), names, "F, F L, F/L, F/L^2");
+  }
+}
+
+void Recorder::add_channel(std::string path, int size, std::string description, std::string dims) {
+  channels_.push_back({std::move(path), size, std::move(description), std::move(dims)});
+}
+
+const VectorXd& Recorder::calc_sample(double t, const SystemData& data, const Eigen::Ref<const VectorXd>& q,
+                                      const Eigen::Ref<const VectorXd>& u, double work, double dissipated) {
+  int at = 0;
+  const auto put = [&](const auto& value) {
+    sample_.segment(at, value.size()) = value;
+    at += static_cast<int>(value.size());
+  };
+  sample_[at++] = t;
+  for (int b = 0; b < system_.num_bodies(); ++b) {
+    const BodyState& s = get_body_state(data, b);
+    Eigen::Quaterniond q_WB(s.R_WB);
+    q_WB.normalize();
+    put(s.p_WBo);
+    Eigen::Vector4d wxyz(q_WB.w(), q_WB.x(), q_WB.y(), q_WB.z());
+    if (wxyz.dot(quaternions.segment<4>(4 * b)) < 0) wxyz = -wxyz;
+    quaternion_at_[static_cast<size_t>(b)] = at;
+    put(wxyz);
+    put(Vector3d(s.R_WB * s.v_B));
+    put(s.w_B);
+    put(q.segment(system_.eta_offset(b), system_.num_modes(b)));
+    put(u.segment(system_.eta_dot_offset(b), system_.num_modes(b)));
+    if (system_.num_modes(b) > 0) sample_[at++] = calc_strain_energy(system_, data, b);
+    if (const auto& recovery = system_.recoveries[static_cast<size_t>(b)]; recovery) {
+      for (const auto& element : recovery->elements()) {
+        if (!element.is_recorded) continue;
+        recovery->calc(system_, data, element.first, element.size(), sample_.data() + at);
+        at += element.size();
+      }
+    }
+  }
+  for (int b = 0; b < system_.num_bodies(); ++b) {
+    const int nq = system_.num_hinge_q(b), nu = system_.num_hinge_rates(b);
+    if (nq > 0) {
+      get_hinge(system_, data, b, sample_.segment(at, nq), sample_.segment(at + nq, nu),
+                sample_.segment(at + nq + nu, nu));
+      at += nq + 2 * nu;
+    }
+    const HingeReaction reaction = get_hinge_reaction(system_, data, b);
+    put(reaction.force);
+    put(reaction.moment);
+  }
+  for (int c = 0; c < system_.num_constraints(); ++c) {
+    const ConstraintReaction reaction = get_constraint_reaction(system_, data, c);
+    if (system_.is_coupler(c)) {
+      sample_[at++] = reaction.multiplier;
+      continue;
+    }
+    put(reaction.force);
+    put(reaction.moment);
+  }
+  for (size_t i = 0; i < data.elements.size(); ++i) {
+    size_t first = 0;
+    for (const int size : element_sizes_[i])
+      for (int k = 0; k < size; ++k) sample_[at++] = data.elements[i].values[first++];
+  }
+  put(data.signals.values);
+  energies_ = calc_energies(system_, data);
+  put(Eigen::Vector4d(energies_.kinetic, energies_.strain, energies_.potential, work));
+  sample_[at++] = dissipated;
+  Vector3d linear, angular;
+  calc_momentum(system_, data, linear, angular);
+  put(linear);
+  put(angular);
+  const SystemMass mass = calc_system_mass(system_, data);
+  sample_[at++] = mass.mass;
+  put(mass.cg_W);
+  put(Eigen::Map<const Eigen::Matrix<double, 9, 1>>(mass.inertia_W.data()));  // symmetric
+  BOUGH_DEMAND(at == sample_.size());
+  return sample_;
+}
+
+}  // namespace bough::solver

@@ -1,0 +1,317 @@
+#pragma once
+/// \file One run: the state of its loop and what it writes to. For simulate.cpp.
+#include <chrono>
+#include <limits>
+#include <map>
+
+#include "solver/simulate/energy_monitor.hpp"
+#include "solver/simulate/hybrid_system.hpp"
+#include "solver/simulate/joint_contacts.hpp"
+#include "solver/simulate/modal_range_monitor.hpp"
+#include "solver/simulate/run_options.hpp"
+#include "solver/simulate/simulate.hpp"
+
+namespace bough::solver {
+
+/// Six digits, for messages.
+std::string short_text(double value);
+
+class Run {
+ public:
+  Run(const System& system, const records::SystemSpec& spec, RunSetup setup, records::ResultSink& sink,
+      const SimulateOptions& options, Diagnostics& diagnostics);
+  /// The beginning, through its first step.
+  void start();
+
+  /// The start: loops closed, controllers sampled, the first sample, events of its time.
+  void begin();
+  /// Goes on to t, or to the end where that comes first; what is due at t has come then. Slices change nothing but how
+  /// often event functions are looked at.
+  void advance_to(double t);
+  /// Reached; of an end, its own.
+  double time() const { return time_; }
+  double resolution() const { return timeline_.resolution(); }
+  int num_states() const { return ode_.size(); }
+  /// Memory of the signals.
+  const VectorXd& memory() const;
+  void put_memory(int row, double value);
+  const std::optional<SimulateOutcome>& outcome() const { return outcome_; }
+  /// All channels at time().
+  const VectorXd& calc_outputs() { return calc_sample(time_); }
+  const Recorder& recorder() const { return setup_.recorder; }
+  /// Sets what is held from time() on by the blocks of `memory`, one row of the signals' memory a value. Whatever a
+  /// jump of them brings about comes at once.
+  void set_held(const std::vector<std::pair<int, double>>& rows);
+
+  // By an integrator of the host (run_continuous.cpp)
+  const VectorXd& state() const { return y_; }
+  std::string name_state(int row) const { return ode_.name_row(row); }
+  /// From here on the state is the host's, until advance_to().
+  void lead();
+  bool is_led() const { return is_led_; }
+  /// Puts it at (t, x). No time event lies between the last one and t, which may be the next one's.
+  void set_continuous(double t, const Eigen::Ref<const VectorXd>& x);
+  void calc_derivatives(Eigen::Ref<VectorXd> x_dot);
+  const VectorXd& calc_continuous_outputs();
+  /// An event is where one of them changes its sign.
+  int num_event_functions() const;
+  void calc_event_functions(Eigen::Ref<VectorXd> g);
+  std::vector<std::string> list_event_functions() const;
+  /// Returns true if constraints have drifted apart, so that update_discrete() is called for.
+  bool needs_projection();
+  /// Event mode at (t, x): what is due, what has crossed, and what follows, until nothing changes. Whether x has
+  /// jumped.
+  bool update_discrete();
+  /// The next time event; the end is one.
+  double next_event_time();
+
+  /// All that the run goes on from, bit for bit where the step is fixed.
+  records::Checkpoint save_state();
+  /// Restores a state of save_state() by a run of the same system and plan, which has begun. Throws InputError
+  /// "run.bad-checkpoint".
+  void restore_state(const records::Checkpoint& saved);
+
+ private:
+  bool is_stop_asked() const { return options_.stop && options_.stop->load(std::memory_order_relaxed); }
+
+  // The loop (run.cpp)
+  void fire_due(double t);
+  /// Starts the integrator or leads it on to the next stop.
+  void enter_interval();
+  /// Ends of a piece of the way to stop_.
+  enum class Arrival { AtStop, Cut, Pause, End };
+  /// Steps on to stop_, to where something cuts a step, or to t_pause.
+  Arrival cross_interval(double t_pause);
+  /// Behind the last step at stop_: jumps, samples, events, contacts.
+  void arrive_at_stop();
+  /// Behind a step that something ended at t: ends the run on request. Fails ("run.stalled") where such steps make no
+  /// progress.
+  void settle_cut(double t);
+  /// A checkpoint at a stop is of behind its jump; its events may not have come yet.
+  void resume_at_stop(double t);
+  /// Energy of motions too small for the tolerances.
+  double calc_noise();
+  /// Weight and applied forces times the size of the system, at the last sample.
+  double calc_flow() const;
+  /// Work to as much of the energies as the states, so that the balance tells of the motion, not of itself.
+  void hold_work();
+  /// Kinetic, of what the present accelerations do within an output step. Allocates, once in a tenth of that.
+  double calc_coming_energy();
+  void take_step(const Stop& stop);
+  /// Warns once of each hinge whose axes nearly fall together.
+  void watch_axes(double t);
+  /// Takes y_ over the jumps of given rates at stop_, after calc_state at its time; logs them once.
+  void cross_jump();
+  /// Starts the integrator afresh at (t, y_), towards stop_.
+  void restart(double t);
+  /// The sample at t within the last step, at which y_ is or is to be; false when the run was asked to stop there, and
+  /// did.
+  bool write_output(double t, bool is_at_state);
+  /// The sample at t, of y_, which is the next one.
+  void write_outputs_at(double t);
+  /// Looks at y_ at t: sample, energies, limits.
+  void observe(double t);
+  /// The largest rate, in words.
+  std::string name_fastest() const;
+  /// Evaluates the equations of motion at (t, y_), and on request all signals, unless ode_ holds that state.
+  void evaluate(double t, bool with_signals);
+  /// Returns true if ode_ holds the evaluation at (t, y_).
+  bool is_evaluated(double t) const;
+  const VectorXd& calc_sample(double t);
+  void update_progress(double t);
+  /// Warns where jets have used up much of their body.
+  void tell_consumption();
+  /// The regular end, with the judgement of the energy.
+  SimulateOutcome close(double t, const std::string& reason);
+
+  // Event functions and their zero crossings (run_scan.cpp)
+  /// Values of the event functions.
+  struct EventValues {
+    VectorXd kinks;     ///< of forces: their signs change
+    VectorXd switches;  ///< of blocks: positive where a block switches
+    VectorXd contacts;  ///< of joint contacts: positive where one changes its mode
+    VectorXd signals;   ///< of events: signals minus their values
+  };
+  /// The first change within the last step.
+  struct Change {
+    double time = 0;         ///< up to which the step stands
+    bool is_kink = false;    ///< a force has a kink there
+    bool is_switch = false;  ///< a block or a joint contact changes its mode there
+    std::optional<Firing> firing;
+  };
+  void start_events();
+  bool has_event_functions() const;
+  // One kind each at (t, y_), into events_; kinks need no accelerations.
+  void calc_kinks(double t);
+  void calc_switches(double t);
+  void calc_contacts(double t);
+  void calc_signal_events(double t);
+  /// All of them at t within the last step, by one evaluation.
+  void calc_events(double t, const Stop& stop);
+  /// Kinks are looked for from (t, y_) on.
+  void restart_kinks(double t);
+  /// Where event function i of a kind crosses zero between the last look and `to`, whose values are in events_.
+  double locate(VectorXd EventValues::*rows, Eigen::Index i, double before, double to, double tolerance,
+                const Stop& stop);
+  /// The first crossing of one kind up to `to`, which becomes its time; events_ is of `to`. get_before(i): the value at
+  /// the last look where function i has crossed, else none.
+  template <class Before>
+  bool find_first(VectorXd EventValues::*rows, const Before& get_before, const Stop& stop, double& to);
+  /// The first change between the last look and t.
+  Change find_change(const Stop& stop, double t);
+  /// Looks at the last step up to `until`, at each sample and there, and writes the samples, up to the first change.
+  /// None when the run was asked to stop at a sample, and did.
+  std::optional<Change> scan_step(const Stop& stop, double until);
+
+  // Events (run_events.cpp)
+  /// Signals that crossed their values between the last look and `to`: each is located and logged, up to the first that
+  /// does more, which is returned and has not come yet; those after it have not crossed.
+  std::optional<Firing> find_firing(const Stop& stop, double to);
+  /// Events whose signals have crossed their values by a jump at t, where y_ is.
+  std::vector<size_t> find_crossed(double t);
+  void start_signal_events(double t);
+  /// What comes at a stop itself: events at a time, and crossings by the jump.
+  std::optional<Firing> pass(const Stop& stop);
+  /// Carries out events that come at one time, at which y_ is, and those that they bring about; the one that ends the
+  /// run, when there is one.
+  std::optional<Firing> fire(std::vector<Firing> firings);
+  /// What an event does to hinges and constraints.
+  void change(const Firing& firing);
+  void write_event(const Firing& firing);
+  /// Of a line of /events.
+  std::string get_source(const Firing& firing) const;
+  /// The end that an event brings: a last sample at its time.
+  SimulateOutcome finish(const Firing& firing);
+
+  // Controllers (run_control.cpp)
+  /// Samples that are due at t and switches that are open there, once; y_ is the state.
+  void settle_control(double t);
+  /// At the start: lags that are to start at rest.
+  void settle_lags(double t);
+  /// Switches every block with a positive guard at (t, y_) until there is none.
+  void settle_switches(double t);
+  /// Counts a switch of a block; warns once ("control.sliding") where it switches without rest.
+  void count_switch(const std::string& label, double t);
+  // Dry friction and rigid stops (run_latches.cpp)
+  /// What rests, slides and strikes at (t, y_), from here on.
+  void settle_latches(double t);
+
+  void get_control_memory(VectorXd& memory) const;
+  void set_control_memory(const VectorXd& memory);
+
+  // Checkpoints (run_checkpoint.cpp)
+  void check_resume();
+  bool is_memory_good(const records::Checkpoint& c) const;
+  double restore(const records::Checkpoint& c);
+  void fill_checkpoint(double t);
+  static constexpr Stop kNoStop{-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity(),
+                                false};
+  double calc_seen_time() const;
+  /// The host may have put any state: the energy balance is judged from here on.
+  void restart_balance();
+  /// Goes on by its own integrator from where that of the host has come.
+  void take_over();
+  /// Switches, crossings and contacts at time_ behind a jump. Returns false if an event has ended the run.
+  bool settle_jump();
+  std::string describe_end(const Firing& firing) const;
+  void find_next_stop();
+  int num_kinks() const;
+  template <class Action>
+  void for_each_kept(const Action& action);
+  /// A checkpoint of y_ at t.
+  void save(double t);
+  void save_now_and_then();
+  /// On request: y_ at t, behind the jumps there.
+  SimulateOutcome halt(double t);
+
+  // Failures (run_failure.cpp)
+  /// Runs what evaluates the equations; on failure closes the sink first, so that the samples so far are kept.
+  template <class Action>
+  void guard(const Action& action) {
+    try {
+      action();
+    } catch (...) {
+      fail_as_thrown();
+    }
+  }
+  /// In a handler: what was thrown, as the failure of this run.
+  [[noreturn]] void fail_as_thrown();
+  /// `tried`: the time of the evaluation that gave no finite number, in a step from t.
+  [[noreturn]] void fail_non_finite(double t, double tried);
+  [[noreturn]] void fail_diverged(double t, const std::string& what);
+  /// Events that bring each other about without end.
+  [[noreturn]] void fail_cycle(const Firing& firing);
+  /// row: of the state that asks for the short steps; -1: not known.
+  [[noreturn]] void fail_stalled(double t, const std::string& detail, int row = -1);
+  [[noreturn]] void finish_failed(double t, const char* id, const std::string& what, const std::string& advice);
+
+  const records::SystemSpec& spec_;
+  records::ResultSink& sink_;
+  const SimulateOptions& options_;
+  Diagnostics& diagnostics_;
+  RunSetup setup_;
+  Timeline timeline_;
+  SystemOde ode_;
+  std::unique_ptr<SystemData> coming_data_;  ///< of calc_coming_energy()
+  VectorXd coming_y_dot_;
+  LinearLimit limit_;
+  VectorXd reach_;
+  EnergyMonitor monitor_;
+  double coming_ = 0, coming_at_ = -std::numeric_limits<double>::infinity();
+  std::unique_ptr<Stepper> stepper_;
+  VectorXd y_, y_dot_;
+  /// The last evaluation by evaluate().
+  struct Evaluated {
+    long number = -1;  ///< SystemOde::num_evaluations
+    double t = 0;
+    VectorXd y, memory, slide;
+    bool has_signals = false, has_sample = false;
+  };
+  Evaluated evaluated_;
+  EventValues events_, last_events_;         ///< at the present and at the last look
+  VectorXd signs_;                           ///< of find_firing()
+  VectorXd latches_before_, latches_after_;  ///< of settle_latches()
+  double scanned_ = 0;                       ///< time of the last look
+  bool has_located_ = false;                 ///< since the last look, so that y_ is elsewhere
+  VectorXd largest_kinks_;
+  records::Checkpoint checkpoint_, restored_;
+  std::chrono::steady_clock::time_point saved_at_;
+  Progress progress_;
+  std::optional<SimulateOutcome> outcome_;
+  double last_sample_ = -std::numeric_limits<double>::infinity();
+  double passed_ = -std::numeric_limits<double>::infinity();  ///< the last stop whose events have come
+  Stop stop_;                                                 ///< the next one, or the one just met
+  double time_ = 0;                                           ///< where y_ is between pieces
+  /// For an integrator of the host: the next stop; -inf: not known, as behind advance_to().
+  Stop next_stop_ = kNoStop;
+  bool is_at_event_ = true;    ///< the event at time_ has come
+  bool is_led_ = false;        ///< an integrator of the host has moved the state since the last advance_to()
+  int ended_by_ = -1;          ///< the event that has ended the run
+  bool needs_restart_ = true;  ///< of the stepper, at the next interval
+  bool is_inside_ = false;     ///< paused on the way to stop_
+  bool has_stepped_ = false;   ///< on the way to stop_
+  double crossed_ = -std::numeric_limits<double>::infinity();  ///< the last stop whose jumps are logged
+  std::vector<Firing> waiting_;                                ///< located at the next stop
+  double changed_ = -std::numeric_limits<double>::infinity();  ///< the last time an event changed the system
+  int num_quick_ = 0;                                          ///< changes in quick succession
+  bool has_changed_ = false;                                   ///< the system, since the stepper was started
+  bool is_started_ = false;                                    ///< the stepper is
+  int num_tiny_ = 0;
+  double cut_at_ = -std::numeric_limits<double>::infinity();  ///< where something last ended a step
+  int num_cuts_ = 0;                                          ///< in quick succession
+  /// Of a block that switches: since when the last hundreds of switches are counted.
+  struct Switching {
+    double since = 0;
+    int count = 0;
+    bool is_told = false;
+  };
+  std::map<std::string, Switching> switching_;  ///< by label
+  std::vector<int> gimbals_;                    ///< bodies on three angles or more, of which no warning was given
+  Latches latches_;
+  double settled_ = -std::numeric_limits<double>::infinity();
+  int num_settled_ = 0;
+  double sampled_ = -std::numeric_limits<double>::infinity();  ///< the last instant whose samples are taken
+  bool has_switched_ = false;  ///< what the motion depends on has changed since the stepper's last start
+};
+
+}  // namespace bough::solver

@@ -1,0 +1,33 @@
+// Dry friction and rigid stops (docs/theory/forces.md): steps of every method end where something sticks or comes
+// loose.
+#include "solver/simulate/run.hpp"
+
+namespace bough::solver {
+namespace {
+/// Of the run: bounces shorter than that come to rest.
+constexpr double kShortestBounce = 1e-9;
+/// Changes without any progress that are too many.
+constexpr int kMostTimes = 100;
+}  // namespace
+
+void Run::settle_latches(double t) {
+  if (latches_.empty()) return;
+  const double shortest = kShortestBounce * (timeline_.end() - timeline_.start());
+  if (latches_before_.size() == 0) latches_before_ = latches_after_ = latches_.make_memory();
+  latches_.get_memory(latches_before_);
+  guard([&] {
+    const auto what = latches_.settle(ode_, t, shortest, y_);
+    for (const auto& line : what) sink_.write_event({t, line});
+    latches_.get_memory(latches_after_);
+    if (!what.empty() || latches_before_ != latches_after_) has_switched_ = true;
+  });
+  calc_contacts(t);
+  last_events_.contacts = events_.contacts;
+  num_settled_ = t - settled_ <= timeline_.resolution() ? num_settled_ + 1 : 0;
+  settled_ = t;
+  if (num_settled_ > kMostTimes)
+    finish_failed(t, "run.endless-impacts", "dry friction and stops find no rest at t = " + short_text(t),
+                  "give friction a smoothing, or stops a stiffness");
+}
+
+}  // namespace bough::solver

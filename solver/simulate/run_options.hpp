@@ -1,0 +1,36 @@
+#pragma once
+/// \file What a run needs beside its system, resolved and checked before it starts.
+#include <set>
+
+#include "solver/integrate/stepper.hpp"
+#include "solver/simulate/event_actions.hpp"
+#include "solver/simulate/outputs.hpp"
+#include "solver/simulate/time_events.hpp"
+#include "solver/simulate/user_events.hpp"
+
+namespace bough::solver {
+
+struct RunSetup {
+  RunPlan plan;
+  Recorder recorder;
+  Triggers triggers;
+  Changes changes;               ///< by trigger
+  std::string integrator;        ///< never "auto"
+  std::set<int> spins_reported;  ///< bodies whose spin without stiffening is warned of already
+};
+
+/// Reports everything in the spec that `simulate` would refuse: sensors, groups to record, events, [simulation]. The
+/// system may have come from build_as_far; to be used only when nothing was reported, and while the system stays.
+RunSetup prepare_run(const System& system, const records::SystemSpec& spec, Diagnostics& diagnostics);
+
+/// For integrator = "auto": "bdf" where the fastest mode or spring swings more than `kFastMode` radians between
+/// samples, so that steps that follow it serve nothing; else "rk" for tolerances below 1e-10, else "adams". A note says
+/// which and why.
+std::string choose_integrator(const System& system, const records::SimulationRecord& simulation, double output_step,
+                              Diagnostics& diagnostics);
+inline constexpr double kFastMode = 300;
+
+/// Largest frequency of small motions about the initial state, rad per unit of time; 0 without springs and modes.
+double calc_fastest_frequency(const System& system);
+
+}  // namespace bough::solver

@@ -1,0 +1,85 @@
+#pragma once
+/// \file A run that is advanced from outside: inputs set, outputs read, its state saved and restored between pieces.
+#include <memory>
+#include <span>
+
+#include "solver/simulate/simulate.hpp"
+
+namespace bough::solver {
+
+class Run;
+class InputBlock;
+
+/// Belongs to one thread; the System may be shared by many. simulate() is a Simulator that is advanced to its end at
+/// once: the numbers are the same, bit for bit where the step is fixed, in any slices that end on steps.
+class Simulator {
+ public:
+  /// Begins the run: loops closed, controllers sampled, the first sample written. Throws what simulate() throws. All
+  /// arguments must outlive it.
+  Simulator(const System& system, const records::SystemSpec& spec, records::ResultSink& sink,
+            const SimulateOptions& options, Diagnostics& diagnostics);
+  ~Simulator();
+
+  /// Goes on to t, or to the end or the event that ends the run where that comes first. What is due at t has come then.
+  void advance_to(double t);
+  double time() const;
+  /// Times closer together than that are one.
+  double resolution() const;
+  /// Numbers by which save() may grow where a pause is within a step.
+  std::size_t max_step_size() const;
+  /// How the run has ended; none before.
+  const std::optional<SimulateOutcome>& outcome() const;
+
+  int num_inputs() const { return static_cast<int>(inputs_.size()); }
+  const InputBlock& input(int i) const { return *inputs_[static_cast<std::size_t>(i)].block; }
+  /// Value of input i at time(), from which on it is held; a linear one gets there at the time advanced to next.
+  void set_inputs(int first, std::span<const double> values);
+  /// At time().
+  double get_input(int i) const;
+
+  const std::vector<records::Channel>& channels() const;
+  /// The components of all channels at time(), one after another. No allocation.
+  const Eigen::VectorXd& calc_outputs();
+
+  // By an integrator of the host, in place of advance_to()
+  int num_states() const;
+  const Eigen::VectorXd& state() const;
+  std::string name_state(int row) const;
+  /// Puts it at (t, x), t not past next_event_time().
+  void set_continuous(double t, const Eigen::Ref<const Eigen::VectorXd>& x);
+  void calc_derivatives(Eigen::Ref<Eigen::VectorXd> x_dot);
+  /// An event is where an event function changes its sign.
+  int num_event_functions() const;
+  void calc_event_functions(Eigen::Ref<Eigen::VectorXd> g);
+  std::vector<std::string> list_event_functions() const;
+  /// Returns true if constraints have drifted apart, so that update_discrete() is called for.
+  bool needs_projection();
+  /// Event mode at (t, x): what is due, what has crossed, and what follows, until nothing changes. Whether x has
+  /// jumped. The run may have ended then.
+  bool update_discrete();
+  double next_event_time();
+
+  /// Everything that it goes on from, also in another process: bit for bit where the step is fixed.
+  records::Checkpoint save() const;
+  /// Throws InputError "run.bad-checkpoint" where the state is not of this system and plan.
+  void restore(const records::Checkpoint& saved);
+
+ private:
+  struct Input {
+    const InputBlock* block = nullptr;
+    int memory = 0;  ///< first row of its memory
+  };
+  void hold_inputs(double t);
+  void apply_inputs();
+  /// Inputs at once, as an integrator of the host varies them.
+  void put_inputs();
+
+  std::unique_ptr<Run> run_;
+  std::vector<Input> inputs_;
+  std::vector<double> next_;  ///< of inputs, as set
+  std::vector<std::pair<int, double>> rows_;
+  bool is_set_ = false;      ///< since the last advance
+  bool has_slopes_ = false;  ///< an input moves along a line in the last advance
+};
+
+}  // namespace bough::solver

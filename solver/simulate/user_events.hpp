@@ -1,0 +1,50 @@
+#pragma once
+/// \file [[event]] of a system file: at a time, or where a signal crosses a value.
+#include "formats/records/system_spec.hpp"
+#include "solver/simulate/outputs.hpp"
+
+namespace bough::solver {
+
+/// An event that came.
+struct Firing {
+  double time = 0;
+  size_t trigger = 0;
+};
+
+class Triggers {
+ public:
+  /// Finds the signals among the recorder's channels. Reports "run.bad-event", "run.unknown-signal" and the warning
+  /// "run.event-never" for a time outside the run. `system_is_sound`: else signals may be missing that are none to
+  /// blame.
+  static Triggers build(const records::SystemSpec& spec, const Recorder& recorder, bool system_is_sound,
+                        Diagnostics& diagnostics);
+
+  /// Of the events at a time; those that only log, or the others.
+  std::vector<double> collect_times(bool log_only) const;
+  bool has_signals() const { return num_signals_ > 0; }
+  const records::TriggerRecord& get(size_t trigger) const { return records_[trigger]; }
+  /// "event 'contact': tip:x rises through 0.1"
+  std::string describe(size_t trigger) const;
+
+  /// The values less the thresholds of all signals of a sample; events at a time have NaN.
+  void calc_gaps(const VectorXd& sample, VectorXd& gaps) const;
+  VectorXd make_gaps() const { return VectorXd::Zero(static_cast<Eigen::Index>(records_.size())); }
+
+  /// From here on crossings count: the signs at the start, or after a jump of the state.
+  void start(const VectorXd& gaps);
+  /// What signals crossed since the last call, by the signs kept; keeps those of `gaps`. A signal that is exactly at
+  /// its value keeps the sign it had. Indices of triggers, appended to `crossed`.
+  void find_crossed(const VectorXd& gaps, std::vector<size_t>& crossed);
+  /// Events at a time due within `resolution` of t, appended.
+  void find_due(double t, double resolution, std::vector<Firing>& due) const;
+
+  /// The signs kept, for a checkpoint.
+  VectorXd signs;
+
+ private:
+  std::vector<records::TriggerRecord> records_;
+  std::vector<int> index_;  ///< in the sample; -1: at a time
+  int num_signals_ = 0;
+};
+
+}  // namespace bough::solver

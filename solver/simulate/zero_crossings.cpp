@@ -1,0 +1,162 @@
+// Event functions and their zero crossings: kinks of forces, switches of blocks, joint contacts (dry friction, rigid
+// stops), signals of events. All are evaluated together, at every sample and at the end of every step, so that nothing
+// that the samples show is missed, however long the steps are.
+#include <algorithm>
+#include <cmath>
+
+#include "solver/integrate/locate.hpp"
+#include "solver/simulate/run.hpp"
+#include "solver/system/system.hpp"
+
+namespace bough::solver {
+namespace {
+/// Of the largest value so far: a kink function that is smaller before and after has no crossing but by rounding.
+constexpr double kKinkNoise = 1e-12;
+/// Of its value after: a joint contact that has just left its limit may be on either side of it by rounding.
+constexpr double kContactNoise = 1e-9;
+}  // namespace
+
+void Run::start_events() {
+  const System& system = ode_.system();
+  int kinks = 0;
+  // Fixed steps depend on the samples and stops alone. Error estimates of adaptive ones look at few moments of a step
+  // (Dormand and Prince's 8(7) at its two ends only) and miss a contact between them: their steps end at kinks.
+  if (setup_.integrator != "rk4" && setup_.integrator != "implicit")
+    for (const auto& element : system.elements) kinks += element->num_corners();
+  events_.kinks = VectorXd::Zero(kinks);
+  events_.switches = VectorXd::Zero(system.signals.num_guards);
+  events_.contacts = latches_.make_guards();
+  events_.signals = setup_.triggers.make_gaps();
+  last_events_ = events_;
+  largest_kinks_ = events_.kinks;
+}
+
+bool Run::has_event_functions() const {
+  return events_.kinks.size() > 0 || events_.switches.size() > 0 || !latches_.empty() || setup_.triggers.has_signals();
+}
+
+void Run::calc_kinks(double t) {
+  guard([&] {
+    if (!is_evaluated(t)) {
+      const int nq = ode_.num_q();
+      calc_kinematics(ode_.system(), ode_.data(), t, y_.head(nq), y_.segment(nq, ode_.num_coordinates() - nq));
+    }
+    double* g = events_.kinks.data();
+    for (const auto& element : ode_.system().elements) {
+      element->calc_corners(ode_.system().tree, ode_.data().tree, g);
+      g += element->num_corners();
+    }
+  });
+}
+
+void Run::restart_kinks(double t) {
+  if (events_.kinks.size() == 0) return;
+  calc_kinks(t);
+  last_events_.kinks = events_.kinks;
+  largest_kinks_ = largest_kinks_.cwiseMax(events_.kinks.cwiseAbs());
+}
+
+void Run::calc_switches(double t) {
+  evaluate(t, true);
+  guard([&] { ode_.system().signals.calc_guards(ode_.system(), ode_.data(), events_.switches); });
+}
+
+void Run::calc_contacts(double t) {
+  evaluate(t, false);
+  latches_.calc_guards(ode_.data(), events_.contacts);
+}
+
+void Run::calc_events(double t, const Stop& stop) {
+  guard([&] { stepper_->calc_state(t, y_); });
+  has_located_ = false;
+  const double time = std::min(t, stop.latest);
+  const bool has_switches = events_.switches.size() > 0, has_signals = setup_.triggers.has_signals();
+  // One evaluation for all, and for the sample that is due.
+  if (has_switches || has_signals || t == timeline_.next_output())
+    evaluate(time, true);
+  else if (!latches_.empty())
+    evaluate(time, false);
+  if (events_.kinks.size() > 0) calc_kinks(time);
+  if (has_switches) calc_switches(time);
+  if (!latches_.empty()) calc_contacts(time);
+  calc_signal_events(time);
+}
+
+double Run::locate(VectorXd EventValues::*rows, Eigen::Index i, double before, double to, double tolerance,
+                   const Stop& stop) {
+  const double after = (events_.*rows)[i];
+  const auto calc = [&](double t) {
+    guard([&] { stepper_->calc_state(t, y_); });
+    const double time = std::min(t, stop.latest);
+    if (rows == &EventValues::kinks)
+      calc_kinks(time);
+    else if (rows == &EventValues::switches)
+      calc_switches(time);
+    else if (rows == &EventValues::contacts)
+      calc_contacts(time);
+    else
+      calc_signal_events(time);
+    return (events_.*rows)[i];
+  };
+  const VectorXd at_end = events_.*rows;
+  const double at = locate_crossing(calc, scanned_, before, to, after, tolerance);
+  events_.*rows = at_end;
+  has_located_ = true;
+  return at;
+}
+
+template <class Before>
+bool Run::find_first(VectorXd EventValues::*rows, const Before& get_before, const Stop& stop, double& to) {
+  std::optional<double> first;
+  for (Eigen::Index i = 0; i < (events_.*rows).size(); ++i) {
+    if (const std::optional<double> before = get_before(i))
+      first = std::min(first.value_or(to), locate(rows, i, *before, to, timeline_.resolution(), stop));
+  }
+  if (first && *first < to) calc_events(to = *first, stop);
+  return first.has_value();
+}
+
+Run::Change Run::find_change(const Stop& stop, double t) {
+  calc_events(t, stop);
+  Change found;
+  found.time = t;
+  const auto kink = [&](Eigen::Index i) -> std::optional<double> {
+    const double before = last_events_.kinks[i], after = events_.kinks[i];
+    largest_kinks_[i] = std::max(largest_kinks_[i], std::abs(after));
+    if (before * after >= 0) return {};
+    if (std::max(std::abs(before), std::abs(after)) < kKinkNoise * largest_kinks_[i]) return {};
+    return before;
+  };
+  const auto block = [&](Eigen::Index i) -> std::optional<double> {
+    if (!(events_.switches[i] > 0)) return {};
+    return std::min(0.0, last_events_.switches[i]);
+  };
+  const auto contact = [&](Eigen::Index i) -> std::optional<double> {
+    if (!(events_.contacts[i] > 0)) return {};
+    return std::min(last_events_.contacts[i], -kContactNoise * events_.contacts[i]);
+  };
+  found.is_kink = find_first(&EventValues::kinks, kink, stop, found.time);
+  const bool switches = find_first(&EventValues::switches, block, stop, found.time);
+  const bool changes = find_first(&EventValues::contacts, contact, stop, found.time);
+  found.is_switch = switches || changes;
+  found.firing = find_firing(stop, found.time);
+  last_events_ = events_;
+  scanned_ = found.time;
+  return found;
+}
+
+std::optional<Run::Change> Run::scan_step(const Stop& stop, double until) {
+  for (;;) {
+    const double sample = timeline_.next_output();
+    Change found;
+    found.time = std::min(sample, until);
+    const bool looks = has_event_functions();
+    if (looks) found = find_change(stop, found.time);
+    const double stands = found.firing ? found.firing->time : found.time;
+    scanned_ = stands;
+    if (sample <= stands && !write_output(sample, looks && !has_located_)) return {};
+    if (found.is_kink || found.is_switch || found.firing || stands >= until) return found;
+  }
+}
+
+}  // namespace bough::solver
