@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "solver/build/build_system.hpp"
 #include "solver/simulate/hybrid_system.hpp"
 #include "solver/simulate/memory_sink.hpp"
 #include "solver/simulate/simulate.hpp"
@@ -89,7 +90,7 @@ records::FlexBody make_beam(int n) {
 
 System build(const records::SystemSpec& spec, const std::map<std::string, records::FlexBody>& flex = {}) {
   Diagnostics diagnostics;
-  return System::build(spec, flex, diagnostics);
+  return build_system(spec, flex, diagnostics);
 }
 
 void evaluate(benchmark::State& state, const System& system, int num_bodies) {

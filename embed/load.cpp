@@ -8,6 +8,7 @@
 #include "formats/flx/flx_file.hpp"
 #include "formats/toml/specs.hpp"
 #include "formats/toml/system_text.hpp"
+#include "solver/build/build_system.hpp"
 #include "solver/simulate/simulate.hpp"
 
 namespace bough::embed {
@@ -161,7 +162,7 @@ LoadedSystem load_system(const std::string& path, const FileReaders& readers, Lo
     diagnostics.throw_if_errors();
     options.set_start(spec, diagnostics);
   }
-  auto system = solver::System::build_as_far(spec, flex, diagnostics);
+  auto system = solver::draft_system(spec, flex, diagnostics);
   solver::check_run(system, spec, diagnostics);
   diagnostics.throw_if_errors();
   return {std::move(spec), std::move(flex), std::move(flex_path), std::move(system), std::move(lent), {}};

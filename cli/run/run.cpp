@@ -216,8 +216,8 @@ int run_run(const RunOptions& o) {
   try {
     outcome = solver::simulate(loaded.system, loaded.spec, sink, options, diagnostics);
     // A library that fails in its end has not completed: the file says so only behind it.
-    if (solver::has_user_blocks(loaded.system)) sink.flush();
-    solver::close_user_blocks(loaded.system);
+    if (solver::has_user_blocks(loaded.system.signals)) sink.flush();
+    solver::close_user_blocks(loaded.system.signals);
     sink.finish();
   } catch (...) {
     sink.finish_failed();

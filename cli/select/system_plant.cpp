@@ -3,6 +3,7 @@
 #include "cli/common/body_files.hpp"
 #include "cli/linearize/operating_point.hpp"
 #include "formats/records/mode_subset.hpp"
+#include "solver/build/build_system.hpp"
 #include "solver/linear/linearize.hpp"
 
 namespace bough::cli {
@@ -62,7 +63,7 @@ records::LinearModel SystemPlant::linearize_with(const std::vector<int>& kept) c
   }
   flex[key_] = records::keep_modes(flex.at(key_), kept);
   Diagnostics said;
-  auto system = solver::System::build(spec, flex, said);
+  auto system = solver::build_system(spec, flex, said);
   return linearize({std::move(spec), std::move(flex), loaded_.flex_path, std::move(system), {}}, said);
 }
 

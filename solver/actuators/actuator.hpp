@@ -1,10 +1,9 @@
 #pragma once
-/// \file [[actuator]] of a system file as blocks: a command in, a force on the bodies out (docs/theory/control.md).
+/// \file What all actuators share: a command in, a force on the bodies out (docs/theory/control.md).
 #include <memory>
 
 #include "formats/records/system_spec.hpp"
 #include "solver/signals/block.hpp"
-#include "solver/system/system.hpp"
 #include "solver/text/settings.hpp"
 #include "solver/tree/tree.hpp"
 
@@ -33,13 +32,5 @@ class Actuator : public Block {
   double scale_ = 1, bias_ = 0, deadband_ = 0, low_ = 0, high_ = 0, lag_ = 0, rate_ = 0, initial_ = 0;
   bool is_steady_ = false;
 };
-
-/// Outputs by type; 0: unknown type.
-int find_actuator_outputs(const std::string& type);
-
-/// Types: hinge motor brake force moment jet wheel cmg double_gimbal_cmg modal. Adds the marker it acts at to the tree.
-/// Reports "control.*" and what find_loaded_node does; nullptr on errors.
-std::unique_ptr<Block> make_actuator(const records::ActuatorRecord& record, const System& system, Tree& tree,
-                                     Diagnostics& diagnostics);
 
 }  // namespace bough::solver

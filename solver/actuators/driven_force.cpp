@@ -8,8 +8,8 @@ class DrivenForce final : public Block {
   explicit DrivenForce(const AppliedForce& force) : force_(&force) { sizes.inputs = 1; }
   bool is_actuator() const override { return true; }
   void calc_outputs(const BlockInput& in, double* y) const override { y[0] = in.u[0]; }
-  void add_load(const BlockInput& in, const double* y, SystemData& data) const override {
-    add_applied_load(*force_, in.system->tree, y[0], data.tree);
+  void add_load(const BlockInput& in, const double* y, TreeData& data) const override {
+    add_applied_load(*force_, in.motion->tree, y[0], data);
   }
 
  private:

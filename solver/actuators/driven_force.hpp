@@ -2,7 +2,7 @@
 /// \file A [[force]] that follows a signal.
 #include <memory>
 
-#include "solver/build/build.hpp"
+#include "solver/forces/applied.hpp"
 #include "solver/signals/block.hpp"
 
 namespace bough::solver {

@@ -2,7 +2,6 @@
 #include <cmath>
 
 #include "solver/actuators/makers.hpp"
-#include "solver/system/system.hpp"
 
 namespace bough::solver {
 namespace {
@@ -12,17 +11,15 @@ class HingeDrive : public Actuator {
   int row = -1;
 
   void calc_outputs(const BlockInput& in, double* y) const override { y[0] = calc_command(in); }
-  void add_load(const BlockInput&, const double* y, SystemData& data) const override {
-    data.tree.hinge_force[row] += y[0];
-  }
+  void add_load(const BlockInput&, const double* y, TreeData& data) const override { data.hinge_force[row] += y[0]; }
   /// Where the coordinate is given, what drives it has the power of the whole force.
   double calc_power(const BlockInput& in, const double* y) const override {
-    const TreeData& tree = in.data->tree;
+    const TreeData& tree = in.motion->data;
     return tree.mode[static_cast<size_t>(row)] == HingeMode::Free ? y[0] * tree.u[row] : 0;
   }
 
  protected:
-  double get_rate(const BlockInput& in) const { return in.data->tree.u[row]; }
+  double get_rate(const BlockInput& in) const { return in.motion->data.u[row]; }
 };
 
 /// i = (V - k_b N q̇) / R;  Q = N k_t i - c q̇ - Q_c tanh(q̇ / w)

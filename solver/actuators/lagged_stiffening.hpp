@@ -1,18 +1,19 @@
 #pragma once
 /// \file The stiffening of the step before, as the report has it (docs/theory/control.md, "Lagged stiffening").
-#include <memory>
-#include <vector>
-
-#include "solver/build/build.hpp"
+#include "solver/motion/stiffening_terms.hpp"
 #include "solver/signals/block.hpp"
 
 namespace bough::solver {
 
-/// The scheme of NASA-CR-202063, eq. 18, for each flexible body that is to be stiffened: every stiffening_step it
-/// measures A_I at the body's origin (12 outputs) and the loads FCONI at its nodes with locators, and until the next
-/// time puts -(Σ K_G1 A_I + Σ K_G2 FCONI) η on the modes. Loads are those of hinges and of [[force]] without a type;
-/// warns "system.lagged-loads" of others, and "system.lagged-hinges" where there are hinges among them.
-std::vector<std::unique_ptr<Block>> make_lagged_stiffening(const records::SystemSpec& spec, const System& system,
-                                                           const FlexMap& flex, Diagnostics& diagnostics);
+/// Outputs: A_I, then force and moment of each source, in B. Load: -(Σ K_G1 A_I + Σ K_G2 FCONI) η on the modes.
+class LaggedStiffening final : public Block {
+ public:
+  int body = 0, n = 0;
+  StiffeningTerms terms;
+
+  bool is_actuator() const override { return true; }
+  void calc_outputs(const BlockInput& in, double* y) const override;
+  void add_load(const BlockInput& in, const double* y, TreeData& data) const override;
+};
 
 }  // namespace bough::solver

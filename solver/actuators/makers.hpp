@@ -1,8 +1,9 @@
 #pragma once
-/// \file Makers of the actuators' blocks; for actuator.cpp.
+/// \file Makers of the actuators' blocks; for build/actuators.cpp.
 #include <string>
 
 #include "solver/actuators/actuator.hpp"
+#include "solver/forces/applied.hpp"
 
 namespace bough::solver {
 

@@ -1,6 +1,5 @@
 // Actuator on a modal coordinate: a generalized force on one mode of a flexible body, without resultant on the body.
 #include "solver/actuators/makers.hpp"
-#include "solver/system/system.hpp"
 
 namespace bough::solver {
 namespace {
@@ -10,7 +9,7 @@ class ModalDrive final : public Actuator {
   int row = -1;  ///< of TreeData::applied
 
   void calc_outputs(const BlockInput& in, double* y) const override { y[0] = calc_command(in); }
-  void add_load(const BlockInput&, const double* y, SystemData& data) const override { data.tree.applied[row] += y[0]; }
+  void add_load(const BlockInput&, const double* y, TreeData& data) const override { data.applied[row] += y[0]; }
 };
 
 }  // namespace

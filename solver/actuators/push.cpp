@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include "solver/actuators/makers.hpp"
-#include "solver/system/system.hpp"
 
 namespace bough::solver {
 namespace {
@@ -16,16 +15,15 @@ class Push : public Actuator {
   Vector3d axis = Vector3d::UnitX();
 
   void calc_outputs(const BlockInput& in, double* y) const override { y[0] = calc_command(in); }
-  void add_load(const BlockInput& in, const double* y, SystemData& data) const override {
-    const Tree& tree = in.system->tree;
+  void add_load(const BlockInput& in, const double* y, TreeData& data) const override {
+    const Tree& tree = in.motion->tree;
     const int body = tree.markers[static_cast<size_t>(marker)].body;
     Vector3d load = y[0] * axis;
     if (frame == records::VectorFrame::Inertial)
-      load = data.tree[body].state.R_WB.transpose() * load;
+      load = data[body].state.R_WB.transpose() * load;
     else if (frame == records::VectorFrame::Node)
-      load = data.tree.markers[static_cast<size_t>(marker)].R * load;
-    add_marker_wrench(tree, marker, is_moment ? Vector3d::Zero() : load, is_moment ? load : Vector3d::Zero(),
-                      data.tree);
+      load = data.markers[static_cast<size_t>(marker)].R * load;
+    add_marker_wrench(tree, marker, is_moment ? Vector3d::Zero() : load, is_moment ? load : Vector3d::Zero(), data);
   }
 };
 
@@ -44,7 +42,7 @@ class Jet final : public Push {
     if (exhaust > 0) z_dot[sizes.states - 1] = in.d[0] * thrust / exhaust;
   }
   void add_consumption(const BlockInput& in, Eigen::Ref<Eigen::VectorXd> by_body) const override {
-    if (exhaust > 0) by_body[in.system->tree.markers[static_cast<size_t>(marker)].body] += in.z[sizes.states - 1];
+    if (exhaust > 0) by_body[in.motion->tree.markers[static_cast<size_t>(marker)].body] += in.z[sizes.states - 1];
   }
   void calc_guards(const BlockInput& in, double* g) const override {
     const double command = calc_command(in);

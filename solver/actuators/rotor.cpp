@@ -5,7 +5,6 @@
 #include <limits>
 
 #include "solver/actuators/makers.hpp"
-#include "solver/system/system.hpp"
 
 namespace bough::solver {
 namespace {
@@ -16,13 +15,13 @@ class Rotor : public Actuator {
 
  protected:
   const MarkerMotion& get_motion(const BlockInput& in) const {
-    return in.data->tree.markers[static_cast<size_t>(marker)];
+    return in.motion->data.markers[static_cast<size_t>(marker)];
   }
-  int get_body(const BlockInput& in) const { return in.system->tree.markers[static_cast<size_t>(marker)].body; }
+  int get_body(const BlockInput& in) const { return in.motion->tree.markers[static_cast<size_t>(marker)].body; }
   /// Of the node, in B.
-  Vector3d calc_rate(const BlockInput& in) const { return in.data->tree[get_body(in)].state.w_B + get_motion(in).w; }
-  void add_moment(const BlockInput& in, const Vector3d& moment_B, SystemData& data) const {
-    add_marker_wrench(in.system->tree, marker, Vector3d::Zero(), moment_B, data.tree);
+  Vector3d calc_rate(const BlockInput& in) const { return in.motion->data[get_body(in)].state.w_B + get_motion(in).w; }
+  void add_moment(const BlockInput& in, const Vector3d& moment_B, TreeData& data) const {
+    add_marker_wrench(in.motion->tree, marker, Vector3d::Zero(), moment_B, data);
   }
 };
 
@@ -57,7 +56,7 @@ class Wheel final : public Rotor {
   void switch_over(const BlockInput&, int guard, double* d) const override {
     d[0] = guard == 0 ? 1 : guard == 1 ? -1 : 0;
   }
-  void add_load(const BlockInput& in, const double* y, SystemData& data) const override {
+  void add_load(const BlockInput& in, const double* y, TreeData& data) const override {
     const Vector3d a = get_motion(in).R * axis;
     add_moment(in, -y[0] * a - y[1] * calc_rate(in).cross(a), data);
   }
@@ -67,7 +66,7 @@ class Wheel final : public Rotor {
     return 0.5 * h * h / inertia;
   }
   Vector3d calc_momentum(const BlockInput& in) const override {
-    return in.data->tree[get_body(in)].state.R_WB * (get_motion(in).R * axis) * get_momentum(in);
+    return in.motion->data[get_body(in)].state.R_WB * (get_motion(in).R * axis) * get_momentum(in);
   }
 
  private:
@@ -100,13 +99,13 @@ class SingleGimbal final : public Rotor {
     Rotor::calc_rates(in, z_dot);
     z_dot[num_lags()] = calc_command(in);
   }
-  void add_load(const BlockInput& in, const double* y, SystemData& data) const override {
+  void add_load(const BlockInput& in, const double* y, TreeData& data) const override {
     const Matrix3d& R = get_motion(in).R;
     const Vector3d h = calc_spin(in);
     add_moment(in, -(calc_rate(in) + y[0] * (R * gimbal)).cross(h), data);
   }
   Vector3d calc_momentum(const BlockInput& in) const override {
-    return in.data->tree[get_body(in)].state.R_WB * calc_spin(in);
+    return in.motion->data[get_body(in)].state.R_WB * calc_spin(in);
   }
 
  private:
@@ -137,14 +136,14 @@ class DoubleGimbal final : public Rotor {
     Rotor::calc_rates(in, z_dot);
     for (int i = 0; i < 2; ++i) z_dot[num_lags() + i] = calc_command(in, i);
   }
-  void add_load(const BlockInput& in, const double* y, SystemData& data) const override {
+  void add_load(const BlockInput& in, const double* y, TreeData& data) const override {
     const Matrix3d& R = get_motion(in).R;
     const Matrix3d R_o = calc_outer(in);
     const Vector3d turn = R * (y[0] * outer + y[1] * (R_o * inner));
     add_moment(in, -(calc_rate(in) + turn).cross(calc_spin(in)), data);
   }
   Vector3d calc_momentum(const BlockInput& in) const override {
-    return in.data->tree[get_body(in)].state.R_WB * calc_spin(in);
+    return in.motion->data[get_body(in)].state.R_WB * calc_spin(in);
   }
 
  private:

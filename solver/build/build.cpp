@@ -158,9 +158,8 @@ std::unique_ptr<const Hinge> make_stand_in(records::HingeRecord record) {
 
 }  // namespace
 
-System System::build(const records::SystemSpec& spec, const std::map<std::string, FlexBody>& flex,
-                     Diagnostics& diagnostics) {
-  System system = build_as_far(spec, flex, diagnostics);
+System build_system(const records::SystemSpec& spec, const FlexMap& flex, Diagnostics& diagnostics) {
+  System system = draft_system(spec, flex, diagnostics);
   diagnostics.throw_if_errors();
   return system;
 }
@@ -172,14 +171,13 @@ void collect_left_out(const records::SystemSpec& spec, const FlexMap& flex, Syst
     const int b = system.find_body(r.name);
     const auto found = flex.find(r.file);
     if (r.stiffening || b < 0 || found == flex.end() || !system.is_sound(b) || system.num_modes(b) == 0) continue;
-    system.left_out[static_cast<size_t>(b)] =
-        std::make_shared<const StiffeningTerms>(StiffeningTerms::collect(spec, system, found->second, b, true));
+    system.left_out[static_cast<size_t>(b)] = std::make_shared<const StiffeningTerms>(
+        StiffeningTerms::collect(spec, system.tree, system.loops, system.forces, found->second, b, true));
   }
 }
 }  // namespace
 
-System System::build_as_far(const records::SystemSpec& spec, const std::map<std::string, FlexBody>& flex,
-                            Diagnostics& diagnostics) {
+System draft_system(const records::SystemSpec& spec, const FlexMap& flex, Diagnostics& diagnostics) {
   System system;
   Tree& tree = system.tree;
   system.gravity.uniform = spec.simulation.gravity;

@@ -1,15 +1,13 @@
 #pragma once
-/// \file Steps of System::build, each reporting every error it finds.
+/// \file Steps of build_system, each reporting every error it finds.
 #include <map>
 #include <optional>
 #include <string>
 
+#include "solver/build/build_system.hpp"
 #include "solver/functions/curve.hpp"
-#include "solver/system/system.hpp"
 
 namespace bough::solver {
-
-using FlexMap = std::map<std::string, records::FlexBody>;
 
 /// A name, as messages show it.
 std::string quote(const std::string& name);

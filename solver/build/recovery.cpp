@@ -87,7 +87,7 @@ void build_recoveries(const records::SystemSpec& spec, const FlexMap& flex, Syst
                           "reduce the body with that element in recover");
       recovery->record(id);
     }
-    const auto nodes = recovery->connect(system, body, spec.forces);
+    const auto nodes = recovery->connect(system.tree, system.loops, system.forces, body, spec.forces);
     auto others = list_unknown_loads(spec, system, b, r.name);
     for (const int id : nodes) others.push_back("what acts at node " + std::to_string(id));
     if (!others.empty())

@@ -4,9 +4,10 @@
 
 #include "formats/records/dims.hpp"
 #include "formats/records/signal_name.hpp"
-#include "solver/actuators/actuator.hpp"
 #include "solver/actuators/driven_force.hpp"
-#include "solver/actuators/lagged_stiffening.hpp"
+#include "solver/build/actuators.hpp"
+#include "solver/build/lagged_stiffening.hpp"
+#include "solver/build/sensors.hpp"
 #include "solver/build/signal_units.hpp"
 #include "solver/build/sources.hpp"
 #include "solver/control/controller.hpp"
@@ -20,7 +21,7 @@ class FunctionBlock final : public Block {
  public:
   explicit FunctionBlock(const TimeFunction* f) : f_(f) { sizes.has_feedthrough = false; }
   void calc_outputs(const BlockInput& in, double* y) const override {
-    y[0] = in.data->tree.functions[*f_].calc(in.t).f;
+    y[0] = in.motion->data.functions[*f_].calc(in.t).f;
   }
 
  private:
@@ -56,9 +57,9 @@ class Builder {
 
  private:
   void add_sensors() {
-    const Sensors sensors = Sensors::build(system_, spec_, diagnostics_);
-    for (size_t i = 0; i < sensors.entries().size(); ++i) {
-      const auto& entry = sensors.entries()[i];
+    const auto sensors = build_sensors(system_, spec_, diagnostics_);
+    for (size_t i = 0; i < sensors.size(); ++i) {
+      const Sensor& entry = sensors[i];
       sources_.list.push_back({entry.name, get_folder(BlockKind::Sensor) + entry.name, entry.size,
                                add(make_sensor_block(entry, spec_.sensors[i], diagnostics_), {})});
     }

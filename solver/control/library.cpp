@@ -15,7 +15,7 @@
 #include "solver/control/hosted.hpp"
 #include "solver/control/makers.hpp"
 #include "solver/control/user_code.hpp"
-#include "solver/system/system.hpp"
+#include "solver/signals/graph.hpp"
 
 namespace bough::solver {
 namespace {
@@ -165,14 +165,13 @@ ControllerFunctions find_functions(void* handle) {
 
 }  // namespace
 
-bool has_user_blocks(const System& system) {
-  return std::ranges::any_of(system.signals.places, [](const auto& place) {
-    return dynamic_cast<const UserBlock*>(place.block.get()) != nullptr;
-  });
+bool has_user_blocks(const SignalGraph& signals) {
+  return std::ranges::any_of(
+      signals.places, [](const auto& place) { return dynamic_cast<const UserBlock*>(place.block.get()) != nullptr; });
 }
 
-void close_user_blocks(const System& system) {
-  for (const auto& place : system.signals.places)
+void close_user_blocks(const SignalGraph& signals) {
+  for (const auto& place : signals.places)
     if (const auto* block = dynamic_cast<const UserBlock*>(place.block.get())) block->close();
 }
 

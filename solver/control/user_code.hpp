@@ -4,7 +4,7 @@
 
 namespace bough::solver {
 
-struct System;
+class SignalGraph;
 
 /// A block that has opened something outside Bough, which the destructor closes at the latest.
 class UserBlock : public Block {
@@ -14,10 +14,10 @@ class UserBlock : public Block {
 };
 
 /// Returns true if the system has any UserBlock: code of others that may end the program.
-bool has_user_blocks(const System& system);
+bool has_user_blocks(const SignalGraph& signals);
 
 /// Closes every UserBlock of the system, which can only be destroyed after it. A program that marks results as
 /// completed calls it first. Throws ComputationError "control.library-failed".
-void close_user_blocks(const System& system);
+void close_user_blocks(const SignalGraph& signals);
 
 }  // namespace bough::solver

@@ -133,7 +133,7 @@ VectorXd Plant::evaluate(const OperatingPoint& point, const PlantInput* input, d
   int at = n + nz;
   for (const auto& p : signals.places) {
     if (p.block->kind != BlockKind::Sensor) continue;
-    signals.calc_ideal(p, system_, *data_, out.data() + at);
+    signals.calc_ideal(p, get_motion(system_, *data_), data_->signals, out.data() + at);
     at += p.block->sizes.outputs;
   }
   for (const BlockKind kind : {BlockKind::Controller, BlockKind::Actuator}) {
@@ -277,7 +277,7 @@ VectorXd Plant::sample(const OperatingPoint& point, const PlantInput* input, dou
   s.is_ideal = true;
   double shortest = 0;
   for (const auto& [period, queue] : list_cycles()) shortest = shortest > 0 ? std::min(shortest, period) : period;
-  system_.signals.sample(system_, *data_, 1e-9 * shortest);
+  system_.signals.sample(get_motion(system_, *data_), data_->signals, 1e-9 * shortest);
   s.is_ideal = false;
   return s.memory;
 }
@@ -340,7 +340,7 @@ VectorXd Plant::resample(const OperatingPoint& point) {
   VectorXd u_dot(system_.num_u());
   compute(point, nullptr, 0, u_dot);
   calc_signals(system_, *data_);
-  system_.signals.resample(system_, *data_);
+  system_.signals.resample(get_motion(system_, *data_), data_->signals);
   return data_->signals.memory;
 }
 

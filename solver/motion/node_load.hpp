@@ -1,6 +1,9 @@
 #pragma once
 /// \file What a hinge, a constraint or a [[force]] puts on a node of a body, measured.
-#include "solver/system/system.hpp"
+#include <vector>
+
+#include "solver/forces/applied.hpp"
+#include "solver/motion/motion.hpp"
 
 namespace bough::solver {
 
@@ -14,8 +17,9 @@ struct NodeSource {
 };
 
 /// Hinges, constraints and forces at the nodes of `body`, in this order; load patterns are none.
-std::vector<NodeSource> list_node_sources(const System& system, int body);
+std::vector<NodeSource> list_node_sources(const Tree& tree, const Loops& loops, const std::vector<AppliedForce>& forces,
+                                          int body);
 /// Force and moment about the node, components in the frame of the body. After calc_accelerations. No allocation.
-Vector6d calc_node_load(const NodeSource& source, int body, const System& system, const SystemData& data);
+Vector6d calc_node_load(const NodeSource& source, int body, const Motion& motion);
 
 }  // namespace bough::solver

@@ -46,11 +46,11 @@ void Recovery::record(int id) {
     if (element.id == id) element.is_recorded = true;
 }
 
-std::vector<int> Recovery::connect(const System& system, const records::FlexBody& flex,
-                                   const std::vector<records::ForceRecord>& forces) {
-  const auto& nodes = system.tree[body_].body.nodes();
+std::vector<int> Recovery::connect(const Tree& tree, const Loops& loops, const std::vector<AppliedForce>& forces,
+                                   const records::FlexBody& flex, const std::vector<records::ForceRecord>& records) {
+  const auto& nodes = tree[body_].body.nodes();
   std::set<int> unknown;
-  for (const auto& source : list_node_sources(system, body_)) {
+  for (const auto& source : list_node_sources(tree, loops, forces, body_)) {
     const auto& node = nodes[static_cast<size_t>(source.node)];
     Loaded loaded;
     loaded.source = source;
@@ -61,9 +61,9 @@ std::vector<int> Recovery::connect(const System& system, const records::FlexBody
     }
     loaded_.push_back(loaded);
   }
-  for (const auto& force : system.forces) {
+  for (const auto& force : forces) {
     if (force.body != body_ || force.pattern.size() == 0) continue;
-    for (const auto& record : forces)
+    for (const auto& record : records)
       for (size_t e = 0; record.name == force.name && e < flex.locators.size(); ++e)
         if (flex.locators[e].name == record.locator)
           patterns_.push_back({&force, external_.col(static_cast<Eigen::Index>(e))});
@@ -71,22 +71,23 @@ std::vector<int> Recovery::connect(const System& system, const records::FlexBody
   return {unknown.begin(), unknown.end()};
 }
 
-void Recovery::calc(const System& system, const SystemData& data, int first, int count, double* out) const {
-  const Eigen::Matrix<double, 12, 1> A_I =
-      system.gravity.calc_inertial_acceleration(system.tree, data.tree, body_) - preload_;
+void Recovery::calc(const Motion& motion, int first, int count, double* out) const {
+  const Tree& tree = motion.tree;
+  const TreeData& data = motion.data;
+  const Eigen::Matrix<double, 12, 1> A_I = motion.gravity.calc_inertial_acceleration(tree, data, body_) - preload_;
   Eigen::Map<VectorXd> rows(out, count);
   rows = offset_.segment(first, count);
-  rows.noalias() += matrix_.middleRows(first, count) * data.tree.q.segment(system.eta_offset(body_), matrix_.cols());
+  rows.noalias() += matrix_.middleRows(first, count) * data.q.segment(tree[body_].eta_offset(), matrix_.cols());
   rows.noalias() += inertial_.middleRows(first, count) * A_I;
   for (const auto& loaded : loaded_) {
-    const Vector6d load = calc_node_load(loaded.source, body_, system, data);
+    const Vector6d load = calc_node_load(loaded.source, body_, motion);
     for (int d = 0; d < 6; ++d)
       if (const int e = loaded.locator[static_cast<size_t>(d)]; e >= 0)
         rows += load[d] * external_.col(e).segment(first, count);
   }
   for (const auto& pattern : patterns_) {
     const auto* f = pattern.force->function;
-    rows += (f ? data.tree.functions[*f].calc(data.tree.t).f : 1.0) * pattern.rows.segment(first, count);
+    rows += (f ? data.functions[*f].calc(data.t).f : 1.0) * pattern.rows.segment(first, count);
   }
 }
 

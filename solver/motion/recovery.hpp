@@ -8,12 +8,11 @@
 
 #include "formats/records/flex_body.hpp"
 #include "solver/forces/applied.hpp"
+#include "solver/motion/motion.hpp"
 
 namespace bough::solver {
 
 struct NodeSource;
-struct System;
-struct SystemData;
 
 class Recovery {
  public:
@@ -34,11 +33,11 @@ class Recovery {
   const Element* find(int id) const;
   void record(int id);  ///< among the results
   /// What loads the body at its locators; ids of nodes whose loads the file has no answer to.
-  std::vector<int> connect(const System& system, const records::FlexBody& flex,
-                           const std::vector<records::ForceRecord>& forces);
+  std::vector<int> connect(const Tree& tree, const Loops& loops, const std::vector<AppliedForce>& forces,
+                           const records::FlexBody& flex, const std::vector<records::ForceRecord>& records);
 
   /// Rows first ... first + count. After calc_accelerations. No allocation.
-  void calc(const System& system, const SystemData& data, int first, int count, double* out) const;
+  void calc(const Motion& motion, int first, int count, double* out) const;
 
  private:
   struct Loaded;

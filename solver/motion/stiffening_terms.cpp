@@ -4,9 +4,10 @@
 
 namespace bough::solver {
 
-StiffeningTerms StiffeningTerms::collect(const records::SystemSpec& spec, const System& system,
-                                         const records::FlexBody& flex, int b, bool constraints) {
-  const int n = system.num_modes(b);
+StiffeningTerms StiffeningTerms::collect(const records::SystemSpec& spec, const Tree& tree, const Loops& loops,
+                                         const std::vector<AppliedForce>& forces, const records::FlexBody& flex, int b,
+                                         bool constraints) {
+  const int n = tree[b].num_modes();
   StiffeningTerms terms;
   terms.body_ = b;
   terms.n_ = n;
@@ -14,8 +15,8 @@ StiffeningTerms StiffeningTerms::collect(const records::SystemSpec& spec, const 
     if (flex.kg_inertial_computed[i] && flex.kg_inertial[i].size() > 0)
       terms.K1_[i] = flex.kg_inertial[i].topLeftCorner(n, n);
   const auto get_K2 = [&](size_t e) -> MatrixXd { return flex.kg_external[e].topLeftCorner(n, n); };
-  const auto& nodes = system.tree[b].body.nodes();
-  for (const auto& source : list_node_sources(system, b)) {
+  const auto& nodes = tree[b].body.nodes();
+  for (const auto& source : list_node_sources(tree, loops, forces, b)) {
     if (source.constraint >= 0 && !constraints) continue;
     Source own{source};
     bool has_any = false;
@@ -27,7 +28,7 @@ StiffeningTerms StiffeningTerms::collect(const records::SystemSpec& spec, const 
     }
     if (has_any) terms.sources_.push_back(std::move(own));
   }
-  for (const AppliedForce& force : system.forces) {
+  for (const AppliedForce& force : forces) {
     if (force.body != b || force.pattern.size() == 0) continue;
     for (const auto& r : spec.forces) {
       if (r.name != force.name) continue;
@@ -47,16 +48,16 @@ bool StiffeningTerms::has_hinges() const {
   return std::any_of(sources_.begin(), sources_.end(), [](const auto& s) { return s.source.hinge >= 0; });
 }
 
-void StiffeningTerms::calc_loads(const System& system, const SystemData& data, double* y) const {
-  Eigen::Map<Eigen::Matrix<double, 12, 1>>{y} =
-      system.gravity.calc_inertial_acceleration(system.tree, data.tree, body_);
+void StiffeningTerms::calc_loads(const Motion& motion, double* y) const {
+  const TreeData& data = motion.data;
+  Eigen::Map<Eigen::Matrix<double, 12, 1>>{y} = motion.gravity.calc_inertial_acceleration(motion.tree, data, body_);
   for (size_t i = 0; i < sources_.size(); ++i) {
     Eigen::Map<Vector6d> load(y + 12 + 6 * i);
     const AppliedForce* f = sources_[i].source.force;
     if (f != nullptr && f->pattern.size() > 0) {
-      load << (f->function ? data.tree.functions[*f->function].calc(data.tree.t).f : 1.0), 0, 0, 0, 0, 0;
+      load << (f->function ? data.functions[*f->function].calc(data.t).f : 1.0), 0, 0, 0, 0, 0;
     } else {
-      load = calc_node_load(sources_[i].source, body_, system, data);
+      load = calc_node_load(sources_[i].source, body_, motion);
     }
   }
 }

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "formats/records/flex_body.hpp"
+#include "formats/records/system_spec.hpp"
 #include "solver/motion/node_load.hpp"
 
 namespace bough::solver {
@@ -12,14 +13,15 @@ class StiffeningTerms {
  public:
   /// Of body `b` with the modes of the system. Sources without locators in the file are left out.
   /// \param constraints  what constraints pass on counts too.
-  static StiffeningTerms collect(const records::SystemSpec& spec, const System& system, const records::FlexBody& flex,
-                                 int b, bool constraints);
+  static StiffeningTerms collect(const records::SystemSpec& spec, const Tree& tree, const Loops& loops,
+                                 const std::vector<AppliedForce>& forces, const records::FlexBody& flex, int b,
+                                 bool constraints);
 
   int num_loads() const { return 12 + 6 * static_cast<int>(sources_.size()); }
   bool has_hinges() const;
   /// A_I less gravity (12), then of each source force and moment at its node in B, or the value of a pattern and five
   /// zeros; y: num_loads. After calc_accelerations. No allocation.
-  void calc_loads(const System& system, const SystemData& data, double* y) const;
+  void calc_loads(const Motion& motion, double* y) const;
   /// modal -= K_G(y) η. No allocation.
   void add_modal_force(const double* y, const ConstVectorRef& eta, Eigen::Ref<VectorXd> modal) const;
   /// K_G(y), n x n.

@@ -1,9 +1,9 @@
 // What each kind of sensor measures, without its imperfections.
 #include <cmath>
 
+#include "solver/motion/recovery.hpp"
 #include "solver/sensors/kinds.hpp"
 #include "solver/sensors/sensor.hpp"
-#include "solver/system/system.hpp"
 
 namespace bough::solver {
 namespace {
@@ -17,10 +17,10 @@ struct Observer {
   Vector3d w = Vector3d::Zero(), alpha = Vector3d::Zero();
 };
 
-Observer calc_observer(const SystemData& data, int body) {
+Observer calc_observer(const Motion& motion, int body) {
   Observer o;
   if (body < 0) return o;
-  const BodyState& s = get_body_state(data, body);
+  const BodyState& s = motion.get_state(body);
   o.p = s.p_WBo;
   o.v.noalias() = s.R_WB * s.v_B;
   o.a.noalias() = s.R_WB * s.a_B;
@@ -46,12 +46,12 @@ Vector3d calc_relative(SensorType type, bool from_turning, const NodeMotion& k, 
   return k.a_WK - o.a - o.alpha.cross(p) - o.w.cross(o.w.cross(p)) - 2 * o.w.cross(v);
 }
 
-Vector3d turn_into(const SystemData& data, int frame, const Vector3d& value_W) {
+Vector3d turn_into(const Motion& motion, int frame, const Vector3d& value_W) {
   if (frame < 0) return value_W;
-  return get_body_state(data, frame).R_WB.transpose() * value_W;
+  return motion.get_state(frame).R_WB.transpose() * value_W;
 }
 
-void measure_attitude(const Sensors::Entry& e, const Matrix3d& R, double* out) {
+void measure_attitude(const Sensor& e, const Matrix3d& R, double* out) {
   if (e.type == SensorType::DirectionCosines) {
     Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>{out} = R;
   } else if (e.type == SensorType::Euler) {
@@ -64,14 +64,14 @@ void measure_attitude(const Sensors::Entry& e, const Matrix3d& R, double* out) {
   }
 }
 
-void measure_instrument(const System& system, const SystemData& data, const Sensors::Entry& e, double* out) {
-  const NodeMotion k = calc_node_motion(system, data, e.body, e.node);
+void measure_instrument(const Motion& motion, const Sensor& e, double* out) {
+  const NodeMotion k = calc_node_motion(motion, e.body, e.node);
   const Matrix3d R_SW = (k.R_WK * e.mount).transpose();
   Map<Vector3d> value(out);
   if (e.type == SensorType::Gyro || e.type == SensorType::IntegratingGyro) {
     value.noalias() = R_SW * k.w_WK;
   } else if (e.type == SensorType::Accelerometer) {
-    value.noalias() = R_SW * (k.a_WK - system.gravity.calc_acceleration(e.body, k.p_WK));
+    value.noalias() = R_SW * (k.a_WK - motion.gravity.calc_acceleration(e.body, k.p_WK));
   } else if (e.type == SensorType::Direction) {
     value.noalias() = R_SW * e.target;
   } else {
@@ -81,10 +81,11 @@ void measure_instrument(const System& system, const SystemData& data, const Sens
   }
 }
 
-void measure_coordinate(const System& system, const SystemData& data, const Sensors::Entry& e, double* out) {
+void measure_coordinate(const Motion& motion, const Sensor& e, double* out) {
   Eigen::Matrix<double, 7, 1> q, q_dot, force;
-  const int nq = system.num_hinge_q(e.body), nu = system.num_hinge_rates(e.body);
-  get_hinge(system, data, e.body, q.head(nq), q_dot.head(nu), force.head(nu));
+  const TreeBody& tb = motion.tree[e.body];
+  const int nq = tb.num_hinge_q(), nu = tb.num_hinge_u();
+  get_hinge(motion, e.body, q.head(nq), q_dot.head(nu), force.head(nu));
   const bool is_place = e.type == SensorType::HingeAngle || e.type == SensorType::Resolver;
   const auto& value = is_place ? q : q_dot;
   Map<VectorXd> result(out, e.size);
@@ -94,11 +95,12 @@ void measure_coordinate(const System& system, const SystemData& data, const Sens
     if (e.wraps[static_cast<size_t>(i)]) result[i] = std::remainder(result[i], 2 * EIGEN_PI);
 }
 
-void measure_modes(const System& system, const SystemData& data, const Sensors::Entry& e, double* out) {
-  const int n = system.num_modes(e.body);
-  const auto eta = data.tree.q.segment(system.eta_offset(e.body), n);
+void measure_modes(const Motion& motion, const Sensor& e, double* out) {
+  const TreeBody& tb = motion.tree[e.body];
+  const int n = tb.num_modes();
+  const auto eta = motion.data.q.segment(tb.eta_offset(), n);
   if (e.type == SensorType::StrainEnergy) {
-    const MatrixXd& K = system.tree[e.body].body.K();
+    const MatrixXd& K = tb.body.K();
     *out = 0;
     for (int j = 0; j < n; ++j) *out += 0.5 * eta[j] * K.col(j).dot(eta);
     return;
@@ -108,7 +110,7 @@ void measure_modes(const System& system, const SystemData& data, const Sensors::
   if (e.type == SensorType::ModalCoordinate)
     result = eta.segment(first, e.size);
   else
-    result = data.tree.u.segment(system.eta_dot_offset(e.body) + first, e.size);
+    result = motion.data.u.segment(tb.eta_dot_offset() + first, e.size);
 }
 
 }  // namespace
@@ -123,53 +125,47 @@ Vector3d calc_euler_angles(const Matrix3d& R, const std::array<int, 3>& axes) {
           std::atan2(R(i, j), s * R(i, k))};
 }
 
-void measure(const System& system, const SystemData& data, const Sensors::Entry& e, double* out) {
+void measure(const Motion& motion, const Sensor& e, double* out) {
   switch (get_kind(e.type).of) {
     case SensorOf::Coordinate:
-      return measure_coordinate(system, data, e, out);
+      return measure_coordinate(motion, e, out);
     case SensorOf::Instrument:
-      return measure_instrument(system, data, e, out);
+      return measure_instrument(motion, e, out);
     case SensorOf::Modes:
     case SensorOf::Energy:
-      return measure_modes(system, data, e, out);
+      return measure_modes(motion, e, out);
     case SensorOf::HingeLoad: {
-      const HingeReaction r = get_hinge_reaction(system, data, e.body);
+      const HingeReaction r = calc_hinge_reaction(motion.tree, motion.data, e.body);
       Map<Vector3d>{out} = e.type == SensorType::HingeForce ? r.force : r.moment;
       return;
     }
     case SensorOf::Attitude: {
-      const Matrix3d R_WS = calc_node_motion(system, data, e.body, e.node).R_WK * e.mount;
+      const Matrix3d R_WS = calc_node_motion(motion, e.body, e.node).R_WK * e.mount;
       if (e.relative_to < 0) return measure_attitude(e, R_WS, out);
-      return measure_attitude(e, get_body_state(data, e.relative_to).R_WB.transpose() * R_WS, out);
+      return measure_attitude(e, motion.get_state(e.relative_to).R_WB.transpose() * R_WS, out);
     }
     case SensorOf::Element:
-      return system.recoveries[static_cast<size_t>(e.body)]->calc(system, data, e.row, e.size, out);
+      return e.recovery->calc(motion, e.row, e.size, out);
     case SensorOf::Gap: {
       Vector3d other = e.target;
-      if (e.to_body >= 0) other = calc_node_motion(system, data, e.to_body, e.to_node).p_WK;
-      *out = (calc_node_motion(system, data, e.body, e.node).p_WK - other).norm();
+      if (e.to_body >= 0) other = calc_node_motion(motion, e.to_body, e.to_node).p_WK;
+      *out = (calc_node_motion(motion, e.body, e.node).p_WK - other).norm();
       return;
     }
     case SensorOf::Elastic: {
       Vector3d deflection, rotation;
-      calc_node_deflection(system, data, e.body, e.node, deflection, rotation);
+      calc_node_deflection(motion, e.body, e.node, deflection, rotation);
       const Vector3d& value_B = e.type == SensorType::Deflection ? deflection : rotation;
       Map<Vector3d>{out} =
-          e.frame == e.body ? value_B : turn_into(data, e.frame, get_body_state(data, e.body).R_WB * value_B);
+          e.frame == e.body ? value_B : turn_into(motion, e.frame, motion.get_state(e.body).R_WB * value_B);
       return;
     }
     case SensorOf::Point:
-      Map<Vector3d>{out} =
-          turn_into(data, e.frame,
-                    calc_relative(e.type, e.from_turning, calc_node_motion(system, data, e.body, e.node),
-                                  calc_observer(data, e.relative_to)));
+      Map<Vector3d>{out} = turn_into(motion, e.frame,
+                                     calc_relative(e.type, e.from_turning, calc_node_motion(motion, e.body, e.node),
+                                                   calc_observer(motion, e.relative_to)));
       return;
   }
-}
-
-void Sensors::calc(const System& system, const SystemData& data, Eigen::Ref<VectorXd> out) const {
-  BOUGH_DEMAND(out.size() == size_);
-  for (const Entry& e : entries_) measure(system, data, e, out.data() + e.first);
 }
 
 }  // namespace bough::solver

@@ -24,47 +24,34 @@
 #include <vector>
 
 #include "formats/records/system_spec.hpp"
-#include "solver/system/system.hpp"
+#include "solver/motion/motion.hpp"
 
 namespace bough::solver {
 
-class Sensors {
- public:
-  /// Names to indices. Reports every error: "sensor.unknown-body", "sensor.unknown-node", "sensor.unknown-hinge",
-  /// "sensor.bad-frame", "sensor.bad-coordinate", "sensor.unknown-element". Evaluate only when it reported none.
-  static Sensors build(const System& system, const records::SystemSpec& spec, Diagnostics& diagnostics);
+class Recovery;
 
-  struct Entry {
-    std::string name;
-    std::string description;  ///< what it is, with its frame
-    std::string dims;
-    int first = 0, size = 3;  ///< place in the output of calc
-    records::SensorType type = records::SensorType::Position;
-    int body = -1, node = 0;  ///< body: index; node: index within the body. Hinge sensors: body of the hinge
-    int frame = -1;           ///< body index, -1: W
-    int relative_to = -1;     ///< body index, -1: W
-    bool from_turning = true;
-    int coordinate = 0;                     ///< 1-based, 0: all
-    std::vector<bool> wraps;                ///< resolver: the component is an angle, brought into [-π, π]
-    int row = 0;                            ///< element: first row of the body's Recovery
-    Matrix3d mount = Matrix3d::Identity();  ///< R_KS
-    Vector3d target = Vector3d::Zero();     ///< in W: a direction, a centre, the other end on ground
-    std::array<int, 3> axes{2, 1, 0};       ///< euler: from 0
-    int to_body = -1, to_node = 0;          ///< distance; -1: target
-  };
-  const std::vector<Entry>& entries() const { return entries_; }
-  int size() const { return size_; }
-
-  /// All sensors into `out` (size()). After calc_accelerations. O(sensors · modes), no allocation.
-  void calc(const System& system, const SystemData& data, Eigen::Ref<VectorXd> out) const;
-
- private:
-  std::vector<Entry> entries_;
-  int size_ = 0;
+struct Sensor {
+  std::string name;
+  std::string description;  ///< what it is, with its frame
+  std::string dims;
+  int size = 3;
+  records::SensorType type = records::SensorType::Position;
+  int body = -1, node = 0;  ///< body: index; node: index within the body. Hinge sensors: body of the hinge
+  int frame = -1;           ///< body index, -1: W
+  int relative_to = -1;     ///< body index, -1: W
+  bool from_turning = true;
+  int coordinate = 0;                     ///< 1-based, 0: all
+  std::vector<bool> wraps;                ///< resolver: the component is an angle, brought into [-π, π]
+  const Recovery* recovery = nullptr;     ///< element: of the body
+  int row = 0;                            ///< element: its first row in the recovery
+  Matrix3d mount = Matrix3d::Identity();  ///< R_KS
+  Vector3d target = Vector3d::Zero();     ///< in W: a direction, a centre, the other end on ground
+  std::array<int, 3> axes{2, 1, 0};       ///< euler: from 0
+  int to_body = -1, to_node = 0;          ///< distance; -1: target
 };
 
 /// One sensor's measurement without its imperfections; out: its size. No allocation.
-void measure(const System& system, const SystemData& data, const Sensors::Entry& entry, double* out);
+void measure(const Motion& motion, const Sensor& sensor, double* out);
 /// The turns of R = R_i(a) R_j(b) R_k(c) about axes (from 0); the third may be the first. b in [-π/2, π/2] where the
 /// three differ, else in [0, π].
 Vector3d calc_euler_angles(const Matrix3d& R, const std::array<int, 3>& axes);

@@ -13,7 +13,7 @@ using records::SensorType;
 
 class SensorBlock final : public Block {
  public:
-  Sensors::Entry entry;
+  Sensor entry;
   VectorXd scale, bias, low, high, quantum;  ///< as many as outputs, or empty
   Matrix3d misalignment = Matrix3d::Identity();
   bool is_misaligned = false;
@@ -33,7 +33,7 @@ class SensorBlock final : public Block {
     if (is_integrating())
       std::copy_n(in.z, 3, z + 3);
     else
-      measure(*in.system, *in.data, entry, z);
+      measure(*in.motion, entry, z);
     return true;
   }
   void calc_sample(const BlockInput& in, bool is_real, double* y) const {
@@ -44,7 +44,7 @@ class SensorBlock final : public Block {
     else if (is_integrating())
       value = Eigen::Map<const VectorXd>(in.z, n);
     else
-      measure(*in.system, *in.data, entry, y);
+      measure(*in.motion, entry, y);
     if (is_misaligned) value.head<3>() = (misalignment.transpose() * value.head<3>()).eval();
     for (int i = 0; i < n; ++i) {
       if (scale.size() > 0) value[i] *= scale[i];
@@ -58,7 +58,7 @@ class SensorBlock final : public Block {
   void calc_rates(const BlockInput& in, double* z_dot) const override {
     double raw[9];
     double* now = sizes.outputs <= 9 ? raw : z_dot + (is_integrating() ? 3 : 0);
-    measure(*in.system, *in.data, entry, now);
+    measure(*in.motion, entry, now);
     if (is_integrating()) {
       std::copy_n(now, 3, z_dot);
       if (lag <= 0) return;
@@ -116,7 +116,7 @@ class Reader {
 
 }  // namespace
 
-std::unique_ptr<Block> make_sensor_block(const Sensors::Entry& entry, const records::SensorRecord& r,
+std::unique_ptr<Block> make_sensor_block(const Sensor& entry, const records::SensorRecord& r,
                                          Diagnostics& diagnostics) {
   auto made = std::make_unique<SensorBlock>();
   SensorBlock& s = *made;

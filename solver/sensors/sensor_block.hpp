@@ -11,7 +11,7 @@
 namespace bough::solver {
 
 /// Reports "sensor.bad-value" and "sensor.needs-sample-time" (noise, random_walk, quantization, delay without it).
-std::unique_ptr<Block> make_sensor_block(const Sensors::Entry& entry, const records::SensorRecord& record,
+std::unique_ptr<Block> make_sensor_block(const Sensor& entry, const records::SensorRecord& record,
                                          Diagnostics& diagnostics);
 
 }  // namespace bough::solver

@@ -22,7 +22,7 @@ void Block::update(const BlockInput&, double*) const {}
 void Block::calc_guards(const BlockInput&, double*) const {}
 void Block::switch_over(const BlockInput&, int, double*) const {}
 void Block::choose(int, double*) const {}
-void Block::add_load(const BlockInput&, const double*, SystemData&) const {}
+void Block::add_load(const BlockInput&, const double*, TreeData&) const {}
 double Block::calc_power(const BlockInput&, const double*) const { return 0; }
 double Block::calc_energy(const BlockInput&) const { return 0; }
 Vector3d Block::calc_momentum(const BlockInput&) const { return Vector3d::Zero(); }

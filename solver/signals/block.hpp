@@ -6,12 +6,10 @@
 
 #include "base/diagnostic.hpp"
 #include "base/rotation.hpp"
+#include "solver/motion/motion.hpp"
 #include "solver/state/law_tangents.hpp"
 
 namespace bough::solver {
-
-struct System;
-struct SystemData;
 
 using Eigen::Vector3d;
 
@@ -23,14 +21,13 @@ struct BlockScratch {
 /// What a block computes from. The pointers hold for one call.
 struct BlockInput {
   double t = 0;
-  const double* u = nullptr;  ///< inputs
-  const double* z = nullptr;  ///< continuous states
-  const double* d = nullptr;  ///< memory: what changes at samples and switches only
-  long sample = 0;            ///< sampled blocks: number of this sample, counted from time zero
-  const System* system = nullptr;
-  const SystemData* data = nullptr;  ///< the motion at t, for sensors and actuators
-  BlockScratch* scratch = nullptr;   ///< of make_scratch
-  LawTangents* tangents = nullptr;   ///< while a linear model is made
+  const double* u = nullptr;        ///< inputs
+  const double* z = nullptr;        ///< continuous states
+  const double* d = nullptr;        ///< memory: what changes at samples and switches only
+  long sample = 0;                  ///< sampled blocks: number of this sample, counted from time zero
+  const Motion* motion = nullptr;   ///< at t, for sensors and actuators
+  BlockScratch* scratch = nullptr;  ///< of make_scratch
+  LawTangents* tangents = nullptr;  ///< while a linear model is made
 };
 
 struct BlockSizes {
@@ -42,10 +39,10 @@ struct BlockSizes {
   double delay = 0;                 ///< sampled: between the sample and its appearance at the outputs
 };
 
-/// Of the folder of the results that its outputs are in.
+/// What a block is, which is the folder of the results that its outputs are in.
 enum class BlockKind : unsigned char { Function, Input, Sensor, Controller, Actuator, Force, Stiffening };
 
-/// "/sensors/" of BlockKind::Sensor.
+/// The folder of a kind, as "/sensors/".
 const char* get_folder(BlockKind kind);
 
 class Block {
@@ -93,7 +90,7 @@ class Block {
   // Actuators
   virtual bool is_actuator() const { return false; }
   /// Adds what the actuator does to the bodies; y: its outputs.
-  virtual void add_load(const BlockInput& in, const double* y, SystemData& data) const;
+  virtual void add_load(const BlockInput& in, const double* y, TreeData& data) const;
   /// Power that no wrench on a body has: along hinges, into rotors.
   virtual double calc_power(const BlockInput& in, const double* y) const;
   /// Kinetic energy and angular momentum (in W) that the actuator itself holds.

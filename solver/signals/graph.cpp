@@ -4,8 +4,6 @@
 #include <cmath>
 #include <sstream>
 
-#include "solver/system/system.hpp"
-
 namespace bough::solver {
 namespace {
 
@@ -63,15 +61,15 @@ const BlockPlace* SignalGraph::find(const std::string& path) const {
   return nullptr;
 }
 
-BlockInput SignalGraph::look_again(const BlockPlace& p, const System& system, const SystemData& data) const {
-  const SignalData& s = data.signals;
+BlockInput SignalGraph::look_again(const BlockPlace& p, const Motion& motion, const SignalData& signals) const {
+  const SignalData& s = signals;
   const auto place = static_cast<size_t>(&p - places.data());
-  return {data.tree.t, s.inputs.data() + p.in,       s.z.data() + p.state, s.memory.data() + p.memory, 0, &system,
-          &data,       s.block_scratch[place].get(), data.tree.tangents};
+  return {motion.data.t, s.inputs.data() + p.in,       s.z.data() + p.state, s.memory.data() + p.memory, 0,
+          &motion,       s.block_scratch[place].get(), motion.data.tangents};
 }
 
-BlockInput SignalGraph::look(const BlockPlace& p, const System& system, SystemData& data) const {
-  SignalData& s = data.signals;
+BlockInput SignalGraph::look(const BlockPlace& p, const Motion& motion, SignalData& signals) const {
+  SignalData& s = signals;
   for (size_t i = 0; i < p.sources.size(); ++i)
     s.inputs[p.in + static_cast<Eigen::Index>(i)] = p.gains[i] * s.values[p.sources[i]];
   if (p.actuator >= 0) {
@@ -83,11 +81,11 @@ BlockInput SignalGraph::look(const BlockPlace& p, const System& system, SystemDa
       given.setZero();
     given += s.bias.segment(p.actuator, n);
   }
-  return look_again(p, system, data);
+  return look_again(p, motion, signals);
 }
 
-void SignalGraph::calc(const BlockPlace& p, const System& system, SystemData& data) const {
-  SignalData& s = data.signals;
+void SignalGraph::calc(const BlockPlace& p, const Motion& motion, SignalData& signals) const {
+  SignalData& s = signals;
   double* y = s.values.data() + p.out;
   if (is_off(p, s)) {
     s.values.segment(p.out, p.block->sizes.outputs).setZero();
@@ -96,100 +94,100 @@ void SignalGraph::calc(const BlockPlace& p, const System& system, SystemData& da
   if (p.is_sampled()) {
     s.values.segment(p.out, p.block->sizes.outputs) = s.memory.segment(p.held, p.block->sizes.outputs);
   } else {
-    p.block->calc_outputs(look(p, system, data), y);
-    demand_finite(p, y, data.tree.t);
+    p.block->calc_outputs(look(p, motion, signals), y);
+    demand_finite(p, y, motion.data.t);
   }
   add_shift(p, s);
 }
 
-void SignalGraph::calc_early(const System& system, SystemData& data) const {
-  data.signals.has_late = false;
+void SignalGraph::calc_early(const Motion& motion, SignalData& signals) const {
+  signals.has_late = false;
   for (const int i : order) {
     const auto& p = places[static_cast<size_t>(i)];
-    if (p.is_needed && !p.is_late) calc(p, system, data);
+    if (p.is_needed && !p.is_late) calc(p, motion, signals);
   }
 }
 
-void SignalGraph::calc_late(const System& system, SystemData& data) const {
-  data.signals.has_late = true;
+void SignalGraph::calc_late(const Motion& motion, SignalData& signals) const {
+  signals.has_late = true;
   for (const int i : order) {
     const auto& p = places[static_cast<size_t>(i)];
-    if (p.is_needed && p.is_late) calc(p, system, data);
+    if (p.is_needed && p.is_late) calc(p, motion, signals);
   }
 }
 
-void SignalGraph::calc_all(const System& system, SystemData& data) const {
+void SignalGraph::calc_all(const Motion& motion, SignalData& signals) const {
   for (const bool is_late : {false, true}) {
     for (const int i : order) {
       const auto& p = places[static_cast<size_t>(i)];
-      if (p.is_late == is_late && !(p.is_needed && (!is_late || data.signals.has_late))) calc(p, system, data);
+      if (p.is_late == is_late && !(p.is_needed && (!is_late || signals.has_late))) calc(p, motion, signals);
     }
   }
 }
 
-void SignalGraph::calc_ideal(const BlockPlace& place, const System& system, SystemData& data, double* y) const {
-  place.block->calc_ideal(look(place, system, data), y);
+void SignalGraph::calc_ideal(const BlockPlace& place, const Motion& motion, SignalData& signals, double* y) const {
+  place.block->calc_ideal(look(place, motion, signals), y);
 }
 
-bool SignalGraph::settle(const System& system, SystemData& data) const {
+bool SignalGraph::settle(const Motion& motion, SignalData& signals) const {
   bool has_any = false;
   for (const auto& p : places) {
     if (p.block->sizes.states == 0) continue;
-    const BlockInput in = look(p, system, data);
-    has_any = p.block->settle(in, data.signals.z.data() + p.state) || has_any;
+    const BlockInput in = look(p, motion, signals);
+    has_any = p.block->settle(in, signals.z.data() + p.state) || has_any;
   }
   return has_any;
 }
 
-void SignalGraph::add_loads(const System& system, SystemData& data) const {
+void SignalGraph::add_loads(const Motion& motion, const SignalData& signals, TreeData& data) const {
   if (places.empty()) return;
   for (const auto& p : places) {
-    if (p.actuator >= 0) p.block->add_load(look_again(p, system, data), data.signals.values.data() + p.out, data);
+    if (p.actuator >= 0) p.block->add_load(look_again(p, motion, signals), signals.values.data() + p.out, data);
   }
 }
 
-void SignalGraph::calc_rates(const System& system, SystemData& data, Eigen::Ref<VectorXd> z_dot) const {
+void SignalGraph::calc_rates(const Motion& motion, SignalData& signals, Eigen::Ref<VectorXd> z_dot) const {
   BOUGH_DEMAND(z_dot.size() == num_states);
   for (const auto& p : places) {
     if (p.block->sizes.states == 0) continue;
-    if (is_off(p, data.signals))
+    if (is_off(p, signals))
       z_dot.segment(p.state, p.block->sizes.states).setZero();
     else
-      p.block->calc_rates(look(p, system, data), z_dot.data() + p.state);
+      p.block->calc_rates(look(p, motion, signals), z_dot.data() + p.state);
   }
 }
 
-double SignalGraph::calc_power(const System& system, const SystemData& data) const {
+double SignalGraph::calc_power(const Motion& motion, const SignalData& signals) const {
   double power = 0;
   if (places.empty()) return power;
   for (const auto& p : places) {
-    if (p.actuator >= 0) power += p.block->calc_power(look_again(p, system, data), data.signals.values.data() + p.out);
+    if (p.actuator >= 0) power += p.block->calc_power(look_again(p, motion, signals), signals.values.data() + p.out);
   }
   return power;
 }
 
-double SignalGraph::calc_energy(const System& system, const SystemData& data) const {
+double SignalGraph::calc_energy(const Motion& motion, const SignalData& signals) const {
   double energy = 0;
   if (places.empty()) return energy;
   for (const auto& p : places) {
-    if (p.actuator >= 0) energy += p.block->calc_energy(look_again(p, system, data));
+    if (p.actuator >= 0) energy += p.block->calc_energy(look_again(p, motion, signals));
   }
   return energy;
 }
 
-Vector3d SignalGraph::calc_momentum(const System& system, const SystemData& data) const {
+Vector3d SignalGraph::calc_momentum(const Motion& motion, const SignalData& signals) const {
   Vector3d momentum = Vector3d::Zero();
   if (places.empty()) return momentum;
   for (const auto& p : places) {
-    if (p.actuator >= 0) momentum += p.block->calc_momentum(look_again(p, system, data));
+    if (p.actuator >= 0) momentum += p.block->calc_momentum(look_again(p, motion, signals));
   }
   return momentum;
 }
 
-VectorXd SignalGraph::calc_consumption(const System& system, const SystemData& data) const {
-  VectorXd used = VectorXd::Zero(system.num_bodies());
+VectorXd SignalGraph::calc_consumption(const Motion& motion, const SignalData& signals) const {
+  VectorXd used = VectorXd::Zero(motion.tree.size());
   for (const auto& p : places) {
-    if (p.actuator >= 0) p.block->add_consumption(look_again(p, system, data), used);
+    if (p.actuator >= 0) p.block->add_consumption(look_again(p, motion, signals), used);
   }
   return used;
 }
@@ -210,14 +208,14 @@ std::vector<SampleTimes> SignalGraph::collect_samples() const {
   return found;
 }
 
-bool SignalGraph::sample(const System& system, SystemData& data, double close) const {
-  SignalData& s = data.signals;
-  const double t = data.tree.t;
+bool SignalGraph::sample(const Motion& motion, SignalData& signals, double close) const {
+  SignalData& s = signals;
+  const double t = motion.data.t;
   bool has_changed = false;
   for (const int i : order) {
     const auto& p = places[static_cast<size_t>(i)];
     if (!p.is_sampled()) {
-      if (!p.is_late) calc(p, system, data);
+      if (!p.is_late) calc(p, motion, signals);
       continue;
     }
     const int n = p.block->sizes.outputs;
@@ -233,7 +231,7 @@ bool SignalGraph::sample(const System& system, SystemData& data, double close) c
       continue;
     }
     if (const long k = find_sample(t, start, period, close); k >= 0) {
-      BlockInput in = look(p, system, data);
+      BlockInput in = look(p, motion, signals);
       in.sample = calc_first_number(start, period) + k;
       const int slot = p.queue_length > 0 ? p.queue + n * static_cast<int>(k % p.queue_length) : p.held;
       if (s.is_ideal && p.block->kind == BlockKind::Sensor)
@@ -257,20 +255,20 @@ bool SignalGraph::sample(const System& system, SystemData& data, double close) c
   return has_changed;
 }
 
-void SignalGraph::resample(const System& system, SystemData& data) const {
-  SignalData& s = data.signals;
+void SignalGraph::resample(const Motion& motion, SignalData& signals) const {
+  SignalData& s = signals;
   for (const int i : order) {
     const auto& p = places[static_cast<size_t>(i)];
     if (!p.is_sampled()) {
-      if (!p.is_late) calc(p, system, data);
+      if (!p.is_late) calc(p, motion, signals);
       continue;
     }
     auto held = s.memory.segment(p.held, p.block->sizes.outputs);
     if (is_off(p, s)) {
       held.setZero();
     } else {
-      BlockInput in = look(p, system, data);
-      in.sample = std::lround(data.tree.t / p.block->sizes.sample_time);
+      BlockInput in = look(p, motion, signals);
+      in.sample = std::lround(motion.data.t / p.block->sizes.sample_time);
       if (p.block->kind == BlockKind::Sensor) {
         p.block->calc_ideal(in, held.data());  // its walk is noise
       } else {
@@ -285,24 +283,24 @@ void SignalGraph::resample(const System& system, SystemData& data) const {
   }
 }
 
-void SignalGraph::calc_guards(const System& system, SystemData& data, Eigen::Ref<VectorXd> g) const {
+void SignalGraph::calc_guards(const Motion& motion, SignalData& signals, Eigen::Ref<VectorXd> g) const {
   for (const auto& p : places) {
     if (p.block->sizes.guards == 0) continue;
-    if (is_off(p, data.signals))
+    if (is_off(p, signals))
       g.segment(p.guard, p.block->sizes.guards).setConstant(-1);
     else
-      p.block->calc_guards(look(p, system, data), g.data() + p.guard);
+      p.block->calc_guards(look(p, motion, signals), g.data() + p.guard);
   }
 }
 
-bool SignalGraph::switch_over(const System& system, SystemData& data, const VectorXd& g, std::string& what) const {
+bool SignalGraph::switch_over(const Motion& motion, SignalData& signals, const VectorXd& g, std::string& what) const {
   bool has_switched = false;
-  SignalData& s = data.signals;
+  SignalData& s = signals;
   for (const auto& p : places) {
     for (int i = 0; i < p.block->sizes.guards; ++i) {
       if (!(g[p.guard + i] > 0)) continue;
       s.scratch.segment(p.memory, p.block->sizes.memory) = s.memory.segment(p.memory, p.block->sizes.memory);
-      p.block->switch_over(look(p, system, data), i, s.scratch.data() + p.memory);
+      p.block->switch_over(look(p, motion, signals), i, s.scratch.data() + p.memory);
       s.memory.segment(p.memory, p.block->sizes.memory) = s.scratch.segment(p.memory, p.block->sizes.memory);
       has_switched = true;
       what = p.block->label;

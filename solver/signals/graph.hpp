@@ -60,24 +60,24 @@ class SignalGraph {
   void arrange(Diagnostics& diagnostics);
   SignalData make_data() const;
   /// After calc_all, at the start of a run: lags that are to start at rest follow what is there. False without any.
-  bool settle(const System& system, SystemData& data) const;
+  bool settle(const Motion& motion, SignalData& signals) const;
   const BlockPlace* find(const std::string& path) const;
   /// What the motion needs, but what is late. After kinematics, before loads.
-  void calc_early(const System& system, SystemData& data) const;
+  void calc_early(const Motion& motion, SignalData& signals) const;
   /// What is late and needed. After accelerations.
-  void calc_late(const System& system, SystemData& data) const;
+  void calc_late(const Motion& motion, SignalData& signals) const;
   /// The blocks that calc_early and calc_late have left out. After accelerations.
-  void calc_all(const System& system, SystemData& data) const;
+  void calc_all(const Motion& motion, SignalData& signals) const;
   /// After calc_all: one sensor as linear models see it; y: its outputs.
-  void calc_ideal(const BlockPlace& place, const System& system, SystemData& data, double* y) const;
-  void add_loads(const System& system, SystemData& data) const;
+  void calc_ideal(const BlockPlace& place, const Motion& motion, SignalData& signals, double* y) const;
+  void add_loads(const Motion& motion, const SignalData& signals, TreeData& data) const;
   /// After calc_late. z_dot: num_states.
-  void calc_rates(const System& system, SystemData& data, Eigen::Ref<VectorXd> z_dot) const;
-  double calc_power(const System& system, const SystemData& data) const;
-  double calc_energy(const System& system, const SystemData& data) const;
-  Vector3d calc_momentum(const System& system, const SystemData& data) const;
+  void calc_rates(const Motion& motion, SignalData& signals, Eigen::Ref<VectorXd> z_dot) const;
+  double calc_power(const Motion& motion, const SignalData& signals) const;
+  double calc_energy(const Motion& motion, const SignalData& signals) const;
+  Vector3d calc_momentum(const Motion& motion, const SignalData& signals) const;
   /// Propellant used up on each body.
-  VectorXd calc_consumption(const System& system, const SystemData& data) const;
+  VectorXd calc_consumption(const Motion& motion, const SignalData& signals) const;
 
   bool has_samples() const {
     return std::any_of(places.begin(), places.end(), [](const BlockPlace& p) { return p.is_sampled(); });
@@ -86,13 +86,13 @@ class SignalGraph {
   std::vector<SampleTimes> collect_samples() const;
   /// Takes the samples due within `close` of data's time, after calc_all there: each block sees what those before it in
   /// the order give at this instant, and the accelerations before it. True when what the motion needs has changed.
-  bool sample(const System& system, SystemData& data, double close) const;
+  bool sample(const Motion& motion, SignalData& signals, double close) const;
   /// After calc_all: one sample of every sampled block whatever the time, nothing delayed, sensors without noise.
-  void resample(const System& system, SystemData& data) const;
+  void resample(const Motion& motion, SignalData& signals) const;
   /// After calc_all. g: num_guards.
-  void calc_guards(const System& system, SystemData& data, Eigen::Ref<VectorXd> g) const;
+  void calc_guards(const Motion& motion, SignalData& signals, Eigen::Ref<VectorXd> g) const;
   /// Switches every block with a positive guard; false when there is none. "pwpf: guard 1" in `what`.
-  bool switch_over(const System& system, SystemData& data, const VectorXd& g, std::string& what) const;
+  bool switch_over(const Motion& motion, SignalData& signals, const VectorXd& g, std::string& what) const;
   /// "controller 'pid' (state 1)".
   std::string name_state(int row) const;
 
@@ -101,9 +101,9 @@ class SignalGraph {
   static bool is_off(const BlockPlace& place, const SignalData& signals) {
     return place.activity >= 0 && signals.memory[place.activity] == 0;
   }
-  BlockInput look(const BlockPlace& place, const System& system, SystemData& data) const;
-  BlockInput look_again(const BlockPlace& place, const System& system, const SystemData& data) const;
-  void calc(const BlockPlace& place, const System& system, SystemData& data) const;
+  BlockInput look(const BlockPlace& place, const Motion& motion, SignalData& signals) const;
+  BlockInput look_again(const BlockPlace& place, const Motion& motion, const SignalData& signals) const;
+  void calc(const BlockPlace& place, const Motion& motion, SignalData& signals) const;
   void find_needed();
 };
 

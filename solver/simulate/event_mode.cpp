@@ -22,7 +22,8 @@ void Run::settle_control(double t) {
   if (signals.has_samples()) {
     evaluate(t, true);
     guard([&] {
-      if (signals.sample(ode_.system(), ode_.data(), timeline_.resolution())) has_switched_ = true;
+      if (signals.sample(get_motion(ode_.system(), ode_.data()), ode_.data().signals, timeline_.resolution()))
+        has_switched_ = true;
     });
   }
   settle_switches(t);
@@ -37,7 +38,8 @@ void Run::settle_lags(double t) {
     evaluate(t, true);
     guard([&] {
       before = ode_.data().signals.z;
-      is_done = !signals.settle(ode_.system(), ode_.data()) || ode_.data().signals.z == before;
+      is_done = !signals.settle(get_motion(ode_.system(), ode_.data()), ode_.data().signals) ||
+                ode_.data().signals.z == before;
     });
     y_.segment(ode_.num_coordinates(), ode_.num_z()) = ode_.data().signals.z;
     if (is_done) return;
@@ -51,7 +53,10 @@ void Run::settle_switches(double t) {
   for (int i = 0; i < kMostSwitches; ++i) {
     bool is_open = false;
     calc_switches(t);
-    guard([&] { is_open = signals.switch_over(ode_.system(), ode_.data(), events_.switches, what); });
+    guard([&] {
+      is_open =
+          signals.switch_over(get_motion(ode_.system(), ode_.data()), ode_.data().signals, events_.switches, what);
+    });
     last_events_.switches = events_.switches;
     if (!is_open) return;
     has_switched_ = true;

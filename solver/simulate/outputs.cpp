@@ -181,7 +181,7 @@ const VectorXd& Recorder::calc_sample(double t, const SystemData& data, const Ei
     if (const auto& recovery = system_.recoveries[static_cast<size_t>(b)]; recovery) {
       for (const auto& element : recovery->elements()) {
         if (!element.is_recorded) continue;
-        recovery->calc(system_, data, element.first, element.size(), sample_.data() + at);
+        recovery->calc(get_motion(system_, data), element.first, element.size(), sample_.data() + at);
         at += element.size();
       }
     }
@@ -189,7 +189,7 @@ const VectorXd& Recorder::calc_sample(double t, const SystemData& data, const Ei
   for (int b = 0; b < system_.num_bodies(); ++b) {
     const int nq = system_.num_hinge_q(b), nu = system_.num_hinge_rates(b);
     if (nq > 0) {
-      get_hinge(system_, data, b, sample_.segment(at, nq), sample_.segment(at + nq, nu),
+      get_hinge(get_motion(system_, data), b, sample_.segment(at, nq), sample_.segment(at + nq, nu),
                 sample_.segment(at + nq + nu, nu));
       at += nq + 2 * nu;
     }

@@ -324,7 +324,8 @@ double Run::calc_noise() {
   const VectorXd q = y_.head(ode_.num_q()), u = VectorXd::Constant(system.num_u(), small);
   auto data = system.make_data();
   calc_kinematics(system, *data, timeline_.start(), q, u);
-  double noise = calc_energies(system, *data).kinetic - system.signals.calc_energy(system, *data);
+  double noise =
+      calc_energies(system, *data).kinetic - system.signals.calc_energy(get_motion(system, *data), data->signals);
   for (const TreeBody& tb : system.tree.bodies) noise += 0.5 * small * small * tb.body.K().trace();
   return noise;
 }
@@ -375,7 +376,8 @@ double Run::calc_coming_energy() {
   auto u = y_dot.segment(ode_.num_q(), system.num_u());
   u *= spec_.simulation.output_step;
   calc_kinematics(system, *coming_data_, t, stepper_->state().head(ode_.num_q()), u);
-  return coming_ = calc_energies(system, *coming_data_).kinetic - system.signals.calc_energy(system, *coming_data_);
+  return coming_ = calc_energies(system, *coming_data_).kinetic -
+                   system.signals.calc_energy(get_motion(system, *coming_data_), coming_data_->signals);
 }
 
 void Run::take_step(const Stop& stop) {
@@ -525,7 +527,7 @@ void Run::update_progress(double t) {
 void Run::tell_consumption() {
   const System& system = ode_.system();
   set_z(ode_.data(), y_.segment(ode_.num_coordinates(), ode_.num_z()));
-  const VectorXd used = system.signals.calc_consumption(system, ode_.data());
+  const VectorXd used = system.signals.calc_consumption(get_motion(system, ode_.data()), ode_.data().signals);
   for (int b = 0; b < system.num_bodies(); ++b) {
     const double mass = system.tree[b].body.mass();
     if (used[b] > kMuchPropellant * mass)

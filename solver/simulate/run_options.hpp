@@ -20,7 +20,7 @@ struct RunSetup {
 };
 
 /// Reports everything in the spec that `simulate` would refuse: sensors, groups to record, events, [simulation]. The
-/// system may have come from build_as_far; to be used only when nothing was reported, and while the system stays.
+/// system may have come from draft_system; to be used only when nothing was reported, and while the system stays.
 RunSetup prepare_run(const System& system, const records::SystemSpec& spec, Diagnostics& diagnostics);
 
 /// For integrator = "auto": "bdf" where the fastest mode or spring swings more than `kFastMode` radians between

@@ -33,7 +33,7 @@ struct SimulateOutcome {
   bool energy_is_kept = true;  ///< else "run.energy-error" was reported
 };
 
-/// Reports what simulate would refuse in the spec. The system may have come from System::build_as_far.
+/// Reports what simulate would refuse in the spec. The system may have come from draft_system.
 void check_run(const System& system, const records::SystemSpec& spec, Diagnostics& diagnostics);
 
 /// The same with the start of the run itself: loops closed, masses factored, controllers sampled, the first sample

@@ -58,7 +58,9 @@ void Run::restart_kinks(double t) {
 
 void Run::calc_switches(double t) {
   evaluate(t, true);
-  guard([&] { ode_.system().signals.calc_guards(ode_.system(), ode_.data(), events_.switches); });
+  guard([&] {
+    ode_.system().signals.calc_guards(get_motion(ode_.system(), ode_.data()), ode_.data().signals, events_.switches);
+  });
 }
 
 void Run::calc_contacts(double t) {

@@ -61,7 +61,7 @@ Energies calc_energies(const System& system, const SystemData& data) {
     e.strain += result.strain;
     e.potential += result.potential;
   }
-  e.kinetic += system.signals.calc_energy(system, data);
+  e.kinetic += system.signals.calc_energy(get_motion(system, data), data.signals);
   return e;
 }
 
@@ -106,7 +106,7 @@ Power calc_powers(const System& system, const SystemData& data) {
     else
       power -= result.power;
   }
-  power += system.signals.calc_power(system, data);
+  power += system.signals.calc_power(get_motion(system, data), data.signals);
   return {power - lost, dissipated};
 }
 
@@ -127,7 +127,7 @@ void calc_momentum(const System& system, const SystemData& data, Vector3d& linea
     linear += p;
     angular += l;
   }
-  angular += system.signals.calc_momentum(system, data);
+  angular += system.signals.calc_momentum(get_motion(system, data), data.signals);
 }
 
 SystemMass calc_system_mass(const System& system, const SystemData& data) {

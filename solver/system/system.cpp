@@ -153,25 +153,25 @@ void set_z(SystemData& data, const Eigen::Ref<const VectorXd>& z) {
 
 void calc_z_dot(const System& system, SystemData& data, Eigen::Ref<VectorXd> z_dot) {
   data.tree.demand(Stage::Acceleration);
-  system.signals.calc_late(system, data);
-  system.signals.calc_rates(system, data, z_dot);
+  system.signals.calc_late(get_motion(system, data), data.signals);
+  system.signals.calc_rates(get_motion(system, data), data.signals, z_dot);
 }
 
 void calc_signals(const System& system, SystemData& data) {
   data.tree.demand(Stage::Acceleration);
-  system.signals.calc_all(system, data);
+  system.signals.calc_all(get_motion(system, data), data.signals);
 }
 
 void add_forces(const System& system, SystemData& data, double t) {
   data.tree.demand(Stage::Velocity);
   data.tree.gravity = system.gravity.uniform;
-  system.signals.calc_early(system, data);
+  system.signals.calc_early(get_motion(system, data), data.signals);
   for (const AppliedForce& force : system.forces) add_applied_force(force, system.tree, t, data.tree);
   add_hinge_forces(system.tree, data.tree);
   Loads loads(system.tree, data.tree);
   for (size_t i = 0; i < system.elements.size(); ++i)
     data.elements[i] = system.elements[i]->calc(system.tree, data.tree, &loads);
-  system.signals.add_loads(system, data);
+  system.signals.add_loads(get_motion(system, data), data.signals, data.tree);
 }
 
 void add_node_wrench(const System& system, SystemData& data, int body, int node_index, const Vector3d& f_W,
@@ -230,25 +230,7 @@ int System::find_constraint(const std::string& name) const { return loops.find(n
 const std::string& System::constraint_name(int c) const { return loops[c].name; }
 bool System::is_coupler(int c) const { return !loops[c].closure; }
 
-ConstraintReaction get_constraint_reaction(const System& system, const SystemData& data, int constraint) {
-  const Loops& loops = system.loops;
-  const Vector6d wrench = calc_constraint_wrench(loops, data.loops, constraint);
-  const ConstraintData& d = data.loops[constraint];
-  const bool couples = !loops[constraint].closure && d.closing.is_closed;
-  return {wrench.head<3>(), wrench.tail<3>(), couples ? d.lambda[0] : 0};
-}
-
 const BodyState& get_body_state(const SystemData& data, int body) { return data.tree.bodies[as_index(body)].state; }
-
-void get_hinge(const System& system, const SystemData& data, int body, Eigen::Ref<VectorXd> q,
-               Eigen::Ref<VectorXd> q_dot, Eigen::Ref<VectorXd> force) {
-  const TreeBody& tb = at(system, body);
-  const int nu = tb.num_hinge_u();
-  BOUGH_DEMAND(q.size() == tb.num_hinge_q() && q_dot.size() == nu && force.size() == nu);
-  tb.hinge->get_for_file(data.tree.q.data() + tb.q_offset, q.data());
-  q_dot = data.tree.u.segment(tb.u_offset, nu);
-  for (int i = 0; i < nu; ++i) force[i] = data.tree.get_hinge_force(tb.u_offset + i);
-}
 
 HingeReaction get_hinge_reaction(const System& system, const SystemData& data, int body) {
   return calc_hinge_reaction(system.tree, data.tree, body);

@@ -33,18 +33,9 @@ using records::FlexBody;
 struct SystemData;
 class StiffeningTerms;
 
-/// What never changes in a run. Const after build() and shared by threads; it may be moved while nothing refers to it.
+/// Everything that never changes in a run. Const after build_system and shared by threads; it may be moved while
+/// nothing refers to it.
 struct System {
-  /// Checks everything that concerns the solver (names, nodes, tree without loops, locators of stiffened attachments)
-  /// and reports all errors with their place in the TOML file; throws InputError when there are any. `flex` maps a
-  /// body's file (as written) to its record. A body without an inboard hinge gets a free one (a note says so).
-  static System build(const records::SystemSpec& spec, const std::map<std::string, FlexBody>& flex,
-                      Diagnostics& diagnostics);
-  /// The same without a throw, so that what follows can report its errors too: not to be moved when there are any. A
-  /// body that cannot be built is a rigid one here, with is_sound false.
-  static System build_as_far(const records::SystemSpec& spec, const std::map<std::string, FlexBody>& flex,
-                             Diagnostics& diagnostics);
-
   Tree tree;
   std::vector<std::unique_ptr<const TimeFunction>> functions;
   std::vector<AppliedForce> forces;
@@ -74,7 +65,7 @@ struct System {
   int find_hinge(const std::string& name) const;  ///< hinge h is the inboard hinge of body h
   const std::string& body_name(int body) const;
   const std::string& hinge_name(int body) const;
-  bool is_sound(int body) const;  ///< false only after build_as_far: neither its nodes nor its hinge are known
+  bool is_sound(int body) const;  ///< false only after draft_system: neither its nodes nor its hinge are known
   int num_modes(int body) const;
   int q_offset(int body) const;  ///< hinge coordinates start here; η follows
   int u_offset(int body) const;
@@ -156,21 +147,18 @@ void calc_accelerations(const System& system, SystemData& data, double t, Eigen:
 /// The same by assembling the dense M(q) and solving: the second route for tests. O(num_u³).
 void calc_accelerations_dense(const System& system, SystemData& data, double t, Eigen::Ref<VectorXd> u_dot);
 
-const BodyState& get_body_state(const SystemData& data, int body);
-/// Motion of a node; accelerations are valid after calc_accelerations. For a flexible body the second-order term of
-/// position, velocity and acceleration is in where the node has its three locators and stiffening is on.
-NodeMotion calc_node_motion(const System& system, const SystemData& data, int body, int node_index);
-/// Deflection φ_k η + ½ ηᵀ g_k η and rotation ψ_k η of a node from its undeformed place, in B.
-void calc_node_deflection(const System& system, const SystemData& data, int body, int node_index,
-                          Vector3d& deflection_B, Vector3d& rotation_B);
-/// Hinge coordinates (num_hinge_q; a quaternion as w, x, y, z) and rates (num_hinge_rates) as the user knows them,
-/// prescribed ones too, and the generalized hinge force (num_hinge_rates): spring + damper after add_forces; along
-/// coordinates that are locked or prescribed all that crosses the hinge, after calc_accelerations.
-void get_hinge(const System& system, const SystemData& data, int body, Eigen::Ref<VectorXd> q,
-               Eigen::Ref<VectorXd> q_dot, Eigen::Ref<VectorXd> force);
+/// What blocks and recoveries see.
+inline Motion get_motion(const System& system, const SystemData& data) {
+  return {system.tree, data.tree, system.loops, data.loops, system.gravity};
+}
 
-/// What a constraint passes on. After calc_accelerations.
-ConstraintReaction get_constraint_reaction(const System& system, const SystemData& data, int constraint);
+const BodyState& get_body_state(const SystemData& data, int body);
+inline NodeMotion calc_node_motion(const System& system, const SystemData& data, int body, int node_index) {
+  return calc_node_motion(get_motion(system, data), body, node_index);
+}
+inline ConstraintReaction get_constraint_reaction(const System& system, const SystemData& data, int constraint) {
+  return get_constraint_reaction(get_motion(system, data), constraint);
+}
 /// The wrench across the inboard hinge of a body, of every type. After calc_accelerations.
 HingeReaction get_hinge_reaction(const System& system, const SystemData& data, int body);
 

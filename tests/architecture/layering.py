@@ -7,6 +7,9 @@ from common import ROOMS, ROOT, finish, line_of, list_sources, read, strip_comme
 RECORDS = ["base", "formats/records"]
 # fe by question, from the ground up; each may use those before it.
 FE = ["linear", "shape", "sections", "elements", "cards", "model", "matrices", "loads", "statics"]
+# solver likewise; integrate and statespace need none of it.
+SOLVER = ["state", "text", "bodies", "functions", "hinges", "tree", "forces", "loops", "motion", "signals", "control",
+          "sensors", "actuators", "system", "build", "integrate", "simulate", "statespace", "linear"]
 # First match wins; a folder may always include itself and what lies below it.
 MAY_INCLUDE = [
     ("base", []),
@@ -28,12 +31,9 @@ MAY_INCLUDE = [
     *[("fe/" + room, RECORDS + ["fe/" + below for below in FE[:i]]) for i, room in enumerate(FE)],
     ("modal", RECORDS + ["fe"]),
     ("stiffening", RECORDS + ["fe", "modal"]),
-    ("solver/hinges", RECORDS + ["solver/bodies"]),
     ("solver/integrate", RECORDS),
-    ("solver/simulate", RECORDS + ["solver"]),
     ("solver/statespace", RECORDS),
-    ("solver/linear", RECORDS + ["solver"]),
-    ("solver", RECORDS),
+    *[("solver/" + room, RECORDS + ["solver/" + below for below in SOLVER[:i]]) for i, room in enumerate(SOLVER)],
     ("embed", RECORDS + ["formats/toml", "formats/flx", "formats/flat", "solver"]),
     ("cosim", RECORDS + ["formats/fmu", "solver/control", "embed/fmi2_types.h", "embed/fmi3_types.h"]),
 ]

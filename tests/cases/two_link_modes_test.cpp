@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "solver/build/build_system.hpp"
 #include "tests/cases/support/example.hpp"
 #include "tests/support/beam_decks.hpp"
 
@@ -108,7 +109,7 @@ TEST(TwoLinkModes, ClampedModesBehindAFreeHingeAreNoted) {
   for (const int num_modes : {1, 10}) {
     const Links links = make_links(num_modes);
     Diagnostics diagnostics;
-    solver::System::build(links.example.spec, links.example.flex, diagnostics);
+    solver::build_system(links.example.spec, links.example.flex, diagnostics);
     int count = 0;
     for (const auto& item : diagnostics.items()) {
       count += item.id == "system.spanned-hinge" ? 1 : 0;

@@ -1,4 +1,5 @@
 #include "tests/cases/support/example.hpp"
+#include "solver/build/build_system.hpp"
 
 #include <gtest/gtest.h>
 
@@ -43,7 +44,7 @@ Example load_example(const std::string& folder, const std::string& system_file) 
 
 solver::System Example::build() const {
   Diagnostics diagnostics;
-  return solver::System::build(spec, flex, diagnostics);
+  return solver::build_system(spec, flex, diagnostics);
 }
 
 solver::SimulateOutcome Example::run(solver::MemorySink& sink) const {

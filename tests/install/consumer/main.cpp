@@ -2,6 +2,7 @@
 #include <cstdio>
 
 #include "bough/formats/toml/specs.hpp"
+#include "bough/solver/build/build_system.hpp"
 #include "bough/solver/simulate/simulate.hpp"
 
 namespace {
@@ -33,7 +34,7 @@ int main(int argc, char** argv) {
   bough::Diagnostics diagnostics;
   const auto spec = bough::toml_files::read_system_spec(argv[1], diagnostics);
   diagnostics.throw_if_errors();
-  const auto system = bough::solver::System::build(spec, {}, diagnostics);
+  const auto system = bough::solver::build_system(spec, {}, diagnostics);
   LastSample sink;
   bough::solver::simulate(system, spec, sink, {}, diagnostics);
   std::printf("%.9f %.9f\n", sink.time, sink.angle);

@@ -1,7 +1,8 @@
-// Every error that System::build reports, by its id, and what a built system looks like.
+// Every error that build_system reports, by its id, and what a built system looks like.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "solver/build/build_system.hpp"
 #include "tests/solver/support/models.hpp"
 
 namespace bough::solver::testing {
@@ -43,7 +44,7 @@ class BuildTest : public ::testing::Test {
   std::string try_build() {
     diagnostics_ = Diagnostics();
     try {
-      System::build(spec_, flex_, diagnostics_);
+      build_system(spec_, flex_, diagnostics_);
     } catch (const InputError& error) {
       EXPECT_EQ(error.exit_code(), 1);
       return error.what();

@@ -1,4 +1,5 @@
 // Sensors and actuators against what they stand for.
+#include "solver/build/build_system.hpp"
 #include "solver/sensors/noise.hpp"
 #include "solver/sensors/sensor.hpp"
 #include "tests/solver/control/support.hpp"
@@ -107,7 +108,7 @@ TEST(DoubleGimbal, OneMissingAxisIsOneError) {
   spec.actuators[0].input = "rates";
   spec.actuators[0].settings.numbers = {{"gimbal_axis", {0, 0, 1}}, {"inner_axis", {1, 0, 0}}, {"momentum", {1.5}}};
   Diagnostics diagnostics;
-  System::build_as_far(spec, {}, diagnostics);
+  draft_system(spec, {}, diagnostics);
   EXPECT_EQ(diagnostics.num_errors(), 1);
 }
 

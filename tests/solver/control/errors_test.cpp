@@ -1,4 +1,5 @@
 // What a control system may have wrong, by name.
+#include "solver/build/build_system.hpp"
 #include "tests/solver/control/support.hpp"
 
 namespace bough::solver::testing {
@@ -10,7 +11,7 @@ using ::testing::HasSubstr;
 /// The message of that id at building.
 std::string build_and_fail(const records::SystemSpec& spec, const std::string& id) {
   Diagnostics diagnostics;
-  System::build_as_far(spec, {}, diagnostics);
+  draft_system(spec, {}, diagnostics);
   for (const auto& item : diagnostics.items()) {
     if (item.id == id) return item.what + "; " + item.advice;
   }
@@ -44,7 +45,7 @@ TEST(ControlErrors, NameTheAlgebraicLoop) {
   spec.controllers[2].type = "transfer_function";
   spec.controllers[2].settings.numbers = {{"numerator", {1}}, {"denominator", {1, 1}}, {"outputs", {1}}};
   Diagnostics none;
-  System::build_as_far(spec, {}, none);
+  draft_system(spec, {}, none);
   EXPECT_EQ(none.num_errors(), 0);
 }
 
@@ -56,7 +57,7 @@ TEST(ControlErrors, AForceFromAnAccelerationIsALoop) {
   // Sampled, it is held between.
   spec.controllers[0].settings.numbers["sample_time"] = {0.1};
   Diagnostics none;
-  System::build_as_far(spec, {}, none);
+  draft_system(spec, {}, none);
   EXPECT_EQ(none.num_errors(), 0);
 }
 

@@ -3,6 +3,7 @@
 #include <stdexcept>
 
 #include "base/foreign_call.hpp"
+#include "solver/build/build_system.hpp"
 #include "solver/control/hosted.hpp"
 #include "solver/control/user_code.hpp"
 #include "tests/solver/control/support.hpp"
@@ -68,13 +69,13 @@ TEST(Library, AFailureOfCloseIsOneOfTheRun) {
   const HostedController lent("lent", f);
   const System system = build(make_library("lent"));
   try {
-    close_user_blocks(system);
+    close_user_blocks(system.signals);
     ADD_FAILURE() << "no failure";
   } catch (const Failure& failure) {
     EXPECT_EQ(failure.items()[0].id, "control.library-failed");
     EXPECT_EQ(failure.items()[0].what, "controller 'law': bough_controller_close threw: the log is full");
   }
-  close_user_blocks(system);
+  close_user_blocks(system.signals);
   EXPECT_EQ(closed, 1);
 }
 
@@ -98,7 +99,7 @@ TEST(Library, RefusesWrongInputsAtOpening) {
   auto spec = make_library(BOUGH_LAW_C);
   spec.controllers[0].inputs = {"angle"};
   Diagnostics diagnostics;
-  System::build_as_far(spec, {}, diagnostics);
+  draft_system(spec, {}, diagnostics);
   EXPECT_TRUE(diagnostics.has("control.bad-library"));
 }
 

@@ -1,4 +1,5 @@
 // Wires, forces that follow signals, controllers that events switch, lags that start at rest, units.
+#include "solver/build/build_system.hpp"
 #include "solver/system/derivative.hpp"
 #include "tests/solver/control/support.hpp"
 
@@ -34,7 +35,7 @@ records::SystemSpec make_servo() {
 
 std::vector<Diagnostic> collect_messages(const records::SystemSpec& spec) {
   Diagnostics diagnostics;
-  System::build_as_far(spec, {}, diagnostics);
+  draft_system(spec, {}, diagnostics);
   return diagnostics.items();
 }
 
@@ -209,7 +210,7 @@ TEST(Event, SwitchesAFunction) {
 
 std::string run_and_fail(const records::SystemSpec& spec) {
   Diagnostics diagnostics;
-  const System system = System::build_as_far(spec, {}, diagnostics);
+  const System system = draft_system(spec, {}, diagnostics);
   check_run(system, spec, diagnostics);
   std::string all;
   for (const auto& item : diagnostics.items()) all += item.id + " " + item.what + "\n";

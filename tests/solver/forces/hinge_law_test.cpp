@@ -1,5 +1,6 @@
 // Stops, friction, preload, tables and motors of hinge coordinates against closed forms; what is refused.
 #include "solver/forces/hinge_law.hpp"
+#include "solver/build/build_system.hpp"
 
 #include <gtest/gtest.h>
 
@@ -194,7 +195,7 @@ TEST(HingeLaw, ARotorIsInertiaOfItsCoordinate) {
 
 std::string build_error(const records::SystemSpec& spec) {
   Diagnostics diagnostics;
-  System::build_as_far(spec, {}, diagnostics);
+  draft_system(spec, {}, diagnostics);
   std::string ids;
   for (const auto& item : diagnostics.items())
     if (item.severity == Severity::Error) ids += item.id + " ";

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "solver/build/build_system.hpp"
 #include "solver/linear/linearize.hpp"
 #include "tests/solver/support/runs.hpp"
 
@@ -303,7 +304,7 @@ TEST(RigidStop, AStartBeyondItIsAnError) {
     add_stop(spec.hinges[0], 0, 0.5);
     spec.hinges[0].law.stop_upper = {1};
     Diagnostics diagnostics;
-    System::build_as_far(spec, {}, diagnostics);
+    draft_system(spec, {}, diagnostics);
     ASSERT_TRUE(diagnostics.has("system.beyond-stop")) << position;
     EXPECT_THAT(format(diagnostics.items()[0]),
                 HasSubstr(position < 0 ? "slider.toml:12: error: coordinate 1 of hinge 'hinge' starts at -0.3, beyond "

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "solver/build/build_system.hpp"
 #include "tests/solver/support/runs.hpp"
 
 namespace bough::solver::testing {
@@ -280,7 +281,7 @@ TEST(Changes, NamesThatAreNone) {
     s.events[0].time = 0.1;
     s.events[0].coordinates = std::move(coordinates);
     Diagnostics diagnostics;
-    const System system = System::build(s, {}, diagnostics);
+    const System system = build_system(s, {}, diagnostics);
     check_run(system, s, diagnostics);
     std::string ids;
     for (const auto& d : diagnostics.items()) {

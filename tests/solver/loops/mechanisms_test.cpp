@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "solver/build/build_system.hpp"
 #include "tests/solver/support/runs.hpp"
 
 namespace bough::solver::testing {
@@ -155,7 +156,7 @@ TEST(FourBar, ByBdf) {
 
 TEST(FourBar, NamesWhatIsHeldTwiceAndWhatWasMoved) {
   Diagnostics diagnostics;
-  System::build(make_four_bar(), {}, diagnostics);
+  build_system(make_four_bar(), {}, diagnostics);
   std::string notes;
   for (const auto& d : diagnostics.items()) notes += d.id + ": " + d.what + "\n";
   EXPECT_TRUE(diagnostics.has("system.redundant-constraint"));
@@ -393,7 +394,7 @@ TEST(Assembly, SaysWhatCannotBeClosed) {
   spec.hinges[0].locked = {true};
   spec.hinges[0].rate.clear();
   Diagnostics diagnostics;
-  System::build_as_far(spec, {}, diagnostics);
+  draft_system(spec, {}, diagnostics);
   ASSERT_TRUE(diagnostics.has("system.cannot-assemble"));
   for (const auto& d : diagnostics.items()) {
     if (d.id != "system.cannot-assemble") continue;
@@ -407,7 +408,7 @@ TEST(Assembly, BendsAStretchedMechanism) {
   auto spec = make_four_bar();
   for (auto& h : spec.hinges) h.position.clear();  // everything along x
   Diagnostics diagnostics;
-  const System system = System::build(spec, {}, diagnostics);
+  const System system = build_system(spec, {}, diagnostics);
   auto data = system.make_data();
   VectorXd q(system.num_q()), u(system.num_u());
   system.calc_initial_state(q, u);
@@ -422,7 +423,7 @@ TEST(Assembly, ErrorsOfConstraints) {
     auto spec = make_four_bar();
     spoil(spec);
     Diagnostics diagnostics;
-    System::build_as_far(spec, {}, diagnostics);
+    draft_system(spec, {}, diagnostics);
     std::string ids;
     for (const auto& d : diagnostics.items()) {
       if (d.severity == Severity::Error) ids += d.id + " ";

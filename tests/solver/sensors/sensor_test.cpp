@@ -1,6 +1,7 @@
 // Sensors against the analytic motion of a rigid body that spins and flies, in every frame, and against finite
 // differences.
-#include "solver/sensors/sensor.hpp"
+#include "solver/build/build_system.hpp"
+#include "solver/build/sensors.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,6 +10,16 @@
 
 namespace bough::solver::testing {
 namespace {
+
+/// Measurements of all sensors, one after the other.
+VectorXd measure_all(const std::vector<Sensor>& sensors, const Motion& motion) {
+  std::vector<double> all;
+  for (const Sensor& sensor : sensors) {
+    all.resize(all.size() + static_cast<size_t>(sensor.size));
+    measure(motion, sensor, all.data() + all.size() - sensor.size);
+  }
+  return Eigen::Map<const VectorXd>(all.data(), std::ssize(all));
+}
 
 using records::HingeType;
 using records::SensorType;
@@ -75,11 +86,9 @@ struct Carousel {
     add_forces(system, *data, t);
     calc_accelerations(system, *data, t, u_dot);
     Diagnostics diagnostics;
-    const Sensors made = Sensors::build(system, spec, diagnostics);
+    const auto made = build_sensors(system, spec, diagnostics);
     EXPECT_EQ(diagnostics.num_errors(), 0);
-    VectorXd out(made.size());
-    made.calc(system, *data, out);
-    return out;
+    return measure_all(made, get_motion(system, *data));
   }
 };
 
@@ -164,10 +173,8 @@ VectorXd measure_at_start(const records::SystemSpec& spec, const System& system)
   add_forces(system, *data, 0);
   calc_accelerations(system, *data, 0, u_dot);
   Diagnostics diagnostics;
-  const Sensors sensors = Sensors::build(system, spec, diagnostics);
-  VectorXd out(sensors.size());
-  sensors.calc(system, *data, out);
-  return out;
+  const auto sensors = build_sensors(system, spec, diagnostics);
+  return measure_all(sensors, get_motion(system, *data));
 }
 
 // A resolver brings angles into a turn and leaves lengths as they are, whatever the hinge.
@@ -249,7 +256,7 @@ TEST(Sensors, RatesOnFlexibleTrees) {
                        make_sensor("dw", SensorType::Deflection, flexible, 103, "inertial")};
   const System system = build(tree.spec, tree.flex);
   Diagnostics diagnostics;
-  const Sensors sensors = Sensors::build(system, tree.spec, diagnostics);
+  const auto sensors = build_sensors(system, tree.spec, diagnostics);
   ASSERT_EQ(diagnostics.num_errors(), 0);
   auto data = system.make_data();
   VectorXd q, u;
@@ -258,8 +265,7 @@ TEST(Sensors, RatesOnFlexibleTrees) {
   const auto sense = [&](double dt) {
     const VectorXd qt = advance_q(system, *data, 0, dt, q, u, u_dot), ut = u + dt * u_dot;
     calc_u_dot(system, *data, 0, qt, ut);
-    VectorXd out(sensors.size());
-    sensors.calc(system, *data, out);
+    const VectorXd out = measure_all(sensors, get_motion(system, *data));
     return out;
   };
   const double h = 1e-4;
@@ -299,12 +305,12 @@ TEST(Sensors, BodiesThatFailedAreNotTheSensorsFault) {
   Carousel carousel;
   carousel.spec.bodies[1].inertia(0, 0) = -1;
   Diagnostics of_build, diagnostics;
-  const System system = System::build_as_far(carousel.spec, {}, of_build);
+  const System system = draft_system(carousel.spec, {}, of_build);
   EXPECT_EQ(of_build.num_errors(), 1);
   EXPECT_FALSE(system.is_sound(1));
   carousel.spec.sensors = {make_sensor("s1", SensorType::Position, "arm", 9, "inertial"),
                            make_sensor("s2", SensorType::Position, "table", 7, "arm")};
-  Sensors::build(system, carousel.spec, diagnostics);
+  build_sensors(system, carousel.spec, diagnostics);
   ASSERT_EQ(diagnostics.num_errors(), 1);
   EXPECT_THAT(format(diagnostics.items()[0]), ::testing::HasSubstr("sensor 's2' is on node 7"));
 }
@@ -319,7 +325,7 @@ TEST(Sensors, FaultsAreReported) {
                            make_hinge_sensor(SensorType::HingeAngle, "hc", 0),
                            make_hinge_sensor(SensorType::HingeRate, "hb", 2)};
   Diagnostics diagnostics;
-  Sensors::build(system, carousel.spec, diagnostics);
+  build_sensors(system, carousel.spec, diagnostics);
   ASSERT_EQ(diagnostics.num_errors(), 6);
   const auto& items = diagnostics.items();
   EXPECT_EQ(items[0].id, "sensor.unknown-body");

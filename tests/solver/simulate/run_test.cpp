@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "solver/build/build_system.hpp"
 #include "solver/functions/function.hpp"
 #include "solver/simulate/modal_range_monitor.hpp"
 #include "solver/simulate/run_options.hpp"
@@ -512,7 +513,7 @@ TEST(Advice, FastModesThatExplicitStepsFollow) {
     for (const std::string integrator : {"adams", "rk", "bdf"}) {
       spec.simulation.integrator = integrator;
       Diagnostics diagnostics;
-      const System system = System::build_as_far(spec, {{"boom.h5", flex}}, diagnostics);
+      const System system = draft_system(spec, {{"boom.h5", flex}}, diagnostics);
       check_run(system, spec, diagnostics);
       EXPECT_EQ(diagnostics.has("run.fast-modes"), frequency > 3000 && integrator != "bdf") << integrator << frequency;
       for (const auto& d : diagnostics.items()) {

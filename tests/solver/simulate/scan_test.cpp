@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "solver/build/build_system.hpp"
 #include "solver/control/hosted.hpp"
 #include "tests/solver/control/support.hpp"
 
@@ -193,7 +194,7 @@ CountedRun run_counted(const std::string& integrator) {
   spec.simulation.integrator = integrator;
   spec.simulation.step = integrator == "rk4" || integrator == "implicit" ? 1e-3 : 100;
   Diagnostics diagnostics;
-  const System system = System::build(spec, {}, diagnostics);
+  const System system = build_system(spec, {}, diagnostics);
   MemorySink sink;
   counted.calls = 0;
   counted.outcome = simulate(system, spec, sink, {}, diagnostics);

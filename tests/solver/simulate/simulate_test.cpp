@@ -1,5 +1,6 @@
 // Whole runs: closed-form motions with every integrator, energy against work, jumps, restart, failures.
 #include "solver/simulate/simulate.hpp"
+#include "solver/build/build_system.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -300,7 +301,7 @@ TEST(Simulate, SensorFaultsStopARunBeforeItStarts) {
   MemorySink sink;
   Diagnostics diagnostics;
   EXPECT_THROW(build(spec), InputError);
-  const System system = System::build_as_far(spec, {}, diagnostics);
+  const System system = draft_system(spec, {}, diagnostics);
   EXPECT_THROW(simulate(system, spec, sink, {}, diagnostics), InputError);
   EXPECT_TRUE(diagnostics.has("sensor.unknown-body"));
   EXPECT_TRUE(diagnostics.has("run.unknown-integrator"));

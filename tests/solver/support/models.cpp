@@ -1,4 +1,5 @@
 #include "tests/solver/support/models.hpp"
+#include "solver/build/build_system.hpp"
 
 namespace bough::solver::testing {
 
@@ -253,7 +254,7 @@ void make_random_state(const System& system, unsigned seed, VectorXd& q, VectorX
 
 System build(const records::SystemSpec& spec, const std::map<std::string, records::FlexBody>& flex) {
   Diagnostics diagnostics;
-  return System::build(spec, flex, diagnostics);
+  return build_system(spec, flex, diagnostics);
 }
 
 VectorXd calc_u_dot(const System& system, SystemData& data, double t, const VectorXd& q, const VectorXd& u) {

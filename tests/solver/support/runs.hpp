@@ -2,6 +2,7 @@
 /// \file One body on one hinge, and whole runs in memory.
 #include <gtest/gtest.h>
 
+#include "solver/build/build_system.hpp"
 #include "solver/simulate/memory_sink.hpp"
 #include "solver/simulate/simulate.hpp"
 #include "tests/solver/support/models.hpp"
@@ -32,7 +33,7 @@ struct RunResult {
 inline RunResult run(const records::SystemSpec& spec, const std::map<std::string, records::FlexBody>& flex = {},
                      const SimulateOptions& options = {}) {
   RunResult r;
-  const System system = System::build(spec, flex, r.diagnostics);
+  const System system = build_system(spec, flex, r.diagnostics);
   r.outcome = simulate(system, spec, r.sink, options, r.diagnostics);
   return r;
 }

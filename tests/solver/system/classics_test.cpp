@@ -164,7 +164,7 @@ TEST(Classics, PrescribedSpinNeedsTheTorqueOfInverseDynamics) {
   const double t = 0.35, angle = 0.6 * std::sin(2 * t), acceleration = -2.4 * std::sin(2 * t);
   calc_u_dot(system, *data, t, VectorXd::Constant(1, 99.0), VectorXd::Constant(1, 99.0));  // rows that are not read
   VectorXd q(1), rate(1), torque(1);
-  get_hinge(system, *data, 0, q, rate, torque);
+  get_hinge(get_motion(system, *data), 0, q, rate, torque);
   EXPECT_NEAR(q[0], angle, 1e-15);
   EXPECT_NEAR(rate[0], 1.2 * std::cos(2 * t), 1e-15);
   EXPECT_NEAR(torque[0], 4 * acceleration + 3 * 9.81 * std::cos(angle), 1e-12);  // J = m L²/3 = 4
@@ -194,7 +194,7 @@ TEST(Classics, SpringAndDamperOnASlider) {
   EXPECT_NEAR(calc_energies(system, *data).strain, 0.5 * 50 * 0.09, 1e-14);
   EXPECT_NEAR(calc_power(system, *data), -3 * 0.49, 1e-14);
   VectorXd shown(1), rate(1), shown_force(1);
-  get_hinge(system, *data, 0, shown, rate, shown_force);
+  get_hinge(get_motion(system, *data), 0, shown, rate, shown_force);
   EXPECT_NEAR(shown_force[0], force, 1e-14);
 }
 

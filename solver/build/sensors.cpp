@@ -1,4 +1,4 @@
-#include "solver/sensors/sensor.hpp"
+#include "solver/build/sensors.hpp"
 
 #include <algorithm>
 
@@ -33,7 +33,7 @@ class Resolver {
     }
   }
 
-  void resolve(const SensorRecord& r, Sensors::Entry& e) {
+  void resolve(const SensorRecord& r, Sensor& e) {
     const SensorKind& kind = get_kind(r.type);
     e.name = r.name;
     e.type = r.type;
@@ -67,7 +67,7 @@ class Resolver {
     return std::find(names.begin(), names.end(), name) != names.end();
   }
 
-  void resolve_hinge(const SensorRecord& r, const SensorKind& kind, Sensors::Entry& e) {
+  void resolve_hinge(const SensorRecord& r, const SensorKind& kind, Sensor& e) {
     e.body = system_.find_hinge(r.hinge);
     if (e.body < 0) {
       if (is_known(hinges_, r.hinge)) return;  // its own errors were reported
@@ -93,11 +93,11 @@ class Resolver {
   }
 
   /// Three components are x, y, z unless the description names them; coordinates and modes have no axes.
-  static void name_by_count(Sensors::Entry& e) {
+  static void name_by_count(Sensor& e) {
     if (e.size == 3) e.description += ": 1, 2, 3";
   }
 
-  void set_dims(const SensorRecord& r, Sensors::Entry& e) {
+  void set_dims(const SensorRecord& r, Sensor& e) {
     const TreeBody& tb = system_.tree[e.body];
     const int first = r.coordinate == 0 ? 0 : r.coordinate - 1;
     const bool is_rate = r.type == SensorType::HingeRate || r.type == SensorType::Tachometer;
@@ -107,7 +107,7 @@ class Resolver {
     for (int i = 0; i < e.size; ++i) e.wraps[static_cast<size_t>(i)] = !is_length(tb, first + i);
   }
 
-  void resolve_modes(const SensorRecord& r, const SensorKind& kind, Sensors::Entry& e) {
+  void resolve_modes(const SensorRecord& r, const SensorKind& kind, Sensor& e) {
     e.body = find_body(r.body);
     if (e.body == kAbsent)
       error(r, "sensor.unknown-body", "is on the unknown body '" + r.body + "'",
@@ -125,7 +125,7 @@ class Resolver {
     name_by_count(e);
   }
 
-  void resolve_element(const SensorRecord& r, Sensors::Entry& e) {
+  void resolve_element(const SensorRecord& r, Sensor& e) {
     e.body = find_body(r.body);
     if (e.body == kAbsent)
       error(r, "sensor.unknown-body", "is on the unknown body '" + r.body + "'",
@@ -141,6 +141,7 @@ class Resolver {
       return;
     }
     const auto& names = element->components;
+    e.recovery = recovery.get();
     e.row = element->first;
     e.size = element->size();
     e.description = element->path + " of body " + r.body + ": ";
@@ -160,7 +161,7 @@ class Resolver {
     e.description += r.component;
   }
 
-  void resolve_other_end(const SensorRecord& r, Sensors::Entry& e) {
+  void resolve_other_end(const SensorRecord& r, Sensor& e) {
     e.description += " to ";
     if (r.to_body.empty() || r.to_body == "ground") {
       e.to_body = -1;
@@ -180,7 +181,7 @@ class Resolver {
             "use one of its output nodes, or 0 for its origin");
   }
 
-  void resolve_sequence(const SensorRecord& r, Sensors::Entry& e) {
+  void resolve_sequence(const SensorRecord& r, Sensor& e) {
     const std::string& s = r.sequence;
     const auto is_axis = [](char c) { return c >= '1' && c <= '3'; };
     if (s.size() != 3 || !std::all_of(s.begin(), s.end(), is_axis) || s[0] == s[1] || s[1] == s[2]) {
@@ -191,7 +192,7 @@ class Resolver {
     e.description += ", turns about axes " + s + ": angle1, angle2, angle3";
   }
 
-  void resolve_node(const SensorRecord& r, Sensors::Entry& e) {
+  void resolve_node(const SensorRecord& r, Sensor& e) {
     e.body = find_body(r.body);
     if (e.body == kAbsent) {
       error(r, "sensor.unknown-body", "is on the unknown body '" + r.body + "'",
@@ -253,16 +254,10 @@ class Resolver {
 
 }  // namespace
 
-Sensors Sensors::build(const System& system, const records::SystemSpec& spec, Diagnostics& diagnostics) {
-  Sensors sensors;
+std::vector<Sensor> build_sensors(const System& system, const records::SystemSpec& spec, Diagnostics& diagnostics) {
+  std::vector<Sensor> sensors;
   Resolver resolver(system, spec, diagnostics);
-  for (const auto& record : spec.sensors) {
-    Entry entry;
-    resolver.resolve(record, entry);
-    entry.first = sensors.size_;
-    sensors.size_ += entry.size;
-    sensors.entries_.push_back(std::move(entry));
-  }
+  for (const auto& record : spec.sensors) resolver.resolve(record, sensors.emplace_back());
   return sensors;
 }
 

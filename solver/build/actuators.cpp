@@ -1,0 +1,153 @@
+#include "solver/build/actuators.hpp"
+
+#include <algorithm>
+
+#include "solver/actuators/makers.hpp"
+#include "solver/build/build.hpp"
+#include "solver/tree/coordinates.hpp"
+
+namespace bough::solver {
+namespace {
+
+enum class Where { Hinge, Force, Moment, Mode };
+struct Kind {
+  const char* type;
+  int outputs;
+  Where where;
+  const char* takes;  ///< dimension of the command; empty: any, or by the hinge
+  std::unique_ptr<Actuator> (*make)(const records::ActuatorRecord&, SettingsReader&, const ActuatorPlace&);
+};
+constexpr Kind kKinds[] = {
+    {"hinge", 1, Where::Hinge, "", make_hinge_drive},
+    {"motor", 2, Where::Hinge, "", make_hinge_drive},
+    {"brake", 1, Where::Hinge, "", make_hinge_drive},
+    {"force", 1, Where::Force, "F", make_push},
+    {"moment", 1, Where::Moment, "F L", make_push},
+    {"jet", 2, Where::Force, "", make_push},
+    {"wheel", 3, Where::Moment, "F L", make_rotor},
+    {"cmg", 2, Where::Moment, "1/T", make_rotor},
+    {"double_gimbal_cmg", 4, Where::Moment, "1/T", make_rotor},
+    {"modal", 1, Where::Mode, "", make_modal_drive},
+};
+
+const Kind* find_kind(const std::string& type) {
+  const auto* found = std::find_if(std::begin(kKinds), std::end(kKinds), [&](const Kind& k) { return type == k.type; });
+  return found == std::end(kKinds) ? nullptr : found;
+}
+
+bool find_row(const records::ActuatorRecord& r, const System& system, const Tree& tree, SettingsReader& keys,
+              ActuatorPlace& place) {
+  const int body = system.find_hinge(r.hinge);
+  if (!r.body.empty()) keys.error("control.unknown-key", "takes no body", "its hinge says where it acts");
+  if (r.hinge.empty()) {
+    keys.error("control.missing-key", "has no hinge", "give hinge = \"NAME\"");
+    return false;
+  }
+  if (body < 0) {
+    std::vector<std::string> names;
+    for (int b = 0; b < system.num_bodies(); ++b) names.push_back(system.hinge_name(b));
+    const std::string near = find_nearest(r.hinge, names);
+    keys.error("control.unknown-place", "drives the hinge '" + r.hinge + "', which does not exist",
+               near.empty() ? "declare it" : "did you mean '" + near + "'?");
+    return false;
+  }
+  if (!system.is_sound(body)) return false;
+  const int count = tree[body].num_hinge_u();
+  if (r.coordinate < 1 || r.coordinate > count) {
+    keys.error("control.unknown-place",
+               "drives coordinate " + std::to_string(r.coordinate) + " of hinge '" + r.hinge + "', which has " +
+                   std::to_string(count),
+               "count from 1");
+    return false;
+  }
+  place.row = tree[body].u_offset + r.coordinate - 1;
+  place.effort = list_hinge_dims(tree[body], HingeQuantity::Force, r.coordinate - 1, 1);
+  return true;
+}
+
+/// Index of the body; -1: reported, or with errors of its own.
+int find_own_body(const records::ActuatorRecord& r, const System& system, SettingsReader& keys) {
+  if (!r.hinge.empty()) keys.error("control.unknown-key", "takes no hinge", "its body says where it acts");
+  const int body = system.find_body(r.body);
+  if (body < 0) {
+    std::vector<std::string> names;
+    for (int b = 0; b < system.num_bodies(); ++b) names.push_back(system.body_name(b));
+    const std::string near = find_nearest(r.body, names);
+    keys.error("control.unknown-place", "is on the body '" + r.body + "', which does not exist",
+               near.empty() ? "declare it" : "did you mean '" + near + "'?");
+    return -1;
+  }
+  return system.is_sound(body) ? body : -1;
+}
+
+bool find_mode(const records::ActuatorRecord& r, const System& system, const Tree& tree, SettingsReader& keys,
+               ActuatorPlace& place) {
+  const int body = find_own_body(r, system, keys);
+  if (body < 0) return false;
+  const int count = tree[body].num_modes();
+  if (r.coordinate < 1 || r.coordinate > count) {
+    keys.error(
+        "control.unknown-place",
+        "drives mode " + std::to_string(r.coordinate) + " of body '" + r.body + "', which has " + std::to_string(count),
+        count == 0 ? "name a flexible body" : "count from 1");
+    return false;
+  }
+  place.row = tree[body].v_offset + 6 + r.coordinate - 1;
+  return true;
+}
+
+bool find_marker(const records::ActuatorRecord& r, const System& system, Tree& tree, Where where, SettingsReader& keys,
+                 Diagnostics& diagnostics, ActuatorPlace& place) {
+  const int body = find_own_body(r, system, keys);
+  if (body < 0) return false;
+  Marker at;
+  at.body = body;
+  at.node = find_loaded_node(r.body, tree[body].body, r.node, {where == Where::Force, where == Where::Moment}, r.at,
+                             "actuator '" + r.name + "'", diagnostics);
+  if (at.node < 0) return false;
+  at.moves = tree[body].body.nodes()[static_cast<size_t>(at.node)].moves;
+  place.marker = tree.add_marker(at);
+  return true;
+}
+
+}  // namespace
+
+int find_actuator_outputs(const std::string& type) {
+  const Kind* kind = find_kind(type);
+  return kind ? kind->outputs : 0;
+}
+
+std::unique_ptr<Block> make_actuator(const records::ActuatorRecord& r, const System& system, Tree& tree,
+                                     Diagnostics& diagnostics) {
+  SettingsReader keys(r.settings, "actuator '" + r.name + "' of type " + r.type, r.at, diagnostics);
+  const Kind* kind = find_kind(r.type);
+  if (kind == nullptr) {
+    std::vector<std::string> types;
+    std::string list;
+    for (const Kind& k : kKinds) {
+      types.emplace_back(k.type);
+      list += (list.empty() ? "" : ", ") + types.back();
+    }
+    const std::string near = find_nearest(r.type, types);
+    diagnostics.error("control.unknown-type", r.at, "actuator '" + r.name + "' has the unknown type '" + r.type + "'",
+                      near.empty() ? "use one of: " + list : "did you mean '" + near + "'?");
+    return nullptr;
+  }
+  ActuatorPlace place;
+  const bool is_placed = kind->where == Where::Hinge ? find_row(r, system, tree, keys, place)
+                         : kind->where == Where::Mode
+                             ? find_mode(r, system, tree, keys, place)
+                             : find_marker(r, system, tree, kind->where, keys, diagnostics, place);
+  auto made = kind->make(r, keys, place);
+  keys.refuse_others();
+  if (!is_placed || keys.has_failed() || !made) return nullptr;
+  made->set_name(BlockKind::Actuator, r.name);
+  made->label = "actuator '" + r.name + "'";
+  made->at = r.at;
+  const bool takes_effort = r.type == "hinge" || r.type == "brake";
+  if (r.settings.get("scale", 1) == 1) made->input_dims = takes_effort ? place.effort : kind->takes;
+  made->sizes.outputs = kind->outputs;
+  return made;
+}
+
+}  // namespace bough::solver
