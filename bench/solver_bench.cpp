@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "solver/build/build_system.hpp"
+#include "solver/builder/build_system.hpp"
 #include "solver/simulate/hybrid_system.hpp"
 #include "solver/simulate/memory_sink.hpp"
 #include "solver/simulate/simulate.hpp"

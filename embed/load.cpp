@@ -8,7 +8,7 @@
 #include "formats/flx/flx_file.hpp"
 #include "formats/toml/specs.hpp"
 #include "formats/toml/system_text.hpp"
-#include "solver/build/build_system.hpp"
+#include "solver/builder/build_system.hpp"
 #include "solver/simulate/simulate.hpp"
 
 namespace bough::embed {

@@ -5,7 +5,7 @@
 
 #include "embed/bough.h"
 #include "formats/records/signal_name.hpp"
-#include "solver/build/signal_units.hpp"
+#include "solver/builder/signal_units.hpp"
 
 namespace bough::embed {
 namespace {

@@ -7,7 +7,7 @@
 #include "cli/common/converter.hpp"
 #include "cli/common/options.hpp"
 #include "cli/common/text_file.hpp"
-#include "solver/build/connects.hpp"
+#include "solver/builder/connects.hpp"
 
 namespace bough::cli {
 namespace {

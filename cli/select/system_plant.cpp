@@ -3,7 +3,7 @@
 #include "cli/common/body_files.hpp"
 #include "cli/linearize/operating_point.hpp"
 #include "formats/records/mode_subset.hpp"
-#include "solver/build/build_system.hpp"
+#include "solver/builder/build_system.hpp"
 #include "solver/linear/linearize.hpp"
 
 namespace bough::cli {

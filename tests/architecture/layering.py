@@ -9,7 +9,7 @@ RECORDS = ["base", "formats/records"]
 FE = ["linear", "shape", "sections", "elements", "cards", "model", "matrices", "loads", "statics"]
 # solver likewise; integrate and statespace need none of it.
 SOLVER = ["state", "text", "bodies", "functions", "hinges", "tree", "forces", "loops", "motion", "signals", "control",
-          "sensors", "actuators", "system", "build", "integrate", "simulate", "statespace", "linear"]
+          "sensors", "actuators", "system", "builder", "integrate", "simulate", "statespace", "linear"]
 # First match wins; a folder may always include itself and what lies below it.
 MAY_INCLUDE = [
     ("base", []),

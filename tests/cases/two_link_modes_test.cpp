@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "solver/build/build_system.hpp"
+#include "solver/builder/build_system.hpp"
 #include "tests/cases/support/example.hpp"
 #include "tests/support/beam_decks.hpp"
 

@@ -1,5 +1,5 @@
 #include "tests/cases/support/example.hpp"
-#include "solver/build/build_system.hpp"
+#include "solver/builder/build_system.hpp"
 
 #include <gtest/gtest.h>
 

@@ -2,7 +2,7 @@
 #include <cstdio>
 
 #include "bough/formats/toml/specs.hpp"
-#include "bough/solver/build/build_system.hpp"
+#include "bough/solver/builder/build_system.hpp"
 #include "bough/solver/simulate/simulate.hpp"
 
 namespace {

@@ -1,5 +1,5 @@
 // Sensors and actuators against what they stand for.
-#include "solver/build/build_system.hpp"
+#include "solver/builder/build_system.hpp"
 #include "solver/sensors/noise.hpp"
 #include "solver/sensors/sensor.hpp"
 #include "tests/solver/control/support.hpp"

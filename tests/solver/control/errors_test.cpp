@@ -1,5 +1,5 @@
 // What a control system may have wrong, by name.
-#include "solver/build/build_system.hpp"
+#include "solver/builder/build_system.hpp"
 #include "tests/solver/control/support.hpp"
 
 namespace bough::solver::testing {

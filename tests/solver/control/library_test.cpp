@@ -3,7 +3,7 @@
 #include <stdexcept>
 
 #include "base/foreign_call.hpp"
-#include "solver/build/build_system.hpp"
+#include "solver/builder/build_system.hpp"
 #include "solver/control/hosted.hpp"
 #include "solver/control/user_code.hpp"
 #include "tests/solver/control/support.hpp"

@@ -1,5 +1,5 @@
 // Wires, forces that follow signals, controllers that events switch, lags that start at rest, units.
-#include "solver/build/build_system.hpp"
+#include "solver/builder/build_system.hpp"
 #include "solver/system/derivative.hpp"
 #include "tests/solver/control/support.hpp"
 

@@ -1,6 +1,6 @@
 // Stops, friction, preload, tables and motors of hinge coordinates against closed forms; what is refused.
 #include "solver/forces/hinge_law.hpp"
-#include "solver/build/build_system.hpp"
+#include "solver/builder/build_system.hpp"
 
 #include <gtest/gtest.h>
 

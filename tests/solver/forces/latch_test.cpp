@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "solver/build/build_system.hpp"
+#include "solver/builder/build_system.hpp"
 #include "solver/linear/linearize.hpp"
 #include "tests/solver/support/runs.hpp"
 

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "solver/build/build_system.hpp"
+#include "solver/builder/build_system.hpp"
 #include "tests/solver/support/runs.hpp"
 
 namespace bough::solver::testing {

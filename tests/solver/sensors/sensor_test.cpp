@@ -1,7 +1,7 @@
 // Sensors against the analytic motion of a rigid body that spins and flies, in every frame, and against finite
 // differences.
-#include "solver/build/build_system.hpp"
-#include "solver/build/sensors.hpp"
+#include "solver/builder/build_system.hpp"
+#include "solver/builder/sensors.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

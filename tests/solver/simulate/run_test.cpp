@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "solver/build/build_system.hpp"
+#include "solver/builder/build_system.hpp"
 #include "solver/functions/function.hpp"
 #include "solver/simulate/modal_range_monitor.hpp"
 #include "solver/simulate/run_options.hpp"

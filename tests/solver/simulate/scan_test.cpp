@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "solver/build/build_system.hpp"
+#include "solver/builder/build_system.hpp"
 #include "solver/control/hosted.hpp"
 #include "tests/solver/control/support.hpp"
 

@@ -1,6 +1,6 @@
 // Whole runs: closed-form motions with every integrator, energy against work, jumps, restart, failures.
 #include "solver/simulate/simulate.hpp"
-#include "solver/build/build_system.hpp"
+#include "solver/builder/build_system.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 #include "tests/solver/support/models.hpp"
-#include "solver/build/build_system.hpp"
+#include "solver/builder/build_system.hpp"
 
 namespace bough::solver::testing {
 

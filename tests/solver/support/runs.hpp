@@ -2,7 +2,7 @@
 /// \file One body on one hinge, and whole runs in memory.
 #include <gtest/gtest.h>
 
-#include "solver/build/build_system.hpp"
+#include "solver/builder/build_system.hpp"
 #include "solver/simulate/memory_sink.hpp"
 #include "solver/simulate/simulate.hpp"
 #include "tests/solver/support/models.hpp"

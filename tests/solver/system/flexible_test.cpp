@@ -1,7 +1,7 @@
 // One flexible body on simple supports: stiffening, gravity, loads against closed forms; conservation when it flies.
 #include <gtest/gtest.h>
 
-#include "solver/build/build_system.hpp"
+#include "solver/builder/build_system.hpp"
 #include "tests/solver/support/models.hpp"
 
 namespace bough::solver::testing {

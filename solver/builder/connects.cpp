@@ -1,4 +1,4 @@
-#include "solver/build/connects.hpp"
+#include "solver/builder/connects.hpp"
 
 #include <algorithm>
 #include <cstdlib>

@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "solver/build/build_system.hpp"
+#include "solver/builder/build_system.hpp"
 #include "solver/functions/curve.hpp"
 
 namespace bough::solver {

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <sstream>
 
-#include "solver/build/build.hpp"
+#include "solver/builder/build.hpp"
 #include "solver/forces/hinge_law.hpp"
 #include "solver/forces/latch_slack.hpp"
 

@@ -2,7 +2,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "solver/build/build.hpp"
+#include "solver/builder/build.hpp"
 
 namespace bough::solver {
 

@@ -1,6 +1,6 @@
 #include <set>
 
-#include "solver/build/build.hpp"
+#include "solver/builder/build.hpp"
 
 namespace bough::solver {
 

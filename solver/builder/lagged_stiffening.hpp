@@ -3,7 +3,7 @@
 #include <memory>
 #include <vector>
 
-#include "solver/build/build.hpp"
+#include "solver/builder/build.hpp"
 #include "solver/signals/block.hpp"
 
 namespace bough::solver {

@@ -2,7 +2,7 @@
 #include <numeric>
 
 #include "formats/records/mode_subset.hpp"
-#include "solver/build/build.hpp"
+#include "solver/builder/build.hpp"
 
 namespace bough::solver {
 namespace {

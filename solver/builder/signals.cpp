@@ -1,15 +1,15 @@
-#include "solver/build/signals.hpp"
+#include "solver/builder/signals.hpp"
 
 #include <algorithm>
 
 #include "formats/records/dims.hpp"
 #include "formats/records/signal_name.hpp"
 #include "solver/actuators/driven_force.hpp"
-#include "solver/build/actuators.hpp"
-#include "solver/build/lagged_stiffening.hpp"
-#include "solver/build/sensors.hpp"
-#include "solver/build/signal_units.hpp"
-#include "solver/build/sources.hpp"
+#include "solver/builder/actuators.hpp"
+#include "solver/builder/lagged_stiffening.hpp"
+#include "solver/builder/sensors.hpp"
+#include "solver/builder/signal_units.hpp"
+#include "solver/builder/sources.hpp"
 #include "solver/control/controller.hpp"
 #include "solver/sensors/sensor_block.hpp"
 #include "solver/signals/input_block.hpp"

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <sstream>
 
-#include "solver/build/build.hpp"
+#include "solver/builder/build.hpp"
 #include "solver/loops/assemble.hpp"
 
 namespace bough::solver {

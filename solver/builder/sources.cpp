@@ -1,4 +1,4 @@
-#include "solver/build/sources.hpp"
+#include "solver/builder/sources.hpp"
 
 #include <algorithm>
 

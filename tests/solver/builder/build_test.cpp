@@ -2,7 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "solver/build/build_system.hpp"
+#include "solver/builder/build_system.hpp"
 #include "tests/solver/support/models.hpp"
 
 namespace bough::solver::testing {

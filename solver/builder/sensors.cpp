@@ -1,4 +1,4 @@
-#include "solver/build/sensors.hpp"
+#include "solver/builder/sensors.hpp"
 
 #include <algorithm>
 

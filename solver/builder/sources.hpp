@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "solver/build/connects.hpp"
+#include "solver/builder/connects.hpp"
 
 namespace bough::solver {
 

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <sstream>
 
-#include "solver/build/build.hpp"
+#include "solver/builder/build.hpp"
 
 namespace bough::solver {
 

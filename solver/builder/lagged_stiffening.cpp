@@ -1,4 +1,4 @@
-#include "solver/build/lagged_stiffening.hpp"
+#include "solver/builder/lagged_stiffening.hpp"
 
 #include "solver/actuators/lagged_stiffening.hpp"
 

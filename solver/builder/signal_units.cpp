@@ -1,4 +1,4 @@
-#include "solver/build/signal_units.hpp"
+#include "solver/builder/signal_units.hpp"
 
 #include <algorithm>
 #include <array>

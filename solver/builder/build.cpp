@@ -1,8 +1,8 @@
-#include "solver/build/build.hpp"
+#include "solver/builder/build.hpp"
 
 #include <algorithm>
 
-#include "solver/build/signals.hpp"
+#include "solver/builder/signals.hpp"
 #include "solver/motion/stiffening_terms.hpp"
 
 namespace bough::solver {

@@ -1,7 +1,7 @@
 #pragma once
 /// \file The signal graph of a system file: names to blocks and rows.
-#include "solver/build/build.hpp"
-#include "solver/build/connects.hpp"
+#include "solver/builder/build.hpp"
+#include "solver/builder/connects.hpp"
 
 namespace bough::solver {
 

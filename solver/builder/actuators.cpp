@@ -1,9 +1,9 @@
-#include "solver/build/actuators.hpp"
+#include "solver/builder/actuators.hpp"
 
 #include <algorithm>
 
 #include "solver/actuators/makers.hpp"
-#include "solver/build/build.hpp"
+#include "solver/builder/build.hpp"
 #include "solver/tree/coordinates.hpp"
 
 namespace bough::solver {

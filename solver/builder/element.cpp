@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "solver/build/build.hpp"
+#include "solver/builder/build.hpp"
 #include "solver/forces/bushing.hpp"
 #include "solver/forces/central_gravity.hpp"
 #include "solver/forces/contact.hpp"

@@ -1,4 +1,4 @@
-#include "solver/build/build.hpp"
+#include "solver/builder/build.hpp"
 
 namespace bough::solver {
 
