@@ -94,7 +94,7 @@ System build(const records::SystemSpec& spec, const std::map<std::string, record
 }
 
 void evaluate(benchmark::State& state, const System& system, int num_bodies) {
-  SystemOde ode(system);
+  HybridSystem ode(system);
   VectorXd y = ode.make_initial_state(), y_dot(ode.size());
   for (int i = 0; i < ode.num_coordinates(); ++i) y[i] += 1e-6 * std::sin(i);
   for (auto _ : state) {

@@ -8,7 +8,7 @@ find_package(tomlplusplus REQUIRED)
 
 # Debian's SUNDIALS config drags in targets of optional packages; the few libraries needed are found by name.
 find_path(SUNDIALS_INCLUDE_DIR cvode/cvode.h REQUIRED)
-foreach(lib cvode arkode nvecserial)
+foreach(lib cvode nvecserial)
   find_library(SUNDIALS_${lib}_LIBRARY sundials_${lib} REQUIRED)
 endforeach()
 find_library(SUNDIALS_core_LIBRARY sundials_core)   # from version 7 on
@@ -18,7 +18,7 @@ endif()
 add_library(bough_sundials INTERFACE)
 target_include_directories(bough_sundials SYSTEM INTERFACE $<BUILD_INTERFACE:${SUNDIALS_INCLUDE_DIR}>)
 target_link_libraries(bough_sundials INTERFACE
-  ${SUNDIALS_cvode_LIBRARY} ${SUNDIALS_arkode_LIBRARY} ${SUNDIALS_nvecserial_LIBRARY}
+  ${SUNDIALS_cvode_LIBRARY} ${SUNDIALS_nvecserial_LIBRARY}
   ${SUNDIALS_core_LIBRARY})
 
 if(NOT BOUGH_SOLVER_ONLY)

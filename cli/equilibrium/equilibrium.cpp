@@ -34,7 +34,7 @@ void write_equilibrium(const LoadedSystem& loaded, solver::Plant& plant, const s
   const auto& point = found.point;
   const Eigen::VectorXd u = plant.calc_speeds(point);
   plant.evaluate(point);
-  solver::Recorder recorder(loaded.system);
+  solver::Outputs recorder(loaded.system);
   records::ResultsHeader header;
   header.system_text = loaded.spec.text;
   header.channels = recorder.channels();
@@ -94,7 +94,7 @@ int run_equilibrium(const EquilibriumOptions& o) {
                                       {"iterations", found.num_iterations},
                                       {"stable", found.unstable.empty()},
                                       {"unstable", unstable},
-                                      {"indifferent", found.indifferent},
+                                      {"indifferent", found.neutral},
                                       {"kept", found.kept},
                                       {"spinning", found.spinning}}
                            .dump(2) +
@@ -112,7 +112,7 @@ int run_equilibrium(const EquilibriumOptions& o) {
     }
     if (!table.rows.empty()) text += table.to_text();
     if (!found.spinning.empty()) text += "at a given rate: " + join(found.spinning) + "\n";
-    if (!found.indifferent.empty()) text += "indifferent, left where they were: " + join(found.indifferent) + "\n";
+    if (!found.neutral.empty()) text += "indifferent, left where they were: " + join(found.neutral) + "\n";
     if (!found.kept.empty()) text += "as they start, nothing changes them: " + join(found.kept) + "\n";
     console.print(text);
   }

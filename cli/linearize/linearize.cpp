@@ -67,7 +67,7 @@ records::LinearSweep sweep_run(const LinearizeVerbOptions& o, const LoadedSystem
   Diagnostics checked;
   const auto plan = solver::make_run_plan(loaded.spec.simulation, checked);
   checked.throw_if_errors();
-  const solver::Timeline samples(plan);
+  const solver::TimeEvents samples(plan);
   std::vector<double> times;
   for (long i = 0; i < samples.num_outputs(); i += o.each) times.push_back(samples.calc_output(i));
   auto plant = make_plant(loaded, o.open);

@@ -58,7 +58,7 @@ solver::OperatingPoint run_to(const LoadedSystem& loaded, solver::Plant& plant, 
   if (last) *last = sink.last();
   const auto& state = sink.last().state;
   const auto* discrete = sink.last().find("discrete");
-  solver::SystemOde ode(loaded.system);
+  solver::HybridSystem ode(loaded.system);
   if (discrete && !ode.is_alike(*discrete)) {
     if (last)
       throw InputError(

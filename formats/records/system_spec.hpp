@@ -134,7 +134,7 @@ enum class EventDirection { Both, Rising, Falling };
 enum class EventAction { Log, Stop, Lock, Release, Break, Close, Enable, Disable, Switch };
 
 /// [[event]]: at a time, or where a signal crosses a value.
-struct TriggerRecord {
+struct UserEventRecord {
   std::string name;
   std::optional<double> time;
   std::string signal;  ///< "sensor:component" or "/channel:component"; empty with time
@@ -155,7 +155,7 @@ struct SimulationRecord {
   double output_until = std::numeric_limits<double>::infinity();  ///< nor those after it
   int output_every = 1;                                           ///< of the others one in so many
   std::vector<std::string> record;   ///< groups of channels: "bodies", "hinges/root", ...; empty = all
-  std::string integrator = "adams";  ///< adams, bdf (CVODE), rk (adaptive, ARKODE), rk4, implicit (fixed step), auto
+  std::string integrator = "adams";  ///< adams, bdf (CVODE), rk (adaptive, Dormand and Prince), rk4, implicit (fixed step), auto
   double step = 0;                   ///< rk4, implicit; also the largest step of the others when > 0
   int rk_order = 8;                  ///< rk: 5 or 8
   double relative_tolerance = 1e-8, absolute_tolerance = 1e-10;
@@ -179,7 +179,7 @@ struct SystemSpec {
   std::vector<ForceRecord> forces;
   std::vector<ForceElementRecord> force_elements;  ///< [[force]] with a type
   std::vector<SensorRecord> sensors;
-  std::vector<TriggerRecord> events;
+  std::vector<UserEventRecord> events;
   std::vector<InputRecord> inputs;
   std::vector<ControllerRecord> controllers;
   std::vector<ActuatorRecord> actuators;

@@ -6,7 +6,7 @@
 namespace bough::solver {
 namespace {
 
-class HingeDrive : public Actuator {
+class HingeActuator : public Actuator {
  public:
   int row = -1;
 
@@ -23,7 +23,7 @@ class HingeDrive : public Actuator {
 };
 
 /// i = (V - k_b N q̇) / R;  Q = N k_t i - c q̇ - Q_c tanh(q̇ / w)
-class Motor final : public HingeDrive {
+class Motor final : public HingeActuator {
  public:
   double torque_constant = 0, back_emf = 0, resistance = 1, ratio = 1, viscous = 0, coulomb = 0, width = 1;
   void calc_outputs(const BlockInput& in, double* y) const override {
@@ -42,7 +42,7 @@ class Motor final : public HingeDrive {
 };
 
 /// The command is the largest torque: Q = -|command| tanh(q̇ / w)
-class Brake final : public HingeDrive {
+class Brake final : public HingeActuator {
  public:
   double width = 1;
   void calc_outputs(const BlockInput& in, double* y) const override {
@@ -56,9 +56,9 @@ class Brake final : public HingeDrive {
 
 }  // namespace
 
-std::unique_ptr<Actuator> make_hinge_drive(const records::ActuatorRecord& r, SettingsReader& keys,
-                                           const ActuatorPlace& place) {
-  std::unique_ptr<HingeDrive> made;
+std::unique_ptr<Actuator> make_hinge_actuator(const records::ActuatorRecord& r, SettingsReader& keys,
+                                              const ActuatorPlace& place) {
+  std::unique_ptr<HingeActuator> made;
   if (r.type == "motor") {
     auto motor = std::make_unique<Motor>();
     motor->torque_constant = keys.get("torque_constant");
@@ -74,7 +74,7 @@ std::unique_ptr<Actuator> make_hinge_drive(const records::ActuatorRecord& r, Set
     brake->width = keys.get_positive("stick_rate");
     made = std::move(brake);
   } else {
-    made = std::make_unique<HingeDrive>();
+    made = std::make_unique<HingeActuator>();
   }
   made->row = place.row;
   made->read_shaping(keys);

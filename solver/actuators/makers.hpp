@@ -13,12 +13,12 @@ struct ActuatorPlace {
   int row = -1, marker = -1;
 };
 
-std::unique_ptr<Actuator> make_hinge_drive(const records::ActuatorRecord& record, SettingsReader& keys,
-                                           const ActuatorPlace& place);
-std::unique_ptr<Actuator> make_modal_drive(const records::ActuatorRecord& record, SettingsReader& keys,
-                                           const ActuatorPlace& place);
-std::unique_ptr<Actuator> make_push(const records::ActuatorRecord& record, SettingsReader& keys,
-                                    const ActuatorPlace& place);
+std::unique_ptr<Actuator> make_hinge_actuator(const records::ActuatorRecord& record, SettingsReader& keys,
+                                              const ActuatorPlace& place);
+std::unique_ptr<Actuator> make_modal_actuator(const records::ActuatorRecord& record, SettingsReader& keys,
+                                              const ActuatorPlace& place);
+std::unique_ptr<Actuator> make_node_actuator(const records::ActuatorRecord& record, SettingsReader& keys,
+                                             const ActuatorPlace& place);
 std::unique_ptr<Actuator> make_rotor(const records::ActuatorRecord& record, SettingsReader& keys,
                                      const ActuatorPlace& place);
 /// A unit vector: "axis".

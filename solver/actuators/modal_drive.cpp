@@ -4,7 +4,7 @@
 namespace bough::solver {
 namespace {
 
-class ModalDrive final : public Actuator {
+class ModalActuator final : public Actuator {
  public:
   int row = -1;  ///< of TreeData::applied
 
@@ -14,9 +14,9 @@ class ModalDrive final : public Actuator {
 
 }  // namespace
 
-std::unique_ptr<Actuator> make_modal_drive(const records::ActuatorRecord&, SettingsReader& keys,
-                                           const ActuatorPlace& place) {
-  auto made = std::make_unique<ModalDrive>();
+std::unique_ptr<Actuator> make_modal_actuator(const records::ActuatorRecord&, SettingsReader& keys,
+                                              const ActuatorPlace& place) {
+  auto made = std::make_unique<ModalActuator>();
   made->row = place.row;
   made->read_shaping(keys);
   made->description = "generalized force on the mode";

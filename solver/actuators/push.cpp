@@ -7,7 +7,7 @@
 namespace bough::solver {
 namespace {
 
-class Push : public Actuator {
+class NodeActuator : public Actuator {
  public:
   int marker = -1;
   bool is_moment = false;
@@ -29,7 +29,7 @@ class Push : public Actuator {
 
 /// On while the command is above `on`, until it is below `off` and the shortest pulse is over. Memory: on, since when.
 /// The last state: propellant used.
-class Jet final : public Push {
+class Jet final : public NodeActuator {
  public:
   double thrust = 0, on = 0.5, off = 0.5, shortest = 0, exhaust = 0;
 
@@ -38,13 +38,13 @@ class Jet final : public Push {
     y[1] = exhaust > 0 ? in.z[sizes.states - 1] : 0;
   }
   void calc_rates(const BlockInput& in, double* z_dot) const override {
-    Push::calc_rates(in, z_dot);
+    NodeActuator::calc_rates(in, z_dot);
     if (exhaust > 0) z_dot[sizes.states - 1] = in.d[0] * thrust / exhaust;
   }
   void add_consumption(const BlockInput& in, Eigen::Ref<Eigen::VectorXd> by_body) const override {
     if (exhaust > 0) by_body[in.motion->tree.markers[static_cast<size_t>(marker)].body] += in.z[sizes.states - 1];
   }
-  void calc_guards(const BlockInput& in, double* g) const override {
+  void calc_event_functions(const BlockInput& in, double* g) const override {
     const double command = calc_command(in);
     g[0] = in.d[0] > 0 ? std::min(off - command, in.t - in.d[1] - shortest) : command - on;
   }
@@ -56,9 +56,9 @@ class Jet final : public Push {
 
 }  // namespace
 
-std::unique_ptr<Actuator> make_push(const records::ActuatorRecord& r, SettingsReader& keys,
-                                    const ActuatorPlace& place) {
-  std::unique_ptr<Push> made;
+std::unique_ptr<Actuator> make_node_actuator(const records::ActuatorRecord& r, SettingsReader& keys,
+                                             const ActuatorPlace& place) {
+  std::unique_ptr<NodeActuator> made;
   if (r.type == "jet") {
     auto jet = std::make_unique<Jet>();
     jet->thrust = keys.get_positive("thrust");
@@ -68,10 +68,10 @@ std::unique_ptr<Actuator> make_push(const records::ActuatorRecord& r, SettingsRe
     jet->exhaust = keys.has("exhaust_velocity") ? keys.get_positive("exhaust_velocity") : 0;
     keys.demand(jet->off < jet->on, "has an off that is not below on", "give off < on");
     jet->sizes.memory = 2;
-    jet->sizes.guards = 1;
+    jet->sizes.event_functions = 1;
     made = std::move(jet);
   } else {
-    made = std::make_unique<Push>();
+    made = std::make_unique<NodeActuator>();
   }
   made->marker = place.marker;
   made->is_moment = r.type == "moment";

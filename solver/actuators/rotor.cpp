@@ -47,14 +47,14 @@ class Wheel final : public Rotor {
     calc_outputs(in, y);
     z_dot[num_lags()] = y[0];
   }
-  void calc_guards(const BlockInput& in, double* g) const override {
+  void calc_event_functions(const BlockInput& in, double* g) const override {
     const double h = get_momentum(in), torque = calc_command(in);
     g[0] = in.d[0] == 0 ? std::min(h - limit, torque) : -1;
     g[1] = in.d[0] == 0 ? std::min(-h - limit, -torque) : -1;
     g[2] = in.d[0] != 0 ? -in.d[0] * torque : -1;
   }
-  void switch_over(const BlockInput&, int guard, double* d) const override {
-    d[0] = guard == 0 ? 1 : guard == 1 ? -1 : 0;
+  void switch_over(const BlockInput&, int function, double* d) const override {
+    d[0] = function == 0 ? 1 : function == 1 ? -1 : 0;
   }
   void add_load(const BlockInput& in, const double* y, TreeData& data) const override {
     const Vector3d a = get_motion(in).R * axis;
@@ -192,7 +192,7 @@ std::unique_ptr<Actuator> make_rotor(const records::ActuatorRecord& r, SettingsR
     if (wheel->coulomb > 0) wheel->width = keys.get_positive("stick_rate");
     keys.demand(std::abs(wheel->initial) <= wheel->limit, "starts beyond its momentum_limit", "give less momentum");
     wheel->sizes.memory = 1;
-    wheel->sizes.guards = 3;
+    wheel->sizes.event_functions = 3;
     wheel->dims = "F L, F L T, 1/T";
     made = std::move(wheel);
   } else if (r.type == "double_gimbal_cmg") {

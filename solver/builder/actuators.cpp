@@ -18,16 +18,16 @@ struct Kind {
   std::unique_ptr<Actuator> (*make)(const records::ActuatorRecord&, SettingsReader&, const ActuatorPlace&);
 };
 constexpr Kind kKinds[] = {
-    {"hinge", 1, Where::Hinge, "", make_hinge_drive},
-    {"motor", 2, Where::Hinge, "", make_hinge_drive},
-    {"brake", 1, Where::Hinge, "", make_hinge_drive},
-    {"force", 1, Where::Force, "F", make_push},
-    {"moment", 1, Where::Moment, "F L", make_push},
-    {"jet", 2, Where::Force, "", make_push},
+    {"hinge", 1, Where::Hinge, "", make_hinge_actuator},
+    {"motor", 2, Where::Hinge, "", make_hinge_actuator},
+    {"brake", 1, Where::Hinge, "", make_hinge_actuator},
+    {"force", 1, Where::Force, "F", make_node_actuator},
+    {"moment", 1, Where::Moment, "F L", make_node_actuator},
+    {"jet", 2, Where::Force, "", make_node_actuator},
     {"wheel", 3, Where::Moment, "F L", make_rotor},
     {"cmg", 2, Where::Moment, "1/T", make_rotor},
     {"double_gimbal_cmg", 4, Where::Moment, "1/T", make_rotor},
-    {"modal", 1, Where::Mode, "", make_modal_drive},
+    {"modal", 1, Where::Mode, "", make_modal_actuator},
 };
 
 const Kind* find_kind(const std::string& type) {
@@ -51,7 +51,7 @@ bool find_row(const records::ActuatorRecord& r, const System& system, const Tree
                near.empty() ? "declare it" : "did you mean '" + near + "'?");
     return false;
   }
-  if (!system.is_sound(body)) return false;
+  if (!system.is_valid(body)) return false;
   const int count = tree[body].num_hinge_u();
   if (r.coordinate < 1 || r.coordinate > count) {
     keys.error("control.unknown-place",
@@ -77,7 +77,7 @@ int find_own_body(const records::ActuatorRecord& r, const System& system, Settin
                near.empty() ? "declare it" : "did you mean '" + near + "'?");
     return -1;
   }
-  return system.is_sound(body) ? body : -1;
+  return system.is_valid(body) ? body : -1;
 }
 
 bool find_mode(const records::ActuatorRecord& r, const System& system, const Tree& tree, SettingsReader& keys,

@@ -14,14 +14,16 @@ using records::ConstraintType;
 
 // grip of positions and of rates, by row of u
 void collect_grips(const records::SystemSpec& spec, const TreeOrder& order, const Tree& tree,
-                   std::vector<Grip>& positions, std::vector<Grip>& rates) {
-  positions.assign(static_cast<size_t>(tree.num_u), Grip::Flexible);
+                   std::vector<AssemblyPriority>& positions, std::vector<AssemblyPriority>& rates) {
+  positions.assign(static_cast<size_t>(tree.num_u), AssemblyPriority::Modal);
   rates = positions;
   for (int b = 0; b < tree.size(); ++b) {
     const TreeBody& tb = tree[b];
     const int h = order.hinge[static_cast<size_t>(b)];
     const auto get_grip = [&](bool is_given, HingeMode mode) {
-      return mode != HingeMode::Free ? Grip::Fixed : is_given ? Grip::Given : Grip::Loose;
+      return mode != HingeMode::Free ? AssemblyPriority::Fixed
+             : is_given              ? AssemblyPriority::Given
+                                     : AssemblyPriority::Free;
     };
     for (int i = 0; i < tb.num_hinge_u(); ++i) {
       const auto row = static_cast<size_t>(tb.u_offset + i);
@@ -106,7 +108,7 @@ void note_moved(const Tree& tree, const VectorXd& q0, const VectorXd& u0, const 
 }
 
 // The hinges that a loop runs through: 'b' (locked), 'c'.
-std::string describe_hinges(const Constraint& c, const Tree& tree, const std::vector<Grip>& grips) {
+std::string describe_hinges(const Constraint& c, const Tree& tree, const std::vector<AssemblyPriority>& grips) {
   const auto climb = [&](int marker) {
     std::vector<int> bodies;
     for (int b = tree.markers[static_cast<size_t>(marker)].body; b >= 0; b = tree[b].parent) bodies.push_back(b);
@@ -132,16 +134,16 @@ std::string describe_hinges(const Constraint& c, const Tree& tree, const std::ve
     if (k == kMost) return list + " and " + std::to_string(bodies.size() - kMost) + " more";
     const TreeBody& tb = tree[bodies[k]];
     list += (list.empty() ? "" : ", ") + quote(tb.hinge_name);
-    const Grip* grip = grips.data() + tb.u_offset;
-    const auto held = std::count(grip, grip + tb.num_hinge_u(), Grip::Fixed);
+    const AssemblyPriority* grip = grips.data() + tb.u_offset;
+    const auto held = std::count(grip, grip + tb.num_hinge_u(), AssemblyPriority::Fixed);
     if (tb.num_hinge_u() > 0 && held > 0)
       list += held == tb.num_hinge_u() ? " (locked or prescribed)" : " (locked or prescribed in part)";
   }
   return list;
 }
 
-void report_open(const Assembly& assembly, const Loops& loops, const Tree& tree, const std::vector<Grip>& grips,
-                 const char* of, Diagnostics& diagnostics) {
+void report_open(const Assembly& assembly, const Loops& loops, const Tree& tree,
+                 const std::vector<AssemblyPriority>& grips, const char* of, Diagnostics& diagnostics) {
   const Constraint& c = loops[std::max(0, assembly.worst)];
   std::ostringstream what;
   what << "the loops cannot be closed: " << of << " of constraint " << quote(c.name) << " stay off by " << assembly.gap;
@@ -162,7 +164,7 @@ void assemble(const records::SystemSpec& spec, const TreeOrder& order, System& s
   TreeData data = make_tree_data(tree);
   LoopData loop_data = make_loop_data(system.loops, tree);
   if (loop_data.blocks.empty()) return;
-  std::vector<Grip> positions, rates;
+  std::vector<AssemblyPriority> positions, rates;
   collect_grips(spec, order, tree, positions, rates);
   const Assembly closed = assemble_positions(system.loops, tree, system.start, positions, q, data, loop_data);
   if (!closed.is_closed) return report_open(closed, system.loops, tree, positions, "the positions", diagnostics);
@@ -172,7 +174,7 @@ void assemble(const records::SystemSpec& spec, const TreeOrder& order, System& s
   note_moved(tree, q0, u0, q, u, system.loops[loop_data.blocks[0].constraints[0]].at, diagnostics);
   system.initial_q = q;
   system.initial_u = u;
-  system.initial_closings = get_closings(loop_data);
+  system.initial_constraints = get_constraint_states(loop_data);
 }
 
 }  // namespace bough::solver

@@ -101,7 +101,7 @@ bool check_rotations(const records::HingeRecord& h, Diagnostics& diagnostics) {
   return good;
 }
 
-// A hinge freedom that moves no mass at all.
+// A hinge dof that moves no mass at all.
 void check_masses(const Tree& tree, const records::SystemSpec& spec, const TreeOrder& order, Diagnostics& diagnostics) {
   std::vector<double> carried(tree.bodies.size());
   for (size_t b = tree.bodies.size(); b-- > 0;) {
@@ -126,31 +126,31 @@ void add_force_marker(AppliedForce& force, Tree& tree) {
   force.marker = tree.add_marker(at);
 }
 
-void collect_breakpoints(System& system) {
+void collect_jump_times(System& system) {
   const auto add = [](std::vector<double>& to, const std::vector<double>& times) {
     to.insert(to.end(), times.begin(), times.end());
   };
   const auto add_motion = [&](const TimeFunction* f) {
     if (f == nullptr) return;
-    add(system.breakpoints, f->breakpoints());
-    add(system.landmarks, f->landmarks());
+    add(system.jump_times, f->jump_times());
+    add(system.mesh_times, f->mesh_times());
   };
   for (const TreeBody& tb : system.tree.bodies) std::for_each(tb.motion.begin(), tb.motion.end(), add_motion);
   const auto add_force = [&](const TimeFunction* f) {
     if (f == nullptr) return;
-    add(system.breakpoints, f->corners());
-    add(system.landmarks, f->landmarks());
+    add(system.jump_times, f->force_jump_times());
+    add(system.mesh_times, f->mesh_times());
   };
   for (const AppliedForce& force : system.forces) add_force(force.function);
   for (const auto& element : system.elements) add_force(element->function());
-  for (auto* times : {&system.breakpoints, &system.landmarks}) {
+  for (auto* times : {&system.jump_times, &system.mesh_times}) {
     std::sort(times->begin(), times->end());
     times->erase(std::unique(times->begin(), times->end()), times->end());
   }
 }
 
 /// Stands for a hinge that could not be made, so that what hangs on it can be looked at.
-std::unique_ptr<const Hinge> make_stand_in(records::HingeRecord record) {
+std::unique_ptr<const Hinge> make_placeholder(records::HingeRecord record) {
   Diagnostics unheard;
   record.type = records::HingeType::Fixed;
   return make_hinge(record, unheard);
@@ -170,7 +170,7 @@ void collect_left_out(const records::SystemSpec& spec, const FlexMap& flex, Syst
   for (const auto& r : spec.bodies) {
     const int b = system.find_body(r.name);
     const auto found = flex.find(r.file);
-    if (r.stiffening || b < 0 || found == flex.end() || !system.is_sound(b) || system.num_modes(b) == 0) continue;
+    if (r.stiffening || b < 0 || found == flex.end() || !system.is_valid(b) || system.num_modes(b) == 0) continue;
     system.left_out[static_cast<size_t>(b)] = std::make_shared<const StiffeningTerms>(
         StiffeningTerms::collect(spec, system.tree, system.loops, system.forces, found->second, b, true));
   }
@@ -203,10 +203,10 @@ System draft_system(const records::SystemSpec& spec, const FlexMap& flex, Diagno
     const bool rotations_good = check_rotations(hinge, diagnostics);
     if (tb.hinge) build_hinge_coordinates(hinge, functions, tb, diagnostics);
     check_motion(hinge, spec.simulation, tb, diagnostics);
-    const bool is_sound = body && tb.hinge && rotations_good;
-    system.sound.push_back(is_sound);
-    if (!is_sound) {
-      if (!tb.hinge) tb.hinge = make_stand_in(hinge);
+    const bool is_valid = body && tb.hinge && rotations_good;
+    system.body_is_valid.push_back(is_valid);
+    if (!is_valid) {
+      if (!tb.hinge) tb.hinge = make_placeholder(hinge);
       body = Body::make_rigid(1, Vector3d::Zero(), Matrix3d::Identity());
     } else {
       const int n = body->num_modes();
@@ -228,7 +228,7 @@ System draft_system(const records::SystemSpec& spec, const FlexMap& flex, Diagno
                               " of ground, which has only node 0",
                           "give parent_position instead");
       }
-    } else if (system.sound[static_cast<size_t>(tb.parent)]) {
+    } else if (system.body_is_valid[static_cast<size_t>(tb.parent)]) {
       const TreeBody& parent = tree.bodies[static_cast<size_t>(tb.parent)];
       tb.on_parent = build_attachment(parent.name, parent.body, hinge.parent_node, hinge.parent_position,
                                       hinge.parent_rotation, hinge, diagnostics);
@@ -247,7 +247,7 @@ System draft_system(const records::SystemSpec& spec, const FlexMap& flex, Diagno
                         near.empty() ? "declare it" : "did you mean " + quote(near) + "?");
       continue;
     }
-    if (!system.sound[static_cast<size_t>(found->second)]) continue;
+    if (!system.body_is_valid[static_cast<size_t>(found->second)]) continue;
     const auto& file = spec.bodies[static_cast<size_t>(order.body[static_cast<size_t>(found->second)])].file;
     const auto flex_record = flex.find(file);
     auto force = build_force(record, tree, found->second, flex_record == flex.end() ? nullptr : &flex_record->second,
@@ -257,13 +257,14 @@ System draft_system(const records::SystemSpec& spec, const FlexMap& flex, Diagno
   if (!system.gravity.uniform.allFinite()) {
     diagnostics.error("system.bad-gravity", spec.simulation.at, "gravity is not three finite numbers");
   }
-  const bool is_complete = std::find(system.sound.begin(), system.sound.end(), false) == system.sound.end();
+  const bool is_complete =
+      std::find(system.body_is_valid.begin(), system.body_is_valid.end(), false) == system.body_is_valid.end();
   if (is_complete) check_masses(tree, spec, order, diagnostics);
   tree.finish();
   for (auto* forces : {&system.forces, &system.driven})
     for (AppliedForce& force : *forces) add_force_marker(force, tree);
   build_constraints(spec, order, system, diagnostics);
-  const ElementContext context{spec, order, flex, functions, system.sound};
+  const ElementContext context{spec, order, flex, functions, system.body_is_valid};
   for (const auto& record : spec.force_elements) {
     auto element = build_element(record, context, tree, diagnostics);
     if (!element) continue;
@@ -272,14 +273,14 @@ System draft_system(const records::SystemSpec& spec, const FlexMap& flex, Diagno
     system.elements.push_back(std::move(element));
   }
   for (size_t b = 0; b < tree.bodies.size(); ++b) {
-    if (order.hinge[b] < 0 || !system.sound[b]) continue;
+    if (order.hinge[b] < 0 || !system.body_is_valid[b]) continue;
     build_hinge_laws(spec.hinges[static_cast<size_t>(order.hinge[b])], context, tree.bodies[b], system.elements,
-                     system.latches, diagnostics);
+                     system.joint_contacts, diagnostics);
   }
   build_recoveries(spec, flex, system, diagnostics);
   collect_left_out(spec, flex, system);
   build_signals(spec, flex, functions, uses, system, diagnostics);
-  collect_breakpoints(system);
+  collect_jump_times(system);
   if (diagnostics.num_errors() == 0 && system.loops.size() > 0) assemble(spec, order, system, diagnostics);
   if (diagnostics.num_errors() == 0) check_stops(system, diagnostics);
   if (diagnostics.num_errors() == 0) check_shapes(spec, system, flex, diagnostics);

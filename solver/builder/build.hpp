@@ -57,8 +57,8 @@ struct ElementContext {
   const TreeOrder& order;
   const FlexMap& flex;
   const FunctionMap& functions;
-  const std::vector<bool>& sound;
-  bool is_sound(int body) const { return sound[static_cast<size_t>(body)]; }
+  const std::vector<bool>& body_is_valid;
+  bool is_valid(int body) const { return body_is_valid[static_cast<size_t>(body)]; }
 };
 /// The [[function]] of that name as a curve; nullptr for "" and with errors reported.
 std::unique_ptr<const Curve> find_curve(const ElementContext& context, const std::string& name,
@@ -68,8 +68,8 @@ std::unique_ptr<const ForceElement> build_element(const records::ForceElementRec
                                                   const ElementContext& context, Tree& tree, Diagnostics& diagnostics);
 /// What acts along the coordinates of a body's hinge, and its motors' inertia, of the finished tree.
 void build_hinge_laws(const records::HingeRecord& record, const ElementContext& context, TreeBody& tb,
-                      std::vector<std::unique_ptr<const ForceElement>>& elements, std::vector<Latch>& latches,
-                      Diagnostics& diagnostics);
+                      std::vector<std::unique_ptr<const ForceElement>>& elements,
+                      std::vector<JointContact>& joint_contacts, Diagnostics& diagnostics);
 
 /// What starts beyond a rigid stop is an error ("system.beyond-stop"); by less than calc_slack it is put on it.
 void check_stops(System& system, Diagnostics& diagnostics);

@@ -17,7 +17,7 @@ using FlexMap = std::map<std::string, records::FlexBody>;
 /// inboard hinge gets a free one (a note says so).
 System build_system(const records::SystemSpec& spec, const FlexMap& flex, Diagnostics& diagnostics);
 /// The same without a throw, so that what follows can report its errors too: not to be moved when there are any. A body
-/// that cannot be built is a rigid one here, with is_sound false.
+/// that cannot be built is a rigid one here, with is_valid false.
 System draft_system(const records::SystemSpec& spec, const FlexMap& flex, Diagnostics& diagnostics);
 
 }  // namespace bough::solver

@@ -18,8 +18,8 @@ void check_motion(const records::HingeRecord& record, const records::SimulationR
     if (tb.motion[i] == nullptr) continue;
     const auto at = [&](double t) { return tb.motion[i]->calc(t).f; };
     double scale = std::max(std::abs(at(simulation.start)), std::abs(at(end)));
-    for (const double t : tb.motion[i]->breakpoints()) scale = std::max(scale, std::abs(at(t)));
-    for (const double t : tb.motion[i]->breakpoints()) {
+    for (const double t : tb.motion[i]->jump_times()) scale = std::max(scale, std::abs(at(t)));
+    for (const double t : tb.motion[i]->jump_times()) {
       const double before = at(std::nextafter(t, t - 1)), after = at(t);
       if (t <= simulation.start || t >= end || std::abs(after - before) <= kSamePlace * scale) continue;
       std::ostringstream what;

@@ -114,7 +114,7 @@ class Builder {
       return std::nullopt;
     }
     m.body = found->second;
-    if (!system_.sound[static_cast<size_t>(m.body)]) return std::nullopt;
+    if (!system_.body_is_valid[static_cast<size_t>(m.body)]) return std::nullopt;
     const Body& body = system_.tree[m.body].body;
     const bool is_ball = r.type != ConstraintType::Hinge || r.hinge == records::HingeType::Spherical;
     // The frame of what acts along a line lies at the child's point: the parent's node feels a moment.
@@ -142,7 +142,7 @@ class Builder {
         continue;
       }
       const TreeBody& tb = system_.tree[static_cast<int>(at - names.begin())];
-      if (!tb.hinge->has_plain_coordinates()) {
+      if (!tb.hinge->has_independent_coordinates()) {
         diagnostics_.error(
             "system.bad-constraint", r.at,
             user + " couples an orientation of hinge " + quote(term.hinge) + ", which is no plain coordinate",

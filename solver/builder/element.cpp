@@ -50,7 +50,7 @@ class ElementBuilder {
   int find_body(const std::string& name) {
     if (name == "ground") return -1;
     const auto found = context_.order.tree_index.find(name);
-    if (found != context_.order.tree_index.end()) return context_.is_sound(found->second) ? found->second : kAbsent;
+    if (found != context_.order.tree_index.end()) return context_.is_valid(found->second) ? found->second : kAbsent;
     std::vector<std::string> names = {"ground"};
     for (const auto& body : context_.spec.bodies) names.push_back(body.name);
     if (std::find(names.begin(), names.end(), name) != names.end()) return kAbsent;  // in a loop

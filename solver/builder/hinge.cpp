@@ -19,7 +19,7 @@ VectorXd make_coordinates(const records::HingeRecord& r, const std::vector<doubl
   hinge.set_neutral(q.data());
   if (values.empty() || !check_count(r, values, hinge.num_q(), key, diagnostics)) return q;
   hinge.set_from_file(values.data(), q.data());
-  if (!hinge.has_plain_coordinates()) {
+  if (!hinge.has_independent_coordinates()) {
     const double norm = q.head<4>().norm();
     if (!(norm > 1e-6)) {
       diagnostics.error("system.zero-quaternion", r.at,
@@ -41,7 +41,7 @@ void build_motion(const records::HingeRecord& r, const FunctionMap& functions, T
   int given = 0;
   for (const auto& name : r.motion) given += name.empty() ? 0 : 1;
   if (given == 0) return;
-  if (!tb.hinge->has_plain_coordinates()) {
+  if (!tb.hinge->has_independent_coordinates()) {
     diagnostics.error("system.prescribed-rotation", r.at,
                       "hinge " + quote(r.name) + ": the motion of a spherical or free hinge cannot be prescribed",
                       "use hinges of angles and travels: gimbal and general (without q) among them");
@@ -92,7 +92,7 @@ void build_locks(const records::HingeRecord& r, TreeBody& tb, Diagnostics& diagn
     return;
   }
   const auto first = r.locked.begin();
-  if (!tb.hinge->has_plain_coordinates() && (r.locked[0] != r.locked[1] || r.locked[0] != r.locked[2])) {
+  if (!tb.hinge->has_independent_coordinates() && (r.locked[0] != r.locked[1] || r.locked[0] != r.locked[2])) {
     diagnostics.error("system.partial-lock", r.at,
                       "hinge " + quote(r.name) + ": of the three rates of an orientation some are locked and some not",
                       "lock all three or none, or use a universal or revolute hinge");
@@ -133,7 +133,7 @@ void build_hinge_coordinates(const records::HingeRecord& r, const FunctionMap& f
   tb.initial_q = make_coordinates(r, r.position, *tb.hinge, "position", diagnostics);
   tb.null_position = make_coordinates(r, r.null_position, *tb.hinge, "null_position", diagnostics);
   // Of the two signs of a quaternion the one within half a turn of the springs' rest: they follow it from there.
-  if (!tb.hinge->has_plain_coordinates() && tb.initial_q.head<4>().dot(tb.null_position.head<4>()) < 0)
+  if (!tb.hinge->has_independent_coordinates() && tb.initial_q.head<4>().dot(tb.null_position.head<4>()) < 0)
     tb.initial_q.head<4>() *= -1;
   tb.initial_u = VectorXd::Zero(nu);
   if (!r.rate.empty() && check_count(r, r.rate, nu, "rate", diagnostics)) tb.initial_u = as_vector(r.rate);

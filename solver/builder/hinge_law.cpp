@@ -16,13 +16,13 @@ class LawBuilder {
   LawBuilder(const records::HingeRecord& record, const ElementContext& context, TreeBody& tb, Diagnostics& diagnostics)
       : r_(record), context_(context), tb_(tb), diagnostics_(diagnostics), user_("hinge " + quote(record.name)) {}
 
-  void build(std::vector<std::unique_ptr<const ForceElement>>& elements, std::vector<Latch>& latches) {
+  void build(std::vector<std::unique_ptr<const ForceElement>>& elements, std::vector<JointContact>& joint_contacts) {
     const auto& law = r_.law;
     bool is_given = law.has_stops || law.has_friction;
     for (const auto* list : {&law.preload, &law.rotor_inertia}) is_given = is_given || !list->empty();
     for (const auto* list : {&law.spring_table, &law.damper_table}) is_given = is_given || !list->empty();
     if (!is_given) return;
-    if (!tb_.hinge->has_plain_coordinates()) {
+    if (!tb_.hinge->has_independent_coordinates()) {
       refuse("is of a type without single coordinates: it takes no preload, tables, stops, friction or motor inertia",
              "use hinges of angles and travels: gimbal and general (without q) among them");
       return;
@@ -34,7 +34,7 @@ class LawBuilder {
     int ignored = 0;
     for (int i = 0; i < tb_.num_hinge_u(); ++i) {
       if (tb_.mode[static_cast<size_t>(i)] == HingeMode::Prescribed) ++ignored;
-      add(i, elements, latches);
+      add(i, elements, joint_contacts);
     }
     if (ignored == tb_.num_hinge_u() && ignored > 0) {
       diagnostics_.warning("system.ignored-spring", r_.at,
@@ -111,7 +111,8 @@ class LawBuilder {
       refuse("has stops with a restitution and a spring", "give stops a stiffness and damping, or a restitution");
   }
 
-  void add(int i, std::vector<std::unique_ptr<const ForceElement>>& elements, std::vector<Latch>& latches) {
+  void add(int i, std::vector<std::unique_ptr<const ForceElement>>& elements,
+           std::vector<JointContact>& joint_contacts) {
     const auto& r = r_.law;
     HingeLaw::Law law;
     law.preload = at(r.preload, i);
@@ -138,9 +139,9 @@ class LawBuilder {
     if (law.static_friction > law.coulomb && !(law.stribeck_velocity > 0) && !law.is_dry)
       refuse("has static friction without stribeck_velocity", "give the rate over which it falls to coulomb's");
     if (is_rigid || law.is_dry)
-      latches.push_back({"coordinate " + which + " of hinge " + quote(tb_.hinge_name), tb_.q_offset + i,
-                         tb_.u_offset + i, is_rigid ? law.lower : -free, is_rigid ? law.upper : free,
-                         at(r.stop_restitution, i), law.is_dry ? law.static_friction : 0});
+      joint_contacts.push_back({"coordinate " + which + " of hinge " + quote(tb_.hinge_name), tb_.q_offset + i,
+                                tb_.u_offset + i, is_rigid ? law.lower : -free, is_rigid ? law.upper : free,
+                                at(r.stop_restitution, i), law.is_dry ? law.static_friction : 0});
     if (!(law.stribeck_velocity > 0)) {
       if (law.is_dry) law.static_friction = law.coulomb;  // as soon as it slides
       law.stribeck_velocity = 1;
@@ -166,26 +167,26 @@ class LawBuilder {
 }  // namespace
 
 void build_hinge_laws(const records::HingeRecord& record, const ElementContext& context, TreeBody& tb,
-                      std::vector<std::unique_ptr<const ForceElement>>& elements, std::vector<Latch>& latches,
-                      Diagnostics& diagnostics) {
-  LawBuilder(record, context, tb, diagnostics).build(elements, latches);
+                      std::vector<std::unique_ptr<const ForceElement>>& elements,
+                      std::vector<JointContact>& joint_contacts, Diagnostics& diagnostics) {
+  LawBuilder(record, context, tb, diagnostics).build(elements, joint_contacts);
 }
 
 void check_stops(System& system, Diagnostics& diagnostics) {
   VectorXd q(system.tree.num_q), u(system.tree.num_u);
   system.calc_initial_state(q, u);
-  for (const Latch& latch : system.latches) {
+  for (const JointContact& contact : system.joint_contacts) {
     const auto carries = [&](const TreeBody& b) {
-      return latch.u_row >= b.u_offset && latch.u_row < b.u_offset + b.num_hinge_u();
+      return contact.u_row >= b.u_offset && contact.u_row < b.u_offset + b.num_hinge_u();
     };
     TreeBody& tb = *std::find_if(system.tree.bodies.begin(), system.tree.bodies.end(), carries);
-    const int i = latch.u_row - tb.u_offset;
+    const int i = contact.u_row - tb.u_offset;
     if (tb.mode[static_cast<size_t>(i)] == HingeMode::Prescribed) continue;
-    const double at = q[latch.q_row], inside = std::clamp(at, latch.lower, latch.upper);
+    const double at = q[contact.q_row], inside = std::clamp(at, contact.lower, contact.upper);
     if (at == inside) continue;
     if (std::abs(at - inside) > calc_slack(inside)) {
       std::ostringstream what;
-      what << latch.name << " starts at " << at << ", beyond its " << (at < inside ? "lower" : "upper") << " stop at "
+      what << contact.name << " starts at " << at << ", beyond its " << (at < inside ? "lower" : "upper") << " stop at "
            << inside;
       diagnostics.error("system.beyond-stop", tb.hinge_at, what.str(),
                         system.initial_q.size() > 0
@@ -194,7 +195,7 @@ void check_stops(System& system, Diagnostics& diagnostics) {
       continue;
     }
     tb.initial_q[i] = inside;
-    if (system.initial_q.size() > 0) system.initial_q[latch.q_row] = inside;
+    if (system.initial_q.size() > 0) system.initial_q[contact.q_row] = inside;
   }
 }
 

@@ -12,7 +12,7 @@ std::vector<std::unique_ptr<Block>> make_lagged_stiffening(const records::System
   for (const auto& r : spec.bodies) {
     const int b = system.find_body(r.name);
     const auto record = flex.find(r.file);
-    if (b < 0 || !system.is_sound(b) || record == flex.end() || !r.stiffening || system.num_modes(b) == 0) continue;
+    if (b < 0 || !system.is_valid(b) || record == flex.end() || !r.stiffening || system.num_modes(b) == 0) continue;
     auto made = std::make_unique<LaggedStiffening>();
     made->body = b;
     made->n = system.num_modes(b);

@@ -62,7 +62,7 @@ void build_recoveries(const records::SystemSpec& spec, const FlexMap& flex, Syst
     const bool is_asked = r.recover_all || !r.recover.empty();
     const int b = system.find_body(r.name);
     const auto found = flex.find(r.file);
-    if (!(is_asked || is_sensed) || b < 0 || !system.is_sound(b) || found == flex.end()) continue;
+    if (!(is_asked || is_sensed) || b < 0 || !system.is_valid(b) || found == flex.end()) continue;
     if (found->second.recovery.empty() || system.num_modes(b) == 0) {
       if (is_asked)
         diagnostics.error("system.no-recovery", r.at,

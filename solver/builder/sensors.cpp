@@ -76,7 +76,7 @@ class Resolver {
       return;
     }
     e.description = std::string(kind.name) + " of hinge " + r.hinge;
-    if (!system_.is_sound(e.body) || kind.of == SensorOf::HingeLoad) return;
+    if (!system_.is_valid(e.body) || kind.of == SensorOf::HingeLoad) return;
     const bool angle = r.type == SensorType::HingeAngle || r.type == SensorType::Resolver;
     const int count = angle ? system_.num_hinge_q(e.body) : system_.num_hinge_rates(e.body);
     if (r.coordinate < 0 || r.coordinate > count || count == 0) {
@@ -88,7 +88,7 @@ class Resolver {
     }
     e.size = r.coordinate == 0 ? count : 1;
     if (r.coordinate > 0) e.description += ", coordinate " + std::to_string(r.coordinate);
-    if (angle || system_.tree[e.body].hinge->has_plain_coordinates()) name_by_count(e);
+    if (angle || system_.tree[e.body].hinge->has_independent_coordinates()) name_by_count(e);
     set_dims(r, e);
   }
 
@@ -112,7 +112,7 @@ class Resolver {
     if (e.body == kAbsent)
       error(r, "sensor.unknown-body", "is on the unknown body '" + r.body + "'",
             make_advice(r.body, bodies_, "bodies"));
-    if (e.body < 0 || !system_.is_sound(e.body)) return;
+    if (e.body < 0 || !system_.is_valid(e.body)) return;
     e.description = std::string(kind.name) + " of body " + r.body;
     const int count = system_.num_modes(e.body);
     if (count == 0 || r.coordinate < 0 || r.coordinate > count)
@@ -130,7 +130,7 @@ class Resolver {
     if (e.body == kAbsent)
       error(r, "sensor.unknown-body", "is on the unknown body '" + r.body + "'",
             make_advice(r.body, bodies_, "bodies"));
-    if (e.body < 0 || !system_.is_sound(e.body)) return;
+    if (e.body < 0 || !system_.is_valid(e.body)) return;
     const auto& recovery = system_.recoveries[static_cast<size_t>(e.body)];
     const Recovery::Element* element = recovery ? recovery->find(r.element) : nullptr;
     if (element == nullptr) {
@@ -173,7 +173,7 @@ class Resolver {
     if (e.to_body == kAbsent)
       error(r, "sensor.unknown-body", "looks at the unknown body '" + r.to_body + "'",
             make_advice(r.to_body, bodies_, "bodies"));
-    if (e.to_body < 0 || !system_.is_sound(e.to_body)) return;
+    if (e.to_body < 0 || !system_.is_valid(e.to_body)) return;
     e.to_node = system_.find_node(e.to_body, r.to_node);
     if (e.to_node < 0)
       error(r, "sensor.unknown-node",
@@ -197,7 +197,7 @@ class Resolver {
     if (e.body == kAbsent) {
       error(r, "sensor.unknown-body", "is on the unknown body '" + r.body + "'",
             make_advice(r.body, bodies_, "bodies"));
-    } else if (e.body >= 0 && system_.is_sound(e.body)) {
+    } else if (e.body >= 0 && system_.is_valid(e.body)) {
       e.node = system_.find_node(e.body, r.node);
       if (e.node < 0)
         error(r, "sensor.unknown-node",

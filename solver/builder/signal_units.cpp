@@ -44,7 +44,7 @@ class Check {
   void run() {
     for (const int i : graph_.order) {
       const auto at = static_cast<size_t>(i);
-      const BlockPlace& p = graph_.places[at];
+      const BlockSlot& p = graph_.places[at];
       std::vector<std::string> out = split_dims(p.block->dims, p.block->sizes.outputs);
       if (records_[at] != nullptr) look_at_controller(p, *records_[at], out);
       if (p.actuator >= 0) look_at_actuator(p);
@@ -53,21 +53,21 @@ class Check {
   }
 
  private:
-  std::string get(const BlockPlace& p, size_t input) const {
+  std::string get(const BlockSlot& p, size_t input) const {
     return p.gains[input] != 1 ? "" : dims_[static_cast<size_t>(p.sources[input])];
   }
-  std::string describe(const BlockPlace& p, size_t input) const {
+  std::string describe(const BlockSlot& p, size_t input) const {
     return name_of_[static_cast<size_t>(p.sources[input])] + " (" + get(p, input) + ")";
   }
-  void warn(const BlockPlace& p, const std::string& what) {
+  void warn(const BlockSlot& p, const std::string& what) {
     diagnostics_.warning("control.units", p.block->at, p.block->label + " " + what,
                          "look at the wiring; a gain on the way makes another quantity of it");
   }
-  void compare(const BlockPlace& p, size_t a, size_t b, const char* verb) {
+  void compare(const BlockSlot& p, size_t a, size_t b, const char* verb) {
     if (!are_alike_dims(get(p, a), get(p, b))) warn(p, verb + describe(p, a) + " and " + describe(p, b));
   }
 
-  void look_at_controller(const BlockPlace& p, const records::ControllerRecord& r, std::vector<std::string>& out) {
+  void look_at_controller(const BlockSlot& p, const records::ControllerRecord& r, std::vector<std::string>& out) {
     const size_t n = out.size();
     if (r.type == "limit") {
       for (size_t i = 0; i < n; ++i) out[i] = get(p, i);
@@ -89,7 +89,7 @@ class Check {
     }
   }
 
-  void add_up(const BlockPlace& p, size_t i, size_t n, std::string& sum) {
+  void add_up(const BlockSlot& p, size_t i, size_t n, std::string& sum) {
     size_t first = p.sources.size();
     for (size_t k = i; k < p.sources.size(); k += n) {
       if (get(p, k).empty()) continue;
@@ -101,7 +101,7 @@ class Check {
     if (first < p.sources.size()) sum = get(p, first);
   }
 
-  void look_at_actuator(const BlockPlace& p) {
+  void look_at_actuator(const BlockSlot& p) {
     for (size_t i = 0; i < p.sources.size(); ++i) {
       if (!are_alike_dims(p.block->input_dims, get(p, i)))
         warn(p, "takes " + p.block->input_dims + " and gets " + describe(p, i));

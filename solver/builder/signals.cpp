@@ -44,15 +44,15 @@ class Builder {
     add_forces(uses);
     add_stiffening(flex);
     set_activities();
-    system_.signals_are_sound = diagnostics_.num_errors() == errors;
-    if (system_.signals_are_sound) {
+    system_.signals_are_valid = diagnostics_.num_errors() == errors;
+    if (system_.signals_are_valid) {
       const bool is_whole = lay_out();
       if (is_whole && diagnostics_.num_errors() == errors) system_.signals.arrange(diagnostics_);
       if (is_whole && diagnostics_.num_errors() == errors) check_units();
-      system_.signals_are_sound = is_whole;
+      system_.signals_are_valid = is_whole;
     }
-    system_.signals_are_sound = system_.signals_are_sound && diagnostics_.num_errors() == errors;
-    if (!system_.signals_are_sound) system_.signals = SignalGraph();
+    system_.signals_are_valid = system_.signals_are_valid && diagnostics_.num_errors() == errors;
+    if (!system_.signals_are_valid) system_.signals = SignalGraph();
   }
 
  private:
@@ -86,7 +86,7 @@ class Builder {
   }
 
   int add(std::unique_ptr<const Block> block, std::vector<Wire> wires) {
-    BlockPlace place;
+    BlockSlot place;
     place.block = std::move(block);
     system_.signals.places.push_back(std::move(place));
     wires_.push_back(std::move(wires));
@@ -208,13 +208,13 @@ class Builder {
   /// What events switch on and off, or chooses the input of.
   void set_activities() {
     for (const auto& r : spec_.controllers) {
-      const auto switches = [&](const records::TriggerRecord& e) {
+      const auto switches = [&](const records::UserEventRecord& e) {
         using records::EventAction;
         return e.target == r.name && (e.action == EventAction::Enable || e.action == EventAction::Disable);
       };
       const int place = sources_.at_path(get_folder(BlockKind::Controller) + r.name).place;
       if (place < 0 || (r.active && std::none_of(spec_.events.begin(), spec_.events.end(), switches))) continue;
-      BlockPlace& p = system_.signals.places[static_cast<size_t>(place)];
+      BlockSlot& p = system_.signals.places[static_cast<size_t>(place)];
       p.activity = 0;  // a row, once they are laid out
       p.is_active = r.active;
     }
@@ -234,8 +234,8 @@ class Builder {
     const auto add_times = [](std::vector<double>& to, const std::vector<double>& times) {
       to.insert(to.end(), times.begin(), times.end());
     };
-    add_times(system_.breakpoints, f->corners());
-    add_times(system_.landmarks, f->landmarks());
+    add_times(system_.jump_times, f->force_jump_times());
+    add_times(system_.mesh_times, f->mesh_times());
     return source.place = add(std::move(block), {});
   }
 
@@ -247,18 +247,18 @@ class Builder {
         if (get_place(sources_.list[wires_[i][k].source]) < 0) return false;
       }
     }
-    for (BlockPlace& p : g.places) {
+    for (BlockSlot& p : g.places) {
       const BlockSizes& s = p.block->sizes;
       p.in = g.num_inputs;
       p.out = g.num_values;
       p.state = g.num_states;
       p.memory = g.num_memory;
-      p.guard = g.num_guards;
+      p.event_row = g.num_event_functions;
       g.num_inputs += s.inputs;
       g.num_values += s.outputs;
       g.num_states += s.states;
       g.num_memory += s.memory;
-      g.num_guards += s.guards;
+      g.num_event_functions += s.event_functions;
       if (p.activity >= 0) p.activity = g.num_memory++;
       if (!p.is_sampled()) continue;
       p.held = g.num_memory;
@@ -274,9 +274,9 @@ class Builder {
     return true;
   }
 
-  void connect(BlockPlace& to, const Wire& wire) {
+  void connect(BlockSlot& to, const Wire& wire) {
     const Source& source = sources_.list[wire.source];
-    const BlockPlace& from = system_.signals.places[static_cast<size_t>(source.place)];
+    const BlockSlot& from = system_.signals.places[static_cast<size_t>(source.place)];
     const auto add_row = [&](int row) {
       to.sources.push_back(row);
       to.gains.push_back(wire.gain);

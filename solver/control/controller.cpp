@@ -94,7 +94,7 @@ std::unique_ptr<Block> make_controller(const records::ControllerRecord& r, const
                "leave 'outputs' out");
     return nullptr;
   }
-  if (sample_time > 0 && (made->sizes.guards > 0 || made->sizes.states > 0)) {
+  if (sample_time > 0 && (made->sizes.event_functions > 0 || made->sizes.states > 0)) {
     keys.error("control.bad-value", "has continuous states, or switches in the step, and cannot be sampled",
                "leave out sample_time, or sample its inputs, by a gain of 1 with sample_time");
     return nullptr;

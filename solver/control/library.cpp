@@ -118,8 +118,8 @@ class Library final : public UserBlock {
       return {"control.library-failed", at, marked.describe() + how, advice};
     };
     int result = 0;
-    // Its instance is one for all threads. A host guards its own functions (the Python module by the interpreter's
-    // lock, which must not be waited for under this one).
+    // Its instance is one for all threads. A host event functions its own functions (the Python module by the
+    // interpreter's lock, which must not be waited for under this one).
     std::unique_lock one_at_a_time(*calls_, std::defer_lock);
     if (handle_ != nullptr) one_at_a_time.lock();
     try {

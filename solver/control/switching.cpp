@@ -7,13 +7,13 @@
 namespace bough::solver {
 namespace {
 
-/// Memory, one a component: -1, 0 or 1. Two guards a component: it leaves its state upwards or downwards.
+/// Memory, one a component: -1, 0 or 1. Two event functions a component: it leaves its state upwards or downwards.
 class Trigger : public Block {
  public:
   double on = 0, off = 0;
   bool has_rest = false;  ///< three states: value, 0, -value
 
-  void calc_guards(const BlockInput& in, double* g) const override {
+  void calc_event_functions(const BlockInput& in, double* g) const override {
     for (int i = 0; i < sizes.outputs; ++i) {
       const double u = get_drive(in, i), state = in.d[i];
       if (has_rest) {
@@ -25,9 +25,9 @@ class Trigger : public Block {
       }
     }
   }
-  void switch_over(const BlockInput& in, int guard, double* d) const override {
-    const int i = guard / 2;
-    const double step = guard % 2 == 0 ? 1 : -1;
+  void switch_over(const BlockInput& in, int function, double* d) const override {
+    const int i = function / 2;
+    const double step = function % 2 == 0 ? 1 : -1;
     if (has_rest)
       d[i] = in.d[i] + step;
     else
@@ -69,14 +69,14 @@ class Switch final : public Block {
     const int first = in.d[0] > 0 ? sizes.outputs : 0;
     for (int i = 0; i < sizes.outputs; ++i) y[i] = in.u[first + i];
   }
-  int num_choices() const override { return sizes.guards == 0 ? 2 : 0; }
+  int num_choices() const override { return sizes.event_functions == 0 ? 2 : 0; }
   void choose(int choice, double* d) const override { d[0] = choice; }
-  void calc_guards(const BlockInput& in, double* g) const override {
+  void calc_event_functions(const BlockInput& in, double* g) const override {
     const double selector = in.u[sizes.inputs - 1];
     g[0] = in.d[0] > 0 ? -1 : selector - threshold - hysteresis;
     g[1] = in.d[0] > 0 ? threshold - hysteresis - selector : -1;
   }
-  void switch_over(const BlockInput&, int guard, double* d) const override { d[0] = guard == 0 ? 1 : 0; }
+  void switch_over(const BlockInput&, int function, double* d) const override { d[0] = function == 0 ? 1 : 0; }
 };
 
 void read_levels(SettingsReader& keys, Trigger& t, int n) {
@@ -85,7 +85,7 @@ void read_levels(SettingsReader& keys, Trigger& t, int n) {
   keys.demand(t.off < t.on, "has an off that is not below on", "give off < on: between them it stays as it is");
   keys.demand(!t.has_rest || t.off >= 0, "has a negative off", "give 0 <= off < on");
   t.sizes.outputs = t.sizes.memory = n;
-  t.sizes.guards = 2 * n;
+  t.sizes.event_functions = 2 * n;
 }
 
 }  // namespace
@@ -127,7 +127,7 @@ std::unique_ptr<Block> make_switch(SettingsReader& keys, const ControllerWiring&
                "give inputs = [\"below\", \"above\", \"selector\"], or two that events choose among");
   else
     made->sizes.outputs = in[0];
-  made->sizes.guards = 2;
+  made->sizes.event_functions = 2;
   return made;
 }
 

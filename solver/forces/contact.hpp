@@ -21,8 +21,8 @@ class ContactElement final : public ForceElement {
       : ForceElement(std::move(name)), from_(from), to_(to), law_(std::move(law)) {}
 
   ForceResult calc(const Tree& tree, const TreeData& data, Loads* loads) const override;
-  int num_corners() const override { return 1; }
-  void calc_corners(const Tree& tree, const TreeData& data, double* g) const override {
+  int num_kinks() const override { return 1; }
+  void calc_kinks(const Tree& tree, const TreeData& data, double* g) const override {
     g[0] = calc(tree, data, nullptr).values[0];
   }
   std::vector<ForceChannel> channels() const override;

@@ -58,10 +58,10 @@ class ForceElement {
 
   /// After calc_velocity. With `loads` it also acts. No allocation.
   virtual ForceResult calc(const Tree& tree, const TreeData& data, Loads* loads) const = 0;
-  /// Functions of the state at whose zeros the force has a corner (a contact closes, a cable goes taut), so that no
+  /// Functions of the state at whose zeros the force has a kink (a contact closes, a cable goes taut), so that no
   /// step need go over it.
-  virtual int num_corners() const { return 0; }
-  virtual void calc_corners(const Tree&, const TreeData&, double* /*g*/) const {}
+  virtual int num_kinks() const { return 0; }
+  virtual void calc_kinks(const Tree&, const TreeData&, double* /*g*/) const {}
   /// Whether it acts along hinge coordinates, not at markers and bodies.
   virtual bool is_along_hinge() const { return false; }
   /// The function of time in it, or nullptr.

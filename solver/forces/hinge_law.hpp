@@ -3,7 +3,7 @@
 ///
 ///     preload - table(q - q_null) - table(q̇) - friction(q̇) + stops
 ///     friction  [F_c + (F_s - F_c) exp(-(q̇/v_s)²)] tanh(q̇/v_0)        Stribeck's, smooth over v_0
-///               the same times the direction of sliding                  dry: solver/forces/latch.hpp
+///               the same times the direction of sliding                  dry: solver/forces/joint contact.hpp
 ///     stop      k δ (1 + c δ̇), not below zero, for δ past the stop       Hunt & Crossley with exponent 1
 /// Along a prescribed coordinate the motion has it: nothing acts.
 #include <cmath>
@@ -28,8 +28,8 @@ class HingeLaw final : public ForceElement {
       : ForceElement(std::move(name)), q_row_(q_row), u_row_(u_row), law_(std::move(law)) {}
 
   ForceResult calc(const Tree& tree, const TreeData& data, Loads* loads) const override;
-  int num_corners() const override { return (std::isfinite(law_.lower) ? 1 : 0) + (std::isfinite(law_.upper) ? 1 : 0); }
-  void calc_corners(const Tree&, const TreeData& data, double* g) const override {
+  int num_kinks() const override { return (std::isfinite(law_.lower) ? 1 : 0) + (std::isfinite(law_.upper) ? 1 : 0); }
+  void calc_kinks(const Tree&, const TreeData& data, double* g) const override {
     if (std::isfinite(law_.lower)) *g++ = data.q[q_row_] - law_.lower;
     if (std::isfinite(law_.upper)) *g = data.q[q_row_] - law_.upper;
   }

@@ -5,7 +5,7 @@
 
 namespace bough::solver {
 
-struct Latch {
+struct JointContact {
   std::string name;  ///< "coordinate 1 of hinge 'slide'"
   int q_row = 0, u_row = 0;
   double lower = -std::numeric_limits<double>::infinity(), upper = std::numeric_limits<double>::infinity();

@@ -20,9 +20,9 @@ class SpringElement final : public ForceElement {
       : ForceElement(std::move(name)), from_(from), to_(to), law_(std::move(law)) {}
 
   ForceResult calc(const Tree& tree, const TreeData& data, Loads* loads) const override;
-  int num_corners() const override { return law_.sense != records::SpringSense::Both && law_.stiffness > 0 ? 1 : 0; }
-  void calc_corners(const Tree& tree, const TreeData& data, double* g) const override {
-    if (num_corners() > 0)
+  int num_kinks() const override { return law_.sense != records::SpringSense::Both && law_.stiffness > 0 ? 1 : 0; }
+  void calc_kinks(const Tree& tree, const TreeData& data, double* g) const override {
+    if (num_kinks() > 0)
       g[0] = law_.preload + law_.stiffness * (calc(tree, data, nullptr).values[0] - law_.free_length);
   }
   const TimeFunction* function() const override { return law_.function; }

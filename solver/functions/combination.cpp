@@ -9,9 +9,9 @@ namespace {
 class Combination : public TimeFunction {
  public:
   std::vector<const TimeFunction*> of;
-  std::vector<double> breakpoints() const override { return collect(&TimeFunction::breakpoints); }
-  std::vector<double> corners() const override { return collect(&TimeFunction::corners); }
-  std::vector<double> landmarks() const override { return collect(&TimeFunction::landmarks); }
+  std::vector<double> jump_times() const override { return collect(&TimeFunction::jump_times); }
+  std::vector<double> force_jump_times() const override { return collect(&TimeFunction::force_jump_times); }
+  std::vector<double> mesh_times() const override { return collect(&TimeFunction::mesh_times); }
   bool has_derivatives() const override {
     return std::all_of(of.begin(), of.end(), [](const TimeFunction* f) { return f->has_derivatives(); });
   }
@@ -84,7 +84,7 @@ class Product final : public Combination {
 std::unique_ptr<const TimeFunction> make_combination(const records::FunctionRecord& r, const FunctionMap& others,
                                                      FunctionParameters& p) {
   std::vector<const TimeFunction*> of;
-  bool is_sound = true;
+  bool is_valid = true;
   if (r.of.empty()) p.error("function.missing-parameter", "has no 'of'", "give of = [\"NAME\", ...]");
   for (const auto& name : r.of) {
     const auto found = others.find(name);
@@ -95,7 +95,7 @@ std::unique_ptr<const TimeFunction> make_combination(const records::FunctionReco
       p.error("system.unknown-function", "names function '" + name + "', which does not exist",
               near.empty() ? "declare it" : "did you mean '" + near + "'?");
     } else {
-      is_sound = is_sound && found->second != nullptr;  // else it has errors of its own
+      is_valid = is_valid && found->second != nullptr;  // else it has errors of its own
       of.push_back(found->second);
     }
   }
@@ -114,7 +114,7 @@ std::unique_ptr<const TimeFunction> make_combination(const records::FunctionReco
     made = std::move(product);
   }
   p.refuse_others();
-  if (p.failed() || !is_sound) return nullptr;
+  if (p.failed() || !is_valid) return nullptr;
   made->of = std::move(of);
   return made;
 }

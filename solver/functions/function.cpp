@@ -28,7 +28,7 @@ class Step final : public TimeFunction {
  public:
   Step(double value, double at, double before) : value_(value), at_(at), before_(before) {}
   Value calc(double t) const override { return {t < at_ ? before_ : value_, 0, 0}; }
-  std::vector<double> breakpoints() const override { return {at_}; }
+  std::vector<double> jump_times() const override { return {at_}; }
 
  private:
   double value_, at_, before_;
@@ -43,7 +43,7 @@ class Ramp final : public TimeFunction {
     const double slope = value_ / (to_ - from_);
     return {slope * (t - from_), slope, 0};
   }
-  std::vector<double> breakpoints() const override { return {from_, to_}; }
+  std::vector<double> jump_times() const override { return {from_, to_}; }
 
  private:
   double value_, from_, to_;
@@ -54,7 +54,7 @@ class Pulse final : public TimeFunction {
  public:
   Pulse(double value, double at, double width) : value_(value), on_(at), off_(at + width) {}
   Value calc(double t) const override { return {t >= on_ && t < off_ ? value_ : 0, 0, 0}; }
-  std::vector<double> breakpoints() const override { return {on_, off_}; }
+  std::vector<double> jump_times() const override { return {on_, off_}; }
 
  private:
   double value_, on_, off_;
@@ -89,7 +89,7 @@ class Spinup final : public TimeFunction {
     return {rate_ / duration_ * (t * t / 2 - 2 * half * half / (a * a)), rate_ / duration_ * (t - std::sin(x) / a),
             rate_ / duration_ * 2 * half * half};
   }
-  std::vector<double> breakpoints() const override { return {0, duration_}; }
+  std::vector<double> jump_times() const override { return {0, duration_}; }
 
  private:
   double rate_, duration_;

@@ -19,11 +19,11 @@ class TimeFunction {
   };
   virtual Value calc(double t) const = 0;
   /// Times at which f or a derivative jumps: where f is a motion, the integrator stops and restarts there. Ascending.
-  virtual std::vector<double> breakpoints() const { return {}; }
+  virtual std::vector<double> jump_times() const { return {}; }
   /// Those among them at which it restarts where f is a force. Points of a table that samples a smooth curve are none.
-  virtual std::vector<double> corners() const { return breakpoints(); }
+  virtual std::vector<double> force_jump_times() const { return jump_times(); }
   /// Times that no step may pass over, so that none misses a short event in a long rest. No restarts. Ascending.
-  virtual std::vector<double> landmarks() const { return {}; }
+  virtual std::vector<double> mesh_times() const { return {}; }
   /// Whether f_dot and f_ddot are known; else they are not numbers, and f is no motion.
   virtual bool has_derivatives() const { return true; }
   /// A copy for another thread; nullptr: calc() writes nothing, so that threads can share the function.
@@ -56,7 +56,7 @@ struct TimeSpan {
 /// offset = 0) | chirp, sweep(amplitude, from_hz, to_hz, at = 0, duration, phase = 0, offset = 0; law of the sweep) |
 /// table(x, y, interpolation): linear, or a cubic spline (not-a-knot); the end values hold outside | spinup(rate,
 /// duration): θ(t) of NASA-CR-202063, 4.1.4.1 | expression(expression, rate, acceleration: formulas of t; x: times of
-/// its jumps and corners) | sum(of, weights) | product(of, gain = 1), of `others`. At a jump the value after it holds
+/// its jumps and kinks) | sum(of, weights) | product(of, gain = 1), of `others`. At a jump the value after it holds
 /// (right-continuous). Reports unknown types, missing or unknown parameters (with the nearest match), NaN or unsorted
 /// tables. Returns nullptr when it reported an error.
 std::unique_ptr<const TimeFunction> make_time_function(const records::FunctionRecord& record, Diagnostics& diagnostics,

@@ -41,7 +41,7 @@ std::vector<double> find_landmarks(const std::vector<double>& x, const std::vect
   return found;
 }
 
-std::vector<double> LinearTable::corners() const {
+std::vector<double> LinearTable::force_jump_times() const {
   std::vector<double> found = {x_.front()};
   const double least = 0.01 * calc_range(y_);
   for (size_t i = 1; i + 1 < x_.size(); ++i) {
@@ -53,8 +53,8 @@ std::vector<double> LinearTable::corners() const {
   return found;
 }
 
-std::vector<double> LinearTable::landmarks() const { return find_landmarks(x_, y_); }
-std::vector<double> CubicTable::landmarks() const { return find_landmarks(x_, y_); }
+std::vector<double> LinearTable::mesh_times() const { return find_landmarks(x_, y_); }
+std::vector<double> CubicTable::mesh_times() const { return find_landmarks(x_, y_); }
 
 TimeFunction::Value LinearTable::calc(double t) const {
   if (t < x_.front()) return {y_.front(), 0, 0};

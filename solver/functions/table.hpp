@@ -16,10 +16,10 @@ class LinearTable final : public TimeFunction {
   LinearTable(std::vector<double> x, std::vector<double> y) : x_(std::move(x)), y_(std::move(y)) {}
   Value calc(double t) const override;
   /// Every point: the slope jumps there.
-  std::vector<double> breakpoints() const override { return x_; }
+  std::vector<double> jump_times() const override { return x_; }
   /// Points that stand off the line of their neighbours by more than 1 % of the table's range, and the ends.
-  std::vector<double> corners() const override;
-  std::vector<double> landmarks() const override;
+  std::vector<double> force_jump_times() const override;
+  std::vector<double> mesh_times() const override;
 
  private:
   std::vector<double> x_, y_;
@@ -32,8 +32,8 @@ class CubicTable final : public TimeFunction {
   CubicTable(std::vector<double> x, std::vector<double> y);
   Value calc(double t) const override;
   /// The two ends: the slope jumps there. Inside only the third derivative does, which a restart would not help.
-  std::vector<double> breakpoints() const override { return {x_.front(), x_.back()}; }
-  std::vector<double> landmarks() const override;
+  std::vector<double> jump_times() const override { return {x_.front(), x_.back()}; }
+  std::vector<double> mesh_times() const override;
 
  private:
   std::vector<double> x_, y_;

@@ -27,8 +27,8 @@ class TimeExpression final : public TimeFunction {
     return {formulas->calc(0), formulas->calc(1), formulas->calc(2)};
   }
   std::unique_ptr<const TimeFunction> clone() const override { return std::make_unique<TimeExpression>(*this); }
-  std::vector<double> breakpoints() const override { return jumps; }
-  std::vector<double> landmarks() const override { return marks; }
+  std::vector<double> jump_times() const override { return jumps; }
+  std::vector<double> mesh_times() const override { return marks; }
   bool has_derivatives() const override { return formulas->size() == 3; }
 };
 

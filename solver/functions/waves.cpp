@@ -33,7 +33,7 @@ class Sawtooth final : public TimeFunction {
     const double down = period_ - up;
     return {offset_ + amplitude_ * (1 - 2 * (s - up) / down), -2 * amplitude_ / down, 0};
   }
-  std::vector<double> breakpoints() const override { return jumps_; }
+  std::vector<double> jump_times() const override { return jumps_; }
 
  private:
   double amplitude_, period_, rise_, at_, offset_;
@@ -45,7 +45,7 @@ class Doublet final : public TimeFunction {
  public:
   Doublet(double value, double at, double width) : value_(value), on_(at), turn_(at + width), off_(at + 2 * width) {}
   Value calc(double t) const override { return {t < on_ || t >= off_ ? 0 : t < turn_ ? value_ : -value_, 0, 0}; }
-  std::vector<double> breakpoints() const override { return {on_, turn_, off_}; }
+  std::vector<double> jump_times() const override { return {on_, turn_, off_}; }
 
  private:
   double value_, on_, turn_, off_;
@@ -82,7 +82,7 @@ class SweptSine final : public TimeFunction {
     const double sine = amplitude_ * std::sin(angle), cosine = amplitude_ * std::cos(angle);
     return {offset_ + sine, omega * cosine, omega_dot * cosine - omega * omega * sine};
   }
-  std::vector<double> breakpoints() const override { return {at_, end_}; }
+  std::vector<double> jump_times() const override { return {at_, end_}; }
 
  private:
   double amplitude_, from_, to_, at_, end_, duration_, phase_, offset_, rate_;

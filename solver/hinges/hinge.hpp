@@ -49,7 +49,7 @@ class Hinge {
   /// Default: -k (q - q_null), energy ½ k (q - q_null)².
   virtual double calc_spring(const double* q, const double* q_null, const double* k, double* force) const;
   /// Whether every coordinate is a plain number whose rate is its speed (a motion can then be prescribed).
-  virtual bool has_plain_coordinates() const { return true; }
+  virtual bool has_independent_coordinates() const { return true; }
 
  private:
   int num_q_, num_u_;

@@ -16,7 +16,7 @@ class SphericalHinge : public Hinge {
   void set_from_file(const double* file, double* q) const override;
   void get_for_file(const double* q, double* file) const override;
   double calc_spring(const double* q, const double* q_null, const double* k, double* force) const override;
-  bool has_plain_coordinates() const override { return false; }
+  bool has_independent_coordinates() const override { return false; }
 
  protected:
   SphericalHinge(int num_q, int num_u) : Hinge(num_q, num_u) {}

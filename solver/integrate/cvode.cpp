@@ -34,7 +34,7 @@ int weigh(N_Vector y, N_Vector weights, void* user) {
   return 0;
 }
 
-class CvodeStepper final : public Stepper {
+class CvodeStepper final : public Integrator {
  public:
   CvodeStepper(Ode& ode, const StepperOptions& options, bool stiff)
       : ode_(ode), y_(ode.size(), context_), interpolated_(ode.size(), context_), options_(options), stiff_(stiff) {
@@ -50,7 +50,7 @@ class CvodeStepper final : public Stepper {
     if (matrix_) SUNMatDestroy(matrix_);
   }
 
-  void restart(double t, const Eigen::Ref<const VectorXd>& y, double t_stop, double latest) override {
+  void reset(double t, const Eigen::Ref<const VectorXd>& y, double t_stop, double left) override {
     y_.values() = y;
     t_ = last_ = t;
     if (!cvode_) {
@@ -59,12 +59,12 @@ class CvodeStepper final : public Stepper {
       before_ = statistics();  // CVodeReInit sets the counters to zero
       BOUGH_DEMAND(CVodeReInit(cvode_, t, y_) == CV_SUCCESS);
     }
-    set_stop(t_stop, latest);
+    set_stop(t_stop, left);
   }
 
-  void set_stop(double t_stop, double latest) override {
+  void set_stop(double t_stop, double left) override {
     t_stop_ = t_stop;
-    ode_.set_latest(latest);
+    ode_.set_latest(left);
     BOUGH_DEMAND(CVodeSetStopTime(cvode_, t_stop) == CV_SUCCESS);
     // CVODE refuses a smallest step above the largest one.
     double smallest = detail::kSmallestStep * (t_stop - t_);
@@ -171,7 +171,7 @@ class CvodeStepper final : public Stepper {
 
 }  // namespace
 
-std::unique_ptr<Stepper> make_cvode_stepper(Ode& ode, const StepperOptions& options, bool stiff) {
+std::unique_ptr<Integrator> make_cvode_stepper(Ode& ode, const StepperOptions& options, bool stiff) {
   return std::make_unique<CvodeStepper>(ode, options, stiff);
 }
 

@@ -1,6 +1,7 @@
-// Prince and Dormand, "High order embedded Runge-Kutta formulae", J. Comput. Appl. Math. 7 (1981) 67, RK8(7)13M. Every
-// stage but four enters the estimate of the error, so that a corner within a step shows: Fehlberg's 8(7) looks at the
-// two ends of a step only.
+// Orders 5 and 4: Dormand and Prince, "A family of embedded Runge-Kutta formulae", J. Comput. Appl. Math. 6 (1980) 19,
+// RK5(4)7M. Orders 8 and 7: Prince and Dormand, "High order embedded Runge-Kutta formulae", J. Comput. Appl. Math. 7
+// (1981) 67, RK8(7)13M. Every stage but four enters the estimate of the error, so that a kink within a step shows:
+// Fehlberg's 8(7) looks at the two ends of a step only.
 #include "solver/integrate/dormand_prince.hpp"
 
 #include <array>
@@ -8,10 +9,40 @@
 namespace bough::solver {
 namespace {
 
-constexpr int kStages = 13;
-using Row = std::array<double, kStages>;
+/// A Butcher table with N stages as it is written.
+template <int N>
+using Row = std::array<double, static_cast<std::size_t>(N)>;
+template <int N>
+using Rows = std::array<Row<N>, static_cast<std::size_t>(N)>;
 
-constexpr std::array<Row, kStages> kA = {{
+template <int N>
+ButcherTable make_table(int order, const Rows<N>& A, const Row<N>& b, const Row<N>& c, const Row<N>& d) {
+  ButcherTable table{N,
+                     order,
+                     Eigen::MatrixXd(N, N),
+                     Eigen::Map<const Eigen::VectorXd>(b.data(), N),
+                     Eigen::Map<const Eigen::VectorXd>(c.data(), N),
+                     Eigen::Map<const Eigen::VectorXd>(d.data(), N)};
+  for (int i = 0; i < N; ++i)
+    for (int j = 0; j < N; ++j) table.A(i, j) = A[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)];
+  return table;
+}
+
+constexpr Rows<7> kA54 = {{
+    {},
+    {1.0 / 5},
+    {3.0 / 40, 9.0 / 40},
+    {44.0 / 45, -56.0 / 15, 32.0 / 9},
+    {19372.0 / 6561, -25360.0 / 2187, 64448.0 / 6561, -212.0 / 729},
+    {9017.0 / 3168, -355.0 / 33, 46732.0 / 5247, 49.0 / 176, -5103.0 / 18656},
+    {35.0 / 384, 0, 500.0 / 1113, 125.0 / 192, -2187.0 / 6784, 11.0 / 84},
+}};
+constexpr Row<7> kC54 = {0, 1.0 / 5, 3.0 / 10, 4.0 / 5, 8.0 / 9, 1, 1};
+constexpr Row<7> kB54 = {35.0 / 384, 0, 500.0 / 1113, 125.0 / 192, -2187.0 / 6784, 11.0 / 84, 0};
+constexpr Row<7> kEmbedded54 = {5179.0 / 57600, 0,       7571.0 / 16695, 393.0 / 640, -92097.0 / 339200,
+                                187.0 / 2100,   1.0 / 40};
+
+constexpr Rows<13> kA87 = {{
     {},
     {1.0 / 18},
     {1.0 / 48, 1.0 / 16},
@@ -34,58 +65,50 @@ constexpr std::array<Row, kStages> kA = {{
      11173962825.0 / 925320556, -13158990841.0 / 6184727034, 3936647629.0 / 1978049680, -160528059.0 / 685178525,
      248638103.0 / 1413531060},
 }};
-constexpr Row kC = {0,
-                    1.0 / 18,
-                    1.0 / 12,
-                    1.0 / 8,
-                    5.0 / 16,
-                    3.0 / 8,
-                    59.0 / 400,
-                    93.0 / 200,
-                    5490023248.0 / 9719169821,
-                    13.0 / 20,
-                    1201146811.0 / 1299019798,
-                    1,
-                    1};
-constexpr Row kB = {14005451.0 / 335480064,
-                    0,
-                    0,
-                    0,
-                    0,
-                    -59238493.0 / 1068277825,
-                    181606767.0 / 758867731,
-                    561292985.0 / 797845732,
-                    -1041891430.0 / 1371343529,
-                    760417239.0 / 1151165299,
-                    118820643.0 / 751138087,
-                    -528747749.0 / 2220607170,
-                    1.0 / 4};
-constexpr Row kEmbedded = {13451932.0 / 455176623,
-                           0,
-                           0,
-                           0,
-                           0,
-                           -808719846.0 / 976000145,
-                           1757004468.0 / 5645159321,
-                           656045339.0 / 265891186,
-                           -3867574721.0 / 1518517206,
-                           465885868.0 / 322736535,
-                           53011238.0 / 667516719,
-                           2.0 / 45,
-                           0};
+constexpr Row<13> kC87 = {0,
+                          1.0 / 18,
+                          1.0 / 12,
+                          1.0 / 8,
+                          5.0 / 16,
+                          3.0 / 8,
+                          59.0 / 400,
+                          93.0 / 200,
+                          5490023248.0 / 9719169821,
+                          13.0 / 20,
+                          1201146811.0 / 1299019798,
+                          1,
+                          1};
+constexpr Row<13> kB87 = {14005451.0 / 335480064,
+                          0,
+                          0,
+                          0,
+                          0,
+                          -59238493.0 / 1068277825,
+                          181606767.0 / 758867731,
+                          561292985.0 / 797845732,
+                          -1041891430.0 / 1371343529,
+                          760417239.0 / 1151165299,
+                          118820643.0 / 751138087,
+                          -528747749.0 / 2220607170,
+                          1.0 / 4};
+constexpr Row<13> kEmbedded87 = {13451932.0 / 455176623,
+                                 0,
+                                 0,
+                                 0,
+                                 0,
+                                 -808719846.0 / 976000145,
+                                 1757004468.0 / 5645159321,
+                                 656045339.0 / 265891186,
+                                 -3867574721.0 / 1518517206,
+                                 465885868.0 / 322736535,
+                                 53011238.0 / 667516719,
+                                 2.0 / 45,
+                                 0};
 
 }  // namespace
 
-ButcherTable make_dormand_prince_87() {
-  std::array<double, kStages * kStages> A{};
-  for (int i = 0; i < kStages; ++i) {
-    for (int j = 0; j < kStages; ++j)
-      A[static_cast<size_t>(i * kStages + j)] = kA[static_cast<size_t>(i)][static_cast<size_t>(j)];
-  }
-  Row b = kB, c = kC, d = kEmbedded;
-  ButcherTable table(ARKodeButcherTable_Create(kStages, 8, 7, c.data(), A.data(), b.data(), d.data()));
-  BOUGH_DEMAND(table != nullptr);
-  return table;
-}
+ButcherTable make_dormand_prince_54() { return make_table<7>(5, kA54, kB54, kC54, kEmbedded54); }
+
+ButcherTable make_dormand_prince_87() { return make_table<13>(8, kA87, kB87, kC87, kEmbedded87); }
 
 }  // namespace bough::solver

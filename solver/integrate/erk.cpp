@@ -1,6 +1,6 @@
-// Explicit embedded pairs by ARKODE's tables of coefficients. The step is Bough's own, for the sake of constraints: the
-// error is the difference of both solutions along them. What a stage that is off the constraints adds across them is
-// projected away and is no error; near a change point it is all there is.
+// Explicit embedded pairs. The step is Bough's own and not that of ARKODE, for the sake of constraints: the error is
+// the difference of both solutions along them. What a stage that is off the constraints adds across them is projected
+// away and is no error; near a change point it is all there is.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -14,31 +14,30 @@ namespace {
 constexpr double kSafety = 0.9, kMostGrowth = 6, kLeastShare = 0.2;
 constexpr double kAfterFailure = 0.25;  // of the step, where a stage could not be evaluated
 
-class ErkStepper final : public Stepper {
+class ErkStepper final : public Integrator {
  public:
   ErkStepper(Ode& ode, const StepperOptions& options)
       : ode_(ode),
         options_(options),
-        table_(options.rk_order == 5 ? ButcherTable(ARKodeButcherTable_LoadERK(ARKODE_DORMAND_PRINCE_7_4_5))
-                                     : make_dormand_prince_87()),
-        k_(Eigen::MatrixXd::Zero(ode.size(), table_->stages)) {
+        table_(options.rk_order == 5 ? make_dormand_prince_54() : make_dormand_prince_87()),
+        k_(Eigen::MatrixXd::Zero(ode.size(), table_.stages)) {
     BOUGH_DEMAND(options.absolute_tolerance.size() == ode.size());
     BOUGH_DEMAND(options.rk_order == 5 || options.rk_order == 8);
     for (VectorXd* v : {&y_, &last_y_, &trial_, &other_, &stage_, &next_first_}) v->setZero(ode.size());
-    for (int j = 0; j < table_->stages; ++j)
-      is_fsal_ = is_fsal_ && table_->A[table_->stages - 1][j] == (j + 1 < table_->stages ? table_->b[j] : 0);
+    for (int j = 0; j < table_.stages; ++j)
+      is_fsal_ = is_fsal_ && table_.A(table_.stages - 1, j) == (j + 1 < table_.stages ? table_.b[j] : 0);
   }
 
-  void restart(double t, const Eigen::Ref<const VectorXd>& y, double t_stop, double latest) override {
+  void reset(double t, const Eigen::Ref<const VectorXd>& y, double t_stop, double left) override {
     y_ = last_y_ = y;
     t_ = last_ = t;
     h_ = 0;
     has_first_ = false;
-    set_stop(t_stop, latest);
+    set_stop(t_stop, left);
   }
 
-  void set_stop(double t_stop, double latest) override {
-    ode_.set_latest(latest);
+  void set_stop(double t_stop, double left) override {
+    ode_.set_latest(left);
     t_stop_ = t_stop;
     smallest_ = detail::kSmallestStep * (t_stop - t_);
     if (options_.step > 0) smallest_ = std::min(smallest_, 1e-3 * options_.step);
@@ -63,14 +62,14 @@ class ErkStepper final : public Stepper {
       const bool is_good = calc_step(t_, t_end, h, true);
       const double error = is_good ? calc_error() : 0;
       if (is_good && error <= 1) {
-        const double growth = kSafety * std::pow(std::max(error, 1e-16), -1.0 / table_->q);
+        const double growth = kSafety * std::pow(std::max(error, 1e-16), -1.0 / table_.q);
         const double next = h * std::clamp(growth, kLeastShare, may_grow ? kMostGrowth : 1.0);
         h_ = is_cut ? std::max(next, h_) : next;  // what was cut short does not say that the next must be
         return accept(t_end, h);
       }
       may_grow = false;
       ++statistics_.num_rejected;
-      const double shrink = is_good ? kSafety * std::pow(error, -1.0 / table_->q) : kAfterFailure;
+      const double shrink = is_good ? kSafety * std::pow(error, -1.0 / table_.q) : kAfterFailure;
       h *= std::clamp(shrink, kLeastShare, kSafety);
       h_ = h;
       if (rejected + 1 >= detail::kMostRejections || h < smallest_ || t_ + h == t_) {
@@ -113,23 +112,22 @@ class ErkStepper final : public Stepper {
  private:
   // trial_ and, where the error is wanted, other_ from last_y_ and the first stage; both projected.
   bool calc_step(double t, double t_end, double h, bool with_error) {
-    const int s = table_->stages;
+    const int s = table_.stages;
     for (int i = 1; i < s; ++i) {
       stage_ = last_y_;
       for (int j = 0; j < i; ++j) {
-        if (table_->A[i][j] != 0) stage_ += h * table_->A[i][j] * k_.col(j);
+        if (table_.A(i, j) != 0) stage_ += h * table_.A(i, j) * k_.col(j);
       }
-      if (ode_.calc(table_->c[i] == 1 ? t_end : t + table_->c[i] * h, stage_.data(), k_.col(i).data()) != 0)
-        return false;
+      if (ode_.calc(table_.c[i] == 1 ? t_end : t + table_.c[i] * h, stage_.data(), k_.col(i).data()) != 0) return false;
     }
     trial_ = last_y_;
     for (int i = 0; i < s; ++i) {
-      if (table_->b[i] != 0) trial_ += h * table_->b[i] * k_.col(i);
+      if (table_.b[i] != 0) trial_ += h * table_.b[i] * k_.col(i);
     }
     if (with_error) {
       other_ = last_y_;
       for (int i = 0; i < s; ++i) {
-        if (table_->d[i] != 0) other_ += h * table_->d[i] * k_.col(i);
+        if (table_.d[i] != 0) other_ += h * table_.d[i] * k_.col(i);
       }
     }
     has_moved_ = false;
@@ -164,7 +162,7 @@ class ErkStepper final : public Stepper {
   void accept(double t_end, double h) {
     // The last stage serves as the next first one where the projection has left its state alone.
     has_first_ = is_fsal_ && !has_moved_;
-    if (has_first_) next_first_ = k_.col(table_->stages - 1);
+    if (has_first_) next_first_ = k_.col(table_.stages - 1);
     y_ = trial_;
     t_ = t_end;
     statistics_.step = h;
@@ -185,7 +183,7 @@ class ErkStepper final : public Stepper {
     stage_ = last_y_ + h * k_.col(0);
     if (ode_.calc(t_ + h, stage_.data(), next_first_.data()) != 0) return h;
     const double d2 = norm(next_first_ - k_.col(0)) / h, most = std::max(d1, d2);
-    const double other = most <= 1e-15 ? std::max(1e-6, 1e-3 * h) : std::pow(0.01 / most, 1.0 / table_->q);
+    const double other = most <= 1e-15 ? std::max(1e-6, 1e-3 * h) : std::pow(0.01 / most, 1.0 / table_.q);
     return std::max(smallest_, std::min(100 * h, other));
   }
 
@@ -214,7 +212,7 @@ class ErkStepper final : public Stepper {
 
 }  // namespace
 
-std::unique_ptr<Stepper> make_erk_stepper(Ode& ode, const StepperOptions& options) {
+std::unique_ptr<Integrator> make_erk_stepper(Ode& ode, const StepperOptions& options) {
   return std::make_unique<ErkStepper>(ode, options);
 }
 

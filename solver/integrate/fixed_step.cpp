@@ -7,19 +7,19 @@
 
 namespace bough::solver {
 
-FixedStepper::FixedStepper(Ode& ode, const StepperOptions& options, int order)
+FixedStepIntegrator::FixedStepIntegrator(Ode& ode, const StepperOptions& options, int order)
     : ode_(ode), h_max_(options.step), order_(order) {
   BOUGH_DEMAND(options.step > 0);
   for (VectorXd* v : {&y_, &last_y_, &between_}) v->setZero(ode.size());
 }
 
-void FixedStepper::restart(double t, const Eigen::Ref<const VectorXd>& y, double t_stop, double latest) {
+void FixedStepIntegrator::reset(double t, const Eigen::Ref<const VectorXd>& y, double t_stop, double left) {
   t_ = last_ = target_ = t;
   y_ = y;
-  set_stop(t_stop, latest);
+  set_stop(t_stop, left);
 }
 
-void FixedStepper::step(double t_target) {
+void FixedStepIntegrator::step(double t_target) {
   if (t_target != target_) {
     from_ = t_;
     target_ = t_target;
@@ -39,7 +39,7 @@ void FixedStepper::step(double t_target) {
   ++statistics_.num_steps;
 }
 
-void FixedStepper::calc_state(double t, Eigen::Ref<VectorXd> y) {
+void FixedStepIntegrator::calc_state(double t, Eigen::Ref<VectorXd> y) {
   if (t == t_) {
     y = y_;
     return;
@@ -54,11 +54,11 @@ void FixedStepper::calc_state(double t, Eigen::Ref<VectorXd> y) {
   y = between_;
 }
 
-Eigen::Vector4d FixedStepper::memory() const {
+Eigen::Vector4d FixedStepIntegrator::memory() const {
   return {from_, target_, static_cast<double>(count_), static_cast<double>(done_)};
 }
 
-void FixedStepper::set_memory(const Eigen::Vector4d& memory) {
+void FixedStepIntegrator::set_memory(const Eigen::Vector4d& memory) {
   from_ = memory[0];
   target_ = memory[1];
   count_ = static_cast<long>(memory[2]);
@@ -66,14 +66,14 @@ void FixedStepper::set_memory(const Eigen::Vector4d& memory) {
   if (done_ >= count_) target_ = t_;  // it stood at the end of its interval
 }
 
-StepStatistics FixedStepper::statistics() const {
+StepStatistics FixedStepIntegrator::statistics() const {
   StepStatistics s = statistics_;
   s.order = order_;
   s.num_evaluations = ode_.num_evaluations();
   return s;
 }
 
-void FixedStepper::check(int flag) {
+void FixedStepIntegrator::check(int flag) {
   if (flag == 0) return;
   ode_.throw_pending();
   throw StepFailure{StepFailure::Kind::NonFinite, t_, "the derivative is not finite", ode_.bad_time()};

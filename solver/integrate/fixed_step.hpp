@@ -5,12 +5,12 @@
 
 namespace bough::solver {
 
-class FixedStepper : public Stepper {
+class FixedStepIntegrator : public Integrator {
  public:
-  FixedStepper(Ode& ode, const StepperOptions& options, int order);
+  FixedStepIntegrator(Ode& ode, const StepperOptions& options, int order);
 
-  void restart(double t, const Eigen::Ref<const VectorXd>& y, double t_stop, double latest) override;
-  void set_stop(double, double latest) override { ode_.set_latest(latest); }
+  void reset(double t, const Eigen::Ref<const VectorXd>& y, double t_stop, double left) override;
+  void set_stop(double, double left) override { ode_.set_latest(left); }
   void step(double t_target) override;
   double time() const override { return t_; }
   double last_time() const override { return last_; }

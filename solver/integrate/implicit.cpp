@@ -1,8 +1,8 @@
 // ROS2 of Verwer, Spee, Blom and Hundsdorfer (SIAM J. Sci. Comput. 20 (1999) 1456): of order 2 whatever matrix A stands
 // for the Jacobian, and L-stable where A is it, with γ = 1 - 1/√2:
 //   (1 - γhA) k = f(t, y),   (1 - γhA) x = f(t + h, y + hk) - 2γhA k,   y⁺ = y + h/2 (k + x)
-// (x is the paper's k2 + 2 k1.) A is what stiffens each body by itself: see SystemOde::calc_stage. Closed loops stand
-// in both linear systems with their rows of constraints, which makes A the projection of that onto them.
+// (x is the paper's k2 + 2 k1.) A is what stiffens each body by itself: see HybridSystem::calc_stage. Closed loops
+// stand in both linear systems with their rows of constraints, which makes A the projection of that onto them.
 #include <cmath>
 
 #include "solver/integrate/fixed_step.hpp"
@@ -10,9 +10,9 @@
 namespace bough::solver {
 namespace {
 
-class Implicit final : public FixedStepper {
+class Implicit final : public FixedStepIntegrator {
  public:
-  Implicit(Ode& ode, const StepperOptions& options) : FixedStepper(ode, options, 2) {
+  Implicit(Ode& ode, const StepperOptions& options) : FixedStepIntegrator(ode, options, 2) {
     for (VectorXd* v : {&stage_, &k_, &x_}) v->setZero(ode.size());
   }
 
@@ -31,7 +31,7 @@ class Implicit final : public FixedStepper {
 
 }  // namespace
 
-std::unique_ptr<Stepper> make_implicit_stepper(Ode& ode, const StepperOptions& options) {
+std::unique_ptr<Integrator> make_implicit_stepper(Ode& ode, const StepperOptions& options) {
   return std::make_unique<Implicit>(ode, options);
 }
 

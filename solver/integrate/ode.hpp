@@ -35,7 +35,7 @@ class GuardedOde {
   explicit GuardedOde(Ode& ode) : ode_(ode) {}
 
   int size() const { return ode_.size(); }
-  void set_latest(double latest) { latest_ = latest; }
+  void set_latest(double left) { latest_ = left; }
   /// 0: fine; 1: the derivative is not finite or the equations threw (kept for throw_pending).
   int calc(double t, const double* y, double* y_dot) noexcept;
   bool has_projection() const { return ode_.has_projection(); }

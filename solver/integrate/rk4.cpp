@@ -4,9 +4,9 @@
 namespace bough::solver {
 namespace {
 
-class Rk4 final : public FixedStepper {
+class Rk4 final : public FixedStepIntegrator {
  public:
-  Rk4(Ode& ode, const StepperOptions& options) : FixedStepper(ode, options, 4) {
+  Rk4(Ode& ode, const StepperOptions& options) : FixedStepIntegrator(ode, options, 4) {
     for (VectorXd* v : {&stage_, &k1_, &k2_, &k3_, &k4_}) v->setZero(ode.size());
   }
 
@@ -29,11 +29,11 @@ class Rk4 final : public FixedStepper {
 
 }  // namespace
 
-std::unique_ptr<Stepper> make_rk4_stepper(Ode& ode, const StepperOptions& options) {
+std::unique_ptr<Integrator> make_rk4_stepper(Ode& ode, const StepperOptions& options) {
   return std::make_unique<Rk4>(ode, options);
 }
 
-std::unique_ptr<Stepper> make_stepper(const std::string& integrator, Ode& ode, const StepperOptions& options) {
+std::unique_ptr<Integrator> make_integrator(const std::string& integrator, Ode& ode, const StepperOptions& options) {
   if (integrator == "adams" || integrator == "bdf") return make_cvode_stepper(ode, options, integrator == "bdf");
   if (integrator == "rk") return make_erk_stepper(ode, options);
   if (integrator == "implicit") return make_implicit_stepper(ode, options);

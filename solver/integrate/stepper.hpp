@@ -30,14 +30,14 @@ struct StepFailure {
   int row = -1;      ///< Stalled: of the state that errs most in its tolerance; -1: not known
 };
 
-class Stepper {
+class Integrator {
  public:
-  virtual ~Stepper() = default;
+  virtual ~Integrator() = default;
   /// Starts afresh from (t, y): the history is dropped. No step passes t_stop, and no derivative is asked for at a time
   /// past `latest` (<= t_stop). y: size().
-  virtual void restart(double t, const Eigen::Ref<const VectorXd>& y, double t_stop, double latest) = 0;
+  virtual void reset(double t, const Eigen::Ref<const VectorXd>& y, double t_stop, double left) = 0;
   /// Goes on with its history to a later t_stop.
-  virtual void set_stop(double t_stop, double latest) = 0;
+  virtual void set_stop(double t_stop, double left) = 0;
   /// One step from time(). Multistep methods may pass t_target (not t_stop); the others end on it when it is in reach.
   /// Throws StepFailure, or what the equations threw; the state is then that before the step.
   virtual void step(double t_target) = 0;
@@ -60,16 +60,16 @@ class Stepper {
 };
 
 /// integrator: "adams", "bdf", "rk", "rk4", "implicit". BOUGH_DEMAND on another name. The Ode must outlive the stepper.
-std::unique_ptr<Stepper> make_stepper(const std::string& integrator, Ode& ode, const StepperOptions& options);
+std::unique_ptr<Integrator> make_integrator(const std::string& integrator, Ode& ode, const StepperOptions& options);
 
 /// SUNDIALS CVODE: variable order and step; Adams-Moulton (to order 12) by fixed-point iteration, or BDF (to order 5)
 /// by Newton with a dense difference-quotient Jacobian (Hindmarsh et al., ACM TOMS 31 (2005) 363).
-std::unique_ptr<Stepper> make_cvode_stepper(Ode& ode, const StepperOptions& options, bool stiff);
+std::unique_ptr<Integrator> make_cvode_stepper(Ode& ode, const StepperOptions& options, bool stiff);
 /// Explicit embedded pair: Dormand and Prince's 5(4) or 8(7); the error is judged after the projection.
-std::unique_ptr<Stepper> make_erk_stepper(Ode& ode, const StepperOptions& options);
+std::unique_ptr<Integrator> make_erk_stepper(Ode& ode, const StepperOptions& options);
 /// The classical Runge-Kutta method of order 4, at fixed step (fixed_step.hpp).
-std::unique_ptr<Stepper> make_rk4_stepper(Ode& ode, const StepperOptions& options);
+std::unique_ptr<Integrator> make_rk4_stepper(Ode& ode, const StepperOptions& options);
 /// Linearly implicit of order 2 (ROS2), at fixed step: what Ode::calc_stage takes for stiff does not limit the step.
-std::unique_ptr<Stepper> make_implicit_stepper(Ode& ode, const StepperOptions& options);
+std::unique_ptr<Integrator> make_implicit_stepper(Ode& ode, const StepperOptions& options);
 
 }  // namespace bough::solver

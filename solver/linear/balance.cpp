@@ -2,22 +2,22 @@
 
 namespace bough::solver {
 
-Balance::Balance(Plant& plant, const OperatingPoint& start) : plant_(&plant), point_(start) {
-  for (int i = 0; i < plant.num_freedoms(); ++i) {
+EquilibriumResidual::EquilibriumResidual(Plant& plant, const OperatingPoint& start) : plant_(&plant), point_(start) {
+  for (int i = 0; i < plant.num_dofs(); ++i) {
     if (plant.is_mode(i)) point_.u[i] = 0;
     if (plant.is_mode(i) || point_.u[i] == 0) free_.push_back(i);
   }
-  for (int i = plant.num_freedoms(); i < size(); ++i) free_.push_back(i);
+  for (int i = plant.num_dofs(); i < size(); ++i) free_.push_back(i);
   // The first sample, as a run takes it.
   if (!plant.steady_rows().empty()) {
-    point_.memory = plant.resample(point_);
+    point_.memory = plant.sample_all(point_);
     plant.fill_queues(point_.memory);
   }
   travel_.setZero(static_cast<Eigen::Index>(free_.size()));
   residual_ = calc_residual();
 }
 
-void Balance::linearize() {
+void EquilibriumResidual::linearize() {
   const int m = static_cast<int>(free_.size());
   jacobian_.setZero(size(), m);
   for (int j = 0; j < m; ++j) {
@@ -26,8 +26,8 @@ void Balance::linearize() {
   }
 }
 
-VectorXd Balance::calc_residual() const {
-  const int n = plant_->num_freedoms();
+VectorXd EquilibriumResidual::calc_residual() const {
+  const int n = plant_->num_dofs();
   const VectorXd rates = plant_->evaluate(point_);
   VectorXd residual(size());
   residual.head(n) = plant_->calc_unsteadiness(rates);
@@ -36,8 +36,8 @@ VectorXd Balance::calc_residual() const {
   return residual;
 }
 
-MatrixXd Balance::calc_conserved() const {
-  const int n = plant_->num_freedoms(), rows = size() - n;
+MatrixXd EquilibriumResidual::calc_conserved() const {
+  const int n = plant_->num_dofs(), rows = size() - n;
   const auto m = static_cast<Eigen::Index>(free_.size());
   if (rows == 0) return MatrixXd::Zero(0, m);
   // b with b · ∂ż = 0: left null space, each row by its largest entry.
@@ -58,7 +58,7 @@ MatrixXd Balance::calc_conserved() const {
       continue;
     }
     const auto f = [&](double h) -> VectorXd {
-      Balance moved = *this;
+      EquilibriumResidual moved = *this;
       moved.point_.u[i] += h;
       return moved.calc_residual().tail(rows);
     };
@@ -68,19 +68,19 @@ MatrixXd Balance::calc_conserved() const {
   return conserved;
 }
 
-std::string Balance::name(int row) const {
-  const int n = plant_->num_freedoms(), nz = plant_->num_states();
-  return row < n        ? plant_->freedom_name(row)
+std::string EquilibriumResidual::name(int row) const {
+  const int n = plant_->num_dofs(), nz = plant_->num_states();
+  return row < n        ? plant_->dof_name(row)
          : row < n + nz ? plant_->state_name(row - n)
                         : plant_->steady_name(row - n - nz);
 }
 
-Balance Balance::move(const VectorXd& steps) const {
-  const int n = plant_->num_freedoms(), nz = plant_->num_states();
+EquilibriumResidual EquilibriumResidual::move(const VectorXd& steps) const {
+  const int n = plant_->num_dofs(), nz = plant_->num_states();
   VectorXd delta = VectorXd::Zero(size());
   for (size_t j = 0; j < free_.size(); ++j)
     delta[free_[j]] = steps[static_cast<Eigen::Index>(j)] * step(static_cast<int>(j));
-  Balance moved = *this;
+  EquilibriumResidual moved = *this;
   moved.point_.q = plant_->displace(point_.q, delta.head(n));
   for (int i = n; i < n + nz; ++i) moved.point_.z[plant_->state_row(i - n)] += delta[i];
   if (size() > n + nz) {

@@ -1,5 +1,5 @@
 #pragma once
-/// \file What equilibrium solves: u̇, ż and what samples change, as functions of the freedoms that may be displaced, of
+/// \file What equilibrium solves: u̇, ż and what samples change, as functions of the dofs that may be displaced, of
 /// the states of controllers and actuators and of what sampled blocks keep and hold, with their Jacobian.
 #include "base/diagnostic.hpp"
 #include "solver/linear/plant.hpp"
@@ -8,15 +8,15 @@ namespace bough::solver {
 
 /// The state of a search, at a point of the plant. Hinges that spin keep their angle; modal rates are zero.
 /// Displacements are counted in steps of the plant, so that columns of the Jacobian are alike.
-class Balance {
+class EquilibriumResidual {
  public:
-  Balance(Plant& plant, const OperatingPoint& start);
+  EquilibriumResidual(Plant& plant, const OperatingPoint& start);
 
   const Plant& plant() const { return *plant_; }
   const OperatingPoint& point() const { return point_; }
-  /// Rows: the freedoms, then the states, then the steady rows of the memory.
+  /// Rows: the dofs, then the states, then the steady rows of the memory.
   int size() const {
-    return plant_->num_freedoms() + plant_->num_states() + static_cast<int>(plant_->steady_rows().size());
+    return plant_->num_dofs() + plant_->num_states() + static_cast<int>(plant_->steady_rows().size());
   }
   std::string name(int row) const;
   /// Rows that may be displaced; m of n.
@@ -26,13 +26,13 @@ class Balance {
   /// What rounding leaves of the residual in a steady spin; n.
   VectorXd calc_rounding() const {
     VectorXd rounding = VectorXd::Zero(size());
-    rounding.head(plant_->num_freedoms()) = plant_->calc_spin_rounding(point_);
+    rounding.head(plant_->num_dofs()) = plant_->calc_spin_rounding(point_);
     return rounding;
   }
   const MatrixXd& jacobian() const { return jacobian_; }  ///< of the residual by steps, n x m, of the last linearize
   double step(int j) const {
     const int i = free_[static_cast<size_t>(j)];
-    return i < plant_->num_freedoms() ? plant_->step(i) : 1;
+    return i < plant_->num_dofs() ? plant_->step(i) : 1;
   }
 
   void linearize();
@@ -40,7 +40,7 @@ class Balance {
   /// changes the rate of, as the integral of a rate, or two integrals of one error. At the last linearize.
   MatrixXd calc_conserved() const;
   /// The point displaced by `steps` (m); may throw ComputationError.
-  Balance move(const VectorXd& steps) const;
+  EquilibriumResidual move(const VectorXd& steps) const;
   /// All moves from the start, m, in steps.
   const VectorXd& travel() const { return travel_; }
 

@@ -47,20 +47,20 @@ std::vector<double> list_instants(const std::vector<SampleTimes>& samples, doubl
   return instants;
 }
 
-Departures::Departures(Plant& plant, const OperatingPoint& point)
-    : plant_(plant), point_(point), n_(plant.num_freedoms()), nz_(plant.num_states()) {
+SampledSystem::SampledSystem(Plant& plant, const OperatingPoint& point)
+    : plant_(plant), point_(point), n_(plant.num_dofs()), nz_(plant.num_states()) {
   if (plant.sampled_rows().empty()) return;
   // A law that has seen no sample yet takes its first one otherwise than all that follow, as a difference does.
   const OperatingPoint start = plant.make_initial_point();
   if (point.t != start.t || point.memory != start.memory) return;
-  point_.memory = plant.resample(point);
+  point_.memory = plant.sample_all(point);
   plant.fill_queues(point_.memory);
 }
 
-std::vector<std::string> Departures::list_names() const {
+std::vector<std::string> SampledSystem::list_names() const {
   std::vector<std::string> names;
   for (const char* suffix : {"", "_dot"})
-    for (int i = 0; i < n_; ++i) names.push_back(plant_.freedom_name(i) + suffix);
+    for (int i = 0; i < n_; ++i) names.push_back(plant_.dof_name(i) + suffix);
   for (int i = 0; i < nz_; ++i) names.push_back(plant_.state_name(i));
   for (int i = 0; i < num_m(); ++i) names.push_back(plant_.sampled_name(i));
   return names;
@@ -86,7 +86,7 @@ VectorXd calc_row_scales(const MatrixXd& value) {
 }
 
 OperatingPoint displace_by_column(const Plant& plant, const OperatingPoint& point, int j, double h) {
-  const int n = plant.num_freedoms(), nx = 2 * n + plant.num_states();
+  const int n = plant.num_dofs(), nx = 2 * n + plant.num_states();
   OperatingPoint moved = point;
   if (j < n)
     moved.q = plant.displace(point.q, h * VectorXd::Unit(n, j));
@@ -100,7 +100,7 @@ OperatingPoint displace_by_column(const Plant& plant, const OperatingPoint& poin
 }
 
 double choose_step(const Plant& plant, const OperatingPoint& point, int j) {
-  const int n = plant.num_freedoms(), nx = 2 * n + plant.num_states();
+  const int n = plant.num_dofs(), nx = 2 * n + plant.num_states();
   if (j < n) return plant.step(j);
   // The equations are quadratic in u: any step that is not lost in roundoff gives the same.
   if (j < 2 * n) return plant.step(j - n) * std::max(1.0, point.u.cwiseAbs().maxCoeff());
@@ -135,26 +135,27 @@ Jacobian differentiate_columns(Plant& plant, const OperatingPoint& point,
   return all;
 }
 
-MatrixXd Departures::differentiate_all(const std::function<VectorXd(const OperatingPoint&)>& f, int first, int last) {
+MatrixXd SampledSystem::differentiate_all(const std::function<VectorXd(const OperatingPoint&)>& f, int first,
+                                          int last) {
   const Jacobian jacobian = differentiate_columns(plant_, point_, f, first, last);
   uncertainty_.add(jacobian, calc_row_scales(jacobian.value));
   return jacobian.value;
 }
 
-VectorXd Departures::differentiate_one(const std::function<VectorXd(double)>& f, double step) {
+VectorXd SampledSystem::differentiate_one(const std::function<VectorXd(double)>& f, double step) {
   const Jacobian column = differentiate_column(plant_, f, step);
   uncertainty_.add(column, calc_row_scales(column.value));
   return column.value;
 }
 
-MatrixXd Departures::calc_held() {
+MatrixXd SampledSystem::calc_held() {
   MatrixXd E = MatrixXd::Zero(num_x(), num_m());
   const auto f = [&](const OperatingPoint& p) -> VectorXd { return plant_.evaluate(p).head(n_ + nz_); };
   E.bottomRows(n_ + nz_) = differentiate_all(f, num_x(), num_x() + num_m());
   return E;
 }
 
-MatrixXd Departures::calc_sample() {
+MatrixXd SampledSystem::calc_sample() {
   const auto f = [&](const OperatingPoint& p) -> VectorXd { return plant_.sample(p)(plant_.sampled_rows()); };
   return differentiate_all(f, 0, num_x() + num_m());
 }

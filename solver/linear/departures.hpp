@@ -45,9 +45,9 @@ Jacobian differentiate_columns(Plant& plant, const OperatingPoint& point,
 /// The derivative by one number, a column.
 Jacobian differentiate_column(Plant& plant, const std::function<VectorXd(double)>& f, double step);
 
-class Departures {
+class SampledSystem {
  public:
-  Departures(Plant& plant, const OperatingPoint& point);
+  SampledSystem(Plant& plant, const OperatingPoint& point);
   int num_x() const { return 2 * n_ + nz_; }
   int num_m() const { return static_cast<int>(plant_.sampled_rows().size()); }
   /// num_x + num_m.

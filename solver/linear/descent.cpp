@@ -10,7 +10,7 @@ constexpr double kLongest = 5;   // steps of the plant: half a radian
 constexpr double kShort = 1e-6;  // from there on it is for Newton's method
 
 /// ∂u̇ with both sides in steps.
-MatrixXd calc_slope(const Balance& at) {
+MatrixXd calc_slope(const EquilibriumResidual& at) {
   const auto m = static_cast<Eigen::Index>(at.free().size());
   MatrixXd slope(m, m);
   for (Eigen::Index j = 0; j < m; ++j)
@@ -18,7 +18,7 @@ MatrixXd calc_slope(const Balance& at) {
   return slope;
 }
 
-VectorXd calc_pull(const Balance& at) {
+VectorXd calc_pull(const EquilibriumResidual& at) {
   VectorXd pull(static_cast<Eigen::Index>(at.free().size()));
   for (Eigen::Index j = 0; j < pull.size(); ++j)
     pull[j] = at.residual()[at.free()[static_cast<size_t>(j)]] / at.step(static_cast<int>(j));
@@ -31,13 +31,13 @@ double calc_growth(const MatrixXd& slope) {
 
 }  // namespace
 
-bool is_valley(const Balance& at) {
+bool is_stable_rest(const EquilibriumResidual& at) {
   const MatrixXd slope = calc_slope(at);
   return slope.size() == 0 || calc_growth(slope) <= 1e-7 * slope.cwiseAbs().maxCoeff();
 }
 
-Balance descend(Balance from) {
-  Balance at = std::move(from);
+EquilibriumResidual follow_gradient_flow(EquilibriumResidual from) {
+  EquilibriumResidual at = std::move(from);
   for (int k = 0; k < kMostSteps; ++k) {
     at.linearize();
     const MatrixXd slope = calc_slope(at);
@@ -51,7 +51,7 @@ Balance descend(Balance from) {
       if (!step.allFinite() || step.cwiseAbs().maxCoeff() > kLongest) continue;
       if (step.cwiseAbs().maxCoeff() < kShort) return at;
       try {
-        Balance moved = at.move(step);
+        EquilibriumResidual moved = at.move(step);
         // Past the bottom the pull turns round.
         if (!moved.residual().allFinite() || calc_pull(moved).dot(step) < -0.5 * pull.dot(step)) continue;
         at = std::move(moved);

@@ -8,10 +8,10 @@ namespace bough::solver {
 /// implicit steps (σ - ∂u̇) Δ = u̇ (pseudo-transient continuation; Kelley & Keyes, SIAM J. Numer. Anal. 35 (1998) 508),
 /// σ above the largest growth of ∂u̇ so that each step falls. Ends near a state that is stable, or where it gets no
 /// further.
-Balance descend(Balance from);
+EquilibriumResidual follow_gradient_flow(EquilibriumResidual from);
 
-/// Whether small displacements are not driven further: no eigenvalue of ∂u̇ (m x m of the freedoms that may be
+/// Whether small displacements are not driven further: no eigenvalue of ∂u̇ (m x m of the dofs that may be
 /// displaced) is positive. After linearize. Gyroscopic forces and dampers are not looked at.
-bool is_valley(const Balance& at);
+bool is_stable_rest(const EquilibriumResidual& at);
 
 }  // namespace bough::solver

@@ -15,20 +15,20 @@ constexpr int kMostIterations = 60;
 /// Travel in steps of the plant within which the state found is the one that was meant, stable or not.
 constexpr double kNear = 1;
 
-/// The largest of what freedoms move by, in steps of the plant; the size of a state or of a signal says nothing.
-double calc_way(const Balance& at, const VectorXd& steps) {
+/// The largest of what dofs move by, in steps of the plant; the size of a state or of a signal says nothing.
+double calc_way(const EquilibriumResidual& at, const VectorXd& steps) {
   double way = 0;
   for (size_t j = 0; j < at.free().size(); ++j)
-    if (at.free()[j] < at.plant().num_freedoms()) way = std::max(way, std::abs(steps[static_cast<Eigen::Index>(j)]));
+    if (at.free()[j] < at.plant().num_dofs()) way = std::max(way, std::abs(steps[static_cast<Eigen::Index>(j)]));
   return way;
 }
 
 /// From the start.
-double calc_way(const Balance& at) { return calc_way(at, at.travel()); }
+double calc_way(const EquilibriumResidual& at) { return calc_way(at, at.travel()); }
 
 class Newton {
  public:
-  explicit Newton(Balance at) : at_(std::move(at)) {}
+  explicit Newton(EquilibriumResidual at) : at_(std::move(at)) {}
 
   void solve() {
     for (; num_iterations_ < kMostIterations; ++num_iterations_) {
@@ -44,10 +44,10 @@ class Newton {
     }
   }
 
-  const Balance& at() const { return at_; }
+  const EquilibriumResidual& at() const { return at_; }
   int num_iterations() const { return num_iterations_; }
 
-  /// The freedom whose u̇ is the largest beside what a small displacement makes of it; -1 where all vanish.
+  /// The dof whose u̇ is the largest beside what a small displacement makes of it; -1 where all vanish.
   int find_restless() const {
     const VectorXd& residual = at_.residual();
     const double floor = row_scale_.size() > 0 ? 1e-9 * row_scale_.maxCoeff() : 0;
@@ -67,10 +67,10 @@ class Newton {
   bool is_held(int row) const { return row_scale_[row] > 0; }
 
   /// A displacement without effect, to first order: its unit vector lies in the null space of the Jacobian.
-  std::vector<std::string> name_indifferent() const {
+  std::vector<std::string> name_neutral() const {
     std::vector<std::string> names;
     for (size_t j = 0; j < at_.free().size(); ++j) {
-      if (at_.free()[j] >= at_.plant().num_freedoms() || has_effect(j)) continue;
+      if (at_.free()[j] >= at_.plant().num_dofs() || has_effect(j)) continue;
       // The integral of its rate may have one.
       const bool is_carried = has_kept_ && conserved_.col(static_cast<Eigen::Index>(j)).norm() > 1e-9;
       if (!is_carried) names.push_back(at_.name(at_.free()[j]));
@@ -83,8 +83,8 @@ class Newton {
     std::vector<std::string> names;
     for (size_t j = 0; j < at_.free().size(); ++j) {
       const int i = at_.free()[j];
-      const bool is_state = i >= at_.plant().num_freedoms();
-      if (is_state && has_kept_ && has_effect(j) && ways_.row(static_cast<Eigen::Index>(j)).norm() < 1e-12)
+      const bool is_state = i >= at_.plant().num_dofs();
+      if (is_state && has_kept_ && has_effect(j) && null_space_.row(static_cast<Eigen::Index>(j)).norm() < 1e-12)
         names.push_back(at_.name(i));
     }
     return names;
@@ -106,35 +106,35 @@ class Newton {
     if (jacobian.cols() == 0) return;  // every hinge has a given rate or motion
     MatrixXd conserved = at_.calc_conserved();
     for (Eigen::Index i = 0; i < conserved.rows(); ++i) conserved.row(i) /= conserved.row(i).norm();
-    keep_.setThreshold(1e-9);
+    conserved_solver_.setThreshold(1e-9);
     has_kept_ = conserved.rows() > 0;
-    ways_ = MatrixXd::Identity(jacobian.cols(), jacobian.cols());
+    null_space_ = MatrixXd::Identity(jacobian.cols(), jacobian.cols());
     if (has_kept_) {
       conserved_ = conserved;
-      keep_.compute(conserved);
+      conserved_solver_.compute(conserved);
       // Columns of Q of Cᵀ P = Q R past its rank.
       Eigen::ColPivHouseholderQR<MatrixXd> qr(conserved.transpose());
       qr.setThreshold(1e-9);
-      ways_ = MatrixXd(qr.householderQ()).rightCols(jacobian.cols() - qr.rank());
+      null_space_ = MatrixXd(qr.householderQ()).rightCols(jacobian.cols() - qr.rank());
     }
     factor_.setThreshold(1e-9);
-    if (ways_.cols() > 0) factor_.compute(weight_.asDiagonal() * jacobian * ways_);
+    if (null_space_.cols() > 0) factor_.compute(weight_.asDiagonal() * jacobian * null_space_);
   }
 
   /// Of least norm among those that keep what every motion from the start keeps.
-  VectorXd solve_step(const Balance& at) const {
+  VectorXd solve_step(const EquilibriumResidual& at) const {
     if (at_.free().empty()) return {};
     VectorXd residual = at.residual(), step = VectorXd::Zero(at.travel().size());
     if (has_kept_) {
-      step = -keep_.solve(conserved_ * at.travel());
+      step = -conserved_solver_.solve(conserved_ * at.travel());
       residual += at_.jacobian() * step;
     }
-    if (ways_.cols() > 0) step -= ways_ * factor_.solve(weight_.asDiagonal() * residual);
+    if (null_space_.cols() > 0) step -= null_space_ * factor_.solve(weight_.asDiagonal() * residual);
     return step;
   }
 
   void take(const VectorXd& step) {
-    Balance moved = at_.move(step);
+    EquilibriumResidual moved = at_.move(step);
     if (!(moved.residual().norm() <= at_.residual().norm())) return;
     at_ = std::move(moved);
   }
@@ -145,7 +145,7 @@ class Newton {
     double by = std::min(1.0, 10 / std::max(10.0, calc_way(at_, step)));
     for (; by > 1e-6; by /= 2) {
       try {
-        Balance moved = at_.move(by * step);
+        EquilibriumResidual moved = at_.move(by * step);
         if (!moved.residual().allFinite() || solve_step(moved).norm() > (1 - by / 4) * step.norm()) continue;
         at_ = std::move(moved);
         return true;
@@ -156,15 +156,15 @@ class Newton {
     return false;
   }
 
-  Balance at_;
+  EquilibriumResidual at_;
   int num_iterations_ = 0;
   VectorXd row_scale_, weight_;
   bool has_kept_ = false;
-  MatrixXd conserved_, ways_;  ///< k x m; m x (m - k), orthonormal
-  Eigen::CompleteOrthogonalDecomposition<MatrixXd> factor_, keep_;
+  MatrixXd conserved_, null_space_;  ///< k x m; m x (m - k), orthonormal
+  Eigen::CompleteOrthogonalDecomposition<MatrixXd> factor_, conserved_solver_;
 };
 
-Newton run_newton(const Balance& start) {
+Newton run_newton(const EquilibriumResidual& start) {
   Newton newton(start);
   newton.solve();
   return newton;
@@ -175,7 +175,7 @@ Newton run_newton(const Balance& start) {
   std::ostringstream what;
   what << "no state of rest or steady spin was found: after " << newton.num_iterations() << " iterations |u_dot| is "
        << newton.at().residual().norm() << ", most of all " << newton.at().name(worst)
-       << (worst < newton.at().plant().num_freedoms() ? ", which accelerates by " : ", which changes by ")
+       << (worst < newton.at().plant().num_dofs() ? ", which accelerates by " : ", which changes by ")
        << newton.at().residual()[worst];
   const auto& free = newton.at().free();
   const bool spins = std::find(free.begin(), free.end(), worst) == free.end();
@@ -183,7 +183,7 @@ Newton run_newton(const Balance& start) {
       "equilibrium.not-converged", at, what.str(),
       spins ? "it has a rate of its own in the system file, which its loads and dampers change: prescribe its motion, "
               "take them away, or give it the rate 0"
-      : worst >= newton.at().plant().num_freedoms()
+      : worst >= newton.at().plant().num_dofs()
           ? "a controller comes to rest only where what it measures can: an integral wants something that it can move"
       : newton.is_held(worst) ? "start nearer to it, by position and eta"
                               : "nothing holds it: take away the load, or give it a spring or a hinge");
@@ -191,15 +191,15 @@ Newton run_newton(const Balance& start) {
 
 /// Newton's method from the start, when that leads to a state nearby; else it or that from where the way downhill ends:
 /// a stable one before one that is not, then the nearer.
-Newton search(const Balance& start, const SourceLocation& at) {
+Newton search(const EquilibriumResidual& start, const SourceLocation& at) {
   Newton first = run_newton(start);
   const bool is_found = first.find_restless() < 0;
   if (is_found && calc_way(first.at()) <= kNear) return first;
-  Newton second = run_newton(descend(start));
+  Newton second = run_newton(follow_gradient_flow(start));
   const bool is_other = second.find_restless() < 0;
   if (!is_found && !is_other) fail(second, at);
   if (!is_found || !is_other) return is_found ? first : second;
-  const bool is_stable = is_valley(first.at()), is_other_stable = is_valley(second.at());
+  const bool is_stable = is_stable_rest(first.at()), is_other_stable = is_stable_rest(second.at());
   if (is_stable != is_other_stable) return is_stable ? first : second;
   return calc_way(first.at()) <= calc_way(second.at()) ? first : second;
 }
@@ -233,15 +233,15 @@ void find_unstable(Plant& plant, const SourceLocation& at, Equilibrium& found) {
 }  // namespace
 
 Equilibrium find_equilibrium(Plant& plant, const OperatingPoint& start, const SourceLocation& at) {
-  const Newton newton = search(Balance(plant, start), at);
+  const Newton newton = search(EquilibriumResidual(plant, start), at);
   Equilibrium found;
   found.point = newton.at().point();
   found.residual = newton.at().residual().norm();
   found.num_iterations = newton.num_iterations();
-  found.indifferent = newton.name_indifferent();
+  found.neutral = newton.name_neutral();
   found.kept = newton.name_kept();
-  for (int i = 0; i < plant.num_freedoms(); ++i)
-    if (!plant.is_mode(i) && found.point.u[i] != 0) found.spinning.push_back(plant.freedom_name(i));
+  for (int i = 0; i < plant.num_dofs(); ++i)
+    if (!plant.is_mode(i) && found.point.u[i] != 0) found.spinning.push_back(plant.dof_name(i));
   find_unstable(plant, at, found);
   return found;
 }

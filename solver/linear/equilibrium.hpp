@@ -9,9 +9,9 @@ struct Equilibrium {
   OperatingPoint point;
   double residual = 0;  ///< |[u̇; ż]|
   int num_iterations = 0;
-  std::vector<std::string> indifferent;  ///< freedoms that may stand anywhere: they stay where they were
-  std::vector<std::string> kept;         ///< states that nothing restores: they are what they start from
-  std::vector<std::string> spinning;     ///< freedoms with a given rate
+  std::vector<std::string> neutral;   ///< dofs that may stand anywhere: they stay where they were
+  std::vector<std::string> kept;      ///< states that nothing restores: they are what they start from
+  std::vector<std::string> spinning;  ///< dofs with a given rate
   struct Growth {
     std::string mode;  ///< the coordinate that takes part most
     double rate = 0;   ///< of its growth, 1/T

@@ -41,7 +41,7 @@ std::string brief_text(double value) {
 /// Dimensions of [u̇; ż; y]; those of a state are its own.
 std::vector<std::string> get_row_dims(const Plant& plant) {
   std::vector<std::string> dims;
-  for (int i = 0; i < plant.num_freedoms(); ++i) dims.push_back("u_dot " + plant.freedom_dims(i));
+  for (int i = 0; i < plant.num_dofs(); ++i) dims.push_back("u_dot " + plant.freedom_dims(i));
   for (int i = 0; i < plant.num_states(); ++i) dims.push_back(plant.state_name(i));
   dims.insert(dims.end(), plant.outputs().dims.begin(), plant.outputs().dims.end());
   return dims;
@@ -50,7 +50,7 @@ std::vector<std::string> get_row_dims(const Plant& plant) {
 /// An output that is a difference of large and equal terms has nothing but their rounding in its rows: all rows with
 /// its dimensions are below their errors, and nothing beside the others. Columns count by their steps.
 void clear_rounding(const Plant& plant, const VectorXd& step, Jacobian& jacobian) {
-  const int n = plant.num_freedoms() + plant.num_states();
+  const int n = plant.num_dofs() + plant.num_states();
   const auto calc_size = [&step](const MatrixXd& rows) -> VectorXd {
     return (rows * step.asDiagonal()).cwiseAbs().rowwise().maxCoeff();
   };
@@ -74,10 +74,10 @@ void clear_rounding(const Plant& plant, const VectorXd& step, Jacobian& jacobian
 
 /// Rows: those of [u̇; ż; y]. Columns: δ, δu, δz.
 Jacobian calc_jacobian(Plant& plant, const OperatingPoint& point, double step_factor) {
-  const int nx = 2 * plant.num_freedoms() + plant.num_states();
+  const int nx = 2 * plant.num_dofs() + plant.num_states();
   const auto f = [&](const OperatingPoint& moved) { return plant.evaluate(moved); };
   Jacobian jacobian = differentiate_columns(plant, point, f, 0, nx, step_factor);
-  const int rows = plant.num_freedoms() + plant.num_states() + plant.outputs().size();
+  const int rows = plant.num_dofs() + plant.num_states() + plant.outputs().size();
   VectorXd steps(nx);
   for (int j = 0; j < nx; ++j) steps[j] = choose_step(plant, point, j);
   if (nx == 0)
@@ -168,7 +168,7 @@ void open_cut(LinearModel& model, const std::string& name) {
 /// At rest or in a steady motion u̇ is small beside what small displacements make of it.
 void note_unsteady(Plant& plant, const VectorXd& u_dot, const MatrixXd& A_lower, const SourceLocation& at,
                    Diagnostics& diagnostics) {
-  const int n = plant.num_freedoms();
+  const int n = plant.num_dofs();
   VectorXd steps(n);
   for (int i = 0; i < n; ++i) steps[i] = plant.step(i);
   const VectorXd scale = A_lower.leftCols(n).cwiseAbs() * steps;
@@ -176,7 +176,7 @@ void note_unsteady(Plant& plant, const VectorXd& u_dot, const MatrixXd& A_lower,
     if (std::abs(u_dot[i]) <= 1e-6 * std::max(scale[i], 1e-6 * scale.maxCoeff())) continue;
     diagnostics.note(
         "linear.not-steady", at,
-        "the operating point is not steady: " + plant.freedom_name(i) + " accelerates by " + brief_text(u_dot[i]),
+        "the operating point is not steady: " + plant.dof_name(i) + " accelerates by " + brief_text(u_dot[i]),
         "bough equilibrium finds a state of rest or of steady spin");
     return;
   }
@@ -185,7 +185,7 @@ void note_unsteady(Plant& plant, const VectorXd& u_dot, const MatrixXd& A_lower,
 /// A motion under way may change its own linear model.
 void check_constancy(Plant& plant, const OperatingPoint& point, const Jacobian& here, const MatrixXd& A,
                      const std::vector<std::string>& states, const SourceLocation& at, Diagnostics& diagnostics) {
-  const int n = plant.num_freedoms();
+  const int n = plant.num_dofs();
   int fastest = -1;
   double travel = 0;  // in steps
   for (int i = 0; i < n; ++i) {
@@ -219,7 +219,7 @@ void check_constancy(Plant& plant, const OperatingPoint& point, const Jacobian& 
   if (change < 1e-5) return;
   diagnostics.warning("linear.time-varying", at,
                       "A changes along the motion, by " + brief_text(100 * change) + " % while " +
-                          plant.freedom_name(fastest) + " moves by " + brief_text(delta[fastest]) +
+                          plant.dof_name(fastest) + " moves by " + brief_text(delta[fastest]) +
                           ": the model holds at this instant only",
                       "its poles are not those of the motion; linearize at several times");
 }
@@ -272,7 +272,7 @@ void warn_of_uncertain(const records::Poles& poles, const SourceLocation& at, Di
 
 LinearModel linearize(Plant& plant, const OperatingPoint& point, const LinearizeOptions& options,
                       const SourceLocation& at, Diagnostics& diagnostics) {
-  const int n = plant.num_freedoms();
+  const int n = plant.num_dofs();
   const Ports ports = choose_ports(plant, options, at, diagnostics);
   const std::vector<int>&inputs = ports.inputs, &outputs = ports.outputs;
   const auto& known = plant.outputs();
@@ -280,7 +280,7 @@ LinearModel linearize(Plant& plant, const OperatingPoint& point, const Linearize
   LinearModel model;
   for (const char* suffix : {"", "_dot"}) {
     for (int i = 0; i < n; ++i) {
-      model.states.name.push_back(plant.freedom_name(i) + suffix);
+      model.states.name.push_back(plant.dof_name(i) + suffix);
       model.states.dims.push_back(*suffix ? plant.freedom_dims(i) + "/T" : plant.freedom_dims(i));
     }
   }
@@ -303,9 +303,9 @@ LinearModel linearize(Plant& plant, const OperatingPoint& point, const Linearize
   model.q_names = plant.name_positions();
   model.u = point.u;
   for (int i = 0; i < n; ++i) {
-    model.u_names.name.push_back(plant.freedom_name(i));
+    model.u_names.name.push_back(plant.dof_name(i));
     model.u_names.dims.push_back(plant.freedom_dims(i) + "/T");
-    if (plant.is_periodic(i)) model.periodic.push_back(plant.freedom_name(i));
+    if (plant.is_periodic(i)) model.periodic.push_back(plant.dof_name(i));
   }
   const VectorXd base = plant.evaluate(point);
   const VectorXd unsteady = plant.calc_unsteadiness(base);
@@ -389,7 +389,7 @@ LinearModel linearize(Plant& plant, const OperatingPoint& point, const Linearize
 
 void warn_of_latches(const System& system, const SourceLocation& at, Diagnostics& diagnostics) {
   std::string list;
-  for (const Latch& latch : system.latches) list += (list.empty() ? "" : ", ") + latch.name;
+  for (const JointContact& contact : system.joint_contacts) list += (list.empty() ? "" : ", ") + contact.name;
   if (list.empty()) return;
   diagnostics.warning("linear.latches-left-out", at, "dry friction and rigid stops are left out: " + list,
                       "give friction a smoothing and stops a stiffness, or lock what rests");

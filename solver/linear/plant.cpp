@@ -38,7 +38,7 @@ bool is_angle(const TreeBody& tb, int coordinate) {
 Plant::Plant(const System& system, bool is_open)
     : system_(system), data_(system.make_data()), tangents_(std::make_unique<LawTangents>()), is_open_(is_open) {
   add_freedoms();
-  BOUGH_DEMAND(num_freedoms() == system.num_dofs());
+  BOUGH_DEMAND(num_dofs() == system.num_dofs());
   t_ = system.start;
   for (const auto& p : system.signals.places) {
     if (is_open && p.block->kind == BlockKind::Controller) continue;
@@ -55,20 +55,20 @@ Plant::Plant(const System& system, bool is_open)
 void Plant::add_freedoms() {
   const double size = calc_size(system_.tree);
   for (int b = 0; b < system_.num_bodies(); ++b) {
-    const size_t first = freedoms_.size();
+    const size_t first = dofs_.size();
     add_hinge(b);
-    for (size_t i = first; i < freedoms_.size(); ++i) {
-      if (freedoms_[i].dims == "L") freedoms_[i].step = 0.05 * size;
+    for (size_t i = first; i < dofs_.size(); ++i) {
+      if (dofs_[i].dims == "L") dofs_[i].step = 0.05 * size;
     }
     add_modes(b, size);
   }
 }
 
-void Plant::set_modes(const Discrete& discrete, double t, const VectorXd& q) {
-  Discrete modes = discrete;
+void Plant::set_modes(const DiscreteState& discrete, double t, const VectorXd& q) {
+  DiscreteState modes = discrete;
   modes.memory.resize(0);
   solver::set_modes(system_, *data_, modes);
-  freedoms_.clear();
+  dofs_.clear();
   rows_.clear();
   grip_.clear();
   inputs_.clear();
@@ -87,7 +87,7 @@ void Plant::add_hinge(int b) {
     if (data_->tree.mode[as_index(row)] != HingeMode::Free) continue;
     rows_.push_back(row);
     const std::string coordinate = has_quaternion(system_, b) ? kNames[i] : std::to_string(i + 1);
-    freedoms_.push_back(
+    dofs_.push_back(
         {system_.hinge_name(b) + ":" + coordinate, is_translation(tb, i) ? "L" : "1", false, 0.1, is_angle(tb, i)});
   }
 }
@@ -99,8 +99,8 @@ void Plant::add_modes(int b, double size) {
     for (const Node& node : tb.body.nodes()) largest = std::max(largest, node.phi.col(i).norm() / size);
     for (const Node& node : tb.body.nodes()) largest = std::max(largest, node.psi.col(i).norm());
     rows_.push_back(system_.eta_dot_offset(b) + i);
-    freedoms_.push_back({system_.body_name(b) + ":eta" + std::to_string(i + 1), "by normalisation", true,
-                         largest > 0 ? 0.05 / largest : 1});
+    dofs_.push_back({system_.body_name(b) + ":eta" + std::to_string(i + 1), "by normalisation", true,
+                     largest > 0 ? 0.05 / largest : 1});
   }
 }
 
@@ -182,7 +182,7 @@ VectorXd Plant::displace(const VectorXd& q, const VectorXd& delta) const {
 }
 
 VectorXd Plant::displace_tree(const VectorXd& q, const VectorXd& delta) const {
-  BOUGH_DEMAND(q.size() == system_.num_q() && delta.size() == num_freedoms());
+  BOUGH_DEMAND(q.size() == system_.num_q() && delta.size() == num_dofs());
   VectorXd moved = q;
   const VectorXd step = expand(delta);
   for (int b = 0; b < system_.num_bodies(); ++b) {

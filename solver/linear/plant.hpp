@@ -1,12 +1,12 @@
 #pragma once
-/// \file A System as linearize and equilibrium see it: freedoms, inputs, outputs. The one door of solver/linear to the
+/// \file A System as linearize and equilibrium see it: dofs, inputs, outputs. The one door of solver/linear to the
 /// rest of the solver.
 ///
-/// A freedom is a free hinge coordinate or a mode, in the order of u. Positions near q are q ⊕ δ, with one δ a freedom:
+/// A dof is a free hinge coordinate or a mode, in the order of u. Positions near q are q ⊕ δ, with one δ a dof:
 /// q + δ, and for the orientation of a spherical or free hinge q exp(δ̃) (δ in Hc, as its u). About a motion q(t), u(t)
 /// that gives δ̇ = δu, and δ̇ = δu - ω × δ for an orientation that turns at ω: exact to first order.
 ///
-/// Where loops are closed the freedoms are independent ones among these, by pivots of G at the start (Wehage & Haug,
+/// Where loops are closed the dofs are independent ones among these, by pivots of G at the start (Wehage & Haug,
 /// J. Mech. Design 104 (1982) 247); the others follow: q by assembly, u by G u = 0.
 #include <functional>
 #include <memory>
@@ -25,7 +25,7 @@ struct SampleTimes;
 
 struct OperatingPoint {
   double t = 0;
-  VectorXd q, u;       ///< num_q; one rate a freedom
+  VectorXd q, u;       ///< num_q; one rate a dof
   VectorXd z, memory;  ///< all of controllers, actuators and sensors
 };
 
@@ -46,13 +46,13 @@ class Plant {
   explicit Plant(const System& system, bool is_open = false);
 
   bool is_open() const { return is_open_; }
-  int num_freedoms() const { return static_cast<int>(freedoms_.size()); }
+  int num_dofs() const { return static_cast<int>(dofs_.size()); }
   /// "shoulder:1"; "ball:rx" for rotations, "flyer:x" for translations of a spherical or free hinge; "boom:eta3".
-  const std::string& freedom_name(int i) const { return freedoms_[static_cast<size_t>(i)].name; }
-  const std::string& freedom_dims(int i) const { return freedoms_[static_cast<size_t>(i)].dims; }
-  bool is_mode(int i) const { return freedoms_[static_cast<size_t>(i)].is_mode; }
+  const std::string& dof_name(int i) const { return dofs_[static_cast<size_t>(i)].name; }
+  const std::string& freedom_dims(int i) const { return dofs_[static_cast<size_t>(i)].dims; }
+  bool is_mode(int i) const { return dofs_[static_cast<size_t>(i)].is_mode; }
   /// A displacement that is large but not absurd: 0.1 rad, 5 % of the size of the bodies.
-  double step(int i) const { return freedoms_[static_cast<size_t>(i)].step; }
+  double step(int i) const { return dofs_[static_cast<size_t>(i)].step; }
 
   int num_states() const { return static_cast<int>(state_rows_.size()); }
   /// "controller 'pid' (state 1)".
@@ -65,20 +65,20 @@ class Plant {
   std::string find_opaque() const;
 
   /// Freedoms and loops as hinges and constraints are behind an event, when the system stands at (t, q).
-  void set_modes(const Discrete& discrete, double t, const VectorXd& q);
+  void set_modes(const DiscreteState& discrete, double t, const VectorXd& q);
   OperatingPoint make_initial_point() const;
   /// Where is_open: from now on actuators keep the commands they have there.
   void hold_commands(const OperatingPoint& point);
-  /// q ⊕ δ; delta: num_freedoms. Throws ComputationError "linear.dead-point" where the loops cannot follow.
+  /// q ⊕ δ; delta: num_dofs. Throws ComputationError "linear.dead-point" where the loops cannot follow.
   VectorXd displace(const VectorXd& q, const VectorXd& delta) const;
-  /// num_u of the system, of one value a freedom: zero where a motion is prescribed or loops are closed; and back.
+  /// num_u of the system, of one value a dof: zero where a motion is prescribed or loops are closed; and back.
   VectorXd expand(const VectorXd& free) const;
   VectorXd restrict(const VectorXd& u) const { return u(rows_); }
   /// All speeds at a point, those that loops give too. Throws ComputationError "linear.dead-point".
   VectorXd calc_speeds(const OperatingPoint& point) const;
   /// ∂δ̇/∂δ about a motion: zero but for orientations that turn. num_freedoms².
   MatrixXd calc_turning(const OperatingPoint& point) const;
-  /// The mass matrix of the freedoms; where loops are closed what follows moves along. num_freedoms².
+  /// The mass matrix of the dofs; where loops are closed what follows moves along. num_freedoms².
   MatrixXd calc_mass(const OperatingPoint& point);
   /// Quaternions as the files have them: w, x, y, z.
   VectorXd get_for_file(const VectorXd& q) const;
@@ -112,9 +112,9 @@ class Plant {
   VectorXd evaluate(const OperatingPoint& point, const PlantInput* input = nullptr, double value = 0);
   /// u̇ of the last evaluate less what a steady spin has of it: on a hinge to ground whose translations are free across
   /// ω, ω × (ṗ - v_c) is taken off p̈, with v_c the velocity of the mass centre of all that it carries. Zero at rest and
-  /// in a steady spin, also about a mass centre beside the origin that drifts. num_freedoms.
+  /// in a steady spin, also about a mass centre beside the origin that drifts. num_dofs.
   VectorXd calc_unsteadiness(const VectorXd& u_dot) const;
-  /// What rounding leaves of it where bodies spin. num_freedoms.
+  /// What rounding leaves of it where bodies spin. num_dofs.
   VectorXd calc_spin_rounding(const OperatingPoint& point) const;
   /// What changes at samples: rows of the memory of sampled blocks, with what is held and on its way.
   const std::vector<int>& sampled_rows() const { return sampled_rows_; }
@@ -142,16 +142,16 @@ class Plant {
   const std::vector<int>& steady_rows() const { return steady_rows_; }
   const std::string& steady_name(int i) const { return steady_names_[static_cast<size_t>(i)]; }
   /// All memory after one sample of every block, nothing delayed, sensors as in `sample`. May throw ComputationError.
-  VectorXd resample(const OperatingPoint& point);
+  VectorXd sample_all(const OperatingPoint& point);
   /// (resample - memory) / sample time, of the steady rows: zero where the samples repeat themselves.
   VectorXd calc_sample_rates(const OperatingPoint& point);
   /// What is on its way becomes what is held.
   void fill_queues(VectorXd& memory) const;
   /// Coordinates of q as the files have them, and dims: "pin:1", "ball:qw", "boom:eta1".
   records::Signals name_positions() const;
-  /// Whether the freedom is an angle that comes back after 2 pi.
-  bool is_periodic(int i) const { return freedoms_[static_cast<size_t>(i)].is_periodic; }
-  /// Results of the last evaluate, for a Recorder.
+  /// Whether the dof is an angle that comes back after 2 pi.
+  bool is_periodic(int i) const { return dofs_[static_cast<size_t>(i)].is_periodic; }
+  /// Results of the last evaluate, for a Outputs.
   const SystemData& data() const { return *data_; }
 
  private:
@@ -166,7 +166,7 @@ class Plant {
   void add_inputs();
   void add_outputs();
   void add_sampled();
-  std::vector<bool> find_felt() const;
+  std::vector<bool> find_in_loop() const;
   /// Kinematics to accelerations and signals, as they are at the point.
   void compute(const OperatingPoint& point, const PlantInput* input, double value, VectorXd& u_dot);
   VectorXd displace_tree(const VectorXd& q, const VectorXd& delta) const;
@@ -180,9 +180,9 @@ class Plant {
   const System& system_;
   std::unique_ptr<SystemData> data_;
   std::unique_ptr<LawTangents> tangents_;
-  std::vector<Freedom> freedoms_;
+  std::vector<Freedom> dofs_;
   bool is_open_ = false;
-  std::vector<int> rows_;        ///< of u, one a freedom
+  std::vector<int> rows_;        ///< of u, one a dof
   std::vector<int> state_rows_;  ///< of z
   std::vector<PlantInput> inputs_;
   int num_forces_ = 0, num_actuators_ = 0;
@@ -195,8 +195,8 @@ class Plant {
   std::vector<int> steady_rows_;
   std::vector<std::string> steady_names_;
   std::vector<double> steady_period_;
-  std::vector<Grip> grip_;  ///< by row of u, where loops are closed: what follows is Loose
-  double t_ = 0;            ///< of the last point
+  std::vector<AssemblyPriority> grip_;  ///< by row of u, where loops are closed: what follows is Loose
+  double t_ = 0;                        ///< of the last point
 };
 
 }  // namespace bough::solver

@@ -26,28 +26,28 @@ void Plant::choose_independent(double t, const VectorXd& q) {
   calc_position(system_.tree, t, q, data_->tree);
   calc_closure_positions(system_.loops, system_.tree, data_->tree, data_->loops);
   const MatrixXd G = calc_dense_rows(system_.loops, system_.tree, data_->tree, data_->loops);
-  MatrixXd own(G.rows(), num_freedoms());
-  for (int j = 0; j < num_freedoms(); ++j)
+  MatrixXd own(G.rows(), num_dofs());
+  for (int j = 0; j < num_dofs(); ++j)
     own.col(j) = G.col(rows_[static_cast<size_t>(j)]) * step(j) * (is_mode(j) ? kModeWeight : 1);
-  grip_.assign(static_cast<size_t>(system_.num_u()), Grip::Fixed);
+  grip_.assign(static_cast<size_t>(system_.num_u()), AssemblyPriority::Fixed);
   if (own.cols() == 0) return;
   Eigen::ColPivHouseholderQR<MatrixXd> factor;
   factor.setThreshold(kDependent);
   factor.compute(own);
-  std::vector<bool> follows(freedoms_.size(), false);
+  std::vector<bool> follows(dofs_.size(), false);
   for (Eigen::Index k = 0; k < factor.rank(); ++k)
     follows[static_cast<size_t>(factor.colsPermutation().indices()[k])] = true;
   std::vector<Freedom> freedoms;
   std::vector<int> rows;
-  for (size_t j = 0; j < freedoms_.size(); ++j) {
+  for (size_t j = 0; j < dofs_.size(); ++j) {
     if (follows[j]) {
-      grip_[static_cast<size_t>(rows_[j])] = Grip::Loose;
+      grip_[static_cast<size_t>(rows_[j])] = AssemblyPriority::Free;
       continue;
     }
-    freedoms.push_back(freedoms_[j]);
+    freedoms.push_back(dofs_[j]);
     rows.push_back(rows_[j]);
   }
-  freedoms_ = std::move(freedoms);
+  dofs_ = std::move(freedoms);
   rows_ = std::move(rows);
 }
 
@@ -56,14 +56,14 @@ void Plant::close_positions(VectorXd& q) const {
   if (!found.is_closed) fail_dead(system_.loops, found);
 }
 
-/// What follows moves along: the rates of all (num_u), a column for the unit rate of each freedom.
+/// What follows moves along: the rates of all (num_u), a column for the unit rate of each dof.
 MatrixXd Plant::calc_follow(const OperatingPoint& point) const {
   OperatingPoint still = point;
   still.u.setZero();
   const VectorXd given = calc_speeds(still);
-  MatrixXd follow(given.size(), num_freedoms());
-  for (int j = 0; j < num_freedoms(); ++j) {
-    still.u = VectorXd::Unit(num_freedoms(), j);
+  MatrixXd follow(given.size(), num_dofs());
+  for (int j = 0; j < num_dofs(); ++j) {
+    still.u = VectorXd::Unit(num_dofs(), j);
     follow.col(j) = calc_speeds(still) - given;
   }
   return follow;

@@ -34,9 +34,8 @@ void Plant::add_inputs() {
                          p.actuator + i});
   }
   num_actuators_ = static_cast<int>(inputs_.size()) - num_forces_;
-  for (size_t i = 0; i < freedoms_.size(); ++i) {
-    if (!freedoms_[i].is_mode)
-      inputs_.push_back({freedoms_[i].name, freedoms_[i].dims == "L" ? "F" : "F L", -1, -1, rows_[i]});
+  for (size_t i = 0; i < dofs_.size(); ++i) {
+    if (!dofs_[i].is_mode) inputs_.push_back({dofs_[i].name, dofs_[i].dims == "L" ? "F" : "F L", -1, -1, rows_[i]});
   }
   const auto is_taken = [&](const std::string& name) {
     return std::any_of(inputs_.begin(), inputs_.end(), [&](const PlantInput& input) {
@@ -120,7 +119,7 @@ Difference Plant::differentiate(const std::function<VectorXd(double)>& f, double
 }
 
 VectorXd Plant::evaluate(const OperatingPoint& point, const PlantInput* input, double value) {
-  const int n = num_freedoms(), nz = num_states();
+  const int n = num_dofs(), nz = num_states();
   const SignalGraph& signals = system_.signals;
   VectorXd out(n + nz + outputs_.size()), u_dot(system_.num_u());
   compute(point, input, value, u_dot);
@@ -204,30 +203,30 @@ Plant::Cut Plant::find_cut(const std::string& name) const {
   return cut;
 }
 
-/// Behind a sampled block stands what it samples, which is_needed leaves out.
-std::vector<bool> Plant::find_felt() const {
+/// Behind a sampled block stands what it samples, which drives_motion leaves out.
+std::vector<bool> Plant::find_in_loop() const {
   const auto& places = system_.signals.places;
   std::vector<size_t> block_of;
   for (size_t i = 0; i < places.size(); ++i) {
     const auto end = static_cast<size_t>(places[i].out + places[i].block->sizes.outputs);
     block_of.resize(std::max(block_of.size(), end), i);
   }
-  std::vector<bool> is_felt(places.size(), false);
+  std::vector<bool> is_in_loop(places.size(), false);
   std::vector<size_t> open;
   for (size_t i = 0; i < places.size(); ++i)
-    if (places[i].is_needed) open.push_back(i);
+    if (places[i].drives_motion) open.push_back(i);
   while (!open.empty()) {
     const size_t i = open.back();
     open.pop_back();
-    if (is_felt[i]) continue;
-    is_felt[i] = true;
+    if (is_in_loop[i]) continue;
+    is_in_loop[i] = true;
     for (const int row : places[i].sources) open.push_back(block_of[static_cast<size_t>(row)]);
   }
-  return is_felt;
+  return is_in_loop;
 }
 
 void Plant::add_sampled() {
-  is_felt_ = find_felt();
+  is_felt_ = find_in_loop();
   const auto& places = system_.signals.places;
   for (size_t k = 0; k < places.size(); ++k) {
     const auto& p = places[k];
@@ -284,7 +283,7 @@ VectorXd Plant::sample(const OperatingPoint& point, const PlantInput* input, dou
 
 SampleTimes Plant::find_hold(const PlantInput& input) const {
   const SignalGraph& signals = system_.signals;
-  const auto find_place = [&](int row) -> const BlockPlace* {
+  const auto find_place = [&](int row) -> const BlockSlot* {
     for (const auto& p : signals.places)
       if (row >= p.out && row < p.out + p.block->sizes.outputs) return &p;
     return nullptr;
@@ -294,7 +293,7 @@ SampleTimes Plant::find_hold(const PlantInput& input) const {
   };
   // Of what each row follows at once: nothing that moves, one rhythm, or (period < 0) more than that.
   const std::function<SampleTimes(int)> look = [&](int row) -> SampleTimes {
-    const BlockPlace* p = find_place(row);
+    const BlockSlot* p = find_place(row);
     if (p == nullptr) return {0, -1};
     const BlockSizes& sizes = p->block->sizes;
     if (p->is_sampled()) return {signals.start + sizes.delay, sizes.sample_time};
@@ -336,17 +335,17 @@ double Plant::calc_return(const OperatingPoint& point, const PlantInput& input, 
   return 0;
 }
 
-VectorXd Plant::resample(const OperatingPoint& point) {
+VectorXd Plant::sample_all(const OperatingPoint& point) {
   VectorXd u_dot(system_.num_u());
   compute(point, nullptr, 0, u_dot);
   calc_signals(system_, *data_);
-  system_.signals.resample(get_motion(system_, *data_), data_->signals);
+  system_.signals.sample_all(get_motion(system_, *data_), data_->signals);
   return data_->signals.memory;
 }
 
 VectorXd Plant::calc_sample_rates(const OperatingPoint& point) {
   if (steady_rows_.empty()) return {};
-  const VectorXd change = (resample(point) - point.memory)(steady_rows_);
+  const VectorXd change = (sample_all(point) - point.memory)(steady_rows_);
   return change.cwiseQuotient(Eigen::Map<const VectorXd>(steady_period_.data(), change.size()));
 }
 

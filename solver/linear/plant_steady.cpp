@@ -36,7 +36,7 @@ FloatingBase find_base(const TreeBody& tb, const TreeData& data, int body) {
 VectorXd Plant::calc_unsteadiness(const VectorXd& u_dot) const {
   const Tree& tree = system_.tree;
   const TreeData& data = data_->tree;
-  VectorXd all = expand(u_dot.head(num_freedoms()));
+  VectorXd all = expand(u_dot.head(num_dofs()));
   std::vector<int> root(static_cast<size_t>(tree.size()));
   for (int b = 0; b < tree.size(); ++b)
     root[static_cast<size_t>(b)] = tree[b].parent < 0 ? b : root[static_cast<size_t>(tree[b].parent)];
@@ -71,10 +71,10 @@ VectorXd Plant::calc_unsteadiness(const VectorXd& u_dot) const {
 
 VectorXd Plant::calc_spin_rounding(const OperatingPoint& point) const {
   double w = 0;
-  for (int i = 0; i < num_freedoms(); ++i)
+  for (int i = 0; i < num_dofs(); ++i)
     if (!is_mode(i) && freedom_dims(i) == "1") w = std::max(w, std::abs(point.u[i]));
-  VectorXd rounding(num_freedoms());
-  for (int i = 0; i < num_freedoms(); ++i) rounding[i] = 10 * kRounding * step(i) * w * w;
+  VectorXd rounding(num_dofs());
+  for (int i = 0; i < num_dofs(); ++i) rounding[i] = 10 * kRounding * step(i) * w * w;
   return rounding;
 }
 

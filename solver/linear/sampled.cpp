@@ -29,7 +29,7 @@ records::Multipliers calc_multipliers(Plant& plant, const OperatingPoint& point,
                         "choose sample times that are simple multiples of each other");
     return out;
   }
-  Departures departures(plant, point);
+  SampledSystem departures(plant, point);
   const int nx = departures.num_x(), nm = departures.num_m();
   BOUGH_DEMAND(A.rows() == nx);
   MatrixXd flow = MatrixXd::Zero(nx + nm, nx + nm);

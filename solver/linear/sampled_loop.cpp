@@ -16,7 +16,8 @@ constexpr double kInputStep = 1e-2;
 constexpr long kMaxLifted = 100;
 
 /// Of what is added at the cut: a column of m⁺, `before` and after the change.
-VectorXd calc_input_effect(Plant& plant, Departures& departures, const PlantInput& cut, bool is_before, bool is_after) {
+VectorXd calc_input_effect(Plant& plant, SampledSystem& departures, const PlantInput& cut, bool is_before,
+                           bool is_after) {
   return departures.differentiate_one(
       [&](double h) -> VectorXd {
         return plant.sample(departures.point(), &cut, is_before ? h : 0, is_after ? h : 0)(plant.sampled_rows());
@@ -72,7 +73,7 @@ records::LinearModel calc_sampled_loop(Plant& plant, const OperatingPoint& point
   const SampleTimes hold = plant.find_hold(cut);
   const long num_values = count_held_values(plant, cut, hold.period, at);
   const double period = static_cast<double>(num_values) * hold.period;
-  Departures departures(plant, point);
+  SampledSystem departures(plant, point);
   const int nx = departures.num_x(), nm = departures.num_m(), size = nx + nm + 1, last = nx + nm;
   MatrixXd flow = MatrixXd::Zero(size, size);
   flow.topLeftCorner(nx, nx) = A;
@@ -128,9 +129,9 @@ records::LinearModel calc_sampled_loop(Plant& plant, const OperatingPoint& point
   model.states.name = departures.list_names();
   model.states.name.push_back(cut.name + " (held)");
   for (int i = 0; i < size; ++i) {
-    const bool is_freedom = i < 2 * plant.num_freedoms();
-    const std::string dims = is_freedom ? plant.freedom_dims(i % plant.num_freedoms()) : "by the controller";
-    model.states.dims.push_back(dims + (is_freedom && i >= plant.num_freedoms() ? "/T" : ""));
+    const bool is_freedom = i < 2 * plant.num_dofs();
+    const std::string dims = is_freedom ? plant.freedom_dims(i % plant.num_dofs()) : "by the controller";
+    model.states.dims.push_back(dims + (is_freedom && i >= plant.num_dofs() ? "/T" : ""));
   }
   return model;
 }

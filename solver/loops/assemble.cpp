@@ -35,19 +35,19 @@ VectorXd calc_step_sizes(const Loops& loops, const Tree& tree) {
 }
 
 // Of the coordinates that may move; zero of the others.
-VectorXd mask(const VectorXd& size, const std::vector<Grip>& grip, Grip last) {
+VectorXd mask(const VectorXd& size, const std::vector<AssemblyPriority>& priority, AssemblyPriority last) {
   VectorXd chosen = size;
-  for (size_t row = 0; row < grip.size(); ++row) {
-    if (grip[row] > last) chosen[static_cast<Eigen::Index>(row)] = 0;
+  for (size_t row = 0; row < priority.size(); ++row) {
+    if (priority[row] > last) chosen[static_cast<Eigen::Index>(row)] = 0;
   }
   return chosen;
 }
 
 // Step sizes as weights: larger is cheaper.
-VectorXd weigh(const VectorXd& size, const std::vector<Grip>& grip, Grip last) {
-  VectorXd chosen = mask(size, grip, last);
-  for (size_t row = 0; row < grip.size(); ++row) {
-    if (grip[row] < last) chosen[static_cast<Eigen::Index>(row)] *= kPreference;
+VectorXd weigh(const VectorXd& size, const std::vector<AssemblyPriority>& priority, AssemblyPriority last) {
+  VectorXd chosen = mask(size, priority, last);
+  for (size_t row = 0; row < priority.size(); ++row) {
+    if (priority[row] < last) chosen[static_cast<Eigen::Index>(row)] *= kPreference;
   }
   return chosen;
 }
@@ -84,8 +84,8 @@ class Positions {
         const Constraint& c = loops_[i];
         ConstraintData& d = data_[i];
         if (!c.closure) continue;
-        calc_relative_position(tree_, tree_data_, c.parent_marker, c.child_marker, d.closing, d.relative);
-        c.closure->find_start(d.relative.R, d.relative.p, d.closing.q.data());
+        calc_relative_position(tree_, tree_data_, c.parent_marker, c.child_marker, d.state, d.relative);
+        c.closure->find_start(d.relative.R, d.relative.p, d.state.q.data());
       }
     }
   }
@@ -118,7 +118,7 @@ class Positions {
       }
     }
     calc(q);
-    return calc_largest_gap(loops_, data_) <= kClosed;
+    return calc_largest_position_error(loops_, data_) <= kClosed;
   }
 
  private:
@@ -131,8 +131,9 @@ class Positions {
 
 }  // namespace
 
-Assembly assemble_positions(const Loops& loops, const Tree& tree, double t, const std::vector<Grip>& grip,
-                            Eigen::Ref<VectorXd> q, TreeData& tree_data, LoopData& data) {
+Assembly assemble_positions(const Loops& loops, const Tree& tree, double t,
+                            const std::vector<AssemblyPriority>& priority, Eigen::Ref<VectorXd> q, TreeData& tree_data,
+                            LoopData& data) {
   Positions positions(loops, tree, t, tree_data, data);
   const VectorXd sizes = calc_step_sizes(loops, tree), given = q;
   positions.find_starts(given);
@@ -144,19 +145,19 @@ Assembly assemble_positions(const Loops& loops, const Tree& tree, double t, cons
   std::uniform_real_distribution<double> any(-1, 1);
   // A stretched mechanism does not know to which side to bend: the later starts are off a little, then more.
   for (int k = 0; k < kMostStarts && !found.is_closed; ++k) {
-    for (const Grip last : {Grip::Loose, Grip::Given, Grip::Flexible}) {
-      if (k > 0 && last == Grip::Flexible) continue;
-      const VectorXd size = mask(sizes, grip, last);
+    for (const AssemblyPriority last : {AssemblyPriority::Free, AssemblyPriority::Given, AssemblyPriority::Modal}) {
+      if (k > 0 && last == AssemblyPriority::Modal) continue;
+      const VectorXd size = mask(sizes, priority, last);
       data = start;
       VectorXd trial = given;
       if (k > 0) {
         const double off = 2.0 * k / kMostStarts;
         const VectorXd step =
             VectorXd::NullaryExpr(size.size(), [&](Eigen::Index r) { return off * any(engine) * size[r]; });
-        displace(tree, mask(step, grip, Grip::Given), trial);
+        displace(tree, mask(step, priority, AssemblyPriority::Given), trial);
         positions.find_starts(trial);
       }
-      found.is_closed = positions.solve(size, weigh(sizes, grip, last), trial);
+      found.is_closed = positions.solve(size, weigh(sizes, priority, last), trial);
       const double gap = positions.calc(trial);
       if (gap < least || found.is_closed) {
         least = gap;
@@ -167,12 +168,12 @@ Assembly assemble_positions(const Loops& loops, const Tree& tree, double t, cons
   }
   q = best;
   positions.calc(q);
-  found.gap = calc_largest_gap(loops, data, &found.worst);
+  found.gap = calc_largest_position_error(loops, data, &found.worst);
   return found;
 }
 
-Assembly assemble_rates(const Loops& loops, const Tree& tree, const std::vector<Grip>& grip, Eigen::Ref<VectorXd> u,
-                        TreeData& tree_data, LoopData& data) {
+Assembly assemble_rates(const Loops& loops, const Tree& tree, const std::vector<AssemblyPriority>& priority,
+                        Eigen::Ref<VectorXd> u, TreeData& tree_data, LoopData& data) {
   const MatrixXd G = calc_dense_rows(loops, tree, tree_data, data);
   const VectorXd sizes = calc_step_sizes(loops, tree);
   Assembly found;
@@ -192,9 +193,9 @@ Assembly assemble_rates(const Loops& loops, const Tree& tree, const std::vector<
     }
   };
   judge(u);
-  for (const Grip last : {Grip::Loose, Grip::Given, Grip::Flexible}) {
+  for (const AssemblyPriority last : {AssemblyPriority::Free, AssemblyPriority::Given, AssemblyPriority::Modal}) {
     if (found.is_closed) break;
-    const VectorXd size = weigh(sizes, grip, last);
+    const VectorXd size = weigh(sizes, priority, last);
     VectorXd rates = u;
     for (int k = 0; k < 2; ++k) rates += solve_least(G, size, -(G * rates));
     judge(rates);
@@ -223,9 +224,10 @@ void reduce_columns(Matrix6Xd& w) {
 
 }  // namespace
 
-std::vector<Redundancy> find_redundancies(const Loops& loops, const Tree& tree, const std::vector<Grip>& grip,
-                                          const TreeData& tree_data, const LoopData& data) {
-  const VectorXd size = mask(calc_step_sizes(loops, tree), grip, Grip::Flexible);
+std::vector<Redundancy> find_redundancies(const Loops& loops, const Tree& tree,
+                                          const std::vector<AssemblyPriority>& priority, const TreeData& tree_data,
+                                          const LoopData& data) {
+  const VectorXd size = mask(calc_step_sizes(loops, tree), priority, AssemblyPriority::Modal);
   const MatrixXd G = calc_dense_rows(loops, tree, tree_data, data) * size.asDiagonal();
   std::vector<Redundancy> found;
   MatrixXd basis(tree.num_u, 0);  // of the rows so far, orthonormal

@@ -4,8 +4,8 @@
 
 namespace bough::solver {
 
-/// How firmly a coordinate is held: those of a lower grip give way first, Fixed ones never.
-enum class Grip : unsigned char { Loose, Given, Flexible, Fixed };
+/// How firmly a coordinate is held: those of a lower priority give way first, Fixed ones never.
+enum class AssemblyPriority : unsigned char { Free, Given, Modal, Fixed };
 
 struct Assembly {
   bool is_closed = false;
@@ -13,13 +13,14 @@ struct Assembly {
   int worst = -1;  ///< the constraint that has it
 };
 
-/// Gauss-Newton steps of least size, with as few grips let go as do; q: in and out. grip: num_u, by row of u. The
-/// closing hinges' coordinates in `data` follow. Leaves tree_data at (t, q). Allocates.
-Assembly assemble_positions(const Loops& loops, const Tree& tree, double t, const std::vector<Grip>& grip,
-                            Eigen::Ref<VectorXd> q, TreeData& tree_data, LoopData& data);
+/// Gauss-Newton steps of least size, with as few priorities let go as do; q: in and out. priority: num_u, by row of u.
+/// The closing hinges' coordinates in `data` follow. Leaves tree_data at (t, q). Allocates.
+Assembly assemble_positions(const Loops& loops, const Tree& tree, double t,
+                            const std::vector<AssemblyPriority>& priority, Eigen::Ref<VectorXd> q, TreeData& tree_data,
+                            LoopData& data);
 /// The same of rates: G u = 0. After assemble_positions.
-Assembly assemble_rates(const Loops& loops, const Tree& tree, const std::vector<Grip>& grip, Eigen::Ref<VectorXd> u,
-                        TreeData& tree_data, LoopData& data);
+Assembly assemble_rates(const Loops& loops, const Tree& tree, const std::vector<AssemblyPriority>& priority,
+                        Eigen::Ref<VectorXd> u, TreeData& tree_data, LoopData& data);
 
 /// For each closed constraint what of its wrench the constraints before it can take as well: 6 x k in Hp (coupler: the
 /// first row is 1), reduced to few components. Of coordinates that are not Fixed. After assemble_positions.
@@ -27,7 +28,8 @@ struct Redundancy {
   int constraint = 0;
   Matrix6Xd wrenches;
 };
-std::vector<Redundancy> find_redundancies(const Loops& loops, const Tree& tree, const std::vector<Grip>& grip,
-                                          const TreeData& tree_data, const LoopData& data);
+std::vector<Redundancy> find_redundancies(const Loops& loops, const Tree& tree,
+                                          const std::vector<AssemblyPriority>& priority, const TreeData& tree_data,
+                                          const LoopData& data);
 
 }  // namespace bough::solver

@@ -75,7 +75,7 @@ class HingeClosure final : public Closure {
     double q_dot[7];
     hinge_->calc_q_dot(q, step.data(), q_dot);
     for (int i = 0; i < num_q(); ++i) q[i] += q_dot[i];
-    if (!hinge_->has_plain_coordinates()) Eigen::Map<Eigen::Vector4d>(q).normalize();
+    if (!hinge_->has_independent_coordinates()) Eigen::Map<Eigen::Vector4d>(q).normalize();
   }
 
   // Gauss-Newton: quadratic where the gap vanishes.

@@ -59,17 +59,17 @@ void finish_loops(const Tree& tree, Loops& loops) {
 
 LoopData make_loop_data(const Loops& loops, const Tree& tree) {
   LoopData data;
-  std::vector<Closing> closings;
+  std::vector<ConstraintState> constraints;
   for (const Constraint& c : loops.constraints) {
-    Closing closing;
-    closing.is_closed = c.active;
-    closing.q = VectorXd::Zero(c.num_q());
+    ConstraintState state;
+    state.is_closed = c.active;
+    state.q = VectorXd::Zero(c.num_q());
     // A quaternion has one row more than the rows that are left to move.
-    if (c.closure && c.num_q() + c.num_rows() == 7) closing.q[3] = 1;
-    closings.push_back(std::move(closing));
+    if (c.closure && c.num_q() + c.num_rows() == 7) state.q[3] = 1;
+    constraints.push_back(std::move(state));
     data.constraints.emplace_back();
   }
-  set_closings(loops, tree, closings, data);
+  set_constraint_states(loops, tree, constraints, data);
   return data;
 }
 
@@ -119,8 +119,9 @@ LoopBlock make_block(const Loops& loops, const Tree& tree, const std::vector<int
 
 }  // namespace
 
-void set_closings(const Loops& loops, const Tree& tree, const std::vector<Closing>& closings, LoopData& data) {
-  BOUGH_DEMAND(static_cast<int>(closings.size()) == loops.size());
+void set_constraint_states(const Loops& loops, const Tree& tree, const std::vector<ConstraintState>& constraints,
+                           LoopData& data) {
+  BOUGH_DEMAND(static_cast<int>(constraints.size()) == loops.size());
   data.blocks.clear();
   std::vector<int> leader(static_cast<size_t>(tree.size()));  // of the trees that constraints join
   std::iota(leader.begin(), leader.end(), 0);
@@ -129,9 +130,9 @@ void set_closings(const Loops& loops, const Tree& tree, const std::vector<Closin
     return r;
   };
   for (int i = 0; i < loops.size(); ++i) {
-    data[i].closing = closings[static_cast<size_t>(i)];
+    data[i].state = constraints[static_cast<size_t>(i)];
     data[i].lambda.setZero();
-    if (!data[i].closing.is_closed) continue;
+    if (!data[i].state.is_closed) continue;
     for (const int r : loops[i].roots) {
       const int a = find(loops[i].roots[0]), b = find(r);
       leader[static_cast<size_t>(std::max(a, b))] = std::min(a, b);
@@ -139,7 +140,7 @@ void set_closings(const Loops& loops, const Tree& tree, const std::vector<Closin
   }
   std::vector<std::vector<int>> groups(static_cast<size_t>(tree.size()) + 1);
   for (int i = 0; i < loops.size(); ++i) {
-    if (!data[i].closing.is_closed) continue;
+    if (!data[i].state.is_closed) continue;
     const size_t group = loops[i].roots.empty() ? groups.size() - 1 : static_cast<size_t>(find(loops[i].roots[0]));
     groups[group].push_back(i);
   }
@@ -148,34 +149,34 @@ void set_closings(const Loops& loops, const Tree& tree, const std::vector<Closin
   }
 }
 
-std::vector<Closing> get_closings(const LoopData& data) {
-  std::vector<Closing> closings;
-  for (const ConstraintData& c : data.constraints) closings.push_back(c.closing);
-  return closings;
+std::vector<ConstraintState> get_constraint_states(const LoopData& data) {
+  std::vector<ConstraintState> constraints;
+  for (const ConstraintData& c : data.constraints) constraints.push_back(c.state);
+  return constraints;
 }
 
-Closing find_closing(const Loops& loops, const Tree& tree, const TreeData& tree_data, int i) {
+ConstraintState find_as_closed(const Loops& loops, const Tree& tree, const TreeData& tree_data, int i) {
   tree_data.demand(Stage::Position);
   const Constraint& c = loops[i];
-  Closing closing;
-  closing.q = VectorXd::Zero(c.num_q());
+  ConstraintState state;
+  state.q = VectorXd::Zero(c.num_q());
   if (!c.closure) {
-    closing.gap[0] = -c.offset;
-    for (const CouplerTerm& term : c.terms) closing.gap[0] += term.ratio * tree_data.q[term.q_row];
-    return closing;
+    state.gap[0] = -c.offset;
+    for (const CouplerTerm& term : c.terms) state.gap[0] += term.ratio * tree_data.q[term.q_row];
+    return state;
   }
   RelativeMotion X;
   ClosureMotion own;
-  calc_relative_position(tree, tree_data, c.parent_marker, c.child_marker, closing, X);
-  c.closure->find_start(X.R, X.p, closing.q.data());
-  c.closure->calc_position(X.R, X.p, closing.q.data(), own);
+  calc_relative_position(tree, tree_data, c.parent_marker, c.child_marker, state, X);
+  c.closure->find_start(X.R, X.p, state.q.data());
+  c.closure->calc_position(X.R, X.p, state.q.data(), own);
   if (c.closure->is_hinge()) {
-    closing.R = X.R.transpose() * own.hinge.R_HpHc;
-    closing.p = X.R.transpose() * (own.hinge.p_HpHc - X.p);
+    state.R = X.R.transpose() * own.hinge.R_HpHc;
+    state.p = X.R.transpose() * (own.hinge.p_HpHc - X.p);
   } else {
-    closing.gap.head(c.num_rows()) = own.gap.head(c.num_rows());
+    state.gap.head(c.num_rows()) = own.gap.head(c.num_rows());
   }
-  return closing;
+  return state;
 }
 
 void calc_closure_positions(const Loops& loops, const Tree& tree, const TreeData& tree_data, LoopData& data) {
@@ -185,11 +186,11 @@ void calc_closure_positions(const Loops& loops, const Tree& tree, const TreeData
       const Constraint& c = loops[i];
       ConstraintData& d = data[i];
       if (c.closure) {
-        calc_relative_position(tree, tree_data, c.parent_marker, c.child_marker, d.closing, d.relative);
-        c.closure->calc_position(d.relative.R, d.relative.p, d.closing.q.data(), d.own);
-        if (!c.closure->is_hinge()) d.own.gap.head<2>() -= d.closing.gap;
+        calc_relative_position(tree, tree_data, c.parent_marker, c.child_marker, d.state, d.relative);
+        c.closure->calc_position(d.relative.R, d.relative.p, d.state.q.data(), d.own);
+        if (!c.closure->is_hinge()) d.own.gap.head<2>() -= d.state.gap;
       } else {
-        d.coupled = -c.offset - d.closing.gap[0];
+        d.coupled = -c.offset - d.state.gap[0];
         for (const CouplerTerm& term : c.terms) d.coupled += term.ratio * tree_data.q[term.q_row];
       }
     }
@@ -204,7 +205,7 @@ void calc_closure_velocities(const Loops& loops, const Tree& tree, const TreeDat
       ConstraintData& d = data[i];
       if (!c.closure) continue;
       calc_relative_velocity(tree, tree_data, c.parent_marker, c.child_marker, d.relative);
-      c.closure->calc_velocity(d.relative.R, d.relative.p, d.relative.V, d.closing.q.data(), d.own);
+      c.closure->calc_velocity(d.relative.R, d.relative.p, d.relative.V, d.state.q.data(), d.own);
     }
   }
 }
@@ -221,7 +222,7 @@ double calc_gap(const Loops& loops, const LoopData& data, int i) {
   return std::max(gap.head<3>().norm() / loops.length, gap.tail<3>().norm());
 }
 
-double calc_largest_gap(const Loops& loops, const LoopData& data, int* which) {
+double calc_largest_position_error(const Loops& loops, const LoopData& data, int* which) {
   double largest = 0;
   for (const LoopBlock& block : data.blocks) {
     for (const int i : block.constraints) {
@@ -236,7 +237,7 @@ double calc_largest_gap(const Loops& loops, const LoopData& data, int* which) {
 }
 
 Vector6d calc_constraint_wrench(const Loops& loops, const LoopData& data, int i) {
-  if (!loops[i].closure || !data[i].closing.is_closed) return Vector6d::Zero();
+  if (!loops[i].closure || !data[i].state.is_closed) return Vector6d::Zero();
   return data[i].own.W.leftCols(loops[i].num_rows()) * data[i].lambda.head(loops[i].num_rows());
 }
 

@@ -45,7 +45,7 @@ struct Loops {
 };
 
 struct ConstraintData {
-  Closing closing;
+  ConstraintState state;
   RelativeMotion relative;
   ClosureMotion own;
   double coupled = 0;                  ///< coupler: gap
@@ -77,18 +77,19 @@ struct LoopData {
 void finish_loops(const Tree& tree, Loops& loops);
 LoopData make_loop_data(const Loops& loops, const Tree& tree);
 /// Which are closed from now on. Allocates.
-void set_closings(const Loops& loops, const Tree& tree, const std::vector<Closing>& closings, LoopData& data);
-std::vector<Closing> get_closings(const LoopData& data);
+void set_constraint_states(const Loops& loops, const Tree& tree, const std::vector<ConstraintState>& constraints,
+                           LoopData& data);
+std::vector<ConstraintState> get_constraint_states(const LoopData& data);
 
 /// Constraint i closed as it is found at the positions of the tree: what it is off by is kept, so that nothing jumps.
-Closing find_closing(const Loops& loops, const Tree& tree, const TreeData& tree_data, int i);
+ConstraintState find_as_closed(const Loops& loops, const Tree& tree, const TreeData& tree_data, int i);
 
 /// Gaps, W (position); relative velocities, biases (velocity). After the same stages of the tree. No allocation.
 void calc_closure_positions(const Loops& loops, const Tree& tree, const TreeData& tree_data, LoopData& data);
 void calc_closure_velocities(const Loops& loops, const Tree& tree, const TreeData& tree_data, LoopData& data);
 /// What is left open of a constraint: relative to Loops::length, and in radians. After calc_closure_positions.
 double calc_gap(const Loops& loops, const LoopData& data, int constraint);
-double calc_largest_gap(const Loops& loops, const LoopData& data, int* which = nullptr);
+double calc_largest_position_error(const Loops& loops, const LoopData& data, int* which = nullptr);
 
 /// After solve: u̇ with the constraints, by their multipliers and a second solve. Does nothing where none is closed. No
 /// allocation.

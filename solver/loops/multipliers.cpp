@@ -211,7 +211,7 @@ void project(const Loops& loops, const Tree& tree, double t, Eigen::Ref<VectorXd
   if (data.blocks.empty()) return;
   calc_position(tree, t, q, tree_data);
   calc_closure_positions(loops, tree, tree_data, data);
-  double gap = calc_largest_gap(loops, data);
+  double gap = calc_largest_position_error(loops, data);
   for (int i = 0; i < kMostProjections && gap > kClosed; ++i) {
     calc_factor(tree, tree_data);
     solve_gaps(loops, tree, tree_data, data, false);
@@ -221,7 +221,7 @@ void project(const Loops& loops, const Tree& tree, double t, Eigen::Ref<VectorXd
     displace(tree, s.u_dot, q);
     calc_position(tree, t, q, tree_data);
     calc_closure_positions(loops, tree, tree_data, data);
-    const double before = std::exchange(gap, calc_largest_gap(loops, data));
+    const double before = std::exchange(gap, calc_largest_position_error(loops, data));
     if (gap > 0.5 * before) break;  // rounding
   }
   calc_velocity(tree, u, tree_data);

@@ -45,14 +45,14 @@ Twist calc_response(const Tree& tree, const End& e, const Sweep& s) {
 }  // namespace
 
 void calc_relative_position(const Tree& tree, const TreeData& data, int parent_marker, int child_marker,
-                            const Closing& closing, RelativeMotion& out) {
+                            const ConstraintState& state, RelativeMotion& out) {
   const End parent = get_end(tree, data, parent_marker), child = get_end(tree, data, child_marker);
   out.R_WHp = parent.body.R_WB * parent.motion.R;
   const Matrix3d R_WM = child.body.R_WB * child.motion.R;
-  out.o_W = R_WM * closing.p;
+  out.o_W = R_WM * state.p;
   out.d_W = child.body.p_WBo + child.body.R_WB * child.motion.r + out.o_W -
             (parent.body.p_WBo + parent.body.R_WB * parent.motion.r);
-  out.R = out.R_WHp.transpose() * R_WM * closing.R;
+  out.R = out.R_WHp.transpose() * R_WM * state.R;
   out.p = out.R_WHp.transpose() * out.d_W;
 }
 

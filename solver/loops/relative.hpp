@@ -4,7 +4,7 @@
 
 namespace bough::solver {
 
-/// Of Hc, fixed in the child's marker at [R, p] of a Closing, in Hp, the parent's marker.
+/// Of Hc, fixed in the child's marker at [R, p] of a ConstraintState, in Hp, the parent's marker.
 struct RelativeMotion {
   Matrix3d R = Matrix3d::Identity();  ///< R_HpHc
   Vector3d p = Vector3d::Zero();      ///< p_HpHc, in Hp
@@ -17,7 +17,7 @@ struct RelativeMotion {
 
 /// After Stage::Position.
 void calc_relative_position(const Tree& tree, const TreeData& data, int parent_marker, int child_marker,
-                            const Closing& closing, RelativeMotion& out);
+                            const ConstraintState& state, RelativeMotion& out);
 /// After Stage::Velocity and calc_relative_position.
 void calc_relative_velocity(const Tree& tree, const TreeData& data, int parent_marker, int child_marker,
                             RelativeMotion& out);

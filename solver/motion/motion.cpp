@@ -55,7 +55,7 @@ void get_hinge(const Motion& motion, int body, Eigen::Ref<VectorXd> q, Eigen::Re
 ConstraintReaction get_constraint_reaction(const Motion& motion, int constraint) {
   const Vector6d wrench = calc_constraint_wrench(motion.loops, motion.loop_data, constraint);
   const ConstraintData& d = motion.loop_data[constraint];
-  const bool couples = !motion.loops[constraint].closure && d.closing.is_closed;
+  const bool couples = !motion.loops[constraint].closure && d.state.is_closed;
   return {wrench.head<3>(), wrench.tail<3>(), couples ? d.lambda[0] : 0};
 }
 

@@ -59,7 +59,7 @@ void SignalGraph::arrange(Diagnostics& diagnostics) {
   std::vector<std::vector<int>> moment(n + 1), instant(n);
   std::vector<std::string> names;
   for (size_t i = 0; i < n; ++i) {
-    const BlockPlace& p = places[i];
+    const BlockSlot& p = places[i];
     const BlockSizes& sizes = p.block->sizes;
     names.push_back(p.block->name);
     if (p.actuator >= 0) moment[n].push_back(static_cast<int>(i));
@@ -90,8 +90,8 @@ void SignalGraph::arrange(Diagnostics& diagnostics) {
   for (const int i : late_order) {
     if (i == static_cast<int>(n)) continue;
     const auto& sources = moment[static_cast<size_t>(i)];
-    places[static_cast<size_t>(i)].is_late = std::any_of(sources.begin(), sources.end(), [&](int source) {
-      return source == static_cast<int>(n) || places[static_cast<size_t>(source)].is_late;
+    places[static_cast<size_t>(i)].needs_acceleration = std::any_of(sources.begin(), sources.end(), [&](int source) {
+      return source == static_cast<int>(n) || places[static_cast<size_t>(source)].needs_acceleration;
     });
   }
   find_needed();
@@ -102,9 +102,9 @@ void SignalGraph::find_needed() {
   for (size_t i = 0; i < places.size(); ++i)
     std::fill_n(block_of.begin() + places[i].out, places[i].block->sizes.outputs, static_cast<int>(i));
   const std::function<void(size_t)> need = [&](size_t i) {
-    BlockPlace& p = places[i];
-    if (p.is_needed) return;
-    p.is_needed = true;
+    BlockSlot& p = places[i];
+    if (p.drives_motion) return;
+    p.drives_motion = true;
     if (p.is_sampled() && p.block->sizes.states == 0) return;  // its inputs are read at its samples
     for (const int row : p.sources) need(static_cast<size_t>(block_of[static_cast<size_t>(row)]));
   };

@@ -19,7 +19,7 @@ bool Block::settle(const BlockInput&, double*) const { return false; }
 void Block::calc_ideal(const BlockInput& in, double* y) const { calc_outputs(in, y); }
 void Block::calc_rates(const BlockInput&, double*) const {}
 void Block::update(const BlockInput&, double*) const {}
-void Block::calc_guards(const BlockInput&, double*) const {}
+void Block::calc_event_functions(const BlockInput&, double*) const {}
 void Block::switch_over(const BlockInput&, int, double*) const {}
 void Block::choose(int, double*) const {}
 void Block::add_load(const BlockInput&, const double*, TreeData&) const {}

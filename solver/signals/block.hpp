@@ -32,7 +32,7 @@ struct BlockInput {
 
 struct BlockSizes {
   int inputs = 0, outputs = 1, states = 0, memory = 0;
-  int guards = 0;                   ///< functions that switch the block where they become positive
+  int event_functions = 0;          ///< functions that switch the block where they become positive
   bool has_feedthrough = true;      ///< the outputs depend on the inputs (or on the motion) at the same moment
   bool reads_acceleration = false;  ///< sensors: of u̇
   double sample_time = 0;           ///< > 0: outputs are computed then and held
@@ -72,9 +72,10 @@ class Block {
   virtual void calc_rates(const BlockInput& in, double* z_dot) const;
   /// Sampled: the memory after this sample; d holds what in.d holds. After calc_outputs of the same sample.
   virtual void update(const BlockInput& in, double* d) const;
-  virtual void calc_guards(const BlockInput& in, double* g) const;
-  /// The memory after guard `guard` has become positive; the guard must not be positive any more.
-  virtual void switch_over(const BlockInput& in, int guard, double* d) const;
+  virtual void calc_event_functions(const BlockInput& in, double* g) const;
+  /// The memory after event function `event function` has become positive; the event function must not be positive any
+  /// more.
+  virtual void switch_over(const BlockInput& in, int function, double* d) const;
 
   /// Whether the outputs depend on the time itself: a step that passes over a short event of theirs would not see it.
   virtual bool depends_on_time() const { return false; }

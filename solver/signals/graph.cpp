@@ -21,7 +21,7 @@ long calc_first_number(double start, double period) {
   return std::lround(is_sample ? nearest : std::ceil(periods));
 }
 
-void demand_finite(const BlockPlace& place, const double* y, double t) {
+void demand_finite(const BlockSlot& place, const double* y, double t) {
   for (int i = 0; i < place.block->sizes.outputs; ++i) {
     if (std::isfinite(y[i])) continue;
     std::ostringstream what;
@@ -31,7 +31,7 @@ void demand_finite(const BlockPlace& place, const double* y, double t) {
   }
 }
 
-void add_shift(const BlockPlace& p, SignalData& s) {
+void add_shift(const BlockSlot& p, SignalData& s) {
   if (s.shift.size() > 0)
     s.values.segment(p.out, p.block->sizes.outputs) += s.shift.segment(p.out, p.block->sizes.outputs);
 }
@@ -54,21 +54,21 @@ SignalData SignalGraph::make_data() const {
   return s;
 }
 
-const BlockPlace* SignalGraph::find(const std::string& path) const {
+const BlockSlot* SignalGraph::find(const std::string& path) const {
   for (const auto& p : places) {
     if (p.block->path == path) return &p;
   }
   return nullptr;
 }
 
-BlockInput SignalGraph::look_again(const BlockPlace& p, const Motion& motion, const SignalData& signals) const {
+BlockInput SignalGraph::view_inputs(const BlockSlot& p, const Motion& motion, const SignalData& signals) const {
   const SignalData& s = signals;
   const auto place = static_cast<size_t>(&p - places.data());
   return {motion.data.t, s.inputs.data() + p.in,       s.z.data() + p.state, s.memory.data() + p.memory, 0,
           &motion,       s.block_scratch[place].get(), motion.data.tangents};
 }
 
-BlockInput SignalGraph::look(const BlockPlace& p, const Motion& motion, SignalData& signals) const {
+BlockInput SignalGraph::look(const BlockSlot& p, const Motion& motion, SignalData& signals) const {
   SignalData& s = signals;
   for (size_t i = 0; i < p.sources.size(); ++i)
     s.inputs[p.in + static_cast<Eigen::Index>(i)] = p.gains[i] * s.values[p.sources[i]];
@@ -81,10 +81,10 @@ BlockInput SignalGraph::look(const BlockPlace& p, const Motion& motion, SignalDa
       given.setZero();
     given += s.bias.segment(p.actuator, n);
   }
-  return look_again(p, motion, signals);
+  return view_inputs(p, motion, signals);
 }
 
-void SignalGraph::calc(const BlockPlace& p, const Motion& motion, SignalData& signals) const {
+void SignalGraph::calc(const BlockSlot& p, const Motion& motion, SignalData& signals) const {
   SignalData& s = signals;
   double* y = s.values.data() + p.out;
   if (is_off(p, s)) {
@@ -100,32 +100,34 @@ void SignalGraph::calc(const BlockPlace& p, const Motion& motion, SignalData& si
   add_shift(p, s);
 }
 
-void SignalGraph::calc_early(const Motion& motion, SignalData& signals) const {
-  signals.has_late = false;
+void SignalGraph::calc_before_acceleration(const Motion& motion, SignalData& signals) const {
+  signals.is_after_acceleration = false;
   for (const int i : order) {
     const auto& p = places[static_cast<size_t>(i)];
-    if (p.is_needed && !p.is_late) calc(p, motion, signals);
+    if (p.drives_motion && !p.needs_acceleration) calc(p, motion, signals);
   }
 }
 
-void SignalGraph::calc_late(const Motion& motion, SignalData& signals) const {
-  signals.has_late = true;
+void SignalGraph::calc_after_acceleration(const Motion& motion, SignalData& signals) const {
+  signals.is_after_acceleration = true;
   for (const int i : order) {
     const auto& p = places[static_cast<size_t>(i)];
-    if (p.is_needed && p.is_late) calc(p, motion, signals);
+    if (p.drives_motion && p.needs_acceleration) calc(p, motion, signals);
   }
 }
 
 void SignalGraph::calc_all(const Motion& motion, SignalData& signals) const {
-  for (const bool is_late : {false, true}) {
+  for (const bool needs_acceleration : {false, true}) {
     for (const int i : order) {
       const auto& p = places[static_cast<size_t>(i)];
-      if (p.is_late == is_late && !(p.is_needed && (!is_late || signals.has_late))) calc(p, motion, signals);
+      if (p.needs_acceleration == needs_acceleration &&
+          !(p.drives_motion && (!needs_acceleration || signals.is_after_acceleration)))
+        calc(p, motion, signals);
     }
   }
 }
 
-void SignalGraph::calc_ideal(const BlockPlace& place, const Motion& motion, SignalData& signals, double* y) const {
+void SignalGraph::calc_ideal(const BlockSlot& place, const Motion& motion, SignalData& signals, double* y) const {
   place.block->calc_ideal(look(place, motion, signals), y);
 }
 
@@ -142,7 +144,7 @@ bool SignalGraph::settle(const Motion& motion, SignalData& signals) const {
 void SignalGraph::add_loads(const Motion& motion, const SignalData& signals, TreeData& data) const {
   if (places.empty()) return;
   for (const auto& p : places) {
-    if (p.actuator >= 0) p.block->add_load(look_again(p, motion, signals), signals.values.data() + p.out, data);
+    if (p.actuator >= 0) p.block->add_load(view_inputs(p, motion, signals), signals.values.data() + p.out, data);
   }
 }
 
@@ -161,7 +163,7 @@ double SignalGraph::calc_power(const Motion& motion, const SignalData& signals) 
   double power = 0;
   if (places.empty()) return power;
   for (const auto& p : places) {
-    if (p.actuator >= 0) power += p.block->calc_power(look_again(p, motion, signals), signals.values.data() + p.out);
+    if (p.actuator >= 0) power += p.block->calc_power(view_inputs(p, motion, signals), signals.values.data() + p.out);
   }
   return power;
 }
@@ -170,7 +172,7 @@ double SignalGraph::calc_energy(const Motion& motion, const SignalData& signals)
   double energy = 0;
   if (places.empty()) return energy;
   for (const auto& p : places) {
-    if (p.actuator >= 0) energy += p.block->calc_energy(look_again(p, motion, signals));
+    if (p.actuator >= 0) energy += p.block->calc_energy(view_inputs(p, motion, signals));
   }
   return energy;
 }
@@ -179,7 +181,7 @@ Vector3d SignalGraph::calc_momentum(const Motion& motion, const SignalData& sign
   Vector3d momentum = Vector3d::Zero();
   if (places.empty()) return momentum;
   for (const auto& p : places) {
-    if (p.actuator >= 0) momentum += p.block->calc_momentum(look_again(p, motion, signals));
+    if (p.actuator >= 0) momentum += p.block->calc_momentum(view_inputs(p, motion, signals));
   }
   return momentum;
 }
@@ -187,7 +189,7 @@ Vector3d SignalGraph::calc_momentum(const Motion& motion, const SignalData& sign
 VectorXd SignalGraph::calc_consumption(const Motion& motion, const SignalData& signals) const {
   VectorXd used = VectorXd::Zero(motion.tree.size());
   for (const auto& p : places) {
-    if (p.actuator >= 0) p.block->add_consumption(look_again(p, motion, signals), used);
+    if (p.actuator >= 0) p.block->add_consumption(view_inputs(p, motion, signals), used);
   }
   return used;
 }
@@ -215,7 +217,7 @@ bool SignalGraph::sample(const Motion& motion, SignalData& signals, double close
   for (const int i : order) {
     const auto& p = places[static_cast<size_t>(i)];
     if (!p.is_sampled()) {
-      if (!p.is_late) calc(p, motion, signals);
+      if (!p.needs_acceleration) calc(p, motion, signals);
       continue;
     }
     const int n = p.block->sizes.outputs;
@@ -226,7 +228,7 @@ bool SignalGraph::sample(const Motion& motion, SignalData& signals, double close
     if (is_off(p, s)) {
       held.setZero();
       s.memory.segment(p.queue, n * p.queue_length).setZero();
-      has_changed = has_changed || (p.is_needed && before != held);
+      has_changed = has_changed || (p.drives_motion && before != held);
       s.values.segment(p.out, n) = held;
       continue;
     }
@@ -248,19 +250,19 @@ bool SignalGraph::sample(const Motion& motion, SignalData& signals, double close
       const long k = find_sample(t, start + p.block->sizes.delay, period, close);
       if (k >= 0) held = s.memory.segment(p.queue + n * static_cast<int>(k % p.queue_length), n);
     }
-    has_changed = has_changed || (p.is_needed && before != held);
+    has_changed = has_changed || (p.drives_motion && before != held);
     s.values.segment(p.out, n) = held;
     add_shift(p, s);
   }
   return has_changed;
 }
 
-void SignalGraph::resample(const Motion& motion, SignalData& signals) const {
+void SignalGraph::sample_all(const Motion& motion, SignalData& signals) const {
   SignalData& s = signals;
   for (const int i : order) {
     const auto& p = places[static_cast<size_t>(i)];
     if (!p.is_sampled()) {
-      if (!p.is_late) calc(p, motion, signals);
+      if (!p.needs_acceleration) calc(p, motion, signals);
       continue;
     }
     auto held = s.memory.segment(p.held, p.block->sizes.outputs);
@@ -283,13 +285,13 @@ void SignalGraph::resample(const Motion& motion, SignalData& signals) const {
   }
 }
 
-void SignalGraph::calc_guards(const Motion& motion, SignalData& signals, Eigen::Ref<VectorXd> g) const {
+void SignalGraph::calc_event_functions(const Motion& motion, SignalData& signals, Eigen::Ref<VectorXd> g) const {
   for (const auto& p : places) {
-    if (p.block->sizes.guards == 0) continue;
+    if (p.block->sizes.event_functions == 0) continue;
     if (is_off(p, signals))
-      g.segment(p.guard, p.block->sizes.guards).setConstant(-1);
+      g.segment(p.event_row, p.block->sizes.event_functions).setConstant(-1);
     else
-      p.block->calc_guards(look(p, motion, signals), g.data() + p.guard);
+      p.block->calc_event_functions(look(p, motion, signals), g.data() + p.event_row);
   }
 }
 
@@ -297,8 +299,8 @@ bool SignalGraph::switch_over(const Motion& motion, SignalData& signals, const V
   bool has_switched = false;
   SignalData& s = signals;
   for (const auto& p : places) {
-    for (int i = 0; i < p.block->sizes.guards; ++i) {
-      if (!(g[p.guard + i] > 0)) continue;
+    for (int i = 0; i < p.block->sizes.event_functions; ++i) {
+      if (!(g[p.event_row + i] > 0)) continue;
       s.scratch.segment(p.memory, p.block->sizes.memory) = s.memory.segment(p.memory, p.block->sizes.memory);
       p.block->switch_over(look(p, motion, signals), i, s.scratch.data() + p.memory);
       s.memory.segment(p.memory, p.block->sizes.memory) = s.scratch.segment(p.memory, p.block->sizes.memory);

@@ -13,17 +13,17 @@ namespace bough::solver {
 using Eigen::VectorXd;
 
 /// Where a block lies in the vectors of SignalData.
-struct BlockPlace {
+struct BlockSlot {
   std::unique_ptr<const Block> block;
   std::vector<int> sources;   ///< rows of values, one an input
   std::vector<double> gains;  ///< of the sources
-  int in = 0, out = 0, state = 0, memory = 0, held = 0, queue = 0, guard = 0;
-  int queue_length = 0;    ///< samples on their way, where there is a delay
-  int actuator = -1;       ///< counts commands of actuators; -1: none
-  int activity = -1;       ///< row of the memory: 1 while it works, 0 while it is off; -1: it always works
-  bool is_active = true;   ///< at the start
-  bool is_needed = false;  ///< the motion depends on it
-  bool is_late = false;    ///< depends on u̇ at the same moment
+  int in = 0, out = 0, state = 0, memory = 0, held = 0, queue = 0, event_row = 0;
+  int queue_length = 0;             ///< samples on their way, where there is a delay
+  int actuator = -1;                ///< counts commands of actuators; -1: none
+  int activity = -1;                ///< row of the memory: 1 while it works, 0 while it is off; -1: it always works
+  bool is_active = true;            ///< at the start
+  bool drives_motion = false;       ///< the motion depends on it
+  bool needs_acceleration = false;  ///< depends on u̇ at the same moment
 
   bool is_sampled() const { return block->sizes.sample_time > 0; }
 };
@@ -38,9 +38,9 @@ struct SignalData {
   /// Linear models: more on each actuator's command; with is_open that is all, beside what is held here.
   VectorXd bias, command;
   bool is_open = false;
-  VectorXd shift;         ///< likewise: more on each value, as all that read it see it; empty: none
-  bool is_ideal = false;  ///< likewise: samples of sensors are those of calc_ideal
-  bool has_late = false;  ///< calc_late is done at the present state
+  VectorXd shift;                      ///< likewise: more on each value, as all that read it see it; empty: none
+  bool is_ideal = false;               ///< likewise: samples of sensors are those of calc_ideal
+  bool is_after_acceleration = false;  ///< calc_after_acceleration is done at the present state
 };
 
 /// Instants first, first + period, ...
@@ -50,9 +50,9 @@ struct SampleTimes {
 
 class SignalGraph {
  public:
-  std::vector<BlockPlace> places;  ///< in the order of the file: sensors, controllers, actuators, functions
-  std::vector<int> order;          ///< of evaluation
-  int num_values = 0, num_states = 0, num_memory = 0, num_inputs = 0, num_guards = 0;
+  std::vector<BlockSlot> places;  ///< in the order of the file: sensors, controllers, actuators, functions
+  std::vector<int> order;         ///< of evaluation
+  int num_values = 0, num_states = 0, num_memory = 0, num_inputs = 0, num_event_functions = 0;
   int num_actuators = 0;  ///< their commands
   double start = 0;
 
@@ -61,17 +61,17 @@ class SignalGraph {
   SignalData make_data() const;
   /// After calc_all, at the start of a run: lags that are to start at rest follow what is there. False without any.
   bool settle(const Motion& motion, SignalData& signals) const;
-  const BlockPlace* find(const std::string& path) const;
+  const BlockSlot* find(const std::string& path) const;
   /// What the motion needs, but what is late. After kinematics, before loads.
-  void calc_early(const Motion& motion, SignalData& signals) const;
+  void calc_before_acceleration(const Motion& motion, SignalData& signals) const;
   /// What is late and needed. After accelerations.
-  void calc_late(const Motion& motion, SignalData& signals) const;
-  /// The blocks that calc_early and calc_late have left out. After accelerations.
+  void calc_after_acceleration(const Motion& motion, SignalData& signals) const;
+  /// The blocks that calc_before_acceleration and calc_after_acceleration have left out. After accelerations.
   void calc_all(const Motion& motion, SignalData& signals) const;
   /// After calc_all: one sensor as linear models see it; y: its outputs.
-  void calc_ideal(const BlockPlace& place, const Motion& motion, SignalData& signals, double* y) const;
+  void calc_ideal(const BlockSlot& place, const Motion& motion, SignalData& signals, double* y) const;
   void add_loads(const Motion& motion, const SignalData& signals, TreeData& data) const;
-  /// After calc_late. z_dot: num_states.
+  /// After calc_after_acceleration. z_dot: num_states.
   void calc_rates(const Motion& motion, SignalData& signals, Eigen::Ref<VectorXd> z_dot) const;
   double calc_power(const Motion& motion, const SignalData& signals) const;
   double calc_energy(const Motion& motion, const SignalData& signals) const;
@@ -80,7 +80,7 @@ class SignalGraph {
   VectorXd calc_consumption(const Motion& motion, const SignalData& signals) const;
 
   bool has_samples() const {
-    return std::any_of(places.begin(), places.end(), [](const BlockPlace& p) { return p.is_sampled(); });
+    return std::any_of(places.begin(), places.end(), [](const BlockSlot& p) { return p.is_sampled(); });
   }
   /// Instants of all sampled blocks, each kind once.
   std::vector<SampleTimes> collect_samples() const;
@@ -88,22 +88,22 @@ class SignalGraph {
   /// the order give at this instant, and the accelerations before it. True when what the motion needs has changed.
   bool sample(const Motion& motion, SignalData& signals, double close) const;
   /// After calc_all: one sample of every sampled block whatever the time, nothing delayed, sensors without noise.
-  void resample(const Motion& motion, SignalData& signals) const;
-  /// After calc_all. g: num_guards.
-  void calc_guards(const Motion& motion, SignalData& signals, Eigen::Ref<VectorXd> g) const;
-  /// Switches every block with a positive guard; false when there is none. "pwpf: guard 1" in `what`.
+  void sample_all(const Motion& motion, SignalData& signals) const;
+  /// After calc_all. g: num_event_functions.
+  void calc_event_functions(const Motion& motion, SignalData& signals, Eigen::Ref<VectorXd> g) const;
+  /// Switches every block with a positive event function; false when there is none. "pwpf: event function 1" in `what`.
   bool switch_over(const Motion& motion, SignalData& signals, const VectorXd& g, std::string& what) const;
   /// "controller 'pid' (state 1)".
   std::string name_state(int row) const;
 
  private:
   /// A controller that an event has switched off.
-  static bool is_off(const BlockPlace& place, const SignalData& signals) {
+  static bool is_off(const BlockSlot& place, const SignalData& signals) {
     return place.activity >= 0 && signals.memory[place.activity] == 0;
   }
-  BlockInput look(const BlockPlace& place, const Motion& motion, SignalData& signals) const;
-  BlockInput look_again(const BlockPlace& place, const Motion& motion, const SignalData& signals) const;
-  void calc(const BlockPlace& place, const Motion& motion, SignalData& signals) const;
+  BlockInput look(const BlockSlot& place, const Motion& motion, SignalData& signals) const;
+  BlockInput view_inputs(const BlockSlot& place, const Motion& motion, const SignalData& signals) const;
+  void calc(const BlockSlot& place, const Motion& motion, SignalData& signals) const;
   void find_needed();
 };
 

@@ -17,7 +17,7 @@ class EnergyMonitor {
     noise_ = noise;
   }
   /// `flow`: what forces would do along the size of the system; motions are known to that times rounding.
-  void add(double t, const Energies& e, double work, double flow);
+  void add(double t, const Energies& e, double work, double resolution);
 
   /// The largest energy so far: what the balance is measured by, without the noise.
   double size() const { return std::max(scale_, std::abs(start_ - potential_)); }
@@ -28,9 +28,9 @@ class EnergyMonitor {
   double time_of_worst() const { return time_; }
   /// What the motion was fed with at most: the largest so far of the initial kinetic and strain energy, the change of
   /// the potential energy and the work without dampers. Kinetic energy far above it comes from nowhere.
-  double fed() const { return std::max(fed_, noise_); }
-  void add_feed(const Energies& e, double work, double dissipated);
-  void add_feed(double energy) { fed_ = std::max(fed_, energy); }
+  double energy_input() const { return std::max(energy_input_, noise_); }
+  void add_energy_input(const Energies& e, double work, double dissipated);
+  void add_energy_input(double energy) { energy_input_ = std::max(energy_input_, energy); }
 
   void get_memory(Eigen::Ref<Eigen::VectorXd> memory) const;
   void set_memory(const Eigen::VectorXd& memory);
@@ -40,7 +40,7 @@ class EnergyMonitor {
   double scale() const { return std::max(scale_, noise_) > 0 ? std::max(scale_, noise_) : 1; }
 
   double start_ = 0, potential_ = 0, noise_ = 0;
-  double scale_ = 0, latest_ = 0, worst_ = 0, time_ = 0, fed_ = 0;
+  double scale_ = 0, latest_ = 0, worst_ = 0, time_ = 0, energy_input_ = 0;
 };
 
 }  // namespace bough::solver

@@ -17,13 +17,14 @@ std::string find_near(const std::string& wanted, int count, const Name& get_name
   return near.empty() ? "declare it" : "did you mean '" + near + "'?";
 }
 
-void report(const records::TriggerRecord& r, const char* id, const std::string& what, const std::string& advice,
+void report(const records::UserEventRecord& r, const char* id, const std::string& what, const std::string& advice,
             Diagnostics& diagnostics) {
   diagnostics.error(id, r.at, "event '" + r.name + "' " + what, advice);
 }
 
 /// Rows of u of the coordinates an event names: all of an orientation, or none of it.
-std::vector<int> find_rows(const System& system, int body, const records::TriggerRecord& r, Diagnostics& diagnostics) {
+std::vector<int> find_rows(const System& system, int body, const records::UserEventRecord& r,
+                           Diagnostics& diagnostics) {
   const TreeBody& tb = system.tree[body];
   const int num = tb.num_hinge_u();
   std::vector<bool> named(static_cast<size_t>(num), r.coordinates.empty());
@@ -38,7 +39,7 @@ std::vector<int> find_rows(const System& system, int body, const records::Trigge
   if (num == 0)
     report(r, "run.bad-event", "names hinge '" + r.target + "', which has no coordinates",
            "a body that is to come loose hangs on a free hinge that starts locked", diagnostics);
-  if (!tb.hinge->has_plain_coordinates() && (named[0] != named[1] || named[0] != named[2]))
+  if (!tb.hinge->has_independent_coordinates() && (named[0] != named[1] || named[0] != named[2]))
     report(r, "run.bad-event", "names some of the three rates of the orientation of hinge '" + r.target + "'",
            "name all three or none", diagnostics);
   std::vector<int> rows;
@@ -49,7 +50,7 @@ std::vector<int> find_rows(const System& system, int body, const records::Trigge
 }
 
 /// Place of a controller in the signal graph; -1 with errors reported.
-int find_controller(const System& system, const records::TriggerRecord& r, Diagnostics& diagnostics) {
+int find_controller(const System& system, const records::UserEventRecord& r, Diagnostics& diagnostics) {
   const auto& places = system.signals.places;
   const std::string folder = "/controllers/";
   std::vector<std::string> names;
@@ -75,8 +76,9 @@ int find_controller(const System& system, const records::TriggerRecord& r, Diagn
 
 }  // namespace
 
-Changes Changes::build(const System& system, const records::SystemSpec& spec, bool is_sound, Diagnostics& diagnostics) {
-  Changes made;
+EventActions EventActions::build(const System& system, const records::SystemSpec& spec, bool is_valid,
+                                 Diagnostics& diagnostics) {
+  EventActions made;
   for (const auto& r : spec.events) {
     Change change;
     change.action = r.action;
@@ -84,9 +86,9 @@ Changes Changes::build(const System& system, const records::SystemSpec& spec, bo
     const bool is_constraint = r.action == EventAction::Break || r.action == EventAction::Close;
     if (is_hinge) {
       const int body = system.find_hinge(r.target);
-      if (body >= 0 && is_sound)
+      if (body >= 0 && is_valid)
         change.rows = find_rows(system, body, r, diagnostics);
-      else if (body < 0 && is_sound)
+      else if (body < 0 && is_valid)
         report(r, "run.unknown-target", "names hinge '" + r.target + "', which does not exist",
                find_near(r.target, system.num_bodies(), [&](int i) { return system.hinge_name(i); }), diagnostics);
       change.text = "hinge '" + r.target + "'";
@@ -95,13 +97,13 @@ Changes Changes::build(const System& system, const records::SystemSpec& spec, bo
       change.text += r.action == EventAction::Lock ? " is locked" : " is released";
     } else if (is_constraint) {
       change.constraint = system.find_constraint(r.target);
-      if (change.constraint < 0 && is_sound)
+      if (change.constraint < 0 && is_valid)
         report(r, "run.unknown-target", "names constraint '" + r.target + "', which does not exist",
                find_near(r.target, system.num_constraints(), [&](int i) { return system.constraint_name(i); }),
                diagnostics);
       change.text = "constraint '" + r.target + (r.action == EventAction::Break ? "' is broken" : "' is to close");
     } else if (r.action == EventAction::Enable || r.action == EventAction::Disable || r.action == EventAction::Switch) {
-      if (is_sound) change.place = find_controller(system, r, diagnostics);
+      if (is_valid) change.place = find_controller(system, r, diagnostics);
       change.choice = r.choice - 1;
       change.text = "controller '" + r.target + "'" +
                     (r.action == EventAction::Enable    ? " is enabled"
@@ -113,23 +115,23 @@ Changes Changes::build(const System& system, const records::SystemSpec& spec, bo
   return made;
 }
 
-Discrete Changes::apply(size_t trigger, SystemOde& ode, double t, const VectorXd& y) const {
+DiscreteState EventActions::apply(size_t trigger, HybridSystem& ode, double t, const VectorXd& y) const {
   const Change& change = changes_[trigger];
   if (change.place >= 0) {
-    const BlockPlace& p = ode.system().signals.places[static_cast<size_t>(change.place)];
+    const BlockSlot& p = ode.system().signals.places[static_cast<size_t>(change.place)];
     VectorXd& memory = ode.data().signals.memory;
     if (change.action == EventAction::Switch)
       p.block->choose(change.choice, memory.data() + p.memory);
     else
       memory[p.activity] = change.action == EventAction::Enable ? 1 : 0;
   }
-  Discrete next = get_discrete(ode.data());
+  DiscreteState next = get_discrete(ode.data());
   for (const int row : change.rows)
     next.mode[static_cast<size_t>(row)] = change.action == EventAction::Lock ? HingeMode::Locked : HingeMode::Free;
   if (change.constraint < 0) return next;
-  Closing& closing = next.closings[static_cast<size_t>(change.constraint)];
-  if (change.action == EventAction::Break) closing.is_closed = false;
-  if (change.action == EventAction::Close && !closing.is_closed) closing = ode.find_closing(t, y, change.constraint);
+  ConstraintState& state = next.constraints[static_cast<size_t>(change.constraint)];
+  if (change.action == EventAction::Break) state.is_closed = false;
+  if (change.action == EventAction::Close && !state.is_closed) state = ode.find_as_closed(t, y, change.constraint);
   return next;
 }
 

@@ -5,16 +5,16 @@
 
 namespace bough::solver {
 
-class Changes {
+class EventActions {
  public:
-  /// By trigger. Reports "run.unknown-target" and "run.bad-event". `system_is_sound`: else targets may be missing that
+  /// By trigger. Reports "run.unknown-target" and "run.bad-event". `system_is_valid`: else targets may be missing that
   /// are none to blame.
-  static Changes build(const System& system, const records::SystemSpec& spec, bool system_is_sound,
-                       Diagnostics& diagnostics);
+  static EventActions build(const System& system, const records::SystemSpec& spec, bool system_is_valid,
+                            Diagnostics& diagnostics);
 
   /// Enables, disables, switches at once; what each coordinate and constraint does from now on; a constraint that
   /// closes keeps what it is found off by.
-  Discrete apply(size_t trigger, SystemOde& ode, double t, const VectorXd& y) const;
+  DiscreteState apply(size_t trigger, HybridSystem& ode, double t, const VectorXd& y) const;
   /// "hinge 'root' is released", of the last build.
   const std::string& describe(size_t trigger) const { return changes_[trigger].text; }
 

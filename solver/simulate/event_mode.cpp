@@ -15,21 +15,21 @@ constexpr double kShortTime = 1e-2;
 constexpr int kMostLags = 50;
 }  // namespace
 
-void Run::settle_control(double t) {
+void Run::take_samples(double t) {
   const SignalGraph& signals = ode_.system().signals;
   if (sampled_ == t || signals.places.empty()) return;
   sampled_ = t;
   if (signals.has_samples()) {
     evaluate(t, true);
     guard([&] {
-      if (signals.sample(get_motion(ode_.system(), ode_.data()), ode_.data().signals, timeline_.resolution()))
+      if (signals.sample(get_motion(ode_.system(), ode_.data()), ode_.data().signals, time_events_.resolution()))
         has_switched_ = true;
     });
   }
-  settle_switches(t);
+  iterate_switches(t);
 }
 
-void Run::settle_lags(double t) {
+void Run::initialize_lags(double t) {
   const SignalGraph& signals = ode_.system().signals;
   if (signals.num_states == 0) return;
   VectorXd before;
@@ -46,9 +46,9 @@ void Run::settle_lags(double t) {
   }
 }
 
-void Run::settle_switches(double t) {
+void Run::iterate_switches(double t) {
   const SignalGraph& signals = ode_.system().signals;
-  if (signals.num_guards == 0) return;
+  if (signals.num_event_functions == 0) return;
   std::string what;
   for (int i = 0; i < kMostSwitches; ++i) {
     bool is_open = false;
@@ -68,7 +68,7 @@ void Run::settle_switches(double t) {
 
 void Run::count_switch(const std::string& label, double t) {
   Switching& s = switching_[label];
-  const double window = kShortTime * (timeline_.end() - timeline_.start());
+  const double window = kShortTime * (time_events_.end() - time_events_.start());
   if (s.count++ == 0) s.since = t;
   if (s.count < kManySwitches) return;
   s.count = 0;

@@ -29,7 +29,7 @@ void Run::fail_as_thrown() {
     for (Diagnostic& item : items) {
       if (item.where.file.empty()) item.where = spec_.simulation.at;
       if (item.what.find(" at t = ") == std::string::npos)
-        item.what += " at t = " + short_text(is_started_ ? stepper_->time() : timeline_.start());
+        item.what += " at t = " + short_text(is_started_ ? integrator_->time() : time_events_.start());
     }
     throw ComputationError(std::move(items));
   } catch (const Failure& failure) {
@@ -39,7 +39,7 @@ void Run::fail_as_thrown() {
 }
 
 void Run::fail_non_finite(double t, double tried) {
-  const VectorXd y = stepper_->state();
+  const VectorXd y = integrator_->state();
   std::string what;
   try {
     what = ode_.name_first_non_finite(tried, y);
@@ -64,7 +64,7 @@ void Run::fail_diverged(double t, const std::string& what) {
                 "divergence_limit sets the limit");
 }
 
-void Run::fail_cycle(const Firing& firing) {
+void Run::fail_cycle(const Occurrence& firing) {
   finish_failed(firing.time, "run.event-cycle",
                 "events follow each other without end at t = " + short_text(firing.time) + ", last " +
                     setup_.triggers.describe(firing.trigger),

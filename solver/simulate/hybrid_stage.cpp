@@ -7,7 +7,7 @@
 
 namespace bough::solver {
 
-void SystemOde::calc_tangent() {
+void HybridSystem::calc_tangent() {
   k_.setZero();
   c_.setZero();
   for (const TreeBody& tb : system_.tree.bodies) {
@@ -17,7 +17,7 @@ void SystemOde::calc_tangent() {
   for (const auto& element : system_.elements) element->add_tangent(system_.tree, data_->tree, k_, c_);
 }
 
-void SystemOde::add_stage_forces(double gh, bool is_first) {
+void HybridSystem::add_stage_forces(double gh, bool is_first) {
   TreeData& d = data_->tree;
   delta_ = d.u;
   if (!is_first) delta_ -= 2 * gh * first_u_;
@@ -38,8 +38,8 @@ void SystemOde::add_stage_forces(double gh, bool is_first) {
   }
 }
 
-void SystemOde::calc_stage(double t, const Eigen::Ref<const VectorXd>& y, double gh, bool is_first,
-                           Eigen::Ref<VectorXd> k) {
+void HybridSystem::calc_stage(double t, const Eigen::Ref<const VectorXd>& y, double gh, bool is_first,
+                              Eigen::Ref<VectorXd> k) {
   const Tree& tree = system_.tree;
   TreeData& d = data_->tree;
   Power power;

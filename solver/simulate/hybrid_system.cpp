@@ -7,7 +7,7 @@
 
 namespace bough::solver {
 
-SystemOde::SystemOde(const System& system)
+HybridSystem::HybridSystem(const System& system)
     : system_(system),
       data_(system.make_data()),
       num_q_(system.num_q()),
@@ -17,33 +17,33 @@ SystemOde::SystemOde(const System& system)
   for (VectorXd* v : {&k_, &c_, &first_delta_, &first_u_, &delta_, &extra_}) v->setZero(num_u_);
 }
 
-void SystemOde::calc_derivative(double t, const Eigen::Ref<const VectorXd>& y, Eigen::Ref<VectorXd> y_dot) {
+void HybridSystem::calc_derivative(double t, const Eigen::Ref<const VectorXd>& y, Eigen::Ref<VectorXd> y_dot) {
   ++num_evaluations_;
   solver::calc_derivative(system_, *data_, t, y, y_dot);
 }
 
-std::vector<std::string> SystemOde::cross_jump(double before, double t, Eigen::Ref<VectorXd> y) {
+std::vector<std::string> HybridSystem::cross_jump(double before, double t, Eigen::Ref<VectorXd> y) {
   std::vector<std::string> events;
   solver::cross_jump(system_, *data_, before, t, nullptr, y.head(num_q_), y.segment(num_q_, num_u_),
                      y[num_coordinates() + num_z_], events);
   return events;
 }
 
-void SystemOde::project(double t, Eigen::Ref<VectorXd> y) {
+void HybridSystem::project(double t, Eigen::Ref<VectorXd> y) {
   solver::project(system_, *data_, t, y.head(num_q_), y.segment(num_q_, num_u_));
 }
 
-void SystemOde::project_error(Eigen::Ref<VectorXd> error) {
+void HybridSystem::project_error(Eigen::Ref<VectorXd> error) {
   solver::remove_normal(system_, *data_, error.head(num_q_), error.segment(num_q_, num_u_));
 }
 
-void SystemOde::strike(double t, std::vector<Blow>& blows, Eigen::Ref<VectorXd> y) {
+void HybridSystem::strike(double t, std::vector<Impact>& blows, Eigen::Ref<VectorXd> y) {
   const double before = get_work(y);
   solver::strike(system_, *data_, t, y.head(num_q_), blows, y.segment(num_q_, num_u_), y[num_coordinates() + num_z_]);
   y[num_coordinates() + num_z_ + 1] += std::max(0.0, before - get_work(y));
 }
 
-std::vector<std::string> SystemOde::change(double t, const Discrete& next, Eigen::Ref<VectorXd> y) {
+std::vector<std::string> HybridSystem::change(double t, const DiscreteState& next, Eigen::Ref<VectorXd> y) {
   // What was prescribed goes on from where its function left it.
   calc_kinematics(system_, *data_, t, y.head(num_q_), y.segment(num_q_, num_u_));
   y.head(num_q_) = data_->tree.q;
@@ -53,35 +53,35 @@ std::vector<std::string> SystemOde::change(double t, const Discrete& next, Eigen
   return events;
 }
 
-void SystemOde::keep_modes(double t, Eigen::Ref<VectorXd> y) {
+void HybridSystem::keep_modes(double t, Eigen::Ref<VectorXd> y) {
   calc_kinematics(system_, *data_, t, y.head(num_q_), y.segment(num_q_, num_u_));
   y.head(num_q_) = data_->tree.q;
   y.segment(num_q_, num_u_) = data_->tree.u;
 }
 
-void SystemOde::bring_to_rest(double t, const Discrete& next, Eigen::Ref<VectorXd> y) {
+void HybridSystem::stick(double t, const DiscreteState& next, Eigen::Ref<VectorXd> y) {
   const double before = get_work(y);
   change(t, next, y);
   y[num_coordinates() + num_z_ + 1] += std::max(0.0, before - get_work(y));
 }
 
-Closing SystemOde::find_closing(double t, const Eigen::Ref<const VectorXd>& y, int constraint) {
+ConstraintState HybridSystem::find_as_closed(double t, const Eigen::Ref<const VectorXd>& y, int constraint) {
   calc_kinematics(system_, *data_, t, y.head(num_q_), y.segment(num_q_, num_u_));
-  return solver::find_closing(system_.loops, system_.tree, data_->tree, constraint);
+  return solver::find_as_closed(system_.loops, system_.tree, data_->tree, constraint);
 }
 
 namespace {
-constexpr Eigen::Index kClosing = 22;       // numbers of a Closing: closed, R, p, gap, q
+constexpr Eigen::Index kClosing = 22;       // numbers of a ConstraintState: closed, R, p, gap, q
 constexpr Eigen::Index kClosingFrame = 15;  // without q
 }  // namespace
 
-VectorXd SystemOde::make_memory() const {
+VectorXd HybridSystem::make_memory() const {
   VectorXd memory = VectorXd::Zero(num_u_ + kClosing * static_cast<Eigen::Index>(data_->loops.constraints.size()));
   get_memory(memory);
   return memory;
 }
 
-bool SystemOde::is_alike(const VectorXd& memory) const {
+bool HybridSystem::is_alike(const VectorXd& memory) const {
   VectorXd other = memory, own = make_memory();
   if (other.size() != own.size()) return false;
   for (Eigen::Index at = num_u_ + kClosingFrame; at < own.size(); at += kClosing)
@@ -89,11 +89,11 @@ bool SystemOde::is_alike(const VectorXd& memory) const {
   return other == own;
 }
 
-void SystemOde::get_memory(VectorXd& memory) const {
+void HybridSystem::get_memory(VectorXd& memory) const {
   for (int row = 0; row < num_u_; ++row) memory[row] = static_cast<double>(data_->tree.mode[static_cast<size_t>(row)]);
   Eigen::Index at = num_u_;
   for (const ConstraintData& constraint : data_->loops.constraints) {
-    const Closing& c = constraint.closing;
+    const ConstraintState& c = constraint.state;
     memory[at] = c.is_closed ? 1 : 0;
     memory.segment<9>(at + 1) = c.R.reshaped();
     memory.segment<3>(at + 10) = c.p;
@@ -103,12 +103,12 @@ void SystemOde::get_memory(VectorXd& memory) const {
   }
 }
 
-void SystemOde::set_memory(const VectorXd& memory) {
-  Discrete d = get_discrete(*data_);
+void HybridSystem::set_memory(const VectorXd& memory) {
+  DiscreteState d = get_discrete(*data_);
   for (int row = 0; row < num_u_; ++row)
     d.mode[static_cast<size_t>(row)] = static_cast<HingeMode>(std::lround(memory[row]));
   Eigen::Index at = num_u_;
-  for (Closing& c : d.closings) {
+  for (ConstraintState& c : d.constraints) {
     c.is_closed = memory[at] > 0.5;
     c.R = memory.segment<9>(at + 1).reshaped(3, 3);
     c.p = memory.segment<3>(at + 10);
@@ -119,9 +119,9 @@ void SystemOde::set_memory(const VectorXd& memory) {
   set_modes(system_, *data_, d);
 }
 
-VectorXd SystemOde::make_initial_state() const { return system_.make_initial_state().x; }
+VectorXd HybridSystem::make_initial_state() const { return system_.make_initial_state().x; }
 
-std::string SystemOde::name_row(int row) const {
+std::string HybridSystem::name_row(int row) const {
   const bool is_rate = row >= num_q_;
   const int i = is_rate ? row - num_q_ : row;
   for (int b = 0; b < system_.num_bodies(); ++b) {
@@ -138,7 +138,7 @@ std::string SystemOde::name_row(int row) const {
   return i == num_u_ + num_z_ ? "the work done" : "the energy dissipated";
 }
 
-std::string SystemOde::name_first_non_finite(double t, const Eigen::Ref<const VectorXd>& y) {
+std::string HybridSystem::name_first_non_finite(double t, const Eigen::Ref<const VectorXd>& y) {
   const auto find_bad = [](const auto& values) {
     int row = 0;
     while (row < values.size() && std::isfinite(values[row])) ++row;

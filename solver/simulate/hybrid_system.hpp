@@ -9,9 +9,9 @@
 
 namespace bough::solver {
 
-class SystemOde final : public Ode {
+class HybridSystem final : public Ode {
  public:
-  explicit SystemOde(const System& system);
+  explicit HybridSystem(const System& system);
 
   int size() const override { return num_q_ + num_u_ + num_z_ + 2; }
   const System& system() const { return system_; }
@@ -25,7 +25,7 @@ class SystemOde final : public Ode {
   void project(double t, Eigen::Ref<VectorXd> y) override;
   void project_error(Eigen::Ref<VectorXd> error) override;
   /// Stops that are met at (t, y), all at once; what is free follows. Books what they take as dissipated.
-  void strike(double t, std::vector<Blow>& blows, Eigen::Ref<VectorXd> y);
+  void strike(double t, std::vector<Impact>& blows, Eigen::Ref<VectorXd> y);
   /// A takes the stiffness and damping of each body's modes, of hinge springs, dampers, stops and friction for linear
   /// and nothing else: (M + γh D + γ²h² K) u̇ by the order-n recursion, in which K and D are blocks of one body.
   void calc_stage(double t, const Eigen::Ref<const VectorXd>& y, double gamma_h, bool is_first,
@@ -38,14 +38,14 @@ class SystemOde final : public Ode {
   /// Takes y over the jump at t; `before` is the last moment that sees what was. Describes each jump of a rate.
   std::vector<std::string> cross_jump(double before, double t, Eigen::Ref<VectorXd> y);
   /// Takes y at t from what each coordinate and constraint does to what it does from then on. Describes jumps.
-  std::vector<std::string> change(double t, const Discrete& next, Eigen::Ref<VectorXd> y);
+  std::vector<std::string> change(double t, const DiscreteState& next, Eigen::Ref<VectorXd> y);
   /// The same of what comes to rest by itself: what it loses is dissipated. Rates that are left count: with them goes
   /// what the modes of the body have of its momentum.
-  void bring_to_rest(double t, const Discrete& next, Eigen::Ref<VectorXd> y);
-  /// bring_to_rest() with the modes of now: coordinates and rates that are given take their values. No allocation.
+  void stick(double t, const DiscreteState& next, Eigen::Ref<VectorXd> y);
+  /// stick() with the modes of now: coordinates and rates that are given take their values. No allocation.
   void keep_modes(double t, Eigen::Ref<VectorXd> y);
   /// A constraint closed as it is found at (t, y).
-  Closing find_closing(double t, const Eigen::Ref<const VectorXd>& y, int constraint);
+  ConstraintState find_as_closed(double t, const Eigen::Ref<const VectorXd>& y, int constraint);
   /// What each coordinate and constraint does, for a checkpoint.
   VectorXd make_memory() const;
   /// Whether what may lock, release, close and break is as it is now; the coordinates of closing hinges, which follow

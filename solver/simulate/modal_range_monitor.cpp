@@ -48,7 +48,7 @@ double calc_first_frequency(const System& system, int b) {
   return 0;
 }
 
-LinearLimit::LinearLimit(const System& system) : system_(system) {
+ModalRangeMonitor::ModalRangeMonitor(const System& system) : system_(system) {
   for (int b = 0; b < system.num_bodies(); ++b) {
     if (system.num_modes(b) == 0) continue;
     const bool is_stiffened = get_body(system, b).body.stiffened() || system.is_lagged;
@@ -56,8 +56,8 @@ LinearLimit::LinearLimit(const System& system) : system_(system) {
   }
 }
 
-std::vector<LinearLimit::Crossing> LinearLimit::find_crossings(double t, const SystemData& data,
-                                                               const Eigen::Ref<const VectorXd>& q) {
+std::vector<ModalRangeMonitor::Crossing> ModalRangeMonitor::find_crossings(double t, const SystemData& data,
+                                                                           const Eigen::Ref<const VectorXd>& q) {
   std::vector<Crossing> found;
   for (Watched& w : watched_) {
     if (!w.deflection_reported && w.size > 0) {
@@ -86,7 +86,7 @@ std::vector<LinearLimit::Crossing> LinearLimit::find_crossings(double t, const S
   return found;
 }
 
-std::vector<LinearLimit::Crossing> LinearLimit::find_spins(double t, const SystemData& data) {
+std::vector<ModalRangeMonitor::Crossing> ModalRangeMonitor::find_spins(double t, const SystemData& data) {
   std::vector<Crossing> found;
   for (Watched& w : watched_) {
     const double spin = get_body_state(data, w.body).w_B.norm();
@@ -103,11 +103,11 @@ std::vector<LinearLimit::Crossing> LinearLimit::find_spins(double t, const Syste
   return found;
 }
 
-bool LinearLimit::watches_spins() const {
+bool ModalRangeMonitor::watches_spins() const {
   return std::any_of(watched_.begin(), watched_.end(), [](const Watched& w) { return w.frequency > 0; });
 }
 
-VectorXd LinearLimit::calc_reach() const {
+VectorXd ModalRangeMonitor::calc_modal_limit() const {
   VectorXd reach = VectorXd::Constant(system_.num_q(), std::numeric_limits<double>::infinity());
   for (const Watched& w : watched_) {
     for (int j = 0; j < system_.num_modes(w.body); ++j) {
@@ -120,14 +120,14 @@ VectorXd LinearLimit::calc_reach() const {
   return reach;
 }
 
-void LinearLimit::get_memory(Eigen::Ref<VectorXd> memory) const {
+void ModalRangeMonitor::get_memory(Eigen::Ref<VectorXd> memory) const {
   for (size_t i = 0; i < watched_.size(); ++i) {
     memory[static_cast<Eigen::Index>(2 * i)] = watched_[i].deflection_reported;
     memory[static_cast<Eigen::Index>(2 * i + 1)] = watched_[i].spin_reported;
   }
 }
 
-void LinearLimit::set_memory(const VectorXd& memory) {
+void ModalRangeMonitor::set_memory(const VectorXd& memory) {
   for (size_t i = 0; i < watched_.size(); ++i) {
     watched_[i].deflection_reported = memory[static_cast<Eigen::Index>(2 * i)] != 0;
     watched_[i].spin_reported = memory[static_cast<Eigen::Index>(2 * i + 1)] != 0;

@@ -21,11 +21,11 @@ double calc_body_size(const System& system, int body);
 /// First frequency of a body alone in its frame, rad per unit of time; 0 when it has none.
 double calc_first_frequency(const System& system, int body);
 
-class LinearLimit {
+class ModalRangeMonitor {
  public:
   static constexpr std::string_view spin_id = "run.unstiffened-spin";
 
-  explicit LinearLimit(const System& system);
+  explicit ModalRangeMonitor(const System& system);
 
   /// What was passed at t for the first time, as one message each.
   struct Crossing {
@@ -41,7 +41,7 @@ class LinearLimit {
 
   /// Size a mode coordinate times its shape may reach on every node: |η_j| to be judged against. num_q, infinite for
   /// hinge coordinates. O(nodes · modes).
-  VectorXd calc_reach() const;
+  VectorXd calc_modal_limit() const;
 
   /// What was reported, for a checkpoint.
   int num_watched() const { return static_cast<int>(watched_.size()); }

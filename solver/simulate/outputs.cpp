@@ -7,7 +7,7 @@
 
 namespace bough::solver {
 
-Recorder::Recorder(const System& system) : system_(system) {
+Outputs::Outputs(const System& system) : system_(system) {
   add_channel("/time", 1, "time", "T");
   for (int b = 0; b < system.num_bodies(); ++b) {
     const std::string path = "/bodies/" + system.body_name(b) + "/";
@@ -85,7 +85,7 @@ Recorder::Recorder(const System& system) : system_(system) {
   kept_ = sample_;
 }
 
-int Recorder::find(const std::string& path, int component) const {
+int Outputs::find(const std::string& path, int component) const {
   int first = 0;
   for (const auto& channel : channels_) {
     if (channel.path == path) return component >= 0 && component < channel.size ? first + component : -1;
@@ -94,7 +94,7 @@ int Recorder::find(const std::string& path, int component) const {
   return -1;
 }
 
-void Recorder::choose(const std::vector<std::string>& groups, const SourceLocation& where, Diagnostics& diagnostics) {
+void Outputs::choose(const std::vector<std::string>& groups, const SourceLocation& where, Diagnostics& diagnostics) {
   if (groups.empty()) return;
   const auto lies_in = [](const std::string& path, const std::string& group) {
     const std::string whole = (group.starts_with('/') ? "" : "/") + group;
@@ -130,7 +130,7 @@ void Recorder::choose(const std::vector<std::string>& groups, const SourceLocati
   kept_ = VectorXd::Zero(size);
 }
 
-const VectorXd& Recorder::keep_sample() {
+const VectorXd& Outputs::keep_sample() {
   int at = 0;
   for (const auto& [first, size] : ranges_) {
     kept_.segment(at, size) = sample_.segment(first, size);
@@ -141,7 +141,7 @@ const VectorXd& Recorder::keep_sample() {
   return kept_;
 }
 
-void Recorder::add_recovery(const std::string& path, int body) {
+void Outputs::add_recovery(const std::string& path, int body) {
   const auto& recovery = system_.recoveries[static_cast<size_t>(body)];
   if (!recovery) return;
   for (const auto& element : recovery->elements()) {
@@ -152,12 +152,12 @@ void Recorder::add_recovery(const std::string& path, int body) {
   }
 }
 
-void Recorder::add_channel(std::string path, int size, std::string description, std::string dims) {
+void Outputs::add_channel(std::string path, int size, std::string description, std::string dims) {
   channels_.push_back({std::move(path), size, std::move(description), std::move(dims)});
 }
 
-const VectorXd& Recorder::calc_sample(double t, const SystemData& data, const Eigen::Ref<const VectorXd>& q,
-                                      const Eigen::Ref<const VectorXd>& u, double work, double dissipated) {
+const VectorXd& Outputs::calc_sample(double t, const SystemData& data, const Eigen::Ref<const VectorXd>& q,
+                                     const Eigen::Ref<const VectorXd>& u, double work, double dissipated) {
   int at = 0;
   const auto put = [&](const auto& value) {
     sample_.segment(at, value.size()) = value;

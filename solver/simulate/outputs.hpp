@@ -5,13 +5,13 @@
 
 namespace bough::solver {
 
-class Recorder {
+class Outputs {
  public:
   /// Channels, their order fixed here once: /time; per body position, quaternion, velocity, angular_velocity, and eta,
   /// eta_dot when it has modes, recovery; per hinge q, qdot, force when it has coordinates, reaction_force,
   /// reaction_moment; per constraint its reactions; elements of force; sensors, controllers, actuators, functions that
   /// are signals; energy; momentum; system_mass.
-  explicit Recorder(const System& system);
+  explicit Outputs(const System& system);
 
   /// Of calc_sample.
   const std::vector<records::Channel>& channels() const { return channels_; }

@@ -64,7 +64,7 @@ records::ResultsHeader make_header(const records::SystemSpec& spec, const RunSet
   return header;
 }
 
-StepperOptions make_stepper_options(const SystemOde& ode, const records::SimulationRecord& s, const RunPlan& plan) {
+StepperOptions make_stepper_options(const HybridSystem& ode, const records::SimulationRecord& s, const RunPlan& plan) {
   StepperOptions o;
   o.relative_tolerance = s.relative_tolerance;
   o.absolute_tolerance = VectorXd::Constant(ode.size(), s.absolute_tolerance);
@@ -90,12 +90,12 @@ StepperOptions make_stepper_options(const SystemOde& ode, const records::Simulat
   return o;
 }
 
-Timeline make_timeline(const System& system, const RunSetup& setup) {
-  auto restarts = setup.triggers.collect_times(false);
-  auto landmarks = setup.triggers.collect_times(true);
-  restarts.insert(restarts.end(), system.breakpoints.begin(), system.breakpoints.end());
-  landmarks.insert(landmarks.end(), system.landmarks.begin(), system.landmarks.end());
-  Timeline timeline(setup.plan, std::move(restarts), std::move(landmarks));
+TimeEvents make_timeline(const System& system, const RunSetup& setup) {
+  auto jumps = setup.triggers.collect_times(false);
+  auto mesh_times = setup.triggers.collect_times(true);
+  jumps.insert(jumps.end(), system.jump_times.begin(), system.jump_times.end());
+  mesh_times.insert(mesh_times.end(), system.mesh_times.begin(), system.mesh_times.end());
+  TimeEvents timeline(setup.plan, std::move(jumps), std::move(mesh_times));
   for (const auto& s : system.signals.collect_samples()) timeline.add_samples(s.first, s.period);
   return timeline;
 }
@@ -109,13 +109,13 @@ Run::Run(const System& system, const records::SystemSpec& spec, RunSetup setup, 
       options_(options),
       diagnostics_(diagnostics),
       setup_(std::move(setup)),
-      timeline_(make_timeline(system, setup_)),
+      time_events_(make_timeline(system, setup_)),
       ode_(system),
-      coming_data_(system.make_data()),
+      expected_data_(system.make_data()),
       limit_(system),
-      reach_(limit_.calc_reach()),
-      latches_(system) {
-  stepper_ = make_stepper(setup_.integrator, ode_, make_stepper_options(ode_, spec.simulation, setup_.plan));
+      modal_limit_(limit_.calc_modal_limit()),
+      joint_contacts_(system) {
+  integrator_ = make_integrator(setup_.integrator, ode_, make_stepper_options(ode_, spec.simulation, setup_.plan));
   y_ = y_dot_ = coming_y_dot_ = VectorXd::Zero(ode_.size());
   checkpoint_.state = y_;
   checkpoint_.memory = {{"energy", VectorXd::Zero(EnergyMonitor::kMemory)},
@@ -125,34 +125,34 @@ Run::Run(const System& system, const records::SystemSpec& spec, RunSetup setup, 
                         {"stepper", VectorXd::Zero(4)},
                         {"discrete", ode_.make_memory()},
                         {"control", VectorXd::Zero(1 + ode_.data().signals.memory.size())},
-                        {"latches", latches_.make_memory()}};
+                        {"latches", joint_contacts_.make_memory()}};
   evaluated_.y = y_;
   evaluated_.memory = ode_.data().signals.memory;
   evaluated_.slide = ode_.data().tree.slide;
   start_events();
   for (int b = 0; b < system.num_bodies(); ++b) {
     const TreeBody& tb = system.tree[b];
-    if (tb.hinge->has_plain_coordinates() && tb.num_hinge_u() > 2) gimbals_.push_back(b);
+    if (tb.hinge->has_independent_coordinates() && tb.num_hinge_u() > 2) gimbals_.push_back(b);
   }
-  progress_.start = timeline_.start();
-  progress_.end = timeline_.end();
+  progress_.start = time_events_.start();
+  progress_.end = time_events_.end();
 }
 
 void Run::start() {
   begin();
-  if (outcome_ || time_ >= timeline_.end()) return;
+  if (outcome_ || time_ >= time_events_.end()) return;
   enter_interval();
   take_step(stop_);
 }
 
 void Run::enter_interval() {
-  stop_ = timeline_.find_stop(time_);
+  stop_ = time_events_.find_next(time_);
   if (needs_restart_) {
-    restart(time_);
-    if (const auto* memory = restored_.find("stepper")) stepper_->set_memory(*memory);
+    reset(time_);
+    if (const auto* memory = restored_.find("stepper")) integrator_->set_memory(*memory);
     restored_ = {};
   } else {
-    stepper_->set_stop(stop_.time, stop_.latest);
+    integrator_->set_stop(stop_.time, stop_.left);
   }
   has_changed_ = has_switched_ = has_stepped_ = false;
   is_inside_ = true;
@@ -160,11 +160,11 @@ void Run::enter_interval() {
 
 Run::Arrival Run::cross_interval(double t_pause) {
   for (;;) {
-    if (scanned_ >= stepper_->time()) {
-      if (stepper_->time() >= stop_.time) return Arrival::AtStop;
+    if (scanned_ >= integrator_->time()) {
+      if (integrator_->time() >= stop_.time) return Arrival::AtStop;
       if (has_stepped_ && is_stop_asked()) {
-        y_ = stepper_->state();
-        outcome_ = halt(time_ = stepper_->time());
+        y_ = integrator_->state();
+        outcome_ = halt(time_ = integrator_->time());
         return Arrival::End;
       }
       if (has_stepped_) save_now_and_then();
@@ -172,59 +172,59 @@ Run::Arrival Run::cross_interval(double t_pause) {
       has_stepped_ = true;
     }
     // A pause at the end of the step by rounding is one at its end.
-    const bool is_within = t_pause < stepper_->time() - timeline_.resolution();
-    const auto change = scan_step(stop_, is_within ? t_pause : stepper_->time());
+    const bool is_within = t_pause < integrator_->time() - time_events_.resolution();
+    const auto change = scan_step(stop_, is_within ? t_pause : integrator_->time());
     if (!change) return Arrival::End;
     const bool is_early = change->firing && change->firing->time < stop_.time;
     if (is_early || (change->is_switch && change->time < stop_.time)) {
       // An event, or a switch of a block or a contact, ends the step.
       time_ = is_early ? change->firing->time : change->time;
-      guard([&] { stepper_->calc_state(time_, y_); });
+      guard([&] { integrator_->calc_state(time_, y_); });
       if (is_early) {
         if (const auto ends = fire({*change->firing})) {
           outcome_ = finish(*ends);
           return Arrival::End;
         }
       }
-      settle_switches(time_);
-      settle_latches(time_);
+      iterate_switches(time_);
+      iterate_contacts(time_);
       return Arrival::Cut;
     }
     if (change->firing) waiting_.push_back(*change->firing);
-    if (change->is_kink && change->time < stepper_->time()) {  // the rest of the step is void
-      guard([&] { stepper_->calc_state(change->time, y_); });
-      restart(change->time);
+    if (change->is_kink && change->time < integrator_->time()) {  // the rest of the step is void
+      guard([&] { integrator_->calc_state(change->time, y_); });
+      reset(change->time);
     }
     const double reached = scanned_;
-    if (reached < stop_.time && reached >= t_pause - timeline_.resolution()) {
-      guard([&] { stepper_->calc_state(time_ = reached, y_); });
+    if (reached < stop_.time && reached >= t_pause - time_events_.resolution()) {
+      guard([&] { integrator_->calc_state(time_ = reached, y_); });
       return Arrival::Pause;
     }
   }
 }
 
 void Run::arrive_at_stop() {
-  stepper_->calc_state(time_ = stop_.time, y_);
+  integrator_->calc_state(time_ = stop_.time, y_);
   cross_jump();
-  settle_control(time_);
+  take_samples(time_);
   if (const auto ends = pass(stop_)) {
     outcome_ = finish(*ends);
     return;
   }
-  if (has_changed_) settle_switches(time_);
-  settle_latches(time_);
-  if (is_stop_asked() && time_ < timeline_.end()) {
+  if (has_changed_) iterate_switches(time_);
+  iterate_contacts(time_);
+  if (is_stop_asked() && time_ < time_events_.end()) {
     outcome_ = halt(time_);
     return;
   }
-  needs_restart_ = stop_.restarts || has_changed_ || has_switched_;
+  needs_restart_ = stop_.is_jump || has_changed_ || has_switched_;
   is_inside_ = false;
 }
 
 void Run::advance_to(double t) {
   if (is_led_) take_over();
-  const double until = std::min(t, timeline_.end());
-  while (!outcome_ && time_ < until - (until < timeline_.end() ? timeline_.resolution() : 0)) {
+  const double until = std::min(t, time_events_.end());
+  while (!outcome_ && time_ < until - (until < time_events_.end() ? time_events_.resolution() : 0)) {
     if (!is_inside_) enter_interval();
     const Arrival arrival = cross_interval(until);
     if (arrival == Arrival::Cut) {
@@ -236,21 +236,21 @@ void Run::advance_to(double t) {
     }
   }
   is_at_event_ = true;
-  next_stop_ = kNoStop;
-  if (outcome_ || time_ < timeline_.end()) return;
-  save(timeline_.end());
-  outcome_ = close(timeline_.end(), "");
+  next_event_ = kNoEvent;
+  if (outcome_ || time_ < time_events_.end()) return;
+  save(time_events_.end());
+  outcome_ = close(time_events_.end(), "");
 }
 
-void Run::restart(double t) {
+void Run::reset(double t) {
   restart_kinks(t);
-  stepper_->restart(t, y_, stop_.time, stop_.latest);
+  integrator_->reset(t, y_, stop_.time, stop_.left);
   is_started_ = true;
   scanned_ = t;
 }
 
 void Run::settle_cut(double t) {
-  const double span = timeline_.end() - timeline_.start(), taken = t - cut_at_;
+  const double span = time_events_.end() - time_events_.start(), taken = t - cut_at_;
   num_cuts_ = taken < kShortCut * span ? num_cuts_ + 1 : 0;
   cut_at_ = t;
   if (num_cuts_ > kMostCuts)
@@ -263,7 +263,7 @@ void Run::settle_cut(double t) {
     update_progress(t);
     options_.progress(progress_);
   }
-  if (is_stop_asked() && t < timeline_.end()) {
+  if (is_stop_asked() && t < time_events_.end()) {
     outcome_ = halt(t);
     return;
   }
@@ -272,10 +272,10 @@ void Run::settle_cut(double t) {
 
 void Run::begin() {
   y_ = ode_.make_initial_state();
-  time_ = timeline_.start();
+  time_ = time_events_.start();
   const double t = time_;
   if (options_.resume) check_resume();
-  sink_.begin(make_header(spec_, setup_, timeline_.num_outputs()));
+  sink_.begin(make_header(spec_, setup_, time_events_.num_outputs()));
   // "start": what controllers start from, of a state that was found; the run begins there as any.
   const bool goes_on = options_.resume && !options_.resume->find("start");
   if (options_.resume && !goes_on) {
@@ -294,10 +294,10 @@ void Run::begin() {
     resume_at_stop(time_);
     return;
   }
-  settle_lags(t);
-  settle_control(t);
-  settle_lags(t);  // those that follow samples
-  settle_latches(t);
+  initialize_lags(t);
+  take_samples(t);
+  initialize_lags(t);  // those that follow samples
+  iterate_contacts(t);
   checkpoint_.time = t;
   write_outputs_at(t);
   start_signal_events(t);
@@ -306,15 +306,15 @@ void Run::begin() {
 }
 
 void Run::resume_at_stop(double t) {
-  const auto stop = timeline_.find_stop_at(t);
-  if (!stop || t <= timeline_.start() || std::abs(passed_ - t) <= timeline_.resolution()) return;
+  const auto stop = time_events_.find_at(t);
+  if (!stop || t <= time_events_.start() || std::abs(passed_ - t) <= time_events_.resolution()) return;
   stop_ = *stop;
   if (const auto ends = pass(stop_)) outcome_ = finish(*ends);
 }
 
 void Run::fire_due(double t) {
-  std::vector<Firing> due;
-  setup_.triggers.find_due(t, timeline_.resolution(), due);
+  std::vector<Occurrence> due;
+  setup_.triggers.find_due(t, time_events_.resolution(), due);
   if (const auto ends = fire(std::move(due))) outcome_ = finish(*ends);
 }
 
@@ -323,7 +323,7 @@ double Run::calc_noise() {
   const System& system = ode_.system();
   const VectorXd q = y_.head(ode_.num_q()), u = VectorXd::Constant(system.num_u(), small);
   auto data = system.make_data();
-  calc_kinematics(system, *data, timeline_.start(), q, u);
+  calc_kinematics(system, *data, time_events_.start(), q, u);
   double noise =
       calc_energies(system, *data).kinetic - system.signals.calc_energy(get_motion(system, *data), data->signals);
   for (const TreeBody& tb : system.tree.bodies) noise += 0.5 * small * small * tb.body.K().trace();
@@ -348,52 +348,52 @@ double Run::calc_flow() const {
 }
 
 void Run::cross_jump() {
-  if (!stop_.restarts || stop_.latest >= stop_.time) return;  // at the end there may be no jump
-  coming_at_ = -std::numeric_limits<double>::infinity();
+  if (!stop_.is_jump || stop_.left >= stop_.time) return;  // at the end there may be no jump
+  expected_at_ = -std::numeric_limits<double>::infinity();
   guard([&] {
-    const auto jumps = ode_.cross_jump(stop_.latest, stop_.time, y_);
+    const auto jumps = ode_.cross_jump(stop_.left, stop_.time, y_);
     if (crossed_ == stop_.time) return;
     for (const auto& what : jumps) sink_.write_event({stop_.time, what});
     crossed_ = stop_.time;
   });
 }
 
-void Run::hold_work() {
+void Run::set_work_tolerance() {
   const double root = std::sqrt(spec_.simulation.absolute_tolerance);
   const int first = ode_.num_coordinates() + ode_.num_z();
   // From rest the energies are yet to come.
   const double size = monitor_.size() > root ? monitor_.size() : std::max(monitor_.size(), calc_coming_energy());
-  stepper_->set_last_tolerances(ode_.size() - first, root * std::clamp(size, root, 1.0));
+  integrator_->set_last_tolerances(ode_.size() - first, root * std::clamp(size, root, 1.0));
 }
 
 double Run::calc_coming_energy() {
-  const double t = stepper_->time();
-  if (std::abs(t - coming_at_) < 0.1 * spec_.simulation.output_step) return coming_;
-  coming_at_ = t;
+  const double t = integrator_->time();
+  if (std::abs(t - expected_at_) < 0.1 * spec_.simulation.output_step) return expected_energy_;
+  expected_at_ = t;
   const System& system = ode_.system();
   VectorXd& y_dot = coming_y_dot_;
-  guard([&] { ode_.calc_derivative(t, stepper_->state(), y_dot); });
+  guard([&] { ode_.calc_derivative(t, integrator_->state(), y_dot); });
   auto u = y_dot.segment(ode_.num_q(), system.num_u());
   u *= spec_.simulation.output_step;
-  calc_kinematics(system, *coming_data_, t, stepper_->state().head(ode_.num_q()), u);
-  return coming_ = calc_energies(system, *coming_data_).kinetic -
-                   system.signals.calc_energy(get_motion(system, *coming_data_), coming_data_->signals);
+  calc_kinematics(system, *expected_data_, t, integrator_->state().head(ode_.num_q()), u);
+  return expected_energy_ = calc_energies(system, *expected_data_).kinetic -
+                            system.signals.calc_energy(get_motion(system, *expected_data_), expected_data_->signals);
 }
 
-void Run::take_step(const Stop& stop) {
-  const double before = stepper_->time();
-  hold_work();
-  guard([&] { stepper_->step(std::min(stop.time, timeline_.next_output())); });
-  const auto y = stepper_->state();
-  if (!y.allFinite()) fail_non_finite(stepper_->time(), stepper_->time());
-  for (int row = 0; row < reach_.size(); ++row) {
-    if (std::abs(y[row]) > spec_.simulation.divergence_limit * reach_[row])
-      fail_diverged(stepper_->time(), ode_.name_row(row) + " reached " + short_text(y[row]) + ", " +
-                                          short_text(std::abs(y[row]) / reach_[row]) +
-                                          " times what deflects the body by its own size");
+void Run::take_step(const TimeEvent& stop) {
+  const double before = integrator_->time();
+  set_work_tolerance();
+  guard([&] { integrator_->step(std::min(stop.time, time_events_.next_output())); });
+  const auto y = integrator_->state();
+  if (!y.allFinite()) fail_non_finite(integrator_->time(), integrator_->time());
+  for (int row = 0; row < modal_limit_.size(); ++row) {
+    if (std::abs(y[row]) > spec_.simulation.divergence_limit * modal_limit_[row])
+      fail_diverged(integrator_->time(), ode_.name_row(row) + " reached " + short_text(y[row]) + ", " +
+                                             short_text(std::abs(y[row]) / modal_limit_[row]) +
+                                             " times what deflects the body by its own size");
   }
-  watch_axes(stepper_->time());
-  const double taken = stepper_->time() - before;
+  watch_axes(integrator_->time());
+  const double taken = integrator_->time() - before;
   num_tiny_ = taken < 1e-11 * (progress_.end - progress_.start) ? num_tiny_ + 1 : 0;
   if (num_tiny_ > 1000) fail_stalled(before, "1000 steps in a row were shorter than " + short_text(taken));
 }
@@ -411,12 +411,12 @@ void Run::watch_axes(double t) {
 }
 
 bool Run::write_output(double t, bool is_at_state) {
-  if (!is_at_state) guard([&] { stepper_->calc_state(t, y_); });
+  if (!is_at_state) guard([&] { integrator_->calc_state(t, y_); });
   if (t == stop_.time) {
     cross_jump();
-    settle_control(t);
+    take_samples(t);
   }
-  const bool saves = timeline_.next_index() % kCheckpointEvery == 0;
+  const bool saves = time_events_.next_index() % kCheckpointEvery == 0;
   write_outputs_at(t);
   if (saves) save(t);
   if (!is_stop_asked() || t >= stop_.time) return true;  // what comes at the stop comes before the halt
@@ -425,10 +425,10 @@ bool Run::write_output(double t, bool is_at_state) {
 }
 
 void Run::write_outputs_at(double t) {
-  const bool is_chosen = timeline_.next_index() % spec_.simulation.output_every == 0 || t == timeline_.end();
+  const bool is_chosen = time_events_.next_index() % spec_.simulation.output_every == 0 || t == time_events_.end();
   const double slack = 1e-9 * setup_.plan.output_step;
   const bool is_inside = t >= spec_.simulation.output_from - slack && t <= spec_.simulation.output_until + slack;
-  timeline_.take_output();
+  time_events_.take_output();
   observe(t);
   const VectorXd& sample = setup_.recorder.keep_sample();
   if (is_chosen && is_inside) sink_.write_sample(sample);
@@ -444,25 +444,25 @@ void Run::observe(double t) {
     fail_diverged(t, name_fastest() + ", and the energy is no finite number any more");
   const Loops& loops = ode_.system().loops;
   int open = -1;
-  if (const double gap = calc_largest_gap(loops, ode_.data().loops, &open); gap > kOpen)
+  if (const double gap = calc_largest_position_error(loops, ode_.data().loops, &open); gap > kOpen)
     finish_failed(
         t, "run.open-constraint",
         "constraint '" + loops[open].name + "' stands open by " + short_text(gap) + " at t = " + short_text(t),
         "look whether driven or locked hinges leave it no way to close, or drive against each other");
   monitor_.add(t, e, work, calc_flow());
-  monitor_.add_feed(e, work, dissipated);
+  monitor_.add_energy_input(e, work, dissipated);
   // What a motion that jumps gives or takes is no growth.
-  if (timeline_.is_restart(t)) monitor_.add_feed(e.kinetic);
+  if (time_events_.is_restart(t)) monitor_.add_energy_input(e.kinetic);
   for (const auto& crossing : limit_.find_crossings(t, ode_.data(), y_.head(ode_.num_q()))) {
     sink_.write_event({t, crossing.what});
-    const bool is_known = crossing.id == LinearLimit::spin_id && setup_.spins_reported.count(crossing.body) > 0;
+    const bool is_known = crossing.id == ModalRangeMonitor::spin_id && setup_.spins_reported.count(crossing.body) > 0;
     if (!is_known) diagnostics_.warning(crossing.id, spec_.simulation.at, crossing.what, crossing.advice);
   }
   update_progress(t);
   const double limit = spec_.simulation.divergence_limit;
-  if (e.kinetic > limit * limit * monitor_.fed() && monitor_.fed() > 0) {
+  if (e.kinetic > limit * limit * monitor_.energy_input() && monitor_.energy_input() > 0) {
     fail_diverged(t, name_fastest() + ", and the kinetic energy " + short_text(e.kinetic) + " where " +
-                         short_text(monitor_.fed()) + " was put in");
+                         short_text(monitor_.energy_input()) + " was put in");
   }
 }
 
@@ -514,7 +514,7 @@ void Run::start_signal_events(double t) {
 }
 
 void Run::update_progress(double t) {
-  const StepStatistics s = stepper_->statistics();
+  const StepStatistics s = integrator_->statistics();
   progress_.time = t;
   progress_.step = s.step;
   progress_.order = s.order;

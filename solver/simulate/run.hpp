@@ -30,7 +30,7 @@ class Run {
   void advance_to(double t);
   /// Reached; of an end, its own.
   double time() const { return time_; }
-  double resolution() const { return timeline_.resolution(); }
+  double resolution() const { return time_events_.resolution(); }
   int num_states() const { return ode_.size(); }
   /// Memory of the signals.
   const VectorXd& memory() const;
@@ -38,7 +38,7 @@ class Run {
   const std::optional<SimulateOutcome>& outcome() const { return outcome_; }
   /// All channels at time().
   const VectorXd& calc_outputs() { return calc_sample(time_); }
-  const Recorder& recorder() const { return setup_.recorder; }
+  const Outputs& recorder() const { return setup_.recorder; }
   /// Sets what is held from time() on by the blocks of `memory`, one row of the signals' memory a value. Whatever a
   /// jump of them brings about comes at once.
   void set_held(const std::vector<std::pair<int, double>>& rows);
@@ -94,16 +94,16 @@ class Run {
   /// Weight and applied forces times the size of the system, at the last sample.
   double calc_flow() const;
   /// Work to as much of the energies as the states, so that the balance tells of the motion, not of itself.
-  void hold_work();
+  void set_work_tolerance();
   /// Kinetic, of what the present accelerations do within an output step. Allocates, once in a tenth of that.
   double calc_coming_energy();
-  void take_step(const Stop& stop);
+  void take_step(const TimeEvent& stop);
   /// Warns once of each hinge whose axes nearly fall together.
   void watch_axes(double t);
   /// Takes y_ over the jumps of given rates at stop_, after calc_state at its time; logs them once.
   void cross_jump();
   /// Starts the integrator afresh at (t, y_), towards stop_.
-  void restart(double t);
+  void reset(double t);
   /// The sample at t within the last step, at which y_ is or is to be; false when the run was asked to stop there, and
   /// did.
   bool write_output(double t, bool is_at_state);
@@ -137,7 +137,7 @@ class Run {
     double time = 0;         ///< up to which the step stands
     bool is_kink = false;    ///< a force has a kink there
     bool is_switch = false;  ///< a block or a joint contact changes its mode there
-    std::optional<Firing> firing;
+    std::optional<Occurrence> firing;
   };
   void start_events();
   bool has_event_functions() const;
@@ -147,54 +147,54 @@ class Run {
   void calc_contacts(double t);
   void calc_signal_events(double t);
   /// All of them at t within the last step, by one evaluation.
-  void calc_events(double t, const Stop& stop);
+  void calc_events(double t, const TimeEvent& stop);
   /// Kinks are looked for from (t, y_) on.
   void restart_kinks(double t);
   /// Where event function i of a kind crosses zero between the last look and `to`, whose values are in events_.
   double locate(VectorXd EventValues::*rows, Eigen::Index i, double before, double to, double tolerance,
-                const Stop& stop);
+                const TimeEvent& stop);
   /// The first crossing of one kind up to `to`, which becomes its time; events_ is of `to`. get_before(i): the value at
   /// the last look where function i has crossed, else none.
   template <class Before>
-  bool find_first(VectorXd EventValues::*rows, const Before& get_before, const Stop& stop, double& to);
+  bool find_first(VectorXd EventValues::*rows, const Before& get_before, const TimeEvent& stop, double& to);
   /// The first change between the last look and t.
-  Change find_change(const Stop& stop, double t);
+  Change find_change(const TimeEvent& stop, double t);
   /// Looks at the last step up to `until`, at each sample and there, and writes the samples, up to the first change.
   /// None when the run was asked to stop at a sample, and did.
-  std::optional<Change> scan_step(const Stop& stop, double until);
+  std::optional<Change> scan_step(const TimeEvent& stop, double until);
 
   // Events (run_events.cpp)
   /// Signals that crossed their values between the last look and `to`: each is located and logged, up to the first that
   /// does more, which is returned and has not come yet; those after it have not crossed.
-  std::optional<Firing> find_firing(const Stop& stop, double to);
+  std::optional<Occurrence> find_occurrence(const TimeEvent& stop, double to);
   /// Events whose signals have crossed their values by a jump at t, where y_ is.
   std::vector<size_t> find_crossed(double t);
   void start_signal_events(double t);
   /// What comes at a stop itself: events at a time, and crossings by the jump.
-  std::optional<Firing> pass(const Stop& stop);
+  std::optional<Occurrence> pass(const TimeEvent& stop);
   /// Carries out events that come at one time, at which y_ is, and those that they bring about; the one that ends the
   /// run, when there is one.
-  std::optional<Firing> fire(std::vector<Firing> firings);
+  std::optional<Occurrence> fire(std::vector<Occurrence> firings);
   /// What an event does to hinges and constraints.
-  void change(const Firing& firing);
-  void write_event(const Firing& firing);
+  void change(const Occurrence& firing);
+  void write_event(const Occurrence& firing);
   /// Of a line of /events.
-  std::string get_source(const Firing& firing) const;
+  std::string get_source(const Occurrence& firing) const;
   /// The end that an event brings: a last sample at its time.
-  SimulateOutcome finish(const Firing& firing);
+  SimulateOutcome finish(const Occurrence& firing);
 
   // Controllers (run_control.cpp)
   /// Samples that are due at t and switches that are open there, once; y_ is the state.
-  void settle_control(double t);
+  void take_samples(double t);
   /// At the start: lags that are to start at rest.
-  void settle_lags(double t);
-  /// Switches every block with a positive guard at (t, y_) until there is none.
-  void settle_switches(double t);
+  void initialize_lags(double t);
+  /// Switches every block with a positive event function at (t, y_) until there is none.
+  void iterate_switches(double t);
   /// Counts a switch of a block; warns once ("control.sliding") where it switches without rest.
   void count_switch(const std::string& label, double t);
   // Dry friction and rigid stops (run_latches.cpp)
   /// What rests, slides and strikes at (t, y_), from here on.
-  void settle_latches(double t);
+  void iterate_contacts(double t);
 
   void get_control_memory(VectorXd& memory) const;
   void set_control_memory(const VectorXd& memory);
@@ -204,8 +204,8 @@ class Run {
   bool is_memory_good(const records::Checkpoint& c) const;
   double restore(const records::Checkpoint& c);
   void fill_checkpoint(double t);
-  static constexpr Stop kNoStop{-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity(),
-                                false};
+  static constexpr TimeEvent kNoEvent{-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity(),
+                                      false};
   double calc_seen_time() const;
   /// The host may have put any state: the energy balance is judged from here on.
   void restart_balance();
@@ -213,7 +213,7 @@ class Run {
   void take_over();
   /// Switches, crossings and contacts at time_ behind a jump. Returns false if an event has ended the run.
   bool settle_jump();
-  std::string describe_end(const Firing& firing) const;
+  std::string describe_end(const Occurrence& firing) const;
   void find_next_stop();
   int num_kinks() const;
   template <class Action>
@@ -240,7 +240,7 @@ class Run {
   [[noreturn]] void fail_non_finite(double t, double tried);
   [[noreturn]] void fail_diverged(double t, const std::string& what);
   /// Events that bring each other about without end.
-  [[noreturn]] void fail_cycle(const Firing& firing);
+  [[noreturn]] void fail_cycle(const Occurrence& firing);
   /// row: of the state that asks for the short steps; -1: not known.
   [[noreturn]] void fail_stalled(double t, const std::string& detail, int row = -1);
   [[noreturn]] void finish_failed(double t, const char* id, const std::string& what, const std::string& advice);
@@ -250,27 +250,27 @@ class Run {
   const SimulateOptions& options_;
   Diagnostics& diagnostics_;
   RunSetup setup_;
-  Timeline timeline_;
-  SystemOde ode_;
-  std::unique_ptr<SystemData> coming_data_;  ///< of calc_coming_energy()
+  TimeEvents time_events_;
+  HybridSystem ode_;
+  std::unique_ptr<SystemData> expected_data_;  ///< of calc_coming_energy()
   VectorXd coming_y_dot_;
-  LinearLimit limit_;
-  VectorXd reach_;
+  ModalRangeMonitor limit_;
+  VectorXd modal_limit_;
   EnergyMonitor monitor_;
-  double coming_ = 0, coming_at_ = -std::numeric_limits<double>::infinity();
-  std::unique_ptr<Stepper> stepper_;
+  double expected_energy_ = 0, expected_at_ = -std::numeric_limits<double>::infinity();
+  std::unique_ptr<Integrator> integrator_;
   VectorXd y_, y_dot_;
   /// The last evaluation by evaluate().
   struct Evaluated {
-    long number = -1;  ///< SystemOde::num_evaluations
+    long number = -1;  ///< HybridSystem::num_evaluations
     double t = 0;
     VectorXd y, memory, slide;
     bool has_signals = false, has_sample = false;
   };
   Evaluated evaluated_;
   EventValues events_, last_events_;         ///< at the present and at the last look
-  VectorXd signs_;                           ///< of find_firing()
-  VectorXd latches_before_, latches_after_;  ///< of settle_latches()
+  VectorXd signs_;                           ///< of find_occurrence()
+  VectorXd latches_before_, latches_after_;  ///< of iterate_contacts()
   double scanned_ = 0;                       ///< time of the last look
   bool has_located_ = false;                 ///< since the last look, so that y_ is elsewhere
   VectorXd largest_kinks_;
@@ -280,10 +280,10 @@ class Run {
   std::optional<SimulateOutcome> outcome_;
   double last_sample_ = -std::numeric_limits<double>::infinity();
   double passed_ = -std::numeric_limits<double>::infinity();  ///< the last stop whose events have come
-  Stop stop_;                                                 ///< the next one, or the one just met
+  TimeEvent stop_;                                            ///< the next one, or the one just met
   double time_ = 0;                                           ///< where y_ is between pieces
   /// For an integrator of the host: the next stop; -inf: not known, as behind advance_to().
-  Stop next_stop_ = kNoStop;
+  TimeEvent next_event_ = kNoEvent;
   bool is_at_event_ = true;    ///< the event at time_ has come
   bool is_led_ = false;        ///< an integrator of the host has moved the state since the last advance_to()
   int ended_by_ = -1;          ///< the event that has ended the run
@@ -291,7 +291,7 @@ class Run {
   bool is_inside_ = false;     ///< paused on the way to stop_
   bool has_stepped_ = false;   ///< on the way to stop_
   double crossed_ = -std::numeric_limits<double>::infinity();  ///< the last stop whose jumps are logged
-  std::vector<Firing> waiting_;                                ///< located at the next stop
+  std::vector<Occurrence> waiting_;                            ///< located at the next stop
   double changed_ = -std::numeric_limits<double>::infinity();  ///< the last time an event changed the system
   int num_quick_ = 0;                                          ///< changes in quick succession
   bool has_changed_ = false;                                   ///< the system, since the stepper was started
@@ -307,7 +307,7 @@ class Run {
   };
   std::map<std::string, Switching> switching_;  ///< by label
   std::vector<int> gimbals_;                    ///< bodies on three angles or more, of which no warning was given
-  Latches latches_;
+  JointContacts joint_contacts_;
   double settled_ = -std::numeric_limits<double>::infinity();
   int num_settled_ = 0;
   double sampled_ = -std::numeric_limits<double>::infinity();  ///< the last instant whose samples are taken

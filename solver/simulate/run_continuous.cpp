@@ -11,16 +11,16 @@ namespace {
 constexpr double kDrift = 1e-9;
 }  // namespace
 
-double Run::calc_seen_time() const { return is_at_event_ ? time_ : std::min(time_, next_stop_.latest); }
+double Run::calc_seen_time() const { return is_at_event_ ? time_ : std::min(time_, next_event_.left); }
 
 void Run::find_next_stop() {
-  const double end = timeline_.end();
-  next_stop_ = time_ < end ? timeline_.find_stop(time_) : Stop{end, end, true};
+  const double end = time_events_.end();
+  next_event_ = time_ < end ? time_events_.find_next(time_) : TimeEvent{end, end, true};
 }
 
 double Run::next_event_time() {
-  if (!std::isfinite(next_stop_.time)) find_next_stop();
-  return next_stop_.time;
+  if (!std::isfinite(next_event_.time)) find_next_stop();
+  return next_event_.time;
 }
 
 void Run::lead() {
@@ -40,9 +40,9 @@ void Run::set_continuous(double t, const Eigen::Ref<const VectorXd>& x) {
 void Run::take_over() {
   if (!is_at_event_) update_discrete();
   is_led_ = false;
-  next_stop_ = kNoStop;
+  next_event_ = kNoEvent;
   needs_restart_ = true;
-  timeline_.skip_outputs(time_);
+  time_events_.skip_outputs(time_);
   last_sample_ = std::min(last_sample_, time_);
   if (!outcome_) restart_balance();
 }
@@ -63,7 +63,7 @@ const VectorXd& Run::calc_continuous_outputs() { return calc_sample(calc_seen_ti
 
 int Run::num_kinks() const {
   int kinks = 0;
-  for (const auto& element : ode_.system().elements) kinks += element->num_corners();
+  for (const auto& element : ode_.system().elements) kinks += element->num_kinks();
   return kinks;
 }
 
@@ -78,12 +78,12 @@ void Run::calc_event_functions(Eigen::Ref<VectorXd> g) {
   double* at = g.data();
   guard([&] {
     for (const auto& element : ode_.system().elements) {
-      element->calc_corners(ode_.system().tree, ode_.data().tree, at);
-      at += element->num_corners();
+      element->calc_kinks(ode_.system().tree, ode_.data().tree, at);
+      at += element->num_kinks();
     }
   });
   if (events_.switches.size() > 0) calc_switches(t);
-  if (!latches_.empty()) calc_contacts(t);
+  if (!joint_contacts_.empty()) calc_contacts(t);
   calc_signal_events(t);
   for (const VectorXd* values : {&events_.switches, &events_.contacts, &events_.signals})
     at = std::copy_n(values->data(), values->size(), at);
@@ -94,10 +94,9 @@ std::vector<std::string> Run::list_event_functions() const {
   const auto add = [&](const std::string& what, int count) {
     for (int i = 1; i <= count; ++i) names.push_back(what + (count > 1 ? " " + std::to_string(i) : ""));
   };
-  for (const auto& element : ode_.system().elements)
-    add("force '" + element->name() + "': kink", element->num_corners());
+  for (const auto& element : ode_.system().elements) add("force '" + element->name() + "': kink", element->num_kinks());
   for (const auto& place : ode_.system().signals.places)
-    add(place.block->label + ": switch", place.block->sizes.guards);
+    add(place.block->label + ": switch", place.block->sizes.event_functions);
   add("joint contact", static_cast<int>(events_.contacts.size()));
   for (int i = 0; i < setup_.triggers.make_gaps().size(); ++i)
     names.push_back("event '" + setup_.triggers.get(static_cast<size_t>(i)).name + "'");
@@ -107,36 +106,36 @@ std::vector<std::string> Run::list_event_functions() const {
 bool Run::needs_projection() {
   if (!ode_.has_projection()) return false;
   evaluate(calc_seen_time(), false);
-  return calc_largest_gap(ode_.system().loops, ode_.data().loops) > kDrift;
+  return calc_largest_position_error(ode_.system().loops, ode_.data().loops) > kDrift;
 }
 
 bool Run::settle_jump() {
-  settle_switches(time_);
+  iterate_switches(time_);
   if (setup_.triggers.has_signals()) {
-    std::vector<Firing> firings;
+    std::vector<Occurrence> firings;
     for (const size_t i : find_crossed(time_)) firings.push_back({time_, i});
     if (const auto ends = fire(std::move(firings))) {
       outcome_ = finish(*ends);
       return false;
     }
-    if (has_changed_) settle_switches(time_);
+    if (has_changed_) iterate_switches(time_);
   }
-  settle_latches(time_);
+  iterate_contacts(time_);
   return true;
 }
 
 bool Run::update_discrete() {
   next_event_time();
   const VectorXd before = y_;
-  const bool at_stop = !is_at_event_ && std::abs(time_ - next_stop_.time) <= timeline_.resolution();
+  const bool at_stop = !is_at_event_ && std::abs(time_ - next_event_.time) <= time_events_.resolution();
   is_at_event_ = true;
   if (needs_projection()) guard([&] { ode_.project(time_, y_); });
   restart_balance();
   has_changed_ = has_switched_ = false;
   if (at_stop) {
-    stop_ = next_stop_;
+    stop_ = next_event_;
     cross_jump();
-    settle_control(time_);
+    take_samples(time_);
     if (const auto ends = pass(stop_)) {
       outcome_ = finish(*ends);
       return true;
@@ -144,9 +143,9 @@ bool Run::update_discrete() {
   }
   if (!settle_jump()) return true;
   find_next_stop();
-  if (time_ >= timeline_.end()) {
-    save(timeline_.end());
-    outcome_ = close(timeline_.end(), "");
+  if (time_ >= time_events_.end()) {
+    save(time_events_.end());
+    outcome_ = close(time_events_.end(), "");
   }
   return y_ != before;
 }

@@ -10,20 +10,20 @@ constexpr double kShortestBounce = 1e-9;
 constexpr int kMostTimes = 100;
 }  // namespace
 
-void Run::settle_latches(double t) {
-  if (latches_.empty()) return;
-  const double shortest = kShortestBounce * (timeline_.end() - timeline_.start());
-  if (latches_before_.size() == 0) latches_before_ = latches_after_ = latches_.make_memory();
-  latches_.get_memory(latches_before_);
+void Run::iterate_contacts(double t) {
+  if (joint_contacts_.empty()) return;
+  const double shortest = kShortestBounce * (time_events_.end() - time_events_.start());
+  if (latches_before_.size() == 0) latches_before_ = latches_after_ = joint_contacts_.make_memory();
+  joint_contacts_.get_memory(latches_before_);
   guard([&] {
-    const auto what = latches_.settle(ode_, t, shortest, y_);
+    const auto what = joint_contacts_.settle(ode_, t, shortest, y_);
     for (const auto& line : what) sink_.write_event({t, line});
-    latches_.get_memory(latches_after_);
+    joint_contacts_.get_memory(latches_after_);
     if (!what.empty() || latches_before_ != latches_after_) has_switched_ = true;
   });
   calc_contacts(t);
   last_events_.contacts = events_.contacts;
-  num_settled_ = t - settled_ <= timeline_.resolution() ? num_settled_ + 1 : 0;
+  num_settled_ = t - settled_ <= time_events_.resolution() ? num_settled_ + 1 : 0;
   settled_ = t;
   if (num_settled_ > kMostTimes)
     finish_failed(t, "run.endless-impacts", "dry friction and stops find no rest at t = " + short_text(t),

@@ -46,14 +46,14 @@ void hint_at_fast_modes(const System& system, const RunSetup& setup, const Sourc
 }  // namespace
 
 RunSetup prepare_run(const System& system, const records::SystemSpec& spec, Diagnostics& diagnostics) {
-  bool is_sound = true;
-  for (int b = 0; b < system.num_bodies(); ++b) is_sound = is_sound && system.is_sound(b);
-  is_sound = is_sound && system.signals_are_sound;
-  RunSetup setup{make_run_plan(spec.simulation, diagnostics), Recorder(system), {}, {}, {}, {}};
-  if (is_sound) setup.recorder.choose(spec.simulation.record, spec.simulation.at, diagnostics);
-  setup.triggers = Triggers::build(spec, setup.recorder, is_sound, diagnostics);
-  setup.changes = Changes::build(system, spec, is_sound, diagnostics);
-  if (is_sound && diagnostics.num_errors() == 0)
+  bool is_valid = true;
+  for (int b = 0; b < system.num_bodies(); ++b) is_valid = is_valid && system.is_valid(b);
+  is_valid = is_valid && system.signals_are_valid;
+  RunSetup setup{make_run_plan(spec.simulation, diagnostics), Outputs(system), {}, {}, {}, {}};
+  if (is_valid) setup.recorder.choose(spec.simulation.record, spec.simulation.at, diagnostics);
+  setup.triggers = UserEvents::build(spec, setup.recorder, is_valid, diagnostics);
+  setup.changes = EventActions::build(system, spec, is_valid, diagnostics);
+  if (is_valid && diagnostics.num_errors() == 0)
     setup.spins_reported =
         warn_of_unstiffened_bodies(system, setup.plan.start, setup.plan.end, spec.simulation.at, diagnostics);
   setup.integrator = spec.simulation.integrator;
@@ -64,7 +64,7 @@ RunSetup prepare_run(const System& system, const records::SystemSpec& spec, Diag
   }
   if (setup.integrator == "auto" && diagnostics.num_errors() == 0)
     setup.integrator = choose_integrator(system, spec.simulation, setup.plan.output_step, diagnostics);
-  else if ((setup.integrator == "adams" || setup.integrator == "rk") && is_sound && diagnostics.num_errors() == 0)
+  else if ((setup.integrator == "adams" || setup.integrator == "rk") && is_valid && diagnostics.num_errors() == 0)
     hint_at_fast_modes(system, setup, spec.simulation.at, diagnostics);
   return setup;
 }

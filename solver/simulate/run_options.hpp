@@ -12,9 +12,9 @@ namespace bough::solver {
 
 struct RunSetup {
   RunPlan plan;
-  Recorder recorder;
-  Triggers triggers;
-  Changes changes;               ///< by trigger
+  Outputs recorder;
+  UserEvents triggers;
+  EventActions changes;          ///< by trigger
   std::string integrator;        ///< never "auto"
   std::set<int> spins_reported;  ///< bodies whose spin without stiffening is warned of already
 };

@@ -43,11 +43,11 @@ class Taker {
 template <class Action>
 void Run::for_each_kept(const Action& action) {
   for (double* value :
-       {&time_, &scanned_, &last_sample_, &crossed_, &changed_, &cut_at_, &settled_, &coming_, &coming_at_})
+       {&time_, &scanned_, &last_sample_, &crossed_, &changed_, &cut_at_, &settled_, &expected_energy_, &expected_at_})
     action(*value);
   for (int* value : {&num_quick_, &num_tiny_, &num_cuts_, &num_settled_, &ended_by_}) action(*value);
-  for (double* value : {&next_stop_.time, &next_stop_.latest}) action(*value);
-  for (bool* value : {&is_led_, &is_at_event_, &next_stop_.restarts, &needs_restart_, &is_inside_, &has_stepped_,
+  for (double* value : {&next_event_.time, &next_event_.left}) action(*value);
+  for (bool* value : {&is_led_, &is_at_event_, &next_event_.is_jump, &needs_restart_, &is_inside_, &has_stepped_,
                       &has_changed_, &has_switched_})
     action(*value);
   for (VectorXd* v :
@@ -67,10 +67,10 @@ void Run::set_held(const std::vector<std::pair<int, double>>& rows) {
     memory[row] = value;
   }
   if (!has_jumped || outcome_) return;
-  coming_at_ = -std::numeric_limits<double>::infinity();
+  expected_at_ = -std::numeric_limits<double>::infinity();
   if (!settle_jump()) return;
-  const bool is_within_step = is_inside_ && stepper_->time() != time_;
-  if (!is_within_step && !has_changed_ && !stepper_->has_history()) return;
+  const bool is_within_step = is_inside_ && integrator_->time() != time_;
+  if (!is_within_step && !has_changed_ && !integrator_->has_history()) return;
   needs_restart_ = true;
   is_inside_ = false;
 }
@@ -82,12 +82,12 @@ records::Checkpoint Run::save_state() {
   for_each_kept([&](const auto& kept) { pieces.add(kept); });
   saved.memory.emplace_back("pieces", pieces.get());
   // A pause within a step keeps the state from which the step is taken once more.
-  const bool is_within_step = is_inside_ && !stepper_->has_history() && stepper_->time() != time_;
+  const bool is_within_step = is_inside_ && !integrator_->has_history() && integrator_->time() != time_;
   VectorXd step(is_within_step ? 2 + ode_.size() : 0);
   if (is_within_step) {
-    step[0] = stepper_->last_time();
-    step[1] = stepper_->time();
-    stepper_->calc_state(step[0], step.tail(ode_.size()));
+    step[0] = integrator_->last_time();
+    step[1] = integrator_->time();
+    integrator_->calc_state(step[0], step.tail(ode_.size()));
   }
   saved.memory.emplace_back("step", step);
   return saved;
@@ -118,36 +118,36 @@ void Run::restore_state(const records::Checkpoint& saved) {
   setup_.recorder.quaternions = *saved.find("quaternions");
   limit_.set_memory(*saved.find("limits"));
   ode_.set_memory(*saved.find("discrete"));
-  latches_.set_memory(*saved.find("latches"), ode_);
+  joint_contacts_.set_memory(*saved.find("latches"), ode_);
   set_control_memory(*saved.find("control"));
   const VectorXd& events = *saved.find("events");
   passed_ = events[0];
   setup_.triggers.signs = events.tail(events.size() - 1);
   Taker taker(*pieces);
   for_each_kept([&](auto& kept) { taker.take(kept); });
-  timeline_.skip_outputs(time_);
+  time_events_.skip_outputs(time_);
   // The end is no stop where a longer run goes on from the state.
-  if (std::isfinite(next_stop_.time) && !timeline_.find_stop_at(next_stop_.time)) find_next_stop();
+  if (std::isfinite(next_event_.time) && !time_events_.find_at(next_event_.time)) find_next_stop();
   if (ended_by_ >= 0) {
-    const Firing end{time_, static_cast<size_t>(ended_by_)};
+    const Occurrence end{time_, static_cast<size_t>(ended_by_)};
     outcome_ = SimulateOutcome{true, time_, describe_end(end), progress_, monitor_.worst(), true};
     return;
   }
-  if (is_led_ || stepper_->has_history() || time_ >= timeline_.end()) {
+  if (is_led_ || integrator_->has_history() || time_ >= time_events_.end()) {
     needs_restart_ = true;
     is_inside_ = false;
     return;
   }
-  stop_ = timeline_.find_stop(time_);
+  stop_ = time_events_.find_next(time_);
   Eigen::Vector4d memory = *saved.find("stepper");
   if (step->size() > 0) {
-    stepper_->restart((*step)[0], step->tail(ode_.size()), stop_.time, stop_.latest);
+    integrator_->reset((*step)[0], step->tail(ode_.size()), stop_.time, stop_.left);
     memory[3] -= 1;
-    stepper_->set_memory(memory);
-    guard([&] { stepper_->step(memory[1]); });
+    integrator_->set_memory(memory);
+    guard([&] { integrator_->step(memory[1]); });
   } else {
-    stepper_->restart(time_, y_, stop_.time, stop_.latest);
-    stepper_->set_memory(memory);
+    integrator_->reset(time_, y_, stop_.time, stop_.left);
+    integrator_->set_memory(memory);
   }
   is_started_ = true;
 }

@@ -9,23 +9,25 @@ namespace {
 constexpr int kMostRounds = 20, kMostQuick = 200;
 constexpr double kQuick = 1e-9;
 
-bool is_same(const Discrete& a, const Discrete& b) {
-  const auto closes_alike = [](const Closing& x, const Closing& y) { return x.is_closed == y.is_closed; };
+bool is_same(const DiscreteState& a, const DiscreteState& b) {
+  const auto closes_alike = [](const ConstraintState& x, const ConstraintState& y) {
+    return x.is_closed == y.is_closed;
+  };
   return a.mode == b.mode && a.memory.size() == b.memory.size() && a.memory == b.memory &&
-         std::equal(a.closings.begin(), a.closings.end(), b.closings.begin(), closes_alike);
+         std::equal(a.constraints.begin(), a.constraints.end(), b.constraints.begin(), closes_alike);
 }
 
 }  // namespace
 
-std::optional<Firing> Run::find_firing(const Stop& stop, double to) {
+std::optional<Occurrence> Run::find_occurrence(const TimeEvent& stop, double to) {
   if (!setup_.triggers.has_signals()) return {};
   std::vector<size_t> crossed;
   signs_ = setup_.triggers.signs;
   setup_.triggers.find_crossed(events_.signals, crossed);
-  std::vector<Firing> firings;
+  std::vector<Occurrence> firings;
   for (const size_t i : crossed) {
     const auto row = static_cast<Eigen::Index>(i);
-    const double own = setup_.triggers.get(i).tolerance, tolerance = own > 0 ? own : timeline_.resolution();
+    const double own = setup_.triggers.get(i).tolerance, tolerance = own > 0 ? own : time_events_.resolution();
     firings.push_back({locate(&EventValues::signals, row, last_events_.signals[row], to, tolerance, stop), i});
   }
   std::stable_sort(firings.begin(), firings.end(), [](const auto& a, const auto& b) { return a.time < b.time; });
@@ -34,7 +36,7 @@ std::optional<Firing> Run::find_firing(const Stop& stop, double to) {
       write_event(*f);
       continue;
     }
-    const Firing turn = *f;
+    const Occurrence turn = *f;
     for (++f; f != firings.end(); ++f) {
       const auto row = static_cast<Eigen::Index>(f->trigger);
       setup_.triggers.signs[row] = signs_[row];
@@ -56,22 +58,22 @@ std::vector<size_t> Run::find_crossed(double t) {
   return crossed;
 }
 
-std::optional<Firing> Run::pass(const Stop& stop) {
-  std::vector<Firing> firings = std::move(waiting_);
+std::optional<Occurrence> Run::pass(const TimeEvent& stop) {
+  std::vector<Occurrence> firings = std::move(waiting_);
   waiting_.clear();
   passed_ = stop.time;
-  setup_.triggers.find_due(stop.time, timeline_.resolution(), firings);
-  if ((stop.restarts || has_switched_) && (stop.latest < stop.time || stop.time < timeline_.end())) {
+  setup_.triggers.find_due(stop.time, time_events_.resolution(), firings);
+  if ((stop.is_jump || has_switched_) && (stop.left < stop.time || stop.time < time_events_.end())) {
     observe(stop.time);
     for (const size_t i : find_crossed(stop.time)) firings.push_back({stop.time, i});
   }
   return fire(std::move(firings));
 }
 
-std::optional<Firing> Run::fire(std::vector<Firing> firings) {
+std::optional<Occurrence> Run::fire(std::vector<Occurrence> firings) {
   for (int round = 0; !firings.empty(); ++round) {
     bool changes = false;
-    for (const Firing& f : firings) {
+    for (const Occurrence& f : firings) {
       write_event(f);
       if (setup_.triggers.get(f.trigger).action == records::EventAction::Stop) return f;
       if (setup_.triggers.get(f.trigger).action == records::EventAction::Log) continue;
@@ -79,7 +81,7 @@ std::optional<Firing> Run::fire(std::vector<Firing> firings) {
       changes = true;
     }
     if (!changes) return {};
-    const Firing last = firings.back();
+    const Occurrence last = firings.back();
     if (round > kMostRounds || num_quick_ > kMostQuick) fail_cycle(last);
     firings.clear();
     for (const size_t i : find_crossed(last.time)) firings.push_back({last.time, i});
@@ -87,31 +89,33 @@ std::optional<Firing> Run::fire(std::vector<Firing> firings) {
   return {};
 }
 
-std::string Run::get_source(const Firing& firing) const { return "event " + setup_.triggers.get(firing.trigger).name; }
+std::string Run::get_source(const Occurrence& firing) const {
+  return "event " + setup_.triggers.get(firing.trigger).name;
+}
 
-void Run::write_event(const Firing& firing) {
+void Run::write_event(const Occurrence& firing) {
   sink_.write_event({firing.time, setup_.triggers.describe(firing.trigger), get_source(firing)});
 }
 
-void Run::change(const Firing& firing) {
+void Run::change(const Occurrence& firing) {
   guard([&] {
     ode_.project(firing.time, y_);
-    const Discrete before = get_discrete(ode_.data());
-    const Discrete next = setup_.changes.apply(firing.trigger, ode_, firing.time, y_);
+    const DiscreteState before = get_discrete(ode_.data());
+    const DiscreteState next = setup_.changes.apply(firing.trigger, ode_, firing.time, y_);
     sink_.write_event({firing.time,
                        setup_.changes.describe(firing.trigger) + (is_same(next, before) ? ": it was so already" : ""),
                        get_source(firing)});
     for (const auto& what : ode_.change(firing.time, next, y_))
       sink_.write_event({firing.time, what, get_source(firing)});
-    latches_.demand_inside(ode_, firing.time, 4 * timeline_.resolution(), y_);
+    joint_contacts_.demand_inside(ode_, firing.time, 4 * time_events_.resolution(), y_);
   });
-  const bool is_quick = firing.time - changed_ < kQuick * (timeline_.end() - timeline_.start());
+  const bool is_quick = firing.time - changed_ < kQuick * (time_events_.end() - time_events_.start());
   num_quick_ = is_quick ? num_quick_ + 1 : 0;
   changed_ = firing.time;
   has_changed_ = true;
 }
 
-SimulateOutcome Run::finish(const Firing& firing) {
+SimulateOutcome Run::finish(const Occurrence& firing) {
   if (last_sample_ < firing.time) {
     observe(firing.time);
     sink_.write_sample(setup_.recorder.keep_sample());
@@ -121,7 +125,7 @@ SimulateOutcome Run::finish(const Firing& firing) {
   return close(firing.time, describe_end(firing));
 }
 
-std::string Run::describe_end(const Firing& firing) const {
+std::string Run::describe_end(const Occurrence& firing) const {
   return "stopped by " + setup_.triggers.describe(firing.trigger) + " at t = " + short_text(firing.time);
 }
 

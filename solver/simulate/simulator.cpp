@@ -72,7 +72,7 @@ void Simulator::hold_inputs(double t) {
       continue;
     }
     // A value that stands needs no new row, and a slice of a run then changes nothing; but behind a slope the line has
-    // a corner here, which ends the step.
+    // a kink here, which ends the step.
     if (next == value && memory[InputBlock::kNext] == next && memory[InputBlock::kUntil] <= now && !has_slope) continue;
     has_slopes_ = has_slopes_ || (is_ramp && next != value);
     const double line[] = {now, is_ramp ? value : next, is_ramp ? t : now, next};

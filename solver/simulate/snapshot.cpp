@@ -7,13 +7,13 @@ namespace bough::solver {
 void Run::check_resume() {
   const records::Checkpoint& c = *options_.resume;
   const double slack = 1e-9 * setup_.plan.output_step;
-  if (c.time >= timeline_.start() - slack && c.time <= timeline_.end() + slack && c.state.size() == ode_.size() &&
+  if (c.time >= time_events_.start() - slack && c.time <= time_events_.end() + slack && c.state.size() == ode_.size() &&
       c.state.allFinite() && is_memory_good(c))
     return;
   throw InputError("run.bad-checkpoint", spec_.simulation.at,
                    "the checkpoint at t = " + short_text(c.time) + " with " + std::to_string(c.state.size()) +
                        " states does not belong to this system, which has " + std::to_string(ode_.size()) +
-                       " and runs from " + short_text(timeline_.start()) + " to " + short_text(timeline_.end()),
+                       " and runs from " + short_text(time_events_.start()) + " to " + short_text(time_events_.end()),
                    "resume with the system file the run was started with, or start it again");
 }
 
@@ -32,11 +32,11 @@ double Run::restore(const records::Checkpoint& c) {
   if (const auto* m = c.find("limits")) limit_.set_memory(*m);
   if (const auto* m = c.find("stepper")) restored_.memory = {{"stepper", *m}};
   if (const auto* m = c.find("discrete")) ode_.set_memory(*m);
-  if (const auto* m = c.find("latches")) latches_.set_memory(*m, ode_);
-  timeline_.skip_outputs(c.time);
+  if (const auto* m = c.find("latches")) joint_contacts_.set_memory(*m, ode_);
+  time_events_.skip_outputs(c.time);
   if (const auto* m = c.find("control")) set_control_memory(*m);
-  settle_control(c.time);
-  settle_latches(c.time);
+  take_samples(c.time);
+  iterate_contacts(c.time);
   start_signal_events(c.time);
   if (const auto* m = c.find("events")) {
     passed_ = (*m)[0];
@@ -53,10 +53,10 @@ void Run::fill_checkpoint(double t) {
   limit_.get_memory(checkpoint_.memory[2].second);
   checkpoint_.memory[3].second[0] = passed_;
   checkpoint_.memory[3].second.tail(setup_.triggers.signs.size()) = setup_.triggers.signs;
-  checkpoint_.memory[4].second = stepper_->memory();
+  checkpoint_.memory[4].second = integrator_->memory();
   ode_.get_memory(checkpoint_.memory[5].second);
   get_control_memory(checkpoint_.memory[6].second);
-  latches_.get_memory(checkpoint_.memory[7].second);
+  joint_contacts_.get_memory(checkpoint_.memory[7].second);
 }
 
 void Run::save(double t) {
@@ -68,8 +68,8 @@ void Run::save(double t) {
 
 void Run::save_now_and_then() {
   if (std::chrono::steady_clock::now() - saved_at_ < options_.checkpoint_after) return;
-  y_ = stepper_->state();
-  save(stepper_->time());
+  y_ = integrator_->state();
+  save(integrator_->time());
 }
 
 SimulateOutcome Run::halt(double t) {

@@ -16,7 +16,7 @@ constexpr int kNumLooks = 400;
 std::vector<double> list_times(const System& system, const FunctionCopies& functions, double start, double end) {
   std::vector<double> looks, times = {start};
   for (int i = 0; i <= kNumLooks; ++i) looks.push_back(start + (end - start) * i / kNumLooks);
-  for (const auto* list : {&system.breakpoints, &system.landmarks})
+  for (const auto* list : {&system.jump_times, &system.mesh_times})
     for (const double t : *list)
       if (t > start && t <= end) looks.push_back(t);
   const auto add_extremes = [&](const auto& calc) {
@@ -50,7 +50,7 @@ double calc_share(const MatrixXd& K, const MatrixXd& KG) {
 
 std::set<int> warn_of_unstiffened_bodies(const System& system, double start, double end, const SourceLocation& at,
                                          Diagnostics& diagnostics) {
-  LinearLimit limit(system);
+  ModalRangeMonitor limit(system);
   std::set<int> spinning;
   const auto is_null = [](const auto& terms) { return terms == nullptr; };
   if (!limit.watches_spins() && std::all_of(system.left_out.begin(), system.left_out.end(), is_null)) return spinning;
@@ -68,14 +68,14 @@ std::set<int> warn_of_unstiffened_bodies(const System& system, double start, dou
     } catch (const Failure&) {
       continue;  // the run itself reports it
     }
-    for (const LinearLimit::Crossing& spin : limit.find_spins(t, *data)) {
+    for (const ModalRangeMonitor::Crossing& spin : limit.find_spins(t, *data)) {
       diagnostics.warning(spin.id, at, spin.what, spin.advice);
       spinning.insert(spin.body);
     }
     for (size_t b = 0; b < worst.size(); ++b) {
       if (system.left_out[b] == nullptr) continue;
       VectorXd loads(system.left_out[b]->num_loads());
-      system.left_out[b]->calc_loads(system, *data, loads.data());
+      system.left_out[b]->calc_loads(get_motion(system, *data), loads.data());
       const double share =
           calc_share(system.tree[static_cast<int>(b)].body.K(), system.left_out[b]->calc_stiffness(loads.data()));
       if (share > worst[b].share) worst[b] = {share, t};

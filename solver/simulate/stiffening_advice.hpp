@@ -14,7 +14,7 @@ inline constexpr double kLoadLimit = 0.5;
 /// ones: K + λ K_G singular at λ < 1/kLoadLimit, K_G of all inertial, hinge, constraint and node loads and load
 /// patterns (docs/theory/when-stiffening-matters.md). Loads are those in the state at the start, with forces of time at
 /// the start and at their extreme values between start and end, prescribed motions likewise where no loop is closed.
-/// Warns "run.unstiffened-spin" at the same times as LinearLimit does. Allocates.
+/// Warns "run.unstiffened-spin" at the same times as ModalRangeMonitor does. Allocates.
 /// \return the bodies whose spin was reported
 std::set<int> warn_of_unstiffened_bodies(const System& system, double start, double end, const SourceLocation& at,
                                          Diagnostics& diagnostics);

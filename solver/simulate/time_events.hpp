@@ -10,9 +10,9 @@ namespace bough::solver {
 
 /// A time that no step passes. Its right-hand side is asked for times up to `latest` <= time only: before a jump for
 /// earlier ones, so that the last step sees the values before it; what follows starts at `time` with those after it.
-struct Stop {
-  double time = 0, latest = 0;
-  bool restarts = false;  ///< a jump, or an event at a time: the integrator drops its history
+struct TimeEvent {
+  double time = 0, left = 0;
+  bool is_jump = false;  ///< a jump, or an event at a time: the integrator drops its history
 };
 
 /// Effective division of [simulation].
@@ -27,11 +27,11 @@ RunPlan make_run_plan(const records::SimulationRecord& simulation, Diagnostics& 
 
 /// One queue of samples and stops. Times closer together than 1e-12 of the duration are one, the jump's. Samples are
 /// counted, not stored: start, start + output_step, ..., exactly the end.
-class Timeline {
+class TimeEvents {
  public:
-  /// `restarts` (jumps, events at a time) and `landmarks`: in any order, inside the run or not.
-  Timeline(const RunPlan& plan, std::vector<double> restarts, std::vector<double> landmarks);
-  explicit Timeline(const RunPlan& plan) : Timeline(plan, {}, {}) {}
+  /// `jumps` (jumps, events at a time) and `landmarks`: in any order, inside the run or not.
+  TimeEvents(const RunPlan& plan, std::vector<double> jumps, std::vector<double> mesh_times);
+  explicit TimeEvents(const RunPlan& plan) : TimeEvents(plan, {}, {}) {}
 
   /// Instants of samples from the start on, first + i * period: each becomes a stop without a restart.
   void add_samples(double first, double period) {
@@ -50,9 +50,9 @@ class Timeline {
   /// Passes over the samples up to t, and t itself.
   void skip_outputs(double t);
   /// The first stop past t; the end is one.
-  Stop find_stop(double t) const;
+  TimeEvent find_next(double t) const;
   /// The stop at t, an instant of samples too; none where there is none.
-  std::optional<Stop> find_stop_at(double t) const;
+  std::optional<TimeEvent> find_at(double t) const;
   /// Whether a restart is at t.
   bool is_restart(double t) const;
   /// Times that are one.
@@ -67,7 +67,7 @@ class Timeline {
   double close_ = 0;
   long num_outputs_ = 0, index_ = 0;
   double next_ = 0;
-  std::vector<Stop> stops_;
+  std::vector<TimeEvent> stops_;
   struct Samples {
     double first = 0, period = 0;
   };

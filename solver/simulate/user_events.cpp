@@ -17,10 +17,10 @@ std::string list(const std::vector<std::string>& words) {
 
 class Resolver {
  public:
-  Resolver(const records::SystemSpec& spec, const Recorder& recorder, bool is_sound, Diagnostics& diagnostics)
-      : spec_(spec), recorder_(recorder), is_sound_(is_sound), diagnostics_(diagnostics) {}
+  Resolver(const records::SystemSpec& spec, const Outputs& recorder, bool is_valid, Diagnostics& diagnostics)
+      : spec_(spec), recorder_(recorder), is_valid_(is_valid), diagnostics_(diagnostics) {}
 
-  void check_time(const records::TriggerRecord& r) {
+  void check_time(const records::UserEventRecord& r) {
     const auto& s = spec_.simulation;
     if (!std::isfinite(*r.time)) {
       error(r, "run.bad-event", "is at a time that is not a finite number", "give a time of the run");
@@ -32,7 +32,7 @@ class Resolver {
     }
   }
 
-  int find(const records::TriggerRecord& r) {
+  int find(const records::UserEventRecord& r) {
     const auto name = records::parse_signal_name(r.signal);
     int size = 0;
     std::string description;
@@ -45,7 +45,7 @@ class Resolver {
       known.push_back(channel.path.starts_with("/sensors/") ? channel.path.substr(9) : channel.path);
     }
     if (size == 0) {
-      if (!is_sound_) return -1;
+      if (!is_valid_) return -1;
       const std::string near = find_nearest(r.signal.substr(0, r.signal.rfind(':')), known);
       error(r, "run.unknown-signal", "watches '" + r.signal + "', which is no sensor and no channel of the results",
             near.empty() ? "name a sensor as tip:x, or a channel as /hinges/root/q:1" : "did you mean '" + near + "'?");
@@ -53,7 +53,7 @@ class Resolver {
     }
     const int component = records::find_component(name, size, description);
     if (component >= 0) return recorder_.find(name.path, component);
-    if (!is_sound_) return -1;
+    if (!is_valid_) return -1;
     const auto names = list(records::get_component_names(name.path, size, description));
     error(r, "run.unknown-signal",
           "watches '" + r.signal + "', but " +
@@ -63,14 +63,14 @@ class Resolver {
     return -1;
   }
 
-  void error(const records::TriggerRecord& r, const char* id, const std::string& what, const std::string& advice) {
+  void error(const records::UserEventRecord& r, const char* id, const std::string& what, const std::string& advice) {
     diagnostics_.error(id, r.at, "event '" + r.name + "' " + what, advice);
   }
 
  private:
   const records::SystemSpec& spec_;
-  const Recorder& recorder_;
-  bool is_sound_;
+  const Outputs& recorder_;
+  bool is_valid_;
   Diagnostics& diagnostics_;
 };
 
@@ -78,10 +78,10 @@ double sign_of(double x) { return x > 0 ? 1 : x < 0 ? -1 : 0; }
 
 }  // namespace
 
-Triggers Triggers::build(const records::SystemSpec& spec, const Recorder& recorder, bool system_is_sound,
-                         Diagnostics& diagnostics) {
-  Triggers made;
-  Resolver resolver(spec, recorder, system_is_sound, diagnostics);
+UserEvents UserEvents::build(const records::SystemSpec& spec, const Outputs& recorder, bool system_is_valid,
+                             Diagnostics& diagnostics) {
+  UserEvents made;
+  Resolver resolver(spec, recorder, system_is_valid, diagnostics);
   for (const auto& r : spec.events) {
     if (r.time) {
       resolver.check_time(r);
@@ -100,7 +100,7 @@ Triggers Triggers::build(const records::SystemSpec& spec, const Recorder& record
   return made;
 }
 
-std::vector<double> Triggers::collect_times(bool log_only) const {
+std::vector<double> UserEvents::collect_times(bool log_only) const {
   std::vector<double> times;
   for (const auto& r : records_) {
     if (r.time && (r.action == records::EventAction::Log) == log_only) times.push_back(*r.time);
@@ -108,7 +108,7 @@ std::vector<double> Triggers::collect_times(bool log_only) const {
   return times;
 }
 
-std::string Triggers::describe(size_t trigger) const {
+std::string UserEvents::describe(size_t trigger) const {
   const auto& r = records_[trigger];
   std::ostringstream text;
   text << "event '" << r.name << "'";
@@ -118,16 +118,16 @@ std::string Triggers::describe(size_t trigger) const {
   return text.str();
 }
 
-void Triggers::calc_gaps(const VectorXd& sample, VectorXd& gaps) const {
+void UserEvents::calc_gaps(const VectorXd& sample, VectorXd& gaps) const {
   for (size_t i = 0; i < records_.size(); ++i) {
     gaps[static_cast<Eigen::Index>(i)] =
         index_[i] < 0 ? std::numeric_limits<double>::quiet_NaN() : sample[index_[i]] - records_[i].value;
   }
 }
 
-void Triggers::start(const VectorXd& gaps) { signs = gaps.unaryExpr(&sign_of); }
+void UserEvents::start(const VectorXd& gaps) { signs = gaps.unaryExpr(&sign_of); }
 
-void Triggers::find_crossed(const VectorXd& gaps, std::vector<size_t>& crossed) {
+void UserEvents::find_crossed(const VectorXd& gaps, std::vector<size_t>& crossed) {
   for (size_t i = 0; i < records_.size(); ++i) {
     const auto row = static_cast<Eigen::Index>(i);
     const double now = sign_of(gaps[row]), before = signs[row];
@@ -141,7 +141,7 @@ void Triggers::find_crossed(const VectorXd& gaps, std::vector<size_t>& crossed) 
   }
 }
 
-void Triggers::find_due(double t, double resolution, std::vector<Firing>& due) const {
+void UserEvents::find_due(double t, double resolution, std::vector<Occurrence>& due) const {
   for (size_t i = 0; i < records_.size(); ++i) {
     if (records_[i].time && std::abs(*records_[i].time - t) <= resolution) due.push_back({t, i});
   }

@@ -6,23 +6,23 @@
 namespace bough::solver {
 
 /// An event that came.
-struct Firing {
+struct Occurrence {
   double time = 0;
   size_t trigger = 0;
 };
 
-class Triggers {
+class UserEvents {
  public:
   /// Finds the signals among the recorder's channels. Reports "run.bad-event", "run.unknown-signal" and the warning
-  /// "run.event-never" for a time outside the run. `system_is_sound`: else signals may be missing that are none to
+  /// "run.event-never" for a time outside the run. `system_is_valid`: else signals may be missing that are none to
   /// blame.
-  static Triggers build(const records::SystemSpec& spec, const Recorder& recorder, bool system_is_sound,
-                        Diagnostics& diagnostics);
+  static UserEvents build(const records::SystemSpec& spec, const Outputs& recorder, bool system_is_valid,
+                          Diagnostics& diagnostics);
 
   /// Of the events at a time; those that only log, or the others.
   std::vector<double> collect_times(bool log_only) const;
   bool has_signals() const { return num_signals_ > 0; }
-  const records::TriggerRecord& get(size_t trigger) const { return records_[trigger]; }
+  const records::UserEventRecord& get(size_t trigger) const { return records_[trigger]; }
   /// "event 'contact': tip:x rises through 0.1"
   std::string describe(size_t trigger) const;
 
@@ -36,13 +36,13 @@ class Triggers {
   /// its value keeps the sign it had. Indices of triggers, appended to `crossed`.
   void find_crossed(const VectorXd& gaps, std::vector<size_t>& crossed);
   /// Events at a time due within `resolution` of t, appended.
-  void find_due(double t, double resolution, std::vector<Firing>& due) const;
+  void find_due(double t, double resolution, std::vector<Occurrence>& due) const;
 
   /// The signs kept, for a checkpoint.
   VectorXd signs;
 
  private:
-  std::vector<records::TriggerRecord> records_;
+  std::vector<records::UserEventRecord> records_;
   std::vector<int> index_;  ///< in the sample; -1: at a time
   int num_signals_ = 0;
 };

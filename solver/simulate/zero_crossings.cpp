@@ -22,17 +22,18 @@ void Run::start_events() {
   // Fixed steps depend on the samples and stops alone. Error estimates of adaptive ones look at few moments of a step
   // (Dormand and Prince's 8(7) at its two ends only) and miss a contact between them: their steps end at kinks.
   if (setup_.integrator != "rk4" && setup_.integrator != "implicit")
-    for (const auto& element : system.elements) kinks += element->num_corners();
+    for (const auto& element : system.elements) kinks += element->num_kinks();
   events_.kinks = VectorXd::Zero(kinks);
-  events_.switches = VectorXd::Zero(system.signals.num_guards);
-  events_.contacts = latches_.make_guards();
+  events_.switches = VectorXd::Zero(system.signals.num_event_functions);
+  events_.contacts = joint_contacts_.make_guards();
   events_.signals = setup_.triggers.make_gaps();
   last_events_ = events_;
   largest_kinks_ = events_.kinks;
 }
 
 bool Run::has_event_functions() const {
-  return events_.kinks.size() > 0 || events_.switches.size() > 0 || !latches_.empty() || setup_.triggers.has_signals();
+  return events_.kinks.size() > 0 || events_.switches.size() > 0 || !joint_contacts_.empty() ||
+         setup_.triggers.has_signals();
 }
 
 void Run::calc_kinks(double t) {
@@ -43,8 +44,8 @@ void Run::calc_kinks(double t) {
     }
     double* g = events_.kinks.data();
     for (const auto& element : ode_.system().elements) {
-      element->calc_corners(ode_.system().tree, ode_.data().tree, g);
-      g += element->num_corners();
+      element->calc_kinks(ode_.system().tree, ode_.data().tree, g);
+      g += element->num_kinks();
     }
   });
 }
@@ -59,37 +60,38 @@ void Run::restart_kinks(double t) {
 void Run::calc_switches(double t) {
   evaluate(t, true);
   guard([&] {
-    ode_.system().signals.calc_guards(get_motion(ode_.system(), ode_.data()), ode_.data().signals, events_.switches);
+    ode_.system().signals.calc_event_functions(get_motion(ode_.system(), ode_.data()), ode_.data().signals,
+                                               events_.switches);
   });
 }
 
 void Run::calc_contacts(double t) {
   evaluate(t, false);
-  latches_.calc_guards(ode_.data(), events_.contacts);
+  joint_contacts_.calc_event_functions(ode_.data(), events_.contacts);
 }
 
-void Run::calc_events(double t, const Stop& stop) {
-  guard([&] { stepper_->calc_state(t, y_); });
+void Run::calc_events(double t, const TimeEvent& stop) {
+  guard([&] { integrator_->calc_state(t, y_); });
   has_located_ = false;
-  const double time = std::min(t, stop.latest);
+  const double time = std::min(t, stop.left);
   const bool has_switches = events_.switches.size() > 0, has_signals = setup_.triggers.has_signals();
   // One evaluation for all, and for the sample that is due.
-  if (has_switches || has_signals || t == timeline_.next_output())
+  if (has_switches || has_signals || t == time_events_.next_output())
     evaluate(time, true);
-  else if (!latches_.empty())
+  else if (!joint_contacts_.empty())
     evaluate(time, false);
   if (events_.kinks.size() > 0) calc_kinks(time);
   if (has_switches) calc_switches(time);
-  if (!latches_.empty()) calc_contacts(time);
+  if (!joint_contacts_.empty()) calc_contacts(time);
   calc_signal_events(time);
 }
 
 double Run::locate(VectorXd EventValues::*rows, Eigen::Index i, double before, double to, double tolerance,
-                   const Stop& stop) {
+                   const TimeEvent& stop) {
   const double after = (events_.*rows)[i];
   const auto calc = [&](double t) {
-    guard([&] { stepper_->calc_state(t, y_); });
-    const double time = std::min(t, stop.latest);
+    guard([&] { integrator_->calc_state(t, y_); });
+    const double time = std::min(t, stop.left);
     if (rows == &EventValues::kinks)
       calc_kinks(time);
     else if (rows == &EventValues::switches)
@@ -108,17 +110,17 @@ double Run::locate(VectorXd EventValues::*rows, Eigen::Index i, double before, d
 }
 
 template <class Before>
-bool Run::find_first(VectorXd EventValues::*rows, const Before& get_before, const Stop& stop, double& to) {
+bool Run::find_first(VectorXd EventValues::*rows, const Before& get_before, const TimeEvent& stop, double& to) {
   std::optional<double> first;
   for (Eigen::Index i = 0; i < (events_.*rows).size(); ++i) {
     if (const std::optional<double> before = get_before(i))
-      first = std::min(first.value_or(to), locate(rows, i, *before, to, timeline_.resolution(), stop));
+      first = std::min(first.value_or(to), locate(rows, i, *before, to, time_events_.resolution(), stop));
   }
   if (first && *first < to) calc_events(to = *first, stop);
   return first.has_value();
 }
 
-Run::Change Run::find_change(const Stop& stop, double t) {
+Run::Change Run::find_change(const TimeEvent& stop, double t) {
   calc_events(t, stop);
   Change found;
   found.time = t;
@@ -141,15 +143,15 @@ Run::Change Run::find_change(const Stop& stop, double t) {
   const bool switches = find_first(&EventValues::switches, block, stop, found.time);
   const bool changes = find_first(&EventValues::contacts, contact, stop, found.time);
   found.is_switch = switches || changes;
-  found.firing = find_firing(stop, found.time);
+  found.firing = find_occurrence(stop, found.time);
   last_events_ = events_;
   scanned_ = found.time;
   return found;
 }
 
-std::optional<Run::Change> Run::scan_step(const Stop& stop, double until) {
+std::optional<Run::Change> Run::scan_step(const TimeEvent& stop, double until) {
   for (;;) {
-    const double sample = timeline_.next_output();
+    const double sample = time_events_.next_output();
     Change found;
     found.time = std::min(sample, until);
     const bool looks = has_event_functions();

@@ -13,7 +13,7 @@ using Eigen::VectorXd;
 enum class HingeMode : unsigned char { Free, Locked, Prescribed };
 
 /// A constraint as it stands: closed or open, and how it was found when it was closed in the run.
-struct Closing {
+struct ConstraintState {
   bool is_closed = true;
   Eigen::Matrix3d R = Eigen::Matrix3d::Identity();  ///< the child's frame that the constraint sees, in Hc
   Eigen::Vector3d p = Eigen::Vector3d::Zero();
@@ -22,9 +22,9 @@ struct Closing {
 };
 
 /// What changes at instants only.
-struct Discrete {
-  std::vector<HingeMode> mode;    ///< num_u, by row of u; modal rows are Free
-  std::vector<Closing> closings;  ///< one per constraint; empty: as they were
+struct DiscreteState {
+  std::vector<HingeMode> mode;               ///< num_u, by row of u; modal rows are Free
+  std::vector<ConstraintState> constraints;  ///< one per constraint; empty: as they were
   VectorXd memory;  ///< of controllers, sensors and actuators: what they hold between samples and switches
 };
 
@@ -58,7 +58,7 @@ auto get_z(const StateLayout& layout, X&& x) {
 struct State {
   double t = 0;
   VectorXd x;  ///< StateLayout
-  Discrete discrete;
+  DiscreteState discrete;
 };
 
 }  // namespace bough::solver

@@ -4,14 +4,14 @@
 
 namespace bough::solver {
 
-/// u̇ at (t, q, u, z) under the modes and the memory of `data`. `push()` adds loads or inertia to `data` after all forces
-/// and before the factor. No allocation of its own.
+/// u̇ at (t, q, u, z) under the modes and the memory of `data`. `push()` adds loads or inertia to `data` after all
+/// forces and before the factor. No allocation of its own.
 ///
 /// \param q, u, z  num_q, num_u, num_z
-template <class Push>
+template <class NodeActuator>
 void calc_motion(const System& system, SystemData& data, double t, const Eigen::Ref<const VectorXd>& q,
                  const Eigen::Ref<const VectorXd>& u, const Eigen::Ref<const VectorXd>& z, Eigen::Ref<VectorXd> u_dot,
-                 Push&& push) {
+                 NodeActuator&& push) {
   calc_kinematics(system, data, t, q, u);  // markers, R_PB, r, X, H, Jc, M(η); V = X V_P + H u - Jc η̇,   b, h
   set_z(data, z);
   add_forces(system, data, t);  // signals, actuators, applied, springs, dampers, gravity

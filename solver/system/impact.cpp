@@ -23,7 +23,7 @@ VectorXd solve_active(const MatrixXd& A, const VectorXd& wanted, const std::vect
 }
 
 // M⁻¹ of a unit impulse along each row, loops closed: num_u x blows.
-MatrixXd calc_responses(const System& system, SystemData& system_data, const std::vector<Blow>& blows) {
+MatrixXd calc_responses(const System& system, SystemData& system_data, const std::vector<Impact>& blows) {
   TreeData& data = system_data.tree;
   MatrixXd D(system.tree.num_u, static_cast<Eigen::Index>(blows.size()));
   calc_factor(system.tree, data);
@@ -48,7 +48,7 @@ MatrixXd calc_responses(const System& system, SystemData& system_data, const std
 
 }  // namespace
 
-VectorXd solve_blows(const MatrixXd& A, const VectorXd& v, const VectorXd& e) {
+VectorXd solve_impact_lcp(const MatrixXd& A, const VectorXd& v, const VectorXd& e) {
   const auto n = v.size();
   const VectorXd wanted = -(1 + e.array()) * v.array();
   const double slow = kRounding * v.cwiseAbs().maxCoeff();
@@ -74,7 +74,7 @@ VectorXd solve_blows(const MatrixXd& A, const VectorXd& v, const VectorXd& e) {
 }
 
 void strike(const System& system, SystemData& system_data, double t, const Eigen::Ref<const VectorXd>& q,
-            std::vector<Blow>& blows, Eigen::Ref<VectorXd> u, double& work) {
+            std::vector<Impact>& blows, Eigen::Ref<VectorXd> u, double& work) {
   TreeData& data = system_data.tree;
   const auto n = static_cast<Eigen::Index>(blows.size());
   calc_kinematics(system.tree, t, q, u, data);
@@ -83,29 +83,29 @@ void strike(const System& system, SystemData& system_data, double t, const Eigen
   MatrixXd A(n, n);
   VectorXd v(n), e(n);
   for (Eigen::Index i = 0; i < n; ++i) {
-    const Blow& own = blows[static_cast<size_t>(i)];
+    const Impact& own = blows[static_cast<size_t>(i)];
     BOUGH_DEMAND(data.mode[static_cast<size_t>(own.row)] == HingeMode::Free);
     v[i] = -own.side * data.u[own.row];
     e[i] = own.restitution;
     for (Eigen::Index j = 0; j < n; ++j) A(i, j) = own.side * blows[static_cast<size_t>(j)].side * D(own.row, j);
   }
   A = (0.5 * (A + A.transpose())).eval();
-  VectorXd p = solve_blows(A, v, e);
+  VectorXd p = solve_impact_lcp(A, v, e);
   if (p.dot(2 * v + A * p) > kRounding * std::abs(p.dot(v))) {  // twice what it gives
     e.setConstant(e.minCoeff());
-    p = solve_blows(A, v, e);
+    p = solve_impact_lcp(A, v, e);
   }
   u = data.u;
   const VectorXd after = v + A * p;
   for (Eigen::Index i = 0; i < n; ++i) {
-    Blow& own = blows[static_cast<size_t>(i)];
+    Impact& own = blows[static_cast<size_t>(i)];
     own.impulse = -own.side * p[i];
     u += own.impulse * D.col(i);
   }
   // What is thrown back has its rate without rounding.
   const double close = 1e-9 * v.cwiseAbs().maxCoeff();
   for (Eigen::Index i = 0; i < n; ++i) {
-    const Blow& own = blows[static_cast<size_t>(i)];
+    const Impact& own = blows[static_cast<size_t>(i)];
     if (p[i] > 0 && std::abs(after[i] + e[i] * v[i]) <= close) u[own.row] = own.side * e[i] * v[i] + 0.0;  // no -0
   }
   calc_velocity(system.tree, u, data);

@@ -24,23 +24,23 @@ void describe(const Tree& tree, const TreeData& data, const VectorXd& given, con
   }
 }
 
-struct Balance {
+struct EquilibriumResidual {
   double kinetic = 0;
   Vector3d linear, angular;
 };
 
-Balance calc_balance(const System& system, const SystemData& data) {
-  Balance b;
+EquilibriumResidual calc_balance(const System& system, const SystemData& data) {
+  EquilibriumResidual b;
   b.kinetic = calc_energies(system, data).kinetic;
   calc_momentum(system, data, b.linear, b.angular);
   return b;
 }
 
 // Constraints that were open and are to be closed.
-std::vector<int> find_caught(const LoopData& data, const Discrete& modes) {
+std::vector<int> find_caught(const LoopData& data, const DiscreteState& modes) {
   std::vector<int> caught;
-  for (size_t i = 0; i < modes.closings.size(); ++i) {
-    if (modes.closings[i].is_closed && !data.constraints[i].closing.is_closed) caught.push_back(static_cast<int>(i));
+  for (size_t i = 0; i < modes.constraints.size(); ++i) {
+    if (modes.constraints[i].is_closed && !data.constraints[i].state.is_closed) caught.push_back(static_cast<int>(i));
   }
   return caught;
 }
@@ -51,8 +51,8 @@ void add_free(const TreeData& data, const VectorXd& du, Eigen::Ref<VectorXd> u) 
   }
 }
 
-void describe_capture(const System& system, const SystemData& data, int c, const Balance& old, const Balance& now,
-                      std::vector<std::string>& events) {
+void describe_capture(const System& system, const SystemData& data, int c, const EquilibriumResidual& old,
+                      const EquilibriumResidual& now, std::vector<std::string>& events) {
   std::ostringstream what;
   what << "constraint '" << system.constraint_name(c) << "' closes ";
   const ConstraintReaction r = get_constraint_reaction(system, data, c);
@@ -75,14 +75,14 @@ void describe_capture(const System& system, const SystemData& data, int c, const
 
 }  // namespace
 
-bool cross_jump(const System& system, SystemData& system_data, double before, double t, const Discrete* modes,
+bool cross_jump(const System& system, SystemData& system_data, double before, double t, const DiscreteState* modes,
                 const Eigen::Ref<const VectorXd>& q, Eigen::Ref<VectorXd> u, double& work,
                 std::vector<std::string>& events) {
   const Tree& tree = system.tree;
   TreeData& data = system_data.tree;
   calc_kinematics(tree, before, q, u, data);
   const VectorXd u_before = data.u;
-  const Balance old = calc_balance(system, system_data);
+  const EquilibriumResidual old = calc_balance(system, system_data);
   std::vector<int> caught;
   if (modes != nullptr) {
     caught = find_caught(system_data.loops, *modes);
@@ -113,7 +113,7 @@ bool cross_jump(const System& system, SystemData& system_data, double before, do
   }
   describe(tree, data, given, u_before, events);
   calc_velocity(tree, u, data);
-  const Balance now = calc_balance(system, system_data);
+  const EquilibriumResidual now = calc_balance(system, system_data);
   for (const int c : caught) describe_capture(system, system_data, c, old, now, events);
   work += now.kinetic - old.kinetic;
   return true;

@@ -30,7 +30,7 @@ int System::find_hinge(const std::string& name) const {
 
 const std::string& System::body_name(int b) const { return at(*this, b).name; }
 const std::string& System::hinge_name(int b) const { return at(*this, b).hinge_name; }
-bool System::is_sound(int b) const { return sound[as_index(b)]; }
+bool System::is_valid(int b) const { return body_is_valid[as_index(b)]; }
 int System::num_modes(int b) const { return at(*this, b).body.num_modes(); }
 int System::q_offset(int b) const { return at(*this, b).q_offset; }
 int System::u_offset(int b) const { return at(*this, b).u_offset; }
@@ -53,7 +53,7 @@ std::unique_ptr<SystemData> System::make_data() const {
   auto data = std::make_unique<SystemData>();
   data->tree = make_tree_data(tree);
   data->loops = make_loop_data(loops, tree);
-  if (!initial_closings.empty()) set_closings(loops, tree, initial_closings, data->loops);
+  if (!initial_constraints.empty()) set_constraint_states(loops, tree, initial_constraints, data->loops);
   data->elements.resize(elements.size());
   data->tangent = VectorXd::Zero(tree.num_u);
   data->signals = signals.make_data();
@@ -95,23 +95,24 @@ State System::make_initial_state() const {
   return state;
 }
 
-void set_modes(const System& system, SystemData& data, const Discrete& discrete) {
+void set_modes(const System& system, SystemData& data, const DiscreteState& discrete) {
   set_modes(system.tree, discrete.mode, data.tree);
-  if (!discrete.closings.empty()) set_closings(system.loops, system.tree, discrete.closings, data.loops);
+  if (!discrete.constraints.empty()) set_constraint_states(system.loops, system.tree, discrete.constraints, data.loops);
   if (discrete.memory.size() > 0) data.signals.memory = discrete.memory;
 }
 
-bool has_modes(const SystemData& data, const Discrete& discrete) {
-  const auto is_same = [](const ConstraintData& a, const Closing& b) {
-    return a.closing.is_closed == b.is_closed && a.closing.R == b.R && a.closing.p == b.p && a.closing.gap == b.gap;
+bool has_modes(const SystemData& data, const DiscreteState& discrete) {
+  const auto is_same = [](const ConstraintData& a, const ConstraintState& b) {
+    return a.state.is_closed == b.is_closed && a.state.R == b.R && a.state.p == b.p && a.state.gap == b.gap;
   };
   return data.tree.mode == discrete.mode &&
-         (discrete.closings.empty() || std::equal(data.loops.constraints.begin(), data.loops.constraints.end(),
-                                                  discrete.closings.begin(), discrete.closings.end(), is_same));
+         (discrete.constraints.empty() ||
+          std::equal(data.loops.constraints.begin(), data.loops.constraints.end(), discrete.constraints.begin(),
+                     discrete.constraints.end(), is_same));
 }
 
-Discrete get_discrete(const SystemData& data) {
-  return {data.tree.mode, get_closings(data.loops), data.signals.memory};
+DiscreteState get_discrete(const SystemData& data) {
+  return {data.tree.mode, get_constraint_states(data.loops), data.signals.memory};
 }
 
 void calc_q_dot(const System& system, SystemData& data, double t, const Eigen::Ref<const VectorXd>& q,
@@ -153,7 +154,7 @@ void set_z(SystemData& data, const Eigen::Ref<const VectorXd>& z) {
 
 void calc_z_dot(const System& system, SystemData& data, Eigen::Ref<VectorXd> z_dot) {
   data.tree.demand(Stage::Acceleration);
-  system.signals.calc_late(get_motion(system, data), data.signals);
+  system.signals.calc_after_acceleration(get_motion(system, data), data.signals);
   system.signals.calc_rates(get_motion(system, data), data.signals, z_dot);
 }
 
@@ -165,7 +166,7 @@ void calc_signals(const System& system, SystemData& data) {
 void add_forces(const System& system, SystemData& data, double t) {
   data.tree.demand(Stage::Velocity);
   data.tree.gravity = system.gravity.uniform;
-  system.signals.calc_early(get_motion(system, data), data.signals);
+  system.signals.calc_before_acceleration(get_motion(system, data), data.signals);
   for (const AppliedForce& force : system.forces) add_applied_force(force, system.tree, t, data.tree);
   add_hinge_forces(system.tree, data.tree);
   Loads loads(system.tree, data.tree);
@@ -202,7 +203,7 @@ void remove_normal(const System& system, SystemData& data, Eigen::Ref<VectorXd> 
   for (const TreeBody& tb : system.tree.bodies) {
     const int nq = tb.num_hinge_q(), nu = tb.num_hinge_u(), n = tb.num_modes();
     tangent.segment(tb.eta_dot_offset(), n) = dq.segment(tb.eta_offset(), n);
-    if (tb.hinge->has_plain_coordinates()) {
+    if (tb.hinge->has_independent_coordinates()) {
       tangent.segment(tb.u_offset, nu) = dq.segment(tb.q_offset, nq);
       continue;
     }

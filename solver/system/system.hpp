@@ -41,18 +41,18 @@ struct System {
   std::vector<AppliedForce> forces;
   std::vector<AppliedForce> driven;  ///< whose value is a signal: see signals
   Loops loops;
-  VectorXd initial_q, initial_u;          ///< with closed loops; empty: as the records say
-  std::vector<Closing> initial_closings;  ///< likewise
+  VectorXd initial_q, initial_u;                     ///< with closed loops; empty: as the records say
+  std::vector<ConstraintState> initial_constraints;  ///< likewise
   std::vector<std::unique_ptr<const ForceElement>> elements;
-  std::vector<Latch> latches;
+  std::vector<JointContact> joint_contacts;
   SignalGraph signals;
-  bool signals_are_sound = true;  ///< sensors, controllers and actuators have no errors
+  bool signals_are_valid = true;  ///< sensors, controllers and actuators have no errors
   GravityField gravity;
-  std::vector<double> breakpoints;  ///< times at which a function that drives a hinge or a force jumps, ascending
-  std::vector<double> landmarks;    ///< times that no step may pass over, ascending (TimeFunction::landmarks)
+  std::vector<double> jump_times;  ///< times at which a function that drives a hinge or a force jumps, ascending
+  std::vector<double> mesh_times;  ///< times that no step may pass over, ascending (TimeFunction::landmarks)
   double start = 0;
   bool is_lagged = false;                             ///< bodies are stiffened by blocks of signals, not by themselves
-  std::vector<bool> sound;                            ///< by body: its record and its hinge have no errors
+  std::vector<bool> body_is_valid;                    ///< by body: its record and its hinge have no errors
   std::vector<std::unique_ptr<Recovery>> recoveries;  ///< by body; nullptr: nothing is recovered of it
   /// By body; what would stiffen those whose stiffening is off. nullptr: it is on, or the file has nothing.
   std::vector<std::shared_ptr<const StiffeningTerms>> left_out;
@@ -65,7 +65,7 @@ struct System {
   int find_hinge(const std::string& name) const;  ///< hinge h is the inboard hinge of body h
   const std::string& body_name(int body) const;
   const std::string& hinge_name(int body) const;
-  bool is_sound(int body) const;  ///< false only after draft_system: neither its nodes nor its hinge are known
+  bool is_valid(int body) const;  ///< false only after draft_system: neither its nodes nor its hinge are known
   int num_modes(int body) const;
   int q_offset(int body) const;  ///< hinge coordinates start here; η follows
   int u_offset(int body) const;
@@ -102,16 +102,16 @@ struct SystemData {
 
 /// The discrete state from now on (SystemData starts with that of the records): what get_discrete returns. Memory that
 /// is left empty stays. Not within a step: allocates.
-void set_modes(const System& system, SystemData& data, const Discrete& discrete);
-Discrete get_discrete(const SystemData& data);
+void set_modes(const System& system, SystemData& data, const DiscreteState& discrete);
+DiscreteState get_discrete(const SystemData& data);
 /// Returns true if coordinates and constraints have the modes of `discrete`. No allocation.
-bool has_modes(const SystemData& data, const Discrete& discrete);
+bool has_modes(const SystemData& data, const DiscreteState& discrete);
 
 /// What happens at t where given rates jump: from those just before (functions at `before`, the modes so far) to those
 /// at t (under `modes`, or as they are for nullptr; they stay). Rates of free coordinates get the impulse M⁻¹ of it,
 /// their momenta hold; `work` grows by what the impulse does. u: in and out. Describes each jump in `events`; false
 /// when there is none. Positions do not jump. Allocates.
-bool cross_jump(const System& system, SystemData& data, double before, double t, const Discrete* modes,
+bool cross_jump(const System& system, SystemData& data, double before, double t, const DiscreteState* modes,
                 const Eigen::Ref<const VectorXd>& q, Eigen::Ref<VectorXd> u, double& work,
                 std::vector<std::string>& events);
 

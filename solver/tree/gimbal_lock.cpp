@@ -8,7 +8,7 @@ namespace bough::solver {
 
 NearestAxes find_nearest_axes(const TreeBody& tb, const BodyData& d) {
   NearestAxes nearest;
-  if (!tb.hinge->has_plain_coordinates()) return nearest;
+  if (!tb.hinge->has_independent_coordinates()) return nearest;
   const int n = tb.num_hinge_u();
   const auto turns = [&](int i) { return d.hinge.H.col(i).tail<3>().squaredNorm() > 0; };
   int num_angles = 0;

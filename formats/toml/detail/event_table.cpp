@@ -4,8 +4,8 @@
 
 namespace bough::toml_files {
 
-records::TriggerRecord read_event(const Fields& table, Diagnostics& diagnostics) {
-  records::TriggerRecord event;
+records::UserEventRecord read_event(const Fields& table, Diagnostics& diagnostics) {
+  records::UserEventRecord event;
   event.at = table.locate();
   event.name = table.get_string("name");
   if (table.has("time")) {

@@ -6,6 +6,6 @@
 namespace bough::toml_files {
 
 /// Reports "toml.missing-key" and "toml.conflicting-keys" for keys that the action needs or does not know.
-records::TriggerRecord read_event(const Fields& table, Diagnostics& diagnostics);
+records::UserEventRecord read_event(const Fields& table, Diagnostics& diagnostics);
 
 }  // namespace bough::toml_files

@@ -128,9 +128,9 @@ TEST_F(BuildTest, BreakpointsOfUsedFunctionsAreCollected) {
   step.type = "step";
   step.values = {{"value", 1}, {"at", 3}, {"before", 0}};
   spec_.functions.push_back(step);
-  EXPECT_TRUE(build(spec_, flex_).breakpoints.empty());
+  EXPECT_TRUE(build(spec_, flex_).jump_times.empty());
   spec_.forces[0].function = "late";
-  EXPECT_EQ(build(spec_, flex_).breakpoints, std::vector<double>{3});
+  EXPECT_EQ(build(spec_, flex_).jump_times, std::vector<double>{3});
 }
 
 TEST_F(BuildTest, BodyWithoutHingeMovesFreely) {

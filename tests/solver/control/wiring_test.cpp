@@ -14,8 +14,8 @@ records::ConnectRecord make_wire(const std::string& from, const std::string& to,
   return {from, to, gain, {"system.toml", line, 1}};
 }
 
-records::TriggerRecord make_event(double time, EventAction action, const std::string& target, int choice = 0) {
-  records::TriggerRecord e;
+records::UserEventRecord make_event(double time, EventAction action, const std::string& target, int choice = 0) {
+  records::UserEventRecord e;
   e.name = target + std::to_string(time);
   e.time = time;
   e.action = action;

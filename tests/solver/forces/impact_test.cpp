@@ -22,7 +22,7 @@ TEST(Impact, ImpulsesAreThoseOfTheOneChoiceThatFits) {
       const MatrixXd A = root * root.transpose() + 0.05 * MatrixXd::Identity(n, n);
       VectorXd v = random.vector_n(n), e = random.vector_n(n).cwiseAbs();
       v[0] = -std::abs(v[0]);
-      const VectorXd found = solve_blows(A, v, e);
+      const VectorXd found = solve_impact_lcp(A, v, e);
       VectorXd expected;
       for (int choice = 0; choice < 1 << n; ++choice) {
         std::vector<int> struck;
@@ -41,7 +41,8 @@ TEST(Impact, ImpulsesAreThoseOfTheOneChoiceThatFits) {
 }
 
 TEST(Impact, WhatIsHeldTwiceSharesTheImpulse) {
-  const VectorXd p = solve_blows(MatrixXd::Constant(4, 4, 0.5), VectorXd::Constant(4, -2), VectorXd::Constant(4, 0.5));
+  const VectorXd p =
+      solve_impact_lcp(MatrixXd::Constant(4, 4, 0.5), VectorXd::Constant(4, -2), VectorXd::Constant(4, 0.5));
   EXPECT_LT((p - VectorXd::Constant(4, 1.5)).norm(), 1e-12);
 }
 
@@ -130,8 +131,8 @@ TEST(Impact, BallsThatDoNotBounceGoOnTogether) {
   }
 }
 
-/// A box on four feet, sliders that a corner each lies on, falls flat from 0.4 above them; J as of no brick, so that
-/// one corner's blow would throw the others about.
+/// A box on four feet, sliders that a kink each lies on, falls flat from 0.4 above them; J as of no brick, so that
+/// one kink's blow would throw the others about.
 records::SystemSpec make_table(double restitution) {
   records::SystemSpec spec;
   records::BodyRecord box;

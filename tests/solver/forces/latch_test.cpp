@@ -282,7 +282,7 @@ TEST(RigidStop, ALoopIsThrownBackWhole) {
 }
 
 // A block slides into a stop and rests there by friction; and by friction alone where it stops before.
-TEST(Latches, StopAndFrictionOfOneCoordinate) {
+TEST(JointContacts, StopAndFrictionOfOneCoordinate) {
   auto spec = make_slider(1);
   spec.hinges[0].position = {1};
   spec.hinges[0].rate = {-2};
@@ -335,7 +335,7 @@ TEST(RigidStop, AReleaseBeyondItIsAnError) {
   spec.hinges[0].motion = {"ramp"};
   add_stop(spec.hinges[0], -1, 0.5);
   spec.hinges[0].law.stop_upper = {0.25};
-  records::TriggerRecord release;
+  records::UserEventRecord release;
   release.name = "free";
   release.time = 0.75;
   release.action = records::EventAction::Release;
@@ -374,7 +374,7 @@ TEST(RigidStop, TheLastBouncesKeepTheEnergy) {
   EXPECT_LT(r.sink.energy_error(), 1e-11);
 }
 
-TEST(Latches, AStopWithoutARoomIsAnErrorNotAHang) {
+TEST(JointContacts, AStopWithoutARoomIsAnErrorNotAHang) {
   auto spec = make_slider(1);
   spec.hinges[0].rate = {1};
   add_stop(spec.hinges[0], -1e-15, 1);
@@ -387,7 +387,7 @@ TEST(Latches, AStopWithoutARoomIsAnErrorNotAHang) {
   }
 }
 
-TEST(Latches, LinearModelsSayThatTheyLeaveThemOut) {
+TEST(JointContacts, LinearModelsSayThatTheyLeaveThemOut) {
   auto spec = make_slider(1);
   add_friction(spec.hinges[0], 1);
   Diagnostics diagnostics;
@@ -399,7 +399,7 @@ TEST(Latches, LinearModelsSayThatTheyLeaveThemOut) {
   EXPECT_TRUE(none.items().empty());
 }
 
-TEST(Latches, AResumedRunGoesOn) {
+TEST(JointContacts, AResumedRunGoesOn) {
   auto spec = make_slider(1);
   spec.simulation.gravity = {-10, 0, 0};
   spec.hinges[0].position = {0.5};

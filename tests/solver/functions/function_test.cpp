@@ -52,7 +52,7 @@ TEST(TimeFunction, Values) {
   const auto step = make(make_record("step", {{"value", 2}, {"at", 1}, {"before", -1}}));
   EXPECT_EQ(step->calc(std::nextafter(1, 0)).f, -1);
   EXPECT_EQ(step->calc(1).f, 2);
-  EXPECT_THAT(step->breakpoints(), ::testing::ElementsAre(1));
+  EXPECT_THAT(step->jump_times(), ::testing::ElementsAre(1));
 
   const auto ramp = make(make_record("ramp", {{"value", 6}, {"from", 1}, {"to", 3}}));
   EXPECT_EQ(ramp->calc(0.5).f, 0);
@@ -60,13 +60,13 @@ TEST(TimeFunction, Values) {
   EXPECT_EQ(ramp->calc(2).f_dot, 3);
   EXPECT_EQ(ramp->calc(9).f, 6);
   EXPECT_EQ(ramp->calc(9).f_dot, 0);
-  EXPECT_THAT(ramp->breakpoints(), ::testing::ElementsAre(1, 3));
+  EXPECT_THAT(ramp->jump_times(), ::testing::ElementsAre(1, 3));
 
   const auto pulse = make(make_record("pulse", {{"value", 5}, {"at", 2}, {"width", 0.5}}));
   EXPECT_EQ(pulse->calc(1.99).f, 0);
   EXPECT_EQ(pulse->calc(2).f, 5);
   EXPECT_EQ(pulse->calc(2.5).f, 0);
-  EXPECT_THAT(pulse->breakpoints(), ::testing::ElementsAre(2, 2.5));
+  EXPECT_THAT(pulse->jump_times(), ::testing::ElementsAre(2, 2.5));
 }
 
 TEST(TimeFunction, SineAndItsDerivatives) {
@@ -92,7 +92,7 @@ TEST(TimeFunction, SpinupFollowsTheReport) {
   EXPECT_NEAR(before.f_ddot, after.f_ddot, 1e-13);
   EXPECT_EQ(f->calc(20).f, w * (20 - T / 2));
   EXPECT_EQ(f->calc(20).f_dot, w);
-  EXPECT_THAT(f->breakpoints(), ::testing::ElementsAre(0, T));
+  EXPECT_THAT(f->jump_times(), ::testing::ElementsAre(0, T));
 }
 
 TEST(TimeFunction, LinearTable) {
@@ -104,10 +104,10 @@ TEST(TimeFunction, LinearTable) {
   EXPECT_EQ(f->calc(-5).f, 2);      // the end values hold outside
   EXPECT_EQ(f->calc(5).f, 0);
   EXPECT_EQ(f->calc(5).f_dot, 0);
-  EXPECT_THAT(f->breakpoints(), ::testing::ElementsAre(0, 1, 3));
+  EXPECT_THAT(f->jump_times(), ::testing::ElementsAre(0, 1, 3));
 }
 
-// A force restarts the integrator at the corners of a table, not at every point of a sampled curve; and no step passes
+// A force restarts the integrator at the kinks of a table, not at every point of a sampled curve; and no step passes
 // over a short event in a long rest.
 TEST(TimeFunction, CornersAndLandmarksOfTables) {
   std::vector<double> x, y;
@@ -116,12 +116,12 @@ TEST(TimeFunction, CornersAndLandmarksOfTables) {
     y.push_back(std::sin(2 * x.back()));
   }
   const auto sampled = make(make_table(x, y, "linear"));
-  EXPECT_EQ(sampled->breakpoints().size(), 5001u);
-  EXPECT_THAT(sampled->corners(), ::testing::ElementsAre(0, 5));
-  EXPECT_GT(sampled->landmarks().size(), 8u);
-  EXPECT_LT(sampled->landmarks().size(), 40u);
+  EXPECT_EQ(sampled->jump_times().size(), 5001u);
+  EXPECT_THAT(sampled->force_jump_times(), ::testing::ElementsAre(0, 5));
+  EXPECT_GT(sampled->mesh_times().size(), 8u);
+  EXPECT_LT(sampled->mesh_times().size(), 40u);
   const auto triangle = make(make_table({0, 50, 50.01, 50.02, 100}, {0, 0, 1, 0, 0}, "linear"));
-  EXPECT_THAT(triangle->corners(), ::testing::ElementsAre(0, 50, 50.01, 50.02, 100));
+  EXPECT_THAT(triangle->force_jump_times(), ::testing::ElementsAre(0, 50, 50.01, 50.02, 100));
   // A smooth bump of a hundredth of a second in a hundred seconds.
   x = {0};
   y = {0};
@@ -132,10 +132,10 @@ TEST(TimeFunction, CornersAndLandmarksOfTables) {
   x.push_back(100);
   y.push_back(0);
   for (const char* interpolation : {"linear", "cubic"}) {
-    const auto landmarks = make(make_table(x, y, interpolation))->landmarks();
-    ASSERT_GE(landmarks.size(), 4u);
-    EXPECT_GT(landmarks.front(), 49.99);
-    EXPECT_LT(landmarks.front(), 50);
+    const auto mesh_times = make(make_table(x, y, interpolation))->mesh_times();
+    ASSERT_GE(mesh_times.size(), 4u);
+    EXPECT_GT(mesh_times.front(), 49.99);
+    EXPECT_LT(mesh_times.front(), 50);
   }
 }
 
@@ -178,7 +178,7 @@ TEST(TimeFunction, DoubletHasNoMean) {
   EXPECT_EQ(f->calc(1).f, 2);
   EXPECT_EQ(f->calc(1.5).f, -2);
   EXPECT_EQ(f->calc(2).f, 0);
-  EXPECT_THAT(f->breakpoints(), ::testing::ElementsAre(1, 1.5, 2));
+  EXPECT_THAT(f->jump_times(), ::testing::ElementsAre(1, 1.5, 2));
 }
 
 std::unique_ptr<const TimeFunction> make_in(const FunctionRecord& r, double start, double end,
@@ -192,11 +192,11 @@ std::unique_ptr<const TimeFunction> make_in(const FunctionRecord& r, double star
 TEST(TimeFunction, SawtoothFallsAtItsBreakpoints) {
   const auto f =
       make_in(make_record("sawtooth", {{"amplitude", 3}, {"frequency_hz", 10}, {"at", 0.02}, {"offset", 1}}), -0.3, 1);
-  for (const double t : f->breakpoints()) {
+  for (const double t : f->jump_times()) {
     EXPECT_EQ(f->calc(t).f, 1 - 3) << t;  // to the last bit at each jump, whatever t / period rounds to
     EXPECT_NEAR(f->calc(std::nextafter(t, -1)).f, 1 + 3, 1e-12) << t;
   }
-  EXPECT_EQ(f->breakpoints().size(), 14u);  // -0.38, -0.28, ... 0.92
+  EXPECT_EQ(f->jump_times().size(), 14u);  // -0.38, -0.28, ... 0.92
   EXPECT_NEAR(f->calc(0.07).f, 1, 1e-12);
   EXPECT_NEAR(f->calc(0.07).f_dot, 60, 1e-9);
 }
@@ -207,8 +207,8 @@ TEST(TimeFunction, TriangleIsContinuous) {
   EXPECT_EQ(f->calc(0.25).f_dot, 8);
   EXPECT_NEAR(f->calc(0.5).f, 2, 1e-15);
   EXPECT_NEAR(f->calc(1.25).f, 0, 1e-15);
-  for (const double t : f->breakpoints()) EXPECT_NEAR(f->calc(t).f, f->calc(std::nextafter(t, -1)).f, 1e-12) << t;
-  EXPECT_THAT(f->breakpoints(), ::testing::ElementsAre(0, 0.5, 2, 2.5, 4, 4.5, 6, 6.5));
+  for (const double t : f->jump_times()) EXPECT_NEAR(f->calc(t).f, f->calc(std::nextafter(t, -1)).f, 1e-12) << t;
+  EXPECT_THAT(f->jump_times(), ::testing::ElementsAre(0, 0.5, 2, 2.5, 4, 4.5, 6, 6.5));
 }
 
 TEST(TimeFunction, SweepsFromOneFrequencyToTheOther) {
@@ -223,7 +223,7 @@ TEST(TimeFunction, SweepsFromOneFrequencyToTheOther) {
     EXPECT_NEAR(f->calc(1).f_dot, 0.5 * 2 * pi * 0.2 * std::cos(0.3), 1e-12);
     EXPECT_EQ(f->calc(0.9).f, 2);
     EXPECT_EQ(f->calc(7).f, 2);
-    EXPECT_THAT(f->breakpoints(), ::testing::ElementsAre(1, 7));
+    EXPECT_THAT(f->jump_times(), ::testing::ElementsAre(1, 7));
     // Cycles by closed form: T (f0 + f1) / 2, and T (f1 - f0) / ln(f1 / f0) by octaves.
     const bool is_log = r.type == "sweep" && r.law == "logarithmic";
     const double cycles = is_log ? 6 * 1.4 / std::log(8) : 6 * 0.9;
@@ -250,7 +250,7 @@ TEST(TimeFunction, ExpressionIsAFormula) {
   EXPECT_FALSE(g->has_derivatives());
   EXPECT_EQ(g->calc(1).f, std::acos(-1.0));
   EXPECT_EQ(g->calc(std::nextafter(1, 0)).f, 0);
-  EXPECT_THAT(g->breakpoints(), ::testing::ElementsAre(1));
+  EXPECT_THAT(g->jump_times(), ::testing::ElementsAre(1));
 }
 
 TEST(TimeFunction, DerivativesOfAnExpressionAreChecked) {
@@ -259,7 +259,7 @@ TEST(TimeFunction, DerivativesOfAnExpressionAreChecked) {
   ASSERT_EQ(diagnostics.num_errors(), 1);
   EXPECT_EQ(diagnostics.items()[0].id, "function.bad-value");
   EXPECT_THAT(format(diagnostics.items()[0]), ::testing::HasSubstr("acceleration"));
-  // Of different scales, with a corner that is told, and stiff ones.
+  // Of different scales, with a kink that is told, and stiff ones.
   auto corner = make_formula("t < 2 ? t^3 : 8 + 100*(t - 2)", "t < 2 ? 3*t^2 : 100", "t < 2 ? 6*t : 0");
   corner.x = {2};
   make_in(corner, 0, 5);
@@ -283,7 +283,7 @@ TEST(TimeFunction, SumAndProduct) {
     check_derivatives(*s, t);
     check_derivatives(*p, t);
   }
-  EXPECT_THAT(s->breakpoints(), ::testing::ElementsAre(2));
+  EXPECT_THAT(s->jump_times(), ::testing::ElementsAre(2));
 }
 
 struct Fault {

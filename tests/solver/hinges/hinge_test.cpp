@@ -38,7 +38,7 @@ class HingeTest : public ::testing::TestWithParam<HingeCase> {
     q_ = random.vector_n(hinge_->num_q());
     u_ = random.vector_n(hinge_->num_u());
     u_dot_ = random.vector_n(hinge_->num_u());
-    if (!hinge_->has_plain_coordinates()) q_.head<4>().normalize();
+    if (!hinge_->has_independent_coordinates()) q_.head<4>().normalize();
   }
   HingeMotion motion_at(const VectorXd& q, const VectorXd& u) const {
     HingeMotion m;
@@ -98,7 +98,7 @@ TEST_P(HingeTest, SpringForceIsTheGradientOfItsEnergy) {
   const int nu = hinge_->num_u();
   Random random(5);
   VectorXd null = random.vector_n(hinge_->num_q());
-  if (!hinge_->has_plain_coordinates()) null.head<4>().normalize();
+  if (!hinge_->has_independent_coordinates()) null.head<4>().normalize();
   VectorXd force(nu), unused(nu);
   const VectorXd k = VectorXd::LinSpaced(nu, 1, 3);  // anisotropic
   const double energy = hinge_->calc_spring(q_.data(), null.data(), k.data(), force.data());
@@ -117,7 +117,7 @@ TEST_P(HingeTest, FileOrderRoundTrips) {
   hinge_->get_for_file(q_.data(), file.data());
   hinge_->set_from_file(file.data(), back.data());
   EXPECT_EQ(back, q_);
-  if (!hinge_->has_plain_coordinates()) {
+  if (!hinge_->has_independent_coordinates()) {
     EXPECT_EQ(file[0], q_[3]);  // w first in files
     EXPECT_EQ(file[1], q_[0]);
   }

@@ -1,4 +1,4 @@
-// The coefficients of the pair of orders 8 and 7 against the order conditions of Butcher's rooted trees.
+// The coefficients of the pairs against the order conditions of Butcher's rooted trees.
 #include "solver/integrate/dormand_prince.hpp"
 
 #include <gtest/gtest.h>
@@ -48,35 +48,41 @@ std::vector<std::vector<RootedTree>> make_trees(const MatrixXd& A, int most) {
   return trees;
 }
 
-TEST(DormandPrince87, MeetsItsOrderConditions) {
-  const ButcherTable table = make_dormand_prince_87();
-  const int s = table->stages;
-  MatrixXd A(s, s);
-  VectorXd b(s), d(s), c(s);
-  for (int i = 0; i < s; ++i) {
-    b[i] = table->b[i];
-    d[i] = table->d[i];
-    c[i] = table->c[i];
-    for (int j = 0; j < s; ++j) A(i, j) = table->A[i][j];
-  }
-  EXPECT_LT((A.rowwise().sum() - c).cwiseAbs().maxCoeff(), 1e-14);
-  const auto trees = make_trees(A, 9);
+/// Checks the conditions of the pair up to its order; the next order must fail, and so must that of the embedded one.
+void check_order_conditions(const ButcherTable& table) {
+  EXPECT_LT((table.A.rowwise().sum() - table.c).cwiseAbs().maxCoeff(), 1e-14);
+  EXPECT_TRUE(table.A.triangularView<Eigen::Upper>().toDenseMatrix().isZero(0));
+  const auto trees = make_trees(table.A, table.q + 1);
   const std::vector<size_t> count = {0, 1, 1, 2, 4, 9, 20, 48, 115, 286};
-  double ninth = 0, eighth = 0;
-  for (int order = 1; order <= 9; ++order) {
+  double beyond = 0, embedded_beyond = 0;
+  for (int order = 1; order <= table.q + 1; ++order) {
     EXPECT_EQ(trees[static_cast<size_t>(order)].size(), count[static_cast<size_t>(order)]);
     for (const auto& tree : trees[static_cast<size_t>(order)]) {
-      const double error = std::abs(b.dot(tree.stages) - 1 / tree.density);
-      const double embedded = std::abs(d.dot(tree.stages) - 1 / tree.density);
-      if (order <= 8) EXPECT_LT(error, 1e-14) << order;
-      if (order <= 7) EXPECT_LT(embedded, 1e-14) << order;
-      if (order == 8) eighth = std::max(eighth, embedded);
-      if (order == 9) ninth = std::max(ninth, error);
+      const double error = std::abs(table.b.dot(tree.stages) - 1 / tree.density);
+      const double embedded = std::abs(table.d.dot(tree.stages) - 1 / tree.density);
+      if (order <= table.q)
+        EXPECT_LT(error, 1e-14) << order;
+      else
+        beyond = std::max(beyond, error);
+      if (order < table.q) EXPECT_LT(embedded, 1e-14) << order;
+      if (order == table.q) embedded_beyond = std::max(embedded_beyond, embedded);
     }
   }
-  EXPECT_GT(ninth, 1e-8);
-  EXPECT_GT(eighth, 1e-8);
-  EXPECT_GT((b - d).cwiseAbs().minCoeff() == 0 ? (b - d).cwiseAbs().tail(8).minCoeff() : 1, 0);  // the middle counts
+  EXPECT_GT(beyond, 1e-8);
+  EXPECT_GT(embedded_beyond, 1e-8);
+}
+
+TEST(DormandPrince, PairOfOrders5And4) {
+  const ButcherTable table = make_dormand_prince_54();
+  check_order_conditions(table);
+  EXPECT_EQ(VectorXd(table.A.row(6)), table.b);  // its last stage is the first of the next step
+}
+
+TEST(DormandPrince, PairOfOrders8And7) {
+  const ButcherTable table = make_dormand_prince_87();
+  check_order_conditions(table);
+  const VectorXd difference = (table.b - table.d).cwiseAbs();
+  EXPECT_GT(difference.tail(8).minCoeff(), 0);  // the middle of the step counts
 }
 
 }  // namespace

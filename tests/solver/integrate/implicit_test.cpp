@@ -22,7 +22,7 @@ TEST(Implicit, FirstStageIsThatOfDenseMatrices) {
   for (unsigned seed = 1; seed < 6; ++seed) {
     const RandomTree tree = make_tree(seed);
     const System system = build(tree.spec, tree.flex);
-    SystemOde ode(system);
+    HybridSystem ode(system);
     VectorXd q, u;
     make_random_state(system, seed, q, u);
     VectorXd y = VectorXd::Zero(ode.size()), k(ode.size());
@@ -63,7 +63,7 @@ TEST(Implicit, FirstStageIsThatOfDenseMatrices) {
 TEST(Implicit, IsOfOrderTwo) {
   const RandomTree tree = make_tree(3);
   const System system = build(tree.spec, tree.flex);
-  SystemOde ode(system);
+  HybridSystem ode(system);
   VectorXd q, u, y0 = VectorXd::Zero(ode.size());
   make_random_state(system, 5, q, u);
   y0.head(q.size()) = q;
@@ -72,9 +72,9 @@ TEST(Implicit, IsOfOrderTwo) {
     StepperOptions options;
     options.step = step;
     options.absolute_tolerance = VectorXd::Constant(ode.size(), 1e-12);
-    const auto stepper = make_stepper(method, ode, options);
+    const auto stepper = make_integrator(method, ode, options);
     const double end = 0.25;
-    stepper->restart(0, y0, end, end);
+    stepper->reset(0, y0, end, end);
     while (stepper->time() < end) stepper->step(end);
     return VectorXd(stepper->state());
   };

@@ -45,8 +45,8 @@ StepperOptions make_options(int size, double tolerance, double step = 0) {
 }
 
 /// Integrates from y0 at 0 to t and returns the state there.
-VectorXd integrate(Stepper& stepper, const VectorXd& y0, double t) {
-  stepper.restart(0, y0, t, t);
+VectorXd integrate(Integrator& stepper, const VectorXd& y0, double t) {
+  stepper.reset(0, y0, t, t);
   while (stepper.time() < t) stepper.step(t);
   VectorXd y(y0.size());
   stepper.calc_state(t, y);
@@ -57,7 +57,7 @@ double calc_oscillator_error(const std::string& integrator, double tolerance, do
   TestOde ode = make_oscillator();
   auto options = make_options(2, tolerance, step);
   options.rk_order = rk_order;
-  const auto stepper = make_stepper(integrator, ode, options);
+  const auto stepper = make_integrator(integrator, ode, options);
   const VectorXd y = integrate(*stepper, Vector2d(1, 0), 10);
   return (y - Vector2d(std::cos(20.0), -2 * std::sin(20.0))).norm();
 }
@@ -66,17 +66,17 @@ double calc_oscillator_error(const std::string& integrator, double tolerance, do
 /// undamped oscillator carries every error on, amplified by 2 at most.
 double calc_error_bound(const std::string& integrator, double tolerance) {
   TestOde ode = make_oscillator();
-  const auto stepper = make_stepper(integrator, ode, make_options(2, tolerance));
+  const auto stepper = make_integrator(integrator, ode, make_options(2, tolerance));
   integrate(*stepper, Vector2d(1, 0), 10);
   return 2 * 3 * std::sqrt(2.0) * tolerance * static_cast<double>(stepper->statistics().num_steps);
 }
 
-TEST(Stepper, Rk4HasOrderFour) {
+TEST(Integrator, Rk4HasOrderFour) {
   const double coarse = calc_oscillator_error("rk4", 0, 0.02), fine = calc_oscillator_error("rk4", 0, 0.01);
   EXPECT_NEAR(std::log2(coarse / fine), 4, 0.05);
 }
 
-TEST(Stepper, ErrorFollowsTheTolerance) {
+TEST(Integrator, ErrorFollowsTheTolerance) {
   for (const std::string integrator : {"adams", "bdf", "rk"}) {
     double last = 1;
     for (double tolerance : {1e-5, 1e-7, 1e-9}) {
@@ -106,13 +106,13 @@ class Circle final : public Ode {
 
 // Order 5: the last stage is the next first one, so that a step costs six evaluations and the start two (one for the
 // first step's length), unless a projection has moved the state away from under it. Order 8 always takes thirteen.
-TEST(Stepper, OrderFiveTakesItsLastStageOver) {
+TEST(Integrator, OrderFiveTakesItsLastStageOver) {
   for (const bool is_projected : {false, true}) {
     for (const int order : {5, 8}) {
       Circle ode(is_projected);
       auto options = make_options(2, 1e-9);
       options.rk_order = order;
-      const auto stepper = make_stepper("rk", ode, options);
+      const auto stepper = make_integrator("rk", ode, options);
       const VectorXd y = integrate(*stepper, Vector2d(1, 0), 10);
       EXPECT_LT((y - Vector2d(std::cos(20.0), std::sin(20.0))).norm(), 3e-7);
       const StepStatistics s = stepper->statistics();
@@ -126,14 +126,14 @@ TEST(Stepper, OrderFiveTakesItsLastStageOver) {
 }
 
 // What was taken over is of the old equations after a jump, and of the last step after a look back into it.
-TEST(Stepper, OrderFiveForgetsItsLastStageWhereItStartsAfresh) {
+TEST(Integrator, OrderFiveForgetsItsLastStageWhereItStartsAfresh) {
   auto options = make_options(1, 1e-6, 0.3);
   options.rk_order = 5;
   TestOde jump(1, [](double t, const auto&, auto y_dot) { y_dot[0] = t < 1 ? 0 : 1; });
-  const auto stepper = make_stepper("rk", jump, options);
-  stepper->restart(0, VectorXd::Zero(1), 1, std::nextafter(1.0, 0.0));
+  const auto stepper = make_integrator("rk", jump, options);
+  stepper->reset(0, VectorXd::Zero(1), 1, std::nextafter(1.0, 0.0));
   while (stepper->time() < 1) stepper->step(1);
-  stepper->restart(1, VectorXd(stepper->state()), 2, 2);
+  stepper->reset(1, VectorXd(stepper->state()), 2, 2);
   while (stepper->time() < 2) stepper->step(2);
   EXPECT_NEAR(stepper->state()[0], 1, 1e-14);
 
@@ -141,8 +141,8 @@ TEST(Stepper, OrderFiveForgetsItsLastStageWhereItStartsAfresh) {
     TestOde ode = make_oscillator();
     auto own = make_options(2, 1e-9);
     own.rk_order = 5;
-    const auto walker = make_stepper("rk", ode, own);
-    walker->restart(0, Vector2d(1, 0), 10, 10);
+    const auto walker = make_integrator("rk", ode, own);
+    walker->reset(0, Vector2d(1, 0), 10, 10);
     VectorXd between(2);
     while (walker->time() < 10) {
       walker->step(10);
@@ -155,26 +155,26 @@ TEST(Stepper, OrderFiveForgetsItsLastStageWhereItStartsAfresh) {
 
 // At a largest step that the tolerance does not shorten: 2^5, and 2^8 at least (of the pair's own error of order 8 an
 // oscillator shows little).
-TEST(Stepper, PairsHaveTheirOrders) {
+TEST(Integrator, PairsHaveTheirOrders) {
   EXPECT_NEAR(std::log2(calc_oscillator_error("rk", 1, 0.1, 5) / calc_oscillator_error("rk", 1, 0.05, 5)), 5, 0.3);
   EXPECT_GT(std::log2(calc_oscillator_error("rk", 1, 0.4, 8) / calc_oscillator_error("rk", 1, 0.2, 8)), 7.7);
 }
 
-TEST(Stepper, BdfTakesLongStepsOnAStiffEquation) {
+TEST(Integrator, BdfTakesLongStepsOnAStiffEquation) {
   // ẏ = -1e6 (y - cos t) - sin t: y = cos t.
   const auto f = [](double t, const auto& y, auto y_dot) { y_dot[0] = -1e6 * (y[0] - std::cos(t)) - std::sin(t); };
   TestOde ode(1, f);
-  const auto stepper = make_stepper("bdf", ode, make_options(1, 1e-6));
+  const auto stepper = make_integrator("bdf", ode, make_options(1, 1e-6));
   const VectorXd y = integrate(*stepper, VectorXd::Ones(1), 5);
   EXPECT_NEAR(y[0], std::cos(5.0), 1e-5);
   EXPECT_LT(stepper->statistics().num_steps, 1000);  // an explicit method needs 5e6 / 3
   EXPECT_GE(stepper->statistics().order, 2);
 }
 
-TEST(Stepper, InterpolatesAsWellAsItSteps) {
+TEST(Integrator, InterpolatesAsWellAsItSteps) {
   TestOde ode = make_oscillator();
-  const auto stepper = make_stepper("adams", ode, make_options(2, 1e-10));
-  stepper->restart(0, Vector2d(1, 0), 10, 10);
+  const auto stepper = make_integrator("adams", ode, make_options(2, 1e-10));
+  stepper->reset(0, Vector2d(1, 0), 10, 10);
   double at_steps = 0, between = 0;
   VectorXd y(2);
   for (int i = 1; i < 1000; ++i) {
@@ -191,46 +191,46 @@ TEST(Stepper, InterpolatesAsWellAsItSteps) {
 }
 
 // ẏ = 0 before t = 1, 1 after: with the right-hand side held at its left limit the last step before the jump is exact.
-TEST(Stepper, StepsSeeOneSideOfAJump) {
+TEST(Integrator, StepsSeeOneSideOfAJump) {
   for (const std::string integrator : {"adams", "bdf", "rk", "rk4"}) {
     TestOde ode(1, [](double t, const auto&, auto y_dot) { y_dot[0] = t < 1 ? 0 : 1; });
-    const auto stepper = make_stepper(integrator, ode, make_options(1, 1e-6, 0.3));
+    const auto stepper = make_integrator(integrator, ode, make_options(1, 1e-6, 0.3));
     const double latest = std::nextafter(1.0, 0.0);
-    stepper->restart(0, VectorXd::Zero(1), 1, latest);
+    stepper->reset(0, VectorXd::Zero(1), 1, latest);
     while (stepper->time() < 1) stepper->step(1);
     EXPECT_EQ(stepper->time(), 1) << integrator;
     EXPECT_LE(ode.latest, latest) << integrator;
     VectorXd y(1);
     stepper->calc_state(1, y);
     EXPECT_EQ(y[0], 0) << integrator;
-    stepper->restart(1, y, 2, 2);
+    stepper->reset(1, y, 2, 2);
     while (stepper->time() < 2) stepper->step(2);
     stepper->calc_state(2, y);
     EXPECT_NEAR(y[0], 1, 1e-12) << integrator;
   }
 }
 
-TEST(Stepper, CountsSurviveARestart) {
+TEST(Integrator, CountsSurviveARestart) {
   for (const std::string integrator : {"adams", "rk", "rk4"}) {
     TestOde ode = make_oscillator();
-    const auto stepper = make_stepper(integrator, ode, make_options(2, 1e-6, 0.1));
+    const auto stepper = make_integrator(integrator, ode, make_options(2, 1e-6, 0.1));
     const VectorXd y = integrate(*stepper, Vector2d(1, 0), 1);
     const long before = stepper->statistics().num_steps;
     EXPECT_GT(before, 0);
-    stepper->restart(1, y, 2, 2);
+    stepper->reset(1, y, 2, 2);
     while (stepper->time() < 2) stepper->step(2);
     EXPECT_GT(stepper->statistics().num_steps, before) << integrator;
     EXPECT_GT(stepper->statistics().num_evaluations, stepper->statistics().num_steps) << integrator;
   }
 }
 
-TEST(Stepper, ExceptionsOfTheEquationsArrive) {
+TEST(Integrator, ExceptionsOfTheEquationsArrive) {
   for (const std::string integrator : {"adams", "bdf", "rk", "rk4"}) {
     TestOde ode(1, [](double t, const auto& y, auto y_dot) {
       if (t > 0.5) throw std::domain_error("no further");
       y_dot[0] = -y[0];
     });
-    const auto stepper = make_stepper(integrator, ode, make_options(1, 1e-8, 0.01));
+    const auto stepper = make_integrator(integrator, ode, make_options(1, 1e-8, 0.01));
     EXPECT_THROW(integrate(*stepper, VectorXd::Ones(1), 1), std::domain_error) << integrator;
     EXPECT_LE(stepper->time(), 0.5) << integrator;
     EXPECT_GT(stepper->time(), 0.4) << integrator;
@@ -238,10 +238,10 @@ TEST(Stepper, ExceptionsOfTheEquationsArrive) {
 }
 
 // At its largest step CVODE kept the order it came with: 1. Adams of order 1 at h = 1e-3 errs by 1e-3.
-TEST(Stepper, OrderRisesAtTheLargestStep) {
+TEST(Integrator, OrderRisesAtTheLargestStep) {
   for (const std::string integrator : {"adams", "bdf"}) {
     TestOde ode = make_oscillator();
-    const auto stepper = make_stepper(integrator, ode, make_options(2, 1e-10, 1e-3));
+    const auto stepper = make_integrator(integrator, ode, make_options(2, 1e-10, 1e-3));
     const VectorXd y = integrate(*stepper, Vector2d(1, 0), 10);
     EXPECT_GE(stepper->statistics().order, 3) << integrator;
     EXPECT_LT((y - Vector2d(std::cos(20.0), -2 * std::sin(20.0))).norm(), 1e-8) << integrator;
@@ -249,11 +249,11 @@ TEST(Stepper, OrderRisesAtTheLargestStep) {
 }
 
 // A largest step below 1e-13 of the stretch is below the smallest one that is asked for.
-TEST(Stepper, TinyLargestStepIsNoBrokenContract) {
+TEST(Integrator, TinyLargestStepIsNoBrokenContract) {
   for (const std::string integrator : {"adams", "bdf", "rk"}) {
     TestOde ode = make_oscillator();
-    const auto stepper = make_stepper(integrator, ode, make_options(2, 1e-8, 1e-12));
-    stepper->restart(0, Vector2d(1, 0), 20, 20);
+    const auto stepper = make_integrator(integrator, ode, make_options(2, 1e-8, 1e-12));
+    stepper->reset(0, Vector2d(1, 0), 20, 20);
     for (int i = 0; i < 100; ++i) stepper->step(20);
     EXPECT_GT(stepper->time(), 0) << integrator;
     EXPECT_LT(stepper->time(), 2e-10) << integrator;
@@ -261,11 +261,11 @@ TEST(Stepper, TinyLargestStepIsNoBrokenContract) {
 }
 
 // Anywhere within the last step as exactly as at its end.
-TEST(Stepper, StatesWithinTheLastStep) {
+TEST(Integrator, StatesWithinTheLastStep) {
   for (const std::string integrator : {"adams", "bdf", "rk", "rk4"}) {
     TestOde ode = make_oscillator();
-    const auto stepper = make_stepper(integrator, ode, make_options(2, 1e-9, integrator == "rk4" ? 0.01 : 0));
-    stepper->restart(0, Vector2d(1, 0), 10, 10);
+    const auto stepper = make_integrator(integrator, ode, make_options(2, 1e-9, integrator == "rk4" ? 0.01 : 0));
+    stepper->reset(0, Vector2d(1, 0), 10, 10);
     VectorXd y(2);
     double worst = 0;
     while (stepper->time() < 10) {
@@ -281,10 +281,10 @@ TEST(Stepper, StatesWithinTheLastStep) {
   }
 }
 
-TEST(Stepper, PassesAStopWithItsHistory) {
+TEST(Integrator, PassesAStopWithItsHistory) {
   TestOde ode = make_oscillator();
-  const auto stepper = make_stepper("adams", ode, make_options(2, 1e-9));
-  stepper->restart(0, Vector2d(1, 0), 5, 5);
+  const auto stepper = make_integrator("adams", ode, make_options(2, 1e-9));
+  stepper->reset(0, Vector2d(1, 0), 5, 5);
   while (stepper->time() < 5) stepper->step(5);
   EXPECT_EQ(stepper->time(), 5);
   const int order = stepper->statistics().order;
@@ -297,7 +297,7 @@ TEST(Stepper, PassesAStopWithItsHistory) {
 }
 
 // Trial steps may leave the domain of the equations; the step that fails later fails for its own reason.
-TEST(Stepper, AnExceptionOfARejectedTrialIsForgotten) {
+TEST(Integrator, AnExceptionOfARejectedTrialIsForgotten) {
   int calls = 0;
   TestOde ode(1, [&](double, const auto&, auto y_dot) {
     if (++calls == 3) throw std::domain_error("a trial");
@@ -317,10 +317,10 @@ TEST(Stepper, AnExceptionOfARejectedTrialIsForgotten) {
 }
 
 // ẏ = y² from 1: infinite at t = 1.
-TEST(Stepper, BlowUpIsAFailureNotASilence) {
+TEST(Integrator, BlowUpIsAFailureNotASilence) {
   for (const std::string integrator : {"adams", "bdf", "rk", "rk4"}) {
     TestOde ode(1, [](double, const auto& y, auto y_dot) { y_dot[0] = y[0] < 1e6 ? y[0] * y[0] : std::nan(""); });
-    const auto stepper = make_stepper(integrator, ode, make_options(1, 1e-8, 0.001));
+    const auto stepper = make_integrator(integrator, ode, make_options(1, 1e-8, 0.001));
     try {
       integrate(*stepper, VectorXd::Ones(1), 2);
       ADD_FAILURE() << integrator;

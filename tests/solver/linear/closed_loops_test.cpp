@@ -37,13 +37,13 @@ records::SystemSpec make_parallelogram(double angle) {
   spec.hinges[2].parent_node = 1;
   spec.hinges[0].position = spec.hinges[1].position = {angle};
   spec.hinges[2].position = {-angle};
-  records::ConstraintRecord closing;
-  closing.name = "d";
-  closing.hinge = HingeType::Revolute;
-  closing.parent = "right";
-  closing.child = "coupler";
-  closing.parent_node = closing.child_node = 1;
-  spec.constraints = {closing};
+  records::ConstraintRecord state;
+  state.name = "d";
+  state.hinge = HingeType::Revolute;
+  state.parent = "right";
+  state.child = "coupler";
+  state.parent_node = state.child_node = 1;
+  spec.constraints = {state};
   return spec;
 }
 
@@ -56,7 +56,7 @@ double calc_omega() {
 TEST(ClosedLoops, SwingAtTheirFrequency) {
   const System system = build(make_parallelogram(0));
   Plant plant(system);
-  EXPECT_EQ(plant.num_freedoms(), 1);
+  EXPECT_EQ(plant.num_dofs(), 1);
   Diagnostics diagnostics;
   const auto model = linearize(plant, plant.make_initial_point(), {}, {}, diagnostics);
   ASSERT_EQ(model.poles.size(), 2);

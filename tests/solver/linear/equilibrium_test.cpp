@@ -39,7 +39,7 @@ TEST(Equilibrium, TwoLinksHangAgainstASpring) {
   EXPECT_NEAR(q1 + q2, 0, 1e-9);  // the outer link hangs straight
   EXPECT_NEAR(10 * (0.8 - q1), 3 * 9.81 * std::sin(q1), 1e-8);
   EXPECT_LT(found.residual, 1e-8);
-  EXPECT_TRUE(found.indifferent.empty());
+  EXPECT_TRUE(found.neutral.empty());
 }
 
 TEST(Equilibrium, AGovernorSpins) {
@@ -91,7 +91,7 @@ TEST(Equilibrium, IndifferentFreedomsStay) {
   spec.hinges[1].stiffness = {5};
   spec.hinges[1].position = {1.3};
   const auto found = find(spec);
-  EXPECT_EQ(found.indifferent, std::vector<std::string>{"rail:1"});
+  EXPECT_EQ(found.neutral, std::vector<std::string>{"rail:1"});
   EXPECT_NEAR(found.point.q[0], 3, 1e-12);
   EXPECT_NEAR(found.point.q[1], 0, 1e-10);
 }

@@ -72,7 +72,7 @@ TEST(EquilibriumOfLaws, AnIntegralOfARateIsADisplacement) {
   EXPECT_NEAR(found.point.q[0], 0.2 - kWeight / 25, 1e-9);
   EXPECT_NE(found.point.z[0], 0);
   EXPECT_TRUE(found.kept.empty());
-  EXPECT_TRUE(found.indifferent.empty());
+  EXPECT_TRUE(found.neutral.empty());
   EXPECT_NEAR(run_to_rest(spec), found.point.q[0], 1e-6);
 }
 

@@ -220,7 +220,7 @@ VectorXd calc_departure(const System& system, const Plant& plant, const VectorXd
         q.segment(system.eta_offset(b), system.num_modes(b)) -
         q0_all.segment(system.eta_offset(b), system.num_modes(b));
   }
-  VectorXd all(2 * plant.num_freedoms());
+  VectorXd all(2 * plant.num_dofs());
   all << plant.restrict(x), plant.restrict(u - u0);
   return all;
 }
@@ -244,7 +244,7 @@ TEST(Linearize, NeighboursOfAMotionDepartAsASays) {
     const auto model = linearize(plant, point, {}, {}, diagnostics);
     EXPECT_LT(model.error, 1e-8);
     EXPECT_LT(model.difference, 1e-8);
-    const int n = plant.num_freedoms();
+    const int n = plant.num_dofs();
     Random random(seed);
     const VectorXd x0 = random.vector_n(2 * n, 1);
     // Central in the size of the departure, one-sided in time and extrapolated: d/dt x at t = 0.
@@ -293,7 +293,7 @@ TEST(Linearize, InputsAndOutputsOfARandomTree) {
   const auto model = linearize(plant, point, options, {}, diagnostics);
   EXPECT_EQ(model.inputs.size(), static_cast<int>(plant.inputs().size()));
   EXPECT_EQ(model.outputs.size(), 36);
-  const int n = plant.num_freedoms();
+  const int n = plant.num_dofs();
   // Any sum of inputs adds its columns: affine, not only linear for small ones.
   const VectorXd base = plant.evaluate(point);
   for (size_t k = 0; k < plant.inputs().size(); ++k) {

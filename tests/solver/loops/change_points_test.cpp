@@ -1,4 +1,4 @@
-// Mechanisms that pass positions in which more freedoms open for an instant, and long chains of loops.
+// Mechanisms that pass positions in which more dofs open for an instant, and long chains of loops.
 #include <gtest/gtest.h>
 
 #include <cmath>

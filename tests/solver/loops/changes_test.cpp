@@ -22,8 +22,8 @@ std::string list_events(const MemorySink& sink) {
   return text;
 }
 
-records::TriggerRecord make_event(const std::string& name, EventAction action, const std::string& target) {
-  records::TriggerRecord e;
+records::UserEventRecord make_event(const std::string& name, EventAction action, const std::string& target) {
+  records::UserEventRecord e;
   e.name = name;
   e.action = action;
   e.target = target;
@@ -239,7 +239,7 @@ TEST(Break, LetsGo) {
 }
 
 // Held, the hinge takes the weight: that releases it; free, it takes nothing: that locks it. No end.
-TEST(Changes, ACycleOfEventsIsAnError) {
+TEST(EventActions, ACycleOfEventsIsAnError) {
   records::SystemSpec spec;
   records::BodyRecord b;
   b.name = "body";
@@ -266,7 +266,7 @@ TEST(Changes, ACycleOfEventsIsAnError) {
   }
 }
 
-TEST(Changes, NamesThatAreNone) {
+TEST(EventActions, NamesThatAreNone) {
   records::SystemSpec spec;
   records::BodyRecord b;
   b.name = "body";

@@ -1,4 +1,4 @@
-// Closing hinges: the coordinates found are those of the pose, W is what the hinge does not do.
+// ConstraintState hinges: the coordinates found are those of the pose, W is what the hinge does not do.
 #include <gtest/gtest.h>
 
 #include "solver/loops/closure.hpp"
@@ -30,7 +30,7 @@ TEST(Closure, FindsTheHingeInItsOwnPose) {
       const auto hinge = make_hinge(record, diagnostics);
       const auto closure = make_hinge_closure(make_hinge(record, diagnostics));
       VectorXd q = random.vector_n(hinge->num_q(), 1.2), found(hinge->num_q());
-      if (!hinge->has_plain_coordinates()) q.head<4>().normalize();
+      if (!hinge->has_independent_coordinates()) q.head<4>().normalize();
       HingeMotion X;
       hinge->calc_position(q.data(), X);
       hinge->set_neutral(found.data());

@@ -57,7 +57,7 @@ double energy_spread(const MemorySink& sink) {
 constexpr double kCrank = 0.4, kCoupler = 1.1, kRocker = 0.9, kBase = 1.0;
 
 /// Crank and rocker on ground, the coupler on the crank; the rocker's pin is the constraint.
-records::SystemSpec make_four_bar(HingeType closing = HingeType::Revolute) {
+records::SystemSpec make_four_bar(HingeType state = HingeType::Revolute) {
   records::SystemSpec spec;
   spec.bodies = {make_rod("crank", kCrank, 1), make_rod("coupler", kCoupler, 2), make_rod("rocker", kRocker, 1.5)};
   spec.hinges = {make_pin("crank", "ground", "crank", 0), make_pin("coupler", "crank", "coupler", 1),
@@ -66,7 +66,7 @@ records::SystemSpec make_four_bar(HingeType closing = HingeType::Revolute) {
   spec.hinges[0].rate = {3};
   spec.hinges[2].position = {1.6};
   spec.hinges[2].is_guess = true;
-  spec.constraints = {make_closing(closing, "coupler", 1, "rocker", 1)};
+  spec.constraints = {make_closing(state, "coupler", 1, "rocker", 1)};
   spec.simulation.gravity = {0, -9.81, 0};
   spec.simulation.duration = 3;
   spec.simulation.output_step = 0.01;
@@ -113,7 +113,7 @@ double calc_four_bar_energy(double crank, double rate) {
 
 double wrap(double angle) { return std::remainder(angle, 2 * std::acos(-1.0)); }
 
-// A mechanism of one freedom is where its energy says: nothing of the solver is in this reference.
+// A mechanism of one dof is where its energy says: nothing of the solver is in this reference.
 TEST(FourBar, MovesAsItsEnergySays) {
   for (const std::string integrator : {"auto", "adams", "rk", "rk4"}) {
     auto spec = make_four_bar();
@@ -212,7 +212,7 @@ TEST(SliderCrank, PistonIsWhereTheRodPutsIt) {
 }
 
 // IFToMM A02: N + 1 rockers joined by N couplers, all 1 m and 1 kg, move as one parallelogram, through the flat
-// position, where more freedoms open for an instant.
+// position, where more dofs open for an instant.
 TEST(NFourBar, KeepsItsEnergyThroughTheFlatPosition) {
   const int N = 5;
   records::SystemSpec spec;
@@ -247,7 +247,7 @@ TEST(NFourBar, KeepsItsEnergyThroughTheFlatPosition) {
   EXPECT_LT(q(r.sink.num_samples() - 1, 0), -1);  // it went through
 }
 
-// IFToMM A04: six revolute hinges on the edges of a cube. Six freedoms less six rows by counting, yet it moves: one row
+// IFToMM A04: six revolute hinges on the edges of a cube. Six dofs less six rows by counting, yet it moves: one row
 // is held twice.
 TEST(Bricard, MovesAndNamesTheRedundantRow) {
   const Vector3d p[] = {{0, 0, 0}, {1, 0, 0}, {1, -1, 0}, {1, -1, 1}, {0, -1, 1}, {0, 0, 1}};
@@ -268,10 +268,10 @@ TEST(Bricard, MovesAndNamesTheRedundantRow) {
     pin.axis = direction((i + 5) % 6).cross(d);
     spec.hinges.push_back(pin);
   }
-  auto closing = make_closing(HingeType::Revolute, "rod4", 1, "ground", 0);
-  closing.child_position = p[5];
-  closing.axis = direction(4).cross(direction(5));
-  spec.constraints = {closing};
+  auto state = make_closing(HingeType::Revolute, "rod4", 1, "ground", 0);
+  state.child_position = p[5];
+  state.axis = direction(4).cross(direction(5));
+  spec.constraints = {state};
   spec.simulation.gravity = {0, -9.81, 0};
   spec.simulation.duration = 5;
   spec.simulation.output_step = 0.05;
@@ -414,7 +414,7 @@ TEST(Assembly, BendsAStretchedMechanism) {
   system.calc_initial_state(q, u);
   calc_kinematics(system, *data, 0, q, u);
   calc_closure_positions(system.loops, system.tree, data->tree, data->loops);
-  EXPECT_LT(calc_largest_gap(system.loops, data->loops), 1e-12);
+  EXPECT_LT(calc_largest_position_error(system.loops, data->loops), 1e-12);
   EXPECT_NEAR(u[0], 3, 1e-12);
 }
 

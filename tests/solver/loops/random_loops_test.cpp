@@ -75,9 +75,9 @@ Looped make_looped(unsigned seed) {
   VectorXd q, u;
   make_random_state(system, seed + 1000, q, u);
   calc_kinematics(system, *data, 0.3, q, u);
-  Discrete discrete = get_discrete(*data);
+  DiscreteState discrete = get_discrete(*data);
   for (int c = 0; c < system.num_constraints(); ++c)
-    discrete.closings[static_cast<size_t>(c)] = find_closing(system.loops, system.tree, data->tree, c);
+    discrete.constraints[static_cast<size_t>(c)] = find_as_closed(system.loops, system.tree, data->tree, c);
   set_modes(system, *data, discrete);
   project(system, *data, 0.3, q, u);
   return {std::move(tree), std::move(system), std::move(data), q, u};
@@ -109,7 +109,7 @@ class RandomLoops : public ::testing::TestWithParam<unsigned> {};
 
 TEST_P(RandomLoops, StartClosed) {
   Looped s = make_looped(GetParam());
-  EXPECT_LT(calc_largest_gap(s.system.loops, s.data->loops), 1e-11);
+  EXPECT_LT(calc_largest_position_error(s.system.loops, s.data->loops), 1e-11);
   EXPECT_LT(calc_rates(s.system, *s.data, 0.3, s.q, s.u).cwiseAbs().maxCoeff(),
             1e-10 * (1 + s.u.cwiseAbs().maxCoeff()));
 }
@@ -238,7 +238,7 @@ TEST_P(RandomLoops, ForcesThatHoldCoordinatesAreThoseOfTheDenseEquations) {
   Looped s = make_looped(GetParam());
   const Tree& tree = s.system.tree;
   const Loops& loops = s.system.loops;
-  Discrete discrete = get_discrete(*s.data);
+  DiscreteState discrete = get_discrete(*s.data);
   std::vector<int> locked;
   for (int b = 0; b < tree.size(); b += 2) {
     for (int i = 0; i < tree[b].num_hinge_u(); ++i) {

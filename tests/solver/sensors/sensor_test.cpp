@@ -307,7 +307,7 @@ TEST(Sensors, BodiesThatFailedAreNotTheSensorsFault) {
   Diagnostics of_build, diagnostics;
   const System system = draft_system(carousel.spec, {}, of_build);
   EXPECT_EQ(of_build.num_errors(), 1);
-  EXPECT_FALSE(system.is_sound(1));
+  EXPECT_FALSE(system.is_valid(1));
   carousel.spec.sensors = {make_sensor("s1", SensorType::Position, "arm", 9, "inertial"),
                            make_sensor("s2", SensorType::Position, "table", 7, "arm")};
   build_sensors(system, carousel.spec, diagnostics);

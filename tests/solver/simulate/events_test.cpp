@@ -29,9 +29,9 @@ records::SystemSpec make_oscillator() {
   return spec;
 }
 
-records::TriggerRecord make_trigger(const std::string& name, const std::string& signal, double value,
-                                    EventDirection direction = EventDirection::Both) {
-  records::TriggerRecord t;
+records::UserEventRecord make_trigger(const std::string& name, const std::string& signal, double value,
+                                      EventDirection direction = EventDirection::Both) {
+  records::UserEventRecord t;
   t.name = name;
   t.signal = signal;
   t.value = value;
@@ -127,7 +127,7 @@ TEST(Events, StopEndsTheRunThere) {
 
 TEST(Events, AtATime) {
   auto spec = make_oscillator();
-  records::TriggerRecord log, stop, late;
+  records::UserEventRecord log, stop, late;
   log.name = "half way";
   log.time = 0.55;
   stop.name = "enough";

@@ -29,8 +29,8 @@ records::SystemSpec make_fly_by(double x, double speed) {
   return spec;
 }
 
-records::TriggerRecord make_trigger(const std::string& name, const std::string& signal, double value) {
-  records::TriggerRecord r;
+records::UserEventRecord make_trigger(const std::string& name, const std::string& signal, double value) {
+  records::UserEventRecord r;
   r.name = name;
   r.signal = signal;
   r.value = value;

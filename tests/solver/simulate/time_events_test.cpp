@@ -25,47 +25,47 @@ RunPlan plan(double duration, double output_step) {
   return made;
 }
 
-TEST(Timeline, OutputsEndExactlyAtTheEnd) {
-  const Timeline even(plan(1, 0.1));
+TEST(TimeEvents, OutputsEndExactlyAtTheEnd) {
+  const TimeEvents even(plan(1, 0.1));
   ASSERT_EQ(even.num_outputs(), 11);
   EXPECT_EQ(even.calc_output(3), 3 * 0.1);
   EXPECT_EQ(even.calc_output(10), 1);
   EXPECT_EQ(even.calc_output(11), std::numeric_limits<double>::infinity());
-  const Timeline uneven(plan(1, 0.4));
+  const TimeEvents uneven(plan(1, 0.4));
   ASSERT_EQ(uneven.num_outputs(), 4);
   EXPECT_EQ(uneven.calc_output(2), 0.8);
   EXPECT_EQ(uneven.calc_output(3), 1);
-  EXPECT_EQ(Timeline(plan(5, 0)).num_outputs(), 1001);
+  EXPECT_EQ(TimeEvents(plan(5, 0)).num_outputs(), 1001);
 }
 
 // 3 · 0.1 is one rounding above 0.3: the sample is the jump's.
-TEST(Timeline, OutputsNextToAJumpAreAtTheJump) {
+TEST(TimeEvents, OutputsNextToAJumpAreAtTheJump) {
   ASSERT_NE(3 * 0.1, 0.3);
-  const Timeline timeline(plan(1, 0.1), {0.3}, {});
+  const TimeEvents timeline(plan(1, 0.1), {0.3}, {});
   EXPECT_EQ(timeline.calc_output(3), 0.3);
   EXPECT_EQ(timeline.calc_output(6), 6 * 0.1);
 }
 
-TEST(Timeline, StopsAreTheJumpsInsideAndTheEnd) {
+TEST(TimeEvents, StopsAreTheJumpsInsideAndTheEnd) {
   const double a = 0.3, b = std::nextafter(a, 1.0);
-  const Timeline timeline(plan(1, 0.1), {0.7, 0, a, b, 1, 5, -3}, {0.5, 0.7, 2});
-  const Stop first = timeline.find_stop(0);
+  const TimeEvents timeline(plan(1, 0.1), {0.7, 0, a, b, 1, 5, -3}, {0.5, 0.7, 2});
+  const TimeEvent first = timeline.find_next(0);
   EXPECT_EQ(first.time, b);  // two jumps a rounding apart are one
   EXPECT_EQ(first.latest, std::nextafter(a, 0.0));
   EXPECT_TRUE(first.restarts);
-  const Stop landmark = timeline.find_stop(b);
+  const TimeEvent landmark = timeline.find_next(b);
   EXPECT_EQ(landmark.time, 0.5);
   EXPECT_EQ(landmark.latest, 0.5);
   EXPECT_FALSE(landmark.restarts);
-  EXPECT_EQ(timeline.find_stop(0.5).time, 0.7);
-  EXPECT_TRUE(timeline.find_stop(0.5).restarts);  // the landmark there is the jump
-  EXPECT_EQ(timeline.find_stop(0.7).time, 1);
-  EXPECT_EQ(timeline.find_stop(0.7).latest, std::nextafter(1.0, 0.0));  // a jump there: the steps see what is before
-  EXPECT_EQ(Timeline(plan(1, 0.1), {0.7}, {}).find_stop(0.7).latest, 1);
+  EXPECT_EQ(timeline.find_next(0.5).time, 0.7);
+  EXPECT_TRUE(timeline.find_next(0.5).restarts);  // the landmark there is the jump
+  EXPECT_EQ(timeline.find_next(0.7).time, 1);
+  EXPECT_EQ(timeline.find_next(0.7).latest, std::nextafter(1.0, 0.0));  // a jump there: the steps see what is before
+  EXPECT_EQ(TimeEvents(plan(1, 0.1), {0.7}, {}).find_next(0.7).latest, 1);
 }
 
-TEST(Timeline, GoesOnFromAnyTime) {
-  Timeline timeline(plan(1, 0.1));
+TEST(TimeEvents, GoesOnFromAnyTime) {
+  TimeEvents timeline(plan(1, 0.1));
   timeline.skip_outputs(0.2);
   EXPECT_EQ(timeline.next_output(), 3 * 0.1);
   timeline.skip_outputs(0.55);
@@ -77,8 +77,8 @@ TEST(Timeline, GoesOnFromAnyTime) {
 }
 
 // 1e8 samples were a vector of 0.8 GB.
-TEST(Timeline, ManyOutputsTakeNoMemory) {
-  const Timeline timeline(plan(1e5, 1e-3));
+TEST(TimeEvents, ManyOutputsTakeNoMemory) {
+  const TimeEvents timeline(plan(1e5, 1e-3));
   EXPECT_EQ(timeline.num_outputs(), 100000001);
   EXPECT_NEAR(timeline.calc_output(12345678), 12345.678, 1e-9);
 }

@@ -243,7 +243,7 @@ void make_random_state(const System& system, unsigned seed, VectorXd& q, VectorX
   for (int b = 0; b < system.num_bodies(); ++b) {
     const TreeBody& tb = system.tree.bodies[static_cast<size_t>(b)];
     for (int i = 0; i < system.num_hinge_q(b); ++i) q[system.q_offset(b) + i] = random();
-    if (!tb.hinge->has_plain_coordinates()) q.segment(system.q_offset(b), 4).normalize();
+    if (!tb.hinge->has_independent_coordinates()) q.segment(system.q_offset(b), 4).normalize();
     for (int i = 0; i < system.num_hinge_u(b); ++i) u[system.u_offset(b) + i] = random();
     for (int j = 0; j < system.num_modes(b); ++j) {
       q[system.eta_offset(b) + j] = random(0.15);

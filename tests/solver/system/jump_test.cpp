@@ -111,7 +111,7 @@ TEST(Jump, ByLockingKeepsTheMomenta) {
     Vector3d p, l, p_after, l_after;
     calc_momentum(system, *data, p, l);
     const double before = calc_energies(system, *data).kinetic;
-    Discrete locked = system.make_initial_state().discrete;
+    DiscreteState locked = system.make_initial_state().discrete;
     const Tree& t = system.tree;
     for (int b = 1; b < t.size(); ++b)
       for (int i = 0; i < t[b].num_hinge_u(); ++i)
@@ -126,7 +126,7 @@ TEST(Jump, ByLockingKeepsTheMomenta) {
     EXPECT_FALSE(events.empty());
     // Released again, nothing moves.
     const VectorXd u_locked = u;
-    const Discrete free = system.make_initial_state().discrete;
+    const DiscreteState free = system.make_initial_state().discrete;
     EXPECT_FALSE(cross_jump(system, *data, 0, 0, &free, q, u, work, events));
     EXPECT_EQ(u, u_locked);
   }

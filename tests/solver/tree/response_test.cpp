@@ -19,12 +19,12 @@ class ResponseTest : public ::testing::TestWithParam<unsigned> {
     return u_dot;
   }
   // Some coordinates of plain hinges locked, whatever they did before.
-  Discrete lock_some() const {
-    Discrete discrete = system_.make_initial_state().discrete;
+  DiscreteState lock_some() const {
+    DiscreteState discrete = system_.make_initial_state().discrete;
     Random random(GetParam() + 500);
     for (const TreeBody& tb : tree().bodies) {
       for (int i = 0; i < tb.num_hinge_u(); ++i) {
-        if (tb.hinge->has_plain_coordinates() && random.integer(0, 1))
+        if (tb.hinge->has_independent_coordinates() && random.integer(0, 1))
           discrete.mode[static_cast<size_t>(tb.u_offset + i)] = HingeMode::Locked;
       }
     }
@@ -99,7 +99,7 @@ TEST_P(ResponseTest, LockedCoordinatesAreTheDenseEquationsWithoutTheirRows) {
 
 TEST_P(ResponseTest, JumpsOfGivenRatesKeepTheMomentaAlongFreeCoordinates) {
   auto data = system_.make_data();
-  const Discrete discrete = lock_some();
+  const DiscreteState discrete = lock_some();
   set_modes(system_, *data, discrete);
   calc_u_dot(system_, *data, 0.3, q_, u_);
   MatrixXd mass;
@@ -120,13 +120,13 @@ TEST_P(ResponseTest, JumpsOfGivenRatesKeepTheMomentaAlongFreeCoordinates) {
 
 TEST_P(ResponseTest, ReleaseChangesNoRowAndNoMomentum) {
   auto data = system_.make_data();
-  const Discrete locked = lock_some();
+  const DiscreteState locked = lock_some();
   set_modes(system_, *data, locked);
   calc_u_dot(system_, *data, 0.3, q_, u_);
   const VectorXd q = data->tree.q, u = data->tree.u;
   Vector3d p, l, p_after, l_after;
   calc_momentum(system_, *data, p, l);
-  Discrete released = locked;
+  DiscreteState released = locked;
   for (auto& mode : released.mode)
     if (mode == HingeMode::Locked) mode = HingeMode::Free;
   set_modes(system_, *data, released);
