@@ -4,6 +4,7 @@
 
 #include "solver/actuators/makers.hpp"
 #include "solver/builder/build.hpp"
+#include "solver/text/names.hpp"
 #include "solver/tree/coordinates.hpp"
 
 namespace bough::solver {
@@ -46,9 +47,8 @@ bool find_row(const records::ActuatorRecord& r, const System& system, const Tree
   if (body < 0) {
     std::vector<std::string> names;
     for (int b = 0; b < system.num_bodies(); ++b) names.push_back(system.hinge_name(b));
-    const std::string near = find_nearest(r.hinge, names);
     keys.error("control.unknown-place", "drives the hinge '" + r.hinge + "', which does not exist",
-               near.empty() ? "declare it" : "did you mean '" + near + "'?");
+               suggest_name(r.hinge, names, "declare it"));
     return false;
   }
   if (!system.is_valid(body)) return false;
@@ -72,9 +72,8 @@ int find_own_body(const records::ActuatorRecord& r, const System& system, Settin
   if (body < 0) {
     std::vector<std::string> names;
     for (int b = 0; b < system.num_bodies(); ++b) names.push_back(system.body_name(b));
-    const std::string near = find_nearest(r.body, names);
     keys.error("control.unknown-place", "is on the body '" + r.body + "', which does not exist",
-               near.empty() ? "declare it" : "did you mean '" + near + "'?");
+               suggest_name(r.body, names, "declare it"));
     return -1;
   }
   return system.is_valid(body) ? body : -1;
@@ -128,9 +127,8 @@ std::unique_ptr<Block> make_actuator(const records::ActuatorRecord& r, const Sys
       types.emplace_back(k.type);
       list += (list.empty() ? "" : ", ") + types.back();
     }
-    const std::string near = find_nearest(r.type, types);
     diagnostics.error("control.unknown-type", r.at, "actuator '" + r.name + "' has the unknown type '" + r.type + "'",
-                      near.empty() ? "use one of: " + list : "did you mean '" + near + "'?");
+                      suggest_name(r.type, types, "use one of: " + list));
     return nullptr;
   }
   ActuatorPlace place;

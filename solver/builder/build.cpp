@@ -4,6 +4,7 @@
 
 #include "solver/builder/signals.hpp"
 #include "solver/motion/stiffening_terms.hpp"
+#include "solver/text/names.hpp"
 
 namespace bough::solver {
 
@@ -241,10 +242,9 @@ System draft_system(const records::SystemSpec& spec, const FlexMap& flex, Diagno
     const auto found = order.tree_index.find(record.body);
     if (found == order.tree_index.end()) {
       if (std::find(body_names.begin(), body_names.end(), record.body) != body_names.end()) continue;  // in a loop
-      const std::string near = find_nearest(record.body, body_names);
       diagnostics.error("system.unknown-body", record.at,
                         "force " + quote(record.name) + " names body " + quote(record.body) + ", which does not exist",
-                        near.empty() ? "declare it" : "did you mean " + quote(near) + "?");
+                        suggest_name(record.body, body_names, "declare it"));
       continue;
     }
     if (!system.body_is_valid[static_cast<size_t>(found->second)]) continue;

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "solver/builder/build.hpp"
+#include "solver/text/names.hpp"
 
 namespace bough::solver {
 
@@ -108,9 +109,8 @@ class Builder {
       std::vector<std::string> names;
       for (const auto& body : spec_.bodies) names.push_back(body.name);
       if (std::find(names.begin(), names.end(), name) != names.end()) return std::nullopt;  // in a loop of hinges
-      const std::string near = find_nearest(name, names);
       diagnostics_.error("system.unknown-body", r.at, user + " names body " + quote(name) + ", which does not exist",
-                         near.empty() ? "declare it" : "did you mean " + quote(near) + "?");
+                         suggest_name(name, names, "declare it"));
       return std::nullopt;
     }
     m.body = found->second;
@@ -135,10 +135,9 @@ class Builder {
     for (const auto& term : r.terms) {
       const auto at = std::find(names.begin(), names.end(), term.hinge);
       if (at == names.end()) {
-        const std::string near = find_nearest(term.hinge, names);
         diagnostics_.error("system.unknown-hinge", r.at,
                            user + " names hinge " + quote(term.hinge) + ", which does not exist",
-                           near.empty() ? "declare it" : "did you mean " + quote(near) + "?");
+                           suggest_name(term.hinge, names, "declare it"));
         continue;
       }
       const TreeBody& tb = system_.tree[static_cast<int>(at - names.begin())];

@@ -8,6 +8,7 @@
 #include "solver/forces/contact.hpp"
 #include "solver/forces/drag.hpp"
 #include "solver/forces/spring.hpp"
+#include "solver/text/names.hpp"
 
 namespace bough::solver {
 
@@ -54,9 +55,8 @@ class ElementBuilder {
     std::vector<std::string> names = {"ground"};
     for (const auto& body : context_.spec.bodies) names.push_back(body.name);
     if (std::find(names.begin(), names.end(), name) != names.end()) return kAbsent;  // in a loop
-    const std::string near = find_nearest(name, names);
     diagnostics_.error("system.unknown-body", r_.at, user_ + " names body " + quote(name) + ", which does not exist",
-                       near.empty() ? "declare it" : "did you mean " + quote(near) + "?");
+                       suggest_name(name, names, "declare it"));
     return kAbsent;
   }
 

@@ -1,4 +1,5 @@
 #include "solver/builder/build.hpp"
+#include "solver/text/names.hpp"
 
 namespace bough::solver {
 
@@ -36,12 +37,10 @@ bool set_locator(const records::ForceRecord& r, const Body& body, const records:
     }
     return true;
   }
-  const std::string near = find_nearest(r.locator, names);
-  diagnostics.error(
-      "system.unknown-locator", r.at,
-      "force " + quote(r.name) + " names load pattern " + quote(r.locator) + ", which body " + quote(r.body) +
-          " does not have",
-      near.empty() ? "add a [[body.load]] to the body file and reduce again" : "did you mean " + quote(near) + "?");
+  diagnostics.error("system.unknown-locator", r.at,
+                    "force " + quote(r.name) + " names load pattern " + quote(r.locator) + ", which body " +
+                        quote(r.body) + " does not have",
+                    suggest_name(r.locator, names, "add a [[body.load]] to the body file and reduce again"));
   return false;
 }
 }  // namespace

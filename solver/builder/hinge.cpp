@@ -1,4 +1,5 @@
 #include "solver/builder/build.hpp"
+#include "solver/text/names.hpp"
 
 namespace bough::solver {
 
@@ -118,10 +119,9 @@ const TimeFunction* find_function(const FunctionMap& functions, const std::strin
   if (found != functions.end()) return found->second;
   std::vector<std::string> names;
   for (const auto& [known, f] : functions) names.push_back(known);
-  const std::string near = find_nearest(name, names);
   diagnostics.error("system.unknown-function", where,
                     user + " names function " + quote(name) + ", which does not exist",
-                    near.empty() ? "declare it" : "did you mean " + quote(near) + "?");
+                    suggest_name(name, names, "declare it"));
   return nullptr;
 }
 

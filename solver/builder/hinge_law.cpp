@@ -5,7 +5,7 @@
 
 #include "solver/builder/build.hpp"
 #include "solver/forces/hinge_law.hpp"
-#include "solver/forces/latch_slack.hpp"
+#include "solver/forces/stop_tolerance.hpp"
 
 namespace bough::solver {
 

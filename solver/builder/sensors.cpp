@@ -4,6 +4,7 @@
 
 #include "solver/sensors/kinds.hpp"
 #include "solver/system/system.hpp"
+#include "solver/text/names.hpp"
 #include "solver/tree/coordinates.hpp"
 
 namespace bough::solver {
@@ -13,14 +14,6 @@ using records::SensorRecord;
 using records::SensorType;
 
 bool is_deflection(SensorType type) { return type == SensorType::Deflection || type == SensorType::Rotation; }
-
-/// "did you mean" or the list.
-std::string make_advice(const std::string& word, const std::vector<std::string>& known, const std::string& plural) {
-  if (const std::string near = find_nearest(word, known); !near.empty()) return "did you mean '" + near + "'?";
-  std::string list;
-  for (const auto& name : known) list += (list.empty() ? "" : ", ") + name;
-  return "the " + plural + " are: " + list;
-}
 
 class Resolver {
  public:
@@ -72,7 +65,7 @@ class Resolver {
     if (e.body < 0) {
       if (is_known(hinges_, r.hinge)) return;  // its own errors were reported
       error(r, "sensor.unknown-hinge", "watches the unknown hinge '" + r.hinge + "'",
-            make_advice(r.hinge, hinges_, "hinges"));
+            suggest_among(r.hinge, hinges_, "hinges"));
       return;
     }
     e.description = std::string(kind.name) + " of hinge " + r.hinge;
@@ -111,7 +104,7 @@ class Resolver {
     e.body = find_body(r.body);
     if (e.body == kAbsent)
       error(r, "sensor.unknown-body", "is on the unknown body '" + r.body + "'",
-            make_advice(r.body, bodies_, "bodies"));
+            suggest_among(r.body, bodies_, "bodies"));
     if (e.body < 0 || !system_.is_valid(e.body)) return;
     e.description = std::string(kind.name) + " of body " + r.body;
     const int count = system_.num_modes(e.body);
@@ -129,7 +122,7 @@ class Resolver {
     e.body = find_body(r.body);
     if (e.body == kAbsent)
       error(r, "sensor.unknown-body", "is on the unknown body '" + r.body + "'",
-            make_advice(r.body, bodies_, "bodies"));
+            suggest_among(r.body, bodies_, "bodies"));
     if (e.body < 0 || !system_.is_valid(e.body)) return;
     const auto& recovery = system_.recoveries[static_cast<size_t>(e.body)];
     const Recovery::Element* element = recovery ? recovery->find(r.element) : nullptr;
@@ -153,7 +146,7 @@ class Resolver {
     if (at == names.end()) {
       error(r, "sensor.unknown-element",
             "asks for '" + r.component + "' of element " + std::to_string(r.element) + ", which has none such",
-            make_advice(r.component, names, "components"));
+            suggest_among(r.component, names, "components"));
       return;
     }
     e.row += static_cast<int>(at - names.begin());
@@ -172,7 +165,7 @@ class Resolver {
     e.to_body = find_body(r.to_body);
     if (e.to_body == kAbsent)
       error(r, "sensor.unknown-body", "looks at the unknown body '" + r.to_body + "'",
-            make_advice(r.to_body, bodies_, "bodies"));
+            suggest_among(r.to_body, bodies_, "bodies"));
     if (e.to_body < 0 || !system_.is_valid(e.to_body)) return;
     e.to_node = system_.find_node(e.to_body, r.to_node);
     if (e.to_node < 0)
@@ -196,7 +189,7 @@ class Resolver {
     e.body = find_body(r.body);
     if (e.body == kAbsent) {
       error(r, "sensor.unknown-body", "is on the unknown body '" + r.body + "'",
-            make_advice(r.body, bodies_, "bodies"));
+            suggest_among(r.body, bodies_, "bodies"));
     } else if (e.body >= 0 && system_.is_valid(e.body)) {
       e.node = system_.find_node(e.body, r.node);
       if (e.node < 0)
@@ -213,13 +206,13 @@ class Resolver {
       auto known = bodies_;
       known.insert(known.end(), {"inertial", "body"});
       if (e.frame == kAbsent)
-        error(r, "sensor.bad-frame", "has the unknown frame '" + frame + "'", make_advice(frame, known, "frames"));
+        error(r, "sensor.bad-frame", "has the unknown frame '" + frame + "'", suggest_among(frame, known, "frames"));
     }
     if (!r.relative_to.empty() && r.relative_to != "ground" && r.relative_to != "inertial") {
       e.relative_to = find_body(r.relative_to);
       if (e.relative_to == kAbsent)
         error(r, "sensor.unknown-body", "is relative to the unknown body '" + r.relative_to + "'",
-              make_advice(r.relative_to, bodies_, "bodies"));
+              suggest_among(r.relative_to, bodies_, "bodies"));
     }
     e.from_turning = r.from_turning;
     e.description = std::string(get_kind(r.type).name) + " of node " + std::to_string(r.node) + " of body " + r.body;

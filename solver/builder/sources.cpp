@@ -1,4 +1,5 @@
 #include "solver/builder/sources.hpp"
+#include "solver/text/names.hpp"
 
 #include <algorithm>
 
@@ -16,11 +17,9 @@ bool Sources::find(const SignalUse& use, const std::string& user, Wire& wire, Di
   if (first == list.end()) {
     std::vector<std::string> known;
     for (const auto& s : list) known.push_back(s.name);
-    const std::string near = find_nearest(name, known);
-    diagnostics.error("control.unknown-signal", use.at,
-                      user + " names the signal '" + use.text + "', which does not exist",
-                      near.empty() ? "name a sensor, input, controller, actuator or function, as pid or tip:x"
-                                   : "did you mean '" + near + "'?");
+    diagnostics.error(
+        "control.unknown-signal", use.at, user + " names the signal '" + use.text + "', which does not exist",
+        suggest_name(name, known, "name a sensor, input, controller, actuator or function, as pid or tip:x"));
     return false;
   }
   if (const auto second = std::find_if(first + 1, list.end(), matches); second != list.end()) {

@@ -1,6 +1,7 @@
 #include <set>
 
 #include "solver/builder/build.hpp"
+#include "solver/text/names.hpp"
 
 namespace bough::solver {
 
@@ -58,10 +59,9 @@ TreeOrder order_tree(const records::SystemSpec& spec, Diagnostics& diagnostics) 
                           "exchange parent and child");
         continue;
       }
-      const std::string near = find_nearest(*name, names);
       diagnostics.error("system.unknown-body", hinge.at,
                         "hinge " + quote(hinge.name) + " names body " + quote(*name) + ", which does not exist",
-                        near.empty() ? "declare it" : "did you mean " + quote(near) + "?");
+                        suggest_name(*name, names, "declare it"));
     }
     if (!known) continue;
     const auto [found, inserted] = inboard.emplace(hinge.child, h);

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "solver/control/makers.hpp"
+#include "solver/text/names.hpp"
 
 namespace bough::solver {
 namespace {
@@ -68,9 +69,8 @@ std::unique_ptr<Block> make_controller(const records::ControllerRecord& r, const
       types.push_back(type);
       list += (list.empty() ? "" : ", ") + type;
     }
-    const std::string near = find_nearest(r.type, types);
     diagnostics.error("control.unknown-type", r.at, "controller '" + r.name + "' has the unknown type '" + r.type + "'",
-                      near.empty() ? "use one of: " + list : "did you mean '" + near + "'?");
+                      suggest_name(r.type, types, "use one of: " + list));
     return nullptr;
   }
   SettingsReader keys(r.settings, "controller '" + r.name + "' of type " + r.type, r.at, diagnostics);

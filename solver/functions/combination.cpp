@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "solver/functions/function_parameters.hpp"
+#include "solver/text/names.hpp"
 
 namespace bough::solver {
 namespace {
@@ -91,9 +92,8 @@ std::unique_ptr<const TimeFunction> make_combination(const records::FunctionReco
     if (found == others.end()) {
       std::vector<std::string> names;
       for (const auto& [known, f] : others) names.push_back(known);
-      const std::string near = find_nearest(name, names);
       p.error("system.unknown-function", "names function '" + name + "', which does not exist",
-              near.empty() ? "declare it" : "did you mean '" + near + "'?");
+              suggest_name(name, names, "declare it"));
     } else {
       is_valid = is_valid && found->second != nullptr;  // else it has errors of its own
       of.push_back(found->second);

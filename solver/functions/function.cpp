@@ -7,6 +7,7 @@
 
 #include "solver/functions/function_parameters.hpp"
 #include "solver/functions/table.hpp"
+#include "solver/text/names.hpp"
 
 namespace bough::solver {
 namespace {
@@ -180,9 +181,8 @@ std::unique_ptr<const TimeFunction> make_time_function(const FunctionRecord& r, 
     made = std::make_unique<Spinup>(rate, duration);
   } else if (r.type == "table") {
     if (r.interpolation != "linear" && r.interpolation != "cubic") {
-      const std::string near = find_nearest(r.interpolation, {"linear", "cubic"});
       p.error("function.unknown-type", "has the unknown interpolation '" + r.interpolation + "'",
-              near.empty() ? "use linear or cubic" : "did you mean '" + near + "'?");
+              suggest_name(r.interpolation, {"linear", "cubic"}, "use linear or cubic"));
     }
     if (check_table(r, p) && !p.failed()) {
       if (r.interpolation == "linear")
@@ -197,11 +197,10 @@ std::unique_ptr<const TimeFunction> make_time_function(const FunctionRecord& r, 
   } else if (r.type == "sum" || r.type == "product") {
     made = make_combination(r, others, p);
   } else {
-    const std::string near = find_nearest(r.type, types);
     std::string list;
     for (const auto& type : types) list += (list.empty() ? "" : ", ") + type;
     diagnostics.error("function.unknown-type", r.at, "function '" + r.name + "' has the unknown type '" + r.type + "'",
-                      near.empty() ? "use one of: " + list : "did you mean '" + near + "'?");
+                      suggest_name(r.type, types, "use one of: " + list));
     return nullptr;
   }
   p.refuse_others();

@@ -4,6 +4,7 @@
 #include <set>
 
 #include "solver/functions/function.hpp"
+#include "solver/text/names.hpp"
 
 namespace bough::solver {
 
@@ -32,11 +33,10 @@ class FunctionParameters {
     for (const auto& [key, value] : record_.values) {
       if (known_.count(key)) continue;
       const std::vector<std::string> names(known_.begin(), known_.end());
-      const std::string near = find_nearest(key, names);
       std::string list;
       for (const auto& name : names) list += (list.empty() ? "" : ", ") + name;
       error("function.unknown-parameter", "has the parameter '" + key + "', which " + record_.type + " does not take",
-            near.empty() ? "it takes: " + (list.empty() ? "none" : list) : "did you mean '" + near + "'?");
+            suggest_name(key, names, "it takes: " + (list.empty() ? "none" : list)));
     }
   }
   void demand(bool condition, const std::string& what, const std::string& advice) {

@@ -4,6 +4,7 @@
 #include <sstream>
 
 #include "solver/functions/function_parameters.hpp"
+#include "solver/text/names.hpp"
 
 namespace bough::solver {
 namespace {
@@ -110,9 +111,8 @@ std::unique_ptr<const TimeFunction> make_sweep(const FunctionRecord& r, Function
   p.demand(!is_log || (from > 0 && to > 0), "sweeps by octaves from or to a frequency that is not positive",
            "give from_hz > 0 and to_hz > 0, or law = \"linear\"");
   if (r.law != "logarithmic" && r.law != "linear") {
-    const std::string near = find_nearest(r.law, {"linear", "logarithmic"});
     p.error("function.unknown-type", "has the unknown law '" + r.law + "'",
-            near.empty() ? "use linear or logarithmic" : "did you mean '" + near + "'?");
+            suggest_name(r.law, {"linear", "logarithmic"}, "use linear or logarithmic"));
   }
   if (p.failed()) return nullptr;
   return std::make_unique<SweptSine>(amplitude, 2 * kPi * from, 2 * kPi * to, at, duration, phase, offset, is_log);

@@ -1,7 +1,7 @@
 #pragma once
 /// \file What methods of fixed step share: each interval to the next target is cut into equal steps no longer than
 /// options.step, so that results depend on the targets only; with memory() not on where a run was interrupted.
-#include "solver/integrate/stepper.hpp"
+#include "solver/integrate/integrator.hpp"
 
 namespace bough::solver {
 

@@ -7,7 +7,7 @@
 #include <sundials/sundials_context.h>
 
 #include "base/diagnostic.hpp"
-#include "solver/integrate/stepper.hpp"
+#include "solver/integrate/integrator.hpp"
 
 namespace bough::solver::detail {
 

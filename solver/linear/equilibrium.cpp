@@ -4,7 +4,7 @@
 #include <limits>
 #include <sstream>
 
-#include "solver/linear/descent.hpp"
+#include "solver/linear/gradient_flow.hpp"
 #include "solver/linear/linearize.hpp"
 #include "solver/linear/sampled.hpp"
 

@@ -8,10 +8,10 @@
 #include <sstream>
 #include <tuple>
 
-#include "solver/linear/departures.hpp"
 #include "solver/linear/ports.hpp"
 #include "solver/linear/sampled.hpp"
 #include "solver/linear/sampled_loop.hpp"
+#include "solver/linear/sampled_system.hpp"
 #include "solver/statespace/hankel.hpp"
 #include "solver/statespace/poles.hpp"
 #include "solver/statespace/zeros.hpp"

@@ -1,4 +1,5 @@
 #include "solver/linear/ports.hpp"
+#include "solver/text/names.hpp"
 
 #include <algorithm>
 
@@ -36,13 +37,10 @@ std::vector<int> choose(const std::vector<std::string>& wanted, const std::vecto
     if (const int counted = found.empty() ? find_counted(name, known) : -1; counted >= 0) found.push_back(counted);
     chosen.insert(chosen.end(), found.begin(), found.end());
     if (!found.empty()) continue;
-    const std::string near = find_nearest(name, known);
     std::string list;
     for (const auto& word : known) list += (list.empty() ? "" : ", ") + word;
     diagnostics.error(id, at, "there is no " + noun + " '" + name + "'",
-                      !near.empty()  ? "did you mean '" + near + "'?"
-                      : list.empty() ? "the system has none"
-                                     : "choose among: " + list);
+                      suggest_name(name, known, list.empty() ? "the system has none" : "choose among: " + list));
   }
   return chosen;
 }

@@ -1,7 +1,7 @@
 #pragma once
 /// \file What one period of the samples makes of a small departure (docs/theory/linear.md).
 #include "formats/records/linear_model.hpp"
-#include "solver/linear/departures.hpp"
+#include "solver/linear/sampled_system.hpp"
 
 namespace bough::solver {
 

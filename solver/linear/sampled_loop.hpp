@@ -1,7 +1,7 @@
 #pragma once
 /// \file A loop that is cut where a signal is held between samples (docs/theory/linear.md, "Margins of sampled loops").
 #include "formats/records/linear_model.hpp"
-#include "solver/linear/departures.hpp"
+#include "solver/linear/sampled_system.hpp"
 
 namespace bough::solver {
 

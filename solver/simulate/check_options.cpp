@@ -3,6 +3,7 @@
 #include <sstream>
 
 #include "solver/simulate/time_events.hpp"
+#include "solver/text/names.hpp"
 
 namespace bough::solver {
 namespace {
@@ -14,9 +15,8 @@ bool check_simulation(const records::SimulationRecord& s, Diagnostics& diagnosti
   const int errors = diagnostics.num_errors();
   const std::vector<std::string> known = {"adams", "bdf", "rk", "rk4", "implicit", "auto"};
   if (std::find(known.begin(), known.end(), s.integrator) == known.end()) {
-    const std::string near = find_nearest(s.integrator, known);
     diagnostics.error("run.unknown-integrator", s.at, "the integrator '" + s.integrator + "' is unknown",
-                      near.empty() ? "use adams, bdf, rk, rk4, implicit or auto" : "did you mean '" + near + "'?");
+                      suggest_name(s.integrator, known, "use adams, bdf, rk, rk4, implicit or auto"));
   }
   const auto demand = [&](bool condition, const std::string& what, const std::string& advice) {
     if (!condition) diagnostics.error("run.bad-simulation", s.at, what, advice);

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "solver/system/system.hpp"
+#include "solver/text/names.hpp"
 
 namespace bough::solver {
 namespace {
@@ -13,8 +14,7 @@ template <class Name>
 std::string find_near(const std::string& wanted, int count, const Name& get_name) {
   std::vector<std::string> names;
   for (int i = 0; i < count; ++i) names.push_back(get_name(i));
-  const std::string near = find_nearest(wanted, names);
-  return near.empty() ? "declare it" : "did you mean '" + near + "'?";
+  return suggest_name(wanted, names, "declare it");
 }
 
 void report(const records::UserEventRecord& r, const char* id, const std::string& what, const std::string& advice,

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "solver/forces/latch_slack.hpp"
+#include "solver/forces/stop_tolerance.hpp"
 #include "solver/simulate/run.hpp"
 #include "solver/system/system.hpp"
 

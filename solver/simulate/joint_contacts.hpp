@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "solver/forces/latch.hpp"
+#include "solver/forces/joint_contact.hpp"
 #include "solver/simulate/hybrid_system.hpp"
 
 namespace bough::solver {

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "solver/system/system.hpp"
+#include "solver/text/names.hpp"
 #include "solver/tree/coordinates.hpp"
 
 namespace bough::solver {
@@ -109,11 +110,10 @@ void Outputs::choose(const std::vector<std::string>& groups, const SourceLocatio
   for (const auto& group : groups) {
     const auto is_in = [&](const auto& channel) { return lies_in(channel.path, group); };
     if (std::any_of(channels_.begin(), channels_.end(), is_in)) continue;
-    const std::string near = find_nearest(group, known);
     diagnostics.error(
         "run.unknown-group", where, "record names '" + group + "', which the results do not hold",
-        near.empty() ? "name bodies, hinges, constraints, sensors, energy, momentum or a part of them, as bodies/NAME"
-                     : "did you mean '" + near + "'?");
+        suggest_name(group, known,
+                     "name bodies, hinges, constraints, sensors, energy, momentum or a part of them, as bodies/NAME"));
   }
   chosen_.clear();
   ranges_.clear();

@@ -2,7 +2,7 @@
 /// \file What a run needs beside its system, resolved and checked before it starts.
 #include <set>
 
-#include "solver/integrate/stepper.hpp"
+#include "solver/integrate/integrator.hpp"
 #include "solver/simulate/event_actions.hpp"
 #include "solver/simulate/outputs.hpp"
 #include "solver/simulate/time_events.hpp"

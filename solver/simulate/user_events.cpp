@@ -1,4 +1,5 @@
 #include "solver/simulate/user_events.hpp"
+#include "solver/text/names.hpp"
 
 #include <cmath>
 #include <limits>
@@ -46,9 +47,9 @@ class Resolver {
     }
     if (size == 0) {
       if (!is_valid_) return -1;
-      const std::string near = find_nearest(r.signal.substr(0, r.signal.rfind(':')), known);
       error(r, "run.unknown-signal", "watches '" + r.signal + "', which is no sensor and no channel of the results",
-            near.empty() ? "name a sensor as tip:x, or a channel as /hinges/root/q:1" : "did you mean '" + near + "'?");
+            suggest_name(r.signal.substr(0, r.signal.rfind(':')), known,
+                         "name a sensor as tip:x, or a channel as /hinges/root/q:1"));
       return -1;
     }
     const int component = records::find_component(name, size, description);

@@ -18,7 +18,7 @@
 #include "solver/forces/applied.hpp"
 #include "solver/forces/element.hpp"
 #include "solver/forces/gravity_field.hpp"
-#include "solver/forces/latch.hpp"
+#include "solver/forces/joint_contact.hpp"
 #include "solver/loops/loops.hpp"
 #include "solver/motion/recovery.hpp"
 #include "solver/signals/graph.hpp"

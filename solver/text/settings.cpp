@@ -1,4 +1,5 @@
 #include "solver/text/settings.hpp"
+#include "solver/text/names.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -106,9 +107,8 @@ void SettingsReader::refuse_others() {
   const auto check = [&](const auto& map) {
     for (const auto& [key, value] : map) {
       if (known_.count(key)) continue;
-      const std::string near = find_nearest(key, names);
       error("control.unknown-key", "has the key '" + key + "', which it does not take",
-            near.empty() ? "it takes: " + (list.empty() ? "none" : list) : "did you mean '" + near + "'?");
+            suggest_name(key, names, "it takes: " + (list.empty() ? "none" : list)));
     }
   };
   check(settings_.numbers);

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "solver/integrate/stepper.hpp"
+#include "solver/integrate/integrator.hpp"
 #include "solver/simulate/hybrid_system.hpp"
 #include "solver/simulate/memory_sink.hpp"
 #include "solver/simulate/simulate.hpp"

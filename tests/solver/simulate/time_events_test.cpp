@@ -1,4 +1,4 @@
-// What a run meets on its way: output times, restarts at jumps, landmarks, and the checks of [simulation].
+// What a run meets on its way: output times, is_jump at jumps, landmarks, and the checks of [simulation].
 #include "solver/simulate/time_events.hpp"
 
 #include <gmock/gmock.h>
@@ -51,17 +51,17 @@ TEST(TimeEvents, StopsAreTheJumpsInsideAndTheEnd) {
   const TimeEvents timeline(plan(1, 0.1), {0.7, 0, a, b, 1, 5, -3}, {0.5, 0.7, 2});
   const TimeEvent first = timeline.find_next(0);
   EXPECT_EQ(first.time, b);  // two jumps a rounding apart are one
-  EXPECT_EQ(first.latest, std::nextafter(a, 0.0));
-  EXPECT_TRUE(first.restarts);
+  EXPECT_EQ(first.left, std::nextafter(a, 0.0));
+  EXPECT_TRUE(first.is_jump);
   const TimeEvent landmark = timeline.find_next(b);
   EXPECT_EQ(landmark.time, 0.5);
-  EXPECT_EQ(landmark.latest, 0.5);
-  EXPECT_FALSE(landmark.restarts);
+  EXPECT_EQ(landmark.left, 0.5);
+  EXPECT_FALSE(landmark.is_jump);
   EXPECT_EQ(timeline.find_next(0.5).time, 0.7);
-  EXPECT_TRUE(timeline.find_next(0.5).restarts);  // the landmark there is the jump
+  EXPECT_TRUE(timeline.find_next(0.5).is_jump);  // the landmark there is the jump
   EXPECT_EQ(timeline.find_next(0.7).time, 1);
-  EXPECT_EQ(timeline.find_next(0.7).latest, std::nextafter(1.0, 0.0));  // a jump there: the steps see what is before
-  EXPECT_EQ(TimeEvents(plan(1, 0.1), {0.7}, {}).find_next(0.7).latest, 1);
+  EXPECT_EQ(timeline.find_next(0.7).left, std::nextafter(1.0, 0.0));  // a jump there: the steps see what is before
+  EXPECT_EQ(TimeEvents(plan(1, 0.1), {0.7}, {}).find_next(0.7).left, 1);
 }
 
 TEST(TimeEvents, GoesOnFromAnyTime) {

@@ -1,4 +1,4 @@
-#include "solver/linear/departures.hpp"
+#include "solver/linear/sampled_system.hpp"
 
 #include <algorithm>
 #include <cmath>

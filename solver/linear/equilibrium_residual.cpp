@@ -1,4 +1,4 @@
-#include "solver/linear/balance.hpp"
+#include "solver/linear/equilibrium_residual.hpp"
 
 namespace bough::solver {
 

@@ -1,4 +1,4 @@
-#include "solver/linear/descent.hpp"
+#include "solver/linear/gradient_flow.hpp"
 
 #include <algorithm>
 

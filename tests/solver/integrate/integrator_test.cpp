@@ -1,5 +1,5 @@
 // Steppers on equations with closed solutions: order, tolerance, jumps, failures.
-#include "solver/integrate/stepper.hpp"
+#include "solver/integrate/integrator.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 #pragma once
 /// \file Downhill to a state of rest.
-#include "solver/linear/balance.hpp"
+#include "solver/linear/equilibrium_residual.hpp"
 
 namespace bough::solver {
 
