@@ -9,6 +9,9 @@
 
 namespace bough::solver {
 
+/// Word of a controller's settings that a loader adds: the name under which it lends functions. No key of system files.
+inline constexpr const char* kLentKey = "lent";
+
 /// The functions of bough_controller.h; those that may be left out there may be empty.
 struct ControllerFunctions {
   std::string language;    ///< of the host, for messages: "Python"; empty: a shared library
