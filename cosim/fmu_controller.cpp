@@ -11,6 +11,7 @@
 #include <limits>
 #include <mutex>
 #include <numeric>
+#include <set>
 #include <stdexcept>
 
 #include "cosim/slave.hpp"
@@ -115,7 +116,7 @@ class FmuLaw {
     } else if (in != last_out_) {
       if (!model_.can_save_state)
         throw std::runtime_error(
-            "an error: it would have to go on from an earlier state, which it does not save (canSerializeFMUState)");
+            "it would have to go on from an earlier state, which it does not save (canSerializeFMUState)");
       const std::size_t at = 2 + static_cast<std::size_t>(num_outputs_);
       slave_->restore(unpack(in.data() + at + 1, static_cast<std::size_t>(in[at])));
     }
@@ -138,7 +139,7 @@ class FmuLaw {
       d.insert(d.end(), packed.begin(), packed.end());
       if (size == 0) size = d.size() + packed.size() / 2 + 200;
       if (d.size() > size)
-        throw std::runtime_error("an error: its state has grown to " + std::to_string(bytes.size()) +
+        throw std::runtime_error("its state has grown to " + std::to_string(bytes.size()) +
                                  " bytes, more than 1.5 times of what it began with");
     }
     d.resize(std::max(size, d.size()));
@@ -170,8 +171,11 @@ class Reader {
     ForeignModel model = fmu::read_model_description(text, path);
     if (std::error_code failed; !fs::is_regular_file(get_binary_path(model, folder), failed)) {
       std::string found;
-      for (const auto& entry : fs::directory_iterator(folder + "/binaries", failed))
-        found += (found.empty() ? "" : ", ") + entry.path().filename().string();
+      std::set<std::string> others;
+      for (const auto& entry : fs::recursive_directory_iterator(folder + "/binaries", failed))
+        if (entry.is_regular_file(failed))
+          others.insert(entry.path().lexically_relative(folder + "/binaries").string());
+      for (const auto& other : others) found += (found.empty() ? "" : ", ") + other;
       throw InputError("fmu.no-platform", {path},
                        "the FMU has no binary for this machine, binaries/" +
                            fs::path(get_binary_path(model, "")).lexically_relative("/binaries").string() +
@@ -260,7 +264,9 @@ solver::ControllerFunctions load_fmu(records::ControllerRecord& record) {
   Reader reader(record);
   const auto file = record.settings.words.find("file");
   const std::string path = file == record.settings.words.end() ? "" : file->second.front();
-  if (std::error_code failed; path.empty() || !fs::is_regular_file(path, failed))
+  if (path.empty())
+    throw InputError("fmu.no-file", record.at, reader.label() + " has no 'file'", "give file = \"NAME.fmu\"");
+  if (std::error_code failed; !fs::is_regular_file(path, failed))
     throw InputError("fmu.no-file", record.at, reader.label() + ": there is no FMU " + path,
                      "give file = \"NAME.fmu\"");
   const auto folder = std::make_shared<Folder>();

@@ -6,6 +6,8 @@
 #include <cstdarg>
 #include <cstdio>
 #include <cstdlib>
+#include <limits>
+#include <sstream>
 #include <stdexcept>
 
 #include "embed/fmi2_types.h"
@@ -42,9 +44,14 @@ class Library {
   Library(const Library&) = delete;
   Library& operator=(const Library&) = delete;
 
+  /// Null if the binary lacks the function.
+  template <class F>
+  void find_optional(const char* name, F*& to) const {
+    to = reinterpret_cast<F*>(dlsym(handle_, name));
+  }
   template <class F>
   void find(const char* name, F*& to) const {
-    to = reinterpret_cast<F*>(dlsym(handle_, name));
+    find_optional(name, to);
     if (to == nullptr) throw std::runtime_error("its binary lacks the function " + std::string(name));
   }
 
@@ -64,7 +71,7 @@ class SlaveBase : public Slave {
       get_one(v, values);
       for (int i = 0; i < v.size; ++i)
         if (!std::isfinite(values[i]))
-          throw std::runtime_error("an error: its output '" + v.name + "' is " + std::to_string(values[i]));
+          throw std::runtime_error("its output '" + v.name + "' is " + std::to_string(values[i]));
       values += v.size;
     }
   }
@@ -95,8 +102,7 @@ class SlaveBase : public Slave {
   void check(int status, const char* function) {
     if (status == kFatal) is_lost_ = true;
     if (status <= kWarning) return;
-    std::string what =
-        std::string("an error: ") + function + " returned " + std::to_string(status) + " (" + name_status(status) + ")";
+    std::string what = std::string(function) + " returned " + std::to_string(status) + " (" + name_status(status) + ")";
     if (!message_.empty()) what += ": " + message_;
     message_.clear();
     throw std::runtime_error(what);
@@ -123,7 +129,7 @@ class SlaveBase : public Slave {
     own_ = state_ = nullptr;
     is_running_ = false;
   }
-  [[noreturn]] static void fail_terminated() { throw std::runtime_error("the end of the simulation"); }
+  [[noreturn]] static void fail_terminated() { throw std::runtime_error("the FMU requests the end of the simulation"); }
 
   const fmu::ForeignModel model_;
   const std::string folder_;
@@ -145,10 +151,22 @@ class SlaveBase : public Slave {
   int (*deserialize_)(void*, const void*, std::size_t, void**) = nullptr;
 };
 
+/// Values rounded to integers of type T. \throws std::runtime_error if one is out of the range of T.
 template <class T>
-std::vector<T> convert(const double* values, int n) {
-  std::vector<T> converted(static_cast<std::size_t>(n));
-  for (int i = 0; i < n; ++i) converted[static_cast<std::size_t>(i)] = static_cast<T>(std::nearbyint(values[i]));
+std::vector<T> convert(const double* values, const fmu::ForeignVariable& v) {
+  using Limits = std::numeric_limits<T>;
+  std::vector<T> converted(static_cast<std::size_t>(v.size));
+  for (int i = 0; i < v.size; ++i) {
+    const double rounded = std::nearbyint(values[i]);
+    // max() of 64 bits is no double, the power of two above it is.
+    if (!(rounded >= static_cast<double>(Limits::lowest()) && rounded < std::ldexp(1.0, Limits::digits))) {
+      std::ostringstream message;
+      message << "its variable '" << v.name << "' takes integers from " << +Limits::lowest() << " to " << +Limits::max()
+              << ", not " << values[i];
+      throw std::runtime_error(message.str());
+    }
+    converted[static_cast<std::size_t>(i)] = static_cast<T>(rounded);
+  }
   return converted;
 }
 
@@ -169,7 +187,7 @@ class Slave2 final : public SlaveBase {
     library_.find("fmi2SetupExperiment", setup_);
     library_.find("fmi2EnterInitializationMode", enter_);
     library_.find("fmi2DoStep", do_step_);
-    library_.find("fmi2GetBooleanStatus", get_status_);
+    library_.find_optional("fmi2GetBooleanStatus", get_status_);  // needed after Discard only
     library_.find("fmi2SetReal", set_real_);
     library_.find("fmi2GetReal", get_real_);
     library_.find("fmi2SetInteger", set_integer_);
@@ -186,7 +204,7 @@ class Slave2 final : public SlaveBase {
     const std::string uri = "file://" + folder_ + "/resources";
     own_ = instantiate_(kName, fmi2CoSimulation, model_.token.c_str(), uri.c_str(), &callbacks_, 0, 1);
     if (own_ == nullptr)
-      throw std::runtime_error("an error: fmi2Instantiate gave no instance" +
+      throw std::runtime_error("fmi2Instantiate gave no instance" +
                                (message_.empty() ? std::string() : ": " + message_));
     set(variables_.parameters, parameters);
     check(setup_(own_, 0, 0, t, 0, 0), "fmi2SetupExperiment");
@@ -196,9 +214,10 @@ class Slave2 final : public SlaveBase {
     is_running_ = true;
   }
   void step(double t, double step) override {
-    const int status = do_step_(own_, t, step, 1);
+    const int status = do_step_(own_, t, step, !model_.can_save_state);
     fmi2Boolean is_terminated = 0;
-    if (status == kDiscard && get_status_(own_, fmi2Terminated, &is_terminated) == fmi2OK && is_terminated)
+    if (status == kDiscard && get_status_ != nullptr && get_status_(own_, fmi2Terminated, &is_terminated) == fmi2OK &&
+        is_terminated)
       fail_terminated();
     check(status, "fmi2DoStep");
   }
@@ -207,7 +226,7 @@ class Slave2 final : public SlaveBase {
   void set_one(const fmu::ForeignVariable& v, const double* values) override {
     switch (v.type) {
       case fmu::ValueType::Int32:
-        return check(set_integer_(own_, &v.reference, 1, convert<int>(values, 1).data()), "fmi2SetInteger");
+        return check(set_integer_(own_, &v.reference, 1, convert<int>(values, v).data()), "fmi2SetInteger");
       case fmu::ValueType::Boolean: {
         const fmi2Boolean value = *values != 0;
         return check(set_boolean_(own_, &v.reference, 1, &value), "fmi2SetBoolean");
@@ -270,7 +289,7 @@ class Slave3 final : public SlaveBase {
     own_ = instantiate_(kName, model_.token.c_str(), resources.c_str(), false, true, false, false, nullptr, 0,
                         &message_, log3, nullptr);
     if (own_ == nullptr)
-      throw std::runtime_error("an error: fmi3InstantiateCoSimulation gave no instance" +
+      throw std::runtime_error("fmi3InstantiateCoSimulation gave no instance" +
                                (message_.empty() ? std::string() : ": " + message_));
     set(variables_.parameters, parameters);
     check(enter_(own_, false, 0, t, false, 0), "fmi3EnterInitializationMode");
@@ -281,12 +300,12 @@ class Slave3 final : public SlaveBase {
   void step(double t, double step) override {
     bool needs_event = false, is_terminated = false, is_early = false;
     double reached = t;
-    const int status = do_step_(own_, t, step, true, &needs_event, &is_terminated, &is_early, &reached);
+    const int status =
+        do_step_(own_, t, step, !model_.can_save_state, &needs_event, &is_terminated, &is_early, &reached);
     if (status <= kDiscard && is_terminated) fail_terminated();
     check(status, "fmi3DoStep");
     if (is_early)
-      throw std::runtime_error("an error: an early return at t = " + std::to_string(reached) +
-                               ", which is not allowed");
+      throw std::runtime_error("an early return at t = " + std::to_string(reached) + ", which is not allowed");
   }
 
  private:
@@ -319,21 +338,21 @@ class Slave3 final : public SlaveBase {
       case ValueType::Float32:
         return set_values("fmi3SetFloat32", v, std::vector<float>(x, x + v.size));
       case ValueType::Int8:
-        return set_values("fmi3SetInt8", v, convert<std::int8_t>(x, v.size));
+        return set_values("fmi3SetInt8", v, convert<std::int8_t>(x, v));
       case ValueType::UInt8:
-        return set_values("fmi3SetUInt8", v, convert<std::uint8_t>(x, v.size));
+        return set_values("fmi3SetUInt8", v, convert<std::uint8_t>(x, v));
       case ValueType::Int16:
-        return set_values("fmi3SetInt16", v, convert<std::int16_t>(x, v.size));
+        return set_values("fmi3SetInt16", v, convert<std::int16_t>(x, v));
       case ValueType::UInt16:
-        return set_values("fmi3SetUInt16", v, convert<std::uint16_t>(x, v.size));
+        return set_values("fmi3SetUInt16", v, convert<std::uint16_t>(x, v));
       case ValueType::Int32:
-        return set_values("fmi3SetInt32", v, convert<std::int32_t>(x, v.size));
+        return set_values("fmi3SetInt32", v, convert<std::int32_t>(x, v));
       case ValueType::UInt32:
-        return set_values("fmi3SetUInt32", v, convert<std::uint32_t>(x, v.size));
+        return set_values("fmi3SetUInt32", v, convert<std::uint32_t>(x, v));
       case ValueType::Int64:
-        return set_values("fmi3SetInt64", v, convert<std::int64_t>(x, v.size));
+        return set_values("fmi3SetInt64", v, convert<std::int64_t>(x, v));
       case ValueType::UInt64:
-        return set_values("fmi3SetUInt64", v, convert<std::uint64_t>(x, v.size));
+        return set_values("fmi3SetUInt64", v, convert<std::uint64_t>(x, v));
       case ValueType::Boolean:
         return set_boolean(v, x);
       default:

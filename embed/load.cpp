@@ -96,7 +96,7 @@ std::vector<std::unique_ptr<solver::HostedController>> lend_fmus(records::System
     try {
       auto functions = readers.fmu(controller);
       const std::string name = "fmu " + std::to_string(++number);
-      controller.settings.words["lent"] = {name};
+      controller.settings.words[solver::kLentKey] = {name};
       lent.push_back(std::make_unique<solver::HostedController>(name, std::move(functions)));
     } catch (const InputError& error) {
       for (const auto& item : error.items()) diagnostics.add(item);

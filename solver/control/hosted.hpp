@@ -6,6 +6,7 @@
 #include <string>
 
 #include "solver/control/bough_controller.h"
+#include "solver/text/settings.hpp"
 
 namespace bough::solver {
 

@@ -88,6 +88,7 @@ class Library final : public UserBlock {
 
  private:
   std::string describe_mending() const {
+    if (f_.is_opaque) return "correct the FMU or its inputs";
     return "mend the " + (f_.language.empty() ? "library" : f_.language + " law");
   }
   /// law(in, y), or its tangent by u, z and d.
@@ -125,7 +126,11 @@ class Library final : public UserBlock {
     try {
       result = action();
     } catch (const std::exception& error) {
-      throw fail((f_.language.empty() ? " threw: " : " raised ") + std::string(error.what()), describe_mending());
+      throw fail((f_.is_opaque          ? " failed: "
+                  : f_.language.empty() ? " threw: "
+                                        : " raised ") +
+                     std::string(error.what()),
+                 describe_mending());
     } catch (...) {
       throw fail(" threw an exception", describe_mending());
     }
@@ -218,8 +223,10 @@ std::unique_ptr<Block> make_library(SettingsReader& keys, const ControllerWiring
   made->label = keys.get_owner();
   made->at = keys.get_place();
   const auto refuse = [&](const std::string& what, const std::string& advice) {
-    const std::string of = f.language.empty() ? "library " + file : f.language + " law";
-    keys.error("control.bad-library", "has a " + of + " " + what, advice);
+    const std::string of = f.is_opaque          ? "an FMU"
+                           : f.language.empty() ? "a library " + file
+                                                : "a " + f.language + " law";
+    keys.error("control.bad-library", "has " + of + " " + what, advice);
     return nullptr;
   };
   if (f.version == nullptr || f.open == nullptr || f.outputs == nullptr)
@@ -240,7 +247,7 @@ std::unique_ptr<Block> make_library(SettingsReader& keys, const ControllerWiring
     result = f.open(&own);
   } catch (const std::exception& error) {
     if (f.is_opaque)
-      return refuse("that cannot be used: " + std::string(error.what()), "see type = \"fmu\" in the manual");
+      return refuse("that cannot be used: " + std::string(error.what()), "correct the FMU, or its keys here");
     if (!f.language.empty()) return refuse("of no use: " + std::string(error.what()), "see bough.System");
     return refuse(std::string("whose bough_controller_open threw: ") + error.what(), "mend the library");
   } catch (...) {
@@ -273,10 +280,8 @@ std::unique_ptr<Block> make_library(SettingsReader& keys, const ControllerWiring
 }  // namespace
 
 std::unique_ptr<Block> make_fmu(SettingsReader& keys, const ControllerWiring& wiring) {
-  for (const char* key : {"input_names", "output_names", "parameter_names"})
-    if (keys.has(key)) keys.get_words(key);
-  keys.get_word("file", "");
-  const std::string lent = keys.get_word("lent", "");
+  keys.accept({"input_names", "output_names", "parameter_names", "file"});
+  const std::string lent = keys.get_lent();
   if (!find_hosted_controller(lent)) {
     keys.error("control.no-fmu", "is an FMU, which this program does not read", "use bough run, or bough in Python");
     return nullptr;

@@ -95,6 +95,11 @@ void SettingsReader::demand(bool condition, const std::string& what, const std::
   if (!condition) error("control.bad-value", what, advice);
 }
 
+std::string SettingsReader::get_lent() const {
+  const auto it = settings_.words.find(kLentKey);
+  return it == settings_.words.end() ? "" : it->second.front();
+}
+
 void SettingsReader::error(const char* id, const std::string& what, const std::string& advice) {
   has_failed_ = true;
   diagnostics_.error(id, at_, what_ + " " + what, advice);
@@ -106,7 +111,7 @@ void SettingsReader::refuse_others() {
   for (const auto& name : names) list += (list.empty() ? "" : ", ") + name;
   const auto check = [&](const auto& map) {
     for (const auto& [key, value] : map) {
-      if (known_.count(key)) continue;
+      if (known_.count(key) || key == kLentKey) continue;
       error("control.unknown-key", "has the key '" + key + "', which it does not take",
             suggest_name(key, names, "it takes: " + (list.empty() ? "none" : list)));
     }

@@ -1,5 +1,6 @@
 #pragma once
 /// \file Reads the keys of a controller or an actuator by name and reports what is missing, unknown or of a wrong size.
+#include <initializer_list>
 #include <set>
 #include <string>
 
@@ -9,6 +10,9 @@ namespace bough::solver {
 
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
+
+/// Word of a controller's settings that a loader adds: the name under which it lends functions. No key of system files.
+inline constexpr const char* kLentKey = "lent";
 
 class SettingsReader {
  public:
@@ -35,6 +39,10 @@ class SettingsReader {
   MatrixXd get_matrix(const std::string& key, int rows, int columns);
   std::string get_word(const std::string& key, const std::string& otherwise);
   std::vector<std::string> get_words(const std::string& key);
+  /// Keys that belong to the loader of the system file.
+  void accept(std::initializer_list<const char*> keys) { known_.insert(keys.begin(), keys.end()); }
+  /// Name under which the loader lends functions; no key of the system file. Empty: none.
+  std::string get_lent() const;
   void demand(bool condition, const std::string& what, const std::string& advice);
   void error(const char* id, const std::string& what, const std::string& advice);
   /// "control.unknown-key" for what nobody asked for.

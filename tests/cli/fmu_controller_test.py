@@ -230,6 +230,44 @@ step = 0.01
                 c, s, rest = np.cos(0.02), np.sin(0.02), angle / 8
                 x, v = rest + (x - rest) * c + v / 2 * s, -2 * (x - rest) * s + v * c
 
+    def test_messages_of_its_controller(self):
+        make_fmu(self.path("law.fmu"), 3)
+        self.make(more="kp = 3.0")
+        keys = self.fails(1, "check", "s.toml", error="control.unknown-key", says=["input_names", "sample_time"]).stderr
+        self.assertNotIn("lent", keys)
+        self.make(law=FMU.format(fault=0, more="").replace('file = "law.fmu"\n', ""))
+        self.fails(1, "check", "s.toml", error="fmu.no-file", says=["controller 'law' has no 'file'"])
+        make_fmu(self.path("law.fmu"), 3, platform="x86_64-linux/old")
+        self.make()
+        self.fails(1, "check", "s.toml", error="fmu.no-platform", says=["it has x86_64-linux/old/law.so"])
+        self.fails(1, "convert", "s.toml", "--units", "m-kg-s:mm-N-tonne", "-o", "mm.toml", error="toml.unit-file",
+                   says=["what a shared library or an FMU computes is not known"])
+
+    def test_integers_out_of_range_are_named(self):
+        make_fmu(self.path("law.fmu"), 3)  # fault is a UInt8
+        for fault in (256, -1, 1e300):
+            self.make(fault=fault)
+            self.fails(1, "check", "s.toml", error="control.bad-library",
+                       says=["its variable 'fault' takes integers from 0 to 255"])
+        self.make(fault=-0.4)  # rounded
+        self.bough("check", "s.toml")
+
+    def test_a_binary_without_the_status_of_a_step(self):
+        """fmi2GetBooleanStatus is of use after a discarded step only."""
+        for fault, code in ((0, 0), (2, 3)):
+            make_fmu(self.path("law.fmu"), 2, without="fmi2GetBooleanStatus")
+            self.make(fault=fault)
+            result = self.bough("run", "s.toml", code=code)
+            self.assertEqual("fmi2DoStep returned 2 (discard)" in result.stderr, fault == 2)
+
+    def test_states_before_the_step_are_announced(self):
+        """noSetFMUStatePriorToCurrentPoint promises that no state of the past is set: it may be for those that save."""
+        for version in (2, 3):
+            for saves, code in ((True, 0), (False, 3)):
+                make_fmu(self.path("law.fmu"), version, saves)
+                self.make(fault=8)  # fails if the promise is given
+                self.bough("run", "s.toml", code=code)
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -51,7 +51,8 @@ static int set_number(State *s, unsigned vr, double x) {
   return 0;
 }
 /* 0 to 4 are statuses, 5 is the end of the simulation */
-static int advance(State *s, double t, double h) {
+static int advance(State *s, double t, double h, int no_past) {
+  if (s->fault == 8 && no_past) return 3;
   if (s->count == 3 && s->fault == 1) return 3;
   if (s->count == 3 && s->fault == 2) return 2;
   if (s->count == 3 && s->fault == 3) return 5;
@@ -88,7 +89,7 @@ int fmi2ExitInitializationMode(void *i) { return 0; }
 int fmi2Terminate(void *i) { return 0; }
 int fmi2DoStep(void *i, double t, double h, int n) {
   Slave *s = i;
-  const int status = advance(&s->s, t, h);
+  const int status = advance(&s->s, t, h, n);
   if (status == 3) s->log(s->env, "controller", 3, "logStatusError", "tank %d is empty", 7);
   return status == 5 ? 2 : status;
 }
@@ -135,7 +136,7 @@ int fmi3ExitInitializationMode(void *i) { return 0; }
 int fmi3Terminate(void *i) { return 0; }
 int fmi3DoStep(void *i, double t, double h, bool n, bool *event, bool *end, bool *early, double *reached) {
   Slave *s = i;
-  const int status = advance(&s->s, t, h);
+  const int status = advance(&s->s, t, h, n);
   if (status == 3) s->log(s->env, 3, "logStatusError", "tank 7 is empty");
   *event = *early = false, *end = status == 5, *reached = t + h;
   return status == 5 ? 0 : status;
@@ -199,13 +200,13 @@ def compile_library(path, text, *options):
     subprocess.run(["cc", "-O1", "-w", "-shared", "-fPIC", "-ffp-contract=off", "-o", path, source, "-lm", *options], check=True)
 
 
-def make_fmu(path, version, saves=True, change=lambda xml: xml, platform=None, files=()):
-    """An FMU at `path`; `change` edits its modelDescription.xml."""
+def make_fmu(path, version, saves=True, change=lambda xml: xml, platform=None, files=(), without=None):
+    """An FMU at `path`; `change` edits its modelDescription.xml, `without` names a function that its binary lacks."""
     state = "state" if version == 2 else "State"
     attributes = f'canGetAndSetFMU{state}="true" canSerializeFMU{state}="true"' if saves else ""
-    binary = f"{path}.{version}.so"
+    binary = f"{path}.{version}.{without}.so"
     if not os.path.exists(binary):
-        compile_library(binary, FMI2 if version == 2 else FMI3)
+        compile_library(binary, FMI2 if version == 2 else FMI3, *([f"-D{without}=lacking"] if without else []))
     with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
         archive.writestr("modelDescription.xml", change((XML2 if version == 2 else XML3).format(state=attributes)))
         archive.write(binary, f"binaries/{platform or ('linux64' if version == 2 else 'x86_64-linux')}/law.so")

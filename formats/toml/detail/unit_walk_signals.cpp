@@ -108,9 +108,13 @@ void change_controller(const UnitTable& t, SignalUnits& units) {
   const double in = inputs.empty() ? 1 : inputs[0];
   const bool is_alike = std::all_of(inputs.begin(), inputs.end(), [&](double u) { return is_near(u, in); });
   const bool takes_many = type == "gain" || type == "state_space" || type == "sum" || type == "product" ||
-                          type == "expression" || type == "table" || type == "switch" || type == "library" || type == "fmu";
+                          type == "expression" || type == "table" || type == "switch" || type == "library" ||
+                          type == "fmu";
   if (!is_alike && !takes_many)
     return t.error("toml.unit-signal", "inputs", "its inputs have several units", "make a controller of each");
+  if ((type == "library" || type == "fmu") && !units.change().is_none())
+    return t.error("toml.unit-file", "type", "what a shared library or an FMU computes is not known",
+                   "convert it by hand");
   if (t.table.contains("file") && !(units.change().is_none()))
     return t.error("toml.unit-file", "file", "the numbers are in another file",
                    "convert them by hand, or write them here");
@@ -163,8 +167,6 @@ void change_controller(const UnitTable& t, SignalUnits& units) {
       t.error("toml.unit-signal", "inputs", "it switches between different quantities", "put a gain on the way");
   } else if (type == "expression") {
     rewrite(t, "expression", out, time, inputs);
-  } else if ((type == "library" || type == "fmu") && !units.change().is_none()) {
-    t.error("toml.unit-file", "type", "what a shared library or an FMU computes is not known", "convert it by hand");
   }
 }
 
