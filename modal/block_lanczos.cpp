@@ -54,7 +54,7 @@ class BlockLanczos {
   /// Ritz pairs of the present basis; the number of leading ones that converged.
   int calc_ritz();
   void restart();
-  BlockLanczosResult finish(bool is_done);
+  BlockLanczosResult finish(int converged, bool is_done);
 
   BlockLanczosProblem problem_;
   int width_;                  ///< columns of the start
@@ -66,7 +66,7 @@ class BlockLanczos {
   bool is_recurrent_ = false;  ///< A⁻¹B of the last block has nothing but roundoff of blocks before these two
   int size_ = 0, last_width_ = 0;
   double scale_ = 0;  ///< the largest ‖A⁻¹B v‖ so far: what is small is small beside it
-  VectorXd theta_;
+  VectorXd theta_, error_;
   MatrixXd S_;
   int num_solves_ = 0;
 };
@@ -199,6 +199,7 @@ int BlockLanczos::calc_ritz() {
   theta_ = values(order);
   S_ = ritz.eigenvectors()(Eigen::all, order);
   const MatrixXd residual = R_ * S_.bottomRows(last_width_);
+  error_ = residual.colwise().norm().transpose().cwiseQuotient(theta_.cwiseAbs());
   const int num_strict = problem_.num_wanted - problem_.num_guard;
   // Roundoff of the largest θ, which after a restart couples all of the basis to what follows.
   const double floor = 1e-14 * scale_, most = std::min(1e-9, 1000 * problem_.tolerance);
@@ -225,7 +226,7 @@ void BlockLanczos::restart() {
   is_recurrent_ = false;
 }
 
-BlockLanczosResult BlockLanczos::finish(bool is_done) {
+BlockLanczosResult BlockLanczos::finish(int converged, bool is_done) {
   BlockLanczosResult result;
   const int size = std::min<int>(problem_.num_wanted, size_);
   result.theta = theta_.head(size);
@@ -233,28 +234,32 @@ BlockLanczosResult BlockLanczos::finish(bool is_done) {
   V_.conservativeResize(Eigen::NoChange, size);
   result.X = std::move(V_);
   result.num_solves = num_solves_;
+  result.num_converged = std::min(converged, size);
   result.is_done = is_done;
   return result;
 }
 
 BlockLanczosResult BlockLanczos::run() {
-  if (next_.cols() == 0) return {VectorXd(0), MatrixXd(V_.rows(), 0), num_solves_, true};  // A⁻¹B is nothing
+  if (next_.cols() == 0) return {VectorXd(0), MatrixXd(V_.rows(), 0), num_solves_, 0, true};  // A⁻¹B is nothing
   const int room = static_cast<int>(V_.cols()) - width_;
+  int converged = 0;
   for (int restarts = 0; next_.cols() > 0; ++restarts) {
     int check = 2 * problem_.num_wanted;  // before, the Ritz values tell nothing
     while (size_ + next_.cols() <= room && next_.cols() > 0) {
       expand();
       if (size_ < check && next_.cols() > 0) continue;
-      const int converged = std::min(calc_ritz(), problem_.num_wanted);
-      if (problem_.progress) problem_.progress(converged, problem_.num_wanted);
-      if (converged == problem_.num_wanted || next_.cols() == 0) return finish(true);
+      converged = std::min(calc_ritz(), problem_.num_wanted);
+      if (problem_.monitor) problem_.monitor(converged, theta_, error_);
+      if (converged == problem_.num_wanted || next_.cols() == 0) return finish(problem_.num_wanted, true);
       check = size_ + size_ / 32;
     }
-    if (calc_ritz() >= problem_.num_wanted) return finish(true);  // of a basis too small to be looked at before
+    converged = calc_ritz();
+    if (converged >= problem_.num_wanted)
+      return finish(converged, true);  // of a basis too small to be looked at before
     if (restarts == problem_.max_restarts) break;
     restart();
   }
-  return finish(false);
+  return finish(converged, false);
 }
 
 }  // namespace

@@ -8,7 +8,8 @@
 #include "fe/loads/second_order.hpp"
 #include "modal/canonical.hpp"
 #include "modal/eigen.hpp"
-#include "modal/krylov.hpp"
+#include "modal/extraction.hpp"
+#include "modal/inertia.hpp"
 #include "modal/pencil.hpp"
 #include "modal/roots.hpp"
 
@@ -56,6 +57,7 @@ class BucklingModes {
   const fe::SymmetricFactor* factor_;  ///< of K
   double largest_theta_ = 0;
   int round_ = 0, count_ = -1;
+  std::vector<SolverUse> uses_;
 };
 
 Roots make_none(const detail::Pencil& pencil) { return {VectorXd(0), MatrixXd(pencil.size(), 0)}; }
@@ -69,10 +71,11 @@ void BucklingModes::add_roots(Side side, int number, Roots& roots) {
   }
   if (!factor_) factor_ = &own_factor_.emplace(pencil_.K.get(), false);
   if (factor_->is_singular()) detail::throw_singular(pencil_, 0);
-  detail::KrylovProblem problem;
+  detail::EigenProblem problem;
   problem.A = signed_K_G_.get();
   problem.B = pencil_.K.get();
-  problem.factor = factor_->get();
+  problem.factor = factor_;
+  problem.solver = options_.solver;
   problem.spectrum = side == Both ? detail::Spectrum::LargestMagnitude : detail::Spectrum::LargestPositive;
   problem.max_subspace = pencil_.size() - roots.size();
   if (problem.max_subspace <= 0 || number <= 0) return;
@@ -81,7 +84,8 @@ void BucklingModes::add_roots(Side side, int number, Roots& roots) {
   problem.tolerance = options_.tolerance;
   problem.start = round_++;
   problem.progress = options_.progress;
-  const auto result = detail::solve_krylov(problem);
+  const auto result = detail::extract(problem);
+  add_use(result.by, uses_);
   if (result.values.size() == 0) return;
   // θ = 0 is the dofs that no internal force stiffens: no load buckles them.
   largest_theta_ = std::max(largest_theta_, result.values.cwiseAbs().maxCoeff());
@@ -173,6 +177,7 @@ EigenPairs BucklingModes::make_pairs(Roots roots, int number) {
   pairs.Phi = model_.T() * X;
   detail::fix_signs(pairs.Phi);
   pairs.inertia_count = std::max(count_, -1);
+  pairs.solvers = uses_;
   pairs.residual =
       fe::calc_residuals(fe::calc_residual_scale(pencil_.K_diagonal, fe::get_diagonal(K_G_.get()), lambda), X,
                          pencil_.calc_K_times(X), -fe::multiply(K_G_.get(), X) * lambda.asDiagonal(), pencil_.kinds);

@@ -7,7 +7,7 @@
 
 #include "fe/linear/blas.hpp"
 #include "fe/linear/petsc.hpp"
-#include "modal/krylov.hpp"
+#include "modal/extraction.hpp"
 
 namespace bough::modal::detail {
 
@@ -48,6 +48,12 @@ void orthonormalize_ascending(const MatrixXd& G, MatrixXd& X) {
   MatrixXd Y(X.rows(), X.cols());
   fe::multiply_dense(false, X, inverse, 0, Y);
   X = std::move(Y);
+}
+
+void project_out(const fe::OwnRows& rows, Mat M, const MatrixXd& R, MatrixXd& X) {
+  if (R.cols() == 0) return;
+  const MatrixXd MR = rows.multiply(M, R);
+  for (int pass = 0; pass < 2; ++pass) X -= R * rows.dot(MR, X);
 }
 
 VectorXd find_largest(const std::vector<int>& place, bool over_ranks, const Eigen::Ref<const MatrixXd>& X) {

@@ -2,6 +2,7 @@
 /// \file What makes eigenvectors the same on any number of ranks: a canonical basis of each repeated root, and signs.
 #include <vector>
 
+#include "fe/linear/own_rows.hpp"
 #include "fe/model/model.hpp"
 
 namespace bough::modal::detail {
@@ -21,6 +22,9 @@ MatrixXd calc_cluster_rotation(const VectorXd& weights, const Eigen::Ref<const M
 /// Makes the columns of X (ascending), nearly orthonormal in the inner product with Gram matrix G, orthonormal: each by
 /// those before it, so that what roundoff left of the others in a low one is none of their forces.
 void orthonormalize_ascending(const MatrixXd& G, MatrixXd& X);
+
+/// Subtracts from X what it has of the M-orthonormal R, twice.
+void project_out(const fe::OwnRows& rows, Mat M, const MatrixXd& R, MatrixXd& X);
 
 /// Makes the component of largest magnitude of each column positive, the first among those within 1e-6 of it.
 void fix_signs(MatrixXd& Phi);

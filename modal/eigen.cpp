@@ -67,6 +67,7 @@ detail::Restored find_soft(const fe::System& system, const EigenOptions& options
         pairs.Phi = others.Phi.leftCols(number);
         pairs.modal_mass.resize(0), pairs.energy_share.resize(0);
         pairs.num_rigid = std::min(number, others.num_rigid);
+        pairs.solvers = others.solvers;
       }
     } catch (const ComputationError&) {
       break;  // the first stand, with what is said of them

@@ -10,6 +10,7 @@
 #include "fe/matrices/reach.hpp"
 #include "fe/matrices/system.hpp"
 #include "modal/canonical.hpp"
+#include "modal/eps_types.hpp"
 
 namespace bough::modal::detail {
 namespace {
@@ -93,7 +94,7 @@ void NormalModes::choose_range() {
   }
 }
 
-void NormalModes::make_solver(KrylovMethod method) {
+void NormalModes::make_solver(const std::string& eps_type) {
   PencilProblem problem;
   problem.K = pencil_.K.get();
   problem.M = pencil_.M.get();
@@ -106,7 +107,7 @@ void NormalModes::make_solver(KrylovMethod method) {
   // hold_massless() puts springs into K that the caller's factor has not.
   if (rigid_.held.empty()) problem.factor = factor_;
   problem.tolerance = options_.tolerance;
-  problem.method = method;
+  problem.solver = eps_type;
   problem.progress = options_.progress;
   // Beside the factor and the vectors of Lanczos K is an eighth of the memory; it is made again in a thirtieth of the
   // time.
@@ -325,13 +326,13 @@ EigenPairs NormalModes::finish_pairs(Found found, int count, Diagnostics& said) 
   return pairs;
 }
 
-EigenPairs NormalModes::find_pairs(KrylovMethod method, bool& is_sound, Diagnostics& said) {
+EigenPairs NormalModes::find_pairs(const std::string& eps_type, bool& is_sound, Diagnostics& said) {
   choose_range();
   is_sound = true;
   // Where it costs little the roots decide that too.
   if (range_.is_empty() && range_.first > 100) return answer_nothing(said);
   if (auto pairs = find_window(said)) return std::move(*pairs);
-  make_solver(method);
+  make_solver(eps_type);
   find_first();
   auto result = search();
   if (result.is_missing && add_far_below(std::max(1, result.count - result.cut))) result = search();
@@ -350,7 +351,7 @@ EigenPairs NormalModes::find_pairs(KrylovMethod method, bool& is_sound, Diagnost
   }
   if (result.is_missing) {
     is_sound = false;
-    if (method == KrylovMethod::Fastest) return {};  // another method may find them
+    if (eps_type.empty() && has_second_solver()) return {};
   }
   report_count(result, num_rigid(), "modes", options_.check_inertia, said);
   range_.last = std::min(range_.last, cut);
@@ -362,10 +363,17 @@ EigenPairs NormalModes::find_pairs(KrylovMethod method, bool& is_sound, Diagnost
   if (copies > 0 && value(range_.last) > 0) warn_of_cut_root(copies, said);
   const int num_above = range_.last > 0 ? cut - range_.last - copies : 0;  // found to see the ends of the range
   auto pairs = make_pairs(cut, result.count < 0 ? -1 : num_rigid() + result.count - num_above, said);
+  pairs.solvers = solver_->get_uses();
   // As many vectors as modes, orthogonal and each with a small residual: they are there, whatever the pivots say.
   if (options_.check_inertia && result.count < 0) is_sound = overlap_ < 1e-6;
   is_sound = is_sound && (pairs.residual.size() == 0 || pairs.residual.maxCoeff() <= fe::kResidualError);
   return pairs;
+}
+
+bool NormalModes::has_second_solver() const {
+  if (!options_.solver.empty() || !solver_) return false;
+  const auto& uses = solver_->get_uses();
+  return std::any_of(uses.begin(), uses.end(), [](const SolverUse& use) { return use.eps == "krylovschur"; });
 }
 
 Answer NormalModes::solve() {
@@ -376,12 +384,13 @@ Answer NormalModes::solve() {
   hold_massless(about_model);
   add_supports();
   Answer answer;
-  for (const auto method : {KrylovMethod::Fastest, KrylovMethod::Blocks}) {
+  const auto solve_by = [&](const std::string& eps_type) {
     answer.said = about_model;
-    answer.pairs = find_pairs(method, answer.is_sound, answer.said);
+    answer.pairs = find_pairs(eps_type, answer.is_sound, answer.said);
     answer.worst_roundoff = worst_roundoff_;
-    if (answer.is_sound) break;
-  }
+  };
+  solve_by(options_.solver);
+  if (!answer.is_sound && has_second_solver()) solve_by(kBlockLanczos);
   return answer;
 }
 

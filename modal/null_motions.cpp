@@ -8,7 +8,7 @@
 #include "fe/linear/factor.hpp"
 #include "fe/linear/low_rank_sum.hpp"
 #include "modal/canonical.hpp"
-#include "modal/krylov.hpp"
+#include "modal/extraction.hpp"
 #include "modal/roots.hpp"
 
 namespace bough::modal::detail {

@@ -70,9 +70,6 @@ int count_copies(const RootSearch& search, const Roots& roots) {
   return search.count(top + 1e-3 * std::abs(top + search.shift));
 }
 
-/// Of those missing among known ones: copies mostly, which a block of as many columns finds in a few solutions.
-constexpr int kMostAtOnce = 46;
-
 }  // namespace
 
 RootSearchResult search_roots(const RootSearch& search, Roots& roots) {
@@ -116,7 +113,7 @@ RootSearchResult search_roots(const RootSearch& search, Roots& roots) {
       num_stuck = cut > best_cut || before > best_size ? 0 : num_stuck + 1;
       best_cut = std::max(best_cut, cut);
       best_size = std::max(best_size, before);
-      if (num_stuck < kStuck) search.solve(roots, std::min(missing, kMostAtOnce) + 2);
+      if (num_stuck < kStuck) search.solve(roots, std::min(missing, kMaxMissing) + kMaxMissingColumns - kMaxMissing);
       if (roots.size() > kept) continue;
       result.is_missing = cut >= 0;
       if (cut < 0 && search.counts && kept > 0) {  // the solver has no more to give: there are no more

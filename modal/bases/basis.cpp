@@ -90,11 +90,12 @@ Basis calc_free_interface_basis(const fe::System& system, const BasisOptions& op
   if (!options.max_hz) eigen.num_modes = std::max(eigen.num_modes, 1);
   eigen.max_hz = options.max_hz;
   eigen.factor = options.factor;
+  eigen.solver = options.solver;
   const auto pairs = calc_normal_modes(system, eigen, diagnostics);
   basis.num_rigid = pairs.num_rigid;
   basis.num_massless = pairs.num_massless;
   const auto num_pairs = static_cast<int>(pairs.lambda.size());
-  if (num_pairs > 0) basis.check = {num_pairs, pairs.inertia_count, pairs.residual.maxCoeff()};
+  if (num_pairs > 0) basis.check = {num_pairs, pairs.inertia_count, pairs.residual.maxCoeff(), pairs.solvers};
   auto kept = pairs.lambda.size() - pairs.num_rigid;
   if (options.num_modes == 0 && !options.max_hz) kept = 0;
   // A massless rigid motion takes none of the modes asked for: what came in its place is cut again.
@@ -272,7 +273,7 @@ Basis calc_craig_bampton_basis(const fe::System& system, const BasisOptions& opt
   basis.boundary = fixed.partition().boundary;
   const auto nb = static_cast<Eigen::Index>(basis.boundary.size());
   const MatrixXd Psi = fixed.calc_constraint_modes();
-  const auto modes = fixed.calc_modes(options.num_modes, options.max_hz, diagnostics);
+  const auto modes = fixed.calc_modes(options.num_modes, options.max_hz, diagnostics, options.solver);
   basis.check = modes.check;
   // A load is carried by the interface, which the constraint modes hold exactly, and by the interior with it held.
   MatrixXd F = options.residual_loads.rows() == 0 ? MatrixXd(model.num_gdofs(), 0) : options.residual_loads;

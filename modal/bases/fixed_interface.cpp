@@ -134,7 +134,8 @@ detail::RootSearchResult FixedInterface::Impl::find_roots(int wanted, detail::Pe
   return detail::search_roots(search, roots);
 }
 
-ModeSet FixedInterface::calc_modes(int number, std::optional<double> max_hz, Diagnostics& diagnostics) const {
+ModeSet FixedInterface::calc_modes(int number, std::optional<double> max_hz, Diagnostics& diagnostics,
+                                   const std::string& eps_type) const {
   const Impl& in = *impl_;
   const auto size = static_cast<int>(in.part.interior.size());
   ModeSet set{VectorXd(0), MatrixXd(in.model.num_gdofs(), 0), {}};
@@ -151,6 +152,7 @@ ModeSet FixedInterface::calc_modes(int number, std::optional<double> max_hz, Dia
   problem.kinds = in.kinds;
   problem.rigid.resize(size, 0);
   problem.factor = &*in.factor;
+  problem.solver = eps_type;
   detail::PencilSolver solver(problem, wanted);
   detail::Roots roots{VectorXd(0), MatrixXd(size, 0)};
   const auto result = in.find_roots(wanted, solver, roots);
@@ -168,7 +170,7 @@ ModeSet FixedInterface::calc_modes(int number, std::optional<double> max_hz, Dia
       fe::calc_residual_scale(K_diagonal, problem.M_diagonal, roots.value), roots.X,
       fe::multiply(in.K_ii.get(), roots.X), fe::multiply(in.M_ii.get(), roots.X) * roots.value.asDiagonal(), in.kinds);
   fe::check_residuals(residual, "mode with the interface held", diagnostics);
-  set.check = {result.cut, result.count, residual.maxCoeff()};
+  set.check = {result.cut, result.count, residual.maxCoeff(), solver.get_uses()};
   set.lambda = roots.value;
   set.Phi = in.expand(roots.X);
   detail::fix_signs(set.Phi);
