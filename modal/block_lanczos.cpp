@@ -1,4 +1,5 @@
 #include "modal/block_lanczos.hpp"
+#include "modal/tolerances.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -154,12 +155,12 @@ void BlockLanczos::orthonormalize(MatrixXd& W, MatrixXd& C, MatrixXd& R) {
     if (pass == 0) scale_ = std::max({scale_, near, given});
     // Lengths: of the operator's result in the first pass, of unit vectors later.
     // Shorter ones are roundoff, and at length one what they have where nothing has mass would be all of them.
-    const VectorXd length = make_unit(G, pass == 0 ? 1e-12 * scale_ : 1e-6, W, B_W, R);
+    const VectorXd length = make_unit(G, pass == 0 ? kDependentBlock * scale_ : kDependentColumn, W, B_W, R);
     if (length.size() == 0) break;
     // What roundoff left along the basis has grown as `given` to the least of them, that of columns among themselves
     // as their ratio squared.
     if (given > most * length.minCoeff()) continue;
-    if (length.maxCoeff() > 3 * length.minCoeff()) make_unit(multiply_transposed(W, B_W), 1e-6, W, B_W, R);
+    if (length.maxCoeff() > 3 * length.minCoeff()) make_unit(multiply_transposed(W, B_W), kDependentColumn, W, B_W, R);
     break;
   }
   B_before_ = std::move(B_next_);
@@ -202,14 +203,14 @@ int BlockLanczos::calc_ritz() {
   error_ = residual.colwise().norm().transpose().cwiseQuotient(theta_.cwiseAbs());
   const int num_strict = problem_.num_wanted - problem_.num_guard;
   // Roundoff of the largest θ, which after a restart couples all of the basis to what follows.
-  const double floor = 1e-14 * scale_, most = std::min(1e-9, 1000 * problem_.tolerance);
+  const double floor = kResidualFloor * scale_, most = std::min(kMaxFloor, 1000 * problem_.tolerance);
   int converged = 0;
   for (; converged < size_; ++converged) {
     const double theta = problem_.positive_only ? theta_(converged) : std::abs(theta_(converged));
     if (!(theta > 0)) break;
-    const bool is_rough = converged >= num_strict && theta < (1 - 1e-3) * std::abs(theta_(num_strict - 1));
+    const bool is_rough = converged >= num_strict && theta < (1 - kGuardGap) * std::abs(theta_(num_strict - 1));
     const double allowed =
-        is_rough ? 1e-4 * theta : std::max(problem_.tolerance * theta, std::min(floor, most * theta));
+        is_rough ? kGuardResidual * theta : std::max(problem_.tolerance * theta, std::min(floor, most * theta));
     if (next_.cols() > 0 && residual.col(converged).norm() > allowed) break;
   }
   return converged;

@@ -12,6 +12,7 @@
 #include "modal/inertia.hpp"
 #include "modal/pencil.hpp"
 #include "modal/roots.hpp"
+#include "modal/tolerances.hpp"
 
 namespace bough::modal {
 
@@ -91,7 +92,7 @@ void BucklingModes::add_roots(Side side, int number, Roots& roots) {
   largest_theta_ = std::max(largest_theta_, result.values.cwiseAbs().maxCoeff());
   std::vector<int> kept;
   for (int i = 0; i < result.values.size(); ++i)
-    if (std::abs(result.values(i)) > 1e-12 * largest_theta_ && (side == Both || result.values(i) > 0))
+    if (std::abs(result.values(i)) > detail::kNoLoadFactor * largest_theta_ && (side == Both || result.values(i) > 0))
       kept.push_back(i);
   roots.add(sign * result.values(kept).cwiseInverse(), result.vectors(Eigen::all, kept), true);
 }
@@ -102,7 +103,7 @@ int BucklingModes::count_below(Side side, double magnitude) const {
   for (const int sign : {1, -1}) {
     if (side == -sign) continue;
     int count = -1;
-    for (double f = magnitude; count < 0 && f < 1.001 * magnitude; f *= 1 + 1e-6)
+    for (double f = magnitude; count < 0 && f < 1.001 * magnitude; f *= 1 + detail::kMoveOfLoadFactor)
       count = detail::count_negative(pencil_.K.get(), sign * f, K_G_.get());
     if (count < 0) return -1;
     sum += count;
@@ -117,7 +118,7 @@ void BucklingModes::find(Side side, int wanted, int available, Roots& roots) {
   search.by_magnitude = true;
   search.counts = options_.check_inertia;
   search.solve = [&](Roots& known, int number) { add_roots(side, std::min(number, available - known.size()), known); };
-  search.closeness = [](const Roots&, int) { return 1e-8; };
+  search.closeness = [](const Roots&, int) { return detail::kCloseness; };
   search.roundoff = [](const Roots&, int) { return 0.0; };
   search.count = [&](double mu) { return mu > 0 ? count_below(side, mu) : 0; };
   search.solve(roots, search.wanted + std::max(4, wanted / 10));

@@ -21,6 +21,7 @@
 #include "fe/linear/subdomains.hpp"
 #include "modal/eps_types.hpp"
 #include "modal/factored_transform.hpp"
+#include "modal/tolerances.hpp"
 
 namespace bough::modal::detail {
 
@@ -32,13 +33,6 @@ using SlepcEps = fe::PetscHandle<EPS, EPSDestroy>;
 
 /// Above this size a solve of one right-hand side mostly waits for the factor's entries.
 constexpr PetscInt kBlockRows = 5000;
-/// Of vectors that large: values are right to its square, and roundoff of K alone turns them further. Not where a shift
-/// stands for supports: what is left of stiff parts in a vector counts by their stiffness over the shift.
-constexpr double kBlockTolerance = 1e-10;
-/// Of the largest 1/(λ - shift): smaller ones have no digit, and beyond the rank of B are roundoff (1.5e-15 was seen).
-constexpr double kNoDigit = 1e-14;
-/// Of preconditioned eigensolvers, which stop by |Kx - λMx|: their values are right to its square.
-constexpr double kPreconditionedTolerance = 1e-8;
 
 }  // namespace
 
@@ -125,7 +119,7 @@ bool is_soft(const EigenProblem& problem, const fe::SubdomainFactor& factor, con
   MatrixXd sums(1, 2);
   sums << x.col(0).dot(load.col(0)), x.col(0).dot(own.cwiseProduct(x.col(0)));
   fe::sum_alike(sums);
-  return !std::isfinite(sums(0, 1)) || !(std::abs(sums(0, 0)) > 1e-13 * sums(0, 1));
+  return !std::isfinite(sums(0, 1)) || !(std::abs(sums(0, 0)) > kStrainlessEnergy * sums(0, 1));
 }
 
 /// LLᵀ in substructures of several processes. Null where there are no parts, or A - shift B is not definite; with

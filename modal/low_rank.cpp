@@ -8,6 +8,7 @@
 #include "fe/linear/low_rank_sum.hpp"
 #include "fe/linear/own_rows.hpp"
 #include "modal/canonical.hpp"
+#include "modal/tolerances.hpp"
 
 namespace bough::modal::detail {
 namespace {
@@ -68,7 +69,7 @@ std::optional<Eigen::SparseMatrix<double>> factor_low_rank(Mat M, const Eigen::V
     left(i) = diagonal(i) > 0 ? 1 : 0;
   }
   std::vector<Column> factor, of_row(static_cast<std::size_t>(n));  // by column, and by row: column, value
-  for (double threshold = 0.3; threshold > 1e-12; threshold *= 0.1)
+  for (double threshold = 0.3; threshold > kRankPivot; threshold *= 0.1)
     for (int i = 0; i < n; ++i) {
       if (!(left(i) > threshold)) continue;
       if (static_cast<int>(factor.size()) == max_rank) return std::nullopt;
@@ -91,11 +92,11 @@ std::optional<Eigen::SparseMatrix<double>> factor_low_rank(Mat M, const Eigen::V
       for (const int row : touched) {
         const double value = column(row) / pivot;
         column(row) = 0;
-        if (left(row) <= 0 || std::abs(value) < 1e-17) continue;
+        if (left(row) <= 0 || std::abs(value) < kRankEntry) continue;
         factor.back().push_back({row, value});
         of_row[static_cast<std::size_t>(row)].push_back({k, value});
         left(row) -= value * value;
-        if (left(row) < -1e-8) return std::nullopt;
+        if (left(row) < kRankNegative) return std::nullopt;
       }
     }
   Eigen::SparseMatrix<double> C(n, static_cast<int>(factor.size()));
@@ -110,8 +111,6 @@ namespace {
 
 constexpr Eigen::Index kBlock = 24;  ///< right-hand sides at once
 
-constexpr double kReach = 1e6;  ///< how far above the first root of a stage the digits suffice
-
 MatrixXd symmetrize(const MatrixXd& A) { return 0.5 * (A + A.transpose()); }
 
 /// Values and vectors among X by K itself.
@@ -124,7 +123,7 @@ void solve_among(Mat K, Mat M, Roots& roots) {
   roots.X = (X * ritz.eigenvectors()).eval();
 }
 
-/// The lowest roots besides the M-orthonormal `known` ones, up to kReach times the first of them.
+/// The lowest roots besides the M-orthonormal `known` ones, up to kStageReach times the first of them.
 Roots solve_stage(const LowRankProblem& problem, const MatrixXd& known, int number) {
   const Eigen::SparseMatrix<double>& C = *problem.C;
   const double shift = problem.shift;
@@ -151,10 +150,11 @@ Roots solve_stage(const LowRankProblem& problem, const MatrixXd& known, int numb
   const double largest = theta.size() > 0 ? theta.cwiseAbs().maxCoeff() : 0;
   std::vector<int> order;
   for (int i = 0; i < lambda.size(); ++i)
-    if (std::abs(theta(i)) > 1e-14 * largest && std::isfinite(lambda(i))) order.push_back(i);  // the rest is roundoff
+    if (std::abs(theta(i)) > kNoDigit * largest && std::isfinite(lambda(i)))
+      order.push_back(i);  // the rest is roundoff
   std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return lambda(a) < lambda(b); });
   order.resize(std::min(order.size(), static_cast<std::size_t>(number)));
-  while (!order.empty() && std::abs(lambda(order.back()) - shift) > kReach * std::abs(lambda(order[0]) - shift))
+  while (!order.empty() && std::abs(lambda(order.back()) - shift) > kStageReach * std::abs(lambda(order[0]) - shift))
     order.pop_back();
 
   Roots stage{lambda(order), MatrixXd(C.rows(), static_cast<Eigen::Index>(order.size()))};

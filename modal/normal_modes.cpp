@@ -11,6 +11,7 @@
 #include "fe/matrices/system.hpp"
 #include "modal/canonical.hpp"
 #include "modal/eps_types.hpp"
+#include "modal/tolerances.hpp"
 
 namespace bough::modal::detail {
 namespace {
@@ -145,9 +146,10 @@ void NormalModes::find_first() {
     return;
   }
   if (num_rigid() == 0 && rigid_.held.empty() && add_roots(found_, request, guard, true) && found_.size() > 0 &&
-      num_zero_ == 0 && found_.value(0) > 0 && pencil_.calc_relative_energy(found_.X.col(0), found_.value(0)) > 1e-13)
+      num_zero_ == 0 && found_.value(0) > 0 &&
+      pencil_.calc_relative_energy(found_.X.col(0), found_.value(0)) > kStrainlessEnergy)
     return;
-  shift_ = 0.01 * estimate_first_eigenvalue(pencil_);
+  shift_ = kShiftOfEstimate * estimate_first_eigenvalue(pencil_);
   for (int attempt = 0; attempt < 6; ++attempt) {
     found_ = none;
     add_roots(found_, request, guard);
@@ -156,10 +158,11 @@ void NormalModes::find_first() {
     const VectorXd energy = pencil_.rows.dot_columns(found_.X, pencil_.calc_K_times(found_.X));
     double lowest = 0;
     for (int i = 0; i < found_.size(); ++i)
-      if (pencil_.calc_relative_energy(found_.X.col(i), energy(i)) > 1e-12 && (lowest == 0 || energy(i) < lowest))
+      if (pencil_.calc_relative_energy(found_.X.col(i), energy(i)) > kStrainedEnergy &&
+          (lowest == 0 || energy(i) < lowest))
         lowest = energy(i);
-    if (!(lowest > 0) || (shift_ <= 10 * lowest && shift_ >= 1e-5 * lowest)) break;
-    shift_ = 0.1 * lowest;
+    if (!(lowest > 0) || (shift_ <= kMaxShift * lowest && shift_ >= kMinShift * lowest)) break;
+    shift_ = kShiftOfFirst * lowest;
   }
   if (pencil_.model.prestress()) find_negative();
 }
@@ -202,7 +205,7 @@ RootSearchResult NormalModes::search() {
   search.solve = [&](Roots& roots, int number) { add_roots(roots, number, 0); };
   search.closeness = [&](const Roots& roots, int i) {
     if (i + 1 < num_zero_) return std::numeric_limits<double>::infinity();  // zeros are copies of each other
-    if (i < num_zero_) return 1e-8;
+    if (i < num_zero_) return kCloseness;
     return calc_cluster_tolerance(pencil_, roots.X.col(i), roots.value(i));
   };
   search.roundoff = [&](const Roots& roots, int i) {
@@ -297,7 +300,7 @@ EigenPairs NormalModes::finish_pairs(Found found, int count, Diagnostics& said) 
     // Where constraints have large factors, sums over the matrix of the f-set lose digits that those over elements
     // have.
     const MatrixXd G = fe::calc_mass_gram(model, model.mass_kind(), reach, pairs.Phi);
-    if ((G - MatrixXd::Identity(cut, cut)).cwiseAbs().maxCoeff() > 1e-9) {
+    if ((G - MatrixXd::Identity(cut, cut)).cwiseAbs().maxCoeff() > kElementMassError) {
       orthonormalize_ascending(G, X);
       pairs.Phi = fe::expand(model, pencil_.rows, reach, X);
     } else {
@@ -359,13 +362,13 @@ EigenPairs NormalModes::find_pairs(const std::string& eps_type, bool& is_sound, 
     warn_of_fewer(std::max(0, range_.last - range_.first), wanted - range_.first, options_.min_hz.has_value(), said);
   int copies = 0;  // of the last one, that are left out
   if (range_.last > 0)
-    for (int i = range_.last; i < cut && value(i) - value(i - 1) <= 3e-4 * value(i); ++i) ++copies;
+    for (int i = range_.last; i < cut && value(i) - value(i - 1) <= kCutRoot * value(i); ++i) ++copies;
   if (copies > 0 && value(range_.last) > 0) warn_of_cut_root(copies, said);
   const int num_above = range_.last > 0 ? cut - range_.last - copies : 0;  // found to see the ends of the range
   auto pairs = make_pairs(cut, result.count < 0 ? -1 : num_rigid() + result.count - num_above, said);
   pairs.solvers = solver_->get_uses();
   // As many vectors as modes, orthogonal and each with a small residual: they are there, whatever the pivots say.
-  if (options_.check_inertia && result.count < 0) is_sound = overlap_ < 1e-6;
+  if (options_.check_inertia && result.count < 0) is_sound = overlap_ < kOverlap;
   is_sound = is_sound && (pairs.residual.size() == 0 || pairs.residual.maxCoeff() <= fe::kResidualError);
   return pairs;
 }

@@ -8,6 +8,7 @@
 #include "modal/canonical.hpp"
 #include "modal/eps_types.hpp"
 #include "modal/inertia.hpp"
+#include "modal/tolerances.hpp"
 
 namespace bough::modal::detail {
 
@@ -58,9 +59,8 @@ bool PencilSolver::solve(double shift, int number, int num_guard, bool definite_
     problem.projects_deflate = problem_.supported != nullptr;
     problem.max_subspace = num_available_;
     problem.num_wanted += roots.size();
-    // With a shift, mechanisms have the energy of their mass: little, but not roundoff.
     if (problem_.rigid.cols() == 0 && !problem_.is_complete) {
-      problem.min_energy = shift == 0 ? fe::kMechanismEnergy : 3e-16;
+      problem.min_energy = shift == 0 ? fe::kMechanismEnergy : kShiftedMechanismEnergy;
       problem.kinds = problem_.kinds;
     }
   } else {
@@ -93,7 +93,7 @@ bool PencilSolver::solve(double shift, int number, int num_guard, bool definite_
 }
 
 int count_roots_below(Mat K, Mat M, double mu) {
-  for (int attempt = 0; attempt < 4; ++attempt, mu *= 1 + 1e-9) {
+  for (int attempt = 0; attempt < 4; ++attempt, mu *= 1 + kMoveOfPivot) {
     const int count = count_negative(K, -mu, M);
     if (count >= 0) return count;
   }

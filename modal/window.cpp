@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "modal/normal_modes.hpp"
+#include "modal/tolerances.hpp"
 
 namespace bough::modal::detail {
 namespace {
@@ -53,7 +54,7 @@ bool NormalModes::add_window(const Edge& lower, const Edge& upper, Roots& roots,
   const int inside = upper.count - lower.count;
   const double middle = find_middle(lower.mu, upper.mu);
   if (inside <= 0) return inside == 0;
-  if (inside > kMostOfShift && middle - lower.mu > 1e-6 * lower.mu) {
+  if (inside > kMostOfShift && middle - lower.mu > kGap * lower.mu) {
     const Edge between{middle, count_below(middle)};
     return between.count >= 0 && add_window(lower, between, roots, uses) && add_window(between, upper, roots, uses);
   }
@@ -104,12 +105,12 @@ std::optional<EigenPairs> NormalModes::find_window(Diagnostics& said) {
   if (!add_window(lower, *upper, roots, uses)) return std::nullopt;
   Found found{std::move(roots.value), std::move(roots.X), 0, 0, 0, number};
   int cut = number;
-  while (cut < inside && found.lambda(cut) - found.lambda(cut - 1) <= 1e-6 * found.lambda(cut)) ++cut;
+  while (cut < inside && found.lambda(cut) - found.lambda(cut - 1) <= kGap * found.lambda(cut)) ++cut;
   Diagnostics own;
   if (cut > number) warn_of_cut_root(cut - number, own);
   if (number < asked) warn_of_fewer(number, asked, true, own);
   auto pairs = finish_pairs(std::move(found), options_.check_inertia ? range_.first + cut : -1, own);
-  if (!(overlap_ < 1e-6 && pairs.residual.maxCoeff() <= fe::kResidualError)) return std::nullopt;
+  if (!(overlap_ < kOverlap && pairs.residual.maxCoeff() <= fe::kResidualError)) return std::nullopt;
   pairs.solvers = std::move(uses);
   range_.last = range_.first + number;
   for (const auto& item : own.items()) said.add(item);

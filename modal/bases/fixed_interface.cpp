@@ -13,6 +13,7 @@
 #include "modal/canonical.hpp"
 #include "modal/pencil.hpp"
 #include "modal/pencil_solver.hpp"
+#include "modal/tolerances.hpp"
 
 namespace bough::modal::bases {
 
@@ -127,7 +128,7 @@ detail::RootSearchResult FixedInterface::Impl::find_roots(int wanted, detail::Pe
   search.wanted = wanted;
   search.num_available = solver.num_available();
   search.solve = [&](detail::Roots& known, int number) { solver.solve(0, number, 0, false, known); };
-  search.closeness = [](const detail::Roots&, int) { return 1e-8; };
+  search.closeness = [](const detail::Roots&, int) { return detail::kCloseness; };
   search.roundoff = [](const detail::Roots&, int) { return 0.0; };
   search.count = [&](double mu) { return detail::count_roots_below(K_ii.get(), M_ii.get(), mu); };
   solver.solve(0, wanted + 2, 2, false, roots);
