@@ -157,16 +157,9 @@ Roots BucklingModes::find_in_range() {
 EigenPairs BucklingModes::make_pairs(Roots roots, int number) {
   VectorXd lambda = roots.value;
   MatrixXd X = roots.X;
-  const VectorXd weights = detail::calc_basis_weights(model_);
-  const MatrixXd KX = pencil_.calc_K_times(X);
-  for (int a = 0, b = 0; a < roots.size(); a = b) {
-    b = detail::find_cluster_end(lambda, a, 1e-8, 0);
-    const MatrixXd G = X.middleCols(a, b - a).transpose() * KX.middleCols(a, b - a);
-    const Eigen::SelfAdjointEigenSolver<MatrixXd> gram(0.5 * (G + G.transpose()));
-    const MatrixXd Y = X.middleCols(a, b - a) * gram.operatorInverseSqrt();
-    X.middleCols(a, b - a) = Y * detail::calc_cluster_rotation(weights, MatrixXd(model_.T() * Y));
-    lambda.segment(a, b - a).setConstant(lambda.segment(a, b - a).mean());
-  }
+  detail::orthonormalize_ascending(X.transpose() * pencil_.calc_K_times(X), X);
+  detail::make_canonical(
+      detail::calc_basis_weights(model_), [&](const MatrixXd& Y) { return MatrixXd(model_.T() * Y); }, lambda, X);
   std::vector<int> kept;
   for (int i = 0; i < roots.size() && static_cast<int>(kept.size()) < number; ++i)
     if (!(options_.min_hz && lambda(i) < *options_.min_hz) && !(options_.max_hz && lambda(i) > *options_.max_hz))

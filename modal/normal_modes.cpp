@@ -281,18 +281,13 @@ EigenPairs NormalModes::finish_pairs(Found found, int count, Diagnostics& said) 
       X = std::move(Y);
   }
   release_columns(cut);
-  const VectorXd weights = calc_basis_weights(model);
-  for (int a = k, b = a; a < cut; a = b) {
-    if (a < num_zero) {
-      b = std::min(num_zero, cut);
-    } else {
-      b = find_cluster_end(lambda, a, calc_cluster_tolerance(pencil_, X.col(a), lambda(a)), 0);
-    }
-    if (b == a + 1) continue;
-    const MatrixXd Y = X.middleCols(a, b - a);
-    X.middleCols(a, b - a) = Y * calc_cluster_rotation(weights, MatrixXd(model.T() * pencil_.rows.replicate(Y)));
-    lambda.segment(a, b - a).setConstant(lambda.segment(a, b - a).mean());
-  }
+  const auto find_end = [&, &lambda = lambda, &X = X, num_zero = num_zero](int a) {
+    if (a < num_zero) return std::min(num_zero, cut);
+    return find_cluster_end(lambda, a, calc_cluster_tolerance(pencil_, X.col(a), lambda(a)), 0);
+  };
+  make_canonical(
+      calc_basis_weights(model), k, find_end,
+      [&](const MatrixXd& Y) { return MatrixXd(model.T() * pencil_.rows.replicate(Y)); }, lambda, X);
   const fe::Reach reach = fe::find_reach(model);
   EigenPairs pairs;
   pairs.Phi = fe::expand(model, pencil_.rows, reach, X);

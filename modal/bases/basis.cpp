@@ -52,15 +52,9 @@ MatrixXd calc_interface_loads(const fe::Model& model, const Partition& part) {
 
 /// One basis of each repeated root and the sign of each vector, so that they do not depend on roundoff.
 MatrixXd make_canonical(const fe::Model& model, VectorXd& lambda, MatrixXd& Phi) {
-  const VectorXd weights = detail::calc_basis_weights(model);
   MatrixXd Q = MatrixXd::Identity(lambda.size(), lambda.size());
-  for (int a = 0, b = 0; a < lambda.size(); a = b) {
-    b = detail::find_cluster_end(lambda, a, 1e-8, 0);
-    if (b == a + 1) continue;
-    Q.block(a, a, b - a, b - a) = detail::calc_cluster_rotation(weights, MatrixXd(Phi.middleCols(a, b - a)));
-    lambda.segment(a, b - a).setConstant(lambda.segment(a, b - a).mean());
-  }
-  Phi = Phi * Q;
+  detail::make_canonical(
+      detail::calc_basis_weights(model), [](const MatrixXd& Y) { return Y; }, lambda, Phi, &Q);
   detail::fix_signs(Phi);
   return Q;
 }

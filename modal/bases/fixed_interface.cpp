@@ -102,14 +102,8 @@ MatrixXd FixedInterface::solve(const MatrixXd& F_g) const {
 void FixedInterface::Impl::make_canonical(VectorXd& lambda, MatrixXd& X) const {
   const MatrixXd G = fe::calc_inner_products(X, fe::multiply(M_ii.get(), X));
   detail::orthonormalize_ascending(G, X);
-  const VectorXd weights = detail::calc_basis_weights(model);
-  for (int a = 0, b = 0; a < lambda.size(); a = b) {
-    b = detail::find_cluster_end(lambda, a, 1e-8, 0);
-    if (b == a + 1) continue;
-    const MatrixXd Y = X.middleCols(a, b - a);
-    X.middleCols(a, b - a) = Y * detail::calc_cluster_rotation(weights, expand(Y));
-    lambda.segment(a, b - a).setConstant(lambda.segment(a, b - a).mean());
-  }
+  detail::make_canonical(
+      detail::calc_basis_weights(model), [this](const MatrixXd& Y) { return expand(Y); }, lambda, X);
 }
 
 int FixedInterface::Impl::count_below(double hz) const {
