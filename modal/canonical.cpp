@@ -120,8 +120,8 @@ void make_canonical(const VectorXd& weights, int first, const std::function<int(
 
 void make_canonical(const VectorXd& weights, const std::function<MatrixXd(const MatrixXd&)>& expand, VectorXd& values,
                     MatrixXd& X, MatrixXd* rotation) {
-  make_canonical(weights, 0, [&](int a) { return find_cluster_end(values, a, kCloseness, 0); }, expand, values, X,
-                 rotation);
+  make_canonical(
+      weights, 0, [&](int a) { return find_cluster_end(values, a, kCloseness, 0); }, expand, values, X, rotation);
 }
 
 }  // namespace bough::modal::detail

@@ -72,6 +72,16 @@ std::string choose_solver(const SolverFacts& facts) {
   return EPSKRYLOVSCHUR;
 }
 
+/// The factored matrix and what applies its factor; its members point at each other, so it stays where it is made.
+struct Factored {
+  FactoredOperator op;
+  bool is_definite = false, is_singular = false;
+  std::optional<fe::SymmetricFactor> own;
+  std::optional<fe::Subdomains> domains;
+  std::unique_ptr<fe::SubdomainFactor> of_domains;
+  std::unique_ptr<fe::SubdomainMatrix> mass_of_domains;
+};
+
 namespace {
 
 bool is_near(const EigenProblem& problem) { return problem.spectrum == Spectrum::NearShift; }
@@ -91,17 +101,6 @@ MatrixXd make_start(const EigenProblem& problem, int b, const fe::Subdomains* do
       start(i, c) = calc_fixed_number(domains ? domains->get_row(i) : i, problem.start + 1000 * c);
   return start;
 }
-
-/// The factored matrix and what applies its factor; its members point at each other, so it stays where it is made.
-struct Factored {
-  FactoredOperator op;
-  bool is_definite = false, is_singular = false;
-  std::optional<fe::SymmetricFactor> own;
-  std::optional<fe::Subdomains> domains;
-  std::unique_ptr<fe::SubdomainFactor> of_domains;
-  std::unique_ptr<fe::SubdomainMatrix> mass_of_domains;
-};
-using FactoredHandle = std::unique_ptr<Factored>;
 
 BlockApply multiply_by(Mat A) {
   return [A](const Eigen::Ref<const MatrixXd>& X) { return fe::multiply(A, X); };
@@ -127,7 +126,7 @@ bool is_soft(const EigenProblem& problem, const fe::SubdomainFactor& factor, con
 FactoredHandle factor_in_parts(const EigenProblem& problem) {
   auto domains = fe::find_subdomains(problem.A, problem.B);
   if (!domains) return nullptr;
-  auto made = std::make_unique<Factored>();
+  auto made = std::make_shared<Factored>();
   made->domains = std::move(domains);
   const fe::PetscMat shifted = problem.shift == 0 ? fe::PetscMat() : fe::add(problem.A, -problem.shift, problem.B);
   made->of_domains = std::make_unique<fe::SubdomainFactor>(shifted ? shifted.get() : problem.A, *made->domains);
@@ -149,7 +148,7 @@ FactoredHandle factor_in_parts(const EigenProblem& problem) {
 
 /// Of vectors in PETSc's distribution: the caller's, else LLᵀ by CHOLMOD on one process, else LDLᵀ by MUMPS.
 FactoredHandle factor_whole(const EigenProblem& problem) {
-  auto made = std::make_unique<Factored>();
+  auto made = std::make_shared<Factored>();
   const bool is_alone = fe::initialize_petsc().size == 1;
   fe::PetscMat shifted;
   if (is_near(problem) && problem.shift != 0) shifted = fe::add(problem.A, -problem.shift, problem.B);
@@ -455,14 +454,15 @@ Extraction extract(const EigenProblem& problem) {
   facts.room = room;
   facts.has_many_copies = problem.block > 0;
   const auto choose = [&] { return requested.empty() ? choose_solver(facts) : requested; };
-  FactoredHandle factored;
-  if (fe::initialize_petsc().size > 1 && choose() == kBlockLanczos && is_near(problem) && !problem.factor)
+  FactoredHandle factored = problem.kept ? *problem.kept : nullptr;
+  if (!factored && fe::initialize_petsc().size > 1 && choose() == kBlockLanczos && is_near(problem) && !problem.factor)
     factored = factor_in_parts(problem);
   if (!factored) factored = factor_whole(problem);
   Extraction singular;
   singular.is_singular = true;
   if (factored->is_singular) return singular;
   facts.is_definite = factored->is_definite;
+  if (problem.kept) *problem.kept = factored;
 
   std::string type = choose(), reason;
   for (int attempt = 0; attempt < 2; ++attempt) {
@@ -471,6 +471,8 @@ Extraction extract(const EigenProblem& problem) {
     if (problem.restore) problem.restore();
     type = type == EPSKRYLOVSCHUR ? kBlockLanczos : EPSKRYLOVSCHUR;
     if (!factored->op.domains) continue;
+    if (problem.kept) problem.kept->reset();
+    factored.reset();
     factored = factor_whole(problem);  // SLEPc's own vectors are distributed in another way
     if (factored->is_singular) return singular;
   }

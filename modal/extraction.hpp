@@ -5,6 +5,7 @@
 /// and out as find_own_rows(A) has them (linear/own_rows.hpp): by parts, or whole on every rank; the matrices are
 /// distributed.
 #include <functional>
+#include <memory>
 #include <string>
 
 #include <Eigen/Dense>
@@ -28,6 +29,10 @@ enum class Spectrum {
   LargestPositive    ///< the same, θ > 0 only
 };
 
+/// The factored matrix of an EigenProblem, and what applies its factor.
+struct Factored;
+using FactoredHandle = std::shared_ptr<Factored>;
+
 struct EigenProblem {
   Mat A = nullptr, B = nullptr;
   Spectrum spectrum = Spectrum::NearShift;
@@ -38,6 +43,7 @@ struct EigenProblem {
   MatrixXd deflate;      ///< own rows x k known eigenvectors, kept out; k may be 0
   double tolerance = 1e-12;
   const fe::SymmetricFactor* factor = nullptr;  ///< of A - shift B or of B, whichever is factored; null: made here
+  FactoredHandle* kept = nullptr;               ///< keeps the factor made here for the next call; null: nobody asks
   bool definite_only = false;                   ///< an indefinite matrix to factor counts as singular
   double min_energy = 0;    ///< below this relative energy of its softest motion it does too (calc_softest_energy)
   fe::RowKinds kinds = {};  ///< of the rows, where min_energy is set

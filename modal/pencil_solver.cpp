@@ -70,6 +70,13 @@ bool PencilSolver::solve(double shift, int number, int num_guard, bool definite_
     problem.release = problem_.release;
     problem.restore = problem_.restore;
   }
+  if (shift != last_shift_) {
+    factored_.reset();
+    num_at_shift_ = 0;
+  }
+  last_shift_ = shift;
+  // A factor that is kept is in memory while roots are counted: only where a first search missed some.
+  if (num_at_shift_++ > 0 && !problem.release) problem.kept = &factored_;
   auto result = [&] {
     try {
       return extract(problem);

@@ -54,6 +54,9 @@ class PencilSolver {
   std::optional<Eigen::SparseMatrix<double>> C_;
   int num_available_ = 0;
   int round_ = 0;
+  FactoredHandle factored_;  ///< of last_shift_, from the second solution on: roots were missed, more may be
+  double last_shift_ = 0;
+  int num_at_shift_ = 0;  ///< solutions with it
   std::vector<SolverUse> uses_;
 };
 

@@ -10,8 +10,8 @@ inline constexpr double kTiny = 1e-300;  ///< in place of zero below a fraction
 
 // ---- Motions without strain
 
-/// Relative energy of a motion without strain. Above: roundoff of sums over a few hundred entries passes for strain, and
-/// rigid motions are searched for again. Below: modes of a beam of 1000 bars (1e-12) pass for rigid ones.
+/// Relative energy of a motion without strain. Above: roundoff of sums over a few hundred entries passes for strain,
+/// and rigid motions are searched for again. Below: modes of a beam of 1000 bars (1e-12) pass for rigid ones.
 inline constexpr double kStrainlessEnergy = 1e-13;
 /// Relative energy from which on a vector has strain for sure; between the two the forces decide.
 inline constexpr double kStrainedEnergy = 1e-12;
@@ -89,7 +89,8 @@ inline constexpr double kPreconditionedTolerance = 1e-8;
 inline constexpr double kOverlap = 1e-6;
 /// Largest entry of ΦᵀMΦ - I summed over elements before the vectors are made orthonormal by it.
 inline constexpr double kElementMassError = 1e-9;
-/// Roundoff of an eigenvalue from which on it is reported, and up to which a second answer may take the place of a first.
+/// Roundoff of an eigenvalue from which on it is reported, and up to which a second answer may take the place of a
+/// first.
 inline constexpr double kRoundoffWarning = 1e-4, kVagueRoundoff = 1e-2;
 /// Error of soft modes up to which no more of them are found.
 inline constexpr double kSureError = 1e-6;

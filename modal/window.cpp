@@ -68,6 +68,8 @@ bool NormalModes::add_window(const Edge& lower, const Edge& upper, Roots& roots,
   krylov.solver = options_.solver;
   krylov.progress = options_.progress;
   krylov.num_wanted = inside + kGuard;
+  FactoredHandle factored;
+  krylov.kept = &factored;
   for (int attempt = 0; attempt < 3; ++attempt, krylov.num_wanted *= 2) {
     Extraction result;
     try {

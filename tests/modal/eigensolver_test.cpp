@@ -209,6 +209,27 @@ TEST(Eigensolver, FixedInterface) {
   EXPECT_GE(sum_solves(modes.check.solvers), 1);
 }
 
+// As of a root with more copies than a search sees.
+TEST(Eigensolver, FactorThatIsKept) {
+  const auto model = build(make_beam(30).deck);
+  const fe::System system(model);
+  modal::detail::EigenProblem problem;
+  problem.A = system.K.get();
+  problem.B = system.M.get();
+  problem.num_wanted = 4;
+  problem.deflate.resize(model.num_fdofs(), 0);
+  modal::detail::FactoredHandle kept;
+  problem.kept = &kept;
+  const CallCount count;
+  const auto first = extract(problem);
+  const int made = count.get("MatCholFctrNum");
+  EXPECT_GE(made, 1);
+  problem.deflate = first.vectors;
+  const auto next = extract(problem);
+  EXPECT_EQ(count.get("MatCholFctrNum"), made);
+  EXPECT_GT(next.values.minCoeff(), first.values.head(4).maxCoeff());
+}
+
 // Types of SLEPc and of Bough find the same modes of the same model.
 TEST(Eigensolver, TypeThatIsAskedFor) {
   if (!is_alone()) GTEST_SKIP() << "a shell for the preconditioner and LAPACK are for one process";
