@@ -1,4 +1,5 @@
 #include "modal/block_lanczos.hpp"
+#include "modal/tolerances.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -54,7 +55,7 @@ class BlockLanczos {
   /// Ritz pairs of the present basis; the number of leading ones that converged.
   int calc_ritz();
   void restart();
-  BlockLanczosResult finish(bool is_done);
+  BlockLanczosResult finish(int converged, bool is_done);
 
   BlockLanczosProblem problem_;
   int width_;                  ///< columns of the start
@@ -66,7 +67,7 @@ class BlockLanczos {
   bool is_recurrent_ = false;  ///< A⁻¹B of the last block has nothing but roundoff of blocks before these two
   int size_ = 0, last_width_ = 0;
   double scale_ = 0;  ///< the largest ‖A⁻¹B v‖ so far: what is small is small beside it
-  VectorXd theta_;
+  VectorXd theta_, error_;
   MatrixXd S_;
   int num_solves_ = 0;
 };
@@ -154,12 +155,12 @@ void BlockLanczos::orthonormalize(MatrixXd& W, MatrixXd& C, MatrixXd& R) {
     if (pass == 0) scale_ = std::max({scale_, near, given});
     // Lengths: of the operator's result in the first pass, of unit vectors later.
     // Shorter ones are roundoff, and at length one what they have where nothing has mass would be all of them.
-    const VectorXd length = make_unit(G, pass == 0 ? 1e-12 * scale_ : 1e-6, W, B_W, R);
+    const VectorXd length = make_unit(G, pass == 0 ? kDependentBlock * scale_ : kDependentColumn, W, B_W, R);
     if (length.size() == 0) break;
     // What roundoff left along the basis has grown as `given` to the least of them, that of columns among themselves
     // as their ratio squared.
     if (given > most * length.minCoeff()) continue;
-    if (length.maxCoeff() > 3 * length.minCoeff()) make_unit(multiply_transposed(W, B_W), 1e-6, W, B_W, R);
+    if (length.maxCoeff() > 3 * length.minCoeff()) make_unit(multiply_transposed(W, B_W), kDependentColumn, W, B_W, R);
     break;
   }
   B_before_ = std::move(B_next_);
@@ -199,16 +200,17 @@ int BlockLanczos::calc_ritz() {
   theta_ = values(order);
   S_ = ritz.eigenvectors()(Eigen::all, order);
   const MatrixXd residual = R_ * S_.bottomRows(last_width_);
+  error_ = residual.colwise().norm().transpose().cwiseQuotient(theta_.cwiseAbs());
   const int num_strict = problem_.num_wanted - problem_.num_guard;
   // Roundoff of the largest θ, which after a restart couples all of the basis to what follows.
-  const double floor = 1e-14 * scale_, most = std::min(1e-9, 1000 * problem_.tolerance);
+  const double floor = kResidualFloor * scale_, most = std::min(kMaxFloor, 1000 * problem_.tolerance);
   int converged = 0;
   for (; converged < size_; ++converged) {
     const double theta = problem_.positive_only ? theta_(converged) : std::abs(theta_(converged));
     if (!(theta > 0)) break;
-    const bool is_rough = converged >= num_strict && theta < (1 - 1e-3) * std::abs(theta_(num_strict - 1));
+    const bool is_rough = converged >= num_strict && theta < (1 - kGuardGap) * std::abs(theta_(num_strict - 1));
     const double allowed =
-        is_rough ? 1e-4 * theta : std::max(problem_.tolerance * theta, std::min(floor, most * theta));
+        is_rough ? kGuardResidual * theta : std::max(problem_.tolerance * theta, std::min(floor, most * theta));
     if (next_.cols() > 0 && residual.col(converged).norm() > allowed) break;
   }
   return converged;
@@ -225,7 +227,7 @@ void BlockLanczos::restart() {
   is_recurrent_ = false;
 }
 
-BlockLanczosResult BlockLanczos::finish(bool is_done) {
+BlockLanczosResult BlockLanczos::finish(int converged, bool is_done) {
   BlockLanczosResult result;
   const int size = std::min<int>(problem_.num_wanted, size_);
   result.theta = theta_.head(size);
@@ -233,28 +235,32 @@ BlockLanczosResult BlockLanczos::finish(bool is_done) {
   V_.conservativeResize(Eigen::NoChange, size);
   result.X = std::move(V_);
   result.num_solves = num_solves_;
+  result.num_converged = std::min(converged, size);
   result.is_done = is_done;
   return result;
 }
 
 BlockLanczosResult BlockLanczos::run() {
-  if (next_.cols() == 0) return {VectorXd(0), MatrixXd(V_.rows(), 0), num_solves_, true};  // A⁻¹B is nothing
+  if (next_.cols() == 0) return {VectorXd(0), MatrixXd(V_.rows(), 0), num_solves_, 0, true};  // A⁻¹B is nothing
   const int room = static_cast<int>(V_.cols()) - width_;
+  int converged = 0;
   for (int restarts = 0; next_.cols() > 0; ++restarts) {
     int check = 2 * problem_.num_wanted;  // before, the Ritz values tell nothing
     while (size_ + next_.cols() <= room && next_.cols() > 0) {
       expand();
       if (size_ < check && next_.cols() > 0) continue;
-      const int converged = std::min(calc_ritz(), problem_.num_wanted);
-      if (problem_.progress) problem_.progress(converged, problem_.num_wanted);
-      if (converged == problem_.num_wanted || next_.cols() == 0) return finish(true);
+      converged = std::min(calc_ritz(), problem_.num_wanted);
+      if (problem_.monitor) problem_.monitor(converged, theta_, error_);
+      if (converged == problem_.num_wanted || next_.cols() == 0) return finish(problem_.num_wanted, true);
       check = size_ + size_ / 32;
     }
-    if (calc_ritz() >= problem_.num_wanted) return finish(true);  // of a basis too small to be looked at before
+    converged = calc_ritz();
+    if (converged >= problem_.num_wanted)
+      return finish(converged, true);  // of a basis too small to be looked at before
     if (restarts == problem_.max_restarts) break;
     restart();
   }
-  return finish(false);
+  return finish(converged, false);
 }
 
 }  // namespace

@@ -2,8 +2,9 @@
 /// \file Lanczos by blocks: the eigenvalues of a definite pencil nearest zero, with a solve of several right-hand sides
 /// at a time.
 ///
-/// Internal to modal. Where a sparse factor does not fit the cache a solve costs what reading the factor costs: four
-/// right-hand sides 41 ms, eight 58 ms (docs/verification/speed.md). SLEPc's Krylov-Schur solves for one at a time.
+/// Internal to modal: SLEPc runs it as the EPS type "bough-block-lanczos" (eps_types.hpp). Where a sparse factor does
+/// not fit the cache a solve costs what reading the factor costs: four right-hand sides 41 ms, eight 58 ms
+/// (docs/verification/speed.md). SLEPc's Krylov-Schur solves for one at a time.
 #include <functional>
 
 #include <Eigen/Dense>
@@ -29,13 +30,15 @@ struct BlockLanczosProblem {
   double tolerance = 1e-12;
   bool positive_only = false;  ///< θ > 0 from the largest down; else by magnitude
   int max_restarts = 100;
-  std::function<void(int converged, int wanted)> progress;
+  /// Called with the Ritz values θ of the present basis, their relative residuals, and how many lead that converged.
+  std::function<void(int converged, const VectorXd& theta, const VectorXd& error)> monitor;
 };
 
 struct BlockLanczosResult {
-  VectorXd theta;        ///< largest eigenvalues of A⁻¹B, descending by magnitude: 1/λ
-  MatrixXd X;            ///< n x theta.size(), B-orthonormal
-  int num_solves = 0;    ///< calls of `solve`
+  VectorXd theta;      ///< largest eigenvalues of A⁻¹B, descending by magnitude: 1/λ
+  MatrixXd X;          ///< n x theta.size(), B-orthonormal
+  int num_solves = 0;  ///< calls of `solve`
+  int num_converged = 0;
   bool is_done = false;  ///< all wanted ones converged, or the whole space was spanned
 };
 

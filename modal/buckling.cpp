@@ -8,9 +8,11 @@
 #include "fe/loads/second_order.hpp"
 #include "modal/canonical.hpp"
 #include "modal/eigen.hpp"
-#include "modal/krylov.hpp"
+#include "modal/extraction.hpp"
+#include "modal/inertia.hpp"
 #include "modal/pencil.hpp"
 #include "modal/roots.hpp"
+#include "modal/tolerances.hpp"
 
 namespace bough::modal {
 
@@ -56,6 +58,7 @@ class BucklingModes {
   const fe::SymmetricFactor* factor_;  ///< of K
   double largest_theta_ = 0;
   int round_ = 0, count_ = -1;
+  std::vector<SolverUse> uses_;
 };
 
 Roots make_none(const detail::Pencil& pencil) { return {VectorXd(0), MatrixXd(pencil.size(), 0)}; }
@@ -69,10 +72,11 @@ void BucklingModes::add_roots(Side side, int number, Roots& roots) {
   }
   if (!factor_) factor_ = &own_factor_.emplace(pencil_.K.get(), false);
   if (factor_->is_singular()) detail::throw_singular(pencil_, 0);
-  detail::KrylovProblem problem;
+  detail::EigenProblem problem;
   problem.A = signed_K_G_.get();
   problem.B = pencil_.K.get();
-  problem.factor = factor_->get();
+  problem.factor = factor_;
+  problem.solver = options_.solver;
   problem.spectrum = side == Both ? detail::Spectrum::LargestMagnitude : detail::Spectrum::LargestPositive;
   problem.max_subspace = pencil_.size() - roots.size();
   if (problem.max_subspace <= 0 || number <= 0) return;
@@ -81,13 +85,14 @@ void BucklingModes::add_roots(Side side, int number, Roots& roots) {
   problem.tolerance = options_.tolerance;
   problem.start = round_++;
   problem.progress = options_.progress;
-  const auto result = detail::solve_krylov(problem);
+  const auto result = detail::extract(problem);
+  add_use(result.by, uses_);
   if (result.values.size() == 0) return;
   // θ = 0 is the dofs that no internal force stiffens: no load buckles them.
   largest_theta_ = std::max(largest_theta_, result.values.cwiseAbs().maxCoeff());
   std::vector<int> kept;
   for (int i = 0; i < result.values.size(); ++i)
-    if (std::abs(result.values(i)) > 1e-12 * largest_theta_ && (side == Both || result.values(i) > 0))
+    if (std::abs(result.values(i)) > detail::kNoLoadFactor * largest_theta_ && (side == Both || result.values(i) > 0))
       kept.push_back(i);
   roots.add(sign * result.values(kept).cwiseInverse(), result.vectors(Eigen::all, kept), true);
 }
@@ -98,7 +103,7 @@ int BucklingModes::count_below(Side side, double magnitude) const {
   for (const int sign : {1, -1}) {
     if (side == -sign) continue;
     int count = -1;
-    for (double f = magnitude; count < 0 && f < 1.001 * magnitude; f *= 1 + 1e-6)
+    for (double f = magnitude; count < 0 && f < 1.001 * magnitude; f *= 1 + detail::kMoveOfLoadFactor)
       count = detail::count_negative(pencil_.K.get(), sign * f, K_G_.get());
     if (count < 0) return -1;
     sum += count;
@@ -113,7 +118,7 @@ void BucklingModes::find(Side side, int wanted, int available, Roots& roots) {
   search.by_magnitude = true;
   search.counts = options_.check_inertia;
   search.solve = [&](Roots& known, int number) { add_roots(side, std::min(number, available - known.size()), known); };
-  search.closeness = [](const Roots&, int) { return 1e-8; };
+  search.closeness = [](const Roots&, int) { return detail::kCloseness; };
   search.roundoff = [](const Roots&, int) { return 0.0; };
   search.count = [&](double mu) { return mu > 0 ? count_below(side, mu) : 0; };
   search.solve(roots, search.wanted + std::max(4, wanted / 10));
@@ -152,16 +157,9 @@ Roots BucklingModes::find_in_range() {
 EigenPairs BucklingModes::make_pairs(Roots roots, int number) {
   VectorXd lambda = roots.value;
   MatrixXd X = roots.X;
-  const VectorXd weights = detail::calc_basis_weights(model_);
-  const MatrixXd KX = pencil_.calc_K_times(X);
-  for (int a = 0, b = 0; a < roots.size(); a = b) {
-    b = detail::find_cluster_end(lambda, a, 1e-8, 0);
-    const MatrixXd G = X.middleCols(a, b - a).transpose() * KX.middleCols(a, b - a);
-    const Eigen::SelfAdjointEigenSolver<MatrixXd> gram(0.5 * (G + G.transpose()));
-    const MatrixXd Y = X.middleCols(a, b - a) * gram.operatorInverseSqrt();
-    X.middleCols(a, b - a) = Y * detail::calc_cluster_rotation(weights, MatrixXd(model_.T() * Y));
-    lambda.segment(a, b - a).setConstant(lambda.segment(a, b - a).mean());
-  }
+  detail::orthonormalize_ascending(X.transpose() * pencil_.calc_K_times(X), X);
+  detail::make_canonical(
+      detail::calc_basis_weights(model_), [&](const MatrixXd& Y) { return MatrixXd(model_.T() * Y); }, lambda, X);
   std::vector<int> kept;
   for (int i = 0; i < roots.size() && static_cast<int>(kept.size()) < number; ++i)
     if (!(options_.min_hz && lambda(i) < *options_.min_hz) && !(options_.max_hz && lambda(i) > *options_.max_hz))
@@ -173,6 +171,7 @@ EigenPairs BucklingModes::make_pairs(Roots roots, int number) {
   pairs.Phi = model_.T() * X;
   detail::fix_signs(pairs.Phi);
   pairs.inertia_count = std::max(count_, -1);
+  pairs.solvers = uses_;
   pairs.residual =
       fe::calc_residuals(fe::calc_residual_scale(pencil_.K_diagonal, fe::get_diagonal(K_G_.get()), lambda), X,
                          pencil_.calc_K_times(X), -fe::multiply(K_G_.get(), X) * lambda.asDiagonal(), pencil_.kinds);

@@ -7,7 +7,8 @@
 
 #include "fe/linear/blas.hpp"
 #include "fe/linear/petsc.hpp"
-#include "modal/krylov.hpp"
+#include "modal/extraction.hpp"
+#include "modal/tolerances.hpp"
 
 namespace bough::modal::detail {
 
@@ -48,6 +49,12 @@ void orthonormalize_ascending(const MatrixXd& G, MatrixXd& X) {
   MatrixXd Y(X.rows(), X.cols());
   fe::multiply_dense(false, X, inverse, 0, Y);
   X = std::move(Y);
+}
+
+void project_out(const fe::OwnRows& rows, Mat M, const MatrixXd& R, MatrixXd& X) {
+  if (R.cols() == 0) return;
+  const MatrixXd MR = rows.multiply(M, R);
+  for (int pass = 0; pass < 2; ++pass) X -= R * rows.dot(MR, X);
 }
 
 VectorXd find_largest(const std::vector<int>& place, bool over_ranks, const Eigen::Ref<const MatrixXd>& X) {
@@ -96,6 +103,25 @@ int find_cluster_end(const VectorXd& values, int first, double tolerance, double
   while (end < values.size() && std::abs(values(end) - values(end - 1)) <= tolerance * (std::abs(values(end)) + floor))
     ++end;
   return end;
+}
+
+void make_canonical(const VectorXd& weights, int first, const std::function<int(int)>& find_end,
+                    const std::function<MatrixXd(const MatrixXd&)>& expand, VectorXd& values, MatrixXd& X,
+                    MatrixXd* rotation) {
+  for (int a = first, b = first; a < values.size(); a = b) {
+    b = find_end(a);
+    if (b == a + 1) continue;
+    const MatrixXd Y = X.middleCols(a, b - a), Q = calc_cluster_rotation(weights, expand(Y));
+    X.middleCols(a, b - a) = Y * Q;
+    if (rotation) rotation->middleCols(a, b - a) = (rotation->middleCols(a, b - a) * Q).eval();
+    values.segment(a, b - a).setConstant(values.segment(a, b - a).mean());
+  }
+}
+
+void make_canonical(const VectorXd& weights, const std::function<MatrixXd(const MatrixXd&)>& expand, VectorXd& values,
+                    MatrixXd& X, MatrixXd* rotation) {
+  make_canonical(
+      weights, 0, [&](int a) { return find_cluster_end(values, a, kCloseness, 0); }, expand, values, X, rotation);
 }
 
 }  // namespace bough::modal::detail

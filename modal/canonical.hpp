@@ -1,7 +1,9 @@
 #pragma once
 /// \file What makes eigenvectors the same on any number of ranks: a canonical basis of each repeated root, and signs.
+#include <functional>
 #include <vector>
 
+#include "fe/linear/own_rows.hpp"
 #include "fe/model/model.hpp"
 
 namespace bough::modal::detail {
@@ -22,6 +24,9 @@ MatrixXd calc_cluster_rotation(const VectorXd& weights, const Eigen::Ref<const M
 /// those before it, so that what roundoff left of the others in a low one is none of their forces.
 void orthonormalize_ascending(const MatrixXd& G, MatrixXd& X);
 
+/// Subtracts from X what it has of the M-orthonormal R, twice.
+void project_out(const fe::OwnRows& rows, Mat M, const MatrixXd& R, MatrixXd& X);
+
 /// Makes the component of largest magnitude of each column positive, the first among those within 1e-6 of it.
 void fix_signs(MatrixXd& Phi);
 /// The same of rows that ranks share: `place` says which each of this rank's is, and the ranks together have all.
@@ -30,6 +35,16 @@ void fix_signs(const std::vector<int>& place, bool over_ranks, MatrixXd& Phi);
 /// Of each column over all ranks the entry of largest magnitude, the first (by `place`, of every row of X) among those
 /// within 1e-6 of it; zero where there is none. Collective.
 VectorXd find_largest(const std::vector<int>& place, bool over_ranks, const Eigen::Ref<const MatrixXd>& X);
+
+/// One basis of each repeated eigenvalue, fixed by the model alone. `find_end` gives the position behind the cluster
+/// that starts at one; the columns of X of a cluster are rotated by calc_cluster_rotation() of what `expand` makes of
+/// them (displacements of the g-set), and its values become their mean. `rotation`, if any, is rotated with X.
+void make_canonical(const VectorXd& weights, int first, const std::function<int(int)>& find_end,
+                    const std::function<MatrixXd(const MatrixXd&)>& expand, VectorXd& values, MatrixXd& X,
+                    MatrixXd* rotation = nullptr);
+/// The same with clusters of values within kCloseness of each other.
+void make_canonical(const VectorXd& weights, const std::function<MatrixXd(const MatrixXd&)>& expand, VectorXd& values,
+                    MatrixXd& X, MatrixXd* rotation = nullptr);
 
 /// End of the cluster that starts at `first`: values that differ from their neighbour by no more than
 /// tolerance (|value| + floor) belong together.

@@ -8,6 +8,7 @@
 #include "modal/element_strain.hpp"
 #include "modal/normal_modes.hpp"
 #include "modal/null_motions.hpp"
+#include "modal/tolerances.hpp"
 
 namespace bough::modal {
 
@@ -33,7 +34,8 @@ Answer find_answer(const fe::System& system, const EigenOptions& options) {
     if (again.knows_motions()) {
       Answer other = again.solve();
       const bool is_better = !answer || !answer->is_sound || other.worst() < answer->worst();
-      if (is_better && other.is_sound && other.worst_roundoff < 1e-2)  // of vague values the first do no worse
+      if (is_better && other.is_sound &&
+          other.worst_roundoff < detail::kVagueRoundoff)  // of vague values the first do no worse
         answer = std::move(other);
     }
   } catch (const ComputationError&) {  // what was said first is nearer to the model
@@ -48,13 +50,12 @@ constexpr int most_whole = 1000;
 /// Modes whose digits the sums in K have lost, from the strain of the elements. Soft modes that nobody asked for mix
 /// with those asked for, where K cannot tell them apart: more are found as long as that helps.
 detail::Restored find_soft(const fe::System& system, const EigenOptions& options, EigenPairs& pairs) {
-  constexpr double sure = 1e-6;
   constexpr int most = 400;
   const auto number = static_cast<int>(pairs.lambda.size());
   auto restored = detail::restore_digits(system, number, !options.min_hz, pairs);
   if (options.min_hz || options.max_hz) return restored;
   for (int more = 2 * number + 10; more < most; more = 2 * more + 10) {
-    if (!restored.is_done || restored.error <= sure) break;
+    if (!restored.is_done || restored.error <= detail::kSureError) break;
     EigenOptions wider = options;
     wider.num_modes = std::min(more, system.model.num_fdofs());
     try {
@@ -67,6 +68,7 @@ detail::Restored find_soft(const fe::System& system, const EigenOptions& options
         pairs.Phi = others.Phi.leftCols(number);
         pairs.modal_mass.resize(0), pairs.energy_share.resize(0);
         pairs.num_rigid = std::min(number, others.num_rigid);
+        pairs.solvers = others.solvers;
       }
     } catch (const ComputationError&) {
       break;  // the first stand, with what is said of them
@@ -119,7 +121,7 @@ void warn_of_negative(const fe::Model& model, const EigenPairs& pairs, Diagnosti
   const auto kept = pairs.lambda.size() - std::min<Eigen::Index>(pairs.num_rigid, pairs.lambda.size());
   if (kept == 0) return;
   const auto lambda = pairs.lambda.tail(kept).array();
-  const auto number = (lambda < -1e-12 * lambda.abs().maxCoeff()).count();
+  const auto number = (lambda < -detail::kNegative * lambda.abs().maxCoeff()).count();
   if (number == 0) return;
   auto what = std::to_string(number) + (number == 1 ? " mode has" : " modes have") +
               " negative stiffness: the model is not in stable equilibrium";

@@ -1,10 +1,11 @@
 #pragma once
-/// \file Normal modes and buckling factors by SLEPc (Krylov-Schur, shift-invert; CHOLMOD or MUMPS).
+/// \file Normal modes and buckling factors by SLEPc; which of its eigensolvers says modal/extraction.hpp.
 #include <functional>
 #include <optional>
 
 #include "fe/matrices/system.hpp"
 #include "fe/model/temperatures.hpp"
+#include "modal/solver_use.hpp"
 
 namespace bough::modal {
 
@@ -12,13 +13,14 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 struct EigenOptions {
-  int num_modes = 10;  ///< wanted, rigid ones included; 0: all in the range below
+  int num_modes = 10;                    ///< wanted, rigid ones included; 0: all in the range below
   std::optional<double> min_hz, max_hz;  ///< a root on an end, to 1e-9, is in the range with its copies
   double tolerance = 1e-12;
   bool check_inertia = true;  ///< Sylvester count: no mode missed below the highest
+  std::string solver = {};    ///< EPS type of SLEPc (find_eps_type); empty: the one that suits the model
   std::function<void(int converged, int wanted)> progress;
   const fe::SymmetricFactor* factor = nullptr;  ///< LLᵀ of K of the system, where the caller has it: saves one
-  int least_rows_to_release = 500000;  ///< from so many f-dofs on K gives its memory back while Lanczos runs
+  int least_rows_to_release = 500000;           ///< from so many f-dofs on K gives its memory back while Lanczos runs
 };
 
 /// K φ = λ M φ, φᵀMφ = 1, ascending λ. Sign rule: the component of largest magnitude (first by g-dof among those
@@ -34,13 +36,14 @@ struct EigenPairs {
   int inertia_count = -1;  ///< eigenvalues below the highest returned; -1 not checked
   int num_massless = 0;    ///< rigid motions without mass (a straight line of bars with lumped mass
                            ///< turns about itself freely): no eigenvalue belongs to them
+  std::vector<SolverUse> solvers;  ///< of the eigenvectors with strain, as far as they belong to this answer
 };
 
 /// The first num_modes of the range, or all of it. A root repeated at the cut is completed before it is cut, so the
 /// basis of what is returned does not depend on num_modes; inertia_count then counts the copies left out too.
 /// Repeated roots get a basis fixed by the model alone (canonical.hpp). Warnings: modal.fewer-modes, modal.cut-root,
 /// modal.massless-motion, modal.empty-range, modal.roundoff. Throws ComputationError modal.no-dofs, modal.no-mass,
-/// modal.singular-shift, modal.missed-modes.
+/// modal.singular-shift, modal.missed-modes, modal.unsuited-solver.
 EigenPairs calc_normal_modes(const fe::System& system, const EigenOptions& options, Diagnostics& diagnostics);
 /// The same with matrices that nobody else needs.
 EigenPairs calc_normal_modes(const fe::Model& model, const EigenOptions& options, Diagnostics& diagnostics);

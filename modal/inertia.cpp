@@ -11,7 +11,8 @@
 #include "fe/linear/fronts.hpp"
 #include "fe/linear/memory_need.hpp"
 #include "fe/linear/sum_factor.hpp"
-#include "modal/krylov.hpp"
+#include "modal/extraction.hpp"
+#include "modal/inertia.hpp"
 
 namespace bough::modal::detail {
 namespace {

@@ -1,10 +1,14 @@
 #include "modal/low_rank.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
 #include "fe/linear/factor.hpp"
 #include "fe/linear/low_rank_sum.hpp"
+#include "fe/linear/own_rows.hpp"
+#include "modal/canonical.hpp"
+#include "modal/tolerances.hpp"
 
 namespace bough::modal::detail {
 namespace {
@@ -65,7 +69,7 @@ std::optional<Eigen::SparseMatrix<double>> factor_low_rank(Mat M, const Eigen::V
     left(i) = diagonal(i) > 0 ? 1 : 0;
   }
   std::vector<Column> factor, of_row(static_cast<std::size_t>(n));  // by column, and by row: column, value
-  for (double threshold = 0.3; threshold > 1e-12; threshold *= 0.1)
+  for (double threshold = 0.3; threshold > kRankPivot; threshold *= 0.1)
     for (int i = 0; i < n; ++i) {
       if (!(left(i) > threshold)) continue;
       if (static_cast<int>(factor.size()) == max_rank) return std::nullopt;
@@ -88,11 +92,11 @@ std::optional<Eigen::SparseMatrix<double>> factor_low_rank(Mat M, const Eigen::V
       for (const int row : touched) {
         const double value = column(row) / pivot;
         column(row) = 0;
-        if (left(row) <= 0 || std::abs(value) < 1e-17) continue;
+        if (left(row) <= 0 || std::abs(value) < kRankEntry) continue;
         factor.back().push_back({row, value});
         of_row[static_cast<std::size_t>(row)].push_back({k, value});
         left(row) -= value * value;
-        if (left(row) < -1e-8) return std::nullopt;
+        if (left(row) < kRankNegative) return std::nullopt;
       }
     }
   Eigen::SparseMatrix<double> C(n, static_cast<int>(factor.size()));
@@ -101,6 +105,87 @@ std::optional<Eigen::SparseMatrix<double>> factor_low_rank(Mat M, const Eigen::V
     for (const auto& [row, value] : factor[k]) entries.emplace_back(row, static_cast<int>(k), root(row) * value);
   C.setFromTriplets(entries.begin(), entries.end());
   return C;
+}
+
+namespace {
+
+constexpr Eigen::Index kBlock = 24;  ///< right-hand sides at once
+
+MatrixXd symmetrize(const MatrixXd& A) { return 0.5 * (A + A.transpose()); }
+
+/// Values and vectors among X by K itself.
+void solve_among(Mat K, Mat M, Roots& roots) {
+  const MatrixXd& X = roots.X;
+  const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd> ritz(symmetrize(X.transpose() * fe::multiply(K, X)),
+                                                                symmetrize(X.transpose() * fe::multiply(M, X)));
+  if (ritz.info() != Eigen::Success) return;
+  roots.value = ritz.eigenvalues();
+  roots.X = (X * ritz.eigenvectors()).eval();
+}
+
+/// The lowest roots besides the M-orthonormal `known` ones, up to kStageReach times the first of them.
+Roots solve_stage(const LowRankProblem& problem, const MatrixXd& known, int number) {
+  const Eigen::SparseMatrix<double>& C = *problem.C;
+  const double shift = problem.shift;
+  const auto r = C.cols(), k = known.cols();
+  // Z: what is orthogonal to the known ones, whose Cᵀx are orthonormal.
+  MatrixXd Z = MatrixXd::Identity(r, r);
+  if (k > 0) {
+    const Eigen::HouseholderQR<MatrixXd> qr(MatrixXd(C.transpose() * known));
+    Z = MatrixXd(qr.householderQ()).rightCols(r - k);
+  }
+  const bool is_first = k == problem.known.cols();
+  const auto solve_for = [&](const MatrixXd& Y) {
+    MatrixXd X = problem.solve(MatrixXd(C * Y));
+    if (!is_first || problem.projects_known) project_out(fe::make_whole_rows(problem.M), problem.M, known, X);
+    return X;
+  };
+  MatrixXd G(Z.cols(), Z.cols());
+  for (Eigen::Index first = 0; first < Z.cols(); first += kBlock) {
+    const auto size = std::min(kBlock, Z.cols() - first);
+    G.middleCols(first, size) = Z.transpose() * (C.transpose() * solve_for(Z.middleCols(first, size)));
+  }
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(symmetrize(G));
+  const VectorXd theta = solver.eigenvalues(), lambda = theta.cwiseInverse().array() + shift;
+  const double largest = theta.size() > 0 ? theta.cwiseAbs().maxCoeff() : 0;
+  std::vector<int> order;
+  for (int i = 0; i < lambda.size(); ++i)
+    if (std::abs(theta(i)) > kNoDigit * largest && std::isfinite(lambda(i)))
+      order.push_back(i);  // the rest is roundoff
+  std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return lambda(a) < lambda(b); });
+  order.resize(std::min(order.size(), static_cast<std::size_t>(number)));
+  while (!order.empty() && std::abs(lambda(order.back()) - shift) > kStageReach * std::abs(lambda(order[0]) - shift))
+    order.pop_back();
+
+  Roots stage{lambda(order), MatrixXd(C.rows(), static_cast<Eigen::Index>(order.size()))};
+  const MatrixXd Y = Z * solver.eigenvectors()(Eigen::all, order);
+  for (Eigen::Index first = 0; first < Y.cols(); first += kBlock) {
+    const auto size = std::min(kBlock, Y.cols() - first);
+    stage.X.middleCols(first, size) =
+        solve_for(Y.middleCols(first, size)) * (stage.value.segment(first, size).array() - shift).matrix().asDiagonal();
+  }
+  return stage;
+}
+
+}  // namespace
+
+Roots solve_low_rank(const LowRankProblem& problem) {
+  // In stages: beside values a million times as large roundoff is all that G has of the small ones.
+  Roots all{VectorXd(0), MatrixXd(problem.C->rows(), 0)};
+  MatrixXd known = problem.known;
+  const auto wanted = std::min<Eigen::Index>(problem.num_wanted, problem.C->cols() - known.cols());
+  while (all.size() < wanted) {
+    Roots stage = solve_stage(problem, known, static_cast<int>(wanted) - all.size());
+    if (stage.size() == 0) break;
+    if (all.size() > 0) solve_among(problem.K, problem.M, stage);
+    if (all.size() + stage.size() < wanted) {
+      MatrixXd X = stage.X;
+      orthonormalize_ascending(X.transpose() * fe::multiply(problem.M, X), X);
+      known = join(known, X);
+    }
+    all.add(stage.value, stage.X);
+  }
+  return all;
 }
 
 }  // namespace bough::modal::detail

@@ -1,4 +1,5 @@
 #include "modal/mode_range.hpp"
+#include "modal/tolerances.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,19 +10,13 @@ namespace bough::modal::detail {
 
 double calc_lambda(double hz) { return std::pow(2 * std::numbers::pi * hz, 2); }
 
-namespace {
-
-constexpr double kOnTheEnd = 1e-9;  ///< of the eigenvalue
-
-}  // namespace
-
 double calc_lower(const EigenOptions& options) {
-  return (1 - kOnTheEnd) * calc_lambda(std::max(options.min_hz.value_or(0), 0.0));
+  return (1 - kRangeEnd) * calc_lambda(std::max(options.min_hz.value_or(0), 0.0));
 }
 
 double calc_upper(const EigenOptions& options) {
   if (!options.max_hz) return std::numeric_limits<double>::infinity();
-  return (1 + kOnTheEnd) * calc_lambda(std::max(*options.max_hz, 0.0));
+  return (1 + kRangeEnd) * calc_lambda(std::max(*options.max_hz, 0.0));
 }
 
 bool ModeRange::fit(const EigenOptions& options, const VectorXd& lambda, int cut, int available) {

@@ -10,6 +10,8 @@
 #include "fe/matrices/reach.hpp"
 #include "fe/matrices/system.hpp"
 #include "modal/canonical.hpp"
+#include "modal/eps_types.hpp"
+#include "modal/tolerances.hpp"
 
 namespace bough::modal::detail {
 namespace {
@@ -93,7 +95,7 @@ void NormalModes::choose_range() {
   }
 }
 
-void NormalModes::make_solver(KrylovMethod method) {
+void NormalModes::make_solver(const std::string& eps_type) {
   PencilProblem problem;
   problem.K = pencil_.K.get();
   problem.M = pencil_.M.get();
@@ -106,7 +108,7 @@ void NormalModes::make_solver(KrylovMethod method) {
   // hold_massless() puts springs into K that the caller's factor has not.
   if (rigid_.held.empty()) problem.factor = factor_;
   problem.tolerance = options_.tolerance;
-  problem.method = method;
+  problem.solver = eps_type;
   problem.progress = options_.progress;
   // Beside the factor and the vectors of Lanczos K is an eighth of the memory; it is made again in a thirtieth of the
   // time.
@@ -144,9 +146,10 @@ void NormalModes::find_first() {
     return;
   }
   if (num_rigid() == 0 && rigid_.held.empty() && add_roots(found_, request, guard, true) && found_.size() > 0 &&
-      num_zero_ == 0 && found_.value(0) > 0 && pencil_.calc_relative_energy(found_.X.col(0), found_.value(0)) > 1e-13)
+      num_zero_ == 0 && found_.value(0) > 0 &&
+      pencil_.calc_relative_energy(found_.X.col(0), found_.value(0)) > kStrainlessEnergy)
     return;
-  shift_ = 0.01 * estimate_first_eigenvalue(pencil_);
+  shift_ = kShiftOfEstimate * estimate_first_eigenvalue(pencil_);
   for (int attempt = 0; attempt < 6; ++attempt) {
     found_ = none;
     add_roots(found_, request, guard);
@@ -155,10 +158,11 @@ void NormalModes::find_first() {
     const VectorXd energy = pencil_.rows.dot_columns(found_.X, pencil_.calc_K_times(found_.X));
     double lowest = 0;
     for (int i = 0; i < found_.size(); ++i)
-      if (pencil_.calc_relative_energy(found_.X.col(i), energy(i)) > 1e-12 && (lowest == 0 || energy(i) < lowest))
+      if (pencil_.calc_relative_energy(found_.X.col(i), energy(i)) > kStrainedEnergy &&
+          (lowest == 0 || energy(i) < lowest))
         lowest = energy(i);
-    if (!(lowest > 0) || (shift_ <= 10 * lowest && shift_ >= 1e-5 * lowest)) break;
-    shift_ = 0.1 * lowest;
+    if (!(lowest > 0) || (shift_ <= kMaxShift * lowest && shift_ >= kMinShift * lowest)) break;
+    shift_ = kShiftOfFirst * lowest;
   }
   if (pencil_.model.prestress()) find_negative();
 }
@@ -201,7 +205,7 @@ RootSearchResult NormalModes::search() {
   search.solve = [&](Roots& roots, int number) { add_roots(roots, number, 0); };
   search.closeness = [&](const Roots& roots, int i) {
     if (i + 1 < num_zero_) return std::numeric_limits<double>::infinity();  // zeros are copies of each other
-    if (i < num_zero_) return 1e-8;
+    if (i < num_zero_) return kCloseness;
     return calc_cluster_tolerance(pencil_, roots.X.col(i), roots.value(i));
   };
   search.roundoff = [&](const Roots& roots, int i) {
@@ -277,18 +281,13 @@ EigenPairs NormalModes::finish_pairs(Found found, int count, Diagnostics& said) 
       X = std::move(Y);
   }
   release_columns(cut);
-  const VectorXd weights = calc_basis_weights(model);
-  for (int a = k, b = a; a < cut; a = b) {
-    if (a < num_zero) {
-      b = std::min(num_zero, cut);
-    } else {
-      b = find_cluster_end(lambda, a, calc_cluster_tolerance(pencil_, X.col(a), lambda(a)), 0);
-    }
-    if (b == a + 1) continue;
-    const MatrixXd Y = X.middleCols(a, b - a);
-    X.middleCols(a, b - a) = Y * calc_cluster_rotation(weights, MatrixXd(model.T() * pencil_.rows.replicate(Y)));
-    lambda.segment(a, b - a).setConstant(lambda.segment(a, b - a).mean());
-  }
+  const auto find_end = [&, &lambda = lambda, &X = X, num_zero = num_zero](int a) {
+    if (a < num_zero) return std::min(num_zero, cut);
+    return find_cluster_end(lambda, a, calc_cluster_tolerance(pencil_, X.col(a), lambda(a)), 0);
+  };
+  make_canonical(
+      calc_basis_weights(model), k, find_end,
+      [&](const MatrixXd& Y) { return MatrixXd(model.T() * pencil_.rows.replicate(Y)); }, lambda, X);
   const fe::Reach reach = fe::find_reach(model);
   EigenPairs pairs;
   pairs.Phi = fe::expand(model, pencil_.rows, reach, X);
@@ -296,7 +295,7 @@ EigenPairs NormalModes::finish_pairs(Found found, int count, Diagnostics& said) 
     // Where constraints have large factors, sums over the matrix of the f-set lose digits that those over elements
     // have.
     const MatrixXd G = fe::calc_mass_gram(model, model.mass_kind(), reach, pairs.Phi);
-    if ((G - MatrixXd::Identity(cut, cut)).cwiseAbs().maxCoeff() > 1e-9) {
+    if ((G - MatrixXd::Identity(cut, cut)).cwiseAbs().maxCoeff() > kElementMassError) {
       orthonormalize_ascending(G, X);
       pairs.Phi = fe::expand(model, pencil_.rows, reach, X);
     } else {
@@ -325,13 +324,13 @@ EigenPairs NormalModes::finish_pairs(Found found, int count, Diagnostics& said) 
   return pairs;
 }
 
-EigenPairs NormalModes::find_pairs(KrylovMethod method, bool& is_sound, Diagnostics& said) {
+EigenPairs NormalModes::find_pairs(const std::string& eps_type, bool& is_sound, Diagnostics& said) {
   choose_range();
   is_sound = true;
   // Where it costs little the roots decide that too.
   if (range_.is_empty() && range_.first > 100) return answer_nothing(said);
   if (auto pairs = find_window(said)) return std::move(*pairs);
-  make_solver(method);
+  make_solver(eps_type);
   find_first();
   auto result = search();
   if (result.is_missing && add_far_below(std::max(1, result.count - result.cut))) result = search();
@@ -350,7 +349,7 @@ EigenPairs NormalModes::find_pairs(KrylovMethod method, bool& is_sound, Diagnost
   }
   if (result.is_missing) {
     is_sound = false;
-    if (method == KrylovMethod::Fastest) return {};  // another method may find them
+    if (eps_type.empty() && has_second_solver()) return {};
   }
   report_count(result, num_rigid(), "modes", options_.check_inertia, said);
   range_.last = std::min(range_.last, cut);
@@ -358,14 +357,21 @@ EigenPairs NormalModes::find_pairs(KrylovMethod method, bool& is_sound, Diagnost
     warn_of_fewer(std::max(0, range_.last - range_.first), wanted - range_.first, options_.min_hz.has_value(), said);
   int copies = 0;  // of the last one, that are left out
   if (range_.last > 0)
-    for (int i = range_.last; i < cut && value(i) - value(i - 1) <= 3e-4 * value(i); ++i) ++copies;
+    for (int i = range_.last; i < cut && value(i) - value(i - 1) <= kCutRoot * value(i); ++i) ++copies;
   if (copies > 0 && value(range_.last) > 0) warn_of_cut_root(copies, said);
   const int num_above = range_.last > 0 ? cut - range_.last - copies : 0;  // found to see the ends of the range
   auto pairs = make_pairs(cut, result.count < 0 ? -1 : num_rigid() + result.count - num_above, said);
+  pairs.solvers = solver_->get_uses();
   // As many vectors as modes, orthogonal and each with a small residual: they are there, whatever the pivots say.
-  if (options_.check_inertia && result.count < 0) is_sound = overlap_ < 1e-6;
+  if (options_.check_inertia && result.count < 0) is_sound = overlap_ < kOverlap;
   is_sound = is_sound && (pairs.residual.size() == 0 || pairs.residual.maxCoeff() <= fe::kResidualError);
   return pairs;
+}
+
+bool NormalModes::has_second_solver() const {
+  if (!options_.solver.empty() || !solver_) return false;
+  const auto& uses = solver_->get_uses();
+  return std::any_of(uses.begin(), uses.end(), [](const SolverUse& use) { return use.eps == "krylovschur"; });
 }
 
 Answer NormalModes::solve() {
@@ -376,12 +382,13 @@ Answer NormalModes::solve() {
   hold_massless(about_model);
   add_supports();
   Answer answer;
-  for (const auto method : {KrylovMethod::Fastest, KrylovMethod::Blocks}) {
+  const auto solve_by = [&](const std::string& eps_type) {
     answer.said = about_model;
-    answer.pairs = find_pairs(method, answer.is_sound, answer.said);
+    answer.pairs = find_pairs(eps_type, answer.is_sound, answer.said);
     answer.worst_roundoff = worst_roundoff_;
-    if (answer.is_sound) break;
-  }
+  };
+  solve_by(options_.solver);
+  if (!answer.is_sound && has_second_solver()) solve_by(kBlockLanczos);
   return answer;
 }
 

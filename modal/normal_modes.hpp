@@ -54,7 +54,7 @@ class NormalModes {
   void hold_massless(Diagnostics& said);
   void add_supports();
   void choose_range();
-  void make_solver(KrylovMethod method);
+  void make_solver(const std::string& eps_type);
   /// False when `definite_only` and the shifted stiffness is not definite.
   bool add_roots(Roots& roots, int number, int guard, bool definite_only = false);
   void find_first();
@@ -64,8 +64,11 @@ class NormalModes {
   RootSearchResult search();
   bool fit_range(int cut);
   bool has_every_root();
-  /// The modes by one method; `is_sound` false where it missed some or left a residual.
-  EigenPairs find_pairs(KrylovMethod method, bool& is_sound, Diagnostics& said);
+  /// The modes, by the EPS type that suits or by the one that is named; `is_sound` false where it missed some or left
+  /// a residual.
+  EigenPairs find_pairs(const std::string& eps_type, bool& is_sound, Diagnostics& said);
+  /// Whether Krylov-Schur found a part of them, where no EPS type is asked for: blocks may find the others.
+  bool has_second_solver() const;
   EigenPairs make_pairs(int cut, int count, Diagnostics& said);
   /// M-orthonormal values and vectors of whole clusters, the first `num_known` and `num_zero` without strain; those of
   /// [first, first + size) are wanted.
@@ -84,16 +87,16 @@ class NormalModes {
     int count = -1;  ///< of roots below
   };
   std::optional<Edge> find_upper_edge(const Edge& lower) const;
-  bool add_window(const Edge& lower, const Edge& upper, Roots& roots) const;
+  bool add_window(const Edge& lower, const Edge& upper, Roots& roots, std::vector<SolverUse>& uses) const;
 
   const EigenOptions& options_;
   const fe::SymmetricFactor* factor_;  ///< LLᵀ of K where there is one
   Pencil pencil_;
   bool has_own_stiffness_ = !pencil_.model.checked_stiffness();  ///< K as assemble_stiffness() makes it
   bool is_away_ = false;                                         ///< K, while Lanczos runs
-  RigidMotions rigid_;                           ///< `modes` with the rows of the pencil's vectors
-  std::vector<std::pair<int, double>> springs_;  ///< f-dofs of the massless motions, held by them in K
-  fe::PetscMat supported_;                       ///< K with springs at the supports too
+  RigidMotions rigid_;                                           ///< `modes` with the rows of the pencil's vectors
+  std::vector<std::pair<int, double>> springs_;                  ///< f-dofs of the massless motions, held by them in K
+  fe::PetscMat supported_;                                       ///< K with springs at the supports too
   std::optional<PencilSolver> solver_;
   ModeRange range_;
   double shift_ = 0;  ///< K + shift M is definite

@@ -8,8 +8,9 @@
 #include "fe/linear/factor.hpp"
 #include "fe/linear/low_rank_sum.hpp"
 #include "modal/canonical.hpp"
-#include "modal/krylov.hpp"
+#include "modal/extraction.hpp"
 #include "modal/roots.hpp"
+#include "modal/tolerances.hpp"
 
 namespace bough::modal::detail {
 namespace {
@@ -48,14 +49,14 @@ MatrixXd iterate(const Pencil& pencil, const VectorXd& D, const fe::SymmetricFac
   }
   std::vector<Index> low;
   for (Index c = 0; c < m; ++c)
-    if (energy(c) < 1e-13) low.push_back(c);
+    if (energy(c) < kStrainlessEnergy) low.push_back(c);
   const MatrixXd Y = X(Eigen::all, low);
-  return Y.cols() > 0 ? (Y * find_forceless(pencil, Y, 1e-6)).eval() : Y;
+  return Y.cols() > 0 ? (Y * find_forceless(pencil, Y, kIterationForce)).eval() : Y;
 }
 
 /// Nothing when they are too many, or the factor fails.
 std::optional<MatrixXd> find_null_space(const Pencil& pencil, const VectorXd& D, int expected) {
-  const fe::PetscMat shifted = fe::add_diagonal(pencil.K.get(), 1e-13 * D);
+  const fe::PetscMat shifted = fe::add_diagonal(pencil.K.get(), kNullShift * D);
   const fe::SymmetricFactor factor(shifted.get(), false, fe::FactorMethod::Pivoting);
   if (factor.is_singular()) return std::nullopt;
   constexpr Index most = 400;
@@ -74,7 +75,7 @@ void append(MatrixXd& A, const MatrixXd& B) { A = join(A, B); }
 /// or beside the others, go to `massless`: as modes their zero would be vague by 1e-3 of what the others have.
 MatrixXd split_by_mass(const Pencil& pencil, const VectorXd& D, MatrixXd Y, MatrixXd& massless) {
   MatrixXd heavy(Y.rows(), 0);
-  const double nothing = 1e-18 * (pencil.M_diagonal.array() / D.array()).maxCoeff();  // of a single dof
+  const double nothing = kDofMassShare * (pencil.M_diagonal.array() / D.array()).maxCoeff();  // of a single dof
   double most = 0;
   while (Y.cols() > 0) {
     for (int pass = 0; pass < 2 && heavy.cols() > 0; ++pass)
@@ -87,8 +88,8 @@ MatrixXd split_by_mass(const Pencil& pencil, const VectorXd& D, MatrixXd Y, Matr
     most = std::max(most, mass.maxCoeff());
     std::vector<Index> next, none, later;
     for (Index c = Y.cols() - 1; c >= 0; --c) {
-      const bool is_light = !(mass(c) > std::max(1e-13 * std::max(parts(c), most), nothing));
-      (is_light ? none : mass(c) > 1e-6 * mass.maxCoeff() ? next : later).push_back(c);
+      const bool is_light = !(mass(c) > std::max(kMasslessShare * std::max(parts(c), most), nothing));
+      (is_light ? none : mass(c) > kMassRound * mass.maxCoeff() ? next : later).push_back(c);
     }
     append(massless, Y(Eigen::all, none));
     append(heavy, Y(Eigen::all, next) * mass(next).cwiseSqrt().cwiseInverse().asDiagonal());
@@ -121,7 +122,7 @@ MatrixXd complement(const Pencil& pencil, const VectorXd& D, const MatrixXd& R, 
   X = split_by_mass(pencil, D, root.cwiseInverse().asDiagonal() * svd.matrixU().leftCols(left), none);
   const VectorXd weights = calc_basis_weights(pencil.model), size = X.cwiseAbs2().transpose() * D;
   for (Index a = 0, b = 0; a < X.cols(); a = b) {
-    b = find_cluster_end(size, static_cast<int>(a), 1e-6, 0);
+    b = find_cluster_end(size, static_cast<int>(a), kMassRound, 0);
     const MatrixXd Y = X.middleCols(a, b - a);
     X.middleCols(a, b - a) = Y * calc_cluster_rotation(weights, pencil.model.T() * Y);
   }
@@ -144,7 +145,7 @@ RigidMotions find_null_motions(const Pencil& pencil) {
     MatrixXd x = Z * (Z.transpose() * pencil.calc_M_times(result.modes.col(i)));
     for (int pass = 0; pass < 2 && R.cols() > 0; ++pass) x -= R * (pencil.calc_M_times(R).transpose() * x).eval();
     const double mass = x.cwiseProduct(pencil.calc_M_times(x)).sum();
-    if (mass > 1e-8) append(R, x / std::sqrt(mass));
+    if (mass > kOwnMassShare) append(R, x / std::sqrt(mass));
   }
   result.modes = join(R, complement(pencil, D, R, Z));
   result.held = choose_dofs(D, result.massless);

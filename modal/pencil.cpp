@@ -8,6 +8,7 @@
 #include "fe/linear/mechanism.hpp"
 #include "fe/model/row_kinds.hpp"
 #include "modal/canonical.hpp"
+#include "modal/tolerances.hpp"
 
 namespace bough::modal::detail {
 
@@ -169,7 +170,7 @@ MatrixXd find_forceless(const Pencil& pencil, const MatrixXd& Y, double floor) {
   }
   fe::sum_over_ranks(G);
   const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(G);
-  return solver.eigenvectors().leftCols((solver.eigenvalues().array() < 1e-18).count());
+  return solver.eigenvectors().leftCols((solver.eigenvalues().array() < kForcelessSquare).count());
 }
 
 namespace {
@@ -186,12 +187,11 @@ Strainless find_strainless(const Pencil& pencil, const Vector3d& centre) {
   const MatrixXd D = fe::calc_inner_products(B, result.DB);
   const VectorXd scale = D.diagonal().unaryExpr([](double d) { return d > 0 ? 1 / std::sqrt(d) : 0.0; });
   VectorXd d;
-  const MatrixXd V = calc_range(scale.asDiagonal() * D * scale.asDiagonal(), 1e-10, true, &d);
+  const MatrixXd V = calc_range(scale.asDiagonal() * D * scale.asDiagonal(), kDependentMotions, true, &d);
   if (V.cols() == 0) return result;
 
   // Y: orthonormal under D. A second pass on the vectors themselves: products of the six basic motions cancel where one
   // motion is much softer than its parts (a turn about a skew axis), those of the motion itself do not.
-  constexpr double kSurelyStrained = 1e-6;  // as supports hold a body: no second pass
   MatrixXd Y = B * (scale.asDiagonal() * V * d.cwiseSqrt().cwiseInverse().asDiagonal());
   VectorXd energy;
   for (int pass = 0; pass < 2; ++pass) {
@@ -199,12 +199,12 @@ Strainless find_strainless(const Pencil& pencil, const Vector3d& centre) {
         fe::calc_inner_products(Y, pencil.calc_K_times(Y)),
         fe::calc_inner_products(Y, pencil.K_diagonal.asDiagonal() * Y));
     energy = solver.eigenvalues();
-    if (pass == 0 && energy.minCoeff() > kSurelyStrained) return result;
+    if (pass == 0 && energy.minCoeff() > kHeldEnergy) return result;
     Y = (Y * solver.eigenvectors()).eval();
   }
   std::vector<int> strainless;
   for (int i = 0; i < energy.size(); ++i)
-    if (std::abs(energy(i)) < 1e-13) strainless.push_back(i);
+    if (std::abs(energy(i)) < kStrainlessEnergy) strainless.push_back(i);
   if (strainless.empty()) return result;
   Y = Y(Eigen::all, strainless).eval();
   result.Y = Y * find_forceless(pencil, Y);
@@ -231,7 +231,7 @@ RigidMotions find_global_motions(const Pencil& pencil) {
     Y = (Y * solver.eigenvectors()).eval();
     mass = solver.eigenvalues();
   }
-  const auto num_massless = (mass.array() <= 1e-13 * std::max(mass.maxCoeff(), 0.0)).count();
+  const auto num_massless = (mass.array() <= kMasslessShare * std::max(mass.maxCoeff(), 0.0)).count();
   const MatrixXd Y_mass = Y.rightCols(Y.cols() - num_massless);
 
   // The projections of the six motions on the free ones, in order: a basis that no roundoff can turn.
@@ -243,7 +243,7 @@ RigidMotions find_global_motions(const Pencil& pencil) {
     VectorXd c = VectorXd::Unit(6, i);
     for (int pass = 0; pass < 2; ++pass) c -= coefficients * (coefficients.transpose() * (Mr * c));
     const double after = c.dot(Mr * c);
-    if (!(after > 1e-8 * Mr(i, i))) continue;
+    if (!(after > kOwnMassShare * Mr(i, i))) continue;
     coefficients.conservativeResize(6, coefficients.cols() + 1);
     coefficients.rightCols(1) = c / std::sqrt(after);
   }
@@ -270,7 +270,8 @@ RigidMotions find_rigid_motions(const Pencil& pencil) {
   // Masses that RBE3 and MPC share out among loose dofs are fewer than these: some of their motions move none.
   const MatrixXd M = loose.transpose() * pencil.calc_M_times(loose);
   const VectorXd scale = M.diagonal().cwiseSqrt().cwiseInverse();
-  const MatrixXd null = scale.asDiagonal() * calc_range(scale.asDiagonal() * M * scale.asDiagonal(), 1e-12, false);
+  const MatrixXd null =
+      scale.asDiagonal() * calc_range(scale.asDiagonal() * M * scale.asDiagonal(), kLooseMassShare, false);
   if (null.cols() > 0) {
     const Eigen::ColPivHouseholderQR<MatrixXd> qr(null.transpose());
     for (Eigen::Index i = 0; i < null.cols(); ++i) {
@@ -287,7 +288,7 @@ RigidMotions find_rigid_motions(const Pencil& pencil) {
     const double before = x.dot(pencil.calc_M_times(x).col(0));
     for (int pass = 0; pass < 2; ++pass) x -= result.modes * (result.modes.transpose() * pencil.calc_M_times(x)).eval();
     const double after = x.dot(pencil.calc_M_times(x).col(0));
-    if (!(after > 1e-10 * before)) continue;
+    if (!(after > kLooseRestShare * before)) continue;
     result.modes.conservativeResize(Eigen::NoChange, result.modes.cols() + 1);
     result.modes.rightCols(1) = x / std::sqrt(after);
   }
@@ -306,14 +307,14 @@ double estimate_first_eigenvalue(const Pencil& pencil) {
   const MatrixXd M = pencil.dot(X, pencil.calc_M_times(X));
   const VectorXd scale = M.diagonal().unaryExpr([](double d) { return d > 0 ? 1 / std::sqrt(d) : 0.0; });
   VectorXd m;
-  const MatrixXd V = calc_range(scale.asDiagonal() * M * scale.asDiagonal(), 1e-9, true, &m);
+  const MatrixXd V = calc_range(scale.asDiagonal() * M * scale.asDiagonal(), kDependentPolynomials, true, &m);
   if (V.cols() > 0) {  // scalar points alone: none
     const MatrixXd W = scale.asDiagonal() * V * m.cwiseSqrt().cwiseInverse().asDiagonal();
     const Eigen::SelfAdjointEigenSolver<MatrixXd> ritz(W.transpose() * K * W);
     const MatrixXd Y = X * (W * ritz.eigenvectors());
     for (Eigen::Index i = 0; i < Y.cols(); ++i) {
       const double lambda = ritz.eigenvalues()(i);
-      if (lambda > 0 && pencil.calc_relative_energy(Y.col(i), lambda) > 1e-12) return lambda;
+      if (lambda > 0 && pencil.calc_relative_energy(Y.col(i), lambda) > kStrainedEnergy) return lambda;
     }
   }
   // No polynomial strains the model: fall back on the softest single dof.

@@ -1,13 +1,14 @@
 #pragma once
-/// \file Roots of K x = λ M x from the lowest up: a mass matrix of low rank solved whole, any other by Krylov.
+/// \file Roots of K x = λ M x from the lowest up, some at a time.
 #include <optional>
 
 #include "fe/linear/factor.hpp"
 #include "fe/linear/own_rows.hpp"
 #include "fe/linear/row_kinds.hpp"
-#include "modal/krylov.hpp"
+#include "modal/extraction.hpp"
 #include "modal/low_rank.hpp"
 #include "modal/roots.hpp"
+#include "modal/solver_use.hpp"
 
 namespace bough::modal::detail {
 
@@ -21,9 +22,9 @@ struct PencilProblem {
   bool is_complete = false;                     ///< every motion without strain is in `rigid`: no look for another
   const fe::SymmetricFactor* factor = nullptr;  ///< of K, where the caller has it
   double tolerance = 1e-12;
-  KrylovMethod method = KrylovMethod::Fastest;
+  std::string solver = {};  ///< EPS type that is asked for (EigenProblem)
   std::function<void(int converged, int wanted)> progress = {};
-  std::function<void()> release = {}, restore = {};  ///< of K, where it may be away (KrylovProblem)
+  std::function<void()> release = {}, restore = {};  ///< of K, where it may be away (EigenProblem)
 };
 
 class PencilSolver {
@@ -35,25 +36,28 @@ class PencilSolver {
   /// No more roots than this exist beside the rigid motions; exact where the rank of M is known.
   int num_available() const { return num_available_; }
   bool knows_rank() const { return C_.has_value(); }
+  /// Of all solutions.
+  const std::vector<SolverUse>& get_uses() const { return uses_; }
 
   /// Adds the next `number` roots above those in `roots`, the last `num_guard` of them rough; all that exist where
   /// there are fewer. K + shift M is factored. False where that is singular, or with `definite_only` not definite.
   /// With `supported` that is factored instead, and shift is 0: M x of what is orthogonal to the rigid motions is in
   /// balance, so the springs see no force, and what they hold of the rigid motions is taken out of the solution.
   ///
-  /// With M = C Cᵀ of low rank the roots are those of CᵀA⁻¹C y = θ y, A = K + shift M, x = A⁻¹C y / θ, λ = 1/θ - shift:
-  /// as many as C has columns, and every x is in the range of A⁻¹M. Else Krylov (solve_krylov).
+  /// With M = C Cᵀ of low rank all of them are found anew each time, `roots` with them.
   bool solve(double shift, int number, int num_guard, bool definite_only, Roots& roots);
 
  private:
-  bool solve_whole(double shift, int number, bool definite_only, Roots& roots);
-  void drop_rough(KrylovResult& result) const;
-  Roots solve_stage(const fe::SymmetricFactor& factor, double shift, const MatrixXd& known, int number);
+  void drop_rough(Extraction& result) const;
 
   PencilProblem problem_;
   std::optional<Eigen::SparseMatrix<double>> C_;
   int num_available_ = 0;
   int round_ = 0;
+  FactoredHandle factored_;  ///< of last_shift_, from the second solution on: roots were missed, more may be
+  double last_shift_ = 0;
+  int num_at_shift_ = 0;  ///< solutions with it
+  std::vector<SolverUse> uses_;
 };
 
 /// Roots of K x = λ M x below mu by the inertia of K - μM, moved a little where a pivot is zero; -1 where it stays so.

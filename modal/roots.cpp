@@ -1,4 +1,5 @@
 #include "modal/roots.hpp"
+#include "modal/tolerances.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -44,8 +45,8 @@ double get_key(const RootSearch& search, const Roots& roots, int i) {
 /// First position at or after `wanted` where the list has a gap: what lies below it can be counted. -1: none yet.
 int find_cut(const RootSearch& search, const Roots& roots) {
   for (int c = std::max(search.wanted, 0); c < roots.size(); ++c) {
-    const double tolerance = c > 0 ? search.closeness(roots, c - 1) : 1e-8, below = get_key(search, roots, c - 1);
-    if (get_key(search, roots, c) - below > std::max(1e-6, 2 * tolerance) * std::abs(below + search.shift)) return c;
+    const double tolerance = c > 0 ? search.closeness(roots, c - 1) : kCloseness, below = get_key(search, roots, c - 1);
+    if (get_key(search, roots, c) - below > std::max(kGap, 2 * tolerance) * std::abs(below + search.shift)) return c;
   }
   return roots.size() >= search.num_available ? roots.size() : -1;
 }
@@ -55,7 +56,7 @@ int find_cut(const RootSearch& search, const Roots& roots) {
 int count_below_gap(const RootSearch& search, const Roots& roots, int cut) {
   const double top = get_key(search, roots, cut - 1), length = std::abs(top + search.shift);
   const double half = cut < roots.size() ? 0.5 * (get_key(search, roots, cut) - top) : 0.5 * length;
-  double step = length * std::clamp(cut > 0 ? 100 * search.roundoff(roots, cut - 1) : 0.0, 1e-3, 0.5);
+  double step = length * std::clamp(cut > 0 ? 100 * search.roundoff(roots, cut - 1) : 0.0, kCountStep, 0.5);
   int count = -1;
   for (int attempt = 0; attempt < 3 && count < cut; ++attempt, step *= 20) {
     count = std::max(count, search.count(top + std::min(step, half)));
@@ -67,11 +68,8 @@ int count_below_gap(const RootSearch& search, const Roots& roots, int cut) {
 /// Just above the last one, which shows no gap: hundreds of parts alike have a root as often.
 int count_copies(const RootSearch& search, const Roots& roots) {
   const double top = get_key(search, roots, roots.size() - 1);
-  return search.count(top + 1e-3 * std::abs(top + search.shift));
+  return search.count(top + kCountStep * std::abs(top + search.shift));
 }
-
-/// Of those missing among known ones: copies mostly, which a block of as many columns finds in a few solutions.
-constexpr int kMostAtOnce = 46;
 
 }  // namespace
 
@@ -116,7 +114,7 @@ RootSearchResult search_roots(const RootSearch& search, Roots& roots) {
       num_stuck = cut > best_cut || before > best_size ? 0 : num_stuck + 1;
       best_cut = std::max(best_cut, cut);
       best_size = std::max(best_size, before);
-      if (num_stuck < kStuck) search.solve(roots, std::min(missing, kMostAtOnce) + 2);
+      if (num_stuck < kStuck) search.solve(roots, std::min(missing, kMaxMissing) + kMaxMissingColumns - kMaxMissing);
       if (roots.size() > kept) continue;
       result.is_missing = cut >= 0;
       if (cut < 0 && search.counts && kept > 0) {  // the solver has no more to give: there are no more

@@ -24,6 +24,10 @@ struct Roots {
   void add(const VectorXd& values, MatrixXd vectors, bool by_magnitude = false);
 };
 
+/// Of roots that were missed so many are looked for at once, with two to show the gap: copies of a root mostly, which a
+/// block of as many columns finds in a few solutions.
+constexpr int kMaxMissing = 46, kMaxMissingColumns = kMaxMissing + 2;
+
 /// What is asked of one kind of eigenproblem. Positions count the roots alone, without known motions.
 struct RootSearch {
   int wanted = 0;

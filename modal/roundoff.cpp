@@ -1,4 +1,5 @@
 #include "modal/roundoff.hpp"
+#include "modal/tolerances.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,10 +9,11 @@
 namespace bough::modal::detail {
 
 double calc_cluster_tolerance(const Pencil& pencil, const VectorXd& x, double lambda) {
-  return std::clamp(20 * 2.2e-16 / std::max(std::abs(pencil.calc_relative_energy(x, lambda)), 1e-300), 1e-8, 1e-4);
+  return std::clamp(kRoundoffBound * kEpsilon / std::max(std::abs(pencil.calc_relative_energy(x, lambda)), kTiny),
+                    kCloseness, kMaxCloseness);
 }
 
-double calc_roundoff(double energy_share) { return 0.02 * 2.2e-16 / std::max(energy_share, 1e-300); }
+double calc_roundoff(double energy_share) { return kRoundoffSeen * kEpsilon / std::max(energy_share, kTiny); }
 
 double calc_roundoff(const Pencil& pencil, const VectorXd& x, double lambda) {
   return calc_roundoff(pencil.calc_relative_energy(x, lambda));
@@ -21,7 +23,7 @@ void warn_of_roundoff(const Pencil& pencil, const VectorXd& lambda, const Matrix
                       Diagnostics& diagnostics) {
   for (int j = num_rigid; j < lambda.size(); ++j) {
     const double error = calc_roundoff(pencil, X.col(j), lambda(j));
-    if (error < 1e-4) return;
+    if (error < kRoundoffWarning) return;
     diagnostics.warning("modal.roundoff", {},
                         "mode " + std::to_string(j + 1) + " is so soft on its mesh that roundoff may change its " +
                             "eigenvalue by a part in " + std::to_string(static_cast<long>(std::max(1.0, 1 / error))),
@@ -32,9 +34,10 @@ void warn_of_roundoff(const Pencil& pencil, const VectorXd& lambda, const Matrix
 int count_zeros(const Pencil& pencil, const Roots& found) {
   const auto energy = [&](int k) { return pencil.calc_relative_energy(found.X.col(k), found.value(k)); };
   int low = 0;
-  while (low < found.size() && energy(low) < 1e-12) ++low;
+  while (low < found.size() && energy(low) < kStrainedEnergy) ++low;
   for (int k = low; k > 0; --k)
-    if (k < found.size() ? std::abs(found.value(k - 1)) < 1e-3 * found.value(k) : energy(k - 1) < 1e-14) return k;
+    if (k < found.size() ? std::abs(found.value(k - 1)) < kZeroRatio * found.value(k) : energy(k - 1) < kZeroEnergy)
+      return k;
   return 0;
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "modal/normal_modes.hpp"
+#include "modal/tolerances.hpp"
 
 namespace bough::modal::detail {
 namespace {
@@ -12,7 +13,7 @@ namespace {
 /// Fewer below the range are found along with it in the time that factors with pivots take.
 constexpr int kFewBelow = 60;
 constexpr int kMostOfShift = 80;  ///< more are divided
-constexpr int kGuard = 4;  ///< beyond the edges, to show the gaps
+constexpr int kGuard = 4;         ///< beyond the edges, to show the gaps
 
 /// Between two eigenvalues, of which the larger may be out of all proportion.
 double find_middle(double below, double above) {
@@ -49,28 +50,30 @@ std::optional<NormalModes::Edge> NormalModes::find_upper_edge(const Edge& lower)
 }
 
 /// The roots between two edges, as many as their counts say; false where others are found. Many are divided.
-bool NormalModes::add_window(const Edge& lower, const Edge& upper, Roots& roots) const {
+bool NormalModes::add_window(const Edge& lower, const Edge& upper, Roots& roots, std::vector<SolverUse>& uses) const {
   const int inside = upper.count - lower.count;
   const double middle = find_middle(lower.mu, upper.mu);
   if (inside <= 0) return inside == 0;
-  if (inside > kMostOfShift && middle - lower.mu > 1e-6 * lower.mu) {
+  if (inside > kMostOfShift && middle - lower.mu > kGap * lower.mu) {
     const Edge between{middle, count_below(middle)};
-    return between.count >= 0 && add_window(lower, between, roots) && add_window(between, upper, roots);
+    return between.count >= 0 && add_window(lower, between, roots, uses) && add_window(between, upper, roots, uses);
   }
-  KrylovProblem krylov;
+  EigenProblem krylov;
   krylov.A = pencil_.K.get();
   krylov.B = pencil_.M.get();
   krylov.deflate = MatrixXd(pencil_.num_rows(), 0);
   krylov.shift = middle;
   krylov.tolerance = options_.tolerance;
   krylov.max_subspace = static_cast<int>((pencil_.M_diagonal.array() > 0).count()) - num_rigid();
-  krylov.method = KrylovMethod::OneVector;
+  krylov.solver = options_.solver;
   krylov.progress = options_.progress;
   krylov.num_wanted = inside + kGuard;
+  FactoredHandle factored;
+  krylov.kept = &factored;
   for (int attempt = 0; attempt < 3; ++attempt, krylov.num_wanted *= 2) {
-    KrylovResult result;
+    Extraction result;
     try {
-      result = solve_krylov(krylov);
+      result = extract(krylov);
     } catch (const ComputationError&) {
       return false;
     }
@@ -78,6 +81,7 @@ bool NormalModes::add_window(const Edge& lower, const Edge& upper, Roots& roots)
     std::vector<int> kept;
     for (int i = 0; i < result.values.size(); ++i)
       if (result.values(i) >= lower.mu && result.values(i) < upper.mu) kept.push_back(i);
+    add_use(result.by, uses);
     if (static_cast<int>(kept.size()) != inside) continue;
     roots.add(result.values(kept), result.vectors(Eigen::all, kept));
     return true;
@@ -99,15 +103,17 @@ std::optional<EigenPairs> NormalModes::find_window(Diagnostics& said) {
     return answer_nothing(said);
   }
   Roots roots{VectorXd(0), MatrixXd(pencil_.num_rows(), 0)};
-  if (!add_window(lower, *upper, roots)) return std::nullopt;
+  std::vector<SolverUse> uses;
+  if (!add_window(lower, *upper, roots, uses)) return std::nullopt;
   Found found{std::move(roots.value), std::move(roots.X), 0, 0, 0, number};
   int cut = number;
-  while (cut < inside && found.lambda(cut) - found.lambda(cut - 1) <= 1e-6 * found.lambda(cut)) ++cut;
+  while (cut < inside && found.lambda(cut) - found.lambda(cut - 1) <= kGap * found.lambda(cut)) ++cut;
   Diagnostics own;
   if (cut > number) warn_of_cut_root(cut - number, own);
   if (number < asked) warn_of_fewer(number, asked, true, own);
   auto pairs = finish_pairs(std::move(found), options_.check_inertia ? range_.first + cut : -1, own);
-  if (!(overlap_ < 1e-6 && pairs.residual.maxCoeff() <= fe::kResidualError)) return std::nullopt;
+  if (!(overlap_ < kOverlap && pairs.residual.maxCoeff() <= fe::kResidualError)) return std::nullopt;
+  pairs.solvers = std::move(uses);
   range_.last = range_.first + number;
   for (const auto& item : own.items()) said.add(item);
   return pairs;

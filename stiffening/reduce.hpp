@@ -30,6 +30,7 @@ struct ReduceOptions {
   std::function<void(const std::string& stage)> progress;
   fe::ElementFactory elements;                       ///< instead of the deck's own: matrices that are given
   std::function<MatrixXd(const fe::System&)> modes;  ///< num_gdofs x n in basic, instead of solving for them
+  std::string solver;                                ///< EPS type of SLEPc for the modes (modal::find_eps_type)
   BasisCheck* check = nullptr;                       ///< gets what check_basis() finds (basis_check.hpp)
   /// Loads (num_gdofs x m, basic) that get residual vectors beside those of the spec; adds their names.
   std::function<MatrixXd(const fe::Model&, std::vector<std::string>& names)> residual_loads;

@@ -49,6 +49,7 @@ void Reduction::set_modes(const fe::System& system, const StaticSolve& solve) {
   const fe::Model& model = system.model;
   auto options = make_basis_options(spec_);
   options.factor = factor_;
+  options.solver = options_.solver;
   std::vector<std::string> names;
   options.residual_loads = collect_residual_loads(model, spec_, loads_, names);
   if (options_.residual_loads) {

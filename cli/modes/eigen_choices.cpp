@@ -30,6 +30,7 @@ modal::EigenOptions choose_eigen_options(const ModesOptions& options, const reco
                         "add the card or correct the id; --number, --min-hz and --max-hz go before it");
   eigen.num_modes = 0;
   eigen.check_inertia = !options.no_check;
+  if (!options.solver.empty()) eigen.solver = modal::find_eps_type(options.solver);
   if (card) {
     eigen.num_modes = card->is_lowest_only && options.max_hz ? 0 : card->num_modes;
     eigen.min_hz = card->f1;

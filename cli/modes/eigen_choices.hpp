@@ -18,6 +18,7 @@ struct ModesOptions : CommonOptions {
   std::optional<double> min_hz, max_hz;
   bool buckling = false;
   bool no_check = false;
+  std::string solver;
   std::string vtu, compare;
   bool energies = false;
   int about_grid = 0;

@@ -12,6 +12,7 @@
 #include "cli/common/options.hpp"
 #include "cli/common/ranks.hpp"
 #include "cli/common/solution.hpp"
+#include "cli/common/solver_option.hpp"
 #include "cli/common/subcase_failures.hpp"
 #include "cli/common/text_file.hpp"
 #include "cli/common/usage_text.hpp"
@@ -79,6 +80,7 @@ std::string name_output(const std::string& path, int subcase, bool is_first) {
 struct Solved {
   records::ModesResult result;
   std::string norm;
+  std::vector<modal::SolverUse> solvers;
   std::vector<std::string> loads, unused;  ///< of the residual vectors; loads that brought none
 };
 
@@ -149,6 +151,7 @@ Solved solve_task(const ModesOptions& options, const records::DynamicDeck& deck,
   extras.has_shapes = !options.output.empty() || !options.vtu.empty() || !options.compare.empty();
   solved.result = modal::make_modes_result(model, pairs, options.buckling, extras);
   solved.norm = norm.kind;
+  solved.solvers = pairs.solvers;
   std::fill_n(solved.result.kind.end() - num_residual, num_residual, records::ModeKind::Residual);
   return solved;
 }
@@ -225,10 +228,10 @@ int run_modes(const ModesOptions& options) {
     if (tasks.size() > 1) text += fmt::format("{}subcase {}\n\n", is_first ? "" : "\n", result.subcase);
     if (task.buckling) text += modal::describe_load(task.buckling->statics) + "\n\n";
     text += (options.buckling ? format_buckling(result) : format_modes(result)) + "\n" +
-            format_health(result, norm, options.buckling) +
+            format_health(result, solved.solvers, norm, options.buckling) +
             format_residual_vectors(result, solved.loads, solved.unused);
     text += format_effective_mass_about(result) + format_energies(result);
-    auto one = make_json(result, norm, options.buckling);
+    auto one = make_json(result, solved.solvers, norm, options.buckling);
     if (!solved.loads.empty()) one["residual_vectors"] = {{"loads", solved.loads}, {"unused", solved.unused}};
     if (!options.compare.empty() && console.is_root()) {
       Diagnostics of_other;
@@ -283,6 +286,7 @@ void add_modes(CLI::App& app, Action& action) {
   auto* buckling =
       verb->add_flag("--buckling", o->buckling, "Load factors of the static subcase instead of normal modes");
   verb->add_flag("--no-check", o->no_check, "Leave out the count of eigenvalues that proves that no mode was missed");
+  add_solver_option(*verb, o->solver);
   verb->add_flag("--ese,--energies", o->energies,
                  "Strain and kinetic energy of elements and properties in each mode: table, HDF5, VTU")
       ->excludes(buckling);

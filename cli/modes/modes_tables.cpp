@@ -8,6 +8,7 @@
 
 #include "cli/common/console.hpp"
 #include "cli/common/deck_tables.hpp"
+#include "cli/common/solver_option.hpp"
 
 namespace bough::cli {
 namespace {
@@ -51,7 +52,8 @@ std::string format_buckling(const records::ModesResult& r) {
   return table.to_text();
 }
 
-std::string format_health(const records::ModesResult& r, const std::string& norm, bool buckling) {
+std::string format_health(const records::ModesResult& r, const std::vector<modal::SolverUse>& solvers,
+                          const std::string& norm, bool buckling) {
   const auto n = count_eigenpairs(r);
   std::string text = buckling ? "" : fmt::format("rigid-body modes: {}\n", r.num_rigid_modes);
   if (norm == "MAX" || norm == "POINT")
@@ -71,6 +73,7 @@ std::string format_health(const records::ModesResult& r, const std::string& norm
     text += "Sturm count: none, or none to be trusted\n";
   }
   if (n > 0) text += fmt::format("largest residual: {:.1e}\n", r.residual.head(n).maxCoeff());
+  text += fmt::format("eigensolver: {}\n", modal::describe_uses(solvers));
   return text;
 }
 
@@ -107,12 +110,14 @@ nlohmann::json list_modes(const records::ModesResult& r, bool buckling) {
 
 }  // namespace
 
-nlohmann::json make_json(const records::ModesResult& r, const std::string& norm, bool buckling) {
+nlohmann::json make_json(const records::ModesResult& r, const std::vector<modal::SolverUse>& solvers,
+                         const std::string& norm, bool buckling) {
   nlohmann::json json{{"subcase", r.subcase},
                       {"mass_properties", to_json(r.mass_properties)},
                       {"num_rigid_modes", r.num_rigid_modes},
                       {"inertia_count", r.inertia_count},
                       {"norm", norm},
+                      {"solvers", to_json(solvers)},
                       {"modes", list_modes(r, buckling)},
                       {"residual", to_json_list(r.residual)}};
   if (buckling) {

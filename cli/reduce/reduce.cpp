@@ -13,6 +13,7 @@
 #include "cli/common/options.hpp"
 #include "cli/common/ranks.hpp"
 #include "cli/common/solution.hpp"
+#include "cli/common/solver_option.hpp"
 #include "cli/common/system_files.hpp"
 #include "cli/common/text_file.hpp"
 #include "cli/common/usage_text.hpp"
@@ -49,6 +50,7 @@ struct ReduceVerbOptions : CommonOptions {
   double damping = -1;
   std::vector<std::string> matrices;
   bool force_outside = false;
+  std::string solver;
   std::string loads_deck;
   int loads_set = nastran::kFirstInertialSet;
 };
@@ -167,7 +169,8 @@ std::string format_modes_check(const records::FlexBody& body, const modal::bases
           : fmt::format("{} eigenvalues up to the highest{}, {} found: none missed{}", check.inertia_count,
                         is_held ? " with the interface held" : "", check.num_found,
                         check.inertia_count > check.num_found ? " (the others are copies of the last root)" : "");
-  return fmt::format("Sturm count: {}\nlargest residual of a mode: {:.1e}\n", count, check.residual);
+  return fmt::format("Sturm count: {}\nlargest residual of a mode: {:.1e}\neigensolver: {}\n", count, check.residual,
+                     modal::describe_uses(check.solvers));
 }
 
 std::string format_summary(const records::FlexBody& body, const stiffening::BasisCheck& basis,
@@ -229,6 +232,7 @@ int run_reduce(const ReduceVerbOptions& o) {
   options.progress = [&](const std::string& stage) { console.show_progress("reduce: " + stage); };
   stiffening::BasisCheck basis;
   options.check = &basis;
+  if (!o.solver.empty()) options.solver = modal::find_eps_type(o.solver);
   const auto [body, check] = reduce_body(spec, options, diagnostics);
   console.end_progress();
   console.print(diagnostics);
@@ -251,7 +255,8 @@ int run_reduce(const ReduceVerbOptions& o) {
     if (basis.modes.num_found > 0)
       json["modes_check"] = {{"found", basis.modes.num_found},
                              {"inertia_count", basis.modes.inertia_count},
-                             {"residual", basis.modes.residual}};
+                             {"residual", basis.modes.residual},
+                             {"solvers", to_json(basis.modes.solvers)}};
     if (check) json["check"] = {{"frequency_hz", to_json_list(check->frequency_hz)}, {"mac", to_json(check->mac)}};
     console.print_data(json.dump(2) + "\n");
   } else {
@@ -271,6 +276,7 @@ void add_reduce(CLI::App& app, Action& action) {
   verb->add_option("file", o->file, "Body file (.toml) or Nastran deck; may be missing with --matrices");
   verb->add_option("-n,--modes,--number", o->num_modes, "Number of elastic modes")->check(make_positive());
   verb->add_option("--max-hz", o->max_hz, "Highest frequency wanted");
+  add_solver_option(*verb, o->solver);
   verb->add_option("--name", o->name, "Name of the body (default: the file's)");
   verb->add_flag("--free", o->free, "Free-free modes: no node carries the frame, SPC sets are left out");
   verb->add_option("--interface", o->interface_nodes,

@@ -52,15 +52,9 @@ MatrixXd calc_interface_loads(const fe::Model& model, const Partition& part) {
 
 /// One basis of each repeated root and the sign of each vector, so that they do not depend on roundoff.
 MatrixXd make_canonical(const fe::Model& model, VectorXd& lambda, MatrixXd& Phi) {
-  const VectorXd weights = detail::calc_basis_weights(model);
   MatrixXd Q = MatrixXd::Identity(lambda.size(), lambda.size());
-  for (int a = 0, b = 0; a < lambda.size(); a = b) {
-    b = detail::find_cluster_end(lambda, a, 1e-8, 0);
-    if (b == a + 1) continue;
-    Q.block(a, a, b - a, b - a) = detail::calc_cluster_rotation(weights, MatrixXd(Phi.middleCols(a, b - a)));
-    lambda.segment(a, b - a).setConstant(lambda.segment(a, b - a).mean());
-  }
-  Phi = Phi * Q;
+  detail::make_canonical(
+      detail::calc_basis_weights(model), [](const MatrixXd& Y) { return Y; }, lambda, Phi, &Q);
   detail::fix_signs(Phi);
   return Q;
 }
@@ -90,11 +84,12 @@ Basis calc_free_interface_basis(const fe::System& system, const BasisOptions& op
   if (!options.max_hz) eigen.num_modes = std::max(eigen.num_modes, 1);
   eigen.max_hz = options.max_hz;
   eigen.factor = options.factor;
+  eigen.solver = options.solver;
   const auto pairs = calc_normal_modes(system, eigen, diagnostics);
   basis.num_rigid = pairs.num_rigid;
   basis.num_massless = pairs.num_massless;
   const auto num_pairs = static_cast<int>(pairs.lambda.size());
-  if (num_pairs > 0) basis.check = {num_pairs, pairs.inertia_count, pairs.residual.maxCoeff()};
+  if (num_pairs > 0) basis.check = {num_pairs, pairs.inertia_count, pairs.residual.maxCoeff(), pairs.solvers};
   auto kept = pairs.lambda.size() - pairs.num_rigid;
   if (options.num_modes == 0 && !options.max_hz) kept = 0;
   // A massless rigid motion takes none of the modes asked for: what came in its place is cut again.
@@ -272,7 +267,7 @@ Basis calc_craig_bampton_basis(const fe::System& system, const BasisOptions& opt
   basis.boundary = fixed.partition().boundary;
   const auto nb = static_cast<Eigen::Index>(basis.boundary.size());
   const MatrixXd Psi = fixed.calc_constraint_modes();
-  const auto modes = fixed.calc_modes(options.num_modes, options.max_hz, diagnostics);
+  const auto modes = fixed.calc_modes(options.num_modes, options.max_hz, diagnostics, options.solver);
   basis.check = modes.check;
   // A load is carried by the interface, which the constraint modes hold exactly, and by the interior with it held.
   MatrixXd F = options.residual_loads.rows() == 0 ? MatrixXd(model.num_gdofs(), 0) : options.residual_loads;

@@ -13,6 +13,7 @@
 #include "modal/canonical.hpp"
 #include "modal/pencil.hpp"
 #include "modal/pencil_solver.hpp"
+#include "modal/tolerances.hpp"
 
 namespace bough::modal::bases {
 
@@ -101,14 +102,8 @@ MatrixXd FixedInterface::solve(const MatrixXd& F_g) const {
 void FixedInterface::Impl::make_canonical(VectorXd& lambda, MatrixXd& X) const {
   const MatrixXd G = fe::calc_inner_products(X, fe::multiply(M_ii.get(), X));
   detail::orthonormalize_ascending(G, X);
-  const VectorXd weights = detail::calc_basis_weights(model);
-  for (int a = 0, b = 0; a < lambda.size(); a = b) {
-    b = detail::find_cluster_end(lambda, a, 1e-8, 0);
-    if (b == a + 1) continue;
-    const MatrixXd Y = X.middleCols(a, b - a);
-    X.middleCols(a, b - a) = Y * detail::calc_cluster_rotation(weights, expand(Y));
-    lambda.segment(a, b - a).setConstant(lambda.segment(a, b - a).mean());
-  }
+  detail::make_canonical(
+      detail::calc_basis_weights(model), [this](const MatrixXd& Y) { return expand(Y); }, lambda, X);
 }
 
 int FixedInterface::Impl::count_below(double hz) const {
@@ -127,14 +122,15 @@ detail::RootSearchResult FixedInterface::Impl::find_roots(int wanted, detail::Pe
   search.wanted = wanted;
   search.num_available = solver.num_available();
   search.solve = [&](detail::Roots& known, int number) { solver.solve(0, number, 0, false, known); };
-  search.closeness = [](const detail::Roots&, int) { return 1e-8; };
+  search.closeness = [](const detail::Roots&, int) { return detail::kCloseness; };
   search.roundoff = [](const detail::Roots&, int) { return 0.0; };
   search.count = [&](double mu) { return detail::count_roots_below(K_ii.get(), M_ii.get(), mu); };
   solver.solve(0, wanted + 2, 2, false, roots);
   return detail::search_roots(search, roots);
 }
 
-ModeSet FixedInterface::calc_modes(int number, std::optional<double> max_hz, Diagnostics& diagnostics) const {
+ModeSet FixedInterface::calc_modes(int number, std::optional<double> max_hz, Diagnostics& diagnostics,
+                                   const std::string& eps_type) const {
   const Impl& in = *impl_;
   const auto size = static_cast<int>(in.part.interior.size());
   ModeSet set{VectorXd(0), MatrixXd(in.model.num_gdofs(), 0), {}};
@@ -151,6 +147,7 @@ ModeSet FixedInterface::calc_modes(int number, std::optional<double> max_hz, Dia
   problem.kinds = in.kinds;
   problem.rigid.resize(size, 0);
   problem.factor = &*in.factor;
+  problem.solver = eps_type;
   detail::PencilSolver solver(problem, wanted);
   detail::Roots roots{VectorXd(0), MatrixXd(size, 0)};
   const auto result = in.find_roots(wanted, solver, roots);
@@ -168,7 +165,7 @@ ModeSet FixedInterface::calc_modes(int number, std::optional<double> max_hz, Dia
       fe::calc_residual_scale(K_diagonal, problem.M_diagonal, roots.value), roots.X,
       fe::multiply(in.K_ii.get(), roots.X), fe::multiply(in.M_ii.get(), roots.X) * roots.value.asDiagonal(), in.kinds);
   fe::check_residuals(residual, "mode with the interface held", diagnostics);
-  set.check = {result.cut, result.count, residual.maxCoeff()};
+  set.check = {result.cut, result.count, residual.maxCoeff(), solver.get_uses()};
   set.lambda = roots.value;
   set.Phi = in.expand(roots.X);
   detail::fix_signs(set.Phi);

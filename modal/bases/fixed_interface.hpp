@@ -14,6 +14,7 @@ struct ModesCheck {
   int num_found = 0;       ///< up to the highest that is complete with its copies, rigid motions included
   int inertia_count = -1;  ///< of the factor (Sylvester), as many where none is missed; -1: none to be trusted
   double residual = 0;     ///< the largest
+  std::vector<SolverUse> solvers;
 };
 
 /// Modes on the g-set with their eigenvalues; unit generalized mass.
@@ -38,7 +39,9 @@ class FixedInterface {
   MatrixXd calc_constraint_modes() const;
   /// (K_ii - λ M_ii) φ = 0, φᵀMφ = 1: the first `number`, or with max_hz and number 0 all below it. No mode is missed
   /// (Sylvester count). Repeated roots and signs as calc_normal_modes. Throws modal.missed-modes.
-  ModeSet calc_modes(int number, std::optional<double> max_hz, Diagnostics& diagnostics) const;
+  /// `solver`: the EPS type of SLEPc (find_eps_type); empty: the one that suits.
+  ModeSet calc_modes(int number, std::optional<double> max_hz, Diagnostics& diagnostics,
+                     const std::string& solver = {}) const;
   /// u_g (num_gdofs x m) for loads in basic on the g-set with the interface held.
   MatrixXd solve(const MatrixXd& F_g) const;
 

@@ -141,6 +141,27 @@ class Modes(ProgramTest):
         self.assertEqual([mode["load_factor"] for mode in data["modes"]], data["load_factor"])
         euler = math.pi**2 * 700 / 10**2
         self.assertAlmostEqual(data["load_factor"][0] / euler, 1, delta=1e-5)
+        self.assertEqual([s["eps"] for s in data["solvers"]], ["krylovschur"])
+
+    def test_eigensolver_is_named_and_chosen(self):
+        self.write("beam.bdf", BEAM)
+        options = ["modes", "beam.bdf", "--mass", "consistent", "-n", 3]
+        plain = json.loads(self.bough(*options, "--json").stdout)
+        self.assertEqual(set(plain["solvers"][0]), {"eps", "st", "factor", "solutions"})
+        self.assertIn("eigensolver: SLEPc bough-low-rank, ST bough-factor, LL", self.bough(*options).stdout)
+        for name, eps in [("block-lanczos", "bough-block-lanczos"), ("lanczos", "lanczos"), ("lapack", "lapack")]:
+            other = json.loads(self.bough(*options, "--solver", name, "--json").stdout)
+            self.assertEqual(other["solvers"][0]["eps"], eps)
+            np.testing.assert_allclose(other["eigenvalue"], plain["eigenvalue"], rtol=1e-9)
+        self.fails(1, *options, "--solver", "lanczoss", says=["lanczoss", "block-lanczos"], error="modal.unknown-solver")
+        self.write("column.bdf", make_column())
+        self.fails(3, "modes", "column.bdf", "--buckling", "--solver", "low-rank", says=["low rank"],
+                   error="modal.unsuited-solver")
+
+    def test_eigensolver_of_petsc_options(self):
+        self.write("beam.bdf", BEAM)
+        result = self.bough("modes", "beam.bdf", "-n", 3, "--json", env={"PETSC_OPTIONS": "-eps_type arnoldi"})
+        self.assertEqual(json.loads(result.stdout)["solvers"][0]["eps"], "arnoldi")
 
 
 class Reduce(ProgramTest):
@@ -153,6 +174,13 @@ class Reduce(ProgramTest):
             for path in ["/modes/eigenvalue", "/modes/phi", "/stiffening/kg_inertial", "/stiffening/kg_external", "/rigid/inertia"]:
                 np.testing.assert_array_equal(a[path][:], b[path][:])
             self.assertEqual(a.attrs["format"], "bough-flexbody")
+
+    def test_eigensolver(self):
+        self.write("beam.bdf", BEAM)
+        for interface in [], ["--interface", 3]:
+            result = self.bough("reduce", "beam.bdf", "--modes", 2, *interface, "--solver", "block-lanczos", "--json")
+            self.assertEqual([s["eps"] for s in json.loads(result.stdout)["modes_check"]["solvers"]], ["bough-block-lanczos"])
+        self.assertIn("eigensolver: SLEPc bough-low-rank", self.bough("reduce", "beam.bdf", "--modes", 2, "-o", "b.h5").stdout)
 
     def test_free_body_with_loads_and_full(self):
         self.write("beam.bdf", BULKY)

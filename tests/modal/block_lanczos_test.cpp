@@ -10,7 +10,8 @@
 #include "fe/linear/factor.hpp"
 #include "fe/linear/low_rank_sum.hpp"
 #include "fe/linear/ordering.hpp"
-#include "modal/krylov.hpp"
+#include "modal/eps_types.hpp"
+#include "modal/extraction.hpp"
 #include "modal/pencil.hpp"
 #include "tests/support/beam_decks.hpp"
 
@@ -21,8 +22,7 @@ using Eigen::MatrixXd;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 using modal::detail::BlockLanczosProblem;
-using modal::detail::KrylovMethod;
-using modal::detail::KrylovProblem;
+using modal::detail::EigenProblem;
 using modal::detail::solve_block_lanczos;
 
 /// A = diag(a), B = diag(b): λ_i = a_i / b_i, θ_i = b_i / a_i.
@@ -159,16 +159,16 @@ void expect_like_krylov_schur(bool lumped, double shift, bool held) {
   const auto model = make_pair(lumped, held, diagnostics);
   const fe::System system(model);
   const modal::detail::Pencil pencil(system);
-  KrylovProblem problem;
+  EigenProblem problem;
   problem.A = pencil.K.get();
   problem.B = pencil.M.get();
   problem.shift = shift;
   problem.num_wanted = 14;
   problem.deflate.resize(model.num_fdofs(), 0);
-  problem.method = KrylovMethod::OneVector;
-  const auto one = modal::detail::solve_krylov(problem);
-  problem.method = KrylovMethod::Blocks;
-  const auto blocks = modal::detail::solve_krylov(problem);
+  problem.solver = "krylovschur";
+  const auto one = modal::detail::extract(problem);
+  problem.solver = modal::detail::kBlockLanczos;
+  const auto blocks = modal::detail::extract(problem);
   ASSERT_GE(one.values.size(), 14);
   ASSERT_EQ(blocks.values.size(), 14);
   VectorXd expected = one.values;

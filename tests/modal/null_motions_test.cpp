@@ -5,7 +5,7 @@
 
 #include "formats/nastran/reader.hpp"
 #include "modal/eigen.hpp"
-#include "modal/krylov.hpp"
+#include "modal/extraction.hpp"
 #include "modal/mode_range.hpp"
 #include "modal/null_motions.hpp"
 

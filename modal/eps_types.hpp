@@ -1,0 +1,50 @@
+#pragma once
+/// \file Eigensolvers of Bough as EPS types of SLEPc: "bough-block-lanczos" and "bough-low-rank".
+///
+/// Internal to modal. Both ask for an ST "bough-factor" (factored_transform.hpp), whose operator they apply to blocks
+/// of vectors. EPS keeps what it has a place for (number, tolerance, target, monitors, eigenvalues, the reason of the
+/// end); what it has none for is set by the functions below.
+#include <slepceps.h>
+
+#include <Eigen/SparseCore>
+
+#include "modal/factored_transform.hpp"
+
+namespace bough::modal::detail {
+
+using Eigen::MatrixXd;
+
+inline constexpr const char* kBlockLanczos = "bough-block-lanczos";
+inline constexpr const char* kLowRank = "bough-low-rank";
+
+/// Registers both; again is harmless.
+void register_eps_types();
+
+bool is_own_type(EPS eps);
+
+struct BlockLanczosSettings {
+  MatrixXd start;                 ///< as wide as the blocks; rows of the operator, as `deflation`
+  MatrixXd deflation;             ///< B-orthonormal eigenvectors that are known
+  int num_guard = 0;              ///< of the wanted ones, the last: may be rough
+  int max_subspace = 0;           ///< vectors before a restart
+  bool positive_only = false;     ///< θ > 0 from the largest down, else by magnitude
+  std::function<void()> release;  ///< called before the first block: A is needed no more
+};
+void set_settings(EPS eps, BlockLanczosSettings settings);
+
+struct LowRankSettings {
+  Mat K = nullptr;                                 ///< of the Rayleigh quotients
+  const Eigen::SparseMatrix<double>* C = nullptr;  ///< B = C Cᵀ; outlives the solution
+  MatrixXd deflation;                              ///< B-orthonormal eigenvectors that are known
+  bool projects_deflation = false;                 ///< out of every solution (LowRankProblem)
+};
+void set_settings(EPS eps, LowRankSettings settings);
+
+/// Moves the eigenvectors out, in the order of EPS' own array of eigenvalues (raw order): no copy of the largest thing
+/// in memory, as EPSGetEigenvector would make. Rows of the operator.
+MatrixXd take_vectors(EPS eps, Eigen::VectorXd& values);
+
+/// What a function of ours threw within SLEPc; null: nothing.
+std::exception_ptr get_failure(EPS eps);
+
+}  // namespace bough::modal::detail

@@ -1,0 +1,118 @@
+#pragma once
+/// \file Thresholds that decide in eigensolutions: what each is relative to, and what goes wrong on either side.
+///
+/// Internal to modal. Relative energy is |xᵀKx| / Σ K_ii x_i² (Pencil::calc_relative_energy), free of units: about
+/// 1e-16 for a rigid motion. Roundoff is 2.2e-16 (kEpsilon).
+namespace bough::modal::detail {
+
+inline constexpr double kEpsilon = 2.2e-16;
+inline constexpr double kTiny = 1e-300;  ///< in place of zero below a fraction
+
+// ---- Motions without strain
+
+/// Relative energy of a motion without strain. Above: roundoff of sums over a few hundred entries passes for strain,
+/// and rigid motions are searched for again. Below: modes of a beam of 1000 bars (1e-12) pass for rigid ones.
+inline constexpr double kStrainlessEnergy = 1e-13;
+/// Relative energy from which on a vector has strain for sure; between the two the forces decide.
+inline constexpr double kStrainedEnergy = 1e-12;
+/// Relative energy of the softest rigid motion from which on supports hold the body: one pass suffices.
+inline constexpr double kHeldEnergy = 1e-6;
+/// Relative energy of a zero where no root follows that it could be compared with.
+inline constexpr double kZeroEnergy = 1e-14;
+/// Zero over the next eigenvalue, where there is one: larger ratios are soft modes.
+inline constexpr double kZeroRatio = 1e-3;
+/// Square of the relative force in the rows of K x (1e-9 of the sum of their terms).
+inline constexpr double kForcelessSquare = 1e-18;
+/// Force that counts as a term too, for vectors of unit length under diag K that an iteration made.
+inline constexpr double kIterationForce = 1e-6;
+/// Of diag K, added to make a singular K definite: digits of K above, no factor below.
+inline constexpr double kNullShift = 1e-13;
+/// Relative energy below which a model without supports counts as singular for the low-rank solver; with a shift,
+/// mechanisms have the energy of their mass: little, but not roundoff.
+inline constexpr double kShiftedMechanismEnergy = 3e-16;
+
+// ---- Motions without mass
+
+/// Of the largest generalized mass, or of the sum of parts: a motion with less has none. Above: a light part loses its
+/// mode of 0 Hz. Below: roundoff of masses that cancel becomes a mode with a value of anything.
+inline constexpr double kMasslessShare = 1e-13;
+/// The same of the mass that dofs without stiffness share (RBE3, MPC), before and after rigid motions are taken out.
+inline constexpr double kLooseMassShare = 1e-12, kLooseRestShare = 1e-10;
+/// Of a basic motion's own mass, what the motions before it leave: less is none of its own.
+inline constexpr double kOwnMassShare = 1e-8;
+/// Masses within this ratio keep their digits in one round of the split by mass.
+inline constexpr double kMassRound = 1e-6;
+/// Of the largest mass per stiffness of a dof.
+inline constexpr double kDofMassShare = 1e-18;
+/// Relative size of the eigenvalues of a Gram matrix of trial motions that are dependent.
+inline constexpr double kDependentMotions = 1e-10, kDependentPolynomials = 1e-9;
+
+// ---- The shift of a free body
+
+/// Of the first eigenvalue as it is estimated.
+inline constexpr double kShiftOfEstimate = 0.01;
+/// Shift over the first eigenvalue with strain. Above: the vectors lose digits. Below: motions without strain get into
+/// them. Outside it becomes kShiftOfFirst of it.
+inline constexpr double kMinShift = 1e-5, kMaxShift = 10, kShiftOfFirst = 0.1;
+
+// ---- Repeated eigenvalues, gaps, ends of ranges (relative to the eigenvalue)
+
+/// Eigenvalues closer than this are copies of one. Above: close modes are turned into each other. Below: the basis of
+/// repeated ones depends on roundoff. Soft modes have larger ones, up to kMaxCloseness (calc_cluster_tolerance).
+inline constexpr double kCloseness = 1e-8, kMaxCloseness = 1e-4;
+/// Roundoff of an eigenvalue over kEpsilon / relative energy: bound, and what is seen.
+inline constexpr double kRoundoffBound = 20, kRoundoffSeen = 0.02;
+/// Gap behind the last mode that the count can look into.
+inline constexpr double kGap = 1e-6;
+/// The count is made so far above the last mode, and 20 times as far where it falls short.
+inline constexpr double kCountStep = 1e-3;
+/// An eigenvalue this close to the end of a range is in it.
+inline constexpr double kRangeEnd = 1e-9;
+/// Copies of the last mode that are left out are reported up to this distance.
+inline constexpr double kCutRoot = 3e-4;
+/// μ is moved so much where a pivot of K - μM, or of K + λK_G, is zero.
+inline constexpr double kMoveOfPivot = 1e-9, kMoveOfLoadFactor = 1e-6;
+
+// ---- What a solution is worth
+
+/// Of the largest 1/(λ - σ): smaller ones have no digit, and beyond the rank of B are roundoff (1.5e-15 was seen).
+inline constexpr double kNoDigit = 1e-14;
+/// The same of buckling, whose θ = 0 are dofs that no internal force stiffens.
+inline constexpr double kNoLoadFactor = 1e-12;
+/// Relative residual of block Lanczos from 5,000 rows on: values are right to its square, and roundoff of K alone turns
+/// the vectors further. Not where a shift stands for supports: what is left of stiff parts in a vector counts by their
+/// stiffness over the shift.
+inline constexpr double kBlockTolerance = 1e-10;
+/// Of preconditioned eigensolvers, which stop by |Kx - λMx|: their values are right to its square.
+inline constexpr double kPreconditionedTolerance = 1e-8;
+/// Largest entry of XᵀMX - I of vectors as they are found. Above it two of them may be one.
+inline constexpr double kOverlap = 1e-6;
+/// Largest entry of ΦᵀMΦ - I summed over elements before the vectors are made orthonormal by it.
+inline constexpr double kElementMassError = 1e-9;
+/// Roundoff of an eigenvalue from which on it is reported, and up to which a second answer may take the place of a
+/// first.
+inline constexpr double kRoundoffWarning = 1e-4, kVagueRoundoff = 1e-2;
+/// Error of soft modes up to which no more of them are found.
+inline constexpr double kSureError = 1e-6;
+/// Negative eigenvalues over the largest magnitude that are no roundoff.
+inline constexpr double kNegative = 1e-12;
+
+// ---- Block Lanczos
+
+/// Length of a direction of a new block over the largest so far, and over one in later passes: less is roundoff of the
+/// basis, and at length one what it has where nothing has mass would be all of it.
+inline constexpr double kDependentBlock = 1e-12, kDependentColumn = 1e-6;
+/// Residual over the largest θ: roundoff that a restart spreads over the basis; at most kMaxFloor of θ itself.
+inline constexpr double kResidualFloor = 1e-14, kMaxFloor = 1e-9;
+/// Guard vectors may have this residual where their θ is farther than kGuardGap from the last wanted one.
+inline constexpr double kGuardResidual = 1e-4, kGuardGap = 1e-3;
+
+// ---- Mass of low rank
+
+/// Pivot of the mass scaled to a unit diagonal that ends its factor, entry that is dropped, and diagonal that says that
+/// the mass is not semi-definite.
+inline constexpr double kRankPivot = 1e-12, kRankEntry = 1e-17, kRankNegative = -1e-8;
+/// How far above the first eigenvalue of a stage the digits of CᵀA⁻¹C suffice.
+inline constexpr double kStageReach = 1e6;
+
+}  // namespace bough::modal::detail
