@@ -16,6 +16,7 @@
 #include "cli/common/system_files.hpp"
 #include "cli/common/text_file.hpp"
 #include "embed/bough.h"
+#include "embed/dependencies.hpp"
 #include "embed/fmi_variables.hpp"
 #include "embed/model.hpp"
 #include "formats/flat/flex_body.hpp"
@@ -210,6 +211,19 @@ std::vector<fmu::Variable> list_variables(const embed::Model& model, bough_kind 
   return variables;
 }
 
+/// Dependencies as value references.
+void set_dependencies(const std::optional<embed::Dependencies>& found, fmu::Variable& variable) {
+  if (!found) return;
+  std::vector<std::uint32_t> references;
+  if (found->on_time) references.push_back(fmu::kTimeReference);
+  for (const int i : found->inputs)
+    references.push_back(fmi::make_reference(fmi::VariableKind::Input, static_cast<std::size_t>(i)));
+  for (const int i : found->states)
+    references.push_back(fmi::make_reference(fmi::VariableKind::State, static_cast<std::size_t>(i)));
+  variable.dependencies = std::move(references);
+  variable.is_linear = found->is_constant;
+}
+
 /// Sensors, or the components of the channels that are named, in the order of the names.
 std::vector<fmu::Variable> choose_outputs(const embed::Model& model, const std::vector<std::string>& chosen,
                                           const std::string& file) {
@@ -277,6 +291,15 @@ std::string export_fmu(const std::string& file, const std::string& output, const
   d.derivatives = list_variables(model, BOUGH_STATES, fmi::VariableKind::Derivative);
   for (auto& variable : d.derivatives) variable.name = "der(" + variable.name + ")";
   d.event_indicators = list_variables(model, BOUGH_EVENTS, fmi::VariableKind::EventIndicator);
+  const embed::DependencyGraph graph(model.loaded().system, spec);
+  for (auto& output : d.outputs)
+    set_dependencies(graph.find_of_channel((*model.list(BOUGH_OUTPUTS))[output.reference & fmi::kMaxIndex].channel),
+                     output);
+  for (std::size_t i = 0; i < d.derivatives.size(); ++i)
+    set_dependencies(graph.find_of_derivative(static_cast<int>(i)), d.derivatives[i]);
+  for (std::size_t i = 0; i < d.event_indicators.size(); ++i)
+    set_dependencies(graph.find_of_event_function(static_cast<int>(i), static_cast<int>(d.event_indicators.size())),
+                     d.event_indicators[i]);
 
   const std::string folder = options.version == 2 ? "binaries/linux64/" : "binaries/x86_64-linux/";
   std::vector<fmu::ArchiveEntry> entries{

@@ -1,8 +1,10 @@
 #include "formats/fmu/model_description.hpp"
 #include "base/xml_text.hpp"
 
+#include <algorithm>
 #include <cctype>
 #include <charconv>
+#include <map>
 #include <set>
 
 namespace bough::fmu {
@@ -38,6 +40,20 @@ std::string make_experiment(const ModelDescription& m) {
   return "  <DefaultExperiment" + attribute("startTime", number(m.start)) + attribute("stopTime", number(m.stop)) +
          attribute("tolerance", number(m.tolerance)) + (m.step > 0 ? attribute("stepSize", number(m.step)) : "") +
          "/>\n";
+}
+
+/// \param get_index  number of a reference in lists of dependencies; nullopt: not among the variables.
+template <class GetIndex>
+std::string make_dependencies(const Variable& v, const GetIndex& get_index) {
+  if (!v.dependencies) return "";
+  std::vector<std::uint32_t> indices;
+  for (const auto reference : *v.dependencies)
+    if (const auto index = get_index(reference)) indices.push_back(*index);
+  std::sort(indices.begin(), indices.end());
+  std::string list, kinds;
+  for (const auto index : indices) list += (list.empty() ? "" : " ") + std::to_string(index);
+  for (std::size_t i = 0; v.is_linear && i < indices.size(); ++i) kinds += i == 0 ? "constant" : " constant";
+  return attribute("dependencies", list) + optional_attribute("dependenciesKind", kinds);
 }
 
 constexpr const char* kLogCategories =
@@ -83,23 +99,30 @@ std::string format_fmi2(const ModelDescription& m) {
         attribute("start", number(v.start)));
   for (const auto& v : m.inputs)
     add(v, attribute("causality", "input") + continuous, attribute("start", number(v.start)));
+  std::map<std::uint32_t, std::uint32_t> index_of;  // by reference, from 1
+  for (const auto* list : {&m.parameters, &m.inputs, &m.outputs, &m.states})
+    for (const auto& v : *list) index_of.emplace(v.reference, static_cast<std::uint32_t>(index_of.size()) + 1);
+  const auto get_index = [&](std::uint32_t reference) -> std::optional<std::uint32_t> {
+    const auto found = index_of.find(reference);
+    return found == index_of.end() ? std::nullopt : std::optional(found->second);
+  };
   std::string outputs, derivatives, unknowns;
-  const auto add_unknown = [](std::string& to, std::size_t of) {
-    to += "      <Unknown" + attribute("index", std::to_string(of)) + "/>\n";
+  const auto add_unknown = [](std::string& to, std::size_t of, const std::string& dependencies) {
+    to += "      <Unknown" + attribute("index", std::to_string(of)) + dependencies + "/>\n";
   };
   for (const auto& v : m.outputs) {
     const auto at = add(v, attribute("causality", "output") + continuous + calculated, "");
-    add_unknown(outputs, at);
-    add_unknown(unknowns, at);
+    add_unknown(outputs, at, make_dependencies(v, get_index));
+    add_unknown(unknowns, at, "");
   }
   const std::size_t first_state = index + 1;
   for (const auto& v : m.states)
-    add_unknown(unknowns, add(v, attribute("causality", "local") + continuous + calculated, ""));
+    add_unknown(unknowns, add(v, attribute("causality", "local") + continuous + calculated, ""), "");
   for (std::size_t i = 0; i < m.derivatives.size(); ++i) {
     const auto at = add(m.derivatives[i], attribute("causality", "local") + continuous + calculated,
                         attribute("derivative", std::to_string(first_state + i)));
-    add_unknown(derivatives, at);
-    add_unknown(unknowns, at);
+    add_unknown(derivatives, at, make_dependencies(m.derivatives[i], get_index));
+    add_unknown(unknowns, at, "");
   }
   text += "  </ModelVariables>\n  <ModelStructure>\n";
   const auto add_section = [&](const std::string& name, const std::string& lines) {
@@ -130,7 +153,7 @@ std::string format_fmi3(const ModelDescription& m) {
   };
   const std::string continuous = attribute("variability", "continuous"),
                     calculated = attribute("initial", "calculated");
-  add({"time", "independent variable", 0, 0}, attribute("causality", "independent") + continuous);
+  add({"time", "independent variable", kTimeReference, 0}, attribute("causality", "independent") + continuous);
   for (const auto& v : m.parameters)
     add(v, attribute("causality", "parameter") + attribute("variability", "fixed") + attribute("initial", "exact") +
                attribute("start", number(v.start)));
@@ -143,14 +166,16 @@ std::string format_fmi3(const ModelDescription& m) {
                               attribute("derivative", std::to_string(m.states[i].reference)));
   for (const auto& v : m.event_indicators) add(v, attribute("causality", "local") + continuous + calculated);
   text += "  </ModelVariables>\n  <ModelStructure>\n";
-  const auto list = [&](const char* name, const std::vector<Variable>& variables) {
+  const auto list = [&](const char* name, const std::vector<Variable>& variables, bool has_dependencies) {
+    const auto get_index = [](std::uint32_t reference) { return std::optional(reference); };
     for (const auto& v : variables)
-      text += std::string("    <") + name + attribute("valueReference", std::to_string(v.reference)) + "/>\n";
+      text += std::string("    <") + name + attribute("valueReference", std::to_string(v.reference)) +
+              (has_dependencies ? make_dependencies(v, get_index) : "") + "/>\n";
   };
-  list("Output", m.outputs);
-  list("ContinuousStateDerivative", m.derivatives);
-  for (const auto* variables : {&m.outputs, &m.states, &m.derivatives}) list("InitialUnknown", *variables);
-  list("EventIndicator", m.event_indicators);
+  list("Output", m.outputs, true);
+  list("ContinuousStateDerivative", m.derivatives, true);
+  for (const auto* variables : {&m.outputs, &m.states, &m.derivatives}) list("InitialUnknown", *variables, false);
+  list("EventIndicator", m.event_indicators, true);
   return text + "  </ModelStructure>\n</fmiModelDescription>\n";
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 /// \file modelDescription.xml of FMI 2.0 and 3.0.
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,7 +11,14 @@ struct Variable {
   std::string name, description;
   std::uint32_t reference = 0;
   double start = 0;  ///< of parameters and inputs
+  /// Of outputs, derivatives and event indicators: references of the states, inputs and the time that they depend on;
+  /// nullopt: all.
+  std::optional<std::vector<std::uint32_t>> dependencies = std::nullopt;
+  bool is_linear = false;  ///< a constant factor times the only dependency
 };
+
+/// Reference of the independent variable, of FMI 3 only.
+constexpr std::uint32_t kTimeReference = 0;
 
 /// Represents what both versions describe: all variables are scalars of double precision.
 struct ModelDescription {
