@@ -75,7 +75,8 @@ std::string make_identifier(const std::string& text) {
 
 std::string format_fmi2(const ModelDescription& m) {
   const std::string common = attribute("modelIdentifier", m.identifier) + attribute("canGetAndSetFMUstate", "true") +
-                             attribute("canSerializeFMUstate", "true");
+                             attribute("canSerializeFMUstate", "true") +
+                             attribute("providesDirectionalDerivative", "true");
   std::string text = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<fmiModelDescription" +
                      attribute("fmiVersion", "2.0") + attribute("modelName", m.model_name) +
                      attribute("guid", m.token) + optional_attribute("description", m.description) +
@@ -136,7 +137,8 @@ std::string format_fmi2(const ModelDescription& m) {
 
 std::string format_fmi3(const ModelDescription& m) {
   const std::string common = attribute("modelIdentifier", m.identifier) + attribute("canGetAndSetFMUState", "true") +
-                             attribute("canSerializeFMUState", "true");
+                             attribute("canSerializeFMUState", "true") +
+                             attribute("providesDirectionalDerivatives", "true");
   std::string text = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<fmiModelDescription" +
                      attribute("fmiVersion", "3.0") + attribute("modelName", m.model_name) +
                      attribute("instantiationToken", m.token) + optional_attribute("description", m.description) +
