@@ -42,6 +42,19 @@ std::string make_experiment(const ModelDescription& m) {
          "/>\n";
 }
 
+std::string make_units(const ModelDescription& m) {
+  if (m.units.empty()) return "";
+  std::string text = "  <UnitDefinitions>\n";
+  for (const auto& unit : m.units) {
+    text += "    <Unit" + attribute("name", unit.name) + "><BaseUnit";
+    const std::pair<const char*, int> powers[] = {{"kg", unit.kg}, {"m", unit.m}, {"s", unit.s}, {"rad", unit.rad}};
+    for (const auto& [name, power] : powers)
+      if (power != 0) text += attribute(name, std::to_string(power));
+    text += (unit.factor != 1 ? attribute("factor", number(unit.factor)) : "") + "/></Unit>\n";
+  }
+  return text + "  </UnitDefinitions>\n";
+}
+
 /// \param get_index  number of a reference in lists of dependencies; nullopt: not among the variables.
 template <class GetIndex>
 std::string make_dependencies(const Variable& v, const GetIndex& get_index) {
@@ -83,14 +96,15 @@ std::string format_fmi2(const ModelDescription& m) {
                      attribute("generationTool", m.tool) + attribute("variableNamingConvention", "flat") +
                      attribute("numberOfEventIndicators", std::to_string(m.event_indicators.size())) + ">\n" +
                      "  <ModelExchange" + common + "/>\n  <CoSimulation" + common +
-                     attribute("canHandleVariableCommunicationStepSize", "true") + "/>\n" + kLogCategories +
-                     make_experiment(m) + "  <ModelVariables>\n";
+                     attribute("canHandleVariableCommunicationStepSize", "true") + "/>\n" + make_units(m) +
+                     kLogCategories + make_experiment(m) + "  <ModelVariables>\n";
   Names names;
   std::size_t index = 0;
   const auto add = [&](const Variable& v, const std::string& attributes, const std::string& real) {
     text += "    <ScalarVariable" + attribute("name", names.get(v.name)) +
             attribute("valueReference", std::to_string(v.reference)) +
-            optional_attribute("description", v.description) + attributes + "><Real" + real + "/></ScalarVariable>\n";
+            optional_attribute("description", v.description) + attributes + "><Real" +
+            optional_attribute("unit", v.unit) + real + "/></ScalarVariable>\n";
     return ++index;
   };
   const std::string continuous = attribute("variability", "continuous"),
@@ -146,16 +160,18 @@ std::string format_fmi3(const ModelDescription& m) {
                      ">\n  <ModelExchange" + common + attribute("needsCompletedIntegratorStep", "true") +
                      "/>\n  <CoSimulation" + common + attribute("canHandleVariableCommunicationStepSize", "true") +
                      attribute("mightReturnEarlyFromDoStep", "true") + attribute("hasEventMode", "true") + "/>\n" +
-                     kLogCategories + make_experiment(m) + "  <ModelVariables>\n";
+                     make_units(m) + kLogCategories + make_experiment(m) + "  <ModelVariables>\n";
   Names names;
   const auto add = [&](const Variable& v, const std::string& attributes) {
     text += "    <Float64" + attribute("name", names.get(v.name)) +
             attribute("valueReference", std::to_string(v.reference)) +
-            optional_attribute("description", v.description) + attributes + "/>\n";
+            optional_attribute("description", v.description) + attributes + optional_attribute("unit", v.unit) + "/>\n";
   };
   const std::string continuous = attribute("variability", "continuous"),
                     calculated = attribute("initial", "calculated");
-  add({"time", "independent variable", kTimeReference, 0}, attribute("causality", "independent") + continuous);
+  Variable time{"time", "independent variable", kTimeReference, 0};
+  time.unit = m.time_unit;
+  add(time, attribute("causality", "independent") + continuous);
   for (const auto& v : m.parameters)
     add(v, attribute("causality", "parameter") + attribute("variability", "fixed") + attribute("initial", "exact") +
                attribute("start", number(v.start)));
