@@ -234,9 +234,14 @@ fmi2Status fmi2DeSerializeFMUstate(fmi2Component component, const fmi2Byte bytes
   });
 }
 
-fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReference[], size_t, const fmi2ValueReference[],
-                                        size_t, const fmi2Real[], fmi2Real[]) {
-  return reject(c, "fmi2GetDirectionalDerivative", "the FMU provides no directional derivatives");
+fmi2Status fmi2GetDirectionalDerivative(fmi2Component component, const fmi2ValueReference unknowns[],
+                                        size_t num_unknowns, const fmi2ValueReference knowns[], size_t num_knowns,
+                                        const fmi2Real seed[], fmi2Real sensitivity[]) {
+  return run(component, Instance::kDifferentiable, "fmi2GetDirectionalDerivative", [&](Component& c) {
+    if ((num_unknowns > 0 && !unknowns) || (num_knowns > 0 && !knowns))
+      return c.fail("fmi2GetDirectionalDerivative: an array of value references is null");
+    return c.get_directional_derivative({unknowns, num_unknowns}, {knowns, num_knowns}, seed, sensitivity);
+  });
 }
 
 // Model Exchange

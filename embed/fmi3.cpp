@@ -324,9 +324,17 @@ fmi3Status fmi3DeserializeFMUState(fmi3Instance instance, const fmi3Byte bytes[]
   });
 }
 
-fmi3Status fmi3GetDirectionalDerivative(fmi3Instance i, const fmi3ValueReference[], size_t, const fmi3ValueReference[],
-                                        size_t, const fmi3Float64[], size_t, fmi3Float64[], size_t) {
-  return reject3(i, "fmi3GetDirectionalDerivative", "the FMU provides no directional derivatives");
+fmi3Status fmi3GetDirectionalDerivative(fmi3Instance instance, const fmi3ValueReference unknowns[], size_t num_unknowns,
+                                        const fmi3ValueReference knowns[], size_t num_knowns, const fmi3Float64 seed[],
+                                        size_t num_seed, fmi3Float64 sensitivity[], size_t num_sensitivity) {
+  return run3(instance, Instance::kDifferentiable, "fmi3GetDirectionalDerivative", [&](Instance3& i) {
+    if ((num_unknowns > 0 && !unknowns) || (num_knowns > 0 && !knowns) || num_seed != num_knowns ||
+        num_sensitivity != num_unknowns)
+      return i.fail(
+          "fmi3GetDirectionalDerivative: expected as many seeds as knowns and as many sensitivities as unknowns, "
+          "since all variables are scalars");
+    return i.get_directional_derivative({unknowns, num_unknowns}, {knowns, num_knowns}, seed, sensitivity);
+  });
 }
 fmi3Status fmi3GetAdjointDerivative(fmi3Instance i, const fmi3ValueReference[], size_t, const fmi3ValueReference[],
                                     size_t, const fmi3Float64[], size_t, fmi3Float64[], size_t) {

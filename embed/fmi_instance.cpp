@@ -10,6 +10,8 @@
 #include "embed/files.hpp"
 #include "embed/fmi_variables.hpp"
 #include "embed/state_bytes.hpp"
+#include "solver/signals/input_block.hpp"
+#include "solver/state/difference.hpp"
 
 namespace bough::fmi {
 namespace {
@@ -432,6 +434,98 @@ Status Instance::get_derivatives(double* x_dot, std::size_t n) {
   if (const auto status = sync(); status != Status::Ok) return status;
   auto* simulation = prepare_probe();
   return check(bough_derivatives(simulation, x_dot), simulation);
+}
+
+Status Instance::get_directional_derivative(std::span<const std::uint32_t> unknowns,
+                                            std::span<const std::uint32_t> knowns, const double* seed,
+                                            double* sensitivity) {
+  if ((!knowns.empty() && !seed) || (!unknowns.empty() && !sensitivity))
+    return fail("the array of seeds or of sensitivities is null");
+  const bool is_before = phase_ == kInitialization;
+  ensure_started();
+  Eigen::VectorXd dx = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(num_states()));
+  std::vector<double> du(inputs_.size()), dp(parameters_.size());
+  for (std::size_t i = 0; i < knowns.size(); ++i) {
+    const auto kind = static_cast<VariableKind>(knowns[i] >> 24);
+    const std::size_t index = knowns[i] & kMaxIndex;
+    const bool is_state = kind == VariableKind::State && !is_before && index < num_states(),
+               is_input = kind == VariableKind::Input && index < du.size(),
+               is_parameter = kind == VariableKind::Parameter && is_before && index < dp.size();
+    if (!is_state && !is_input && !is_parameter)
+      return fail("no derivative with respect to the variable of value reference " + std::to_string(knowns[i]) +
+                  " is provided now; expected " + (is_before ? "inputs and parameters" : "inputs and states"));
+    if (!std::isfinite(seed[i])) return fail("the seed " + to_text(seed[i]) + " is not finite");
+    (is_state ? dx[static_cast<Eigen::Index>(index)] : is_input ? du[index] : dp[index]) += seed[i];
+  }
+  for (const auto reference : unknowns) {
+    const auto kind = static_cast<VariableKind>(reference >> 24);
+    const std::size_t index = reference & kMaxIndex;
+    const bool is_row = index < num_states() &&
+                        (kind == VariableKind::Derivative || (kind == VariableKind::State && is_before)),
+               is_output = kind == VariableKind::Output && index < model_->list(BOUGH_OUTPUTS)->size();
+    if (!is_row && !is_output)
+      return fail("no derivative of the variable of value reference " + std::to_string(reference) +
+                  " is provided now; expected outputs and derivatives of states");
+  }
+  if (is_before) return differentiate_initialization(unknowns, du, dp, sensitivity);
+  if (const auto status = sync(); status != Status::Ok) return status;
+  auto& simulator = prepare_probe()->simulator();
+  // In Co-Simulation an input that is linear reaches its value at the end of the next step.
+  for (int i = 0; i < simulator.num_inputs() && !options_.is_model_exchange; ++i)
+    if (simulator.input(i).is_linear()) du[static_cast<std::size_t>(i)] = 0;
+  const Eigen::VectorXd all = simulator.differentiate(dx, du);
+  for (std::size_t i = 0; i < unknowns.size(); ++i) {
+    const std::size_t index = unknowns[i] & kMaxIndex;
+    const bool is_output = static_cast<VariableKind>(unknowns[i] >> 24) == VariableKind::Output;
+    sensitivity[i] =
+        all[is_output ? dx.size() + (*model_->list(BOUGH_OUTPUTS))[index].row : static_cast<Eigen::Index>(index)];
+  }
+  return Status::Ok;
+}
+
+Status Instance::differentiate_initialization(std::span<const std::uint32_t> unknowns,
+                                              const std::vector<double>& inputs, const std::vector<double>& parameters,
+                                              double* sensitivity) {
+  constexpr double kStep = 1e-2;  // of the value
+  double step = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < inputs.size(); ++i)
+    if (inputs[i] != 0) step = std::min(step, kStep * std::max(1.0, std::abs(inputs_[i])) / std::abs(inputs[i]));
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    const double size = parameters_[i] == 0 ? 1 : std::abs(parameters_[i]);
+    if (parameters[i] != 0) step = std::min(step, kStep * size / std::abs(parameters[i]));
+  }
+  if (!std::isfinite(step)) {
+    std::fill_n(sensitivity, unknowns.size(), 0.0);
+    return Status::Ok;
+  }
+  struct Restore {
+    Instance& instance;
+    std::vector<double> inputs = instance.inputs_, parameters = instance.parameters_;
+    std::function<void(Status, const char*, const std::string&)> log = std::move(instance.options_.log);
+    ~Restore() {
+      instance.inputs_ = inputs;
+      instance.parameters_ = parameters;
+      instance.options_.log = std::move(log);
+      instance.simulation_.reset();
+    }
+  } here{*this};
+  options_.log = nullptr;
+  const auto f = [&](double h) {
+    for (std::size_t i = 0; i < inputs.size(); ++i) inputs_[i] = here.inputs[i] + h * inputs[i];
+    for (std::size_t i = 0; i < parameters.size(); ++i) parameters_[i] = here.parameters[i] + h * parameters[i];
+    Eigen::VectorXd values(static_cast<Eigen::Index>(unknowns.size()));
+    std::string what = "the values of the initialization are not defined";
+    try {
+      start();
+      if (get_values(unknowns, values.data()) == Status::Ok) return values;
+    } catch (const InputError& error) {
+      what = error.what();
+    }
+    throw ComputationError("fmu.derivative", {}, what, "differentiate at other values of inputs and parameters");
+  };
+  const Eigen::VectorXd found = solver::differentiate(f, step).calc_clean();
+  std::copy(found.begin(), found.end(), sensitivity);
+  return Status::Ok;
 }
 
 Status Instance::get_event_functions(double* g, std::size_t n) {

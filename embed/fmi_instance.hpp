@@ -77,6 +77,17 @@ class Instance {
   Status get_values(std::span<const std::uint32_t> references, double* values);
   Status set_values(std::span<const std::uint32_t> references, const double* values);
 
+  /// Phases in which get_directional_derivative() may be called.
+  static constexpr unsigned kDifferentiable = kInitialization | kEventMode | kContinuousTime | kStepMode | kTerminated;
+  /// Derivatives of outputs and state derivatives along a direction of inputs and states; in the initialization, of
+  /// these and the initial states along a direction of inputs and parameters.
+  ///
+  /// Modes (stuck, locked, switched) and samples are held. In the initialization the system is built for each
+  /// difference.
+  /// \param seed  one per known. \param sensitivity  one per unknown.
+  Status get_directional_derivative(std::span<const std::uint32_t> unknowns, std::span<const std::uint32_t> knowns,
+                                    const double* seed, double* sensitivity);
+
   // Co-Simulation
   Status do_step(double t, double h, StepResult& result);
   double time();
@@ -111,6 +122,9 @@ class Instance {
   /// Puts the simulation at (t, x) of the importer. Model Exchange.
   Status sync();
   bough_simulation* prepare_probe();
+  /// f'(0) of the values of variables with inputs and parameters changed by h times the directions.
+  Status differentiate_initialization(std::span<const std::uint32_t> unknowns, const std::vector<double>& inputs,
+                                      const std::vector<double>& parameters, double* sensitivity);
   Status check(bough_status status, const bough_simulation* simulation);
   void log(Status status, const char* category, const std::string& text) const;
 

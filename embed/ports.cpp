@@ -60,8 +60,8 @@ void Ports::add_outputs(const std::vector<records::Channel>& channels) {
       channels_.emplace(own, std::pair(static_cast<int>(ports_[BOUGH_OUTPUTS].size()), channel->size));
     for (int i = 0; i < channel->size; ++i) {
       const auto& component = components[static_cast<std::size_t>(i)];
-      ports_[BOUGH_OUTPUTS].push_back(
-          {name + (component.empty() ? "" : ":" + component), dims[static_cast<std::size_t>(i)], kNone, first + i});
+      ports_[BOUGH_OUTPUTS].push_back({name + (component.empty() ? "" : ":" + component),
+                                       dims[static_cast<std::size_t>(i)], kNone, first + i, path});
       // Other names of the same: the path of a sensor, the bare name of a controller or actuator, counts.
       auto& index = index_[BOUGH_OUTPUTS];
       const int at = static_cast<int>(ports_[BOUGH_OUTPUTS].size()) - 1;

@@ -12,8 +12,9 @@ namespace bough::embed {
 
 struct Port {
   std::string name, dims;
-  double start = 0;  ///< NaN: none
-  int row = 0;       ///< of an output: in the vector of all channels
+  double start = 0;          ///< NaN: none
+  int row = 0;               ///< of an output: in the vector of all channels
+  std::string channel = {};  ///< of an output: path
 };
 
 class Ports {

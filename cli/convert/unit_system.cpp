@@ -61,6 +61,22 @@ nastran::UnitFactors parse_units(const std::string& text) {
   return {mass, length, time};
 }
 
+UnitNames name_units(const std::string& text) {
+  const auto factors = parse_units(text);
+  const std::string words = "-" + text + "-";
+  const auto choose = [&](const std::map<std::string, double>& units, double size) {
+    std::string found;
+    for (const auto& [name, value] : units) {
+      if (std::abs(value / size - 1) > 1e-9) continue;
+      if (words.find("-" + name + "-") != std::string::npos) return name;
+      if (found.empty()) found = name;
+    }
+    return found;
+  };
+  return {choose(kMasses, factors.mass), choose(kLengths, factors.length), choose(kTimes, factors.time),
+          choose(kForces, factors.mass * factors.length / (factors.time * factors.time))};
+}
+
 std::pair<std::string, std::string> split_units(const std::string& text) {
   const auto colon = text.find(':');
   if (colon == std::string::npos || text.find(':', colon + 1) != std::string::npos)

@@ -12,6 +12,13 @@ namespace bough::cli {
 /// "cli.bad-units".
 nastran::UnitFactors parse_units(const std::string& text);
 
+/// Names of the units of a set: those in its text, others by their size; empty if none has that size.
+struct UnitNames {
+  std::string mass, length, time, force;
+};
+/// Throws InputError "cli.bad-units".
+UnitNames name_units(const std::string& text);
+
 /// "mm-N-tonne:m-kg-s" -> its two halves.
 std::pair<std::string, std::string> split_units(const std::string& text);
 

@@ -234,6 +234,8 @@ void add_export(CLI::App& app, Action& action) {
   verb->add_option("--fmi", o->fmu.version, "fmu: version of the standard, 2 or 3")
       ->check(CLI::IsMember({2, 3}))
       ->capture_default_str();
+  verb->add_option("--units", o->fmu.units,
+                   "fmu: units of the system file, as mm-N-tonne or m-kg-s, for the units of the variables");
   add_set_option(*verb, o->fmu.set);
   verb->add_option("--ignore", o->ignore_cards, "bdf: leave this card out; may be repeated")->allow_extra_args(false);
   add_body_export_options(*verb, o->body);

@@ -15,7 +15,9 @@
 #include "cli/common/options.hpp"
 #include "cli/common/system_files.hpp"
 #include "cli/common/text_file.hpp"
+#include "cli/export/fmu_units.hpp"
 #include "embed/bough.h"
+#include "embed/dependencies.hpp"
 #include "embed/fmi_variables.hpp"
 #include "embed/model.hpp"
 #include "formats/flat/flex_body.hpp"
@@ -25,7 +27,9 @@
 #include "formats/records/signal_name.hpp"
 #include "formats/toml/key_editor.hpp"
 #include "formats/toml/system_editor.hpp"
+#include "solver/builder/signal_units.hpp"
 #include "solver/control/hosted.hpp"
+#include "solver/tree/coordinates.hpp"
 
 namespace bough::cli {
 
@@ -210,6 +214,19 @@ std::vector<fmu::Variable> list_variables(const embed::Model& model, bough_kind 
   return variables;
 }
 
+/// Dependencies as value references.
+void set_dependencies(const std::optional<embed::Dependencies>& found, fmu::Variable& variable) {
+  if (!found) return;
+  std::vector<std::uint32_t> references;
+  if (found->on_time) references.push_back(fmu::kTimeReference);
+  for (const int i : found->inputs)
+    references.push_back(fmi::make_reference(fmi::VariableKind::Input, static_cast<std::size_t>(i)));
+  for (const int i : found->states)
+    references.push_back(fmi::make_reference(fmi::VariableKind::State, static_cast<std::size_t>(i)));
+  variable.dependencies = std::move(references);
+  variable.is_linear = found->is_constant;
+}
+
 /// Sensors, or the components of the channels that are named, in the order of the names.
 std::vector<fmu::Variable> choose_outputs(const embed::Model& model, const std::vector<std::string>& chosen,
                                           const std::string& file) {
@@ -249,6 +266,78 @@ std::vector<fmu::Variable> choose_outputs(const embed::Model& model, const std::
   return outputs;
 }
 
+/// Returns true if a dimension 1 or 1/T^n of this output is an angle or a derivative of one.
+bool is_angle(const embed::LoadedSystem& loaded, const embed::Port& output) {
+  using T = records::SensorType;
+  const auto has_angles = [&](const std::string& hinge) {  // not the components of a quaternion
+    const int b = loaded.system.find_hinge(hinge);
+    return b >= 0 && loaded.system.num_hinge_q(b) == loaded.system.num_hinge_rates(b);
+  };
+  const auto& path = output.channel;
+  const std::string kind = path.substr(0, path.find('/', 1)), name = path.substr(path.find('/', 1) + 1);
+  if (kind == "/bodies") return name.ends_with("/angular_velocity");
+  if (kind == "/hinges")
+    return name.ends_with("/qdot") || (name.ends_with("/q") && has_angles(name.substr(0, name.rfind('/'))));
+  if (kind != "/sensors") return false;
+  const auto& sensors = loaded.spec.sensors;
+  const auto sensor = std::find_if(sensors.begin(), sensors.end(), [&](const auto& s) { return s.name == name; });
+  if (sensor == sensors.end()) return false;
+  switch (sensor->type) {
+    case T::HingeAngle:
+      return has_angles(sensor->hinge);
+    case T::Rotation:
+    case T::AngularVelocity:
+    case T::AngularAcceleration:
+    case T::HingeRate:
+    case T::Euler:
+    case T::Gyro:
+    case T::IntegratingGyro:
+    case T::Resolver:
+    case T::Tachometer:
+    case T::Horizon:
+      return true;
+    default:
+      return false;
+  }
+}
+
+/// Dimensions of a state, and whether "1" and "1/T" in them are those of an angle; of modes and blocks empty.
+std::pair<std::string, bool> find_state_dims(const solver::System& system, int row) {
+  const auto layout = system.layout();
+  if (row == layout.work() || row == layout.dissipated()) return {"F L", false};
+  for (const auto& tb : system.tree.bodies) {
+    const int q = row - tb.q_offset, u = row - layout.num_q - tb.u_offset;
+    std::string dims;
+    bool is_quaternion = false;
+    if (q >= 0 && q < tb.num_hinge_q() && row < layout.num_q) {
+      dims = list_hinge_dims(tb, solver::HingeQuantity::Position, q, 1);
+      is_quaternion = tb.num_hinge_q() != tb.num_hinge_u();
+    } else if (u >= 0 && u < tb.num_hinge_u() && row < layout.num_q + layout.num_u) {
+      dims = list_hinge_dims(tb, solver::HingeQuantity::Rate, u, 1);
+    }
+    if (!dims.empty()) return {dims, dims.front() == '1' && !is_quaternion};
+  }
+  return {};
+}
+
+void set_units(const embed::Model& model, const std::string& text, fmu::ModelDescription& d) {
+  FmuUnits units(text);
+  const auto& ports = *model.list(BOUGH_OUTPUTS);
+  for (std::size_t i = 0; i < d.inputs.size(); ++i)
+    d.inputs[i].unit = units.add((*model.list(BOUGH_INPUTS))[i].dims, false);
+  for (auto& output : d.outputs) {
+    const auto& port = ports[output.reference & fmi::kMaxIndex];
+    output.unit = units.add(port.dims, port.dims.starts_with('1') && is_angle(model.loaded(), port));
+  }
+  for (std::size_t i = 0; i < d.states.size(); ++i) {
+    const auto [dims, has_angle] = find_state_dims(model.loaded().system, static_cast<int>(i));
+    d.states[i].unit = units.add(dims, has_angle);
+    d.derivatives[i].unit = units.add(solver::make_rate_dims(dims), has_angle);
+  }
+  d.time_unit = units.add("T", false);
+  d.units = units.list();
+}
+
 }  // namespace
 
 std::string export_fmu(const std::string& file, const std::string& output, const FmuOptions& options,
@@ -277,7 +366,17 @@ std::string export_fmu(const std::string& file, const std::string& output, const
   d.derivatives = list_variables(model, BOUGH_STATES, fmi::VariableKind::Derivative);
   for (auto& variable : d.derivatives) variable.name = "der(" + variable.name + ")";
   d.event_indicators = list_variables(model, BOUGH_EVENTS, fmi::VariableKind::EventIndicator);
+  const embed::DependencyGraph graph(model.loaded().system, spec);
+  for (auto& output : d.outputs)
+    set_dependencies(graph.find_of_channel((*model.list(BOUGH_OUTPUTS))[output.reference & fmi::kMaxIndex].channel),
+                     output);
+  for (std::size_t i = 0; i < d.derivatives.size(); ++i)
+    set_dependencies(graph.find_of_derivative(static_cast<int>(i)), d.derivatives[i]);
+  for (std::size_t i = 0; i < d.event_indicators.size(); ++i)
+    set_dependencies(graph.find_of_event_function(static_cast<int>(i), static_cast<int>(d.event_indicators.size())),
+                     d.event_indicators[i]);
 
+  set_units(model, options.units, d);
   const std::string folder = options.version == 2 ? "binaries/linux64/" : "binaries/x86_64-linux/";
   std::vector<fmu::ArchiveEntry> entries{
       {"modelDescription.xml", options.version == 2 ? format_fmi2(d) : format_fmi3(d)},

@@ -13,6 +13,7 @@ struct FmuOptions {
   int version = 3;                   ///< of FMI: 2 or 3
   std::vector<std::string> outputs;  ///< channels or components; empty: every sensor
   std::vector<std::string> set;      ///< "name=value" of [parameters]: other start values
+  std::string units;                 ///< of the system file, as "mm-N-tonne"; empty: not known
 };
 
 /// Writes an FMU for Co-Simulation and Model Exchange. Equal input gives equal bytes.
@@ -20,7 +21,7 @@ struct FmuOptions {
 /// \param file    a system file.
 /// \param output  the .fmu; its stem is the model identifier.
 /// \return one line on the variables, for the reader.
-/// \throws InputError of the system, "fmu.cannot-pack", "fmu.output"; ComputationError
+/// \throws InputError of the system, "fmu.cannot-pack", "fmu.output", "cli.bad-units"; ComputationError
 /// "fmu.no-binary", "fmu.write".
 std::string export_fmu(const std::string& file, const std::string& output, const FmuOptions& options,
                        Diagnostics& diagnostics);

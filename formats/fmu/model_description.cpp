@@ -1,8 +1,10 @@
 #include "formats/fmu/model_description.hpp"
 #include "base/xml_text.hpp"
 
+#include <algorithm>
 #include <cctype>
 #include <charconv>
+#include <map>
 #include <set>
 
 namespace bough::fmu {
@@ -40,6 +42,33 @@ std::string make_experiment(const ModelDescription& m) {
          "/>\n";
 }
 
+std::string make_units(const ModelDescription& m) {
+  if (m.units.empty()) return "";
+  std::string text = "  <UnitDefinitions>\n";
+  for (const auto& unit : m.units) {
+    text += "    <Unit" + attribute("name", unit.name) + "><BaseUnit";
+    const std::pair<const char*, int> powers[] = {{"kg", unit.kg}, {"m", unit.m}, {"s", unit.s}, {"rad", unit.rad}};
+    for (const auto& [name, power] : powers)
+      if (power != 0) text += attribute(name, std::to_string(power));
+    text += (unit.factor != 1 ? attribute("factor", number(unit.factor)) : "") + "/></Unit>\n";
+  }
+  return text + "  </UnitDefinitions>\n";
+}
+
+/// \param get_index  number of a reference in lists of dependencies; nullopt: not among the variables.
+template <class GetIndex>
+std::string make_dependencies(const Variable& v, const GetIndex& get_index) {
+  if (!v.dependencies) return "";
+  std::vector<std::uint32_t> indices;
+  for (const auto reference : *v.dependencies)
+    if (const auto index = get_index(reference)) indices.push_back(*index);
+  std::sort(indices.begin(), indices.end());
+  std::string list, kinds;
+  for (const auto index : indices) list += (list.empty() ? "" : " ") + std::to_string(index);
+  for (std::size_t i = 0; v.is_linear && i < indices.size(); ++i) kinds += i == 0 ? "constant" : " constant";
+  return attribute("dependencies", list) + optional_attribute("dependenciesKind", kinds);
+}
+
 constexpr const char* kLogCategories =
     "  <LogCategories>\n"
     "    <Category name=\"logEvents\" description=\"the event that ends the run\"/>\n"
@@ -59,21 +88,23 @@ std::string make_identifier(const std::string& text) {
 
 std::string format_fmi2(const ModelDescription& m) {
   const std::string common = attribute("modelIdentifier", m.identifier) + attribute("canGetAndSetFMUstate", "true") +
-                             attribute("canSerializeFMUstate", "true");
+                             attribute("canSerializeFMUstate", "true") +
+                             attribute("providesDirectionalDerivative", "true");
   std::string text = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<fmiModelDescription" +
                      attribute("fmiVersion", "2.0") + attribute("modelName", m.model_name) +
                      attribute("guid", m.token) + optional_attribute("description", m.description) +
                      attribute("generationTool", m.tool) + attribute("variableNamingConvention", "flat") +
                      attribute("numberOfEventIndicators", std::to_string(m.event_indicators.size())) + ">\n" +
                      "  <ModelExchange" + common + "/>\n  <CoSimulation" + common +
-                     attribute("canHandleVariableCommunicationStepSize", "true") + "/>\n" + kLogCategories +
-                     make_experiment(m) + "  <ModelVariables>\n";
+                     attribute("canHandleVariableCommunicationStepSize", "true") + "/>\n" + make_units(m) +
+                     kLogCategories + make_experiment(m) + "  <ModelVariables>\n";
   Names names;
   std::size_t index = 0;
   const auto add = [&](const Variable& v, const std::string& attributes, const std::string& real) {
     text += "    <ScalarVariable" + attribute("name", names.get(v.name)) +
             attribute("valueReference", std::to_string(v.reference)) +
-            optional_attribute("description", v.description) + attributes + "><Real" + real + "/></ScalarVariable>\n";
+            optional_attribute("description", v.description) + attributes + "><Real" +
+            optional_attribute("unit", v.unit) + real + "/></ScalarVariable>\n";
     return ++index;
   };
   const std::string continuous = attribute("variability", "continuous"),
@@ -83,23 +114,30 @@ std::string format_fmi2(const ModelDescription& m) {
         attribute("start", number(v.start)));
   for (const auto& v : m.inputs)
     add(v, attribute("causality", "input") + continuous, attribute("start", number(v.start)));
+  std::map<std::uint32_t, std::uint32_t> index_of;  // by reference, from 1
+  for (const auto* list : {&m.parameters, &m.inputs, &m.outputs, &m.states})
+    for (const auto& v : *list) index_of.emplace(v.reference, static_cast<std::uint32_t>(index_of.size()) + 1);
+  const auto get_index = [&](std::uint32_t reference) -> std::optional<std::uint32_t> {
+    const auto found = index_of.find(reference);
+    return found == index_of.end() ? std::nullopt : std::optional(found->second);
+  };
   std::string outputs, derivatives, unknowns;
-  const auto add_unknown = [](std::string& to, std::size_t of) {
-    to += "      <Unknown" + attribute("index", std::to_string(of)) + "/>\n";
+  const auto add_unknown = [](std::string& to, std::size_t of, const std::string& dependencies) {
+    to += "      <Unknown" + attribute("index", std::to_string(of)) + dependencies + "/>\n";
   };
   for (const auto& v : m.outputs) {
     const auto at = add(v, attribute("causality", "output") + continuous + calculated, "");
-    add_unknown(outputs, at);
-    add_unknown(unknowns, at);
+    add_unknown(outputs, at, make_dependencies(v, get_index));
+    add_unknown(unknowns, at, "");
   }
   const std::size_t first_state = index + 1;
   for (const auto& v : m.states)
-    add_unknown(unknowns, add(v, attribute("causality", "local") + continuous + calculated, ""));
+    add_unknown(unknowns, add(v, attribute("causality", "local") + continuous + calculated, ""), "");
   for (std::size_t i = 0; i < m.derivatives.size(); ++i) {
     const auto at = add(m.derivatives[i], attribute("causality", "local") + continuous + calculated,
                         attribute("derivative", std::to_string(first_state + i)));
-    add_unknown(derivatives, at);
-    add_unknown(unknowns, at);
+    add_unknown(derivatives, at, make_dependencies(m.derivatives[i], get_index));
+    add_unknown(unknowns, at, "");
   }
   text += "  </ModelVariables>\n  <ModelStructure>\n";
   const auto add_section = [&](const std::string& name, const std::string& lines) {
@@ -113,7 +151,8 @@ std::string format_fmi2(const ModelDescription& m) {
 
 std::string format_fmi3(const ModelDescription& m) {
   const std::string common = attribute("modelIdentifier", m.identifier) + attribute("canGetAndSetFMUState", "true") +
-                             attribute("canSerializeFMUState", "true");
+                             attribute("canSerializeFMUState", "true") +
+                             attribute("providesDirectionalDerivatives", "true");
   std::string text = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<fmiModelDescription" +
                      attribute("fmiVersion", "3.0") + attribute("modelName", m.model_name) +
                      attribute("instantiationToken", m.token) + optional_attribute("description", m.description) +
@@ -121,16 +160,18 @@ std::string format_fmi3(const ModelDescription& m) {
                      ">\n  <ModelExchange" + common + attribute("needsCompletedIntegratorStep", "true") +
                      "/>\n  <CoSimulation" + common + attribute("canHandleVariableCommunicationStepSize", "true") +
                      attribute("mightReturnEarlyFromDoStep", "true") + attribute("hasEventMode", "true") + "/>\n" +
-                     kLogCategories + make_experiment(m) + "  <ModelVariables>\n";
+                     make_units(m) + kLogCategories + make_experiment(m) + "  <ModelVariables>\n";
   Names names;
   const auto add = [&](const Variable& v, const std::string& attributes) {
     text += "    <Float64" + attribute("name", names.get(v.name)) +
             attribute("valueReference", std::to_string(v.reference)) +
-            optional_attribute("description", v.description) + attributes + "/>\n";
+            optional_attribute("description", v.description) + attributes + optional_attribute("unit", v.unit) + "/>\n";
   };
   const std::string continuous = attribute("variability", "continuous"),
                     calculated = attribute("initial", "calculated");
-  add({"time", "independent variable", 0, 0}, attribute("causality", "independent") + continuous);
+  Variable time{"time", "independent variable", kTimeReference, 0};
+  time.unit = m.time_unit;
+  add(time, attribute("causality", "independent") + continuous);
   for (const auto& v : m.parameters)
     add(v, attribute("causality", "parameter") + attribute("variability", "fixed") + attribute("initial", "exact") +
                attribute("start", number(v.start)));
@@ -143,14 +184,16 @@ std::string format_fmi3(const ModelDescription& m) {
                               attribute("derivative", std::to_string(m.states[i].reference)));
   for (const auto& v : m.event_indicators) add(v, attribute("causality", "local") + continuous + calculated);
   text += "  </ModelVariables>\n  <ModelStructure>\n";
-  const auto list = [&](const char* name, const std::vector<Variable>& variables) {
+  const auto list = [&](const char* name, const std::vector<Variable>& variables, bool has_dependencies) {
+    const auto get_index = [](std::uint32_t reference) { return std::optional(reference); };
     for (const auto& v : variables)
-      text += std::string("    <") + name + attribute("valueReference", std::to_string(v.reference)) + "/>\n";
+      text += std::string("    <") + name + attribute("valueReference", std::to_string(v.reference)) +
+              (has_dependencies ? make_dependencies(v, get_index) : "") + "/>\n";
   };
-  list("Output", m.outputs);
-  list("ContinuousStateDerivative", m.derivatives);
-  for (const auto* variables : {&m.outputs, &m.states, &m.derivatives}) list("InitialUnknown", *variables);
-  list("EventIndicator", m.event_indicators);
+  list("Output", m.outputs, true);
+  list("ContinuousStateDerivative", m.derivatives, true);
+  for (const auto* variables : {&m.outputs, &m.states, &m.derivatives}) list("InitialUnknown", *variables, false);
+  list("EventIndicator", m.event_indicators, true);
   return text + "  </ModelStructure>\n</fmiModelDescription>\n";
 }
 

@@ -1,16 +1,33 @@
 #pragma once
 /// \file modelDescription.xml of FMI 2.0 and 3.0.
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace bough::fmu {
 
+/// A unit as the product of powers of SI base units and a factor: a value in kg^a m^b s^c rad^d is factor times the
+/// value in this unit.
+struct Unit {
+  std::string name;
+  int kg = 0, m = 0, s = 0, rad = 0;
+  double factor = 1;
+};
+
 struct Variable {
   std::string name, description;
   std::uint32_t reference = 0;
   double start = 0;  ///< of parameters and inputs
+  /// Of outputs, derivatives and event indicators: references of the states, inputs and the time that they depend on;
+  /// nullopt: all.
+  std::optional<std::vector<std::uint32_t>> dependencies = std::nullopt;
+  bool is_linear = false;  ///< a constant factor times the only dependency
+  std::string unit = {};   ///< one of ModelDescription::units; empty: none
 };
+
+/// Reference of the independent variable, of FMI 3 only.
+constexpr std::uint32_t kTimeReference = 0;
 
 /// Represents what both versions describe: all variables are scalars of double precision.
 struct ModelDescription {
@@ -22,6 +39,8 @@ struct ModelDescription {
   std::vector<Variable> parameters, inputs, outputs;
   std::vector<Variable> states, derivatives;  ///< equal in number
   std::vector<Variable> event_indicators;
+  std::vector<Unit> units;
+  std::string time_unit;  ///< FMI 3; one of units; empty: none
 };
 
 /// Returns the text of modelDescription.xml. Equal descriptions give equal bytes: there is no date in it.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "solver/system/law_difference.hpp"
 #include "solver/system/system.hpp"
 #include "solver/tree/coordinates.hpp"
 
@@ -12,16 +13,6 @@ size_t as_index(int i) { return static_cast<size_t>(i); }
 
 /// A quaternion has one coordinate more than rates; it comes first, its rates too.
 bool has_quaternion(const System& s, int b) { return s.num_hinge_q(b) == s.num_hinge_rates(b) + 1; }
-
-/// Reach of the nodes and hinges of all bodies; 1 where all lie at the origin.
-double calc_size(const Tree& tree) {
-  double size = 0;
-  for (const TreeBody& tb : tree.bodies) {
-    for (const Node& node : tb.body.nodes()) size = std::max(size, node.p.norm());
-    size = std::max({size, tb.on_parent.p_KM.norm(), tb.on_child.p_KM.norm()});
-  }
-  return size > 0 ? size : 1;
-}
 
 /// Turns without moving: back where it was after 2 pi. Orientations of quaternions have small rotations, not angles.
 bool is_angle(const TreeBody& tb, int coordinate) {
@@ -53,15 +44,12 @@ Plant::Plant(const System& system, bool is_open)
 }
 
 void Plant::add_freedoms() {
-  const double size = calc_size(system_.tree);
   for (int b = 0; b < system_.num_bodies(); ++b) {
-    const size_t first = dofs_.size();
     add_hinge(b);
-    for (size_t i = first; i < dofs_.size(); ++i) {
-      if (dofs_[i].dims == "L") dofs_[i].step = 0.05 * size;
-    }
-    add_modes(b, size);
+    add_modes(b);
   }
+  const VectorXd steps = calc_displacement_steps(system_.tree);
+  for (size_t i = 0; i < dofs_.size(); ++i) dofs_[i].step = steps[rows_[i]];
 }
 
 void Plant::set_modes(const DiscreteState& discrete, double t, const VectorXd& q) {
@@ -88,19 +76,14 @@ void Plant::add_hinge(int b) {
     rows_.push_back(row);
     const std::string coordinate = has_quaternion(system_, b) ? kNames[i] : std::to_string(i + 1);
     dofs_.push_back(
-        {system_.hinge_name(b) + ":" + coordinate, is_translation(tb, i) ? "L" : "1", false, 0.1, is_angle(tb, i)});
+        {system_.hinge_name(b) + ":" + coordinate, is_translation(tb, i) ? "L" : "1", false, is_angle(tb, i)});
   }
 }
 
-void Plant::add_modes(int b, double size) {
-  const TreeBody& tb = system_.tree.bodies[as_index(b)];
+void Plant::add_modes(int b) {
   for (int i = 0; i < system_.num_modes(b); ++i) {
-    double largest = 0;
-    for (const Node& node : tb.body.nodes()) largest = std::max(largest, node.phi.col(i).norm() / size);
-    for (const Node& node : tb.body.nodes()) largest = std::max(largest, node.psi.col(i).norm());
     rows_.push_back(system_.eta_dot_offset(b) + i);
-    dofs_.push_back({system_.body_name(b) + ":eta" + std::to_string(i + 1), "by normalisation", true,
-                     largest > 0 ? 0.05 / largest : 1});
+    dofs_.push_back({system_.body_name(b) + ":eta" + std::to_string(i + 1), "by normalisation", true});
   }
 }
 

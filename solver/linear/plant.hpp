@@ -158,11 +158,11 @@ class Plant {
   struct Freedom {
     std::string name, dims;
     bool is_mode = false;
-    double step = 0.1;
     bool is_periodic = false;
+    double step = 0.1;
   };
   void add_hinge(int body);
-  void add_modes(int body, double size);
+  void add_modes(int body);
   void add_inputs();
   void add_outputs();
   void add_sampled();

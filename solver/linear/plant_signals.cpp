@@ -5,6 +5,7 @@
 #include "formats/records/signal_name.hpp"
 #include "solver/linear/plant.hpp"
 #include "solver/system/derivative.hpp"
+#include "solver/system/law_difference.hpp"
 
 namespace bough::solver {
 namespace {
@@ -89,33 +90,7 @@ void Plant::add_outputs() {
 }
 
 Difference Plant::differentiate(const std::function<VectorXd(double)>& f, double step, std::vector<LawKink>* kinks) {
-  struct Scope {
-    TreeData& tree;
-    ~Scope() { tree.tangents = nullptr; }
-  } scope{data_->tree};
-  data_->tree.tangents = tangents_.get();
-  tangents_->record();
-  f(0);
-  const auto differentiate_side = [&](int side) {
-    return solver::differentiate(
-        [&](double h) {
-          tangents_->replay(side);
-          return f(h);
-        },
-        step);
-  };
-  Difference mean = differentiate_side(0);
-  const auto found = tangents_->list_kinks();
-  if (found.empty()) return mean;
-  const VectorXd half = differentiate_side(1).value - mean.value;
-  bool has_effect = false;
-  for (Eigen::Index e = 0; e < half.size(); ++e) {
-    if (std::abs(half[e]) <= mean.error[e] || std::abs(half[e]) <= 1e-9 * std::abs(mean.value[e])) continue;
-    mean.kink[e] = half[e];
-    has_effect = true;
-  }
-  if (has_effect && kinks != nullptr) kinks->insert(kinks->end(), found.begin(), found.end());
-  return mean;
+  return differentiate_system(*data_, *tangents_, f, step, kinks);
 }
 
 VectorXd Plant::evaluate(const OperatingPoint& point, const PlantInput* input, double value) {

@@ -1,4 +1,5 @@
 // What each kind of sensor measures, without its imperfections.
+#include <algorithm>
 #include <cmath>
 
 #include "solver/motion/recovery.hpp"
@@ -81,13 +82,14 @@ void measure_instrument(const Motion& motion, const Sensor& e, double* out) {
   }
 }
 
+bool is_place(SensorType type) { return type == SensorType::HingeAngle || type == SensorType::Resolver; }
+
 void measure_coordinate(const Motion& motion, const Sensor& e, double* out) {
   Eigen::Matrix<double, 7, 1> q, q_dot, force;
   const TreeBody& tb = motion.tree[e.body];
   const int nq = tb.num_hinge_q(), nu = tb.num_hinge_u();
   get_hinge(motion, e.body, q.head(nq), q_dot.head(nu), force.head(nu));
-  const bool is_place = e.type == SensorType::HingeAngle || e.type == SensorType::Resolver;
-  const auto& value = is_place ? q : q_dot;
+  const auto& value = is_place(e.type) ? q : q_dot;
   Map<VectorXd> result(out, e.size);
   result = value.segment(e.coordinate == 0 ? 0 : e.coordinate - 1, e.size);
   if (e.type != SensorType::Resolver) return;
@@ -165,6 +167,41 @@ void measure(const Motion& motion, const Sensor& e, double* out) {
                                      calc_relative(e.type, e.from_turning, calc_node_motion(motion, e.body, e.node),
                                                    calc_observer(motion, e.relative_to)));
       return;
+  }
+}
+
+void mark_motion(const Tree& tree, const Sensor& e, std::vector<bool>& q, std::vector<bool>& u) {
+  const auto fill = [](std::vector<bool>& rows, int first, int count) {
+    std::fill_n(rows.begin() + first, count, true);
+  };
+  const SensorKind& kind = get_kind(e.type);
+  if (kind.reads_acceleration) {
+    q.assign(q.size(), true);
+    u.assign(u.size(), true);
+    return;
+  }
+  const TreeBody& own = tree[e.body];
+  switch (kind.of) {
+    case SensorOf::Coordinate:
+      fill(q, own.q_offset, own.num_hinge_q());
+      fill(u, own.u_offset, is_place(e.type) ? 0 : own.num_hinge_u());
+      return;
+    case SensorOf::Modes:
+    case SensorOf::Energy:
+      fill(q, own.eta_offset(), own.num_modes());
+      fill(u, own.eta_dot_offset(), e.type == SensorType::ModalRate ? own.num_modes() : 0);
+      return;
+    default:
+      break;
+  }
+  const bool reads_rates = e.type == SensorType::Velocity || e.type == SensorType::AngularVelocity ||
+                           e.type == SensorType::Gyro || e.type == SensorType::IntegratingGyro;
+  for (int b : {e.body, e.frame, e.relative_to, e.to_body}) {
+    for (; b >= 0; b = tree[b].parent) {
+      const TreeBody& tb = tree[b];
+      fill(q, tb.q_offset, tb.num_hinge_q() + tb.num_modes());
+      if (reads_rates) fill(u, tb.u_offset, tb.num_hinge_u() + tb.num_modes());
+    }
   }
 }
 

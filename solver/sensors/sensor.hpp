@@ -52,6 +52,9 @@ struct Sensor {
 
 /// One sensor's measurement without its imperfections; out: its size. No allocation.
 void measure(const Motion& motion, const Sensor& sensor, double* out);
+/// Marks the rows of q and u that the measurement is a function of, besides accelerations and time: of hinges and modes
+/// on the way from ground to its bodies.
+void mark_motion(const Tree& tree, const Sensor& sensor, std::vector<bool>& q, std::vector<bool>& u);
 /// The turns of R = R_i(a) R_j(b) R_k(c) about axes (from 0); the third may be the first. b in [-π/2, π/2] where the
 /// three differ, else in [0, π].
 Vector3d calc_euler_angles(const Matrix3d& R, const std::array<int, 3>& axes);

@@ -67,6 +67,9 @@ class SensorBlock final : public Block {
     }
     for (int i = 0; i < sizes.outputs; ++i) z_dot[i] = (now[i] - in.z[i]) / lag;
   }
+  void mark_motion(const Tree& tree, std::vector<bool>& q, std::vector<bool>& u) const override {
+    solver::mark_motion(tree, entry, q, u);
+  }
   void update(const BlockInput& in, double* d) const override {
     for (int i = 0; i < sizes.memory; ++i) d[i] += walk * draw(in.sample, sizes.outputs + i);
   }

@@ -22,6 +22,10 @@ void Block::update(const BlockInput&, double*) const {}
 void Block::calc_event_functions(const BlockInput&, double*) const {}
 void Block::switch_over(const BlockInput&, int, double*) const {}
 void Block::choose(int, double*) const {}
+void Block::mark_motion(const Tree&, std::vector<bool>& q, std::vector<bool>& u) const {
+  q.assign(q.size(), true);
+  u.assign(u.size(), true);
+}
 void Block::add_load(const BlockInput&, const double*, TreeData&) const {}
 double Block::calc_power(const BlockInput&, const double*) const { return 0; }
 double Block::calc_energy(const BlockInput&) const { return 0; }

@@ -3,6 +3,7 @@
 /// interface for controllers of the user (solver/control/bough_controller.h); a Block keeps no state of its own.
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "base/diagnostic.hpp"
 #include "base/rotation.hpp"
@@ -76,6 +77,10 @@ class Block {
   /// The memory after event function `event function` has become positive; the event function must not be positive any
   /// more.
   virtual void switch_over(const BlockInput& in, int function, double* d) const;
+
+  /// Sensors and actuators: marks the rows of q and u that outputs, rates and loads depend on, apart from what
+  /// reads_acceleration stands for. All by default.
+  virtual void mark_motion(const Tree& tree, std::vector<bool>& q, std::vector<bool>& u) const;
 
   /// Whether the outputs depend on the time itself: a step that passes over a short event of theirs would not see it.
   virtual bool depends_on_time() const { return false; }

@@ -57,6 +57,9 @@ class Run {
   int num_event_functions() const;
   void calc_event_functions(Eigen::Ref<VectorXd> g);
   std::vector<std::string> list_event_functions() const;
+  /// Derivative of [ẋ; all channels] at (t, x) along dx and along changes of memory rows; modes and the
+  /// rest of the memory are held (run_directional.cpp).
+  VectorXd differentiate(const VectorXd& dx, const std::vector<std::pair<int, double>>& dmemory);
   /// Returns true if constraints have drifted apart, so that update_discrete() is called for.
   bool needs_projection();
   /// Event mode at (t, x): what is due, what has crossed, and what follows, until nothing changes. Whether x has
@@ -72,6 +75,8 @@ class Run {
   void restore_state(const records::Checkpoint& saved);
 
  private:
+  /// Difference steps of the rows of y_, as linear models take them.
+  VectorXd calc_state_steps() const;
   bool is_stop_asked() const { return options_.stop && options_.stop->load(std::memory_order_relaxed); }
 
   // The loop (run.cpp)

@@ -107,6 +107,19 @@ void Simulator::calc_event_functions(Eigen::Ref<Eigen::VectorXd> g) {
   run_->calc_event_functions(g);
 }
 
+Eigen::VectorXd Simulator::differentiate(const Eigen::VectorXd& dx, std::span<const double> du) {
+  BOUGH_DEMAND(run_->is_led() && std::ssize(du) == num_inputs());
+  apply_inputs();
+  std::vector<std::pair<int, double>> rows;
+  for (int i = 0; i < num_inputs(); ++i) {
+    const double change = du[static_cast<std::size_t>(i)];
+    if (change == 0) continue;
+    for (const int row : {InputBlock::kValue, InputBlock::kNext})
+      rows.emplace_back(inputs_[static_cast<std::size_t>(i)].memory + row, change);
+  }
+  return run_->differentiate(dx, rows);
+}
+
 bool Simulator::update_discrete() {
   run_->lead();
   apply_inputs();

@@ -52,6 +52,11 @@ class Simulator {
   int num_event_functions() const;
   void calc_event_functions(Eigen::Ref<Eigen::VectorXd> g);
   std::vector<std::string> list_event_functions() const;
+  /// Derivative of [ẋ; components of all channels] along a direction of states and inputs, at (t, x) of
+  /// set_continuous(). Modes and samples are held, as in linear models; at a kink the mean of both slopes.
+  /// \param dx  num_states(). \param du  num_inputs(). \pre an integrator of the host leads.
+  /// \throws ComputationError where the system has no derivative.
+  Eigen::VectorXd differentiate(const Eigen::VectorXd& dx, std::span<const double> du);
   /// Returns true if constraints have drifted apart, so that update_discrete() is called for.
   bool needs_projection();
   /// Event mode at (t, x): what is due, what has crossed, and what follows, until nothing changes. Whether x has

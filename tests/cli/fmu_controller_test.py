@@ -1,5 +1,7 @@
 """FMUs as controllers: the law of a shared library bit for bit, states that are saved, and what goes wrong, in words."""
 import os
+import subprocess
+import sys
 import unittest
 import zipfile
 
@@ -8,7 +10,7 @@ import numpy as np
 
 from fmu_sources import LIBRARY, compile_library, make_fmu
 from host import Model
-from support import SOURCE, ProgramTest
+from support import HANG, PROGRAM, SLOWER, SOURCE, ProgramTest
 
 SYSTEM = """
 [[body]]
@@ -53,6 +55,106 @@ parameter_names = ["kp", "kd", "fault"]
 parameters = [6.0, 4.0, {fault}]
 sample_time = 0.01
 {more}"""
+
+# A four-bar linkage, its crank driven by a law.
+FOUR_BAR = """
+[[body]]
+name = "crank"
+mass = 0.5
+cg = [0.15, 0.0, 0.0]
+inertia = [0.0001, 0.004, 0.004]
+nodes = [{{id = 1, position = [0.3, 0.0, 0.0]}}]
+[[body]]
+name = "coupler"
+mass = 0.6
+cg = [0.5, 0.0, 0.0]
+inertia = [0.0001, 0.05, 0.05]
+nodes = [{{id = 1, position = [1.0, 0.0, 0.0]}}]
+[[body]]
+name = "rocker"
+mass = 0.8
+cg = [0.4, 0.0, 0.0]
+inertia = [0.0001, 0.043, 0.043]
+nodes = [{{id = 1, position = [0.8, 0.0, 0.0]}}]
+[[hinge]]
+name = "axis"
+type = "revolute"
+child = "crank"
+position_deg = 60.0
+rate = 1.0
+[[hinge]]
+name = "pin"
+type = "revolute"
+parent = "crank"
+parent_node = 1
+child = "coupler"
+[[hinge]]
+name = "pivot"
+type = "revolute"
+parent_position = [1.0, 0.0, 0.0]
+child = "rocker"
+position_deg = 90.0
+guess = true
+[[constraint]]
+name = "closure"
+type = "revolute"
+parent = "coupler"
+parent_node = 1
+child = "rocker"
+child_node = 1
+[[sensor]]
+name = "angle"
+type = "hinge_angle"
+hinge = "axis"
+[[sensor]]
+name = "rate"
+type = "hinge_rate"
+hinge = "axis"
+[[sensor]]
+name = "rocker"
+type = "hinge_angle"
+hinge = "pivot"
+{rest}
+[[actuator]]
+name = "drive"
+type = "hinge"
+hinge = "axis"
+input = "{input}"
+[simulation]
+duration = {duration}
+output_step = 0.005
+integrator = "{integrator}"
+step = 0.005
+gravity = [0.0, -9.81, 0.0]
+"""
+RULED = SYSTEM[SYSTEM.index("[[function]]"):SYSTEM.index("[[sensor]]")] + SYSTEM[SYSTEM.index("[[controller]]"):SYSTEM.index("[[actuator]]")]
+MODULE = os.path.join(os.path.dirname(os.path.dirname(PROGRAM)), "python")
+THREADS = """
+import sys, threading
+import numpy as np
+import bough
+def move(system, torque, rows):
+    simulation = bough.Simulation(system)
+    for k in range(1, 101):
+        simulation.set("more", torque)
+        simulation.advance_to(0.005 * k)
+        rows.append(np.concatenate([simulation.outputs(["angle"]), simulation.outputs(["/controllers/law"])]))
+torques = [0.0, 0.5]
+for shared in (True, False):
+    first = bough.System("s.toml")
+    systems = [first if shared else bough.System("s.toml") for _ in torques]
+    alone, together = [[], []], [[], []]
+    for rows, system, torque in zip(alone, systems, torques):
+        move(system, torque, rows)
+    threads = [threading.Thread(target=move, args=of) for of in zip(systems, torques, together)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    np.testing.assert_array_equal(alone, together)
+    assert np.abs(np.subtract(*together)).max() > 1e-3
+print("alike")
+"""
 
 
 class FmuControllers(ProgramTest):
@@ -267,6 +369,57 @@ step = 0.01
                 make_fmu(self.path("law.fmu"), version, saves)
                 self.make(fault=8)  # fails if the promise is given
                 self.bough("run", "s.toml", code=code)
+
+    def test_beside_a_closed_loop(self):
+        compile_library(self.path("law.so"), LIBRARY, "-I" + os.path.join(SOURCE, "solver/control"))
+        library = 'type = "library"\nfile = "law.so"\nparameters = [6.0, 4.0]\nsample_time = 0.01'
+
+        def write(name, law, integrator, duration=0.75):
+            self.write(name, FOUR_BAR.format(rest=RULED.format(law=law), input="law:1", integrator=integrator, duration=duration))
+
+        for integrator in ("rk4", "implicit"):
+            write("library.toml", library, integrator)
+            self.bough("run", "library.toml")
+            expected = self.read("library.h5")
+            self.assertGreater(np.ptp(expected[0]), 0.3)
+            for version in (2, 3):
+                make_fmu(self.path("law.fmu"), version)
+                law = FMU.format(fault=0, more="")
+                write("whole.toml", law, integrator)
+                self.bough("run", "whole.toml")
+                write("s.toml", law, integrator, 0.375)
+                self.bough("run", "s.toml", "-o", "parts.h5")
+                write("s.toml", law, integrator)
+                self.bough("run", "s.toml", "-o", "parts.h5", "--resume")
+                for name in ("whole.h5", "parts.h5"):
+                    for left, right in zip(self.read(name), expected):
+                        np.testing.assert_array_equal(left, right, f"FMI {version}, {integrator}, {name}")
+
+    def test_a_closed_loop_is_one(self):
+        """A four-bar linkage as FMU that a constant drives: it moves as in a run of its own."""
+        given = '[[input]]\nname = "push"\nstart = 1.0\n'
+        self.write("four.toml", FOUR_BAR.format(rest=given, input="push", integrator="rk4", duration=1.0))
+        self.bough("run", "four.toml")
+        with h5py.File(self.path("four.h5")) as f:
+            expected = np.column_stack([f["sensors/angle"][:], f["sensors/rate"][:], f["sensors/rocker"][:]])
+        for version in (2, 3):
+            self.bough("export", "four.toml", "--to", "fmu", "--fmi", version, "-o", "law.fmu")
+            law = 'type = "fmu"\nfile = "law.fmu"\nsample_time = 0.005'
+            text = SYSTEM.format(law=law, duration=1.0).replace('["angle", "rate", "on"]', '["on"]')
+            self.write("s.toml", text)
+            self.bough("run", "s.toml")
+            np.testing.assert_array_equal(self.read("s.h5")[1], expected)
+
+    @unittest.skipUnless(os.path.isdir(MODULE) and SLOWER == 1, "no Python module")
+    def test_threads_of_python(self):
+        text = SYSTEM.format(law=FMU.format(fault=0, more=""), duration=1.0).replace('"law:1"', '"sum"')
+        more = '[[input]]\nname = "more"\n[[controller]]\nname = "sum"\ntype = "sum"\ninputs = ["law:1", "more"]\n[simulation]'
+        self.write("s.toml", text.replace("[simulation]", more))
+        for version in (2, 3):
+            make_fmu(self.path("law.fmu"), version)
+            done = subprocess.run([sys.executable, "-c", THREADS], cwd=self.folder, capture_output=True, text=True, check=False,
+                                  timeout=HANG, env={**os.environ, "PYTHONPATH": MODULE})
+            self.assertEqual((done.returncode, done.stdout), (0, "alike\n"), done.stderr)
 
 
 if __name__ == "__main__":

@@ -33,6 +33,7 @@ ALLOWED2 = {
     "ModelExchange": COMMON2 | {"completedIntegratorStepNotNeeded"},
     "CoSimulation": COMMON2 | {"canHandleVariableCommunicationStepSize", "canInterpolateInputs", "maxOutputDerivativeOrder",
                                "canRunAsynchronuously"},
+    "UnitDefinitions": set(), "Unit": {"name"}, "BaseUnit": {"kg", "m", "s", "A", "K", "mol", "cd", "rad", "factor", "offset"},
     "LogCategories": set(), "Category": {"name", "description"},
     "DefaultExperiment": {"startTime", "stopTime", "tolerance", "stepSize"},
     "ModelVariables": set(),
@@ -54,6 +55,7 @@ ALLOWED3 = {
                                "maxOutputDerivativeOrder", "recommendedIntermediateInputSmoothness",
                                "providesIntermediateUpdate", "mightReturnEarlyFromDoStep",
                                "canReturnEarlyAfterIntermediateUpdate", "hasEventMode", "providesEvaluateDiscreteStates"},
+    "UnitDefinitions": set(), "Unit": {"name"}, "BaseUnit": {"kg", "m", "s", "A", "K", "mol", "cd", "rad", "factor", "offset"},
     "LogCategories": set(), "Category": {"name", "description"},
     "DefaultExperiment": {"startTime", "stopTime", "tolerance", "stepSize"},
     "ModelVariables": set(),
@@ -62,7 +64,7 @@ ALLOWED3 = {
                 "relativeQuantity", "unbounded", "min", "max", "nominal", "start", "derivative", "reinit"},
     "ModelStructure": set(), "Output": UNKNOWN3, "ContinuousStateDerivative": UNKNOWN3, "InitialUnknown": UNKNOWN3,
     "EventIndicator": UNKNOWN3}
-ORDER = ["ModelExchange", "CoSimulation", "LogCategories", "DefaultExperiment", "ModelVariables", "ModelStructure"]
+ORDER = ["ModelExchange", "CoSimulation", "UnitDefinitions", "LogCategories", "DefaultExperiment", "ModelVariables", "ModelStructure"]
 
 
 class Fmu:
@@ -84,6 +86,8 @@ class Fmu:
         self.root = ElementTree.fromstring(self.xml)
         self.version = int(self.root.get("fmiVersion")[0])
         self.variables = {}  # name: (reference, causality, start)
+        self.units, self.unit_of = {}, {}
+        self.dependencies = {}  # name of an unknown: names of its knowns
         self.check()
         self.token = self.root.get("guid" if self.version == 2 else "instantiationToken")
         self.identifier = self.root.find("CoSimulation").get("modelIdentifier")
@@ -100,7 +104,11 @@ class Fmu:
             self.demand(element.tag in allowed, f"element {element.tag}")
             unknown = set(element.keys()) - allowed[element.tag]
             self.demand(not unknown, f"attributes {unknown} of {element.tag}")
-        self.demand([child.tag for child in self.root] == ORDER, "order of the elements")
+        self.demand([child.tag for child in self.root] in (ORDER, [tag for tag in ORDER if tag != "UnitDefinitions"]),
+                    "order of the elements")
+        for unit in self.root.iter("Unit"):
+            self.demand(unit.get("name") not in self.units and len(unit) == 1, f"unit {unit.get('name')}")
+            self.units[unit.get("name")] = {key: float(value) for key, value in unit[0].items()}
         for kind in ("ModelExchange", "CoSimulation"):
             self.demand(re.fullmatch(r"[A-Za-z_]\w*", self.root.find(kind).get("modelIdentifier")), "modelIdentifier")
         (self.check2 if self.version == 2 else self.check3)()
@@ -122,7 +130,24 @@ class Fmu:
         if start is not None:
             float(start)
         self.variables[name] = (reference, causality, start)
+        unit = (element if self.version == 3 else element[0]).get("unit")
+        self.demand(unit is None or unit in self.units, f"unit {unit}")
+        self.unit_of[name] = unit
         return reference, causality
+
+    def add_dependencies(self, element, name, get_name, is_initial):
+        """Keeps those of outputs, derivatives and event indicators; None: all."""
+        listed, kinds = element.get("dependencies"), element.get("dependenciesKind")
+        numbers = None if listed is None else [int(i) for i in listed.split()]
+        self.demand(kinds is None or len(kinds.split()) == len(numbers), "dependenciesKind")
+        if numbers is not None:
+            self.demand(numbers == sorted(set(numbers)), "order of dependencies")
+            for known in map(get_name, numbers):
+                of = self.variables[known][1]
+                self.demand(of in ("input", "independent") or known in self.variables and "der(" + known + ")" in self.variables,
+                            f"{name} depends on {known}")
+        if not is_initial:
+            self.dependencies[name] = None if numbers is None else {get_name(i) for i in numbers}
 
     def check2(self):
         order, derivatives, outputs, states = [], [], [], []
@@ -136,6 +161,9 @@ class Fmu:
                 derivatives.append(i)
                 states.append(int(element[0].get("derivative")))
         structure = {part.tag: [int(u.get("index")) for u in part] for part in self.root.find("ModelStructure")}
+        for part in self.root.find("ModelStructure"):
+            for element in part:
+                self.add_dependencies(element, order[int(element.get("index")) - 1], lambda i: order[i - 1], part.tag == "InitialUnknowns")
         self.demand(structure.get("Outputs", []) == outputs, "Outputs")
         self.demand(structure.get("Derivatives", []) == derivatives, "Derivatives")
         self.demand(structure.get("InitialUnknowns", []) == sorted(outputs + states + derivatives), "InitialUnknowns")
@@ -155,6 +183,8 @@ class Fmu:
         lists = {}
         for part in self.root.find("ModelStructure"):
             lists.setdefault(part.tag, []).append(int(part.get("valueReference")))
+            self.add_dependencies(part, by_reference[int(part.get("valueReference"))].get("name"),
+                                  lambda r: by_reference[r].get("name"), part.tag == "InitialUnknown")
         outputs = [r for r, e in by_reference.items() if e.get("causality") == "output"]
         self.demand(lists.get("Output", []) == outputs, "Output")
         self.demand(lists.get("ContinuousStateDerivative", []) == derivatives, "ContinuousStateDerivative")
@@ -299,6 +329,18 @@ class Instance:
         enter, terminate = kind(), kind()
         self.call("CompletedIntegratorStep", kind(1), ctypes.byref(enter), ctypes.byref(terminate))
         return bool(enter.value)
+
+    def directional(self, unknowns, knowns, seed):
+        """Derivatives of the unknowns along the seed of the knowns."""
+        seed, found = np.array(seed, float), np.full(len(unknowns), np.nan)
+        sizes = (lambda n: []) if self.fmu.version == 2 else (lambda n: [SIZE(n)])
+        self.call("GetDirectionalDerivative", self.references(unknowns), SIZE(len(unknowns)), self.references(knowns),
+                  SIZE(len(knowns)), seed.ctypes.data_as(REALS), *sizes(len(knowns)), found.ctypes.data_as(REALS),
+                  *sizes(len(unknowns)))
+        return found
+
+    def jacobian(self, unknowns, knowns):
+        return np.column_stack([self.directional(unknowns, [known], [1.0]) for known in knowns])
 
     # FMU states
     def save(self):

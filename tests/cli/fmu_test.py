@@ -13,7 +13,7 @@ import scipy.io
 
 from embed_test import ARM
 from fmu_importer import ERROR, REAL, SIZE, Failed, Fmu, Instance, MeRun
-from support import PROGRAM, ProgramTest, get_astray
+from support import PROGRAM, SOURCE, ProgramTest, get_astray
 
 # x'' = push / mass from rest; an event that ends the run.
 SLIDE = """[parameters]
@@ -50,6 +50,276 @@ duration = 10.0
 output_step = 0.1
 integrator = "rk4"
 step = 0.01
+"""
+# Two links with a lag of a controller and one of a sensor.
+CHAIN = """[[body]]
+name = "a"
+mass = 2.0
+cg = [0.5, 0.0, 0.0]
+inertia = [0.01, 0.17, 0.17]
+[[body]]
+name = "b"
+mass = 1.0
+cg = [0.3, 0.0, 0.1]
+inertia = [0.01, 0.07, 0.07]
+[[hinge]]
+name = "h1"
+type = "revolute"
+child = "a"
+axis = [0.0, 0.0, 1.0]
+position = [0.3]
+damping = [0.1]
+[[hinge]]
+name = "h2"
+type = "revolute"
+parent = "a"
+parent_position = [1.0, 0.0, 0.0]
+child = "b"
+axis = [0.0, 0.0, 1.0]
+position = [0.4]
+stiffness = [3.0]
+[[input]]
+name = "torque"
+dims = "F L"
+start = 0.7
+[[input]]
+name = "target"
+dims = "1"
+[[sensor]]
+name = "upper"
+type = "hinge_angle"
+hinge = "h1"
+[[sensor]]
+name = "rate"
+type = "hinge_rate"
+hinge = "h2"
+[[sensor]]
+name = "slow"
+type = "hinge_angle"
+hinge = "h2"
+lag = 0.05
+[[sensor]]
+name = "shake"
+type = "accelerometer"
+body = "b"
+[[sensor]]
+name = "tip"
+type = "position"
+body = "b"
+[[controller]]
+name = "error"
+type = "sum"
+inputs = ["target", "upper"]
+weights = [1.0, -1.0]
+[[controller]]
+name = "lag"
+type = "transfer_function"
+inputs = ["error"]
+numerator = [4.0]
+denominator = [0.1, 1.0]
+[[controller]]
+name = "sum"
+type = "sum"
+inputs = ["lag", "torque"]
+[[actuator]]
+name = "motor"
+type = "hinge"
+hinge = "h1"
+input = "sum"
+[simulation]
+duration = 1.0
+output_step = 0.01
+integrator = "rk4"
+step = 0.002
+gravity = [0.0, -9.81, 0.0]
+"""
+# A hull that flies and carries an arm: actuators and sensors of every kind.
+DRIVEN = """[[body]]
+name = "hull"
+mass = 5.0
+cg = [0.1, 0.0, 0.05]
+inertia = [1.0, 1.2, 1.5]
+[[body]]
+name = "arm"
+mass = 1.0
+cg = [0.3, 0.02, 0.0]
+inertia = [0.01, 0.07, 0.07]
+nodes = [{id = 1, position = [0.6, 0.0, 0.0]}]
+[[hinge]]
+name = "float"
+type = "free"
+child = "hull"
+position = [0.9, 0.1, 0.3, 0.2, 0.2, 0.1, 0.9]
+[[hinge]]
+name = "joint"
+type = "revolute"
+parent = "hull"
+child = "arm"
+axis = [0.0, 0.0, 1.0]
+[[function]]
+name = "wave"
+type = "sine"
+amplitude = 1.0
+omega = 3.0
+""" + "".join(f'[[input]]\nname = "i{k}"\nstart = {0.3 + 0.1 * k}\n' for k in range(1, 11)) + """
+[[sensor]]
+name = "spin"
+type = "gyro"
+body = "hull"
+lag = 0.1
+[[sensor]]
+name = "turned"
+type = "integrating_gyro"
+body = "hull"
+[[sensor]]
+name = "held"
+type = "gyro"
+body = "arm"
+sample_time = 0.1
+[[sensor]]
+name = "attitude"
+type = "quaternion"
+body = "arm"
+[[sensor]]
+name = "seen"
+type = "position"
+body = "arm"
+node = 1
+relative_to = "hull"
+frame = "hull"
+[[sensor]]
+name = "drift"
+type = "velocity"
+body = "arm"
+node = 1
+relative_to = "hull"
+frame = "hull"
+[[sensor]]
+name = "far"
+type = "distance"
+body = "arm"
+node = 1
+target = [3.0, 1.0, 0.0]
+[[sensor]]
+name = "felt"
+type = "hinge_moment"
+hinge = "joint"
+[[sensor]]
+name = "push"
+type = "accelerometer"
+body = "arm"
+lag = 0.05
+[[sensor]]
+name = "pull"
+type = "accelerometer"
+body = "hull"
+[[controller]]
+name = "held_law"
+type = "gain"
+inputs = ["i1"]
+gain = 2.0
+sample_time = 0.1
+[[controller]]
+name = "late"
+type = "gain"
+inputs = ["pull:x"]
+gain = 2.0
+[[controller]]
+name = "turns"
+type = "relay"
+inputs = ["i2"]
+on = 0.9
+off = 0.8
+value = 1.0
+[[controller]]
+name = "mixed"
+type = "expression"
+inputs = ["i3", "spin:z"]
+expression = "u1*u2 + sin(t)"
+[[controller]]
+name = "slow"
+type = "transfer_function"
+inputs = ["late"]
+numerator = [1.0]
+denominator = [0.2, 1.0]
+[[actuator]]
+name = "wheel"
+type = "wheel"
+body = "hull"
+axis = [0.0, 1.0, 0.0]
+inertia = 0.02
+viscous = 0.01
+momentum = 0.4
+input = "i4"
+[[actuator]]
+name = "cmg"
+type = "cmg"
+body = "hull"
+gimbal_axis = [1.0, 0.0, 0.0]
+spin_axis = [0.0, 0.0, 1.0]
+momentum = 0.7
+lag = 0.2
+input = "i5"
+[[actuator]]
+name = "motor"
+type = "motor"
+hinge = "joint"
+torque_constant = 0.5
+resistance = 2.0
+lag = 0.1
+input = "i6"
+[[actuator]]
+name = "brake"
+type = "brake"
+hinge = "joint"
+stick_rate = 0.1
+input = "i7"
+[[actuator]]
+name = "thruster"
+type = "force"
+body = "arm"
+node = 1
+axis = [0.0, 1.0, 0.2]
+input = "mixed"
+[[actuator]]
+name = "jet"
+type = "jet"
+body = "hull"
+axis = [1.0, 0.0, 0.0]
+thrust = 2.0
+input = "i8"
+[[actuator]]
+name = "valve"
+type = "force"
+body = "hull"
+axis = [1.0, 0.5, 0.0]
+input = "held_law"
+[[actuator]]
+name = "trim"
+type = "moment"
+body = "hull"
+axis = [1.0, 0.5, 0.0]
+input = "turns"
+[[force]]
+name = "tug"
+body = "arm"
+force = [0.0, 0.0, 1.0]
+signal = "i9"
+[[force]]
+name = "gust"
+body = "hull"
+force = [0.1, 0.0, 0.0]
+function = "wave"
+[[event]]
+name = "near"
+signal = "far"
+value = 1.0
+[simulation]
+duration = 1.0
+output_step = 0.01
+integrator = "rk4"
+step = 0.002
+gravity = [0.0, 0.0, -1.0]
 """
 TIGHT = 'integrator = "rk"\nrelative_tolerance = 1e-12\nabsolute_tolerance = 1e-13\n'
 COMPONENTS = {"": 0, "x": 0, "y": 1, "z": 2, "angle1": 0, "angle2": 1, "angle3": 2}
@@ -225,6 +495,255 @@ class FmuTest(ProgramTest):
             fmu = self.export("slide.toml", version)
             self.assertIn("x:x (2)", fmu.list("output"))
             self.assertTrue(any("<b & 'c'>" in name for name in fmu.states), fmu.states)
+
+    def test_units_follow_from_dimensions(self):
+        free = ('[[body]]\nname = "flyer"\nmass = 1.0\ninertia = [1.0, 1.0, 1.0]\n[[sensor]]\nname = "attitude"\ntype = "quaternion"\n'
+                'body = "flyer"\n[[sensor]]\nname = "spin"\ntype = "gyro"\nbody = "flyer"\n[simulation]')
+        self.write("chain.toml", "[parameters]\nk = 3.0\n" + CHAIN.replace("[3.0]", '["$k"]').replace("[simulation]", free))
+        newton, second = 0.45359237 * 9.80665, 1.0
+        for version in (2, 3):
+            fmu = self.export("chain.toml", version)
+            q1, q2 = fmu.states[:2]
+            self.assertEqual(fmu.units, {"rad": {"rad": 1}})
+            self.assertEqual({name for name, unit in fmu.unit_of.items() if unit}, {q1, q2, "upper", "slow"})
+            for text, length, force, time, of in [("m-kg-s", 1, 1, 1, ("m", "N", "s", "kg")),
+                                                  ("mm-N-tonne", 1e-3, 1, 1, ("mm", "N", "s", "tonne")),
+                                                  ("in-lbf-s", 0.0254, newton, second, ("in", "lbf", "s", "slinch")),
+                                                  ("km-kg-h", 1e3, None, 3600, ("km", None, "h", "kg"))]:
+                fmu = self.export("chain.toml", version, "--units", text)
+                m, n, s, kg = of
+                torque = f"{n}.{m}" if n else f"{kg}.{m}2/{s}2"
+                work = fmu.states[-2]
+                flyer = [name for name in fmu.states if "flyer" in name]
+                expected = {"torque": torque, "upper": "rad", "rate": f"rad/{s}", "shake:x": f"{m}/{s}2", "tip:x": m, "k": None,
+                            "target": None, "attitude:1": None, "spin:x": f"rad/{s}", q1: "rad", "der(" + q1 + ")": f"rad/{s}",
+                            fmu.derivatives[fmu.states.index(flyer[-1])]: f"{m}/{s}2", flyer[0]: None, flyer[4]: m, work: torque,
+                            "der(" + work + ")": f"{kg}.{m}2/{s}3"}
+                self.assertEqual({name: fmu.unit_of[name] for name in expected}, expected)
+                if version == 3:
+                    self.assertEqual(fmu.unit_of["time"], s)
+                factor = length * force if force else length ** 2 / time ** 2
+                got = fmu.units[torque]
+                self.assertEqual({k: v for k, v in got.items() if k != "factor"}, {"kg": 1, "m": 2, "s": -2})
+                self.assertAlmostEqual(got.get("factor", 1) / factor, 1, delta=1e-12)
+                self.assertEqual({k: v for k, v in fmu.units[f"rad/{s}"].items() if k != "factor"}, {"rad": 1, "s": -1})
+        self.fails(1, "export", "chain.toml", "--to", "fmu", "--units", "m-kg-parsec", "-o", "a.fmu", error="cli.bad-units")
+
+    # Dependencies and directional derivatives
+
+    def prepare_examples(self, *prefixes):
+        """The system files of all examples, with their bodies reduced."""
+        root = os.path.join(SOURCE, "data/examples")
+        for example in sorted(os.listdir(root)):
+            if not example.startswith(prefixes or "ex"):
+                continue
+            shutil.copytree(os.path.join(root, example), self.path(example))
+            names = sorted(n for n in os.listdir(self.path(example)) if n.endswith(".toml"))
+            texts = {}
+            for name in names:
+                with open(self.path(os.path.join(example, name)), encoding="utf-8") as f:
+                    texts[name] = f.read()
+            systems = [name for name in names if "[simulation]" in texts[name]]
+            for name in names if systems else []:
+                if name not in systems and "[body]" in texts[name]:
+                    self.bough("reduce", os.path.join(example, name), "-o", os.path.join(example, name[:-5] + ".h5"))
+            yield from (os.path.join(example, name) for name in systems)
+
+    def list_channels(self, system):
+        """--channel for all that the results of a system contain."""
+        with open(self.path(system), encoding="utf-8") as f:
+            text = with_integrator(f.read(), 'integrator = "rk4"\nstep = 1e-5\n', 2e-5, 1e-5)
+        self.bough("run", self.write(os.path.join(os.path.dirname(system), "short.toml"), text), "-o", "channels.h5")
+        paths = []
+        with h5py.File(self.path("channels.h5")) as f:
+            f.visititems(lambda name, item: paths.append("/" + name) if isinstance(item, h5py.Dataset) else None)
+        groups = ("/sensors/", "/controllers/", "/actuators/", "/hinges/", "/bodies/", "/energy/", "/momentum/", "/forces/")
+        return [word for path in paths if path.startswith(groups) for word in ("--channel", path)]
+
+    def start_me(self, fmu, seed=1):
+        """An instance in continuous time at a state without symmetries, and that state."""
+        instance = self.make(fmu, "me")
+        instance.initialize()
+        instance.update_discrete()
+        x = instance.states()
+        instance.call("EnterContinuousTimeMode")
+        random = np.random.default_rng(seed)
+        return instance, x + 0.02 * random.standard_normal(len(x)), random
+
+    def difference(self, instance, t, x, unknowns, direction_x, inputs, direction_u, h):
+        """Central difference of outputs and derivatives by the functions of the importer."""
+        sides = []
+        for side in (h, -h):
+            instance.put(t, x + side * direction_x)
+            instance.set(list(inputs), np.array(list(inputs.values())) + side * direction_u)
+            sides.append(instance.get(unknowns))
+        instance.put(t, x)
+        instance.set(list(inputs), list(inputs.values()))
+        return (sides[0] - sides[1]) / (2 * h), np.maximum(*np.abs(sides))
+
+    def check_dependencies(self, fmu):
+        """No known with an effect is missing. Returns the share of pairs that are not listed."""
+        instance, x, random = self.start_me(fmu)
+        unknowns = fmu.list("output") + fmu.derivatives
+        inputs = {name: value for name, value in zip(fmu.list("input"), instance.get(fmu.list("input")) + random.standard_normal())}
+        knowns = fmu.states + list(inputs)
+        missing, total = 0, 0
+        for j, known in enumerate(knowns):
+            direction = np.zeros(len(knowns))
+            direction[j] = 1
+            h = 1e-4
+            change, size = self.difference(instance, float(fmu.root.find("DefaultExperiment").get("startTime")), x, unknowns, direction[:len(x)], inputs, direction[len(x):], h)
+            for unknown, value, large in zip(unknowns, change, size):
+                listed = fmu.dependencies[unknown]
+                total += 1
+                if listed is not None and known not in listed:
+                    missing += 1
+                    self.assertLess(abs(value) * h, 1e-12 * max(1, large), f"d({unknown})/d({known})")
+        return missing / max(1, total)
+
+    def test_dependencies_contain_all_that_has_an_effect(self):
+        self.write("arm.toml", ARM)
+        self.write("slide.toml", SLIDE)
+        self.write("chain.toml", CHAIN)
+        self.write("driven.toml", DRIVEN)
+        sparse = {}
+        for system in ["arm.toml", "slide.toml", "chain.toml", "driven.toml", *self.prepare_examples()]:
+            with self.subTest(system=system):
+                for version in (3,) if system.startswith("ex") else (2, 3):
+                    sparse[system] = self.check_dependencies(self.export(system, version, *self.list_channels(system)))
+        self.assertGreater(min(sparse.values()), 0.2, sparse)
+
+    def test_dependencies_are_sparse(self):
+        self.write("slide.toml", SLIDE)
+        self.write("chain.toml", CHAIN)
+        for version in (2, 3):
+            time = {"time"} if version == 3 else set()
+            fmu = self.export("slide.toml", version, "--channel", "x:x", "--channel", "/energy/work")
+            q, u, work, _ = fmu.states
+            self.assertEqual(fmu.dependencies["x:x"], {q} | time)
+            self.assertEqual(fmu.dependencies["/energy/work"], {work})
+            self.assertEqual(fmu.dependencies["der(" + q + ")"], {q, u})
+            self.assertEqual(fmu.dependencies["der(" + u + ")"], {q, u, "push"} | time)
+            fmu = self.export("chain.toml", version)
+            q1, q2, u1, u2 = fmu.states[:4]
+            lag, slow = "sensor 'slow' (state 1)", "controller 'lag' (state 1)"
+            self.assertEqual(fmu.dependencies["upper"], {q1} | time)  # the position of the first joint
+            self.assertEqual(fmu.dependencies["rate"], {q2, u2} | time)
+            self.assertEqual(fmu.dependencies["slow"], {lag} | time)
+            self.assertEqual(fmu.dependencies["shake:x"], {q1, q2, u1, u2, slow, "torque"} | time)  # an acceleration
+            self.assertEqual(fmu.dependencies["der(" + lag + ")"], {lag, q2} | time)
+            self.assertEqual(fmu.dependencies["der(" + slow + ")"], {slow, q1, "target"} | time)
+            self.assertEqual(fmu.dependencies["tip:x"], {q1, q2} | time)
+
+    def test_dependencies_of_every_kind_of_block(self):
+        self.write("driven.toml", DRIVEN)
+        fmu = self.export("driven.toml", 3, *(word for name in (
+            "spin", "held", "attitude", "seen", "far", "felt", "push", "/controllers/held_law", "/controllers/late", "/controllers/slow",
+            "/controllers/turns", "/controllers/mixed", "/actuators/wheel", "/actuators/motor") for word in ("--channel", name)))
+        inputs = {name: {i for i in of or () if i in fmu.list("input")} for name, of in fmu.dependencies.items()}
+        loads = {"i3", "i4", "i7", "i9"}  # what accelerates at once: neither sampled, switched nor behind a lag
+        rate = next(name for name in fmu.derivatives if "hinge rate" in name)
+        expected = {"spin:x": set(), "held:x": set(), "attitude:1": set(), "seen:x": set(), "far": set(), "push:x": set(),
+                    "/controllers/held_law": set(), "/controllers/turns": set(), "/controllers/slow": set(), "/controllers/mixed": {"i3"},
+                    "/controllers/late": loads, "felt:x": loads, rate: loads, "/actuators/wheel:1": {"i4"},
+                    "/actuators/motor:1": set(), "der(controller 'slow' (state 1))": loads}
+        self.assertEqual({name: inputs[name] for name in expected}, expected)
+        for name in fmu.list("output") + fmu.derivatives:
+            self.assertFalse(inputs[name] & {"i1", "i2", "i8", "i10"}, name)  # sampled, switched, unused
+        self.assertEqual({name: inputs[name] for name in fmu.indicators if inputs[name]},
+                         {"controller 'turns': switch 1": {"i2"}, "controller 'turns': switch 2": {"i2"}, "actuator 'jet': switch": {"i8"},
+                          **{f"actuator 'wheel': switch {i}": {"i4"} for i in (1, 2, 3)}})
+        self.assertEqual(inputs["event 'near'"], set())
+
+    def test_directional_derivatives_are_those_of_differences(self):
+        self.write("arm.toml", ARM)
+        self.write("chain.toml", CHAIN)
+        self.write("driven.toml", DRIVEN)
+        for system in ["arm.toml", "chain.toml", "driven.toml", *self.prepare_examples("ex04", "ex07", "ex08", "ex10")]:
+            with self.subTest(system=system):
+                fmu = self.export(system, 3 if system.startswith("ex") else 2)
+                instance, x, random = self.start_me(fmu)
+                unknowns = fmu.list("output") + fmu.derivatives
+                names = fmu.list("input")
+                inputs = dict(zip(names, random.standard_normal(len(names))))
+                t = float(fmu.root.find("DefaultExperiment").get("startTime"))
+                instance.put(t, x)
+                instance.set(names, list(inputs.values()))
+                before = instance.get(unknowns)
+                for _ in range(4):
+                    dx, du = random.standard_normal(len(x)), random.standard_normal(len(names))
+                    # Two steps, extrapolated: the error is of order 4.
+                    first, _ = self.difference(instance, t, x, unknowns, dx, inputs, du, 2e-4)
+                    second, _ = self.difference(instance, t, x, unknowns, dx, inputs, du, 1e-4)
+                    expected = (4 * second - first) / 3
+                    found = instance.directional(unknowns, fmu.states + names, [*dx, *du])
+                    np.testing.assert_allclose(found, expected, rtol=1e-6, atol=1e-6 * np.abs(expected).max())
+                # Nothing has moved; constraint forces are refined from those before, to rounding.
+                np.testing.assert_allclose(instance.get(unknowns), before, rtol=1e-13, atol=1e-13 * np.abs(before).max())
+                np.testing.assert_array_equal(instance.states(), x)
+
+    def test_directional_derivatives_are_those_of_the_linear_model(self):
+        self.write("chain.toml", CHAIN)
+        self.bough("linearize", "chain.toml", "--inputs", "torque,target", "--outputs", "upper,rate,slow,shake,tip", "-o", "linear.h5")
+        with h5py.File(self.path("linear.h5")) as f:
+            linear = {name: f[name][:] for name in "ABCD"}
+        outputs = ["upper", "rate", "slow", "shake:x", "shake:y", "shake:z", "tip:x", "tip:y", "tip:z"]
+        for version in (2, 3):
+            fmu = self.export("chain.toml", version)
+            n = len(fmu.states) - 2  # without work and dissipated energy
+            instance = self.make(fmu, "me")
+            instance.initialize()
+            instance.update_discrete()
+            instance.call("EnterContinuousTimeMode")
+            inputs = ["torque", "target"]
+            for name, unknowns, knowns in (("A", fmu.derivatives[:n], fmu.states[:n]), ("B", fmu.derivatives[:n], inputs),
+                                           ("C", outputs, fmu.states[:n]), ("D", outputs, inputs)):
+                found = instance.jacobian(unknowns, knowns)
+                np.testing.assert_allclose(found, linear[name], rtol=1e-8, atol=1e-8 * np.abs(linear[name]).max(), err_msg=name)
+            one = self.make(fmu, "cs")
+            one.initialize()
+            np.testing.assert_allclose(one.jacobian(outputs, inputs), linear["D"], rtol=1e-8, atol=1e-8 * np.abs(linear["D"]).max())
+
+    def test_directional_derivatives_of_a_linear_system_are_exact(self):
+        self.write("slide.toml", SLIDE.replace('axis = [1.0, 0.0, 0.0]', 'axis = [1.0, 0.0, 0.0]\nstiffness = [8.0]\ndamping = [0.5]'))
+        for version in (2, 3):
+            fmu = self.export("slide.toml", version)
+            q, u = fmu.states[:2]
+            der = ["der(" + q + ")", "der(" + u + ")"]
+            instance, x, _ = self.start_me(fmu)
+            instance.put(0.0, x)
+            np.testing.assert_allclose(instance.jacobian([*der, "x:x"], [q, u, "push"]), [[0, 1, 0], [-4, -0.25, 0.5], [1, 0, 0]],
+                                       rtol=1e-9, atol=1e-12)
+            np.testing.assert_allclose(instance.directional([der[1]], [q, u, "push", q], [1, 2, 4, 1]), [-8 - 0.5 + 2], rtol=1e-9)
+            with self.assertRaisesRegex(Failed, "expected inputs and states"):
+                instance.directional([der[1]], ["mass"], [1])
+            with self.assertRaisesRegex(Failed, "expected outputs and derivatives"):
+                instance.directional([q], [u], [1])
+            with self.assertRaisesRegex(Failed, "finite"):
+                instance.directional([der[1]], [u], [np.nan])
+            # In the initialization parameters are known, and states are not.
+            early = self.make(fmu, "cs")
+            with self.assertRaises(Failed):
+                early.directional([der[1]], ["push"], [1.0])
+            early.enter_initialization()
+            early.set(["push"], [3.0])
+            found = early.jacobian([der[1], q, "x:x"], ["push", "mass"])
+            np.testing.assert_allclose(found, [[0.5, -3 / 4], [0, 0], [0, 0]], rtol=1e-9, atol=1e-12)
+            early.call("ExitInitializationMode")
+            np.testing.assert_allclose(early.get([der[1], "push", "mass"]), [1.5, 3, 2], rtol=1e-12)
+            np.testing.assert_allclose(early.directional(["x:x"], ["push"], [1.0]), [0], atol=1e-12)
+
+    def test_directional_derivatives_hold_modes(self):
+        """A joint that sticks keeps its place; one that slips does not."""
+        stuck = SLIDE.replace('axis = [1.0, 0.0, 0.0]', 'axis = [1.0, 0.0, 0.0]\nfriction = {coulomb = 3.0}')
+        for push, expected in ((1.0, 0), (5.0, 0.5)):
+            self.write("slide.toml", stuck.replace("start = 1.0", f"start = {push}"))
+            fmu = self.export("slide.toml", 3)
+            instance = self.make(fmu, "me")
+            instance.initialize()
+            instance.update_discrete()
+            instance.call("EnterContinuousTimeMode")
+            np.testing.assert_allclose(instance.directional([fmu.derivatives[1]], ["push"], [1.0]), [expected], atol=1e-12)
 
     # The end of a run, times
 
@@ -437,7 +956,10 @@ class FmuTest(ProgramTest):
         with self.assertRaisesRegex(Failed, r"outputs|states.*fmu.structure"):
             instance.initialize()
         instance.call("Reset")
-        instance.initialize()
+        instance.enter_initialization()  # half a mode does not exist
+        with self.assertRaisesRegex(Failed, r"modes.*fmu.derivative"):
+            instance.directional([fmu.list("output")[0]], ["modes"], [1.0])
+        instance.call("ExitInitializationMode")
         instance.step(0, 0.1)
 
     def test_bad_calls_are_errors_and_leave_the_instance_usable(self):
@@ -501,9 +1023,9 @@ class FmuTest(ProgramTest):
                     more = [] if version == 2 else [SIZE(1)]
                     fails(cs, "Get" + kind, cs.references(["x:x"]), SIZE(1), (REAL * 1)(), *more)
                     cs.call("Get" + kind, None, SIZE(0), None, *([] if version == 2 else [SIZE(0)]))
-                for name in ["GetDirectionalDerivative"] + (["CancelStep", "SetRealInputDerivatives"] if version == 2 else
-                                                            ["GetAdjointDerivative", "EnterConfigurationMode", "GetOutputDerivatives",
-                                                             "EvaluateDiscreteStates", "ActivateModelPartition"]):
+                for name in ["CancelStep", "SetRealInputDerivatives"] if version == 2 else [
+                        "GetAdjointDerivative", "EnterConfigurationMode", "GetOutputDerivatives", "EvaluateDiscreteStates",
+                        "ActivateModelPartition"]:
                     fails(cs, name, None, SIZE(0), None, SIZE(0), None, SIZE(0), None, SIZE(0))
                 me.update_discrete()
                 me.call("EnterContinuousTimeMode")
