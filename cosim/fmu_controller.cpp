@@ -283,6 +283,7 @@ solver::ControllerFunctions load_fmu(records::ControllerRecord& record) {
   solver::ControllerFunctions f;
   f.language = "FMU";
   f.is_opaque = true;
+  f.is_forward_only = !model.can_save_state;
   f.version = [] { return BOUGH_CONTROLLER_VERSION; };
   f.open = [=](bough_controller* own) {
     auto made = std::make_unique<FmuLaw>(model, variables, parameters, folder, step);

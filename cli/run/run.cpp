@@ -195,10 +195,12 @@ int run_run(const RunOptions& o) {
     }
   }
   if (options.resume) {
+    solver::demand_resumable(loaded.system.signals);
     writer = hdf5::make_results_appender(output, options.resume->time);
   } else {  // also where a run was killed before its first checkpoint: there is nothing to keep
     check_output(o, output);
     options.resume = find_start_control(o.start_from, loaded.system, loaded.spec.simulation.start, diagnostics);
+    if (options.resume) solver::demand_resumable(loaded.system.signals);
     writer = hdf5::make_results_writer(output);
   }
   ProvenanceSink sink(*writer, sources);

@@ -12,8 +12,9 @@ namespace bough::solver {
 
 /// The functions of bough_controller.h; those that may be left out there may be empty.
 struct ControllerFunctions {
-  std::string language;    ///< of the host, for messages: "Python"; empty: a shared library
-  bool is_opaque = false;  ///< the memory is no set of numbers: no linear model can be made ("linear.fmu")
+  std::string language;          ///< of the host, for messages: "Python"; empty: a shared library
+  bool is_opaque = false;        ///< the memory is no set of numbers: no linear model can be made ("linear.fmu")
+  bool is_forward_only = false;  ///< a run cannot go on from a memory of another run ("control.cannot-resume")
   std::function<int()> version;
   std::function<int(bough_controller*)> open;
   std::function<int(void*, double, const double*, const double*, const double*, double*)> outputs;

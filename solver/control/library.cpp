@@ -40,6 +40,7 @@ class Library final : public UserBlock {
   /// What it does with the time is not known.
   bool depends_on_time() const override { return sizes.sample_time == 0; }
   bool is_opaque() const override { return f_.is_opaque; }
+  bool is_forward_only() const override { return f_.is_forward_only; }
   /// `handle` of dlopen; null where a host lends the functions.
   Library(void* handle, ControllerFunctions f) : handle_(handle), f_(std::move(f)) {}
   ~Library() override {
@@ -119,7 +120,7 @@ class Library final : public UserBlock {
       return {"control.library-failed", at, marked.describe() + how, advice};
     };
     int result = 0;
-    // Its instance is one for all threads. A host event functions its own functions (the Python module by the
+    // Its instance is one for all threads. A host guards its own functions (the Python module by the
     // interpreter's lock, which must not be waited for under this one).
     std::unique_lock one_at_a_time(*calls_, std::defer_lock);
     if (handle_ != nullptr) one_at_a_time.lock();
@@ -173,6 +174,18 @@ ControllerFunctions find_functions(void* handle) {
 bool has_user_blocks(const SignalGraph& signals) {
   return std::ranges::any_of(
       signals.places, [](const auto& place) { return dynamic_cast<const UserBlock*>(place.block.get()) != nullptr; });
+}
+
+void demand_resumable(const SignalGraph& signals) {
+  for (const auto& place : signals.places) {
+    const auto* block = dynamic_cast<const UserBlock*>(place.block.get());
+    if (block == nullptr || !block->is_forward_only()) continue;
+    throw InputError("control.cannot-resume", block->at,
+                     block->label +
+                         " cannot go on from an earlier run: its FMU does not save its state "
+                         "(canSerializeFMUState)",
+                     "run it in one part, or take an FMU that saves its state");
+  }
 }
 
 void close_user_blocks(const SignalGraph& signals) {

@@ -3,7 +3,7 @@
 ///
 ///     preload - table(q - q_null) - table(q̇) - friction(q̇) + stops
 ///     friction  [F_c + (F_s - F_c) exp(-(q̇/v_s)²)] tanh(q̇/v_0)        Stribeck's, smooth over v_0
-///               the same times the direction of sliding                  dry: solver/forces/joint contact.hpp
+///               the same times the direction of sliding                  dry: solver/forces/joint_contact.hpp
 ///     stop      k δ (1 + c δ̇), not below zero, for δ past the stop       Hunt & Crossley with exponent 1
 /// Along a prescribed coordinate the motion has it: nothing acts.
 #include <cmath>

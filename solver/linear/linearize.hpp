@@ -29,7 +29,7 @@ struct LinearizeOptions {
 records::LinearModel linearize(Plant& plant, const OperatingPoint& point, const LinearizeOptions& options,
                                const SourceLocation& at, Diagnostics& diagnostics);
 
-/// Warns "linear.joint contacts-left-out" of dry friction and rigid stops, which linear models and equilibria leave
+/// Warns "linear.latches-left-out" of dry friction and rigid stops, which linear models and equilibria leave
 /// out.
 void warn_of_latches(const System& system, const SourceLocation& at, Diagnostics& diagnostics);
 

@@ -74,7 +74,7 @@ class Block {
   /// Sampled: the memory after this sample; d holds what in.d holds. After calc_outputs of the same sample.
   virtual void update(const BlockInput& in, double* d) const;
   virtual void calc_event_functions(const BlockInput& in, double* g) const;
-  /// The memory after event function `event function` has become positive; the event function must not be positive any
+  /// The memory after event function `function` has become positive; the event function must not be positive any
   /// more.
   virtual void switch_over(const BlockInput& in, int function, double* d) const;
 
