@@ -102,7 +102,7 @@ bool check_rotations(const records::HingeRecord& h, Diagnostics& diagnostics) {
   return good;
 }
 
-// A hinge dof that moves no mass at all.
+// A free hinge coordinate that moves no mass at all.
 void check_masses(const Tree& tree, const records::SystemSpec& spec, const TreeOrder& order, Diagnostics& diagnostics) {
   std::vector<double> carried(tree.bodies.size());
   for (size_t b = tree.bodies.size(); b-- > 0;) {

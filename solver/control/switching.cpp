@@ -7,7 +7,7 @@
 namespace bough::solver {
 namespace {
 
-/// Memory, one a component: -1, 0 or 1. Two event functions a component: it leaves its state upwards or downwards.
+/// Memory, one for each component: -1, 0 or 1. Two event functions for each: it leaves its state upwards or downwards.
 class Trigger : public Block {
  public:
   double on = 0, off = 0;

@@ -26,7 +26,7 @@ double calc_range(const std::vector<double>& y) {
 
 }  // namespace
 
-std::vector<double> find_landmarks(const std::vector<double>& x, const std::vector<double>& y) {
+std::vector<double> find_mesh_times(const std::vector<double>& x, const std::vector<double>& y) {
   std::vector<double> found;
   const double least = 0.25 * calc_range(y);
   if (!(least > 0)) return found;
@@ -53,8 +53,8 @@ std::vector<double> LinearTable::force_jump_times() const {
   return found;
 }
 
-std::vector<double> LinearTable::mesh_times() const { return find_landmarks(x_, y_); }
-std::vector<double> CubicTable::mesh_times() const { return find_landmarks(x_, y_); }
+std::vector<double> LinearTable::mesh_times() const { return find_mesh_times(x_, y_); }
+std::vector<double> CubicTable::mesh_times() const { return find_mesh_times(x_, y_); }
 
 TimeFunction::Value LinearTable::calc(double t) const {
   if (t < x_.front()) return {y_.front(), 0, 0};

@@ -8,7 +8,7 @@ namespace bough::solver {
 
 /// A point wherever y has changed by a quarter of its range since the last one, and the point before the first change
 /// of each such stretch. x ascending, as many y; y that are not finite are passed over.
-std::vector<double> find_landmarks(const std::vector<double>& x, const std::vector<double>& y);
+std::vector<double> find_mesh_times(const std::vector<double>& x, const std::vector<double>& y);
 
 /// Straight lines between the points. x ascending strictly, as many y; checked by make_time_function.
 class LinearTable final : public TimeFunction {

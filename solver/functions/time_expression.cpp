@@ -34,7 +34,7 @@ class TimeExpression final : public TimeFunction {
 
 /// The run in so many parts, at whose ends a formula is looked at.
 constexpr int kLooks = 10'000;
-/// More landmarks are of something that never rests: those alone count that end a rest.
+/// More mesh times are of something that never rests: those alone count that end a rest.
 constexpr size_t kMostMarks = 1000;
 /// A rest is so many times longer than what follows it.
 constexpr double kRest = 5;
@@ -51,7 +51,7 @@ std::vector<double> find_marks(const TimeExpression& made, const TimeSpan& run) 
     for (size_t d = 0; d < num; ++d) y[d].push_back(all[d]);
   }
   for (size_t d = 0; d < num; ++d) {
-    auto marks = bough::solver::find_landmarks(x, y[d]);
+    auto marks = bough::solver::find_mesh_times(x, y[d]);
     if (marks.size() > kMostMarks) {
       std::vector<double> ends;
       for (size_t i = 1; i + 1 < marks.size(); ++i)

@@ -24,7 +24,7 @@ class Sawtooth final : public TimeFunction {
     }
   }
   Value calc(double t) const override {
-    // Jumps are where breakpoints() has them, to the last bit: 0.3 / 0.1 is below 3.
+    // Jumps are where jump_times() has them, to the last bit: 0.3 / 0.1 is below 3.
     double k = std::floor((t - at_) / period_);
     if (t >= at_ + (k + 1) * period_) ++k;
     if (t < at_ + k * period_) --k;

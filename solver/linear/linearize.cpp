@@ -41,7 +41,7 @@ std::string brief_text(double value) {
 /// Dimensions of [u̇; ż; y]; those of a state are its own.
 std::vector<std::string> get_row_dims(const Plant& plant) {
   std::vector<std::string> dims;
-  for (int i = 0; i < plant.num_dofs(); ++i) dims.push_back("u_dot " + plant.freedom_dims(i));
+  for (int i = 0; i < plant.num_dofs(); ++i) dims.push_back("u_dot " + plant.dof_dims(i));
   for (int i = 0; i < plant.num_states(); ++i) dims.push_back(plant.state_name(i));
   dims.insert(dims.end(), plant.outputs().dims.begin(), plant.outputs().dims.end());
   return dims;
@@ -281,7 +281,7 @@ LinearModel linearize(Plant& plant, const OperatingPoint& point, const Linearize
   for (const char* suffix : {"", "_dot"}) {
     for (int i = 0; i < n; ++i) {
       model.states.name.push_back(plant.dof_name(i) + suffix);
-      model.states.dims.push_back(*suffix ? plant.freedom_dims(i) + "/T" : plant.freedom_dims(i));
+      model.states.dims.push_back(*suffix ? plant.dof_dims(i) + "/T" : plant.dof_dims(i));
     }
   }
   const int nz = plant.num_states(), nx = 2 * n + nz;
@@ -304,7 +304,7 @@ LinearModel linearize(Plant& plant, const OperatingPoint& point, const Linearize
   model.u = point.u;
   for (int i = 0; i < n; ++i) {
     model.u_names.name.push_back(plant.dof_name(i));
-    model.u_names.dims.push_back(plant.freedom_dims(i) + "/T");
+    model.u_names.dims.push_back(plant.dof_dims(i) + "/T");
     if (plant.is_periodic(i)) model.periodic.push_back(plant.dof_name(i));
   }
   const VectorXd base = plant.evaluate(point);

@@ -2,7 +2,7 @@
 /// \file A System as linearize and equilibrium see it: dofs, inputs, outputs. The one door of solver/linear to the
 /// rest of the solver.
 ///
-/// A dof is a free hinge coordinate or a mode, in the order of u. Positions near q are q ⊕ δ, with one δ a dof:
+/// A dof is a free hinge coordinate or a mode, in the order of u. Positions near q are q ⊕ δ, with one δ for each dof:
 /// q + δ, and for the orientation of a spherical or free hinge q exp(δ̃) (δ in Hc, as its u). About a motion q(t), u(t)
 /// that gives δ̇ = δu, and δ̇ = δu - ω × δ for an orientation that turns at ω: exact to first order.
 ///
@@ -25,7 +25,7 @@ struct SampleTimes;
 
 struct OperatingPoint {
   double t = 0;
-  VectorXd q, u;       ///< num_q; one rate a dof
+  VectorXd q, u;       ///< num_q; one rate for each dof
   VectorXd z, memory;  ///< all of controllers, actuators and sensors
 };
 
@@ -49,7 +49,7 @@ class Plant {
   int num_dofs() const { return static_cast<int>(dofs_.size()); }
   /// "shoulder:1"; "ball:rx" for rotations, "flyer:x" for translations of a spherical or free hinge; "boom:eta3".
   const std::string& dof_name(int i) const { return dofs_[static_cast<size_t>(i)].name; }
-  const std::string& freedom_dims(int i) const { return dofs_[static_cast<size_t>(i)].dims; }
+  const std::string& dof_dims(int i) const { return dofs_[static_cast<size_t>(i)].dims; }
   bool is_mode(int i) const { return dofs_[static_cast<size_t>(i)].is_mode; }
   /// A displacement that is large but not absurd: 0.1 rad, 5 % of the size of the bodies.
   double step(int i) const { return dofs_[static_cast<size_t>(i)].step; }
@@ -71,7 +71,7 @@ class Plant {
   void hold_commands(const OperatingPoint& point);
   /// q ⊕ δ; delta: num_dofs. Throws ComputationError "linear.dead-point" where the loops cannot follow.
   VectorXd displace(const VectorXd& q, const VectorXd& delta) const;
-  /// num_u of the system, of one value a dof: zero where a motion is prescribed or loops are closed; and back.
+  /// num_u of the system, of one value for each dof: zero where a motion is prescribed or loops are closed; and back.
   VectorXd expand(const VectorXd& free) const;
   VectorXd restrict(const VectorXd& u) const { return u(rows_); }
   /// All speeds at a point, those that loops give too. Throws ComputationError "linear.dead-point".
@@ -182,7 +182,7 @@ class Plant {
   std::unique_ptr<LawTangents> tangents_;
   std::vector<Freedom> dofs_;
   bool is_open_ = false;
-  std::vector<int> rows_;        ///< of u, one a dof
+  std::vector<int> rows_;        ///< of u, one for each dof
   std::vector<int> state_rows_;  ///< of z
   std::vector<PlantInput> inputs_;
   int num_forces_ = 0, num_actuators_ = 0;

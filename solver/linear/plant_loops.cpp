@@ -37,17 +37,17 @@ void Plant::choose_independent(double t, const VectorXd& q) {
   std::vector<bool> follows(dofs_.size(), false);
   for (Eigen::Index k = 0; k < factor.rank(); ++k)
     follows[static_cast<size_t>(factor.colsPermutation().indices()[k])] = true;
-  std::vector<Freedom> freedoms;
+  std::vector<Freedom> kept_dofs;
   std::vector<int> rows;
   for (size_t j = 0; j < dofs_.size(); ++j) {
     if (follows[j]) {
       grip_[static_cast<size_t>(rows_[j])] = AssemblyPriority::Free;
       continue;
     }
-    freedoms.push_back(dofs_[j]);
+    kept_dofs.push_back(dofs_[j]);
     rows.push_back(rows_[j]);
   }
-  dofs_ = std::move(freedoms);
+  dofs_ = std::move(kept_dofs);
   rows_ = std::move(rows);
 }
 

@@ -72,7 +72,7 @@ VectorXd Plant::calc_unsteadiness(const VectorXd& u_dot) const {
 VectorXd Plant::calc_spin_rounding(const OperatingPoint& point) const {
   double w = 0;
   for (int i = 0; i < num_dofs(); ++i)
-    if (!is_mode(i) && freedom_dims(i) == "1") w = std::max(w, std::abs(point.u[i]));
+    if (!is_mode(i) && dof_dims(i) == "1") w = std::max(w, std::abs(point.u[i]));
   VectorXd rounding(num_dofs());
   for (int i = 0; i < num_dofs(); ++i) rounding[i] = 10 * kRounding * step(i) * w * w;
   return rounding;

@@ -129,9 +129,9 @@ records::LinearModel calc_sampled_loop(Plant& plant, const OperatingPoint& point
   model.states.name = departures.list_names();
   model.states.name.push_back(cut.name + " (held)");
   for (int i = 0; i < size; ++i) {
-    const bool is_freedom = i < 2 * plant.num_dofs();
-    const std::string dims = is_freedom ? plant.freedom_dims(i % plant.num_dofs()) : "by the controller";
-    model.states.dims.push_back(dims + (is_freedom && i >= plant.num_dofs() ? "/T" : ""));
+    const bool is_dof = i < 2 * plant.num_dofs();
+    const std::string dims = is_dof ? plant.dof_dims(i % plant.num_dofs()) : "by the controller";
+    model.states.dims.push_back(dims + (is_dof && i >= plant.num_dofs() ? "/T" : ""));
   }
   return model;
 }

@@ -1,5 +1,5 @@
 #pragma once
-/// \file What a run meets on its way: samples, jumps, landmarks, events at a time, its end.
+/// \file Time events of a run: samples, jumps, mesh times, events at a time, its end.
 #include <limits>
 #include <optional>
 #include <vector>
@@ -29,7 +29,7 @@ RunPlan make_run_plan(const records::SimulationRecord& simulation, Diagnostics& 
 /// counted, not stored: start, start + output_step, ..., exactly the end.
 class TimeEvents {
  public:
-  /// `jumps` (jumps, events at a time) and `landmarks`: in any order, inside the run or not.
+  /// `jumps` (jumps, events at a time) and `mesh_times`: in any order, inside the run or not.
   TimeEvents(const RunPlan& plan, std::vector<double> jumps, std::vector<double> mesh_times);
   explicit TimeEvents(const RunPlan& plan) : TimeEvents(plan, {}, {}) {}
 
@@ -53,14 +53,14 @@ class TimeEvents {
   TimeEvent find_next(double t) const;
   /// The stop at t, an instant of samples too; none where there is none.
   std::optional<TimeEvent> find_at(double t) const;
-  /// Whether a restart is at t.
+  /// Returns true if the integrator is reset at t.
   bool is_restart(double t) const;
   /// Times that are one.
   double resolution() const { return close_; }
 
  private:
   double snap(double t) const;
-  /// The same to stops alone.
+  /// Snaps to time events alone, not to samples.
   double snap_to_stop(double t) const;
 
   RunPlan plan_;

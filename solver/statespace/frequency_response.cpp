@@ -27,7 +27,7 @@ std::vector<double> choose_frequencies(const records::LinearModel& model, const 
   for (Index i = 0; i < poles.size(); ++i) high = std::max(high, size_of(i));
   for (Index i = 0; i < poles.size(); ++i)
     if (size_of(i) > 1e-6 * high) low = std::min(low, size_of(i));
-  // Zeros near the poles have kinks too; some are rounding of zeros at infinity or at 0.
+  // Zeros near the poles have corner frequencies too; some are rounding of zeros at infinity or at 0.
   const double floor = high > 0 ? 1e-3 * low : 1e-9, ceiling = high > 0 ? 1e3 * high : 1e9;
   for (Index i = 0; i < model.zeros_real.size(); ++i) {
     const double size = std::hypot(model.zeros_real[i], model.zeros_imag[i]);

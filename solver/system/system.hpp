@@ -49,7 +49,7 @@ struct System {
   bool signals_are_valid = true;  ///< sensors, controllers and actuators have no errors
   GravityField gravity;
   std::vector<double> jump_times;  ///< times at which a function that drives a hinge or a force jumps, ascending
-  std::vector<double> mesh_times;  ///< times that no step may pass over, ascending (TimeFunction::landmarks)
+  std::vector<double> mesh_times;  ///< times that no step may pass over, ascending (TimeFunction::mesh_times)
   double start = 0;
   bool is_lagged = false;                             ///< bodies are stiffened by blocks of signals, not by themselves
   std::vector<bool> body_is_valid;                    ///< by body: its record and its hinge have no errors

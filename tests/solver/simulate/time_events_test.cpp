@@ -1,4 +1,4 @@
-// What a run meets on its way: output times, is_jump at jumps, landmarks, and the checks of [simulation].
+// Time events of a run: output times, jumps, mesh times, and the checks of [simulation].
 #include "solver/simulate/time_events.hpp"
 
 #include <gmock/gmock.h>
@@ -53,12 +53,12 @@ TEST(TimeEvents, StopsAreTheJumpsInsideAndTheEnd) {
   EXPECT_EQ(first.time, b);  // two jumps a rounding apart are one
   EXPECT_EQ(first.left, std::nextafter(a, 0.0));
   EXPECT_TRUE(first.is_jump);
-  const TimeEvent landmark = timeline.find_next(b);
-  EXPECT_EQ(landmark.time, 0.5);
-  EXPECT_EQ(landmark.left, 0.5);
-  EXPECT_FALSE(landmark.is_jump);
+  const TimeEvent mesh = timeline.find_next(b);
+  EXPECT_EQ(mesh.time, 0.5);
+  EXPECT_EQ(mesh.left, 0.5);
+  EXPECT_FALSE(mesh.is_jump);
   EXPECT_EQ(timeline.find_next(0.5).time, 0.7);
-  EXPECT_TRUE(timeline.find_next(0.5).is_jump);  // the landmark there is the jump
+  EXPECT_TRUE(timeline.find_next(0.5).is_jump);  // the mesh time there is the jump
   EXPECT_EQ(timeline.find_next(0.7).time, 1);
   EXPECT_EQ(timeline.find_next(0.7).left, std::nextafter(1.0, 0.0));  // a jump there: the steps see what is before
   EXPECT_EQ(TimeEvents(plan(1, 0.1), {0.7}, {}).find_next(0.7).left, 1);
