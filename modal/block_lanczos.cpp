@@ -46,8 +46,6 @@ class BlockLanczos {
   /// The principal directions of W, G = WᵀBW, at length one, those up to `floor` left out; B W and R follow. Their
   /// lengths, ascending.
   VectorXd make_unit(const MatrixXd& G, double floor, MatrixXd& W, MatrixXd& B_W, MatrixXd& R);
-  /// VᵀW of all rows.
-  MatrixXd multiply_transposed(const Eigen::Ref<const MatrixXd>& V, const Eigen::Ref<const MatrixXd>& W) const;
   /// Takes the last two blocks of the basis off W, from B W too, without a product. \return how long that was.
   double relieve(MatrixXd& W, MatrixXd& B_W, MatrixXd& C) const;
   void append(const MatrixXd& W);
@@ -89,14 +87,6 @@ BlockLanczos::BlockLanczos(BlockLanczosProblem problem)
   scale_ = 0;
 }
 
-MatrixXd BlockLanczos::multiply_transposed(const Eigen::Ref<const MatrixXd>& V,
-                                           const Eigen::Ref<const MatrixXd>& W) const {
-  MatrixXd C(V.cols(), W.cols());
-  fe::multiply_dense(true, V, W, 0, C);
-  if (problem_.sum) problem_.sum(C);
-  return C;
-}
-
 VectorXd BlockLanczos::make_unit(const MatrixXd& G, double floor, MatrixXd& W, MatrixXd& B_W, MatrixXd& R) {
   const Eigen::SelfAdjointEigenSolver<MatrixXd> gram(0.5 * (G + G.transpose()));
   const VectorXd& g = gram.eigenvalues();
@@ -115,7 +105,7 @@ VectorXd BlockLanczos::make_unit(const MatrixXd& G, double floor, MatrixXd& W, M
 double BlockLanczos::relieve(MatrixXd& W, MatrixXd& B_W, MatrixXd& C) const {
   const auto b = B_before_.cols(), both = b + B_next_.cols();
   const auto V = V_.middleCols(size_ - both, both);
-  const MatrixXd C_near = multiply_transposed(V, B_W);
+  const MatrixXd C_near = fe::calc_inner_products(V, B_W);
   subtract(V, C_near, W);
   subtract(B_before_, C_near.topRows(b), B_W);
   subtract(B_next_, C_near.bottomRows(both - b), B_W);
@@ -131,7 +121,7 @@ void BlockLanczos::orthonormalize(MatrixXd& W, MatrixXd& C, MatrixXd& R) {
   // What the recurrence couples first: left in, it would carry errors of the basis into the other directions, which
   // grow by the ratio of both from block to block. Known vectors, whose θ may be much larger, are off before.
   if (is_recurrent_ && has_known) {
-    subtract(problem_.deflate, multiply_transposed(problem_.deflate, B_W), W);
+    subtract(problem_.deflate, fe::calc_inner_products(problem_.deflate, B_W), W);
     B_W = problem_.multiply_mass(W);
   }
   const double near = is_recurrent_ ? relieve(W, B_W, C) : 0;
@@ -139,17 +129,17 @@ void BlockLanczos::orthonormalize(MatrixXd& W, MatrixXd& C, MatrixXd& R) {
   for (int pass = 0; pass < 5 && W.cols() > 0; ++pass) {
     VectorXd squares = VectorXd::Zero(W.cols());  // of W as it was given: of what is taken off, and what is left
     if (has_known) {
-      const MatrixXd D = multiply_transposed(problem_.deflate, B_W);
+      const MatrixXd D = fe::calc_inner_products(problem_.deflate, B_W);
       subtract(problem_.deflate, D, W);
       squares += D.colwise().squaredNorm().transpose();
     }
     const auto V = V_.leftCols(size_);
-    const MatrixXd C_pass = multiply_transposed(V, B_W);
+    const MatrixXd C_pass = fe::calc_inner_products(V, B_W);
     subtract(V, C_pass, W);
     C += C_pass * R;
     B_W.resize(0, 0);  // as large as what comes
     B_W = problem_.multiply_mass(W);
-    const MatrixXd G = multiply_transposed(W, B_W);
+    const MatrixXd G = fe::calc_inner_products(W, B_W);
     squares += C_pass.colwise().squaredNorm().transpose() + G.diagonal();
     const double given = std::sqrt(squares.cwiseAbs().maxCoeff());
     if (pass == 0) scale_ = std::max({scale_, near, given});
@@ -160,7 +150,8 @@ void BlockLanczos::orthonormalize(MatrixXd& W, MatrixXd& C, MatrixXd& R) {
     // What roundoff left along the basis has grown as `given` to the least of them, that of columns among themselves
     // as their ratio squared.
     if (given > most * length.minCoeff()) continue;
-    if (length.maxCoeff() > 3 * length.minCoeff()) make_unit(multiply_transposed(W, B_W), kDependentColumn, W, B_W, R);
+    if (length.maxCoeff() > 3 * length.minCoeff())
+      make_unit(fe::calc_inner_products(W, B_W), kDependentColumn, W, B_W, R);
     break;
   }
   B_before_ = std::move(B_next_);

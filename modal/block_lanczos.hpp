@@ -20,8 +20,6 @@ struct BlockLanczosProblem {
   std::function<MatrixXd(const Eigen::Ref<const MatrixXd>&)> multiply_mass;  ///< B X, B positive semi-definite
   /// C X where the operator is A⁻¹C, C symmetric and B = A (load factors); without it the operator is A⁻¹B.
   std::function<MatrixXd(const Eigen::Ref<const MatrixXd>&)> multiply_operator;
-  /// Where every rank holds rows of its own of the vectors: sums small matrices over ranks, alike on each.
-  std::function<void(Eigen::Ref<MatrixXd>)> sum;
   MatrixXd start;    ///< n x b: fixes the block's width
   MatrixXd deflate;  ///< n x k, B-orthonormal eigenvectors that are known already
   int num_wanted = 1;

@@ -1,12 +1,10 @@
 #include "modal/canonical.hpp"
 
 #include <cmath>
-#include <limits>
-#include <numeric>
 #include <utility>
 
 #include "fe/linear/blas.hpp"
-#include "fe/linear/petsc.hpp"
+#include "fe/linear/factor.hpp"
 #include "modal/extraction.hpp"
 #include "modal/tolerances.hpp"
 
@@ -51,51 +49,30 @@ void orthonormalize_ascending(const MatrixXd& G, MatrixXd& X) {
   X = std::move(Y);
 }
 
-void project_out(const fe::OwnRows& rows, Mat M, const MatrixXd& R, MatrixXd& X) {
+void project_out(Mat M, const MatrixXd& R, MatrixXd& X) {
   if (R.cols() == 0) return;
-  const MatrixXd MR = rows.multiply(M, R);
-  for (int pass = 0; pass < 2; ++pass) X -= R * rows.dot(MR, X);
+  const MatrixXd MR = fe::multiply(M, R);
+  for (int pass = 0; pass < 2; ++pass) X -= R * fe::calc_inner_products(MR, X);
 }
 
-VectorXd find_largest(const std::vector<int>& place, bool over_ranks, const Eigen::Ref<const MatrixXd>& X) {
-  const Eigen::Index m = X.cols();
-  VectorXd largest = VectorXd::Zero(m), value = VectorXd::Zero(m);
-  for (Eigen::Index j = 0; j < m && X.rows() > 0; ++j) largest(j) = X.col(j).cwiseAbs().maxCoeff();
-  const auto all_of = [&](MPI_Op op, void* values, MPI_Datatype type) {
-    if (over_ranks) MPI_Allreduce(MPI_IN_PLACE, values, static_cast<int>(m), type, op, PETSC_COMM_WORLD);
-  };
-  all_of(MPI_MAX, largest.data(), MPI_DOUBLE);
-  std::vector<int> first(static_cast<std::size_t>(m), std::numeric_limits<int>::max());
-  for (Eigen::Index j = 0; j < m; ++j)
+VectorXd find_largest(const Eigen::Ref<const MatrixXd>& X) {
+  constexpr double kEqual = 1e-6;
+  VectorXd largest = VectorXd::Zero(X.cols());
+  for (Eigen::Index j = 0; j < X.cols() && X.rows() > 0; ++j) {
+    const double limit = (1 - kEqual) * X.col(j).cwiseAbs().maxCoeff();
     for (Eigen::Index i = 0; i < X.rows(); ++i) {
-      if (std::abs(X(i, j)) < (1 - 1e-6) * largest(j)) continue;
-      first[static_cast<std::size_t>(j)] = place[static_cast<std::size_t>(i)];
-      value(j) = X(i, j);
+      if (std::abs(X(i, j)) < limit) continue;
+      largest(j) = X(i, j);
       break;
     }
-  const std::vector<int> own = first;
-  all_of(MPI_MIN, first.data(), MPI_INT);
-  // Two ranks may have the row that is first; it is the same there but for roundoff.
-  VectorXd high(m);
-  for (Eigen::Index j = 0; j < m; ++j) {
-    const auto c = static_cast<std::size_t>(j);
-    const bool is_mine = own[c] == first[c] && first[c] != std::numeric_limits<int>::max();
-    high(j) = is_mine ? value(j) : -std::numeric_limits<double>::infinity();
   }
-  all_of(MPI_MAX, high.data(), MPI_DOUBLE);
-  return high.unaryExpr([](double v) { return std::isfinite(v) ? v : 0.0; });
-}
-
-void fix_signs(const std::vector<int>& place, bool over_ranks, MatrixXd& Phi) {
-  const VectorXd largest = find_largest(place, over_ranks, Phi);
-  for (Eigen::Index j = 0; j < Phi.cols(); ++j)
-    if (largest(j) < 0) Phi.col(j) *= -1;
+  return largest;
 }
 
 void fix_signs(MatrixXd& Phi) {
-  std::vector<int> place(static_cast<std::size_t>(Phi.rows()));
-  std::iota(place.begin(), place.end(), 0);
-  fix_signs(place, false, Phi);
+  const VectorXd largest = find_largest(Phi);
+  for (Eigen::Index j = 0; j < Phi.cols(); ++j)
+    if (largest(j) < 0) Phi.col(j) *= -1;
 }
 
 int find_cluster_end(const VectorXd& values, int first, double tolerance, double floor) {

@@ -3,7 +3,7 @@
 #include <functional>
 #include <vector>
 
-#include "fe/linear/own_rows.hpp"
+#include "fe/linear/petsc.hpp"
 #include "fe/model/model.hpp"
 
 namespace bough::modal::detail {
@@ -25,16 +25,13 @@ MatrixXd calc_cluster_rotation(const VectorXd& weights, const Eigen::Ref<const M
 void orthonormalize_ascending(const MatrixXd& G, MatrixXd& X);
 
 /// Subtracts from X what it has of the M-orthonormal R, twice.
-void project_out(const fe::OwnRows& rows, Mat M, const MatrixXd& R, MatrixXd& X);
+void project_out(Mat M, const MatrixXd& R, MatrixXd& X);
 
 /// Makes the component of largest magnitude of each column positive, the first among those within 1e-6 of it.
 void fix_signs(MatrixXd& Phi);
-/// The same of rows that ranks share: `place` says which each of this rank's is, and the ranks together have all.
-void fix_signs(const std::vector<int>& place, bool over_ranks, MatrixXd& Phi);
 
-/// Of each column over all ranks the entry of largest magnitude, the first (by `place`, of every row of X) among those
-/// within 1e-6 of it; zero where there is none. Collective.
-VectorXd find_largest(const std::vector<int>& place, bool over_ranks, const Eigen::Ref<const MatrixXd>& X);
+/// That component of each column; zero of columns without rows.
+VectorXd find_largest(const Eigen::Ref<const MatrixXd>& X);
 
 /// One basis of each repeated eigenvalue, fixed by the model alone. `find_end` gives the position behind the cluster
 /// that starts at one; the columns of X of a cluster are rotated by calc_cluster_rotation() of what `expand` makes of

@@ -101,7 +101,6 @@ void check_request(const fe::Model& model, const EigenOptions& options) {
 /// The first element of the deck with negative stiffness; empty: none.
 std::string describe_first_negative(const fe::Model& model) {
   std::string text;
-  int place = std::numeric_limits<int>::max();
   MatrixXd K;
   for (std::size_t e = 0; e < model.elements().size() && text.empty(); ++e) {
     const auto& element = model.elements()[e];
@@ -109,11 +108,8 @@ std::string describe_first_negative(const fe::Model& model) {
     model.add_stiffness(*element, K);
     if (K.size() == 0 || K.diagonal().minCoeff() >= 0) continue;
     text = "; " + element->card() + " " + std::to_string(element->id()) + " has negative stiffness";
-    if (model.share()) place = model.share()->number[e];
   }
-  if (!model.share()) return text;
-  const auto places = fe::join_over_ranks(std::vector<int>{place});
-  return fe::spread_text(text, static_cast<int>(std::min_element(places.begin(), places.end()) - places.begin()));
+  return text;
 }
 
 /// A motion whose stiffness is negative grows by itself; a model on negative springs may well want to show it.

@@ -27,8 +27,7 @@ struct EigenOptions {
 /// within 1e-6 of it) is positive, so it does not depend on the rank count.
 struct EigenPairs {
   VectorXd lambda;         ///< n; rigid modes are exactly 0
-  MatrixXd Phi;            ///< num_gdofs x n in basic, constrained rows zero, dependent rows recovered; of a model
-                           ///< by parts the rows that fe::find_reach() lists (fe/matrices/reach.hpp)
+  MatrixXd Phi;            ///< num_gdofs x n in basic, constrained rows zero, dependent rows recovered
   VectorXd modal_mass;     ///< φᵀMφ, 1 but for roundoff; empty: not known
   VectorXd energy_share;   ///< |φᵀKφ| / Σ K_ii φ_i²: near 1e-16 K has no digit of a mode left; empty: not known
   VectorXd residual;       ///< |Kφ - λMφ| / |Kφ|; for rigid modes over the K-norm scale

@@ -11,7 +11,7 @@
 #include "fe/linear/low_rank_sum.hpp"
 #include "fe/linear/ranks.hpp"
 #include "fe/linear/residual.hpp"
-#include "fe/matrices/reach.hpp"
+#include "fe/matrices/vector_products.hpp"
 #include "modal/canonical.hpp"
 #include "modal/pencil.hpp"
 
@@ -59,13 +59,13 @@ void add_element(const MatrixXd& K, const MatrixXd& u, int most_dofs, MatrixXd& 
   strain.energy += z.transpose() * (kappa.asDiagonal() * z);
 }
 
-/// The f-dofs of `rows` of a g-set field as far as `reach`: the components along their CD axes.
-MatrixXd take_fdofs(const fe::Model& model, const fe::OwnRows& rows, const fe::Reach& reach, const MatrixXd& U) {
-  MatrixXd X(rows.num, U.cols());
-  for (int i = 0; i < rows.num; ++i) {
-    const auto [id, component] = model.describe_fdof(rows.first + i);
+/// The f-dofs of g-set fields U: the components along their CD axes.
+MatrixXd take_fdofs(const fe::Model& model, const Eigen::Ref<const MatrixXd>& U) {
+  MatrixXd X(model.num_fdofs(), U.cols());
+  for (int i = 0; i < model.num_fdofs(); ++i) {
+    const auto [id, component] = model.describe_fdof(i);
     const auto& node = model.node(model.find_node(id));
-    const int c = component - 1, row = reach.find_row(node.first_gdof);
+    const int c = component - 1, row = node.first_gdof;
     if (node.num_dofs == 6)
       X.row(i) = node.R_basic_cd.col(c % 3).transpose() * U.middleRows(row + 3 * (c / 3), 3);
     else
@@ -127,10 +127,7 @@ class SoftModes {
   void find_ritz() {
     // By the elements: where constraints have large factors, sums over the f-set lose digits of the mass too.
     const auto& model = pencil_.model;
-    const fe::Reach reach = fe::find_reach(model);
-    MatrixXd X_g = model.T() * X_;
-    if (model.share()) X_g = X_g(reach.gdofs, Eigen::all).eval();
-    orthonormalize_ascending(fe::calc_mass_gram(model, model.mass_kind(), reach, X_g), X_);
+    orthonormalize_ascending(fe::calc_mass_gram(model, model.mass_kind(), model.T() * X_), X_);
     const auto strain = calc_element_strain(pencil_.model, pencil_.model.T() * X_, true);
     MatrixXd V;
     theta_ = calc_graded_eigenvalues(strain.energy, V);
@@ -158,17 +155,14 @@ class SoftModes {
 };
 
 /// Puts the improved modes in the place of the `soft` ones and sorts all.
-void replace(const Pencil& pencil, const SoftModes& better, const fe::Reach& reach, const std::vector<Index>& soft,
-             EigenPairs& pairs) {
+void replace(const Pencil& pencil, const SoftModes& better, const std::vector<Index>& soft, EigenPairs& pairs) {
   const VectorXd residual = fe::calc_pair_residuals(pencil.K_diagonal, pencil.M_diagonal, better.theta(), better.X(),
-                                                    better.forces(), better.M_X(), pencil.kinds, pencil.rows);
-  const bool is_cut = pencil.model.share() != nullptr;
+                                                    better.forces(), better.M_X(), pencil.kinds);
   for (std::size_t i = 0; i < soft.size(); ++i) {
     const auto c = static_cast<Index>(i);
     pairs.lambda(soft[i]) = better.theta()(c);
     pairs.residual(soft[i]) = residual(c);
-    const VectorXd field = pencil.model.T() * better.X().col(c);
-    pairs.Phi.col(soft[i]) = is_cut ? VectorXd(field(reach.gdofs)) : field;
+    pairs.Phi.col(soft[i]) = pencil.model.T() * better.X().col(c);
   }
   std::vector<Index> order(static_cast<std::size_t>(pairs.lambda.size()));
   std::iota(order.begin(), order.end(), Index{0});
@@ -177,7 +171,7 @@ void replace(const Pencil& pencil, const SoftModes& better, const fe::Reach& rea
   pairs.residual = pairs.residual(order).eval();
   pairs.Phi = pairs.Phi(Eigen::all, order).eval();
   pairs.num_rigid = static_cast<int>((pairs.lambda.array() == 0).count());
-  fix_signs(reach.gdofs, is_cut, pairs.Phi);
+  fix_signs(pairs.Phi);
   pairs.modal_mass.resize(0), pairs.energy_share.resize(0);  // of what was before
 }
 
@@ -187,7 +181,8 @@ ElementStrain calc_element_strain(const fe::Model& model, const MatrixXd& X_g, b
   const Index m = X_g.cols();
   ElementStrain strain{MatrixXd::Zero(X_g.rows(), m), MatrixXd::Zero(m, m), VectorXd::Zero(m), VectorXd::Zero(m)};
   MatrixXd K, u, forces;
-  for (const int e : fe::list_own_elements(model)) {
+  const auto [first, last] = fe::calc_element_range(model);
+  for (int e = first; e < last; ++e) {
     const fe::Element& element = *model.elements()[static_cast<std::size_t>(e)];
     K.setZero(element.num_dofs(), element.num_dofs());
     model.add_stiffness(element, K);
@@ -236,7 +231,7 @@ VectorXd calc_graded_eigenvalues(MatrixXd G, MatrixXd& V) {
 namespace {
 
 /// The stiffest element, by translations, rotations and scalar points each; empty if stiffness differs by less than
-/// kStiff. Collective.
+/// kStiff.
 std::string find_stiffest(const fe::Model& model) {
   std::vector<int> kind_of(static_cast<std::size_t>(model.num_gdofs()), 0);
   for (const auto& node : model.nodes())
@@ -262,15 +257,6 @@ std::string find_stiffest(const fe::Model& model) {
   std::string stiffest;
   double ratio = kStiff;
   for (std::size_t k = 0; k < 3; ++k) {
-    if (model.share()) {
-      const auto all_least = fe::join_over_ranks(std::vector<double>{least[k]});
-      const auto all_most = fe::join_over_ranks(std::vector<double>{most[k]});
-      for (const double one : all_least)
-        if (one > 0 && (!(least[k] > 0) || one < least[k])) least[k] = one;
-      const auto at = std::max_element(all_most.begin(), all_most.end());
-      most[k] = *at;
-      name[k] = fe::spread_text(name[k], static_cast<int>(at - all_most.begin()));
-    }
     if (least[k] > 0 && most[k] / least[k] > ratio) ratio = most[k] / least[k], stiffest = name[k];
   }
   return stiffest;
@@ -290,17 +276,12 @@ Restored restore_digits(const fe::System& system, int number, bool is_from_first
   for (Index j = 0; j < pairs.energy_share.size(); ++j)
     if (pairs.energy_share(j) < kSoft) num_soft = j + 1;
   if (num_soft == 0) return {};
-  const Pencil of_rows(system);
-  const fe::Reach reach = fe::find_reach(model);
-  const MatrixXd X_own = take_fdofs(model, of_rows.rows, reach, pairs.Phi);
-  // Few modes are soft: from here on vectors are whole.
-  const Pencil pencil(system, VectorRows::Whole);
-  const MatrixXd X = of_rows.rows.replicate(X_own.leftCols(num_soft));
+  const Pencil pencil(system);
+  const MatrixXd X = take_fdofs(model, pairs.Phi.leftCols(num_soft));
   std::vector<Index> soft(static_cast<std::size_t>(num_soft));
   std::iota(soft.begin(), soft.end(), Index{0});
   const bool has_values = std::any_of(soft.begin(), soft.end(), [&](Index j) { return pairs.lambda(j) != 0; });
-  const MatrixXd soft_field = model.share() ? MatrixXd(model.T() * X) : MatrixXd(pairs.Phi(Eigen::all, soft));
-  const auto strain = calc_element_strain(model, soft_field, has_values);
+  const auto strain = calc_element_strain(model, pairs.Phi.leftCols(num_soft), has_values);
   const auto is_same = [&](std::size_t i) {
     const auto c = static_cast<Index>(i);
     const double lambda = pairs.lambda(soft[i]), energy = strain.energy(c, c);
@@ -333,7 +314,7 @@ Restored restore_digits(const fe::System& system, int number, bool is_from_first
   }
   if (num_changed > 3) result.changes += " and " + std::to_string(num_changed - 3) + " more";
   if (!result.changes.empty() || !(result.error < kSure)) result.stiffest = find_stiffest(model);
-  replace(pencil, better, reach, soft, pairs);
+  replace(pencil, better, soft, pairs);
   return result;
 }
 

@@ -49,7 +49,6 @@ class BlockLanczosSolver final : public OwnSolver {
     problem.solve = op.solve;
     problem.multiply_mass = op.multiply_mass;
     problem.multiply_operator = op.multiply_operator;
-    if (op.domains) problem.sum = fe::sum_alike;
     problem.start = std::move(settings.start);
     problem.deflate = std::move(settings.deflation);
     problem.num_wanted = static_cast<int>(eps->nev);
@@ -167,17 +166,13 @@ PetscErrorCode solve(EPS eps) {
 PetscErrorCode compute_vectors(EPS eps) {
   PetscFunctionBegin;
   const MatrixXd& X = get(eps).vectors;
-  const FactoredOperator* op = find_operator(eps->st);
   Mat B = nullptr;
   Vec column = nullptr;
   PetscCall(STGetMatrix(eps->st, 1, &B));
   PetscCall(MatCreateVecs(B, &column, nullptr));
   PetscCall(BVSetType(eps->V, BVVECS));
   for (Eigen::Index j = 0; j < X.cols(); ++j) {
-    const PetscErrorCode code = run_guarded(get(eps).failure, [&] {
-      const MatrixXd own = X.col(j);
-      fe::scatter((op && op->domains ? op->domains->replicate(own) : own).col(0), column);
-    });
+    const PetscErrorCode code = run_guarded(get(eps).failure, [&] { fe::scatter(X.col(j), column); });
     PetscCall(code);
     PetscCall(BVInsertVec(eps->V, static_cast<PetscInt>(j), column));
   }

@@ -23,7 +23,7 @@ void register_eps_types();
 bool is_own_type(EPS eps);
 
 struct BlockLanczosSettings {
-  MatrixXd start;                 ///< as wide as the blocks; rows of the operator, as `deflation`
+  MatrixXd start;                 ///< as wide as the blocks
   MatrixXd deflation;             ///< B-orthonormal eigenvectors that are known
   int num_guard = 0;              ///< of the wanted ones, the last: may be rough
   int max_subspace = 0;           ///< vectors before a restart
@@ -41,7 +41,7 @@ struct LowRankSettings {
 void set_settings(EPS eps, LowRankSettings settings);
 
 /// Moves the eigenvectors out, in the order of EPS' own array of eigenvalues (raw order): no copy of the largest thing
-/// in memory, as EPSGetEigenvector would make. Rows of the operator.
+/// in memory, as EPSGetEigenvector would make.
 MatrixXd take_vectors(EPS eps, Eigen::VectorXd& values);
 
 /// What a function of ours threw within SLEPc; null: nothing.

@@ -15,10 +15,8 @@
 #include "fe/linear/mechanism.hpp"
 #include "fe/linear/memory_need.hpp"
 #include "fe/linear/ordering.hpp"
-#include "fe/linear/own_rows.hpp"
 #include "fe/linear/petsc_message.hpp"
 #include "fe/linear/ranks.hpp"
-#include "fe/linear/subdomains.hpp"
 #include "modal/eps_types.hpp"
 #include "modal/factored_transform.hpp"
 #include "modal/tolerances.hpp"
@@ -77,9 +75,6 @@ struct Factored {
   FactoredOperator op;
   bool is_definite = false, is_singular = false;
   std::optional<fe::SymmetricFactor> own;
-  std::optional<fe::Subdomains> domains;
-  std::unique_ptr<fe::SubdomainFactor> of_domains;
-  std::unique_ptr<fe::SubdomainMatrix> mass_of_domains;
 };
 
 namespace {
@@ -92,13 +87,12 @@ PetscInt get_size(const EigenProblem& problem) {
   return n;
 }
 
-/// b fixed columns; the first does not depend on b, and a row not on where it is kept.
-MatrixXd make_start(const EigenProblem& problem, int b, const fe::Subdomains* domains = nullptr) {
-  const PetscInt n = domains ? domains->num_own() : get_size(problem);
+/// b fixed columns; the first does not depend on b.
+MatrixXd make_start(const EigenProblem& problem, int b) {
+  const PetscInt n = get_size(problem);
   MatrixXd start(n, b);
   for (int c = 0; c < b; ++c)
-    for (int i = 0; i < n; ++i)
-      start(i, c) = calc_fixed_number(domains ? domains->get_row(i) : i, problem.start + 1000 * c);
+    for (int i = 0; i < n; ++i) start(i, c) = calc_fixed_number(i, problem.start + 1000 * c);
   return start;
 }
 
@@ -106,48 +100,8 @@ BlockApply multiply_by(Mat A) {
   return [A](const Eigen::Ref<const MatrixXd>& X) { return fe::multiply(A, X); };
 }
 
-/// Whether LLᵀ of A went through although A is singular, for roundoff that is positive: then the solution of a load on
-/// all rows is a motion that strains next to nothing, and Lanczos would see little else. As find_first() judges it.
-bool is_soft(const EigenProblem& problem, const fe::SubdomainFactor& factor, const fe::Subdomains& domains) {
-  const VectorXd diagonal = fe::get_diagonal(problem.A);
-  MatrixXd load = make_start(problem, 1, &domains);
-  VectorXd own(load.rows());
-  for (Eigen::Index i = 0; i < own.size(); ++i) own[i] = diagonal[domains.get_row(static_cast<PetscInt>(i))];
-  load = own.asDiagonal() * load;
-  const MatrixXd x = factor.solve(load);
-  MatrixXd sums(1, 2);
-  sums << x.col(0).dot(load.col(0)), x.col(0).dot(own.cwiseProduct(x.col(0)));
-  fe::sum_alike(sums);
-  return !std::isfinite(sums(0, 1)) || !(std::abs(sums(0, 0)) > kStrainlessEnergy * sums(0, 1));
-}
-
-/// LLᵀ in substructures of several processes. Null where there are no parts, or A - shift B is not definite; with
-/// `definite_only` that is singular.
-FactoredHandle factor_in_parts(const EigenProblem& problem) {
-  auto domains = fe::find_subdomains(problem.A, problem.B);
-  if (!domains) return nullptr;
-  auto made = std::make_shared<Factored>();
-  made->domains = std::move(domains);
-  const fe::PetscMat shifted = problem.shift == 0 ? fe::PetscMat() : fe::add(problem.A, -problem.shift, problem.B);
-  made->of_domains = std::make_unique<fe::SubdomainFactor>(shifted ? shifted.get() : problem.A, *made->domains);
-  made->is_definite = made->of_domains->is_definite();
-  made->is_singular =
-      problem.definite_only &&
-      (!made->is_definite || (problem.shift == 0 && is_soft(problem, *made->of_domains, *made->domains)));
-  if (made->is_singular) return made;
-  if (!made->is_definite) return nullptr;
-  made->mass_of_domains = std::make_unique<fe::SubdomainMatrix>(problem.B, *made->domains);
-  made->op.solve = [factor = made->of_domains.get()](const Eigen::Ref<const MatrixXd>& X) { return factor->solve(X); };
-  made->op.multiply_mass = [B = made->mass_of_domains.get()](const Eigen::Ref<const MatrixXd>& X) {
-    return B->multiply(X);
-  };
-  made->op.domains = &*made->domains;
-  made->op.factor_name = "LLᵀ by parts";
-  return made;
-}
-
-/// Of vectors in PETSc's distribution: the caller's, else LLᵀ by CHOLMOD on one process, else LDLᵀ by MUMPS.
-FactoredHandle factor_whole(const EigenProblem& problem) {
+/// The caller's factor, else LLᵀ by CHOLMOD on one process, else LDLᵀ by MUMPS.
+FactoredHandle factor(const EigenProblem& problem) {
   auto made = std::make_shared<Factored>();
   const bool is_alone = fe::initialize_petsc().size == 1;
   fe::PetscMat shifted;
@@ -234,15 +188,13 @@ void drop_roundoff(const EigenProblem& problem, Extraction& result) {
 class EpsRun {
  public:
   EpsRun(const EigenProblem& problem, FactoredOperator& op, const std::string& type, int wanted, int room)
-      : problem_(problem), op_(op), rows_(fe::find_own_rows(problem.A)), wanted_(wanted), room_(room) {
+      : problem_(problem), op_(op), wanted_(wanted), room_(room) {
     check_petsc(EPSCreate(PETSC_COMM_WORLD, eps_.out()));
     check_petsc(EPSSetOperators(eps(), problem.A, problem.B));
     check_petsc(EPSSetProblemType(eps(), EPS_GHEP));
     check_petsc(EPSSetType(eps(), type.c_str()));
     is_preconditioned_ = eps()->categ == EPS_CATEGORY_PRECOND;
-    deflation_ = op.domains     ? op.domains->from_rows(problem.deflate)
-                 : rows_.is_cut ? rows_.replicate(problem.deflate)
-                                : problem.deflate;
+    deflation_ = problem.deflate;
     set_spectrum();
     set_transform();
     set_dimensions(type);
@@ -280,10 +232,6 @@ class EpsRun {
       drop_roundoff(problem_, result);
       if (is_near(problem_)) purify(problem_, op_, result);
     }
-    if (op_.domains)
-      result.vectors = op_.domains->to_rows(result.vectors);
-    else if (rows_.is_cut)
-      result.vectors = rows_.take(result.vectors);
     result.by = describe();
     return result;
   }
@@ -322,24 +270,21 @@ class EpsRun {
   void set_dimensions(const std::string& type) {
     constexpr PetscInt kMaxRestarts = 300, kMaxBlockRestarts = 100;
     if (type == kBlockLanczos) {
-      // Of all ranks together: they must agree.
       const bool is_large = is_near(problem_) && problem_.shift == 0 && get_size(problem_) >= kBlockRows;
       check_petsc(EPSSetDimensions(eps(), wanted_, PETSC_DEFAULT, PETSC_DEFAULT));
       check_petsc(EPSSetTolerances(eps(), is_large ? std::max(problem_.tolerance, kBlockTolerance) : problem_.tolerance,
                                    kMaxBlockRestarts));
       fe::release_freed_memory();
       BlockLanczosSettings settings;
-      settings.start = make_start(problem_,
-                                  problem_.block > 0 ? std::min(problem_.block, wanted_)
-                                  : wanted_ > 100    ? 8
-                                                     : 4,
-                                  op_.domains);
+      settings.start = make_start(problem_, problem_.block > 0 ? std::min(problem_.block, wanted_)
+                                            : wanted_ > 100    ? 8
+                                                               : 4);
       settings.deflation = std::move(deflation_);
       settings.num_guard = problem_.num_guard;
       // The vectors are the most of the memory beside the factor: for few modes a restart costs next to nothing.
       settings.max_subspace = 11 * wanted_ / 5 + std::clamp(wanted_, 24, 60);
       settings.positive_only = problem_.spectrum == Spectrum::LargestPositive;
-      if (is_near(problem_) && !op_.domains) settings.release = problem_.release;
+      if (is_near(problem_)) settings.release = problem_.release;
       set_settings(eps(), std::move(settings));
       return;
     }
@@ -414,10 +359,9 @@ class EpsRun {
 
   const EigenProblem& problem_;
   FactoredOperator& op_;
-  fe::OwnRows rows_;
   int wanted_, room_;
   bool is_preconditioned_ = false;
-  MatrixXd deflation_;  ///< with the rows of the operator
+  MatrixXd deflation_;
   Watch watch_{problem_.progress, wanted_};
   SlepcEps eps_;
 };
@@ -455,12 +399,12 @@ Extraction extract(const EigenProblem& problem) {
   facts.has_many_copies = problem.block > 0;
   const auto choose = [&] { return requested.empty() ? choose_solver(facts) : requested; };
   FactoredHandle factored = problem.kept ? *problem.kept : nullptr;
-  if (!factored && fe::initialize_petsc().size > 1 && choose() == kBlockLanczos && is_near(problem) && !problem.factor)
-    factored = factor_in_parts(problem);
-  if (!factored) factored = factor_whole(problem);
-  Extraction singular;
-  singular.is_singular = true;
-  if (factored->is_singular) return singular;
+  if (!factored) factored = factor(problem);
+  if (factored->is_singular) {
+    Extraction singular;
+    singular.is_singular = true;
+    return singular;
+  }
   facts.is_definite = factored->is_definite;
   if (problem.kept) *problem.kept = factored;
 
@@ -470,11 +414,6 @@ Extraction extract(const EigenProblem& problem) {
     if (!requested.empty()) throw_unsuited(requested, reason);
     if (problem.restore) problem.restore();
     type = type == EPSKRYLOVSCHUR ? kBlockLanczos : EPSKRYLOVSCHUR;
-    if (!factored->op.domains) continue;
-    if (problem.kept) problem.kept->reset();
-    factored.reset();
-    factored = factor_whole(problem);  // SLEPc's own vectors are distributed in another way
-    if (factored->is_singular) return singular;
   }
   throw ComputationError("modal.no-convergence", {},
                          "the eigenvalue solver found no " + std::to_string(wanted) + " modes: it did not converge",

@@ -2,8 +2,7 @@
 /// \file Some eigenpairs of a symmetric pencil by one EPS of SLEPc, and which type of EPS that is.
 ///
 /// Internal to modal. Normal modes, buckling, fixed-interface modes and windows of a range all come here. Vectors go in
-/// and out as find_own_rows(A) has them (linear/own_rows.hpp): by parts, or whole on every rank; the matrices are
-/// distributed.
+/// and out whole, alike on every rank; the matrices are distributed.
 #include <functional>
 #include <memory>
 #include <string>
@@ -40,7 +39,7 @@ struct EigenProblem {
   int num_wanted = 1;
   int num_guard = 0;     ///< of num_wanted: the last ones, to show the gap; rough unless close to the others
   int max_subspace = 0;  ///< rank of the operator, 0: the size of A
-  MatrixXd deflate;      ///< own rows x k known eigenvectors, kept out; k may be 0
+  MatrixXd deflate;      ///< n x k known eigenvectors, kept out; k may be 0
   double tolerance = 1e-12;
   const fe::SymmetricFactor* factor = nullptr;  ///< of A - shift B or of B, whichever is factored; null: made here
   FactoredHandle* kept = nullptr;               ///< keeps the factor made here for the next call; null: nobody asks
@@ -54,14 +53,14 @@ struct EigenProblem {
   Mat stiffness = nullptr;        ///< with `low_rank`: A without the springs that only `deflate` moves
   bool projects_deflate = false;  ///< with `low_rank`: A has such springs
   std::function<void(int converged, int wanted)> progress = {};
-  /// Where vectors are whole: from `release` on A is not needed any more, `restore` asks for it back. The caller brings
+  /// From `release` on A is not needed any more, `restore` asks for it back. The caller brings
   /// it back in the end, when the factor's memory is free again.
   std::function<void()> release = {}, restore = {};
 };
 
 struct Extraction {
   VectorXd values;           ///< converged ones, in the EPS' order; may be fewer or more than wanted
-  MatrixXd vectors;          ///< own rows x values.size()
+  MatrixXd vectors;          ///< n x values.size()
   bool is_singular = false;  ///< the matrix to factor is singular: nothing was solved
   SolverUse by;              ///< read back from the EPS
 };
@@ -70,7 +69,7 @@ struct Extraction {
 struct SolverFacts {
   bool has_low_rank = false;     ///< B = C Cᵀ with few columns is at hand
   bool is_near_shift = true;     ///< else the largest θ (buckling)
-  bool is_definite = true;       ///< the factored matrix, by LLᵀ on one process or in substructures of several
+  bool is_definite = true;       ///< the factored matrix has LLᵀ: on one process alone
   PetscInt num_rows = 0;         ///< of A
   int num_wanted = 0, room = 0;  ///< eigenvalues, of as many as there may be
   bool has_many_copies = false;  ///< `block` is set
@@ -85,7 +84,7 @@ struct SolverFacts {
 /// | the same below 5,000 rows, copies of a root that were missed                       | bough-block-lanczos |
 /// | everything else: few rows, many modes, buckling, a shift inside the spectrum       | krylovschur         |
 ///
-/// Several processes have a definite factor in substructures alone (linear/subdomains.hpp), else MUMPS' LDLᵀ.
+/// On several processes MUMPS factors, by LDLᵀ.
 std::string choose_solver(const SolverFacts& facts);
 
 /// Sets up one EPS, solves, and purifies for a semi-definite B. Where the chosen type gives up (a subspace beyond the

@@ -8,7 +8,7 @@
 #include <functional>
 #include <string>
 
-#include "fe/linear/subdomains.hpp"
+#include <Eigen/Dense>
 
 namespace bough::modal::detail {
 
@@ -20,8 +20,7 @@ struct FactoredOperator {
   BlockApply solve;                            ///< F⁻¹X
   BlockApply multiply_mass;                    ///< B X, of the inner product
   BlockApply multiply_operator;                ///< A X where the operator is B⁻¹A; empty: (A - σB)⁻¹B
-  Mat factor = nullptr;                        ///< of F, for vectors as PETSc distributes them; null with subdomains
-  const fe::Subdomains* domains = nullptr;     ///< whose rows a block has; null: all of them
+  Mat factor = nullptr;                        ///< of F, for vectors as PETSc distributes them
   const Eigen::MatrixXd* deflation = nullptr;  ///< B-orthonormal, projected out of each product; null: none
   std::string factor_name;
 

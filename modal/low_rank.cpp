@@ -6,7 +6,6 @@
 
 #include "fe/linear/factor.hpp"
 #include "fe/linear/low_rank_sum.hpp"
-#include "fe/linear/own_rows.hpp"
 #include "modal/canonical.hpp"
 #include "modal/tolerances.hpp"
 
@@ -137,7 +136,7 @@ Roots solve_stage(const LowRankProblem& problem, const MatrixXd& known, int numb
   const bool is_first = k == problem.known.cols();
   const auto solve_for = [&](const MatrixXd& Y) {
     MatrixXd X = problem.solve(MatrixXd(C * Y));
-    if (!is_first || problem.projects_known) project_out(fe::make_whole_rows(problem.M), problem.M, known, X);
+    if (!is_first || problem.projects_known) project_out(problem.M, known, X);
     return X;
   };
   MatrixXd G(Z.cols(), Z.cols());

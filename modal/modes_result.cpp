@@ -9,7 +9,7 @@
 #include "fe/linear/blas.hpp"
 #include "fe/matrices/assembly.hpp"
 #include "fe/matrices/checks.hpp"
-#include "fe/matrices/reach.hpp"
+#include "fe/matrices/vector_products.hpp"
 #include "modal/mode_energies.hpp"
 
 namespace bough::modal {
@@ -34,41 +34,12 @@ EigenPairs sort_negative(EigenPairs pairs) {
 
 namespace {
 
-/// Shapes at the grids, 6 x n each, of Phi on the rows of `reach`.
-std::vector<MatrixXd> collect_shapes(const fe::Model& model, const fe::Reach& reach, const MatrixXd& Phi) {
+/// Shapes at the grids, 6 x n each.
+std::vector<MatrixXd> list_shapes(const fe::Model& model, const MatrixXd& Phi) {
   std::vector<MatrixXd> shapes;
-  const auto n = Phi.cols();
-  const fe::ModelShare* share = model.share();
-  const bool is_first = fe::initialize_petsc().rank == 0;
-  std::vector<int> own;  // rows of Phi, of this rank's grids
-  std::vector<Eigen::Index> grid_of_node(model.nodes().size(), -1);
-  for (std::size_t k = 0; k < model.nodes().size(); ++k) {
-    const auto& node = model.nodes()[k];
-    if (node.num_dofs != 6) continue;
-    const int row = reach.find_row(node.first_gdof);
-    grid_of_node[k] = static_cast<Eigen::Index>(shapes.size());
-    if (!share) {
-      shapes.emplace_back(n > 0 ? MatrixXd(Phi.middleRows(row, 6)) : MatrixXd(6, 0));
-      continue;
-    }
-    shapes.emplace_back(6, is_first ? n : 0);
-    for (int c = 0; share->is_at_home(static_cast<int>(k)) && c < 6; ++c) own.push_back(row + c);
-  }
-  if (!share) return shapes;
-  // By rank and in each by node.
-  std::vector<std::size_t> order(model.nodes().size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t a, std::size_t b) { return share->home[a] < share->home[b]; });
-  for (Eigen::Index j = 0; j < n; ++j) {
-    const VectorXd all = fe::collect_on_first(VectorXd(Phi(own, j)));
-    Eigen::Index at = 0;
-    for (std::size_t i = 0; is_first && i < order.size(); ++i)
-      if (const auto grid = grid_of_node[order[i]]; grid >= 0) {
-        shapes[static_cast<std::size_t>(grid)].col(j) = all.segment<6>(at);
-        at += 6;
-      }
-  }
+  for (const auto& node : model.nodes())
+    if (node.num_dofs == 6)
+      shapes.emplace_back(Phi.cols() > 0 ? MatrixXd(Phi.middleRows(node.first_gdof, 6)) : MatrixXd(6, 0));
   return shapes;
 }
 
@@ -81,7 +52,6 @@ records::ModesResult make_modes_result(const fe::Model& model, const EigenPairs&
   if (!buckling && !std::is_partitioned(found.lambda.begin(), found.lambda.end(), [](double v) { return v < 0; }))
     sorted = sort_negative(found);
   const EigenPairs& pairs = sorted ? *sorted : found;
-  const fe::Reach reach = fe::find_reach(model);
   result.subcase = model.subcase().id;
   result.mass_properties =
       extras.mass ? *extras.mass : fe::calc_mass_properties(model, model.mass_kind(), Vector3d::Zero());
@@ -95,7 +65,7 @@ records::ModesResult make_modes_result(const fe::Model& model, const EigenPairs&
     result.node_xyz.row(static_cast<Eigen::Index>(k)) = grids[k]->x.transpose();
   }
   if (extras.has_shapes) {
-    result.phi = collect_shapes(model, reach, pairs.Phi);
+    result.phi = list_shapes(model, pairs.Phi);
     result.mesh = model.calc_mesh();
   }
   result.residual = pairs.residual;
@@ -108,14 +78,12 @@ records::ModesResult make_modes_result(const fe::Model& model, const EigenPairs&
   result.eigenvalue = pairs.lambda;
   result.frequency_hz = pairs.lambda.cwiseMax(0.0).cwiseSqrt() / (2 * M_PI);
   result.kind.assign(n, records::ModeKind::Normal);
-  const VectorXd modal_mass = pairs.modal_mass.size() == n
-                                  ? pairs.modal_mass
-                                  : fe::calc_modal_mass(model, model.mass_kind(), reach, pairs.Phi);
+  const VectorXd modal_mass =
+      pairs.modal_mass.size() == n ? pairs.modal_mass : fe::calc_modal_mass(model, model.mass_kind(), pairs.Phi);
   const auto calc_momentum = [&](const Vector3d& point) {
     MatrixXd L(n, 6);
-    const MatrixXd Phi_R = fe::take_rigid_modes(model, reach, point);
-    fe::multiply_dense(true, pairs.Phi, fe::calc_own_mass_times(model, model.mass_kind(), reach, Phi_R), 0, L);
-    fe::sum_alike(L);
+    const MatrixXd Phi_R = model.calc_rigid_modes(point);
+    fe::multiply_dense(true, pairs.Phi, fe::calc_mass_times(model, model.mass_kind(), Phi_R), 0, L);
     return L;
   };
   result.modal_mass = modal_mass;

@@ -7,7 +7,6 @@
 #include "fe/linear/low_rank_sum.hpp"
 #include "fe/linear/memory_need.hpp"
 #include "fe/matrices/assembly.hpp"
-#include "fe/matrices/reach.hpp"
 #include "fe/matrices/system.hpp"
 #include "modal/canonical.hpp"
 #include "modal/eps_types.hpp"
@@ -62,7 +61,7 @@ void warn_of_fewer(int found, int asked, bool is_range, Diagnostics& said) {
 EigenPairs NormalModes::answer_nothing(Diagnostics& said) {
   said.warning("modal.empty-range", {}, "no mode lies in the frequency range asked for",
                "widen the range of EIGRL or of --min-hz and --max-hz");
-  found_ = {VectorXd(0), MatrixXd(pencil_.num_rows(), 0)};
+  found_ = {VectorXd(0), MatrixXd(pencil_.size(), 0)};
   num_zero_ = 0;
   return make_pairs(0, range_.last, said);
 }
@@ -101,7 +100,6 @@ void NormalModes::make_solver(const std::string& eps_type) {
   problem.M = pencil_.M.get();
   problem.M_diagonal = pencil_.M_diagonal;
   problem.kinds = pencil_.kinds;
-  problem.rows = pencil_.rows;
   problem.rigid = rigid_.modes;
   problem.supported = supported_.get();
   problem.is_complete = rigid_.is_complete;
@@ -138,7 +136,7 @@ bool NormalModes::add_roots(Roots& roots, int number, int guard, bool definite_o
 void NormalModes::find_first() {
   constexpr int guard = 2;  // those above show the gap
   const int request = std::max(0, range_.last - num_rigid()) + guard;
-  const Roots none{VectorXd(0), MatrixXd(pencil_.num_rows(), 0)};
+  const Roots none{VectorXd(0), MatrixXd(pencil_.size(), 0)};
   found_ = none;
   shift_ = 0;
   if (has_supports()) {
@@ -155,7 +153,7 @@ void NormalModes::find_first() {
     add_roots(found_, request, guard);
     // A shift far above the first eigenvalue with strain costs digits, and the vectors where it is out of all
     // proportion; one far below it lets the motions without strain into them: move it by what the strain energies say.
-    const VectorXd energy = pencil_.rows.dot_columns(found_.X, pencil_.calc_K_times(found_.X));
+    const VectorXd energy = found_.X.cwiseProduct(pencil_.calc_K_times(found_.X)).colwise().sum();
     double lowest = 0;
     for (int i = 0; i < found_.size(); ++i)
       if (pencil_.calc_relative_energy(found_.X.col(i), energy(i)) > kStrainedEnergy &&
@@ -180,7 +178,7 @@ void NormalModes::find_negative() {
   const double shift = find_definite_shift();
   if (!(shift > shift_)) return;
   shift_ = shift;
-  found_ = {VectorXd(0), MatrixXd(pencil_.num_rows(), 0)};
+  found_ = {VectorXd(0), MatrixXd(pencil_.size(), 0)};
   add_roots(found_, std::max(0, range_.last - num_rigid()) + 2, 2);
 }
 
@@ -229,15 +227,15 @@ bool NormalModes::has_every_root() {
   if (!solver_->knows_rank()) return false;
   add_roots(found_, solver_->num_available() - found_.size(), 0);
   if (found_.size() < solver_->num_available()) return false;
-  const VectorXd residual = fe::calc_pair_residuals(pencil_.K_diagonal, pencil_.M_diagonal, found_.value, found_.X,
-                                                    pencil_.calc_K_times(found_.X), pencil_.calc_M_times(found_.X),
-                                                    pencil_.kinds, pencil_.rows);
+  const VectorXd residual =
+      fe::calc_pair_residuals(pencil_.K_diagonal, pencil_.M_diagonal, found_.value, found_.X,
+                              pencil_.calc_K_times(found_.X), pencil_.calc_M_times(found_.X), pencil_.kinds);
   return residual.size() > 0 && residual.maxCoeff() <= fe::kResidualError;
 }
 
 EigenPairs NormalModes::make_pairs(int cut, int count, Diagnostics& said) {
   const int k = std::min(num_rigid(), cut);
-  Found found{VectorXd(cut), MatrixXd(pencil_.num_rows(), cut), k, num_rigid() + num_zero_};
+  Found found{VectorXd(cut), MatrixXd(pencil_.size(), cut), k, num_rigid() + num_zero_};
   for (int i = 0; i < cut; ++i) found.lambda(i) = value(i);
   found.X << rigid_.modes.leftCols(k), found_.X.leftCols(cut - k);
   found_.X.resize(0, 0);
@@ -254,11 +252,9 @@ VectorXd NormalModes::calc_residuals(const VectorXd& lambda, const MatrixXd& X) 
     const auto num = std::min(kColumnsAtOnce, X.cols() - c);
     const auto some = X.middleCols(c, num);
     MatrixXd KX = pencil_.calc_K_times(some);
-    for (const auto& [f, stiffness] : springs_)  // rigid motions move them
-      if (const auto i = f - pencil_.rows.first; i >= 0 && i < pencil_.num_rows()) KX.row(i) -= stiffness * some.row(i);
-    residual.segment(c, num) =
-        fe::calc_pair_residuals(pencil_.K_diagonal, pencil_.M_diagonal, lambda.segment(c, num), some, KX,
-                                pencil_.calc_M_times(some), pencil_.kinds, pencil_.rows);
+    for (const auto& [f, stiffness] : springs_) KX.row(f) -= stiffness * some.row(f);  // rigid motions move them
+    residual.segment(c, num) = fe::calc_pair_residuals(pencil_.K_diagonal, pencil_.M_diagonal, lambda.segment(c, num),
+                                                       some, KX, pencil_.calc_M_times(some), pencil_.kinds);
   }
   return residual;
 }
@@ -286,18 +282,16 @@ EigenPairs NormalModes::finish_pairs(Found found, int count, Diagnostics& said) 
     return find_cluster_end(lambda, a, calc_cluster_tolerance(pencil_, X.col(a), lambda(a)), 0);
   };
   make_canonical(
-      calc_basis_weights(model), k, find_end,
-      [&](const MatrixXd& Y) { return MatrixXd(model.T() * pencil_.rows.replicate(Y)); }, lambda, X);
-  const fe::Reach reach = fe::find_reach(model);
+      calc_basis_weights(model), k, find_end, [&](const MatrixXd& Y) { return MatrixXd(model.T() * Y); }, lambda, X);
   EigenPairs pairs;
-  pairs.Phi = fe::expand(model, pencil_.rows, reach, X);
+  pairs.Phi = fe::expand(model, X);
   if (cut > 0) {
     // Where constraints have large factors, sums over the matrix of the f-set lose digits that those over elements
     // have.
-    const MatrixXd G = fe::calc_mass_gram(model, model.mass_kind(), reach, pairs.Phi);
+    const MatrixXd G = fe::calc_mass_gram(model, model.mass_kind(), pairs.Phi);
     if ((G - MatrixXd::Identity(cut, cut)).cwiseAbs().maxCoeff() > kElementMassError) {
       orthonormalize_ascending(G, X);
-      pairs.Phi = fe::expand(model, pencil_.rows, reach, X);
+      pairs.Phi = fe::expand(model, X);
     } else {
       pairs.modal_mass = G.diagonal();
     }
@@ -320,7 +314,7 @@ EigenPairs NormalModes::finish_pairs(Found found, int count, Diagnostics& said) 
     if (j >= pairs.num_rigid) worst_roundoff_ = std::max(worst_roundoff_, calc_roundoff(pairs.energy_share(j)));
   }
   pairs.residual = calc_residuals(pairs.lambda, X);
-  fix_signs(reach.gdofs, pencil_.rows.is_cut, pairs.Phi);
+  fix_signs(pairs.Phi);
   return pairs;
 }
 

@@ -36,9 +36,8 @@ class NormalModes {
       : options_(options),
         factor_(options.factor ? options.factor : system.factor),
         pencil_(system),
-        rigid_(find_rigid(Pencil(system, VectorRows::Whole))) {
-    rigid_.modes = pencil_.rows.take(rigid_.modes);
-    rigid_.massless.resize(pencil_.num_rows(), 0);  // nobody asks for them
+        rigid_(find_rigid(pencil_)) {
+    rigid_.massless.resize(pencil_.size(), 0);  // nobody asks for them
   }
 
   Answer solve();
@@ -94,9 +93,9 @@ class NormalModes {
   Pencil pencil_;
   bool has_own_stiffness_ = !pencil_.model.checked_stiffness();  ///< K as assemble_stiffness() makes it
   bool is_away_ = false;                                         ///< K, while Lanczos runs
-  RigidMotions rigid_;                                           ///< `modes` with the rows of the pencil's vectors
-  std::vector<std::pair<int, double>> springs_;                  ///< f-dofs of the massless motions, held by them in K
-  fe::PetscMat supported_;                                       ///< K with springs at the supports too
+  RigidMotions rigid_;
+  std::vector<std::pair<int, double>> springs_;  ///< f-dofs of the massless motions, held by them in K
+  fe::PetscMat supported_;                       ///< K with springs at the supports too
   std::optional<PencilSolver> solver_;
   ModeRange range_;
   double shift_ = 0;  ///< K + shift M is definite

@@ -3,15 +3,14 @@
 #include <cmath>
 #include <vector>
 
-#include "fe/linear/ranks.hpp"
-#include "fe/matrices/reach.hpp"
 #include "modal/canonical.hpp"
 
 namespace bough::modal {
 namespace {
 
-/// The row of a dof in its displacement axes; component 0: a scalar point. `row`: of Phi, the node's first.
-Eigen::RowVectorXd calc_row(const fe::Node& node, int component, int row, const MatrixXd& Phi) {
+/// The row of a dof in its displacement axes; component 0: a scalar point.
+Eigen::RowVectorXd calc_row(const fe::Node& node, int component, const MatrixXd& Phi) {
+  const int row = node.first_gdof;
   if (node.num_dofs != 6) return Phi.row(row);
   const int c = component - 1;
   return node.R_basic_cd.col(c % 3).transpose() * Phi.middleRows(row + 3 * (c / 3), 3);
@@ -21,34 +20,22 @@ Eigen::RowVectorXd calc_row(const fe::Node& node, int component, int row, const 
 
 void normalize(const fe::Model& model, const Norm& norm, MatrixXd& Phi, Diagnostics& diagnostics) {
   if (norm.kind != "MAX" && norm.kind != "POINT") return;
-  const fe::Reach reach = fe::find_reach(model);
-  const bool is_cut = model.share() != nullptr;
-  std::vector<int> place;
-  MatrixXd free(model.num_fdofs(), Phi.cols());  // rows of the f-set, of a model by parts of this rank's nodes
+  MatrixXd free(model.num_fdofs(), Phi.cols());  // rows of the f-set, in the order of the g-set
+  Eigen::Index num_free = 0;
   for (int k = 0; k < static_cast<int>(model.nodes().size()); ++k) {
     const fe::Node& node = model.node(k);
-    if (is_cut && !model.share()->is_at_home(k)) continue;
     for (int c = 0; c < node.num_dofs; ++c) {
       const int component = node.num_dofs == 1 ? 0 : c + 1;
       if (model.find_fdof(k, component) < 0) continue;
-      free.row(static_cast<Eigen::Index>(place.size())) =
-          calc_row(node, component, reach.find_row(node.first_gdof), Phi);
-      place.push_back(node.first_gdof + c);
+      free.row(num_free++) = calc_row(node, component, Phi);
     }
   }
-  Eigen::RowVectorXd scale =
-      detail::find_largest(place, is_cut, free.topRows(static_cast<Eigen::Index>(place.size()))).transpose();
+  Eigen::RowVectorXd scale = detail::find_largest(free.topRows(num_free)).transpose();
   if (norm.kind == "POINT") {
     const int node = model.find_node(norm.grid);
     Eigen::RowVectorXd row = Eigen::RowVectorXd::Zero(Phi.cols());
     const bool is_there = node >= 0 && (model.node(node).num_dofs != 6 || (norm.component > 0 && norm.component <= 6));
-    if (is_there && (!is_cut || model.share()->is_at_home(node)))
-      row = calc_row(model.node(node), norm.component, reach.find_row(model.node(node).first_gdof), Phi);
-    if (is_cut) {
-      MatrixXd sum = row;  // the others have none of it
-      fe::sum_over_ranks(sum);
-      row = sum;
-    }
+    if (is_there) row = calc_row(model.node(node), norm.component, Phi);
     std::string still;
     for (Eigen::Index j = 0; j < Phi.cols(); ++j) {
       if (std::abs(row(j)) > 1e-9 * std::abs(scale(j)))

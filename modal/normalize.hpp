@@ -13,10 +13,9 @@ struct Norm {
   int grid = 0, component = 0;  ///< POINT; component 0: a scalar point
 };
 
-/// Scales the columns of Phi (num_gdofs x n, basic; of a model by parts the rows of fe::find_reach). Collective. MAX
-/// and POINT look at the components of the f-set in the displacement axes of their grids, rotations too, as Nastran
-/// does. A mode that does not move the point of POINT is scaled as for MAX, warning "modal.norm-point"; so is every
-/// mode where the deck has no such dof.
+/// Scales the columns of Phi (num_gdofs x n, basic). MAX and POINT look at the components of the f-set in the
+/// displacement axes of their grids, rotations too, as Nastran does. A mode that does not move the point of POINT is
+/// scaled as for MAX, warning "modal.norm-point"; so is every mode where the deck has no such dof.
 void normalize(const fe::Model& model, const Norm& norm, MatrixXd& Phi, Diagnostics& diagnostics);
 
 }  // namespace bough::modal

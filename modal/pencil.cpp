@@ -78,18 +78,18 @@ Vector3d calc_mean_position(const fe::Model& model) {
 }
 
 /// The 30 displacement fields x^a e_k of degree 0..2 about the mean position, rotations half their curl, at the f-dofs
-/// of `rows` along their CD axes.
-MatrixXd calc_polynomials(const fe::Model& model, const fe::OwnRows& rows) {
+/// along their CD axes.
+MatrixXd calc_polynomials(const fe::Model& model) {
   const Vector3d centre = calc_mean_position(model);
   double size = 0;
   for (const auto& node : model.nodes())
     if (node.num_dofs == 6) size = std::max(size, (node.x - centre).norm());
   if (size == 0) size = 1;
-  MatrixXd X = MatrixXd::Zero(rows.num, 30);
+  MatrixXd X = MatrixXd::Zero(model.num_fdofs(), 30);
   Eigen::Matrix<double, 3, 30> displacement, rotation;
   int known = -1;
-  for (int i = 0; i < rows.num; ++i) {
-    const auto [id, component] = model.describe_fdof(rows.first + i);
+  for (int i = 0; i < model.num_fdofs(); ++i) {
+    const auto [id, component] = model.describe_fdof(i);
     const auto& node = model.node(model.find_node(id));
     if (node.num_dofs != 6) continue;
     if (id != known) {
@@ -115,17 +115,16 @@ MatrixXd calc_polynomials(const fe::Model& model, const fe::OwnRows& rows) {
 
 }  // namespace
 
-Pencil::Pencil(const fe::System& system, VectorRows which)
+Pencil::Pencil(const fe::System& system)
     : model(system.model),
       K(fe::share(system.K)),
       M(fe::share(system.M)),
       K_diagonal(system.K_diagonal),
       M_diagonal(system.M_diagonal),
-      kinds(fe::list_row_kinds(model)),
-      rows(which == VectorRows::Own ? fe::find_own_rows(K.get()) : fe::make_whole_rows(K.get())) {}
+      kinds(fe::list_row_kinds(model)) {}
 
 double Pencil::calc_relative_energy(const VectorXd& x, double energy) const {
-  const double scale = rows.dot_columns(x.cwiseAbs2(), K_diagonal.segment(rows.first, rows.num))(0);
+  const double scale = x.cwiseAbs2().dot(K_diagonal);
   return scale > 0 ? std::abs(energy) / scale : 0;
 }
 
@@ -302,7 +301,7 @@ void orthonormalize(const Pencil& pencil, MatrixXd& modes) {
 }
 
 double estimate_first_eigenvalue(const Pencil& pencil) {
-  const MatrixXd X = calc_polynomials(pencil.model, pencil.rows);
+  const MatrixXd X = calc_polynomials(pencil.model);
   const MatrixXd K = pencil.dot(X, pencil.calc_K_times(X));
   const MatrixXd M = pencil.dot(X, pencil.calc_M_times(X));
   const VectorXd scale = M.diagonal().unaryExpr([](double d) { return d > 0 ? 1 / std::sqrt(d) : 0.0; });

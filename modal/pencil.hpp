@@ -3,43 +3,40 @@
 #include <string>
 #include <vector>
 
-#include "fe/linear/own_rows.hpp"
+#include "fe/linear/blas.hpp"
+#include "fe/linear/factor.hpp"
 #include "fe/linear/row_kinds.hpp"
-#include "fe/matrices/reach.hpp"
 #include "fe/matrices/system.hpp"
+#include "fe/matrices/vector_products.hpp"
 
 namespace bough::modal::detail {
 
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-enum class VectorRows { Own, Whole };
 using fe::kColumnsAtOnce;
 
-/// K and M of a system, shared with it until a copy takes the place of one. Vectors are those of `rows`: of a model by
-/// parts the rank's own f-dofs where the pencil is made for `Own`, else whole on every rank. Functions of a pencil are
-/// collective, and their scalars and small matrices alike on every rank.
+/// K and M of a system, shared with it until a copy takes the place of one. The matrices are distributed over ranks,
+/// vectors are whole and alike on every rank; products are collective.
 struct Pencil {
   using Block = Eigen::Ref<const MatrixXd>;
-  explicit Pencil(const fe::System& system, VectorRows which = VectorRows::Own);
+  explicit Pencil(const fe::System& system);
 
   const fe::Model& model;
   fe::PetscMat K, M;
-  VectorXd K_diagonal, M_diagonal;  ///< |K_ii| and M_ii, num_fdofs, whole on every rank
-  fe::RowKinds kinds;               ///< of the f-dofs, likewise
-  fe::OwnRows rows;                 ///< of vectors
+  VectorXd K_diagonal, M_diagonal;  ///< |K_ii| and M_ii, num_fdofs
+  fe::RowKinds kinds;               ///< of the f-dofs
 
   int size() const { return model.num_fdofs(); }
-  int num_rows() const { return rows.num; }
-  MatrixXd calc_K_times(const Block& X) const { return rows.multiply(K.get(), X); }
-  MatrixXd calc_M_times(const Block& X) const { return rows.multiply(M.get(), X); }
-  MatrixXd dot(const Block& X, const Block& Y) const { return rows.dot(X, Y); }  ///< XᵀY
+  MatrixXd calc_K_times(const Block& X) const { return fe::multiply(K.get(), X); }
+  MatrixXd calc_M_times(const Block& X) const { return fe::multiply(M.get(), X); }
+  MatrixXd dot(const Block& X, const Block& Y) const { return fe::calc_inner_products(X, Y); }  ///< XᵀY
   MatrixXd calc_mass_gram(const MatrixXd& X) const;  ///< XᵀMX; M X of some columns at a time
   /// φᵀKφ / Σ K_ii φ_i²: about 1e-16 for a motion without strain, whatever the units and the mesh.
   double calc_relative_energy(const VectorXd& x, double energy) const;
 };
 
-/// The rigid motions of the model that its constraints and springs leave free; whole vectors where they are found.
+/// The rigid motions of the model that its constraints and springs leave free.
 struct RigidMotions {
   MatrixXd modes;     ///< num_fdofs x k, orthonormal under M, in order: translations of the cg, rotations, loose dofs
   MatrixXd massless;  ///< num_fdofs x l: no strain and no mass; K - σM is singular along them for every σ
@@ -54,7 +51,7 @@ struct RigidMotions {
 /// `floor`: share of the root of K_ii that counts as a term too, for Y of unit length under diag K with roundoff in it.
 MatrixXd find_forceless(const Pencil& pencil, const MatrixXd& Y, double floor = 0);
 
-/// With a pencil of whole vectors, as the functions above: combinations c of Φ_R (about the cg) with (Φ_R c)ᵀ K (Φ_R c)
+/// Combinations c of Φ_R (about the cg) with (Φ_R c)ᵀ K (Φ_R c)
 /// and every row of K Φ_R c zero in roundoff on the f-set, and the dofs with mass that nothing stiffens at all. A
 /// motion that a support prevents shows as strain where it was cut off.
 RigidMotions find_rigid_motions(const Pencil& pencil);

@@ -13,7 +13,6 @@
 namespace bough::modal::detail {
 
 PencilSolver::PencilSolver(const PencilProblem& problem, int request) : problem_(problem) {
-  if (problem_.rows.size == 0) problem_.rows = fe::make_whole_rows(problem.M);
   const auto k = static_cast<int>(problem.rigid.cols());
   num_available_ = std::max(0, static_cast<int>((problem.M_diagonal.array() > 0).count()) - k);
   C_ = factor_low_rank(problem.M, problem.M_diagonal, std::min(3 * request + 100 + k, 4000));
@@ -24,9 +23,9 @@ PencilSolver::PencilSolver(const PencilProblem& problem, int request) : problem_
 /// sees; those whose residual is large are looked for once more, beside the good ones.
 void PencilSolver::drop_rough(Extraction& result) const {
   const VectorXd K_diagonal = fe::get_diagonal(problem_.K).cwiseAbs(), M_diagonal = fe::get_diagonal(problem_.M);
-  const VectorXd residual = fe::calc_pair_residuals(
-      K_diagonal, M_diagonal, result.values, result.vectors, problem_.rows.multiply(problem_.K, result.vectors),
-      problem_.rows.multiply(problem_.M, result.vectors), problem_.kinds, problem_.rows);
+  const VectorXd residual = fe::calc_pair_residuals(K_diagonal, M_diagonal, result.values, result.vectors,
+                                                    fe::multiply(problem_.K, result.vectors),
+                                                    fe::multiply(problem_.M, result.vectors), problem_.kinds);
   std::vector<int> kept;
   for (int j = 0; j < residual.size(); ++j)
     if (residual(j) <= fe::kResidualWarning) kept.push_back(j);
@@ -89,11 +88,11 @@ bool PencilSolver::solve(double shift, int number, int num_guard, bool definite_
   if (result.is_singular) return false;
   add_use(result.by, uses_);
   if (by_rank) {
-    roots = {VectorXd(0), MatrixXd(problem_.rows.num, 0)};
+    roots = {VectorXd(0), MatrixXd(problem_.M_diagonal.size(), 0)};
     roots.add(result.values, std::move(result.vectors));
     return true;
   }
-  if (problem_.supported) project_out(problem_.rows, problem_.M, problem_.rigid, result.vectors);
+  if (problem_.supported) project_out(problem_.M, problem_.rigid, result.vectors);
   if (problem.start == 0 && !problem_.supported && result.values.size() < problem.num_wanted) drop_rough(result);
   roots.add(result.values, std::move(result.vectors));
   return true;

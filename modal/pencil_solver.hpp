@@ -3,7 +3,6 @@
 #include <optional>
 
 #include "fe/linear/factor.hpp"
-#include "fe/linear/own_rows.hpp"
 #include "fe/linear/row_kinds.hpp"
 #include "modal/extraction.hpp"
 #include "modal/low_rank.hpp"
@@ -14,10 +13,9 @@ namespace bough::modal::detail {
 
 struct PencilProblem {
   Mat K = nullptr, M = nullptr;
-  VectorXd M_diagonal;                          ///< whole, as what follows
+  VectorXd M_diagonal;
   fe::RowKinds kinds;                           ///< of the rows
-  fe::OwnRows rows;                             ///< of vectors
-  MatrixXd rigid;                               ///< rows.num x k, M-orthonormal motions without strain, known; kept out
+  MatrixXd rigid;                               ///< n x k, M-orthonormal motions without strain, known; kept out
   Mat supported = nullptr;                      ///< K with a spring for each rigid motion, statically determinate
   bool is_complete = false;                     ///< every motion without strain is in `rigid`: no look for another
   const fe::SymmetricFactor* factor = nullptr;  ///< of K, where the caller has it

@@ -61,7 +61,7 @@ bool NormalModes::add_window(const Edge& lower, const Edge& upper, Roots& roots,
   EigenProblem krylov;
   krylov.A = pencil_.K.get();
   krylov.B = pencil_.M.get();
-  krylov.deflate = MatrixXd(pencil_.num_rows(), 0);
+  krylov.deflate = MatrixXd(pencil_.size(), 0);
   krylov.shift = middle;
   krylov.tolerance = options_.tolerance;
   krylov.max_subspace = static_cast<int>((pencil_.M_diagonal.array() > 0).count()) - num_rigid();
@@ -91,9 +91,7 @@ bool NormalModes::add_window(const Edge& lower, const Edge& upper, Roots& roots,
 
 std::optional<EigenPairs> NormalModes::find_window(Diagnostics& said) {
   const int asked = range_.last - range_.first;
-  if (!options_.min_hz || asked <= 0 || range_.first <= std::max(kFewBelow, 2 * asked) ||
-      fe::initialize_petsc().size > 1)
-    return std::nullopt;
+  if (!options_.min_hz || asked <= 0 || range_.first <= std::max(kFewBelow, 2 * asked)) return std::nullopt;
   const Edge lower{calc_lower(options_), range_.first};
   const auto upper = find_upper_edge(lower);
   if (!upper || upper->count < lower.count) return std::nullopt;
@@ -102,7 +100,7 @@ std::optional<EigenPairs> NormalModes::find_window(Diagnostics& said) {
     range_.last = range_.first;
     return answer_nothing(said);
   }
-  Roots roots{VectorXd(0), MatrixXd(pencil_.num_rows(), 0)};
+  Roots roots{VectorXd(0), MatrixXd(pencil_.size(), 0)};
   std::vector<SolverUse> uses;
   if (!add_window(lower, *upper, roots, uses)) return std::nullopt;
   Found found{std::move(roots.value), std::move(roots.X), 0, 0, 0, number};

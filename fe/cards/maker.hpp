@@ -34,7 +34,7 @@ class Maker {
   /// ge: structural damping of the material or property.
   void add(std::unique_ptr<Element> element, double ge = 0) {
     element->set_structural_damping(ge);
-    list_.add(std::move(element), nodes_);
+    list_.add(std::move(element));
   }
 
   void error(const std::string& id, const records::CardLocation& at, std::string what, std::string advice = {}) {

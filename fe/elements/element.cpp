@@ -62,13 +62,10 @@ void Element::add_projected_geometric_stiffness(const Eigen::Ref<const MatrixXd>
     terms.weights.setIdentity();
 }
 
-void ElementList::add(std::unique_ptr<const Element> element, const NodeTable& nodes) {
+void ElementList::add(std::unique_ptr<const Element> element) {
   cards.insert(element->card());
   has_damping = has_damping || element->has_damping();
-  const int place = num_made++;
-  if (!nodes.keeps(*element)) return;
   elements.push_back(std::move(element));
-  number.push_back(place);
 }
 
 }  // namespace bough::fe

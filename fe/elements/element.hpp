@@ -151,20 +151,15 @@ class NodeTable {
   virtual Matrix3d calc_axes(int cid, const Vector3d& x, const SourceLocation& at, Diagnostics& diagnostics) const = 0;
   /// Position in basic of coordinates given in system cid.
   virtual Vector3d calc_point(int cid, const Vector3d& x, const SourceLocation& at, Diagnostics& diagnostics) const = 0;
-  /// Whether an element stays after it was made; the others were for their messages (fe/model/model_share.hpp).
-  virtual bool keeps(const Element& /*element*/) const { return true; }
 };
 
 struct ElementList {
   std::vector<std::unique_ptr<const Element>> elements;
+  /// Of what add() was given; an element that is put into `elements` directly is not counted.
+  std::set<std::string> cards;
+  bool has_damping = false;
 
-  /// Of all that add() was given, kept or not; what is put into `elements` directly is not among them.
-  int num_made = 0;
-  std::vector<int> number;      ///< of the kept ones: the place among all
-  std::set<std::string> cards;  ///< their kinds
-  bool has_damping = false;     ///< of any
-
-  void add(std::unique_ptr<const Element> element, const NodeTable& nodes);
+  void add(std::unique_ptr<const Element> element);
 };
 
 /// Every element of the deck (bars, beams, rods, tubes, springs, bushes, masses, shells, solids); missing properties,

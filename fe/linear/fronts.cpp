@@ -9,8 +9,6 @@
 #include "fe/linear/low_rank_sum.hpp"
 #include "fe/linear/memory_need.hpp"
 #include "fe/linear/part_fronts.hpp"
-#include "fe/linear/ranks.hpp"
-#include "fe/linear/subdomains.hpp"
 
 namespace bough::fe {
 namespace {
@@ -75,46 +73,10 @@ int count_of_sum(const RowSum& sum, TwoParts cut) {
   return last < 0 ? -1 : negative + last;
 }
 
-/// The same where the rows are cut among ranks: each eliminates its inner ones, the first those between.
-std::optional<int> count_over_ranks(Mat A, double factor, Mat B, PetscInt least) {
-  const auto domains = find_subdomains(A, B, least);
-  if (!domains) return std::nullopt;
-  const ComputationError no_memory = make_no_memory_for_count();
-  std::vector<PetscInt> own(domains->inner.size()), between(domains->between.size());
-  std::iota(own.begin(), own.end(), 0);
-  std::iota(between.begin(), between.end(), domains->num_inner());
-  MatrixXd schur;
-  int negative = -1;
-  {
-    const SubdomainMatrix a(A, *domains), b(B, *domains);
-    const RowSum sum{a.as_rows(), b.as_rows(), factor, static_cast<PetscInt>(a.rows().rows())};
-    PartFronts part;
-    bool is_fine = false;
-    do_on_all(no_memory, [&] { is_fine = part.analyse(sum, own, between); });
-    if (!are_all(is_fine)) return std::nullopt;
-    require_memory_of_ranks(static_cast<double>(own.size() + between.size()), part.num_numbers(), no_memory);
-    do_on_all(no_memory, [&] { negative = part.count(schur); });
-    if (!are_all(negative >= 0)) return std::nullopt;
-    if (initialize_petsc().rank == 0) add_between(sum, between, schur);
-  }
-  MPI_Allreduce(MPI_IN_PLACE, &negative, 1, MPI_INT, MPI_SUM, PETSC_COMM_WORLD);
-  sum_on_first(schur);
-  int last = initialize_petsc().rank == 0 ? count_negative_of_dense(schur) : 0;
-  MPI_Bcast(&last, 1, MPI_INT, 0, PETSC_COMM_WORLD);
-  if (last < 0) return std::nullopt;
-  return negative + last;
-}
-
 }  // namespace
 
 std::optional<int> count_negative_by_fronts(Mat A, double factor, Mat B, PetscInt least) {
-  if (find_low_rank(A) || find_low_rank(B)) return std::nullopt;
-  MPI_Comm group = MPI_COMM_NULL;
-  check_petsc(PetscObjectGetComm(reinterpret_cast<PetscObject>(A), &group));
-  int size = 1;
-  MPI_Comm_size(group, &size);
-  if (size > 1) return count_over_ranks(A, factor, B, least);
-  if (initialize_petsc().size > 1) return std::nullopt;
+  if (initialize_petsc().size > 1 || find_low_rank(A) || find_low_rank(B)) return std::nullopt;
   auto cut = find_parts(A, least);
   if (!cut) return std::nullopt;
   std::sort(cut->between.begin(), cut->between.end());

@@ -23,8 +23,4 @@ std::vector<idx_t> find_dissection(Graph& graph);
 /// ends of the edges that a cut by edges has are a third more on a plate. Empty where it fails.
 std::vector<idx_t> find_separator(Graph& graph);
 
-/// The part of each vertex, of which all have some weight: of edges between two parts few vertices are an end in the
-/// higher one. Empty: no such parts.
-std::vector<idx_t> cut_into_parts(Graph& graph, idx_t num_parts);
-
 }  // namespace bough::fe

@@ -1,6 +1,5 @@
 #include "fe/linear/ordering.hpp"
 
-#include <numeric>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -13,7 +12,6 @@ namespace {
 static_assert(std::is_same_v<idx_t, PetscInt>, "graphs are handed to METIS as PetscInt");
 
 constexpr const char* kGroups = "bough_row_groups";
-constexpr const char* kByParts = "bough_rows_by_parts";
 constexpr const char* kOrder = "bough_elimination_order";
 constexpr const char* kParts =
     "bough_two_parts";  // rows of the first, of the second, between; how many there are of each
@@ -40,17 +38,8 @@ Graph build_group_graph(const PetscInt* row_start, const PetscInt* columns, cons
 
 }  // namespace
 
-void set_row_groups(Mat A, std::vector<int> start) {
-  if (const MpiWorld world = initialize_petsc(); world.size > 1) {
-    if (world.rank + 1 < world.size) start.pop_back();  // the end of one is the start of the next
-    const int num = static_cast<int>(start.size());
-    std::vector<int> nums(static_cast<std::size_t>(world.size)), firsts(nums.size(), 0);
-    MPI_Allgather(&num, 1, MPI_INT, nums.data(), 1, MPI_INT, PETSC_COMM_WORLD);
-    std::partial_sum(nums.begin(), nums.end() - 1, firsts.begin() + 1);
-    std::vector<int> all(static_cast<std::size_t>(firsts.back() + nums.back()));
-    MPI_Allgatherv(start.data(), num, MPI_INT, all.data(), nums.data(), firsts.data(), MPI_INT, PETSC_COMM_WORLD);
-    start = std::move(all);
-  }
+void set_row_groups(Mat A, const std::vector<int>& start) {
+  if (initialize_petsc().size > 1) return;  // MUMPS orders
   PetscIs groups;
   check_petsc(ISCreateGeneral(PETSC_COMM_SELF, static_cast<PetscInt>(start.size()), start.data(), PETSC_COPY_VALUES,
                               groups.out()));
@@ -58,34 +47,8 @@ void set_row_groups(Mat A, std::vector<int> start) {
       PetscObjectCompose(reinterpret_cast<PetscObject>(A), kGroups, reinterpret_cast<PetscObject>(groups.get())));
 }
 
-std::vector<PetscInt> get_row_groups(Mat A) {
-  PetscObject object = nullptr;
-  check_petsc(PetscObjectQuery(reinterpret_cast<PetscObject>(A), kGroups, &object));
-  if (!object) return {};
-  PetscInt num = 0;
-  const PetscInt* start = nullptr;
-  check_petsc(ISGetSize(reinterpret_cast<IS>(object), &num));
-  check_petsc(ISGetIndices(reinterpret_cast<IS>(object), &start));
-  std::vector<PetscInt> result(start, start + num);
-  check_petsc(ISRestoreIndices(reinterpret_cast<IS>(object), &start));
-  return result;
-}
-
-void set_rows_by_parts(Mat A) {
-  PetscIs mark;
-  check_petsc(ISCreateGeneral(PETSC_COMM_SELF, 0, nullptr, PETSC_COPY_VALUES, mark.out()));
-  check_petsc(
-      PetscObjectCompose(reinterpret_cast<PetscObject>(A), kByParts, reinterpret_cast<PetscObject>(mark.get())));
-}
-
-bool are_rows_by_parts(Mat A) {
-  PetscObject object = nullptr;
-  check_petsc(PetscObjectQuery(reinterpret_cast<PetscObject>(A), kByParts, &object));
-  return object != nullptr;
-}
-
 void copy_row_groups(Mat from, Mat to) {
-  for (const char* name : {kGroups, kOrder, kParts, kByParts}) {
+  for (const char* name : {kGroups, kOrder, kParts}) {
     PetscObject object = nullptr;
     check_petsc(PetscObjectQuery(reinterpret_cast<PetscObject>(from), name, &object));
     if (object) check_petsc(PetscObjectCompose(reinterpret_cast<PetscObject>(to), name, object));

@@ -10,16 +10,10 @@ namespace bough::fe {
 /// IS, owning.
 using PetscIs = PetscHandle<IS, ISDestroy>;
 
-/// Tells A that its rows fall into runs that couple alike, as the six of a grid do: run i is [start[i], start[i + 1]).
-/// On several processes each tells of its own rows, with the numbers that they have in A; collective.
-void set_row_groups(Mat A, std::vector<int> start);
-/// The starts on all processes and the end; empty where A has no groups.
-std::vector<PetscInt> get_row_groups(Mat A);
-/// Tells A that its rows are dealt out by parts of the model, so that those of two ranks couple along a cut alone.
-void set_rows_by_parts(Mat A);
-bool are_rows_by_parts(Mat A);
-/// Gives `to`, a matrix of the same rows, the groups of `from`, the dissection that is known, and whether its rows are
-/// by parts.
+/// Tells A, on one process, that its rows fall into runs that couple alike, as the six of a grid do: run i is
+/// [start[i], start[i + 1]).
+void set_row_groups(Mat A, const std::vector<int>& start);
+/// Gives `to`, a matrix of the same rows, the groups of `from` and the dissection that is known.
 void copy_row_groups(Mat from, Mat to);
 
 /// Gives `part`, the rows and columns `kept` (ascending) of `whole`, what is left of its groups, and of its order where

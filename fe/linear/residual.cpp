@@ -5,8 +5,6 @@
 #include <cstdio>
 
 #include "base/diagnostic.hpp"
-#include "fe/linear/own_rows.hpp"
-#include "fe/linear/ranks.hpp"
 #include "fe/linear/threads.hpp"
 
 namespace bough::fe {
@@ -16,22 +14,16 @@ using Eigen::VectorXd;
 
 namespace {
 
-/// Of one column: what is wrong, of the forces and of the entries, squared and scaled; of the rows from `first` on.
-Eigen::Vector3d sum_squares(const VectorXd& d, const VectorXd& scale, Eigen::Index first,
-                            const Eigen::Ref<const VectorXd>& x, const Eigen::Ref<const VectorXd>& y,
-                            const Eigen::Ref<const VectorXd>& f) {
-  Eigen::Vector3d sums = Eigen::Vector3d::Zero();
+/// Residual of one column: y - f over y, and over what the entries of K alone could bring about (residual.hpp).
+double calc_residual(const VectorXd& d, const VectorXd& scale, const Eigen::Ref<const VectorXd>& x,
+                     const Eigen::Ref<const VectorXd>& y, const Eigen::Ref<const VectorXd>& f) {
+  double error = 0, force = 0, entries = 0;  // squares
   for (Eigen::Index i = 0; i < x.size(); ++i) {
-    const Eigen::Index row = first + i;
-    sums(0) += (y(i) - f(i)) * (y(i) - f(i)) / scale(row);
-    sums(1) += y(i) * y(i) / scale(row);
-    sums(2) += d(row) * x(i) * x(i);
+    error += (y(i) - f(i)) * (y(i) - f(i)) / scale(i);
+    force += y(i) * y(i) / scale(i);
+    entries += d(i) * x(i) * x(i);
   }
-  return sums;
-}
-
-double calc_residual(const Eigen::Vector3d& sums) {
-  return sums(0) == 0 ? 0 : std::sqrt(sums(0)) / (std::sqrt(sums(1)) + 1e-6 * std::sqrt(sums(2)));
+  return error == 0 ? 0 : std::sqrt(error) / (std::sqrt(force) + 1e-6 * std::sqrt(entries));
 }
 
 }  // namespace
@@ -42,24 +34,21 @@ VectorXd calc_residuals(const MatrixXd& D, const MatrixXd& X, const MatrixXd& Y,
   VectorXd residual = VectorXd::Zero(X.cols());
   for (Eigen::Index j = 0; j < X.cols(); ++j) {
     const VectorXd d = D.col(D.cols() == 1 ? 0 : j);
-    residual(j) = calc_residual(sum_squares(d, fill_diagonal(d, kinds), 0, X.col(j), Y.col(j), F.col(j)));
+    residual(j) = calc_residual(d, fill_diagonal(d, kinds), X.col(j), Y.col(j), F.col(j));
   }
   return residual;
 }
 
 VectorXd calc_pair_residuals(const VectorXd& K_diagonal, const VectorXd& M_diagonal, const VectorXd& lambda,
                              const Eigen::Ref<const MatrixXd>& X, const MatrixXd& KX, const MatrixXd& MX,
-                             const RowKinds& kinds, const OwnRows& rows) {
-  MatrixXd sums(3, X.cols());
+                             const RowKinds& kinds) {
+  VectorXd residual(X.cols());
   do_columns(X.rows(), X.cols(), [&](int from, int to) {
     for (int j = from; j < to; ++j) {
       const VectorXd d = K_diagonal.cwiseAbs() + std::abs(lambda(j)) * M_diagonal.cwiseAbs();
-      sums.col(j) = sum_squares(d, fill_diagonal(d, kinds), rows.first, X.col(j), KX.col(j), lambda(j) * MX.col(j));
+      residual(j) = calc_residual(d, fill_diagonal(d, kinds), X.col(j), KX.col(j), lambda(j) * MX.col(j));
     }
   });
-  if (rows.is_cut) sum_alike(sums);
-  VectorXd residual(X.cols());
-  for (Eigen::Index j = 0; j < X.cols(); ++j) residual(j) = calc_residual(sums.col(j));
   return residual;
 }
 

@@ -13,8 +13,6 @@ class Diagnostics;
 
 namespace bough::fe {
 
-struct OwnRows;
-
 /// Above the first a solution is printed with a warning, above the second it is an error.
 inline constexpr double kResidualWarning = 1e-8, kResidualError = 1e-5;
 
@@ -31,12 +29,10 @@ Eigen::VectorXd calc_residuals(const Eigen::MatrixXd& D, const Eigen::MatrixXd& 
 Eigen::VectorXd calc_static_residuals(const Eigen::VectorXd& K_diagonal, const Eigen::MatrixXd& X,
                                       const Eigen::MatrixXd& Y, const Eigen::MatrixXd& F, const RowKinds& kinds = {});
 
-/// The same of eigenpairs with F = M X: D = |K_ii| + |λ_j| |M_ii| of whole diagonals, own rows of X, K X and M X.
-/// Collective.
+/// The same of eigenpairs with F = M X Λ: D = |K_ii| + |λ_j| |M_ii|.
 Eigen::VectorXd calc_pair_residuals(const Eigen::VectorXd& K_diagonal, const Eigen::VectorXd& M_diagonal,
                                     const Eigen::VectorXd& lambda, const Eigen::Ref<const Eigen::MatrixXd>& X,
-                                    const Eigen::MatrixXd& KX, const Eigen::MatrixXd& MX, const RowKinds& kinds,
-                                    const OwnRows& rows);
+                                    const Eigen::MatrixXd& KX, const Eigen::MatrixXd& MX, const RowKinds& kinds);
 
 /// D of eigenpairs: |K_ii| + |λ_j| |B_ii|, n x m.
 Eigen::MatrixXd calc_residual_scale(const Eigen::VectorXd& K_diagonal, const Eigen::VectorXd& B_diagonal,

@@ -11,7 +11,6 @@
 #include "fe/linear/threads.hpp"
 #include "fe/matrices/csr_matrix.hpp"
 #include "fe/matrices/factor_need.hpp"
-#include "fe/matrices/reach.hpp"
 #include "fe/model/element_transform.hpp"
 
 namespace bough::fe {
@@ -178,38 +177,38 @@ const std::vector<QuadraticForm>& get_forms(const Model& model) {
 }
 
 /// Fewer are done before a thread has started.
-constexpr size_t kElementsOfThread = 2000;
+constexpr int kElementsOfThread = 2000;
 
-/// Σ of this rank's element matrices times X; row_of(g): of X and of the sum. `energy`: ½ x_eᵀ A_e x_e, by element.
-template <class RowOf>
+/// Σ of this rank's element matrices times X. `energy`: ½ x_eᵀ A_e x_e, by element.
 MatrixXd sum_own_elements(const Model& model, const AddElementMatrix& add, const Eigen::Ref<const MatrixXd>& X,
-                          const RowOf& row_of, MatrixXd* energy = nullptr) {
+                          MatrixXd* energy) {
   if (energy) energy->setZero(static_cast<Eigen::Index>(model.elements().size()), X.cols());
   MatrixXd Y = MatrixXd::Zero(X.rows(), X.cols());
-  const std::vector<int> own = list_own_elements(model);
-  const auto add_some = [&](size_t begin, size_t end, MatrixXd& sum) {
+  const auto range = calc_element_range(model);
+  const int first = range.first, last = range.second;
+  const auto add_some = [&](int begin, int end, MatrixXd& sum) {
     MatrixXd K_e, X_e, Y_e;
-    for (size_t i = begin; i < end; ++i) {
-      const Element& element = *model.elements()[own[i]];
+    for (int e = begin; e < end; ++e) {
+      const Element& element = *model.elements()[static_cast<size_t>(e)];
       const auto& gdofs = element.gdofs();
       const int n = element.num_dofs();
       K_e.setZero(n, n);
       add(element, K_e);
       X_e.resize(n, X.cols());
-      for (int d = 0; d < n; ++d) X_e.row(d) = X.row(row_of(gdofs[d]));
+      for (int d = 0; d < n; ++d) X_e.row(d) = X.row(gdofs[d]);
       Y_e.resize(n, X.cols());
       multiply_dense(false, K_e, X_e, 0, Y_e);
-      if (energy) energy->row(own[i]) = 0.5 * X_e.cwiseProduct(Y_e).colwise().sum();
-      for (int d = 0; d < n; ++d) sum.row(row_of(gdofs[d])) += Y_e.row(d);
+      if (energy) energy->row(e) = 0.5 * X_e.cwiseProduct(Y_e).colwise().sum();
+      for (int d = 0; d < n; ++d) sum.row(gdofs[d]) += Y_e.row(d);
     }
   };
-  if (get_num_threads() > 1 && own.size() > kElementsOfThread) {
+  if (get_num_threads() > 1 && last - first > kElementsOfThread) {
     MatrixXd second = MatrixXd::Zero(X.rows(), X.cols());
-    const size_t middle = own.size() / 2;
-    do_both([&] { add_some(0, middle, Y); }, [&] { add_some(middle, own.size(), second); });
+    const int middle = first + (last - first) / 2;
+    do_both([&] { add_some(first, middle, Y); }, [&] { add_some(middle, last, second); });
     Y += second;
   } else {
-    add_some(0, own.size(), Y);
+    add_some(first, last, Y);
   }
   return Y;
 }
@@ -219,8 +218,7 @@ MatrixXd calc_times(const Model& model, const AddElementMatrix& add, const Eigen
                     const std::vector<QuadraticForm>& forms = {}, MatrixXd* energy = nullptr) {
   BOUGH_DEMAND(X.rows() == model.num_gdofs());
   if (X.cols() == 0) return MatrixXd::Zero(X.rows(), 0);
-  MatrixXd Y = sum_own_elements(
-      model, add, X, [](int g) { return g; }, energy);
+  MatrixXd Y = sum_own_elements(model, add, X, energy);
   const MpiWorld world = initialize_petsc();
   for (size_t k = static_cast<size_t>(world.rank); k < forms.size(); k += static_cast<size_t>(world.size))
     Y(forms[k].gdofs, Eigen::all) += calc_form(forms[k], 0) * X(forms[k].gdofs, Eigen::all);
@@ -309,14 +307,12 @@ PetscMat assemble_sparse(const Model& model, const SparseRows& T, const AddEleme
   const PetscInt size = static_cast<PetscInt>(T.cols());
   PetscMat matrix;
   std::vector<int> groups;
-  const ModelShare* share = model.share();
-  BOUGH_DEMAND(!share || size == model.num_fdofs());
   if (initialize_petsc().size == 1) {
     Csr rows = sum_rows(model, T, add, forms, 0, -1, takes);
     groups = std::move(rows.groups);
     matrix = make_matrix(std::move(rows), size);
   } else {
-    PetscInt num_own = share ? share->last_fdof - share->first_fdof : PETSC_DECIDE, all = size, last = 0;
+    PetscInt num_own = PETSC_DECIDE, all = size, last = 0;
     check_petsc(PetscSplitOwnership(PETSC_COMM_WORLD, &num_own, &all));
     MPI_Scan(&num_own, &last, 1, MPIU_INT, MPI_SUM, PETSC_COMM_WORLD);
     Csr rows = sum_rows(model, T, add, forms, last - num_own, last, takes);
@@ -326,8 +322,7 @@ PetscMat assemble_sparse(const Model& model, const SparseRows& T, const AddEleme
   Mat A = matrix.get();
   check_petsc(MatSetOption(A, MAT_SYMMETRIC, PETSC_TRUE));
   check_petsc(MatSetOption(A, MAT_SYMMETRY_ETERNAL, PETSC_TRUE));
-  set_row_groups(A, std::move(groups));
-  if (share) set_rows_by_parts(A);
+  set_row_groups(A, groups);
   return matrix;
 }
 
@@ -383,14 +378,6 @@ MatrixXd calc_mass_times(const Model& model, MassKind kind, const Eigen::Ref<con
       model, [kind, scale](const Element& e, Eigen::Ref<MatrixXd> M) { e.add_mass(kind, scale, M); }, X_g);
 }
 
-MatrixXd calc_own_mass_times(const Model& model, MassKind kind, const Reach& reach,
-                             const Eigen::Ref<const MatrixXd>& X) {
-  BOUGH_DEMAND(X.rows() == static_cast<Eigen::Index>(reach.gdofs.size()));
-  const double scale = model.wtmass();
-  const auto add = [kind, scale](const Element& e, Eigen::Ref<MatrixXd> M) { e.add_mass(kind, scale, M); };
-  return sum_own_elements(model, add, X, [&reach](int g) { return reach.find_row(g); });
-}
-
 MatrixXd calc_stiffness_times(const Model& model, const Eigen::Ref<const MatrixXd>& X_g, MatrixXd* energy) {
   return calc_times(
       model, [&model](const Element& e, Eigen::Ref<MatrixXd> K) { model.add_stiffness(e, K); }, X_g, get_forms(model),
@@ -420,18 +407,9 @@ MatrixXd calc_structural_damping_times(const Model& model, double g, const Eigen
 bool has_damping(const Model& model) { return model.has_damping(); }
 
 std::pair<int, int> calc_element_range(const Model& model) {
-  BOUGH_DEMAND(!model.share());
   const MpiWorld world = initialize_petsc();
   const long long num = static_cast<long long>(model.elements().size());
   return {static_cast<int>(num * world.rank / world.size), static_cast<int>(num * (world.rank + 1) / world.size)};
-}
-
-std::vector<int> list_own_elements(const Model& model) {
-  if (model.share()) return model.share()->owned;
-  const auto [first, last] = calc_element_range(model);
-  std::vector<int> own(static_cast<size_t>(last - first));
-  std::iota(own.begin(), own.end(), first);
-  return own;
 }
 
 }  // namespace bough::fe

@@ -41,10 +41,7 @@ MatrixXd calc_structural_damping_times(const Model& model, double g, const Eigen
 /// Whether any element damps.
 bool has_damping(const Model& model);
 
-/// Of model.elements() those that this rank adds to sums over ranks: a range, of a model by parts what it owns. Every
-/// element is one rank's.
-std::vector<int> list_own_elements(const Model& model);
-/// The same of a whole model: [first, last).
+/// Of model.elements() those that this rank adds to sums over ranks: [first, last).
 std::pair<int, int> calc_element_range(const Model& model);
 /// Mass properties about `reference` (basic), with the model's own mass kind.
 records::MassProperties calc_mass_properties(const Model& model, MassKind kind, const Vector3d& reference);

@@ -39,7 +39,8 @@ Vector6d calc_ground_check(const Model& model, GroundSet set) {
   const MatrixXd K_u = calc_stiffness_times(model, u);
   // The scale is the diagonal's energy, element by element.
   MatrixXd scale = MatrixXd::Zero(6, 1);
-  for (const int e : list_own_elements(model)) {
+  const auto [first, last] = calc_element_range(model);
+  for (int e = first; e < last; ++e) {
     const Element& element = *model.elements()[static_cast<std::size_t>(e)];
     MatrixXd K = MatrixXd::Zero(element.num_dofs(), element.num_dofs());
     element.add_stiffness(1, K);

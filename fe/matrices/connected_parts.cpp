@@ -83,7 +83,6 @@ std::string describe_ids(const Model& model, const ConnectedPart& part) {
 }  // namespace
 
 std::vector<ConnectedPart> find_connected_parts(const Model& model) {
-  BOUGH_DEMAND(!model.share());
   const std::size_t n = model.nodes().size();
   DisjointSets sets(n);
   std::vector<char> is_joined(n, 0), is_held(n, 0);

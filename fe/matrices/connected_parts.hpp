@@ -16,7 +16,6 @@ struct ConnectedPart {
 
 /// Largest part first; of equal ones that with the lowest id. Two nodes are joined by an element that names both
 /// (springs, bushes and dampers too), or where the constraint equations (T, T_fixed) let one follow the other.
-/// \pre the model is whole (ModelOptions::by_parts is not set).
 std::vector<ConnectedPart> find_connected_parts(const Model& model);
 
 /// Rank (0 to 6) of the constrained dofs and springs to ground under rigid-body motions of the whole model: 6 if these

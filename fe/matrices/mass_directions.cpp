@@ -3,11 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <map>
 #include <utility>
 #include <vector>
 
-#include "fe/linear/ranks.hpp"
 #include "fe/matrices/grid_point_weight.hpp"
 
 namespace bough::fe {
@@ -41,25 +39,8 @@ std::vector<std::pair<std::string, int>> find_wrong_masses(const Model& model) {
     return calc_mass_difference(Matrix6d(own.transpose() * M_e * own)) > kMassDifference;
   };
   std::vector<std::pair<std::string, int>> wrong;
-  if (!model.share()) {
-    for (const auto& element : model.elements())
-      if (is_wrong(*element)) wrong.emplace_back(element->card(), element->id());
-    return wrong;
-  }
-  // place, id, letters of the card; of all ranks by place
-  std::vector<int> found;
-  for (const int e : model.share()->owned) {
-    const Element& element = *model.elements()[static_cast<std::size_t>(e)];
-    if (!is_wrong(element)) continue;
-    found.insert(found.end(), {model.share()->number[static_cast<std::size_t>(e)], element.id(),
-                               static_cast<int>(element.card().size())});
-    found.insert(found.end(), element.card().begin(), element.card().end());
-  }
-  std::map<int, std::pair<std::string, int>> by_place;
-  found = join_over_ranks(found);
-  for (auto i = found.begin(); i != found.end(); i += 3 + i[2])
-    by_place[i[0]] = {std::string(i + 3, i + 3 + i[2]), i[1]};
-  for (auto& [place, card] : by_place) wrong.push_back(std::move(card));
+  for (const auto& element : model.elements())
+    if (is_wrong(*element)) wrong.emplace_back(element->card(), element->id());
   return wrong;
 }
 
@@ -79,8 +60,8 @@ std::string describe_mass(const Model& model, const records::Deck& deck, const M
   const auto weight = calc_grid_point_weight(rigid_mass);
   const bool is_basic = weight.S.isIdentity(0);
   std::string text = "the mass is " + show_value(weight.mass[0]) + " along x, " + show_value(weight.mass[1]) +
-                     " along y, " +
-                     show_value(weight.mass[2]) + " along z" + (is_basic ? "" : " of its principal axes");
+                     " along y, " + show_value(weight.mass[2]) + " along z" +
+                     (is_basic ? "" : " of its principal axes");
   const auto wrong = find_wrong_masses(model);
   std::vector<std::string> names;
   const std::size_t num = wrong.size();

@@ -2,18 +2,13 @@
 
 #include <cmath>
 
-#include "fe/matrices/reach.hpp"
-
 namespace bough::fe {
 
 records::MassProperties calc_mass_properties(const Model& model, MassKind kind, const Vector3d& reference) {
-  const Reach reach = find_reach(model);
-  const MatrixXd Phi_R = take_rigid_modes(model, reach, reference);
+  const MatrixXd Phi_R = model.calc_rigid_modes(reference);
   records::MassProperties result;
   result.reference = reference;
-  MatrixXd rigid_mass = Phi_R.transpose() * calc_own_mass_times(model, kind, reach, Phi_R);
-  sum_alike(rigid_mass);
-  result.rigid_mass = rigid_mass;
+  result.rigid_mass = Phi_R.transpose() * calc_mass_times(model, kind, Phi_R);
   result.rigid_mass = (0.5 * (result.rigid_mass + result.rigid_mass.transpose())).eval();
   result.mass = result.rigid_mass.topLeftCorner<3, 3>().trace() / 3;
   result.inertia = result.rigid_mass.bottomRightCorner<3, 3>();
@@ -31,8 +26,9 @@ Eigen::Matrix<double, 6, 1> calc_ground_check(const Model& model) {
   const MatrixXd Phi_R = model.calc_rigid_modes(centre);
   VectorXd diagonal = VectorXd::Zero(model.num_gdofs());
   MatrixXd K_e;
-  for (const int e : list_own_elements(model)) {
-    const Element& element = *model.elements()[e];
+  const auto [first, last] = calc_element_range(model);
+  for (int e = first; e < last; ++e) {
+    const Element& element = *model.elements()[static_cast<size_t>(e)];
     K_e.setZero(element.num_dofs(), element.num_dofs());
     element.add_stiffness(1, K_e);
     for (int i = 0; i < element.num_dofs(); ++i) diagonal[element.gdofs()[i]] += K_e(i, i);

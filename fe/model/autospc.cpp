@@ -180,29 +180,6 @@ void set_oblique(const Matrix3d& K, const std::vector<int>& slots, double limit,
         entries[first + i].terms.emplace_back(slots[static_cast<std::size_t>(free[j])] + 1 + (is_rotation ? 3 : 0), c);
 }
 
-/// The entries of all ranks, by node as one process has them.
-std::vector<AutospcEntry> merge(const Model& model, const std::vector<AutospcEntry>& own) {
-  std::vector<double> numbers;
-  for (const auto& entry : own) {
-    numbers.insert(numbers.end(), {double(entry.node), double(entry.component), entry.ratio, entry.is_skew ? 1.0 : 0.0,
-                                   static_cast<double>(entry.terms.size())});
-    for (const auto& [component, factor] : entry.terms) numbers.insert(numbers.end(), {double(component), factor});
-  }
-  numbers = join_over_ranks(numbers);
-  std::vector<AutospcEntry> all;
-  for (auto at = numbers.begin(); at != numbers.end();) {
-    AutospcEntry entry{static_cast<int>(at[0]), static_cast<int>(at[1]), at[2], at[3] != 0, {}};
-    const auto num_terms = static_cast<int>(at[4]);
-    at += 5;
-    for (int i = 0; i < num_terms; ++i, at += 2) entry.terms.emplace_back(static_cast<int>(at[0]), at[1]);
-    all.push_back(std::move(entry));
-  }
-  std::stable_sort(all.begin(), all.end(), [&](const AutospcEntry& a, const AutospcEntry& b) {
-    return model.find_node(a.node) < model.find_node(b.node);
-  });
-  return all;
-}
-
 }  // namespace
 
 std::vector<AutospcEntry> find_singular_dofs(const Model& model, const std::vector<int>& fdof_ldof, double epsilon) {
@@ -222,7 +199,6 @@ std::vector<AutospcEntry> find_singular_dofs(const Model& model, const std::vect
   const auto [blocks, noise] = calc_node_blocks(model, {ldof_node, fdof_block, fdof_slot});
   std::vector<AutospcEntry> entries;
   for (int b = 0; b < num_blocks; ++b) {
-    if (model.share() && !model.share()->is_at_home(b / 2)) continue;
     const double scale = blocks[b].diagonal().cwiseAbs().maxCoeff();
     const double limit = std::max(epsilon * scale, noise[b]);
     if (scale > noise[b] && is_stiff(blocks[b], is_free[b], scale, limit)) continue;
@@ -253,7 +229,7 @@ std::vector<AutospcEntry> find_singular_dofs(const Model& model, const std::vect
     if (entries.size() > first && node.num_dofs == 6 && scale > noise[b])
       set_oblique(blocks[b], all_slots, limit, b % 2 == 1, entries, first);
   }
-  return model.share() ? merge(model, entries) : entries;
+  return entries;
 }
 
 std::vector<double> calc_masses(const Model& model, const std::vector<int>& fdof_ldof,
@@ -261,9 +237,7 @@ std::vector<double> calc_masses(const Model& model, const std::vector<int>& fdof
   std::unordered_map<int, std::size_t> at_dof;  // entries
   for (std::size_t e = 0; e < entries.size(); ++e) {
     const int node = model.find_node(entries[e].node);
-    // Another rank has all that hangs on the others.
-    if (!model.share() || model.share()->is_at_home(node))
-      at_dof[model.node(node).first_gdof + std::max(entries[e].component - 1, 0)] = e;
+    at_dof[model.node(node).first_gdof + std::max(entries[e].component - 1, 0)] = e;
   }
   std::vector<int> entry_of(fdof_ldof.size(), -1);
   for (std::size_t f = 0; f < fdof_ldof.size(); ++f)
@@ -285,7 +259,6 @@ std::vector<double> calc_masses(const Model& model, const std::vector<int>& fdof
       if (const int e = entry_of[static_cast<std::size_t>(columns[i])]; e >= 0)
         mass(e) += transform.entry(static_cast<int>(i), static_cast<int>(i));
   }
-  if (model.share()) sum_alike(mass);
   return {mass.begin(), mass.end()};
 }
 

@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "fe/cards/nonstructural.hpp"
-#include "fe/linear/petsc.hpp"
 #include "fe/model/coordinates.hpp"
 #include "fe/model/direct_matrices.hpp"
 #include "fe/model/rigid.hpp"
@@ -48,28 +47,12 @@ Model ModelBuilder::build(const ElementFactory& factory) {
   model_.subcase_ = select_subcase(deck_, options_.subcase, diagnostics_);
   set_params();
   add_nodes();
-  // What moves with what decides which elements a rank keeps; it is said after what is said of the elements.
-  Diagnostics of_nodes = std::exchange(diagnostics_, Diagnostics()), of_constraints;
-  std::vector<ConstraintEquation> equations;
-  std::optional<Elimination> first;
-  try {
-    equations = collect_constraints();
-    of_constraints = std::exchange(diagnostics_, std::move(of_nodes));
-  } catch (...) {
-    for (const auto& item : diagnostics_.items()) of_nodes.add(item);
-    diagnostics_ = std::move(of_nodes);
-    throw;
-  }
-  if (of_constraints.num_errors() == 0) {
-    cut_into_parts();
-    first = set_transform();
-  }
   make_elements(factory);
   set_prestress();
-  for (const auto& item : of_constraints.items()) diagnostics_.add(item);
+  auto equations = collect_constraints();
   diagnostics_.throw_if_errors();
   model_.links_ = Links(std::move(links_), std::move(equations));
-  apply_autospc(*first);
+  apply_autospc(set_transform());
   check_prestress();
   omit_dofs();
   add_drawn_lines();
@@ -98,18 +81,11 @@ void ModelBuilder::make_elements(const ElementFactory& factory) {
     model_.cards_.merge(list.cards);
     model_.has_damping_ = model_.has_damping_ || list.has_damping;
     for (auto& element : list.elements) model_.elements_.push_back(std::move(element));
-    if (!model_.share_) return;
-    for (const int place : list.number) model_.share_->number.push_back(num_made_ + place);
-    num_made_ += list.num_made;
-    BOUGH_DEMAND(model_.share_->number.size() == model_.elements_.size());
   };
   add(factory(deck_, model_, diagnostics_));
   report_unmodelled(deck_, model_.cards_, diagnostics_);
   add(make_direct(deck_, model_.subcase_, model_, diagnostics_));
   add(make_nonstructural(deck_, model_.subcase_.nsm, model_.elements_, model_, diagnostics_));
-  if (!model_.share_) return;
-  for (size_t e = 0; e < model_.elements_.size(); ++e)
-    if (model_.share_->is_owned(*model_.elements_[e])) model_.share_->owned.push_back(static_cast<int>(e));
 }
 
 void ModelBuilder::set_params() {
@@ -306,7 +282,6 @@ void ModelBuilder::check_dependent_not_fixed() {
 
 Elimination ModelBuilder::set_transform() {
   Elimination elimination = eliminate(model_.num_gdofs_, equations_, is_fixed_);
-  set_share(elimination);
   model_.T_ = rotate_rows(model_.nodes_, elimination.C);
   const FixedPart fixed = collect_fixed_part(model_.num_gdofs_, equations_, is_fixed_);
   model_.T_fixed_ = rotate_rows(model_.nodes_, fixed.C);
@@ -314,11 +289,9 @@ Elimination ModelBuilder::set_transform() {
   model_.node_fdof_.assign(model_.nodes_.size(), {-1, -1, -1, -1, -1, -1});
   model_.fdof_node_.clear();
   model_.fdof_component_.clear();
-  int k = 0, last = -1;
+  int k = 0;
   for (size_t f = 0; f < elimination.fdof_ldof.size(); ++f) {
     const int ldof = elimination.fdof_ldof[f];
-    if (ldof < last) k = 0;  // of the next rank
-    last = ldof;
     while (ldof >= model_.nodes_[k].first_gdof + model_.nodes_[k].num_dofs) ++k;
     const int slot = ldof - model_.nodes_[k].first_gdof;
     model_.node_fdof_[k][slot] = static_cast<int>(f);
@@ -326,17 +299,6 @@ Elimination ModelBuilder::set_transform() {
     model_.fdof_component_.push_back(model_.nodes_[k].num_dofs == 1 ? 0 : slot + 1);
   }
   return elimination;
-}
-
-void ModelBuilder::set_share(Elimination& elimination) {
-  if (home_.empty()) return;
-  const MpiWorld world = initialize_petsc();
-  ModelShare share = order_by_home(model_.nodes_, home_, world.rank, elimination);
-  if (model_.share_) {
-    share.owned = std::move(model_.share_->owned);
-    share.number = std::move(model_.share_->number);
-  }
-  model_.share_ = std::move(share);
 }
 
 Model Model::build(const records::Deck& deck, const ModelOptions& options, const ElementFactory& factory,

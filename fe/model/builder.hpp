@@ -19,8 +19,6 @@ class ModelBuilder {
   void set_params();
   /// SPC, rigid elements and MPC; the equations before their chains are resolved.
   std::vector<ConstraintEquation> collect_constraints();
-  void cut_into_parts();                     ///< where the options ask for it and it can be
-  void set_share(Elimination& elimination);  ///< numbers the f-dofs by rank, where the model is cut
   void make_elements(const ElementFactory& factory);
   /// Masks of permanent and set SPC over the l-set.
   void collect_fixed();
@@ -52,8 +50,6 @@ class ModelBuilder {
   std::vector<ConstraintEquation> equations_;
   std::vector<Link> links_;
   std::vector<char> is_fixed_;
-  std::vector<int> home_;                                 ///< rank of every node; empty: the model stays whole
-  int num_made_ = 0;                                      ///< elements, on all ranks together
   std::vector<std::pair<int, SourceLocation>> fixed_by_;  ///< (l-dof, card) in the order of the cards
 };
 

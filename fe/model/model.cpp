@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "base/rotation.hpp"
-#include "fe/linear/ranks.hpp"
 #include "fe/model/coordinates.hpp"
 
 namespace bough::fe {
@@ -36,32 +35,6 @@ Shapes list_shapes(const Model& model) {
   return shapes;
 }
 
-/// Of a model by parts: those of all ranks on the first, in the order of the deck.
-Shapes collect_shapes(const Model& model) {
-  const ModelShare& share = *model.share();
-  std::vector<int> packed;  // place, id, number of letters, of nodes; letters, nodes
-  for (const int e : share.owned) {
-    const auto& element = model.elements()[static_cast<size_t>(e)];
-    const ElementShape shape = element->shape();
-    if (!is_drawn(shape, model.nodes())) continue;
-    packed.insert(packed.end(), {share.number[static_cast<size_t>(e)], element->id(),
-                                 static_cast<int>(shape.type.size()), static_cast<int>(shape.nodes.size())});
-    packed.insert(packed.end(), shape.type.begin(), shape.type.end());
-    packed.insert(packed.end(), shape.nodes.begin(), shape.nodes.end());
-  }
-  packed = collect_on_first(packed);
-  std::vector<std::pair<int, size_t>> order;  // place, where it begins
-  for (size_t i = 0; i < packed.size(); i += static_cast<size_t>(4 + packed[i + 2] + packed[i + 3]))
-    order.emplace_back(packed[i], i);
-  std::sort(order.begin(), order.end());
-  Shapes shapes;
-  for (const auto& [place, i] : order) {
-    const auto letters = packed.begin() + static_cast<std::ptrdiff_t>(i) + 4, nodes = letters + packed[i + 2];
-    shapes[std::string(letters, nodes)].emplace_back(packed[i + 1], std::vector<int>(nodes, nodes + packed[i + 3]));
-  }
-  return shapes;
-}
-
 }  // namespace
 
 records::BodyMesh Model::calc_mesh() const {
@@ -76,7 +49,7 @@ records::BodyMesh Model::calc_mesh() const {
   for (size_t k = 0; k < nodes_.size(); ++k)
     if (row[k] >= 0) mesh.grid_xyz.row(row[k]) = nodes_[k].x.transpose();
 
-  auto by_type = share_ ? collect_shapes(*this) : list_shapes(*this);
+  auto by_type = list_shapes(*this);
   for (const auto& [id, shape] : drawn_lines_) by_type[shape.type].emplace_back(id, shape.nodes);
   for (const auto& [type, members] : by_type) {
     records::BodyMesh::Block block;

@@ -18,8 +18,8 @@
 
 #include "fe/elements/element.hpp"
 #include "fe/model/applied_load.hpp"
+#include "fe/model/constraints.hpp"
 #include "fe/model/links.hpp"
-#include "fe/model/model_share.hpp"
 #include "fe/model/prestress.hpp"
 #include "formats/records/flex_body.hpp"
 #include "formats/records/modes.hpp"
@@ -35,10 +35,6 @@ struct ModelOptions {
   std::vector<std::string> ignore_cards;  ///< --ignore CARD
   bool uses_enforced = false;  ///< the caller applies calc_enforced(): no warning that an SPC's value is dropped
   std::shared_ptr<const Prestress> prestress;  ///< of this deck (fe/statics/preload.hpp): its K_G0 joins the stiffness
-  /// On several ranks each keeps its part of the elements, where the model can be cut: not with a prestress, an a-set,
-  /// selected nonstructural mass, or constraints over hundreds of dofs. The caller asks a model by parts for nothing
-  /// but what this header, fe/matrices/assembly.hpp and normal modes say of it.
-  bool by_parts = false;
 };
 
 /// One dof removed by AUTOSPC: node id, component 1..6 in CD axes, stiffness ratio that condemned it.
@@ -67,11 +63,11 @@ class Model final : public NodeTable {
                      Diagnostics& diagnostics);
 
   const std::vector<Node>& nodes() const { return nodes_; }
-  /// All of them; of a model by parts those of this rank, in the same order.
   const std::vector<std::unique_ptr<const Element>>& elements() const { return elements_; }
-  const ModelShare* share() const { return share_ ? &*share_ : nullptr; }         ///< nullptr: the model is whole
-  bool has_card(const std::string& card) const { return cards_.contains(card); }  ///< an element of it, on any rank
-  bool has_damping() const { return has_damping_; }                               ///< any element, on any rank
+  bool has_card(const std::string& card) const {
+    return cards_.contains(card);
+  }                                                  ///< whether an element is of this card
+  bool has_damping() const { return has_damping_; }  ///< whether any element damps
   int num_gdofs() const { return num_gdofs_; }
   int num_fdofs() const { return static_cast<int>(T_.cols()); }
   const SparseRows& T() const { return T_; }  ///< num_gdofs x num_fdofs
@@ -90,7 +86,6 @@ class Model final : public NodeTable {
   const records::Subcase& subcase() const { return subcase_; }
   /// ndof_g x 2: node id, code 1..6 (0 for a scalar point).
   Eigen::MatrixXi calc_dof_map() const;
-  /// Collective; of a model by parts the first rank has the elements and the others none.
   records::BodyMesh calc_mesh() const;
 
   /// K += K_e of an element of this model (N x N, as Element::add_stiffness), with K_G of its part of the prestress.
@@ -114,7 +109,6 @@ class Model final : public NodeTable {
 
   int find_node(int id) const override;
   bool is_refused(int id) const override { return refused_grids_.count(id) > 0; }
-  bool keeps(const Element& element) const override { return !share_ || share_->keeps(element, T_); }
   const Node& node(int index) const override { return nodes_[index]; }
   Matrix3d calc_axes(int cid, const Vector3d& x, const SourceLocation& at, Diagnostics& diagnostics) const override;
   Vector3d calc_point(int cid, const Vector3d& x, const SourceLocation& at, Diagnostics& diagnostics) const override;
@@ -139,7 +133,6 @@ class Model final : public NodeTable {
   std::unordered_map<int, int> node_index_;
   std::set<int> refused_grids_;
   std::vector<std::unique_ptr<const Element>> elements_;
-  std::optional<ModelShare> share_;
   std::set<std::string> cards_;
   bool has_damping_ = false;
   int num_gdofs_ = 0;

@@ -22,7 +22,7 @@ forbid(list_sources(), r"\b(TODO|FIXME|XXX|HACK)\b", "finish it or write an issu
 forbid(tests, r"\bDISABLED_\w*", "no switched-off tests", keep_comments=True)
 forbid(tests, r"GTEST_SKIP\(\)\s*;", "say why it is skipped")
 # Guards against hangs.
-CLOCKS = {"tests/cli/browser.py", "tests/cli/edit_terminal_test.py", "tests/cli/subdomains_test.py"}
+CLOCKS = {"tests/cli/browser.py", "tests/cli/edit_terminal_test.py", "tests/cli/ranks_test.py"}
 forbid([t for t in tests if t not in CLOCKS], r"\btime\.sleep\(|\bsleep_for\(|(?<!\w)::u?sleep\(|\b(?:monotonic|perf_counter)\(",
        "no test depends on the time it takes: start_held of tests/cli/support.py stops a process at a point")
 forbid(list_files(["solver"], (".hpp", ".cpp")), r"(?m)^(?:static|thread_local)\s+(?!const\b|constexpr\b)[\w:<>]+\s+\w+\s*(?:=|;|\{)",

@@ -39,33 +39,6 @@ TEST(Graph, SeparatorOfAPlateIsALine) {
 
 /// Of edges between parts the ends in the higher one lie between: along a straight cut one line. Parts of halves are of
 /// halves of the plate, so that 4 need two lines; 3 and 6 need as many or fewer than a strip each.
-TEST(Graph, PartsHaveFewEndsBetween) {
-  for (const auto& [num_parts, most] : {std::pair{2, 61}, {3, 160}, {4, 130}, {6, 260}}) {
-    Graph graph = make_plate(60);
-    const auto part = cut_into_parts(graph, num_parts);
-    ASSERT_EQ(part.size(), graph.weight.size());
-    std::set<idx_t> between;
-    visit_edges(graph, [&](idx_t v, idx_t other) {
-      if (part[other] < part[v]) between.insert(v);
-    });
-    EXPECT_LE(static_cast<int>(between.size()), most) << num_parts;
-    for (idx_t p = 0; p < num_parts; ++p)
-      EXPECT_NEAR(static_cast<double>(std::count(part.begin(), part.end(), p)), 61.0 * 61 / num_parts,
-                  0.15 * 61 * 61 / num_parts)
-          << num_parts;
-  }
-}
-
-TEST(Graph, PartsWithoutWeightAreNone) {
-  Graph graph = make_plate(1);
-  graph.weight = {6, 0, 0, 0};
-  EXPECT_TRUE(cut_into_parts(graph, 2).empty());
-  Graph apart;  // nothing couples them
-  for (int i = 0; i < 4; ++i) apart.start.push_back(0), apart.weight.push_back(6);
-  EXPECT_TRUE(cut_into_parts(apart, 2).empty());
-  EXPECT_TRUE(cut_into_parts(graph, 5).empty());
-}
-
 TEST(Graph, DissectionNamesEveryVertexOnce) {
   Graph graph = make_plate(20);
   auto order = find_dissection(graph);

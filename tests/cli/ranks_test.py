@@ -1,4 +1,4 @@
-"""Modes of decks that are cut among ranks are those of one process: frequencies, shapes, effective masses, errors."""
+"""Modes on several ranks are those of one process: frequencies, shapes, effective masses, files, messages, errors."""
 import os
 import signal
 import subprocess
@@ -26,7 +26,7 @@ def make_grid_ids(nx, ny):
 
 
 def write_plate(nx=36, ny=26, more="", held=True):
-    """A plate of 6 m x 4 m, clamped on its left edge; 5,994 rows at the least."""
+    """A plate of 6 m x 4 m, clamped on its left edge."""
     ids = make_grid_ids(nx, ny)
     lines = [HEAD if held else HEAD.replace("SPC = 1\n", ""), "PSHELL,1,1,.05,1,,1\n"]
     for (j, i), grid in np.ndenumerate(ids):
@@ -41,7 +41,7 @@ def write_plate(nx=36, ny=26, more="", held=True):
 
 
 def write_linked():
-    """Rigid elements, an RBE3 and an MPC from corner to corner, across whatever cut."""
+    """Rigid elements, an RBE3 and an MPC from corner to corner."""
     ids = make_grid_ids(36, 26)
     # The mass of the RBE3 hangs on the middle; a rigid beam joins two opposite edges.
     return write_plate(more="GRID,90001,,3.,2.,.5\nCONM2,90001,90001,,500.\n"
@@ -90,7 +90,7 @@ def write_block(n=(24, 9, 8)):
     return "".join(lines) + "ENDDATA\n"
 
 
-class Subdomains(ProgramTest):
+class RanksOfModes(ProgramTest):
     def solve(self, ranks, *options, threads=1):
         """Eigenvalues, effective masses, shapes as rows."""
         options = options if "-n" in options else ("-n", 8, *options)
@@ -100,7 +100,7 @@ class Subdomains(ProgramTest):
             phi = file["modes/phi"][()]
             return file["modes/eigenvalue"][()], file["effective_mass"][()], phi.reshape(-1, phi.shape[-1]).T
 
-    def compare(self, text, ranks=(2, 3, 4), *options):
+    def compare(self, text, ranks=(2, 3), *options):
         self.write("deck.bdf", text)
         eigenvalue, mass, shape = self.solve(1, *options)
         self.assertEqual(len(eigenvalue), options[options.index("-n") + 1] if "-n" in options else 8)
@@ -115,13 +115,13 @@ class Subdomains(ProgramTest):
         self.compare(write_plate())
 
     def test_free_plate(self):
-        self.compare(write_plate(held=False), (2, 3))
+        self.compare(write_plate(held=False), (2,))
 
-    def test_links_across_the_cut(self):
-        self.compare(write_linked(), (2, 3))
+    def test_links(self):
+        self.compare(write_linked(), (3,))
 
     def test_a_door(self):
-        self.compare(write_door(), (2, 3))
+        self.compare(write_door(), (2,))
 
     def test_beams(self):
         self.compare(write_grillage(), (2,))
@@ -130,18 +130,14 @@ class Subdomains(ProgramTest):
         self.compare(write_block(), (3,))
 
     def test_a_cube(self):
-        """A twentieth of the rows lies between two halves, of ranks (two) and of threads (one rank)."""
-        self.compare(write_block((20, 20, 19)), (1, 2))
+        """A twentieth of the rows lies between the two halves of the threads."""
+        self.compare(write_block((20, 20, 19)), (1,))
 
-    def test_ranks_decide_alike(self):
-        """15,000 rows, of which one rank has more than 5,000 and another fewer: what depends on size goes by all."""
-        self.compare(write_plate(100, 24), (3,), "-n", 20)
-
-    def test_too_small_to_cut(self):
-        self.compare(write_plate(8, 6), (2,))
+    def test_fewer_rows_than_a_block(self):
+        self.compare(write_plate(8, 6), (3,))
 
     def test_two_bodies(self):
-        """Parts that nothing joins: there may be no rows between. The other is shorter: no root of one is of the other."""
+        """Parts that nothing joins; the other is shorter, so that no root of one is of the other."""
         one = write_plate(40, 13)
         grids = 41 * 14
         other = []
@@ -155,7 +151,7 @@ class Subdomains(ProgramTest):
                 other.append(",".join(["CQUAD4", str(int(words[1]) + 5000), "1", *corners]))
             elif words[0] == "SPC1":
                 other.append(f"SPC1,1,123456,{int(words[3]) + grids}")
-        self.compare(one.replace("ENDDATA\n", "") + "\n".join(other) + "\nENDDATA\n", (2, 3))
+        self.compare(one.replace("ENDDATA\n", "") + "\n".join(other) + "\nENDDATA\n", (2,))
 
     def test_an_unstable_plate(self):
         """A negative spring: no LLᵀ, whatever the number of ranks."""
@@ -166,7 +162,7 @@ class Subdomains(ProgramTest):
         corner = make_grid_ids(36, 26)[26, 36]
         self.compare(write_plate(more="GRID,90001,,7.,4.5,.3\nGRID,90002,,8.,5.1,.9\nPBAR,9,9,1.-4,1.-8,1.-8,1.-8\n"
                                       f"MAT1,9,2.+11,,.3,0.\nCBAR,90001,9,{corner},90001,0.,0.,1.\n,456\n"
-                                      "CBAR,90002,9,90001,90002,0.,0.,1.\n"), (2, 3))
+                                      "CBAR,90002,9,90001,90002,0.,0.,1.\n"), (2,))
 
     def test_errors_are_those_of_one(self):
         """No mass at all: K + sM has no modes, the same words and the same code, and no rank waits for another."""
@@ -187,41 +183,36 @@ class Subdomains(ProgramTest):
         return done.returncode, messages, done.stdout
 
     def test_messages_are_those_of_one(self):
-        """Each in a card that only one rank's part uses: once, the same words in the same order, the same code."""
-        ids = make_grid_ids(36, 26)
-        corner, other = ids[26, 36], ids[0, 1]
+        """Once, the same words in the same order, the same code."""
+        ids = make_grid_ids(12, 8)
+        corner, other = ids[8, 12], ids[0, 1]
         for more, code in ((f"CBAR,90001,9,{corner},{other},0.,0.,1.\n", 1),
                            (f"CQUAD4,90001,1,{corner},{corner},{other},{other}\nCROD,90002,8,{corner},{other}\n", 1),
                            (f"GRID,90001,,7.,5.,1.\nRBE2,90002,{corner},123456,90001,88888\nCONM2,90003,77777,,1.\n", 1),
-                           # a rod that hangs on the corner and grids that nothing holds: AUTOSPC on one rank alone
+                           # a rod that hangs on the corner and grids that nothing holds: AUTOSPC
                            (f"GRID,90001,,7.,5.,1.\nCONROD,90002,{corner},90001,1,.01\nGRID,90003,,8.,8.,8.\n", 0),
                            (f"CMASS2,90001,500.,{corner},3\nCMASS2,90002,50.,{other},1\n", 0),
                            (f"CELAS2,90001,-2.+5,{corner},3\n", 0)):
-            found = [self.say(n, text=write_plate(more=more)) for n in (1, 2, 3)]
+            found = [self.say(n, text=write_plate(12, 8, more)) for n in (1, 2)]
             self.assertEqual(found[0][0], code, found[0])
             self.assertTrue(found[0][1])
             for one in found[1:]:
                 self.assertEqual(one[:2], found[0][:2])
 
-    def test_masses_on_offsets(self):
-        ids = make_grid_ids(36, 26)
-        masses = "".join(f"CONM2,{90000 + i},{ids[3 * i, 2 * i + 4]},,{100 + 10 * i}.,,.2,-.1,.5\n" for i in range(8))
-        self.compare(write_plate(more=masses), (2, 3))
-
     def test_an_mpc_between_rigid_parts(self):
-        """RBE2 spiders at both ends whose middles an MPC joins: what hangs on one part is moved by another."""
+        """RBE2 spiders at both ends whose middles an MPC joins."""
         ids = make_grid_ids(36, 26)
         left, right = ",".join(map(str, ids[10:14, 3])), ",".join(map(str, ids[10:14, 33]))
         more = (f"GRID,90001,,.5,2.,.3\nGRID,90002,,5.5,2.,.3\nCONM2,90003,90002,,300.\n"
                 f"RBE2,90004,90001,123456,{left}\nRBE2,90005,90002,123456,{right}\nMPC,1,90001,3,1.,90002,3,-.5\n")
-        self.compare(write_plate(more=more).replace("SPC = 1\n", "SPC = 1\nMPC = 1\n"), (2, 3))
+        self.compare(write_plate(more=more).replace("SPC = 1\n", "SPC = 1\nMPC = 1\n"), (2,))
 
     def test_files_and_lengths_are_those_of_one(self):
         """What is drawn, ids and lengths by NORM = MAX, component by component."""
         text = write_linked().replace("BEGIN BULK\n", "METHOD = 7\nBEGIN BULK\nEIGRL,7,,,8,,,,MAX\nPLOTEL,95001,1,500\n")
         self.write("deck.bdf", text)
         files = []
-        for n in (1, 2, 3):
+        for n in (1, 3):
             self.bough("modes", "deck.bdf", "-o", f"f{n}.h5", "--meffmass", "90001", launcher=launch(n), env=ENV)
             found = {}
             with h5py.File(self.path(f"f{n}.h5")) as file:
