@@ -115,7 +115,7 @@ def find_hits():
         kinds, lines = split(path, text), text.split("\n")
         for rule, (kind, pattern, _) in RULES.items():
             for match in re.finditer((r"(?<=\x01)" if kind == "start" else "") + pattern, kinds[kind]):
-                line = line_of(text, match.start())
+                line = line_of(kinds[kind], match.start())
                 if "style: keep" not in lines[line - 1]:
                     hits[rule, room_of(path)].append((path, line, match.group(0)))
     return hits
