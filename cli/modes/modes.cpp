@@ -113,7 +113,7 @@ Solved solve_task(const ModesOptions& options, const records::DynamicDeck& deck,
           ? fe::calc_subcase_prestress(deck, model_options, modal::get_preloaded(deck, *task.buckling), diagnostics)
           : calc_prestress(deck, model_options, diagnostics);
   const auto asks_residuals = [&](const auto& one) { return modal::response::asks_residual_vectors(deck, one.second); };
-  // What these make of elements takes all of them on every rank.
+  // Buckling, print files, energies and residual vectors need all elements on every rank.
   model_options.by_parts = !options.buckling && !listing && !options.energies &&
                            std::none_of(requests.selections.begin(), requests.selections.end(), asks_residuals);
   auto model = fe::Model::build(deck, model_options, diagnostics);

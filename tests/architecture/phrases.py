@@ -57,7 +57,7 @@ RULES = {
                       "verified by; error; stable part"),
     "a-tenth-less": ("prose", r"\b(?:third|quarter|fifth|sixth|seventh|eighth|tenth|twelfth|fifteenth|twentieth) "
                               r"(?:to a \w+ )?(?:less|more|faster)\b", "percent, of what"),
-    "laws": ("prose", r"(?<!control )(?<!force )(?<!friction )\blaws?\b(?! of)", "controller, control law"),
+    "laws": ("prose", r"(?<![Cc]ontrol )(?<![Ff]orce )(?<![Ff]riction )\blaws?\b(?! of)", "controller, control law"),
 }
 
 C_TOKEN = re.compile(r'//[^\n]*|/\*.*?\*/|R"(\w*)\(.*?\)\1"|"(?:\\.|[^"\\\n])*"|(?<![0-9a-fA-F])\'(?:\\.|[^\'\\\n])*\'', re.S)
