@@ -75,7 +75,7 @@ void write_all(int descriptor, const std::string& text) {
   ::_exit(0);
 }
 
-/// What the way in which the process ended says of the file; empty: nothing.
+/// Fault of the file that the exit status of the process shows; empty: none.
 std::string describe_end(int status, const std::string& library) {
   if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return {};
   if (WIFEXITED(status))

@@ -4,7 +4,7 @@
 
 namespace bough {
 
-/// What a process that worked on a file has to say, and how it ended where that says something of the file.
+/// Output of a process that worked on a file, and its end if that shows a fault of the file.
 struct Apart {
   std::string said;
   std::string end;  ///< empty where it ended well
@@ -13,7 +13,7 @@ struct Apart {
 /// Done to the file; what it throws ends the process.
 using ApartTask = std::string (*)(const std::string& path);
 
-/// Of computing, and beyond what this process has.
+/// Limits of the process: time of computing, and memory in addition to that of this process.
 struct ApartLimits {
   double seconds = 5;
   double bytes = 1e9;
@@ -23,7 +23,7 @@ struct ApartLimits {
 /// Apart::end. Where no process is to be had the task is done here.
 Apart work_apart(const std::string& path, ApartTask task, const ApartLimits& limits, const std::string& library);
 
-/// How work_apart has tasks done: by a process each, unless a fuzzer, which has a million of them, keeps one for many.
+/// Function by which work_apart runs tasks: one process each. A fuzzer, with a million of them, keeps one for many.
 using ApartWorker = Apart (*)(const std::string& path, ApartTask task, const ApartLimits& limits,
                               const std::string& library);
 /// Returns the one before.

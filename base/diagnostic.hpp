@@ -1,5 +1,5 @@
 #pragma once
-/// \file What went wrong, where, and what to do about it.
+/// \file Diagnostics: an error or a warning, its location and advice.
 ///
 /// Two kinds of failure (house rule): a breach of a contract between two pieces of Bough is an assertion; bad input or
 /// a computation that failed is a Diagnostic with a stable id (docs/errors.md), collected so that all are reported.

@@ -1,5 +1,5 @@
 #pragma once
-/// \file What one call of the program reads and writes, so that no output takes the place of an input.
+/// \file Inputs and outputs of one call of the program, so that no output overwrites an input.
 #include <string>
 
 namespace bough {

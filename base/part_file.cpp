@@ -71,7 +71,7 @@ void remove_stale(const fs::path& folder, const std::string& stem) {
   }
 }
 
-/// Whether the name still leads to the open file.
+/// Returns true if the name still refers to the open file.
 bool is_same_file(const std::string& name, int descriptor) {
   struct stat a {
   }, b{};

@@ -33,7 +33,7 @@ class PartFile {
   /// Syncs the bytes, renames the file and syncs its folder: the file appears now, with the permissions of the old one,
   /// and survives a power cut. False, with error(), and then the old one is untouched.
   bool commit();
-  /// As commit(), but the file stays open and locked.
+  /// Renames as commit() does, but the file stays open and locked.
   bool publish();
   /// Closes and removes.
   void abandon();
@@ -57,7 +57,7 @@ enum class LockState { Held, Busy, Unsupported };
 /// Locks a file for as long as the descriptor, open for writing, stays open; no other program's reading is hindered (a
 /// lock of the open file description on one byte far behind the end). Processes forked share it.
 LockState lock_file(int descriptor);
-/// Whether a process holds the lock; false where that cannot be told.
+/// Returns true if a process holds the lock; false if that is not known.
 bool is_file_locked(const std::string& path);
 
 }  // namespace bough

@@ -52,7 +52,7 @@ constexpr Verb kVerbs[] = {{"check", cli::add_check},
                            {"edit", cli::add_edit},
                            {"convert", cli::add_convert}};
 
-/// That one verb, or all: the options of all take longer to set up than a small deck takes to solve.
+/// Adds one command, or all: setting up the options of all takes longer than solving a small deck.
 void add_verbs(CLI::App& app, cli::Action& action, std::string_view only = {}) {
   const bool is_verb =
       std::any_of(std::begin(kVerbs), std::end(kVerbs), [&](const Verb& verb) { return verb.name == only; });

@@ -11,7 +11,7 @@ struct CommandOutcome {
   int exit_code = 0;
   std::vector<Diagnostic> failures;  ///< what was printed of the failure that ended it; empty where it ended otherwise
 };
-/// As run_command (cli/verbs.hpp), which prints the same.
+/// Runs the command as run_command (cli/verbs.hpp) does, with the same output.
 CommandOutcome run_and_tell(const std::vector<std::string>& words);
 
 }  // namespace bough::cli

@@ -10,8 +10,8 @@
 
 namespace {
 
-/// As soon as the program is loaded: its many libraries start for longer than some verbs work. Not in the library of
-/// the verbs, since a Python that loads it keeps its own signals.
+/// Handles signals from the moment the program is loaded: its libraries take longer to start than some commands to run.
+/// Not in the library of the commands, since a Python process that loads it keeps its own signals.
 __attribute__((section(".preinit_array"), used)) void (*const begin)() = bough::cli::end_cleanly_on_signals;
 
 }  // namespace

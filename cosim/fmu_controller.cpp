@@ -185,7 +185,7 @@ class Reader {
     return model;
   }
 
-  /// Those of `key`, or all with that causality in the order of the FMU.
+  /// Variables of `key`, or all with that causality in the order of the FMU.
   std::vector<ForeignVariable> choose(const ForeignModel& model, const char* key, const std::string& causality) {
     std::vector<ForeignVariable> chosen;
     const auto words = record_.settings.words.find(key);

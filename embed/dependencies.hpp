@@ -1,5 +1,5 @@
 #pragma once
-/// \file What derivatives, outputs and event functions depend on at one moment: for modelDescription.xml of FMUs.
+/// \file Dependencies of derivatives, outputs and event functions at one time: for modelDescription.xml of FMUs.
 #include <optional>
 #include <string>
 #include <vector>
@@ -23,9 +23,9 @@ class DependencyGraph {
   /// Both must outlive it.
   DependencyGraph(const solver::System& system, const records::SystemSpec& spec);
 
-  /// Of row `row` of x.
+  /// Dependencies of the derivative of row `row` of x.
   Dependencies find_of_derivative(int row) const;
-  /// Of all components of a channel; nullopt: of everything.
+  /// Dependencies of all components of a channel; nullopt: on everything.
   std::optional<Dependencies> find_of_channel(const std::string& path) const;
   /// \param i  of `count` event functions in the order of solver::Simulator. nullopt: of everything.
   std::optional<Dependencies> find_of_event_function(int i, int count) const;
@@ -40,9 +40,9 @@ class DependencyGraph {
   void add_source(int value, Set& set) const;
   void add_sources(const solver::BlockSlot& place, Set& set) const;
   void add_motion(const solver::BlockSlot& place, Set& set) const;
-  /// Of the outputs of all blocks, accelerations as they are known.
+  /// Finds the dependencies of the outputs of all blocks; those of accelerations are known before.
   void follow_signals();
-  /// Of the outputs of a block, after those of its sources.
+  /// Dependencies of the outputs of a block, after those of its sources.
   Set find_of_block(const solver::BlockSlot& place) const;
   /// Adds chains of hinges and modes from ground to a body.
   void add_chain(int body, bool with_rates, Set& set) const;

@@ -66,7 +66,7 @@ LoadedSystem load_system(const std::string& path, const FileReaders& readers, Lo
 std::string get_body_path(const std::string& name);
 /// path itself when absolute or when `from_file` is empty, else relative to the folder of from_file.
 std::string resolve_beside(const std::string& from_file, const std::string& path);
-/// As seen from here, unless that climbs out of this folder.
+/// Path relative to the working directory, unless that leads out of it.
 std::string shorten_path(const std::string& path);
 
 }  // namespace bough::embed

@@ -1,5 +1,5 @@
 #pragma once
-/// \file What a bough_model holds: a loaded system and the names of its ports.
+/// \file The bough_model of the C interface: a loaded system and the names of its ports.
 #include "embed/ports.hpp"
 #include "embed/simulation.hpp"
 

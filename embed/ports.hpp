@@ -23,7 +23,7 @@ class Ports {
 
   /// \param kind  a bough_kind. NULL: no such kind.
   const std::vector<Port>* list(int kind) const;
-  /// By its name, by the path of its channel, by the name without the component of a scalar; -1: none.
+  /// Finds a port by its name, by the path of its channel, or by the name of a scalar without component; -1: none.
   int find(int kind, const std::string& name) const;
   /// Outputs of all components of `name`; that of one if it has a component. Empty: none.
   std::vector<int> find_outputs(const std::string& name) const;

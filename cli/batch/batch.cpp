@@ -47,7 +47,7 @@ struct BatchOptions : CommonOptions {
   int worker_fd = -1;
 };
 
-/// Which part of the cases this call does: those with (number - 1) % count == index.
+/// Share of the cases of this call: those with (number - 1) % count == index.
 struct Shard {
   int index = 0, count = 1;
   bool holds(int number) const { return (number - 1) % count == index; }
@@ -111,7 +111,7 @@ class Folder {
 
   const std::string& get_fingerprint() const { return fingerprint_; }
 
-  /// What campaign.json says.
+  /// Contents of campaign.json.
   static json describe(const BatchPlan& plan) {
     json now{{"format", "bough-campaign"}, {"name", plan.get_spec().name}, {"bough", get_version()}};
     now["cases"] = plan.num_cases();
@@ -136,7 +136,7 @@ class Folder {
             "choose another folder with -o, or --restart to do every case again"};
   }
 
-  /// What another hand put at a place that the campaign would write to or clear.
+  /// Reports files of another origin where the campaign would write or clear.
   void check_foreign(bool may_write_state, bool is_own) const {
     Diagnostics found;
     const auto report = [&](const fs::path& path) {
@@ -292,7 +292,7 @@ void list_cases(const BatchPlan& plan, const Shard& shard, bool as_json, const C
   for (const auto& step : spec.steps) console.print("  bough " + join_words(step.words) + "\n");
 }
 
-/// What the cases of this call came to.
+/// Counts of the outcomes of the cases of this call.
 struct Tally {
   int num_before = 0, num_done = 0;
   std::vector<BatchOutcome> failed;
@@ -328,7 +328,7 @@ json to_json(const std::vector<Statistics>& statistics) {
   return all;
 }
 
-/// What all ranks have done together.
+/// Counts the outcomes of all ranks together.
 void count_again(const BatchPlan& plan, const std::vector<int>& wanted, const fs::path& folder, Tally& tally) {
   tally.failed.clear();
   int num_over = 0;

@@ -40,7 +40,7 @@ void flatten(const json& value, const CampaignCollect& wanted, std::vector<doubl
   }
 }
 
-/// What stands below the longest part of the path that exists.
+/// Keys below the longest part of the path that exists.
 std::string list_below(const json& printed, json::json_pointer place) {
   while (!place.empty() && !printed.contains(place)) place.pop_back();
   const json& found = printed[place];
@@ -78,7 +78,7 @@ std::string format_number(double x) {
   return std::isfinite(x) ? toml_files::make_setting(x, x == std::floor(x) && std::abs(x) < 1e15).text : "";
 }
 
-/// Whether a spreadsheet would take the text for a formula.
+/// Returns true if a spreadsheet would read the text as a formula.
 bool is_formula(const std::string& text) {
   if (text.empty() || std::string_view("=+-@\t\r").find(text[0]) == std::string_view::npos) return false;
   char* end = nullptr;
@@ -237,7 +237,7 @@ std::vector<double> collect(const CampaignCollect& wanted, const fs::path& case_
   if (wanted.column > 0) table = table.col(wanted.column - 1).eval();
   if (wanted.take != CollectTake::All && table.size() == 0)
     throw fail(wanted, "there are no numbers", "take all of them");
-  // Of several columns, one number of each.
+  // Several columns give one number each.
   std::vector<double> numbers;
   const auto take_each = [&](auto&& of) {
     for (Eigen::Index k = 0; k < table.cols(); ++k) numbers.push_back(of(table.col(k)));

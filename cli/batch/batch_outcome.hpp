@@ -1,5 +1,5 @@
 #pragma once
-/// \file What became of one case, and where it is kept: outcome.json in the case's folder, written when it is over.
+/// \file Outcome of one case: outcome.json in the folder of the case, written at its end.
 #include <optional>
 #include <string>
 #include <vector>
@@ -22,8 +22,8 @@ struct BatchOutcome {
 std::string to_text(const BatchOutcome& outcome);
 std::optional<BatchOutcome> parse_outcome(const std::string& text);
 
-/// Whether a campaign may clear this folder for a case: it is not there, is empty, or a campaign made it (a mark or an
-/// outcome in it says so). No symbolic link is.
+/// Returns true if a campaign may clear this folder for a case: it does not exist, is empty, or a campaign made it (it
+/// contains a mark or an outcome). Never true for a symbolic link.
 bool is_case_folder(const std::filesystem::path& folder);
 /// Everything in it goes but the mark, so that a kill in between leaves a folder that is known.
 void clear_case_folder(const std::filesystem::path& folder);

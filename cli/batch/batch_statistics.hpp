@@ -1,5 +1,5 @@
 #pragma once
-/// \file What the cases of a campaign came to, taken together.
+/// \file Statistics of the outcomes of a campaign.
 #include <string>
 #include <vector>
 
@@ -7,7 +7,7 @@
 
 namespace bough::cli {
 
-/// Of one column of outputs, of the cases that have a number there.
+/// Statistics of one column of outputs, over the cases that have a number there.
 struct Statistics {
   std::string name;  ///< "peak", "peak.2"
   int count = 0;

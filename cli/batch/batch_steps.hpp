@@ -19,14 +19,14 @@ void check_steps(const toml_files::CampaignSpec& spec, const std::vector<std::st
 /// Reports "cli.output-outside": an output of a step that does not lie in the folder of its case.
 void check_places(const toml_files::CampaignSpec& spec, Diagnostics& diagnostics);
 
-/// What the steps write, by -o or by the verbs' defaults: such a file is the case's own, not one of the same name that
-/// lies beside the campaign.
+/// Files that the steps write, by -o or by default: such a file belongs to the case, even if one of the same name is
+/// next to the campaign.
 std::vector<std::string> find_outputs(const toml_files::CampaignSpec& spec, const std::string& folder);
 
 /// {NAME} and {case} become the case's values.
 void fill_in(std::vector<std::string>& words, const toml_files::CampaignSpec& spec, const BatchCase& one);
 
-/// Whether a [[collect]] reads what the step (from 0) prints.
+/// Returns true if a [[collect]] reads the output of the step (from 0).
 bool is_collected_as_json(const toml_files::CampaignSpec& spec, std::size_t step);
 
 }  // namespace bough::cli

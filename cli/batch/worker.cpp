@@ -97,7 +97,7 @@ bool send_line(int fd, const std::string& text) {
   return true;
 }
 
-/// What can be read is, though another cannot: the first that cannot is the error of the case.
+/// Collects all values that can be read; the first that cannot is the error of the case.
 void collect_all(const BatchPlan& plan, const fs::path& folder, BatchOutcome& outcome) {
   for (const auto& wanted : plan.get_spec().collect) {
     try {

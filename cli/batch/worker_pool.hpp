@@ -14,7 +14,7 @@ struct PoolOptions {
   int num_workers = 1;
   double time_limit = 0;               ///< s a case; 0: none
   const volatile int* stop = nullptr;  ///< turns non-zero when a signal came
-  /// What a case printed before its worker ended itself; empty: nothing.
+  /// Output of a case before its worker ended; empty: none.
   std::function<std::string(int number)> find_error;
 };
 

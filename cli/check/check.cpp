@@ -42,7 +42,7 @@ struct CheckOptions : CommonOptions {
   std::optional<int> gpwg;  ///< grid of the weight table; 0: the origin
 };
 
-/// Of the command line, else of PARAM,GRDPNT, whose negative value asks for no table.
+/// Grid of the weight table: from the command line, else from PARAM,GRDPNT, whose negative value requests no table.
 std::optional<int> choose_weight_grid(const CheckOptions& options, const records::Deck& deck,
                                       Diagnostics& diagnostics) {
   if (options.gpwg) return options.gpwg;
@@ -159,8 +159,8 @@ int check_deck(const CheckOptions& options, Console& console) {
   return finish(options, console, text, json, diagnostics);
 }
 
-/// What `reduce` would refuse after its factorizations, as far as rigid motions tell it: a free body that is held, a
-/// fixed one that nothing holds. Internal mechanisms are found by `reduce` alone.
+/// Reports errors that `reduce` would find after its factorizations, as far as rigid-body modes show them: a free body
+/// that is constrained, a fixed one that is not. Internal mechanisms are found by `reduce` alone.
 void check_support(const CheckOptions& options, bool is_free, const nlohmann::json& json, Diagnostics& diagnostics) {
   const auto calc_largest = [&](const char* set) {
     double largest = 0;

@@ -26,7 +26,7 @@ const hdf5::ObjectInfo* find_object(const hdf5::FileInfo& info, const std::strin
   return nullptr;
 }
 
-/// What a file of `static` or `matrices` must hold; reports hdf5.missing.
+/// Demands the objects of a file of `static` or `matrices`; reports hdf5.missing.
 void demand_objects(const std::string& path, const hdf5::FileInfo& info, const std::vector<std::string>& needed,
                     Diagnostics& diagnostics) {
   for (const auto& name : needed)

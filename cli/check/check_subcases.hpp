@@ -1,5 +1,5 @@
 #pragma once
-/// \file What `check` says of each subcase: its sets exist and what they sum up to.
+/// \file Checks of each subcase: its sets exist; resultants of its loads.
 #include <nlohmann/json_fwd.hpp>
 
 #include "fe/model/model.hpp"

@@ -26,7 +26,7 @@ bool is_same_body(const std::string& a, const std::string& b) {
   if (!fs::equivalent(get_body_path(a), get_body_path(b), ignored)) return false;
   const auto first = flx::parse_flx_name(a), second = flx::parse_flx_name(b);
   if (!first || !second || first->body_id == second->body_id) return true;
-  // Of a file with one body its id may be left out.
+  // A file with one body needs no id.
   return (first->body_id == 0 || second->body_id == 0) && flx::read_flx_bodies(first->path).size() == 1;
 }
 

@@ -15,11 +15,11 @@ namespace bough::cli {
 
 /// Returns true if the content of the file is that of a flat body file (docs/formats/flat.md), by any name.
 bool is_flat(const std::string& name);
-/// Whether the name is one of a .FLX file, with or without the id of a body.
+/// Returns true if the name is one of a .FLX file, with or without the id of a body.
 bool is_flx(const std::string& name);
 /// The file alone, without the id of a body.
 std::string get_body_path(const std::string& name);
-/// Whether both names mean one body of one file.
+/// Returns true if both names refer to one body of one file.
 bool is_same_body(const std::string& a, const std::string& b);
 /// demand_file() of the file alone.
 void demand_body_file(const std::string& name);
@@ -29,8 +29,8 @@ using embed::RigidPart;
 /// Adds the note "flx.not-carried" with what a .FLX leaves out, once a file. Throws what the readers throw. A body
 /// whose file does not say its mass centre and inertia has none.
 records::FlexBody read_body(const std::string& name, Diagnostics& diagnostics);
-/// The same for what moves it. Throws InputError "flx.no-inertia" where neither the file nor `given` has the rigid
-/// part, "flx.two-inertias" where both have.
+/// Reads a body with its rigid part, from the file or from `given`. Throws InputError "flx.no-inertia" if neither has
+/// it, "flx.two-inertias" if both have.
 records::FlexBody read_moving_body(const std::string& name, Diagnostics& diagnostics,
                                    const std::optional<RigidPart>& given = {});
 

@@ -50,9 +50,9 @@ std::string show_source_line(const SourceLocation& where) {
   std::string line;
   for (int k = 0; k < where.line; ++k)
     if (!std::getline(in, line)) return "";
-  // Of cards the column is negative, of the text with its tabs as blanks: it stands in no message.
+  // A negative column is that of a card, or of a text with tabs expanded: the message does not contain it.
   const bool is_told = where.column >= 0, has_tabs = line.find('\t') != std::string::npos;
-  // What would steer the terminal is not passed on.
+  // Control characters of the terminal are replaced by blanks.
   for (char& c : line)
     if (static_cast<unsigned char>(c) < ' ' || c == 127) c = ' ';
   line.erase(line.find_last_not_of(' ') + 1);
@@ -222,7 +222,7 @@ std::vector<Diagnostic> shorten(const std::vector<Diagnostic>& items, std::size_
   for (const auto& [key, kind] : kinds)
     if (kind.count > most) {
       auto& line = shown[kind.line];
-      // Of so many, Diagnostics keeps no more.
+      // Diagnostics keeps no more items.
       const bool is_cut = items.size() >= 200'000;
       line.what = (is_cut ? "... and at least " : "... and ") + group_digits(kind.count - most) + " more of " + line.id;
       line.advice = "-v prints them all";

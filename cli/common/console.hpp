@@ -1,5 +1,5 @@
 #pragma once
-/// \file What a verb prints: messages on stderr, tables and JSON on stdout; silent on every rank but the first.
+/// \file Output of a command: messages on stderr, tables and JSON on stdout; silent on every rank but the first.
 #include <optional>
 #include <string>
 #include <vector>
@@ -51,7 +51,7 @@ class Console {
   void print(const Diagnostic& diagnostic) const;
   /// An error that concerns the command line or the program, not a file.
   void print_error(const std::string& id, const std::string& what, const std::string& advice) const;
-  /// The same, but warnings and notes are left out when quiet.
+  /// Prints a diagnostic; warnings and notes are left out when quiet.
   void print_unless_quiet(const Diagnostic& diagnostic) const;
   /// All of them; warnings and notes are left out when quiet, and all but the first of a kind without -v (shorten).
   void print(const Diagnostics& diagnostics) const;
@@ -74,7 +74,7 @@ class Console {
 /// Everything printed so far goes out: ComputationError("cli.write") when it does not, or did not before.
 void flush_data();
 
-/// The same message, at `file` when it names no place and does not concern the command line.
+/// Returns the message with location `file` if it has none and does not concern the command line.
 Diagnostic locate(Diagnostic diagnostic, const std::string& file);
 
 /// The first `most` messages of each id, severity and file, in their order; one line where the next would stand says

@@ -139,7 +139,7 @@ nlohmann::json make_geometry_json(const fe::Model& model, const records::Deck& d
 
 namespace {
 
-/// What one station of a PBARL or PBEAML became.
+/// Section properties at one station of a PBARL or PBEAML.
 struct SectionRow {
   std::string card, shape;
   int id = 0;

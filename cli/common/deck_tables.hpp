@@ -20,7 +20,7 @@ std::string format_ground_check(const GroundChecks& ground);
 /// Connected parts, coincident and unused grids, and the worst shapes of plane and solid elements.
 std::string format_geometry(const fe::Model& model, const records::Deck& deck);
 nlohmann::json make_geometry_json(const fe::Model& model, const records::Deck& deck);
-/// What every PBARL and PBEAML became, station by station; empty without them.
+/// Table of the section properties of every PBARL and PBEAML, station by station; empty without them.
 std::string format_sections(const records::Deck& deck);
 nlohmann::json make_sections_json(const records::Deck& deck);
 /// At most ten of them.

@@ -18,7 +18,7 @@ std::string make_verb_man_page(const CLI::App& app, const std::string& verb);
 /// file names.
 std::string make_bash_completion(const CLI::App& app);
 
-/// The same for zsh and fish, with a line about each verb and option.
+/// Completion scripts for zsh and fish, with a line about each command and option.
 std::string make_zsh_completion(const CLI::App& app);
 std::string make_fish_completion(const CLI::App& app);
 

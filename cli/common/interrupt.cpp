@@ -27,7 +27,7 @@ void end_on_signal(int signal) {
   leave_at_once(kComputationFailed);
 }
 
-/// Of the SignalScope in force.
+/// Handler of the active SignalScope.
 void (*volatile g_handler)(int) = nullptr;
 volatile std::sig_atomic_t g_is_told = 0;
 

@@ -10,7 +10,7 @@ namespace bough::cli {
 /// the signals over (SignalScope).
 void end_cleanly_on_signals();
 
-/// Of several ranks only the first says that it ends. Before main() the environment is not there yet.
+/// Makes only the first of several ranks report a signal. Before main() the environment is not available yet.
 void leave_word_to_first_rank();
 
 /// A failure has been told: the signal with which mpirun ends the other ranks adds nothing.

@@ -20,7 +20,7 @@ namespace bough::cli {
 namespace {
 
 constexpr const char* kThreads = "OPENBLAS_NUM_THREADS";
-/// What OpenBLAS takes for each thread, and what MPI and PETSc take when they start.
+/// Memory of OpenBLAS per thread, and of MPI and PETSc at their start.
 constexpr std::size_t kWorkSpace = std::size_t{200} << 20;
 
 bool is_limited() {

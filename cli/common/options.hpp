@@ -37,12 +37,12 @@ void add_common_options(CLI::App& verb, CommonOptions& options, unsigned offers,
 /// ComputationError("cli.write") when its folder is missing or closed, or when it is no regular file.
 void check_output(const CommonOptions& options, const std::string& path, const std::vector<std::string>& inputs = {});
 
-/// The same for several outputs of one call, of which empty ones are left out; InputError("cli.same-output") when two
-/// of them are one file.
+/// Checks several outputs of one call, of which empty ones are left out; InputError("cli.same-output") if two of them
+/// are one file.
 void check_outputs(const CommonOptions& options, const std::vector<std::string>& paths,
                    const std::vector<std::string>& inputs = {});
 
-/// Whether writing to `path` reaches a file in `folder` or below, symbolic links followed.
+/// Returns true if writing to `path` reaches a file in `folder` or below, symbolic links followed.
 bool is_inside(const std::string& path, const std::string& folder);
 
 /// From now on check_place, and check_output with it, refuses files that do not lie in this folder or below, with
@@ -53,13 +53,13 @@ void check_place(const std::string& path);
 /// A report, to the output file when one is given, else to stdout: JSON always, text unless quiet.
 void put_out(const CommonOptions& options, const Console& console, const std::string& text);
 
-/// Whether the text ends so, case aside: ".h5", ".toml".
+/// Returns true if the text ends so, case aside: ".h5", ".toml".
 bool has_suffix(const std::string& path, const std::string& suffix);
 
 /// Reads a deck on the first rank and hands it to the others. Collective.
 records::Deck read_deck_once(const std::string& path, const std::vector<std::string>& ignore_cards,
                              Diagnostics& diagnostics);
-/// The same for a body file.
+/// Reads a body file on the first rank and hands it to the others. Collective.
 records::BodySpec read_body_spec_once(const std::string& path, Diagnostics& diagnostics);
 /// Reads a deck, throws InputError with all its errors; warnings stay in `diagnostics`. Collective.
 records::Deck read_deck_or_throw(const std::string& path, const fe::ModelOptions& options, Diagnostics& diagnostics);
@@ -78,7 +78,7 @@ void demand_file(const std::string& path);
 /// Throws InputError("cli.wrong-file") when a TOML file is of another kind than the one expected ("body", "system"),
 /// with the command that takes it; "" is unknown and passes: whoever reads the file says what is missing in it.
 void demand_kind(const std::string& path, const std::string& kind, const std::string& expected);
-/// The same for a deck; InputError("cli.wrong-file") when the file is HDF5 or TOML.
+/// Demands that the file is a deck; InputError("cli.wrong-file") if it is HDF5 or TOML.
 void demand_deck(const std::string& path);
 
 }  // namespace bough::cli

@@ -6,13 +6,13 @@
 
 namespace bough::cli {
 
-/// Whether mpirun started this process together with others.
+/// Returns true if mpirun started this process together with others.
 bool is_one_of_many();
 
 /// The bytes that `make` gives on the first rank, on every rank. A Failure thrown there is thrown on every rank, so
 /// that all end with the same exit code and none waits for another.
 std::string share(const std::function<std::string()>& make);
-/// The same for something done on the first rank alone.
+/// Runs `act` on the first rank only; a Failure is thrown on every rank.
 void do_once(const std::function<void()>& act);
 /// Waits until every process is here; whether it is true in all of them.
 bool wait_for_all(bool is_true);

@@ -17,7 +17,7 @@ std::string find_body_file(const std::string& written, const std::string& result
 /// In B; the origin for a node that the body does not have.
 Eigen::Vector3d find_rigid_node(const records::BodyRecord& body, int id);
 
-/// What hinges hold on to, and the body's own nodes, in B: points of a rigid body's picture.
+/// Points of a rigid body's picture, in B: nodes of its hinges, and its own nodes.
 std::vector<Eigen::Vector3d> list_rigid_points(const records::SystemSpec& spec, const records::BodyRecord& body);
 
 }  // namespace bough::cli

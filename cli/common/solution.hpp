@@ -1,5 +1,5 @@
 #pragma once
-/// \file What the deck's SOL asks for beyond linear statics, modes and buckling.
+/// \file Requests of the deck's SOL other than linear statics, modes and buckling.
 #include <string>
 #include <vector>
 

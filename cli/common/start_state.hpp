@@ -14,9 +14,9 @@ namespace bough::cli {
 /// has in another size, "cli.start-earlier" (warning) where the run went on after its last sample.
 void set_start_state(records::SystemSpec& spec, const std::string& path, Diagnostics& diagnostics);
 
-/// What simulate starts from (SimulateOptions::resume) where `path` is a file of equilibrium: the state that the system
-/// has been given, with the states of controllers and actuators, and what samples hold, of the file. Nothing of a run's
-/// file or an empty path; nothing and a note where the file has other controllers.
+/// Initial control state for simulate (SimulateOptions::resume) from a file of `equilibrium`: the states of controllers
+/// and actuators and the values held by samples; the motion has been set before. None for the file of a run or an empty
+/// path; none and a note if the file has other controllers.
 std::optional<records::Checkpoint> find_start_control(const std::string& path, const solver::System& system,
                                                       double time, Diagnostics& diagnostics);
 

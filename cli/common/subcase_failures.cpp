@@ -41,7 +41,7 @@ std::vector<Diagnostic> SubcaseFailures::get_items(const Diagnostics& said) cons
     }
   std::vector<Diagnostic> items;
   for (auto& [item, ids] : found) {
-    // What every subcase says of a place in the deck is about the deck.
+    // A message that every subcase gives for one location in the deck concerns the deck.
     const bool is_of_deck = item.severity != Severity::Error || (ids.size() == num_solved_ && item.where.line > 0);
     if (is_named_ && !is_of_deck && ids.front() > 0) item.what = name_subcases(ids) + ": " + item.what;
     items.push_back(std::move(item));

@@ -15,7 +15,7 @@ class Console;
 
 class SubcaseFailures {
  public:
-  /// How many the verb solves, and how many the deck has: of one alone the messages need no name.
+  /// Numbers of subcases solved, and in the deck: with one only the messages need no name.
   SubcaseFailures(std::size_t num_solved, std::size_t num_in_deck)
       : num_solved_(num_solved), is_named_(std::max(num_solved, num_in_deck) > 1) {}
 
@@ -23,7 +23,7 @@ class SubcaseFailures {
   bool is_empty() const { return failed_.empty(); }
   /// Every message once, its errors with the subcases that they are about; without the warnings that are `said`.
   std::vector<Diagnostic> get_items(const Diagnostics& said = {}) const;
-  /// What report_failure gives for the worst of them; 0 when there is none.
+  /// Exit code of report_failure for the worst failure; 0 without failures.
   int get_exit_code() const { return exit_code_; }
   /// Throws all of them as one failure.
   [[noreturn]] void throw_all(const Diagnostics& said) const;

@@ -21,7 +21,7 @@ std::string resolve_beside(const std::string& from_file, const std::string& path
 
 namespace {
 
-/// What to reduce into the body file that is missing: the body file of the same name beside it, when there is one.
+/// File to reduce for a missing body file: the TOML body file of the same name, if there is one.
 std::string name_reducible(const std::string& file) {
   const auto spec = fs::path(file).replace_extension(".toml");
   return fs::exists(spec) ? spec.string() : "BODY.toml";

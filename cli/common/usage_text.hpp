@@ -1,5 +1,5 @@
 #pragma once
-/// \file What is said when the command line itself is wrong.
+/// \file Messages about errors of the command line.
 #include <memory>
 #include <string>
 #include <utility>
@@ -13,7 +13,7 @@ class Validator;
 
 namespace bough::cli {
 
-/// What is wrong and what to do: unknown options with the nearest one, the rest in the words of CLI11.
+/// Message and advice: unknown options with the nearest one, the rest in the words of CLI11.
 std::pair<std::string, std::string> describe_parse_error(const CLI::App& app, const CLI::ParseError& error);
 
 /// Help in lines of eighty columns; the indented examples of a footer stay as they are.

@@ -1,5 +1,5 @@
 #pragma once
-/// \file What `compare` found, as tables of at most 100 columns, as JSON and as arrays of an HDF5 file.
+/// \file Results of `compare`, as tables of at most 100 columns, as JSON and as arrays of an HDF5 file.
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -35,7 +35,7 @@ struct PairReport {
 /// Nodes matched, MAC, pairs; of bodies nothing more. Throws InputError cli.no-common-nodes.
 PairReport compare_models(const std::string& file_a, modal::ModalModel a, const std::string& file_b,
                           modal::ModalModel b);
-/// Of a flexible body or a modes file; throws InputError cli.not-comparable for another.
+/// Modal model of a flexible body or a modes file; throws InputError cli.not-comparable for other files.
 modal::ModalModel load_model(const std::string& file, Diagnostics& diagnostics);
 std::string format_report(const PairReport& report);
 nlohmann::json make_json(const PairReport& report);

@@ -54,8 +54,7 @@ void convert_deck(const ConvertOptions& o, const records::UnitChange& change, co
   console.print(count(edits.size(), "field") + names);
 }
 
-/// What the flexible bodies of a system file say of their loads and elements; a body whose file is not there says
-/// nothing.
+/// Loads and elements of the flexible bodies of a system file; a body whose file is missing has none.
 class FileFacts {
  public:
   explicit FileFacts(const std::string& system) {

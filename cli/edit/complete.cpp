@@ -55,7 +55,7 @@ std::vector<std::string> EditSession::complete(const std::string& line) const {
   const auto add_names = [&](const std::string& end) {
     for (const auto& item : items) offered.push_back((item.name.empty() ? item.path() : item.name) + end);
   };
-  // What may follow "key=": choices, and the names that keys of other tables hold.
+  // Words after "key=": choices, and the names that keys of other tables hold.
   const auto add_values = [&](const KindHelp& kind, const std::string& before, const std::string& key) {
     for (const auto& value : list_values(kind, key)) offered.push_back(before + value);
     for (const auto& item : items) {
@@ -69,7 +69,7 @@ std::vector<std::string> EditSession::complete(const std::string& line) const {
   const auto add_nodes = [&](const std::string& before, const std::string& body) {
     for (const auto& id : list_body_nodes(text_.get_text(), text_.get_file(), body)) offered.push_back(before + id);
   };
-  // What the line says of a key before the word: "... body=boom node=".
+  // Value of a key earlier in the line: "... body=boom node=".
   const auto find_given = [&](const std::string& key) -> std::string {
     const auto at = line.find(" " + key + "=");
     if (at == std::string::npos) return {};

@@ -1,4 +1,4 @@
-/// What `add` asks at a terminal.
+/// Questions of `add` at a terminal.
 #include <algorithm>
 
 #include "base/diagnostic.hpp"

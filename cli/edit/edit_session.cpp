@@ -209,7 +209,7 @@ void EditSession::remove(const Words& given) {
       throw InputError("cli.edit-referenced", {}, "'" + words.back() + "' is named by " + list,
                        "change these, or add --with-references to delete them too");
   }
-  // What names it goes first, and what names that before it; the numbers of the others move meanwhile.
+  // Tables that name the target are deleted first, and before them those that name these; the numbers of others shift.
   std::vector<EditTarget> left{target};
   std::string deleted;
   while (!left.empty()) {

@@ -20,9 +20,9 @@ class EditSession {
 
   /// Does one line; false when the session is to end. Throws InputError and ComputationError.
   bool execute(const std::string& line);
-  /// Whether the end of the input may end it; says what was not saved.
+  /// Reports unsaved changes at the end of the input.
   void finish() const;
-  /// What may stand in place of the last word of the line.
+  /// Completions of the last word of the line.
   std::vector<std::string> complete(const std::string& line) const;
 
   /// The commands in the order of `help`.
@@ -48,7 +48,7 @@ class EditSession {
   void ask_for_key(const toml_files::KindHelp& kind, const toml_files::KeyHelp& key,
                    toml_files::KeyValues& given) const;
   toml_files::KeyValues ask_for_keys(const toml_files::KindHelp& kind, toml_files::KeyValues given) const;
-  /// What its type, or what it refers to, needs besides: the schema does not tell, the reader does.
+  /// Asks for keys that the type or a referenced table requires: the reader knows them, the schema does not.
   toml_files::KeyValues ask_for_missing(const toml_files::KindHelp& kind, toml_files::KeyValues given) const;
   /// The errors of a text, as `check` has them.
   std::vector<Diagnostic> list_errors(const std::string& text) const;

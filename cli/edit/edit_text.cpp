@@ -170,7 +170,7 @@ std::string EditText::make_value(const KindHelp* kind, const std::string& key, c
   if (text.empty()) throw InputError("cli.edit-command", {}, "the value of " + key + " is missing", "write key=value");
   const bool is_value = toml_files::is_value(text);
   const auto* help = kind == nullptr ? nullptr : kind->find(key);
-  // What a function takes is known by its type, to `check`; what none takes is known here.
+  // Keys of a function depend on its type and are checked by `check`; keys of no function are rejected here.
   if (help == nullptr && kind != nullptr && kind->kind == "function")
     throw InputError("toml.unknown-key", {}, "unknown key '" + key + "' in a function",
                      "'help function' lists the keys");

@@ -12,7 +12,7 @@ namespace bough::cli {
 struct EditTarget {
   toml_files::TableItem item;
   std::string rest;
-  /// As set_value takes it.
+  /// Path in the form of set_value.
   std::string path() const {
     if (item.kind.empty()) return rest;
     return rest.empty() ? item.path() : item.path() + "." + rest;

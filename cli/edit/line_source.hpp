@@ -7,7 +7,7 @@
 
 namespace bough::cli {
 
-/// Whether both standard input and output are terminals.
+/// Returns true if both standard input and output are terminals.
 bool is_at_terminal();
 
 /// The words that may stand in place of the last one of a line.

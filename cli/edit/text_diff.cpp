@@ -22,7 +22,7 @@ std::vector<std::string> split_lines(const std::string& text) {
   return lines;
 }
 
-/// By the longest common subsequence of what lies between the common beginning and the common end.
+/// Compares by the longest common subsequence of the lines between the common beginning and the common end.
 std::vector<DiffLine> compare_lines(const std::vector<std::string>& a, const std::vector<std::string>& b) {
   std::size_t first = 0, last = 0;
   while (first < std::min(a.size(), b.size()) && a[first] == b[first]) ++first;

@@ -49,7 +49,7 @@ void write_equilibrium(const LoadedSystem& loaded, solver::Plant& plant, const s
   records::Checkpoint checkpoint;
   checkpoint.time = point.t;
   checkpoint.state = state;
-  // As a run writes it: the time of the last samples, before any, then the memory.
+  // Control memory as a run writes it: the time of the last samples, before any, then the memory.
   Eigen::VectorXd control(1 + point.memory.size());
   control << std::numeric_limits<double>::lowest(), point.memory;
   checkpoint.memory = {{"control", control}};

@@ -1,5 +1,5 @@
 #pragma once
-/// \file What export writes as named arrays: MATLAB and OUTPUT4 files of Bough's HDF5 files.
+/// \file Named arrays of export: MATLAB and OUTPUT4 files of Bough's HDF5 files.
 #include <optional>
 #include <string>
 #include <utility>

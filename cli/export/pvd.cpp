@@ -208,7 +208,7 @@ class Frames {
     return body.flex && !body.flex->strain_energy.empty() && body.eta.cols() == body.flex->num_modes();
   }
 
-  /// Of all elements, where a body has energies of them: zero elsewhere.
+  /// Adds the energies of all elements: zero for bodies without energies, if one has them.
   void add_cells() {
     bool has_any = false;
     for (std::size_t b = 0; b < parts_.size(); ++b) has_any = has_any || has_energies(b);

@@ -48,7 +48,7 @@ flx::Layout choose_layout(const FlxOptions& options, int digits) {
 
 namespace {
 
-/// What only the extension has.
+/// Adds the data of the extension.
 void add_extension(const flx::FlxFile& file, json& out) {
   const auto& more = file.more;
   if (file.has_rigid) {

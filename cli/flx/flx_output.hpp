@@ -19,7 +19,7 @@ flx::Layout choose_layout(const FlxOptions& options, int digits);
 /// Every block by name, as `flx --read --json` prints it; arrays as in the flexible-body file. Of several bodies a list
 /// named bodies.
 std::string format_flx_json(const std::vector<flx::FlxFile>& files);
-/// The same as tables for a reader.
+/// Text tables of the contents of a file.
 std::string format_flx_text(const flx::FlxFile& file);
 
 }  // namespace bough::cli

@@ -1,5 +1,5 @@
 #pragma once
-/// \file What `frequency` and `transient` print.
+/// \file Tables and JSON of `frequency` and `transient`.
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 

@@ -13,8 +13,8 @@ namespace bough::cli {
 
 namespace {
 
-/// Whether constraints and springs to ground hold the six rigid-body motions of the model of the first subcase: an SPC
-/// set that holds rotations of solids alone does not. Of a deck with errors, whether it has constraints at all.
+/// Returns true if constraints and springs to ground prevent the six rigid-body motions of the model of the first
+/// subcase: an SPC set of rotations of solids alone does not. For a deck with errors: if it has constraints at all.
 bool is_constrained(const records::Deck& deck) {
   const bool has_constraints =
       std::any_of(deck.subcases.begin(), deck.subcases.end(), [](const auto& s) { return s.spc > 0; }) ||

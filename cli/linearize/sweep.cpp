@@ -26,7 +26,7 @@ std::string name_branch(const LinearSweep& sweep, Index b) {
   return first == last ? first : first + " -> " + last;
 }
 
-/// Of a pair the one above, and what has no frequency all along; of sampled models no pole at z = 0.
+/// Returns true for the upper pole of a pair and for real ones, but not for poles of sampled models at z = 0.
 bool is_shown(const LinearSweep& sweep, Index b) { return sweep.imag.col(b).sum() >= 0 && !records::is_gone(sweep, b); }
 
 /// Poles of sampled models at z = 0 all along.
@@ -42,7 +42,7 @@ bool is_gone_near(const LinearSweep& sweep, Index k, Index b) {
          (records::calc_z(sweep, k, b) == 0.0 || records::calc_z(sweep, k - 1, b) == 0.0);
 }
 
-/// Whether another pole is the same: which vectors belong to such is chance.
+/// Returns true if another pole has the same value: the vectors of repeated poles are arbitrary.
 bool is_repeated(const LinearSweep& sweep, Index k, Index b) {
   const std::complex<double> own(sweep.real(k, b), sweep.imag(k, b));
   for (Index other = 0; other < sweep.real.cols(); ++other) {

@@ -42,7 +42,7 @@ VectorXd make_shell_row(const records::ElementForces& forces, Index row, double 
   return values;
 }
 
-/// Of "axial", "shear_y", "shear_z", "torque", "moment_y_a", "moment_z_a", "moment_y_b", "moment_z_b".
+/// Row of "axial", "shear_y", "shear_z", "torque", "moment_y_a", "moment_z_a", "moment_y_b", "moment_z_b".
 VectorXd make_bar_row(const Eigen::Ref<const Eigen::RowVectorXd>& f) {
   VectorXd values(8);
   values << f(5), -f(4), f(7), -f(6), f(1), f(2), f(0), f(3);

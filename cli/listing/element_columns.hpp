@@ -10,7 +10,7 @@
 
 namespace bough::cli {
 
-/// By CBEAM: the loads along it together, forces x y z and moment x in its axes.
+/// Resultants by CBEAM of the loads along it, forces x y z and moment x in its axes.
 using BeamLoads = std::map<int, Eigen::Vector4d>;
 
 /// Elements of a model by their card and id.

@@ -26,9 +26,9 @@ struct ListingOptions {
 
 void add_listing_options(CLI::App& verb, ListingOptions& options);
 
-/// What the case control of a deck asks for, read on the first rank. Reports deck.combination. Collective.
+/// Requests of the case control of a deck, read on the first rank. Reports deck.combination. Collective.
 records::CaseRequests read_requests_once(const std::string& path, Diagnostics& diagnostics);
-/// Of a subcase; a deck without SUBCASE has one. nullptr: none.
+/// Requests of a subcase; a deck without SUBCASE has one. nullptr: none.
 const records::DynamicSelection* find_selection(const records::CaseRequests& requests, int subcase);
 /// A subcase or combination wants some of what this command gives.
 bool asks_for(const records::CaseRequests& requests, const std::string& command);
@@ -58,7 +58,7 @@ class ListingMaker {
   std::optional<int> find_effective_mass_grid(int subcase) const;
 
  private:
-  /// Which ids a command of the case control wants.
+  /// Ids requested by a command of the case control.
   struct Choice {
     const records::CaseSet* set = nullptr;  ///< nullptr: all
     bool is_printed = true;
@@ -71,7 +71,7 @@ class ListingMaker {
   void add_elements(const fe::Model& model, const ElementIndex& elements,
                     const std::vector<records::ElementForces>& forces, const BeamLoads& loads,
                     records::ListedStep& step, Diagnostics& diagnostics);
-  /// Of a subcase, or of what it is combined of.
+  /// Beam loads of a subcase, or of the sum for a combination.
   BeamLoads sum_beam_loads(const fe::Model& model, const records::StaticSubcase& solved) const;
   void add_stresses(const fe::Model& model, const ElementIndex& elements,
                     const std::vector<records::ElementStresses>& stresses,

@@ -51,7 +51,7 @@ records::ListedVector make_vector(const records::ResponseCurves& curves, Index s
   return vector;
 }
 
-/// Of one sample, as of a static solution.
+/// Element forces of one sample, in the form of a static solution.
 records::ElementForces take_forces(const records::ElementCurves& curves, const Eigen::MatrixXd& values, Index sample) {
   records::ElementForces forces;
   forces.card = curves.card;

@@ -71,7 +71,7 @@ VectorXd make_bar_stresses(const fe::Element& element, const VectorXd& forces, c
   return row;
 }
 
-/// Of both ends: SXC to SXF, largest, smallest, margins of tension and compression.
+/// Row of both ends: SXC to SXF, largest, smallest, margins of tension and compression.
 VectorXd make_beam_stresses(const VectorXd& stress, const StressLimits& limits) {
   VectorXd row(16);
   for (int end = 0; end < 2; ++end) {
@@ -167,7 +167,7 @@ VectorXd take_components(const fe::Element& element, const records::ElementStres
   return Eigen::Map<const VectorXd>(values.data(), static_cast<Index>(values.size()));
 }
 
-/// Of bars and solids, whose columns need them.
+/// Forces by element id, for bars and solids, whose columns need them.
 std::unordered_map<int, VectorXd> index_forces(const std::vector<records::ElementForces>& forces,
                                                const std::string& card) {
   static const std::set<std::string> cards{"CBAR", "CTETRA", "CPENTA", "CHEXA"};

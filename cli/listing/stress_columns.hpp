@@ -20,8 +20,8 @@ std::map<int, StressLimits> list_stress_limits(const records::Deck& deck);
 /// limit / |stress| - 1 for tension and compression; no number without a limit, or where nothing of that sign acts.
 double calc_margin(double stress, double limit);
 
-/// Of the elements of one card that `is_wanted` (ids) takes, by their ids; none where this card has no such table.
-/// `forces`: of the same card.
+/// Stresses of the elements of one card that `is_wanted` (ids) selects, by their ids; none if this card has no such
+/// table. `forces`: of the same card.
 std::optional<records::ListedElements> make_listed_stresses(const fe::Model& model, const ElementIndex& elements,
                                                             const records::Deck& deck,
                                                             const records::ElementStresses& stresses,

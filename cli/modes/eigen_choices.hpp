@@ -1,5 +1,5 @@
 #pragma once
-/// \file What `bough modes` solves for: the deck's EIGRL or EIGR, overruled by the command line.
+/// \file Eigenvalue request of `bough modes`: the deck's EIGRL or EIGR, overridden by the command line.
 #include <optional>
 #include <string>
 

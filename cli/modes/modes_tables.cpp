@@ -13,7 +13,7 @@
 namespace bough::cli {
 namespace {
 
-/// Those that are no residual vectors: the first ones.
+/// Number of eigenpairs, which precede the residual vectors.
 Eigen::Index count_eigenpairs(const records::ModesResult& r) {
   if (r.kind.empty()) return r.residual.size();
   return std::count(r.kind.begin(), r.kind.end(), records::ModeKind::Normal);

@@ -1,5 +1,5 @@
 #pragma once
-/// \file What `bough modes` prints.
+/// \file Tables and JSON of `bough modes`.
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
@@ -11,13 +11,13 @@ namespace bough::cli {
 
 std::string format_modes(const records::ModesResult& result);
 std::string format_buckling(const records::ModesResult& result);
-/// Of properties, then of the elements that hold most; empty without.
+/// Energies of properties, then of the elements with the largest; empty without energies.
 std::string format_energies(const records::ModesResult& result);
 std::string format_effective_mass_about(const records::ModesResult& result);
 /// Rigid-body modes, the norm, the Sturm count, the largest residual, the eigensolver.
 std::string format_health(const records::ModesResult& result, const std::vector<modal::SolverUse>& solvers,
                           const std::string& norm, bool buckling);
-/// How many of the modes are residual vectors, of which loads, and which of these brought none; empty without loads.
+/// Number of residual vectors, their loads, and the loads without any; empty without loads.
 std::string format_residual_vectors(const records::ModesResult& result, const std::vector<std::string>& loads,
                                     const std::vector<std::string>& unused);
 nlohmann::json make_json(const records::ModesResult& result, const std::vector<modal::SolverUse>& solvers,

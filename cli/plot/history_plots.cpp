@@ -102,7 +102,7 @@ void take_spectrum(report::Curve& curve, const CurveChoice& choice, Diagnostics&
   curve.y = std::move(spectrum.value);
 }
 
-/// Of "name" or "name:2" in a campaign's table.
+/// Values of "name" or "name:2" in the table of a campaign.
 VectorXd find_outcome(const hdf5::OutcomeTable& table, const std::string& file, const std::string& name) {
   std::vector<std::string> known;
   for (const auto& column : table.columns) {

@@ -133,7 +133,7 @@ void add_sweep(const records::LinearSweep& sweep, const std::string& kind, const
     draw(upper[k], make_name(upper[k]), -1);
   }
   for (const Index b : lower) {
-    // Of a pair one color and name, and one frequency.
+    // A pair has one color, one name and one frequency.
     const int partner = find_conjugate(sweep, b, upper);
     const int style = partner < 0 ? -1 : curve_of[static_cast<std::size_t>(partner)];
     const bool is_drawn =

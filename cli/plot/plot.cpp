@@ -130,7 +130,7 @@ std::string make_curves_csv(const std::vector<report::Plot>& plots) {
   return text;
 }
 
-/// What the options say of the first plot, and the reference points; then the picture.
+/// Applies the options to the first plot, and adds the reference points; then draws the picture.
 int draw_plots(const PlotOptions& o, std::vector<report::Plot> plots, const std::string& otherwise,
                const Diagnostics& diagnostics, const Console& console) {
   if (!o.title.empty()) plots.front().title = o.title;
@@ -190,7 +190,7 @@ void check_choices(const PlotOptions& o) {
     throw InputError("cli.nothing-to-plot", {}, "--difference takes two files", "name the run to take off first");
 }
 
-/// What is asked of curves that a file of this kind has not.
+/// Rejects options for curves that a file of this kind does not have.
 void demand_unused(const std::string& file, const std::string& kind,
                    const std::vector<std::pair<const char*, bool>>& options) {
   std::vector<std::string> used;

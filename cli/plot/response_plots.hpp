@@ -7,7 +7,7 @@
 
 namespace bough::cli {
 
-/// Whether the first of the files is one of these.
+/// Returns true if the first of the files is one of `frequency` or `transient`.
 bool is_deck_response(const std::vector<std::string>& files);
 
 /// Curves by name, quantity:grid:component, or all of quantity:grid. Over frequency magnitude (dB, or its own

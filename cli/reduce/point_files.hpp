@@ -9,7 +9,7 @@
 
 namespace bough::cli {
 
-/// By its first bytes.
+/// Returns true if the file begins as HDF5 does.
 bool is_hdf5(const std::string& path);
 
 /// The deck's grids, constraints, loads, whatever elements it has; or the grids of a table or of an HDF5 file. Throws

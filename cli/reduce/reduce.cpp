@@ -159,7 +159,7 @@ Vector3d calc_masses(const records::FlexBody& body) {
   return masses;
 }
 
-/// What proves that no normal mode is missing and that each is one.
+/// Check that no normal mode is missing and that each is one.
 std::string format_modes_check(const records::FlexBody& body, const modal::bases::ModesCheck& check) {
   if (check.num_found == 0) return {};
   const bool is_held = std::find(body.kind.begin(), body.kind.end(), records::ModeKind::Constraint) != body.kind.end();

@@ -61,7 +61,7 @@ Reduced reduce_given(const records::BodySpec& spec, const stiffening::ReduceOpti
   Reduced result;
   files = deck.files;
   const auto given = read_given_matrices(*spec.matrices, deck, files, diagnostics);
-  // What is wrong with the numbers is wrong in this file and not in the points.
+  // Faults of the matrices are faults of this file, not of the points.
   const auto& matrices = *spec.matrices;
   const auto reduce = [&] {
     say_first(diagnostics, [&] { result.body = stiffening::reduce_matrices(deck, spec, given, options, diagnostics); });

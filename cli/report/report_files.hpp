@@ -13,7 +13,7 @@ struct ReportRequest {
   std::vector<std::string> channels;  ///< of results, as for `plot`; empty: all
 };
 
-/// Of an HDF5 file of Bough or the JSON that `select` printed. Throws InputError "cli.no-report" for another kind.
+/// Chapter of an HDF5 file of Bough or of the JSON of `select`. Throws InputError "cli.no-report" for other files.
 report::Chapter make_chapter(const std::string& file, const ReportRequest& request, Diagnostics& diagnostics);
 
 /// Name and value of what a file says of itself: format, version of Bough, sources with their SHA-256.
@@ -23,12 +23,12 @@ std::vector<std::pair<std::string, std::string>> list_settings(const std::string
 
 report::Chapter make_body_chapter(const std::string& file, Diagnostics& diagnostics);
 report::Chapter make_modes_chapter(const std::string& file);
-/// Of `frequency` or `transient`: the largest curves of each quantity, their peaks, the modes.
+/// Chapter of `frequency` or `transient`: the largest curves of each quantity, their peaks, the modes.
 report::Chapter make_response_chapter(const std::string& file);
 /// Poles, Bode diagrams, singular values, margins of what `linearize` wrote; all but the poles of what `response` did.
 report::Chapter make_linear_chapter(const std::string& file);
 report::Chapter make_model_response_chapter(const std::string& file);
-/// Of `linearize --sweep` or `--each`: Campbell diagram, root locus, where it is unstable.
+/// Chapter of `linearize --sweep` or `--each`: Campbell diagram, root locus, instabilities.
 report::Chapter make_sweep_chapter(const std::string& file);
 report::Chapter make_results_chapter(const std::string& file, const ReportRequest& request, Diagnostics& diagnostics);
 

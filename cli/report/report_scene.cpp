@@ -81,7 +81,7 @@ void add_hinges(const records::SystemSpec& spec, const ScenePlaces& places, repo
   }
 }
 
-/// Whether `rotation` of the sensor turns what it gives.
+/// Returns true if the output of the sensor depends on its `rotation`.
 bool has_mount(SensorType type) {
   return type == SensorType::Quaternion || type == SensorType::Euler || type == SensorType::DirectionCosines ||
          type == SensorType::Gyro || type == SensorType::IntegratingGyro || type == SensorType::Accelerometer ||

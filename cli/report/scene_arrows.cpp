@@ -144,7 +144,7 @@ class Arrows {
     add(std::move(arrow));
   }
 
-  /// Of the parent on the child, in the axes of the parent's frame.
+  /// Adds the reaction of the parent on the child, in the axes of the parent's frame.
   template <typename Record>
   void add_reaction(const std::string& kind, const Record& joint) {
     SceneArrow arrow;

@@ -89,7 +89,7 @@ records::LinearModel make_decaying(const StateSpace& whole) {
 
 double calc_norm_at_rest(const records::LinearModel& model) {
   const statespace::TransferMatrix transfer(model.A, model.B, model.C, model.D);
-  // What decays is finite at 0; poles there are passed by a little beside them.
+  // The response at 0, which is finite for the stable part; taken at a small offset from poles at 0.
   double low = std::numeric_limits<double>::infinity(), high = 0;
   for (Index i = 0; i < model.poles.size(); ++i)
     high = std::max(high, std::hypot(model.poles.real[i], model.poles.imag[i]));

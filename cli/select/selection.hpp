@@ -1,12 +1,12 @@
 #pragma once
-/// \file Which modes stay, what that costs, and the tables of both.
+/// \file Retained modes, the cost of the truncation, and the tables of both.
 #include <nlohmann/json.hpp>
 
 #include "cli/select/weighing.hpp"
 
 namespace bough::cli {
 
-/// What one configuration loses.
+/// Cost of the truncation in one configuration.
 struct Loss {
   std::string name;
   double total = 0;           ///< V

@@ -10,7 +10,7 @@ namespace bough::cli {
 
 namespace {
 
-/// Of one value a mode, those of the modes kept.
+/// Keeps the values of the retained modes, of one value per mode.
 void keep_values(std::vector<double>& values, const std::vector<int>& kept) {
   if (values.size() <= 1) return;
   std::vector<double> some;

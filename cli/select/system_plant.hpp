@@ -24,7 +24,7 @@ class SystemPlant {
   const std::vector<std::string>& users() const { return users_; }
   /// Forces (or hinges) to sensors, by all modes. Throws InputError "select.sampled" if loops are sampled.
   records::LinearModel linearize(Diagnostics& diagnostics) const;
-  /// The same by these modes of the file only.
+  /// Linear model with these modes of the file only.
   records::LinearModel linearize_with(const std::vector<int>& kept) const;
 
  private:

@@ -1,5 +1,5 @@
 #pragma once
-/// \file What modes are weighed by: a body alone or a system in one or several configurations.
+/// \file Models by which modes are ranked: a body alone or a system in one or several configurations.
 #include <functional>
 #include <memory>
 #include <optional>

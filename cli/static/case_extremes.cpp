@@ -39,7 +39,7 @@ struct Block {
   MatrixXd values;
 };
 
-/// Of grids with six dofs.
+/// Block of a quantity on grids with six dofs.
 Block make_grid_block(const std::string& name, const std::string& dims, const Eigen::MatrixXi& dof_map,
                       const Eigen::VectorXd& values) {
   Block block{name, dims, {"x", "y", "z", "rx", "ry", "rz"}, {}, {}};

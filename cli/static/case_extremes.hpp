@@ -9,11 +9,11 @@
 
 namespace bough::cli {
 
-/// Of rods, bars and beams whose MAT1 has ST, SC or SS, as Nastran prints them.
+/// Margins of rods, bars and beams whose MAT1 has ST, SC or SS, as Nastran prints them.
 std::vector<records::StressMargins> calc_margins(const records::Deck& deck, const records::StaticSubcase& subcase);
 
-/// Of displacements, reactions, element forces, stresses and strains: those of one subcase more. All subcases have the
-/// same grids and elements.
+/// Adds one subcase to the extremes of displacements, reactions, element forces, stresses and strains. All have
+/// the same grids and elements.
 void add_to_extremes(const Eigen::MatrixXi& dof_map, const records::StaticSubcase& subcase,
                      std::vector<records::CaseExtremes>& extremes);
 

@@ -45,7 +45,7 @@ void add_strains(double factor, const std::vector<records::ElementStresses>& par
     sums[b].corner = factor * parts[b].corner + (is_first ? MatrixXd(0 * parts[b].corner) : sums[b].corner);
 }
 
-/// Of the sums of the components.
+/// Computes derived stresses from the sums of the components.
 void derive_results(const fe::Model& model, bool of_strain, std::vector<records::ElementStresses>& blocks) {
   std::unordered_map<int, std::vector<const fe::Element*>> elements;
   for (const auto& element : model.elements()) elements[element->id()].push_back(element.get());

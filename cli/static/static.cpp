@@ -58,7 +58,7 @@ void check_forces_grids(const std::vector<int>& ids, const records::Deck& deck) 
   }
 }
 
-/// Of the forces on all grids, which the listing had, those that --grid-forces asks for.
+/// Keeps the grid forces requested by --grid-forces; the print file had those of all grids.
 void keep_grid_forces(const std::vector<std::string>& words, records::StaticSubcase& subcase) {
   const auto ids = read_grids(words);
   std::erase_if(subcase.grid_forces, [&](const records::GridForce& f) {
@@ -81,7 +81,7 @@ void add_combinations(const records::Deck& deck, const records::CaseRequests& re
   }
 }
 
-/// What the verb's options and the deck make of each subcase.
+/// Output options of each subcase, from the command line and the deck.
 StaticWishes make_wishes(const StaticOptions& options, const records::CaseRequests& requests, bool is_root) {
   StaticWishes wishes;
   if (is_root) wishes.path = options.output;
@@ -94,7 +94,7 @@ StaticWishes make_wishes(const StaticOptions& options, const records::CaseReques
   return wishes;
 }
 
-/// As read_deck_or_throw; without --subcase this verb makes the combinations.
+/// Reads the deck as read_deck_or_throw does; without --subcase this command makes the combinations.
 records::Deck read_static_deck(const StaticOptions& options, Diagnostics& diagnostics) {
   const auto model_options = make_model_options(options.model);
   if (options.model.subcase != 0) return read_deck_or_throw(options.deck, model_options, diagnostics);

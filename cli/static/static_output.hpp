@@ -1,5 +1,5 @@
 #pragma once
-/// \file What `static` makes of its subcases: a file, tables or JSON, extremes; a subcase is let go when all have it.
+/// \file Outputs of `static` by subcase: a file, tables or JSON, extremes; a subcase is freed when all have it.
 #include <future>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -28,10 +28,10 @@ class StaticOutput {
   StaticOutput(const StaticOutput&) = delete;
   StaticOutput& operator=(const StaticOutput&) = delete;
 
-  /// What all subcases share; before the first of them. The model may change afterwards.
+  /// Sets the data common to all subcases; before the first of them. The model may change afterwards.
   void set_model(const fe::Model& model);
   void add(std::vector<records::StaticSubcase> subcases);
-  /// Whether the file could not be written: no use in going on. finish() throws it.
+  /// Returns true if the file could not be written: there is no use in continuing. finish() throws the error.
   bool has_failed();
   bool is_empty() const { return count_ == 0; }
   /// With the subcases where they are kept; without extremes before finish().

@@ -157,7 +157,7 @@ void add_energies(const std::vector<std::string>& names, const records::ModeEner
   }
 }
 
-/// Of a body that has them; it tells no kinetic energies.
+/// Strain energies of a body that has them; kinetic energies are not in its file.
 records::ModeEnergies take_energies(const records::FlexBody& body) {
   const auto& energy = body.strain_energy;
   const auto n = static_cast<Eigen::Index>(body.num_modes());

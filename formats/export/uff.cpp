@@ -143,7 +143,7 @@ std::string name_source(const std::vector<std::pair<std::string, std::string>>& 
   return source.empty() ? "" : source.front().first;
 }
 
-/// As it stands in 13 columns.
+/// Rounds a value as 13 columns hold it.
 double round_to_five(double value) {
   char text[32];
   std::snprintf(text, sizeof text, "%13.5E", value);

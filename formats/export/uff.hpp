@@ -13,7 +13,7 @@ namespace bough::exports {
 
 /// Datasets 15 (grids, basic system), 82 (edges of the elements) and 55: a normal mode each, or a buckling mode each.
 std::string make_uff(const records::ModesResult& modes);
-/// The same of a body, in its frame B: output nodes' shapes, modal mass and damping ratio.
+/// Shapes of a body's output nodes in its frame B, with modal mass and damping ratio.
 std::string make_uff(const records::FlexBody& body);
 /// Dataset 58 for every column after the first, which is the time.
 std::string make_uff(const std::vector<CsvColumn>& columns);

@@ -7,7 +7,7 @@ namespace bough::flx {
 
 namespace {
 
-/// As many as the solver asks for, of zeros where modopt left them out.
+/// Mass integrals with all tables that the solver requires; those that modopt left out are zero.
 records::MassIntegrals complete(records::MassIntegrals g, int n) {
   const auto count = static_cast<std::size_t>(n);
   if (g.gamma2.empty()) g.gamma2.assign(count, MatrixXd::Zero(3, n));

@@ -1,6 +1,5 @@
 #pragma once
-/// \file What a .FLX file holds (NASA-CR-202063 4.1.3, 4.2.3; docs/formats/flx.md), how it is made from a flexible
-/// body, written and read.
+/// \file A .FLX file (NASA-CR-202063 4.1.3, 4.2.3; docs/formats/flx.md): made from a flexible body, written and read.
 #include <optional>
 #include <string>
 #include <vector>
@@ -30,9 +29,9 @@ struct FlxFile {
   std::vector<int> special_id;  ///< numbers after the largest output node
   std::vector<MatrixXd> special_gains;
 
-  /// What only the extension of version 1.1 holds (docs/formats/flx.md), in the fields of a flexible body: with
-  /// has_rigid gamma0 (else from alpha), cg, inertia, is_free_free, kind; with has_stiffening interface_nodes, K_G1,
-  /// locators with K_G2 and what their loads do, the preload.
+  /// Extension of version 1.1 (docs/formats/flx.md), in the fields of a flexible body: with has_rigid gamma0 (else from
+  /// alpha), cg, inertia, is_free_free, kind; with has_stiffening interface_nodes, K_G1, the preload and locators with
+  /// K_G2 and the responses to their loads.
   bool has_rigid = false, has_stiffening = false;
   records::FlexBody more;
 

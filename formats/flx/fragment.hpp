@@ -1,5 +1,5 @@
 #pragma once
-/// \file What problem.INT of TREETOPS needs beside a .FLX with special nodes (NASA-CR-202063 4.1.3, 4.1.4).
+/// \file Lines of problem.INT of TREETOPS for a .FLX with special nodes (NASA-CR-202063 4.1.3, 4.1.4).
 #include <string>
 #include <vector>
 

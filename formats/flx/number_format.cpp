@@ -26,7 +26,7 @@ std::string print_c(const std::string& format, double value) {
   return text.data();
 }
 
-/// What %.<digits>f, or e, prints, in a fifth of its time.
+/// Output of %.<digits>f, or e, at five times the speed of printf.
 std::string print_digits(std::chars_format style, int digits, double value) {
   std::array<char, kMostText> text;
   return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value, style, digits).ptr};
@@ -105,7 +105,7 @@ std::optional<std::string> NumberFormat::print_integer(long value) const {
 
 std::string NumberFormat::print_fortran(double value) const {
   if (style_ == 'f') return print_digits(std::chars_format::fixed, precision_, value);
-  // As 1.234e+05 first, then the point and the exponent moved: with 1P (or ES) one digit before the point, else none.
+  // Prints 1.234e+05, then moves the point and the exponent: with 1P (or ES) one digit before the point, else none.
   std::string text = print_digits(std::chars_format::scientific, scale_ == 1 ? precision_ : precision_ - 1, value);
   const auto e = text.find('e');
   int exponent = std::atoi(text.c_str() + e + 1);

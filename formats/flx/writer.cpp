@@ -170,7 +170,7 @@ class FlxWriter {
     return file_.modes[static_cast<std::size_t>(at_.k)];
   }
 
-  /// Of a field that is no number; empty for the others.
+  /// Text of a field that is no number; empty for the others.
   std::optional<std::string> get_words(const std::string& field) {
     if (field == "name") return file_.name;
     if (field == "method") return file_.method;

@@ -19,8 +19,8 @@ struct Variable {
   std::string name, description;
   std::uint32_t reference = 0;
   double start = 0;  ///< of parameters and inputs
-  /// Of outputs, derivatives and event indicators: references of the states, inputs and the time that they depend on;
-  /// nullopt: all.
+  /// References of the states, inputs and the time on which an output, derivative or event indicator depends; nullopt:
+  /// all.
   std::optional<std::vector<std::uint32_t>> dependencies = std::nullopt;
   bool is_linear = false;  ///< a constant factor times the only dependency
   std::string unit = {};   ///< one of ModelDescription::units; empty: none

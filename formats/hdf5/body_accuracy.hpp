@@ -1,5 +1,5 @@
 #pragma once
-/// \file What `reduce` says of a body besides the body itself.
+/// \file Accuracy of a reduced body, as `reduce` computes it in addition to the body.
 #include <string>
 
 #include "formats/records/flex_body.hpp"
@@ -11,10 +11,10 @@ struct BodyAccuracy {
   double mass = -1, stiffness = -1;
 };
 
-/// As write_flex_body of files.hpp.
+/// Writes the body as write_flex_body of files.hpp does, with its accuracy.
 void write_flex_body(const records::FlexBody& body, const BodyAccuracy& accuracy, const std::string& path);
 
-/// What the file says of itself. As read_flex_body of files.hpp.
+/// Reads the accuracy of a body; opens the file as read_flex_body of files.hpp does.
 BodyAccuracy read_body_accuracy(const std::string& path);
 
 }  // namespace bough::hdf5

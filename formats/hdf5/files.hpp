@@ -26,7 +26,7 @@ void write_modes(const records::ModesResult& modes, const std::string& path);
 records::ModesResult read_modes(const std::string& path);
 
 void write_static(const records::StaticResult& result, const std::string& path);
-/// The same file, a subcase after the other: none needs to be kept. Nothing is left of it without commit().
+/// Writes the file of write_static one subcase after the other, without keeping them. commit() makes the file appear.
 class StaticWriter {
  public:
   explicit StaticWriter(const std::string& path);
@@ -34,9 +34,9 @@ class StaticWriter {
   StaticWriter(const StaticWriter&) = delete;
   StaticWriter& operator=(const StaticWriter&) = delete;
   void add(const records::StaticSubcase& subcase);
-  /// What is added so far goes to the disk in the meantime.
+  /// Starts to write the subcases so far to disk, in the background.
   void start_sync();
-  /// What all subcases share: `whole` without its subcases. The file appears now.
+  /// Writes the results common to all subcases: `whole` without its subcases. The file appears now.
   void commit(const records::StaticResult& whole);
 
  private:
@@ -71,7 +71,7 @@ struct ResultsFile {
   double energy_error = std::numeric_limits<double>::quiet_NaN();  ///< worst of the run, relative; NaN: not given
 };
 ResultsFile read_results(const std::string& path);
-/// What the run of a results file was started with, and how it ended.
+/// Inputs of the run of a results file, and its outcome.
 struct RunInputs {
   std::string system_text;
   std::vector<std::pair<std::string, std::string>> source;  ///< (file name, SHA-256)
@@ -79,13 +79,13 @@ struct RunInputs {
   std::string reason;
 };
 RunInputs read_run_inputs(const std::string& path);
-/// Of a results file alone: time, text and source.
+/// Events of a results file: time, text and source.
 std::vector<records::EventRecord> read_events(const std::string& path);
 records::Checkpoint read_checkpoint(const std::string& path);
 /// Nothing where the run has come to none yet.
 std::optional<records::Checkpoint> find_checkpoint(const std::string& path);
 
-/// How far the run of a results file came, without its samples.
+/// Progress of the run of a results file, without its samples.
 struct RunState {
   bool completed = false;
   std::string reason;       ///< why it ended; "running": it goes on, or was killed

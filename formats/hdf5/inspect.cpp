@@ -17,7 +17,7 @@ constexpr char kBetween = '\x1f', kEnd = '\x1e';
 /// Seconds of computing that a file may take, and those it may take more for each of its bytes.
 constexpr double kSeconds = 5, kSecondsPerByte = 1e-6;
 
-/// Which state of a file was looked at.
+/// Identity of a version of a file: device, inode, size and time of change.
 using Stamp = std::array<long long, 5>;
 
 Stamp make_stamp(const struct stat& state) {

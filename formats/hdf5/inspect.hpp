@@ -7,19 +7,19 @@
 
 namespace bough::hdf5 {
 
-/// What is wrong with the file: "hdf5.outside" (links, storage or virtual datasets that reach other files),
-/// "hdf5.damaged" (claims of size that the bytes stored cannot hold; groups nested without end). Every link, attribute
-/// and number is read as Bough reads them. This may crash: the library does not survive some damaged files.
+/// Faults of the file: "hdf5.outside" (links, storage or virtual datasets that reach other files), "hdf5.damaged"
+/// (sizes larger than the stored bytes; groups nested without end). Every link, attribute and number is read as Bough
+/// reads them. May crash: the library does not survive some damaged files.
 std::vector<Diagnostic> find_faults(const std::string& path);
 
-/// The same in a forked process, whose crash, hunger or endless loop is a fault of the file; a file seen before and not
-/// changed since is not looked at again. Throws InputError.
+/// Runs find_faults in a forked process, whose crash, excess of memory or endless loop is a fault of the file. A file
+/// inspected before and not changed since is skipped. Throws InputError.
 void inspect_file(const std::string& path);
 
 /// A file that this process has written whole is as good as looked at, until it changes.
 void trust_file(const std::string& path);
 
-/// What find_faults finds, as text from one process to another; empty: nothing. Throws what find_faults throws.
+/// Text of the faults, for transfer between processes; empty: none. Throws the exceptions of find_faults.
 std::string write_faults(const std::string& path);
 
 }  // namespace bough::hdf5

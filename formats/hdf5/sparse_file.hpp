@@ -9,7 +9,7 @@
 namespace bough::hdf5 {
 
 struct SparseFile {
-  /// By path without the first slash: every group that holds data, indices, indptr and shape.
+  /// Matrices by path without the first slash: every group that holds data, indices, indptr and shape.
   std::vector<std::pair<std::string, records::SparseMatrix>> matrices;
   Eigen::MatrixXi dof_map;  ///< ndof x 2: node id, code; 0 x 2 where the file has none
 };

@@ -12,7 +12,7 @@ void write_sweep(const records::LinearSweep& sweep, const std::string& path);
 /// All but the models' Hankel values and multipliers.
 records::LinearSweep read_sweep(const std::string& path);
 
-/// What `bough response` wrote.
+/// Contents of a file of `bough response`.
 struct ResponseOfModel {
   records::FrequencyResponse response;
   records::PeakGain peak;  ///< is_certified is not in the file

@@ -58,7 +58,7 @@ Words make_ident(const Head& head) {
   words.set(1, head.table);
   words.set(3, head.subcase);
   words.add(head.title, kTextSize);
-  // What stands behind column 67 of a subtitle names the adaptivity index and the superelement.
+  // Columns after 67 of a subtitle name the adaptivity index and the superelement.
   words.add(head.subtitle.substr(0, kSubtitleSize), kTextSize);
   words.add(head.label, kTextSize);
   BOUGH_DEMAND(words.count() == kIdentWords);

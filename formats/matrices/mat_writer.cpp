@@ -81,9 +81,9 @@ Variable make_variable(const char* name, const MatValue& value) {
   return std::visit(Make{name}, value.value);
 }
 
-/// Whether a level 5 file holds `count` variables from end to end. The library does not tell of writes that failed, as
-/// on a full disk: what is there is walked from head to head (MAT-File Format, level 5: 128 bytes, then each element
-/// with its type and length of four bytes).
+/// Returns true if a level 5 file holds `count` complete variables. The library does not report failed writes, as on a
+/// full disk: the file is walked from header to header (MAT-File Format, level 5: 128 bytes, then each element with its
+/// type and length of four bytes).
 bool is_whole(const std::string& path, std::size_t count) {
   std::ifstream in(path, std::ios::binary);
   in.seekg(0, std::ios::end);

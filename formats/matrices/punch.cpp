@@ -5,7 +5,7 @@
 namespace bough::matrices::detail {
 namespace {
 
-/// What stands behind `key` and its equals sign in "$SUBCASE ID =       1".
+/// Text after `key` and its equals sign in "$SUBCASE ID =       1".
 std::string_view find_value(std::string_view line, std::string_view key) {
   const auto at = line.find(key);
   if (at == std::string_view::npos) return {};

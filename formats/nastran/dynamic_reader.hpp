@@ -11,7 +11,7 @@ namespace bough::nastran {
 records::DynamicDeck read_dynamic_deck(const std::string& path, const ReadOptions& options, Diagnostics& diagnostics);
 records::DynamicDeck read_dynamic_deck_text(std::string_view text, const std::string& name, const ReadOptions& options,
                                             Diagnostics& diagnostics);
-/// Of what pack_deck() gave.
+/// Dynamic deck from the bytes of pack_deck().
 records::DynamicDeck read_packed_dynamic_deck(std::string bytes, const ReadOptions& options, Diagnostics& diagnostics);
 
 /// read_deck and read_packed_deck for who makes the combinations of the case control (SUBCOM, SYMCOM, REPCASE): they
@@ -19,10 +19,10 @@ records::DynamicDeck read_packed_dynamic_deck(std::string bytes, const ReadOptio
 records::Deck read_combined_deck(const std::string& path, const ReadOptions& options, Diagnostics& diagnostics);
 records::Deck read_packed_combined_deck(std::string bytes, const ReadOptions& options, Diagnostics& diagnostics);
 
-/// What the subcases of a deck ask for, and how SUBCOM, SYMCOM and REPCASE combine them. No card is read; reported is
-/// what is wrong with the combinations alone (deck.combination).
+/// Results requested by the subcases of a deck, and their combinations by SUBCOM, SYMCOM and REPCASE. Reads no card;
+/// reports errors of the combinations only (deck.combination).
 records::CaseRequests read_requests(const std::string& path, Diagnostics& diagnostics);
-/// Of what pack_deck() gave.
+/// Requests from the bytes of pack_deck().
 records::CaseRequests read_packed_requests(std::string bytes, Diagnostics& diagnostics);
 
 }  // namespace bough::nastran

@@ -57,14 +57,14 @@ class DeckEditor {
 
   /// The deck and what it includes.
   const std::vector<std::string>& get_files() const;
-  /// What the case control makes of a DMIG, by name: "K" stiffness, "M" mass, "B" damping, "P" load, "?" several.
+  /// Use of each DMIG in the case control, by name: "K" stiffness, "M" mass, "B" damping, "P" load, "?" several.
   std::map<std::string, std::string> list_matrix_kinds() const;
   /// All cards of the bulk data.
   std::vector<DeckCard> list_cards() const;
   /// Adds, at `asked_at`, batch.unknown-card, batch.ambiguous-card, batch.unknown-field, batch.replicated-card.
   std::optional<FieldPlace> find(const FieldAddress& address, const SourceLocation& asked_at,
                                  Diagnostics& diagnostics) const;
-  /// What stands there; empty for a blank field.
+  /// Text of the field; empty if it is blank.
   std::string get_text(const FieldPlace& place) const;
 
   /// The deck under `name`, with it the included files that hold a changed field; INCLUDE of others names them by their

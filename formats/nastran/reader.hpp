@@ -17,11 +17,11 @@ struct ReadOptions {
 /// Reads a deck or fragment with its INCLUDE files. Every error of the deck is added to `diagnostics` (none is thrown);
 /// the record holds what could be read.
 records::Deck read_deck(const std::string& path, const ReadOptions& options, Diagnostics& diagnostics);
-/// The same from memory; `name` stands for the file in messages, INCLUDE is relative to the working directory.
+/// Deck from memory; `name` is the file name in messages, INCLUDE is relative to the working directory.
 records::Deck read_deck_text(std::string_view text, const std::string& name, const ReadOptions& options,
                              Diagnostics& diagnostics);
 
-/// What the files of a deck say, and what went wrong in opening them, as bytes for the other processes of one run.
+/// Contents of the files of a deck, and the errors of opening them, as bytes for the other processes of one run.
 std::string pack_deck(const std::string& path);
 /// The deck that read_deck would have made of those files, with the same diagnostics; no file is opened.
 records::Deck read_packed_deck(std::string bytes, const ReadOptions& options, Diagnostics& diagnostics);

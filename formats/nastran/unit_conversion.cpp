@@ -218,7 +218,7 @@ bool UnitConverter::convert_by_table() {
         (name == "CQUAD8" && i >= 10 && i <= 13 && get(16) == "1") || (name == "CTRIA6" && i >= 10 && get(13) == "1");
     if (!is_relative && !is_relative_triangle && !is_relative_high) scale(i, (*words)[static_cast<std::size_t>(i)]);
   }
-  // What follows the fields of a spring of PBUSH1D are its nonlinear parts.
+  // Fields after those of a spring of PBUSH1D are its nonlinear parts.
   for (int i = 8; i < size() && name == "PBUSH1D"; ++i) scale(i, "?");
   return true;
 }

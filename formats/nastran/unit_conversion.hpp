@@ -6,7 +6,7 @@
 
 namespace bough::nastran {
 
-/// How many of the new units one old unit is.
+/// Factors from old to new units: values in new units per old unit.
 struct UnitFactors {
   double mass = 1, length = 1, time = 1;
 };

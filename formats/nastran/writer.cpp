@@ -11,7 +11,7 @@ namespace {
 
 using records::Deck;
 
-/// What the writer carries over; GRDSET, BAROR and BEAMOR are in the cards that they give defaults to.
+/// Cards that the writer keeps; GRDSET, BAROR and BEAMOR are written as fields of the cards that use their defaults.
 constexpr std::array written_cards{
     "ACCEL", "ACCEL1", "CBEND", "PCOMPS", "PBEND", "CGAP", "GENEL", "NSM", "NSM1", "NSML", "NSML1", "NSMADD", "PBCOMP",
     "PGAP", "RBAR1", "RJOINT", "RSPLINE", "RTRPLT", "RTRPLT1", "ASET", "ASET1", "BAROR", "BEAMOR", "CBAR", "CBEAM",
@@ -24,7 +24,7 @@ constexpr std::array written_cards{
     "PCOMPG", "PDAMP", "PELAS", "PLOAD", "PLOAD1", "PLOAD2", "PLOAD4", "PLOTEL", "PMASS", "PROD", "PSHEAR", "PSHELL",
     "PSOLID", "PTUBE", "PVISC", "RBAR", "RBE1", "RBE2", "RBE3", "RFORCE", "RROD", "SLOAD", "SPC", "SPC1", "SPCADD",
     "SPCD", "SPOINT", "SUPORT", "SUPORT1", "TEMP", "TEMPD", "TEMPP1", "TEMPRB",
-    // Those of NASTRAN-95 stand as what they became.
+    // Cards of NASTRAN-95 are written as the cards they were converted to.
     "CELBOW", "CHEXA1", "CHEXA2", "CIHEX1", "CIHEX2", "CIHEX3", "CIS2D8", "CQDMEM", "CQDMEM1", "CQDMEM2", "CQDPLT",
     "CQUAD1", "CQUAD2", "CRBAR", "CRBE1", "CRBE2", "CRBE3", "CRIGD3", "CRROD", "CRSPLINE", "CRTRPLT", "CTRBSC",
     "CTRIA1", "CTRIA2", "CTRIM6", "CTRMEM", "CTRPLT", "CTRPLT1", "CTRSHL", "CWEDGE", "MAT6", "PCOMP1", "PCOMP2",

@@ -10,7 +10,8 @@
 
 namespace bough::records {
 
-/// What carries the frame (docs/theory/bases.md). All but Fixed leave the SPC set out and remove the rigid motions.
+/// Reference conditions of the body frame (docs/theory/bases.md). All but Fixed ignore the SPC set and remove the
+/// rigid-body modes.
 enum class BodyFrame {
   Fixed,       ///< the deck's SPC set: fixed-frame modes
   Free,        ///< nothing: free-free modes, whose mean axes the frame is

@@ -1,5 +1,5 @@
 #pragma once
-/// \file What `compare` writes: arrays by path, each with what it means.
+/// \file Output of `compare`: arrays by path, each with its description.
 #include <string>
 #include <utility>
 #include <vector>

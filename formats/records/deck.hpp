@@ -400,7 +400,7 @@ struct UnreadLoad {
 struct Deck {
   std::vector<std::string> files;  ///< as opened; files[0] is the deck
   std::string sol;                 ///< "103", "SEMODES", ... upper case; empty in a fragment
-  /// What NASTRAN statements set, upper case: "BARMASS" -> "1", "SYSTEM(304)" -> "5"; the last one given counts.
+  /// Settings of NASTRAN statements, upper case: "BARMASS" -> "1", "SYSTEM(304)" -> "5"; the last one given counts.
   std::map<std::string, std::string> system_cells;
   std::vector<Subcase> subcases;  ///< at least one
 
@@ -478,7 +478,7 @@ struct Deck {
   /// The last of its name; for AUTOSPC the command of the case control, where there is one.
   const Param* find_param(const std::string& name) const;
   SourceLocation locate(const CardLocation& at) const;
-  /// Whether one of the cards (names such as "MAT1") was refused under this id.
+  /// Returns true if one of the cards (names such as "MAT1") was rejected under this id.
   bool is_refused(int id, const std::vector<std::string>& cards) const;
 };
 

@@ -65,7 +65,7 @@ struct Ply {
   int mid = 0;
   double t = 0, theta_deg = 0;
 };
-/// How plies make a plate. Smeared (LAM = SMEAR): their order does not count. SmearedCore (SMCORE): the last is a core,
+/// Arrangement of plies. Smeared (LAM = SMEAR): their order does not count. SmearedCore (SMCORE): the last is a core,
 /// the others, smeared, are half below and half above it.
 enum class Layup { Stacked, Smeared, SmearedCore };
 /// PCOMP and PCOMPG, all plies listed (a symmetric layup is already unfolded).

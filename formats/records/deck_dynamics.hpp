@@ -143,7 +143,7 @@ struct OutputRequest {
   CardLocation at;
 };
 
-/// What a subcase says of its response.
+/// Response requests of a subcase.
 struct DynamicSelection {
   int dload = 0, loadset = 0, frequency = 0, tstep = 0, ic = 0, sdamping = 0;
   int ofreq = 0;  ///< a SET; 0: all
@@ -152,8 +152,8 @@ struct DynamicSelection {
   std::optional<bool> resvec;  ///< RESVEC = YES, NO
   /// MEFFMASS: the grid of its GRID option (0: the origin); none where it is not asked for.
   std::optional<int> effective_mass_grid;
-  /// By what is asked for: DISPLACEMENT, VELOCITY, ACCELERATION, SPCFORCES, FORCE; for listings OLOAD, MPCFORCES,
-  /// STRESS, STRAIN too.
+  /// Output requests by command: DISPLACEMENT, VELOCITY, ACCELERATION, SPCFORCES, FORCE; for print files also OLOAD,
+  /// MPCFORCES, STRESS, STRAIN.
   std::map<std::string, OutputRequest> outputs;
   std::map<int, CaseSet> sets;
 };
@@ -174,7 +174,7 @@ struct CaseCombination {
   CardLocation at;
 };
 
-/// What the case control asks for beside loads and constraints.
+/// Requests of the case control in addition to loads and constraints.
 struct CaseRequests {
   std::map<int, DynamicSelection> selections;  ///< by subcase; 0: a deck without SUBCASE
   std::vector<CaseCombination> combinations;

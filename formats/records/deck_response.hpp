@@ -1,5 +1,5 @@
 #pragma once
-/// \file What `frequency` and `transient` write: curves over frequency or time at chosen grids and elements.
+/// \file Output of `frequency` and `transient`: curves over frequency or time at chosen grids and elements.
 #include "formats/records/flex_body.hpp"
 
 namespace bough::records {

@@ -20,7 +20,7 @@ double calc_component_unit(const std::string& component, const UnitChange& chang
       begins("szx"))
     return force / (change.length * change.length);
   if (begins("moment") || begins("torque")) return force * change.length;
-  // Of shells and panels: forces and moments per length; N12 ... N41 are the forces of a panel's corners.
+  // Forces and moments per length of shells and panels; N12 ... N41 are the corner forces of a panel.
   if (begins("q") || begins("Q") || begins("Nx") || begins("Ny")) return force / change.length;
   if (begins("M")) return force;
   return force;

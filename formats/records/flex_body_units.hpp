@@ -6,11 +6,11 @@
 
 namespace bough::records {
 
-/// How many of the new units one old unit is.
+/// Factors from old to new units: values in new units per old unit.
 struct UnitChange {
   double mass = 1, length = 1, time = 1;
   double calc_force() const;
-  /// Of the modal coordinates, M^1/2 L: modes normalized by mass stay so.
+  /// Factor of the modal coordinates, M^1/2 L: modes normalized by mass stay so.
   double calc_modal() const;
   bool is_none() const { return mass == 1 && length == 1 && time == 1; }
 };

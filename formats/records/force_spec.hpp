@@ -46,7 +46,8 @@ struct ForceElementRecord {
   SourceLocation at;
 };
 
-/// What acts along the coordinates of a hinge beside linear springs and dampers; one entry per coordinate, or empty.
+/// Force laws along the coordinates of a hinge in addition to linear springs and dampers; one entry per coordinate, or
+/// empty.
 struct HingeLawRecord {
   std::vector<double> preload;                          ///< generalized force in the direction of the coordinate
   std::vector<std::string> spring_table, damper_table;  ///< functions that resist deflection and rate; "": none

@@ -1,5 +1,5 @@
 #pragma once
-/// \file What a linear model does to sines: its transfer matrix over frequency, margins of a loop, its largest gain.
+/// \file Frequency response of a linear model: its transfer matrix, margins of a loop, its peak gain.
 #include <string>
 #include <utility>
 #include <vector>
@@ -23,7 +23,7 @@ struct Crossing {
   double delay = 0;   ///< phase: the time that does, >= 0
 };
 
-/// Of the loop transfer L with negative feedback, 1 + L.
+/// Margins of the loop transfer L with negative feedback, 1 + L.
 struct Margins {
   std::vector<Crossing> gain;            ///< where L is real and negative, by frequency
   std::vector<Crossing> phase;           ///< where |L| = 1

@@ -26,7 +26,7 @@ struct Poles {
   int size() const { return static_cast<int>(real.size()); }
 };
 
-/// Of a system with sampled controllers: eigenvalues of what one period makes of a departure.
+/// Characteristic multipliers of a system with sampled controllers: eigenvalues of the transition over one period.
 struct Multipliers {
   double period = 0;    ///< of all samples together; 0: nothing is sampled
   int num_samples = 0;  ///< instants in it
@@ -36,7 +36,7 @@ struct Multipliers {
   std::vector<std::string> mode;
 };
 
-/// Of the part of the model that decays.
+/// Hankel singular values of the stable part of the model.
 struct Hankel {
   Eigen::VectorXd value;  ///< singular values, descending
   Eigen::MatrixXd controllability,
@@ -44,7 +44,7 @@ struct Hankel {
   int num_left_out = 0;  ///< poles that do not decay
 };
 
-/// Of a model from sample to sample: a mode faster than half the sample rate, whose pole appears at another frequency.
+/// A mode of a sampled model faster than half the sample rate, whose pole appears at another frequency.
 struct AliasedMode {
   std::string mode;
   double frequency_hz = 0;   ///< [1/T] of the continuous motion, |Im λ| / 2π
@@ -98,7 +98,7 @@ bool is_gone(const LinearModel& model, Eigen::Index i);
 /// Returns true for the loop transfer of a cut, one value or, of a lifted loop, several: outputs "NAME:return".
 bool is_cut_loop(const LinearModel& model);
 
-/// The same model of second order. Empty where the model has no mass matrix or is one from sample to sample.
+/// Second-order form of the model. Empty if the model has no mass matrix or is one from sample to sample.
 SecondOrder make_second_order(const LinearModel& model);
 
 }  // namespace bough::records

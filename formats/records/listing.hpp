@@ -1,5 +1,5 @@
 #pragma once
-/// \file What listings (f06) and OUTPUT2 files say, in the order, the axes and the signs of Nastran.
+/// \file Contents of print files (F06) and OUTPUT2 files, in the order, the axes and the signs of Nastran.
 #include <array>
 #include <optional>
 #include <string>
@@ -51,7 +51,7 @@ struct ListedEnergies {
   double total = 0;  ///< of all elements of the structure
 };
 
-/// What acts on a grid: the load, a constraint (element 0) or an element; in displacement (CD) axes.
+/// One force on a grid: of the load, of a constraint (element 0) or of an element; in displacement (CD) axes.
 struct ListedGridForce {
   int grid = 0, element = 0;
   std::string source;

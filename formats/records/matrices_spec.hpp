@@ -16,7 +16,7 @@ struct MatrixSource {
   bool empty() const { return file.empty(); }
 };
 
-/// Which axes the rows of a grid are in.
+/// Axes of the rows of a grid.
 enum class MatrixAxes {
   Auto,          ///< basic for Bough's own HDF5 files, displacement systems otherwise
   Displacement,  ///< CD of the deck's grids, as Nastran writes

@@ -71,7 +71,7 @@ FlexBody keep_modes(const FlexBody& body, const std::vector<int>& kept) {
         columns.push_back(ElementStrainEnergy::find_column(kept[i], kept[j], body.num_modes()));
     small.strain_energy.matrix = MatrixXd(small.strain_energy.matrix(Eigen::all, columns));
   }
-  // What the modes left out of the static answers was left out by all of them: it grows by what those that go held.
+  // Residual static responses grow by the share of the modes that are left out here.
   for (auto& block : small.recovery) {
     const MatrixXd all = block.matrix;
     cut.cols(block.matrix);

@@ -1,5 +1,5 @@
 #pragma once
-/// \file What `modes` writes: normal modes or buckling factors of a deck, with the health tables.
+/// \file Output of `modes`: normal modes or buckling factors of a deck, with the health tables.
 #include "formats/records/flex_body.hpp"
 
 namespace bough::records {

@@ -24,7 +24,7 @@ std::optional<double> parse_real(std::string_view text) {
     if (error == std::errc()) return value;
     return std::nullopt;
   }
-  // What stands before a letter D or a bare sign is the mantissa: write it the usual way and read again.
+  // Text before a letter D or a bare sign is the mantissa: the number is written in the usual form and read again.
   char buffer[64];
   const std::size_t mantissa = static_cast<std::size_t>(end - text.data());
   if (mantissa == 0 || text.size() + 2 > sizeof buffer) return std::nullopt;

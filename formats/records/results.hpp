@@ -32,9 +32,9 @@ struct EventRecord {
 struct Checkpoint {
   double time = 0;
   Eigen::VectorXd state;
-  /// What else the run carries on, by name: energy so far, warnings given, the step it is in.
+  /// Other state of the run, by name: energy so far, warnings given, the current step.
   std::vector<std::pair<std::string, Eigen::VectorXd>> memory;
-  /// Of the file it was read from: samples and events before it; -1: not known.
+  /// Number of samples and events before the checkpoint in its file; -1: not known.
   long num_samples = -1, num_events = -1;
 
   /// The part of that name, nullptr when it holds none.

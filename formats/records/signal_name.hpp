@@ -12,8 +12,8 @@ struct SignalName {
 };
 SignalName parse_signal_name(const std::string& text);
 
-/// Of the channel: x y z, w x y z, or counts from 1 (hinges, modes, actuators); one empty name for a
-/// scalar.
+/// Names of the components of a channel: x y z, w x y z, or counts from 1 (hinges, modes, actuators); one empty name
+/// for a scalar.
 std::vector<std::string> get_component_names(const std::string& path, int size);
 
 /// Names listed at the end of the channel's description, otherwise those of its path. Lists: "axial, shear_y" of

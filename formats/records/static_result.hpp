@@ -1,5 +1,5 @@
 #pragma once
-/// \file What `static` and `matrices` write.
+/// \file Output of `static` and `matrices`.
 #include "formats/records/flex_body.hpp"
 
 namespace bough::records {

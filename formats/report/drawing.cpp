@@ -160,7 +160,7 @@ class DrawingBuilder {
   std::set<std::pair<int, int>> seen_;
 };
 
-/// Of packed matrices, some 1.6 MB of the page.
+/// Limit of the packed matrices, some 1.6 MB of the page.
 constexpr Eigen::Index kMostEntries = 600000;
 
 void add_measures(const records::BodyMesh& mesh, Drawing& drawing) {

@@ -1,5 +1,5 @@
 #pragma once
-/// \file What the viewer of the page draws of a body: its surface, its lines, its shapes.
+/// \file Drawing of a body for the viewer of the page: its surface, its lines, its shapes.
 #include <array>
 #include <cstdint>
 #include <string>
@@ -28,8 +28,8 @@ struct Drawing {
   DrawnElements elements;
   std::vector<Eigen::VectorXd> energy;  ///< [shape] share of each element; empty where it is not known
   Eigen::VectorXd measure;              ///< of each element, with energy: length, area or volume; 0 without extent
-  /// Of a body that moves in all its modes: ½ Σ a_i a_j k_ij of each element, a_i = coefficient i times weight[i];
-  /// element x n(n+1)/2 (records::ElementStrainEnergy). Empty where it is not known or would make the page too large.
+  /// Strain energy matrices of a body that moves in all its modes: ½ Σ a_i a_j k_ij of each element, a_i =
+  /// coefficient i times weight[i]; element x n(n+1)/2 (records::ElementStrainEnergy). Empty if unknown or too large.
   Eigen::MatrixXd energy_matrix;
   Eigen::VectorXd weight;
 
@@ -48,7 +48,7 @@ Drawing make_drawing(const records::FlexBody& body, bool all_shapes = false);
 void add_energies(const records::BodyMesh& mesh, const std::vector<int>& id, const Eigen::MatrixXd& energy,
                   const Eigen::VectorXd& whole, Drawing& drawing);
 
-/// The same of a flexible body that has them: energies of its shapes, or for a body in motion the matrices.
+/// Adds the element energies of a flexible body that has them: of its shapes, or for a body in motion the matrices.
 void add_energies(const records::FlexBody& body, Drawing& drawing);
 /// False where they would make the page too large.
 bool add_energy_matrices(const records::FlexBody& body, Drawing& drawing);
@@ -58,7 +58,7 @@ bool add_energy_matrices(const records::FlexBody& body, Drawing& drawing);
 Drawing make_box(double mass, const Eigen::Vector3d& cg, const Eigen::Matrix3d& inertia,
                  const std::vector<Eigen::Vector3d>& nodes);
 
-/// As JSON text for the script (web/drawing.js).
+/// JSON text for the script (web/drawing.js).
 std::string to_json_text(const Drawing& drawing);
 
 }  // namespace bough::report

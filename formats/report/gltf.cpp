@@ -33,7 +33,7 @@ class Buffer {
     for (Eigen::Index i = 0; i < rows.rows(); ++i)
       for (Eigen::Index j = 0; j < rows.cols(); ++j) put(static_cast<float>(rows(i, j)));
     for (Eigen::Index j = 0; has_bounds && j < rows.cols(); ++j) {
-      // Of the numbers as they are written.
+      // Bounds of the numbers as written, in single precision.
       low.push_back(static_cast<double>(static_cast<float>(rows.col(j).minCoeff())));
       high.push_back(static_cast<double>(static_cast<float>(rows.col(j).maxCoeff())));
     }

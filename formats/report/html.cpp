@@ -61,7 +61,7 @@ std::string make_text(const std::string& text, const std::string& css_class) {
 Curve thin_curve(const Curve& curve, Eigen::Index most, bool has_log_x) {
   const Eigen::Index n = curve.x.size();
   if (n <= most || curve.markers_only) return curve;
-  // What lies at zero and below is not drawn in decades.
+  // Values at zero and below are not drawn in decades.
   Eigen::VectorXd x = curve.x;
   if (has_log_x && x[n - 1] > 0) {
     double least = x[n - 1];

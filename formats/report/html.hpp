@@ -22,7 +22,7 @@ class HtmlTable {
   HtmlTable(std::string caption, std::vector<Column> columns);
   void add_row(std::vector<std::string> cells);
   bool empty() const { return rows_.empty(); }
-  /// Of more than `most` rows the others are left out, which is said.
+  /// \param most  number of rows in the table; a line reports the others.
   std::string to_html(std::size_t most = 2000) const;
 
  private:

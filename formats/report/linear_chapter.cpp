@@ -188,7 +188,7 @@ json make_plane(const records::LinearModel& model) {
           {"notes", std::move(notes)}};
 }
 
-/// Of the living Bode diagrams.
+/// Pairs of the interactive Bode diagrams.
 json list_pairs(const records::FrequencyResponse& response, const std::vector<Pair>& pairs_of) {
   json pairs = json::array();
   for (const auto& pair : pairs_of)

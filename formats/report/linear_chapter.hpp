@@ -9,7 +9,7 @@
 
 namespace bough::report {
 
-/// What was calculated of the model beside what its file holds.
+/// Results computed from the model, in addition to those in its file.
 struct LinearFindings {
   records::FrequencyResponse response;
   records::PeakGain peak;

@@ -24,7 +24,7 @@ std::string make_mass_panel(const ModalModel& m) {
   add("centre of mass [L]", m.cg);
   const Eigen::Vector3d d = m.cg - m.reference;
   Eigen::Matrix3d central = m.inertia - m.mass * (d.squaredNorm() * Eigen::Matrix3d::Identity() - d * d.transpose());
-  // What the shift leaves by rounding is not shown.
+  // Round-off of the shift is not shown.
   const double noise = 1e-13 * (m.inertia.cwiseAbs().maxCoeff() + m.mass * d.squaredNorm());
   central = (central.array().abs() < noise).select(0.0, central);
   const std::array<std::string, 3> rows{"x", "y", "z"};

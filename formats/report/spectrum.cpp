@@ -30,7 +30,7 @@ Eigen::VectorXd calc_squares(const Eigen::VectorXd& y) {
   return squares;
 }
 
-/// Whether a frequency stands for itself and its negative.
+/// Returns true if a frequency represents itself and its negative.
 bool is_twice(Eigen::Index k, Eigen::Index n) { return k > 0 && 2 * k != n; }
 
 Eigen::VectorXd list_frequencies(Eigen::Index n, double step) {

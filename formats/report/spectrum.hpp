@@ -14,8 +14,8 @@ struct Spectrum {
 /// Units of y² T. The segment is cut to the samples there are. Demands two samples and step > 0.
 Spectrum calc_psd(const Eigen::VectorXd& y, double step, Eigen::Index segment);
 
-/// Of all samples at once, the straight line of least squares taken off, under Hann's periodic window: the amplitude of
-/// a sine that has a whole number of periods.
+/// Spectrum of all samples minus their least-squares line, under a periodic Hann window: the amplitude of a sine with a
+/// whole number of periods.
 Spectrum calc_amplitudes(const Eigen::VectorXd& y, double step);
 
 }  // namespace bough::report

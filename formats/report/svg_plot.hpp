@@ -7,7 +7,7 @@
 
 namespace bough::report {
 
-/// Of points: a disc of the paper's colour, a cross (poles), a hollow ring (zeros), nothing (they only open the range).
+/// Marks of points: a disc of the paper's colour, a cross (poles), a hollow ring (zeros), none (the range only).
 enum class Mark { Dot, Cross, Ring, None };
 
 struct Curve {

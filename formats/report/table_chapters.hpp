@@ -11,7 +11,7 @@ namespace bough::report {
 
 using Facts = std::vector<std::pair<std::string, std::string>>;
 
-/// As `compare -o` writes it.
+/// Chapter of a comparison as `compare -o` writes it.
 Chapter make_chapter(const records::Comparison& comparison, const std::string& file, const Facts& facts);
 
 /// A campaign: one row a case.

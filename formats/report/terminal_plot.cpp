@@ -46,7 +46,7 @@ class Canvas {
     curve_[cell] = curve;
   }
   void put_line(double ax, double ay, double bx, double by, int curve) {
-    // What is far outside is cut, so that no line takes longer than the frame is wide.
+    // Lines are clipped, so that none has more steps than the frame is wide.
     const double steps = std::max(std::abs(bx - ax) * 2 * columns_, std::abs(by - ay) * 4 * rows_);
     if (!std::isfinite(steps)) return;
     const int n = static_cast<int>(std::min(steps, 4.0 * (columns_ + rows_) * 4)) + 1;
@@ -142,7 +142,7 @@ std::string draw_text(const Plot& given, int width, int height, bool has_color) 
         canvas.put_line(x.map(curve.x[i - 1]), y.map(curve.y[i - 1]), bx, by, index);
     }
   }
-  // Of the z plane the unit circle; more lines would hide the marks.
+  // The unit circle of the z plane; more lines would hide the marks.
   if (plot.is_equal && !plot.guides.empty()) {
     const auto& circle = plot.guides.front();
     for (Eigen::Index i = 0; i + 1 < circle.x.size(); ++i)

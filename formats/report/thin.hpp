@@ -1,5 +1,5 @@
 #pragma once
-/// \file Which samples of a long curve a picture of some hundred columns needs.
+/// \file Choice of the samples of a long curve for a picture of some hundred columns.
 #include <vector>
 
 #include <Eigen/Dense>

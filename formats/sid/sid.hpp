@@ -19,7 +19,7 @@ struct Taylor {
   std::vector<MatrixXd> m1;  ///< [k] rows x columns, k = 0..nq-1; empty: order 0
 
   static Taylor zero(Eigen::Index rows, Eigen::Index columns) { return {MatrixXd::Zero(rows, columns), {}}; }
-  /// The same with a first order of nq zero matrices.
+  /// Zero series with a first order of nq zero matrices.
   static Taylor zero(Eigen::Index rows, Eigen::Index columns, int nq);
   MatrixXd evaluate(const Eigen::Ref<const Eigen::VectorXd>& q) const;
 };
@@ -68,7 +68,7 @@ std::string write_sid(const Sid& sid, const Layout& layout);
 /// Throws InputError "export.sid-syntax", "export.sid-missing", "export.sid-shape" with the line.
 Sid read_sid(const std::string& path);
 
-/// What holds between the blocks of any such file, as |difference| / |largest entry| (0 where both are zero).
+/// Residuals of the relations between blocks of any SID file, as |difference| / |largest entry| (0 if both are zero).
 struct Relations {
   double mdCM_Ct = 0;         ///< mdCM.m1 = Ctᵀ
   double Gr_J = 0;            ///< symmetric part of Gr = J.m1

@@ -16,7 +16,7 @@ struct Setting {
   double number = 0;  ///< Integer, Real, Boolean (0 or 1)
 };
 
-/// What it is called in the table, what it changes (nothing: only {name} in the commands), and its values.
+/// Name in the table, target (none: only {name} in the commands), and values.
 struct CampaignParameter {
   std::string name;
   SourceLocation at;

@@ -1,5 +1,5 @@
 #pragma once
-/// \file What the schemas of data/schema say about tables and keys, for people who edit.
+/// \file Help texts of tables and keys in the schemas of data/schema, for editors.
 #include <string>
 #include <vector>
 

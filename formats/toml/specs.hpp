@@ -7,12 +7,12 @@
 namespace bough::toml_files {
 
 records::BodySpec read_body_spec(const std::string& path, Diagnostics& diagnostics);
-/// The same of the text of the file `path`, which is not opened.
+/// Reads the spec from the text of the file `path`, which is not opened.
 records::BodySpec read_body_spec_text(const std::string& text, const std::string& path, Diagnostics& diagnostics);
 /// `set`: parameters with other numbers (TOML text) than in the file; its text in the record has them too.
 records::SystemSpec read_system_spec(const std::string& path, Diagnostics& diagnostics,
                                      const std::vector<std::pair<std::string, std::string>>& set = {});
-/// The same of the text of the file `path`, which is not opened; tables that it names are.
+/// Reads the spec from the text of the file `path`, which is not opened; tables that it names are.
 records::SystemSpec read_system_spec_text(const std::string& text, const std::string& path, Diagnostics& diagnostics);
 /// Reports "toml.changed" for each difference of two texts of a system file that a run cannot go on with: all but its
 /// end, its samples and its limits. `path` names the second.
@@ -20,7 +20,7 @@ void check_same_system(const std::string& before, const std::string& after, cons
                        Diagnostics& diagnostics);
 /// "FILE", "FILE:NAME", or ":NAME" of the common file; not resolved.
 records::MatrixSource parse_matrix_source(const std::string& text, const std::string& common);
-/// What the file is by its tables: "body", "system", "campaign", or empty.
+/// Kind of a file by its tables: "body", "system", "campaign", or empty.
 std::string detect_kind(const std::string& path);
 
 }  // namespace bough::toml_files

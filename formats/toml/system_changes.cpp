@@ -52,7 +52,7 @@ class Comparison {
   }
 
  private:
-  /// What may change while a run goes on: its end, its samples, its limits.
+  /// Keys that may change for the rest of a run: its end, its samples, its limits.
   static bool is_free(const std::string& path, const std::string& key) {
     static const std::set<std::string> free = {"duration",     "output_step",      "output_from",       "output_until",
                                                "output_every", "divergence_limit", "energy_error_limit"};
@@ -132,7 +132,7 @@ void check_same_system(const std::string& before, const std::string& after, cons
                        Diagnostics& diagnostics) {
   Value old, now;
   Diagnostics unheard;
-  // What the results hold was read once; a file that is damaged there says so elsewhere.
+  // Errors of the text in the results are ignored: it was valid once, and a damaged file is reported elsewhere.
   if (!parse_toml(before, path, old, unheard) || !parse_toml(after, path, now, diagnostics)) return;
   Comparison(path, diagnostics).compare_tables(old, now, "", 1);
 }

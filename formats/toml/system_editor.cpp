@@ -45,7 +45,7 @@ struct Document {
     return end == std::string::npos ? text.size() : end + 1;
   }
 
-  /// Whether the table has a [heading].
+  /// Returns true if the table has a [heading].
   bool is_block(const toml::node& node) const {
     const auto* table = node.as_table();
     if (table == nullptr || table->is_inline() || table == &root) return false;

@@ -53,7 +53,7 @@ std::vector<NameUse> find_uses(const std::string& text, const std::string& kind,
 /// Gives the item another name, everywhere.
 std::string rename_item(std::string& text, const TableItem& item, const std::string& name);
 
-/// Whether this is the text of a TOML value.
+/// Returns true if this is the text of a TOML value.
 bool is_value(const std::string& text);
 
 }  // namespace bough::toml_files

@@ -4,7 +4,7 @@
 
 namespace bough::toml_files {
 
-/// As read_system_spec of a file `path` with this text; only files that it names are opened.
+/// Reads this text as read_system_spec reads the file `path`; only files that it names are opened.
 records::SystemSpec read_system_spec_text(std::string text, const std::string& path,
                                           const std::vector<std::pair<std::string, std::string>>& set,
                                           Diagnostics& diagnostics);

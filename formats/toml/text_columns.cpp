@@ -33,7 +33,7 @@ std::vector<std::string> split(const std::string& line) {
   return words;
 }
 
-/// Of a heading: where tabs, semicolons or commas separate, blanks belong to the names ("time (s),thrust (N)").
+/// Names in a heading: with tabs, semicolons or commas, blanks belong to the names ("time (s),thrust (N)").
 std::vector<std::string> split_names(const std::string& line) {
   std::string bare;  // without what stands in quotation marks
   bool is_quoted = false;
@@ -136,7 +136,7 @@ class Reader {
     diagnostics_.error("toml.table-file", {path_, line}, what, advice);
   }
 
-  /// By a heading, if there is one: of its two readings the one with as many names as the first line has numbers.
+  /// Chooses by a heading, if there is one, the reading with as many names as the first line has numbers.
   bool choose_by(const std::string& heading, int heading_line, std::size_t count, int line) {
     if (heading_line == 0) return choose({}, count, line);
     const auto names = split_names(heading), words = split(heading);
@@ -146,7 +146,7 @@ class Reader {
 
   bool choose(const std::vector<std::string>& names, std::size_t count, int line) {
     const bool is_named = !choice_.x.empty() || !choice_.y.empty();
-    // What is wrong with the lines of a file of two columns is said line by line.
+    // Errors in the lines of a file of two columns are reported line by line.
     count_ = is_named ? count : 2;
     x_ = 0;
     y_ = 1;

@@ -9,7 +9,7 @@
 
 namespace bough::toml_files {
 
-/// What the files that a system file names say.
+/// Facts from the files that a system file names.
 struct BodyFacts {
   /// Unit of a locator's load: its direction, 0 for a pattern; -1 where it is not known. By body and locator.
   std::function<int(const std::string& body, const std::string& locator)> find_direction;

@@ -17,7 +17,7 @@ namespace bough::python {
 
 namespace py = pybind11;
 
-/// Of functions that use MPI, PETSc or HDF5: other Python threads go on, one thread at a time is within.
+/// Guard of functions that use MPI, PETSc or HDF5: other Python threads continue, one thread at a time is inside.
 using OneAtATime = py::call_guard<py::gil_scoped_release, Exclusive>;
 
 void bind_messages(py::module_& m);

@@ -9,7 +9,7 @@ namespace {
 
 using Array = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
-/// What Python raises leaves as an exception that needs no interpreter; a keyboard interrupt too.
+/// Calls Python; its exceptions, a keyboard interrupt too, are converted to exceptions that need no interpreter.
 template <class Act>
 int call(const Act& act) {
   const py::gil_scoped_acquire acquired;

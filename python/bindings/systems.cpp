@@ -241,7 +241,7 @@ class PySystem {
   }
 
  private:
-  /// Of the files; what is lent by Python has none.
+  /// Names and hashes of the files; controllers from Python have none.
   std::vector<std::pair<std::string, std::string>> calc_sources() const {
     auto files = cli::collect_sources(file_, *loaded_);
     if (!is_file_) files.erase(files.begin());

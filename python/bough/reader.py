@@ -29,7 +29,7 @@ class File:
         return value.decode() if isinstance(value, bytes) else str(value)
 
     def _take_all(self, group, path):
-        """By every name: what is linked twice is there twice, which h5py's visititems shows once."""
+        """Takes arrays by every name: one linked twice appears twice, which h5py's visititems shows once."""
         for name, item in group.items():
             self._take(path + name, item)
             if isinstance(item, h5py.Group):
@@ -71,12 +71,12 @@ class File:
         return self.arrays.keys()
 
     def describe(self, name):
-        """What an array is, with its frame."""
+        """Description of an array, with its frame."""
         return self.descriptions[self._find(name)]
 
     @property
     def time(self):
-        """Of the samples of a results file."""
+        """Times of the samples of a results file."""
         return self["time"]
 
     def __repr__(self):

@@ -1,5 +1,5 @@
 #pragma once
-/// \file What all actuators share: a command in, a force on the bodies out (docs/theory/control.md).
+/// \file Base of all actuators: a command in, a force on the bodies out (docs/theory/control.md).
 #include <memory>
 
 #include "formats/records/system_spec.hpp"
@@ -9,7 +9,7 @@
 
 namespace bough::solver {
 
-/// What becomes of a command before it acts: scale and bias, dead band, limits, then a lag whose rate may be limited.
+/// Conditions a command before it acts: scale and bias, dead band, limits, then a lag whose rate may be limited.
 class Actuator : public Block {
  public:
   bool is_actuator() const override { return true; }
@@ -27,7 +27,7 @@ class Actuator : public Block {
   int num_lags() const { return lag_ > 0 ? sizes.inputs : 0; }
 
  private:
-  /// Of the command i.
+  /// Command i after scale, bias, dead band and limits.
   double shape(const BlockInput& in, int i) const;
   double scale_ = 1, bias_ = 0, deadband_ = 0, low_ = 0, high_ = 0, lag_ = 0, rate_ = 0, initial_ = 0;
   bool is_steady_ = false;

@@ -18,7 +18,7 @@ class Rotor : public Actuator {
     return in.motion->data.markers[static_cast<size_t>(marker)];
   }
   int get_body(const BlockInput& in) const { return in.motion->tree.markers[static_cast<size_t>(marker)].body; }
-  /// Of the node, in B.
+  /// Angular velocity of the node, in B.
   Vector3d calc_rate(const BlockInput& in) const { return in.motion->data[get_body(in)].state.w_B + get_motion(in).w; }
   void add_moment(const BlockInput& in, const Vector3d& moment_B, TreeData& data) const {
     add_marker_wrench(in.motion->tree, marker, Vector3d::Zero(), moment_B, data);

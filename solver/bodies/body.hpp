@@ -106,7 +106,7 @@ class Body {
   MatrixXd by_pair_;  ///< a column per kind, a row per product η̇_j η̇_k, k ≤ j: Ċη̇ of Γ2, then η̇ᵀc_qη̇
   MatrixXd E_J_, E_C_, E_A2_, E_pair_;           ///< columns: 6, 3, 3, 3
   Eigen::Matrix<double, 12, Eigen::Dynamic> B_;  ///< the field's B
-  // What the affine functions do not hold of Γ1, J0 and J's linear part: functions without mass, rounding.
+  // Remainders of Γ1, J0 and of J's linear part after the affine functions: functions without mass, round-off.
   MatrixXd gamma1_rest_t_, J1_rest_t_;  ///< n x 3, n x 6 (or 0: rounding alone)
   Vector6d J0_rest_;
   MatrixXd M_, K_, D_;

@@ -162,7 +162,7 @@ void Body::calc_flexible_bias(const Vector3d& w, const ConstVectorRef& eta, cons
 }
 
 LinearField Body::make_linear_field(const Matrix3d& T, const BodyInertia& x) const {
-  // As ω̃ω̃ in calc_flexible_bias; ½ ∫ρ r·Tr = -½ Ω : J, Ω in place of ωωᵀ.
+  // Matrix Ω in place of ωωᵀ in ½ ∫ρ r·Tr = -½ Ω : J, as for ω̃ω̃ in calc_flexible_bias.
   const Matrix3d Omega = T - 0.5 * T.trace() * Matrix3d::Identity();
   Vector6d half = pack_tensor(Omega);
   half.head<3>() *= 0.5;

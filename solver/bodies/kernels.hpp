@@ -21,8 +21,8 @@ void add_product(const double* A, Eigen::Index rows, Eigen::Index r, const doubl
 /// Lower triangle of C = A + V Vᵀ and some of what is above; A, C: rows x rows, V: rows x 12, all padded.
 void add_square(const double* A, const double* V, Eigen::Index rows, double* C);
 
-/// Of [D; Wᵀ], D n x n (its lower triangle), Wᵀ below it, `rows` (padded, with anything) in all: L of D = LLᵀ and below
-/// it (L⁻¹W)ᵀ, in place. A pivot that is not positive leaves NaN there and in what follows.
+/// Factors the trapezoid [D; Wᵀ] in place: L of D = LLᵀ, and (L⁻¹W)ᵀ below it. D: n x n, its lower triangle is read;
+/// `rows` counts all rows, with padding of any value. A pivot that is not positive leaves NaN from its column on.
 void factor_trapezoid(double* A, Eigen::Index rows, Eigen::Index n);
 
 /// z = L⁻¹z and z = L⁻ᵀz; L: n x n, its lower triangle is read.

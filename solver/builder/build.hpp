@@ -16,7 +16,7 @@ std::string quote(const std::string& name);
 std::optional<Body> build_body(const records::BodyRecord& record, const FlexMap& flex, Diagnostics& diagnostics,
                                bool is_lagged = false);
 
-/// Which hinge carries which body, parents first; errors for loops and unknown names.
+/// Hinge that carries each body, parents first. order_tree reports loops and unknown names.
 struct TreeOrder {
   std::vector<int> body;   ///< spec index by tree index
   std::vector<int> hinge;  ///< inboard hinge by tree index, -1: none given (a free hinge is made)
@@ -44,14 +44,14 @@ std::optional<AppliedForce> build_force(const records::ForceRecord& record, cons
 /// Every [[constraint]] and its markers into system.loops, after the tree is finished.
 void build_constraints(const records::SystemSpec& spec, const TreeOrder& order, System& system,
                        Diagnostics& diagnostics);
-/// What of each flexible body is recovered, for the results and for sensors, after constraints and forces. Reports
-/// "system.no-recovery", "system.unknown-element"; notes "system.recovery-loads"; warns
+/// Chooses the results recovered on each flexible body, for the results file and for sensors; constraints and forces
+/// are built before. Reports "system.no-recovery", "system.unknown-element"; notes "system.recovery-loads"; warns
 /// "system.recovery-constraint".
 void build_recoveries(const records::SystemSpec& spec, const FlexMap& flex, System& system, Diagnostics& diagnostics);
 /// Initial positions and rates that close the loops, into system; `system` owns system. Reports
 /// "system.cannot-assemble"; notes "system.assembled" (what was moved) and "system.redundant-constraint".
 void assemble(const records::SystemSpec& spec, const TreeOrder& order, System& system, Diagnostics& diagnostics);
-/// What elements of force look names up in.
+/// Records and bodies in which force elements look up their names.
 struct ElementContext {
   const records::SystemSpec& spec;
   const TreeOrder& order;
@@ -66,18 +66,19 @@ std::unique_ptr<const Curve> find_curve(const ElementContext& context, const std
 /// One [[force]] with a type; its markers go into the finished tree. Reports and returns nullptr on errors.
 std::unique_ptr<const ForceElement> build_element(const records::ForceElementRecord& record,
                                                   const ElementContext& context, Tree& tree, Diagnostics& diagnostics);
-/// What acts along the coordinates of a body's hinge, and its motors' inertia, of the finished tree.
+/// Force laws along the coordinates of a body's hinge, and the inertia of its motors; the tree is finished.
 void build_hinge_laws(const records::HingeRecord& record, const ElementContext& context, TreeBody& tb,
                       std::vector<std::unique_ptr<const ForceElement>>& elements,
                       std::vector<JointContact>& joint_contacts, Diagnostics& diagnostics);
 
-/// What starts beyond a rigid stop is an error ("system.beyond-stop"); by less than calc_slack it is put on it.
+/// Reports "system.beyond-stop" for a coordinate that starts beyond a rigid stop; within calc_slack it is moved to the
+/// stop.
 void check_stops(System& system, Diagnostics& diagnostics);
 /// Warns "system.stiff-shapes" of constraints, and hinges to ground, that hold a node of a flexible body in directions
 /// in which its normal modes give way too little.
 void check_shapes(const records::SystemSpec& spec, const System& system, const FlexMap& flex, Diagnostics& diagnostics);
 
-/// What acts at a node. A hinge that can pass on a moment takes both.
+/// Kind of load at a node. A hinge that can transmit a moment takes both.
 struct NodeLoad {
   bool force = false, moment = false;
 };

@@ -16,8 +16,8 @@ using FlexMap = std::map<std::string, records::FlexBody>;
 /// reports all errors with their place in the TOML file; throws InputError when there are any. A body without an
 /// inboard hinge gets a free one (a note says so).
 System build_system(const records::SystemSpec& spec, const FlexMap& flex, Diagnostics& diagnostics);
-/// The same without a throw, so that what follows can report its errors too: not to be moved when there are any. A body
-/// that cannot be built is a rigid one here, with is_valid false.
+/// Builds the system as build_system does but throws nothing, so that the next checks can report their errors too; with
+/// errors the system must not be moved. A body that cannot be built is a rigid one here, with is_valid false.
 System draft_system(const records::SystemSpec& spec, const FlexMap& flex, Diagnostics& diagnostics);
 
 }  // namespace bough::solver

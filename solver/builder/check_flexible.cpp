@@ -1,4 +1,4 @@
-// What a flexible body's integrals and modes mean for its motion, judged at η = 0.
+// Checks of a flexible body at η = 0: inertia left at its hinge by the modes, integrals of one mass distribution.
 #include <cmath>
 #include <cstdio>
 

@@ -1,4 +1,4 @@
-// Whether normal modes can meet what constraints demand of them.
+// Checks that normal modes can follow the displacements that constraints prescribe.
 #include <algorithm>
 #include <cmath>
 

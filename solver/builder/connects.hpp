@@ -1,5 +1,5 @@
 #pragma once
-/// \file What is wired to whom: the signals that tables name themselves, and those that [[connect]] brings them.
+/// \file Wiring of signals: the names in the tables themselves, and those that [[connect]] adds.
 #include <map>
 
 #include "formats/records/system_spec.hpp"

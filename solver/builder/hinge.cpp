@@ -132,7 +132,7 @@ void build_hinge_coordinates(const records::HingeRecord& r, const FunctionMap& f
   check_count(r, r.damping, nu, "damping", diagnostics);
   tb.initial_q = make_coordinates(r, r.position, *tb.hinge, "position", diagnostics);
   tb.null_position = make_coordinates(r, r.null_position, *tb.hinge, "null_position", diagnostics);
-  // Of the two signs of a quaternion the one within half a turn of the springs' rest: they follow it from there.
+  // The sign of the quaternion is chosen within half a turn of the springs' rest position, from where they follow it.
   if (!tb.hinge->has_independent_coordinates() && tb.initial_q.head<4>().dot(tb.null_position.head<4>()) < 0)
     tb.initial_q.head<4>() *= -1;
   tb.initial_u = VectorXd::Zero(nu);

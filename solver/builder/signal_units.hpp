@@ -9,7 +9,7 @@ namespace bough::solver {
 
 /// "F L, 1/T" of `outputs` components: one each; nothing where they are not known ("by the controller").
 std::vector<std::string> split_dims(const std::string& dims, int outputs);
-/// Whether two are the same quantity, as "F L" and "M L^2/T^2"; true where either is not known (empty).
+/// Returns true if both are the same quantity, as "F L" and "M L^2/T^2", or if one is not known (empty).
 bool are_alike_dims(const std::string& a, const std::string& b);
 /// a / T.
 std::string make_rate_dims(const std::string& a);

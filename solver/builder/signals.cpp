@@ -169,7 +169,7 @@ class Builder {
     }
   }
 
-  /// Of something that takes `takes` numbers.
+  /// Wires the input of `user`, which takes `takes` numbers (0: not known).
   bool wire_scalar(const SignalUse& use, const std::string& user, int takes, std::vector<Wire>& wires) {
     Wire wire;
     if (!sources_.find(use, user, wire, diagnostics_)) return false;
@@ -205,7 +205,7 @@ class Builder {
     for (auto& block : make_lagged_stiffening(spec_, system_, flex, diagnostics_)) add_driver(std::move(block), {});
   }
 
-  /// What events switch on and off, or chooses the input of.
+  /// Makes the controllers switchable that events enable or disable, and those that start disabled.
   void set_activities() {
     for (const auto& r : spec_.controllers) {
       const auto switches = [&](const records::UserEventRecord& e) {

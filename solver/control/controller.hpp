@@ -7,13 +7,13 @@
 
 namespace bough::solver {
 
-/// What is wired to a controller: the sizes of its inputs, in their order, then those of reference and rate (0: none).
+/// Sizes of a controller's inputs, in their order, then of reference and rate (0: none).
 struct ControllerWiring {
   std::vector<int> inputs;
   int reference = 0, rate = 0;
 
   int size() const;
-  /// Of the first input; all must have it ("control.bad-size"), as sum and product want.
+  /// Returns true if all inputs have the size of the first, as sum and product require ("control.bad-size").
   bool are_alike() const;
 };
 

@@ -37,7 +37,7 @@ constexpr double kNoTime = std::numeric_limits<double>::quiet_NaN();
 
 class Library final : public UserBlock {
  public:
-  /// What it does with the time is not known.
+  /// True without a sample time: the use of t by the library is not known.
   bool depends_on_time() const override { return sizes.sample_time == 0; }
   bool is_opaque() const override { return f_.is_opaque; }
   bool is_forward_only() const override { return f_.is_forward_only; }

@@ -20,12 +20,12 @@ struct AppliedForce {
 
 /// Adds the wrench [f; r×f + t; Jᵀ[f; t]] of a force and moment (components in B) at a marker. No allocation.
 void add_marker_wrench(const Tree& tree, int marker, const Vector3d& f_B, const Vector3d& t_B, TreeData& data);
-/// The same at a node that has no marker.
+/// Adds a wrench at a node that has no marker.
 void add_wrench_in_body(const TreeBody& body, int node, const Vector3d& f_B, const Vector3d& t_B, TreeData& data);
 /// Adds a force at time t: body-fixed, inertial, or turning with its node. A pattern keeps its direction in B and puts
 /// [Σf; Σ p×f + t + (Σ φ×f) η; ΦᵀF - K_G2 η] times the function on the body: all to first order in η. No allocation.
 void add_applied_force(const AppliedForce& force, const Tree& tree, double t, TreeData& data);
-/// The same with a value in place of the function's.
+/// Adds a force with `value` in place of that of its function.
 void add_applied_load(const AppliedForce& force, const Tree& tree, double value, TreeData& data);
 /// Springs and dampers of every free hinge: hinge_force. No allocation.
 void add_hinge_forces(const Tree& tree, TreeData& data);

@@ -15,12 +15,12 @@ Vector3d calc_oblate(double oblate, const Vector3d& R, const Vector3d& k) {
 
 Matrix3d calc_second_moment(const Matrix3d& J) { return 0.5 * J.trace() * Matrix3d::Identity() - J; }
 
-// Of one body; all in B.
+// Gravity on one body; all in B.
 struct CentralGravity::Pull {
-  Vector3d c;         // mass centre from Bo
-  Vector3d f;         // at the mass centre
-  Vector3d torque;    // about the mass centre
-  Matrix3d gradient;  // of the spherical field at the mass centre
+  Vector3d c;         // centre of mass from Bo
+  Vector3d f;         // at the centre of mass
+  Vector3d torque;    // about the centre of mass
+  Matrix3d gradient;  // of the spherical field at the centre of mass
   double potential;
 };
 

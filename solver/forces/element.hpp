@@ -20,7 +20,7 @@ struct ForceResult {
   std::array<double, 12> values{};   ///< what channels() describe, one after the other
 };
 
-/// What an element records of itself.
+/// One result that an element records.
 struct ForceChannel {
   std::string name;
   int size = 1;
@@ -62,7 +62,7 @@ class ForceElement {
   /// step need go over it.
   virtual int num_kinks() const { return 0; }
   virtual void calc_kinks(const Tree&, const TreeData&, double* /*g*/) const {}
-  /// Whether it acts along hinge coordinates, not at markers and bodies.
+  /// Returns true if the element acts along hinge coordinates, not at markers and bodies.
   virtual bool is_along_hinge() const { return false; }
   /// The function of time in it, or nullptr.
   virtual const TimeFunction* function() const { return nullptr; }

@@ -63,7 +63,7 @@ void HingeLaw::add_tangent(const Tree&, const TreeData& data, Eigen::Ref<VectorX
     k += law_.stop_stiffness;
     c += law_.stop_stiffness * past * law_.stop_damping;
   }
-  // Of the chord: smooth friction turns within one step.
+  // Friction adds its secant damping, F/v: smooth friction changes its sign within one step.
   if (!law_.is_dry && (law_.coulomb != 0 || law_.static_friction != 0)) {
     const double v = std::max(std::abs(rate), 1e-3 * law_.smoothing);
     c += std::max(0.0, calc_friction(v, 0) / v);

@@ -1,5 +1,5 @@
 #pragma once
-/// \file What acts along one coordinate q of a hinge beside its linear spring and damper:
+/// \file Force laws along one coordinate q of a hinge, in addition to its linear spring and damper:
 ///
 ///     preload - table(q - q_null) - table(q̇) - friction(q̇) + stops
 ///     friction  [F_c + (F_s - F_c) exp(-(q̇/v_s)²)] tanh(q̇/v_0)        Stribeck's, smooth over v_0

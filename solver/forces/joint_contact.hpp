@@ -1,5 +1,5 @@
 #pragma once
-/// \file What holds a hinge coordinate until a force is too much for it: dry friction, and stops that do not give.
+/// \file Joint contact of a hinge coordinate: dry friction (stick-slip) and rigid stops.
 #include <limits>
 #include <string>
 

@@ -20,11 +20,11 @@ class TimeFunction {
   virtual Value calc(double t) const = 0;
   /// Times at which f or a derivative jumps: where f is a motion, the integrator stops and restarts there. Ascending.
   virtual std::vector<double> jump_times() const { return {}; }
-  /// Those among them at which it restarts where f is a force. Points of a table that samples a smooth curve are none.
+  /// Jump times at which the integrator restarts where f is a force; none for points of a table of a smooth curve.
   virtual std::vector<double> force_jump_times() const { return jump_times(); }
   /// Times that no step may pass over, so that none misses a short event in a long rest. No restarts. Ascending.
   virtual std::vector<double> mesh_times() const { return {}; }
-  /// Whether f_dot and f_ddot are known; else they are not numbers, and f is no motion.
+  /// Returns true if f_dot and f_ddot are known. Else they are NaN, and f cannot prescribe a motion.
   virtual bool has_derivatives() const { return true; }
   /// A copy for another thread; nullptr: calc() writes nothing, so that threads can share the function.
   virtual std::unique_ptr<const TimeFunction> clone() const { return nullptr; }
@@ -45,7 +45,7 @@ class FunctionCopies {
 /// Functions by name; one that failed maps to nullptr.
 using FunctionMap = std::map<std::string, const TimeFunction*>;
 
-/// Of the run, for functions that jump again and again.
+/// Start and end of the run, for functions that jump periodically.
 struct TimeSpan {
   double start = 0, end = 0;
 };

@@ -13,7 +13,7 @@ size_t find_interval(const std::vector<double>& x, double t) {
   return static_cast<size_t>(std::clamp<std::ptrdiff_t>(it - x.begin() - 1, 0, std::ssize(x) - 2));
 }
 
-/// Of the numbers that are finite; a constant that rounding blurs has none.
+/// Range of the finite numbers, max - min; 0 for a constant with round-off.
 double calc_range(const std::vector<double>& y) {
   double least = std::numeric_limits<double>::infinity(), most = -least;
   for (const double v : y) {

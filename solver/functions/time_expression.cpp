@@ -39,7 +39,7 @@ constexpr size_t kMostMarks = 1000;
 /// A rest is so many times longer than what follows it.
 constexpr double kRest = 5;
 
-/// Of the formula and of its derivatives, as a table of it would have them.
+/// Mesh times of the formula and of its derivatives, found as in a table of its values.
 std::vector<double> find_marks(const TimeExpression& made, const TimeSpan& run) {
   std::vector<double> x(kLooks + 1), y[3], found;
   if (!(run.end > run.start)) return found;
@@ -96,7 +96,7 @@ void check_derivatives(const TimeExpression& made, const TimeSpan& run, Function
       const auto rate = [&](double at) { return made.calc(at).f_dot; };
       const auto here = made.calc(t);
       const double slopes[] = {calc_slope(value, t, h), calc_slope(rate, t, h)};
-      // What half the step finds tells whether differences can tell.
+      // A difference with half the step bounds the error of the first.
       const double again[] = {calc_slope(value, t, h / 2), calc_slope(rate, t, h / 2)};
       const double given[] = {here.f_dot, here.f_ddot};
       for (int d = 0; d < 2; ++d) {

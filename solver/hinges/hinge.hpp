@@ -1,6 +1,6 @@
 #pragma once
-/// \file What a hinge owes the tree: pose, motion subspace, bias, q̇ = N(q) u. Numerics only (the user's hinge is
-/// records::HingeRecord); the tree passes never ask which type it is.
+/// \file Interface of a hinge for the tree: pose, motion subspace, bias, q̇ = N(q) u. Numerics only (the input record
+/// is records::HingeRecord); the tree passes do not depend on the type.
 ///
 /// Hp is fixed in the parent's node, Hc in the child's. Velocity of Hc in Hp, components in Hp:
 ///     [v; w] = H(q) u             6 x num_u, linear first; v is that of the origin of Hc
@@ -36,7 +36,7 @@ class Hinge {
     calc_position(q, motion);
     calc_bias(u, motion);
   }
-  /// Whether H is constant with components in Hc, as that of a revolute hinge is.
+  /// Returns true if H is constant with components in Hc, as that of a revolute hinge is.
   virtual bool is_constant_in_child() const { return false; }
   /// q̇ = N(q) u. Default: q̇ = u.
   virtual void calc_q_dot(const double* q, const double* u, double* q_dot) const;
@@ -48,7 +48,7 @@ class Hinge {
   /// Generalized force (num_u) of springs of stiffness k (num_u) at rest at q_null (num_q), and returns their energy.
   /// Default: -k (q - q_null), energy ½ k (q - q_null)².
   virtual double calc_spring(const double* q, const double* q_null, const double* k, double* force) const;
-  /// Whether every coordinate is a plain number whose rate is its speed (a motion can then be prescribed).
+  /// Returns true if every coordinate is a number whose rate is its speed (a motion can then be prescribed).
   virtual bool has_independent_coordinates() const { return true; }
 
  private:

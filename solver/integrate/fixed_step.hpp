@@ -1,6 +1,6 @@
 #pragma once
-/// \file What methods of fixed step share: each interval to the next target is cut into equal steps no longer than
-/// options.step, so that results depend on the targets only; with memory() not on where a run was interrupted.
+/// \file Base of the fixed-step methods. Each interval to the next target is divided into equal steps no longer than
+/// options.step, so that results depend on the targets only, and with memory() not on where a run was interrupted.
 #include "solver/integrate/integrator.hpp"
 
 namespace bough::solver {

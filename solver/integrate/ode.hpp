@@ -16,7 +16,7 @@ class Ode {
   virtual int size() const = 0;
   /// y, y_dot: size(). May throw; may leave values that are not finite where y has left its domain.
   virtual void calc_derivative(double t, const Eigen::Ref<const VectorXd>& y, Eigen::Ref<VectorXd> y_dot) = 0;
-  /// Whether each accepted step, and what is interpolated, is to be projected.
+  /// Returns true if each accepted step, and each interpolated state, must be projected.
   virtual bool has_projection() const { return false; }
   /// Brings y onto what the equations keep at zero. May throw.
   virtual void project(double, Eigen::Ref<VectorXd>) {}
@@ -28,8 +28,8 @@ class Ode {
                           Eigen::Ref<VectorXd> /*k*/);
 };
 
-/// What the steppers call. Times are clamped to `latest`, the last moment before the next jump of a function of time,
-/// so that a step that ends at the jump sees the values before it.
+/// The system as integrators call it. Times are clamped to the last moment before the next jump of a function of time,
+/// so that a step that ends at the jump uses the values before it.
 class GuardedOde {
  public:
   explicit GuardedOde(Ode& ode) : ode_(ode) {}

@@ -121,7 +121,7 @@ class Newton {
     if (null_space_.cols() > 0) factor_.compute(weight_.asDiagonal() * jacobian * null_space_);
   }
 
-  /// Of least norm among those that keep what every motion from the start keeps.
+  /// Newton step of least norm that restores what every motion conserves from the start (calc_conserved).
   VectorXd solve_step(const EquilibriumResidual& at) const {
     if (at_.free().empty()) return {};
     VectorXd residual = at.residual(), step = VectorXd::Zero(at.travel().size());

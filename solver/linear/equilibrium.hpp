@@ -19,7 +19,7 @@ struct Equilibrium {
   std::vector<Growth> unstable;  ///< poles that grow; empty: the state is stable, as far as first order tells
 };
 
-/// u̇(t, q, u, z) = 0 (of bodies that float and spin: in axes that turn with them about their mass centre, see
+/// u̇(t, q, u, z) = 0 (of bodies that float and spin: in axes that turn with them about their centre of mass, see
 /// Plant::calc_unsteadiness) and ż = 0 for q and the states z of controllers and actuators, from `start`: hinge rates
 /// stay as they are there (zero: rest), modal rates become zero. Of sampled blocks too: their samples repeat
 /// themselves, what is delayed has arrived. What no displacement restores (b with b · ∂ż/∂(q, z) = 0) is what every

@@ -1,6 +1,6 @@
 #pragma once
-/// \file What equilibrium solves: u̇, ż and what samples change, as functions of the dofs that may be displaced, of
-/// the states of controllers and actuators and of what sampled blocks keep and hold, with their Jacobian.
+/// \file Residual of an equilibrium: u̇, ż and the changes at samples, as functions of the dofs that may be displaced,
+/// of the states of controllers and actuators and of the memory of sampled blocks; with its Jacobian.
 #include "base/diagnostic.hpp"
 #include "solver/linear/plant.hpp"
 
@@ -23,7 +23,7 @@ class EquilibriumResidual {
   const std::vector<int>& free() const { return free_; }
   /// u̇ (less that of a steady spin), ż, change of the memory a sample time; n.
   const VectorXd& residual() const { return residual_; }
-  /// What rounding leaves of the residual in a steady spin; n.
+  /// Round-off of the residual in a steady spin; n.
   VectorXd calc_rounding() const {
     VectorXd rounding = VectorXd::Zero(size());
     rounding.head(plant_->num_dofs()) = plant_->calc_spin_rounding(point_);

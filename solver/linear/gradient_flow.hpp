@@ -10,8 +10,8 @@ namespace bough::solver {
 /// further.
 EquilibriumResidual follow_gradient_flow(EquilibriumResidual from);
 
-/// Whether small displacements are not driven further: no eigenvalue of ∂u̇ (m x m of the dofs that may be
-/// displaced) is positive. After linearize. Gyroscopic forces and dampers are not looked at.
+/// Returns true if no eigenvalue of ∂u̇ (m x m of the dofs that may be displaced) is positive: small displacements do
+/// not grow. After linearize. Ignores gyroscopic forces and dampers.
 bool is_stable_rest(const EquilibriumResidual& at);
 
 }  // namespace bough::solver

@@ -154,7 +154,7 @@ void open_cut(LinearModel& model, const std::string& name) {
   const auto divide = [&back](const MatrixXd& m) -> MatrixXd { return m.array().colwise() / back.array(); };
   const MatrixXd B = unit.solve<Eigen::OnTheRight>(model.B).array().rowwise() / back.transpose().array();
   const MatrixXd C = unit.solve(divide(model.C)), D = unit.solve(divide(model.D));
-  // What comes back is taken off the rows that it drives: rounding is left of what was there by the loop alone.
+  // The return is subtracted from the rows that it drives; entries that came from the loop alone leave round-off.
   const MatrixXd taken = B * model.C, sum = model.A.cwiseAbs() + taken.cwiseAbs();
   model.A -= taken;
   model.A = (model.A.array().abs() > 1e-13 * sum.array()).select(model.A, 0.0);
@@ -194,7 +194,7 @@ void check_constancy(Plant& plant, const OperatingPoint& point, const Jacobian& 
     travel = std::abs(point.u[i]) / plant.step(i);
   }
   if (fastest < 0) return;
-  // What has come to rest still has speeds by rounding: it goes nowhere before the slowest of its motions has died out.
+  // Speeds at rest are round-off: a motion counts only if it moves the system within the slowest time constant.
   const auto poles = statespace::calc_poles(A, states);
   double slowest = 0;
   for (int i = poles.size() - 1; i >= 0; --i) {

@@ -64,7 +64,7 @@ class Plant {
   /// Label of the first block whose samples have no linear model; empty: none.
   std::string find_opaque() const;
 
-  /// Freedoms and loops as hinges and constraints are behind an event, when the system stands at (t, q).
+  /// Sets dofs and loops to the modes of hinges and constraints after an event, for the positions (t, q).
   void set_modes(const DiscreteState& discrete, double t, const VectorXd& q);
   OperatingPoint make_initial_point() const;
   /// Where is_open: from now on actuators keep the commands they have there.
@@ -76,9 +76,9 @@ class Plant {
   VectorXd restrict(const VectorXd& u) const { return u(rows_); }
   /// All speeds at a point, those that loops give too. Throws ComputationError "linear.dead-point".
   VectorXd calc_speeds(const OperatingPoint& point) const;
-  /// ∂δ̇/∂δ about a motion: zero but for orientations that turn. num_freedoms².
+  /// ∂δ̇/∂δ about a motion: zero but for orientations that turn. num_dofs².
   MatrixXd calc_turning(const OperatingPoint& point) const;
-  /// The mass matrix of the dofs; where loops are closed what follows moves along. num_freedoms².
+  /// The mass matrix of the dofs; where loops are closed what follows moves along. num_dofs².
   MatrixXd calc_mass(const OperatingPoint& point);
   /// Quaternions as the files have them: w, x, y, z.
   VectorXd get_for_file(const VectorXd& q) const;
@@ -89,20 +89,20 @@ class Plant {
   int num_forces() const { return num_forces_; }
   int num_actuators() const { return num_actuators_; }
   /// Components of the sensors: "tip:x", or the sensor's name when it is a scalar; then those of controllers and
-  /// actuators; then what each actuator is told to do, "motor:command".
+  /// actuators; then the command of each actuator, "motor:command".
   const records::Signals& outputs() const { return outputs_; }
   int num_sensor_outputs() const { return num_sensor_outputs_; }
   /// The controller of output i where is_open leaves out states or memory of it; "": none.
   std::string find_frozen_law(int i) const;
-  /// Where a loop may be cut: the output before, and the input behind the cut. Throws nothing; -1: no such name. Of a
-  /// signal the value without what the input adds, of an actuator its command likewise.
+  /// Point where a loop may be cut: the output before, and the input after the cut. Throws nothing; -1: no such name.
+  /// The output is the value of a signal, or the command of an actuator, without the addition by the input.
   struct Cut {
     int output = -1, input = -1;
   };
   Cut find_cut(const std::string& name) const;
   std::vector<std::string> list_cuts() const;
 
-  /// Computes f'(0) of a function that evaluates this plant, as evaluate, sample or resample.
+  /// Computes f'(0) of a function that evaluates this plant, as evaluate, sample or sample_all.
   ///
   /// Laws are their tangents at f(0) meanwhile (solver/state/law_tangents.hpp), so that `step` need suit the geometry
   /// only. Difference::kink holds the effect of laws that have two slopes there; `kinks` gains them.
@@ -110,13 +110,13 @@ class Plant {
                            std::vector<LawKink>* kinks = nullptr);
   /// [u̇; ż; y] with every function of time at its value, and `value` more of one input. May throw ComputationError.
   VectorXd evaluate(const OperatingPoint& point, const PlantInput* input = nullptr, double value = 0);
-  /// u̇ of the last evaluate less what a steady spin has of it: on a hinge to ground whose translations are free across
-  /// ω, ω × (ṗ - v_c) is taken off p̈, with v_c the velocity of the mass centre of all that it carries. Zero at rest and
-  /// in a steady spin, also about a mass centre beside the origin that drifts. num_dofs.
+  /// u̇ of the last evaluate minus that of a steady spin: on a hinge to ground with free translations normal to ω,
+  /// p̈ - ω × (ṗ - v_c), with v_c the velocity of the centre of mass of all that it carries. Zero at rest and in a
+  /// steady spin, also about a drifting centre of mass that is not at the origin. num_dofs.
   VectorXd calc_unsteadiness(const VectorXd& u_dot) const;
-  /// What rounding leaves of it where bodies spin. num_dofs.
+  /// Round-off of calc_unsteadiness where bodies spin. num_dofs.
   VectorXd calc_spin_rounding(const OperatingPoint& point) const;
-  /// What changes at samples: rows of the memory of sampled blocks, with what is held and on its way.
+  /// Rows of the memory of sampled blocks that change at samples: outputs that are held, and samples in queues.
   const std::vector<int>& sampled_rows() const { return sampled_rows_; }
   /// "controller 'law' (memory 1)".
   std::string sampled_name(int i) const { return sampled_names_[static_cast<size_t>(i)]; }
@@ -127,10 +127,9 @@ class Plant {
   /// All memory after the samples due at point.t, sensors without noise and quantization. `input` has `before` more
   /// when they begin, and `value` more for what follows it. May throw ComputationError.
   VectorXd sample(const OperatingPoint& point, const PlantInput* input = nullptr, double before = 0, double value = 0);
-  /// Where a signal or a command that is cut changes at samples only: when it does. It has period 0 where it moves
-  /// between samples too.
+  /// Sample times of a signal or a command that is cut; period 0 if it also changes between samples.
   SampleTimes find_hold(const PlantInput& input) const;
-  /// What comes back to the cut, as find_cut's output but held where it is sampled. May throw ComputationError.
+  /// Value that returns to the cut: find_cut's output, held if it is sampled. May throw ComputationError.
   double calc_return(const OperatingPoint& point, const PlantInput& input, double value);
   /// Samples on their way: rows `first` to first + size * length of sampled_rows, the sample k at k mod length.
   struct Queue {
@@ -143,13 +142,13 @@ class Plant {
   const std::string& steady_name(int i) const { return steady_names_[static_cast<size_t>(i)]; }
   /// All memory after one sample of every block, nothing delayed, sensors as in `sample`. May throw ComputationError.
   VectorXd sample_all(const OperatingPoint& point);
-  /// (resample - memory) / sample time, of the steady rows: zero where the samples repeat themselves.
+  /// (sample_all - memory) / sample time, of the steady rows: zero where the samples repeat themselves.
   VectorXd calc_sample_rates(const OperatingPoint& point);
-  /// What is on its way becomes what is held.
+  /// Copies the held outputs into the queues.
   void fill_queues(VectorXd& memory) const;
   /// Coordinates of q as the files have them, and dims: "pin:1", "ball:qw", "boom:eta1".
   records::Signals name_positions() const;
-  /// Whether the dof is an angle that comes back after 2 pi.
+  /// Returns true if the dof is an angle with a period of 2 pi.
   bool is_periodic(int i) const { return dofs_[static_cast<size_t>(i)].is_periodic; }
   /// Results of the last evaluate, for a Outputs.
   const SystemData& data() const { return *data_; }

@@ -56,7 +56,7 @@ void Plant::close_positions(VectorXd& q) const {
   if (!found.is_closed) fail_dead(system_.loops, found);
 }
 
-/// What follows moves along: the rates of all (num_u), a column for the unit rate of each dof.
+/// Dependent rates: the rates of all coordinates (num_u rows), a column for the unit rate of each dof.
 MatrixXd Plant::calc_follow(const OperatingPoint& point) const {
   OperatingPoint still = point;
   still.u.setZero();

@@ -266,7 +266,7 @@ SampleTimes Plant::find_hold(const PlantInput& input) const {
   const auto is_same = [](const SampleTimes& a, const SampleTimes& b) {
     return a.first == b.first && a.period == b.period;
   };
-  // Of what each row follows at once: nothing that moves, one rhythm, or (period < 0) more than that.
+  // Samples that a row follows with direct feedthrough: period 0 if constant, period < 0 if continuous or of several.
   const std::function<SampleTimes(int)> look = [&](int row) -> SampleTimes {
     const BlockSlot* p = find_place(row);
     if (p == nullptr) return {0, -1};

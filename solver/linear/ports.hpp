@@ -1,5 +1,5 @@
 #pragma once
-/// \file Which inputs and outputs of a plant a linear model has.
+/// \file Inputs and outputs of a linear model.
 #include <vector>
 
 #include "solver/linear/linearize.hpp"
@@ -10,8 +10,8 @@ struct Ports {
   std::vector<int> inputs, outputs;  ///< of plant.inputs() and plant.outputs()
 };
 
-/// By name; by default every actuator, or every force where there is none, and every sensor. Throws InputError
-/// "linear.unknown-input", "linear.unknown-output", "linear.unknown-signal".
+/// Finds the ports by name; by default every actuator (or every force without actuators) and every sensor. Throws
+/// InputError "linear.unknown-input", "linear.unknown-output", "linear.unknown-signal".
 Ports choose_ports(const Plant& plant, const LinearizeOptions& options, const SourceLocation& at,
                    Diagnostics& diagnostics);
 

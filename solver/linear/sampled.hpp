@@ -1,5 +1,5 @@
 #pragma once
-/// \file What one period of the samples makes of a small departure (docs/theory/linear.md).
+/// \file Transition of a small perturbation over one period of the samples (docs/theory/linear.md).
 #include "formats/records/linear_model.hpp"
 #include "solver/linear/sampled_system.hpp"
 

@@ -15,7 +15,7 @@ constexpr double kInputStep = 1e-2;
 /// Largest number of values at the cut in a period of all samples: the loop has as many inputs.
 constexpr long kMaxLifted = 100;
 
-/// Of what is added at the cut: a column of m⁺, `before` and after the change.
+/// Effect of an input added at the cut: a column of m⁺. The input acts `before` and after the change.
 VectorXd calc_input_effect(Plant& plant, SampledSystem& departures, const PlantInput& cut, bool is_before,
                            bool is_after) {
   return departures.differentiate_one(

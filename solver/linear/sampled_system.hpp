@@ -14,14 +14,14 @@ double find_common_period(const std::vector<double>& cycles);
 /// Instants of samples in [from, from + period), each once, counted from `from`.
 std::vector<double> list_instants(const std::vector<SampleTimes>& samples, double from, double period);
 
-/// By columns of [δ; δu; δz; m]. Entries that are roundoff are 0, and their errors too.
+/// Jacobian, a column for each entry of [δ; δu; δz; m]. Entries that are round-off are 0, and their errors too.
 struct Jacobian {
   MatrixXd value, error;
   MatrixXd kink;               ///< half of the difference between the one-sided derivatives
   std::vector<LawKink> kinks;  ///< laws that make it
 };
 
-/// What derivatives are known to.
+/// Error bound of derivatives.
 struct Uncertainty {
   double relative = 0;         ///< the largest error or kink, relative to the scale of its row
   std::vector<LawKink> kinks;  ///< laws with two slopes
@@ -64,7 +64,7 @@ class SampledSystem {
   /// ∂f by one number.
   VectorXd differentiate_one(const std::function<VectorXd(double)>& f, double step);
 
-  /// Of all derivatives so far.
+  /// Error bound of all derivatives so far.
   const Uncertainty& uncertainty() const { return uncertainty_; }
 
  private:

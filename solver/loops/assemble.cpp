@@ -11,7 +11,7 @@ namespace {
 constexpr double kClosed = 1e-12;
 constexpr int kMostSteps = 100, kMostStarts = 24;
 constexpr double kDependent = 1e-8;  // of the largest singular value
-/// What gives way first costs so much less than what gives way with it, that the latter stays where it is if it can.
+/// Factor between the costs of two priorities: a coordinate of the higher one moves only if the others cannot close.
 constexpr double kPreference = 1e5;
 
 // The size of a step that counts as 1: a radian, the length of the system, a deflection of a hundredth of it.
@@ -34,7 +34,7 @@ VectorXd calc_step_sizes(const Loops& loops, const Tree& tree) {
   return size;
 }
 
-// Of the coordinates that may move; zero of the others.
+// Step sizes of the coordinates that may move; zero for the others.
 VectorXd mask(const VectorXd& size, const std::vector<AssemblyPriority>& priority, AssemblyPriority last) {
   VectorXd chosen = size;
   for (size_t row = 0; row < priority.size(); ++row) {

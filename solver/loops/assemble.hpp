@@ -4,7 +4,7 @@
 
 namespace bough::solver {
 
-/// How firmly a coordinate is held: those of a lower priority give way first, Fixed ones never.
+/// Priority of a coordinate's initial value. Assembly moves those of a lower priority first, Fixed ones never.
 enum class AssemblyPriority : unsigned char { Free, Given, Modal, Fixed };
 
 struct Assembly {
@@ -18,7 +18,7 @@ struct Assembly {
 Assembly assemble_positions(const Loops& loops, const Tree& tree, double t,
                             const std::vector<AssemblyPriority>& priority, Eigen::Ref<VectorXd> q, TreeData& tree_data,
                             LoopData& data);
-/// The same of rates: G u = 0. After assemble_positions.
+/// Finds rates u with G u = 0. After assemble_positions.
 Assembly assemble_rates(const Loops& loops, const Tree& tree, const std::vector<AssemblyPriority>& priority,
                         Eigen::Ref<VectorXd> u, TreeData& tree_data, LoopData& data);
 

@@ -1,5 +1,5 @@
 #pragma once
-/// \file What a constraint owes the loops: rows W(X) on the relative motion of two frames, whatever its type.
+/// \file Interface of a constraint for the loops: rows W(X) on the relative motion of two frames, for every type.
 ///
 /// Hp is fixed at a marker of the parent, Hc at one of the child. X = [R, p]: Hc in Hp; [v; w] and [a; α] its velocity
 /// and acceleration as the hinges have them (solver/hinges/hinge.hpp), components in Hp. A closure demands

@@ -76,7 +76,7 @@ struct LoopData {
 /// Paths of the constraints through the tree.
 void finish_loops(const Tree& tree, Loops& loops);
 LoopData make_loop_data(const Loops& loops, const Tree& tree);
-/// Which are closed from now on. Allocates.
+/// Opens and closes the constraints. Allocates.
 void set_constraint_states(const Loops& loops, const Tree& tree, const std::vector<ConstraintState>& constraints,
                            LoopData& data);
 std::vector<ConstraintState> get_constraint_states(const LoopData& data);
@@ -87,7 +87,7 @@ ConstraintState find_as_closed(const Loops& loops, const Tree& tree, const TreeD
 /// Gaps, W (position); relative velocities, biases (velocity). After the same stages of the tree. No allocation.
 void calc_closure_positions(const Loops& loops, const Tree& tree, const TreeData& tree_data, LoopData& data);
 void calc_closure_velocities(const Loops& loops, const Tree& tree, const TreeData& tree_data, LoopData& data);
-/// What is left open of a constraint: relative to Loops::length, and in radians. After calc_closure_positions.
+/// Position error of a constraint: relative to Loops::length, and in radians. After calc_closure_positions.
 double calc_gap(const Loops& loops, const LoopData& data, int constraint);
 double calc_largest_position_error(const Loops& loops, const LoopData& data, int* which = nullptr);
 

@@ -12,9 +12,9 @@ namespace {
 
 constexpr int kMostProjections = 6;
 constexpr double kClosed = 1e-14;
-/// Of the most that a row of that size moves in its constraint. Near a change point a row gets to move as the square of
-/// the distance θ from it, and rounding of the gap makes an acceleration of 1e-15/θ³ across it: at θ = 1e-5 that grows
-/// past what the row is for.
+/// Smallest pivot of a row, relative to the largest of its constraint. Near a change point a row moves in proportion to
+/// the square of the distance θ from it, and round-off of the position error makes an acceleration of 1e-15/θ³: at
+/// θ = 1e-5 this exceeds the accelerations that the row controls.
 constexpr double kVoid = 1e-10;
 
 // Adds a share of row k of a constraint to a sweep that was started.

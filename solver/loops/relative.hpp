@@ -4,7 +4,7 @@
 
 namespace bough::solver {
 
-/// Of Hc, fixed in the child's marker at [R, p] of a ConstraintState, in Hp, the parent's marker.
+/// Relative motion of Hc, fixed in the child's marker at [R, p] of a ConstraintState, in Hp, the parent's marker.
 struct RelativeMotion {
   Matrix3d R = Matrix3d::Identity();  ///< R_HpHc
   Vector3d p = Vector3d::Zero();      ///< p_HpHc, in Hp

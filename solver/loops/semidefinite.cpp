@@ -210,7 +210,7 @@ void SemidefiniteFactor::compute() {
   find_null_vectors();
 }
 
-// Of a row that depends on others: 1 there, and what the eliminated rows answer to it.
+// Null vector of each dependent row: 1 in the row, and the response of the eliminated rows.
 void SemidefiniteFactor::find_null_vectors() {
   const auto num = static_cast<Eigen::Index>(dependent_.size());
   if (null_.cols() != num || null_.rows() != size()) null_.resize(size(), num);

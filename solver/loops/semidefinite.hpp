@@ -29,7 +29,7 @@ class SemidefiniteFactor {
   void arrange(const std::vector<int>& sizes, const std::vector<std::pair<int, int>>& meets);
   /// One block.
   void arrange(int size) { arrange(std::vector<int>{size}, {}); }
-  /// By j, then by i; the first of each j is its diagonal block.
+  /// Pairs ordered by j, then by i; the first of each j is its diagonal block.
   std::vector<Pair> pairs;
   /// From here on `row` depends on nothing until the next call with false.
   void set_void(int row, bool is_void) { is_void_[static_cast<size_t>(row)] = is_void; }

@@ -1,5 +1,5 @@
 #pragma once
-/// \file What a hinge, a constraint or a [[force]] puts on a node of a body, measured.
+/// \file Load on a node of a body from a hinge, a constraint or a [[force]].
 #include <vector>
 
 #include "solver/forces/applied.hpp"

@@ -32,7 +32,7 @@ class Recovery {
   /// nullptr when absent.
   const Element* find(int id) const;
   void record(int id);  ///< among the results
-  /// What loads the body at its locators; ids of nodes whose loads the file has no answer to.
+  /// Finds the loads on the body at its locators. Returns ids of loaded nodes without static response in the file.
   std::vector<int> connect(const Tree& tree, const Loops& loops, const std::vector<AppliedForce>& forces,
                            const records::FlexBody& flex, const std::vector<records::ForceRecord>& records);
 

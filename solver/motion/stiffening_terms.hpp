@@ -11,8 +11,8 @@ namespace bough::solver {
 
 class StiffeningTerms {
  public:
-  /// Of body `b` with the modes of the system. Sources without locators in the file are left out.
-  /// \param constraints  what constraints pass on counts too.
+  /// Terms of body `b` with the modes of the system. Sources without locators in the file are left out.
+  /// \param constraints  true to include the loads of constraints.
   static StiffeningTerms collect(const records::SystemSpec& spec, const Tree& tree, const Loops& loops,
                                  const std::vector<AppliedForce>& forces, const records::FlexBody& flex, int b,
                                  bool constraints);

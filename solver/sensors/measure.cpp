@@ -1,4 +1,4 @@
-// What each kind of sensor measures, without its imperfections.
+// Measured value of each kind of sensor, without imperfections.
 #include <algorithm>
 #include <cmath>
 

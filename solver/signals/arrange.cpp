@@ -86,7 +86,7 @@ void SignalGraph::arrange(Diagnostics& diagnostics) {
     order.clear();
     return;
   }
-  // What follows from the accelerations is late.
+  // Blocks that depend on accelerations are computed after them.
   for (const int i : late_order) {
     if (i == static_cast<int>(n)) continue;
     const auto& sources = moment[static_cast<size_t>(i)];

@@ -14,12 +14,12 @@ namespace bough::solver {
 
 using Eigen::Vector3d;
 
-/// What a block keeps for one thread to compute with: no state.
+/// Scratch memory of a block for one thread; holds no state.
 struct BlockScratch {
   virtual ~BlockScratch() = default;
 };
 
-/// What a block computes from. The pointers hold for one call.
+/// Inputs of a computation of a block. The pointers are valid during one call.
 struct BlockInput {
   double t = 0;
   const double* u = nullptr;        ///< inputs
@@ -40,7 +40,7 @@ struct BlockSizes {
   double delay = 0;                 ///< sampled: between the sample and its appearance at the outputs
 };
 
-/// What a block is, which is the folder of the results that its outputs are in.
+/// Kind of a block; the results file has a folder for the outputs of each kind.
 enum class BlockKind : unsigned char { Function, Input, Sensor, Controller, Actuator, Force, Stiffening };
 
 /// The folder of a kind, as "/sensors/".
@@ -82,13 +82,13 @@ class Block {
   /// reads_acceleration stands for. All by default.
   virtual void mark_motion(const Tree& tree, std::vector<bool>& q, std::vector<bool>& u) const;
 
-  /// Whether the outputs depend on the time itself: a step that passes over a short event of theirs would not see it.
+  /// Returns true if the outputs depend on t itself: a step longer than a short event of theirs would miss it.
   virtual bool depends_on_time() const { return false; }
 
-  /// Whether its memory is no set of numbers, so that no linear model can be made of its samples.
+  /// Returns true if the memory is not a set of numbers; its samples then have no linear model.
   virtual bool is_opaque() const { return false; }
 
-  /// How many of its inputs an event may choose among; 0: none.
+  /// Number of inputs among which an event may choose; 0: none.
   virtual int num_choices() const { return 0; }
   /// The memory with input `choice` (from 0) passed on.
   virtual void choose(int choice, double* d) const;

@@ -28,7 +28,7 @@ struct BlockSlot {
   bool is_sampled() const { return block->sizes.sample_time > 0; }
 };
 
-/// Of one system in motion. Part of SystemData.
+/// Signals of one system in motion. Part of SystemData.
 struct SignalData {
   VectorXd values;  ///< every output of every block
   VectorXd z;       ///< continuous states
@@ -62,9 +62,9 @@ class SignalGraph {
   /// After calc_all, at the start of a run: lags that are to start at rest follow what is there. False without any.
   bool settle(const Motion& motion, SignalData& signals) const;
   const BlockSlot* find(const std::string& path) const;
-  /// What the motion needs, but what is late. After kinematics, before loads.
+  /// Computes the blocks that the motion needs and that do not need accelerations. After kinematics, before loads.
   void calc_before_acceleration(const Motion& motion, SignalData& signals) const;
-  /// What is late and needed. After accelerations.
+  /// Computes the needed blocks that depend on accelerations. After accelerations.
   void calc_after_acceleration(const Motion& motion, SignalData& signals) const;
   /// The blocks that calc_before_acceleration and calc_after_acceleration have left out. After accelerations.
   void calc_all(const Motion& motion, SignalData& signals) const;

@@ -9,7 +9,7 @@ void EnergyMonitor::add(double t, const Energies& e, double work, double resolut
   for (const double part : {e.kinetic, e.strain, e.potential - potential_, work})
     scale_ = std::max(scale_, std::abs(part));
   latest_ = e.kinetic + e.strain + e.potential - work - start_;
-  // What the sum itself loses to rounding is no error of the motion.
+  // Round-off of the sum itself is no error of the motion.
   const double rounding = 8 * std::numeric_limits<double>::epsilon() *
                           (std::abs(e.kinetic) + std::abs(e.strain) + std::abs(e.potential) + std::abs(work) +
                            std::abs(potential_) + resolution);

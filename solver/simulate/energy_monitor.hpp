@@ -21,13 +21,13 @@ class EnergyMonitor {
 
   /// The largest energy so far: what the balance is measured by, without the noise.
   double size() const { return std::max(scale_, std::abs(start_ - potential_)); }
-  /// Of the last moment added, with its sign; relative.
+  /// Error at the last moment added, with its sign; relative.
   double latest() const { return latest_ / scale(); }
   /// The largest of all moments added, without sign; relative.
   double worst() const { return worst_ / scale(); }
   double time_of_worst() const { return time_; }
-  /// What the motion was fed with at most: the largest so far of the initial kinetic and strain energy, the change of
-  /// the potential energy and the work without dampers. Kinetic energy far above it comes from nowhere.
+  /// Upper bound of the energy put into the motion: the largest so far of the initial kinetic and strain energy, of the
+  /// change of the potential energy and of the work without dampers. Kinetic energy far above it is an error.
   double energy_input() const { return std::max(energy_input_, noise_); }
   void add_energy_input(const Energies& e, double work, double dissipated);
   void add_energy_input(double energy) { energy_input_ = std::max(energy_input_, energy); }

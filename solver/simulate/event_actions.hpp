@@ -1,5 +1,5 @@
 #pragma once
-/// \file What events do to the system: hinges locked and released, constraints broken and closed, controllers
+/// \file Actions of events on the system: hinges locked and released, constraints opened and closed, controllers
 /// enabled, disabled and switched.
 #include "solver/simulate/hybrid_system.hpp"
 
@@ -7,8 +7,8 @@ namespace bough::solver {
 
 class EventActions {
  public:
-  /// By trigger. Reports "run.unknown-target" and "run.bad-event". `system_is_valid`: else targets may be missing that
-  /// are none to blame.
+  /// Actions by event. Reports "run.unknown-target" and "run.bad-event". If `system_is_valid` is false, targets may be
+  /// missing because of errors reported before.
   static EventActions build(const System& system, const records::SystemSpec& spec, bool system_is_valid,
                             Diagnostics& diagnostics);
 

@@ -44,7 +44,7 @@ void HybridSystem::strike(double t, std::vector<Impact>& blows, Eigen::Ref<Vecto
 }
 
 std::vector<std::string> HybridSystem::change(double t, const DiscreteState& next, Eigen::Ref<VectorXd> y) {
-  // What was prescribed goes on from where its function left it.
+  // A coordinate that was prescribed continues at the last value of its function.
   calc_kinematics(system_, *data_, t, y.head(num_q_), y.segment(num_q_, num_u_));
   y.head(num_q_) = data_->tree.q;
   std::vector<std::string> events;

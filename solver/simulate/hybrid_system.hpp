@@ -39,17 +39,17 @@ class HybridSystem final : public Ode {
   std::vector<std::string> cross_jump(double before, double t, Eigen::Ref<VectorXd> y);
   /// Takes y at t from what each coordinate and constraint does to what it does from then on. Describes jumps.
   std::vector<std::string> change(double t, const DiscreteState& next, Eigen::Ref<VectorXd> y);
-  /// The same of what comes to rest by itself: what it loses is dissipated. Rates that are left count: with them goes
-  /// what the modes of the body have of its momentum.
+  /// change() for coordinates that stick: the energy lost counts as dissipated. The impulse that stops a remaining rate
+  /// also acts on the modes of the body.
   void stick(double t, const DiscreteState& next, Eigen::Ref<VectorXd> y);
   /// stick() with the modes of now: coordinates and rates that are given take their values. No allocation.
   void keep_modes(double t, Eigen::Ref<VectorXd> y);
   /// A constraint closed as it is found at (t, y).
   ConstraintState find_as_closed(double t, const Eigen::Ref<const VectorXd>& y, int constraint);
-  /// What each coordinate and constraint does, for a checkpoint.
+  /// Modes of each coordinate and constraint, for a checkpoint.
   VectorXd make_memory() const;
-  /// Whether what may lock, release, close and break is as it is now; the coordinates of closing hinges, which follow
-  /// the motion, do not count.
+  /// Returns true if all that may lock, release, close and open is in the mode of `memory`; the coordinates of closing
+  /// hinges follow the motion and do not count.
   bool is_alike(const VectorXd& memory) const;
   void get_memory(VectorXd& memory) const;  ///< of that size; no allocation
   void set_memory(const VectorXd& memory);
@@ -57,8 +57,8 @@ class HybridSystem final : public Ode {
   double get_dissipated(const Eigen::Ref<const VectorXd>& y) const { return y[num_coordinates() + num_z_ + 1]; }
   /// "body 'boom' (modal rate 2)" for a row of y.
   std::string name_row(int row) const;
-  /// What is the first not to be a finite number at (t, y): a coordinate, a function of a force or a motion, a load, an
-  /// acceleration. Empty when all is finite.
+  /// Name of the first quantity that is not finite at (t, y): a coordinate, a function of a force or a motion, a load,
+  /// an acceleration. Empty if all are finite.
   std::string name_first_non_finite(double t, const Eigen::Ref<const VectorXd>& y);
 
  private:
@@ -70,8 +70,8 @@ class HybridSystem final : public Ode {
   int num_q_, num_u_, num_z_;
   bool has_motion_ = false;
   long num_evaluations_ = 0;
-  // Of the stages: stiffness and damping along hinge coordinates, first stage and right-hand side in the tangent of q,
-  // first stage of u, what the stage adds to forces by row of u.
+  // Vectors of the stages: stiffness and damping along hinge coordinates, first stage and right-hand side in the
+  // tangent of q, first stage of u, forces added by the stage, by row of u.
   VectorXd k_, c_, first_delta_, first_u_, delta_, extra_;
 };
 

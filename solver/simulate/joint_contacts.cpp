@@ -82,8 +82,8 @@ void JointContacts::lock(HybridSystem& ode, double t, const std::vector<bool>& r
   ode.stick(t, next, y);
 }
 
-// What comes at its stop at one moment is thrown back at once; what that drives at other stops is the next round, so
-// that a blow travels along a row of bodies that touch. Without restitution what touches is one with what strikes it.
+// Impacts are simultaneous within a round. The rates they cause at other stops are the impacts of the next round, so
+// that an impact travels along a row of touching bodies. Without restitution a touching body takes part at once.
 bool JointContacts::strike_stops(HybridSystem& ode, double t, double shortest, VectorXd& y,
                                  std::vector<std::string>& what) {
   const int u = ode.num_q();
@@ -130,7 +130,7 @@ bool JointContacts::strike_stops(HybridSystem& ode, double t, double shortest, V
 }
 
 double JointContacts::calc_slowest(const Watched& w, int u, double shortest) const {
-  // By what drives it there; where nothing does (a box that rocks on two of its feet) by how it once came.
+  // The acceleration bounds the rate of a bounce; without one (a box that rocks on two feet) the largest impact does.
   return std::max(std::abs(y_dot_[u + w.contact.u_row]) * shortest, w.stop != 0 ? kImpactNoise * w.hardest : 0);
 }
 
@@ -144,7 +144,8 @@ void JointContacts::fail_endless(const std::vector<std::string>& what) const {
                          "give them a restitution below 1, or a stiffness in its place");
 }
 
-// What moves slowly enough may rest: all of it is held, and what is not held by what may hold it comes loose.
+// Stick test: locks every slow coordinate that friction or a stop can hold. Then releases, one at a time, the
+// coordinate whose constraint force exceeds its limit most.
 void JointContacts::find_rest(HybridSystem& ode, double t, double shortest, VectorXd& y,
                               std::vector<std::string>& what) {
   const int u = ode.num_q();
@@ -161,7 +162,7 @@ void JointContacts::find_rest(HybridSystem& ode, double t, double shortest, Vect
     slide[i] = w.contact.static_friction > 0 ? sign(rate) : 0;
     const bool is_held = w.contact.static_friction > 0 || w.stop != 0;
     const bool is_slow = std::abs(rate) <= calc_slowest(w, u, shortest);
-    // What slides on its way, and has not turned, goes on.
+    // A coordinate that slides and has not reversed continues to slide.
     const bool turns = w.contact.static_friction == 0 || w.slide == 0 || w.slide * rate <= 0;
     if (is_held && is_slow && turns) rests[i] = true;  // what is left of its rate goes by the impulse of locking it
   }

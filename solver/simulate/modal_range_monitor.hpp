@@ -27,7 +27,7 @@ class ModalRangeMonitor {
 
   explicit ModalRangeMonitor(const System& system);
 
-  /// What was passed at t for the first time, as one message each.
+  /// A limit that was exceeded at t for the first time, as one message.
   struct Crossing {
     int body;
     std::string_view id;
@@ -43,7 +43,7 @@ class ModalRangeMonitor {
   /// hinge coordinates. O(nodes · modes).
   VectorXd calc_modal_limit() const;
 
-  /// What was reported, for a checkpoint.
+  /// Limits that were reported, for a checkpoint.
   int num_watched() const { return static_cast<int>(watched_.size()); }
   void get_memory(Eigen::Ref<VectorXd> memory) const;  ///< 2 num_watched
   void set_memory(const VectorXd& memory);

@@ -1,5 +1,5 @@
 #pragma once
-/// \file What a run records: the channels of the results file (docs/formats) and one sample of them.
+/// \file Recorded results of a run: the channels of the results file (docs/formats) and one sample of them.
 #include "formats/records/results.hpp"
 #include "solver/system/system.hpp"
 
@@ -13,7 +13,7 @@ class Outputs {
   /// are signals; energy; momentum; system_mass.
   explicit Outputs(const System& system);
 
-  /// Of calc_sample.
+  /// Channels of calc_sample.
   const std::vector<records::Channel>& channels() const { return channels_; }
   /// Index in the sample of component `component` (from 0) of the channel, -1 when there is none such.
   int find(const std::string& path, int component) const;
@@ -23,14 +23,14 @@ class Outputs {
                               const Eigen::Ref<const VectorXd>& u, double work, double dissipated);
   /// The last sample of calc_sample.
   const VectorXd& sample() const { return sample_; }
-  /// Of the last sample.
+  /// Energies of the last sample.
   const Energies& energies() const { return energies_; }
 
   /// Leaves of calc_sample what `groups` name ("bodies", "hinges/root", ...; empty: all), and /time, for the file.
   /// Reports "run.unknown-group".
   void choose(const std::vector<std::string>& groups, const SourceLocation& where, Diagnostics& diagnostics);
   const std::vector<records::Channel>& chosen_channels() const { return chosen_; }
-  /// What is chosen of the last sample, whose quaternions are kept. No allocation.
+  /// The chosen channels of the last sample, whose quaternions are kept. No allocation.
   const VectorXd& keep_sample();
 
   /// The quaternions kept, for a checkpoint: 4 per body, zero before the first.

@@ -12,11 +12,11 @@ namespace {
 
 /// Samples between checkpoints.
 constexpr int kCheckpointEvery = 100;
-/// Of energy_error_limit: an error worth a warning.
+/// Energy balance error, relative to energy_error_limit, at which a warning is issued.
 constexpr double kEnergyWarning = 1e-2;
 /// Relative gap of a constraint that projections do not close.
 constexpr double kOpen = 1e-6;
-/// Of the run: steps cut shorter than that, so many in a row, come to no end that anybody waits for.
+/// Steps shorter than this, relative to the run, are counted; kMostCuts in a row end the run.
 constexpr double kShortCut = 3e-8;
 constexpr int kMostCuts = 20000;
 /// Cuts between two looks at what there is to tell.
@@ -81,7 +81,7 @@ StepperOptions make_stepper_options(const HybridSystem& ode, const records::Simu
   o.absolute_tolerance.tail(ode.size() - ode.num_coordinates() - ode.num_z())
       .setConstant(std::sqrt(s.absolute_tolerance));
   o.step = plan.step;
-  // What the samples see the steps see too.
+  // Steps are no longer than the output interval, so that they miss no event of a function of time that a sample shows.
   const auto& places = ode.system().signals.places;
   if (o.step == 0 &&
       std::any_of(places.begin(), places.end(), [](const auto& p) { return p.block->depends_on_time(); }))
@@ -451,7 +451,7 @@ void Run::observe(double t) {
         "look whether driven or locked hinges leave it no way to close, or drive against each other");
   monitor_.add(t, e, work, calc_flow());
   monitor_.add_energy_input(e, work, dissipated);
-  // What a motion that jumps gives or takes is no growth.
+  // Energy that a jump of a prescribed motion adds is no divergence.
   if (time_events_.is_restart(t)) monitor_.add_energy_input(e.kinetic);
   for (const auto& crossing : limit_.find_crossings(t, ode_.data(), y_.head(ode_.num_q()))) {
     sink_.write_event({t, crossing.what});

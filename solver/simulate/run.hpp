@@ -43,7 +43,7 @@ class Run {
   /// jump of them brings about comes at once.
   void set_held(const std::vector<std::pair<int, double>>& rows);
 
-  // By an integrator of the host (run_continuous.cpp)
+  // Interface for an integrator of the host (run_continuous.cpp)
   const VectorXd& state() const { return y_; }
   std::string name_state(int row) const { return ode_.name_row(row); }
   /// From here on the state is the host's, until advance_to().
@@ -175,15 +175,15 @@ class Run {
   /// Events whose signals have crossed their values by a jump at t, where y_ is.
   std::vector<size_t> find_crossed(double t);
   void start_signal_events(double t);
-  /// What comes at a stop itself: events at a time, and crossings by the jump.
+  /// Events at a stop: events at a time, and crossings by the jump.
   std::optional<Occurrence> pass(const TimeEvent& stop);
   /// Carries out events that come at one time, at which y_ is, and those that they bring about; the one that ends the
   /// run, when there is one.
   std::optional<Occurrence> fire(std::vector<Occurrence> firings);
-  /// What an event does to hinges and constraints.
+  /// Applies an event to hinges and constraints.
   void change(const Occurrence& firing);
   void write_event(const Occurrence& firing);
-  /// Of a line of /events.
+  /// Source of a line of /events.
   std::string get_source(const Occurrence& firing) const;
   /// The end that an event brings: a last sample at its time.
   SimulateOutcome finish(const Occurrence& firing);
@@ -198,7 +198,7 @@ class Run {
   /// Counts a switch of a block; warns once ("control.sliding") where it switches without rest.
   void count_switch(const std::string& label, double t);
   // Dry friction and rigid stops (run_latches.cpp)
-  /// What rests, slides and strikes at (t, y_), from here on.
+  /// Updates the contacts that stick, slide and strike at (t, y_).
   void iterate_contacts(double t);
 
   void get_control_memory(VectorXd& memory) const;
@@ -304,7 +304,7 @@ class Run {
   int num_tiny_ = 0;
   double cut_at_ = -std::numeric_limits<double>::infinity();  ///< where something last ended a step
   int num_cuts_ = 0;                                          ///< in quick succession
-  /// Of a block that switches: since when the last hundreds of switches are counted.
+  /// Count of the switches of one block since a time.
   struct Switching {
     double since = 0;
     int count = 0;

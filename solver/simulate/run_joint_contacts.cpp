@@ -4,7 +4,7 @@
 
 namespace bough::solver {
 namespace {
-/// Of the run: bounces shorter than that come to rest.
+/// Shortest bounce, relative to the run; a contact that bounces less sticks.
 constexpr double kShortestBounce = 1e-9;
 /// Changes without any progress that are too many.
 constexpr int kMostTimes = 100;

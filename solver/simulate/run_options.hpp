@@ -1,5 +1,5 @@
 #pragma once
-/// \file What a run needs beside its system, resolved and checked before it starts.
+/// \file Options of a run in addition to its system, resolved and checked before it starts.
 #include <set>
 
 #include "solver/integrate/integrator.hpp"

@@ -36,8 +36,8 @@ struct SimulateOutcome {
 /// Reports what simulate would refuse in the spec. The system may have come from draft_system.
 void check_run(const System& system, const records::SystemSpec& spec, Diagnostics& diagnostics);
 
-/// The same with the start of the run itself: loops closed, masses factored, controllers sampled, the first sample
-/// made, the events of its time come. What would end it there is reported, a failed computation too; nothing is thrown.
+/// Checks the start of the run too: closes loops, factors masses, samples controllers, makes the first sample and
+/// handles the events of its time. Reports what would end the run there, a failed computation too; throws nothing.
 void check_start(const System& system, const records::SystemSpec& spec, Diagnostics& diagnostics);
 
 /// Integrates spec.simulation and streams samples. A run that diverges (non-finite state, or past the limit) ends the

@@ -27,7 +27,7 @@ class Simulator {
   double resolution() const;
   /// Numbers by which save() may grow where a pause is within a step.
   std::size_t max_step_size() const;
-  /// How the run has ended; none before.
+  /// Outcome of a run that has ended; none before.
   const std::optional<SimulateOutcome>& outcome() const;
 
   int num_inputs() const { return static_cast<int>(inputs_.size()); }
@@ -41,7 +41,7 @@ class Simulator {
   /// The components of all channels at time(), one after another. No allocation.
   const Eigen::VectorXd& calc_outputs();
 
-  // By an integrator of the host, in place of advance_to()
+  // Interface for an integrator of the host, in place of advance_to()
   int num_states() const;
   const Eigen::VectorXd& state() const;
   std::string name_state(int row) const;

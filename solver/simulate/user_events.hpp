@@ -19,7 +19,7 @@ class UserEvents {
   static UserEvents build(const records::SystemSpec& spec, const Outputs& recorder, bool system_is_valid,
                           Diagnostics& diagnostics);
 
-  /// Of the events at a time; those that only log, or the others.
+  /// Times of the events at a time; either those that only log, or the others.
   std::vector<double> collect_times(bool log_only) const;
   bool has_signals() const { return num_signals_ > 0; }
   const records::UserEventRecord& get(size_t trigger) const { return records_[trigger]; }
@@ -32,8 +32,8 @@ class UserEvents {
 
   /// From here on crossings count: the signs at the start, or after a jump of the state.
   void start(const VectorXd& gaps);
-  /// What signals crossed since the last call, by the signs kept; keeps those of `gaps`. A signal that is exactly at
-  /// its value keeps the sign it had. Indices of triggers, appended to `crossed`.
+  /// Finds the signals that crossed their value since the last call, by the signs kept, and keeps those of `gaps`. A
+  /// signal exactly at its value keeps the sign it had. Appends the indices of the events to `crossed`.
   void find_crossed(const VectorXd& gaps, std::vector<size_t>& crossed);
   /// Events at a time due within `resolution` of t, appended.
   void find_due(double t, double resolution, std::vector<Occurrence>& due) const;

@@ -10,9 +10,9 @@
 
 namespace bough::solver {
 namespace {
-/// Of the largest value so far: a kink function that is smaller before and after has no crossing but by rounding.
+/// Round-off of a kink function, relative to its largest value so far: below it before and after, there is no crossing.
 constexpr double kKinkNoise = 1e-12;
-/// Of its value after: a joint contact that has just left its limit may be on either side of it by rounding.
+/// Round-off of a contact function, relative to its value after: a contact at its limit may be on either side of it.
 constexpr double kContactNoise = 1e-9;
 }  // namespace
 

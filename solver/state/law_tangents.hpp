@@ -96,14 +96,14 @@ std::array<double, M> evaluate_law(LawTangents* tangents, const LawOwner& owner,
   return y;
 }
 
-/// The same of a law with one input and one output: T law(T x).
+/// Evaluates a law with one input and one output: T law(T x).
 template <class Law>
 double evaluate_scalar_law(LawTangents* tangents, const LawOwner& owner, int slot, double x, const Law& law) {
   if (tangents == nullptr) return law(x);
   return evaluate_law<1, 1>(tangents, owner, slot, {x}, [&](const auto& in) { return std::array{law(in[0])}; })[0];
 }
 
-/// The same of a law that only doubles pass through (formulas, libraries of users): its slopes by differences.
+/// Evaluates a law for doubles only (formulas, libraries of users): its slopes by differences.
 void evaluate_black_box(LawTangents* tangents, const LawOwner& owner, int slot, const std::vector<double>& x, int num_y,
                         const std::function<void(const double* x, double* y)>& law, double* y);
 

@@ -1,5 +1,5 @@
 #pragma once
-/// \file How bodies and nodes move, as results.
+/// \file Motions of bodies and nodes, as results.
 #include "base/rotation.hpp"
 
 namespace bough::solver {

@@ -9,7 +9,7 @@ namespace bough::solver {
 
 using Eigen::VectorXd;
 
-/// What a hinge coordinate does: moves as the equations say; keeps its place (its rate is zero); follows a function.
+/// Mode of a hinge coordinate: moved by the equations of motion; locked (rate zero); prescribed by a function.
 enum class HingeMode : unsigned char { Free, Locked, Prescribed };
 
 /// A constraint as it stands: closed or open, and how it was found when it was closed in the run.
@@ -21,7 +21,7 @@ struct ConstraintState {
   VectorXd q;                                     ///< coordinates of the closing hinge
 };
 
-/// What changes at instants only.
+/// Discrete state, which changes at instants only.
 struct DiscreteState {
   std::vector<HingeMode> mode;               ///< num_u, by row of u; modal rows are Free
   std::vector<ConstraintState> constraints;  ///< one per constraint; empty: as they were

@@ -92,7 +92,7 @@ ComponentCost calc_component_cost(const MatrixXd& A, const MatrixXd& B, const Ma
   }
   ComponentCost cost;
   cost.num_rigid = part.num_rigid;
-  // Of the outputs only what the decaying part brings.
+  // Outputs of the stable part only.
   const MatrixXd seen = (C * part.U * part.L).real();
   const MatrixXd X = solve_lyapunov(part, B * B.transpose());
   cost.state = (X * seen.transpose()).cwiseProduct(seen.transpose()).rowwise().sum();

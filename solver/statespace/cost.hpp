@@ -1,5 +1,5 @@
 #pragma once
-/// \file What each state of a stable linear model adds to the mean square of its outputs (docs/theory/linear.md).
+/// \file Share of each state of a stable linear model in the mean square of its outputs (docs/theory/linear.md).
 #include <Eigen/Dense>
 
 namespace bough::statespace {
@@ -41,8 +41,8 @@ double calc_mean_square_difference(const StateSpace& full, const StateSpace& red
 /// Throws ComputationError "select.unstable" when a pole off 0 does not decay.
 ComponentCost calc_component_cost(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B, const Eigen::MatrixXd& C);
 
-/// The same of one mode η̈ + 2ζω η̇ + ω² η = bᵀ u, y = c_d η + c_r η̇ alone: |b|² (|c_d|² + ω² |c_r|²) / (4 ζ ω³). Near
-/// V_i where the modes are lightly damped and apart.
+/// Component cost of a single mode η̈ + 2ζω η̇ + ω² η = bᵀ u, y = c_d η + c_r η̇: |b|² (|c_d|² + ω² |c_r|²) / (4 ζ ω³).
+/// Near V_i if the modes are lightly damped and well separated.
 double calc_modal_cost(double omega, double zeta, double b_squared, double c_d_squared, double c_r_squared);
 
 }  // namespace bough::statespace

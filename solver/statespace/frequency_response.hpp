@@ -39,8 +39,8 @@ records::FrequencyResponse calc_frequency_response(const records::LinearModel& m
 /// end of a loop with poles at 0: to where |L| = 1, by decades, eight at most.
 FrequencyRange widen_for_loop(const records::LinearModel& loop, const FrequencyRange& range);
 
-/// Of a model with one input and one output, L; crossings are located to rounding. Of a lifted loop (N inputs and
-/// outputs, docs/theory/linear.md, "Margins") by the eigenvalues of L. Throws nothing.
+/// Margins of a loop L with one input and one output; crossings are located to round-off. Those of a lifted loop (N
+/// inputs and outputs, docs/theory/linear.md, "Margins") by the eigenvalues of L. Throws nothing.
 records::Margins calc_margins(const records::LinearModel& loop, const records::FrequencyResponse& response);
 
 /// The largest singular value: of the response's frequencies first, then by eigenvalues of the Hamiltonian matrix until

@@ -187,7 +187,7 @@ double calc_sigma(const MatrixXcd& value) {
   return value.size() == 0 ? 0 : Eigen::JacobiSVD<MatrixXcd>(value).singularValues()[0];
 }
 
-/// Whether poles that part leaves out come through from inputs to outputs: C Aᵏ (1 - U L) B beside |C| |Aᵏ B|.
+/// Returns true if poles outside `part` couple inputs to outputs: C Aᵏ (1 - U L) B is not negligible to |C| |Aᵏ B|.
 bool is_seen(const records::LinearModel& model, const StablePart& part) {
   const Index n = model.A.rows();
   MatrixXd A = model.A;
@@ -465,7 +465,7 @@ records::PeakGain calc_peak_gain(const records::LinearModel& model, const record
     peak.value = std::numeric_limits<double>::infinity();
     return peak;
   }
-  // What decays: z = L x has complex coordinates; their real span will do.
+  // The stable part: z = L x has complex coordinates; their real span is used.
   const Index kept = part.T.rows();
   StateSpace s{MatrixXd(0, 0), MatrixXd(0, model.B.cols()), MatrixXd(model.C.rows(), 0)};
   if (kept > 0) {

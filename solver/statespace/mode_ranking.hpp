@@ -1,5 +1,5 @@
 #pragma once
-/// \file Which modes of a body to keep, by component cost (docs/theory/linear.md).
+/// \file Choice of the modes of a body by component cost (docs/theory/linear.md).
 #include <string>
 #include <vector>
 
@@ -51,7 +51,7 @@ std::vector<int> group_modes(const records::FlexBody& body, const ModeRanking& r
 /// Each mode's cost, of a group the mean of its costs.
 std::vector<double> calc_modified_costs(const ModeRanking& ranking, const std::vector<int>& groups);
 
-/// Of several configurations the worst for each mode: costs as parts of each V, the largest of them. total 1.
+/// Ranks modes for several configurations: the largest cost of each mode, relative to V. total is 1.
 ModeRanking combine_worst(const std::vector<ModeRanking>& rankings);
 
 struct SelectionRules {
@@ -68,10 +68,10 @@ struct Choice {
   bool within_tolerance = false;  ///< it went, by that rule
 };
 
-/// What goes, the cheapest first as far as the rules let it; of a rule by tolerance the caller may take back some
-/// (`keep_dearest`). Modes that are no normal modes (constraint, attachment, residual) and those at zero frequency stay
-/// always, and those that are pinned. Modes of one frequency are ranked by their mean cost, and within the tolerance
-/// they go together or not at all.
+/// Modes to truncate, the lowest cost first, as far as the rules allow; of a rule by tolerance the caller may retain
+/// some (`keep_dearest`). Modes that are not normal (constraint, attachment, residual), those at zero frequency and
+/// those that are pinned are always retained. Modes of one frequency are ranked by their mean cost, and truncated
+/// together by the tolerance or not at all.
 std::vector<Choice> choose_modes(const records::FlexBody& body, const ModeRanking& ranking,
                                  const SelectionRules& rules);
 

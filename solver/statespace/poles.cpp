@@ -49,7 +49,7 @@ Pole name_pole(std::complex<double> value, const std::map<std::string, double>& 
     double& best = is_body_mode(coordinate) ? most_modal : most_hinge;
     if (part > best * kMore) best = part, (is_body_mode(coordinate) ? pole.body_mode : pole.hinge) = coordinate;
   }
-  // What only rounding couples takes no part.
+  // Participation that is only round-off does not count.
   if (most_modal < 1e-9 * most) pole.body_mode.clear();
   if (most_hinge < 1e-9 * most) pole.hinge.clear();
   return pole;

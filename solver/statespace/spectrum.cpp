@@ -58,7 +58,7 @@ ComponentCost calc_component_cost(const StateSpace& s, const Spectrum& spectrum)
   ComponentCost cost;
   cost.state = VectorXd::Zero(s.A.rows());
   const StablePart part = split_stable(s.A);
-  // The same words for what grows as of white noise.
+  // Unstable parts raise the error that white noise raises.
   if (!part.is_stable()) return calc_component_cost(s.A, s.B, s.C);
   cost.num_rigid = part.num_rigid;
   const MatrixXd decays = (part.U * part.L).real();

@@ -17,7 +17,7 @@ struct Spectrum {
 /// "select.unstable" as calc_component_cost does.
 ComponentCost calc_component_cost(const StateSpace& model, const Spectrum& spectrum);
 
-/// As calc_mean_square_difference of white noise.
+/// Mean square of the difference y - y_r for inputs of the given spectrum.
 double calc_mean_square_difference(const StateSpace& full, const StateSpace& reduced, const Spectrum& spectrum);
 
 /// Both side by side: the same inputs, the difference of the outputs.

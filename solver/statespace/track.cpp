@@ -77,7 +77,7 @@ void track_poles(records::LinearSweep& sweep) {
     EigenSystem here = calc_eigen_system(model.A);
     if (k == 0) {
       for (std::size_t i = 0; i < order.size(); ++i) order[i] = static_cast<int>(i);
-      // As the table of poles has them: by distance from zero, pairs together.
+      // Eigenvalues in the order of the table of poles: by distance from zero, pairs together.
       std::stable_sort(order.begin(), order.end(), [&](int a, int b) {
         const auto key = [&](int i) {
           const std::complex<double> v = here.value[i];

@@ -11,7 +11,7 @@ struct EigenSystem {
   Eigen::MatrixXcd right, left;  ///< columns; rows, left · right = 1
 };
 
-/// Of A, balanced.
+/// Eigenvalues and eigenvectors of A, balanced.
 EigenSystem calc_eigen_system(const Eigen::MatrixXd& A);
 
 /// order[i]: which of `next` is what `before` i has become. The correlation of i and j is |w_i v'_j w'_j v_i| over

@@ -96,7 +96,7 @@ Power calc_powers(const System& system, const SystemData& data) {
         dissipated += tb.damping[i] * u[row] * u[row];
     }
   }
-  // What elements along hinges do is not in `applied`.
+  // Elements along hinges are not in `applied`.
   double lost = dissipated;
   for (size_t i = 0; i < data.elements.size(); ++i) {
     const ForceResult& result = data.elements[i];

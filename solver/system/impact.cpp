@@ -102,7 +102,7 @@ void strike(const System& system, SystemData& system_data, double t, const Eigen
     own.impulse = -own.side * p[i];
     u += own.impulse * D.col(i);
   }
-  // What is thrown back has its rate without rounding.
+  // A rebounding coordinate gets its rate without round-off.
   const double close = 1e-9 * v.cwiseAbs().maxCoeff();
   for (Eigen::Index i = 0; i < n; ++i) {
     const Impact& own = blows[static_cast<size_t>(i)];

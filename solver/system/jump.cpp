@@ -101,7 +101,7 @@ bool cross_jump(const System& system, SystemData& system_data, double before, do
   solve_jump(tree, data, given, du);
   add_free(data, du, u);
   if (!system_data.loops.blocks.empty()) {
-    // What closes the loops again acts in the same instant.
+    // The impulses that close the loops again act at the same instant.
     calc_velocity(tree, u, data);
     calc_closing_impulses(system.loops, tree, data, system_data.loops);
     Sweep& s = start_response(data);

@@ -54,7 +54,7 @@ struct System {
   bool is_lagged = false;                             ///< bodies are stiffened by blocks of signals, not by themselves
   std::vector<bool> body_is_valid;                    ///< by body: its record and its hinge have no errors
   std::vector<std::unique_ptr<Recovery>> recoveries;  ///< by body; nullptr: nothing is recovered of it
-  /// By body; what would stiffen those whose stiffening is off. nullptr: it is on, or the file has nothing.
+  /// Terms, by body, that would stiffen a body whose stiffening is off. nullptr: it is on, or the file has none.
   std::vector<std::shared_ptr<const StiffeningTerms>> left_out;
 
   int num_bodies() const;
@@ -81,7 +81,7 @@ struct System {
   bool is_coupler(int constraint) const;
   /// Index of node `id` for calc_node_motion (0: Bo), -1 when the body has none such.
   int find_node(int body, int id) const;
-  /// Whether the node carries the second-order (foreshortening) term.
+  /// Returns true if the node has the second-order (foreshortening) term.
   bool has_node_second_order(int body, int node_index) const;
 
   std::unique_ptr<SystemData> make_data() const;
@@ -107,9 +107,9 @@ DiscreteState get_discrete(const SystemData& data);
 /// Returns true if coordinates and constraints have the modes of `discrete`. No allocation.
 bool has_modes(const SystemData& data, const DiscreteState& discrete);
 
-/// What happens at t where given rates jump: from those just before (functions at `before`, the modes so far) to those
-/// at t (under `modes`, or as they are for nullptr; they stay). Rates of free coordinates get the impulse M⁻¹ of it,
-/// their momenta hold; `work` grows by what the impulse does. u: in and out. Describes each jump in `events`; false
+/// Applies a jump of prescribed rates at t: from the rates before (functions at `before`, the modes so far) to those
+/// at t (under `modes`; unchanged modes for nullptr). Rates of free coordinates jump by the impulse; their
+/// momenta are conserved. `work` grows by the work of the impulse. u: in and out. Describes each jump in `events`; false
 /// when there is none. Positions do not jump. Allocates.
 bool cross_jump(const System& system, SystemData& data, double before, double t, const DiscreteState* modes,
                 const Eigen::Ref<const VectorXd>& q, Eigen::Ref<VectorXd> u, double& work,
@@ -118,7 +118,7 @@ bool cross_jump(const System& system, SystemData& data, double before, double t,
 /// q̇ = N(q) u (prescribed coordinates: their given rates). O(num_bodies).
 void calc_q_dot(const System& system, SystemData& data, double t, const Eigen::Ref<const VectorXd>& q,
                 const Eigen::Ref<const VectorXd>& u, Eigen::Ref<VectorXd> q_dot);
-/// The same at the state of the last calc_kinematics.
+/// q̇ at the state of the last calc_kinematics.
 void get_q_dot(const System& system, const SystemData& data, Eigen::Ref<VectorXd> q_dot);
 /// Positions and velocities of every body; clears the applied forces. Must precede the calls below. O(num_bodies).
 void calc_kinematics(const System& system, SystemData& data, double t, const Eigen::Ref<const VectorXd>& q,
@@ -144,10 +144,10 @@ void remove_normal(const System& system, SystemData& data, Eigen::Ref<VectorXd> 
 /// u̇ by the order-n recursion with what was added, loops closed; body accelerations and hinge forces become available.
 /// Order n. No allocation. Throws ComputationError when the articulated inertia of a body is not positive definite.
 void calc_accelerations(const System& system, SystemData& data, double t, Eigen::Ref<VectorXd> u_dot);
-/// The same by assembling the dense M(q) and solving: the second route for tests. O(num_u³).
+/// Accelerations by assembling the dense M(q) and solving: the second route for tests. O(num_u³).
 void calc_accelerations_dense(const System& system, SystemData& data, double t, Eigen::Ref<VectorXd> u_dot);
 
-/// What blocks and recoveries see.
+/// Motion as blocks and recoveries use it.
 inline Motion get_motion(const System& system, const SystemData& data) {
   return {system.tree, data.tree, system.loops, data.loops, system.gravity};
 }
@@ -163,7 +163,7 @@ inline ConstraintReaction get_constraint_reaction(const System& system, const Sy
 HingeReaction get_hinge_reaction(const System& system, const SystemData& data, int body);
 
 Energies calc_energies(const System& system, const SystemData& data);
-/// Of the modes of one body.
+/// Strain energy of the modes of one body.
 double calc_strain_energy(const System& system, const SystemData& data, int body);
 struct Power {
   double total = 0;       ///< of applied forces, dampers and prescribed motions: d/dt(kinetic + strain + potential)
@@ -174,9 +174,9 @@ Power calc_powers(const System& system, const SystemData& data);
 inline double calc_power(const System& system, const SystemData& data) { return calc_powers(system, data).total; }
 /// Linear momentum and angular momentum about the inertial origin, in W.
 void calc_momentum(const System& system, const SystemData& data, Vector3d& linear, Vector3d& angular);
-/// The same of one body.
+/// Momentum of one body.
 void calc_body_momentum(const System& system, const SystemData& data, int body, Vector3d& linear, Vector3d& angular);
-/// Of the bodies as they are deformed. After calc_kinematics.
+/// Mass, centre of mass and inertia of the deformed bodies. After calc_kinematics.
 SystemMass calc_system_mass(const System& system, const SystemData& data);
 
 }  // namespace bough::solver

@@ -14,7 +14,7 @@ inline std::string suggest_name(const std::string& wanted, const std::vector<std
   return near.empty() ? otherwise : "did you mean '" + near + "'?";
 }
 
-/// The same; otherwise "the hinges are: root, elbow" for plural = "hinges".
+/// Suggests a similar name; without one, lists all: "the hinges are: root, elbow" for plural = "hinges".
 inline std::string suggest_among(const std::string& wanted, const std::vector<std::string>& known,
                                  const std::string& plural) {
   std::string list;

@@ -1,5 +1,5 @@
 #pragma once
-/// \file What the coordinates of a hinge are.
+/// \file Names and kinds of the coordinates of a hinge.
 #include <string>
 
 #include "solver/tree/tree.hpp"

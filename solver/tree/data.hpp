@@ -15,9 +15,9 @@ namespace bough::solver {
 
 enum class Stage : unsigned { Position = 1, Velocity = 2, Forces = 4, Factor = 8, Acceleration = 16 };
 
-/// Of one body; nh = its free hinge coordinates, n = modes, m = modes of the parent.
+/// Data of one body; nh = its free hinge coordinates, n = modes, m = modes of the parent.
 struct BodyData {
-  // Which hinge columns are free
+  // Free hinge columns
   int num_free = 0;
   int free[6] = {0, 1, 2, 3, 4, 5};
   // Position
@@ -37,7 +37,7 @@ struct BodyData {
   MatrixXd P_modal;                ///< n x n: its lower triangle
   MatrixXd D;    ///< flexible: L of ℋᵀ𝒫ℋ (its lower triangle), Gᵀ = (L⁻¹W_topᵀ)ᵀ below it, padding
   Matrix6Xd PX;  ///< 6 x (6+m), scratch
-  // What the terms of a pivot may add up to
+  // Bounds of the terms of a pivot
   double mass_carried = 0;   ///< of the body and all that hangs on it
   double second_moment = 0;  ///< bound of ∫ρ|p|² of them about Bo
   VectorXd modal_size;       ///< n: of the modal rows
@@ -95,7 +95,7 @@ inline const Matrix6Xd& get_P_top(const TreeBody& tb, const BodyData& d) {
 }
 
 TreeData make_tree_data(const Tree& tree);
-/// What each coordinate does from now on; mode: num_u. Sizes the arrays of flexible bodies anew: allocates.
+/// Sets the mode of each coordinate; mode: num_u. Resizes the arrays of flexible bodies: allocates.
 void set_modes(const Tree& tree, const std::vector<HingeMode>& mode, TreeData& data);
 /// Leaves in TreeData::added the inertia of motors alone, and no K and D.
 void clear_added(const Tree& tree, TreeData& data);
@@ -124,9 +124,9 @@ void solve_response(const Tree& tree, TreeData& data, int marker, const Vector6d
 /// are not read) and nothing else acts: momenta along free coordinates hold. After calc_factor.
 void solve_jump(const Tree& tree, TreeData& data, const ConstVectorRef& given, Eigen::Ref<VectorXd> du);
 
-// The same in parts, for loads that act together: start, add what acts, run; the result is in the sweep (u_dot, A).
+// Response to several loads that act together: start, add the loads, run; the result is in the sweep (u_dot, A).
 Sweep& start_response(TreeData& data);
-/// The same, of the rows of these bodies only: what other bodies would answer is not to be read.
+/// Starts a response of these bodies only; the rows of other bodies must not be read.
 Sweep& start_response(const Tree& tree, TreeData& data, const std::vector<int>& bodies);
 /// wrench: at the marker, in the basis of its body.
 void add_response_wrench(const Tree& tree, const TreeData& data, int marker, const Vector6d& wrench, Sweep& s);
@@ -142,7 +142,7 @@ double calc_jump_impulse(const Tree& tree, const TreeData& data, int b, int i);
 
 /// The wrench that the parent puts on body b across its hinge, about Bo, in B. After solve.
 Vector6d calc_hinge_wrench(const Tree& tree, const TreeData& data, int b);
-/// The same at the origin of Hc, in the axes of Hp.
+/// Hinge wrench at the origin of Hc, in the axes of Hp.
 HingeReaction calc_hinge_reaction(const Tree& tree, const TreeData& data, int b);
 
 /// The second route to u̇: Jacobians of every body, M = Σ Jᵀ M(η) J, no elimination.

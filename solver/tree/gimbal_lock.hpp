@@ -6,7 +6,7 @@
 
 namespace bough::solver {
 
-/// Of a hinge with three angles or more (a gimbal): the two whose axes lie nearest each other.
+/// The two axes of a hinge with three angles or more (a gimbal) that are nearest to each other.
 struct NearestAxes {
   int first = -1, second = -1;  ///< columns of H; -1: there are no three angles
   double sine = 1;              ///< of the angle between them

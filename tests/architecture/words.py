@@ -1,6 +1,7 @@
-"""Words that must not stand where they stand: hinge types in the tree, mutable, switched-off tests, silent skips."""
+"""Forbidden words: hinge types in the tree, mutable, switched-off tests, silent skips; and the phrases of phrases.py."""
 import re
 
+import phrases
 from common import finish, line_of, list_files, list_sources, read, strip_comments
 
 findings = []
@@ -27,4 +28,8 @@ forbid([t for t in tests if t not in CLOCKS], r"\btime\.sleep\(|\bsleep_for\(|(?
        "no test depends on the time it takes: start_held of tests/cli/support.py stops a process at a point")
 forbid(list_files(["solver"], (".hpp", ".cpp")), r"(?m)^(?:static|thread_local)\s+(?!const\b|constexpr\b)[\w:<>]+\s+\w+\s*(?:=|;|\{)",
        "no globals")
+new_phrases, num_fallen = phrases.check()
+findings += new_phrases
+if num_fallen:
+    print(f"{num_fallen} counts have fallen; lower them: python3 tests/architecture/phrases.py . --lower")
 finish(findings, "words")

@@ -89,7 +89,7 @@ void FlxReader::read_text_line(const std::string& line) {
     const bool is_known = labels_.count(label) > 0 || label == "!+FRAME" || label == "!+KIND" ||
                           label == "!+NLOCATOR" || label == "!+INTERFACE" || label == "!+LOCATOR" ||
                           label == "!+PRELOAD";
-    // What a later version adds is passed over, as all of it is by a reader of 1.0.
+    // Additions of a later version are skipped, as a reader of 1.0 skips all of the extension.
     if (!is_known && minor_ > 1) return;
     if (!is_known || !read_extension(label, line)) fail(label);
   } else if (words_[0][0] == '!') {

@@ -29,7 +29,7 @@ class FlxReader {
   FlxFile read(const std::vector<std::string>& first);
 
  private:
-  /// What the values of a label are read into.
+  /// Destination of the values of a label.
   using Slot = double*;
   struct Label {
     std::string shape;  ///< the indices before the values: m new node, n node, s special node, j k modes, a axis,

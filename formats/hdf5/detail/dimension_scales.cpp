@@ -6,10 +6,10 @@ namespace bough::hdf5 {
 
 namespace {
 
-/// Of the list of users; 16 bytes each, and 64 kB an attribute.
+/// Limit of the list of users of a scale: 16 bytes each, and 64 kB per attribute.
 constexpr std::size_t kMostUsers = 4000;
 
-/// As H5DS has it: fixed length, with its zero.
+/// Writes text as H5DS does: fixed length, with its terminating zero.
 bool write_fixed_text(hid_t object, const char* name, const std::string& text) {
   const Handle type(H5Tcopy(H5T_C_S1), H5Tclose), space(H5Screate(H5S_SCALAR), H5Sclose);
   H5Tset_size(type.get(), text.size() + 1);
@@ -17,7 +17,7 @@ bool write_fixed_text(hid_t object, const char* name, const std::string& text) {
   return attribute.is_valid() && H5Awrite(attribute.get(), type.get(), text.c_str()) >= 0;
 }
 
-/// What DIMENSION_LIST holds for each dimension: its scales.
+/// Writes DIMENSION_LIST: the scales of each dimension.
 bool write_dimension_list(hid_t dataset, hobj_ref_t& scale) {
   const Handle dataspace(H5Dget_space(dataset), H5Sclose);
   const auto rank = static_cast<hsize_t>(std::max(0, H5Sget_simple_extent_ndims(dataspace.get())));

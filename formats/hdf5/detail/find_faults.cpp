@@ -20,7 +20,7 @@ constexpr double kEnd = kMega / 4;
 constexpr double kMostUnstored = 64 * kMega;
 /// A compressed file may hold this many times its size.
 constexpr double kMostCompression = 200;
-/// Of numbers that are stored as they are so many bytes are read, and then the ends of each dataset.
+/// Limit of the bytes of uncompressed numbers read; beyond it only the ends of each dataset are read.
 constexpr double kMostPlain = 32 * kMega;
 constexpr int kMostLevels = 64;
 
@@ -151,7 +151,7 @@ class Walker {
     free_text(memory, space, data);
   }
 
-  /// Of variable length.
+  /// Returns true for strings of variable length.
   static bool is_text(const Handle& memory) {
     return H5Tget_class(memory.get()) == H5T_STRING && H5Tis_variable_str(memory.get()) > 0;
   }
@@ -242,7 +242,7 @@ std::vector<Diagnostic> find_faults(const std::string& path) {
   QuietErrors quiet;
   // Only the filters of the library itself: no code is loaded for a file's sake.
   H5PLset_loading_state(0);
-  // What the library never set must not hold what it had there before: it would survive here what it does not
+  // Memory that the library leaves uninitialized must not contain old data: the file would be read here and crash
   // elsewhere.
   H5garbage_collect();
   H5set_free_list_limits(0, 0, 0, 0, 0, 0);

@@ -71,11 +71,11 @@ Handle make_string_transfer(std::size_t count);
 /// file systems.
 Handle make_file_access();
 
-/// What the operating system knows an open file by; -1 where it is not a plain file.
+/// File descriptor of an open file; -1 if it is not a plain file.
 int get_descriptor(hid_t file);
 
-/// Whether an empty file takes a few bytes, which are cut off again; false, with errno, where that fails. HDF5 itself
-/// does not survive a file that cannot take its first block.
+/// Returns true if an empty file can grow by a few bytes, which are removed again; false, with errno, if not. HDF5
+/// itself crashes on a file that cannot hold its first block.
 bool takes_a_block(int descriptor);
 
 /// Reserves disk space for all of the file as it is now in memory, and `more` bytes; false, with errno, when there is

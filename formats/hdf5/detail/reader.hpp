@@ -30,7 +30,7 @@ struct NumberArray {
 class FileReader {
  public:
   FileReader(const std::string& path, const std::string& format, const std::string& version);
-  /// Of any format: a file of another program.
+  /// Opens a file of any format, as of another program.
   explicit FileReader(const std::string& path);
 
   hid_t get() const { return file_.get(); }
@@ -38,7 +38,7 @@ class FileReader {
 
   /// These report "hdf5.missing", "hdf5.shape" (found against expected), "hdf5.type", "hdf5.damaged" and, unless
   /// told, "hdf5.nan", and then return zeros of the expected shape (0 where it is open).
-  /// Of a longer array only the first `most_rows` are touched, when given.
+  /// If given, only the first `most_rows` of a longer array are read.
   NumberArray read_array(const std::string& path, const Shape& shape, bool may_be_nan = false, long most_rows = -1);
   Eigen::VectorXd read_vector(const std::string& path, long size, bool may_be_nan = false);
   Eigen::MatrixXd read_matrix(const std::string& path, long rows, long cols);
@@ -71,7 +71,7 @@ class FileReader {
   Diagnostics diagnostics_;
 };
 
-/// Of two dimensions.
+/// Matrix of a two-dimensional array.
 Eigen::MatrixXd to_matrix(const NumberArray& array);
 
 records::BodyMesh read_mesh(FileReader& file);

@@ -108,7 +108,7 @@ RowGroups plan_row_groups(std::uint64_t max_rows, std::uint64_t sample_size) {
   groups.sample_size = sample_size;
   std::uint64_t rows = std::clamp(kGroupBytes / (sizeof(double) * sample_size), kMinRows, kMaxRows);
   rows = std::max(rows, (max_rows + kMaxGroups - 1) / kMaxGroups);
-  // As many rows in each as evenly as it goes: the last one is full too.
+  // Rows are distributed evenly over the groups, so that the last one is full too.
   groups.max_groups = (max_rows + rows - 1) / rows;
   groups.chunk_rows = (max_rows + groups.max_groups - 1) / groups.max_groups;
   return groups;

@@ -34,7 +34,7 @@ TextHeaps::TextHeaps(hid_t file) : descriptor_(get_descriptor(file)) {
   begin_ = static_cast<double>(user_block);
   type_ = Handle(H5Tcreate(H5T_OPAQUE, reference_size()), H5Tclose);
   const Handle text = make_string_type();
-  // By classes: any string of variable length to any opaque bytes.
+  // The conversion is registered by class: any string of variable length to any opaque bytes.
   H5Tregister(H5T_PERS_SOFT, "text_reference", text.get(), type_.get(), keep_bytes);
 }
 

@@ -19,7 +19,7 @@ class TextHeaps {
   std::size_t reference_size() const { return 4 + address_size_ + 4; }
   /// The type in memory that references are read as, as they lie in the file; owned by this.
   hid_t reference_type() const { return type_.get(); }
-  /// Whether each of the references leads to an object of the length that it tells, or is of an empty string.
+  /// Returns true if each reference points to an object of its length, or is of an empty string.
   bool holds(const std::vector<char>& references);
 
  private:

@@ -13,7 +13,7 @@
 
 namespace bough::hdf5 {
 
-/// What an array is: text for its `description` attribute, and its dimensions in M L T F for `dims`.
+/// Attributes of an array: text for its `description`, and its dimensions in M L T F for `dims`.
 struct Meaning {
   std::string description, dims;
 };
@@ -27,8 +27,8 @@ class FileWriter {
   FileWriter& operator=(const FileWriter&) = delete;
 
   void write_numbers(const std::string& path, const Dims& shape, const double* data, const Meaning& meaning);
-  /// The same of numbers that are nowhere side by side: fill(first, data) puts item `first` of the first dimension at
-  /// `data`. A few megabytes at a time.
+  /// Writes numbers that are not contiguous: fill(first, data) stores item `first` of the first dimension at `data`. A
+  /// few megabytes at a time.
   void write_items(const std::string& path, const Dims& shape, const std::function<void(std::size_t, double*)>& fill,
                    const Meaning& meaning);
   /// Single precision, for what is only drawn.
@@ -57,7 +57,7 @@ class FileWriter {
   /// The dataset `scale` is what the first dimension of `users` stands at.
   void attach_scale(const std::string& scale, const std::vector<std::string>& users);
 
-  /// What is written so far goes to the disk in the meantime.
+  /// Starts to write the bytes so far to disk, in the background.
   void start_sync() { part_.start_sync(); }
   /// Closes, forces the bytes to disk and renames. The file appears now.
   void commit();

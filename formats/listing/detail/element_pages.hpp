@@ -7,7 +7,7 @@ namespace bough::listing::detail {
 
 /// Letters with blanks between: "R O D".
 std::string space_out(const std::string& word);
-/// What stands above the title of a table: of which mode, frequency or time it is.
+/// Lines above the title of a table: its mode, frequency or time.
 std::vector<std::string> make_step_lines(const records::ListedStep& step);
 
 /// Real and imaginary part beside each other.

@@ -12,7 +12,7 @@ std::string centre(const std::string& text);
 
 class Pages {
  public:
-  /// What stands above every page from the next on.
+  /// Sets the lines at the top of every page, from the next page on.
   void set_titles(const std::string& title, const std::string& subtitle, const std::string& label, int subcase);
   /// A page with these lines on top, and on each page that the rows go on to.
   void begin_table(std::vector<std::string> headings);

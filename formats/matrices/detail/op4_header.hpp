@@ -1,5 +1,5 @@
 #pragma once
-/// \file What the header of an OUTPUT4 matrix says, and the columns that follow it, for the text and the binary reader.
+/// \file Header of an OUTPUT4 matrix and the columns that follow it, for the text and the binary reader.
 #include <algorithm>
 #include <functional>
 #include <string>

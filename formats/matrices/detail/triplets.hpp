@@ -25,7 +25,7 @@ class Triplets {
     imaginary_.push_back(imaginary);
   }
   std::size_t size() const { return row_.size(); }
-  /// Of each pair of places across the diagonal one at most is given, in whatever order the dofs are numbered.
+  /// Returns true if there are entries (i, j) off the diagonal, but none with an entry (j, i) too, for any dof order.
   bool is_triangular() const;
   /// Adds the other side of every entry off the diagonal.
   void mirror(Triangle how);

@@ -24,10 +24,10 @@ constexpr int kMostWrongCopies = 1000;  // what is wrong in these is wrong in mi
 constexpr int max_repeats = 1'000'000;
 /// Unknown names for which the nearest known one is looked for.
 constexpr int max_proposals = 20;
-/// Of all repeat lines of a deck together.
+/// Limit for all repeat lines of a deck together.
 constexpr long max_all_repeats = 2'000'000;
 
-/// How one card name is treated, and how often it came.
+/// Treatment of one card name, and its number of cards.
 struct NameEntry {
   CardParser parser = nullptr;      ///< nullptr: counted only
   DynamicParser dynamic = nullptr;  ///< of responses, in place of it
@@ -131,7 +131,7 @@ class Builder {
     return !section.empty() && (!is_word(section, "BULK") || !trim(trim(text.substr(5)).substr(4)).empty());
   }
 
-  /// What must be known before all other cards: defaults (GRDSET, BAROR, BEAMOR) and design variables.
+  /// Reads cards on which all others depend: defaults (GRDSET, BAROR, BEAMOR) and design variables.
   void read_ahead(int card) {
     const auto first = get_first_field(line(image(card).first_line).text);
     if (first.size() < 5 || std::string_view("GgBbDd").find(first.front()) == std::string_view::npos) return;

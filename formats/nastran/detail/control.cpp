@@ -154,7 +154,7 @@ class CaseControl {
 
   bool is_response() const { return dynamics_ && options_.is_response; }
 
-  /// What changes the answer, and Bough does not compute.
+  /// Reports a command that changes the results and is not supported.
   void refuse(const UnsupportedCommand& command) {
     const std::string what = std::string(command.name) + " is not supported: it selects " + command.what;
     if (asked_to_ignore_.count(command.name) > 0 || asked_to_ignore_.count(command.card) > 0)

@@ -36,7 +36,7 @@ constexpr std::string_view known_commands =
 
 constexpr std::size_t most_words = 100;  // of one note
 
-/// What gives the result that a command asks for; empty: nothing.
+/// Option of Bough with the results of a command; empty: none.
 std::string_view find_option(std::string_view word) {
   struct Option {
     std::string_view command, option;
@@ -68,7 +68,7 @@ std::string find_nearest_command(std::string_view word) {
   static const std::vector<std::string> used{"SPC",     "MPC",         "LOAD", "METHOD", "STATSUB", "SUBCASE",
                                              "SUPORT1", "TEMPERATURE", "NSM",  "K2GG",   "M2GG",    "B2GG"};
   const bool is_loadset = word.substr(0, 6) == "LOADSE";
-  // Of the words that begin as LOAD does only LOADSET is another command; LOADS is a slip.
+  // LOADSET is the only other command that begins with LOAD; LOADS is a typing error.
   const bool is_known = word.substr(0, 4) == "LOAD" ? is_loadset : is_among(known_commands, word);
   return is_known ? std::string{} : find_nearest(word, used);
 }

@@ -1,5 +1,5 @@
 #pragma once
-/// \file Which field of a card a property name of DVPREL1, DVMREL1 and DVCREL1 means.
+/// \file Card fields of the property names of DVPREL1, DVMREL1 and DVCREL1.
 #include <string>
 
 #include "formats/nastran/detail/card.hpp"

@@ -14,7 +14,7 @@ std::optional<records::CardEffect> find_effect(std::string_view name);
 std::string find_nearest_card(std::string_view name);
 /// The command that selects a static load which is not read, by the set in its first field; empty for other cards.
 std::string_view find_selecting_command(std::string_view name);
-/// What is lost with a set of dofs that is not used, or nullptr for other cards.
+/// Effect of a set of dofs that is read but not used, or nullptr for other cards.
 const char* find_loss(std::string_view name);
 /// Cards that act in responses alone. Those that a command selects, which is refused itself, are no error.
 struct ResponseEffect {
@@ -23,7 +23,7 @@ struct ResponseEffect {
   const char* without;  ///< what is computed with --ignore
 };
 std::optional<ResponseEffect> find_response_effect(std::string_view name);
-/// What a card makes depend on frequency (PELAST, PBUSHT, PDAMPT) or on temperature (MATTi).
+/// Kind of card that another makes dependent on frequency (PELAST, PBUSHT, PDAMPT) or on temperature (MATTi).
 enum class CardBase { None, Spring, Bush, Damper, Material };
 CardBase find_base(std::string_view name);
 const char* get_effect_name(records::CardEffect effect);

@@ -11,12 +11,12 @@
 namespace bough::nastran::detail {
 namespace {
 
-/// What a value of a parameter must be.
+/// Requirement on the value of a parameter.
 struct Rule {
   std::string_view name;
   const char* expected;
   bool (*accepts)(const std::string& value);
-  /// What a value that it does not accept is taken as; empty: an error.
+  /// Replacement of a value that is not accepted; empty: an error.
   std::string (*mend)(const std::string& value) = [](const std::string&) { return std::string(); };
 };
 
@@ -30,7 +30,7 @@ std::string round_real(const std::string& v) {
   return value && std::abs(*value) < 1e9 && std::round(*value) == *value ? std::to_string(std::lround(*value)) : "";
 }
 
-/// Those that change what Bough computes, and GRDPNT, which check prints.
+/// Parameters that change results of Bough, and GRDPNT, which check prints.
 const std::vector<Rule>& get_rules() {
   static const std::vector<Rule> rules{
       {"AUTOSPC", "YES or NO", [](const std::string& v) { return is_answer(v) || v == "1"; },
@@ -64,7 +64,7 @@ const std::vector<Rule>& get_rules() {
   return rules;
 }
 
-/// Those that responses use besides.
+/// Further parameters used by responses.
 const std::vector<Rule>& get_response_rules() {
   static const std::vector<Rule> rules{{"ALPHA1", "a number", is_real},
                                        {"ALPHA2", "a number", is_real},
@@ -129,10 +129,10 @@ constexpr std::string_view known_params =
 /// Unknown names for which the nearest known one is looked for.
 constexpr int max_proposals_of_params = 20;
 
-/// How those of SOL 600 and SOL 700 begin, hundreds of them.
+/// First letters of the parameters of SOL 600 and SOL 700, hundreds of them.
 constexpr std::array<std::string_view, 3> known_prefixes{"MAR", "MR", "DY"};
 
-/// Those that a number ends: G1, FCTC3, ZUZRI10.
+/// Parameters that end in a number: G1, FCTC3, ZUZRI10.
 constexpr std::string_view numbered_params =
     "FCTC FCTM FCTZ G MALIAS PITIME PMAX USER ZUZRC ZUZRI ZUZRL ZUZRR ZUZCC ZUZCI ZUZCR INT REAL CMPLX CHAR";
 
@@ -193,7 +193,7 @@ void check_values(records::Deck& deck, Diagnostics& diagnostics, bool of_respons
   deck.params = std::move(good);
 }
 
-/// Those that change the answer by some of their values, and that Bough does not honour.
+/// A parameter some values of which change the answer and are not supported.
 struct ActingParam {
   std::string_view name;
   bool of_responses;
@@ -208,7 +208,7 @@ constexpr std::array acting_params{
     ActingParam{"SHLDAMP", true, is_different, "damps shells by each of their materials"},
     ActingParam{"SHLDMP", true, is_different, "damps shells by each of their materials"}};
 
-/// Whether the parameter changes the answer: deck.unsupported-param.
+/// Reports a parameter that changes the answer: deck.unsupported-param.
 bool report_acting(const records::Deck& deck, const records::Param& param, bool of_responses,
                    const std::vector<std::string>& ignored, Diagnostics& diagnostics) {
   for (const auto& acting : acting_params) {

@@ -8,7 +8,7 @@
 
 namespace bough::nastran::detail {
 
-/// What no parser read, by card name and field: one warning for each, with a count.
+/// Fields that no parser read, by card name and field: one warning for each, with a count.
 class Leftovers {
  public:
   /// Looks at a card that its parser has read without error. A zero says nothing and counts as blank.

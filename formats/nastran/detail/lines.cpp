@@ -68,7 +68,7 @@ constexpr std::size_t kMostLevels = 100;
 constexpr int kMostIncludes = 20'000;
 constexpr std::size_t kMostRepeated = std::size_t{1} << 30;
 
-/// What the text is that is not lines of bytes; empty where it is.
+/// Format of a text that is not lines of bytes; empty for lines.
 std::string find_other_format(std::string_view text) {
   const auto head = text.substr(0, 4096);
   const auto nulls = static_cast<std::size_t>(std::count(head.begin(), head.end(), '\0'));

@@ -35,7 +35,7 @@ struct Source {
 /// Reads a file and what it includes. Adds deck.cannot-open, deck.include-missing, deck.include-cycle,
 /// deck.include-syntax.
 Source read_source(const std::string& path, Diagnostics& diagnostics);
-/// The same for text in memory.
+/// Source from text in memory.
 Source read_source_text(std::string_view text, const std::string& name, Diagnostics& diagnostics);
 
 }  // namespace bough::nastran::detail

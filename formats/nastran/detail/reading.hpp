@@ -1,5 +1,5 @@
 #pragma once
-/// \file What the card parsers share while a deck is read, and the table of parsers.
+/// \file State shared by the card parsers while a deck is read, and the table of parsers.
 #include <functional>
 #include <map>
 #include <set>
@@ -58,7 +58,7 @@ enum class IdSpace {
   Count
 };
 
-/// Which card first used an id; fast for ids in ascending order, which is how decks are written.
+/// Location of the card that first used an id; fast for ids in ascending order, the usual order of decks.
 class IdTable {
  public:
   struct Entry {
@@ -89,7 +89,7 @@ struct SetRange {
   IdRange range;
   records::CardLocation at;
 };
-/// What is known of a DMIG while its cards come in any order.
+/// State of a DMIG, whose cards come in any order.
 struct DmigState {
   std::size_t index = 0;  ///< in deck.direct_matrices
   bool has_header = false, is_polar = false;
@@ -149,7 +149,7 @@ struct Reading {
   /// True if `id` is new in its space. A second card with the same content adds deck.repeated-card, with another
   /// content deck.duplicate-id. The content is num_fields fields from first_field on (all of them by default).
   bool claim(IdSpace space, int id, Card& card_, int first_field = 0, int num_fields = 1 << 20);
-  /// The same of rigid elements: those of NASTRAN-95 (CRIGD1, CRBAR, ...) share ids with the other names.
+  /// Claims an id of a rigid element: those of NASTRAN-95 (CRIGD1, CRBAR, ...) share ids with the other names.
   bool claim_rigid(int id, Card& card_, int first_field = 0, int num_fields = 1 << 20);
 
  private:

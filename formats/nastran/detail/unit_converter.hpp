@@ -1,5 +1,5 @@
 #pragma once
-/// \file Which fields of a deck change with its units, card by card. Internal.
+/// \file Conversion of the fields of a deck to other units, card by card. Internal.
 #include <map>
 #include <set>
 
@@ -14,14 +14,14 @@ class UnitConverter {
 
  private:
   enum class Axes { Rectangular, Cylindrical, Spherical };
-  /// What a scalar element acts between: translations, rotations, both, or what the deck does not tell.
+  /// Motions coupled by a scalar element: translations, rotations, both, or not known from the deck.
   enum class Motion { Translation, Rotation, Mixed, Unknown };
 
   const std::string& get(int field) const;
   int get_int(int field) const;
   int size() const { return static_cast<int>(card_->fields.size()); }
   void fail(int field, const std::string& why);
-  /// By the word of a dimension: "." none, "?" nothing tells it.
+  /// Scales a field by the word of its dimension: "." none, "?" not known.
   void scale(int field, const std::string& word);
   void scale(int first, int last, const std::string& word);
 
@@ -31,14 +31,14 @@ class UnitConverter {
   void scale_lengths(int field, int cid);
   static Motion find_motion(const std::string& c1, const std::string& c2, bool has_second);
   static std::string choose(Motion motion, const char* translation, const char* rotation, const char* mixed);
-  /// Of the elements that name a property: "?" where they differ or none does.
+  /// Motion of the elements that refer to a property: "?" if they differ or there are none.
   Motion find_property_motion(const std::string& element, const std::string& pid) const;
   /// Components "123" of SPC.
   Motion find_components(int field) const;
 
   void note_card(const DeckCard& card);
   void convert_card();
-  /// Of find_field_words; false where the card is not there.
+  /// Converts the fields of find_field_words; false if the card is not among them.
   bool convert_by_table();
   bool convert_static_load();
   void refuse_unknown();

@@ -48,7 +48,7 @@ void write_points(const records::Deck& deck, CardSink& sink) {
   for (const int id : points) sink.put(CardFields("SPOINT").add(id));
 }
 
-/// What is open stays open: TEMPERATURE(INITIAL) may stand for it.
+/// Adds a blank for a TREF that was not given: TEMPERATURE(INITIAL) may take its place.
 CardFields& add_tref(CardFields& card, const std::optional<double>& tref) {
   return tref ? card.add(*tref) : card.add_blank();
 }

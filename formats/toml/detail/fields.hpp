@@ -27,7 +27,7 @@ class Fields {
   }
   const std::vector<Entry>& entries() const { return table_.entries; }
   SourceLocation locate() const { return {file_, table_.line}; }
-  /// Of the key; of the table when the key is absent.
+  /// Location of the key; of the table if the key is absent.
   SourceLocation locate(const std::string& key) const;
 
   std::string get_string(const std::string& key, const std::string& otherwise = {}) const;

@@ -11,7 +11,7 @@ namespace {
 using records::ElementType;
 using records::ForceElementRecord;
 
-/// What a type takes beside name and type.
+/// Keys of a type in addition to name and type.
 struct Keys {
   ElementType type;
   std::vector<std::string> needed, other;

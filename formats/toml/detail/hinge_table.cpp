@@ -129,7 +129,7 @@ class HingeReader {
   Diagnostics& diagnostics_;
 };
 
-/// What acts along the coordinates beside springs and dampers.
+/// Reads the force laws along the coordinates, in addition to springs and dampers.
 void read_law(const Fields& table, HingeReader& reader, records::HingeLawRecord& law, Diagnostics& diagnostics) {
   law.preload = reader.read_list("preload", false, true);
   law.spring_table = reader.read_names("spring_table");

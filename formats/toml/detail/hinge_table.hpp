@@ -5,13 +5,13 @@
 
 namespace bough::toml_files {
 
-/// Which coordinates (q) and rates (u) of a hinge are angles, in the order of the file: 'a' angle, 'l' length,
+/// Kinds of the coordinates (q) and rates (u) of a hinge, in the order of the file: 'a' angle, 'l' length,
 /// 'q' quaternion component.
 struct HingeCoordinates {
   records::HingeType type;
   std::string q, u;
 };
-/// Of a type; those of a gimbal or a general hinge are in its own keys. An unknown type has none.
+/// Coordinates of a type; those of a gimbal or a general hinge are in its own keys. An unknown type has none.
 HingeCoordinates list_coordinates(const std::string& type, const std::string& rotations,
                                   const std::string& translations);
 

@@ -15,7 +15,7 @@ using Kind = Value::Kind;
 constexpr const char* kNamePattern = R"(^(?!\.{1,2}$)[^/\x00-\x1f\x7f]{1,1000}$)";
 constexpr std::size_t kMostLetters = 1000;
 
-/// What a message shows of a text.
+/// Length of a text as quoted in messages.
 constexpr std::size_t kMostShown = 80;
 std::string quote(const std::string& s) {
   return "'" + (s.size() <= kMostShown ? s : s.substr(0, kMostShown) + "...") + "'";

@@ -28,26 +28,26 @@ class SignalUnits {
   std::vector<double> list_rates(const std::string& hinge) const;
   std::vector<double> list_efforts(const std::string& hinge) const;
   bool is_angle(const std::string& hinge, bool of_positions, std::size_t i) const;
-  /// Of one coordinate, counted from 1.
+  /// Unit of the rate of one coordinate, counted from 1.
   double get_rate_unit(const std::string& hinge, long coordinate) const;
   double get_effort_unit(const std::string& hinge, long coordinate) const;
 
-  /// What arrives at "law", "law:reference" or "law:rate", by its own keys and by [[connect]].
+  /// Wires to "law", "law:reference" or "law:rate", from its own keys and from [[connect]].
   std::vector<Wire> list_wires(const toml::table& block, const std::string& key, const std::string& port) const;
   /// Units of a signal's components; empty where they cannot be told.
   std::vector<double> list_units(const std::string& signal);
-  /// By its dims; nothing where they are not known.
+  /// Unit of an input by its dims; none if they are not known.
   std::optional<double> find_input_unit(const toml::table& input) const;
   /// The unit of one component or of all alike; nothing where it cannot be told.
   std::optional<double> find_unit(const std::string& signal);
   /// The unit of what a controller gives out; of a function's values.
   double get_output_unit(const toml::table& controller);
   double get_function_unit(const std::string& name);
-  /// What each hinge, force and actuator that takes this function expects of it; of a controller, each force.
+  /// Units that each hinge, force and actuator expects of this function; for a controller, those of each force.
   std::vector<double> list_demands(const std::string& name) const;
-  /// Of what a force is multiplied by.
+  /// Unit of the factor of a force.
   double get_multiplier_unit(const toml::table& force) const;
-  /// That an actuator takes.
+  /// Unit of the command of an actuator.
   double get_command_unit(const toml::table& actuator) const;
 
   const toml::table* find(const char* kind, const std::string& name) const;
@@ -55,7 +55,7 @@ class SignalUnits {
   const toml::table& root() const { return root_; }
   double force() const { return c_.calc_force(); }
 
-  /// Whether a controller gives out what it takes in, so that its output has the unit of its first input.
+  /// Returns true if the output of a controller has the unit of its first input.
   static bool is_passing(const toml::table& controller);
 
  private:
@@ -63,7 +63,7 @@ class SignalUnits {
   std::vector<double> list_sensor_units(const toml::table& sensor) const;
   std::vector<double> list_actuator_units(const toml::table& actuator) const;
   std::optional<double> find_channel_unit(const std::string& channel) const;
-  /// What the takers of this function or controller expect of it.
+  /// Unit that the users of this function or controller expect.
   std::optional<double> find_demand(const std::string& name);
   std::optional<double> find_taken(const std::string& name, const toml::table& taker, const std::string& kind);
 
