@@ -7,7 +7,7 @@ import numpy as np
 
 import deck_response_refusals_test as refusals
 import deck_response_test as base
-from deck_response_test import CHAIN, ONE
+from deck_response_case import CHAIN, ONE, DeckResponse
 
 DRIVEN = "RLOAD1,9,10,,,1.\nDAREA,10,1,1,2.\nDAREA,10,3,1,-1.\n"
 CASE = "DLOAD = 9\nFREQUENCY = 5\n"
@@ -17,7 +17,7 @@ def dmig(name, *terms):
     return f"DMIG,{name},0,6,1,0\n" + "".join(f"DMIG,{name},{i},1,,{j},1,{value!r}\n" for i, j, value in terms)
 
 
-class DirectInput(base.DeckResponse):
+class DirectInput(DeckResponse):
     M, K, S, B = base.Chain.M, base.Chain.K, base.Chain.S, base.Chain.B
 
     def frequency(self, case, bulk, *options, modes=3):
@@ -133,7 +133,7 @@ ENDDATA
 """
 
 
-class StiffMode(base.DeckResponse):
+class StiffMode(DeckResponse):
     """The base of a mass on a stiff spring moves by 30 Hz; far above it the mass goes with the base."""
 
     def check(self, f0, zeta, h, load, tolerance, end=.2):

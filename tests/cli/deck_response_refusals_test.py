@@ -1,7 +1,7 @@
 """What `frequency` and `transient` refuse, and what they warn of: each with its id, its line, its words."""
 import unittest
 
-from deck_response_test import CHAIN, ONE
+from deck_response_case import CHAIN, ONE
 from support import ProgramTest
 
 

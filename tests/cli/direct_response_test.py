@@ -7,11 +7,12 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 import deck_response_refusals_test as refusals
+import deck_response_structures_test as structures
 import deck_response_test as modal
-from deck_response_test import CHAIN, FRAME, ONE, C, K, M
+from deck_response_case import CHAIN, FRAME, ONE, C, DeckResponse, K, M, read
 
 
-class Direct(modal.DeckResponse):
+class Direct(DeckResponse):
     """Every deck as SOL 108 or 109; over time what the steps leave is below 1e-8."""
     def solve(self, verb, deck, *options):
         deck = deck.replace("SOL 111", "SOL 108").replace("SOL 112", "SOL 109")
@@ -107,7 +108,7 @@ class Chain(Direct, modal.Chain):
         direct = self.solve("frequency", deck)[1]
         self.write("m.bdf", deck)
         self.bough("frequency", "m.bdf", "-o", "m.h5")
-        by_modes = modal.read(self.path("m.h5"))[1]
+        by_modes = read(self.path("m.h5"))[1]
         for quantity in ["displacement", "acceleration", "spc_force"]:
             for dof, values in by_modes[quantity].items():
                 if np.abs(values).max() > 0:
@@ -132,8 +133,8 @@ class NoMass(Direct, modal.NoMass):
         super(Direct, self).near(r["displacement"][2, 1], exact[1], 1e-5)
 
 
-@take(modal.Structures, "test_static_limit", "test_cantilever")
-class Structures(Direct, modal.Structures):
+@take(structures.Structures, "test_static_limit", "test_cantilever")
+class Structures(Direct, structures.Structures):
     def test_scipy(self):
         """A frame with consistent mass, GE in some bars, PARAM,G, a bush that damps; every dof and reaction."""
         deck = FRAME.format(modes=30, cd="", v="0.,0.,1.")
@@ -163,7 +164,7 @@ class Structures(Direct, modal.Structures):
         r = self.solve("transient", text)[1]
         self.bough("matrices", "d.bdf", "-o", "m.h5")
         with h5py.File(self.path("m.h5")) as f:
-            get = lambda name: modal.csr_matrix((f[name]["data"][()], f[name]["indices"][()], f[name]["indptr"][()]),
+            get = lambda name: structures.csr_matrix((f[name]["data"][()], f[name]["indices"][()], f[name]["indptr"][()]),
                                                 shape=f[name]["shape"][()]).toarray()
             stiff, mass, dofs = get("K"), get("M"), f["dof_map"][()]
         heavy = np.diag(mass) > 0
@@ -201,7 +202,7 @@ class Structures(Direct, modal.Structures):
             self.near([direct["displacement"][g, 1][row] for g in i], u, 1e-9)
 
 
-class Stresses(modal.DeckResponse):
+class Stresses(DeckResponse):
     """A strip of two shells and a bar beside it, pulled and bent: stresses are those of the forces."""
     DECK = ("SOL {sol}\nCEND\nSPC = 1\nDLOAD = 9\n{case}\nFORCE = ALL\nSET 4 = 1, 3\nSTRESS(PUNCH) = 4\nBEGIN BULK\nPARAM,G,.05\n"
             "PARAM,W3,50.\nMAT1,1,7.+4,,.3,2.7-3\nPSHELL,1,1,.5,1,,1\nPBAR,2,1,.3,.04,.02,.05\n,.2,.1\n"

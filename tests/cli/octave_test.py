@@ -8,7 +8,7 @@ import unittest
 import h5py
 import numpy as np
 
-from deck_response_test import ONE
+from deck_response_case import ONE
 from linear_test import PENDULUM
 from monte_carlo_test import CAMPAIGN, SYSTEM
 from response_test import AXIS

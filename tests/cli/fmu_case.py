@@ -1,0 +1,421 @@
+"""Systems, exports and references of the tests of FMUs. Contains no tests."""
+import os
+import shutil
+
+import h5py
+import numpy as np
+
+from fmu_importer import Fmu, Instance, MeRun
+from support import SOURCE, ProgramTest
+
+# x'' = push / mass from rest; an event that ends the run.
+SLIDE = """[parameters]
+mass = 2.0
+[[body]]
+name = "bob"
+mass = "$mass"
+inertia = [1.0, 1.0, 1.0]
+[[hinge]]
+name = "slide"
+type = "prismatic"
+child = "bob"
+axis = [1.0, 0.0, 0.0]
+[[sensor]]
+name = "x"
+type = "position"
+body = "bob"
+[[input]]
+name = "push"
+dims = "F"
+start = 1.0
+[[actuator]]
+name = "motor"
+type = "hinge"
+hinge = "slide"
+input = "push"
+[[event]]
+name = "there"
+signal = "x:x"
+value = 1.0
+action = "stop"
+[simulation]
+duration = 10.0
+output_step = 0.1
+integrator = "rk4"
+step = 0.01
+"""
+# Two links with a lag of a controller and one of a sensor.
+CHAIN = """[[body]]
+name = "a"
+mass = 2.0
+cg = [0.5, 0.0, 0.0]
+inertia = [0.01, 0.17, 0.17]
+[[body]]
+name = "b"
+mass = 1.0
+cg = [0.3, 0.0, 0.1]
+inertia = [0.01, 0.07, 0.07]
+[[hinge]]
+name = "h1"
+type = "revolute"
+child = "a"
+axis = [0.0, 0.0, 1.0]
+position = [0.3]
+damping = [0.1]
+[[hinge]]
+name = "h2"
+type = "revolute"
+parent = "a"
+parent_position = [1.0, 0.0, 0.0]
+child = "b"
+axis = [0.0, 0.0, 1.0]
+position = [0.4]
+stiffness = [3.0]
+[[input]]
+name = "torque"
+dims = "F L"
+start = 0.7
+[[input]]
+name = "target"
+dims = "1"
+[[sensor]]
+name = "upper"
+type = "hinge_angle"
+hinge = "h1"
+[[sensor]]
+name = "rate"
+type = "hinge_rate"
+hinge = "h2"
+[[sensor]]
+name = "slow"
+type = "hinge_angle"
+hinge = "h2"
+lag = 0.05
+[[sensor]]
+name = "shake"
+type = "accelerometer"
+body = "b"
+[[sensor]]
+name = "tip"
+type = "position"
+body = "b"
+[[controller]]
+name = "error"
+type = "sum"
+inputs = ["target", "upper"]
+weights = [1.0, -1.0]
+[[controller]]
+name = "lag"
+type = "transfer_function"
+inputs = ["error"]
+numerator = [4.0]
+denominator = [0.1, 1.0]
+[[controller]]
+name = "sum"
+type = "sum"
+inputs = ["lag", "torque"]
+[[actuator]]
+name = "motor"
+type = "hinge"
+hinge = "h1"
+input = "sum"
+[simulation]
+duration = 1.0
+output_step = 0.01
+integrator = "rk4"
+step = 0.002
+gravity = [0.0, -9.81, 0.0]
+"""
+# A hull that flies and carries an arm: actuators and sensors of every kind.
+DRIVEN = """[[body]]
+name = "hull"
+mass = 5.0
+cg = [0.1, 0.0, 0.05]
+inertia = [1.0, 1.2, 1.5]
+[[body]]
+name = "arm"
+mass = 1.0
+cg = [0.3, 0.02, 0.0]
+inertia = [0.01, 0.07, 0.07]
+nodes = [{id = 1, position = [0.6, 0.0, 0.0]}]
+[[hinge]]
+name = "float"
+type = "free"
+child = "hull"
+position = [0.9, 0.1, 0.3, 0.2, 0.2, 0.1, 0.9]
+[[hinge]]
+name = "joint"
+type = "revolute"
+parent = "hull"
+child = "arm"
+axis = [0.0, 0.0, 1.0]
+[[function]]
+name = "wave"
+type = "sine"
+amplitude = 1.0
+omega = 3.0
+""" + "".join(f'[[input]]\nname = "i{k}"\nstart = {0.3 + 0.1 * k}\n' for k in range(1, 11)) + """
+[[sensor]]
+name = "spin"
+type = "gyro"
+body = "hull"
+lag = 0.1
+[[sensor]]
+name = "turned"
+type = "integrating_gyro"
+body = "hull"
+[[sensor]]
+name = "held"
+type = "gyro"
+body = "arm"
+sample_time = 0.1
+[[sensor]]
+name = "attitude"
+type = "quaternion"
+body = "arm"
+[[sensor]]
+name = "seen"
+type = "position"
+body = "arm"
+node = 1
+relative_to = "hull"
+frame = "hull"
+[[sensor]]
+name = "drift"
+type = "velocity"
+body = "arm"
+node = 1
+relative_to = "hull"
+frame = "hull"
+[[sensor]]
+name = "far"
+type = "distance"
+body = "arm"
+node = 1
+target = [3.0, 1.0, 0.0]
+[[sensor]]
+name = "felt"
+type = "hinge_moment"
+hinge = "joint"
+[[sensor]]
+name = "push"
+type = "accelerometer"
+body = "arm"
+lag = 0.05
+[[sensor]]
+name = "pull"
+type = "accelerometer"
+body = "hull"
+[[controller]]
+name = "held_law"
+type = "gain"
+inputs = ["i1"]
+gain = 2.0
+sample_time = 0.1
+[[controller]]
+name = "late"
+type = "gain"
+inputs = ["pull:x"]
+gain = 2.0
+[[controller]]
+name = "turns"
+type = "relay"
+inputs = ["i2"]
+on = 0.9
+off = 0.8
+value = 1.0
+[[controller]]
+name = "mixed"
+type = "expression"
+inputs = ["i3", "spin:z"]
+expression = "u1*u2 + sin(t)"
+[[controller]]
+name = "slow"
+type = "transfer_function"
+inputs = ["late"]
+numerator = [1.0]
+denominator = [0.2, 1.0]
+[[actuator]]
+name = "wheel"
+type = "wheel"
+body = "hull"
+axis = [0.0, 1.0, 0.0]
+inertia = 0.02
+viscous = 0.01
+momentum = 0.4
+input = "i4"
+[[actuator]]
+name = "cmg"
+type = "cmg"
+body = "hull"
+gimbal_axis = [1.0, 0.0, 0.0]
+spin_axis = [0.0, 0.0, 1.0]
+momentum = 0.7
+lag = 0.2
+input = "i5"
+[[actuator]]
+name = "motor"
+type = "motor"
+hinge = "joint"
+torque_constant = 0.5
+resistance = 2.0
+lag = 0.1
+input = "i6"
+[[actuator]]
+name = "brake"
+type = "brake"
+hinge = "joint"
+stick_rate = 0.1
+input = "i7"
+[[actuator]]
+name = "thruster"
+type = "force"
+body = "arm"
+node = 1
+axis = [0.0, 1.0, 0.2]
+input = "mixed"
+[[actuator]]
+name = "jet"
+type = "jet"
+body = "hull"
+axis = [1.0, 0.0, 0.0]
+thrust = 2.0
+input = "i8"
+[[actuator]]
+name = "valve"
+type = "force"
+body = "hull"
+axis = [1.0, 0.5, 0.0]
+input = "held_law"
+[[actuator]]
+name = "trim"
+type = "moment"
+body = "hull"
+axis = [1.0, 0.5, 0.0]
+input = "turns"
+[[force]]
+name = "tug"
+body = "arm"
+force = [0.0, 0.0, 1.0]
+signal = "i9"
+[[force]]
+name = "gust"
+body = "hull"
+force = [0.1, 0.0, 0.0]
+function = "wave"
+[[event]]
+name = "near"
+signal = "far"
+value = 1.0
+[simulation]
+duration = 1.0
+output_step = 0.01
+integrator = "rk4"
+step = 0.002
+gravity = [0.0, 0.0, -1.0]
+"""
+TIGHT = 'integrator = "rk"\nrelative_tolerance = 1e-12\nabsolute_tolerance = 1e-13\n'
+COMPONENTS = {"": 0, "x": 0, "y": 1, "z": 2, "angle1": 0, "angle2": 1, "angle3": 2}
+
+
+def with_integrator(text, integrator, duration=None, output_step=None):
+    """The system with another [simulation]; gravity and the like stay."""
+    head, _, tail = text.partition("[simulation]")
+    drop = ["integrator", "step", "relative_tol", "absolute_tol", "rk_order", "energy_error_limit"]
+    drop += ["duration"] if duration else []
+    drop += ["output_step"] if output_step else []
+    lines = [line for line in tail.splitlines() if not line.startswith(tuple(drop))]
+    more = (f"duration = {duration}\n" if duration else "") + (f"output_step = {output_step}\n" if output_step else "")
+    return head + "[simulation]\n" + integrator + more + "energy_error_limit = 10.0\n" + "\n".join(lines) + "\n"
+
+
+class FmuCase(ProgramTest):
+    """Exports FMUs and compares them with `bough run`."""
+
+    def export(self, system, version=3, *more, name="one.fmu"):
+        self.bough("export", system, "--to", "fmu", "--fmi", version, "-o", name, *more)
+        folder = self.path("unpacked-" + str(len(os.listdir(self.folder))))
+        return Fmu(self.path(name), folder)
+
+    def make(self, fmu, kind, **more):
+        instance = Instance(fmu, kind, **more)
+        self.addCleanup(lambda: instance.handle and instance.close())
+        return instance
+
+    def run_reference(self, system, names):
+        """Times, and samples of the outputs."""
+        self.bough("run", system, "-o", "reference.h5")
+        with h5py.File(self.path("reference.h5")) as f:
+            t, columns = f["time"][:], []
+            for name in names:
+                sensor, _, component = name.partition(":")
+                columns.append(f["sensors/" + sensor][:].reshape(len(t), -1)[:, COMPONENTS[component]])
+        return t, np.column_stack(columns)
+
+    def compare_cs(self, system, version, tolerance=0.0, **more):
+        fmu = self.export(system, version)
+        outputs = fmu.list("output")
+        t, expected = self.run_reference(system, outputs)
+        instance = self.make(fmu, "cs", **more)
+        instance.initialize(stop=t[-1])
+        if more.get("event_mode"):
+            instance.update_discrete()
+            instance.call("EnterStepMode")
+        np.testing.assert_allclose(instance.get(outputs), expected[0], rtol=tolerance, atol=tolerance)
+        for k in range(1, len(t)):
+            terminated, reached = instance.step(t[k - 1], t[k] - t[k - 1])
+            self.assertEqual((terminated, round(reached, 9)), (False, round(t[k], 9)))
+            np.testing.assert_allclose(instance.get(outputs), expected[k], rtol=tolerance, atol=tolerance, err_msg=str(t[k]))
+        instance.call("Terminate")
+
+    def compare_me(self, system, version, tolerance=1e-8):
+        fmu = self.export(system, version)
+        outputs = fmu.list("output")
+        t, expected = self.run_reference(system, outputs)
+        instance = self.make(fmu, "me")
+        instance.initialize(stop=t[-1])
+        run = MeRun(instance)
+        for k in range(1, len(t) - 1):
+            run.advance(t[k])
+            np.testing.assert_allclose(instance.get(outputs), expected[k], rtol=tolerance, atol=tolerance, err_msg=str(t[k]))
+        instance.call("Terminate")
+        return run
+
+    def prepare_examples(self, *prefixes):
+        """The system files of all examples, with their bodies reduced."""
+        root = os.path.join(SOURCE, "data/examples")
+        for example in sorted(os.listdir(root)):
+            if not example.startswith(prefixes or "ex"):
+                continue
+            shutil.copytree(os.path.join(root, example), self.path(example))
+            names = sorted(n for n in os.listdir(self.path(example)) if n.endswith(".toml"))
+            texts = {}
+            for name in names:
+                with open(self.path(os.path.join(example, name)), encoding="utf-8") as f:
+                    texts[name] = f.read()
+            systems = [name for name in names if "[simulation]" in texts[name]]
+            for name in names if systems else []:
+                if name not in systems and "[body]" in texts[name]:
+                    self.bough("reduce", os.path.join(example, name), "-o", os.path.join(example, name[:-5] + ".h5"))
+            yield from (os.path.join(example, name) for name in systems)
+
+    def start_me(self, fmu, seed=1):
+        """An instance in continuous time at a state without symmetries, and that state."""
+        instance = self.make(fmu, "me")
+        instance.initialize()
+        instance.update_discrete()
+        x = instance.states()
+        instance.call("EnterContinuousTimeMode")
+        random = np.random.default_rng(seed)
+        return instance, x + 0.02 * random.standard_normal(len(x)), random
+
+    def difference(self, instance, t, x, unknowns, direction_x, inputs, direction_u, h):
+        """Central difference of outputs and derivatives by the functions of the importer."""
+        sides = []
+        for side in (h, -h):
+            instance.put(t, x + side * direction_x)
+            instance.set(list(inputs), np.array(list(inputs.values())) + side * direction_u)
+            sides.append(instance.get(unknowns))
+        instance.put(t, x)
+        instance.set(list(inputs), list(inputs.values()))
+        return (sides[0] - sides[1]) / (2 * h), np.maximum(*np.abs(sides))
