@@ -3,13 +3,13 @@
 #include <limits>
 #include <optional>
 
+#include "fe/linear/inertia.hpp"
 #include "fe/linear/low_rank_sum.hpp"
 #include "fe/linear/residual.hpp"
 #include "fe/loads/second_order.hpp"
 #include "modal/canonical.hpp"
 #include "modal/eigen.hpp"
 #include "modal/extraction.hpp"
-#include "modal/inertia.hpp"
 #include "modal/pencil.hpp"
 #include "modal/roots.hpp"
 #include "modal/tolerances.hpp"
@@ -104,7 +104,7 @@ int BucklingModes::count_below(Side side, double magnitude) const {
     if (side == -sign) continue;
     int count = -1;
     for (double f = magnitude; count < 0 && f < 1.001 * magnitude; f *= 1 + detail::kMoveOfLoadFactor)
-      count = detail::count_negative(pencil_.K.get(), sign * f, K_G_.get());
+      count = fe::count_negative_eigenvalues(pencil_.K.get(), sign * f, K_G_.get()).value_or(-1);
     if (count < 0) return -1;
     sum += count;
   }

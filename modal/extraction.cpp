@@ -15,7 +15,6 @@
 #include "fe/linear/mechanism.hpp"
 #include "fe/linear/memory_need.hpp"
 #include "fe/linear/ordering.hpp"
-#include "fe/linear/petsc_message.hpp"
 #include "fe/linear/ranks.hpp"
 #include "modal/eps_types.hpp"
 #include "modal/factored_transform.hpp"
@@ -124,11 +123,11 @@ FactoredHandle factor(const EigenProblem& problem) {
       factor->is_singular() ||
       (problem.min_energy > 0 && fe::calc_softest_energy(F, problem.kinds, *factor) < problem.min_energy);
   if (made->is_singular) return made;
-  made->op.factor = factor->get();
+  made->op.factor = factor;
   made->op.solve = [factor](const Eigen::Ref<const MatrixXd>& X) { return factor->solve(X); };
   made->op.multiply_mass = multiply_by(problem.B);
   if (!is_near(problem)) made->op.multiply_operator = multiply_by(problem.A);
-  made->op.factor_name = made->is_definite ? "LLᵀ CHOLMOD" : "LDLᵀ MUMPS";
+  made->op.factor_name = factor->name();
   return made;
 }
 

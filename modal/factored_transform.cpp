@@ -2,7 +2,7 @@
 
 #include <slepc/private/stimpl.h>
 
-#include "fe/linear/factor.hpp"
+#include "base/diagnostic.hpp"
 
 namespace bough::modal::detail {
 namespace {
@@ -25,10 +25,7 @@ PetscErrorCode apply(ST st, Vec x, Vec y) {
     Mat right = st->A[op.is_near_shift() ? 1 : 0];
     if (!own.product) check_petsc(MatCreateVecs(right, nullptr, own.product.out()));
     check_petsc(MatMult(right, x, own.product.get()));
-    if (fe::is_own_factor(op.factor))
-      fe::scatter(fe::solve_factored(op.factor, fe::gather(own.product.get())).col(0), y);
-    else
-      check_petsc(MatSolve(op.factor, own.product.get(), y));
+    op.factor->solve_vector(own.product.get(), y);
     if (!op.deflation || op.deflation->cols() == 0) return;
     const Eigen::MatrixXd value = fe::gather(y);
     fe::scatter((value - *op.deflation * (op.deflation->transpose() * op.multiply_mass(value))).col(0), y);

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "fe/linear/inertia.hpp"
 #include "fe/linear/mechanism.hpp"
 #include "fe/linear/residual.hpp"
 #include "modal/canonical.hpp"
 #include "modal/eps_types.hpp"
-#include "modal/inertia.hpp"
 #include "modal/tolerances.hpp"
 
 namespace bough::modal::detail {
@@ -100,8 +100,7 @@ bool PencilSolver::solve(double shift, int number, int num_guard, bool definite_
 
 int count_roots_below(Mat K, Mat M, double mu) {
   for (int attempt = 0; attempt < 4; ++attempt, mu *= 1 + kMoveOfPivot) {
-    const int count = count_negative(K, -mu, M);
-    if (count >= 0) return count;
+    if (const auto count = fe::count_eigenvalues_below(K, M, mu)) return *count;
   }
   return -1;
 }

@@ -13,13 +13,6 @@ namespace bough::fe {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-ComputationError make_out_of_memory() {
-  return {"fe.out-of-memory",
-          {},
-          "the factor of the stiffness matrix does not fit the memory",
-          "use a coarser mesh, or run on more processes of a larger machine (mpirun -n 2 bough ...)"};
-}
-
 cholmod_sparse PartFactor::as_sparse() {
   cholmod_sparse matrix{};
   matrix.nrow = matrix.ncol = start_.size() - 1;
@@ -81,7 +74,7 @@ bool PartFactor::analyse(const MatrixRows& A, PetscInt size, std::vector<PetscIn
   num_between_ = static_cast<Eigen::Index>(between.size());
   cholmod_sparse matrix = as_sparse();
   factor_ = cholmod_analyze(&matrix, &common_);
-  check();
+  check_cholmod(common_.status);
   if (!factor_ || !factor_->is_super) return false;
   const int* order_taken = static_cast<const int*>(factor_->Perm);
   for (std::size_t i = 0; i < rows.size(); ++i)
@@ -92,7 +85,7 @@ bool PartFactor::analyse(const MatrixRows& A, PetscInt size, std::vector<PetscIn
 bool PartFactor::factor() {
   cholmod_sparse matrix = as_sparse();
   cholmod_factorize(&matrix, factor_, &common_);
-  check();
+  check_cholmod(common_.status);
   start_ = std::vector<int>();  // {} would keep the memory
   row_ = std::vector<int>();
   value_ = std::vector<double>();

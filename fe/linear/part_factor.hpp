@@ -9,14 +9,11 @@
 
 #include <cholmod.h>
 
-#include "base/diagnostic.hpp"
+#include "fe/linear/cholmod_factor.hpp"
 #include "fe/linear/dissection.hpp"
 #include "fe/linear/supernodes.hpp"
 
 namespace bough::fe {
-
-/// "fe.out-of-memory" of a factor.
-ComputationError make_out_of_memory();
 
 /// Of one part with the rows between it and others: its LLᵀ by CHOLMOD, and the trailing block of that as a dense
 /// matrix (substructures: Przemieniecki, AIAA J. 1 (1963) 138).
@@ -60,9 +57,6 @@ class PartFactor {
   cholmod_sparse as_sparse();
   /// Keeps the columns of the part alone, packed, and those of the rows between as L_ss_.
   void pack();
-  void check() const {
-    if (common_.status == CHOLMOD_OUT_OF_MEMORY || common_.status == CHOLMOD_TOO_LARGE) throw make_out_of_memory();
-  }
 
   cholmod_common common_{};
   cholmod_factor* factor_ = nullptr;

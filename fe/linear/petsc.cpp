@@ -10,7 +10,6 @@
 #include <string>
 
 #include "base/diagnostic.hpp"
-#include "fe/linear/petsc_message.hpp"
 
 namespace bough::fe {
 

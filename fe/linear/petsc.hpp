@@ -2,12 +2,15 @@
 /// \file Owning handles for PETSc objects, initialization on demand, and error translation.
 #include <petscksp.h>
 
+#include <string>
 #include <utility>
 
 #include <Eigen/Dense>
 
 namespace bough::fe {
 
+/// PETSc's own text of the last error with this code, on one line.
+std::string get_petsc_message(PetscErrorCode code);
 /// Throws ComputationError("fe.petsc") with PETSc's text when code is not zero.
 void check_petsc(PetscErrorCode code);
 

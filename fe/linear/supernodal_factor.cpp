@@ -15,20 +15,40 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-struct Parts {
+class SupernodalSolver final : public FactorSolver {
+ public:
+  MatrixXd solve(const Eigen::Ref<const MatrixXd>& B) const override;
+  const char* name() const override { return "LLᵀ CHOLMOD"; }
+  double num_entries() const override {
+    double sum = 0;
+    for (const auto& one : part) sum += one->num_entries();
+    return sum;
+  }
+
   std::vector<std::unique_ptr<PartFactor>> part;
   std::vector<PetscInt> between;
   MatrixXd L;  ///< of the Schur complement of the rows between
 };
 
-PetscErrorCode destroy_parts(Mat A) {
-  void* context = nullptr;
-  check_petsc(MatShellGetContext(A, static_cast<void*>(&context)));
-  delete static_cast<Parts*>(context);
-  return 0;
+MatrixXd SupernodalSolver::solve(const Eigen::Ref<const MatrixXd>& B) const {
+  const std::size_t num = part.size();
+  MatrixXd X(B.rows(), B.cols());
+  for (Eigen::Index first = 0; first < B.cols(); first += kManySides) {
+    const auto m = std::min(kManySides, B.cols() - first);
+    const auto B_block = B.middleCols(first, m);
+    auto X_block = X.middleCols(first, m);
+    std::vector<MatrixXd> carried(num);
+    do_all(num, [&](std::size_t p) { part[p]->forward(B_block, carried[p]); });
+    MatrixXd X_s = B_block(between, Eigen::all);
+    for (const MatrixXd& share : carried) X_s -= share.topRows(m).transpose();
+    solve_dense(L, X_s);
+    X_block(between, Eigen::all) = X_s;
+    MatrixXd x_s = MatrixXd::Zero(carried[0].rows(), X_s.rows());
+    x_s.topRows(m) = X_s.transpose();
+    do_all(num, [&](std::size_t p) { part[p]->backward(x_s, X_block); });
+  }
+  return X;
 }
-
-Parts* find_factor(Mat A) { return static_cast<Parts*>(find_shell_context(A, destroy_parts)); }
 
 }  // namespace
 
@@ -37,7 +57,7 @@ SupernodalFactor make_supernodal_factor(Mat A, PetscInt least) {
   if (initialize_petsc().size > 1) return result;
   auto cut = find_parts(A, least);
   if (!cut) return result;
-  auto parts = std::make_unique<Parts>();
+  auto parts = std::make_unique<SupernodalSolver>();
   parts->between = std::move(cut->between);
   std::vector<std::vector<PetscInt>> own;
   for (auto* rows : {&cut->first, &cut->second})
@@ -79,34 +99,8 @@ SupernodalFactor make_supernodal_factor(Mat A, PetscInt least) {
     if (!result.is_definite) return result;
   }
   result.num_parts = static_cast<int>(num);
-  check_petsc(MatCreateShell(PETSC_COMM_WORLD, n, n, n, n, parts.get(), result.factor.out()));
-  check_petsc(MatShellSetOperation(result.factor.get(), MATOP_DESTROY, reinterpret_cast<void (*)()>(destroy_parts)));
-  parts.release();
+  result.solver = std::move(parts);
   return result;
-}
-
-bool is_supernodal_factor(Mat factor) { return find_factor(factor) != nullptr; }
-
-bool solve_supernodal(Mat factor, const Eigen::Ref<const MatrixXd>& B, MatrixXd& X) {
-  Parts* parts = find_factor(factor);
-  if (!parts) return false;
-  const std::size_t num = parts->part.size();
-  X.resize(B.rows(), B.cols());
-  for (Eigen::Index first = 0; first < B.cols(); first += kManySides) {
-    const auto m = std::min(kManySides, B.cols() - first);
-    const auto B_block = B.middleCols(first, m);
-    auto X_block = X.middleCols(first, m);
-    std::vector<MatrixXd> carried(num);
-    do_all(num, [&](std::size_t p) { parts->part[p]->forward(B_block, carried[p]); });
-    MatrixXd X_s = B_block(parts->between, Eigen::all);
-    for (const MatrixXd& share : carried) X_s -= share.topRows(m).transpose();
-    solve_dense(parts->L, X_s);
-    X_block(parts->between, Eigen::all) = X_s;
-    MatrixXd x_s = MatrixXd::Zero(carried[0].rows(), X_s.rows());
-    x_s.topRows(m) = X_s.transpose();
-    do_all(num, [&](std::size_t p) { parts->part[p]->backward(x_s, X_block); });
-  }
-  return true;
 }
 
 }  // namespace bough::fe

@@ -1,6 +1,8 @@
 #pragma once
-/// \file LLᵀ of large matrices by CHOLMOD, solved with from memory, in two parts where there are two threads.
-#include "fe/linear/petsc.hpp"
+/// \file LLᵀ of large matrices by CHOLMOD, packed, in two parts where there are two threads.
+///
+/// Internal to linear.
+#include "fe/linear/factor_solver.hpp"
 
 namespace bough::fe {
 
@@ -8,8 +10,8 @@ namespace bough::fe {
 constexpr PetscInt kLeastSupernodalRows = 20000;
 
 struct SupernodalFactor {
-  PetscMat factor;          ///< stands for the factor in solve_factored(); empty where another one is to be made
-  bool is_definite = true;  ///< false: A is not positive definite, however it is factored
+  FactorSolverHandle solver;  ///< null where another factor is to be made
+  bool is_definite = true;    ///< false: A is not positive definite, however it is factored
   int num_parts = 0;
 };
 
@@ -21,9 +23,5 @@ struct SupernodalFactor {
 /// are small or have no groups of rows. One part where many rows lie between. Deterministic, but the last digits are
 /// those of the parts.
 SupernodalFactor make_supernodal_factor(Mat A, PetscInt least = kLeastSupernodalRows);
-
-/// X with A X = B where `factor` is supernodal; false, and nothing done, where it is another one.
-bool solve_supernodal(Mat factor, const Eigen::Ref<const Eigen::MatrixXd>& B, Eigen::MatrixXd& X);
-bool is_supernodal_factor(Mat factor);
 
 }  // namespace bough::fe

@@ -4,7 +4,8 @@
 #include <Eigen/Eigenvalues>
 
 #include "fe/linear/factor.hpp"
-#include "fe/linear/sum_factor.hpp"
+#include "fe/linear/inertia.hpp"
+#include "fe/linear/low_rank_sum.hpp"
 #include "fe/matrices/system.hpp"
 #include "fe/model/builder.hpp"
 #include "fe/model/row_kinds.hpp"
@@ -12,32 +13,6 @@
 
 namespace bough::fe {
 namespace {
-
-/// By the inertia of MUMPS; -1 where a pivot is zero.
-int count_negative_pivots(Mat whole) {
-  Mat A = get_sparse(whole);
-  MatFactorInfo info;
-  check_petsc(MatFactorInfoInitialize(&info));
-  for (const PetscInt extra_percent : {60, 200, 1000}) {
-    PetscMat F;
-    check_petsc(MatGetFactor(A, MATSOLVERMUMPS, MAT_FACTOR_CHOLESKY, F.out()));
-    check_petsc(MatMumpsSetIcntl(F.get(), 13, 1));  // the inertia leaves out a root front that ScaLAPACK factors
-    check_petsc(MatMumpsSetIcntl(F.get(), 14, extra_percent));
-    check_petsc(MatCholeskyFactorSymbolic(F.get(), A, nullptr, &info));
-    check_petsc(MatCholeskyFactorNumeric(F.get(), A, &info));
-    PetscInt status = 0, detail = 0, negative = 0;
-    check_petsc(MatMumpsGetInfog(F.get(), 1, &status));
-    check_petsc(MatMumpsGetInfog(F.get(), 2, &detail));
-    const auto state = judge_factorization(status, detail);
-    if (state == FactorState::NeedsWorkspace) continue;
-    if (state == FactorState::Singular) return -1;
-    check_petsc(MatGetInertia(F.get(), &negative, nullptr, nullptr));
-    if (const LowRankPart* part = find_low_rank(whole))
-      negative += count_extra_negative(make_sum_factor(std::move(F), *part).get());
-    return static_cast<int>(negative);
-  }
-  return -1;
-}
 
 /// A with rows of these kinds, and a little of its diagonal, so that motions without stiffness are not negative by
 /// roundoff.
@@ -49,8 +24,8 @@ PetscMat lift(const PetscMat& A, const RowKinds& kinds) {
 /// stiffness are none.
 bool has_negative(const PetscMat& A, const RowKinds& kinds) {
   const PetscMat lifted = lift(A, kinds);
-  if (initialize_petsc().size == 1) return !factor_definite(lifted.get());
-  return count_negative_pivots(lifted.get()) > 0;
+  if (initialize_petsc().size == 1) return !SymmetricFactor::try_definite(lifted.get());
+  return count_negative_eigenvalues(lifted.get()).value_or(0) > 0;
 }
 
 /// Negative directions of the stress among the rigid motions of a model that nothing holds; 0 where it is held. A
@@ -105,12 +80,12 @@ void ModelBuilder::check_prestress() {
   if (checked->factor) return;
   RowKinds kinds = list_row_kinds(model_);
   const PetscMat held = options_.ignore_spc ? hold_support(model_, checked->K, kinds) : PetscMat();
-  if (held && factor_definite(held.get())) return;
+  if (held && SymmetricFactor::try_definite(held.get())) return;
   if (!has_negative(held ? held : checked->K, kinds)) return;
   // With as many negative directions in all as among the rigid motions, what the others strain is positive
   // (Haynsworth): Nastran has such modes too, with negative eigenvalues.
   const int tipping = held ? 0 : count_tipping(model_, checked->K);
-  if (const int negative = tipping > 0 ? count_negative_pivots(lift(checked->K, kinds).get()) : 0;
+  if (const int negative = tipping > 0 ? count_negative_eigenvalues(lift(checked->K, kinds).get()).value_or(0) : 0;
       negative > 0 && negative <= tipping) {
     diagnostics_.warning("fe.preload-tips", model_.prestress_->at,
                          "the loads of the preload, " + model_.prestress_->name +

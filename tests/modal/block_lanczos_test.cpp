@@ -211,11 +211,11 @@ TEST(Ordering, IsAPermutationThatKeepsTheDofsOfAGridTogether) {
   fe::check_petsc(ISRestoreIndices(order.get(), &rows));
 
   // Nested dissection of a line leaves little fill, and the factor solves.
-  const auto factor = fe::factor_definite(K.get());
+  const auto factor = fe::SymmetricFactor::try_definite(K.get());
   ASSERT_TRUE(static_cast<bool>(factor));
   const MatrixXd X = MatrixXd::Ones(size, 3);
   const MatrixXd B = fe::multiply(K.get(), X);
-  const MatrixXd residual = fe::multiply(K.get(), fe::solve_factored(factor.get(), B)) - B;
+  const MatrixXd residual = fe::multiply(K.get(), factor->solve(B)) - B;
   EXPECT_LT(residual.norm(), 1e-9 * fe::get_diagonal(K.get()).norm());
 }
 

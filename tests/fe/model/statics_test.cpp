@@ -6,7 +6,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "fe/linear/cholmod_factor.hpp"
 #include "fe/linear/mechanism.hpp"
+#include "fe/linear/mumps.hpp"
 #include "fe/model/row_kinds.hpp"
 #include "tests/fe/model/spring_model.hpp"
 
@@ -182,10 +184,10 @@ TEST(Factor, states_of_mumps) {
 TEST(Petsc, error_codes_become_failures) {
   EXPECT_EQ(catch_id([] { check_petsc(PETSC_ERR_ARG_WRONG); }), "fe.petsc");
   EXPECT_EQ(catch_id([] { check_petsc(PETSC_ERR_MEM); }), "fe.out-of-memory");
-  // Only "not positive definite" sends a matrix on to the other factor.
-  judge_definite(PETSC_ERR_MAT_CH_ZRPVT);
-  EXPECT_EQ(catch_id([] { judge_definite(PETSC_ERR_MEM); }), "fe.out-of-memory");
-  EXPECT_EQ(catch_id([] { judge_definite(PETSC_ERR_ARG_WRONG); }), "fe.petsc");
+  // CHOLMOD_OUT_OF_MEMORY, CHOLMOD_TOO_LARGE; CHOLMOD_NOT_POSDEF sends a matrix on to MUMPS.
+  EXPECT_EQ(catch_id([] { check_cholmod(-2); }), "fe.out-of-memory");
+  EXPECT_EQ(catch_id([] { check_cholmod(-3); }), "fe.out-of-memory");
+  EXPECT_EQ(catch_id([] { check_cholmod(1); }), "no error");
   check_petsc(0);
 }
 

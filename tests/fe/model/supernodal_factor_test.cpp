@@ -59,21 +59,19 @@ TEST_P(SupernodalFactorOn, SolvesAsThePivotedOneDoes) {
   const Threads threads(GetParam());
   const PetscMat A = make_grid(90, 60);
   const SupernodalFactor own = make_supernodal_factor(A.get(), 0);
-  ASSERT_TRUE(own.factor);
+  ASSERT_TRUE(own.solver);
   EXPECT_TRUE(own.is_definite);
   EXPECT_EQ(own.num_parts, GetParam());
-  EXPECT_TRUE(is_supernodal_factor(own.factor.get()));
-  EXPECT_TRUE(is_own_factor(own.factor.get()));
   const SymmetricFactor pivoted(A.get(), false, FactorMethod::Pivoting);
   const Eigen::MatrixXd B = Eigen::MatrixXd::Random(2 * 90 * 60, 21);
   for (const int m : {1, 4, 5, 8, 21}) {  // few, many, and more than go together
-    const Eigen::MatrixXd X = solve_factored(own.factor.get(), B.leftCols(m));
+    const Eigen::MatrixXd X = own.solver->solve(B.leftCols(m));
     const Eigen::MatrixXd R = B.leftCols(m) - multiply(A.get(), X);
     EXPECT_LT(R.cwiseAbs().maxCoeff(), 1e-12 * X.cwiseAbs().maxCoeff()) << m;
     EXPECT_LT((X - pivoted.solve(B.leftCols(m))).cwiseAbs().maxCoeff(), 1e-11 * X.cwiseAbs().maxCoeff()) << m;
     // Again, to the bit: nothing depends on which thread comes first.
     const SupernodalFactor again = make_supernodal_factor(A.get(), 0);
-    EXPECT_TRUE((solve_factored(again.factor.get(), B.leftCols(m)).array() == X.array()).all()) << m;
+    EXPECT_TRUE((again.solver->solve(B.leftCols(m)).array() == X.array()).all()) << m;
   }
 }
 
@@ -83,7 +81,7 @@ TEST_P(SupernodalFactorOn, UnitsOfRowsChangeNoDigit) {
   const Threads threads(GetParam());
   const PetscMat A = make_grid(90, 60);
   const Eigen::MatrixXd B = Eigen::MatrixXd::Random(2 * 90 * 60, 5);
-  const Eigen::MatrixXd X = solve_factored(make_supernodal_factor(A.get(), 0).factor.get(), B);
+  const Eigen::MatrixXd X = make_supernodal_factor(A.get(), 0).solver->solve(B);
   for (const double unit : {0x1p-20, 0x1p20}) {
     PetscVec scale;
     check_petsc(MatCreateVecs(A.get(), scale.out(), nullptr));
@@ -96,20 +94,20 @@ TEST_P(SupernodalFactorOn, UnitsOfRowsChangeNoDigit) {
     const PetscMat scaled = make_grid(90, 60);
     check_petsc(MatDiagonalScale(scaled.get(), scale.get(), scale.get()));
     const SupernodalFactor factor = make_supernodal_factor(scaled.get(), 0);
-    ASSERT_TRUE(factor.factor) << unit;
+    ASSERT_TRUE(factor.solver) << unit;
     EXPECT_EQ(factor.num_parts, GetParam());
-    EXPECT_EQ(S.asDiagonal() * solve_factored(factor.factor.get(), S.asDiagonal() * B), X) << unit;
+    EXPECT_EQ(S.asDiagonal() * factor.solver->solve(S.asDiagonal() * B), X) << unit;
   }
 }
 
 TEST(SupernodalFactor, IsOfLargeMatricesInGroups) {
   if (initialize_petsc().size > 1) GTEST_SKIP() << "several processes factor together";
   const Threads two(2);
-  EXPECT_FALSE(make_supernodal_factor(make_grid(90, 60).get()).factor) << "small";
+  EXPECT_FALSE(make_supernodal_factor(make_grid(90, 60).get()).solver) << "small";
   EXPECT_EQ(make_supernodal_factor(make_grid(4000, 1).get(), 0).num_parts, 2) << "a line";
   const PetscMat bare = make_grid(90, 60);
   check_petsc(PetscObjectCompose(reinterpret_cast<PetscObject>(bare.get()), "bough_row_groups", nullptr));
-  EXPECT_FALSE(make_supernodal_factor(bare.get(), 0).factor) << "rows without groups";
+  EXPECT_FALSE(make_supernodal_factor(bare.get(), 0).solver) << "rows without groups";
   EXPECT_EQ(make_supernodal_factor(make_grid(6, 6).get(), 0).num_parts, 1) << "many rows between";
 }
 
@@ -120,17 +118,17 @@ TEST_P(SupernodalFactorOn, IndefiniteMatricesAreTold) {
   for (const double shift : {0.006, 0.05, 3.0}) {
     const SupernodalFactor own = make_supernodal_factor(make_grid(90, 60, shift).get(), 0);
     EXPECT_FALSE(own.is_definite) << shift;
-    EXPECT_FALSE(own.factor) << shift;
+    EXPECT_FALSE(own.solver) << shift;
   }
 }
 
 TEST_P(SupernodalFactorOn, LargeMatricesTakeIt) {
   const Threads threads(GetParam());
   const PetscMat A = make_grid(160, 90);
-  const PetscMat factor = factor_definite(A.get());
+  const auto factor = SymmetricFactor::try_definite(A.get());
   ASSERT_TRUE(factor);
-  EXPECT_TRUE(is_supernodal_factor(factor.get()));
   const Eigen::MatrixXd B = Eigen::MatrixXd::Random(2 * 160 * 90, 3);
+  EXPECT_EQ(factor->solve(B), make_supernodal_factor(A.get()).solver->solve(B));
   const Eigen::MatrixXd X = SymmetricFactor(A.get(), false).solve(B);
   EXPECT_LT((B - multiply(A.get(), X)).cwiseAbs().maxCoeff(), 1e-12 * X.cwiseAbs().maxCoeff());
 }
@@ -140,12 +138,12 @@ TEST_P(SupernodalFactorOn, LargeMatricesTakeIt) {
 TEST_P(SupernodalFactorOn, SumsAreFactoredInPartsToo) {
   const Threads threads(GetParam());
   const PetscMat K = make_grid(90, 60, 0, true), M = make_grid(90, 60);
-  ASSERT_TRUE(make_supernodal_factor(K.get(), 0).factor);  // K knows its parts, which M couples
+  ASSERT_TRUE(make_supernodal_factor(K.get(), 0).solver);  // K knows its parts, which M couples
   const PetscMat sum = add(K.get(), 0.5, M.get());
   const SupernodalFactor own = make_supernodal_factor(sum.get(), 0);
-  ASSERT_TRUE(own.factor);
+  ASSERT_TRUE(own.solver);
   EXPECT_EQ(own.num_parts, GetParam());
-  const Eigen::MatrixXd B = Eigen::MatrixXd::Random(2 * 90 * 60, 3), X = solve_factored(own.factor.get(), B);
+  const Eigen::MatrixXd B = Eigen::MatrixXd::Random(2 * 90 * 60, 3), X = own.solver->solve(B);
   const Eigen::MatrixXd R = B - multiply(K.get(), X) - 0.5 * multiply(M.get(), X);
   EXPECT_LT(R.cwiseAbs().maxCoeff(), 1e-12 * X.cwiseAbs().maxCoeff());
 }
@@ -154,9 +152,9 @@ TEST_P(SupernodalFactorOn, PiecesMayBeApart) {
   const Threads threads(GetParam());
   const PetscMat A = make_grid(90, 60, 0, true);
   const SupernodalFactor own = make_supernodal_factor(A.get(), 0);
-  ASSERT_TRUE(own.factor);
+  ASSERT_TRUE(own.solver);
   const Eigen::MatrixXd B = Eigen::MatrixXd::Random(2 * 90 * 60, 4);
-  const Eigen::MatrixXd X = solve_factored(own.factor.get(), B);
+  const Eigen::MatrixXd X = own.solver->solve(B);
   EXPECT_LT((B - multiply(A.get(), X)).cwiseAbs().maxCoeff(), 1e-12 * X.cwiseAbs().maxCoeff());
 }
 

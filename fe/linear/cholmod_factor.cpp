@@ -1,0 +1,139 @@
+#include "fe/linear/cholmod_factor.hpp"
+
+#include <cmath>
+#include <vector>
+
+#include <cholmod.h>
+
+#include "fe/linear/dissection.hpp"
+#include "fe/linear/memory_need.hpp"
+
+namespace bough::fe {
+namespace {
+
+using Eigen::MatrixXd;
+
+/// The upper triangle by rows, which is the lower one by columns.
+struct Triangle {
+  std::vector<int> start{0}, row;
+  std::vector<double> value;
+
+  explicit Triangle(Mat A) {
+    visit_rows(A, [&](const MatrixRows& rows, PetscInt size) {
+      for (PetscInt i = 0; i < size; ++i) {
+        for (PetscInt k = rows.start[i]; k < rows.start[i + 1]; ++k) {
+          if (rows.column[k] < i) continue;
+          row.push_back(rows.column[k]);
+          value.push_back(rows.value[k]);
+        }
+        start.push_back(static_cast<int>(row.size()));
+      }
+    });
+  }
+  cholmod_sparse as_sparse() {
+    cholmod_sparse matrix{};
+    matrix.nrow = matrix.ncol = start.size() - 1;
+    matrix.nzmax = row.size();
+    matrix.p = start.data();
+    matrix.i = row.data();
+    matrix.x = value.data();
+    matrix.stype = -1;
+    matrix.itype = CHOLMOD_INT;
+    matrix.xtype = CHOLMOD_REAL;
+    matrix.dtype = CHOLMOD_DOUBLE;
+    matrix.sorted = matrix.packed = 1;
+    return matrix;
+  }
+};
+
+class CholmodSolver final : public FactorSolver {
+ public:
+  CholmodSolver() {
+    cholmod_start(&common_);
+    common_.print = 0;
+    // Without both a small matrix gets an LDLᵀ that takes negative pivots as they come.
+    common_.final_asis = 0;
+    common_.final_ll = 1;
+  }
+  CholmodSolver(const CholmodSolver&) = delete;
+  CholmodSolver& operator=(const CholmodSolver&) = delete;
+  ~CholmodSolver() override {
+    cholmod_free_factor(&factor_, &common_);
+    cholmod_finish(&common_);
+  }
+
+  /// False where A is not positive definite.
+  bool factor(Mat A) {
+    Triangle triangle(A);
+    cholmod_sparse matrix = triangle.as_sparse();
+    const PetscIs order = find_elimination_order(A);
+    if (order) {
+      common_.nmethods = 1;  // the order given; by itself CHOLMOD would try its own beside it
+      const PetscInt* rows = nullptr;
+      check_petsc(ISGetIndices(order.get(), &rows));
+      factor_ = cholmod_analyze_p(&matrix, const_cast<int*>(rows), nullptr, 0, &common_);
+      check_petsc(ISRestoreIndices(order.get(), &rows));
+    } else {
+      factor_ = cholmod_analyze(&matrix, &common_);
+    }
+    check_cholmod(common_.status);
+    if (!factor_) return false;
+    // A megabyte is there: to ask the system takes as long as such a factor.
+    constexpr double kFewEntries = 1e5;
+    num_entries_ = common_.lnz;
+    if (num_entries_ >= kFewEntries) require_memory(static_cast<double>(matrix.nrow), num_entries_, calc_free_memory());
+    cholmod_factorize(&matrix, factor_, &common_);
+    check_cholmod(common_.status);
+    return common_.status == CHOLMOD_OK && factor_->minor >= factor_->n;
+  }
+
+  MatrixXd solve(const Eigen::Ref<const MatrixXd>& B) const override {
+    if (B.size() == 0) return B;
+    cholmod_dense right{};
+    right.nrow = static_cast<std::size_t>(B.rows());
+    right.ncol = static_cast<std::size_t>(B.cols());
+    right.d = static_cast<std::size_t>(B.outerStride());
+    right.nzmax = right.d * right.ncol;
+    right.x = const_cast<double*>(B.data());
+    right.xtype = CHOLMOD_REAL;
+    right.dtype = CHOLMOD_DOUBLE;
+    cholmod_dense* X = cholmod_solve(CHOLMOD_A, factor_, &right, &common_);
+    check_cholmod(common_.status);
+    BOUGH_DEMAND(X);
+    MatrixXd result = Eigen::Map<const MatrixXd>(static_cast<const double*>(X->x), B.rows(), B.cols());
+    cholmod_free_dense(&X, &common_);
+    return result;
+  }
+  const char* name() const override { return "LLᵀ CHOLMOD"; }
+  double num_entries() const override { return num_entries_; }
+
+ private:
+  mutable cholmod_common common_{};  // CHOLMOD writes its status and workspace
+  cholmod_factor* factor_ = nullptr;
+  double num_entries_ = 0;
+};
+
+}  // namespace
+
+ComputationError make_out_of_memory(const std::string& what) {
+  return {"fe.out-of-memory",
+          {},
+          "the factor of the stiffness matrix does not fit the memory" + what,
+          "use a coarser mesh, or run on more processes of a larger machine (mpirun -n 2 bough ...)"};
+}
+
+void check_cholmod(int status) {
+  if (status == CHOLMOD_OUT_OF_MEMORY) throw make_out_of_memory();
+  if (status == CHOLMOD_TOO_LARGE)
+    throw ComputationError("fe.out-of-memory", {},
+                           "the factor of the stiffness matrix has more than 2^31 entries, more than CHOLMOD counts",
+                           "run on two processes or more, where MUMPS factors (mpirun -n 2 bough ...)");
+}
+
+FactorSolverHandle factor_by_cholmod(Mat A) {
+  auto solver = std::make_unique<CholmodSolver>();
+  if (!solver->factor(A)) return nullptr;
+  return solver;
+}
+
+}  // namespace bough::fe
