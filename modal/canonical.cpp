@@ -19,7 +19,7 @@ VectorXd calc_basis_weights(const fe::Model& model) {
     high = any ? high.cwiseMax(node.x).eval() : node.x;
     any = true;
   }
-  const double size = std::max((high - low).norm(), 1e-300);
+  const double size = std::max((high - low).norm(), kTiny);
   VectorXd weights = VectorXd::Zero(model.num_gdofs());
   for (std::size_t k = 0; k < model.nodes().size(); ++k) {
     const auto& node = model.nodes()[k];

@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "base/diagnostic.hpp"
+#include "modal/tolerances.hpp"
 
 namespace bough::modal {
 
@@ -12,7 +13,7 @@ namespace {
 MatrixXd calc_damping(const records::FlexBody& body, double zeta, Diagnostics& diagnostics) {
   const Eigen::ArrayXd mass = body.modal_mass.diagonal();
   const double worst = (mass - 1).abs().maxCoeff();
-  if (zeta > 0 && worst > 1e-6) {
+  if (zeta > 0 && worst > detail::kShapeDigits) {
     diagnostics.warning("modal.damping-not-normalized", {},
                         "the generalized masses differ from 1 by up to " + std::to_string(worst) +
                             ": damping by ratio, 2 zeta sqrt(K/M), holds for unit generalized mass",

@@ -1,4 +1,5 @@
 #include "modal/spin.hpp"
+#include "modal/tolerances.hpp"
 
 #include <algorithm>
 #include <complex>
@@ -20,7 +21,7 @@ VectorXd solve(const MatrixXd& D, const MatrixXd& K, bool& diverges) {
   A.bottomLeftCorner(n, n) = -K;
   A.bottomRightCorner(n, n) = -D;
   const Eigen::VectorXcd roots = Eigen::EigenSolver<MatrixXd>(A, false).eigenvalues();
-  const double size = std::max(roots.cwiseAbs().maxCoeff(), 1e-300);
+  const double size = std::max(roots.cwiseAbs().maxCoeff(), detail::kTiny);
   diverges = (roots.real().array() > 1e-6 * size).any();
   // Roots come as ± pairs; each pair is one motion.
   std::vector<double> frequencies;

@@ -115,4 +115,62 @@ inline constexpr double kRankPivot = 1e-12, kRankEntry = 1e-17, kRankNegative = 
 /// How far above the first eigenvalue of a stage the digits of CᵀA⁻¹C suffice.
 inline constexpr double kStageReach = 1e6;
 
+// ---- Bases: constraint modes, residual vectors, frames
+
+/// Mass of a constraint mode over the largest. Above: a light part loses a coordinate. Below: roundoff of a motion that
+/// moves no mass (the roll of a line of bars) becomes a coordinate without inertia.
+inline constexpr double kMasslessCoordinate = 1e-20;
+/// Generalized mass over stiffness, times that of the softest coordinate: frequencies 1e7 times as high. With less,
+/// coordinates are scaled by their stiffness.
+inline constexpr double kStiffCoordinate = 1e-14;
+/// Eigenvalue of the scaled Gram matrix of mass, over the largest, below which directions have no mass.
+inline constexpr double kMasslessDirection = 1e-12;
+/// The same of strain energy, of directions scaled to unit energy: less is a linear dependence.
+inline constexpr double kDependentDirection = 1e-10;
+/// Load left after the inertia of the body balances it, over the load. Above: soft residual vectors are lost. Below:
+/// roundoff of a uniform acceleration becomes one.
+inline constexpr double kBalancedLoad = 1e-10;
+/// Flexibility FᵀK⁻¹F of a load over the least that it has in the f-set, (FᵀF)² / FᵀKF: less is a load on held dofs.
+inline constexpr double kHeldFlexibility = 1e-8;
+/// Norm of a residual vector over that of its load's static response: less is a combination of the others.
+inline constexpr double kDependentResidual = 1e-6;
+/// The same over what a vector of the lowest frequency would have, in roundoff of the static solution.
+inline constexpr double kResidualRoundoff = 1e-11;
+/// Entry of a constraint equation over its largest, after the others are eliminated: less follows from them.
+inline constexpr double kDependentEquation = 1e-10;
+/// Pivots within this of the largest are as good; the first is taken, so that roundoff does not choose.
+inline constexpr double kEqualPivot = 1e-6;
+/// Sine of the angle of three nodes that span no frame.
+inline constexpr double kCollinear = 1e-6;
+/// Singular values of the frame's conditions on rigid motions, over the largest.
+inline constexpr double kUndeterminedMotion = 1e-12;
+/// Off-diagonal generalized mass or stiffness over the root of the diagonal's product. Above: coupling is dropped.
+/// Below: the digits of mode shapes from a file pass for coupling. Also of a generalized mass from 1.
+inline constexpr double kShapeDigits = 1e-6;
+
+// ---- Responses
+
+/// Diagonal of K, B and M together over its largest, below which a dof takes no part in a residual.
+inline constexpr double kIdleDof = 1e-14;
+/// Impedance of an undamped mode over its larger part: less is a resonance without bound, roundoff above it.
+inline constexpr double kResonance = 1e-14;
+/// Eigenvalue of the damping of a direction over the largest, scaled row by row: less is roundoff.
+inline constexpr double kDampedDirection = 1e-12;
+/// Off-diagonal modal damping over the root of the diagonal's product that couples modes.
+inline constexpr double kDampingCoupling = 1e-13;
+/// Structural damping minus an even share of K, over it: less is one measure of damping throughout.
+inline constexpr double kEvenDamping = 1e-9;
+/// Work of a load that no mode carries, over its work: less needs no residual vector.
+inline constexpr double kLeftWork = 1e-10;
+/// Eigenvalue of the Gram matrix of residual vectors of unit energy: less is a linear dependence.
+inline constexpr double kDependentVector = 1e-8;
+/// Damping of motions without mass over the largest that is worth a warning.
+inline constexpr double kMasslessDamping = 1e-9;
+/// Share of a time step to either side of an instant, where a load's limits are taken.
+inline constexpr double kSideOfStep = 1e-6;
+/// Miss of a load between steps over its largest value: less is roundoff of the line.
+inline constexpr double kMissedLoad = 1e-9;
+/// Instants and eigenvalues this close to each other are the same.
+inline constexpr double kSameInstant = 1e-9, kSameEigenvalue = 1e-9;
+
 }  // namespace bough::modal::detail

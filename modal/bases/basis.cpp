@@ -8,6 +8,7 @@
 #include "fe/linear/blas.hpp"
 #include "modal/canonical.hpp"
 #include "modal/pencil.hpp"
+#include "modal/tolerances.hpp"
 
 namespace bough::modal::bases {
 
@@ -239,7 +240,7 @@ Basis drop_massless(const Basis& basis, Diagnostics& diagnostics) {
   const VectorXd mass = basis.M.diagonal();
   std::vector<int> columns;
   for (int j = 0; j < mass.size(); ++j) {
-    if (j >= static_cast<int>(basis.boundary.size()) || mass(j) > 1e-20 * mass.maxCoeff()) {
+    if (j >= static_cast<int>(basis.boundary.size()) || mass(j) > detail::kMasslessCoordinate * mass.maxCoeff()) {
       columns.push_back(j);
       continue;
     }
@@ -276,7 +277,7 @@ Basis calc_craig_bampton_basis(const fe::System& system, const BasisOptions& opt
     const VectorXd before = F.colwise().norm();
     F = equilibrate(model, rigid, F);
     for (Eigen::Index c = 0; c < F.cols(); ++c)
-      if (F.col(c).norm() < 1e-10 * before(c)) F.col(c).setZero();
+      if (F.col(c).norm() < detail::kBalancedLoad * before(c)) F.col(c).setZero();
   }
   const auto residual = calc_residual_vectors(
       model, [&](const MatrixXd& loads) { return fixed.solve(loads); }, MatrixXd(model.num_gdofs(), 0), modes.Phi, F);

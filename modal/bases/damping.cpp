@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "modal/bases/ritz.hpp"
+#include "modal/tolerances.hpp"
 
 namespace bough::modal::bases {
 
@@ -14,7 +15,7 @@ namespace {
 bool is_diagonal(const MatrixXd& A) {
   for (Eigen::Index j = 0; j < A.cols(); ++j)
     for (Eigen::Index i = 0; i < j; ++i)
-      if (std::abs(A(i, j)) > 1e-6 * std::sqrt(std::abs(A(i, i) * A(j, j)))) return false;
+      if (std::abs(A(i, j)) > detail::kShapeDigits * std::sqrt(std::abs(A(i, i) * A(j, j)))) return false;
   return true;
 }
 
@@ -45,7 +46,7 @@ MatrixXd calc_damping(const MatrixXd& M, const MatrixXd& K, const DampingSpec& s
   const VectorXd mass = M.diagonal();
   const bool is_modal = mass.minCoeff() > 0 && is_diagonal(M) && is_diagonal(K);
   VectorXd lambda = K.diagonal().cwiseQuotient(mass);
-  MatrixXd N = mass.cwiseMax(1e-300).cwiseSqrt().cwiseInverse().asDiagonal();
+  MatrixXd N = mass.cwiseMax(detail::kTiny).cwiseSqrt().cwiseInverse().asDiagonal();
   if (!is_modal) {
     const auto pairs = calc_ritz_pairs(M, K);
     lambda = pairs.lambda;

@@ -1,6 +1,7 @@
 #include "modal/bases/frame.hpp"
 
 #include "base/diagnostic.hpp"
+#include "modal/tolerances.hpp"
 
 namespace bough::modal::bases {
 
@@ -33,7 +34,7 @@ MatrixXd calc_three_node_rows(const fe::Model& model, const std::vector<int>& id
   const auto& b = get_node(model, ids[1]);
   const auto& c = get_node(model, ids[2]);
   const Vector3d along = b.x - a.x, normal = along.cross(c.x - a.x);
-  if (!(normal.norm() > 1e-6 * along.norm() * (c.x - a.x).norm()) || along.norm() == 0)
+  if (!(normal.norm() > detail::kCollinear * along.norm() * (c.x - a.x).norm()) || along.norm() == 0)
     throw_bad_frame("the three nodes of the body frame lie on one line", "take nodes that span a triangle");
   MatrixXd C = MatrixXd::Zero(6, model.num_gdofs());
   C.block<3, 3>(0, a.first_gdof).setIdentity();
@@ -99,7 +100,7 @@ MatrixXd shift_to_frame(const fe::Model& model, const MatrixXd& C, const MatrixX
   const VectorXd scale = C.rowwise().norm().unaryExpr([](double s) { return s > 0 ? 1 / s : 0.0; });
   const MatrixXd CR = scale.asDiagonal() * (C * R);
   Eigen::CompleteOrthogonalDecomposition<MatrixXd> solver;
-  solver.setThreshold(1e-12);
+  solver.setThreshold(detail::kUndeterminedMotion);
   solver.compute(CR);
   MatrixXd shifted = Phi;
   for (int pass = 0; pass < 2; ++pass) shifted -= R * solver.solve(scale.asDiagonal() * (C * shifted));

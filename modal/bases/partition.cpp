@@ -7,6 +7,7 @@
 #include "fe/linear/factor.hpp"
 #include "fe/linear/low_rank_sum.hpp"
 #include "fe/matrices/wide_part.hpp"
+#include "modal/tolerances.hpp"
 
 namespace bough::modal::bases {
 
@@ -53,10 +54,10 @@ struct Elimination {
       rest.erase(pivots[i]);
     }
     const double largest = find_largest(rest);
-    if (largest <= 1e-10 * scale) return false;
+    if (largest <= detail::kDependentEquation * scale) return false;
     int pivot = -1;
     for (const auto& [column, value] : rest)
-      if (pivot < 0 && std::abs(value) >= (1 - 1e-6) * largest) pivot = column;
+      if (pivot < 0 && std::abs(value) >= (1 - detail::kEqualPivot) * largest) pivot = column;
     rows.push_back(row);
     reduced.push_back(std::move(rest));
     pivots.push_back(pivot);

@@ -5,6 +5,7 @@
 
 #include "fe/linear/blas.hpp"
 #include "modal/canonical.hpp"
+#include "modal/tolerances.hpp"
 
 namespace bough::modal::bases {
 
@@ -22,7 +23,7 @@ VectorXd calc_mass_scale(const MatrixXd& M, const MatrixXd& K) {
   VectorXd scale = VectorXd::Zero(m.size());
   for (Eigen::Index j = 0; j < m.size(); ++j) {
     const double least = k(j) > 0 ? longest * k(j) : 0;
-    const double mass = m(j) > 1e-14 * least ? m(j) : least;
+    const double mass = m(j) > detail::kStiffCoordinate * least ? m(j) : least;
     if (mass > 0) scale(j) = 1 / std::sqrt(mass);
   }
   return scale;
@@ -36,7 +37,7 @@ MatrixXd find_stiff(const MatrixXd& Z, const MatrixXd& K) {
   const MatrixXd unit = Z * scale.asDiagonal();
   const Eigen::SelfAdjointEigenSolver<MatrixXd> energy(symmetrize(unit.transpose() * K * unit));
   const VectorXd& e = energy.eigenvalues();
-  const auto num = (e.array() > 1e-10).count();
+  const auto num = (e.array() > detail::kDependentDirection).count();
   return unit * energy.eigenvectors().rightCols(num) * e.tail(num).cwiseSqrt().cwiseInverse().asDiagonal();
 }
 
@@ -48,7 +49,7 @@ RitzPairs calc_ritz_pairs(const MatrixXd& M, const MatrixXd& K) {
   const VectorXd scale = calc_mass_scale(M, K);
   const Eigen::SelfAdjointEigenSolver<MatrixXd> gram(symmetrize(scale.asDiagonal() * M * scale.asDiagonal()));
   const VectorXd& d = gram.eigenvalues();
-  const auto dropped = (d.array() <= 1e-12 * std::max(d.maxCoeff(), 0.0)).count();
+  const auto dropped = (d.array() <= detail::kMasslessDirection * std::max(d.maxCoeff(), 0.0)).count();
   const auto n = d.size() - dropped;
   MatrixXd W = scale.asDiagonal() * gram.eigenvectors().rightCols(n) *
                d.tail(n).cwiseMax(0).cwiseSqrt().cwiseInverse().asDiagonal();
@@ -101,13 +102,14 @@ VectorXd calc_least_norms(const fe::Model& model, const MatrixXd& kept, const Ma
     if (lambda > 0) longest = 1 / lambda;
   }
   const auto is_held = [&](Eigen::Index i) {
-    return !(flexibility(i) > 0) || (stiffness(i) > 0 && flexibility(i) < 1e-8 * square(i) * square(i) / stiffness(i));
+    return !(flexibility(i) > 0) ||
+           (stiffness(i) > 0 && flexibility(i) < detail::kHeldFlexibility * square(i) * square(i) / stiffness(i));
   };
   for (Eigen::Index i = 0; i < F.cols(); ++i)
     if (!is_held(i)) longest = std::max(longest, norm(i) * norm(i) / flexibility(i));
   VectorXd least(F.cols());
   for (Eigen::Index i = 0; i < F.cols(); ++i)
-    least(i) = is_held(i) ? HUGE_VAL : 1e-11 * std::sqrt(longest * flexibility(i));
+    least(i) = is_held(i) ? HUGE_VAL : detail::kResidualRoundoff * std::sqrt(longest * flexibility(i));
   return least;
 }
 
@@ -152,8 +154,9 @@ ResidualVectors calc_residual_vectors(const fe::Model& model, const StaticSolve&
       }
       const double norm = std::sqrt(std::max(X.col(c).dot(MX.col(c)), 0.0));
       // A load that inertia balances of itself (a uniform acceleration) leaves roundoff only.
-      const bool is_balanced = F_e.col(used[i]).norm() < 1e-10 * F.col(used[i]).norm();
-      if (pass == 0 && (is_balanced || !(norm > std::max(1e-6 * before(used[i]), least(used[i]))))) {
+      const bool is_balanced = F_e.col(used[i]).norm() < detail::kBalancedLoad * F.col(used[i]).norm();
+      if (pass == 0 &&
+          (is_balanced || !(norm > std::max(detail::kDependentResidual * before(used[i]), least(used[i]))))) {
         X.col(c).setZero();
         MX.col(c).setZero();
         (is_balanced ? balanced : result.unused).push_back(used[i]);

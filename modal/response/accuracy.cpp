@@ -7,6 +7,7 @@
 
 #include "fe/linear/blas.hpp"
 #include "fe/matrices/assembly.hpp"
+#include "modal/tolerances.hpp"
 
 namespace bough::modal::response {
 
@@ -54,7 +55,8 @@ double calc_solution_error(const ResponseModel& response, const Spectrum& spectr
     const Eigen::VectorXcd q = spectrum.q.col(i), force = response.P * spectrum.a.col(i);
     const Eigen::VectorXcd damped = 1i * (omega * (response.D * q) + response.S * q);
     const Eigen::VectorXcd rest = (response.lambda - inertia).cwiseProduct(q) + damped - force;
-    const VectorXd scale = response.lambda.cwiseAbs().cwiseMax(inertia).cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+    const VectorXd scale =
+        response.lambda.cwiseAbs().cwiseMax(inertia).cwiseMax(detail::kTiny).cwiseSqrt().cwiseInverse();
     const double size = scale.cwiseProduct(force).norm(), off = scale.cwiseProduct(rest).norm();
     if (off > 0) worst = std::max(worst, size > 0 ? off / size : 1.0);
   }

@@ -12,6 +12,7 @@
 #include "modal/response/accuracy.hpp"
 #include "modal/response/load_steps.hpp"
 #include "modal/response/residual_modes.hpp"
+#include "modal/tolerances.hpp"
 
 namespace bough::modal::response {
 namespace {
@@ -49,7 +50,7 @@ ModeBasis calc_modes(const fe::System& system, const EigenOptions& options, cons
   const double most = records::get_real_param(deck, "LMODES", 0, diagnostics);
   for (int j = 0; j < pairs.lambda.size(); ++j) {
     // A root at V1 itself is in both.
-    if (num_low > 0 && pairs.lambda(j) <= low.lambda(num_low - 1) * (1 + 1e-9)) continue;
+    if (num_low > 0 && pairs.lambda(j) <= low.lambda(num_low - 1) * (1 + detail::kSameEigenvalue)) continue;
     if (to_hz(pairs.lambda(j)) > highest || (most > 0 && static_cast<double>(kept.size()) >= most)) break;
     kept.push_back(j);
   }

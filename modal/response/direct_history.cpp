@@ -10,6 +10,7 @@
 #include "modal/response/accuracy.hpp"
 #include "modal/response/direct_model.hpp"
 #include "modal/response/support_motion.hpp"
+#include "modal/tolerances.hpp"
 
 namespace bough::modal::response {
 namespace {
@@ -59,7 +60,7 @@ void accumulate(fe::PetscMat& sum, double factor, const fe::PetscMat& A) {
 /// Along a motion that next to nothing resists, neither stiffness nor damping nor mass, the answer to any load is
 /// round-off.
 void demand_held(const fe::SymmetricFactor& factor, const VectorXd& D) {
-  const VectorXd size = D.cwiseMax(1e-14 * D.maxCoeff()).cwiseSqrt();
+  const VectorXd size = D.cwiseMax(detail::kIdleDof * D.maxCoeff()).cwiseSqrt();
   bool is_free = factor.is_singular();
   if (!is_free) {
     const VectorXd load = size.cwiseProduct(make_probe(D.size()));
@@ -223,7 +224,7 @@ class DirectMotion {
     const VectorXd A_x = times(m_.K, u_) + times(m_.B, v_) + times(m_.M, a_);
     VectorXd D = m_.K_diagonal + m_.M_diagonal / (h * h);
     const double largest = D.maxCoeff();
-    D = (D.array() > 1e-14 * largest).select(D, largest > 0 ? largest : 1.0);
+    D = (D.array() > detail::kIdleDof * largest).select(D, largest > 0 ? largest : 1.0);
     residual_.add(D, u_, A_x, load);
   }
 

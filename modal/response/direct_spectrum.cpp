@@ -8,6 +8,7 @@
 #include "modal/response/accuracy.hpp"
 #include "modal/response/coordinates.hpp"
 #include "modal/response/direct_model.hpp"
+#include "modal/tolerances.hpp"
 
 namespace bough::modal::response {
 namespace {
@@ -31,7 +32,7 @@ class DirectSpectrum {
     const fe::PetscMat imaginary = make_imaginary(omega);
     VectorXd D = m.K_diagonal + omega * omega * m.M_diagonal;
     const double largest = D.maxCoeff();
-    D = (D.array() > 1e-14 * largest).select(D, largest > 0 ? largest : 1.0);
+    D = (D.array() > detail::kIdleDof * largest).select(D, largest > 0 ? largest : 1.0);
     MatrixXcd sides(n_, 2);
     sides.col(0) = m.F * p - (m.K_X - omega * omega * m.M_X) * d - 1i * ((omega * m.B_X + m.S_X) * d);
     sides.col(1) = D.cwiseSqrt().cwiseProduct(probe_).cast<std::complex<double>>();

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "modal/response/sampled_curve.hpp"
+#include "modal/tolerances.hpp"
 
 namespace bough::modal::response {
 namespace {
@@ -65,7 +66,7 @@ double calc_missed(const ExcitationTerm& term, const VectorXd& time, double t) {
   const double* first = time.data();
   const auto i = std::upper_bound(first, first + time.size(), t) - first;
   if (i == 0 || i >= time.size()) return 0;
-  const double a = time(i - 1), b = time(i), reach = 1e-6 * (b - a);
+  const double a = time(i - 1), b = time(i), reach = detail::kSideOfStep * (b - a);
   if (t - a <= 10 * reach || b - t <= 10 * reach) return 0;
   const double f0 = calc_history(term, a, Side::After, reach), f1 = calc_history(term, b, Side::Before, reach);
   const double line = f0 + (f1 - f0) * (t - a) / (b - a);
@@ -179,7 +180,7 @@ class Refiner {
       const double largest = largest_[i];
       for (const double t : list_corners(term, grid_)) {
         const double part = largest > 0 ? calc_missed(term, grid_.time, t) / largest : 0;
-        if (part > 1e-9) missed[t] = std::max(missed[t], part);
+        if (part > detail::kMissedLoad) missed[t] = std::max(missed[t], part);
       }
     }
     std::vector<std::pair<double, double>> order;
@@ -205,7 +206,9 @@ class Refiner {
     for (const double t : added) {
       const auto next = std::lower_bound(all.begin(), all.end(), t);
       // Two loads with all but the same corner.
-      if (next == all.begin() || next == all.end() || t - *(next - 1) < 1e-9 * t || *next - t < 1e-9 * t) continue;
+      if (next == all.begin() || next == all.end() || t - *(next - 1) < detail::kSameInstant * t ||
+          *next - t < detail::kSameInstant * t)
+        continue;
       all.insert(next, t);
     }
     grid_.time = Eigen::Map<const VectorXd>(all.data(), static_cast<Eigen::Index>(all.size()));

@@ -8,6 +8,7 @@
 #include "fe/linear/blas.hpp"
 #include "fe/matrices/assembly.hpp"
 #include "fe/statics/static_case.hpp"
+#include "modal/tolerances.hpp"
 
 namespace bough::modal::response {
 namespace {
@@ -57,7 +58,7 @@ MatrixXd calc_damper_loads(const fe::Model& model, const MatrixXd& Phi) {
   const VectorXd size = solver.eigenvalues().cwiseAbs();
   MatrixXd loads = none;
   for (Eigen::Index c = 0; c < n; ++c) {
-    if (!(size(c) > 1e-12 * size.maxCoeff())) continue;
+    if (!(size(c) > detail::kDampedDirection * size.maxCoeff())) continue;
     VectorXd load = VectorXd::Zero(model.num_gdofs());
     load(rows) = root.cwiseProduct(solver.eigenvectors().col(c));
     loads = join_columns(loads, load);
@@ -68,7 +69,7 @@ MatrixXd calc_damper_loads(const fe::Model& model, const MatrixXd& Phi) {
 bool is_off_diagonal(const MatrixXd& A) {
   for (Eigen::Index j = 0; j < A.cols(); ++j)
     for (Eigen::Index i = 0; i < A.rows(); ++i)
-      if (i != j && std::abs(A(i, j)) > 1e-13 * std::sqrt(std::abs(A(i, i) * A(j, j)))) return true;
+      if (i != j && std::abs(A(i, j)) > detail::kDampingCoupling * std::sqrt(std::abs(A(i, i) * A(j, j)))) return true;
   return false;
 }
 
@@ -139,7 +140,7 @@ class Maker {
     if (S.size() == 0 || S.isZero(0)) return loads;
     const MatrixXd K = fe::calc_stiffness_times(model_, X);
     const double even = S.cwiseProduct(K).sum() / K.squaredNorm();
-    if ((S - even * K).norm() < 1e-9 * S.norm()) return loads;
+    if ((S - even * K).norm() < detail::kEvenDamping * S.norm()) return loads;
     return join_columns(loads, S);
   }
 
@@ -193,7 +194,7 @@ class Maker {
     std::vector<int> kept;
     for (Eigen::Index c = 0; c < rest.cols(); ++c) {
       const double left = rest.col(c).dot(F.col(c));
-      if (!(work(c) > 0) || !(left > 1e-10 * work(c))) continue;
+      if (!(work(c) > 0) || !(left > detail::kLeftWork * work(c))) continue;
       rest.col(c) /= std::sqrt(left);
       kept.push_back(static_cast<int>(c));
     }
@@ -201,7 +202,7 @@ class Maker {
     const MatrixXd X = rest(Eigen::all, kept);
     const Eigen::SelfAdjointEigenSolver<MatrixXd> gram(
         make_symmetric(fe::calc_inner_products(X, fe::calc_stiffness_times(model_, X))));
-    const auto num = (gram.eigenvalues().array() > 1e-8).count();
+    const auto num = (gram.eigenvalues().array() > detail::kDependentVector).count();
     const MatrixXd Z =
         X * gram.eigenvectors().rightCols(num) * gram.eigenvalues().tail(num).cwiseSqrt().cwiseInverse().asDiagonal();
     r.num_massless = static_cast<int>(num);
@@ -239,7 +240,7 @@ class Maker {
     if (damping_.curve) add_curve(r, k);
     r.is_coupled = is_off_diagonal(r.D) || is_off_diagonal(r.S);
     if (damping_.is_over_time && r.num_massless > 0) {
-      if (r.D.bottomRows(r.num_massless).cwiseAbs().maxCoeff() > 1e-9 * r.D.cwiseAbs().maxCoeff())
+      if (r.D.bottomRows(r.num_massless).cwiseAbs().maxCoeff() > detail::kMasslessDamping * r.D.cwiseAbs().maxCoeff())
         diagnostics_.warning("modal.massless-damper", {},
                              "damping acts on motions without mass: over time they follow their loads at once",
                              "give the grids of these dampers some mass; bough frequency has no such limit");

@@ -3,6 +3,7 @@
 #include <numbers>
 
 #include "modal/response/coordinates.hpp"
+#include "modal/tolerances.hpp"
 
 namespace bough::modal::response {
 namespace {
@@ -27,16 +28,16 @@ VectorXcd solve_coordinates(const ResponseModel& model, double hz, const VectorX
   const VectorXcd diagonal = real.cast<std::complex<double>>() +
                              1i * (omega * model.D.diagonal() + model.S.diagonal()).cast<std::complex<double>>();
   for (Eigen::Index j = 0; j < n; ++j)
-    if (!model.is_coupled && std::abs(diagonal(j)) <= 1e-14 * std::max(model.lambda(j), inertia(j)))
+    if (!model.is_coupled && std::abs(diagonal(j)) <= detail::kResonance * std::max(model.lambda(j), inertia(j)))
       throw_unbounded(hz, describe(model, j));
   if (!model.is_coupled) return force.cwiseQuotient(diagonal);
   MatrixXcd Z = 1i * (omega * model.D + model.S).cast<std::complex<double>>();
   Z.diagonal() = diagonal;
   // Residual vectors lie many orders above the modes: rows and columns of one size.
-  const VectorXd scale = model.lambda.cwiseAbs().cwiseMax(inertia).cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+  const VectorXd scale = model.lambda.cwiseAbs().cwiseMax(inertia).cwiseMax(detail::kTiny).cwiseSqrt().cwiseInverse();
   const Eigen::PartialPivLU<MatrixXcd> lu(scale.asDiagonal() * Z * scale.asDiagonal());
   const VectorXcd pivots = lu.matrixLU().diagonal();
-  if (n > 0 && !(pivots.cwiseAbs().minCoeff() > 1e-14))
+  if (n > 0 && !(pivots.cwiseAbs().minCoeff() > detail::kResonance))
     throw_unbounded(hz, model.num_rigid > 0 && hz == 0 ? "the model moves freely" : "a mode is not damped");
   return scale.asDiagonal() * lu.solve(scale.asDiagonal() * force).eval();
 }

@@ -3,12 +3,14 @@
 #include <tuple>
 
 #include "modal/response/sampled_curve.hpp"
+#include "modal/tolerances.hpp"
 
 namespace bough::modal::response {
 namespace {
 
 std::pair<double, double> evaluate_sides(const ExcitationTerm& term, const TimeGrid& grid, Eigen::Index i) {
-  const double t = grid.time(i), reach = 1e-6 * std::min(calc_step_before(grid, i), calc_step_after(grid, i));
+  const double t = grid.time(i),
+               reach = detail::kSideOfStep * std::min(calc_step_before(grid, i), calc_step_after(grid, i));
   return {i > 0 ? calc_history(term, t, Side::Before, reach) : 0, calc_history(term, t, Side::After, reach)};
 }
 
