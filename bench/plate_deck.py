@@ -10,12 +10,17 @@ import argparse
 SIDE, THICKNESS, E, NU, RHO = 10.0, 0.05, 2.0e11, 0.3, 8000.0
 
 
+def fit(value):
+    """In a field of eight characters, with as many digits as there is room for."""
+    return next(text for text in (f"{value:<8.{digits}g}" for digits in (6, 5, 4)) if len(text) == 8)
+
+
 def write_nastran(n, modes, rbe3, out):
     out.append(f"SOL 103\nCEND\nTITLE = SIMPLY SUPPORTED PLATE {n} X {n}\nSPC = 1\nMETHOD = 1\nBEGIN BULK\n"
                f"EIGRL,1,,,{modes}\nPARAM,COUPMASS,1\nMAT1,1,{E:.3E},,{NU},{RHO}\nPSHELL,1,1,{THICKNESS},1,,1\n")
     for j in range(n + 1):
         for i in range(n + 1):
-            out.append(f"GRID    {j * (n + 1) + i + 1:<8d}        {SIDE * i / n:<8.6g}{SIDE * j / n:<8.6g}0.0\n")
+            out.append(f"GRID    {j * (n + 1) + i + 1:<8d}        {fit(SIDE * i / n)}{fit(SIDE * j / n)}0.0\n")
     for j in range(n):
         for i in range(n):
             a = j * (n + 1) + i + 1
