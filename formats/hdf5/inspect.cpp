@@ -6,7 +6,7 @@
 
 #include <sys/stat.h>
 
-#include "base/apart.hpp"
+#include "base/isolated.hpp"
 #include "base/part_file.hpp"
 
 namespace bough::hdf5 {
@@ -81,8 +81,9 @@ void inspect_file(const std::string& path) {
 
   Diagnostics found;
   const double size = static_cast<double>(state.st_size);
-  const Apart look = work_apart(path, write_faults, {kSeconds + kSecondsPerByte * size, 1e9 + 4 * size}, "HDF5");
-  parse(path, look.said, found);
+  const IsolatedResult look =
+      run_isolated(path, write_faults, {kSeconds + kSecondsPerByte * size, 1e9 + 4 * size}, "HDF5");
+  parse(path, look.output, found);
   if (!look.end.empty())
     found.error("hdf5.damaged", {path}, "the file is damaged: " + look.end, "copy or write it again");
   found.throw_if_errors();

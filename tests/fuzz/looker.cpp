@@ -40,7 +40,7 @@ struct Server {
 
 /// The server is this program, forked: it knows a task by its address.
 struct Order {
-  ApartTask task = nullptr;
+  IsolatedTask task = nullptr;
   std::string path;
 };
 
@@ -92,8 +92,8 @@ void see_report(const char* report) {
   ::_exit(1);
 }
 
-/// Whether code broke that Bough did not call through a function of the sanitizers: the library frees what it never had,
-/// and their allocator, which lies in this program, breaks.
+/// Whether code broke that Bough did not call through a function of the sanitizers: the library frees what it never
+/// had, and their allocator, which lies in this program, breaks.
 bool broke_by_itself(const void* code) {
   if (!is_own(code)) return false;
   void* frames[32];
@@ -104,8 +104,8 @@ bool broke_by_itself(const void* code) {
     if (is_own(frames[i])) continue;
     // A library that calls back, or one of the functions that replace others: whoever called that.
     Dl_info there{};
-    const bool is_replaced = ::dladdr(frames[i], &there) != 0 && there.dli_sname &&
-                             std::strstr(there.dli_fname, "fuzz_readers");
+    const bool is_replaced =
+        ::dladdr(frames[i], &there) != 0 && there.dli_sname && std::strstr(there.dli_fname, "fuzz_readers");
     return !is_replaced || i + 1 >= count || is_own(frames[i + 1]);
   }
   return true;
@@ -185,7 +185,8 @@ void start(Server& server) {
 
 }  // namespace
 
-Apart work_by_one_process(const std::string& path, ApartTask task, const ApartLimits&, const std::string&) {
+IsolatedResult work_by_one_process(const std::string& path, IsolatedTask task, const IsolationLimits&,
+                                   const std::string&) {
   static Server server;
   std::signal(SIGPIPE, SIG_IGN);
   if (server.files >= kFiles) stop(server);
@@ -194,10 +195,10 @@ Apart work_by_one_process(const std::string& path, ApartTask task, const ApartLi
   for (const bool is_new : {server.process < 0, true}) {
     if (server.process < 0) start(server);
     ++server.files;
-    Apart done;
+    IsolatedResult done;
     pollfd wait{server.from, POLLIN, 0};
     if (send(server.to, Order{task, path}) && ::poll(&wait, 1, kMostMilliseconds) > 0 &&
-        receive(server.from, done.said))
+        receive(server.from, done.output))
       return done;
     if (!stop(server)) break;
     if (is_new) {
