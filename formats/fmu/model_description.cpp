@@ -26,9 +26,9 @@ std::string optional_attribute(const std::string& name, const std::string& value
 /// Gives every variable a name of its own: one that is taken gets a number.
 class Names {
  public:
-  std::string get(const std::string& wanted) {
-    std::string name = wanted;
-    for (int i = 2; !taken_.insert(name).second; ++i) name = wanted + " (" + std::to_string(i) + ")";
+  std::string get(const std::string& proposed) {
+    std::string name = proposed;
+    for (int i = 2; !taken_.insert(name).second; ++i) name = proposed + " (" + std::to_string(i) + ")";
     return name;
   }
 

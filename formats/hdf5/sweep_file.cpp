@@ -50,7 +50,7 @@ void write_sweep(const records::LinearSweep& sweep, const std::string& path) {
   file.write_strings("/parameter/name", {sweep.parameter}, {"of the system file, or time", "1"});
   file.write_vector("/parameter/value", sweep.value, {"one a point", "as the parameter's"});
   const auto& first = sweep.models.front();
-  write_signals(file, "/states", first.states, "states: displacements of the freedoms, then their rates");
+  write_signals(file, "/states", first.states, "states: displacements of the DOFs, then their rates");
   write_signals(file, "/inputs", first.inputs, "inputs");
   write_signals(file, "/outputs", first.outputs, "outputs");
   const bool is_sampled = first.sample_time > 0;

@@ -86,10 +86,10 @@ std::string format_end(double value, bool is_log) {
 }
 
 /// At most so many characters of UTF-8.
-std::string cut_text(const std::string& text, int most) {
+std::string cut_text(const std::string& text, int max_letters) {
   int count = 0;
   for (std::size_t i = 0; i < text.size(); ++i)
-    if ((static_cast<unsigned char>(text[i]) & 0xC0) != 0x80 && ++count > most) return text.substr(0, i);
+    if ((static_cast<unsigned char>(text[i]) & 0xC0) != 0x80 && ++count > max_letters) return text.substr(0, i);
   return text;
 }
 

@@ -23,7 +23,7 @@ struct KindHelp {
   bool is_open = false;  ///< takes keys of any name (parameters)
   std::vector<KeyHelp> keys;
   /// "one of file, mass": what the schema wants besides the required keys.
-  std::vector<std::string> wanted;
+  std::vector<std::string> expected;
 
   const KeyHelp* find(const std::string& key) const;
 };

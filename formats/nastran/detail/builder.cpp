@@ -20,7 +20,7 @@ namespace {
 
 /// Beyond this many lines that are no cards the file is not a deck.
 constexpr int max_unreadable = 20;
-constexpr int kMostWrongCopies = 1000;  // what is wrong in these is wrong in millions
+constexpr int kMaxWrongCopies = 1000;  // what is wrong in these is wrong in millions
 constexpr int max_repeats = 1'000'000;
 /// Unknown names for which the nearest known one is looked for.
 constexpr int max_proposals = 20;
@@ -205,9 +205,9 @@ class Builder {
       const int before = diagnostics_.num_errors();
       for (int i = 0; i < *repeats; ++i) {
         if (!finish_relative(replicator_.make_copy(text_))) return;
-        if (diagnostics_.num_errors() - before < kMostWrongCopies) continue;
+        if (diagnostics_.num_errors() - before < kMaxWrongCopies) continue;
         if (i + 1 < *repeats)
-          fail_replication(std::to_string(kMostWrongCopies) + " errors of its copies; the other " +
+          fail_replication(std::to_string(kMaxWrongCopies) + " errors of its copies; the other " +
                            std::to_string(*repeats - i - 1) + " are not read");
         return;
       }
@@ -283,8 +283,8 @@ class Builder {
   }
 
   void keep_extra_points() {
-    Diagnostics said;  // the card is named as not used
-    Card card(text_, deck_.files, said);
+    Diagnostics ignored_diagnostics;  // the card is named as not used
+    Card card(text_, deck_.files, ignored_diagnostics);
     for (const int id : read_ids(card, 0, card.get_size(), "ID")) dynamics_->dynamics.extra_points.insert(id);
   }
 
