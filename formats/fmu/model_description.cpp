@@ -23,7 +23,7 @@ std::string optional_attribute(const std::string& name, const std::string& value
   return value.empty() ? "" : attribute(name, value);
 }
 
-/// Gives every variable a name of its own: one that is taken gets a number.
+/// Gives every variable a unique name: one that is in use gets a number.
 class Names {
  public:
   std::string get(const std::string& proposed) {

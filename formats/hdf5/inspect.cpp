@@ -26,7 +26,7 @@ Stamp make_stamp(const struct stat& state) {
           static_cast<long long>(state.st_mtim.tv_nsec)};
 }
 
-/// Clocks of files tick some hundred times a second: a file may change twice within a tick and look the same.
+/// File times have a resolution of some 10 ms: a file may change twice within it without a sign.
 bool is_older(const struct stat& state, double seconds) {
   timespec now{};
   ::clock_gettime(CLOCK_REALTIME, &now);

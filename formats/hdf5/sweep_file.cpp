@@ -15,7 +15,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using records::LinearModel;
 
-/// One matrix a point, behind each other in C order.
+/// One matrix per point, one after the other in C order.
 void write_stack(FileWriter& file, const std::string& path, const std::vector<LinearModel>& models,
                  MatrixXd LinearModel::*part, const std::string& what) {
   const MatrixXd& first = models.front().*part;

@@ -164,7 +164,7 @@ class MatReader {
   std::vector<Matrix> matrices_;
 };
 
-/// Read and forgotten; what is wrong in Bough's own words is said again by the reading that counts.
+/// Reads and discards; errors found by Bough itself are reported when the file is read again.
 std::string try_mat(const std::string& path) {
   try {
     MatReader(path).read();
@@ -179,7 +179,7 @@ std::vector<Matrix> read_mat(const std::string& path) {
   if (read_bytes(path, 10) == "MATLAB 7.3") hdf5::inspect_file(path);
   std::error_code ignored;
   const double size = static_cast<double>(std::filesystem::file_size(path, ignored));
-  // Damaged files break the library (heap overflows, gigabytes for the names of a struct), in a process of its own
+  // Damaged files break the library (heap overflows, gigabytes for the names of a struct), in a separate process
   // first.
   const IsolatedResult tried = run_isolated(path, try_mat, {5 + 1e-6 * size, 1e9 + 2200 * size}, "MATLAB file");
   if (!tried.end.empty())

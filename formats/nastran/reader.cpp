@@ -43,7 +43,7 @@ records::DynamicDeck make_dynamic_deck(const detail::Source& source, const ReadO
 records::CaseRequests make_requests(const detail::Source& source, Diagnostics& diagnostics) {
   records::DynamicDeck deck;
   records::CaseRequests requests;
-  Diagnostics ignored_diagnostics;  // by whoever reads the deck
+  Diagnostics ignored_diagnostics;  // reported when the deck is read
   deck.files = source.files;
   detail::read_control(
       source, deck, ignored_diagnostics,

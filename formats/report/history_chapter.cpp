@@ -105,7 +105,7 @@ std::string make_histories(const History& h, const Strides& strides) {
   return html + "</div>\n" + make_statistics(h);
 }
 
-/// T + V + U - W less its first value.
+/// T + V + U - W minus its first value.
 HistoryChannel calc_balance(const History& h) {
   HistoryChannel balance{"/energy/balance", "kinetic + strain + potential - work, less its first value", "F L",
                          Eigen::MatrixXd::Zero(h.time.size(), 1)};

@@ -85,7 +85,7 @@ std::string format_end(double value, bool is_log) {
   return buffer;
 }
 
-/// At most so many characters of UTF-8.
+/// Truncates to a number of UTF-8 characters.
 std::string cut_text(const std::string& text, int max_letters) {
   int count = 0;
   for (std::size_t i = 0; i < text.size(); ++i)

@@ -13,7 +13,7 @@ struct KeyHelp {
   std::string default_value;         ///< JSON; may be empty
   std::string description;
   bool is_required = false;
-  bool takes_text = false, takes_other = false;  ///< whether a string may stand there, and something else
+  bool takes_text = false, takes_other = false;  ///< accepts a string; accepts other values
 };
 
 struct KindHelp {

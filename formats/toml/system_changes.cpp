@@ -75,7 +75,7 @@ class Comparison {
     }
   }
 
-  /// Tables are told apart by their names; without names by their place.
+  /// Tables are identified by their names; without names by their position.
   void compare_lists(const Value& before, const Value& after, const std::string& path, int line) {
     const auto get_name = [](const Value& table, std::size_t i) {
       const Value* name = table.find("name");

@@ -35,7 +35,7 @@ std::vector<std::string> split(const std::string& line) {
 
 /// Names in a heading: with tabs, semicolons or commas, blanks belong to the names ("time (s),thrust (N)").
 std::vector<std::string> split_names(const std::string& line) {
-  std::string bare;  // without what stands in quotation marks
+  std::string bare;  // without the text in quotation marks
   bool is_quoted = false;
   for (const char c : line) {
     is_quoted = is_quoted != (c == '"');

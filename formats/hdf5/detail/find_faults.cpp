@@ -191,7 +191,7 @@ class Walker {
                           std::to_string(static_cast<long long>(file_size_)) + " bytes of the file cannot hold");
     const Handle memory = make_memory_type(type.get());
     if (!memory.is_valid()) return;
-    // H5Dget_storage_size has walked through all chunks; what is behind them is numbers as they lie in the file.
+    // H5Dget_storage_size has read all chunks; the data after them are uncompressed numbers.
     const bool is_plain = num_filters == 0 && H5Tget_class(memory.get()) != H5T_STRING;
     read_rows(dataset, path, memory, dims, is_plain && plain_ > kMaxPlain);
     if (is_plain) plain_ += size;

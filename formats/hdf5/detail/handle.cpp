@@ -13,7 +13,7 @@ namespace bough::hdf5 {
 
 namespace {
 bool g_has_lost_file = false;
-// Every handle closes itself; what could not be closed would be written once more at the exit.
+// Every handle closes itself; a file that could not be closed would be written again at the exit.
 [[maybe_unused]] const bool g_leaves_in_peace = H5dont_atexit() >= 0;
 }  // namespace
 

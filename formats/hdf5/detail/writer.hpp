@@ -1,5 +1,5 @@
 #pragma once
-/// \file Writes one HDF5 file: beside its place first, renamed when whole.
+/// \\file Writes one HDF5 file: first under another name, renamed when complete.
 #include <functional>
 #include <map>
 #include <string>
@@ -18,7 +18,7 @@ struct ArrayAttributes {
   std::string description, dims;
 };
 
-/// Every function throws ComputationError "hdf5.write". Without commit() nothing is left behind.
+/// Every function throws ComputationError "hdf5.write". Without commit() no file is left.
 class FileWriter {
  public:
   FileWriter(const std::string& path, const std::string& format, const std::string& version);
@@ -54,7 +54,7 @@ class FileWriter {
   void make_group(const std::string& path);
   /// A second name of an existing dataset.
   void link(const std::string& path, const std::string& existing);
-  /// The dataset `scale` is what the first dimension of `users` stands at.
+  /// Makes the dataset `scale` the coordinates of the first dimension of `users`.
   void attach_scale(const std::string& scale, const std::vector<std::string>& users);
 
   /// Starts to write the bytes so far to disk, in the background.

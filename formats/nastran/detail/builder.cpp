@@ -86,7 +86,7 @@ class Builder {
 
   /// Lines of a card with more fields than they have; nullptr: none.
   struct Excess {
-    const Line* data = nullptr;    ///< behind a continuation mark
+    const Line* data = nullptr;    ///< after a continuation mark
     const Line* number = nullptr;  ///< alone in field 10, and no line continues it
   };
 
@@ -123,7 +123,7 @@ class Builder {
 
   static void pad(CardText& text) { text.fields.resize((text.fields.size() + 7) / 8 * 8); }
 
-  /// A section of its own (BEGIN SUPER): its cards are no part of this model.
+  /// A separate section (BEGIN SUPER): its cards are not part of this model.
   bool begins_section(int card) const {
     const auto text = trim(line(image(card).first_line).text);
     if (text.size() < 5 || !is_word(find_first_word(text), "BEGIN")) return false;
