@@ -27,10 +27,10 @@ namespace {
 
 /// Files that one process may look at: calls of the library that fail leave memory behind.
 constexpr int kFiles = 2000;
-/// Of computing, and then of waiting on a busy machine. Some damaged lists have no end, and a whole file takes 1 to 5.
+/// Limits of computing, and then of waiting on a busy machine. Some damaged lists have no end; a file takes 1 to 5.
 constexpr int kMilliseconds = 15, kMostMilliseconds = 2000;
 
-/// How the process ends that finds a fault of Bough's own code, not of the library that it watches.
+/// Exit code of a process that finds a fault of Bough's own code, not of the library that it watches.
 constexpr int kOwnFault = 77;
 
 struct Server {
@@ -71,8 +71,8 @@ bool receive(int descriptor, Order& order) {
   return ::read(descriptor, &order.task, sizeof order.task) == sizeof order.task && receive(descriptor, order.path);
 }
 
-/// Of code of Bough: of this program, but none of the functions by which the sanitizers replace others. Those are the
-/// only ones that the dynamic linker knows.
+/// Returns true for code of Bough: of this program, except the functions by which the sanitizers replace others. Those
+/// are the only ones that the dynamic linker knows.
 bool is_own(const void* code) {
   Dl_info here{}, there{};
   if (::dladdr(reinterpret_cast<const void*>(&is_own), &here) == 0 || ::dladdr(code, &there) == 0) return false;
@@ -92,8 +92,8 @@ void see_report(const char* report) {
   ::_exit(1);
 }
 
-/// Whether code broke that Bough did not call through a function of the sanitizers: the library frees what it never
-/// had, and their allocator, which lies in this program, breaks.
+/// Returns true if code broke that Bough did not call through a function of the sanitizers: the library frees memory
+/// that it never had, and their allocator, which is in this program, breaks.
 bool broke_by_itself(const void* code) {
   if (!is_own(code)) return false;
   void* frames[32];
@@ -156,7 +156,7 @@ void watch_for_own_faults() {
   ::_exit(1);
 }
 
-/// Whether Bough's own code was at fault.
+/// Returns true if Bough's own code was at fault.
 bool stop(Server& server) {
   if (server.process < 0) return false;
   ::close(server.to);
