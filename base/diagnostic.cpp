@@ -68,9 +68,9 @@ void Diagnostics::add(Diagnostic d) {
   if (d.severity == Severity::Error) ++num_errors_;
   if (d.severity == Severity::Warning) ++num_warnings_;
   // A wrong card that is repeated three million times would take gigabytes to say so.
-  constexpr std::size_t kMost = 200'000;
+  constexpr std::size_t kMaxItems = 200'000;
   const auto is_same = [&](const Diagnostic& other) { return other.id == d.id && other.severity == d.severity; };
-  if (items_.size() >= kMost && std::any_of(items_.end() - 16, items_.end(), is_same)) return;
+  if (items_.size() >= kMaxItems && std::any_of(items_.end() - 16, items_.end(), is_same)) return;
   items_.push_back(std::move(d));
 }
 void Diagnostics::error(std::string_view id, SourceLocation where, std::string what, std::string advice) {
@@ -90,12 +90,12 @@ void Diagnostics::throw_if_errors() const {
 }
 
 Failure::Failure(std::vector<Diagnostic> items, int exit_code) : items_(std::move(items)), exit_code_(exit_code) {
-  constexpr std::size_t kMost = 1000;  // a card that is repeated a million times is wrong a million times
-  for (std::size_t i = 0; i < std::min(items_.size(), kMost); ++i) {
+  constexpr std::size_t kMaxItems = 1000;  // a card that is repeated a million times is wrong a million times
+  for (std::size_t i = 0; i < std::min(items_.size(), kMaxItems); ++i) {
     if (!text_.empty()) text_ += '\n';
     text_ += format(items_[i]);
   }
-  if (items_.size() > kMost) text_ += "\n... and " + std::to_string(items_.size() - kMost) + " more";
+  if (items_.size() > kMaxItems) text_ += "\n... and " + std::to_string(items_.size() - kMaxItems) + " more";
 }
 InputError::InputError(std::string_view id, SourceLocation where, std::string what, std::string advice)
     : InputError({make(Severity::Error, id, std::move(where), std::move(what), std::move(advice))}) {}
@@ -107,7 +107,7 @@ bool is_same_letter(char x, char y) {
   return std::tolower(static_cast<unsigned char>(x)) == std::tolower(static_cast<unsigned char>(y));
 }
 
-/// A bit for each letter that stands in the word, case aside; some share one.
+/// A bit for each letter of the word, case aside; some share one.
 std::uint32_t find_letters(std::string_view word) {
   std::uint32_t bits = 0;
   for (const char c : word) bits |= std::uint32_t{1} << (std::tolower(static_cast<unsigned char>(c)) & 31);

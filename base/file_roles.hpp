@@ -29,8 +29,8 @@ class FileRoles {
 /// Every reader calls it with what it opens. InputError "cli.output-is-input" when the call is to write this file.
 void note_input(const std::string& path);
 
-/// Whoever is about to write calls it, early where a long calculation comes before. InputError "cli.output-is-input"
-/// when the call has read this file. A file that takes the place of the old one is another file, and may be read.
+/// Every writer calls it before a long calculation. InputError "cli.output-is-input" if the call has read this file. A
+/// file that replaces the old one is another file, and may be read.
 void note_output(const std::string& path);
 
 }  // namespace bough

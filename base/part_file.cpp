@@ -21,8 +21,8 @@ namespace {
 
 constexpr const char* kMark = ".bough-part-";
 /// Longest name of a file; the end of a longer part's name gives way.
-constexpr std::size_t kMostLetters = 255;
-/// Far behind the end of any file.
+constexpr std::size_t kMaxLetters = 255;
+/// Offset far after the end of any file.
 constexpr off_t kLockedByte = off_t{1} << 62;
 
 /// Names of the parts that are open: a signal handler can reach nothing but static storage.
@@ -55,7 +55,7 @@ struct flock make_lock() {
   return lock;
 }
 
-/// Parts whose process is gone hold no lock. Only files of this user, with nothing but digits behind the mark.
+/// Parts whose process is gone hold no lock. Only files of this user, with only digits after the mark.
 void remove_stale(const fs::path& folder, const std::string& stem) {
   std::error_code failed;
   for (const auto& entry : fs::directory_iterator(folder, failed)) {
@@ -105,12 +105,12 @@ PartFile::PartFile(const std::string& path) {
   note_output(path);
   target_ = find_target(path, error_);
   if (error_) return;
-  // Absolute: whoever removes it may stand in another folder by then.
+  // Absolute, since the working directory may have changed when it is removed.
   target_ = fs::absolute(target_, error_).string();
   if (error_) return;
   const fs::path target(target_);
   const auto process = std::to_string(::getpid());
-  const auto stem = target.filename().string().substr(0, kMostLetters - std::strlen(kMark) - 12) + kMark;
+  const auto stem = target.filename().string().substr(0, kMaxLetters - std::strlen(kMark) - 12) + kMark;
   remove_stale(target.parent_path(), stem);
   name_ = (target.parent_path() / (stem + process)).string();
   for (int attempt = 0; attempt < 3; ++attempt) {
@@ -165,7 +165,7 @@ bool PartFile::commit() {
 
 bool PartFile::publish() {
   if (error_) return false;
-  // A run fills the file of that name: it would go on filling one that nobody sees.
+  // A run writes the file of that name; after the replacement it would write a file without a name.
   if (is_file_locked(target_)) {
     errno = EBUSY;
     return fail();

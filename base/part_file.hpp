@@ -9,7 +9,7 @@ namespace bough {
 /// link cannot be followed (a circle, or a link of another user in a shared folder) and then `path` is returned.
 std::string find_target(const std::string& path, std::error_code& failed);
 
-/// A new file beside the target of `path`, NAME.bough-part-PID, that takes its place when it is whole. It is made with
+/// A new file next to the target of `path`, NAME.bough-part-PID, that replaces it when complete. It is made with
 /// O_EXCL and O_NOFOLLOW and locked while it is open; parts of the same name whose process is gone are removed first.
 /// Removed by its destructor, and by remove_parts. What the call has read is refused (note_output).
 class PartFile {
@@ -55,7 +55,7 @@ void remove_parts() noexcept;
 
 enum class LockState { Held, Busy, Unsupported };
 /// Locks a file for as long as the descriptor, open for writing, stays open; no other program's reading is hindered (a
-/// lock of the open file description on one byte far behind the end). Processes forked share it.
+/// lock of the open file description on one byte far after the end). Processes forked share it.
 LockState lock_file(int descriptor);
 /// Returns true if a process holds the lock; false if that is not known.
 bool is_file_locked(const std::string& path);

@@ -27,7 +27,7 @@ using fmu::ForeignVariable;
 /// Bytes of the state of the FMU in one number of the memory: an integer that a double holds.
 constexpr std::size_t kPacked = 6;
 
-/// Folder of its own in TMPDIR.
+/// Private folder in TMPDIR.
 class Folder {
  public:
   Folder() {

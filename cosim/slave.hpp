@@ -1,5 +1,5 @@
 #pragma once
-/// \file Co-Simulation slave of an FMU, FMI 2.0 and 3.0, behind one interface.
+/// \file Co-Simulation slave of an FMU, FMI 2.0 and 3.0, with one interface.
 ///
 /// Source: FMI 2.0.4 chapter 4, FMI 3.0.1 chapter 4.
 #include <memory>
@@ -18,7 +18,7 @@ class Slave {
   Slave(const Slave&) = delete;
   Slave& operator=(const Slave&) = delete;
 
-  /// Makes the instance anew and leads it through its initialization. The values belong to `variables`, one after the
+  /// Creates a new instance and initializes it. The values belong to `variables`, one after the
   /// other; inputs may be null: the start values of the FMU stay.
   virtual void start(double t, const double* parameters, const double* inputs) = 0;
   virtual void set_inputs(const double* values) = 0;

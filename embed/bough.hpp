@@ -95,7 +95,7 @@ class Model {
   std::shared_ptr<bough_model> model_;
 };
 
-/// Options of a run; zero or empty: as the system file says.
+/// Options of a run; zero or empty: those of the system file.
 struct Options {
   std::string integrator;
   double step = 0, relative_tolerance = 0, absolute_tolerance = 0, duration = 0;

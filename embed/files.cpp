@@ -37,7 +37,7 @@ records::FlexBody read_body(const std::string& name, Diagnostics&, const std::op
   return body;
 }
 
-/// Matrices and tables in files of their own have readers of other libraries.
+/// Matrices and tables in separate files have readers of other libraries.
 void refuse_matrix_files(records::SystemSpec& spec, Diagnostics& diagnostics) {
   const std::string advice = "write the numbers into the system file";
   for (const auto& r : spec.controllers)

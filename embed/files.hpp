@@ -1,5 +1,5 @@
 #pragma once
-/// \file Files that libbough.so reads beside the system file: .FLX, flat bodies, matrices in the system file itself.
+/// \file Files that libbough.so reads with the system file: .FLX, flat bodies, matrices in the system file itself.
 #include "embed/load.hpp"
 
 namespace bough::embed {

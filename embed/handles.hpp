@@ -1,5 +1,5 @@
 #pragma once
-/// \file Objects behind the handles of bough.h, for the other interfaces of the library.
+/// \file Objects of the handles of bough.h, for the other interfaces of the library.
 #include <memory>
 #include <mutex>
 #include <shared_mutex>

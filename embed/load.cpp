@@ -86,7 +86,7 @@ std::optional<RigidPart> find_rigid_part(const records::SystemSpec& spec, const 
   return RigidPart{found->cg, found->inertia};
 }
 
-/// Lends each FMU under a name of its own, which `lent` of its record then gives: two controllers may have one file.
+/// Lends each FMU under a unique name, stored in `lent` of its record: two controllers may have one file.
 std::vector<std::unique_ptr<solver::HostedController>> lend_fmus(records::SystemSpec& spec, const FileReaders& readers,
                                                                  Diagnostics& diagnostics) {
   static std::atomic<long> number = 0;
@@ -155,8 +155,8 @@ LoadedSystem load_system(const std::string& path, const FileReaders& readers, Lo
       }
     }
   }
-  // A file with errors of its own has no meaning to go on with; one without is taken as far as it goes, so that one
-  // round shows all errors of bodies, hinges, forces, sensors, events and the run.
+  // A file with errors in its text ends the load here. Else loading continues, to report all errors of bodies, hinges,
+  // forces, sensors, events and the run at once.
   if (has_errors_of_text) diagnostics.throw_if_errors();
   if (options.set_start) {
     diagnostics.throw_if_errors();

@@ -26,7 +26,7 @@ struct LoadedSystem {
 /// Mass centre and inertia, which a .FLX without the extension of version 1.1 leaves to the system.
 struct RigidPart {
   records::Vector3d cg;       ///< in B
-  records::Matrix3d inertia;  ///< about the mass centre, in B
+  records::Matrix3d inertia;  ///< about the centre of mass, in B
 };
 
 /// Gives a body of a file the rigid part that the file lacks. Throws InputError "flx.no-inertia" where neither the file

@@ -15,7 +15,7 @@ namespace bough::embed {
 /// Nine digits, whatever the locale.
 std::string to_text(double value);
 
-/// Zero or empty: as the system file says.
+/// Zero or empty: those of the system file.
 struct SimulationOptions {
   std::string integrator;
   double step = 0, relative_tolerance = 0, absolute_tolerance = 0;
@@ -45,7 +45,7 @@ class Simulation {
   bool is_past(double t) const { return t < simulator_->time() - simulator_->resolution(); }
   /// The message for a time that is_past().
   std::string describe_past(double t) const;
-  /// The message for a time behind the next event of an integrator of the host.
+  /// The message for a time after the next event of an integrator of the host.
   std::string describe_event_before(double t) const;
   /// Reason of the end. \pre the run has ended.
   std::string describe_end() const;

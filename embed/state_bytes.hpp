@@ -13,7 +13,7 @@ std::uint64_t calc_hash(std::span<const std::byte> bytes, std::uint64_t hash = 1
 
 /// `fingerprint`: of what must be the same where the state is restored.
 std::vector<std::byte> encode_state(const records::Checkpoint& state, std::uint64_t fingerprint);
-/// Bytes behind the state are passed over. Throws InputError "embed.bad-state".
+/// Bytes after the state are skipped. Throws InputError "embed.bad-state".
 records::Checkpoint decode_state(std::span<const std::byte> bytes, std::uint64_t fingerprint);
 
 }  // namespace bough::embed

@@ -226,13 +226,13 @@ int find_shard_count(const std::vector<fs::path>& folders) {
 
 /// "1 to 3, 7, 9 to 12".
 std::string format_numbers(const std::vector<int>& numbers) {
-  constexpr std::size_t most = 10;
+  constexpr std::size_t max_shown = 10;
   std::string text;
   std::size_t count = 0;
   for (std::size_t i = 0; i < numbers.size();) {
     std::size_t end = i + 1;
     while (end < numbers.size() && numbers[end] == numbers[end - 1] + 1) ++end;
-    if (count++ == most) return text + ", ...";
+    if (count++ == max_shown) return text + ", ...";
     text += (text.empty() ? "" : ", ") + std::to_string(numbers[i]);
     if (end > i + 1) text += (end > i + 2 ? " to " : ", ") + std::to_string(numbers[end - 1]);
     i = end;
@@ -301,11 +301,11 @@ struct Tally {
 };
 
 std::string format_failed(const BatchPlan& plan, const std::vector<BatchOutcome>& failed) {
-  constexpr std::size_t most = 20;
+  constexpr std::size_t max_shown = 20;
   std::string text;
-  for (std::size_t i = 0; i < failed.size() && i < most; ++i)
+  for (std::size_t i = 0; i < failed.size() && i < max_shown; ++i)
     text += fmt::format("  {}: {}\n", plan.get_folder(failed[i].number), failed[i].error);
-  if (failed.size() > most) text += fmt::format("  and {} more: see the table\n", failed.size() - most);
+  if (failed.size() > max_shown) text += fmt::format("  and {} more: see the table\n", failed.size() - max_shown);
   return text;
 }
 
@@ -313,7 +313,7 @@ std::string format_statistics(const std::vector<Statistics>& statistics) {
   Table table{{"output", "cases", "mean", "deviation", "min", "5 %", "median", "95 %", "max"}, {}};
   for (const auto& s : statistics) {
     table.rows.push_back({s.name, std::to_string(s.count)});
-    for (const double x : {s.mean, s.deviation, s.least, s.p5, s.median, s.p95, s.most})
+    for (const double x : {s.mean, s.deviation, s.min, s.p5, s.median, s.p95, s.max})
       table.rows.back().push_back(fmt::format("{:.6g}", x));
   }
   return statistics.empty() ? "" : table.to_text();
@@ -323,16 +323,16 @@ json to_json(const std::vector<Statistics>& statistics) {
   json all = json::object();
   for (const auto& s : statistics)
     all[s.name] = {{"count", s.count}, {"mean", s.mean}, {"deviation", s.deviation},
-                   {"min", s.least},   {"p5", s.p5},     {"median", s.median},
-                   {"p95", s.p95},     {"max", s.most}};
+                   {"min", s.min},     {"p5", s.p5},     {"median", s.median},
+                   {"p95", s.p95},     {"max", s.max}};
   return all;
 }
 
 /// Counts the outcomes of all ranks together.
-void count_again(const BatchPlan& plan, const std::vector<int>& wanted, const fs::path& folder, Tally& tally) {
+void count_again(const BatchPlan& plan, const std::vector<int>& selected, const fs::path& folder, Tally& tally) {
   tally.failed.clear();
   int num_over = 0;
-  for (const int number : wanted) {
+  for (const int number : selected) {
     auto outcome = read_outcome(folder / plan.get_folder(number));
     if (!outcome) continue;
     ++num_over;
@@ -341,7 +341,7 @@ void count_again(const BatchPlan& plan, const std::vector<int>& wanted, const fs
   tally.num_done = num_over - tally.num_before;
 }
 
-int report(const BatchOptions& o, const BatchPlan& plan, const Tally& tally, int num_wanted, int num_in_table,
+int report(const BatchOptions& o, const BatchPlan& plan, const Tally& tally, int num_selected, int num_in_table,
            const std::vector<Statistics>& statistics, const fs::path& folder, const Console& console) {
   const auto table = (folder / "outcomes.csv").string();
   if (o.json) {
@@ -350,7 +350,7 @@ int report(const BatchOptions& o, const BatchPlan& plan, const Tally& tally, int
       failed.push_back({{"case", f.number}, {"exit_code", f.exit_code}, {"error", f.error}});
     console.print_data(json{{"name", plan.get_spec().name},
                             {"folder", folder.string()},
-                            {"cases", num_wanted},
+                            {"cases", num_selected},
                             {"done_before", tally.num_before},
                             {"done", tally.num_done},
                             {"failed", failed},
@@ -361,21 +361,21 @@ int report(const BatchOptions& o, const BatchPlan& plan, const Tally& tally, int
                            .dump(2) +
                        "\n");
   } else {
-    constexpr std::size_t most = 40;
-    if (num_in_table > 1 && statistics.size() <= most) console.print(format_statistics(statistics));
+    constexpr std::size_t max_shown = 40;
+    if (num_in_table > 1 && statistics.size() <= max_shown) console.print(format_statistics(statistics));
     console.print(fmt::format("{}: {} of {} cases done{}, {} failed, {:.2f} s\nwritten: {} and .h5, {} cases\n",
-                              plan.get_spec().name, tally.num_before + tally.num_done, num_wanted,
+                              plan.get_spec().name, tally.num_before + tally.num_done, num_selected,
                               tally.num_before > 0 ? fmt::format(" ({} before)", tally.num_before) : "",
                               tally.failed.size(), tally.seconds, table, num_in_table));
   }
   if (!tally.failed.empty()) {
-    console.print_error("batch.failed-cases", fmt::format("{} of {} cases failed", tally.failed.size(), num_wanted),
+    console.print_error("batch.failed-cases", fmt::format("{} of {} cases failed", tally.failed.size(), num_selected),
                         "their folders hold what they printed; --retry does them again");
     if (!o.json) console.print_data("failed:\n" + format_failed(plan, tally.failed));
   }
   if (!tally.completed)
     console.print_error("cli.interrupted",
-                        fmt::format("stopped after {} of {} cases", tally.num_before + tally.num_done, num_wanted),
+                        fmt::format("stopped after {} of {} cases", tally.num_before + tally.num_done, num_selected),
                         "the same command goes on with the others");
   return tally.failed.empty() && tally.completed ? kSuccess : kComputationFailed;
 }
@@ -448,14 +448,14 @@ int run_batch(const BatchOptions& o) {
   do_once([&] { state.emplace(folder, plan, shard, o.restart); });
 
   Tally tally;
-  std::vector<int> wanted, open;
+  std::vector<int> selected, open;
   const auto get_case = [&](int number) { return folder / plan.get_folder(number); };
   for (const auto& one : plan.get_cases())
-    if (shard.holds(one.number)) wanted.push_back(one.number);
-  for (std::size_t i = 0; i < wanted.size(); ++i) {
-    const auto outcome = read_outcome(get_case(wanted[i]));
+    if (shard.holds(one.number)) selected.push_back(one.number);
+  for (std::size_t i = 0; i < selected.size(); ++i) {
+    const auto outcome = read_outcome(get_case(selected[i]));
     if (!outcome || (o.retry && !outcome->error.empty())) {
-      if (rank.takes(i)) open.push_back(wanted[i]);
+      if (rank.takes(i)) open.push_back(selected[i]);
       continue;
     }
     ++tally.num_before;
@@ -486,13 +486,13 @@ int run_batch(const BatchOptions& o) {
     const double each = count_seconds() / tally.num_done;
     console.show_progress(
         fmt::format("batch: {}/{} done, {} failed, {:.3g} s a case, {:.0f} s left", tally.num_before + tally.num_done,
-                    wanted.size(), tally.failed.size(), each,
+                    selected.size(), tally.failed.size(), each,
                     each * static_cast<double>(open.size() - static_cast<std::size_t>(tally.num_done))));
   });
   tally.completed = wait_for_all(tally.completed);
   tally.seconds = count_seconds();
   console.end_progress();
-  if (rank.count > 1) count_again(plan, wanted, folder, tally);
+  if (rank.count > 1) count_again(plan, selected, folder, tally);
   std::sort(tally.failed.begin(), tally.failed.end(), [](const auto& a, const auto& b) { return a.number < b.number; });
 
   int code = tally.failed.empty() && tally.completed ? kSuccess : kComputationFailed;
@@ -509,7 +509,7 @@ int run_batch(const BatchOptions& o) {
                                            before, outcomes.size()),
                                "merge them again when all shards are done"});
     const auto statistics = write_tables(plan, outcomes, state->get_fingerprint(), folder);
-    code = report(o, plan, tally, static_cast<int>(wanted.size()), static_cast<int>(outcomes.size()), statistics,
+    code = report(o, plan, tally, static_cast<int>(selected.size()), static_cast<int>(outcomes.size()), statistics,
                   folder, console);
   });
   return code;

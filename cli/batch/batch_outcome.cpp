@@ -22,13 +22,13 @@ namespace {
 constexpr std::size_t max_numbers = 1000;
 constexpr const char* kCaseMark = ".bough-case";
 
-InputError fail(const CampaignCollect& wanted, const std::string& what, const std::string& advice) {
-  return {"batch.collect", wanted.at, "collect '" + wanted.name + "': " + what, advice};
+InputError fail(const CampaignCollect& rule, const std::string& what, const std::string& advice) {
+  return {"batch.collect", rule.at, "collect '" + rule.name + "': " + what, advice};
 }
 
-void flatten(const json& value, const CampaignCollect& wanted, std::vector<double>& numbers) {
+void flatten(const json& value, const CampaignCollect& rule, std::vector<double>& numbers) {
   if (value.is_array()) {
-    for (const auto& item : value) flatten(item, wanted, numbers);
+    for (const auto& item : value) flatten(item, rule, numbers);
   } else if (value.is_number()) {
     numbers.push_back(value.get<double>());
   } else if (value.is_boolean()) {
@@ -36,7 +36,7 @@ void flatten(const json& value, const CampaignCollect& wanted, std::vector<doubl
   } else if (value.is_null()) {
     numbers.push_back(std::numeric_limits<double>::quiet_NaN());
   } else {
-    throw fail(wanted, wanted.json + " does not hold numbers", "name a number or a list of numbers");
+    throw fail(rule, rule.json + " does not hold numbers", "name a number or a list of numbers");
   }
 }
 
@@ -52,24 +52,24 @@ std::string list_below(const json& printed, json::json_pointer place) {
   return keys;
 }
 
-Eigen::MatrixXd read_printed(const CampaignCollect& wanted, const fs::path& folder) {
-  const auto path = folder / ("step-" + std::to_string(wanted.step) + ".out");
+Eigen::MatrixXd read_printed(const CampaignCollect& rule, const fs::path& folder) {
+  const auto path = folder / ("step-" + std::to_string(rule.step) + ".out");
   std::ifstream in(path);
   const auto printed = json::parse(in, nullptr, false);
   if (printed.is_discarded())
-    throw fail(wanted, path.filename().string() + " is no JSON", "choose a step that has --json");
-  const json::json_pointer place(wanted.json);
+    throw fail(rule, path.filename().string() + " is no JSON", "choose a step that has --json");
+  const json::json_pointer place(rule.json);
   if (!printed.contains(place)) {
     const std::string keys = list_below(printed, place);
-    throw fail(wanted, "the step prints no " + wanted.json, keys.empty() ? "" : "it prints " + keys);
+    throw fail(rule, "the step prints no " + rule.json, keys.empty() ? "" : "it prints " + keys);
   }
   const auto& found = printed[place];
   std::vector<double> numbers;
-  flatten(found, wanted, numbers);
+  flatten(found, rule, numbers);
   const bool is_table = found.is_array() && !found.empty() && found[0].is_array() && !found[0].empty();
   const auto cols = is_table ? static_cast<Eigen::Index>(found[0].size()) : 1;
   const auto size = static_cast<Eigen::Index>(numbers.size());
-  if (size % cols != 0) throw fail(wanted, wanted.json + " has rows of different lengths", "choose one of them");
+  if (size % cols != 0) throw fail(rule, rule.json + " has rows of different lengths", "choose one of them");
   using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   return Eigen::Map<const RowMajor>(numbers.data(), size / cols, cols);
 }
@@ -150,7 +150,7 @@ std::string make_csv(const std::vector<Statistics>& statistics) {
   std::string text = "output,count,mean,deviation,min,p5,median,p95,max\n";
   for (const auto& s : statistics) {
     text += quote_cell(s.name) + "," + std::to_string(s.count);
-    for (const double x : {s.mean, s.deviation, s.least, s.p5, s.median, s.p95, s.most}) text += "," + format_number(x);
+    for (const double x : {s.mean, s.deviation, s.min, s.p5, s.median, s.p95, s.max}) text += "," + format_number(x);
     text += "\n";
   }
   return text;
@@ -221,28 +221,27 @@ void write_outcome(const BatchOutcome& outcome, const fs::path& case_folder) {
   write_text_file((case_folder / "outcome.json").string(), to_text(outcome));
 }
 
-std::vector<double> collect(const CampaignCollect& wanted, const fs::path& case_folder) {
+std::vector<double> collect(const CampaignCollect& rule, const fs::path& case_folder) {
   Eigen::MatrixXd table;
-  if (!wanted.json.empty()) {
-    table = read_printed(wanted, case_folder);
+  if (!rule.json.empty()) {
+    table = read_printed(rule, case_folder);
   } else {
     try {
-      table = hdf5::read_numbers((case_folder / wanted.file).string(), wanted.dataset);
+      table = hdf5::read_numbers((case_folder / rule.file).string(), rule.dataset);
     } catch (const InputError& error) {
-      throw fail(wanted, wanted.file + ": " + error.items().front().what, error.items().front().advice);
+      throw fail(rule, rule.file + ": " + error.items().front().what, error.items().front().advice);
     }
   }
-  if (wanted.column > table.cols())
-    throw fail(wanted, "there is no column " + std::to_string(wanted.column), "it has " + std::to_string(table.cols()));
-  if (wanted.column > 0) table = table.col(wanted.column - 1).eval();
-  if (wanted.take != CollectTake::All && table.size() == 0)
-    throw fail(wanted, "there are no numbers", "take all of them");
+  if (rule.column > table.cols())
+    throw fail(rule, "there is no column " + std::to_string(rule.column), "it has " + std::to_string(table.cols()));
+  if (rule.column > 0) table = table.col(rule.column - 1).eval();
+  if (rule.take != CollectTake::All && table.size() == 0) throw fail(rule, "there are no numbers", "take all of them");
   // Several columns give one number each.
   std::vector<double> numbers;
   const auto take_each = [&](auto&& of) {
     for (Eigen::Index k = 0; k < table.cols(); ++k) numbers.push_back(of(table.col(k)));
   };
-  switch (wanted.take) {
+  switch (rule.take) {
     case CollectTake::All:
       for (Eigen::Index i = 0; i < table.rows(); ++i)
         for (const double x : table.row(i)) numbers.push_back(x);
@@ -267,7 +266,7 @@ std::vector<double> collect(const CampaignCollect& wanted, const fs::path& case_
       break;
   }
   if (numbers.size() > max_numbers)
-    throw fail(wanted, "there are " + std::to_string(numbers.size()) + " numbers, at most 1000 make columns",
+    throw fail(rule, "there are " + std::to_string(numbers.size()) + " numbers, at most 1000 make columns",
                "choose a column, or take = \"max\"");
   return numbers;
 }

@@ -35,7 +35,7 @@ std::optional<BatchOutcome> read_outcome(const std::filesystem::path& case_folde
 void write_outcome(const BatchOutcome& outcome, const std::filesystem::path& case_folder);
 
 /// The numbers that a [[collect]] asks for, from the case's folder. Throws InputError "batch.collect".
-std::vector<double> collect(const toml_files::CampaignCollect& wanted, const std::filesystem::path& case_folder);
+std::vector<double> collect(const toml_files::CampaignCollect& rule, const std::filesystem::path& case_folder);
 
 /// Writes outcomes.csv and outcomes.h5: a row for each outcome there is; statistics.csv of them, which are returned.
 std::vector<Statistics> write_tables(const BatchPlan& plan, const std::vector<BatchOutcome>& outcomes,

@@ -32,11 +32,11 @@ std::vector<Statistics> calc_statistics(const hdf5::OutcomeTable& table) {
       double sum = 0;
       for (const double x : values) sum += (x - s.mean) * (x - s.mean);
       s.deviation = s.count > 1 ? std::sqrt(sum / (s.count - 1)) : std::numeric_limits<double>::quiet_NaN();
-      s.least = values.front();
+      s.min = values.front();
       s.p5 = calc_quantile(values, 0.05);
       s.median = calc_quantile(values, 0.5);
       s.p95 = calc_quantile(values, 0.95);
-      s.most = values.back();
+      s.max = values.back();
       all.push_back(s);
     }
   }

@@ -12,7 +12,7 @@ struct Statistics {
   std::string name;  ///< "peak", "peak.2"
   int count = 0;
   double mean = 0, deviation = 0;  ///< of a sample: divided by count - 1; NaN of a single one
-  double least = 0, p5 = 0, median = 0, p95 = 0, most = 0;
+  double min = 0, p5 = 0, median = 0, p95 = 0, max = 0;
 };
 
 /// Value below which the share p of the sorted numbers lies, linear between them (Hyndman and Fan, type 7).

@@ -99,9 +99,9 @@ bool send_line(int fd, const std::string& text) {
 
 /// Collects all values that can be read; the first that cannot is the error of the case.
 void collect_all(const BatchPlan& plan, const fs::path& folder, BatchOutcome& outcome) {
-  for (const auto& wanted : plan.get_spec().collect) {
+  for (const auto& rule : plan.get_spec().collect) {
     try {
-      outcome.outputs.push_back(collect(wanted, folder));
+      outcome.outputs.push_back(collect(rule, folder));
     } catch (const Failure& failure) {
       outcome.outputs.emplace_back();
       if (outcome.exit_code != 0) continue;

@@ -60,7 +60,7 @@ int finish(const CheckOptions& options, const Console& console, const std::strin
     json["messages"] = messages;
     json["errors"] = diagnostics.num_errors();
     json["warnings"] = diagnostics.num_warnings();
-    put_out(options, console, json.dump(2) + "\n");
+    write_report(options, console, json.dump(2) + "\n");
     console.print(diagnostics);
   } else {
     const auto sum = count(static_cast<std::size_t>(diagnostics.num_errors()), "error") + ", " +
@@ -68,7 +68,7 @@ int finish(const CheckOptions& options, const Console& console, const std::strin
     // On the screen the messages stand before their sum.
     if (options.output.empty()) console.print(text);
     console.print(diagnostics);
-    put_out(options, console, options.output.empty() ? sum : text + sum);
+    write_report(options, console, options.output.empty() ? sum : text + sum);
   }
   return diagnostics.num_errors() > 0 ? kInputError : kSuccess;
 }

@@ -17,7 +17,7 @@ namespace bough::cli {
 
 namespace {
 
-constexpr std::size_t kMostRows = 20;
+constexpr std::size_t kMaxRows = 20;
 
 struct Row {
   records::Subcase subcase;
@@ -33,7 +33,7 @@ bool enforces(const records::Deck& deck, int set) {
 std::string format_rows(const std::vector<Row>& rows) {
   Table table{{"subcase", "LOAD", "TEMP", "SPC", "MPC", "Fx", "Fy", "Fz", "Mx", "My", "Mz", "enforced", "heated"}, {}};
   const auto name = [](int set) { return set ? std::to_string(set) : std::string("-"); };
-  for (std::size_t i = 0; i < std::min(rows.size(), kMostRows); ++i) {
+  for (std::size_t i = 0; i < std::min(rows.size(), kMaxRows); ++i) {
     const auto& row = rows[i];
     const auto& s = row.subcase;
     std::vector<std::string> cells{std::to_string(s.id), name(s.load), name(s.temperature), name(s.spc), name(s.mpc)};
@@ -42,7 +42,7 @@ std::string format_rows(const std::vector<Row>& rows) {
     cells.push_back(row.is_resolved ? std::to_string(row.num_heated) : "?");
     table.rows.push_back(std::move(cells));
   }
-  const auto rest = rows.size() - std::min(rows.size(), kMostRows);
+  const auto rest = rows.size() - std::min(rows.size(), kMaxRows);
   return "loads of the subcases about the origin\n" + table.to_text() +
          (rest ? fmt::format("... and {} more\n", count(rest, "subcase")) : "");
 }
@@ -61,7 +61,7 @@ void check_subcases(const records::Deck& deck, const fe::Model& model, const fe:
   std::optional<fe::Model> own;
   const fe::Model* current = &model;
   for (auto& row : rows) {
-    Diagnostics said;
+    Diagnostics found;
     try {
       if (get_held(row.subcase) != get_held(current->subcase())) {
         auto own_options = options;
@@ -70,8 +70,8 @@ void check_subcases(const records::Deck& deck, const fe::Model& model, const fe:
         own.emplace(fe::Model::build(deck, own_options, of_model));
         current = &*own;
       }
-      const auto load = fe::calc_static_load(*current, deck, row.subcase, said);
-      said.throw_if_errors();
+      const auto load = fe::calc_static_load(*current, deck, row.subcase, found);
+      found.throw_if_errors();
       row.resultant = fe::calc_resultant(*current, load.F);
       row.num_enforced = static_cast<int>((load.d.array() != 0).count());
       row.num_heated = static_cast<int>(load.initial.of.size());
@@ -80,7 +80,7 @@ void check_subcases(const records::Deck& deck, const fe::Model& model, const fe:
         diagnostics.warning("cli.empty-load", deck.locate(row.subcase.find_command("LOAD")),
                             fmt::format("subcase {}: its loads and temperatures apply nothing", row.subcase.id),
                             "look at the factors of LOAD, at zero loads, and at grids that the loads miss");
-      add_new(said, diagnostics);
+      add_new(found, diagnostics);
     } catch (const Failure& failure) {
       current = own ? &*own : &model;
       failures.add(row.subcase.id, failure);

@@ -38,8 +38,8 @@ class Writer {
   explicit Writer(const records::SystemSpec& spec) : spec_(spec) {}
 
   std::string write() {
-    Diagnostics unheard;  // the system is built, which reports what is wrong
-    const auto uses = solver::collect_uses(spec_, unheard);
+    Diagnostics ignored;  // the system is built, which reports what is wrong
+    const auto uses = solver::collect_uses(spec_, ignored);
     for (const auto& r : spec_.sensors) sources_.push_back({"sensor", r.name, "/sensors/" + r.name});
     for (const auto& r : spec_.inputs) sources_.push_back({"input", r.name, "/inputs/" + r.name});
     for (const auto& r : spec_.controllers) sources_.push_back({"controller", r.name, "/controllers/" + r.name});

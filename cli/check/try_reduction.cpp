@@ -16,9 +16,9 @@ namespace bough::cli {
 namespace {
 
 /// Free dofs up to which a body is reduced to see whether it can be, these times modes, and bytes of matrices given.
-constexpr int kMostDofs = 6000;
-constexpr double kMostNumbers = 1e6;
-constexpr std::uintmax_t kMostBytes = 20'000'000;
+constexpr int kMaxDofs = 6000;
+constexpr double kMaxNumbers = 1e6;
+constexpr std::uintmax_t kMaxBytes = 20'000'000;
 
 }  // namespace
 
@@ -30,8 +30,8 @@ void try_reduction(const std::string& file, records::BodySpec spec, int num_free
       const auto bytes = std::filesystem::file_size(name, failed);
       if (!failed) size += bytes;
     }
-  const bool is_large = num_free_dofs > kMostDofs || 1.0 * num_free_dofs * spec.num_modes > kMostNumbers;
-  if (is_large || size > kMostBytes) {
+  const bool is_large = num_free_dofs > kMaxDofs || 1.0 * num_free_dofs * spec.num_modes > kMaxNumbers;
+  if (is_large || size > kMaxBytes) {
     const auto what = is_large ? fmt::format("{} free dofs and {} modes", num_free_dofs, spec.num_modes)
                                : fmt::format("matrices of {} MB", size / 1'000'000);
     diagnostics.note("cli.not-reduced", {file}, "with " + what + " check does not try to reduce the body",
@@ -39,10 +39,10 @@ void try_reduction(const std::string& file, records::BodySpec spec, int num_free
     return;
   }
   if (!spec.deck.empty()) spec.deck = resolve_beside(file, spec.deck);
-  Diagnostics said;
+  Diagnostics found;
   try {
-    blame(file, [&] {
-      reduce_body(spec, {}, said);
+    with_file(file, [&] {
+      reduce_body(spec, {}, found);
       return kSuccess;
     });
   } catch (const Failure& failure) {
@@ -50,7 +50,7 @@ void try_reduction(const std::string& file, records::BodySpec spec, int num_free
     for (const auto& item : failure.items()) own.add(item);
     add_new(own, diagnostics);
   }
-  add_new(said, diagnostics);
+  add_new(found, diagnostics);
 }
 
 }  // namespace bough::cli

@@ -204,7 +204,7 @@ Diagnostic locate(Diagnostic diagnostic, const std::string& file) {
   return diagnostic;
 }
 
-std::vector<Diagnostic> shorten(const std::vector<Diagnostic>& items, std::size_t most) {
+std::vector<Diagnostic> shorten(const std::vector<Diagnostic>& items, std::size_t max_shown) {
   struct Kind {
     std::size_t count = 0, line = 0;  ///< how many there are; where the line about the rest stands
   };
@@ -212,19 +212,20 @@ std::vector<Diagnostic> shorten(const std::vector<Diagnostic>& items, std::size_
   std::vector<Diagnostic> shown;
   for (const auto& item : items) {
     auto& kind = kinds[{item.id, item.severity, item.where.file}];
-    if (item.id.empty() || ++kind.count <= most) {
+    if (item.id.empty() || ++kind.count <= max_shown) {
       shown.push_back(item);
-    } else if (kind.count == most + 1) {
+    } else if (kind.count == max_shown + 1) {
       kind.line = shown.size();
       shown.push_back({item.severity, item.id, {item.where.file}, {}, {}});
     }
   }
   for (const auto& [key, kind] : kinds)
-    if (kind.count > most) {
+    if (kind.count > max_shown) {
       auto& line = shown[kind.line];
       // Diagnostics keeps no more items.
       const bool is_cut = items.size() >= 200'000;
-      line.what = (is_cut ? "... and at least " : "... and ") + group_digits(kind.count - most) + " more of " + line.id;
+      line.what =
+          (is_cut ? "... and at least " : "... and ") + group_digits(kind.count - max_shown) + " more of " + line.id;
       line.advice = "-v prints them all";
     }
   return shown;

@@ -79,7 +79,7 @@ Diagnostic locate(Diagnostic diagnostic, const std::string& file);
 
 /// The first `most` messages of each id, severity and file, in their order; one line where the next would stand says
 /// how many follow.
-std::vector<Diagnostic> shorten(const std::vector<Diagnostic>& items, std::size_t most = 10);
+std::vector<Diagnostic> shorten(const std::vector<Diagnostic>& items, std::size_t max_shown = 10);
 
 /// A mechanism and a model without mass count as wrong input (docs/adr/0006).
 int choose_exit_code(const Failure& failure);

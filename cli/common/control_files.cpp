@@ -104,13 +104,13 @@ void read_controller_files(records::SystemSpec& spec, Diagnostics& diagnostics) 
     const std::string* named = find_file(r);
     if (named == nullptr) continue;
     const std::string file = *named;
-    const std::vector<std::string> wanted =
+    const std::vector<std::string> requested =
         r.type == "gain" ? std::vector<std::string>{"gain"} : std::vector<std::string>{"A", "B", "C", "D"};
     try {
       const bool is_hdf5 = matrices::detect_format(file) == matrices::Format::Hdf5;
       std::vector<matrices::Matrix> all;
       if (!is_hdf5) all = matrices::read_matrices(file, diagnostics);
-      for (const auto& name : wanted) {
+      for (const auto& name : requested) {
         if (r.settings.has(name)) continue;
         if (is_hdf5) {
           r.settings.matrices[name] = hdf5::read_numbers(file, name);

@@ -120,7 +120,7 @@ void check_output(const CommonOptions& options, const std::string& path, const s
   }
 }
 
-void put_out(const CommonOptions& options, const Console& console, const std::string& text) {
+void write_report(const CommonOptions& options, const Console& console, const std::string& text) {
   if (options.output.empty()) {
     if (options.json || !options.quiet) console.print_data(text);
     return;
@@ -130,12 +130,12 @@ void put_out(const CommonOptions& options, const Console& console, const std::st
   console.print("written: " + options.output + "\n");
 }
 
-int blame(const std::string& file, const std::function<int()>& act, const std::string& innocent) {
+int with_file(const std::string& file, const std::function<int()>& act, const std::string& excluded_file) {
   const auto is_of_reduce = [](const Diagnostic& item) { return item.id.starts_with("reduce."); };
   const auto place = [&](const Failure& failure) {
     auto items = failure.items();
     for (auto& item : items) {
-      if (!innocent.empty() && item.where.file == innocent && item.where.line == 0 && !is_of_reduce(item))
+      if (!excluded_file.empty() && item.where.file == excluded_file && item.where.line == 0 && !is_of_reduce(item))
         item.where.file.clear();
       item = locate(std::move(item), file);
     }
@@ -150,11 +150,11 @@ int blame(const std::string& file, const std::function<int()>& act, const std::s
   }
 }
 
-void say_first(const Diagnostics& said, const std::function<void()>& act) {
-  const auto join = [&said](const Failure& failure) {
+void with_prior_messages(const Diagnostics& prior, const std::function<void()>& act) {
+  const auto join = [&prior](const Failure& failure) {
     Diagnostics own, all;
     for (const auto& item : failure.items()) own.add(item);
-    add_new(said, all);
+    add_new(prior, all);
     add_new(own, all);
     return all.items();
   };

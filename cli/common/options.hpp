@@ -51,7 +51,7 @@ void confine_outputs(const std::string& folder);
 void check_place(const std::string& path);
 
 /// A report, to the output file when one is given, else to stdout: JSON always, text unless quiet.
-void put_out(const CommonOptions& options, const Console& console, const std::string& text);
+void write_report(const CommonOptions& options, const Console& console, const std::string& text);
 
 /// Returns true if the text ends so, case aside: ".h5", ".toml".
 bool has_suffix(const std::string& path, const std::string& suffix);
@@ -66,12 +66,12 @@ records::Deck read_deck_or_throw(const std::string& path, const fe::ModelOptions
 /// (file name, SHA-256) of each; nothing on the ranks that write no file.
 std::vector<std::pair<std::string, std::string>> calc_sources(const std::vector<std::string>& files);
 
-/// Does `act`; a failure of it is thrown on behind what was `said` before it, so that no word of the reader is lost.
-void say_first(const Diagnostics& said, const std::function<void()>& act);
+/// Runs `act`; its failure is thrown again after the `prior` messages, so that none of them is lost.
+void with_prior_messages(const Diagnostics& prior, const std::function<void()>& act);
 
-/// Does `act`; failures that it throws without a place are thrown on as failures of `file`, so are those of fe and
-/// modal about the whole of `innocent`, a file whose numbers were not used.
-int blame(const std::string& file, const std::function<int()>& act, const std::string& innocent = "");
+/// Runs `act`; its failures without location get the location `file`, and so do those of fe and modal with the location
+/// `excluded_file`, a file whose numbers were not used.
+int with_file(const std::string& file, const std::function<int()>& act, const std::string& excluded_file = "");
 
 /// Throws InputError("cli.no-file") when the path is no readable file.
 void demand_file(const std::string& path);

@@ -10,12 +10,12 @@ namespace bough::cli {
 
 namespace {
 
-constexpr std::size_t kMostNamed = 10;
+constexpr std::size_t kMaxNamed = 10;
 
 std::string name_subcases(const std::vector<int>& ids) {
   std::string text = ids.size() == 1 ? "subcase " : "subcases ";
-  for (std::size_t i = 0; i < std::min(ids.size(), kMostNamed); ++i) text += (i ? ", " : "") + std::to_string(ids[i]);
-  if (ids.size() > kMostNamed) text += " and " + std::to_string(ids.size() - kMostNamed) + " more";
+  for (std::size_t i = 0; i < std::min(ids.size(), kMaxNamed); ++i) text += (i ? ", " : "") + std::to_string(ids[i]);
+  if (ids.size() > kMaxNamed) text += " and " + std::to_string(ids.size() - kMaxNamed) + " more";
   return text;
 }
 
@@ -26,9 +26,9 @@ void SubcaseFailures::add(int subcase, const Failure& failure) {
   exit_code_ = std::max(exit_code_, choose_exit_code(failure));
 }
 
-std::vector<Diagnostic> SubcaseFailures::get_items(const Diagnostics& said) const {
+std::vector<Diagnostic> SubcaseFailures::get_items(const Diagnostics& prior) const {
   std::set<std::string> known;
-  for (const auto& item : said.items()) known.insert(format(item));
+  for (const auto& item : prior.items()) known.insert(format(item));
   std::vector<std::pair<Diagnostic, std::vector<int>>> found;
   for (const auto& [id, items] : failed_)
     for (const auto& item : items) {
@@ -49,9 +49,9 @@ std::vector<Diagnostic> SubcaseFailures::get_items(const Diagnostics& said) cons
   return items;
 }
 
-void SubcaseFailures::throw_all(const Diagnostics& said) const {
-  auto items = said.items();
-  for (auto& item : get_items(said)) items.push_back(std::move(item));
+void SubcaseFailures::throw_all(const Diagnostics& prior) const {
+  auto items = prior.items();
+  for (auto& item : get_items(prior)) items.push_back(std::move(item));
   if (exit_code_ == kInputError) throw InputError(std::move(items));
   throw ComputationError(std::move(items));
 }

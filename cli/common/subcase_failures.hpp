@@ -22,11 +22,11 @@ class SubcaseFailures {
   void add(int subcase, const Failure& failure);
   bool is_empty() const { return failed_.empty(); }
   /// Every message once, its errors with the subcases that they are about; without the warnings that are `said`.
-  std::vector<Diagnostic> get_items(const Diagnostics& said = {}) const;
+  std::vector<Diagnostic> get_items(const Diagnostics& prior = {}) const;
   /// Exit code of report_failure for the worst failure; 0 without failures.
   int get_exit_code() const { return exit_code_; }
   /// Throws all of them as one failure.
-  [[noreturn]] void throw_all(const Diagnostics& said) const;
+  [[noreturn]] void throw_all(const Diagnostics& prior) const;
   /// [{"id": 7, "messages": [...]}, ...]
   nlohmann::json to_json() const;
 

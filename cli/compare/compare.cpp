@@ -96,7 +96,7 @@ RefinementReport compare_meshes(const CompareOptions& o, Diagnostics& diagnostic
 }
 
 template <class Report>
-void put_out(const Report& report, const CompareOptions& o, const Console& console) {
+void write_report(const Report& report, const CompareOptions& o, const Console& console) {
   if (!o.output.empty()) {
     records::Comparison file;
     std::vector<std::string> files;
@@ -114,8 +114,8 @@ void put_out(const Report& report, const CompareOptions& o, const Console& conso
 int run_compare(const CompareOptions& o) {
   const Console console(o.quiet, o.verbosity);
   if (!console.is_root()) return kSuccess;
-  const std::size_t most = o.refinement ? 3 : 2, least = o.refinement ? 3 : 1;
-  if (o.files.size() < least || o.files.size() > most) {
+  const std::size_t max_files = o.refinement ? 3 : 2, min_files = o.refinement ? 3 : 1;
+  if (o.files.size() < min_files || o.files.size() > max_files) {
     console.print_error("cli.usage", fmt::format("{} files given", o.files.size()),
                         o.refinement ? "--refinement takes three" : "give one or two; three with --refinement");
     return kUsageError;
@@ -127,12 +127,12 @@ int run_compare(const CompareOptions& o) {
   }
   Diagnostics diagnostics;
   if (o.refinement) {
-    put_out(compare_meshes(o, diagnostics), o, console);
+    write_report(compare_meshes(o, diagnostics), o, console);
   } else if (o.files.size() == 2) {
-    put_out(compare_two(o, diagnostics), o, console);
+    write_report(compare_two(o, diagnostics), o, console);
   } else {
     const auto body = load_body(o.files[0], diagnostics);
-    put_out(compare_with_itself(body, o.files[0]), o, console);
+    write_report(compare_with_itself(body, o.files[0]), o, console);
   }
   console.print(diagnostics);
   return kSuccess;

@@ -104,12 +104,12 @@ void convert_toml(const ConvertOptions& o, const records::UnitChange& change, co
   const std::string text{std::istreambuf_iterator<char>(in), {}};
   toml_files::check_text(text, o.file, diagnostics);
   diagnostics.throw_if_errors();
-  FileFacts facts(o.file);
-  const toml_files::BodyFacts asked{
-      [&](const std::string& body, const std::string& locator) { return facts.find_direction(body, locator); },
-      [&](const std::string& body, int element) { return facts.find_components(body, element); }};
+  FileFacts files(o.file);
+  const toml_files::BodyFacts facts{
+      [&](const std::string& body, const std::string& locator) { return files.find_direction(body, locator); },
+      [&](const std::string& body, int element) { return files.find_components(body, element); }};
   int num_changed = 0;
-  const auto changed = toml_files::change_units(text, o.file, change, o.to_radians, asked, diagnostics, num_changed);
+  const auto changed = toml_files::change_units(text, o.file, change, o.to_radians, facts, diagnostics, num_changed);
   diagnostics.throw_if_errors();
   console.print(diagnostics);
   write_text_file(o.output, changed);

@@ -72,15 +72,15 @@ KeyValues EditSession::ask_for_keys(const KindHelp& kind, KeyValues given) const
   const auto ask = [&](const toml_files::KeyHelp& key) { ask_for_key(kind, key, given); };
   for (const auto& key : kind.keys)
     while (key.is_required && !has(key.name)) ask(key);
-  for (const auto& wanted : kind.wanted) {
+  for (const auto& expected : kind.expected) {
     const auto is_wanted = [&](const toml_files::KeyHelp& key) {
-      return (wanted + ",").find(" " + key.name + ",") != std::string::npos;
+      return (expected + ",").find(" " + key.name + ",") != std::string::npos;
     };
     const auto is_met = [&] {
       return std::any_of(kind.keys.begin(), kind.keys.end(),
                          [&](const auto& k) { return is_wanted(k) && has(k.name); });
     };
-    if (!is_met()) console_.print("  it needs " + wanted + "\n");
+    if (!is_met()) console_.print("  it needs " + expected + "\n");
     for (const auto& key : kind.keys)
       if (is_wanted(key) && !is_met()) ask(key);
   }

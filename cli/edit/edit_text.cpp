@@ -112,9 +112,9 @@ EditTarget EditText::find_target(const std::string& words, bool wants_key) const
     }
     if (!item.name.empty()) names.push_back(item.name);
   }
-  const auto keep = [&](const auto& is_good) {
-    if (std::any_of(found.begin(), found.end(), is_good))
-      found.erase(std::remove_if(found.begin(), found.end(), [&](const auto& c) { return !is_good(c); }), found.end());
+  const auto keep = [&](const auto& is_match) {
+    if (std::any_of(found.begin(), found.end(), is_match))
+      found.erase(std::remove_if(found.begin(), found.end(), [&](const auto& c) { return !is_match(c); }), found.end());
   };
   keep([](const Candidate& c) { return c.has_kind; });
   std::size_t longest = 0;

@@ -135,7 +135,7 @@ void add_equilibrium(CLI::App& app, Action& action) {
       "Example:\n  bough equilibrium arm.toml -o rest.h5\n"
       "  bough linearize arm.toml --start-from rest.h5 -o arm-linear.h5\n"
       "Hinge rates of the system file are kept: other than zero they give a steady spin.");
-  verb->callback([&action, o] { action = [o] { return blame(o->file, [&] { return run_equilibrium(*o); }); }; });
+  verb->callback([&action, o] { action = [o] { return with_file(o->file, [&] { return run_equilibrium(*o); }); }; });
 }
 
 }  // namespace bough::cli

@@ -157,10 +157,10 @@ class Frames {
   /// Body b + 1 has ids from (b + 1) 10^d on: with the ids of its grids behind, or, rigid, its points in order.
   /// Numbers from 1 on where these would be longer than an integer.
   std::vector<int> number_grids() const {
-    long most = 1, unit = 1;
-    for (const auto& part : parts_) most = std::max(most, static_cast<long>(part.mesh.grid_id.size()));
-    for (const int id : mesh_.grid_id) most = std::max(most, static_cast<long>(id));
-    while (unit <= most) unit *= 10;
+    long max_id = 1, unit = 1;
+    for (const auto& part : parts_) max_id = std::max(max_id, static_cast<long>(part.mesh.grid_id.size()));
+    for (const int id : mesh_.grid_id) max_id = std::max(max_id, static_cast<long>(id));
+    while (unit <= max_id) unit *= 10;
     const bool fits = unit * static_cast<long>(parts_.size() + 1) < std::numeric_limits<int>::max();
     std::vector<int> ids;
     for (std::size_t b = 0; b < parts_.size(); ++b)

@@ -103,7 +103,7 @@ int run_flx(const FlxVerbOptions& o) {
   std::string text;
   for (std::size_t b = 0; b < ids.size(); ++b) {
     options.body_id = ids[b];
-    blame(o.bodies[b], [&] {
+    with_file(o.bodies[b], [&] {
       files.push_back(flx::make_flx(
           is_flat(o.bodies[b]) ? flat::read_flex_body(o.bodies[b]) : hdf5::read_flex_body(o.bodies[b]), options));
       return kSuccess;

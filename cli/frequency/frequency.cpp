@@ -84,7 +84,7 @@ int run_deck_response(const DeckResponseOptions& options) {
   const auto model_options = make_model_options(options.model);
   const auto deck = read_loads_deck_or_throw(options.deck, model_options, true, diagnostics);
   std::vector<records::DynamicSubcase> subcases;
-  say_first(diagnostics, [&] {
+  with_prior_messages(diagnostics, [&] {
     demand_grids(options, deck);
     subcases = modal::response::choose_response_subcases(deck, options.model.subcase, options.is_over_time);
   });
@@ -180,7 +180,7 @@ void add_response_verb(CLI::App& app, Action& action, bool is_over_time, const c
   add_model_options(*verb, o->model);
   add_common_options(*verb, *o, kOutput | kJson, "Write the curves to this HDF5 file");
   verb->footer(footer);
-  verb->callback([&action, o] { action = [o] { return blame(o->deck, [&] { return run_deck_response(*o); }); }; });
+  verb->callback([&action, o] { action = [o] { return with_file(o->deck, [&] { return run_deck_response(*o); }); }; });
 }
 
 }  // namespace

@@ -39,7 +39,7 @@ std::vector<Peak> list_peaks(const std::vector<exports::NamedCurve>& curves, con
 
 }  // namespace
 
-std::string format_response(const records::ResponseSubcase& s, bool is_over_time, std::size_t most) {
+std::string format_response(const records::ResponseSubcase& s, bool is_over_time, std::size_t max_curves) {
   const auto num_residual =
       static_cast<std::size_t>(std::count(s.kind.begin(), s.kind.end(), records::ModeKind::Residual));
   const auto num = static_cast<std::size_t>(s.x.size());
@@ -70,7 +70,7 @@ std::string format_response(const records::ResponseSubcase& s, bool is_over_time
     std::erase_if(group, [](const auto& p) { return p.size == 0; });
     std::stable_sort(group.begin(), group.end(),
                      [](const auto& a, const auto& b) { return std::abs(a.size) > std::abs(b.size); });
-    const auto left = group.size() > most ? group.size() - most : 0;
+    const auto left = group.size() > max_curves ? group.size() - max_curves : 0;
     group.resize(group.size() - left);
     const bool of_element = !peaks[first].curve->quantity.empty() && std::isupper(peaks[first].curve->quantity[0]);
     Table table{{of_element ? "element" : "grid", "component", "largest", is_over_time ? "at time" : "at Hz"}, {}};

@@ -91,7 +91,7 @@ int run_info(const InfoOptions& o) {
     for (const auto& e : events) list.push_back({{"time", e.time}, {"what", e.what}, {"source", e.source}});
     nlohmann::json all{{"attributes", info.attributes}, {"objects", objects}};
     if (!list.empty()) all["events"] = list;
-    put_out(o, console, all.dump(2) + "\n");
+    write_report(o, console, all.dump(2) + "\n");
     return kSuccess;
   }
   const std::size_t width = get_terminal_width();
@@ -114,7 +114,7 @@ int run_info(const InfoOptions& o) {
     text += line + "\n";
   }
   if (!events.empty()) text += "\n" + format_events(events);
-  put_out(o, console, text);
+  write_report(o, console, text);
   return kSuccess;
 }
 

@@ -48,13 +48,13 @@ std::vector<int> find_interface(const records::Deck& deck) {
 std::string join_ids(const std::vector<int>& ids) { return fmt::format("{}", fmt::join(ids, ", ")); }
 
 /// More are written as a comment: each costs six static solutions.
-constexpr std::size_t kMostInterfaceGrids = 12;
+constexpr std::size_t kMaxInterfaceGrids = 12;
 
 /// [body.modes] as the first subcase's METHOD says.
 std::string make_modes_table(const records::Deck& deck, bool is_fixed) {
-  const int wanted = deck.subcases.empty() ? 0 : deck.subcases.front().method;
+  const int requested = deck.subcases.empty() ? 0 : deck.subcases.front().method;
   const auto at = std::find_if(deck.eigen_methods.begin(), deck.eigen_methods.end(),
-                               [&](const auto& method) { return method.sid == wanted; });
+                               [&](const auto& method) { return method.sid == requested; });
   if (at == deck.eigen_methods.end()) return "number = 10              # the deck selects no METHOD\n";
   const auto card = fmt::format("{} {} of the deck", at->is_eigrl ? "EIGRL" : "EIGR", at->sid);
   std::string text;
@@ -91,7 +91,7 @@ std::vector<StartFile> make_start_files(const records::Deck& deck, const DeckSta
   auto interface = find_interface(deck);
   if (grid > 0) {
     std::erase(interface, grid);
-    if (interface.size() >= kMostInterfaceGrids) interface.clear();
+    if (interface.size() >= kMaxInterfaceGrids) interface.clear();
     interface.insert(interface.begin(), grid);
   }
   std::string frame = "frame = \"free\"           # no constraints of the deck hold the body: free-free modes\n";
@@ -106,7 +106,7 @@ std::vector<StartFile> make_start_files(const records::Deck& deck, const DeckSta
     frame += fmt::format(
         "{}interface = [{}]          # centres of RBE2 and RBE3, SUPORT: where other bodies, forces and moments may "
         "be\n",
-        interface.size() > kMostInterfaceGrids ? "# " : "", join_ids(interface));
+        interface.size() > kMaxInterfaceGrids ? "# " : "", join_ids(interface));
   else
     frame += "# interface = [1]        # each grid that a hinge, force or moment loads\n";
   auto modes = make_modes_table(deck, is_fixed);

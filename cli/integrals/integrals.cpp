@@ -129,7 +129,7 @@ void add_integrals(CLI::App& app, Action& action) {
   verb->footer(
       "Example:\n  bough integrals test.inp test.mat -o test.FLX\n"
       "  bough integrals test.inp test.mat --fi test.fi --digits 17 -o test.FLX");
-  verb->callback([&action, o] { action = [o] { return blame(o->matrices, [&] { return run_integrals(*o); }); }; });
+  verb->callback([&action, o] { action = [o] { return with_file(o->matrices, [&] { return run_integrals(*o); }); }; });
 }
 
 }  // namespace bough::cli

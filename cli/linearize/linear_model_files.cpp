@@ -162,11 +162,11 @@ std::string make_linear_csv(const LinearModel& model) {
 LinearModel choose_channels(LinearModel model, const std::vector<std::string>& inputs,
                             const std::vector<std::string>& outputs, const std::string& file) {
   Diagnostics diagnostics;
-  const auto choose = [&](const std::vector<std::string>& wanted, const records::Signals& known, const char* noun,
+  const auto choose = [&](const std::vector<std::string>& requested, const records::Signals& known, const char* noun,
                           const char* id) {
     std::vector<int> chosen;
-    for (int i = 0; wanted.empty() && i < known.size(); ++i) chosen.push_back(i);
-    for (const auto& name : wanted) {
+    for (int i = 0; requested.empty() && i < known.size(); ++i) chosen.push_back(i);
+    for (const auto& name : requested) {
       const auto size = chosen.size();
       for (int i = 0; i < known.size(); ++i) {
         const auto& one = known.name[static_cast<std::size_t>(i)];
@@ -207,14 +207,14 @@ LinearModel choose_channels(LinearModel model, const std::vector<std::string>& i
 /// Poles that the errors of A hide: those of free motion, or soft ones beside very stiff ones.
 static std::string format_lost_poles(const records::Poles& poles) {
   std::string numbers;
-  double most = 0;
+  double max_error = 0;
   for (int i = 0; i < static_cast<int>(poles.error.size()); ++i) {
     const double size = std::hypot(poles.real[i], poles.imag[i]);
     if (poles.error[i] == 0 || size > poles.error[i]) continue;
     numbers += " " + std::to_string(i + 1);
-    most = std::max(most, poles.error[i]);
+    max_error = std::max(max_error, poles.error[i]);
   }
-  return numbers.empty() ? "" : fmt::format("\nzero within what A is known to ({:.1e}): pole{}\n", most, numbers);
+  return numbers.empty() ? "" : fmt::format("\nzero within what A is known to ({:.1e}): pole{}\n", max_error, numbers);
 }
 
 /// Poles at z = 0, and modes that the samples show at another frequency.

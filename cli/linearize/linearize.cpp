@@ -39,8 +39,8 @@ records::LinearModel linearize_at(const LinearizeVerbOptions& o, solver::Plant& 
 }
 
 /// Warnings and notes of the first model; of the others only those that it did not have.
-void keep_new(const Diagnostics& said, Diagnostics& diagnostics) {
-  for (const auto& item : said.items()) {
+void keep_new(const Diagnostics& found, Diagnostics& diagnostics) {
+  for (const auto& item : found.items()) {
     const auto is_same = [&](const Diagnostic& d) { return d.id == item.id; };
     if (std::none_of(diagnostics.items().begin(), diagnostics.items().end(), is_same)) diagnostics.add(item);
   }
@@ -51,12 +51,12 @@ records::LinearSweep sweep_parameter(const LinearizeVerbOptions& o, Diagnostics&
   const auto linearize = [&](double value) {
     auto set = o.set;
     set.push_back(fmt::format("{}={:.17g}", range.name, value));
-    Diagnostics said;
-    const auto loaded = load_system(o.file, said, o.start_from, set);
+    Diagnostics found;
+    const auto loaded = load_system(o.file, found, o.start_from, set);
     auto plant = make_plant(loaded, o.open);
-    auto point = o.at ? run_to(loaded, plant, *o.at, said) : make_start(loaded, plant, said);
-    auto model = linearize_at(o, plant, std::move(point), false, said);
-    keep_new(said, diagnostics);
+    auto point = o.at ? run_to(loaded, plant, *o.at, found) : make_start(loaded, plant, found);
+    auto model = linearize_at(o, plant, std::move(point), false, found);
+    keep_new(found, diagnostics);
     return model;
   };
   return make_sweep(range.name, range.values, linearize, o.file, diagnostics);
@@ -73,10 +73,10 @@ records::LinearSweep sweep_run(const LinearizeVerbOptions& o, const LoadedSystem
   auto plant = make_plant(loaded, o.open);
   std::optional<records::Checkpoint> last;
   const auto linearize = [&](double t) {
-    Diagnostics said;
-    auto point = run_to(loaded, plant, t, said, &last);
-    auto model = linearize_at(o, plant, std::move(point), false, said);
-    keep_new(said, diagnostics);
+    Diagnostics found;
+    auto point = run_to(loaded, plant, t, found, &last);
+    auto model = linearize_at(o, plant, std::move(point), false, found);
+    keep_new(found, diagnostics);
     return model;
   };
   return make_sweep("time", times, linearize, o.file, diagnostics);
@@ -180,7 +180,7 @@ void add_linearize(CLI::App& app, Action& action) {
       "  bough linearize arm.toml --inputs shoulder,elbow --outputs tip:y --at 2.5 --json\n"
       "  bough linearize rotor.toml --equilibrium --sweep rate=0:6:25 -o campbell.h5\n"
       "  bough linearize arm.toml --break motor -o loop.h5 && bough response loop.h5");
-  verb->callback([&action, o] { action = [o] { return blame(o->file, [&] { return run_linearize(*o); }); }; });
+  verb->callback([&action, o] { action = [o] { return with_file(o->file, [&] { return run_linearize(*o); }); }; });
 }
 
 }  // namespace bough::cli

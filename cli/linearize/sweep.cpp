@@ -158,11 +158,11 @@ std::string format_sweep(const LinearSweep& sweep) {
   for (Index b = 0; b < sweep.real.cols(); ++b) {
     if (!is_shown(sweep, b)) continue;
     Index worst = 0;
-    const double most = sweep.real.col(b).maxCoeff(&worst);
+    const double max_real = sweep.real.col(b).maxCoeff(&worst);
     table.rows.push_back({std::to_string(b + 1), fmt::format("{:.6g}", sweep.frequency_hz(0, b)),
                           fmt::format("{:.6g}", sweep.frequency_hz(end, b)), fmt::format("{:.4g}", sweep.damping(0, b)),
                           fmt::format("{:.4g}", sweep.damping(end, b)),
-                          fmt::format("{:.3g} at {:g}", most, sweep.value[worst]), name_branch(sweep, b)});
+                          fmt::format("{:.3g} at {:g}", max_real, sweep.value[worst]), name_branch(sweep, b)});
   }
   return text + table.to_text() + format_gone(sweep);
 }

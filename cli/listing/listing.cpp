@@ -86,12 +86,12 @@ ListingMaker::ListingMaker(const records::Deck& deck, const records::CaseRequest
 }
 
 void ListingMaker::report_sets(Diagnostics& diagnostics) const {
-  std::set<std::string> said;
+  std::set<std::string> known;
   for (const auto& [id, selection] : requests_.selections)
     for (const auto& [command, request] : selection.outputs) {
       if (request.is_all || request.is_none || selection.sets.count(request.set) > 0) continue;
       const auto text = fmt::format("{} = {} names a SET that the case control does not define", command, request.set);
-      if (said.insert(text).second)
+      if (known.insert(text).second)
         diagnostics.error("cli.missing-set", deck_.locate(request.at), text,
                           fmt::format("write SET {} = ids, or {} = ALL", request.set, command));
     }
@@ -134,8 +134,8 @@ void ListingMaker::add_weight(const fe::Model& model) {
   if (listing_.weight) return;
   int grid = 0;
   if (deck_.find_param("GRDPNT")) {
-    Diagnostics said;  // of PARAM, by whoever read the deck
-    grid = static_cast<int>(std::min(records::get_real_param(deck_, "GRDPNT", 0, said), 1e9));
+    Diagnostics known;  // of PARAM, by whoever read the deck
+    grid = static_cast<int>(std::min(records::get_real_param(deck_, "GRDPNT", 0, known), 1e9));
   }
   if (grid < 0) return;
   if (grid > 0 && model.find_node(grid) < 0) grid = 0;
@@ -199,9 +199,9 @@ BeamLoads ListingMaker::sum_beam_loads(const fe::Model& model, const records::St
         if (subcase.id == id) sets.emplace_back(factor, subcase.load);
   }
   BeamLoads sums;
-  Diagnostics said;  // by the solution
+  Diagnostics known;  // by the solution
   for (const auto& [factor, set] : sets)
-    for (const auto& [e, load] : fe::calc_beam_end_loads(model, deck_, set, said)) {
+    for (const auto& [e, load] : fe::calc_beam_end_loads(model, deck_, set, known)) {
       const int id = model.elements()[static_cast<std::size_t>(e)]->id();
       sums.try_emplace(id, Eigen::Vector4d::Zero()).first->second += factor * (load.head<4>() + load.segment<4>(6));
     }

@@ -55,19 +55,19 @@ VectorXd make_bar_stresses(const fe::Element& element, const VectorXd& forces, c
   pull(0) = forces(0);
   const double axial = element.calc_stresses(pull)(0, 0);
   VectorXd row(15);
-  double most = -HUGE_VAL, least = HUGE_VAL;
+  double max_stress = -HUGE_VAL, min_stress = HUGE_VAL;
   for (int end = 0; end < 2; ++end) {
     const EndStress s(stress, end == 1);
     const Index first = end == 0 ? 0 : 8;
     for (int i = 0; i < 4; ++i) row(first + i) = s.at[static_cast<std::size_t>(i)] - axial;
     row(end == 0 ? 5 : 12) = s.high;
     row(end == 0 ? 6 : 13) = s.low;
-    most = std::max(most, s.high);
-    least = std::min(least, s.low);
+    max_stress = std::max(max_stress, s.high);
+    min_stress = std::min(min_stress, s.low);
   }
   row(4) = axial;
-  row(7) = calc_margin(std::max(most, 0.0), limits.tension);
-  row(14) = calc_margin(std::min(least, 0.0), limits.compression);
+  row(7) = calc_margin(std::max(max_stress, 0.0), limits.tension);
+  row(14) = calc_margin(std::min(min_stress, 0.0), limits.compression);
   return row;
 }
 

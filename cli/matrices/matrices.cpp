@@ -92,7 +92,8 @@ class GeometricStiffness {
     auto model_options = make_model_options(options_.model);
     model_options.subcase = subcase;
     model_options.uses_enforced = true;
-    say_first(diagnostics, [&] { model_options.prestress = calc_prestress(deck_, model_options, diagnostics); });
+    with_prior_messages(diagnostics,
+                        [&] { model_options.prestress = calc_prestress(deck_, model_options, diagnostics); });
     solver_.reset();
     Diagnostics own;  // what the other model said too is not said again
     model_ = &own_.emplace(fe::Model::build(deck_, model_options, own));
@@ -233,7 +234,7 @@ void add_matrices(CLI::App& app, Action& action) {
   verb->get_option("--output")->required();
   verb->footer(
       "Example:\n  bough matrices column.bdf -o column.h5\n  bough matrices column.bdf --to mtx -o column.mtx");
-  verb->callback([&action, o] { action = [o] { return blame(o->deck, [&] { return run_matrices(*o); }); }; });
+  verb->callback([&action, o] { action = [o] { return with_file(o->deck, [&] { return run_matrices(*o); }); }; });
 }
 
 }  // namespace bough::cli

@@ -13,7 +13,7 @@ namespace {
 
 using Eigen::VectorXd;
 
-constexpr std::size_t kMostElements = 5;
+constexpr std::size_t kMaxElements = 5;
 
 std::string show_share(double part, double whole) {
   return fmt::format("{:.2f}", whole > 0 ? 100 * part / whole : 0.0);
@@ -55,7 +55,7 @@ std::string format_elements(const records::ModesResult& r) {
   };
   for (Eigen::Index j = 0; j < e.strain.cols(); ++j) {
     const auto strain = sort(e.strain, j), kinetic = sort(e.kinetic, j);
-    for (std::size_t k = 0; k < std::min(kMostElements, e.id.size()); ++k)
+    for (std::size_t k = 0; k < std::min(kMaxElements, e.id.size()); ++k)
       table.rows.push_back({std::to_string(j + 1), name(strain[k]),
                             show_share(e.strain(strain[k], j), e.total_strain[j]), "", name(kinetic[k]),
                             show_share(e.kinetic(kinetic[k], j), e.total_kinetic[j])});
@@ -68,7 +68,7 @@ std::string format_elements(const records::ModesResult& r) {
 std::string format_energies(const records::ModesResult& r) {
   if (r.energies.empty()) return {};
   return "\nenergies of properties (kinetic: omega^2 / 2 phi M phi), %\n" + format_properties(r) +
-         fmt::format("\nthe {} elements with most of each\n", std::min(kMostElements, r.energies.id.size())) +
+         fmt::format("\nthe {} elements with most of each\n", std::min(kMaxElements, r.energies.id.size())) +
          format_elements(r);
 }
 

@@ -41,8 +41,8 @@ namespace {
 modal::EigenPairs solve(const ModesOptions& options, const records::Deck& deck, fe::Model& model, Console& console,
                         Diagnostics& diagnostics) {
   auto eigen = choose_eigen_options(options, deck, model.subcase().method, diagnostics);
-  eigen.progress = [&](int converged, int wanted) {
-    console.show_progress(fmt::format("modes: {} of {} converged", converged, wanted));
+  eigen.progress = [&](int converged, int requested) {
+    console.show_progress(fmt::format("modes: {} of {} converged", converged, requested));
   };
   auto pairs = modal::calc_normal_modes(model, eigen, diagnostics);
   note_method_number(options, deck, model.subcase().method, static_cast<int>(pairs.lambda.size()), diagnostics);
@@ -90,8 +90,8 @@ modal::EigenPairs solve_with_residuals(const ModesOptions& options, const record
                                        int& num_residual, Console& console, Diagnostics& diagnostics) {
   const fe::System system(model);
   auto eigen = choose_eigen_options(options, deck, model.subcase().method, diagnostics);
-  eigen.progress = [&](int converged, int wanted) {
-    console.show_progress(fmt::format("modes: {} of {} converged", converged, wanted));
+  eigen.progress = [&](int converged, int requested) {
+    console.show_progress(fmt::format("modes: {} of {} converged", converged, requested));
   };
   auto pairs = modal::calc_normal_modes(system, eigen, diagnostics);
   note_method_number(options, deck, model.subcase().method, static_cast<int>(pairs.lambda.size()), diagnostics);
@@ -186,11 +186,11 @@ int run_modes(const ModesOptions& options) {
   const auto deck = read_modes_deck(options, requests, model_options, diagnostics);
   const auto sources = calc_sources(deck.files);
   std::vector<Task> tasks;
-  say_first(diagnostics, [&] { tasks = choose_tasks(options, deck); });
+  with_prior_messages(diagnostics, [&] { tasks = choose_tasks(options, deck); });
   if (modal::is_buckling_solution(deck) && !options.buckling)
     diagnostics.note("cli.buckling-deck", deck.locate({}), "the deck asks for buckling (SOL " + deck.sol + ")",
                      "these are its normal modes; --buckling gives the load factors");
-  say_first(diagnostics, [&] { demand_real_modes(deck, model_options.ignore_cards, diagnostics); });
+  with_prior_messages(diagnostics, [&] { demand_real_modes(deck, model_options.ignore_cards, diagnostics); });
   nlohmann::json json;
   std::string text, written;
   std::vector<std::pair<std::string, std::string>> pictures;
@@ -300,7 +300,7 @@ void add_modes(CLI::App& app, Action& action) {
       "Example:\n  bough modes boom.bdf --number 6 -o boom-modes.h5 --vtu boom.vtu\n"
       "  bough modes column.bdf --buckling\n  bough modes boom.bdf --ese --compare boom.h5\n"
       "  mpirun -n 2 bough modes boom.bdf");
-  verb->callback([&action, o] { action = [o] { return blame(o->deck, [&] { return run_modes(*o); }); }; });
+  verb->callback([&action, o] { action = [o] { return with_file(o->deck, [&] { return run_modes(*o); }); }; });
 }
 
 }  // namespace bough::cli

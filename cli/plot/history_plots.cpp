@@ -75,16 +75,16 @@ bool subtract(const report::Curve& first, report::Curve& curve, const std::strin
 double find_step(const VectorXd& time, const std::string& name) {
   const auto n = time.size();
   const double step = n > 1 ? (time[n - 1] - time[0]) / static_cast<double>(n - 1) : 0;
-  double least = step, largest = step;
+  double smallest = step, largest = step;
   for (Eigen::Index i = 1; i < n; ++i) {
-    least = std::min(least, time[i] - time[i - 1]);
+    smallest = std::min(smallest, time[i] - time[i - 1]);
     largest = std::max(largest, time[i] - time[i - 1]);
   }
-  if (!(step > 0) || largest - least > 1e-6 * step)
+  if (!(step > 0) || largest - smallest > 1e-6 * step)
     throw InputError("cli.uneven-samples", {},
                      n < 2 ? "a spectrum needs two samples"
                            : fmt::format("a spectrum of {} needs even samples, their steps go from {:g} to {:g}",
-                                         name.empty() ? "the curve" : name, least, largest),
+                                         name.empty() ? "the curve" : name, smallest, largest),
                      "choose a --window of even samples, or run with an output_step");
   return step;
 }

@@ -73,13 +73,14 @@ void add_response(const FrequencyResponse& response, const std::string& kind, co
 
 /// The branch of `among` whose conjugate b is wherever the two are complex; -1: none. They may part on the real axis.
 int find_conjugate(const records::LinearSweep& sweep, Index b, const std::vector<Index>& among) {
-  const double most = 1e-9 * (sweep.real.cwiseAbs().maxCoeff() + sweep.imag.cwiseAbs().maxCoeff());
+  const double tolerance = 1e-9 * (sweep.real.cwiseAbs().maxCoeff() + sweep.imag.cwiseAbs().maxCoeff());
   for (std::size_t k = 0; k < among.size(); ++k) {
     const auto a = among[k];
     bool is_conjugate = true;
     for (Index i = 0; i < sweep.imag.rows() && is_conjugate; ++i)
-      is_conjugate = std::abs(sweep.imag(i, a) + sweep.imag(i, b)) <= most &&
-                     (std::abs(sweep.imag(i, b)) <= most || std::abs(sweep.real(i, a) - sweep.real(i, b)) <= most);
+      is_conjugate =
+          std::abs(sweep.imag(i, a) + sweep.imag(i, b)) <= tolerance &&
+          (std::abs(sweep.imag(i, b)) <= tolerance || std::abs(sweep.real(i, a) - sweep.real(i, b)) <= tolerance);
     if (is_conjugate) return static_cast<int>(k);
   }
   return -1;
@@ -172,8 +173,8 @@ std::vector<Plot> make_linear_plots(const std::vector<std::string>& files, const
     demand_file(file);
     const std::string prefix = files.size() > 1 ? std::filesystem::path(file).stem().string() + " " : "";
     const auto format = read_file_format(file);
-    const std::string wanted = is_of_sweeps(kind) ? "bough-sweep" : "bough-linear";
-    if (format != wanted)
+    const std::string expected = is_of_sweeps(kind) ? "bough-sweep" : "bough-linear";
+    if (format != expected)
       throw InputError("cli.plot-kind", {file}, fmt::format("--kind {} draws no file of format \"{}\"", kind, format),
                        is_of_sweeps(kind) ? "give what bough linearize --sweep or --each wrote"
                                           : "give a linear model of bough linearize");

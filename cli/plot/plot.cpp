@@ -148,19 +148,19 @@ int draw_plots(const PlotOptions& o, std::vector<report::Plot> plots, const std:
     plots.front().curves.push_back(read_points(path));
     if (number < o.labels.size()) plots.front().curves.back().label = o.labels[number++];
   }
-  Diagnostics said = diagnostics;
+  Diagnostics all = diagnostics;
   if (number < o.labels.size())
-    said.warning("cli.labels-left", {},
-                 fmt::format("there are {} and {}: the last ones are not used", count(o.labels.size(), "label"),
-                             count(number, "curve")),
-                 "give one --label a curve, in the order of the files and sensors, then of --points");
+    all.warning("cli.labels-left", {},
+                fmt::format("there are {} and {}: the last ones are not used", count(o.labels.size(), "label"),
+                            count(number, "curve")),
+                "give one --label a curve, in the order of the files and sensors, then of --points");
   const bool has_picture = !o.output.empty() || (!o.term && o.csv.empty());
   const auto output = has_picture ? choose_picture(o, otherwise) : "";
   auto inputs = o.files;
   inputs.insert(inputs.end(), o.points.begin(), o.points.end());
   check_outputs(o, {output, o.csv}, inputs);
   if (o.term) {
-    console.print(said);
+    console.print(all);
     print_plots(plots, console);
   }
   if (!o.csv.empty()) {
@@ -168,11 +168,11 @@ int draw_plots(const PlotOptions& o, std::vector<report::Plot> plots, const std:
     console.print("written: " + o.csv + "\n");
   }
   if (!has_picture) {
-    if (!o.term) console.print(said);
+    if (!o.term) console.print(all);
     return kSuccess;
   }
   write_picture(output, plots.size() == 1 ? report::draw_svg(plots.front()) : report::draw_svg(plots));
-  if (!o.term) console.print(said);
+  if (!o.term) console.print(all);
   console.print("written: " + output + "\n");
   return kSuccess;
 }

@@ -35,18 +35,18 @@ std::vector<std::vector<double>> read_table(const std::string& path, std::size_t
     std::istringstream words(line);
     std::vector<double> row;
     std::string word;
-    bool is_good = true;
+    bool is_valid = true;
     while (words >> word) {
       std::size_t used = 0;
       try {
         row.push_back(std::stod(word, &used));
       } catch (const std::exception&) {
       }
-      is_good =
-          is_good && used == word.size() && std::isfinite(row.back()) && (row.size() > num_ids || is_whole(row.back()));
+      is_valid = is_valid && used == word.size() && std::isfinite(row.back()) &&
+                 (row.size() > num_ids || is_whole(row.back()));
     }
-    if (row.empty() && is_good) continue;
-    if (is_good && row.size() == num_columns) {
+    if (row.empty() && is_valid) continue;
+    if (is_valid && row.size() == num_columns) {
       rows.push_back(std::move(row));
     } else if (!rows.empty() || number > 1) {
       throw InputError("cli.bad-table", {path, number}, "found '" + line + "', expected " + what,

@@ -326,7 +326,7 @@ void add_reduce(CLI::App& app, Action& action) {
       "  bough reduce boom.bdf --matrices boom.op4 --modes 3\n  mpirun -n 2 bough reduce boom.toml");
   verb->callback([&action, o] {
     if (o->file.empty() && o->matrices.empty()) throw CLI::RequiredError("file");
-    action = [o] { return blame(o->file, [&] { return run_reduce(*o); }); };
+    action = [o] { return with_file(o->file, [&] { return run_reduce(*o); }); };
   });
 }
 

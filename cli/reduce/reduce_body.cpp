@@ -21,8 +21,8 @@ std::optional<records::DynamicDeck> read_residuals(const records::BodySpec& spec
                                                    const records::Deck& deck, records::DynamicSelection& selection,
                                                    Diagnostics& diagnostics) {
   if (!spec.file.empty() || spec.basis != records::BodyBasis::Normal || !spec.residual.empty()) return {};
-  Diagnostics said;  // about output requests, of which reduce has none
-  const auto requests = read_requests_once(spec.deck, said);
+  Diagnostics ignored;  // about output requests, of which reduce has none
+  const auto requests = read_requests_once(spec.deck, ignored);
   const int first = deck.subcases.empty() ? 0 : deck.subcases.front().id;
   const auto* found = find_selection(requests, spec.subcase != 0 ? spec.subcase : first);
   if (!found || !modal::response::asks_residual_vectors(deck, *found)) return {};
@@ -51,7 +51,7 @@ Reduced reduce_deck(const records::BodySpec& spec, const stiffening::ReduceOptio
     };
   Reduced result;
   files = deck.files;
-  say_first(diagnostics, [&] { result.body = stiffening::reduce(deck, spec, own, diagnostics); });
+  with_prior_messages(diagnostics, [&] { result.body = stiffening::reduce(deck, spec, own, diagnostics); });
   return result;
 }
 
@@ -64,11 +64,12 @@ Reduced reduce_given(const records::BodySpec& spec, const stiffening::ReduceOpti
   // Faults of the matrices are faults of this file, not of the points.
   const auto& matrices = *spec.matrices;
   const auto reduce = [&] {
-    say_first(diagnostics, [&] { result.body = stiffening::reduce_matrices(deck, spec, given, options, diagnostics); });
+    with_prior_messages(diagnostics,
+                        [&] { result.body = stiffening::reduce_matrices(deck, spec, given, options, diagnostics); });
     return kSuccess;
   };
-  blame(matrices.file.empty() ? matrices.stiffness.file : matrices.file, reduce,
-        deck.files.empty() ? "" : deck.files.front());
+  with_file(matrices.file.empty() ? matrices.stiffness.file : matrices.file, reduce,
+            deck.files.empty() ? "" : deck.files.front());
   if (spec.matrices->check_modes.empty()) return result;
   const auto others = read_given_modes(spec.matrices->check_modes, *spec.matrices, deck, diagnostics);
   result.check = stiffening::compare_modes(result.body, deck, others, diagnostics);

@@ -98,9 +98,10 @@ void check_matrices(const records::FlexBody& body, report::ModalModel& m) {
   const double least_mass = mass.eigenvalues()[0] / mass.eigenvalues().maxCoeff();
   m.checks.push_back({"least eigenvalue of the modal mass to the largest", report::format_value(least_mass, 3),
                       least_mass > 0 ? Verdict::Good : Verdict::Bad, "positive"});
-  const double least = stiffness.eigenvalues()[0] / std::max(stiffness.eigenvalues().cwiseAbs().maxCoeff(), 1e-300);
-  m.checks.push_back({"least eigenvalue of the modal stiffness to the largest", report::format_value(least, 3),
-                      least > -1e-9 ? Verdict::Good : Verdict::Warning, "not negative"});
+  const double min_eigenvalue =
+      stiffness.eigenvalues()[0] / std::max(stiffness.eigenvalues().cwiseAbs().maxCoeff(), 1e-300);
+  m.checks.push_back({"least eigenvalue of the modal stiffness to the largest", report::format_value(min_eigenvalue, 3),
+                      min_eigenvalue > -1e-9 ? Verdict::Good : Verdict::Warning, "not negative"});
   const auto computed = std::count(body.kg_inertial_computed.begin(), body.kg_inertial_computed.end(), true);
   m.checks.push_back({"geometric stiffness K_G1", fmt::format("{} of 12", computed),
                       computed == 12 ? Verdict::Good

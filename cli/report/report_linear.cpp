@@ -79,11 +79,11 @@ report::Chapter make_sweep_chapter(const std::string& file) {
        std::to_string(unstable), unstable > 0 ? Verdict::Warning : Verdict::Good,
        unstable > 0 ? sweep.parameter + " = " + list_ranges(sweep.value, is_unstable) : ""});
   if (count > 1) {
-    const double least = sweep.correlation.bottomRows(count - 1).minCoeff();
+    const double min_value = sweep.correlation.bottomRows(count - 1).minCoeff();
     chapter.checks.push_back(
-        {"least likeness of a motion to itself at the value before", report::format_value(least, 3),
-         least > 0.5 ? Verdict::Good : Verdict::Warning,
-         least > 0.5 ? "1: the same" : "branches may have been exchanged; sweep in smaller steps"});
+        {"least likeness of a motion to itself at the value before", report::format_value(min_value, 3),
+         min_value > 0.5 ? Verdict::Good : Verdict::Warning,
+         min_value > 0.5 ? "1: the same" : "branches may have been exchanged; sweep in smaller steps"});
   }
   for (const auto& [kind, title] : {std::pair("campbell", "Campbell diagram"), std::pair("locus", "Root locus")}) {
     auto plots = make_linear_plots({file}, {kind, {}, {}});
@@ -101,12 +101,12 @@ report::Chapter make_sweep_chapter(const std::string& file) {
   for (Index b = 0; b < branches; ++b) {
     if (sweep.imag.col(b).sum() < 0 || records::is_gone(sweep, b)) continue;  // of a pair one
     Index at = 0;
-    const double least = sweep.damping.col(b).minCoeff(&at);
+    const double min_value = sweep.damping.col(b).minCoeff(&at);
     const auto k = static_cast<std::size_t>(b);
     table.add_row({sweep.mode.front()[k], sweep.mode.back()[k], report::format_value(sweep.frequency_hz(0, b)),
                    report::format_value(sweep.frequency_hz(count - 1, b)),
                    report::format_value(100 * sweep.damping(0, b), 4),
-                   report::format_value(100 * sweep.damping(count - 1, b), 4), report::format_value(100 * least, 4),
+                   report::format_value(100 * sweep.damping(count - 1, b), 4), report::format_value(100 * min_value, 4),
                    report::format_value(sweep.value[at])});
   }
   chapter.add_panel("branches", "Motions", table.to_html(400));

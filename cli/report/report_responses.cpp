@@ -13,8 +13,8 @@ namespace bough::cli {
 
 namespace {
 
-constexpr std::size_t kMostCurves = 6;             // of a picture
-constexpr Eigen::Index kMostPicturePoints = 4000;  // of a curve
+constexpr std::size_t kMaxCurves = 6;             // of a picture
+constexpr Eigen::Index kMaxPicturePoints = 4000;  // of a curve
 
 struct Largest {
   const exports::NamedCurve* curve = nullptr;
@@ -40,16 +40,16 @@ std::string make_pictures(const std::vector<Largest>& of, const Eigen::VectorXd&
   lower.y_label = "phase [degrees]";
   upper.has_log_x = lower.has_log_x = !is_over_time && x.size() > 1 && x[0] > 0 && x[x.size() - 1] > 10 * x[0];
   upper.has_log_y = !is_over_time;
-  for (std::size_t c = 0; c < std::min(of.size(), kMostCurves); ++c) {
+  for (std::size_t c = 0; c < std::min(of.size(), kMaxCurves); ++c) {
     const auto& curve = *of[c].curve;
     Eigen::VectorXd size = curve.real, phase(x.size());
     for (Eigen::Index i = 0; i < x.size() && !is_over_time; ++i) {
       std::tie(size[i], phase[i]) = exports::to_polar(curve.real[i], curve.imag[i]);
       if (i > 0) phase[i] -= 360 * std::round((phase[i] - phase[i - 1]) / 360);
     }
-    upper.curves.push_back(report::thin_curve({curve.name, x, size, false}, kMostPicturePoints, upper.has_log_x));
+    upper.curves.push_back(report::thin_curve({curve.name, x, size, false}, kMaxPicturePoints, upper.has_log_x));
     if (!is_over_time)
-      lower.curves.push_back(report::thin_curve({curve.name, x, phase, false}, kMostPicturePoints, lower.has_log_x));
+      lower.curves.push_back(report::thin_curve({curve.name, x, phase, false}, kMaxPicturePoints, lower.has_log_x));
   }
   return report::make_figure(upper) + (is_over_time ? "" : report::make_figure(lower));
 }
@@ -75,9 +75,9 @@ void add_subcase(const records::ResponseSubcase& s, bool is_over_time, const std
     }
     std::string html = group.empty() ? report::make_text("Zero throughout.")
                                      : make_pictures(group, s.x, prefix + quantity, is_over_time) + table.to_html(60);
-    if (group.size() > kMostCurves)
+    if (group.size() > kMaxCurves)
       html +=
-          report::make_text(fmt::format("The {} largest of {} curves are drawn.", kMostCurves, group.size()), "note");
+          report::make_text(fmt::format("The {} largest of {} curves are drawn.", kMaxCurves, group.size()), "note");
     chapter.add_panel(fmt::format("{}-{}", quantity, s.id), prefix + quantity, html);
   }
   if (s.mode_hz.size() == 0) return;

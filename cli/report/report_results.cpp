@@ -30,8 +30,8 @@ bool is_chosen(const std::string& path, const std::vector<std::string>& choices)
   for (const auto& choice : choices) {
     const auto name = records::parse_signal_name(choice);
     const std::string whole = choice.starts_with('/') ? choice : "/sensors/" + choice;
-    for (const auto& wanted : {whole, name.path})
-      if (path == wanted || path.starts_with(wanted + "/")) return true;
+    for (const auto& group : {whole, name.path})
+      if (path == group || path.starts_with(group + "/")) return true;
   }
   return false;
 }

@@ -34,7 +34,7 @@ struct ResponseOptions : CommonOptions {
   bool is_loop = false;
 };
 
-constexpr std::size_t kMostRows = 24;
+constexpr std::size_t kMaxRows = 24;
 /// Models with a larger error are reported, as by linearize.
 constexpr double kMaxUncertainty = 1e-4;
 
@@ -93,14 +93,14 @@ std::string format(const LinearModel& model, const FrequencyResponse& response, 
                         peak.is_certified ? "" : "; of the frequencies looked at");
   Table table{{"output over input", "dB at first", "largest dB", "at Hz"}, {}};
   const auto summits = find_summits(response);
-  for (std::size_t k = 0; k < std::min(kMostRows, summits.size()); ++k) {
+  for (std::size_t k = 0; k < std::min(kMaxRows, summits.size()); ++k) {
     const auto& s = summits[k];
     table.rows.push_back({s.name, s.first > 0 ? fmt::format("{:.4g}", to_decibel(s.first)) : "-",
                           s.gain > 0 ? fmt::format("{:.4g}", to_decibel(s.gain)) : "-",
                           fmt::format("{:.6g}", s.frequency_hz)});
   }
   text += "\n" + table.to_text();
-  if (summits.size() > kMostRows) text += fmt::format("and {} more\n", summits.size() - kMostRows);
+  if (summits.size() > kMaxRows) text += fmt::format("and {} more\n", summits.size() - kMaxRows);
   if (margins) text += format_margins(*margins);
   return text + format_hankel(model.hankel);
 }
@@ -202,7 +202,7 @@ void add_response(CLI::App& app, Action& action) {
       "Example:\n  bough linearize arm.toml --break motor -o loop.h5 && bough response loop.h5\n"
       "  bough response arm-linear.h5 --outputs tip:y --csv tip.csv\n"
       "bough plot arm-linear.h5 --kind bode draws it.");
-  verb->callback([&action, o] { action = [o] { return blame(o->file, [&] { return run_response(*o); }); }; });
+  verb->callback([&action, o] { action = [o] { return with_file(o->file, [&] { return run_response(*o); }); }; });
 }
 
 }  // namespace bough::cli

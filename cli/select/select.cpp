@@ -127,7 +127,7 @@ void add_select(CLI::App& app, Action& action) {
       "Example:\n  bough select panel.h5 --number 12 -o small.h5\n"
       "  bough select panel.h5 satellite.toml --tolerance 0.001 -o small.h5\n"
       "  bough select panel.h5 slew.toml hold.toml --weight gyro=10 --keep 1,2 --response loss.svg");
-  verb->callback([&action, o] { action = [o] { return blame(o->body, [&] { return run_select(*o); }); }; });
+  verb->callback([&action, o] { action = [o] { return with_file(o->body, [&] { return run_select(*o); }); }; });
 }
 
 }  // namespace bough::cli

@@ -54,17 +54,17 @@ records::LinearModel SystemPlant::linearize_with(const std::vector<int>& kept) c
   const int num_modes = flex.at(key_).num_modes();
   for (auto& body : spec.bodies) {
     if (body.file != key_) continue;
-    const int most = body.num_modes < 0 ? num_modes : body.num_modes;
+    const int num_used = body.num_modes < 0 ? num_modes : body.num_modes;
     std::vector<int> used;
     for (const int mode : kept)
-      if (mode < most) used.push_back(mode);
+      if (mode < num_used) used.push_back(mode);
     for (auto* values : {&body.eta, &body.eta_dot, &body.damping_ratios}) keep_values(*values, used);
     body.num_modes = static_cast<int>(used.size());
   }
   flex[key_] = records::keep_modes(flex.at(key_), kept);
-  Diagnostics said;
-  auto system = solver::build_system(spec, flex, said);
-  return linearize({std::move(spec), std::move(flex), loaded_.flex_path, std::move(system), {}}, said);
+  Diagnostics ignored;
+  auto system = solver::build_system(spec, flex, ignored);
+  return linearize({std::move(spec), std::move(flex), loaded_.flex_path, std::move(system), {}}, ignored);
 }
 
 }  // namespace bough::cli

@@ -98,8 +98,8 @@ StaticSubcase combine(const fe::Model& model, const records::Deck& deck, const r
     add_strains(factor, part->strains, sum.strains);
   }
   sum.strain_energy = 0.5 * sum.displacement.dot(VectorXd(fe::calc_stiffness_times(model, sum.displacement)));
-  Diagnostics said;  // by the subcases
-  const auto alone = fe::calc_element_forces(model, sum.displacement, deck, 0, said);
+  Diagnostics ignored;  // by the subcases
+  const auto alone = fe::calc_element_forces(model, sum.displacement, deck, 0, ignored);
   BOUGH_DEMAND(alone.size() == sum.elements.size());
   for (std::size_t b = 0; b < alone.size(); ++b) sum.elements[b].strain_energy = alone[b].strain_energy;
   derive_results(model, false, sum.stresses);

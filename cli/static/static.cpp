@@ -82,16 +82,17 @@ void add_combinations(const records::Deck& deck, const records::CaseRequests& re
 }
 
 /// Output options of each subcase, from the command line and the deck.
-StaticWishes make_wishes(const StaticOptions& options, const records::CaseRequests& requests, bool is_root) {
-  StaticWishes wishes;
-  if (is_root) wishes.path = options.output;
-  wishes.has_text = !options.quiet && !options.json;
-  wishes.has_json = options.json;
-  wishes.is_full = options.full;
-  wishes.in_cd = options.in_cd;
-  wishes.has_extremes = options.has_extremes;
-  wishes.keeps = !options.vtu.empty() || (options.model.subcase == 0 && !requests.combinations.empty());
-  return wishes;
+StaticOutputOptions make_output_options(const StaticOptions& options, const records::CaseRequests& requests,
+                                        bool is_root) {
+  StaticOutputOptions output_options;
+  if (is_root) output_options.path = options.output;
+  output_options.has_text = !options.quiet && !options.json;
+  output_options.has_json = options.json;
+  output_options.is_full = options.full;
+  output_options.in_cd = options.in_cd;
+  output_options.has_extremes = options.has_extremes;
+  output_options.keeps = !options.vtu.empty() || (options.model.subcase == 0 && !requests.combinations.empty());
+  return output_options;
 }
 
 /// Reads the deck as read_deck_or_throw does; without --subcase this command makes the combinations.
@@ -119,7 +120,7 @@ int run_static(const StaticOptions& options) {
   Diagnostics diagnostics;
   const auto deck = read_static_deck(options, diagnostics);
   std::vector<records::Subcase> subcases;
-  say_first(diagnostics, [&] {
+  with_prior_messages(diagnostics, [&] {
     subcases = fe::choose_static_subcases(deck, options.model.subcase);
     demand_static_solution(deck, options.is_linear, diagnostics);
     check_forces_grids(read_grids(options.grid_forces), deck);
@@ -141,7 +142,7 @@ int run_static(const StaticOptions& options) {
   if (!listing && options.grid_forces.empty())
     note_requests(deck, requests, {{"GPFORCE", "--f06 FILE, or --grid-forces all,"}}, diagnostics);
   diagnostics.throw_if_errors();
-  StaticOutput output(deck, make_wishes(options, requests, console.is_root()));
+  StaticOutput output(deck, make_output_options(options, requests, console.is_root()));
   const auto take = [&](fe::CaseSolver::Solved& one) {
     if (one.failure) std::rethrow_exception(one.failure);
     if (listing) {
@@ -213,7 +214,7 @@ void add_static(CLI::App& app, Action& action) {
   add_model_options(*verb, o->model);
   add_common_options(*verb, *o, kOutput | kJson, "Write displacements, reactions and forces to this HDF5 file");
   verb->footer("Example:\n  bough static frame.bdf -o frame-static.h5\n  bough static frame.bdf --subcase 2 --full");
-  verb->callback([&action, o] { action = [o] { return blame(o->deck, [&] { return run_static(*o); }); }; });
+  verb->callback([&action, o] { action = [o] { return with_file(o->deck, [&] { return run_static(*o); }); }; });
 }
 
 }  // namespace bough::cli

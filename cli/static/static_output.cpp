@@ -24,7 +24,8 @@ bool is_worth_threads(const std::vector<records::StaticSubcase>& subcases) {
 
 }  // namespace
 
-StaticOutput::StaticOutput(const records::Deck& deck, StaticWishes wishes) : deck_(deck), wishes_(std::move(wishes)) {}
+StaticOutput::StaticOutput(const records::Deck& deck, StaticOutputOptions options)
+    : deck_(deck), options_(std::move(options)) {}
 
 StaticOutput::~StaticOutput() {
   if (running_.valid()) running_.wait();
@@ -62,14 +63,14 @@ void StaticOutput::add(std::vector<records::StaticSubcase> subcases) {
   if (!is_worth_threads(subcases)) {
     write(subcases);
     show(subcases);
-    if (wishes_.keeps) std::move(subcases.begin(), subcases.end(), std::back_inserter(result_.subcases));
+    if (options_.keeps) std::move(subcases.begin(), subcases.end(), std::back_inserter(result_.subcases));
     return;
   }
   running_ = std::async(
       std::launch::async,
       [this](std::vector<records::StaticSubcase> own) {
         fe::do_both([&] { write(own); }, [&] { show(own); });
-        if (wishes_.keeps) std::move(own.begin(), own.end(), std::back_inserter(result_.subcases));
+        if (options_.keeps) std::move(own.begin(), own.end(), std::back_inserter(result_.subcases));
       },
       std::move(subcases));
 }
@@ -77,12 +78,12 @@ void StaticOutput::add(std::vector<records::StaticSubcase> subcases) {
 void StaticOutput::write(const std::vector<records::StaticSubcase>& subcases) {
   if (failure_) return;
   try {
-    if (!wishes_.path.empty()) {
-      if (!file_) file_.emplace(wishes_.path);
+    if (!options_.path.empty()) {
+      if (!file_) file_.emplace(options_.path);
       for (const auto& subcase : subcases) file_->add(subcase);
       file_->start_sync();
     }
-    if (wishes_.has_extremes)
+    if (options_.has_extremes)
       for (const auto& subcase : subcases) add_to_extremes(result_.dof_map, subcase, result_.extremes);
   } catch (const Failure&) {
     failure_ = std::current_exception();
@@ -91,19 +92,19 @@ void StaticOutput::write(const std::vector<records::StaticSubcase>& subcases) {
 
 void StaticOutput::show(const std::vector<records::StaticSubcase>& subcases) {
   const auto show_one = [&](const records::StaticSubcase& subcase) {
-    if (wishes_.has_json)
-      json_.push_back(to_json(result_.dof_map, subcase, wishes_.is_full));
-    else if (wishes_.has_text)
-      text_ += format_static(result_.dof_map, subcase, wishes_.is_full);
+    if (options_.has_json)
+      json_.push_back(to_json(result_.dof_map, subcase, options_.is_full));
+    else if (options_.has_text)
+      text_ += format_static(result_.dof_map, subcase, options_.is_full);
   };
   for (const auto& subcase : subcases) {
-    if (!wishes_.in_cd) {
+    if (!options_.in_cd) {
       show_one(subcase);
       continue;
     }
     const auto turned = turn_to_cd(subcase);
     show_one(turned);
-    if (wishes_.has_extremes) add_to_extremes(result_.dof_map, turned, shown_extremes_);
+    if (options_.has_extremes) add_to_extremes(result_.dof_map, turned, shown_extremes_);
   }
 }
 
@@ -123,11 +124,11 @@ void StaticOutput::finish() {
   result_.source = calc_sources(deck_.files);
   if (file_) file_->commit(result_);
   file_.reset();
-  if (wishes_.has_extremes) text_ += format_case_extremes(wishes_.in_cd ? shown_extremes_ : result_.extremes);
+  if (options_.has_extremes) text_ += format_case_extremes(options_.in_cd ? shown_extremes_ : result_.extremes);
 }
 
 nlohmann::json StaticOutput::get_extremes() const {
-  return to_json(wishes_.in_cd ? shown_extremes_ : result_.extremes);
+  return to_json(options_.in_cd ? shown_extremes_ : result_.extremes);
 }
 
 }  // namespace bough::cli

@@ -12,7 +12,7 @@
 
 namespace bough::cli {
 
-struct StaticWishes {
+struct StaticOutputOptions {
   std::string path;  ///< of the HDF5 file; empty: none
   bool has_text = true, has_json = false, is_full = false;
   bool in_cd = false;  ///< text and JSON: vectors in the displacement axes of their grids
@@ -23,7 +23,7 @@ struct StaticWishes {
 /// Takes subcases while the next ones are solved: a thread beside the caller's, where there is one and enough for it.
 class StaticOutput {
  public:
-  StaticOutput(const records::Deck& deck, StaticWishes wishes);
+  StaticOutput(const records::Deck& deck, StaticOutputOptions options);
   ~StaticOutput();
   StaticOutput(const StaticOutput&) = delete;
   StaticOutput& operator=(const StaticOutput&) = delete;
@@ -50,7 +50,7 @@ class StaticOutput {
   records::StaticSubcase turn_to_cd(records::StaticSubcase subcase) const;
 
   const records::Deck& deck_;
-  StaticWishes wishes_;
+  StaticOutputOptions options_;
   records::StaticResult result_;
   std::vector<std::pair<int, Eigen::Matrix3d>> turns_;  ///< first row of three numbers, basic to CD
   std::size_t count_ = 0;

@@ -26,8 +26,9 @@ struct Extreme {
 std::vector<Extreme> find_maxima(const Eigen::MatrixXi& dof_map, const VectorXd& values) {
   std::vector<Extreme> maxima(6);
   for (Eigen::Index i = 0; i < values.size(); ++i) {
-    auto& most = maxima[static_cast<std::size_t>(std::max(dof_map(i, 1), 1) - 1)];
-    if (most.id == 0 || std::abs(values[i]) > std::abs(most.value) * (1 + 1e-9)) most = {values[i], dof_map(i, 0)};
+    auto& max_extreme = maxima[static_cast<std::size_t>(std::max(dof_map(i, 1), 1) - 1)];
+    if (max_extreme.id == 0 || std::abs(values[i]) > std::abs(max_extreme.value) * (1 + 1e-9))
+      max_extreme = {values[i], dof_map(i, 0)};
   }
   return maxima;
 }
@@ -110,23 +111,23 @@ std::string format_extremes(const std::string& title, const std::vector<int>& id
     columns.push_back(static_cast<Eigen::Index>(c));
   }
   for (const auto& [name, columns] : groups) {
-    Extreme least, most;
+    Extreme min_extreme, max_extreme;
     for (const auto column : columns) {
       // Where they are is asked of few columns: the passes for it are slower than those for the numbers.
       const auto all = values.col(column);
       const double min = all.minCoeff(), max = all.maxCoeff();
       Eigen::Index at = 0;
-      if (least.id == 0 || !(min >= least.value)) {
+      if (min_extreme.id == 0 || !(min >= min_extreme.value)) {
         const double value = all.minCoeff(&at);
-        least = {value, id[static_cast<std::size_t>(at)]};
+        min_extreme = {value, id[static_cast<std::size_t>(at)]};
       }
-      if (most.id == 0 || !(max <= most.value)) {
+      if (max_extreme.id == 0 || !(max <= max_extreme.value)) {
         const double value = all.maxCoeff(&at);
-        most = {value, id[static_cast<std::size_t>(at)]};
+        max_extreme = {value, id[static_cast<std::size_t>(at)]};
       }
     }
-    table.rows.push_back({name, fmt::format("{:.6e}", least.value), std::to_string(least.id),
-                          fmt::format("{:.6e}", most.value), std::to_string(most.id)});
+    table.rows.push_back({name, fmt::format("{:.6e}", min_extreme.value), std::to_string(min_extreme.id),
+                          fmt::format("{:.6e}", max_extreme.value), std::to_string(max_extreme.id)});
   }
   return table.to_text();
 }
@@ -235,8 +236,7 @@ nlohmann::json to_json(const Eigen::MatrixXi& dof_map, const records::StaticSubc
   if (!full) return json;
   if (s.inertia.size() > 0) json["inertia"] = to_json_list(s.inertia);
   json["dof_map"] = nlohmann::json::array();
-  for (Eigen::Index i = 0; i < dof_map.rows(); ++i)
-    json["dof_map"].push_back({dof_map(i, 0), dof_map(i, 1)});
+  for (Eigen::Index i = 0; i < dof_map.rows(); ++i) json["dof_map"].push_back({dof_map(i, 0), dof_map(i, 1)});
   json["displacement"] = to_json_list(s.displacement);
   json["load"] = to_json_list(s.load);
   json["reaction"] = to_json_list(s.reaction);

@@ -9,7 +9,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::Vector3d;
 
-/// Columns: rigid motion (translation, rotation about Bo), then the modes. 6 rows per frame.
+/// Columns: rigid-body modes (translation, rotation about Bo), then the modes. 6 rows per frame.
 MatrixXd calc_frame_motion(const records::FlexBody& body, const std::vector<int>& nodes, const MatrixXd& P) {
   const Index m = static_cast<Index>(nodes.size()), n = body.num_modes();
   MatrixXd motion = MatrixXd::Zero(6 * m, 6 + n);
@@ -54,7 +54,7 @@ std::optional<ReducedSolid> calc_reduced_solid(const records::FlexBody& body, st
     if (const int id = solid.node[static_cast<std::size_t>(i)]; id != 0)
       solid.P.row(i) = body.node_xyz.row(body.find_node(id));
 
-  // u = A a + B b, a rigid motion and constraint modes, b the other modes: a = A^-1 (u - B b).
+  // u = A a + B b, a rigid-body and constraint modes, b the other modes: a = A^-1 (u - B b).
   const MatrixXd motion = calc_frame_motion(body, solid.node, solid.P);
   MatrixXd A(num_frame_dofs, num_frame_dofs), B(num_frame_dofs, static_cast<Index>(other.size()));
   A.leftCols(6) = motion.leftCols(6);

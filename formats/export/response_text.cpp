@@ -12,7 +12,7 @@ namespace {
 
 using records::ResponseSubcase;
 
-/// Lines of 72 columns with their number behind.
+/// Lines of 72 columns, each followed by its number.
 class PunchLines {
  public:
   void add(const std::string& line) {

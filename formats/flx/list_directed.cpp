@@ -209,10 +209,10 @@ void ListReader::note_lines(const std::string& item) {
   }
 }
 
-bool ListReader::fail_short(const std::string& item, std::size_t found, std::size_t wanted) {
+bool ListReader::fail_short(const std::string& item, std::size_t found, std::size_t expected) {
   diagnostics_.error(
       "flx.short-file", {file_, line_},
-      item + ": the file ends after " + std::to_string(found) + " of " + std::to_string(wanted) + " values",
+      item + ": the file ends after " + std::to_string(found) + " of " + std::to_string(expected) + " values",
       stretched_.empty() ? "add what is missing, or correct the counts" : "add what is missing; " + stretched_);
   return false;
 }

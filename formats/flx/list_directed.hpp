@@ -46,7 +46,7 @@ class ListReader {
   Token next();
   void note_lines(const std::string& item);
   void warn_of_leftovers(const std::string& item, bool has_leftover);
-  bool fail_short(const std::string& item, std::size_t found, std::size_t wanted);
+  bool fail_short(const std::string& item, std::size_t found, std::size_t expected);
 
   std::string text_, file_;
   Diagnostics& diagnostics_;

@@ -75,10 +75,10 @@ class ModelInputReader {
     return true;
   }
 
-  bool read_option(Item item, int least, int most, int& value) {
+  bool read_option(Item item, int min_value, int max_value, int& value) {
     if (!read_one(item, value)) return false;
-    if (value < least || value > most) {
-      error("flx.bad-option", item, fmt::format("found {}, expected {} to {}", value, least, most),
+    if (value < min_value || value > max_value) {
+      error("flx.bad-option", item, fmt::format("found {}, expected {} to {}", value, min_value, max_value),
             "see docs/formats/flx.md");
     }
     return true;
@@ -90,12 +90,12 @@ class ModelInputReader {
     model_.num_nodes = sizes[0];
     model_.num_dofs = sizes[1];
     model_.num_modes_given = sizes[2];
-    const bool is_good = sizes[0] >= 1 && sizes[1] >= 1 && sizes[2] >= 1 && sizes[2] <= sizes[1];
-    if (!is_good) {
+    const bool is_valid = sizes[0] >= 1 && sizes[1] >= 1 && sizes[2] >= 1 && sizes[2] <= sizes[1];
+    if (!is_valid) {
       error("flx.wrong-size", Sizes, fmt::format("found {} {} {}", sizes[0], sizes[1], sizes[2]),
             "give at least one node, one dof and one mode, and no more modes than dofs");
     }
-    return is_good;
+    return is_valid;
   }
 
   bool read_dof_map() {
@@ -159,10 +159,10 @@ class ModelInputReader {
   }
 
   /// A count that the lines after it are read by: nothing can follow a bad one.
-  bool read_count(Item item, int most, const char* id, const std::string& what, int& count) {
+  bool read_count(Item item, int max_value, const char* id, const std::string& what, int& count) {
     if (!read_one(item, count)) return false;
-    if (count >= 0 && count <= most && (count > 0 || item == NumNodes)) return true;
-    error(id, item, fmt::format("found {}, {} {}", count, what, most), "correct the number, or the first line");
+    if (count >= 0 && count <= max_value && (count > 0 || item == NumNodes)) return true;
+    error(id, item, fmt::format("found {}, {} {}", count, what, max_value), "correct the number, or the first line");
     return false;
   }
 

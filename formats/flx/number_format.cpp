@@ -12,23 +12,23 @@ namespace bough::flx {
 
 namespace {
 
-constexpr int kWidest = 60, kMostDigits = 40;
+constexpr int kMaxWidth = 60, kMaxDigits = 40;
 
 int to_int(const std::ssub_match& match, int otherwise) {
   return match.matched && match.length() > 0 && match.length() < 6 ? std::stoi(match.str()) : otherwise;
 }
 
-constexpr std::size_t kMostText = 512;  // the widest: %.40f of the largest double, 309 + 1 + 40 digits
+constexpr std::size_t kMaxText = 512;  // the widest: %.40f of the largest double, 309 + 1 + 40 digits
 
 std::string print_c(const std::string& format, double value) {
-  std::array<char, kMostText> text;
+  std::array<char, kMaxText> text;
   std::snprintf(text.data(), text.size(), format.c_str(), value);
   return text.data();
 }
 
 /// Output of %.<digits>f, or e, at five times the speed of printf.
 std::string print_digits(std::chars_format style, int digits, double value) {
-  std::array<char, kMostText> text;
+  std::array<char, kMaxText> text;
   return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value, style, digits).ptr};
 }
 
@@ -41,8 +41,8 @@ std::optional<NumberFormat> NumberFormat::parse(const std::string& text) {
   std::smatch match;
   if (std::regex_match(text, match, c_format)) {
     format.flags_ = match[1];
-    format.width_ = to_int(match[2], match[2].length() > 0 ? kWidest + 1 : 0);
-    format.precision_ = to_int(match[3], match[3].matched ? kMostDigits + 1 : 6);
+    format.width_ = to_int(match[2], match[2].length() > 0 ? kMaxWidth + 1 : 0);
+    format.precision_ = to_int(match[3], match[3].matched ? kMaxDigits + 1 : 6);
     format.letter_ = match[4].str()[0];
     format.style_ = static_cast<char>(std::tolower(format.letter_));
   } else if (std::regex_match(text, match, fortran_format)) {
@@ -53,8 +53,8 @@ std::optional<NumberFormat> NumberFormat::parse(const std::string& text) {
     format.style_ = first == 'I' ? 'd' : first == 'F' ? 'f' : 'e';
     format.letter_ = first == 'D' ? 'D' : 'E';
     if (match[3].length() == 2) format.scale_ = 1;
-    format.width_ = to_int(match[4], kWidest + 1);
-    format.precision_ = to_int(match[5], match[5].matched ? kMostDigits + 1 : -1);
+    format.width_ = to_int(match[4], kMaxWidth + 1);
+    format.precision_ = to_int(match[5], match[5].matched ? kMaxDigits + 1 : -1);
     const bool needs_digits = format.style_ != 'd';
     if (needs_digits != match[5].matched || format.width_ == 0 || format.repeat_ < 0) return std::nullopt;
     if (match[2].matched && format.repeat_ == 0) return std::nullopt;
@@ -62,7 +62,7 @@ std::optional<NumberFormat> NumberFormat::parse(const std::string& text) {
   } else {
     return std::nullopt;
   }
-  if (format.width_ > kWidest || format.precision_ > kMostDigits) return std::nullopt;
+  if (format.width_ > kMaxWidth || format.precision_ > kMaxDigits) return std::nullopt;
   return format;
 }
 

@@ -23,12 +23,12 @@ std::string optional_attribute(const std::string& name, const std::string& value
   return value.empty() ? "" : attribute(name, value);
 }
 
-/// Gives every variable a name of its own: one that is taken gets a number.
+/// Gives every variable a unique name: one that is in use gets a number.
 class Names {
  public:
-  std::string get(const std::string& wanted) {
-    std::string name = wanted;
-    for (int i = 2; !taken_.insert(name).second; ++i) name = wanted + " (" + std::to_string(i) + ")";
+  std::string get(const std::string& proposed) {
+    std::string name = proposed;
+    for (int i = 2; !taken_.insert(name).second; ++i) name = proposed + " (" + std::to_string(i) + ")";
     return name;
   }
 

@@ -6,7 +6,7 @@
 
 namespace bough::hdf5 {
 
-/// /accuracy: the modal matrices against those made anew from the shapes, relative; -1: not known, not written.
+/// /accuracy: the modal matrices against those recomputed from the shapes, relative; -1: not known, not written.
 struct BodyAccuracy {
   double mass = -1, stiffness = -1;
 };

@@ -6,7 +6,7 @@
 
 #include <sys/stat.h>
 
-#include "base/apart.hpp"
+#include "base/isolated.hpp"
 #include "base/part_file.hpp"
 
 namespace bough::hdf5 {
@@ -26,7 +26,7 @@ Stamp make_stamp(const struct stat& state) {
           static_cast<long long>(state.st_mtim.tv_nsec)};
 }
 
-/// Clocks of files tick some hundred times a second: a file may change twice within a tick and look the same.
+/// File times have a resolution of some 10 ms: a file may change twice within it without a sign.
 bool is_older(const struct stat& state, double seconds) {
   timespec now{};
   ::clock_gettime(CLOCK_REALTIME, &now);
@@ -81,8 +81,9 @@ void inspect_file(const std::string& path) {
 
   Diagnostics found;
   const double size = static_cast<double>(state.st_size);
-  const Apart look = work_apart(path, write_faults, {kSeconds + kSecondsPerByte * size, 1e9 + 4 * size}, "HDF5");
-  parse(path, look.said, found);
+  const IsolatedResult look =
+      run_isolated(path, write_faults, {kSeconds + kSecondsPerByte * size, 1e9 + 4 * size}, "HDF5");
+  parse(path, look.output, found);
   if (!look.end.empty())
     found.error("hdf5.damaged", {path}, "the file is damaged: " + look.end, "copy or write it again");
   found.throw_if_errors();

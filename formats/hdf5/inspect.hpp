@@ -1,5 +1,5 @@
 #pragma once
-/// \file A look through a whole HDF5 file in a process of its own, before this one reads anything of it.
+/// \\file Inspection of a whole HDF5 file in a separate process, before this one reads it.
 #include <string>
 #include <vector>
 

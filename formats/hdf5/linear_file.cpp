@@ -86,7 +86,7 @@ void write_linear_model(const LinearModel& model, const std::string& path) {
   file.write_matrix("/C", model.C, {"y = C x + D u: output, state", dims});
   file.write_matrix("/D", model.D, {"y = C x + D u: output, input", dims});
   write_second_order(file, model);
-  write_signals(file, "/states", model.states, "states: displacements of the freedoms, then their rates");
+  write_signals(file, "/states", model.states, "states: displacements of the DOFs, then their rates");
   write_signals(file, "/inputs", model.inputs, "inputs: departures from their values at the operating point");
   write_signals(file, "/outputs", model.outputs, "outputs: departures from their values at the operating point");
   file.write_number("/operating_point/time", model.time, {"time", "T"});

@@ -8,7 +8,7 @@ using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::Ro
 
 /// Rows of elements x components as three dimensions.
 void write_rows(FileWriter& file, const std::string& path, const records::RecoveryBlock& block, const MatrixXd& rows,
-                const Meaning& meaning) {
+                const ArrayAttributes& meaning) {
   const RowMajor data = rows;
   file.write_numbers(path, {block.id.size(), block.components.size(), static_cast<hsize_t>(data.cols())}, data.data(),
                      meaning);

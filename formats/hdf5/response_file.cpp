@@ -38,8 +38,9 @@ void write_subcase(FileWriter& file, const records::ResponseSubcase& s, bool is_
   file.write_attribute(path, "label", s.label);
   file.write_attribute(path, "method", s.is_direct ? "direct" : "modal");
   const std::string scale = path + (is_over_time ? "/time" : "/frequency_hz");
-  file.write_vector(scale, s.x,
-                    is_over_time ? Meaning{"time of each row", "T"} : Meaning{"frequency of each row", "1/T"});
+  file.write_vector(
+      scale, s.x,
+      is_over_time ? ArrayAttributes{"time of each row", "T"} : ArrayAttributes{"frequency of each row", "1/T"});
   std::vector<std::string> written;
   const auto rows = static_cast<hsize_t>(s.x.size());
   for (const auto& curves : s.curves) {

@@ -46,7 +46,7 @@ ResultsFile read_once(const std::string& path) {
   results.reason = file.read_attribute("/", "reason");
   if (file.has("/system")) results.system_text = file.read_text("/system");
   results.energy_error = read_energy_error(file);
-  // A run killed within a flush may have left a part of its last samples behind the ones that count.
+  // A run killed within a flush may have left a part of its last samples after the valid ones.
   const long committed = file.read_integer_attribute("/", kNumSamples, -1);
   const NumberArray time = file.read_array("/time", {-1}, true, committed);
   results.time = Eigen::Map<const Eigen::VectorXd>(time.data.data(), static_cast<Eigen::Index>(time.data.size()));

@@ -28,7 +28,7 @@ constexpr std::size_t kPiece = 1 << 20;
 /// Runs shorter than that are committed at their end alone.
 constexpr std::chrono::milliseconds kFirstCommit{100};
 /// Samples that a run of unknown length may have.
-constexpr std::uint64_t kManyRows = 1 << 20;
+constexpr std::uint64_t kUnboundedRows = 1 << 20;
 constexpr std::uint64_t kFirstEvents = 16;
 /// [bytes] of samples: a file with at most as many has its final size from the beginning.
 constexpr std::uint64_t kShortBytes = 4 << 20;
@@ -62,7 +62,7 @@ class ResultsWriter final : public records::ResultSink {
       continue_file(header);
     } else {
       file_.create();
-      create({header, {}}, header.max_samples > 0 ? static_cast<std::uint64_t>(header.max_samples) : kManyRows);
+      create({header, {}}, header.max_samples > 0 ? static_cast<std::uint64_t>(header.max_samples) : kUnboundedRows);
       file_.publish();
     }
   }
@@ -463,7 +463,7 @@ void ResultsWriter::continue_file(const records::ResultsHeader& header) {
 
   const auto kept = static_cast<std::uint64_t>(keep);
   file_.create();
-  create(origin, kept + (header.max_samples > 0 ? static_cast<std::uint64_t>(header.max_samples) : kManyRows));
+  create(origin, kept + (header.max_samples > 0 ? static_cast<std::uint64_t>(header.max_samples) : kUnboundedRows));
   copy_rows(old.get(), kept);
   num_rows_ = num_flushed_ = num_committed_ = buffer_first_ = kept;
   // The buffer begins where rows of the group do.

@@ -15,7 +15,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using records::LinearModel;
 
-/// One matrix a point, behind each other in C order.
+/// One matrix per point, one after the other in C order.
 void write_stack(FileWriter& file, const std::string& path, const std::vector<LinearModel>& models,
                  MatrixXd LinearModel::*part, const std::string& what) {
   const MatrixXd& first = models.front().*part;
@@ -50,7 +50,7 @@ void write_sweep(const records::LinearSweep& sweep, const std::string& path) {
   file.write_strings("/parameter/name", {sweep.parameter}, {"of the system file, or time", "1"});
   file.write_vector("/parameter/value", sweep.value, {"one a point", "as the parameter's"});
   const auto& first = sweep.models.front();
-  write_signals(file, "/states", first.states, "states: displacements of the freedoms, then their rates");
+  write_signals(file, "/states", first.states, "states: displacements of the DOFs, then their rates");
   write_signals(file, "/inputs", first.inputs, "inputs");
   write_signals(file, "/outputs", first.outputs, "outputs");
   const bool is_sampled = first.sample_time > 0;

@@ -15,7 +15,7 @@ std::string show_row(const Eigen::MatrixXd& values, std::size_t k, const std::st
   return text;
 }
 
-/// Several elements a line; of complex values one, real and imaginary part beside each other.
+/// Several elements per line; of complex values one, real and imaginary part next to each other.
 void add_columns(const ListedElements& block, std::size_t of_line, Pages& pages) {
   if (block.imag.size() > 0) {
     for (std::size_t k = 0; k < block.id.size(); ++k) {

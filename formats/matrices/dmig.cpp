@@ -50,11 +50,11 @@ std::vector<Matrix> read_dmig(const std::string& path, Diagnostics& diagnostics)
   std::vector<Matrix> matrices;
   for (const auto& direct : deck.direct_matrices) {
     const auto big = std::find_if(direct.entries.begin(), direct.entries.end(),
-                                  [&](const auto& e) { return direct.form == 9 && (e.gj < 1 || e.gj > kMostRows); });
+                                  [&](const auto& e) { return direct.form == 9 && (e.gj < 1 || e.gj > kMaxRows); });
     if (big != direct.entries.end())
       throw InputError("matrices.size", deck.locate(direct.at),
                        "matrix " + direct.name + " has a column " + std::to_string(big->gj) + ", expected 1 to " +
-                           std::to_string(kMostRows));
+                           std::to_string(kMaxRows));
     matrices.push_back(make_matrix(direct));
   }
   return matrices;

@@ -79,9 +79,9 @@ class HarwellBoeingReader {
       in_.fail("matrices.hb-type",
                "the type is " + quote(words[0]) +
                    ", expected R or C, then S, U, H, Z or R, then A: an assembled matrix with values");
-    if (!rows || !columns || *rows < 1 || *columns < 1 || *rows > kMostRows || *columns > kMostRows || !entries ||
+    if (!rows || !columns || *rows < 1 || *columns < 1 || *rows > kMaxRows || *columns > kMaxRows || !entries ||
         *entries < 0 || static_cast<std::size_t>(*entries) > in_.count_most(2))
-      in_.fail("matrices.size", "found " + quote(in_.get_line()) + ", expected 1 to " + std::to_string(kMostRows) +
+      in_.fail("matrices.size", "found " + quote(in_.get_line()) + ", expected 1 to " + std::to_string(kMaxRows) +
                                     " rows and columns and no more entries than the file can hold");
     is_complex_ = letter(0) == 'C';
     triangle_ = letter(1) == 'S'   ? Triangle::Mirror

@@ -60,9 +60,9 @@ std::vector<Matrix> read_triplet_lines(const std::string& path) {
     const auto row = parse_integer(words[0]), column = parse_integer(words[1]);
     const auto value = parse_real(words[2]);
     if (!row || !column || !value) in.fail_line("row, column and value");
-    if (*row < 1 || *column < 1 || *row > kMostRows || *column > kMostRows)
+    if (*row < 1 || *column < 1 || *row > kMaxRows || *column > kMaxRows)
       in.fail("matrices.index",
-              "found " + quote(in.get_line()) + ", expected rows and columns of 1 to " + std::to_string(kMostRows));
+              "found " + quote(in.get_line()) + ", expected rows and columns of 1 to " + std::to_string(kMaxRows));
     entries.add(static_cast<int>(*row) - 1, static_cast<int>(*column) - 1, *value);
     size = std::max({size, static_cast<int>(*row), static_cast<int>(*column)});
   }

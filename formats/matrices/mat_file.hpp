@@ -35,8 +35,8 @@ struct MatValue {
   static MatArray from_matrix(const Eigen::MatrixXd& matrix);
 };
 
-/// Writes beside and renames. Names begin with a letter and have letters, digits, underscores, 63 at most. Throws
-/// ComputationError "matrices.write".
+/// Writes under another name and renames. Names begin with a letter and have letters, digits, underscores, 63 at most.
+/// Throws ComputationError "matrices.write".
 void write_mat(const std::string& path, const MatFields& variables);
 
 }  // namespace bough::matrices

@@ -4,8 +4,8 @@
 
 #include <matio.h>
 
-#include "base/apart.hpp"
 #include "base/file_roles.hpp"
+#include "base/isolated.hpp"
 #include "formats/hdf5/inspect.hpp"
 #include "formats/matrices/detail/readers.hpp"
 #include "formats/matrices/detail/triplets.hpp"
@@ -61,7 +61,7 @@ class MatReader {
     const bool is_full = variable.class_type >= MAT_C_DOUBLE && variable.class_type <= MAT_C_UINT64;
     if (!is_full && variable.class_type != MAT_C_SPARSE) return;
     const std::size_t rows = variable.dims[0], columns = variable.dims[1];
-    if (rows > static_cast<std::size_t>(kMostRows) || columns > static_cast<std::size_t>(kMostRows))
+    if (rows > static_cast<std::size_t>(kMaxRows) || columns > static_cast<std::size_t>(kMaxRows))
       fail("variable " + name + " has " + std::to_string(rows) + " rows and " + std::to_string(columns) + " columns",
            "write the file again");
     Matrix matrix;
@@ -164,7 +164,7 @@ class MatReader {
   std::vector<Matrix> matrices_;
 };
 
-/// Read and forgotten; what is wrong in Bough's own words is said again by the reading that counts.
+/// Reads and discards; errors found by Bough itself are reported when the file is read again.
 std::string try_mat(const std::string& path) {
   try {
     MatReader(path).read();
@@ -179,8 +179,9 @@ std::vector<Matrix> read_mat(const std::string& path) {
   if (read_bytes(path, 10) == "MATLAB 7.3") hdf5::inspect_file(path);
   std::error_code ignored;
   const double size = static_cast<double>(std::filesystem::file_size(path, ignored));
-  // Damaged files break the library (heap overflows, gigabytes for the names of a struct), in a process of its own first.
-  const Apart tried = work_apart(path, try_mat, {5 + 1e-6 * size, 1e9 + 2200 * size}, "MATLAB file");
+  // Damaged files break the library (heap overflows, gigabytes for the names of a struct), in a separate process
+  // first.
+  const IsolatedResult tried = run_isolated(path, try_mat, {5 + 1e-6 * size, 1e9 + 2200 * size}, "MATLAB file");
   if (!tried.end.empty())
     throw InputError("matrices.mat", {path}, "the file is damaged: " + tried.end, "copy or write it again");
   return MatReader(path).read();

@@ -15,7 +15,7 @@ struct Matrix {
   int form = kSquare;
   records::SparseMatrix values;  ///< real parts; symmetric matrices are whole, whatever the file stores
   bool is_complex = false;
-  std::vector<double> imaginary;  ///< beside values.data; empty for a real matrix
+  std::vector<double> imaginary;  ///< of values.data, in its order; empty for a real matrix
   Eigen::MatrixXi row_dofs;       ///< rows x 2: node id, code 1..6 (0 for a scalar point); 0 x 2 when not known
   Eigen::MatrixXi column_dofs;    ///< the same for the columns; those of the rows in a square matrix
 

@@ -92,9 +92,9 @@ class MarketReader {
 
   long read_size(std::string_view word) {
     const auto size = parse_integer(word);
-    if (!size || *size < 1 || *size > kMostRows)
+    if (!size || *size < 1 || *size > kMaxRows)
       in_.fail("matrices.size",
-               "found " + quote(in_.get_line()) + ", expected 1 to " + std::to_string(kMostRows) + " rows and columns");
+               "found " + quote(in_.get_line()) + ", expected 1 to " + std::to_string(kMaxRows) + " rows and columns");
     return *size;
   }
 

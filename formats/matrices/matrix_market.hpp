@@ -7,7 +7,7 @@
 
 namespace bough::matrices {
 
-/// Coordinate real symmetric: the lower triangle of a symmetric matrix. `comment`: one line behind '%'.
+/// Coordinate real symmetric: the lower triangle of a symmetric matrix. `comment`: one line after '%'.
 void write_matrix_market(std::ostream& out, const records::SparseMatrix& matrix, const std::string& comment);
 
 }  // namespace bough::matrices

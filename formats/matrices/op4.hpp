@@ -18,7 +18,7 @@ struct Op4Options {
   Op4Layout layout = Op4Layout::Dense;
   bool is_bigmat = false;      ///< Strings: BIGMAT, negative NROW, whatever the size
   bool is_single = false;      ///< types 1 and 3 in place of 2 and 4
-  int digits = 16;             ///< text: behind the point
+  int digits = 16;             ///< text: after the point
   char exponent = 'E';         ///< text: 'E' or 'D'
   bool is_big_endian = false;  ///< binary
   bool is_64_bit = false;      ///< binary: integers of 8 bytes, names of 16, every real in 8 bytes

@@ -216,10 +216,10 @@ void write(Writer&& writer, const Matrix& matrix, const Op4Options& options) {
     } else {
       // A string header of 32 bits holds L + 1 up to 32767: longer runs are cut.
       std::vector<Run> pieces;
-      const std::size_t most = is_bigmat ? std::size_t{1} << 28 : 8190 * (matrix.is_complex ? 2 : 1);
+      const std::size_t max_reals = is_bigmat ? std::size_t{1} << 28 : 8190 * (matrix.is_complex ? 2 : 1);
       for (auto& run : runs)
-        for (std::size_t i = 0; i < run.reals.size(); i += most) {
-          const auto end = std::min(i + most, run.reals.size());
+        for (std::size_t i = 0; i < run.reals.size(); i += max_reals) {
+          const auto end = std::min(i + max_reals, run.reals.size());
           pieces.push_back({run.row + static_cast<int>(i / (matrix.is_complex ? 2 : 1)),
                             {run.reals.begin() + static_cast<std::ptrdiff_t>(i),
                              run.reals.begin() + static_cast<std::ptrdiff_t>(end)}});

@@ -1,4 +1,4 @@
-// Nastran punch: lines of 72 columns and a sequence number; $ lines say what follows.
+// Nastran punch: lines of 72 columns and a sequence number; $ lines are headings.
 #include "formats/matrices/detail/input.hpp"
 #include "formats/matrices/detail/mode_builder.hpp"
 

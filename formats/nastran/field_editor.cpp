@@ -200,10 +200,10 @@ std::optional<FieldPlace> DeckEditor::find(const FieldAddress& address, const So
     }
   } else {
     const auto& known = detail::get_field_names(name);
-    const auto wanted = detail::make_upper(detail::trim(address.field));
-    const auto at = std::find(known.begin(), known.end(), wanted);
-    if (at == known.end() || wanted == "-") {
-      const auto nearest = find_nearest(wanted, known);
+    const auto requested = detail::make_upper(detail::trim(address.field));
+    const auto at = std::find(known.begin(), known.end(), requested);
+    if (at == known.end() || requested == "-") {
+      const auto nearest = find_nearest(requested, known);
       diagnostics.error("batch.unknown-field", asked_at, name + " has no field " + address.field,
                         known.empty() ? "fields of this card have no names here; give its number, as field = 3"
                                       : (nearest.empty() ? "" : "did you mean " + nearest + "; ") +

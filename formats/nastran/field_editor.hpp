@@ -36,7 +36,7 @@ struct EditedFile {
   std::string text;
 };
 
-/// A card of the deck as it stands.
+/// A card of the deck, unchanged.
 struct DeckCard {
   int card = 0;      ///< of FieldPlace
   std::string name;  ///< upper case

@@ -16,12 +16,12 @@ void fill_deck(const detail::Source& source, const ReadOptions& options, records
   auto* const dynamics = control.dynamics;
   deck.files = source.files;
   detail::read_system_cells(source, deck);
-  auto asked = control;
-  asked.ignore_cards = options.ignore_cards;
-  asked.is_response = options.is_response;
+  auto requested = control;
+  requested.ignore_cards = options.ignore_cards;
+  requested.is_response = options.is_response;
   detail::LoadColumns columns;
-  asked.load_columns = &columns;
-  const auto first_line = detail::read_control(source, deck, diagnostics, asked);
+  requested.load_columns = &columns;
+  const auto first_line = detail::read_control(source, deck, diagnostics, requested);
   detail::read_bulk(source, first_line, options, deck, diagnostics, dynamics);
   detail::add_load_columns(columns, deck, diagnostics);
   detail::report_params(deck, options.ignore_cards, diagnostics, dynamics != nullptr);
@@ -43,10 +43,10 @@ records::DynamicDeck make_dynamic_deck(const detail::Source& source, const ReadO
 records::CaseRequests make_requests(const detail::Source& source, Diagnostics& diagnostics) {
   records::DynamicDeck deck;
   records::CaseRequests requests;
-  Diagnostics said;  // by whoever reads the deck
+  Diagnostics ignored_diagnostics;  // reported when the deck is read
   deck.files = source.files;
   detail::read_control(
-      source, deck, said,
+      source, deck, ignored_diagnostics,
       {.dynamics = &deck, .combinations = &requests.combinations, .combination_diagnostics = &diagnostics});
   requests.selections = std::move(deck.selections);
   return requests;
@@ -92,12 +92,12 @@ records::Deck read_packed_combined_deck(std::string bytes, const ReadOptions& op
 }
 
 records::CaseRequests read_requests(const std::string& path, Diagnostics& diagnostics) {
-  Diagnostics said;
-  return make_requests(detail::read_source(path, said), diagnostics);
+  Diagnostics ignored_diagnostics;
+  return make_requests(detail::read_source(path, ignored_diagnostics), diagnostics);
 }
 records::CaseRequests read_packed_requests(std::string bytes, Diagnostics& diagnostics) {
-  Diagnostics said;
-  return make_requests(detail::unpack(std::move(bytes), said), diagnostics);
+  Diagnostics ignored_diagnostics;
+  return make_requests(detail::unpack(std::move(bytes), ignored_diagnostics), diagnostics);
 }
 
 }  // namespace bough::nastran

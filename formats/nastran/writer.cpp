@@ -75,7 +75,7 @@ void write_control(const Deck& deck, std::string& out) {
   out += "BEGIN BULK\n";
 }
 
-/// Nothing of the deck may be lost without a word.
+/// No part of the deck may be lost silently.
 void report_lost(const Deck& deck, Diagnostics& diagnostics) {
   const SourceLocation where{deck.files.empty() ? std::string{} : deck.files.front()};
   std::string left_out;

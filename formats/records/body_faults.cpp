@@ -50,13 +50,13 @@ void check_rigid(Faults& faults, const FlexBody& body) {
   }
   const Eigen::Matrix3d about_cg =
       body.inertia - body.mass * (body.cg.squaredNorm() * Eigen::Matrix3d::Identity() - body.cg * body.cg.transpose());
-  const double least =
+  const double min_moment =
       Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(about_cg, Eigen::EigenvaluesOnly).eigenvalues()[0];
-  if (least < -kAsymmetry * std::abs(principal[2]) && principal[0] >= 0) {
+  if (min_moment < -kAsymmetry * std::abs(principal[2]) && principal[0] >= 0) {
     std::ostringstream found;
     found << "/rigid/inertia, about the origin of the frame, is too small for /rigid/mass at /rigid/cg: about the "
              "centre of mass it has the principal moment "
-          << least;
+          << min_moment;
     faults.push_back(found.str());
   }
 }

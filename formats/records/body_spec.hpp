@@ -18,7 +18,7 @@ enum class BodyFrame {
   MeanAxes,    ///< the same for any basis
   Node,        ///< one node: its translation and rotation
   ThreeNodes,  ///< 3-2-1
-  MassCentre   ///< the mass centre; turns as a node, as three, or as mean axes
+  MassCentre   ///< the centre of mass; turns as a node, as three, or as mean axes
 };
 
 enum class BodyBasis { Normal, CraigBampton, CraigChang };
@@ -37,12 +37,12 @@ struct ExternalLoadSpec {
   SourceLocation at;
 };
 
-/// Mass and inertia of what hangs on a node, in the modes of the body and then taken off again.
+/// Mass and inertia of a body attached to a node: included in the modes of this body, then subtracted again.
 struct AugmentSpec {
   int node = 0;
   double mass = 0;                      ///< as the body's: with WTMASS
-  Vector3d cg = Vector3d::Zero();       ///< its mass centre from the node, body axes
-  Matrix3d inertia = Matrix3d::Zero();  ///< about its mass centre, body axes
+  Vector3d cg = Vector3d::Zero();       ///< its centre of mass from the node, body axes
+  Matrix3d inertia = Matrix3d::Zero();  ///< about its centre of mass, body axes
   SourceLocation at;
 };
 

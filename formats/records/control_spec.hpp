@@ -1,5 +1,5 @@
 #pragma once
-/// \file [[controller]] and [[actuator]] of a system file, and what all sensors may have beside what they measure.
+/// \file [[controller]] and [[actuator]] of a system file, and the options common to all sensors.
 #include <map>
 #include <string>
 #include <vector>

@@ -471,7 +471,7 @@ struct Deck {
   std::vector<UnreadLoad> unread_loads;
   std::vector<std::string> left_out;       ///< what the record does not keep of cards that it reads: "12 fluid GRID"
   std::map<std::string, int> card_counts;  ///< every card name in the bulk data
-  /// Ids of cards that were refused with an error of their own, by card name: who refers to one says nothing more.
+  /// Ids of cards that were rejected with an error, by card name: references to them are not reported again.
   std::map<std::string, std::set<int>> refused;
 
   /// Value of a PARAM, the last one given; nullptr when absent.

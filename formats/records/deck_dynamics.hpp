@@ -21,7 +21,7 @@ struct DynamicLoad {
   int sid = 0, excite = 0;  ///< EXCITEID: DAREA, static loads, or SPCD of this set
   int delay_set = 0, phase_set = 0;
   double delay = 0, phase_deg = 0;  ///< where they are numbers
-  int table_a = 0, table_b = 0;     ///< TC and TD, TB and TP, TID; 0: the number beside it
+  int table_a = 0, table_b = 0;     ///< TC and TD, TB and TP, TID; 0: the number is used
   double a = 0, b = 0;              ///< TLOAD1: a is F where it is a number
   double t1 = 0, t2 = 0;            ///< TLOAD2, as those below: phase in phase_deg
   double frequency_hz = 0, growth = 0, power = 0;

@@ -9,7 +9,7 @@ struct ResponseCurves {
   std::string quantity;                   ///< displacement, velocity, acceleration, spc_force
   std::vector<std::pair<int, int>> dofs;  ///< grid and component 1..6, 0 for a scalar point
   MatrixXd real, imag;
-  bool is_phase = false, is_punched = false;  ///< how the deck asks for them
+  bool is_phase = false, is_punched = false;  ///< as requested in the deck
   bool is_printed = true;                     ///< in the listing
 };
 

@@ -33,7 +33,7 @@ struct Pbcomp {
 struct GridComponent {
   int g = 0, c = 0;
 };
-/// GENEL: a general element given by its stiffness or flexibility on UI, and rigid motions of UI by S from UD.
+/// GENEL: a general element given by its stiffness or flexibility on UI, and rigid-body motions of UI by S from UD.
 struct Genel {
   int id = 0;
   std::vector<GridComponent> ui, ud;

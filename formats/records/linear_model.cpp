@@ -45,7 +45,7 @@ SecondOrder make_second_order(const LinearModel& model) {
   const Eigen::Index n = model.mass.rows();
   const Eigen::Index nz = model.A.rows() - 2 * n;
   if (n == 0 || model.sample_time > 0 || nz < 0) return {};
-  // δ̇ = T δ + δu with constant T, and δu̇ = A_q δ + A_u δu + A_z z + B u: δu is taken out.
+  // δ̇ = T δ + δu with constant T, and δu̇ = A_q δ + A_u δu + A_z z + B u: δu is eliminated.
   const Eigen::MatrixXd T = model.A.topLeftCorner(n, n), A_q = model.A.block(n, 0, n, n),
                         A_u = model.A.block(n, n, n, n);
   return {model.mass, -model.mass * (A_u + T), model.mass * (A_u * T - A_q), model.mass * model.B.middleRows(n, n),

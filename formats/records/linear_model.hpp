@@ -66,8 +66,7 @@ struct LinearModel {
   double error = 0;       ///< estimated, of A and C, relative to the largest entry of the row (docs/formats/linear.md)
   double difference = 0;  ///< between A and C by one step size and by another, likewise
 
-  Eigen::MatrixXd
-      mass;  ///< of the freedoms, n x n: uᵀ mass u / 2 is the kinetic energy; empty where it was not asked for
+  Eigen::MatrixXd mass;  ///< of the DOFs, n x n: uᵀ mass u / 2 is the kinetic energy; empty if not requested
 
   Poles poles;
   std::vector<AliasedMode> aliased;  ///< with a sample_time
@@ -78,7 +77,7 @@ struct LinearModel {
   Hankel hankel;
 };
 
-/// M δ̈ + D δ̇ + K δ = F u + Z z, δ the displacements of the freedoms, z the states behind their rates, of controllers,
+/// M δ̈ + D δ̇ + K δ = F u + Z z, δ the displacements of the DOFs, z the states behind their rates, of controllers,
 /// actuators and sensors: n x n, n x n, n x n, n x num_inputs, n x nz.
 struct SecondOrder {
   Eigen::MatrixXd M, D, K, F, Z;

@@ -14,7 +14,7 @@ struct ElementForces {
 };
 
 /// Stresses of the elements of one card that have the same points. "xx@top": component and point; derived ones
-/// (von_mises, max, min, max_shear, failure, ...) are among them. Strains likewise: they stand where stresses do.
+/// (von_mises, max, min, max_shear, failure, ...) are among them. Strains likewise, at the points of the stresses.
 struct ElementStresses {
   std::string card;
   std::vector<std::string> components;
@@ -57,7 +57,7 @@ struct StaticSubcase {
   VectorXd displacement;
   VectorXd load;
   VectorXd reaction;   ///< forces of the single-point constraints on the structure
-  VectorXd mpc_force;  ///< forces of MPC and rigid elements: K u - F less the reactions
+  VectorXd mpc_force;  ///< forces of MPC and rigid elements: K u - F minus the reactions
   double strain_energy = 0;
   double epsilon = 0;  ///< work of the residual over the work of the loads
   /// About the origin: forces x y z, moments x y z.

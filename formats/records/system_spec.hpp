@@ -34,7 +34,7 @@ struct BodyRecord {
   bool stiffening = true;
   std::vector<double> eta, eta_dot;    ///< initial; empty = zero
   std::vector<double> damping_ratios;  ///< overrides the file's modal damping when not empty (one = uniform)
-  int num_modes = -1;                  ///< keep the first so many; -1 = all
+  int num_modes = -1;                  ///< number of the first modes retained; -1 = all
   bool recover_all = false;            ///< every element of the file's /recovery is among the results
   std::vector<int> recover;            ///< or these
   SourceLocation at;
@@ -115,7 +115,7 @@ struct SensorRecord {
   std::string body;
   int node = 0;
   std::string frame = "inertial";  ///< "inertial", "body" (the node's own body) or another body's name: components
-  std::string relative_to;         ///< all but deflection and rotation: this body's motion is taken off; empty = none
+  std::string relative_to;         ///< relative to the motion of this body (not deflection, rotation); empty: none
   bool from_turning = true;        ///< relative_to: as an observer who turns with that body sees it
   std::string hinge;               ///< hinge sensors
   int coordinate = 0;              ///< hinge sensors: 1-based; 0 = all; modal sensors: the mode
@@ -153,7 +153,7 @@ struct SimulationRecord {
   double output_step = 0;                                         ///< 0: duration / 1000
   double output_from = -std::numeric_limits<double>::infinity();  ///< samples before it are not written
   double output_until = std::numeric_limits<double>::infinity();  ///< nor those after it
-  int output_every = 1;                                           ///< of the others one in so many
+  int output_every = 1;                                           ///< interval of the samples written, in samples
   std::vector<std::string> record;   ///< groups of channels: "bodies", "hinges/root", ...; empty = all
   std::string integrator = "adams";  ///< adams, bdf (CVODE), rk (adaptive, Dormand and Prince), rk4, implicit (fixed step), auto
   double step = 0;                   ///< rk4, implicit; also the largest step of the others when > 0
@@ -162,7 +162,7 @@ struct SimulationRecord {
   double absolute_tolerance_modes = 0;  ///< of η and η̇; 0: as the others
   Vector3d gravity = Vector3d::Zero();  ///< inertial
   double divergence_limit = 1e6;        ///< of a deflection to the body's size, of √(kinetic energy / energy put in)
-  double energy_error_limit = 1e-2;     ///< relative; a run past it is told to have failed
+  double energy_error_limit = 1e-2;     ///< relative; a run above it is reported as failed
   std::string stiffening = "consistent";  ///< or lagged: K_G1 A_I + K_G2 FCONI of the last step
   double stiffening_step = 0;             ///< lagged: how often they are measured; 0: `step`
   SourceLocation at;

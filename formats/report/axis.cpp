@@ -18,7 +18,7 @@ double get_round_step(double rough) {
 
 }  // namespace
 
-Axis make_axis(double min, double max, int wanted, bool widen) {
+Axis make_axis(double min, double max, int num_ticks, bool widen) {
   Axis axis;
   // Nothing here overflows.
   min = std::clamp(min, -1e300, 1e300);
@@ -35,7 +35,7 @@ Axis make_axis(double min, double max, int wanted, bool widen) {
   }
   axis.min = min;
   axis.max = max;
-  const double step = get_round_step((max - min) / std::max(1, wanted));
+  const double step = get_round_step((max - min) / std::max(1, num_ticks));
   const double largest = std::max(std::abs(min), std::abs(max));
   const int magnitude = static_cast<int>(std::floor(std::log10(largest)));
   if (magnitude >= 4 || magnitude < -2) axis.exponent = 3 * static_cast<int>(std::floor(magnitude / 3.0));
@@ -58,11 +58,11 @@ Axis make_log_axis(double min, double max) {
   Axis axis;
   axis.min = min;
   axis.max = max;
-  const bool is_fine = max - min<3, has_many = max - min> 9;
+  const bool has_few = max - min<3, has_many = max - min> 9;
   for (int power = static_cast<int>(std::floor(min)); power <= max; ++power) {
     for (const int digit : {1, 2, 5}) {
       const double at = power + std::log10(digit);
-      if (at < min - 1e-9 || at > max + 1e-9 || (digit > 1 && !is_fine) || (has_many && power % 2 != 0)) continue;
+      if (at < min - 1e-9 || at > max + 1e-9 || (digit > 1 && !has_few) || (has_many && power % 2 != 0)) continue;
       axis.ticks.push_back(at);
       char buffer[40];
       std::snprintf(buffer, sizeof buffer, "%g", digit * std::pow(10.0, power));

@@ -14,7 +14,7 @@ struct Axis {
 
 /// Ticks at 1, 2, 2.5 or 5 times a power of ten, about `wanted` of them. When `widen`, the ends move out to a little
 /// more than the data; otherwise they stay. A range of no width is opened.
-Axis make_axis(double min, double max, int wanted, bool widen);
+Axis make_axis(double min, double max, int num_ticks, bool widen);
 /// Axis of log10 of the values: ticks at powers of ten, and at 2 and 5 times them for few decades.
 Axis make_log_axis(double min, double max);
 

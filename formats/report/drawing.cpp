@@ -17,8 +17,8 @@ namespace bough::report {
 
 namespace {
 
-constexpr double kMostShapeBytes = 2.2e6;     // of one body, before base64
-constexpr std::size_t kMostOutlined = 30000;  // faces; of finer meshes the edges are left out
+constexpr double kMaxShapeBytes = 2.2e6;     // of one body, before base64
+constexpr std::size_t kMaxOutlined = 30000;  // faces; of finer meshes the edges are left out
 
 using Face = std::array<int, 4>;  // a triangle repeats its last corner
 struct ElementFace {
@@ -67,8 +67,8 @@ class DrawingBuilder {
   void add_shapes(const std::vector<Eigen::MatrixXd>& phi, bool all_shapes) {
     const Eigen::Index modes = phi.empty() ? 0 : phi.front().cols();
     const double bytes = 6.0 * static_cast<double>(places_.size());
-    const auto most = static_cast<Eigen::Index>(kMostShapeBytes / std::max(bytes, 1.0));
-    for (Eigen::Index j = 0; j < (all_shapes ? modes : std::min(modes, most)); ++j) {
+    const auto max_modes = static_cast<Eigen::Index>(kMaxShapeBytes / std::max(bytes, 1.0));
+    for (Eigen::Index j = 0; j < (all_shapes ? modes : std::min(modes, max_modes)); ++j) {
       Eigen::MatrixXd shape = Eigen::MatrixXd::Zero(drawing.xyz.rows(), 3);
       for (std::size_t i = 0; i < shape_of_point_.size(); ++i)
         if (const int k = shape_of_point_[i]; k >= 0)
@@ -128,7 +128,7 @@ class DrawingBuilder {
 
   void add_faces() {
     for (const auto& [unused, face] : solid_faces_) faces_.push_back(face);
-    const bool is_outlined = faces_.size() <= kMostOutlined;
+    const bool is_outlined = faces_.size() <= kMaxOutlined;
     for (const auto& [f, element] : faces_) {
       const bool whole = std::all_of(f.begin(), f.end(), [&](int g) { return has_shape(g); });
       if (whole) {
@@ -161,7 +161,7 @@ class DrawingBuilder {
 };
 
 /// Limit of the packed matrices, some 1.6 MB of the page.
-constexpr Eigen::Index kMostEntries = 600000;
+constexpr Eigen::Index kMaxEntries = 600000;
 
 void add_measures(const records::BodyMesh& mesh, Drawing& drawing) {
   const auto measures = records::calc_measures(mesh);
@@ -208,7 +208,7 @@ bool add_energy_matrices(const records::FlexBody& body, Drawing& drawing) {
   const auto n = static_cast<Eigen::Index>(drawing.shapes.size()), all = static_cast<Eigen::Index>(body.num_modes());
   const auto count = static_cast<Eigen::Index>(drawing.elements.id.size());
   if (energy.empty() || n == 0) return true;
-  if (n < all || count * n * (n + 1) / 2 > kMostEntries) return false;
+  if (n < all || count * n * (n + 1) / 2 > kMaxEntries) return false;
   std::unordered_map<int, Eigen::Index> row_of;
   for (std::size_t e = 0; e < energy.id.size(); ++e) row_of[energy.id[e]] = static_cast<Eigen::Index>(e);
   add_measures(body.mesh, drawing);

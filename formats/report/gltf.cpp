@@ -124,7 +124,7 @@ struct Animation {
   }
 };
 
-/// Samples that are a float's step or more behind the one before; times from the first.
+/// Samples that are a float's step or more after the one before; times from the first.
 std::vector<Eigen::Index> choose_frames(const Eigen::VectorXd& time) {
   std::vector<Eigen::Index> kept;
   for (Eigen::Index i = 0; i < time.size(); ++i)

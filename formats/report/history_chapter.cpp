@@ -16,7 +16,7 @@ namespace bough::report {
 namespace {
 
 constexpr double kLinearLimit = 0.10;  // of a body's size, as the solver warns
-constexpr std::size_t kMostPictures = 12;
+constexpr std::size_t kMaxPictures = 12;
 
 const HistoryChannel* find_channel(const History& h, const std::string& path) {
   for (const auto& channel : h.channels)
@@ -63,8 +63,8 @@ std::string make_statistics(const History& h) {
       std::vector<std::string> row{name_column(channel.path, names[static_cast<std::size_t>(c)]), channel.dims};
       if (values.allFinite()) {
         Eigen::Index low = 0, high = 0;
-        const double least = values.minCoeff(&low), most = values.maxCoeff(&high);
-        for (const double v : {least, h.time[low], most, h.time[high], values.mean(),
+        const double min_value = values.minCoeff(&low), max_value = values.maxCoeff(&high);
+        for (const double v : {min_value, h.time[low], max_value, h.time[high], values.mean(),
                                std::sqrt(values.squaredNorm() / static_cast<double>(values.size()))})
           row.push_back(format_value(v));
       } else {
@@ -91,21 +91,21 @@ std::string make_histories(const History& h, const Strides& strides) {
   for (const auto& channel : h.channels) {
     if (!channel.path.starts_with("/sensors/") && !channel.path.starts_with("/signals/")) continue;
     ++sensors;
-    if (drawn == kMostPictures) continue;
+    if (drawn == kMaxPictures) continue;
     ++drawn;
     html += make_figure(make_plot(h, name_column(channel.path, ""), make_label("value", channel.dims), {&channel}));
   }
   if (sensors == 0) {
     // A run without sensors: what the hinges do.
     for (const auto& channel : h.channels)
-      if (channel.path.starts_with("/hinges/") && channel.path.ends_with("/q") && drawn++ < kMostPictures)
+      if (channel.path.starts_with("/hinges/") && channel.path.ends_with("/q") && drawn++ < kMaxPictures)
         html += make_figure(make_plot(h, channel.path, make_label("value", channel.dims), {&channel}));
   }
   if (sensors > drawn) html += make_text(fmt::format("{} sensors more are in the table.", sensors - drawn), "note");
   return html + "</div>\n" + make_statistics(h);
 }
 
-/// T + V + U - W less its first value.
+/// T + V + U - W minus its first value.
 HistoryChannel calc_balance(const History& h) {
   HistoryChannel balance{"/energy/balance", "kinetic + strain + potential - work, less its first value", "F L",
                          Eigen::MatrixXd::Zero(h.time.size(), 1)};

@@ -13,7 +13,7 @@ namespace {
 using nlohmann::json;
 
 constexpr double kBudget = 4.1e6;      // characters: 20,000 samples of 50 columns, and the page stays below 5 MB
-constexpr long kFewest = 1500;         // samples of the others, before the first ones are thinned
+constexpr long kMinSamples = 1500;     // samples of the others, before the first ones are thinned
 constexpr double kCharactersEach = 4;  // of a packed sample
 
 bool is_of_the_others(const std::string& path) {
@@ -102,7 +102,7 @@ Strides choose_strides(const History& history) {
     return samples * (first / static_cast<double>(s.first) + others / static_cast<double>(s.others)) <= kBudget;
   };
   Strides strides;
-  while (!fits(strides) && history.time.size() / (strides.others + 1) >= kFewest) ++strides.others;
+  while (!fits(strides) && history.time.size() / (strides.others + 1) >= kMinSamples) ++strides.others;
   while (!fits(strides)) {
     ++strides.first;
     strides.others = std::max(strides.others, strides.first);

@@ -24,20 +24,20 @@ void HtmlTable::add_row(std::vector<std::string> cells) {
   rows_.push_back(std::move(cells));
 }
 
-std::string HtmlTable::to_html(std::size_t most) const {
+std::string HtmlTable::to_html(std::size_t max_rows) const {
   const auto open = [&](std::size_t i, const char* tag) {
     return std::string("<") + tag + (columns_[i].is_text ? " class=\"text\">" : ">");
   };
   std::string html = "<div class=\"scroll\"><table><caption>" + escape_xml(caption_) + "</caption>\n<thead><tr>";
   for (std::size_t i = 0; i < columns_.size(); ++i) html += open(i, "th") + escape_xml(columns_[i].heading) + "</th>";
   html += "</tr></thead>\n<tbody>\n";
-  for (std::size_t r = 0; r < std::min(most, rows_.size()); ++r) {
+  for (std::size_t r = 0; r < std::min(max_rows, rows_.size()); ++r) {
     html += "<tr>";
     for (std::size_t i = 0; i < columns_.size(); ++i) html += open(i, "td") + escape_xml(rows_[r][i]) + "</td>";
     html += "</tr>\n";
   }
   html += "</tbody></table></div>\n";
-  if (rows_.size() > most) html += make_text(fmt::format("… and {} rows more", rows_.size() - most), "note");
+  if (rows_.size() > max_rows) html += make_text(fmt::format("… and {} rows more", rows_.size() - max_rows), "note");
   return html;
 }
 
@@ -58,18 +58,18 @@ std::string make_text(const std::string& text, const std::string& css_class) {
          "</p>\n";
 }
 
-Curve thin_curve(const Curve& curve, Eigen::Index most, bool has_log_x) {
+Curve thin_curve(const Curve& curve, Eigen::Index max_rows, bool has_log_x) {
   const Eigen::Index n = curve.x.size();
-  if (n <= most || curve.markers_only) return curve;
+  if (n <= max_rows || curve.markers_only) return curve;
   // Values at zero and below are not drawn in decades.
   Eigen::VectorXd x = curve.x;
   if (has_log_x && x[n - 1] > 0) {
-    double least = x[n - 1];
+    double smallest = x[n - 1];
     for (const double v : x)
-      if (v > 0) least = std::min(least, v);
-    x = x.cwiseMax(least).array().log10();
+      if (v > 0) smallest = std::min(smallest, v);
+    x = x.cwiseMax(smallest).array().log10();
   }
-  const auto ends = split_samples(x, most / 2);
+  const auto ends = split_samples(x, max_rows / 2);
   std::vector<Eigen::Index> keep{0};
   for (std::size_t b = 0; b + 1 < ends.size(); ++b) {
     const Eigen::Index first = ends[b], last = ends[b + 1];

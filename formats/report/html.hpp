@@ -22,8 +22,8 @@ class HtmlTable {
   HtmlTable(std::string caption, std::vector<Column> columns);
   void add_row(std::vector<std::string> cells);
   bool empty() const { return rows_.empty(); }
-  /// \param most  number of rows in the table; a line reports the others.
-  std::string to_html(std::size_t most = 2000) const;
+  /// \param max_rows  number of rows in the table; a line reports the others.
+  std::string to_html(std::size_t max_rows = 2000) const;
 
  private:
   std::string caption_;
@@ -38,7 +38,7 @@ std::string make_place(const std::string& live, const std::string& without);
 /// <p> of plain text.
 std::string make_text(const std::string& text, const std::string& css_class = {});
 
-/// At most about `most` points: of each bin the extremes, so that peaks stay.
-Curve thin_curve(const Curve& curve, Eigen::Index most, bool has_log_x = false);
+/// At max_rows about `max_rows` points: of each bin the extremes, so that peaks stay.
+Curve thin_curve(const Curve& curve, Eigen::Index max_rows, bool has_log_x = false);
 
 }  // namespace bough::report

@@ -17,7 +17,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::size_t kMostPictures = 6, kMostPairs = 24;
+constexpr std::size_t kMaxDiagrams = 6, kMaxPairs = 24;
 
 /// |H| in dB (of the units of y over u) and the phase, unwrapped.
 struct Pair {
@@ -31,7 +31,7 @@ std::vector<Pair> make_pairs(const records::FrequencyResponse& response) {
   const auto& first = response.value.front();
   const auto count = static_cast<Eigen::Index>(response.value.size());
   for (Eigen::Index j = 0; j < first.cols(); ++j)
-    for (Eigen::Index i = 0; i < first.rows() && pairs.size() < kMostPairs; ++i) {
+    for (Eigen::Index i = 0; i < first.rows() && pairs.size() < kMaxPairs; ++i) {
       Pair pair{i, j, Eigen::VectorXd(count), Eigen::VectorXd(count)};
       for (Eigen::Index k = 0; k < count; ++k) {
         const std::complex<double> h = response.value[static_cast<std::size_t>(k)](i, j);
@@ -82,7 +82,7 @@ std::string make_poles(const records::LinearModel& model) {
 
 std::string make_bode(const records::FrequencyResponse& response, const std::vector<Pair>& pairs) {
   std::string html = "<div class=\"live\" data-view=\"bode\">\n";
-  for (std::size_t p = 0; p < std::min(kMostPictures, pairs.size()); ++p) {
+  for (std::size_t p = 0; p < std::min(kMaxDiagrams, pairs.size()); ++p) {
     const auto& pair = pairs[p];
     const std::string name = response.outputs.name[static_cast<std::size_t>(pair.output)] + " over " +
                              response.inputs.name[static_cast<std::size_t>(pair.input)];

@@ -126,19 +126,19 @@ std::string make_spin(const ModalModel& m) {
               {},
               0,
               0};
-    const Eigen::Index most = std::min<Eigen::Index>(curves.frequency_hz.cols(), 5);
-    for (Eigen::Index k = 0; k < most; ++k)
+    const Eigen::Index max_shown = std::min<Eigen::Index>(curves.frequency_hz.cols(), 5);
+    for (Eigen::Index k = 0; k < max_shown; ++k)
       plot.curves.push_back({fmt::format("mode {}", k + 1), curves.rate, curves.frequency_hz.col(k), false});
-    if (most > 0) plot.curves.push_back({"mode 1 without K_G", curves.rate, curves.without_hz.col(0), false});
+    if (max_shown > 0) plot.curves.push_back({"mode 1 without K_G", curves.rate, curves.without_hz.col(0), false});
     // Once a turn is Ω / 2π cycles; beyond the highest mode it would only squeeze the others.
     plot.curves.push_back({"1 per turn", curves.rate, curves.rate / 6.283185307179586, false});
     html += make_figure(plot);
     std::vector<HtmlTable::Column> columns{{"spin rate"}};
-    for (Eigen::Index k = 0; k < most; ++k) columns.push_back({fmt::format("mode {}", k + 1)});
+    for (Eigen::Index k = 0; k < max_shown; ++k) columns.push_back({fmt::format("mode {}", k + 1)});
     HtmlTable table("Frequencies [1/T], spin about " + curves.axis, columns);
     for (Eigen::Index r = 0; r < curves.rate.size(); r += 4) {
       std::vector<std::string> row{format_value(curves.rate[r])};
-      for (Eigen::Index k = 0; k < most; ++k) row.push_back(format_value(curves.frequency_hz(r, k), 7));
+      for (Eigen::Index k = 0; k < max_shown; ++k) row.push_back(format_value(curves.frequency_hz(r, k), 7));
       table.add_row(std::move(row));
     }
     html += table.to_html();
@@ -158,7 +158,8 @@ std::string make_spin(const ModalModel& m) {
 
 std::string draw_heat_map(const std::string& title, const Eigen::MatrixXd& values, const std::string& row_label,
                           const std::string& column_label) {
-  const Eigen::Index most = 40, rows = std::min(most, values.rows()), cols = std::min(most, values.cols());
+  const Eigen::Index max_shown = 40, rows = std::min(max_shown, values.rows()),
+                     cols = std::min(max_shown, values.cols());
   const double cell = std::max(10.0, std::min(34.0, 620.0 / static_cast<double>(std::max<Eigen::Index>(cols, 1))));
   const double left = 64, top = 44;
   const double heading = 8 + 7.2 * static_cast<double>(row_label.size() + column_label.size() + 25);

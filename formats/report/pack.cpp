@@ -42,7 +42,7 @@ PackedColumn pack_column(const Eigen::Ref<const Eigen::VectorXd>& values) {
   // Halves first: the difference of two large numbers may overflow.
   packed.step = (high / 2 - low / 2) / ((PackedColumn::kMissing - 1) / 2.0);
   if (low < 0 && high > 0 && packed.step < 1e290) {
-    // Zero stays zero: it is so many steps above the least.
+    // Zero stays zero: it is a whole number of steps above the minimum.
     packed.step *= 1 + 1e-6;
     packed.low = low = -packed.step * std::ceil(-low / packed.step);
   }

@@ -20,8 +20,8 @@ using records::StaticResult;
 using records::StaticSubcase;
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 
-constexpr std::size_t kMostSubcases = 20, kMostRows = 30;
-constexpr double kMostEpsilon = 1e-6;  // as the listings of others hold it
+constexpr std::size_t kMaxSubcases = 20, kMaxTableRows = 30;
+constexpr double kMaxEpsilon = 1e-6;  // as the listings of others hold it
 
 std::string name_subcase(const StaticSubcase& s) {
   return s.label.empty() ? fmt::format("subcase {}", s.id) : fmt::format("subcase {}: {}", s.id, s.label);
@@ -71,7 +71,7 @@ std::string make_grid_table(const std::string& caption, const std::string& force
     for (const double x : v) row.push_back(format_value(x));
     table.add_row(std::move(row));
   }
-  return table.empty() ? make_text(caption + ": none.") : table.to_html(kMostRows);
+  return table.empty() ? make_text(caption + ": none.") : table.to_html(kMaxTableRows);
 }
 
 /// Least and largest of each column, with the elements.
@@ -193,7 +193,7 @@ Chapter make_chapter(const StaticResult& result, const std::string& file,
     worst = std::max(worst, s.epsilon);
   }
   chapter.checks.push_back({"largest epsilon: work of the residual over the work of the loads", format_value(worst, 2),
-                            worst < kMostEpsilon ? Verdict::Good : Verdict::Warning, "below 1e-6"});
+                            worst < kMaxEpsilon ? Verdict::Good : Verdict::Warning, "below 1e-6"});
   const Drawing drawing = draw_shapes(result);
   if (!drawing.shapes.empty()) {
     std::string html = make_place("modes", "The shapes are drawn by a script with WebGL 2.");
@@ -208,13 +208,13 @@ Chapter make_chapter(const StaticResult& result, const std::string& file,
         -1, ' ', false, nlohmann::json::error_handler_t::replace);
   }
   chapter.add_panel("summary", "Subcases", summary.to_html());
-  for (std::size_t c = 0; c < std::min(kMostSubcases, result.subcases.size()); ++c) {
+  for (std::size_t c = 0; c < std::min(kMaxSubcases, result.subcases.size()); ++c) {
     const auto& s = result.subcases[c];
     chapter.add_panel(fmt::format("subcase-{}", s.id), name_subcase(s), make_panel(result, s));
   }
-  if (result.subcases.size() > kMostSubcases)
+  if (result.subcases.size() > kMaxSubcases)
     chapter.add_panel("others", "Others",
-                      make_text(fmt::format("The first {} of {} subcases have tables of their own.", kMostSubcases,
+                      make_text(fmt::format("The first {} of {} subcases have tables of their own.", kMaxSubcases,
                                             result.subcases.size()),
                                 "note"));
   return chapter;

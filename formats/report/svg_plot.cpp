@@ -99,11 +99,11 @@ std::string draw_line(const Curve& curve, const Frame& f) {
 
 /// At most some points per pixel column, keeping the extremes: long histories stay small and look the same.
 Curve thin_out(const Curve& curve) {
-  constexpr Eigen::Index kMost = 6000;
+  constexpr Eigen::Index kMaxSamples = 6000;
   const Eigen::Index n = curve.x.size();
-  if (n <= kMost || curve.markers_only || !curve.y.allFinite()) return curve;
+  if (n <= kMaxSamples || curve.markers_only || !curve.y.allFinite()) return curve;
   std::vector<Eigen::Index> keep;
-  const auto ends = split_samples(curve.x, kMost / 4);
+  const auto ends = split_samples(curve.x, kMaxSamples / 4);
   for (std::size_t b = 0; b + 1 < ends.size(); ++b) {
     const Eigen::Index first = ends[b], size = ends[b + 1] - first;
     Eigen::Index low = 0, high = 0;

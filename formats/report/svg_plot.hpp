@@ -29,7 +29,7 @@ struct Plot {
   bool has_log_x = false;       ///< decades; values that are not positive are left out
   bool has_log_y = false;
   bool is_equal = false;      ///< one scale for both axes
-  std::vector<Curve> guides;  ///< thin lines behind the curves, labelled where they leave the frame; not in the range
+  std::vector<Curve> guides;  ///< thin lines under the curves, labelled where they leave the frame; not in the range
   std::vector<Note> notes;
 };
 /// log10 of what is drawn in decades, ends of the axis too; NaN where there is none.

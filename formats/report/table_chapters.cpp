@@ -106,10 +106,10 @@ Chapter make_chapter(const records::Comparison& comparison, const std::string& f
       chapter.add_panel(array.path.substr(1), array.path == "/mac" ? "MAC" : "MAC weighted with the mass",
                         draw_heat_map(array.description, array.values, "mode of A", "mode of B"));
     else if (array.path == "/pairs") {
-      double least = 1;
-      for (Eigen::Index i = 0; i < array.values.rows(); ++i) least = std::min(least, array.values(i, 4));
-      chapter.checks.push_back({"least MAC of a pair", format_value(least, 4),
-                                least < 0.9 ? Verdict::Warning : Verdict::Good,
+      double min_mac = 1;
+      for (Eigen::Index i = 0; i < array.values.rows(); ++i) min_mac = std::min(min_mac, array.values(i, 4));
+      chapter.checks.push_back({"least MAC of a pair", format_value(min_mac, 4),
+                                min_mac < 0.9 ? Verdict::Warning : Verdict::Good,
                                 fmt::format("{} pairs; below 0.9 look at the share in the span", array.values.rows())});
       chapter.add_panel("pairs", "Pairs of modes", name_files(comparison) + make_pairs_table(array));
     } else if (array.path == "/refinement/values") {

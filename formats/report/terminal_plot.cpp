@@ -85,11 +85,11 @@ std::string format_end(double value, bool is_log) {
   return buffer;
 }
 
-/// At most so many characters of UTF-8.
-std::string cut_text(const std::string& text, int most) {
+/// Truncates to a number of UTF-8 characters.
+std::string cut_text(const std::string& text, int max_letters) {
   int count = 0;
   for (std::size_t i = 0; i < text.size(); ++i)
-    if ((static_cast<unsigned char>(text[i]) & 0xC0) != 0x80 && ++count > most) return text.substr(0, i);
+    if ((static_cast<unsigned char>(text[i]) & 0xC0) != 0x80 && ++count > max_letters) return text.substr(0, i);
   return text;
 }
 

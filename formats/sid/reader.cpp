@@ -133,8 +133,8 @@ class Reader {
         fail("block " + name + " is symmetric (structure 2) with " + std::to_string(rows) + " rows and " +
                  std::to_string(columns) + " columns",
              "export.sid-shape");
-      constexpr double kMost = 1e8;
-      if (static_cast<double>(rows) * columns * std::max(1, head["nq"]) > kMost)
+      constexpr double kMaxValues = 1e8;
+      if (static_cast<double>(rows) * columns * std::max(1, head["nq"]) > kMaxValues)
         fail("block " + name + " would have more than 1e8 entries", "export.sid-shape");
       taylor = head["order"] > 0 ? Taylor::zero(rows, columns, head["nq"]) : Taylor::zero(rows, columns);
     };

@@ -72,7 +72,7 @@ Sid read_sid(const std::string& path);
 struct Relations {
   double mdCM_Ct = 0;         ///< mdCM.m1 = Ctᵀ
   double Gr_J = 0;            ///< symmetric part of Gr = J.m1
-  double Oe_J = 0;            ///< Oe.m0 = -½ J.m1 on the diagonal, -J.m1 beside it
+  double Oe_J = 0;            ///< Oe.m0 = -½ J.m1 on the diagonal, -J.m1 off it
   double Ge_Cr = 0;           ///< Ge = Cr.m1 minus its transpose in the modes, in the better of the two column orders
   bool by_component = false;  ///< that order
   double AP_psi = 0;          ///< AP.m1 = skew(psi), worst node

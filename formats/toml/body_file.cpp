@@ -261,7 +261,7 @@ std::string detect_kind(const std::string& path) {
     if ((body && body->is_array()) || root.find("simulation") || root.find("hinge")) return "system";
     return {};
   }
-  // Text with a syntax error still has its table headings: whoever reads it next reports the error.
+  // Text with a syntax error still has its table headings: the next reader reports the error.
   for (const char* heading : {"\n[[body]]", "\n[[hinge]]", "\n[simulation]"}) {
     if (("\n" + text).find(heading) != std::string::npos) return "system";
   }

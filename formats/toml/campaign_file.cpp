@@ -181,7 +181,7 @@ class Reader {
       bad(0, "the table " + spec_.table + " has no cases", "give a heading and a line for each case");
   }
 
-  /// A column without a [[parameter]] of its own is one for the commands.
+  /// A column without a [[parameter]] is one for the commands.
   std::size_t find_parameter(const std::string& name, int line) {
     for (std::size_t i = 0; i < spec_.parameters.size(); ++i) {
       if (spec_.parameters[i].name != name) continue;

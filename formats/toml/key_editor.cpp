@@ -116,7 +116,7 @@ void change_file_keys(std::string& text, const std::function<std::string(const s
   try {
     collect_files(text, toml::parse(std::string_view(text)), {}, places);
   } catch (const toml::parse_error&) {
-    return;  // whoever reads the file reports it
+    return;  // reported when the file is read
   }
   std::sort(places.begin(), places.end(), [](const Place& a, const Place& b) { return a.begin > b.begin; });
   for (const auto& place : places)

@@ -7,7 +7,7 @@
 namespace bough::toml_files {
 
 records::MatrixSource parse_matrix_source(const std::string& text, const std::string& common) {
-  // A drive letter is no file: the name stands behind the last colon.
+  // A drive letter is no file: the name is after the last colon.
   const auto colon = text.rfind(':');
   if (colon == std::string::npos || colon == 1) return {text, {}};
   return {colon == 0 ? common : text.substr(0, colon), text.substr(colon + 1)};

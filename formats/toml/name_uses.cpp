@@ -36,7 +36,7 @@ const Keys kSignalKeys{"controller/inputs", "controller/reference", "controller/
 const Keys kSignalKinds{"sensor", "input", "controller", "actuator", "function"};
 /// connect.to goes to one of these.
 const Keys kTargetKinds{"controller", "actuator", "force"};
-/// Groups of the results, by kind: "/sensors/NAME" with more behind it.
+/// Groups of the results, by kind: "/sensors/NAME" with more after it.
 const std::map<std::string, std::string> kGroups{
     {"body", "bodies"},    {"hinge", "hinges"},           {"constraint", "constraints"}, {"force", "forces"},
     {"sensor", "sensors"}, {"controller", "controllers"}, {"actuator", "actuators"},     {"input", "inputs"}};

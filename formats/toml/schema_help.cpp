@@ -97,7 +97,7 @@ std::vector<KindHelp> describe_kinds(bool is_body_file) {
         kind.keys.push_back(help);
       }
       for (const char* word : {"oneOf", "anyOf"})
-        if (below.contains(word)) kind.wanted.push_back(write_need(below[word]));
+        if (below.contains(word)) kind.expected.push_back(write_need(below[word]));
       kinds.push_back(kind);
       if (!is_list) visit(below, kind.kind);
     }
@@ -118,7 +118,7 @@ std::string format_help(const KeyHelp& key) {
 std::string format_help(const KindHelp& kind) {
   std::string text =
       (kind.is_list ? "[[" : "[") + kind.kind + (kind.is_list ? "]]: " : "]: ") + kind.description + "\n";
-  for (const auto& wanted : kind.wanted) text += "  " + wanted + "\n";
+  for (const auto& expected : kind.expected) text += "  " + expected + "\n";
   for (const auto& key : kind.keys) text += format_help(key);
   return text;
 }

@@ -13,7 +13,7 @@ struct KeyHelp {
   std::string default_value;         ///< JSON; may be empty
   std::string description;
   bool is_required = false;
-  bool takes_text = false, takes_other = false;  ///< whether a string may stand there, and something else
+  bool takes_text = false, takes_other = false;  ///< accepts a string; accepts other values
 };
 
 struct KindHelp {
@@ -23,7 +23,7 @@ struct KindHelp {
   bool is_open = false;  ///< takes keys of any name (parameters)
   std::vector<KeyHelp> keys;
   /// "one of file, mass": what the schema wants besides the required keys.
-  std::vector<std::string> wanted;
+  std::vector<std::string> expected;
 
   const KeyHelp* find(const std::string& key) const;
 };

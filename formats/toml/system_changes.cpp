@@ -75,7 +75,7 @@ class Comparison {
     }
   }
 
-  /// Tables are told apart by their names; without names by their place.
+  /// Tables are identified by their names; without names by their position.
   void compare_lists(const Value& before, const Value& after, const std::string& path, int line) {
     const auto get_name = [](const Value& table, std::size_t i) {
       const Value* name = table.find("name");
@@ -131,9 +131,9 @@ class Comparison {
 void check_same_system(const std::string& before, const std::string& after, const std::string& path,
                        Diagnostics& diagnostics) {
   Value old, now;
-  Diagnostics unheard;
+  Diagnostics ignored;
   // Errors of the text in the results are ignored: it was valid once, and a damaged file is reported elsewhere.
-  if (!parse_toml(before, path, old, unheard) || !parse_toml(after, path, now, diagnostics)) return;
+  if (!parse_toml(before, path, old, ignored) || !parse_toml(after, path, now, diagnostics)) return;
   Comparison(path, diagnostics).compare_tables(old, now, "", 1);
 }
 

@@ -144,7 +144,7 @@ void remove_entry(std::string& text, Region entry) {
     const auto before = text.find_last_not_of(" \t\r\n", entry.begin - 1);
     if (before != std::string::npos && text[before] == ',') entry.begin = before;
   }
-  // An entry on a line of its own takes the line along.
+  // An entry alone on its line is removed with the line.
   const auto line = text.find_last_not_of(" \t", entry.begin - 1);
   if (line != std::string::npos && text[line] == '\n' && entry.end < text.size() && text[entry.end] == '\n') {
     entry.begin = line + 1;

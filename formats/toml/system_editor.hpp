@@ -9,10 +9,10 @@
 
 namespace bough::toml_files {
 
-/// A table of the file: an entry of a list ([[hinge]]) or a table of its own ([simulation]).
+/// A table of the file: an entry of a list ([[hinge]]) or a single table ([simulation]).
 struct TableItem {
   std::string kind;               ///< "hinge", "simulation", "body.load"
-  int number = 0;                 ///< from 1 in its list; 0 for a table of its own
+  int number = 0;                 ///< from 1 in its list; 0 for a single table
   std::string name;               ///< may be empty
   std::string type;               ///< may be empty
   std::vector<std::string> keys;  ///< its own, in alphabetical order
@@ -42,7 +42,7 @@ std::string get_value_text(const std::string& text, const std::string& path);
 std::string set_value(std::string& text, const std::string& path, const std::string& value);
 /// Removes the key with its line, or the table with its lines.
 std::string remove_path(std::string& text, const std::string& path);
-/// A new entry of a list, behind the last one, or a table of its own; values are TOML text.
+/// A new entry of a list, after the last one, or a single table; values are TOML text.
 std::string add_item(std::string& text, const std::string& kind, bool is_list, const KeyValues& values);
 /// A second entry like this one under another name.
 std::string copy_item(std::string& text, const TableItem& item, const std::string& name);

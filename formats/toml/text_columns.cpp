@@ -35,7 +35,7 @@ std::vector<std::string> split(const std::string& line) {
 
 /// Names in a heading: with tabs, semicolons or commas, blanks belong to the names ("time (s),thrust (N)").
 std::vector<std::string> split_names(const std::string& line) {
-  std::string bare;  // without what stands in quotation marks
+  std::string bare;  // without the text in quotation marks
   bool is_quoted = false;
   for (const char c : line) {
     is_quoted = is_quoted != (c == '"');
@@ -155,24 +155,24 @@ class Reader {
            find(choice_.y.empty() ? "2" : choice_.y, names, line, y_);
   }
 
-  bool find(const std::string& wanted, const std::vector<std::string>& names, int line, std::size_t& column) {
-    const auto found = std::find(names.begin(), names.end(), wanted);
-    if (found != names.end() && std::count(names.begin(), names.end(), wanted) > 1) {
-      error(line, "several columns are called '" + wanted + "'", "name it by its number, from 1");
+  bool find(const std::string& requested, const std::vector<std::string>& names, int line, std::size_t& column) {
+    const auto found = std::find(names.begin(), names.end(), requested);
+    if (found != names.end() && std::count(names.begin(), names.end(), requested) > 1) {
+      error(line, "several columns are called '" + requested + "'", "name it by its number, from 1");
       return false;
     }
     column = static_cast<std::size_t>(found - names.begin());
     if (found != names.end()) return true;
     char* end = nullptr;
-    const long number = std::strtol(wanted.c_str(), &end, 10);
+    const long number = std::strtol(requested.c_str(), &end, 10);
     if (*end == '\0' && number >= 1 && static_cast<std::size_t>(number) <= count_) {
       column = static_cast<std::size_t>(number) - 1;
       return true;
     }
-    const std::string near = find_nearest(wanted, names);
+    const std::string near = find_nearest(requested, names);
     std::string list;
     for (const auto& name : names) list += (list.empty() ? "" : ", ") + name;
-    error(line, "there is no column '" + wanted + "'",
+    error(line, "there is no column '" + requested + "'",
           !near.empty()   ? "did you mean '" + near + "'?"
           : names.empty() ? "the file has " + std::to_string(count_) + " columns and no heading: give a number"
                           : "its columns are " + list);

@@ -100,7 +100,7 @@ py::tuple reduce(const ReduceCall& call, const py::object& progress) {
         const py::gil_scoped_acquire acquired;
         progress(stage);
       };
-    cli::blame(call.file, [&] {
+    cli::with_file(call.file, [&] {
       body = cli::reduce_body(spec, options, diagnostics).body;
       return 0;
     });

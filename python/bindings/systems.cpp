@@ -199,7 +199,7 @@ class PySystem {
             const py::object answer = progress(p.time, p.end);
             if (py::isinstance<py::bool_>(answer) && !answer.cast<bool>()) stop = true;
           } catch (py::error_already_set& error) {
-            // A call that fails ends the run cleanly and is told after it.
+            // A call that fails ends the run; its exception is raised after the run.
             raised = std::make_unique<py::error_already_set>(std::move(error));
             stop = true;
           }

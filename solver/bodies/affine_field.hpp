@@ -5,9 +5,9 @@
 /// A material point p moves as r = Σ_b A_b f_b(p) + φη, b = 0..3, with functions orthonormal under the mass,
 /// f_0 = 1/√m and f_b = a_b·(p - c)/√e_b (c centre of mass, e_b and a_b principal second moments about it), and
 ///     A(η) = A0 + x,   x = a - Q a aᵀ W,   a = Σ_q B_q ½ηᵀc_qη      (3 x 4 each; all in B)
-/// A0 gives p itself; the B_q span what the K_G1 need. Q, W take a aᵀ out of the second moment A Aᵀ again, so that the
-/// body's inertia is that of second order up to η⁵. A function without mass (a line of masses across itself) is left
-/// out: its column of A is zero.
+/// A0 gives p itself; the B_q span the fields of the K_G1. Q, W remove a aᵀ from the second moment A Aᵀ, so that the
+/// inertia of the body is that of second order up to η⁵. A function without mass (a line of masses across itself) is
+/// left out: its column of A is zero.
 #include <vector>
 
 #include "formats/records/flex_body.hpp"

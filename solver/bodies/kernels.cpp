@@ -28,7 +28,7 @@ template <>
 struct Register<2> {
   using type = Two;
 };
-// Doubles anywhere in memory: compilers differ in what alignment they remember of a vector behind a reference.
+// Doubles at any address: compilers differ in the alignment that they assume of a vector by reference.
 template <int W>
 BOUGH_INLINE typename Register<W>::type load(const double* p) {
   typename Register<W>::type v;
@@ -77,7 +77,7 @@ BOUGH_INLINE void accumulate_rows(const double* A, Index lda, const double* B, I
   for (; i < rows; i += W) accumulate<W, 1, C>(A + i, lda, B, next_k, next_column, num, sign, out + i, ldo);
 }
 
-// Columns j .. j+C-1 of [L; ...] once those before them are taken off; rows from j on, C of them the triangle.
+// Columns j .. j+C-1 of [L; ...], after the update by those before; rows from j on, C of them the triangle.
 template <int W, int C>
 BOUGH_INLINE void factor_panel(double* A, Index ld, Index rows) {
   double inverse[C];

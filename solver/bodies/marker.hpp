@@ -1,5 +1,5 @@
 #pragma once
-/// \file A frame M fixed in a node K of a body B: what hinges hang on, forces act at and sensors look at.
+/// \file A frame M fixed in a node K of a body B, for hinges, forces and sensors.
 ///
 ///     r = r_K + R_BK p_KM, R_BM = R_BK R_KM;   [v; w] = J η̇,   [a; α] = J η̈ + [gamma_v; gamma_w]
 /// all against the frame of B, in B (docs/theory/multibody.md, "Nodes"). J holds -K_G2 η of forces and moments, so that

@@ -65,7 +65,7 @@ bool find_row(const records::ActuatorRecord& r, const System& system, const Tree
   return true;
 }
 
-/// Index of the body; -1: reported, or with errors of its own.
+/// Index of the body; -1: reported, or the body has errors.
 int find_own_body(const records::ActuatorRecord& r, const System& system, SettingsReader& keys) {
   if (!r.hinge.empty()) keys.error("control.unknown-key", "takes no hinge", "its body says where it acts");
   const int body = system.find_body(r.body);

@@ -1,4 +1,4 @@
-// An initial state that closes the loops, and what is said of it.
+// Initial state that closes the loops, and its messages.
 #include <algorithm>
 #include <sstream>
 
@@ -128,10 +128,10 @@ std::string describe_hinges(const Constraint& c, const Tree& tree, const std::ve
       if (std::any_of(c.terms.begin(), c.terms.end(), is_own)) bodies.push_back(b);
     }
   }
-  constexpr size_t kMost = 8;
+  constexpr size_t kMaxListed = 8;
   std::string list;
   for (size_t k = 0; k < bodies.size(); ++k) {
-    if (k == kMost) return list + " and " + std::to_string(bodies.size() - kMost) + " more";
+    if (k == kMaxListed) return list + " and " + std::to_string(bodies.size() - kMaxListed) + " more";
     const TreeBody& tb = tree[bodies[k]];
     list += (list.empty() ? "" : ", ") + quote(tb.hinge_name);
     const AssemblyPriority* grip = grips.data() + tb.u_offset;

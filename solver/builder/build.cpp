@@ -150,11 +150,11 @@ void collect_jump_times(System& system) {
   }
 }
 
-/// Stands for a hinge that could not be made, so that what hangs on it can be looked at.
+/// Replaces a hinge that could not be made, so that the bodies attached to it are checked.
 std::unique_ptr<const Hinge> make_placeholder(records::HingeRecord record) {
-  Diagnostics unheard;
+  Diagnostics ignored;
   record.type = records::HingeType::Fixed;
-  return make_hinge(record, unheard);
+  return make_hinge(record, ignored);
 }
 
 }  // namespace

@@ -88,8 +88,9 @@ struct NodeLoad {
 int find_loaded_node(const std::string& body_name, const Body& body, int id, NodeLoad load, const SourceLocation& where,
                      const std::string& user, Diagnostics& diagnostics);
 
-/// Notes what makes a flexible body hard or impossible to integrate: "system.spanned-hinge" (clamped modes that leave
-/// next to no inertia about the body's own hinge), "system.inconsistent-integrals" (mass integrals of no body).
+/// Notes properties that make a flexible body hard or impossible to integrate: "system.spanned-hinge" (clamped modes
+/// that leave less than 0.1 % of the inertia about the hinge of the body), "system.inconsistent-integrals" (mass
+/// integrals of no body).
 void check_flexible_body(const TreeBody& tb, const records::FlexBody& flex, const records::BodyRecord& record,
                          Diagnostics& diagnostics);
 

@@ -37,10 +37,10 @@ void check_hinge(const TreeBody& tb, const records::BodyRecord& record, Diagnost
   const Eigen::LLT<MatrixXd> modes(x.M_modal.topLeftCorner(n, n));
   if (modes.info() != Eigen::Success || Eigen::LLT<MatrixXd>(rigid).info() != Eigen::Success) return;
   const MatrixXd left = rigid - coupling * modes.solve(coupling.transpose());
-  const double least = Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd>(left, rigid).eigenvalues()[0];
-  if (least > kSpanned) return;
+  const double min_share = Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd>(left, rigid).eigenvalues()[0];
+  if (min_share > kSpanned) return;
   char percent[32];
-  std::snprintf(percent, sizeof percent, "%.2g", 100 * std::max(0.0, least));
+  std::snprintf(percent, sizeof percent, "%.2g", 100 * std::max(0.0, min_share));
   diagnostics.note("system.spanned-hinge", record.at,
                    "the modes of body " + quote(tb.name) + ", clamped at its free hinge " + quote(tb.hinge_name) +
                        ", leave " + percent + " % of the inertia about it: the run takes short steps",

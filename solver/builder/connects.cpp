@@ -119,8 +119,8 @@ class Collector {
     }
     char* end = nullptr;
     const long number = std::strtol(target.port.c_str(), &end, 10);
-    constexpr long kMost = 1000;
-    if (*end != '\0' || number < 1 || number > kMost)
+    constexpr long kMaxInputs = 1000;
+    if (*end != '\0' || number < 1 || number > kMaxInputs)
       return error(r, "names the input '" + target.port + "'", "count its inputs from 1, or name reference or rate");
     const auto index = static_cast<size_t>(number) - 1;
     if (uses.inputs.size() <= index) uses.inputs.resize(index + 1);

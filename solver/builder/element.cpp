@@ -47,7 +47,7 @@ class ElementBuilder {
 
  private:
   static constexpr int kAbsent = -2;
-  /// Tree index, -1: ground, kAbsent: not there (reported) or with errors of its own.
+  /// Tree index, -1: ground, kAbsent: absent (reported) or with errors.
   int find_body(const std::string& name) {
     if (name == "ground") return -1;
     const auto found = context_.order.tree_index.find(name);

@@ -98,7 +98,7 @@ class Builder {
       const records::ControllerRecord* record;
       const ControllerUses* uses;
       std::vector<Wire> wires;  // inputs, then reference and rate
-      bool is_good = true;
+      bool is_wired = true;
     };
     std::vector<Pending> pending;
     for (const auto& r : spec_.controllers) {
@@ -106,11 +106,11 @@ class Builder {
       for (const auto* list : {&p.uses->inputs, &p.uses->reference, &p.uses->rate}) {
         for (const auto& use : *list) {
           Wire wire;
-          p.is_good = sources_.find(use, "controller '" + r.name + "'", wire, diagnostics_) && p.is_good;
+          p.is_wired = sources_.find(use, "controller '" + r.name + "'", wire, diagnostics_) && p.is_wired;
           p.wires.push_back(wire);
         }
       }
-      if (p.is_good) pending.push_back(std::move(p));
+      if (p.is_wired) pending.push_back(std::move(p));
     }
     // Sizes follow the arrows.
     for (bool is_new = true; is_new;) {
@@ -159,7 +159,7 @@ class Builder {
     for (const auto& r : spec_.actuators) {
       const std::string user = "actuator '" + r.name + "'";
       auto block = make_actuator(r, system_, system_.tree, diagnostics_);
-      const int takes = block ? block->sizes.inputs : 0;  // 0: it has failed, and nobody knows
+      const int takes = block ? block->sizes.inputs : 0;  // 0: not known, after an error
       std::vector<Wire> wires;
       const auto use = uses.actuators.find(r.name);
       if (use != uses.actuators.end() && !wire_scalar(use->second, user, takes, wires)) continue;

@@ -12,7 +12,7 @@ struct StateSpace {
 StateSpace make_canonical_form(const Eigen::VectorXd& num, const Eigen::VectorXd& den);
 /// Tustin's bilinear transform, s = 2 (z - 1) / (T (z + 1)).
 StateSpace discretize_bilinear(const StateSpace& continuous, double sample_time);
-/// n times the same beside each other: one a component of a vector.
+/// n equal blocks in parallel: one per component of a vector.
 StateSpace repeat(const StateSpace& one, int n);
 
 }  // namespace bough::solver

@@ -1,5 +1,5 @@
-// Controllers that switch: relay with hysteresis, pulse modulator, selection. The place where they switch is located by
-// the run, as events are; between switches they are smooth.
+// Controllers that switch: relay with hysteresis, pulse modulator, selection. The run locates their switches as it
+// locates events; between switches they are smooth.
 #include <cmath>
 
 #include "solver/control/makers.hpp"
@@ -8,7 +8,7 @@ namespace bough::solver {
 namespace {
 
 /// Memory, one for each component: -1, 0 or 1. Two event functions for each: it leaves its state upwards or downwards.
-class Trigger : public Block {
+class SwitchingBlock : public Block {
  public:
   double on = 0, off = 0;
   bool has_rest = false;  ///< three states: value, 0, -value
@@ -38,7 +38,7 @@ class Trigger : public Block {
   virtual double get_drive(const BlockInput& in, int i) const { return in.u[i]; }
 };
 
-class Relay final : public Trigger {
+class Relay final : public SwitchingBlock {
  public:
   double high = 1, low = 0;
   void calc_outputs(const BlockInput& in, double* y) const override {
@@ -46,8 +46,8 @@ class Relay final : public Trigger {
   }
 };
 
-/// Pulse width and pulse frequency: τ ẋ = K (u - y) - x drives a trigger with rest.
-class Pwpf final : public Trigger {
+/// Pulse width and pulse frequency: τ ẋ = K (u - y) - x drives a switch with three states.
+class Pwpf final : public SwitchingBlock {
  public:
   double gain = 1, lag = 1, value = 1;
   void calc_outputs(const BlockInput& in, double* y) const override {
@@ -79,7 +79,7 @@ class Switch final : public Block {
   void switch_over(const BlockInput&, int function, double* d) const override { d[0] = function == 0 ? 1 : 0; }
 };
 
-void read_levels(SettingsReader& keys, Trigger& t, int n) {
+void read_levels(SettingsReader& keys, SwitchingBlock& t, int n) {
   t.on = keys.get("on");
   t.off = keys.get("off");
   keys.demand(t.off < t.on, "has an off that is not below on", "give off < on: between them it stays as it is");

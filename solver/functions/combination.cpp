@@ -95,7 +95,7 @@ std::unique_ptr<const TimeFunction> make_combination(const records::FunctionReco
       p.error("system.unknown-function", "names function '" + name + "', which does not exist",
               suggest_name(name, names, "declare it"));
     } else {
-      is_valid = is_valid && found->second != nullptr;  // else it has errors of its own
+      is_valid = is_valid && found->second != nullptr;  // else it has errors
       of.push_back(found->second);
     }
   }

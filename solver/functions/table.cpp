@@ -15,25 +15,25 @@ size_t find_interval(const std::vector<double>& x, double t) {
 
 /// Range of the finite numbers, max - min; 0 for a constant with round-off.
 double calc_range(const std::vector<double>& y) {
-  double least = std::numeric_limits<double>::infinity(), most = -least;
+  double min_value = std::numeric_limits<double>::infinity(), max_value = -min_value;
   for (const double v : y) {
     if (!std::isfinite(v)) continue;
-    least = std::min(least, v);
-    most = std::max(most, v);
+    min_value = std::min(min_value, v);
+    max_value = std::max(max_value, v);
   }
-  return most - least > 1e-13 * std::max(std::abs(most), std::abs(least)) ? most - least : 0;
+  return max_value - min_value > 1e-13 * std::max(std::abs(max_value), std::abs(min_value)) ? max_value - min_value : 0;
 }
 
 }  // namespace
 
 std::vector<double> find_mesh_times(const std::vector<double>& x, const std::vector<double>& y) {
   std::vector<double> found;
-  const double least = 0.25 * calc_range(y);
-  if (!(least > 0)) return found;
+  const double min_value = 0.25 * calc_range(y);
+  if (!(min_value > 0)) return found;
   const auto first = std::find_if(y.begin(), y.end(), [](double v) { return std::isfinite(v); });
   double last = *first;
   for (auto i = static_cast<size_t>(first - y.begin()) + 1; i < x.size(); ++i) {
-    if (!(std::abs(y[i] - last) >= least)) continue;
+    if (!(std::abs(y[i] - last) >= min_value)) continue;
     if (found.empty() || found.back() < x[i - 1]) found.push_back(x[i - 1]);
     found.push_back(x[i]);
     last = y[i];
@@ -43,11 +43,11 @@ std::vector<double> find_mesh_times(const std::vector<double>& x, const std::vec
 
 std::vector<double> LinearTable::force_jump_times() const {
   std::vector<double> found = {x_.front()};
-  const double least = 0.01 * calc_range(y_);
+  const double min_value = 0.01 * calc_range(y_);
   for (size_t i = 1; i + 1 < x_.size(); ++i) {
     const double before = x_[i] - x_[i - 1], after = x_[i + 1] - x_[i];
     const double bend = (y_[i + 1] - y_[i]) / after - (y_[i] - y_[i - 1]) / before;
-    if (std::abs(bend) * std::min(before, after) > least) found.push_back(x_[i]);
+    if (std::abs(bend) * std::min(before, after) > min_value) found.push_back(x_[i]);
   }
   found.push_back(x_.back());
   return found;

@@ -32,11 +32,11 @@ class TimeExpression final : public TimeFunction {
   bool has_derivatives() const override { return formulas->size() == 3; }
 };
 
-/// The run in so many parts, at whose ends a formula is looked at.
+/// Number of intervals of the run at whose ends a formula is evaluated.
 constexpr int kLooks = 10'000;
-/// More mesh times are of something that never rests: those alone count that end a rest.
-constexpr size_t kMostMarks = 1000;
-/// A rest is so many times longer than what follows it.
+/// Limit of the mesh times; of more only those at the end of a rest are kept.
+constexpr size_t kMaxMarks = 1000;
+/// Ratio of the length of a rest to that of the interval after it.
 constexpr double kRest = 5;
 
 /// Mesh times of the formula and of its derivatives, found as in a table of its values.
@@ -52,7 +52,7 @@ std::vector<double> find_marks(const TimeExpression& made, const TimeSpan& run) 
   }
   for (size_t d = 0; d < num; ++d) {
     auto marks = bough::solver::find_mesh_times(x, y[d]);
-    if (marks.size() > kMostMarks) {
+    if (marks.size() > kMaxMarks) {
       std::vector<double> ends;
       for (size_t i = 1; i + 1 < marks.size(); ++i)
         if (marks[i] - marks[i - 1] > kRest * (marks[i + 1] - marks[i]))

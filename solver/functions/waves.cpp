@@ -11,7 +11,7 @@ namespace {
 
 using records::FunctionRecord;
 constexpr double kPi = std::numbers::pi;
-constexpr double kMostJumps = 1e6;
+constexpr double kMaxJumps = 1e6;
 
 /// From -a to a over the share `rise` of each period, and back over the rest; 1: it falls at once.
 class Sawtooth final : public TimeFunction {
@@ -53,7 +53,7 @@ class Doublet final : public TimeFunction {
 };
 
 /// offset + amplitude sin(φ(s) + phase), s = t - at in [0, T), offset outside. Linear: φ̇ = ω₀ + (ω₁ - ω₀) s / T;
-/// logarithmic: φ̇ = ω₀ (ω₁ / ω₀)^(s / T), so many octaves a time.
+/// logarithmic: φ̇ = ω₀ (ω₁ / ω₀)^(s / T), a constant number of octaves per time.
 class SweptSine final : public TimeFunction {
  public:
   SweptSine(double amplitude, double from, double to, double at, double duration, double phase, double offset,
@@ -94,7 +94,7 @@ std::unique_ptr<const TimeFunction> make_sawtooth(const TimeSpan& run, FunctionP
                at = p.get("at", 0), offset = p.get("offset", 0);
   p.demand(frequency > 0, "has a frequency_hz that is not positive", "give frequency_hz > 0");
   p.demand(rise > 0 && rise <= 1, "has a rise that is no share of its period", "give 0 < rise <= 1; 0.5 is a triangle");
-  if (const double count = (run.end - run.start) * frequency; !p.failed() && count > kMostJumps) {
+  if (const double count = (run.end - run.start) * frequency; !p.failed() && count > kMaxJumps) {
     std::ostringstream what;
     what << "has " << count << " periods within the run, each of which the integrator stops at";
     p.error("function.bad-value", what.str(), "give a lower frequency_hz, or a sine");

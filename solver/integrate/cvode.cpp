@@ -17,7 +17,7 @@ int call_correction(sunrealtype t, N_Vector y, N_Vector correction, sunrealtype,
   return flag;
 }
 
-/// With the tolerances beside it, which may change between steps; CVODE's own may not.
+/// Weights with tolerances that may change between steps; those of CVODE may not.
 struct WeighedOde : GuardedOde {
   using GuardedOde::GuardedOde;
   double relative = 0;
@@ -64,7 +64,7 @@ class CvodeStepper final : public Integrator {
 
   void set_stop(double t_stop, double left) override {
     t_stop_ = t_stop;
-    ode_.set_latest(left);
+    ode_.set_left_limit(left);
     BOUGH_DEMAND(CVodeSetStopTime(cvode_, t_stop) == CV_SUCCESS);
     // CVODE refuses a smallest step above the largest one.
     double smallest = detail::kSmallestStep * (t_stop - t_);
@@ -73,8 +73,8 @@ class CvodeStepper final : public Integrator {
   }
 
   void step(double) override {
-    // CVODE changes its order only when it changes its step: at the largest step it would stay at the order it came
-    // with, which is 1 where the first step is the largest already. A limit that trembles lets it rise.
+    // CVODE changes its order only when it changes its step. At the largest step it would keep its order, which is 1 if
+    // the first step is the largest already. An alternating limit allows a higher order.
     if (options_.step > 0) CVodeSetMaxStep(cvode_, options_.step * (trembles_ ? 1 : 1 - 1e-6));
     trembles_ = !trembles_;
     last_ = t_;
@@ -139,7 +139,7 @@ class CvodeStepper final : public Integrator {
     check(CVodeSetUserData(cvode_, static_cast<GuardedOde*>(&ode_)));
     check(CVodeSetErrHandlerFn(cvode_, detail::ignore_message, nullptr));
     check(CVodeWFtolerances(cvode_, weigh));
-    check(CVodeSetMaxErrTestFails(cvode_, detail::kMostRejections));
+    check(CVodeSetMaxErrTestFails(cvode_, detail::kMaxRejections));
     if (options_.step > 0) check(CVodeSetMaxStep(cvode_, options_.step));
     if (stiff_) {
       matrix_ = SUNDenseMatrix(ode_.size(), ode_.size(), context_);

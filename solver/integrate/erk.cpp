@@ -11,7 +11,7 @@
 namespace bough::solver {
 namespace {
 
-constexpr double kSafety = 0.9, kMostGrowth = 6, kLeastShare = 0.2;
+constexpr double kSafety = 0.9, kMaxGrowth = 6, kMinGrowth = 0.2;
 constexpr double kAfterFailure = 0.25;  // of the step, where a stage could not be evaluated
 
 class ErkStepper final : public Integrator {
@@ -37,7 +37,7 @@ class ErkStepper final : public Integrator {
   }
 
   void set_stop(double t_stop, double left) override {
-    ode_.set_latest(left);
+    ode_.set_left_limit(left);
     t_stop_ = t_stop;
     smallest_ = detail::kSmallestStep * (t_stop - t_);
     if (options_.step > 0) smallest_ = std::min(smallest_, 1e-3 * options_.step);
@@ -59,20 +59,20 @@ class ErkStepper final : public Integrator {
       const bool is_cut = t_ + h >= t_target - smallest_;
       if (is_cut) h = t_target - t_;
       const double t_end = is_cut ? t_target : t_ + h;
-      const bool is_good = calc_step(t_, t_end, h, true);
-      const double error = is_good ? calc_error() : 0;
-      if (is_good && error <= 1) {
+      const bool is_evaluated = calc_step(t_, t_end, h, true);
+      const double error = is_evaluated ? calc_error() : 0;
+      if (is_evaluated && error <= 1) {
         const double growth = kSafety * std::pow(std::max(error, 1e-16), -1.0 / table_.q);
-        const double next = h * std::clamp(growth, kLeastShare, may_grow ? kMostGrowth : 1.0);
+        const double next = h * std::clamp(growth, kMinGrowth, may_grow ? kMaxGrowth : 1.0);
         h_ = is_cut ? std::max(next, h_) : next;  // what was cut short does not say that the next must be
         return accept(t_end, h);
       }
       may_grow = false;
       ++statistics_.num_rejected;
-      const double shrink = is_good ? kSafety * std::pow(error, -1.0 / table_.q) : kAfterFailure;
-      h *= std::clamp(shrink, kLeastShare, kSafety);
+      const double shrink = is_evaluated ? kSafety * std::pow(error, -1.0 / table_.q) : kAfterFailure;
+      h *= std::clamp(shrink, kMinGrowth, kSafety);
       h_ = h;
-      if (rejected + 1 >= detail::kMostRejections || h < smallest_ || t_ + h == t_) {
+      if (rejected + 1 >= detail::kMaxRejections || h < smallest_ || t_ + h == t_) {
         h_ = 0;
         fail("steps of " + short_number(h) + " err by " + short_number(error) + " tolerances");
       }
@@ -144,12 +144,12 @@ class ErkStepper final : public Integrator {
 
   /// In tolerances; remembers the state that errs most.
   double calc_error() {
-    double sum = 0, most = -1;
+    double sum = 0, max_value = -1;
     for (Eigen::Index i = 0; i < trial_.size(); ++i) {
       const double e = (trial_[i] - other_[i]) / calc_weight(i);
       sum += e * e;
-      if (std::abs(e) > most) {
-        most = std::abs(e);
+      if (std::abs(e) > max_value) {
+        max_value = std::abs(e);
         worst_ = static_cast<int>(i);
       }
     }
@@ -182,8 +182,8 @@ class ErkStepper final : public Integrator {
     h = std::clamp(h, smallest_, std::max(smallest_, t_stop_ - t_));
     stage_ = last_y_ + h * k_.col(0);
     if (ode_.calc(t_ + h, stage_.data(), next_first_.data()) != 0) return h;
-    const double d2 = norm(next_first_ - k_.col(0)) / h, most = std::max(d1, d2);
-    const double other = most <= 1e-15 ? std::max(1e-6, 1e-3 * h) : std::pow(0.01 / most, 1.0 / table_.q);
+    const double d2 = norm(next_first_ - k_.col(0)) / h, max_value = std::max(d1, d2);
+    const double other = max_value <= 1e-15 ? std::max(1e-6, 1e-3 * h) : std::pow(0.01 / max_value, 1.0 / table_.q);
     return std::max(smallest_, std::min(100 * h, other));
   }
 

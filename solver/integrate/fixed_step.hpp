@@ -10,7 +10,7 @@ class FixedStepIntegrator : public Integrator {
   FixedStepIntegrator(Ode& ode, const StepperOptions& options, int order);
 
   void reset(double t, const Eigen::Ref<const VectorXd>& y, double t_stop, double left) override;
-  void set_stop(double, double left) override { ode_.set_latest(left); }
+  void set_stop(double, double left) override { ode_.set_left_limit(left); }
   void step(double t_target) override;
   double time() const override { return t_; }
   double last_time() const override { return last_; }

@@ -1,8 +1,8 @@
 // ROS2 of Verwer, Spee, Blom and Hundsdorfer (SIAM J. Sci. Comput. 20 (1999) 1456): of order 2 whatever matrix A stands
 // for the Jacobian, and L-stable where A is it, with γ = 1 - 1/√2:
 //   (1 - γhA) k = f(t, y),   (1 - γhA) x = f(t + h, y + hk) - 2γhA k,   y⁺ = y + h/2 (k + x)
-// (x is the paper's k2 + 2 k1.) A is what stiffens each body by itself: see HybridSystem::calc_stage. Closed loops
-// stand in both linear systems with their rows of constraints, which makes A the projection of that onto them.
+// (x is the paper's k2 + 2 k1.) A is what stiffens each body by itself: see HybridSystem::calc_stage. The rows
+// of closed constraints are in both linear systems, so that A is projected onto them.
 #include <cmath>
 
 #include "solver/integrate/fixed_step.hpp"

@@ -49,7 +49,7 @@ class Integrator {
   /// At t within the last step, as exactly as the method steps: by its interpolant, or (rk, rk4) by a step to t.
   virtual void calc_state(double t, Eigen::Ref<VectorXd> y) = 0;
   virtual StepStatistics statistics() const = 0;
-  /// Returns true if a step depends on those before it, so that what jumps beside the state needs a restart.
+  /// Returns true if a step depends on those before it: a jump of anything but the state then needs a restart.
   virtual bool has_history() const { return true; }
   /// The absolute tolerance of the last `count` states from the next step on. Nothing where the step is fixed.
   virtual void set_last_tolerances(int /*count*/, double /*tolerance*/) {}

@@ -14,7 +14,7 @@ template <class Action>
 int GuardedOde::guard(double t, double* out, const Action& action) noexcept {
   ++num_evaluations_;
   pending_ = nullptr;
-  const double time = std::min(t, latest_);
+  const double time = std::min(t, left_limit_);
   try {
     Eigen::Map<VectorXd> result(out, ode_.size());
     action(time, result);
@@ -30,7 +30,7 @@ int GuardedOde::guard(double t, double* out, const Action& action) noexcept {
 int GuardedOde::project(double t, double* y) noexcept {
   try {
     Eigen::Map<VectorXd> state(y, ode_.size());
-    ode_.project(std::min(t, latest_), state);
+    ode_.project(std::min(t, left_limit_), state);
     if (state.allFinite()) return 0;
     non_finite_ = true;
     bad_time_ = t;

@@ -20,9 +20,9 @@ class Ode {
   virtual bool has_projection() const { return false; }
   /// Brings y onto what the equations keep at zero. May throw.
   virtual void project(double, Eigen::Ref<VectorXd>) {}
-  /// Takes off a small difference of states what the last projection would take off it. May throw.
+  /// Projects a small difference of states as the last projection would. May throw.
   virtual void project_error(Eigen::Ref<VectorXd>) {}
-  /// One stage of a linearly implicit step, with a matrix A of its own choice in place of ∂f/∂y: solves
+  /// One stage of a linearly implicit step, with a matrix A of the class's choice in place of ∂f/∂y: solves
   /// (1 - γh A) k = f(t, y), or after that one, for the second stage, (1 - γh A) x = f(t, y) - 2γh A k.
   virtual void calc_stage(double /*t*/, const Eigen::Ref<const VectorXd>& /*y*/, double /*gamma_h*/, bool /*is_first*/,
                           Eigen::Ref<VectorXd> /*k*/);
@@ -35,7 +35,7 @@ class GuardedOde {
   explicit GuardedOde(Ode& ode) : ode_(ode) {}
 
   int size() const { return ode_.size(); }
-  void set_latest(double left) { latest_ = left; }
+  void set_left_limit(double left) { left_limit_ = left; }
   /// 0: fine; 1: the derivative is not finite or the equations threw (kept for throw_pending).
   int calc(double t, const double* y, double* y_dot) noexcept;
   bool has_projection() const { return ode_.has_projection(); }
@@ -47,12 +47,11 @@ class GuardedOde {
     pending_ = nullptr;
     non_finite_ = false;
   }
-  /// Rethrows what the equations threw in their last evaluation, if anything: what a trial step threw before one that
-  /// could be evaluated is no cause of anything.
+  /// Rethrows the exception of the last evaluation, if it threw. Exceptions of earlier trial steps are dropped.
   void throw_pending() {
     if (pending_) std::rethrow_exception(std::exchange(pending_, nullptr));
   }
-  /// Since begin_step, last at bad_time().
+  /// Returns true if a derivative since begin_step was not finite; the last of them at bad_time().
   bool was_non_finite() const { return non_finite_; }
   double bad_time() const { return bad_time_; }
   long num_evaluations() const { return num_evaluations_; }
@@ -62,7 +61,7 @@ class GuardedOde {
   int guard(double t, double* result, const Action& action) noexcept;
 
   Ode& ode_;
-  double latest_ = std::numeric_limits<double>::infinity();
+  double left_limit_ = std::numeric_limits<double>::infinity();
   std::exception_ptr pending_;
   bool non_finite_ = false;
   double bad_time_ = 0;

@@ -15,7 +15,7 @@ namespace bough::solver::detail {
 /// t.
 inline constexpr double kSmallestStep = 1e-13;
 /// Rejections of one step by the error test before it counts as stalled: at a kink of a force steps get ever shorter.
-inline constexpr int kMostRejections = 40;
+inline constexpr int kMaxRejections = 40;
 
 class Context {
  public:

@@ -11,7 +11,7 @@
 namespace bough::solver {
 namespace {
 
-constexpr int kMostIterations = 60;
+constexpr int kMaxIterations = 60;
 /// Travel in steps of the plant within which the state found is the one that was meant, stable or not.
 constexpr double kNear = 1;
 
@@ -31,7 +31,7 @@ class Newton {
   explicit Newton(EquilibriumResidual at) : at_(std::move(at)) {}
 
   void solve() {
-    for (; num_iterations_ < kMostIterations; ++num_iterations_) {
+    for (; num_iterations_ < kMaxIterations; ++num_iterations_) {
       linearize();
       const VectorXd step = solve_step(at_);
       const double size = step.size() > 0 ? step.cwiseAbs().maxCoeff() : 0;
@@ -47,7 +47,7 @@ class Newton {
   const EquilibriumResidual& at() const { return at_; }
   int num_iterations() const { return num_iterations_; }
 
-  /// The dof whose u̇ is the largest beside what a small displacement makes of it; -1 where all vanish.
+  /// The dof with the largest u̇ relative to the effect of a small displacement; -1 if all vanish.
   int find_restless() const {
     const VectorXd& residual = at_.residual();
     const double floor = row_scale_.size() > 0 ? 1e-9 * row_scale_.maxCoeff() : 0;
@@ -206,14 +206,14 @@ Newton search(const EquilibriumResidual& start, const SourceLocation& at) {
 
 /// Poles that grow: of what does not only drift.
 void find_unstable(Plant& plant, const SourceLocation& at, Equilibrium& found) {
-  Diagnostics said;
+  Diagnostics ignored_diagnostics;
   LinearizeOptions options;
   options.check = false;
-  const records::LinearModel model = linearize(plant, found.point, options, at, said);
-  // Sampled laws hold what they hold between samples: whether they hold the state, the multipliers tell.
+  const records::LinearModel model = linearize(plant, found.point, options, at, ignored_diagnostics);
+  // Outputs of sampled controllers are constant between samples: stability follows from the characteristic multipliers.
   records::Multipliers m;
   Uncertainty ignored;
-  if (!plant.is_open()) m = calc_multipliers(plant, found.point, model.A, at, said, ignored);
+  if (!plant.is_open()) m = calc_multipliers(plant, found.point, model.A, at, ignored_diagnostics, ignored);
   if (m.period > 0) {
     for (Eigen::Index k = 0; k < m.real.size(); ++k) {
       if (m.imag[k] < 0 || m.decay[k] * m.period <= 1e-6) continue;

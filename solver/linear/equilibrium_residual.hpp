@@ -21,7 +21,7 @@ class EquilibriumResidual {
   std::string name(int row) const;
   /// Rows that may be displaced; m of n.
   const std::vector<int>& free() const { return free_; }
-  /// u̇ (less that of a steady spin), ż, change of the memory a sample time; n.
+  /// u̇ minus that of a steady spin, ż, change of the memory per sample time; n.
   const VectorXd& residual() const { return residual_; }
   /// Round-off of the residual in a steady spin; n.
   VectorXd calc_rounding() const {

@@ -5,7 +5,7 @@
 namespace bough::solver {
 namespace {
 
-constexpr int kMostSteps = 300;
+constexpr int kMaxFlowSteps = 300;
 constexpr double kLongest = 5;   // steps of the plant: half a radian
 constexpr double kShort = 1e-6;  // from there on it is for Newton's method
 
@@ -38,7 +38,7 @@ bool is_stable_rest(const EquilibriumResidual& at) {
 
 EquilibriumResidual follow_gradient_flow(EquilibriumResidual from) {
   EquilibriumResidual at = std::move(from);
-  for (int k = 0; k < kMostSteps; ++k) {
+  for (int k = 0; k < kMaxFlowSteps; ++k) {
     at.linearize();
     const MatrixXd slope = calc_slope(at);
     const VectorXd pull = calc_pull(at);

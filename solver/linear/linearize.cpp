@@ -24,7 +24,7 @@ using records::LinearModel;
 
 /// The second step, for comparison; no power of two of the first.
 constexpr double kOtherStep = 0.7;
-/// A and C that are known worse than this, relative to their rows, are told.
+/// Error of A and C, relative to their rows, above which a warning is issued.
 constexpr double kInaccurate = 1e-4;
 /// Steps of displacement within the time of the slowest motion: a system that moves less than that is at rest.
 constexpr double kAtRest = 1e-6;
@@ -47,8 +47,8 @@ std::vector<std::string> get_row_dims(const Plant& plant) {
   return dims;
 }
 
-/// An output that is a difference of large and equal terms has nothing but their rounding in its rows: all rows with
-/// its dimensions are below their errors, and nothing beside the others. Columns count by their steps.
+/// Clears the rows of an output that is a difference of large and equal terms: all rows with its dimensions are below
+/// their errors, and negligible to the others. Columns are weighted by their steps.
 void clear_rounding(const Plant& plant, const VectorXd& step, Jacobian& jacobian) {
   const int n = plant.num_dofs() + plant.num_states();
   const auto calc_size = [&step](const MatrixXd& rows) -> VectorXd {
@@ -59,13 +59,13 @@ void clear_rounding(const Plant& plant, const VectorXd& step, Jacobian& jacobian
   const auto dims = get_row_dims(plant);
   std::map<std::string, std::pair<double, double>> largest;
   for (Eigen::Index i = n; i < value.size(); ++i) {
-    auto& [most, least_known] = largest[dims[static_cast<size_t>(i)]];
-    most = std::max(most, value[i]);
+    auto& [max_value, least_known] = largest[dims[static_cast<size_t>(i)]];
+    max_value = std::max(max_value, value[i]);
     least_known = std::max(least_known, error[i]);
   }
   for (Eigen::Index i = n; i < value.size(); ++i) {
-    const auto& [most, least_known] = largest[dims[static_cast<size_t>(i)]];
-    if (most > least_known || least_known > 1e-9 * value.maxCoeff()) continue;
+    const auto& [max_value, least_known] = largest[dims[static_cast<size_t>(i)]];
+    if (max_value > least_known || least_known > 1e-9 * value.maxCoeff()) continue;
     jacobian.value.row(i).setZero();
     jacobian.error.row(i).setZero();
     jacobian.kink.row(i).setZero();
@@ -92,8 +92,8 @@ VectorXd calc_row_scales(const MatrixXd& value, const std::vector<std::string>& 
   VectorXd scale = solver::calc_row_scales(value);
   std::map<std::string, double> largest;
   for (Eigen::Index i = 0; i < scale.size(); ++i) {
-    double& most = largest[dims[static_cast<size_t>(i)]];
-    most = std::max(most, scale[i]);
+    double& max_value = largest[dims[static_cast<size_t>(i)]];
+    max_value = std::max(max_value, scale[i]);
   }
   for (Eigen::Index i = 0; i < scale.size(); ++i)
     scale[i] = std::max(scale[i], 1e-3 * largest[dims[static_cast<size_t>(i)]]);
@@ -101,7 +101,7 @@ VectorXd calc_row_scales(const MatrixXd& value, const std::vector<std::string>& 
 }
 
 /// The column of a force is exact, f being affine in it: f(value) - f(0), with a value that brings out the difference.
-/// Commands and signals may pass limits and friction: their columns are differences, with an error of their own.
+/// Commands and signals may pass limits and friction: their columns are differences, with an error estimate.
 VectorXd calc_input_column(Plant& plant, const OperatingPoint& point, const PlantInput& input, const VectorXd& base,
                            Uncertainty& uncertainty) {
   if (input.actuator >= 0 || input.signal >= 0) {  // limits, a dead band and friction are not affine
@@ -165,7 +165,7 @@ void open_cut(LinearModel& model, const std::string& name) {
   for (auto& output : model.outputs.name) output += ":return";
 }
 
-/// At rest or in a steady motion u̇ is small beside what small displacements make of it.
+/// Notes a point that is neither at rest nor in steady motion: u̇ is larger than the effect of small displacements.
 void note_unsteady(Plant& plant, const VectorXd& u_dot, const MatrixXd& A_lower, const SourceLocation& at,
                    Diagnostics& diagnostics) {
   const int n = plant.num_dofs();
@@ -244,11 +244,11 @@ void warn_of_inaccurate(const Uncertainty& uncertainty, double difference, const
                           : "the model has the mean of both slopes: linearize on one side, or use a smooth law");
 }
 
-/// Soft poles beside stiff ones: A is known to its largest entries, they are made of small differences of these.
+/// Warns of ill-conditioned poles: soft poles follow from small differences of the largest entries of A.
 void warn_of_uncertain(const records::Poles& poles, const SourceLocation& at, Diagnostics& diagnostics) {
   constexpr double kUncertain = 1e-4;
   int number = 0, worst = 0;
-  double most = 0, least_known = std::numeric_limits<double>::infinity();
+  double max_value = 0, least_known = std::numeric_limits<double>::infinity();
   const auto calc_size = [&](int i) { return std::hypot(poles.real[i], poles.imag[i]); };
   for (int i = 0; i < poles.size(); ++i)
     if (calc_size(i) > records::calc_origin_radius(poles, i)) least_known = std::min(least_known, calc_size(i));
@@ -258,13 +258,13 @@ void warn_of_uncertain(const records::Poles& poles, const SourceLocation& at, Di
     // Zero within its error, as of free motion, and far below all others.
     if (size <= records::calc_origin_radius(poles, i) && poles.error[i] <= kUncertain * least_known) continue;
     ++number;
-    if (poles.error[i] > most * size) most = poles.error[i] / size, worst = i;
+    if (poles.error[i] > max_value * size) max_value = poles.error[i] / size, worst = i;
   }
   if (number == 0) return;
   diagnostics.warning("linear.uncertain-poles", at,
                       std::to_string(number) + (number == 1 ? " pole is" : " poles are") +
                           " known to less than four digits, worst of all number " + std::to_string(worst + 1) + " (" +
-                          poles.mode[static_cast<std::size_t>(worst)] + "), to " + brief_text(100 * most) + " %",
+                          poles.mode[static_cast<std::size_t>(worst)] + "), to " + brief_text(100 * max_value) + " %",
                       "they are soft beside the stiffest, or nearly multiple: lock or leave out what is stiffest");
 }
 

@@ -28,7 +28,7 @@ bool is_angle(const TreeBody& tb, int coordinate) {
 
 Plant::Plant(const System& system, bool is_open)
     : system_(system), data_(system.make_data()), tangents_(std::make_unique<LawTangents>()), is_open_(is_open) {
-  add_freedoms();
+  add_dofs();
   BOUGH_DEMAND(num_dofs() == system.num_dofs());
   t_ = system.start;
   for (const auto& p : system.signals.places) {
@@ -43,7 +43,7 @@ Plant::Plant(const System& system, bool is_open)
   choose_independent(start.t, start.q);
 }
 
-void Plant::add_freedoms() {
+void Plant::add_dofs() {
   for (int b = 0; b < system_.num_bodies(); ++b) {
     add_hinge(b);
     add_modes(b);
@@ -61,7 +61,7 @@ void Plant::set_modes(const DiscreteState& discrete, double t, const VectorXd& q
   grip_.clear();
   inputs_.clear();
   outputs_ = {};
-  add_freedoms();
+  add_dofs();
   add_inputs();
   add_outputs();
   choose_independent(t, q);

@@ -172,7 +172,7 @@ class Plant {
   // Loops (plant_loops.cpp)
   bool has_loops() const { return !grip_.empty(); }
   void choose_independent(double t, const VectorXd& q);
-  void add_freedoms();
+  void add_dofs();
   MatrixXd calc_follow(const OperatingPoint& point) const;
   void close_positions(VectorXd& q) const;
 

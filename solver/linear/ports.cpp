@@ -26,10 +26,10 @@ int find_counted(const std::string& name, const std::vector<std::string>& known)
 }
 
 /// Index of each wanted name; a name before ":" stands for all of its components.
-std::vector<int> choose(const std::vector<std::string>& wanted, const std::vector<std::string>& known,
+std::vector<int> choose(const std::vector<std::string>& requested, const std::vector<std::string>& known,
                         const std::string& noun, const char* id, const SourceLocation& at, Diagnostics& diagnostics) {
   std::vector<int> chosen;
-  for (const auto& name : wanted) {
+  for (const auto& name : requested) {
     auto found = list_components(name, known);
     for (size_t i = 0; i < known.size(); ++i)
       if (known[i] == name) found.push_back(static_cast<int>(i));
@@ -76,15 +76,15 @@ Ports choose_ports(const Plant& plant, const LinearizeOptions& options, const So
   else
     ports.outputs = choose(options.outputs, plant.outputs().name, "output", "linear.unknown-output", at, diagnostics);
   diagnostics.throw_if_errors();
-  std::string said;
+  std::string warned;
   for (const int i : ports.outputs) {
     const std::string law = plant.find_frozen_law(i);
-    if (law.empty() || law == said) continue;
+    if (law.empty() || law == warned) continue;
     diagnostics.warning("linear.open-controller", at,
                         "--open: the states of controller '" + law + "' are left out, so that its output '" +
                             plant.outputs().name[static_cast<size_t>(i)] + "' is only what it does at once",
                         "leave --open out, or take outputs of sensors and commands of actuators");
-    said = law;
+    warned = law;
   }
   return ports;
 }

@@ -5,8 +5,8 @@
 
 namespace bough::solver {
 
-/// From sample to sample of the signal behind the cut: ξ = [x; m; d], taken just before it changes, with d what is
-/// added to it from one change to the next, and y what comes back at the change, all loops closed. Between samples
+/// Model from sample to sample of the signal after the cut: ξ = [x; m; d], taken just before it changes, with d the
+/// addition to it from one change to the next, and y the return at the change, all loops closed. Between samples
 /// ẋ = A x + E m + b d by the matrix exponential, at samples by differences (sampled.hpp), their errors in
 /// `uncertainty`; queues are renumbered after each period, which makes the map the same for all. If other samples do
 /// not repeat within one of the cut's, the model is lifted: N inputs and outputs, the values at the cut within the

@@ -6,7 +6,7 @@
 namespace bough::solver {
 namespace {
 
-constexpr int kMostSamples = 1000;
+constexpr int kMaxSamples = 1000;
 
 void add_kinks(const std::vector<LawKink>& some, std::vector<LawKink>& all) {
   for (const LawKink& kink : some) {
@@ -19,11 +19,11 @@ void add_kinks(const std::vector<LawKink>& some, std::vector<LawKink>& all) {
 
 double find_common_period(const std::vector<double>& cycles) {
   const double longest = *std::max_element(cycles.begin(), cycles.end());
-  for (int k = 1; k <= kMostSamples; ++k) {
+  for (int k = 1; k <= kMaxSamples; ++k) {
     const double period = k * longest;
     if (std::all_of(cycles.begin(), cycles.end(), [&](double cycle) {
           const double times = period / cycle;
-          return times < kMostSamples && std::abs(times - std::round(times)) < 1e-9 * times;
+          return times < kMaxSamples && std::abs(times - std::round(times)) < 1e-9 * times;
         }))
       return period;
   }
@@ -42,7 +42,7 @@ std::vector<double> list_instants(const std::vector<SampleTimes>& samples, doubl
     }
   }
   std::sort(instants.begin(), instants.end());
-  const auto is_same = [&](double a, double b) { return std::abs(a - b) < 1e-9 * period / kMostSamples; };
+  const auto is_same = [&](double a, double b) { return std::abs(a - b) < 1e-9 * period / kMaxSamples; };
   instants.erase(std::unique(instants.begin(), instants.end(), is_same), instants.end());
   return instants;
 }

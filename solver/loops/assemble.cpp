@@ -9,7 +9,7 @@ namespace bough::solver {
 namespace {
 
 constexpr double kClosed = 1e-12;
-constexpr int kMostSteps = 100, kMostStarts = 24;
+constexpr int kMaxSteps = 100, kMaxStarts = 24;
 constexpr double kDependent = 1e-8;  // of the largest singular value
 /// Factor between the costs of two priorities: a coordinate of the higher one moves only if the others cannot close.
 constexpr double kPreference = 1e5;
@@ -93,7 +93,7 @@ class Positions {
   /// size: of steps; weight: as weigh gives it.
   bool solve(const VectorXd& size, const VectorXd& weight, VectorXd& q) {
     double gap = calc(q);
-    for (int i = 0; i < kMostSteps && gap > 1e-15; ++i) {
+    for (int i = 0; i < kMaxSteps && gap > 1e-15; ++i) {
       const MatrixXd G = calc_dense_rows(loops_, tree_, tree_data_, data_);
       const VectorXd step = solve_least(G, weight, -get_gaps(loops_, data_));
       double largest = 0;  // in step sizes
@@ -140,18 +140,18 @@ Assembly assemble_positions(const Loops& loops, const Tree& tree, double t,
   const LoopData start = data;
   Assembly found;
   VectorXd best = given;
-  double least = positions.calc(given);
+  double min_gap = positions.calc(given);
   std::mt19937 engine(1);
   std::uniform_real_distribution<double> any(-1, 1);
   // A stretched mechanism does not know to which side to bend: the later starts are off a little, then more.
-  for (int k = 0; k < kMostStarts && !found.is_closed; ++k) {
+  for (int k = 0; k < kMaxStarts && !found.is_closed; ++k) {
     for (const AssemblyPriority last : {AssemblyPriority::Free, AssemblyPriority::Given, AssemblyPriority::Modal}) {
       if (k > 0 && last == AssemblyPriority::Modal) continue;
       const VectorXd size = mask(sizes, priority, last);
       data = start;
       VectorXd trial = given;
       if (k > 0) {
-        const double off = 2.0 * k / kMostStarts;
+        const double off = 2.0 * k / kMaxStarts;
         const VectorXd step =
             VectorXd::NullaryExpr(size.size(), [&](Eigen::Index r) { return off * any(engine) * size[r]; });
         displace(tree, mask(step, priority, AssemblyPriority::Given), trial);
@@ -159,8 +159,8 @@ Assembly assemble_positions(const Loops& loops, const Tree& tree, double t,
       }
       found.is_closed = positions.solve(size, weigh(sizes, priority, last), trial);
       const double gap = positions.calc(trial);
-      if (gap < least || found.is_closed) {
-        least = gap;
+      if (gap < min_gap || found.is_closed) {
+        min_gap = gap;
         best = trial;
       }
       if (found.is_closed) break;

@@ -8,7 +8,7 @@ namespace bough::solver {
 namespace {
 
 using Columns = Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::ColMajor, 6, 6>;
-constexpr int kMostFits = 50;
+constexpr int kMaxFits = 50;
 
 Vector3d calc_log(const Matrix3d& R) {
   const Eigen::AngleAxisd turn(R);
@@ -82,7 +82,7 @@ class HingeClosure final : public Closure {
   void fit(const Matrix3d& R, const Vector3d& p, double* q, ClosureMotion& m) const {
     const int nu = hinge_->num_u();
     double last = 0;
-    for (int i = 0; i < kMostFits; ++i) {
+    for (int i = 0; i < kMaxFits; ++i) {
       m.hinge = HingeMotion();
       hinge_->calc_position(q, m.hinge);
       if (nu == 0) return;

@@ -53,7 +53,7 @@ void finish_loops(const Tree& tree, Loops& loops) {
     c.roots.assign(roots.begin(), roots.end());
     double mass = 0;
     for (const int b : c.path) mass += tree[b].body.mass();
-    c.least = mass > 0 ? 1 / mass : 0;
+    c.mobility = mass > 0 ? 1 / mass : 0;
   }
 }
 

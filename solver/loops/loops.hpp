@@ -5,7 +5,7 @@
 /// the factored tree answers to it. With a the accelerations of the open tree
 ///     (G M⁻¹ Gᵀ) λ = γ - G a,   u̇ = a + M⁻¹ Gᵀ λ
 /// by blocks of constraints that share trees rooted at ground, each sparse by who shares one; least-norm λ where
-/// constraints depend on each other. Rows along which next to nothing can move are void (change points).
+/// constraints depend on each other. Rows with a pivot below 1e-10 of the largest are void (change points).
 #include "solver/loops/closure.hpp"
 #include "solver/loops/relative.hpp"
 #include "solver/loops/semidefinite.hpp"
@@ -27,7 +27,7 @@ struct Constraint {
   double offset = 0;
   bool active = true;       ///< at the start
   double coupled_size = 0;  ///< coupler: sum of squared ratios, of angles over the square of Loops::length
-  double least = 0;         ///< acceleration of all on its path by a unit force
+  double mobility = 0;      ///< [1/M] acceleration of all bodies on its path by a unit force
   std::vector<int> path;    ///< bodies it acts on and those between them and ground, ascending
   std::vector<int> roots;   ///< of the trees they belong to
 
@@ -94,11 +94,11 @@ double calc_largest_position_error(const Loops& loops, const LoopData& data, int
 /// After solve: u̇ with the constraints, by their multipliers and a second solve. Does nothing where none is closed. No
 /// allocation.
 void close_loops(const Loops& loops, const Tree& tree, TreeData& tree_data, LoopData& data, Eigen::Ref<VectorXd> u_dot);
-/// q and u brought to G(q) = 0, G u = 0 at t in the metric of M: what is taken off is M⁻¹Gᵀ times something. Leaves
+/// Projects q and u onto G(q) = 0, G u = 0 at t in the metric of M: the corrections are in the range of M⁻¹Gᵀ. Leaves
 /// tree_data at (t, q, u), factored. No allocation.
 void project(const Loops& loops, const Tree& tree, double t, Eigen::Ref<VectorXd> q, Eigen::Ref<VectorXd> u,
              TreeData& tree_data, LoopData& data);
-/// Takes off du (num_u) what a projection would: M⁻¹Gᵀ(G M⁻¹Gᵀ)⁺G du, by the factors of the last project or
+/// Projects du (num_u): subtracts M⁻¹Gᵀ(G M⁻¹Gᵀ)⁺G du, by the factors of the last project or
 /// factor_loops. No allocation.
 void remove_normal(const Loops& loops, const Tree& tree, TreeData& tree_data, LoopData& data, Eigen::Ref<VectorXd> du);
 /// G M⁻¹ Gᵀ of every block. After calc_closure_positions and calc_factor. No allocation.

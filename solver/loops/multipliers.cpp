@@ -10,7 +10,7 @@ namespace bough::solver {
 
 namespace {
 
-constexpr int kMostProjections = 6;
+constexpr int kMaxProjections = 6;
 constexpr double kClosed = 1e-14;
 /// Smallest pivot of a row, relative to the largest of its constraint. Near a change point a row moves in proportion to
 /// the square of the distance θ from it, and round-off of the position error makes an acceleration of 1e-15/θ³: at
@@ -53,9 +53,10 @@ double calc_size(const Loops& loops, const Constraint& c, const ConstraintData& 
 // left out.
 void drop_void_rows(const Loops& loops, const Constraint& c, const ConstraintData& d, int first, const MatrixXd& A,
                     SemidefiniteFactor& factor) {
-  double most = c.least;
-  for (int k = 0; k < c.num_rows(); ++k) most = std::max(most, A(k, k) / calc_size(loops, c, d, k));
-  for (int k = 0; k < c.num_rows(); ++k) factor.set_void(first + k, A(k, k) < kVoid * most * calc_size(loops, c, d, k));
+  double max_mobility = c.mobility;
+  for (int k = 0; k < c.num_rows(); ++k) max_mobility = std::max(max_mobility, A(k, k) / calc_size(loops, c, d, k));
+  for (int k = 0; k < c.num_rows(); ++k)
+    factor.set_void(first + k, A(k, k) < kVoid * max_mobility * calc_size(loops, c, d, k));
 }
 
 // A of a block, column by column: what a unit row does to the rows that share a tree with it.
@@ -212,7 +213,7 @@ void project(const Loops& loops, const Tree& tree, double t, Eigen::Ref<VectorXd
   calc_position(tree, t, q, tree_data);
   calc_closure_positions(loops, tree, tree_data, data);
   double gap = calc_largest_position_error(loops, data);
-  for (int i = 0; i < kMostProjections && gap > kClosed; ++i) {
+  for (int i = 0; i < kMaxProjections && gap > kClosed; ++i) {
     calc_factor(tree, tree_data);
     solve_gaps(loops, tree, tree_data, data, false);
     Sweep& s = start_response(tree_data);

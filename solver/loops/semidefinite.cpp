@@ -168,7 +168,7 @@ void SemidefiniteFactor::eliminate(Front& front) {
     for (Eigen::Index i = k + 1; i < n; ++i) {
       if (F(i, i) > F(pivot, pivot)) pivot = i;
     }
-    if (!(F(pivot, pivot) > kLeastShare)) break;
+    if (!(F(pivot, pivot) > kMinPivot)) break;
     if (pivot != k) {  // exchange rows and columns of the lower triangle
       std::swap(front.rows[static_cast<size_t>(k)], front.rows[static_cast<size_t>(pivot)]);
       for (Eigen::Index j = 0; j < k; ++j) std::swap(F(k, j), F(pivot, j));

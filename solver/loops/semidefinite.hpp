@@ -13,11 +13,11 @@ using Eigen::VectorXd;
 /// Multifrontal Cholesky factorization (Duff & Reid, ACM TOMS 9 (1983) 302) of A scaled to a unit diagonal, by blocks
 /// of rows: in each front pivots are taken by size (Higham, "Accuracy and Stability of Numerical Algorithms", 10.3).
 /// Where all blocks meet there is one front, and pivoting is complete; a chain of blocks costs their number. Rows whose
-/// pivot is no more than kLeastShare of their diagonal depend on the others. The solution is the one of least norm and
+/// pivot is no more than kMinPivot of their diagonal depend on the others. The solution is the one of least norm and
 /// least squares in the scaled unknowns and rows.
 class SemidefiniteFactor {
  public:
-  static constexpr double kLeastShare = 1e-10;
+  static constexpr double kMinPivot = 1e-10;
 
   /// Block i >= block j of A, rows of i by rows of j; on the diagonal the lower triangle is read.
   struct Pair {

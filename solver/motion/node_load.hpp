@@ -12,7 +12,7 @@ struct NodeSource {
   int node = 0;                         ///< index into Body::nodes()
   int hinge = -1;                       ///< the body whose inboard hinge it is
   int constraint = -1;                  ///< no coupler
-  bool is_parent = false;               ///< the node carries that hinge or constraint, else it hangs on it
+  bool is_parent = false;               ///< the node is on the parent's side of it
   const AppliedForce* force = nullptr;  ///< with a function, or constant
 };
 

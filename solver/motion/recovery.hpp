@@ -2,8 +2,8 @@
 /// \file Forces and stresses of elements of a flexible body in motion (docs/theory/recovery.md).
 ///
 /// Rows = offset + matrix η + inertial (A_I - A_I of the preload) + Σ external f: A_I as the body's origin moves, less
-/// gravity; f of hinges, constraints, [[force]]s without a type and load patterns at the body's locators. What the rows
-/// mean the body's file says; here they have names.
+/// gravity; f of hinges, constraints, [[force]]s without a type and load patterns at the body's locators. The
+/// meaning of the rows is in the body's file; here they have names.
 #include <array>
 
 #include "formats/records/flex_body.hpp"

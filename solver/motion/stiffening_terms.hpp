@@ -19,7 +19,7 @@ class StiffeningTerms {
 
   int num_loads() const { return 12 + 6 * static_cast<int>(sources_.size()); }
   bool has_hinges() const;
-  /// A_I less gravity (12), then of each source force and moment at its node in B, or the value of a pattern and five
+  /// A_I minus gravity (12), then of each source force and moment at its node in B, or the value of a pattern and five
   /// zeros; y: num_loads. After calc_accelerations. No allocation.
   void calc_loads(const Motion& motion, double* y) const;
   /// modal -= K_G(y) η. No allocation.

@@ -2,7 +2,7 @@
 /// \file Sensors: [[sensor]] of a system file, resolved once and evaluated without allocation.
 ///
 /// K is the node, B its body, A the body of relative_to (W without), F the frame of components (W for "inertial", B for
-/// "body", else the named body). p, v, a, ω, α are of K in W, less those of Ao where marked Δ; all are given in F.
+/// "body", else the named body). p, v, a, ω, α are of K in W, minus those of Ao if marked Δ; all components in F.
 ///
 ///   type                   observer = "turning": as A sees it           observer = "fixed"
 ///   position               Δp                                           Δp

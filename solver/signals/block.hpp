@@ -1,6 +1,6 @@
 #pragma once
 /// \file One block of the signal graph: sensors, controllers, actuators, functions. The calls are those of the C
-/// interface for controllers of the user (solver/control/bough_controller.h); a Block keeps no state of its own.
+/// interface for controllers of the user (solver/control/bough_controller.h); a Block has no state.
 #include <memory>
 #include <string>
 #include <vector>

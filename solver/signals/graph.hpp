@@ -35,7 +35,7 @@ struct SignalData {
   VectorXd memory;  ///< what blocks keep between samples, and what is held or on its way
   VectorXd inputs, scratch, fresh;
   std::vector<std::shared_ptr<BlockScratch>> block_scratch;  ///< of each block, in the order of places
-  /// Linear models: more on each actuator's command; with is_open that is all, beside what is held here.
+  /// For linear models: addition to the command of each actuator; with is_open, the command is that and the one held.
   VectorXd bias, command;
   bool is_open = false;
   VectorXd shift;                      ///< likewise: more on each value, as all that read it see it; empty: none
@@ -68,7 +68,7 @@ class SignalGraph {
   void calc_after_acceleration(const Motion& motion, SignalData& signals) const;
   /// The blocks that calc_before_acceleration and calc_after_acceleration have left out. After accelerations.
   void calc_all(const Motion& motion, SignalData& signals) const;
-  /// After calc_all: one sensor as linear models see it; y: its outputs.
+  /// After calc_all: outputs y of one sensor for linear models.
   void calc_ideal(const BlockSlot& place, const Motion& motion, SignalData& signals, double* y) const;
   void add_loads(const Motion& motion, const SignalData& signals, TreeData& data) const;
   /// After calc_after_acceleration. z_dot: num_states.
@@ -84,8 +84,8 @@ class SignalGraph {
   }
   /// Instants of all sampled blocks, each kind once.
   std::vector<SampleTimes> collect_samples() const;
-  /// Takes the samples due within `close` of data's time, after calc_all there: each block sees what those before it in
-  /// the order give at this instant, and the accelerations before it. True when what the motion needs has changed.
+  /// Takes the samples due within `close` of data's time, after calc_all there: each block reads the outputs of those
+  /// before it in the order at this instant, and the accelerations before it. True if the motion has changed.
   bool sample(const Motion& motion, SignalData& signals, double close) const;
   /// After calc_all: one sample of every sampled block whatever the time, nothing delayed, sensors without noise.
   void sample_all(const Motion& motion, SignalData& signals) const;

@@ -8,8 +8,8 @@
 namespace bough::solver {
 namespace {
 
-/// Steps that take longer than anybody waits, whatever the system.
-constexpr double kMostSteps = 1e11;
+/// Limit of the number of steps, for any system.
+constexpr double kMaxSteps = 1e11;
 
 bool check_simulation(const records::SimulationRecord& s, Diagnostics& diagnostics) {
   const int errors = diagnostics.num_errors();
@@ -36,15 +36,15 @@ bool check_simulation(const records::SimulationRecord& s, Diagnostics& diagnosti
   const bool good_step = demand(std::isfinite(s.step) && s.step >= 0, "step is not a positive number", "give step > 0");
   const bool is_fixed = s.integrator == "rk4" || s.integrator == "implicit";
   demand(!is_fixed || s.step > 0, s.integrator + " has no step", "give step = SECONDS in [simulation]");
-  demand(!(good && good_step && s.step > 0 && s.duration / s.step > kMostSteps), "step asks for more than 1e11 steps",
+  demand(!(good && good_step && s.step > 0 && s.duration / s.step > kMaxSteps), "step asks for more than 1e11 steps",
          is_fixed ? "give a longer step" : "give a longer largest step, or leave it out");
   // Time has to advance in steps much shorter than what is asked for.
-  const double asked = s.output_step > 0 ? s.output_step : s.duration / 1000;
+  const double interval = s.output_step > 0 ? s.output_step : s.duration / 1000;
   const double finest =
       std::numeric_limits<double>::epsilon() * std::max(std::abs(s.start), std::abs(s.start + s.duration));
   std::ostringstream far;
-  far << "start = " << s.start << " is too far from zero: times there are " << finest << " apart, samples " << asked;
-  demand(!good || 1e3 * finest < asked, far.str(), "count time from a nearer start");
+  far << "start = " << s.start << " is too far from zero: times there are " << finest << " apart, samples " << interval;
+  demand(!good || 1e3 * finest < interval, far.str(), "count time from a nearer start");
   if (!is_fixed) {
     demand(s.relative_tolerance > 0 && s.relative_tolerance < 1, "relative_tolerance is not between 0 and 1",
            "give 1e-6 to 1e-12");

@@ -10,7 +10,7 @@ namespace bough::solver {
 /// far: where the inertial origin lies does not enter. A breach of the balance that is later made good stays on record.
 class EnergyMonitor {
  public:
-  /// `noise`: energy below which nothing is said, that of motions as small as the absolute tolerance.
+  /// `noise`: energy below which nothing is reported, that of motions as small as the absolute tolerance.
   void start(const Energies& e, double noise) {
     start_ = e.kinetic + e.strain + e.potential;
     potential_ = e.potential;

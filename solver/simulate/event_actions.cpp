@@ -11,10 +11,10 @@ namespace {
 using records::EventAction;
 
 template <class Name>
-std::string find_near(const std::string& wanted, int count, const Name& get_name) {
+std::string find_near(const std::string& requested, int count, const Name& get_name) {
   std::vector<std::string> names;
   for (int i = 0; i < count; ++i) names.push_back(get_name(i));
-  return suggest_name(wanted, names, "declare it");
+  return suggest_name(requested, names, "declare it");
 }
 
 void report(const records::UserEventRecord& r, const char* id, const std::string& what, const std::string& advice,

@@ -6,13 +6,13 @@
 
 namespace bough::solver {
 namespace {
-/// Switches at one moment, beyond which they will not end.
-constexpr int kMostSwitches = 100;
-/// So many switches of one block within this share of the run are no regular working of it.
-constexpr int kManySwitches = 500;
+/// Limit of the switches at one time; more do not end.
+constexpr int kMaxSwitches = 100;
+/// A block chatters if it switches this often within this share of the run.
+constexpr int kChatterSwitches = 500;
 constexpr double kShortTime = 1e-2;
-/// Lags behind lags at the start: as many passes as there are in a row.
-constexpr int kMostLags = 50;
+/// Passes over lags in series at the start.
+constexpr int kMaxLags = 50;
 }  // namespace
 
 void Run::take_samples(double t) {
@@ -33,7 +33,7 @@ void Run::initialize_lags(double t) {
   const SignalGraph& signals = ode_.system().signals;
   if (signals.num_states == 0) return;
   VectorXd before;
-  for (int i = 0; i < kMostLags; ++i) {
+  for (int i = 0; i < kMaxLags; ++i) {
     bool is_done = true;
     evaluate(t, true);
     guard([&] {
@@ -50,7 +50,7 @@ void Run::iterate_switches(double t) {
   const SignalGraph& signals = ode_.system().signals;
   if (signals.num_event_functions == 0) return;
   std::string what;
-  for (int i = 0; i < kMostSwitches; ++i) {
+  for (int i = 0; i < kMaxSwitches; ++i) {
     bool is_open = false;
     calc_switches(t);
     guard([&] {
@@ -70,14 +70,14 @@ void Run::count_switch(const std::string& label, double t) {
   Switching& s = switching_[label];
   const double window = kShortTime * (time_events_.end() - time_events_.start());
   if (s.count++ == 0) s.since = t;
-  if (s.count < kManySwitches) return;
+  if (s.count < kChatterSwitches) return;
   s.count = 0;
   if (s.is_told || t - s.since > window) return;
   s.is_told = true;
   const auto& places = ode_.system().signals.places;
   const auto place = std::find_if(places.begin(), places.end(), [&](const auto& p) { return p.block->label == label; });
   diagnostics_.warning("control.sliding", place == places.end() ? SourceLocation{} : place->block->at,
-                       label + " has switched " + std::to_string(kManySwitches) + " times from t = " +
+                       label + " has switched " + std::to_string(kChatterSwitches) + " times from t = " +
                            short_text(s.since) + " to " + short_text(t) + ": it slides along its switching line",
                        "give it more hysteresis (relay: on and off further apart), or sample its inputs by a gain of 1 "
                        "with sample_time");

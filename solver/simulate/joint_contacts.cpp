@@ -10,7 +10,7 @@
 namespace bough::solver {
 namespace {
 
-constexpr int kMostRounds = 200;
+constexpr int kMaxImpactRounds = 200;
 constexpr double kImpactNoise = 1e-9;  // of the hardest blow of a moment: what is slower stays together
 constexpr double kTouch = 1e-11;       // of where a stop is, or how far it was: what is no farther from it touches it
 
@@ -38,7 +38,7 @@ void JointContacts::calc_event_functions(const SystemData& data, VectorXd& event
       if (std::isfinite(w.high())) own[0] = force - w.high();
       if (std::isfinite(w.low())) own[1] = w.low() - force;
     } else if (mode == HingeMode::Free) {
-      // Past it and on its way further: what has just been thrown back may still be behind by rounding.
+      // Past the stop and moving on: a coordinate that has just rebounded may still be past it by round-off.
       if (std::isfinite(w.contact.lower)) own[0] = std::min(w.contact.lower - q, -rate * shortest_);
       if (std::isfinite(w.contact.upper)) own[1] = std::min(q - w.contact.upper, rate * shortest_);
       if (w.slide != 0) own[2] = -w.slide * rate;
@@ -101,7 +101,7 @@ bool JointContacts::strike_stops(HybridSystem& ode, double t, double shortest, V
       for (Watched& w : joint_contacts_) w.rests = false;
       first = hardest;
     }
-    const bool is_last = hardest <= kImpactNoise * first || round == kMostRounds;
+    const bool is_last = hardest <= kImpactNoise * first || round == kMaxImpactRounds;
     std::vector<Impact> blows;
     std::vector<const Watched*> struck;
     for (Watched& w : joint_contacts_) {
@@ -109,7 +109,7 @@ bool JointContacts::strike_stops(HybridSystem& ode, double t, double shortest, V
       const double into = w.stop * y[u + w.contact.u_row];
       const bool comes = into > std::max(calc_slowest(w, u, shortest), kImpactNoise * first),
                  stays = into >= -kImpactNoise * first;
-      if (round == kMostRounds && comes && w.contact.restitution >= 1) fail_endless(what);
+      if (round == kMaxImpactRounds && comes && w.contact.restitution >= 1) fail_endless(what);
       if (!comes && !(stays && (is_last || w.contact.restitution == 0))) continue;
       blows.push_back({w.contact.u_row, w.stop, is_last ? 0 : w.contact.restitution});
       struck.push_back(&w);
@@ -174,20 +174,20 @@ void JointContacts::find_rest(HybridSystem& ode, double t, double shortest, Vect
       ode.data().tree.slide[joint_contacts_[i].contact.u_row] = joint_contacts_[i].slide;
     }
     ode.calc_derivative(t, y, y_dot_);
-    double most = 0;
-    size_t loosest = joint_contacts_.size();
+    double max_excess = 0;
+    size_t released = joint_contacts_.size();
     for (size_t i = 0; i < joint_contacts_.size(); ++i) {
       if (!rests[i]) continue;
       const double force = ode.data().tree.calc_constraint_force(joint_contacts_[i].contact.u_row);
       const double excess = std::max(force - joint_contacts_[i].high(), joint_contacts_[i].low() - force);
-      if (!(excess > most)) continue;
-      most = excess;
-      loosest = i;
+      if (!(excess > max_excess)) continue;
+      max_excess = excess;
+      released = i;
     }
-    if (loosest == joint_contacts_.size()) break;
-    rests[loosest] = false;
-    if (joint_contacts_[loosest].contact.static_friction > 0)
-      slide[loosest] = ode.data().tree.calc_constraint_force(joint_contacts_[loosest].contact.u_row) > 0 ? -1 : 1;
+    if (released == joint_contacts_.size()) break;
+    rests[released] = false;
+    if (joint_contacts_[released].contact.static_friction > 0)
+      slide[released] = ode.data().tree.calc_constraint_force(joint_contacts_[released].contact.u_row) > 0 ? -1 : 1;
   }
   for (size_t i = 0; i < joint_contacts_.size(); ++i) {
     const Watched& w = joint_contacts_[i];

@@ -1,10 +1,10 @@
 #pragma once
-/// \file Dry friction and rigid stops in a run: what rests, what slides and which way, what strikes a stop.
+/// \file Joint contacts: dry friction (stick-slip) and rigid stops of hinge coordinates.
 ///
-/// A coordinate at rest is locked, and held by what it takes to keep it there (friction up to its static value either
-/// way, a stop as far as it pushes). Guards, positive where something changes:
-///     resting    holding force past what can be held
-///     moving     a stop is passed; the rate has turned against the direction of sliding
+/// A sticking coordinate is locked. Static friction limits its constraint force in both directions; a stop limits it to
+/// compression. Event functions, positive when the contact changes its mode:
+///     sticking   excess of the constraint force over its limit
+///     free       penetration of a stop; sliding rate after a change of sign
 #include <string>
 #include <vector>
 
@@ -24,9 +24,11 @@ class JointContacts {
   /// At the state of the last HybridSystem::calc_derivative.
   void calc_event_functions(const SystemData& data, VectorXd& event_functions) const;
 
-  /// At (t, y), where y may have reached or passed what the event functions watch: strikes, comes to rest, comes loose,
-  /// as long as anything changes. A bounce shorter than `shortest` comes to rest. What happened, in words; y and what
-  /// is locked change with it. Allocates.
+  /// Event iteration at (t, y): applies impacts, sticks and releases contacts until no contact changes its mode.
+  /// \param shortest  [T] a rebound shorter than this sticks.
+  /// \param[in,out] y  u jumps at impacts; the locked rows of `ode` change.
+  /// \return one line of text for each impact, stick and release.
+  /// \note Allocates.
   std::vector<std::string> settle(HybridSystem& ode, double t, double shortest, VectorXd& y);
 
   /// After a change from outside: a free coordinate beyond its stop is a ComputationError "run.beyond-stop". `slack`:
@@ -54,7 +56,7 @@ class JointContacts {
   void find_stops(const HybridSystem& ode, double resolution, const VectorXd& y);
   bool strike_stops(HybridSystem& ode, double t, double shortest, VectorXd& y, std::vector<std::string>& what);
   bool can_strike(const HybridSystem& ode, const Watched& w) const;
-  /// A rate below which it comes to rest at what may hold it.
+  /// Rate below which the coordinate may stick.
   double calc_slowest(const Watched& w, int u, double shortest) const;
   [[noreturn]] void fail_endless(const std::vector<std::string>& what) const;
   void find_rest(HybridSystem& ode, double t, double shortest, VectorXd& y, std::vector<std::string>& what);

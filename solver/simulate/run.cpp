@@ -14,19 +14,19 @@ namespace {
 constexpr int kCheckpointEvery = 100;
 /// Energy balance error, relative to energy_error_limit, at which a warning is issued.
 constexpr double kEnergyWarning = 1e-2;
-/// Relative gap of a constraint that projections do not close.
+/// Position error, relative, of a constraint that projections do not close.
 constexpr double kOpen = 1e-6;
-/// Steps shorter than this, relative to the run, are counted; kMostCuts in a row end the run.
-constexpr double kShortCut = 3e-8;
-constexpr int kMostCuts = 20000;
-/// Cuts between two looks at what there is to tell.
+/// Steps shorter than this, relative to the run, are counted; kMaxShortSteps in a row end the run.
+constexpr double kShortStep = 3e-8;
+constexpr int kMaxShortSteps = 20000;
+/// Short steps between two reports of the progress.
 constexpr int kLookUp = 500;
-/// Sine between two axes of a gimbal: nearer ones are worth a warning.
+/// Sine of the angle between two axes of a gimbal below which a warning is issued.
 constexpr double kNearLock = 0.01;
-/// Motions of so many absolute tolerances have an energy below which nothing is judged.
+/// Amplitude, in absolute tolerances, of motions whose energy is noise.
 constexpr double kNoise = 100;
-/// Share of a body's mass that its jets may use up before it is told that the mass stays as it is.
-constexpr double kMuchPropellant = 0.01;
+/// Share of a body's mass used by its jets above which a warning reports that the mass is constant.
+constexpr double kMaxPropellantShare = 0.01;
 
 std::string text_of(double value) {
   std::ostringstream text;
@@ -76,8 +76,8 @@ StepperOptions make_stepper_options(const HybridSystem& ode, const records::Simu
       o.absolute_tolerance.segment(ode.num_q() + system.eta_dot_offset(b), n).setConstant(s.absolute_tolerance_modes);
     }
   }
-  // Work is a quadrature: it follows the motion's accuracy and should not set the step, but where the motion is so
-  // plain that any step would do, its own error must.
+  // Work is a quadrature that follows the accuracy of the motion. Its loose tolerance sets the step only if the motion
+  // does not.
   o.absolute_tolerance.tail(ode.size() - ode.num_coordinates() - ode.num_z())
       .setConstant(std::sqrt(s.absolute_tolerance));
   o.step = plan.step;
@@ -250,16 +250,16 @@ void Run::reset(double t) {
 }
 
 void Run::settle_cut(double t) {
-  const double span = time_events_.end() - time_events_.start(), taken = t - cut_at_;
-  num_cuts_ = taken < kShortCut * span ? num_cuts_ + 1 : 0;
-  cut_at_ = t;
-  if (num_cuts_ > kMostCuts)
+  const double span = time_events_.end() - time_events_.start(), taken = t - last_event_time_;
+  num_short_steps_ = taken < kShortStep * span ? num_short_steps_ + 1 : 0;
+  last_event_time_ = t;
+  if (num_short_steps_ > kMaxShortSteps)
     finish_failed(t, "run.stalled",
-                  "the run makes no progress at t = " + short_text(t) + ": " + std::to_string(kMostCuts) +
-                      " switches, impacts or events in a row came within " + short_text(kShortCut * span) +
+                  "the run makes no progress at t = " + short_text(t) + ": " + std::to_string(kMaxShortSteps) +
+                      " switches, impacts or events in a row came within " + short_text(kShortStep * span) +
                       " of each other",
                   "give switches a hysteresis, stops room or a stiffness, events values that lie apart");
-  if (num_cuts_ > 0 && num_cuts_ % kLookUp == 0 && options_.progress) {
+  if (num_short_steps_ > 0 && num_short_steps_ % kLookUp == 0 && options_.progress) {
     update_progress(t);
     options_.progress(progress_);
   }
@@ -530,7 +530,7 @@ void Run::tell_consumption() {
   const VectorXd used = system.signals.calc_consumption(get_motion(system, ode_.data()), ode_.data().signals);
   for (int b = 0; b < system.num_bodies(); ++b) {
     const double mass = system.tree[b].body.mass();
-    if (used[b] > kMuchPropellant * mass)
+    if (used[b] > kMaxPropellantShare * mass)
       diagnostics_.warning(
           "run.propellant", spec_.simulation.at,
           "the jets of body '" + system.body_name(b) + "' have used " + short_text(used[b]) + " of propellant, " +

@@ -87,12 +87,11 @@ class Run {
   enum class Arrival { AtStop, Cut, Pause, End };
   /// Steps on to stop_, to where something cuts a step, or to t_pause.
   Arrival cross_interval(double t_pause);
-  /// Behind the last step at stop_: jumps, samples, events, contacts.
+  /// After the last step at stop_: jumps, samples, events, contacts.
   void arrive_at_stop();
-  /// Behind a step that something ended at t: ends the run on request. Fails ("run.stalled") where such steps make no
-  /// progress.
+  /// After a step ended by an event at t: ends the run on request. "run.stalled" if such steps make no progress.
   void settle_cut(double t);
-  /// A checkpoint at a stop is of behind its jump; its events may not have come yet.
+  /// A checkpoint at a stop is after its jump; its events may not have been handled yet.
   void resume_at_stop(double t);
   /// Energy of motions too small for the tolerances.
   double calc_noise();
@@ -197,7 +196,7 @@ class Run {
   void iterate_switches(double t);
   /// Counts a switch of a block; warns once ("control.sliding") where it switches without rest.
   void count_switch(const std::string& label, double t);
-  // Dry friction and rigid stops (run_latches.cpp)
+  // Dry friction and rigid stops (run_joint_contacts.cpp)
   /// Updates the contacts that stick, slide and strike at (t, y_).
   void iterate_contacts(double t);
 
@@ -216,7 +215,7 @@ class Run {
   void restart_balance();
   /// Goes on by its own integrator from where that of the host has come.
   void take_over();
-  /// Switches, crossings and contacts at time_ behind a jump. Returns false if an event has ended the run.
+  /// Switches, crossings and contacts at time_ after a jump. Returns false if an event has ended the run.
   bool settle_jump();
   std::string describe_end(const Occurrence& firing) const;
   void find_next_stop();
@@ -226,7 +225,7 @@ class Run {
   /// A checkpoint of y_ at t.
   void save(double t);
   void save_now_and_then();
-  /// On request: y_ at t, behind the jumps there.
+  /// Ends the run on request: y_ at t, after the jumps there.
   SimulateOutcome halt(double t);
 
   // Failures (run_failure.cpp)
@@ -287,7 +286,7 @@ class Run {
   double passed_ = -std::numeric_limits<double>::infinity();  ///< the last stop whose events have come
   TimeEvent stop_;                                            ///< the next one, or the one just met
   double time_ = 0;                                           ///< where y_ is between pieces
-  /// For an integrator of the host: the next stop; -inf: not known, as behind advance_to().
+  /// For an integrator of the host: the next stop; -inf: not known, as after advance_to().
   TimeEvent next_event_ = kNoEvent;
   bool is_at_event_ = true;    ///< the event at time_ has come
   bool is_led_ = false;        ///< an integrator of the host has moved the state since the last advance_to()
@@ -302,8 +301,8 @@ class Run {
   bool has_changed_ = false;                                   ///< the system, since the stepper was started
   bool is_started_ = false;                                    ///< the stepper is
   int num_tiny_ = 0;
-  double cut_at_ = -std::numeric_limits<double>::infinity();  ///< where something last ended a step
-  int num_cuts_ = 0;                                          ///< in quick succession
+  double last_event_time_ = -std::numeric_limits<double>::infinity();  ///< end of the last step ended by an event
+  int num_short_steps_ = 0;                                            ///< in quick succession
   /// Count of the switches of one block since a time.
   struct Switching {
     double since = 0;

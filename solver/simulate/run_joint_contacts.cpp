@@ -1,13 +1,13 @@
-// Dry friction and rigid stops (docs/theory/forces.md): steps of every method end where something sticks or comes
-// loose.
+// Dry friction and rigid stops (docs/theory/forces.md): steps of every method end when a contact sticks, slips or
+// strikes.
 #include "solver/simulate/run.hpp"
 
 namespace bough::solver {
 namespace {
 /// Shortest bounce, relative to the run; a contact that bounces less sticks.
 constexpr double kShortestBounce = 1e-9;
-/// Changes without any progress that are too many.
-constexpr int kMostTimes = 100;
+/// Limit of the contact changes at one time.
+constexpr int kMaxContactChanges = 100;
 }  // namespace
 
 void Run::iterate_contacts(double t) {
@@ -25,7 +25,7 @@ void Run::iterate_contacts(double t) {
   last_events_.contacts = events_.contacts;
   num_settled_ = t - settled_ <= time_events_.resolution() ? num_settled_ + 1 : 0;
   settled_ = t;
-  if (num_settled_ > kMostTimes)
+  if (num_settled_ > kMaxContactChanges)
     finish_failed(t, "run.endless-impacts", "dry friction and stops find no rest at t = " + short_text(t),
                   "give friction a smoothing, or stops a stiffness");
 }

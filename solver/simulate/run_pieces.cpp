@@ -39,13 +39,13 @@ class Taker {
 
 }  // namespace
 
-/// Calls `action` with all that save_state() keeps beside the sections of a checkpoint, in one order.
+/// Calls `action` with all that save_state() keeps in addition to the sections of a checkpoint, in one order.
 template <class Action>
 void Run::for_each_kept(const Action& action) {
-  for (double* value :
-       {&time_, &scanned_, &last_sample_, &crossed_, &changed_, &cut_at_, &settled_, &expected_energy_, &expected_at_})
+  for (double* value : {&time_, &scanned_, &last_sample_, &crossed_, &changed_, &last_event_time_, &settled_,
+                        &expected_energy_, &expected_at_})
     action(*value);
-  for (int* value : {&num_quick_, &num_tiny_, &num_cuts_, &num_settled_, &ended_by_}) action(*value);
+  for (int* value : {&num_quick_, &num_tiny_, &num_short_steps_, &num_settled_, &ended_by_}) action(*value);
   for (double* value : {&next_event_.time, &next_event_.left}) action(*value);
   for (bool* value : {&is_led_, &is_at_event_, &next_event_.is_jump, &needs_restart_, &is_inside_, &has_stepped_,
                       &has_changed_, &has_switched_})
@@ -81,7 +81,7 @@ records::Checkpoint Run::save_state() {
   Numbers pieces;
   for_each_kept([&](const auto& kept) { pieces.add(kept); });
   saved.memory.emplace_back("pieces", pieces.get());
-  // A pause within a step keeps the state from which the step is taken once more.
+  // A pause within a step keeps the state from which the step is repeated.
   const bool is_within_step = is_inside_ && !integrator_->has_history() && integrator_->time() != time_;
   VectorXd step(is_within_step ? 2 + ode_.size() : 0);
   if (is_within_step) {

@@ -5,9 +5,9 @@
 namespace bough::solver {
 namespace {
 
-/// Changes at one time, or closer together than a billionth of the run, that are too many.
-constexpr int kMostRounds = 20, kMostQuick = 200;
-constexpr double kQuick = 1e-9;
+/// Limits of the changes at one time, and of those in a row closer together than kMinEventSpacing, relative to the run.
+constexpr int kMaxEventRounds = 20, kMaxQuickEvents = 200;
+constexpr double kMinEventSpacing = 1e-9;
 
 bool is_same(const DiscreteState& a, const DiscreteState& b) {
   const auto closes_alike = [](const ConstraintState& x, const ConstraintState& y) {
@@ -82,7 +82,7 @@ std::optional<Occurrence> Run::fire(std::vector<Occurrence> firings) {
     }
     if (!changes) return {};
     const Occurrence last = firings.back();
-    if (round > kMostRounds || num_quick_ > kMostQuick) fail_cycle(last);
+    if (round > kMaxEventRounds || num_quick_ > kMaxQuickEvents) fail_cycle(last);
     firings.clear();
     for (const size_t i : find_crossed(last.time)) firings.push_back({last.time, i});
   }
@@ -109,7 +109,7 @@ void Run::change(const Occurrence& firing) {
       sink_.write_event({firing.time, what, get_source(firing)});
     joint_contacts_.demand_inside(ode_, firing.time, 4 * time_events_.resolution(), y_);
   });
-  const bool is_quick = firing.time - changed_ < kQuick * (time_events_.end() - time_events_.start());
+  const bool is_quick = firing.time - changed_ < kMinEventSpacing * (time_events_.end() - time_events_.start());
   num_quick_ = is_quick ? num_quick_ + 1 : 0;
   changed_ = firing.time;
   has_changed_ = true;

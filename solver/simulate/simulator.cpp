@@ -71,8 +71,8 @@ void Simulator::hold_inputs(double t) {
       has_slopes_ = has_slopes_ || has_slope;
       continue;
     }
-    // A value that stands needs no new row, and a slice of a run then changes nothing; but behind a slope the line has
-    // a kink here, which ends the step.
+    // A constant value needs no new row, and dividing a run then changes nothing; but after a slope the line has a kink
+    // here, which ends the step.
     if (next == value && memory[InputBlock::kNext] == next && memory[InputBlock::kUntil] <= now && !has_slope) continue;
     has_slopes_ = has_slopes_ || (is_ramp && next != value);
     const double line[] = {now, is_ramp ? value : next, is_ramp ? t : now, next};

@@ -21,9 +21,9 @@ std::vector<double> list_times(const System& system, const FunctionCopies& funct
       if (t > start && t <= end) looks.push_back(t);
   const auto add_extremes = [&](const auto& calc) {
     const auto is_less = [&](double a, double b) { return calc(a) < calc(b); };
-    const auto [least, most] = std::minmax_element(looks.begin(), looks.end(), is_less);
-    if (calc(*least) != calc(start)) times.push_back(*least);
-    if (calc(*most) != calc(start)) times.push_back(*most);
+    const auto [min_time, max_time] = std::minmax_element(looks.begin(), looks.end(), is_less);
+    if (calc(*min_time) != calc(start)) times.push_back(*min_time);
+    if (calc(*max_time) != calc(start)) times.push_back(*max_time);
   };
   for (const AppliedForce& force : system.forces)
     if (force.function != nullptr) add_extremes([&](double t) { return functions[*force.function].calc(t).f; });

@@ -14,8 +14,8 @@ struct Occurrence {
 class UserEvents {
  public:
   /// Finds the signals among the recorder's channels. Reports "run.bad-event", "run.unknown-signal" and the warning
-  /// "run.event-never" for a time outside the run. `system_is_valid`: else signals may be missing that are none to
-  /// blame.
+  /// "run.event-never" for a time outside the run. If `system_is_valid` is false, signals may be
+  /// missing because of errors reported before.
   static UserEvents build(const records::SystemSpec& spec, const Outputs& recorder, bool system_is_valid,
                           Diagnostics& diagnostics);
 
@@ -26,7 +26,7 @@ class UserEvents {
   /// "event 'contact': tip:x rises through 0.1"
   std::string describe(size_t trigger) const;
 
-  /// The values less the thresholds of all signals of a sample; events at a time have NaN.
+  /// Values minus thresholds of all signals of a sample; NaN for events at a time.
   void calc_gaps(const VectorXd& sample, VectorXd& gaps) const;
   VectorXd make_gaps() const { return VectorXd::Zero(static_cast<Eigen::Index>(records_.size())); }
 

@@ -12,7 +12,7 @@ using Eigen::VectorXd;
 /// Mode of a hinge coordinate: moved by the equations of motion; locked (rate zero); prescribed by a function.
 enum class HingeMode : unsigned char { Free, Locked, Prescribed };
 
-/// A constraint as it stands: closed or open, and how it was found when it was closed in the run.
+/// State of a constraint: closed or open, and its position error when it was closed in the run.
 struct ConstraintState {
   bool is_closed = true;
   Eigen::Matrix3d R = Eigen::Matrix3d::Identity();  ///< the child's frame that the constraint sees, in Hc
@@ -25,7 +25,7 @@ struct ConstraintState {
 struct DiscreteState {
   std::vector<HingeMode> mode;               ///< num_u, by row of u; modal rows are Free
   std::vector<ConstraintState> constraints;  ///< one per constraint; empty: as they were
-  VectorXd memory;  ///< of controllers, sensors and actuators: what they hold between samples and switches
+  VectorXd memory;  ///< discrete state of controllers, sensors and actuators
 };
 
 /// Rows of the continuous state x = [q; u; z; work; dissipated].

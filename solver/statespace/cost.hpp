@@ -12,7 +12,7 @@ struct StablePart {
   bool is_stable() const { return unstable == std::complex<double>(0); }
 };
 
-/// Schur's form with the poles at 0 (below 1e-6 of the largest) moved behind the others and decoupled; with
+/// Schur's form with the poles at 0 (below 1e-6 of the largest) moved after the others and decoupled; with
 /// `leave_unstable` all that do not decay.
 StablePart split_stable(const Eigen::MatrixXd& A, bool leave_unstable = false);
 
@@ -22,7 +22,7 @@ Eigen::MatrixXd solve_lyapunov(const StablePart& part, const Eigen::MatrixXd& Q)
 
 /// Component cost (Skelton & Hughes, J. Dyn. Sys. Meas. Control 102 (1980) 151): with white noise of unit intensity at
 /// every input, V = tr(C X Cᵀ) is the mean square of y, and V_i = [X CᵀC]_ii the part of state i: Σ V_i = V. A part can
-/// be negative: the state then takes off what others add.
+/// be negative.
 struct ComponentCost {
   double total = 0;
   Eigen::VectorXd state;  ///< one per state

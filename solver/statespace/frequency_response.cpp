@@ -40,8 +40,8 @@ std::vector<double> choose_frequencies(const records::LinearModel& model, const 
   if (range.from_hz > 0) low = 2 * std::numbers::pi * range.from_hz;
   if (range.to_hz > 0) high = 2 * std::numbers::pi * range.to_hz;
   if (model.sample_time > 0) {
-    const double most = std::numbers::pi / model.sample_time;
-    if (range.to_hz <= 0 || high > most) high = most;
+    const double nyquist = std::numbers::pi / model.sample_time;
+    if (range.to_hz <= 0 || high > nyquist) high = nyquist;
     low = std::min(low, 0.1 * high);
   }
   if (high < low) std::swap(low, high);
@@ -49,8 +49,8 @@ std::vector<double> choose_frequencies(const records::LinearModel& model, const 
   const double from = std::log(low), to = std::log(high);
   for (int i = 0; i <= range.points; ++i) chosen.insert(std::exp(from + (to - from) * i / std::max(1, range.points)));
   if (model.sample_time > 0) chosen.erase(std::prev(chosen.end())), chosen.insert(high);  // that one to the last bit
-  const auto most = static_cast<std::size_t>(range.most / 2);
-  for (Index i = 0; i < poles.size() && chosen.size() < most; ++i) {
+  const auto max_chosen = static_cast<std::size_t>(range.max_points / 2);
+  for (Index i = 0; i < poles.size() && chosen.size() < max_chosen; ++i) {
     const double re = poles.real[i], im = poles.imag[i];
     if (im <= 0 || std::abs(re) > 0.2 * size_of(i)) continue;
     // Half-power points and about: the peak is as wide as twice the real part.
@@ -125,13 +125,13 @@ records::FrequencyResponse calc_frequency_response(const records::LinearModel& m
   std::vector<double> omegas = choose_frequencies(model, range);
   std::vector<MatrixXcd> values;
   for (const double omega : omegas) values.push_back(transfer.calc(calc_argument(model, omega)));
-  for (bool is_new = true; is_new && static_cast<int>(omegas.size()) < range.most;) {
+  for (bool is_new = true; is_new && static_cast<int>(omegas.size()) < range.max_points;) {
     std::vector<double> finer;
     std::vector<MatrixXcd> with;
     for (std::size_t k = 0; k < omegas.size(); ++k) {
       finer.push_back(omegas[k]);
       with.push_back(values[k]);
-      const bool has_room = static_cast<int>(omegas.size() + finer.size() - k) < range.most;
+      const bool has_room = static_cast<int>(omegas.size() + finer.size() - k) < range.max_points;
       if (k + 1 == omegas.size() || !has_room || !is_far(values[k], values[k + 1])) continue;
       const double between = std::sqrt(omegas[k] * omegas[k + 1]);
       if (!(between > omegas[k] * (1 + 1e-9) && between < omegas[k + 1])) continue;
@@ -144,9 +144,9 @@ records::FrequencyResponse calc_frequency_response(const records::LinearModel& m
   }
   const auto count = static_cast<Index>(omegas.size());
   response.frequency_hz = Eigen::Map<const Eigen::VectorXd>(omegas.data(), count) / (2 * std::numbers::pi);
-  const Index ny = model.C.rows(), nu = model.B.cols(), most = std::min(ny, nu);
-  response.singular_values.setZero(count, most);
-  for (Index k = 0; k < count && most > 0; ++k) {
+  const Index ny = model.C.rows(), nu = model.B.cols(), num_values = std::min(ny, nu);
+  response.singular_values.setZero(count, num_values);
+  for (Index k = 0; k < count && num_values > 0; ++k) {
     const MatrixXcd& value = values[static_cast<std::size_t>(k)];
     if (value.allFinite())
       response.singular_values.row(k) = Eigen::JacobiSVD<MatrixXcd>(value).singularValues().transpose();

@@ -28,7 +28,7 @@ std::complex<double> calc_argument(const records::LinearModel& model, double ome
 struct FrequencyRange {
   double from_hz = 0, to_hz = 0;  ///< 0: a decade beyond the poles, and the zeros near them
   int points = 300;               ///< even on a logarithmic scale; more where a resonance or a notch wants them
-  int most = 6000;                ///< in all
+  int max_points = 6000;          ///< in all
 };
 
 /// Frequencies: even on a logarithmic scale, about the lightly damped poles, and between them until no entry changes by

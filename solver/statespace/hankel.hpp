@@ -10,7 +10,7 @@ namespace bough::statespace {
 /// 39 (1984) 1115).
 records::Hankel calc_hankel(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B, const Eigen::MatrixXd& C);
 
-/// 2 Σ of all values behind the first `kept`.
+/// 2 Σ of all values after the first `kept`.
 double calc_truncation_bound(const Eigen::VectorXd& values, int kept);
 
 }  // namespace bough::statespace

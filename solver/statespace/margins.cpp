@@ -23,7 +23,7 @@ using Complex = std::complex<double>;
 constexpr double kTwoPi = 2 * std::numbers::pi;
 constexpr int kBisections = 80;
 constexpr double kCertified = 1e-6;
-constexpr Index kMostStates = 300;
+constexpr Index kMaxStates = 300;
 /// Lowest frequency of the loci of a lifted loop over the highest.
 constexpr double kLowest = 1e-3;
 /// Two poles at 1 are found that far from it.
@@ -124,13 +124,13 @@ class Loci {
   }
   Index find_alias(double omega, const Eigen::VectorXcd& vector) const {
     Index best = 0;
-    double most = -1;
+    double max_value = -1;
     for (Index i = 0; i < num_values_; ++i) {  // 0, -1, 1, -2, 2, ...: of equal shares the slowest
       const Index m = i % 2 == 1 ? -(i + 1) / 2 : i / 2;
       const double step = calc_frequency(omega, m) * period() / static_cast<double>(num_values_);
       Complex share = 0;
       for (Index k = 0; k < num_values_; ++k) share += std::polar(1.0, -step * static_cast<double>(k)) * vector[k];
-      if (std::abs(share) > most * (1 + 1e-9)) best = m, most = std::abs(share);
+      if (std::abs(share) > max_value * (1 + 1e-9)) best = m, max_value = std::abs(share);
     }
     return best;
   }
@@ -311,13 +311,13 @@ void find_distance(const Loci& loci, const std::vector<LocusPoint>& locus, recor
   };
   std::vector<double> values;
   for (const auto& point : locus) values.push_back(calc(point.omega));
-  double at = locus.front().omega, least = std::numeric_limits<double>::infinity();
+  double at = locus.front().omega, min_value = std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k < locus.size(); ++k) {  // about each local minimum
     const std::size_t before = k > 0 ? k - 1 : 0, after = std::min(locus.size() - 1, k + 1);
-    if (values[k] > values[before] || values[k] > values[after] || values[k] > 1.5 * least) continue;
+    if (values[k] > values[before] || values[k] > values[after] || values[k] > 1.5 * min_value) continue;
     const double omega = minimize(calc, locus[before].omega, locus[after].omega), value = calc(omega);
-    if (value < least) at = omega, least = value;
-    if (values[k] < least) at = locus[k].omega, least = values[k];
+    if (value < min_value) at = omega, min_value = value;
+    if (values[k] < min_value) at = locus[k].omega, min_value = values[k];
   }
   m.distance = calc(at);
   const MatrixXcd sum = MatrixXcd::Identity(n, n) + loci.calc_L(at);
@@ -398,10 +398,10 @@ void find_stability(const records::LinearModel& loop, records::Margins& m) {
                                : MatrixXd(loop.A - loop.B * loop.C / back);
   const auto poles = calc_poles(A, loop.states.name);
   if (loop.sample_time > 0) {
-    double most = 0;
-    for (Index i = 0; i < poles.size(); ++i) most = std::max(most, std::hypot(poles.real[i], poles.imag[i]));
-    m.largest_real = std::log(std::max(most, 1e-16)) / loop.sample_time;
-    m.is_stable = most <= 1 + kOnCircle;
+    double max_value = 0;
+    for (Index i = 0; i < poles.size(); ++i) max_value = std::max(max_value, std::hypot(poles.real[i], poles.imag[i]));
+    m.largest_real = std::log(std::max(max_value, 1e-16)) / loop.sample_time;
+    m.is_stable = max_value <= 1 + kOnCircle;
     return;
   }
   double size = 0;
@@ -498,7 +498,7 @@ records::PeakGain calc_peak_gain(const records::LinearModel& model, const record
     const Index before = std::max<Index>(0, best - 1), after = std::min(response.frequency_hz.size() - 1, best + 1);
     climb(kTwoPi * response.frequency_hz[before], kTwoPi * response.frequency_hz[after]);
   }
-  for (int i = 0; i < 30 && kept <= kMostStates && peak.value > 0; ++i) {
+  for (int i = 0; i < 30 && kept <= kMaxStates && peak.value > 0; ++i) {
     const auto omegas = find_level(s, model.D, peak.value * (1 + kCertified));
     if (omegas.empty()) {
       peak.is_certified = true;

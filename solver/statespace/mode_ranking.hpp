@@ -25,7 +25,7 @@ struct ModeCost {
 struct ModeRanking {
   std::vector<ModeCost> modes;  ///< one per mode of the body
   double total = 0;             ///< V
-  double other = 0;             ///< V less the sum over the modes: hinges, other bodies; 0 for a body alone
+  double other = 0;             ///< V minus the sum over the modes: hinges, other bodies; 0 for a body alone
 };
 
 /// M η̈ + D η̇ + K η = Bᵀu, y = C_d η + C_r η̇ of the body held in its frame, x = [η; η̇]. Modes without damping get
@@ -55,7 +55,7 @@ std::vector<double> calc_modified_costs(const ModeRanking& ranking, const std::v
 ModeRanking combine_worst(const std::vector<ModeRanking>& rankings);
 
 struct SelectionRules {
-  int number = 0;                ///< keep so many, 0: no such rule
+  int number = 0;                ///< number of modes to retain, 0: no such rule
   double tolerance = 0;          ///< drop modes that together cost at most this part of V
   double below_hz = 0;           ///< drop modes above it, 0: no such rule
   bool by_cost = true;           ///< false: only below_hz counts

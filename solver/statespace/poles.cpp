@@ -42,16 +42,16 @@ constexpr double kMore = 1 + 1e-6;
 /// From the share of each coordinate.
 Pole name_pole(std::complex<double> value, const std::map<std::string, double>& share) {
   Pole pole{value, "", "", "", 0};
-  double most = -1, most_modal = 0, most_hinge = 0;
+  double max_share = -1, max_modal = 0, max_hinge = 0;
   for (const auto& [coordinate, part] : share) {
-    if (part > most * kMore) most = part, pole.mode = coordinate;
+    if (part > max_share * kMore) max_share = part, pole.mode = coordinate;
     if (is_state(coordinate)) continue;
-    double& best = is_body_mode(coordinate) ? most_modal : most_hinge;
+    double& best = is_body_mode(coordinate) ? max_modal : max_hinge;
     if (part > best * kMore) best = part, (is_body_mode(coordinate) ? pole.body_mode : pole.hinge) = coordinate;
   }
   // Participation that is only round-off does not count.
-  if (most_modal < 1e-9 * most) pole.body_mode.clear();
-  if (most_hinge < 1e-9 * most) pole.hinge.clear();
+  if (max_modal < 1e-9 * max_share) pole.body_mode.clear();
+  if (max_hinge < 1e-9 * max_share) pole.hinge.clear();
   return pole;
 }
 

@@ -9,7 +9,7 @@ namespace bough::statespace {
 /// 3117); "boom:eta3" and "boom:eta3_dot" count together.
 /// `error`, n x n or empty: what the entries of A may be off by. A pole is then off by |w|ᵀ error |v| for wᵀv = 1, to
 /// first order, and by what rounding does to A in the solution, ε |A| |w| |v| (Wilkinson, The Algebraic Eigenvalue
-/// Problem, 1965, ch. 2): a soft pole beside stiff ones has fewer digits than A.
+/// Problem, 1965, ch. 2): soft poles of a stiff system have fewer digits than A.
 records::Poles calc_poles(const Eigen::MatrixXd& A, const std::vector<std::string>& names,
                           const Eigen::MatrixXd& error = {});
 

@@ -97,13 +97,13 @@ void track_poles(records::LinearSweep& sweep) {
       // The poles of the model come block by block: exact zeros; the nearest is the one meant.
       const std::complex<double> rough = before.value[b];
       Index best = -1;
-      double least = 0;
+      double min_distance = 0;
       for (Index i = 0; i < nx; ++i) {
         const auto pole = model.sample_time > 0 ? records::calc_z(model, i)
                                                 : std::complex<double>(model.poles.real[i], model.poles.imag[i]);
         const double far = std::abs(rough - pole);
-        if (is_used[static_cast<std::size_t>(i)] || (best >= 0 && far >= least)) continue;
-        best = i, least = far;
+        if (is_used[static_cast<std::size_t>(i)] || (best >= 0 && far >= min_distance)) continue;
+        best = i, min_distance = far;
       }
       is_used[static_cast<std::size_t>(best)] = true;
       sweep.real(k, b) = model.poles.real[best];

@@ -102,9 +102,9 @@ Eigen::VectorXcd calc_zeros(const MatrixXd& A, const MatrixXd& B, const MatrixXd
   const MatrixXd left = AB * null, right = null.topRows(n);
   const Eigen::GeneralizedEigenSolver<MatrixXd> solver(left, right, false);
   std::vector<std::complex<double>> zeros;
-  const double least = 1e-13 * right.norm();
+  const double min_beta = 1e-13 * right.norm();
   for (Index i = 0; i < n; ++i) {
-    if (std::abs(solver.betas()[i]) > least) zeros.push_back(solver.alphas()[i] / solver.betas()[i]);
+    if (std::abs(solver.betas()[i]) > min_beta) zeros.push_back(solver.alphas()[i] / solver.betas()[i]);
   }
   std::stable_sort(zeros.begin(), zeros.end(), [](const auto& a, const auto& b) {
     const auto key = [](const auto& z) { return std::tuple(std::abs(z), z.real(), std::abs(z.imag()), -z.imag()); };

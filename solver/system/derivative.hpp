@@ -5,7 +5,7 @@
 namespace bough::solver {
 
 /// u̇ at (t, q, u, z) under the modes and the memory of `data`. `push()` adds loads or inertia to `data` after all
-/// forces and before the factor. No allocation of its own.
+/// forces and before the factor. Allocates nothing itself.
 ///
 /// \param q, u, z  num_q, num_u, num_z
 template <class NodeActuator>

@@ -10,15 +10,15 @@ namespace {
 
 constexpr double kRounding = 1e-12;  // of the rates before
 constexpr double kTwice = 1e-10;     // of the largest pivot: what is less is held by others already
-constexpr int kMostExchanges = 2000;
+constexpr int kMaxExchanges = 2000;
 
-VectorXd solve_active(const MatrixXd& A, const VectorXd& wanted, const std::vector<int>& active) {
-  VectorXd p = VectorXd::Zero(wanted.size());
+VectorXd solve_active(const MatrixXd& A, const VectorXd& target, const std::vector<int>& active) {
+  VectorXd p = VectorXd::Zero(target.size());
   if (active.empty()) return p;
   Eigen::CompleteOrthogonalDecomposition<MatrixXd> factor;
   factor.setThreshold(kTwice);
   factor.compute(A(active, active));
-  p(active) = VectorXd(factor.solve(VectorXd(wanted(active))));
+  p(active) = VectorXd(factor.solve(VectorXd(target(active))));
   return p;
 }
 
@@ -50,18 +50,18 @@ MatrixXd calc_responses(const System& system, SystemData& system_data, const std
 
 VectorXd solve_impact_lcp(const MatrixXd& A, const VectorXd& v, const VectorXd& e) {
   const auto n = v.size();
-  const VectorXd wanted = -(1 + e.array()) * v.array();
+  const VectorXd target = -(1 + e.array()) * v.array();
   const double slow = kRounding * v.cwiseAbs().maxCoeff();
   const double weak = slow / std::max(A.diagonal().maxCoeff(), std::numeric_limits<double>::min());
   std::vector<bool> is_active(static_cast<size_t>(n), true);
   VectorXd p;
-  for (int round = 0; round < kMostExchanges; ++round) {
+  for (int round = 0; round < kMaxExchanges; ++round) {
     std::vector<int> active;
     for (int i = 0; i < n; ++i) {
       if (is_active[static_cast<size_t>(i)]) active.push_back(i);
     }
-    p = solve_active(A, wanted, active);
-    const VectorXd short_of = wanted - A * p;
+    p = solve_active(A, target, active);
+    const VectorXd short_of = target - A * p;
     int wrong = 0;
     while (wrong < n && !(is_active[static_cast<size_t>(wrong)] ? p[wrong] < -weak : short_of[wrong] > slow)) ++wrong;
     if (wrong == n) return p.cwiseMax(0);
@@ -70,7 +70,7 @@ VectorXd solve_impact_lcp(const MatrixXd& A, const VectorXd& v, const VectorXd& 
   // Not reached where A is definite: the hardest blow alone.
   int hardest = 0;
   v.minCoeff(&hardest);
-  return solve_active(A, wanted, {hardest}).cwiseMax(0);
+  return solve_active(A, target, {hardest}).cwiseMax(0);
 }
 
 void strike(const System& system, SystemData& system_data, double t, const Eigen::Ref<const VectorXd>& q,

@@ -14,7 +14,7 @@ struct Impact {
   double impulse = 0;      ///< out: along the coordinate
 };
 
-/// The impulses p (n) of stops that throw back what comes at them, and pull at nothing: with rates of separation v
+/// Impulses p (n) of stops, in compression only, that make approaching bodies rebound: with rates of separation v
 /// before and v + A p after,
 ///     p ≥ 0,   v + A p + e v ≥ 0,   one of both zero, row by row
 /// (Newton's law of restitution at several places; Moreau, "Unilateral contact and dry friction in finite freedom

@@ -138,8 +138,7 @@ void add_node_wrench(const System& system, SystemData& data, int body, int node_
                      const Vector3d& t_W);
 /// q and u brought onto the closed constraints at t, in the metric of the mass matrix. No allocation.
 void project(const System& system, SystemData& data, double t, Eigen::Ref<VectorXd> q, Eigen::Ref<VectorXd> u);
-/// Takes off small differences of q and u what that projection would take off, to first order. After project. No
-/// allocation.
+/// Projects small differences of q and u as project() does, to first order. After project. No allocation.
 void remove_normal(const System& system, SystemData& data, Eigen::Ref<VectorXd> dq, Eigen::Ref<VectorXd> du);
 /// u̇ by the order-n recursion with what was added, loops closed; body accelerations and hinge forces become available.
 /// Order n. No allocation. Throws ComputationError when the articulated inertia of a body is not positive definite.

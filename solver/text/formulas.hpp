@@ -7,7 +7,7 @@
 namespace bough::solver {
 
 /// Formulas of the same variables. A parser reads its variables where they are and evaluates in place: one object for
-/// each thread. A copy has the same formulas and variables of its own.
+/// each thread. A copy has the same formulas and separate variables.
 class Formulas {
  public:
   /// Name of a variable and its index; a variable may have several names.

@@ -45,7 +45,7 @@ class SettingsReader {
   std::string get_lent() const;
   void demand(bool condition, const std::string& what, const std::string& advice);
   void error(const char* id, const std::string& what, const std::string& advice);
-  /// "control.unknown-key" for what nobody asked for.
+  /// "control.unknown-key" for keys that were not read.
   void refuse_others();
   bool has_failed() const { return has_failed_; }
   const std::string& get_owner() const { return what_; }

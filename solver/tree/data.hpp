@@ -33,12 +33,12 @@ struct BodyData {
   Matrix6d P6 = Matrix6d::Zero();  ///< articulated inertia 𝒫, its 6 x 6
   Matrix6d G6 = Matrix6d::Zero();  ///< rigid: D⁻¹ Wᵀ, nh x 6
   Matrix6d D6 = Matrix6d::Zero();  ///< rigid: 1/D (nh = 1) or its factor L
-  Matrix6Xd P_top;                 ///< 6 x n: where children hang on modes, the rest of 𝒫 (else BodyInertia has it)
+  Matrix6Xd P_top;                 ///< 6 x n: if children are attached to modes, the rest of 𝒫 (else in BodyInertia)
   MatrixXd P_modal;                ///< n x n: its lower triangle
   MatrixXd D;    ///< flexible: L of ℋᵀ𝒫ℋ (its lower triangle), Gᵀ = (L⁻¹W_topᵀ)ᵀ below it, padding
   Matrix6Xd PX;  ///< 6 x (6+m), scratch
   // Bounds of the terms of a pivot
-  double mass_carried = 0;   ///< of the body and all that hangs on it
+  double mass_carried = 0;   ///< of the body and its descendants
   double second_moment = 0;  ///< bound of ∫ρ|p|² of them about Bo
   VectorXd modal_size;       ///< n: of the modal rows
 };
@@ -106,9 +106,9 @@ void calc_velocity(const Tree& tree, const ConstVectorRef& u, TreeData& data);
 void calc_kinematics(const Tree& tree, double t, const ConstVectorRef& q, const ConstVectorRef& u, TreeData& data);
 
 /// Throws ComputationError "solver.indefinite-mass" naming time, body and coordinate where a pivot of D is less than
-/// kLeastPivot of what its terms may add up to.
+/// kMinPivotShare times the bound of its terms.
 void calc_factor(const Tree& tree, TreeData& data);
-inline constexpr double kLeastPivot = 1e-12;
+inline constexpr double kMinPivotShare = 1e-12;
 
 /// u̇ (num_u) of what is applied.
 void solve(const Tree& tree, TreeData& data, Eigen::Ref<VectorXd> u_dot);
@@ -133,8 +133,8 @@ void add_response_wrench(const Tree& tree, const TreeData& data, int marker, con
 /// given: as solve_jump.
 void add_response_jump(const Tree& tree, const TreeData& data, const ConstVectorRef& given, Sweep& s);
 void run_response(const Tree& tree, const TreeData& data, Sweep& s);
-/// Base to tip: the velocities (A) of all bodies at rates u (num_u), less those of given rates; or small turns and
-/// travels. No load, no mass. After Stage::Position.
+/// Base to tip: the velocities (A) of all bodies at rates u (num_u), without those of prescribed rates; or small
+/// rotations and displacements. No load, no mass. After Stage::Position.
 void run_rates(const Tree& tree, const TreeData& data, const ConstVectorRef& u, Sweep& s);
 
 /// The impulse across the hinge of body b along its coordinate i, of the last solve_jump or run_response.

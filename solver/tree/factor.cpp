@@ -13,7 +13,7 @@ namespace bough::solver {
 
 namespace {
 
-constexpr double kLocked = 1e-5;  // its square, next to kLeastPivot, is for want of a direction, not of mass
+constexpr double kLocked = 1e-5;  // its square, next to kMinPivotShare, is for want of a direction, not of mass
 
 // Bound of (Hᵀ 𝒫 H)_ii before anything of it cancels.
 double calc_size(const BodyData& d, const ConstVectorRef& column) {
@@ -53,7 +53,7 @@ void factor_rigid(const TreeBody& tb, BodyData& d, const double* added, double t
     for (int i = 0; i < NH; ++i) {  // Cholesky, so that a bad pivot has a name
       double pivot = D(i, i) + added[d.free[i]];
       for (int k = 0; k < i; ++k) pivot -= D(i, k) * D(i, k);
-      if (!(pivot > kLeastPivot * calc_size(d, d.H.col(i)))) fail_indefinite(tb, d, i, t);
+      if (!(pivot > kMinPivotShare * calc_size(d, d.H.col(i)))) fail_indefinite(tb, d, i, t);
       D(i, i) = std::sqrt(pivot);
       for (int j = i + 1; j < NH; ++j) {
         double below = D(j, i);
@@ -131,7 +131,7 @@ int find_bad_pivot(const TreeBody& tb, const TreeData& data, BodyData& d) {
   for (Eigen::Index i = 0; i < size; ++i) {
     const double own = i < d.num_free ? calc_size(d, d.H.col(i)) : d.modal_size[i - d.num_free];
     const double pivot = d.D(i, i) - d.D.row(i).head(i).squaredNorm();
-    if (!(pivot > kLeastPivot * own)) return static_cast<int>(i);
+    if (!(pivot > kMinPivotShare * own)) return static_cast<int>(i);
     d.D(i, i) = std::sqrt(pivot);
     for (Eigen::Index j = i + 1; j < size; ++j)
       d.D(j, i) = (d.D(j, i) - d.D.row(j).head(i).dot(d.D.row(i).head(i))) / d.D(i, i);
@@ -150,9 +150,10 @@ void factor_flexible(const TreeBody& tb, const TreeData& data, BodyData& d, Matr
   set_D(tb, data, d);
   factor_trapezoid(d.D.data(), d.D.rows(), nh + n);
   bool good = true;
-  for (Eigen::Index i = 0; i < nh && good; ++i) good = d.D(i, i) * d.D(i, i) > kLeastPivot * calc_size(d, d.H.col(i));
+  for (Eigen::Index i = 0; i < nh && good; ++i)
+    good = d.D(i, i) * d.D(i, i) > kMinPivotShare * calc_size(d, d.H.col(i));
   for (Eigen::Index j = 0; j < n && good; ++j)
-    good = d.D(nh + j, nh + j) * d.D(nh + j, nh + j) > kLeastPivot * d.modal_size[j];
+    good = d.D(nh + j, nh + j) * d.D(nh + j, nh + j) > kMinPivotShare * d.modal_size[j];
   if (!good) fail_indefinite(tb, d, std::max(0, find_bad_pivot(tb, data, d)), data.t);
   passed = d.P6;
   const double* column = d.D.data() + nh + n;

@@ -1,8 +1,8 @@
 #pragma once
 /// \file The tree as the passes see it: what never changes in a run.
 ///
-/// Body c hangs on its parent P by one hinge between frames Hp (a marker of P) and Hc (a marker of c). With V = [v; ω]
-/// of Bo in B, A' = [a - g; α] (inertial acceleration less gravity), and everything of c in c's basis,
+/// Body c is attached to its parent P by one hinge between frames Hp (a marker of P) and Hc (a marker of c).
+/// With V = [v; ω] of Bo in B, A' = [a - g; α] (inertial acceleration minus gravity), and everything of c in c's basis,
 ///     V_c = X [V_P; η̇_P] + H u_h - Jc η̇_c
 ///     A'_c = X [A'_P; η̈_P] + H u̇_h - Jc η̈_c + b
 /// X = R_PBᵀ [S(r), J_P], S(r) = [1 -r̃; 0 1], r = p_PoBo in P. Modal coordinates are extra mobilizer coordinates: Jain

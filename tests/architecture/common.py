@@ -1,4 +1,4 @@
-"""What the architecture tests share: the sources by room, and how a finding is reported."""
+"""Shared by the architecture tests: the sources by room, and the report of findings."""
 import os
 import re
 import sys

@@ -61,7 +61,7 @@ def includes_eigen(header, known):
 
 
 def precompile_eigen(folder):
-    """What to include for it; both compilers take the file beside it."""
+    """File to include for it; both compilers take the file next to it."""
     path = os.path.join(folder, "eigen.hpp")
     with open(path, "w") as f:
         f.write("#include <Eigen/Dense>\n")

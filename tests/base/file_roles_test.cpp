@@ -1,4 +1,4 @@
-/// What a call reads it does not write over, by whatever name.
+/// Outputs do not overwrite the inputs of the call, by whatever name.
 #include "base/file_roles.hpp"
 
 #include <gtest/gtest.h>

@@ -205,7 +205,7 @@ take = "min"
         self.assertAlmostEqual(masses[0], 2766.67 * 7.2986e-5 * 8, 9)
         self.assertAlmostEqual(masses[1], 2766.67 * 1e-4 * 8, 9)
         self.assertTrue(os.path.getsize(self.path("study/case-0001/boom.FLX")) > 0)
-        # The same by hand in a folder of its own.
+        # Steps by hand in a separate folder.
         for name, old, new in (("boom.bdf", "7.2986-5", "1.-4"), ("boom.toml", "number = 3", "number = 2"),
                                ("spinup.toml", "rate = 4.0", "rate = 2.0"), ("spinup.toml", "duration = 20.0", "duration = 2.0")):
             text = self.read(name)

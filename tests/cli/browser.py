@@ -97,7 +97,7 @@ class Browser:
             raise RuntimeError("the page does not get ready: " + "; ".join(self.list_errors()))
 
     def list_errors(self):
-        """What the script threw, what the console and the log call errors (breaches of the policy among them)."""
+        """Exceptions of the script, and errors of the console and the log (breaches of the policy among them)."""
         self.run("1")
         errors = []
         for event in self.events:

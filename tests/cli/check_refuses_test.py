@@ -1,4 +1,4 @@
-"""What `check` passes `reduce` and `run` begin: it reduces small bodies and takes the first step of a run."""
+"""Bodies and systems that `check` passes can be reduced and run: it tries small reductions and the first step."""
 import re
 import subprocess
 import unittest

@@ -1,4 +1,4 @@
-"""What Bough shows the outside: options of every verb, layouts of its files, what becomes of outputs when things go wrong."""
+"""Interfaces to the outside: options of every command, layouts of files, outputs when calls fail."""
 import json
 import os
 import resource

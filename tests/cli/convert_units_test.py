@@ -201,7 +201,7 @@ gravity = [0.0, 0.0, -9.81]
 
 
 def calc_factor(dims, mass, length, time):
-    """Of "M L^2/T^2": an oracle of its own, from what the results say of themselves."""
+    """Factor of "M L^2/T^2": a separate oracle, from the dimensions in the results."""
     factor, sign = 1.0, 1
     units = {"M": mass, "L": length, "T": time, "F": mass * length / time**2, "E": mass**0.5 * length, "1": 1.0}
     for word in re.findall(r"[A-Z1](?:\^-?[0-9.]+)?|/|\(|\)", dims):
@@ -263,7 +263,7 @@ class ConvertUnits(ProgramTest):
     def test_a_system_of_everything_moves_alike(self):
         self.make_all()
         self.run_both("all.toml", ["boom.h5"])
-        # What a law gives out has the unit of what takes it: here forces.
+        # Outputs of a controller have the unit of their user: here forces.
         self.compare("old.h5", "new.h5", 1e-3, 1e3, 1.0, least=25)
         with h5py.File(self.path("old.h5")) as a, h5py.File(self.path("new.h5")) as b:
             np.testing.assert_allclose(b["controllers/law"][:], a["controllers/law"][:], rtol=1e-9, atol=1e-9)

@@ -88,7 +88,7 @@ class Dampers(ProgramTest):
         self.assertGreater(np.abs(expected[0, 1]), 0.05)   # it couples modes
         self.assertLess(np.abs(D - expected).max(), 1e-10)
 
-        # The same from the matrices before constraints.
+        # Damping from the matrices before constraints.
         self.bough("matrices", "m.bdf", "-o", "k.h5")
         with h5py.File(self.path("k.h5")) as f:
             B_g = csr_matrix((f["/B/data"], f["/B/indices"], f["/B/indptr"]), shape=f["/B/shape"]).toarray()

@@ -300,13 +300,13 @@ class Campaigns(ProgramTest):
         for place in ("../../precious.h5", self.path("precious.h5")):
             self.write("study.toml", self.STUDY.replace("m.h5", place))
             self.fails(1, "batch", "study.toml", says=["study.toml:2: error:"], error="cli.output-outside")
-        # By a value: seen when the case is done.
+        # A conflict by a value is found when the case is done.
         self.write("study.toml", self.STUDY.replace("m.h5", "{to}") +
                    '[[parameter]]\nname = "to"\nvalues = ["../../precious.h5"]\n')
         self.bough("batch", "study.toml", "-o", "s", code=3)
         with open(self.path("s/outcomes.csv")) as f:
             self.assertEqual(f.read().count("[cli.output-outside]"), 2)
-        # By a link to an input.
+        # A conflict by a link to an input.
         self.write("study.toml", self.STUDY.replace('steps', 'files = ["precious.h5"]\nsteps').replace("m.h5", "precious.h5"))
         self.bough("batch", "study.toml", "-o", "l", code=3)
         with open(self.path("precious.h5")) as f:

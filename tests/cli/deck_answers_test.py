@@ -333,7 +333,7 @@ class Response(ProgramTest):
                 self.assertIn("would change a response", said)
 
     def test_unselected_cards(self):
-        """What no command selects is not looked at: frequencies with blanks, damping that a direct solution has not."""
+        """Cards that no command selects are not checked: frequencies with blanks, damping that a direct solution has not."""
         for sol, case, bulk in [(111, "", "FREQ1,3,,1.,3\n"), (108, "SDAMPING = 44\n", ""), (111, "", "TABDMP1,9,G\n,1.,ENDT\n"),
                                 (111, "", "PELAST,3,7\n"), (111, "", "PELAS,3,1.\nPELAST,3,7\n"),
                                 (111, "", "PDAMP,3,1.\nPDAMPT,3,7\n"), (111, "", "PBUSH,3,K,1.\nPBUSHT,3,K,7\n"), (111, "", "PBUSHT,3,K,7\n"), (111, "", "PDAMPT,3,7\n")]:

@@ -1,4 +1,4 @@
-"""What acts in a response and is no load: direct matrices, Rayleigh damping, cards that are refused. Motions of supports
+"""Cards that act in a response and are no load: direct matrices, Rayleigh damping, rejected cards. Motions of supports
 against closed forms; loads between steps; starts without loads."""
 import unittest
 

@@ -1,4 +1,4 @@
-"""What `frequency` and `transient` refuse, and what they warn of: each with its id, its line, its words."""
+"""Errors and warnings of `frequency` and `transient`: each with its id, its line, its words."""
 import unittest
 
 from deck_response_case import CHAIN, ONE

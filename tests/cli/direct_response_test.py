@@ -102,7 +102,7 @@ class Chain(Direct, modal.Chain):
     is_over_time = True
 
     def test_all_modes(self):
-        """By modes with all of them, over frequency."""
+        """The solution by all modes, over frequency."""
         deck = CHAIN.format(sol=111, modes=3, case="DLOAD = 9\nFREQUENCY = 5",
                             bulk="RLOAD1,9,10,,,1.\nFREQ1,5,0.,.05,80\n" + self.LOAD)
         direct = self.solve("frequency", deck)[1]

@@ -39,7 +39,7 @@ class Terminal:
             return False
 
     def read_until(self, end):
-        """What comes until a line of it ends with `end` and the program waits for more; None: until it has ended."""
+        """Output until a line of it ends with `end` and the program waits for more; None: until it has ended."""
         said, until = "", time.monotonic() + HANG
         while time.monotonic() < until:
             waits = self.is_waiting()  # before it is looked whether there is more to read

@@ -96,7 +96,7 @@ class Satellite(ProgramTest):
         self.assertLess(abs(wheel[-1]), 3.0)
         self.assertLess(abs(wheel[-1] - momentum[-1, 2]), 0.02 * wheel[0])
         self.assertLess(np.abs(attitude[time > 60] - [5, 0, 0]).max(), 0.6)
-        # What the jets gave: propellant times exhaust velocity is their impulse, arm 1 m each, about -z.
+        # Impulse of the jets: propellant times exhaust velocity, arm 1 m each, about -z.
         impulse = sum(j[-1, 1] for j in jets) * 2200.0
         change = momentum[-1] - momentum[0]
         self.assertLess(abs(change[2] + impulse), 0.01 * impulse)
@@ -121,7 +121,7 @@ class Satellite(ProgramTest):
         self.assertTrue(margins["stable"])
         found = [(c["frequency_hz"], c["degrees"]) for c in margins["phase"]]
         np.testing.assert_allclose(found, [(0.0628, 59.2), (1.558, -161.6), (1.681, 41.2)], rtol=2e-3)  # README
-        # The same in numpy: the plant of `linearize --open`, laws of x and y closed, torques new 0.05 s after a sample.
+        # The system in numpy: the plant of `linearize --open`, controllers of x and y, torques new 0.05 s after a sample.
         self.bough("linearize", "satellite.toml", "--open", "-o", "plant.h5")
         self.bough("response", "loop.h5", "-o", "response.h5")
         with h5py.File(self.path("plant.h5")) as f:

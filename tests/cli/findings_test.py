@@ -1,4 +1,4 @@
-"""What an analyst meets first: masses by direction, oblique rods, and every message with its place and its cause."""
+"""First findings of an analyst: masses by direction, oblique rods, and every message with its place and its cause."""
 import json
 import re
 import unittest

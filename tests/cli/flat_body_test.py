@@ -64,7 +64,7 @@ class FlatBody(ProgramTest):
     def test_a_run_is_equal_bit_for_bit(self):
         expected = self.run_with("boom.h5")
         self.expect_equal(self.run_with("boom.flat"), expected)
-        # By its content: any name will do.
+        # Contents identify the file: any name will do.
         os.rename(self.path("boom.flat"), self.path("boom.body"))
         self.expect_equal(self.run_with("boom.body"), expected)
 

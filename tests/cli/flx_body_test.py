@@ -78,7 +78,7 @@ class FlxBody(ProgramTest):
         return result.stderr.count("[flx.not-carried]")
 
     def strip(self, name, to, head="FLX 1.0"):
-        """What a reader of version 1.0 sees: no line that begins with "!"."""
+        """The lines for a reader of version 1.0: none that begins with "!"."""
         with open(self.path(name)) as f:
             lines = [line for line in f if not line.startswith("!")]
         self.write(to, "".join(lines).replace("FLX 1.1", head))
@@ -168,7 +168,7 @@ node = 5
                 self.assertLess(np.abs(f["/sensors/" + name][:] - tip).max(), 1e-6 * np.abs(tip).max())
 
     def test_mass_centre_and_inertia_from_the_system(self):
-        """As TREETOPS has them in its .INT: equal to the body that says them itself."""
+        """A rigid part from the .INT of TREETOPS equals that in the body's file."""
         expected = self.tip("a.h5", "stiffening = false")
         self.bough("flx", "a.h5", "--digits", 17, "-o", "new.FLX")
         self.strip("new.FLX", "old.FLX")

@@ -18,7 +18,7 @@ class HelpFiles(ProgramTest):
         return {verb: self.bough(*([verb] if verb else []), "--help").stdout for verb in ["", *VERBS]}
 
     def complete(self, *words):
-        """What bash offers with the cursor at the end of the last word."""
+        """Completions of bash with the cursor at the end of the last word."""
         self.write("completion.bash", self.bough("--bash-completion").stdout)
         script = ('source completion.bash; COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1)); '
                   '$(complete -p bough | sed "s/.*-F \\([^ ]*\\).*/\\1/"); printf "%s\\n" "${COMPREPLY[@]}"')

@@ -77,7 +77,7 @@ class Simulation:
         return LIBRARY.bough_time(self.handle)
 
     def advance(self, t):
-        """Whether the run goes on."""
+        """Returns true if the run goes on."""
         return self.check(LIBRARY.bough_advance(self.handle, t, None)) == 0
 
     def set_inputs(self, first, *values):

@@ -73,7 +73,7 @@ class Interlaminar(ProgramTest):
         expected = V / WIDTH * E1 * .001 * .0015 / EI
         for k in (1, 2):
             np.testing.assert_allclose(stress[f"xz@bond{k}"], expected, rtol=1e-7)
-        # Of neighbours: d/dx of the force in the plies below is the stress above them, less what 0 is below.
+        # Neighbouring stations: d/dx of the force in the plies below is the stress above them minus that below ply 0.
         step = LENGTH / ELEMENTS
         ply = [stress["11@ply1"], stress["22@ply2"], stress["11@ply3"]]
         below = np.cumsum([s * t for s, t in zip(ply, thickness)], axis=0)

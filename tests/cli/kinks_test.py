@@ -99,7 +99,7 @@ class KinksTest(ProgramTest):
 
 
 class Slopes(KinksTest):
-    """The same laws in other units of length and force: the slope of the law is exact in all."""
+    """Laws in other units of length and force: the slope of the law is exact in all."""
     def test_tables(self):
         for length in (1e-6, 1e-3, 1.0, 1e3):
             for force in (1e-6, 1.0, 1e6):
@@ -183,7 +183,7 @@ class Kinks(KinksTest):
         self.assertNotIn("linear.inaccurate", said)
 
     def test_every_way_to_a_linear_model_tells(self):
-        """Of a command at its limit: continuous and sampled, cut and closed, along a run, by response."""
+        """A command at its limit: continuous and sampled, cut and closed, along a run, by response."""
         for more, options in (({}, ()), ({}, ("--break", "m")), ({}, ("--sweep", "kp=160:170:2")),
                               (SAMPLED, ()), (SAMPLED, ("--break", "law")), (SAMPLED, ("--break", "m"))):
             text = HUB

@@ -54,7 +54,7 @@ class Lagged(ProgramTest):
         self.assertIn("not of: jet", said)
 
     def test_pattern_is_fed_back(self):
-        """Of 4.1.4.3: the plate's swing under 0.165 lb/in; without K_G2 of the running load it would be 13 times as stiff."""
+        """Section 4.1.4.3: the plate's swing under 0.165 lb/in; without K_G2 of the load it would be 13 times as stiff."""
         self.copy_example("ex05-plate")
         self.bough("reduce", "plate.toml")
         until = ("duration = 40.0", "duration = 6.0")
@@ -82,7 +82,7 @@ class Lagged(ProgramTest):
             self.assertLess(abs(coarse / fine - 2), 0.1, off)
 
     def test_force_and_moment_are_newtons_and_eulers(self):
-        """Of a rigid load on a turned and shifted clamp at the tip: m (a - g) and J α + ω × J ω + r × m (a - g), about
+        """Load of a rigid body on a turned and shifted clamp at the tip: m (a - g) and J α + ω × J ω + r × m (a - g), about
         the node and in the link's frame."""
         self.copy_example("ex03-two-link")
         self.bough("reduce", "link.toml")

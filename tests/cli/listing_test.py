@@ -305,7 +305,7 @@ class ResidualVectors(ProgramTest):
         self.assertEqual(len(self.solve(text)[2]), 6)
 
     def test_reduce(self):
-        """The same vectors in a body; none for RESVEC = NO, where the deck does not say, or with a body file."""
+        """Residual vectors in a body; none for RESVEC = NO, without RESVEC in the deck, or with a body file."""
         _, _, eigenvalue, phi, _ = self.solve(self.DECK)
         def reduce(text, *arguments):
             self.write("r.bdf", text)

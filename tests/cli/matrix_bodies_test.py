@@ -71,7 +71,7 @@ class MatrixBodies(ProgramTest):
         with h5py.File(self.path("own.h5")) as f:
             self.K, self.M = read_csr(f["K"]).toarray(), read_csr(f["M"]).toarray()
             self.dofs = [tuple(map(int, row)) for row in f["dof_map"][:]]
-        # As Nastran writes: in the displacement systems of grids 31 and 71.
+        # Axes of Nastran's output: the displacement systems of grids 31 and 71.
         k = np.array([1, 1, 3]) / np.sqrt(11)
         y = np.cross(k, [1, 0, .3])
         y /= np.linalg.norm(y)
@@ -101,7 +101,7 @@ class MatrixBodies(ProgramTest):
         return 1 / np.sqrt(theta) / (2 * np.pi), vectors / np.sqrt(theta)
 
     def has_frequencies_of_punch(self, body):
-        """Those of K and M with the ten digits of a punch file."""
+        """Frequencies of K and M with the ten digits of a punch file."""
         cut = np.vectorize(lambda v: float(f"{v:.9E}"))
         K, M = (cut(np.tril(A)) for A in (self.K_cd, self.M_cd))
         K, M = (A + np.tril(A, -1).T for A in (K, M))
@@ -146,7 +146,7 @@ class MatrixBodies(ProgramTest):
             said = self.reduce("n.op4").stderr
             self.same("body.h5")
         self.assertNotIn("not-rigid-mass", said)
-        # The same numbers taken in basic axes are another structure.
+        # Equal numbers in basic axes are another structure.
         self.reduce("n.op4", "axes=basic")
         with self.assertRaises(AssertionError):
             self.same("body.h5", 1e-6)

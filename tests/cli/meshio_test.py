@@ -197,7 +197,7 @@ class Deck(ProgramTest):
         self.assertEqual(self.count_cards(self.path("large.bdf")), counts)
         self.assertEqual(len(free.points), counts["GRID"])
         self.assertEqual(self.count_known_cells(free), self.expect_cells(counts))
-        # Of cards in 16 columns meshio knows GRID* alone.
+        # GRID* is the only card in 16 columns that meshio supports.
         narrow = self.count_cards(self.path("large.bdf"), large=False)
         self.assertEqual(self.count_known_cells(large), self.expect_cells(narrow))
         np.testing.assert_array_equal(large.points_id, free.points_id)

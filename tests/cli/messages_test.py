@@ -1,4 +1,4 @@
-"""What is said, how often, and what one bad subcase leaves of the others."""
+"""Messages: their text, their number, and the results of the other subcases if one fails."""
 import json
 import os
 import re
@@ -160,7 +160,7 @@ class Subcases(ProgramTest):
         result = self.bough("static", "two.bdf", code=1)
         self.assertIn("subcase 9: LOAD", result.stdout)
         self.assertRegex(result.stderr, r"error: subcase 7: load set 44 .*\[fe.missing-load\]")
-        # What is wrong for all is said once, without their names.
+        # Errors of all subcases are reported once, without their names.
         self.write("bad.bdf", TWO.replace("SPC=2", "SPC=1").replace("PBAR,1,1", "PBAR,2,1"))
         text = self.bough("static", "bad.bdf", code=1).stderr
         self.assertEqual(text.count("[fe.missing-property]"), 1)

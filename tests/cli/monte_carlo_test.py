@@ -152,7 +152,7 @@ class MonteCarlo(ProgramTest):
         for _ in range(5000):
             P = A @ P @ A.T + np.outer(N, N)
         deviation = np.sqrt(P[0, 0])
-        # Of 200 cases the deviation is known to 5 % (one in three); four times that.
+        # The deviation of 200 cases is known to 5 % (one sigma); four times that.
         self.assertLess(abs(said["statistics"]["angle"]["deviation"] / deviation - 1), 0.2)
         self.assertLess(abs(said["statistics"]["angle"]["mean"]), 4 * deviation / np.sqrt(200))
 

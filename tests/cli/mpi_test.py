@@ -1,4 +1,4 @@
-"""The same numbers on one process and on two."""
+"""Equal numbers on one process and on two."""
 import json
 import os
 import signal

@@ -1,4 +1,4 @@
-"""What a new user meets first: names of components, angles in degrees by mistake, commands of other programs, campaigns
+"""First errors of a new user: names of components, angles in degrees by mistake, commands of other programs, campaigns
 without their decks, files under other names, failures that leave nothing behind."""
 import json
 import math

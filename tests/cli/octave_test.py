@@ -51,7 +51,7 @@ def make_valid(name):
 
 
 def list_datasets(group, path=""):
-    """By every name: what is linked twice is there twice."""
+    """Visits arrays by every name: one linked twice appears twice."""
     for name, item in group.items():
         if isinstance(item, h5py.Group):
             yield from list_datasets(item, path + name + "/")
@@ -69,7 +69,7 @@ class Octave(ProgramTest):
         return done.stdout
 
     def check(self, name):
-        """How many arrays were compared."""
+        """Number of arrays compared."""
         with open(self.path(name + ".list"), encoding="utf-8", newline="\n") as f:
             found = {line.split("\t")[0]: line.rstrip("\n").split("\t")[1:] for line in f}
         with open(self.path(name + ".bytes"), "rb") as f:

@@ -24,7 +24,7 @@ MODULE = os.path.join(os.path.dirname(os.path.dirname(PROGRAM)), "python")
 
 @dataclasses.dataclass
 class Page:
-    """What a page needs to be run."""
+    """Files and commands for a page."""
     examples: tuple = ()     # copied to the folder first
     before: tuple = ()       # commands that make what the page takes for granted
     files: dict = dataclasses.field(default_factory=dict)      # name: text, also taken for granted
@@ -87,7 +87,7 @@ class Pages(ProgramTest):
             self.run_command("bough " + command, "before")
 
     def run_python(self, name, text):
-        """What needs the module is left out where it cannot be loaded: not built, or built with sanitizers."""
+        """Leaves out commands of the module where it cannot be loaded: not built, or built with sanitizers."""
         if "import bough" in text and not has_module():
             return
         ran = subprocess.run(["/usr/bin/python3", "-B", "-c", text], cwd=self.where, text=True, capture_output=True,
@@ -136,7 +136,7 @@ def example(name, **more):
     return Page((name,), **more)
 
 
-# What pages about formats take for granted: a body of the boom, its modes, a second of its spin-up.
+# Files for the pages about formats: a body of the boom, its modes, a second of its spin-up.
 BOOM = ("reduce boom.toml -q", "modes boom.bdf -o modes.h5 -q", "run short.toml -o run.h5 -q")
 SHORT = {"short.toml": read("data/examples/ex01-spinup/spinup.toml").replace("duration = 20.0", "duration = 1.0")}
 TIP = {"short.toml": SHORT["short.toml"].replace('"tip_deflection"', '"tip"').replace("duration = 1.0", "duration = 12.0")}

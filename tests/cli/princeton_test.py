@@ -99,7 +99,7 @@ class Princeton(ProgramTest):
             return f["sensors/tip"][-1], f["sensors/turn"][-1].reshape(3, 3)
 
     def calc_error(self, text, load, angle):
-        """Of the tip's place over its way, and of its rotation."""
+        """Errors of the tip's position relative to its displacement, and of its rotation."""
         place, rotation = calc_rod(direct(load, angle))
         tip, turn = self.calc_tip(text.replace("STIFFENING", ""), direct(load, angle))
         way = np.linalg.norm(place - [LENGTH, 0, 0])

@@ -208,7 +208,7 @@ class RanksOfModes(ProgramTest):
         self.compare(write_plate(more=more).replace("SPC = 1\n", "SPC = 1\nMPC = 1\n"), (2,))
 
     def test_files_and_lengths_are_those_of_one(self):
-        """What is drawn, ids and lengths by NORM = MAX, component by component."""
+        """Pictures, ids and lengths by NORM = MAX, component by component."""
         text = write_linked().replace("BEGIN BULK\n", "METHOD = 7\nBEGIN BULK\nEIGRL,7,,,8,,,,MAX\nPLOTEL,95001,1,500\n")
         self.write("deck.bdf", text)
         files = []

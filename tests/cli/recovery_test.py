@@ -107,7 +107,7 @@ class Recovery(ProgramTest):
             for c, name in enumerate(names):
                 np.testing.assert_allclose(whole[:, c], static[name], rtol=1e-7, atol=1e-7 * np.abs(static[name]).max() + 1e-6)
             errors.append(abs(modal[0, names.index("moment_z_a")] / static["moment_z_a"][0] - 1))
-        # By the modes alone it converges, and all that carry mass are all there is.
+        # Recovery by the modes alone converges; all modes that carry mass are complete.
         self.assertGreater(errors[0], 1e-3)
         self.assertLess(errors[1], errors[0])
         self.assertLess(errors[2], 1e-6)
@@ -240,7 +240,7 @@ class Recovery(ProgramTest):
         force = '[[force]]\nname = "tip"\nbody = "boom"\nnode = 5\nforce = [0.0, 1.0, 0.0]\n'
         self.write("s.toml", SYSTEM.format(**{**base, "body": "recover = true\n", "more": force}))
         self.assertIn("[system.recovery-loads]", self.bough("run", "s.toml", "-o", "r.h5", "-v").stderr)
-        # Of an actuator the interface does not help.
+        # Loads of an actuator are not those of the interface.
         self.reduce(2, recover="[1]")
         actuator = '[[actuator]]\nname = "fx"\ntype = "force"\nbody = "boom"\nnode = 9\naxis = [0.0, 1.0, 0.0]\n'
         self.write("s.toml", SYSTEM.format(**{**base, "body": "recover = true\n", "more": actuator}))

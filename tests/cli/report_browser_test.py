@@ -267,7 +267,7 @@ class Page(ProgramTest):
         self.check_sound()
 
     def test_arrows(self):
-        """What is drawn on each body is what moves it: Σ forces = m (a - g), Σ moments about the mass centre = 0."""
+        """Forces drawn on each body move it: Σ forces = m (a - g), Σ moments about the centre of mass = 0."""
         self.write("arms.toml", ARMS)
         self.bough("run", "arms.toml", "-o", "run.h5")
         self.open("run.h5")
@@ -355,7 +355,7 @@ class Page(ProgramTest):
           s.dispatchEvent(new Event('input')); }})()""")
 
     def catch_files(self):
-        """What the page saves from now on is kept in `saved`."""
+        """Keeps files that the page saves from now on in `saved`."""
         self.browser.run("""(() => { window.saved = []; const make = URL.createObjectURL.bind(URL);
           URL.createObjectURL = (blob) => { saved.push(blob); return make(blob); }; })()""")
 
@@ -573,7 +573,7 @@ class Page(ProgramTest):
         self.check_sound()
 
     def test_without_script(self):
-        """The same page where no script runs: pictures and tables are there."""
+        """The page without scripts: pictures and tables are there."""
         self.make_boom()
         self.bough("run", "spinup.toml", "-o", "spinup.h5")
         self.browser.call("Emulation.setScriptExecutionDisabled", value=True)

@@ -282,7 +282,7 @@ class Report(ProgramTest):
         edges = np.frombuffer(base64.b64decode(drawing["edges"]), "<u4").reshape(-1, 2)
         bars = xyz[edges[of_edge != 0xFFFFFFFF]]
         np.testing.assert_allclose(np.sort(bars[:, :, 0]), [[3, 4]])
-        # Of a static solution: by hand, a bar of two elements that carries 500 along and a moment.
+        # A static solution by hand: a bar of two elements that carries 500 along and a moment.
         self.write("rod.bdf", "SOL 101\nCEND\nSPC=1\nLOAD=7\nBEGIN BULK\nGRID,1,,0.,0.,0.\nGRID,2,,1.,0.,0.\nGRID,3,,3.,0.,0.\n"
                    "CBAR,1,1,1,2,0.,1.,0.\nCBAR,2,1,2,3,0.,1.,0.\nPBAR,1,1,1.-3,2.-8,3.-8,4.-8\nMAT1,1,7.+10,,.3,2700.\n"
                    "SPC1,1,123456,1\nFORCE,7,3,,500.,1.,0.,0.\nENDDATA\n")
@@ -411,7 +411,7 @@ class Report(ProgramTest):
         self.fails(1, "report", "long.h5", "--channel", "s77", error="cli.unknown-channel")
 
     def test_bad_numbers_and_names(self):
-        """What is not finite is a gap and told; names cannot become elements."""
+        """Values that are not finite are a gap and reported; names cannot become elements."""
         evil = "</script><img src=x onerror=alert(1)>&\"'"
         values = np.linspace(0, 1, 30)
         values[7] = np.nan

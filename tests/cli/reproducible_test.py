@@ -7,7 +7,7 @@ import numpy as np
 
 from support import BEAM, VERBS, ProgramTest
 
-# What differs from call to call by its nature: how long it took.
+# Values that differ from call to call: times of computing.
 TIMES = {"wall_time", "seconds"}
 STATIC = BEAM.replace("METHOD = 1", "LOAD = 2").replace("SOL 103", "SOL 101").replace(
     "ENDDATA", "FORCE,2,3,,1.,0.,-100.,10.\nENDDATA")

@@ -137,7 +137,7 @@ start = 1e18
         for error, line in [("system.bad-inertia", 1), ("cli.no-body-file", 9), ("system.unknown-node", 12),
                             ("system.unknown-node", 18), ("sensor.unknown-node", 23), ("run.bad-simulation", 41)]:
             self.assertRegex(result.stderr, rf"four.toml:{line}[:\d]*: error: .*\[{error}\]")
-        # What follows from those is not said.
+        # Consequences of these errors are not reported.
         self.assertEqual(result.stderr.count("error:"), 6, result.stderr)
 
 
@@ -162,7 +162,7 @@ class Resume(ProgramTest):
             for path in ["bodies/sat/quaternion", "momentum/angular", "energy/work"]:
                 self.assertLess(np.abs(f[path][:] - g[path][:]).max(), 1e-6, path)
             self.assertEqual(f.attrs["completed"], 1)
-            # What it began with, and what it went on with.
+            # The system at the start, and that of the continuation.
             self.assertEqual(f["system"].asstr()[()], SATELLITE)
             self.assertEqual(list(f["resumed/time"][:]), [4.0])
             self.assertIn("# longer", f["resumed/system"].asstr()[0])

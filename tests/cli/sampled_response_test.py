@@ -23,7 +23,7 @@ class SampledLoop(LinearTest):
         self.write("axis.toml", text.replace("kd = 1.6", f"kd = {numbers.get('kd', self.kd)!r}"))
 
     def calc(self, delay, omega):
-        """What is added from t_m = m T + (delay mod T) on comes back with the sample of the instant before t_m."""
+        """An addition from t_m = m T + (delay mod T) on comes back with the sample of the instant before t_m."""
         late, rest = divmod(delay, self.T)
 
         def hold(h):

@@ -156,7 +156,7 @@ class SharedCases(ProgramTest):
         self.assertAlmostEqual(moved[0][2, 1], -.01, delta=1e-12)
         self.assertIn("which no SPC of the subcase fixes", moved[1].stderr)
 
-    # Of the design notes.
+    # Cases of the design notes.
     def test_counts_of_stiff_arms(self):
         found = json.loads(self.bough("modes", self.deck("stiff_arm_count", "fe"), "--json").stdout)["frequency_hz"]
         self.assertEqual(len(found), 6)

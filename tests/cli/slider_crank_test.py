@@ -70,7 +70,7 @@ def name_sensor(name, body, node):
 
 class SliderCrank(ProgramTest):
     def calc_deflections(self, text):
-        """Of the middle of the rod from the line between its pins, and the force of the piston's guide along it."""
+        """Deflection of the middle of the rod from the line between its pins, and the force of the piston's guide along it."""
         self.write("system.toml", text)
         self.bough("run", "system.toml", "-o", "results.h5", "--force")
         with h5py.File(self.path("results.h5")) as f:

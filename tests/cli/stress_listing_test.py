@@ -198,7 +198,7 @@ class Stresses(ProgramTest):
 
 
 class Strict(ProgramTest):
-    """What readers that make room for a table once, and read fields by their columns, stop at."""
+    """Faults for readers that allocate a table once and read fields by their columns."""
     DECK = HEAD + ("GRID,1,,0.,0.,0.\nGRID,2,,1.,0.,0.\nGRID,3,,1.,1.,0.\nGRID,4,,0.,1.,0.\nGRID,5,,2.,0.,0.\n"
                    "GRID,6,,2.,1.,0.\nGRID,7,,3.,0.,0.\nGRID,8,,3.,1.,0.\n"
                    "CQUAD4,1,1,1,2,3,4\nCQUAD4,2,2,2,5,6,3\nCQUAD4,3,1,5,7,8,6\n"

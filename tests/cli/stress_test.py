@@ -359,7 +359,7 @@ class Summary(ProgramTest):
         self.assertRegex(said.stdout, r"margin of safety +of +smallest +element\n +CROD +tension +3.0+e\+00 +11")
         self.assertRegex(said.stdout, r"over subcases: displacement")
         self.assertNotIn("over subcases", self.bough("static", "d.bdf").stdout)
-        # What the deck asks for, and an option or nothing gives.
+        # Requests of the deck that an option, or nothing, provides.
         self.assertIn("'static --extremes'", said.stderr)
         self.assertRegex(said.stderr, r"not used: MAXMIN \(line 4\)")
 

@@ -8,7 +8,7 @@ import unittest
 
 PROGRAM = os.environ["BOUGH_PROGRAM"]
 SOURCE = os.environ["BOUGH_SOURCE_DIR"]
-# How many times as long as the program itself one under the sanitizers takes; these need address space without end.
+# Factor of time of a program under the sanitizers; these need address space without end.
 SLOWER = int(os.environ.get("BOUGH_SLOWER", "1"))
 # Guards against hangs only: no command takes a tenth of it, alone or on a busy machine.
 HANG = 600 * SLOWER

@@ -9,7 +9,7 @@ from support import PROGRAM, ProgramTest
 
 class Terminal(ProgramTest):
     def at_terminal(self, *arguments, **env):
-        """What the program prints where its output is a terminal."""
+        """Output of the program at a terminal."""
         kept = {k: v for k, v in os.environ.items() if k != "NO_COLOR"}
         to_read, terminal = pty.openpty()
         process = subprocess.Popen([PROGRAM, *arguments], cwd=self.folder, stdin=terminal, stdout=terminal,

@@ -43,7 +43,7 @@ class UserLibraries(ProgramTest):
         return self.write("s.toml", get_astray(place, act, since, "x:x") + SPRING)
 
     def check_samples(self, least):
-        """What the file holds is right: x = 0.5 cos 2t."""
+        """Checks the file: x = 0.5 cos 2t."""
         with h5py.File(self.path("s.h5")) as f:
             t, x = f["time"][:], f["sensors/x"][:, 0]
             self.assertFalse(f.attrs["completed"])

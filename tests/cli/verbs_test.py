@@ -91,7 +91,7 @@ class Check(ProgramTest):
         for case in cases[:2]:  # EA d / L, whether an SPC holds the dof or not
             self.assertAlmostEqual(case["displacement"][6], .01, places=15)
             self.assertAlmostEqual(case["reaction"][6] / (7e7 * .01 / 2), 1, places=12)
-        # What SPCD held is free again for the next load.
+        # The dof of SPCD is free again for the next load.
         self.assertAlmostEqual(cases[2]["displacement"][7] / (3 * 8 / (3 * 700)), 1, places=9)
         self.assertAlmostEqual(cases[2]["resultants"]["reaction"][1], -3, places=9)
 

@@ -1,4 +1,4 @@
-// What bough export --to fmu refuses, where the program itself cannot get there.
+// Errors of bough export --to fmu that the program itself cannot reach.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <unistd.h>

@@ -34,7 +34,7 @@ extern "C" int LLVMFuzzerInitialize(int*, char***) {
   g_path = std::string(folder ? folder : "/tmp") + "/bough-fuzz-" + std::to_string(::getpid());
   // The library's memory, half a megabyte for each file that is opened, is not what is looked at: it keeps it.
   H5set_free_list_limits(-1, -1, -1, -1, -1, -1);
-  bough::set_apart_worker(bough::fuzz::work_by_one_process);
+  bough::set_isolated_runner(bough::fuzz::work_by_one_process);
   std::atexit([] { ::unlink(g_path.c_str()); });
   return 0;
 }

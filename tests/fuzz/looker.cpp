@@ -27,10 +27,10 @@ namespace {
 
 /// Files that one process may look at: calls of the library that fail leave memory behind.
 constexpr int kFiles = 2000;
-/// Of computing, and then of waiting on a busy machine. Some damaged lists have no end, and a whole file takes 1 to 5.
+/// Limits of computing, and then of waiting on a busy machine. Some damaged lists have no end; a file takes 1 to 5.
 constexpr int kMilliseconds = 15, kMostMilliseconds = 2000;
 
-/// How the process ends that finds a fault of Bough's own code, not of the library that it watches.
+/// Exit code of a process that finds a fault of Bough's own code, not of the library that it watches.
 constexpr int kOwnFault = 77;
 
 struct Server {
@@ -40,7 +40,7 @@ struct Server {
 
 /// The server is this program, forked: it knows a task by its address.
 struct Order {
-  ApartTask task = nullptr;
+  IsolatedTask task = nullptr;
   std::string path;
 };
 
@@ -71,8 +71,8 @@ bool receive(int descriptor, Order& order) {
   return ::read(descriptor, &order.task, sizeof order.task) == sizeof order.task && receive(descriptor, order.path);
 }
 
-/// Of code of Bough: of this program, but none of the functions by which the sanitizers replace others. Those are the
-/// only ones that the dynamic linker knows.
+/// Returns true for code of Bough: of this program, except the functions by which the sanitizers replace others. Those
+/// are the only ones that the dynamic linker knows.
 bool is_own(const void* code) {
   Dl_info here{}, there{};
   if (::dladdr(reinterpret_cast<const void*>(&is_own), &here) == 0 || ::dladdr(code, &there) == 0) return false;
@@ -92,8 +92,8 @@ void see_report(const char* report) {
   ::_exit(1);
 }
 
-/// Whether code broke that Bough did not call through a function of the sanitizers: the library frees what it never had,
-/// and their allocator, which lies in this program, breaks.
+/// Returns true if code broke that Bough did not call through a function of the sanitizers: the library frees memory
+/// that it never had, and their allocator, which is in this program, breaks.
 bool broke_by_itself(const void* code) {
   if (!is_own(code)) return false;
   void* frames[32];
@@ -104,8 +104,8 @@ bool broke_by_itself(const void* code) {
     if (is_own(frames[i])) continue;
     // A library that calls back, or one of the functions that replace others: whoever called that.
     Dl_info there{};
-    const bool is_replaced = ::dladdr(frames[i], &there) != 0 && there.dli_sname &&
-                             std::strstr(there.dli_fname, "fuzz_readers");
+    const bool is_replaced =
+        ::dladdr(frames[i], &there) != 0 && there.dli_sname && std::strstr(there.dli_fname, "fuzz_readers");
     return !is_replaced || i + 1 >= count || is_own(frames[i + 1]);
   }
   return true;
@@ -156,7 +156,7 @@ void watch_for_own_faults() {
   ::_exit(1);
 }
 
-/// Whether Bough's own code was at fault.
+/// Returns true if Bough's own code was at fault.
 bool stop(Server& server) {
   if (server.process < 0) return false;
   ::close(server.to);
@@ -185,7 +185,8 @@ void start(Server& server) {
 
 }  // namespace
 
-Apart work_by_one_process(const std::string& path, ApartTask task, const ApartLimits&, const std::string&) {
+IsolatedResult work_by_one_process(const std::string& path, IsolatedTask task, const IsolationLimits&,
+                                   const std::string&) {
   static Server server;
   std::signal(SIGPIPE, SIG_IGN);
   if (server.files >= kFiles) stop(server);
@@ -194,10 +195,10 @@ Apart work_by_one_process(const std::string& path, ApartTask task, const ApartLi
   for (const bool is_new : {server.process < 0, true}) {
     if (server.process < 0) start(server);
     ++server.files;
-    Apart done;
+    IsolatedResult done;
     pollfd wait{server.from, POLLIN, 0};
     if (send(server.to, Order{task, path}) && ::poll(&wait, 1, kMostMilliseconds) > 0 &&
-        receive(server.from, done.said))
+        receive(server.from, done.output))
       return done;
     if (!stop(server)) break;
     if (is_new) {

@@ -81,7 +81,7 @@ function = "push"
 
 
 def shrink(path):
-    """The same file with chunks no larger than what is in them."""
+    """Copies the file with chunks no larger than their contents."""
     import h5py
 
     def copy(source, target):

@@ -36,7 +36,7 @@ namespace bough::fuzz {
 
 namespace {
 
-/// Whether it was read.
+/// Returns true if it was read.
 template <class Read>
 bool survive(const Read& read) {
   try {
@@ -61,7 +61,7 @@ void read_deck(const std::string& path) {
   });
 }
 
-// What is packed for other ranks unpacks to the same deck.
+// Bytes packed for other ranks unpack to the same deck.
 void read_packed(const std::string& path) {
   survive([&] {
     Diagnostics plain, packed;

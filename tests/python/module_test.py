@@ -158,7 +158,7 @@ class Errors(InFolder):
         self.assertEqual(first.column, 15)  # of the x
         self.assertIn("bad.bdf:3: error:", str(raised.exception))
         self.assertIsInstance(raised.exception, bough.Failure)
-        # The same of what Python calls as the shell does.
+        # Calls of Python fail as those of the shell do.
         for call in (lambda: bough.modes("bad.bdf", 2), lambda: bough.static("bad.bdf")):
             with self.assertRaises(bough.InputError) as raised:
                 call()
@@ -366,7 +366,7 @@ class Runs(InFolder):
 
 
 class Threads(InFolder):
-    """What MPI, PETSc and HDF5 do, of many threads at once, each with files of its own."""
+    """MPI, PETSc and HDF5 in many threads at once, each with separate files."""
     COUNT = 8
 
     def setUp(self):

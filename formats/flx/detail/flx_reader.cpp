@@ -11,7 +11,7 @@ namespace bough::flx::detail {
 
 namespace {
 
-constexpr int kMostCount = 1000000;
+constexpr int kMaxCount = 1000000;
 constexpr double kUnset = std::numeric_limits<double>::quiet_NaN();
 
 template <class Number>
@@ -37,9 +37,9 @@ int NodeList::find(int id) const {
   return found == position.end() ? -1 : found->second;
 }
 
-int NodeList::add(int id, int most) {
+int NodeList::add(int id, int max_value) {
   const int next = static_cast<int>(ids.size());
-  if (next >= most || !position.emplace(id, next).second) return -1;
+  if (next >= max_value || !position.emplace(id, next).second) return -1;
   ids.push_back(id);
   return next;
 }
@@ -128,7 +128,7 @@ bool FlxReader::read_line() {
   *integer->second = value;
   if (label == "MODOPT") return file_.modopt >= 0 && file_.modopt <= 2;
   if (label == "DIGITS") return file_.digits >= 2 && file_.digits <= 17;
-  if (label != "BODY") return *integer->second >= 0 && *integer->second <= kMostCount;
+  if (label != "BODY") return *integer->second >= 0 && *integer->second <= kMaxCount;
   return true;
 }
 
@@ -173,11 +173,11 @@ int FlxReader::read_index(char kind, const std::string& word) {
   if (kind == 'm') return nodes_.add(index, num_nodes_);
   if (kind == 'n') return nodes_.find(index);
   if (kind == 's') return special_nodes_.find(index);
-  const int most = kind == 'a'   ? 3
-                   : kind == 'l' ? records::kNumInertialLoads
-                   : kind == 'e' ? num_locators_
-                                 : num_modes_;
-  return index >= 1 && index <= most ? index - 1 : -1;
+  const int max_value = kind == 'a'   ? 3
+                        : kind == 'l' ? records::kNumInertialLoads
+                        : kind == 'e' ? num_locators_
+                                      : num_modes_;
+  return index >= 1 && index <= max_value ? index - 1 : -1;
 }
 
 bool FlxReader::read_values(const Label& label) {

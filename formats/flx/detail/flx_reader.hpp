@@ -17,7 +17,7 @@ struct NodeList {
   /// -1 when it is not there.
   int find(int id) const;
   /// -1 when it is there already, or the list is full.
-  int add(int id, int most);
+  int add(int id, int max_count);
 };
 
 class FlxReader {

@@ -6,9 +6,6 @@ namespace bough::hdf5 {
 
 namespace {
 
-/// Limit of the list of users of a scale: 16 bytes each, and 64 kB per attribute.
-constexpr std::size_t kMostUsers = 4000;
-
 /// Writes text as H5DS does: fixed length, with its terminating zero.
 bool write_fixed_text(hid_t object, const char* name, const std::string& text) {
   const Handle type(H5Tcopy(H5T_C_S1), H5Tclose), space(H5Screate(H5S_SCALAR), H5Sclose);
@@ -64,7 +61,7 @@ bool attach_scale(hid_t file, const std::string& scale, const std::vector<std::s
       return false;
     list.push_back(user);
   }
-  return list.empty() || list.size() > kMostUsers || write_reference_list(own.get(), list);
+  return list.empty() || list.size() > kMaxUsers || write_reference_list(own.get(), list);
 }
 
 }  // namespace bough::hdf5

@@ -17,12 +17,12 @@ constexpr double kPiece = 8 * kMega;
 /// At the end of a dataset whose middle is passed over.
 constexpr double kEnd = kMega / 4;
 /// Numbers may be claimed and not stored up to this many bytes in a whole file: samples of a run that was killed.
-constexpr double kMostUnstored = 64 * kMega;
+constexpr double kMaxUnstored = 64 * kMega;
 /// A compressed file may hold this many times its size.
-constexpr double kMostCompression = 200;
+constexpr double kMaxCompression = 200;
 /// Limit of the bytes of uncompressed numbers read; beyond it only the ends of each dataset are read.
-constexpr double kMostPlain = 32 * kMega;
-constexpr int kMostLevels = 64;
+constexpr double kMaxPlain = 32 * kMega;
+constexpr int kMaxGroupLevels = 64;
 
 struct Link {
   std::string name;
@@ -110,7 +110,8 @@ class Walker {
     const auto kind = H5Iget_type(object);
     if (kind == H5I_DATASET) read_dataset(object, path);
     if (kind != H5I_GROUP) return;
-    if (level > kMostLevels) return report_claim(path + " is nested deeper than " + std::to_string(kMostLevels));
+    if (level > kMaxGroupLevels)
+      return report_claim(path + " is nested deeper than " + std::to_string(kMaxGroupLevels));
     std::vector<Link> links;
     if (H5Literate(object, H5_INDEX_NAME, H5_ITER_INC, nullptr, add_link, &links) < 0)
       return report_unreadable("group " + path);
@@ -183,16 +184,16 @@ class Walker {
       chunk_size = calc_count(chunk) * width;
     }
     const auto stored = static_cast<double>(H5Dget_storage_size(dataset));
-    const double expected = num_filters > 0 ? kMostCompression * file_size_ : 0;
+    const double expected = num_filters > 0 ? kMaxCompression * file_size_ : 0;
     unstored_ += std::max(0.0, size - stored);
-    if (stored > file_size_ || unstored_ > kMostUnstored + expected || chunk_size > kMostUnstored + expected)
+    if (stored > file_size_ || unstored_ > kMaxUnstored + expected || chunk_size > kMaxUnstored + expected)
       return report_claim(path + " claims the shape " + describe_shape(dims) + ", which the " +
                           std::to_string(static_cast<long long>(file_size_)) + " bytes of the file cannot hold");
     const Handle memory = make_memory_type(type.get());
     if (!memory.is_valid()) return;
-    // H5Dget_storage_size has walked through all chunks; what is behind them is numbers as they lie in the file.
+    // H5Dget_storage_size has read all chunks; the data after them are uncompressed numbers.
     const bool is_plain = num_filters == 0 && H5Tget_class(memory.get()) != H5T_STRING;
-    read_rows(dataset, path, memory, dims, is_plain && plain_ > kMostPlain);
+    read_rows(dataset, path, memory, dims, is_plain && plain_ > kMaxPlain);
     if (is_plain) plain_ += size;
   }
 
@@ -223,7 +224,7 @@ class Walker {
       if (H5Dread(dataset, memory.get(), to.get(), from.get(), H5P_DEFAULT, data.data()) < 0)
         return report_unreadable(path);
       free_text(memory, to, data);
-      if (text_ > kMostUnstored + 16 * file_size_)
+      if (text_ > kMaxUnstored + 16 * file_size_)
         return report_claim(path + " claims more text than the " + std::to_string(static_cast<long long>(file_size_)) +
                             " bytes of the file hold");
     }

@@ -13,7 +13,7 @@ namespace bough::hdf5 {
 
 namespace {
 bool g_has_lost_file = false;
-// Every handle closes itself; what could not be closed would be written once more at the exit.
+// Every handle closes itself; a file that could not be closed would be written again at the exit.
 [[maybe_unused]] const bool g_leaves_in_peace = H5dont_atexit() >= 0;
 }  // namespace
 
@@ -28,9 +28,9 @@ Handle make_string_type() {
 }
 
 Handle make_string_transfer(std::size_t count) {
-  constexpr std::size_t kOfOne = 32, kLeast = 1024, kMost = 1 << 20;  // bytes; in the file 16, in memory a pointer
+  constexpr std::size_t kPerText = 32, kMin = 1024, kMax = 1 << 20;  // bytes; in the file 16, in memory a pointer
   Handle transfer(H5Pcreate(H5P_DATASET_XFER), H5Pclose);
-  H5Pset_buffer(transfer.get(), std::clamp(kOfOne * count, kLeast, kMost), nullptr, nullptr);
+  H5Pset_buffer(transfer.get(), std::clamp(kPerText * count, kMin, kMax), nullptr, nullptr);
   return transfer;
 }
 

@@ -93,7 +93,7 @@ void abandon_writes(hid_t file);
 /// "/a/b/c" -> every proper parent and then whether the object itself is there.
 bool exists(hid_t file, const std::string& path);
 
-/// Where an open object stands in its file: two names of one object have one address.
+/// Address of an open object in its file: two names of one object have one address.
 haddr_t get_address(hid_t object);
 
 /// "3 x 4"; "scalar" for no dimension.

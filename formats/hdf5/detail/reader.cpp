@@ -21,7 +21,7 @@ constexpr char kSignature[8] = {'\x89', 'H', 'D', 'F', '\r', '\n', '\x1a', '\n'}
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 /// To open a file that a run writes.
-constexpr int kMostTries = 40;
+constexpr int kMaxTries = 40;
 
 std::string describe_expected(const Shape& shape) {
   std::string text;
@@ -84,7 +84,7 @@ Handle open_file(const std::string& path, bool to_write) {
   };
   Handle file = open();
   // In the middle of a flush of the run that writes it: the next moment will do.
-  for (int i = 0; !file.is_valid() && !to_write && i < kMostTries && is_file_locked(path); ++i) {
+  for (int i = 0; !file.is_valid() && !to_write && i < kMaxTries && is_file_locked(path); ++i) {
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
     file = open();
   }

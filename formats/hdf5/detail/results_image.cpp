@@ -6,6 +6,7 @@
 
 #include "base/diagnostic.hpp"
 #include "base/version.hpp"
+#include "formats/hdf5/detail/dimension_scales.hpp"
 #include "formats/hdf5/detail/results_layout.hpp"
 
 namespace bough::hdf5 {
@@ -17,8 +18,6 @@ constexpr std::size_t kSuperblock = 48;
 constexpr std::uint64_t kMaxGroups = 96;
 /// Size of a row group, and bounds of its rows.
 constexpr std::uint64_t kGroupBytes = 4 << 20, kMinRows = 16, kMaxRows = 1024;
-/// Datasets that /time lists as its users: an attribute holds 64 kB.
-constexpr std::size_t kMaxUsers = 4000;
 /// Takes the place of the reference to /time in the heap until its address is known.
 const std::string kTimeReference = "\1\2\3/time";
 

@@ -13,7 +13,7 @@ inline constexpr const char* kChecksum = "checksum";
 /// Root attribute: samples that every channel has for certain.
 inline constexpr const char* kNumSamples = "num_samples";
 
-/// Attribute of a checkpoint: events before it; beside kNumSamples.
+/// Attribute of a checkpoint, next to kNumSamples: number of events before it.
 inline constexpr const char* kNumEvents = "num_events";
 /// Root attribute: seconds from the start of the run to its end, all its parts.
 inline constexpr const char* kWallTime = "wall_time";

@@ -28,7 +28,7 @@ class TextHeaps {
   Sizes read_heap(double address) const;
 
   int descriptor_ = -1;
-  double begin_ = 0;  ///< of addresses, behind what is not HDF5's
+  double begin_ = 0;  ///< of addresses, after data that are not HDF5's
   std::size_t address_size_ = 8, length_size_ = 8;
   Handle type_;
   std::map<double, Sizes> heaps_;

@@ -85,7 +85,7 @@ hid_t FileWriter::find_parent(const std::string& path) {
 }
 
 void FileWriter::write(const std::string& path, const Dims& shape, hid_t file_type, const Put& put,
-                       const Meaning& meaning) {
+                       const ArrayAttributes& attributes) {
   errno = 0;
   const hid_t parent = find_parent(path);
   const Handle space = make_space(shape);
@@ -95,17 +95,17 @@ void FileWriter::write(const std::string& path, const Dims& shape, hid_t file_ty
                    H5Dclose);
     check(dataset.is_valid(), "dataset " + path + " cannot be written");
     if (has_elements(shape)) check(put(dataset.get(), space.get()), "dataset " + path + " cannot be written");
-    write_meaning(dataset.get(), path, meaning);
+    write_attributes(dataset.get(), path, attributes);
     check(dataset.reset(), "dataset " + path + " cannot be written");
   }
 }
 
 void FileWriter::write(const std::string& path, const Dims& shape, hid_t file_type, hid_t memory_type, const void* data,
-                       const Meaning& meaning, hid_t transfer) {
+                       const ArrayAttributes& attributes, hid_t transfer) {
   const auto put = [&](hid_t dataset, hid_t) {
     return H5Dwrite(dataset, memory_type, H5S_ALL, H5S_ALL, transfer, data) >= 0;
   };
-  write(path, shape, file_type, put, meaning);
+  write(path, shape, file_type, put, attributes);
 }
 
 void FileWriter::write_attribute(hid_t object, const std::string& path, const std::string& name, const Dims& shape,
@@ -126,8 +126,8 @@ void FileWriter::write_attribute(const std::string& object, const std::string& n
   write_attribute(opened.get(), object, name, shape, file_type, memory_type, data);
 }
 
-void FileWriter::write_meaning(hid_t dataset, const std::string& path, const Meaning& meaning) {
-  for (const auto& [name, text] : {std::pair("description", &meaning.description), {"dims", &meaning.dims}}) {
+void FileWriter::write_attributes(hid_t dataset, const std::string& path, const ArrayAttributes& attributes) {
+  for (const auto& [name, text] : {std::pair("description", &attributes.description), {"dims", &attributes.dims}}) {
     const char* data = text->c_str();
     write_attribute(dataset, path, name, Dims{}, string_type_.get(), string_type_.get(), &data);
   }
@@ -162,16 +162,18 @@ void FileWriter::write_source(const std::vector<std::pair<std::string, std::stri
   write_attribute("/", "source", Dims{source.size(), 2}, string_type_.get(), string_type_.get(), data.data());
 }
 
-void FileWriter::write_numbers(const std::string& path, const Dims& shape, const double* data, const Meaning& meaning) {
-  write(path, shape, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, data, meaning);
+void FileWriter::write_numbers(const std::string& path, const Dims& shape, const double* data,
+                               const ArrayAttributes& attributes) {
+  write(path, shape, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, data, attributes);
 }
 
-void FileWriter::write_floats(const std::string& path, const Dims& shape, const float* data, const Meaning& meaning) {
-  write(path, shape, H5T_IEEE_F32LE, H5T_NATIVE_FLOAT, data, meaning);
+void FileWriter::write_floats(const std::string& path, const Dims& shape, const float* data,
+                              const ArrayAttributes& attributes) {
+  write(path, shape, H5T_IEEE_F32LE, H5T_NATIVE_FLOAT, data, attributes);
 }
 
 void FileWriter::write_items(const std::string& path, const Dims& shape,
-                             const std::function<void(std::size_t, double*)>& fill, const Meaning& meaning) {
+                             const std::function<void(std::size_t, double*)>& fill, const ArrayAttributes& attributes) {
   constexpr std::size_t kAtOnce = 500'000;  // numbers
   const std::size_t num = shape.at(0);
   std::size_t size = 1;
@@ -180,42 +182,45 @@ void FileWriter::write_items(const std::string& path, const Dims& shape,
   std::vector<double> data(std::min(slab, num) * size);
   const auto put = [&](hid_t dataset, hid_t space) {
     Dims start(shape.size(), 0), count = shape;
-    bool is_fine = true;
-    for (std::size_t first = 0; is_fine && first < num; first += slab) {
+    bool is_written = true;
+    for (std::size_t first = 0; is_written && first < num; first += slab) {
       start[0] = first;
       count[0] = std::min(slab, num - first);
       for (std::size_t i = 0; i < count[0]; ++i) fill(first + i, data.data() + i * size);
       const Handle memory = make_space(count);
       H5Sselect_hyperslab(space, H5S_SELECT_SET, start.data(), nullptr, count.data(), nullptr);
-      is_fine = H5Dwrite(dataset, H5T_NATIVE_DOUBLE, memory.get(), space, H5P_DEFAULT, data.data()) >= 0;
+      is_written = H5Dwrite(dataset, H5T_NATIVE_DOUBLE, memory.get(), space, H5P_DEFAULT, data.data()) >= 0;
     }
-    return is_fine;
+    return is_written;
   };
-  write(path, shape, H5T_IEEE_F64LE, put, meaning);
+  write(path, shape, H5T_IEEE_F64LE, put, attributes);
 }
 
-void FileWriter::write_integers(const std::string& path, const Dims& shape, const int* data, const Meaning& meaning) {
-  write(path, shape, H5T_STD_I32LE, H5T_NATIVE_INT, data, meaning);
+void FileWriter::write_integers(const std::string& path, const Dims& shape, const int* data,
+                                const ArrayAttributes& attributes) {
+  write(path, shape, H5T_STD_I32LE, H5T_NATIVE_INT, data, attributes);
 }
 
-void FileWriter::write_strings(const std::string& path, const std::vector<std::string>& words, const Meaning& meaning) {
+void FileWriter::write_strings(const std::string& path, const std::vector<std::string>& words,
+                               const ArrayAttributes& attributes) {
   std::vector<const char*> data;
   for (const auto& w : words) data.push_back(w.c_str());
-  write(path, {words.size()}, string_type_.get(), string_type_.get(), data.data(), meaning,
+  write(path, {words.size()}, string_type_.get(), string_type_.get(), data.data(), attributes,
         make_string_transfer(words.size()).get());
 }
 
-void FileWriter::write_number(const std::string& path, double value, const Meaning& meaning) {
-  write_numbers(path, {1}, &value, meaning);
+void FileWriter::write_number(const std::string& path, double value, const ArrayAttributes& attributes) {
+  write_numbers(path, {1}, &value, attributes);
 }
 
-void FileWriter::write_vector(const std::string& path, const Eigen::VectorXd& v, const Meaning& meaning) {
-  write_numbers(path, {static_cast<hsize_t>(v.size())}, v.data(), meaning);
+void FileWriter::write_vector(const std::string& path, const Eigen::VectorXd& v, const ArrayAttributes& attributes) {
+  write_numbers(path, {static_cast<hsize_t>(v.size())}, v.data(), attributes);
 }
 
-void FileWriter::write_vector_with_zeros(const std::string& path, const Eigen::VectorXd& v, const Meaning& meaning) {
+void FileWriter::write_vector_with_zeros(const std::string& path, const Eigen::VectorXd& v,
+                                         const ArrayAttributes& attributes) {
   constexpr Eigen::Index kChunk = 4096;
-  if (v.size() < 2 * kChunk) return write_vector(path, v, meaning);
+  if (v.size() < 2 * kChunk) return write_vector(path, v, attributes);
   errno = 0;
   make_parents(path);
   const Handle space = make_space({static_cast<hsize_t>(v.size())});
@@ -237,23 +242,24 @@ void FileWriter::write_vector_with_zeros(const std::string& path, const Eigen::V
       check(H5Dwrite(dataset.get(), H5T_NATIVE_DOUBLE, memory.get(), space.get(), H5P_DEFAULT, v.data() + from) >= 0,
             "dataset " + path + " cannot be written");
     }
-    write_meaning(dataset.get(), path, meaning);
+    write_attributes(dataset.get(), path, attributes);
     check(dataset.reset(), "dataset " + path + " cannot be written");
   }
 }
 
-void FileWriter::write_matrix(const std::string& path, const Eigen::MatrixXd& m, const Meaning& meaning) {
+void FileWriter::write_matrix(const std::string& path, const Eigen::MatrixXd& m, const ArrayAttributes& attributes) {
   const RowMajor rows = m;
-  write_numbers(path, {static_cast<hsize_t>(m.rows()), static_cast<hsize_t>(m.cols())}, rows.data(), meaning);
+  write_numbers(path, {static_cast<hsize_t>(m.rows()), static_cast<hsize_t>(m.cols())}, rows.data(), attributes);
 }
 
-void FileWriter::write_integers(const std::string& path, const std::vector<int>& data, const Meaning& meaning) {
-  write_integers(path, {data.size()}, data.data(), meaning);
+void FileWriter::write_integers(const std::string& path, const std::vector<int>& data,
+                                const ArrayAttributes& attributes) {
+  write_integers(path, {data.size()}, data.data(), attributes);
 }
 
-void FileWriter::write_integers(const std::string& path, const Eigen::MatrixXi& m, const Meaning& meaning) {
+void FileWriter::write_integers(const std::string& path, const Eigen::MatrixXi& m, const ArrayAttributes& attributes) {
   const Eigen::Matrix<int, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> rows = m;
-  write_integers(path, {static_cast<hsize_t>(m.rows()), static_cast<hsize_t>(m.cols())}, rows.data(), meaning);
+  write_integers(path, {static_cast<hsize_t>(m.rows()), static_cast<hsize_t>(m.cols())}, rows.data(), attributes);
 }
 
 void FileWriter::attach_scale(const std::string& scale, const std::vector<std::string>& users) {

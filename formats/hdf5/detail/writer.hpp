@@ -1,5 +1,5 @@
 #pragma once
-/// \file Writes one HDF5 file: beside its place first, renamed when whole.
+/// \\file Writes one HDF5 file: first under another name, renamed when complete.
 #include <functional>
 #include <map>
 #include <string>
@@ -14,11 +14,11 @@
 namespace bough::hdf5 {
 
 /// Attributes of an array: text for its `description`, and its dimensions in M L T F for `dims`.
-struct Meaning {
+struct ArrayAttributes {
   std::string description, dims;
 };
 
-/// Every function throws ComputationError "hdf5.write". Without commit() nothing is left behind.
+/// Every function throws ComputationError "hdf5.write". Without commit() no file is left.
 class FileWriter {
  public:
   FileWriter(const std::string& path, const std::string& format, const std::string& version);
@@ -26,23 +26,23 @@ class FileWriter {
   FileWriter(const FileWriter&) = delete;
   FileWriter& operator=(const FileWriter&) = delete;
 
-  void write_numbers(const std::string& path, const Dims& shape, const double* data, const Meaning& meaning);
+  void write_numbers(const std::string& path, const Dims& shape, const double* data, const ArrayAttributes& attributes);
   /// Writes numbers that are not contiguous: fill(first, data) stores item `first` of the first dimension at `data`. A
   /// few megabytes at a time.
   void write_items(const std::string& path, const Dims& shape, const std::function<void(std::size_t, double*)>& fill,
-                   const Meaning& meaning);
+                   const ArrayAttributes& attributes);
   /// Single precision, for what is only drawn.
-  void write_floats(const std::string& path, const Dims& shape, const float* data, const Meaning& meaning);
-  void write_integers(const std::string& path, const Dims& shape, const int* data, const Meaning& meaning);
-  void write_strings(const std::string& path, const std::vector<std::string>& data, const Meaning& meaning);
+  void write_floats(const std::string& path, const Dims& shape, const float* data, const ArrayAttributes& attributes);
+  void write_integers(const std::string& path, const Dims& shape, const int* data, const ArrayAttributes& attributes);
+  void write_strings(const std::string& path, const std::vector<std::string>& data, const ArrayAttributes& attributes);
 
-  void write_number(const std::string& path, double value, const Meaning& meaning);
-  void write_vector(const std::string& path, const Eigen::VectorXd& v, const Meaning& meaning);
+  void write_number(const std::string& path, double value, const ArrayAttributes& attributes);
+  void write_vector(const std::string& path, const Eigen::VectorXd& v, const ArrayAttributes& attributes);
   /// In chunks, of which those of zeros take no space.
-  void write_vector_with_zeros(const std::string& path, const Eigen::VectorXd& v, const Meaning& meaning);
-  void write_matrix(const std::string& path, const Eigen::MatrixXd& m, const Meaning& meaning);
-  void write_integers(const std::string& path, const std::vector<int>& data, const Meaning& meaning);
-  void write_integers(const std::string& path, const Eigen::MatrixXi& m, const Meaning& meaning);
+  void write_vector_with_zeros(const std::string& path, const Eigen::VectorXd& v, const ArrayAttributes& attributes);
+  void write_matrix(const std::string& path, const Eigen::MatrixXd& m, const ArrayAttributes& attributes);
+  void write_integers(const std::string& path, const std::vector<int>& data, const ArrayAttributes& attributes);
+  void write_integers(const std::string& path, const Eigen::MatrixXi& m, const ArrayAttributes& attributes);
 
   /// `object` "/" is the root.
   void write_attribute(const std::string& object, const std::string& name, const std::string& text);
@@ -54,7 +54,7 @@ class FileWriter {
   void make_group(const std::string& path);
   /// A second name of an existing dataset.
   void link(const std::string& path, const std::string& existing);
-  /// The dataset `scale` is what the first dimension of `users` stands at.
+  /// Makes the dataset `scale` the coordinates of the first dimension of `users`.
   void attach_scale(const std::string& scale, const std::vector<std::string>& users);
 
   /// Starts to write the bytes so far to disk, in the background.
@@ -66,9 +66,10 @@ class FileWriter {
   void check(bool ok, const std::string& what);
   /// put(dataset, its space) writes all that is in it; false: it could not.
   using Put = std::function<bool(hid_t, hid_t)>;
-  void write(const std::string& path, const Dims& shape, hid_t file_type, const Put& put, const Meaning& meaning);
+  void write(const std::string& path, const Dims& shape, hid_t file_type, const Put& put,
+             const ArrayAttributes& attributes);
   void write(const std::string& path, const Dims& shape, hid_t file_type, hid_t memory_type, const void* data,
-             const Meaning& meaning, hid_t transfer = H5P_DEFAULT);
+             const ArrayAttributes& attributes, hid_t transfer = H5P_DEFAULT);
   void make_parents(const std::string& path);
   /// The group that `path` lies in, made where it is not there.
   hid_t find_parent(const std::string& path);
@@ -77,7 +78,7 @@ class FileWriter {
                        hid_t file_type, hid_t memory_type, const void* data);
   void write_attribute(const std::string& object, const std::string& name, const Dims& shape, hid_t file_type,
                        hid_t memory_type, const void* data);
-  void write_meaning(hid_t dataset, const std::string& path, const Meaning& meaning);
+  void write_attributes(hid_t dataset, const std::string& path, const ArrayAttributes& attributes);
 
   QuietErrors quiet_;
   std::string path_;

@@ -10,7 +10,7 @@ std::string space_out(const std::string& word);
 /// Lines above the title of a table: its mode, frequency or time.
 std::vector<std::string> make_step_lines(const records::ListedStep& step);
 
-/// Real and imaginary part beside each other.
+/// Real and imaginary part next to each other.
 std::string show_pair(const records::ListedElements& block, std::size_t k, Eigen::Index column);
 /// Title and columns of a table, complex where the block is.
 void begin_table(const records::ListedStep& step, const records::ListedElements& block, const std::string& title,

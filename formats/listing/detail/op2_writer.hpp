@@ -44,7 +44,7 @@ class Words {
   std::string bytes_;
 };
 
-/// Tables of records behind the head of the file.
+/// Tables of records after the header of the file.
 class Op2Writer {
  public:
   Op2Writer() {

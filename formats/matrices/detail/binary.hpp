@@ -25,7 +25,7 @@ class BinaryInput {
   std::size_t get_offset() const { return next_; }
   const std::string& get_path() const { return path_; }
 
-  /// One record; the cursor stands behind it. Throws "matrices.truncated", "matrices.record".
+  /// Reads one record; the cursor is after it. Throws "matrices.truncated", "matrices.record".
   std::string_view read_record() {
     const std::size_t begin = next_;
     const auto length = read_marker(begin, begin);

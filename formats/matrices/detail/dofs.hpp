@@ -11,7 +11,7 @@ namespace bough::matrices::detail {
 
 using Dof = std::pair<int, int>;  ///< node id, component 1..6 (0: scalar point)
 
-/// Gives each dof a number as it comes; sorted by node and component at the end.
+/// Numbers dofs in the order of the file; sorted by node and component at the end.
 class DofNumbers {
  public:
   int find_or_add(const Dof& dof) { return number_.try_emplace(dof, static_cast<int>(number_.size())).first->second; }

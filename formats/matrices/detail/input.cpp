@@ -9,14 +9,14 @@
 
 namespace bough::matrices::detail {
 
-std::string read_bytes(const std::string& path, std::size_t most) {
+std::string read_bytes(const std::string& path, std::size_t max_bytes) {
   std::error_code error;
   const auto size = std::filesystem::file_size(path, error);
   std::ifstream file(path, std::ios::binary);
   if (error || !file)
     throw InputError("matrices.cannot-open", {path}, "the file cannot be opened", "check its path and permissions");
   note_input(path);
-  std::string bytes(std::min<std::uintmax_t>(size, most), '\0');
+  std::string bytes(std::min<std::uintmax_t>(size, max_bytes), '\0');
   file.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   bytes.resize(static_cast<std::size_t>(file.gcount()));
   return bytes;

@@ -10,7 +10,7 @@
 namespace bough::matrices::detail {
 
 /// Throws InputError "matrices.cannot-open"; `most` bytes at most.
-std::string read_bytes(const std::string& path, std::size_t most = std::string::npos);
+std::string read_bytes(const std::string& path, std::size_t max_bytes = std::string::npos);
 
 /// A whole number with blanks around; nothing else.
 std::optional<long> parse_integer(std::string_view text);

@@ -29,12 +29,12 @@ inline constexpr long kBigRows = 65536;
 inline void settle_header(Op4Header& header, std::size_t file_size, double& claimed, const Fail& fail) {
   header.is_bigmat = header.num_rows < 0 || header.num_rows >= kBigRows;
   header.num_rows = std::abs(header.num_rows);
-  if (header.num_rows == 0 || header.num_rows > kMostRows || header.num_cols <= 0 || header.num_cols > kMostRows)
+  if (header.num_rows == 0 || header.num_rows > kMaxRows || header.num_cols <= 0 || header.num_cols > kMaxRows)
     fail("matrices.size", "matrix " + header.name + " has " + std::to_string(header.num_rows) + " rows and " +
-                              std::to_string(header.num_cols) + " columns, expected 1 to " + std::to_string(kMostRows) +
+                              std::to_string(header.num_cols) + " columns, expected 1 to " + std::to_string(kMaxRows) +
                               " of each");
   claimed += static_cast<double>(header.num_rows) + static_cast<double>(header.num_cols);
-  if (claimed > 4.0 * kMostRows + 100.0 * static_cast<double>(file_size))
+  if (claimed > 4.0 * kMaxRows + 100.0 * static_cast<double>(file_size))
     fail("matrices.size", "the matrices up to " + header.name + " claim " +
                               std::to_string(static_cast<long long>(claimed)) + " rows and columns in " +
                               std::to_string(file_size) + " bytes");

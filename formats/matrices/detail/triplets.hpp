@@ -9,9 +9,9 @@ namespace bough::matrices::detail {
 /// No matrix of a body has more rows; a header that says so is damaged. Empty rows take a tenth of a microsecond each:
 /// fuzzing would do little else.
 #ifdef FUZZING_BUILD_MODE_UNSAFE_FOR_PRODUCTION
-inline constexpr long kMostRows = 100'000;
+inline constexpr long kMaxRows = 100'000;
 #else
-inline constexpr long kMostRows = 50'000'000;
+inline constexpr long kMaxRows = 50'000'000;
 #endif
 
 enum class Triangle { Both, Mirror, MirrorNegative, MirrorConjugate };

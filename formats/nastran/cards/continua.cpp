@@ -124,7 +124,7 @@ void check_core(const records::Pcomp& p, Card& card) {
               "give the faces first and the core as the last ply");
 }
 
-/// SB and FT. A criterion that Bough does not know is left out, which is said.
+/// SB and FT. A criterion that is not supported is left out, with a message.
 void read_failure(Card& card, records::Pcomp& p) {
   p.sb = card.read_real(3, "SB", 0.0);
   p.failure = card.get_upper(4);

@@ -62,7 +62,7 @@ void parse_column(Card& card, Reading& r, const std::string& name) {
 /// A name of letters and digits that begins with a letter; the zero in the next field makes a card the header.
 void parse_dmig(Card& card, Reading& r) {
   const auto name = card.get_upper(0);
-  card.use(3);  // blank behind GJ CJ
+  card.use(3);  // blank after GJ CJ
   if (name.empty() || !std::isalpha(static_cast<unsigned char>(name.front())) || name.size() > 8) {
     if (name.empty())
       card.fail("deck.missing-field", 0, "NAME is blank, expected the name of the matrix");

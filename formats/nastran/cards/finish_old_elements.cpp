@@ -113,13 +113,13 @@ class Finisher {
 
   /// NIP of PIHEX; blank is 2 for CIHEX1, 3 for CIHEX2 and CIHEX3 (User's Manual, PIHEX, remark 2).
   void choose_points(int order, records::Psolid& p) {
-    const int asked = p.points;
-    if (order == 3 && asked == 0) p.points = 3;
-    if (order == 2 && asked == 4) p.points = 3;
+    const int given = p.points;
+    if (order == 3 && given == 0) p.points = 3;
+    if (order == 2 && given == 4) p.points = 3;
     if (order == 1) p.points = 0;
-    if (p.points == asked || asked == 0 || (order == 1 && asked == 2)) return;
+    if (p.points == given || given == 0 || (order == 1 && given == 2)) return;
     r_.diagnostics.note("deck.old-points", deck_.locate(p.at),
-                        "PIHEX " + std::to_string(p.id) + " has NIP = " + std::to_string(asked) +
+                        "PIHEX " + std::to_string(p.id) + " has NIP = " + std::to_string(given) +
                             (order == 1 ? ", CIHEX1 is integrated with its inner modes at 2 points a direction"
                                         : ", CIHEX2 is integrated at 3 points a direction"),
                         "leave NIP blank");

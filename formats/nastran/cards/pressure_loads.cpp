@@ -3,7 +3,7 @@
 namespace bough::nastran::detail {
 namespace {
 
-constexpr int kMostElements = 1'000'000;
+constexpr int kMaxElements = 1'000'000;
 
 /// SID G F G1 G2 (G3 G4).
 void parse_directed(Card& card, Reading& r, bool is_moment, bool is_cross) {
@@ -64,7 +64,7 @@ void parse_pload1(Card& card, Reading& r) {
 
 /// The ids of "EID1 THRU EID2" become one record each; those that do not exist are skipped.
 void add_range(Card& card, Reading& r, records::ElementPressure load, int first, int last, int field) {
-  if (last < first || last - first > kMostElements) {
+  if (last < first || last - first > kMaxElements) {
     card.fail("deck.bad-list", field,
               "the range " + std::to_string(first) + " THRU " + std::to_string(last) + " is empty or too long",
               "give the smaller id first");

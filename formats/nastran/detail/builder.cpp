@@ -20,7 +20,7 @@ namespace {
 
 /// Beyond this many lines that are no cards the file is not a deck.
 constexpr int max_unreadable = 20;
-constexpr int kMostWrongCopies = 1000;  // what is wrong in these is wrong in millions
+constexpr int kMaxWrongCopies = 1000;  // what is wrong in these is wrong in millions
 constexpr int max_repeats = 1'000'000;
 /// Unknown names for which the nearest known one is looked for.
 constexpr int max_proposals = 20;
@@ -86,7 +86,7 @@ class Builder {
 
   /// Lines of a card with more fields than they have; nullptr: none.
   struct Excess {
-    const Line* data = nullptr;    ///< behind a continuation mark
+    const Line* data = nullptr;    ///< after a continuation mark
     const Line* number = nullptr;  ///< alone in field 10, and no line continues it
   };
 
@@ -123,7 +123,7 @@ class Builder {
 
   static void pad(CardText& text) { text.fields.resize((text.fields.size() + 7) / 8 * 8); }
 
-  /// A section of its own (BEGIN SUPER): its cards are no part of this model.
+  /// A separate section (BEGIN SUPER): its cards are not part of this model.
   bool begins_section(int card) const {
     const auto text = trim(line(image(card).first_line).text);
     if (text.size() < 5 || !is_word(find_first_word(text), "BEGIN")) return false;
@@ -205,9 +205,9 @@ class Builder {
       const int before = diagnostics_.num_errors();
       for (int i = 0; i < *repeats; ++i) {
         if (!finish_relative(replicator_.make_copy(text_))) return;
-        if (diagnostics_.num_errors() - before < kMostWrongCopies) continue;
+        if (diagnostics_.num_errors() - before < kMaxWrongCopies) continue;
         if (i + 1 < *repeats)
-          fail_replication(std::to_string(kMostWrongCopies) + " errors of its copies; the other " +
+          fail_replication(std::to_string(kMaxWrongCopies) + " errors of its copies; the other " +
                            std::to_string(*repeats - i - 1) + " are not read");
         return;
       }
@@ -283,8 +283,8 @@ class Builder {
   }
 
   void keep_extra_points() {
-    Diagnostics said;  // the card is named as not used
-    Card card(text_, deck_.files, said);
+    Diagnostics ignored_diagnostics;  // the card is named as not used
+    Card card(text_, deck_.files, ignored_diagnostics);
     for (const int id : read_ids(card, 0, card.get_size(), "ID")) dynamics_->dynamics.extra_points.insert(id);
   }
 

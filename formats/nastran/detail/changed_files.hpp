@@ -1,5 +1,5 @@
 #pragma once
-/// \file The files of a deck once more, byte for byte but for some changed lines.
+/// \\file Copies of the files of a deck, byte-identical except for some changed lines.
 #include <map>
 #include <string>
 #include <vector>

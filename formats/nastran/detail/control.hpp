@@ -24,7 +24,7 @@ struct ControlOptions {
   std::vector<std::string> ignore_cards = {};
 };
 
-/// Reads what stands before the bulk data into deck.sol, deck.subcases and (PARAM in case control) deck.params.
+/// Reads the sections before the bulk data into deck.sol, deck.subcases and (PARAM in case control) deck.params.
 /// Returns the index of the first bulk data line. A text without CEND and BEGIN BULK is bulk data from its first line.
 /// Adds deck.no-begin-bulk, deck.unsupported-section, deck.case-control-value, deck.case-control-ignored,
 /// deck.unsupported-command.

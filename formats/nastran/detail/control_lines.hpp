@@ -14,7 +14,7 @@ bool is_command(std::string_view word, std::string_view command, std::size_t sho
 
 struct Command {
   std::string word;        ///< upper case
-  std::string options;     ///< what stands in parentheses, upper case
+  std::string options;     ///< text in parentheses, upper case
   std::string_view value;  ///< after "=" or, without one, after the word
 };
 

@@ -11,7 +11,7 @@
 namespace bough::nastran::detail {
 
 /// DESVAR, DLINK and the linear relations DVPREL1, DVMREL1, DVCREL1 give a field of a card the value C0 + sum of
-/// COEF times XINIT; Nastran computes with that, not with what the card says (SOL 200 only).
+/// COEF times XINIT; Nastran computes with it, not with the value of the card (SOL 200 only).
 class Design {
  public:
   /// True for the cards that add() takes.

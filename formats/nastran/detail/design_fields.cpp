@@ -106,7 +106,7 @@ const std::map<std::string_view, Names>& get_names() {
   return names;
 }
 
-/// The number behind `stem`, "DIM2" or "DIM2(A)", or 0.
+/// The number after `stem`, "DIM2" or "DIM2(A)", or 0.
 int get_number(std::string_view name, std::string_view stem, char& end) {
   if (name.substr(0, stem.size()) != stem) return 0;
   name.remove_prefix(stem.size());
@@ -123,7 +123,7 @@ std::string_view get(const CardText& text, int i) {
   return i >= 0 && k < text.fields.size() ? text.fields[k] : std::string_view{};
 }
 
-/// DIMn of PBARL, DIMn(A) and DIMn(B) of PBEAML: end B is the only station behind end A.
+/// DIMn of PBARL, DIMn(A) and DIMn(B) of PBEAML: end B is the only station after end A.
 int find_dimension(const CardText& text, const std::string& name) {
   char end = 'A';
   const int n = get_number(name, "DIM", end);
@@ -136,7 +136,7 @@ int find_dimension(const CardText& text, const std::string& name) {
   return is_end ? station + 1 + n : -1;
 }
 
-/// K1 to K6, B1 to B6, GE1 to GE6, M of PBUSH: behind the flag of their line.
+/// K1 to K6, B1 to B6, GE1 to GE6, M of PBUSH: after the flag of their line.
 int find_bush_value(const CardText& text, const std::string& name) {
   for (const std::string_view flag : {"K", "B", "GE", "M"}) {
     char end = 'A';

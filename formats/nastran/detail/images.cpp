@@ -193,7 +193,7 @@ bool has_data(const std::vector<std::string_view>& tokens, std::size_t from) {
                      [](std::string_view t) { return !t.empty(); });
 }
 
-/// Data beyond field 9 goes on in the first field of a continuation, as if it stood on a line of its own.
+/// Data beyond field 9 continues in the first field of a continuation, as if it were on a separate line.
 void split_free(std::string_view text, SplitLine& line) {
   auto& tokens = line.tokens;
   split_tokens(text, tokens);

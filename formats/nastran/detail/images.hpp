@@ -32,7 +32,7 @@ struct SplitLine {
   std::string_view tag;                ///< field 10
   bool is_large = false;
   int num_excess = 0;                    ///< fields of a free-field line that are neither data nor a tag
-  bool has_number_tag = false;           ///< free field: a number stands in field 10
+  bool has_number_tag = false;           ///< free field: field 10 contains a number
   std::vector<std::string_view> tokens;  ///< storage of split_line
 };
 

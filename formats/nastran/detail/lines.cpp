@@ -62,11 +62,11 @@ class Cursor {
 };
 
 /// Files that include files: more than this is no deck of a user.
-constexpr std::size_t kMostLevels = 100;
+constexpr std::size_t kMaxIncludeLevels = 100;
 /// INCLUDE statements, and bytes of files read again, all in all: files that include a file twice, which does
 /// the same, double with each level.
-constexpr int kMostIncludes = 20'000;
-constexpr std::size_t kMostRepeated = std::size_t{1} << 30;
+constexpr int kMaxIncludes = 20'000;
+constexpr std::size_t kMaxRepeated = std::size_t{1} << 30;
 
 /// Format of a text that is not lines of bytes; empty for lines.
 std::string find_other_format(std::string_view text) {
@@ -247,8 +247,8 @@ class Loader {
   }
 
   void include(const std::string& name, const fs::path& folder, const SourceLocation& where, IncludeLine statement) {
-    if (++num_includes_ > kMostIncludes) {
-      fail_many("INCLUDE reads more than " + std::to_string(kMostIncludes) + " files", where);
+    if (++num_includes_ > kMaxIncludes) {
+      fail_many("INCLUDE reads more than " + std::to_string(kMaxIncludes) + " files", where);
       return;
     }
     auto path = find_file(name, folder);
@@ -303,9 +303,10 @@ class Loader {
     }
     const std::string_view text = source_.texts[static_cast<std::size_t>(known - source_.files.begin())];
     if (!is_new) repeated_ += text.size();
-    if (depth() > kMostLevels || repeated_ > kMostRepeated) {
-      fail_many(depth() > kMostLevels ? "files include files over more than " + std::to_string(kMostLevels) + " levels"
-                                      : std::string("INCLUDE reads a gigabyte of files that were read before"),
+    if (depth() > kMaxIncludeLevels || repeated_ > kMaxRepeated) {
+      fail_many(depth() > kMaxIncludeLevels
+                    ? "files include files over more than " + std::to_string(kMaxIncludeLevels) + " levels"
+                    : std::string("INCLUDE reads a gigabyte of files that were read before"),
                 where);
       return;
     }

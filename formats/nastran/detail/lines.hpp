@@ -28,7 +28,7 @@ struct Source {
   std::vector<std::string_view> texts;  ///< all bytes of each file
   std::vector<Line> lines;
   std::vector<IncludeLine> includes;
-  std::vector<std::size_t> after_empty;  ///< positions in `lines`, ascending, of those behind an empty line
+  std::vector<std::size_t> after_empty;  ///< positions in `lines`, ascending, of those after an empty line
   std::deque<std::string> storage;       ///< what the lines point into; never moved
 };
 

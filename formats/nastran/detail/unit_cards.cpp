@@ -67,7 +67,7 @@ void UnitConverter::convert_pbcomp() {
   for (int line = 16; line < size(); line += 8) scale(line, line + 1, "L");
 }
 
-/// With a section of its own, or that of a pipe (FSI, RM, T, P).
+/// A card with its section, or with that of a pipe (FSI, RM, T, P).
 void UnitConverter::convert_pbend() {
   const bool is_pipe = !get(2).empty() && parse_int(get(2));
   if (is_pipe) {

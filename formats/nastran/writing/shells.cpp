@@ -7,7 +7,7 @@ namespace {
 
 using records::ShellElement;
 
-/// Blank where zero: readers of meshes take every number behind PID for a grid.
+/// Blank where zero: readers of meshes take every number after PID for a grid.
 void add_axes(const ShellElement& e, CardFields& card) {
   if (e.mcid)
     card.add(*e.mcid);

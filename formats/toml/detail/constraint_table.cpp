@@ -11,7 +11,7 @@ namespace {
 
 using records::ConstraintType;
 
-/// Keys of a type beside name, type and active; the first ones it needs.
+/// Keys of a type in addition to name, type and active; the first ones are required.
 struct Keys {
   std::vector<std::string> needed, allowed;
 };

@@ -13,8 +13,8 @@ namespace bough::toml_files {
 
 namespace {
 int to_int(std::int64_t value) {
-  constexpr std::int64_t kMost = std::numeric_limits<int>::max();
-  return static_cast<int>(std::max(-kMost, std::min(kMost, value)));
+  constexpr std::int64_t kMax = std::numeric_limits<int>::max();
+  return static_cast<int>(std::max(-kMax, std::min(kMax, value)));
 }
 }  // namespace
 

@@ -62,17 +62,17 @@ Eigen::Matrix<double, 6, 6> read_six(const Fields& table, const std::string& key
   const Value* v = table.find(key);
   if (!v) return A;
   const std::vector<double> diagonal = table.get_numbers(key);
-  bool is_good = v->is_array() && v->items.size() == 6;
-  if (is_good && diagonal.size() == 6) {
+  bool is_valid = v->is_array() && v->items.size() == 6;
+  if (is_valid && diagonal.size() == 6) {
     for (int i = 0; i < 6; ++i) A(i, i) = diagonal[static_cast<std::size_t>(i)];
     return A;
   }
-  for (int i = 0; i < 6 && is_good; ++i) {
+  for (int i = 0; i < 6 && is_valid; ++i) {
     const auto& row = v->items[static_cast<std::size_t>(i)].items;
-    is_good = row.size() == 6;
-    for (int j = 0; j < 6 && is_good; ++j) A(i, j) = row[static_cast<std::size_t>(j)].number;
+    is_valid = row.size() == 6;
+    for (int j = 0; j < 6 && is_valid; ++j) A(i, j) = row[static_cast<std::size_t>(j)].number;
   }
-  if (!is_good) {
+  if (!is_valid) {
     diagnostics.error("toml.wrong-length", table.locate(key),
                       key + " of bushing '" + table.get_string("name") + "' is neither six numbers nor six rows of six",
                       "give [x, y, z, rx, ry, rz], or the matrix");

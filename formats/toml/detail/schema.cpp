@@ -13,12 +13,12 @@ using nlohmann::json;
 using Kind = Value::Kind;
 
 constexpr const char* kNamePattern = R"(^(?!\.{1,2}$)[^/\x00-\x1f\x7f]{1,1000}$)";
-constexpr std::size_t kMostLetters = 1000;
+constexpr std::size_t kMaxLetters = 1000;
 
 /// Length of a text as quoted in messages.
-constexpr std::size_t kMostShown = 80;
+constexpr std::size_t kMaxShown = 80;
 std::string quote(const std::string& s) {
-  return "'" + (s.size() <= kMostShown ? s : s.substr(0, kMostShown) + "...") + "'";
+  return "'" + (s.size() <= kMaxShown ? s : s.substr(0, kMaxShown) + "...") + "'";
 }
 
 std::string join(const std::vector<std::string>& words, const char* separator = ", ") {
@@ -158,19 +158,20 @@ class Checker {
             path + " is " + (has_control ? "a text with control characters" : quote(name)) +
                 ", expected a name without a slash and not empty",
             "rename it");
-    else if (name.size() > kMostLetters)
+    else if (name.size() > kMaxLetters)
       error("toml.bad-name", line,
-            path + " has " + std::to_string(name.size()) + " letters, expected at most " + std::to_string(kMostLetters),
+            path + " has " + std::to_string(name.size()) + " letters, expected at most " + std::to_string(kMaxLetters),
             "shorten it");
   }
 
   void check_array(const Value& v, const json& schema, const std::string& path, int line) {
     const int size = static_cast<int>(v.items.size());
-    const int least = schema.value("minItems", 0), most = schema.value("maxItems", -1);
-    if (size < least || (most >= 0 && size > most)) {
-      const std::string expected = most < 0        ? "at least " + std::to_string(least)
-                                   : most == least ? std::to_string(least)
-                                                   : std::to_string(least) + " to " + std::to_string(most);
+    const int min_items = schema.value("minItems", 0), max_items = schema.value("maxItems", -1);
+    if (size < min_items || (max_items >= 0 && size > max_items)) {
+      const std::string expected = max_items < 0 ? "at least " + std::to_string(min_items)
+                                   : max_items == min_items
+                                       ? std::to_string(min_items)
+                                       : std::to_string(min_items) + " to " + std::to_string(max_items);
       error("toml.wrong-length", line, path + " has " + std::to_string(size) + " entries, expected " + expected);
     }
     if (!schema.contains("items")) return;

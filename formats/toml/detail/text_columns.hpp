@@ -13,7 +13,7 @@ struct ColumnChoice {
 };
 
 /// Text of numbers in columns (comma, semicolon, tab or spaces between; # comments; one heading line allowed, whose
-/// names may stand in quotation marks). Reports "toml.table-file" (cannot be read, no such column, not as many numbers
+/// names may be in quotation marks). Reports "toml.table-file" (cannot be read, no such column, not as many numbers
 /// as the first line) and "toml.nan" with the line of that file.
 void read_columns(const std::string& path, const SourceLocation& asked_at, const ColumnChoice& choice,
                   std::vector<double>& x, std::vector<double>& y, Diagnostics& diagnostics);

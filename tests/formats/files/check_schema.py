@@ -103,7 +103,7 @@ def collect_choices(node, key=""):
 
 
 def check_rows(kind, schema, text):
-    """What a page promises: its keys and its choices are those of the schema."""
+    """A page's keys and choices are those of the schema."""
     faults, known, choices = [], set(collect_keys(schema)), collect_choices(schema)
     tables = "".join(re.findall(r"^\| key \| type \|.*\n((?:\|.*\n)+)", text, re.M))
     for keys, type_, last in re.findall(r"^\| (`[a-z_`, 0-9]+`) \| ([^|]+) \| [^|]* \| ([^|]*) \|$", tables, re.M):

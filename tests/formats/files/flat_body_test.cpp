@@ -19,7 +19,7 @@ using records::FlexBody;
 using test::TempFolder;
 using testing::HasSubstr;
 
-/// What InputError says; empty when nothing is thrown.
+/// Text of the InputError; empty if nothing is thrown.
 template <class Action>
 std::string collect_errors(const Action& action) {
   try {

@@ -124,7 +124,7 @@ TEST(FlexBodyFile, BodyWithoutModesOrWithoutNodesRoundTrips) {
   }
 }
 
-/// Whether an object of the file holds the time of its creation or of a change.
+/// Returns true if an object of the file holds the time of its creation or of a change.
 bool has_times(const std::string& path) {
 #if H5_VERSION_GE(1, 12, 0)
   using Info = H5O_info2_t;

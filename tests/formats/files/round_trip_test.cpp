@@ -29,7 +29,7 @@ class Drawn {
 
   int draw(int low, int high) { return std::uniform_int_distribution<int>(low, high)(random_); }
 
-  /// Of every size.
+  /// Draws a value of any magnitude.
   double draw_value() {
     const double mantissa = std::uniform_real_distribution<double>(-10, 10)(random_);
     return draw(0, 9) == 0 ? 0.0 : mantissa * std::pow(10.0, draw(-300, 300));
@@ -198,7 +198,7 @@ TEST(FileRoundTrips, KeysOfTomlFiles) {
     EXPECT_EQ(diagnostics.num_errors(), 0) << text;
     EXPECT_EQ(spec.deck.substr(spec.deck.size() - std::min(name.size(), spec.deck.size())), name);
     EXPECT_NE(text.find(" # the name"), std::string::npos);
-    // The same again changes nothing.
+    // Setting the same value again changes nothing.
     const std::string before = text;
     EXPECT_EQ(toml_files::set_key(text, "body.deck", toml_files::quote_text(name)), "");
     EXPECT_EQ(text, before);

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "base/apart.hpp"
+#include "base/isolated.hpp"
 #include "formats/hdf5/table_file.hpp"
 #include "tests/formats/files/temp_folder.hpp"
 
@@ -14,13 +14,13 @@ namespace {
 
 int g_looks = 0;
 
-Apart count_look(const std::string&, ApartTask, const ApartLimits&, const std::string&) {
+IsolatedResult count_look(const std::string&, IsolatedTask, const IsolationLimits&, const std::string&) {
   ++g_looks;
   return {};
 }
 
 TEST(TrustedFile, IsLookedAtOnlyAfterItChanged) {
-  const ApartWorker before = set_apart_worker(count_look);
+  const IsolatedRunner before = set_isolated_runner(count_look);
   const test::TempFolder folder;
   const std::string path = folder.at("outcomes.h5"), copy = folder.at("copy.h5");
   OutcomeTable table;
@@ -46,7 +46,7 @@ TEST(TrustedFile, IsLookedAtOnlyAfterItChanged) {
   EXPECT_EQ(count_looks(path), 0) << "the same file by another name";
   std::ofstream(path, std::ios::app | std::ios::binary) << "more";
   EXPECT_GT(count_looks(path), 0) << "bytes put behind it";
-  set_apart_worker(before);
+  set_isolated_runner(before);
 }
 
 }  // namespace

@@ -24,7 +24,7 @@ BodyMesh make_mesh(int num_grids, const std::string& type) {
   return mesh;
 }
 
-/// What stands in the data array `name`.
+/// Contents of the data array `name`.
 std::string find_array(const std::string& text, const std::string& name) {
   const auto at = text.find("Name=\"" + name + "\"");
   if (at == std::string::npos) return "absent";

@@ -48,7 +48,7 @@ assert s['inner'][0, 0]['y'] == 1
 )");
   EXPECT_EQ(run_python(code + " " + path), 0);
   expect_same(read_one(path, "modal.K"), k);
-  // The same values give the same bytes, on any day.
+  // Equal values give equal bytes, on any day.
   matrices::write_mat(folder.at("w.mat"), {{"a", a}});
   const auto first = read_bytes(folder.at("w.mat"));
   matrices::write_mat(folder.at("w.mat"), {{"a", a}});
@@ -110,7 +110,7 @@ TEST_F(MatOfSciPy, DamagedFilesAreRefused) {
   EXPECT_EQ(read_error(folder_.write("head.mat", "MATLAB 5.0 MAT-file")), "matrices.mat");
 }
 
-/// As MATLAB lays out -v7.3: HDF5 behind 512 bytes, columns first, classes as attributes.
+/// Layout of -v7.3 of MATLAB: HDF5 after 512 bytes, columns first, classes as attributes.
 TEST(MatFile, Version73) {
   const TempFolder folder;
   const auto path = folder.at("m.mat");

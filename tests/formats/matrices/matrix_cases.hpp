@@ -65,7 +65,7 @@ inline void expect_same(const matrices::Matrix& found, const matrices::Matrix& e
   EXPECT_EQ(found.imaginary, expected.imaginary);
 }
 
-/// What a program of tests/oracle prints.
+/// Output of a program of tests/oracle.
 inline std::string run_oracle(const std::string& arguments) {
   std::string text;
   FILE* pipe = ::popen(("/usr/bin/python3 -W ignore " + kOracle + arguments + " 2>&1").c_str(), "r");

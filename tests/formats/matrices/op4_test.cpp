@@ -22,7 +22,7 @@ std::string write_op4(const TempFolder& folder, const std::vector<Matrix>& all, 
   return folder.write("m.op4", out.str());
 }
 
-/// What the oracle prints, as matrices.
+/// Matrices in the output of the oracle.
 std::vector<Matrix> read_by_oracle(const std::string& path) {
   std::istringstream in(run_oracle("op4_reader.py " + path));
   std::vector<Matrix> all;

@@ -1,4 +1,4 @@
-// What is written reads back as it was, whatever the numbers; written again it gives the same bytes.
+// Matrices that are written read back unchanged, whatever the numbers; written again they give the same bytes.
 #include <array>
 #include <cmath>
 #include <cstring>

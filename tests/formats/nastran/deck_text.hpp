@@ -38,7 +38,7 @@ inline Read read(std::string_view text, const ReadOptions& options = {}) {
   return r;
 }
 
-/// The same, where the deck must be without fault.
+/// Reads a deck that must be without fault.
 inline records::Deck read_clean(std::string_view text) {
   const auto r = read(text);
   EXPECT_EQ(r.diagnostics.items().size(), 0u) << r.get_messages();

@@ -1,4 +1,4 @@
-/// \file What is wrong in a deck: which error, where, and that all are reported.
+/// \file Errors of decks: which error, where, and that all are reported.
 #include "tests/formats/nastran/deck_text.hpp"
 
 namespace bough::nastran {

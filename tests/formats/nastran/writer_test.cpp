@@ -155,7 +155,7 @@ TEST(WrittenDecks, OwnAndSharedModels) {
     SCOPED_TRACE(path);
     Read r;
     r.deck = read_deck(path, {}, r.diagnostics);
-    // What no card of the record holds is not there to be compared.
+    // Cards that are in no record cannot be compared.
     ReadOptions options;
     for (const auto& card : r.deck.unused) options.ignore_cards.push_back(card.name);
     r.diagnostics = {};

@@ -185,7 +185,7 @@ TEST(FlexibleBody, DampingRatiosReplaceTheFilesDamping) {
   const auto flex = points.make_record("p");
   const Body uniform = Body::make_flexible(flex, -1, true, {0.02});
   const Body each = Body::make_flexible(flex, -1, true, {0.01, 0.02, 0.03});
-  // Of the motions, as the coordinates of this record are not.
+  // Modes of the body; the coordinates of this record are not modal.
   const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd> motions(flex.modal_stiffness, flex.modal_mass);
   const MatrixXd Y = motions.eigenvectors();
   const MatrixXd D = Y.transpose() * uniform.D() * Y, D_each = Y.transpose() * each.D() * Y;

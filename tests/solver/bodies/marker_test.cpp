@@ -29,7 +29,7 @@ TEST(Marker, MotionIsTheRateOfItsPlaceAndOfItsAxes) {
   EXPECT_LT((m.J.bottomRows<3>() * eta_ddot + m.gamma_w - (plus.w - minus.w) / (2 * h)).norm(), 1e-7);
 }
 
-// What stiffens by a load does so through the marker: the Jacobian of an offset load is that of its node's wrench.
+// Load stiffening acts through the marker: the Jacobian of an offset load is that of its node's wrench.
 TEST(Marker, WrenchAtAnOffsetIsTheWrenchAtItsNode) {
   const int n = 3;
   Random random(22);

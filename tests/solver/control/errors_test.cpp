@@ -1,4 +1,4 @@
-// What a control system may have wrong, by name.
+// Errors of control systems, by name.
 #include "solver/builder/build_system.hpp"
 #include "tests/solver/control/support.hpp"
 

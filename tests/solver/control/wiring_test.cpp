@@ -137,7 +137,7 @@ TEST(ForceOfASignal, IsTheActuatorOfTheSameSignal) {
   const RunResult signal = run(spec);
   EXPECT_LT(signal.outcome.energy_error, 1e-9);
   EXPECT_LT((signal.sink.get("/bodies/rotor/position") - actuator.sink.get("/bodies/rotor/position")).norm(), 1e-9);
-  // By a function it is the same force, and by a wire with a gain of two the half of it.
+  // A function gives the same force, and a wire with a gain of two half of it.
   spec.forces[0].signal.clear();
   spec.forces[0].function = "law";
   const RunResult function = run(spec);

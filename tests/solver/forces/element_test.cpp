@@ -1,4 +1,4 @@
-// What every element owes: actions that cancel, power that is the loss of its energy, and the field of point masses.
+// Properties of all elements: actions that cancel, power that is the loss of energy, and the field of point masses.
 #include "solver/forces/element.hpp"
 
 #include <gtest/gtest.h>

@@ -92,7 +92,7 @@ TEST(Impact, NewtonsCradle) {
             4);
 }
 
-// Of unequal balls: blows between two at a time, until they part.
+// Unequal balls: impacts between two at a time, until they part.
 TEST(Impact, ABlowTravelsAlongUnequalBalls) {
   const std::vector<double> masses = {3, 1, 2, 0.7};
   const double e = 0.8;

@@ -259,7 +259,7 @@ TEST(TimeFunction, DerivativesOfAnExpressionAreChecked) {
   ASSERT_EQ(diagnostics.num_errors(), 1);
   EXPECT_EQ(diagnostics.items()[0].id, "function.bad-value");
   EXPECT_THAT(format(diagnostics.items()[0]), ::testing::HasSubstr("acceleration"));
-  // Of different scales, with a kink that is told, and stiff ones.
+  // Formulas of different scales, with a kink that is reported, and stiff ones.
   auto corner = make_formula("t < 2 ? t^3 : 8 + 100*(t - 2)", "t < 2 ? 3*t^2 : 100", "t < 2 ? 6*t : 0");
   corner.x = {2};
   make_in(corner, 0, 5);

@@ -12,7 +12,7 @@ namespace {
 
 using records::HingeType;
 
-/// Of Hc in Hp.
+/// Pose of Hc in Hp.
 struct Pose {
   Matrix3d R;
   Vector3d p;
@@ -23,7 +23,7 @@ struct Joint {
   HingeType type;
   const char* rotations;
   int num_coordinates;
-  /// How far the pose, or one that the coordinates claim, is from what the hinge allows.
+  /// Distance of the pose, or of that of given coordinates, from those that the hinge allows.
   std::function<double(const Pose&, const VectorXd& q)> calc_residual;
 };
 

@@ -125,7 +125,7 @@ TEST(Integrator, OrderFiveTakesItsLastStageOver) {
   }
 }
 
-// What was taken over is of the old equations after a jump, and of the last step after a look back into it.
+// A reused derivative is that of the old equations after a jump, and of the last step after interpolation in it.
 TEST(Integrator, OrderFiveForgetsItsLastStageWhereItStartsAfresh) {
   auto options = make_options(1, 1e-6, 0.3);
   options.rk_order = 5;

@@ -63,7 +63,7 @@ TEST(Cut, SignalsAreInputsAndOutputs) {
   spec.controllers = {make_law("law", "pid", {"angle"}, {{"kp", {8}}, {"kd", {1.6}}})};
   spec.controllers[0].rate = "rate";
   const auto m = linearize_initial(spec, {{"angle", "rate"}, {"law", "drive", "drive:command", "angle"}});
-  // What is added to the measured angle acts by kp, to the rate by kd; the angle itself is the true one.
+  // An addition to the measured angle acts by kp, to the rate by kd; the angle itself is the true one.
   MatrixXd B(2, 2), D(4, 2), C(4, 2);
   B << 0, 0, -4, -0.8;
   D << -8, -1.6, -8, -1.6, -8, -1.6, 0, 0;

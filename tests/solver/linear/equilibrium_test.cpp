@@ -208,7 +208,7 @@ TEST(Equilibrium, AFloatingBodySpinsAboutItsMassCentre) {
     if (!is_free) continue;
     set_rates({0.5, 0, 1.3}, {0, 0, 0});
     EXPECT_THROW(find(spec), ComputationError);
-    // What pulls its mass centre leaves it no steady spin.
+    // A force on its centre of mass leaves it no steady spin.
     set_rates({0, 0, 1.3}, {0, 0, 0});
     spec.simulation.gravity = {0, 0, -1e-6};
     EXPECT_THROW(find(spec), ComputationError);

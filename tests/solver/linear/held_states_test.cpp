@@ -165,7 +165,7 @@ TEST(MultipliersOfChains, ADelayedSensorIsInTheLoop) {
   expect_sizes(found, map * map);
 }
 
-// What a slow sensor holds is seen twice by a fast law.
+// A value held by a slow sensor is read twice by a fast controller.
 TEST(MultipliersOfChains, ASlowSensorIsHeldForAFastLaw) {
   const double k = 30, g = -9, T = 0.05;
   auto spec = make_rail(k);

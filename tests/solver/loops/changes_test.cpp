@@ -87,7 +87,7 @@ TEST(StageSeparation, KeepsTheMomenta) {
   EXPECT_THAT(list_events(r.sink), HasSubstr("event 'separation'\nhinge 'joint' is released"));
 }
 
-// The same from a checkpoint before and from one after the release.
+// The run resumed from a checkpoint before and from one after the release.
 TEST(StageSeparation, IsResumed) {
   Separation s = make_separation();
   s.spec.simulation.integrator = "rk4";

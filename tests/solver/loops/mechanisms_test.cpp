@@ -167,7 +167,7 @@ TEST(FourBar, NamesWhatIsHeldTwiceAndWhatWasMoved) {
   EXPECT_EQ(notes.find("hinge 'crank' from"), std::string::npos);  // it was given
 }
 
-// What the closing pin passes on is the same whichever pin is cut, in the plane, where nothing is held twice.
+// The force of the closing pin does not depend on which pin is cut, in the plane, without redundant constraints.
 TEST(FourBar, PassesOnTheSameForceAtWhicheverPinItIsCut) {
   auto spec = make_four_bar();
   spec.simulation.duration = 0.2;

@@ -279,7 +279,7 @@ TEST(Sensors, RatesOnFlexibleTrees) {
   EXPECT_LT((now.segment<3>(12) - R_WB * now.segment<3>(9)).norm(), 1e-12);
 }
 
-// The same, less the motion of the table's origin only: the difference of two inertial vectors.
+// Sensor minus the motion of the table's origin only: the difference of two inertial vectors.
 TEST(Sensors, FixedObserverKeepsHisAxes) {
   const double t = 1.7;
   const Angles x(t);
@@ -300,7 +300,7 @@ TEST(Sensors, FixedObserverKeepsHisAxes) {
   EXPECT_LT((out.segment<3>(12) - Vector3d(0, 0, x.bdd)).norm(), 1e-13);
 }
 
-// What follows from errors of bodies is not held against the sensors on them.
+// Errors that follow from those of bodies are not reported for the sensors on them.
 TEST(Sensors, BodiesThatFailedAreNotTheSensorsFault) {
   Carousel carousel;
   carousel.spec.bodies[1].inertia(0, 0) = -1;

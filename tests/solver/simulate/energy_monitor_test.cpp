@@ -28,7 +28,7 @@ TEST(EnergyMonitor, AWorstErrorOutlivesALastOneOfZero) {
   EXPECT_EQ(resumed.worst(), monitor.worst());
 }
 
-// What forces do along a rounding of the system's size is no error, however small all energies are.
+// Work of forces along a rounding of the system's size is no error, however small all energies are.
 TEST(EnergyMonitor, ForcesThatNothingGivesWayToAreRounding) {
   EnergyMonitor monitor;
   monitor.start(make_energies(0, 0), 1e-17);

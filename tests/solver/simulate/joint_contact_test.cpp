@@ -64,7 +64,7 @@ TEST(DryFriction, ABlockStopsAndStays) {
     EXPECT_NEAR(find_event(r.sink, "sticks"), v0 / a, tolerance) << integrator;
     EXPECT_NEAR(get_last(r.sink, "/hinges/hinge/q"), v0 * v0 / (2 * a), tolerance) << integrator;
     EXPECT_EQ(get_last(r.sink, "/hinges/hinge/qdot"), 0) << integrator;
-    // Of the adaptive multistep methods the quadrature of the work is held to the root of the tolerance.
+    // The quadrature of the work by adaptive multistep methods has the square root of the tolerance.
     const double quadrature = integrator == "bdf" || integrator == "adams" ? 1e-5 : 1e-9;
     EXPECT_NEAR(get_last(r.sink, "/energy/dissipated"), 0.5 * 2 * v0 * v0, quadrature) << integrator;
     EXPECT_LT(r.sink.energy_error(), quadrature) << integrator;
@@ -186,7 +186,7 @@ TEST(RigidStop, ABallBouncesAndComesToRest) {
   }
 }
 
-// What rests at its stop leaves it when it is pulled away.
+// A ball at rest at its stop leaves it when it is pulled away.
 TEST(RigidStop, ABallIsLiftedOff) {
   auto spec = make_slider(1);
   spec.simulation.gravity = {-10, 0, 0};
@@ -350,8 +350,8 @@ TEST(RigidStop, AReleaseBeyondItIsAnError) {
   }
 }
 
-// What comes to rest with a last rate takes along what other coordinates have of the momentum: a pendulum swings on a
-// slide while its bounces die out, and no energy is lost without being booked.
+// A coordinate that sticks with a last rate takes along the momentum of other coordinates: a pendulum swings on a slide
+// while its bounces die out, and no energy is lost without being booked.
 TEST(RigidStop, TheLastBouncesKeepTheEnergy) {
   auto spec = make_slider(2);
   records::BodyRecord rod;

@@ -1,4 +1,4 @@
-// What a run says of itself: energy, divergence, signs, checkpoints, samples next to jumps.
+// Results of a run about itself: energy, divergence, signs, checkpoints, samples next to jumps.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
-// What happens between the ends of long steps: events, relays, contacts and stops that the samples show are not missed;
-// and the evaluations that are made are the evaluations that are reported.
+// Events, relays, contacts and stops between the ends of long steps are not missed if the samples show them; and the
+// evaluations that are made are the evaluations that are reported.
 #include <gtest/gtest.h>
 
 #include <cmath>

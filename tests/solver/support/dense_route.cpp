@@ -108,7 +108,7 @@ struct Pose {
 };
 Pose operator*(const Pose& a, const Pose& b) { return {a.p + a.R * b.p, a.R * b.R}; }
 
-/// Of all bodies: poses in W, and η.
+/// Motion of all bodies: poses in W, and η.
 struct Motion {
   std::vector<Pose> X;
   std::vector<Series<Eigen::Dynamic, 1>> eta;

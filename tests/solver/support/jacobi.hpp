@@ -8,7 +8,7 @@ struct Jacobi {
   double sn = 0, cn = 1, dn = 1;
 };
 
-/// Of u at modulus k (m = k²), by descending Landen transformations (Abramowitz & Stegun 16.4).
+/// Elliptic functions of u at modulus k (m = k²), by descending Landen transformations (Abramowitz & Stegun 16.4).
 inline Jacobi calc_jacobi(double u, double k) {
   double a[16] = {1}, c[16] = {k}, b = std::sqrt(1 - k * k);
   int n = 0;

@@ -73,7 +73,7 @@ TEST(Classics, DoublePendulumOfPointMasses) {
   EXPECT_NEAR(u_dot[0] + u_dot[1], expected[1], 1e-12);
 }
 
-// The same in motion, 5 s, against its equations in long double by the classical Runge-Kutta method.
+// Motion of 5 s, against its equations in long double by the classical Runge-Kutta method.
 TEST(Classics, DoublePendulumSwingsTo1em10) {
   using Real = long double;
   using State = Eigen::Matrix<Real, 4, 1>;  // angles, rates

@@ -121,7 +121,7 @@ TEST(FlexibleSystem, NodeForceStiffensThroughItsLocators) {
   VectorXd expected = m.points.phi[3].transpose() * force.direction - m.flex.modal_stiffness * eta;
   for (int a = 0; a < 3; ++a) expected -= force.direction[a] * m.flex.kg_external[static_cast<size_t>(9 + a)] * eta;
   EXPECT_LT((actual - expected).norm(), 1e-12);
-  // The same by the locators' names, and by a wrench added from outside.
+  // Forces by the locators' names, and by a wrench added from outside.
   Model named = m;
   named.spec.forces.clear();
   for (int a = 0; a < 3; ++a) {

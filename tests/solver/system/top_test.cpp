@@ -44,7 +44,7 @@ class Top {
     for (int i = 0; i < 12; ++i) std::tie(a, b) = std::make_pair(0.5 * (a + b), std::sqrt(a * b));
     return 2 * std::numbers::pi / a / pace_;
   }
-  /// Of the body in axes whose z is the momentum, precession 0 at t = 0: Rz(φ) Rx(θ) Rz(ψ).
+  /// Attitude of the body in axes whose z is the momentum, precession 0 at t = 0: Rz(φ) Rx(θ) Rz(ψ).
   Matrix3d attitude(double t, double precession) const {
     const Vector3d m = Vector3d(J1, J2, J3).cwiseProduct(rate(t)) / M_;  // sin θ sin ψ, sin θ cos ψ, cos θ
     const double sine = std::hypot(m.x(), m.y());

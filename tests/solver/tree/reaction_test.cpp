@@ -1,4 +1,4 @@
-// What crosses each hinge: every body by itself obeys Newton and Euler with it.
+// Reactions of each hinge: every body by itself obeys Newton and Euler with them.
 #include <gtest/gtest.h>
 
 #include "tests/solver/support/models.hpp"

@@ -194,7 +194,7 @@ TEST(Pivots, FromRoundingAreNamed) {
   }
 }
 
-// The same behind a joint further out, and of three coordinates the one that is at fault.
+// A fault after a joint further out, and of three coordinates the one at fault.
 TEST(Pivots, FurtherOutAndOfSeveralCoordinates) {
   records::SystemSpec spec;
   records::BodyRecord frame, bob;

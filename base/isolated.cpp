@@ -1,4 +1,4 @@
-#include "base/apart.hpp"
+#include "base/isolated.hpp"
 
 #include <algorithm>
 #include <cerrno>
@@ -29,10 +29,10 @@ namespace {
 /// Exit code of a child that ran out of memory.
 constexpr int kNoMemory = 9;
 
-void limit(decltype(RLIMIT_CPU) resource, double most) {
+void limit(decltype(RLIMIT_CPU) resource, double limit_value) {
   rlimit now{};
   getrlimit(resource, &now);
-  now.rlim_cur = std::min(now.rlim_cur, static_cast<rlim_t>(most));
+  now.rlim_cur = std::min(now.rlim_cur, static_cast<rlim_t>(limit_value));
   setrlimit(resource, &now);
 }
 
@@ -51,8 +51,9 @@ void write_all(int descriptor, const std::string& text) {
   }
 }
 
-[[noreturn]] void become_worker(const std::string& path, ApartTask task, const ApartLimits& limits, int descriptor) {
-  // Nobody handles a crash here, or cleans up for the parent.
+[[noreturn]] void become_worker(const std::string& path, IsolatedTask task, const IsolationLimits& limits,
+                                int descriptor) {
+  // Signal handlers of the parent do not act here.
   for (const int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGINT, SIGTERM, SIGHUP, SIGXCPU})
     std::signal(signal, SIG_DFL);
   if (const int null = ::open("/dev/null", O_WRONLY); null >= 0) {
@@ -85,15 +86,15 @@ std::string describe_end(int status, const std::string& library) {
   return "the " + library + " library does not survive reading it (" + strsignal(WTERMSIG(status)) + ")";
 }
 
-Apart work_in_a_process(const std::string& path, ApartTask task, const ApartLimits& limits,
-                        const std::string& library) {
+IsolatedResult run_in_process(const std::string& path, IsolatedTask task, const IsolationLimits& limits,
+                              const std::string& library) {
   int ends[2];
   pid_t child = -1;
   const bool has_pipe = ::pipe2(ends, O_CLOEXEC) == 0;
   if (has_pipe) child = ::fork();
   if (child == 0) become_worker(path, task, limits, ends[1]);
   if (child < 0) {
-    // No process to be had: better done here than not.
+    // No process can be forked: the task is run in this one.
     if (has_pipe) {
       ::close(ends[0]);
       ::close(ends[1]);
@@ -101,11 +102,11 @@ Apart work_in_a_process(const std::string& path, ApartTask task, const ApartLimi
     return {task(path), {}};
   }
   ::close(ends[1]);
-  Apart done;
+  IsolatedResult done;
   char buffer[4096];
   for (ssize_t n = 1; n != 0;) {
     n = ::read(ends[0], buffer, sizeof buffer);
-    if (n > 0) done.said.append(buffer, static_cast<std::size_t>(n));
+    if (n > 0) done.output.append(buffer, static_cast<std::size_t>(n));
     if (n < 0 && errno != EINTR) break;
   }
   ::close(ends[0]);
@@ -116,14 +117,15 @@ Apart work_in_a_process(const std::string& path, ApartTask task, const ApartLimi
   return done;
 }
 
-ApartWorker g_worker = work_in_a_process;
+IsolatedRunner g_worker = run_in_process;
 
 }  // namespace
 
-Apart work_apart(const std::string& path, ApartTask task, const ApartLimits& limits, const std::string& library) {
+IsolatedResult run_isolated(const std::string& path, IsolatedTask task, const IsolationLimits& limits,
+                            const std::string& library) {
   return g_worker(path, task, limits, library);
 }
 
-ApartWorker set_apart_worker(ApartWorker worker) { return std::exchange(g_worker, worker); }
+IsolatedRunner set_isolated_runner(IsolatedRunner worker) { return std::exchange(g_worker, worker); }
 
 }  // namespace bough
