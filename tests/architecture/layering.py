@@ -6,7 +6,7 @@ from common import ROOMS, ROOT, finish, line_of, list_sources, read, strip_comme
 
 RECORDS = ["base", "formats/records"]
 # fe by question, from the ground up; each may use those before it.
-FE = ["linear", "shape", "sections", "elements", "cards", "model", "matrices", "loads", "statics"]
+FE = ["linear", "shape", "sections", "elements", "corotational", "cards", "model", "matrices", "loads", "statics"]
 # solver likewise; integrate and statespace need none of it.
 SOLVER = ["state", "text", "bodies", "functions", "hinges", "tree", "forces", "loops", "motion", "signals", "control",
           "sensors", "actuators", "system", "builder", "integrate", "simulate", "statespace", "linear"]

@@ -168,6 +168,10 @@ TEST_P(Battery, GeometricStiffnessTurnsTheNodalForces) {
   }
 }
 
+TEST_P(Battery, ThirdDerivativeOfEnergyIsGeometricStiffness) {
+  expect_third_derivative_of_geometric(make_model(GetParam()));
+}
+
 TEST_P(Battery, AddsScaledIntoStorage) { expect_scaled_additions(make_model(GetParam())); }
 
 INSTANTIATE_TEST_SUITE_P(Elements, Battery, testing::ValuesIn(make_cases()),

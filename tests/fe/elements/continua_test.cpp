@@ -175,6 +175,10 @@ TEST_P(Continua, GeometricStiffnessIsSymmetricLinearAndBlindToTranslation) {
   expect_sound_geometric(m, u);
 }
 
+TEST_P(Continua, ThirdDerivativeOfEnergyIsGeometricStiffness) {
+  expect_third_derivative_of_geometric(make_model(GetParam()), GetParam().name[0] == 'C' ? 1e-9 : 0.1);
+}
+
 TEST_P(Continua, AddsScaledIntoStorage) { expect_scaled_additions(make_model(GetParam())); }
 
 INSTANTIATE_TEST_SUITE_P(Shells, Continua, testing::ValuesIn(make_shell_cases()),

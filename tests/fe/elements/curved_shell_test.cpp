@@ -149,6 +149,11 @@ TEST_P(CurvedShells, GeometricStiffnessIsSymmetricLinearAndTurnsTheForces) {
   }
 }
 
+TEST_P(CurvedShells, ThirdDerivativeOfEnergyIsGeometricStiffness) {
+  expect_third_derivative_of_geometric(make_model(GetParam()),
+                                       GetParam().bow == 0 && GetParam().absent.empty() ? 1e-9 : 0.05);
+}
+
 INSTANTIATE_TEST_SUITE_P(, CurvedShells, testing::ValuesIn(make_cases()),
                          [](const auto& test) { return test.param.name; });
 

@@ -1,6 +1,10 @@
 #include "element_checks.hpp"
 
+#include <array>
+
 #include <Eigen/Eigenvalues>
+
+#include "fe/corotational/corotational_element.hpp"
 
 namespace bough::fe::test {
 
@@ -47,6 +51,103 @@ VectorXd turn_forces(const Vector3d& theta, const VectorXd& f) {
     turned.segment<3>(i + 3) = 0.5 * theta.cross(f.segment<3>(i + 3));
   }
   return turned;
+}
+
+namespace {
+
+/// One element and what its frame is made of.
+struct FrameCheck {
+  FrameCheck(const Element& e, const std::vector<Node>& nodes) : element(e), corotational(e, nodes) {}
+
+  int num_nodes() const { return static_cast<int>(corotational.arms().cols()); }
+  Vector3d get_arm(int k) const { return corotational.arms().col(k); }
+  int get_translation(int k) const { return corotational.translations()[static_cast<std::size_t>(k)]; }
+  int get_rotation(int k) const { return corotational.rotations()[static_cast<std::size_t>(k)]; }
+
+  VectorXd calc_rotation(const Vector3d& omega) const {
+    VectorXd u = VectorXd::Zero(element.num_dofs());
+    for (int k = 0; k < num_nodes(); ++k) {
+      u.segment<3>(get_translation(k)) = omega.cross(get_arm(k));
+      if (get_rotation(k) >= 0) u.segment<3>(get_rotation(k)) = omega;
+    }
+    return u;
+  }
+
+  /// u without the rotation of the frame.
+  VectorXd remove_rotation(const VectorXd& u) const {
+    Matrix3d H = corotational.arms() * corotational.arms().transpose();
+    Vector3d axis = Vector3d::Zero();
+    for (int k = 0; k < num_nodes(); ++k) {
+      axis += get_arm(k).cross(u.segment<3>(get_translation(k)));
+      if (get_rotation(k) < 0) continue;
+      H += corotational.rotation_weight() * Matrix3d::Identity();
+      axis += 2 * corotational.rotation_weight() * u.segment<3>(get_rotation(k));
+    }
+    const Matrix3d A = H.trace() * Matrix3d::Identity() - H;
+    return u - calc_rotation(A.completeOrthogonalDecomposition().solve(axis));
+  }
+
+  /// ω×f of forces, ½ ω×m of moments.
+  VectorXd turn(const Vector3d& omega, const VectorXd& f) const {
+    VectorXd turned = VectorXd::Zero(f.size());
+    for (int k = 0; k < num_nodes(); ++k) {
+      turned.segment<3>(get_translation(k)) = omega.cross(f.segment<3>(get_translation(k)));
+      if (get_rotation(k) >= 0) turned.segment<3>(get_rotation(k)) = 0.5 * omega.cross(f.segment<3>(get_rotation(k)));
+    }
+    return turned;
+  }
+
+  double calc_third(const VectorXd& a, const VectorXd& b, const VectorXd& c) const {
+    MatrixXd u = MatrixXd::Zero(a.size(), 8);
+    u.col(0) = a + b;
+    u.col(4) = a - b;
+    const MatrixXd f = corotational.calc_forces(u);
+    return 0.5 * c.dot(f.col(1) - f.col(5));
+  }
+
+  MatrixXd calc_geometric(const VectorXd& a) const {
+    VectorXd force = VectorXd::Zero(element.num_internal_forces());
+    element.calc_internal_forces(a, force);
+    MatrixXd K_G = MatrixXd::Zero(a.size(), a.size());
+    element.add_geometric_stiffness(force, 1, K_G);
+    return K_G;
+  }
+
+  /// V‴(a, b, c) and the sum of K_G, relative to the size of K_G.
+  std::array<double, 2> compare(const VectorXd& a, const VectorXd& b, const VectorXd& c) const {
+    const MatrixXd Ka = calc_geometric(a), Kb = calc_geometric(b), Kc = calc_geometric(c);
+    const double sum = b.dot(Ka * c) + a.dot(Kb * c) + a.dot(Kc * b);
+    const double scale =
+        Ka.norm() * b.norm() * c.norm() + Kb.norm() * a.norm() * c.norm() + Kc.norm() * a.norm() * b.norm();
+    return {calc_third(a, b, c) / scale, sum / scale};
+  }
+
+  const Element& element;
+  CorotationalElement corotational;
+};
+
+}  // namespace
+
+void expect_third_derivative_of_geometric(const SmallModel& m, double tolerance) {
+  std::vector<Node> nodes;
+  for (int k = 0; k < m.nodes.num_nodes(); ++k) nodes.push_back(m.nodes.node(k));
+  for (const auto& element : m.elements) {
+    if (element->num_internal_forces() == 0) continue;
+    const FrameCheck check(*element, nodes);
+    ASSERT_TRUE(check.corotational.follows_nodes()) << element->card();
+    const int n = element->num_dofs();
+    const VectorXd a = make_random(71, n), b = make_random(72, n), c = make_random(73, n);
+    const auto local = check.compare(check.remove_rotation(a), check.remove_rotation(b), check.remove_rotation(c));
+    EXPECT_NEAR(local[0], local[1], 1e-9) << element->card();
+    const auto whole = check.compare(a, b, c);
+    EXPECT_NEAR(whole[0], whole[1], tolerance) << element->card();
+    const Vector3d omega(0.3, -0.5, 0.8);
+    const VectorXd Kb = check.corotational.K() * b, Kc = check.corotational.K() * c;
+    EXPECT_NEAR(check.calc_third(b, c, check.calc_rotation(omega)),
+                check.turn(omega, Kb).dot(c) + check.turn(omega, Kc).dot(b),
+                1e-9 * (Kb.norm() * c.norm() + Kc.norm() * b.norm()))
+        << element->card();
+  }
 }
 
 void expect_scaled_additions(const SmallModel& m) {

@@ -21,6 +21,11 @@ void expect_sound_geometric(const SmallModel& m, const VectorXd& u);
 /// to the rotation vector (semitangential).
 VectorXd turn_forces(const Vector3d& theta, const VectorXd& f);
 
+/// V‴(a, b, c) of each element (docs/theory/third-order.md) is the sum over a, b, c of K_G of the one on the other two:
+/// to 1e-9 of its norm where a, b, c do not turn the frame, to `tolerance` otherwise (a K_G that turns the nodal forces
+/// only in the mean). V‴(ω, b, c) of a rotation is that of forces that turn.
+void expect_third_derivative_of_geometric(const SmallModel& m, double tolerance = 1e-9);
+
 /// Stiffness and mass are added, times a factor, to what is there; internal forces have names.
 void expect_scaled_additions(const SmallModel& m);
 

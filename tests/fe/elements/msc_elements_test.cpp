@@ -1,9 +1,9 @@
 /// GENEL, CGAP and PBCOMP against elements and closed forms that are the same thing written otherwise.
 #include <Eigen/Eigenvalues>
 
+#include "element_checks.hpp"
 #include "fe/elements/beam.hpp"
 #include "fe/elements/temperature.hpp"
-#include "small_model.hpp"
 
 namespace bough::fe::test {
 namespace {
@@ -341,6 +341,7 @@ TEST(Cbend, OwesWhatEveryElementOwes) {
     }
     EXPECT_LT((K_G * rigid.col(3 + axis) - expected).norm(), 1e-8 * expected.norm()) << axis;
   }
+  expect_third_derivative_of_geometric(m);
 }
 
 TEST(Cbend, GrowsAlikeInAllDirections) {

@@ -4,8 +4,8 @@
 
 #include <Eigen/Eigenvalues>
 
+#include "element_checks.hpp"
 #include "fe/elements/shear_panel.hpp"
-#include "small_model.hpp"
 
 namespace bough::fe::test {
 namespace {
@@ -169,6 +169,7 @@ TEST(ShearPanel, GeometricStiffnessTurnsTheForces) {
       for (int i = 0; i < 24; i += 6) expected.segment<3>(i) = Vector3d::Unit(axis).cross(f.segment<3>(i));
       EXPECT_LT((K_G * Phi_R.col(3 + axis) - expected).norm(), 1e-12 * f.norm());
     }
+    expect_third_derivative_of_geometric(m);
   }
 }
 

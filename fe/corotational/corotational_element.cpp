@@ -1,0 +1,259 @@
+#include "fe/corotational/corotational_element.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Eigenvalues>
+
+#include "base/rotation.hpp"
+#include "fe/corotational/series.hpp"
+
+namespace bough::fe {
+
+namespace {
+
+/// Weight of the nodes' rotations in the frame per mean square distance of the nodes: it decides the twist of a line,
+/// and little else. Any value gives the same V to third order.
+constexpr double kRotationWeight = 1e-3;
+constexpr double kRigidTolerance = 1e-8;   // of K times rigid-body motion
+constexpr double kRangeTolerance = 1e-13;  // of eigenvalues of K scaled by its diagonal
+
+/// Inverse without directions about which nothing turns the frame (rods).
+Matrix3d invert_symmetric(const Matrix3d& A) {
+  const Eigen::SelfAdjointEigenSolver<Matrix3d> eigen(A);
+  Vector3d inverse = eigen.eigenvalues();
+  for (double& value : inverse) value = value > 1e-12 * eigen.eigenvalues()[2] ? 1 / value : 0;
+  return eigen.eigenvectors() * inverse.asDiagonal() * eigen.eigenvectors().transpose();
+}
+
+/// X of K X = B, least squares, in units of the diagonal.
+MatrixXd solve_in_range(const MatrixXd& K, const MatrixXd& B) {
+  VectorXd scale = K.diagonal();
+  for (double& value : scale) value = value > 0 ? 1 / std::sqrt(value) : 0;
+  const MatrixXd scaled = scale.asDiagonal() * K * scale.asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(scaled);
+  VectorXd inverse = eigen.eigenvalues();
+  const double limit = kRangeTolerance * static_cast<double>(K.rows()) * inverse.maxCoeff();
+  for (double& value : inverse) value = value > limit ? 1 / value : 0;
+  const MatrixXd V = scale.asDiagonal() * eigen.eigenvectors();
+  return V * (inverse.asDiagonal() * (V.transpose() * B));
+}
+
+}  // namespace
+
+CorotationalElement::CorotationalElement(const Element& element, const std::vector<Node>& nodes) {
+  const int N = element.num_dofs();
+  K_ = MatrixXd::Zero(N, N);
+  element.add_stiffness(1, K_);
+  follows_nodes_ = find_nodes(element, nodes) && is_free_of_rigid_motion();
+  if (!follows_nodes_) return;
+  set_frame();
+  set_local_strains(element);
+}
+
+/// True when the dofs are all translations of some grids, and all rotations of some of these.
+bool CorotationalElement::find_nodes(const Element& element, const std::vector<Node>& nodes) {
+  const auto& gdofs = element.gdofs();
+  const auto find_row = [&](int dof) {
+    const auto it = std::find(gdofs.begin(), gdofs.end(), dof);
+    return it == gdofs.end() ? -1 : static_cast<int>(it - gdofs.begin());
+  };
+  std::vector<Vector3d> places;
+  std::vector<int> seen;
+  int num_rows = 0;
+  for (const int index : element.nodes()) {
+    if (std::find(seen.begin(), seen.end(), index) != seen.end()) continue;
+    seen.push_back(index);
+    const Node& node = nodes[static_cast<std::size_t>(index)];
+    const int row = find_row(node.first_gdof);
+    const auto is_block = [&](int first) {
+      return first >= 0 && first + 2 < element.num_dofs() &&
+             gdofs[static_cast<std::size_t>(first) + 2] == gdofs[static_cast<std::size_t>(first)] + 2;
+    };
+    if (node.num_dofs != 6 || !is_block(row)) return false;
+    const int turn = find_row(node.first_gdof + 3);
+    if (turn >= 0 && !is_block(turn)) return false;
+    translations_.push_back(row);
+    rotations_.push_back(turn);
+    places.push_back(node.x);
+    num_rows += turn >= 0 ? 6 : 3;
+  }
+  if (places.empty() || num_rows != element.num_dofs()) return false;
+  arms_.resize(3, static_cast<Eigen::Index>(places.size()));
+  for (Eigen::Index k = 0; k < arms_.cols(); ++k) arms_.col(k) = places[static_cast<std::size_t>(k)];
+  arms_.colwise() -= arms_.rowwise().mean().eval();
+  return true;
+}
+
+bool CorotationalElement::is_free_of_rigid_motion() const {
+  for (int c = 0; c < 6; ++c) {
+    VectorXd u = VectorXd::Zero(K_.rows());
+    for (std::size_t k = 0; k < translations_.size(); ++k) {
+      const Vector3d e = Vector3d::Unit(c % 3);
+      u.segment<3>(translations_[k]) = c < 3 ? e : Vector3d(e.cross(arms_.col(static_cast<Eigen::Index>(k))));
+      if (c >= 3 && rotations_[k] >= 0) u.segment<3>(rotations_[k]) = e;
+    }
+    if (((K_ * u).array().abs() > kRigidTolerance * (K_.cwiseAbs() * u.cwiseAbs()).array()).any()) return false;
+  }
+  return true;
+}
+
+void CorotationalElement::set_frame() {
+  rotation_weight_ = kRotationWeight * arms_.squaredNorm() / static_cast<double>(arms_.cols());
+  if (rotation_weight_ == 0) rotation_weight_ = 1;
+  Matrix3d H = arms_ * arms_.transpose();
+  for (const int row : rotations_)
+    if (row >= 0) H += rotation_weight_ * Matrix3d::Identity();
+  frame_inverse_ = invert_symmetric(H.trace() * Matrix3d::Identity() - H);
+}
+
+void CorotationalElement::set_local_strains(const Element& element) {
+  const int N = num_dofs(), s = element.num_internal_forces();
+  F_ = MatrixXd::Zero(s, N);
+  if (s == 0) return;
+  element.calc_internal_forces_of(MatrixXd::Identity(N, N), F_);
+  for (int m = 0; m < s; ++m) {
+    MatrixXd P = MatrixXd::Zero(N, N);
+    element.add_geometric_stiffness(VectorXd::Unit(s, m), 1, P);
+    P_.push_back(0.5 * (P + P.transpose()));
+  }
+  E_ = F_ * solve_in_range(K_, F_.transpose());
+}
+
+namespace {
+
+/// Frame and nodes along one curve.
+struct Motion {
+  SeriesMatrix R, H;                   ///< the frame, and Rᵀ B
+  std::vector<SeriesVector> y, turn;   ///< places and rotation vectors of the nodes, seen from the frame
+  std::vector<SeriesVector> rotation;  ///< rotation vectors in basic
+};
+
+SeriesVector get_vector(const Eigen::Ref<const MatrixXd>& u, int row) {
+  SeriesVector v = make_zero_vector();
+  for (int k = 1; k <= kSeriesTop; ++k) v[static_cast<std::size_t>(k)] = u.block<3, 1>(row, k - 1);
+  return v;
+}
+
+void put_vector(const SeriesVector& v, int row, Eigen::Ref<MatrixXd> u) {
+  for (int k = 1; k <= kSeriesTop; ++k) u.block<3, 1>(row, k - 1) = v[static_cast<std::size_t>(k)];
+}
+
+/// The rotation R nearest to the nodes: Rᵀ B symmetric. Newton with the matrix of order 0 finds an order a step.
+void find_frame(const SeriesMatrix& B, const Matrix3d& inverse, Motion& motion) {
+  motion.R = make_zero_matrix();
+  motion.R[0].setIdentity();
+  for (int step = 0; step < kSeriesTop; ++step) {
+    SeriesVector turn = calc_skew_axis(multiply(transpose(motion.R), B));
+    turn[0].setZero();
+    for (auto& v : turn) v = inverse * v;
+    motion.R = multiply(motion.R, calc_exponential(turn));
+  }
+  motion.H = multiply(transpose(motion.R), B);
+}
+
+}  // namespace
+
+MatrixXd CorotationalElement::calc_forces(const Eigen::Ref<const MatrixXd>& u) const {
+  BOUGH_DEMAND(u.rows() == num_dofs() && u.cols() % kSeriesTop == 0);
+  if (!follows_nodes_) return K_ * u;
+  const std::size_t num_nodes = translations_.size();
+  const Eigen::Index num_curves = u.cols() / kSeriesTop;
+  std::vector<Motion> motions(static_cast<std::size_t>(num_curves));
+  MatrixXd d(u.rows(), u.cols());
+  for (Eigen::Index curve = 0; curve < num_curves; ++curve) {
+    Motion& motion = motions[static_cast<std::size_t>(curve)];
+    const auto u_c = u.middleCols<kSeriesTop>(curve * kSeriesTop);
+    std::vector<SeriesVector> x(num_nodes, make_zero_vector());
+    std::vector<SeriesMatrix> R_nodes(num_nodes);
+    SeriesVector mean = make_zero_vector();
+    for (std::size_t k = 0; k < num_nodes; ++k) {
+      x[k] = get_vector(u_c, translations_[k]);
+      for (std::size_t i = 0; i < mean.size(); ++i) mean[i] += x[k][i] / static_cast<double>(num_nodes);
+    }
+    SeriesMatrix B = make_zero_matrix();
+    motion.rotation.resize(num_nodes);
+    for (std::size_t k = 0; k < num_nodes; ++k) {
+      const Vector3d arm = arms_.col(static_cast<Eigen::Index>(k));
+      for (std::size_t i = 0; i < mean.size(); ++i) x[k][i] -= mean[i];
+      x[k][0] += arm;
+      for (std::size_t i = 0; i < mean.size(); ++i) B[i] += x[k][i] * arm.transpose();
+      if (rotations_[k] < 0) continue;
+      motion.rotation[k] = get_vector(u_c, rotations_[k]);
+      R_nodes[k] = calc_exponential(motion.rotation[k]);
+      for (std::size_t i = 0; i < mean.size(); ++i) B[i] += rotation_weight_ * R_nodes[k][i];
+    }
+    find_frame(B, frame_inverse_, motion);
+    const SeriesMatrix Rt = transpose(motion.R);
+    motion.y.resize(num_nodes);
+    motion.turn.resize(num_nodes);
+    auto d_c = d.middleCols<kSeriesTop>(curve * kSeriesTop);
+    for (std::size_t k = 0; k < num_nodes; ++k) {
+      motion.y[k] = multiply(Rt, x[k]);
+      put_vector(motion.y[k], translations_[k], d_c);  // from order 1; the arm is order 0
+      if (rotations_[k] < 0) continue;
+      motion.turn[k] = calc_logarithm(multiply(Rt, R_nodes[k]));
+      put_vector(motion.turn[k], rotations_[k], d_c);
+    }
+  }
+
+  // ∂V/∂d = K d + ½ Fᵀw + Σ_m (F d + ½ E w)_m P_m d
+  MatrixXd g = K_ * d;
+  if (!P_.empty()) {
+    const auto s = static_cast<Eigen::Index>(P_.size());
+    std::vector<MatrixXd> Pd;
+    MatrixXd w = MatrixXd::Zero(s, d.cols());
+    for (Eigen::Index m = 0; m < s; ++m) {
+      Pd.push_back(P_[static_cast<std::size_t>(m)] * d);
+      for (Eigen::Index c = 0; c < d.cols(); c += kSeriesTop)
+        for (int i = 1; i < kSeriesTop; ++i)
+          for (int j = 1; i + j <= kSeriesTop; ++j)
+            w(m, c + i + j - 1) += d.col(c + i - 1).dot(Pd.back().col(c + j - 1));
+    }
+    const MatrixXd h = F_ * d + 0.5 * (E_ * w);
+    g += 0.5 * (F_.transpose() * w);
+    for (Eigen::Index m = 0; m < s; ++m)
+      for (Eigen::Index c = 0; c < d.cols(); c += kSeriesTop)
+        for (int i = 1; i < kSeriesTop; ++i)
+          for (int j = 1; i + j <= kSeriesTop; ++j)
+            g.col(c + i + j - 1) += h(m, c + i - 1) * Pd[static_cast<std::size_t>(m)].col(c + j - 1);
+  }
+
+  MatrixXd f = MatrixXd::Zero(u.rows(), u.cols());
+  for (Eigen::Index curve = 0; curve < num_curves; ++curve) {
+    const Motion& motion = motions[static_cast<std::size_t>(curve)];
+    const auto g_c = g.middleCols<kSeriesTop>(curve * kSeriesTop);
+    auto f_c = f.middleCols<kSeriesTop>(curve * kSeriesTop);
+    std::vector<SeriesVector> force(num_nodes), moment(num_nodes);
+    SeriesVector tau = make_zero_vector();
+    for (std::size_t k = 0; k < num_nodes; ++k) {
+      force[k] = get_vector(g_c, translations_[k]);
+      SeriesVector share = cross(motion.y[k], force[k]);
+      if (rotations_[k] >= 0) {
+        moment[k] = multiply(transpose(calc_inverse_tangent(motion.turn[k])), get_vector(g_c, rotations_[k]));
+        for (std::size_t i = 0; i < tau.size(); ++i) share[i] += moment[k][i];
+      }
+      for (std::size_t i = 0; i < tau.size(); ++i) tau[i] += share[i];
+    }
+    // The frame turns by (tr H 1 - H)⁻¹ (Σ a × Rᵀδx + c Σ (tr Q 1 - Q) Rᵀδφ), Q the node seen from the frame.
+    const SeriesVector mu = solve(subtract_from_trace(motion.H), frame_inverse_, tau);
+    SeriesVector mean = make_zero_vector();
+    for (std::size_t k = 0; k < num_nodes; ++k) {
+      const Vector3d arm = arms_.col(static_cast<Eigen::Index>(k));
+      for (std::size_t i = 0; i < mu.size(); ++i) force[k][i] -= mu[i].cross(arm);
+      for (std::size_t i = 0; i < mu.size(); ++i) mean[i] += force[k][i] / static_cast<double>(num_nodes);
+    }
+    for (std::size_t k = 0; k < num_nodes; ++k) {
+      for (std::size_t i = 0; i < mu.size(); ++i) force[k][i] -= mean[i];
+      put_vector(multiply(motion.R, force[k]), translations_[k], f_c);
+      if (rotations_[k] < 0) continue;
+      const SeriesVector back = multiply(transpose(subtract_from_trace(calc_exponential(motion.turn[k]))), mu);
+      for (std::size_t i = 0; i < mu.size(); ++i) moment[k][i] -= rotation_weight_ * back[i];
+      put_vector(multiply(transpose(calc_tangent(motion.rotation[k])), multiply(motion.R, moment[k])), rotations_[k],
+                 f_c);
+    }
+  }
+  return f;
+}
+
+}  // namespace bough::fe

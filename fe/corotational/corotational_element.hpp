@@ -1,0 +1,51 @@
+#pragma once
+/// \file Strain energy of one element under finite displacements and rotations, as a power series along a curve.
+///
+/// Element-independent: the linear K_e in a frame that follows the nodes, and the second-order strains inside the
+/// element from its K_G. Theory: docs/theory/third-order.md (1) to (3).
+#include "fe/elements/element.hpp"
+
+namespace bough::fe {
+
+class CorotationalElement {
+ public:
+  /// `nodes`: those that element.nodes() and gdofs() index. Both are read here only. Computes K⁺ and K_G of every unit
+  /// internal force: O(N³ + s N²).
+  CorotationalElement(const Element& element, const std::vector<Node>& nodes);
+
+  /// False: V = ½ uᵀKu. Scalar springs, grounded elements, matrices without grids.
+  bool follows_nodes() const { return follows_nodes_; }
+  int num_dofs() const { return static_cast<int>(K_.rows()); }
+
+  /// Coefficients 1 to 4 of ∂V/∂u along u(ε) = Σ ε^k u_k: conjugate to translations and rotation vectors in basic.
+  /// u, result: N x 4 m for m curves, the four orders of each side by side.
+  MatrixXd calc_forces(const Eigen::Ref<const MatrixXd>& u) const;
+
+  /// Parts of V, for tests: V = ½ dᵀKd + ½ Σ (F d)_m w_m + ⅛ wᵀEw, w_m = dᵀP_m d.
+  const MatrixXd& K() const { return K_; }
+  const MatrixXd& F() const { return F_; }
+  const MatrixXd& E() const { return E_; }
+  const std::vector<MatrixXd>& P() const { return P_; }
+  /// Places of the nodes from their centre (3 x nodes), first row of each node's translations and of its rotations (-1:
+  /// none), and the weight of rotations in the frame.
+  const Matrix3Xd& arms() const { return arms_; }
+  const std::vector<int>& translations() const { return translations_; }
+  const std::vector<int>& rotations() const { return rotations_; }
+  double rotation_weight() const { return rotation_weight_; }
+
+ private:
+  bool find_nodes(const Element& element, const std::vector<Node>& nodes);
+  bool is_free_of_rigid_motion() const;
+  void set_frame();
+  void set_local_strains(const Element& element);
+
+  bool follows_nodes_ = false;
+  MatrixXd K_, F_, E_;
+  std::vector<MatrixXd> P_;
+  Matrix3Xd arms_;
+  std::vector<int> translations_, rotations_;
+  double rotation_weight_ = 0;
+  Matrix3d frame_inverse_ = Matrix3d::Zero();
+};
+
+}  // namespace bough::fe
