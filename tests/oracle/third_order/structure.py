@@ -91,7 +91,7 @@ class Table:
 
     @staticmethod
     def points(n, degree):
-        """As many directions as monomials: the principal lattice of a simplex."""
+        """Directions, one for each monomial: the principal lattice of a simplex."""
         return exponents(n, degree) / degree
 
     def monomials(self, eta):

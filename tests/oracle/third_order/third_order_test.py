@@ -1,5 +1,5 @@
 """Bodies right to third order (docs/theory/third-order.md): each term of the static manifold of corotational elements
-against exact models of their own: circle, rods with exact rotations by shooting, inextensible beam."""
+against exact models: circle, rods with exact rotations by shooting, inextensible beam."""
 import os
 import sys
 import unittest
@@ -23,7 +23,7 @@ from structure import Manifold, Polynomial, Structure, Table  # noqa: E402
 
 
 def chain(corners, y, num, EA, C, held=range(6), links=(), extra=(), **options):
-    """Beams along straight legs, `num` each; extra: places of nodes behind them. Structure, and the exact rods."""
+    """Beams along straight legs, `num` each; extra: places of nodes after them. Structure, and the exact rods."""
     corners = np.array(corners, float)
     X, nodes = [corners[0]], []
     for a, b in zip(corners[:-1], corners[1:]):
