@@ -168,7 +168,7 @@ TEST_P(Battery, GeometricStiffnessTurnsTheNodalForces) {
   }
 }
 
-TEST_P(Battery, ThirdDerivativeOfEnergyIsGeometricStiffness) {
+TEST_P(Battery, ThirdDerivativeIsGeometricStiffness) {
   expect_third_derivative_of_geometric(make_model(GetParam()));
 }
 

@@ -175,7 +175,7 @@ TEST_P(Continua, GeometricStiffnessIsSymmetricLinearAndBlindToTranslation) {
   expect_sound_geometric(m, u);
 }
 
-TEST_P(Continua, ThirdDerivativeOfEnergyIsGeometricStiffness) {
+TEST_P(Continua, ThirdDerivativeIsGeometricStiffness) {
   expect_third_derivative_of_geometric(make_model(GetParam()), GetParam().name[0] == 'C' ? 1e-9 : 0.1);
 }
 

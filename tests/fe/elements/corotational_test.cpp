@@ -2,6 +2,8 @@
 /// double, against tests/oracle/third_order, and against a circle.
 #include "fe/corotational/corotational_element.hpp"
 
+#include <numeric>
+
 #include <Eigen/Eigenvalues>
 
 #include "element_checks.hpp"
@@ -222,6 +224,47 @@ TEST(Corotational, EndMomentBendsACircle) {
   const MatrixXd forces = calc_force_series(m.elements, nodes, u);
   EXPECT_NEAR(forces(tip + 5, 0), 1, 1e-9);
   EXPECT_NEAR(forces.row(tip + 5).tail<3>().norm(), 0, 1e-6);
+}
+
+/// The same of a strip of flat shells, along x, bent about y. K_G of shells has moments work on Green's curvature, per
+/// length before the strain: that shortens the strip by t²/12 (EI κ²/EA) more.
+TEST(Corotational, EndMomentBendsAStripOfShellsToACircle) {
+  for (const char* card : {"CQUAD4", "CQUADR"}) {
+    SmallModel m;
+    records::Mat1 material;
+    material.id = 1, material.E = 1e6, material.G = 5e5;
+    m.deck.mat1.push_back(material);
+    records::Pshell shell;
+    shell.id = 1, shell.mid1 = shell.mid2 = 1, shell.t = 0.01;
+    m.deck.pshell.push_back(shell);
+    const int num = 8;
+    for (int i = 0; i <= num; ++i)
+      for (int side = 0; side < 2; ++side) m.nodes.add_grid(2 * i + side + 1, Vector3d(double(i) / num, 0.1 * side, 0));
+    for (int i = 0; i < num; ++i) {
+      records::ShellElement e;
+      e.id = i + 1, e.pid = 1, e.card = card, e.grids = {2 * i + 1, 2 * i + 3, 2 * i + 4, 2 * i + 2};
+      m.deck.shells.push_back(e);
+    }
+    m.make();
+    const auto nodes = list_nodes(m);
+    const int n = m.nodes.num_gdofs(), tip = 12 * num;
+    std::vector<int> fixed(12);
+    std::iota(fixed.begin(), fixed.end(), 0);
+    const MatrixXd K = m.calc_stiffness();
+    VectorXd f = VectorXd::Zero(n);
+    f[tip + 4] = f[tip + 10] = 0.5;
+    MatrixXd u = MatrixXd::Zero(n, kSeriesTop);
+    u.col(0) = solve_static(K, f, fixed);
+    u.col(0) /= u(tip + 4, 0);
+    fixed.push_back(tip + 4);
+    fixed.push_back(tip + 10);
+    for (int k = 2; k <= 4; ++k)
+      u.col(k - 1) = solve_static(K, -calc_force_series(m.elements, nodes, u).col(k - 1), fixed);
+    EXPECT_NEAR(u(tip + 2, 0), -1.0 / 2, 1e-9) << card;
+    EXPECT_NEAR(u(tip, 1), -1.0 / 6 - 1e-4 / 12, 1e-6) << card;
+    EXPECT_NEAR(u(tip + 2, 2), 1.0 / 24, 1e-5) << card;
+    EXPECT_NEAR(u(tip, 3), 1.0 / 120, 1e-5) << card;
+  }
 }
 
 TEST(Corotational, ScalarSpringsStayLinear) {

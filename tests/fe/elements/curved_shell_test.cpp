@@ -149,7 +149,7 @@ TEST_P(CurvedShells, GeometricStiffnessIsSymmetricLinearAndTurnsTheForces) {
   }
 }
 
-TEST_P(CurvedShells, ThirdDerivativeOfEnergyIsGeometricStiffness) {
+TEST_P(CurvedShells, ThirdDerivativeIsGeometricStiffness) {
   expect_third_derivative_of_geometric(make_model(GetParam()),
                                        GetParam().bow == 0 && GetParam().absent.empty() ? 1e-9 : 0.05);
 }
