@@ -168,9 +168,7 @@ TEST_P(Battery, GeometricStiffnessTurnsTheNodalForces) {
   }
 }
 
-TEST_P(Battery, ThirdDerivativeIsGeometricStiffness) {
-  expect_third_derivative_of_geometric(make_model(GetParam()));
-}
+TEST_P(Battery, ThirdDerivativeIsGeometricStiffness) { expect_third_derivative_of_geometric(make_model(GetParam())); }
 
 TEST_P(Battery, AddsScaledIntoStorage) { expect_scaled_additions(make_model(GetParam())); }
 

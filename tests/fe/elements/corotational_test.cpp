@@ -226,7 +226,7 @@ TEST(Corotational, EndMomentBendsACircle) {
   EXPECT_NEAR(forces.row(tip + 5).tail<3>().norm(), 0, 1e-6);
 }
 
-/// The same of a strip of flat shells, along x, bent about y. K_G of shells has moments work on Green's curvature, per
+/// A strip of flat shells along x, bent to a circle about y. K_G of shells has moments work on Green's curvature, per
 /// length before the strain: that shortens the strip by t²/12 (EI κ²/EA) more.
 TEST(Corotational, EndMomentBendsAStripOfShellsToACircle) {
   for (const char* card : {"CQUAD4", "CQUADR"}) {
