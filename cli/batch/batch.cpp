@@ -198,7 +198,7 @@ class TableLock {
   int descriptor_;
 };
 
-/// Lines behind the head of a table; those within quotes are none.
+/// Lines after the head of a table; line ends within quotes do not count.
 std::size_t count_rows(const fs::path& table) {
   std::ifstream in(table);
   std::size_t lines = 0;

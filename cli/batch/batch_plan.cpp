@@ -184,7 +184,7 @@ void BatchPlan::find_fields() {
       if (const auto place =
               editor->second.find({p.card, id, p.occurrence, p.field, p.field_number}, p.at, diagnostics_))
         places_.back().push_back(*place);
-    // Two parameters on one field: the second would win in silence.
+    // Two parameters on one field: the second would silently override the first.
     for (std::size_t other = 0; other + 1 < places_.size(); ++other)
       for (const auto& a : places_[other])
         for (const auto& b : places_.back())

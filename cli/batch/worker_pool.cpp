@@ -29,8 +29,8 @@ struct Worker {
   std::string waiting;  ///< of its answer
 };
 
-/// A worker is a process of its own, not one of the MPI job that this program may be part of. There Open MPI leaves how
-/// to reach the job in its parameters too.
+/// Separates a worker from the MPI job that this program may be part of. Open MPI stores how to reach the job in its
+/// parameters too.
 void clear_launch() {
   const bool is_launched = std::getenv("OMPI_COMM_WORLD_SIZE") != nullptr || std::getenv("PMIX_RANK") != nullptr;
   for (char** entry = environ; *entry != nullptr;) {
@@ -47,7 +47,7 @@ void clear_launch() {
 
 [[noreturn]] void become_worker(const PoolOptions& options, int fd) {
 #ifdef __linux__
-  prctl(PR_SET_PDEATHSIG, SIGKILL);  // whatever ends this program, no worker is left behind
+  prctl(PR_SET_PDEATHSIG, SIGKILL);  // no worker outlives this program
 #endif
   setpgid(0, 0);  // Ctrl-C is for the parent to act on
   std::signal(SIGINT, SIG_DFL);

@@ -27,7 +27,7 @@ void demand_body_file(const std::string& name);
 using embed::RigidPart;
 
 /// Adds the note "flx.not-carried" with what a .FLX leaves out, once a file. Throws what the readers throw. A body
-/// whose file does not say its mass centre and inertia has none.
+/// whose file contains no centre of mass and no inertia has none.
 records::FlexBody read_body(const std::string& name, Diagnostics& diagnostics);
 /// Reads a body with its rigid part, from the file or from `given`. Throws InputError "flx.no-inertia" if neither has
 /// it, "flx.two-inertias" if both have.

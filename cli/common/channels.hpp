@@ -16,7 +16,7 @@ std::vector<std::string> get_component_names(const std::string& path, int size);
 /// nothing for a file of another kind.
 void warn_incomplete(const std::string& file, Diagnostics& diagnostics);
 
-/// Columns for `choice`: a path that is there as it stands; else a path, a folder ("/bodies/boom") or the name of a
+/// Columns for `choice`: an existing path, unchanged; else a path, a folder ("/bodies/boom") or the name of a
 /// sensor, with an optional ":component". Column names read "sensors/tip_deflection:y". Throws
 /// InputError("cli.unknown-channel") with the nearest match.
 std::vector<exports::CsvColumn> choose_columns(const hdf5::ResultsFile& results, const std::string& file,

@@ -24,7 +24,7 @@ std::string count(std::size_t number, const std::string& noun);
 /// Words of `text` on lines of at most `width` columns; lines after the first begin with `indent` blanks.
 std::string wrap(const std::string& text, std::size_t indent, std::size_t width);
 
-/// Columns of the terminal behind stdout; 0 when it is none.
+/// Columns of the terminal of stdout; 0 without a terminal.
 std::size_t get_terminal_width();
 
 class Console {

@@ -13,7 +13,7 @@ struct Converter {
   std::function<std::vector<std::string>(const std::string& source, const std::string& output)> make_arguments;
 };
 
-/// Writes `source` beside, lets the program make `path` of it, and renames: the file appears whole or not at all.
+/// Writes `source` to a temporary file, runs the converter, and renames: `path` appears whole or not at all.
 /// Throws ComputationError "cli.write" or "cli.no-converter".
 void write_converted(const std::string& path, const std::string& source, const Converter& converter);
 

@@ -11,7 +11,7 @@ namespace bough::cli {
 
 /// Φ_RᵀMΦ_R about the reference, centre of mass, inertia about the reference, about the centre of mass, principal.
 std::string format_mass_properties(const records::MassProperties& properties);
-/// Energies of the rigid motions on the three sets; a support strains the f-set, which is no fault.
+/// Energies of the rigid-body motions on the three sets; a support strains the f-set, which is no fault.
 struct GroundChecks {
   Eigen::Matrix<double, 6, 1> g, n, f;
 };

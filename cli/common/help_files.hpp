@@ -1,5 +1,5 @@
 #pragma once
-/// \file The help once more for other programs, written from the options that the verbs declare and from nothing else.
+/// \\file The help for other programs, generated from the declared options of the commands.
 #include <string>
 
 namespace CLI {

@@ -5,7 +5,7 @@
 
 namespace bough::cli {
 
-/// SIGINT, SIGTERM and SIGHUP end the program with exit code 3 and leave no half-written file behind; a signal that was
+/// SIGINT, SIGTERM and SIGHUP end the program with exit code 3 and leave no half-written file; a signal that was
 /// ignored from the start stays so. In force before main() begins. Verbs that can stop in good order (run, batch) take
 /// the signals over (SignalScope).
 void end_cleanly_on_signals();
@@ -13,7 +13,7 @@ void end_cleanly_on_signals();
 /// Makes only the first of several ranks report a signal. Before main() the environment is not available yet.
 void leave_word_to_first_rank();
 
-/// A failure has been told: the signal with which mpirun ends the other ranks adds nothing.
+/// Silences further messages after a failure: the signal by which mpirun ends the other ranks is not reported.
 void end_in_silence();
 
 /// For such verbs: SIGINT, SIGTERM and SIGHUP call `handler` while the object lives; a hangup that was ignored (nohup)

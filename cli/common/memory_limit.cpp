@@ -28,7 +28,7 @@ bool is_limited() {
   return getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY;
 }
 
-/// HDF5 and others read behind what they did not get. Calls nothing that a handler may not.
+/// Ends the program, since HDF5 and others do not check failed allocations. Calls only functions allowed in a handler.
 void end_without_memory(int) {
   remove_parts();
   const char* text =

@@ -76,7 +76,7 @@ int with_file(const std::string& file, const std::function<int()>& act, const st
 /// Throws InputError("cli.no-file") when the path is no readable file.
 void demand_file(const std::string& path);
 /// Throws InputError("cli.wrong-file") when a TOML file is of another kind than the one expected ("body", "system"),
-/// with the command that takes it; "" is unknown and passes: whoever reads the file says what is missing in it.
+/// with the command that takes it; "" is unknown and passes: the reader reports missing parts.
 void demand_kind(const std::string& path, const std::string& kind, const std::string& expected);
 /// Demands that the file is a deck; InputError("cli.wrong-file") if it is HDF5 or TOML.
 void demand_deck(const std::string& path);

@@ -8,7 +8,7 @@
 
 namespace bough::cli {
 
-/// The file of that name and SHA-256 (`source` of the run) among `files`, beside the results or here; empty, and why,
+/// The file of that name and SHA-256 (`source` of the run) among `files`, next to the results or here; empty, and why,
 /// without.
 std::string find_body_file(const std::string& written, const std::string& results,
                            const std::vector<std::string>& files,

@@ -50,7 +50,7 @@ bool is_of_run(const records::Checkpoint& checkpoint) { return checkpoint.find("
 /// Says which state it is; warns where the run went on past it.
 void report_time(const records::SystemSpec& spec, const hdf5::ResultsFile& results, const std::string& path,
                  Diagnostics& diagnostics) {
-  if (results.time.size() == 0) return;  // what is missing is said channel by channel
+  if (results.time.size() == 0) return;  // missing channels are reported one by one
   const double t = results.time[results.time.size() - 1];
   double reached = t;
   bool is_run = true;

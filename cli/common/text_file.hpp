@@ -4,7 +4,7 @@
 
 namespace bough::cli {
 
-/// Writes beside and renames: the file appears whole or not at all. Throws ComputationError("cli.write").
+/// Writes to a temporary file and renames: the file appears whole or not at all. Throws ComputationError("cli.write").
 void write_text_file(const std::string& path, const std::string& text);
 
 /// Lets `write` make a file under the name that it gets, next to `path`, and gives it the name `path` when it is whole.

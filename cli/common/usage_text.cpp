@@ -20,7 +20,7 @@ CLI::Validator make_bound(const std::string& name, const std::string& expected, 
   return {check, name};
 }
 
-/// The options that nobody knows, else the arguments that are too many.
+/// Unknown options, else surplus arguments.
 std::vector<std::string> find_extras(const CLI::App& app) {
   std::vector<std::string> options, all = app.remaining(true);
   for (const auto& word : all)

@@ -72,7 +72,7 @@ class FileFacts {
     try {
       Diagnostics quiet;
       body = std::make_unique<records::FlexBody>(read_body(file->second, quiet));
-    } catch (const InputError&) {  // whoever needs it says so
+    } catch (const InputError&) {  // reported where it is needed
     }
     return bodies_.emplace(name, std::move(body)).first->second.get();
   }

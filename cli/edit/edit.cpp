@@ -23,7 +23,7 @@ struct EditOptions : CommonOptions {
   std::string file;
 };
 
-/// A failure of a command stands at its line of the script.
+/// Gives a failure of a command the location of its line of the script.
 std::vector<Diagnostic> place(const Failure& failure, int line) {
   auto items = failure.items();
   for (auto& item : items)

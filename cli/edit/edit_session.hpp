@@ -12,7 +12,7 @@ namespace bough::cli {
 
 class EditSession {
  public:
-  /// Asks the person at the terminal; nothing at the end of the input. Empty function: nobody is there, as in a script.
+  /// Asks the person at the terminal; nothing at the end of the input. Empty function: no user, as in a script.
   using Ask = std::function<std::optional<std::string>(const std::string& prompt)>;
 
   /// `output`: where `save` writes; empty: the file itself.
@@ -48,7 +48,7 @@ class EditSession {
   void ask_for_key(const toml_files::KindHelp& kind, const toml_files::KeyHelp& key,
                    toml_files::KeyValues& given) const;
   toml_files::KeyValues ask_for_keys(const toml_files::KindHelp& kind, toml_files::KeyValues given) const;
-  /// Asks for keys that the type or a referenced table requires: the reader knows them, the schema does not.
+  /// Asks for keys that the type or a referenced table requires: they are in the reader, not in the schema.
   toml_files::KeyValues ask_for_missing(const toml_files::KindHelp& kind, toml_files::KeyValues given) const;
   /// The errors of a text, as `check` has them.
   std::vector<Diagnostic> list_errors(const std::string& text) const;

@@ -8,7 +8,7 @@
 
 namespace bough::cli {
 
-/// An item and what stands behind its name in a path: "boom.modes.2" is the body boom and modes.2.
+/// An item and the text after its name in a path: "boom.modes.2" is the body boom and modes.2.
 struct EditTarget {
   toml_files::TableItem item;
   std::string rest;
@@ -40,7 +40,7 @@ class EditText {
 
   /// The table kind by its name; throws "cli.edit-name" with the nearest.
   const toml_files::KindHelp& find_kind(const std::string& name) const;
-  /// "boom", "hinge.root", "hinge.2", "simulation", with a key behind it when `wants_key`; throws "cli.edit-name" where
+  /// "boom", "hinge.root", "hinge.2", "simulation", with a key after it when `wants_key`; throws "cli.edit-name" where
   /// there is none or more than one.
   EditTarget find_target(const std::string& words, bool wants_key) const;
   /// The text of a value as TOML takes it: quoted where the schema wants a string.

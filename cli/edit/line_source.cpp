@@ -19,7 +19,7 @@ bool is_at_terminal() { return isatty(STDIN_FILENO) != 0 && isatty(STDOUT_FILENO
 
 namespace {
 
-/// libedit calls back functions without data of their own.
+/// Callbacks of libedit have no user data.
 const Complete* complete_now = nullptr;
 
 char* offer_word(const char* /*word*/, int state) {

@@ -10,7 +10,7 @@ namespace bough::cli {
 /// Returns true if both standard input and output are terminals.
 bool is_at_terminal();
 
-/// The words that may stand in place of the last one of a line.
+/// Completions of the last word of a line.
 using Complete = std::function<std::vector<std::string>(const std::string& line)>;
 
 /// The next line without its end; nothing at the end of the input. The prompt is printed at a terminal only. After

@@ -27,7 +27,7 @@ std::string make_body_text(const std::string& file, const std::string& format, c
 
 /// Modes files and flexible bodies.
 bool has_shapes(const std::string& format);
-/// A row a mode: number, frequency, eigenvalue, modal mass, effective masses; of buckling the load factors.
+/// A row per mode: number, frequency, eigenvalue, modal mass, effective masses; of buckling the load factors.
 std::vector<exports::CsvColumn> read_mode_columns(const std::string& file, const std::string& format,
                                                   Diagnostics& diagnostics);
 /// id, x, y, z of every node, then six columns for each mode: mode_001_x ... mode_001_rz.

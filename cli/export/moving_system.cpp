@@ -57,7 +57,7 @@ Eigen::Matrix3d to_rotation(const Eigen::Ref<const Eigen::RowVectorXd>& q) {
 MovingSystem read_moving_system(const std::string& file, const MovingOptions& o, Diagnostics& diagnostics) {
   const auto results = hdf5::read_results(file);
   const auto inputs = hdf5::read_run_inputs(file);
-  Diagnostics unused;  // the text was run: what is wrong with it was said then
+  Diagnostics unused;  // the text was run: its errors were reported then
   const auto spec = toml_files::read_system_spec_text(inputs.system_text, file, unused);
   const auto samples = choose_samples(results.time, o, file);
   MovingSystem system;

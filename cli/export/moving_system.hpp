@@ -24,7 +24,7 @@ struct MovingOptions {
 };
 void add_moving_options(CLI::App& verb, MovingOptions& options);
 
-/// One row for each chosen sample. Position of Bo (less that of the followed body) and velocity: inertial;
+/// One row for each chosen sample. Position of Bo (minus that of the followed body) and velocity: inertial;
 /// quaternion w x y z of B in the inertial frame; angular velocity in B.
 struct MovingBody {
   std::string name;

@@ -13,7 +13,7 @@ struct FlxOptions : CommonOptions {
 /// --layout and --digits.
 void add_flx_options(CLI::App& verb, FlxOptions& options);
 
-/// The template of --layout, or Bough's own with so many digits.
+/// The template of --layout, or Bough's own with the given number of digits.
 flx::Layout choose_layout(const FlxOptions& options, int digits);
 
 /// Every block by name, as `flx --read --json` prints it; arrays as in the flexible-body file. Of several bodies a list

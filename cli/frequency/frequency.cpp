@@ -58,7 +58,7 @@ void demand_grids(const DeckResponseOptions& options, const records::DynamicDeck
   }
 }
 
-/// SOL 108 and 109 solve without modes, unless the command line says how many it wants.
+/// SOL 108 and 109 solve without modes, unless the command line requests a number of modes.
 bool choose_direct(const DeckResponseOptions& options, const records::DynamicDeck& deck, Diagnostics& diagnostics) {
   static const std::array direct{"108", "109", "26", "27", "SEDFREQ", "SEDTRAN", "DFREQ", "DTRAN", "DIRECT"};
   const bool is_asked = std::find(direct.begin(), direct.end(), deck.sol) != direct.end();

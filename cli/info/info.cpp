@@ -18,7 +18,7 @@ struct InfoOptions : CommonOptions {
   std::string file;
 };
 
-/// The blocks of a .FLX by the names that flx --read --json gives them; of several bodies behind /ID.
+/// The blocks of a .FLX by the names that flx --read --json gives them; of several bodies below /ID.
 hdf5::FileInfo read_flx_info(const std::string& name) {
   const auto parsed = flx::parse_flx_name(name).value_or(flx::FlxName{});
   hdf5::FileInfo info;

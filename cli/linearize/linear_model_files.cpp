@@ -204,7 +204,7 @@ LinearModel choose_channels(LinearModel model, const std::vector<std::string>& i
   return model;
 }
 
-/// Poles that the errors of A hide: those of free motion, or soft ones beside very stiff ones.
+/// Poles that the errors of A hide: those of free motion, or soft ones of a very stiff system.
 static std::string format_lost_poles(const records::Poles& poles) {
   std::string numbers;
   double max_error = 0;

@@ -16,7 +16,7 @@ matrices::MatFields make_second_order_fields(const records::LinearModel& model);
 void write_linear_mat(const records::LinearModel& model, const std::string& path);
 /// Size, operating point, accuracy, poles and zeros, multipliers, Hankel values.
 std::string format_linear_model(const records::LinearModel& model);
-/// The largest Hankel singular values and what they leave out; "" where there are none.
+/// The largest Hankel singular values and the sum of the others; "" if there are none.
 std::string format_hankel(const records::Hankel& hankel);
 /// [A B; C D] as one table: a row for each state's rate, then for each output; the first column names it.
 std::string make_linear_csv(const records::LinearModel& model);

@@ -104,7 +104,7 @@ int run_linearize(const LinearizeVerbOptions& o) {
   Diagnostics diagnostics;
   auto set = o.set;
   try {
-    if (!o.sweep.empty()) {  // a parameter without a value of its own has one from the sweep
+    if (!o.sweep.empty()) {  // a parameter without a value has one from the sweep
       const auto range = parse_sweep(o.sweep);
       set.push_back(fmt::format("{}={:.17g}", range.name, range.values.front()));
     }

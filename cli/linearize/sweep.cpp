@@ -55,7 +55,7 @@ bool is_repeated(const LinearSweep& sweep, Index k, Index b) {
 void warn_jumps(const LinearSweep& sweep, const std::string& file, Diagnostics& diagnostics) {
   for (Index k = 1; k < sweep.value.size(); ++k) {
     for (Index b = 0; b < sweep.correlation.cols(); ++b) {
-      // Poles at 0 and real poles that meet have no vectors of their own.
+      // Poles at 0 and real poles that meet have no unique vectors.
       if (sweep.correlation(k, b) > kRecognized || !(sweep.imag(k, b) > 0) || !(sweep.imag(k - 1, b) > 0)) continue;
       if (is_repeated(sweep, k, b) || is_repeated(sweep, k - 1, b) || is_gone_near(sweep, k, b)) continue;
       diagnostics.warning(

@@ -134,7 +134,7 @@ void ListingMaker::add_weight(const fe::Model& model) {
   if (listing_.weight) return;
   int grid = 0;
   if (deck_.find_param("GRDPNT")) {
-    Diagnostics known;  // of PARAM, by whoever read the deck
+    Diagnostics known;  // of PARAM, reported when the deck was read
     grid = static_cast<int>(std::min(records::get_real_param(deck_, "GRDPNT", 0, known), 1e9));
   }
   if (grid < 0) return;

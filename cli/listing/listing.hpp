@@ -77,7 +77,7 @@ class ListingMaker {
                     const std::vector<records::ElementStresses>& stresses,
                     const std::vector<records::ElementForces>& forces, records::ListedStep& step,
                     Diagnostics& diagnostics);
-  /// Only where the deck asks for them.
+  /// Only if the deck requests them.
   void add_energies(const std::vector<records::ElementForces>& elements, double total, records::ListedStep& step) const;
   void add_grid_forces(const fe::Model& model, const std::vector<records::GridForce>& forces,
                        records::ListedStep& step) const;

@@ -84,7 +84,7 @@ struct Solved {
   std::vector<std::string> loads, unused;  ///< of the residual vectors; loads that brought none
 };
 
-/// The modes of `model`; with `selection` the residual vectors of the loads behind them.
+/// The modes of `model`; with `selection` also the residual vectors of the loads.
 modal::EigenPairs solve_with_residuals(const ModesOptions& options, const records::DynamicDeck& deck,
                                        const records::DynamicSelection& selection, fe::Model& model, Solved& solved,
                                        int& num_residual, Console& console, Diagnostics& diagnostics) {

@@ -60,7 +60,7 @@ std::string format_health(const records::ModesResult& r, const std::vector<modal
     text += fmt::format("shapes: {} (NORM = {} of the deck){}\n",
                         norm == "MAX" ? "the largest component is 1" : "one dof is 1", norm,
                         buckling ? "" : "; modal mass and stiffness go with them");
-  // A missed mode is an error of modal (modal.missed-modes); what the count has more is below the range or a copy.
+  // A missed mode is an error of modal (modal.missed-modes); others in the count are below the range or repeated.
   const char* what = buckling ? "load factors" : "eigenvalues";
   if (n == 0) return text + fmt::format("no {} in the range asked for\n", what);
   if (r.inertia_count >= 0) {
@@ -89,7 +89,7 @@ std::string format_residual_vectors(const records::ModesResult& r, const std::ve
 
 namespace {
 
-/// One object a mode: what the rows of the tables say.
+/// One object per mode: the rows of the tables.
 nlohmann::json list_modes(const records::ModesResult& r, bool buckling) {
   auto modes = nlohmann::json::array();
   for (Eigen::Index j = 0; j < r.residual.size(); ++j) {

@@ -55,7 +55,7 @@ VectorXd interpolate(const VectorXd& x, const VectorXd& y, const VectorXd& at) {
   return values;
 }
 
-/// The curve less the one of the first file; returns whether it was interpolated.
+/// The curve minus that of the first file; returns whether it was interpolated.
 bool subtract(const report::Curve& first, report::Curve& curve, const std::string& file) {
   if (curve.x.size() == first.x.size() && curve.x == first.x) {
     curve.y -= first.y;

@@ -16,7 +16,7 @@ struct CurveChoice {
 };
 
 /// Channels of results files against time, or against the channel `x`. Throws InputError "cli.unknown-channel",
-/// "cli.one-channel" when `x` names several. With `difference` each further file less the first one, at its samples
+/// "cli.one-channel" when `x` names several. With `difference` each further file minus the first one, at its samples
 /// that lie in the time of both; where their times differ, linear between samples, with the note "cli.interpolated".
 report::Plot make_history_plot(const std::vector<std::string>& files, const std::vector<std::string>& sensors,
                                const CurveChoice& choice, Diagnostics& diagnostics);
@@ -26,7 +26,7 @@ report::Plot make_history_plot(const std::vector<std::string>& files, const std:
 report::Plot make_campaign_plot(const std::vector<std::string>& files, const std::vector<std::string>& names,
                                 const CurveChoice& choice, Diagnostics& diagnostics);
 
-/// Takes spectra, sets logarithmic axes, and with `subplots` gives each curve a plot of its own.
+/// Takes spectra, sets logarithmic axes, and with `subplots` gives each curve a separate plot.
 /// Throws InputError "cli.uneven-samples" where a spectrum is asked of samples that are not evenly spaced; the note
 /// "cli.short-segment" where there are fewer of them than a segment wants.
 std::vector<report::Plot> shape_plots(std::vector<report::Plot> plots, const CurveChoice& choice, bool is_over_time,

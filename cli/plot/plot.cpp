@@ -63,7 +63,7 @@ report::Curve read_points(const std::string& path) {
           Eigen::Map<Eigen::VectorXd>(y.data(), n), true};
 }
 
-/// The library behind rsvg-convert draws the same picture as points or as pages.
+/// The library of rsvg-convert draws the same picture as points or as pages.
 void write_picture(const std::string& path, const std::string& svg) {
   const std::string format = has_suffix(path, ".png") ? "png" : has_suffix(path, ".pdf") ? "pdf" : "svg";
   if (format == "svg") return write_text_file(path, svg);

@@ -19,7 +19,7 @@ records::Deck read_points(const records::BodySpec& spec, Diagnostics& diagnostic
 /// rows x 2: node, component. Of a table of numbers or of a file that `bough matrices` wrote. Throws
 /// InputError("cli.bad-table").
 Eigen::MatrixXi read_dof_table(const std::string& path);
-/// The list that `bough matrices` writes beside its OUTPUT4 and Matrix Market files; empty without.
+/// The list that `bough matrices` writes with its OUTPUT4 and Matrix Market files; empty without.
 std::string find_dof_table(const std::string& path);
 
 }  // namespace bough::cli

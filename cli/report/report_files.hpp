@@ -16,7 +16,7 @@ struct ReportRequest {
 /// Chapter of an HDF5 file of Bough or of the JSON of `select`. Throws InputError "cli.no-report" for other files.
 report::Chapter make_chapter(const std::string& file, const ReportRequest& request, Diagnostics& diagnostics);
 
-/// Name and value of what a file says of itself: format, version of Bough, sources with their SHA-256.
+/// Names and values of the attributes of a file: format, version of Bough, sources with their SHA-256.
 std::vector<std::pair<std::string, std::string>> list_facts(const std::string& file);
 /// The settings of a run.
 std::vector<std::pair<std::string, std::string>> list_settings(const std::string& file);

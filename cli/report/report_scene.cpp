@@ -125,7 +125,7 @@ void add_sensors(const records::SystemSpec& spec, const ScenePlaces& places, rep
 
 void add_scene(const std::string& file, const hdf5::RunInputs& inputs, const ReportRequest& request,
                report::History& history) {
-  Diagnostics unused;  // the text was run: what is wrong with it was said then
+  Diagnostics unused;  // the text was run: its errors were reported then
   const auto spec = toml_files::read_system_spec_text(inputs.system_text, file, unused);
   history.name = spec.name;
   history.energy_error_limit = spec.simulation.energy_error_limit;

@@ -24,7 +24,8 @@ class ScenePlaces {
   std::map<std::string, int> index_;
 };
 
-/// [[force]]s, actuators that push, reactions of hinges and constraints; what has no arrow is told in history.missing.
+/// [[force]]s, actuators that push, reactions of hinges and constraints; loads without arrow are in
+/// history.missing.
 void add_arrows(const records::SystemSpec& spec, const ScenePlaces& places, report::History& history);
 
 }  // namespace bough::cli

@@ -57,7 +57,7 @@ void demand_other_file(const std::string& output, const LoadedSystem& loaded, co
   }
 }
 
-/// Prints warnings as they come up, not when the run is over.
+/// Prints warnings during the run, not at its end.
 class MessageFeed {
  public:
   MessageFeed(Console& console, const Diagnostics& diagnostics) : console_(console), diagnostics_(diagnostics) {}
@@ -217,7 +217,7 @@ int run_run(const RunOptions& o) {
   solver::SimulateOutcome outcome;
   try {
     outcome = solver::simulate(loaded.system, loaded.spec, sink, options, diagnostics);
-    // A library that fails in its end has not completed: the file says so only behind it.
+    // A run whose library fails at its end is not completed: the file is marked as completed after that.
     if (solver::has_user_blocks(loaded.system.signals)) sink.flush();
     solver::close_user_blocks(loaded.system.signals);
     sink.finish();

@@ -6,7 +6,7 @@
 
 namespace bough::cli {
 
-/// Σ factor × result of the subcases, all of `model`'s elements. What is not linear is computed anew: strain energies
+/// Σ factor × result of the subcases, all of `model`'s elements. Nonlinear results are recomputed: strain energies
 /// (½ uᵀKu, without what temperatures store), von Mises and principal values, failure indices, extremes. Throws
 /// InputError("cli.combination-missing") where a subcase that it names was not solved.
 records::StaticSubcase combine(const fe::Model& model, const records::Deck& deck,

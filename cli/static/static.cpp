@@ -66,7 +66,7 @@ void keep_grid_forces(const std::vector<std::string>& words, records::StaticSubc
   });
 }
 
-/// SUBCOM, SYMCOM and REPCASE behind the subcases.
+/// SUBCOM, SYMCOM and REPCASE after the subcases.
 void add_combinations(const records::Deck& deck, const records::CaseRequests& requests, const fe::Model& model,
                       StaticOutput& output, SubcaseFailures& failures, ListingMaker* listing,
                       Diagnostics& diagnostics) {

@@ -20,7 +20,7 @@ struct StaticOutputOptions {
   bool keeps = false;  ///< the subcases stay in get_result()
 };
 
-/// Takes subcases while the next ones are solved: a thread beside the caller's, where there is one and enough for it.
+/// Processes subcases while the next ones are solved, on a second thread if there is one and enough work for it.
 class StaticOutput {
  public:
   StaticOutput(const records::Deck& deck, StaticOutputOptions options);

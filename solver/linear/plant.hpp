@@ -154,7 +154,7 @@ class Plant {
   const SystemData& data() const { return *data_; }
 
  private:
-  struct Freedom {
+  struct Dof {
     std::string name, dims;
     bool is_mode = false;
     bool is_periodic = false;
@@ -179,7 +179,7 @@ class Plant {
   const System& system_;
   std::unique_ptr<SystemData> data_;
   std::unique_ptr<LawTangents> tangents_;
-  std::vector<Freedom> dofs_;
+  std::vector<Dof> dofs_;
   bool is_open_ = false;
   std::vector<int> rows_;        ///< of u, one for each dof
   std::vector<int> state_rows_;  ///< of z

@@ -37,7 +37,7 @@ void Plant::choose_independent(double t, const VectorXd& q) {
   std::vector<bool> follows(dofs_.size(), false);
   for (Eigen::Index k = 0; k < factor.rank(); ++k)
     follows[static_cast<size_t>(factor.colsPermutation().indices()[k])] = true;
-  std::vector<Freedom> kept_dofs;
+  std::vector<Dof> kept_dofs;
   std::vector<int> rows;
   for (size_t j = 0; j < dofs_.size(); ++j) {
     if (follows[j]) {

@@ -28,7 +28,7 @@ namespace {
 /// Files that one process may look at: calls of the library that fail leave memory behind.
 constexpr int kFiles = 2000;
 /// Limits of computing, and then of waiting on a busy machine. Some damaged lists have no end; a file takes 1 to 5.
-constexpr int kMilliseconds = 15, kMostMilliseconds = 2000;
+constexpr int kMilliseconds = 15, kMaxMilliseconds = 2000;
 
 /// Exit code of a process that finds a fault of Bough's own code, not of the library that it watches.
 constexpr int kOwnFault = 77;
@@ -197,7 +197,7 @@ IsolatedResult work_by_one_process(const std::string& path, IsolatedTask task, c
     ++server.files;
     IsolatedResult done;
     pollfd wait{server.from, POLLIN, 0};
-    if (send(server.to, Order{task, path}) && ::poll(&wait, 1, kMostMilliseconds) > 0 &&
+    if (send(server.to, Order{task, path}) && ::poll(&wait, 1, kMaxMilliseconds) > 0 &&
         receive(server.from, done.output))
       return done;
     if (!stop(server)) break;
