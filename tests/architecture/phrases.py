@@ -1,13 +1,12 @@
-"""Counts banned words and phrases by room; the counts in phrases.txt may fall and never rise. RULES has the replacements.
+"""Counts banned words and phrases; the sums by room in phrases.txt may fall and never rise. RULES has the replacements.
 A line with "style: keep" is exempt.
 
-python3 tests/architecture/phrases.py . --lower     writes lower counts into phrases.txt, and adds new rooms
+python3 tests/architecture/phrases.py . --lower     writes the counts of today into phrases.txt, if no room has more
 python3 tests/architecture/phrases.py . --list RULE [ROOM]     prints the hits of a rule
 """
 import collections
 import os
 import re
-import subprocess
 import sys
 
 from common import ROOMS, ROOT, line_of, list_files, read
@@ -122,77 +121,71 @@ def find_hits():
 
 
 def read_counts():
-    """{(rule, room): count}, and the rooms that were counted."""
+    """{(rule, path): count}, and the rooms that were counted."""
     rows = [row.split() for row in read(TABLE).splitlines()]
-    return {(rule, room): int(n) for rule, room, n in rows[1:]}, rows[0][1:]
+    counts = {}
+    for path, *items in rows[1:]:
+        for item in items:
+            rule, n = item.split("=")
+            counts[rule, path] = int(n)
+    return counts, rows[0][1:]
 
 
 def write_counts(counts, rooms):
-    rows = [" ".join(["rooms:"] + rooms)]
-    rows += [f"{rule} {room} {counts[rule, room]}" for rule in RULES for room in rooms if counts.get((rule, room))]
+    rows = collections.defaultdict(list)
+    for rule in RULES:
+        for (found, path), n in counts.items():
+            if found == rule and n:
+                rows[path].append(f"{rule}={n}")
     with open(os.path.join(ROOT, TABLE), "w", encoding="utf-8") as f:
-        f.write("\n".join(rows) + "\n")
+        f.write("\n".join([" ".join(["rooms:"] + rooms)] + [" ".join([path] + rows[path]) for path in sorted(rows)]) + "\n")
 
 
-def find_new_lines():
-    """{path: lines added since the table was written}; None without git."""
-    git = ["git", "-C", ROOT]
-    try:
-        base = subprocess.run(git + ["log", "-1", "--format=%H", "--", TABLE], capture_output=True, text=True, check=True)
-        diff = subprocess.run(git + ["diff", "-U0", "-M", base.stdout.strip(), "--"], capture_output=True, text=True,
-                              check=True, errors="replace").stdout if base.stdout.strip() else None
-    except (OSError, subprocess.CalledProcessError):
-        return None
-    if diff is None:
-        return None
-    added, path = collections.defaultdict(set), ""
-    for line in diff.splitlines():
-        if line.startswith("+++ "):
-            path = line[6:]
-        elif hunk := re.match(r"@@ -\S+ \+(\d+)(?:,(\d+))?", line):
-            first, n = int(hunk[1]), int(hunk[2] or 1)
-            added[path].update(range(first, first + n))
-    return added
+def count_files(hits):
+    return collections.Counter((rule, path) for (rule, _), found in hits.items() for path, _, _ in found)
+
+
+def sum_rooms(counts):
+    sums = collections.Counter()
+    for (rule, path), n in counts.items():
+        sums[rule, room_of(path)] += n
+    return sums
 
 
 def check():
-    """Findings, as lines of text: the hits of a rule in a room that has more of them than the table allows."""
+    """Findings, as lines of text: the hits of a rule in a room that has more of them than the table allows, in the files
+    that have more; and the number of files whose counts may be lowered."""
     hits, (allowed, rooms) = find_hits(), read_counts()
-    totals, allowed_totals = collections.Counter(), collections.Counter()
-    for (rule, _), found in hits.items():
-        totals[rule] += len(found)
+    counts = count_files(hits)
+    allowed_in, totals, allowed_totals = sum_rooms(allowed), collections.Counter(), collections.Counter()
+    for (rule, _), n in counts.items():
+        totals[rule] += n
     for (rule, _), n in allowed.items():
         allowed_totals[rule] += n
-    findings, new_lines = [], None
+    findings = []
     for (rule, room), found in sorted(hits.items()):
         # A room that was not counted has been moved out of others: the sum over all rooms is what counts.
-        n = allowed.get((rule, room), 0)
+        n = allowed_in[rule, room]
         if len(found) <= n or (room not in rooms and totals[rule] <= allowed_totals[rule]):
             continue
-        if new_lines is None:
-            new_lines = find_new_lines() or {}
-        new = [h for h in found if h[1] in new_lines.get(h[0], ())] or found
+        new = [hit for hit in found if counts[rule, hit[0]] > allowed.get((rule, hit[0]), 0)]
         findings += [f'{path}:{line}: "{text}"; write: {RULES[rule][2]}' for path, line, text in new]
         findings.append(f"{room}: {len(found)} of {rule}, allowed {n}")
-    fallen = sum(1 for key, n in allowed.items() if len(hits.get(key, ())) < n)
-    return findings, fallen
+    return findings, len({path for (rule, path), n in allowed.items() if counts[rule, path] < n})
 
 
 def main():
+    hits = find_hits()
     if "--list" in sys.argv:
         rule, *room = sys.argv[sys.argv.index("--list") + 1:]
-        for (found_rule, found_room), found in sorted(find_hits().items()):
+        for (found_rule, found_room), found in sorted(hits.items()):
             if found_rule == rule and (not room or found_room == room[0]):
                 print("\n".join(f"{path}:{line}: {text}" for path, line, text in found))
         return 0
-    hits, (allowed, rooms) = find_hits(), read_counts()
-    present = sorted({room_of(path) for path in list_texts()})
-    counts = {}
-    for rule in RULES:
-        for room in present:
-            n = len(hits.get((rule, room), ()))
-            counts[rule, room] = n if room not in rooms else min(n, allowed.get((rule, room), n))
-    write_counts(counts, present)
+    if findings := check()[0]:
+        print("\n".join(findings))
+        return 1
+    write_counts(count_files(hits), sorted({room_of(path) for path in list_texts()}))
     return 0
 
 

@@ -31,5 +31,5 @@ forbid(list_files(["solver"], (".hpp", ".cpp")), r"(?m)^(?:static|thread_local)\
 new_phrases, num_fallen = phrases.check()
 findings += new_phrases
 if num_fallen:
-    print(f"{num_fallen} counts have fallen; lower them: python3 tests/architecture/phrases.py . --lower")
+    print(f"counts of {num_fallen} files have fallen; lower them: python3 tests/architecture/phrases.py . --lower")
 finish(findings, "words")
