@@ -93,7 +93,7 @@ void ModelBuilder::make_elements(const ElementFactory& factory) {
   const auto add = [this](ElementList list) {
     for (const auto& element : list.elements) {  // lists that are not the catalogue's say nothing of them
       list.cards.insert(element->card());
-      list.has_damping = list.has_damping || element->has_damping();
+      list.has_damping = list.has_damping || element->damping() != nullptr;
     }
     model_.cards_.merge(list.cards);
     model_.has_damping_ = model_.has_damping_ || list.has_damping;

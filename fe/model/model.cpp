@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "base/rotation.hpp"
+#include "fe/elements/stress_state.hpp"
 #include "fe/linear/ranks.hpp"
 #include "fe/model/coordinates.hpp"
 
@@ -96,7 +97,7 @@ void Model::add_stiffness(const Element& element, Eigen::Ref<MatrixXd> K) const 
   element.add_stiffness(1, K);
   if (prestressed_.empty()) return;
   if (const auto found = prestressed_.find(&element); found != prestressed_.end())
-    element.add_geometric_stiffness(*found->second, 1, K);
+    element.stress_state()->add_geometric_stiffness(*found->second, 1, K);
 }
 
 int Model::find_fdof(int node_index, int component) const {

@@ -1,24 +1,17 @@
 #pragma once
-/// \file Temperature sets as loads, and what heated elements carry before they deform.
+/// \file Temperature sets as loads, and the internal forces of heated elements before they deform.
 #include <unordered_map>
 
+#include "fe/elements/thermal_loads.hpp"
 #include "fe/model/model.hpp"
 
 namespace bough::fe {
 
-/// What temperatures do to elements at u = 0: Element::add_thermal of every heated one. Internal forces are
-/// Element::calc_internal_forces(u) + force, the strain energy is ½ uᵀKu - uᵀ load + energy.
+/// Effect of temperatures at u = 0 on every heated element; its load is part of the static load.
 struct InitialForces {
-  struct Part {
-    VectorXd force;  ///< internal forces
-    VectorXd load;   ///< at the nodes, among those of the static load
-    double energy = 0;
-    VectorXd stress;  ///< beside those of `force`: Element::calc_initial_stresses
-    VectorXd strain, corner_strain;  ///< Element::calc_thermal_strains, calc_corner_thermal_strains
-  };
-  std::unordered_map<const Element*, Part> of;  ///< all elements, on every rank
+  std::unordered_map<const Element*, ThermalState> of;  ///< all elements, on every rank
 
-  const Part* find(const Element& element) const {
+  const ThermalState* find(const Element& element) const {
     const auto found = of.find(&element);
     return found == of.end() ? nullptr : &found->second;
   }

@@ -155,7 +155,7 @@ TEST(CarriedBodies, AreTheMassMatrix) {
     for (const auto kind : {MassKind::Lumped, MassKind::Consistent})
       for (const auto& element : model.elements()) {
         fe::CarriedMass carried(element->num_dofs());
-        if (!element->carries_turning_mass(kind) || !calc_carried(model, *element, kind, carried)) continue;
+        if (!element->offset_mass(kind) || !calc_carried(model, *element, kind, carried)) continue;
         MatrixXd M = MatrixXd::Zero(element->num_dofs(), element->num_dofs());
         element->add_mass(kind, model.wtmass(), M);
         const MatrixXd rest = M - carried.calc_mass();

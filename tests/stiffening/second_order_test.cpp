@@ -70,8 +70,7 @@ VectorXd turn_load(const fe::Model& model, const BalancedLoad& load, const Vecto
   turned -= fe::multiply(fe::assemble_grid_mass(model, model.mass_kind()).get(), field);
   for (const auto& element : model.elements()) {
     fe::CarriedMass carried(element->num_dofs());
-    if (!element->carries_turning_mass(model.mass_kind()) ||
-        !fe::calc_carried(model, *element, model.mass_kind(), carried))
+    if (!element->offset_mass(model.mass_kind()) || !fe::calc_carried(model, *element, model.mass_kind(), carried))
       continue;
     const VectorXd at =
         fe::stack_motions(carried).transpose() * fe::AccelerationFields(std::vector{a}).calc_point_loads(carried);
