@@ -3,8 +3,8 @@
 #include <functional>
 #include <optional>
 
+#include "fe/loads/temperatures.hpp"
 #include "fe/matrices/system.hpp"
-#include "fe/model/temperatures.hpp"
 #include "modal/solver_use.hpp"
 
 namespace bough::modal {

@@ -22,6 +22,7 @@
 #include "cli/modes/modes_tables.hpp"
 #include "fe/matrices/assembly.hpp"
 #include "fe/matrices/mass_directions.hpp"
+#include "fe/statics/build_model.hpp"
 #include "fe/statics/preload.hpp"
 #include "fe/statics/static_case.hpp"
 #include "formats/hdf5/files.hpp"
@@ -116,7 +117,7 @@ Solved solve_task(const ModesOptions& options, const records::DynamicDeck& deck,
   // What these make of elements takes all of them on every rank.
   model_options.by_parts = !options.buckling && !listing && !options.energies &&
                            std::none_of(requests.selections.begin(), requests.selections.end(), asks_residuals);
-  auto model = fe::Model::build(deck, model_options, diagnostics);
+  auto model = fe::build_model(deck, model_options, diagnostics);
   diagnostics.throw_if_errors();
   if (fe::has_damping(model))
     diagnostics.note("fe.damping-unused", deck.locate({}),

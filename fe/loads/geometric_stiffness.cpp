@@ -2,8 +2,8 @@
 
 #include "fe/elements/stress_state.hpp"
 #include "fe/loads/second_order.hpp"
+#include "fe/loads/temperatures.hpp"
 #include "fe/loads/wide_links.hpp"
-#include "fe/model/temperatures.hpp"
 
 namespace bough::fe {
 namespace {

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "fe/elements/carried.hpp"
+#include "fe/loads/loads.hpp"
 #include "fe/matrices/assembly.hpp"
-#include "fe/model/applied_load.hpp"
 #include "fe/model/model.hpp"
 
 namespace bough::fe {

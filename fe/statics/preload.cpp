@@ -6,6 +6,7 @@
 #include "fe/loads/inertial_loads.hpp"
 #include "fe/loads/second_order.hpp"
 #include "fe/matrices/system.hpp"
+#include "fe/statics/build_model.hpp"
 #include "fe/statics/static_case.hpp"
 
 namespace bough::fe {
@@ -69,7 +70,7 @@ std::shared_ptr<const Prestress> calc_prestress(const records::Deck& deck, const
   Diagnostics own;
   auto held = options;
   held.uses_enforced = true;
-  const auto model = Model::build(deck, held, elements, own);
+  const auto model = build_model(deck, held, elements, own);
   records::Subcase subcase;
   subcase.load = preload.load;
   subcase.temperature = preload.temperature;

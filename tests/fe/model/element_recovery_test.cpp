@@ -9,6 +9,7 @@
 #include "fe/elements/stress_recovery.hpp"
 #include "fe/elements/stress_state.hpp"
 #include "fe/loads/load_sets.hpp"
+#include "fe/statics/build_model.hpp"
 #include "fe/statics/case_solver.hpp"
 #include "formats/nastran/reader.hpp"
 
@@ -35,7 +36,7 @@ struct Read {
     diagnostics.throw_if_errors();
     ModelOptions options;
     options.uses_enforced = true;
-    return Model::build(deck, options, diagnostics);
+    return build_model(deck, options, diagnostics);
   }();
 };
 

@@ -11,6 +11,7 @@
 #include "fe/matrices/assembly.hpp"
 #include "fe/matrices/mass_directions.hpp"
 #include "fe/matrices/reach.hpp"
+#include "fe/statics/build_model.hpp"
 #include "formats/nastran/reader.hpp"
 
 namespace bough::fe {
@@ -59,7 +60,7 @@ Made make(const std::string& text, bool by_parts) {
   ModelOptions options;
   options.by_parts = by_parts;
   try {
-    made.model.emplace(Model::build(deck, options, made.said));
+    made.model.emplace(build_model(deck, options, made.said));
   } catch (const InputError& error) {
     made.said = {};
     for (const auto& item : error.items()) made.said.add(item);

@@ -1,4 +1,4 @@
-#include "fe/model/temperatures.hpp"
+#include "fe/loads/temperatures.hpp"
 
 #include <optional>
 
