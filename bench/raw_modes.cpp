@@ -14,6 +14,7 @@
 #include <string>
 
 #include "fe/matrices/assembly.hpp"
+#include "fe/statics/build_model.hpp"
 #include "formats/nastran/reader.hpp"
 
 namespace {
@@ -45,7 +46,7 @@ bough::fe::PetscMat read(const std::string& path) {
 int write_matrices(const std::string& deck_path, const std::string& prefix) {
   bough::Diagnostics diagnostics;
   const auto deck = bough::nastran::read_deck(deck_path, {}, diagnostics);
-  const auto model = bough::fe::Model::build(deck, {}, diagnostics);
+  const auto model = bough::fe::build_model(deck, {}, diagnostics);
   write(bough::fe::assemble_stiffness(model, bough::fe::DofSet::Free).get(), prefix + ".K");
   write(bough::fe::assemble_mass(model, bough::fe::DofSet::Free, model.mass_kind()).get(), prefix + ".M");
   return 0;

@@ -3,8 +3,9 @@
 #include <functional>
 #include <optional>
 
+#include "fe/loads/loads.hpp"
+#include "fe/loads/temperatures.hpp"
 #include "fe/matrices/system.hpp"
-#include "fe/model/temperatures.hpp"
 #include "modal/solver_use.hpp"
 
 namespace bough::modal {

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "fe/matrices/system.hpp"
+#include "fe/statics/build_model.hpp"
 #include "fe/statics/preload.hpp"
 
 namespace bough::modal {
@@ -52,7 +53,7 @@ std::vector<BucklingCases> list_buckling_cases(const records::Deck& deck, int as
       break;
     }
   const auto is_id = [asked](const auto& s) { return s.id == asked; };
-  if (asked != 0 && std::none_of(deck.subcases.begin(), deck.subcases.end(), is_id)) {  // Model::build reports it
+  if (asked != 0 && std::none_of(deck.subcases.begin(), deck.subcases.end(), is_id)) {  // build_model() reports it
     cases.emplace_back();
     cases.back().statics.id = asked;
   }
@@ -101,7 +102,7 @@ EigenPairs solve_buckling(const records::Deck& deck, const BucklingCases& cases,
   if (is_own) model_options.prestress = fe::calc_subcase_prestress(deck, model_options, cases.statics, diagnostics);
   if (!is_same || is_own) {
     model_options.subcase = cases.statics.id;
-    own.emplace(fe::Model::build(deck, model_options, diagnostics));
+    own.emplace(fe::build_model(deck, model_options, diagnostics));
   }
   const fe::Model& statics = own ? *own : model;
   auto load = fe::calc_static_load(statics, deck, cases.statics, diagnostics);

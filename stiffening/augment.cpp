@@ -2,6 +2,7 @@
 #include "stiffening/augment.hpp"
 
 #include "fe/elements/point_mass.hpp"
+#include "fe/statics/build_model.hpp"
 #include "stiffening/reduction.hpp"
 
 namespace bough::stiffening {
@@ -35,7 +36,7 @@ std::unique_ptr<const Augmented> Reduction::augment(const fe::Model& model) cons
   const auto factory = options_.elements ? options_.elements : fe::make_elements;
   Diagnostics reported;  // the model without the masses has said it
   return std::make_unique<const Augmented>(
-      fe::Model::build(deck_, options, add_masses(factory, spec_.augments, model.wtmass()), reported));
+      fe::build_model(deck_, options, add_masses(factory, spec_.augments, model.wtmass()), reported));
 }
 
 void Reduction::take_off_augmentation(const fe::Model& model, modal::bases::Basis& basis) const {

@@ -1,6 +1,7 @@
 #pragma once
 /// \file What a body file says of basis, frame and damping, in the terms of modal/bases.
-#include "fe/model/temperatures.hpp"
+#include "fe/loads/loads.hpp"
+#include "fe/loads/temperatures.hpp"
 #include "formats/records/body_spec.hpp"
 #include "formats/records/deck.hpp"
 #include "modal/bases/basis.hpp"

@@ -2,6 +2,7 @@
 #include <map>
 
 #include "fe/elements/geometric_projection.hpp"
+#include "fe/elements/stress_state.hpp"
 #include "fe/linear/blas.hpp"
 #include "fe/linear/threads.hpp"
 #include "stiffening/projected_rows.hpp"
@@ -95,7 +96,7 @@ class RowSums {
     const MatrixXd unit = MatrixXd::Identity(N, N);
     auto& projection = by_size_.try_emplace(N, N, U_.cols()).first->second;
     if (part.element)
-      part.element->add_projected_geometric_stiffness(U_(gdofs, Eigen::all), unit, projection);
+      part.element->stress_state()->add_projected_geometric_stiffness(U_(gdofs, Eigen::all), unit, projection);
     else
       add_form(*part.form, unit, projection);
     const auto terms = projection.last_terms();
@@ -137,12 +138,13 @@ std::vector<MatrixXd> calc_generalized_geometric_stiffness(const fe::Model& mode
     RowSums rows(model, U, Phi);
     for (int e = first; e < last && U.cols() > 0; ++e) {
       const auto& element = *model.elements()[static_cast<std::size_t>(e)];
-      if (element.num_internal_forces() == 0) continue;
+      const fe::StressState* state = element.stress_state();
+      if (!state) continue;
       if (by_rows)
         rows.add(element);
       else
-        element.add_projected_geometric_stiffness(U(element.gdofs(), Eigen::all), Phi(element.gdofs(), Eigen::all),
-                                                  sums);
+        state->add_projected_geometric_stiffness(U(element.gdofs(), Eigen::all), Phi(element.gdofs(), Eigen::all),
+                                                 sums);
     }
     for (std::size_t i = static_cast<std::size_t>(world.rank); with_forms && i < forms.size();
          i += static_cast<std::size_t>(world.size)) {

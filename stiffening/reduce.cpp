@@ -5,6 +5,7 @@
 #include "fe/linear/factor.hpp"
 #include "fe/matrices/connected_parts.hpp"
 #include "fe/matrices/mass_directions.hpp"
+#include "fe/statics/build_model.hpp"
 #include "modal/integrals.hpp"
 #include "stiffening/basis_check.hpp"
 
@@ -118,7 +119,7 @@ void Reduction::check_modal_matrices(const fe::Model& model) {
 fe::Model Reduction::build_model() {
   const auto& elements = options_.elements ? options_.elements : fe::make_elements;
   auto options = make_model_options();
-  auto model = fe::Model::build(deck_, options, elements, diagnostics_);
+  auto model = fe::build_model(deck_, options, elements, diagnostics_);
   if (spec_.origin_node > 0) check_node(model, spec_.origin_node, "origin", {});
   check_nodes(model);
   if (spec_.frame != BodyFrame::Fixed && spec_.frame != BodyFrame::Free)
@@ -131,7 +132,7 @@ fe::Model Reduction::build_model() {
   model_options_ = options;
   if (!options.origin && !options.prestress) return model;
   Diagnostics reported;
-  return fe::Model::build(deck_, options, elements, reported);
+  return fe::build_model(deck_, options, elements, reported);
 }
 
 /// φᵀ K_e φ of each element that has stiffness, without what a preload adds to it.

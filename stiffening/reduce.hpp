@@ -2,6 +2,7 @@
 /// \file F_I, K_G1, K_G2 and the whole reduction of a deck to a flexible body.
 #include <functional>
 
+#include "fe/loads/loads.hpp"
 #include "fe/loads/second_order.hpp"
 #include "fe/statics/statics.hpp"
 #include "formats/records/body_spec.hpp"

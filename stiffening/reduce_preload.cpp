@@ -1,6 +1,7 @@
 /// The preload of a body, and temperatures as loads: stress that is there before the body deforms.
 #include <cstdio>
 
+#include "fe/elements/stress_state.hpp"
 #include "fe/statics/preload.hpp"
 #include "stiffening/reduction.hpp"
 
@@ -69,7 +70,7 @@ void Reduction::add_thermal_stiffness(const fe::Model& model, std::size_t load, 
     const auto* part = initial.find(*element);
     if (!part || part->force.size() == 0) continue;
     K.setZero(element->num_dofs(), element->num_dofs());
-    element->add_geometric_stiffness(part->force, 1, K);
+    element->stress_state()->add_geometric_stiffness(part->force, 1, K);
     const MatrixXd Phi_e = Phi_(element->gdofs(), Eigen::all);
     sum += Phi_e.transpose() * K * Phi_e;
   }

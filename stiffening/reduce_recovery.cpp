@@ -60,20 +60,22 @@ std::optional<Wanted> read_wanted(const std::string& word) {
 /// stresses. `add` (may be empty): what a column's internal forces have beside those of its displacements.
 MatrixXd calc_rows(const fe::Element& element, const MatrixXd& U_g,
                    const std::function<void(MatrixXd& forces, MatrixXd& stresses)>& add) {
-  const auto count = static_cast<Eigen::Index>(element.printed_force_names().size());
-  const bool is_internal = element.num_internal_forces() > 0;
+  const fe::PrintedForces& printed_forces = *element.printed_forces();
+  const fe::StressRecovery* recovery = element.stress_recovery();
+  const auto count = static_cast<Eigen::Index>(printed_forces.printed_force_names().size());
   MatrixXd forces = fe::calc_internal_forces(element, U_g), printed(count, U_g.cols());
-  MatrixXd more = MatrixXd::Zero(element.calc_stresses(forces).rows(), U_g.cols());
+  MatrixXd more = MatrixXd::Zero(recovery ? recovery->calc_stresses(forces).rows() : 0, U_g.cols());
   if (add) add(forces, more);
   for (Eigen::Index c = 0; c < U_g.cols(); ++c) {
     // Internal forces begin with those that are printed; springs have the latter alone.
-    if (is_internal)
+    if (element.stress_state())
       printed.col(c) = forces.col(c).head(count);
     else
-      printed.col(c) = element.calc_printed_forces(Eigen::VectorXd(U_g(element.gdofs(), c)));
+      printed.col(c) = printed_forces.calc_printed_forces(Eigen::VectorXd(U_g(element.gdofs(), c)));
   }
   MatrixXd rows(count + more.rows(), U_g.cols());
-  rows << printed, element.calc_stresses(forces) + more;
+  rows.topRows(count) = printed;
+  if (recovery) rows.bottomRows(more.rows()) = recovery->calc_stresses(forces) + more;
   return rows;
 }
 
@@ -100,8 +102,10 @@ std::map<std::pair<std::string, std::vector<std::string>>, std::vector<int>> Red
       const auto property = properties.find(elements[e]->id());
       if (!wanted->names(*elements[e], property == properties.end() ? 0 : property->second)) continue;
       is_there = true;
-      auto names = elements[e]->printed_force_names();
-      for (auto& name : fe::list_stress_names(elements[e]->stress_points())) names.push_back(std::move(name));
+      std::vector<std::string> names;
+      if (const auto* printed = elements[e]->printed_forces()) names = printed->printed_force_names();
+      if (const auto* recovery = elements[e]->stress_recovery())
+        for (auto& name : fe::list_stress_names(recovery->stress_points())) names.push_back(std::move(name));
       if (names.empty() || !chosen.insert(static_cast<int>(e)).second) continue;
       groups[{elements[e]->card(), std::move(names)}].push_back(static_cast<int>(e));
     }

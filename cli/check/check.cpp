@@ -22,6 +22,7 @@
 #include "fe/matrices/assembly.hpp"
 #include "fe/matrices/connected_parts.hpp"
 #include "fe/matrices/mass_directions.hpp"
+#include "fe/statics/build_model.hpp"
 #include "fe/statics/preload.hpp"
 #include "formats/flx/flx_file.hpp"
 #include "formats/hdf5/files.hpp"
@@ -78,7 +79,7 @@ void check_model(const CheckOptions& options, const records::Deck& deck, fe::Mod
   model_options.uses_enforced = true;
   fe::check_preloads(deck, diagnostics);
   note_solution(deck, diagnostics);
-  const auto model = fe::Model::build(deck, model_options, diagnostics);
+  const auto model = fe::build_model(deck, model_options, diagnostics);
   if (diagnostics.num_errors() > 0) return;
   const auto mass = fe::calc_mass_properties(model, model.mass_kind(), Vector3d::Zero());
   if (mass.rigid_mass.isZero(0)) {

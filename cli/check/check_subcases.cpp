@@ -11,6 +11,7 @@
 #include "cli/common/console.hpp"
 #include "cli/common/deck_tables.hpp"
 #include "cli/common/subcase_failures.hpp"
+#include "fe/statics/build_model.hpp"
 #include "fe/statics/static_case.hpp"
 
 namespace bough::cli {
@@ -67,7 +68,7 @@ void check_subcases(const records::Deck& deck, const fe::Model& model, const fe:
         auto own_options = options;
         own_options.subcase = row.subcase.id;
         Diagnostics of_model;
-        own.emplace(fe::Model::build(deck, own_options, of_model));
+        own.emplace(fe::build_model(deck, own_options, of_model));
         current = &*own;
       }
       const auto load = fe::calc_static_load(*current, deck, row.subcase, found);

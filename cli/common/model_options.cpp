@@ -31,7 +31,7 @@ fe::ModelOptions make_model_options(const DeckModelOptions& options) {
 
 std::shared_ptr<const fe::Prestress> calc_prestress(const records::Deck& deck, const fe::ModelOptions& options,
                                                     Diagnostics& diagnostics) {
-  Diagnostics unknown;  // Model::build reports a subcase that is not there
+  Diagnostics unknown;  // build_model() reports a subcase that is not there
   return fe::calc_subcase_prestress(deck, options, fe::select_subcase(deck, options.subcase, unknown), diagnostics);
 }
 

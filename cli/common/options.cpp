@@ -18,6 +18,7 @@
 #include "cli/common/ranks.hpp"
 #include "cli/common/subcase_failures.hpp"
 #include "cli/common/text_file.hpp"
+#include "fe/statics/build_model.hpp"
 #include "formats/hdf5/files.hpp"
 #include "formats/nastran/reader.hpp"
 #include "formats/toml/specs.hpp"
@@ -229,7 +230,7 @@ records::Deck read_deck_or_throw(const std::string& path, const fe::ModelOptions
   do_once([&] { demand_deck(path); });
   auto deck = read_deck_once(path, options.ignore_cards, diagnostics);
   // A deck with errors is still taken as far as it goes, so that one pass shows all of them.
-  if (diagnostics.num_errors() > 0) fe::Model::build(deck, options, diagnostics);
+  if (diagnostics.num_errors() > 0) fe::build_model(deck, options, diagnostics);
   diagnostics.throw_if_errors();
   return deck;
 }

@@ -20,6 +20,7 @@
 #include "cli/listing/listing.hpp"
 #include "cli/listing/response_listing.hpp"
 #include "cli/modes/eigen_choices.hpp"
+#include "fe/statics/build_model.hpp"
 #include "fe/statics/preload.hpp"
 #include "formats/export/response_text.hpp"
 #include "formats/hdf5/response_file.hpp"
@@ -89,7 +90,7 @@ int run_deck_response(const DeckResponseOptions& options) {
     subcases = modal::response::choose_response_subcases(deck, options.model.subcase, options.is_over_time);
   });
   note_solution(deck, diagnostics);
-  if (subcases.empty()) {  // Model::build reports it
+  if (subcases.empty()) {  // build_model() reports it
     subcases.emplace_back();
     subcases.back().id = options.model.subcase;
   }
@@ -129,7 +130,7 @@ int run_deck_response(const DeckResponseOptions& options) {
     auto of_first = model_options;
     for (const auto& subcase : subcases)
       if (std::max(subcase.id, 1) == response.subcases.front().id) of_first.subcase = subcase.id;
-    listing = make_response_listing(response, deck, fe::Model::build(deck, of_first, heard), diagnostics);
+    listing = make_response_listing(response, deck, fe::build_model(deck, of_first, heard), diagnostics);
   }
   console.print(diagnostics);
   console.print(failures.get_items(diagnostics));

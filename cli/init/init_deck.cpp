@@ -8,6 +8,7 @@
 #include "base/diagnostic.hpp"
 #include "cli/modes/eigen_choices.hpp"
 #include "fe/matrices/connected_parts.hpp"
+#include "fe/statics/build_model.hpp"
 
 namespace bough::cli {
 
@@ -21,7 +22,7 @@ bool is_constrained(const records::Deck& deck) {
       std::any_of(deck.grids.begin(), deck.grids.end(), [](const auto& g) { return g.ps != 0; });
   try {
     Diagnostics diagnostics;
-    const auto model = fe::Model::build(deck, {}, diagnostics);
+    const auto model = fe::build_model(deck, {}, diagnostics);
     return diagnostics.num_errors() > 0 ? has_constraints : fe::count_held_motions(model) == 6;
   } catch (const Failure&) {
     return has_constraints;

@@ -13,6 +13,7 @@
 #include "fe/loads/load_sets.hpp"
 #include "fe/matrices/assembly.hpp"
 #include "fe/matrices/grid_point_weight.hpp"
+#include "fe/statics/build_model.hpp"
 #include "fe/statics/element_results.hpp"
 #include "fe/statics/reactions.hpp"
 #include "fe/statics/static_case.hpp"
@@ -71,7 +72,7 @@ records::DynamicDeck read_loads_deck_or_throw(const std::string& path, const fe:
   auto deck = is_one_of_many() ? nastran::read_packed_dynamic_deck(share([&] { return nastran::pack_deck(path); }),
                                                                    read, diagnostics)
                                : nastran::read_dynamic_deck(path, read, diagnostics);
-  if (diagnostics.num_errors() > 0) fe::Model::build(deck, options, diagnostics);
+  if (diagnostics.num_errors() > 0) fe::build_model(deck, options, diagnostics);
   diagnostics.throw_if_errors();
   return deck;
 }

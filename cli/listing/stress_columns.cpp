@@ -12,7 +12,6 @@
 #include "cli/listing/element_columns.hpp"
 #include "fe/cards/element_properties.hpp"
 #include "fe/elements/solid.hpp"
-#include "fe/sections/stress.hpp"
 
 namespace bough::cli {
 namespace {
@@ -53,7 +52,7 @@ VectorXd make_bar_stresses(const fe::Element& element, const VectorXd& forces, c
                            const StressLimits& limits) {
   VectorXd pull = VectorXd::Zero(forces.size());
   pull(0) = forces(0);
-  const double axial = element.calc_stresses(pull)(0, 0);
+  const double axial = element.stress_recovery()->calc_stresses(pull)(0, 0);
   VectorXd row(15);
   double max_stress = -HUGE_VAL, min_stress = HUGE_VAL;
   for (int end = 0; end < 2; ++end) {
@@ -98,11 +97,11 @@ std::array<double, 3> calc_principal(double x, double y, double xy) {
 /// Z1 and Z2 of the PSHELL; without them half the thickness, which the stress of a unit force tells.
 std::array<double, 2> find_surfaces(const fe::Element& element, const records::Pshell* pshell) {
   double t = pshell ? pshell->t.value_or(0) : 0;
-  Eigen::VectorXd pull = VectorXd::Zero(element.num_internal_forces());
-  const auto names = element.internal_force_names();
+  Eigen::VectorXd pull = VectorXd::Zero(element.stress_state()->num_internal_forces());
+  const auto names = element.stress_state()->internal_force_names();
   for (std::size_t i = 0; i < names.size(); ++i)
     if (names[i].substr(0, names[i].find('@')) == "Nx") pull(static_cast<Index>(i)) = 1;
-  if (const double stress = element.calc_stresses(pull)(0, 0); stress > 0) t = 1 / stress;
+  if (const double stress = element.stress_recovery()->calc_stresses(pull)(0, 0); stress > 0) t = 1 / stress;
   return {pshell && pshell->z1 ? *pshell->z1 : -0.5 * t, pshell && pshell->z2 ? *pshell->z2 : 0.5 * t};
 }
 
@@ -119,7 +118,7 @@ VectorXd make_plate_stresses(const std::array<double, 2>& z, const VectorXd& str
 
 /// A row per ply: 11 22 12, the shear above it (none above the last), angle, major, minor, largest shear.
 MatrixXd make_ply_stresses(const fe::Element& element, const VectorXd& stress) {
-  const auto points = element.stress_points();
+  const auto points = element.stress_recovery()->stress_points();
   const Index count =
       std::count_if(points.begin(), points.end(), [](const auto& point) { return point.kind == fe::StressKind::Ply; });
   MatrixXd rows(count, 9);
@@ -137,8 +136,7 @@ MatrixXd make_ply_stresses(const fe::Element& element, const VectorXd& stress) {
 /// The centre and the corners: xx xy, first principal and its cosines, mean pressure, von Mises; yy yz, second; zz zx,
 /// third.
 MatrixXd make_solid_stresses(const fe::Element& element, const VectorXd& forces, const VectorXd& stress) {
-  const auto& solid = dynamic_cast<const fe::Solid&>(element);
-  const MatrixXd corners = solid.calc_corner_stresses(forces);
+  const MatrixXd corners = element.as_solid()->calc_corner_stresses(forces);
   MatrixXd rows(corners.cols() + 1, 20);
   for (Index k = 0; k < rows.rows(); ++k) {
     const VectorXd s = k == 0 ? stress : VectorXd(corners.col(k - 1));
@@ -155,7 +153,7 @@ MatrixXd make_solid_stresses(const fe::Element& element, const VectorXd& forces,
 
 /// The components of the points themselves, without what is derived.
 VectorXd take_components(const fe::Element& element, const records::ElementStresses& stresses, Index row) {
-  const auto points = element.stress_points();
+  const auto points = element.stress_recovery()->stress_points();
   std::vector<double> values;
   for (const auto& point : points)
     for (const auto& component : fe::list_components(point.kind)) {
@@ -224,7 +222,7 @@ std::optional<records::ListedElements> make_listed_stresses(const fe::Model& mod
   records::ListedElements block;
   block.card = stresses.card.substr(0, stresses.card.find('-'));
   if (stresses.id.empty()) return std::nullopt;
-  const auto kind = elements.at({block.card, stresses.id.front()})->stress_points().front().kind;
+  const auto kind = elements.at({block.card, stresses.id.front()})->stress_recovery()->stress_points().front().kind;
   block.type = find_stress_type(block.card, kind);
   if (block.type == 0) return std::nullopt;
   std::vector<std::size_t> order;

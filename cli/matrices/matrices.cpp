@@ -15,6 +15,7 @@
 #include "fe/loads/second_order.hpp"
 #include "fe/loads/wide_links.hpp"
 #include "fe/matrices/system.hpp"
+#include "fe/statics/build_model.hpp"
 #include "fe/statics/static_case.hpp"
 #include "formats/hdf5/files.hpp"
 #include "formats/matrices/matrix_market.hpp"
@@ -96,7 +97,7 @@ class GeometricStiffness {
                         [&] { model_options.prestress = calc_prestress(deck_, model_options, diagnostics); });
     solver_.reset();
     Diagnostics own;  // what the other model said too is not said again
-    model_ = &own_.emplace(fe::Model::build(deck_, model_options, own));
+    model_ = &own_.emplace(fe::build_model(deck_, model_options, own));
     add_new(own, diagnostics);
   }
 
@@ -179,7 +180,7 @@ int run_matrices(const MatricesOptions& options) {
   auto model_options = make_model_options(options.model);
   model_options.uses_enforced = true;
   model_options.prestress = calc_prestress(deck, model_options, diagnostics);
-  const auto model = fe::Model::build(deck, model_options, diagnostics);
+  const auto model = fe::build_model(deck, model_options, diagnostics);
   diagnostics.throw_if_errors();
   records::MatricesResult result;
   result.source = calc_sources(deck.files);

@@ -22,6 +22,7 @@
 #include "cli/modes/modes_tables.hpp"
 #include "fe/matrices/assembly.hpp"
 #include "fe/matrices/mass_directions.hpp"
+#include "fe/statics/build_model.hpp"
 #include "fe/statics/preload.hpp"
 #include "fe/statics/static_case.hpp"
 #include "formats/hdf5/files.hpp"
@@ -112,7 +113,7 @@ Solved solve_task(const ModesOptions& options, const records::DynamicDeck& deck,
       task.buckling
           ? fe::calc_subcase_prestress(deck, model_options, modal::get_preloaded(deck, *task.buckling), diagnostics)
           : calc_prestress(deck, model_options, diagnostics);
-  auto model = fe::Model::build(deck, model_options, diagnostics);
+  auto model = fe::build_model(deck, model_options, diagnostics);
   diagnostics.throw_if_errors();
   if (fe::has_damping(model))
     diagnostics.note("fe.damping-unused", deck.locate({}),

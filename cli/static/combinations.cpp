@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <unordered_map>
 
+#include "fe/elements/stress_recovery.hpp"
 #include "fe/matrices/assembly.hpp"
-#include "fe/sections/stress.hpp"
 #include "fe/statics/static_case.hpp"
 
 namespace bough::cli {
@@ -55,7 +55,8 @@ void derive_results(const fe::Model& model, bool of_strain, std::vector<records:
       const auto& named = elements.at(block.id[k]);
       const auto element = std::find_if(named.begin(), named.end(), [&](const auto* e) { return e->card() == card; });
       BOUGH_DEMAND(element != named.end());
-      const auto points = of_strain ? (*element)->strain_points() : (*element)->stress_points();
+      const fe::StressRecovery& recovery = *(*element)->stress_recovery();
+      const auto points = of_strain ? recovery.strain_points() : recovery.stress_points();
       const auto names = fe::list_stress_names(points);
       VectorXd values(static_cast<Index>(names.size()));
       for (std::size_t i = 0; i < names.size(); ++i) {

@@ -18,6 +18,7 @@
 #include "cli/listing/listing.hpp"
 #include "cli/static/combinations.hpp"
 #include "cli/static/static_output.hpp"
+#include "fe/statics/build_model.hpp"
 #include "fe/statics/case_solver.hpp"
 #include "formats/nastran/dynamic_reader.hpp"
 
@@ -103,7 +104,7 @@ records::Deck read_static_deck(const StaticOptions& options, Diagnostics& diagno
   auto deck = is_one_of_many() ? nastran::read_packed_combined_deck(
                                      share([&] { return nastran::pack_deck(options.deck); }), read, diagnostics)
                                : nastran::read_combined_deck(options.deck, read, diagnostics);
-  if (diagnostics.num_errors() > 0) fe::Model::build(deck, model_options, diagnostics);
+  if (diagnostics.num_errors() > 0) fe::build_model(deck, model_options, diagnostics);
   diagnostics.throw_if_errors();
   return deck;
 }
@@ -125,7 +126,7 @@ int run_static(const StaticOptions& options) {
     demand_static_solution(deck, options.is_linear, diagnostics);
     check_forces_grids(read_grids(options.grid_forces), deck);
   });
-  if (subcases.empty()) {  // Model::build reports it
+  if (subcases.empty()) {  // build_model() reports it
     subcases.emplace_back();
     subcases.back().id = options.model.subcase;
   }

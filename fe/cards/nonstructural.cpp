@@ -6,7 +6,6 @@
 #include <unordered_map>
 
 #include "fe/elements/beam.hpp"
-#include "fe/elements/carried.hpp"
 #include "formats/records/selection.hpp"
 
 namespace bough::fe {
@@ -33,13 +32,13 @@ void NonstructuralMass::add_mass(MassKind kind, double scale, Eigen::Ref<MatrixX
     for (int i = 0; i < 3; ++i) M(stride * k + i, stride * k + i) += scale * mass_ / count;
 }
 
-bool NonstructuralMass::carries_turning_mass(MassKind kind) const {
-  return factor_ != 0 && !card_is_shell(host_.card()) && host_.carries_turning_mass(kind);
+const OffsetMass* NonstructuralMass::offset_mass(MassKind kind) const {
+  return factor_ != 0 && !card_is_shell(host_.card()) && host_.offset_mass(kind) ? this : nullptr;
 }
 
 bool NonstructuralMass::add_carried(MassKind kind, const Eigen::Ref<const Matrix3Xd>& x, CarriedMass& carried) const {
   BOUGH_DEMAND(carried.points.empty());
-  const bool is_known = host_.add_carried(kind, x, carried);
+  const bool is_known = host_.offset_mass(kind)->add_carried(kind, x, carried);
   carried.mu *= factor_;
   return is_known;
 }

@@ -1,19 +1,19 @@
 #pragma once
 /// \file Mass that NSM, NSM1, NSML or NSML1 adds to an element. Source: Nastran Quick Reference Guide, NSM, NSML.
-#include "fe/elements/element.hpp"
+#include "fe/elements/carried.hpp"
 
 namespace bough::fe {
 
 /// M = factor times the host's own mass matrix, so that it is spread, and lumped or coupled, as the host's, without
 /// rotary inertia on a shell; a host without mass has `mass` in equal parts at its grids. The host outlives this
 /// element: both belong to one model.
-class NonstructuralMass final : public Element {
+class NonstructuralMass final : public Element, public OffsetMass {
  public:
   NonstructuralMass(const Element& host, double factor, double mass)
       : Element(host.id(), "NSM", host.nodes(), host.gdofs()), host_(host), factor_(factor), mass_(mass) {}
 
   void add_mass(MassKind kind, double scale, Eigen::Ref<MatrixXd> M) const override;
-  bool carries_turning_mass(MassKind kind) const override;
+  const OffsetMass* offset_mass(MassKind kind) const override;
   bool add_carried(MassKind kind, const Eigen::Ref<const Matrix3Xd>& x, CarriedMass& carried) const override;
 
  private:

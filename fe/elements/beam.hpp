@@ -9,7 +9,11 @@
 #include <memory>
 
 #include "fe/elements/beam_field.hpp"
+#include "fe/elements/carried.hpp"
 #include "fe/elements/element.hpp"
+#include "fe/elements/stress_recovery.hpp"
+#include "fe/elements/stress_state.hpp"
+#include "fe/elements/thermal_loads.hpp"
 #include "fe/sections/beam_property.hpp"
 
 namespace bough::fe {
@@ -29,7 +33,7 @@ struct BeamLineLoad {
   Eigen::Matrix<double, 6, 1> p1 = Eigen::Matrix<double, 6, 1>::Zero(), p2 = p1;
 };
 
-class Beam final : public Element {
+class Beam final : public Element, public StressState, public StressRecovery, public ThermalLoads, public OffsetMass {
  public:
   /// nodes: two; gdofs: twelve. The property must give E > 0 and a positive length is the caller's check. field: of
   /// this property and length, where other beams have the same; made here when left out.
@@ -45,26 +49,26 @@ class Beam final : public Element {
   /// CBAR torsional inertia in both, and consistent axial terms.
   void add_mass(MassKind kind, double scale, Eigen::Ref<MatrixXd> M) const override;
 
-  bool carries_turning_mass(MassKind kind) const override;
+  const OffsetMass* offset_mass(MassKind kind) const override;
   bool add_carried(MassKind kind, const Eigen::Ref<const Matrix3Xd>& x, CarriedMass& carried) const override;
 
+  const StressState* stress_state() const override { return this; }
   int num_internal_forces() const override { return 8; }
   void calc_internal_forces(const Eigen::Ref<const VectorXd>& u, Eigen::Ref<VectorXd> force) const override;
   void calc_internal_forces_of(const Eigen::Ref<const MatrixXd>& U, Eigen::Ref<MatrixXd> forces) const override;
   std::vector<std::string> internal_force_names() const override;
+  const StressRecovery* stress_recovery() const override { return this; }
   /// At the points of the property (C_a, D_a, ... at end A, C_b, ... at end B): of axial force and bending.
   std::vector<StressPoint> stress_points() const override;
   MatrixXd calc_stresses(const Eigen::Ref<const MatrixXd>& forces) const override;
   MatrixXd calc_strains(const Eigen::Ref<const MatrixXd>& forces) const override;
-  VectorXd calc_thermal_strains(const ElementTemperature& T) const override;
   void add_geometric_stiffness(const Eigen::Ref<const VectorXd>& force, double scale,
                                Eigen::Ref<MatrixXd> K_G) const override;
   void add_projected_geometric_stiffness(const Eigen::Ref<const MatrixXd>& U, const Eigen::Ref<const MatrixXd>& Phi,
                                          GeometricProjection& sums) const override;
 
-  bool has_expansion() const override { return property_->material.alpha != 0; }
-  double add_thermal(const ElementTemperature& T, Eigen::Ref<VectorXd> load,
-                     Eigen::Ref<VectorXd> initial) const override;
+  const ThermalLoads* thermal_loads() const override { return property_->material.alpha != 0 ? this : nullptr; }
+  ThermalState calc_thermal(const ElementTemperature& T) const override;
 
   /// Equivalent loads at the ends (12, element axes) before pins: ∫ Dᵀ p dx with the element's own field D. The nodal
   /// displacements under them are those of the loaded beam.
@@ -80,6 +84,7 @@ class Beam final : public Element {
   const BeamProperty& property() const { return *property_; }
 
  private:
+  VectorXd calc_thermal_strains(const ElementTemperature& change) const;
   Matrix12d calc_arm_map() const;  ///< arm tip dofs (element axes) per grid dofs (basic)
   Matrix12d calc_release() const;  ///< element end dofs per arm tip dofs: pins condensed
   Matrix12d calc_end_map() const;  ///< element end dofs per grid dofs

@@ -39,9 +39,9 @@ MassMoments shift(const MassMoments& a, const Vector3d& arm) {
 
 }  // namespace
 
-bool Beam::carries_turning_mass(MassKind kind) const {
-  return kind == MassKind::Consistent || property_->has_section_inertia || property_->has_torsional_inertia ||
-         !geometry_.wa.isZero(0) || !geometry_.wb.isZero(0);
+const OffsetMass* Beam::offset_mass(MassKind kind) const {
+  const bool has_inertia = property_->has_section_inertia || property_->has_torsional_inertia;
+  return kind == MassKind::Consistent || has_inertia || has_arms() ? this : nullptr;
 }
 
 bool Beam::add_carried(MassKind kind, const Eigen::Ref<const Matrix3Xd>& x, CarriedMass& carried) const {

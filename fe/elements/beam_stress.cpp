@@ -1,5 +1,4 @@
 #include "fe/elements/beam.hpp"
-#include "fe/elements/temperature.hpp"
 #include "fe/sections/stress.hpp"
 
 namespace bough::fe {
@@ -64,9 +63,7 @@ MatrixXd Beam::calc_strains(const Eigen::Ref<const MatrixXd>& forces) const {
 }
 
 /// α (T + (y - n_y) dT/dy + (z - n_z) dT/dz), as beam_thermal.cpp.
-VectorXd Beam::calc_thermal_strains(const ElementTemperature& given) const {
-  if (!has_expansion()) return {};
-  const ElementTemperature T = given.calc_change(property_->material.tref);
+VectorXd Beam::calc_thermal_strains(const ElementTemperature& T) const {
   const auto &a = get_points(property_->points_a), &b = get_points(property_->points_b);
   VectorXd strain(static_cast<Eigen::Index>(a.size() + b.size()));
   Eigen::Index row = 0;

@@ -1,13 +1,11 @@
 #include "fe/elements/beam.hpp"
-#include "fe/elements/temperature.hpp"
 
 namespace bough::fe {
 
 /// T is the change of temperature. A section strains freely by α (T + (y - n_y) dT/dy + (z - n_z) dT/dz): axially, and
 /// with κz = -α dT/dy, κy = α dT/dz. Temperature and gradients are linear along the beam. δ is how end B then moves
 /// from end A; the end forces are G (S u - δ).
-double Beam::add_thermal(const ElementTemperature& given, Eigen::Ref<VectorXd> load,
-                         Eigen::Ref<VectorXd> initial) const {
+ThermalState Beam::calc_thermal(const ElementTemperature& given) const {
   const BeamField& field = *field_;
   const double L = geometry_.length, alpha = property_->material.alpha;
   const ElementTemperature T = given.calc_change(property_->material.tref);
@@ -22,9 +20,10 @@ double Beam::add_thermal(const ElementTemperature& given, Eigen::Ref<VectorXd> l
   const Matrix6d G = field.calc_stiffness();
   const Matrix6x12d S = field.calc_relative();
   const Eigen::Matrix<double, 12, 1> end = S.transpose() * (G * delta);
-  load += calc_grid_load(end);
+  ThermalState state(num_dofs(), num_internal_forces());
+  state.load += calc_grid_load(end);
   Eigen::Matrix<double, 6, 1> q = -G * delta;
-  double energy = 0.5 * delta.dot(G * delta);
+  state.energy = 0.5 * delta.dot(G * delta);
   if (const unsigned pins = geometry_.pin_a | (geometry_.pin_b << 6)) {
     // What is released moves: K_rr v = f_r.
     std::vector<int> released;
@@ -34,12 +33,13 @@ double Beam::add_thermal(const ElementTemperature& given, Eigen::Ref<VectorXd> l
     const VectorXd f_r = end(released);
     const VectorXd v = MatrixXd(S_r.transpose() * G * S_r).completeOrthogonalDecomposition().solve(f_r);
     q += G * (S_r * v);
-    energy -= 0.5 * v.dot(f_r);
+    state.energy -= 0.5 * v.dot(f_r);
   }
   Eigen::Matrix<double, 8, 1> force;
   force << q[0], q[1], q[2], q[3], q[4] - q[2] * L, q[5] + q[1] * L, q[4], q[5];
-  initial += force;
-  return energy;
+  state.force += force;
+  state.strain = calc_thermal_strains(T);
+  return state;
 }
 
 }  // namespace bough::fe

@@ -6,7 +6,6 @@
 
 #include "base/rotation.hpp"
 #include "fe/elements/carried.hpp"
-#include "fe/elements/temperature.hpp"
 #include "fe/shape/gauss.hpp"
 
 namespace bough::fe {
@@ -170,13 +169,15 @@ void Bend::calc_internal_forces(const Eigen::Ref<const VectorXd>& u, Eigen::Ref<
   force = sections_ * u;
 }
 
-double Bend::add_thermal(const ElementTemperature& T, Eigen::Ref<VectorXd> load, Eigen::Ref<VectorXd> initial) const {
+ThermalState Bend::calc_thermal(const ElementTemperature& T) const {
   VectorXd free = VectorXd::Zero(12);
   free.segment<3>(6) = alpha_ * T.calc_change(tref_).node.mean() * chord_;
   const VectorXd f = K_ * free;
-  load += f;
-  initial -= sections_ * free;
-  return 0.5 * free.dot(f);
+  ThermalState state(num_dofs(), num_internal_forces());
+  state.load += f;
+  state.force -= sections_ * free;
+  state.energy = 0.5 * free.dot(f);
+  return state;
 }
 
 void Bend::add_geometric_stiffness(const Eigen::Ref<const VectorXd>& force, double scale,

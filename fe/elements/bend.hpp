@@ -4,6 +4,9 @@
 /// the arc does. Sources: Nastran Quick Reference Guide, CBEND and PBEND; Timoshenko, Strength of Materials II (1956),
 /// §§12-14.
 #include "fe/elements/beam.hpp"
+#include "fe/elements/carried.hpp"
+#include "fe/elements/stress_state.hpp"
+#include "fe/elements/thermal_loads.hpp"
 
 namespace bough::fe {
 
@@ -16,7 +19,7 @@ struct BendGeometry {
 };
 
 /// Two nodes of six dofs. The section's y axis is radial, outward: I1 bends in the plane of the arc.
-class Bend final : public Element {
+class Bend final : public Element, public StressState, public ThermalLoads, public OffsetMass {
  public:
   Bend(int id, std::vector<int> nodes, std::vector<int> gdofs, std::shared_ptr<const BeamProperty> property,
        const BendGeometry& geometry);
@@ -25,8 +28,9 @@ class Bend final : public Element {
   void add_stiffness(double scale, Eigen::Ref<MatrixXd> K) const override;
   /// Consistent with the motion of the arc; lumped: half at each end, translations only.
   void add_mass(MassKind kind, double scale, Eigen::Ref<MatrixXd> M) const override;
-  bool carries_turning_mass(MassKind kind) const override { return kind == MassKind::Consistent; }
+  const OffsetMass* offset_mass(MassKind kind) const override { return kind == MassKind::Consistent ? this : nullptr; }
   bool add_carried(MassKind kind, const Eigen::Ref<const Matrix3Xd>& x, CarriedMass& carried) const override;
+  const StressState* stress_state() const override { return this; }
   /// Section forces at ends A and B, on the face towards B, axes tangent, radial (outward), normal to the arc's plane.
   int num_internal_forces() const override { return 12; }
   std::vector<std::string> internal_force_names() const override;
@@ -35,10 +39,9 @@ class Bend final : public Element {
   void add_geometric_stiffness(const Eigen::Ref<const VectorXd>& force, double scale,
                                Eigen::Ref<MatrixXd> K_G) const override;
 
-  bool has_expansion() const override { return alpha_ != 0; }
+  const ThermalLoads* thermal_loads() const override { return alpha_ != 0 ? this : nullptr; }
   /// By the mean temperature: the arc grows in all directions alike.
-  double add_thermal(const ElementTemperature& T, Eigen::Ref<VectorXd> load,
-                     Eigen::Ref<VectorXd> initial) const override;
+  ThermalState calc_thermal(const ElementTemperature& T) const override;
 
  private:
   std::vector<std::unique_ptr<const Beam>> parts_;

@@ -31,8 +31,8 @@ void Bush::add_stiffness(double scale, Eigen::Ref<MatrixXd> K) const {
   K += scale * (B.transpose() * (k.asDiagonal() * B));
 }
 
-bool Bush::has_damping() const {
-  return std::any_of(data_.b.begin(), data_.b.end(), [](double b) { return b != 0; });
+const Damping* Bush::damping() const {
+  return std::any_of(data_.b.begin(), data_.b.end(), [](double b) { return b != 0; }) ? this : nullptr;
 }
 
 void Bush::add_damping(double scale, Eigen::Ref<MatrixXd> B) const {

@@ -1,7 +1,9 @@
 #pragma once
 /// \file CBUSH and CGAP: six springs and six dampers in element axes at one point, carried to the grids by rigid arms.
 /// Source: Nastran Quick Reference Guide, CBUSH and PBUSH.
+#include "fe/elements/damping.hpp"
 #include "fe/elements/element.hpp"
+#include "fe/elements/stress_state.hpp"
 
 namespace bough::fe {
 
@@ -18,16 +20,17 @@ struct BushData {
 /// One node (grounded) or two. Half the mass at each end, translations only; the half of a grounded end is on the
 /// ground. K_G: the forces on the arms, and the axes of the spring, which turn with the mean of the two grids; a spring
 /// to ground keeps its axes.
-class Bush final : public Element {
+class Bush final : public Element, public StressState, public Damping {
  public:
   Bush(int id, std::string card, std::vector<int> nodes, std::vector<int> gdofs, const BushData& data);
 
   ElementShape shape() const override { return nodes().size() == 2 ? ElementShape{"line2", nodes()} : ElementShape{}; }
   void add_stiffness(double scale, Eigen::Ref<MatrixXd> K) const override;
   void add_mass(MassKind kind, double scale, Eigen::Ref<MatrixXd> M) const override;
-  bool has_damping() const override;
+  const Damping* damping() const override;
   void add_damping(double scale, Eigen::Ref<MatrixXd> B) const override;
   void add_structural_damping(double g, Eigen::Ref<MatrixXd> K) const override;
+  const StressState* stress_state() const override { return this; }
   int num_internal_forces() const override { return 6; }
   void calc_internal_forces(const Eigen::Ref<const VectorXd>& u, Eigen::Ref<VectorXd> force) const override {
     force = calc_spring_forces(u);

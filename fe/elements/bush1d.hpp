@@ -3,7 +3,9 @@
 /// to ground). Source: Nastran Quick Reference Guide, CBUSH1D and PBUSH1D (linear part).
 #include <optional>
 
+#include "fe/elements/damping.hpp"
 #include "fe/elements/element.hpp"
+#include "fe/elements/stress_state.hpp"
 
 namespace bough::fe {
 
@@ -15,7 +17,7 @@ struct Bush1dData {
 
 /// One node (grounded) or two; translations alone. Half the mass at each end (the half of a grounded end is on the
 /// ground). The force N = k (u2 - u1)·axis is tension; along a line it has K_G = N/L (1 - a aᵀ), as a rod.
-class Bush1d final : public Element {
+class Bush1d final : public Element, public StressState, public Damping {
  public:
   /// `gdofs`: the three translations of each node.
   Bush1d(int id, std::vector<int> nodes, std::vector<int> gdofs, const Bush1dData& data);
@@ -23,8 +25,9 @@ class Bush1d final : public Element {
   ElementShape shape() const override { return nodes().size() == 2 ? ElementShape{"line2", nodes()} : ElementShape{}; }
   void add_stiffness(double scale, Eigen::Ref<MatrixXd> K) const override;
   void add_mass(MassKind kind, double scale, Eigen::Ref<MatrixXd> M) const override;
-  bool has_damping() const override { return data_.c != 0; }
+  const Damping* damping() const override { return data_.c != 0 ? this : nullptr; }
   void add_damping(double scale, Eigen::Ref<MatrixXd> B) const override;
+  const StressState* stress_state() const override { return this; }
   int num_internal_forces() const override { return 1; }
   void calc_internal_forces(const Eigen::Ref<const VectorXd>& u, Eigen::Ref<VectorXd> force) const override;
   std::vector<std::string> internal_force_names() const override { return {"axial"}; }

@@ -4,14 +4,9 @@
 #include <array>
 #include <vector>
 
-#include <Eigen/Dense>
+#include "fe/elements/element.hpp"
 
 namespace bough::fe {
-
-using Eigen::Matrix3d;
-using Eigen::Matrix3Xd;
-using Eigen::MatrixXd;
-using Eigen::Vector3d;
 
 /// A place x that moves by H q, q the N dofs of the element; or an arm, the difference of two places.
 struct CarriedPoint {
@@ -85,6 +80,16 @@ struct CarriedMass {
   Matrix3Xd select(int first) const;
   /// Σ μ_rs H_rᵀ H_s, N x N.
   MatrixXd calc_mass() const;
+};
+
+/// Mass of an element that is off its grids or has rotary inertia.
+class OffsetMass {
+ public:
+  /// Adds the bodies of M at scale 1, with the nodes at x (3 x nodes, basic). \return false if M is not that of bodies.
+  virtual bool add_carried(MassKind kind, const Eigen::Ref<const Matrix3Xd>& x, CarriedMass& carried) const = 0;
+
+ protected:
+  ~OffsetMass() = default;
 };
 
 /// Moments of a 6 x 6 mass about its grid.

@@ -10,7 +10,11 @@
 /// shape). An absent midside node lies midway, turns by the mean, and moves as the Hermite beam between its corners
 /// does along the normal. Drilling: penalty on θ·n - ½ rot u, weight as PARAM,K6ROT. The law is taken in local axes at
 /// each point.
+#include "fe/elements/carried.hpp"
 #include "fe/elements/element.hpp"
+#include "fe/elements/stress_recovery.hpp"
+#include "fe/elements/stress_state.hpp"
+#include "fe/elements/thermal_loads.hpp"
 #include "fe/sections/shell_section.hpp"
 #include "fe/shape/shell_tying.hpp"
 
@@ -32,7 +36,11 @@ struct SurfaceFrame {
   double area = 0;                    ///< dA per natural area, negative where the surface folds over
 };
 
-class CurvedShell final : public Element {
+class CurvedShell final : public Element,
+                          public StressState,
+                          public StressRecovery,
+                          public ThermalLoads,
+                          public OffsetMass {
  public:
   /// sections: one, or one per point of quadrature, in material axes; angle: per point, from the frame's x-axis to the
   /// material's (radians). nodes: those present, corners first.
@@ -47,36 +55,34 @@ class CurvedShell final : public Element {
   /// Consistent: the shapes, with rotary inertia. Lumped: its diagonal scaled to the mass (Hinton, Rock & Zienkiewicz
   /// 1976), without rotary inertia. Both at the centre of mass of the section.
   void add_mass(MassKind kind, double scale, Eigen::Ref<MatrixXd> M) const override;
-  bool carries_turning_mass(MassKind kind) const override;
+  const OffsetMass* offset_mass(MassKind kind) const override;
   bool add_carried(MassKind kind, const Eigen::Ref<const Matrix3Xd>& x, CarriedMass& carried) const override;
+  const StressState* stress_state() const override { return this; }
   /// Nx Ny Nxy Mx My Mxy Qx Qy at each point of quadrature, in its frame; then what the drilling penalty holds at each,
   /// a moment per area about the normal, which is not printed.
   int num_internal_forces() const override { return (kNumForces + 1) * num_points(); }
   void calc_internal_forces(const Eigen::Ref<const VectorXd>& u, Eigen::Ref<VectorXd> force) const override;
   void calc_internal_forces_of(const Eigen::Ref<const MatrixXd>& U, Eigen::Ref<MatrixXd> forces) const override;
   std::vector<std::string> internal_force_names() const override;
-  std::vector<std::string> printed_force_names() const override;
-  VectorXd calc_printed_forces(const Eigen::Ref<const VectorXd>& u) const override;
+  int num_printed_forces() const override { return kNumForces * num_points(); }
+  const StressRecovery* stress_recovery() const override { return sections_.front().stress ? this : nullptr; }
   /// Of the section, from the mean of N and M over the element: top and bottom in the axes of the points, or every ply
   /// in its own.
   std::vector<StressPoint> stress_points() const override;
   MatrixXd calc_stresses(const Eigen::Ref<const MatrixXd>& forces) const override;
-  VectorXd calc_initial_stresses(const ElementTemperature& T) const override;
   /// Of the mean of N and M likewise: at the points of the stresses, and of the reference surface.
   std::vector<StressPoint> strain_points() const override;
   MatrixXd calc_strains(const Eigen::Ref<const MatrixXd>& forces) const override;
-  VectorXd calc_thermal_strains(const ElementTemperature& T) const override;
   /// Second order of e, κ, γ (sampled and interpolated as they are) with d_i = exp(θ_i) V_i, and of the drilling.
   void add_geometric_stiffness(const Eigen::Ref<const VectorXd>& force, double scale,
                                Eigen::Ref<MatrixXd> K_G) const override;
   void add_projected_geometric_stiffness(const Eigen::Ref<const MatrixXd>& U, const Eigen::Ref<const MatrixXd>& Phi,
                                          GeometricProjection& sums) const override;
 
-  bool has_expansion() const override { return sections_.front().expansion != nullptr; }
+  const ThermalLoads* thermal_loads() const override { return sections_.front().expansion != nullptr ? this : nullptr; }
   /// The temperature is interpolated from the corners and the midside nodes (the mean of its corners where one is
   /// absent).
-  double add_thermal(const ElementTemperature& T, Eigen::Ref<VectorXd> load,
-                     Eigen::Ref<VectorXd> initial) const override;
+  ThermalState calc_thermal(const ElementTemperature& T) const override;
 
   double calc_area() const;
 
@@ -95,6 +101,8 @@ class CurvedShell final : public Element {
   /// Σ over the points of quadrature of their share of the area times of(point).
   template <class Of>
   MatrixXd sum_over_points(const Of& of) const;
+  /// Stresses and strains that a change of temperature adds, if the section has stresses.
+  void set_thermal_strains(const VectorXd& nodal, double gradient_z, ThermalState& state) const;
   /// Temperatures of the full set of nodes: of a midside node that is absent the mean of its corners.
   VectorXd calc_nodal_temperatures(const ElementTemperature& T) const;
   double calc_temperature(const VectorXd& nodal, int point) const;

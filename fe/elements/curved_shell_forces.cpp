@@ -119,18 +119,6 @@ std::vector<std::string> CurvedShell::internal_force_names() const {
   return names;
 }
 
-std::vector<std::string> CurvedShell::printed_force_names() const {
-  auto names = internal_force_names();
-  names.resize(static_cast<std::size_t>(kNumForces * num_points()));
-  return names;
-}
-
-VectorXd CurvedShell::calc_printed_forces(const Eigen::Ref<const VectorXd>& u) const {
-  VectorXd force(num_internal_forces());
-  calc_internal_forces(u, force);
-  return force.head(kNumForces * num_points());
-}
-
 void CurvedShell::calc_second_order(const Operators& o, const Eigen::Ref<const VectorXd>& force, MatrixXd& K,
                                     MatrixXd& at_nodes) const {
   const int n = num_full(), m = num_bubbles(), size = 6 * n + m, corners = tying_->num_corners;

@@ -1,5 +1,5 @@
 #pragma once
-/// \file What every element owes: stiffness, mass, internal forces, geometric stiffness. One pair of files per element.
+/// \file Element: stiffness, mass, DOFs and shape; further questions by interfaces. One pair of files per element.
 ///
 /// All matrices are in basic axes at the element's grid points (offsets and pin releases are already inside), in the
 /// order of get_gdofs(). Functions add into the caller's storage and keep no scratch of their own: an element is const.
@@ -24,10 +24,13 @@ using Eigen::VectorXd;
 enum class MassKind { Lumped, Consistent };
 
 class Beam;
-class GeometricProjection;
-struct ElementTemperature;
-struct StressPoint;
-struct CarriedMass;
+class Damping;
+class OffsetMass;
+class PrintedForces;
+class Solid;
+class StressRecovery;
+class StressState;
+class ThermalLoads;
 
 /// A grid (six dofs: translations and rotations in basic) or a scalar point (one dof).
 struct Node {
@@ -59,76 +62,37 @@ class Element {
   int num_dofs() const { return static_cast<int>(gdofs_.size()); }
   virtual ElementShape shape() const { return {}; }
 
-  /// K += scale K_e, N x N. Symmetric; K_e times any rigid motion is zero for an ungrounded element.
-  virtual void add_stiffness(double scale, Eigen::Ref<MatrixXd> K) const;
-  /// M += scale M_e, N x N, in deck units (PARAM,WTMASS is applied by assembly).
-  virtual void add_mass(MassKind kind, double scale, Eigen::Ref<MatrixXd> M) const;
-
-  /// True when mass of this kind is off the grids or has inertia of its own: then add_carried() says of what bodies M
-  /// is. Mass of other elements moves as the translations of the grids do, in all directions alike.
-  virtual bool carries_turning_mass(MassKind) const { return false; }
-  /// The bodies of M, at scale 1 and where x (3 x nodes, basic) are. False: M is not that of bodies.
-  virtual bool add_carried(MassKind kind, const Eigen::Ref<const Matrix3Xd>& x, CarriedMass& carried) const;
-
-  /// True when add_damping() adds something: dampers, bushes with B.
-  virtual bool has_damping() const { return false; }
-  /// B += scale B_e, N x N: viscous damping. Symmetric; B_e times any rigid motion is zero for an ungrounded element.
-  virtual void add_damping(double scale, Eigen::Ref<MatrixXd> B) const;
-
-  /// GE of the material or property; springs with one a direction have their own add_structural_damping().
+  /// K += scale K_e, N x N. Symmetric; K_e times any rigid-body motion is zero for an ungrounded element. Default: K_e
+  /// is zero (masses, dampers).
+  virtual void add_stiffness(double, Eigen::Ref<MatrixXd>) const {}
+  /// M += scale M_e, N x N, in deck units (PARAM,WTMASS is applied by assembly). Default: M_e is zero (springs,
+  /// dampers).
+  virtual void add_mass(MassKind, double, Eigen::Ref<MatrixXd>) const {}
+  /// GE of the material or property; springs with one per direction override add_structural_damping().
   double structural_damping() const { return structural_damping_; }
   void set_structural_damping(double ge) { structural_damping_ = ge; }
   /// K += (g + GE) K_e, N x N: the imaginary part of the stiffness (Nastran's K4 with g of PARAM,G).
   virtual void add_structural_damping(double g, Eigen::Ref<MatrixXd> K) const;
 
-  /// Number s of internal force components (stress resultants) on which K_G depends; 0: no geometric stiffness.
-  virtual int num_internal_forces() const { return 0; }
-  /// Internal forces (s) of the element for its nodal displacements u (N), linear in u. Names: internal_force_names().
-  virtual void calc_internal_forces(const Eigen::Ref<const VectorXd>& u, Eigen::Ref<VectorXd> force) const;
-  /// Of every column of U (N x m): s x m. Elements whose map from u to forces is dear make it once.
-  virtual void calc_internal_forces_of(const Eigen::Ref<const MatrixXd>& U, Eigen::Ref<MatrixXd> forces) const;
-  virtual std::vector<std::string> internal_force_names() const { return {}; }
-  /// What static solutions print of an element: its internal forces, or those of a spring, which no K_G asks for.
-  virtual std::vector<std::string> printed_force_names() const { return internal_force_names(); }
-  virtual VectorXd calc_printed_forces(const Eigen::Ref<const VectorXd>& u) const;
+  // Further questions, each an interface of its own; nullptr if the element has none.
+
+  /// Internal forces and geometric stiffness (stress_state.hpp).
+  virtual const StressState* stress_state() const { return nullptr; }
+  /// Forces in static results: of the stress state, or of a spring without K_G (stress_state.hpp).
+  virtual const PrintedForces* printed_forces() const;
+  /// Stresses and strains (stress_recovery.hpp).
+  virtual const StressRecovery* stress_recovery() const { return nullptr; }
+  /// Loads and strains of temperatures, if the material expands (thermal_loads.hpp).
+  virtual const ThermalLoads* thermal_loads() const { return nullptr; }
+  /// Mass of this kind that is off the grids or has rotary inertia (carried.hpp). Without it M moves as the
+  /// translations of the grids do, in all directions alike.
+  virtual const OffsetMass* offset_mass(MassKind) const { return nullptr; }
+  /// Viscous damping (damping.hpp).
+  virtual const Damping* damping() const { return nullptr; }
   /// The beam that takes loads along its length (PLOAD1) and has a length between its offset ends.
   virtual const Beam* as_beam() const { return nullptr; }
-  /// K_G += scale K_G(force), N x N, symmetric and linear in force.
-  virtual void add_geometric_stiffness(const Eigen::Ref<const VectorXd>& force, double scale,
-                                       Eigen::Ref<MatrixXd> K_G) const;
-  /// sums += Φᵀ K_G(forces of u_c) Φ for every column u_c of U (N x m); Phi: N x n. The default takes the two functions
-  /// above, load after load or, where the internal forces are fewer, one unit force after the other.
-  virtual void add_projected_geometric_stiffness(const Eigen::Ref<const MatrixXd>& U,
-                                                 const Eigen::Ref<const MatrixXd>& Phi,
-                                                 GeometricProjection& sums) const;
-
-  /// True when add_thermal() adds something: the material expands.
-  virtual bool has_expansion() const { return false; }
-  /// For temperatures T: load (N) += the forces at the nodes that stretch the element as it would stretch freely;
-  /// initial (s) += its internal forces at u = 0. With temperatures they are calc_internal_forces(u) + initial.
-  /// Returns the strain energy at u = 0.
-  virtual double add_thermal(const ElementTemperature& T, Eigen::Ref<VectorXd> load,
-                             Eigen::Ref<VectorXd> initial) const;
-
-  /// Where and in which components the element gives stresses (fe/sections/stress.hpp); empty: none.
-  virtual std::vector<StressPoint> stress_points() const;
-  /// Those stresses, a column per column of `forces` (internal forces, s x m) and linear in it: all components of the
-  /// first point, then those of the next.
-  virtual MatrixXd calc_stresses(const Eigen::Ref<const MatrixXd>& forces) const;
-  /// What temperatures T add to the stresses beside those of the internal forces, which hold what add_thermal() gives:
-  /// between the plies of a laminate. Empty: nothing.
-  virtual VectorXd calc_initial_stresses(const ElementTemperature& T) const;
-
-  /// Where the element gives strains: stress_points(), of shells the reference surface too ("mid"); empty: none.
-  virtual std::vector<StressPoint> strain_points() const;
-  /// Mechanical strains there of internal forces (s x m), rows as those of calc_stresses: what the material strains
-  /// beside its free expansion, so that σ = C ε.
-  virtual MatrixXd calc_strains(const Eigen::Ref<const MatrixXd>& forces) const;
-  /// What temperatures T add to those: free expansion. The sum is what the displacements strain. Empty: nothing.
-  virtual VectorXd calc_thermal_strains(const ElementTemperature& T) const;
-  /// Of solids, both at their corners: six a corner, in the order of the grids. The others have no rows.
-  virtual MatrixXd calc_corner_strains(const Eigen::Ref<const MatrixXd>& forces) const;
-  virtual VectorXd calc_corner_thermal_strains(const ElementTemperature& T) const;
+  /// The solid that has stresses and strains at its corners.
+  virtual const Solid* as_solid() const { return nullptr; }
 
  private:
   int id_;

@@ -6,8 +6,8 @@ namespace bough::fe {
 
 void PointMass::add_mass(MassKind, double scale, Eigen::Ref<MatrixXd> M) const { M += scale * M_; }
 
-bool PointMass::carries_turning_mass(MassKind) const {
-  return !is_rigid_ || !moments_.S.isZero(0) || !moments_.E.isZero(0);
+const OffsetMass* PointMass::offset_mass(MassKind) const {
+  return !is_rigid_ || !moments_.S.isZero(0) || !moments_.E.isZero(0) ? this : nullptr;
 }
 
 bool PointMass::add_carried(MassKind, const Eigen::Ref<const Matrix3Xd>& x, CarriedMass& carried) const {

@@ -6,7 +6,7 @@
 
 namespace bough::fe {
 
-class PointMass final : public Element {
+class PointMass final : public Element, public OffsetMass {
  public:
   /// M: 6 x 6 about the grid in basic axes, symmetric.
   PointMass(int id, std::string card, std::vector<int> nodes, std::vector<int> gdofs,
@@ -15,7 +15,7 @@ class PointMass final : public Element {
 
   ElementShape shape() const override { return {"vertex", nodes()}; }
   void add_mass(MassKind kind, double scale, Eigen::Ref<MatrixXd> M) const override;
-  bool carries_turning_mass(MassKind) const override;
+  const OffsetMass* offset_mass(MassKind) const override;
   bool add_carried(MassKind kind, const Eigen::Ref<const Matrix3Xd>& x, CarriedMass& carried) const override;
   bool is_rigid() const { return is_rigid_; }  ///< M is that of a rigid body
 

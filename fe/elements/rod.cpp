@@ -3,7 +3,6 @@
 #include <utility>
 
 #include "base/rotation.hpp"
-#include "fe/elements/temperature.hpp"
 #include "fe/sections/stress.hpp"
 
 namespace bough::fe {
@@ -50,14 +49,12 @@ void Rod::calc_internal_forces(const Eigen::Ref<const VectorXd>& u, Eigen::Ref<V
 }
 
 std::vector<StressPoint> Rod::stress_points() const {
-  if (!(property_.area > 0)) return {};
   StressPoint point;
   point.kind = StressKind::Rod;
   return {point};
 }
 
 MatrixXd Rod::calc_stresses(const Eigen::Ref<const MatrixXd>& forces) const {
-  if (!(property_.area > 0)) return MatrixXd(0, forces.cols());
   MatrixXd stress(2, forces.cols());
   stress.row(0) = forces.row(0) / property_.area;
   stress.row(1) = forces.row(1) * property_.torsion;
@@ -66,23 +63,20 @@ MatrixXd Rod::calc_stresses(const Eigen::Ref<const MatrixXd>& forces) const {
 
 MatrixXd Rod::calc_strains(const Eigen::Ref<const MatrixXd>& forces) const {
   MatrixXd strain = calc_stresses(forces);
-  if (strain.rows() == 0) return strain;
   for (const auto& [row, modulus] : {std::pair{0, property_.E}, std::pair{1, property_.G}})
     strain.row(row) *= modulus > 0 ? 1 / modulus : 0;
   return strain;
 }
 
-VectorXd Rod::calc_thermal_strains(const ElementTemperature& T) const {
-  if (!has_expansion() || !(property_.area > 0)) return {};
-  return Eigen::Vector2d(property_.alpha * T.calc_change(property_.tref).node.mean(), 0);
-}
-
-double Rod::add_thermal(const ElementTemperature& T, Eigen::Ref<VectorXd> load, Eigen::Ref<VectorXd> initial) const {
+ThermalState Rod::calc_thermal(const ElementTemperature& T) const {
   const double strain = property_.alpha * T.calc_change(property_.tref).node.mean(), N = property_.EA * strain;
-  load.segment<3>(0) -= N * axis_;
-  load.segment<3>(6) += N * axis_;
-  initial[0] -= N;
-  return 0.5 * N * strain * length_;
+  ThermalState state(num_dofs(), num_internal_forces());
+  state.load.segment<3>(0) -= N * axis_;
+  state.load.segment<3>(6) += N * axis_;
+  state.force[0] -= N;
+  state.energy = 0.5 * N * strain * length_;
+  state.strain = Eigen::Vector2d(strain, 0);
+  return state;
 }
 
 void Rod::add_geometric_stiffness(const Eigen::Ref<const VectorXd>& force, double scale,

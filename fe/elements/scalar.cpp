@@ -16,11 +16,11 @@ void ScalarMass::add_mass(MassKind, double scale, Eigen::Ref<MatrixXd> M) const 
   M.noalias() += scale * m_ * b_ * b_.transpose();
 }
 
-bool ScalarMass::carries_turning_mass(MassKind) const {
-  if (b_.size() % 6 != 0) return false;
+const OffsetMass* ScalarMass::offset_mass(MassKind) const {
+  if (b_.size() % 6 != 0) return nullptr;
   for (Eigen::Index i = 0; i < b_.size(); ++i)
-    if (i % 6 > 2 && b_[i] != 0) return true;
-  return false;
+    if (i % 6 > 2 && b_[i] != 0) return this;
+  return nullptr;
 }
 
 bool ScalarMass::add_carried(MassKind, const Eigen::Ref<const Matrix3Xd>& x, CarriedMass& carried) const {

@@ -12,6 +12,8 @@
 #include <array>
 
 #include "fe/elements/element.hpp"
+#include "fe/elements/stress_recovery.hpp"
+#include "fe/elements/stress_state.hpp"
 
 namespace bough::fe {
 
@@ -22,7 +24,7 @@ struct ShearPanelProperty {
   std::array<double, 4> rod_area{};  ///< of the sides 1-2, 2-3, 3-4, 4-1
 };
 
-class ShearPanel final : public Element {
+class ShearPanel final : public Element, public StressState, public StressRecovery {
  public:
   /// Three translations per corner. The corners must be convex on their mean plane.
   ShearPanel(int id, std::vector<int> nodes, std::vector<int> gdofs, const std::array<Vector3d, 4>& x,
@@ -37,11 +39,13 @@ class ShearPanel final : public Element {
   void add_stiffness(double scale, Eigen::Ref<MatrixXd> K) const override;
   /// Lumped alone: ∫N_i over the mean plane.
   void add_mass(MassKind kind, double scale, Eigen::Ref<MatrixXd> M) const override;
+  const StressState* stress_state() const override { return this; }
   /// Mean shear flows q12 q23 q34 q41, positive with a positive shear strain at corner 1 (its angle grows smaller), and
   /// the forces of the four rods.
   int num_internal_forces() const override { return 8; }
   void calc_internal_forces(const Eigen::Ref<const VectorXd>& u, Eigen::Ref<VectorXd> force) const override;
   std::vector<std::string> internal_force_names() const override;
+  const StressRecovery* stress_recovery() const override { return this; }
   /// Shear flow over thickness along each side.
   std::vector<StressPoint> stress_points() const override;
   MatrixXd calc_stresses(const Eigen::Ref<const MatrixXd>& forces) const override;

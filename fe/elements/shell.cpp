@@ -260,18 +260,6 @@ std::vector<std::string> Shell::internal_force_names() const {
   return names;
 }
 
-std::vector<std::string> Shell::printed_force_names() const {
-  auto names = internal_force_names();
-  names.resize(static_cast<std::size_t>(kNumForces * num_points()));
-  return names;
-}
-
-VectorXd Shell::calc_printed_forces(const Eigen::Ref<const VectorXd>& u) const {
-  VectorXd force(num_internal_forces());
-  calc_internal_forces(u, force);
-  return force.head(kNumForces * num_points());
-}
-
 template ShellFields<3> Shell::calc_fields<3>() const;
 template ShellFields<4> Shell::calc_fields<4>() const;
 template Shell::Square<3> Shell::calc_surface_map<3>() const;

@@ -14,8 +14,12 @@
 /// Quadrature: 2 x 2 Gauss, or three interior points. K_G: docs/elements/shell.md.
 #include <array>
 
+#include "fe/elements/carried.hpp"
 #include "fe/elements/element.hpp"
 #include "fe/elements/shell_fields.hpp"
+#include "fe/elements/stress_recovery.hpp"
+#include "fe/elements/stress_state.hpp"
+#include "fe/elements/thermal_loads.hpp"
 
 namespace bough::fe {
 
@@ -27,7 +31,7 @@ struct ShellGeometry {
   std::vector<Vector3d> normals;
 };
 
-class Shell final : public Element {
+class Shell final : public Element, public StressState, public StressRecovery, public ThermalLoads, public OffsetMass {
  public:
   /// section: in element axes (x along side 1-2). Geometry must not be degenerate (no area, an angle of 180 degrees or
   /// more).
@@ -37,8 +41,9 @@ class Shell final : public Element {
   ElementShape shape() const override;
   void add_stiffness(double scale, Eigen::Ref<MatrixXd> K) const override;
   void add_mass(MassKind kind, double scale, Eigen::Ref<MatrixXd> M) const override;
-  bool carries_turning_mass(MassKind kind) const override;
+  const OffsetMass* offset_mass(MassKind kind) const override;
   bool add_carried(MassKind kind, const Eigen::Ref<const Matrix3Xd>& x, CarriedMass& carried) const override;
+  const StressState* stress_state() const override { return this; }
   /// Nx Ny Nxy Mx My Mxy Qx Qy at each quadrature point, in element axes: M = ∫σ z dz, Q = ∫τ dz. Then, not printed,
   /// what the drilling penalty holds at each, a moment per area about the normal; of a membrane with drilling rotations
   /// the moment about the normal of each corner.
@@ -46,16 +51,14 @@ class Shell final : public Element {
   void calc_internal_forces(const Eigen::Ref<const VectorXd>& u, Eigen::Ref<VectorXd> force) const override;
   void calc_internal_forces_of(const Eigen::Ref<const MatrixXd>& U, Eigen::Ref<MatrixXd> forces) const override;
   std::vector<std::string> internal_force_names() const override;
-  std::vector<std::string> printed_force_names() const override;
-  VectorXd calc_printed_forces(const Eigen::Ref<const VectorXd>& u) const override;
+  int num_printed_forces() const override { return kNumForces * num_points(); }
+  const StressRecovery* stress_recovery() const override { return section_.stress ? this : nullptr; }
   /// Of the section, from the mean of N and M over the element: top and bottom in its axes, or every ply in its own.
   std::vector<StressPoint> stress_points() const override;
   MatrixXd calc_stresses(const Eigen::Ref<const MatrixXd>& forces) const override;
-  VectorXd calc_initial_stresses(const ElementTemperature& T) const override;
   /// Of the mean of N and M likewise: at the points of the stresses, and of the reference surface.
   std::vector<StressPoint> strain_points() const override;
   MatrixXd calc_strains(const Eigen::Ref<const MatrixXd>& forces) const override;
-  VectorXd calc_thermal_strains(const ElementTemperature& T) const override;
   /// Second order of the element's strains under N, M, Q, of its drilling and of its rigid arms
   /// (docs/elements/shell.md).
   void add_geometric_stiffness(const Eigen::Ref<const VectorXd>& force, double scale,
@@ -63,10 +66,9 @@ class Shell final : public Element {
   void add_projected_geometric_stiffness(const Eigen::Ref<const MatrixXd>& U, const Eigen::Ref<const MatrixXd>& Phi,
                                          GeometricProjection& sums) const override;
 
-  bool has_expansion() const override { return section_.expansion != nullptr; }
+  const ThermalLoads* thermal_loads() const override { return section_.expansion != nullptr ? this : nullptr; }
   /// The temperature is interpolated between the corners.
-  double add_thermal(const ElementTemperature& T, Eigen::Ref<VectorXd> load,
-                     Eigen::Ref<VectorXd> initial) const override;
+  ThermalState calc_thermal(const ElementTemperature& T) const override;
 
   double area() const { return area_; }
   const Matrix3d& R_basic_element() const { return R_; }  ///< columns: element axes in basic
@@ -97,7 +99,7 @@ class Shell final : public Element {
   template <int N>
   void add_mass_of(MassKind kind, double scale, Eigen::Ref<MatrixXd> M) const;
   template <int N>
-  double add_thermal_of(const ElementTemperature& T, Eigen::Ref<VectorXd> load, Eigen::Ref<VectorXd> initial) const;
+  void add_thermal_of(const ElementTemperature& change, ThermalState& state) const;
   template <int N>
   shell::ShellFields<N> calc_fields() const;
   /// Internal forces per dof of the element, basic axes.

@@ -7,8 +7,9 @@
 
 namespace bough::fe {
 
-bool Shell::carries_turning_mass(MassKind kind) const {
-  return z_offset_ + section_.mass_offset != 0 || (kind == MassKind::Consistent && section_.rotary_inertia != 0);
+const OffsetMass* Shell::offset_mass(MassKind kind) const {
+  const bool has_rotary_inertia = kind == MassKind::Consistent && section_.rotary_inertia != 0;
+  return z_offset_ + section_.mass_offset != 0 || has_rotary_inertia ? this : nullptr;
 }
 
 bool Shell::add_carried(MassKind kind, const Eigen::Ref<const Matrix3Xd>& x, CarriedMass& carried) const {
@@ -35,11 +36,11 @@ bool Shell::add_carried(MassKind kind, const Eigen::Ref<const Matrix3Xd>& x, Car
   return true;
 }
 
-bool CurvedShell::carries_turning_mass(MassKind kind) const {
+const OffsetMass* CurvedShell::offset_mass(MassKind kind) const {
   for (const auto& section : sections_)
     if (z_offset_ + section.mass_offset != 0 || (kind == MassKind::Consistent && section.rotary_inertia != 0))
-      return true;
-  return false;
+      return this;
+  return nullptr;
 }
 
 bool CurvedShell::add_carried(MassKind kind, const Eigen::Ref<const Matrix3Xd>& x, CarriedMass& carried) const {

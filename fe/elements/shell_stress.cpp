@@ -2,7 +2,6 @@
 
 #include "fe/elements/curved_shell_operators.hpp"
 #include "fe/elements/shell.hpp"
-#include "fe/elements/temperature.hpp"
 
 namespace bough::fe {
 namespace {
@@ -38,27 +37,13 @@ double Shell::calc_mean(const Eigen::Ref<const VectorXd>& corner) const {
 }
 
 MatrixXd Shell::calc_stresses(const Eigen::Ref<const MatrixXd>& forces) const {
-  if (!section_.stress) return MatrixXd(0, forces.cols());
   return calc_stress_map(section_) * calc_mean_resultants(forces, calc_shares());
-}
-
-VectorXd Shell::calc_initial_stresses(const ElementTemperature& given) const {
-  if (!section_.expansion) return {};
-  const ElementTemperature T = given.calc_change(section_.expansion->tref);
-  return calc_ply_expansion(section_, calc_mean(T.node), T.gradient_z);
 }
 
 std::vector<StressPoint> Shell::strain_points() const { return list_strain_points(section_); }
 
 MatrixXd Shell::calc_strains(const Eigen::Ref<const MatrixXd>& forces) const {
-  if (!section_.stress) return MatrixXd(0, forces.cols());
   return calc_strain_map(section_) * calc_mean_resultants(forces, calc_shares()).topRows<6>();
-}
-
-VectorXd Shell::calc_thermal_strains(const ElementTemperature& given) const {
-  if (!section_.expansion) return {};
-  const ElementTemperature T = given.calc_change(section_.expansion->tref);
-  return calc_section_expansion(section_, calc_mean(T.node), T.gradient_z);
 }
 
 std::vector<StressPoint> CurvedShell::stress_points() const { return list_stress_points(sections_.front()); }
@@ -81,7 +66,6 @@ MatrixXd CurvedShell::sum_over_points(const Of& of) const {
 }
 
 MatrixXd CurvedShell::calc_stresses(const Eigen::Ref<const MatrixXd>& forces) const {
-  if (!sections_.front().stress) return MatrixXd(0, forces.cols());
   // The thickness and the direction of the material may change from point to point.
   return sum_over_points([&](int q) -> MatrixXd {
     return calc_stress_map(calc_section(q)) * forces.middleRows<kNumForces>(kNumForces * static_cast<Eigen::Index>(q));
@@ -103,30 +87,22 @@ double CurvedShell::calc_temperature(const VectorXd& nodal, int point) const {
   return at.shape.head(num_full()).dot(nodal);
 }
 
-VectorXd CurvedShell::calc_initial_stresses(const ElementTemperature& given) const {
-  const auto& front = sections_.front();
-  if (!front.expansion || !front.stress || front.stress->layers.empty()) return {};
-  const ElementTemperature T = given.calc_change(front.expansion->tref);
-  const VectorXd nodal = calc_nodal_temperatures(T);
-  return sum_over_points(
-      [&](int q) -> MatrixXd { return calc_ply_expansion(calc_section(q), calc_temperature(nodal, q), T.gradient_z); });
-}
-
 std::vector<StressPoint> CurvedShell::strain_points() const { return list_strain_points(sections_.front()); }
 
 MatrixXd CurvedShell::calc_strains(const Eigen::Ref<const MatrixXd>& forces) const {
-  if (!sections_.front().stress) return MatrixXd(0, forces.cols());
   return sum_over_points([&](int q) -> MatrixXd {
     return calc_strain_map(calc_section(q)) * forces.middleRows<6>(kNumForces * static_cast<Eigen::Index>(q));
   });
 }
 
-VectorXd CurvedShell::calc_thermal_strains(const ElementTemperature& given) const {
-  if (!sections_.front().expansion || !sections_.front().stress) return {};
-  const ElementTemperature T = given.calc_change(sections_.front().expansion->tref);
-  const VectorXd nodal = calc_nodal_temperatures(T);
-  return sum_over_points([&](int q) -> MatrixXd {
-    return calc_section_expansion(calc_section(q), calc_temperature(nodal, q), T.gradient_z);
+void CurvedShell::set_thermal_strains(const VectorXd& nodal, double gradient_z, ThermalState& state) const {
+  const auto& stress = sections_.front().stress;
+  if (!stress) return;
+  if (!stress->layers.empty())
+    state.stress = sum_over_points(
+        [&](int q) -> MatrixXd { return calc_ply_expansion(calc_section(q), calc_temperature(nodal, q), gradient_z); });
+  state.strain = sum_over_points([&](int q) -> MatrixXd {
+    return calc_section_expansion(calc_section(q), calc_temperature(nodal, q), gradient_z);
   });
 }
 

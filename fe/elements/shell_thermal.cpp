@@ -2,7 +2,7 @@
 
 #include "fe/elements/shell.hpp"
 #include "fe/elements/shell_dofs.hpp"
-#include "fe/elements/temperature.hpp"
+#include "fe/sections/shell_stress.hpp"
 
 namespace bough::fe {
 
@@ -11,16 +11,15 @@ using namespace shell;
 /// ∫ Bᵀ (N, M) with the inner modes of the membrane inside B; they move at once by what their own strains do, which is
 /// nothing where the temperature is uniform, since they have no mean.
 template <int N>
-double Shell::add_thermal_of(const ElementTemperature& given, Eigen::Ref<VectorXd> load,
-                             Eigen::Ref<VectorXd> initial) const {
+void Shell::add_thermal_of(const ElementTemperature& T, ThermalState& state) const {
   const ShellExpansion& e = *section_.expansion;
-  const ElementTemperature T = given.calc_change(e.tref);
+  VectorXd &load = state.load, &initial = state.force;
+  double& energy = state.energy;
   const auto fields = calc_fields<N>();
   const auto& membrane = fields.membrane;
   const Eigen::Matrix<double, N, 1> corner = T.node.head<N>();
   Eigen::Matrix<double, 6 * N, 1> local = Eigen::Matrix<double, 6 * N, 1>::Zero();
   Eigen::Vector4d f_a = Eigen::Vector4d::Zero();
-  double energy = 0;
   for (int q = 0; q < N; ++q) {
     const double w = fields.points[q].weight, t = fields.points[q].shape.dot(corner);
     const Vector3d normal_force = e.calc_N(t, T.gradient_z), moment = e.calc_M(t, T.gradient_z);
@@ -48,11 +47,15 @@ double Shell::add_thermal_of(const ElementTemperature& given, Eigen::Ref<VectorX
   }
   local = (calc_surface_map<N>().transpose() * local).eval();
   for (int i = 0; i < 2 * N; ++i) load.segment<3>(3 * i) += R_ * local.template segment<3>(3 * i);
-  return energy;
 }
 
-double Shell::add_thermal(const ElementTemperature& T, Eigen::Ref<VectorXd> load, Eigen::Ref<VectorXd> initial) const {
-  return num_nodes_ == 4 ? add_thermal_of<4>(T, load, initial) : add_thermal_of<3>(T, load, initial);
+ThermalState Shell::calc_thermal(const ElementTemperature& given) const {
+  const ElementTemperature T = given.calc_change(section_.expansion->tref);
+  ThermalState state(num_dofs(), num_internal_forces());
+  num_nodes_ == 4 ? add_thermal_of<4>(T, state) : add_thermal_of<3>(T, state);
+  state.stress = calc_ply_expansion(section_, calc_mean(T.node), T.gradient_z);
+  state.strain = calc_section_expansion(section_, calc_mean(T.node), T.gradient_z);
+  return state;
 }
 
 }  // namespace bough::fe

@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "fe/elements/geometric_projection.hpp"
-#include "fe/elements/temperature.hpp"
 #include "fe/linear/blas.hpp"
 #include "fe/sections/stress.hpp"
 
@@ -165,39 +164,46 @@ void Solid::calc_internal_forces_of(const Eigen::Ref<const MatrixXd>& U, Eigen::
   multiply_dense(false, calc_force_map(calc_fields(false)), U, 0, forces);
 }
 
-double Solid::add_thermal(const ElementTemperature& given, Eigen::Ref<VectorXd> load,
-                          Eigen::Ref<VectorXd> initial) const {
+ThermalState Solid::calc_thermal(const ElementTemperature& given) const {
   const ElementTemperature T = given.calc_change(expansion_->tref);
   const auto fields = calc_fields(false);
   const int m = 3 * num_modes();
   MatrixXd Kaa = MatrixXd::Zero(m, m);
   VectorXd f_a = VectorXd::Zero(m), f_u = VectorXd::Zero(num_dofs());
   std::vector<Eigen::Matrix<double, 6, 1>> stress;
-  double energy = 0;
+  ThermalState state(num_dofs(), num_internal_forces());
+  VectorXd change(static_cast<Eigen::Index>(fields.size()));  // of temperature, at the points of quadrature
+  double mean = 0, volume = 0;
   for (const auto& f : fields) {
+    change[static_cast<Eigen::Index>(stress.size())] = f.shape.dot(T.node);
+    mean += f.weight * f.shape.dot(T.node);
+    volume += f.weight;
     const Eigen::Matrix<double, 6, 1> strain = f.shape.dot(T.node) * expansion_->alpha;
     stress.push_back(C_el_ * strain);
     f_u += f.weight * calc_strain_disp(f.gradient).transpose() * stress.back();
-    energy += 0.5 * f.weight * strain.dot(stress.back());
+    state.energy += 0.5 * f.weight * strain.dot(stress.back());
     if (m == 0) continue;
     const auto Ba = calc_strain_disp(f.modes);
     Kaa += f.weight * Ba.transpose() * C_el_ * Ba;
     f_a += f.weight * Ba.transpose() * stress.back();
   }
-  // The incompatible modes move at once; what is left works on the nodes.
+  // The incompatible modes are condensed; the rest of their load acts on the nodes.
   VectorXd a = VectorXd::Zero(m);
   if (m > 0) {
     a = Kaa.ldlt().solve(f_a);
     f_u += calc_mode_map(fields, nullptr).transpose() * f_a;
-    energy -= 0.5 * a.dot(f_a);
+    state.energy -= 0.5 * a.dot(f_a);
   }
-  load += f_u;
+  state.load += f_u;
   for (std::size_t q = 0; q < fields.size(); ++q) {
-    auto at = initial.segment<6>(6 * static_cast<int>(q));
+    auto at = state.force.segment<6>(6 * static_cast<int>(q));
     at -= stress[q];
     if (m > 0) at += C_el_ * (calc_strain_disp(fields[q].modes) * a);
   }
-  return energy;
+  state.strain = mean / volume * expansion_->alpha;
+  const MatrixXd corner_strain = expansion_->alpha * (calc_corner_map() * change).transpose();
+  state.corner_strain = corner_strain.reshaped();
+  return state;
 }
 
 std::vector<std::string> Solid::internal_force_names() const {
@@ -253,17 +259,6 @@ MatrixXd Solid::calc_strains(const Eigen::Ref<const MatrixXd>& forces) const {
   return C_el_.completeOrthogonalDecomposition().solve(calc_stresses(forces));
 }
 
-VectorXd Solid::calc_thermal_strains(const ElementTemperature& given) const {
-  if (!expansion_) return {};
-  const ElementTemperature T = given.calc_change(expansion_->tref);
-  double mean = 0, volume = 0;
-  for (const auto& f : calc_fields(false)) {
-    mean += f.weight * f.shape.dot(T.node);
-    volume += f.weight;
-  }
-  return mean / volume * expansion_->alpha;
-}
-
 MatrixXd Solid::calc_corner_strains(const Eigen::Ref<const MatrixXd>& forces) const {
   const MatrixXd map = calc_corner_map();
   const auto law = C_el_.completeOrthogonalDecomposition();
@@ -274,17 +269,6 @@ MatrixXd Solid::calc_corner_strains(const Eigen::Ref<const MatrixXd>& forces) co
     strains.col(c) = MatrixXd(law.solve(MatrixXd(at_points * map.transpose()))).reshaped();
   }
   return strains;
-}
-
-VectorXd Solid::calc_corner_thermal_strains(const ElementTemperature& given) const {
-  if (!expansion_) return {};
-  const ElementTemperature T = given.calc_change(expansion_->tref);
-  const auto fields = calc_fields(false);
-  VectorXd change(static_cast<Eigen::Index>(fields.size()));
-  for (std::size_t q = 0; q < fields.size(); ++q)
-    change[static_cast<Eigen::Index>(q)] = fields[q].shape.dot(T.node);
-  const MatrixXd strains = expansion_->alpha * (calc_corner_map() * change).transpose();
-  return strains.reshaped();
 }
 
 void Solid::add_geometric_stiffness(const Eigen::Ref<const VectorXd>& force, double scale,

@@ -11,6 +11,9 @@
 /// consistent one, scaled (Hinton, Rock & Zienkiewicz 1976). SolidScheme takes the inner modes away or sets the order
 /// of the quadrature, as IN and ISOP of PSOLID do.
 #include "fe/elements/element.hpp"
+#include "fe/elements/stress_recovery.hpp"
+#include "fe/elements/stress_state.hpp"
+#include "fe/elements/thermal_loads.hpp"
 #include "fe/shape/solid_shape.hpp"
 
 namespace bough::fe {
@@ -46,7 +49,7 @@ struct SolidExpansion {
   std::optional<double> tref;  ///< empty: TEMPERATURE(INITIAL)
 };
 
-class Solid final : public Element {
+class Solid final : public Element, public StressState, public StressRecovery, public ThermalLoads {
  public:
   /// C_el: 6 x 6 elasticity in basic axes, Voigt xx yy zz xy yz zx with engineering shears; density per volume;
   /// expansion: empty = none.
@@ -56,11 +59,13 @@ class Solid final : public Element {
   ElementShape shape() const override;
   void add_stiffness(double scale, Eigen::Ref<MatrixXd> K) const override;
   void add_mass(MassKind kind, double scale, Eigen::Ref<MatrixXd> M) const override;
+  const StressState* stress_state() const override { return this; }
   /// The six stresses at every quadrature point, in basic axes.
   int num_internal_forces() const override { return 6 * num_points_; }
   void calc_internal_forces(const Eigen::Ref<const VectorXd>& u, Eigen::Ref<VectorXd> force) const override;
   void calc_internal_forces_of(const Eigen::Ref<const MatrixXd>& U, Eigen::Ref<MatrixXd> forces) const override;
   std::vector<std::string> internal_force_names() const override;
+  const StressRecovery* stress_recovery() const override { return this; }
   /// The mean of the stresses over the volume, in basic axes: that at the centre where they are linear.
   std::vector<StressPoint> stress_points() const override;
   MatrixXd calc_stresses(const Eigen::Ref<const MatrixXd>& forces) const override;
@@ -70,19 +75,19 @@ class Solid final : public Element {
   MatrixXd calc_corner_stresses(const Eigen::Ref<const VectorXd>& force) const;
   /// C⁻¹ of those stresses. Where C is singular: the least strains that have them.
   MatrixXd calc_strains(const Eigen::Ref<const MatrixXd>& forces) const override;
-  VectorXd calc_thermal_strains(const ElementTemperature& T) const override;
-  MatrixXd calc_corner_strains(const Eigen::Ref<const MatrixXd>& forces) const override;
-  VectorXd calc_corner_thermal_strains(const ElementTemperature& T) const override;
+  int num_corners() const { return get_num_corners(geometry_.kind); }
+  /// Mechanical strains at the corners, six per corner in the order of the grids; a column per column of `forces`.
+  MatrixXd calc_corner_strains(const Eigen::Ref<const MatrixXd>& forces) const;
   void add_geometric_stiffness(const Eigen::Ref<const VectorXd>& force, double scale,
                                Eigen::Ref<MatrixXd> K_G) const override;
   void add_projected_geometric_stiffness(const Eigen::Ref<const MatrixXd>& U, const Eigen::Ref<const MatrixXd>& Phi,
                                          GeometricProjection& sums) const override;
 
-  bool has_expansion() const override { return expansion_ != nullptr; }
+  const ThermalLoads* thermal_loads() const override { return expansion_ != nullptr ? this : nullptr; }
   /// The temperature is interpolated from the nodes with the shapes of the displacements.
-  double add_thermal(const ElementTemperature& T, Eigen::Ref<VectorXd> load,
-                     Eigen::Ref<VectorXd> initial) const override;
+  ThermalState calc_thermal(const ElementTemperature& T) const override;
 
+  const Solid* as_solid() const override { return this; }
   double calc_volume() const { return calc_quality(geometry_).volume; }
 
  private:

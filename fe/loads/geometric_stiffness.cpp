@@ -1,8 +1,9 @@
 #include <algorithm>
 
+#include "fe/elements/stress_state.hpp"
 #include "fe/loads/second_order.hpp"
+#include "fe/loads/temperatures.hpp"
 #include "fe/loads/wide_links.hpp"
-#include "fe/model/temperatures.hpp"
 
 namespace bough::fe {
 namespace {
@@ -19,11 +20,12 @@ PetscMat assemble_geometric_stiffness(const Model& model, DofSet set, const Appl
                                       const InitialForces* initial) {
   BOUGH_DEMAND(u_g.size() == model.num_gdofs());
   const auto add = [&u_g, initial](const Element& e, Eigen::Ref<MatrixXd> K_G) {
-    if (e.num_internal_forces() == 0) return;
-    VectorXd force = VectorXd::Zero(e.num_internal_forces());
-    e.calc_internal_forces(gather_rows(u_g, e.gdofs()), force);
+    const StressState* state = e.stress_state();
+    if (!state) return;
+    VectorXd force = VectorXd::Zero(state->num_internal_forces());
+    state->calc_internal_forces(gather_rows(u_g, e.gdofs()), force);
     if (const auto* heated = initial ? initial->find(e) : nullptr) force += heated->force;
-    e.add_geometric_stiffness(force, 1, K_G);
+    state->add_geometric_stiffness(force, 1, K_G);
   };
   auto forms = calc_second_order(model, make_loads(load), u_g);
   // With the reference's own dofs.

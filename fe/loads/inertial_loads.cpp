@@ -73,7 +73,7 @@ Vector12d calc_load_factors(const Vector3d& a_o, const Vector3d& alpha, const Ve
 bool calc_carried(const Model& model, const Element& element, MassKind kind, CarriedMass& carried) {
   Matrix3Xd x(3, element.nodes().size());
   for (Eigen::Index k = 0; k < x.cols(); ++k) x.col(k) = model.node(element.nodes()[static_cast<std::size_t>(k)]).x;
-  if (!element.add_carried(kind, x, carried)) return false;
+  if (!element.offset_mass(kind)->add_carried(kind, x, carried)) return false;
   carried.mu *= model.wtmass();
   return true;
 }
@@ -144,7 +144,7 @@ MatrixXd calc_inertial_loads(const Model& model, MassKind kind, const MatrixXd& 
     MatrixXd M, f;
     for (int e = from; e < to; ++e) {
       const Element& element = *model.elements()[static_cast<std::size_t>(e)];
-      if (!element.carries_turning_mass(kind)) continue;
+      if (!element.offset_mass(kind)) continue;
       M.setZero(element.num_dofs(), element.num_dofs());
       element.add_mass(kind, model.wtmass(), M);
       f.resize(M.rows(), spin.cols());
@@ -176,7 +176,7 @@ MatrixXd calc_inertial_loads(const Model& model, MassKind kind) {
 bool has_approximate_mass(const Model& model, MassKind kind) {
   for (const auto& element : model.elements()) {
     CarriedMass carried(element->num_dofs(), CarriedDetail::Whether);
-    if (element->carries_turning_mass(kind) && !calc_carried(model, *element, kind, carried)) return true;
+    if (element->offset_mass(kind) && !calc_carried(model, *element, kind, carried)) return true;
   }
   return false;
 }
@@ -193,7 +193,7 @@ MatrixXd calc_carried_gram(const Model& model, MassKind kind, const MatrixXd& Ph
     };
     for (int e = from; e < to; ++e) {
       const Element& element = *model.elements()[static_cast<std::size_t>(e)];
-      if (!element.carries_turning_mass(kind)) continue;
+      if (!element.offset_mass(kind)) continue;
       CarriedMass carried(element.num_dofs(), CarriedDetail::Points);
       if (!calc_carried(model, element, kind, carried)) continue;
       const auto count = static_cast<Eigen::Index>(carried.points.size());
@@ -226,7 +226,7 @@ PetscMat assemble_grid_mass(const Model& model, MassKind kind) {
   const double scale = model.wtmass();
   const auto is_carried = [&](const Element& e) {
     CarriedMass carried(e.num_dofs(), CarriedDetail::Whether);
-    return e.carries_turning_mass(kind) && calc_carried(model, e, kind, carried);
+    return e.offset_mass(kind) && calc_carried(model, e, kind, carried);
   };
   return assemble_some(
       model, [&](const Element& e, Eigen::Ref<MatrixXd> M) { e.add_mass(kind, scale, M); },

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "fe/elements/carried.hpp"
+#include "fe/loads/loads.hpp"
 #include "fe/matrices/assembly.hpp"
-#include "fe/model/applied_load.hpp"
 #include "fe/model/model.hpp"
 
 namespace bough::fe {
@@ -31,11 +31,11 @@ MatrixXd calc_inertial_loads(const Model& model, MassKind kind, const MatrixXd& 
 /// F_I itself, num_gdofs x 12.
 MatrixXd calc_inertial_loads(const Model& model, MassKind kind);
 
-/// Whether masses are there whose elements cannot say of what bodies they are.
+/// Returns true if the mass of an element is off its grids and not that of bodies.
 bool has_approximate_mass(const Model& model, MassKind kind);
 
-/// The bodies of one element that carries_turning_mass(), masses times WTMASS, as far as carried.detail asks; false
-/// when it cannot say.
+/// Adds the bodies of an element with OffsetMass, masses times WTMASS, as far as carried.detail requests. \return false
+/// if its mass is not that of bodies.
 bool calc_carried(const Model& model, const Element& element, MassKind kind, CarriedMass& carried);
 
 /// The part of M on the g-set that moves as the translations of the grids do, and what is not known to do otherwise:

@@ -1,3 +1,5 @@
+#include "fe/loads/loads.hpp"
+
 #include <algorithm>
 
 #include "fe/loads/inertial_loads.hpp"
@@ -75,44 +77,10 @@ bool add_scalar_loads(const LoadTarget& t) {
   return is_found;
 }
 
-bool has_enforced(const records::Deck& deck, int set) {
-  const auto& spcd = deck.load_cards.spcd;
-  return std::any_of(spcd.begin(), spcd.end(), [set](const auto& s) { return s.sid == set; });
-}
-
-bool has_cards(const records::Deck& deck, int set) {
-  const auto in = [set](const auto& cards) {
-    return std::any_of(cards.begin(), cards.end(), [set](const auto& card) { return card.sid == set; });
-  };
-  const auto& c = deck.load_cards;
-  return in(deck.point_loads) || in(deck.gravity) || in(c.directed) || in(c.beams) || in(c.grid_pressures) ||
-         in(c.pressures) || in(c.rotations) || in(c.spcd) || in(c.scalar);
-}
-
-const records::LoadCombination* find_combination(const records::Deck& deck, int set) {
-  const auto found = std::find_if(deck.loads.begin(), deck.loads.end(), [set](const auto& l) { return l.sid == set; });
-  return found == deck.loads.end() ? nullptr : &*found;
-}
-
-/// `open`: the LOAD cards on the way here; one of them is not entered again.
-void add_plain_sets(const records::Deck& deck, const records::LoadCombination& card, double factor,
-                    std::vector<int>& open, std::vector<PlainLoadSet>& sets) {
-  open.push_back(card.sid);
-  for (const auto& [scale, sid] : card.terms) {
-    const auto* nested = has_cards(deck, sid) ? nullptr : find_combination(deck, sid);
-    const bool is_circle = nested && std::find(open.begin(), open.end(), sid) != open.end();
-    if (nested && !is_circle)
-      add_plain_sets(deck, *nested, factor * card.s * scale, open, sets);
-    else
-      sets.push_back({sid, factor * card.s * scale, card.at, false, is_circle});
-  }
-  open.pop_back();
-}
-
 /// What Nastran passes over, or forbids and Bough adds up, in a LOAD card.
 void report_terms(const records::Deck& deck, const records::LoadCombination& card, Diagnostics& diagnostics) {
   for (const auto& [scale, sid] : card.terms)
-    if (!has_cards(deck, sid) && find_combination(deck, sid))
+    if (!has_load_cards(deck, sid) && find_combination(deck, sid))
       diagnostics.warning("fe.nested-load", deck.locate(card.at),
                           "LOAD " + std::to_string(card.sid) + " names set " + std::to_string(sid) +
                               ", which is a LOAD card itself; the sets of that card are added, as MSC Nastran does",
@@ -120,17 +88,6 @@ void report_terms(const records::Deck& deck, const records::LoadCombination& car
 }
 
 }  // namespace
-
-std::vector<PlainLoadSet> list_plain_sets(const records::Deck& deck, int set) {
-  const auto* card = find_combination(deck, set);
-  if (!card) return {{set, 1.0, {}, false, false}};
-  std::vector<PlainLoadSet> sets;
-  // SPCD cards have the id that the case control selects, beside the LOAD card (Quick Reference Guide, LOAD).
-  if (has_enforced(deck, set)) sets.push_back({set, 1.0, card->at, true, false});
-  std::vector<int> open;
-  add_plain_sets(deck, *card, 1, open, sets);
-  return sets;
-}
 
 bool add_point_loads(const LoadTarget& t) {
   bool is_found = false;
@@ -159,13 +116,13 @@ bool report_unread_loads(const records::Deck& deck, const std::string& command, 
   return is_found;
 }
 
-VectorXd Model::calc_load(const records::Deck& deck, int set, Diagnostics& diagnostics) const {
-  return calc_applied_load(deck, set, diagnostics).F;
+VectorXd calc_load(const Model& model, const records::Deck& deck, int set, Diagnostics& diagnostics) {
+  return calc_applied_load(model, deck, set, diagnostics).F;
 }
 
-AppliedLoad Model::calc_applied_load(const records::Deck& deck, int set, Diagnostics& diagnostics) const {
+AppliedLoad calc_applied_load(const Model& model, const records::Deck& deck, int set, Diagnostics& diagnostics) {
   AppliedLoad load;
-  load.F = VectorXd::Zero(num_gdofs_);
+  load.F = VectorXd::Zero(model.num_gdofs());
   if (const auto* card = find_combination(deck, set)) report_terms(deck, *card, diagnostics);
   const auto sets = list_plain_sets(deck, set);
   std::vector<PlainLoadSet> missing;
@@ -177,7 +134,7 @@ AppliedLoad Model::calc_applied_load(const records::Deck& deck, int set, Diagnos
                         "name sets of FORCE, MOMENT, PLOAD and the like");
       continue;
     }
-    const LoadTarget target{*this,       deck,     plain.sid, plain.scale,   load.F,
+    const LoadTarget target{model,       deck,     plain.sid, plain.scale,   load.F,
                             diagnostics, load.A_I, load.arms, load.followers};
     const bool found[] = {add_point_loads(target), add_body_loads(target), add_surface_loads(target),
                           add_beam_loads(target), has_enforced(deck, plain.sid)};
@@ -194,7 +151,7 @@ AppliedLoad Model::calc_applied_load(const records::Deck& deck, int set, Diagnos
          "load set " + std::to_string(plain.sid) + " has no FORCE, MOMENT, GRAV, PLOAD or LOAD card" +
              (severity == Severity::Warning ? "; LOAD " + std::to_string(set) + " is taken without it" : ""),
          "correct the set id or add its cards"});
-  if (!load.A_I.isZero(0)) load.F += calc_inertial_loads(*this, mass_kind_, load.A_I);
+  if (!load.A_I.isZero(0)) load.F += calc_inertial_loads(model, model.mass_kind(), load.A_I);
   return load;
 }
 

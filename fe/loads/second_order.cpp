@@ -85,7 +85,7 @@ struct CarriedForms {
     const AccelerationFields fields(Eigen::Matrix<double, 12, 12>::Identity());
     for (int e = from; e < to; ++e) {
       const Element& element = *model.elements()[static_cast<std::size_t>(e)];
-      if (!element.carries_turning_mass(model.mass_kind())) continue;
+      if (!element.offset_mass(model.mass_kind())) continue;
       CarriedMass carried(element.num_dofs());
       if (!calc_carried(model, element, model.mass_kind(), carried)) continue;
       const MatrixXd f = fields.calc_point_loads(carried);

@@ -24,7 +24,7 @@ std::vector<QuadraticForm> calc_second_order(const Model& model, const AppliedLo
                                              const Eigen::Ref<const MatrixXd>& U);
 
 /// K_G of a load with its static displacements u (num_gdofs) and the forces of heated elements
-/// (fe/model/temperatures.hpp), f-set or g-set: of internal forces, carried masses, loads on arms and links.
+/// (fe/loads/temperatures.hpp), f-set or g-set: of internal forces, carried masses, loads on arms and links.
 PetscMat assemble_geometric_stiffness(const Model& model, DofSet set, const AppliedLoad& load, const VectorXd& u_g,
                                       const InitialForces* initial = nullptr);
 

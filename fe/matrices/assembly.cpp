@@ -6,6 +6,7 @@
 #include <span>
 #include <utility>
 
+#include "fe/elements/damping.hpp"
 #include "fe/linear/blas.hpp"
 #include "fe/linear/ordering.hpp"
 #include "fe/linear/threads.hpp"
@@ -345,6 +346,10 @@ PetscMat assemble_some(const Model& model, const AddElementMatrix& add, const Ta
 
 namespace {
 
+void add_damping_of(const Element& element, Eigen::Ref<MatrixXd> B) {
+  if (const Damping* damping = element.damping()) damping->add_damping(1, B);
+}
+
 AddElementMatrix add_stiffness_of(const Model& model) {
   return [&model](const Element& e, Eigen::Ref<MatrixXd> K) { model.add_stiffness(e, K); };
 }
@@ -369,7 +374,7 @@ PetscMat assemble_mass(const Model& model, DofSet set, MassKind kind) {
 }
 
 PetscMat assemble_damping(const Model& model, DofSet set) {
-  return assemble(model, set, MatrixKind::Other, [](const Element& e, Eigen::Ref<MatrixXd> B) { e.add_damping(1, B); });
+  return assemble(model, set, MatrixKind::Other, add_damping_of);
 }
 
 MatrixXd calc_mass_times(const Model& model, MassKind kind, const Eigen::Ref<const MatrixXd>& X_g) {
@@ -395,8 +400,7 @@ MatrixXd calc_prestress_times(const Model& model, const Eigen::Ref<const MatrixX
 }
 
 MatrixXd calc_damping_times(const Model& model, const Eigen::Ref<const MatrixXd>& X_g) {
-  return calc_times(
-      model, [](const Element& e, Eigen::Ref<MatrixXd> B) { e.add_damping(1, B); }, X_g);
+  return calc_times(model, add_damping_of, X_g);
 }
 
 MatrixXd calc_structural_damping_times(const Model& model, double g, const Eigen::Ref<const MatrixXd>& X_g) {

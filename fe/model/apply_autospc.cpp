@@ -79,7 +79,7 @@ void ModelBuilder::apply_autospc(const Elimination& first) {
   model_.T_oblique_ = take_columns(model_.T_, first.fdof_ldof, oblique);
   if (!oblique.empty())  // what hangs on these dofs follows too
     equations_ = resolve_chains(
-        model_.num_gdofs_, std::move(equations_), [this](int l) { return name_dof(l); }, diagnostics_);
+        model_.num_gdofs_, std::move(equations_), [this](int l) { return model_.name_dof(l); }, diagnostics_);
   set_transform();
   if (only_null) {
     diagnostics_.warning("fe.null-dofs", deck_.locate(param->at),

@@ -8,9 +8,9 @@
 #include "fe/cards/nonstructural.hpp"
 #include "fe/model/coordinates.hpp"
 #include "fe/model/direct_matrices.hpp"
+#include "fe/model/load_selection.hpp"
 #include "fe/model/rigid.hpp"
 #include "fe/model/sets.hpp"
-#include "fe/model/suport.hpp"
 #include "fe/model/unmodelled.hpp"
 
 namespace bough::fe {
@@ -53,10 +53,7 @@ Model ModelBuilder::build(const ElementFactory& factory) {
   diagnostics_.throw_if_errors();
   model_.links_ = Links(std::move(links_), std::move(equations));
   apply_autospc(set_transform());
-  check_prestress();
-  omit_dofs();
   add_drawn_lines();
-  report_suport(model_, deck_, diagnostics_);
   return std::move(model_);
 }
 
@@ -68,7 +65,12 @@ std::vector<ConstraintEquation> ModelBuilder::collect_constraints() {
   check_dependent_not_fixed();
   auto equations = equations_;
   equations_ = resolve_chains(
-      model_.num_gdofs_, std::move(equations_), [this](int l) { return name_dof(l); }, diagnostics_);
+      model_.num_gdofs_, std::move(equations_), [this](int l) { return model_.name_dof(l); }, diagnostics_);
+  if (!deck_.aset.empty() || !deck_.omit.empty()) {  // the a-set says which card constrains a DOF that it names
+    for (const auto& equation : equations_)
+      model_.constrained_dofs_.push_back({equation.dependent, equation.card, equation.at});
+    for (const auto& [ldof, at] : fixed_by_) model_.constrained_dofs_.push_back({ldof, {}, at});
+  }
   return equations;
 }
 
@@ -76,7 +78,7 @@ void ModelBuilder::make_elements(const ElementFactory& factory) {
   const auto add = [this](ElementList list) {
     for (const auto& element : list.elements) {  // lists that are not the catalogue's say nothing of them
       list.cards.insert(element->card());
-      list.has_damping = list.has_damping || element->has_damping();
+      list.has_damping = list.has_damping || element->damping() != nullptr;
     }
     model_.cards_.merge(list.cards);
     model_.has_damping_ = model_.has_damping_ || list.has_damping;
@@ -139,40 +141,11 @@ void ModelBuilder::add_scalar_points() {
   }
 }
 
-int ModelBuilder::find_ldof(int grid, int component, const std::string& card, const SourceLocation& at) {
-  const int index = model_.find_node(grid);
-  if (index < 0 && model_.is_refused(grid)) return -1;
-  if (index < 0) {
-    diagnostics_.error("fe.missing-grid", at,
-                       card + " names grid " + std::to_string(grid) + ", which the deck does not define",
-                       "add the GRID or correct the id");
-    return -1;
-  }
-  const Node& node = model_.nodes_[index];
-  const bool is_scalar = node.num_dofs == 1;
-  if (is_scalar ? component > 1 : component < 1 || component > 6) {
-    diagnostics_.error("fe.bad-component", at,
-                       card + " names component " + std::to_string(component) + " of grid " + std::to_string(grid) +
-                           ", expected " + (is_scalar ? "0" : "1 to 6"),
-                       "correct the component");
-    return -1;
-  }
-  return node.first_gdof + (is_scalar ? 0 : component - 1);
-}
-
-std::string ModelBuilder::name_dof(int ldof) const {
-  const auto after = std::upper_bound(model_.nodes_.begin(), model_.nodes_.end(), ldof,
-                                      [](int l, const Node& node) { return l < node.first_gdof; });
-  const Node& node = *(after - 1);
-  return "grid " + std::to_string(node.id) + " component " +
-         std::to_string(node.num_dofs == 1 ? 0 : ldof - node.first_gdof + 1);
-}
-
 void ModelBuilder::fix(const records::Spc& spc) {
   const SourceLocation at = deck_.locate(spc.at);
   const int index = model_.find_node(spc.g);
   if (index < 0) {
-    if (!spc.skip_if_missing) find_ldof(spc.g, 0, "SPC set " + std::to_string(spc.sid), at);
+    if (!spc.skip_if_missing) model_.find_ldof(spc.g, 0, "SPC set " + std::to_string(spc.sid), at, diagnostics_);
     return;
   }
   const Node& node = model_.nodes_[index];
@@ -182,7 +155,7 @@ void ModelBuilder::fix(const records::Spc& spc) {
       fixed_by_.emplace_back(node.first_gdof + c, at);
     }
   for (int c = 0; c < node.num_dofs && spc.d != 0; ++c)
-    if (node.num_dofs == 1 || (spc.c >> c & 1u)) model_.enforced_[node.first_gdof + c] = spc.d;
+    if (node.num_dofs == 1 || (spc.c >> c & 1u)) model_.spc_displacements_[node.first_gdof + c] = spc.d;
   if (spc.d != 0 && !options_.uses_enforced)
     diagnostics_.warning("fe.enforced-ignored", at,
                          "SPC set " + std::to_string(spc.sid) + " enforces a displacement at grid " +
@@ -219,6 +192,25 @@ void ModelBuilder::collect_fixed() {
     if (std::binary_search(sets.begin(), sets.end(), spc.sid)) fix(spc);
 }
 
+void ModelBuilder::hold_spcd() {
+  if (!options_.uses_enforced || options_.ignore_spc) return;
+  const records::Spcd* first = nullptr;
+  for (const auto& [dof, card] : list_spcd_dofs(model_, deck_, model_.subcase_.load)) {
+    if (is_fixed_[dof]) continue;
+    if (!first) first = card;
+    is_fixed_[dof] = 1;
+    fixed_by_.emplace_back(dof, deck_.locate(card->at));
+    model_.fixed_by_spcd_.push_back(dof);
+  }
+  if (!first) return;
+  const auto num = model_.fixed_by_spcd_.size();
+  diagnostics_.warning("fe.spcd-not-fixed", deck_.locate(first->at),
+                       "SPCD moves " + model_.name_dof(model_.fixed_by_spcd_.front()) +
+                           (num > 1 ? " (and " + std::to_string(num - 1) + " dofs more)" : "") +
+                           ", which no SPC of the subcase fixes; it is held as if one did",
+                       "fix it with the SPC set of the subcase");
+}
+
 void ModelBuilder::add_mpc(const records::Mpc& mpc) {
   const SourceLocation at = deck_.locate(mpc.at);
   ConstraintEquation equation;
@@ -232,7 +224,7 @@ void ModelBuilder::add_mpc(const records::Mpc& mpc) {
   }
   bool is_good = true;
   for (const auto& term : mpc.terms) {
-    const int ldof = find_ldof(term.g, term.c, equation.card, at);
+    const int ldof = model_.find_ldof(term.g, term.c, equation.card, at, diagnostics_);
     is_good = is_good && ldof >= 0;
     if (&term == &mpc.terms.front())
       equation.dependent = ldof;
@@ -275,7 +267,7 @@ void ModelBuilder::check_dependent_not_fixed() {
     const auto found = dependent.find(ldof);
     if (found == dependent.end() || !reported.insert(ldof).second) continue;
     diagnostics_.error("fe.dependent-fixed", at,
-                       name_dof(ldof) + " is fixed here and made dependent by " + found->second->card,
+                       model_.name_dof(ldof) + " is fixed here and made dependent by " + found->second->card,
                        "fix an independent dof instead, or free this one");
   }
 }
@@ -299,11 +291,6 @@ Elimination ModelBuilder::set_transform() {
     model_.fdof_component_.push_back(model_.nodes_[k].num_dofs == 1 ? 0 : slot + 1);
   }
   return elimination;
-}
-
-Model Model::build(const records::Deck& deck, const ModelOptions& options, const ElementFactory& factory,
-                   Diagnostics& diagnostics) {
-  return ModelBuilder(deck, options, diagnostics).build(factory);
 }
 
 }  // namespace bough::fe

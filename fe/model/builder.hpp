@@ -1,5 +1,5 @@
 #pragma once
-/// \file Builds a Model from a deck: systems, nodes, elements, constraints, AUTOSPC, in this order.
+/// \file Builds a Model from a deck: systems, nodes, constraints, elements, AUTOSPC, in this order.
 #include "fe/model/constraints.hpp"
 #include "fe/model/model.hpp"
 
@@ -32,16 +32,9 @@ class ModelBuilder {
   Elimination set_transform();
   /// The stress of the options by element; after all elements are there (prestress.cpp).
   void set_prestress();
-  void check_prestress();  ///< that the structure does not buckle under it (statics/preload_check.cpp)
   void apply_autospc(const Elimination& first);
-  /// ASET and OMIT: T of the a-set by static reduction (statics/guyan.cpp).
-  void omit_dofs();
-  std::vector<int> list_set(const std::vector<records::GridComponents>& set, const std::string& card);
   /// PLOTEL (plot_elements.cpp).
   void add_drawn_lines();
-  /// l-dof of component 1..6 (0: scalar point) of a grid; -1 and a report when there is none.
-  int find_ldof(int grid, int component, const std::string& card, const SourceLocation& at);
-  std::string name_dof(int ldof) const;
 
   const records::Deck& deck_;
   const ModelOptions& options_;

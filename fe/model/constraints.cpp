@@ -226,4 +226,25 @@ Elimination eliminate(int num_ldofs, const std::vector<ConstraintEquation>& reso
   return result;
 }
 
+FixedPart collect_fixed_part(int num_ldofs, const std::vector<ConstraintEquation>& resolved,
+                             const std::vector<char>& is_fixed) {
+  FixedPart part;
+  std::vector<char> is_dependent(static_cast<std::size_t>(num_ldofs), 0);
+  std::vector<int> column(static_cast<std::size_t>(num_ldofs), -1);
+  for (const auto& equation : resolved) is_dependent[static_cast<std::size_t>(equation.dependent)] = 1;
+  std::vector<Eigen::Triplet<double>> entries;
+  for (int l = 0; l < num_ldofs; ++l)
+    if (is_fixed[static_cast<std::size_t>(l)] && !is_dependent[static_cast<std::size_t>(l)]) {
+      column[static_cast<std::size_t>(l)] = static_cast<int>(part.ldofs.size());
+      entries.emplace_back(l, static_cast<int>(part.ldofs.size()), 1.0);
+      part.ldofs.push_back(l);
+    }
+  for (const auto& equation : resolved)
+    for (const auto& [ldof, c] : equation.terms)
+      if (const int j = column[static_cast<std::size_t>(ldof)]; j >= 0) entries.emplace_back(equation.dependent, j, c);
+  part.C.resize(num_ldofs, static_cast<int>(part.ldofs.size()));
+  part.C.setFromTriplets(entries.begin(), entries.end());
+  return part;
+}
+
 }  // namespace bough::fe

@@ -5,6 +5,8 @@
 #include <utility>
 
 #include "base/rotation.hpp"
+#include "fe/elements/stress_state.hpp"
+#include "fe/model/builder.hpp"
 #include "fe/model/coordinates.hpp"
 
 namespace bough::fe {
@@ -69,7 +71,7 @@ void Model::add_stiffness(const Element& element, Eigen::Ref<MatrixXd> K) const 
   element.add_stiffness(1, K);
   if (prestressed_.empty()) return;
   if (const auto found = prestressed_.find(&element); found != prestressed_.end())
-    element.add_geometric_stiffness(*found->second, 1, K);
+    element.stress_state()->add_geometric_stiffness(*found->second, 1, K);
 }
 
 int Model::find_fdof(int node_index, int component) const {
@@ -81,6 +83,59 @@ int Model::find_fdof(int node_index, int component) const {
 std::pair<int, int> Model::describe_fdof(int fdof) const {
   BOUGH_DEMAND(fdof >= 0 && fdof < num_fdofs());
   return {nodes_[fdof_node_[fdof]].id, fdof_component_[fdof]};
+}
+
+int Model::find_ldof(int grid, int component, const std::string& card, const SourceLocation& at,
+                     Diagnostics& diagnostics) const {
+  const int index = find_node(grid);
+  if (index < 0 && is_refused(grid)) return -1;
+  if (index < 0) {
+    diagnostics.error("fe.missing-grid", at,
+                      card + " names grid " + std::to_string(grid) + ", which the deck does not define",
+                      "add the GRID or correct the id");
+    return -1;
+  }
+  const Node& node = nodes_[index];
+  const bool is_scalar = node.num_dofs == 1;
+  if (is_scalar ? component > 1 : component < 1 || component > 6) {
+    diagnostics.error("fe.bad-component", at,
+                      card + " names component " + std::to_string(component) + " of grid " + std::to_string(grid) +
+                          ", expected " + (is_scalar ? "0" : "1 to 6"),
+                      "correct the component");
+    return -1;
+  }
+  return node.first_gdof + (is_scalar ? 0 : component - 1);
+}
+
+std::string Model::name_dof(int ldof) const {
+  const auto after =
+      std::upper_bound(nodes_.begin(), nodes_.end(), ldof, [](int l, const Node& node) { return l < node.first_gdof; });
+  const Node& node = *(after - 1);
+  return "grid " + std::to_string(node.id) + " component " +
+         std::to_string(node.num_dofs == 1 ? 0 : ldof - node.first_gdof + 1);
+}
+
+Model Model::with_transform(SparseRows T, const std::vector<int>& kept, OmittedSolution omitted) && {
+  BOUGH_DEMAND(T.rows() == num_gdofs_ && T.cols() == static_cast<Eigen::Index>(kept.size()));
+  T_ = std::move(T);
+  omitted_ = std::move(omitted);
+  checked_stiffness_ = nullptr;
+  for (auto& slots : node_fdof_) slots.fill(-1);
+  std::vector<int> node, component;
+  for (const int f : kept) {
+    const int k = fdof_node_[f], c = fdof_component_[f];
+    node_fdof_[k][std::max(c - 1, 0)] = static_cast<int>(node.size());
+    node.push_back(k);
+    component.push_back(c);
+  }
+  fdof_node_ = std::move(node);
+  fdof_component_ = std::move(component);
+  return std::move(*this);
+}
+
+Model Model::with_stiffness(std::shared_ptr<const CheckedStiffness> stiffness) && {
+  checked_stiffness_ = std::move(stiffness);
+  return std::move(*this);
 }
 
 MatrixXd Model::calc_rigid_modes(const Vector3d& point) const {
@@ -105,6 +160,11 @@ Matrix3d Model::calc_axes(int cid, const Vector3d& x, const SourceLocation& at, 
 
 Vector3d Model::calc_point(int cid, const Vector3d& x, const SourceLocation& at, Diagnostics& diagnostics) const {
   return systems_->calc_point(cid, x, at, diagnostics);
+}
+
+Model Model::build(const records::Deck& deck, const ModelOptions& options, const ElementFactory& factory,
+                   Diagnostics& diagnostics) {
+  return ModelBuilder(deck, options, diagnostics).build(factory);
 }
 
 }  // namespace bough::fe

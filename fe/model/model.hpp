@@ -1,10 +1,12 @@
 #pragma once
-/// \file The finite-element model: nodes, elements, dofs and constraints, made once from a deck and const after.
+/// \file The finite-element model: nodes, elements, dofs and constraints, made once from a deck and const after. It
+/// contains no matrix of the whole and no load; fe/statics/build_model.hpp makes the models that are solved.
 ///
 /// g-set: every dof of every node, translations and rotations in **basic** axes (one row for a scalar point).
 /// f-set: the free dofs left after SPC, permanent SPC, AUTOSPC, MPC and rigid elements, in the displacement (CD) axes.
-/// With ASET or OMIT they are those of the a-set, the others following them statically (fe/statics/guyan.cpp).
-/// u_g = T q_f, with the CD rotation, the constraint elimination and the zeros all inside the sparse T.
+/// With ASET or OMIT they are the dofs of the a-set, which the other free dofs follow statically
+/// (fe/statics/guyan.hpp). u_g = T q_f, with the CD rotation, the constraint elimination and the zeros all inside the
+/// sparse T.
 #include <array>
 #include <functional>
 #include <memory>
@@ -17,7 +19,6 @@
 #include <Eigen/Sparse>
 
 #include "fe/elements/element.hpp"
-#include "fe/model/applied_load.hpp"
 #include "fe/model/constraints.hpp"
 #include "fe/model/links.hpp"
 #include "fe/model/prestress.hpp"
@@ -46,8 +47,17 @@ struct AutospcEntry {
   std::vector<std::pair<int, double>> terms;
 };
 
+/// A dof that a card fixes or makes dependent.
+struct ConstrainedDof {
+  int dof = 0;       ///< row in the numbering of the g-set
+  std::string card;  ///< of the constraint equation; empty: SPC or permanent SPC
+  SourceLocation at;
+};
+
+/// Displacements (num_gdofs x m) that loads F_g (num_gdofs x m) give the dofs outside the a-set, with the a-set fixed.
+using OmittedSolution = std::function<MatrixXd(const Eigen::Ref<const MatrixXd>& F_g)>;
+
 class CoordinateSystems;
-class StaticSolver;
 struct CheckedStiffness;
 
 /// Makes the elements of a deck; make_elements unless a caller brings its own.
@@ -55,10 +65,8 @@ using ElementFactory = std::function<ElementList(const records::Deck&, const Nod
 
 class Model final : public NodeTable {
  public:
-  /// Builds everything; throws InputError with every error of the deck that concerns fe, ComputationError
-  /// ("fe.preload-buckles") where the stiffness with that of the prestress is not definite.
-  static Model build(const records::Deck& deck, const ModelOptions& options, Diagnostics& diagnostics);
-  /// The same with elements from `factory`.
+  /// Builds nodes, constraints, elements and T after AUTOSPC: the first step of build_model(). Throws InputError with
+  /// every error of the deck that concerns them.
   static Model build(const records::Deck& deck, const ModelOptions& options, const ElementFactory& factory,
                      Diagnostics& diagnostics);
 
@@ -71,12 +79,18 @@ class Model final : public NodeTable {
   int num_gdofs() const { return num_gdofs_; }
   int num_fdofs() const { return static_cast<int>(T_.cols()); }
   const SparseRows& T() const { return T_; }  ///< num_gdofs x num_fdofs
-  /// Solves for the dofs that ASET or OMIT leave out, the others held; nullptr when none is left out.
-  const std::shared_ptr<const StaticSolver>& omitted() const { return omitted_; }
+  /// Static solution of the dofs that ASET or OMIT eliminate; empty if none is eliminated.
+  const OmittedSolution& omitted() const { return omitted_; }
   /// The fixed dofs' part: u_g = T q_f + T_fixed d, d the displacements of the fixed dofs in their CD axes, in the
   /// order of fixed_dofs() (SPC, permanent SPC, AUTOSPC). num_gdofs x num_fixed.
   const SparseRows& T_fixed() const { return T_fixed_; }
   const std::vector<int>& fixed_dofs() const { return fixed_dofs_; }  ///< rows in the numbering of the g-set, ascending
+  /// Displacements of the SPC set that are not zero, by fixed dof.
+  const std::unordered_map<int, double>& spc_displacements() const { return spc_displacements_; }
+  /// Fixed dofs that no SPC names but an SPCD of the load of the subcase moves.
+  const std::vector<int>& fixed_by_spcd() const { return fixed_by_spcd_; }
+  /// All dofs that cards constrain, dependent dofs first; filled if the deck has ASET or OMIT.
+  const std::vector<ConstrainedDof>& constrained_dofs() const { return constrained_dofs_; }
   /// What moves when an oblique direction that AUTOSPC holds lets go: a column, num_gdofs x 1, for each entry of
   /// autospc() with terms, in their order.
   const SparseRows& T_oblique() const { return T_oblique_; }
@@ -91,15 +105,27 @@ class Model final : public NodeTable {
   /// K += K_e of an element of this model (N x N, as Element::add_stiffness), with K_G of its part of the prestress.
   void add_stiffness(const Element& element, Eigen::Ref<MatrixXd> K) const;
   const Prestress* prestress() const { return prestress_.get(); }  ///< nullptr: the model starts without stress
-  /// K as the check of the prestress assembled it (fe/matrices/system.hpp); nullptr where there was none, and of an
+  /// K as the check of the prestress assembled it (fe/matrices/system.hpp); nullptr without a prestress, and of an
   /// a-set.
   const CheckedStiffness* checked_stiffness() const { return checked_stiffness_.get(); }
+
+  /// This model with fewer f-dofs: T has the columns of the f-dofs `kept`, and `omitted` gives the displacements of the
+  /// others under loads.
+  Model with_transform(SparseRows T, const std::vector<int>& kept, OmittedSolution omitted) &&;
+  /// This model with the K of its f-set, so that it is assembled and factored once.
+  Model with_stiffness(std::shared_ptr<const CheckedStiffness> stiffness) &&;
 
   /// Rigid links with the second order of their motion (fe/model/links.hpp).
   const Links& links() const { return links_; }
 
   /// The f-dof that alone carries g-dof (node, component in CD axes), or -1 (constrained, dependent).
   int find_fdof(int node_index, int component) const;
+  /// Row in the numbering of the g-set of component 1..6 (0: scalar point) of a grid. \return -1 after reporting
+  /// fe.missing-grid or fe.bad-component.
+  int find_ldof(int grid, int component, const std::string& card, const SourceLocation& at,
+                Diagnostics& diagnostics) const;
+  /// "grid 3 component 2" of such a row.
+  std::string name_dof(int ldof) const;
   /// Node id and CD component of an f-dof, for messages.
   std::pair<int, int> describe_fdof(int fdof) const;
 
@@ -113,19 +139,6 @@ class Model final : public NodeTable {
   Matrix3d calc_axes(int cid, const Vector3d& x, const SourceLocation& at, Diagnostics& diagnostics) const override;
   Vector3d calc_point(int cid, const Vector3d& x, const SourceLocation& at, Diagnostics& diagnostics) const override;
 
-  /// Whether the fixed dofs are those of load set `set`: every dof that its SPCD cards move is fixed, and no dof is
-  /// fixed for the SPCD cards of another set alone.
-  bool is_held_for(const records::Deck& deck, int set) const;
-  /// Displacements d of the fixed dofs: those of the SPC set, overruled by the SPCD cards of load set `set` (0: none).
-  /// Reports fe.spcd-not-fixed.
-  VectorXd calc_enforced(const records::Deck& deck, int set, Diagnostics& diagnostics) const;
-
-  /// Load vector (num_gdofs) of a set, in basic: FORCEx, MOMENTx, SLOAD, PLOADx, GRAV and RFORCE (with this model's
-  /// mass), LOAD. Reports fe.missing-load and what is wrong with its cards.
-  VectorXd calc_load(const records::Deck& deck, int set, Diagnostics& diagnostics) const;
-  /// The same with what K_G wants to know of it.
-  AppliedLoad calc_applied_load(const records::Deck& deck, int set, Diagnostics& diagnostics) const;
-
  private:
   friend class ModelBuilder;
   std::shared_ptr<const CoordinateSystems> systems_;
@@ -137,15 +150,16 @@ class Model final : public NodeTable {
   bool has_damping_ = false;
   int num_gdofs_ = 0;
   SparseRows T_, T_fixed_, T_oblique_;
-  std::shared_ptr<const StaticSolver> omitted_;
+  OmittedSolution omitted_;
   std::shared_ptr<const CheckedStiffness> checked_stiffness_;
   Links links_;
   std::shared_ptr<const Prestress> prestress_;
   std::unordered_map<const Element*, const VectorXd*> prestressed_;  ///< internal forces in prestress_
   std::vector<std::pair<int, ElementShape>> drawn_lines_;            ///< PLOTEL: id, shape
   std::vector<int> fixed_dofs_;
-  std::unordered_map<int, double> enforced_;  ///< by dof: the values of the SPC set that are not zero
-  std::vector<int> held_by_spcd_;             ///< dofs that no SPC fixes but an SPCD of the subcase's load moves
+  std::unordered_map<int, double> spc_displacements_;
+  std::vector<int> fixed_by_spcd_;
+  std::vector<ConstrainedDof> constrained_dofs_;
   std::vector<int> fdof_node_, fdof_component_;
   std::vector<std::array<int, 6>> node_fdof_;
   MassKind mass_kind_ = MassKind::Lumped;

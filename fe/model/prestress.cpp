@@ -1,6 +1,7 @@
 /// What a prestress does to a model that is built with it.
 #include <algorithm>
 
+#include "fe/elements/stress_state.hpp"
 #include "fe/model/builder.hpp"
 
 namespace bough::fe {
@@ -13,7 +14,8 @@ void ModelBuilder::set_prestress() {
   const auto num = std::min(force.size(), model_.elements_.size());
   for (std::size_t e = 0; e < num; ++e) {
     if (force[e].size() == 0) continue;
-    BOUGH_DEMAND(force[e].size() == model_.elements_[e]->num_internal_forces());
+    const StressState* state = model_.elements_[e]->stress_state();
+    BOUGH_DEMAND(state && force[e].size() == state->num_internal_forces());
     model_.prestressed_.emplace(model_.elements_[e].get(), &force[e]);
   }
 }

@@ -2,10 +2,11 @@
 /// \file A state of stress that a model starts from: what of it enters the stiffness (docs/theory/preload.md).
 #include <string>
 
-#include "fe/model/applied_load.hpp"
 #include "fe/model/links.hpp"
 
 namespace bough::fe {
+
+using Vector12d = Eigen::Matrix<double, 12, 1>;
 
 /// K_G0 of a load with its static solution, in the order of the elements and on the g-set: good for every model of the
 /// same deck, whatever its constraints.

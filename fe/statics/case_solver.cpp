@@ -2,7 +2,9 @@
 
 #include <algorithm>
 
+#include "fe/loads/enforced.hpp"
 #include "fe/matrices/system.hpp"
+#include "fe/statics/build_model.hpp"
 #include "fe/statics/element_results.hpp"
 #include "fe/statics/preload.hpp"
 
@@ -153,7 +155,7 @@ void CaseSolver::add_element_results(std::span<const StaticLoad> loads, const Ma
 }
 
 bool CaseSolver::is_prepared_for(const records::Subcase& subcase) const {
-  return held_ == list_held(subcase) && (!model_ || model_->is_held_for(deck_, subcase.load));
+  return held_ == list_held(subcase) && (!model_ || is_held_for(*model_, deck_, subcase.load));
 }
 
 void CaseSolver::prepare(const records::Subcase& subcase, Diagnostics& diagnostics) {
@@ -170,7 +172,7 @@ void CaseSolver::prepare(const records::Subcase& subcase, Diagnostics& diagnosti
     options_.subcase = subcase.id;
     options_.prestress = nullptr;
     options_.prestress = calc_subcase_prestress(deck_, options_, subcase, own);
-    auto model = Model::build(deck_, options_, own);
+    auto model = build_model(deck_, options_, own);
     const auto relief = read_inertia_relief(deck_, own);
     auto fdofs = choose_suport(model, deck_, relief, own);
     own.throw_if_errors();

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "fe/elements/beam.hpp"
+#include "fe/elements/solid.hpp"
 #include "fe/linear/blas.hpp"
 #include "fe/linear/threads.hpp"
 #include "fe/loads/load_sets.hpp"
@@ -53,10 +54,10 @@ class TableRows {
 struct Current {
   const Element& element;
   int index;
-  std::size_t half;                                  ///< of the elements: each has its rows
-  MatrixXd U;                                        ///< N x cases
-  std::vector<const InitialForces::Part*> heated{};  ///< a case each; nullptr: cold
-  MatrixXd forces{};                                 ///< internal forces, with those of loads and temperatures
+  std::size_t half;                           ///< of the elements: each has its rows
+  MatrixXd U;                                 ///< N x cases
+  std::vector<const ThermalState*> heated{};  ///< a case each; nullptr: cold
+  MatrixXd forces{};                          ///< internal forces, with those of loads and temperatures
 };
 
 /// Stresses or strains of all groups.
@@ -72,8 +73,7 @@ class PointTables {
       const auto& group = groups_[g];
       const Element& first = *model.elements()[static_cast<std::size_t>(group.elements.front())];
       const auto rows = static_cast<Index>(group.elements.size()), columns = static_cast<Index>(group.names.size());
-      const Index corners =
-          of_strain ? first.calc_corner_strains(VectorXd::Zero(first.num_internal_forces())).size() : 0;
+      const Index corners = of_strain && first.as_solid() ? 6 * first.as_solid()->num_corners() : 0;
       std::vector<MatrixXd*> tables, corner_tables;
       for (auto& result : results) {
         auto& block = (result.*blocks)[g];
@@ -95,15 +95,16 @@ class PointTables {
     const auto [group, row] = layout_.places[static_cast<std::size_t>(at.index)];
     if (group < 0) return;
     const auto g = static_cast<std::size_t>(group);
-    MatrixXd values = of_strain_ ? at.element.calc_strains(at.forces) : at.element.calc_stresses(at.forces);
+    const StressRecovery& recovery = *at.element.stress_recovery();
+    MatrixXd values = of_strain_ ? recovery.calc_strains(at.forces) : recovery.calc_stresses(at.forces);
     for (std::size_t c = 0; c < at.heated.size(); ++c)
       if (at.heated[c]) add_part(of_strain_ ? at.heated[c]->strain : at.heated[c]->stress, c, values);
-    const PointResults derive(of_strain_ ? at.element.strain_points() : at.element.stress_points(), of_strain_);
+    const PointResults derive(of_strain_ ? recovery.strain_points() : recovery.stress_points(), of_strain_);
     MatrixXd rows(static_cast<Index>(groups_[g].names.size()), values.cols());
     for (Index c = 0; c < values.cols(); ++c) derive.calc(values.col(c), rows.col(c));
     tables_[at.half][g].set(row, rows);
     if (!of_strain_ || (results_.front().*blocks_)[g].corner.cols() == 0) return;
-    MatrixXd corner = at.element.calc_corner_strains(at.forces);
+    MatrixXd corner = at.element.as_solid()->calc_corner_strains(at.forces);
     for (std::size_t c = 0; c < at.heated.size(); ++c)
       if (at.heated[c]) add_part(at.heated[c]->corner_strain, c, corner);
     corners_[at.half][g].set(row, corner);
@@ -167,11 +168,12 @@ class ForceTables {
     if (group < 0) return;
     const auto g = static_cast<std::size_t>(group);
     const auto count = static_cast<Index>(groups_[g].names.size());
-    if (at.element.num_internal_forces() > 0) {
-      tables_[at.half][g].set(row, at.forces.topRows(count));  // they begin with those that are printed
+    if (at.element.stress_state()) {
+      tables_[at.half][g].set(row, at.forces.topRows(count));  // the printed ones come first
     } else {
       MatrixXd forces(count, at.U.cols());
-      for (Index c = 0; c < at.U.cols(); ++c) forces.col(c) = at.element.calc_printed_forces(at.U.col(c));
+      for (Index c = 0; c < at.U.cols(); ++c)
+        forces.col(c) = at.element.printed_forces()->calc_printed_forces(at.U.col(c));
       for (std::size_t c = 0; c < at.heated.size(); ++c)
         if (at.heated[c]) forces.col(static_cast<Index>(c)) += at.heated[c]->force.head(count);
       tables_[at.half][g].set(row, forces);
@@ -222,9 +224,10 @@ class ForceTables {
 using EndLoads = std::vector<std::unordered_map<int, VectorXd>>;
 
 void find_forces(const std::vector<RecoveryCase>& cases, const EndLoads& end_loads, Current& at) {
-  at.forces.setZero(at.element.num_internal_forces(), at.U.cols());
-  if (at.forces.rows() == 0) return;
-  at.element.calc_internal_forces_of(at.U, at.forces);
+  const StressState* state = at.element.stress_state();
+  at.forces.setZero(state ? state->num_internal_forces() : 0, at.U.cols());
+  if (!state) return;
+  state->calc_internal_forces_of(at.U, at.forces);
   for (std::size_t c = 0; c < cases.size(); ++c) {
     auto force = at.forces.col(static_cast<Index>(c));
     if (!at.heated.empty() && at.heated[c]) force += at.heated[c]->force;

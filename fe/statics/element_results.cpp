@@ -9,8 +9,10 @@
 namespace bough::fe {
 
 MatrixXd calc_internal_forces(const Element& element, const Eigen::Ref<const MatrixXd>& U_g) {
-  MatrixXd forces = MatrixXd::Zero(element.num_internal_forces(), U_g.cols());
-  if (forces.rows() > 0) element.calc_internal_forces_of(U_g(element.gdofs(), Eigen::all), forces);
+  const StressState* state = element.stress_state();
+  if (!state) return MatrixXd(0, U_g.cols());
+  MatrixXd forces = MatrixXd::Zero(state->num_internal_forces(), U_g.cols());
+  state->calc_internal_forces_of(U_g(element.gdofs(), Eigen::all), forces);
   return forces;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 /// \file What static solutions and bodies tell of elements beside their forces: stresses, strains, forces on grids.
-#include "fe/sections/stress.hpp"
+#include "fe/elements/stress_recovery.hpp"
+#include "fe/elements/stress_state.hpp"
 #include "fe/statics/static_case.hpp"
 
 namespace bough::fe {

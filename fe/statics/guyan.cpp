@@ -5,10 +5,11 @@
 /// added by StaticSolver, so static solutions are those of the whole f-set. One sparse factorization of K_oo, n_a
 /// solutions in blocks; T then has up to num_gdofs n_a entries of 12 bytes, and an assembly costs
 /// O(elements (s^2 n_a + s n_a^2)) with s the dofs of an element: meant for a few hundred a-dofs.
+#include "fe/statics/guyan.hpp"
+
 #include <algorithm>
 
 #include "fe/matrices/system.hpp"
-#include "fe/model/builder.hpp"
 #include "fe/statics/statics.hpp"
 
 namespace bough::fe {
@@ -40,106 +41,103 @@ SparseRows calc_reduced_transform(const Model& model, const StaticSolver& omitte
   return T_a;
 }
 
-}  // namespace
-
-std::vector<int> ModelBuilder::list_set(const std::vector<records::GridComponents>& set, const std::string& card) {
-  std::vector<int> ldofs;
-  std::unordered_map<int, const SourceLocation*> fixed;
-  for (const auto& [ldof, at] : fixed_by_) fixed.emplace(ldof, &at);
-  std::unordered_map<int, const std::string*> dependent;
-  for (const auto& equation : equations_) dependent.emplace(equation.dependent, &equation.card);
-  for (const auto& entry : model_.autospc_)  // may be named all the same
-    dependent.erase(model_.nodes_[model_.find_node(entry.node)].first_gdof + std::max(entry.component - 1, 0));
-  const auto add = [&](int ldof, const SourceLocation& at) {
-    if (ldof < 0) return;
-    std::string why;
-    if (const auto it = dependent.find(ldof); it != dependent.end())
-      why = ", which " + *it->second + " makes dependent";
-    else if (const auto held = fixed.find(ldof); held != fixed.end())
-      why = ", which is fixed at line " + std::to_string(held->second->line) + " of " + held->second->file;
-    if (why.empty())
-      ldofs.push_back(ldof);
-    else
-      diagnostics_.error("fe.analysis-set", at, card + " names " + name_dof(ldof) + why,
-                         "take it out of the " + card + ": only dofs that are free otherwise are kept or left out");
+/// Free dofs that the entries of a card name, ascending. Reports fe.analysis-set for dofs that a card constrains; dofs
+/// that AUTOSPC fixed may be named.
+std::vector<int> list_set(const Model& model, const records::Deck& deck,
+                          const std::vector<records::GridComponents>& set, const std::string& card,
+                          Diagnostics& diagnostics) {
+  std::vector<int> dofs;
+  std::unordered_map<int, const ConstrainedDof*> constrained;
+  for (const auto& one : model.constrained_dofs()) constrained.emplace(one.dof, &one);
+  const auto add = [&](int dof, const SourceLocation& at) {
+    if (dof < 0) return;
+    const auto found = constrained.find(dof);
+    if (found == constrained.end()) {
+      dofs.push_back(dof);
+      return;
+    }
+    const ConstrainedDof& by = *found->second;
+    const std::string why = by.card.empty()
+                                ? ", which is fixed at line " + std::to_string(by.at.line) + " of " + by.at.file
+                                : ", which " + by.card + " makes dependent";
+    diagnostics.error("fe.analysis-set", at, card + " names " + model.name_dof(dof) + why,
+                      "take it out of the " + card + ": only dofs that are free otherwise are kept or left out");
   };
   for (const auto& entry : set) {
-    const SourceLocation at = deck_.locate(entry.at);
-    if (entry.c == 0) add(find_ldof(entry.g, 0, card, at), at);
+    const SourceLocation at = deck.locate(entry.at);
+    if (entry.c == 0) add(model.find_ldof(entry.g, 0, card, at, diagnostics), at);
     for (int c = 0; c < 6; ++c)
-      if (entry.c >> c & 1u) add(find_ldof(entry.g, c + 1, card, at), at);
+      if (entry.c >> c & 1u) add(model.find_ldof(entry.g, c + 1, card, at, diagnostics), at);
   }
-  std::sort(ldofs.begin(), ldofs.end());
-  ldofs.erase(std::unique(ldofs.begin(), ldofs.end()), ldofs.end());
-  return ldofs;
+  std::sort(dofs.begin(), dofs.end());
+  dofs.erase(std::unique(dofs.begin(), dofs.end()), dofs.end());
+  return dofs;
 }
 
-void ModelBuilder::omit_dofs() {
-  if (deck_.aset.empty() && deck_.omit.empty()) return;
-  // With a QSET the a-set is the boundary of component modes, which stand for the others: those then stay as they are.
-  if (deck_.card_counts.count("QSET") + deck_.card_counts.count("QSET1") > 0) return;
-  std::vector<int> kept_ldofs = list_set(deck_.aset, "ASET");
-  const std::vector<int> omit = list_set(deck_.omit, "OMIT");
-  for (const int ldof : omit)
-    if (std::binary_search(kept_ldofs.begin(), kept_ldofs.end(), ldof))
-      diagnostics_.error("fe.analysis-set", deck_.locate({}), name_dof(ldof) + " is in the ASET and in the OMIT",
-                         "name it in one of them");
-  diagnostics_.throw_if_errors();
-  // With an ASET everything else is left out but the supports of a free body; with OMIT alone what it names is.
-  if (!deck_.aset.empty()) {
-    std::vector<records::GridComponents> supports = deck_.suport;
-    if (const auto set = deck_.suport1.find(model_.subcase_.suport1); set != deck_.suport1.end())
+/// f-dofs of the a-set. With an ASET all others are eliminated, except the supports of a free body; with OMIT alone the
+/// dofs that it names.
+std::vector<int> list_aset(const Model& model, const records::Deck& deck, Diagnostics& diagnostics) {
+  std::vector<int> aset = list_set(model, deck, deck.aset, "ASET", diagnostics);
+  const std::vector<int> omit = list_set(model, deck, deck.omit, "OMIT", diagnostics);
+  for (const int dof : omit)
+    if (std::binary_search(aset.begin(), aset.end(), dof))
+      diagnostics.error("fe.analysis-set", deck.locate({}), model.name_dof(dof) + " is in the ASET and in the OMIT",
+                        "name it in one of them");
+  diagnostics.throw_if_errors();
+  if (!deck.aset.empty()) {
+    std::vector<records::GridComponents> supports = deck.suport;
+    if (const auto set = deck.suport1.find(model.subcase().suport1); set != deck.suport1.end())
       supports.insert(supports.end(), set->second.begin(), set->second.end());
     for (const auto& entry : supports)
       for (int c = 0; c < 6; ++c)
-        if (entry.c >> c & 1u) kept_ldofs.push_back(find_ldof(entry.g, c + 1, "SUPORT", deck_.locate(entry.at)));
-    std::sort(kept_ldofs.begin(), kept_ldofs.end());
+        if (entry.c >> c & 1u)
+          aset.push_back(model.find_ldof(entry.g, c + 1, "SUPORT", deck.locate(entry.at), diagnostics));
+    std::sort(aset.begin(), aset.end());
   }
-  const auto is_kept = [&](int ldof) {
-    return deck_.aset.empty() ? !std::binary_search(omit.begin(), omit.end(), ldof)
-                              : std::binary_search(kept_ldofs.begin(), kept_ldofs.end(), ldof);
-  };
-
   std::vector<int> kept;
-  for (int f = 0; f < model_.num_fdofs(); ++f)
-    if (is_kept(model_.nodes_[model_.fdof_node_[f]].first_gdof + std::max(model_.fdof_component_[f] - 1, 0)))
-      kept.push_back(f);
-  const int num_omitted = model_.num_fdofs() - static_cast<int>(kept.size());
-  if (num_omitted == 0) return;
+  for (int f = 0; f < model.num_fdofs(); ++f) {
+    const auto [grid, component] = model.describe_fdof(f);
+    const int dof = model.node(model.find_node(grid)).first_gdof + std::max(component - 1, 0);
+    const bool is_kept = deck.aset.empty() ? !std::binary_search(omit.begin(), omit.end(), dof)
+                                           : std::binary_search(aset.begin(), aset.end(), dof);
+    if (is_kept) kept.push_back(f);
+  }
+  return kept;
+}
+
+}  // namespace
+
+Model reduce_to_aset(Model model, const records::Deck& deck, Diagnostics& diagnostics) {
+  if (deck.aset.empty() && deck.omit.empty()) return model;
+  // With a QSET the a-set is the boundary of component modes, which represent the other dofs: no static reduction.
+  if (deck.card_counts.count("QSET") + deck.card_counts.count("QSET1") > 0) return model;
+  const std::vector<int> kept = list_aset(model, deck, diagnostics);
+  const int num_omitted = model.num_fdofs() - static_cast<int>(kept.size());
+  if (num_omitted == 0) return model;
   if (kept.empty()) {
-    diagnostics_.error("fe.analysis-set", deck_.locate({}), "ASET and OMIT leave no dof to the analysis",
-                       "name the dofs that the modes need in the ASET");
-    diagnostics_.throw_if_errors();
+    diagnostics.error("fe.analysis-set", deck.locate({}), "ASET and OMIT leave no dof to the analysis",
+                      "name the dofs that the modes need in the ASET");
+    diagnostics.throw_if_errors();
   }
 
   std::shared_ptr<const StaticSolver> omitted;
   try {
-    omitted = std::make_shared<const StaticSolver>(model_, get_stiffness(model_), kept);
+    omitted = std::make_shared<const StaticSolver>(model, get_stiffness(model), kept);
   } catch (const ComputationError& error) {
     if (error.items().front().id != "fe.mechanism") throw;
     for (const auto& item : error.items())
-      diagnostics_.error("fe.omitted-singular", deck_.locate({}),
-                         "with the ASET held the dofs left out still move freely: " + item.what,
-                         "add the dof named to the ASET, or constrain it");
-    diagnostics_.throw_if_errors();
+      diagnostics.error("fe.omitted-singular", deck.locate({}),
+                        "with the ASET held the dofs left out still move freely: " + item.what,
+                        "add the dof named to the ASET, or constrain it");
+    diagnostics.throw_if_errors();
   }
-  model_.T_ = calc_reduced_transform(model_, *omitted, kept);
-  model_.checked_stiffness_ = nullptr;
-  model_.omitted_ = std::move(omitted);
-  for (auto& slots : model_.node_fdof_) slots.fill(-1);
-  std::vector<int> node, component;
-  for (const int f : kept) {
-    const int k = model_.fdof_node_[f], c = model_.fdof_component_[f];
-    model_.node_fdof_[k][std::max(c - 1, 0)] = static_cast<int>(node.size());
-    node.push_back(k);
-    component.push_back(c);
-  }
-  model_.fdof_node_ = std::move(node);
-  model_.fdof_component_ = std::move(component);
-  diagnostics_.note("fe.static-reduction", deck_.locate({}),
-                    "ASET and OMIT leave " + std::to_string(kept.size()) + " dofs to the analysis, " +
-                        std::to_string(num_omitted) + " follow them statically",
-                    "take the cards out for the modes of the whole model");
+  SparseRows T = calc_reduced_transform(model, *omitted, kept);
+  diagnostics.note("fe.static-reduction", deck.locate({}),
+                   "ASET and OMIT leave " + std::to_string(kept.size()) + " dofs to the analysis, " +
+                       std::to_string(num_omitted) + " follow them statically",
+                   "take the cards out for the modes of the whole model");
+  return std::move(model).with_transform(
+      std::move(T), kept, [omitted](const Eigen::Ref<const MatrixXd>& F_g) { return omitted->solve(F_g); });
 }
 
 }  // namespace bough::fe

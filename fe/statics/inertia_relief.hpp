@@ -1,6 +1,7 @@
 #pragma once
 /// \file What moves with the dofs of SUPORT, and inertia relief. Source: MSC Nastran Linear Static Analysis User's
 /// Guide, "Inertia Relief"; Quick Reference Guide, PARAM,INREL.
+#include "fe/loads/loads.hpp"
 #include "fe/model/suport.hpp"
 #include "fe/statics/statics.hpp"
 

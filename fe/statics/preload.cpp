@@ -2,9 +2,11 @@
 
 #include <algorithm>
 
+#include "fe/elements/stress_state.hpp"
 #include "fe/loads/inertial_loads.hpp"
 #include "fe/loads/second_order.hpp"
 #include "fe/matrices/system.hpp"
+#include "fe/statics/build_model.hpp"
 #include "fe/statics/static_case.hpp"
 
 namespace bough::fe {
@@ -68,7 +70,7 @@ std::shared_ptr<const Prestress> calc_prestress(const records::Deck& deck, const
   Diagnostics own;
   auto held = options;
   held.uses_enforced = true;
-  const auto model = Model::build(deck, held, elements, own);
+  const auto model = build_model(deck, held, elements, own);
   records::Subcase subcase;
   subcase.load = preload.load;
   subcase.temperature = preload.temperature;
@@ -98,9 +100,10 @@ std::shared_ptr<const Prestress> calc_prestress(const records::Deck& deck, const
   result->force.resize(model.elements().size());
   for (std::size_t e = 0; e < result->force.size(); ++e) {
     const Element& element = *model.elements()[e];
-    if (element.num_internal_forces() == 0) continue;
-    VectorXd force = VectorXd::Zero(element.num_internal_forces());
-    element.calc_internal_forces(u(element.gdofs()), force);
+    const StressState* state = element.stress_state();
+    if (!state) continue;
+    VectorXd force = VectorXd::Zero(state->num_internal_forces());
+    state->calc_internal_forces(u(element.gdofs()), force);
     if (const auto* heated = load.initial.find(element)) force += heated->force;
     result->force[e] = result->force[e].size() == 0 ? force : VectorXd(result->force[e] + force);
   }

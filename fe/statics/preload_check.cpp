@@ -1,4 +1,5 @@
-/// The last step of a model that is built with a prestress: it is solved whether the structure stands.
+#include "fe/statics/preload_check.hpp"
+
 #include <algorithm>
 
 #include <Eigen/Eigenvalues>
@@ -6,8 +7,6 @@
 #include "fe/linear/factor.hpp"
 #include "fe/linear/inertia.hpp"
 #include "fe/linear/low_rank_sum.hpp"
-#include "fe/matrices/system.hpp"
-#include "fe/model/builder.hpp"
 #include "fe/model/row_kinds.hpp"
 #include "fe/statics/statics.hpp"
 
@@ -71,31 +70,30 @@ PetscMat hold_support(const Model& model, const PetscMat& A, RowKinds& kinds) {
 
 }  // namespace
 
-void ModelBuilder::check_prestress() {
-  if (!model_.prestress_ || model_.num_fdofs() == 0) return;
+std::shared_ptr<const CheckedStiffness> check_preload(const Model& model, bool is_free, Diagnostics& diagnostics) {
+  if (!model.prestress() || model.num_fdofs() == 0) return nullptr;
   auto checked = std::make_shared<CheckedStiffness>();
-  checked->K = assemble_stiffness(model_, DofSet::Free);
+  checked->K = assemble_stiffness(model, DofSet::Free);
   checked->factor = SymmetricFactor::try_definite(checked->K.get());
-  model_.checked_stiffness_ = checked;
-  if (checked->factor) return;
-  RowKinds kinds = list_row_kinds(model_);
-  const PetscMat held = options_.ignore_spc ? hold_support(model_, checked->K, kinds) : PetscMat();
-  if (held && SymmetricFactor::try_definite(held.get())) return;
-  if (!has_negative(held ? held : checked->K, kinds)) return;
-  // With as many negative directions in all as among the rigid motions, what the others strain is positive
-  // (Haynsworth): Nastran has such modes too, with negative eigenvalues.
-  const int tipping = held ? 0 : count_tipping(model_, checked->K);
+  if (checked->factor) return checked;
+  RowKinds kinds = list_row_kinds(model);
+  const PetscMat held = is_free ? hold_support(model, checked->K, kinds) : PetscMat();
+  if (held && SymmetricFactor::try_definite(held.get())) return checked;
+  if (!has_negative(held ? held : checked->K, kinds)) return checked;
+  // With as many negative directions in all as among the rigid-body motions, the energy of the elastic motions is
+  // positive (Haynsworth): Nastran has such modes too, with negative eigenvalues.
+  const int tipping = held ? 0 : count_tipping(model, checked->K);
   if (const int negative = tipping > 0 ? count_negative_eigenvalues(lift(checked->K, kinds).get()).value_or(0) : 0;
       negative > 0 && negative <= tipping) {
-    diagnostics_.warning("fe.preload-tips", model_.prestress_->at,
-                         "the loads of the preload, " + model_.prestress_->name +
-                             ", keep their direction and tip the free body over: " + std::to_string(negative) +
-                             " of its rigid motions have negative stiffness, however small the load",
-                         "the structure itself does not buckle; modes prints these motions with negative eigenvalues");
-    return;
+    diagnostics.warning("fe.preload-tips", model.prestress()->at,
+                        "the loads of the preload, " + model.prestress()->name +
+                            ", keep their direction and tip the free body over: " + std::to_string(negative) +
+                            " of its rigid motions have negative stiffness, however small the load",
+                        "the structure itself does not buckle; modes prints these motions with negative eigenvalues");
+    return checked;
   }
-  throw ComputationError("fe.preload-buckles", model_.prestress_->at,
-                         "the structure buckles under its preload, " + model_.prestress_->name +
+  throw ComputationError("fe.preload-buckles", model.prestress()->at,
+                         "the structure buckles under its preload, " + model.prestress()->name +
                              ": its stiffness with that of the stress is not positive definite",
                          "lower the load below its first load factor (bough modes --buckling), or look for rods and "
                          "membranes under compression");

@@ -2,7 +2,8 @@
 #include <utility>
 
 #include "fe/cards/element_properties.hpp"
-#include "fe/sections/stress.hpp"
+#include "fe/elements/stress_recovery.hpp"
+#include "fe/elements/stress_state.hpp"
 #include "fe/statics/element_recovery.hpp"
 
 namespace bough::fe {
@@ -34,12 +35,13 @@ Groups group_by_forces(const Model& model) {
   std::map<std::pair<std::string, int>, std::vector<int>> found;
   const auto& elements = model.elements();
   for (std::size_t e = 0; e < elements.size(); ++e)
-    if (const int count = static_cast<int>(elements[e]->printed_force_names().size()); count > 0)
-      found[{elements[e]->card(), count}].push_back(static_cast<int>(e));
+    if (const PrintedForces* forces = elements[e]->printed_forces())
+      found[{elements[e]->card(), static_cast<int>(forces->printed_force_names().size())}].push_back(
+          static_cast<int>(e));
   Groups groups;
   for (auto& [key, members] : found) {
     const bool is_more = !groups.empty() && groups.back().card == key.first;
-    auto names = elements[static_cast<std::size_t>(members.front())]->printed_force_names();
+    auto names = elements[static_cast<std::size_t>(members.front())]->printed_forces()->printed_force_names();
     groups.push_back({is_more ? key.first + "-" + std::to_string(key.second) : key.first,
                       std::move(names),
                       std::move(members),
@@ -50,7 +52,9 @@ Groups group_by_forces(const Model& model) {
 }
 
 std::vector<StressPoint> list_points(const Element& element, bool of_strain) {
-  return of_strain ? element.strain_points() : element.stress_points();
+  const StressRecovery* recovery = element.stress_recovery();
+  if (!recovery) return {};
+  return of_strain ? recovery->strain_points() : recovery->stress_points();
 }
 
 Groups group_by_points(const Model& model, bool of_strain) {

@@ -4,7 +4,9 @@
 #include <cmath>
 #include <cstdio>
 
+#include "fe/loads/enforced.hpp"
 #include "fe/loads/load_sets.hpp"
+#include "fe/loads/loads.hpp"
 #include "fe/statics/reactions.hpp"
 
 namespace bough::fe {
@@ -129,10 +131,10 @@ StaticLoad calc_static_load(const Model& model, const records::Deck& deck, const
                             Diagnostics& diagnostics) {
   StaticLoad result;
   if (subcase.load > 0)
-    static_cast<AppliedLoad&>(result) = model.calc_applied_load(deck, subcase.load, diagnostics);
+    static_cast<AppliedLoad&>(result) = calc_applied_load(model, deck, subcase.load, diagnostics);
   else
     result.F = VectorXd::Zero(model.num_gdofs());
-  result.d = model.calc_enforced(deck, subcase.load, diagnostics);
+  result.d = calc_enforced(model, deck, subcase.load, diagnostics);
   bool is_unread = false;
   for (const int set : {subcase.temperature, subcase.temperature > 0 ? model.subcase().initial_temperature : 0})
     is_unread = (set > 0 && report_unread_loads(deck, "TEMPERATURE", set, diagnostics)) || is_unread;

@@ -1,13 +1,14 @@
 #pragma once
 /// \file One static subcase: displacements, reactions, balance, element forces (SOL 101).
-#include "fe/model/temperatures.hpp"
+#include "fe/loads/loads.hpp"
+#include "fe/loads/temperatures.hpp"
 #include "fe/statics/inertia_relief.hpp"
 #include "fe/statics/statics.hpp"
 #include "formats/records/static_result.hpp"
 
 namespace bough::fe {
 
-/// Loads of a subcase: F on the g-set in basic, d of the fixed dofs in their CD axes (Model::calc_enforced). F holds
+/// Loads of a subcase: F on the g-set in basic, d of the fixed dofs in their CD axes (calc_enforced). F holds
 /// the loads of `initial`, the heated elements.
 struct StaticLoad : AppliedLoad {
   VectorXd d;

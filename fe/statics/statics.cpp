@@ -68,9 +68,9 @@ double calc_model_size(const Model& model) {
 }  // namespace
 
 struct StaticSolver::Impl {
-  SparseRows T;                                 ///< a copy: the model may move, or be reduced
-  std::shared_ptr<const StaticSolver> omitted;  ///< of the model
-  std::vector<int> kept;                        ///< f-dofs that are not held, ascending
+  SparseRows T;             ///< a copy: the model may move, or be reduced
+  OmittedSolution omitted;  ///< of the model
+  std::vector<int> kept;    ///< f-dofs that are not held, ascending
   std::optional<SymmetricFactor> factor;
   RowKinds kinds;  ///< of `kept`
   PetscMat K;      ///< what was factored, for residuals
@@ -151,7 +151,7 @@ MatrixXd StaticSolver::solve(const Eigen::Ref<const MatrixXd>& F_g, Diagnostics*
                   "load case", diagnostics ? *diagnostics : unheard);
   u_f(impl_->kept, Eigen::all) = u_kept;
   MatrixXd u_g = T * u_f;
-  if (impl_->omitted) u_g += impl_->omitted->solve(F_g);  // K_oo^-1 P_o
+  if (impl_->omitted) u_g += impl_->omitted(F_g);  // K_oo^-1 P_o
   return u_g;
 }
 

@@ -94,7 +94,7 @@ MatrixXd FixedInterface::solve(const MatrixXd& F_g) const {
   MatrixXd U = MatrixXd::Zero(F_g.rows(), F_g.cols());
   if (impl_->factor && F_g.cols() > 0)
     U = impl_->expand(impl_->solve_refined(impl_->part.S_i.transpose() * MatrixXd(impl_->model.T().transpose() * F_g)));
-  if (impl_->model.omitted()) U += impl_->model.omitted()->solve(F_g);
+  if (impl_->model.omitted()) U += impl_->model.omitted()(F_g);
   return U;
 }
 

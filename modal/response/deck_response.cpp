@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <numbers>
 
+#include "fe/statics/build_model.hpp"
 #include "fe/statics/statics.hpp"
 #include "formats/records/params.hpp"
 #include "formats/records/selection.hpp"
@@ -241,7 +242,7 @@ void DeckResponseSolver::prepare(const records::DynamicSubcase& subcase, Diagnos
   model_options_.subcase = subcase.id;
   model_options_.prestress = nullptr;
   if (options_.choose_prestress) model_options_.prestress = options_.choose_prestress(model_options_, subcase, own);
-  auto prepared = std::make_unique<Prepared>(fe::Model::build(deck_, model_options_, own));
+  auto prepared = std::make_unique<Prepared>(fe::build_model(deck_, model_options_, own));
   own.throw_if_errors();
   if (!options_.is_direct) prepared->find_modes(options_.choose_eigen(subcase, own), deck_, own);
   own.throw_if_errors();

@@ -5,6 +5,7 @@
 #include <map>
 #include <numbers>
 
+#include "fe/loads/loads.hpp"
 #include "fe/statics/static_case.hpp"
 
 namespace bough::modal::response {
@@ -166,7 +167,7 @@ class Collector {
     }
     if (set != 0 && has_load_cards(deck_, set)) {
       is_found = true;
-      F += model_.calc_load(deck_, set, diagnostics_);
+      F += calc_load(model_, deck_, set, diagnostics_);
     }
     if (!is_found) report_missing(load, has_set(deck_.load_cards.spcd, load.excite));
     if (const auto lost = fe::list_lost_loads(model_, F); F.size() > 0 && !lost.empty())

@@ -72,11 +72,12 @@ struct ElementGroup {
     for (std::size_t e = 0; e < elements.size(); ++e) {
       auto rows = values.middleRows(num * static_cast<Eigen::Index>(e), num);
       if (of_stress) {
-        rows = elements[e]->calc_stresses(fe::calc_internal_forces(*elements[e], U));
+        rows = elements[e]->stress_recovery()->calc_stresses(fe::calc_internal_forces(*elements[e], U));
         continue;
       }
       const MatrixXd U_e = U(elements[e]->gdofs(), Eigen::all);
-      for (Eigen::Index c = 0; c < U.cols(); ++c) rows.col(c) = elements[e]->calc_printed_forces(U_e.col(c));
+      const fe::PrintedForces& forces = *elements[e]->printed_forces();
+      for (Eigen::Index c = 0; c < U.cols(); ++c) rows.col(c) = forces.calc_printed_forces(U_e.col(c));
     }
     return values;
   }
@@ -86,7 +87,7 @@ struct ElementGroup {
     const auto from = count_linear(), to = static_cast<Eigen::Index>(components.size());
     MatrixXd results(to * static_cast<Eigen::Index>(elements.size()), values.cols());
     for (std::size_t e = 0; e < elements.size(); ++e) {
-      const auto points = elements[e]->stress_points();
+      const auto points = elements[e]->stress_recovery()->stress_points();
       const auto at = static_cast<Eigen::Index>(e);
       for (Eigen::Index c = 0; c < values.cols(); ++c)
         results.col(c).segment(at * to, to) = fe::calc_stress_results(points, values.col(c).segment(at * from, from));
@@ -98,16 +99,23 @@ struct ElementGroup {
  private:
   Eigen::Index count_linear() const {
     if (!is_derived) return static_cast<Eigen::Index>(components.size());
-    return static_cast<Eigen::Index>(fe::list_stress_names(elements.front()->stress_points()).size());
+    return static_cast<Eigen::Index>(
+        fe::list_stress_names(elements.front()->stress_recovery()->stress_points()).size());
   }
 };
 
 std::vector<std::string> list_stress_components(const fe::Element& element, bool is_derived) {
-  const auto points = element.stress_points();
+  if (!element.stress_recovery()) return {};
+  const auto points = element.stress_recovery()->stress_points();
   if (is_derived) return fe::list_result_names(points);
   std::vector<std::string> names;
   for (const auto& name : fe::list_stress_names(points)) names.push_back(name.substr(std::string("stress_").size()));
   return names;
+}
+
+std::vector<std::string> list_force_components(const fe::Element& element) {
+  const auto* forces = element.printed_forces();
+  return forces ? forces->printed_force_names() : std::vector<std::string>{};
 }
 
 /// By card in alphabetical order; elements of one card with other components are another group: "CTETRA-24".
@@ -117,7 +125,7 @@ std::vector<ElementGroup> list_groups(const fe::Model& model, const std::vector<
   std::map<std::pair<std::string, std::vector<std::string>>, ElementGroup> groups;
   for (const auto& element : model.elements()) {
     if (wanted.count(element->id()) == 0) continue;
-    const auto names = of_stress ? list_stress_components(*element, is_over_time) : element->printed_force_names();
+    const auto names = of_stress ? list_stress_components(*element, is_over_time) : list_force_components(*element);
     if (names.empty()) continue;
     groups[{element->card(), names}].elements.push_back(element.get());
   }

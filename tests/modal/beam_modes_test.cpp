@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "fe/statics/build_model.hpp"
 #include "modal/eigen.hpp"
 #include "tests/support/beam_decks.hpp"
 
@@ -21,7 +22,7 @@ using test::Section;
 constexpr double kPi = std::numbers::pi;
 
 EigenPairs solve(const records::Deck& deck, int num_modes, Diagnostics& diagnostics) {
-  const auto model = fe::Model::build(deck, {}, diagnostics);
+  const auto model = fe::build_model(deck, {}, diagnostics);
   EigenOptions options;
   options.num_modes = num_modes;
   return calc_normal_modes(model, options, diagnostics);
@@ -133,7 +134,7 @@ TEST(BeamModes, FreeFreeBeamHasSixZerosAndThePairs) {
   maker.add_section(1, section, true);
   maker.add_line(1, 1, {2, 3, 4}, {4, 3, 4}, 60, Vector3d::UnitY());
   Diagnostics diagnostics;
-  const auto model = fe::Model::build(maker.deck, {}, diagnostics);
+  const auto model = fe::build_model(maker.deck, {}, diagnostics);
   EigenOptions options;
   options.num_modes = 12;
   const auto pairs = calc_normal_modes(model, options, diagnostics);
@@ -157,7 +158,7 @@ TEST(System, StaysAsItIs) {
   maker.add_section(1, {70e9, 27e9, 2700, 1e-4, 1e-9, 1e-9, 2e-9});
   maker.add_line(1, 1, Vector3d::Zero(), Vector3d::UnitX(), 12, Vector3d::UnitY());
   Diagnostics diagnostics;
-  const auto model = fe::Model::build(maker.deck, {}, diagnostics);
+  const auto model = fe::build_model(maker.deck, {}, diagnostics);
   const fe::System system(model);
   modal::EigenOptions options;
   options.num_modes = 8;
@@ -192,7 +193,7 @@ TEST(BeamModes, EffectiveMassOfTheCantilever) {
   const Section section = {70e9, 27e9, 2700, 1e-4, 1e-9, 2e-9, 2e-9};
   const auto maker = test::make_cantilever(section, 2, 80);
   Diagnostics diagnostics;
-  const auto model = fe::Model::build(maker.deck, {}, diagnostics);
+  const auto model = fe::build_model(maker.deck, {}, diagnostics);
   EigenOptions options;
   options.num_modes = 14;
   const auto pairs = calc_normal_modes(model, options, diagnostics);

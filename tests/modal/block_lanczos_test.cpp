@@ -10,6 +10,7 @@
 #include "fe/linear/factor.hpp"
 #include "fe/linear/low_rank_sum.hpp"
 #include "fe/linear/ordering.hpp"
+#include "fe/statics/build_model.hpp"
 #include "modal/eps_types.hpp"
 #include "modal/extraction.hpp"
 #include "modal/pencil.hpp"
@@ -151,7 +152,7 @@ fe::Model make_pair(bool lumped, bool held, Diagnostics& diagnostics) {
     maker.add_line(1, 1000 * i + 1, {0, 1.0 * i, 0}, {1, 1.0 * i, 0}, 600, Vector3d::UnitY());
     if (held) maker.fix(1000 * i + 1, 123456);
   }
-  return fe::Model::build(maker.deck, {}, diagnostics);
+  return fe::build_model(maker.deck, {}, diagnostics);
 }
 
 void expect_like_krylov_schur(bool lumped, double shift, bool held) {

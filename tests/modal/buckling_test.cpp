@@ -6,6 +6,8 @@
 #include <optional>
 #include <vector>
 
+#include "fe/loads/loads.hpp"
+#include "fe/statics/build_model.hpp"
 #include "fe/statics/statics.hpp"
 #include "modal/eigen.hpp"
 #include "tests/support/beam_decks.hpp"
@@ -23,10 +25,10 @@ constexpr double kPi = std::numbers::pi;
 
 EigenPairs solve(const records::Deck& deck, int num_modes, Diagnostics& diagnostics, std::optional<double> low = {},
                  std::optional<double> high = {}) {
-  const auto model = fe::Model::build(deck, {}, diagnostics);
+  const auto model = fe::build_model(deck, {}, diagnostics);
   const auto K = fe::assemble_stiffness(model, fe::DofSet::Free);
   const fe::StaticSolver solver(model, K);
-  const auto load = model.calc_applied_load(deck, 10, diagnostics);
+  const auto load = calc_applied_load(model, deck, 10, diagnostics);
   const MatrixXd u = solver.solve(load.F);
   EigenOptions options;
   options.num_modes = num_modes;
@@ -83,7 +85,7 @@ TEST(Buckling, RoundColumnHasPairs) {
   const double base = kPi * kPi * 70 / 4 / 4;
   for (int i = 0; i < 6; ++i) EXPECT_NEAR(pairs.lambda(i) / (base * (i / 2 * 2 + 1) * (i / 2 * 2 + 1)), 1, 1e-3) << i;
   EXPECT_EQ(pairs.inertia_count, 6);
-  const auto model = fe::Model::build(maker.deck, {}, diagnostics);
+  const auto model = fe::build_model(maker.deck, {}, diagnostics);
   const MatrixXd gram = pairs.Phi.transpose() * fe::calc_stiffness_times(model, pairs.Phi);
   EXPECT_LT((gram - MatrixXd::Identity(6, 6)).cwiseAbs().maxCoeff(), 1e-9);
 }
@@ -157,7 +159,7 @@ TEST(Buckling, FreeModelIsAnError) {
   maker.add_section(1, kSection);
   maker.add_line(1, 1, Vector3d::Zero(), Vector3d::UnitX(), 4, Vector3d::UnitY());
   Diagnostics diagnostics;
-  const auto model = fe::Model::build(maker.deck, {}, diagnostics);
+  const auto model = fe::build_model(maker.deck, {}, diagnostics);
   try {
     const fe::AppliedLoad load{Eigen::VectorXd::Zero(model.num_gdofs()), fe::Vector12d::Zero(), {}};
     modal::calc_buckling_modes(model, load, load.F, {}, diagnostics);

@@ -11,6 +11,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "fe/statics/build_model.hpp"
 #include "tests/support/beam_decks.hpp"
 
 namespace bough {
@@ -41,7 +42,7 @@ DeckMaker make_cantilevers(int count, bool lumped = false) {
 }
 
 EigenPairs solve(const records::Deck& deck, const EigenOptions& options, Diagnostics& diagnostics) {
-  const auto model = fe::Model::build(deck, {}, diagnostics);
+  const auto model = fe::build_model(deck, {}, diagnostics);
   return calc_normal_modes(model, options, diagnostics);
 }
 
@@ -214,7 +215,7 @@ TEST(Eigen, RestoresTheRootOfAMeshTooFine) {
 TEST(Eigen, WarnsOfRoundoff) {
   Diagnostics d;
   const auto maker = test::make_cantilever(kSection, 1, 4);
-  const auto model = fe::Model::build(maker.deck, {}, d);
+  const auto model = fe::build_model(maker.deck, {}, d);
   const fe::System system(model);
   const modal::detail::Pencil pencil(system);
   MatrixXd X = MatrixXd::Ones(pencil.size(), 1);
@@ -297,7 +298,7 @@ TEST(Eigen, FindsARootFarBelowZero) {
     spring.c1 = 1;
     maker.deck.springs.push_back(spring);
     Diagnostics diagnostics;
-    const auto model = fe::Model::build(maker.deck, {}, diagnostics);
+    const auto model = fe::build_model(maker.deck, {}, diagnostics);
     for (const int number : {1, 3, 5}) {  // bending comes in pairs
       const auto pairs = calc_normal_modes(model, make_options(number), diagnostics);
       ASSERT_EQ(pairs.lambda.size(), number);
@@ -312,7 +313,7 @@ records::Deck make_long_beam() { return test::make_cantilever(kSection, 1, 1000)
 
 TEST(Eigen, StiffnessGivesItsMemoryBackAndIsMadeAgain) {
   Diagnostics diagnostics;
-  const auto model = fe::Model::build(make_long_beam(), {}, diagnostics);
+  const auto model = fe::build_model(make_long_beam(), {}, diagnostics);
   const fe::System system(model);
   const MatrixXd X = MatrixXd::Random(model.num_fdofs(), 2), before = fe::multiply(system.K.get(), X);
   ASSERT_TRUE(fe::drop_stiffness(system.K.get()));
@@ -354,7 +355,7 @@ TEST(Eigen, HundredsOfCopiesInASmallModel) {
 
 TEST(Eigen, KnowsModalMassAndEnergyOfEachMode) {
   Diagnostics diagnostics;
-  const auto model = fe::Model::build(make_cantilevers(3).deck, {}, diagnostics);
+  const auto model = fe::build_model(make_cantilevers(3).deck, {}, diagnostics);
   const auto pairs = calc_normal_modes(model, make_options(7), diagnostics);
   const MatrixXd M_Phi = fe::calc_mass_times(model, model.mass_kind(), pairs.Phi);
   ASSERT_EQ(pairs.modal_mass.size(), 7);
@@ -366,7 +367,7 @@ TEST(Eigen, KnowsModalMassAndEnergyOfEachMode) {
 /// More modes than are multiplied at a time: orthonormal, small residuals, effective masses as M of all of them has it.
 TEST(Eigen, ManyModesGoSomeColumnsAtATime) {
   Diagnostics diagnostics;
-  const auto model = fe::Model::build(make_cantilevers(5).deck, {}, diagnostics);
+  const auto model = fe::build_model(make_cantilevers(5).deck, {}, diagnostics);
   const auto pairs = calc_normal_modes(model, make_options(150), diagnostics);
   ASSERT_EQ(pairs.lambda.size(), 150);
   EXPECT_LT(pairs.residual.maxCoeff(), 1e-8);

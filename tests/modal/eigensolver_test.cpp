@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "fe/loads/loads.hpp"
+#include "fe/statics/build_model.hpp"
 #include "fe/statics/statics.hpp"
 #include "formats/nastran/reader.hpp"
 #include "modal/bases/fixed_interface.hpp"
@@ -98,7 +100,7 @@ test::DeckMaker make_beam(int bars, bool is_held = true) {
 
 fe::Model build(const records::Deck& deck) {
   Diagnostics diagnostics;
-  return fe::Model::build(deck, {}, diagnostics);
+  return fe::build_model(deck, {}, diagnostics);
 }
 
 /// A clamped square plate of n x n quadrilaterals.
@@ -191,7 +193,7 @@ TEST(Eigensolver, Buckling) {
   Diagnostics diagnostics;
   const auto K = fe::assemble_stiffness(model, fe::DofSet::Free);
   const fe::StaticSolver statics(model, K);
-  const auto load = model.calc_applied_load(maker.deck, 10, diagnostics);
+  const auto load = calc_applied_load(model, maker.deck, 10, diagnostics);
   const VectorXd u = statics.solve(load.F).col(0);
   EigenOptions options;
   options.num_modes = 4;

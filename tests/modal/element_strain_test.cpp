@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "fe/statics/build_model.hpp"
 #include "formats/nastran/reader.hpp"
 #include "modal/eigen.hpp"
 #include "modal/element_strain.hpp"
@@ -16,7 +17,7 @@ using Eigen::VectorXd;
 modal::EigenPairs solve_deck(const std::string& bulk, int number, Diagnostics& diagnostics) {
   const auto deck =
       nastran::read_deck_text("SOL 103\nCEND\nBEGIN BULK\n" + bulk + "ENDDATA\n", "deck.bdf", {}, diagnostics);
-  const auto model = fe::Model::build(deck, {}, diagnostics);
+  const auto model = fe::build_model(deck, {}, diagnostics);
   modal::EigenOptions options;
   options.num_modes = number;
   return calc_normal_modes(model, options, diagnostics);
@@ -90,8 +91,7 @@ TEST(ElementStrain, StiffBarAtTheTip) {
            ",,.3,0.\nPBAR,9,9,1.,.1,.1,.2\nCBAR,91,9,11,50,1.,0.,0.\n";
   };
   Diagnostics d;
-  const auto rigid = solve_deck(
-      make("7.+10").substr(0, make("7.+10").find("MAT1,9")) + "RBE2,91,11,123456,50\n", 5, d);
+  const auto rigid = solve_deck(make("7.+10").substr(0, make("7.+10").find("MAT1,9")) + "RBE2,91,11,123456,50\n", 5, d);
   for (const auto* E : {"7.+14", "7.+15", "7.+16", "7.+17"}) {
     Diagnostics said;
     const auto pairs = solve_deck(make(E), 5, said);

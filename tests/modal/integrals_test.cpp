@@ -6,6 +6,7 @@
 #include <random>
 
 #include "base/rotation.hpp"
+#include "fe/statics/build_model.hpp"
 #include "formats/nastran/reader.hpp"
 #include "modal/eigen.hpp"
 #include "tests/support/beam_decks.hpp"
@@ -57,7 +58,7 @@ double calc_difference(const MassIntegrals& a, const MassIntegrals& b) {
 // The lumped mass of bars is one mass per grid: both sets are Σ m (...) to roundoff, and equal the sum written out.
 TEST(Integrals, LumpedIdentitiesAreExact) {
   Diagnostics diagnostics;
-  const auto model = fe::Model::build(make_frame().deck, {}, diagnostics);
+  const auto model = fe::build_model(make_frame().deck, {}, diagnostics);
   const MatrixXd Phi = make_random(model.num_gdofs(), 3);
   const Vector3d S(0.5, -0.7, 0.2);
   const auto momentum = calc_momentum_integrals(model, MassKind::Lumped, Phi, S);
@@ -121,7 +122,7 @@ double calc_bar_energy(const Vector3d ends[2], const VectorXd& q, const VectorXd
 // The exact set is the quadratic form itself: kinetic energy of (ω, η̇) at a deformed state, bar by bar.
 TEST(Integrals, ExactSetGivesTheKineticEnergy) {
   Diagnostics diagnostics;
-  const auto model = fe::Model::build(make_frame().deck, {}, diagnostics);
+  const auto model = fe::build_model(make_frame().deck, {}, diagnostics);
   const int n = 3;
   const MatrixXd Phi = make_random(model.num_gdofs(), n);
   const MatrixXd random = make_random(20, 1);
@@ -174,7 +175,7 @@ TEST(Integrals, ExactSetIsThatOfTheTurnedVectors) {
                                   std::string("CMASS2,7,.3,2,1,9\n")}) {
     Diagnostics diagnostics;
     const auto deck = nastran::read_deck_text(frame + more + "ENDDATA\n", "mass.bdf", {}, diagnostics);
-    const auto model = fe::Model::build(deck, {}, diagnostics);
+    const auto model = fe::build_model(deck, {}, diagnostics);
     const MatrixXd Phi = make_random(model.num_gdofs(), 3);
     const Vector3d S(0.5, -0.7, 0.2);
     const auto mass_times = [&](const MatrixXd& X) -> MatrixXd {
@@ -193,7 +194,7 @@ TEST(Integrals, ExactSetIsThatOfTheTurnedVectors) {
 // Moving the reference: Γ1(S) = Γ1 - S × Γ0 and Γ3(S) = Γ3 - ((SᵀΓ0) 1 - Γ0 Sᵀ).
 TEST(Integrals, ReferencePointShift) {
   Diagnostics diagnostics;
-  const auto model = fe::Model::build(make_frame().deck, {}, diagnostics);
+  const auto model = fe::build_model(make_frame().deck, {}, diagnostics);
   const MatrixXd Phi = make_random(model.num_gdofs(), 2);
   const Vector3d S(0.5, -0.7, 0.2);
   for (const bool exact : {false, true}) {
@@ -217,7 +218,7 @@ TEST(Integrals, ConsistentMomentumSetConvergesAsHSquared) {
   for (int i = 0; i < 2; ++i) {
     Diagnostics diagnostics;
     const auto maker = test::make_cantilever(kSection, 1, 10 << i, false, {0.2, 0.3, 0.1});
-    const auto model = fe::Model::build(maker.deck, {}, diagnostics);
+    const auto model = fe::build_model(maker.deck, {}, diagnostics);
     modal::EigenOptions options;
     options.num_modes = 4;
     const auto pairs = calc_normal_modes(model, options, diagnostics);

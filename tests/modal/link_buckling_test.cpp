@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "fe/loads/wide_links.hpp"
+#include "fe/statics/build_model.hpp"
 #include "fe/statics/static_case.hpp"
 #include "formats/nastran/reader.hpp"
 #include "modal/eigen.hpp"
@@ -22,7 +23,7 @@ double calc_factor(const std::string& lever, const std::string& selection = "") 
   Diagnostics diagnostics;
   const auto deck = nastran::read_deck_text(text, "deck.bdf", {}, diagnostics);
   diagnostics.throw_if_errors();
-  const auto model = fe::Model::build(deck, {}, diagnostics);
+  const auto model = fe::build_model(deck, {}, diagnostics);
   const auto load = fe::calc_static_load(model, deck, -1, diagnostics);
   const fe::StaticSolver solver(model, fe::assemble_stiffness(model, fe::DofSet::Free));
   const auto u = fe::solve_static_case(model, solver, load).displacement;

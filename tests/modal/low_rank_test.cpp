@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "fe/matrices/assembly.hpp"
+#include "fe/statics/build_model.hpp"
 #include "formats/nastran/reader.hpp"
 #include "modal/bases/fixed_interface.hpp"
 #include "modal/eigen.hpp"
@@ -143,7 +144,7 @@ VectorXd calc_expected(Tie tie, int legs) {
 fe::Model build(const std::string& text, Diagnostics& diagnostics) {
   const auto deck = nastran::read_deck_text(text, "deck.bdf", {}, diagnostics);
   fe::ModelOptions options;
-  return fe::Model::build(deck, options, diagnostics);
+  return fe::build_model(deck, options, diagnostics);
 }
 
 EigenPairs solve(const std::string& text, int number, Diagnostics& diagnostics) {

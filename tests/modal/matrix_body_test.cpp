@@ -8,6 +8,7 @@
 #include <numeric>
 #include <random>
 
+#include "fe/statics/build_model.hpp"
 #include "tests/support/beam_decks.hpp"
 
 namespace bough {
@@ -34,7 +35,7 @@ Given make_given() {
   maker.add_line(1, 1, {0.3, 0.1, -0.2}, {1.3, 0.4, 0}, 3, Vector3d::UnitY());
   maker.add_line(1, 101, {1.3, 0.4, 0}, {1.5, 1.4, 0.7}, 2, Vector3d::UnitX(), 4);
   Diagnostics diagnostics;
-  auto fe_model = fe::Model::build(maker.deck, {}, diagnostics);
+  auto fe_model = fe::build_model(maker.deck, {}, diagnostics);
   const int ndof = fe_model.num_gdofs();
   std::mt19937 generator(3);
   std::uniform_real_distribution<double> uniform(-1, 1);

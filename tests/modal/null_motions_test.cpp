@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "fe/statics/build_model.hpp"
 #include "formats/nastran/reader.hpp"
 #include "modal/eigen.hpp"
 #include "modal/extraction.hpp"
@@ -21,7 +22,7 @@ using modal::detail::ModeRange;
 fe::Model build(const std::string& text) {
   Diagnostics diagnostics;
   const auto deck = nastran::read_deck_text(text, "deck.bdf", {}, diagnostics);
-  return fe::Model::build(deck, {}, diagnostics);
+  return fe::build_model(deck, {}, diagnostics);
 }
 
 EigenPairs solve(const std::string& text, const EigenOptions& options, Diagnostics& diagnostics) {

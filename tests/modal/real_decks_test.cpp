@@ -6,6 +6,8 @@
 #include <filesystem>
 #include <numbers>
 
+#include "fe/loads/loads.hpp"
+#include "fe/statics/build_model.hpp"
 #include "fe/statics/statics.hpp"
 #include "formats/nastran/reader.hpp"
 #include "modal/eigen.hpp"
@@ -31,7 +33,7 @@ TEST_P(RealDecks, FrequenciesOfTheVendor) {
   Diagnostics diagnostics;
   const auto deck = nastran::read_deck(path, {}, diagnostics);
   diagnostics.throw_if_errors();
-  const auto model = fe::Model::build(deck, {}, diagnostics);
+  const auto model = fe::build_model(deck, {}, diagnostics);
   modal::EigenOptions options;
   options.num_modes = 10;
   const auto pairs = calc_normal_modes(model, options, diagnostics);
@@ -67,10 +69,10 @@ TEST(RealDecks, ColumnBucklingOf420Beams) {
   Diagnostics diagnostics;
   const auto deck = nastran::read_deck(path, {}, diagnostics);
   diagnostics.throw_if_errors();
-  const auto model = fe::Model::build(deck, {}, diagnostics);
+  const auto model = fe::build_model(deck, {}, diagnostics);
   const auto K = fe::assemble_stiffness(model, fe::DofSet::Free);
   const fe::StaticSolver solver(model, K);
-  const auto load = model.calc_applied_load(deck, deck.subcases.front().load, diagnostics);
+  const auto load = calc_applied_load(model, deck, deck.subcases.front().load, diagnostics);
   const auto u = solver.solve(load.F);
   modal::EigenOptions options;
   options.num_modes = 5;

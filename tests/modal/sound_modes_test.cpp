@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "fe/linear/residual.hpp"
+#include "fe/statics/build_model.hpp"
 #include "formats/nastran/reader.hpp"
 #include "modal/eigen.hpp"
 #include "modal/normalize.hpp"
@@ -20,7 +21,7 @@ using modal::EigenPairs;
 
 fe::Model build(const std::string& text, Diagnostics& diagnostics) {
   const auto deck = nastran::read_deck_text(text, "deck.bdf", {}, diagnostics);
-  return fe::Model::build(deck, {}, diagnostics);
+  return fe::build_model(deck, {}, diagnostics);
 }
 
 EigenPairs solve(const std::string& text, int number, Diagnostics& diagnostics) {

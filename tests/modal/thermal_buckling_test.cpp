@@ -5,6 +5,7 @@
 #include <numbers>
 #include <string>
 
+#include "fe/statics/build_model.hpp"
 #include "fe/statics/static_case.hpp"
 #include "formats/nastran/reader.hpp"
 #include "modal/eigen.hpp"
@@ -18,7 +19,7 @@ double calc_factor(const std::string& text) {
   Diagnostics diagnostics;
   const auto deck = nastran::read_deck_text(text, "deck.bdf", {}, diagnostics);
   diagnostics.throw_if_errors();
-  const auto model = fe::Model::build(deck, {}, diagnostics);
+  const auto model = fe::build_model(deck, {}, diagnostics);
   const auto load = fe::calc_static_load(model, deck, -1, diagnostics);
   diagnostics.throw_if_errors();
   const fe::StaticSolver solver(model, fe::assemble_stiffness(model, fe::DofSet::Free));

@@ -3,6 +3,7 @@
 
 #include <cstdio>
 
+#include "fe/statics/build_model.hpp"
 #include "formats/nastran/reader.hpp"
 #include "modal/eigen.hpp"
 #include "tests/support/threads.hpp"
@@ -35,7 +36,7 @@ TEST(Units, ResidualsOfOnePlateAreSmallInAnyUnit) {
                                   std::tuple(1e-7, 1.6e11, 2330.0), std::tuple(1e3, 1.6e5, 2.33e-9)}) {
     Diagnostics diagnostics;
     const auto deck = nastran::read_deck_text(make_plate(h, E, rho), "plate.bdf", {}, diagnostics);
-    const auto model = fe::Model::build(deck, {}, diagnostics);
+    const auto model = fe::build_model(deck, {}, diagnostics);
     for (const int num : {1, 2}) {
       const test::Threads threads(num);
       modal::EigenOptions options;

@@ -6,6 +6,7 @@
 #include "fe/linear/low_rank_sum.hpp"
 #include "fe/linear/residual.hpp"
 #include "fe/matrices/wide_part.hpp"
+#include "fe/statics/build_model.hpp"
 #include "fe/statics/preload.hpp"
 #include "fe/statics/static_case.hpp"
 #include "formats/nastran/reader.hpp"
@@ -65,7 +66,7 @@ class MaxDenseTerms {
 
 fe::Model build(const records::Deck& deck, const fe::ModelOptions& options = {}) {
   Diagnostics diagnostics;
-  auto model = fe::Model::build(deck, options, diagnostics);
+  auto model = fe::build_model(deck, options, diagnostics);
   diagnostics.throw_if_errors();
   return model;
 }

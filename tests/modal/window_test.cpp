@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "fe/statics/build_model.hpp"
 #include "modal/eigen.hpp"
 #include "tests/support/beam_decks.hpp"
 
@@ -30,7 +31,7 @@ struct Seen {
 Seen solve(const records::Deck& deck, EigenOptions options) {
   Seen seen;
   options.progress = [&](int, int wanted) { seen.most_wanted = std::max(seen.most_wanted, wanted); };
-  seen.pairs = calc_normal_modes(fe::Model::build(deck, {}, seen.said), options, seen.said);
+  seen.pairs = calc_normal_modes(fe::build_model(deck, {}, seen.said), options, seen.said);
   return seen;
 }
 

@@ -2,6 +2,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "fe/loads/loads.hpp"
+#include "fe/statics/build_model.hpp"
 #include "tests/plates/plate_deck.hpp"
 
 namespace bough::test {
@@ -75,12 +77,12 @@ double calc_tip(const CurvedMesh& m, double E, double nu, double t, const Vector
 VectorXd solve(const DeckText& text, int grid, int component) {
   const auto deck = read_plate_deck(text);
   Diagnostics diagnostics;
-  const auto model = fe::Model::build(deck, {}, diagnostics);
+  const auto model = fe::build_model(deck, {}, diagnostics);
   for (const auto& d : diagnostics.items())
     if (d.severity == Severity::Error) ADD_FAILURE() << format(d);
   const auto K = fe::assemble_stiffness(model, fe::DofSet::Free);
   const fe::StaticSolver solver(model, K);
-  const MatrixXd u = solver.solve(model.calc_load(deck, 10, diagnostics));
+  const MatrixXd u = solver.solve(calc_load(model, deck, 10, diagnostics));
   VectorXd result(1);
   result << u(model.node(model.find_node(grid)).first_gdof + component - 1, 0);
   return result;

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "fe/loads/loads.hpp"
+#include "fe/statics/build_model.hpp"
 #include "tests/plates/plate_deck.hpp"
 
 namespace bough::test {
@@ -266,10 +268,10 @@ TEST(CookMembrane, CtriarIsTheOptimalTriangle) {
     text.add_edge_load(mesh, 'W', {0, 1, 0});
     const auto deck = read_plate_deck(text);
     Diagnostics diagnostics;
-    const auto model = fe::Model::build(deck, {}, diagnostics);
+    const auto model = fe::build_model(deck, {}, diagnostics);
     const auto K = fe::assemble_stiffness(model, fe::DofSet::Free);
     const fe::StaticSolver solver(model, K);
-    const MatrixXd u = solver.solve(model.calc_load(deck, 10, diagnostics));
+    const MatrixXd u = solver.solve(calc_load(model, deck, 10, diagnostics));
     EXPECT_NEAR(u(6 * (mesh.get_id(0, n / 2) - 1) + 1, 0), published[k], 0.006) << n;
   }
 }

@@ -4,6 +4,9 @@
 #include <cstdio>
 #include <numbers>
 
+#include "fe/loads/loads.hpp"
+#include "fe/statics/build_model.hpp"
+
 namespace bough::test {
 
 std::string DeckText::real(double value) {
@@ -73,7 +76,7 @@ records::Deck read_plate_deck(const DeckText& text) {
 VectorXd calc_elastic_hz(const DeckText& text, int num_elastic, int num_rigid) {
   const auto deck = read_plate_deck(text);
   Diagnostics diagnostics;
-  const auto model = fe::Model::build(deck, {}, diagnostics);
+  const auto model = fe::build_model(deck, {}, diagnostics);
   modal::EigenOptions options;
   options.num_modes = num_elastic + num_rigid;
   const auto pairs = calc_normal_modes(model, options, diagnostics);
@@ -84,10 +87,10 @@ VectorXd calc_elastic_hz(const DeckText& text, int num_elastic, int num_rigid) {
 VectorXd calc_load_factors(const DeckText& text, int num) {
   const auto deck = read_plate_deck(text);
   Diagnostics diagnostics;
-  const auto model = fe::Model::build(deck, {}, diagnostics);
+  const auto model = fe::build_model(deck, {}, diagnostics);
   const auto K = fe::assemble_stiffness(model, fe::DofSet::Free);
   const fe::StaticSolver solver(model, K);
-  const auto load = model.calc_applied_load(deck, 10, diagnostics);
+  const auto load = calc_applied_load(model, deck, 10, diagnostics);
   const MatrixXd u = solver.solve(load.F);
   modal::EigenOptions options;
   options.num_modes = num;
@@ -97,10 +100,10 @@ VectorXd calc_load_factors(const DeckText& text, int num) {
 double calc_compliance(const DeckText& text) {
   const auto deck = read_plate_deck(text);
   Diagnostics diagnostics;
-  const auto model = fe::Model::build(deck, {}, diagnostics);
+  const auto model = fe::build_model(deck, {}, diagnostics);
   const auto K = fe::assemble_stiffness(model, fe::DofSet::Free);
   const fe::StaticSolver solver(model, K);
-  const VectorXd f = model.calc_load(deck, 10, diagnostics);
+  const VectorXd f = calc_load(model, deck, 10, diagnostics);
   const MatrixXd u = solver.solve(f);
   return f.dot(u.col(0));
 }

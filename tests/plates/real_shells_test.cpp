@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <numbers>
 
+#include "fe/statics/build_model.hpp"
 #include "tests/plates/plate_deck.hpp"
 #include "tests/support/paths.hpp"
 
@@ -32,7 +33,7 @@ TEST_P(RealShells, MassAndFrequencies) {
   const auto deck = nastran::read_deck(path, {}, diagnostics);
   for (const auto& d : diagnostics.items())
     if (d.severity == Severity::Error) ADD_FAILURE() << format(d);
-  const auto model = fe::Model::build(deck, {}, diagnostics);
+  const auto model = fe::build_model(deck, {}, diagnostics);
   const auto mass = fe::calc_mass_properties(model, model.mass_kind(), Vector3d::Zero());
   EXPECT_NEAR(mass.mass / model.wtmass() / c.mass, 1, 1e-6) << mass.mass;
   for (std::size_t i = 0; i < c.cg.size(); ++i)

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "fe/statics/build_model.hpp"
 #include "stiffening/reduce.hpp"
 #include "tests/support/beam_decks.hpp"
 
@@ -46,7 +47,7 @@ TEST(BasisCheck, ASpoiledMatrixIsTold) {
   const auto reduced = reduce_beam(false);
   const auto maker = test::make_cantilever(test::get_report_section(), test::kReportLength, 20);
   Diagnostics diagnostics;
-  const auto model = fe::Model::build(maker.deck, {}, diagnostics);
+  const auto model = fe::build_model(maker.deck, {}, diagnostics);
   auto K = reduced.body.modal_stiffness, M = reduced.body.modal_mass;
   K(0, 1) += 1e-4 * std::sqrt(K(0, 0) * K(1, 1));
   M(2, 2) *= 1.0005;

@@ -6,6 +6,8 @@
 #include <numbers>
 
 #include "base/rotation.hpp"
+#include "fe/loads/loads.hpp"
+#include "fe/statics/build_model.hpp"
 #include "fe/statics/static_case.hpp"
 #include "formats/nastran/reader.hpp"
 #include "modal/integrals.hpp"
@@ -89,12 +91,12 @@ TEST(CarriedBodies, SpinTurnsTheGridOfAnOffsetMass) {
       "PBAR,1,1,1.-4,1.-8,1.-8,2.-8\nMAT1,1,70.+9,,.3,0.\nCONM2,9,2,,1.,0.,1.,0.\nSPC1,1,123456,1\n"
       "RFORCE,4,0,0,.159154943091895,0.,0.,1.\n",
       diagnostics);
-  const auto model = fe::Model::build(deck, {}, diagnostics);
+  const auto model = fe::build_model(deck, {}, diagnostics);
   const VectorXd f = fe::calc_inertial_loads(model, model.mass_kind()).col(kWz2).segment<6>(6);
   VectorXd expected(6);
   expected << 1, 1, 0, 0, 0, -1;
   EXPECT_LT((f - expected).norm(), 1e-14);
-  EXPECT_LT((model.calc_load(deck, 4, diagnostics).segment<6>(6) - expected).norm(), 1e-12);
+  EXPECT_LT((calc_load(model, deck, 4, diagnostics).segment<6>(6) - expected).norm(), 1e-12);
 }
 
 // Twice the mass along y: no body has it. Its nodal momenta are taken, and both the deck and the body say so.
@@ -121,13 +123,13 @@ TEST(CarriedBodies, BodyLoadsAreInertialLoads) {
                                       diagnostics);
     fe::ModelOptions options;
     options.mass_kind = kind;
-    const auto model = fe::Model::build(deck, options, diagnostics);
+    const auto model = fe::build_model(deck, options, diagnostics);
     const MatrixXd F_I = fe::calc_inertial_loads(model, kind);
     const Vector3d omega = 2 * std::numbers::pi * 0.3 * Vector3d(0.7, -0.4, 1.1), g = 9 * Vector3d(1, 2, 3);
     const VectorXd spin = F_I * fe::calc_load_factors(Vector3d::Zero(), Vector3d::Zero(), omega);
     const VectorXd both = spin + 2 * F_I * fe::calc_load_factors(-g, Vector3d::Zero(), Vector3d::Zero());
-    EXPECT_LT((model.calc_load(deck, 4, diagnostics) - spin).norm(), 1e-12 * spin.norm());
-    EXPECT_LT((model.calc_load(deck, 6, diagnostics) - both).norm(), 1e-12 * both.norm());
+    EXPECT_LT((calc_load(model, deck, 4, diagnostics) - spin).norm(), 1e-12 * spin.norm());
+    EXPECT_LT((calc_load(model, deck, 6, diagnostics) - both).norm(), 1e-12 * both.norm());
     // The whole: Newton and Euler.
     const auto properties = fe::calc_mass_properties(model, kind, Vector3d::Zero());
     const VectorXd resultant = model.calc_rigid_modes().transpose() * spin;
@@ -151,11 +153,11 @@ TEST(CarriedBodies, AreTheMassMatrix) {
   for (const std::string barmass : {"", "NASTRAN BARMASS=1\n"}) {
     Diagnostics diagnostics;
     const auto deck = test::read_deck(barmass + test::make_all_kinds() + more, diagnostics);
-    const auto model = fe::Model::build(deck, {}, diagnostics);
+    const auto model = fe::build_model(deck, {}, diagnostics);
     for (const auto kind : {MassKind::Lumped, MassKind::Consistent})
       for (const auto& element : model.elements()) {
         fe::CarriedMass carried(element->num_dofs());
-        if (!element->carries_turning_mass(kind) || !calc_carried(model, *element, kind, carried)) continue;
+        if (!element->offset_mass(kind) || !calc_carried(model, *element, kind, carried)) continue;
         MatrixXd M = MatrixXd::Zero(element->num_dofs(), element->num_dofs());
         element->add_mass(kind, model.wtmass(), M);
         const MatrixXd rest = M - carried.calc_mass();

@@ -5,6 +5,7 @@
 
 #include "base/rotation.hpp"
 #include "fe/loads/second_order.hpp"
+#include "fe/statics/build_model.hpp"
 #include "stiffening/reduce.hpp"
 #include "tests/support/beam_decks.hpp"
 #include "tests/support/threads.hpp"
@@ -47,7 +48,7 @@ TEST(GeometricStiffness, EqualsTheDenseProjection) {
   auto maker = make_free_frame();
   maker.fix(1, 123456);
   Diagnostics diagnostics;
-  const auto model = fe::Model::build(maker.deck, {}, diagnostics);
+  const auto model = fe::build_model(maker.deck, {}, diagnostics);
   const auto pairs = calc_modes(model, 5);
   const auto K = fe::assemble_stiffness(model, DofSet::Free);
   const fe::StaticSolver solver(model, K);
@@ -88,7 +89,7 @@ TEST(GeometricStiffness, OfTwoThreadsIsThatOfOne) {
   maker.add_mass(9000, 1100, 0.4);
   maker.fix(1, 123456);
   Diagnostics diagnostics;
-  const auto model = fe::Model::build(maker.deck, {}, diagnostics);
+  const auto model = fe::build_model(maker.deck, {}, diagnostics);
   const auto K = fe::assemble_stiffness(model, DofSet::Free);
   const fe::StaticSolver solver(model, K);
   const fe::AppliedLoads loads{fe::calc_inertial_loads(model, model.mass_kind()), MatrixXd::Identity(12, 12), {}};
@@ -111,7 +112,7 @@ TEST(GeometricStiffness, OfTwoThreadsIsThatOfOne) {
 TEST(GeometricStiffness, BalancedLoadsDoNotFeelTheSupport) {
   Diagnostics diagnostics;
   const auto maker = make_free_frame();
-  const auto model = fe::Model::build(maker.deck, {}, diagnostics);
+  const auto model = fe::build_model(maker.deck, {}, diagnostics);
   const auto pairs = calc_modes(model, 12);
   ASSERT_EQ(pairs.num_rigid, 6);
   const MatrixXd Phi = pairs.Phi.rightCols(6);

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "base/rotation.hpp"
+#include "fe/statics/build_model.hpp"
 #include "stiffening/reduce.hpp"
 #include "tests/support/beam_decks.hpp"
 
@@ -45,7 +46,7 @@ TEST(InertialLoads, LumpedFormulaNodeByNode) {
   Matrix3d I_mass;  // the deck's products of inertia are positive integrals
   I_mass << 0.011, -0.002, 0.001, -0.002, 0.013, -0.003, 0.001, -0.003, 0.017;
   Diagnostics diagnostics;
-  const auto model = fe::Model::build(maker.deck, {}, diagnostics);
+  const auto model = fe::build_model(maker.deck, {}, diagnostics);
   const MatrixXd F_I = stiffening::calc_inertial_loads(model, MassKind::Lumped);
   const MatrixXd uniform = fe::calc_mass_times(model, MassKind::Lumped, model.calc_rigid_modes().leftCols(1));
   for (const auto& node : model.nodes()) {
@@ -72,7 +73,7 @@ TEST(InertialLoads, LumpedFormulaNodeByNode) {
 // Any mass: the resultant force and moment of F_I A_I are those of the rigid body, -m a_cg and -d(Jω)/dt about Bo.
 TEST(InertialLoads, ResultantIsNewtonEuler) {
   Diagnostics diagnostics;
-  const auto model = fe::Model::build(make_frame().deck, {}, diagnostics);
+  const auto model = fe::build_model(make_frame().deck, {}, diagnostics);
   for (const auto kind : {MassKind::Lumped, MassKind::Consistent}) {
     const MatrixXd F_I = stiffening::calc_inertial_loads(model, kind);
     const auto properties = fe::calc_mass_properties(model, kind, Vector3d::Zero());
@@ -93,7 +94,7 @@ TEST(InertialLoads, ConsistentAndLumpedDoTheSameWork) {
   for (int i = 0; i < 2; ++i) {
     Diagnostics diagnostics;
     const auto maker = test::make_cantilever({70e9, 27e9, 2700, 1e-4, 1e-9, 3e-9, 2e-9}, 1, 8 << i);
-    const auto model = fe::Model::build(maker.deck, {}, diagnostics);
+    const auto model = fe::build_model(maker.deck, {}, diagnostics);
     MatrixXd smooth = MatrixXd::Zero(model.num_gdofs(), 1);
     for (const auto& node : model.nodes()) {
       const double x = node.x.x();
@@ -111,7 +112,7 @@ TEST(InertialLoads, ConsistentAndLumpedDoTheSameWork) {
 // fimake5's input: a dof map in any order, here backwards, and one dof missing: its row goes, the others stay.
 TEST(InertialLoads, AnyDofMap) {
   Diagnostics diagnostics;
-  const auto model = fe::Model::build(make_frame().deck, {}, diagnostics);
+  const auto model = fe::build_model(make_frame().deck, {}, diagnostics);
   const int ndof = model.num_gdofs(), missing = 3 * 6 + 1;
   MatrixXd M = fe::calc_mass_times(model, MassKind::Lumped, MatrixXd::Identity(ndof, ndof));
   const MatrixXd expected = stiffening::calc_inertial_loads(model, MassKind::Lumped);

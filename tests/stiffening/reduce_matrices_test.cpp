@@ -10,7 +10,9 @@
 #include <numbers>
 #include <set>
 
+#include "fe/loads/loads.hpp"
 #include "fe/matrices/assembly.hpp"
+#include "fe/statics/build_model.hpp"
 #include "fe/statics/static_case.hpp"
 #include "formats/nastran/reader.hpp"
 
@@ -95,7 +97,7 @@ struct Exported {
   }
   static fe::Model build(const records::Deck& deck) {
     Diagnostics diagnostics;
-    return fe::Model::build(deck, {}, diagnostics);
+    return fe::build_model(deck, {}, diagnostics);
   }
   /// K_G of a load, with the deck's supports.
   GivenMatrix calc_geometric(const fe::AppliedLoad& load) const {
@@ -178,7 +180,7 @@ TEST(ReduceMatrices, OwnMatricesGiveTheBodyOfTheDeck) {
 
   // Every K_G, each with its load: the twelve inertial ones, a unit load on the link's end, a load set, a column.
   const VectorXd tip = VectorXd::Unit(own.model.num_gdofs(), own.model.node(own.model.find_node(6)).first_gdof + 1);
-  const auto push = own.model.calc_applied_load(deck, 7, diagnostics);
+  const auto push = calc_applied_load(own.model, deck, 7, diagnostics);
   for (int i = 0; i < 12; ++i) {
     GivenGeometric g;
     g.name = "inertial " + std::to_string(i);

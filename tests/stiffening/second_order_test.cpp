@@ -6,7 +6,9 @@
 
 #include "base/rotation.hpp"
 #include "fe/linear/factor.hpp"
+#include "fe/loads/loads.hpp"
 #include "fe/loads/second_order.hpp"
+#include "fe/statics/build_model.hpp"
 #include "stiffening/reduce.hpp"
 #include "tests/stiffening/all_kinds.hpp"
 
@@ -70,8 +72,7 @@ VectorXd turn_load(const fe::Model& model, const BalancedLoad& load, const Vecto
   turned -= fe::multiply(fe::assemble_grid_mass(model, model.mass_kind()).get(), field);
   for (const auto& element : model.elements()) {
     fe::CarriedMass carried(element->num_dofs());
-    if (!element->carries_turning_mass(model.mass_kind()) ||
-        !fe::calc_carried(model, *element, model.mass_kind(), carried))
+    if (!element->offset_mass(model.mass_kind()) || !fe::calc_carried(model, *element, model.mass_kind(), carried))
       continue;
     const VectorXd at =
         fe::stack_motions(carried).transpose() * fe::AccelerationFields(std::vector{a}).calc_point_loads(carried);
@@ -84,7 +85,7 @@ fe::Model build(const records::Deck& deck, MassKind kind) {
   Diagnostics diagnostics;
   fe::ModelOptions options;
   options.mass_kind = kind;
-  return fe::Model::build(deck, options, diagnostics);
+  return fe::build_model(deck, options, diagnostics);
 }
 
 // Carried masses alone: what their second order adds to turned nodal loads makes the load of turned pieces.
@@ -126,7 +127,7 @@ TEST(SecondOrder, TurnsTheLoadWithTheBody) {
                                           "PLOAD1,9,1,FYE,FR,.1,30.,.8,50.\nPLOAD1,9,3,FX,FR,.4,-70.\n",
                                       diagnostics);
     const auto model = build(deck, kind);
-    const auto along_beams = model.calc_applied_load(deck, 9, diagnostics);
+    const auto along_beams = calc_applied_load(model, deck, 9, diagnostics);
     ASSERT_EQ(along_beams.arms.size(), 4u);
     const auto load = make_load(model, kind == MassKind::Consistent, along_beams);
     const fe::StaticSolver solver(model, fe::assemble_stiffness(model, fe::DofSet::Free),
@@ -230,7 +231,7 @@ TEST(SecondOrder, MeanLinkIsThatOfTheBestFit) {
       "GRID,5,,.3,.4,1.1\nGRID,9,,1.1,.7,1.9\nRBE3,1,,9,123456,1.,123,1\n,2,2.,123,3,4,.7,123\n,5\n"
       "CONM2,1,1,,1.\n",
       diagnostics);
-  const auto model = fe::Model::build(deck, {}, diagnostics);
+  const auto model = fe::build_model(deck, {}, diagnostics);
   ASSERT_EQ(model.links().dependents().size(), 6u);
   const double weight[] = {1, 1, 2, 2, 0.7};
   std::srand(11);
@@ -269,7 +270,7 @@ TEST(SecondOrder, RigidLinkIsThatOfExactRotations) {
       diagnostics);
   fe::ModelOptions options;
   options.autospc = false;
-  const auto model = fe::Model::build(deck, options, diagnostics);
+  const auto model = fe::build_model(deck, options, diagnostics);
   ASSERT_EQ(model.links().dependents().size(), 18u);
   std::srand(11);
   const VectorXd force = VectorXd::Random(18);

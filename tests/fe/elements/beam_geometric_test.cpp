@@ -57,7 +57,7 @@ TEST(BeamGeometricStiffness, IsTheSecondDerivativeOfFiniteStrainWork) {
   for (int component = 0; component < 8; ++component) {
     const VectorXd force = VectorXd::Unit(8, component);
     MatrixXd K_G = MatrixXd::Zero(12, 12);
-    model.elements[0]->add_geometric_stiffness(force, 1, K_G);
+    model.elements[0]->stress_state()->add_geometric_stiffness(force, 1, K_G);
     for (int trial = 0; trial < 3; ++trial) {
       Vector12d q;
       for (double& value : q) value = normal(random);

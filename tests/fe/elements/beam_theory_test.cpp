@@ -354,7 +354,7 @@ TEST(BeamForces, TipLoads) {
   f.segment<3>(9) = options.R * moment;
   const VectorXd u = solve_static(model.calc_stiffness(), f, kClampedFirst);
   VectorXd force(8), expected(8);
-  model.elements[0]->calc_internal_forces(u, force);
+  model.elements[0]->stress_state()->calc_internal_forces(u, force);
   expected << 3, -4, 5, 0.6, 0.7 - 5 * 2, -0.8 - 4 * 2, 0.7, -0.8;
   EXPECT_LT((force - expected).norm(), 1e-12);
 }

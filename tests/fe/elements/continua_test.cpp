@@ -208,9 +208,9 @@ TEST(SolidPatch, ConstantStrain) {
     const double lambda = 3 * 0.3 / 1.3 / 0.4, G = 3 / 2.6;
     const Matrix3d stress = lambda * strain.trace() * Matrix3d::Identity() + 2 * G * strain;
     const Element& e = *m.elements[0];
-    VectorXd u_e(e.num_dofs()), s(e.num_internal_forces());
+    VectorXd u_e(e.num_dofs()), s(e.stress_state()->num_internal_forces());
     for (int i = 0; i < e.num_dofs(); ++i) u_e[i] = u[e.gdofs()[static_cast<std::size_t>(i)]];
-    e.calc_internal_forces(u_e, s);
+    e.stress_state()->calc_internal_forces(u_e, s);
     for (int q = 0; q < s.size(); q += 6) {
       Eigen::Matrix<double, 6, 1> expected;
       expected << stress(0, 0), stress(1, 1), stress(2, 2), stress(0, 1), stress(1, 2), stress(2, 0);

@@ -114,9 +114,10 @@ TEST_P(CurvedShells, MassIsPositiveAndComplete) {
 /// K u is the gradient of the energy of the internal forces; energy by finite compliance of the section's law.
 TEST_P(CurvedShells, InternalForcesAreLinearAndRigidMotionsGiveNone) {
   const SmallModel m = make_model(GetParam());
-  const Element& e = *m.elements[0];
+  const StressState& e = *m.elements[0]->stress_state();
   VectorXd s1(e.num_internal_forces()), s2 = s1, s3 = s1;
-  const VectorXd u = make_random(3, e.num_dofs()), v = make_random(4, e.num_dofs());
+  const int num_dofs = m.elements[0]->num_dofs();
+  const VectorXd u = make_random(3, num_dofs), v = make_random(4, num_dofs);
   e.calc_internal_forces(u, s1);
   e.calc_internal_forces(v, s2);
   e.calc_internal_forces(2 * u - 3 * v, s3);
@@ -268,7 +269,7 @@ TEST(CurvedShellPatch, ForcesOfALaminate) {
       A += bar * t, B += bar * t * (z + t / 2), D += bar * (std::pow(z + t, 3) - std::pow(z, 3)) / 3;
       z += t;
     }
-    const Element& element = *m.elements[0];
+    const StressState& element = *m.elements[0]->stress_state();
     VectorXd s(element.num_internal_forces());
     element.calc_internal_forces(u, s);
     const Eigen::Vector3d N = A * e + B * k, M = B * e + D * k;

@@ -62,7 +62,7 @@ TEST(ShearPanel, RectangleHasItsClosedForm) {
   EXPECT_NEAR(u.dot(m.calc_stiffness() * u), kG * kT * 2 * 1 * shear * shear, 1e-18);
   VectorXd s(8), u_e(12);
   for (int i = 0; i < 4; ++i) u_e.segment<3>(3 * i) = u.segment<3>(6 * i);
-  m.elements[0]->calc_internal_forces(u_e, s);
+  m.elements[0]->stress_state()->calc_internal_forces(u_e, s);
   for (int i = 0; i < 4; ++i) EXPECT_NEAR(s[i], kG * kT * shear, 1e-17);
   EXPECT_EQ(s.tail(4).norm(), 0);
 }
@@ -96,7 +96,7 @@ TEST(ShearPanel, FlowsOfATaperedPanelAreInEquilibrium) {
     const MatrixXd K = calc_translations(m, m.calc_stiffness());
     VectorXd u = VectorXd::Zero(12), s(8);
     u[6] = 1e-3, u[9] = 2e-3, u[1] = -1e-3;
-    m.elements[0]->calc_internal_forces(u, s);
+    m.elements[0]->stress_state()->calc_internal_forces(u, s);
     EXPECT_NEAR(s[0] * s[2] / (s[1] * s[3]), 1, 1e-12);
     if (x[0].x() == -1) {
       EXPECT_NEAR(s[2] / s[0], 4, 1e-11);

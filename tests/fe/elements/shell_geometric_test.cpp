@@ -76,7 +76,7 @@ TEST(ShellGeometric, RigidRotationTurnsDrillingMoments) {
 TEST(ShellGeometric, RigidRotationTurnsMomentsOfDrillingRotations) {
   for (const char* card : {"CQUADR", "CTRIAR"}) {
     const SmallModel m = make_element(card, 0.2, true);
-    const auto& element = *m.elements[0];
+    const auto& element = *m.elements[0]->stress_state();
     const int n = m.nodes.num_gdofs(), num_points = n / 6;
     VectorXd u = make_random(5, n);
     for (int i = 0; i < n; i += 6) u.segment<3>(i + 2).setZero();
@@ -138,10 +138,10 @@ template <int N>
 void expect_hessian(const char* card, double z) {
   const SmallModel m = make_element(card, 0.2, true, z);
   const auto& e = *m.elements[0];
-  VectorXd force = make_random(8, e.num_internal_forces());
+  VectorXd force = make_random(8, e.stress_state()->num_internal_forces());
   for (int p = 0; p < N; ++p) force.segment<3>(8 * p).setZero();
   MatrixXd K_G = MatrixXd::Zero(6 * N, 6 * N);
-  e.add_geometric_stiffness(force, 1, K_G);
+  e.stress_state()->add_geometric_stiffness(force, 1, K_G);
   // In the element's axes; the section as the maker makes it (MAT1, 5/6 G t).
   ShellSection section;
   section.S = 5.0 / 6 * 0.2 * 3 / 2.6 * Eigen::Matrix2d::Identity();

@@ -131,7 +131,7 @@ TEST(SolidAxes, LawInTurnedMaterialSystem) {
   H << 1, 2, 3, -4, 5, 6, 7, -8, 10;
   VectorXd u(12), force(6);
   for (int k = 0; k < 4; ++k) u.segment<3>(3 * k) = H * x[static_cast<std::size_t>(k)];
-  m.elements[0]->calc_internal_forces(u, force);
+  m.elements[0]->stress_state()->calc_internal_forces(u, force);
   const Matrix3d e1 = R.transpose() * (0.5 * (H + H.transpose())) * R;
   Eigen::Matrix<double, 6, 1> strain;
   strain << e1(0, 0), e1(1, 1), e1(2, 2), 2 * e1(0, 1), 2 * e1(1, 2), 2 * e1(2, 0);

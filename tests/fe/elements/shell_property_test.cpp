@@ -36,8 +36,8 @@ Eigen::Matrix3d make_law() {
 }
 
 VectorXd calc_forces(const SmallModel& m, const VectorXd& u) {
-  VectorXd force(m.elements[0]->num_internal_forces());
-  m.elements[0]->calc_internal_forces(u, force);
+  VectorXd force(m.elements[0]->stress_state()->num_internal_forces());
+  m.elements[0]->stress_state()->calc_internal_forces(u, force);
   return force;
 }
 

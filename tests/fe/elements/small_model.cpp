@@ -110,7 +110,7 @@ static void check_projection(const Element& element, const VectorXd& u, const Ma
     const MatrixXd Phi = num_loads == 1 ? MatrixXd(MatrixXd::Identity(N, N))
                                         : MatrixXd(MatrixXd::NullaryExpr(N, 3, [&] { return normal(random); }));
     GeometricProjection sums(Phi.cols(), num_loads);
-    element.add_projected_geometric_stiffness(u * factor.transpose(), Phi, sums);
+    element.stress_state()->add_projected_geometric_stiffness(u * factor.transpose(), Phi, sums);
     const auto result = sums.finish();
     const MatrixXd expected = Phi.transpose() * (0.5 * (K_G + K_G.transpose())) * Phi;
     for (const Eigen::Index c : {Eigen::Index(0), num_loads - 1})
@@ -123,13 +123,14 @@ static void check_projection(const Element& element, const VectorXd& u, const Ma
 MatrixXd SmallModel::calc_geometric_stiffness(const VectorXd& u) const {
   MatrixXd K_G = MatrixXd::Zero(nodes.num_gdofs(), nodes.num_gdofs());
   for (const auto& element : elements) {
-    if (element->num_internal_forces() == 0) continue;
+    const StressState* state = element->stress_state();
+    if (!state) continue;
     VectorXd u_e(element->num_dofs());
     for (int i = 0; i < element->num_dofs(); ++i) u_e[i] = u[element->gdofs()[static_cast<std::size_t>(i)]];
-    VectorXd force(element->num_internal_forces());
-    element->calc_internal_forces(u_e, force);
+    VectorXd force(state->num_internal_forces());
+    state->calc_internal_forces(u_e, force);
     MatrixXd local = MatrixXd::Zero(element->num_dofs(), element->num_dofs());
-    element->add_geometric_stiffness(force, 1, local);
+    state->add_geometric_stiffness(force, 1, local);
     check_projection(*element, u_e, local);
     scatter(*element, local, &K_G);
   }

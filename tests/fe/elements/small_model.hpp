@@ -8,7 +8,9 @@
 #include <gtest/gtest.h>
 
 #include "base/rotation.hpp"
+#include "fe/elements/damping.hpp"
 #include "fe/elements/element.hpp"
+#include "fe/elements/stress_state.hpp"
 
 namespace bough::fe::test {
 

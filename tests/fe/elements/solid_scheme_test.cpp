@@ -91,7 +91,7 @@ TEST(SolidScheme, PointsOfQuadraticBricks) {
     m.deck.psolid[0].points = points;
     m.elements.clear();
     m.make();
-    EXPECT_EQ(m.elements[0]->num_internal_forces(), 6 * num);
+    EXPECT_EQ(m.elements[0]->stress_state()->num_internal_forces(), 6 * num);
   }
 }
 
@@ -124,7 +124,7 @@ TEST(SolidScheme, CubicBricksFollowCubics) {
       m.deck.psolid[0].points = points;
       m.elements.clear();
       m.make();
-      EXPECT_EQ(m.elements[0]->num_internal_forces(), 6 * num);
+      EXPECT_EQ(m.elements[0]->stress_state()->num_internal_forces(), 6 * num);
     }
     EXPECT_NEAR(calc_energy(m, 2, false, mixed), C11 * 8 / 3 + kG * 8 / 27, 1e-12);
     EXPECT_NEAR(calc_energy(m, 4, false, mixed), C11 * 24 / 5 + kG * 8 / 7, 1e-12);

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "fe/linear/factor.hpp"
+#include "fe/statics/build_model.hpp"
 #include "fe/statics/statics.hpp"
 #include "tests/fe/model/spring_model.hpp"
 
@@ -17,7 +18,7 @@ Model make_clamped(Diagnostics& diagnostics) {
   auto deck = make_deck(make_points());
   deck.subcases[0].spc = 1;
   deck.spc.push_back(make_spc(1, 1, 63));
-  return Model::build(deck, {}, make_links({{1, 2}, {2, 3}, {3, 4}, {4, 5}, {2, 6}, {6, 4}}), diagnostics);
+  return build_model(deck, {}, make_links({{1, 2}, {2, 3}, {3, 4}, {4, 5}, {2, 6}, {6, 4}}), diagnostics);
 }
 
 TEST(AssemblyMpi, stiffness_equals_dense_sum) {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "fe/statics/build_model.hpp"
 #include "tests/fe/model/spring_model.hpp"
 
 namespace bough::fe {
@@ -41,7 +42,7 @@ MatrixXd reduce(const Model& model) {
 TEST(Autospc, tetrahedron_of_rods_keeps_its_six_rigid_modes) {
   const auto deck = make_deck({{0, 0, 0}, {1, 0, 0}, {0.2, 1, 0}, {0.3, 0.4, 1}});
   Diagnostics d;
-  const Model model = Model::build(deck, {}, make_rods({{1, 2}, {1, 3}, {1, 4}, {2, 3}, {2, 4}, {3, 4}}), d);
+  const Model model = build_model(deck, {}, make_rods({{1, 2}, {1, 3}, {1, 4}, {2, 3}, {2, 4}, {3, 4}}), d);
   EXPECT_EQ(model.autospc().size(), 12u);
   for (const auto& entry : model.autospc()) EXPECT_GT(entry.component, 3);
   EXPECT_EQ(model.num_fdofs(), 12);
@@ -52,7 +53,7 @@ TEST(Autospc, tetrahedron_of_rods_keeps_its_six_rigid_modes) {
 TEST(Autospc, free_model_with_full_stiffness_loses_nothing) {
   const auto deck = make_deck(make_points());
   Diagnostics d;
-  const Model model = Model::build(deck, {}, make_links({{1, 2}, {2, 3}, {3, 4}, {4, 5}, {5, 6}}), d);
+  const Model model = build_model(deck, {}, make_links({{1, 2}, {2, 3}, {3, 4}, {4, 5}, {5, 6}}), d);
   EXPECT_TRUE(model.autospc().empty());
   EXPECT_EQ(count_zero(reduce(model)), 6);
 }
@@ -62,7 +63,7 @@ TEST(Autospc, unattached_grid_and_planar_truss_node) {
   auto deck = make_deck({{0, 0, 0}, {2, 0, 0}, {1, 1, 0}, {5, 5, 5}});
   deck.grids[0].ps = deck.grids[1].ps = 63;
   Diagnostics d;
-  const Model model = Model::build(deck, {}, make_rods({{1, 3}, {2, 3}}), d);
+  const Model model = build_model(deck, {}, make_rods({{1, 3}, {2, 3}}), d);
   ASSERT_EQ(model.autospc().size(), 10u);
   EXPECT_EQ(model.autospc()[0].node, 3);
   EXPECT_EQ(model.autospc()[0].component, 3);
@@ -75,7 +76,7 @@ TEST(Autospc, skew_rod_leaves_one_component_per_end) {
   auto deck = make_deck({{0, 0, 0}, {1, 2, 0.5}});
   deck.grids[0].ps = 63;
   Diagnostics d;
-  const Model model = Model::build(deck, {}, make_rods({{1, 2}}), d);
+  const Model model = build_model(deck, {}, make_rods({{1, 2}}), d);
   EXPECT_EQ(model.num_fdofs(), 1);
   EXPECT_EQ(model.find_fdof(1, 2), 0);  // nearest to the rod
   EXPECT_EQ(count_zero(reduce(model)), 0);
@@ -88,12 +89,12 @@ TEST(Autospc, switches_and_threshold) {
   Diagnostics d;
   ModelOptions options;
   options.autospc = false;
-  EXPECT_EQ(Model::build(deck, options, make_rods({{1, 2}}), d).num_fdofs(), 6);
+  EXPECT_EQ(build_model(deck, options, make_rods({{1, 2}}), d).num_fdofs(), 6);
   // By PARAM alone the rotations, which have neither stiffness nor mass, are held all the same.
-  EXPECT_EQ(Model::build(deck, {}, make_rods({{1, 2}}), d).num_fdofs(), 3);
+  EXPECT_EQ(build_model(deck, {}, make_rods({{1, 2}}), d).num_fdofs(), 3);
   EXPECT_TRUE(d.has("fe.null-dofs"));
   options.autospc = true;
-  EXPECT_EQ(Model::build(deck, options, make_rods({{1, 2}}), d).num_fdofs(), 1);
+  EXPECT_EQ(build_model(deck, options, make_rods({{1, 2}}), d).num_fdofs(), 1);
   // A transverse stiffness of 1e-5 survives the default and falls to a larger EPZERO.
   const ElementFactory weak = [](const records::Deck&, const NodeTable& nodes, Diagnostics&) {
     ElementList list;
@@ -103,9 +104,9 @@ TEST(Autospc, switches_and_threshold) {
     return list;
   };
   deck.params.clear();
-  EXPECT_EQ(Model::build(deck, {}, weak, d).num_fdofs(), 6);
+  EXPECT_EQ(build_model(deck, {}, weak, d).num_fdofs(), 6);
   deck.params.push_back({"EPZERO", "1.-4", {}});
-  const Model model = Model::build(deck, {}, weak, d);
+  const Model model = build_model(deck, {}, weak, d);
   EXPECT_EQ(model.num_fdofs(), 4);
   ASSERT_FALSE(model.autospc().empty());
   EXPECT_NEAR(model.autospc()[0].ratio, 1e-5, 1e-9);
@@ -121,7 +122,7 @@ TEST(Autospc, stiffness_through_a_dependent_grid_counts) {
   rbe2.gm = {2};
   deck.rbe2.push_back(rbe2);
   Diagnostics d;
-  const Model model = Model::build(deck, {}, make_links({{1, 2}}), d);
+  const Model model = build_model(deck, {}, make_links({{1, 2}}), d);
   EXPECT_TRUE(model.autospc().empty());
   EXPECT_EQ(model.num_fdofs(), 6);
 }
@@ -137,7 +138,7 @@ TEST(Autospc, soft_beside_very_stiff_is_not_none) {
     return list;
   };
   Diagnostics d;
-  EXPECT_TRUE(Model::build(deck, {}, links, d).autospc().empty());
+  EXPECT_TRUE(build_model(deck, {}, links, d).autospc().empty());
 }
 
 // Both ends of the rod follow one grid: what is left of its stiffness there is round-off, whatever its size.
@@ -150,7 +151,7 @@ TEST(Autospc, stiffness_that_rigid_elements_cancel_is_none) {
     rbe2.gm = {1, 2};
     deck.rbe2.push_back(rbe2);
     Diagnostics d;
-    const Model model = Model::build(deck, {}, make_links({{1, 2}}), d);
+    const Model model = build_model(deck, {}, make_links({{1, 2}}), d);
     EXPECT_EQ(model.autospc().size(), 6u) << far;
     EXPECT_EQ(model.num_fdofs(), 0) << far;
   }

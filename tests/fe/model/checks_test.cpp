@@ -6,6 +6,7 @@
 #include "fe/matrices/checks.hpp"
 #include "fe/matrices/connected_parts.hpp"
 #include "fe/matrices/grid_point_weight.hpp"
+#include "fe/statics/build_model.hpp"
 #include "formats/nastran/reader.hpp"
 
 namespace bough::fe {
@@ -44,7 +45,7 @@ TEST(Checks, QualityOfCurvedShellsAndShearPanels) {
       "GRID,7,,2.,2.,0.\nGRID,8,,0.,1.,0.\nCQUAD8,1,1,1,2,3,4,5,6\n,7,8\nCTRIA6,2,1,1,2,3,5,6\nCSHEAR,3,2,1,2,3,4\n"
       "PSHELL,1,1,.1,1,,1\nPSHEAR,2,1,.1\nMAT1,1,7.+10,,.3\n",
       "deck.bdf", {}, d);
-  const Model model = Model::build(deck, {}, d);
+  const Model model = build_model(deck, {}, d);
   const auto worst = find_worst_quality(model);
   ASSERT_EQ(worst.size(), 3u);
   EXPECT_EQ(worst[0].card, "CQUAD8");
@@ -61,7 +62,7 @@ TEST(Checks, GridsAndGrounds) {
       "GRID,6,,0.,5.,0.\nCBAR,1,1,1,2,6\nPBAR,1,1,1.-3,1.-8,1.-8,1.-8\nMAT1,1,7.+10,,.3\nRBE2,7,2,123456,4\n"
       "CELAS2,8,1.+3,2,1,3,1\nSPC1,1,123456,1\n",
       "deck.bdf", {}, d);
-  const Model model = Model::build(deck, {}, d);
+  const Model model = build_model(deck, {}, d);
   EXPECT_EQ(find_coincident_grids(model, choose_coincidence(model)), (std::vector<std::array<int, 2>>{{2, 3}}));
   EXPECT_EQ(find_unused_grids(model, deck), std::vector<int>{5});
   EXPECT_LT(calc_ground_check(model, GroundSet::Global).maxCoeff(), 1e-12);
@@ -78,7 +79,7 @@ TEST(Checks, GridsOfRbe1AndRsplineAreUsed) {
       "PBAR,1,1,1.,1.,1.,1.\nMAT1,1,1.+7,,.3\nRSPLINE,7,.1,1,2,123456,3\nRBE1,8,1,123456,,,,,,+\n+,UM,4,123\n",
       "deck.bdf", {}, d);
   EXPECT_EQ(d.num_errors(), 0);
-  EXPECT_EQ(find_unused_grids(Model::build(deck, {}, d), deck), std::vector<int>{5});
+  EXPECT_EQ(find_unused_grids(build_model(deck, {}, d), deck), std::vector<int>{5});
 }
 
 TEST(GridPointWeight, MassesThatActInOneDirectionEach) {
@@ -128,7 +129,7 @@ TEST(Checks, AnMpcThatGroundsIsFoundOnTheNSet) {
       "MPC = 3\nBEGIN BULK\nGRID,1,,0.,0.,0.\nGRID,2,,1.,0.,0.\nGRID,3,,2.,0.,0.\nCBAR,1,1,1,2,0.,1.,0.\n"
       "CBAR,2,1,2,3,0.,1.,0.\nPBAR,1,1,1.-3,1.-8,1.-8,1.-8\nMAT1,1,7.+10,,.3\nMPC,3,2,2,1.,1,2,-.5\n",
       "deck.bdf", {}, d);
-  const Model model = Model::build(deck, {}, d);
+  const Model model = build_model(deck, {}, d);
   EXPECT_LT(calc_ground_check(model, GroundSet::Global).maxCoeff(), 1e-12);
   EXPECT_GT(calc_ground_check(model, GroundSet::Independent)[1], 1e-3);
 }
@@ -146,7 +147,7 @@ Model build_two_bars(const std::string& more, Diagnostics& d, bool is_free = fal
   const auto deck = nastran::read_deck_text(text + more + "ENDDATA\n", "bars.bdf", {}, d);
   ModelOptions options;
   options.ignore_spc = is_free;
-  return Model::build(deck, options, d);
+  return build_model(deck, options, d);
 }
 
 TEST(ConnectedParts, PartsThatWereNeverMergedAreNamed) {

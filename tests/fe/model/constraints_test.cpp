@@ -7,6 +7,7 @@
 
 #include "base/rotation.hpp"
 #include "fe/linear/factor.hpp"
+#include "fe/statics/build_model.hpp"
 #include "fe/statics/statics.hpp"
 #include "tests/fe/model/spring_model.hpp"
 
@@ -70,7 +71,7 @@ TEST(Constraints, transform_spans_the_dense_null_space) {
   ModelOptions options;
   options.autospc = false;
   Diagnostics d;
-  const Model model = Model::build(deck, options, make_links(kLinks), d);
+  const Model model = build_model(deck, options, make_links(kLinks), d);
   const int n = model.num_gdofs();
 
   // Oracle: every equation as a dense row on basic components.
@@ -132,7 +133,7 @@ TEST(Constraints, rigid_elements_carry_rigid_motion_exactly) {
   ModelOptions options;
   options.autospc = false;
   Diagnostics d;
-  const Model model = Model::build(deck, options, make_links(kLinks), d);
+  const Model model = build_model(deck, options, make_links(kLinks), d);
   EXPECT_EQ(model.num_fdofs(), 12);
   // A rigid motion of the whole is in the range of T, and T's columns make 1-2-3-4 and 5-6 rigid.
   const MatrixXd T = model.T(), Phi_R = model.calc_rigid_modes();
@@ -161,7 +162,7 @@ TEST(Constraints, rbe2_is_the_limit_of_a_stiff_link) {
   VectorXd F = VectorXd::Zero(18);
   F.tail<6>() << 1, -2, 3, 0.5, -1, 2;
   const auto solve = [&](double stiff) {
-    const Model model = Model::build(deck, {}, factory(stiff), d);
+    const Model model = build_model(deck, {}, factory(stiff), d);
     return VectorXd(StaticSolver(model, assemble_stiffness(model, DofSet::Free)).solve(F));
   };
   const VectorXd soft = solve(1e4), hard = solve(1e6);
@@ -183,7 +184,7 @@ TEST(Constraints, mpc_chain_is_substituted_in_any_order) {
   ModelOptions options;
   options.autospc = false;
   Diagnostics d;
-  const Model model = Model::build(deck, options, make_links(kLinks), d);
+  const Model model = build_model(deck, options, make_links(kLinks), d);
   const MatrixXd T = model.T();
   VectorXd q = make_random(model.num_fdofs(), 1, 4);
   const VectorXd u = T * q;
@@ -200,7 +201,7 @@ TEST(Constraints, cylindrical_spc_leaves_the_radial_motion) {
   deck.subcases[0].spc = 1;
   deck.spc.push_back(make_spc(1, 1, 0b111110));
   Diagnostics d;
-  const Model model = Model::build(deck, {}, make_links({{1, 2}}), d);
+  const Model model = build_model(deck, {}, make_links({{1, 2}}), d);
   ASSERT_EQ(model.num_fdofs(), 7);
   const VectorXd column = MatrixXd(model.T()).col(model.find_fdof(0, 1));
   EXPECT_TRUE(column.head<3>().isApprox(Vector3d(1, 1, 0) / std::sqrt(2.0), 1e-15));
@@ -217,19 +218,19 @@ TEST(Constraints, permanent_and_set_spc_and_free_free) {
   deck.spc.push_back(make_spc(2, 4, 2));
   deck.spc.push_back(make_spc(3, 5, 4));
   Diagnostics d;
-  EXPECT_EQ(Model::build(deck, {}, make_links(kLinks), d).num_fdofs(), 36 - 8);
+  EXPECT_EQ(build_model(deck, {}, make_links(kLinks), d).num_fdofs(), 36 - 8);
   ModelOptions free;
   free.ignore_spc = true;  // keeps the PS of rotations alone
-  EXPECT_EQ(Model::build(deck, free, make_links(kLinks), d).num_fdofs(), 36 - 3);
+  EXPECT_EQ(build_model(deck, free, make_links(kLinks), d).num_fdofs(), 36 - 3);
 }
 
 TEST(Constraints, only_set_of_a_fragment_is_used_with_a_note) {
   auto deck = make_deck(make_points());
   deck.spc.push_back(make_spc(4, 1, 63));
   Diagnostics d;
-  EXPECT_EQ(Model::build(deck, {}, make_links(kLinks), d).num_fdofs(), 36);
+  EXPECT_EQ(build_model(deck, {}, make_links(kLinks), d).num_fdofs(), 36);
   deck.sol.clear();
-  EXPECT_EQ(Model::build(deck, {}, make_links(kLinks), d).num_fdofs(), 30);
+  EXPECT_EQ(build_model(deck, {}, make_links(kLinks), d).num_fdofs(), 30);
   EXPECT_TRUE(d.has("fe.only-spc-set"));
 }
 
@@ -243,12 +244,12 @@ TEST(Constraints, subcase_selects_the_sets) {
   deck.spc.push_back(make_spc(1, 1, 63));
   deck.spc.push_back(make_spc(2, 1, 1));
   Diagnostics d;
-  EXPECT_EQ(Model::build(deck, {}, make_links(kLinks), d).num_fdofs(), 30);
+  EXPECT_EQ(build_model(deck, {}, make_links(kLinks), d).num_fdofs(), 30);
   ModelOptions options;
   options.subcase = 7;
-  EXPECT_EQ(Model::build(deck, options, make_links(kLinks), d).num_fdofs(), 35);
+  EXPECT_EQ(build_model(deck, options, make_links(kLinks), d).num_fdofs(), 35);
   options.subcase = 3;
-  EXPECT_THROW(Model::build(deck, options, make_links(kLinks), d), InputError);
+  EXPECT_THROW(build_model(deck, options, make_links(kLinks), d), InputError);
   EXPECT_TRUE(d.has("fe.unknown-subcase"));
 }
 
@@ -269,7 +270,7 @@ TEST_P(BadConstraints, is_reported) {
   deck.mpc.push_back(make_mpc(2, {{2, 1, 1.0}, {3, 1, 1.0}}));
   GetParam().spoil(deck);
   Diagnostics d;
-  EXPECT_THROW(Model::build(deck, {}, make_links(kLinks), d), InputError);
+  EXPECT_THROW(build_model(deck, {}, make_links(kLinks), d), InputError);
   EXPECT_TRUE(d.has(GetParam().id));
 }
 
@@ -315,11 +316,11 @@ TEST(Constraints, SetsWithoutCardsAreAWarning) {
   deck.spcadd.push_back({9, {1, 44}, {}});
   deck.spc.push_back(make_spc(1, 1, 63));
   Diagnostics d, none;
-  EXPECT_EQ(Model::build(deck, {}, make_links(kLinks), d).num_fdofs(), 30);
+  EXPECT_EQ(build_model(deck, {}, make_links(kLinks), d).num_fdofs(), 30);
   EXPECT_TRUE(d.has("fe.missing-set"));
   EXPECT_EQ(d.num_errors(), 0);
   deck.subcases[0].spc = 44;
-  EXPECT_EQ(Model::build(deck, {}, make_links(kLinks), none).num_fdofs(), 36);
+  EXPECT_EQ(build_model(deck, {}, make_links(kLinks), none).num_fdofs(), 36);
   EXPECT_TRUE(none.has("fe.missing-set"));
 }
 
@@ -331,7 +332,7 @@ TEST(Constraints, enforced_displacement_is_zero_with_a_warning_and_thru_ids_may_
   deck.spc.push_back(make_spc(1, 77, 63));
   deck.spc[1].skip_if_missing = true;
   Diagnostics d;
-  EXPECT_EQ(Model::build(deck, {}, make_links(kLinks), d).num_fdofs(), 30);
+  EXPECT_EQ(build_model(deck, {}, make_links(kLinks), d).num_fdofs(), 30);
   EXPECT_TRUE(d.has("fe.enforced-ignored"));
 }
 

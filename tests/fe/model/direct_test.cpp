@@ -5,6 +5,7 @@
 #include <Eigen/Eigenvalues>
 #include <cmath>
 
+#include "fe/elements/damping.hpp"
 #include "fe/matrices/assembly.hpp"
 #include "text_model.hpp"
 
@@ -93,9 +94,9 @@ TEST(DirectMatrices, DampingGoesToB) {
                            "DMIG,BA,0,6,1,0\nDMIG,BA,3,2,,3,2,5.\n,9,0,-4.\nDMIG,BA,9,0,,9,0,3.\n");
   MatrixXd B = MatrixXd::Zero(model.num_gdofs(), model.num_gdofs());
   for (const auto& element : model.elements()) {
-    if (!element->has_damping()) continue;
+    if (!element->damping()) continue;
     MatrixXd own = MatrixXd::Zero(element->num_dofs(), element->num_dofs());
-    element->add_damping(1, own);
+    element->damping()->add_damping(1, own);
     B(element->gdofs(), element->gdofs()) += own;
   }
   const int g = model.node(model.find_node(3)).first_gdof + 1, s = model.node(model.find_node(9)).first_gdof;

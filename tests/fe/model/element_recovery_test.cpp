@@ -6,8 +6,10 @@
 #include <algorithm>
 
 #include "fe/elements/beam.hpp"
+#include "fe/elements/stress_recovery.hpp"
+#include "fe/elements/stress_state.hpp"
 #include "fe/loads/load_sets.hpp"
-#include "fe/sections/stress.hpp"
+#include "fe/statics/build_model.hpp"
 #include "fe/statics/case_solver.hpp"
 #include "formats/nastran/reader.hpp"
 
@@ -34,7 +36,7 @@ struct Read {
     diagnostics.throw_if_errors();
     ModelOptions options;
     options.uses_enforced = true;
-    return Model::build(deck, options, diagnostics);
+    return build_model(deck, options, diagnostics);
   }();
 };
 
@@ -61,9 +63,10 @@ TEST(ElementRecovery, CasesTogetherAreWhatTheElementsGiveOneByOne) {
     for (std::size_t c = 0; c < cases.size(); ++c) {
       const VectorXd u_e = u[c](element.gdofs());
       const auto* heated = cases[c].initial ? initial.find(element) : nullptr;
-      VectorXd force = VectorXd::Zero(element.num_internal_forces());
-      element.calc_internal_forces(u_e, force);
-      VectorXd printed = element.calc_printed_forces(u_e);
+      const StressState* state = element.stress_state();
+      VectorXd force = VectorXd::Zero(state ? state->num_internal_forces() : 0), printed;
+      if (state) state->calc_internal_forces(u_e, force);
+      if (element.printed_forces()) printed = element.printed_forces()->calc_printed_forces(u_e);
       if (heated) force += heated->force;
       if (const auto own = end_loads.find(static_cast<int>(e)); own != end_loads.end() && cases[c].load > 0)
         element.as_beam()->add_load_forces(own->second, force);
@@ -78,7 +81,7 @@ TEST(ElementRecovery, CasesTogetherAreWhatTheElementsGiveOneByOne) {
           const auto row = static_cast<Eigen::Index>(r);
           EXPECT_LT((block.force.row(row).transpose() - printed).norm(), 1e-12 * printed.norm()) << element.card();
           EXPECT_NEAR(block.strain_energy[row], energy, 1e-12 * std::abs(u_e.dot(K.cwiseAbs() * u_e.cwiseAbs())));
-          EXPECT_EQ(block.components, element.printed_force_names());
+          EXPECT_EQ(block.components, element.printed_forces()->printed_force_names());
           ++num_forces;
         }
       const auto compare = [&](const std::vector<records::ElementStresses>& blocks, const VectorXd& wanted,
@@ -91,13 +94,15 @@ TEST(ElementRecovery, CasesTogetherAreWhatTheElementsGiveOneByOne) {
             ++count;
           }
       };
-      if (const auto points = element.stress_points(); !points.empty()) {
-        VectorXd stress = element.calc_stresses(force);
+      if (const StressRecovery* recovery = element.stress_recovery()) {
+        const auto points = recovery->stress_points();
+        VectorXd stress = recovery->calc_stresses(force);
         if (heated && heated->stress.size() > 0) stress += heated->stress;
         compare(results[c].stresses, calc_stress_results(points, stress), num_stresses);
       }
-      if (const auto points = element.strain_points(); !points.empty()) {
-        VectorXd strain = element.calc_strains(force);
+      if (const StressRecovery* recovery = element.stress_recovery()) {
+        const auto points = recovery->strain_points();
+        VectorXd strain = recovery->calc_strains(force);
         if (heated && heated->strain.size() > 0) strain += heated->strain;
         compare(results[c].strains, calc_strain_results(points, strain), num_strains);
       }

@@ -5,6 +5,7 @@
 
 #include "fe/matrices/assembly.hpp"
 #include "fe/matrices/grid_point_weight.hpp"
+#include "fe/statics/build_model.hpp"
 #include "formats/nastran/reader.hpp"
 
 namespace bough::fe {
@@ -18,7 +19,7 @@ struct Built {
   explicit Built(const std::string& bulk)
       : deck(nastran::read_deck_text("SOL 103\nCEND\nSPC = 1\nBEGIN BULK\n" + bulk, "deck.bdf", {}, diagnostics)) {
     diagnostics.throw_if_errors();
-    model = std::make_unique<Model>(Model::build(deck, {}, diagnostics));
+    model = std::make_unique<Model>(build_model(deck, {}, diagnostics));
   }
   records::MassProperties mass() const { return calc_mass_properties(*model, model->mass_kind(), Vector3d::Zero()); }
   double difference() const { return calc_mass_difference(mass().rigid_mass); }

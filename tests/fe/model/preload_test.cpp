@@ -7,6 +7,7 @@
 #include "fe/linear/factor.hpp"
 #include "fe/loads/second_order.hpp"
 #include "fe/shape/face_load.hpp"
+#include "fe/statics/build_model.hpp"
 #include "fe/statics/preload.hpp"
 #include "fe/statics/static_case.hpp"
 #include "tests/fe/model/text_model.hpp"
@@ -117,7 +118,7 @@ TEST(Prestress, IsTheGeometricStiffnessOfItsLoadWhereverKIs) {
   diagnostics.throw_if_errors();
   ModelOptions options;
   options.subcase = 1;
-  const auto plain = Model::build(deck, options, diagnostics);
+  const auto plain = build_model(deck, options, diagnostics);
   const auto load = calc_static_load(plain, deck, plain.subcase(), diagnostics);
   ASSERT_GT(load.followers.size(), 0u);
   const StaticSolver solver(plain, assemble_stiffness(plain, DofSet::Free));
@@ -130,7 +131,7 @@ TEST(Prestress, IsTheGeometricStiffnessOfItsLoadWhereverKIs) {
   EXPECT_EQ(options.prestress->name, "subcase 1 (LOAD 10, TEMPERATURE 20)");
   EXPECT_NEAR(options.prestress->A_I[2], 9.81, 1e-12);
   EXPECT_TRUE(diagnostics.has("fe.preload"));
-  const auto model = Model::build(deck, options, diagnostics);
+  const auto model = build_model(deck, options, diagnostics);
   const int n = model.num_gdofs();
   const MatrixXd one = MatrixXd::Identity(n, n), K0 = multiply(K_G.get(), one);
   EXPECT_GT(K0.norm(), 1);
@@ -161,7 +162,7 @@ TEST(Prestress, InertiaReliefIsTheLoadOfItsAcceleration) {
     ModelOptions options;
     options.subcase = 2;
     options.prestress = calc_subcase_prestress(deck, options, deck.subcases[1], diagnostics);
-    return std::pair(Model::build(deck, options, diagnostics), options.prestress->A_I);
+    return std::pair(build_model(deck, options, diagnostics), options.prestress->A_I);
   };
   const std::string pull = "FORCE,5,6,,900.,1.,.2,-.1\n";
   const auto [free, A_I] = calc("", "PARAM,INREL,-2\n" + pull);
@@ -186,7 +187,7 @@ TEST(Prestress, LoadsThatDoNotFollowAreNamed) {
     diagnostics.throw_if_errors();
     ModelOptions options;
     options.subcase = 1;
-    const auto model = Model::build(deck, options, diagnostics);
+    const auto model = build_model(deck, options, diagnostics);
     calc_static_load(model, deck, model.subcase(), diagnostics);
     std::string what;
     for (const auto& item : diagnostics.items())

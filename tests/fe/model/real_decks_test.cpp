@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "fe/matrices/assembly.hpp"
+#include "fe/statics/build_model.hpp"
 #include "fe/statics/statics.hpp"
 #include "formats/nastran/reader.hpp"
 #include "tests/support/paths.hpp"
@@ -30,7 +31,7 @@ TEST_P(RealDecks, mass_and_centre) {
   const auto deck = nastran::read_deck(path, {}, d);
   for (const auto& item : d.items())
     if (item.severity == Severity::Error) ADD_FAILURE() << format(item);
-  const Model model = Model::build(deck, {}, d);
+  const Model model = build_model(deck, {}, d);
   const auto properties = calc_mass_properties(model, model.mass_kind(), Vector3d::Zero());
   EXPECT_NEAR(properties.mass / GetParam().mass, 1, 1e-6);
   if (GetParam().has_cg) {

@@ -6,6 +6,7 @@
 
 #include <Eigen/Eigenvalues>
 
+#include "fe/statics/build_model.hpp"
 #include "fe/statics/static_case.hpp"
 #include "formats/nastran/reader.hpp"
 
@@ -33,7 +34,7 @@ Solved solve(const std::string& text) {
     ModelOptions options;
     options.subcase = subcase.id;
     options.uses_enforced = true;
-    s.models.push_back(Model::build(s.deck, options, d));
+    s.models.push_back(build_model(s.deck, options, d));
     const Model& model = s.models.back();
     const StaticSolver solver(model, assemble_stiffness(model, DofSet::Free));
     const auto load = calc_static_load(model, s.deck, subcase, d);

@@ -5,6 +5,7 @@
 
 #include "fe/linear/petsc.hpp"
 #include "fe/matrices/assembly.hpp"
+#include "fe/statics/build_model.hpp"
 #include "formats/nastran/reader.hpp"
 
 namespace bough::fe {
@@ -23,7 +24,7 @@ void solve(const std::string& text, Solved& solved) {
   solved.diagnostics.throw_if_errors();
   ModelOptions options;
   options.subcase = deck.subcases[0].id;
-  const auto model = Model::build(deck, options, solved.diagnostics);
+  const auto model = build_model(deck, options, solved.diagnostics);
   const auto load = calc_static_load(model, deck, model.subcase(), solved.diagnostics);
   const StaticSolver solver(model, assemble_stiffness(model, DofSet::Free));
   solved.result = solve_static_case(model, solver, load, {}, &solved.diagnostics);

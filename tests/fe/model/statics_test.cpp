@@ -10,6 +10,7 @@
 #include "fe/linear/mechanism.hpp"
 #include "fe/linear/mumps.hpp"
 #include "fe/model/row_kinds.hpp"
+#include "fe/statics/build_model.hpp"
 #include "tests/fe/model/spring_model.hpp"
 
 namespace bough::fe {
@@ -68,7 +69,7 @@ TEST(StaticsMpi, cantilever_deflection_is_the_closed_form) {
   auto deck = make_line(num, 2);
   deck.spc.push_back(make_spc(1, 1, 63));
   Diagnostics d;
-  const Model model = Model::build(deck, {}, make_chain(2.0 / (num - 1), make_beam(2.0 / (num - 1))), d);
+  const Model model = build_model(deck, {}, make_chain(2.0 / (num - 1), make_beam(2.0 / (num - 1))), d);
   const StaticSolver solver(model, assemble_stiffness(model, DofSet::Free));
   MatrixXd F = MatrixXd::Zero(model.num_gdofs(), 2);
   F(6 * (num - 1) + 2, 0) = 5;
@@ -82,7 +83,7 @@ TEST(StaticsMpi, cantilever_deflection_is_the_closed_form) {
 TEST(StaticsMpi, unheld_model_is_a_mechanism_of_six_motions) {
   auto deck = make_deck(make_points());
   Diagnostics d;
-  const Model model = Model::build(deck, {}, make_links(kLinks), d);
+  const Model model = build_model(deck, {}, make_links(kLinks), d);
   EXPECT_THAT(catch_mechanism(model), HasSubstr("mechanism 6 of 6"));
   EXPECT_EQ(find_mechanisms(assemble_stiffness(model, DofSet::Free).get(), list_row_kinds(model), 6).cols(), 6);
 }
@@ -97,9 +98,9 @@ TEST(StaticsMpi, more_motions_than_those_of_a_body_are_all_found) {
   Diagnostics d;
   auto deck = make_line(6, 5);
   deck.subcases.clear();
-  const std::string text = catch_mechanism(Model::build(deck, options, make_chain(1, pinned), d));
+  const std::string text = catch_mechanism(build_model(deck, options, make_chain(1, pinned), d));
   EXPECT_THAT(text, HasSubstr("mechanism 7 of 7"));
-  const auto loose = Model::build(deck, options, make_chain(1, Eigen::Matrix<double, 6, 6>::Zero()), d);
+  const auto loose = build_model(deck, options, make_chain(1, Eigen::Matrix<double, 6, 6>::Zero()), d);
   EXPECT_THAT(catch_mechanism(loose), HasSubstr("mechanism 12 of 12"));
 }
 
@@ -112,7 +113,7 @@ TEST(StaticsMpi, hinge_is_named_by_grid_and_component) {
   pinned.row(3).setZero();  // the last link does not carry torque: grid 6 spins
   pinned.col(3).setZero();
   Diagnostics d;
-  const std::string text = catch_mechanism(Model::build(deck, options, make_chain(1, pinned), d));
+  const std::string text = catch_mechanism(build_model(deck, options, make_chain(1, pinned), d));
   EXPECT_THAT(text, HasSubstr("mechanism 1 of 1 moves most at grid 6 component 4;"));
   EXPECT_THAT(text, HasSubstr("[fe.mechanism]"));
 }
@@ -124,7 +125,7 @@ TEST(StaticsMpi, missing_support_direction_is_found_without_a_zero_pivot) {
   deck.subcases[0].spc = 1;
   deck.spc.push_back(make_spc(1, 1, 0b111011));
   Diagnostics d;
-  const Model model = Model::build(deck, {}, make_links(kLinks), d);
+  const Model model = build_model(deck, {}, make_links(kLinks), d);
   EXPECT_THAT(catch_mechanism(model), HasSubstr("mechanism 1 of 1"));
 }
 
@@ -137,7 +138,7 @@ TEST(StaticsMpi, unattached_grid_without_autospc_is_named) {
   deck.subcases[0].spc = 1;
   deck.spc.push_back(make_spc(1, 1, 63));
   Diagnostics d;
-  const std::string text = catch_mechanism(Model::build(deck, options, make_links(kLinks), d));
+  const std::string text = catch_mechanism(build_model(deck, options, make_links(kLinks), d));
   for (int c = 1; c <= 6; ++c) EXPECT_THAT(text, HasSubstr("most at grid 7 component " + std::to_string(c) + ";"));
 }
 
@@ -145,7 +146,7 @@ TEST(StaticsMpi, no_free_dof_is_an_error) {
   auto deck = make_deck({{0, 0, 0}, {1, 0, 0}});
   deck.grids[0].ps = deck.grids[1].ps = 63;
   Diagnostics d;
-  const Model model = Model::build(deck, {}, make_links({{1, 2}}), d);
+  const Model model = build_model(deck, {}, make_links({{1, 2}}), d);
   try {
     StaticSolver(model, assemble_stiffness(model, DofSet::Free));
     FAIL();
@@ -167,7 +168,7 @@ TEST(StaticsMpi, stiffness_that_is_not_a_number_does_not_pass) {
   auto deck = make_deck({{0, 0, 0}, {1, 0, 0}});
   deck.grids[0].ps = 63;
   Diagnostics d;
-  const Model model = Model::build(deck, {}, make_links({{1, 2}}), d);
+  const Model model = build_model(deck, {}, make_links({{1, 2}}), d);
   const PetscMat K = assemble_stiffness(model, DofSet::Free);
   check_petsc(MatScale(K.get(), std::nan("")));
   EXPECT_EQ(catch_id([&] { StaticSolver(model, K); }), "fe.mechanism");
@@ -201,7 +202,7 @@ TEST(StaticsMpi, determinate_supports_give_the_same_strain_for_a_balanced_load) 
   cylinder.c = {1, 0, 0};
   deck.coord_systems.push_back(cylinder);
   Diagnostics d;
-  const Model model = Model::build(deck, {}, make_links(kLinks), d);
+  const Model model = build_model(deck, {}, make_links(kLinks), d);
   const PetscMat K = assemble_stiffness(model, DofSet::Free);
   // Balanced: no work on any rigid motion.
   const MatrixXd Phi_R = model.calc_rigid_modes();
@@ -222,7 +223,7 @@ TEST(StaticsMpi, support_of_a_straight_chain_is_one_grid_and_of_none_an_error) {
   auto deck = make_line(5, 4);
   deck.subcases[0].spc = 0;
   Diagnostics d;
-  const Model model = Model::build(deck, {}, make_chain(1, make_beam(1)), d);
+  const Model model = build_model(deck, {}, make_chain(1, make_beam(1)), d);
   const auto held = choose_determinate_support(model, 0);
   ASSERT_EQ(held.size(), 6u);
   for (int c = 0; c < 6; ++c) EXPECT_EQ(held[c], model.find_fdof(2, c + 1));
@@ -233,7 +234,7 @@ TEST(StaticsMpi, support_of_a_straight_chain_is_one_grid_and_of_none_an_error) {
     EXPECT_EQ(error.items()[0].id, "fe.missing-grid");
   }
   deck.grids[1].ps = 1;
-  const Model held_model = Model::build(deck, {}, make_chain(1, make_beam(1)), d);
+  const Model held_model = build_model(deck, {}, make_chain(1, make_beam(1)), d);
   try {
     choose_determinate_support(held_model, 2);
     FAIL();

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "fe/statics/build_model.hpp"
 #include "fe/statics/static_case.hpp"
 #include "formats/nastran/reader.hpp"
 
@@ -29,7 +30,7 @@ Solved solve(const std::string& text) {
   s.diagnostics.throw_if_errors();
   ModelOptions options;
   options.uses_enforced = true;
-  const Model model = Model::build(deck, options, s.diagnostics);
+  const Model model = build_model(deck, options, s.diagnostics);
   const auto relief = read_inertia_relief(deck, s.diagnostics);
   const auto held = choose_suport(model, deck, relief, s.diagnostics);
   s.diagnostics.throw_if_errors();

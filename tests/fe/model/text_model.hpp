@@ -3,6 +3,7 @@
 #include <string>
 
 #include "fe/model/model.hpp"
+#include "fe/statics/build_model.hpp"
 #include "formats/nastran/reader.hpp"
 
 namespace bough::fe::test {
@@ -12,7 +13,7 @@ namespace bough::fe::test {
 inline Model build(const std::string& text, Diagnostics& diagnostics) {
   const auto deck = nastran::read_deck_text(text + "PARAM,AUTOSPC,NO\n", "deck.bdf", {}, diagnostics);
   diagnostics.throw_if_errors();
-  return Model::build(deck, {}, diagnostics);
+  return build_model(deck, {}, diagnostics);
 }
 
 inline Model build(const std::string& text) {

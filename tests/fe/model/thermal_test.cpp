@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "fe/statics/build_model.hpp"
 #include "fe/statics/static_case.hpp"
 #include "formats/nastran/reader.hpp"
 
@@ -19,7 +20,7 @@ struct Heated {
     ModelOptions options;
     options.autospc = false;
     options.uses_enforced = true;
-    model = std::make_unique<Model>(Model::build(deck, options, diagnostics));
+    model = std::make_unique<Model>(build_model(deck, options, diagnostics));
   }
   StaticLoad make_load() { return calc_static_load(*model, deck, -1, diagnostics); }
   records::StaticSubcase solve() {

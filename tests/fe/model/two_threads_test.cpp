@@ -9,6 +9,7 @@
 #include "fe/linear/ordering.hpp"
 #include "fe/matrices/assembly.hpp"
 #include "fe/matrices/factor_need.hpp"
+#include "fe/statics/build_model.hpp"
 #include "fe/statics/element_recovery.hpp"
 #include "tests/fe/model/text_model.hpp"
 #include "tests/support/threads.hpp"
@@ -85,7 +86,7 @@ TEST(TwoThreads, HoldTheSameDofs) {
     const Threads threads(num);
     Diagnostics diagnostics;
     const auto cards = nastran::read_deck_text(deck, "deck.bdf", {}, diagnostics);
-    const Model model = Model::build(cards, {}, diagnostics);
+    const Model model = build_model(cards, {}, diagnostics);
     std::vector<std::pair<int, int>> held;
     for (const AutospcEntry& entry : model.autospc()) held.emplace_back(entry.node, entry.component);
     return held;
@@ -131,7 +132,7 @@ TEST(TwoThreads, MultiplyTheSame) {
 TEST(TwoThreads, RecoverTheSameBitForBit) {
   Diagnostics diagnostics;
   const auto deck = nastran::read_deck_text(write_shell(30) + "PARAM,AUTOSPC,NO\n", "deck.bdf", {}, diagnostics);
-  const Model model = Model::build(deck, {}, diagnostics);
+  const Model model = build_model(deck, {}, diagnostics);
   const Eigen::VectorXd u = Eigen::VectorXd::Random(model.num_gdofs()), v = Eigen::VectorXd::Random(model.num_gdofs());
   const std::vector<RecoveryCase> cases{{&u, 0, nullptr, nullptr}, {&v, 0, nullptr, nullptr}};
   const auto recover_by = [&](int num) {

@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "fe/linear/row_kinds.hpp"
+#include "fe/statics/build_model.hpp"
 #include "fe/statics/static_case.hpp"
 #include "formats/nastran/reader.hpp"
 
@@ -55,7 +56,7 @@ VectorXd solve(const std::string& text, double L) {
   d.throw_if_errors();
   ModelOptions options;
   options.autospc = false;
-  const Model model = Model::build(deck, options, d);
+  const Model model = build_model(deck, options, d);
   try {
     const StaticSolver solver(model, assemble_stiffness(model, DofSet::Free));
     VectorXd u = solver.solve(calc_static_load(model, deck, -1, d).F, &d);

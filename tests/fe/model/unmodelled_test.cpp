@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "fe/model/model.hpp"
+#include "fe/statics/build_model.hpp"
 #include "formats/nastran/reader.hpp"
 
 namespace bough::fe {
@@ -14,7 +15,7 @@ TEST(Unmodelled, CardsWithoutAnElementAreAnError) {
       "CBUSH1D,1,1,1,2\n",
       "deck.bdf", {}, diagnostics);
   const auto make_none = [](const records::Deck&, const NodeTable&, Diagnostics&) { return ElementList{}; };
-  EXPECT_THROW(Model::build(deck, {}, make_none, diagnostics), InputError);
+  EXPECT_THROW(build_model(deck, {}, make_none, diagnostics), InputError);
   std::vector<std::string> found;
   for (const auto& item : diagnostics.items())
     if (item.id == "fe.not-modelled") found.push_back(item.what);

@@ -4,6 +4,9 @@
 
 #include <cmath>
 
+#include "fe/loads/enforced.hpp"
+#include "fe/loads/loads.hpp"
+#include "fe/statics/build_model.hpp"
 #include "fe/statics/static_case.hpp"
 #include "text_model.hpp"
 
@@ -20,7 +23,7 @@ struct Case {
     ModelOptions options;
     options.autospc = false;
     options.uses_enforced = true;
-    model = std::make_unique<Model>(Model::build(deck, options, diagnostics));
+    model = std::make_unique<Model>(build_model(deck, options, diagnostics));
   }
   records::StaticSubcase solve() {
     const auto load = calc_static_load(*model, deck, -1, diagnostics);
@@ -58,7 +61,7 @@ TEST(VendorLoads, BlankP2OfPload1IsZero) {
                             "CQUAD4,9,9,11,12,13,14\nPSHELL,9,1,.01\n";
   for (const char* card : {"PLOAD4,4,9,8.\n", "PLOAD2,4,8.,9\n"}) {
     Case flat(plate + card);
-    const auto F = flat.model->calc_load(flat.deck, 4, flat.diagnostics);
+    const auto F = calc_load(*flat.model, flat.deck, 4, flat.diagnostics);
     for (int g = 11; g <= 14; ++g) EXPECT_NEAR(F[flat.model->node(flat.model->find_node(g)).first_gdof + 2], 2, 1e-14);
   }
 }
@@ -89,7 +92,7 @@ TEST(VendorLoads, LoadOfLoadsAddsThemUp) {
 TEST(VendorLoads, AutospcThatIsNeitherYesNorNoIsNamed) {
   for (const auto& [value, count] : {std::pair{"N0", 1}, {"YESS", 1}, {"NO", 0}, {"YES", 0}}) {
     Case c(kHead + kBar + "FORCE,4,2,,5.,0.,1.,0.\nPARAM,AUTOSPC," + value + "\n");
-    Model::build(c.deck, {}, c.diagnostics);
+    build_model(c.deck, {}, c.diagnostics);
     EXPECT_EQ(c.count("fe.bad-param", Severity::Warning), count) << value;
   }
 }
@@ -104,9 +107,9 @@ TEST(VendorLoads, SpcdHoldsWhatItMoves) {
   EXPECT_EQ(free.count("fe.spcd-not-fixed", Severity::Warning), 1);
   EXPECT_EQ(fixed.diagnostics.items().size(), 0u);
   // What is held for one load is not for another.
-  EXPECT_TRUE(free.model->is_held_for(free.deck, 4));
-  EXPECT_FALSE(free.model->is_held_for(free.deck, 5));
-  EXPECT_TRUE(fixed.model->is_held_for(fixed.deck, 5));
+  EXPECT_TRUE(is_held_for(*free.model, free.deck, 4));
+  EXPECT_FALSE(is_held_for(*free.model, free.deck, 5));
+  EXPECT_TRUE(is_held_for(*fixed.model, fixed.deck, 5));
 }
 
 /// SPCD cards of the LOAD card's own id act once; those of a set that it combines are said to be combined.
@@ -166,7 +169,7 @@ TEST(VendorLoads, PressureOnLeftHandedSolids) {
       VectorXd F[2];
       for (int k = 0; k < 2; ++k) {
         Case c(head + (k == 0 ? bodies[b].first : bodies[b].second) + "PLOAD4,4,9,1.,2.,3.,4.," + face + "\n");
-        F[k] = c.model->calc_load(c.deck, 4, c.diagnostics);
+        F[k] = calc_load(*c.model, c.deck, 4, c.diagnostics);
         EXPECT_EQ(c.diagnostics.num_errors(), 0) << b << " " << face;
       }
       EXPECT_GT(F[0].norm(), 0.1);

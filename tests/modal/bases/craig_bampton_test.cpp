@@ -4,6 +4,7 @@
 #include <cmath>
 #include <random>
 
+#include "fe/statics/build_model.hpp"
 #include "fe/statics/statics.hpp"
 #include "modal/bases/basis.hpp"
 #include "tests/support/beam_decks.hpp"
@@ -37,7 +38,7 @@ DeckMaker make_frame(bool fixed) {
 
 Model build(const records::Deck& deck) {
   Diagnostics diagnostics;
-  auto model = Model::build(deck, {}, diagnostics);
+  auto model = build_model(deck, {}, diagnostics);
   diagnostics.throw_if_errors();
   return model;
 }

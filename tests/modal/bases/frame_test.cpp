@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "fe/statics/build_model.hpp"
 #include "modal/bases/damping.hpp"
 #include "modal/bases/ritz.hpp"
 #include "tests/support/beam_decks.hpp"
@@ -29,7 +30,7 @@ fe::Model make_model() {
   maker.add_line(1, 1, {0.3, 0.1, -0.2}, {1.3, 0.4, 0}, 8, Vector3d::UnitY());
   maker.add_line(1, 101, {0.8, 0.25, -0.1}, {1.0, 1.0, 0.5}, 5, Vector3d::UnitX(), 5);
   Diagnostics diagnostics;
-  return fe::Model::build(maker.deck, {}, diagnostics);
+  return fe::build_model(maker.deck, {}, diagnostics);
 }
 
 MatrixXd calc_free_modes(const fe::Model& model, int count) {

@@ -1,8 +1,7 @@
-#include "fe/model/temperatures.hpp"
+#include "fe/loads/temperatures.hpp"
 
 #include <optional>
 
-#include "fe/elements/temperature.hpp"
 #include "formats/records/selection.hpp"
 
 namespace bough::fe {
@@ -86,7 +85,8 @@ InitialForces calc_thermal(const Model& model, const records::Deck& deck, int se
   int num_missing = 0, first_grid = 0, first_set = set;
   const Element* first_missing = nullptr;
   for (const auto& element : model.elements()) {
-    if (!element->has_expansion()) continue;
+    const ThermalLoads* thermal = element->thermal_loads();
+    if (!thermal) continue;
     int grid = 0;
     auto T = temperatures.find(model, *element, grid);
     const auto T_0 = T && from != 0 ? initial.find(model, *element, grid) : std::nullopt;
@@ -95,11 +95,7 @@ InitialForces calc_thermal(const Model& model, const records::Deck& deck, int se
       continue;
     }
     if (T_0) T->initial = &*T_0;
-    InitialForces::Part part{VectorXd::Zero(element->num_internal_forces()), VectorXd::Zero(element->num_dofs()), 0,
-                             element->calc_initial_stresses(*T), element->calc_thermal_strains(*T),
-                             element->calc_corner_thermal_strains(*T)};
-    part.energy = element->add_thermal(*T, part.load, part.force);
-    result.of.emplace(element.get(), std::move(part));
+    result.of.emplace(element.get(), thermal->calc_thermal(*T));
   }
   if (first_missing)
     diagnostics.error("fe.missing-temperature",

@@ -1,14 +1,10 @@
 #pragma once
-/// \file A load on a model, with what its second order needs beside the forces.
+/// \file Load vector of a load set, with the data of its second-order terms.
 #include <vector>
 
-#include <Eigen/Dense>
-
-#include "fe/model/links.hpp"
+#include "fe/model/model.hpp"
 
 namespace bough::fe {
-
-using Vector12d = Eigen::Matrix<double, 12, 1>;
 
 /// A dead force on the end of a rigid arm of a grid, among the loads of that grid.
 struct ArmLoad {
@@ -23,5 +19,11 @@ struct AppliedLoad {
   /// Pressures that turn with their faces (PARAM,FOLLOWK): their stiffness, one load.
   std::vector<QuadraticForm> followers;
 };
+
+/// Load vector (num_gdofs) of a set, in basic: FORCEx, MOMENTx, SLOAD, PLOADx, GRAV and RFORCE (with the mass of the
+/// model), LOAD. Reports fe.missing-load and errors of its cards.
+VectorXd calc_load(const Model& model, const records::Deck& deck, int set, Diagnostics& diagnostics);
+/// Load vector with the data that K_G needs.
+AppliedLoad calc_applied_load(const Model& model, const records::Deck& deck, int set, Diagnostics& diagnostics);
 
 }  // namespace bough::fe
