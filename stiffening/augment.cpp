@@ -1,15 +1,13 @@
-// Modes of the body with the mass of what hangs on it, which goes out again (docs/theory/bases.md).
-#include "stiffening/augment.hpp"
-
+// Modes of the body with the mass of other bodies at its nodes, which is removed again (docs/theory/bases.md).
 #include "fe/elements/point_mass.hpp"
 #include "fe/statics/build_model.hpp"
-#include "stiffening/reduction.hpp"
+#include "stiffening/stages.hpp"
 
 namespace bough::stiffening {
 
 namespace {
 
-/// Behind those of the deck: a prestress knows the elements by their order.
+/// Point masses after the elements of the deck: a prestress refers to these by their order.
 fe::ElementFactory add_masses(const fe::ElementFactory& factory, const std::vector<records::AugmentSpec>& augments,
                               double wtmass) {
   return [=](const records::Deck& deck, const fe::NodeTable& nodes, Diagnostics& diagnostics) {
@@ -19,7 +17,7 @@ fe::ElementFactory add_masses(const fe::ElementFactory& factory, const std::vect
       BOUGH_DEMAND(index >= 0);
       std::vector<int> gdofs;
       for (int c = 0; c < 6; ++c) gdofs.push_back(nodes.node(index).first_gdof + c);
-      // Assembly scales every mass.
+      // Assembly scales every mass by WTMASS.
       list.elements.push_back(std::make_unique<fe::PointMass>(
           0, "augment", std::vector{index}, gdofs,
           fe::calc_rigid_mass(augment.mass / wtmass, augment.cg, augment.inertia / wtmass)));
@@ -30,23 +28,26 @@ fe::ElementFactory add_masses(const fe::ElementFactory& factory, const std::vect
 
 }  // namespace
 
-std::unique_ptr<const Augmented> Reduction::augment(const fe::Model& model) const {
-  if (spec_.augments.empty()) return nullptr;
-  auto options = model_options_;
-  const auto factory = options_.elements ? options_.elements : fe::make_elements;
-  Diagnostics reported;  // the model without the masses has said it
-  return std::make_unique<const Augmented>(
-      fe::build_model(deck_, options, add_masses(factory, spec_.augments, model.wtmass()), reported));
+BodyModel augment(const BodyRequest& request, const BodyModel& plain) {
+  BodyModel result;
+  if (request.spec.augments.empty()) return result;
+  Diagnostics repeated;  // those of the plain model
+  result.options = plain.options;
+  result.model = std::make_unique<const fe::Model>(
+      fe::build_model(request.deck, plain.options,
+                       add_masses(request.make_factory(), request.spec.augments, plain.model->wtmass()), repeated));
+  result.system = std::make_unique<const fe::System>(*result.model);
+  return result;
 }
 
-void Reduction::take_off_augmentation(const fe::Model& model, modal::bases::Basis& basis) const {
-  if (is_free() && !basis.is_raw) {
+void remove_augmentation(const BodyRequest& request, const fe::Model& model, modal::bases::Basis& basis) {
+  if (request.is_free() && !basis.is_raw) {
     const auto C = modal::bases::calc_reference_conditions(model, modal::bases::FrameSpec{});
     basis.Phi = modal::bases::shift_to_frame(model, C, basis.Phi);
   }
   const MatrixXd M = basis.Phi.transpose() * fe::calc_mass_times(model, model.mass_kind(), basis.Phi);
   basis.M = 0.5 * (M + M.transpose());
-  if (basis.is_raw || !spec_.orthogonalize) {
+  if (basis.is_raw || !request.spec.orthogonalize) {
     basis.lambda = basis.K.diagonal().cwiseQuotient(basis.M.diagonal());
     return;
   }
@@ -61,7 +62,7 @@ void Reduction::take_off_augmentation(const fe::Model& model, modal::bases::Basi
   basis.lambda = pairs.lambda;
   basis.M = MatrixXd::Identity(n, n);
   basis.K = pairs.lambda.asDiagonal();
-  // Normal modes are the lowest, as before; what was dropped was dependent.
+  // Normal modes are the lowest ones still; dependent vectors were dropped at the end.
   basis.kind.resize(static_cast<std::size_t>(n), records::ModeKind::Normal);
 }
 

@@ -11,8 +11,11 @@ namespace bough::stiffening {
 
 namespace {
 
-/// Shapes without strain, or mass, have nothing to be measured by; entries up to `roundoff` (m x m, or empty) do not
-/// count.
+/// Round-off of φᵀKφ relative to the sum of the magnitudes of its terms: 1,000 roundings.
+constexpr double kStiffnessRoundoff = 1e-13;
+
+/// The largest difference relative to the diagonal of `expected`; rows with zero there are skipped, as are entries up
+/// to `roundoff` (m x m, or empty).
 double find_largest_difference(const Eigen::MatrixXd& A, const Eigen::MatrixXd& expected,
                                const Eigen::MatrixXd& roundoff = {}) {
   double worst = 0;
@@ -41,7 +44,7 @@ BasisCheck check_basis(const fe::Model& model, const Eigen::MatrixXd& Phi, const
     const Eigen::VectorXd diagonal =
         fe::get_diagonal(fe::assemble_stiffness(model, fe::DofSet::Global).get()).cwiseAbs();
     const Eigen::VectorXd parts = (Phi.cwiseAbs2().transpose() * diagonal).cwiseSqrt();
-    check.beyond_roundoff = find_largest_difference(K, modal_stiffness, 1e-13 * parts * parts.transpose());
+    check.beyond_roundoff = find_largest_difference(K, modal_stiffness, kStiffnessRoundoff * parts * parts.transpose());
   }
   return check;
 }
@@ -53,7 +56,7 @@ void report_basis(const BasisCheck& check, const SourceLocation& at, Diagnostics
                 "the modal matrices are off from those of the mode shapes: mass %.1e, stiffness %.1e, expected below "
                 "%.0e",
                 check.mass, check.stiffness, kBasisWarning);
-  const char* advice = "look for very soft beside very stiff parts: replace the stiffest by rigid elements";
+  const char* advice = "look for very soft next to very stiff parts: replace the stiffest by rigid elements";
   if (!std::isfinite(check.mass + check.stiffness) || check.beyond_roundoff > kBasisError)
     throw ComputationError("reduce.basis-off", at, text, advice);
   diagnostics.warning("reduce.basis-off", at, text, advice);

@@ -1,19 +1,22 @@
 #pragma once
-/// \file The modal matrices of a body against its shapes.
+/// \file Check of the modal matrices of a body against its shapes.
 #include "base/diagnostic.hpp"
 #include "fe/model/model.hpp"
 #include "modal/bases/fixed_interface.hpp"
 
 namespace bough::stiffening {
 
-/// What the modal matrices differ by from ΦᵀMΦ and ΦᵀKΦ, both made anew from the elements: largest entry over
+/// Differences of the modal matrices from ΦᵀMΦ and ΦᵀKΦ, both summed over the elements: the largest entry relative to
 /// √(M_ii M_jj) and √(K_ii K_jj).
 struct BasisCheck {
   double mass = 0, stiffness = 0;
-  double beyond_roundoff = 0;      ///< of both; entries of K above 1e-13 of √(pᵢ pⱼ), pⱼ = Σ K_ii φ_ij²
+  double beyond_roundoff = 0;  ///< of both; entries of K above kStiffnessRoundoff of √(pᵢ pⱼ), pⱼ = Σ K_ii φ_ij²
   modal::bases::ModesCheck modes;  ///< of the normal modes; none found: none were solved for
 };
-inline constexpr double kBasisWarning = 1e-5, kBasisError = 1e-3;
+/// Largest difference without a warning: the round-off of stiffness ratios up to 1e10 is below.
+inline constexpr double kBasisWarning = 1e-5;
+/// Largest difference that is not an error: above it, frequencies are wrong by 0.05 % and more.
+inline constexpr double kBasisError = 1e-3;
 
 BasisCheck check_basis(const fe::Model& model, const Eigen::MatrixXd& Phi, const Eigen::MatrixXd& modal_mass,
                        const Eigen::MatrixXd& modal_stiffness);

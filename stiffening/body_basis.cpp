@@ -1,101 +1,24 @@
-#include "stiffening/body_basis.hpp"
-
+// The shapes of a body: modes that are solved for, or given.
 #include <algorithm>
-#include <cmath>
-#include <set>
+#include <cstdio>
+#include <numbers>
 
-#include "formats/records/params.hpp"
-#include "stiffening/reduce.hpp"
+#include "stiffening/given_model.hpp"
+#include "stiffening/stages.hpp"
 
 namespace bough::stiffening {
 
 using modal::bases::BasisKind;
-using modal::bases::DampingTable;
 using modal::bases::FrameKind;
 using records::BodyBasis;
 using records::BodyFrame;
 using records::BodySpec;
 
-void check_basis(const BodySpec& spec, bool needs_modes, const SourceLocation& where, Diagnostics& diagnostics) {
-  if (needs_modes && spec.num_modes <= 0 && !spec.max_frequency_hz && spec.select.empty() &&
-      spec.basis == BodyBasis::Normal && spec.residual.empty())
-    diagnostics.error("reduce.no-modes", where, "the body asks for no modes",
-                      "give [body.modes] number, max_frequency or select");
-  if (spec.basis != BodyBasis::Normal && spec.interface_nodes.empty())
-    diagnostics.error("reduce.bad-basis", where, "the basis needs interface nodes", "name them in interface");
-  const bool is_craig_bampton = spec.basis == BodyBasis::CraigBampton;
-  if (!spec.orthogonalize && !is_craig_bampton && spec.augments.empty())
-    diagnostics.error("reduce.bad-basis", where,
-                      "orthogonalize = false has a meaning for craig-bampton and augmented modes only",
-                      "remove it, or set basis = \"craig-bampton\"");
-  if (!spec.orthogonalize && is_craig_bampton && spec.frame != BodyFrame::Fixed && spec.frame != BodyFrame::Node)
-    diagnostics.error("reduce.bad-basis", where,
-                      "orthogonalize = false keeps the rigid motions of the interface, which this frame removes",
-                      "use frame = \"fixed\", or \"node\" with one of the interface nodes");
-  std::set<std::string> names{"inertial", "interface"};
-  for (const auto& load : spec.loads) names.insert(load.name);
-  for (const auto& name : spec.residual) {
-    if (names.count(name)) continue;
-    std::string known;
-    for (const auto& other : names)
-      if (!other.empty()) known += (known.empty() ? "" : ", ") + other;
-    diagnostics.error("reduce.unknown-load", where, "residual names '" + name + "', no load of the body is called so",
-                      "the body has " + known);
-  }
-}
+namespace {
 
-void check_damping(const BodySpec& spec, const SourceLocation& where, Diagnostics& diagnostics) {
-  const auto bad = [&](const std::string& what, const std::string& advice) {
-    diagnostics.error("reduce.bad-damping", where, what, advice);
-  };
-  const auto& ratios = spec.damping_ratios;
-  if (spec.damping_ratio < 0 || std::any_of(ratios.begin(), ratios.end(), [](double z) { return z < 0; }) ||
-      spec.residual_damping.value_or(0) < 0)
-    bad("a damping ratio is negative", "give ratios of 0 or more");
-  if (spec.rayleigh_alpha < 0 || spec.rayleigh_beta < 0 || spec.structural_damping < 0)
-    bad("a damping factor is negative", "give 0 or more");
-  const auto& table = spec.damping_table;
-  for (std::size_t i = 1; i < table.points.size(); ++i)
-    if (!(table.points[i].first > table.points[i - 1].first))
-      bad("frequency " + std::to_string(i + 1) + " of the damping table is not above the one before",
-          "sort the table by frequency, each once");
-  if (table.kind == "quality" &&
-      std::any_of(table.points.begin(), table.points.end(), [](const auto& p) { return !(p.second > 0); }))
-    bad("a quality factor is not above 0", "give Q > 0, or a table of ratios");
-  if (spec.residual_damping && !spec.orthogonalize)
-    bad("residual_ratio stands with orthogonalize = false, where no mode is a residual vector", "remove one of them");
-}
-
-MatrixXd collect_residual_loads(const fe::Model& model, const BodySpec& spec, const std::vector<BodyLoad>& loads,
-                                std::vector<std::string>& names) {
-  MatrixXd F(model.num_gdofs(), 0);
-  const auto add = [&](const MatrixXd& columns, const std::string& name) {
-    F.conservativeResize(Eigen::NoChange, F.cols() + columns.cols());
-    F.rightCols(columns.cols()) = columns;
-    for (Eigen::Index c = 0; c < columns.cols(); ++c)
-      names.push_back(columns.cols() > 1 ? name + " " + std::to_string(c + 1) : name);
-  };
-  for (const auto& word : spec.residual) {
-    if (word == "inertial") {
-      static constexpr const char* kNames[records::kNumInertialLoads] = {"ax",  "ay",  "az",  "alx",  "aly",  "alz",
-                                                                         "wx2", "wy2", "wz2", "wxwy", "wxwz", "wywz"};
-      const MatrixXd F_I = calc_inertial_loads(model, model.mass_kind());
-      for (int i = 0; i < records::kNumInertialLoads; ++i) add(F_I.col(i), kNames[i]);
-    } else if (word == "interface") {
-      for (const int id : spec.interface_nodes) {
-        MatrixXd units = MatrixXd::Zero(model.num_gdofs(), 6);
-        units.middleRows(model.node(model.find_node(id)).first_gdof, 6).setIdentity();
-        add(units, "node" + std::to_string(id));
-      }
-    } else {
-      for (const auto& load : loads)
-        if (load.group == word) add(load.load.F, load.locator.name);
-    }
-  }
-  return F;
-}
-
-modal::bases::BasisOptions make_basis_options(const BodySpec& spec) {
+modal::bases::BasisOptions make_basis_options(const BodyRequest& request, const StaticSupport& support,
+                                              const MatrixXd& residual_loads) {
+  const BodySpec& spec = request.spec;
   modal::bases::BasisOptions options;
   if (spec.basis == BodyBasis::CraigBampton) options.kind = BasisKind::CraigBampton;
   if (spec.basis == BodyBasis::CraigChang) options.kind = BasisKind::CraigChang;
@@ -104,10 +27,74 @@ modal::bases::BasisOptions make_basis_options(const BodySpec& spec) {
     for (const int s : spec.select) options.num_modes = std::max(options.num_modes, s);
   options.max_hz = spec.max_frequency_hz;
   options.interface_nodes = spec.interface_nodes;
-  options.is_free = spec.frame != BodyFrame::Fixed;
+  options.is_free = request.is_free();
   options.orthogonalize = spec.orthogonalize;
+  options.residual_loads = residual_loads;
+  options.factor = support.factor;
+  options.solver = request.options.solver;
   return options;
 }
+
+/// The columns that select names, or all of them.
+std::vector<int> choose_columns(const BodyRequest& request, Eigen::Index available, const std::string& source) {
+  std::vector<int> columns;
+  for (const int s : request.spec.select) {
+    if (s <= available)
+      columns.push_back(s - 1);
+    else
+      request.error("reduce.bad-select", "mode " + std::to_string(s) + " in select, " + source + " gives " +
+                                             std::to_string(available) + " elastic modes in the range");
+  }
+  request.diagnostics.throw_if_errors();
+  for (int j = 0; j < available && request.spec.select.empty(); ++j) columns.push_back(j);
+  return columns;
+}
+
+void check_rigid(const BodyRequest& request, const fe::Model& model, const modal::bases::Basis& basis) {
+  const int num_rigid = request.is_free() ? 6 : 0, num_found = basis.num_rigid + basis.num_massless;
+  const std::string preload = model.prestress() ? model.prestress()->name : "";
+  if (num_found < num_rigid)
+    request.error("reduce.grounded",
+                  "a free body must have 6 rigid-body motions, this model has " + std::to_string(num_found) +
+                      (preload.empty() ? "" : " under its preload, " + preload),
+                  preload.empty()
+                      ? "remove springs and bushes to ground, and CELASi between grids that lie apart (they hold "
+                        "rotations), or use frame = \"fixed\""
+                      : "a free body may be preloaded by temperatures; loads do not turn with it: use frame = "
+                        "\"fixed\"");
+  if (num_found > num_rigid)
+    add_mechanism_error(request, model, std::to_string(num_found - num_rigid) + " motion(s) have no strain");
+  request.diagnostics.throw_if_errors();
+}
+
+void report_residuals(const BodyRequest& request, const modal::bases::Basis& basis,
+                      const std::vector<std::string>& names) {
+  const auto join = [](std::string& list, const std::string& word) { list += (list.empty() ? "" : ", ") + word; };
+  std::string unused, massless;
+  for (const int i : basis.unused_loads) join(unused, names[static_cast<std::size_t>(i)]);
+  if (!unused.empty())
+    request.note("reduce.residual-unused",
+                 "no residual vector for " + unused + ": the modes and the loads before hold its deflection",
+                 "nothing to do");
+  for (const auto& [i, part] : basis.massless_loads) {
+    char percent[32];
+    std::snprintf(percent, sizeof percent, " (%.3g %%)", 100 * part);
+    join(massless, names[static_cast<std::size_t>(i)] + percent);
+  }
+  if (!massless.empty())
+    request.warning("reduce.residual-massless",
+                    "what moves no mass has no residual vector; lost of the flexibility under " + massless,
+                    "what acts there meets a stiffer body; give the model inertia there, or take fewer modes, if it "
+                    "should not");
+}
+
+ModalBasis make_modal_basis(const fe::Model& model, modal::bases::Basis basis, MatrixXd damping) {
+  add_dampers(model, basis.Phi, damping);
+  return {std::move(basis.Phi), std::move(basis.lambda), std::move(basis.M),    std::move(basis.K),
+          std::move(damping),   std::move(basis.kind),   std::move(basis.check)};
+}
+
+}  // namespace
 
 modal::bases::FrameSpec make_frame_spec(const BodySpec& spec) {
   modal::bases::FrameSpec frame;
@@ -118,23 +105,72 @@ modal::bases::FrameSpec make_frame_spec(const BodySpec& spec) {
   return frame;
 }
 
-modal::bases::DampingSpec make_damping_spec(const BodySpec& spec) {
-  modal::bases::DampingSpec damping;
-  damping.ratio = spec.damping_ratio;
-  damping.ratios = spec.damping_ratios;
-  damping.table = spec.damping_table.points;
-  if (spec.damping_table.kind == "structural") damping.table_kind = DampingTable::Structural;
-  if (spec.damping_table.kind == "quality") damping.table_kind = DampingTable::Quality;
-  damping.alpha = spec.rayleigh_alpha;
-  damping.beta = spec.rayleigh_beta;
-  damping.structural = spec.structural_damping;
-  damping.residual_ratio = spec.residual_damping;
-  return damping;
+ModalBasis calc_body_basis(const BodyRequest& request, const BodyModel& body_model, const StaticSupport& support,
+                           const modal::response::ResidualLoads& residual) {
+  const fe::Model& model = *body_model.model;
+  const BodySpec& spec = request.spec;
+  const auto options = make_basis_options(request, support, residual.F);
+  const BodyModel augmented = augment(request, body_model);
+  auto basis = modal::bases::calc_basis(augmented.system ? *augmented.system : *body_model.system, options,
+                                        support.solve, request.diagnostics);
+  check_rigid(request, model, basis);
+  report_residuals(request, basis, residual.name);
+
+  // Raw coordinates lose those of the frame's node before the selection, so that select counts the remaining ones.
+  if (basis.is_raw && request.moves_to_frame()) modal::bases::move_to_frame(model, make_frame_spec(spec), basis);
+  auto columns = choose_columns(request, basis.lambda.size(), "the model");
+  if (spec.select.empty() && options.kind == BasisKind::Normal && residual.F.cols() == 0 && spec.num_modes > 0 &&
+      static_cast<int>(columns.size()) > spec.num_modes)
+    columns.resize(static_cast<std::size_t>(spec.num_modes));
+  if (columns.empty())
+    request.warning("reduce.rigid", "no elastic mode is in the range: the body is rigid",
+                    "raise max_frequency or the number of modes");
+  basis = modal::bases::select_columns(basis, columns);
+  if (augmented.model) remove_augmentation(request, model, basis);
+  auto damping = calc_body_damping(request, model, basis);
+  if (!basis.is_raw && request.moves_to_frame()) modal::bases::move_to_frame(model, make_frame_spec(spec), basis);
+  return make_modal_basis(model, std::move(basis), std::move(damping));
 }
 
-MatrixXd calc_material_damping(const fe::Model& model, double g, const MatrixXd& Phi) {
-  const MatrixXd K_g = Phi.transpose() * fe::calc_structural_damping_times(model, g, Phi);
-  return 0.5 * (K_g + K_g.transpose());
+ModalBasis make_given_basis(const BodyRequest& request, const fe::System& system) {
+  const fe::Model& model = system.model;
+  const BodySpec& spec = request.spec;
+  modal::bases::Basis basis;
+  basis.Phi = calc_given_modes(*request.given, system, request.diagnostics);
+  const auto available = static_cast<int>(basis.Phi.cols());
+  auto columns = choose_columns(request, available, "the file");
+  if (spec.select.empty() && spec.num_modes > 0 && spec.num_modes < available)
+    columns.resize(static_cast<std::size_t>(spec.num_modes));
+  basis.Phi = basis.Phi(Eigen::all, columns).eval();
+  if (request.moves_to_frame()) {
+    const auto C = modal::bases::calc_reference_conditions(model, make_frame_spec(spec));
+    basis.Phi = modal::bases::shift_to_frame(model, C, basis.Phi);
+  }
+  const auto project = [&](const MatrixXd& A_Phi) -> MatrixXd {
+    const MatrixXd A = basis.Phi.transpose() * A_Phi;
+    return 0.5 * (A + A.transpose());
+  };
+  basis.M = project(fe::calc_mass_times(model, model.mass_kind(), basis.Phi));
+  basis.K = project(fe::calc_stiffness_times(model, basis.Phi));
+  for (Eigen::Index j = 0; j < basis.M.cols(); ++j)
+    if (!(basis.M(j, j) > 0))
+      request.error("reduce.no-modal-mass",
+                    "mode " + std::to_string(j + 1) + " of those kept has no mass (phi' M phi is not positive)",
+                    "check the mass matrix, the mode shapes and their dofs");
+  request.diagnostics.throw_if_errors();
+  basis.lambda = basis.K.diagonal().cwiseQuotient(basis.M.diagonal());
+  basis.kind.assign(static_cast<std::size_t>(basis.M.cols()), records::ModeKind::Normal);
+  auto damping = calc_body_damping(request, model, basis);
+  return make_modal_basis(model, std::move(basis), std::move(damping));
+}
+
+void set_modes(const ModalBasis& basis, records::FlexBody& body) {
+  body.eigenvalue = basis.eigenvalue;
+  body.frequency_hz = basis.eigenvalue.cwiseMax(0).cwiseSqrt() / (2 * std::numbers::pi);
+  body.kind = basis.kind;
+  body.modal_mass = basis.mass;
+  body.modal_stiffness = basis.stiffness;
+  body.modal_damping = basis.damping;
 }
 
 }  // namespace bough::stiffening

@@ -1,46 +1,15 @@
 #include <map>
 #include <numbers>
 
-#include "fe/model/coordinates.hpp"
-#include "stiffening/reduce_matrices.hpp"
+#include "stiffening/given_elements.hpp"
 
 namespace bough::stiffening {
-
-namespace {
-
-/// R_basic_cd of each grid; none for a matrix in basic axes.
-std::map<int, Eigen::Matrix3d> list_axes(const records::Deck& deck, bool is_basic, Diagnostics& diagnostics) {
-  std::map<int, Eigen::Matrix3d> axes;
-  if (is_basic) return axes;
-  const fe::CoordinateSystems systems(deck, Eigen::Vector3d::Zero(), diagnostics);
-  for (std::size_t i = 0; i < deck.grids.size(); ++i) {
-    const auto& grid = deck.grids[i];
-    if (grid.cd != 0)
-      axes[grid.id] =
-          systems.calc_axes(grid.cd, systems.get_grid_position(static_cast<int>(i)), deck.locate(grid.at), diagnostics);
-  }
-  return axes;
-}
-
-/// Grids and scalar points by id, as a file without a list of dofs has them.
-Eigen::MatrixXi list_default_dofs(const records::Deck& deck) {
-  std::map<int, int> sizes;
-  for (const int id : deck.scalar_points) sizes[id] = 1;
-  for (const auto& grid : deck.grids) sizes[grid.id] = 6;
-  std::vector<std::pair<int, int>> rows;
-  for (const auto& [id, size] : sizes)
-    for (int c = 0; c < size; ++c) rows.emplace_back(id, size == 1 ? 0 : c + 1);
-  Eigen::MatrixXi dofs(static_cast<Eigen::Index>(rows.size()), 2);
-  for (std::size_t i = 0; i < rows.size(); ++i) dofs.row(static_cast<Eigen::Index>(i)) << rows[i].first, rows[i].second;
-  return dofs;
-}
-
-}  // namespace
 
 ModeCheck compare_modes(const records::FlexBody& body, const records::Deck& deck, const GivenModes& theirs,
                         Diagnostics& diagnostics) {
   const auto& Psi = theirs.Phi.values;
-  const Eigen::MatrixXi dofs = theirs.Phi.row_dofs.rows() > 0 ? theirs.Phi.row_dofs : list_default_dofs(deck);
+  const PointTable points(deck, Eigen::Vector3d::Zero(), diagnostics);
+  const Eigen::MatrixXi dofs = theirs.Phi.row_dofs.rows() > 0 ? theirs.Phi.row_dofs : points.calc_default_dofs();
   const auto n = body.num_modes(), p = body.num_nodes();
   const auto m = Psi.cols();
   if (dofs.rows() != Psi.rows())
@@ -48,7 +17,6 @@ ModeCheck compare_modes(const records::FlexBody& body, const records::Deck& deck
         "reduce.matrix-size", theirs.Phi.at,
         theirs.Phi.label + " has " + std::to_string(Psi.rows()) + " rows for " + std::to_string(dofs.rows()) + " dofs",
         "give a table of dofs with a line for each row of the matrix");
-  const auto axes = list_axes(deck, theirs.Phi.is_basic, diagnostics);
   const MatrixXd values = Psi;
   std::map<int, MatrixXd> given;  // 3 x m, basic
   for (Eigen::Index i = 0; i < dofs.rows(); ++i) {
@@ -56,9 +24,9 @@ ModeCheck compare_modes(const records::FlexBody& body, const records::Deck& deck
     if (code < 1 || code > 3 || body.find_node(id) < 0) continue;
     auto& block = given[id];
     if (block.size() == 0) block.setZero(3, m);
-    const auto R = axes.find(id);
+    const fe::Node* const node = theirs.Phi.is_basic ? nullptr : points.find(id);
     const Eigen::Vector3d e =
-        R == axes.end() ? Eigen::Vector3d(Eigen::Vector3d::Unit(code - 1)) : Eigen::Vector3d(R->second.col(code - 1));
+        node ? Eigen::Vector3d(node->R_basic_cd.col(code - 1)) : Eigen::Vector3d(Eigen::Vector3d::Unit(code - 1));
     block += e * values.row(i);
   }
   if (given.empty())

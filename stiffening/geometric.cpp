@@ -12,7 +12,7 @@ namespace bough::stiffening {
 
 namespace {
 
-/// Of L Φ one product a pair of rows that a load weighs. Phi: the rows of the form's dofs.
+/// Adds a form: one product of rows of L Φ per pair that has a weight. Phi: the rows of the form's dofs.
 void add_form(const fe::QuadraticForm& form, const MatrixXd& Phi, fe::GeometricProjection& sums) {
   const MatrixXd X = (form.L * Phi).transpose();
   const auto r = static_cast<int>(form.L.rows());
@@ -67,7 +67,7 @@ class RowSums {
     return part.element ? part.element->gdofs() : part.form->gdofs;
   }
 
-  /// Forms behind the last element at their grids, so that rows are soon complete.
+  /// Sorts each form after the last element at its grids, so that rows are soon complete.
   void sort_parts(const std::vector<int>& group_of) {
     std::vector<std::size_t> last(model_.nodes().size(), 0);
     const auto find_last = [&](const Part& part) -> std::size_t {
@@ -118,18 +118,18 @@ class RowSums {
   MatrixXd values_;
 };
 
-/// From so many modes on the rows of K_G are fewer numbers than the products of modes: of an element of four nodes
-/// 40 n² m flops by products, 12 n² m by rows beside what it takes to have these.
-constexpr Eigen::Index kManyModes = 40;
-/// Fewer elements are done before a thread has started.
-constexpr int kElementsOfThread = 500;
+/// Modes from which rows of K_G take less time than products of modes: for an element of four nodes 40 n² m flops by
+/// products, 12 n² m by rows plus the assembly of the rows.
+constexpr Eigen::Index kMinModesForRows = 40;
+/// Elements from which a second thread saves more than its start takes.
+constexpr int kMinElementsForThread = 500;
 
 }  // namespace
 
 std::vector<MatrixXd> calc_generalized_geometric_stiffness(const fe::Model& model, const fe::AppliedLoads& loads,
                                                            const MatrixXd& U, const MatrixXd& Phi) {
   BOUGH_DEMAND(U.rows() == model.num_gdofs() && Phi.rows() == model.num_gdofs());
-  const bool by_rows = Phi.cols() >= kManyModes;
+  const bool by_rows = Phi.cols() >= kMinModesForRows;
   // Forms have their own split over ranks.
   const auto forms = U.cols() > 0 ? fe::calc_second_order(model, loads, U) : std::vector<fe::QuadraticForm>{};
   const fe::MpiWorld world = fe::initialize_petsc();
@@ -161,7 +161,7 @@ std::vector<MatrixXd> calc_generalized_geometric_stiffness(const fe::Model& mode
     return result;
   };
   const auto [first, last] = fe::calc_element_range(model);
-  if (fe::get_num_threads() < 2 || last - first < kElementsOfThread) {
+  if (fe::get_num_threads() < 2 || last - first < kMinElementsForThread) {
     auto result = sum_some(first, last, true);
     for (auto& K_G : result) fe::sum_over_ranks(K_G);
     return result;

@@ -9,7 +9,8 @@ namespace bough::stiffening {
 
 namespace {
 
-constexpr double kAsymmetry = 1e-6;  ///< of the largest entries of both rows: files of seven digits are below it
+constexpr double kAsymmetry = 1e-6;  ///< relative to the largest entries of both rows: files of seven digits are below
+constexpr double kMaxMassDifference = 1e-6;  ///< of rigid-body masses, relative to their mean: likewise
 
 std::string show(double value, const char* format = "%.6g") {
   char text[32];
@@ -75,11 +76,11 @@ void check_mass(const SparseRows& M, const GivenMatrix& given, const PointTable&
   const double length = std::sqrt(std::max(R.bottomRightCorner<3, 3>().trace() / m, 0.0));
   const double off = std::max((T - m * Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() / m,
                               length > 0 ? (S + S.transpose()).cwiseAbs().maxCoeff() / (m * length) : 0.0);
-  if (off <= 1e-6) return;
+  if (off <= kMaxMassDifference) return;
   diagnostics.warning("reduce.not-rigid-mass", given.at,
-                      "rigid motions see the masses " + show(T(0, 0)) + ", " + show(T(1, 1)) + ", " + show(T(2, 2)) +
-                          " in x, y, z and differ from those of one rigid body by a part of " + show(off, "%.2g") +
-                          ": mass, centre and inertia are means",
+                      "rigid-body motions have the masses " + show(T(0, 0)) + ", " + show(T(1, 1)) + ", " +
+                          show(T(2, 2)) + " in x, y, z and differ from those of one rigid body by a part of " +
+                          show(off, "%.2g") + ": mass, centre and inertia are means",
                       "give the matrix before supports and omitted dofs took their part; check axes and dofs");
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-/// \file Checks that given matrices and modes can be what they are said to be, and belong together.
+/// \file Checks of given matrices and modes: symmetry, mass, and whether they are of one model.
 #include <string>
 
 #include "stiffening/given_elements.hpp"
@@ -12,7 +12,7 @@ std::string describe_dof(const Eigen::MatrixXi& dof_map, Eigen::Index gdof);
 /// Reports "reduce.not-symmetric": entries apart by more than the digits of a file and roundoff.
 void check_symmetry(const GivenMatrix& given, Diagnostics& diagnostics);
 
-/// No negative entry on the diagonal, and rigid motions that see one mass: Φ_RᵀMΦ_R = [m 1, -m c̃; m c̃, J]. M: on the
+/// No negative entry on the diagonal, and one mass in all rigid-body motions: Φ_RᵀMΦ_R = [m 1, -m c̃; m c̃, J]. M: on the
 /// g-set, from `given`. Reports "reduce.negative-mass", "reduce.not-rigid-mass".
 void check_mass(const SparseRows& M, const GivenMatrix& given, const PointTable& points, Diagnostics& diagnostics);
 

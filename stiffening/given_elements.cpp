@@ -4,11 +4,13 @@
 #include <map>
 #include <set>
 
+#include "fe/model/coordinates.hpp"
+
 namespace bough::stiffening {
 
 namespace {
 
-/// A line, face or volume that is drawn and carries nothing.
+/// An element without stiffness and mass: a line, face or volume of the picture.
 class DrawnElement final : public fe::Element {
  public:
   explicit DrawnElement(const fe::Element& of) : Element(of.id(), of.card(), of.nodes(), {}), shape_(of.shape()) {}
@@ -20,61 +22,67 @@ class DrawnElement final : public fe::Element {
 
 std::string name_dof(int node, int code) { return std::to_string(node) + " component " + std::to_string(code); }
 
-/// For each g-dof the position of its point in the table.
+/// The index of the point of each g-dof.
 std::vector<int> list_owners(const PointTable& points) {
   std::vector<int> owner;
-  for (std::size_t k = 0; k < points.index.size(); ++k)
-    owner.insert(owner.end(), static_cast<std::size_t>(points.nodes.node(points.index[k]).num_dofs),
-                 static_cast<int>(k));
+  for (std::size_t k = 0; k < points.nodes.size(); ++k)
+    owner.insert(owner.end(), static_cast<std::size_t>(points.nodes[k].num_dofs), static_cast<int>(k));
   return owner;
+}
+
+Eigen::MatrixXi list_dofs(const std::vector<fe::Node>& nodes, int num_dofs) {
+  Eigen::MatrixXi map(num_dofs, 2);
+  int row = 0;
+  for (const auto& node : nodes)
+    for (int c = 0; c < node.num_dofs; ++c) map.row(row++) << node.id, (node.num_dofs == 1 ? 0 : c + 1);
+  return map;
 }
 
 }  // namespace
 
-PointTable::PointTable(const records::Deck& deck, const fe::NodeTable& table) : nodes(table) {
-  std::set<int> ids(deck.scalar_points.begin(), deck.scalar_points.end());
-  for (const auto& grid : deck.grids) ids.insert(grid.id);
-  for (const int id : ids)
-    if (const int i = nodes.find_node(id); i >= 0) index.push_back(i);
-  std::sort(index.begin(), index.end(),
-            [this](int a, int b) { return nodes.node(a).first_gdof < nodes.node(b).first_gdof; });
-  for (const int i : index) num_gdofs += nodes.node(i).num_dofs;
+PointTable::PointTable(const records::Deck& deck, const Eigen::Vector3d& origin, Diagnostics& diagnostics) {
+  const fe::CoordinateSystems systems(deck, origin, diagnostics);
+  std::map<int, int> grids;  // index of the first card of each id
+  for (std::size_t i = 0; i < deck.grids.size(); ++i) grids.emplace(deck.grids[i].id, static_cast<int>(i));
+  const auto add = [this](fe::Node node) {
+    node.first_gdof = num_gdofs;
+    num_gdofs += node.num_dofs;
+    index.emplace(node.id, static_cast<int>(nodes.size()));
+    nodes.push_back(node);
+  };
+  for (const auto& [id, i] : grids) {
+    const auto& grid = deck.grids[static_cast<std::size_t>(i)];
+    const Eigen::Vector3d& x = systems.get_grid_position(i);
+    add({id, x, systems.calc_axes(grid.cd, x, deck.locate(grid.at), diagnostics), 0, 6});
+  }
+  for (const int id : std::set<int>(deck.scalar_points.begin(), deck.scalar_points.end()))
+    if (!grids.count(id)) add({id, Eigen::Vector3d::Zero(), Eigen::Matrix3d::Identity(), 0, 1});
+}
+
+const fe::Node* PointTable::find(int id) const {
+  const auto found = index.find(id);
+  return found == index.end() ? nullptr : &nodes[static_cast<std::size_t>(found->second)];
 }
 
 Eigen::MatrixXi PointTable::calc_default_dofs() const {
-  std::vector<int> by_id = index;
-  std::sort(by_id.begin(), by_id.end(), [this](int a, int b) { return nodes.node(a).id < nodes.node(b).id; });
-  Eigen::MatrixXi map(num_gdofs, 2);
-  int row = 0;
-  for (const int i : by_id) {
-    const auto& node = nodes.node(i);
-    for (int c = 0; c < node.num_dofs; ++c) map.row(row++) << node.id, (node.num_dofs == 1 ? 0 : c + 1);
-  }
-  return map;
+  auto by_id = nodes;
+  std::sort(by_id.begin(), by_id.end(), [](const fe::Node& a, const fe::Node& b) { return a.id < b.id; });
+  return list_dofs(by_id, num_gdofs);
 }
 
-Eigen::MatrixXi PointTable::calc_dof_map() const {
-  Eigen::MatrixXi map(num_gdofs, 2);
-  for (const int i : index) {
-    const auto& node = nodes.node(i);
-    for (int c = 0; c < node.num_dofs; ++c) map.row(node.first_gdof + c) << node.id, (node.num_dofs == 1 ? 0 : c + 1);
-  }
-  return map;
-}
+Eigen::MatrixXi PointTable::calc_dof_map() const { return list_dofs(nodes, num_gdofs); }
 
 modal::NodalDofs PointTable::calc_nodal_dofs() const {
+  const auto is_grid = [](const fe::Node& node) { return node.num_dofs == 6; };
+  const auto num_grids = std::count_if(nodes.begin(), nodes.end(), is_grid);
   modal::NodalDofs dofs;
   dofs.num_dofs = num_gdofs;
-  const auto is_grid = [this](int i) { return nodes.node(i).num_dofs == 6; };
-  const auto p = std::count_if(index.begin(), index.end(), is_grid);
-  dofs.xyz.resize(p, 3);
-  dofs.row.resize(p, 6);
-  Eigen::Index k = 0;
-  for (const int i : index) {
-    if (!is_grid(i)) continue;
-    dofs.xyz.row(k) = nodes.node(i).x;
-    for (int c = 0; c < 6; ++c) dofs.row(k, c) = nodes.node(i).first_gdof + c;
-    ++k;
+  dofs.xyz.resize(num_grids, 3);
+  dofs.row.resize(num_grids, 6);
+  for (Eigen::Index k = 0; k < num_grids; ++k) {  // grids come first
+    const auto& node = nodes[static_cast<std::size_t>(k)];
+    dofs.xyz.row(k) = node.x;
+    for (int c = 0; c < 6; ++c) dofs.row(k, c) = node.first_gdof + c;
   }
   return dofs;
 }
@@ -88,7 +96,7 @@ SparseRows calc_placement(const PointTable& points, const GivenMatrix& matrix, D
         "reduce.matrix-size", matrix.at,
         matrix.label + " has " + std::to_string(num_rows) + " rows, " +
             (matrix.row_dofs.rows() > 0 ? "its list of dofs has "
-                                        : std::to_string(points.index.size()) + " grids and scalar points have ") +
+                                        : std::to_string(points.nodes.size()) + " grids and scalar points have ") +
             std::to_string(dofs.rows()),
         "give a table of dofs with a line for each row of the matrix");
     return P;
@@ -96,17 +104,18 @@ SparseRows calc_placement(const PointTable& points, const GivenMatrix& matrix, D
   std::vector<Eigen::Triplet<double>> entries;
   std::set<std::pair<int, int>> seen;
   for (int i = 0; i < num_rows; ++i) {
-    const int id = dofs(i, 0), code = dofs(i, 1), k = points.nodes.find_node(id);
-    const auto fail = [&](const std::string& what, const std::string& advice) {
+    const int id = dofs(i, 0), code = dofs(i, 1);
+    const fe::Node* const found = points.find(id);
+    const auto fail = [&](const std::string& message, const std::string& advice) {
       diagnostics.error("reduce.matrix-dof", matrix.at,
-                        "row " + std::to_string(i + 1) + " of " + matrix.label + " " + what, advice);
+                        "row " + std::to_string(i + 1) + " of " + matrix.label + " " + message, advice);
     };
-    if (k < 0) {
+    if (!found) {
       fail("belongs to point " + std::to_string(id) + ", which is no grid",
            "correct the list of dofs, or add the grid");
       return P;
     }
-    const auto& node = points.nodes.node(k);
+    const fe::Node& node = *found;
     const bool is_scalar = node.num_dofs == 1;
     if (is_scalar ? code < 0 || code > 1 : code < 1 || code > 6) {
       fail("belongs to component " + std::to_string(code) + " of point " + std::to_string(id) + ", expected " +
@@ -132,24 +141,23 @@ SparseRows calc_placement(const PointTable& points, const GivenMatrix& matrix, D
 
 void add_direct_elements(const PointTable& points, const SparseRows& A, fe::DirectKind kind, fe::ElementList& list) {
   const auto owner = list_owners(points);
-  for (std::size_t a = 0; a < points.index.size(); ++a) {
-    const auto& node = points.nodes.node(points.index[a]);
+  const auto get = [&](int k) -> const fe::Node& { return points.nodes[static_cast<std::size_t>(k)]; };
+  for (int a = 0; a < static_cast<int>(points.nodes.size()); ++a) {
+    const auto& node = get(a);
     std::map<int, MatrixXd> blocks;  // by the other point, not before a
     for (int i = 0; i < node.num_dofs; ++i)
       for (SparseRows::InnerIterator it(A, node.first_gdof + i); it; ++it) {
         const int b = owner[static_cast<std::size_t>(it.col())];
-        if (b < static_cast<int>(a) || it.value() == 0) continue;
-        const auto& other = points.nodes.node(points.index[static_cast<std::size_t>(b)]);
+        if (b < a || it.value() == 0) continue;
         MatrixXd& block = blocks[b];
-        if (block.size() == 0) block.setZero(node.num_dofs, other.num_dofs);
-        block(i, it.col() - other.first_gdof) = it.value();
+        if (block.size() == 0) block.setZero(node.num_dofs, get(b).num_dofs);
+        block(i, it.col() - get(b).first_gdof) = it.value();
       }
     for (auto& [b, block] : blocks) {
-      std::vector<int> nodes{points.index[a]};
-      if (b != static_cast<int>(a)) nodes.push_back(points.index[static_cast<std::size_t>(b)]);
-      std::vector<int> gdofs;
+      std::vector<int> nodes{a}, gdofs;
+      if (b != a) nodes.push_back(b);
       for (const int k : nodes)
-        for (int c = 0; c < points.nodes.node(k).num_dofs; ++c) gdofs.push_back(points.nodes.node(k).first_gdof + c);
+        for (int c = 0; c < get(k).num_dofs; ++c) gdofs.push_back(get(k).first_gdof + c);
       list.elements.push_back(
           std::make_unique<fe::DirectElement>(kind, std::move(nodes), std::move(gdofs), std::move(block)));
     }
@@ -157,8 +165,8 @@ void add_direct_elements(const PointTable& points, const SparseRows& A, fe::Dire
 }
 
 void add_drawn_elements(const records::Deck& deck, const fe::NodeTable& nodes, fe::ElementList& list) {
-  Diagnostics not_of_interest;
-  for (const auto& element : fe::make_elements(deck, nodes, not_of_interest).elements)
+  Diagnostics ignored;  // these elements carry nothing
+  for (const auto& element : fe::make_elements(deck, nodes, ignored).elements)
     if (!element->shape().type.empty()) list.elements.push_back(std::make_unique<DrawnElement>(*element));
 }
 

@@ -10,14 +10,17 @@ namespace bough::stiffening {
 
 using SparseRows = Eigen::SparseMatrix<double, Eigen::RowMajor>;
 
-/// The points of a deck while its model is built, in the order of their dofs.
+/// Grids and scalar points of a deck, numbered as in fe::Model: grids by id, then scalar points by id.
 struct PointTable {
-  PointTable(const records::Deck& deck, const fe::NodeTable& nodes);
+  PointTable() = default;
+  /// Positions from `origin`. Reports the errors of grids and coordinate systems, as the model does.
+  PointTable(const records::Deck& deck, const Eigen::Vector3d& origin, Diagnostics& diagnostics);
 
-  std::vector<int> index;  ///< of each point in the node table, ascending by first dof
+  std::vector<fe::Node> nodes;  ///< ascending by first dof
   int num_gdofs = 0;
-  const fe::NodeTable& nodes;
+  std::unordered_map<int, int> index;  ///< into nodes, by id
 
+  const fe::Node* find(int id) const;  ///< nullptr: none
   /// Rows of a file that names none: grids and scalar points by id, six dofs and one.
   Eigen::MatrixXi calc_default_dofs() const;
   Eigen::MatrixXi calc_dof_map() const;  ///< num_gdofs x 2: node, code (scalar point: 0)
@@ -30,10 +33,10 @@ SparseRows calc_placement(const PointTable& points, const GivenMatrix& matrix, D
 
 /// One element for each pair of points that A (num_gdofs x num_gdofs, symmetric) couples, and for each point.
 void add_direct_elements(const PointTable& points, const SparseRows& A, fe::DirectKind kind, fe::ElementList& list);
-/// The shapes of the deck's own elements, to draw the body; those that cannot be made are left out.
+/// The shapes of the deck's elements, to draw the body; elements with errors are left out.
 void add_drawn_elements(const records::Deck& deck, const fe::NodeTable& nodes, fe::ElementList& list);
 
-/// Whether A couples any two points.
+/// Returns true if A couples any two points.
 bool couples_points(const PointTable& points, const SparseRows& A);
 
 }  // namespace bough::stiffening

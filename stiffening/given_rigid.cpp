@@ -15,6 +15,15 @@ namespace {
 using Eigen::Index;
 using SparseColumns = Eigen::SparseMatrix<double>;
 
+constexpr double kRowRoundoff = 1e-10;     ///< of a row of K R, relative to the sum of the magnitudes of its terms
+constexpr double kEnergyRoundoff = 1e-14;  ///< of RᵀKR, relative to Rᵀ diag(K) R
+constexpr double kMinSupportPivot = 1e-6;  ///< last pivot of R on the support, relative to the first: below, no support
+constexpr double kMasslessMotion = 1e-10;  ///< eigenvalue of RᵀMR with a unit diagonal, relative to the largest
+constexpr double kMasslessEnergy = 1e-10;  ///< energy of a rigid massless motion, relative to that of diag K
+constexpr double kRitzRank = 1e-12;        ///< of the mass matrix of the subspace, relative to its largest eigenvalue
+constexpr double kRitzConvergence = 1e-6;  ///< change of the first elastic Ritz value per step; only its size matters
+constexpr double kMaxCorrection = 1e-4;    ///< of an entry of K, relative to √(K_ii K_jj): above, K is not rounded
+
 /// R [num_gdofs x 6] about the mean position, rotations by an angle that moves the farthest grid by one unit of length;
 /// 0 in rows without stiffness. `rotation_rows`: 1 at rotations.
 MatrixXd calc_motions(const PointTable& points, const VectorXd& D, VectorXd& rotation_rows, double& size) {
@@ -32,12 +41,12 @@ MatrixXd calc_motions(const PointTable& points, const VectorXd& D, VectorXd& rot
   return R;
 }
 
-/// Whether every row of K R is below 1e-10 of the sum of its terms, and the energies below 1e-14 of those of diag K.
+/// Returns true if K R = 0 to round-off.
 bool is_exact(const SparseRows& K, const VectorXd& D, const MatrixXd& R) {
   const MatrixXd K_R = K * R, terms = K.cwiseAbs() * R.cwiseAbs();
-  if ((K_R.array().abs() > 1e-10 * terms.array()).any()) return false;
+  if ((K_R.array().abs() > kRowRoundoff * terms.array()).any()) return false;
   for (Index c = 0; c < R.cols(); ++c)
-    if (std::abs(R.col(c).dot(K_R.col(c))) > 1e-14 * R.col(c).cwiseAbs2().dot(D)) return false;
+    if (std::abs(R.col(c).dot(K_R.col(c))) > kEnergyRoundoff * R.col(c).cwiseAbs2().dot(D)) return false;
   return true;
 }
 
@@ -46,7 +55,7 @@ std::vector<Index> choose_support(const MatrixXd& R, const VectorXd& rotation_ro
   constexpr double kRotationWeight = 0.01;
   const VectorXd weight = (1 + rotation_rows.array() * (kRotationWeight * size - 1)).matrix();
   const Eigen::ColPivHouseholderQR<MatrixXd> qr((weight.asDiagonal() * R).transpose());
-  if (R.rows() < 6 || std::abs(qr.matrixR()(5, 5)) < 1e-6 * std::abs(qr.matrixR()(0, 0))) return {};
+  if (R.rows() < 6 || std::abs(qr.matrixR()(5, 5)) < kMinSupportPivot * std::abs(qr.matrixR()(0, 0))) return {};
   std::vector<Index> rows;
   for (int i = 0; i < 6; ++i) rows.push_back(qr.colsPermutation().indices()(i));
   std::sort(rows.begin(), rows.end());
@@ -58,14 +67,14 @@ MatrixXd invert(const MatrixXd& A, MatrixXd& null) {
   const VectorXd s = A.diagonal().unaryExpr([](double a) { return a > 0 ? 1 / std::sqrt(a) : 1.0; });
   const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(s.asDiagonal() * A * s.asDiagonal());
   const VectorXd& values = solver.eigenvalues();
-  const auto num = (values.array() <= 1e-10 * values.maxCoeff()).count();
+  const auto num = (values.array() <= kMasslessMotion * values.maxCoeff()).count();
   const MatrixXd V = s.asDiagonal() * solver.eigenvectors();
   null = V.leftCols(num);
   const auto kept = V.rightCols(V.cols() - num);
   return kept * values.tail(V.cols() - num).cwiseInverse().asDiagonal() * kept.transpose();
 }
 
-/// Ritz values before the largest gap of kMaxRigidQuotient: motions without strain.
+/// Number of zero-energy modes: Ritz values below the last gap of kMaxRigidQuotient.
 Index count_mechanisms(const VectorXd& values) {
   Index num = 0;
   for (Index k = 1; k < values.size(); ++k)
@@ -96,7 +105,7 @@ VectorXd calc_ritz_values(const SparseRows& M, const MatrixXd& R, const MatrixXd
     const MatrixXd A = s.asDiagonal() * energy * s.asDiagonal(), B = s.asDiagonal() * mass * s.asDiagonal();
     const Eigen::SelfAdjointEigenSolver<MatrixXd> range(0.5 * (B + B.transpose()));
     const VectorXd& b = range.eigenvalues();
-    const auto rank = (b.array() > 1e-12 * b.maxCoeff()).count();
+    const auto rank = (b.array() > kRitzRank * b.maxCoeff()).count();
     if (rank == 0 || !std::isfinite(b.sum()) || !std::isfinite(A.sum())) return {};
     const MatrixXd W = range.eigenvectors().rightCols(rank) * b.tail(rank).cwiseSqrt().cwiseInverse().asDiagonal();
     const Eigen::SelfAdjointEigenSolver<MatrixXd> ritz(W.transpose() * (0.5 * (A + A.transpose())) * W);
@@ -110,12 +119,13 @@ VectorXd calc_ritz_values(const SparseRows& M, const MatrixXd& R, const MatrixXd
     const VectorXd before = values;
     values = ritz.eigenvalues();
     const Index first = count_mechanisms(values);
-    if (before.size() == values.size() && std::abs(values(first) - before(first)) < 1e-6 * values(first)) break;
+    if (before.size() == values.size() && std::abs(values(first) - before(first)) < kRitzConvergence * values(first))
+      break;
   }
   return values;
 }
 
-/// K with the columns of `support` from equilibrium; empty if these differ from K by more than 1e-4 of its diagonal.
+/// K with the columns of `support` from equilibrium; empty if these differ from K by more than kMaxCorrection.
 SparseRows restore(const SparseRows& K, const VectorXd& D, const MatrixXd& R, const std::vector<Index>& support,
                    const std::vector<Index>& others) {
   const MatrixXd inverse = R(support, Eigen::all).fullPivLu().inverse();
@@ -139,7 +149,7 @@ SparseRows restore(const SparseRows& K, const VectorXd& D, const MatrixXd& R, co
   for (Index i = 0; i < K.rows(); ++i)
     for (Index j = 0; j < 6; ++j) {
       const Index s = support[static_cast<std::size_t>(j)];
-      if (std::abs(K_s(i, j) - old(i, j)) > 1e-4 * std::sqrt(std::abs(D(i) * D(s)))) return {};
+      if (std::abs(K_s(i, j) - old(i, j)) > kMaxCorrection * std::sqrt(std::abs(D(i) * D(s)))) return {};
       if (K_s(i, j) == 0) continue;
       entries.emplace_back(static_cast<int>(i), static_cast<int>(s), K_s(i, j));
       if (place[static_cast<std::size_t>(i)] < 0)
@@ -189,7 +199,7 @@ RigidMotionCheck check_rigid_motions(const PointTable& points, const SparseRows&
   if (!(result.elastic > 0)) return result;
   for (Index c = 0; c < massless.cols(); ++c) {
     const VectorXd x = massless.col(c), u = R * x;
-    if (std::abs(x.dot(energy * x)) < 1e-10 * u.cwiseAbs2().dot(D)) ++result.num_rigid;
+    if (std::abs(x.dot(energy * x)) < kMasslessEnergy * u.cwiseAbs2().dot(D)) ++result.num_rigid;
   }
   // Eigenvalues of (RᵀKR, RᵀMR) on the motions with mass.
   const Eigen::SelfAdjointEigenSolver<MatrixXd> root(mass_inverse);
@@ -198,8 +208,8 @@ RigidMotionCheck check_rigid_motions(const PointTable& points, const SparseRows&
       root.eigenvectors().rightCols(num) * root.eigenvalues().tail(num).cwiseMax(0).cwiseSqrt().asDiagonal();
   const Eigen::SelfAdjointEigenSolver<MatrixXd> quotients(W.transpose() * (0.5 * (energy + energy.transpose())) * W);
   result.worst = quotients.eigenvalues().cwiseAbs().maxCoeff();
-  const double most = kMaxRigidQuotient * result.elastic;
-  result.num_rigid += static_cast<int>((quotients.eigenvalues().array().abs() < most).count());
+  const double max_quotient = kMaxRigidQuotient * result.elastic;
+  result.num_rigid += static_cast<int>((quotients.eigenvalues().array().abs() < max_quotient).count());
   if (result.num_rigid < 6) return result;
   result.K = restore(K, D, R, support, others);
   result.is_free = result.K.nonZeros() > 0;

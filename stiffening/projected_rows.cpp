@@ -9,8 +9,8 @@ namespace bough::stiffening {
 
 namespace {
 
-constexpr std::size_t kMostOpen = 32'000'000;  // numbers: 256 MB
-constexpr Index kMostNumbers = 8'000'000;      // of rows that are taken together
+constexpr std::size_t kMaxOpenSize = 32'000'000;  // numbers of open groups: 256 MB
+constexpr Index kMaxBlockSize = 8'000'000;        // numbers of the rows of one product
 
 std::size_t find(const std::vector<int>& sorted, int value) {
   return static_cast<std::size_t>(std::lower_bound(sorted.begin(), sorted.end(), value) - sorted.begin());
@@ -31,7 +31,7 @@ ProjectedRows::ProjectedRows(const MatrixXd& Phi, Index num_loads, std::vector<c
       elements_(std::move(elements)),
       group_of_(std::move(group_of)),
       sums_(MatrixXd::Zero(m_ * n_, n_)) {
-  const Index num_rows = std::clamp<Index>(kMostNumbers / std::max<Index>(1, m_ * n_), 48, 384);
+  const Index num_rows = std::clamp<Index>(kMaxBlockSize / std::max<Index>(1, m_ * n_), 48, 384);
   L_Phi_.resize(m_ * n_, num_rows);
   Phi_rows_.resize(num_rows, n_);
   const auto num_groups = group_of_.empty() ? 0 : static_cast<std::size_t>(group_of_.back()) + 1;
@@ -67,7 +67,7 @@ ProjectedRows::Group& ProjectedRows::open(int group) {
 void ProjectedRows::add(std::size_t e, const std::vector<int>& entries, const MatrixXd& values) {
   const auto& dofs = *elements_[e];
   BOUGH_DEMAND(values.rows() == static_cast<Index>(entries.size()) && values.cols() == m_);
-  // Where each entry goes in the L of its group, and how far the next load is.
+  // The position of each entry in the L of its group, and the distance to the next load.
   struct Place {
     double* at;
     std::size_t stride;
@@ -97,8 +97,8 @@ void ProjectedRows::add(std::size_t e, const std::vector<int>& entries, const Ma
   sort_unique(own);
   for (const int g : own)
     if (--left_[static_cast<std::size_t>(g)] == 0) close(groups_[static_cast<std::size_t>(g)]);
-  if (open_size_ < kMostOpen) return;
-  // Rows that are not complete go as they are, and once more with the rest.
+  if (open_size_ < kMaxOpenSize) return;
+  // Incomplete rows are multiplied in two parts: now, and later with their other elements.
   for (const int g : open_) close(groups_[static_cast<std::size_t>(g)]);
   open_.clear();
 }

@@ -4,10 +4,10 @@
 
 #include "fe/loads/loads.hpp"
 #include "fe/loads/second_order.hpp"
-#include "fe/statics/statics.hpp"
 #include "formats/records/body_spec.hpp"
-#include "modal/eigen.hpp"
 #include "modal/nodal_dofs.hpp"
+#include "modal/response/residual_modes.hpp"
+#include "stiffening/basis_check.hpp"
 
 namespace bough::stiffening {
 
@@ -17,7 +17,7 @@ using Eigen::VectorXd;
 using fe::calc_inertial_loads;  ///< of a model
 /// F_I for any mass matrix and dof map, as the report's fimake5 (eqs. 3-12): P = M Φ_R (num_dofs x 6). Spin takes every
 /// nodal momentum as that of a mass at its node. Rows of generalized dofs carry the six accelerations only: the map
-/// does not tell which way a spin turns them.
+/// does not contain the direction in which a spin rotates them.
 MatrixXd calc_inertial_loads(const modal::NodalDofs& dofs, const MatrixXd& P);
 
 /// K_G of every load projected on Phi, U (num_gdofs x m) their static solutions: m matrices n x n, accumulated element
@@ -25,24 +25,28 @@ MatrixXd calc_inertial_loads(const modal::NodalDofs& dofs, const MatrixXd& P);
 std::vector<MatrixXd> calc_generalized_geometric_stiffness(const fe::Model& model, const fe::AppliedLoads& loads,
                                                            const MatrixXd& U, const MatrixXd& Phi);
 
-struct BasisCheck;
-
 struct ReduceOptions {
   std::function<void(const std::string& stage)> progress;
-  fe::ElementFactory elements;                       ///< instead of the deck's own: matrices that are given
-  std::function<MatrixXd(const fe::System&)> modes;  ///< num_gdofs x n in basic, instead of solving for them
-  std::string solver;                                ///< EPS type of SLEPc for the modes (modal::find_eps_type)
-  BasisCheck* check = nullptr;                       ///< gets what check_basis() finds (basis_check.hpp)
-  /// Loads (num_gdofs x m, basic) that get residual vectors beside those of the spec; adds their names.
-  std::function<MatrixXd(const fe::Model&, std::vector<std::string>& names)> residual_loads;
+  std::string solver;  ///< EPS type of SLEPc for the modes (modal::find_eps_type)
+  /// Loads (basic) that get residual vectors in addition to those of the spec; empty function: none.
+  std::function<modal::response::ResidualLoads(const fe::Model&)> residual_loads;
 };
 
-/// The whole preprocessing: model, modes, integrals, F_I, K_G1, K_G2 -> FlexBody. Runs on every rank; the record is
-/// complete on each. Every locator is in body axes; K_G is solved on the SPC set of a fixed body, on a determinate
-/// support of a free one. Throws InputError with all of reduce.no-modes, reduce.bad-select, reduce.bad-mass,
-/// reduce.bad-integrals, reduce.bad-support, reduce.bad-damping, reduce.unknown-node, reduce.bad-direction; or
-/// reduce.grounded, reduce.mechanism; and what fe and modal throw.
-records::FlexBody reduce(const records::Deck& deck, const records::BodySpec& spec, const ReduceOptions& options,
-                         Diagnostics& diagnostics);
+struct ReducedBody {
+  records::FlexBody body;
+  BasisCheck check;  ///< of its modal matrices and normal modes
+};
+
+/// Reduces a deck to a flexible body: model, modes, mass integrals, F_I, K_G1, K_G2.
+///
+/// Every locator is in body axes. K_G is solved on the SPC set of a fixed body, on a determinate support of a free one.
+///
+/// \return the same complete record on every rank.
+/// \throws InputError with all of reduce.no-modes, reduce.bad-select, reduce.bad-mass, reduce.bad-integrals,
+///     reduce.bad-support, reduce.bad-damping, reduce.unknown-node, reduce.bad-direction; or reduce.grounded,
+///     reduce.mechanism; and the errors of fe and modal.
+/// \note Collective.
+ReducedBody reduce(const records::Deck& deck, const records::BodySpec& spec, const ReduceOptions& options,
+                   Diagnostics& diagnostics);
 
 }  // namespace bough::stiffening

@@ -7,7 +7,7 @@
 
 namespace bough::stiffening {
 
-/// A matrix with what its rows are. Columns of K, M, B, K_G are the same dofs.
+/// A matrix with the dofs of its rows. Columns of K, M, B, K_G are the same dofs.
 struct GivenMatrix {
   std::string label;                                       ///< for messages: file and name
   Eigen::SparseMatrix<double, Eigen::RowMajor> values;     ///< num_dofs x num_dofs, or x n
@@ -17,7 +17,7 @@ struct GivenMatrix {
   bool empty() const { return values.rows() == 0; }
 };
 
-/// Mode shapes with the eigenvalues that stand beside them in their file, if any.
+/// Mode shapes with the eigenvalues of their file, if it has any.
 struct GivenModes {
   GivenMatrix Phi;
   VectorXd eigenvalue;  ///< n, or empty
@@ -41,15 +41,17 @@ struct GivenMatrices {
   std::vector<int> clamped;
 };
 
-/// As reduce(). K_G1 and K_G2 are those given, none else: `kg_inertial_computed` tells, warnings say so. Mass
-/// integrals: the momentum set (called lumped where M couples no two points) and the exact one. Warnings:
-/// reduce.no-stiffening, reduce.not-rigid-mass, reduce.missing-dofs, reduce.modes-differ, reduce.matrix-order. Throws
-/// InputError with reduce.matrix-size, reduce.matrix-dof, reduce.not-symmetric, reduce.negative-mass, and what reduce()
-/// throws.
-records::FlexBody reduce_matrices(const records::Deck& deck, const records::BodySpec& spec, const GivenMatrices& given,
-                                  const ReduceOptions& options, Diagnostics& diagnostics);
+/// Reduces given matrices to a flexible body, as reduce() a deck.
+///
+/// K_G1 and K_G2 are those given: `kg_inertial_computed` flags them, warnings name the missing ones. Mass integrals:
+/// the momentum set (called lumped where M couples no two points) and the exact one. Warnings: reduce.no-stiffening,
+/// reduce.not-rigid-mass, reduce.missing-dofs, reduce.modes-differ, reduce.modes-residual, reduce.matrix-order.
+/// \throws InputError with reduce.matrix-size, reduce.matrix-dof, reduce.not-symmetric, reduce.negative-mass, and the
+///     errors of reduce().
+ReducedBody reduce_matrices(const records::Deck& deck, const records::BodySpec& spec, const GivenMatrices& matrices,
+                            const ReduceOptions& options, Diagnostics& diagnostics);
 
-/// Modes of a body beside others of the same structure.
+/// Modes of a body compared with others of the same structure.
 struct ModeCheck {
   VectorXd frequency_hz;  ///< m, of the others: by the eigenvalues of their file; -1 without
   MatrixXd mac;           ///< n x m: cos² of the angle between modes, translations of the common output nodes

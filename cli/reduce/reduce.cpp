@@ -23,7 +23,6 @@
 #include "formats/hdf5/body_accuracy.hpp"
 #include "formats/nastran/loads_deck.hpp"
 #include "formats/toml/specs.hpp"
-#include "stiffening/basis_check.hpp"
 
 namespace bough::cli {
 
@@ -230,10 +229,8 @@ int run_reduce(const ReduceVerbOptions& o) {
   console.set_rank(fe::initialize_petsc().rank);
   stiffening::ReduceOptions options;
   options.progress = [&](const std::string& stage) { console.show_progress("reduce: " + stage); };
-  stiffening::BasisCheck basis;
-  options.check = &basis;
   if (!o.solver.empty()) options.solver = modal::find_eps_type(o.solver);
-  const auto [body, check] = reduce_body(spec, options, diagnostics);
+  const auto [body, basis, check] = reduce_body(spec, options, diagnostics);
   console.end_progress();
   console.print(diagnostics);
   diagnostics.throw_if_errors();

@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "cli/common/console.hpp"
 #include "cli/common/options.hpp"
 #include "cli/common/solution.hpp"
 #include "cli/listing/listing.hpp"
@@ -42,34 +43,34 @@ Reduced reduce_deck(const records::BodySpec& spec, const stiffening::ReduceOptio
   const auto loads_deck = read_residuals(spec, model_options, deck, selection, loads_said);
   auto own = options;
   if (loads_deck)
-    own.residual_loads = [&](const fe::Model& model, std::vector<std::string>& names) {
+    own.residual_loads = [&](const fe::Model& model) {
       auto loads = modal::response::collect_residual_loads(
           model, *loads_deck, records::DynamicSubcase(model.subcase(), selection), diagnostics);
       diagnostics.throw_if_errors();
-      names.insert(names.end(), loads.name.begin(), loads.name.end());
-      return std::move(loads.F);
+      return loads;
     };
-  Reduced result;
   files = deck.files;
-  with_prior_messages(diagnostics, [&] { result.body = stiffening::reduce(deck, spec, own, diagnostics); });
-  return result;
+  stiffening::ReducedBody reduced;
+  with_prior_messages(diagnostics, [&] { reduced = stiffening::reduce(deck, spec, own, diagnostics); });
+  return {std::move(reduced.body), std::move(reduced.check), {}};
 }
 
 Reduced reduce_given(const records::BodySpec& spec, const stiffening::ReduceOptions& options,
                      std::vector<std::string>& files, Diagnostics& diagnostics) {
   const auto deck = read_points(spec, diagnostics);
-  Reduced result;
   files = deck.files;
   const auto given = read_given_matrices(*spec.matrices, deck, files, diagnostics);
   // Faults of the matrices are faults of this file, not of the points.
   const auto& matrices = *spec.matrices;
+  stiffening::ReducedBody reduced;
   const auto reduce = [&] {
     with_prior_messages(diagnostics,
-                        [&] { result.body = stiffening::reduce_matrices(deck, spec, given, options, diagnostics); });
+                        [&] { reduced = stiffening::reduce_matrices(deck, spec, given, options, diagnostics); });
     return kSuccess;
   };
   with_file(matrices.file.empty() ? matrices.stiffness.file : matrices.file, reduce,
             deck.files.empty() ? "" : deck.files.front());
+  Reduced result{std::move(reduced.body), std::move(reduced.check), {}};
   if (spec.matrices->check_modes.empty()) return result;
   const auto others = read_given_modes(spec.matrices->check_modes, *spec.matrices, deck, diagnostics);
   result.check = stiffening::compare_modes(result.body, deck, others, diagnostics);

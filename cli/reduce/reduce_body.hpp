@@ -11,6 +11,7 @@ namespace bough::cli {
 
 struct Reduced {
   records::FlexBody body;
+  stiffening::BasisCheck basis;                ///< of its modal matrices
   std::optional<stiffening::ModeCheck> check;  ///< with other modes, where the specification names some
 };
 

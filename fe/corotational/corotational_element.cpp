@@ -7,6 +7,7 @@
 
 #include "base/rotation.hpp"
 #include "fe/corotational/series.hpp"
+#include "fe/elements/stress_state.hpp"
 
 namespace bough::fe {
 
@@ -108,13 +109,14 @@ void CorotationalElement::set_frame() {
 }
 
 void CorotationalElement::set_local_strains(const Element& element) {
-  const int N = num_dofs(), s = element.num_internal_forces();
+  const StressState* state = element.stress_state();
+  const int N = num_dofs(), s = state ? state->num_internal_forces() : 0;
   F_ = MatrixXd::Zero(s, N);
   if (s == 0) return;
-  element.calc_internal_forces_of(MatrixXd::Identity(N, N), F_);
+  state->calc_internal_forces_of(MatrixXd::Identity(N, N), F_);
   for (int m = 0; m < s; ++m) {
     MatrixXd P = MatrixXd::Zero(N, N);
-    element.add_geometric_stiffness(VectorXd::Unit(s, m), 1, P);
+    state->add_geometric_stiffness(VectorXd::Unit(s, m), 1, P);
     P_.push_back(0.5 * (P + P.transpose()));
   }
   E_ = F_ * solve_in_range(K_, F_.transpose());

@@ -44,7 +44,7 @@ BodySpec make_spec(BodyFrame frame, int num_modes = 6) {
 
 FlexBody reduce(const records::Deck& deck, const BodySpec& spec) {
   Diagnostics diagnostics;
-  return stiffening::reduce(deck, spec, {}, diagnostics);
+  return stiffening::reduce(deck, spec, {}, diagnostics).body;
 }
 
 /// Free frequencies of the body as the solver sees it at rest: [v; ω; η].
@@ -172,7 +172,7 @@ TEST(Bases, ResidualVectorsAndSelection) {
   auto complete = make_spec(BodyFrame::Fixed, 100);
   complete.loads = spec.loads;
   Diagnostics ignored;
-  const auto exact = stiffening::reduce(maker.deck, complete, {}, ignored);
+  const auto exact = stiffening::reduce(maker.deck, complete, {}, ignored).body;
   const auto deflect = [](const FlexBody& body, int e) {
     const VectorXd load = body.external_load.col(e);
     return load.dot(body.modal_stiffness.ldlt().solve(load));

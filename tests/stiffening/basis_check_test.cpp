@@ -28,9 +28,9 @@ ReducedBeam reduce_beam(bool is_free) {
   spec.full = true;
   if (is_free) spec.frame = records::BodyFrame::Free;
   ReducedBeam reduced;
-  stiffening::ReduceOptions options;
-  options.check = &reduced.check;
-  reduced.body = stiffening::reduce(maker.deck, spec, options, reduced.said);
+  auto result = stiffening::reduce(maker.deck, spec, {}, reduced.said);
+  reduced.body = std::move(result.body);
+  reduced.check = std::move(result.check);
   return reduced;
 }
 

@@ -86,7 +86,7 @@ struct Blade {
     records::BodySpec spec;
     spec.num_modes = 14;
     spec.output_nodes = {kTip};
-    body = stiffening::reduce(deck, spec, {}, diagnostics);
+    body = stiffening::reduce(deck, spec, {}, diagnostics).body;
     stiffness = body.kg_inertial[static_cast<std::size_t>(records::InertialLoad::wz2)];
     for (std::size_t j = 0; j < 14; ++j)
       for (std::size_t k = 0; k < 14; ++k)

@@ -44,7 +44,7 @@ Hinge reduce_hinge(const std::string& mass) {
   records::BodySpec spec;
   spec.num_modes = 1;
   spec.output_nodes = {2};
-  const auto body = stiffening::reduce(deck, spec, {}, diagnostics);
+  const auto body = stiffening::reduce(deck, spec, {}, diagnostics).body;
   const double turn = body.phi[0](5, 0);
   Hinge hinge;
   // J_zz(η) = J + η (Γ3 + Γ3ᵀ)_zz + η² (Γ4 - K_G1).
@@ -105,7 +105,7 @@ TEST(CarriedBodies, MassesThatAreNotOfBodiesAreNamed) {
   const auto deck = test::read_deck(make_hinge("CONM1,9,2,,1.,,2.,,\n,1.,,,,.3,,,\n,,.4,,,,,,.5\n"), diagnostics);
   records::BodySpec spec;
   spec.num_modes = 1;
-  const auto body = stiffening::reduce(deck, spec, {}, diagnostics);
+  const auto body = stiffening::reduce(deck, spec, {}, diagnostics).body;
   EXPECT_EQ(body.masses, "nodal momenta");
   for (const std::string id : {"fe.mass-not-rigid", "reduce.inertia-approximated"})
     EXPECT_TRUE(std::any_of(diagnostics.items().begin(), diagnostics.items().end(), [&](const auto& item) {

@@ -26,7 +26,7 @@ records::FlexBody reduce(const std::string& control, const std::string& bulk) {
   spec.file = "d.toml";
   spec.num_modes = 3;
   spec.has_material_damping = true;
-  return stiffening::reduce(deck, spec, {}, diagnostics);
+  return stiffening::reduce(deck, spec, {}, diagnostics).body;
 }
 
 /// Every mode has g ω and nothing couples them.

@@ -124,7 +124,7 @@ records::BodySpec make_spec(int num_modes) {
 records::FlexBody reduce_given(const records::Deck& deck, const records::BodySpec& spec, const GivenMatrices& given,
                                Diagnostics* diagnostics = nullptr) {
   Diagnostics own;
-  return stiffening::reduce_matrices(deck, spec, given, {}, diagnostics ? *diagnostics : own);
+  return stiffening::reduce_matrices(deck, spec, given, {}, diagnostics ? *diagnostics : own).body;
 }
 
 bool has_id(const Diagnostics& diagnostics, const std::string& id) {
@@ -175,7 +175,7 @@ TEST(ReduceMatrices, OwnMatricesGiveTheBodyOfTheDeck) {
   spec.interface_moments = false;  // of the loads here none is a moment
   spec.damping_ratio = 0.02;
   Diagnostics diagnostics;
-  const auto expected = stiffening::reduce(deck, spec, {}, diagnostics);
+  const auto expected = stiffening::reduce(deck, spec, {}, diagnostics).body;
   EXPECT_GT(expected.modal_damping.cwiseAbs().maxCoeff(), 0);
 
   // Every K_G, each with its load: the twelve inertial ones, a unit load on the link's end, a load set, a column.
@@ -217,7 +217,7 @@ TEST(ReduceMatrices, OwnMatricesGiveTheBodyOfTheDeck) {
   // too.
   auto with_set = spec;
   with_set.loads.push_back({"push", 0, {}, 7, {}});
-  const auto reference = stiffening::reduce(deck, with_set, {}, diagnostics);
+  const auto reference = stiffening::reduce(deck, with_set, {}, diagnostics).body;
   ASSERT_EQ(body.locators.size(), 5u);
   for (const std::size_t e : {3, 4}) {
     expect_near(body.kg_external[e], reference.kg_external[3], 1e-9, "pattern");
@@ -241,7 +241,7 @@ TEST(ReduceMatrices, ConsistentMassTakesItsNodalMomenta) {
   EXPECT_TRUE(has_id(found, "reduce.inertia-approximated"));
   EXPECT_EQ(body.masses, "nodal momenta");
   EXPECT_TRUE(body.lumped.empty());
-  const auto expected = stiffening::reduce(deck, spec, {}, diagnostics);
+  const auto expected = stiffening::reduce(deck, spec, {}, diagnostics).body;
   EXPECT_EQ(expected.masses, "bodies");
   expect_near(body.frequency_hz, expected.frequency_hz, 1e-10, "frequency");
   expect_near(body.F_I.leftCols(6), expected.F_I.leftCols(6), 1e-12, "F_I of accelerations");
@@ -378,7 +378,7 @@ TEST(ReduceMatrices, DisplacementAxesAndTheOrderOfPoints) {
   Exported own(deck);
   const auto spec = make_spec(5);
   Diagnostics diagnostics;
-  const auto expected = stiffening::reduce(deck, spec, {}, diagnostics);
+  const auto expected = stiffening::reduce(deck, spec, {}, diagnostics).body;
 
   // To the axes of each grid, as Nastran has them, without a list of dofs: the g-set by id.
   MatrixXd R = MatrixXd::Zero(own.model.num_gdofs(), own.model.num_gdofs());
@@ -429,7 +429,7 @@ TEST(ReduceMatrices, DofsThatTheMatrixLacks) {
   Exported own(planar);
   const auto spec = make_spec(4);
   Diagnostics diagnostics;
-  const auto expected = stiffening::reduce(planar, spec, {}, diagnostics);
+  const auto expected = stiffening::reduce(planar, spec, {}, diagnostics).body;
   std::vector<int> free;
   for (int i = 0; i < own.model.num_gdofs(); ++i)
     if (own.given.K.row_dofs(i, 0) != 1) free.push_back(i);
@@ -467,7 +467,7 @@ TEST(ReduceMatrices, ClampedGridsStandInForConstraints) {
   Exported own(deck);
   const auto spec = make_spec(4);
   Diagnostics diagnostics;
-  const auto expected = stiffening::reduce(deck, spec, {}, diagnostics);
+  const auto expected = stiffening::reduce(deck, spec, {}, diagnostics).body;
   const auto loose = read(replace(replace(kDeck, "SPC = 1\n", ""), "SPC1,1,123456,1\n", ""));
   own.given.clamped = {1};
   expect_same_body(reduce_given(loose, spec, own.given), expected);
@@ -490,7 +490,7 @@ TEST(ReduceMatrices, FreeBodyAndGivenModes) {
   auto spec = make_spec(4);
   spec.frame = records::BodyFrame::Free;
   Diagnostics diagnostics;
-  const auto expected = stiffening::reduce(deck, spec, {}, diagnostics);
+  const auto expected = stiffening::reduce(deck, spec, {}, diagnostics).body;
   expect_same_body(reduce_given(deck, spec, own.given), expected);
 
   // Modes with the rigid ones among them, not normalized, and eigenvalues beside them.
@@ -556,7 +556,7 @@ TEST(ReduceMatrices, ModesAreComparedInBasicAxes) {
   const auto deck = read(kDeck);
   const auto spec = make_spec(3);
   Diagnostics diagnostics;
-  const auto body = stiffening::reduce(deck, spec, {}, diagnostics);
+  const auto body = stiffening::reduce(deck, spec, {}, diagnostics).body;
   const Exported own(deck);
   stiffening::GivenModes theirs;
   theirs.Phi = own.given.K;

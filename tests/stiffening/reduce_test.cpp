@@ -28,7 +28,7 @@ BodySpec make_spec(int num_modes) {
 
 records::FlexBody reduce(const records::Deck& deck, const BodySpec& spec) {
   Diagnostics diagnostics;
-  return stiffening::reduce(deck, spec, {}, diagnostics);
+  return stiffening::reduce(deck, spec, {}, diagnostics).body;
 }
 
 const test::Section kSection = {70e9, 27e9, 2700, 1e-4, 1e-9, 3e-9, 2e-9};
@@ -251,7 +251,7 @@ TEST(Reduce, WarnsOfWhatIsNotUsed) {
   spec.support = {1};
   spec.max_frequency_hz = 1e-3;
   Diagnostics diagnostics;
-  const auto body = stiffening::reduce(maker.deck, spec, {}, diagnostics);
+  const auto body = stiffening::reduce(maker.deck, spec, {}, diagnostics).body;
   EXPECT_EQ(body.num_modes(), 0);
   EXPECT_TRUE(diagnostics.has("reduce.support-unused"));
   EXPECT_TRUE(diagnostics.has("reduce.rigid"));

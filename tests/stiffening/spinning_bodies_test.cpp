@@ -20,7 +20,7 @@ records::FlexBody reduce(const std::string& text, int num_modes) {
   const auto deck = test::read_deck(text, diagnostics);
   records::BodySpec spec;
   spec.num_modes = num_modes;
-  return stiffening::reduce(deck, spec, {}, diagnostics);
+  return stiffening::reduce(deck, spec, {}, diagnostics).body;
 }
 
 /// Stiffness per Ω² of the modes of a body held on a hub that spins about z.

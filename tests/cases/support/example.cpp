@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 
 records::FlexBody reduce(const records::Deck& deck, const records::BodySpec& spec) {
   Diagnostics diagnostics;
-  auto body = stiffening::reduce(deck, spec, {}, diagnostics);
+  auto body = stiffening::reduce(deck, spec, {}, diagnostics).body;
   diagnostics.throw_if_errors();
   return body;
 }

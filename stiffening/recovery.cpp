@@ -1,4 +1,4 @@
-/// Forces and stresses of the elements that the body file names, per mode and per unit load.
+// Forces and stresses of the elements that the body file names, per mode and per unit load.
 #include <cctype>
 #include <charconv>
 #include <functional>
@@ -11,7 +11,7 @@
 #include "fe/elements/beam.hpp"
 #include "fe/loads/load_sets.hpp"
 #include "fe/statics/element_results.hpp"
-#include "stiffening/reduction.hpp"
+#include "stiffening/stages.hpp"
 
 namespace bough::stiffening {
 namespace {
@@ -21,8 +21,8 @@ bool read_id(std::string_view text, int& id) {
   return !text.empty() && std::from_chars(text.data(), end, id).ptr == end && id > 0;
 }
 
-/// What a word of `recover` names: "ALL", an id, "A-B", "property:P", "card:CBAR".
-struct Wanted {
+/// The elements of a word of `recover`: "ALL", an id, "A-B", "property:P", "card:CBAR".
+struct ElementChoice {
   bool all = false;
   int first = 0, last = -1, property = 0;
   std::string card;
@@ -33,18 +33,18 @@ struct Wanted {
   }
 };
 
-std::optional<Wanted> read_wanted(const std::string& word) {
-  Wanted w;
+std::optional<ElementChoice> read_choice(const std::string& word) {
+  ElementChoice w;
   std::string upper = word;
   for (char& c : upper) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
   const auto dash = upper.find('-'), colon = upper.find(':');
   if (upper == "ALL") {
     w.all = true;
   } else if (colon != std::string::npos) {
-    const auto kind = upper.substr(0, colon), what = upper.substr(colon + 1);
-    if (kind == "CARD" && !what.empty())
-      w.card = what;
-    else if (kind != "PROPERTY" || !read_id(what, w.property))
+    const auto kind = upper.substr(0, colon), name = upper.substr(colon + 1);
+    if (kind == "CARD" && !name.empty())
+      w.card = name;
+    else if (kind != "PROPERTY" || !read_id(name, w.property))
       return std::nullopt;
   } else if (dash != std::string::npos) {
     if (!read_id(upper.substr(0, dash), w.first) || !read_id(upper.substr(dash + 1), w.last) || w.last < w.first)
@@ -56,8 +56,8 @@ std::optional<Wanted> read_wanted(const std::string& word) {
   return w;
 }
 
-/// Forces and stresses of an element for columns U_g, in the rows of a block: what static solutions print, then the
-/// stresses. `add` (may be empty): what a column's internal forces have beside those of its displacements.
+/// Forces and stresses of an element for columns U_g, in the rows of a block: the forces that static solutions print,
+/// then the stresses. `add` (may be empty): internal forces and stresses in addition to those of the displacements.
 MatrixXd calc_rows(const fe::Element& element, const MatrixXd& U_g,
                    const std::function<void(MatrixXd& forces, MatrixXd& stresses)>& add) {
   const fe::PrintedForces& printed_forces = *element.printed_forces();
@@ -79,28 +79,27 @@ MatrixXd calc_rows(const fe::Element& element, const MatrixXd& U_g,
   return rows;
 }
 
-}  // namespace
+/// Indices of elements by card and names of the rows.
+using Groups = std::map<std::pair<std::string, std::vector<std::string>>, std::vector<int>>;
 
-/// The elements that spec_.recover names, by what their rows are called. Reports reduce.bad-recover,
-/// reduce.unknown-element, reduce.nothing-to-recover.
-std::map<std::pair<std::string, std::vector<std::string>>, std::vector<int>> Reduction::choose_recovered(
-    const fe::Model& model) {
-  std::map<std::pair<std::string, std::vector<std::string>>, std::vector<int>> groups;
-  const auto properties = fe::list_element_properties(deck_);
+/// The elements that spec.recover names. Reports reduce.bad-recover, reduce.unknown-element, reduce.nothing-to-recover.
+Groups choose_recovered(const BodyRequest& request, const fe::Model& model) {
+  Groups groups;
+  const auto properties = fe::list_element_properties(request.deck);
   std::unordered_set<int> chosen;
   const auto& elements = model.elements();
-  for (const auto& word : spec_.recover) {
-    const auto wanted = read_wanted(word);
-    if (!wanted) {
-      diagnostics_.error("reduce.bad-recover", where(),
-                         "recover names \"" + word + "\", which is no element, range, property or card",
-                         "write \"ALL\", 17, \"17-25\", \"property:3\" or \"card:CBAR\"");
+  for (const auto& word : request.spec.recover) {
+    const auto choice = read_choice(word);
+    if (!choice) {
+      request.error("reduce.bad-recover",
+                    "recover names \"" + word + "\", which is no element, range, property or card",
+                    "write \"ALL\", 17, \"17-25\", \"property:3\" or \"card:CBAR\"");
       continue;
     }
     bool is_there = false;
     for (std::size_t e = 0; e < elements.size(); ++e) {
       const auto property = properties.find(elements[e]->id());
-      if (!wanted->names(*elements[e], property == properties.end() ? 0 : property->second)) continue;
+      if (!choice->names(*elements[e], property == properties.end() ? 0 : property->second)) continue;
       is_there = true;
       std::vector<std::string> names;
       if (const auto* printed = elements[e]->printed_forces()) names = printed->printed_force_names();
@@ -110,44 +109,46 @@ std::map<std::pair<std::string, std::vector<std::string>>, std::vector<int>> Red
       groups[{elements[e]->card(), std::move(names)}].push_back(static_cast<int>(e));
     }
     if (!is_there)
-      diagnostics_.error("reduce.unknown-element", where(),
-                         "recover names \"" + word + "\", but the deck has no such element", "correct it");
+      request.error("reduce.unknown-element", "recover names \"" + word + "\", but the deck has no such element",
+                    "correct it");
   }
-  diagnostics_.throw_if_errors();
+  request.diagnostics.throw_if_errors();
   if (groups.empty())
-    diagnostics_.warning("reduce.nothing-to-recover", where(),
-                         "the elements that recover names have neither forces nor stresses",
-                         "name bars, beams, rods, shells, solids, springs or bushes");
+    request.warning("reduce.nothing-to-recover", "the elements that recover names have neither forces nor stresses",
+                    "name bars, beams, rods, shells, solids, springs or bushes");
   return groups;
 }
 
-/// U: the static solutions of the loads F, whose first columns are the inertial ones of `inertial`, then a column a
-/// locator. What the modes leave out of each is U - Φ K⁻¹ ΦᵀF (docs/theory/recovery.md).
-void Reduction::set_recovery(const fe::Model& model, const MatrixXd& U, const MatrixXd& F,
-                             const std::vector<int>& inertial) {
-  if (spec_.recover.empty()) return;
-  report("element recovery");
-  const auto groups = choose_recovered(model);
-  const auto n = Phi_.cols(), num_inertial = static_cast<Eigen::Index>(inertial.size());
+}  // namespace
+
+/// U - Φ K⁻¹ ΦᵀF is the deflection of each load that the modes lack (docs/theory/recovery.md).
+void set_recovery(const BodyRequest& request, const fe::Model& model, const MatrixXd& Phi,
+                  const std::vector<LoadPattern>& patterns, const SolvedLoads& solved, records::FlexBody& body) {
+  if (request.spec.recover.empty()) return;
+  request.report("element recovery");
+  const auto groups = choose_recovered(request, model);
+  const MatrixXd &F = solved.columns.F, &U = solved.U;
+  const auto& inertial = solved.inertial;
+  const auto n = Phi.cols(), num_inertial = solved.num_inertial();
   const auto num_loads = F.cols() - num_inertial;
-  body_.inertial_load = MatrixXd::Zero(n, records::kNumInertialLoads);
+  body.inertial_load = MatrixXd::Zero(n, records::kNumInertialLoads);
   for (Eigen::Index i = 0; i < num_inertial; ++i)
-    body_.inertial_load.col(inertial[static_cast<std::size_t>(i)]) = Phi_.transpose() * F.col(i);
-  MatrixXd left = U;
-  if (n > 0) left -= Phi_ * body_.modal_stiffness.ldlt().solve(Phi_.transpose() * F);
-  std::vector<std::unordered_map<int, Eigen::VectorXd>> end_loads(loads_.size());
-  for (std::size_t e = 0; e < loads_.size(); ++e)
-    if (loads_[e].load_set > 0) {
-      Diagnostics said;
-      end_loads[e] = fe::calc_beam_end_loads(model, deck_, loads_[e].load_set, said);
+    body.inertial_load.col(inertial[static_cast<std::size_t>(i)]) = Phi.transpose() * F.col(i);
+  MatrixXd residual = U;
+  if (n > 0) residual -= Phi * body.modal_stiffness.ldlt().solve(Phi.transpose() * F);
+  std::vector<std::unordered_map<int, Eigen::VectorXd>> end_loads(patterns.size());
+  for (std::size_t e = 0; e < patterns.size(); ++e)
+    if (patterns[e].load_set > 0) {
+      Diagnostics repeated;  // of make_load_patterns()
+      end_loads[e] = fe::calc_beam_end_loads(model, request.deck, patterns[e].load_set, repeated);
     }
   MatrixXd all(U.rows(), n + F.cols());
-  all.leftCols(n) = Phi_;
-  all.rightCols(F.cols()) = left;
+  all.leftCols(n) = Phi;
+  all.rightCols(F.cols()) = residual;
   const auto [begin, end] = fe::calc_element_range(model);
   std::map<std::string, int> count;
   for (const auto& [key, members] : groups) {
-    auto& block = body_.recovery.emplace_back();
+    auto& block = body.recovery.emplace_back();
     const int number = ++count[key.first];
     block.name = number == 1 ? key.first : key.first + "-" + std::to_string(number);
     block.components = key.second;
@@ -160,9 +161,9 @@ void Reduction::set_recovery(const fe::Model& model, const MatrixXd& U, const Ma
       if (e < begin || e >= end) continue;
       auto mine = rows.middleRows(c * static_cast<Eigen::Index>(k), c);
       mine.leftCols(all.cols()) = calc_rows(element, all, [&](MatrixXd& forces, MatrixXd& stresses) {
-        for (std::size_t l = 0; l < loads_.size(); ++l) {
+        for (std::size_t l = 0; l < patterns.size(); ++l) {
           const auto column = n + num_inertial + static_cast<Eigen::Index>(l);
-          if (const auto* part = loads_[l].initial.find(element)) {
+          if (const auto* part = patterns[l].initial.find(element)) {
             forces.col(column) += part->force;
             if (part->stress.size() > 0) stresses.col(column) += part->stress;
           }
