@@ -2,6 +2,7 @@
 #include <set>
 
 #include "base/rotation.hpp"
+#include "fe/elements/stress_state.hpp"
 #include "fe/linear/blas.hpp"
 #include "stiffening/stages.hpp"
 
@@ -33,7 +34,7 @@ void add_thermal_stiffness(const fe::Model& model, const fe::InitialForces& init
     const auto* part = initial.find(*element);
     if (!part || part->force.size() == 0) continue;
     K.setZero(element->num_dofs(), element->num_dofs());
-    element->add_geometric_stiffness(part->force, 1, K);
+    element->stress_state()->add_geometric_stiffness(part->force, 1, K);
     const MatrixXd Phi_e = Phi(element->gdofs(), Eigen::all);
     sum += Phi_e.transpose() * K * Phi_e;
   }
