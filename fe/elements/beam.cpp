@@ -193,7 +193,7 @@ void Beam::add_geometric_stiffness(const Eigen::Ref<const VectorXd>& force, doub
 /// Products of q at the points, once for all loads. Arms and pins have terms of their own.
 void Beam::add_projected_geometric_stiffness(const Eigen::Ref<const MatrixXd>& U, const Eigen::Ref<const MatrixXd>& Phi,
                                              GeometricProjection& sums) const {
-  if (has_arms() || has_pins()) return Element::add_projected_geometric_stiffness(U, Phi, sums);
+  if (has_arms() || has_pins()) return StressState::add_projected_geometric_stiffness(U, Phi, sums);
   auto terms = sums.add_terms(num_internal_forces());
   MatrixXd force(num_internal_forces(), U.cols());
   calc_internal_forces_of(U, force);
