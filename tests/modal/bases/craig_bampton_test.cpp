@@ -38,7 +38,7 @@ DeckMaker make_frame(bool fixed) {
 
 Model build(const records::Deck& deck) {
   Diagnostics diagnostics;
-  auto model = build_model(deck, {}, diagnostics);
+  auto model = fe::build_model(deck, {}, diagnostics);
   diagnostics.throw_if_errors();
   return model;
 }
