@@ -1,6 +1,7 @@
 #include "fe/linear/cholmod_factor.hpp"
 
 #include <cmath>
+#include <memory>
 #include <vector>
 
 #include <cholmod.h>
@@ -49,17 +50,17 @@ struct Triangle {
 class CholmodSolver final : public FactorSolver {
  public:
   CholmodSolver() {
-    cholmod_start(&common_);
-    common_.print = 0;
+    cholmod_start(common_.get());
+    common_->print = 0;
     // Without both a small matrix gets an LDLᵀ that takes negative pivots as they come.
-    common_.final_asis = 0;
-    common_.final_ll = 1;
+    common_->final_asis = 0;
+    common_->final_ll = 1;
   }
   CholmodSolver(const CholmodSolver&) = delete;
   CholmodSolver& operator=(const CholmodSolver&) = delete;
   ~CholmodSolver() override {
-    cholmod_free_factor(&factor_, &common_);
-    cholmod_finish(&common_);
+    cholmod_free_factor(&factor_, common_.get());
+    cholmod_finish(common_.get());
   }
 
   /// False where A is not positive definite.
@@ -68,23 +69,23 @@ class CholmodSolver final : public FactorSolver {
     cholmod_sparse matrix = triangle.as_sparse();
     const PetscIs order = find_elimination_order(A);
     if (order) {
-      common_.nmethods = 1;  // the order given; by itself CHOLMOD would try its own beside it
+      common_->nmethods = 1;  // the order given; by itself CHOLMOD would try its own beside it
       const PetscInt* rows = nullptr;
       check_petsc(ISGetIndices(order.get(), &rows));
-      factor_ = cholmod_analyze_p(&matrix, const_cast<int*>(rows), nullptr, 0, &common_);
+      factor_ = cholmod_analyze_p(&matrix, const_cast<int*>(rows), nullptr, 0, common_.get());
       check_petsc(ISRestoreIndices(order.get(), &rows));
     } else {
-      factor_ = cholmod_analyze(&matrix, &common_);
+      factor_ = cholmod_analyze(&matrix, common_.get());
     }
-    check_cholmod(common_.status);
+    check_cholmod(common_->status);
     if (!factor_) return false;
     // A megabyte is there: to ask the system takes as long as such a factor.
     constexpr double kFewEntries = 1e5;
-    num_entries_ = common_.lnz;
+    num_entries_ = common_->lnz;
     if (num_entries_ >= kFewEntries) require_memory(static_cast<double>(matrix.nrow), num_entries_, calc_free_memory());
-    cholmod_factorize(&matrix, factor_, &common_);
-    check_cholmod(common_.status);
-    return common_.status == CHOLMOD_OK && factor_->minor >= factor_->n;
+    cholmod_factorize(&matrix, factor_, common_.get());
+    check_cholmod(common_->status);
+    return common_->status == CHOLMOD_OK && factor_->minor >= factor_->n;
   }
 
   MatrixXd solve(const Eigen::Ref<const MatrixXd>& B) const override {
@@ -97,18 +98,18 @@ class CholmodSolver final : public FactorSolver {
     right.x = const_cast<double*>(B.data());
     right.xtype = CHOLMOD_REAL;
     right.dtype = CHOLMOD_DOUBLE;
-    cholmod_dense* X = cholmod_solve(CHOLMOD_A, factor_, &right, &common_);
-    check_cholmod(common_.status);
+    cholmod_dense* X = cholmod_solve(CHOLMOD_A, factor_, &right, common_.get());
+    check_cholmod(common_->status);
     BOUGH_DEMAND(X);
     MatrixXd result = Eigen::Map<const MatrixXd>(static_cast<const double*>(X->x), B.rows(), B.cols());
-    cholmod_free_dense(&X, &common_);
+    cholmod_free_dense(&X, common_.get());
     return result;
   }
   const char* name() const override { return "LLᵀ CHOLMOD"; }
   double num_entries() const override { return num_entries_; }
 
  private:
-  mutable cholmod_common common_{};  // CHOLMOD writes its status and workspace
+  std::unique_ptr<cholmod_common> common_ = std::make_unique<cholmod_common>();  // CHOLMOD writes its workspace
   cholmod_factor* factor_ = nullptr;
   double num_entries_ = 0;
 };
