@@ -73,7 +73,7 @@ class Beam final : public Element, public StressState, public StressRecovery, pu
   /// Equivalent loads at the ends (12, element axes) before pins: ∫ Dᵀ p dx with the element's own field D. The nodal
   /// displacements under them are those of the loaded beam.
   Eigen::Matrix<double, 12, 1> calc_end_load(const BeamLineLoad& load) const;
-  /// The same at the grids in basic axes, pins and offsets applied.
+  /// Equivalent loads at the grids in basic axes, pins and offsets applied.
   Eigen::Matrix<double, 12, 1> calc_grid_load(const Eigen::Matrix<double, 12, 1>& end_load) const;
   /// Corrects internal forces that calc_internal_forces gave for loads along the beam: moments at both ends, axial and
   /// shear forces and torque at end A.

@@ -82,7 +82,7 @@ void Beam::add_consistent_bodies(const Eigen::Ref<const Matrix3Xd>& x, CarriedMa
   const bool has_arms = !arms[0].isZero(0) || !arms[1].isZero(0);
   const auto by_grids = [&](const Motion& motion) { return has_arms ? Motion(motion * tips) : motion; };
   const bool needs_second = carried.detail == CarriedDetail::SecondOrder;
-  // What the second-order motion of the arms' ends does to points.
+  // Second-order motion of the points by that of the ends of the arms.
   std::vector<std::pair<int, Matrix3d>> by_end[2];
   std::vector<CarriedMass::ChordPoint> moved;
   const auto add_ends = [&](int p, const Motion& motion) {

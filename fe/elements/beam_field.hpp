@@ -36,7 +36,7 @@ class BeamField {
   /// shape_stiffness() with zeros where the property has no stiffness.
   Matrix6d calc_stiffness() const;
 
-  /// S (6 x 12): displacement of B relative to the rigid motion of A, for the nodal displacements [A; B].
+  /// S (6 x 12): displacement of B relative to the rigid-body motion of A, for the nodal displacements [A; B].
   Matrix6x12d calc_relative() const;
 
   /// At x: displacement D (6 x 12) and section deformation e (6 x 12) per nodal displacement [A; B].

@@ -25,7 +25,7 @@ ThermalState Beam::calc_thermal(const ElementTemperature& given) const {
   Eigen::Matrix<double, 6, 1> q = -G * delta;
   state.energy = 0.5 * delta.dot(G * delta);
   if (const unsigned pins = geometry_.pin_a | (geometry_.pin_b << 6)) {
-    // What is released moves: K_rr v = f_r.
+    // Released dofs v: K_rr v = f_r.
     std::vector<int> released;
     for (int i = 0; i < 12; ++i)
       if (pins >> i & 1u) released.push_back(i);

@@ -35,12 +35,12 @@ class Bend final : public Element, public StressState, public ThermalLoads, publ
   int num_internal_forces() const override { return 12; }
   std::vector<std::string> internal_force_names() const override;
   void calc_internal_forces(const Eigen::Ref<const VectorXd>& u, Eigen::Ref<VectorXd> force) const override;
-  /// Of the forces at end B; those at A follow from them.
+  /// K_G of the forces at end B, from which the forces at end A follow.
   void add_geometric_stiffness(const Eigen::Ref<const VectorXd>& force, double scale,
                                Eigen::Ref<MatrixXd> K_G) const override;
 
   const ThermalLoads* thermal_loads() const override { return alpha_ != 0 ? this : nullptr; }
-  /// By the mean temperature: the arc grows in all directions alike.
+  /// Uniform expansion by the mean temperature.
   ThermalState calc_thermal(const ElementTemperature& T) const override;
 
  private:

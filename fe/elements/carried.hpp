@@ -1,6 +1,6 @@
 #pragma once
-/// \file Mass that hangs on grids: points that an element moves, what they weigh, and the second order of their motion
-/// (docs/theory/carried-bodies.md).
+/// \file Mass that is attached to grids: points that an element moves, their masses, and the second order of their
+/// motion (docs/theory/carried-bodies.md).
 #include <array>
 #include <vector>
 
@@ -37,7 +37,7 @@ struct CarriedField {
   std::vector<Part> parts;
 };
 
-/// What is asked of an element about its carried mass: each more holds the one before.
+/// Detail of the offset mass that is requested of an element: each level contains the one before.
 enum class CarriedDetail { Whether, Points, SecondOrder };
 
 /// Kinetic energy ½ Σ μ_rs ẋ_r·ẋ_s. A material point s from a grid is the place and three arms.
@@ -62,7 +62,7 @@ struct CarriedMass {
   /// `has_turn` the second order is the caller's.
   int add_body(const Vector3d& x, double m, const Vector3d& S, const Matrix3d& E, const Eigen::Ref<const Matrix3Xd>& U,
                const Eigen::Ref<const Matrix3Xd>& Theta, int slot = -1, bool has_turn = true);
-  /// The same at a grid whose six dofs start at `first`.
+  /// Adds a rigid body at a grid whose six dofs start at `first`.
   void add_grid_body(const Vector3d& x, double m, const Vector3d& S, const Matrix3d& E, int first);
 
   /// A point that two ends move: by `motion` of their dofs [u_A θ_A u_B θ_B] (basic); an arm by `turn` too.
@@ -71,7 +71,7 @@ struct CarriedMass {
     Eigen::Matrix<double, 3, 12> motion = Eigen::Matrix<double, 3, 12>::Zero(), turn = motion;
   };
   /// Points of an element that deforms in the frame of its chord from x_a to x_a + chord, turned by the mean of the end
-  /// rotations: adds their second order, so that a rigid motion of the ends is one of the points. ends: 12 x N.
+  /// rotations: adds their second order, so that a rigid-body motion of the ends is one of the points. ends: 12 x N.
   std::vector<ChordPoint> chord_points;  ///< those of the last call, for an element made of such elements
   void add_chord_field(const Vector3d& x_a, const Vector3d& chord, const Eigen::Ref<const MatrixXd>& ends,
                        const std::vector<ChordPoint>& moved);
@@ -101,7 +101,7 @@ struct MassMoments {
 /// False when M (basic axes, symmetric) is not that of a rigid body: [m 1, -S̃; S̃, tr(E) 1 - E].
 bool find_moments(const Eigen::Matrix<double, 6, 6>& M, MassMoments& moments);
 
-/// Of a dead force f on the end of an arm that turns: its potential -f·½ θ×(θ×arm) is ½ θᵀK θ,
+/// Stiffness of a dead force f on the end of an arm that rotates: the potential -f·½ θ×(θ×arm) is ½ θᵀK θ,
 /// K = (f·arm) 1 - ½ (f armᵀ + arm fᵀ).
 Matrix3d calc_arm_stiffness(const Vector3d& f, const Vector3d& arm);
 

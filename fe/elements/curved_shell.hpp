@@ -66,11 +66,11 @@ class CurvedShell final : public Element,
   std::vector<std::string> internal_force_names() const override;
   int num_printed_forces() const override { return kNumForces * num_points(); }
   const StressRecovery* stress_recovery() const override { return sections_.front().stress ? this : nullptr; }
-  /// Of the section, from the mean of N and M over the element: top and bottom in the axes of the points, or every ply
-  /// in its own.
+  /// Points of the section, for the mean of N and M over the element: top and bottom in the axes of the points, or
+  /// every ply in its own.
   std::vector<StressPoint> stress_points() const override;
   MatrixXd calc_stresses(const Eigen::Ref<const MatrixXd>& forces) const override;
-  /// Of the mean of N and M likewise: at the points of the stresses, and of the reference surface.
+  /// Points for the mean of N and M likewise: those of the stresses, and the reference surface.
   std::vector<StressPoint> strain_points() const override;
   MatrixXd calc_strains(const Eigen::Ref<const MatrixXd>& forces) const override;
   /// Second order of e, κ, γ (sampled and interpolated as they are) with d_i = exp(θ_i) V_i, and of the drilling.

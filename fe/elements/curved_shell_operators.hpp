@@ -1,5 +1,5 @@
 #pragma once
-/// \file What curved_shell.cpp and curved_shell_forces.cpp share. Internal.
+/// \file Operators shared by curved_shell.cpp and curved_shell_forces.cpp. Internal.
 #include <Eigen/Dense>
 
 #include "fe/elements/curved_shell.hpp"

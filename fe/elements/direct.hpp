@@ -9,10 +9,10 @@ namespace bough::fe {
 
 enum class DirectKind { Stiffness, Mass, Damping };
 
-/// What a direct matrix couples of two points, or of one with itself: one element for each pair, so that the global
-/// matrices stay as sparse as the DMIG. A one-point element has a symmetric block on its own dofs (N = n_a); of two
-/// points the block is K_ab (n_a x n_b, basic axes), with its transpose below the diagonal (N = n_a + n_b). A single
-/// element need be neither semidefinite nor free of rigid motions; only the whole matrix is.
+/// Coupling of two points, or of one point with itself, by a direct matrix: one element for each pair, so that the
+/// global matrices stay as sparse as the DMIG. A one-point element has a symmetric block on its own dofs (N = n_a); of
+/// two points the block is K_ab (n_a x n_b, basic axes), with its transpose below the diagonal (N = n_a + n_b). A
+/// single element need be neither semidefinite nor free of rigid-body modes; only the whole matrix is.
 class DirectElement final : public Element, public OffsetMass, public Damping {
  public:
   DirectElement(DirectKind kind, std::vector<int> nodes, std::vector<int> gdofs, MatrixXd block)
@@ -25,7 +25,7 @@ class DirectElement final : public Element, public OffsetMass, public Damping {
   const OffsetMass* offset_mass(MassKind) const override {
     return kind_ == DirectKind::Mass && !is_plain() ? this : nullptr;
   }
-  /// Of a block of one grid that is a rigid body's.
+  /// Adds the body if the block is the mass of a rigid body at one grid.
   bool add_carried(MassKind kind, const Eigen::Ref<const Matrix3Xd>& x, CarriedMass& carried) const override;
   const Damping* damping() const override { return kind_ == DirectKind::Damping ? this : nullptr; }
   void add_damping(double scale, Eigen::Ref<MatrixXd> B) const override;

@@ -41,7 +41,7 @@ struct Node {
   int num_dofs = 6;
 };
 
-/// How an element is drawn and written to VTU.
+/// Shape of an element in pictures and VTU files.
 struct ElementShape {
   std::string type;        ///< "line2", "tri3", "quad4", "tetra4", "penta6", "hexa8", "vertex"; empty = not drawn
   std::vector<int> nodes;  ///< indices into Model::nodes()

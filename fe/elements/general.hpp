@@ -5,7 +5,7 @@
 
 namespace bough::fe {
 
-/// K = Bᵀ k B with the deformations B u = u_i - S u_d of its components u_i beyond the rigid motion of u_d.
+/// K = Bᵀ k B with the deformations B u = u_i - S u_d of its components u_i beyond the rigid-body motion of u_d.
 class General final : public Element {
  public:
   /// k: m x m symmetric; B: m x N in basic axes.

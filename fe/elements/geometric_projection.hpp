@@ -24,7 +24,7 @@ class GeometricProjection {
   };
   Terms add_terms(Eigen::Index num_terms);
 
-  /// What was added and is not yet summed: after drop_terms(), the terms of the last call.
+  /// Terms that are not yet summed: after drop_terms(), those of the last add_terms().
   Terms last_terms() { return {products_.leftCols(used_), weights_.topRows(used_)}; }
   /// Leaves them out of the sum.
   void drop_terms() { used_ = 0; }

@@ -53,10 +53,11 @@ class Shell final : public Element, public StressState, public StressRecovery, p
   std::vector<std::string> internal_force_names() const override;
   int num_printed_forces() const override { return kNumForces * num_points(); }
   const StressRecovery* stress_recovery() const override { return section_.stress ? this : nullptr; }
-  /// Of the section, from the mean of N and M over the element: top and bottom in its axes, or every ply in its own.
+  /// Points of the section, for the mean of N and M over the element: top and bottom in its axes, or every ply in its
+  /// own.
   std::vector<StressPoint> stress_points() const override;
   MatrixXd calc_stresses(const Eigen::Ref<const MatrixXd>& forces) const override;
-  /// Of the mean of N and M likewise: at the points of the stresses, and of the reference surface.
+  /// Points for the mean of N and M likewise: those of the stresses, and the reference surface.
   std::vector<StressPoint> strain_points() const override;
   MatrixXd calc_strains(const Eigen::Ref<const MatrixXd>& forces) const override;
   /// Second order of the element's strains under N, M, Q, of its drilling and of its rigid arms
@@ -82,7 +83,7 @@ class Shell final : public Element, public StressState, public StressRecovery, p
   using ForceMap = Eigen::Matrix<double, 9 * N, 6 * N>;
   int num_nodes() const { return num_nodes_; }
   int num_points() const { return num_nodes_; }
-  /// Of each point of quadrature its share of the area; their sum is one.
+  /// Share of each point of quadrature in the area; their sum is one.
   std::vector<double> calc_shares() const;
   /// Mean over the area of what is linear between the corners.
   double calc_mean(const Eigen::Ref<const VectorXd>& corner) const;

@@ -154,7 +154,7 @@ void Shell::add_geometric_stiffness_of(const Eigen::Ref<const VectorXd>& force, 
   add_turned<N>(K + at_nodes, scale, out);
 }
 
-/// The same terms: as many products as K_G has independent numbers, and these for every load.
+/// Terms of K_G: as many products as K_G has independent numbers, with weights for every load.
 template <int N>
 void Shell::add_projected_of(const Eigen::Ref<const MatrixXd>& U, const Eigen::Ref<const MatrixXd>& Phi,
                              GeometricProjection& sums) const {

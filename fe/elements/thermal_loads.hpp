@@ -8,7 +8,7 @@ namespace bough::fe {
 
 using Eigen::VectorXd;
 
-/// Of the grids (TEMP, TEMPD), or of the element's own card (TEMPRB, TEMPP1).
+/// Temperatures from the grids (TEMP, TEMPD) or from the card of the element (TEMPRB, TEMPP1).
 struct ElementTemperature {
   VectorXd node;  ///< at Element::nodes()
   /// Bars: dT/dy, dT/dz of the section at ends A and B, element axes; about the neutral axis.

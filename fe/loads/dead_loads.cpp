@@ -1,4 +1,4 @@
-/// What PARAM,FOLLOWK,YES asks of loads whose second order is not there.
+/// Warning of PARAM,FOLLOWK,YES for loads without follower stiffness.
 #include <map>
 
 #include "fe/loads/load_sets.hpp"

@@ -1,5 +1,5 @@
 #pragma once
-/// \file What an accelerated frame does to the mass of a model: F_I, and with it GRAV and RFORCE.
+/// \file Inertial loads F_I of an accelerated frame, and with them GRAV and RFORCE.
 #include <functional>
 #include <vector>
 

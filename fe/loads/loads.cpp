@@ -77,7 +77,7 @@ bool add_scalar_loads(const LoadTarget& t) {
   return is_found;
 }
 
-/// What Nastran passes over, or forbids and Bough adds up, in a LOAD card.
+/// Warnings of terms of a LOAD card that Nastran ignores, or rejects and Bough adds up.
 void report_terms(const records::Deck& deck, const records::LoadCombination& card, Diagnostics& diagnostics) {
   for (const auto& [scale, sid] : card.terms)
     if (!has_load_cards(deck, sid) && find_combination(deck, sid))

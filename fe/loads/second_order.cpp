@@ -64,7 +64,7 @@ void add_field(const Element& element, const MatrixXd& f, const CarriedField& fi
   if (!weights.isZero(0)) forms.push_back({element.gdofs(), field.L, std::move(weights)});
 }
 
-/// What a turn makes of the forces f: 6 x 12.
+/// Weights of a rotation under the forces f: 6 x 12.
 Eigen::Matrix<double, 6, 12> calc_turn_weights(const CarriedTurn& turn, const MatrixXd& f) {
   Eigen::Matrix<double, 6, 12> weights = Eigen::Matrix<double, 6, 12>::Zero();
   const auto num_points = f.rows() / 3;
@@ -76,7 +76,7 @@ Eigen::Matrix<double, 6, 12> calc_turn_weights(const CarriedTurn& turn, const Ma
   return weights;
 }
 
-/// Of some of the elements: `grids` in the twelve inertial loads, `forms` in all loads.
+/// Forms of some of the elements: `grids` in the twelve inertial loads, `forms` in all loads.
 struct CarriedForms {
   GridForms grids;
   std::vector<QuadraticForm> forms;

@@ -1,5 +1,5 @@
 #pragma once
-/// \file What K_G has beside the internal forces of elements: loads that hang on arms, and rigid links.
+/// \file Terms of K_G in addition to internal forces: offset masses, loads on arms, rigid links.
 #include "fe/loads/inertial_loads.hpp"
 #include "fe/matrices/assembly.hpp"
 #include "fe/model/links.hpp"

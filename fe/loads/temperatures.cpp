@@ -25,7 +25,7 @@ class TemperatureSet {
 
   bool is_empty() const { return grids_.empty() && bars_.empty() && plates_.empty() && !default_; }
 
-  /// What the element's own card says, else its grids; `missing`: the first grid that has no temperature.
+  /// Temperatures of the card of the element, else of its grids; `missing`: the first grid without a temperature.
   std::optional<ElementTemperature> find(const Model& model, const Element& element, int& missing) const {
     ElementTemperature T;
     T.node.resize(static_cast<Eigen::Index>(element.nodes().size()));

@@ -17,8 +17,8 @@ struct InitialForces {
   }
 };
 
-/// Of temperature set `set` (TEMP, TEMPD, TEMPRB, TEMPP1); 0: none. Reports fe.missing-load where the set has no card,
-/// fe.missing-temperature where an element that expands has no temperature.
+/// Initial forces of temperature set `set` (TEMP, TEMPD, TEMPRB, TEMPP1); 0: none. Reports fe.missing-load if the set
+/// has no card, fe.missing-temperature if an element that expands has no temperature.
 InitialForces calc_thermal(const Model& model, const records::Deck& deck, int set, Diagnostics& diagnostics);
 
 /// The loads on the g-set.

@@ -1,5 +1,5 @@
 #pragma once
-/// \file Links over so many grids that their second order would fill K_G.
+/// \file Links whose second order would fill K_G: those over more than kMaxLinkDofs dofs.
 #include <cstddef>
 
 #include "base/diagnostic.hpp"

@@ -1,4 +1,4 @@
-/// What AUTOSPC holds of a model that is being built.
+/// AUTOSPC as a step of ModelBuilder.
 #include <algorithm>
 #include <set>
 #include <unordered_map>

@@ -24,8 +24,8 @@ struct NodeBlocks {
   std::vector<double> noise;  ///< what round-off of the elements that reach the block can leave in it
 };
 
-/// How large the terms are whose sums the diagonal of K_e is: of one size for the translations, since directions are
-/// sums of others; in the rotations also k r² of a translational stiffness k on an arm r.
+/// Sizes of the terms that sum to the diagonal of K_e: one size for the translations, since directions are sums of
+/// others; for the rotations also k r² of a translational stiffness k on an arm r.
 VectorXd calc_sizes(const Element& element, const std::vector<Node>& nodes, const std::vector<int>& gdof_node,
                     const MatrixXd& K_e) {
   double arm = 0, largest[2] = {0, 0};
@@ -138,8 +138,8 @@ std::pair<VectorXd, MatrixXd> find_principal_stiffness(const MatrixXd& K) {
   return {size(order), solver.eigenvectors()(Eigen::all, order)};
 }
 
-/// Whether the free part of K is definite and its least eigenvalue well above `limit`: λ1 = det / (λ2 λ3) is at least
-/// 4 det / trace². Most blocks are, and their eigenvalues need not be found.
+/// Returns true if the free part of K is definite with its smallest eigenvalue well above `limit`, by the bound
+/// λ1 = det / (λ2 λ3) >= 4 det / trace². Most blocks are, and need no eigenvalues.
 bool is_stiff(Matrix3d K, const std::array<char, 3>& is_free, double scale, double limit) {
   for (int s = 0; s < 3; ++s) {
     if (is_free[static_cast<std::size_t>(s)]) continue;
@@ -215,7 +215,7 @@ std::vector<AutospcEntry> find_singular_dofs(const Model& model, const std::vect
         const auto [stiffness, directions] = find_principal_stiffness(blocks[b](slots, slots));
         ratio = stiffness[0] / scale;
         if (stiffness[0] > limit) break;
-        // Of equal shares the last: a rod along a diagonal keeps its first component.
+        // The last of equal shares: a rod along a diagonal keeps its first component.
         const Eigen::VectorXd share = directions.col(0).cwiseAbs();
         for (int i = 0; i < share.size(); ++i)
           if (share[i] >= share.maxCoeff() - 1e-9) singular = i;

@@ -1,5 +1,5 @@
 #pragma once
-/// \file AUTOSPC: dofs without stiffness of their own are held.
+/// \file AUTOSPC: dofs without stiffness are fixed.
 #include <array>
 
 #include "fe/model/constraints.hpp"

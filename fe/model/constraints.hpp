@@ -42,7 +42,7 @@ std::vector<ConstraintEquation> resolve_chains(int num_ldofs, std::vector<Constr
 Elimination eliminate(int num_ldofs, const std::vector<ConstraintEquation>& resolved,
                       const std::vector<char>& is_fixed);
 
-/// What the fixed dofs move: u_l = C u_f + C_fixed d.
+/// Displacements by those of the fixed dofs: u_l = C u_f + C_fixed d.
 struct FixedPart {
   SparseRows C;            ///< num_ldofs x ldofs.size()
   std::vector<int> ldofs;  ///< fixed and not dependent, ascending

@@ -19,7 +19,7 @@ class ElementTransform {
  public:
   /// Reads the rows of T of an element.
   void set(const SparseRows& T, const std::vector<int>& gdofs);
-  /// The same where calc_element_columns() was called before.
+  /// Reads the rows of T of an element with the `columns` of calc_element_columns().
   void set(const SparseRows& T, const std::vector<int>& gdofs, std::span<const int> columns);
   /// The f-dofs the element touches, ascending.
   const std::vector<int>& columns() const { return columns_; }

@@ -27,7 +27,7 @@ Links::Links(std::vector<Link> links, std::vector<ConstraintEquation> equations)
   std::map<int, int> equation_of;
   for (std::size_t e = 0; e < equations_.size(); ++e) equation_of[equations_[e].dependent] = static_cast<int>(e);
   for (const auto& [ldof, e] : equation_of) dependents_.push_back(ldof);
-  // Those that nothing hangs on first.
+  // Equations that no other one depends on come first.
   std::vector<int> num_users(equations_.size(), 0);
   const auto for_each_carrier = [&](int e, const auto& visit) {
     for (const auto& [ldof, c] : equations_[static_cast<std::size_t>(e)].terms)

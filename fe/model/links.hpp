@@ -30,7 +30,7 @@ int find_weight(int r, int i, int j);
 MatrixXd calc_form(const QuadraticForm& form, Eigen::Index load);  ///< Lᵀ W_c L
 
 /// The links of a model, with all its constraint equations (those of MPC too) before chains are resolved: a link passes
-/// on what hangs on its dependent grids.
+/// on the forces of all that is attached to its dependent grids.
 class Links {
  public:
   Links() = default;

@@ -42,8 +42,8 @@ struct ModelOptions {
 struct AutospcEntry {
   int node = 0, component = 0;
   double ratio = 0;
-  bool is_skew = false;  ///< the component has stiffness of its own: the direction that has none is oblique
-  /// Of a direction that is held: the component follows these (component, factor) of its node. Empty: it is held.
+  bool is_skew = false;  ///< the component has stiffness: the direction without stiffness is oblique
+  /// Oblique direction that is fixed: the component follows these (component, factor) of its node. Empty: it is fixed.
   std::vector<std::pair<int, double>> terms;
 };
 
@@ -91,8 +91,8 @@ class Model final : public NodeTable {
   const std::vector<int>& fixed_by_spcd() const { return fixed_by_spcd_; }
   /// All dofs that cards constrain, dependent dofs first; filled if the deck has ASET or OMIT.
   const std::vector<ConstrainedDof>& constrained_dofs() const { return constrained_dofs_; }
-  /// What moves when an oblique direction that AUTOSPC holds lets go: a column, num_gdofs x 1, for each entry of
-  /// autospc() with terms, in their order.
+  /// Motions of the oblique directions that AUTOSPC fixes: a column for each entry of autospc() with terms, in their
+  /// order.
   const SparseRows& T_oblique() const { return T_oblique_; }
   MassKind mass_kind() const { return mass_kind_; }
   double wtmass() const { return wtmass_; }

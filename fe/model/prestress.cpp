@@ -1,4 +1,4 @@
-/// What a prestress does to a model that is built with it.
+/// Prestress as a step of ModelBuilder.
 #include <algorithm>
 
 #include "fe/elements/stress_state.hpp"
@@ -9,7 +9,7 @@ namespace bough::fe {
 void ModelBuilder::set_prestress() {
   model_.prestress_ = options_.prestress;
   if (!model_.prestress_) return;
-  // Elements behind those of the deck's cards, which masses and matrices of a subcase make, have no internal forces.
+  // Elements after those of the cards, made of masses and matrices of a subcase, have no internal forces.
   const auto& force = model_.prestress_->force;
   const auto num = std::min(force.size(), model_.elements_.size());
   for (std::size_t e = 0; e < num; ++e) {

@@ -1,5 +1,6 @@
 #pragma once
-/// \file A state of stress that a model starts from: what of it enters the stiffness (docs/theory/preload.md).
+/// \file Prestress: the state of stress that a model starts from, and its terms of the stiffness
+/// (docs/theory/preload.md).
 #include <string>
 
 #include "fe/model/links.hpp"

@@ -30,7 +30,7 @@ struct BodyTerm {
   unsigned c = 0;
 };
 
-/// What the six independent components of a rigid body make of its motion about `reference`.
+/// Motion of a rigid body about `reference` by its six independent components.
 struct BodyFrame {
   Vector3d reference;
   std::vector<BodyTerm> independent;

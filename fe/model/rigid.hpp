@@ -26,8 +26,8 @@ void add_rbe2(const records::Rbe2& card, const NodeTable& nodes, const SourceLoc
 void add_rbar(const records::Rbar& card, const NodeTable& nodes, const SourceLocation& at, Diagnostics& diagnostics,
               std::vector<ConstraintEquation>& equations, std::vector<Link>& links);
 
-/// As RBAR for any number of grids: six independent components on up to six grids hold the rigid motion, the
-/// components after UM follow it.
+/// RBE1, an RBAR of any number of grids: six independent components on up to six grids determine the rigid-body
+/// motion, and the components after UM follow it.
 void add_rbe1(const records::Rbe1& card, const NodeTable& nodes, const SourceLocation& at, Diagnostics& diagnostics,
               std::vector<ConstraintEquation>& equations, std::vector<Link>& links);
 

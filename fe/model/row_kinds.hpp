@@ -5,9 +5,9 @@
 
 namespace bough::fe {
 
-/// Of the f-dofs (num_fdofs), in their order.
+/// Kinds of all f-dofs (num_fdofs), in their order.
 RowKinds list_row_kinds(const Model& model);
-/// Of these f-dofs.
+/// Kinds of the f-dofs `fdofs`.
 RowKinds list_row_kinds(const Model& model, const std::vector<int>& fdofs);
 
 }  // namespace bough::fe

@@ -12,7 +12,7 @@ namespace bough::fe {
 records::Subcase select_subcase(const records::Deck& deck, int id, Diagnostics& diagnostics);
 
 /// Ids of the plain sets that set `sid` stands for: itself, or the members of its unions, each once.
-/// `plain`: sorted ids of the sets that have cards of their own. Warns of sets without cards: fe.missing-set.
+/// `plain`: sorted ids of the sets with cards. Warns of sets without cards: fe.missing-set.
 std::vector<int> expand_set(int sid, const std::vector<records::SetUnion>& unions, const std::vector<int>& plain,
                             const std::string& what, const records::Deck& deck, Diagnostics& diagnostics);
 

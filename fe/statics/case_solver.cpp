@@ -21,7 +21,7 @@ std::size_t choose_group(std::size_t left) {
   return num == 1 ? left : std::min(even + even / 10, CaseSolver::kMostTogether);
 }
 
-/// What must be the same for a model and its factor to be kept.
+/// Selections that two subcases share if they share the model and its factor.
 std::array<int, 5> list_held(const records::Subcase& subcase) {
   return {subcase.spc, subcase.mpc, subcase.suport1, subcase.preload, subcase.initial_temperature};
 }

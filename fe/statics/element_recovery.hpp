@@ -1,10 +1,10 @@
 #pragma once
-/// \file What elements tell of many displacements at once: forces, stresses, strains, strain energies.
+/// \file Element recovery for many displacements at once: forces, stresses, strains, strain energies.
 #include "fe/statics/static_case.hpp"
 
 namespace bough::fe {
 
-/// Displacements and what acts beside them. The pointers outlive the call.
+/// Displacements with the loads and temperatures of their case. The pointers outlive the call.
 struct RecoveryCase {
   const VectorXd* u_g = nullptr;           ///< num_gdofs
   int load = 0;                            ///< LOAD: loads along beams; 0: none
@@ -16,24 +16,24 @@ struct RecoveredFields {
   bool forces = true, stresses = true, strains = false;
 };
 
-/// As calc_element_forces, calc_element_stresses and calc_element_strains give them.
+/// Results of one case, in the blocks of calc_element_forces, calc_element_stresses and calc_element_strains.
 struct ElementResults {
   std::vector<records::ElementForces> forces;
   std::vector<records::ElementStresses> stresses, strains;
 };
 
-/// Elements of one card that give the same.
+/// Elements of one card with the same results.
 struct RecoveryGroup {
   std::string card;  ///< "CTETRA" and "CTETRA-24" where elements of one card differ in their number of points
   std::vector<std::string> names;
-  std::vector<int> elements, id, property;  ///< elements: where they stand in the model
+  std::vector<int> elements, id, property;  ///< elements: indices into Model::elements()
 };
 
-/// What of a model's elements is asked for, group by group.
+/// Requested results of the elements, group by group.
 struct RecoveryLayout {
   RecoveryLayout(const Model& model, const records::Deck& deck, const RecoveredFields& fields);
 
-  /// Where an element stands: its group and row; none where `group` is negative.
+  /// Group and row of an element; none if `group` is negative.
   struct Place {
     int group = -1;
     Eigen::Index row = 0;
@@ -47,12 +47,13 @@ struct RecoveryLayout {
   Table forces, stresses, strains;
 };
 
-/// Results of every case. `energy`, if given: elements x cases, ½ uᵀ K u of this rank's elements (calc_stiffness_times),
-/// which spares forming K again. The matrices of an element are formed once for all of them: O(elements) beside a product and
-/// what is derived, O(elements x cases). Memory: the results and the numbers of a few elements. Replicated.
+/// Results of every case. `energy`, if given: elements x cases, ½ uᵀ K u of this rank's elements
+/// (calc_stiffness_times), which spares forming K again. The matrices of an element are formed once for all of them:
+/// O(elements), and for a product and the derived values O(elements x cases). Memory: the results and the numbers of a
+/// few elements. Replicated.
 std::vector<ElementResults> recover_elements(const Model& model, const records::Deck& deck,
                                              const std::vector<RecoveryCase>& cases, const RecoveredFields& fields);
-/// The same of a layout that was made before.
+/// Results in a given layout.
 std::vector<ElementResults> recover_elements(const Model& model, const records::Deck& deck,
                                              const std::vector<RecoveryCase>& cases, const RecoveryLayout& layout,
                                              const MatrixXd* energy = nullptr);

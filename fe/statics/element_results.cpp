@@ -76,7 +76,7 @@ std::vector<records::GridForce> calc_grid_forces(const Model& model, const recor
     for (const auto& [name, values] : others) {
       if (values->size() == 0) continue;
       const Vector6d f = values->segment<6>(node.first_gdof);
-      // What is left of a sum that vanishes is no force.
+      // Round-off of a sum that vanishes is no force.
       if (f.cwiseAbs().maxCoeff() > 1e-9 * size) forces.push_back({node.id, name, 0, f});
     }
     result.insert(result.end(), forces.begin(), forces.end());

@@ -1,5 +1,5 @@
 #pragma once
-/// \file What static solutions and bodies tell of elements beside their forces: stresses, strains, forces on grids.
+/// \file Element results of static solutions and bodies: internal forces, stresses, strains, grid point forces.
 #include "fe/elements/stress_recovery.hpp"
 #include "fe/elements/stress_state.hpp"
 #include "fe/statics/static_case.hpp"
@@ -22,8 +22,8 @@ std::vector<records::ElementStresses> calc_element_strains(const Model& model, c
                                                            const records::Deck& deck, int load,
                                                            const InitialForces& initial = {});
 
-/// What acts on each of the grids (ids; empty: all): every element, and LOAD, SPC, MPC (rigid elements too), INERTIA of
-/// `solved`, in basic axes. They sum to nothing. Of elements: -(K_e u - load of its temperatures).
+/// Forces on each of the grids (ids; empty: all): of every element, and LOAD, SPC, MPC (rigid elements too), INERTIA of
+/// `solved`, in basic axes. Their sum is zero. Force of an element: -(K_e u - load of its temperatures).
 std::vector<records::GridForce> calc_grid_forces(const Model& model, const records::StaticSubcase& solved,
                                                  const InitialForces& initial, const std::vector<int>& grids);
 

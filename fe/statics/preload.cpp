@@ -54,7 +54,7 @@ std::string describe(const records::Subcase& subcase) {
   return "subcase " + std::to_string(subcase.id) + (sets.empty() ? "" : " (" + sets + ")");
 }
 
-/// Warnings once, whoever builds the model next says them again; notes are those of that model.
+/// Copies warnings, each once: the model that is built next reports them again. Notes are left to that model.
 void keep_warnings(const Diagnostics& from, Diagnostics& to) {
   for (const auto& item : from.items()) {
     const auto is_same = [&](const Diagnostic& other) { return format(other) == format(item); };

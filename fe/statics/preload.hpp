@@ -4,7 +4,7 @@
 
 namespace bough::fe {
 
-/// What loads a structure first.
+/// Load that acts before the one of the analysis.
 struct Preload {
   int load = 0, temperature = 0;     ///< sets of the deck; 0: none
   Vector3d spin = Vector3d::Zero();  ///< about Bo, in basic
@@ -23,7 +23,7 @@ std::shared_ptr<const Prestress> calc_prestress(const records::Deck& deck, const
 std::shared_ptr<const Prestress> calc_subcase_prestress(const records::Deck& deck, ModelOptions options,
                                                         const ElementFactory& elements, int id,
                                                         const SourceLocation& at, Diagnostics& diagnostics);
-/// What the subcase asks for by STATSUB (as PRELOAD); nullptr for nothing.
+/// Stress of the preload that STATSUB of the subcase selects; nullptr: none.
 std::shared_ptr<const Prestress> calc_subcase_prestress(const records::Deck& deck, const ModelOptions& options,
                                                         const records::Subcase& subcase, Diagnostics& diagnostics);
 

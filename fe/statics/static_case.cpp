@@ -12,7 +12,7 @@
 namespace bough::fe {
 namespace {
 
-/// What Subcase::deform selects, by command.
+/// Names of the loads that Subcase::deform selects, by command.
 constexpr std::pair<const char*, const char*> kUnreadLoads[] = {{"DEFORM", "enforced deformations of elements"},
                                                                 {"TRIM", "aerodynamic loads of a trimmed aircraft"},
                                                                 {"BOLTLD", "preloads of bolts"},

@@ -14,15 +14,15 @@ struct StaticLoad : AppliedLoad {
   VectorXd d;
   InitialForces initial;
 };
-/// Of LOAD and TEMPERATURE(LOAD) of a subcase; without them its enforced displacements alone.
+/// Loads of LOAD and TEMPERATURE(LOAD) of a subcase; without them its enforced displacements alone.
 StaticLoad calc_static_load(const Model& model, const records::Deck& deck, const records::Subcase& subcase,
                             Diagnostics& diagnostics);
-/// Of set `load` alone, or of the model's subcase when it is negative.
-/// Forces and moments of F (num_gdofs) on dofs that AUTOSPC holds: they act on nothing. The largest first, as
+/// Loads of set `load` alone, or of the subcase of the model if it is negative.
+StaticLoad calc_static_load(const Model& model, const records::Deck& deck, int load, Diagnostics& diagnostics);
+
+/// Forces and moments of F (num_gdofs) on dofs that AUTOSPC fixes: they have no effect. The largest first, as
 /// "component 6 of grid 20 (5)"; empty when there is none above 1e-9 of the largest load.
 std::vector<std::string> list_lost_loads(const Model& model, const VectorXd& F);
-
-StaticLoad calc_static_load(const Model& model, const records::Deck& deck, int load, Diagnostics& diagnostics);
 
 /// u = T q + T_fixed d with Tᵀ(K u - F) = 0. With R = K u - F: reactions of the fixed dofs T_fixedᵀ R; the rest of R is
 /// the force of MPC and rigid elements. epsilon = |qᵀTᵀR| / |qᵀTᵀ(F - K T_fixed d)| (Nastran's residual work).
@@ -31,7 +31,7 @@ StaticLoad calc_static_load(const Model& model, const records::Deck& deck, int l
 records::StaticSubcase solve_static_case(const Model& model, const StaticSolver& solver, const StaticLoad& load,
                                          const Suport& suport = {}, Diagnostics* diagnostics = nullptr);
 
-/// Of several loads, solved together: one factor read and every element formed once for all of them. `energy`, if
+/// Solutions of several loads: one factor read and every element formed once for all of them. `energy`, if
 /// given: as of calc_stiffness_times.
 std::vector<records::StaticSubcase> solve_static_cases(const Model& model, const StaticSolver& solver,
                                                        const std::vector<const StaticLoad*>& loads,

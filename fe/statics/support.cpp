@@ -14,7 +14,7 @@ bool has_free(const Model& model, int node, int first, int last) {
   return model.node(node).num_dofs == 6;
 }
 
-/// How rigid-body motion about `centre`, its rotations times `size`, moves component 1..3 of a node.
+/// Row of component 1..3 of a node by rigid-body motions about `centre`, the rotations times `size`.
 RowVector6d calc_rigid_row(const Node& node, int component, const Vector3d& centre, double size) {
   const Vector3d axis = node.R_basic_cd.col(component - 1);
   RowVector6d row;

@@ -90,4 +90,21 @@ for source in list_sources():
         for pattern, folders in OUTSIDE:
             if re.match(pattern, target) and not lies_in(source, folders):
                 findings.append(f"{where}: only {', '.join(folders)} may see <{target}>")
+
+# A class is implemented in the folder of its header: a room below gets no member function from a room above.
+def get_folder(source):
+    return os.path.dirname(source).removesuffix("/detail")
+
+
+declared, sources = {}, {source: strip_comments(read(source)) for source in list_sources()}
+for source, text in sources.items():
+    if source.endswith(".hpp"):
+        for match in re.finditer(r"^(?:class|struct) (\w+)(?: final)?\s*[:{]", text, re.M):
+            declared.setdefault(match.group(1), set()).add(get_folder(source))
+for source, text in sources.items():
+    for match in re.finditer(r"^\w[^(\n]*?\b(\w+)::~?\w+\(", text, re.M):
+        name, folders = match.group(1), declared.get(match.group(1), set())
+        if not folders or get_folder(source) in folders or re.search(rf"\b(class|struct) {name}\b", text):
+            continue
+        findings.append(f"{source}:{line_of(text, match.start())}: {name} is implemented in {', '.join(folders)}")
 finish(findings, "layering")
