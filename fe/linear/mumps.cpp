@@ -110,7 +110,7 @@ FactorState judge_factorization(int status, int detail) {
 
 MumpsFactor factor_by_mumps(Mat A, const MumpsOptions& options) {
   // PETSc 3.18 loses ICNTL(7) unless it is an option. To count, approximate minimum fill: half the time of MUMPS' own
-  // choice on plates. To solve on several ranks, METIS: a fifth less time on plates, as much on solids.
+  // choice on plates. To solve on several ranks, METIS: 15 % less time on plates, as much on solids.
   constexpr const char* kOrdering = "-mat_mumps_icntl_7";
   const bool is_alone = initialize_petsc().size == 1;
   PetscBool is_chosen = PETSC_FALSE;
