@@ -18,8 +18,7 @@ struct ModesExtras {
 EigenPairs sort_negative(EigenPairs pairs);
 
 /// Mass properties about the origin, shapes at the grids, residuals; of normal modes (not of buckling) frequencies,
-/// modal and effective masses too, with the shapes' own lengths. Collective; of a model by parts the first rank gets
-/// the shapes and what is drawn.
+/// modal and effective masses too, with the shapes' own lengths. Collective.
 records::ModesResult make_modes_result(const fe::Model& model, const EigenPairs& pairs, bool buckling,
                                        const ModesExtras& extras = {});
 

@@ -18,11 +18,10 @@ namespace bough::fe {
 /// that it buckles. T of `model` = constraints before AUTOSPC; fdof_ldof as in Elimination.
 /// Entries whose component has stiffness of its own, as at the end of an oblique rod, say so (is_skew) and have the
 /// terms by which the components follow each other when the direction itself is held. By node and component.
-/// Collective: of a model by parts each rank looks at its own nodes.
 std::vector<AutospcEntry> find_singular_dofs(const Model& model, const std::vector<int>& fdof_ldof, double epsilon);
 
 /// The mass of each of `entries`, its own and of dofs that follow it (the diagonal of M before AUTOSPC).
-/// T of `model` = constraints before AUTOSPC. Collective.
+/// T of `model` = constraints before AUTOSPC.
 std::vector<double> calc_masses(const Model& model, const std::vector<int>& fdof_ldof,
                                 const std::vector<AutospcEntry>& entries);
 
