@@ -100,13 +100,6 @@ void install() {
 
 }  // namespace
 
-void guard_user_exit() {
-  ForeignCall::set_guard([] {
-    g_process = ::getpid();
-    std::atexit([] { end_if_in_user_code("exit()"); });
-  });
-}
-
 void guard_user_code() { ForeignCall::set_guard(install); }
 
 void end_if_in_user_code(const char* call) noexcept {

@@ -4,12 +4,9 @@
 namespace bough::cli {
 
 /// From the first call into a user library on, a crash, exit() or abort() within one is reported by the name of the
-/// controller and ends the program with exit code 3. Everything else crashes and exits as before. For the program, not
-/// for a host that loads Bough: the handlers belong to the process.
+/// controller and ends the process with exit code 3. Everything else crashes and exits as before, by the handlers that
+/// the process had. For the program and the Python module; libbough.so leaves the handlers to its host.
 void guard_user_code();
-
-/// The exit() alone, for a host that loads Bough: it keeps its own handlers of signals.
-void guard_user_exit();
 
 /// Reports and ends the process with exit code 3 if this process, not a child forked by a library, is within a user
 /// library. `call`: the function that ended it, as "_exit()". Async-signal-safe.

@@ -8,7 +8,7 @@
 PYBIND11_MODULE(_bough, m) {
   m.doc() = "Bough in this process; use the package bough, which says what each does.";
   using namespace bough::python;
-  bough::cli::guard_user_exit();
+  bough::cli::guard_user_code();
   bind_messages(m);
   bind_exclusive(m);
   bind_bodies(m);

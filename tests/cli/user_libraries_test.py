@@ -63,14 +63,24 @@ class UserLibraries(ProgramTest):
         package = os.path.join(os.path.dirname(os.path.dirname(PROGRAM)), "python")
         if not os.path.isdir(package):
             self.skipTest("the Python module is not built")
-        self.make(IN_OUTPUTS, EXIT, 2.5)
-        done = subprocess.run(["/usr/bin/python3", "-c", "import bough; bough.System('s.toml').run(); print('still here')"],
-                              cwd=self.folder, capture_output=True, text=True, env={**os.environ, "PYTHONPATH": package},
-                              timeout=HANG)
-        self.assertEqual(done.returncode, 3, done.stderr)
-        self.assertIn("controller 'law': bough_controller_outputs at t = 2.5", done.stderr)
-        self.assertIn("control.library-exited", done.stderr)
-        self.assertNotIn("still here", done.stdout)
+        def run(code):
+            return subprocess.run(["/usr/bin/python3", "-c", code], cwd=self.folder, capture_output=True, text=True,
+                                  env={**os.environ, "PYTHONPATH": package}, timeout=HANG)
+
+        for act in (EXIT, *CRASHES):
+            with self.subTest(act=EVERY[act][1]):
+                self.make(IN_OUTPUTS, act, 2.5)
+                done = run("import bough; bough.System('s.toml').run(); print('still here')")
+                self.assertEqual(done.returncode, 3, done.stderr)
+                self.assertIn("controller 'law': bough_controller_outputs at t = 2.5", done.stderr)
+                self.assertIn(EVERY[act][0], done.stderr)
+                self.assertNotIn("still here", done.stdout)
+        # A crash of Python itself keeps its own handlers: two calls of a library before it do not hide it.
+        self.make(IN_OUTPUTS, 0)
+        done = run("import bough, ctypes, faulthandler\nfaulthandler.enable()\n"
+                   "bough.System('s.toml').run()\nctypes.string_at(0)")
+        self.assertEqual(done.returncode, -signal.SIGSEGV, done.stderr)
+        self.assertIn("Segmentation fault", done.stderr)
 
     def test_from_its_loading_to_its_end(self):
         for place, function in ((IN_OPEN, "bough_controller_open"), (IN_START, "bough_controller_start")):
