@@ -47,8 +47,8 @@ int write_matrices(const std::string& deck_path, const std::string& prefix) {
   bough::Diagnostics diagnostics;
   const auto deck = bough::nastran::read_deck(deck_path, {}, diagnostics);
   const auto model = bough::fe::build_model(deck, {}, diagnostics);
-  write(bough::fe::assemble_stiffness(model, bough::fe::DofSet::Free).get(), prefix + ".K");
-  write(bough::fe::assemble_mass(model, bough::fe::DofSet::Free, model.mass_kind()).get(), prefix + ".M");
+  write(bough::fe::assemble_stiffness(model, bough::fe::DofSet::Free).sparse(), prefix + ".K");
+  write(bough::fe::assemble_mass(model, bough::fe::DofSet::Free, model.mass_kind()).sparse(), prefix + ".M");
   return 0;
 }
 

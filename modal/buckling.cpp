@@ -4,8 +4,8 @@
 #include <optional>
 
 #include "fe/linear/inertia.hpp"
-#include "fe/linear/low_rank_sum.hpp"
 #include "fe/linear/residual.hpp"
+#include "fe/linear/symmetric_matrix.hpp"
 #include "fe/loads/second_order.hpp"
 #include "modal/canonical.hpp"
 #include "modal/eigen.hpp"
@@ -52,7 +52,7 @@ class BucklingModes {
   const EigenOptions& options_;
   Diagnostics& diagnostics_;
   detail::Pencil pencil_;
-  fe::PetscMat K_G_, signed_K_G_;
+  fe::SymmetricMatrix K_G_, signed_K_G_;
   Side signed_as_ = Both;
   std::optional<fe::SymmetricFactor> own_factor_;
   const fe::SymmetricFactor* factor_;  ///< of K
@@ -67,14 +67,14 @@ void BucklingModes::add_roots(Side side, int number, Roots& roots) {
   // A: -K_G, whose positive θ are positive load factors, or K_G for the negative ones.
   const Side sign = side == Negative ? Negative : Positive;
   if (!signed_K_G_ || signed_as_ != sign) {
-    signed_K_G_ = fe::scale(K_G_.get(), -sign);
+    signed_K_G_ = fe::scale(K_G_, -sign);
     signed_as_ = sign;
   }
-  if (!factor_) factor_ = &own_factor_.emplace(pencil_.K.get(), false);
+  if (!factor_) factor_ = &own_factor_.emplace(pencil_.K, false);
   if (factor_->is_singular()) detail::throw_singular(pencil_, 0);
   detail::EigenProblem problem;
-  problem.A = signed_K_G_.get();
-  problem.B = pencil_.K.get();
+  problem.A = signed_K_G_;
+  problem.B = pencil_.K;
   problem.factor = factor_;
   problem.solver = options_.solver;
   problem.spectrum = side == Both ? detail::Spectrum::LargestMagnitude : detail::Spectrum::LargestPositive;
@@ -104,7 +104,7 @@ int BucklingModes::count_below(Side side, double magnitude) const {
     if (side == -sign) continue;
     int count = -1;
     for (double f = magnitude; count < 0 && f < 1.001 * magnitude; f *= 1 + detail::kMoveOfLoadFactor)
-      count = fe::count_negative_eigenvalues(pencil_.K.get(), sign * f, K_G_.get()).value_or(-1);
+      count = fe::count_negative_eigenvalues(pencil_.K, sign * f, K_G_).value_or(-1);
     if (count < 0) return -1;
     sum += count;
   }
@@ -173,8 +173,8 @@ EigenPairs BucklingModes::make_pairs(Roots roots, int number) {
   pairs.inertia_count = std::max(count_, -1);
   pairs.solvers = uses_;
   pairs.residual =
-      fe::calc_residuals(fe::calc_residual_scale(pencil_.K_diagonal, fe::get_diagonal(K_G_.get()), lambda), X,
-                         pencil_.calc_K_times(X), -fe::multiply(K_G_.get(), X) * lambda.asDiagonal(), pencil_.kinds);
+      fe::calc_residuals(fe::calc_residual_scale(pencil_.K_diagonal, fe::get_diagonal(K_G_), lambda), X,
+                         pencil_.calc_K_times(X), -fe::multiply(K_G_, X) * lambda.asDiagonal(), pencil_.kinds);
   fe::check_residuals(pairs.residual, "load factor", diagnostics_);
   return pairs;
 }

@@ -49,7 +49,7 @@ void orthonormalize_ascending(const MatrixXd& G, MatrixXd& X) {
   X = std::move(Y);
 }
 
-void project_out(Mat M, const MatrixXd& R, MatrixXd& X) {
+void project_out(const fe::SymmetricMatrix& M, const MatrixXd& R, MatrixXd& X) {
   if (R.cols() == 0) return;
   const MatrixXd MR = fe::multiply(M, R);
   for (int pass = 0; pass < 2; ++pass) X -= R * fe::calc_inner_products(MR, X);

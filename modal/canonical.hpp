@@ -3,7 +3,7 @@
 #include <functional>
 #include <vector>
 
-#include "fe/linear/petsc.hpp"
+#include "fe/linear/symmetric_matrix.hpp"
 #include "fe/model/model.hpp"
 
 namespace bough::modal::detail {
@@ -25,7 +25,7 @@ MatrixXd calc_cluster_rotation(const VectorXd& weights, const Eigen::Ref<const M
 void orthonormalize_ascending(const MatrixXd& G, MatrixXd& X);
 
 /// Subtracts from X what it has of the M-orthonormal R, twice.
-void project_out(Mat M, const MatrixXd& R, MatrixXd& X);
+void project_out(const fe::SymmetricMatrix& M, const MatrixXd& R, MatrixXd& X);
 
 /// Makes the component of largest magnitude of each column positive, the first among those within 1e-6 of it.
 void fix_signs(MatrixXd& Phi);

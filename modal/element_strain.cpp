@@ -8,9 +8,9 @@
 
 #include "base/diagnostic.hpp"
 #include "fe/linear/blas.hpp"
-#include "fe/linear/low_rank_sum.hpp"
 #include "fe/linear/ranks.hpp"
 #include "fe/linear/residual.hpp"
+#include "fe/linear/symmetric_matrix.hpp"
 #include "fe/matrices/vector_products.hpp"
 #include "modal/canonical.hpp"
 #include "modal/pencil.hpp"
@@ -119,9 +119,8 @@ class SoftModes {
   }
 
  private:
-  Mat shift(const fe::System& system) {
-    shifted_ = fe::add_diagonal(system.K.get(), kShift * fe::fill_diagonal(system.K_diagonal, pencil_.kinds));
-    return shifted_.get();
+  fe::SymmetricMatrix shift(const fe::System& system) const {
+    return fe::add_diagonal(system.K, kShift * fe::fill_diagonal(system.K_diagonal, pencil_.kinds));
   }
 
   void find_ritz() {
@@ -148,7 +147,6 @@ class SoftModes {
   }
 
   const Pencil& pencil_;
-  fe::PetscMat shifted_;
   fe::SymmetricFactor factor_;
   MatrixXd X_, M_X_, forces_;
   VectorXd theta_, eta_, parts_, whole_;

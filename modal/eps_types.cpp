@@ -82,7 +82,7 @@ class LowRankSolver final : public OwnSolver {
   int run(EPS eps, const FactoredOperator& op, bool& is_done) override {
     LowRankProblem problem;
     problem.K = settings.K;
-    check_petsc(STGetMatrix(eps->st, 1, &problem.M));
+    problem.M = settings.B;
     problem.C = settings.C;
     problem.solve = op.solve;
     problem.shift = eps->target;

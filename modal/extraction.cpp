@@ -11,11 +11,11 @@
 #include <vector>
 
 #include "base/diagnostic.hpp"
-#include "fe/linear/low_rank_sum.hpp"
 #include "fe/linear/mechanism.hpp"
 #include "fe/linear/memory_need.hpp"
 #include "fe/linear/ordering.hpp"
 #include "fe/linear/ranks.hpp"
+#include "fe/linear/symmetric_matrix.hpp"
 #include "modal/eps_types.hpp"
 #include "modal/factored_transform.hpp"
 #include "modal/tolerances.hpp"
@@ -80,11 +80,7 @@ namespace {
 
 bool is_near(const EigenProblem& problem) { return problem.spectrum == Spectrum::NearShift; }
 
-PetscInt get_size(const EigenProblem& problem) {
-  PetscInt n = 0;
-  check_petsc(MatGetSize(problem.A, &n, nullptr));
-  return n;
-}
+PetscInt get_size(const EigenProblem& problem) { return problem.A.num_rows(); }
 
 /// b fixed columns; the first does not depend on b.
 MatrixXd make_start(const EigenProblem& problem, int b) {
@@ -95,7 +91,7 @@ MatrixXd make_start(const EigenProblem& problem, int b) {
   return start;
 }
 
-BlockApply multiply_by(Mat A) {
+BlockApply multiply_by(const fe::SymmetricMatrix& A) {
   return [A](const Eigen::Ref<const MatrixXd>& X) { return fe::multiply(A, X); };
 }
 
@@ -103,14 +99,13 @@ BlockApply multiply_by(Mat A) {
 FactoredHandle factor(const EigenProblem& problem) {
   auto made = std::make_shared<Factored>();
   const bool is_alone = fe::initialize_petsc().size == 1;
-  fe::PetscMat shifted;
+  fe::SymmetricMatrix shifted;
   if (is_near(problem) && problem.shift != 0) shifted = fe::add(problem.A, -problem.shift, problem.B);
-  Mat F = !is_near(problem) ? problem.B : shifted ? shifted.get() : problem.A;
+  const fe::SymmetricMatrix F = !is_near(problem) ? problem.B : shifted ? shifted : problem.A;
   const fe::SymmetricFactor* factor = problem.factor;
   if (!factor && is_alone) {
     made->own = fe::SymmetricFactor::try_definite(F);
-    if (shifted)  // the count takes its dissection
-      fe::copy_row_groups(fe::get_sparse(shifted.get()), fe::get_sparse(problem.A));
+    if (shifted) fe::copy_row_order(shifted, problem.A);  // the count takes its dissection
     if (!made->own && problem.definite_only) {
       made->is_singular = true;
       return made;
@@ -131,9 +126,9 @@ FactoredHandle factor(const EigenProblem& problem) {
   return made;
 }
 
-fe::PetscVec make_vector(Mat A, const Eigen::Ref<const VectorXd>& values) {
+fe::PetscVec make_vector(const fe::SymmetricMatrix& A, const Eigen::Ref<const VectorXd>& values) {
   fe::PetscVec v;
-  check_petsc(MatCreateVecs(A, v.out(), nullptr));
+  check_petsc(MatCreateVecs(A.sparse(), v.out(), nullptr));
   fe::scatter(values, v.get());
   return v;
 }
@@ -189,7 +184,7 @@ class EpsRun {
   EpsRun(const EigenProblem& problem, FactoredOperator& op, const std::string& type, int wanted, int room)
       : problem_(problem), op_(op), wanted_(wanted), room_(room) {
     check_petsc(EPSCreate(PETSC_COMM_WORLD, eps_.out()));
-    check_petsc(EPSSetOperators(eps(), problem.A, problem.B));
+    check_petsc(EPSSetOperators(eps(), A_.get(), B_.get()));
     check_petsc(EPSSetProblemType(eps(), EPS_GHEP));
     check_petsc(EPSSetType(eps(), type.c_str()));
     is_preconditioned_ = eps()->categ == EPS_CATEGORY_PRECOND;
@@ -290,7 +285,7 @@ class EpsRun {
     if (type == kLowRank) {
       check_petsc(EPSSetDimensions(eps(), wanted_, PETSC_DEFAULT, PETSC_DEFAULT));
       check_petsc(EPSSetTolerances(eps(), problem_.tolerance, PETSC_DEFAULT));
-      set_settings(eps(), LowRankSettings{problem_.stiffness, problem_.low_rank, std::move(deflation_),
+      set_settings(eps(), LowRankSettings{problem_.stiffness, problem_.B, problem_.low_rank, std::move(deflation_),
                                           problem_.projects_deflate});
       return;
     }
@@ -337,7 +332,7 @@ class EpsRun {
     result.values.resize(number);
     result.vectors.resize(n, number);
     fe::PetscVec x;
-    check_petsc(MatCreateVecs(problem_.A, x.out(), nullptr));
+    check_petsc(MatCreateVecs(problem_.A.sparse(), x.out(), nullptr));
     for (PetscInt i = 0; i < number; ++i) {
       PetscScalar value = 0;
       check_petsc(EPSGetEigenpair(eps(), i, &value, nullptr, x.get(), nullptr));
@@ -358,6 +353,7 @@ class EpsRun {
 
   const EigenProblem& problem_;
   FactoredOperator& op_;
+  const fe::PetscMat A_ = make_operator(problem_.A), B_ = make_operator(problem_.B);
   int wanted_, room_;
   bool is_preconditioned_ = false;
   MatrixXd deflation_;

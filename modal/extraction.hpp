@@ -33,7 +33,7 @@ struct Factored;
 using FactoredHandle = std::shared_ptr<Factored>;
 
 struct EigenProblem {
-  Mat A = nullptr, B = nullptr;
+  fe::SymmetricMatrix A, B;
   Spectrum spectrum = Spectrum::NearShift;
   double shift = 0;
   int num_wanted = 1;
@@ -50,7 +50,7 @@ struct EigenProblem {
   int block = 0;            ///< columns of the blocks, as many as a root has copies; 0: what is fastest
   std::string solver = {};  ///< EPS type that overrules choose_solver(); empty: none does
   const Eigen::SparseMatrix<double>* low_rank = nullptr;  ///< C of B = C Cᵀ where B has a low rank
-  Mat stiffness = nullptr;        ///< with `low_rank`: A without the springs that only `deflate` moves
+  fe::SymmetricMatrix stiffness;  ///< with `low_rank`: A without the springs that only `deflate` moves
   bool projects_deflate = false;  ///< with `low_rank`: A has such springs
   std::function<void(int converged, int wanted)> progress = {};
   /// From `release` on A is not needed any more, `restore` asks for it back. The caller brings

@@ -145,7 +145,7 @@ MassIntegrals calc_momentum_integrals(const NodalDofs& dofs, const MassTimes& ma
 MassIntegrals calc_exact_integrals(const fe::Model& model, fe::MassKind kind, const MatrixXd& Phi,
                                    const Vector3d& reference) {
   const auto M = fe::assemble_grid_mass(model, kind);
-  const auto mass_times = [&M](const MatrixXd& X) -> MatrixXd { return fe::multiply(M.get(), X); };
+  const auto mass_times = [&M](const MatrixXd& X) -> MatrixXd { return fe::multiply(M, X); };
   const auto dofs = NodalDofs::from_model(model);
   MassIntegrals g = moves_alike(dofs, mass_times) ? calc_momentum_integrals(dofs, mass_times, Phi, reference)
                                                   : calc_exact_integrals(dofs, mass_times, Phi, reference);

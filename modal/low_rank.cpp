@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "fe/linear/factor.hpp"
-#include "fe/linear/low_rank_sum.hpp"
+#include "fe/linear/symmetric_matrix.hpp"
 #include "modal/canonical.hpp"
 #include "modal/tolerances.hpp"
 
@@ -21,16 +21,17 @@ struct Entry {
 using Column = std::vector<Entry>;
 
 /// Row i of M on every rank: its column, M being symmetric.
-Column get_column(Mat M, int i) {
-  if (const fe::LowRankPart* part = fe::find_low_rank(M)) {
+Column get_column(const fe::SymmetricMatrix& of, int i) {
+  if (const fe::LowRankPart* part = of.low_rank()) {
     const Eigen::VectorXd t = part->W * Eigen::VectorXd(part->U.transpose().col(i));
     Eigen::VectorXd full = part->U * t;
-    for (const auto& [row, value] : get_column(fe::get_sparse(M), i)) full(row) += value;
+    for (const auto& [row, value] : get_column(of.sparse_part(), i)) full(row) += value;
     Column column;
     for (Eigen::Index row = 0; row < full.size(); ++row)
       if (full(row) != 0) column.push_back({static_cast<int>(row), full(row)});
     return column;
   }
+  Mat M = of.sparse();
   PetscInt first = 0, last = 0, num = 0;
   check_petsc(MatGetOwnershipRange(M, &first, &last));
   Column column;
@@ -56,9 +57,10 @@ Column get_column(Mat M, int i) {
 
 }  // namespace
 
-std::optional<Eigen::SparseMatrix<double>> factor_low_rank(Mat M, const Eigen::VectorXd& diagonal, int max_rank) {
+std::optional<Eigen::SparseMatrix<double>> factor_low_rank(const fe::SymmetricMatrix& M,
+                                                           const Eigen::VectorXd& diagonal, int max_rank) {
   // The rank is that of the sparse part at least, which is found from fewer entries.
-  if (fe::find_low_rank(M) && !factor_low_rank(fe::get_sparse(M), fe::get_diagonal(fe::get_sparse(M)), max_rank))
+  if (M.low_rank() && !factor_low_rank(M.sparse_part(), fe::get_diagonal(M.sparse_part()), max_rank))
     return std::nullopt;
   const auto n = static_cast<int>(diagonal.size());
   Eigen::VectorXd root(n), left(n), column = Eigen::VectorXd::Zero(n);
@@ -113,7 +115,7 @@ constexpr Eigen::Index kBlock = 24;  ///< right-hand sides at once
 MatrixXd symmetrize(const MatrixXd& A) { return 0.5 * (A + A.transpose()); }
 
 /// Values and vectors among X by K itself.
-void solve_among(Mat K, Mat M, Roots& roots) {
+void solve_among(const fe::SymmetricMatrix& K, const fe::SymmetricMatrix& M, Roots& roots) {
   const MatrixXd& X = roots.X;
   const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd> ritz(symmetrize(X.transpose() * fe::multiply(K, X)),
                                                                 symmetrize(X.transpose() * fe::multiply(M, X)));

@@ -4,7 +4,7 @@
 
 #include <Eigen/SparseCore>
 
-#include "fe/linear/petsc.hpp"
+#include "fe/linear/symmetric_matrix.hpp"
 #include "modal/factored_transform.hpp"
 #include "modal/roots.hpp"
 
@@ -14,11 +14,12 @@ namespace bough::modal::detail {
 /// nothing where it is higher or M is indefinite. Cholesky of the matrix scaled to a unit diagonal, pivots from the
 /// largest decade down; what is left below 3e-12 is roundoff of masses that dependent dofs shared out (Higham, Accuracy
 /// and Stability of Numerical Algorithms, 2nd ed., 10.3). Touches no more than max_rank columns.
-std::optional<Eigen::SparseMatrix<double>> factor_low_rank(Mat M, const Eigen::VectorXd& diagonal, int max_rank);
+std::optional<Eigen::SparseMatrix<double>> factor_low_rank(const fe::SymmetricMatrix& M,
+                                                           const Eigen::VectorXd& diagonal, int max_rank);
 
 /// K x = λ C Cᵀ x, with vectors that are whole on every rank.
 struct LowRankProblem {
-  Mat K = nullptr, M = nullptr;
+  fe::SymmetricMatrix K, M;
   const Eigen::SparseMatrix<double>* C = nullptr;
   BlockApply solve;             ///< (A - σM)⁻¹X, A = K but for springs that `known` alone moves
   double shift = 0;             ///< σ

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "fe/linear/blas.hpp"
-#include "fe/linear/low_rank_sum.hpp"
 #include "fe/linear/memory_need.hpp"
+#include "fe/linear/symmetric_matrix.hpp"
 #include "fe/matrices/assembly.hpp"
 #include "fe/matrices/system.hpp"
 #include "modal/canonical.hpp"
@@ -15,19 +15,11 @@
 namespace bough::modal::detail {
 namespace {
 
-/// Springs from ground to f-dofs of K, each as stiff as K is there.
-std::vector<std::pair<int, double>> add_springs(const std::vector<int>& dofs, const VectorXd& K_diagonal, Mat whole) {
-  Mat K = fe::get_sparse(whole);
+/// Springs from ground to f-dofs, each as stiff as K is there.
+std::vector<std::pair<int, double>> make_springs(const std::vector<int>& dofs, const VectorXd& K_diagonal) {
   std::vector<std::pair<int, double>> springs;
   const double largest = K_diagonal.maxCoeff(), plain = largest > 0 ? largest : 1;
-  PetscInt first = 0, last = 0;
-  fe::check_petsc(MatGetOwnershipRange(K, &first, &last));
-  for (const int f : dofs) {
-    springs.emplace_back(f, K_diagonal(f) > 0 ? K_diagonal(f) : plain);
-    if (f >= first && f < last) fe::check_petsc(MatSetValue(K, f, f, springs.back().second, ADD_VALUES));
-  }
-  fe::check_petsc(MatAssemblyBegin(K, MAT_FINAL_ASSEMBLY));
-  fe::check_petsc(MatAssemblyEnd(K, MAT_FINAL_ASSEMBLY));
+  for (const int f : dofs) springs.emplace_back(f, K_diagonal(f) > 0 ? K_diagonal(f) : plain);
   return springs;
 }
 
@@ -40,8 +32,7 @@ void release_columns(Eigen::Index number) {
 
 void NormalModes::add_supports() {
   if (rigid_.supports.empty()) return;
-  supported_ = fe::copy(pencil_.K.get());
-  add_springs(rigid_.supports, pencil_.K_diagonal, supported_.get());
+  supported_ = fe::add_diagonal(pencil_.K, make_springs(rigid_.supports, pencil_.K_diagonal));
 }
 
 void warn_of_cut_root(int num_more, Diagnostics& said) {
@@ -70,9 +61,9 @@ EigenPairs NormalModes::answer_nothing(Diagnostics& said) {
 /// much of the motion is in it, so nothing else changes.
 void NormalModes::hold_massless(Diagnostics& said) {
   if (rigid_.held.empty()) return;
-  pencil_.K = fe::copy(pencil_.K.get());  // the system's own stays as it is
+  springs_ = make_springs(rigid_.held, pencil_.K_diagonal);
+  pencil_.K = fe::add_diagonal(pencil_.K, springs_);  // the system's own stays as it is
   has_own_stiffness_ = false;
-  springs_ = add_springs(rigid_.held, pencil_.K_diagonal, pencil_.K.get());
   std::string where;
   for (const int f : rigid_.held) where += (where.empty() ? "" : ", ") + describe(pencil_.model, f);
   said.warning("modal.massless-motion", {},
@@ -82,7 +73,7 @@ void NormalModes::hold_massless(Diagnostics& said) {
 
 /// A guess, -1 where the factor has none: the roots decide (fit_range).
 int NormalModes::count_below(double lambda) const {
-  return lambda > 0 ? count_roots_below(pencil_.K.get(), pencil_.M.get(), lambda) : 0;
+  return lambda > 0 ? count_roots_below(pencil_.K, pencil_.M, lambda) : 0;
 }
 
 void NormalModes::choose_range() {
@@ -96,12 +87,12 @@ void NormalModes::choose_range() {
 
 void NormalModes::make_solver(const std::string& eps_type) {
   PencilProblem problem;
-  problem.K = pencil_.K.get();
-  problem.M = pencil_.M.get();
+  problem.K = pencil_.K;
+  problem.M = pencil_.M;
   problem.M_diagonal = pencil_.M_diagonal;
   problem.kinds = pencil_.kinds;
   problem.rigid = rigid_.modes;
-  problem.supported = supported_.get();
+  problem.supported = supported_;
   problem.is_complete = rigid_.is_complete;
   // hold_massless() puts springs into K that the caller's factor has not.
   if (rigid_.held.empty()) problem.factor = factor_;
@@ -111,11 +102,11 @@ void NormalModes::make_solver(const std::string& eps_type) {
   // Beside the factor and the vectors of Lanczos K is an eighth of the memory; it is made again in a thirtieth of the
   // time.
   if (has_own_stiffness_ && pencil_.size() >= options_.least_rows_to_release) {
-    problem.release = [this] { is_away_ = fe::drop_stiffness(pencil_.K.get()); };
+    problem.release = [this] { is_away_ = fe::drop_stiffness(pencil_.K); };
     problem.restore = [this] {
       if (!std::exchange(is_away_, false)) return;
       fe::release_freed_memory();  // of the factor, and of what assembly takes
-      fe::restore_stiffness(pencil_.model, pencil_.K.get());
+      fe::restore_stiffness(pencil_.model, pencil_.K);
       fe::release_freed_memory();
     };
   }
@@ -167,7 +158,7 @@ void NormalModes::find_first() {
 
 /// A shift that makes K + shift M definite, shift_ or larger; 0: none of those tried does.
 double NormalModes::find_definite_shift() const {
-  const auto is_above = [&](double shift) { return count_roots_below(pencil_.K.get(), pencil_.M.get(), -shift) == 0; };
+  const auto is_above = [&](double shift) { return count_roots_below(pencil_.K, pencil_.M, -shift) == 0; };
   double shift = shift_;
   for (int attempt = 0; attempt < 30 && !is_above(shift); ++attempt) shift *= 4;
   return shift == shift_ || is_above(shift) ? shift : 0;
@@ -210,7 +201,7 @@ RootSearchResult NormalModes::search() {
     return i < num_zero_ ? 1 : calc_roundoff(pencil_, roots.X.col(i), roots.value(i));
   };
   search.count = [&](double mu) {
-    const int count = count_roots_below(pencil_.K.get(), pencil_.M.get(), mu);
+    const int count = count_roots_below(pencil_.K, pencil_.M, mu);
     return count < 0 ? -1 : count - num_rigid();
   };
   return search_roots(search, found_);

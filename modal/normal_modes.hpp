@@ -95,7 +95,7 @@ class NormalModes {
   bool is_away_ = false;                                         ///< K, while Lanczos runs
   RigidMotions rigid_;
   std::vector<std::pair<int, double>> springs_;  ///< f-dofs of the massless motions, held by them in K
-  fe::PetscMat supported_;                       ///< K with springs at the supports too
+  fe::SymmetricMatrix supported_;                ///< K with springs at the supports too
   std::optional<PencilSolver> solver_;
   ModeRange range_;
   double shift_ = 0;  ///< K + shift M is definite

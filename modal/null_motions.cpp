@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "fe/linear/factor.hpp"
-#include "fe/linear/low_rank_sum.hpp"
+#include "fe/linear/symmetric_matrix.hpp"
 #include "modal/canonical.hpp"
 #include "modal/extraction.hpp"
 #include "modal/roots.hpp"
@@ -56,8 +56,7 @@ MatrixXd iterate(const Pencil& pencil, const VectorXd& D, const fe::SymmetricFac
 
 /// Nothing when they are too many, or the factor fails.
 std::optional<MatrixXd> find_null_space(const Pencil& pencil, const VectorXd& D, int expected) {
-  const fe::PetscMat shifted = fe::add_diagonal(pencil.K.get(), kNullShift * D);
-  const fe::SymmetricFactor factor(shifted.get(), false, fe::FactorMethod::Pivoting);
+  const fe::SymmetricFactor factor(fe::add_diagonal(pencil.K, kNullShift * D), false, fe::FactorMethod::Pivoting);
   if (factor.is_singular()) return std::nullopt;
   constexpr Index most = 400;
   for (Index m = expected + 6;; m *= 2) {

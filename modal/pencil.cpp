@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "fe/linear/blas.hpp"
-#include "fe/linear/low_rank_sum.hpp"
 #include "fe/linear/mechanism.hpp"
+#include "fe/linear/symmetric_matrix.hpp"
 #include "fe/model/row_kinds.hpp"
 #include "modal/canonical.hpp"
 #include "modal/tolerances.hpp"
@@ -47,9 +47,9 @@ MatrixXd calc_range(const MatrixXd& A, double threshold, bool above, VectorXd* v
 /// Unit vectors of the dofs with mass and nothing at all that stiffens them.
 MatrixXd find_loose(const Pencil& pencil) {
   VectorXd loose = VectorXd::Zero(pencil.size());
-  Mat K = fe::get_sparse(pencil.K.get());
+  Mat K = pencil.K.sparse();
   VectorXd coupled = VectorXd::Zero(pencil.size());  // by the part of low rank
-  if (const auto* part = fe::find_low_rank(pencil.K.get())) coupled = part->U.cwiseAbs() * VectorXd::Ones(part->rank());
+  if (const auto* part = pencil.K.low_rank()) coupled = part->U.cwiseAbs() * VectorXd::Ones(part->rank());
   PetscInt first = 0, last = 0, num = 0;
   fe::check_petsc(MatGetOwnershipRange(K, &first, &last));
   const PetscScalar* values = nullptr;
@@ -117,8 +117,8 @@ MatrixXd calc_polynomials(const fe::Model& model) {
 
 Pencil::Pencil(const fe::System& system)
     : model(system.model),
-      K(fe::share(system.K)),
-      M(fe::share(system.M)),
+      K(system.K),
+      M(system.M),
       K_diagonal(system.K_diagonal),
       M_diagonal(system.M_diagonal),
       kinds(fe::list_row_kinds(model)) {}
@@ -139,9 +139,9 @@ MatrixXd Pencil::calc_mass_gram(const MatrixXd& X) const {
 }
 
 MatrixXd find_forceless(const Pencil& pencil, const MatrixXd& Y, double floor) {
-  Mat K = fe::get_sparse(pencil.K.get());
+  Mat K = pencil.K.sparse();
   MatrixXd of_part, terms_of_part;
-  if (const auto* part = fe::find_low_rank(pencil.K.get())) {
+  if (const auto* part = pencil.K.low_rank()) {
     const MatrixXd t = part->U.transpose() * Y;
     of_part = part->U * (part->W * t);
     terms_of_part = part->U.cwiseAbs() * (part->W.cwiseAbs() * t.cwiseAbs());
@@ -333,8 +333,8 @@ std::string describe(const fe::Model& model, int fdof) {
 }
 
 void throw_singular(const Pencil& pencil, double shift) {
-  const fe::PetscMat A = fe::add(pencil.K.get(), shift, pencil.M.get());
-  const MatrixXd motions = fe::find_mechanisms(A.get(), pencil.kinds, 1);
+  const fe::SymmetricMatrix A = fe::add(pencil.K, shift, pencil.M);
+  const MatrixXd motions = fe::find_mechanisms(A, pencil.kinds, 1);
   std::string where;
   for (Eigen::Index c = 0; c < motions.cols(); ++c) {
     Eigen::Index largest = 0;

@@ -23,13 +23,13 @@ struct Pencil {
   explicit Pencil(const fe::System& system);
 
   const fe::Model& model;
-  fe::PetscMat K, M;
+  fe::SymmetricMatrix K, M;
   VectorXd K_diagonal, M_diagonal;  ///< |K_ii| and M_ii, num_fdofs
   fe::RowKinds kinds;               ///< of the f-dofs
 
   int size() const { return model.num_fdofs(); }
-  MatrixXd calc_K_times(const Block& X) const { return fe::multiply(K.get(), X); }
-  MatrixXd calc_M_times(const Block& X) const { return fe::multiply(M.get(), X); }
+  MatrixXd calc_K_times(const Block& X) const { return fe::multiply(K, X); }
+  MatrixXd calc_M_times(const Block& X) const { return fe::multiply(M, X); }
   MatrixXd dot(const Block& X, const Block& Y) const { return fe::calc_inner_products(X, Y); }  ///< XᵀY
   MatrixXd calc_mass_gram(const MatrixXd& X) const;  ///< XᵀMX; M X of some columns at a time
   /// φᵀKφ / Σ K_ii φ_i²: about 1e-16 for a motion without strain, whatever the units and the mesh.

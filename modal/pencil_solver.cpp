@@ -55,7 +55,7 @@ bool PencilSolver::solve(double shift, int number, int num_guard, bool definite_
   if (by_rank) {
     problem.low_rank = &*C_;
     problem.stiffness = problem_.K;
-    problem.projects_deflate = problem_.supported != nullptr;
+    problem.projects_deflate = static_cast<bool>(problem_.supported);
     problem.max_subspace = num_available_;
     problem.num_wanted += roots.size();
     if (problem_.rigid.cols() == 0 && !problem_.is_complete) {
@@ -98,7 +98,7 @@ bool PencilSolver::solve(double shift, int number, int num_guard, bool definite_
   return true;
 }
 
-int count_roots_below(Mat K, Mat M, double mu) {
+int count_roots_below(const fe::SymmetricMatrix& K, const fe::SymmetricMatrix& M, double mu) {
   for (int attempt = 0; attempt < 4; ++attempt, mu *= 1 + kMoveOfPivot) {
     if (const auto count = fe::count_eigenvalues_below(K, M, mu)) return *count;
   }

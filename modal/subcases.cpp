@@ -112,7 +112,7 @@ EigenPairs solve_buckling(const records::Deck& deck, const BucklingCases& cases,
   diagnostics.throw_if_errors();
   std::optional<fe::System> system;
   if (!own && model.num_fdofs() > 0) system.emplace(model);
-  const fe::StaticSolver solver(statics, system ? fe::share(system->K) : fe::get_stiffness(statics), held);
+  const fe::StaticSolver solver(statics, system ? system->K : fe::get_stiffness(statics), held);
   const auto suport =
       fe::calc_suport(statics, solver, std::move(held), relief, fe::locate_relief(statics, deck), diagnostics);
   fe::add_relief(statics, suport, load);

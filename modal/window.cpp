@@ -59,8 +59,8 @@ bool NormalModes::add_window(const Edge& lower, const Edge& upper, Roots& roots,
     return between.count >= 0 && add_window(lower, between, roots, uses) && add_window(between, upper, roots, uses);
   }
   EigenProblem krylov;
-  krylov.A = pencil_.K.get();
-  krylov.B = pencil_.M.get();
+  krylov.A = pencil_.K;
+  krylov.B = pencil_.M;
   krylov.deflate = MatrixXd(pencil_.size(), 0);
   krylov.shift = middle;
   krylov.tolerance = options_.tolerance;

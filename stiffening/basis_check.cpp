@@ -41,8 +41,7 @@ BasisCheck check_basis(const fe::Model& model, const Eigen::MatrixXd& Phi, const
   check.stiffness = find_largest_difference(K, modal_stiffness);
   check.beyond_roundoff = std::max(check.mass, check.stiffness);
   if (check.mass <= kBasisError && check.stiffness > kBasisError) {
-    const Eigen::VectorXd diagonal =
-        fe::get_diagonal(fe::assemble_stiffness(model, fe::DofSet::Global).get()).cwiseAbs();
+    const Eigen::VectorXd diagonal = fe::get_diagonal(fe::assemble_stiffness(model, fe::DofSet::Global)).cwiseAbs();
     const Eigen::VectorXd parts = (Phi.cwiseAbs2().transpose() * diagonal).cwiseSqrt();
     check.beyond_roundoff = find_largest_difference(K, modal_stiffness, kStiffnessRoundoff * parts * parts.transpose());
   }

@@ -69,7 +69,7 @@ InertialLoads calc_body_inertial_loads(const fe::Model& model) {
   const auto kind = model.mass_kind();
   InertialLoads loads{fe::assemble_mass(model, fe::DofSet::Global, kind), {}};
   loads.F_I = fe::calc_inertial_loads(model, kind, MatrixXd::Identity(12, 12),
-                                      [&](const MatrixXd& X) { return fe::multiply(loads.M.get(), X); });
+                                      [&](const MatrixXd& X) { return fe::multiply(loads.M, X); });
   return loads;
 }
 
@@ -77,7 +77,7 @@ void set_integrals(const BodyRequest& request, const fe::Model& model, const Mat
                    FlexBody& body) {
   const auto kind = model.mass_kind();
   const bool is_lumped = kind == fe::MassKind::Lumped, is_approximate = fe::has_approximate_mass(model, kind);
-  const auto mass_times = [&](const MatrixXd& X) { return fe::multiply(loads.M.get(), X); };
+  const auto mass_times = [&](const MatrixXd& X) { return fe::multiply(loads.M, X); };
   body.exact = modal::calc_exact_integrals(model, kind, Phi);
   body.masses = is_approximate ? "nodal momenta" : "bodies";
   if (is_approximate)

@@ -62,7 +62,7 @@ struct LoadPattern {
 
 /// M on the g-set and the twelve inertial loads that it makes.
 struct InertialLoads {
-  fe::PetscMat M;
+  fe::SymmetricMatrix M;
   MatrixXd F_I;  ///< num_gdofs x 12
 };
 

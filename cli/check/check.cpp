@@ -84,7 +84,7 @@ void check_model(const CheckOptions& options, const records::Deck& deck, fe::Mod
   const auto mass = fe::calc_mass_properties(model, model.mass_kind(), Vector3d::Zero());
   if (mass.rigid_mass.isZero(0)) {
     const auto M = fe::assemble_mass(model, fe::DofSet::Global, model.mass_kind());
-    if (model.num_gdofs() > 0 && fe::get_diagonal(M.get()).maxCoeff() > 0)
+    if (model.num_gdofs() > 0 && fe::get_diagonal(M).maxCoeff() > 0)
       diagnostics.note("cli.no-mass", deck.locate({}), "the only mass is at scalar points, which have no place",
                        "modes are right; a body needs mass at grids");
     else

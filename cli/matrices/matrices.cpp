@@ -66,7 +66,7 @@ class GeometricStiffness {
   GeometricStiffness(const records::Deck& deck, const MatricesOptions& options, const fe::Model& model)
       : deck_(deck), options_(options), model_(&model) {}
 
-  fe::PetscMat calc(const LoadCase& load_case, Diagnostics& diagnostics) {
+  fe::SymmetricMatrix calc(const LoadCase& load_case, Diagnostics& diagnostics) {
     if (load_case.subcase != 0 && load_case.subcase != model_->subcase().id) change_to(load_case.subcase, diagnostics);
     records::Subcase subcase;
     subcase.load = load_case.load;

@@ -64,16 +64,12 @@ class CholmodSolver final : public FactorSolver {
   }
 
   /// False where A is not positive definite.
-  bool factor(Mat A) {
-    Triangle triangle(A);
+  bool factor(const SymmetricMatrix& A) {
+    Triangle triangle(A.sparse());
     cholmod_sparse matrix = triangle.as_sparse();
-    const PetscIs order = find_elimination_order(A);
-    if (order) {
+    if (const auto order = find_elimination_order(A)) {
       common_->nmethods = 1;  // the order given; by itself CHOLMOD would try its own beside it
-      const PetscInt* rows = nullptr;
-      check_petsc(ISGetIndices(order.get(), &rows));
-      factor_ = cholmod_analyze_p(&matrix, const_cast<int*>(rows), nullptr, 0, common_.get());
-      check_petsc(ISRestoreIndices(order.get(), &rows));
+      factor_ = cholmod_analyze_p(&matrix, const_cast<int*>(order->data()), nullptr, 0, common_.get());
     } else {
       factor_ = cholmod_analyze(&matrix, common_.get());
     }
@@ -131,7 +127,7 @@ void check_cholmod(int status) {
                            "run on two processes or more, where MUMPS factors (mpirun -n 2 bough ...)");
 }
 
-FactorSolverHandle factor_by_cholmod(Mat A) {
+FactorSolverHandle factor_by_cholmod(const SymmetricMatrix& A) {
   auto solver = std::make_unique<CholmodSolver>();
   if (!solver->factor(A)) return nullptr;
   return solver;

@@ -6,6 +6,7 @@
 
 #include "base/diagnostic.hpp"
 #include "fe/linear/factor_solver.hpp"
+#include "fe/linear/symmetric_matrix.hpp"
 
 namespace bough::fe {
 
@@ -17,6 +18,6 @@ void check_cholmod(int status);
 
 /// LLᵀ of A (MATSEQAIJ); null where A is not positive definite. Throws as check_cholmod(), and before the work where
 /// the factor needs more memory than there is.
-FactorSolverHandle factor_by_cholmod(Mat A);
+FactorSolverHandle factor_by_cholmod(const SymmetricMatrix& A);
 
 }  // namespace bough::fe

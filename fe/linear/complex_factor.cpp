@@ -2,8 +2,6 @@
 
 #include <vector>
 
-#include "fe/linear/low_rank_sum.hpp"
-
 namespace bough::fe {
 namespace {
 
@@ -104,21 +102,19 @@ LowRankPart double_part(const LowRankPart& part, bool is_imaginary) {
 
 }  // namespace
 
-PetscMat make_doubled(Mat A, Mat B) {
+SymmetricMatrix make_doubled(const SymmetricMatrix& A, const SymmetricMatrix& B) {
   LowRankPart part{Eigen::SparseMatrix<double>(0, 0), MatrixXd(0, 0), MatrixXd(0, 0), 0};
-  if (const auto* of_A = find_low_rank(A)) part = double_part(*of_A, false);
-  if (const auto* of_B = find_low_rank(B)) part = join(part, 1, double_part(*of_B, true), 1);
-  return make_sum(make_doubled_sparse(get_sparse(A), get_sparse(B)), std::move(part));
+  if (const auto* of_A = A.low_rank()) part = double_part(*of_A, false);
+  if (const auto* of_B = B.low_rank()) part = join(part, 1, double_part(*of_B, true), 1);
+  return SymmetricMatrix(make_doubled_sparse(A.sparse(), B.sparse()), std::move(part));
 }
 
-ComplexFactor::ComplexFactor(const PetscMat& A, Mat B)
-    : is_real_(B == nullptr),
-      matrix_(is_real_ ? share(A) : make_doubled(A.get(), B)),
-      factor_(matrix_.get(), false, FactorMethod::Pivoting) {}
+ComplexFactor::ComplexFactor(const SymmetricMatrix& A, const SymmetricMatrix& B)
+    : is_real_(!B), matrix_(is_real_ ? A : make_doubled(A, B)), factor_(matrix_, false, FactorMethod::Pivoting) {}
 
 MatrixXd ComplexFactor::solve_real(const Eigen::Ref<const MatrixXd>& F) const {
   MatrixXd X = factor_.solve(F);
-  X += factor_.solve(calc_residual(matrix_.get(), X, F));
+  X += factor_.solve(calc_residual(matrix_, X, F));
   return X;
 }
 

@@ -35,7 +35,7 @@ std::vector<int> calc_postorder(const std::vector<const MatrixRows*>& matrices, 
 
 /// One part where there is one thread, or where two would be uneven or have much between them; empty where A has no row
 /// groups or less than `least` rows.
-std::optional<TwoParts> find_parts(Mat A, PetscInt least);
+std::optional<TwoParts> find_parts(const SymmetricMatrix& A, PetscInt least);
 
 /// work(p) of all parts, one or two, at once.
 template <class Work>

@@ -19,9 +19,9 @@ class SymmetricFactor {
   /// `find_null_pivots`, pivots below 1e-15 of the scaled matrix are set aside and counted by MUMPS (ICNTL(24)) instead
   /// of failing; LLᵀ counts none: a singular matrix whose roundoff is positive passes. Throws ComputationError
   /// "fe.out-of-memory" and "fe.factorization".
-  SymmetricFactor(Mat A, bool find_null_pivots, FactorMethod method = FactorMethod::Fastest);
+  SymmetricFactor(const SymmetricMatrix& A, bool find_null_pivots, FactorMethod method = FactorMethod::Fastest);
   /// LLᵀ of A; empty where A is not positive definite, or on several processes.
-  static std::optional<SymmetricFactor> try_definite(Mat A);
+  static std::optional<SymmetricFactor> try_definite(const SymmetricMatrix& A);
 
   bool is_singular() const { return is_singular_; }  ///< an exact zero pivot ended the factorization
   bool is_definite() const { return is_definite_; }  ///< LLᵀ: every pivot was above zero, in roundoff

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "fe/linear/dissection.hpp"
-#include "fe/linear/low_rank_sum.hpp"
 #include "fe/linear/memory_need.hpp"
 #include "fe/linear/part_fronts.hpp"
 
@@ -75,14 +74,17 @@ int count_of_sum(const RowSum& sum, TwoParts cut) {
 
 }  // namespace
 
-std::optional<int> count_negative_by_fronts(Mat A, double factor, Mat B, PetscInt least) {
-  if (initialize_petsc().size > 1 || find_low_rank(A) || find_low_rank(B)) return std::nullopt;
+std::optional<int> count_negative_by_fronts(const SymmetricMatrix& A, double factor, const SymmetricMatrix& B,
+                                            PetscInt least) {
+  if (initialize_petsc().size > 1 || A.low_rank() || B.low_rank()) return std::nullopt;
   auto cut = find_parts(A, least);
   if (!cut) return std::nullopt;
   std::sort(cut->between.begin(), cut->between.end());
   int count = -1;
-  visit_rows(A, [&](const MatrixRows& a, PetscInt rows) {
-    visit_rows(B, [&](const MatrixRows& b, PetscInt) { count = count_of_sum({a, b, factor, rows}, std::move(*cut)); });
+  visit_rows(A.sparse(), [&](const MatrixRows& a, PetscInt rows) {
+    visit_rows(B.sparse(), [&](const MatrixRows& b, PetscInt) {
+      count = count_of_sum({a, b, factor, rows}, std::move(*cut));
+    });
   });
   if (count < 0) return std::nullopt;
   return count;

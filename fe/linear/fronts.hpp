@@ -2,7 +2,7 @@
 /// \file Negative eigenvalues of a large sparse sum, counted front by front.
 #include <optional>
 
-#include "fe/linear/petsc.hpp"
+#include "fe/linear/symmetric_matrix.hpp"
 
 namespace bough::fe {
 
@@ -14,7 +14,8 @@ namespace bough::fe {
 /// for a method that pivots freely: where that is not enough, pivots being so small that their front adds to a row more
 /// than `kMostGrowth` times what A and B have on its diagonal; matrices of less than `least` rows, without row groups,
 /// or with a low-rank part; several processes. Throws "fe.out-of-memory".
-std::optional<int> count_negative_by_fronts(Mat A, double factor, Mat B, PetscInt least = 3000);
+std::optional<int> count_negative_by_fronts(const SymmetricMatrix& A, double factor, const SymmetricMatrix& B,
+                                            PetscInt least = 3000);
 
 /// Negative eigenvalues of a dense matrix, of which the lower triangle is given and lost; -1 where a pivot is zero.
 int count_negative_of_dense(Eigen::MatrixXd& S);

@@ -25,13 +25,12 @@ constexpr PetscInt kFewRows = 160;
 
 /// Negative eigenvalues of A + factor B by LDLᵀ with pivots of one or two rows wherever they are (Bunch & Kaufman), -1
 /// where one is zero; empty where the matrices are of another kind or have more rows.
-std::optional<int> count_dense(Mat A, double factor, Mat B) {
-  if (initialize_petsc().size > 1 || find_low_rank(A) || find_low_rank(B)) return std::nullopt;
-  PetscInt size = 0;
-  check_petsc(MatGetSize(A, &size, nullptr));
+std::optional<int> count_dense(const SymmetricMatrix& A, double factor, const SymmetricMatrix& B) {
+  if (initialize_petsc().size > 1 || A.low_rank() || B.low_rank()) return std::nullopt;
+  const PetscInt size = A.num_rows();
   if (size < 1 || size > kFewRows) return std::nullopt;
   MatrixXd S = MatrixXd::Zero(size, size);  // lower triangle
-  for (const auto& [matrix, scale] : {std::pair(A, 1.0), std::pair(B, factor)}) {
+  for (const auto& [matrix, scale] : {std::pair(A.sparse(), 1.0), std::pair(B.sparse(), factor)}) {
     PetscBool is_by_rows = PETSC_FALSE;
     check_petsc(PetscObjectBaseTypeCompare(reinterpret_cast<PetscObject>(matrix), MATSEQAIJ, &is_by_rows));
     if (!is_by_rows) return std::nullopt;
@@ -58,20 +57,22 @@ std::optional<int> count_dense(Mat A, double factor, Mat B) {
 
 }  // namespace
 
-std::optional<int> count_negative_eigenvalues(Mat A, double factor, Mat B) {
-  if (!B) B = A, factor = 0;
+std::optional<int> count_negative_eigenvalues(const SymmetricMatrix& A, double factor, const SymmetricMatrix& B) {
   release_freed_memory();  // of what was solved before
   if (const auto count = count_dense(A, factor, B)) return *count < 0 ? std::nullopt : count;
   if (const auto count = count_negative_by_fronts(A, factor, B)) return count;
-  const PetscMat sum = add(A, factor, B);
-  const LowRankPart* part = find_low_rank(sum.get());
-  MumpsFactor found =
-      factor_by_mumps(get_sparse(sum.get()), {.counts_negative = true, .keeps_factor = part != nullptr});
+  const SymmetricMatrix sum = add(A, factor, B);
+  const LowRankPart* part = sum.low_rank();
+  MumpsFactor found = factor_by_mumps(sum.sparse(), {.counts_negative = true, .keeps_factor = part != nullptr});
   if (found.state != FactorState::Done) return std::nullopt;
   const int extra = part ? SumSolver(std::move(found.solver), *part).num_extra_negative() : 0;
   return found.num_negative + extra;
 }
 
-std::optional<int> count_eigenvalues_below(Mat A, Mat B, double mu) { return count_negative_eigenvalues(A, -mu, B); }
+std::optional<int> count_negative_eigenvalues(const SymmetricMatrix& A) { return count_negative_eigenvalues(A, 0, A); }
+
+std::optional<int> count_eigenvalues_below(const SymmetricMatrix& A, const SymmetricMatrix& B, double mu) {
+  return count_negative_eigenvalues(A, -mu, B);
+}
 
 }  // namespace bough::fe

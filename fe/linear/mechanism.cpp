@@ -5,7 +5,6 @@
 
 #include <Eigen/Eigenvalues>
 
-#include "fe/linear/low_rank_sum.hpp"
 #include "fe/linear/ranks.hpp"
 
 namespace bough::fe {
@@ -32,7 +31,8 @@ void reduce_columns(MatrixXd& X) {
 }
 
 /// Those of m motions that strain next to nothing, by inverse iteration on a subspace.
-MatrixXd find_soft_motions(Mat K, const VectorXd& D, const SymmetricFactor& factor, Eigen::Index m, double most) {
+MatrixXd find_soft_motions(const SymmetricMatrix& K, const VectorXd& D, const SymmetricFactor& factor, Eigen::Index m,
+                           double most) {
   const Eigen::Index n = D.size();
   MatrixXd X = make_random(n, m);
   VectorXd energy;
@@ -56,7 +56,7 @@ MatrixXd find_soft_motions(Mat K, const VectorXd& D, const SymmetricFactor& fact
 
 }  // namespace
 
-double calc_softest_energy(Mat K, const RowKinds& kinds, const SymmetricFactor& factor) {
+double calc_softest_energy(const SymmetricMatrix& K, const RowKinds& kinds, const SymmetricFactor& factor) {
   const VectorXd D = fill_diagonal(get_diagonal(K), kinds);
   VectorXd x = factor.solve(D.cwiseProduct(make_random(D.size(), 1).col(0)));
   const double size = x.dot(D.cwiseProduct(x));
@@ -65,11 +65,10 @@ double calc_softest_energy(Mat K, const RowKinds& kinds, const SymmetricFactor& 
   return std::abs(x.dot(multiply(K, x).col(0)));
 }
 
-MatrixXd find_mechanisms(Mat K, const RowKinds& kinds, int expected, double most) {
+MatrixXd find_mechanisms(const SymmetricMatrix& K, const RowKinds& kinds, int expected, double most) {
   const VectorXd D = fill_diagonal(get_diagonal(K), kinds);
   const Eigen::Index n = D.size();
-  const PetscMat shifted = add_diagonal(K, 1e-13 * D);
-  const SymmetricFactor factor(shifted.get(), false, FactorMethod::Pivoting);
+  const SymmetricFactor factor(add_diagonal(K, 1e-13 * D), false, FactorMethod::Pivoting);
   if (factor.is_singular()) return MatrixXd(n, 0);
   const Eigen::Index m = std::min<Eigen::Index>(n, std::clamp(expected + 2, 6, kMostMechanisms));
   MatrixXd basis = find_soft_motions(K, D, factor, m, most);

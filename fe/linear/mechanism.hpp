@@ -15,11 +15,12 @@ inline constexpr int kMostMechanisms = 24;
 
 /// xᵀKx / xᵀDx of the softest motion x that one solution for a random load (fixed seed) shows, D = diag K. The rows
 /// are of `kinds`: the same for K in any units.
-double calc_softest_energy(Mat K, const RowKinds& kinds, const SymmetricFactor& factor);
+double calc_softest_energy(const SymmetricMatrix& K, const RowKinds& kinds, const SymmetricFactor& factor);
 
 /// A basis (num_rows x k) of the motions with xᵀKx < `energy` xᵀDx, by inverse iteration of K + 1e-13 D on at
-/// least `expected` vectors; k = 0 when there are none, k ≤ kMostMechanisms. Columns are reduced: each has a unit entry (largest by
-/// complete pivoting) where the others are zero, so separate mechanisms stay separate.
-Eigen::MatrixXd find_mechanisms(Mat K, const RowKinds& kinds, int expected, double energy = kMechanismEnergy);
+/// least `expected` vectors; k = 0 when there are none, k ≤ kMostMechanisms. Columns are reduced: each has a unit entry
+/// (largest by complete pivoting) where the others are zero, so separate mechanisms stay separate.
+Eigen::MatrixXd find_mechanisms(const SymmetricMatrix& K, const RowKinds& kinds, int expected,
+                                double energy = kMechanismEnergy);
 
 }  // namespace bough::fe

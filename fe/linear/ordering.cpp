@@ -1,5 +1,6 @@
 #include "fe/linear/ordering.hpp"
 
+#include <optional>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -11,13 +12,9 @@ namespace {
 
 static_assert(std::is_same_v<idx_t, PetscInt>, "graphs are handed to METIS as PetscInt");
 
-constexpr const char* kGroups = "bough_row_groups";
-constexpr const char* kOrder = "bough_elimination_order";
-constexpr const char* kParts =
-    "bough_two_parts";  // rows of the first, of the second, between; how many there are of each
-
 /// Vertices are groups; two are neighbours where A couples any of their rows.
-Graph build_group_graph(const PetscInt* row_start, const PetscInt* columns, const PetscInt* group_start, int num) {
+Graph build_group_graph(const PetscInt* row_start, const PetscInt* columns, const std::vector<int>& group_start) {
+  const int num = static_cast<int>(group_start.size()) - 1;
   std::vector<int> group_of(group_start[num]), mark(num, -1);
   for (int g = 0; g < num; ++g)
     for (PetscInt row = group_start[g]; row < group_start[g + 1]; ++row) group_of[row] = g;
@@ -36,65 +33,8 @@ Graph build_group_graph(const PetscInt* row_start, const PetscInt* columns, cons
   return graph;
 }
 
-}  // namespace
-
-void set_row_groups(Mat A, const std::vector<int>& start) {
-  if (initialize_petsc().size > 1) return;  // MUMPS orders
-  PetscIs groups;
-  check_petsc(ISCreateGeneral(PETSC_COMM_SELF, static_cast<PetscInt>(start.size()), start.data(), PETSC_COPY_VALUES,
-                              groups.out()));
-  check_petsc(
-      PetscObjectCompose(reinterpret_cast<PetscObject>(A), kGroups, reinterpret_cast<PetscObject>(groups.get())));
-}
-
-void copy_row_groups(Mat from, Mat to) {
-  for (const char* name : {kGroups, kOrder, kParts}) {
-    PetscObject object = nullptr;
-    check_petsc(PetscObjectQuery(reinterpret_cast<PetscObject>(from), name, &object));
-    if (object) check_petsc(PetscObjectCompose(reinterpret_cast<PetscObject>(to), name, object));
-  }
-}
-
-void take_row_groups(Mat whole, const std::vector<int>& kept, Mat part) {
-  constexpr double kNearlyAll = 0.9;
-  PetscObject object = nullptr;
-  PetscInt size = 0;
-  check_petsc(MatGetSize(whole, &size, nullptr));
-  if (kept.empty() || initialize_petsc().size > 1) return;
-  check_petsc(PetscObjectQuery(reinterpret_cast<PetscObject>(whole), kGroups, &object));
-  if (!object) return;
-  const PetscInt* start = nullptr;
-  check_petsc(ISGetIndices(reinterpret_cast<IS>(object), &start));
-  std::vector<int> own{0};
-  for (std::size_t i = 1, group = 0; i < kept.size(); ++i) {
-    while (start[group + 1] <= kept[i - 1]) ++group;
-    if (kept[i] >= start[group + 1]) own.push_back(static_cast<int>(i));
-  }
-  own.push_back(static_cast<int>(kept.size()));
-  check_petsc(ISRestoreIndices(reinterpret_cast<IS>(object), &start));
-  set_row_groups(part, own);
-
-  check_petsc(PetscObjectQuery(reinterpret_cast<PetscObject>(whole), kOrder, &object));
-  if (!object || static_cast<double>(kept.size()) < kNearlyAll * size) return;
-  std::vector<PetscInt> place(static_cast<std::size_t>(size), -1), order;
-  for (std::size_t i = 0; i < kept.size(); ++i) place[static_cast<std::size_t>(kept[i])] = static_cast<PetscInt>(i);
-  const PetscInt* rows = nullptr;
-  check_petsc(ISGetIndices(reinterpret_cast<IS>(object), &rows));
-  for (PetscInt i = 0; i < size; ++i)
-    if (const PetscInt row = place[static_cast<std::size_t>(rows[i])]; row >= 0) order.push_back(row);
-  check_petsc(ISRestoreIndices(reinterpret_cast<IS>(object), &rows));
-  PetscIs kept_order;
-  check_petsc(ISCreateGeneral(PETSC_COMM_SELF, static_cast<PetscInt>(order.size()), order.data(), PETSC_COPY_VALUES,
-                              kept_order.out()));
-  check_petsc(ISSetPermutation(kept_order.get()));
-  check_petsc(
-      PetscObjectCompose(reinterpret_cast<PetscObject>(part), kOrder, reinterpret_cast<PetscObject>(kept_order.get())));
-}
-
-namespace {
-
 /// The rows of groups in this order.
-std::vector<PetscInt> list_rows(const std::vector<idx_t>& groups, const PetscInt* group_start) {
+std::vector<PetscInt> list_rows(const std::vector<idx_t>& groups, const std::vector<int>& group_start) {
   std::vector<PetscInt> rows;
   for (const idx_t g : groups)
     for (PetscInt row = group_start[g]; row < group_start[g + 1]; ++row) rows.push_back(row);
@@ -104,81 +44,26 @@ std::vector<PetscInt> list_rows(const std::vector<idx_t>& groups, const PetscInt
 /// Calls `use(graph, group_start)` with the graph of the row groups of A; not where A has none, is smaller than
 /// `least`, or lives on several processes.
 template <class Use>
-void visit_group_graph(Mat A, PetscInt least, const Use& use) {
-  PetscObject object = nullptr;
-  check_petsc(PetscObjectQuery(reinterpret_cast<PetscObject>(A), kGroups, &object));
-  PetscInt size = 0;
-  check_petsc(MatGetSize(A, &size, nullptr));
-  if (!object || size < least || initialize_petsc().size > 1) return;
-  const IS groups = reinterpret_cast<IS>(object);
-  PetscInt num_groups = 0;
-  const PetscInt *group_start = nullptr, *row_start = nullptr, *columns = nullptr;
+void visit_group_graph(const SymmetricMatrix& A, PetscInt least, const Use& use) {
+  const auto groups = A.row_order().groups;
+  PetscInt size = A.num_rows();
+  if (!groups || size < least || initialize_petsc().size > 1) return;
+  const PetscInt *row_start = nullptr, *columns = nullptr;
   PetscBool done = PETSC_FALSE;
-  check_petsc(ISGetSize(groups, &num_groups));
-  --num_groups;
-  check_petsc(ISGetIndices(groups, &group_start));
-  check_petsc(MatGetRowIJ(A, 0, PETSC_FALSE, PETSC_FALSE, &size, &row_start, &columns, &done));
+  check_petsc(MatGetRowIJ(A.sparse(), 0, PETSC_FALSE, PETSC_FALSE, &size, &row_start, &columns, &done));
   if (done) {
-    Graph graph = build_group_graph(row_start, columns, group_start, num_groups);
-    if (!graph.neighbours.empty()) use(graph, group_start);
+    Graph graph = build_group_graph(row_start, columns, *groups);
+    if (!graph.neighbours.empty()) use(graph, *groups);
   }
-  check_petsc(MatRestoreRowIJ(A, 0, PETSC_FALSE, PETSC_FALSE, &size, &row_start, &columns, &done));
-  check_petsc(ISRestoreIndices(groups, &group_start));
-}
-
-}  // namespace
-
-PetscIs find_elimination_order(Mat A, PetscInt least) {
-  PetscObject known = nullptr;
-  check_petsc(PetscObjectQuery(reinterpret_cast<PetscObject>(A), kOrder, &known));
-  PetscInt size = 0;
-  check_petsc(MatGetSize(A, &size, nullptr));
-  if (size < least) return {};
-  if (known) {
-    check_petsc(PetscObjectReference(known));
-    return PetscIs(reinterpret_cast<IS>(known));
-  }
-  PetscIs result;
-  visit_group_graph(A, least, [&](Graph& graph, const PetscInt* group_start) {
-    const std::vector<PetscInt> order = list_rows(find_dissection(graph), group_start);
-    if (order.empty()) return;
-    check_petsc(ISCreateGeneral(PETSC_COMM_SELF, static_cast<PetscInt>(order.size()), order.data(), PETSC_COPY_VALUES,
-                                result.out()));
-    check_petsc(ISSetPermutation(result.get()));
-    check_petsc(
-        PetscObjectCompose(reinterpret_cast<PetscObject>(A), kOrder, reinterpret_cast<PetscObject>(result.get())));
-  });
-  return result;
-}
-
-namespace {
-
-std::optional<TwoParts> find_known_parts(Mat A) {
-  PetscObject object = nullptr;
-  check_petsc(PetscObjectQuery(reinterpret_cast<PetscObject>(A), kParts, &object));
-  if (!object) return std::nullopt;
-  const IS all = reinterpret_cast<IS>(object);
-  PetscInt size = 0;
-  const PetscInt* rows = nullptr;
-  check_petsc(ISGetSize(all, &size));
-  check_petsc(ISGetIndices(all, &rows));
-  const PetscInt* num = rows + size - 3;
-  TwoParts parts;
-  for (auto* part : {&parts.first, &parts.second, &parts.between}) {
-    part->assign(rows, rows + *num);
-    rows += *num++;
-  }
-  rows -= size - 3;
-  check_petsc(ISRestoreIndices(all, &rows));
-  return parts;
+  check_petsc(MatRestoreRowIJ(A.sparse(), 0, PETSC_FALSE, PETSC_FALSE, &size, &row_start, &columns, &done));
 }
 
 /// A may have got entries since its parts were found.
-bool are_apart(Mat A, const TwoParts& parts) {
+bool are_apart(const SymmetricMatrix& A, const TwoParts& parts) {
   PetscInt size = 0;
   const PetscInt *start = nullptr, *columns = nullptr;
   PetscBool done = PETSC_FALSE;
-  check_petsc(MatGetRowIJ(A, 0, PETSC_FALSE, PETSC_FALSE, &size, &start, &columns, &done));
+  check_petsc(MatGetRowIJ(A.sparse(), 0, PETSC_FALSE, PETSC_FALSE, &size, &start, &columns, &done));
   bool apart = done == PETSC_TRUE;
   if (apart) {
     std::vector<char> is_second(static_cast<std::size_t>(size), 0);
@@ -187,33 +72,59 @@ bool are_apart(Mat A, const TwoParts& parts) {
       for (PetscInt k = start[row]; k < start[row + 1]; ++k)
         apart = apart && is_second[static_cast<std::size_t>(columns[k])] == 0;
   }
-  check_petsc(MatRestoreRowIJ(A, 0, PETSC_FALSE, PETSC_FALSE, &size, &start, &columns, &done));
+  check_petsc(MatRestoreRowIJ(A.sparse(), 0, PETSC_FALSE, PETSC_FALSE, &size, &start, &columns, &done));
   return apart;
-}
-
-void keep_parts(const TwoParts& parts, Mat A) {
-  std::vector<PetscInt> all, sizes;
-  for (const auto* part : {&parts.first, &parts.second, &parts.between}) {
-    all.insert(all.end(), part->begin(), part->end());
-    sizes.push_back(static_cast<PetscInt>(part->size()));
-  }
-  all.insert(all.end(), sizes.begin(), sizes.end());
-  PetscIs kept;
-  check_petsc(
-      ISCreateGeneral(PETSC_COMM_SELF, static_cast<PetscInt>(all.size()), all.data(), PETSC_COPY_VALUES, kept.out()));
-  check_petsc(PetscObjectCompose(reinterpret_cast<PetscObject>(A), kParts, reinterpret_cast<PetscObject>(kept.get())));
 }
 
 }  // namespace
 
-std::optional<TwoParts> find_two_parts(Mat A, PetscInt least) {
-  PetscInt size = 0;
-  check_petsc(MatGetSize(A, &size, nullptr));
-  if (size < least) return std::nullopt;
-  std::optional<TwoParts> result = find_known_parts(A);
-  if (result && are_apart(A, *result)) return result;
-  result.reset();
-  visit_group_graph(A, least, [&](Graph& graph, const PetscInt* group_start) {
+void copy_row_order(const SymmetricMatrix& from, const SymmetricMatrix& to) {
+  const RowOrder& known = from.row_order();
+  RowOrder& copy = to.row_order();
+  if (known.groups) copy.groups = known.groups;
+  if (known.order) copy.order = known.order;
+  if (known.parts) copy.parts = known.parts;
+}
+
+void take_row_order(const SymmetricMatrix& whole, const std::vector<int>& kept, const SymmetricMatrix& part) {
+  constexpr double kNearlyAll = 0.9;
+  const RowOrder& known = whole.row_order();
+  if (kept.empty() || !known.groups) return;
+  const std::vector<int>& start = *known.groups;
+  std::vector<int> own{0};
+  for (std::size_t i = 1, group = 0; i < kept.size(); ++i) {
+    while (start[group + 1] <= kept[i - 1]) ++group;
+    if (kept[i] >= start[group + 1]) own.push_back(static_cast<int>(i));
+  }
+  own.push_back(static_cast<int>(kept.size()));
+  part.row_order().groups = std::make_shared<const std::vector<int>>(std::move(own));
+
+  const auto size = static_cast<std::size_t>(whole.num_rows());
+  if (!known.order || static_cast<double>(kept.size()) < kNearlyAll * static_cast<double>(size)) return;
+  std::vector<PetscInt> place(size, -1), order;
+  for (std::size_t i = 0; i < kept.size(); ++i) place[static_cast<std::size_t>(kept[i])] = static_cast<PetscInt>(i);
+  for (const PetscInt whole_row : *known.order)
+    if (const PetscInt row = place[static_cast<std::size_t>(whole_row)]; row >= 0) order.push_back(row);
+  part.row_order().order = std::make_shared<const std::vector<PetscInt>>(std::move(order));
+}
+
+std::shared_ptr<const std::vector<PetscInt>> find_elimination_order(const SymmetricMatrix& A, PetscInt least) {
+  auto& known = A.row_order().order;
+  if (A.num_rows() < least) return nullptr;
+  if (known) return known;
+  visit_group_graph(A, least, [&](Graph& graph, const std::vector<int>& group_start) {
+    std::vector<PetscInt> order = list_rows(find_dissection(graph), group_start);
+    if (!order.empty()) known = std::make_shared<const std::vector<PetscInt>>(std::move(order));
+  });
+  return known;
+}
+
+std::shared_ptr<const TwoParts> find_two_parts(const SymmetricMatrix& A, PetscInt least) {
+  if (A.num_rows() < least) return nullptr;
+  auto& known = A.row_order().parts;
+  if (known && are_apart(A, *known)) return known;
+  std::optional<TwoParts> result;
+  visit_group_graph(A, least, [&](Graph& graph, const std::vector<int>& group_start) {
     const std::vector<idx_t> part = find_separator(graph);
     if (part.empty()) return;
     std::vector<idx_t> groups[3];
@@ -228,8 +139,9 @@ std::optional<TwoParts> find_two_parts(Mat A, PetscInt least) {
     }
     result = {list_rows(groups[0], group_start), list_rows(groups[1], group_start), list_rows(groups[2], group_start)};
   });
-  if (result) keep_parts(*result, A);
-  return result;
+  if (!result) return nullptr;
+  known = std::make_shared<const TwoParts>(std::move(*result));
+  return known;
 }
 
 }  // namespace bough::fe

@@ -132,21 +132,4 @@ MpiWorld initialize_petsc() {
   return world;
 }
 
-void* find_shell_context(Mat A, PetscErrorCode (*destroy)(Mat)) {
-  PetscBool is_shell = PETSC_FALSE;
-  check_petsc(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(A), MATSHELL, &is_shell));
-  if (!is_shell) return nullptr;
-  void (*own)() = nullptr;
-  check_petsc(MatShellGetOperation(A, MATOP_DESTROY, &own));
-  if (own != reinterpret_cast<void (*)()>(destroy)) return nullptr;
-  void* context = nullptr;
-  check_petsc(MatShellGetContext(A, static_cast<void*>(&context)));
-  return context;
-}
-
-PetscMat share(const PetscMat& A) {
-  check_petsc(PetscObjectReference(reinterpret_cast<PetscObject>(A.get())));
-  return PetscMat(A.get());
-}
-
 }  // namespace bough::fe

@@ -50,10 +50,4 @@ using PetscMat = PetscHandle<Mat, MatDestroy>;
 using PetscVec = PetscHandle<Vec, VecDestroy>;
 using PetscKsp = PetscHandle<KSP, KSPDestroy>;
 
-/// What a shell matrix keeps, told by what destroys it; null for every other matrix.
-void* find_shell_context(Mat A, PetscErrorCode (*destroy)(Mat));
-
-/// Another handle of the same matrix, which lives as long as any of them.
-PetscMat share(const PetscMat& A);
-
 }  // namespace bough::fe

@@ -1,15 +1,15 @@
 #pragma once
 /// \file Products and diagonals of symmetric matrices, sparse or with a part of low rank.
-#include "fe/linear/petsc.hpp"
+#include "fe/linear/symmetric_matrix.hpp"
 
 namespace bough::fe {
 
-/// A X of a distributed A and a replicated X, replicated.
-Eigen::MatrixXd multiply(Mat A, const Eigen::Ref<const Eigen::MatrixXd>& X);
+/// A X of A and a replicated X, replicated.
+Eigen::MatrixXd multiply(const SymmetricMatrix& A, const Eigen::Ref<const Eigen::MatrixXd>& X);
 /// B - A X, every entry summed in extended precision before it is rounded; all replicated.
-Eigen::MatrixXd calc_residual(Mat A, const Eigen::Ref<const Eigen::MatrixXd>& X,
+Eigen::MatrixXd calc_residual(const SymmetricMatrix& A, const Eigen::Ref<const Eigen::MatrixXd>& X,
                               const Eigen::Ref<const Eigen::MatrixXd>& B);
 /// The diagonal of A, replicated.
-Eigen::VectorXd get_diagonal(Mat A);
+Eigen::VectorXd get_diagonal(const SymmetricMatrix& A);
 
 }  // namespace bough::fe

@@ -5,7 +5,7 @@
 #include <Eigen/LU>
 
 #include "fe/linear/factor_solver.hpp"
-#include "fe/linear/low_rank_sum.hpp"
+#include "fe/linear/low_rank_part.hpp"
 
 namespace bough::fe {
 

@@ -52,7 +52,7 @@ MatrixXd SupernodalSolver::solve(const Eigen::Ref<const MatrixXd>& B) const {
 
 }  // namespace
 
-SupernodalFactor make_supernodal_factor(Mat A, PetscInt least) {
+SupernodalFactor make_supernodal_factor(const SymmetricMatrix& A, PetscInt least) {
   SupernodalFactor result;
   if (initialize_petsc().size > 1) return result;
   auto cut = find_parts(A, least);
@@ -67,7 +67,7 @@ SupernodalFactor make_supernodal_factor(Mat A, PetscInt least) {
 
   std::vector<char> is_fine(num, 0);
   VectorXd delta;
-  visit_rows(A, [&](const MatrixRows& rows, PetscInt size) {
+  visit_rows(A.sparse(), [&](const MatrixRows& rows, PetscInt size) {
     delta = calc_separator_shift(rows, parts->between, size);
     do_all(num, [&](std::size_t p) {
       is_fine[p] =
@@ -76,14 +76,12 @@ SupernodalFactor make_supernodal_factor(Mat A, PetscInt least) {
   });
   const auto are_all = [&] { return std::all_of(is_fine.begin(), is_fine.end(), [](char one) { return one != 0; }); };
   if (!are_all()) return result;
-  PetscInt n = 0;
-  check_petsc(MatGetSize(A, &n, nullptr));
   double num_entries = 0;
   for (const auto& part : parts->part) num_entries += part->num_entries();
   // Each part has its block of the rows between twice more while it is taken out.
   if (num > 1) num_entries += 2.0 * static_cast<double>(num) * std::pow(static_cast<double>(parts->between.size()), 2);
   release_freed_memory();
-  require_memory(static_cast<double>(n), num_entries, calc_free_memory());
+  require_memory(static_cast<double>(A.num_rows()), num_entries, calc_free_memory());
 
   std::vector<MatrixXd> schur(num);
   do_all(num, [&](std::size_t p) {

@@ -3,6 +3,7 @@
 ///
 /// Internal to linear.
 #include "fe/linear/factor_solver.hpp"
+#include "fe/linear/symmetric_matrix.hpp"
 
 namespace bough::fe {
 
@@ -22,6 +23,6 @@ struct SupernodalFactor {
 /// (calc_separator_shift) makes D_p definite whatever the other part carries. Empty: several processes, matrices that
 /// are small or have no groups of rows. One part where many rows lie between. Deterministic, but the last digits are
 /// those of the parts.
-SupernodalFactor make_supernodal_factor(Mat A, PetscInt least = kLeastSupernodalRows);
+SupernodalFactor make_supernodal_factor(const SymmetricMatrix& A, PetscInt least = kLeastSupernodalRows);
 
 }  // namespace bough::fe

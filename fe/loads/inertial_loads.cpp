@@ -222,7 +222,7 @@ MatrixXd calc_carried_gram(const Model& model, MassKind kind, const MatrixXd& Ph
   return gram;
 }
 
-PetscMat assemble_grid_mass(const Model& model, MassKind kind) {
+SymmetricMatrix assemble_grid_mass(const Model& model, MassKind kind) {
   const double scale = model.wtmass();
   const auto is_carried = [&](const Element& e) {
     CarriedMass carried(e.num_dofs(), CarriedDetail::Whether);

@@ -8,9 +8,9 @@
 
 #include "fe/elements/damping.hpp"
 #include "fe/linear/blas.hpp"
+#include "fe/linear/csr_matrix.hpp"
 #include "fe/linear/ordering.hpp"
 #include "fe/linear/threads.hpp"
-#include "fe/matrices/csr_matrix.hpp"
 #include "fe/matrices/factor_need.hpp"
 #include "fe/model/element_transform.hpp"
 
@@ -303,44 +303,31 @@ Csr sum_rows(const Model& model, const SparseRows& T, const AddElementMatrix& ad
 
 /// TᵀAT, sparse. Every rank adds, in the order of the deck, all elements that touch its rows: nothing is sent, and an
 /// entry does not depend on the number of ranks.
-PetscMat assemble_sparse(const Model& model, const SparseRows& T, const AddElementMatrix& add,
-                         const std::vector<QuadraticForm>& forms, const TakesElement& takes = {}) {
+SymmetricMatrix assemble_sparse(const Model& model, const SparseRows& T, const AddElementMatrix& add,
+                                const std::vector<QuadraticForm>& forms, const TakesElement& takes = {}) {
   const PetscInt size = static_cast<PetscInt>(T.cols());
-  PetscMat matrix;
-  std::vector<int> groups;
-  if (initialize_petsc().size == 1) {
-    Csr rows = sum_rows(model, T, add, forms, 0, -1, takes);
-    groups = std::move(rows.groups);
-    matrix = make_matrix(std::move(rows), size);
-  } else {
-    PetscInt num_own = PETSC_DECIDE, all = size, last = 0;
-    check_petsc(PetscSplitOwnership(PETSC_COMM_WORLD, &num_own, &all));
-    MPI_Scan(&num_own, &last, 1, MPIU_INT, MPI_SUM, PETSC_COMM_WORLD);
-    Csr rows = sum_rows(model, T, add, forms, last - num_own, last, takes);
-    groups = std::move(rows.groups);
-    matrix = make_matrix_of_ranks(std::move(rows), last - num_own, size);
-  }
-  Mat A = matrix.get();
-  check_petsc(MatSetOption(A, MAT_SYMMETRIC, PETSC_TRUE));
-  check_petsc(MatSetOption(A, MAT_SYMMETRY_ETERNAL, PETSC_TRUE));
-  set_row_groups(A, groups);
-  return matrix;
+  if (initialize_petsc().size == 1) return SymmetricMatrix(sum_rows(model, T, add, forms, 0, -1, takes), 0, size);
+  PetscInt num_own = PETSC_DECIDE, all = size, last = 0;
+  check_petsc(PetscSplitOwnership(PETSC_COMM_WORLD, &num_own, &all));
+  MPI_Scan(&num_own, &last, 1, MPIU_INT, MPI_SUM, PETSC_COMM_WORLD);
+  const PetscInt first = last - num_own;
+  return SymmetricMatrix(sum_rows(model, T, add, forms, first, last, takes), first, size);
 }
 
 }  // namespace
 
-PetscMat assemble(const Model& model, DofSet set, MatrixKind kind, const AddElementMatrix& add,
-                  std::vector<QuadraticForm> forms) {
+SymmetricMatrix assemble(const Model& model, DofSet set, MatrixKind kind, const AddElementMatrix& add,
+                         std::vector<QuadraticForm> forms) {
   initialize_petsc();
   if (set == DofSet::Global) return assemble_sparse(model, make_identity(model.num_gdofs()), add, forms);
   const LowRankPart of_forms = take_wide_forms(model, forms);
   const auto split = split_transform(model, kind == MatrixKind::Stiffness);
-  if (!split) return make_sum(assemble_sparse(model, model.T(), add, forms), of_forms);
-  return make_sum(assemble_sparse(model, split->T, add, forms),
-                  join(calc_wide_part(model, *split, add, forms), 1, of_forms, 1));
+  if (!split) return assemble_sparse(model, model.T(), add, forms).with_low_rank(of_forms);
+  return assemble_sparse(model, split->T, add, forms)
+      .with_low_rank(join(calc_wide_part(model, *split, add, forms), 1, of_forms, 1));
 }
 
-PetscMat assemble_some(const Model& model, const AddElementMatrix& add, const TakesElement& takes) {
+SymmetricMatrix assemble_some(const Model& model, const AddElementMatrix& add, const TakesElement& takes) {
   return assemble_sparse(model, make_identity(model.num_gdofs()), add, {}, takes);
 }
 
@@ -356,24 +343,24 @@ AddElementMatrix add_stiffness_of(const Model& model) {
 
 }  // namespace
 
-PetscMat assemble_stiffness(const Model& model, DofSet set) {
+SymmetricMatrix assemble_stiffness(const Model& model, DofSet set) {
   if (set == DofSet::Free) require_memory_for_factor(model);
   return assemble(model, set, MatrixKind::Stiffness, add_stiffness_of(model), get_forms(model));
 }
 
-bool drop_stiffness(Mat K) { return !find_low_rank(K) && drop_entries(K); }
+bool drop_stiffness(const SymmetricMatrix& K) { return K.drop_entries(); }
 
-void restore_stiffness(const Model& model, Mat K) {
-  fill_entries(K, sum_rows(model, model.T(), add_stiffness_of(model), get_forms(model)));
+void restore_stiffness(const Model& model, const SymmetricMatrix& K) {
+  K.fill_entries(sum_rows(model, model.T(), add_stiffness_of(model), get_forms(model)));
 }
 
-PetscMat assemble_mass(const Model& model, DofSet set, MassKind kind) {
+SymmetricMatrix assemble_mass(const Model& model, DofSet set, MassKind kind) {
   const double scale = model.wtmass();
   return assemble(model, set, MatrixKind::Other,
                   [kind, scale](const Element& e, Eigen::Ref<MatrixXd> M) { e.add_mass(kind, scale, M); });
 }
 
-PetscMat assemble_damping(const Model& model, DofSet set) {
+SymmetricMatrix assemble_damping(const Model& model, DofSet set) {
   return assemble(model, set, MatrixKind::Other, add_damping_of);
 }
 

@@ -11,23 +11,23 @@ enum class DofSet { Free, Global };  ///< f-set (TᵀKT) or g-set
 enum class MatrixKind { Stiffness, Other };
 
 /// Σ of element matrices and of forms on PETSC_COMM_WORLD; MATAIJ, zeros left out except on the diagonal; the same to
-/// the last bit on any number of ranks. A sum of low_rank_sum.hpp where constraints or forms of the f-set are wide
+/// the last bit on any number of ranks. With a part of low rank where constraints or forms of the f-set are wide
 /// (wide_part.hpp). O(elements).
-PetscMat assemble(const Model& model, DofSet set, MatrixKind kind, const AddElementMatrix& add,
-                  std::vector<QuadraticForm> forms = {});
+SymmetricMatrix assemble(const Model& model, DofSet set, MatrixKind kind, const AddElementMatrix& add,
+                         std::vector<QuadraticForm> forms = {});
 /// The same of the elements that `takes` says, on the g-set; the others are not asked.
 using TakesElement = std::function<bool(const Element&)>;
-PetscMat assemble_some(const Model& model, const AddElementMatrix& add, const TakesElement& takes);
+SymmetricMatrix assemble_some(const Model& model, const AddElementMatrix& add, const TakesElement& takes);
 
 /// K (with K_G0 of a prestressed model), or M (times WTMASS).
-PetscMat assemble_stiffness(const Model& model, DofSet set);
-PetscMat assemble_mass(const Model& model, DofSet set, MassKind kind);
+SymmetricMatrix assemble_stiffness(const Model& model, DofSet set);
+SymmetricMatrix assemble_mass(const Model& model, DofSet set, MassKind kind);
 /// Gives the memory of K of the f-set back to the system as long as nobody reads it, until restore_stiffness() makes it
 /// again, bit for bit. False, and nothing happens, where K has a part of low rank or is on several processes.
-bool drop_stiffness(Mat K);
-void restore_stiffness(const Model& model, Mat K);
+bool drop_stiffness(const SymmetricMatrix& K);
+void restore_stiffness(const Model& model, const SymmetricMatrix& K);
 /// The viscous damping B of dampers and bushes.
-PetscMat assemble_damping(const Model& model, DofSet set);
+SymmetricMatrix assemble_damping(const Model& model, DofSet set);
 /// Products with the g-set mass matrix without forming it: M X, num_gdofs x k, replicated on every rank. O(elements k).
 MatrixXd calc_mass_times(const Model& model, MassKind kind, const Eigen::Ref<const MatrixXd>& X_g);
 /// The same with K. `energy`, if given: ½ x_eᵀ K_e x_e, elements x k, of this rank's elements; others have zeros.

@@ -4,7 +4,7 @@
 #include <functional>
 #include <optional>
 
-#include "fe/linear/low_rank_sum.hpp"
+#include "fe/linear/symmetric_matrix.hpp"
 #include "fe/model/model.hpp"
 
 namespace bough::fe {

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <optional>
 
-#include "fe/linear/low_rank_sum.hpp"
 #include "fe/linear/mechanism.hpp"
 #include "fe/linear/residual.hpp"
+#include "fe/linear/symmetric_matrix.hpp"
 #include "fe/model/row_kinds.hpp"
 
 namespace bough::fe {
@@ -72,11 +72,11 @@ struct StaticSolver::Impl {
   OmittedSolution omitted;  ///< of the model
   std::vector<int> kept;    ///< f-dofs that are not held, ascending
   std::optional<SymmetricFactor> factor;
-  RowKinds kinds;  ///< of `kept`
-  PetscMat K;      ///< what was factored, for residuals
+  RowKinds kinds;     ///< of `kept`
+  SymmetricMatrix K;  ///< what was factored, for residuals
 };
 
-StaticSolver::StaticSolver(const Model& model, const PetscMat& K_f, std::vector<int> held_fdofs)
+StaticSolver::StaticSolver(const Model& model, const SymmetricMatrix& K_f, std::vector<int> held_fdofs)
     : impl_(std::make_unique<Impl>()) {
   impl_->T = model.T();
   impl_->omitted = model.omitted();
@@ -89,12 +89,7 @@ StaticSolver::StaticSolver(const Model& model, const PetscMat& K_f, std::vector<
     throw ComputationError("fe.no-free-dofs", {}, "the model has no free dof left after its constraints",
                            "remove constraints or add stiffness");
   impl_->kinds = list_row_kinds(model, kept);
-  if (held_fdofs.empty()) {
-    impl_->K = share(K_f);
-  } else {
-    impl_->K = take_kept(K_f.get(), kept);
-  }
-  Mat K = impl_->K.get();
+  const SymmetricMatrix K = impl_->K = held_fdofs.empty() ? K_f : take_kept(K_f, kept);
 
   // Null pivots are a suspicion; the energy of the motion decides. A singular matrix may also factor without one, and
   // by LLᵀ, which is quicker, always without: then it is pivoted to see how many motions there are.
@@ -130,7 +125,7 @@ const SymmetricFactor* StaticSolver::find_definite_factor() const {
 
 void StaticSolver::demand_no_mechanism(const Model& model) const {
   if (impl_->kept.empty()) return;
-  const MatrixXd motions = find_mechanisms(impl_->K.get(), impl_->kinds, 1, kSoftMotionEnergy);
+  const MatrixXd motions = find_mechanisms(impl_->K, impl_->kinds, 1, kSoftMotionEnergy);
   if (motions.cols() > 0) throw_mechanisms(model, impl_->kept, motions);
 }
 
@@ -144,11 +139,11 @@ MatrixXd StaticSolver::solve(const Eigen::Ref<const MatrixXd>& F_g, Diagnostics*
   MatrixXd u_kept = impl_->factor->solve(F_kept);
   // One refinement with a residual of more digits: a slender line of 1000 elements gains three (Higham, Accuracy and
   // Stability of Numerical Algorithms, 2nd ed., ch. 12).
-  u_kept += impl_->factor->solve(calc_residual(impl_->K.get(), u_kept, F_kept));
+  u_kept += impl_->factor->solve(calc_residual(impl_->K, u_kept, F_kept));
   Diagnostics unheard;
-  check_residuals(calc_static_residuals(get_diagonal(impl_->K.get()), u_kept, multiply(impl_->K.get(), u_kept), F_kept,
-                                        impl_->kinds),
-                  "load case", diagnostics ? *diagnostics : unheard);
+  check_residuals(
+      calc_static_residuals(get_diagonal(impl_->K), u_kept, multiply(impl_->K, u_kept), F_kept, impl_->kinds),
+      "load case", diagnostics ? *diagnostics : unheard);
   u_f(impl_->kept, Eigen::all) = u_kept;
   MatrixXd u_g = T * u_f;
   if (impl_->omitted) u_g += impl_->omitted(F_g);  // K_oo^-1 P_o

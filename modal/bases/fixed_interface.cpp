@@ -5,9 +5,9 @@
 #include <numbers>
 
 #include "fe/linear/blas.hpp"
-#include "fe/linear/low_rank_sum.hpp"
 #include "fe/linear/mechanism.hpp"
 #include "fe/linear/residual.hpp"
+#include "fe/linear/symmetric_matrix.hpp"
 #include "fe/model/row_kinds.hpp"
 #include "fe/statics/statics.hpp"
 #include "modal/canonical.hpp"
@@ -19,7 +19,7 @@ namespace bough::modal::bases {
 
 namespace {
 
-[[noreturn]] void throw_mechanism(const fe::Model& model, const Partition& part, Mat K_ii) {
+[[noreturn]] void throw_mechanism(const fe::Model& model, const Partition& part, const fe::SymmetricMatrix& K_ii) {
   const MatrixXd motions = fe::find_mechanisms(K_ii, fe::list_row_kinds(model, part.interior), 1);
   std::string where;
   for (Eigen::Index c = 0; c < motions.cols(); ++c) {
@@ -38,8 +38,8 @@ struct FixedInterface::Impl {
   const fe::Model& model;
   Partition part;
   fe::RowKinds kinds;  ///< of the interior
-  const fe::PetscMat& K;
-  fe::PetscMat K_ii, M_ii;
+  const fe::SymmetricMatrix& K;
+  fe::SymmetricMatrix K_ii, M_ii;
   std::optional<fe::SymmetricFactor> factor;
 
   Impl(const fe::System& system, const std::vector<int>& nodes, Diagnostics& diagnostics)
@@ -48,25 +48,24 @@ struct FixedInterface::Impl {
         kinds(fe::list_row_kinds(model, part.interior)),
         K(system.K) {
     if (part.interior.empty()) return;
-    const auto take_interior = [this](Mat A) {
+    const auto take_interior = [this](const fe::SymmetricMatrix& A) {
       return part.is_selection() ? fe::take_kept(A, part.interior) : calc_triple_product(A, part.S_i);
     };
-    K_ii = take_interior(K.get());
-    M_ii = take_interior(system.M.get());
+    K_ii = take_interior(K);
+    M_ii = take_interior(system.M);
     const auto is_sound = [&] {
-      return !factor->is_singular() && fe::calc_softest_energy(K_ii.get(), kinds, *factor) >= fe::kMechanismEnergy;
+      return !factor->is_singular() && fe::calc_softest_energy(K_ii, kinds, *factor) >= fe::kMechanismEnergy;
     };
-    factor.emplace(K_ii.get(), false);
-    if (!is_sound()) throw_mechanism(model, part, K_ii.get());
+    factor.emplace(K_ii, false);
+    if (!is_sound()) throw_mechanism(model, part, K_ii);
   }
   /// As StaticSolver::solve: one refinement with a residual of more digits.
   MatrixXd solve_refined(const MatrixXd& F_i) const {
     MatrixXd X = factor->solve(F_i);
-    X += factor->solve(fe::calc_residual(K_ii.get(), X, F_i));
+    X += factor->solve(fe::calc_residual(K_ii, X, F_i));
     Diagnostics unheard;
-    fe::check_residuals(
-        fe::calc_static_residuals(fe::get_diagonal(K_ii.get()), X, fe::multiply(K_ii.get(), X), F_i, kinds),
-        "load case with the interface held", unheard);
+    fe::check_residuals(fe::calc_static_residuals(fe::get_diagonal(K_ii), X, fe::multiply(K_ii, X), F_i, kinds),
+                        "load case with the interface held", unheard);
     return X;
   }
   MatrixXd expand(const MatrixXd& X_i) const { return model.T() * MatrixXd(part.S_i * X_i); }
@@ -86,7 +85,7 @@ MatrixXd FixedInterface::calc_constraint_modes() const {
   const auto& part = impl_->part;
   MatrixXd X = part.S_b;
   if (impl_->factor && part.num_boundary() > 0)
-    X -= part.S_i * impl_->solve_refined(part.S_i.transpose() * fe::multiply(impl_->K.get(), part.S_b));
+    X -= part.S_i * impl_->solve_refined(part.S_i.transpose() * fe::multiply(impl_->K, part.S_b));
   return impl_->model.T() * X;
 }
 
@@ -100,7 +99,7 @@ MatrixXd FixedInterface::solve(const MatrixXd& F_g) const {
 
 /// Orthonormal once more, and one basis of each repeated root.
 void FixedInterface::Impl::make_canonical(VectorXd& lambda, MatrixXd& X) const {
-  const MatrixXd G = fe::calc_inner_products(X, fe::multiply(M_ii.get(), X));
+  const MatrixXd G = fe::calc_inner_products(X, fe::multiply(M_ii, X));
   detail::orthonormalize_ascending(G, X);
   detail::make_canonical(
       detail::calc_basis_weights(model), [this](const MatrixXd& Y) { return expand(Y); }, lambda, X);
@@ -108,7 +107,7 @@ void FixedInterface::Impl::make_canonical(VectorXd& lambda, MatrixXd& X) const {
 
 int FixedInterface::Impl::count_below(double hz) const {
   const double w = 2 * std::numbers::pi * hz;
-  const int count = hz > 0 ? detail::count_roots_below(K_ii.get(), M_ii.get(), w * w) : 0;
+  const int count = hz > 0 ? detail::count_roots_below(K_ii, M_ii, w * w) : 0;
   if (count >= 0) return count;
   throw ComputationError("modal.missed-modes", {},
                          "the modes with the interface held below " + std::to_string(hz) +
@@ -124,7 +123,7 @@ detail::RootSearchResult FixedInterface::Impl::find_roots(int wanted, detail::Pe
   search.solve = [&](detail::Roots& known, int number) { solver.solve(0, number, 0, false, known); };
   search.closeness = [](const detail::Roots&, int) { return detail::kCloseness; };
   search.roundoff = [](const detail::Roots&, int) { return 0.0; };
-  search.count = [&](double mu) { return detail::count_roots_below(K_ii.get(), M_ii.get(), mu); };
+  search.count = [&](double mu) { return detail::count_roots_below(K_ii, M_ii, mu); };
   solver.solve(0, wanted + 2, 2, false, roots);
   return detail::search_roots(search, roots);
 }
@@ -139,11 +138,11 @@ ModeSet FixedInterface::calc_modes(int number, std::optional<double> max_hz, Dia
   if (max_hz) wanted = std::min(wanted, in.count_below(*max_hz));
   if (wanted == 0) return set;
 
-  const VectorXd K_diagonal = fe::get_diagonal(in.K_ii.get());
+  const VectorXd K_diagonal = fe::get_diagonal(in.K_ii);
   detail::PencilProblem problem;
-  problem.K = in.K_ii.get();
-  problem.M = in.M_ii.get();
-  problem.M_diagonal = fe::get_diagonal(in.M_ii.get());
+  problem.K = in.K_ii;
+  problem.M = in.M_ii;
+  problem.M_diagonal = fe::get_diagonal(in.M_ii);
   problem.kinds = in.kinds;
   problem.rigid.resize(size, 0);
   problem.factor = &*in.factor;
@@ -161,9 +160,9 @@ ModeSet FixedInterface::calc_modes(int number, std::optional<double> max_hz, Dia
   if (result.cut == 0) return set;
   in.make_canonical(roots.value, roots.X);
   roots.keep(std::min(wanted, result.cut));
-  const VectorXd residual = fe::calc_residuals(
-      fe::calc_residual_scale(K_diagonal, problem.M_diagonal, roots.value), roots.X,
-      fe::multiply(in.K_ii.get(), roots.X), fe::multiply(in.M_ii.get(), roots.X) * roots.value.asDiagonal(), in.kinds);
+  const VectorXd residual = fe::calc_residuals(fe::calc_residual_scale(K_diagonal, problem.M_diagonal, roots.value),
+                                               roots.X, fe::multiply(in.K_ii, roots.X),
+                                               fe::multiply(in.M_ii, roots.X) * roots.value.asDiagonal(), in.kinds);
   fe::check_residuals(residual, "mode with the interface held", diagnostics);
   set.check = {result.cut, result.count, residual.maxCoeff(), solver.get_uses()};
   set.lambda = roots.value;

@@ -5,7 +5,7 @@
 #include <map>
 
 #include "fe/linear/factor.hpp"
-#include "fe/linear/low_rank_sum.hpp"
+#include "fe/linear/symmetric_matrix.hpp"
 #include "fe/matrices/wide_part.hpp"
 #include "modal/tolerances.hpp"
 
@@ -152,10 +152,10 @@ Partition make_partition(const fe::Model& model, const std::vector<int>& nodes, 
   return part;
 }
 
-fe::PetscMat make_petsc(const SparseRows& S, Mat A) {
+fe::PetscMat make_petsc(const SparseRows& S, const fe::SymmetricMatrix& A) {
   using fe::check_petsc;
   PetscInt first = 0, last = 0;
-  check_petsc(MatGetOwnershipRange(A, &first, &last));
+  check_petsc(MatGetOwnershipRange(A.sparse(), &first, &last));
   std::vector<PetscInt> starts{0}, columns;
   std::vector<PetscScalar> values;
   for (PetscInt i = first; i < last; ++i) {
@@ -189,10 +189,9 @@ std::vector<int> find_wide_rows(const SparseRows& S, int max_terms) {
 
 }  // namespace
 
-fe::PetscMat calc_triple_product(Mat A, const SparseRows& S) {
+fe::SymmetricMatrix calc_triple_product(const fe::SymmetricMatrix& A, const SparseRows& S) {
   const std::vector<int> wide = find_wide_rows(S, fe::get_max_dense_terms());
   const auto r = static_cast<Eigen::Index>(wide.size());
-  Mat sparse = fe::get_sparse(A);
   fe::LowRankPart part;
   SparseRows S_0 = S;
   if (r > 0) {
@@ -207,20 +206,19 @@ fe::PetscMat calc_triple_product(Mat A, const SparseRows& S) {
       P(row, w) = 1;
     }
     S_0.prune([&](Eigen::Index row, Eigen::Index, double) { return !is_wide[static_cast<std::size_t>(row)]; });
-    const MatrixXd AP = fe::multiply(sparse, P);
+    const MatrixXd AP = fe::multiply(A.sparse_part(), P);
     const MatrixXd V = S_0.transpose() * AP;
     part = fe::make_product_part(SparseColumns(H.transpose()), SparseColumns(V.sparseView(0, 0)), P.transpose() * AP);
   }
-  if (const auto* of_A = fe::find_low_rank(A)) {
+  if (const auto* of_A = A.low_rank()) {
     fe::LowRankPart projected = *of_A;
     projected.U = SparseColumns(SparseColumns(S.transpose()) * of_A->U);
     part = fe::join(part, 1, projected, 1);
   }
-  const fe::PetscMat P = make_petsc(S_0, sparse);
+  const fe::PetscMat P = make_petsc(S_0, A);
   fe::PetscMat result;
-  fe::check_petsc(MatPtAP(sparse, P.get(), MAT_INITIAL_MATRIX, PETSC_DEFAULT, result.out()));
-  fe::check_petsc(MatSetOption(result.get(), MAT_SYMMETRIC, PETSC_TRUE));
-  return fe::make_sum(std::move(result), std::move(part));
+  fe::check_petsc(MatPtAP(A.sparse(), P.get(), MAT_INITIAL_MATRIX, PETSC_DEFAULT, result.out()));
+  return fe::SymmetricMatrix(std::move(result), std::move(part));
 }
 
 }  // namespace bough::modal::bases

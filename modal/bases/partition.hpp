@@ -3,7 +3,7 @@
 #include <utility>
 #include <vector>
 
-#include "fe/linear/petsc.hpp"
+#include "fe/linear/symmetric_matrix.hpp"
 #include "fe/model/model.hpp"
 
 namespace bough::modal::bases {
@@ -29,8 +29,8 @@ struct Partition {
 Partition make_partition(const fe::Model& model, const std::vector<int>& nodes, Diagnostics& diagnostics);
 
 /// S on PETSC_COMM_WORLD, its rows laid out as those of A.
-fe::PetscMat make_petsc(const SparseRows& S, Mat A);
+fe::PetscMat make_petsc(const SparseRows& S, const fe::SymmetricMatrix& A);
 /// Sᵀ A S.
-fe::PetscMat calc_triple_product(Mat A, const SparseRows& S);
+fe::SymmetricMatrix calc_triple_product(const fe::SymmetricMatrix& A, const SparseRows& S);
 
 }  // namespace bough::modal::bases

@@ -25,7 +25,7 @@ BasisError calc_basis_error(const fe::Model& model, const ResponseModel& respons
   VectorXd parts;  // made only if the error is large
   const auto is_roundoff = [&](double off, Eigen::Index i, Eigen::Index j) {
     if (parts.size() == 0) {
-      const VectorXd diagonal = fe::get_diagonal(fe::assemble_stiffness(model, fe::DofSet::Global).get()).cwiseAbs();
+      const VectorXd diagonal = fe::get_diagonal(fe::assemble_stiffness(model, fe::DofSet::Global)).cwiseAbs();
       parts = (response.Phi.cwiseAbs2().transpose() * diagonal).cwiseSqrt();
     }
     return off <= kRoundoff * parts(i) * parts(j);

@@ -5,8 +5,8 @@
 #include <Eigen/Eigenvalues>
 
 #include "fe/linear/complex_factor.hpp"
-#include "fe/linear/low_rank_sum.hpp"
 #include "fe/linear/mechanism.hpp"
+#include "fe/linear/symmetric_matrix.hpp"
 #include "modal/response/accuracy.hpp"
 #include "modal/response/direct_model.hpp"
 #include "modal/response/support_motion.hpp"
@@ -53,8 +53,8 @@ struct Radau {
   Matrix3cd P, P_inverse;
 };
 
-void accumulate(fe::PetscMat& sum, double factor, const fe::PetscMat& A) {
-  if (factor != 0 && A) sum = fe::add(sum.get(), factor, A.get());
+void accumulate(fe::SymmetricMatrix& sum, double factor, const fe::SymmetricMatrix& A) {
+  if (factor != 0 && A) sum = fe::add(sum, factor, A);
 }
 
 /// Along a motion that next to nothing resists, neither stiffness nor damping nor mass, the answer to any load is
@@ -78,17 +78,17 @@ struct StepFactors {
   StepFactors(const DirectModel& m, const Radau& radau, double h) : real(make_real(m, radau.s(0).real() / h)) {
     demand_held(real, m.K_diagonal + std::norm(radau.s(0) / h) * m.M_diagonal);
     const auto s = radau.s(1) / h;
-    fe::PetscMat A = share(m.K), B = fe::scale(m.M.get(), (s * s).imag());
+    fe::SymmetricMatrix A = m.K, B = fe::scale(m.M, (s * s).imag());
     accumulate(A, (s * s).real(), m.M);
     accumulate(A, s.real(), m.B);
     accumulate(B, s.imag(), m.B);
-    pair.emplace(A, B.get());
+    pair.emplace(A, B);
   }
   static fe::SymmetricFactor make_real(const DirectModel& m, double s) {
-    fe::PetscMat A = share(m.K);
+    fe::SymmetricMatrix A = m.K;
     accumulate(A, s * s, m.M);
     accumulate(A, s, m.B);
-    return {A.get(), false};
+    return {A, false};
   }
   fe::SymmetricFactor real;
   std::optional<fe::ComplexFactor> pair;
@@ -150,8 +150,8 @@ class DirectMotion {
     block_.p.resize(m_.F.cols(), count);
   }
 
-  MatrixXd times(const fe::PetscMat& A, const MatrixXd& X) const {
-    return A && n_ > 0 ? fe::multiply(A.get(), X) : MatrixXd::Zero(X.rows(), X.cols());
+  MatrixXd times(const fe::SymmetricMatrix& A, const MatrixXd& X) const {
+    return A && n_ > 0 ? fe::multiply(A, X) : MatrixXd::Zero(X.rows(), X.cols());
   }
 
   VectorXd calc_load(const VectorXd& p, const VectorXd& d, const VectorXd& d_dot, const VectorXd& d_ddot) const {
@@ -232,10 +232,10 @@ class DirectMotion {
   MatrixXd solve_quick(const MatrixXd& F) {
     if (n_ == 0) return F;
     if (!quick_) {
-      fe::PetscMat A = fe::copy(m_.M.get());
+      fe::SymmetricMatrix A = m_.M;
       accumulate(A, delta(), m_.B);
       accumulate(A, delta() * delta(), m_.K);
-      quick_.emplace(A.get(), false);
+      quick_.emplace(A, false);
       demand_held(*quick_, m_.M_diagonal + delta() * delta() * m_.K_diagonal);
     }
     return quick_->solve(F);

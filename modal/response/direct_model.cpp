@@ -1,24 +1,24 @@
 #include "modal/response/direct_model.hpp"
 
-#include "fe/linear/low_rank_sum.hpp"
+#include "fe/linear/symmetric_matrix.hpp"
 #include "fe/matrices/assembly.hpp"
 #include "fe/model/direct_matrices.hpp"
 
 namespace bough::modal::response {
 namespace {
 
-using fe::PetscMat;
+using fe::SymmetricMatrix;
 
 /// sum += factor A; an empty sum is zero.
-void accumulate(PetscMat& sum, double factor, const PetscMat& A) {
+void accumulate(SymmetricMatrix& sum, double factor, const SymmetricMatrix& A) {
   if (factor == 0 || !A) return;
-  sum = sum ? fe::add(sum.get(), factor, A.get()) : fe::scale(A.get(), factor);
+  sum = sum ? fe::add(sum, factor, A) : fe::scale(A, factor);
 }
 
-bool is_zero(const PetscMat& A) {
-  if (fe::find_low_rank(A.get())) return false;
+bool is_zero(const SymmetricMatrix& A) {
+  if (A.low_rank()) return false;
   PetscReal norm = 0;
-  fe::check_petsc(MatNorm(A.get(), NORM_INFINITY, &norm));
+  fe::check_petsc(MatNorm(A.sparse(), NORM_INFINITY, &norm));
   return norm == 0;
 }
 
@@ -48,23 +48,22 @@ DirectModel make_direct_model(const fe::System& system, const records::DynamicDe
                               const DampingChoice& damping) {
   const fe::Model& model = system.model;
   DirectModel direct;
-  direct.K = share(system.K);
-  direct.M = share(system.M);
+  direct.K = system.K;
+  direct.M = system.M;
   direct.K_diagonal = system.K_diagonal;
   direct.M_diagonal = system.M_diagonal;
   // What g and α2 act on: all but K2PP.
-  PetscMat structure = share(system.K);
+  SymmetricMatrix structure = system.K;
   if (damping.times_direct) {
     const auto none = [](const fe::Element&, Eigen::Ref<MatrixXd>) {};
-    structure = fe::add(system.K.get(), -1,
-                        fe::assemble(model, fe::DofSet::Free, fe::MatrixKind::Other, none,
-                                     list_direct_forms(model, deck, subcase))
-                            .get());
+    structure = fe::add(
+        system.K, -1,
+        fe::assemble(model, fe::DofSet::Free, fe::MatrixKind::Other, none, list_direct_forms(model, deck, subcase)));
   }
-  PetscMat of_elements = fe::assemble(
-      model, fe::DofSet::Free, fe::MatrixKind::Other,
-      [](const fe::Element& e, Eigen::Ref<MatrixXd> K) { e.add_structural_damping(0, K); });
-  if (is_zero(of_elements)) of_elements = PetscMat();
+  SymmetricMatrix of_elements =
+      fe::assemble(model, fe::DofSet::Free, fe::MatrixKind::Other,
+                   [](const fe::Element& e, Eigen::Ref<MatrixXd> K) { e.add_structural_damping(0, K); });
+  if (is_zero(of_elements)) of_elements = SymmetricMatrix();
   if (fe::has_damping(model)) direct.B = fe::assemble_damping(model, fe::DofSet::Free);
   accumulate(direct.B, damping.alpha1, system.M);
   accumulate(direct.B, damping.alpha2, structure);

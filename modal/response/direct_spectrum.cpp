@@ -3,8 +3,8 @@
 #include <random>
 
 #include "fe/linear/complex_factor.hpp"
-#include "fe/linear/low_rank_sum.hpp"
 #include "fe/linear/mechanism.hpp"
+#include "fe/linear/symmetric_matrix.hpp"
 #include "modal/response/accuracy.hpp"
 #include "modal/response/coordinates.hpp"
 #include "modal/response/direct_model.hpp"
@@ -28,15 +28,15 @@ class DirectSpectrum {
   VectorXcd solve(double hz, const VectorXcd& p, const VectorXcd& d) {
     const double omega = 2 * std::numbers::pi * hz;
     const auto& m = direct_;
-    const fe::PetscMat A = omega == 0 ? share(m.K) : fe::add(m.K.get(), -omega * omega, m.M.get());
-    const fe::PetscMat imaginary = make_imaginary(omega);
+    const fe::SymmetricMatrix A = omega == 0 ? m.K : fe::add(m.K, -omega * omega, m.M);
+    const fe::SymmetricMatrix imaginary = make_imaginary(omega);
     VectorXd D = m.K_diagonal + omega * omega * m.M_diagonal;
     const double largest = D.maxCoeff();
     D = (D.array() > detail::kIdleDof * largest).select(D, largest > 0 ? largest : 1.0);
     MatrixXcd sides(n_, 2);
     sides.col(0) = m.F * p - (m.K_X - omega * omega * m.M_X) * d - 1i * ((omega * m.B_X + m.S_X) * d);
     sides.col(1) = D.cwiseSqrt().cwiseProduct(probe_).cast<std::complex<double>>();
-    const fe::ComplexFactor factor(A, imaginary.get());
+    const fe::ComplexFactor factor(A, imaginary);
     if (factor.is_singular()) throw_unbounded(hz, kWhy);
     const MatrixXcd x = factor.solve(sides);
     // Along a motion that next to nothing resists, the answer to any load is round-off.
@@ -52,17 +52,17 @@ class DirectSpectrum {
  private:
   static constexpr const char* kWhy = "the model moves freely, or a mode at this frequency is not damped";
 
-  static VectorXcd multiply(const fe::PetscMat& A, const VectorXcd& x) {
+  static VectorXcd multiply(const fe::SymmetricMatrix& A, const VectorXcd& x) {
     MatrixXd parts(x.size(), 2);
     parts << x.real(), x.imag();
-    const MatrixXd y = fe::multiply(A.get(), parts);
+    const MatrixXd y = fe::multiply(A, parts);
     return y.col(0) + 1i * y.col(1);
   }
 
-  fe::PetscMat make_imaginary(double omega) const {
+  fe::SymmetricMatrix make_imaginary(double omega) const {
     const auto& m = direct_;
-    if (!m.B || omega == 0) return m.S ? share(m.S) : fe::PetscMat();
-    return m.S ? fe::add(m.S.get(), omega, m.B.get()) : fe::scale(m.B.get(), omega);
+    if (!m.B || omega == 0) return m.S ? m.S : fe::SymmetricMatrix();
+    return m.S ? fe::add(m.S, omega, m.B) : fe::scale(m.B, omega);
   }
 
   const DirectModel& direct_;

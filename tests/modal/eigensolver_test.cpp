@@ -216,8 +216,8 @@ TEST(Eigensolver, FactorThatIsKept) {
   const auto model = build(make_beam(30).deck);
   const fe::System system(model);
   modal::detail::EigenProblem problem;
-  problem.A = system.K.get();
-  problem.B = system.M.get();
+  problem.A = system.K;
+  problem.B = system.M;
   problem.num_wanted = 4;
   problem.deflate.resize(model.num_fdofs(), 0);
   modal::detail::FactoredHandle kept;

@@ -159,13 +159,13 @@ TEST(LowRank, FactorIsExactAndStopsAtTheLimit) {
   const auto model = build(make_text(Tie::Rbe3, 5, 3), diagnostics);
   const fe::System system(model);
   const modal::detail::Pencil pencil(system);
-  const auto C = modal::detail::factor_low_rank(pencil.M.get(), pencil.M_diagonal, 50);
+  const auto C = modal::detail::factor_low_rank(pencil.M, pencil.M_diagonal, 50);
   ASSERT_TRUE(C);
   EXPECT_EQ(C->cols(), 6);
   EXPECT_GT((pencil.M_diagonal.array() > 0).count(), 6);
   const MatrixXd M = pencil.calc_M_times(MatrixXd::Identity(pencil.size(), pencil.size()));
   EXPECT_LT((M - MatrixXd(*C * C->transpose())).cwiseAbs().maxCoeff(), 1e-12 * M.cwiseAbs().maxCoeff());
-  EXPECT_FALSE(modal::detail::factor_low_rank(pencil.M.get(), pencil.M_diagonal, 5));
+  EXPECT_FALSE(modal::detail::factor_low_rank(pencil.M, pencil.M_diagonal, 5));
 }
 
 TEST(LowRank, MassOnMasslessLegs) {
@@ -204,8 +204,8 @@ TEST(LowRank, KrylovEndsAtTheRank) {
   const VectorXd expected = calc_expected(Tie::Rbe3, 4);
   for (const char* solver : {"krylovschur", modal::detail::kBlockLanczos}) {
     modal::detail::EigenProblem problem;
-    problem.A = pencil.K.get();
-    problem.B = pencil.M.get();
+    problem.A = pencil.K;
+    problem.B = pencil.M;
     problem.num_wanted = 12;
     problem.solver = solver;
     const auto result = modal::detail::extract(problem);
@@ -233,8 +233,8 @@ TEST(LowRank, KrylovThatDoesNotConvergeSaysSo) {
     fe::check_petsc(MatSetOption(matrix->get(), MAT_SYMMETRIC, PETSC_TRUE));
   }
   modal::detail::EigenProblem problem;
-  problem.A = A.get();
-  problem.B = B.get();
+  problem.A = fe::SymmetricMatrix(std::move(A));
+  problem.B = fe::SymmetricMatrix(std::move(B));
   problem.spectrum = modal::detail::Spectrum::LargestMagnitude;
   problem.deflate.resize(n, 0);
   fe::check_petsc(PetscOptionsSetValue(nullptr, "-eps_max_it", "1"));

@@ -12,7 +12,7 @@ namespace {
 
 using namespace test;
 
-MatrixXd to_dense(const PetscMat& A, int size) { return multiply(A.get(), MatrixXd::Identity(size, size)); }
+MatrixXd to_dense(const SymmetricMatrix& A, int size) { return multiply(A, MatrixXd::Identity(size, size)); }
 
 Model make_clamped(Diagnostics& diagnostics) {
   auto deck = make_deck(make_points());
@@ -39,7 +39,7 @@ TEST(AssemblyMpi, products_equal_matrices) {
   const MatrixXd K_X = sum_stiffness(model) * X;
   EXPECT_LT((calc_stiffness_times(model, X) - K_X).norm(), 1e-13 * K_X.norm());
   for (const MassKind kind : {MassKind::Lumped, MassKind::Consistent}) {
-    const MatrixXd M_X = multiply(assemble_mass(model, DofSet::Global, kind).get(), X);
+    const MatrixXd M_X = multiply(assemble_mass(model, DofSet::Global, kind), X);
     EXPECT_LT((calc_mass_times(model, kind, X) - M_X).norm(), 1e-13 * M_X.norm());
     EXPECT_GT(M_X.norm(), 1);
   }
@@ -48,9 +48,9 @@ TEST(AssemblyMpi, products_equal_matrices) {
 TEST(AssemblyMpi, gather_inverts_scatter) {
   Diagnostics diagnostics;
   const Model model = make_clamped(diagnostics);
-  const PetscMat K = assemble_stiffness(model, DofSet::Free);
+  const SymmetricMatrix K = assemble_stiffness(model, DofSet::Free);
   PetscVec v;
-  check_petsc(MatCreateVecs(K.get(), v.out(), nullptr));
+  check_petsc(MatCreateVecs(K.sparse(), v.out(), nullptr));
   const VectorXd x = make_random(model.num_fdofs(), 1, 8);
   scatter(x, v.get());
   EXPECT_EQ(gather(v.get()), x);

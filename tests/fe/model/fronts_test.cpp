@@ -21,7 +21,7 @@ constexpr int kLong = 60, kWide = 4, kRows = 2 * kLong * kWide;
 int row_of(int x, int y, int d) { return 2 * (x * kWide + y) + d; }
 
 /// A strip of nodes of two rows each, `stiffness` between neighbours, `inertia` in the nodes.
-PetscMat make_strip(double stiffness, double inertia, double across = 0) {
+SymmetricMatrix make_strip(double stiffness, double inertia, double across = 0) {
   PetscMat A;
   check_petsc(MatCreateSeqAIJ(PETSC_COMM_SELF, kRows, kRows, 30, nullptr, A.out()));
   const auto add_to = [&](int i, int j, double value) { check_petsc(MatSetValue(A.get(), i, j, value, ADD_VALUES)); };
@@ -45,11 +45,12 @@ PetscMat make_strip(double stiffness, double inertia, double across = 0) {
   check_petsc(MatAssemblyEnd(A.get(), MAT_FINAL_ASSEMBLY));
   std::vector<int> start;
   for (int i = 0; i <= kRows; i += 2) start.push_back(i);
-  set_row_groups(A.get(), start);
-  return A;
+  const SymmetricMatrix result(std::move(A));
+  result.row_order().groups = std::make_shared<const std::vector<int>>(std::move(start));
+  return result;
 }
 
-MatrixXd to_dense(Mat A) { return multiply(A, MatrixXd::Identity(kRows, kRows)); }
+MatrixXd to_dense(const SymmetricMatrix& A) { return multiply(A, MatrixXd::Identity(kRows, kRows)); }
 
 class FrontsOn : public ::testing::TestWithParam<int> {
  protected:
@@ -65,63 +66,62 @@ INSTANTIATE_TEST_SUITE_P(Threads, FrontsOn, ::testing::Values(1, 2));
 /// All along the spectrum, where more and more fronts are indefinite. B couples rows that A does not,
 /// of nodes that A couples.
 TEST_P(FrontsOn, CountAsTheEigenvaluesDo) {
-  const PetscMat A = make_strip(1, 0), B = make_strip(0.05, 1, 0.02);
+  const SymmetricMatrix A = make_strip(1, 0), B = make_strip(0.05, 1, 0.02);
   const VectorXd values =
-      Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd>(to_dense(A.get()), to_dense(B.get()), Eigen::EigenvaluesOnly)
+      Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd>(to_dense(A), to_dense(B), Eigen::EigenvaluesOnly)
           .eigenvalues();
   int num_counted = 0, num_tried = 0;
   for (Eigen::Index i = 0; i + 1 < values.size(); i += i < 40 ? 1 : 37) {
     const double mu = 0.5 * (values(i) + values(i + 1));
     if (values(i + 1) - values(i) < 1e-9 * mu) continue;
     ++num_tried;
-    const auto count = count_negative_by_fronts(A.get(), -mu, B.get(), 0);
+    const auto count = count_negative_by_fronts(A, -mu, B, 0);
     if (!count) continue;  // a front was close to an eigenvalue of its own
     ++num_counted;
     EXPECT_EQ(*count, i + 1) << mu;
   }
   EXPECT_GT(num_tried, 40);
   EXPECT_GT(num_counted, num_tried * 8 / 10);
-  EXPECT_EQ(count_negative_by_fronts(A.get(), 0, B.get(), 0), 0);
-  EXPECT_EQ(count_negative_by_fronts(A.get(), -1e6, B.get(), 0), kRows);
+  EXPECT_EQ(count_negative_by_fronts(A, 0, B, 0), 0);
+  EXPECT_EQ(count_negative_by_fronts(A, -1e6, B, 0), kRows);
 }
 
 /// Where a front adds far more to a row than stands on its diagonal, one that pivots freely counts.
 TEST_P(FrontsOn, LeaveTinyPivotsToOthers) {
-  const PetscMat A = make_strip(1, 0), B = make_strip(0, 1), weak = make_strip(1, 0);
-  ASSERT_EQ(count_negative_by_fronts(A.get(), 0, B.get(), 0), 0);
+  const SymmetricMatrix A = make_strip(1, 0), B = make_strip(0, 1), weak = make_strip(1, 0);
+  ASSERT_EQ(count_negative_by_fronts(A, 0, B, 0), 0);
   for (int x = 1; x < kLong; x += 2)
     for (int y = 0; y < kWide; ++y)
       for (int d = 0; d < 2; ++d)
-        check_petsc(MatSetValue(weak.get(), row_of(x, y, d), row_of(x, y, d), 1e-12, INSERT_VALUES));
-  check_petsc(MatAssemblyBegin(weak.get(), MAT_FINAL_ASSEMBLY));
-  check_petsc(MatAssemblyEnd(weak.get(), MAT_FINAL_ASSEMBLY));
-  EXPECT_FALSE(count_negative_by_fronts(weak.get(), 0, B.get(), 0));
+        check_petsc(MatSetValue(weak.sparse(), row_of(x, y, d), row_of(x, y, d), 1e-12, INSERT_VALUES));
+  check_petsc(MatAssemblyBegin(weak.sparse(), MAT_FINAL_ASSEMBLY));
+  check_petsc(MatAssemblyEnd(weak.sparse(), MAT_FINAL_ASSEMBLY));
+  EXPECT_FALSE(count_negative_by_fronts(weak, 0, B, 0));
 }
 
 /// B couples the ends of the strip, which A has in two parts: then one that pivots freely counts.
 TEST_P(FrontsOn, TakeCoupledPartsForOne) {
-  const PetscMat A = make_strip(1, 0), B = make_strip(0, 1);
-  check_petsc(MatSetOption(B.get(), MAT_NEW_NONZERO_ALLOCATION_ERR, PETSC_FALSE));
+  const SymmetricMatrix A = make_strip(1, 0), B = make_strip(0, 1);
+  check_petsc(MatSetOption(B.sparse(), MAT_NEW_NONZERO_ALLOCATION_ERR, PETSC_FALSE));
   for (const auto& [i, j] : {std::pair(row_of(0, 0, 0), row_of(kLong - 1, 0, 0))}) {
-    check_petsc(MatSetValue(B.get(), i, j, 0.1, ADD_VALUES));
-    check_petsc(MatSetValue(B.get(), j, i, 0.1, ADD_VALUES));
+    check_petsc(MatSetValue(B.sparse(), i, j, 0.1, ADD_VALUES));
+    check_petsc(MatSetValue(B.sparse(), j, i, 0.1, ADD_VALUES));
   }
-  check_petsc(MatAssemblyBegin(B.get(), MAT_FINAL_ASSEMBLY));
-  check_petsc(MatAssemblyEnd(B.get(), MAT_FINAL_ASSEMBLY));
-  const auto count = count_negative_by_fronts(A.get(), -0.1, B.get(), 0);
+  check_petsc(MatAssemblyBegin(B.sparse(), MAT_FINAL_ASSEMBLY));
+  check_petsc(MatAssemblyEnd(B.sparse(), MAT_FINAL_ASSEMBLY));
+  const auto count = count_negative_by_fronts(A, -0.1, B, 0);
   ASSERT_TRUE(count);
-  const MatrixXd sum = to_dense(A.get()) - 0.1 * to_dense(B.get());
+  const MatrixXd sum = to_dense(A) - 0.1 * to_dense(B);
   EXPECT_EQ(*count,
             (Eigen::SelfAdjointEigenSolver<MatrixXd>(sum, Eigen::EigenvaluesOnly).eigenvalues().array() < 0).count());
 }
 
 TEST_P(FrontsOn, AreNotForMatricesWithoutGroupsOrOfFewRows) {
-  const PetscMat A = make_strip(1, 0), B = make_strip(0, 1);
-  EXPECT_FALSE(count_negative_by_fronts(A.get(), -1, B.get()));
-  PetscMat bare;
-  check_petsc(MatConvert(A.get(), MATSEQAIJ, MAT_INITIAL_MATRIX, bare.out()));
-  check_petsc(PetscObjectCompose(reinterpret_cast<PetscObject>(bare.get()), "bough_row_groups", nullptr));
-  EXPECT_FALSE(count_negative_by_fronts(bare.get(), -1, B.get(), 0));
+  const SymmetricMatrix A = make_strip(1, 0), B = make_strip(0, 1);
+  EXPECT_FALSE(count_negative_by_fronts(A, -1, B));
+  const SymmetricMatrix bare = make_strip(1, 0);
+  bare.row_order() = {};
+  EXPECT_FALSE(count_negative_by_fronts(bare, -1, B, 0));
 }
 
 /// Definite but for a few, as a Schur complement above a few modes; any numbers; pivots that no block of rows has

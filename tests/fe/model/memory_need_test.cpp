@@ -64,7 +64,7 @@ TEST(MemoryNeed, EntriesOfAFactorAreThoseOfItsAnalysis) {
   }
   check_petsc(MatAssemblyBegin(A.get(), MAT_FINAL_ASSEMBLY));
   check_petsc(MatAssemblyEnd(A.get(), MAT_FINAL_ASSEMBLY));
-  const auto factor = SymmetricFactor::try_definite(A.get());
+  const auto factor = SymmetricFactor::try_definite(SymmetricMatrix(std::move(A)));
   ASSERT_TRUE(factor);
   EXPECT_EQ(factor->num_entries(), 2 * n - 1);
 }

@@ -96,8 +96,7 @@ TEST(SymmetricFactor, OfAnIndefiniteMatrixIsNoCholeskyFactor) {
       for (int i = 0; i < size; ++i) check_petsc(MatSetValue(A.get(), i, i, i + 1 == size ? last : 1.0, INSERT_VALUES));
       check_petsc(MatAssemblyBegin(A.get(), MAT_FINAL_ASSEMBLY));
       check_petsc(MatAssemblyEnd(A.get(), MAT_FINAL_ASSEMBLY));
-      check_petsc(MatSetOption(A.get(), MAT_SYMMETRIC, PETSC_TRUE));
-      const SymmetricFactor factor(A.get(), false);
+      const SymmetricFactor factor(SymmetricMatrix(std::move(A)), false);
       EXPECT_EQ(factor.is_definite(), last > 0) << size;
       EXPECT_NEAR(factor.solve(VectorXd::Ones(size))(size - 1, 0), last, 1e-15);
     }
@@ -133,11 +132,11 @@ TEST(Prestress, IsTheGeometricStiffnessOfItsLoadWhereverKIs) {
   EXPECT_TRUE(diagnostics.has("fe.preload"));
   const auto model = build_model(deck, options, diagnostics);
   const int n = model.num_gdofs();
-  const MatrixXd one = MatrixXd::Identity(n, n), K0 = multiply(K_G.get(), one);
+  const MatrixXd one = MatrixXd::Identity(n, n), K0 = multiply(K_G, one);
   EXPECT_GT(K0.norm(), 1);
   EXPECT_LT((calc_prestress_times(model, one) - K0).norm(), 1e-10 * K0.norm());
   EXPECT_LT((calc_stiffness_times(model, one) - calc_stiffness_times(plain, one) - K0).norm(), 1e-6 * K0.norm());
-  const MatrixXd T = model.T(), K_f = multiply(assemble_stiffness(model, DofSet::Free).get(),
+  const MatrixXd T = model.T(), K_f = multiply(assemble_stiffness(model, DofSet::Free),
                                                MatrixXd::Identity(model.num_fdofs(), model.num_fdofs()));
   const MatrixXd expected = T.transpose() * (calc_stiffness_times(plain, T) + K0 * T);
   EXPECT_LT((K_f - expected).norm(), 1e-12 * K_f.norm());

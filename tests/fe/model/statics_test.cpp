@@ -85,7 +85,7 @@ TEST(StaticsMpi, unheld_model_is_a_mechanism_of_six_motions) {
   Diagnostics d;
   const Model model = build_model(deck, {}, make_links(kLinks), d);
   EXPECT_THAT(catch_mechanism(model), HasSubstr("mechanism 6 of 6"));
-  EXPECT_EQ(find_mechanisms(assemble_stiffness(model, DofSet::Free).get(), list_row_kinds(model), 6).cols(), 6);
+  EXPECT_EQ(find_mechanisms(assemble_stiffness(model, DofSet::Free), list_row_kinds(model), 6).cols(), 6);
 }
 
 TEST(StaticsMpi, more_motions_than_those_of_a_body_are_all_found) {
@@ -169,8 +169,8 @@ TEST(StaticsMpi, stiffness_that_is_not_a_number_does_not_pass) {
   deck.grids[0].ps = 63;
   Diagnostics d;
   const Model model = build_model(deck, {}, make_links({{1, 2}}), d);
-  const PetscMat K = assemble_stiffness(model, DofSet::Free);
-  check_petsc(MatScale(K.get(), std::nan("")));
+  const SymmetricMatrix K = assemble_stiffness(model, DofSet::Free);
+  check_petsc(MatScale(K.sparse(), std::nan("")));
   EXPECT_EQ(catch_id([&] { StaticSolver(model, K); }), "fe.mechanism");
 }
 
@@ -203,7 +203,7 @@ TEST(StaticsMpi, determinate_supports_give_the_same_strain_for_a_balanced_load) 
   deck.coord_systems.push_back(cylinder);
   Diagnostics d;
   const Model model = build_model(deck, {}, make_links(kLinks), d);
-  const PetscMat K = assemble_stiffness(model, DofSet::Free);
+  const SymmetricMatrix K = assemble_stiffness(model, DofSet::Free);
   // Balanced: no work on any rigid motion.
   const MatrixXd Phi_R = model.calc_rigid_modes();
   MatrixXd F = make_random(model.num_gdofs(), 1, 6);

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "fe/linear/factor.hpp"
-#include "fe/linear/low_rank_sum.hpp"
 #include "fe/linear/ordering.hpp"
+#include "fe/linear/symmetric_matrix.hpp"
 #include "tests/support/threads.hpp"
 
 namespace bough::fe {
@@ -19,7 +19,7 @@ using bough::test::Threads;
 
 /// Nine points of a grid of num_x x num_y nodes of two rows each, with `shift` of the identity taken away. Definite
 /// below about 1.5 ((π / num_x)² + (π / num_y)²).
-PetscMat make_grid(int num_x, int num_y, double shift = 0, bool is_apart = false) {
+SymmetricMatrix make_grid(int num_x, int num_y, double shift = 0, bool is_apart = false) {
   const int n = 2 * num_x * num_y;
   PetscMat A;
   check_petsc(MatCreateSeqAIJ(PETSC_COMM_SELF, n, n, 18, nullptr, A.out()));
@@ -43,8 +43,9 @@ PetscMat make_grid(int num_x, int num_y, double shift = 0, bool is_apart = false
   check_petsc(MatAssemblyEnd(A.get(), MAT_FINAL_ASSEMBLY));
   std::vector<int> start;
   for (int i = 0; i <= n; i += 2) start.push_back(i);
-  set_row_groups(A.get(), start);
-  return A;
+  const SymmetricMatrix result(std::move(A));
+  result.row_order().groups = std::make_shared<const std::vector<int>>(std::move(start));
+  return result;
 }
 
 class SupernodalFactorOn : public ::testing::TestWithParam<int> {
@@ -57,20 +58,20 @@ INSTANTIATE_TEST_SUITE_P(Threads, SupernodalFactorOn, ::testing::Values(1, 2));
 
 TEST_P(SupernodalFactorOn, SolvesAsThePivotedOneDoes) {
   const Threads threads(GetParam());
-  const PetscMat A = make_grid(90, 60);
-  const SupernodalFactor own = make_supernodal_factor(A.get(), 0);
+  const SymmetricMatrix A = make_grid(90, 60);
+  const SupernodalFactor own = make_supernodal_factor(A, 0);
   ASSERT_TRUE(own.solver);
   EXPECT_TRUE(own.is_definite);
   EXPECT_EQ(own.num_parts, GetParam());
-  const SymmetricFactor pivoted(A.get(), false, FactorMethod::Pivoting);
+  const SymmetricFactor pivoted(A, false, FactorMethod::Pivoting);
   const Eigen::MatrixXd B = Eigen::MatrixXd::Random(2 * 90 * 60, 21);
   for (const int m : {1, 4, 5, 8, 21}) {  // few, many, and more than go together
     const Eigen::MatrixXd X = own.solver->solve(B.leftCols(m));
-    const Eigen::MatrixXd R = B.leftCols(m) - multiply(A.get(), X);
+    const Eigen::MatrixXd R = B.leftCols(m) - multiply(A, X);
     EXPECT_LT(R.cwiseAbs().maxCoeff(), 1e-12 * X.cwiseAbs().maxCoeff()) << m;
     EXPECT_LT((X - pivoted.solve(B.leftCols(m))).cwiseAbs().maxCoeff(), 1e-11 * X.cwiseAbs().maxCoeff()) << m;
     // Again, to the bit: nothing depends on which thread comes first.
-    const SupernodalFactor again = make_supernodal_factor(A.get(), 0);
+    const SupernodalFactor again = make_supernodal_factor(A, 0);
     EXPECT_TRUE((again.solver->solve(B.leftCols(m)).array() == X.array()).all()) << m;
   }
 }
@@ -79,21 +80,21 @@ TEST_P(SupernodalFactorOn, SolvesAsThePivotedOneDoes) {
 /// that S X solves it to the last bit. Row sums over both kinds as the shift lose its digits.
 TEST_P(SupernodalFactorOn, UnitsOfRowsChangeNoDigit) {
   const Threads threads(GetParam());
-  const PetscMat A = make_grid(90, 60);
+  const SymmetricMatrix A = make_grid(90, 60);
   const Eigen::MatrixXd B = Eigen::MatrixXd::Random(2 * 90 * 60, 5);
-  const Eigen::MatrixXd X = make_supernodal_factor(A.get(), 0).solver->solve(B);
+  const Eigen::MatrixXd X = make_supernodal_factor(A, 0).solver->solve(B);
   for (const double unit : {0x1p-20, 0x1p20}) {
     PetscVec scale;
-    check_petsc(MatCreateVecs(A.get(), scale.out(), nullptr));
+    check_petsc(MatCreateVecs(A.sparse(), scale.out(), nullptr));
     Eigen::VectorXd S(B.rows());
     for (Eigen::Index i = 0; i < S.size(); ++i) S(i) = i % 2 == 0 ? 1 : unit;
     PetscScalar* values = nullptr;
     check_petsc(VecGetArray(scale.get(), &values));
     Eigen::VectorXd::Map(values, S.size()) = S;
     check_petsc(VecRestoreArray(scale.get(), &values));
-    const PetscMat scaled = make_grid(90, 60);
-    check_petsc(MatDiagonalScale(scaled.get(), scale.get(), scale.get()));
-    const SupernodalFactor factor = make_supernodal_factor(scaled.get(), 0);
+    const SymmetricMatrix scaled = make_grid(90, 60);
+    check_petsc(MatDiagonalScale(scaled.sparse(), scale.get(), scale.get()));
+    const SupernodalFactor factor = make_supernodal_factor(scaled, 0);
     ASSERT_TRUE(factor.solver) << unit;
     EXPECT_EQ(factor.num_parts, GetParam());
     EXPECT_EQ(S.asDiagonal() * factor.solver->solve(S.asDiagonal() * B), X) << unit;
@@ -103,20 +104,20 @@ TEST_P(SupernodalFactorOn, UnitsOfRowsChangeNoDigit) {
 TEST(SupernodalFactor, IsOfLargeMatricesInGroups) {
   if (initialize_petsc().size > 1) GTEST_SKIP() << "several processes factor together";
   const Threads two(2);
-  EXPECT_FALSE(make_supernodal_factor(make_grid(90, 60).get()).solver) << "small";
-  EXPECT_EQ(make_supernodal_factor(make_grid(4000, 1).get(), 0).num_parts, 2) << "a line";
-  const PetscMat bare = make_grid(90, 60);
-  check_petsc(PetscObjectCompose(reinterpret_cast<PetscObject>(bare.get()), "bough_row_groups", nullptr));
-  EXPECT_FALSE(make_supernodal_factor(bare.get(), 0).solver) << "rows without groups";
-  EXPECT_EQ(make_supernodal_factor(make_grid(6, 6).get(), 0).num_parts, 1) << "many rows between";
+  EXPECT_FALSE(make_supernodal_factor(make_grid(90, 60)).solver) << "small";
+  EXPECT_EQ(make_supernodal_factor(make_grid(4000, 1), 0).num_parts, 2) << "a line";
+  const SymmetricMatrix bare = make_grid(90, 60);
+  bare.row_order() = {};
+  EXPECT_FALSE(make_supernodal_factor(bare, 0).solver) << "rows without groups";
+  EXPECT_EQ(make_supernodal_factor(make_grid(6, 6), 0).num_parts, 1) << "many rows between";
 }
 
 /// A negative eigenvalue of the whole (0.0055) may be none of either part (0.011): the rows between have it.
 TEST_P(SupernodalFactorOn, IndefiniteMatricesAreTold) {
   const Threads threads(GetParam());
-  EXPECT_TRUE(make_supernodal_factor(make_grid(90, 60, 0.002).get(), 0).is_definite);
+  EXPECT_TRUE(make_supernodal_factor(make_grid(90, 60, 0.002), 0).is_definite);
   for (const double shift : {0.006, 0.05, 3.0}) {
-    const SupernodalFactor own = make_supernodal_factor(make_grid(90, 60, shift).get(), 0);
+    const SupernodalFactor own = make_supernodal_factor(make_grid(90, 60, shift), 0);
     EXPECT_FALSE(own.is_definite) << shift;
     EXPECT_FALSE(own.solver) << shift;
   }
@@ -124,56 +125,56 @@ TEST_P(SupernodalFactorOn, IndefiniteMatricesAreTold) {
 
 TEST_P(SupernodalFactorOn, LargeMatricesTakeIt) {
   const Threads threads(GetParam());
-  const PetscMat A = make_grid(160, 90);
-  const auto factor = SymmetricFactor::try_definite(A.get());
+  const SymmetricMatrix A = make_grid(160, 90);
+  const auto factor = SymmetricFactor::try_definite(A);
   ASSERT_TRUE(factor);
   const Eigen::MatrixXd B = Eigen::MatrixXd::Random(2 * 160 * 90, 3);
-  EXPECT_EQ(factor->solve(B), make_supernodal_factor(A.get()).solver->solve(B));
-  const Eigen::MatrixXd X = SymmetricFactor(A.get(), false).solve(B);
-  EXPECT_LT((B - multiply(A.get(), X)).cwiseAbs().maxCoeff(), 1e-12 * X.cwiseAbs().maxCoeff());
+  EXPECT_EQ(factor->solve(B), make_supernodal_factor(A).solver->solve(B));
+  const Eigen::MatrixXd X = SymmetricFactor(A, false).solve(B);
+  EXPECT_LT((B - multiply(A, X)).cwiseAbs().maxCoeff(), 1e-12 * X.cwiseAbs().maxCoeff());
 }
 
 /// Two pieces that do not touch, and rows of a piece that stand alone: trees without a way to the rows between.
 /// K + s M of a body that nothing holds is factored as K would be, whatever M couples beside K.
 TEST_P(SupernodalFactorOn, SumsAreFactoredInPartsToo) {
   const Threads threads(GetParam());
-  const PetscMat K = make_grid(90, 60, 0, true), M = make_grid(90, 60);
-  ASSERT_TRUE(make_supernodal_factor(K.get(), 0).solver);  // K knows its parts, which M couples
-  const PetscMat sum = add(K.get(), 0.5, M.get());
-  const SupernodalFactor own = make_supernodal_factor(sum.get(), 0);
+  const SymmetricMatrix K = make_grid(90, 60, 0, true), M = make_grid(90, 60);
+  ASSERT_TRUE(make_supernodal_factor(K, 0).solver);  // K knows its parts, which M couples
+  const SymmetricMatrix sum = add(K, 0.5, M);
+  const SupernodalFactor own = make_supernodal_factor(sum, 0);
   ASSERT_TRUE(own.solver);
   EXPECT_EQ(own.num_parts, GetParam());
   const Eigen::MatrixXd B = Eigen::MatrixXd::Random(2 * 90 * 60, 3), X = own.solver->solve(B);
-  const Eigen::MatrixXd R = B - multiply(K.get(), X) - 0.5 * multiply(M.get(), X);
+  const Eigen::MatrixXd R = B - multiply(K, X) - 0.5 * multiply(M, X);
   EXPECT_LT(R.cwiseAbs().maxCoeff(), 1e-12 * X.cwiseAbs().maxCoeff());
 }
 
 TEST_P(SupernodalFactorOn, PiecesMayBeApart) {
   const Threads threads(GetParam());
-  const PetscMat A = make_grid(90, 60, 0, true);
-  const SupernodalFactor own = make_supernodal_factor(A.get(), 0);
+  const SymmetricMatrix A = make_grid(90, 60, 0, true);
+  const SupernodalFactor own = make_supernodal_factor(A, 0);
   ASSERT_TRUE(own.solver);
   const Eigen::MatrixXd B = Eigen::MatrixXd::Random(2 * 90 * 60, 4);
   const Eigen::MatrixXd X = own.solver->solve(B);
-  EXPECT_LT((B - multiply(A.get(), X)).cwiseAbs().maxCoeff(), 1e-12 * X.cwiseAbs().maxCoeff());
+  EXPECT_LT((B - multiply(A, X)).cwiseAbs().maxCoeff(), 1e-12 * X.cwiseAbs().maxCoeff());
 }
 
 /// What was found of a matrix is found anew when it has got an entry between its parts.
 TEST(SupernodalFactor, PartsAreThoseOfTheMatrixAsItIs) {
   if (initialize_petsc().size > 1) GTEST_SKIP() << "several processes factor together";
-  const PetscMat A = make_grid(90, 60);
-  const auto before = find_two_parts(A.get(), 0), again = find_two_parts(A.get(), 0);
+  const SymmetricMatrix A = make_grid(90, 60);
+  const auto before = find_two_parts(A, 0), again = find_two_parts(A, 0);
   ASSERT_TRUE(before && again);
   EXPECT_EQ(before->first, again->first);
   EXPECT_EQ(before->second, again->second);
   EXPECT_EQ(before->between, again->between);
-  check_petsc(MatSetOption(A.get(), MAT_NEW_NONZERO_ALLOCATION_ERR, PETSC_FALSE));
+  check_petsc(MatSetOption(A.sparse(), MAT_NEW_NONZERO_ALLOCATION_ERR, PETSC_FALSE));
   const PetscInt i = before->first.front(), j = before->second.front();
-  check_petsc(MatSetValue(A.get(), i, j, -0.1, INSERT_VALUES));
-  check_petsc(MatSetValue(A.get(), j, i, -0.1, INSERT_VALUES));
-  check_petsc(MatAssemblyBegin(A.get(), MAT_FINAL_ASSEMBLY));
-  check_petsc(MatAssemblyEnd(A.get(), MAT_FINAL_ASSEMBLY));
-  const auto after = find_two_parts(A.get(), 0);
+  check_petsc(MatSetValue(A.sparse(), i, j, -0.1, INSERT_VALUES));
+  check_petsc(MatSetValue(A.sparse(), j, i, -0.1, INSERT_VALUES));
+  check_petsc(MatAssemblyBegin(A.sparse(), MAT_FINAL_ASSEMBLY));
+  check_petsc(MatAssemblyEnd(A.sparse(), MAT_FINAL_ASSEMBLY));
+  const auto after = find_two_parts(A, 0);
   ASSERT_TRUE(after);
   const auto has = [](const std::vector<PetscInt>& rows, PetscInt row) {
     return std::find(rows.begin(), rows.end(), row) != rows.end();

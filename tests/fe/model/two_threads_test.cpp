@@ -44,9 +44,9 @@ std::string write_shell(int num, bool mixed = false) {
   return "SPC = 1\nBEGIN BULK\n" + text;
 }
 
-void expect_same(Mat A, Mat B) {
+void expect_same(const SymmetricMatrix& A, const SymmetricMatrix& B) {
   PetscBool equal = PETSC_FALSE;
-  check_petsc(MatEqual(A, B, &equal));
+  check_petsc(MatEqual(A.sparse(), B.sparse(), &equal));
   EXPECT_TRUE(equal);
 }
 
@@ -61,14 +61,12 @@ TEST(TwoThreads, AssembleTheSameBitForBit) {
                        assemble_mass(model, DofSet::Free, MassKind::Consistent));
     };
     const auto one = assemble_by(1), two = assemble_by(2);
-    expect_same(one.first.get(), two.first.get());
-    expect_same(one.second.get(), two.second.get());
+    expect_same(one.first, two.first);
+    expect_same(one.second, two.second);
     // The same rows belong together: the order of elimination is the same.
-    const PetscIs first = find_elimination_order(one.first.get()), second = find_elimination_order(two.first.get());
+    const auto first = find_elimination_order(one.first), second = find_elimination_order(two.first);
     ASSERT_TRUE(first && second);
-    PetscBool equal = PETSC_FALSE;
-    check_petsc(ISEqual(first.get(), second.get(), &equal));
-    EXPECT_TRUE(equal);
+    EXPECT_EQ(*first, *second);
   }
 }
 
@@ -99,13 +97,12 @@ TEST(TwoThreads, HoldTheSameDofs) {
 TEST(TwoThreads, MultiplyTheSame) {
   if (initialize_petsc().size > 1) GTEST_SKIP() << "several processes have one thread each";
   const Model model = test::build(write_shell(46));
-  const PetscMat K = assemble_stiffness(model, DofSet::Free);
+  const SymmetricMatrix K = assemble_stiffness(model, DofSet::Free);
   const MatrixXd X = MatrixXd::Random(model.num_fdofs(), 7), X_g = MatrixXd::Random(model.num_gdofs(), 3);
   const MatrixXd B = MatrixXd::Random(model.num_fdofs(), 7);
   const auto multiply_by = [&](int num) {
     const Threads threads(num);
-    return std::array<MatrixXd, 3>{multiply(K.get(), X), calc_residual(K.get(), X, B),
-                                   calc_stiffness_times(model, X_g)};
+    return std::array<MatrixXd, 3>{multiply(K, X), calc_residual(K, X, B), calc_stiffness_times(model, X_g)};
   };
   const auto one = multiply_by(1), two = multiply_by(2);
   EXPECT_EQ(one[0], two[0]);
@@ -113,13 +110,13 @@ TEST(TwoThreads, MultiplyTheSame) {
   EXPECT_LT((one[2] - two[2]).cwiseAbs().maxCoeff(), 1e-14 * one[2].cwiseAbs().maxCoeff());
   // By another code: PETSc's own product.
   PetscVec x, y;
-  check_petsc(MatCreateVecs(K.get(), x.out(), y.out()));
+  check_petsc(MatCreateVecs(K.sparse(), x.out(), y.out()));
   for (const int c : {0, 6}) {
     PetscScalar* values = nullptr;
     check_petsc(VecGetArray(x.get(), &values));
     Eigen::VectorXd::Map(values, X.rows()) = X.col(c);
     check_petsc(VecRestoreArray(x.get(), &values));
-    check_petsc(MatMult(K.get(), x.get(), y.get()));
+    check_petsc(MatMult(K.sparse(), x.get(), y.get()));
     const PetscScalar* found = nullptr;
     check_petsc(VecGetArrayRead(y.get(), &found));
     const Eigen::VectorXd expected = Eigen::VectorXd::Map(found, X.rows());
@@ -159,8 +156,8 @@ TEST(FactorNeed, IsAboutWhatTheFactorTakes) {
   if (initialize_petsc().size > 1) GTEST_SKIP() << "one process factors by CHOLMOD";
   const auto expect_about = [](const std::string& deck) {
     const Model model = test::build(deck);
-    const PetscMat K = assemble_stiffness(model, DofSet::Free);
-    const auto factor = SymmetricFactor::try_definite(K.get());
+    const SymmetricMatrix K = assemble_stiffness(model, DofSet::Free);
+    const auto factor = SymmetricFactor::try_definite(K);
     ASSERT_TRUE(factor);
     const double estimate = estimate_factor_entries(model);
     EXPECT_GT(estimate, 0.7 * factor->num_entries());

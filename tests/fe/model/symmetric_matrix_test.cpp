@@ -5,8 +5,8 @@
 
 #include "fe/linear/factor.hpp"
 #include "fe/linear/inertia.hpp"
-#include "fe/linear/low_rank_sum.hpp"
 #include "fe/linear/ranks.hpp"
+#include "fe/linear/symmetric_matrix.hpp"
 
 namespace bough::fe {
 namespace {
@@ -16,7 +16,7 @@ using Eigen::VectorXd;
 using Sparse = Eigen::SparseMatrix<double>;
 
 /// A band of 5 on the diagonal and -1, -1 beside it, `shift` added to the diagonal.
-PetscMat make_band(int n, double shift) {
+SymmetricMatrix make_band(int n, double shift) {
   PetscMat A;
   check_petsc(MatCreate(PETSC_COMM_WORLD, A.out()));
   check_petsc(MatSetSizes(A.get(), PETSC_DECIDE, PETSC_DECIDE, n, n));
@@ -29,11 +29,10 @@ PetscMat make_band(int n, double shift) {
       check_petsc(MatSetValue(A.get(), i, j, i == j ? 5 + shift : -1, INSERT_VALUES));
   check_petsc(MatAssemblyBegin(A.get(), MAT_FINAL_ASSEMBLY));
   check_petsc(MatAssemblyEnd(A.get(), MAT_FINAL_ASSEMBLY));
-  check_petsc(MatSetOption(A.get(), MAT_SYMMETRIC, PETSC_TRUE));
-  return A;
+  return SymmetricMatrix(std::move(A));
 }
 
-MatrixXd to_dense(Mat A, int n) { return multiply(A, MatrixXd::Identity(n, n)); }
+MatrixXd to_dense(const SymmetricMatrix& A, int n) { return multiply(A, MatrixXd::Identity(n, n)); }
 
 struct Parts {
   MatrixXd D, V, K;
@@ -57,42 +56,42 @@ int count_negative(const MatrixXd& A) {
   return static_cast<int>((Eigen::SelfAdjointEigenSolver<MatrixXd>(A).eigenvalues().array() < 0).count());
 }
 
-TEST(LowRankSum, ActsAsTheDenseSum) {
+TEST(SymmetricMatrixSum, ActsAsTheDenseSum) {
   constexpr int n = 30;
   const Parts p = make_parts(n, 3, 7, 0.3);
-  const MatrixXd low = calc_dense(p), band = to_dense(make_band(n, 0).get(), n);
-  const PetscMat A = make_sum(make_band(n, 0), make_part(p)), B = make_band(n, 1);
-  ASSERT_TRUE(find_low_rank(A.get()));
-  EXPECT_FALSE(find_low_rank(B.get()));
-  const auto expect_is = [](const PetscMat& found, const MatrixXd& expected) {
+  const MatrixXd low = calc_dense(p), band = to_dense(make_band(n, 0), n);
+  const SymmetricMatrix A = make_band(n, 0).with_low_rank(make_part(p)), B = make_band(n, 1);
+  ASSERT_TRUE(A.low_rank());
+  EXPECT_FALSE(B.low_rank());
+  const auto expect_is = [](const SymmetricMatrix& found, const MatrixXd& expected) {
     const auto size = static_cast<int>(expected.rows());
-    EXPECT_LT((to_dense(found.get(), size) - expected).norm(), 1e-13 * expected.norm());
-    EXPECT_LT((get_diagonal(found.get()) - expected.diagonal()).norm(), 1e-13 * expected.norm());
+    EXPECT_LT((to_dense(found, size) - expected).norm(), 1e-13 * expected.norm());
+    EXPECT_LT((get_diagonal(found) - expected.diagonal()).norm(), 1e-13 * expected.norm());
     const VectorXd x = VectorXd::LinSpaced(size, -1, 2);
-    EXPECT_LT((calc_residual(found.get(), x, x) - (x - expected * x)).norm(), 1e-13 * expected.norm());
+    EXPECT_LT((calc_residual(found, x, x) - (x - expected * x)).norm(), 1e-13 * expected.norm());
   };
   const MatrixXd one = MatrixXd::Identity(n, n);
   expect_is(A, band + low);
-  expect_is(copy(A.get()), band + low);
-  expect_is(add(A.get(), -2, B.get()), band + low - 2 * (band + one));
-  expect_is(add(B.get(), -2, A.get()), band + one - 2 * (band + low));
-  expect_is(add(A.get(), 3, A.get()), 4 * (band + low));
-  expect_is(scale(A.get(), -3), -3 * (band + low));
-  expect_is(add_diagonal(A.get(), VectorXd::LinSpaced(n, 1, 2)),
+  expect_is(add(A, -2, B), band + low - 2 * (band + one));
+  expect_is(add(B, -2, A), band + one - 2 * (band + low));
+  expect_is(add(A, 3, A), 4 * (band + low));
+  expect_is(scale(A, -3), -3 * (band + low));
+  expect_is(add_diagonal(A, VectorXd::LinSpaced(n, 1, 2)),
             band + low + MatrixXd(VectorXd::LinSpaced(n, 1, 2).asDiagonal()));
   const std::vector<int> kept{0, 3, 4, 11, 17, 29};
-  expect_is(take_kept(A.get(), kept), (band + low)(kept, kept));
+  expect_is(take_kept(A, kept), (band + low)(kept, kept));
   // PETSc's product with a vector, which SLEPc takes.
   PetscVec x, y;
-  check_petsc(MatCreateVecs(A.get(), x.out(), y.out()));
+  const PetscMat op = make_operator(A);
+  check_petsc(MatCreateVecs(op.get(), x.out(), y.out()));
   check_petsc(VecSet(x.get(), 1));
-  check_petsc(MatMult(A.get(), x.get(), y.get()));
+  check_petsc(MatMult(op.get(), x.get(), y.get()));
   PetscReal norm = 0;
   check_petsc(VecNorm(y.get(), NORM_2, &norm));
   EXPECT_NEAR(norm, ((band + low) * VectorXd::Ones(n)).norm(), 1e-12);
 }
 
-TEST(LowRankSum, LeavesOutWhatIsZero) {
+TEST(SymmetricMatrixSum, LeavesOutWhatIsZero) {
   Parts p = make_parts(30, 4, 9, 1);
   p.V.col(1).setZero();
   p.K.row(1).setZero(), p.K.col(1).setZero();
@@ -112,20 +111,20 @@ TEST(LowRankSum, LeavesOutWhatIsZero) {
 }
 
 // Solutions and inertia by the factor of the sparse part, whichever of the two is definite.
-TEST(LowRankSum, FactorSolvesAndCounts) {
+TEST(SymmetricMatrixSum, FactorSolvesAndCounts) {
   constexpr int n = 40;
   bool seen_definite = false, seen_indefinite = false;
   for (unsigned seed = 1; seed < 9; ++seed)
     for (const double shift : {0.0, -4.0})
       for (const double size : {1e-3, 1.0, 1e4}) {
         const Parts p = make_parts(n, 3, seed, size);
-        const PetscMat A = make_sum(make_band(n, shift), make_part(p));
-        const MatrixXd dense = to_dense(make_band(n, shift).get(), n) + calc_dense(p);
-        const SymmetricFactor factor(A.get(), false);
+        const SymmetricMatrix A = make_band(n, shift).with_low_rank(make_part(p));
+        const MatrixXd dense = to_dense(make_band(n, shift), n) + calc_dense(p);
+        const SymmetricFactor factor(A, false);
         const MatrixXd B = MatrixXd::Identity(n, 3), X = factor.solve(B);
         EXPECT_LT((dense * X - B).norm(), 1e-8 * B.norm()) << seed << " " << shift << " " << size;
         const int expected = count_negative(dense);
-        EXPECT_EQ(count_negative_eigenvalues(A.get()), expected);
+        EXPECT_EQ(count_negative_eigenvalues(A), expected);
         if (initialize_petsc().size == 1) {
           EXPECT_EQ(factor.is_definite(), shift == 0 && expected == 0);
         }
