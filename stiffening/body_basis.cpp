@@ -59,7 +59,7 @@ void check_rigid(const BodyRequest& request, const fe::Model& model, const modal
                       (preload.empty() ? "" : " under its preload, " + preload),
                   preload.empty()
                       ? "remove springs and bushes to ground, and CELASi between grids that lie apart (they hold "
-                        "rotations), or use frame = \"fixed\""
+                        "rotations); write matrices of K2GG with more digits; or use frame = \"fixed\""
                       : "a free body may be preloaded by temperatures; loads do not turn with it: use frame = "
                         "\"fixed\"");
   if (num_found > num_rigid)

@@ -8,6 +8,7 @@
 #include "fe/statics/statics.hpp"
 #include "modal/bases/fixed_interface.hpp"
 #include "stiffening/given_model.hpp"
+#include "stiffening/given_rigid.hpp"
 #include "stiffening/stages.hpp"
 
 namespace bough::stiffening {
@@ -51,6 +52,12 @@ fe::ModelOptions make_model_options(const BodyRequest& request) {
   options.ignore_cards = request.spec.ignore_cards;
   if (request.spec.mass == "lumped") options.mass_kind = fe::MassKind::Lumped;
   if (request.spec.mass == "consistent") options.mass_kind = fe::MassKind::Consistent;
+  if (request.is_free())
+    options.adjust_direct = [origin = options.origin.value_or(Eigen::Vector3d::Zero())](
+                                const Deck& deck, const fe::Elements& others, fe::ElementList& direct,
+                                Diagnostics& diagnostics) {
+      restore_direct_stiffness(deck, origin, others, direct, diagnostics);
+    };
   return options;
 }
 

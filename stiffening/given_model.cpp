@@ -1,9 +1,6 @@
 #include "stiffening/given_model.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <cstdio>
-#include <numbers>
 #include <set>
 
 #include "fe/linear/factor.hpp"
@@ -78,10 +75,6 @@ void restore_rigid_motions(const Deck& deck, GivenModel& given, Diagnostics& dia
   const auto check = check_rigid_motions(given.points, given.K, given.M);
   if (check.is_exact || !(check.elastic > 0)) return;
   const GivenMatrix& K = given.matrices.K;
-  const auto to_hz = [](double lambda) { return std::sqrt(lambda) / (2 * std::numbers::pi); };
-  char text[200];
-  std::snprintf(text, sizeof text, "up to %.2g Hz, the first elastic mode has %.6g Hz", to_hz(check.worst),
-                to_hz(check.elastic));
   if (check.num_mechanisms > 0 && check.num_rigid == 6 && !has_constraint_equations(deck)) {
     diagnostics.error("reduce.mechanism", K.at,
                       K.label + " has " + std::to_string(check.num_mechanisms) +
@@ -92,7 +85,7 @@ void restore_rigid_motions(const Deck& deck, GivenModel& given, Diagnostics& dia
   if (!check.is_free) return;
   given.K = check.K;
   diagnostics.note("reduce.rigid-roundoff", K.at,
-                   K.label + " strains in rigid-body motions by round-off: " + text + "; they are taken as rigid",
+                   K.label + " strains in rigid-body motions by round-off: " + describe(check) + "; they are taken as rigid",
                    "nothing to do; use frame = \"fixed\" if the body is held by springs as soft as these");
 }
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <numbers>
 #include <vector>
 
 #include <Eigen/Eigenvalues>
@@ -162,6 +164,34 @@ SparseRows restore(const SparseRows& K, const VectorXd& D, const MatrixXd& R, co
 
 }  // namespace
 
+namespace {
+
+/// Sum of the matrices that `add` makes of the elements, on the g-set.
+template <class Add>
+SparseRows sum_elements(const fe::Elements& elements, int num_gdofs, const Add& add) {
+  std::vector<Eigen::Triplet<double>> entries;
+  for (const auto& element : elements) {
+    const auto& gdofs = element->gdofs();
+    const auto n = static_cast<Index>(gdofs.size());
+    MatrixXd A = MatrixXd::Zero(n, n);
+    add(*element, A);
+    for (Index i = 0; i < n; ++i)
+      for (Index j = 0; j < n; ++j)
+        if (A(i, j) != 0)
+          entries.emplace_back(gdofs[static_cast<std::size_t>(i)], gdofs[static_cast<std::size_t>(j)], A(i, j));
+  }
+  SparseRows sum(num_gdofs, num_gdofs);
+  sum.setFromTriplets(entries.begin(), entries.end());
+  return sum;
+}
+
+bool is_direct_stiffness(const fe::Element& element) {
+  const auto* direct = dynamic_cast<const fe::DirectElement*>(&element);
+  return direct && direct->kind() == fe::DirectKind::Stiffness;
+}
+
+}  // namespace
+
 RigidMotionCheck check_rigid_motions(const PointTable& points, const SparseRows& K, const SparseRows& M) {
   RigidMotionCheck result;
   const VectorXd D = K.diagonal();
@@ -214,6 +244,38 @@ RigidMotionCheck check_rigid_motions(const PointTable& points, const SparseRows&
   result.K = restore(K, D, R, support, others);
   result.is_free = result.K.nonZeros() > 0;
   return result;
+}
+
+std::string describe(const RigidMotionCheck& check) {
+  const auto to_hz = [](double lambda) { return std::sqrt(lambda) / (2 * std::numbers::pi); };
+  char text[200];
+  std::snprintf(text, sizeof text, "up to %.2g Hz, the first elastic mode has %.6g Hz", to_hz(check.worst),
+                to_hz(check.elastic));
+  return text;
+}
+
+void restore_direct_stiffness(const records::Deck& deck, const Eigen::Vector3d& origin, const fe::Elements& others,
+                              fe::ElementList& direct, Diagnostics& diagnostics) {
+  const auto is_stiffness = [](const auto& element) { return is_direct_stiffness(*element); };
+  if (std::none_of(direct.elements.begin(), direct.elements.end(), is_stiffness)) return;
+  Diagnostics repeated;  // by the model
+  const PointTable points(deck, origin, repeated);
+  if (repeated.num_errors() > 0) return;
+  const auto add_mass = [](const fe::Element& element, MatrixXd& A) {
+    element.add_mass(fe::MassKind::Consistent, 1, A);
+  };
+  const SparseRows K = sum_elements(direct.elements, points.num_gdofs,
+                                    [](const fe::Element& element, MatrixXd& A) { element.add_stiffness(1, A); });
+  const SparseRows M =
+      sum_elements(direct.elements, points.num_gdofs, add_mass) + sum_elements(others, points.num_gdofs, add_mass);
+  const auto check = check_rigid_motions(points, K, M);
+  if (!check.is_free) return;
+  std::erase_if(direct.elements, is_stiffness);
+  add_direct_elements(points, check.K, fe::DirectKind::Stiffness, direct);
+  diagnostics.note("reduce.rigid-roundoff", deck.locate({0, 0}),
+                   "the stiffness matrix of K2GG strains in rigid-body motions by round-off: " + describe(check) +
+                       "; they are taken as rigid",
+                   "nothing to do; use frame = \"fixed\" if the body is held by springs as soft as these");
 }
 
 }  // namespace bough::stiffening

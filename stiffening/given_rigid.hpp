@@ -35,4 +35,12 @@ inline constexpr double kMaxRigidQuotient = 1e-6;
 ///     not a stiffness matrix, returns is_exact = is_free = false.
 RigidMotionCheck check_rigid_motions(const PointTable& points, const SparseRows& K, const SparseRows& M);
 
+/// "up to 0.0012 Hz, the first elastic mode has 1.35 Hz", for messages.
+std::string describe(const RigidMotionCheck& check);
+
+/// Restores the rigid-body motions in the stiffness matrices that a deck selects by K2GG, all together, with the mass
+/// of `direct` and `others`; note reduce.rigid-roundoff. No effect where they have them to round-off, or have none.
+void restore_direct_stiffness(const records::Deck& deck, const Eigen::Vector3d& origin, const fe::Elements& others,
+                              fe::ElementList& direct, Diagnostics& diagnostics);
+
 }  // namespace bough::stiffening

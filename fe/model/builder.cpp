@@ -86,7 +86,10 @@ void ModelBuilder::make_elements(const ElementFactory& factory) {
   };
   add(factory(deck_, model_, diagnostics_));
   report_unmodelled(deck_, model_.cards_, diagnostics_);
-  add(make_direct(deck_, model_.subcase_, model_, diagnostics_));
+  ElementList direct = make_direct(deck_, model_.subcase_, model_, diagnostics_);
+  if (options_.adjust_direct && !direct.elements.empty())
+    options_.adjust_direct(deck_, model_.elements_, direct, diagnostics_);
+  add(std::move(direct));
   add(make_nonstructural(deck_, model_.subcase_.nsm, model_.elements_, model_, diagnostics_));
 }
 

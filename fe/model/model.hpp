@@ -27,6 +27,11 @@
 
 namespace bough::fe {
 
+using Elements = std::vector<std::unique_ptr<const Element>>;
+/// Changes the elements of K2GG, M2GG and B2GG before they join `others`, the elements of the cards.
+using AdjustDirect =
+    std::function<void(const records::Deck&, const Elements& others, ElementList& direct, Diagnostics&)>;
+
 struct ModelOptions {
   int subcase = 0;                    ///< id; 0 = the first: its SPC and MPC sets are used
   bool ignore_spc = false;            ///< free-free: SPC sets and permanent SPC of translational kind are not applied
@@ -36,6 +41,7 @@ struct ModelOptions {
   std::vector<std::string> ignore_cards;  ///< --ignore CARD
   bool uses_enforced = false;  ///< the caller applies calc_enforced(): no warning that an SPC's value is dropped
   std::shared_ptr<const Prestress> prestress;  ///< of this deck (fe/statics/preload.hpp): its K_G0 joins the stiffness
+  AdjustDirect adjust_direct = {};
 };
 
 /// One dof removed by AUTOSPC: node id, component 1..6 in CD axes, stiffness ratio that condemned it.

@@ -351,6 +351,47 @@ TEST(ReduceMatrices, CondensedFreeBodiesAreFreeInEveryFrameAndBasis) {
   }
 }
 
+// The same matrices as DMIG cards of ten digits, selected by K2GG and M2GG in the deck itself.
+TEST(ReduceMatrices, CondensedFreeBodiesAreFreeAsDirectMatricesOfTheDeck) {
+  const Condensed tube(60);
+  const VectorXd lambda = tube.calc_eigenvalues();
+  const auto write = [](const std::string& name, const MatrixXd& A) {
+    const auto dof = [](Eigen::Index i) {
+      return i < 12 ? std::to_string(i / 6 + 1) + "," + std::to_string(i % 6 + 1) : std::to_string(i - 1) + ",0";
+    };
+    std::string text = "DMIG," + name + ",0,6,2,0\n";
+    for (Eigen::Index j = 0; j < A.cols(); ++j) {
+      text += "DMIG*," + name + "," + dof(j) + ",\n";
+      for (Eigen::Index i = j; i < A.rows(); ++i) {
+        char value[32];
+        std::snprintf(value, sizeof value, "%.9E", A(i, j));
+        text += "*," + dof(i) + "," + value + "\n";
+      }
+    }
+    return text;
+  };
+  const auto make_deck = [&](const MatrixXd& K) {
+    return read("K2GG = KAAX\nM2GG = MAAX\nBEGIN BULK\nGRID,1,,0.,0.,0.\nGRID,2,,12.,0.,0.\nSPOINT,11,THRU,14\n" +
+                write("KAAX", K) + write("MAAX", tube.M) + "ENDDATA\n");
+  };
+  auto spec = make_spec(4);
+  spec.frame = records::BodyFrame::Free;
+  Diagnostics diagnostics;
+  const auto body = stiffening::reduce(make_deck(tube.K), spec, {}, diagnostics).body;
+  EXPECT_TRUE(diagnostics.has("reduce.rigid-roundoff"));
+  ASSERT_GE(body.frequency_hz.size(), 4);
+  for (int j = 0; j < 4; ++j) EXPECT_NEAR(body.eigenvalue(j) / lambda(6 + j), 1, 2e-6) << "mode " << j + 1;
+  // A spring to ground of a thousandth of the first elastic mode is none of round-off.
+  MatrixXd held = tube.K;
+  held(1, 1) += 1e-3 * lambda(6) * body.mass;
+  try {
+    stiffening::reduce(make_deck(held), spec, {}, diagnostics);
+    ADD_FAILURE() << "reduced";
+  } catch (const Failure& error) {
+    EXPECT_EQ(error.items().back().id, "reduce.grounded");
+  }
+}
+
 // What is held, or hinged, is told from what is free by the size of its eigenvalues, not by round-off.
 TEST(ReduceMatrices, HeldAndHingedBodiesAreNotFree) {
   const auto deck = read(kEnds);
