@@ -1,6 +1,7 @@
 """Pages for developers are true: every file that a page of docs/developer names exists, and every function or name in a
 row of a table is in a file of its row. Pages that trace something through its files name every product file it is in.
-The picture of the architecture has the arrows of the include lines, CITATION.cff the version of the sources.
+The picture of the architecture has the arrows of the include lines, CITATION.cff the version of the sources; the index
+of the pages has each of them.
 
 where_is_test.py SOURCE
 """
@@ -89,6 +90,16 @@ def check_version():
     return [] if cited == version else [f"CITATION.cff: error: expected version {version}, found {cited}"]
 
 
+def check_index():
+    """Faults of docs/README.md: pages below docs that it does not link (decisions and errors have their own index)."""
+    with open(os.path.join(SOURCE, "docs/README.md"), encoding="utf-8") as f:
+        linked = set(re.findall(r"\]\(([\w./-]+)", f.read()))
+    pages = {os.path.relpath(path, os.path.join(SOURCE, "docs"))
+             for path in glob.glob(os.path.join(SOURCE, "docs/**/*.md"), recursive=True)}
+    missing = {page for page in pages - linked if not page.startswith(("adr/", "errors/", "developer/")) and page != "README.md"}
+    return [f"docs/README.md: error: {page} is not in the index" for page in sorted(missing)]
+
+
 def main():
     wrong, rows = [], {}
     for path in sorted(glob.glob(os.path.join(FOLDER, "*.md"))):
@@ -99,7 +110,7 @@ def main():
     for name, min_rows in {"where-is.md": 20, "tour.md": 12, "add-a-card.md": 15, "add-a-hinge.md": 10}.items():
         if rows.get(name, 0) < min_rows:
             wrong.append(f"docs/developer/{name}: error: the tables have {rows.get(name, 0)} rows, expected {min_rows} and more")
-    wrong += check_version()
+    wrong += check_version() + check_index()
     print("\n".join(wrong))
     picture = subprocess.run([sys.executable, "-B", os.path.join(SOURCE, "tools/architecture_picture.py"), "--check"])
     return 1 if wrong or picture.returncode else 0
