@@ -42,7 +42,8 @@ CSS = "div.body td, div.body td p, div.body th p { text-align: left; }\ndiv.body
 def list_files():
     listed = subprocess.run(["git", "-C", ROOT, "ls-files", "-co", "--exclude-standard"], check=True, text=True,
                             capture_output=True).stdout.split("\n")
-    return [path for path in listed if path and os.path.isfile(os.path.join(ROOT, path))]
+    # Forms of a forge (.github) are no pages.
+    return [path for path in listed if path and path[0] != "." and os.path.isfile(os.path.join(ROOT, path))]
 
 
 def find_title(text, path):

@@ -237,6 +237,7 @@ PAGES = {
     "docs/python.md": boom({"arm.toml": ARM}, python=f"import sys\nsys.path.insert(0, {READER!r})",
                            stands_for={"spinup.toml": "short.toml", "spinup.h5": "run.h5"}),
     "docs/report.md": Page(),
+    "docs/developer/tour.md": Page(),
     "docs/command-line.md": boom({**TIP, "density.toml": DENSITY}, ("batch density.toml -q",), left_out=("VERB",), stands_for={
         "a.h5": "run.h5", "b.h5": "run.h5", "outcomes.h5": "density/outcomes.h5"}),
     "docs/other-fe-codes.md": boom(

@@ -307,21 +307,39 @@ class OfMatrices(OracleTest):
 
     @unittest.skipUnless(shutil.which("octave"), "Octave is not installed")
     def test_the_call_of_the_report(self):
-        """fimake5(idof_tab, nnode, phir, mass): node numbers with a gap; columns by the other form, nodes renumbered."""
+        """fimake5(idof_tab, nnode, phir, mass) and modall of the same arguments: node numbers with a gap; the numbers by
+        the other form, nodes renumbered."""
         write_input(self, "t", self.M, self.K, self.D, self.Phi, self.dof_map, self.xyz)
         numbers = np.array([3, 205, 17, 40, 8, 90])      # of the nodes 1 to 6
         idof = self.dof_map.astype(float)
         nodal = (idof[:, 1] >= 1) & (idof[:, 1] <= 6)
         idof[nodal, 0] = numbers[self.dof_map[nodal, 0].astype(int) - 1]
+        lone = [k for k in range(1, 7) if np.sum((self.dof_map[:, 0] == k) & (self.dof_map[:, 1] <= 3)) == 1]
+        self.assertTrue(lone)
+        kept = np.flatnonzero(~np.isin(self.dof_map[:, 0], lone))
         scipy.io.savemat(self.path("in.mat"), {
-            "M": self.M, "xyz": self.xyz, "idof_tab": idof, "dof_map": self.dof_map.astype(float),
+            "M": self.M, "K": self.K, "Phi": self.Phi, "xyz": self.xyz, "idof_tab": idof, "kept": kept + 1.0,
+            "dof_map": self.dof_map.astype(float),
             "phir": treeflx.rigid_modes(self.dof_map, self.xyz, (0.5, -0.25, 2.0))})
         folder = os.path.join(SOURCE, "data/matlab")
         self.write("main.m", f"addpath('{folder}'); load in.mat; fi = fimake5(idof_tab, 205, phir, M);\n"
-                             "F = fimake5(M, dof_map, xyz, [0.5 -0.25 2]); save -v7 out.mat fi F\n")
+                             "F = fimake5(M, dof_map, xyz, [0.5 -0.25 2]);\n"
+                             "try, modall(idof_tab, 205, phir, M, K, Phi, 2.5); what = ''; catch e, what = e.message; end\n"
+                             "idof_tab = idof_tab(kept, :); dof_map = dof_map(kept, :); phir = phir(kept, :);\n"
+                             "M = M(kept, kept); K = K(kept, kept); Phi = Phi(kept, :);\n"
+                             "a = modall(idof_tab, 205, phir, M, K, Phi, 2.5);\n"
+                             "b = modall(M, K, Phi, dof_map, xyz, 2.5, [0.5 -0.25 2]);\n"
+                             "save -v7 out.mat fi F a b what\n")
         subprocess.run(["octave", "--no-gui", "--quiet", "main.m"], cwd=self.folder, check=True)
         found = scipy.io.loadmat(self.path("out.mat"))
         self.assert_equal(found["fi"], found["F"], "fimake5")
+        self.assertIn(f"node {min(numbers[np.array(lone) - 1])} has one translation", str(found["what"]))
+        for name in ["mass", "stiffness", "alpha", "gamma0", "gamma1", "gamma2", "gamma3", "gamma4"]:
+            self.assert_equal(found["a"][name][0, 0], found["b"][name][0, 0], name)
+        n = self.Phi.shape[1]
+        special = np.zeros((6, n, n + 1))
+        special[0, range(n), range(1, n + 1)] = 1
+        np.testing.assert_array_equal(found["a"]["special"][0, 0], special)
 
     def test_the_shipped_integrals_are_read_by_plain_read_statements(self):
         """READ(unit, *) of the report: each line begins with a value, and what stands behind the values is passed over."""
@@ -357,6 +375,11 @@ class Example(OracleTest):
 
     def run_example(self, *options):
         return self.bough("integrals", os.path.join(self.data, "test.inp"), os.path.join(self.data, "test.mat"), *options)
+
+    def test_the_shipped_flx_is_what_is_written(self):
+        self.run_example("-o", "test.FLX")
+        with open(self.path("test.FLX")) as written, open(os.path.join(self.data, "test.flx")) as shipped:
+            self.assertEqual(written.read(), shipped.read())
 
     def test_by_hand(self):
         result = self.run_example("-o", "test.FLX")

@@ -1,0 +1,90 @@
+"""Rotors of Friswell, Penny, Garvey & Lees, Dynamics of Rotating Machines (2010), 5.9: whirl frequencies at 0 and 4000 rpm.
+
+The shaft (CBEAM) on its bearings (CELAS2, CDAMP2) is a flexible body at rest; the discs turn on revolute hinges. The
+gyroscopic moments of the discs act, that of the thin shaft is left out: 0.08 % of a frequency at most.
+"""
+import math
+import os
+
+import h5py
+import numpy as np
+
+NUM_ELEMENTS, DENSITY, E, G = 24, 7810.0, 2.11e11, 8.12e10
+LENGTH, DIAMETER, WIDTH = 1.5, 0.05, 0.07
+BOOK = "Friswell et al. 2010, {}"
+# Case: bearings (place, k_y, k_z, c), discs (place, outer diameter), [rad/s] printed at 0 and 4000 rpm; None: not printed.
+CASES = {
+    "5.9.1, equal bearings": (((0, 1e6, 1e6, 0), (1.5, 1e6, 1e6, 0)), ((0.5, 0.28), (1.0, 0.35)),
+                              [86.66, None, 274.31, None, 716.78], [85.39, 87.80, 251.78, 294.71, 600.18]),
+    "5.9.2, unequal bearings": (((0, 1e6, 0.8e6, 0), (1.5, 1e6, 0.8e6, 0)), ((0.5, 0.28), (1.0, 0.35)),
+                                [82.65, 86.66, 254.52, 274.31, 679.49], [82.33, 86.86, 239.64, 287.25, 583.49]),
+    "5.9.9, overhung": (((0, 1e7, 1e7, 0), (1.0, 1e7, 1e7, 0)), ((1.5, 0.35),),
+                        [90.14, None, 630.73, None, 830.43], [76.19, 103.91, 565.99, None, 647.75, 1174.2]),
+    "5.9.5, damped bearings": (((0, 1e6, 1e6, 3e3), (1.5, 1e6, 1e6, 3e3)), ((0.5, 0.28), (1.0, 0.35)),
+                               [2 * math.pi * 13.89, None, 2 * math.pi * 46.54, None, 2 * math.pi * 103.22],
+                               [2 * math.pi * f for f in (13.68, 14.07, 41.98, 50.65, 104.25)]),
+}
+
+
+def find_grid(place):
+    return 1 + round(place / LENGTH * NUM_ELEMENTS)
+
+
+def write_shaft(folder, bearings, discs):
+    """Bending alone: axial motion and torsion are fixed at every grid."""
+    area, inertia = math.pi * DIAMETER**2 / 4, math.pi * DIAMETER**4 / 64
+    nu = E / (2 * G) - 1
+    kappa = 6 * (1 + nu) / (7 + 6 * nu)   # Cowper 1966, circular section
+    number = lambda x: f"{x:.10e}"
+    lines = ["SOL 103", "CEND", "SPC = 1", "METHOD = 1", "BEGIN BULK", "PARAM,COUPMASS,1", "EIGRL,1,,,20",
+             f"SPC1,1,14,1,THRU,{NUM_ELEMENTS + 1}",
+             f"PBEAM,1,1,{number(area)},{number(inertia)},{number(inertia)},,{number(2 * inertia)}", ",", ",YES,1.", ",",
+             f",{number(kappa)},{number(kappa)}",
+             f"MAT1,1,{number(E)},{number(G)},,{number(DENSITY)}"]
+    for i in range(NUM_ELEMENTS + 1):
+        lines.append(f"GRID,{i + 1},,{number(i * LENGTH / NUM_ELEMENTS)},0.,0.")
+        if i < NUM_ELEMENTS:
+            lines.append(f"CBEAM,{i + 1},1,{i + 1},{i + 2},0.,1.,0.")
+    for j, (place, k_y, k_z, c) in enumerate(bearings):
+        for component, k in ((2, k_y), (3, k_z)):
+            lines.append(f"CELAS2,{100 + 10 * j + component},{number(k)},{find_grid(place)},{component}")
+            if c > 0:
+                lines.append(f"CDAMP2,{200 + 10 * j + component},{number(c)},{find_grid(place)},{component}")
+    with open(os.path.join(folder, "shaft.bdf"), "w") as f:
+        f.write("\n".join(lines + ["ENDDATA", ""]))
+    with open(os.path.join(folder, "shaft.toml"), "w") as f:
+        f.write(f'[body]\nname = "shaft"\ndeck = "shaft.bdf"\nframe = "fixed"\ninterface = '
+                f'{sorted({find_grid(place) for place, *_ in (*bearings, *discs)})}\n[body.modes]\nbasis = "craig-bampton"\nnumber = 12\n'
+                '[body.output]\nfile = "shaft.h5"\n')
+
+
+def write_system(folder, discs, rate):
+    text = ('[[body]]\nname = "shaft"\nfile = "shaft.h5"\n[[hinge]]\nname = "frame"\ntype = "fixed"\nchild = "shaft"\n'
+            f'[[function]]\nname = "angle"\ntype = "ramp"\nvalue = {rate!r}\nfrom = 0\nto = 1\n'
+            '[simulation]\nduration = 0.5\noutput_step = 0.001\n')
+    for number, (place, outer) in enumerate(discs):
+        mass = DENSITY * math.pi * (outer**2 - DIAMETER**2) / 4 * WIDTH
+        polar = mass * (outer**2 + DIAMETER**2) / 8
+        across = polar / 2 + mass * WIDTH**2 / 12
+        text += (f'[[body]]\nname = "disc{number}"\nmass = {mass!r}\ncg = [0, 0, 0]\n'
+                 f'inertia = [{polar!r}, {across!r}, {across!r}]\n[[hinge]]\nname = "spin{number}"\ntype = "revolute"\n'
+                 f'parent = "shaft"\nparent_node = {find_grid(place)}\nchild = "disc{number}"\naxis = [1, 0, 0]\nmotion = "angle"\n')
+    with open(os.path.join(folder, "rotor.toml"), "w") as f:
+        f.write(text)
+
+
+def verify(bough, folder, add):
+    for case, (bearings, discs, *printed) in CASES.items():
+        write_shaft(folder, bearings, discs)
+        bough(folder, "reduce", "shaft.toml")
+        for rpm, targets in zip((0, 4000), printed):
+            write_system(folder, discs, rpm * math.pi / 30)
+            bough(folder, "linearize", "rotor.toml", "--at", 0.1, "-o", "rotor.h5")
+            with h5py.File(os.path.join(folder, "rotor.h5")) as f:
+                imaginary = f["/poles/imag"][:]
+            found = np.sort(imaginary[imaginary > 1])
+            for k, target in enumerate(targets):
+                if target:
+                    # A mesh of six elements gives the book's 648.55 rad/s at 0 rpm with damped bearings, 24 give 649.47.
+                    add(f"rotor, {case}", f"whirl {k + 1} at {rpm} rpm [rad/s]", found[k], target,
+                        3e-3 if "damped" in case else 1e-3, BOOK.format(case.split(",")[0]))
