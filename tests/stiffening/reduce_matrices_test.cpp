@@ -351,7 +351,7 @@ TEST(ReduceMatrices, CondensedFreeBodiesAreFreeInEveryFrameAndBasis) {
   }
 }
 
-// The same matrices as DMIG cards of ten digits, selected by K2GG and M2GG in the deck itself.
+// DMIG cards of ten digits with these matrices, selected by K2GG and M2GG in the deck itself.
 TEST(ReduceMatrices, CondensedFreeBodiesAreFreeAsDirectMatricesOfTheDeck) {
   const Condensed tube(60);
   const VectorXd lambda = tube.calc_eigenvalues();
