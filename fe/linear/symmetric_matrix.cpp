@@ -68,11 +68,51 @@ SymmetricMatrix::SymmetricMatrix(PetscMat sparse, LowRankPart part) : sparse_(st
   low_rank_ = std::make_shared<const LowRankPart>(std::move(part));
 }
 
+namespace {
+
+using SparseRows = Eigen::SparseMatrix<double, Eigen::RowMajor>;
+
+/// Rows [first, last) of A.
+Csr copy_rows(const SparseRows& A, int first, int last) {
+  Eigen::Index size = 0;
+  for (int row = first; row < last; ++row) size += A.row(row).nonZeros();
+  Csr rows = make_csr(static_cast<std::size_t>(last - first), static_cast<std::size_t>(size));
+  int at = 0;
+  for (int row = first; row < last; ++row) {
+    rows.start[row - first] = at;
+    for (SparseRows::InnerIterator it(A, row); it; ++it, ++at) {
+      rows.columns[at] = static_cast<int>(it.col());
+      rows.values[at] = it.value();
+    }
+  }
+  rows.start[last - first] = at;
+  return rows;
+}
+
+/// The first row of this rank, and the end.
+std::pair<int, int> split_rows(int size) {
+  const MpiWorld world = initialize_petsc();
+  PetscInt own = PETSC_DECIDE, all = size, last = 0;
+  if (world.size == 1) return {0, size};
+  check_petsc(PetscSplitOwnership(PETSC_COMM_WORLD, &own, &all));
+  MPI_Scan(&own, &last, 1, MPIU_INT, MPI_SUM, PETSC_COMM_WORLD);
+  return {last - own, last};
+}
+
+SymmetricMatrix make_from(const SparseRows& A) {
+  const auto [first, last] = split_rows(static_cast<int>(A.rows()));
+  return SymmetricMatrix(copy_rows(A, first, last), first, static_cast<int>(A.rows()));
+}
+
+}  // namespace
+
+SymmetricMatrix::SymmetricMatrix(const SparseRows& A) : SymmetricMatrix(make_from(A)) {}
+
 SymmetricMatrix::SymmetricMatrix(Csr rows, int first, int size) : sparse_(std::make_shared<Sparse>()) {
   auto groups = std::make_shared<const std::vector<int>>(std::move(rows.groups));
   if (initialize_petsc().size == 1) {
     sparse_->storage.push_back(std::move(rows));
-    sparse_->row_order.groups = std::move(groups);  // on several processes MUMPS orders
+    if (!groups->empty()) sparse_->row_order.groups = std::move(groups);  // on several processes MUMPS orders
   } else {
     sparse_->storage = split_columns(rows, first);
     rows = {};

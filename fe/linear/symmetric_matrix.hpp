@@ -29,6 +29,8 @@ class SymmetricMatrix {
   SymmetricMatrix() = default;
   /// A_0 (MATAIJ, both triangles) and U W Uᵀ.
   explicit SymmetricMatrix(PetscMat sparse, LowRankPart part = {});
+  /// A_0 as every rank has it whole, both triangles. Collective.
+  explicit SymmetricMatrix(const Eigen::SparseMatrix<double, Eigen::RowMajor>& A);
   /// A_0 on arrays of ours. On several ranks `rows` are those of this one, from row `first` on, of `size` on all.
   /// Collective.
   explicit SymmetricMatrix(Csr rows, int first, int size);
