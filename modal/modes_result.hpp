@@ -11,7 +11,7 @@ struct ModesExtras {
   const records::Deck* energies_of = nullptr;  ///< energies of the elements, whose properties this deck names
   int about_grid = 0;  ///< effective masses about this grid; InputError modal.unknown-grid where the model has it not
   const records::MassProperties* mass = nullptr;  ///< about the origin, where the caller has them
-  bool has_shapes = true;  ///< the shapes and what is drawn; else the record has neither
+  bool has_shapes = true;                         ///< the shapes and what is drawn; else the record has neither
 };
 
 /// What is below zero first (fe.preload-tips), then as found: the order of the record.

@@ -35,7 +35,7 @@ BodyModel augment(const BodyRequest& request, const BodyModel& plain) {
   result.options = plain.options;
   result.model = std::make_unique<const fe::Model>(
       fe::build_model(request.deck, plain.options,
-                       add_masses(request.make_factory(), request.spec.augments, plain.model->wtmass()), repeated));
+                      add_masses(request.make_factory(), request.spec.augments, plain.model->wtmass()), repeated));
   result.system = std::make_unique<const fe::System>(*result.model);
   return result;
 }

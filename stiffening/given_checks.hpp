@@ -12,8 +12,8 @@ std::string describe_dof(const Eigen::MatrixXi& dof_map, Eigen::Index gdof);
 /// Reports "reduce.not-symmetric": entries apart by more than the digits of a file and roundoff.
 void check_symmetry(const GivenMatrix& given, Diagnostics& diagnostics);
 
-/// No negative entry on the diagonal, and one mass in all rigid-body motions: Φ_RᵀMΦ_R = [m 1, -m c̃; m c̃, J]. M: on the
-/// g-set, from `given`. Reports "reduce.negative-mass", "reduce.not-rigid-mass".
+/// No negative entry on the diagonal, and one mass in all rigid-body motions: Φ_RᵀMΦ_R = [m 1, -m c̃; m c̃, J]. M: on
+/// the g-set, from `given`. Reports "reduce.negative-mass", "reduce.not-rigid-mass".
 void check_mass(const SparseRows& M, const GivenMatrix& given, const PointTable& points, Diagnostics& diagnostics);
 
 /// λ of the file against the Rayleigh quotient of Phi (num_gdofs x modes) under K and M: units, dofs and axes that do

@@ -84,9 +84,10 @@ void restore_rigid_motions(const Deck& deck, GivenModel& given, Diagnostics& dia
   }
   if (!check.is_free) return;
   given.K = check.K;
-  diagnostics.note("reduce.rigid-roundoff", K.at,
-                   K.label + " strains in rigid-body motions by round-off: " + describe(check) + "; they are taken as rigid",
-                   "nothing to do; use frame = \"fixed\" if the body is held by springs as soft as these");
+  diagnostics.note(
+      "reduce.rigid-roundoff", K.at,
+      K.label + " strains in rigid-body motions by round-off: " + describe(check) + "; they are taken as rigid",
+      "nothing to do; use frame = \"fixed\" if the body is held by springs as soft as these");
 }
 
 /// M gives one set of momentum integrals, under the name of its kind.

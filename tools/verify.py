@@ -230,7 +230,8 @@ Written by `./dev docs` (`tools/verify.py`) from runs of the program on data/dec
 A row passes when the error is within what is allowed; a reference of 0 with a bound says that the number must stay
 below it.
 
-Version and machine of this table: {versions}; {machine}.
+Version of this table: {versions}.
+Machine: {machine}.
 
 Deviations known and left: FV2 modes 2, 3, 10 and 11 are a little below the clamped-pinned beam, since the arms also
 stretch there. FV4's targets have the rotary inertia of the section, as CBEAM has. FV5 takes the polar moment of area as

@@ -59,7 +59,12 @@ template <int W>
 BOUGH_INLINE void add_tall(const Block& A, const Block& B, Eigen::Ref<Eigen::MatrixXd>& C) {
   constexpr Index kRows = 2048;
   for (Index first = 0; first < C.rows(); first += kRows) {
-    Strip s{A.data() + first,  B.data(), C.data() + first, A.outerStride(), B.outerStride(), C.outerStride(),
+    Strip s{A.data() + first,
+            B.data(),
+            C.data() + first,
+            A.outerStride(),
+            B.outerStride(),
+            C.outerStride(),
             std::min(kRows, C.rows() - first)};
     Index k = 0;
     for (; k + 4 <= A.cols(); k += 4, s.A += 4 * s.lda, s.B += 4) add_strip<W, 4>(s, C.cols());

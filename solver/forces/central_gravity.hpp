@@ -3,9 +3,9 @@
 ///
 /// With R the centre of mass of a body from the centre of the field, P = ∫ρ x xᵀ about the centre of mass, n = R/|R|:
 ///     V = -μ m/R - μ/(2R³) (3 nᵀPn - tr P) + μ m J2 a²/(2R³) (3 (n·k)² - 1)
-/// All loads are the gradient of V: the force at the centre of mass, the torque 3μ/R³ n × Jn and the modal forces, by S(η)
-/// and P(η) to second order in η as in M(η). V depends on neither the origin nor the axes of B. Not in V: third moments
-/// of mass and the gradient of the J2 term.
+/// All loads are the gradient of V: the force at the centre of mass, the torque 3μ/R³ n × Jn and the modal forces, by
+/// S(η) and P(η) to second order in η as in M(η). V depends on neither the origin nor the axes of B. Not in V: third
+/// moments of mass and the gradient of the J2 term.
 #include "solver/forces/element.hpp"
 
 namespace bough::solver {

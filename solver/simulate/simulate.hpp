@@ -42,8 +42,8 @@ void check_start(const System& system, const records::SystemSpec& spec, Diagnost
 
 /// Integrates spec.simulation and streams samples. A run that diverges (non-finite state, or past the limit) ends the
 /// sink with the samples so far and throws ComputationError("run.diverged") with the time and the body. An energy error
-/// above energy_error_limit is an error in `diagnostics` ("run.energy-error"), one past a hundredth of the limit a warning
-/// ("run.energy-drift"): the samples are written all the same.
+/// above energy_error_limit is an error in `diagnostics` ("run.energy-error"), one past a hundredth of the limit a
+/// warning ("run.energy-drift"): the samples are written all the same.
 SimulateOutcome simulate(const System& system, const records::SystemSpec& spec, records::ResultSink& sink,
                          const SimulateOptions& options, Diagnostics& diagnostics);
 

@@ -25,7 +25,7 @@ struct ConstraintState {
 struct DiscreteState {
   std::vector<HingeMode> mode;               ///< num_u, by row of u; modal rows are Free
   std::vector<ConstraintState> constraints;  ///< one per constraint; empty: as they were
-  VectorXd memory;  ///< discrete state of controllers, sensors and actuators
+  VectorXd memory;                           ///< discrete state of controllers, sensors and actuators
 };
 
 /// Rows of the continuous state x = [q; u; z; work; dissipated].

@@ -109,8 +109,8 @@ bool has_modes(const SystemData& data, const DiscreteState& discrete);
 
 /// Applies a jump of prescribed rates at t: from the rates before (functions at `before`, the modes so far) to those
 /// at t (under `modes`; unchanged modes for nullptr). Rates of free coordinates jump by the impulse; their
-/// momenta are conserved. `work` grows by the work of the impulse. u: in and out. Describes each jump in `events`; false
-/// when there is none. Positions do not jump. Allocates.
+/// momenta are conserved. `work` grows by the work of the impulse. u: in and out. Describes each jump in `events`;
+/// false when there is none. Positions do not jump. Allocates.
 bool cross_jump(const System& system, SystemData& data, double before, double t, const DiscreteState* modes,
                 const Eigen::Ref<const VectorXd>& q, Eigen::Ref<VectorXd> u, double& work,
                 std::vector<std::string>& events);

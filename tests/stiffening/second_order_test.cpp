@@ -6,10 +6,10 @@
 
 #include "base/rotation.hpp"
 #include "fe/linear/factor.hpp"
-#include "fe/statics/statics.hpp"
 #include "fe/loads/loads.hpp"
 #include "fe/loads/second_order.hpp"
 #include "fe/statics/build_model.hpp"
+#include "fe/statics/statics.hpp"
 #include "stiffening/reduce.hpp"
 #include "tests/stiffening/all_kinds.hpp"
 

@@ -1,7 +1,7 @@
 #pragma once
-/// \file Dimension scales of HDF5 ("HDF5 Dimension Scale Specification", The HDF Group, 2005): coordinates of the rows
-/// of an array, for programs that read them (h5py's `dims`, netCDF, xarray). The H5DS functions of the library write the
-/// list of users again for each user, which is O(n²) for n channels; here all users are known beforehand.
+/// \file Dimension scales of HDF5 ("HDF5 Dimension Scale Specification", The HDF Group, 2005): coordinates of the
+/// rows of an array, for programs that read them (h5py's `dims`, netCDF, xarray). The H5DS functions of the library
+/// write the list of users again for each user, which is O(n²) for n channels; here all users are known beforehand.
 #include <string>
 #include <vector>
 

@@ -1,6 +1,6 @@
 // Nastran OUTPUT4 of every flavour: written and read back, and read by tests/oracle/op4_reader.py.
-#include "formats/matrices/detail/op4_header.hpp"
 #include "formats/matrices/op4.hpp"
+#include "formats/matrices/detail/op4_header.hpp"
 
 #include <cmath>
 #include <fstream>
