@@ -7,18 +7,21 @@
 #include "cli/common/console.hpp"
 #include "cli/export/export_matrices.hpp"
 #include "formats/records/signal_name.hpp"
+#include "formats/records/unit_labels.hpp"
 
 namespace bough::cli {
 
 namespace {
 void add_columns(const std::string& path, const Eigen::MatrixXd& values, const std::string& description,
-                 const std::string& component, const std::string& file, std::vector<exports::CsvColumn>& columns) {
+                 const std::string& unit, const std::string& component, const std::string& file,
+                 std::vector<exports::CsvColumn>& columns) {
   const auto names = records::get_component_names(path, static_cast<int>(values.cols()), description);
   bool found = false;
   for (int c = 0; c < values.cols(); ++c) {
     if (!component.empty() && component != names[c] && component != std::to_string(c + 1)) continue;
     found = true;
-    columns.push_back({path.substr(1) + (names[c].empty() ? "" : ":" + names[c]), values.col(c)});
+    columns.push_back({path.substr(1) + (names[c].empty() ? "" : ":" + names[c]), values.col(c),
+                       records::pick_unit(unit, c, static_cast<int>(values.cols()))});
   }
   if (!found) {
     std::string list;
@@ -45,6 +48,21 @@ void warn_incomplete(const std::string& file, Diagnostics& diagnostics) {
                       state.is_written ? "do this again when it is through" : "bough run --resume continues it");
 }
 
+std::string get_unit(const hdf5::ResultsFile& results, const std::string& path) {
+  const auto find = [&](const std::map<std::string, std::string>& texts) {
+    const auto found = texts.find(path);
+    return found == texts.end() ? std::string() : found->second;
+  };
+  const auto unit = find(results.units);
+  if (!unit.empty() || has_unit_labels(results)) return unit;
+  const auto dims = find(results.dims);
+  return dims == "1" ? "" : dims;
+}
+
+bool has_unit_labels(const hdf5::ResultsFile& results) {
+  return std::any_of(results.units.begin(), results.units.end(), [](const auto& unit) { return !unit.second.empty(); });
+}
+
 std::vector<exports::CsvColumn> choose_columns(const hdf5::ResultsFile& results, const std::string& file,
                                                const std::string& choice) {
   std::string name = choice, component;
@@ -64,8 +82,8 @@ std::vector<exports::CsvColumn> choose_columns(const hdf5::ResultsFile& results,
   for (const auto& [channel, values] : results.channels) {
     if (channel == path || channel.starts_with(path + "/")) {
       const auto described = results.descriptions.find(channel);
-      add_columns(channel, values, described == results.descriptions.end() ? "" : described->second, component, file,
-                  columns);
+      add_columns(channel, values, described == results.descriptions.end() ? "" : described->second,
+                  get_unit(results, channel), component, file, columns);
     }
   }
   if (columns.empty()) {

@@ -16,6 +16,12 @@ std::vector<std::string> get_component_names(const std::string& path, int size);
 /// nothing for a file of another kind.
 void warn_incomplete(const std::string& file, Diagnostics& diagnostics);
 
+/// Unit of a channel (or of /time) in the labels of [units]; without any label its dimensions, none for "1". Of
+/// components that differ a list.
+std::string get_unit(const hdf5::ResultsFile& results, const std::string& path);
+/// Returns true if the run had [units].
+bool has_unit_labels(const hdf5::ResultsFile& results);
+
 /// Columns for `choice`: an existing path, unchanged; else a path, a folder ("/bodies/boom") or the name of a
 /// sensor, with an optional ":component". Column names read "sensors/tip_deflection:y". Throws
 /// InputError("cli.unknown-channel") with the nearest match.

@@ -109,7 +109,13 @@ void convert_toml(const ConvertOptions& o, const records::UnitChange& change, co
       [&](const std::string& body, const std::string& locator) { return files.find_direction(body, locator); },
       [&](const std::string& body, int element) { return files.find_components(body, element); }};
   int num_changed = 0;
-  const auto changed = toml_files::change_units(text, o.file, change, o.to_radians, facts, diagnostics, num_changed);
+  records::UnitLabels labels;
+  if (!o.units.empty() || !o.to.empty()) {
+    const auto names_of = name_units(o.units.empty() ? o.to : split_units(o.units).second);
+    labels = {names_of.length, names_of.mass, names_of.time, names_of.force};
+  }
+  const auto changed =
+      toml_files::change_units(text, o.file, change, o.to_radians, facts, labels, diagnostics, num_changed);
   diagnostics.throw_if_errors();
   console.print(diagnostics);
   write_text_file(o.output, changed);

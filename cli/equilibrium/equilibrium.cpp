@@ -17,6 +17,7 @@
 #include "formats/hdf5/files.hpp"
 #include "formats/toml/specs.hpp"
 #include "solver/linear/linearize.hpp"
+#include "solver/simulate/channel_units.hpp"
 #include "solver/simulate/outputs.hpp"
 
 namespace bough::cli {
@@ -38,6 +39,7 @@ void write_equilibrium(const LoadedSystem& loaded, solver::Plant& plant, const s
   records::ResultsHeader header;
   header.system_text = loaded.spec.text;
   header.channels = recorder.channels();
+  solver::label_channels(loaded.system, loaded.spec, header.channels);
   header.max_samples = 1;
   header.settings = {{"equilibrium_residual", fmt::format("{:.17g}", found.residual)}};
   const auto writer = hdf5::make_results_writer(path);

@@ -61,6 +61,9 @@ std::vector<exports::CsvColumn> read_columns(const ExportOptions& o) {
   for (const auto& choice : o.channels) {
     for (auto& column : choose_columns(results, o.file, choice)) columns.push_back(std::move(column));
   }
+  columns.front().unit = get_unit(results, "/time");
+  if (!has_unit_labels(results))
+    for (auto& column : columns) column.unit.clear();
   return columns;
 }
 

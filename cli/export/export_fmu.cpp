@@ -29,6 +29,7 @@
 #include "formats/toml/system_editor.hpp"
 #include "solver/builder/signal_units.hpp"
 #include "solver/control/hosted.hpp"
+#include "solver/simulate/channel_units.hpp"
 #include "solver/tree/coordinates.hpp"
 
 namespace bough::cli {
@@ -266,41 +267,6 @@ std::vector<fmu::Variable> choose_outputs(const embed::Model& model, const std::
   return outputs;
 }
 
-/// Returns true if a dimension 1 or 1/T^n of this output is an angle or a derivative of one.
-bool is_angle(const embed::LoadedSystem& loaded, const embed::Port& output) {
-  using T = records::SensorType;
-  const auto has_angles = [&](const std::string& hinge) {  // not the components of a quaternion
-    const int b = loaded.system.find_hinge(hinge);
-    return b >= 0 && loaded.system.num_hinge_q(b) == loaded.system.num_hinge_rates(b);
-  };
-  const auto& path = output.channel;
-  const std::string kind = path.substr(0, path.find('/', 1)), name = path.substr(path.find('/', 1) + 1);
-  if (kind == "/bodies") return name.ends_with("/angular_velocity");
-  if (kind == "/hinges")
-    return name.ends_with("/qdot") || (name.ends_with("/q") && has_angles(name.substr(0, name.rfind('/'))));
-  if (kind != "/sensors") return false;
-  const auto& sensors = loaded.spec.sensors;
-  const auto sensor = std::find_if(sensors.begin(), sensors.end(), [&](const auto& s) { return s.name == name; });
-  if (sensor == sensors.end()) return false;
-  switch (sensor->type) {
-    case T::HingeAngle:
-      return has_angles(sensor->hinge);
-    case T::Rotation:
-    case T::AngularVelocity:
-    case T::AngularAcceleration:
-    case T::HingeRate:
-    case T::Euler:
-    case T::Gyro:
-    case T::IntegratingGyro:
-    case T::Resolver:
-    case T::Tachometer:
-    case T::Horizon:
-      return true;
-    default:
-      return false;
-  }
-}
-
 /// Dimensions of a state, and whether "1" and "1/T" in them are those of an angle; of modes and blocks empty.
 std::pair<std::string, bool> find_state_dims(const solver::System& system, int row) {
   const auto layout = system.layout();
@@ -327,7 +293,8 @@ void set_units(const embed::Model& model, const std::string& text, fmu::ModelDes
     d.inputs[i].unit = units.add((*model.list(BOUGH_INPUTS))[i].dims, false);
   for (auto& output : d.outputs) {
     const auto& port = ports[output.reference & fmi::kMaxIndex];
-    output.unit = units.add(port.dims, port.dims.starts_with('1') && is_angle(model.loaded(), port));
+    output.unit = units.add(port.dims, port.dims.starts_with('1') &&
+                                           solver::is_angle(model.loaded().system, model.loaded().spec, port.channel));
   }
   for (std::size_t i = 0; i < d.states.size(); ++i) {
     const auto [dims, has_angle] = find_state_dims(model.loaded().system, static_cast<int>(i));

@@ -16,7 +16,8 @@ std::string write_csv_field(const std::string& name) {
 void write_csv(std::ostream& out, const std::vector<CsvColumn>& columns) {
   for (std::size_t i = 0; i < columns.size(); ++i) {
     BOUGH_DEMAND(columns[i].values.size() == columns[0].values.size());
-    out << (i > 0 ? "," : "") << write_csv_field(columns[i].name);
+    out << (i > 0 ? "," : "")
+        << write_csv_field(columns[i].unit.empty() ? columns[i].name : columns[i].name + " [" + columns[i].unit + "]");
   }
   out << '\n';
   std::string row;

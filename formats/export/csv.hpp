@@ -11,6 +11,7 @@ namespace bough::exports {
 struct CsvColumn {
   std::string name;
   Eigen::VectorXd values;
+  std::string unit{};  ///< follows the name in brackets: "time [s]"
 };
 /// Quoted when it needs to be (RFC 4180).
 std::string write_csv_field(const std::string& name);

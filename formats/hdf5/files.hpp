@@ -64,6 +64,7 @@ struct ResultsFile {
   Eigen::VectorXd time;
   std::map<std::string, Eigen::MatrixXd> channels;  ///< path -> nt x size
   std::map<std::string, std::string> descriptions;
+  std::map<std::string, std::string> dims, units;  ///< by path, /time too; units are empty without [units]
   std::vector<records::EventRecord> events;
   std::string system_text;
   bool completed = false;

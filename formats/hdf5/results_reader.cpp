@@ -61,6 +61,8 @@ ResultsFile read_once(const std::string& path) {
     const auto nt = static_cast<Eigen::Index>(array.shape[0]);
     const auto size = is_vector ? 1 : static_cast<Eigen::Index>(array.shape[1]);
     results.descriptions[name] = file.read_attribute(name, "description");
+    results.dims[name] = file.read_attribute(name, "dims");
+    results.units[name] = file.read_attribute(name, "units");
     if (name != "/time") results.channels[name] = Eigen::Map<const RowMajor>(array.data.data(), nt, size);
     rows = std::min(rows, nt);
   }

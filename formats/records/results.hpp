@@ -13,6 +13,7 @@ struct Channel {
   int size = 1;
   std::string description;  ///< with its frame
   std::string dims;         ///< "L", "L/T", "1", ...
+  std::string units{};      ///< the same in the labels of [units]: "m/s"; empty: not given
 };
 
 struct ResultsHeader {

@@ -15,6 +15,7 @@
 #include "formats/records/flex_body.hpp"
 #include "formats/records/force_spec.hpp"
 #include "formats/records/function_spec.hpp"
+#include "formats/records/unit_labels.hpp"
 
 namespace bough::records {
 
@@ -171,6 +172,7 @@ struct SimulationRecord {
 struct SystemSpec {
   std::string file, text;  ///< the TOML file and its text, stored in the results
   std::string name;
+  UnitLabels units;                                        ///< [units]
   std::vector<std::pair<std::string, double>> parameters;  ///< [parameters]; their numbers stand where they are named
   std::vector<BodyRecord> bodies;
   std::vector<HingeRecord> hinges;

@@ -223,6 +223,9 @@ records::SystemSpec read_system_spec_text(const std::string& text, const std::st
 
   const Fields fields(root, path);
   spec.name = fields.get_string("name", get_stem(path));
+  const Fields units = fields.get_table("units");
+  spec.units = {units.get_string("length"), units.get_string("mass"), units.get_string("time"),
+                units.get_string("force")};
   if (const Value* parameters = fields.find("parameters"))
     for (const auto& entry : parameters->entries)
       if (entry.value.is_number()) spec.parameters.emplace_back(entry.key, entry.value.number);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "formats/toml/detail/unit_walk.hpp"
+#include "formats/toml/key_editor.hpp"
 
 namespace bough::toml_files {
 
@@ -206,7 +207,8 @@ void change_body_file(const toml::table& body, UnitEdits& edits, const records::
 }  // namespace
 
 std::string change_units(const std::string& text, const std::string& file, const records::UnitChange& change,
-                         bool to_radians, const BodyFacts& facts, Diagnostics& diagnostics, int& num_changed) {
+                         bool to_radians, const BodyFacts& facts, const records::UnitLabels& labels,
+                         Diagnostics& diagnostics, int& num_changed) {
   toml::table root;
   try {
     root = toml::parse(std::string_view(text));
@@ -223,6 +225,10 @@ std::string change_units(const std::string& text, const std::string& file, const
     change_system(root, edits, change, to_radians, facts, file, diagnostics);
   }
   std::string changed = edits.apply(root);
+  for (const auto& [key, label] : {std::pair("length", &labels.length), std::pair("mass", &labels.mass),
+                                   std::pair("time", &labels.time), std::pair("force", &labels.force)})
+    if (!labels.empty() && root["units"][key].is_string())
+      set_key(changed, std::string("units.") + key, quote_text(*label));
   num_changed = edits.count();
   return changed;
 }

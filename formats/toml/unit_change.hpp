@@ -6,6 +6,7 @@
 
 #include "base/diagnostic.hpp"
 #include "formats/records/flex_body_units.hpp"
+#include "formats/records/unit_labels.hpp"
 
 namespace bough::toml_files {
 
@@ -19,8 +20,9 @@ struct BodyFacts {
 
 /// The text in other units; with `to_radians` the keys with _deg become radians. What cannot be converted is an error
 /// at its line (toml.unit-parameter, -file, -signal, -use, -locator): then the text is not to be used. `num_changed`
-/// counts values.
+/// counts values. [units] of a system file get `labels`, unless these are empty.
 std::string change_units(const std::string& text, const std::string& file, const records::UnitChange& change,
-                         bool to_radians, const BodyFacts& facts, Diagnostics& diagnostics, int& num_changed);
+                         bool to_radians, const BodyFacts& facts, const records::UnitLabels& labels,
+                         Diagnostics& diagnostics, int& num_changed);
 
 }  // namespace bough::toml_files

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "solver/simulate/channel_units.hpp"
 #include "solver/system/system.hpp"
 #include "solver/tree/gimbal_lock.hpp"
 
@@ -43,11 +44,13 @@ long calc_max_samples(const records::SimulationRecord& s, const RunPlan& plan, l
   return static_cast<long>(std::min(all, std::floor(window + 1e-6) + 3));
 }
 
-records::ResultsHeader make_header(const records::SystemSpec& spec, const RunSetup& setup, long num_outputs) {
+records::ResultsHeader make_header(const System& system, const records::SystemSpec& spec, const RunSetup& setup,
+                                   long num_outputs) {
   const auto& s = spec.simulation;
   records::ResultsHeader header;
   header.system_text = spec.text;
   header.channels = setup.recorder.chosen_channels();
+  label_channels(system, spec, header.channels);
   header.max_samples = calc_max_samples(s, setup.plan, num_outputs);
   header.settings = {{"integrator", setup.integrator},
                      {"start", text_of(s.start)},
@@ -275,7 +278,7 @@ void Run::begin() {
   time_ = time_events_.start();
   const double t = time_;
   if (options_.resume) check_resume();
-  sink_.begin(make_header(spec_, setup_, time_events_.num_outputs()));
+  sink_.begin(make_header(ode_.system(), spec_, setup_, time_events_.num_outputs()));
   // "start": what controllers start from, of a state that was found; the run begins there as any.
   const bool goes_on = options_.resume && !options_.resume->find("start");
   if (options_.resume && !goes_on) {

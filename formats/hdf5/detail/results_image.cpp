@@ -126,7 +126,9 @@ ResultsImage::ResultsImage(const ResultsOrigin& origin, const RowGroups& groups,
   for (const auto& [name, hash] : header.source) heap_.add(name), heap_.add(hash);
   for (const auto& [name, value] : header.settings) heap_.add(value);
   for (const auto& [time, text] : origin.resumed) heap_.add(text);
-  for (const auto& channel : header.channels) heap_.add(channel.description), heap_.add(channel.dims);
+  for (const auto& channel : header.channels)
+    for (const auto& text : {channel.description, channel.dims, channel.units})
+      if (!text.empty()) heap_.add(text);
   heap_.place(image_);
   extension_ = image_.place_header({{message::kBtreeK, encode_number(0, 1) + encode_number(groups_.max_groups, 2) +
                                                            encode_number(kGroupK, 2) + encode_number(kGroupLeafK, 2)}});
@@ -154,6 +156,7 @@ void ResultsImage::place_columns(const std::vector<records::Channel>& channels) 
                                   make_chunked(column.tree, chunk, sizeof(double)),
                                   make_text_attribute("description", heap_.encode(channel.description)),
                                   make_text_attribute("dims", heap_.encode(channel.dims))};
+    if (!channel.units.empty()) messages.push_back(make_text_attribute("units", heap_.encode(channel.units)));
     messages.insert(messages.end(), scale.begin(), scale.end());
     column.header = image_.place_header(messages);
     // The first block only, where the header goes on in another.
