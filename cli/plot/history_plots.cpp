@@ -9,6 +9,7 @@
 #include "cli/common/channels.hpp"
 #include "cli/common/options.hpp"
 #include "formats/hdf5/table_file.hpp"
+#include "formats/report/label.hpp"
 #include "formats/report/spectrum.hpp"
 
 namespace bough::cli {
@@ -35,12 +36,18 @@ void cut_to_window(report::Curve& curve, const VectorXd& time, const std::vector
 /// The time has a path in the file as channels have, but is none.
 bool is_time(const std::string& name) { return name == "/time" || name == "time"; }
 
-VectorXd read_abscissa(const hdf5::ResultsFile& results, const std::string& file, const std::string& name) {
-  if (is_time(name) && results.channels.count("/sensors/" + name) == 0) return results.time;
+/// The channel against which curves are drawn, with its label.
+VectorXd read_abscissa(const hdf5::ResultsFile& results, const std::string& file, const std::string& name,
+                       std::string& label) {
+  if (is_time(name) && results.channels.count("/sensors/" + name) == 0) {
+    label = report::make_label("time", get_unit(results, "/time"));
+    return results.time;
+  }
   const auto columns = choose_columns(results, file, name);
   if (columns.size() != 1)
     throw InputError("cli.one-channel", {file}, fmt::format("--x {} names {} curves", name, columns.size()),
                      "name one component, as " + columns.front().name);
+  label = report::make_label(name, columns.front().unit);
   return columns.front().values;
 }
 
@@ -100,6 +107,10 @@ void take_spectrum(report::Curve& curve, const CurveChoice& choice, Diagnostics&
   auto spectrum = choice.psd ? report::calc_psd(curve.y, step, choice.segment) : report::calc_amplitudes(curve.y, step);
   curve.x = std::move(spectrum.frequency);
   curve.y = std::move(spectrum.value);
+  if (choice.psd && !curve.unit.empty()) {
+    const bool is_product = curve.unit.find_first_of(" /^") != std::string::npos;
+    curve.unit = (is_product ? "(" + curve.unit + ")" : curve.unit) + "^2/Hz";
+  }
 }
 
 /// Values of "name" or "name:2" in the table of a campaign.
@@ -126,14 +137,15 @@ VectorXd find_outcome(const hdf5::OutcomeTable& table, const std::string& file, 
 report::Plot make_history_plot(const std::vector<std::string>& files, const std::vector<std::string>& sensors,
                                const CurveChoice& choice, Diagnostics& diagnostics) {
   report::Plot plot;
-  plot.x_label = is_time(choice.x) ? "" : choice.x;
   std::vector<report::Curve> first;
   for (std::size_t f = 0; f < files.size(); ++f) {
     const auto& file = files[f];
     demand_file(file);
     warn_incomplete(file, diagnostics);
     const auto results = hdf5::read_results(file);
-    const VectorXd x = choice.x.empty() ? results.time : read_abscissa(results, file, choice.x);
+    const VectorXd x = choice.x.empty() ? results.time : read_abscissa(results, file, choice.x, plot.x_label);
+    if (choice.x.empty()) plot.x_label = report::make_label("time", get_unit(results, "/time"));
+    if (choice.psd || choice.spectrum) plot.x_label = report::label_frequency(get_unit(results, "/time"));
     std::size_t number = 0;
     bool is_interpolated = false;
     for (const auto& sensor : sensors) {
@@ -142,6 +154,7 @@ report::Plot make_history_plot(const std::vector<std::string>& files, const std:
         std::string label = files.size() > 1 ? fs::path(file).stem().string() : "";
         if (files.size() == 1 || !one_curve_a_file) label += (label.empty() ? "" : " ") + column.name;
         report::Curve curve{label, x, std::move(column.values), false};
+        curve.unit = column.unit;
         if (!choice.window.empty()) cut_to_window(curve, results.time, choice.window);
         if (!choice.difference) {
           plot.curves.push_back(std::move(curve));
@@ -205,7 +218,8 @@ std::vector<report::Plot> shape_plots(std::vector<report::Plot> plots, const Cur
     for (auto& curve : plot.curves) {
       if (is_over_time && (choice.psd || choice.spectrum)) take_spectrum(curve, choice, diagnostics);
     }
-    if (is_over_time && (choice.psd || choice.spectrum)) plot.x_label = "frequency [1/T]";
+    if (is_over_time && (choice.psd || choice.spectrum) && !plot.x_label.starts_with("frequency"))
+      plot.x_label = report::label_frequency({});
     plot.has_log_x = plot.has_log_x || choice.log_x;
     plot.has_log_y = plot.has_log_y || (is_over_time && (choice.log_y || choice.psd));
   }

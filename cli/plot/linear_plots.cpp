@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <complex>
 #include <filesystem>
+#include <limits>
 #include <map>
 #include <numbers>
 
@@ -13,6 +13,7 @@
 #include "cli/linearize/linear_model_files.hpp"
 #include "formats/hdf5/linear_file.hpp"
 #include "formats/hdf5/sweep_file.hpp"
+#include "formats/report/bode_plot.hpp"
 #include "formats/report/pole_plot.hpp"
 #include "solver/statespace/frequency_response.hpp"
 
@@ -22,53 +23,31 @@ namespace {
 
 using Eigen::Index;
 using Eigen::VectorXd;
-using records::FrequencyResponse;
 using report::Plot;
 
 bool is_of_sweeps(const std::string& kind) { return kind == "campbell" || kind == "locus"; }
 
-struct Curves {
-  std::string name;
-  VectorXd decibel, degrees;
-};
-
-std::vector<Curves> make_curves(const FrequencyResponse& response, const std::string& prefix) {
-  std::vector<Curves> all;
-  const Index count = response.frequency_hz.size();
-  for (int j = 0; j < response.inputs.size(); ++j)
-    for (int i = 0; i < response.outputs.size(); ++i) {
-      Curves c{prefix + response.outputs.name[static_cast<std::size_t>(i)] + " / " +
-                   response.inputs.name[static_cast<std::size_t>(j)],
-               VectorXd(count), VectorXd(count)};
-      for (Index k = 0; k < count; ++k) {
-        const std::complex<double> h = response.value[static_cast<std::size_t>(k)](i, j);
-        c.decibel[k] = h == 0.0 ? std::nan("") : 20 * std::log10(std::abs(h));
-        double phase = h == 0.0 ? std::nan("") : std::arg(h) * 180 / std::numbers::pi;
-        if (k > 0 && std::isfinite(c.degrees[k - 1])) phase -= 360 * std::round((phase - c.degrees[k - 1]) / 360);
-        c.degrees[k] = phase;
-      }
-      all.push_back(std::move(c));
-    }
-  return all;
-}
-
-void add_response(const FrequencyResponse& response, const std::string& kind, const std::string& prefix,
+void add_response(const records::LinearModel& model, const std::string& kind, const std::string& prefix,
                   std::vector<Plot>& plots) {
+  const bool is_loop = records::is_cut_loop(model);
+  statespace::FrequencyRange range;
+  if (is_loop) range = statespace::widen_for_loop(model, range);
+  const auto response = statespace::calc_frequency_response(model, range);
   if (kind == "sigma") {
-    for (Index s = 0; s < response.singular_values.cols(); ++s) {
-      const VectorXd decibel = 20 * response.singular_values.col(s).array().max(1e-300).log10();
-      plots[0].curves.push_back({prefix + "sigma " + std::to_string(s + 1), response.frequency_hz, decibel});
-    }
+    auto plot = report::make_sigma_plot(response, prefix);
+    plot.curves.insert(plot.curves.begin(), plots[0].curves.begin(), plots[0].curves.end());
+    plots[0] = std::move(plot);
     return;
   }
-  for (const auto& c : make_curves(response, prefix)) {
-    if (kind == "nichols") {
-      plots[0].curves.push_back({c.name, c.degrees, c.decibel});
-      continue;
-    }
-    plots[0].curves.push_back({c.name, response.frequency_hz, c.decibel});
-    plots[1].curves.push_back({"", response.frequency_hz, c.degrees});
+  const auto pairs = report::make_bode_pairs(response, std::numeric_limits<std::size_t>::max());
+  for (const auto& pair : pairs) {
+    if (kind == "nichols")
+      plots[0].curves.push_back({prefix + pair.name, pair.degrees, pair.decibel});
+    else
+      report::add_bode_curve(pair, response.frequency_hz, prefix + pair.name, plots);
   }
+  if (is_loop && kind == "bode" && pairs.size() == 1)
+    report::add_margins(statespace::calc_margins(model, response), pairs.front(), response.frequency_hz, plots);
 }
 
 /// The branch of `among` whose conjugate b is wherever the two are complex; -1: none. They may part on the real axis.
@@ -101,6 +80,31 @@ Locus make_locus(const records::LinearSweep& sweep) {
       locus.y(k, b) = z.imag();
     }
   return locus;
+}
+
+/// Returns true if the parameter is the rate of a rotation: a speed of the operating points equals it at each value.
+bool is_spin_rate(const records::LinearSweep& sweep) {
+  const double tolerance = 1e-6 * sweep.value.cwiseAbs().maxCoeff();
+  if (tolerance == 0 || sweep.models.empty()) return false;
+  const auto& first = sweep.models.front();
+  for (Index i = 0; i < first.u.size(); ++i) {
+    bool is_equal = first.u_names.dims[static_cast<std::size_t>(i)] == "1/T";
+    for (std::size_t k = 0; k < sweep.models.size() && is_equal; ++k)
+      is_equal = std::abs(std::abs(sweep.models[k].u[i]) - std::abs(sweep.value[static_cast<Index>(k)])) <= tolerance;
+    if (is_equal) return true;
+  }
+  return false;
+}
+
+/// Lines of once, twice, ... the rate of rotation, as far as they are among the curves.
+void add_per_rev(const records::LinearSweep& sweep, Plot& plot) {
+  const double first = sweep.value[0], last = sweep.value[sweep.value.size() - 1];
+  double top = 0;
+  for (const auto& curve : plot.curves) top = std::max(top, curve.y.maxCoeff());
+  const double rate = std::max(std::abs(first), std::abs(last)) / (2 * std::numbers::pi);
+  for (int n = 1; n <= 8 && rate > 0 && n * std::abs(last) / (2 * std::numbers::pi) <= 3 * top; ++n)
+    plot.guides.push_back({fmt::format("{}/rev", n), Eigen::Vector2d(first, last),
+                           Eigen::Vector2d(std::abs(first), std::abs(last)) * n / (2 * std::numbers::pi)});
 }
 
 void add_sweep(const records::LinearSweep& sweep, const std::string& kind, const std::string& prefix, Plot& plot) {
@@ -143,10 +147,19 @@ void add_sweep(const records::LinearSweep& sweep, const std::string& kind, const
             1e-9 * largest;
     if (!is_drawn && !stands_at_zero(b)) draw(b, style >= 0 ? "" : make_name(b), style);
   }
+  if (kind == "campbell" && is_spin_rate(sweep)) add_per_rev(sweep, plot);
   if (kind != "locus") return;
-  plot.curves.push_back(
-      {fmt::format("{}{} = {:g}", prefix, sweep.parameter, sweep.value[0]), locus.x.row(0), locus.y.row(0), true});
-  if (sweep.models.front().sample_time > 0) report::make_z_plane(plot);
+  // A locus starts at the poles of the first value and shows the zeros there.
+  std::vector<Index> shown;
+  for (Index b = 0; b < sweep.real.cols(); ++b)
+    if (!records::is_gone(sweep, b)) shown.push_back(b);
+  const VectorXd x = locus.x.row(0), y = locus.y.row(0);
+  plot.curves.push_back({fmt::format("{}{} = {:g}", prefix, sweep.parameter, sweep.value[0]), x(shown), y(shown), true,
+                         -1, report::Mark::Cross});
+  const auto& first = sweep.models.front();
+  if (first.sample_time == 0 && first.zeros_real.size() > 0)
+    plot.curves.push_back({prefix + "zeros", first.zeros_real, first.zeros_imag, true, -1, report::Mark::Ring});
+  first.sample_time > 0 ? report::make_z_plane(plot) : report::add_s_grid(plot);
 }
 
 }  // namespace
@@ -158,16 +171,11 @@ const std::vector<std::string>& list_plot_kinds() {
 
 std::vector<Plot> make_linear_plots(const std::vector<std::string>& files, const LinearPlotChoice& choice) {
   const auto& kind = choice.kind;
-  std::vector<Plot> plots(kind == "bode" ? 2 : 1);
-  const bool is_over_frequency = kind == "bode" || kind == "sigma";
-  for (auto& plot : plots) {
-    plot.has_log_x = is_over_frequency;
-    plot.x_label = is_over_frequency ? "frequency [1/T]" : kind == "nichols" ? "phase [degrees]" : "real part [1/T]";
-    plot.y_label = kind == "campbell"                   ? "frequency [1/T]"
-                   : kind == "poles" || kind == "locus" ? "imaginary part [1/T]"
-                                                        : "magnitude [dB]";
-  }
-  if (kind == "bode") plots[1].y_label = "phase [degrees]", plots[0].x_label.clear();
+  std::vector<Plot> plots(1);
+  if (kind == "bode") plots = report::make_bode_axes();
+  if (kind == "nichols") plots[0] = report::make_nichols_axes();
+  if (kind == "campbell") plots[0].y_label = "frequency [Hz]";
+  if (kind == "locus") plots[0].x_label = "real part [1/T]", plots[0].y_label = "imaginary part [1/T]";
   std::vector<std::pair<std::string, records::LinearModel>> models;
   for (const auto& file : files) {
     demand_file(file);
@@ -191,13 +199,19 @@ std::vector<Plot> make_linear_plots(const std::vector<std::string>& files, const
     if (model.inputs.size() == 0 || model.outputs.size() == 0)
       throw InputError("linear.no-channels", {file}, "the model has no input or no output",
                        "name some with --inputs and --outputs of bough linearize");
-    add_response(statespace::calc_frequency_response(model), kind, prefix, plots);
+    add_response(model, kind, prefix, plots);
   }
   if (kind == "poles") {
     std::vector<std::pair<std::string, const records::LinearModel*>> named;
     for (const auto& [name, model] : models) named.emplace_back(name, &model);
     plots[0] = report::make_pole_plot(named);
   }
+  static const std::map<std::string, std::string> kTitles{
+      {"bode", "Bode diagram"},         {"nichols", "Nichols diagram"},
+      {"sigma", "Singular values"},     {"poles", "Poles (x) and zeros (o)"},
+      {"campbell", "Campbell diagram"}, {"locus", "Root locus"}};
+  plots[0].title = kTitles.at(kind) +
+                   (files.size() == 1 ? ": " + std::filesystem::path(files.front()).stem().string() : std::string());
   return plots;
 }
 

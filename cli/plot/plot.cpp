@@ -16,6 +16,7 @@
 #include "cli/plot/linear_plots.hpp"
 #include "cli/plot/response_plots.hpp"
 #include "formats/export/csv.hpp"
+#include "formats/report/label.hpp"
 #include "formats/report/svg_plot.hpp"
 #include "formats/report/terminal_plot.hpp"
 
@@ -148,6 +149,9 @@ int draw_plots(const PlotOptions& o, std::vector<report::Plot> plots, const std:
     plots.front().curves.push_back(read_points(path));
     if (number < o.labels.size()) plots.front().curves.back().label = o.labels[number++];
   }
+  const auto csv = o.csv.empty() ? "" : make_curves_csv(plots);
+  for (auto& plot : plots)
+    if (o.y_label.empty() || &plot != &plots.front()) report::label_units(plot);
   Diagnostics all = diagnostics;
   if (number < o.labels.size())
     all.warning("cli.labels-left", {},
@@ -164,7 +168,7 @@ int draw_plots(const PlotOptions& o, std::vector<report::Plot> plots, const std:
     print_plots(plots, console);
   }
   if (!o.csv.empty()) {
-    write_text_file(o.csv, make_curves_csv(plots));
+    write_text_file(o.csv, csv);
     console.print("written: " + o.csv + "\n");
   }
   if (!has_picture) {
@@ -233,7 +237,6 @@ int run_plot(const PlotOptions& o) {
   auto plot = is_campaign ? make_campaign_plot(o.files, o.sensors, o.curves, diagnostics)
                           : make_history_plot(o.files, o.sensors, o.curves, diagnostics);
   plot.title = fmt::format("{}", fmt::join(o.sensors, ", "));
-  if (plot.x_label.empty()) plot.x_label = "time";
   if (o.sensors.size() == 1) plot.y_label = o.sensors.front();
   const bool is_over_time = !is_campaign && o.curves.x.empty();
   if (is_over_time && o.curves.psd) plot.y_label += plot.y_label.empty() ? "PSD" : ", PSD";

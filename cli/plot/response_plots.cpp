@@ -53,7 +53,7 @@ std::vector<report::Plot> make_response_plots(const std::vector<std::string>& fi
     const auto response = hdf5::read_response(file);
     const bool is_over_time = response.is_over_time;
     plots.resize(is_over_time ? 1 : 2);
-    for (auto& plot : plots) plot.x_label = is_over_time ? "time" : "frequency [1/T]";
+    for (auto& plot : plots) plot.x_label = is_over_time ? "time" : "frequency [Hz]";
     plots[0].y_label = is_over_time ? "" : has_decades ? "magnitude" : "magnitude [dB]";
     plots[0].has_log_y = has_decades;
     if (!is_over_time) plots[1].y_label = "phase [degrees]", plots[0].x_label.clear();

@@ -41,6 +41,8 @@ int run_report(const ReportOptions& o) {
     if (!has_suffix(file, ".json")) warn_incomplete(file, diagnostics);
     page.chapters.push_back(make_chapter(file, o.request, diagnostics));
   }
+  if (auto overlay = report::make_overlay(page.chapters); !overlay.panels.empty())
+    page.chapters.insert(page.chapters.begin(), std::move(overlay));
   const std::string html = report::make_page(page);
   write_text_file(output, html);
   console.print(diagnostics);

@@ -92,7 +92,7 @@ report::Chapter make_sweep_chapter(const std::string& file) {
   }
   report::HtmlTable table("Of each motion at the first and the last value", {{"first", true},
                                                                              {"last", true},
-                                                                             {"frequency [1/T]"},
+                                                                             {"frequency [Hz]"},
                                                                              {"at the end"},
                                                                              {"damping %"},
                                                                              {"at the end"},

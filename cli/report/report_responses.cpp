@@ -35,7 +35,7 @@ std::string make_pictures(const std::vector<Largest>& of, const Eigen::VectorXd&
                           bool is_over_time) {
   report::Plot upper, lower;
   upper.title = quantity;
-  upper.x_label = lower.x_label = is_over_time ? "time" : "frequency [1/T]";
+  upper.x_label = lower.x_label = is_over_time ? "time" : "frequency [Hz]";
   upper.y_label = is_over_time ? "" : "magnitude";
   lower.y_label = "phase [degrees]";
   upper.has_log_x = lower.has_log_x = !is_over_time && x.size() > 1 && x[0] > 0 && x[x.size() - 1] > 10 * x[0];
@@ -65,7 +65,7 @@ void add_subcase(const records::ResponseSubcase& s, bool is_over_time, const std
     std::erase_if(group, [](const auto& one) { return one.size <= 0; });
     const auto& quantity = curves[first].quantity;
     std::vector<report::HtmlTable::Column> columns{
-        {"curve", true}, {"largest magnitude"}, {is_over_time ? "at time" : "at frequency [1/T]"}};
+        {"curve", true}, {"largest magnitude"}, {is_over_time ? "at time" : "at frequency [Hz]"}};
     if (!is_over_time) columns.push_back({"phase, degrees"});
     report::HtmlTable table("Largest values", columns);
     for (const auto& one : group) {
@@ -82,7 +82,7 @@ void add_subcase(const records::ResponseSubcase& s, bool is_over_time, const std
   }
   if (s.mode_hz.size() == 0) return;
   report::HtmlTable modes("Coordinates of the solution",
-                          {{"number"}, {"frequency [1/T]"}, {"damping %"}, {"kind", true}});
+                          {{"number"}, {"frequency [Hz]"}, {"damping %"}, {"kind", true}});
   for (Eigen::Index j = 0; j < s.mode_hz.size(); ++j)
     modes.add_row({std::to_string(j + 1), report::format_value(s.mode_hz[j]),
                    s.damping_ratio.size() > j ? report::format_value(100 * s.damping_ratio[j], 4) : "",

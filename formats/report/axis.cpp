@@ -18,7 +18,7 @@ double get_round_step(double rough) {
 
 }  // namespace
 
-Axis make_axis(double min, double max, int num_ticks, bool widen) {
+Axis make_axis(double min, double max, int num_ticks, bool widen, double base_step) {
   Axis axis;
   // Nothing here overflows.
   min = std::clamp(min, -1e300, 1e300);
@@ -35,10 +35,14 @@ Axis make_axis(double min, double max, int num_ticks, bool widen) {
   }
   axis.min = min;
   axis.max = max;
-  const double step = get_round_step((max - min) / std::max(1, num_ticks));
+  double step = base_step > 0 ? base_step : get_round_step((max - min) / std::max(1, num_ticks));
+  while (base_step > 0 && (max - min) / step > num_ticks + 1) step *= 2;
   const double largest = std::max(std::abs(min), std::abs(max));
   const int magnitude = static_cast<int>(std::floor(std::log10(largest)));
-  if (magnitude >= 4 || magnitude < -2) axis.exponent = 3 * static_cast<int>(std::floor(magnitude / 3.0));
+  if (base_step > 0)
+    axis.exponent = 0;
+  else if (magnitude >= 4 || magnitude < -2)
+    axis.exponent = 3 * static_cast<int>(std::floor(magnitude / 3.0));
   const double scale = std::pow(10.0, axis.exponent);
   int decimals = 0;
   for (double s = step / scale; decimals < 9 && std::abs(s - std::round(s)) > 1e-6 * s; s *= 10) ++decimals;

@@ -304,6 +304,7 @@ std::string to_json_text(const Drawing& drawing) {
   nlohmann::json json{{"xyz", pack_floats(flatten(drawing.xyz))}, {"triangles", pack_indices(drawing.triangles)},
                       {"edges", pack_indices(drawing.edges)},     {"ghosts", pack_indices(drawing.ghosts)},
                       {"shapes", nlohmann::json::array()},        {"dropped", drawing.num_dropped}};
+  json["id"] = pack_indices(std::vector<std::uint32_t>(drawing.id.begin(), drawing.id.end()));
   for (const auto& shape : drawing.shapes) {
     const double largest = shape.size() > 0 ? shape.cwiseAbs().maxCoeff() : 0;
     json["shapes"].push_back({{"largest", largest}, {"data", pack_shorts(flatten(shape), largest)}});

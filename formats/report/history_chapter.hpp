@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "formats/records/results.hpp"
+#include "formats/records/unit_labels.hpp"
 #include "formats/report/page.hpp"
 #include "formats/report/scene.hpp"
 
@@ -12,7 +13,13 @@ namespace bough::report {
 
 struct HistoryChannel {
   std::string path, description, dims;
-  Eigen::MatrixXd values;  ///< nt x size
+  Eigen::MatrixXd values;        ///< nt x size
+  std::string unit{};            ///< in labels, otherwise the dimensions; of components that differ a list
+  std::vector<bool> is_noise{};  ///< of each column: constant or below 1e-9 of the channels of its unit
+
+  std::string get_unit(Eigen::Index column) const {
+    return records::pick_unit(unit, static_cast<int>(column), static_cast<int>(values.cols()));
+  }
 };
 
 struct History {
@@ -20,6 +27,7 @@ struct History {
   std::vector<std::pair<std::string, std::string>> facts;     ///< of the file: versions, sources
   std::vector<std::pair<std::string, std::string>> settings;  ///< of the run
   Eigen::VectorXd time;
+  std::string time_unit = "T";
   std::vector<HistoryChannel> channels;
   std::vector<records::EventRecord> events;
   std::string system_text;

@@ -121,19 +121,22 @@ std::string make_data(const History& history, const Strides& strides) {
     for (Eigen::Index c = 0; c < channel.values.cols(); ++c) {
       const auto packed = pack_column(take_every(channel.values.col(c), stride));
       columns.push_back({{"name", names[static_cast<std::size_t>(c)]},
+                         {"unit", channel.get_unit(c)},
+                         {"noise", static_cast<bool>(channel.is_noise[static_cast<std::size_t>(c)])},
                          {"low", packed.low},
                          {"step", packed.step},
                          {"data", packed.data}});
     }
     channels.push_back({{"path", channel.path},
                         {"description", channel.description},
-                        {"dims", channel.dims},
+                        {"unit", channel.unit},
                         {"stride", stride},
                         {"columns", std::move(columns)}});
   }
   json events = json::array();
   for (const auto& event : history.events) events.push_back({{"time", make_number(event.time)}, {"what", event.what}});
   return json{{"time", make_time(history.time)},
+              {"time_unit", history.time_unit},
               {"channels", std::move(channels)},
               {"events", std::move(events)},
               {"bodies", make_list(history.scene.bodies)},

@@ -48,9 +48,20 @@ std::string make_figure(const Plot& plot, const std::string& live) {
          ">\n" + draw_svg(thin) + "</figure>\n";
 }
 
+std::string make_figure(const std::vector<Plot>& plots) {
+  auto thin = plots;
+  for (auto& plot : thin)
+    for (auto& curve : plot.curves) curve = thin_curve(curve, 600, plot.has_log_x);
+  return "<figure>\n" + draw_svg(thin) + "</figure>\n";
+}
+
 std::string make_place(const std::string& live, const std::string& without) {
   return "<figure class=\"live\" data-view=\"" + escape_xml(live) + "\"><p class=\"note\">" + escape_xml(without) +
          "</p></figure>\n";
+}
+
+std::string make_live(const std::string& live, const std::string& html) {
+  return "<figure class=\"live\" data-view=\"" + escape_xml(live) + "\">" + html + "</figure>\n";
 }
 
 std::string make_text(const std::string& text, const std::string& css_class) {

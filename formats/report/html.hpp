@@ -33,8 +33,12 @@ class HtmlTable {
 
 /// A picture for readers without a script; `live` names what the script puts in its place, empty: nothing.
 std::string make_figure(const Plot& plot, const std::string& live = {});
+/// Diagrams one above the other.
+std::string make_figure(const std::vector<Plot>& plots);
 /// A place that only the script fills.
 std::string make_place(const std::string& live, const std::string& without);
+/// A place with pictures that the script replaces.
+std::string make_live(const std::string& live, const std::string& html);
 /// <p> of plain text.
 std::string make_text(const std::string& text, const std::string& css_class = {});
 

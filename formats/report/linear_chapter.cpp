@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "formats/report/bode_plot.hpp"
 #include "formats/report/html.hpp"
 #include "formats/report/pack.hpp"
 #include "formats/report/pole_plot.hpp"
@@ -19,37 +20,11 @@ using nlohmann::json;
 
 constexpr std::size_t kMaxDiagrams = 6, kMaxPairs = 24;
 
-/// |H| in dB (of the units of y over u) and the phase, unwrapped.
-struct Pair {
-  Eigen::Index output = 0, input = 0;
-  Eigen::VectorXd decibel, degrees;
-};
-
-std::vector<Pair> make_pairs(const records::FrequencyResponse& response) {
-  std::vector<Pair> pairs;
-  if (response.value.empty()) return pairs;
-  const auto& first = response.value.front();
-  const auto count = static_cast<Eigen::Index>(response.value.size());
-  for (Eigen::Index j = 0; j < first.cols(); ++j)
-    for (Eigen::Index i = 0; i < first.rows() && pairs.size() < kMaxPairs; ++i) {
-      Pair pair{i, j, Eigen::VectorXd(count), Eigen::VectorXd(count)};
-      for (Eigen::Index k = 0; k < count; ++k) {
-        const std::complex<double> h = response.value[static_cast<std::size_t>(k)](i, j);
-        pair.decibel[k] = h == 0.0 ? std::nan("") : 20 * std::log10(std::abs(h));
-        double phase = h == 0.0 ? std::nan("") : std::arg(h) * 180 / std::numbers::pi;
-        if (k > 0 && std::isfinite(pair.degrees[k - 1])) phase -= 360 * std::round((phase - pair.degrees[k - 1]) / 360);
-        pair.degrees[k] = phase;
-      }
-      pairs.push_back(std::move(pair));
-    }
-  return pairs;
-}
-
 std::string make_poles(const records::LinearModel& model) {
   Plot plot = make_pole_plot({{"", &model}});
   plot.title = "Poles and zeros";
   const records::Poles poles = round_poles(model.poles);
-  HtmlTable table("Poles", {{"real"}, {"imaginary"}, {"frequency [1/T]"}, {"damping %"}, {"coordinate", true}});
+  HtmlTable table("Poles", {{"real"}, {"imaginary"}, {"frequency [Hz]"}, {"damping %"}, {"coordinate", true}});
   int num_gone = 0;
   for (Eigen::Index i = 0; i < poles.real.size(); ++i) {
     if (records::is_gone(model, i)) {
@@ -65,8 +40,8 @@ std::string make_poles(const records::LinearModel& model) {
                       "note");
   if (!model.aliased.empty()) {
     HtmlTable aliased(
-        fmt::format("Modes above the Nyquist frequency {} [1/T]: aliased", format_value(0.5 / model.sample_time, 4)),
-        {{"mode", true}, {"frequency [1/T]"}, {"appears at [1/T]"}});
+        fmt::format("Modes above the Nyquist frequency {} Hz: aliased", format_value(0.5 / model.sample_time, 4)),
+        {{"mode", true}, {"frequency [Hz]"}, {"appears at [Hz]"}});
     for (const auto& one : model.aliased)
       aliased.add_row({one.mode, format_value(one.frequency_hz), format_value(one.appears_at_hz)});
     html += aliased.to_html(400);
@@ -80,20 +55,21 @@ std::string make_poles(const records::LinearModel& model) {
   return html;
 }
 
-std::string make_bode(const records::FrequencyResponse& response, const std::vector<Pair>& pairs) {
+/// Diagrams of one pair, with the margins of a loop.
+std::vector<Plot> make_bode_plots(const LinearFindings& findings, const BodePair& pair) {
+  const auto& frequency = findings.response.frequency_hz;
+  auto plots = make_bode_axes();
+  add_bode_curve(pair, frequency, "", plots);
+  if (findings.has_margins) add_margins(findings.margins, pair, frequency, plots);
+  plots[0].title = pair.name;
+  return plots;
+}
+
+std::string make_bode(const LinearFindings& findings, const std::vector<BodePair>& pairs) {
+  const auto& response = findings.response;
   std::string html = "<div class=\"live\" data-view=\"bode\">\n";
-  for (std::size_t p = 0; p < std::min(kMaxDiagrams, pairs.size()); ++p) {
-    const auto& pair = pairs[p];
-    const std::string name = response.outputs.name[static_cast<std::size_t>(pair.output)] + " over " +
-                             response.inputs.name[static_cast<std::size_t>(pair.input)];
-    html += make_figure({name,
-                         "frequency, cycles [1/T]",
-                         "magnitude [dB]",
-                         {{"", response.frequency_hz, pair.decibel, false}},
-                         0,
-                         0,
-                         true});
-  }
+  for (std::size_t p = 0; p < std::min(kMaxDiagrams, pairs.size()); ++p)
+    html += make_figure(make_bode_plots(findings, pairs[p]));
   html += "</div>\n";
   const auto all = static_cast<std::size_t>(response.inputs.size()) * static_cast<std::size_t>(response.outputs.size());
   if (all > pairs.size()) html += make_text(fmt::format("The first {} of {} pairs.", pairs.size(), all), "note");
@@ -101,19 +77,15 @@ std::string make_bode(const records::FrequencyResponse& response, const std::vec
 }
 
 std::string make_singular_values(const LinearFindings& findings) {
-  const auto& values = findings.response.singular_values;
-  const Eigen::VectorXd& frequency = findings.response.frequency_hz;
-  Plot plot{"Singular values of the transfer matrix", "frequency, cycles [1/T]", "magnitude [dB]", {}, 0, 0, true};
-  for (Eigen::Index i = 0; i < std::min<Eigen::Index>(values.cols(), 6); ++i) {
-    const Eigen::VectorXd decibel = 20 * values.col(i).array().max(1e-300).log10();
-    plot.curves.push_back({fmt::format("σ{}", i + 1), frequency, decibel, false});
-  }
+  auto plot = make_sigma_plot(findings.response, "");
+  plot.title = "Singular values of the transfer matrix";
+  if (plot.curves.size() > 6) plot.curves.resize(6);
   return make_figure(plot);
 }
 
 std::string make_margins(const records::Margins& m) {
   HtmlTable table("The loop, with negative feedback",
-                  {{"margin", true}, {"frequency [1/T]"}, {"dB or degrees"}, {"delay [T]"}});
+                  {{"margin", true}, {"frequency [Hz]"}, {"dB or degrees"}, {"delay [T]"}});
   for (const auto& c : m.gain)
     table.add_row({"gain", format_value(c.frequency_hz), format_value(20 * std::log10(c.margin), 5), ""});
   for (const auto& c : m.phase)
@@ -134,7 +106,7 @@ std::string make_hankel(const records::Hankel& hankel) {
 }
 
 /// Stability, gain, Bode diagrams, singular values, margins.
-void add_response(const LinearFindings& findings, const std::vector<Pair>& pairs, Chapter& chapter) {
+void add_response(const LinearFindings& findings, const std::vector<BodePair>& pairs, Chapter& chapter) {
   if (findings.has_margins)
     chapter.checks.push_back({"with the loop closed", findings.margins.is_stable ? "stable" : "unstable",
                               findings.margins.is_stable ? Verdict::Good : Verdict::Warning,
@@ -142,8 +114,8 @@ void add_response(const LinearFindings& findings, const std::vector<Pair>& pairs
   if (!pairs.empty()) {
     chapter.checks.push_back(
         {"largest gain", findings.peak.is_finite ? format_value(findings.peak.value) : "infinite", Verdict::None,
-         findings.peak.is_finite ? "at " + format_value(findings.peak.frequency_hz) + " [1/T]" : findings.peak.why});
-    chapter.add_panel("bode", "Bode", make_bode(findings.response, pairs));
+         findings.peak.is_finite ? "at " + format_value(findings.peak.frequency_hz) + " Hz" : findings.peak.why});
+    chapter.add_panel("bode", "Bode", make_bode(findings, pairs));
     chapter.add_panel("sigma", "Singular values", make_singular_values(findings));
   }
   if (findings.has_margins) chapter.add_panel("margins", "Margins", make_margins(findings.margins));
@@ -188,14 +160,27 @@ json make_plane(const records::LinearModel& model) {
           {"notes", std::move(notes)}};
 }
 
-/// Pairs of the interactive Bode diagrams.
-json list_pairs(const records::FrequencyResponse& response, const std::vector<Pair>& pairs_of) {
+/// Pairs of the interactive Bode diagrams, with the marks of their margins.
+json list_pairs(const LinearFindings& findings, const std::vector<BodePair>& pairs_of) {
   json pairs = json::array();
-  for (const auto& pair : pairs_of)
-    pairs.push_back({{"output", response.outputs.name[static_cast<std::size_t>(pair.output)]},
-                     {"input", response.inputs.name[static_cast<std::size_t>(pair.input)]},
+  for (const auto& pair : pairs_of) {
+    json diagrams = json::array();
+    for (const auto& plot : make_bode_plots(findings, pair)) {
+      json marks = json::array(), guides = json::array();
+      for (const auto& curve : plot.curves)
+        if (curve.markers_only)
+          marks.push_back({{"label", curve.label}, {"x", to_list(curve.x)}, {"y", to_list(curve.y)}});
+      for (const auto& guide : plot.guides)
+        guides.push_back({{"label", guide.label}, {"x", to_list(guide.x)}, {"y", to_list(guide.y)}});
+      diagrams.push_back({{"marks", std::move(marks)}, {"guides", std::move(guides)}});
+    }
+    pairs.push_back({{"name", pair.name},
+                     {"output", findings.response.outputs.name[static_cast<std::size_t>(pair.output)]},
+                     {"input", findings.response.inputs.name[static_cast<std::size_t>(pair.input)]},
                      {"decibel", pack_doubles(pair.decibel)},
-                     {"degrees", pack_doubles(pair.degrees)}});
+                     {"degrees", pack_doubles(pair.degrees)},
+                     {"diagrams", std::move(diagrams)}});
+  }
   return pairs;
 }
 
@@ -220,7 +205,7 @@ Chapter make_chapter(const records::LinearModel& model, const LinearFindings& fi
   chapter.checks.push_back({"rate of change |u̇| at the point", format_value(model.residual, 3), Verdict::None,
                             "0 at rest and in a steady spin"});
   chapter.add_panel("poles", "Poles and zeros", make_poles(model));
-  const auto pairs_of = make_pairs(findings.response);
+  const auto pairs_of = make_bode_pairs(findings.response, kMaxPairs);
   add_response(findings, pairs_of, chapter);
   if (model.hankel.value.size() > 0) chapter.add_panel("hankel", "Hankel", make_hankel(model.hankel));
   for (const auto& [id, title, signals] :
@@ -238,7 +223,7 @@ Chapter make_chapter(const records::LinearModel& model, const LinearFindings& fi
                       {"plane", make_plane(model)},
                       {"zeros", {{"real", to_list(model.zeros_real)}, {"imag", to_list(model.zeros_imag)}}},
                       {"frequency", pack_doubles(findings.response.frequency_hz)},
-                      {"pairs", list_pairs(findings.response, pairs_of)}}
+                      {"pairs", list_pairs(findings, pairs_of)}}
                      .dump(-1, ' ', false, json::error_handler_t::replace);
   return chapter;
 }
@@ -247,7 +232,7 @@ Chapter make_chapter(const LinearFindings& findings, const std::string& file,
                      const std::vector<std::pair<std::string, std::string>>& facts) {
   Chapter chapter{"response of a linear model", file, facts, {}, {}, {}, {}};
   const auto& response = findings.response;
-  const auto pairs = make_pairs(response);
+  const auto pairs = make_bode_pairs(response, kMaxPairs);
   const Eigen::Index n = response.frequency_hz.size();
   chapter.facts.emplace_back(
       "frequencies",
@@ -255,7 +240,7 @@ Chapter make_chapter(const LinearFindings& findings, const std::string& file,
   chapter.facts.emplace_back("inputs", fmt::format("{}", fmt::join(response.inputs.name, ", ")));
   chapter.facts.emplace_back("outputs", fmt::format("{}", fmt::join(response.outputs.name, ", ")));
   add_response(findings, pairs, chapter);
-  chapter.data = json{{"frequency", pack_doubles(response.frequency_hz)}, {"pairs", list_pairs(response, pairs)}}.dump(
+  chapter.data = json{{"frequency", pack_doubles(response.frequency_hz)}, {"pairs", list_pairs(findings, pairs)}}.dump(
       -1, ' ', false, json::error_handler_t::replace);
   return chapter;
 }

@@ -9,6 +9,7 @@
 
 #include "base/xml_text.hpp"
 #include "formats/report/html.hpp"
+#include "formats/report/shape_plot.hpp"
 
 namespace bough::report {
 
@@ -41,7 +42,7 @@ std::string make_mass_panel(const ModalModel& m) {
 }
 
 std::string make_mode_table(const ModalModel& m) {
-  std::vector<HtmlTable::Column> columns{{"mode"}, {m.is_buckling ? "load factor" : "frequency [1/T]"}};
+  std::vector<HtmlTable::Column> columns{{"mode"}, {m.is_buckling ? "load factor" : "frequency [Hz]"}};
   const bool has_kind = !m.mode_kind.empty(), has_mass = m.modal_mass.size() > 0, has_residual = m.residual.size() > 0;
   const bool has_damping = m.damping.size() > 0;
   const bool has_effective = m.effective_mass.rows() == m.frequency_hz.size() && !m.is_buckling;
@@ -122,7 +123,7 @@ std::string make_spin(const ModalModel& m) {
   for (const auto& curves : m.spin) {
     Plot plot{"Spin about " + curves.axis + (curves.has_stiffness ? "" : " (K_G1 not computed)"),
               "spin rate [1/T, radians]",
-              "frequency [1/T]",
+              "frequency [Hz]",
               {},
               0,
               0};
@@ -135,7 +136,7 @@ std::string make_spin(const ModalModel& m) {
     html += make_figure(plot);
     std::vector<HtmlTable::Column> columns{{"spin rate"}};
     for (Eigen::Index k = 0; k < max_shown; ++k) columns.push_back({fmt::format("mode {}", k + 1)});
-    HtmlTable table("Frequencies [1/T], spin about " + curves.axis, columns);
+    HtmlTable table("Frequencies [Hz], spin about " + curves.axis, columns);
     for (Eigen::Index r = 0; r < curves.rate.size(); r += 4) {
       std::vector<std::string> row{format_value(curves.rate[r])};
       for (Eigen::Index k = 0; k < max_shown; ++k) row.push_back(format_value(curves.frequency_hz(r, k), 7));
@@ -210,7 +211,11 @@ std::string draw_heat_map(const std::string& title, const Eigen::MatrixXd& value
 Chapter make_chapter(const ModalModel& m) {
   Chapter chapter{m.kind, m.file, m.facts, m.checks, {}, {}, {}};
   if (!m.drawing.shapes.empty()) {
-    std::string html = make_place("modes", "The shapes are drawn by a script with WebGL 2.");
+    std::vector<std::string> titles;
+    for (Eigen::Index j = 0; j < m.frequency_hz.size(); ++j)
+      titles.push_back(
+          fmt::format("mode {}: {}{}", j + 1, format_value(m.frequency_hz[j], 5), m.is_buckling ? "" : " Hz"));
+    std::string html = make_live("modes", draw_shapes(m.drawing, titles));
     if (m.drawing.energy.empty())
       html += make_text(m.kind == "modes" ? "Colours by strain energy come with bough modes --ese."
                                           : "Colours by strain energy come with bough reduce --strain-energy.",

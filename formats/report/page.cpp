@@ -1,5 +1,7 @@
 #include "formats/report/page.hpp"
 
+#include <algorithm>
+
 #include "base/xml_text.hpp"
 #include "formats/report/html.hpp"
 #include "formats/report/web_text.hpp"
@@ -47,16 +49,60 @@ std::string make_facts(const std::vector<std::pair<std::string, std::string>>& f
   return html + "</dl>\n";
 }
 
-std::string make_head(const Chapter& chapter) {
-  std::string html = make_facts(chapter.facts);
-  if (!chapter.settings.empty())
-    html += "<details><summary>Settings</summary>\n" + make_facts(chapter.settings) + "</details>\n";
-  if (chapter.checks.empty()) return html;
-  html += "<div class=\"scroll\"><table class=\"health\"><caption>Health</caption>\n<tbody>\n";
+constexpr std::size_t kMaxHighlights = 3;
+
+std::string make_highlights(const Chapter& chapter) {
+  if (chapter.highlights.empty()) return "";
+  std::string html = "<dl class=\"highlights\">\n";
+  for (std::size_t i = 0; i < std::min(kMaxHighlights, chapter.highlights.size()); ++i) {
+    const auto& one = chapter.highlights[i];
+    html += "<div><dt>" + escape_xml(one.name) + "</dt><dd>" + escape_xml(one.value) + "</dd><dd class=\"note\">" +
+            escape_xml(one.note) + "</dd></div>\n";
+  }
+  return html + "</dl>\n";
+}
+
+/// "2 of 5 checks to look at: run completed, ..."; the checks themselves are in the table.
+std::string sum_up(const Chapter& chapter) {
+  std::size_t judged = 0, worse = 0;
+  std::string list;
+  for (const auto& check : chapter.checks) {
+    judged += check.verdict != Verdict::None;
+    if (check.verdict != Verdict::Warning && check.verdict != Verdict::Bad) continue;
+    ++worse;
+    list += (list.empty() ? "" : "; ") + check.what + (check.value.empty() ? "" : ": " + check.value);
+  }
+  if (judged == 0) return "";
+  if (worse == 0) return "All " + std::to_string(judged) + " checks passed.";
+  return std::to_string(worse) + " of " + std::to_string(judged) + " checks to look at: " + list + ".";
+}
+
+std::string make_health(const Chapter& chapter) {
+  if (chapter.checks.empty()) return "";
+  const auto verdict = chapter.get_verdict();
+  std::string html = std::string("<details class=\"health-fold\"") +
+                     (verdict == Verdict::Warning || verdict == Verdict::Bad ? " open" : "") +
+                     "><summary>Health</summary>\n"
+                     "<div class=\"scroll\"><table class=\"health\"><caption>Health</caption>\n<tbody>\n";
   for (const auto& check : chapter.checks)
     html += "<tr><td>" + make_badge(check.verdict) + "</td><td class=\"text\">" + escape_xml(check.what) + "</td><td>" +
             escape_xml(check.value) + "</td><td class=\"text\">" + escape_xml(check.note) + "</td></tr>\n";
-  return html + "</tbody></table></div>\n";
+  return html + "</tbody></table></div></details>\n";
+}
+
+std::string make_provenance(const Chapter& chapter) {
+  std::string html;
+  if (!chapter.facts.empty())
+    html += "<details class=\"provenance\"><summary>File and sources</summary>\n" + make_facts(chapter.facts) +
+            "</details>\n";
+  if (!chapter.settings.empty())
+    html += "<details><summary>Settings</summary>\n" + make_facts(chapter.settings) + "</details>\n";
+  return html;
+}
+
+std::string make_panel(const Panel& panel, const std::string& chapter_id) {
+  return "<section class=\"panel\" id=\"" + chapter_id + "-" + panel.id + "\">\n<h3>" + escape_xml(panel.title) +
+         "</h3>\n" + panel.html + "</section>\n";
 }
 
 }  // namespace
@@ -99,12 +145,17 @@ std::string make_page(const Page& page) {
   for (std::size_t c = 0; c < page.chapters.size(); ++c) {
     const auto& chapter = page.chapters[c];
     const std::string id = "c" + std::to_string(c);
-    html += "<section class=\"chapter\" id=\"" + id + "\" data-kind=\"" + escape_xml(chapter.kind) + "\">\n<h2>" +
-            escape_xml(chapter.title) + " <small>" + escape_xml(chapter.kind) + "</small> " +
-            make_badge(chapter.get_verdict()) + "</h2>\n" + make_head(chapter);
-    for (const auto& panel : chapter.panels)
-      html += "<section class=\"panel\" id=\"" + id + "-" + panel.id + "\">\n<h3>" + escape_xml(panel.title) +
-              "</h3>\n" + panel.html + "</section>\n";
+    html += "<section class=\"chapter\" id=\"" + id + "\" data-kind=\"" + escape_xml(chapter.kind) +
+            "\" data-title=\"" + escape_xml(chapter.title) + "\">\n<h2>" + escape_xml(chapter.title) + " <small>" +
+            escape_xml(chapter.kind) + "</small> " + make_badge(chapter.get_verdict()) + "</h2>\n";
+    if (const auto summary = sum_up(chapter); !summary.empty())
+      html += "<p class=\"summary\">" + escape_xml(summary) + "</p>\n";
+    html += make_highlights(chapter);
+    for (std::size_t p = 0; p < chapter.panels.size(); ++p) {
+      html += make_panel(chapter.panels[p], id);
+      if (p == 0) html += make_health(chapter) + make_provenance(chapter);
+    }
+    if (chapter.panels.empty()) html += make_health(chapter) + make_provenance(chapter);
     if (!chapter.data.empty())
       html += "<script type=\"application/json\" class=\"data\">" + shield(chapter.data) + "</script>\n";
     html += "</section>\n";
@@ -113,6 +164,40 @@ std::string make_page(const Page& page) {
   html += get_script();
   html += "</script>\n</body>\n</html>\n";
   return html;
+}
+
+Chapter make_overlay(const std::vector<Chapter>& chapters) {
+  constexpr std::size_t kMaxPictures = 12;
+  Chapter overlay{"comparison", "Runs in the same charts", {}, {}, {}, {}, {}};
+  std::vector<const Chapter*> runs;
+  for (const auto& chapter : chapters)
+    if (!chapter.curves.empty()) runs.push_back(&chapter);
+  if (runs.size() < 2) return overlay;
+  std::string html = "<div class=\"live\" data-view=\"overlay\">\n";
+  std::vector<std::string> done;
+  for (const auto* run : runs)
+    for (const auto& plot : run->curves) {
+      if (done.size() == kMaxPictures || std::find(done.begin(), done.end(), plot.title) != done.end()) continue;
+      done.push_back(plot.title);
+      Plot merged = plot;
+      merged.curves.clear();
+      for (std::size_t r = 0; r < runs.size(); ++r)
+        for (const auto& other : runs[r]->curves) {
+          if (other.title != plot.title) continue;
+          for (std::size_t c = 0; c < other.curves.size(); ++c) {
+            auto curve = other.curves[c];
+            const bool is_single = other.curves.size() == 1;
+            curve.label = runs[r]->title + (is_single ? "" : " " + curve.label);
+            // One colour for each run; of several components, for each component, and dashes for each run.
+            curve.style = static_cast<int>(is_single ? r : c + r * kNumColors);
+            merged.curves.push_back(std::move(curve));
+          }
+        }
+      html += make_figure(merged);
+    }
+  overlay.add_panel("overlay", "Time histories", html + "</div>\n");
+  overlay.data = "{}";
+  return overlay;
 }
 
 }  // namespace bough::report

@@ -5,6 +5,8 @@
 #include <utility>
 #include <vector>
 
+#include "formats/report/svg_plot.hpp"
+
 namespace bough::report {
 
 enum class Verdict { Good, Warning, Bad, None };
@@ -20,6 +22,11 @@ struct Panel {
   std::string id, title, html;
 };
 
+/// One of the numbers at the top of a chapter: "largest deflection", "0.57 m", "boom, at t = 6.8 s".
+struct Highlight {
+  std::string name, value, note;
+};
+
 /// One file.
 struct Chapter {
   std::string kind, title;                                 ///< "results", "spinup.h5"
@@ -27,7 +34,9 @@ struct Chapter {
   std::vector<Check> checks;
   std::vector<Panel> panels;
   std::string data;                                           ///< JSON for the script; empty: none
-  std::vector<std::pair<std::string, std::string>> settings;  ///< more facts, folded away
+  std::vector<std::pair<std::string, std::string>> settings;  ///< more facts
+  std::vector<Highlight> highlights{};                        ///< at most kMaxHighlights are shown
+  std::vector<Plot> curves{};                                 ///< of a run: one plot a channel, for make_overlay
 
   /// The worst of its checks.
   Verdict get_verdict() const;
@@ -39,6 +48,11 @@ struct Page {
   std::vector<Chapter> chapters;
 };
 
+/// Facts, settings and the table of checks are folded, unless a check is worse than ok; the verdict, the highlights and
+/// the first panel are on the first screen.
 std::string make_page(const Page& page);
+
+/// Chapter with the curves of several runs in the same charts, channel by channel; without panels for one run.
+Chapter make_overlay(const std::vector<Chapter>& chapters);
 
 }  // namespace bough::report

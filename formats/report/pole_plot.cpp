@@ -5,6 +5,8 @@
 #include <complex>
 #include <numbers>
 
+#include "formats/report/axis.hpp"
+
 namespace bough::report {
 
 namespace {
@@ -13,8 +15,9 @@ using records::LinearModel;
 
 constexpr double kDampings[] = {0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.3, 0.5, 0.7, 0.9};
 
+/// "ζ 0.05".
 std::string format_damping(double zeta) {
-  std::string text = std::to_string(zeta);
+  std::string text = "\u03b6 " + std::to_string(zeta);
   text.erase(text.find_last_not_of('0') + 1);
   return text;
 }
@@ -30,27 +33,6 @@ void add_count(const Curve& curve, double x, double y, double radius, const std:
 void add_guide(const Eigen::VectorXd& x, const Eigen::VectorXd& y, const std::string& label, Plot& plot) {
   plot.guides.push_back({label, x, y});
   plot.guides.push_back({"", x, -y});
-}
-
-void add_s_grid(Plot& plot) {
-  double left = 0, up = 0;
-  for (const auto& curve : plot.curves) {
-    if (curve.x.size() == 0) continue;
-    left = std::max(left, -curve.x.minCoeff());
-    up = std::max(up, curve.y.cwiseAbs().maxCoeff());
-  }
-  if (left <= 0 || up <= 0) return;
-  double last = 0;
-  for (const double zeta : kDampings) {
-    // Angle from the vertical in the picture, whose axes have different scales.
-    const double across = zeta * up / (std::sqrt(1 - zeta * zeta) * left);
-    const double angle = std::atan(across);
-    if (angle < last + 0.16 || angle > 1.45) continue;
-    last = angle;
-    const double far = 2 * (left + up);
-    const Eigen::Vector2d x(0, -zeta * far), y(0, std::sqrt(1 - zeta * zeta) * far);
-    add_guide(x, y, format_damping(zeta), plot);
-  }
 }
 
 void add_z_grid(Plot& plot) {
@@ -99,6 +81,39 @@ void add_z_poles(const std::string& prefix, const LinearModel& model, Plot& plot
 }
 
 }  // namespace
+
+void add_s_grid(Plot& plot) {
+  double left = 0, up = 0;
+  for (const auto& curve : plot.curves) {
+    if (curve.x.size() == 0) continue;
+    left = std::max(left, -curve.x.minCoeff());
+    up = std::max(up, curve.y.cwiseAbs().maxCoeff());
+  }
+  if (left <= 0 || up <= 0) return;
+  double last = 0;
+  for (const double zeta : kDampings) {
+    // Angle from the vertical in the picture, whose axes have different scales.
+    const double across = zeta * up / (std::sqrt(1 - zeta * zeta) * left);
+    const double angle = std::atan(across);
+    if (angle < last + 0.16 || angle > 1.45) continue;
+    last = angle;
+    const double far = 2 * (left + up);
+    const Eigen::Vector2d x(0, -zeta * far), y(0, std::sqrt(1 - zeta * zeta) * far);
+    add_guide(x, y, format_damping(zeta), plot);
+  }
+  constexpr int kPoints = 61;
+  const auto axis = make_axis(0, up, 4, false);
+  for (const double size : axis.ticks) {
+    if (size <= 0) continue;
+    Eigen::VectorXd x(kPoints), y(kPoints);
+    for (int i = 0; i < kPoints; ++i) {
+      const double angle = std::numbers::pi / 2 * i / (kPoints - 1);
+      x[i] = -size * std::sin(angle);
+      y[i] = size * std::cos(angle);
+    }
+    add_guide(x, y, "", plot);
+  }
+}
 
 Eigen::VectorXd calc_pole_uncertainty(const records::Poles& poles, double min) {
   const Eigen::ArrayXd size = (poles.real.array().square() + poles.imag.array().square()).sqrt();

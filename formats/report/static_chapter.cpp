@@ -10,6 +10,7 @@
 
 #include "formats/report/drawing.hpp"
 #include "formats/report/html.hpp"
+#include "formats/report/shape_plot.hpp"
 
 namespace bough::report {
 
@@ -155,7 +156,7 @@ void add_element_energies(const StaticResult& result, Drawing& drawing) {
   add_energies(result.mesh, id, energy, energy.colwise().sum().transpose(), drawing);
 }
 
-Drawing draw_shapes(const StaticResult& result) {
+Drawing draw_subcases(const StaticResult& result) {
   std::map<int, Index> index_of;
   for (std::size_t i = 0; i < result.mesh.grid_id.size(); ++i)
     index_of.emplace(result.mesh.grid_id[i], static_cast<Index>(i));
@@ -185,18 +186,28 @@ Chapter make_chapter(const StaticResult& result, const std::string& file,
   HtmlTable summary(
       "", {{"subcase"}, {"label", true}, {"largest displacement"}, {"at grid"}, {"strain energy"}, {"epsilon"}});
   double worst = 0;
+  double largest_of_all = 0;
   for (const auto& s : result.subcases) {
     int grid = 0;
     const double largest = find_largest_translation(result, s, grid);
     summary.add_row({std::to_string(s.id), s.label, format_value(largest), grid > 0 ? std::to_string(grid) : "",
                      format_value(s.strain_energy), format_value(s.epsilon, 2)});
     worst = std::max(worst, s.epsilon);
+    if (largest > largest_of_all) {
+      largest_of_all = largest;
+      chapter.highlights = {
+          {"largest displacement", format_value(largest, 4), fmt::format("grid {}, {}", grid, name_subcase(s))},
+          {"strain energy", format_value(s.strain_energy, 4), name_subcase(s)},
+          {"epsilon", format_value(s.epsilon, 2), "work of the residual over the work of the loads"}};
+    }
   }
   chapter.checks.push_back({"largest epsilon: work of the residual over the work of the loads", format_value(worst, 2),
                             worst < kMaxEpsilon ? Verdict::Good : Verdict::Warning, "below 1e-6"});
-  const Drawing drawing = draw_shapes(result);
+  const Drawing drawing = draw_subcases(result);
   if (!drawing.shapes.empty()) {
-    std::string html = make_place("modes", "The shapes are drawn by a script with WebGL 2.");
+    std::vector<std::string> titles;
+    for (const auto& s : result.subcases) titles.push_back(name_subcase(s));
+    std::string html = make_live("modes", draw_shapes(drawing, titles));
     if (drawing.num_dropped > 0)
       html += make_text(fmt::format("To keep the page small it has the shapes of the first {} of {} subcases.",
                                     drawing.shapes.size(), result.subcases.size()),

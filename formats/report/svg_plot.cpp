@@ -261,6 +261,10 @@ Plot take_logarithms(Plot plot) {
     if (plot.has_log_x) curve.x = curve.x.unaryExpr(take).eval();
     if (plot.has_log_y) curve.y = curve.y.unaryExpr(take).eval();
   }
+  for (auto& guide : plot.guides) {
+    if (plot.has_log_x) guide.x = guide.x.unaryExpr(take).eval();
+    if (plot.has_log_y) guide.y = guide.y.unaryExpr(take).eval();
+  }
   if (plot.has_log_y && plot.y_max > plot.y_min) {
     plot.y_min = take(plot.y_min);
     plot.y_max = take(plot.y_max);
@@ -292,11 +296,11 @@ std::string draw_svg(const Plot& given) {
   const double title_bottom = plot.title.empty() ? 20 : 44;
   const double legend_height = draw_legend(plot, title_bottom + 14, legend);
   Frame f{kLeft, title_bottom + legend_height + 8, kWidth - kLeft - kRight, kPlotHeight, {}, {}};
-  f.x = plot.has_log_x ? make_log_axis(x.min, x.max) : make_axis(x.min, x.max, 9, false);
+  f.x = plot.has_log_x ? make_log_axis(x.min, x.max) : make_axis(x.min, x.max, 9, false, plot.x_step);
   f.y = plot.has_log_y ? (is_given ? make_log_axis(plot.y_min, plot.y_max)
                                    : make_log_axis(y.min - 0.03 * (y.max - y.min), y.max + 0.03 * (y.max - y.min)))
-        : is_given     ? make_axis(plot.y_min, plot.y_max, 7, false)
-                       : make_axis(y.min, y.max, 7, true);
+        : is_given     ? make_axis(plot.y_min, plot.y_max, 7, false, plot.y_step)
+                       : make_axis(y.min, y.max, 7, true, plot.y_step);
 
   if (plot.is_equal) {
     const double unit = 1.08 * std::max((x.max - x.min) / f.width, (y.max - y.min) / f.height);

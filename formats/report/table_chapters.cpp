@@ -172,7 +172,7 @@ Chapter make_chapter(const CampaignTable& table) {
 Chapter make_chapter(const std::vector<SelectedMode>& modes, double total_cost, const std::string& file) {
   Chapter chapter{"selection", file, {{"total cost", format_value(total_cost)}}, {}, {}, {}, {}};
   HtmlTable table("Modes by component cost",
-                  {{"mode"}, {"frequency [1/T]"}, {"cost"}, {"share %"}, {"kept", true}, {"reason", true}});
+                  {{"mode"}, {"frequency [Hz]"}, {"cost"}, {"share %"}, {"kept", true}, {"reason", true}});
   double dropped = 0;
   for (const auto& m : modes) {
     table.add_row({std::to_string(m.mode), format_value(m.frequency_hz), format_value(m.cost), format_percent(m.share),

@@ -333,7 +333,7 @@ class PoleMarks(ProgramTest):
         self.assertEqual(len(re.findall(r"l9 9m0 -9l-9 9", svg)), poles + 1)
         self.assertEqual(len(re.findall(r'<circle [^>]*fill="none"', svg)), zeros + 1)
         self.assertNotRegex(svg, r'<circle [^>]*fill="#ffffff"')
-        self.assertRegex(svg, r">0\.\d+</text>")      # a ray of constant damping with its label
+        self.assertRegex(svg, r">\u03b6 0\.\d+</text>")      # a ray of constant damping with its label
         said = self.bough("plot", "l.h5", "--kind", "poles", "--term").stdout
         self.assertRegex(said, "×|⊗")
         self.assertRegex(said, "×  poles")

@@ -427,12 +427,12 @@ class Page(ProgramTest):
         for way in range(4):
             b.run(CHOOSE_COLORS % way)
             shown.add(b.run(HASH % ".scene"))
-            self.assertEqual("Colours: " in b.run("document.querySelector('.modes .note').textContent"), way != 1)
+            self.assertEqual(b.run("!document.querySelector('.modes .color-bar').hidden"), way != 1)
         self.assertGreaterEqual(len(shown), 3)  # of equal elements both energies look the same
         self.picture("modes-energy")
         with h5py.File(self.path("modes.h5")) as f:
             energy = f["energies/strain"][:, 0] / f["energies/total_strain"][0]
-        self.assertIn(f"{100 * energy.max():.4g}", b.run(f"({CHOOSE_COLORS % 2}, document.querySelector('.modes .note').textContent)"))
+        self.assertIn(f"{100 * energy.max():.4g}", b.run(f"({CHOOSE_COLORS % 2}, document.querySelector('.modes .color-bar').textContent)"))
         levels = np.array(b.run("[...document.querySelector('[data-view=modes]').view.energy.levels]"))
         np.testing.assert_allclose(np.sort(levels), np.sort(energy / energy.max()), atol=1e-4)
         self.check_sound()
@@ -461,7 +461,7 @@ class Page(ProgramTest):
             b.run(CHOOSE_COLORS % way)
             b.run(f"document.querySelector('[data-view=motion]').view.set_time({time[20]})")
             shown.add(b.run(HASH % ".scene"))
-            self.assertEqual("Colours: " in b.run("document.querySelector('.motion').textContent"), way > 0)
+            self.assertEqual(b.run("!document.querySelector('.motion .color-bar').hidden"), way > 0)
         self.assertGreaterEqual(len(shown), 3)
         b.run(CHOOSE_COLORS % 2)
         view = "document.querySelector('[data-view=motion]').view"

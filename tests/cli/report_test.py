@@ -135,7 +135,7 @@ class Report(ProgramTest):
                     self.assertLess(np.abs(whole).max(), 1e-9 * f["energy/kinetic"][:].max())
                 else:
                     whole = np.asarray(f[channel["path"]]).reshape(count, -1)[::channel["stride"]]
-                    self.assertEqual(channel["dims"], f[channel["path"]].attrs["dims"])
+                    self.assertEqual(channel["unit"] or "1", f[channel["path"]].attrs.get("units") or f[channel["path"]].attrs["dims"])
                 for k, column in enumerate(channel["columns"]):
                     error = np.abs(unpack(column, len(whole)) - whole[:, k]).max()
                     self.assertLessEqual(error, 0.51 * column["step"] + 1e-15 * np.abs(whole[:, k]).max(), channel["path"])
@@ -207,7 +207,7 @@ class Report(ProgramTest):
             M, K = f["modal/mass"][:], f["modal/stiffness"][:]
             gamma2, gamma4 = f["integrals/exact/gamma2"][:], f["integrals/exact/gamma4"][:]
             for axis, name in enumerate("xyz"):
-                for row in page.get_table(f"Frequencies [1/T], spin about {name}")[1:]:
+                for row in page.get_table(f"Frequencies [Hz], spin about {name}")[1:]:
                     rate = float(row[0])
                     G = gamma2[:, :, axis].T
                     S = gamma4[:, :, axis, axis]
@@ -230,7 +230,7 @@ class Report(ProgramTest):
         axis = int(np.argmax(np.abs(phi[-1, :3, 0])))  # bending along this axis ...
         other = ({0, 1, 2} - {along, axis}).pop()      # ... and spin about either of the two across the beam
         for spin, factor in [(axis, 1.193336), (other, 0.193336)]:
-            rows = page.get_table(f"Frequencies [1/T], spin about {'xyz'[spin]}")[1:]
+            rows = page.get_table(f"Frequencies [Hz], spin about {'xyz'[spin]}")[1:]
             rate = float(rows[1][0])
             expected = np.sqrt(first**2 + factor * (rate / (2 * np.pi))**2)
             self.assertTrue(any(abs(float(c) - expected) < 2e-4 * expected for c in rows[1][1:]), (spin, expected, rows[1]))
@@ -352,10 +352,10 @@ class Report(ProgramTest):
                 i = names.index(pair["output"])
                 H = np.array([(C @ np.linalg.solve(1j * x * np.eye(len(A)) - A, B) + D)[i, 0] for x in w])
                 decibel = np.frombuffer(base64.b64decode(pair["decibel"]), "<f8")
-                if np.abs(H).max() > 0:
-                    np.testing.assert_allclose(10**(decibel / 20), np.abs(H), rtol=1e-8)
-                    degrees = np.frombuffer(base64.b64decode(pair["degrees"]), "<f8")
-                    np.testing.assert_allclose(np.exp(1j * np.radians(degrees)), H / np.abs(H), atol=1e-7)
+                drawn = np.isfinite(decibel)    # above the floor, 1e-12 of the largest entry
+                np.testing.assert_allclose(10**(decibel[drawn] / 20), np.abs(H[drawn]), rtol=1e-8)
+                degrees = np.frombuffer(base64.b64decode(pair["degrees"]), "<f8")
+                np.testing.assert_allclose(np.exp(1j * np.radians(degrees[drawn])), H[drawn] / np.abs(H[drawn]), atol=1e-7)
             self.assertEqual(len(page.get_table("Poles")) - 1, len(A))
 
     def test_comparison_selection_campaign(self):
@@ -481,8 +481,9 @@ class Report(ProgramTest):
         for pair in data["pairs"]:
             h = H[:, outputs.index(pair["output"]), inputs.index(pair["input"])]
             decibel = np.frombuffer(base64.b64decode(pair["decibel"]), "<f8")
-            if np.abs(h).max() > 0:
-                np.testing.assert_allclose(10**(decibel / 20), np.abs(h), rtol=1e-10)
+            drawn = np.abs(h) > 1e-12 * np.abs(H).max()
+            np.testing.assert_array_equal(np.isfinite(decibel), drawn)
+            np.testing.assert_allclose(10**(decibel[drawn] / 20), np.abs(h[drawn]), rtol=1e-10)
         # 2 s² + kd s + 8: unstable for negative kd, real poles from 8 on, of 12 at -5.236 and -0.764.
         self.write("axis.toml", AXIS)
         self.bough("linearize", "axis.toml", "--sweep", "kd=-3:12:16", "-o", "sweep.h5")
@@ -495,9 +496,13 @@ class Report(ProgramTest):
         self.assertAlmostEqual(float(rows[1][4]), -100 * 3 / 8, places=3)
         self.bough("plot", "sweep.h5", "--kind", "locus", "-o", "locus.svg")
         with open(self.path("locus.svg"), encoding="utf-8") as f:
-            strokes = re.findall(r'<path d="M[^h"]*" fill="none" stroke="([^"]+)"', f.read())
+            text = f.read()
+        strokes = re.findall(r'<path d="M[^h"]*" fill="none" stroke="([^"]+)" stroke-width="1.8" stroke-linejoin', text)
         self.assertEqual(len(strokes), 2)
         self.assertEqual(strokes[0], strokes[1])  # of a pair
+        # Crosses at the two poles of the first value, one in the legend; lines of damping and of frequency below them.
+        self.assertEqual(text.count('l9 9m0 -9l-9 9'), 3)
+        self.assertIn("\u03b6 ", text)
 
     def test_pictures_of_crowded_samples(self):
         """Most samples crowd about a resonance, as those of `response` do: the picture keeps the others all the same."""

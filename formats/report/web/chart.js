@@ -1,5 +1,5 @@
-import { el, get_css, get_style, make_button, on_theme, save_blob } from "./page_parts.js";
-import { find_index, find_nearest, format_number, make_log_ticks, make_ticks } from "./numbers.js";
+import { el, get_css, get_style, make_button, make_file_name, on_theme, save_blob } from "./page_parts.js";
+import { find_index, find_nearest, format_number, make_log_ticks, make_step_ticks, make_ticks } from "./numbers.js";
 
 // Charts that share their window of x and their cursor.
 export class Link {
@@ -47,7 +47,7 @@ function stroke_mark(g, kind, x, y, size) {
 }
 
 // Curves and points on a canvas. options: series [{ name, x, y, points, tip(i) }] (x ascending for curves), x_label,
-// y_label, x_log, y_log, marks [{ x, label }], guides [{ label, x, y }], notes [{ x, y, text }], link, equal (one scale for both axes), height.
+// y_label, x_log, y_log, marks [{ x, label }], guides [{ label, x, y }], y_step (ticks at its multiples), file (name of the picture), notes [{ x, y, text }], link, equal (one scale for both axes), height.
 export class Chart {
   constructor(options) {
     Object.assign(this, { series: [], marks: [], guides: [], notes: [], x_log: false, y_log: false, equal: false, height: 280 }, options);
@@ -122,7 +122,7 @@ export class Chart {
     }
     if (this.equal && this.guides.length > 0) [x0, x1] = [Math.min(x0, -1), Math.max(x1, 1)];  // the unit circle
     if (!(x0 <= x1)) [x0, x1] = [0, 1];
-    const has_points = visible.some((s) => s.points);
+    const has_points = visible.some((s) => s.points) && visible.every((s) => s.points);
     if (x0 === x1 || has_points) {
       const pad = 0.05 * (x1 - x0) || 0.1 * Math.abs(x0) || 1;
       [x0, x1] = [x0 - pad, x1 + pad];
@@ -205,7 +205,7 @@ export class Chart {
     const { frame: f, range: r } = this;
     const text = get_css("--text"), grid = get_css("--grid");
     const xs = (this.x_log ? make_log_ticks : make_ticks)(r.x0, r.x1, Math.max(3, f.width / 90));
-    const ys = (this.y_log ? make_log_ticks : make_ticks)(r.y0, r.y1, Math.max(3, f.height / 45));
+    const ys = this.y_step ? make_step_ticks(r.y0, r.y1, Math.max(3, f.height / 30), this.y_step) : (this.y_log ? make_log_ticks : make_ticks)(r.y0, r.y1, Math.max(3, f.height / 45));
     g.font = "12px " + get_css("--font");
     g.lineWidth = 1;
     g.strokeStyle = grid;
@@ -284,12 +284,12 @@ export class Chart {
       g.beginPath();
       let last = null;
       for (let i = 0; i < guide.x.length; ++i) {
-        const x = this.map_x(guide.x[i]), y = this.map_y(guide.y[i]);
+        const x = this.map_x(this.to_x(guide.x[i])), y = this.map_y(this.to_y(guide.y[i]));
         i === 0 ? g.moveTo(x, y) : g.lineTo(x, y);
         if (2 * i <= guide.x.length && x >= left && x < left + width && y >= top && y < top + height) last = [x, y];
         // A ray leaves the frame at the first side that it meets.
         if (guide.x.length === 2 && i === 1) {
-          const from = [this.map_x(guide.x[0]), this.map_y(guide.y[0])], to = [x, y];
+          const from = [this.map_x(this.to_x(guide.x[0])), this.map_y(this.to_y(guide.y[0]))], to = [x, y];
           const share = Math.min(to[0] < left ? (from[0] - left) / (from[0] - to[0]) : 1, to[1] < top ? (from[1] - top) / (from[1] - to[1]) : 1);
           last = share > 0 ? [from[0] + share * (to[0] - from[0]), from[1] + share * (to[1] - from[1])] : null;
         }
@@ -386,7 +386,7 @@ export class Chart {
     const g = this.overlay.getContext("2d");
     g.setTransform(scale, 0, 0, scale, 0, 0);
     g.clearRect(0, 0, this.overlay.width, this.overlay.height);
-    if (!this.frame || x === null || this.series.some((s) => s.points)) return;
+    if (!this.frame || x === null || this.series.every((s) => s.points)) return;
     const px = this.map_x(this.to_x(x));
     if (px < this.frame.left || px > this.frame.left + this.frame.width) return;
     g.strokeStyle = get_css("--text");
@@ -396,7 +396,7 @@ export class Chart {
     g.lineTo(px, this.frame.top + this.frame.height);
     g.stroke();
     for (const s of this.get_visible()) {
-      if (s.x.length === 0) continue;
+      if (s.x.length === 0 || s.points) continue;
       const i = find_nearest(s.x, x);
       this.values[s.index].textContent = " " + format_number(s.y[i], 5);
       g.fillStyle = get_style(s.style ?? s.index).color;
@@ -459,6 +459,10 @@ export class Chart {
       // The box has done its work, and the cursors of before stand elsewhere now.
       this.link.set_cursor(null, this);
     });
+    this.overlay.addEventListener("pointercancel", () => {
+      start = null;
+      this.draw_cursor(null);
+    });
     this.overlay.addEventListener("pointerleave", () => {
       this.tip.hidden = true;
       if (!start) this.link.set_cursor(null, this);
@@ -501,12 +505,50 @@ export class Chart {
     this.tip.style.top = at.y + 12 + "px";
   }
 
+  // The picture with its title and legend, named after its content.
   save() {
-    const sheet = el("canvas", { width: this.canvas.width, height: this.canvas.height });
-    const g = sheet.getContext("2d");
+    const scale = devicePixelRatio || 1, width = this.canvas.width / scale, font = get_css("--font");
+    const title = this.title || this.y_label || "";
+    const entries = this.get_visible().filter((s) => s.name);
+    const sheet = el("canvas"), g = sheet.getContext("2d");
+    g.font = "12px " + font;
+    const rows = [[]];
+    let x = 10;
+    for (const s of entries) {
+      const size = 34 + g.measureText(s.name).width + 18;
+      if (x + size > width && rows[rows.length - 1].length > 0) {
+        rows.push([]);
+        x = 10;
+      }
+      rows[rows.length - 1].push([s, x]);
+      x += size;
+    }
+    const head = 26 + (entries.length > 0 ? 20 * rows.length : 0);
+    sheet.width = this.canvas.width;
+    sheet.height = this.canvas.height + Math.round(head * scale);
     g.fillStyle = get_css("--back");
     g.fillRect(0, 0, sheet.width, sheet.height);
-    g.drawImage(this.canvas, 0, 0);
-    sheet.toBlob((blob) => save_blob(blob, "chart.png"));
+    g.drawImage(this.canvas, 0, Math.round(head * scale));
+    g.setTransform(scale, 0, 0, scale, 0, 0);
+    g.fillStyle = get_css("--text");
+    g.font = "600 14px " + font;
+    g.fillText(title, 10, 18);
+    g.font = "12px " + font;
+    rows.forEach((row, k) => row.forEach(([s, at]) => {
+      const style = get_style(s.style ?? s.index), y = 36 + 20 * k;
+      g.strokeStyle = style.color;
+      g.lineWidth = 2;
+      g.setLineDash(s.points ? [] : style.dash);
+      if (s.points) stroke_mark(g, s.points, at + 14, y - 4, 3.5);
+      else {
+        g.beginPath();
+        g.moveTo(at, y - 4);
+        g.lineTo(at + 28, y - 4);
+        g.stroke();
+      }
+      g.setLineDash([]);
+      g.fillText(s.name, at + 34, y);
+    }));
+    sheet.toBlob((blob) => save_blob(blob, make_file_name(title || "chart", "png")));
   }
 }

@@ -1,3 +1,4 @@
+import { format_number } from "./numbers.js";
 import { unpack_floats, unpack_indices, unpack_shorts } from "./unpack.js";
 
 // A body as formats/report/drawing.hpp writes it, and its points when its modes move.
@@ -7,6 +8,7 @@ export class Drawing {
     this.triangles = unpack_indices(json.triangles);
     this.edges = unpack_indices(json.edges);
     this.ghosts = unpack_indices(json.ghosts);
+    this.ids = json.id ? unpack_indices(json.id) : new Uint32Array();  // node of each point
     this.packed = json.shapes;
     this.shapes = new Array(json.shapes.length);
     this.points = new Float32Array(this.xyz);
@@ -51,6 +53,12 @@ export class Drawing {
       this.shapes[j] = Float32Array.from(shorts, (v) => (v * largest) / 32767);
     }
     return this.shapes[j];
+  }
+
+  // "node 41: (8, 0, 0), displacement 0.57": `value` is what the colours show.
+  describe(k, before, value) {
+    const place = Array.from(this.xyz.slice(3 * k, 3 * k + 3), (v) => format_number(v, 5)).join(", ");
+    return `${before}node ${this.ids[k]}: (${place}), ${value}`;
   }
 
   // The largest displacement of a point in shape j with coefficient 1.

@@ -1,10 +1,11 @@
 import { Chart, Link } from "./chart.js";
-import { el, make_button, make_check, make_select } from "./page_parts.js";
-import { find_index, format_number } from "./numbers.js";
+import { el, make_button, make_check, make_file_name, make_select } from "./page_parts.js";
+import { find_index, format_number, label_frequency } from "./numbers.js";
 import { calc_spectrum } from "./spectrum.js";
 import { thin_time, unpack_column, unpack_time } from "./unpack.js";
 
-const with_dims = (what, dims) => (dims && dims !== "1" ? `${what} [${dims}]` : what);
+const with_unit = (what, unit) => (unit && unit !== "1" ? `${what} [${unit}]`.trimStart() : what);
+const label_time = (run) => with_unit("time", run.data.time_unit);
 
 // The channels of one run, unpacked when they are first asked for.
 export class Run {
@@ -29,16 +30,43 @@ export class Run {
   make_series(channel, index, name) {
     return { name, x: this.get_time(channel), y: this.get_values(channel, index) };
   }
+  list_series(channel, index, name) {
+    return [this.make_series(channel, index, name)];
+  }
+}
+
+const kColorCount = 7;
+
+// Several runs whose curves share charts: the channels of all of them, each with a curve for every run that has it.
+export class RunSet {
+  constructor(runs) {
+    this.runs = runs;  // [{ name, run }]
+    this.link = new Link();
+    this.marks = [];
+    const channels = new Map();
+    for (const { run } of runs) for (const c of run.data.channels) if (!channels.has(c.path)) channels.set(c.path, c);
+    this.data = { channels: [...channels.values()], time_unit: runs[0].run.data.time_unit };
+  }
+  // One colour for each run; of several components, for each component, and dashes for each run.
+  list_series(channel, index, name) {
+    const is_single = channel.columns.length === 1;
+    return this.runs.flatMap(({ name: of, run }, r) => {
+      const own = run.by_path.get(channel.path);
+      if (!own || index >= own.columns.length) return [];
+      return [{ ...run.make_series(own, index, is_single ? of : `${of} ${name}`), style: is_single ? r : index + kColorCount * r }];
+    });
+  }
 }
 
 const short_name = (path) => path.replace(/^\/sensors\//, "").replace(/^\//, "");
 const name_column = (channel, i) => short_name(channel.path) + (channel.columns[i].name ? ":" + channel.columns[i].name : "");
 
-// A chart of whole channels that goes with the run's others.
+// A chart of whole channels that goes with the run's others. Components that are noise are left out.
 export function make_fixed_chart(run, title, paths) {
   const channels = paths.map((p) => run.by_path.get(p)).filter(Boolean);
-  const series = channels.flatMap((c) => c.columns.map((column, i) => run.make_series(c, i, channels.length > 1 || !column.name ? c.path.split("/").pop() : column.name)));
-  return new Chart({ title, series, marks: run.marks, link: run.link, x_label: "time [T]", y_label: with_dims(title.toLowerCase(), channels[0]?.dims), height: 240 });
+  const series = channels.flatMap((c) => c.columns.map((column, i) => [column, i]).filter(([column]) => !column.noise)
+    .map(([column, i]) => run.make_series(c, i, channels.length > 1 || !column.name ? c.path.split("/").pop() : column.name)));
+  return new Chart({ title, series, marks: run.marks, link: run.link, x_label: label_time(run), y_label: with_unit(title.toLowerCase(), channels[0]?.columns[0].unit), height: 240 });
 }
 
 // Channel tree, charts, spectra, statistics of the window.
@@ -46,7 +74,7 @@ export class HistoryView {
   constructor(run) {
     this.run = run;
     this.chosen = new Map();  // "path:index" -> [channel, index]
-    this.is_log = this.is_spectrum = this.is_by_dims = false;
+    this.is_log = this.is_spectrum = this.is_by_unit = false;
     this.charts_host = el("div", { class: "charts" });
     this.statistics = el("table", { class: "statistics" });
     this.spectrum_link = new Link();
@@ -64,7 +92,7 @@ export class HistoryView {
     let count = 0;
     for (const channel of first) {
       if (count > 0 && count + channel.columns.length > 14) break;
-      channel.columns.forEach((_, i) => this.choose(channel, i, true));
+      channel.columns.forEach((column, i) => column.noise || this.choose(channel, i, true));
       count += channel.columns.length;
     }
   }
@@ -118,7 +146,7 @@ export class HistoryView {
     return el("div", { class: "tools" },
       make_check("log y", false, (on) => { this.is_log = on; this.rebuild(); }),
       make_check("spectrum of the window", false, (on) => { this.is_spectrum = on; this.rebuild(); }),
-      make_select("one chart for", ["each channel", "each dimension"], (i) => { this.is_by_dims = i === 1; this.rebuild(); }).list,
+      make_select("one chart for", ["each channel", "each unit"], (i) => { this.is_by_unit = i === 1; this.rebuild(); }).list,
       make_button("whole time", "Reset the zoom (double click)", () => this.run.link.charts[0]?.reset()),
       make_button("none", "Take all curves away", () => { for (const [c, i] of [...this.chosen.values()]) this.choose(c, i, false); this.rebuild(); }),
       make_button("CSV", "Save the samples in the window", () => this.save_csv()));
@@ -129,7 +157,7 @@ export class HistoryView {
     this.spectrum_link.charts = [];
     const groups = new Map();
     for (const [channel, i] of this.chosen.values()) {
-      const key = this.is_by_dims ? channel.dims : channel.path;
+      const key = this.is_by_unit ? channel.columns[i].unit : channel.path;
       if (!groups.has(key)) groups.set(key, []);
       groups.get(key).push([channel, i]);
     }
@@ -137,12 +165,20 @@ export class HistoryView {
     this.spectra = [];
     for (const [, members] of groups) {
       const same = members.every(([c]) => c === members[0][0]);
+      const units = new Set(members.map(([c, i]) => c.columns[i].unit));
       const title = same ? short_name(members[0][0].path) : "";
-      const series = members.map(([c, i]) => this.run.make_series(c, i, same ? c.columns[i].name || short_name(c.path) : name_column(c, i)));
-      const chart = new Chart({ title, series, marks: this.run.marks, link: this.run.link, y_log: this.is_log, x_label: "time [T]", y_label: with_dims(this.is_log ? "|value|" : "value", members[0][0].dims) });
+      const unit = units.size === 1 ? [...units][0] : "";
+      const name = (c, i) => {
+        const own = same ? c.columns[i].name || short_name(c.path) : name_column(c, i);
+        return units.size === 1 ? own : with_unit(own, c.columns[i].unit);
+      };
+      const series = members.flatMap(([c, i]) => this.run.list_series(c, i, name(c, i)));
+      const what = same ? (members.length === 1 ? name_column(...members[0]) : title) : "";
+      const make_label = (wrap) => with_unit(what ? wrap(what) : "", unit) || "value";
+      const chart = new Chart({ title, series, marks: this.run.marks, link: this.run.link, y_log: this.is_log, x_label: label_time(this.run), y_label: make_label(this.is_log ? (w) => `|${w}|` : (w) => w) });
       this.charts.push(chart);
       if (this.is_spectrum)
-        this.spectra.push(new Chart({ title: "spectrum of " + (title || "[" + members[0][0].dims + "]"), link: this.spectrum_link, series: [], x_label: "frequency, cycles [1/T]", y_label: with_dims("amplitude", members[0][0].dims), y_log: this.is_log, height: 220 }));
+        this.spectra.push(new Chart({ title: "spectrum of " + (title || with_unit("channels", unit)), link: this.spectrum_link, series: [], x_label: label_frequency(this.run.data.time_unit), y_label: make_label((w) => "amplitude of " + w), y_log: this.is_log, height: 220 }));
     }
     this.charts_host.replaceChildren(...this.charts.flatMap((c, k) => (this.spectra[k] ? [c.element, this.spectra[k].element] : [c.element])));
     if (this.charts.length === 0) this.charts_host.append(el("p", { class: "note" }, "Choose channels on the left."));
@@ -158,13 +194,12 @@ export class HistoryView {
     this.charts.forEach((chart, k) => {
       this.spectra[k]?.set_series(chart.series.map((s) => {
         const { frequency, amplitude } = calc_spectrum(s.x, s.y, ...this.find_window(s.x));
-        return { name: s.name, x: frequency, y: amplitude };
+        return { name: s.name, style: s.style, x: frequency, y: amplitude };
       }));
     });
     const window = this.run.link.window;
-    const head = el("tr", {}, ...["channel", "min", "max", "max − min", "mean", "rms", "samples"].map((t, i) => el("th", i ? {} : { class: "text" }, t)));
-    const rows = [...this.chosen.values()].map(([channel, i]) => {
-      const x = this.run.get_time(channel), y = this.run.get_values(channel, i);
+    const head = el("tr", {}, ...["channel", "unit", "min", "max", "max − min", "mean", "rms", "samples"].map((t, i) => el("th", i > 1 ? {} : { class: "text" }, t)));
+    const rows = [...this.chosen.values()].flatMap(([channel, i]) => this.run.list_series(channel, i, name_column(channel, i)).map(({ x, y, name }) => {
       const [from, to] = this.find_window(x);
       let low = Infinity, high = -Infinity, sum = 0, square = 0, count = 0;
       for (let k = from; k < to; ++k) {
@@ -177,24 +212,34 @@ export class HistoryView {
         ++count;
       }
       const cells = [low, high, high - low, sum / count, Math.sqrt(square / count)].map((v) => el("td", {}, format_number(v)));
-      return el("tr", {}, el("td", { class: "text" }, name_column(channel, i)), ...cells, el("td", {}, String(count)));
-    });
+      const own = this.run.runs && channel.columns.length === 1 ? `${name} ${name_column(channel, i)}` : name;
+      return el("tr", {}, el("td", { class: "text" }, own), el("td", { class: "text" }, channel.columns[i].unit), ...cells, el("td", {}, String(count)));
+    }));
     const range = window ? `${format_number(window[0])} to ${format_number(window[1])}` : "the whole time";
     this.statistics.replaceChildren(el("caption", {}, "In the window: " + range), el("thead", {}, head), el("tbody", {}, ...rows));
   }
 
+  // One table; of several runs one below the other, with the run before the time.
   save_csv() {
     const members = [...this.chosen.values()];
     if (members.length === 0) return;
-    const stride = Math.max(...members.map(([c]) => c.stride));
-    const time = thin_time(this.run.time, stride);
-    const [from, to] = this.find_window(time);
-    const lines = ["time," + members.map(([c, i]) => name_column(c, i)).join(",")];
-    for (let k = from; k < to; ++k)
-      lines.push(time[k] + "," + members.map(([c, i]) => this.run.get_values(c, i)[Math.round((k * stride) / c.stride)]).join(","));
-    save_text(lines.join("\n") + "\n", "window.csv");
+    const runs = this.run.runs ?? [{ name: "", run: this.run }], has_many = runs.length > 1;
+    const has_labels = !["", "T"].includes(this.run.data.time_unit);
+    const head = (name, unit) => quote(has_labels ? with_unit(name, unit) : name);
+    const lines = [[...(has_many ? ["run"] : []), head("time", this.run.data.time_unit), ...members.map(([c, i]) => head(name_column(c, i), c.columns[i].unit))].join(",")];
+    for (const { name, run } of runs) {
+      const own = members.map(([c]) => run.by_path.get(c.path));
+      const stride = Math.max(1, ...own.map((c) => c?.stride ?? 1));
+      const time = thin_time(run.time, stride);
+      const [from, to] = this.find_window(time);
+      for (let k = from; k < to; ++k)
+        lines.push([...(has_many ? [quote(name)] : []), time[k], ...members.map(([, i], m) => (own[m] ? run.get_values(own[m], i)[Math.round((k * stride) / own[m].stride)] : ""))].join(","));
+    }
+    save_text(lines.join("\n") + "\n", make_file_name([...new Set(members.map(([c]) => short_name(c.path)))].slice(0, 4).join("-"), "csv"));
   }
 }
+
+const quote = (text) => (/[",]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text);
 
 function save_text(text, name) {
   const link = el("a", { href: URL.createObjectURL(new Blob([text], { type: "text/csv" })), download: name });

@@ -5,7 +5,7 @@ import { unpack_doubles } from "./unpack.js";
 
 // The s plane, or the z plane of a sampled model, with lines of constant damping.
 export function make_poles_chart({ poles, zeros, plane }) {
-  const tip = (i) => `${poles.mode[i]}: ${format_number(poles.real[i], 5)} ${poles.imag[i] < 0 ? "−" : "+"} ${format_number(Math.abs(poles.imag[i]), 5)}j, ${format_number(poles.frequency[i], 5)} cycles, damping ${format_number(100 * poles.damping[i], 4)} %`;
+  const tip = (i) => `${poles.mode[i]}: ${format_number(poles.real[i], 5)} ${poles.imag[i] < 0 ? "−" : "+"} ${format_number(Math.abs(poles.imag[i]), 5)}j, ${format_number(poles.frequency[i], 5)} Hz, damping ${format_number(100 * poles.damping[i], 4)} %`;
   const series = [{ name: "poles", x: Float64Array.from(poles.x), y: Float64Array.from(poles.y), points: "cross", tip }];
   if (zeros.real.length > 0)
     series.push({ name: "zeros", x: Float64Array.from(zeros.real), y: Float64Array.from(zeros.imag), points: "circle", tip: (i) => `zero: ${format_number(zeros.real[i], 5)}, ${format_number(zeros.imag[i], 5)}j` });
@@ -17,12 +17,12 @@ export class BodeView {
   constructor(data) {
     this.data = data;
     this.frequency = unpack_doubles(data.frequency);
-    this.pairs = data.pairs.map((p) => ({ name: `${p.output} over ${p.input}`, decibel: unpack_doubles(p.decibel), degrees: unpack_doubles(p.degrees) }));
+    this.pairs = data.pairs.map((p) => ({ name: p.name, diagrams: p.diagrams, decibel: unpack_doubles(p.decibel), degrees: unpack_doubles(p.degrees) }));
     this.chosen = new Set([0]);
     const link = new Link();
-    const make = (y_label) => new Chart({ series: [], link, x_log: true, x_label: "frequency, cycles [1/T]", y_label, height: 250 });
+    const make = (y_label) => new Chart({ series: [], link, x_log: true, x_label: "frequency [Hz]", y_label, height: 250 });
     this.magnitude = make("magnitude [dB]");
-    this.phase = make("phase [degrees]");
+    this.phase = Object.assign(make("phase [degrees]"), { y_step: 45 });
     const boxes = this.pairs.map((p, k) => make_check(p.name, k === 0, (on) => {
       if (on) this.chosen.add(k);
       else this.chosen.delete(k);
@@ -33,9 +33,14 @@ export class BodeView {
   }
 
   update() {
-    const pick = (key) => [...this.chosen].sort((a, b) => a - b).map((k) => ({ name: this.pairs[k].name, style: k, x: this.frequency, y: this.pairs[k][key] }));
-    this.magnitude.set_series(pick("decibel"));
-    this.phase.set_series(pick("degrees"));
+    const shown = [...this.chosen].sort((a, b) => a - b);
+    const pick = (key, d) => [
+      ...shown.map((k) => ({ name: this.pairs[k].name, style: k, x: this.frequency, y: this.pairs[k][key] })),
+      ...shown.flatMap((k) => this.pairs[k].diagrams[d].marks.map((m) => ({ name: m.label, style: k + d + 1, points: "circle", x: Float64Array.from(m.x), y: Float64Array.from(m.y), tip: () => m.label })))];
+    [this.magnitude, this.phase].forEach((chart, d) => {
+      chart.guides = shown.flatMap((k) => this.pairs[k].diagrams[d].guides);
+      chart.set_series(pick(["decibel", "degrees"][d], d));
+    });
   }
 }
 

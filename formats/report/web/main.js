@@ -1,5 +1,5 @@
 import { set_printing } from "./chart.js";
-import { HistoryView, Run, make_fixed_chart } from "./history.js";
+import { HistoryView, Run, RunSet, make_fixed_chart } from "./history.js";
 import { BodeView, ScatterView, make_poles_chart } from "./linear_view.js";
 import { ModesView } from "./modes_view.js";
 import { MotionView } from "./motion_view.js";
@@ -8,9 +8,10 @@ import { el, make_theme_button, set_theme } from "./page_parts.js";
 // What stands in the place of the static picture: data-view of the element -> an object with `element`.
 const kViews = {
   history: (chapter) => new HistoryView(chapter.run),
+  overlay: () => new HistoryView(new RunSet([...document.querySelectorAll('.chapter[data-kind="results"]')].map((section) => ({ name: section.dataset.title, run: by_section.get(section).run })))),
   motion: (chapter) => new MotionView(chapter.run),
   energy: (chapter) => make_fixed_chart(chapter.run, "Energy", ["kinetic", "strain", "potential", "work", "dissipated"].map((p) => "/energy/" + p)),
-  balance: (chapter) => make_fixed_chart(chapter.run, "What the balance lacks", ["/energy/balance"]),
+  balance: (chapter) => make_fixed_chart(chapter.run, "Error of the energy balance", ["/energy/balance"]),
   "momentum-linear": (chapter) => make_fixed_chart(chapter.run, "Linear momentum", ["/momentum/linear"]),
   "momentum-angular": (chapter) => make_fixed_chart(chapter.run, "Angular momentum", ["/momentum/angular"]),
   modes: (chapter) => new ModesView(chapter.data),
@@ -48,7 +49,7 @@ function build(place, chapter, failures) {
 
 document.querySelector("header").append(make_theme_button());
 const failures = [];
-const chapters = new Map();
+const chapters = new Map(), by_section = new Map();
 const watcher = new IntersectionObserver((entries) => {
   for (const entry of entries) {
     if (!entry.isIntersecting) continue;
@@ -61,6 +62,7 @@ for (const section of document.querySelectorAll(".chapter")) {
   const data = section.querySelector(":scope > script.data");
   if (!data) continue;
   const chapter = new ReportChapter(data.textContent);
+  by_section.set(section, chapter);
   for (const place of section.querySelectorAll(".live")) {
     chapters.set(place, chapter);
     places.push(place);

@@ -1,6 +1,6 @@
 import { Box, Drawing } from "./drawing.js";
 import { format_number } from "./numbers.js";
-import { el, get_css, make_button, make_check, make_select, make_slider } from "./page_parts.js";
+import { el, get_css, make_button, make_check, make_color_bar, make_select, make_slider } from "./page_parts.js";
 import { Viewer, make_triad } from "./viewer.js";
 
 const kColorings = ["displacement", "nothing", "strain energy", "strain energy density"];
@@ -19,7 +19,7 @@ export class ModesView {
     const count = data.drawing.shapes.length;
     this.names = data.names;
     const names = data.names?.slice(0, count) ?? Array.from({ length: count }, (_, j) => `${j + 1}: ${format_number(data.frequency[j] ?? NaN, 5)}${data.kinds[j] && data.kinds[j] !== "normal" ? " " + data.kinds[j] : ""}`);
-    this.picker = make_select(data.names ? "deformed by" : data.buckling ? "load factor" : "mode, frequency [1/T]", names, (j) => this.show(j));
+    this.picker = make_select(data.names ? "deformed by" : data.buckling ? "load factor" : "mode, frequency [Hz]", names, (j) => this.show(j));
     this.picker.list.classList.add("mode-picker");
     const step = (by) => () => this.show((this.mode + by + count) % count);
     this.box = new Box();
@@ -27,12 +27,13 @@ export class ModesView {
     this.play_button = make_button("▶ play", "Play or pause", () => this.play(!this.is_playing));
     this.play_button.classList.add("play");
     this.note = el("p", { class: "note" });
+    this.bar = make_color_bar();
     const tools = el("div", { class: "tools" }, this.picker, make_button("◀", "Mode before", step(-1)), make_button("▶", "Next mode", step(1)), this.play_button,
       make_slider("amplitude", { min: 0, max: 0.4, step: 0.005, value: 0.12 }, (v) => { this.amplitude = v; this.draw(); return Math.round(100 * v) + " %"; }),
       make_slider("speed", { min: 0.1, max: 3, step: 0.1, value: 0.5 }, (v) => { this.turns = v; return v + " /s"; }),
       make_check("undeformed", true, (on) => { this.has_overlay = on; this.draw(); }),
       make_select("colour by", kColorings.slice(0, this.drawing.elements ? 4 : 2), (i) => { this.color_by = i; this.show(this.mode); }), this.viewer.make_view_buttons());
-    this.element = el("div", { class: "modes" }, tools, this.viewer.element, el("div", { class: "ramp", "aria-hidden": "true" }), this.note);
+    this.element = el("div", { class: "modes" }, tools, this.viewer.element, this.bar.element, this.note);
     this.viewer.fit(this.box);
     this.show(0);
   }
@@ -43,8 +44,14 @@ export class ModesView {
     this.reach = this.drawing.get_reach(mode);
     this.energy = this.color_by > 1 ? this.drawing.get_levels(mode, this.color_by === 3) : null;
     const what = this.names ? this.names[mode][0].toUpperCase() + this.names[mode].slice(1) + ": largest displacement" : `Mode ${mode + 1}: largest displacement of its shape`;
-    const colors = ["none (dark) to largest displacement (bright)", "", `strain energy of each element, none (dark) to the largest (bright), ${format_number(100 * (this.energy?.largest ?? 0), 4)} % of the whole`, "strain energy per length, area or volume of each element, none (dark) to the largest of lines, of surfaces, of solids (bright)"][this.color_by];
-    this.note.textContent = `${what} ${format_number(this.reach)}, drawn as the amplitude's share of the size of the body. ${colors && `Colours: ${colors}. `}Axes: orange x, green y, blue z.`;
+    const label = this.names ? this.names[mode] : `mode ${mode + 1}`;
+    const number = (v) => format_number(v, 4), percent = (v) => format_number(100 * v, 4) + " %";
+    this.bar.element.hidden = this.color_by === 1;
+    if (this.color_by === 0) this.bar.update(0, this.reach, this.names ? "displacement" : "displacement of the shape", number);
+    if (this.color_by === 2) this.bar.update(0, this.energy.largest, "strain energy of each element, of the whole", percent);
+    if (this.color_by === 3) this.bar.update(0, 1, "strain energy per length, area or volume, of the largest of lines, of surfaces, of solids", percent);
+    this.viewer.name = `${label}${this.color_by > 0 ? " " + kColorings[this.color_by] : ""}`;
+    this.note.textContent = `${what} ${format_number(this.reach)}, drawn as the amplitude's share of the size of the body. A click names a node. Axes: orange x, green y, blue z.`;
     this.draw();
   }
 
@@ -70,6 +77,9 @@ export class ModesView {
     const { xyz, points, triangles, edges, ghosts } = this.drawing;
     const has_faces = triangles.length > 0;
     const body = { points, size: this.drawing.size, triangles, edges, ghosts, color: get_css("--body"), by_level: this.color_by === 0, dots: !has_faces };
+    const size_of = this.drawing.size, swing = scale > 0 ? scale : 1;
+    if (this.drawing.ids.length > 0)
+      Object.assign(body, { ids: this.drawing.ids, describe: (k) => this.drawing.describe(k, "", `displacement ${format_number(size_of[k] / swing, 4)}`) });
     if (this.energy) Object.assign(body, { elements: this.drawing.elements, levels: this.energy.levels });
     const things = [...make_triad([0, 0, 0], [[1, 0, 0], [0, 1, 0], [0, 0, 1]], 0.12 * size), body];
     if (this.has_overlay) things.unshift({ points: xyz, edges, color: get_css("--ghost"), alpha: 0.7, lift: -1e-3 });

@@ -1,6 +1,6 @@
 import { Box, Drawing } from "./drawing.js";
 import { find_index, format_number } from "./numbers.js";
-import { el, get_style, make_button, make_check, make_select, make_slider, save_blob } from "./page_parts.js";
+import { el, get_style, make_button, make_check, make_color_bar, make_select, make_slider, save_blob } from "./page_parts.js";
 import { SceneMarks, to_rotation, turn } from "./scene_marks.js";
 import { Viewer, make_triad } from "./viewer.js";
 
@@ -21,7 +21,7 @@ export class MotionView {
     this.color_by = 0;
     this.is_playing = false;
     this.marks = new SceneMarks(this);
-    this.viewer = new Viewer(460);
+    this.viewer = new Viewer("clamp(320px, calc(100vh - 24rem), 900px)");
     this.scrubber = el("input", { type: "range", class: "scrub", min: 0, max: 1000, step: 1, value: 0, "aria-label": "time" });
     this.scrubber.addEventListener("input", () => this.set_time(this.first + (this.scrubber.value / 1000) * (this.last - this.first)));
     this.clock = el("output", { class: "clock" });
@@ -41,8 +41,11 @@ export class MotionView {
       return el("span", { class: "entry" }, mark, " " + b.name);
     }));
     this.color_note = el("p", { class: "note" });
-    const help = el("p", { class: "note" }, "Black (white in the dark): hinges and their axes. Frames: orange x, green y, blue z. A click in a chart takes this view there.");
-    this.element = el("div", { class: "motion" }, tools, this.viewer.element, el("div", { class: "tools" }, this.scrubber, this.clock), this.color_note, names, this.marks.legend, this.marks.now, help);
+    this.bar = make_color_bar();
+    this.bar.element.hidden = true;
+    this.viewer.name = "motion";
+    const help = el("p", { class: "note" }, "Black (white in the dark): hinges and their axes. Frames: orange x, green y, blue z. A click in a chart takes this view there; a click in this view names a node.");
+    this.element = el("div", { class: "motion" }, tools, this.viewer.element, el("div", { class: "tools" }, this.scrubber, this.clock), this.bar.element, this.color_note, names, this.marks.legend, this.marks.now, help);
     run.link.on("pick", (time) => { this.play(false); this.set_time(time); });
     this.reach = this.find_reach();
     const box = this.find_box();
@@ -113,9 +116,16 @@ export class MotionView {
 
   set_colors() {
     this.most = this.color_by > 1 ? this.find_most(this.color_by === 3) : null;
-    this.color_note.textContent = ["", `Colours: displacement, none (dark) to the largest of the run (bright), ${format_number(this.reach)}.`,
-      `Colours: strain energy of each element, none (dark) to the largest of the run (bright), ${format_number(this.most?.[0] ?? 0)}.`,
-      "Colours: strain energy per length, area or volume, none (dark) to the largest of the run of lines, of surfaces, of solids (bright)."][this.color_by];
+    const number = (v) => format_number(v, 4), unit = (path) => {
+      const text = this.run.by_path.get(path)?.unit;
+      return text && text !== "1" ? ` [${text}]` : "";
+    };
+    this.bar.element.hidden = this.color_by === 0;
+    const moving = this.bodies.find((b) => b.is_drawn);
+    if (this.color_by === 1) this.bar.update(0, this.reach, "displacement" + unit(`/bodies/${moving?.name}/position`), number);
+    if (this.color_by === 2) this.bar.update(0, this.most[0], "strain energy of each element" + unit("/energy/strain"), number);
+    if (this.color_by === 3) this.bar.update(0, 1, "strain energy per length, area or volume, of the largest of the run", (v) => format_number(100 * v, 3) + " %");
+    this.color_note.textContent = this.color_by === 3 ? "Lines, surfaces and solids have a largest each." : "";
     this.draw();
   }
 
@@ -135,7 +145,7 @@ export class MotionView {
     this.time = Math.min(this.last, Math.max(this.first, time));
     const span = this.last - this.first || 1;
     this.scrubber.value = Math.round((1000 * (this.time - this.first)) / span);
-    this.clock.textContent = "t = " + format_number(this.time, 5);
+    this.clock.textContent = `t = ${format_number(this.time, 5)}${["", "T"].includes(this.run.data.time_unit) ? "" : " " + this.run.data.time_unit}`;
     this.run.link.set_cursor(this.time, this);
     this.draw();
   }
@@ -191,7 +201,8 @@ export class MotionView {
       // Boxes of rigid bodies are seen through, after what they may hold.
       const is_box = d.packed.length === 0 && d.triangles.length > 0;
       const colors = this.most && d.matrix && eta.length > 0 ? { elements: d.elements, levels: this.get_levels(d, eta) } : {};
-      (is_box ? boxes : things).push({ ...colors, alpha: is_box ? 0.4 : 1, points: body.world, size: d.size, triangles: d.triangles, edges: d.edges, ghosts: d.ghosts, color: get_style(k).color, by_level: this.color_by === 1 && eta.length > 0, dots: d.triangles.length === 0 });
+      const pick = d.ids.length > 0 ? { ids: d.ids, describe: (k) => d.describe(k, body.name + ", ", `displacement ${format_number(d.size[k] / (this.scale || 1), 4)}`) } : {};
+      (is_box ? boxes : things).push({ ...colors, ...pick, alpha: is_box ? 0.4 : 1, points: body.world, size: d.size, triangles: d.triangles, edges: d.edges, ghosts: d.ghosts, color: get_style(k).color, by_level: this.color_by === 1 && eta.length > 0, dots: d.triangles.length === 0 });
       if (this.has_frames) things.push(...make_triad(p, [0, 1, 2].map((c) => R.map((row) => row[c])), 0.06 * size));
     });
     this.viewer.marks = this.marks.make_things(places, this.time, size);

@@ -30,6 +30,15 @@ export function make_ticks(low, high, wanted) {
   return ticks;
 }
 
+// Ticks at multiples of `base`, doubled until there are not many more than `wanted`: 45 degrees, 90, 180.
+export function make_step_ticks(low, high, wanted, base) {
+  let step = base;
+  while ((high - low) / step > wanted + 1) step *= 2;
+  const ticks = [];
+  for (let k = Math.ceil(low / step - 1e-9); k * step <= high + 1e-9 * step; ++k) ticks.push({ value: k * step, label: String(k * step).replace("-", "−") });
+  return ticks;
+}
+
 // Decades between the logarithms low and high; few decades: 2 and 5 in between.
 export function make_log_ticks(low, high, wanted) {
   const every = Math.max(1, Math.ceil((high - low) / wanted));
@@ -60,4 +69,10 @@ export function find_nearest(x, value) {
   const i = find_index(x, value);
   if (i === 0) return 0;
   return i === x.length || value - x[i - 1] < x[i] - value ? i - 1 : i;
+}
+
+// "frequency [Hz]" for seconds or a time without a label.
+export function label_frequency(time_unit) {
+  if (!time_unit || time_unit === "s" || time_unit === "T") return "frequency [Hz]";
+  return time_unit === "ms" ? "frequency [kHz]" : `frequency [1/${time_unit}]`;
 }

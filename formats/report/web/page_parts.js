@@ -39,6 +39,17 @@ export function make_select(text, options, action) {
   return Object.assign(el("label", {}, text + " ", list), { list });
 }
 
+// Colours from `low` to `high` with numbers: update(low, high, what).
+export function make_color_bar() {
+  const what = el("span"), low = el("span"), middle = el("span"), high = el("span");
+  const element = el("div", { class: "color-bar" }, what, el("div", { class: "ramp", "aria-hidden": "true" }), el("div", { class: "ends" }, low, middle, high));
+  const update = (from, to, name, format) => {
+    [low.textContent, middle.textContent, high.textContent] = [from, (from + to) / 2, to].map(format);
+    what.textContent = name;
+  };
+  return { element, update };
+}
+
 // Okabe & Ito without yellow; in the dark the black one is white. Each seven curves another dash.
 const kColors = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00", "#000000"];
 const kDarkColors = ["#4aa8e0", "#f0803c", "#2cc79a", "#e29cc4", "#8fd0f5", "#f2b83a", "#ffffff"];
@@ -79,6 +90,12 @@ function repaint() {
 export function make_theme_button() {
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", repaint);
   return make_button("Light / dark", "Change the colours of the page", () => set_theme(is_dark() ? "light" : "dark"));
+}
+
+// "tip_deflection:y [m]" -> "tip_deflection-y-m.png"
+export function make_file_name(what, ending) {
+  const words = what.replace(/[^\p{L}\p{N}_.]+/gu, "-").replace(/^-+|-+$/g, "");
+  return (words.slice(0, 80) || "picture") + "." + ending;
 }
 
 export function save_blob(blob, name) {

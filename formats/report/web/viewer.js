@@ -1,4 +1,4 @@
-import { el, get_css, make_button, on_theme, save_blob } from "./page_parts.js";
+import { el, get_css, make_button, make_file_name, on_theme, save_blob } from "./page_parts.js";
 
 // 4 x 4 matrices, columns first, as WebGL takes them.
 const multiply = (a, b) => {
@@ -58,8 +58,9 @@ const to_rgba = (css, alpha = 1) => {
 export class Viewer {
   constructor(height = 420) {
     this.canvas = el("canvas", { class: "scene", tabindex: "0", role: "img", "aria-label": "three-dimensional view" });
-    this.canvas.style.height = height + "px";
-    this.element = el("div", { class: "viewer" }, this.canvas);
+    this.canvas.style.height = typeof height === "number" ? height + "px" : height;
+    this.tip = el("div", { class: "tip", hidden: true, role: "status" });
+    this.element = el("div", { class: "viewer" }, this.canvas, this.tip);
     const gl = this.canvas.getContext("webgl2", { alpha: false, antialias: true, preserveDrawingBuffer: true });
     if (!gl) throw new Error("WebGL 2 is not there");
     this.gl = gl;
@@ -168,6 +169,7 @@ export class Viewer {
     for (const thing of this.things) this.draw_thing(thing);
     gl.clear(gl.DEPTH_BUFFER_BIT);  // no body hides what comes now
     for (const thing of this.marks) this.draw_thing(thing);
+    this.update_tip();
   }
 
   draw_thing(thing) {
@@ -242,8 +244,9 @@ export class Viewer {
 
   listen() {
     let last = null;
+    let start = null;
     this.canvas.addEventListener("pointerdown", (event) => {
-      last = event;
+      last = start = event;
       this.canvas.setPointerCapture(event.pointerId);
     });
     this.canvas.addEventListener("pointermove", (event) => {
@@ -260,7 +263,11 @@ export class Viewer {
       }
       this.draw();
     });
-    this.canvas.addEventListener("pointerup", () => (last = null));
+    this.canvas.addEventListener("pointerup", (event) => {
+      if (start && event.button === 0 && Math.hypot(event.clientX - start.clientX, event.clientY - start.clientY) < 4) this.pick(event);
+      last = start = null;
+    });
+    this.canvas.addEventListener("pointercancel", () => (last = start = null));
     this.canvas.addEventListener("contextmenu", (event) => event.preventDefault());
     this.canvas.addEventListener("dblclick", () => this.home && this.fit(this.home));
     this.canvas.addEventListener("wheel", (event) => {
@@ -268,6 +275,34 @@ export class Viewer {
       this.distance *= Math.exp(0.001 * event.deltaY);
       this.draw();
     }, { passive: false });
+  }
+
+  // A click names the nearest node: things with `ids` and `describe(index)`.
+  pick(event) {
+    const rect = this.canvas.getBoundingClientRect(), view = this.make_view();
+    let best = 14, found = null;
+    for (const thing of this.things) {
+      if (!thing.describe) continue;
+      const p = thing.points;
+      for (let k = 0; k < thing.ids.length; ++k) {
+        const [x, y, , w] = [0, 1, 2, 3].map((r) => view[r] * p[3 * k] + view[4 + r] * p[3 * k + 1] + view[8 + r] * p[3 * k + 2] + view[12 + r]);
+        if (w <= 0) continue;
+        const at = [(rect.width * (1 + x / w)) / 2, (rect.height * (1 - y / w)) / 2];
+        const distance = Math.hypot(at[0] - (event.clientX - rect.left), at[1] - (event.clientY - rect.top));
+        if (distance < best) [best, found] = [distance, { thing, k, at }];
+      }
+    }
+    this.picked = found && [found.thing.describe, found.k];
+    this.tip.hidden = !found;
+    if (!found) return;
+    this.tip.style.left = Math.min(found.at[0] + 10, rect.width - 240) + "px";
+    this.tip.style.top = found.at[1] + 10 + "px";
+    this.update_tip();
+  }
+
+  // The value at the picked node, which goes with the time.
+  update_tip() {
+    if (this.picked) this.tip.textContent = this.picked[0](this.picked[1]);
   }
 
   make_view_buttons() {
@@ -282,7 +317,7 @@ export class Viewer {
 
   save() {
     this.draw();
-    this.canvas.toBlob((blob) => save_blob(blob, "view.png"));
+    this.canvas.toBlob((blob) => save_blob(blob, make_file_name(this.name ?? "view", "png")));
   }
 }
 
