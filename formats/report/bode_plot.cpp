@@ -39,18 +39,18 @@ void add_level(double level, const VectorXd& frequency, Plot& plot) {
         {"", Eigen::Vector2d(frequency[0], frequency[frequency.size() - 1]), Eigen::Vector2d(level, level)});
 }
 
-/// Contour |L/(1+L)| = M: L = M e^(jφ) / (1 - M e^(jφ)), φ over one turn.
+/// Contour |L/(1+L)| = M: L = M e^(jφ) / (1 - M e^(jφ)), φ from -π to π. The label is at φ = 0, the middle.
 Curve make_closed_loop_contour(double decibel) {
-  constexpr int kPoints = 361;
+  constexpr int kPoints = 362;
   const double size = std::pow(10, decibel / 20);
   Curve contour{fmt::format("{:g} dB", decibel), VectorXd(kPoints), VectorXd(kPoints)};
   for (int i = 0; i < kPoints; ++i) {
-    const auto t = std::polar(size, 2 * std::numbers::pi * (i + 0.5) / kPoints);
+    const auto t = std::polar(size, 2 * std::numbers::pi * ((i + 0.5) / kPoints - 0.5));
     const auto loop = t / (1.0 - t);
     const double degrees = std::arg(loop) * 180 / std::numbers::pi;
     contour.x[i] = degrees > 0 ? degrees - 360 : degrees;
     contour.y[i] = 20 * std::log10(std::abs(loop));
-    if (i > 0 && std::abs(contour.x[i] - contour.x[i - 1]) > 180) contour.x[i - 1] = kNaN;
+    if (i > 0 && std::abs(contour.x[i] - contour.x[i - 1]) > 180) contour.x[i] = kNaN;
   }
   return contour;
 }

@@ -317,8 +317,8 @@ void add_checks(const History& h, Chapter& chapter) {
     if (largest / body.size > largest_share) {
       largest_share = largest / body.size;
       chapter.highlights = {{"largest deflection", with_unit(largest, position ? position->unit : ""),
-                             fmt::format("{}, {} % of its size, at t = {}", body.name, format_percent(largest_share),
-                                         with_unit(when, h.time_unit))}};
+                             fmt::format("{}, {} % of its size, at t = {}", body.name,
+                                         format_value(100 * largest_share, 3), with_unit(when, h.time_unit))}};
     }
     chapter.checks.push_back(
         {"deflection of body " + body.name + " to its size", format_percent(largest / body.size) + " %",

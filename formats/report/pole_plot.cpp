@@ -69,6 +69,21 @@ void add_s_poles(const std::string& prefix, const LinearModel& model, Plot& plot
   plot.curves.push_back({prefix + "poles", poles.real(shown), poles.imag(shown), true, -1, Mark::Cross});
 }
 
+/// Zeros far beyond the poles would shrink these to a point: they are counted in the legend.
+void add_zeros(const std::string& prefix, const LinearModel& model, const Curve& poles, Plot& plot) {
+  constexpr double kFar = 3;
+  const Eigen::ArrayXd size = (model.zeros_real.array().square() + model.zeros_imag.array().square()).sqrt();
+  const double largest =
+      poles.x.size() > 0 ? std::sqrt((poles.x.array().square() + poles.y.array().square()).maxCoeff()) : 0;
+  std::vector<Eigen::Index> shown;
+  for (Eigen::Index i = 0; i < size.size(); ++i)
+    if (largest == 0 || size[i] <= kFar * largest) shown.push_back(i);
+  const auto num_far = size.size() - std::ssize(shown);
+  const std::string label =
+      prefix + "zeros" + (num_far > 0 ? " (" + std::to_string(num_far) + " beyond the picture)" : "");
+  plot.curves.push_back({label, model.zeros_real(shown), model.zeros_imag(shown), true, -1, Mark::Ring});
+}
+
 void add_z_poles(const std::string& prefix, const LinearModel& model, Plot& plot) {
   const auto n = model.poles.real.size();
   Curve curve{prefix + "poles", Eigen::VectorXd(n), Eigen::VectorXd(n), true, -1, Mark::Cross};
@@ -147,8 +162,7 @@ Plot make_pole_plot(const std::vector<std::pair<std::string, const LinearModel*>
     const std::string prefix = name.empty() ? "" : name + " ";
     is_z ? add_z_poles(prefix, *model, plot) : add_s_poles(prefix, *model, plot);
     const Curve poles = plot.curves.back();
-    if (!is_z && model->sample_time == 0 && model->zeros_real.size() > 0)
-      plot.curves.push_back({prefix + "zeros", model->zeros_real, model->zeros_imag, true, -1, Mark::Ring});
+    if (!is_z && model->sample_time == 0 && model->zeros_real.size() > 0) add_zeros(prefix, *model, poles, plot);
     const double largest = poles.x.size() > 0 ? poles.x.cwiseAbs().maxCoeff() + poles.y.cwiseAbs().maxCoeff() : 0;
     if (is_z) {
       add_count(poles, 1, 0, 1e-6, "at 1", plot);

@@ -21,7 +21,7 @@ export class MotionView {
     this.color_by = 0;
     this.is_playing = false;
     this.marks = new SceneMarks(this);
-    this.viewer = new Viewer("clamp(320px, calc(100vh - 24rem), 900px)");
+    this.viewer = new Viewer("clamp(320px, calc(100vh - 27rem), 900px)");
     this.scrubber = el("input", { type: "range", class: "scrub", min: 0, max: 1000, step: 1, value: 0, "aria-label": "time" });
     this.scrubber.addEventListener("input", () => this.set_time(this.first + (this.scrubber.value / 1000) * (this.last - this.first)));
     this.clock = el("output", { class: "clock" });

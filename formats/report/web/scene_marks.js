@@ -148,16 +148,18 @@ export class SceneMarks {
 
   // What a length means, and what acts now.
   tell(per_unit) {
-    const words = [];
+    const words = [], { channels } = this.view.run.data;
+    const find_unit = (ending, otherwise) => `[${channels.find((c) => c.path.endsWith(ending) && c.unit)?.unit ?? otherwise}]`;
+    const length = find_unit("/position", "L"), units = [find_unit("/reaction_force", "F"), find_unit("/reaction_moment", "F L")];
     this.largest.forEach((most, k) => {
       if (most.value === 0) return;
-      const [kind, dims] = k === 0 ? ["Force (one head)", "[F]"] : ["Moment (two heads)", "[F L]"];
-      words.push(`${kind}: an arrow of length 1 [L] is ${format_number(1 / per_unit[k], 3)} ${dims}, the largest ${format_number(most.value, 4)} (${most.name}, t = ${format_number(most.time, 4)})`);
+      const [kind, dims] = [["Force (one head)", "Moment (two heads)"][k], units[k]];
+      words.push(`${kind}: an arrow of length 1 ${length} is ${format_number(1 / per_unit[k], 3)} ${dims}, the largest ${format_number(most.value, 4)} (${most.name}, t = ${format_number(most.time, 4)})`);
     });
     this.meaning.textContent = words.length > 0 ? words.join(". ") + "." : "";
     // What rounding leaves is none.
     const measure = (a) => { const v = Math.hypot(...a.vector); return v < 1e-12 * this.largest[a.moment ? 1 : 0].value ? 0 : v; };
-    const shown = this.arrows.slice(0, 12).map((a) => `${a.name} ${format_number(measure(a), 4)} ${a.moment ? "[F L]" : "[F]"}`);
+    const shown = this.arrows.slice(0, 12).map((a) => `${a.name} ${format_number(measure(a), 4)} ${units[a.moment ? 1 : 0]}`);
     if (this.arrows.length > 12) shown.push(`${this.arrows.length - 12} more`);
     this.now.textContent = shown.length > 0 ? "Now: " + shown.join(", ") : "";
   }
