@@ -39,6 +39,8 @@ if(NOT BOUGH_SOLVER_ONLY)
   find_library(METIS_LIBRARY metis REQUIRED)
   find_path(CHOLMOD_INCLUDE_DIR cholmod.h PATH_SUFFIXES suitesparse REQUIRED)  # the one PETSc uses
   find_library(CHOLMOD_LIBRARY cholmod REQUIRED)
+  find_path(ZMUMPS_INCLUDE_DIR zmumps_c.h REQUIRED)  # complex arithmetic; PETSc uses the real one
+  find_library(ZMUMPS_LIBRARY zmumps REQUIRED)
   find_package(CLI11 REQUIRED)
   find_path(LIBZIP_INCLUDE_DIR zip.h REQUIRED)
   find_library(LIBZIP_LIBRARY zip REQUIRED)

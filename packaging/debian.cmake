@@ -58,7 +58,7 @@ set(CPACK_DEBIAN_BOUGH-DOC_PACKAGE_DEPENDS libjs-sphinxdoc)   # finish.cmake lin
 set(CPACK_DEBIAN_LIBBOUGH-DEV_PACKAGE_DEPENDS "libeigen3-dev, libsundials-dev, libmuparser-dev")
 if(NOT BOUGH_SOLVER_ONLY)
   string(APPEND CPACK_DEBIAN_LIBBOUGH-DEV_PACKAGE_DEPENDS ", libpetsc-real-dev, libslepc-real-dev, \
-libhdf5-openmpi-dev, libopenmpi-dev, libmatio-dev, libzip-dev, libpugixml-dev, libmetis-dev, libsuitesparse-dev, \
+libhdf5-openmpi-dev, libopenmpi-dev, libmatio-dev, libzip-dev, libpugixml-dev, libmetis-dev, libmumps-dev, libsuitesparse-dev, \
 libblas-dev | libblas.so, liblapack-dev | liblapack.so, libtomlplusplus-dev, \
 nlohmann-json3-dev, libfmt-dev, pkg-config | pkgconf")
 endif()

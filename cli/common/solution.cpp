@@ -70,7 +70,7 @@ void note_solution(const records::Deck& deck, Diagnostics& diagnostics) {
   const auto* other = find_other_solution(deck.sol);
   if (other)
     diagnostics.note("cli.other-solution", deck.locate({0, 0}), fmt::format("SOL {} is {}", deck.sol, other->name),
-                     other->has_complex_modes ? "modes needs --ignore CMETHOD and gives the real ones"
+                     other->has_complex_modes ? "bough modes gives them; with --ignore CMETHOD the real ones"
                                               : "this is the linear solution of the cards as they stand");
 }
 
@@ -83,17 +83,11 @@ void demand_static_solution(const records::Deck& deck, bool is_linear, Diagnosti
   note_solution(deck, diagnostics);
 }
 
-void demand_real_modes(const records::Deck& deck, const std::vector<std::string>& ignored, Diagnostics& diagnostics) {
+bool asks_complex_modes(const records::Deck& deck, const std::vector<std::string>& ignored) {
   const auto* other = find_other_solution(deck.sol);
-  const bool is_ignored = std::any_of(ignored.begin(), ignored.end(), [](const std::string& name) {
-    return name == "CMETHOD" || name == "cmethod" || name == "EIGC";
-  });
-  if (other && other->has_complex_modes && !is_ignored)
-    throw InputError(
-        "cli.complex-modes", deck.locate({0, 0}),
-        fmt::format("SOL {} asks for {}, found bough modes, which gives the real ones", deck.sol, other->name),
-        "--ignore CMETHOD gives the real modes, without damping, dampers and gyroscopic terms");
-  note_solution(deck, diagnostics);
+  return other && other->has_complex_modes && std::none_of(ignored.begin(), ignored.end(), [](const std::string& name) {
+           return name == "CMETHOD" || name == "cmethod" || name == "EIGC";
+         });
 }
 
 }  // namespace bough::cli

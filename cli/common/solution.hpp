@@ -14,8 +14,7 @@ void note_solution(const records::Deck& deck, Diagnostics& diagnostics);
 /// InputError("cli.nonlinear-static") unless `is_linear`, else notes as note_solution.
 void demand_static_solution(const records::Deck& deck, bool is_linear, Diagnostics& diagnostics);
 
-/// Normal modes of a SOL that asks for complex eigenvalues only when asked for: throws InputError("cli.complex-modes")
-/// unless CMETHOD (or EIGC) is among the names of --ignore, else notes as note_solution.
-void demand_real_modes(const records::Deck& deck, const std::vector<std::string>& ignored, Diagnostics& diagnostics);
+/// Returns true for SOL 107, 110 and their kin unless CMETHOD (or EIGC) is among the names of --ignore.
+bool asks_complex_modes(const records::Deck& deck, const std::vector<std::string>& ignored);
 
 }  // namespace bough::cli

@@ -67,8 +67,8 @@ void note_requests(const records::Deck& deck, const records::CaseRequests& reque
 }
 
 records::DynamicDeck read_loads_deck_or_throw(const std::string& path, const fe::ModelOptions& options,
-                                              bool is_response, Diagnostics& diagnostics) {
-  const nastran::ReadOptions read{options.ignore_cards, is_response};
+                                              bool is_response, Diagnostics& diagnostics, bool is_complex) {
+  const nastran::ReadOptions read{options.ignore_cards, is_response, is_complex};
   auto deck = is_one_of_many() ? nastran::read_packed_dynamic_deck(share([&] { return nastran::pack_deck(path); }),
                                                                    read, diagnostics)
                                : nastran::read_dynamic_deck(path, read, diagnostics);

@@ -37,9 +37,9 @@ bool asks_for(const records::CaseRequests& requests, const std::string& command)
 void note_requests(const records::Deck& deck, const records::CaseRequests& requests,
                    const std::vector<std::pair<std::string, std::string>>& options, Diagnostics& diagnostics);
 /// read_deck_or_throw with the cards of loads over frequency and time (nastran/dynamic_reader.hpp). `is_response`:
-/// false for residual vectors of normal modes. Collective.
+/// false for residual vectors of normal modes; `is_complex`: for complex modes. Collective.
 records::DynamicDeck read_loads_deck_or_throw(const std::string& path, const fe::ModelOptions& options,
-                                              bool is_response, Diagnostics& diagnostics);
+                                              bool is_response, Diagnostics& diagnostics, bool is_complex = false);
 
 /// Collects what is listed, subcase after subcase. A deck without any output request is listed as a whole.
 class ListingMaker {

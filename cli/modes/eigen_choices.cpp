@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <set>
 
 #include "formats/records/selection.hpp"
@@ -61,6 +62,13 @@ void note_method_number(const ModesOptions& options, const records::Deck& deck, 
 bool counts_whatever_range(const records::EigenMethod& card) {
   static const std::set<std::string> by_transformation{"GIV", "MGIV", "HOU", "MHOU", "AGIV", "AHOU"};
   return !card.is_eigrl && card.num_modes > 0 && by_transformation.count(card.method) > 0;
+}
+
+std::string name_output(const std::string& path, int subcase, bool is_first) {
+  if (path.empty() || is_first) return path;
+  const std::filesystem::path p(path);
+  return (p.parent_path() / (p.stem().string() + fmt::format("-subcase-{}", subcase) + p.extension().string()))
+      .string();
 }
 
 modal::Norm choose_norm(const records::Deck& deck, int method, const fe::Model& model) {

@@ -36,6 +36,9 @@ void note_method_number(const ModesOptions& options, const records::Deck& deck, 
 /// EIGR of the methods that compute every root: ND then asks for the lowest whatever F1 and F2 say.
 bool counts_whatever_range(const records::EigenMethod& card);
 
+/// "boom.h5" is "boom-subcase-2.h5" for a subcase after the first.
+std::string name_output(const std::string& path, int subcase, bool is_first);
+
 /// NORM of the deck's card. Throws fe.missing-grid and fe.bad-component where it names no dof.
 modal::Norm choose_norm(const records::Deck& deck, int method, const fe::Model& model);
 

@@ -3,7 +3,6 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
-#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -18,6 +17,7 @@
 #include "cli/common/usage_text.hpp"
 #include "cli/common/vtu_file.hpp"
 #include "cli/compare/compare_report.hpp"
+#include "cli/modes/complex_modes.hpp"
 #include "cli/modes/eigen_choices.hpp"
 #include "cli/modes/modes_tables.hpp"
 #include "fe/matrices/assembly.hpp"
@@ -68,14 +68,6 @@ std::vector<Task> choose_tasks(const ModesOptions& options, const records::Deck&
   if (options.model.subcase != 0) return {{options.model.subcase, {}}};
   for (const int id : modal::list_mode_subcases(deck)) chosen.push_back({id, {}});
   return chosen;
-}
-
-/// "boom.h5" is "boom-subcase-2.h5" for a subcase after the first.
-std::string name_output(const std::string& path, int subcase, bool is_first) {
-  if (path.empty() || is_first) return path;
-  const std::filesystem::path p(path);
-  return (p.parent_path() / (p.stem().string() + fmt::format("-subcase-{}", subcase) + p.extension().string()))
-      .string();
 }
 
 struct Solved {
@@ -191,7 +183,12 @@ int run_modes(const ModesOptions& options) {
   if (modal::is_buckling_solution(deck) && !options.buckling)
     diagnostics.note("cli.buckling-deck", deck.locate({}), "the deck asks for buckling (SOL " + deck.sol + ")",
                      "these are its normal modes; --buckling gives the load factors");
-  with_prior_messages(diagnostics, [&] { demand_real_modes(deck, model_options.ignore_cards, diagnostics); });
+  if (!options.buckling && asks_complex_modes(deck, model_options.ignore_cards)) {
+    std::vector<int> subcases;
+    for (const auto& task : tasks) subcases.push_back(task.subcase);
+    return run_complex_modes(options, subcases, console);
+  }
+  note_solution(deck, diagnostics);
   nlohmann::json json;
   std::string text, written;
   std::vector<std::pair<std::string, std::string>> pictures;
@@ -274,9 +271,11 @@ int run_modes(const ModesOptions& options) {
 
 void add_modes(CLI::App& app, Action& action) {
   auto o = std::make_shared<ModesOptions>();
-  auto* verb = add_verb(app, "modes", "Normal modes (SOL 103) or buckling load factors (SOL 105) of a deck");
+  auto* verb =
+      add_verb(app, "modes",
+               "Normal modes (SOL 103), complex modes (SOL 107, 110) or buckling load factors (SOL 105) of a deck");
   verb->add_option("deck", o->deck, "Nastran deck")->required();
-  verb->add_option("-n,--number,--modes", o->number, "Number of modes (default: the deck's EIGRL, else 10)")
+  verb->add_option("-n,--number,--modes", o->number, "Number of modes (default: the deck's EIGRL or EIGC, else 10)")
       ->check(make_positive());
   verb->add_option("--min-hz", o->min_hz, "Lowest frequency wanted (with --buckling: load factor)");
   verb->add_option("--max-hz", o->max_hz, "Highest frequency wanted (with --buckling: load factor)");

@@ -19,6 +19,7 @@ void fill_deck(const detail::Source& source, const ReadOptions& options, records
   auto requested = control;
   requested.ignore_cards = options.ignore_cards;
   requested.is_response = options.is_response;
+  requested.is_complex = options.is_complex;
   detail::LoadColumns columns;
   requested.load_columns = &columns;
   const auto first_line = detail::read_control(source, deck, diagnostics, requested);

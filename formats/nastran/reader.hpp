@@ -12,6 +12,9 @@ struct ReadOptions {
   /// read_dynamic_deck: what acts in responses alone counts (K2PP, TFL, EPOINT, ...); false: the loads are for residual
   /// vectors of normal modes.
   bool is_response = true;
+  /// read_dynamic_deck: for complex modes. CMETHOD, TFL, K2PP, M2PP, B2PP and EIGC, TF, EPOINT count; the direct input
+  /// does not join the matrices of the model. With is_response = false.
+  bool is_complex = false;
 };
 
 /// Reads a deck or fragment with its INCLUDE files. Every error of the deck is added to `diagnostics` (none is thrown);

@@ -100,6 +100,34 @@ struct ResidualDofs {
   CardLocation at;
 };
 
+/// EIGC: complex eigenvalues.
+struct ComplexMethod {
+  /// A continuation line: the shift, or one end of a search region.
+  struct Shift {
+    double alpha = 0, omega = 0;  ///< [1/T] real and imaginary part
+    int num_modes = 0;            ///< ND of the line; 0: blank
+  };
+  int sid = 0;
+  std::string method;        ///< LAN, CLAN, HESS, INV, DET or ISRR
+  std::string norm = "MAX";  ///< MAX, POINT
+  int norm_grid = 0, norm_component = 0;
+  int num_modes = 0;  ///< ND; 0: blank
+  std::vector<Shift> shifts;
+  CardLocation at;
+};
+
+/// TF: (B0 + B1 p + B2 p²) u_d + Σ (A0 + A1 p + A2 p²) u_i = 0, p the derivative.
+struct TransferFunction {
+  struct Term {
+    int g = 0, c = 0;
+    double a0 = 0, a1 = 0, a2 = 0;
+  };
+  int sid = 0;
+  Term of;  ///< u_d with B0, B1, B2
+  std::vector<Term> terms;
+  CardLocation at;
+};
+
 struct DynamicCards {
   std::vector<DynamicLoad> loads;
   std::vector<DynamicLoadSum> sums;
@@ -111,7 +139,10 @@ struct DynamicCards {
   std::vector<FrequencyList> frequencies;
   std::vector<TimeSteps> steps;
   std::vector<ResidualDofs> residual_dofs;
-  std::set<int> extra_points;  ///< EPOINT of a deck read for normal modes, which have none: loads there act on nothing
+  std::vector<ComplexMethod> complex_methods;
+  std::vector<TransferFunction> transfer_functions;
+  /// EPOINT: dofs of complex modes. Normal modes have none, and loads there act on nothing.
+  std::set<int> extra_points;
 };
 
 /// SET of the case control: ids, or numbers such as frequencies.
@@ -146,8 +177,9 @@ struct OutputRequest {
 /// Response requests of a subcase.
 struct DynamicSelection {
   int dload = 0, loadset = 0, frequency = 0, tstep = 0, ic = 0, sdamping = 0;
-  int ofreq = 0;  ///< a SET; 0: all
-  /// (scale, DMIG name) of K2PP, M2PP, B2PP: they are in k2gg, m2gg and b2gg of the subcase too.
+  int cmethod = 0, tfl = 0;  ///< of complex modes
+  int ofreq = 0;             ///< a SET; 0: all
+  /// (scale, DMIG name) of K2PP, M2PP, B2PP. In a response they are in k2gg, m2gg and b2gg of the subcase too.
   std::vector<std::pair<double, std::string>> k2pp, m2pp, b2pp;
   std::optional<bool> resvec;  ///< RESVEC = YES, NO
   /// MEFFMASS: the grid of its GRID option (0: the origin); none where it is not asked for.

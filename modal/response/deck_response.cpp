@@ -25,10 +25,10 @@ constexpr int kMostFactored = 20;
 
 double to_hz(double lambda) { return std::sqrt(std::max(lambda, 0.0)) / (2 * std::numbers::pi); }
 
-/// The modes that EIGRL asks for, and below V1 those that go before them: what they would have given statically is
-/// not given back by residual vectors.
-ModeBasis calc_modes(const fe::System& system, const EigenOptions& options, const records::DynamicDeck& deck,
-                     int& num_massless, Diagnostics& diagnostics) {
+}  // namespace
+
+ModeBasis calc_mode_basis(const fe::System& system, const EigenOptions& options, const records::DynamicDeck& deck,
+                          int& num_massless, Diagnostics& diagnostics) {
   EigenPairs low;
   const double lowest = std::max(options.min_hz.value_or(0), records::get_real_param(deck, "LFREQ", 0, diagnostics));
   EigenOptions wanted = options;
@@ -68,6 +68,21 @@ ModeBasis calc_modes(const fe::System& system, const EigenOptions& options, cons
     ++basis.num_left_out;
   return basis;
 }
+
+std::unique_ptr<fe::StaticSolver> make_residual_solver(const fe::System& system, const ModeBasis& modes,
+                                                       int num_massless) {
+  std::vector<int> supports;
+  if (modes.num_rigid > 0 || num_massless > 0) {
+    const auto motions = detail::find_null_motions(detail::Pencil(system));
+    supports = motions.held;
+    supports.insert(supports.end(), motions.supports.begin(), motions.supports.end());
+    std::sort(supports.begin(), supports.end());
+    supports.erase(std::unique(supports.begin(), supports.end()), supports.end());
+  }
+  return std::make_unique<fe::StaticSolver>(system.model, system.K, std::move(supports));
+}
+
+namespace {
 
 /// K2PP X; a symmetric matrix (IFO 6) gives each term once.
 MatrixXd times_direct(const fe::Model& model, const records::DynamicDeck& deck,
@@ -119,6 +134,8 @@ bool is_relative(const records::Deck& deck) {
   return is_rel("ENFMOTN") || is_rel("ENFMETH");
 }
 
+}  // namespace
+
 DampingChoice choose_damping(const records::DynamicDeck& deck, const records::DynamicSubcase& subcase,
                              const ResponseOptions& options, const fe::Model& model, Diagnostics& diagnostics) {
   const bool is_over_time = options.is_over_time;
@@ -157,6 +174,8 @@ DampingChoice choose_damping(const records::DynamicDeck& deck, const records::Dy
                      "give the circular frequency at which structural damping is to be viscous");
   return damping;
 }
+
+namespace {
 
 /// What a solution without modes has no use for.
 void report_modal(const records::DynamicDeck& deck, const records::DynamicSubcase& subcase, bool is_over_time,
@@ -204,16 +223,8 @@ struct DeckResponseSolver::Prepared {
 
   void find_modes(const EigenOptions& options, const records::DynamicDeck& deck, Diagnostics& diagnostics) {
     int num_massless = 0;
-    modes = calc_modes(system, options, deck, num_massless, diagnostics);
-    std::vector<int> supports;
-    if (modes.num_rigid > 0 || num_massless > 0) {
-      const auto motions = detail::find_null_motions(detail::Pencil(system));
-      supports = motions.held;
-      supports.insert(supports.end(), motions.supports.begin(), motions.supports.end());
-      std::sort(supports.begin(), supports.end());
-      supports.erase(std::unique(supports.begin(), supports.end()), supports.end());
-    }
-    statics = std::make_unique<fe::StaticSolver>(model, system.K, std::move(supports));
+    modes = calc_mode_basis(system, options, deck, num_massless, diagnostics);
+    statics = make_residual_solver(system, modes, num_massless);
   }
 };
 

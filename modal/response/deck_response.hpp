@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 
+#include "fe/statics/statics.hpp"
 #include "modal/response/recovery.hpp"
 
 namespace bough::modal::response {
@@ -27,6 +28,18 @@ struct ResponseOptions {
 /// modal.no-dynamic-load.
 std::vector<records::DynamicSubcase> choose_response_subcases(const records::DynamicDeck& deck, int asked,
                                                               bool is_over_time = false);
+
+/// Modes of EIGRL in unit generalized mass, and the modes below its V1, whose static part residual vectors do not
+/// restore.
+ModeBasis calc_mode_basis(const fe::System& system, const EigenOptions& options, const records::DynamicDeck& deck,
+                          int& num_massless, Diagnostics& diagnostics);
+/// Static solver for residual vectors: with rigid-body or massless modes on a determinate support.
+std::unique_ptr<fe::StaticSolver> make_residual_solver(const fe::System& system, const ModeBasis& modes,
+                                                       int num_massless);
+/// PARAM G, W3, W4, ALPHA1, ALPHA2, KDAMP and SDAMPING of the subcase. Reports modal.direct-input,
+/// modal.missing-table, modal.no-w3. The result refers to `model`, `deck`.
+DampingChoice choose_damping(const records::DynamicDeck& deck, const records::DynamicSubcase& subcase,
+                             const ResponseOptions& options, const fe::Model& model, Diagnostics& diagnostics);
 
 /// Model and modes are kept while constraints and METHOD stay the same.
 class DeckResponseSolver {

@@ -43,6 +43,7 @@ OUTSIDE = [
     (r"^slepc", ["fe/linear/petsc.cpp", "modal", "cli/common/versions.cpp"]),
     (r"^mpi\.h", ["fe"]),
     (r"^metis", ["fe"]),
+    (r"^zmumps", ["fe/linear"]),
     (r"^(hdf5|H5)", ["formats/hdf5", "cli/common/versions.cpp"]),
     (r"^toml\+\+", ["formats/toml"]),
     (r"^matio", ["formats/matrices"]),

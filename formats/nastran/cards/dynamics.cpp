@@ -463,6 +463,8 @@ int records::DynamicSelection::*find_selection_of(std::string_view card) {
   if (card == "TSTEP") return &DynamicSelection::tstep;
   if (card == "TIC") return &DynamicSelection::ic;
   if (card == "TABDMP1") return &DynamicSelection::sdamping;
+  if (card == "EIGC") return &DynamicSelection::cmethod;
+  if (card == "TF") return &DynamicSelection::tfl;
   return nullptr;
 }
 

@@ -48,6 +48,7 @@ class Builder {
         deck_(deck),
         dynamics_(dynamics),
         is_response_(dynamics && options.is_response),
+        is_complex_(dynamics && options.is_complex),
         diagnostics_(diagnostics),
         images_(make_card_images(source, first_line, diagnostics)),
         reading_(deck, diagnostics) {
@@ -218,7 +219,8 @@ class Builder {
 
   bool is_read(const std::string& name) const {
     return ignored_.count(name) == 0 &&
-           (get_card_parsers().count(name) > 0 || (dynamics_ && get_dynamic_parsers().count(name) > 0));
+           (get_card_parsers().count(name) > 0 || (dynamics_ && get_dynamic_parsers().count(name) > 0) ||
+            (is_complex_ && get_complex_parsers().count(name) > 0));
   }
 
   /// Lines that are no cards and change nothing here: a deletion, which belongs to a restart, and a second BEGIN BULK.
@@ -270,7 +272,7 @@ class Builder {
     if (entry->count++ == 0) entry->first = text_.lines.front().at;
     if (entry->parser == nullptr && entry->dynamic == nullptr) keep_unread_load();
     if (entry->parser == nullptr) keep_base();
-    if (dynamics_ && !is_response_ && text_.name == "EPOINT") keep_extra_points();
+    if (dynamics_ && !is_response_ && !is_complex_ && text_.name == "EPOINT") keep_extra_points();
     if ((entry->parser == nullptr && entry->dynamic == nullptr) || is_default_card(text_.name)) return;
     design_.apply(text_);
     if (entry->dynamic != nullptr && is_unselected()) return parse_unselected(*entry);
@@ -364,6 +366,9 @@ class Builder {
       if (const auto parser = parsers.find(text_.name); parser != parsers.end()) found->second.parser = parser->second;
       const auto& responses = get_dynamic_parsers();
       if (const auto parser = responses.find(text_.name); dynamics_ && parser != responses.end())
+        found->second.dynamic = parser->second;
+      const auto& of_complex_modes = get_complex_parsers();
+      if (const auto parser = of_complex_modes.find(text_.name); is_complex_ && parser != of_complex_modes.end())
         found->second.dynamic = parser->second;
     }
     return found->second;
@@ -479,7 +484,7 @@ class Builder {
   const Source& source_;
   records::Deck& deck_;
   records::DynamicDeck* dynamics_;
-  bool is_response_;
+  bool is_response_, is_complex_;
   Diagnostics& diagnostics_;
   CardImages images_;
   Reading reading_;

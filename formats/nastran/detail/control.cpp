@@ -118,11 +118,16 @@ class CaseControl {
   }
 
   void read_dynamic(const Command& c) {
-    if (is_response() && read_direct_input(c)) return;
+    if ((is_response() || options_.is_complex) && read_direct_input(c)) return;
     keep_response_matrices(c);
+    if (options_.is_complex && is_command(c.word, "CMETHOD", 4))
+      return read_set(c, "CMETHOD", current_selection().cmethod);
+    if (options_.is_complex && c.word == "TFL") return read_set(c, "TFL", current_selection().tfl);
     if (const auto* acts = find_unsupported_command(c.word)) {
       if (acts->scope == CommandScope::StaticLoad) return read_unread_load(c, *acts);
-      if (acts->scope == CommandScope::Model || is_response()) return refuse(*acts);
+      const bool is_rotor = c.word.substr(0, 4) == "RGYR" || c.word.substr(0, 4) == "RMET";
+      if (acts->scope == CommandScope::Model || is_response() || (options_.is_complex && is_rotor))
+        return refuse(*acts);
       return note(c.word);
     }
     const auto read = dynamics_
@@ -391,7 +396,8 @@ class CaseControl {
     choose_matrices(deck_, sets_, at_, diagnostics_);
     if (options_.load_columns)
       *options_.load_columns = choose_load_columns(deck_, load_matrices_, sets_, at_, diagnostics_);
-    if (is_response()) add_direct_input(*dynamics_, sets_, at_, diagnostics_);
+    if (is_response() || options_.is_complex)
+      add_direct_input(*dynamics_, sets_, at_, diagnostics_, !options_.is_complex);
     ignored_.report(deck_, diagnostics_);
   }
 

@@ -20,6 +20,7 @@ struct ControlOptions {
   bool notes_combinations = true;       ///< without `combinations`: they are named as not used
   LoadColumns* load_columns = nullptr;  ///< where P2G goes
   bool is_response = true;              ///< with `dynamics`: commands that act in responses alone count
+  bool is_complex = false;              ///< with `dynamics`: those of complex modes count (ReadOptions)
   /// Commands that are only warned of (deck.unsupported-command); of ReadOptions.
   std::vector<std::string> ignore_cards = {};
 };

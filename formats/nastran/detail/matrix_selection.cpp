@@ -96,7 +96,7 @@ LoadColumns choose_load_columns(const records::Deck& deck, const std::map<int, M
 }
 
 void add_direct_input(records::DynamicDeck& deck, const NamedSets& sets, const records::CardLocation& at,
-                      Diagnostics& diagnostics) {
+                      Diagnostics& diagnostics, bool joins_model) {
   bool differs = false;
   for (const auto& input : direct_inputs) {
     auto chosen = deck.selections[deck.subcases.front().id].*input.list;
@@ -108,6 +108,7 @@ void add_direct_input(records::DynamicDeck& deck, const NamedSets& sets, const r
       auto& own = deck.selections[subcase.id].*input.list;
       differs = differs || !expand_set(sets, own) || (!own.empty() && own != chosen);
       own = chosen;
+      if (!joins_model) continue;
       auto& all = subcase.*input.model;
       all.insert(all.end(), chosen.begin(), chosen.end());
     }

@@ -48,8 +48,8 @@ inline constexpr std::array direct_inputs{
     DirectInput{"K2PP", &records::DynamicSelection::k2pp, &records::Subcase::k2gg},
     DirectInput{"M2PP", &records::DynamicSelection::m2pp, &records::Subcase::m2gg},
     DirectInput{"B2PP", &records::DynamicSelection::b2pp, &records::Subcase::b2gg}};
-/// Selects as choose_matrices does, and adds the matrices to K2GG, M2GG and B2GG of every subcase.
+/// Selects as choose_matrices does. `joins_model`: the matrices are added to K2GG, M2GG and B2GG of every subcase.
 void add_direct_input(records::DynamicDeck& deck, const NamedSets& sets, const records::CardLocation& at,
-                      Diagnostics& diagnostics);
+                      Diagnostics& diagnostics, bool joins_model);
 
 }  // namespace bough::nastran::detail

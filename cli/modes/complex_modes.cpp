@@ -1,0 +1,193 @@
+#include "cli/modes/complex_modes.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <nlohmann/json.hpp>
+
+#include "cli/common/options.hpp"
+#include "cli/common/ranks.hpp"
+#include "cli/common/solution.hpp"
+#include "cli/common/subcase_failures.hpp"
+#include "cli/common/text_file.hpp"
+#include "cli/common/vtu_file.hpp"
+#include "cli/modes/modes_tables.hpp"
+#include "formats/hdf5/complex_modes_file.hpp"
+#include "modal/complex/complex_modes.hpp"
+
+namespace bough::cli {
+namespace {
+
+using records::ComplexModesResult;
+
+bool is_by_modes(const std::string& sol) {
+  static const std::array modal{"110", "29", "SEMCEIG", "MCEIG"};
+  return std::find(modal.begin(), modal.end(), sol) != modal.end();
+}
+
+/// Options with results that only real modes have.
+void demand_supported(const ModesOptions& options) {
+  const auto demand = [](bool is_given, const char* option) {
+    if (is_given)
+      throw InputError("cli.complex-option", {},
+                       std::string(option) + " is given with a deck that asks for complex eigenvalues",
+                       "leave the option out, or --ignore CMETHOD for the real modes");
+  };
+  demand(!options.listing.empty(), "--f06 or --op2");
+  demand(options.energies, "--ese");
+  demand(options.about_grid != 0, "--meffmass");
+  demand(!options.compare.empty(), "--compare");
+}
+
+std::string format_text(const ComplexModesResult& r) {
+  Table table{{"mode", "real", "imaginary", "Hz", "damping g", "ratio", "residual"}, {}};
+  for (Eigen::Index j = 0; j < r.eigenvalue.size(); ++j)
+    table.rows.push_back({std::to_string(j + 1), fmt::format("{:.8g}", r.eigenvalue(j).real()),
+                          fmt::format("{:.8g}", r.eigenvalue(j).imag()), fmt::format("{:.7g}", r.frequency_hz(j)),
+                          fmt::format("{:.6g}", r.damping(j)), fmt::format("{:.6g}", r.damping_ratio(j)),
+                          fmt::format("{:.1e}", r.residual(j))});
+  std::string text = "complex eigenvalues, imaginary part not below 0\n" + table.to_text() + "\n";
+  const auto count_if = [&](const auto& is_one) {
+    return std::count_if(r.eigenvalue.begin(), r.eigenvalue.end(), is_one);
+  };
+  // An undamped mode is unstable by round-off alone.
+  const auto unstable = count_if([](std::complex<double> l) { return l.real() > 1e-9 * std::abs(l); });
+  if (unstable > 0) text += fmt::format("unstable: {} of {} (real part above 0)\n", unstable, r.eigenvalue.size());
+  text += fmt::format("method: {}, {} unknowns{}\n",
+                      r.is_by_modes ? "on real modes (SOL 110)" : "on the full matrices (SOL 107)", r.num_unknowns,
+                      r.left.empty() ? "" : ", unsymmetric");
+  text += fmt::format("eigensolver: {} about {:.6g}{:+.6g}i, {} solutions with a factor of {:.3g} entries\n",
+                      r.is_complete ? "Schur form, every eigenvalue," : "Krylov-Schur, the nearest", r.shift.real(),
+                      r.shift.imag(), r.num_iterations, r.factor_entries);
+  text +=
+      fmt::format("shapes: {} (NORM = {})\n", r.norm == "MAX" ? "the largest component is 1" : "one dof is 1", r.norm);
+  if (r.residual.size() > 0) text += fmt::format("largest residual: {:.1e}\n", r.residual.maxCoeff());
+  if (r.biorthogonality >= 0) text += fmt::format("bi-orthogonality: {:.1e}\n", r.biorthogonality);
+  return text;
+}
+
+nlohmann::json make_json(const ComplexModesResult& r) {
+  auto modes = nlohmann::json::array();
+  for (Eigen::Index j = 0; j < r.eigenvalue.size(); ++j)
+    modes.push_back({{"mode", j + 1},
+                     {"eigenvalue", {{"real", r.eigenvalue(j).real()}, {"imag", r.eigenvalue(j).imag()}}},
+                     {"frequency_hz", r.frequency_hz(j)},
+                     {"damping", r.damping(j)},
+                     {"damping_ratio", r.damping_ratio(j)},
+                     {"residual", r.residual(j)}});
+  return {{"subcase", r.subcase},
+          {"solution", r.is_by_modes ? "modal" : "direct"},
+          {"method", r.method},
+          {"norm", r.norm},
+          {"symmetric", r.left.empty()},
+          {"complete", r.is_complete},
+          {"shift", {{"real", r.shift.real()}, {"imag", r.shift.imag()}}},
+          {"biorthogonality", r.biorthogonality},
+          {"modes", modes}};
+}
+
+/// Real and imaginary part of every shape, one mode after the other.
+exports::Picture make_shape_picture(const ComplexModesResult& r) {
+  records::ModesResult parts;
+  parts.node_id = r.node_id;
+  parts.node_xyz = r.node_xyz;
+  parts.mesh = r.mesh;
+  parts.frequency_hz = r.frequency_hz;
+  exports::Picture picture;
+  for (const bool is_imaginary : {false, true}) {
+    parts.phi.clear();
+    for (const auto& phi : r.phi)
+      parts.phi.push_back(is_imaginary ? Eigen::MatrixXd(phi.imag()) : Eigen::MatrixXd(phi.real()));
+    auto part = exports::make_picture(parts);
+    for (auto& array : part.arrays) array.name += is_imaginary ? "_imag" : "_real";
+    if (!is_imaginary)
+      picture = std::move(part);
+    else
+      picture.arrays.insert(picture.arrays.end(), part.arrays.begin(), part.arrays.end());
+  }
+  return picture;
+}
+
+}  // namespace
+
+int run_complex_modes(const ModesOptions& options, const std::vector<int>& subcases, Console& console) {
+  demand_supported(options);
+  Diagnostics diagnostics;
+  auto model_options = make_model_options(options.model);
+  const auto deck = read_loads_deck_or_throw(options.deck, model_options, false, diagnostics, true);
+  const auto sources = calc_sources(deck.files);
+  modal::complex_modes::ComplexModesOptions solver;
+  solver.is_by_modes = is_by_modes(deck.sol);
+  // In SOL 110 the number of real modes is that of EIGRL.
+  solver.num_modes = options.number;
+  solver.has_shapes = true;
+  solver.choose_eigen = [&](const records::DynamicSubcase& subcase, Diagnostics& own) {
+    auto of_real = options;
+    of_real.number = 0;
+    return choose_eigen_options(of_real, deck, subcase.method, own);
+  };
+  SubcaseFailures failures(subcases.size(), deck.subcases.size());
+  nlohmann::json json;
+  std::string text, written;
+  std::vector<std::pair<std::string, std::string>> pictures;
+  bool is_first = true;
+  for (const int id : subcases) {
+    Diagnostics own;
+    ComplexModesResult result;
+    try {
+      model_options.subcase = id;
+      const auto found =
+          std::find_if(deck.subcases.begin(), deck.subcases.end(), [id](const auto& s) { return s.id == id; });
+      const auto& control = found == deck.subcases.end() ? deck.subcases.front() : *found;
+      const auto selection = deck.selections.find(control.id);
+      const records::DynamicSubcase subcase(
+          control, selection == deck.selections.end() ? records::DynamicSelection{} : selection->second);
+      model_options.prestress = calc_prestress(deck, model_options, own);
+      console.show_progress(fmt::format("subcase {}", id));
+      result = modal::complex_modes::solve_complex_modes(deck, model_options, subcase, solver, own);
+    } catch (const Failure& failure) {
+      console.end_progress();
+      failures.add(id, failure);
+      add_warnings(own, diagnostics);
+      continue;
+    }
+    console.end_progress();
+    result.source = sources;
+    const auto vtu = name_output(options.vtu, result.subcase, is_first);
+    if (!vtu.empty() && console.is_root())
+      pictures.emplace_back(vtu,
+                            make_vtu_text(make_shape_picture(result), exports::VtuEncoding::Base64, options.deck, own));
+    add_new(own, diagnostics);
+    if (subcases.size() > 1) text += fmt::format("{}subcase {}\n\n", is_first ? "" : "\n", result.subcase);
+    text += format_text(result);
+    const auto one = make_json(result);
+    if (is_first) json = one;
+    if (subcases.size() > 1) json["subcases"].push_back(one);
+    const auto output = name_output(options.output, result.subcase, is_first);
+    is_first = false;
+    if (output.empty()) continue;
+    do_once([&] {
+      check_outputs(options, {output, options.vtu, vtu == options.vtu ? "" : vtu}, {options.deck});
+      hdf5::write_complex_modes(result, output);
+    });
+    written += "written: " + output + "\n";
+  }
+  if (is_first) failures.throw_all(diagnostics);
+  if (!failures.is_empty()) json["failed"] = failures.to_json();
+  console.print(diagnostics);
+  console.print(failures.get_items(diagnostics));
+  if (options.json)
+    console.print_data(json.dump(2) + "\n");
+  else
+    console.print(text);
+  do_once([&] {
+    for (const auto& [path, picture] : pictures) write_text_file(path, picture);
+  });
+  for (const auto& [path, picture] : pictures) written += "written: " + path + "\n";
+  if (!options.json) console.print(written);
+  do_once([] { flush_data(); });
+  return failures.get_exit_code();
+}
+
+}  // namespace bough::cli

@@ -1,0 +1,416 @@
+#include "modal/complex/complex_modes.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+#include "fe/statics/build_model.hpp"
+#include "modal/complex/complex_solver.hpp"
+#include "modal/complex/physical_input.hpp"
+#include "modal/response/deck_response.hpp"
+#include "modal/response/direct_model.hpp"
+#include "modal/response/residual_modes.hpp"
+
+namespace bough::modal::complex_modes {
+namespace {
+
+constexpr int kDefaultModes = 10;
+constexpr int kReferenceModes = 8;      ///< real modes from which the shift and the scale of time are chosen
+constexpr Index kMaxComplete = 2000;    ///< unknowns up to which every eigenvalue is computed on request
+constexpr double kRigidBody = 1e-5;     ///< of the first elastic frequency
+constexpr Index kMaxInputVectors = 60;  ///< dofs of direct input with residual vectors
+
+/// The pencil with the way back to the dofs of the model.
+struct Problem {
+  QuadraticPencil pencil;
+  Eigen::SparseMatrix<double> T_g;  ///< u_g = T_g x of the first unknowns (107)
+  MatrixXd Phi;                     ///< the same, dense (110)
+  Index num_coordinates = 0;        ///< unknowns before the extra points
+  VectorXd lambda;                  ///< of real modes, ascending
+  int num_rigid = 0, num_massless = 0;
+
+  MatrixXcd recover(const MatrixXcd& X) const {
+    const MatrixXcd q = X.topRows(num_coordinates);
+    MatrixXcd u(Phi.size() > 0 ? Phi.rows() : T_g.rows(), X.cols());
+    u.real() = Phi.size() > 0 ? MatrixXd(Phi * q.real()) : MatrixXd(T_g * q.real());
+    u.imag() = Phi.size() > 0 ? MatrixXd(Phi * q.imag()) : MatrixXd(T_g * q.imag());
+    return u;
+  }
+};
+
+response::Excitation make_no_excitation(const fe::Model& model) {
+  response::Excitation none;
+  none.F.resize(model.num_gdofs(), 0);
+  none.D.resize(static_cast<Index>(model.fixed_dofs().size()), 0);
+  return none;
+}
+
+const records::ComplexMethod& find_method(const records::DynamicDeck& deck, const records::DynamicSubcase& subcase,
+                                          const ComplexModesOptions& options) {
+  static const records::ComplexMethod lanczos{0, "LAN", "MAX", 0, 0, 0, {}, {}};
+  const int set = subcase.dynamics.cmethod;
+  const auto& all = deck.dynamics.complex_methods;
+  const auto found = std::find_if(all.begin(), all.end(), [set](const auto& m) { return m.sid == set; });
+  if (set != 0 && found == all.end())
+    throw InputError("modal.missing-complex-method", deck.locate(subcase.find_command("CMETHOD")),
+                     "CMETHOD = " + std::to_string(set) + " names no EIGC card of the deck",
+                     "add the card, for instance EIGC," + std::to_string(set) + ",LAN,,,,,10, or correct the id");
+  if (set != 0) return *found;
+  if (options.num_modes > 0) return lanczos;
+  throw InputError("modal.no-complex-method", deck.locate({}),
+                   "SOL " + deck.sol + " asks for complex eigenvalues, found no CMETHOD in the case control",
+                   "write CMETHOD = n with a card EIGC,n,LAN,,,,,10, or give --number");
+}
+
+/// Real modes for the choice of the shift; none where the matrices have none.
+void find_reference(const fe::System& system, Problem& problem) {
+  Diagnostics unreported;
+  EigenOptions few;
+  few.num_modes = kReferenceModes;
+  few.check_inertia = false;
+  try {
+    const auto pairs = calc_normal_modes(system, few, unreported);
+    problem.lambda = pairs.lambda;
+    problem.num_rigid = pairs.num_rigid;
+    problem.num_massless = pairs.num_massless;
+  } catch (const Failure&) {  // no mass, no stiffness: the pencil may still be regular
+  }
+}
+
+Problem make_direct_problem(const fe::System& system, const records::DynamicDeck& deck,
+                            const records::DynamicSubcase& subcase, const response::DampingChoice& damping,
+                            const PhysicalInput& input) {
+  const auto& model = system.model;
+  Problem problem;
+  find_reference(system, problem);
+  const auto direct = response::make_direct_model(system, deck, subcase, make_no_excitation(model), damping);
+  problem.num_coordinates = model.num_fdofs();
+  problem.T_g = model.T();
+  PencilBuilder builder(problem.num_coordinates + static_cast<Index>(input.extra_points.size()));
+  if (!input.is_empty()) builder.add_projected(input.calc_transform(problem.T_g), input.K, input.B, input.M);
+  builder.add_stiffness(direct.K, 1);
+  if (direct.S) builder.add_stiffness(direct.S, Complex(0, 1));
+  if (direct.B) builder.add_damping(direct.B, 1);
+  builder.add_mass(direct.M, 1);
+  problem.pencil = builder.build();
+  return problem;
+}
+
+Problem make_modal_problem(const fe::System& system, const records::DynamicDeck& deck,
+                           const records::DynamicSubcase& subcase, const response::DampingChoice& damping,
+                           const PhysicalInput& input, const ComplexModesOptions& options, Diagnostics& diagnostics) {
+  const auto& model = system.model;
+  Problem problem;
+  const auto modes = response::calc_mode_basis(system, options.choose_eigen(subcase, diagnostics), deck,
+                                               problem.num_massless, diagnostics);
+  problem.lambda = modes.lambda;
+  problem.num_rigid = modes.num_rigid;
+  auto excitation = make_no_excitation(model);
+  // Forces of direct input, and of USETi U6 and RVDOFi: residual vectors make the modes exact for these statically.
+  excitation.residual = response::collect_unit_loads(model, deck, diagnostics).F;
+  const MatrixXd of_input = MatrixXd(input.N_g.transpose());
+  if (of_input.cols() <= kMaxInputVectors) {
+    MatrixXd all(model.num_gdofs(), excitation.residual.cols() + of_input.cols());
+    all << excitation.residual, of_input;
+    excitation.residual = all;
+  }
+  diagnostics.throw_if_errors();
+  const auto statics = response::make_residual_solver(system, modes, problem.num_massless);
+  const auto solve_static = [&](const MatrixXd& F) { return statics->solve(F, &diagnostics); };
+  const bool with_residuals = subcase.dynamics.resvec.value_or(deck.find_param("RESVEC") == nullptr ||
+                                                               deck.find_param("RESVEC")->value[0] != 'N');
+  const auto reduced =
+      response::make_response_model(model, modes, solve_static, excitation, {}, damping, with_residuals, diagnostics);
+  problem.Phi = reduced.Phi;
+  problem.num_coordinates = reduced.Phi.cols();
+  MatrixXcd K = MatrixXcd(reduced.S.cast<Complex>() * Complex(0, 1));
+  K.diagonal() += reduced.lambda;
+  VectorXd mass = VectorXd::Ones(problem.num_coordinates);
+  mass.tail(reduced.num_massless).setZero();
+  PencilBuilder builder(problem.num_coordinates + static_cast<Index>(input.extra_points.size()));
+  builder.add_dense(K, reduced.D.cast<Complex>(), MatrixXd(mass.asDiagonal()).cast<Complex>());
+  if (!input.is_empty()) {
+    const Eigen::SparseMatrix<double> Phi = problem.Phi.sparseView(0, 0);
+    builder.add_projected(input.calc_transform(Phi), input.K, input.B, input.M);
+  }
+  problem.pencil = builder.build();
+  return problem;
+}
+
+/// Frequencies of the real modes that set the scale of time and the shift.
+struct Reference {
+  double first = 1, last = 1;
+};
+Reference choose_reference(const Problem& problem) {
+  Reference reference;
+  const Index elastic = problem.lambda.size() - problem.num_rigid;
+  const auto omega = [](double lambda) { return std::sqrt(std::abs(lambda)); };
+  if (elastic > 0 && omega(problem.lambda(problem.num_rigid)) > 0) {
+    reference.first = omega(problem.lambda(problem.num_rigid));
+    reference.last = omega(problem.lambda(problem.num_rigid + std::min<Index>(elastic, kReferenceModes) - 1));
+    return reference;
+  }
+  // Without modes: from the magnitude of the matrices.
+  const auto& p = problem.pencil;
+  const double k = p.K.norm(), b = p.B.norm(), m = p.M.norm();
+  const double scale = k > 0 && m > 0 ? std::sqrt(k / m) : k > 0 && b > 0 ? k / b : b > 0 && m > 0 ? b / m : 1;
+  return {scale, scale};
+}
+
+std::vector<Complex> list_shifts(const Problem& problem, const Reference& reference) {
+  std::vector<Complex> shifts;
+  if (problem.num_rigid == 0 && problem.num_massless == 0) shifts.emplace_back(0);
+  for (const Complex factor : {Complex(0.5, 0), Complex(0.31, 0.17), Complex(0.83, 0.29)})
+    shifts.push_back(factor * reference.first);
+  return shifts;
+}
+
+int count_wanted(const records::ComplexMethod& method, const ComplexModesOptions& options, Index size) {
+  if (options.num_modes > 0) return options.num_modes;
+  if (method.num_modes > 0) return method.num_modes;
+  return method.method == "HESS" && size <= kMaxComplete ? 0 : kDefaultModes;
+}
+
+/// Appends pairs of another shift without those that are there.
+void append(ComplexPairs& all, const ComplexPairs& more) {
+  std::vector<Index> kept;
+  for (Index j = 0; j < more.lambda.size(); ++j)
+    if ((all.lambda.array() - more.lambda(j)).abs().minCoeff() > 1e-8 * std::abs(more.lambda(j))) kept.push_back(j);
+  const Index before = all.lambda.size(), after = before + static_cast<Index>(kept.size());
+  const auto join = [&](auto& to, const auto& from) {
+    to.conservativeResize(to.rows(), after);
+    to.rightCols(after - before) = from(Eigen::all, kept);
+  };
+  join(all.X, more.X);
+  join(all.Y, more.Y);
+  all.lambda.conservativeResize(after);
+  all.lambda.tail(after - before) = more.lambda(kept);
+  all.residual.conservativeResize(after);
+  all.residual.tail(after - before) = more.residual(kept);
+  all.biorthogonality = std::max(all.biorthogonality, more.biorthogonality);
+  all.num_iterations += more.num_iterations;
+  std::vector<Index> order(static_cast<std::size_t>(after));
+  for (Index j = 0; j < after; ++j) order[static_cast<std::size_t>(j)] = j;
+  std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) {
+    const Complex x = all.lambda(a), y = all.lambda(b);
+    return x.imag() != y.imag() ? x.imag() < y.imag() : x.real() > y.real();
+  });
+  all.X = all.X(Eigen::all, order).eval();
+  all.Y = all.Y(Eigen::all, order).eval();
+  all.lambda = all.lambda(order).eval();
+  all.residual = all.residual(order).eval();
+}
+
+ComplexPairs solve(const Problem& problem, const records::ComplexMethod& method, const ComplexModesOptions& options,
+                   const std::function<std::string(Index)>& name_unknown) {
+  const auto reference = choose_reference(problem);
+  SolverOptions solver;
+  solver.scale = reference.last;
+  solver.zero = problem.num_rigid > 0 ? kRigidBody * reference.first : 0;
+  const auto defaults = list_shifts(problem, reference);
+  if (method.shifts.empty()) {
+    solver.shifts = defaults;
+    solver.num_modes = count_wanted(method, options, problem.pencil.size());
+    return solve_pencil(problem.pencil, solver, name_unknown);
+  }
+  std::optional<ComplexPairs> all;
+  for (const auto& shift : method.shifts) {
+    const Complex sigma(shift.alpha, shift.omega);
+    // Next to the shift, in case it is an eigenvalue.
+    solver.shifts = {sigma, sigma + Complex(1e-3, 1.7e-3) * std::max(std::abs(sigma), reference.first)};
+    solver.shifts.insert(solver.shifts.end(), defaults.begin(), defaults.end());
+    solver.num_modes = options.num_modes > 0 ? options.num_modes
+                       : shift.num_modes > 0 ? shift.num_modes
+                                             : count_wanted(method, options, problem.pencil.size());
+    const auto pairs = solve_pencil(problem.pencil, solver, name_unknown);
+    if (all)
+      append(*all, pairs);
+    else
+      all = pairs;
+  }
+  return *all;
+}
+
+/// Rows of the free components in CD axes, where NORM looks for the largest.
+MatrixXcd calc_norm_rows(const fe::Model& model, const MatrixXcd& Phi, const MatrixXcd& extra, int grid, int component,
+                         Index& named) {
+  std::vector<Eigen::RowVectorXcd> rows;
+  named = -1;
+  for (int k = 0; k < static_cast<int>(model.nodes().size()); ++k) {
+    const auto& node = model.node(k);
+    for (int c = 0; c < node.num_dofs; ++c) {
+      const bool is_named = node.id == grid && (node.num_dofs == 1 || c + 1 == component);
+      if (!is_named && model.find_fdof(k, node.num_dofs == 1 ? 0 : c + 1) < 0) continue;
+      if (is_named) named = static_cast<Index>(rows.size());
+      if (node.num_dofs == 1)
+        rows.emplace_back(Phi.row(node.first_gdof));
+      else
+        rows.emplace_back(node.R_basic_cd.col(c % 3).transpose().cast<Complex>() *
+                          Phi.middleRows(node.first_gdof + 3 * (c / 3), 3));
+    }
+  }
+  MatrixXcd all(static_cast<Index>(rows.size()) + extra.rows(), Phi.cols());
+  for (std::size_t i = 0; i < rows.size(); ++i) all.row(static_cast<Index>(i)) = rows[i];
+  all.bottomRows(extra.rows()) = extra;
+  return all;
+}
+
+/// The largest component, or that of NORM = POINT, is 1.
+void normalize(const fe::Model& model, const records::DynamicDeck& deck, const records::ComplexMethod& method,
+               MatrixXcd& Phi, MatrixXcd& extra, bool reports, Diagnostics& diagnostics) {
+  Index named = -1;
+  const bool is_point = method.norm == "POINT";
+  const auto rows = calc_norm_rows(model, Phi, extra, is_point ? method.norm_grid : 0, method.norm_component, named);
+  std::string still;
+  for (Index j = 0; j < Phi.cols(); ++j) {
+    const double largest = rows.rows() > 0 ? rows.col(j).cwiseAbs().maxCoeff() : 0;
+    if (!(largest > 0)) continue;
+    Index row = 0;
+    while (std::abs(rows(row, j)) < (1 - 1e-6) * largest) ++row;
+    if (named >= 0 && std::abs(rows(named, j)) > 1e-9 * largest)
+      row = named;
+    else if (is_point)
+      still += (still.empty() ? "" : ", ") + std::to_string(j + 1);
+    const Complex factor = 1.0 / rows(row, j);
+    Phi.col(j) *= factor;
+    extra.col(j) *= factor;
+  }
+  if (reports && !still.empty())
+    diagnostics.warning("modal.norm-point", deck.locate(method.at),
+                        "grid " + std::to_string(method.norm_grid) + " component " +
+                            std::to_string(method.norm_component) + " of NORM = POINT does not move in mode " + still +
+                            ": its largest component is 1 instead",
+                        "name a dof that moves in every mode, or use NORM MAX");
+}
+
+std::vector<MatrixXcd> list_shapes(const fe::Model& model, const MatrixXcd& Phi) {
+  std::vector<MatrixXcd> shapes;
+  for (const auto& node : model.nodes())
+    if (node.num_dofs == 6) shapes.emplace_back(Phi.middleRows(node.first_gdof, 6));
+  return shapes;
+}
+
+MatrixXcd list_points(const fe::Model& model, const MatrixXcd& Phi, const MatrixXcd& extra) {
+  std::vector<Index> rows;
+  for (const auto& node : model.nodes())
+    if (node.num_dofs == 1) rows.push_back(node.first_gdof);
+  MatrixXcd points(static_cast<Index>(rows.size()) + extra.rows(), Phi.cols());
+  points.topRows(static_cast<Index>(rows.size())) = Phi(rows, Eigen::all);
+  points.bottomRows(extra.rows()) = extra;
+  return points;
+}
+
+void fill_values(const ComplexPairs& pairs, records::ComplexModesResult& result) {
+  const Index m = pairs.lambda.size();
+  result.eigenvalue = pairs.lambda;
+  result.residual = pairs.residual;
+  result.frequency_hz = pairs.lambda.imag() / (2 * std::numbers::pi);
+  result.damping = result.damping_ratio = VectorXd::Zero(m);
+  for (Index j = 0; j < m; ++j) {
+    const Complex lambda = pairs.lambda(j);
+    if (lambda.imag() > 0) result.damping(j) = -2 * lambda.real() / lambda.imag();
+    if (lambda != 0.0) result.damping_ratio(j) = -lambda.real() / std::abs(lambda);
+  }
+  result.biorthogonality = pairs.biorthogonality;
+  result.shift = pairs.shift;
+  result.num_iterations = pairs.num_iterations;
+  result.num_mirrored = pairs.num_mirrored;
+  result.factor_entries = pairs.num_entries;
+  result.is_complete = pairs.is_dense;
+}
+
+void report_accuracy(const records::DynamicDeck& deck, const ComplexPairs& pairs, int num_wanted,
+                     Diagnostics& diagnostics) {
+  const auto found = std::count_if(pairs.lambda.begin(), pairs.lambda.end(), [](Complex l) { return l.imag() > 0; });
+  if (num_wanted > 0 && found < num_wanted)
+    diagnostics.warning("modal.fewer-complex-modes", deck.locate({}),
+                        std::to_string(num_wanted) + " complex modes are asked for, the matrices have " +
+                            std::to_string(found) + " that oscillate",
+                        "ask for fewer, or take more real modes in SOL 110");
+}
+
+}  // namespace
+
+records::ComplexModesResult solve_complex_modes(const records::DynamicDeck& deck, const fe::ModelOptions& model_options,
+                                                const records::DynamicSubcase& subcase,
+                                                const ComplexModesOptions& options, Diagnostics& diagnostics) {
+  const auto& method = find_method(deck, subcase, options);
+  const auto model = fe::build_model(deck, model_options, diagnostics);
+  diagnostics.throw_if_errors();
+  // K2PP is no part of the structure here: neither G nor ALPHA2 acts on it.
+  auto without_input = subcase;
+  auto& d = without_input.dynamics;
+  for (auto* list : {&d.k2pp, &d.m2pp, &d.b2pp}) list->clear();
+  response::ResponseOptions damping_options;
+  damping_options.is_direct = !options.is_by_modes;
+  const auto damping = response::choose_damping(deck, without_input, damping_options, model, diagnostics);
+  const auto input = collect_physical_input(model, deck, subcase, diagnostics);
+  diagnostics.throw_if_errors();
+  if (!options.is_by_modes && d.sdamping != 0)
+    diagnostics.warning("modal.no-modes", deck.locate(subcase.find_command("SDAMPING")),
+                        "SDAMPING damps modes: the direct solution leaves it out, as in Nastran",
+                        "damp by PARAM,G, GE or dampers, or solve by modes (SOL 110)");
+  const fe::System system(model);
+  const auto problem = options.is_by_modes
+                           ? make_modal_problem(system, deck, without_input, damping, input, options, diagnostics)
+                           : make_direct_problem(system, deck, without_input, damping, input);
+  const auto name_unknown = [&](Index i) -> std::string {
+    if (i >= problem.num_coordinates) {
+      const auto k = static_cast<std::size_t>(i - problem.num_coordinates);
+      return k < input.extra_points.size() ? "extra point " + std::to_string(input.extra_points[k]) : "a constraint";
+    }
+    if (options.is_by_modes) return "mode " + std::to_string(i + 1);
+    const auto [node, component] = model.describe_fdof(static_cast<int>(i));
+    return component == 0 ? "scalar point " + std::to_string(node)
+                          : "grid " + std::to_string(node) + " component " + std::to_string(component);
+  };
+  ComplexPairs pairs;
+  try {
+    pairs = solve(problem, method, options, name_unknown);
+  } catch (const ComputationError& failure) {
+    auto items = failure.items();
+    for (auto& item : items)
+      if (item.where.file.empty()) item.where = deck.locate(method.at);
+    throw ComputationError(std::move(items));
+  }
+  if (method.shifts.empty())
+    report_accuracy(deck, pairs, count_wanted(method, options, problem.pencil.size()), diagnostics);
+  records::ComplexModesResult result;
+  result.subcase = model.subcase().id;
+  result.is_by_modes = options.is_by_modes;
+  result.method = method.method;
+  result.norm = method.norm;
+  result.num_unknowns = static_cast<int>(problem.pencil.size());
+  fill_values(pairs, result);
+  if (!options.has_shapes) return result;
+  std::vector<const fe::Node*> grids;
+  for (const auto& node : model.nodes()) {
+    if (node.num_dofs == 6)
+      grids.push_back(&node);
+    else
+      result.point_id.push_back(node.id);
+  }
+  result.point_id.insert(result.point_id.end(), input.extra_points.begin(), input.extra_points.end());
+  result.node_xyz.resize(static_cast<Index>(grids.size()), 3);
+  for (std::size_t k = 0; k < grids.size(); ++k) {
+    result.node_id.push_back(grids[k]->id);
+    result.node_xyz.row(static_cast<Index>(k)) = grids[k]->x.transpose();
+  }
+  const auto num_extra = static_cast<Index>(input.extra_points.size());
+  MatrixXcd Phi = problem.recover(pairs.X), extra = pairs.X.middleRows(problem.num_coordinates, num_extra);
+  normalize(model, deck, method, Phi, extra, true, diagnostics);
+  result.phi = list_shapes(model, Phi);
+  result.point_phi = list_points(model, Phi, extra);
+  if (!problem.pencil.is_symmetric) {
+    Phi = problem.recover(pairs.Y);
+    extra = pairs.Y.middleRows(problem.num_coordinates, num_extra);
+    normalize(model, deck, method, Phi, extra, false, diagnostics);
+    result.left = list_shapes(model, Phi);
+    result.point_left = list_points(model, Phi, extra);
+  }
+  result.mesh = model.calc_mesh();
+  return result;
+}
+
+}  // namespace bough::modal::complex_modes

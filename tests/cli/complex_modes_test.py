@@ -1,0 +1,284 @@
+"""Complex modes (SOL 107 and 110): closed forms, dense SciPy solutions of the same matrices, 107 against 110."""
+import json
+import unittest
+
+import h5py
+import numpy as np
+import scipy.linalg
+
+from support import ProgramTest
+
+# m = 4, k = 36 to ground, moves along x.
+ONE = """SOL {sol}
+CEND
+SPC = 1
+METHOD = 1
+CMETHOD = 9
+{case}
+BEGIN BULK
+EIGRL,1,,,{modes}
+EIGC,9,{eigc}
+GRID,1,,0.,0.,0.
+GRID,2,,1.,0.,0.
+CONM2,1,1,,4.0
+CELAS2,2,36.0,1,1,2,1
+SPC1,1,23456,1
+SPC1,1,123456,2
+{bulk}
+ENDDATA
+"""
+# Six masses in a row that move along x, springs between neighbours and to ground at both ends.
+N = 6
+MASS = np.array([1.0, 2.0, 1.5, 0.7, 3.0, 1.2])
+SPRING = np.array([800.0, 500.0, 900.0, 300.0, 700.0, 400.0, 600.0])
+
+
+def make_chain(sol, bulk="", case="", eigc="LAN,,,,,6", modes=N, springs=SPRING, ge=0.0):
+    lines = [f"SOL {sol}", "CEND", "SPC = 1", "METHOD = 1", "CMETHOD = 9", case, "BEGIN BULK", f"EIGRL,1,,,{modes}",
+             f"EIGC,9,{eigc}"]
+    for i in range(N + 2):
+        lines.append(f"GRID,{i + 1},,{float(i)},0.,0.")
+    for i in range(N):
+        lines.append(f"CONM2,{100 + i},{i + 2},,{MASS[i]}")
+    for i, k in enumerate(springs):
+        lines.append(f"CELAS2,{200 + i},{k},{i + 1},1,{i + 2},1,{ge if i == 2 else 0.0}")
+    lines += [f"SPC1,1,123456,1,{N + 2}", f"SPC1,1,23456,2,THRU,{N + 1}", bulk, "ENDDATA", ""]
+    return "\n".join(lines)
+
+
+def make_stiffness(springs=SPRING):
+    K = np.zeros((N, N))
+    for i, k in enumerate(springs):
+        for a in (i - 1, i):
+            for b in (i - 1, i):
+                if 0 <= a < N and 0 <= b < N:
+                    K[a, b] += k if a == b else -k
+    return K
+
+
+def make_dampers(seed):
+    """Dampers between random masses and their matrix."""
+    random = np.random.default_rng(seed)
+    B, cards = np.zeros((N, N)), []
+    for e in range(5):
+        a, b = random.choice(N, 2, replace=False)
+        c = round(float(random.uniform(0.5, 6)), 3)
+        B[[a, b], [a, b]] += c
+        B[a, b] -= c
+        B[b, a] -= c
+        cards.append(f"CDAMP2,{300 + e},{c},{a + 2},1,{b + 2},1")
+    return B, "\n".join(cards)
+
+
+def make_dmig(name, A, ids):
+    lines = [f"DMIG,{name},0,1,1,0"]
+    for j in range(len(ids)):
+        for i in range(len(ids)):
+            if A[i, j] != 0:
+                lines.append(f"DMIG,{name},{ids[j][0]},{ids[j][1]},,{ids[i][0]},{ids[i][1]},{float(A[i, j])!r}")
+    return "\n".join(lines)
+
+
+def solve_dense(M, B, K):
+    """Eigenvalues with Im >= 0 in the order of the tables, by the QZ algorithm on the linearization."""
+    n = len(M)
+    A = np.block([[np.zeros((n, n)), np.eye(n)], [-K, -B]])
+    E = np.block([[np.eye(n), np.zeros((n, n))], [np.zeros((n, n)), M]])
+    values = scipy.linalg.eig(A, E, right=False)
+    values = values[np.isfinite(values) & (np.abs(values) < 1e7)]
+    values = np.where(np.abs(values.imag) < 1e-7 * np.abs(values), values.real, values)
+    values = values[values.imag >= 0]
+    return values[np.lexsort((-values.real, np.round(values.imag, 7)))]
+
+
+class ComplexModes(ProgramTest):
+    def solve(self, deck, *options, residual=1e-10):
+        self.write("d.bdf", deck)
+        result = self.bough("modes", "d.bdf", "--json", "-o", "d.h5", *options)
+        self.result = json.loads(result.stdout)
+        modes = self.result["modes"]
+        self.assertLess(max(m["residual"] for m in modes), residual)
+        return np.array([complex(m["eigenvalue"]["real"], m["eigenvalue"]["imag"]) for m in modes])
+
+    def near(self, found, expected, relative=1e-9):
+        self.assertEqual(len(found), len(expected), (found, expected))
+        for a, b in zip(found, expected):
+            self.assertLess(abs(a - b), relative * abs(b), (found, expected))
+
+    def check_shapes(self, M, B, K, ids):
+        """Rows of the grids' x translation and of the points satisfy the equation; left vectors that of the transpose."""
+        with h5py.File(self.path("d.h5")) as f:
+            nodes, points = list(f["nodes/id"][:]), list(f["points/id"][:]) if "points" in f else []
+            values = f["modes/eigenvalue_real"][:] + 1j * f["modes/eigenvalue_imag"][:]
+            for name, matrices in (("phi", (M, B, K)), ("left", (M.T, B.T, K.T))):
+                if f"modes/{name}_real" not in f:
+                    continue
+                shapes = f[f"modes/{name}_real"][:] + 1j * f[f"modes/{name}_imag"][:]
+                if points:
+                    at_points = f[f"points/{name}_real"][:] + 1j * f[f"points/{name}_imag"][:]
+                x = np.array([shapes[nodes.index(g), 0] if g in nodes else at_points[points.index(g)] for g in ids])
+                for j, p in enumerate(values):
+                    terms = [p**2 * matrices[0] @ x[:, j], p * matrices[1] @ x[:, j], matrices[2] @ x[:, j]]
+                    self.assertLess(np.linalg.norm(sum(terms)), 1e-8 * sum(map(np.linalg.norm, terms)), (name, j))
+                    self.assertAlmostEqual(np.abs(x[:, j]).max(), 1, places=9)
+
+    def test_one_dof(self):
+        """λ = -c/2m ± i sqrt(k/m - (c/2m)²): g, ζ and Hz."""
+        for sol, eigc in (("107", "LAN,,,,,1"), ("110", "HESS"), ("28", "CLAN,MAX,,,,1"), ("29", "ISRR,,,,,1"),
+                          ("SEDCEIG", "HESS"), ("SEMCEIG", "LAN,,,,,1"), ("107", "INV\n,0.,1.,0.,5.,1.,1,1")):
+            found = self.solve(ONE.format(sol=sol, case="", modes=1, eigc=eigc, bulk="CDAMP2,3,2.4,1,1,2,1"))
+            self.near(found, [-0.3 + 1j * np.sqrt(9 - 0.09)], 1e-12)
+            mode = self.result["modes"][0]
+            self.assertAlmostEqual(mode["damping_ratio"], 0.1, places=12)
+            self.assertAlmostEqual(mode["damping"], 0.6 / np.sqrt(8.91), places=12)
+            self.assertAlmostEqual(mode["frequency_hz"], np.sqrt(8.91) / (2 * np.pi), places=12)
+
+    def test_overdamped(self):
+        """Two real eigenvalues, g = 0."""
+        for sol in ("107", "110"):
+            found = self.solve(ONE.format(sol=sol, case="", modes=1, eigc="HESS", bulk="CDAMP2,3,40.0,1,1,2,1"))
+            self.near(found, [-1.0, -9.0], 1e-11)
+            self.assertEqual([m["damping"] for m in self.result["modes"]], [0, 0])
+
+    def test_structural_damping(self):
+        """λ² = -k/m (1 + i g): PARAM,G and GE of the spring alike."""
+        expected = [1j * 3 * np.sqrt(1 + 0.04j)]
+        for sol in ("107", "110"):
+            deck = ONE.format(sol=sol, case="", modes=1, eigc="LAN,,,,,1", bulk="PARAM,G,.04")
+            self.near(self.solve(deck), expected, 1e-12)
+            self.near(self.solve(deck.replace("PARAM,G,.04", "").replace("36.0,1,1,2,1", "36.0,1,1,2,1,.04")), expected,
+                      1e-12)
+
+    def test_table_damping(self):
+        """SDAMPING acts on modes (110): 2 ζ ω."""
+        deck = ONE.format(sol="110", case="SDAMPING = 5", modes=1, eigc="LAN,,,,,1",
+                          bulk="TABDMP1,5,CRIT\n,0.,.03,100.,.03,ENDT")
+        self.near(self.solve(deck), [3 * (-0.03 + 1j * np.sqrt(1 - 0.03**2))], 1e-12)
+
+    def test_dampers(self):
+        for seed in range(2):
+            B, cards = make_dampers(seed)
+            for sol, eigc in (("107", "LAN,,,,,6"), ("107", "HESS"), ("110", "HESS")):
+                self.near(self.solve(make_chain(sol, cards, eigc=eigc)), solve_dense(np.diag(MASS), B, make_stiffness()))
+            self.assertLess(self.result["biorthogonality"], 1e-9)
+            self.check_shapes(np.diag(MASS), B, make_stiffness(), range(2, N + 2))
+
+    def test_structural_damping_of_one_spring(self):
+        B, cards = make_dampers(8)
+        K4 = make_stiffness(np.where(np.arange(N + 1) == 2, SPRING, 0)) * 0.2
+        K = make_stiffness() * (1 + 0.03j) + 1j * K4
+        for sol in ("107", "110"):
+            found = self.solve(make_chain(sol, cards + "\nPARAM,G,.03", ge=0.2))
+            self.near(found, solve_dense(np.diag(MASS), B, K))
+            self.check_shapes(np.diag(MASS), B, K, range(2, N + 2))
+
+    def test_unsymmetric_input(self):
+        """K2PP, B2PP, M2PP without symmetry; PARAM,G does not act on K2PP."""
+        random = np.random.default_rng(3)
+        B, cards = make_dampers(5)
+        ids = [(i + 2, 1) for i in range(N)]
+        K2, B2, M2 = (np.round(random.uniform(-s, s, (N, N)), 4) for s in (60, 2, .1))
+        bulk = "\n".join([cards, make_dmig("KU", K2, ids), make_dmig("BU", B2, ids), make_dmig("MU", M2, ids),
+                          "PARAM,G,.02"])
+        M, B, K = np.diag(MASS) + M2, B + B2, make_stiffness() * (1 + .02j) + K2
+        for sol in ("107", "110"):
+            for eigc in ("LAN,,,,,6", "HESS"):
+                found = self.solve(make_chain(sol, bulk, "K2PP = KU\nB2PP = BU\nM2PP = MU", eigc))
+                self.near(found, solve_dense(M, B, K))
+                self.assertFalse(self.result["symmetric"])
+                self.assertLess(self.result["biorthogonality"], 1e-8)
+                self.check_shapes(M, B, K, range(2, N + 2))
+
+    def test_extra_point(self):
+        """A controller on an extra point: e'' + 3 e' + 50 e = 4 u3', which pulls mass 5."""
+        bulk = ("EPOINT,900\nTF,7,900,0,50.,3.,1.\n,3,1,0.,-4.,0.\n"
+                "DMIG,PULL,0,1,1,0\nDMIG,PULL,900,0,,5,1,25.")
+        n = N + 1
+        M, B, K = np.zeros((n, n)), np.zeros((n, n)), np.zeros((n, n))
+        M[:N, :N], K[:N, :N] = np.diag(MASS), make_stiffness()
+        M[N, N], B[N, N], K[N, N], B[N, 1], K[3, N] = 1, 3, 50, -4, 25
+        for sol in ("107", "110"):
+            found = self.solve(make_chain(sol, bulk, "K2PP = PULL\nTFL = 7", "HESS"))
+            self.near(found, solve_dense(M, B, K))
+            self.check_shapes(M, B, K, [*range(2, N + 2), 900])
+
+    def test_free_body(self):
+        """Rigid-body modes are 0, the others those of the dense solution."""
+        springs = SPRING.copy()
+        springs[[0, N]] = 1e-30
+        B, cards = make_dampers(2)
+        deck = make_chain("107", cards, eigc="LAN,,,,,5").replace("CELAS2,200,800.0", "$").replace("CELAS2,206,600.0", "$")
+        springs[[0, N]] = 0
+        found = self.solve(deck)
+        expected = solve_dense(np.diag(MASS), B, make_stiffness(springs))
+        self.near(found[np.abs(found) > 1e-3], expected[np.abs(expected) > 1e-3])
+        self.assertTrue(np.all(found[np.abs(found) < 1e-3] == 0))
+
+    def test_shift(self):
+        """Eigenvalues nearest to the shifts of two lines, each with its ND."""
+        B, cards = make_dampers(1)
+        all_values = solve_dense(np.diag(MASS), B, make_stiffness())
+        oscillating = all_values[all_values.imag > 0]
+        shifts = [oscillating[1] + 0.3j, oscillating[4] - 0.2j]
+        eigc = "LAN" + "".join(f"\n,{s.real:.5f},{s.imag:.5f},,,,,1" for s in shifts)
+        found = self.solve(make_chain("107", cards, eigc=eigc))
+        found = found[found.imag > 0]
+        self.near(found, oscillating[[1, 4]])
+
+    def test_krylov(self):
+        """A beam of more unknowns than the dense solver takes: 107 against 110 with all modes near them."""
+        n = 120
+        bulk = ["MAT1,1,7.+10,,.3,2700.,,,.01", "PBAR,1,1,1.-3,2.-7,4.-7,3.-7"]
+        bulk += [f"GRID,{i + 1},,{.02 * i},0.,0." for i in range(n + 1)]
+        bulk += [f"CBAR,{i + 1},1,{i + 1},{i + 2},0.,1.,0." for i in range(n)]
+        bulk += ["SPC1,1,123456,1", f"CDAMP2,900,80.,{n + 1},2,{n // 2},3", f"CDAMP2,901,40.,{n // 3},3",
+                 "DMIG,KU,0,1,1,0", f"DMIG,KU,{n + 1},2,,{n + 1},3,300.", f"DMIG,KU,{n + 1},3,,{n + 1},2,-200."]
+        head = "SOL {}\nCEND\nSPC = 1\nMETHOD = 1\nCMETHOD = 9\n{}BEGIN BULK\nEIGRL,1,,,60\nEIGC,9,LAN,,,,,12\n"
+        for case in ("", "K2PP = KU\n"):
+            direct = self.solve(head.format(107, case) + "\n".join(bulk) + "\nENDDATA\n", residual=1e-6)
+            self.assertFalse(self.result["complete"])
+            self.assertLess(self.result["biorthogonality"], 1e-8)
+            modal = self.solve(head.format(110, case) + "\n".join(bulk) + "\nENDDATA\n", residual=1e-6)
+            self.assertEqual(np.sum(direct.imag > 0), 12)
+            self.near(direct, modal, 2e-7)
+
+    def test_options(self):
+        deck = ONE.format(sol="107", case="", modes=1, eigc="LAN,,,,,1", bulk="CDAMP2,3,2.4,1,1,2,1")
+        self.solve(deck, "--vtu", "d.vtu")
+        with open(self.path("d.vtu"), encoding="utf-8") as f:
+            text = f.read()
+        self.assertIn("_real", text)
+        self.assertIn("_imag", text)
+        table = self.bough("modes", "d.bdf").stdout
+        for word in ("damping g", "bi-orthogonality", "largest residual"):
+            self.assertIn(word, table)
+        real = json.loads(self.bough("modes", "d.bdf", "--ignore", "CMETHOD", "--json").stdout)
+        self.assertAlmostEqual(real["modes"][0]["eigenvalue"], 9, places=10)
+        self.fails(1, "modes", "d.bdf", "--f06", "d.f06", error="cli.complex-option")
+
+    def test_wrong_input(self):
+        def fails(code, deck, error, *says):
+            self.write("d.bdf", deck)
+            self.fails(code, "modes", "d.bdf", error=error, says=says)
+        deck = make_chain("107")
+        fails(1, deck.replace("EIGC,9,LAN,,,,,6", "$"), "modal.missing-complex-method", "d.bdf:5:", "CMETHOD = 9")
+        fails(1, deck.replace("CMETHOD = 9", "$"), "modal.no-complex-method", "CMETHOD")
+        self.near(self.solve(deck.replace("CMETHOD = 9", "$"), "-n", "6"),
+                  solve_dense(np.diag(MASS), np.zeros((N, N)), make_stiffness()))
+        fails(1, deck.replace("LAN,,,,,6", "FEER,,,,,6"), "deck.bad-word", "d.bdf:9:", "METHOD")
+        fails(1, deck.replace("LAN,,,,,6", "INV,,,,,6"), "deck.missing-field", "ALPHAA")
+        fails(1, deck.replace("LAN,,,,,6", "LAN,POINT,,,,6"), "deck.missing-field", "POINT")
+        fails(1, make_chain("107", case="K2PP = NONE"), "fe.missing-direct", "NONE")
+        fails(1, make_chain("107", "DMIG,KU,0,9,1,0,,,2\nDMIG,KU,1,0,,2,1,4.", "K2PP = KU"), "modal.direct-shape", "IFO 9")
+        fails(1, make_chain("107", case="TFL = 4"), "modal.missing-transfer", "TFL = 4")
+        fails(1, make_chain("107", "EPOINT,900\nTF,7,900,3,1.,1.,1.", "TFL = 7"), "fe.bad-component", "extra point 900")
+        # An extra point with a column and no row: the matrices are singular at every λ.
+        fails(3, make_chain("107", "EPOINT,900\nDMIG,KU,0,1,1,0\nDMIG,KU,900,0,,2,1,4.", "K2PP = KU"),
+              "modal.singular-pencil", "extra point 900")
+        self.write("d.bdf", make_chain("107", eigc="LAN,,,,,9"))
+        self.assertIn("modal.fewer-complex-modes", self.bough("modes", "d.bdf").stderr)
+        self.write("d.bdf", make_chain("107", "EPOINT,900"))
+        self.assertIn("modal.extra-point-unused", self.bough("modes", "d.bdf").stderr)
+
+if __name__ == "__main__":
+    unittest.main()
