@@ -11,7 +11,8 @@ namespace bough::nastran::detail {
 using DynamicParser = void (*)(Card&, records::DynamicCards&);
 using DynamicParserTable = std::unordered_map<std::string_view, DynamicParser>;
 
-/// xLOADn, DLOAD, DAREA, DELAY, DPHASE, LSEQ, TIC, TABLEDn, TABDMP1, FREQn, TSTEP.
+/// xLOADn, DLOAD, DAREA, DELAY, DPHASE, LSEQ, TIC, TABLEDn, TABDMP1, FREQn, TSTEP, RANDPS, RANDT1, TABRND1,
+/// TABRNDG.
 const DynamicParserTable& get_dynamic_parsers();
 
 /// The member of the case control that alone selects the sets of such cards; nullptr for other cards. What is wrong
