@@ -16,6 +16,7 @@
 #include "cli/common/text_file.hpp"
 #include "cli/common/usage_text.hpp"
 #include "cli/frequency/frequency.hpp"
+#include "cli/frequency/random_tables.hpp"
 #include "cli/frequency/response_tables.hpp"
 #include "cli/listing/listing.hpp"
 #include "cli/listing/response_listing.hpp"
@@ -26,6 +27,7 @@
 #include "formats/hdf5/response_file.hpp"
 #include "formats/nastran/dynamic_reader.hpp"
 #include "modal/response/deck_response.hpp"
+#include "modal/response/random/random_response.hpp"
 
 namespace bough::cli {
 namespace {
@@ -72,6 +74,15 @@ bool choose_direct(const DeckResponseOptions& options, const records::DynamicDec
   return false;
 }
 
+void note_random(const records::DynamicDeck& deck, const std::vector<records::DynamicSubcase>& subcases,
+                 Diagnostics& diagnostics) {
+  const auto found =
+      std::find_if(subcases.begin(), subcases.end(), [](const auto& subcase) { return subcase.dynamics.random != 0; });
+  if (found != subcases.end())
+    diagnostics.note("modal.random-transient", deck.locate(found->find_command("RANDOM")),
+                     "RANDOM has no effect on a transient response", "use 'bough frequency' for the random response");
+}
+
 int run_deck_response(const DeckResponseOptions& options) {
   Console console(options.quiet, options.verbosity);
   console.set_subject(options.deck);
@@ -85,9 +96,15 @@ int run_deck_response(const DeckResponseOptions& options) {
   const auto model_options = make_model_options(options.model);
   const auto deck = read_loads_deck_or_throw(options.deck, model_options, true, diagnostics);
   std::vector<records::DynamicSubcase> subcases;
+  std::unique_ptr<modal::response::RandomAnalysis> random;
   with_prior_messages(diagnostics, [&] {
     demand_grids(options, deck);
     subcases = modal::response::choose_response_subcases(deck, options.model.subcase, options.is_over_time);
+    if (options.is_over_time) note_random(deck, subcases, diagnostics);
+    Diagnostics own;
+    random = std::make_unique<modal::response::RandomAnalysis>(
+        deck, options.is_over_time ? std::vector<records::DynamicSubcase>{} : subcases, own);
+    own.throw_if_errors();
   });
   note_solution(deck, diagnostics);
   if (subcases.empty()) {  // build_model() reports it
@@ -100,6 +117,7 @@ int run_deck_response(const DeckResponseOptions& options) {
   if (options.no_residuals) response_options.residual_vectors = false;
   response_options.grids = options.grids;
   response_options.with_listing = !options.listing.empty();
+  response_options.with_random = !random->is_empty();
   response_options.choose_eigen = [&](const records::DynamicSubcase& subcase, Diagnostics& own) {
     return choose_eigen(options, deck, subcase, own);
   };
@@ -123,6 +141,8 @@ int run_deck_response(const DeckResponseOptions& options) {
     add_new(own, diagnostics);
   }
   if (response.subcases.empty()) failures.throw_all(diagnostics);
+  with_prior_messages(diagnostics,
+                      [&] { response.random = random->calc(response.subcases, solver.sources(), diagnostics); });
   response.source = calc_sources(deck.files);
   records::Listing listing;
   if (!options.listing.empty()) {
@@ -144,12 +164,15 @@ int run_deck_response(const DeckResponseOptions& options) {
     nlohmann::json json{{"subcases", nlohmann::json::array()}};
     for (const auto& subcase : response.subcases)
       json["subcases"].push_back(to_json(subcase, options.is_over_time, options.full));
+    for (const auto& result : response.random) json["random"].push_back(to_json(result, options.full));
     if (!failures.is_empty()) json["failed"] = failures.to_json();
     console.print_data(json.dump(2) + "\n");
   } else {
     for (const auto& subcase : response.subcases)
       console.print((&subcase == &response.subcases.front() ? "" : "\n") +
                     format_response(subcase, options.is_over_time, options.full ? 1u << 30 : 20));
+    for (const auto& result : response.random)
+      console.print("\n" + format_random(result, options.full ? 1u << 30 : 20));
     for (const auto& path : {options.output, options.csv, options.punch, options.listing.f06, options.listing.op2})
       if (!path.empty()) console.print("written: " + path + "\n");
   }

@@ -7,6 +7,8 @@
 #include <sstream>
 #include <tuple>
 
+#include "formats/export/random_text.hpp"
+
 namespace bough::exports {
 namespace {
 
@@ -157,6 +159,12 @@ std::string make_response_csv(const records::DeckResponse& response) {
     }
     write_csv(text, columns);
   }
+  for (const auto& random : response.random)
+    for (const auto& columns : {make_psd_columns(random), make_autocorrelation_columns(random)}) {
+      if (columns.empty()) continue;
+      text << "\n";
+      write_csv(text, columns);
+    }
   return text.str();
 }
 

@@ -19,7 +19,7 @@ struct NamedCurve {
 };
 std::vector<NamedCurve> list_curves(const records::ResponseSubcase& subcase);
 
-/// The columns below of every subcase as text.
+/// The columns below of every subcase as text, then those of the random responses.
 std::string make_response_csv(const records::DeckResponse& response);
 
 /// frequency_hz or time, then a column per curve and part: real and imag, or magnitude and phase (degrees, -180 to 180)

@@ -1,5 +1,6 @@
 #include "formats/hdf5/response_file.hpp"
 
+#include "formats/hdf5/detail/random_groups.hpp"
 #include "formats/hdf5/detail/reader.hpp"
 #include "formats/hdf5/detail/writer.hpp"
 #include "formats/hdf5/files.hpp"
@@ -110,6 +111,7 @@ void write_response(const records::DeckResponse& response, const std::string& pa
   file.write_source(response.source);
   file.make_group("/subcases");
   for (const auto& subcase : response.subcases) write_subcase(file, subcase, response.is_over_time);
+  for (const auto& random : response.random) write_random(file, random);
   file.commit();
 }
 
@@ -165,6 +167,9 @@ records::DeckResponse read_response(const std::string& path) {
       s.kind.push_back(is_residual ? records::ModeKind::Residual : records::ModeKind::Normal);
     response.subcases.push_back(std::move(s));
   }
+  if (file.has("/random"))
+    for (const auto& name : file.get_children("/random"))
+      response.random.push_back(read_random(file, "/random/" + name));
   file.throw_if_errors();
   return response;
 }

@@ -93,6 +93,30 @@ struct TimeSteps {  ///< TSTEP
   CardLocation at;
 };
 
+/// RANDPS: S_jk(f) = (x + i y) G(f), the spectral density between the loads of subcases j and k.
+struct SpectralTerm {
+  int sid = 0, j = 0, k = 0;
+  double x = 0, y = 0;
+  int table = 0;  ///< TABRND1 or TABRNDG; 0: G = 1
+  CardLocation at;
+};
+
+/// TABRNDG: spectral density of atmospheric turbulence.
+struct GustSpectrum {
+  int id = 0;
+  bool is_dryden = false;        ///< else von Karman
+  double length_over_speed = 0;  ///< L/U [T]
+  double rms = 0;                ///< WG
+  CardLocation at;
+};
+
+/// RANDT1: lags of the autocorrelation, first + i (last - first)/count, i = 0..count.
+struct TimeLags {
+  int sid = 0, count = 1;
+  double first = 0, last = 0;
+  CardLocation at;
+};
+
 /// USET and USET1 with U6, RVDOF, RVDOF1: unit forces whose residual vectors join the modes.
 struct ResidualDofs {
   int first = 0, last = 0;  ///< grids; of a range those that exist
@@ -138,6 +162,10 @@ struct DynamicCards {
   std::vector<DampingCurve> damping;
   std::vector<FrequencyList> frequencies;
   std::vector<TimeSteps> steps;
+  std::vector<SpectralTerm> spectral_terms;
+  std::vector<DynamicTable> spectra;  ///< TABRND1
+  std::vector<GustSpectrum> gust_spectra;
+  std::vector<TimeLags> lags;
   std::vector<ResidualDofs> residual_dofs;
   std::vector<ComplexMethod> complex_methods;
   std::vector<TransferFunction> transfer_functions;
@@ -179,6 +207,7 @@ struct DynamicSelection {
   int dload = 0, loadset = 0, frequency = 0, tstep = 0, ic = 0, sdamping = 0;
   int cmethod = 0, tfl = 0;  ///< of complex modes
   int ofreq = 0;             ///< a SET; 0: all
+  int random = 0;            ///< set of RANDPS and RANDT1
   /// (scale, DMIG name) of K2PP, M2PP, B2PP. In a response they are in k2gg, m2gg and b2gg of the subcase too.
   std::vector<std::pair<double, std::string>> k2pp, m2pp, b2pp;
   std::optional<bool> resvec;  ///< RESVEC = YES, NO

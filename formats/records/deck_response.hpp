@@ -1,6 +1,7 @@
 #pragma once
 /// \file Output of `frequency` and `transient`: curves over frequency or time at chosen grids and elements.
 #include "formats/records/flex_body.hpp"
+#include "formats/records/random_response.hpp"
 
 namespace bough::records {
 
@@ -44,6 +45,7 @@ struct DeckResponse {
   std::vector<std::pair<std::string, std::string>> source;
   bool is_over_time = false;
   std::vector<ResponseSubcase> subcases;
+  std::vector<RandomResponse> random;
 };
 
 }  // namespace bough::records

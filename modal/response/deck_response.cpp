@@ -295,7 +295,7 @@ records::ResponseSubcase DeckResponseSolver::solve(const records::DynamicSubcase
 }
 
 void DeckResponseSolver::solve_by_modes(const Task& task, const records::DynamicSubcase& subcase,
-                                        records::ResponseSubcase& result, Diagnostics& diagnostics) const {
+                                        records::ResponseSubcase& result, Diagnostics& diagnostics) {
   const auto& model = prepared_->model;
   const auto& [_, start, damping, grid, hz, natural, outputs] = task;
   Excitation excitation = task.excitation;
@@ -332,6 +332,9 @@ void DeckResponseSolver::solve_by_modes(const Task& task, const records::Dynamic
     const auto spectrum = calc_spectrum(response, excitation, hz, diagnostics);
     result.solution_error = calc_solution_error(response, spectrum);
     recover(model, response, excitation, damping, outputs, spectrum, result);
+    if (options_.with_random)
+      sources_[result.id] =
+          ModalSource(response, excitation, make_coordinate_maps(model, response, excitation, damping, outputs));
   }
   const auto basis_error = calc_basis_error(model, response);
   result.basis_error = basis_error.worst;

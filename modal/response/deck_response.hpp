@@ -2,10 +2,12 @@
 /// \file Frequency and transient response of a deck, by subcases: by modes (SOL 111, 112) or directly (108, 109).
 #include <array>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 
 #include "fe/statics/statics.hpp"
+#include "modal/response/random/modal_source.hpp"
 #include "modal/response/recovery.hpp"
 
 namespace bough::modal::response {
@@ -16,6 +18,7 @@ struct ResponseOptions {
   std::optional<bool> residual_vectors;  ///< overrules RESVEC of the deck (default: yes)
   std::vector<int> grids;                ///< displacement, velocity, acceleration of these besides
   bool with_listing = false;             ///< what a listing needs is recovered too
+  bool with_random = false;              ///< keeps what modal integrals of a random response need
   /// EIGRL or EIGR of the subcase, with the command line.
   std::function<EigenOptions(const records::DynamicSubcase&, Diagnostics&)> choose_eigen;
   /// Of the subcase's STATSUB; may be empty.
@@ -51,12 +54,15 @@ class DeckResponseSolver {
   /// modal.response-range (driven above the highest mode), modal.no-modes (SDAMPING without modes).
   records::ResponseSubcase solve(const records::DynamicSubcase& subcase, Diagnostics& diagnostics);
 
+  /// Sources of modal integrals, by the id of each subcase that is solved by modes.
+  const std::map<int, ModalSource>& sources() const { return sources_; }
+
  private:
   struct Prepared;
   void prepare(const records::DynamicSubcase& subcase, Diagnostics& diagnostics);
   struct Task;
   void solve_by_modes(const Task& task, const records::DynamicSubcase& subcase, records::ResponseSubcase& result,
-                      Diagnostics& diagnostics) const;
+                      Diagnostics& diagnostics);
   void solve_directly(const Task& task, const records::DynamicSubcase& subcase, records::ResponseSubcase& result,
                       Diagnostics& diagnostics) const;
 
@@ -65,6 +71,7 @@ class DeckResponseSolver {
   ResponseOptions options_;
   std::optional<std::array<int, 6>> held_;
   std::unique_ptr<Prepared> prepared_;
+  std::map<int, ModalSource> sources_;
 };
 
 }  // namespace bough::modal::response

@@ -273,6 +273,41 @@ void add_motion(const Recovery& recovery, const MotionBlock<Values>& motion, rec
 
 }  // namespace
 
+std::vector<CoordinateMap> make_coordinate_maps(const fe::Model& model, const ResponseModel& response,
+                                                const Excitation& excitation, const DampingChoice& damping,
+                                                const std::vector<OutputChoice>& outputs) {
+  const MatrixXd W = join_shapes(response);
+  const auto n = W.cols(), m = excitation.F.cols();
+  // A column per coordinate of u, of u̇, of ü, and per force.
+  const Apply<MatrixXcd> apply = [&](const LinearMap& map, int order) {
+    const MatrixXd rows = map(W);
+    MatrixXcd values = MatrixXcd::Zero(rows.rows(), 3 * n + m);
+    values.middleCols(order * n, n) = rows.cast<std::complex<double>>();
+    return values;
+  };
+  MatrixXcd p = MatrixXcd::Zero(m, 3 * n + m);
+  p.rightCols(m).setIdentity();
+  records::ResponseSubcase columns;
+  Recovery(model, excitation, damping, outputs).add<MatrixXcd>(VectorXd::LinSpaced(3 * n + m, 0, 1), apply, p, columns);
+  std::vector<CoordinateMap> maps;
+  const auto add = [&](const auto& curves) {
+    MatrixXcd all(curves.real.cols(), curves.real.rows());
+    all.real() = curves.real.transpose();
+    all.imag() = curves.imag.transpose();
+    CoordinateMap map;
+    for (int order = 0; order < 3; ++order) {
+      MatrixXcd block = MatrixXcd::Zero(all.rows(), n + m);
+      block.leftCols(n) = all.middleCols(order * n, n);
+      if (order == 0) block.rightCols(m) = all.rightCols(m);
+      if (!block.isZero(0)) map.motion[static_cast<std::size_t>(order)] = std::move(block);
+    }
+    maps.push_back(std::move(map));
+  };
+  for (const auto& curves : columns.curves) add(curves);
+  for (const auto& curves : columns.elements) add(curves);
+  return maps;
+}
+
 void recover(const fe::Model& model, const ResponseModel& response, const Excitation& excitation,
              const DampingChoice& damping, const std::vector<OutputChoice>& outputs, const Spectrum& spectrum,
              records::ResponseSubcase& result) {

@@ -1,5 +1,7 @@
 #pragma once
 /// \file From coordinates to curves at grids and elements.
+#include <array>
+
 #include "formats/records/deck_response.hpp"
 #include "modal/response/coordinates.hpp"
 #include "modal/response/direct_model.hpp"
@@ -21,6 +23,16 @@ std::vector<OutputChoice> choose_outputs(const fe::Model& model, const records::
                                          const records::DynamicSubcase& subcase, const Excitation& excitation,
                                          const std::vector<int>& extra_grids, bool with_listing,
                                          Diagnostics& diagnostics);
+
+/// An output of recover() as a linear map of the coordinates: y = Σ_o (iω)^o motion[o] [q; d; p], p the amplitudes of
+/// the forces. Rows: the columns of the curves. Empty matrices are zero.
+struct CoordinateMap {
+  std::array<MatrixXcd, 3> motion;
+};
+/// Maps of the curves, then of the elements that recover() gives.
+std::vector<CoordinateMap> make_coordinate_maps(const fe::Model& model, const ResponseModel& response,
+                                                const Excitation& excitation, const DampingChoice& damping,
+                                                const std::vector<OutputChoice>& outputs);
 
 /// Solved by modes.
 void recover(const fe::Model& model, const ResponseModel& response, const Excitation& excitation,

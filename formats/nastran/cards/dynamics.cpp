@@ -220,19 +220,25 @@ void add_table(Card& card, DynamicCards& r, records::DynamicTable table) {
   add_unique(card, r.tables, std::move(table), &std::remove_reference_t<decltype(table)>::id);
 }
 
-/// TID XAXIS YAXIS, pairs from the second line on.
-void parse_tabled1(Card& card, DynamicCards& r) {
-  auto t = read_table_head(card, 1);
+/// XAXIS YAXIS and how the table goes on beyond its ends, pairs from the second line on.
+void read_axes(Card& card, records::DynamicTable& t, const char* beyond_name) {
   t.is_log_x = card.read_word(1, "XAXIS", "LINEAR", {"LINEAR", "LOG"}) == "LOG";
   t.is_log_y = card.read_word(2, "YAXIS", "LINEAR", {"LINEAR", "LOG"}) == "LOG";
-  const int beyond = card.read_int(3, "EXTRAP", 0);
-  if (card.is_ok()) card.demand(beyond == 0 || beyond == 1, 3, "EXTRAP", "0 (the last line goes on) or 1 (end values)");
+  const int beyond = card.read_int(3, beyond_name, 0);
+  if (card.is_ok())
+    card.demand(beyond == 0 || beyond == 1, 3, beyond_name, "0 (the last line goes on) or 1 (end values)");
   t.is_flat = beyond == 1;
   t.points = read_points(card, 8);
   if (!t.is_flat) refuse_jumps_at_ends(card, t.points);
   for (const auto& [x, y] : t.points)
     if (card.is_ok() && ((t.is_log_x && x <= 0) || (t.is_log_y && y <= 0)))
       card.fail("deck.field-range", 8, "a LOG axis has a value that is not above 0");
+}
+
+/// TID XAXIS YAXIS, pairs from the second line on.
+void parse_tabled1(Card& card, DynamicCards& r) {
+  auto t = read_table_head(card, 1);
+  read_axes(card, t, "EXTRAP");
   add_table(card, r, std::move(t));
 }
 void parse_tabled2(Card& card, DynamicCards& r) {
@@ -381,6 +387,60 @@ void parse_tstep(Card& card, DynamicCards& r) {
   add_unique(card, r.steps, std::move(steps), &std::remove_reference_t<decltype(steps)>::sid);
 }
 
+/// SID J K X Y TID.
+void parse_randps(Card& card, DynamicCards& r) {
+  records::SpectralTerm t;
+  t.sid = card.read_id(0, "SID");
+  t.j = card.read_id(1, "J");
+  t.k = card.read_id(2, "K");
+  t.x = card.read_real(3, "X", 0.0);
+  t.y = card.read_real(4, "Y", 0.0);
+  t.table = card.read_reference(5, "TID");
+  t.at = card.get_location();
+  if (card.is_ok())
+    card.demand(t.k >= t.j, 2, "K", "J or a subcase above it: the other half of the matrix is its conjugate");
+  if (card.is_ok() && t.j == t.k) {
+    card.demand(t.x >= 0, 3, "X", "zero or above: an auto-spectral density is not negative");
+    card.demand(t.y == 0, 4, "Y", "zero: an auto-spectral density is real");
+  }
+  if (card.is_ok()) r.spectral_terms.push_back(t);
+}
+
+/// SID N T0 TMAX.
+void parse_randt1(Card& card, DynamicCards& r) {
+  records::TimeLags lags;
+  lags.sid = card.read_id(0, "SID");
+  lags.count = card.read_id(1, "N");
+  lags.first = card.read_real(2, "T0", 0.0);
+  lags.last = card.read_real(3, "TMAX");
+  lags.at = card.get_location();
+  if (card.is_ok()) card.demand(lags.count <= 100'000, 1, "N", "1 to 100000");
+  if (card.is_ok()) card.demand(lags.first >= 0, 2, "T0", "zero or above");
+  if (card.is_ok()) card.demand(lags.last > lags.first, 3, "TMAX", "a number above T0");
+  add_unique(card, r.lags, std::move(lags), &std::remove_reference_t<decltype(lags)>::sid);
+}
+
+/// TID XAXIS YAXIS FLAT, pairs from the second line on.
+void parse_tabrnd1(Card& card, DynamicCards& r) {
+  auto t = read_table_head(card, 1);
+  read_axes(card, t, "FLAT");
+  add_unique(card, r.spectra, std::move(t), &std::remove_reference_t<decltype(t)>::id);
+}
+
+/// TID TYPE LU WG.
+void parse_tabrndg(Card& card, DynamicCards& r) {
+  records::GustSpectrum t;
+  t.id = card.read_id(0, "TID");
+  const int type = card.read_int(1, "TYPE", 1);
+  t.is_dryden = type == 2;
+  t.length_over_speed = card.read_real(2, "L/U");
+  t.rms = card.read_real(3, "WG");
+  t.at = card.get_location();
+  if (card.is_ok()) card.demand(type == 1 || type == 2, 1, "TYPE", "1 (von Karman) or 2 (Dryden)");
+  if (card.is_ok()) card.demand(t.length_over_speed > 0, 2, "L/U", "a number above 0");
+  add_unique(card, r.gust_spectra, std::move(t), &std::remove_reference_t<decltype(t)>::id);
+}
+
 /// Digits of the components, none for a scalar point; ascending.
 std::string read_digits(Card& card, int i) {
   const unsigned bits = card.read_components(i, "C", 0);
@@ -453,7 +513,8 @@ const DynamicParserTable& get_dynamic_parsers() {
       {"TABLED3", parse_tabled3}, {"TABLED4", parse_tabled4}, {"TABDMP1", parse_tabdmp1}, {"FREQ", parse_freq},
       {"FREQ1", parse_freq1},     {"FREQ2", parse_freq2},     {"FREQ3", parse_freq3},     {"FREQ4", parse_freq4},
       {"FREQ5", parse_freq5},     {"TSTEP", parse_tstep},     {"USET", parse_uset},       {"USET1", parse_uset1},
-      {"RVDOF", parse_rvdof},     {"RVDOF1", parse_rvdof1}};
+      {"RVDOF", parse_rvdof},     {"RVDOF1", parse_rvdof1},   {"RANDPS", parse_randps},   {"RANDT1", parse_randt1},
+      {"TABRND1", parse_tabrnd1}, {"TABRNDG", parse_tabrndg}};
   return table;
 }
 
@@ -462,6 +523,7 @@ int records::DynamicSelection::*find_selection_of(std::string_view card) {
   if (card.substr(0, 4) == "FREQ") return &DynamicSelection::frequency;
   if (card == "TSTEP") return &DynamicSelection::tstep;
   if (card == "TIC") return &DynamicSelection::ic;
+  if (card == "RANDPS" || card == "RANDT1") return &DynamicSelection::random;
   if (card == "TABDMP1") return &DynamicSelection::sdamping;
   if (card == "EIGC") return &DynamicSelection::cmethod;
   if (card == "TF") return &DynamicSelection::tfl;

@@ -130,6 +130,11 @@ class CaseControl {
         return refuse(*acts);
       return note(c.word);
     }
+    if (!is_response() && is_command(c.word, "RANDOM", 4)) return note(c.word);
+    if (is_command(c.word, "RANDOM", 4) &&
+        (asked_to_ignore_.count("RANDOM") > 0 || asked_to_ignore_.count("RANDPS") > 0))
+      return diagnostics_.warning("deck.unsupported-command", deck_.locate(at_), "RANDOM selects the random response",
+                                  "ignored as asked");
     const auto read = dynamics_
                           ? read_dynamic_command({c.word, c.options, c.value, at_}, current(), current_selection())
                           : DynamicCommand::Other;

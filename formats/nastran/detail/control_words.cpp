@@ -114,7 +114,6 @@ const UnsupportedCommand* find_unsupported_command(std::string_view word) {
       UnsupportedCommand{"TFL", "TF", "transfer functions: stiffness, damping and mass of the response"},
       UnsupportedCommand{"NONLINEAR", "NOLIN1", "loads that depend on the motion"},
       UnsupportedCommand{"K42GG", "DMIG", "structural damping given as a matrix"},
-      UnsupportedCommand{"RANDOM", "RANDPS", "power spectra of the excitation: the response is given per load alone"},
       UnsupportedCommand{"RMETHOD", "ROTORD", "rotors: gyroscopic terms of the response"},
       UnsupportedCommand{"RGYRO", "RGYRO", "rotors: gyroscopic terms of the response"},
       UnsupportedCommand{"GUST", "GUST", "aerodynamic loads of a gust"},

@@ -11,7 +11,8 @@ namespace bough::nastran::detail {
 using DynamicParser = void (*)(Card&, records::DynamicCards&);
 using DynamicParserTable = std::unordered_map<std::string_view, DynamicParser>;
 
-/// xLOADn, DLOAD, DAREA, DELAY, DPHASE, LSEQ, TIC, TABLEDn, TABDMP1, FREQn, TSTEP.
+/// xLOADn, DLOAD, DAREA, DELAY, DPHASE, LSEQ, TIC, TABLEDn, TABDMP1, FREQn, TSTEP, RANDPS, RANDT1, TABRND1,
+/// TABRNDG.
 const DynamicParserTable& get_dynamic_parsers();
 
 /// EIGC, TF, EPOINT: cards of complex modes alone.

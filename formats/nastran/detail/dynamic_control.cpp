@@ -19,7 +19,7 @@ struct Selection {
 constexpr std::array selections{
     Selection{"DLOA", "DLOAD", &DynamicSelection::dload}, Selection{"FREQ", "FREQUENCY", &DynamicSelection::frequency},
     Selection{"TSTE", "TSTEP", &DynamicSelection::tstep}, Selection{"SDAM", "SDAMPING", &DynamicSelection::sdamping},
-    Selection{"OFRE", "OFREQ", &DynamicSelection::ofreq}};
+    Selection{"OFRE", "OFREQ", &DynamicSelection::ofreq}, Selection{"RAND", "RANDOM", &DynamicSelection::random}};
 
 struct Request {
   std::string_view letters;

@@ -209,7 +209,6 @@ std::optional<ResponseEffect> find_response_effect(std::string_view name) {
   if (name == "EPOINT") return ResponseEffect{"adds dofs to a response", false, " computes without them"};
   if (name == "TF") return ResponseEffect{"TFL", true, ""};
   if (name.substr(0, 5) == "NOLIN") return ResponseEffect{"NONLINEAR", true, ""};
-  if (name == "RANDPS" || name == "RANDT1") return ResponseEffect{"RANDOM", true, ""};
   if (name == "GUST") return ResponseEffect{"GUST", true, ""};
   if (name == "RGYRO") return ResponseEffect{"RGYRO", true, ""};
   if (name == "ROTORD") return ResponseEffect{"RMETHOD", true, ""};

@@ -66,18 +66,20 @@ const std::vector<Rule>& get_rules() {
 
 /// Further parameters used by responses.
 const std::vector<Rule>& get_response_rules() {
-  static const std::vector<Rule> rules{{"ALPHA1", "a number", is_real},
-                                       {"ALPHA2", "a number", is_real},
-                                       {"DFREQ", "a number", is_real},
-                                       {"ENFMETH", "ABS, TOTAL or REL", is_method},
-                                       {"ENFMOTN", "ABS, TOTAL or REL", is_method},
-                                       {"HFREQ", "a number", is_real},
-                                       {"KDAMP", "1 or -1", is_integer},
-                                       {"LFREQ", "a number", is_real},
-                                       {"LMODES", "an integer", is_integer},
-                                       {"RESVEC", "YES or NO", is_answer},
-                                       {"W3", "a number", is_real},
-                                       {"W4", "a number", is_real}};
+  static const std::vector<Rule> rules{
+      {"ALPHA1", "a number", is_real},
+      {"ALPHA2", "a number", is_real},
+      {"DFREQ", "a number", is_real},
+      {"ENFMETH", "ABS, TOTAL or REL", is_method},
+      {"ENFMOTN", "ABS, TOTAL or REL", is_method},
+      {"HFREQ", "a number", is_real},
+      {"KDAMP", "1 or -1", is_integer},
+      {"LFREQ", "a number", is_real},
+      {"LMODES", "an integer", is_integer},
+      {"RESVEC", "YES or NO", is_answer},
+      {"RMSINT", "LINEAR or LOGLOG", [](const std::string& v) { return v == "LINEAR" || v == "LOGLOG"; }},
+      {"W3", "a number", is_real},
+      {"W4", "a number", is_real}};
   return rules;
 }
 

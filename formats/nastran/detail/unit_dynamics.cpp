@@ -24,6 +24,18 @@ bool UnitConverter::convert_dynamic() {
     scale(1, size() - 1, "Hz");
   } else if (name == "TSTEP") {
     for (int line = 0; line < size(); line += 8) scale(line + 2, "T");
+  } else if (name == "RANDPS") {
+    if (parse_int(get(5)).value_or(0) == 0) scale(3, 4, "T");  // per hertz, as G of a table
+  } else if (name == "RANDT1") {
+    scale(2, 3, "T");
+  } else if (name == "TABRND1") {
+    for (int i = 8; i < size(); i += 2) {
+      scale(i, "Hz");
+      scale(i + 1, "T");
+    }
+  } else if (name == "TABRNDG") {
+    scale(2, "T");
+    scale(3, "?");
   } else if (name == "TABDMP1") {
     for (int i = 8; i < size(); i += 2) scale(i, "Hz");
   } else if (name.starts_with("TABLED") && name.size() == 7) {

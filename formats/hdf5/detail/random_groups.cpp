@@ -1,0 +1,134 @@
+#include "formats/hdf5/detail/random_groups.hpp"
+
+#include <cstdlib>
+
+namespace bough::hdf5 {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+using records::RandomCurves;
+using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+struct Units {
+  std::string plain, squared;
+};
+Units get_units(const RandomCurves& curves) {
+  if (curves.quantity == "displacement") return {"L, 1", "L^2 T, T"};
+  if (curves.quantity == "velocity") return {"L/T, 1/T", "L^2/T, 1/T"};
+  if (curves.quantity == "acceleration") return {"L/T^2, 1/T^2", "L^2/T^3, 1/T^3"};
+  if (curves.quantity == "stress") return {"F/L^2", "F^2 T/L^4"};
+  return {"F, F L", "F^2 T, F^2 L^2 T"};
+}
+
+void write_curves(FileWriter& file, const std::string& path, const records::RandomResponse& response,
+                  const RandomCurves& curves) {
+  const bool of_elements = !curves.card.empty();
+  const std::string group = path + (!of_elements                  ? "/" + curves.quantity
+                                    : curves.quantity == "stress" ? "/stresses/" + curves.card
+                                                                  : "/elements/" + curves.card);
+  Dims columns{static_cast<hsize_t>(curves.rms.size())};
+  if (of_elements) {
+    columns = {static_cast<hsize_t>(curves.ids.size()), static_cast<hsize_t>(curves.components.size())};
+    file.write_integers(group + "/id", curves.ids, {"element ids", "1"});
+  } else {
+    Eigen::MatrixXi dofs(static_cast<Eigen::Index>(curves.dofs.size()), 2);
+    for (Eigen::Index i = 0; i < dofs.rows(); ++i)
+      dofs.row(i) << curves.dofs[static_cast<std::size_t>(i)].first, curves.dofs[static_cast<std::size_t>(i)].second;
+    file.write_integers(group + "/dofs", dofs,
+                        {"a row per column: grid and component 1..6 in its displacement (CD) axes, 0 scalar", "1"});
+  }
+  const auto units = get_units(curves);
+  const auto write_rows = [&](const char* name, const MatrixXd& values, const ArrayAttributes& attributes) {
+    if (values.size() == 0) return;
+    Dims shape{static_cast<hsize_t>(values.rows())};
+    shape.insert(shape.end(), columns.begin(), columns.end());
+    const RowMajor rows = values;
+    file.write_numbers(group + "/" + name, shape, rows.data(), attributes);
+  };
+  const auto write_one = [&](const char* name, const VectorXd& values, const ArrayAttributes& attributes) {
+    if (values.size() > 0) file.write_numbers(group + "/" + name, columns, values.data(), attributes);
+  };
+  write_rows("psd", curves.psd, {"one-sided spectral density, a row per frequency", units.squared});
+  write_rows("cumulative_rms", records::calc_cumulative_rms(response, curves),
+             {"RMS from the first frequency to each", units.plain});
+  write_rows("autocorrelation", curves.autocorrelation, {"a row per lag", "square of the unit of rms"});
+  write_one("rms", curves.rms, {"root mean square over the output frequencies", units.plain});
+  write_one("zero_crossings_hz", curves.crossing_hz, {"N0, zero crossings with positive slope", "1/T"});
+  write_one("modal_rms", curves.modal_rms, {"root mean square by integration over the band", units.plain});
+  write_one("modal_zero_crossings_hz", curves.modal_crossing_hz, {"N0 by integration over the band", "1/T"});
+  if (of_elements) file.write_attribute(group, "components", curves.components);
+}
+
+}  // namespace
+
+void write_random(FileWriter& file, const records::RandomResponse& response) {
+  const std::string path = "/random/" + std::to_string(response.set);
+  file.make_group(path);
+  file.write_attribute(path, "integration", response.is_loglog ? "loglog" : "linear");
+  file.write_integers(path + "/subcases", response.subcases, {"whose loads RANDPS relates", "1"});
+  file.write_vector(path + "/frequency_hz", response.hz, {"frequency of each row", "1/T"});
+  if (response.lags.size() > 0) file.write_vector(path + "/lag", response.lags, {"of the autocorrelation", "T"});
+  if (response.integral_error >= 0)
+    file.write_number(path + "/integral_error", response.integral_error,
+                      {"relative, of the mean squares of the coordinates by integration over the band", "1"});
+  for (const auto& curves : response.curves) write_curves(file, path, response, curves);
+}
+
+records::RandomResponse read_random(FileReader& file, const std::string& path) {
+  records::RandomResponse response;
+  response.set = std::atoi(path.substr(path.rfind('/') + 1).c_str());
+  response.is_loglog = file.read_attribute(path, "integration") == "loglog";
+  response.subcases = file.read_integers(path + "/subcases", -1);
+  response.hz = file.read_vector(path + "/frequency_hz", -1);
+  if (file.has(path + "/lag")) response.lags = file.read_vector(path + "/lag", -1);
+  if (file.has(path + "/integral_error")) response.integral_error = file.read_number(path + "/integral_error");
+  const auto read = [&](const std::string& group, RandomCurves curves, Shape columns) {
+    long count = 1;
+    for (const long c : columns) count *= c;
+    const auto read_rows = [&](const char* name, long rows) {
+      if (!file.has(group + "/" + name)) return MatrixXd(0, 0);
+      Shape shape{rows};
+      shape.insert(shape.end(), columns.begin(), columns.end());
+      const auto array = file.read_array(group + "/" + name, shape);
+      return MatrixXd(Eigen::Map<const RowMajor>(array.data.data(), rows, count));
+    };
+    const auto read_one = [&](const char* name) {
+      if (!file.has(group + "/" + name)) return VectorXd(0);
+      const auto array = file.read_array(group + "/" + name, columns);
+      return VectorXd(Eigen::Map<const VectorXd>(array.data.data(), count));
+    };
+    curves.psd = read_rows("psd", static_cast<long>(response.hz.size()));
+    curves.autocorrelation = read_rows("autocorrelation", static_cast<long>(response.lags.size()));
+    curves.rms = read_one("rms");
+    curves.crossing_hz = read_one("zero_crossings_hz");
+    curves.modal_rms = read_one("modal_rms");
+    curves.modal_crossing_hz = read_one("modal_zero_crossings_hz");
+    response.curves.push_back(std::move(curves));
+  };
+  for (const char* quantity : {"displacement", "velocity", "acceleration", "spc_force"}) {
+    const std::string group = path + "/" + quantity;
+    if (!file.has(group)) continue;
+    RandomCurves curves;
+    curves.quantity = quantity;
+    const auto dofs = file.read_integer_matrix(group + "/dofs", -1, 2);
+    for (Eigen::Index i = 0; i < dofs.rows(); ++i) curves.dofs.emplace_back(dofs(i, 0), dofs(i, 1));
+    read(group, std::move(curves), {static_cast<long>(dofs.rows())});
+  }
+  for (const char* folder : {"/elements", "/stresses"}) {
+    if (!file.has(path + folder)) continue;
+    for (const auto& card : file.get_children(path + folder)) {
+      const std::string group = path + folder + "/" + card;
+      RandomCurves curves;
+      curves.quantity = std::string_view(folder) == "/stresses" ? "stress" : "force";
+      curves.card = card;
+      curves.ids = file.read_integers(group + "/id", -1);
+      curves.components = file.read_attribute_words(group, "components");
+      const Shape columns{static_cast<long>(curves.ids.size()), static_cast<long>(curves.components.size())};
+      read(group, std::move(curves), columns);
+    }
+  }
+  return response;
+}
+
+}  // namespace bough::hdf5
