@@ -94,11 +94,19 @@ bough_status refuse(bough_simulation& simulation, const std::string& what) {
   return BOUGH_BAD_ARGUMENT;
 }
 
+/// The message for a range of inputs or outputs that does not exist.
+std::string describe_range(const char* what, int first, int n, std::ptrdiff_t count) {
+  if (n < 0) return "n is " + std::to_string(n) + ": give the number of " + what;
+  return std::string("there are no ") + what + " " + std::to_string(first) + " to " +
+         std::to_string(static_cast<long long>(first) + n - 1) + ": the model has " + std::to_string(count);
+}
+
 bough_status load(const char* file, const char* toml, const char* const* settings, bough_model** model,
                   bough_message* message) {
   if (message) *message = {};
   if (model) *model = nullptr;
   if (!file || !model) return refuse(file ? "model is null" : "the file is null", message);
+  if (!*file) return refuse("the file name is empty", message);
   Diagnostics diagnostics;
   std::vector<Diagnostic> told;
   const auto status = call(
@@ -235,20 +243,18 @@ bough_status bough_start(const bough_model* model, const bough_options* options,
   if (!is_alive(model)) return refuse("the model is null or was unloaded", message);
   if (options && options->size != sizeof(bough_options))
     return refuse("options.size is not sizeof(bough_options): begin with bough_default_options()", message);
+  bough::embed::SimulationOptions own;
   if (options) {
-    for (const double number :
-         {options->step, options->relative_tolerance, options->absolute_tolerance, options->duration})
-      if (!std::isfinite(number) || number < 0)
-        return refuse("an option is " + to_text(number) + ": give a positive number, or 0 for that of the file",
-                      message);
+    own.step = options->step;
+    own.relative_tolerance = options->relative_tolerance;
+    own.absolute_tolerance = options->absolute_tolerance;
+    own.duration = options->duration;
+    if (const auto fault = bough::embed::describe_fault(own); !fault.empty()) return refuse(fault, message);
   }
   std::vector<Diagnostic> told;
   const auto status = call(
       [&] {
-        bough::embed::SimulationOptions own;
-        if (options)
-          own = {options->integrator ? options->integrator : "", options->step, options->relative_tolerance,
-                 options->absolute_tolerance, options->duration};
+        if (options && options->integrator) own.integrator = options->integrator;
         const auto& spec = model->model->loaded().spec;
         *simulation = bough::embed::make_simulation(model->model, bough::embed::change_spec(spec, own)).release();
         return BOUGH_OK;
@@ -272,9 +278,7 @@ bough_status bough_set_inputs(bough_simulation* simulation, int first, int n, co
   if (s.has_failed) return BOUGH_FAILED;
   if (n == 0) return BOUGH_OK;
   if (!values || first < 0 || n < 0 || n > s.simulator().num_inputs() - first)
-    return refuse(s, values ? "there are no inputs " + std::to_string(first) + " to " + std::to_string(first + n - 1) +
-                                  ": the model has " + std::to_string(s.simulator().num_inputs())
-                            : "values is null");
+    return refuse(s, values ? describe_range("inputs", first, n, s.simulator().num_inputs()) : "values is null");
   for (int i = 0; i < n; ++i)
     if (!std::isfinite(values[i])) return refuse(s, "input " + std::to_string(first + i) + " is not finite");
   s.simulator().set_inputs(first, {values, static_cast<std::size_t>(n)});
@@ -309,9 +313,7 @@ bough_status bough_get_outputs(bough_simulation* simulation, int first, int n, d
   if (n == 0) return BOUGH_OK;
   const auto& ports = *s.model->list(BOUGH_OUTPUTS);
   if (!values || first < 0 || n < 0 || n > std::ssize(ports) - first)
-    return refuse(s, values ? "there are no outputs " + std::to_string(first) + " to " + std::to_string(first + n - 1) +
-                                  ": the model has " + std::to_string(ports.size())
-                            : "values is null");
+    return refuse(s, values ? describe_range("outputs", first, n, std::ssize(ports)) : "values is null");
   return compute(s, [&] {
     const auto& all = s.simulator().calc_outputs();
     for (int i = 0; i < n; ++i) values[i] = all[ports[static_cast<std::size_t>(first + i)].row];

@@ -361,6 +361,10 @@ Status Instance::do_step(double t, double h, StepResult& result) {
   if (std::abs(t - result.time) > std::max(1e-6 * h, simulation_->simulator().resolution()))
     return fail("the communication point is " + to_text(t) + ", but the instance is at " + to_text(result.time) +
                 "; continue from there, or set an FMU state");
+  // FMI 2.0.4 section 2.1.6, FMI 3.0.1 section 2.3.3: an instance does not compute past a stop time that is defined.
+  if (std::isfinite(stop_) && t + h > stop_ + std::max(1e-6 * h, simulation_->simulator().resolution()))
+    return fail("the step to " + to_text(t + h) + " goes past the stop time " + to_text(stop_) +
+                "; end there, or set up the instance with a later stop time or none");
   const auto& times = simulation_->own->spec().simulation;
   const auto* outcome = simulation_->simulator().outcome() ? &*simulation_->simulator().outcome() : nullptr;
   const bool may_extend =
@@ -368,6 +372,11 @@ Status Instance::do_step(double t, double h, StepResult& result) {
   if (may_extend && t + h > times.start + times.duration + simulation_->simulator().resolution()) extend(t + h);
   has_outputs_ = false;
   const auto status = bough_advance(simulation_.get(), t + h, &result.time);
+  // The end of the duration is none of the FMU: the next step makes it longer.
+  outcome = simulation_->simulator().outcome() ? &*simulation_->simulator().outcome() : nullptr;
+  if (status == BOUGH_TERMINATED && outcome && outcome->reason.empty() && outcome->energy_is_kept &&
+      result.time >= t + h - simulation_->simulator().resolution())
+    return Status::Ok;
   if (status == BOUGH_TERMINATED) {
     result.is_terminated = true;
     end_message_ = bough_last_message(simulation_.get());
@@ -649,6 +658,25 @@ std::unique_ptr<SavedState> Instance::deserialize(std::span<const std::byte> byt
     BytesReader::fail("the state is damaged");
   s->phase = static_cast<Phase>(phase);
   return s;
+}
+
+const char* get_name(Phase phase) {
+  switch (phase) {
+    case kInstantiated:
+      return "Instantiated";
+    case kInitialization:
+      return "Initialization Mode";
+    case kEventMode:
+      return "Event Mode";
+    case kContinuousTime:
+      return "Continuous-Time Mode";
+    case kStepMode:
+      return "Step Mode";
+    case kTerminated:
+      return "Terminated";
+    default:
+      return "unknown";
+  }
 }
 
 }  // namespace bough::fmi

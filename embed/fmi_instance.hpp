@@ -27,6 +27,8 @@ enum Phase : unsigned {
   kTerminated = 32,
   kAnyPhase = 63
 };
+/// Name of a state as in the standard: "Step Mode".
+const char* get_name(Phase phase);
 
 struct InstanceOptions {
   std::string token, resources;  ///< guid or instantiation token; folder of the resources
@@ -162,8 +164,8 @@ Status call(void* handle, unsigned allowed, const char* function, const Action& 
   try {
     try {
       if ((instance.phase() & allowed) == 0)
-        return instance.fail(std::string(function) + " is not allowed in this phase of the instance (" +
-                             std::to_string(instance.phase()) + "): see the state machine of the standard");
+        return instance.fail(std::string(function) + " is not allowed in the state " + get_name(instance.phase()) +
+                             " of the instance: see the state machine of the standard");
       return action(instance);
     } catch (const Failure& error) {
       return instance.fail(error.what());

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <cstring>
+#include <utility>
 
 #include "base/version.hpp"
 #include "embed/state_bytes.hpp"
@@ -19,6 +21,7 @@ void apply(const SimulationOptions& o, records::SimulationRecord& s) {
   // Samples stay where they are, since fixed steps divide the time between them.
   if (s.output_step == 0) s.output_step = s.duration / 1000;
   s.duration = o.duration;
+  s.output_step = std::min(s.output_step, s.duration);
 }
 
 /// Hash of all that must be the same where a state is restored: text, options, version and bodies.
@@ -51,6 +54,18 @@ std::string to_text(double value) {
   return {text, end};
 }
 
+std::string describe_fault(const SimulationOptions& o) {
+  const std::pair<const char*, double> numbers[] = {{"step", o.step},
+                                                    {"relative_tolerance", o.relative_tolerance},
+                                                    {"absolute_tolerance", o.absolute_tolerance},
+                                                    {"duration", o.duration}};
+  for (const auto& [name, value] : numbers)
+    if (!std::isfinite(value) || value < 0)
+      return std::string("the option ") + name + " is " + to_text(value) +
+             ": give a positive number, or 0 for that of the file";
+  return {};
+}
+
 records::SystemSpec change_spec(records::SystemSpec spec, const SimulationOptions& options) {
   apply(options, spec.simulation);
   return spec;
@@ -69,7 +84,7 @@ bool Simulation::advance_to(double t) {
   const auto& outcome = simulator_->outcome();
   if (!outcome) return true;
   if (!had_ended && !outcome->energy_is_kept) throw ComputationError({diagnostics_.items().back()});
-  return outcome->reason.empty() && t <= simulator_->time() + simulator_->resolution();
+  return false;
 }
 
 std::string Simulation::describe_past(double t) const {

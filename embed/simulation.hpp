@@ -22,6 +22,9 @@ struct SimulationOptions {
   double duration = 0;  ///< [T] longest time from the start on
 };
 
+/// The message for an option that is negative or not finite; empty: all are valid.
+std::string describe_fault(const SimulationOptions& options);
+
 /// The records with the options of a host.
 records::SystemSpec change_spec(records::SystemSpec spec, const SimulationOptions& options);
 
@@ -38,7 +41,7 @@ class Simulation {
   /// Hash of all that must be the same where a state is restored.
   std::uint64_t fingerprint() const { return fingerprint_; }
 
-  /// Returns true if the run goes on at t, or ends at t itself since its duration is over.
+  /// Returns true if the run goes on at t; false if an event or its duration has ended it, at time() <= t.
   /// Throws ComputationError "run.energy-error" and what Simulator::advance_to() throws.
   bool advance_to(double t);
   /// Returns true if t is before the time that is reached.

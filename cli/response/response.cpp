@@ -145,10 +145,11 @@ int run_response(const ResponseOptions& o) {
   model = choose_channels(std::move(model), o.inputs, o.outputs, o.file);
   Diagnostics diagnostics;
   if (const double worst = std::max(model.error, model.difference); worst > kMaxUncertainty)
-    diagnostics.warning("linear.inaccurate", {o.file},
-                        fmt::format("the linear model is known to {:.3g} of its rows only, expected below {:g}", worst,
-                                    kMaxUncertainty),
-                        "bough linearize names what makes it uncertain: linearize on one side of it");
+    diagnostics.warning(
+        "linear.inaccurate", {o.file},
+        fmt::format("entries of the linear model are uncertain by {:.3g} relative to their row, expected below {:g}",
+                    worst, kMaxUncertainty),
+        "bough linearize names what makes it uncertain: linearize on one side of it");
   console.print(diagnostics);
   if (model.inputs.size() == 0 || model.outputs.size() == 0)
     throw InputError("linear.no-channels", {o.file}, "the model has no input or no output",

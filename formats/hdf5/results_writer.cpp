@@ -127,6 +127,8 @@ class ResultsWriter final : public records::ResultSink {
 
  private:
   void commit_if_due() {
+    // A continuation is seen from when it has as many samples as the old file: its first commit waits for that alone.
+    if (!file_.is_published() && num_rows_ < num_safe_rows_) return;
     const auto now = Clock::now();
     const auto wait = has_committed_ ? options_.commit_every : std::min(options_.commit_every, kFirstCommit);
     if (now - last_commit_ >= wait) commit();

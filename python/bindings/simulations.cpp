@@ -17,6 +17,7 @@ Simulation::Simulation(const embed::LoadedSystem& loaded, const embed::Simulatio
     is_interrupted_ = true;
     stop_ = true;
   };
+  if (const auto fault = embed::describe_fault(options); !fault.empty()) throw py::value_error(fault);
   {
     const py::gil_scoped_release released;
     own_ = std::make_unique<embed::Simulation>(loaded, embed::change_spec(loaded.spec, options), std::move(run));

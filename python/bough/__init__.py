@@ -249,7 +249,12 @@ class Simulation:
         return self._own.output(name)
 
     def outputs(self, names=None):
-        """Outputs at the present time as an array: all, or those of `names`, each with all its components."""
+        """Outputs at the present time as an array: all, or those of `names`, each with all its components.
+
+        `names` is a list of names, or one name.
+        """
+        if isinstance(names, str):
+            names = [names]
         return self._own.outputs(None if names is None else list(names))
 
     def save(self):

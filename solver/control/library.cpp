@@ -44,8 +44,12 @@ class Library final : public UserBlock {
   /// `handle` of dlopen; null where a host lends the functions.
   Library(void* handle, ControllerFunctions f) : handle_(handle), f_(std::move(f)) {}
   ~Library() override {
-    const ForeignCall marked(at, label, f_.language, "bough_controller_close");
-    if (*is_open_ && f_.close != nullptr) f_.close(own.instance);
+    if (*is_open_ && f_.close != nullptr) {
+      const ForeignCall marked(at, label, f_.language, "bough_controller_close");
+      f_.close(own.instance);
+    }
+    const std::string no_language;
+    const ForeignCall marked(at, label, no_language, "unloading of its library");
     f_ = {};
     if (handle_ != nullptr) dlclose(handle_);
   }

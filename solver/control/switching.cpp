@@ -83,7 +83,6 @@ void read_levels(SettingsReader& keys, SwitchingBlock& t, int n) {
   t.on = keys.get("on");
   t.off = keys.get("off");
   keys.demand(t.off < t.on, "has an off that is not below on", "give off < on: between them it stays as it is");
-  keys.demand(!t.has_rest || t.off >= 0, "has a negative off", "give 0 <= off < on");
   t.sizes.outputs = t.sizes.memory = n;
   t.sizes.event_functions = 2 * n;
 }
@@ -107,6 +106,7 @@ std::unique_ptr<Block> make_pwpf(SettingsReader& keys, const ControllerWiring& w
   made->lag = keys.get_positive("lag");
   made->has_rest = true;
   read_levels(keys, *made, wiring.size());
+  keys.demand(made->off >= 0, "has a negative off", "give 0 <= off < on");
   made->sizes.states = wiring.size();
   made->sizes.has_feedthrough = false;
   return made;

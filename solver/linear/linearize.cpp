@@ -229,8 +229,8 @@ void warn_of_inaccurate(const Uncertainty& uncertainty, double difference, const
                         Diagnostics& diagnostics) {
   const double worst = std::max(uncertainty.relative, difference);
   if (worst <= kInaccurate) return;
-  std::string what = "the linear model is known to " + brief_text(worst) + " of its rows only, expected below " +
-                     brief_text(kInaccurate);
+  std::string what = "entries of the linear model are uncertain by " + brief_text(worst) +
+                     " relative to their row, expected below " + brief_text(kInaccurate);
   for (std::size_t i = 0; i < uncertainty.kinks.size() && i < kMaxKinks; ++i) {
     const LawKink& kink = uncertainty.kinks[i];
     what += std::string(i == 0 ? ": " : ", ") + kink.label + " has a kink at " + brief_text(kink.at) + ", with slope " +

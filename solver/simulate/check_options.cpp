@@ -43,8 +43,14 @@ bool check_simulation(const records::SimulationRecord& s, Diagnostics& diagnosti
   const double finest =
       std::numeric_limits<double>::epsilon() * std::max(std::abs(s.start), std::abs(s.start + s.duration));
   std::ostringstream far;
-  far << "start = " << s.start << " is too far from zero: times there are " << finest << " apart, samples " << interval;
-  demand(!good || 1e3 * finest < interval, far.str(), "count time from a nearer start");
+  const bool is_start = std::abs(s.start) > s.duration;
+  if (is_start)
+    far << "start = " << s.start << " is too far from zero";
+  else
+    far << "duration = " << s.duration << " is too long";
+  far << ": times there are " << finest << " apart, samples " << interval;
+  demand(!good || 1e3 * finest < interval, far.str(),
+         is_start ? "count time from a nearer start" : "give a shorter duration, or a longer output_step");
   if (!is_fixed) {
     demand(s.relative_tolerance > 0 && s.relative_tolerance < 1, "relative_tolerance is not between 0 and 1",
            "give 1e-6 to 1e-12");

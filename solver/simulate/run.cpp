@@ -151,6 +151,7 @@ void Run::start() {
 void Run::enter_interval() {
   stop_ = time_events_.find_next(time_);
   if (needs_restart_) {
+    if (scanned_ < time_) refresh_events(time_);
     reset(time_);
     if (const auto* memory = restored_.find("stepper")) integrator_->set_memory(*memory);
     restored_ = {};
@@ -174,10 +175,12 @@ Run::Arrival Run::cross_interval(double t_pause) {
       take_step(stop_);
       has_stepped_ = true;
     }
-    // A pause at the end of the step by rounding is one at its end.
-    const bool is_within = t_pause < integrator_->time() - time_events_.resolution();
-    const auto change = scan_step(stop_, is_within ? t_pause : integrator_->time());
+    const auto change = scan_step(stop_, t_pause);
     if (!change) return Arrival::End;
+    if (change->is_pause) {
+      guard([&] { integrator_->calc_state(time_ = t_pause, y_); });
+      return Arrival::Pause;
+    }
     const bool is_early = change->firing && change->firing->time < stop_.time;
     if (is_early || (change->is_switch && change->time < stop_.time)) {
       // An event, or a switch of a block or a contact, ends the step.
@@ -250,6 +253,7 @@ void Run::reset(double t) {
   integrator_->reset(t, y_, stop_.time, stop_.left);
   is_started_ = true;
   scanned_ = t;
+  has_look_ = false;
 }
 
 void Run::settle_cut(double t) {

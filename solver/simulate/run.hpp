@@ -25,8 +25,7 @@ class Run {
 
   /// The start: loops closed, controllers sampled, the first sample, events of its time.
   void begin();
-  /// Goes on to t, or to the end where that comes first; what is due at t has come then. Slices change nothing but how
-  /// often event functions are looked at.
+  /// Goes on to t, or to the end where that comes first; what is due at t has come then. Slices change nothing.
   void advance_to(double t);
   /// Reached; of an end, its own.
   double time() const { return time_; }
@@ -142,6 +141,20 @@ class Run {
     bool is_kink = false;    ///< a force has a kink there
     bool is_switch = false;  ///< a block or a joint contact changes its mode there
     std::optional<Occurrence> firing;
+    bool is_pause = false;  ///< the host pauses there; nothing has changed
+  };
+  /// A signal that crossed its value, of an event that is logged, and its sign after.
+  struct Crossing {
+    Occurrence log;
+    double sign;
+  };
+  /// The first change in the part of the last step up to its next sample. It is found at once: a pause of the host
+  /// before it leaves the run as it is, so that slices locate what one run locates, to the last bit.
+  struct Look {
+    Change change;
+    EventValues events;             ///< at change.time
+    VectorXd largest_kinks, signs;  ///< after it
+    std::vector<Crossing> logs;     ///< up to it, by time
   };
   void start_events();
   bool has_event_functions() const;
@@ -161,15 +174,19 @@ class Run {
   /// the last look where function i has crossed, else none.
   template <class Before>
   bool find_first(VectorXd EventValues::*rows, const Before& get_before, const TimeEvent& stop, double& to);
-  /// The first change between the last look and t.
-  Change find_change(const TimeEvent& stop, double t);
-  /// Looks at the last step up to `until`, at each sample and there, and writes the samples, up to the first change.
-  /// None when the run was asked to stop at a sample, and did.
-  std::optional<Change> scan_step(const TimeEvent& stop, double until);
+  /// Finds the first change between the last look and `to`, into look_.
+  void look_ahead(const TimeEvent& stop, double to);
+  /// Logs what look_ holds up to `until`.
+  void accept_look(double until);
+  /// Values of the event functions at (t, y_), from which the next look starts.
+  void refresh_events(double t);
+  /// Looks at the last step, at each sample and at its end, and writes the samples, up to the first change or to
+  /// t_pause. None when the run was asked to stop at a sample, and did.
+  std::optional<Change> scan_step(const TimeEvent& stop, double t_pause);
 
   // Events (run_events.cpp)
-  /// Signals that crossed their values between the last look and `to`: each is located and logged, up to the first that
-  /// does more, which is returned and has not come yet; those after it have not crossed.
+  /// Signals that crossed their values between the last look and `to`: each is located and kept in look_.logs, up to
+  /// the first that does more, which is returned and has not come yet; those after it have not crossed.
   std::optional<Occurrence> find_occurrence(const TimeEvent& stop, double to);
   /// Events whose signals have crossed their values by a jump at t, where y_ is.
   std::vector<size_t> find_crossed(double t);
@@ -272,7 +289,9 @@ class Run {
     bool has_signals = false, has_sample = false;
   };
   Evaluated evaluated_;
-  EventValues events_, last_events_;         ///< at the present and at the last look
+  EventValues events_, last_events_;  ///< at the present and at the last look
+  Look look_;
+  bool has_look_ = false;                    ///< look_ is of the part of the step after scanned_
   VectorXd signs_;                           ///< of find_occurrence()
   VectorXd latches_before_, latches_after_;  ///< of iterate_contacts()
   double scanned_ = 0;                       ///< time of the last look

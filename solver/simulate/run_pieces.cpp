@@ -112,6 +112,7 @@ void Run::restore_state(const records::Checkpoint& saved) {
   checkpoint_.time = saved.time;
   outcome_.reset();
   waiting_.clear();
+  has_look_ = false;
   switching_.clear();
   evaluated_.number = -1;
   monitor_.set_memory(*saved.find("energy"));

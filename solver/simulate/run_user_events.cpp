@@ -20,10 +20,14 @@ bool is_same(const DiscreteState& a, const DiscreteState& b) {
 }  // namespace
 
 std::optional<Occurrence> Run::find_occurrence(const TimeEvent& stop, double to) {
+  look_.logs.clear();
   if (!setup_.triggers.has_signals()) return {};
+  // Signs of what has come: those of later crossings remain, and all do until the step stands.
+  VectorXd& signs = setup_.triggers.signs;
   std::vector<size_t> crossed;
-  signs_ = setup_.triggers.signs;
+  signs_ = signs;
   setup_.triggers.find_crossed(events_.signals, crossed);
+  std::swap(signs_, signs);
   std::vector<Occurrence> firings;
   for (const size_t i : crossed) {
     const auto row = static_cast<Eigen::Index>(i);
@@ -31,19 +35,19 @@ std::optional<Occurrence> Run::find_occurrence(const TimeEvent& stop, double to)
     firings.push_back({locate(&EventValues::signals, row, last_events_.signals[row], to, tolerance, stop), i});
   }
   std::stable_sort(firings.begin(), firings.end(), [](const auto& a, const auto& b) { return a.time < b.time; });
-  for (auto f = firings.begin(); f != firings.end(); ++f) {
-    if (setup_.triggers.get(f->trigger).action == records::EventAction::Log) {
-      write_event(*f);
-      continue;
+  std::optional<Occurrence> turn;
+  for (const Occurrence& f : firings) {
+    const auto row = static_cast<Eigen::Index>(f.trigger);
+    if (turn) {
+      signs_[row] = signs[row];
+    } else if (setup_.triggers.get(f.trigger).action == records::EventAction::Log) {
+      look_.logs.push_back({f, signs_[row]});
+    } else {
+      turn = f;
     }
-    const Occurrence turn = *f;
-    for (++f; f != firings.end(); ++f) {
-      const auto row = static_cast<Eigen::Index>(f->trigger);
-      setup_.triggers.signs[row] = signs_[row];
-    }
-    return turn;
   }
-  return {};
+  look_.signs = signs_;
+  return turn;
 }
 
 void Run::calc_signal_events(double t) {

@@ -27,8 +27,9 @@ void Run::start_events() {
   events_.switches = VectorXd::Zero(system.signals.num_event_functions);
   events_.contacts = joint_contacts_.make_guards();
   events_.signals = setup_.triggers.make_gaps();
-  last_events_ = events_;
-  largest_kinks_ = events_.kinks;
+  last_events_ = look_.events = events_;
+  largest_kinks_ = look_.largest_kinks = events_.kinks;
+  signs_ = look_.signs = setup_.triggers.signs;
 }
 
 bool Run::has_event_functions() const {
@@ -120,15 +121,18 @@ bool Run::find_first(VectorXd EventValues::*rows, const Before& get_before, cons
   return first.has_value();
 }
 
-Run::Change Run::find_change(const TimeEvent& stop, double t) {
-  calc_events(t, stop);
+void Run::look_ahead(const TimeEvent& stop, double to) {
+  calc_events(to, stop);
   Change found;
-  found.time = t;
+  found.time = to;
+  look_.largest_kinks = largest_kinks_;
+  look_.signs = setup_.triggers.signs;
   const auto kink = [&](Eigen::Index i) -> std::optional<double> {
     const double before = last_events_.kinks[i], after = events_.kinks[i];
-    largest_kinks_[i] = std::max(largest_kinks_[i], std::abs(after));
+    double& largest = look_.largest_kinks[i];
+    largest = std::max(largest, std::abs(after));
     if (before * after >= 0) return {};
-    if (std::max(std::abs(before), std::abs(after)) < kKinkNoise * largest_kinks_[i]) return {};
+    if (std::max(std::abs(before), std::abs(after)) < kKinkNoise * largest) return {};
     return before;
   };
   const auto block = [&](Eigen::Index i) -> std::optional<double> {
@@ -144,22 +148,58 @@ Run::Change Run::find_change(const TimeEvent& stop, double t) {
   const bool changes = find_first(&EventValues::contacts, contact, stop, found.time);
   found.is_switch = switches || changes;
   found.firing = find_occurrence(stop, found.time);
-  last_events_ = events_;
-  scanned_ = found.time;
-  return found;
+  look_.change = found;
+  look_.events = events_;
 }
 
-std::optional<Run::Change> Run::scan_step(const TimeEvent& stop, double until) {
+void Run::accept_look(double until) {
+  const auto is_later = [&](const Crossing& c) { return c.log.time > until; };
+  const auto later = std::find_if(look_.logs.begin(), look_.logs.end(), is_later);
+  for (auto c = look_.logs.begin(); c != later; ++c) {
+    write_event(c->log);
+    setup_.triggers.signs[static_cast<Eigen::Index>(c->log.trigger)] = c->sign;
+  }
+  look_.logs.erase(look_.logs.begin(), later);
+}
+
+void Run::refresh_events(double t) {
+  if (events_.switches.size() > 0) calc_switches(t);
+  if (!joint_contacts_.empty()) calc_contacts(t);
+  calc_signal_events(t);
+  for (VectorXd EventValues::*rows : {&EventValues::switches, &EventValues::contacts, &EventValues::signals})
+    last_events_.*rows = events_.*rows;
+  scanned_ = t;
+}
+
+std::optional<Run::Change> Run::scan_step(const TimeEvent& stop, double t_pause) {
   for (;;) {
-    const double sample = time_events_.next_output();
-    Change found;
-    found.time = std::min(sample, until);
+    const double sample = time_events_.next_output(), end = integrator_->time(), to = std::min(sample, end);
     const bool looks = has_event_functions();
-    if (looks) found = find_change(stop, found.time);
+    if (looks && !has_look_) look_ahead(stop, to);
+    has_look_ = looks;
+    Change found;
+    found.time = to;
+    if (looks) found = look_.change;
     const double stands = found.firing ? found.firing->time : found.time;
+    // A pause at what comes next by rounding is one there.
+    if (t_pause < stands - time_events_.resolution()) {
+      accept_look(t_pause);
+      has_located_ = true;
+      Change pause;
+      pause.time = t_pause;
+      pause.is_pause = true;
+      return pause;
+    }
+    if (looks) {
+      accept_look(stands);
+      last_events_ = look_.events;
+      largest_kinks_ = look_.largest_kinks;
+      setup_.triggers.signs = look_.signs;
+    }
+    has_look_ = false;
     scanned_ = stands;
     if (sample <= stands && !write_output(sample, looks && !has_located_)) return {};
-    if (found.is_kink || found.is_switch || found.firing || stands >= until) return found;
+    if (found.is_kink || found.is_switch || found.firing || stands >= end) return found;
   }
 }
 

@@ -166,6 +166,25 @@ class FmuTest(FmuCase):
             self.assertTrue(MeRun(instance).advance(8))
             np.testing.assert_allclose(instance.get(["x:x"]), [16], rtol=1e-9)
 
+    def test_no_step_goes_past_a_stop_time(self):
+        self.write("slide.toml", SLIDE.replace('action = "stop"', ""))
+        for version in (2, 3):
+            fmu = self.export("slide.toml", version)
+            for stop in (0.75, 10.0):  # before the duration of the system file, and at it
+                instance = self.make(fmu, "cs")
+                instance.initialize(stop=stop)
+                instance.step(0, stop - 0.5)
+                with self.assertRaisesRegex(Failed, "past the stop time"):
+                    instance.step(stop - 0.5, 0.6)
+                terminated, reached = instance.step(stop - 0.5, 0.5 * (1 + 1e-12))
+                self.assertFalse(terminated)
+                self.assertAlmostEqual(reached, stop, delta=1e-11)
+                np.testing.assert_allclose(instance.get(["x:x"]), [stop ** 2 / 4], rtol=1e-9)
+                with self.assertRaisesRegex(Failed, "past the stop time"):
+                    instance.step(stop, 0.1)
+            with self.assertRaisesRegex(Failed, "not allowed in the state Instantiated of the instance"):
+                self.make(fmu, "cs").step(0, 0.1)
+
     def test_a_run_starts_at_another_time(self):
         more = ('[[function]]\nname = "later"\ntype = "ramp"\nvalue = 4.0\nfrom = 5.2\nto = 5.5\n'
                 '[[force]]\nname = "f"\nbody = "bob"\nforce = [1.0, 0.0, 0.0]\nfunction = "later"\n[simulation]')

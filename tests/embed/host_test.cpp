@@ -108,13 +108,19 @@ TEST(Host, EventsAndTheEndTerminate) {
   simulation.set_input(0, -1);
   EXPECT_EQ(simulation.advance_to(2.5), bough::Reached::Time);
   simulation.set_input(0, 0);
-  EXPECT_EQ(simulation.advance_to(10), bough::Reached::Time);  // the very end
+  EXPECT_EQ(simulation.advance_to(10), bough::Reached::Terminated);  // the very end
+  EXPECT_EQ(simulation.time(), 10);
   EXPECT_EQ(simulation.advance_to(11), bough::Reached::Terminated);
   EXPECT_NE(simulation.reason().find("end"), std::string::npos) << simulation.reason();
   bough::Options longer;
   longer.duration = 20;
   bough::Simulation other(bough::Model::load_text(make_slide()), longer);
   EXPECT_EQ(other.advance_to(15), bough::Reached::Time);
+  bough::Options shorter;
+  shorter.duration = 0.05;  // half of output_step, of which a host sees nothing
+  bough::Simulation brief(bough::Model::load_text(make_slide()), shorter);
+  EXPECT_EQ(brief.advance_to(0.04), bough::Reached::Time);
+  EXPECT_NEAR(brief.output(model.find_output("x:x")), 0.25 * 0.04 * 0.04, 1e-15);
 }
 
 TEST(Host, AnInputThatJumpsOverTheValueOfAnEventTerminates) {
@@ -150,6 +156,78 @@ TEST(Host, StatesGoOnBitForBit) {
     other.outputs(0, b.data(), n);
     EXPECT_EQ(a, b) << integrator;
     EXPECT_EQ(one.save(), other.save()) << integrator;
+  }
+}
+
+/// A mass that falls onto a stop and rebounds, with events of its height.
+const std::string kBounce = R"([[body]]
+name = "ball"
+mass = 2.0
+[[hinge]]
+name = "drop"
+type = "prismatic"
+child = "ball"
+axis = [0.0, 0.0, 1.0]
+position = 1.0
+stops = {lower = 0.0, restitution = 0.7}
+[[sensor]]
+name = "z"
+type = "hinge_angle"
+hinge = "drop"
+[[sensor]]
+name = "v"
+type = "hinge_rate"
+hinge = "drop"
+[[controller]]
+name = "thruster"
+type = "relay"
+inputs = "z"
+value = 3.0
+on = 0.3
+off = 0.2
+[[actuator]]
+name = "motor"
+type = "hinge"
+hinge = "drop"
+input = "thruster"
+[[event]]
+name = "low"
+signal = "z"
+value = 0.25
+[simulation]
+duration = 3.0
+output_step = 0.01
+integrator = "rk4"
+step = 0.001
+gravity = [0.0, 0.0, -9.81]
+)";
+
+TEST(Host, SlicesLocateImpactsAndSwitchesAsOneRun) {
+  const auto model = bough::Model::load_text(kBounce);
+  const auto get_all = [&](bough::Simulation& s) {
+    std::vector<double> values(model.outputs().size());
+    s.outputs(0, values.data(), static_cast<int>(values.size()));
+    return values;
+  };
+  for (const char* integrator : {"rk4", "implicit"}) {
+    bough::Options options;
+    options.integrator = integrator;
+    bough::Simulation whole(model, options);
+    whole.advance_to(2.9);
+    // Slices that end on steps, within steps, in steps again and again; some are looked at, some saved and restored.
+    for (const double slice : {0.001, 0.00137, 0.0002113, 0.0417}) {
+      auto pieces = std::make_unique<bough::Simulation>(model, options);
+      for (int k = 1; k * slice < 2.9; ++k) {
+        pieces->advance_to(k * slice);
+        if (k % 3 == 0) get_all(*pieces);
+        if (k % 97 != 0) continue;
+        const auto state = pieces->save();
+        pieces = std::make_unique<bough::Simulation>(model, options);
+        pieces->restore(state);
+      }
+      pieces->advance_to(2.9);
+      EXPECT_EQ(get_all(*pieces), get_all(whole)) << integrator << ", slices of " << slice;
+    }
   }
 }
 
@@ -224,7 +302,7 @@ TEST(Host, AdvanceGoesOnFromWhereTheHostHasLed) {
         other.restore(state);
         other.advance_to(2.0);
         EXPECT_NEAR(other.output(0), simulation.output(0), 1e-9) << integrator << " " << t;
-        EXPECT_EQ(simulation.advance_to(10), bough::Reached::Time);  // with its energy balance
+        EXPECT_EQ(simulation.advance_to(10), bough::Reached::Terminated);  // the end, with its energy balance
       }
     }
   }
@@ -365,6 +443,10 @@ TEST(Host, BadUseIsAStatusAndAMessage) {
   EXPECT_EQ(bough_name(model.get(), BOUGH_INPUTS, 1), nullptr);
   EXPECT_EQ(bough_name(model.get(), BOUGH_INPUTS, -1), nullptr);
   EXPECT_EQ(bough_load(nullptr, nullptr, nullptr, nullptr), BOUGH_BAD_ARGUMENT);
+  bough_model* none = nullptr;
+  auto message = std::make_unique<bough_message>();
+  EXPECT_EQ(bough_load("", nullptr, &none, message.get()), BOUGH_BAD_ARGUMENT);
+  EXPECT_STREQ(message->what, "the file name is empty");
   bough_simulation* s = nullptr;
   EXPECT_EQ(bough_start(nullptr, nullptr, &s, nullptr), BOUGH_BAD_ARGUMENT);
   EXPECT_EQ(bough_start(model.get(), nullptr, nullptr, nullptr), BOUGH_BAD_ARGUMENT);
@@ -378,7 +460,13 @@ TEST(Host, BadUseIsAStatusAndAMessage) {
   EXPECT_NE(std::string(bough_last_message(s)).find("not finite"), std::string::npos);
   EXPECT_EQ(bough_set_inputs(s, 0, 2, &one), BOUGH_BAD_ARGUMENT);
   EXPECT_EQ(bough_set_inputs(s, -1, 1, &one), BOUGH_BAD_ARGUMENT);
-  EXPECT_EQ(bough_set_inputs(s, std::numeric_limits<int>::max(), 1, &one), BOUGH_BAD_ARGUMENT);
+  const int largest = std::numeric_limits<int>::max();
+  EXPECT_EQ(bough_set_inputs(s, largest, 1, &one), BOUGH_BAD_ARGUMENT);
+  EXPECT_EQ(bough_set_inputs(s, 0, -1, &one), BOUGH_BAD_ARGUMENT);
+  EXPECT_NE(std::string(bough_last_message(s)).find("n is -1"), std::string::npos) << bough_last_message(s);
+  EXPECT_EQ(bough_get_outputs(s, largest, largest, &value), BOUGH_BAD_ARGUMENT);
+  EXPECT_NE(std::string(bough_last_message(s)).find("outputs 2147483647 to 4294967293"), std::string::npos)
+      << bough_last_message(s);
   EXPECT_EQ(bough_set_inputs(s, 0, 1, nullptr), BOUGH_BAD_ARGUMENT);
   EXPECT_EQ(bough_get_outputs(s, 0, 100000, &value), BOUGH_BAD_ARGUMENT);
   EXPECT_EQ(bough_advance(s, nan, nullptr), BOUGH_BAD_ARGUMENT);

@@ -558,7 +558,7 @@ class Simulations(InFolder):
             for k, t in enumerate(results.time[1:], 1):
                 for i in range(1, slices):
                     simulation.advance_to(results.time[k - 1] + (t - results.time[k - 1]) * i / slices)
-                self.assertTrue(simulation.advance_to(t))
+                self.assertEqual(simulation.advance_to(t), t < results.time[-1])
                 for name in ("angle", "rate", "/controllers/law", "/bodies/arm/quaternion"):
                     np.testing.assert_array_equal(simulation.outputs([name]), results[name][k], name)
         self.assertEqual(simulation.reason.split(" at ")[0], "the run has reached its end")
@@ -573,6 +573,7 @@ class Simulations(InFolder):
         self.assertEqual(simulation.output("angle"), values[0])
         self.assertEqual(simulation.output(1), values[1])
         self.assertEqual(simulation.outputs(["/bodies/arm/quaternion"]).shape, (4,))
+        np.testing.assert_array_equal(simulation.outputs("angle"), [values[0]])
         self.assertEqual(simulation.messages, [])
         for call in (lambda: simulation.set("torqe", 1), lambda: simulation.output("angel"),
                      lambda: simulation.outputs(["angel"])):
@@ -627,6 +628,10 @@ class Simulations(InFolder):
     def test_options_and_failures(self):
         with self.assertRaises(bough.InputError):
             bough.Simulation(bough.System.from_text(STEPPED), integrator="euler")
+        for option in ("step", "duration", "relative_tolerance", "absolute_tolerance"):
+            for value in (-1.0, float("nan"), float("inf")):
+                with self.assertRaisesRegex(ValueError, f"the option {option} is .*give a positive number"):
+                    bough.Simulation(bough.System.from_text(STEPPED), **{option: value})
         longer = bough.Simulation(bough.System.from_text(STEPPED), duration=3.0)
         self.assertTrue(longer.advance_to(2.5))
         simulation = self.make()

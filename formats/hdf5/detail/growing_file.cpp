@@ -29,6 +29,8 @@ bool GrowingFile::is_at_target(int descriptor) const {
 void GrowingFile::lock() {
   std::error_code failed;
   target_ = find_target(path_, failed);
+  // A user library may change the working folder while the run writes.
+  if (!failed) target_ = std::filesystem::absolute(target_, failed).string();
   errno = failed.value();
   check(!failed, "the file cannot be opened for writing");
   // A file that is not there is reported by the reader.
@@ -51,7 +53,7 @@ void GrowingFile::create() {
     errno = ::fstat(old_, &old) == 0 && !S_ISREG(old.st_mode) ? EEXIST : 0;
     check(errno == 0, "the file cannot be created");
   }
-  part_.emplace(path_);
+  part_.emplace(target_);
   errno = part_->error().value();
   check(!part_->error(), "the file cannot be created");
 }

@@ -8,6 +8,7 @@
 
 #include <chrono>
 #include <csignal>
+#include <filesystem>
 
 #include "base/diagnostic.hpp"
 #include "formats/hdf5/files.hpp"
@@ -151,6 +152,45 @@ TEST(ResultsFile, ResumeCutsBackToTheCheckpointAndGoesOn) {
   EXPECT_EQ(file.events[1].what, "late");
   EXPECT_TRUE(file.completed);
   EXPECT_EQ(read_checkpoint(path).state, VectorXd::Constant(3, 6));
+}
+
+TEST(ResultsFile, AContinuationIsSeenOnceItHasAsManySamples) {
+  const TempFolder folder;
+  const std::string path = folder.at("r.h5");
+  {
+    auto sink = make_results_writer(path, {10, kAtOnce});
+    sink->begin(make_header());
+    for (int k = 0; k < 100; ++k) {
+      sink->write_sample(make_sample(k));
+      if (k == 60) sink->write_checkpoint({6.0, VectorXd::Constant(3, 6)});
+    }
+    sink->end(false, "killed");
+  }
+  auto sink = make_results_appender(path, 6.0, {10, kAtOnce});
+  sink->begin(make_header());
+  for (int k = 61; k < 99; ++k) sink->write_sample(make_sample(k));
+  EXPECT_EQ(read_results(path).reason, "killed");
+  for (int k = 99; k < 118; ++k) sink->write_sample(make_sample(k));  // no new checkpoint
+  const ResultsFile file = read_results(path);
+  EXPECT_EQ(file.reason, "running");
+  expect_samples(file, 110);
+  EXPECT_EQ(read_checkpoint(path).time, 6.0);
+  sink->end(true, "done");
+  expect_samples(read_results(path), 118);
+}
+
+// A user library may change the working folder.
+TEST(ResultsFile, ARelativePathIsThatOfTheStart) {
+  const TempFolder folder;
+  const auto before = std::filesystem::current_path();
+  std::filesystem::current_path(folder.at("."));
+  auto sink = make_results_writer("r.h5", {10, kAtOnce});
+  sink->begin(make_header());
+  std::filesystem::current_path("/");
+  for (int k = 0; k < 25; ++k) sink->write_sample(make_sample(k));
+  sink->end(true, "done");
+  std::filesystem::current_path(before);
+  expect_samples(read_results(folder.at("r.h5")), 25);
 }
 
 TEST(ResultsFile, ResumeOfAnotherRunIsRefusedAndTheFileUntouched) {

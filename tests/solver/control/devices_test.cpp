@@ -172,20 +172,35 @@ TEST(Brake, StopsTheAxisAndHoldsTheBalance) {
 }
 
 // ẏ = -relay(y): a triangle of period 4 h / v.
-TEST(Relay, GoesRoundItsHysteresis) {
+RunResult run_relay(double initial, std::map<std::string, std::vector<double>> settings) {
   auto spec = make_axis();
   records::ControllerRecord integral = make_law("sum", "state_space", {"switch"});
-  integral.settings.numbers = {{"A", {0}}, {"B", {-1}}, {"C", {1}}, {"initial", {0.05}}};
-  records::ControllerRecord relay =
-      make_law("switch", "relay", {"sum"}, {{"on", {0.2}}, {"off", {-0.2}}, {"value", {0.5}}, {"low", {-0.5}}});
+  integral.settings.numbers = {{"A", {0}}, {"B", {-1}}, {"C", {1}}, {"initial", {initial}}};
+  records::ControllerRecord relay = make_law("switch", "relay", {"sum"}, std::move(settings));
   relay.settings.numbers["outputs"] = {1};
   spec.controllers = {integral, relay, make_law("law", "gain", {"switch"}, {{"gain", {1}}})};
-  const RunResult r = run(spec);
+  return run(spec);
+}
+
+TEST(Relay, GoesRoundItsHysteresis) {
+  const RunResult r = run_relay(0.05, {{"on", {0.2}}, {"off", {-0.2}}, {"value", {0.5}}, {"low", {-0.5}}});
   const VectorXd t = r.sink.time(), y = r.sink.get("/controllers/sum");
   // From 0.05 up at 0.5, then a triangle between -0.2 and 0.2.
   for (int i = 0; i < t.size(); ++i) {
     const double way = std::fmod(0.5 * t[i] + 0.25, 0.8);  // from -0.2
     EXPECT_NEAR(y[i], way < 0.4 ? -0.2 + way : 0.6 - way, 1e-9) << t[i];
+  }
+  EXPECT_LT(r.outcome.energy_error, 1e-9);
+}
+
+// A negative off: from value to -value through rest at one moment.
+TEST(Relay, IsATwoSidedTriggerWithANegativeOff) {
+  const RunResult r = run_relay(0.25, {{"on", {0.2}}, {"off", {-0.2}}, {"value", {0.5}}});
+  const VectorXd t = r.sink.time(), y = r.sink.get("/controllers/sum");
+  // From 0.25 down at 0.5 until t = 0.9, then a triangle between -0.2 and 0.2.
+  for (int i = 0; i < t.size(); ++i) {
+    const double way = std::fmod(0.5 * t[i] + 0.35, 0.8);  // from -0.2
+    EXPECT_NEAR(y[i], t[i] < 0.9 ? 0.25 - 0.5 * t[i] : way < 0.4 ? -0.2 + way : 0.6 - way, 1e-9) << t[i];
   }
   EXPECT_LT(r.outcome.energy_error, 1e-9);
 }
