@@ -24,6 +24,10 @@ class ProgramTest(unittest.TestCase):
     def path(self, name):
         return os.path.join(self.folder, name)
 
+    def read(self, name):
+        with open(self.path(name)) as f:
+            return f.read()
+
     def write(self, name, text):
         with open(self.path(name), "w") as f:
             f.write(text)

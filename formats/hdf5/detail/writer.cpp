@@ -66,6 +66,7 @@ void FileWriter::check(bool ok, const std::string& what) {
 
 void FileWriter::make_group(const std::string& path) {
   if (groups_.count(path) > 0) return;
+  make_parents(path);
   Handle group(H5Gcreate2(file_.get(), path.c_str(), link_creation_.get(), group_creation_.get(), H5P_DEFAULT),
                H5Gclose);
   check(group.is_valid(), "group " + path + " cannot be written");
