@@ -39,18 +39,18 @@ void add_level(double level, const VectorXd& frequency, Plot& plot) {
         {"", Eigen::Vector2d(frequency[0], frequency[frequency.size() - 1]), Eigen::Vector2d(level, level)});
 }
 
-/// Contour |L/(1+L)| = M: L = M e^(jφ) / (1 - M e^(jφ)), φ from -π to π. The label is at φ = 0, the middle.
-Curve make_closed_loop_contour(double decibel) {
+/// Contour |L/(1+L)| = M: L = M e^(jφ) / (1 - M e^(jφ)), φ over a turn about a phase of -180 degrees, plus `shift`
+/// degrees. The label is in the middle.
+Curve make_closed_loop_contour(double decibel, double shift) {
   constexpr int kPoints = 362;
   const double size = std::pow(10, decibel / 20);
-  Curve contour{fmt::format("{:g} dB", decibel), VectorXd(kPoints), VectorXd(kPoints)};
+  Curve contour{shift == 0 ? fmt::format("{:g} dB", decibel) : "", VectorXd(kPoints), VectorXd(kPoints)};
   for (int i = 0; i < kPoints; ++i) {
-    const auto t = std::polar(size, 2 * std::numbers::pi * ((i + 0.5) / kPoints - 0.5));
+    const auto t = std::polar(size, 2 * std::numbers::pi * ((i + 0.5) / kPoints - (size > 1 ? 0.5 : 0)));
     const auto loop = t / (1.0 - t);
     const double degrees = std::arg(loop) * 180 / std::numbers::pi;
-    contour.x[i] = degrees > 0 ? degrees - 360 : degrees;
+    contour.x[i] = shift + (degrees > 0 ? degrees - 360 : degrees);
     contour.y[i] = 20 * std::log10(std::abs(loop));
-    if (i > 0 && std::abs(contour.x[i] - contour.x[i - 1]) > 180) contour.x[i] = kNaN;
   }
   return contour;
 }
@@ -101,7 +101,7 @@ Plot make_nichols_axes() {
   Plot plot{"", "open-loop phase [degrees]", "open-loop magnitude [dB]", {}};
   plot.x_step = 45;
   for (const double decibel : {12.0, 6.0, 3.0, 1.0, -1.0, -3.0, -6.0, -12.0, -20.0})
-    plot.guides.push_back(make_closed_loop_contour(decibel));
+    for (const double shift : {0.0, -360.0, 360.0}) plot.guides.push_back(make_closed_loop_contour(decibel, shift));
   plot.curves.push_back({"-1", VectorXd::Constant(1, -180), VectorXd::Zero(1), true, 6, Mark::Cross});
   return plot;
 }

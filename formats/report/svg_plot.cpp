@@ -175,7 +175,7 @@ std::string draw_guides(const Plot& plot, const Frame& f) {
       const double ax = unit_x(guide.x[i]), ay = unit_y(guide.y[i]);
       const double bx = unit_x(guide.x[i + 1]), by = unit_y(guide.y[i + 1]);
       double from = 0, to = 1;
-      if (!clip_segment(ax, ay, bx, by, from, to)) continue;
+      if (!std::isfinite(ax + ay + bx + by) || !clip_segment(ax, ay, bx, by, from, to)) continue;
       is_inside = true;
       x = f.left + (ax + to * (bx - ax)) * f.width;
       y = f.top + (1 - ay - to * (by - ay)) * f.height;

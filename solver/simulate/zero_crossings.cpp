@@ -156,8 +156,8 @@ void Run::accept_look(double until) {
   const auto is_later = [&](const Crossing& c) { return c.log.time > until; };
   const auto later = std::find_if(look_.logs.begin(), look_.logs.end(), is_later);
   for (auto c = look_.logs.begin(); c != later; ++c) {
+    setup_.triggers.signs[static_cast<Eigen::Index>(c->log.trigger)] = c->sign;  // the record says which way
     write_event(c->log);
-    setup_.triggers.signs[static_cast<Eigen::Index>(c->log.trigger)] = c->sign;
   }
   look_.logs.erase(look_.logs.begin(), later);
 }
