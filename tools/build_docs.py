@@ -2,11 +2,15 @@
 Python module from its types; then follows every link inside it.
 
     /usr/bin/python3 tools/build_docs.py build/html [--no-cpp]
+    /usr/bin/python3 tools/build_docs.py build/site --site
 
+--site: a folder for a web server, with the manual of this version in a folder of that name next to those of other
+versions, which each page offers, and an index that leads to the newest one.
 Exit 1 when a page has a warning or a link that leads nowhere.
 """
 import ast
 import html.parser
+import json
 import os
 import re
 import shutil
@@ -15,8 +19,6 @@ import sys
 import urllib.parse
 
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
-OUTPUT = os.path.abspath(sys.argv[1])
-STAGE = OUTPUT + "-source"
 CONF = """project = "Bough"
 author = copyright = "The Bough authors"
 release = version = "{version}"
@@ -29,6 +31,7 @@ html_copy_source = html_show_sourcelink = False
 html_title = "Bough {version}"
 html_static_path = ["_static"]
 html_css_files = ["tables.css"]
+html_js_files = {scripts}
 # Python, TOML and C++ blocks are coloured where they parse; shell sessions and output stay as they are.
 highlight_language = "none"
 suppress_warnings = ["myst.header", "toc.not_readable", "misc.highlighting_failure"]
@@ -37,6 +40,34 @@ suppress_warnings = ["myst.header", "toc.not_readable", "misc.highlighting_failu
 
 # Narrow cells are not stretched to both sides, pictures not wider than their page.
 CSS = "div.body td, div.body td p, div.body th p { text-align: left; }\ndiv.body img { max-width: 100%; }\n"
+
+
+# Above the search box: the versions that the site has. They are read from its folder, so that old pages know new versions.
+CHOICE = """(function () {
+  const root = DOCUMENTATION_OPTIONS.URL_ROOT + "../", list = document.createElement("script");
+  list.src = root + "versions.js";
+  list.onload = function () {
+    const choice = document.createElement("select");
+    choice.setAttribute("aria-label", "version");
+    for (const version of BOUGH_VERSIONS)
+      choice.add(new Option("version " + version, version, false, version === DOCUMENTATION_OPTIONS.VERSION));
+    choice.onchange = function () { location.href = root + choice.value + "/README.html"; };
+    const bar = document.querySelector("div.sphinxsidebarwrapper");
+    if (bar) bar.prepend(choice);
+  };
+  document.head.append(list);
+})();
+"""
+
+
+def get_version():
+    with open(os.path.join(ROOT, "CMakeLists.txt"), encoding="utf-8") as f:
+        return re.search(r"project\(Bough VERSION ([\d.]+)", f.read()).group(1)
+
+
+SITE = os.path.abspath(sys.argv[1]) if "--site" in sys.argv else None
+OUTPUT = os.path.join(SITE, get_version()) if SITE else os.path.abspath(sys.argv[1])
+STAGE = os.path.abspath(sys.argv[1]) + "-source"
 
 
 def list_files():
@@ -127,12 +158,15 @@ def stage(files):
         if path in known:
             os.makedirs(os.path.dirname(os.path.join(STAGE, path)), exist_ok=True)
             shutil.copy(os.path.join(ROOT, path), os.path.join(STAGE, path))
-    version = re.search(r"project\(Bough VERSION ([\d.]+)", open(os.path.join(ROOT, "CMakeLists.txt")).read()).group(1)
+    version = get_version()
     os.makedirs(os.path.join(STAGE, "_static"), exist_ok=True)
     with open(os.path.join(STAGE, "_static/tables.css"), "w") as f:
         f.write(CSS)
     with open(os.path.join(STAGE, "conf.py"), "w") as f:
-        f.write(CONF.format(version=version))
+        f.write(CONF.format(version=version, scripts=["versions.js"] if SITE else []))
+    if SITE:
+        with open(os.path.join(STAGE, "_static/versions.js"), "w") as f:
+            f.write(CHOICE)
     return version
 
 
@@ -199,22 +233,36 @@ def check_links():
     return found, count
 
 
+def write_redirect(index, target):
+    with open(index, "w") as f:
+        f.write('<!DOCTYPE html>\n<meta charset="utf-8"><title>Bough</title>\n'
+                f'<meta http-equiv="refresh" content="0; url={target}">\n<a href="{target}">Bough</a>\n')
+
+
+def finish_site():
+    """The list of versions, the newest first, and the way to it."""
+    versions = [name for name in os.listdir(SITE) if os.path.isfile(os.path.join(SITE, name, "README.html"))]
+    versions.sort(key=lambda name: [int(part) for part in name.split(".")], reverse=True)
+    with open(os.path.join(SITE, "versions.js"), "w") as f:
+        f.write(f"const BOUGH_VERSIONS = {json.dumps(versions)};\n")
+    write_redirect(os.path.join(SITE, "index.html"), versions[0] + "/README.html")
+    print(f"site: {SITE}/index.html; versions {', '.join(versions)}")
+
+
 def main():
     shutil.rmtree(OUTPUT, ignore_errors=True)
     version = stage(list_files())
-    built = subprocess.run(["/usr/bin/sphinx-build", "-q", "-b", "html", "-d", OUTPUT + "-doctrees", STAGE, OUTPUT],
+    built = subprocess.run(["/usr/bin/sphinx-build", "-q", "-b", "html", "-d", STAGE + "-doctrees", STAGE, OUTPUT],
                            text=True, stderr=subprocess.PIPE)
     warnings = [line for line in built.stderr.split("\n") if "WARNING" in line or "ERROR" in line]
     for name in (".buildinfo", "objects.inv"):
         if os.path.exists(os.path.join(OUTPUT, name)):
             os.remove(os.path.join(OUTPUT, name))
-    index = os.path.join(OUTPUT, "index.html")
-    if not os.path.exists(index):
-        with open(index, "w") as f:
-            f.write('<!DOCTYPE html>\n<meta charset="utf-8"><title>Bough</title>\n'
-                    '<meta http-equiv="refresh" content="0; url=README.html">\n<a href="README.html">Bough</a>\n')
+    write_redirect(os.path.join(OUTPUT, "index.html"), "README.html")
     if "--no-cpp" not in sys.argv:
         describe_cpp(version)
+    if SITE:
+        finish_site()
     found, count = check_links()
     for line in [*warnings, *found]:
         print(line.replace(STAGE + os.sep, ""))

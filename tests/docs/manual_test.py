@@ -26,3 +26,13 @@ with tempfile.TemporaryDirectory() as folder:
     with open(os.path.join(output, "docs/tutorial.html"), "a") as f:
         f.write('<a href="nowhere.html">x</a> <a href="notation.html#nothing">y</a>')
     assert len(build_docs.check_links()[0]) == 2
+    # The site offers its versions, the newest first, and leads to it.
+    build_docs.SITE = os.path.join(folder, "site")
+    for version in ("0.9.0", "0.10.0"):
+        os.makedirs(os.path.join(build_docs.SITE, version))
+        shutil.copy(os.path.join(output, "README.html"), os.path.join(build_docs.SITE, version))
+    build_docs.finish_site()
+    with open(os.path.join(build_docs.SITE, "versions.js"), encoding="utf-8") as f:
+        assert '["0.10.0", "0.9.0"]' in f.read()
+    with open(os.path.join(build_docs.SITE, "index.html"), encoding="utf-8") as f:
+        assert "url=0.10.0/README.html" in f.read()
