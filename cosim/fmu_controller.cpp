@@ -9,9 +9,11 @@
 #include <fstream>
 #include <iterator>
 #include <limits>
+#include <map>
 #include <mutex>
 #include <numeric>
 #include <set>
+#include <sstream>
 #include <stdexcept>
 
 #include "cosim/slave.hpp"
@@ -70,33 +72,61 @@ std::string unpack(const double* numbers, std::size_t size) {
   return bytes;
 }
 
+/// Variables, and for each number that goes in or out its place among all their values, one after the other.
+struct Choice {
+  std::vector<ForeignVariable> variables;
+  std::vector<std::size_t> places;
+
+  /// Values of all variables: `numbers` at their places, elsewhere the start values, or zero.
+  std::vector<double> spread(const std::vector<double>& numbers) const {
+    std::vector<double> values;
+    for (const auto& v : variables) {
+      if (v.start.empty())
+        values.resize(values.size() + static_cast<std::size_t>(v.size), 0.0);
+      else
+        values.insert(values.end(), v.start.begin(), v.start.end());
+    }
+    for (std::size_t i = 0; i < numbers.size(); ++i) values[places[i]] = numbers[i];
+    return values;
+  }
+};
+
+/// Variables that a [[controller]] chooses of its FMU.
+struct Choices {
+  Choice parameters, inputs, outputs;
+  std::vector<std::pair<ForeignVariable, std::string>> texts;
+};
+
 /// The slave with the law of its memory.
 class FmuLaw {
  public:
-  FmuLaw(const ForeignModel& model, SlaveVariables variables, std::vector<double> parameters,
+  FmuLaw(const ForeignModel& model, const Choices& choices, const std::vector<double>& parameters,
          std::shared_ptr<Folder> folder, double step)
       : folder_(std::move(folder)),
         model_(model),
-        num_inputs_(count(variables.inputs)),
-        num_outputs_(count(variables.outputs)),
-        parameters_(std::move(parameters)),
+        inputs_(choices.inputs),
+        outputs_(choices.outputs),
+        all_outputs_(static_cast<std::size_t>(count(choices.outputs.variables))),
+        parameters_(choices.parameters.spread(parameters)),
         step_(step),
-        slave_(load_slave(model, folder_->path(), std::move(variables))) {
+        slave_(load_slave(
+            model, folder_->path(),
+            {choices.parameters.variables, choices.inputs.variables, choices.outputs.variables, choices.texts})) {
     slave_->start(0, parameters_.data(), nullptr);
     first_ = last_out_ = make_memory(0, 0, 0);
   }
 
-  int num_inputs() const { return num_inputs_; }
-  int num_outputs() const { return num_outputs_; }
+  int num_inputs() const { return static_cast<int>(inputs_.places.size()); }
+  int num_outputs() const { return static_cast<int>(outputs_.places.size()); }
   int num_memory() const { return static_cast<int>(first_.size()); }
 
   void start(double* d) const { std::copy(first_.begin(), first_.end(), d); }
-  void outputs(const double* d, double* y) const { std::copy_n(d + 2, num_outputs_, y); }
+  void outputs(const double* d, double* y) const { std::copy_n(d + 2, num_outputs(), y); }
 
   void update(double t, const double* u, const double* d, double* next) {
     const std::lock_guard one_at_a_time(lock_);
     const std::size_t n = first_.size();
-    const std::vector<double> in(d, d + n), inputs(u, u + num_inputs_);
+    const std::vector<double> in(d, d + n), inputs(u, u + num_inputs());
     if (t != last_time_ || in != last_in_ || inputs != last_inputs_) {
       last_time_ = std::numeric_limits<double>::quiet_NaN();
       const std::vector<double> out = advance(t, inputs, in);
@@ -111,18 +141,19 @@ class FmuLaw {
  private:
   std::vector<double> advance(double t, const std::vector<double>& inputs, const std::vector<double>& in) {
     const double num_steps = in[0], begin = num_steps == 0 ? t : in[1];
+    const std::vector<double> values = inputs_.spread(inputs);
     if (num_steps == 0) {
-      slave_->start(begin, parameters_.data(), inputs.data());
+      slave_->start(begin, parameters_.data(), values.data());
     } else if (in != last_out_) {
       if (!model_.can_save_state)
         throw std::runtime_error(
             "it would have to go on from an earlier state, which it does not save (canSerializeFMUState)");
-      const std::size_t at = 2 + static_cast<std::size_t>(num_outputs_);
+      const std::size_t at = 2 + outputs_.places.size();
       slave_->restore(unpack(in.data() + at + 1, static_cast<std::size_t>(in[at])));
     }
     // A failure leaves the slave in an unknown state.
     last_out_.clear();
-    slave_->set_inputs(inputs.data());
+    slave_->set_inputs(values.data());
     slave_->step(begin + num_steps * step_, step_);
     return make_memory(num_steps + 1, begin, first_.size());
   }
@@ -130,8 +161,8 @@ class FmuLaw {
   /// size: 0 where it is to be found, with room for a state that grows.
   std::vector<double> make_memory(double num_steps, double begin, std::size_t size) {
     std::vector<double> d{num_steps, begin};
-    d.resize(2 + static_cast<std::size_t>(num_outputs_));
-    slave_->get_outputs(d.data() + 2);
+    slave_->get_outputs(all_outputs_.data());
+    for (const std::size_t place : outputs_.places) d.push_back(all_outputs_[place]);
     if (model_.can_save_state) {
       const std::string bytes = slave_->save();
       const auto packed = pack(bytes);
@@ -148,8 +179,8 @@ class FmuLaw {
 
   std::shared_ptr<Folder> folder_;  // goes after the binary is closed
   ForeignModel model_;
-  int num_inputs_, num_outputs_;
-  std::vector<double> parameters_;
+  Choice inputs_, outputs_;
+  std::vector<double> all_outputs_, parameters_;
   double step_;
   std::unique_ptr<Slave> slave_;
   std::mutex lock_;
@@ -185,24 +216,54 @@ class Reader {
     return model;
   }
 
-  /// Variables of `key`, or all with that causality in the order of the FMU.
-  std::vector<ForeignVariable> choose(const ForeignModel& model, const char* key, const std::string& causality) {
-    std::vector<ForeignVariable> chosen;
+  /// Variables of `key` and elements of arrays, or all with that causality in the order of the FMU.
+  Choice choose(const ForeignModel& model, const char* key, const std::string& causality) const {
+    Choice choice;
+    std::map<std::string, std::size_t> first;  // place of each variable that is chosen
+    std::set<std::size_t> used;
+    std::size_t end = 0;
+    const auto add = [&](const ForeignVariable& v, int element) {
+      check_type(v, key);
+      const auto [found, is_new] = first.emplace(v.name, end);
+      if (is_new) {
+        choice.variables.push_back(v);
+        end += static_cast<std::size_t>(v.size);
+      }
+      const int from = std::max(element, 0), to = element < 0 ? v.size : element + 1;
+      for (int i = from; i < to; ++i) {
+        const std::size_t place = found->second + static_cast<std::size_t>(i);
+        if (!used.insert(place).second) fail(quote(key) + " names '" + v.name + "' twice", "name each once");
+        choice.places.push_back(place);
+      }
+    };
     const auto words = record_.settings.words.find(key);
-    if (words == record_.settings.words.end()) {
-      if (causality == "parameter") return chosen;
+    if (words != record_.settings.words.end()) {
+      for (const auto& name : words->second) {
+        const auto [variable, element] = find(model, name, causality, key);
+        add(*variable, element);
+      }
+    } else if (causality != "parameter") {
       for (const auto& v : model.variables)
-        if (v.causality == causality) chosen.push_back(v);
-    } else {
-      for (const auto& name : words->second) chosen.push_back(find(model, name, causality, key));
+        if (v.causality == causality) add(v, -1);
     }
-    for (const auto& v : chosen) {
-      if (v.type == fmu::ValueType::Other)
-        fail("'" + v.name + "' of its FMU is no number", "choose others by " + quote(key));
-      if (v.size == 0)
-        fail("the size of '" + v.name + "' of its FMU is not constant", "choose others by " + quote(key));
+    return choice;
+  }
+
+  /// String parameters, given as NAME=VALUE.
+  std::vector<std::pair<ForeignVariable, std::string>> choose_texts(const ForeignModel& model) const {
+    std::vector<std::pair<ForeignVariable, std::string>> texts;
+    const auto words = record_.settings.words.find(kTexts);
+    if (words == record_.settings.words.end()) return texts;
+    for (const auto& word : words->second) {
+      const auto equal = word.find('=');
+      if (equal == std::string::npos)
+        fail(quote(kTexts) + " has '" + word + "', expected NAME=VALUE", "write NAME=VALUE for each");
+      const auto [variable, element] = find(model, word.substr(0, equal), "parameter", kTexts);
+      if (variable->type != fmu::ValueType::String || variable->size != 1)
+        fail("'" + variable->name + "' of its FMU is no single string", "give its value in 'parameters'");
+      texts.emplace_back(*variable, word.substr(equal + 1));
     }
-    return chosen;
+    return texts;
   }
 
   double find_step(const ForeignModel& model) {
@@ -233,17 +294,44 @@ class Reader {
   }
 
  private:
+  static constexpr const char* kTexts = "string_parameters";
   static std::string quote(const char* key) { return "'" + std::string(key) + "'"; }
 
-  const ForeignVariable& find(const ForeignModel& model, const std::string& name, const std::string& causality,
-                              const char* key) const {
+  void check_type(const ForeignVariable& v, const char* key) const {
+    if (v.type == fmu::ValueType::String && v.causality == "parameter")
+      fail("'" + v.name + "' of its FMU is a string", "give its value in " + quote(kTexts));
+    if (v.type == fmu::ValueType::Other || v.type == fmu::ValueType::String)
+      fail("'" + v.name + "' of its FMU is no number", "choose others by " + quote(key));
+    if (v.size == 0) fail("the size of '" + v.name + "' of its FMU is not constant", "choose others by " + quote(key));
+  }
+
+  /// Place of the element that "[2]" or "[1,3]" of a name means in an array, counted from 0; -1: no element of it.
+  static int find_element(const ForeignVariable& v, const std::string& name) {
+    if (v.dimensions.empty() || !name.starts_with(v.name + "[") || !name.ends_with("]")) return -1;
+    std::istringstream indices(name.substr(v.name.size() + 1));
+    long place = 0;
+    for (std::size_t d = 0; d < v.dimensions.size(); ++d) {
+      long index = 0;
+      char end = 0;
+      if (!(indices >> index >> end) || index < 1 || index > v.dimensions[d]) return -1;
+      if (end != (d + 1 == v.dimensions.size() ? ']' : ',')) return -1;
+      place = place * v.dimensions[d] + index - 1;
+    }
+    return static_cast<int>(place);
+  }
+
+  /// The variable of a name or an alias, and the element, -1: all of it.
+  std::pair<const ForeignVariable*, int> find(const ForeignModel& model, const std::string& name,
+                                              const std::string& causality, const char* key) const {
     std::vector<std::string> names;
     for (const auto& v : model.variables) {
       const bool is_right = v.causality == causality ||
                             (causality == "parameter" && v.causality == "structuralParameter") ||
                             (causality == "output" && v.causality == "local");
-      if (is_right) names.push_back(v.name);
-      if (is_right && v.name == name) return v;
+      if (!is_right) continue;
+      names.push_back(v.name);
+      if (v.name == name || std::find(v.aliases.begin(), v.aliases.end(), name) != v.aliases.end()) return {&v, -1};
+      if (const int element = find_element(v, name); element >= 0) return {&v, element};
     }
     std::string list;
     for (const auto& each : names) list += (list.empty() ? "" : ", ") + each;
@@ -271,12 +359,12 @@ solver::ControllerFunctions load_fmu(records::ControllerRecord& record) {
                      "give file = \"NAME.fmu\"");
   const auto folder = std::make_shared<Folder>();
   const ForeignModel model = reader.read(path, folder->path());
-  SlaveVariables variables{reader.choose(model, "parameter_names", "parameter"),
-                           reader.choose(model, "input_names", "input"),
-                           reader.choose(model, "output_names", "output")};
+  const Choices choices{reader.choose(model, "parameter_names", "parameter"),
+                        reader.choose(model, "input_names", "input"), reader.choose(model, "output_names", "output"),
+                        reader.choose_texts(model)};
   const double step = reader.find_step(model);
-  const auto parameters = reader.find_parameters(count(variables.parameters));
-  const int num_outputs = count(variables.outputs);
+  const auto parameters = reader.find_parameters(static_cast<int>(choices.parameters.places.size()));
+  const auto num_outputs = static_cast<int>(choices.outputs.places.size());
   if (num_outputs == 0) reader.fail("its FMU has no outputs", "choose some by output_names");
   record.settings.numbers.try_emplace("outputs", std::vector<double>{static_cast<double>(num_outputs)});
 
@@ -286,7 +374,7 @@ solver::ControllerFunctions load_fmu(records::ControllerRecord& record) {
   f.is_forward_only = !model.can_save_state;
   f.version = [] { return BOUGH_CONTROLLER_VERSION; };
   f.open = [=](bough_controller* own) {
-    auto made = std::make_unique<FmuLaw>(model, variables, parameters, folder, step);
+    auto made = std::make_unique<FmuLaw>(model, choices, parameters, folder, step);
     if (made->num_inputs() != own->inputs)
       throw std::runtime_error("it has " + std::to_string(made->num_inputs()) + " inputs, and " +
                                std::to_string(own->inputs) + " signals are wired to it; choose by input_names");

@@ -107,6 +107,16 @@ class SlaveBase : public Slave {
     message_.clear();
     throw std::runtime_error(what);
   }
+  /// Sets the string parameters; the function is looked up only where there are some.
+  template <class Function, class... More>
+  void set_texts(const char* name, More... more) {
+    for (const auto& [v, text] : variables_.texts) {
+      Function* function = nullptr;
+      library_.find(name, function);
+      const char* value = text.c_str();
+      check(function(own_, &v.reference, 1, &value, more...), name);
+    }
+  }
   /// Functions with the same arguments in both versions, but for the kind of their pointers.
   void find_shared(const std::string& prefix, const std::string& state, const std::string& deserialize) {
     library_.find((prefix + "FreeInstance").c_str(), free_);
@@ -207,6 +217,7 @@ class Slave2 final : public SlaveBase {
       throw std::runtime_error("fmi2Instantiate gave no instance" +
                                (message_.empty() ? std::string() : ": " + message_));
     set(variables_.parameters, parameters);
+    set_texts<int(fmi2Component, const fmi2ValueReference*, std::size_t, const fmi2String*)>("fmi2SetString");
     check(setup_(own_, 0, 0, t, 0, 0), "fmi2SetupExperiment");
     check(enter_(own_), "fmi2EnterInitializationMode");
     if (inputs != nullptr) set_inputs(inputs);
@@ -292,6 +303,8 @@ class Slave3 final : public SlaveBase {
       throw std::runtime_error("fmi3InstantiateCoSimulation gave no instance" +
                                (message_.empty() ? std::string() : ": " + message_));
     set(variables_.parameters, parameters);
+    set_texts<int(fmi3Instance, const fmi3ValueReference*, std::size_t, const fmi3String*, std::size_t)>(
+        "fmi3SetString", std::size_t{1});
     check(enter_(own_, false, 0, t, false, 0), "fmi3EnterInitializationMode");
     if (inputs != nullptr) set_inputs(inputs);
     check(exit_(own_), "fmi3ExitInitializationMode");

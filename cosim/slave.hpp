@@ -4,6 +4,7 @@
 /// Source: FMI 2.0.4 chapter 4, FMI 3.0.1 chapter 4.
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "formats/fmu/description_reader.hpp"
@@ -34,6 +35,7 @@ class Slave {
 
 struct SlaveVariables {
   std::vector<fmu::ForeignVariable> parameters, inputs, outputs;
+  std::vector<std::pair<fmu::ForeignVariable, std::string>> texts;  ///< values of string parameters
 };
 
 /// Loads the binary from the folder of the unpacked FMU.

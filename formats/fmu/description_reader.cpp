@@ -2,9 +2,11 @@
 
 #include <pugixml.hpp>
 
+#include <cstdlib>
 #include <cstring>
 #include <map>
 #include <set>
+#include <sstream>
 
 #include "base/diagnostic.hpp"
 
@@ -22,25 +24,44 @@ ValueType find_type(const std::string& element, int version) {
   static const std::map<std::string, ValueType> of_2{{"Real", ValueType::Float64},
                                                      {"Integer", ValueType::Int32},
                                                      {"Enumeration", ValueType::Int32},
-                                                     {"Boolean", ValueType::Boolean}};
+                                                     {"Boolean", ValueType::Boolean},
+                                                     {"String", ValueType::String}};
   static const std::map<std::string, ValueType> of_3{
       {"Float64", ValueType::Float64}, {"Float32", ValueType::Float32},   {"Int8", ValueType::Int8},
       {"UInt8", ValueType::UInt8},     {"Int16", ValueType::Int16},       {"UInt16", ValueType::UInt16},
       {"Int32", ValueType::Int32},     {"UInt32", ValueType::UInt32},     {"Int64", ValueType::Int64},
-      {"UInt64", ValueType::UInt64},   {"Enumeration", ValueType::Int64}, {"Boolean", ValueType::Boolean}};
+      {"UInt64", ValueType::UInt64},   {"Enumeration", ValueType::Int64}, {"Boolean", ValueType::Boolean},
+      {"String", ValueType::String}};
   const auto& types = version == 2 ? of_2 : of_3;
   const auto found = types.find(element);
   return found == types.end() ? ValueType::Other : found->second;
 }
 
-/// Product of the constant dimensions; 0 where one is given by another variable.
-int find_size(const pugi::xml_node& node) {
+/// Sets dimensions and size; the size is 0 where another variable gives a dimension.
+void set_size(const pugi::xml_node& node, ForeignVariable& v) {
   long long size = 1;
   for (const auto& dimension : node.children("Dimension")) {
     const long long n = dimension.attribute("start").as_llong(0);
-    if (n <= 0 || n > kMaxSize || (size *= n) > kMaxSize) return 0;
+    if (n <= 0 || n > kMaxSize || (size *= n) > kMaxSize) {
+      v.size = 0;
+      return;
+    }
+    v.dimensions.push_back(static_cast<int>(n));
   }
-  return static_cast<int>(size);
+  v.size = static_cast<int>(size);
+}
+
+/// Sets the start values; one number is that of every element. They stay empty where a word is no number.
+void set_start(const pugi::xml_node& node, ForeignVariable& v) {
+  std::istringstream words(node.attribute("start").value());
+  for (std::string word; words >> word;) {
+    char* end = nullptr;
+    const double number = word == "true" ? 1 : word == "false" ? 0 : std::strtod(word.c_str(), &end);
+    if (end != nullptr && *end != '\0') return v.start.clear();
+    v.start.push_back(number);
+  }
+  if (v.start.size() == 1) v.start.resize(static_cast<std::size_t>(v.size), v.start.front());
+  if (v.start.size() != static_cast<std::size_t>(v.size)) v.start.clear();
 }
 
 }  // namespace
@@ -83,17 +104,21 @@ ForeignModel read_model_description(const std::string& text, const std::string& 
     v.causality = node.attribute("causality").as_string("local");
     if (!node.attribute("valueReference")) throw fail("has the variable '" + v.name + "' without valueReference");
     v.reference = node.attribute("valueReference").as_uint();
-    std::string element = node.name();
+    pugi::xml_node typed = node;
     if (model.version == 2) {
-      pugi::xml_node inner = node.first_child();
-      while (inner && (inner.type() != pugi::node_element || std::strcmp(inner.name(), "Annotations") == 0))
-        inner = inner.next_sibling();
-      element = inner.name();
+      typed = node.first_child();
+      while (typed && (typed.type() != pugi::node_element || std::strcmp(typed.name(), "Annotations") == 0))
+        typed = typed.next_sibling();
     } else {
-      v.size = find_size(node);
+      set_size(node, v);
+      for (const auto& alias : node.children("Alias")) v.aliases.emplace_back(alias.attribute("name").value());
     }
-    v.type = find_type(element, model.version);
-    if (v.name.empty() || !names.insert(v.name).second) throw fail("has two variables named '" + v.name + "'");
+    v.type = find_type(typed.name(), model.version);
+    set_start(typed, v);
+    std::vector<std::string> own = v.aliases;
+    own.push_back(v.name);
+    for (const auto& name : own)
+      if (name.empty() || !names.insert(name).second) throw fail("has two variables named '" + name + "'");
     model.variables.push_back(std::move(v));
   }
   return model;

@@ -6,13 +6,30 @@
 
 namespace bough::fmu {
 
-enum class ValueType { Float64, Float32, Int8, UInt8, Int16, UInt16, Int32, UInt32, Int64, UInt64, Boolean, Other };
+enum class ValueType {
+  Float64,
+  Float32,
+  Int8,
+  UInt8,
+  Int16,
+  UInt16,
+  Int32,
+  UInt32,
+  Int64,
+  UInt64,
+  Boolean,
+  String,
+  Other
+};
 
 struct ForeignVariable {
-  std::string name, causality;  ///< "input", "output", "parameter", ...
+  std::string name, causality;       ///< "input", "output", "parameter", ...
+  std::vector<std::string> aliases;  ///< other names of it (FMI 3)
   std::uint32_t reference = 0;
   ValueType type = ValueType::Float64;  ///< Integer and Enumeration of FMI 2.0: Int32; Enumeration of 3.0: Int64
   int size = 1;                         ///< of an array the product of its dimensions; 0: they are not constant
+  std::vector<int> dimensions;          ///< of an array; its elements are in the order of rows
+  std::vector<double> start;            ///< `size` numbers; empty: none are given
 };
 
 /// Content of a modelDescription.xml with Co-Simulation.

@@ -161,6 +161,9 @@ class FmuControllers(ProgramTest):
     def make(self, fault=0, more="", duration=1.0, law=None, name="s.toml"):
         return self.write(name, SYSTEM.format(law=law or FMU.format(fault=fault, more=more), duration=duration))
 
+    def make_fmu(self, *args, **options):
+        make_fmu(self.path("law.fmu"), *args, **options)
+
     def read(self, name):
         with h5py.File(self.path(name)) as f:
             return f["sensors/angle"][:], f["controllers/law"][:]
@@ -174,25 +177,79 @@ class FmuControllers(ProgramTest):
         self.assertEqual(law[-1, 1], 100)
         for version in (2, 3):
             for saves in (True, False):
-                make_fmu(self.path("law.fmu"), version, saves)
+                self.make_fmu(version, saves)
                 self.make(name="fmu.toml")
                 self.bough("run", "fmu.toml")
                 for left, right in zip(self.read("fmu.h5"), (angle, law)):
                     np.testing.assert_array_equal(left, right, f"FMI {version}, saves {saves}")
 
     def test_recommended_step_and_chosen_names(self):
-        make_fmu(self.path("law.fmu"), 2)
+        self.make_fmu(2)
         law = FMU.format(fault=0, more='input_names = ["angle", "rate", "enable"]\noutput_names = ["torque"]')
         self.make(law=law.replace("sample_time = 0.01\n", ""))
         self.bough("run", "s.toml")
         self.assertEqual(self.read("s.h5")[1].ndim, 1)
-        make_fmu(self.path("law.fmu"), 3)  # recommends none
+        self.make_fmu(3)  # recommends none
         self.make(law=FMU.format(fault=0, more="").replace("sample_time = 0.01\n", ""))
         self.fails(1, "run", "s.toml", error="fmu.no-step", says=["controller 'law'", "give sample_time"])
 
+    def test_elements_aliases_and_start_values(self):
+        self.make_fmu(3)
+        self.make()
+        self.bough("run", "s.toml")
+        expected = self.read("s.h5")
+
+        def run(change=lambda x: x, more="", swap=False):
+            self.make_fmu(3, change=change)
+            self.make(more=more)
+            if swap:
+                with open(self.path("s.toml")) as f:
+                    text = f.read()
+                self.write("s.toml", text.replace('inputs = ["angle", "rate", "on"]', 'inputs = ["rate", "angle", "on"]'))
+            self.bough("run", "s.toml")
+            return self.read("s.h5")
+
+        alias = lambda x: x.replace('causality="output"/>', 'causality="output"><Alias name="moment"/></Float64>', 1)
+        for change, more, swap in [(lambda x: x, 'input_names = ["angle[1]", "angle[2]", "enable"]', False),
+                                   (lambda x: x, 'input_names = ["angle[2]", "angle[1]", "enable"]', True),
+                                   (alias, 'output_names = ["moment", "count"]', False)]:
+            for left, right in zip(run(change, more, swap), expected):
+                np.testing.assert_array_equal(left, right, more)
+        # The rate keeps its start value, which the derivative gain makes a constant torque.
+        start = lambda x: x.replace('start="0 0"', 'start="0 0.25"')
+        self.make_fmu(3, change=start)
+        text = SYSTEM.format(law=FMU.format(fault=0, more='input_names = ["angle[1]", "enable"]'), duration=1.0)
+        self.write("s.toml", text.replace('"angle", "rate", "on"', '"angle", "on"').replace("[6.0, 4.0", "[0.0, 4.0"))
+        self.bough("run", "s.toml")
+        torque = self.read("s.h5")[1][:, 0]
+        np.testing.assert_array_equal(torque[2:], -1.0)  # from the first step of 0.01 on
+
+        self.make_fmu(3)
+        for names, says in [('["angle", "angle[2]"]', "'input_names' names 'angle' twice"),
+                            ('["enable", "angle", "enable"]', "'input_names' names 'enable' twice")]:
+            self.make(more="input_names = " + names)
+            self.fails(1, "check", "s.toml", error="fmu.bad-variable", says=[says])
+        for name in ("angle[3]", "angle[0]", "angle[1,1]", "angle[1", "enable[1]"):
+            self.make(more=f'input_names = ["{name}"]')
+            self.fails(1, "check", "s.toml", error="fmu.unknown-variable", says=[f"has no input '{name}'"])
+
+    def test_string_parameters(self):
+        for version in (2, 3):
+            self.make_fmu(version)
+            self.make(more='string_parameters = ["title=a = b"]')
+            self.bough("run", "s.toml")
+            self.make(more='string_parameters = ["title=other"]')
+            self.fails(1, "check", "s.toml", error="control.bad-library",
+                       says=[f"fmi{version}SetString returned 3 (error)"])
+            for text, error, says in [("title", "fmu.bad-variable", "expected NAME=VALUE"),
+                                      ("kp=2", "fmu.bad-variable", "'kp' of its FMU is no single string"),
+                                      ("name=x", "fmu.unknown-variable", "has no parameter 'name'")]:
+                self.make(more=f'string_parameters = ["{text}"]')
+                self.fails(1, "check", "s.toml", error=error, says=[says])
+
     def test_state_is_saved(self):
         for version in (2, 3):
-            make_fmu(self.path("law.fmu"), version)
+            self.make_fmu(version)
             self.make()
             self.bough("run", "s.toml", "-o", "whole.h5")
             self.make(duration=0.375)
@@ -201,7 +258,7 @@ class FmuControllers(ProgramTest):
             self.bough("run", "s.toml", "-o", "parts.h5", "--resume")
             for left, right in zip(self.read("parts.h5"), self.read("whole.h5")):
                 np.testing.assert_array_equal(left, right)
-            make_fmu(self.path("law.fmu"), version, saves=False)
+            self.make_fmu(version, saves=False)
             self.make(duration=0.375)
             self.bough("run", "s.toml", "-o", "parts.h5")
             self.make()
@@ -214,7 +271,7 @@ class FmuControllers(ProgramTest):
                 np.testing.assert_array_equal(left, right)
 
     def test_two_of_one_file(self):
-        make_fmu(self.path("law.fmu"), 3)
+        self.make_fmu(3)
         text = SYSTEM.format(law=FMU.format(fault=0, more=""), duration=0.5)
         second = text[text.index("[[controller]]"):text.index("[[actuator]]")].replace('"law"', '"other"').replace("6.0", "9.0")
         self.write("s.toml", text.replace("[[actuator]]", second + "[[actuator]]", 1))
@@ -226,7 +283,7 @@ class FmuControllers(ProgramTest):
 
     def test_faults_have_names(self):
         for version in (2, 3):
-            make_fmu(self.path("law.fmu"), version)
+            self.make_fmu(version)
             for fault, says in [(1, [f"fmi{version}DoStep returned 3 (error): tank 7 is empty"]),
                                 (2, [f"fmi{version}DoStep returned 2 (discard)"]), (3, ["the end of the simulation"]),
                                 (4, ["its output 'torque' is"]), (7, ["returned 4 (fatal)"]), (6, ["SIGSEGV"])]:
@@ -253,9 +310,9 @@ class FmuControllers(ProgramTest):
         refuse("fmu.bad-archive", "no modelDescription.xml")
         with open(self.path("law.fmu"), "rb") as f:
             whole = f.read()
-        make_fmu(self.path("law.fmu"), 3, files=[("../outside.txt", "bad")])
+        self.make_fmu(3, files=[("../outside.txt", "bad")])
         refuse("fmu.bad-archive", "'../outside.txt' leads out of the folder")
-        make_fmu(self.path("law.fmu"), 3)
+        self.make_fmu(3)
         with open(self.path("law.fmu"), "rb") as f:
             whole = f.read()
         with open(self.path("law.fmu"), "wb") as f:
@@ -269,21 +326,21 @@ class FmuControllers(ProgramTest):
                 (lambda x: x.replace('modelIdentifier="law"', 'modelIdentifier="../law"'), "fmu.bad-description", "../law"),
                 (lambda x: x.replace('name="kd"', 'name="kp"'), "fmu.bad-description", "two variables named 'kp'"),
                 (lambda x: x.replace('name="kd"', 'name="kds"'), "fmu.unknown-variable", "has no parameter 'kd'"),
-                (lambda x: x.replace("UInt8", "String"), "fmu.bad-variable", "'fault' of its FMU is no number"),
+                (lambda x: x.replace("UInt8", "String"), "fmu.bad-variable", "'fault' of its FMU is a string"),
                 (lambda x: x.replace('<Dimension start="2"/>', '<Dimension valueReference="9"/>'), "fmu.bad-variable", "size of 'angle'"),
                 (lambda x: x.replace("{token}", "{other}"), "control.bad-library", "the token is wrong")]:
-            make_fmu(self.path("law.fmu"), 3, change=change)
+            self.make_fmu(3, change=change)
             refuse(error, says)
-        make_fmu(self.path("law.fmu"), 3, platform="x86_64-windows")
+        self.make_fmu(3, platform="x86_64-windows")
         refuse("fmu.no-platform", "binaries/x86_64-linux/law.so", "it has x86_64-windows")
-        make_fmu(self.path("law.fmu"), 3)
+        self.make_fmu(3)
         refuse("control.bad-library", "it has 2 inputs, and 3 signals are wired to it", more='input_names = ["angle"]')
         refuse("fmu.bad-variable", "3 parameters for 1", law=FMU.format(fault=0, more="").replace('["kp", "kd", "fault"]', '["kp"]'))
         self.make()
         self.bough("check", "s.toml")
 
     def test_what_they_cannot_do(self):
-        make_fmu(self.path("law.fmu"), 3)
+        self.make_fmu(3)
         self.make()
         said = self.bough("linearize", "s.toml").stderr  # samples are held there
         self.assertIn("[linear.fmu-held]", said)
@@ -339,20 +396,20 @@ step = 0.01
                 x, v = rest + (x - rest) * c + v / 2 * s, -2 * (x - rest) * s + v * c
 
     def test_messages_of_its_controller(self):
-        make_fmu(self.path("law.fmu"), 3)
+        self.make_fmu(3)
         self.make(more="kp = 3.0")
         keys = self.fails(1, "check", "s.toml", error="control.unknown-key", says=["input_names", "sample_time"]).stderr
         self.assertNotIn("lent", keys)
         self.make(law=FMU.format(fault=0, more="").replace('file = "law.fmu"\n', ""))
         self.fails(1, "check", "s.toml", error="fmu.no-file", says=["controller 'law' has no 'file'"])
-        make_fmu(self.path("law.fmu"), 3, platform="x86_64-linux/old")
+        self.make_fmu(3, platform="x86_64-linux/old")
         self.make()
         self.fails(1, "check", "s.toml", error="fmu.no-platform", says=["it has x86_64-linux/old/law.so"])
         self.fails(1, "convert", "s.toml", "--units", "m-kg-s:mm-N-tonne", "-o", "mm.toml", error="toml.unit-file",
                    says=["what a shared library or an FMU computes is not known"])
 
     def test_integers_out_of_range_are_named(self):
-        make_fmu(self.path("law.fmu"), 3)  # fault is a UInt8
+        self.make_fmu(3)  # fault is a UInt8
         for fault in (256, -1, 1e300):
             self.make(fault=fault)
             self.fails(1, "check", "s.toml", error="control.bad-library",
@@ -363,7 +420,7 @@ step = 0.01
     def test_a_binary_without_the_status_of_a_step(self):
         """fmi2GetBooleanStatus is of use after a discarded step only."""
         for fault, code in ((0, 0), (2, 3)):
-            make_fmu(self.path("law.fmu"), 2, without="fmi2GetBooleanStatus")
+            self.make_fmu(2, without="fmi2GetBooleanStatus")
             self.make(fault=fault)
             result = self.bough("run", "s.toml", code=code)
             self.assertEqual("fmi2DoStep returned 2 (discard)" in result.stderr, fault == 2)
@@ -372,7 +429,7 @@ step = 0.01
         """noSetFMUStatePriorToCurrentPoint promises that no state of the past is set: it may be for those that save."""
         for version in (2, 3):
             for saves, code in ((True, 0), (False, 3)):
-                make_fmu(self.path("law.fmu"), version, saves)
+                self.make_fmu(version, saves)
                 self.make(fault=8)  # fails if the promise is given
                 self.bough("run", "s.toml", code=code)
 
@@ -389,7 +446,7 @@ step = 0.01
             expected = self.read("library.h5")
             self.assertGreater(np.ptp(expected[0]), 0.3)
             for version in (2, 3):
-                make_fmu(self.path("law.fmu"), version)
+                self.make_fmu(version)
                 law = FMU.format(fault=0, more="")
                 write("whole.toml", law, integrator)
                 self.bough("run", "whole.toml")
@@ -422,7 +479,7 @@ step = 0.01
         more = '[[input]]\nname = "more"\n[[controller]]\nname = "sum"\ntype = "sum"\ninputs = ["law:1", "more"]\n[simulation]'
         self.write("s.toml", text.replace("[simulation]", more))
         for version in (2, 3):
-            make_fmu(self.path("law.fmu"), version)
+            self.make_fmu(version)
             done = subprocess.run([sys.executable, "-c", THREADS], cwd=self.folder, capture_output=True, text=True, check=False,
                                   timeout=HANG, env={**os.environ, "PYTHONPATH": MODULE})
             self.assertEqual((done.returncode, done.stdout), (0, "alike\n"), done.stderr)

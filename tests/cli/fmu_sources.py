@@ -100,6 +100,7 @@ int fmi2SetInteger(void *i, const unsigned *vr, size_t n, const int *x) { return
 int fmi2GetInteger(void *i, const unsigned *vr, size_t n, int *x) { return *x = ((State *)i)->count, 0; }
 int fmi2SetBoolean(void *i, const unsigned *vr, size_t n, const int *x) { return ((State *)i)->enable = *x, 0; }
 int fmi2GetBoolean(void *i, const unsigned *vr, size_t n, int *x) { return *x = ((State *)i)->enable, 0; }
+int fmi2SetString(void *i, const unsigned *vr, size_t n, const char *const *x) { return *vr == 8 && !strcmp(*x, "a = b") ? 0 : 3; }
 int fmi2GetFMUstate(void *i, void **to) { if (!*to) *to = malloc(sizeof(State)); return memcpy(*to, i, sizeof(State)), 0; }
 int fmi2SetFMUstate(void *i, void *from) { return memcpy(i, from, sizeof(State)), 0; }
 int fmi2FreeFMUstate(void *i, void **s) { return free(*s), *s = 0, 0; }
@@ -150,6 +151,7 @@ int fmi3GetFloat64(void *i, const uint32_t *vr, size_t n, double *x, size_t m) {
 int fmi3SetUInt8(void *i, const uint32_t *vr, size_t n, const uint8_t *x, size_t m) { return *vr == FAULT ? (((State *)i)->fault = *x, 0) : 3; }
 int fmi3GetInt64(void *i, const uint32_t *vr, size_t n, int64_t *x, size_t m) { return *x = ((State *)i)->count, 0; }
 int fmi3SetBoolean(void *i, const uint32_t *vr, size_t n, const bool *x, size_t m) { return ((State *)i)->enable = *x, 0; }
+int fmi3SetString(void *i, const uint32_t *vr, size_t n, const char *const *x, size_t m) { return *vr == 8 && m == 1 && !strcmp(*x, "a = b") ? 0 : 3; }
 int fmi3GetFMUState(void *i, void **to) { if (!*to) *to = malloc(sizeof(State)); return memcpy(*to, i, sizeof(State)), 0; }
 int fmi3SetFMUState(void *i, void *from) { return memcpy(i, from, sizeof(State)), 0; }
 int fmi3FreeFMUState(void *i, void **s) { return free(*s), *s = 0, 0; }
@@ -189,6 +191,7 @@ XML3 = """<?xml version="1.0" encoding="UTF-8"?>
 <Float64 name="kp" valueReference="5" causality="parameter" start="1"/>
 <Float64 name="kd" valueReference="6" causality="parameter" start="0"/>
 <UInt8 name="fault" valueReference="7" causality="parameter" start="0"/>
+<String name="title" valueReference="8" causality="parameter"><Start value=""/></String>
 </ModelVariables><ModelStructure/></fmiModelDescription>
 """
 
