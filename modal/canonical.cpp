@@ -5,7 +5,7 @@
 
 #include "fe/linear/blas.hpp"
 #include "fe/linear/factor.hpp"
-#include "modal/extraction.hpp"
+#include "fe/linear/fixed_number.hpp"
 #include "modal/tolerances.hpp"
 
 namespace bough::modal::detail {
@@ -23,7 +23,7 @@ VectorXd calc_basis_weights(const fe::Model& model) {
   VectorXd weights = VectorXd::Zero(model.num_gdofs());
   for (std::size_t k = 0; k < model.nodes().size(); ++k) {
     const auto& node = model.nodes()[k];
-    const double own = 1.25 + 0.25 * calc_fixed_number(static_cast<int>(k), 7);
+    const double own = 1.25 + 0.25 * fe::calc_fixed_number(static_cast<int>(k), 7);
     for (int c = 0; c < node.num_dofs; ++c)
       weights(node.first_gdof + c) = own * (c + 1) * (c < 3 ? 1.0 : 0.01 * size * size);
   }

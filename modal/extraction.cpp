@@ -4,15 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <cstdlib>
 #include <memory>
 #include <optional>
 #include <vector>
 
 #include "base/diagnostic.hpp"
-#include "fe/linear/mechanism.hpp"
+#include "fe/linear/fixed_number.hpp"
 #include "fe/linear/memory_need.hpp"
+#include "fe/linear/null_space.hpp"
 #include "fe/linear/ordering.hpp"
 #include "fe/linear/ranks.hpp"
 #include "fe/linear/symmetric_matrix.hpp"
@@ -51,16 +51,6 @@ void initialize_slepc() {
   });
 }
 
-double calc_fixed_number(int index, int start) {
-  // splitmix64, a public-domain mixer by S. Vigna.
-  std::uint64_t z = (static_cast<std::uint64_t>(index) + 1) * 0x9E3779B97F4A7C15ULL +
-                    static_cast<std::uint64_t>(start) * 0xD1B54A32D192ED03ULL;
-  z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9ULL;
-  z = (z ^ (z >> 27)) * 0x94D049BB133111EBULL;
-  z ^= z >> 31;
-  return 2.0 * (static_cast<double>(z >> 11) * 0x1p-53) - 1.0;
-}
-
 std::string choose_solver(const SolverFacts& facts) {
   if (facts.has_low_rank) return kLowRank;
   const bool is_worth_blocks = facts.num_rows >= kBlockRows || facts.has_many_copies;
@@ -87,7 +77,7 @@ MatrixXd make_start(const EigenProblem& problem, int b) {
   const PetscInt n = get_size(problem);
   MatrixXd start(n, b);
   for (int c = 0; c < b; ++c)
-    for (int i = 0; i < n; ++i) start(i, c) = calc_fixed_number(i, problem.start + 1000 * c);
+    for (int i = 0; i < n; ++i) start(i, c) = fe::calc_fixed_number(i, problem.start + 1000 * c);
   return start;
 }
 

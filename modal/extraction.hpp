@@ -92,7 +92,4 @@ std::string choose_solver(const SolverFacts& facts);
 /// does. Throws ComputationError "modal.no-convergence", and "modal.unsuited-solver" for a `solver` that SLEPc refuses.
 Extraction extract(const EigenProblem& problem);
 
-/// A number in (-1, 1) that depends on index and start only: start vectors and weights free of any rank layout.
-double calc_fixed_number(int index, int start);
-
 }  // namespace bough::modal::detail

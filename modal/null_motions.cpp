@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "fe/linear/factor.hpp"
+#include "fe/linear/null_space.hpp"
 #include "fe/linear/symmetric_matrix.hpp"
 #include "modal/canonical.hpp"
 #include "modal/extraction.hpp"
@@ -29,39 +29,24 @@ VectorXd calc_scale(const Pencil& pencil) {
   return scale;
 }
 
-/// The D-orthonormal motions of K whose forces are roundoff, by inverse iteration of K + 1e-13 D on `m` vectors; all of
-/// them where fewer than m come out.
-MatrixXd iterate(const Pencil& pencil, const VectorXd& D, const fe::SymmetricFactor& factor, Index m) {
-  const VectorXd root = D.cwiseSqrt();
-  MatrixXd X(pencil.size(), m);
-  for (Index c = 0; c < m; ++c)
-    for (int i = 0; i < pencil.size(); ++i) X(i, c) = calc_fixed_number(i, static_cast<int>(c)) / root(i);
-  VectorXd energy;
-  for (int iteration = 0; iteration < 6; ++iteration) {
-    X = factor.solve(D.asDiagonal() * X);
-    MatrixXd scaled = root.asDiagonal() * X;
-    scaled = Eigen::HouseholderQR<MatrixXd>(scaled).householderQ() * MatrixXd::Identity(pencil.size(), m);
-    X = root.cwiseInverse().asDiagonal() * scaled;
-    const MatrixXd projected = X.transpose() * pencil.calc_K_times(X);
-    const Eigen::SelfAdjointEigenSolver<MatrixXd> ritz(0.5 * (projected + projected.transpose()));
-    X = (X * ritz.eigenvectors()).eval();
-    energy = ritz.eigenvalues().cwiseAbs();
-  }
+/// The D-orthonormal motions of K whose forces are roundoff, found among m; all of them where fewer than m come out.
+MatrixXd find_null_motions_of(const Pencil& pencil, const VectorXd& D, const fe::SymmetricFactor& factor, Index m) {
+  const auto space = fe::calc_soft_space(pencil.K, D, factor, m);
   std::vector<Index> low;
   for (Index c = 0; c < m; ++c)
-    if (energy(c) < kStrainlessEnergy) low.push_back(c);
-  const MatrixXd Y = X(Eigen::all, low);
+    if (space.energy(c) < kStrainlessEnergy) low.push_back(c);
+  const MatrixXd Y = space.X(Eigen::all, low);
   return Y.cols() > 0 ? (Y * find_forceless(pencil, Y, kIterationForce)).eval() : Y;
 }
 
 /// Nothing when they are too many, or the factor fails.
 std::optional<MatrixXd> find_null_space(const Pencil& pencil, const VectorXd& D, int expected) {
-  const fe::SymmetricFactor factor(fe::add_diagonal(pencil.K, kNullShift * D), false, fe::FactorMethod::Pivoting);
+  const fe::SymmetricFactor factor(fe::add_diagonal(pencil.K, fe::kNullShift * D), false, fe::FactorMethod::Pivoting);
   if (factor.is_singular()) return std::nullopt;
   constexpr Index most = 400;
   for (Index m = expected + 6;; m *= 2) {
     m = std::min<Index>({m, most, pencil.size()});
-    MatrixXd Y = iterate(pencil, D, factor, m);
+    MatrixXd Y = find_null_motions_of(pencil, D, factor, m);
     if (Y.cols() < m || m == pencil.size()) return Y;
     if (m == most) return std::nullopt;
   }

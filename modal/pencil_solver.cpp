@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "fe/linear/inertia.hpp"
-#include "fe/linear/mechanism.hpp"
+#include "fe/linear/null_space.hpp"
 #include "fe/linear/residual.hpp"
 #include "modal/canonical.hpp"
 #include "modal/eps_types.hpp"

@@ -25,8 +25,6 @@ inline constexpr double kZeroRatio = 1e-3;
 inline constexpr double kForcelessSquare = 1e-18;
 /// Force that counts as a term too, for vectors of unit length under diag K that an iteration made.
 inline constexpr double kIterationForce = 1e-6;
-/// Of diag K, added to make a singular K definite: digits of K above, no factor below.
-inline constexpr double kNullShift = 1e-13;
 /// Relative energy below which a model without supports counts as singular for the low-rank solver; with a shift,
 /// mechanisms have the energy of their mass: little, but not roundoff.
 inline constexpr double kShiftedMechanismEnergy = 3e-16;

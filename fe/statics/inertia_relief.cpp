@@ -5,7 +5,7 @@
 
 #include <Eigen/Eigenvalues>
 
-#include "fe/linear/mechanism.hpp"
+#include "fe/linear/null_space.hpp"
 #include "fe/loads/inertial_loads.hpp"
 #include "fe/model/sets.hpp"
 

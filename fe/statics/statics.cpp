@@ -4,7 +4,7 @@
 #include <cmath>
 #include <optional>
 
-#include "fe/linear/mechanism.hpp"
+#include "fe/linear/null_space.hpp"
 #include "fe/linear/residual.hpp"
 #include "fe/linear/symmetric_matrix.hpp"
 #include "fe/model/row_kinds.hpp"

@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "fe/linear/blas.hpp"
-#include "fe/linear/mechanism.hpp"
+#include "fe/linear/null_space.hpp"
 #include "fe/linear/residual.hpp"
 #include "fe/linear/symmetric_matrix.hpp"
 #include "fe/model/row_kinds.hpp"

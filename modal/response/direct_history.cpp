@@ -5,7 +5,7 @@
 #include <Eigen/Eigenvalues>
 
 #include "fe/linear/complex_factor.hpp"
-#include "fe/linear/mechanism.hpp"
+#include "fe/linear/null_space.hpp"
 #include "fe/linear/symmetric_matrix.hpp"
 #include "modal/response/accuracy.hpp"
 #include "modal/response/direct_model.hpp"

@@ -3,7 +3,7 @@
 #include <random>
 
 #include "fe/linear/complex_factor.hpp"
-#include "fe/linear/mechanism.hpp"
+#include "fe/linear/null_space.hpp"
 #include "fe/linear/symmetric_matrix.hpp"
 #include "modal/response/accuracy.hpp"
 #include "modal/response/coordinates.hpp"

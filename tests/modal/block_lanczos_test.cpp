@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "fe/linear/factor.hpp"
+#include "fe/linear/fixed_number.hpp"
 #include "fe/linear/ordering.hpp"
 #include "fe/linear/symmetric_matrix.hpp"
 #include "fe/statics/build_model.hpp"
@@ -36,7 +37,7 @@ struct Diagonal {
     problem.multiply_mass = [this](const Eigen::Ref<const MatrixXd>& X) { return MatrixXd(b.asDiagonal() * X); };
     problem.start.resize(a.size(), width);
     for (int c = 0; c < width; ++c)
-      for (int i = 0; i < a.size(); ++i) problem.start(i, c) = modal::detail::calc_fixed_number(i, c);
+      for (int i = 0; i < a.size(); ++i) problem.start(i, c) = fe::calc_fixed_number(i, c);
     problem.deflate.resize(a.size(), 0);
     problem.num_wanted = wanted;
     return problem;

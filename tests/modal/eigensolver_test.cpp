@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "fe/linear/fixed_number.hpp"
 #include "fe/loads/loads.hpp"
 #include "fe/statics/build_model.hpp"
 #include "fe/statics/statics.hpp"
@@ -328,7 +329,7 @@ TEST(Eigensolver, BlockLanczosIsAnEpsType) {
   modal::detail::BlockLanczosSettings settings;
   settings.start.resize(n, 3);
   for (int i = 0; i < n; ++i)
-    for (int c = 0; c < 3; ++c) settings.start(i, c) = modal::detail::calc_fixed_number(i, c);
+    for (int c = 0; c < 3; ++c) settings.start(i, c) = fe::calc_fixed_number(i, c);
   settings.deflation.resize(n, 0);
   set_settings(eps.get(), settings);
   check_petsc(EPSSolve(eps.get()));

@@ -7,8 +7,8 @@
 #include <gtest/gtest.h>
 
 #include "fe/linear/cholmod_factor.hpp"
-#include "fe/linear/mechanism.hpp"
 #include "fe/linear/mumps.hpp"
+#include "fe/linear/null_space.hpp"
 #include "fe/model/row_kinds.hpp"
 #include "fe/statics/build_model.hpp"
 #include "tests/fe/model/spring_model.hpp"

@@ -1,11 +1,11 @@
-#include "fe/linear/mechanism.hpp"
+#include "fe/linear/null_space.hpp"
 
 #include <algorithm>
-#include <random>
 
 #include <Eigen/Eigenvalues>
+#include <Eigen/QR>
 
-#include "fe/linear/ranks.hpp"
+#include "fe/linear/fixed_number.hpp"
 
 namespace bough::fe {
 namespace {
@@ -13,10 +13,11 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-MatrixXd make_random(Eigen::Index rows, Eigen::Index cols) {
-  std::mt19937 generator(20111);
-  std::uniform_real_distribution<double> uniform(-1, 1);
-  return MatrixXd::NullaryExpr(rows, cols, [&] { return uniform(generator); });
+/// Start vectors without a preferred direction under D, the same in any units.
+MatrixXd make_start(const VectorXd& root, Eigen::Index cols) {
+  return MatrixXd::NullaryExpr(root.size(), cols, [&root](Eigen::Index i, Eigen::Index c) {
+    return calc_fixed_number(static_cast<int>(i), static_cast<int>(c)) / root(i);
+  });
 }
 
 void reduce_columns(MatrixXd& X) {
@@ -30,35 +31,38 @@ void reduce_columns(MatrixXd& X) {
   }
 }
 
-/// Those of m motions that strain next to nothing, by inverse iteration on a subspace.
+/// Motions among the m softest with less energy than `most`.
 MatrixXd find_soft_motions(const SymmetricMatrix& K, const VectorXd& D, const SymmetricFactor& factor, Eigen::Index m,
                            double most) {
-  const Eigen::Index n = D.size();
-  MatrixXd X = make_random(n, m);
-  VectorXd energy;
-  for (int iteration = 0; iteration < 5; ++iteration) {
-    X = factor.solve(D.asDiagonal() * X);
-    for (Eigen::Index c = 0; c < m; ++c) X.col(c) /= std::sqrt(X.col(c).dot(D.cwiseProduct(X.col(c))));
-    // An orthonormal basis under D, then its Ritz vectors.
-    MatrixXd scaled = D.cwiseSqrt().asDiagonal() * X;
-    scaled = Eigen::HouseholderQR<MatrixXd>(scaled).householderQ() * MatrixXd::Identity(n, m);
-    X = D.cwiseSqrt().cwiseInverse().asDiagonal() * scaled;
-    MatrixXd projected = X.transpose() * fe::multiply(K, X);
-    const Eigen::SelfAdjointEigenSolver<MatrixXd> ritz(0.5 * (projected + projected.transpose()));
-    X = (X * ritz.eigenvectors()).eval();
-    energy = ritz.eigenvalues().cwiseAbs();
-  }
+  const SoftSpace space = calc_soft_space(K, D, factor, m);
   std::vector<int> found;
   for (int c = 0; c < m; ++c)
-    if (energy[c] < most) found.push_back(c);
-  return X(Eigen::all, found);
+    if (space.energy[c] < most) found.push_back(c);
+  return space.X(Eigen::all, found);
 }
 
 }  // namespace
 
+SoftSpace calc_soft_space(const SymmetricMatrix& K, const VectorXd& D, const SymmetricFactor& factor, Eigen::Index m) {
+  const VectorXd root = D.cwiseSqrt();
+  SoftSpace space{make_start(root, m), {}};
+  MatrixXd& X = space.X;
+  for (int iteration = 0; iteration < 6; ++iteration) {
+    X = factor.solve(D.asDiagonal() * X);
+    MatrixXd scaled = root.asDiagonal() * X;
+    scaled = Eigen::HouseholderQR<MatrixXd>(scaled).householderQ() * MatrixXd::Identity(D.size(), m);
+    X = root.cwiseInverse().asDiagonal() * scaled;
+    const MatrixXd projected = X.transpose() * multiply(K, X);
+    const Eigen::SelfAdjointEigenSolver<MatrixXd> ritz(0.5 * (projected + projected.transpose()));
+    X = (X * ritz.eigenvectors()).eval();
+    space.energy = ritz.eigenvalues().cwiseAbs();
+  }
+  return space;
+}
+
 double calc_softest_energy(const SymmetricMatrix& K, const RowKinds& kinds, const SymmetricFactor& factor) {
   const VectorXd D = fill_diagonal(get_diagonal(K), kinds);
-  VectorXd x = factor.solve(D.cwiseProduct(make_random(D.size(), 1).col(0)));
+  VectorXd x = factor.solve(D.cwiseProduct(make_start(D.cwiseSqrt(), 1).col(0)));
   const double size = x.dot(D.cwiseProduct(x));
   if (!(size > 0) || !std::isfinite(size)) return 0;
   x /= std::sqrt(size);
@@ -68,7 +72,7 @@ double calc_softest_energy(const SymmetricMatrix& K, const RowKinds& kinds, cons
 MatrixXd find_mechanisms(const SymmetricMatrix& K, const RowKinds& kinds, int expected, double most) {
   const VectorXd D = fill_diagonal(get_diagonal(K), kinds);
   const Eigen::Index n = D.size();
-  const SymmetricFactor factor(add_diagonal(K, 1e-13 * D), false, FactorMethod::Pivoting);
+  const SymmetricFactor factor(add_diagonal(K, kNullShift * D), false, FactorMethod::Pivoting);
   if (factor.is_singular()) return MatrixXd(n, 0);
   const Eigen::Index m = std::min<Eigen::Index>(n, std::clamp(expected + 2, 6, kMostMechanisms));
   MatrixXd basis = find_soft_motions(K, D, factor, m, most);
