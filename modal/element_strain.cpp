@@ -12,6 +12,7 @@
 #include "fe/linear/residual.hpp"
 #include "fe/linear/symmetric_matrix.hpp"
 #include "fe/matrices/vector_products.hpp"
+#include "fe/model/element_loop.hpp"
 #include "modal/canonical.hpp"
 #include "modal/pencil.hpp"
 
@@ -179,16 +180,14 @@ ElementStrain calc_element_strain(const fe::Model& model, const MatrixXd& X_g, b
   const Index m = X_g.cols();
   ElementStrain strain{MatrixXd::Zero(X_g.rows(), m), MatrixXd::Zero(m, m), VectorXd::Zero(m), VectorXd::Zero(m)};
   MatrixXd K, u, forces;
-  const auto [first, last] = fe::calc_element_range(model);
-  for (int e = first; e < last; ++e) {
-    const fe::Element& element = *model.elements()[static_cast<std::size_t>(e)];
+  fe::visit_elements(model, fe::get_own_elements(model), [&](int, const fe::Element& element) {
     K.setZero(element.num_dofs(), element.num_dofs());
     model.add_stiffness(element, K);
-    if (K.isZero(0)) continue;
+    if (K.isZero(0)) return;
     u = X_g(element.gdofs(), Eigen::all);
     add_element(K, u, is_fine ? kMostDofs : 0, forces, strain);
     for (int i = 0; i < element.num_dofs(); ++i) strain.forces.row(element.gdofs()[i]) += forces.row(i);
-  }
+  });
   fe::sum_over_ranks(strain.forces);
   fe::sum_over_ranks(strain.energy);
   MatrixXd parts(m, 2);

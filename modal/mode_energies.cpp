@@ -2,6 +2,7 @@
 
 #include "fe/cards/element_properties.hpp"
 #include "fe/matrices/assembly.hpp"
+#include "fe/model/element_loop.hpp"
 
 namespace bough::modal {
 
@@ -13,20 +14,18 @@ records::ModeEnergies calc_mode_energies(const fe::Model& model, const records::
   const auto count = static_cast<Eigen::Index>(elements.size());
   MatrixXd strain = MatrixXd::Zero(count, Phi.cols()), kinetic = strain, has = MatrixXd::Zero(count, 1);
   MatrixXd K, M, u;
-  const auto [begin, end] = fe::calc_element_range(model);
-  for (int e = begin; e < end; ++e) {
-    const fe::Element& element = *elements[static_cast<std::size_t>(e)];
+  fe::visit_elements(model, fe::get_own_elements(model), [&](int e, const fe::Element& element) {
     const int n = element.num_dofs();
     K.setZero(n, n);
     M.setZero(n, n);
     model.add_stiffness(element, K);
     element.add_mass(model.mass_kind(), model.wtmass(), M);
-    if (K.isZero(0) && M.isZero(0)) continue;
+    if (K.isZero(0) && M.isZero(0)) return;
     has(e, 0) = 1;
     u = Phi(element.gdofs(), Eigen::all);
     strain.row(e) = 0.5 * u.cwiseProduct(K * u).colwise().sum();
     kinetic.row(e) = 0.5 * u.cwiseProduct(M * u).colwise().sum();
-  }
+  });
   fe::sum_over_ranks(strain);
   fe::sum_over_ranks(kinetic);
   fe::sum_over_ranks(has);

@@ -2,6 +2,7 @@
 #include <set>
 
 #include "fe/matrices/mass_directions.hpp"
+#include "fe/model/element_loop.hpp"
 #include "modal/integrals.hpp"
 #include "stiffening/given_model.hpp"
 #include "stiffening/stages.hpp"
@@ -105,18 +106,16 @@ void set_strain_energy(const BodyRequest& request, const fe::Model& model, const
   const auto& elements = model.elements();
   MatrixXd all = MatrixXd::Zero(static_cast<Eigen::Index>(elements.size()), n * (n + 1) / 2), K, u;
   MatrixXd is_stiff = MatrixXd::Zero(all.rows(), 1);
-  const auto [begin, end] = fe::calc_element_range(model);
-  for (int e = begin; e < end; ++e) {
-    const fe::Element& element = *elements[static_cast<std::size_t>(e)];
+  fe::visit_elements(model, fe::get_own_elements(model), [&](int e, const fe::Element& element) {
     K.setZero(element.num_dofs(), element.num_dofs());
     element.add_stiffness(1, K);
-    if (K.isZero(0)) continue;
+    if (K.isZero(0)) return;
     is_stiff(e, 0) = 1;
     u = Phi(element.gdofs(), Eigen::all);
     const MatrixXd k = u.transpose() * K * u;
     for (Eigen::Index i = 0, column = 0; i < n; ++i)
       for (Eigen::Index j = i; j < n; ++j) all(e, column++) = 0.5 * (k(i, j) + k(j, i));
-  }
+  });
   fe::sum_over_ranks(all);
   fe::sum_over_ranks(is_stiff);
   auto& energy = body.strain_energy;

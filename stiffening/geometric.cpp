@@ -4,7 +4,7 @@
 #include "fe/elements/geometric_projection.hpp"
 #include "fe/elements/stress_state.hpp"
 #include "fe/linear/blas.hpp"
-#include "fe/linear/threads.hpp"
+#include "fe/model/element_loop.hpp"
 #include "stiffening/projected_rows.hpp"
 #include "stiffening/reduce.hpp"
 
@@ -122,7 +122,7 @@ class RowSums {
 /// products, 12 n² m by rows plus the assembly of the rows.
 constexpr Eigen::Index kMinModesForRows = 40;
 /// Elements from which a second thread saves more than its start takes.
-constexpr int kMinElementsForThread = 500;
+constexpr int kMinElementsOfThread = 250;
 
 }  // namespace
 
@@ -133,19 +133,22 @@ std::vector<MatrixXd> calc_generalized_geometric_stiffness(const fe::Model& mode
   // Forms have their own split over ranks.
   const auto forms = U.cols() > 0 ? fe::calc_second_order(model, loads, U) : std::vector<fe::QuadraticForm>{};
   const fe::MpiWorld world = fe::initialize_petsc();
-  const auto sum_some = [&](int first, int last, bool with_forms) {
+  const auto range = fe::get_own_elements(model);
+  std::vector<MatrixXd> result, second;
+  fe::do_halves(range.last - range.first, kMinElementsOfThread, [&](int from, int to) {
     fe::GeometricProjection sums(Phi.cols(), U.cols());
     RowSums rows(model, U, Phi);
-    for (int e = first; e < last && U.cols() > 0; ++e) {
-      const auto& element = *model.elements()[static_cast<std::size_t>(e)];
+    const auto add = [&](int, const fe::Element& element) {
       const fe::StressState* state = element.stress_state();
-      if (!state) continue;
+      if (!state) return;
       if (by_rows)
         rows.add(element);
       else
         state->add_projected_geometric_stiffness(U(element.gdofs(), Eigen::all), Phi(element.gdofs(), Eigen::all),
                                                  sums);
-    }
+    };
+    if (U.cols() > 0) fe::visit_elements(model, {range.first + from, range.first + to}, add);
+    const bool with_forms = range.first + to == range.last;
     for (std::size_t i = static_cast<std::size_t>(world.rank); with_forms && i < forms.size();
          i += static_cast<std::size_t>(world.size)) {
       if (by_rows && RowSums::takes(forms[i]))
@@ -153,24 +156,14 @@ std::vector<MatrixXd> calc_generalized_geometric_stiffness(const fe::Model& mode
       else
         add_form(forms[i], Phi(forms[i].gdofs, Eigen::all), sums);
     }
-    auto result = sums.finish();
+    auto& own = from == 0 ? result : second;
+    own = sums.finish();
     if (by_rows && U.cols() > 0) {
       const auto of_rows = rows.calc();
-      for (std::size_t c = 0; c < result.size(); ++c) result[c] += of_rows[c];
+      for (std::size_t c = 0; c < own.size(); ++c) own[c] += of_rows[c];
     }
-    return result;
-  };
-  const auto [first, last] = fe::calc_element_range(model);
-  if (fe::get_num_threads() < 2 || last - first < kMinElementsForThread) {
-    auto result = sum_some(first, last, true);
-    for (auto& K_G : result) fe::sum_over_ranks(K_G);
-    return result;
-  }
-  std::vector<MatrixXd> result, second;
-  const int middle = first + (last - first) / 2;
-  fe::do_both([&, begin = first] { result = sum_some(begin, middle, false); },
-              [&, end = last] { second = sum_some(middle, end, true); });
-  for (std::size_t c = 0; c < result.size(); ++c) result[c] += second[c];
+  });
+  for (std::size_t c = 0; c < second.size(); ++c) result[c] += second[c];
   for (auto& K_G : result) fe::sum_over_ranks(K_G);
   return result;
 }

@@ -166,25 +166,6 @@ SparseRows restore(const SparseRows& K, const VectorXd& D, const MatrixXd& R, co
 
 namespace {
 
-/// Sum of the matrices that `add` makes of the elements, on the g-set.
-template <class Add>
-SparseRows sum_elements(const fe::Elements& elements, int num_gdofs, const Add& add) {
-  std::vector<Eigen::Triplet<double>> entries;
-  for (const auto& element : elements) {
-    const auto& gdofs = element->gdofs();
-    const auto n = static_cast<Index>(gdofs.size());
-    MatrixXd A = MatrixXd::Zero(n, n);
-    add(*element, A);
-    for (Index i = 0; i < n; ++i)
-      for (Index j = 0; j < n; ++j)
-        if (A(i, j) != 0)
-          entries.emplace_back(gdofs[static_cast<std::size_t>(i)], gdofs[static_cast<std::size_t>(j)], A(i, j));
-  }
-  SparseRows sum(num_gdofs, num_gdofs);
-  sum.setFromTriplets(entries.begin(), entries.end());
-  return sum;
-}
-
 bool is_direct_stiffness(const fe::Element& element) {
   const auto* direct = dynamic_cast<const fe::DirectElement*>(&element);
   return direct && direct->kind() == fe::DirectKind::Stiffness;
@@ -261,13 +242,13 @@ void restore_direct_stiffness(const records::Deck& deck, const Eigen::Vector3d& 
   Diagnostics repeated;  // by the model
   const PointTable points(deck, origin, repeated);
   if (repeated.num_errors() > 0) return;
-  const auto add_mass = [](const fe::Element& element, MatrixXd& A) {
+  const auto add_stiffness = [](const fe::Element& element, Eigen::Ref<MatrixXd> A) { element.add_stiffness(1, A); };
+  const auto add_mass = [](const fe::Element& element, Eigen::Ref<MatrixXd> A) {
     element.add_mass(fe::MassKind::Consistent, 1, A);
   };
-  const SparseRows K = sum_elements(direct.elements, points.num_gdofs,
-                                    [](const fe::Element& element, MatrixXd& A) { element.add_stiffness(1, A); });
-  const SparseRows M =
-      sum_elements(direct.elements, points.num_gdofs, add_mass) + sum_elements(others, points.num_gdofs, add_mass);
+  const SparseRows K = fe::sum_elements(direct.elements, points.num_gdofs, add_stiffness);
+  const SparseRows M = fe::sum_elements(direct.elements, points.num_gdofs, add_mass) +
+                       fe::sum_elements(others, points.num_gdofs, add_mass);
   const auto check = check_rigid_motions(points, K, M);
   if (!check.is_free) return;
   std::erase_if(direct.elements, is_stiffness);

@@ -10,6 +10,7 @@
 #include "fe/cards/element_properties.hpp"
 #include "fe/elements/beam.hpp"
 #include "fe/loads/load_sets.hpp"
+#include "fe/model/element_loop.hpp"
 #include "fe/statics/element_results.hpp"
 #include "stiffening/stages.hpp"
 
@@ -145,7 +146,7 @@ void set_recovery(const BodyRequest& request, const fe::Model& model, const Matr
   MatrixXd all(U.rows(), n + F.cols());
   all.leftCols(n) = Phi;
   all.rightCols(F.cols()) = residual;
-  const auto [begin, end] = fe::calc_element_range(model);
+  const auto own_elements = fe::get_own_elements(model);
   std::map<std::string, int> count;
   for (const auto& [key, members] : groups) {
     auto& block = body.recovery.emplace_back();
@@ -158,7 +159,7 @@ void set_recovery(const BodyRequest& request, const fe::Model& model, const Matr
       const int e = members[k];
       const fe::Element& element = *model.elements()[static_cast<std::size_t>(e)];
       block.id.push_back(element.id());
-      if (e < begin || e >= end) continue;
+      if (!own_elements.contains(e)) continue;
       auto mine = rows.middleRows(c * static_cast<Eigen::Index>(k), c);
       mine.leftCols(all.cols()) = calc_rows(element, all, [&](MatrixXd& forces, MatrixXd& stresses) {
         for (std::size_t l = 0; l < patterns.size(); ++l) {

@@ -55,4 +55,13 @@ void scatter(const Eigen::Ref<const VectorXd>& values, Vec v) {
   check_petsc(VecRestoreArray(v, &own));
 }
 
+std::pair<int, int> split_rows(int size) {
+  const MpiWorld world = initialize_petsc();
+  PetscInt own = PETSC_DECIDE, all = size, last = 0;
+  if (world.size == 1) return {0, size};
+  check_petsc(PetscSplitOwnership(PETSC_COMM_WORLD, &own, &all));
+  MPI_Scan(&own, &last, 1, MPIU_INT, MPI_SUM, PETSC_COMM_WORLD);
+  return {last - own, last};
+}
+
 }  // namespace bough::fe

@@ -4,6 +4,7 @@
 
 #include "base/diagnostic.hpp"
 #include "fe/linear/ordering.hpp"
+#include "fe/linear/ranks.hpp"
 
 namespace bough::fe {
 namespace {
@@ -87,16 +88,6 @@ Csr copy_rows(const SparseRows& A, int first, int last) {
   }
   rows.start[last - first] = at;
   return rows;
-}
-
-/// The first row of this rank, and the end.
-std::pair<int, int> split_rows(int size) {
-  const MpiWorld world = initialize_petsc();
-  PetscInt own = PETSC_DECIDE, all = size, last = 0;
-  if (world.size == 1) return {0, size};
-  check_petsc(PetscSplitOwnership(PETSC_COMM_WORLD, &own, &all));
-  MPI_Scan(&own, &last, 1, MPIU_INT, MPI_SUM, PETSC_COMM_WORLD);
-  return {last - own, last};
 }
 
 SymmetricMatrix make_from(const SparseRows& A) {

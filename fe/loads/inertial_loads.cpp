@@ -2,7 +2,7 @@
 
 #include "base/rotation.hpp"
 #include "fe/linear/blas.hpp"
-#include "fe/linear/threads.hpp"
+#include "fe/model/element_loop.hpp"
 
 namespace bough::fe {
 namespace {
@@ -116,18 +116,33 @@ MatrixXd stack_motions(const CarriedMass& carried) {
 namespace {
 
 /// Fewer are done before a thread has started.
-constexpr int kElementsOfThread = 2000;
+constexpr int kMinElementsOfThread = 1000;
 
-/// add(from, to, sum) of this rank's elements, in two halves at once where there are two threads.
-template <class Add>
-void visit_element_halves(const Model& model, MatrixXd& sum, const Add& add) {
-  const auto [begin, end] = calc_element_range(model);
-  if (get_num_threads() < 2 || end - begin < kElementsOfThread) return add(begin, end, sum);
-  const int middle = begin + (end - begin) / 2;
-  MatrixXd second = MatrixXd::Zero(sum.rows(), sum.cols());
-  do_both([&, from = begin] { add(from, middle, sum); }, [&, to = end] { add(middle, to, second); });
-  sum += second;
-}
+/// Change of the loads of a spin where mass hangs on rotations: the grids' own accelerations are not those of the mass.
+struct SpinLoads {
+  const Model& model;
+  MassKind kind;
+  const MatrixXd &spin, &grid_field;
+  const AccelerationFields& fields;
+  MatrixXd loads = MatrixXd::Zero(grid_field.rows(), spin.cols());
+  MatrixXd M = {}, f = {};
+
+  void add(int, const Element& element) {
+    if (!element.offset_mass(kind)) return;
+    M.setZero(element.num_dofs(), element.num_dofs());
+    element.add_mass(kind, model.wtmass(), M);
+    f.resize(M.rows(), spin.cols());
+    multiply_dense(false, M, grid_field(element.gdofs(), Eigen::all), 0, f);
+    CarriedMass carried(element.num_dofs(), CarriedDetail::Points);
+    if (calc_carried(model, element, kind, carried)) {
+      multiply_dense(true, stack_motions(carried), fields.calc_point_loads(carried), 1, f);
+    } else {
+      f += turn_momenta(model, element, M, spin);
+    }
+    for (int i = 0; i < element.num_dofs(); ++i) loads.row(element.gdofs()[static_cast<std::size_t>(i)]) += f.row(i);
+  }
+  void merge(const SpinLoads& second) { loads += second.loads; }
+};
 
 }  // namespace
 
@@ -137,29 +152,11 @@ MatrixXd calc_inertial_loads(const Model& model, MassKind kind, const MatrixXd& 
   MatrixXd spin = A_I;
   spin.topRows<6>().setZero();
   if (spin.isZero(0)) return F;
-  // Where mass hangs on rotations the grids' own accelerations are not those of the mass.
   const MatrixXd grid_field = calc_grid_field(model, spin);
   const AccelerationFields fields(spin);
-  const auto add_change = [&](int from, int to, MatrixXd& sum) {
-    MatrixXd M, f;
-    for (int e = from; e < to; ++e) {
-      const Element& element = *model.elements()[static_cast<std::size_t>(e)];
-      if (!element.offset_mass(kind)) continue;
-      M.setZero(element.num_dofs(), element.num_dofs());
-      element.add_mass(kind, model.wtmass(), M);
-      f.resize(M.rows(), spin.cols());
-      multiply_dense(false, M, grid_field(element.gdofs(), Eigen::all), 0, f);
-      CarriedMass carried(element.num_dofs(), CarriedDetail::Points);
-      if (calc_carried(model, element, kind, carried)) {
-        multiply_dense(true, stack_motions(carried), fields.calc_point_loads(carried), 1, f);
-      } else {
-        f += turn_momenta(model, element, M, spin);
-      }
-      for (int i = 0; i < element.num_dofs(); ++i) sum.row(element.gdofs()[static_cast<std::size_t>(i)]) += f.row(i);
-    }
-  };
-  MatrixXd change = MatrixXd::Zero(F.rows(), F.cols());
-  visit_element_halves(model, change, add_change);
+  MatrixXd change = sum_over_elements(model, get_own_elements(model), kMinElementsOfThread, [&] {
+                      return SpinLoads{model, kind, spin, grid_field, fields};
+                    }).loads;
   sum_over_ranks(change);
   return F + change;
 }
@@ -181,45 +178,58 @@ bool has_approximate_mass(const Model& model, MassKind kind) {
   return false;
 }
 
-MatrixXd calc_carried_gram(const Model& model, MassKind kind, const MatrixXd& Phi) {
-  const Eigen::Index n = Phi.cols(), size = 4 + 3 * n;
-  constexpr Eigen::Index kPoints = 512;
-  const auto add_points = [&](int from, int to, MatrixXd& gram) {
-    MatrixXd Z(kPoints, size), mu_Z = Z, Phi_e, u;
-    Eigen::Index used = 0;
-    const auto flush = [&] {
-      multiply_dense(true, Z.topRows(used), mu_Z.topRows(used), 1, gram);
-      used = 0;
-    };
-    for (int e = from; e < to; ++e) {
-      const Element& element = *model.elements()[static_cast<std::size_t>(e)];
-      if (!element.offset_mass(kind)) continue;
-      CarriedMass carried(element.num_dofs(), CarriedDetail::Points);
-      if (!calc_carried(model, element, kind, carried)) continue;
-      const auto count = static_cast<Eigen::Index>(carried.points.size());
-      if (used + count > Z.rows()) flush();
-      if (count > Z.rows()) {
-        Z.resize(count, size);
-        mu_Z.resize(count, size);
-      }
-      Phi_e = Phi(element.gdofs(), Eigen::all);
-      for (Eigen::Index r = 0; r < count; ++r) {
-        const auto& point = carried.points[static_cast<std::size_t>(r)];
-        Z(used + r, 0) = point.is_place ? 1 : 0;
-        Z.row(used + r).segment<3>(1) = point.x.transpose();
-      }
-      u.resize(3 * count, n);
-      multiply_dense(false, stack_motions(carried), Phi_e, 0, u);
-      for (int a = 0; a < 3; ++a) Z.block(used, 4 + a * n, count, n) = u.middleRows(a * count, count);
-      multiply_dense(false, carried.mu, Z.middleRows(used, count), 0, mu_Z.middleRows(used, count));
-      used += count;
+namespace {
+
+/// ZᵀμZ of the points of carried masses, many at a time. Z: place (1 or 0, x) and motions in modes.
+struct CarriedGram {
+  const Model& model;
+  MassKind kind;
+  const MatrixXd& Phi;
+  Eigen::Index n = Phi.cols(), size = 4 + 3 * n, used = 0;
+  MatrixXd gram = MatrixXd::Zero(size, size), Z = MatrixXd(512, size), mu_Z = Z, Phi_e = {}, u = {};
+
+  void add(int, const Element& element) {
+    if (!element.offset_mass(kind)) return;
+    CarriedMass carried(element.num_dofs(), CarriedDetail::Points);
+    if (!calc_carried(model, element, kind, carried)) return;
+    const auto count = static_cast<Eigen::Index>(carried.points.size());
+    if (used + count > Z.rows()) flush();
+    if (count > Z.rows()) {
+      Z.resize(count, size);
+      mu_Z.resize(count, size);
     }
+    Phi_e = Phi(element.gdofs(), Eigen::all);
+    for (Eigen::Index r = 0; r < count; ++r) {
+      const auto& point = carried.points[static_cast<std::size_t>(r)];
+      Z(used + r, 0) = point.is_place ? 1 : 0;
+      Z.row(used + r).segment<3>(1) = point.x.transpose();
+    }
+    u.resize(3 * count, n);
+    multiply_dense(false, stack_motions(carried), Phi_e, 0, u);
+    for (int a = 0; a < 3; ++a) Z.block(used, 4 + a * n, count, n) = u.middleRows(a * count, count);
+    multiply_dense(false, carried.mu, Z.middleRows(used, count), 0, mu_Z.middleRows(used, count));
+    used += count;
+  }
+  void flush() {
+    multiply_dense(true, Z.topRows(used), mu_Z.topRows(used), 1, gram);
+    used = 0;
+  }
+  void merge(CarriedGram second) {
+    second.flush();
     flush();
-  };
-  MatrixXd gram = MatrixXd::Zero(size, size);
-  visit_element_halves(model, gram, add_points);
-  sum_over_ranks(gram);
-  return gram;
+    gram += second.gram;
+  }
+};
+
+}  // namespace
+
+MatrixXd calc_carried_gram(const Model& model, MassKind kind, const MatrixXd& Phi) {
+  auto sum = sum_over_elements(model, get_own_elements(model), kMinElementsOfThread, [&] {
+    return CarriedGram{model, kind, Phi};
+  });
+  sum.flush();
+  sum_over_ranks(sum.gram);
+  return sum.gram;
 }
 
 SymmetricMatrix assemble_grid_mass(const Model& model, MassKind kind) {

@@ -4,7 +4,7 @@
 #include <iterator>
 #include <map>
 
-#include "fe/linear/threads.hpp"
+#include "fe/model/element_loop.hpp"
 
 namespace bough::fe {
 namespace {
@@ -76,41 +76,42 @@ Eigen::Matrix<double, 6, 12> calc_turn_weights(const CarriedTurn& turn, const Ma
   return weights;
 }
 
-/// Forms of some of the elements: `grids` in the twelve inertial loads, `forms` in all loads.
+/// Forms of elements: `grids` in the twelve inertial loads, `forms` in all loads.
 struct CarriedForms {
-  GridForms grids;
-  std::vector<QuadraticForm> forms;
+  const Model& model;
+  const MatrixXd& A_I;
+  GridForms grids{model, 12};
+  std::vector<QuadraticForm> forms = {};
+  AccelerationFields fields{Eigen::Matrix<double, 12, 12>::Identity()};
 
-  void add(const Model& model, const MatrixXd& A_I, int from, int to) {
-    const AccelerationFields fields(Eigen::Matrix<double, 12, 12>::Identity());
-    for (int e = from; e < to; ++e) {
-      const Element& element = *model.elements()[static_cast<std::size_t>(e)];
-      if (!element.offset_mass(model.mass_kind())) continue;
-      CarriedMass carried(element.num_dofs());
-      if (!calc_carried(model, element, model.mass_kind(), carried)) continue;
-      const MatrixXd f = fields.calc_point_loads(carried);
-      for (const auto& field : carried.fields) add_field(element, f, field, A_I, forms);
-      for (const auto& turn : carried.turns) {
-        const auto unit = calc_turn_weights(turn, f);
-        if (turn.slot >= 0) {
-          if (!unit.isZero(0)) grids.find(element.gdofs()[static_cast<std::size_t>(turn.slot)]) += unit;
-        } else if (const Weights weights = unit * A_I; !weights.isZero(0)) {
-          forms.push_back({element.gdofs(), turn.Theta, weights});
-        }
+  void add(int, const Element& element) {
+    if (!element.offset_mass(model.mass_kind())) return;
+    CarriedMass carried(element.num_dofs());
+    if (!calc_carried(model, element, model.mass_kind(), carried)) return;
+    const MatrixXd f = fields.calc_point_loads(carried);
+    for (const auto& field : carried.fields) add_field(element, f, field, A_I, forms);
+    for (const auto& turn : carried.turns) {
+      const auto unit = calc_turn_weights(turn, f);
+      if (turn.slot >= 0) {
+        if (!unit.isZero(0)) grids.find(element.gdofs()[static_cast<std::size_t>(turn.slot)]) += unit;
+      } else if (const Weights weights = unit * A_I; !weights.isZero(0)) {
+        forms.push_back({element.gdofs(), turn.Theta, weights});
       }
     }
+  }
+  void merge(CarriedForms second) {
+    second.grids.visit([&](int first_rotation, const Weights& unit) { grids.find(first_rotation) += unit; });
+    std::move(second.forms.begin(), second.forms.end(), std::back_inserter(forms));
   }
 };
 
 void add_carried_masses(const Model& model, const MatrixXd& A_I, GridForms& grids, std::vector<QuadraticForm>& forms) {
-  constexpr int kElementsOfThread = 500;
-  CarriedForms first{GridForms(model, 12), {}}, second{GridForms(model, 12), {}};
-  do_halves(static_cast<int>(model.elements().size()), kElementsOfThread,
-            [&](int from, int to) { (from == 0 ? first : second).add(model, A_I, from, to); });
-  for (CarriedForms* part : {&first, &second}) {
-    part->grids.visit([&](int first_rotation, const Weights& unit) { grids.find(first_rotation) += unit * A_I; });
-    std::move(part->forms.begin(), part->forms.end(), std::back_inserter(forms));
-  }
+  constexpr int kMinElementsOfThread = 500;  // fewer are done before a thread has started
+  auto carried = sum_over_elements(model, get_all_elements(model), kMinElementsOfThread, [&] {
+    return CarriedForms{model, A_I};
+  });
+  carried.grids.visit([&](int first_rotation, const Weights& unit) { grids.find(first_rotation) += unit * A_I; });
+  std::move(carried.forms.begin(), carried.forms.end(), std::back_inserter(forms));
 }
 
 /// F - K u of the dofs that the links need, in the displacement axes. K is that of the elements without K_G0 of a

@@ -12,6 +12,7 @@
 #include "fe/linear/ordering.hpp"
 #include "fe/linear/threads.hpp"
 #include "fe/matrices/factor_need.hpp"
+#include "fe/model/element_loop.hpp"
 #include "fe/model/element_transform.hpp"
 
 namespace bough::fe {
@@ -178,40 +179,40 @@ const std::vector<QuadraticForm>& get_forms(const Model& model) {
 }
 
 /// Fewer are done before a thread has started.
-constexpr int kElementsOfThread = 2000;
+constexpr int kMinElementsOfThread = 1000;
 
-/// Σ of this rank's element matrices times X. `energy`: ½ x_eᵀ A_e x_e, by element.
+/// Σ of element matrices times X. `energy`: ½ x_eᵀ A_e x_e, by element.
+struct ProductSum {
+  const AddElementMatrix& add_matrix;
+  const Eigen::Ref<const MatrixXd>& X;
+  MatrixXd* energy;
+  MatrixXd Y = MatrixXd::Zero(X.rows(), X.cols());
+  MatrixXd K_e = {}, X_e = {}, Y_e = {};
+
+  void add(int e, const Element& element) {
+    const auto& gdofs = element.gdofs();
+    const int n = element.num_dofs();
+    K_e.setZero(n, n);
+    add_matrix(element, K_e);
+    X_e.resize(n, X.cols());
+    for (int d = 0; d < n; ++d) X_e.row(d) = X.row(gdofs[d]);
+    Y_e.resize(n, X.cols());
+    multiply_dense(false, K_e, X_e, 0, Y_e);
+    if (energy) energy->row(e) = 0.5 * X_e.cwiseProduct(Y_e).colwise().sum();
+    for (int d = 0; d < n; ++d) Y.row(gdofs[d]) += Y_e.row(d);
+  }
+  void merge(const ProductSum& second) { Y += second.Y; }
+};
+
+/// Σ of this rank's element matrices times X.
 MatrixXd sum_own_elements(const Model& model, const AddElementMatrix& add, const Eigen::Ref<const MatrixXd>& X,
                           MatrixXd* energy) {
   if (energy) energy->setZero(static_cast<Eigen::Index>(model.elements().size()), X.cols());
-  MatrixXd Y = MatrixXd::Zero(X.rows(), X.cols());
-  const auto range = calc_element_range(model);
-  const int first = range.first, last = range.second;
-  const auto add_some = [&](int begin, int end, MatrixXd& sum) {
-    MatrixXd K_e, X_e, Y_e;
-    for (int e = begin; e < end; ++e) {
-      const Element& element = *model.elements()[static_cast<size_t>(e)];
-      const auto& gdofs = element.gdofs();
-      const int n = element.num_dofs();
-      K_e.setZero(n, n);
-      add(element, K_e);
-      X_e.resize(n, X.cols());
-      for (int d = 0; d < n; ++d) X_e.row(d) = X.row(gdofs[d]);
-      Y_e.resize(n, X.cols());
-      multiply_dense(false, K_e, X_e, 0, Y_e);
-      if (energy) energy->row(e) = 0.5 * X_e.cwiseProduct(Y_e).colwise().sum();
-      for (int d = 0; d < n; ++d) sum.row(gdofs[d]) += Y_e.row(d);
-    }
-  };
-  if (get_num_threads() > 1 && last - first > kElementsOfThread) {
-    MatrixXd second = MatrixXd::Zero(X.rows(), X.cols());
-    const int middle = first + (last - first) / 2;
-    do_both([&] { add_some(first, middle, Y); }, [&] { add_some(middle, last, second); });
-    Y += second;
-  } else {
-    add_some(first, last, Y);
-  }
-  return Y;
+  return sum_over_elements(model, get_own_elements(model), kMinElementsOfThread,
+                           [&] {
+                             return ProductSum{add, X, energy};
+                           })
+      .Y;
 }
 
 /// Σ_e of element matrices and of forms times X, over ranks.
@@ -228,9 +229,9 @@ MatrixXd calc_times(const Model& model, const AddElementMatrix& add, const Eigen
 }
 
 /// Rows [first, last) with all that is added to them.
-Rows sum_some_rows(const Model& model, const SparseRows& T, const AddElementMatrix& add,
+Rows sum_some_rows(const Elements& elements, const SparseRows& T, const AddElementMatrix& add,
                    const std::vector<QuadraticForm>& forms, const Parts& parts, int first, int last) {
-  const int num_elements = static_cast<int>(model.elements().size());
+  const int num_elements = static_cast<int>(elements.size());
   Rows rows = calc_pattern(parts, static_cast<int>(T.cols()), first, last);
   rows.values.assign(rows.columns.size(), 0);
   ElementTransform transform;
@@ -240,7 +241,7 @@ Rows sum_some_rows(const Model& model, const SparseRows& T, const AddElementMatr
     if (e < num_elements) {
       const auto size = static_cast<Eigen::Index>(parts.gdofs(e).size());
       K_e.setZero(size, size);
-      add(*model.elements()[e], K_e);
+      add(*elements[static_cast<size_t>(e)], K_e);
     } else {
       K_e = calc_form(forms[e - num_elements], 0);
     }
@@ -280,38 +281,35 @@ int find_cut(const Parts& parts, int first, int last) {
 }
 
 /// Two threads take a half each as two ranks would, where few elements touch both.
-Csr sum_rows(const Model& model, const SparseRows& T, const AddElementMatrix& add,
+Csr sum_rows(const Elements& elements, const SparseRows& T, const AddElementMatrix& add,
              const std::vector<QuadraticForm>& forms, const Parts& parts, int first, int last) {
   const int cut = get_num_threads() > 1 && last - first > 2 * kRowsOfThread ? find_cut(parts, first, last) : -1;
-  if (cut < 0) return join(sum_some_rows(model, T, add, forms, parts, first, last), {}, first);
+  if (cut < 0) return join(sum_some_rows(elements, T, add, forms, parts, first, last), {}, first);
   Rows rows, second;
-  do_both([&] { rows = sum_some_rows(model, T, add, forms, parts, first, cut); },
-          [&] { second = sum_some_rows(model, T, add, forms, parts, cut, last); });
+  do_both([&] { rows = sum_some_rows(elements, T, add, forms, parts, first, cut); },
+          [&] { second = sum_some_rows(elements, T, add, forms, parts, cut, last); });
   return join(std::move(rows), std::move(second), first);
 }
 
 /// Rows [first, last) of TᵀAT; last < 0: all.
-Csr sum_rows(const Model& model, const SparseRows& T, const AddElementMatrix& add,
+Csr sum_rows(const Elements& elements, const SparseRows& T, const AddElementMatrix& add,
              const std::vector<QuadraticForm>& forms, int first = 0, int last = -1, const TakesElement& takes = {}) {
   static const std::vector<int> none;
   std::vector<const std::vector<int>*> gdofs;
-  for (const auto& element : model.elements()) gdofs.push_back(takes && !takes(*element) ? &none : &element->gdofs());
+  for (const auto& element : elements) gdofs.push_back(takes && !takes(*element) ? &none : &element->gdofs());
   for (const auto& form : forms) gdofs.push_back(&form.gdofs);
-  return sum_rows(model, T, add, forms, Parts(T, std::move(gdofs)), first,
+  return sum_rows(elements, T, add, forms, Parts(T, std::move(gdofs)), first,
                   last < 0 ? static_cast<int>(T.cols()) : last);
 }
 
 /// TᵀAT, sparse. Every rank adds, in the order of the deck, all elements that touch its rows: nothing is sent, and an
 /// entry does not depend on the number of ranks.
-SymmetricMatrix assemble_sparse(const Model& model, const SparseRows& T, const AddElementMatrix& add,
+SymmetricMatrix assemble_sparse(const Elements& elements, const SparseRows& T, const AddElementMatrix& add,
                                 const std::vector<QuadraticForm>& forms, const TakesElement& takes = {}) {
   const PetscInt size = static_cast<PetscInt>(T.cols());
-  if (initialize_petsc().size == 1) return SymmetricMatrix(sum_rows(model, T, add, forms, 0, -1, takes), 0, size);
-  PetscInt num_own = PETSC_DECIDE, all = size, last = 0;
-  check_petsc(PetscSplitOwnership(PETSC_COMM_WORLD, &num_own, &all));
-  MPI_Scan(&num_own, &last, 1, MPIU_INT, MPI_SUM, PETSC_COMM_WORLD);
-  const PetscInt first = last - num_own;
-  return SymmetricMatrix(sum_rows(model, T, add, forms, first, last, takes), first, size);
+  if (initialize_petsc().size == 1) return SymmetricMatrix(sum_rows(elements, T, add, forms, 0, -1, takes), 0, size);
+  const auto [first, last] = split_rows(size);
+  return SymmetricMatrix(sum_rows(elements, T, add, forms, first, last, takes), first, size);
 }
 
 }  // namespace
@@ -319,16 +317,22 @@ SymmetricMatrix assemble_sparse(const Model& model, const SparseRows& T, const A
 SymmetricMatrix assemble(const Model& model, DofSet set, MatrixKind kind, const AddElementMatrix& add,
                          std::vector<QuadraticForm> forms) {
   initialize_petsc();
-  if (set == DofSet::Global) return assemble_sparse(model, make_identity(model.num_gdofs()), add, forms);
+  if (set == DofSet::Global) return assemble_sparse(model.elements(), make_identity(model.num_gdofs()), add, forms);
   const LowRankPart of_forms = take_wide_forms(model, forms);
   const auto split = split_transform(model, kind == MatrixKind::Stiffness);
-  if (!split) return assemble_sparse(model, model.T(), add, forms).with_low_rank(of_forms);
-  return assemble_sparse(model, split->T, add, forms)
+  if (!split) return assemble_sparse(model.elements(), model.T(), add, forms).with_low_rank(of_forms);
+  return assemble_sparse(model.elements(), split->T, add, forms)
       .with_low_rank(join(calc_wide_part(model, *split, add, forms), 1, of_forms, 1));
 }
 
 SymmetricMatrix assemble_some(const Model& model, const AddElementMatrix& add, const TakesElement& takes) {
-  return assemble_sparse(model, make_identity(model.num_gdofs()), add, {}, takes);
+  return assemble_sparse(model.elements(), make_identity(model.num_gdofs()), add, {}, takes);
+}
+
+SparseRows sum_elements(const Elements& elements, int num_gdofs, const AddElementMatrix& add) {
+  const Csr rows = sum_rows(elements, make_identity(num_gdofs), add, {});
+  return Eigen::Map<const SparseRows>(num_gdofs, num_gdofs, rows.start[num_gdofs], rows.start.get(), rows.columns.get(),
+                                      rows.values.get());
 }
 
 namespace {
@@ -351,7 +355,7 @@ SymmetricMatrix assemble_stiffness(const Model& model, DofSet set) {
 bool drop_stiffness(const SymmetricMatrix& K) { return K.drop_entries(); }
 
 void restore_stiffness(const Model& model, const SymmetricMatrix& K) {
-  K.fill_entries(sum_rows(model, model.T(), add_stiffness_of(model), get_forms(model)));
+  K.fill_entries(sum_rows(model.elements(), model.T(), add_stiffness_of(model), get_forms(model)));
 }
 
 SymmetricMatrix assemble_mass(const Model& model, DofSet set, MassKind kind) {
@@ -396,11 +400,5 @@ MatrixXd calc_structural_damping_times(const Model& model, double g, const Eigen
 }
 
 bool has_damping(const Model& model) { return model.has_damping(); }
-
-std::pair<int, int> calc_element_range(const Model& model) {
-  const MpiWorld world = initialize_petsc();
-  const long long num = static_cast<long long>(model.elements().size());
-  return {static_cast<int>(num * world.rank / world.size), static_cast<int>(num * (world.rank + 1) / world.size)};
-}
 
 }  // namespace bough::fe

@@ -18,6 +18,8 @@ SymmetricMatrix assemble(const Model& model, DofSet set, MatrixKind kind, const 
 /// The same of the elements that `takes` says, on the g-set; the others are not asked.
 using TakesElement = std::function<bool(const Element&)>;
 SymmetricMatrix assemble_some(const Model& model, const AddElementMatrix& add, const TakesElement& takes);
+/// Sum over elements that no model has yet, on the g-set, whole on every rank.
+SparseRows sum_elements(const Elements& elements, int num_gdofs, const AddElementMatrix& add);
 
 /// K (with K_G0 of a prestressed model), or M (times WTMASS).
 SymmetricMatrix assemble_stiffness(const Model& model, DofSet set);
@@ -41,8 +43,6 @@ MatrixXd calc_structural_damping_times(const Model& model, double g, const Eigen
 /// Whether any element damps.
 bool has_damping(const Model& model);
 
-/// Of model.elements() those that this rank adds to sums over ranks: [first, last).
-std::pair<int, int> calc_element_range(const Model& model);
 /// Mass properties about `reference` (basic), with the model's own mass kind.
 records::MassProperties calc_mass_properties(const Model& model, MassKind kind, const Vector3d& reference);
 

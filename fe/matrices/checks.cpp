@@ -9,6 +9,7 @@
 #include <Eigen/Geometry>
 
 #include "fe/matrices/assembly.hpp"
+#include "fe/model/element_loop.hpp"
 
 namespace bough::fe {
 
@@ -39,14 +40,12 @@ Vector6d calc_ground_check(const Model& model, GroundSet set) {
   const MatrixXd K_u = calc_stiffness_times(model, u);
   // The scale is the diagonal's energy, element by element.
   MatrixXd scale = MatrixXd::Zero(6, 1);
-  const auto [first, last] = calc_element_range(model);
-  for (int e = first; e < last; ++e) {
-    const Element& element = *model.elements()[static_cast<std::size_t>(e)];
+  visit_elements(model, get_own_elements(model), [&](int, const Element& element) {
     MatrixXd K = MatrixXd::Zero(element.num_dofs(), element.num_dofs());
     element.add_stiffness(1, K);
     for (int i = 0; i < element.num_dofs(); ++i)
       scale += K(i, i) * u.row(element.gdofs()[static_cast<std::size_t>(i)]).cwiseAbs2().transpose();
-  }
+  });
   sum_over_ranks(scale);
   Vector6d result = Vector6d::Zero();
   for (int r = 0; r < 6; ++r)

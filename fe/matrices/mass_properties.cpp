@@ -1,5 +1,7 @@
 #include "fe/matrices/assembly.hpp"
 
+#include "fe/model/element_loop.hpp"
+
 #include <cmath>
 
 namespace bough::fe {
@@ -26,13 +28,11 @@ Eigen::Matrix<double, 6, 1> calc_ground_check(const Model& model) {
   const MatrixXd Phi_R = model.calc_rigid_modes(centre);
   VectorXd diagonal = VectorXd::Zero(model.num_gdofs());
   MatrixXd K_e;
-  const auto [first, last] = calc_element_range(model);
-  for (int e = first; e < last; ++e) {
-    const Element& element = *model.elements()[static_cast<size_t>(e)];
+  visit_elements(model, get_own_elements(model), [&](int, const Element& element) {
     K_e.setZero(element.num_dofs(), element.num_dofs());
     element.add_stiffness(1, K_e);
     for (int i = 0; i < element.num_dofs(); ++i) diagonal[element.gdofs()[i]] += K_e(i, i);
-  }
+  });
   sum_over_ranks(diagonal);
   const MatrixXd K_Phi = calc_stiffness_times(model, Phi_R);
   Eigen::Matrix<double, 6, 1> result;

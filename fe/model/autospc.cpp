@@ -11,7 +11,7 @@
 #include <Eigen/LU>
 
 #include "fe/linear/ranks.hpp"
-#include "fe/linear/threads.hpp"
+#include "fe/model/element_loop.hpp"
 #include "fe/model/element_transform.hpp"
 
 namespace bough::fe {
@@ -64,17 +64,19 @@ class BlockSum {
     const size_t num = 2 * model.nodes().size();
     sum = {std::vector<Matrix3d>(num, Matrix3d::Zero()), std::vector<double>(num, 0)};
   }
-  void add_elements(int first, int last) {
-    for (int e = first; e < last; ++e) {
-      const Element& element = *model_.elements()[static_cast<size_t>(e)];
-      const int n = element.num_dofs();
-      K_e_.setZero(n, n);
-      model_.add_stiffness(element, K_e_);
-      if (K_e_.isZero(0)) continue;
-      transform_.set(model_.T(), element.gdofs());
-      add_noise(calc_sizes(element, model_.nodes(), places_.gdof_node, K_e_), transform_, places_.fdof_block,
-                sum.noise);
-      add(K_e_);
+  void add(int, const Element& element) {
+    const int n = element.num_dofs();
+    K_e_.setZero(n, n);
+    model_.add_stiffness(element, K_e_);
+    if (K_e_.isZero(0)) return;
+    transform_.set(model_.T(), element.gdofs());
+    add_noise(calc_sizes(element, model_.nodes(), places_.gdof_node, K_e_), transform_, places_.fdof_block, sum.noise);
+    add(K_e_);
+  }
+  void merge(const BlockSum& second) {
+    for (size_t i = 0; i < sum.K.size(); ++i) {
+      sum.K[i] += second.sum.K[i];
+      sum.noise[i] += second.sum.noise[i];
     }
   }
   void add_forms() {
@@ -107,22 +109,11 @@ class BlockSum {
   MatrixXd K_e_;
 };
 
-/// Two threads take half of the elements each.
 NodeBlocks calc_node_blocks(const Model& model, const Places& places) {
-  constexpr int kElementsOfThread = 2000;  // fewer are done before a thread has started
-  const auto num = static_cast<int>(model.elements().size());
-  BlockSum sum(model, places);
-  std::optional<BlockSum> second;
-  do_halves(num, kElementsOfThread, [&](int first, int last) {
-    BlockSum& own = first == 0 ? sum : second.emplace(model, places);
-    own.add_elements(first, last);
-  });
+  constexpr int kMinElementsOfThread = 2000;  // fewer are done before a thread has started
+  BlockSum sum =
+      sum_over_elements(model, get_all_elements(model), kMinElementsOfThread, [&] { return BlockSum(model, places); });
   NodeBlocks& result = sum.sum;
-  if (second)
-    for (size_t i = 0; i < result.K.size(); ++i) {
-      result.K[i] += second->sum.K[i];
-      result.noise[i] += second->sum.noise[i];
-    }
   if (model.prestress()) sum.add_forms();
   for (double& noise : result.noise) noise = std::sqrt(noise);
   return std::move(result);

@@ -7,8 +7,8 @@
 #include "fe/elements/beam.hpp"
 #include "fe/elements/solid.hpp"
 #include "fe/linear/blas.hpp"
-#include "fe/linear/threads.hpp"
 #include "fe/loads/load_sets.hpp"
+#include "fe/model/element_loop.hpp"
 #include "fe/sections/stress.hpp"
 
 namespace bough::fe {
@@ -17,7 +17,7 @@ namespace {
 using Eigen::Index;
 
 /// Fewer are done before a thread has started.
-constexpr int kElementsOfThread = 500;
+constexpr int kMinElementsOfThread = 250;
 
 /// Rows of a table of every case, a few at a time: a row after the other would touch a line of memory per number.
 class TableRows {
@@ -265,30 +265,21 @@ std::vector<ElementResults> recover_elements(const Model& model, const records::
   if (layout.stresses.is_asked) stresses.emplace(model, layout.stresses, false, &ElementResults::stresses, results);
   if (layout.strains.is_asked) strains.emplace(model, layout.strains, true, &ElementResults::strains, results);
 
-  const auto recover = [&](int from, int to, std::size_t half) {
-    for (int e = from; e < to; ++e) {
-      if (!layout.forces.holds(e) && !layout.stresses.holds(e) && !layout.strains.holds(e)) continue;
-      const Element& element = *model.elements()[static_cast<std::size_t>(e)];
-      const auto& gdofs = element.gdofs();
-      Current at{element, e, half, MatrixXd(element.num_dofs(), static_cast<Index>(cases.size()))};
-      for (std::size_t c = 0; c < cases.size(); ++c)
-        for (std::size_t i = 0; i < gdofs.size(); ++i)
-          at.U(static_cast<Index>(i), static_cast<Index>(c)) = (*cases[c].u_g)[gdofs[i]];
-      if (is_heated)
-        for (const auto& one : cases) at.heated.push_back(one.initial ? one.initial->find(element) : nullptr);
-      find_forces(cases, end_loads, at);
-      if (forces) forces->add(at);
-      if (stresses) stresses->add(at);
-      if (strains) strains->add(at);
-    }
+  const auto recover = [&](std::size_t half, int e, const Element& element) {
+    if (!layout.forces.holds(e) && !layout.stresses.holds(e) && !layout.strains.holds(e)) return;
+    const auto& gdofs = element.gdofs();
+    Current at{element, e, half, MatrixXd(element.num_dofs(), static_cast<Index>(cases.size()))};
+    for (std::size_t c = 0; c < cases.size(); ++c)
+      for (std::size_t i = 0; i < gdofs.size(); ++i)
+        at.U(static_cast<Index>(i), static_cast<Index>(c)) = (*cases[c].u_g)[gdofs[i]];
+    if (is_heated)
+      for (const auto& one : cases) at.heated.push_back(one.initial ? one.initial->find(element) : nullptr);
+    find_forces(cases, end_loads, at);
+    if (forces) forces->add(at);
+    if (stresses) stresses->add(at);
+    if (strains) strains->add(at);
   };
-  const auto [begin, end] = calc_element_range(model);
-  if (get_num_threads() < 2 || end - begin < kElementsOfThread) {
-    recover(begin, end, 0);
-  } else {
-    const int middle = begin + (end - begin) / 2;
-    do_both([&, from = begin] { recover(from, middle, 0); }, [&, to = end] { recover(middle, to, 1); });
-  }
+  visit_elements_by_halves(model, get_own_elements(model), kMinElementsOfThread, recover);
   if (forces) forces->finish();
   if (stresses) stresses->finish();
   if (strains) strains->finish();
