@@ -8,6 +8,7 @@
 #include "fe/statics/build_model.hpp"
 #include "modal/complex/complex_solver.hpp"
 #include "modal/complex/physical_input.hpp"
+#include "modal/response/accuracy.hpp"
 #include "modal/response/deck_response.hpp"
 #include "modal/response/direct_model.hpp"
 #include "modal/response/residual_modes.hpp"
@@ -122,6 +123,7 @@ Problem make_modal_problem(const fe::System& system, const records::DynamicDeck&
                                                                deck.find_param("RESVEC")->value[0] != 'N');
   const auto reduced =
       response::make_response_model(model, modes, solve_static, excitation, {}, damping, with_residuals, diagnostics);
+  response::report_accuracy(response::calc_basis_error(model, reduced), 0, deck.locate({}), diagnostics);
   problem.Phi = reduced.Phi;
   problem.num_coordinates = reduced.Phi.cols();
   MatrixXcd K = MatrixXcd(reduced.S.cast<Complex>() * Complex(0, 1));

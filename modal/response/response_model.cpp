@@ -16,6 +16,10 @@ namespace {
 /// Most directions of dampers that become residual vectors of their own.
 constexpr int kMostDamperDirections = 60;
 
+/// Eigenvalue of a residual vector over that of the highest mode, from which on it has no mass (a frequency 1000 times
+/// as high): with more of them M and K lose their digits, with fewer mass is neglected.
+constexpr double kMasslessResidual = 1e6;
+
 MatrixXd join_columns(const MatrixXd& A, const MatrixXd& B) {
   MatrixXd C(A.rows(), A.cols() + B.cols());
   C << A, B;
@@ -144,6 +148,23 @@ class Maker {
     return join_columns(loads, S);
   }
 
+  /// Ritz pairs of residual vectors up to the eigenvalue `max_lambda`. Those above have negligible mass and would
+  /// spoil the orthogonality of the others; add_massless() has their flexibility. The first pass finds them, the second
+  /// is orthonormal to round-off.
+  bases::ModeSet separate(MatrixXd X, double max_lambda) const {
+    bases::ModeSet modes;
+    for (int pass = 0; pass < 2 && X.cols() > 0; ++pass) {
+      const auto pairs =
+          bases::calc_ritz_pairs(make_symmetric(fe::calc_inner_products(X, times_mass(model_, X))),
+                                 make_symmetric(fe::calc_inner_products(X, fe::calc_stiffness_times(model_, X))));
+      const auto num = (pairs.lambda.array() <= max_lambda).count();
+      modes.lambda = pairs.lambda.head(num);
+      X = (X * pairs.N.leftCols(num)).eval();
+    }
+    modes.Phi = std::move(X);
+    return modes;
+  }
+
   void choose_shapes(const MatrixXd& loads, const StartMotion& start, bool with_residuals, ResponseModel& r) {
     MatrixXd kept = elastic();
     VectorXd lambda = modes_.lambda.tail(num_elastic());
@@ -155,12 +176,11 @@ class Maker {
       if (more_loads_.cols() > 0) F = join_columns(F, more_loads_);
       const auto residual = bases::calc_residual_vectors(model_, solve_, rigid(), kept, F);
       if (residual.modes.lambda.size() > 0) {
-        kept = join_columns(kept, residual.modes.Phi);
-        const auto pairs = bases::calc_ritz_pairs(
-            make_symmetric(fe::calc_inner_products(kept, times_mass(model_, kept))),
-            make_symmetric(fe::calc_inner_products(kept, fe::calc_stiffness_times(model_, kept))));
-        kept = kept * pairs.N;
-        lambda = pairs.lambda;
+        const double highest = lambda.size() > 0 ? lambda(lambda.size() - 1) : residual.modes.lambda(0);
+        const auto pseudo = separate(residual.modes.Phi, kMasslessResidual * highest);
+        kept = join_columns(kept, pseudo.Phi);
+        lambda.conservativeResize(kept.cols());
+        lambda.tail(pseudo.lambda.size()) = pseudo.lambda;
       }
     }
     r.num_rigid = modes_.num_rigid;
@@ -191,9 +211,20 @@ class Maker {
     };
     take(r.Phi, r.lambda);
     take(left_out_, left_out_lambda_);
+    // The rest may be 1e-5 of the static solution, whose round-off is along the shapes: it is removed again by K.
+    const auto clean = [&](const MatrixXd& Phi, const VectorXd& lambda) {
+      const MatrixXd products = Phi.transpose() * fe::calc_stiffness_times(model_, rest);
+      for (Eigen::Index j = 0; j < lambda.size(); ++j)
+        if (lambda(j) > 0) rest -= Phi.col(j) * (products.row(j) / lambda(j));
+    };
+    for (int pass = 0; pass < 2; ++pass) {
+      clean(r.Phi, r.lambda);
+      clean(left_out_, left_out_lambda_);
+    }
+    const VectorXd energy = rest.cwiseProduct(fe::calc_stiffness_times(model_, rest)).colwise().sum();
     std::vector<int> kept;
     for (Eigen::Index c = 0; c < rest.cols(); ++c) {
-      const double left = rest.col(c).dot(F.col(c));
+      const double left = energy(c);
       if (!(work(c) > 0) || !(left > detail::kLeftWork * work(c))) continue;
       rest.col(c) /= std::sqrt(left);
       kept.push_back(static_cast<int>(c));

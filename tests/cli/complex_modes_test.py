@@ -33,6 +33,34 @@ MASS = np.array([1.0, 2.0, 1.5, 0.7, 3.0, 1.2])
 SPRING = np.array([800.0, 500.0, 900.0, 300.0, 700.0, 400.0, 600.0])
 
 
+# Millimetres and tonnes: a plate with a lumped mass (75 modes) and a mast on a bush, GE of two materials, a damper at a corner.
+PLATE = """SOL {sol}
+CEND
+SPC = 1
+METHOD = 1
+{case}
+BEGIN BULK
+EIGRL,1,,,{modes}
+{bulk}
+PARAM,G,.01
+PSHELL,1,1,1.6,1,,1
+MAT1,1,70000.,,.33,2.7-9,,,.02
+PBAR,2,2,30.,80.,90.,120.
+MAT1,2,210000.,,.3,7.85-9,,,.05
+GRID,100,,75.,50.,40.
+GRID,101,,75.,80.,40.
+CBAR,200,2,15,100,1.,0.,0.
+CBUSH,300,5,100,101,,,,0
+PBUSH,5,K,3.,4.,5.,600.
+,,B,.002,.003,.001
+CDAMP2,301,.01,25,3
+SPC1,1,123456,101,1,2,3,4
+"""
+PLATE += "\n".join(f"GRID,{1 + 4 * i + j},,{25. * i},{25. * j},{2 * np.sin(i):.3f}" for i in range(7) for j in range(4)) + "\n"
+PLATE += "\n".join(f"CQUAD4,{1 + 3 * i + j},1,{1 + 4 * i + j},{5 + 4 * i + j},{6 + 4 * i + j},{2 + 4 * i + j}"
+                   for i in range(6) for j in range(3)) + "\nENDDATA\n"
+
+
 def make_chain(sol, bulk="", case="", eigc="LAN,,,,,6", modes=N, springs=SPRING, ge=0.0):
     lines = [f"SOL {sol}", "CEND", "SPC = 1", "METHOD = 1", "CMETHOD = 9", case, "BEGIN BULK", f"EIGRL,1,,,{modes}",
              f"EIGC,9,{eigc}"]
@@ -121,6 +149,47 @@ class ComplexModes(ProgramTest):
                     terms = [p**2 * matrices[0] @ x[:, j], p * matrices[1] @ x[:, j], matrices[2] @ x[:, j]]
                     self.assertLess(np.linalg.norm(sum(terms)), 1e-8 * sum(map(np.linalg.norm, terms)), (name, j))
                     self.assertAlmostEqual(np.abs(x[:, j]).max(), 1, places=9)
+
+    def test_units(self):
+        """Shifts of EIGC follow the unit of time; block sizes of LAN have none."""
+        for eigc in ("INV\n,-1.,30.,-2.,40.,1.,,2", "LAN\n,-1.,30.,7.,2.,,,2"):
+            deck = make_chain("107", make_dampers(3)[1], "", eigc)
+            found = self.solve(deck)
+            self.bough("convert", "d.bdf", "--units", "m-kg-s:m-kg-ms", "-o", "e.bdf")
+            with open(self.path("e.bdf")) as f:
+                lines = f.read().splitlines()
+            fields = [float(x or 0) for x in lines[[k for k, line in enumerate(lines) if line.startswith("EIGC")][0] + 1].split(",")[1:6]]
+            ends = [-.002, .04, .001] if "INV" in eigc else [7, 2, 0]
+            np.testing.assert_allclose(fields, [-.001, .03, *ends], rtol=1e-12)
+            self.near(self.solve("\n".join(lines)), found / 1000, 1e-9)
+
+    def test_residual_vectors_of_lumped_masses(self):
+        """The more modes of a lumped mass, the less mass have the residual vectors of dampers and of GE: 110 and 107 agree, and
+        so do responses by modes and direct ones."""
+        self.write("d.bdf", PLATE.format(sol=107, case="CMETHOD = 9", bulk="EIGC,9,LAN,,,,,4", modes=10))
+        exact = self.solve(self.read("d.bdf"), residual=1e-8)
+        load = "RLOAD1,9,10,,,1.\nDAREA,10,100,1,1.\nFREQ1,5,20.,20.,15"
+        case = "DLOAD = 9\nFREQUENCY = 5\nDISPLACEMENT = ALL"
+
+        def respond(sol, modes):
+            self.write("r.bdf", PLATE.format(sol=sol, case=case, bulk=load, modes=modes))
+            self.bough("frequency", "r.bdf", "-o", "r.h5")
+            with h5py.File(self.path("r.h5")) as f:
+                part = f["subcases/1/displacement"]
+                return part["real"][()] + 1j * part["imag"][()]
+
+        H = respond(108, 10)
+        for modes, limit in ((10, 1e-3), (20, 1e-5), (30, 1e-6), (45, 1e-6), (60, 1e-6)):
+            found = self.solve(PLATE.format(sol=110, case="CMETHOD = 9", bulk="EIGC,9,LAN,,,,,4", modes=modes), residual=1e-8)
+            for value in exact[exact.imag > 0]:
+                self.assertLess(np.abs(found - value).min(), limit * abs(value), (modes, found, exact))
+            self.assertLess(np.abs(respond(111, modes) - H).max(), limit * np.abs(H).max(), modes)
+
+    def test_selected_matrices(self):
+        """A DMIG that K2PP selects is not reported as unused."""
+        deck = make_chain("107", "DMIG,KX,0,1,1,0\nDMIG,KX,2,1,,3,1,4.", "K2PP = KX")
+        self.write("d.bdf", deck)
+        self.assertNotIn("fe.direct-unused", self.bough("modes", "d.bdf").stderr)
 
     def test_one_dof(self):
         """λ = -c/2m ± i sqrt(k/m - (c/2m)²): g, ζ and Hz."""

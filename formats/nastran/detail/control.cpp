@@ -118,8 +118,8 @@ class CaseControl {
   }
 
   void read_dynamic(const Command& c) {
+    if (!is_response()) keep_response_matrices(c);
     if ((is_response() || options_.is_complex) && read_direct_input(c)) return;
-    keep_response_matrices(c);
     if (options_.is_complex && is_command(c.word, "CMETHOD", 4))
       return read_set(c, "CMETHOD", current_selection().cmethod);
     if (options_.is_complex && c.word == "TFL") return read_set(c, "TFL", current_selection().tfl);
@@ -130,7 +130,7 @@ class CaseControl {
         return refuse(*acts);
       return note(c.word);
     }
-    if (!is_response() && is_command(c.word, "RANDOM", 4)) return note(c.word);
+    if (!is_response() && (is_command(c.word, "RANDOM", 4) || is_command(c.word, "RCROSS", 4))) return note(c.word);
     if (is_command(c.word, "RANDOM", 4) &&
         (asked_to_ignore_.count("RANDOM") > 0 || asked_to_ignore_.count("RANDPS") > 0))
       return diagnostics_.warning("deck.unsupported-command", deck_.locate(at_), "RANDOM selects the random response",

@@ -24,6 +24,10 @@ bool UnitConverter::convert_dynamic() {
     scale(1, size() - 1, "Hz");
   } else if (name == "TSTEP") {
     for (int line = 0; line < size(); line += 8) scale(line + 2, "T");
+  } else if (name == "EIGC") {
+    // Shifts, or ends and width of regions; LAN and CLAN have block sizes there.
+    const bool has_ends = get(1) == "INV" || get(1) == "DET";
+    for (int line = 8; line < size(); line += 8) scale(line, line + (has_ends ? 4 : 1), "Hz");
   } else if (name == "RANDPS") {
     if (parse_int(get(5)).value_or(0) == 0) scale(3, 4, "T");  // per hertz, as G of a table
   } else if (name == "RANDT1") {
