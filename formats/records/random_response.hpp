@@ -33,7 +33,11 @@ struct RandomResponse {
   std::vector<RandomCurves> curves;
 };
 
-/// Running RMS √∫S df from the first frequency to each, by straight lines of the spectral density.
+/// ∫f^r S df between the frequencies a < b, r = 0 or 2: exact for S as a straight line, or, if `is_loglog` and a, S_a
+/// and S_b are positive, as a straight line of log S over log f.
+double integrate_density(double a, double b, double S_a, double S_b, int r, bool is_loglog);
+
+/// Running RMS √∫S df from the first frequency to each, by the lines of `response`.
 Eigen::MatrixXd calc_cumulative_rms(const RandomResponse& response, const RandomCurves& curves);
 
 }  // namespace bough::records

@@ -3,19 +3,14 @@
 #include <cmath>
 #include <numbers>
 
+#include "formats/records/random_response.hpp"
+
 namespace bough::modal::response {
 namespace {
 
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-
-/// ∫f^r S df between a and b, S = S_a (f/a)^m.
-double integrate_power(double a, double b, double S_a, double S_b, int r) {
-  const double ratio = std::log(b / a), exponent = std::log(S_b / S_a) / ratio + r + 1;
-  const double start = S_a * std::pow(a, r + 1);
-  return start * ratio * (std::abs(exponent * ratio) < 1e-8 ? 1 : std::expm1(exponent * ratio) / (exponent * ratio));
-}
 
 /// The integrals of cos and of x sin over [-1, 1], divided by 2, at u times x.
 void calc_filon(double u, double& even, double& odd) {
@@ -35,13 +30,8 @@ SpectralMoments calc_moments(const VectorXd& hz, const MatrixXd& psd, bool is_lo
   for (Index c = 0; c < psd.cols(); ++c)
     for (Index i = 1; i < hz.size(); ++i) {
       const double a = hz(i - 1), b = hz(i), S_a = psd(i - 1, c), S_b = psd(i, c);
-      if (is_loglog && a > 0 && S_a > 0 && S_b > 0) {
-        moments.m0(c) += integrate_power(a, b, S_a, S_b, 0);
-        moments.m2(c) += integrate_power(a, b, S_a, S_b, 2);
-        continue;
-      }
-      moments.m0(c) += (b - a) / 2 * (S_a + S_b);
-      moments.m2(c) += (b - a) / 12 * (S_a * (3 * a * a + 2 * a * b + b * b) + S_b * (a * a + 2 * a * b + 3 * b * b));
+      moments.m0(c) += records::integrate_density(a, b, S_a, S_b, 0, is_loglog);
+      moments.m2(c) += records::integrate_density(a, b, S_a, S_b, 2, is_loglog);
     }
   return moments;
 }
