@@ -23,6 +23,7 @@
 #include "formats/export/response_text.hpp"
 #include "formats/export/uff.hpp"
 #include "formats/export/vtu.hpp"
+#include "formats/hdf5/complex_modes_file.hpp"
 #include "formats/hdf5/linear_file.hpp"
 #include "formats/hdf5/response_file.hpp"
 #include "formats/hdf5/sweep_file.hpp"
@@ -107,6 +108,8 @@ std::string make_shapes(const ExportOptions& o, Diagnostics& diagnostics) {
   const auto encoding = o.ascii ? exports::VtuEncoding::Ascii : exports::VtuEncoding::Base64;
   if (format == "bough-modes")
     return make_vtu_text(exports::make_picture(hdf5::read_modes(o.file)), encoding, o.file, diagnostics);
+  if (format == "bough-complex-modes")
+    return make_vtu_text(exports::make_picture(hdf5::read_complex_modes(o.file)), encoding, o.file, diagnostics);
   if (format == "bough-flexbody")
     return make_vtu_text(exports::make_picture(read_body(o.file, diagnostics)), encoding, o.file, diagnostics);
   throw InputError("cli.no-shapes", {o.file}, "the file holds no mode shapes, found format \"" + format + "\"",

@@ -7,6 +7,7 @@
 #include "cli/common/body_files.hpp"
 #include "cli/export/export_matrices.hpp"
 #include "formats/flat/flex_body.hpp"
+#include "formats/hdf5/complex_modes_file.hpp"
 #include "formats/hdf5/files.hpp"
 #include "formats/mbdyn/fem_file.hpp"
 #include "formats/sid/sid.hpp"
@@ -39,29 +40,46 @@ std::string make_body_text(const std::string& file, const std::string& format, c
   return sid::write_sid(sid::make_sid(body, layout, {file}, diagnostics), layout);
 }
 
-bool has_shapes(const std::string& format) { return format == "bough-flexbody" || format == "bough-modes"; }
+bool has_shapes(const std::string& format) {
+  return format == "bough-flexbody" || format == "bough-modes" || format == "bough-complex-modes";
+}
 
 std::vector<exports::CsvColumn> read_shape_columns(const std::string& file, const std::string& format,
                                                    Diagnostics& diagnostics) {
-  const auto make = [](const std::vector<int>& id, const Eigen::MatrixXd& xyz,
-                       const std::vector<Eigen::MatrixXd>& phi) {
-    static constexpr const char* kDirections[] = {"x", "y", "z", "rx", "ry", "rz"};
+  static constexpr const char* kDirections[] = {"x", "y", "z", "rx", "ry", "rz"};
+  const auto make = [](const std::vector<int>& id, const Eigen::MatrixXd& xyz, Eigen::Index num_modes,
+                       const std::vector<std::string>& parts, const auto& get_value) {
     const auto p = static_cast<Eigen::Index>(id.size());
     std::vector<exports::CsvColumn> columns{{"id", Eigen::Map<const Eigen::VectorXi>(id.data(), p).cast<double>()}};
     for (int a = 0; a < 3 && p > 0; ++a) columns.push_back({kDirections[a], xyz.col(a)});
-    for (Eigen::Index j = 0; p > 0 && j < phi[0].cols(); ++j)
-      for (int d = 0; d < 6; ++d) {
-        columns.push_back({fmt::format("mode_{:03}_{}", j + 1, kDirections[d]), Eigen::VectorXd(p)});
-        for (Eigen::Index k = 0; k < p; ++k) columns.back().values[k] = phi[static_cast<std::size_t>(k)](d, j);
-      }
+    for (Eigen::Index j = 0; p > 0 && j < num_modes; ++j)
+      for (int d = 0; d < 6; ++d)
+        for (const auto& part : parts) {
+          columns.push_back({fmt::format("mode_{:03}_{}{}", j + 1, kDirections[d], part), Eigen::VectorXd(p)});
+          for (Eigen::Index k = 0; k < p; ++k)
+            columns.back().values[k] = get_value(static_cast<std::size_t>(k), d, j, part);
+        }
     return columns;
   };
+  const auto make_real = [&](const std::vector<int>& id, const Eigen::MatrixXd& xyz,
+                             const std::vector<Eigen::MatrixXd>& phi) {
+    return make(id, xyz, phi.empty() ? 0 : phi[0].cols(), {""},
+                [&](std::size_t k, int d, Eigen::Index j, const std::string&) { return phi[k](d, j); });
+  };
+  if (format == "bough-complex-modes") {
+    const auto modes = hdf5::read_complex_modes(file);
+    return make(modes.node_id, modes.node_xyz, modes.eigenvalue.size(), {"_real", "_imag"},
+                [&](std::size_t k, int d, Eigen::Index j, const std::string& part) {
+                  const auto value = modes.phi[k](d, j);
+                  return part == "_real" ? value.real() : value.imag();
+                });
+  }
   if (format == "bough-modes") {
     const auto modes = hdf5::read_modes(file);
-    return make(modes.node_id, modes.node_xyz, modes.phi);
+    return make_real(modes.node_id, modes.node_xyz, modes.phi);
   }
   const auto body = read_body(file, diagnostics);
-  return make(body.node_id, body.node_xyz, body.phi);
+  return make_real(body.node_id, body.node_xyz, body.phi);
 }
 
 std::vector<exports::CsvColumn> read_mode_columns(const std::string& file, const std::string& format,
@@ -77,6 +95,17 @@ std::vector<exports::CsvColumn> read_mode_columns(const std::string& file, const
     for (int d = 0; d < 6 && effective.rows() == hz.size(); ++d)
       columns.push_back({std::string("effective_mass_") + kDirections[d], effective.col(d)});
   };
+  if (format == "bough-complex-modes") {
+    const auto modes = hdf5::read_complex_modes(file);
+    const auto n = modes.eigenvalue.size();
+    return {{"mode", Eigen::VectorXd::LinSpaced(n, 1, static_cast<double>(n))},
+            {"eigenvalue_real", modes.eigenvalue.real()},
+            {"eigenvalue_imag", modes.eigenvalue.imag()},
+            {"frequency_hz", modes.frequency_hz},
+            {"damping", modes.damping},
+            {"damping_ratio", modes.damping_ratio},
+            {"residual", modes.residual}};
+  }
   if (format == "bough-modes") {
     const auto modes = hdf5::read_modes(file);
     if (modes.load_factor.size() > 0)

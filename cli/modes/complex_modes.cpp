@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <nlohmann/json.hpp>
+#include <numbers>
+#include <optional>
 
 #include "cli/common/options.hpp"
 #include "cli/common/ranks.hpp"
@@ -13,7 +15,9 @@
 #include "cli/common/text_file.hpp"
 #include "cli/common/vtu_file.hpp"
 #include "cli/modes/modes_tables.hpp"
+#include "fe/statics/build_model.hpp"
 #include "formats/hdf5/complex_modes_file.hpp"
+#include "formats/listing/complex_f06.hpp"
 #include "modal/complex/complex_modes.hpp"
 
 namespace bough::cli {
@@ -34,10 +38,71 @@ void demand_supported(const ModesOptions& options) {
                        std::string(option) + " is given with a deck that asks for complex eigenvalues",
                        "leave the option out, or --ignore CMETHOD for the real modes");
   };
-  demand(!options.listing.empty(), "--f06 or --op2");
+  demand(!options.listing.op2.empty(), "--op2");
   demand(options.energies, "--ese");
   demand(options.about_grid != 0, "--meffmass");
   demand(!options.compare.empty(), "--compare");
+}
+
+/// Vector of the listing with the shape of one mode in displacement (CD) axes; none if the case control does not
+/// request it.
+std::optional<records::ListedVector> list_shape(const fe::Model& model, const records::DynamicSubcase& subcase,
+                                                const ComplexModesResult& r, Eigen::Index j) {
+  const auto& selection = subcase.dynamics;
+  records::ListedVector vector;
+  vector.kind = records::ListedKind::Eigenvector;
+  const records::CaseSet* set = nullptr;
+  if (!selection.outputs.empty()) {
+    const auto request = selection.outputs.find("DISPLACEMENT");
+    if (request == selection.outputs.end() || request->second.is_none) return std::nullopt;
+    vector.is_phase = request->second.is_phase;
+    vector.is_printed = request->second.is_printed;
+    const auto found = selection.sets.find(request->second.set);
+    if (!request->second.is_all && found != selection.sets.end()) set = &found->second;
+  }
+  struct Row {
+    int id;
+    bool is_scalar;
+    Eigen::VectorXcd values;
+  };
+  std::vector<Row> rows;
+  for (std::size_t k = 0; k < r.node_id.size(); ++k) {
+    const auto& R = model.node(model.find_node(r.node_id[k])).R_basic_cd;
+    Eigen::VectorXcd values(6);
+    values << R.transpose() * r.phi[k].col(j).head<3>(), R.transpose() * r.phi[k].col(j).tail<3>();
+    rows.push_back({r.node_id[k], false, values});
+  }
+  for (std::size_t k = 0; k < r.point_id.size(); ++k) {
+    Eigen::VectorXcd values = Eigen::VectorXcd::Zero(6);
+    values(0) = r.point_phi(static_cast<Eigen::Index>(k), j);
+    rows.push_back({r.point_id[k], true, values});
+  }
+  std::erase_if(rows, [&](const Row& row) { return set != nullptr && !set->contains(row.id); });
+  std::sort(rows.begin(), rows.end(), [](const Row& a, const Row& b) { return a.id < b.id; });
+  vector.real.resize(static_cast<Eigen::Index>(rows.size()), 6);
+  vector.imag = vector.real;
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    const auto row = static_cast<Eigen::Index>(k);
+    vector.id.push_back(rows[k].id);
+    vector.is_scalar.push_back(rows[k].is_scalar);
+    for (Eigen::Index c = 0; c < 6; ++c) {
+      const auto z = rows[k].values(c);
+      const double degrees = std::arg(z) * 180 / std::numbers::pi;
+      vector.real(row, c) = vector.is_phase ? std::abs(z) : z.real();
+      vector.imag(row, c) = !vector.is_phase ? z.imag() : degrees < 0 ? degrees + 360 : degrees;
+    }
+  }
+  return vector;
+}
+
+void add_to_listing(const fe::Model& model, const records::DynamicSubcase& subcase, const ComplexModesResult& r,
+                    std::vector<listing::ListedComplexModes>& all) {
+  listing::ListedComplexModes modes{
+      std::max(r.subcase, 1), subcase.title, subcase.subtitle, subcase.label, r.eigenvalue, r.damping, {}};
+  for (Eigen::Index j = 0; j < r.eigenvalue.size(); ++j)
+    if (auto vector = list_shape(model, subcase, r, j); vector && vector->is_printed)
+      modes.shapes.push_back(std::move(*vector));
+  all.push_back(std::move(modes));
 }
 
 std::string format_text(const ComplexModesResult& r) {
@@ -87,28 +152,6 @@ nlohmann::json make_json(const ComplexModesResult& r) {
           {"modes", modes}};
 }
 
-/// Real and imaginary part of every shape, one mode after the other.
-exports::Picture make_shape_picture(const ComplexModesResult& r) {
-  records::ModesResult parts;
-  parts.node_id = r.node_id;
-  parts.node_xyz = r.node_xyz;
-  parts.mesh = r.mesh;
-  parts.frequency_hz = r.frequency_hz;
-  exports::Picture picture;
-  for (const bool is_imaginary : {false, true}) {
-    parts.phi.clear();
-    for (const auto& phi : r.phi)
-      parts.phi.push_back(is_imaginary ? Eigen::MatrixXd(phi.imag()) : Eigen::MatrixXd(phi.real()));
-    auto part = exports::make_picture(parts);
-    for (auto& array : part.arrays) array.name += is_imaginary ? "_imag" : "_real";
-    if (!is_imaginary)
-      picture = std::move(part);
-    else
-      picture.arrays.insert(picture.arrays.end(), part.arrays.begin(), part.arrays.end());
-  }
-  return picture;
-}
-
 }  // namespace
 
 int run_complex_modes(const ModesOptions& options, const std::vector<int>& subcases, Console& console) {
@@ -129,20 +172,21 @@ int run_complex_modes(const ModesOptions& options, const std::vector<int>& subca
   };
   SubcaseFailures failures(subcases.size(), deck.subcases.size());
   nlohmann::json json;
+  std::vector<listing::ListedComplexModes> listed;
   std::string text, written;
   std::vector<std::pair<std::string, std::string>> pictures;
   bool is_first = true;
   for (const int id : subcases) {
     Diagnostics own;
     ComplexModesResult result;
+    records::DynamicSubcase subcase;
     try {
       model_options.subcase = id;
       const auto found =
           std::find_if(deck.subcases.begin(), deck.subcases.end(), [id](const auto& s) { return s.id == id; });
       const auto& control = found == deck.subcases.end() ? deck.subcases.front() : *found;
       const auto selection = deck.selections.find(control.id);
-      const records::DynamicSubcase subcase(
-          control, selection == deck.selections.end() ? records::DynamicSelection{} : selection->second);
+      subcase = {control, selection == deck.selections.end() ? records::DynamicSelection{} : selection->second};
       model_options.prestress = calc_prestress(deck, model_options, own);
       console.show_progress(fmt::format("subcase {}", id));
       result = modal::complex_modes::solve_complex_modes(deck, model_options, subcase, solver, own);
@@ -154,10 +198,14 @@ int run_complex_modes(const ModesOptions& options, const std::vector<int>& subca
     }
     console.end_progress();
     result.source = sources;
+    if (!options.listing.empty()) {
+      Diagnostics heard;  // by the solver
+      add_to_listing(fe::build_model(deck, model_options, heard), subcase, result, listed);
+    }
     const auto vtu = name_output(options.vtu, result.subcase, is_first);
     if (!vtu.empty() && console.is_root())
-      pictures.emplace_back(vtu,
-                            make_vtu_text(make_shape_picture(result), exports::VtuEncoding::Base64, options.deck, own));
+      pictures.emplace_back(
+          vtu, make_vtu_text(exports::make_picture(result), exports::VtuEncoding::Base64, options.deck, own));
     add_new(own, diagnostics);
     if (subcases.size() > 1) text += fmt::format("{}subcase {}\n\n", is_first ? "" : "\n", result.subcase);
     text += format_text(result);
@@ -183,7 +231,9 @@ int run_complex_modes(const ModesOptions& options, const std::vector<int>& subca
     console.print(text);
   do_once([&] {
     for (const auto& [path, picture] : pictures) write_text_file(path, picture);
+    if (!options.listing.f06.empty()) write_text_file(options.listing.f06, listing::make_complex_f06(listed));
   });
+  if (!options.listing.f06.empty()) written += "written: " + options.listing.f06 + "\n";
   for (const auto& [path, picture] : pictures) written += "written: " + path + "\n";
   if (!options.json) console.print(written);
   do_once([] { flush_data(); });

@@ -218,11 +218,12 @@ int run_plot(const PlotOptions& o) {
                      "give --sensor NAME of results, or --kind bode of a linear model");
   if (is_deck_response(o.files)) {
     const auto& c = o.curves;
-    auto plots = make_response_plots(o.files, o.sensors, c.window, c.log_y);
-    const bool is_over_time = plots.size() == 1;
+    const bool is_over_time = read_file_format(o.files.front()) == "bough-transient";
     demand_unused(o.files.front(), "a response of a deck", {{"--x", !c.x.empty()}, {"--difference", c.difference}});
     if (!is_over_time)
-      demand_unused(o.files.front(), "curves over frequency", {{"--psd", c.psd}, {"--spectrum", c.spectrum}});
+      demand_unused(o.files.front(), "curves over frequency", {{"--spectrum", c.spectrum}});
+    auto plots = c.psd && !is_over_time ? make_density_plots(o.files, o.sensors, c.window)
+                                        : make_response_plots(o.files, o.sensors, c.window, c.log_y);
     plots = shape_plots(std::move(plots), c, is_over_time, diagnostics);
     return draw_plots(o, std::move(plots), o.sensors.front(), diagnostics, console);
   }
@@ -269,8 +270,11 @@ void add_plot(CLI::App& app, Action& action) {
       ->delimiter(',')
       ->expected(2)
       ->excludes("--kind");
-  auto* psd = verb->add_flag("--psd", c.psd, "Power spectral density (Welch, Hann's window, overlap of a half)")
-                  ->excludes("--kind");
+  auto* psd =
+      verb->add_flag(
+              "--psd", c.psd,
+              "Power spectral density (Welch, Hann's window, overlap of a half); of random responses of decks theirs")
+          ->excludes("--kind");
   verb->add_flag("--spectrum", c.spectrum, "Amplitudes over frequency (Hann's window, straight line taken off)")
       ->excludes(psd)
       ->excludes("--x")

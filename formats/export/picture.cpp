@@ -204,6 +204,26 @@ Picture make_picture(const records::ModesResult& modes) {
   return picture;
 }
 
+Picture make_picture(const records::ComplexModesResult& modes) {
+  records::ModesResult parts;
+  parts.node_id = modes.node_id;
+  parts.node_xyz = modes.node_xyz;
+  parts.mesh = modes.mesh;
+  parts.frequency_hz = modes.frequency_hz;
+  Picture picture;
+  for (const bool is_imaginary : {false, true}) {
+    parts.phi.clear();
+    for (const auto& phi : modes.phi) parts.phi.push_back(is_imaginary ? MatrixXd(phi.imag()) : MatrixXd(phi.real()));
+    auto part = make_picture(parts);
+    for (auto& array : part.arrays) array.name += is_imaginary ? "_imag" : "_real";
+    if (!is_imaginary)
+      picture = std::move(part);
+    else
+      picture.arrays.insert(picture.arrays.end(), part.arrays.begin(), part.arrays.end());
+  }
+  return picture;
+}
+
 Picture make_picture(const records::FlexBody& body) {
   std::unordered_map<int, MatrixXd> shapes;
   if (body.full_phi.size() > 0) {

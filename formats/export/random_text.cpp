@@ -1,5 +1,7 @@
 #include "formats/export/random_text.hpp"
 
+#include <charconv>
+
 namespace bough::exports {
 
 std::vector<RandomOutput> list_random_outputs(const records::RandomResponse& response) {
@@ -25,6 +27,28 @@ std::vector<RandomOutput> list_random_outputs(const records::RandomResponse& res
     }
   }
   return outputs;
+}
+
+std::string make_rms_csv(const records::RandomResponse& response) {
+  const auto outputs = list_random_outputs(response);
+  const bool has_modal = !outputs.empty() && outputs.front().curves->modal_rms.size() > 0;
+  std::string text = "random,output,rms,zero_crossings_hz";
+  text += has_modal ? ",modal_rms,modal_zero_crossings_hz\n" : "\n";
+  const auto add = [&](double value) {
+    char buffer[40];
+    const auto end = std::to_chars(buffer, buffer + sizeof buffer, value + 0.0, std::chars_format::general, 17);
+    text += ',' + std::string(buffer, end.ptr);
+  };
+  for (const auto& output : outputs) {
+    const auto& curves = *output.curves;
+    text += std::to_string(response.set) + ',' + write_csv_field(output.name);
+    add(curves.rms(output.column));
+    add(curves.crossing_hz(output.column));
+    if (has_modal) add(curves.modal_rms(output.column));
+    if (has_modal) add(curves.modal_crossing_hz(output.column));
+    text += '\n';
+  }
+  return text;
 }
 
 std::vector<CsvColumn> make_psd_columns(const records::RandomResponse& response) {

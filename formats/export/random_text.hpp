@@ -19,6 +19,9 @@ struct RandomOutput {
 };
 std::vector<RandomOutput> list_random_outputs(const records::RandomResponse& response);
 
+/// Comma-separated values, a row per output: random (the set), output, rms, zero_crossings_hz, with modes modal_rms and
+/// modal_zero_crossings_hz.
+std::string make_rms_csv(const records::RandomResponse& response);
 /// A row per frequency: random (the set), frequency_hz, psd:NAME of every output.
 std::vector<CsvColumn> make_psd_columns(const records::RandomResponse& response);
 /// A row per lag: random, lag, autocorrelation:NAME; empty without lags.

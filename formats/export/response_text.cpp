@@ -165,6 +165,7 @@ std::string make_response_csv(const records::DeckResponse& response) {
       text << "\n";
       write_csv(text, columns);
     }
+  for (const auto& random : response.random) text << "\n" << make_rms_csv(random);
   return text.str();
 }
 

@@ -4,6 +4,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "formats/records/complex_modes.hpp"
 #include "formats/records/flex_body.hpp"
 #include "formats/records/modes.hpp"
 #include "formats/records/static_result.hpp"
@@ -48,6 +49,8 @@ std::string make_vtu(const records::BodyMesh& mesh, const std::vector<PointArray
 /// buckling_001_factor_4.32 and its _rotation. With energies of elements mode_001_0.463Hz_strain_energy and
 /// _kinetic_energy on the cells, as shares of the mode's, and _strain_energy_density.
 Picture make_picture(const records::ModesResult& modes);
+/// Real and imaginary part of each complex shape: mode_001_..._real, mode_001_..._imag.
+Picture make_picture(const records::ComplexModesResult& modes);
 /// Mode shapes of a body, in its frame B: of all grids (without rotations unless full_phi is there), or of the output
 /// nodes if the file has no others.
 Picture make_picture(const records::FlexBody& body);

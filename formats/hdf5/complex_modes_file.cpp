@@ -1,5 +1,6 @@
 #include "formats/hdf5/complex_modes_file.hpp"
 
+#include "formats/hdf5/detail/reader.hpp"
 #include "formats/hdf5/detail/writer.hpp"
 
 namespace bough::hdf5 {
@@ -61,6 +62,51 @@ void write_complex_modes(const records::ComplexModesResult& r, const std::string
                      "1"});
   write_mesh(file, r.mesh);
   file.commit();
+}
+
+records::ComplexModesResult read_complex_modes(const std::string& path) {
+  FileReader file(path, "bough-complex-modes", "1.0");
+  records::ComplexModesResult r;
+  r.source = file.read_source();
+  r.subcase = file.read_integer_attribute("/", "subcase", 0);
+  const Eigen::VectorXd real = file.read_vector("/modes/eigenvalue_real", -1);
+  const long n = real.size();
+  r.eigenvalue = Eigen::VectorXcd::Zero(n);
+  r.eigenvalue.real() = real;
+  r.eigenvalue.imag() = file.read_vector("/modes/eigenvalue_imag", n);
+  r.frequency_hz = file.read_vector("/modes/frequency_hz", n);
+  r.damping = file.read_vector("/modes/damping", n);
+  r.damping_ratio = file.read_vector("/modes/damping_ratio", n);
+  r.residual = file.read_vector("/modes/residual", n);
+  r.biorthogonality = file.read_number("/modes/biorthogonality");
+  r.is_by_modes = file.read_attribute("/modes", "method") == "modal";
+  r.norm = file.read_attribute("/modes", "norm");
+  r.node_id = file.read_integers("/nodes/id", -1);
+  const auto num_nodes = static_cast<long>(r.node_id.size());
+  r.node_xyz = file.read_matrix("/nodes/xyz", num_nodes, 3);
+  const auto read_shapes = [&](const std::string& name, std::vector<MatrixXcd>& shapes, MatrixXcd& points) {
+    if (!file.has("/modes/" + name + "_real")) return;
+    shapes.assign(r.node_id.size(), MatrixXcd::Zero(6, n));
+    for (const bool is_imaginary : {false, true}) {
+      const std::string part = is_imaginary ? "_imag" : "_real";
+      const auto data = file.read_array("/modes/" + name + part, {num_nodes, 6, n}).data;
+      std::size_t i = 0;
+      for (auto& shape : shapes)
+        for (Eigen::Index c = 0; c < 6; ++c)
+          for (Eigen::Index j = 0; j < n; ++j) is_imaginary ? shape(c, j).imag(data[i++]) : shape(c, j).real(data[i++]);
+    }
+    if (r.point_id.empty()) return;
+    const auto num = static_cast<long>(r.point_id.size());
+    points.resize(num, n);
+    points.real() = file.read_matrix("/points/" + name + "_real", num, n);
+    points.imag() = file.read_matrix("/points/" + name + "_imag", num, n);
+  };
+  if (file.has("/points/id")) r.point_id = file.read_integers("/points/id", -1);
+  read_shapes("phi", r.phi, r.point_phi);
+  read_shapes("left", r.left, r.point_left);
+  r.mesh = read_mesh(file);
+  file.throw_if_errors();
+  return r;
 }
 
 }  // namespace bough::hdf5

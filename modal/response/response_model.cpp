@@ -149,8 +149,8 @@ class Maker {
   }
 
   /// Ritz pairs of residual vectors up to the eigenvalue `max_lambda`. Those above have negligible mass and would
-  /// spoil the orthogonality of the others; add_massless() has their flexibility. The first pass finds them, the second
-  /// is orthonormal to round-off.
+  /// degrade the orthogonality of the others; add_massless() has their flexibility. The first pass finds them, the
+  /// second is orthonormal to round-off.
   bases::ModeSet separate(MatrixXd X, double max_lambda) const {
     bases::ModeSet modes;
     for (int pass = 0; pass < 2 && X.cols() > 0; ++pass) {

@@ -150,6 +150,46 @@ class ComplexModes(ProgramTest):
                     self.assertLess(np.linalg.norm(sum(terms)), 1e-8 * sum(map(np.linalg.norm, terms)), (name, j))
                     self.assertAlmostEqual(np.abs(x[:, j]).max(), 1, places=9)
 
+    def test_files(self):
+        """f06 (summary, shapes in CD axes), table and shapes as CSV, VTU, page of an unsymmetric chain; y of grid 4 is -x."""
+        extra = ("CORD2R,7,,0.,0.,0.,0.,0.,1.\n,0.,1.,0.\n" + "\n".join(f"CDAMP2,{400 + i},{9.0 if i == 1 else .1},{i + 1},1" for i in range(1, 4)))
+        deck = make_chain("107", extra, "K2PP = KX\nDISPLACEMENT(PHASE) = ALL", "HESS").replace("GRID,4,,3.0,0.,0.", "GRID,4,,3.0,0.,0.,7")
+        deck = deck.replace("CEND", "CEND\nTITLE = CHAIN", 1).replace("ENDDATA", "DMIG,KX,0,1,1,0\nDMIG,KX,2,1,,3,1,40.\nENDDATA")
+        deck = deck.replace("SPC1,1,23456,2,THRU,7", "SPC1,1,23456,2,3,5,6,7\nSPC1,1,13456,4")
+        deck = deck.replace(",3,1,4,1,", ",3,1,4,2,").replace(",4,1,5,1,", ",4,2,5,1,").replace("CDAMP2,403,0.1,4,1", "CDAMP2,403,0.1,4,2")
+        found = self.solve(deck, "--f06", "d.f06")
+        f06 = self.read("d.f06")
+        summary = f06.split("C O M P L E X   E I G E N V A L U E   S U M M A R Y")[1].splitlines()[3:3 + len(found)]
+        table = np.array([line.split() for line in summary], float)
+        np.testing.assert_allclose(table[:, 2] + 1j * table[:, 3], found, rtol=2e-6, atol=1e-6)
+        np.testing.assert_allclose(table[:, 4], found.imag / 2 / np.pi, rtol=2e-6, atol=1e-9)
+        with h5py.File(self.path("d.h5")) as f:
+            ids, phi = list(f["nodes/id"][:]), f["modes/phi_real"][:] + 1j * f["modes/phi_imag"][:]
+            damping = f["modes/damping"][:]
+        np.testing.assert_allclose(table[:, 5], damping, rtol=2e-6, atol=1e-12)
+        pages = f06.split("C O M P L E X   E I G E N V E C T O R   N O .")
+        self.assertEqual(len(pages), len(found) + 1)
+        last = pages[-1].splitlines()
+        at = next(i for i, line in enumerate(last) if line.split()[:2] == ["4", "G"])
+        magnitude = float(last[at].split()[3])  # T2
+        self.assertAlmostEqual(magnitude, abs(phi[ids.index(4), 0, -1]), delta=2e-6)
+        phase = np.angle(-phi[ids.index(4), 0, -1], deg=True) % 360
+        self.assertAlmostEqual(float(last[at + 1].split()[1]), phase, delta=1e-3)
+        self.bough("export", "d.h5", "--to", "csv", "--channel", "modes", "-o", "m.csv")
+        rows = np.array([line.split(",") for line in self.read("m.csv").splitlines()[1:]], float)
+        np.testing.assert_allclose(rows[:, 1] + 1j * rows[:, 2], found, rtol=1e-15)
+        self.bough("export", "d.h5", "--to", "csv", "-o", "s.csv")
+        head, *lines = self.read("s.csv").splitlines()
+        column = head.split(",").index("mode_002_x_imag")
+        np.testing.assert_allclose([float(line.split(",")[column]) for line in lines], phi[:, 0, 1].imag, rtol=1e-15, atol=1e-300)
+        self.bough("export", "d.h5", "--to", "vtu", "-o", "d.vtu")
+        self.bough("modes", "d.bdf", "--vtu", "e.vtu")
+        self.assertEqual(self.read("d.vtu"), self.read("e.vtu"))
+        self.bough("report", "d.h5", "-o", "d.html")
+        page = self.read("d.html")
+        for text in ("complex modes", "Poles", "damping ratio %", "real part", '"complex":true'):
+            self.assertIn(text, page)
+
     def test_units(self):
         """Shifts of EIGC follow the unit of time; block sizes of LAN have none."""
         for eigc in ("INV\n,-1.,30.,-2.,40.,1.,,2", "LAN\n,-1.,30.,7.,2.,,,2"):
@@ -323,7 +363,7 @@ class ComplexModes(ProgramTest):
             self.assertIn(word, table)
         real = json.loads(self.bough("modes", "d.bdf", "--ignore", "CMETHOD", "--json").stdout)
         self.assertAlmostEqual(real["modes"][0]["eigenvalue"], 9, places=10)
-        self.fails(1, "modes", "d.bdf", "--f06", "d.f06", error="cli.complex-option")
+        self.fails(1, "modes", "d.bdf", "--op2", "d.op2", error="cli.complex-option")
 
     def test_wrong_input(self):
         def fails(code, deck, error, *says):

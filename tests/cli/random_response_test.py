@@ -249,6 +249,37 @@ class Random(ProgramTest):
         self.bough("export", "d.h5", "--to", "csv", "-o", "e.csv")
         self.assertEqual(self.read("e.csv"), self.read("d.csv"))
 
+    def test_rms_in_csv(self):
+        """The last table of --csv has RMS and N0, of both integrals by modes."""
+        for sol in (111, 108):
+            found, _ = self.solve(PAIR.format(sol=sol, above="", bulk=TERMS), "--csv", "d.csv")
+            table = self.read("d.csv").split("\n\n")[-1].splitlines()
+            names = ["rms", "zero_crossings_hz"] + (["modal_rms", "modal_zero_crossings_hz"] if sol == 111 else [])
+            self.assertEqual(table[0], ",".join(["random", "output", *names]))
+            rows = {line.split(",")[1]: list(map(float, line.split(",")[2:])) for line in table[1:]}
+            for quantity, dof in (("displacement", (2, 1)), ("acceleration", (3, 1)), ("spc_force", (4, 1))):
+                np.testing.assert_allclose(rows[f"{quantity}:{dof[0]}:{dof[1]}"], [pick(found[quantity], n, dof) for n in names], rtol=1e-15)
+            part = found["elements", "CELAS2"]
+            np.testing.assert_allclose(rows[f"CELAS2:22:{part['components'][0]}"],
+                                       [part[n][list(part["id"]).index(22), 0] for n in names], rtol=1e-15)
+
+    def test_pictures(self):
+        """`plot --psd` draws spectral densities with their RMS, `report` has them with tables; others have none."""
+        found, _ = self.solve(PAIR.format(sol=111, above="", bulk=TERMS))
+        self.bough("plot", "d.h5", "--sensor", "displacement:1", "--psd", "--csv", "p.csv", "-o", "p.svg")
+        lines = [line for line in self.read("p.csv").splitlines() if line.startswith('"displacement:1:1, RMS ')]
+        values = np.array([line.rsplit(",", 2)[1:] for line in lines], float)
+        np.testing.assert_allclose(values[:, 1], pick(found["displacement"], "psd", (1, 1)), rtol=1e-12)
+        self.assertIn("RMS {:.4g}".format(pick(found["displacement"], "rms", (1, 1))), self.read("p.svg"))
+        self.bough("report", "d.h5", "-o", "d.html")
+        page = self.read("d.html")
+        for text in ("random 30: displacement", "cumulative RMS", "modal RMS", "RMS against the integral over the band"):
+            self.assertIn(text, page)
+        self.fails(1, "plot", "d.h5", "--sensor", "displacement:9:1", "--psd", error="cli.unknown-channel", says=["displacement:9:1"])
+        self.write("n.bdf", ONE.format(sol=111, case="DLOAD = 9\nFREQUENCY = 5", bulk="RLOAD1,9,10,,,1.\nDAREA,10,1,1,1.\nFREQ1,5,1.,1.,4\nPARAM,G,.1"))
+        self.bough("frequency", "n.bdf", "-o", "n.h5")
+        self.fails(1, "plot", "n.h5", "--sensor", "displacement:1:1", "--psd", error="cli.no-random", says=["RANDPS"])
+
     def test_loglog(self):
         """PARAM,RMSINT,LOGLOG: straight lines of log S over log f; the levels of GEVS have 14.136 g RMS."""
         deck = (f"SOL 111\nCEND\nSPC = 1\nMETHOD = 1\nDLOAD = 9\nFREQUENCY = 5\nRANDOM = 30\nACCELERATION = ALL\nBEGIN BULK\n"
@@ -259,6 +290,8 @@ class Random(ProgramTest):
         found, _ = self.solve(deck)
         self.assertAlmostEqual(pick(found["acceleration"], "rms", (1, 1)), 14.136, delta=1e-3)
         self.assertAlmostEqual(pick(found["acceleration"], "modal_rms", (1, 1)), 14.136, delta=1e-3)
+        # The running RMS ends at the RMS, by the same lines.
+        np.testing.assert_allclose(found["acceleration"]["cumulative_rms"][-1], found["acceleration"]["rms"], rtol=1e-12)
         found, _ = self.solve(deck.replace("PARAM,RMSINT,LOGLOG\n", ""))
         S = np.array([.026, .16, .16, .026])
         self.assertAlmostEqual(pick(found["acceleration"], "rms", (1, 1)), np.sqrt(integrate([20, 50, 800, 2000], S)), delta=1e-6)

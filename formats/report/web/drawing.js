@@ -69,6 +69,18 @@ export class Drawing {
     return most;
   }
 
+  // The largest displacement of a point over a cycle, of shapes j (real part) and j + 1 (imaginary part).
+  get_complex_reach(j) {
+    const re = this.get_shape(j), im = this.get_shape(j + 1);
+    let most = 0;
+    for (let i = 0; i < re.length; i += 3) {
+      const a = re[i] ** 2 + re[i + 1] ** 2 + re[i + 2] ** 2, b = im[i] ** 2 + im[i + 1] ** 2 + im[i + 2] ** 2;
+      const c = re[i] * im[i] + re[i + 1] * im[i + 1] + re[i + 2] * im[i + 2];
+      most = Math.max(most, Math.sqrt((a + b + Math.hypot(a - b, 2 * c)) / 2));
+    }
+    return most;
+  }
+
   // points = xyz + scale Σ coefficients[j] shape j.
   deform(coefficients, scale) {
     this.points.set(this.xyz);

@@ -5,7 +5,7 @@ import { Viewer, make_triad } from "./viewer.js";
 
 const kColorings = ["displacement", "nothing", "strain energy", "strain energy density"];
 
-// One mode at a time, swinging; or one static solution.
+// One mode at a time, swinging; or one static solution. Of complex modes the shapes are in turn real and imaginary parts.
 export class ModesView {
   constructor(data) {
     this.drawing = new Drawing(data.drawing);
@@ -16,7 +16,8 @@ export class ModesView {
     this.is_playing = false;
     this.has_overlay = true;
     this.color_by = 0;
-    const count = data.drawing.shapes.length;
+    this.is_complex = data.complex === true;
+    const count = data.drawing.shapes.length / (this.is_complex ? 2 : 1);
     this.names = data.names;
     const names = data.names?.slice(0, count) ?? Array.from({ length: count }, (_, j) => `${j + 1}: ${format_number(data.frequency[j] ?? NaN, 5)}${data.kinds[j] && data.kinds[j] !== "normal" ? " " + data.kinds[j] : ""}`);
     this.picker = make_select(data.names ? "deformed by" : data.buckling ? "load factor" : "mode, frequency [Hz]", names, (j) => this.show(j));
@@ -41,7 +42,7 @@ export class ModesView {
   show(mode) {
     this.mode = mode;
     this.picker.list.value = mode;
-    this.reach = this.drawing.get_reach(mode);
+    this.reach = this.is_complex ? this.drawing.get_complex_reach(2 * mode) : this.drawing.get_reach(mode);
     this.energy = this.color_by > 1 ? this.drawing.get_levels(mode, this.color_by === 3) : null;
     const what = this.names ? this.names[mode][0].toUpperCase() + this.names[mode].slice(1) + ": largest displacement" : `Mode ${mode + 1}: largest displacement of its shape`;
     const label = this.names ? this.names[mode] : `mode ${mode + 1}`;
@@ -73,7 +74,10 @@ export class ModesView {
     if (!this.reach && this.reach !== 0) return;
     const size = this.box.get_diagonal();
     const scale = this.reach > 0 ? (this.amplitude * size) / this.reach : 0;
-    this.drawing.deform(Array.from({ length: this.mode + 1 }, (_, j) => (j === this.mode ? Math.sin(this.phase) : 0)), scale);
+    // Re φ sin(phase) + Im φ cos(phase) is Re(φ exp(iωt)) with ωt = phase - π/2.
+    const parts = this.is_complex ? [Math.sin(this.phase), Math.cos(this.phase)] : [Math.sin(this.phase)];
+    const first = this.mode * parts.length;
+    this.drawing.deform(Array.from({ length: first + parts.length }, (_, j) => (j >= first ? parts[j - first] : 0)), scale);
     const { xyz, points, triangles, edges, ghosts } = this.drawing;
     const has_faces = triangles.length > 0;
     const body = { points, size: this.drawing.size, triangles, edges, ghosts, color: get_css("--body"), by_level: this.color_by === 0, dots: !has_faces };
