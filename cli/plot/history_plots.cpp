@@ -10,6 +10,7 @@
 #include "cli/common/options.hpp"
 #include "formats/hdf5/table_file.hpp"
 #include "formats/report/label.hpp"
+#include "formats/report/shock_spectrum.hpp"
 #include "formats/report/spectrum.hpp"
 
 namespace bough::cli {
@@ -111,6 +112,34 @@ void take_spectrum(report::Curve& curve, const CurveChoice& choice, Diagnostics&
     const bool is_product = curve.unit.find_first_of(" /^") != std::string::npos;
     curve.unit = (is_product ? "(" + curve.unit + ")" : curve.unit) + "^2/Hz";
   }
+}
+
+/// A tenth of the rate of the samples: above it extremes are between the samples.
+constexpr double kShockStep = 0.1;
+
+void take_shock_spectrum(report::Curve& curve, const CurveChoice& choice, Diagnostics& diagnostics) {
+  const double step = find_step(curve.x, curve.label);
+  const double length = step * static_cast<double>(curve.x.size() - 1);
+  double from = 0.1 / length, to = kShockStep / step, per_octave = 12;
+  if (choice.srs_range.size() > 1) from = choice.srs_range[0], to = choice.srs_range[1];
+  if (choice.srs_range.size() > 2) per_octave = choice.srs_range[2];
+  if (!(from > 0 && to > from && per_octave > 0))
+    throw InputError("cli.bad-range", {}, fmt::format("shock response spectrum from {:g} to {:g} is empty", from, to),
+                     "give --srs-range F1,F2 with F2 above F1 above 0");
+  if (to * step > kShockStep * (1 + 1e-9))
+    diagnostics.warning(
+        "cli.coarse-shock", {},
+        fmt::format("{} has {:.3g} samples per period at {:.6g} Hz: its largest values are between them",
+                    curve.label.empty() ? "the curve" : curve.label, 1 / (to * step), to),
+        "sample ten times per period or more, or lower F2 of --srs-range");
+  const auto num = std::max<Eigen::Index>(2, 1 + std::lround(std::log2(to / from) * per_octave));
+  VectorXd hz(num);
+  for (Eigen::Index i = 0; i < num; ++i)
+    hz[i] = from * std::pow(to / from, static_cast<double>(i) / static_cast<double>(num - 1));
+  curve.y = report::calc_shock_spectrum(curve.y, step, hz, choice.quality, report::find_shock_kind(choice.srs),
+                                        report::find_shock_part(choice.srs_part));
+  curve.x = std::move(hz);
+  if (choice.srs != "absolute-acceleration" && choice.srs != "static-acceleration") curve.unit.clear();
 }
 
 /// Values of "name" or "name:2" in the table of a campaign.
@@ -217,6 +246,12 @@ std::vector<report::Plot> shape_plots(std::vector<report::Plot> plots, const Cur
   for (auto& plot : plots) {
     for (auto& curve : plot.curves) {
       if (is_over_time && (choice.psd || choice.spectrum)) take_spectrum(curve, choice, diagnostics);
+      if (is_over_time && !choice.srs.empty()) take_shock_spectrum(curve, choice, diagnostics);
+    }
+    if (is_over_time && !choice.srs.empty()) {
+      plot.x_label = "natural frequency [Hz]";
+      plot.y_label = fmt::format("{}, {}, Q {:g}", choice.srs, choice.srs_part, choice.quality);
+      plot.has_log_x = plot.has_log_y = true;
     }
     if (is_over_time && (choice.psd || choice.spectrum) && !plot.x_label.starts_with("frequency"))
       plot.x_label = report::label_frequency({});

@@ -13,6 +13,10 @@ struct CurveChoice {
   std::vector<double> window;  ///< from and until; empty: all
   bool psd = false, spectrum = false, difference = false, subplots = false, log_x = false, log_y = false;
   int segment = 256;  ///< psd: samples
+  std::string srs;    ///< kind of a shock response spectrum; empty: none
+  std::string srs_part = "maximax";
+  std::vector<double> srs_range;  ///< from, to [1/T] and frequencies per octave; empty: chosen from the samples
+  double quality = 10;
 };
 
 /// Channels of results files against time, or against the channel `x`. Throws InputError "cli.unknown-channel",
@@ -26,9 +30,9 @@ report::Plot make_history_plot(const std::vector<std::string>& files, const std:
 report::Plot make_campaign_plot(const std::vector<std::string>& files, const std::vector<std::string>& names,
                                 const CurveChoice& choice, Diagnostics& diagnostics);
 
-/// Takes spectra, sets logarithmic axes, and with `subplots` gives each curve a separate plot.
-/// Throws InputError "cli.uneven-samples" where a spectrum is asked of samples that are not evenly spaced; the note
-/// "cli.short-segment" where there are fewer of them than a segment wants.
+/// Takes spectra, shock response spectra too, sets logarithmic axes, and with `subplots` gives each curve a separate
+/// plot. Throws InputError "cli.uneven-samples" where a spectrum is asked of samples that are not evenly spaced; the
+/// note "cli.short-segment" where there are fewer of them than a segment wants.
 std::vector<report::Plot> shape_plots(std::vector<report::Plot> plots, const CurveChoice& choice, bool is_over_time,
                                       Diagnostics& diagnostics);
 

@@ -17,6 +17,7 @@
 #include "cli/plot/response_plots.hpp"
 #include "formats/export/csv.hpp"
 #include "formats/report/label.hpp"
+#include "formats/report/shock_spectrum.hpp"
 #include "formats/report/svg_plot.hpp"
 #include "formats/report/terminal_plot.hpp"
 
@@ -221,7 +222,7 @@ int run_plot(const PlotOptions& o) {
     const bool is_over_time = read_file_format(o.files.front()) == "bough-transient";
     demand_unused(o.files.front(), "a response of a deck", {{"--x", !c.x.empty()}, {"--difference", c.difference}});
     if (!is_over_time)
-      demand_unused(o.files.front(), "curves over frequency", {{"--spectrum", c.spectrum}});
+      demand_unused(o.files.front(), "curves over frequency", {{"--spectrum", c.spectrum}, {"--srs", !c.srs.empty()}});
     auto plots = c.psd && !is_over_time ? make_density_plots(o.files, o.sensors, c.window)
                                         : make_response_plots(o.files, o.sensors, c.window, c.log_y);
     plots = shape_plots(std::move(plots), c, is_over_time, diagnostics);
@@ -233,6 +234,7 @@ int run_plot(const PlotOptions& o) {
     demand_unused(o.files.front(), "a campaign",
                   {{"--psd", o.curves.psd},
                    {"--spectrum", o.curves.spectrum},
+                   {"--srs", !o.curves.srs.empty()},
                    {"--difference", o.curves.difference},
                    {"--window", !o.curves.window.empty()}});
   auto plot = is_campaign ? make_campaign_plot(o.files, o.sensors, o.curves, diagnostics)
@@ -280,6 +282,26 @@ void add_plot(CLI::App& app, Action& action) {
       ->excludes("--x")
       ->excludes("--kind");
   psd->excludes("--x");
+  auto* srs = verb->add_option("--srs", c.srs,
+                               "Shock response spectrum of a base acceleration: " +
+                                   fmt::format("{}", fmt::join(report::list_shock_kinds(), ", ")))
+                  ->check(CLI::IsMember(report::list_shock_kinds()))
+                  ->excludes("--kind")
+                  ->excludes("--x")
+                  ->excludes("--spectrum")
+                  ->excludes(psd);
+  verb->add_option("--srs-part", c.srs_part, fmt::format("{}", fmt::join(report::list_shock_parts(), ", ")))
+      ->check(CLI::IsMember(report::list_shock_parts()))
+      ->needs(srs)
+      ->capture_default_str();
+  verb->add_option("--srs-range", c.srs_range, "F1,F2,N: from F1 to F2, N frequencies per octave (12)")
+      ->delimiter(',')
+      ->expected(2, 3)
+      ->needs(srs);
+  verb->add_option("--q", c.quality, "Q = 1/(2 damping ratio) of --srs")
+      ->check(CLI::Range(0.51, 1e9))
+      ->needs(srs)
+      ->capture_default_str();
   verb->add_option("--segment", c.segment, "--psd: samples of a segment")
       ->check(CLI::Range(2, 1 << 30))
       ->needs(psd)

@@ -158,6 +158,48 @@ class Plot(ProgramTest):
         np.testing.assert_allclose(curve[:, 0], f, atol=0.05)
         np.testing.assert_allclose(np.log10(curve[:, 1]), np.log10(wanted), atol=0.03)
 
+    # Half sine of 100 for 11 ms, 10 us apart, as the acceleration of a base; the mass on it is soft.
+    SHOCK = ("SOL 109\nCEND\nSPC = 1\nDLOAD = 9\nTSTEP = 3\nACCELERATION = ALL\nBEGIN BULK\nGRID,1,,0.,0.,0.,,23456\nGRID,2,,0.,0.,0.,,23456\n"
+             "CONM2,1,2,,1.\nCELAS2,1,1.,1,1,2,1\nSPC1,1,1,1\nTLOAD1,9,10,,ACCE,7\nSPCD,10,1,1,1.\nTSTEP,3,1110,1.-5\nTABLED1,7\n{table},ENDT\nENDDATA\n")
+
+    def test_shock_spectrum(self):
+        """Half sine of 100 g and 11 ms, Q 10: closed form of the absolute acceleration; the five kinds by a fine integration."""
+        times = np.arange(0, 1101) * 1e-5
+        pairs = [f"{t:.6f},{100 * np.sin(np.pi * t / .011) if i < 1100 else 0.:.9e}" for i, t in enumerate(times)] + ["1.,0."]
+        self.write("s.bdf", self.SHOCK.format(table="\n".join("," + ",".join(pairs[i:i + 4]) for i in range(0, len(pairs), 4))))
+        self.bough("transient", "s.bdf", "-o", "s.h5")
+        exact = {10: 40.518, 20: 78.311, 50: 152.629, 100: 159.140, 200: 113.961, 500: 104.702, 1000: 100.756}
+        for hz, value in exact.items():
+            found = self.get_points("s.h5", "--sensor", "acceleration:1:1", "--srs", "absolute-acceleration", "--srs-range", f"{hz},{2 * hz},1")
+            self.assertAlmostEqual(found[0, 1] / value, 1, delta=2e-5)
+        peak = self.get_points("s.h5", "--sensor", "acceleration:1:1", "--srs", "absolute-acceleration", "--srs-range", "70,80,2000")
+        self.assertAlmostEqual(peak[:, 1].max(), 165.163, delta=2e-3)
+        self.assertAlmostEqual(peak[peak[:, 1].argmax(), 0], 74.85, delta=.1)
+        options = ["--srs-part", "negative", "--srs-range", "100,200,1"]
+        found = self.get_points("s.h5", "--sensor", "acceleration:1:1", "--srs", "absolute-acceleration", *options)
+        self.assertAlmostEqual(found[0, 1], 87.337, delta=2e-3)
+        # Exact steps of the matrix exponential over the pulse and two periods after it; the samples end at 11.1 ms.
+        w, z, h = 2 * np.pi * 100, .025, 2e-6
+        A = np.array([[0, 1, 0, 0], [-w * w, -2 * z * w, -1, 0], [0, 0, 0, 1], [0, 0, -(np.pi / .011)**2, 0]])
+        from scipy.linalg import expm
+        x, states = np.array([0, 0, 0, 100 * np.pi / .011]), []
+        step, free = expm(A * h), expm(np.block([[A[:2, :2], np.zeros((2, 2))], [np.zeros((2, 4))]]) * h)
+        for k in range(5500 + 10000):
+            x = (step if k < 5500 else free) @ x
+            states.append([*x[:2], x[2] if k < 5500 else 0])
+        u, v, a = np.array(states).T
+        kinds = {"absolute-acceleration": -w * w * u - 2 * z * w * v, "static-acceleration": -w * w * u, "pseudo-velocity": w * u,
+                 "relative-velocity": v, "relative-displacement": u}
+        for kind, y in kinds.items():
+            for part, value in (("maximax", np.abs(y).max()), ("positive", y.max()), ("negative", -y.min()),
+                                ("primary", np.abs(y[:5550]).max()), ("residual", np.abs(y[5549:]).max())):
+                found = self.get_points("s.h5", "--sensor", "acceleration:1:1", "--srs", kind, "--srs-part", part, "--q", "20",
+                                        "--srs-range", "100,200,1")
+                self.assertAlmostEqual(found[0, 1] / value, 1, delta=1e-4, msg=(kind, part))
+        self.assertIn("cli.coarse-shock", self.bough("plot", "s.h5", "--sensor", "acceleration:1:1", "--srs", "pseudo-velocity",
+                                                     "--srs-range", "100,30000", "-o", "s.svg").stderr)
+        self.fails(1, "plot", "s.h5", "--sensor", "acceleration:1:1", "--srs", "pseudo-velocity", "--srs-range", "100,50", error="cli.bad-range")
+
     def test_spectrum(self):
         a = self.results["a"]
         (svg,) = self.draw("a.h5", "--sensor", "place:x", "--spectrum", "--log-y")
