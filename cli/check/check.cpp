@@ -406,7 +406,7 @@ int run_check(const CheckOptions& options) {
 
 void add_check(CLI::App& app, Action& action) {
   auto o = std::make_shared<CheckOptions>();
-  auto* verb = add_verb(app, "check", "Read a deck, body, system or HDF5 file; print what it holds and every error");
+  auto* verb = add_verb(app, "check", "Read a deck, body, system or HDF5 file; print its content and every error");
   verb->add_option("file", o->file, "Nastran deck, body.toml, system.toml, .h5 or .FLX")->required();
   verb->add_option("--gpwg", o->gpwg,
                    "Weights about this grid (0: the origin) as the grid point weight generator of Nastran prints them "

@@ -277,7 +277,7 @@ void add_plot(CLI::App& app, Action& action) {
               "--psd", c.psd,
               "Power spectral density (Welch, Hann's window, overlap of a half); of random responses of decks theirs")
           ->excludes("--kind");
-  verb->add_flag("--spectrum", c.spectrum, "Amplitudes over frequency (Hann's window, straight line taken off)")
+  verb->add_flag("--spectrum", c.spectrum, "Amplitudes over frequency (Hann's window, straight line removed)")
       ->excludes(psd)
       ->excludes("--x")
       ->excludes("--kind");

@@ -3,6 +3,7 @@ import json
 import os
 import re
 import subprocess
+import sys
 import tomllib
 import unittest
 import urllib.parse
@@ -28,6 +29,12 @@ class Usage(ProgramTest):
                 self.assertIn("Example:", text)
                 self.assertIn(f"bough {verb} ", text)
                 self.assertIn("--quiet", text)
+
+    def test_page_of_options_is_what_the_program_prints(self):
+        sys.path.insert(0, os.path.join(SOURCE, "tools"))
+        from command_reference import PAGE, make_page
+        with open(PAGE) as f:
+            self.assertEqual(f.read(), make_page(PROGRAM))
 
     def test_unknown_verb_is_a_usage_error_with_the_nearest_match(self):
         self.fails(2, "reduse", "x.toml", says=['did you mean "reduce"'], error="cli.unknown-verb")
