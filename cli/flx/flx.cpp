@@ -124,7 +124,7 @@ int run_flx(const FlxVerbOptions& o) {
 void add_flx(CLI::App& app, Action& action) {
   auto o = std::make_shared<FlxVerbOptions>();
   auto* verb = add_verb(app, "flx", "Flexible bodies become a .FLX file for TREETOPS, or such a file is read");
-  verb->add_option("body", o->bodies, "Flexible-body files that bough reduce wrote; several stand in one .FLX");
+  verb->add_option("body", o->bodies, "Flexible-body files that bough reduce wrote; several go into one .FLX");
   verb->add_option("--read", o->read,
                    "Print this .FLX file block by block, of FILE.FLX:2 the body with the id 2; with -o write it again");
   verb->add_flag("--special-nodes", o->special_nodes,

@@ -483,12 +483,20 @@ class Route {
         }
         continue;
       }
-      BOUGH_DEMAND(element.type == records::ElementType::Spring);
+      if (element.type == records::ElementType::Bushing) {
+        add_bushing(element, motion, to, dissipated);
+        continue;
+      }
+      if (element.type == records::ElementType::Contact) {
+        add_contact(element, motion, to, dissipated);
+        continue;
+      }
+      if (element.type == records::ElementType::Drag) {
+        add_drag(element, motion, to, power);
+        continue;
+      }
       const auto get_span = [&](const Motion& poses) {
-        const auto get_end = [&](const records::EndRecord& end) {
-          return calc_marker(find_body(end.body), end.node, end.position, end.rotation, poses).p;
-        };
-        return get_end(element.to) - get_end(element.from);
+        return calc_end(element.to, poses).p - calc_end(element.from, poses).p;
       };
       const Vec span = get_span(motion);
       const double length = span.at.norm(), rate = span.at.dot(span.d1) / length;
@@ -500,6 +508,73 @@ class Route {
       power -= driven * rate;
       dissipated += element.damping * rate * rate;
     }
+  }
+
+  Pose calc_end(const records::EndRecord& end, const Motion& poses) const {
+    return calc_marker(find_body(end.body), end.node, end.position, end.rotation, poses);
+  }
+  /// Velocity in W of the point of a body that is at r, the body moving as the frame.
+  static Vector3d calc_velocity_at(const Pose& frame, const Vector3d& r) {
+    return frame.p.d1 + get_axial(frame.R.d1 * frame.R.at.transpose()).cross(r - frame.p.at);
+  }
+
+  /// Rate of [p; θ] of a bushing, θ by differences of the logarithm along the turn.
+  static Vector6d calc_bushing_rate(const Pose& from, const Pose& to) {
+    const Mat T = from.R.transpose();
+    const Mat R = T * to.R;
+    const Vector3d w = get_axial(R.d1 * R.at.transpose());
+    const auto calc_vector = [&](double s) -> Vector3d {
+      const Matrix3d turned = Eigen::AngleAxisd(s * w.norm(), w.normalized()).toRotationMatrix() * R.at;
+      const Eigen::AngleAxisd turn(turned);
+      return turn.angle() * turn.axis();
+    };
+    Vector6d rate;
+    rate << (T * (to.p - from.p)).d1, w.isZero(0) ? Vector3d::Zero() : differentiate(calc_vector, 0.01 / w.norm());
+    return rate;
+  }
+  void add_bushing(const records::ForceElementRecord& element, const Motion& motion, VectorXd& to, double& dissipated) {
+    const Pose a = calc_end(element.from, motion), b = calc_end(element.to, motion);
+    const Matrix3d R = a.R.at.transpose();
+    const Eigen::AngleAxisd turn(Matrix3d(R * b.R.at));
+    Vector6d x;
+    x << R * (b.p.at - a.p.at), turn.angle() * turn.axis();
+    const Vector6d rate = calc_bushing_rate(a, b), along = element.stiffness6 * x + element.damping6 * rate;
+    for (int i = 0; i < to.size(); ++i) {
+      const Motion& unit = units_[static_cast<size_t>(i)];
+      to[i] -= along.dot(calc_bushing_rate(calc_end(element.from, unit), calc_end(element.to, unit)));
+    }
+    dissipated += rate.dot(element.damping6 * rate);
+  }
+
+  void add_contact(const records::ForceElementRecord& element, const Motion& motion, VectorXd& to, double& dissipated) {
+    const Pose a = calc_end(element.from, motion), b = calc_end(element.to, motion);
+    const Vector3d d = a.p.at - b.p.at;
+    const bool is_plane = element.shape == records::ContactShape::Plane;
+    const Vector3d n = is_plane ? Vector3d(b.R.at * element.normal.normalized()) : Vector3d(d.normalized());
+    const double depth = element.radius + (is_plane ? 0 : element.to_radius) - n.dot(d);
+    if (depth <= 0) return;
+    const Vector3d at = is_plane ? Vector3d(a.p.at - n.dot(d) * n) : Vector3d(b.p.at + element.to_radius * n);
+    const Vector3d v = calc_velocity_at(a, at) - calc_velocity_at(b, at);
+    const double approach = -n.dot(v), elastic = element.stiffness * std::pow(depth, element.exponent);
+    const double normal = std::max(0.0, elastic * (1 + element.damping * approach));
+    const Vector3d slip = v + approach * n;
+    const Vector3d f = normal * n - element.friction * normal * slip / std::hypot(slip.norm(), element.slip_velocity);
+    for (int i = 0; i < to.size(); ++i) {
+      const Motion& unit = units_[static_cast<size_t>(i)];
+      to[i] +=
+          f.dot(calc_velocity_at(calc_end(element.from, unit), at) - calc_velocity_at(calc_end(element.to, unit), at));
+    }
+    dissipated -= (f - elastic * n).dot(v);
+  }
+
+  void add_drag(const records::ForceElementRecord& element, const Motion& motion, VectorXd& to, double& power) {
+    const Pose at = calc_end(element.from, motion);
+    const Vector3d v = at.p.d1 - element.wind;
+    const bool is_plate = element.normal.norm() > 0;
+    const double seen = is_plate ? std::abs((at.R.at * element.normal.normalized()).dot(v)) : v.norm();
+    const Vector3d f = -0.5 * element.density * element.coefficient * element.area * seen * v;
+    for (int i = 0; i < to.size(); ++i) to[i] += f.dot(calc_end(element.from, units_[static_cast<size_t>(i)]).p.d1);
+    power += f.dot(at.p.d1);
   }
 
   /// One state_space of hinge sensors and inputs, and actuators on hinges.
