@@ -8,6 +8,7 @@
 #include "fe/matrices/system.hpp"
 #include "fe/statics/build_model.hpp"
 #include "fe/statics/preload.hpp"
+#include "formats/records/load_name.hpp"
 
 namespace bough::modal {
 
@@ -76,7 +77,7 @@ std::vector<BucklingCases> list_buckling_cases(const records::Deck& deck, int as
 
 std::string describe_load(const records::Subcase& statics) {
   std::string text = "load factors of ";
-  if (statics.load != 0) text += "LOAD " + std::to_string(statics.load);
+  if (statics.load != 0) text += records::name_load(statics);
   if (statics.temperature != 0)
     text += (statics.load ? ", " : "") + std::string("TEMPERATURE ") + std::to_string(statics.temperature);
   return text + (statics.id > 0 ? " (subcase " + std::to_string(statics.id) + ")" : "");

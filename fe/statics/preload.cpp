@@ -8,6 +8,7 @@
 #include "fe/matrices/system.hpp"
 #include "fe/statics/build_model.hpp"
 #include "fe/statics/static_case.hpp"
+#include "formats/records/load_name.hpp"
 
 namespace bough::fe {
 namespace {
@@ -48,7 +49,7 @@ std::vector<const records::Subcase*> list_chain(const records::Deck& deck, int i
 
 std::string describe(const records::Subcase& subcase) {
   std::string sets;
-  if (subcase.load != 0) sets += "LOAD " + std::to_string(subcase.load);
+  if (subcase.load != 0) sets += records::name_load(subcase);
   if (subcase.temperature != 0)
     sets += (sets.empty() ? "" : ", ") + std::string("TEMPERATURE ") + std::to_string(subcase.temperature);
   return "subcase " + std::to_string(subcase.id) + (sets.empty() ? "" : " (" + sets + ")");

@@ -4,6 +4,7 @@
 
 #include "fe/loads/loads.hpp"
 #include "fe/statics/statics.hpp"
+#include "formats/records/load_name.hpp"
 #include "modal/bases/ritz.hpp"
 #include "modal/null_motions.hpp"
 #include "modal/response/excitation.hpp"
@@ -60,8 +61,7 @@ ResidualLoads collect_residual_loads(const fe::Model& model, const records::Dyna
                                      const records::DynamicSubcase& subcase, Diagnostics& diagnostics) {
   ResidualLoads loads;
   loads.F.resize(model.num_gdofs(), 0);
-  if (subcase.load != 0)
-    add_load(calc_load(model, deck, subcase.load, diagnostics), "LOAD " + std::to_string(subcase.load), loads);
+  if (subcase.load != 0) add_load(calc_load(model, deck, subcase.load, diagnostics), records::name_load(subcase), loads);
   if (subcase.dynamics.dload != 0) {
     const auto is_transient = [&](const records::DynamicLoad& load) {
       return load.kind == records::DynamicLoad::Kind::Tload1 || load.kind == records::DynamicLoad::Kind::Tload2;

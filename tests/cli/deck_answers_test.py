@@ -98,6 +98,16 @@ class Static(ProgramTest):
         np.testing.assert_allclose(list(u.values()), [1100 * PER_NEWTON, 100 * PER_NEWTON], rtol=1e-12)
         self.assertIn("[deck.load-matrix]", said)
 
+    def test_name_of_direct_loads(self):
+        """The set that P2G makes is in no deck: messages name the command."""
+        deck = ("SOL 105\nCEND\nSPC = 1\nSUBCASE 1\n{load}SUBCASE 2\nMETHOD = 3\nBEGIN BULK\nEIGRL,3,,,1\nGRID,1,,0.,0.,0.\n"
+                "GRID,2,,.5,0.,0.\nGRID,3,,1.,0.,0.\nCBAR,1,1,1,2,0.,1.,0.\nCBAR,2,1,2,3,0.,1.,0.\nPBAR,1,1,1.-4,1.-9,2.-9,2.-9\n"
+                "MAT1,1,2.+11,,.3\nSPC1,1,123456,1\nFORCE,5,3,,1.,-1.,0.,0.\n" + self.PL.replace(",2,1,1000.", ",3,1,-1000.") + "ENDDATA\n")
+        for load, name in (("P2G = PL\n", "P2G"), ("LOAD = 5\nP2G = PL\n", "LOAD and P2G"),
+                           ("LOAD = 5\n", "LOAD 5")):
+            self.write("b.bdf", deck.format(load=load))
+            self.assertIn(f"load factors of {name} (subcase 1)", self.bough("modes", "b.bdf", "--buckling").stdout)
+
     def test_direct_loads_in_displacement_axes(self):
         """The component 2 of a grid whose CD is turned by 90 degrees is the axis of the rod."""
         turned = self.PL.replace("2,1,1000.", "2,2,-1000.") + "CORD2R,7,,0.,0.,0.,0.,0.,1.\n,0.,1.,0.\n"

@@ -81,7 +81,7 @@ class Maker {
         deck_.loads.back().terms.emplace_back(1.0, set);
       }
       subcase.load = whole;
-      subcase.commands["LOAD"] = at;
+      subcase.commands.try_emplace("LOAD", at);
     }
     std::erase_if(deck_.direct_matrices, [&](const auto& matrix) { return used.count(matrix.name) > 0; });
   }
