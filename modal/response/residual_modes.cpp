@@ -61,7 +61,8 @@ ResidualLoads collect_residual_loads(const fe::Model& model, const records::Dyna
                                      const records::DynamicSubcase& subcase, Diagnostics& diagnostics) {
   ResidualLoads loads;
   loads.F.resize(model.num_gdofs(), 0);
-  if (subcase.load != 0) add_load(calc_load(model, deck, subcase.load, diagnostics), records::name_load(subcase), loads);
+  if (subcase.load != 0)
+    add_load(calc_load(model, deck, subcase.load, diagnostics), records::name_load(subcase), loads);
   if (subcase.dynamics.dload != 0) {
     const auto is_transient = [&](const records::DynamicLoad& load) {
       return load.kind == records::DynamicLoad::Kind::Tload1 || load.kind == records::DynamicLoad::Kind::Tload2;
