@@ -6,9 +6,13 @@
 #include <charconv>
 #include <filesystem>
 #include <fstream>
+#include <initializer_list>
 #include <map>
 #include <set>
 #include <sstream>
+#include <string>
+#include <string_view>
+#include <vector>
 
 #include "base/version.hpp"
 #include "cli/common/console.hpp"
@@ -169,13 +173,38 @@ class Packing {
   std::map<std::string, std::string> files_;  ///< by name
 };
 
-/// The binary of FMUs in the build tree or where it is installed.
+/// Files of the loaded libraries whose names start with one of the prefixes, by name.
+std::map<std::string, std::string> list_loaded(std::initializer_list<std::string_view> prefixes) {
+  struct Search {
+    std::initializer_list<std::string_view> prefixes;
+    std::map<std::string, std::string> paths;
+  } search{prefixes, {}};
+  dl_iterate_phdr(
+      [](dl_phdr_info* info, std::size_t, void* data) {
+        auto& given = *static_cast<Search*>(data);
+        const std::string path = info->dlpi_name, name = fs::path(path).filename().string();
+        for (const auto prefix : given.prefixes)
+          if (name.starts_with(prefix)) given.paths[name] = path;
+        return 0;
+      },
+      &search);
+  return search.paths;
+}
+
+/// The binary of FMUs in the build tree or where it is installed: below a folder above the Python module if this code
+/// is part of it, or above the program.
 std::string find_binary() {
   std::error_code failed;
-  const auto folder = fs::read_symlink("/proc/self/exe", failed).parent_path().parent_path();
+  const auto program = fs::read_symlink("/proc/self/exe", failed);
+  std::vector<fs::path> starts;
+  for (const auto& [name, path] : list_loaded({"_bough."})) starts.push_back(fs::canonical(path, failed));
+  starts.push_back(program);
+  for (const auto& start : starts)
+    for (auto folder = start.parent_path(); folder != folder.parent_path(); folder = folder.parent_path())
+      for (const char* place : {"lib/bough_fmu.so", "lib/bough/bough_fmu.so"})
+        if (fs::is_regular_file(folder / place, failed)) return (folder / place).string();
+  const auto folder = program.parent_path().parent_path();
   const auto built = folder / "lib/bough_fmu.so", installed = folder / "lib/bough/bough_fmu.so";
-  for (const auto& path : {built, installed})
-    if (fs::is_regular_file(path, failed)) return path.string();
   throw ComputationError(
       "fmu.no-binary", {},
       "the binary of FMUs is missing: " + built.string() + " and " + installed.string() + " do not exist",
@@ -185,15 +214,7 @@ std::string find_binary() {
 /// Libraries that the binary needs and a plain system lacks, as this program has loaded them. The OpenMP runtime of
 /// muParser gets another name, so that a program with its own is not disturbed.
 std::vector<fmu::ArchiveEntry> collect_libraries(const std::string& folder) {
-  std::map<std::string, std::string> paths;
-  dl_iterate_phdr(
-      [](dl_phdr_info* info, std::size_t, void* data) {
-        const std::string path = info->dlpi_name, name = fs::path(path).filename().string();
-        if (name.starts_with("libmuparser.so") || name.starts_with("libgomp.so"))
-          (*static_cast<std::map<std::string, std::string>*>(data))[name] = path;
-        return 0;
-      },
-      &paths);
+  const auto paths = list_loaded({"libmuparser.so", "libgomp.so"});
   std::vector<fmu::ArchiveEntry> entries;
   const std::string shared = "libgomp.so", own = "libbgmp.so";
   for (const auto& [name, path] : paths) {

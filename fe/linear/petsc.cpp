@@ -7,6 +7,7 @@
 #include <cctype>
 #include <csignal>
 #include <cstdlib>
+#include <filesystem>
 #include <string>
 
 #include "base/diagnostic.hpp"
@@ -85,6 +86,20 @@ void choose_transport() {
   setenv("OMPI_MCA_orte_create_session_dirs", "0", 0);
 }
 
+/// Points Open MPI and PMIx to the components that a release contains in the folder bough-openmpi next to libmpi. They
+/// take precedence over the environment and the system, whose components belong to another library.
+void use_bundled_mpi() {
+  const auto start = find_function<int(int*, char***)>("MPI_Init");
+  Dl_info info{};
+  if (!start || dladdr(reinterpret_cast<void*>(start), &info) == 0 || !info.dli_fname) return;
+  std::error_code failed;
+  const auto folder = std::filesystem::canonical(info.dli_fname, failed).parent_path() / "bough-openmpi";
+  if (failed || !std::filesystem::is_directory(folder, failed)) return;
+  setenv("OPAL_PREFIX", folder.c_str(), 1);
+  setenv("PMIX_PKGLIBDIR", (folder / "pmix").c_str(), 1);
+  setenv("PMIX_PKGDATADIR", (folder / "share/pmix").c_str(), 1);
+}
+
 /// Open MPI puts a handler of its own in the place of ours for a moment: a signal that comes then would be lost, and
 /// waits instead.
 PetscErrorCode initialize_undisturbed() {
@@ -115,6 +130,7 @@ MpiWorld initialize_petsc() {
   PetscInitialized(&initialized);
   if (!initialized) {
     hold_threads();
+    use_bundled_mpi();
     choose_transport();
     // A crash is Bough's to report, not PETSc's.
     PetscOptionsSetValue(nullptr, "-no_signal_handler", "true");
