@@ -6,6 +6,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "cli/check/check_components.hpp"
 #include "cli/check/check_solutions.hpp"
 #include "cli/check/check_subcases.hpp"
 #include "cli/check/diagram.hpp"
@@ -100,6 +101,7 @@ void check_model(const CheckOptions& options, const records::Deck& deck, fe::Mod
   text += fmt::format("\n{} nodes, {} elements, {} dofs, {} free after constraints; {} mass\n\n", model.nodes().size(),
                       model.elements().size(), model.num_gdofs(), model.num_fdofs(),
                       model.mass_kind() == fe::MassKind::Lumped ? "lumped" : "consistent");
+  check_components(deck, text, json, diagnostics);
   text += format_sections(deck);
   text += format_mass_properties(mass) + "\n" + format_ground_check(ground) + "\n" + format_autospc(model) + "\n" +
           format_geometry(model, deck);

@@ -20,6 +20,7 @@
 #include "cli/common/text_file.hpp"
 #include "fe/statics/build_model.hpp"
 #include "formats/hdf5/files.hpp"
+#include "formats/matrices/superelements.hpp"
 #include "formats/nastran/reader.hpp"
 #include "formats/toml/specs.hpp"
 
@@ -212,8 +213,11 @@ void demand_deck(const std::string& path) {
 
 records::Deck read_deck_once(const std::string& path, const std::vector<std::string>& ignore_cards,
                              Diagnostics& diagnostics) {
-  if (!is_one_of_many()) return nastran::read_deck(path, {ignore_cards}, diagnostics);
-  return nastran::read_packed_deck(share([&] { return nastran::pack_deck(path); }), {ignore_cards}, diagnostics);
+  auto deck = is_one_of_many() ? nastran::read_packed_deck(share([&] { return nastran::pack_deck(path); }),
+                                                           {ignore_cards}, diagnostics)
+                               : nastran::read_deck(path, {ignore_cards}, diagnostics);
+  matrices::read_superelements(deck, diagnostics);
+  return deck;
 }
 
 records::BodySpec read_body_spec_once(const std::string& path, Diagnostics& diagnostics) {

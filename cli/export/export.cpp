@@ -14,6 +14,7 @@
 #include "cli/common/text_file.hpp"
 #include "cli/common/vtu_file.hpp"
 #include "cli/export/export_bodies.hpp"
+#include "cli/export/export_component.hpp"
 #include "cli/export/export_fmu.hpp"
 #include "cli/export/export_matrices.hpp"
 #include "cli/export/moving_system.hpp"
@@ -45,6 +46,7 @@ struct ExportOptions : CommonOptions {
   MovingOptions moving;
   std::vector<std::string> ignore_cards;
   FmuOptions fmu;
+  ComponentExportOptions component;
 };
 
 bool is_response(const std::string& format) { return format == "bough-frequency" || format == "bough-transient"; }
@@ -178,6 +180,17 @@ int run_export(ExportOptions o) {
   if (!o.output.empty()) check_output(o, o.output, {get_body_path(o.file)});
   Diagnostics diagnostics;
   if (o.format == "fmu") return export_system(o, console, diagnostics);
+  if (o.format == "extseout") {
+    if (o.output.empty()) {
+      console.print_error("cli.usage", "--to extseout writes three files: give their common name with -o",
+                          "see bough export --help");
+      return kUsageError;
+    }
+    const auto summary = export_component(o.file, o.output, o.component, o.ignore_cards, diagnostics);
+    console.print(diagnostics);
+    console.print(summary);
+    return kSuccess;
+  }
   if (o.format != "bdf") warn_incomplete(o.file, diagnostics);
   if (o.format == "mat") {
     if (o.output.empty()) {
@@ -216,15 +229,18 @@ void add_export(CLI::App& app, Action& action) {
           "file", o->file,
           "csv: results, modes, flexible body, linear model, sweep or response of a deck; vtu: modes file or flexible "
           "body; pvd: results; gltf: results, modes file or flexible body; bdf: Nastran deck; sid, mbdyn, flat: "
-          "flexible body; fmu: system file; mat, op4, uff: any HDF5 file of Bough that has such arrays")
+          "flexible body; extseout: Nastran deck with BSET1 or flexible body; fmu: system file; mat, op4, uff: any "
+          "HDF5 file of Bough that has such arrays")
       ->required();
   verb->add_option("--to", o->format,
                    "Format: csv, vtu (mode shapes for ParaView), pvd (the moving system for ParaView), gltf "
                    "(.glb: the moving system or modes), bdf (the deck as Bough reads it), mat (MATLAB), "
                    "op4 (Nastran OUTPUT4), uff (universal file), sid (Standard Input Data), mbdyn (.fem), flat (a "
-                   "body for hosts without HDF5), fmu (the system for other simulators)")
+                   "body for hosts without HDF5), extseout (external superelement of Nastran: .op4, .asm, .pch), fmu "
+                   "(the system for other simulators)")
       ->required()
-      ->check(CLI::IsMember({"csv", "vtu", "pvd", "gltf", "bdf", "mat", "op4", "uff", "sid", "mbdyn", "flat", "fmu"}));
+      ->check(CLI::IsMember(
+          {"csv", "vtu", "pvd", "gltf", "bdf", "mat", "op4", "uff", "sid", "mbdyn", "flat", "extseout", "fmu"}));
   verb->add_option("--channel", o->channels,
                    "csv, uff: only these: a path or folder of the file, or a sensor; with :component; may be repeated "
                    "(default: all). csv of modes or a body: modes, their table instead of the shapes. fmu: the outputs "
@@ -243,9 +259,11 @@ void add_export(CLI::App& app, Action& action) {
   verb->add_option("--units", o->fmu.units,
                    "fmu: units of the system file, as mm-N-tonne or m-kg-s, for the units of the variables");
   add_set_option(*verb, o->fmu.set);
-  verb->add_option("--ignore", o->ignore_cards, "bdf: leave this card out; may be repeated")->allow_extra_args(false);
+  verb->add_option("--ignore", o->ignore_cards, "bdf, extseout: leave this card out; may be repeated")
+      ->allow_extra_args(false);
   add_body_export_options(*verb, o->body);
   add_moving_options(*verb, o->moving);
+  add_component_options(*verb, o->component);
   add_common_options(*verb, *o, kOutput,
                      "Write to this file instead of stdout; fmu: again with a signal, another output of the FMU");
   verb->get_option("--output")->multi_option_policy(CLI::MultiOptionPolicy::Join);
@@ -260,7 +278,7 @@ void add_export(CLI::App& app, Action& action) {
       "  bough export boom-modes.h5 --to uff -o boom.uff\n  bough export boom.h5 --to sid -o boom.SID_FEM\n"
       "  bough export boom.h5 --to mbdyn -o boom.fem\n  bough export boom.h5 --to flat -o boom.flat\n  bough export "
       "spinup.toml --to fmu --fmi 2 --channel tip_deflection:y -o spinup.fmu\n  bough export boom.bdf --to bdf -o "
-      "plain.bdf");
+      "plain.bdf\n  bough export panel.bdf --to extseout -o panel");
   verb->callback([&action, o] { action = [o] { return run_export(*o); }; });
 }
 

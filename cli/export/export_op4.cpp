@@ -4,61 +4,14 @@
 
 #include "cli/common/body_files.hpp"
 #include "cli/export/export_matrices.hpp"
+#include "cli/export/op4_matrices.hpp"
 #include "formats/hdf5/files.hpp"
 #include "formats/hdf5/linear_file.hpp"
 #include "formats/hdf5/sparse_file.hpp"
-#include "formats/matrices/op4.hpp"
 
 namespace bough::cli {
 
 namespace {
-
-/// Compressed rows of a symmetric matrix hold (j, i) for every (i, j).
-bool is_symmetric(const records::SparseMatrix& a) {
-  if (a.num_rows != a.num_cols) return false;
-  const auto find = [&](int row, int column) {
-    const auto begin = a.indices.begin() + a.indptr[to_size(row)], end = a.indices.begin() + a.indptr[to_size(row) + 1];
-    const auto at = std::lower_bound(begin, end, column);
-    return at == end || *at != column ? 0.0 : a.data[to_size(at - a.indices.begin())];
-  };
-  for (int r = 0; r < a.num_rows; ++r)
-    for (int k = a.indptr[to_size(r)]; k < a.indptr[to_size(r) + 1]; ++k)
-      if (a.data[to_size(k)] != find(a.indices[to_size(k)], r)) return false;
-  return true;
-}
-
-class Op4Text {
- public:
-  void put(const std::string& name, const Eigen::MatrixXd& dense) {
-    if (dense.size() == 0) return;
-    records::SparseMatrix a;
-    a.num_rows = static_cast<int>(dense.rows());
-    a.num_cols = static_cast<int>(dense.cols());
-    a.indptr.push_back(0);
-    for (Eigen::Index r = 0; r < dense.rows(); ++r) {
-      for (Eigen::Index c = 0; c < dense.cols(); ++c)
-        if (dense(r, c) != 0) {
-          a.indices.push_back(static_cast<int>(c));
-          a.data.push_back(dense(r, c));
-        }
-      a.indptr.push_back(static_cast<int>(a.indices.size()));
-    }
-    put(name, a);
-  }
-  void put(const std::string& name, const records::SparseMatrix& a) {
-    matrices::Matrix matrix;
-    matrix.name = name;
-    matrix.form = a.num_rows != a.num_cols ? matrices::kRectangular
-                  : is_symmetric(a)        ? matrices::kSymmetric
-                                           : matrices::kSquare;
-    matrix.values = a;
-    matrices::write_op4(out_, matrix, {});
-  }
-  std::string take() const { return out_.str(); }
-
- private:
-  std::ostringstream out_;
-};
 
 std::string number(const std::string& name, int i, int width) {
   auto digits = std::to_string(i);
@@ -80,7 +33,7 @@ Eigen::MatrixXd make_nodes(const std::vector<int>& id, const Eigen::MatrixXd& xy
   return nodes;
 }
 
-void put_body(Op4Text& out, const records::FlexBody& body, const std::optional<exports::ReducedSolid>& solid) {
+void put_body(Op4Matrices& out, const records::FlexBody& body, const std::optional<exports::ReducedSolid>& solid) {
   out.put("MASS", Eigen::MatrixXd::Constant(1, 1, body.mass));
   out.put("CG", body.cg);
   out.put("INERTIA", body.inertia);
@@ -137,7 +90,7 @@ std::string make_op4_name(const std::string& path) {
 
 std::string make_op4(const std::string& file, Diagnostics& diagnostics) {
   const auto format = read_file_format(file);
-  Op4Text out;
+  Op4Matrices out;
   if (format == "bough-flexbody") {
     const auto body = read_body(file, diagnostics);
     put_body(out, body, find_solid(body, file, diagnostics));

@@ -19,6 +19,7 @@
 #include "fe/statics/static_case.hpp"
 #include "formats/listing/f06.hpp"
 #include "formats/listing/op2.hpp"
+#include "formats/matrices/superelements.hpp"
 #include "formats/nastran/dynamic_reader.hpp"
 #include "formats/records/params.hpp"
 
@@ -72,6 +73,7 @@ records::DynamicDeck read_loads_deck_or_throw(const std::string& path, const fe:
   auto deck = is_one_of_many() ? nastran::read_packed_dynamic_deck(share([&] { return nastran::pack_deck(path); }),
                                                                    read, diagnostics)
                                : nastran::read_dynamic_deck(path, read, diagnostics);
+  matrices::read_superelements(deck, diagnostics);
   if (diagnostics.num_errors() > 0) fe::build_model(deck, options, diagnostics);
   diagnostics.throw_if_errors();
   return deck;

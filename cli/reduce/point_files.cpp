@@ -96,6 +96,7 @@ records::Deck read_deck_of_points(const records::BodySpec& spec, Diagnostics& di
         card.effect == records::CardEffect::Damping)
       options.ignore_cards.push_back(card.name);
   auto deck = nastran::read_deck(spec.deck, options, diagnostics);
+  deck.super = {};
   diagnostics.throw_if_errors();
   return deck;
 }

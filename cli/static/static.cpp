@@ -20,6 +20,7 @@
 #include "cli/static/static_output.hpp"
 #include "fe/statics/build_model.hpp"
 #include "fe/statics/case_solver.hpp"
+#include "formats/matrices/superelements.hpp"
 #include "formats/nastran/dynamic_reader.hpp"
 
 namespace bough::cli {
@@ -104,6 +105,7 @@ records::Deck read_static_deck(const StaticOptions& options, Diagnostics& diagno
   auto deck = is_one_of_many() ? nastran::read_packed_combined_deck(
                                      share([&] { return nastran::pack_deck(options.deck); }), read, diagnostics)
                                : nastran::read_combined_deck(options.deck, read, diagnostics);
+  matrices::read_superelements(deck, diagnostics);
   if (diagnostics.num_errors() > 0) fe::build_model(deck, model_options, diagnostics);
   diagnostics.throw_if_errors();
   return deck;

@@ -24,10 +24,11 @@ struct LoadTarget {
 };
 
 /// All return whether the set has such cards.
-bool add_point_loads(const LoadTarget& target);    ///< FORCE, FORCE1, FORCE2, MOMENT, MOMENT1, MOMENT2, SLOAD
-bool add_body_loads(const LoadTarget& target);     ///< GRAV, RFORCE
-bool add_surface_loads(const LoadTarget& target);  ///< PLOAD, PLOAD2, PLOAD4
-bool add_beam_loads(const LoadTarget& target);     ///< PLOAD1
+bool add_point_loads(const LoadTarget& target);         ///< FORCE, FORCE1, FORCE2, MOMENT, MOMENT1, MOMENT2, SLOAD
+bool add_body_loads(const LoadTarget& target);          ///< GRAV, RFORCE
+bool add_surface_loads(const LoadTarget& target);       ///< PLOAD, PLOAD2, PLOAD4
+bool add_beam_loads(const LoadTarget& target);          ///< PLOAD1
+bool add_superelement_loads(const LoadTarget& target);  ///< SELOAD
 
 /// Warns of the cards of one plain set that keep their direction although PARAM,FOLLOWK,YES would have them follow
 /// (fe.dead-load).

@@ -136,8 +136,8 @@ AppliedLoad calc_applied_load(const Model& model, const records::Deck& deck, int
     }
     const LoadTarget target{model,       deck,     plain.sid, plain.scale,   load.F,
                             diagnostics, load.A_I, load.arms, load.followers};
-    const bool found[] = {add_point_loads(target), add_body_loads(target), add_surface_loads(target),
-                          add_beam_loads(target), has_enforced(deck, plain.sid)};
+    const bool found[] = {add_point_loads(target), add_body_loads(target),         add_surface_loads(target),
+                          add_beam_loads(target),  add_superelement_loads(target), has_enforced(deck, plain.sid)};
     report_dead_loads(deck, plain.sid, diagnostics);
     if (report_unread_loads(deck, "LOAD", plain.sid, diagnostics)) continue;
     if (std::find(std::begin(found), std::end(found), true) == std::end(found)) missing.push_back(plain);
@@ -151,7 +151,17 @@ AppliedLoad calc_applied_load(const Model& model, const records::Deck& deck, int
          "load set " + std::to_string(plain.sid) + " has no FORCE, MOMENT, GRAV, PLOAD or LOAD card" +
              (severity == Severity::Warning ? "; LOAD " + std::to_string(set) + " is taken without it" : ""),
          "correct the set id or add its cards"});
-  if (!load.A_I.isZero(0)) load.F += calc_inertial_loads(model, model.mass_kind(), load.A_I);
+  if (load.A_I.isZero(0)) return load;
+  load.F += calc_inertial_loads(model, model.mass_kind(), load.A_I);
+  if (deck.superelements.empty()) return load;
+  // Nastran: loads of the interior come with the matrices of the superelement, and gravity is such a load.
+  const MatrixXd of_superelements = calc_superelement_loads(model, model.mass_kind(), load.A_I);
+  load.F -= of_superelements.col(0);
+  if (!of_superelements.isZero(0))
+    diagnostics.warning("fe.superelement-gravity", deck.locate(records::find_selection(deck, "LOAD", set)),
+                        "GRAV and RFORCE of LOAD " + std::to_string(set) +
+                            " do not act on the mass of external superelements, as in Nastran",
+                        "apply the load when the component is written, or as forces on its boundary");
   return load;
 }
 

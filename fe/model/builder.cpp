@@ -11,6 +11,7 @@
 #include "fe/model/load_selection.hpp"
 #include "fe/model/rigid.hpp"
 #include "fe/model/sets.hpp"
+#include "fe/model/superelements.hpp"
 #include "fe/model/unmodelled.hpp"
 
 namespace bough::fe {
@@ -90,6 +91,8 @@ void ModelBuilder::make_elements(const ElementFactory& factory) {
   if (options_.adjust_direct && !direct.elements.empty())
     options_.adjust_direct(deck_, model_.elements_, direct, diagnostics_);
   add(std::move(direct));
+  BOUGH_DEMAND(deck_.super.sebulk.empty() || deck_.super.is_joined);
+  add(make_superelements(deck_, model_, options_.origin.value_or(Vector3d::Zero()), model_.wtmass_, diagnostics_));
   add(make_nonstructural(deck_, model_.subcase_.nsm, model_.elements_, model_, diagnostics_));
 }
 

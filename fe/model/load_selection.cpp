@@ -15,6 +15,8 @@ bool has_load_cards(const records::Deck& deck, int set) {
   };
   const auto& c = deck.load_cards;
   return in(deck.point_loads) || in(deck.gravity) || in(c.directed) || in(c.beams) || in(c.grid_pressures) ||
+         std::any_of(deck.super.seload.begin(), deck.super.seload.end(),
+                     [set](const auto& s) { return s.set == set; }) ||
          in(c.pressures) || in(c.rotations) || in(c.spcd) || in(c.scalar);
 }
 

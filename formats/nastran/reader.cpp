@@ -6,6 +6,7 @@
 #include "formats/nastran/detail/known_params.hpp"
 #include "formats/nastran/detail/lines.hpp"
 #include "formats/nastran/detail/packing.hpp"
+#include "formats/nastran/detail/super_sections.hpp"
 #include "formats/nastran/reader.hpp"
 
 namespace bough::nastran {
@@ -22,8 +23,12 @@ void fill_deck(const detail::Source& source, const ReadOptions& options, records
   requested.is_complex = options.is_complex;
   detail::LoadColumns columns;
   requested.load_columns = &columns;
+  const auto bulk = detail::split_bulk(source);
+  for (const auto& section : bulk.sections) requested.superelements.insert(section.id);
   const auto first_line = detail::read_control(source, deck, diagnostics, requested);
-  detail::read_bulk(source, first_line, options, deck, diagnostics, dynamics);
+  detail::read_bulk(bulk.has_sections() ? bulk.main : source, first_line, options, deck, diagnostics, dynamics);
+  detail::read_assigned_files(source, deck);
+  detail::read_sections(bulk, options, deck, diagnostics);
   detail::add_load_columns(columns, deck, diagnostics);
   detail::report_params(deck, options.ignore_cards, diagnostics, dynamics != nullptr);
 }
@@ -46,9 +51,10 @@ records::CaseRequests make_requests(const detail::Source& source, Diagnostics& d
   records::CaseRequests requests;
   Diagnostics ignored_diagnostics;  // reported when the deck is read
   deck.files = source.files;
-  detail::read_control(
-      source, deck, ignored_diagnostics,
-      {.dynamics = &deck, .combinations = &requests.combinations, .combination_diagnostics = &diagnostics});
+  detail::ControlOptions control{
+      .dynamics = &deck, .combinations = &requests.combinations, .combination_diagnostics = &diagnostics};
+  for (const auto& section : detail::split_bulk(source).sections) control.superelements.insert(section.id);
+  detail::read_control(source, deck, ignored_diagnostics, control);
   requests.selections = std::move(deck.selections);
   return requests;
 }

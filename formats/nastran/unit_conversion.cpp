@@ -185,6 +185,9 @@ void UnitConverter::convert_card() {
   if (name == "PARAM") return convert_param();
   if (name == "DMIG") return convert_dmig();
   if (name == "GENEL") return convert_genel();
+  if (name == "SEBULK")
+    return diagnostics_.error("deck.unit-card", card_->at, "SEBULK takes matrices from a file, which keeps its units",
+                              "convert the deck of the component and write its files again");
   if (!convert_static_load() && !convert_dynamic() && !convert_by_table()) refuse_unknown();
 }
 

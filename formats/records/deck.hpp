@@ -18,6 +18,7 @@
 #include "formats/records/deck_continua.hpp"
 #include "formats/records/deck_loads.hpp"
 #include "formats/records/deck_special.hpp"
+#include "formats/records/deck_superelements.hpp"
 #include "formats/records/deck_temperatures.hpp"
 
 namespace bough::records {
@@ -453,6 +454,7 @@ struct Deck {
   std::map<int, std::vector<GridComponents>> suport1;  ///< SUPORT1, by set
   std::vector<GridComponents> aset, omit;              ///< ASETi, OMITi, flattened; empty: no reduction
   std::vector<GridComponents> qset;                    ///< QSETi: component modes, which are not computed
+  std::vector<GridComponents> bset, cset;              ///< BSETi, CSETi: the boundary of a component
   std::vector<Plotel> plotel;
   std::vector<Spc> spc;
   std::vector<SetUnion> spcadd;
@@ -463,7 +465,9 @@ struct Deck {
   std::vector<LoadCombination> loads;
   TemperatureCards temperatures;
   LoadCards load_cards;  ///< PLOADx, RFORCE, SPCD, SLOAD, FORCE1 ...
-  SpecialCards special;  ///< PBCOMP, GENEL, CBEND, NSM, RSPLINE, CGAP, ACCEL
+  SuperelementCards super;
+  std::vector<Superelement> superelements;  ///< of `super`, with their matrices (matrices::read_superelements)
+  SpecialCards special;                     ///< PBCOMP, GENEL, CBEND, NSM, RSPLINE, CGAP, ACCEL
   std::vector<EigenMethod> eigen_methods;
   std::vector<Param> params;
   std::optional<Param> autospc_command;  ///< AUTOSPC of the case control, above PARAM,AUTOSPC

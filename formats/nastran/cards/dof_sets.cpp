@@ -29,6 +29,8 @@ void parse_aset(Card& card, Reading& r) { read_pairs(card, 0, r.deck.aset); }
 void parse_omit(Card& card, Reading& r) { read_pairs(card, 0, r.deck.omit); }
 
 void parse_qset(Card& card, Reading& r) { read_pairs(card, 0, r.deck.qset); }
+void parse_bset(Card& card, Reading& r) { read_pairs(card, 0, r.deck.bset); }
+void parse_cset(Card& card, Reading& r) { read_pairs(card, 0, r.deck.cset); }
 
 /// C ID1 ID2 ... or C ID1 THRU ID2, of which only the points that exist are meant.
 void read_list(Card& card, Reading& r, std::vector<GridComponents>& terms) {
@@ -46,6 +48,8 @@ void read_list(Card& card, Reading& r, std::vector<GridComponents>& terms) {
 void parse_aset1(Card& card, Reading& r) { read_list(card, r, r.deck.aset); }
 void parse_omit1(Card& card, Reading& r) { read_list(card, r, r.deck.omit); }
 void parse_qset1(Card& card, Reading& r) { read_list(card, r, r.deck.qset); }
+void parse_bset1(Card& card, Reading& r) { read_list(card, r, r.deck.bset); }
+void parse_cset1(Card& card, Reading& r) { read_list(card, r, r.deck.cset); }
 
 }  // namespace
 
@@ -58,6 +62,10 @@ void add_dof_set_parsers(ParserTable& table) {
   table["OMIT1"] = parse_omit1;
   table["QSET"] = parse_qset;
   table["QSET1"] = parse_qset1;
+  table["BSET"] = parse_bset;
+  table["BSET1"] = parse_bset1;
+  table["CSET"] = parse_cset;
+  table["CSET1"] = parse_cset1;
 }
 
 }  // namespace bough::nastran::detail

@@ -17,7 +17,7 @@ void finish_fluid(Reading& r) {
   take_out(deck.spc);
   take_out(deck.load_cards.spcd);
   take_out(deck.temperatures.grids);
-  for (auto* set : {&deck.suport, &deck.aset, &deck.omit, &deck.qset}) take_out(*set);
+  for (auto* set : {&deck.suport, &deck.aset, &deck.omit, &deck.qset, &deck.bset, &deck.cset}) take_out(*set);
   for (auto& [sid, set] : deck.suport1) take_out(set);
   std::erase_if(deck.plotel, [&](const auto& e) { return is_fluid(e.ga) || is_fluid(e.gb); });
   const auto count = [&](std::size_t n, const char* what) {

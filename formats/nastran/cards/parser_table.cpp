@@ -26,6 +26,7 @@ const ParserTable& get_card_parsers() {
     add_special_element_parsers(t);
     add_special_constraint_parsers(t);
     add_nonstructural_parsers(t);
+    add_superelement_parsers(t);
     add_solution_parsers(t);
     return t;
   }();

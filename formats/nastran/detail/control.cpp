@@ -107,6 +107,10 @@ class CaseControl {
       read_load_columns(c);
     else if (is_command(c.word, "AUTOSPC", 4))
       read_autospc(c);
+    else if (is_command(c.word, "EXTSEOUT", 6))
+      read_external_output(c);
+    else if (c.word == "SUPER" && !options_.superelements.empty())
+      read_superelement(c);
     else if (c.word == "SET")
       read_named_set(c);
     else if (c.word == "PARAM")
@@ -385,6 +389,37 @@ class CaseControl {
         {make_upper(trim(rest.substr(0, comma))), make_upper(trim(value.substr(0, value.find(',')))), at_});
   }
 
+  /// EXTSEOUT(ASMBULK,EXTBULK,EXTID=n,MATOP4=unit)
+  void read_external_output(const Command& c) {
+    const auto find_value = [&](const std::string& key) {
+      const auto at = c.options.find(key + "=");
+      if (at == std::string::npos) return 0;
+      const auto value = std::string_view(c.options).substr(at + key.size() + 1);
+      return parse_int(trim(value.substr(0, value.find(',')))).value_or(0);
+    };
+    deck_.super.output = {find_value("EXTID"), find_value("MATOP4"), at_};
+    note("EXTSEOUT");
+  }
+
+  /// Subcases of SUPER = n are of the component alone, which is reduced already.
+  void read_superelement(const Command& c) {
+    const auto id = parse_int(c.value.substr(0, c.value.find_first_of(" ,")));
+    if (in_subcase_ && id && options_.superelements.count(*id) > 0) component_cases_[current().id] = at_;
+  }
+
+  void drop_component_cases() {
+    if (component_cases_.empty() || component_cases_.size() == deck_.subcases.size()) return;
+    std::string ids;
+    for (const auto& [id, at] : component_cases_) {
+      ids += (ids.empty() ? "" : ", ") + std::to_string(id);
+      std::erase_if(deck_.subcases, [&, &n = id](const auto& subcase) { return subcase.id == n; });
+      load_matrices_.erase(id);
+      if (dynamics_) dynamics_->selections.erase(id);
+    }
+    diagnostics_.note("deck.superelement-case", deck_.locate(component_cases_.begin()->second),
+                      "subcases of superelements alone are not solved: " + ids, "their output requests are not used");
+  }
+
   void bad_value(const Command& c, const char* expected = "the number of a set") {
     diagnostics_.error("deck.case-control-value", deck_.locate(at_),
                        c.word + " selects '" + std::string(c.value) + "', expected " + expected,
@@ -396,6 +431,7 @@ class CaseControl {
   void finish() {
     end_combination();
     if (deck_.subcases.empty()) deck_.subcases.push_back(above_);
+    drop_component_cases();
     if (!in_subcase_) load_matrices_[0] = load_matrices_above_;
     if (dynamics_ && !in_subcase_) dynamics_->selections[0] = selection_above_;
     choose_matrices(deck_, sets_, at_, diagnostics_);
@@ -423,6 +459,7 @@ class CaseControl {
   NamedSets sets_;
   MatrixList load_matrices_above_;           ///< P2G
   std::map<int, MatrixList> load_matrices_;  ///< by subcase
+  std::map<int, records::CardLocation> component_cases_;
 };
 
 }  // namespace

@@ -1,6 +1,7 @@
 #pragma once
 /// \file Executive and case control: which solution, which sets.
 #include <cstddef>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -23,6 +24,7 @@ struct ControlOptions {
   bool is_complex = false;              ///< with `dynamics`: those of complex modes count (ReadOptions)
   /// Commands that are only warned of (deck.unsupported-command); of ReadOptions.
   std::vector<std::string> ignore_cards = {};
+  std::set<int> superelements = {};  ///< that have a section: subcases of SUPER = n are not the model's
 };
 
 /// Reads the sections before the bulk data into deck.sol, deck.subcases and (PARAM in case control) deck.params.

@@ -42,6 +42,7 @@ std::string_view find_option(std::string_view word) {
     std::string_view command, option;
   };
   static constexpr std::array options{Option{"EKE", "EKE: 'modes --ese'"},
+                                      Option{"EXTS", "EXTSEOUT: 'export --to extseout'"},
                                       Option{"MAXM", "MAXMIN: 'static --extremes'"}};
   for (const auto& one : options)
     if (word.substr(0, 4) == one.command) return one.option;

@@ -19,7 +19,7 @@ void add_damper_parsers(ParserTable& table);              ///< CDAMPx, PDAMP, CV
 void add_shell_parsers(ParserTable& table);               ///< CQUADx, CTRIAx, CSHEAR, PSHEAR
 void add_continuum_parsers(ParserTable& table);           ///< MAT2, MAT8, MAT9, PSHELL, PCOMP, PSOLID, solids
 void add_constraint_parsers(ParserTable& table);          ///< RBE1, RBE2, RBE3, RBAR, RROD, SPC, SPC1, MPC, xADD
-void add_dof_set_parsers(ParserTable& table);             ///< SUPORT, SUPORT1, ASETi, OMITi, QSETi
+void add_dof_set_parsers(ParserTable& table);             ///< SUPORT, SUPORT1, ASETi, OMITi, BSETi, CSETi, QSETi
 void add_direct_matrix_parsers(ParserTable& table);       ///< DMIG
 void add_load_parsers(ParserTable& table);                ///< FORCE, MOMENT, GRAV, LOAD
 void add_pressure_parsers(ParserTable& table);            ///< FORCE1/2, MOMENT1/2, PLOAD, 1, 2, 4, RFORCE, SPCD, SLOAD
@@ -30,6 +30,7 @@ void add_temperature_parsers(ParserTable& table);         ///< TEMP, TEMPD, TEMP
 void add_special_element_parsers(ParserTable& table);     ///< PBCOMP, GENEL, CGAP, PGAP, CBEND, PBEND
 void add_special_constraint_parsers(ParserTable& table);  ///< RBAR1, RJOINT, RTRPLT, RTRPLT1, RSPLINE
 void add_nonstructural_parsers(ParserTable& table);       ///< NSM, NSM1, NSML, NSML1, NSMADD, ACCEL, ACCEL1
+void add_superelement_parsers(ParserTable& table);        ///< SEBULK, SECONCT, SELOAD, EXTRN, DTI
 void add_solution_parsers(ParserTable& table);            ///< EIGRL, EIGR, PARAM
 
 /// After the last card: lists of SPC1, ASET1, OMIT1, QSET1 with THRU mean the grids and scalar points that exist. Adds

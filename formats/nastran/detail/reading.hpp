@@ -143,6 +143,7 @@ struct Reading {
   std::vector<SetRange> set_ranges;
   std::map<std::string, DmigState> direct_matrices;  ///< by name
   OldElements old_elements;
+  std::set<std::string> unread_tables;          ///< DTI, by name
   std::set<int> fluid_grids, fluid_properties;  ///< GRID with CD = -1, PSOLID with FCTN = PFLUID
   records::CardLocation first_fluid;
 

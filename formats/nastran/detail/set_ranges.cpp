@@ -21,7 +21,8 @@ void expand_ranges(Reading& r) {
     for (auto id = std::lower_bound(ids.begin(), ids.end(), set.range.first); id != ids.end() && *id <= set.range.last;
          ++id)
       if (set.range.contains(*id)) set.terms->push_back({*id, set.c, set.at});
-    if (set.terms->size() == before && set.terms != &r.deck.qset)
+    if (set.terms->size() == before && set.terms != &r.deck.qset && set.terms != &r.deck.bset &&
+        set.terms != &r.deck.cset)
       r.diagnostics.error("deck.bad-list", r.deck.locate(set.at),
                           std::to_string(set.range.first) + " THRU " + std::to_string(set.range.last) +
                               " holds no grid or scalar point of the deck",

@@ -185,7 +185,7 @@ TEST(Control, TextAfterEnddataIsIgnored) {
 
 TEST(Control, MissingBeginBulkAndSuperelements) {
   EXPECT_NE(read("SOL 101\nCEND\nSPC=1\nGRID,1\n").find("deck.no-begin-bulk"), nullptr);
-  const auto r = read("CEND\nBEGIN BULK\nGRID,1\nBEGIN SUPER=1\nGRID,1,,5.\n");
+  const auto r = read("CEND\nBEGIN BULK\nGRID,1\nBEGIN AUXMODEL=1\nGRID,1,,5.\n");
   ASSERT_NE(r.find("deck.unsupported-section"), nullptr);
   EXPECT_EQ(r.find("deck.unsupported-section")->where.line, 4);
   EXPECT_EQ(r.diagnostics.num_errors(), 1) << r.get_messages();

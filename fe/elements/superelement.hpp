@@ -1,0 +1,70 @@
+#pragma once
+/// \file External superelement: the matrices of a component on its exterior points, and the rows of its interior.
+/// Sources: Craig & Bampton, AIAA J. 6 (1968) 1313; Nastran Quick Reference Guide, EXTSEOUT, SEBULK, SECONCT.
+#include <map>
+
+#include "fe/elements/carried.hpp"
+#include "fe/elements/damping.hpp"
+#include "fe/elements/element.hpp"
+#include "fe/elements/stress_state.hpp"
+
+namespace bough::fe {
+
+/// K, M, B and K4 (structural damping) given on N dofs in basic axes; empty: zero. The interior has followed these dofs
+/// already: K has the rigid-body motions of the component to the round-off of its condensation.
+class Superelement final : public Element, public OffsetMass, public Damping {
+ public:
+  struct Matrices {
+    MatrixXd K, M, B, K4;
+    MatrixXd P;                       ///< loads, a column each
+    std::map<int, int> load_columns;  ///< of P, by load of the component
+  };
+
+  Superelement(int id, std::vector<int> nodes, std::vector<int> gdofs, Matrices matrices)
+      : Element(id, "SEBULK", std::move(nodes), std::move(gdofs)), m_(std::move(matrices)) {
+    if (m_.K4.size() > 0) set_structural_damping(1);  // responses look for it; the values are those of K4
+  }
+
+  void add_stiffness(double scale, Eigen::Ref<MatrixXd> K) const override { add(scale, m_.K, K); }
+  /// Consistent and lumped alike.
+  void add_mass(MassKind, double scale, Eigen::Ref<MatrixXd> M) const override { add(scale, m_.M, M); }
+  void add_structural_damping(double g, Eigen::Ref<MatrixXd> K) const override;
+  const OffsetMass* offset_mass(MassKind) const override { return m_.M.size() > 0 ? this : nullptr; }
+  /// False: its mass is known by its momenta alone.
+  bool add_carried(MassKind, const Eigen::Ref<const Matrix3Xd>&, CarriedMass&) const override { return false; }
+  const Damping* damping() const override { return m_.B.size() > 0 ? this : nullptr; }
+  void add_damping(double scale, Eigen::Ref<MatrixXd> B) const override { add(scale, m_.B, B); }
+  /// Forces of a load of the component on the N dofs, in basic; empty: it has no such load.
+  VectorXd get_load(int load) const {
+    const auto column = m_.load_columns.find(load);
+    return column == m_.load_columns.end() ? VectorXd() : VectorXd(m_.P.col(column->second));
+  }
+
+ private:
+  static void add(double scale, const MatrixXd& of, Eigen::Ref<MatrixXd> sum) {
+    if (of.size() > 0) sum += scale * of;
+  }
+
+  Matrices m_;
+};
+
+/// Recovered values of the interior of a superelement: rows times the motion of its exterior points.
+class RecoveredItem final : public Element, public PrintedForces {
+ public:
+  /// card: "MUG1_101"; rows: in basic axes of the exterior points, components.size() x N.
+  RecoveredItem(int id, std::string card, std::vector<int> nodes, std::vector<int> gdofs,
+                std::vector<std::string> components, MatrixXd rows)
+      : Element(id, std::move(card), std::move(nodes), std::move(gdofs)),
+        components_(std::move(components)),
+        rows_(std::move(rows)) {}
+
+  const PrintedForces* printed_forces() const override { return this; }
+  std::vector<std::string> printed_force_names() const override { return components_; }
+  VectorXd calc_printed_forces(const Eigen::Ref<const VectorXd>& u) const override { return rows_ * u; }
+
+ private:
+  std::vector<std::string> components_;
+  MatrixXd rows_;
+};
+
+}  // namespace bough::fe

@@ -1,0 +1,191 @@
+#include "fe/model/superelements.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cstdio>
+#include <map>
+#include <optional>
+
+#include "fe/elements/superelement.hpp"
+#include "fe/model/coordinates.hpp"
+
+namespace bough::fe {
+namespace {
+
+using Eigen::Index;
+
+std::string show_distance(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g", value);
+  return text;
+}
+
+/// Components of a row of Nastran's linear results: named where the order of the item codes is known.
+std::vector<std::string> name_components(const std::string& table, const records::RecoveryItem& item) {
+  const auto is = [&](const char* letters) { return table.starts_with(letters); };
+  if (is("MUG") || is("MQG")) {
+    if (item.num_rows == 1) return {"t1"};
+    if (item.num_rows == 6) return {"t1", "t2", "t3", "r1", "r2", "r3"};
+  }
+  constexpr int kBar = 34, kRod = 1, kConrod = 10, kTube = 3;
+  if (is("MEF") && item.type == kBar && item.num_rows == 8)
+    return {"moment1_a", "moment2_a", "moment1_b", "moment2_b", "shear1", "shear2", "axial", "torque"};
+  if (is("MEF") && (item.type == kRod || item.type == kConrod || item.type == kTube) && item.num_rows == 2)
+    return {"axial", "torque"};
+  if (is("MES") && item.type == kBar && item.num_rows == 9)
+    return {"stress1_a", "stress2_a", "stress3_a", "stress4_a", "stress_axial",
+            "stress1_b", "stress2_b", "stress3_b", "stress4_b"};
+  std::vector<std::string> names;
+  for (int k = 1; k <= item.num_rows; ++k) names.push_back("c" + std::to_string(k));
+  return names;
+}
+
+class SuperelementMaker {
+ public:
+  SuperelementMaker(const records::Deck& deck, const records::Superelement& record, const NodeTable& nodes,
+                    const Vector3d& origin, Diagnostics& diagnostics)
+      : deck_(deck),
+        record_(record),
+        nodes_(nodes),
+        diagnostics_(diagnostics),
+        systems_(*record.section, origin, diagnostics) {}
+
+  void add(double wtmass, ElementList& list) {
+    if (!connect()) return;
+    const MatrixXd P = record_.P.size() == 0 ? MatrixXd() : MatrixXd(C_.transpose() * record_.P);
+    Superelement::Matrices matrices{turn(record_.K),     turn(record_.M) / wtmass, turn(record_.B), turn(record_.K4), P,
+                                    record_.load_columns};
+    list.add(std::make_unique<Superelement>(record_.id, nodes_joined_, gdofs_, std::move(matrices)));
+    for (const auto& table : record_.recovery)
+      for (const auto& item : table.items) {
+        constexpr int kScalarPoint = 2;
+        const bool is_motion = table.name.starts_with("MUG") || table.name.starts_with("MQG");
+        const std::string card =
+            table.name + "_" + std::to_string(record_.id) + (is_motion && item.type == kScalarPoint ? "_scalar" : "");
+        list.add(std::make_unique<RecoveredItem>(item.id, card, nodes_joined_, gdofs_,
+                                                 name_components(table.name, item),
+                                                 MatrixXd(table.rows.middleRows(item.first_row, item.num_rows) * C_)));
+      }
+  }
+
+ private:
+  void error(std::string what, std::string advice) {
+    diagnostics_.error("fe.superelement-boundary", deck_.locate(record_.at),
+                       "superelement " + std::to_string(record_.id) + ": " + std::move(what), std::move(advice));
+  }
+
+  MatrixXd turn(const MatrixXd& own) const {
+    return own.size() == 0 ? MatrixXd() : MatrixXd(C_.transpose() * own * C_);
+  }
+
+  const records::Grid* find_own(int id) const {
+    const auto& grids = record_.section->grids;
+    const auto found = std::find_if(grids.begin(), grids.end(), [id](const auto& grid) { return grid.id == id; });
+    return found == grids.end() ? nullptr : &*found;
+  }
+
+  /// Node that an exterior point joins, or -1 after an error.
+  int find_node(const records::ExteriorPoint& point, const records::Grid* own, const Vector3d& x) {
+    const std::string who = (own ? "exterior grid " : "exterior scalar point ") + std::to_string(point.id);
+    const auto card = record_.joined.find(point.id);
+    int index = -1;
+    if (card != record_.joined.end()) {
+      index = nodes_.find_node(card->second);
+      if (index < 0)
+        return error(who + " is joined to " + std::to_string(card->second) + ", which the main bulk data does not have",
+                     "include the .asm file of the superelement, or correct SECONCT"),
+               -1;
+    } else if (record_.joins_places && own) {
+      index = find_place(x);
+    } else if (record_.joins_places) {
+      index = nodes_.find_node(point.id);
+    }
+    if (index < 0)
+      return error(who + " joins no point of the main bulk data",
+                   own ? "give SECONCT, or a grid at its place" : "give SECONCT, or an SPOINT of its id"),
+             -1;
+    const Node& node = nodes_.node(index);
+    if ((node.num_dofs == 6) != (own != nullptr))
+      return error(who + " is joined to " + (node.num_dofs == 6 ? "grid " : "scalar point ") + std::to_string(node.id),
+                   "join grids to grids, scalar points to scalar points"),
+             -1;
+    // A tolerance of places is a length of any unit: a boundary that was moved by mistake is off by more.
+    const double away = own ? (node.x - x).norm() : 0, allowed = std::max(record_.tolerance, 1e-6 * x.norm());
+    if (own && record_.checks_places && away > std::max(allowed, 1e-5))
+      return error(who + " is " + show_distance(away) + " away from grid " + std::to_string(node.id) + " that it joins",
+                   "the matrices are of another boundary, or the component was moved: SELOC is not supported"),
+             -1;
+    return index;
+  }
+
+  int find_place(const Vector3d& x) const {
+    for (const auto& grid : deck_.grids) {
+      const int index = nodes_.find_node(grid.id);
+      if (index >= 0 && (nodes_.node(index).x - x).norm() <= std::max(record_.tolerance, 1e-5)) return index;
+    }
+    return -1;
+  }
+
+  /// Nodes, rows of the g-set and the map C from the joined nodes' dofs (basic) to the exterior dofs.
+  bool connect() {
+    std::vector<std::pair<int, MatrixXd>> parts;  // by point: node, rows of its exterior dofs
+    std::map<int, Index> first;                   // by node: its first column
+    bool is_ok = true;
+    for (const auto& point : record_.points) {
+      const auto* own = find_own(point.id);
+      Vector3d x = Vector3d::Zero();
+      MatrixXd rows = MatrixXd::Ones(1, 1);
+      if (point.c != 0 && !own) {
+        error("exterior grid " + std::to_string(point.id) + " has no GRID in its section",
+              "include the whole .pch file");
+        is_ok = false;
+        continue;
+      }
+      if (own) {
+        x = systems_.get_grid_position(static_cast<int>(own - record_.section->grids.data()));
+        const Matrix3d R = systems_.calc_axes(own->cd, x, deck_.locate(own->at), diagnostics_).transpose();
+        rows.setZero(std::popcount(point.c), 6);
+        for (Index r = 0, c = 0; c < 6; ++c)
+          if (point.c >> c & 1u) rows.row(r++).segment<3>(3 * (c / 3)) = R.row(c % 3);
+      }
+      const int index = find_node(point, own, x);
+      is_ok = is_ok && index >= 0;
+      if (index < 0) continue;
+      if (first.emplace(index, 0).second) nodes_joined_.push_back(index);
+      parts.emplace_back(index, std::move(rows));
+    }
+    if (!is_ok) return false;
+    for (const int index : nodes_joined_) {
+      const Node& node = nodes_.node(index);
+      first[index] = static_cast<Index>(gdofs_.size());
+      for (int i = 0; i < node.num_dofs; ++i) gdofs_.push_back(node.first_gdof + i);
+    }
+    C_.setZero(record_.num_dofs(), static_cast<Index>(gdofs_.size()));
+    Index row = 0;
+    for (const auto& [index, rows] : parts) {
+      C_.block(row, first[index], rows.rows(), rows.cols()) = rows;
+      row += rows.rows();
+    }
+    return true;
+  }
+
+  const records::Deck& deck_;
+  const records::Superelement& record_;
+  const NodeTable& nodes_;
+  Diagnostics& diagnostics_;
+  CoordinateSystems systems_;
+  std::vector<int> nodes_joined_, gdofs_;
+  MatrixXd C_;
+};
+
+}  // namespace
+
+ElementList make_superelements(const records::Deck& deck, const NodeTable& nodes, const Vector3d& origin, double wtmass,
+                               Diagnostics& diagnostics) {
+  ElementList list;
+  for (const auto& record : deck.superelements)
+    SuperelementMaker(deck, record, nodes, origin, diagnostics).add(wtmass, list);
+  return list;
+}
+
+}  // namespace bough::fe
