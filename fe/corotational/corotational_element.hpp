@@ -17,8 +17,8 @@ class CorotationalElement {
   bool follows_nodes() const { return follows_nodes_; }
   int num_dofs() const { return static_cast<int>(K_.rows()); }
 
-  /// Coefficients 1 to 4 of ∂V/∂u along u(ε) = Σ ε^k u_k: conjugate to translations and rotation vectors in basic.
-  /// u, result: N x 4 m for m curves, the four orders of each side by side.
+  /// Coefficients 1 to 5 of ∂V/∂u along u(ε) = Σ ε^k u_k: conjugate to translations and rotation vectors in basic.
+  /// u, result: N x 5 m for m curves, the five orders of each side by side.
   MatrixXd calc_forces(const Eigen::Ref<const MatrixXd>& u) const;
 
   /// Parts of V, for tests: V = ½ dᵀKd + ½ Σ (F d)_m w_m + ⅛ wᵀEw, w_m = dᵀP_m d.

@@ -12,7 +12,7 @@ namespace bough::fe {
 
 using ElementSpan = std::vector<std::unique_ptr<const Element>>;
 
-/// Coefficients 1 to 4 of ∂V/∂u along m curves u(ε) = Σ ε^k u_k. u, result: num_gdofs x 4 m, the orders of a curve side
+/// Coefficients 1 to 5 of ∂V/∂u along m curves u(ε) = Σ ε^k u_k. u, result: num_gdofs x 5 m, the orders of a curve side
 /// by side. One pass over the elements.
 MatrixXd calc_force_series(const ElementSpan& elements, const std::vector<Node>& nodes,
                            const Eigen::Ref<const MatrixXd>& u);

@@ -1,7 +1,7 @@
 #pragma once
 /// \file Truncated power series in one variable ε, and rotations along them (docs/theory/third-order.md).
 ///
-/// A series is an array of its coefficients, orders 0 to 4, exact to the last order kept. Rotation vectors begin at
+/// A series is an array of its coefficients, orders 0 to 5, exact to the last order kept. Rotation vectors begin at
 /// order 1: they are those of a motion away from the undeformed state.
 #include <array>
 
@@ -9,7 +9,7 @@
 
 namespace bough::fe {
 
-constexpr int kSeriesTop = 4;  ///< highest order kept
+constexpr int kSeriesTop = 5;  ///< highest order kept
 
 template <typename T>
 using Series = std::array<T, kSeriesTop + 1>;
