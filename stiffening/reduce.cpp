@@ -12,6 +12,7 @@ ReducedBody reduce_body(const BodyRequest& request) {
   request.report("model");
   const BodyModel body_model = build_body_model(request);
   const fe::Model& model = *body_model.model;
+  check_third_order(request, model);
   records::FlexBody body = make_rigid_body(request, model);
 
   // The factor before the modes: its check of a mechanism names the dofs.
@@ -37,10 +38,11 @@ ReducedBody reduce_body(const BodyRequest& request) {
   request.report("mass integrals");
   if (!inertial.M) inertial = calc_body_inertial_loads(model);
   set_integrals(request, model, basis.Phi, inertial, body);
+  set_loads(request, model, basis.Phi, patterns, body);
+  set_third_order(request, model, basis, patterns, support, inertial, body);
   inertial.M = {};
 
   request.report("static solutions");
-  set_loads(request, model, basis.Phi, patterns, body);
   const SolvedLoads solved = solve_loads(request, patterns, inertial.F_I, support);
   set_recovery(request, model, basis.Phi, patterns, solved, body);
   request.report("geometric stiffness");

@@ -65,6 +65,10 @@ int run_select(const SelectOptions& o) {
   }
   weigh_losses(weighings, s);
   warn_of_losses(o, s, diagnostics);
+  if (!body.third_order.empty() && s.kept.size() < static_cast<std::size_t>(body.num_modes()))
+    diagnostics.warning("select.third-order", {o.body},
+                        "the third order of the body is of all its modes: the body with fewer has second order",
+                        "reduce the deck again with [body.modes] select, to keep third order");
   console.print(diagnostics);
   if (o.json)
     console.print_data(make_json(body, s).dump(2) + "\n");

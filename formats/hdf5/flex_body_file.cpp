@@ -4,6 +4,7 @@
 #include "formats/hdf5/body_accuracy.hpp"
 #include "formats/hdf5/detail/reader.hpp"
 #include "formats/hdf5/detail/recovery.hpp"
+#include "formats/hdf5/detail/third_order.hpp"
 #include "formats/hdf5/detail/writer.hpp"
 #include "formats/hdf5/files.hpp"
 #include "formats/records/body_faults.hpp"
@@ -32,47 +33,6 @@ void append(std::vector<double>& data, const Matrix& m) {
   for (Eigen::Index i = 0; i < m.rows(); ++i) {
     for (Eigen::Index j = 0; j < m.cols(); ++j) data.push_back(m(i, j));
   }
-}
-
-void write_integrals(FileWriter& file, const std::string& method, const MassIntegrals& g) {
-  if (g.empty()) return;
-  const std::string path = "/integrals/" + method + "/";
-  const auto n = to_dim(static_cast<std::size_t>(g.gamma0.cols()));
-  BOUGH_DEMAND(g.gamma2.size() == n && g.gamma3.size() == n && g.gamma4.size() == n);
-  file.write_matrix(path + "gamma0", g.gamma0.transpose(), {"sum of m phi_j: row j", "M L/E"});
-  file.write_matrix(path + "gamma1", g.gamma1.transpose(), {"sum of J psi_j + p x m phi_j: row j", "M L^2/E"});
-  std::vector<double> gamma2, gamma3, gamma4;
-  for (std::size_t j = 0; j < n; ++j) {
-    append(gamma2, g.gamma2[j].transpose());
-    append(gamma3, g.gamma3[j]);
-    BOUGH_DEMAND(g.gamma4[j].size() == n);
-    for (const auto& block : g.gamma4[j]) append(gamma4, block);
-  }
-  file.write_numbers(path + "gamma2", {n, n, 3}, gamma2.data(), {"sum of m phi_j x phi_k: j, k, axis", "M L^2/E^2"});
-  file.write_numbers(path + "gamma3", {n, 3, 3}, gamma3.data(), {"linear change of inertia: j, 3 x 3", "M L^2/E"});
-  file.write_numbers(path + "gamma4", {n, n, 3, 3}, gamma4.data(),
-                     {"quadratic change of inertia: j, k, 3 x 3", "M L^2/E^2"});
-}
-
-MassIntegrals read_integrals(FileReader& file, const std::string& method, long n) {
-  MassIntegrals g;
-  const std::string path = "/integrals/" + method;
-  if (!file.has(path)) return g;
-  g.gamma0 = file.read_matrix(path + "/gamma0", n, 3).transpose();
-  g.gamma1 = file.read_matrix(path + "/gamma1", n, 3).transpose();
-  const NumberArray gamma2 = file.read_array(path + "/gamma2", {n, n, 3});
-  const NumberArray gamma3 = file.read_array(path + "/gamma3", {n, 3, 3});
-  const NumberArray gamma4 = file.read_array(path + "/gamma4", {n, n, 3, 3});
-  using Row3 = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
-  for (long j = 0; j < n; ++j) {
-    g.gamma2.emplace_back(Eigen::Map<const MatrixXd>(gamma2.data.data() + j * n * 3, 3, n));
-    g.gamma3.emplace_back(Eigen::Map<const Row3>(gamma3.data.data() + j * 9));
-    g.gamma4.emplace_back();
-    for (long k = 0; k < n; ++k) {
-      g.gamma4.back().emplace_back(Eigen::Map<const Row3>(gamma4.data.data() + (j * n + k) * 9));
-    }
-  }
-  return g;
 }
 
 /// Left out where the record does not know them (older files, other formats).
@@ -202,10 +162,49 @@ void read_method(FileReader& file, FlexBody& body) {
 
 }  // namespace
 
+void write_integrals(FileWriter& file, const std::string& path, const MassIntegrals& g) {
+  if (g.empty()) return;
+  const auto n = to_dim(static_cast<std::size_t>(g.gamma0.cols()));
+  BOUGH_DEMAND(g.gamma2.size() == n && g.gamma3.size() == n && g.gamma4.size() == n);
+  file.write_matrix(path + "/gamma0", g.gamma0.transpose(), {"sum of m phi_j: row j", "M L/E"});
+  file.write_matrix(path + "/gamma1", g.gamma1.transpose(), {"sum of J psi_j + p x m phi_j: row j", "M L^2/E"});
+  std::vector<double> gamma2, gamma3, gamma4;
+  for (std::size_t j = 0; j < n; ++j) {
+    append(gamma2, g.gamma2[j].transpose());
+    append(gamma3, g.gamma3[j]);
+    BOUGH_DEMAND(g.gamma4[j].size() == n);
+    for (const auto& block : g.gamma4[j]) append(gamma4, block);
+  }
+  file.write_numbers(path + "/gamma2", {n, n, 3}, gamma2.data(), {"sum of m phi_j x phi_k: j, k, axis", "M L^2/E^2"});
+  file.write_numbers(path + "/gamma3", {n, 3, 3}, gamma3.data(), {"linear change of inertia: j, 3 x 3", "M L^2/E"});
+  file.write_numbers(path + "/gamma4", {n, n, 3, 3}, gamma4.data(),
+                     {"quadratic change of inertia: j, k, 3 x 3", "M L^2/E^2"});
+}
+
+MassIntegrals read_integrals(FileReader& file, const std::string& path, long n) {
+  MassIntegrals g;
+  if (!file.has(path)) return g;
+  g.gamma0 = file.read_matrix(path + "/gamma0", n, 3).transpose();
+  g.gamma1 = file.read_matrix(path + "/gamma1", n, 3).transpose();
+  const NumberArray gamma2 = file.read_array(path + "/gamma2", {n, n, 3});
+  const NumberArray gamma3 = file.read_array(path + "/gamma3", {n, 3, 3});
+  const NumberArray gamma4 = file.read_array(path + "/gamma4", {n, n, 3, 3});
+  using Row3 = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
+  for (long j = 0; j < n; ++j) {
+    g.gamma2.emplace_back(Eigen::Map<const MatrixXd>(gamma2.data.data() + j * n * 3, 3, n));
+    g.gamma3.emplace_back(Eigen::Map<const Row3>(gamma3.data.data() + j * 9));
+    g.gamma4.emplace_back();
+    for (long k = 0; k < n; ++k) {
+      g.gamma4.back().emplace_back(Eigen::Map<const Row3>(gamma4.data.data() + (j * n + k) * 9));
+    }
+  }
+  return g;
+}
+
 void write_flex_body(const FlexBody& body, const std::string& path) { write_flex_body(body, {}, path); }
 
 void write_flex_body(const FlexBody& body, const BodyAccuracy& accuracy, const std::string& path) {
-  FileWriter file(path, kFormat, kFlexBodyFormatVersion);
+  FileWriter file(path, kFormat, body.third_order.empty() ? kFlexBodyFormatVersion : kThirdOrderFormatVersion);
   file.write_source(body.source);
   file.write_attribute("/", "name", body.name);
   file.write_attribute("/", "frame", std::string(body.is_free_free ? "free" : "fixed"));
@@ -241,9 +240,9 @@ void write_flex_body(const FlexBody& body, const BodyAccuracy& accuracy, const s
   file.make_group("/integrals");
   file.write_attribute("/integrals", "method", body.integrals_method);
   if (!body.masses.empty()) file.write_attribute("/integrals", "masses", body.masses);
-  write_integrals(file, "lumped", body.lumped);
-  write_integrals(file, "consistent", body.consistent);
-  write_integrals(file, "exact", body.exact);
+  write_integrals(file, "/integrals/lumped", body.lumped);
+  write_integrals(file, "/integrals/consistent", body.consistent);
+  write_integrals(file, "/integrals/exact", body.exact);
 
   if (body.F_I.size() > 0) {
     file.write_matrix("/inertial_loads/f", body.F_I,
@@ -258,6 +257,7 @@ void write_flex_body(const FlexBody& body, const BodyAccuracy& accuracy, const s
   }
   write_stiffening(file, body);
   write_preload(file, body);
+  write_third_order(file, body);
   write_recovery(file, body);
   if (!body.strain_energy.empty()) {
     file.write_integers("/strain_energy/id", body.strain_energy.id, {"element ids", "1"});
@@ -305,9 +305,9 @@ FlexBody read_flex_body(const std::string& path) {
   body.effective_mass = file.read_matrix("/effective_mass", n, 6);
 
   read_method(file, body);
-  body.lumped = read_integrals(file, "lumped", n);
-  body.consistent = read_integrals(file, "consistent", n);
-  body.exact = read_integrals(file, "exact", n);
+  body.lumped = read_integrals(file, "/integrals/lumped", n);
+  body.consistent = read_integrals(file, "/integrals/consistent", n);
+  body.exact = read_integrals(file, "/integrals/exact", n);
 
   const bool has_loads = file.has("/inertial_loads/f"), has_full = file.has("/full/phi");
   if (has_loads || has_full || file.has("/dof_map")) body.dof_map = file.read_integer_matrix("/dof_map", -1, 2);
@@ -315,6 +315,7 @@ FlexBody read_flex_body(const std::string& path) {
   if (has_full) body.full_phi = file.read_matrix("/full/phi", body.dof_map.rows(), n);
   read_stiffening(file, body);
   read_preload(file, body);
+  read_third_order(file, body);
   read_recovery(file, body);
   if (file.has("/strain_energy/matrix")) {
     auto& energy = body.strain_energy;

@@ -79,6 +79,10 @@ Faults find_unknown_names(const FlexBody& body) {
   const auto& method = body.integrals_method;
   if (method != "lumped" && method != "consistent" && method != "exact")
     faults.push_back("/integrals has the method '" + method + "', expected lumped, consistent or exact");
+  if (!body.third_order.empty() && !is_valid_choice(body.third_order.large, body.num_modes()))
+    faults.push_back("/third_order/large holds " + std::to_string(body.third_order.num_large()) + " of " +
+                     std::to_string(body.num_modes()) + " modes, expected 1 to " + std::to_string(kMaxLargeModes) +
+                     " mode numbers, ascending, of at most " + std::to_string(kMaxThirdOrderModes) + " modes");
   const auto num_grids = static_cast<long>(body.mesh.grid_id.size());
   for (std::size_t i = 0; i < body.mesh.blocks.size(); ++i) {
     const auto& indices = body.mesh.blocks[i].connectivity;

@@ -77,6 +77,9 @@ struct BodySpec {
   std::string integrals = "exact";  ///< set the solver uses
 
   std::vector<InertialLoad> inertial_loads;  ///< empty = all twelve
+  int stiffening_order = 2;                  ///< 3: displacements to degree 4 in the large modes
+  int num_large = 0;                         ///< large modes, the first; 0: kDefaultLargeModes at most
+  std::vector<int> large_modes;              ///< or those named, from 1
   std::vector<ExternalLoadSpec> loads;
   std::optional<PreloadSpec> preload;
   std::vector<AugmentSpec> augments;

@@ -8,7 +8,9 @@
 
 #include <Eigen/Dense>
 
+#include "formats/records/mass_integrals.hpp"
 #include "formats/records/recovery.hpp"
+#include "formats/records/third_order.hpp"
 
 namespace bough::records {
 
@@ -22,16 +24,6 @@ enum class InertialLoad { ax, ay, az, alx, aly, alz, wx2, wy2, wz2, wxwy, wxwz, 
 inline constexpr int kNumInertialLoads = 12;
 
 enum class ModeKind { Normal, Constraint, Attachment, Residual };
-
-/// The five mass integrals (docs/theory/flexible-body.md §4). Column j belongs to mode j.
-struct MassIntegrals {
-  MatrixXd gamma0;                            ///< 3 x n, Σ A^T_j
-  MatrixXd gamma1;                            ///< 3 x n, Σ (A^A_j + p × A^T_j)
-  std::vector<MatrixXd> gamma2;               ///< [j] 3 x n: column k is Γ2_jk = Σ A^T_j × φ_k
-  std::vector<Matrix3d> gamma3;               ///< [j] 3 x 3
-  std::vector<std::vector<Matrix3d>> gamma4;  ///< [j][k] 3 x 3
-  bool empty() const { return gamma0.size() == 0; }
-};
 
 /// A unit load at one (node, direction), or a load pattern, whose geometric stiffness K_G2 is stored.
 struct Locator {
@@ -98,6 +90,8 @@ struct FlexBody {
   MatrixXd external_load;             ///< n x ne: ΦᵀF_ext of each locator
   MatrixXd load_resultant;            ///< 6 x ne: force and moment about Bo of each locator's load; empty: not known
   std::vector<MatrixXd> load_moment;  ///< [e] 3 x n: Σ φ_kj × f_k, what mode j adds to that moment; as load_resultant
+
+  ThirdOrder third_order;  ///< empty: the body has second order alone
 
   std::string preload;   ///< what stresses the body before anything else does; empty: nothing
   MatrixXd kg_preload;   ///< n x n: its geometric stiffness, part of modal_stiffness; empty without

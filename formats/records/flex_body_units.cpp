@@ -79,6 +79,28 @@ void scale_stiffening(FlexBody& body, const UnitChange& c) {
   }
 }
 
+void scale_third_order(FlexBody& body, const UnitChange& c) {
+  ThirdOrder& third = body.third_order;
+  if (third.empty()) return;
+  const double e = c.calc_modal(), energy = c.calc_force() * c.length;
+  for (int k = ThirdOrder::kMinEnergy; k <= ThirdOrder::kMaxEnergy; ++k)
+    third.energy[static_cast<std::size_t>(k - ThirdOrder::kMinEnergy)] *= energy / std::pow(e, k);
+  third.energy_small *= energy / std::pow(e, 3);
+  for (int k = ThirdOrder::kMinField; k <= ThirdOrder::kMaxField; ++k) {
+    const auto at = static_cast<std::size_t>(k - ThirdOrder::kMinField);
+    third.amplitudes[at] *= e / std::pow(e, k);
+    for (auto& node : third.node) {
+      node[at].leftCols(3) *= c.length / std::pow(e, k);
+      node[at].rightCols(3) /= std::pow(e, k);
+    }
+    for (std::size_t i = 0; i < body.locators.size(); ++i)
+      third.load[at].col(static_cast<Eigen::Index>(i)) *=
+          energy / std::pow(e, k) / calc_locator_unit(body.locators[i].direction, c);
+  }
+  for (auto& psi : third.fields) scale_shapes(psi, c);  // their amplitudes have the unit of a modal coordinate
+  scale_integrals(third.integrals, c);
+}
+
 void scale_recovery(FlexBody& body, const UnitChange& c) {
   for (auto& block : body.recovery) {
     const auto num = static_cast<Eigen::Index>(block.components.size());
@@ -114,6 +136,7 @@ void change_units(FlexBody& body, const UnitChange& c) {
   for (auto* integrals : {&body.lumped, &body.consistent, &body.exact}) scale_integrals(*integrals, c);
   scale_full(body, c);
   scale_stiffening(body, c);
+  scale_third_order(body, c);
   scale_recovery(body, c);
   body.strain_energy.matrix *= energy / (e * e);
   body.mesh.grid_xyz *= c.length;

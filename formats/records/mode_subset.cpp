@@ -46,6 +46,8 @@ FlexBody keep_modes(const FlexBody& body, const std::vector<int>& kept) {
     BOUGH_DEMAND(kept[i] >= 0 && kept[i] < body.num_modes() && (i == 0 || kept[i] > kept[i - 1]));
   const Cut cut(kept);
   FlexBody small = body;
+  // Third order is about the manifold of all modes; K_G1 and K_G2 stay.
+  if (static_cast<int>(kept.size()) < body.num_modes()) small.third_order = {};
   cut.entries(small.frequency_hz);
   cut.entries(small.eigenvalue);
   cut.entries(small.kind);

@@ -214,7 +214,16 @@ records::BodySpec read_body_spec_text(const std::string& text, const std::string
     }
   }
 
-  spec.inertial_loads = read_inertial(body.get_table("stiffening"), diagnostics);
+  const Fields stiffening = body.get_table("stiffening");
+  spec.inertial_loads = read_inertial(stiffening, diagnostics);
+  spec.stiffening_order = stiffening.get_int("order", 2);
+  if (const Value* large = stiffening.find("large"); large && large->is_array())
+    spec.large_modes = stiffening.get_ints("large");
+  else
+    spec.num_large = stiffening.get_int("large", 0);
+  if (stiffening.has("large") && spec.stiffening_order < 3)
+    diagnostics.error("toml.conflicting-keys", stiffening.locate("large"),
+                      "'large' names the modes of third order, but order is 2", "add order = 3, or remove 'large'");
   read_loads(body, spec, diagnostics);
   read_augments(body, spec, diagnostics);
   for (const Fields& parent : {body, Fields(root, path)})

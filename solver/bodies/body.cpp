@@ -6,6 +6,7 @@
 #include "solver/bodies/kernels.hpp"
 #include "solver/bodies/row_basis.hpp"
 #include "solver/bodies/tensor.hpp"
+#include "solver/bodies/third_order.hpp"
 
 namespace bough::solver {
 
@@ -74,6 +75,8 @@ Body Body::make_flexible(const records::FlexBody& flex, int num_modes, bool stif
   }
   if (body.K_.isDiagonal(0)) body.K_diagonal_ = body.K_.diagonal();
   if (body.D_.isDiagonal(0)) body.D_diagonal_ = body.D_.diagonal();
+  if (stiffening && n == flex.num_modes() && !flex.third_order.empty())
+    body.third_ = std::make_shared<const ThirdOrderBody>(flex);
   body.add_second_order(flex);
   body.add_flexible_nodes(flex);
   return body;
@@ -82,7 +85,7 @@ Body Body::make_flexible(const records::FlexBody& flex, int num_modes, bool stif
 void Body::add_second_order(const records::FlexBody& flex) {
   const auto& integrals = flex.integrals();
   const int n = n_;
-  field_ = AffineField::fit(flex, n, stiffened_);
+  field_ = AffineField::fit(flex, n, stiffened_ && !third_);
   const int r = field_.rank();
   const auto rows = pad(n);
   M_rest_ = MatrixXd::Zero(rows, rows);
@@ -172,7 +175,7 @@ void Body::add_flexible_nodes(const records::FlexBody& flex) {
       int locator[3];
       for (int a = 0; a < 3; ++a) locator[a] = flex.find_locator(node.id, first_direction + a);
       if (locator[0] < 0 || locator[1] < 0 || locator[2] < 0) return false;
-      if (!stiffened_ || !node.moves) return true;
+      if (!stiffened_ || third_ || !node.moves) return true;
       K2.resize(3 * n_, n_);
       for (int a = 0; a < 3; ++a) {
         const MatrixXd& full = flex.kg_external[static_cast<size_t>(locator[a])];
@@ -181,6 +184,12 @@ void Body::add_flexible_nodes(const records::FlexBody& flex) {
       }
       return true;
     };
+    // A held node outside the interface stays at rest: the fields are its motion but for a thousandth of u₂.
+    if (third_ && (node.moves || third_->is_exact(flex, node.id))) {
+      node.higher = third_->make_node_motion(flex, static_cast<size_t>(k));
+      node.monomials = third_->list();
+      node.moves = node.moves || !node.higher.is_zero();
+    }
     node.has_locators = stack_locators(1, node.K2);
     node.has_moments = stack_locators(4, node.K2_theta);
     nodes_.push_back(std::move(node));
@@ -230,6 +239,7 @@ BodyInertia Body::make_inertia() const {
   inertia.M_modal = MatrixXd::Zero(rows, rows);
   inertia.M_modal.topLeftCorner(n_, n_) = M_;
   inertia.h_modal = inertia.eta = VectorXd::Zero(rows);
+  if (third_) inertia.third.push_back(third_->make_data());
   return inertia;
 }
 

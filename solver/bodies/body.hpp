@@ -11,6 +11,7 @@
 /// stiffening is off. Products of two φ are Γ2, Γ4 and M. d'Alembert with a the inertial acceleration of Bo (in B),
 ///
 ///     M(η) [a; α; η̈] + h(η, η̇, ω) = applied
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,9 @@
 #include "solver/bodies/node.hpp"
 
 namespace bough::solver {
+
+struct ThirdOrderData;
+class ThirdOrderBody;
 
 /// M(η), h and scratch for one body; every array is sized once. But for M6, M_top and h rows are padded (kernels.hpp).
 struct BodyInertia {
@@ -33,7 +37,18 @@ struct BodyInertia {
   VectorXd h_modal, eta;           ///< η, then η̇
   AffineField::Amplitudes a = AffineField::Amplitudes::Zero(), A = a, P = a;  ///< of the field; P = ∫ρ r fᵀ
 
+  std::vector<ThirdOrderData> third;  ///< one for a body of third order
+
   MatrixXd make_M() const;  ///< (6+n)²
+};
+
+/// Scratch of ThirdOrderBody.
+struct ThirdOrderData {
+  BodyInertia linear;                    ///< of the n + m modes
+  VectorXd z, z_dot, xi, xi_dot;         ///< monomials; ξ = (η, p)
+  MatrixXd J, J_dot, M_pp, U, product;   ///< J = ∂p/∂η; M_pp is halved
+  VectorXd p_ddot, force;                ///< m, padded
+  VectorXd gradient, J_small, on_small;  ///< of the strain energy
 };
 
 /// An acceleration T r of the points of a body, T symmetric, as factors of its mass integrals. In B.
@@ -59,6 +74,8 @@ class Body {
   const MatrixXd& K() const { return K_; }
   const MatrixXd& D() const { return D_; }
   const AffineField& field() const { return field_; }
+  const ThirdOrderBody* third_order() const { return third_.get(); }  ///< nullptr: second order
+  double calc_strain_energy(const ConstVectorRef& eta) const;
 
   const std::vector<Node>& nodes() const { return nodes_; }  ///< [0] is Bo
   int find_node(int id) const;                               ///< index into nodes(), -1 when absent
@@ -88,6 +105,8 @@ class Body {
   void calc_flexible_bias(const Vector3d& w_B, const ConstVectorRef& eta, const ConstVectorRef& eta_dot,
                           BodyInertia& inertia) const;
   void add_flexible_nodes(const records::FlexBody& flex);
+  void calc_third_order_bias(const Vector3d& w_B, const ConstVectorRef& eta, const ConstVectorRef& eta_dot,
+                             BodyInertia& inertia) const;
 
   int n_ = 0;
   bool stiffened_ = false;
@@ -112,6 +131,7 @@ class Body {
   MatrixXd M_, K_, D_;
   VectorXd K_diagonal_, D_diagonal_;  ///< empty where there is more than it
   std::vector<Node> nodes_;
+  std::shared_ptr<const ThirdOrderBody> third_;
 };
 
 }  // namespace bough::solver

@@ -6,6 +6,7 @@
 
 #include "solver/bodies/kernels.hpp"
 #include "solver/bodies/tensor.hpp"
+#include "solver/bodies/third_order.hpp"
 
 namespace bough::solver {
 
@@ -162,6 +163,7 @@ void Body::calc_flexible_bias(const Vector3d& w, const ConstVectorRef& eta, cons
 }
 
 LinearField Body::make_linear_field(const Matrix3d& T, const BodyInertia& x) const {
+  if (third_) return third_->make_linear_field(T, x.third[0]);
   // Matrix Ω in place of ωωᵀ in ½ ∫ρ r·Tr = -½ Ω : J, as for ω̃ω̃ in calc_flexible_bias.
   const Matrix3d Omega = T - 0.5 * T.trace() * Matrix3d::Identity();
   Vector6d half = pack_tensor(Omega);
@@ -176,6 +178,7 @@ LinearField Body::make_linear_field(const Matrix3d& T, const BodyInertia& x) con
 
 double Body::calc_modal_force(const LinearField& field, const BodyInertia& x, int j) const {
   using Eigen::Map;
+  if (third_) return third_->calc_modal_force(field, x.third[0], j);
   double force =
       x.V.row(j).dot(Map<const Vector12d>(field.V.data())) + L_t_.row(j).dot(Map<const Vector12d>(field.L.data()));
   if (J1_rest_t_.cols() > 0) force += J1_rest_t_.row(j).dot(field.J1);
@@ -190,12 +193,28 @@ void Body::calc_rigid_bias(const Vector3d& w, double* h) const {
 }
 
 void Body::calc_mass(const ConstVectorRef& eta, BodyInertia& x) const {
-  if (n_ > 0) calc_flexible_mass(eta, x);
+  if (n_ == 0) return;
+  if (third_) return third_->calc_mass(eta, x.third[0], x);
+  calc_flexible_mass(eta, x);
+}
+
+void Body::calc_third_order_bias(const Vector3d& w, const ConstVectorRef& eta, const ConstVectorRef& eta_dot,
+                                 BodyInertia& x) const {
+  third_->calc_bias(w, eta, eta_dot, x.third[0], x);
+  add_modal(K_, K_diagonal_, eta, x.h.data() + 6);
+  add_modal(D_, D_diagonal_, eta_dot, x.h.data() + 6);
+}
+
+double Body::calc_strain_energy(const ConstVectorRef& eta) const {
+  double twice = 0;
+  for (int j = 0; j < n_; ++j) twice += eta[j] * K_.col(j).dot(eta);
+  return 0.5 * twice + (third_ ? third_->calc_energy(eta) : 0);
 }
 
 void Body::calc_bias(const Vector3d& w, const ConstVectorRef& eta, const ConstVectorRef& eta_dot,
                      BodyInertia& x) const {
   if (n_ == 0) return calc_rigid_bias(w, x.h.data());
+  if (third_) return calc_third_order_bias(w, eta, eta_dot, x);
   calc_flexible_bias(w, eta, eta_dot, x);
 }
 

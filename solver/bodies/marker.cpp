@@ -27,14 +27,15 @@ void calc_marker_position(const Body& body, const Marker& marker, const ConstVec
   }
 }
 
-void calc_marker_velocity(const Body& body, const Marker& marker, const ConstVectorRef& eta_dot, MarkerMotion& m) {
+void calc_marker_velocity(const Body& body, const Marker& marker, const ConstVectorRef& eta,
+                          const ConstVectorRef& eta_dot, MarkerMotion& m) {
   const Node& node = body.nodes()[static_cast<size_t>(marker.node)];
   Vector6d V = Vector6d::Zero();
   for (int j = 0; j < m.J.cols(); ++j) V += m.J.col(j) * eta_dot[j];
   m.v = V.head<3>();
   m.w = V.tail<3>();
   Vector3d theta_ddot;  // at η̈ = 0
-  calc_node_bias(node, eta_dot, m.gamma_v, theta_ddot);
+  calc_node_bias(node, eta, eta_dot, m.gamma_v, theta_ddot);
   const Vector3d theta_dot = m.T.inverse() * m.w;
   m.gamma_w = calc_rotation_tangent_rate(m.theta, theta_dot) + m.T * theta_ddot;
   m.gamma_v += m.gamma_w.cross(m.o) + m.w.cross(m.w.cross(m.o));

@@ -36,6 +36,7 @@ MarkerMotion make_marker_motion(const Body& body, const Marker& marker);
 /// Pose and J of a moving marker; 6n² with locators of forces, 12n² with those of moments too. No allocation.
 void calc_marker_position(const Body& body, const Marker& marker, const ConstVectorRef& eta, MarkerMotion& out);
 /// Velocity and bias, after calc_marker_position. The same cost.
-void calc_marker_velocity(const Body& body, const Marker& marker, const ConstVectorRef& eta_dot, MarkerMotion& out);
+void calc_marker_velocity(const Body& body, const Marker& marker, const ConstVectorRef& eta,
+                          const ConstVectorRef& eta_dot, MarkerMotion& out);
 
 }  // namespace bough::solver

@@ -5,8 +5,11 @@
 ///     r = p + φη + ½[ηᵀ g_a η]_a                    g_a = -K_G2(force a at the node), zero without locators
 ///     R_BK = exp(θ̃), θ = ψη + ½[ηᵀ gθ_a η]_a       gθ_a = -K_G2(moment a), likewise
 ///     velocity Jt η̇, angular velocity T(θ) Jθ η̇    Jt row a = φ_a + (g_a η)ᵀ, Jθ row a = ψ_a + (gθ_a η)ᵀ
+/// A body of third order: r = p + φη and θ = ψη plus polynomials to degree 4 in their place.
 /// All components are in B; n = number of modes (0 for a rigid body).
-#include "solver/bodies/spatial.hpp"
+#include <memory>
+
+#include "solver/bodies/polynomial.hpp"
 
 namespace bough::solver {
 
@@ -16,10 +19,12 @@ struct Node {
   Matrix3Xd phi, psi;             ///< 3 x n; translations and rotations
   RowMatrixXd K2;                 ///< 3n x n, row a + 3j: row j of K_G2(force a); empty without second-order term
   RowMatrixXd K2_theta;           ///< the same for unit moments
-  bool moves = false;             ///< φ or ψ is not zero
-  bool is_material = true;        ///< false: the origin of a free frame, which is no point of the body
-  bool has_locators = false;      ///< the body file holds all three translational locators of this node
-  bool has_moments = false;       ///< and all three of moments
+  Polynomials higher;             ///< third order: three translations, rotation vector; empty: K2 and K2_theta
+  std::shared_ptr<const MonomialList> monomials;  ///< of `higher`
+  bool moves = false;                             ///< φ or ψ is not zero
+  bool is_material = true;                        ///< false: the origin of a free frame, which is no point of the body
+  bool has_locators = false;                      ///< the body file holds all three translational locators of this node
+  bool has_moments = false;                       ///< and all three of moments
 
   /// Moves, but its file has no rotation of it: a grid of solids.
   bool has_no_rotation() const;
@@ -46,7 +51,8 @@ void calc_node_position(const Node& node, const ConstVectorRef& eta, Vector3d& r
                         Eigen::Ref<Matrix6Xd> J);
 
 /// r̈ and θ̈ at η̈ = 0. No allocation.
-void calc_node_bias(const Node& node, const ConstVectorRef& eta_dot, Vector3d& r_ddot, Vector3d& theta_ddot);
+void calc_node_bias(const Node& node, const ConstVectorRef& eta, const ConstVectorRef& eta_dot, Vector3d& r_ddot,
+                    Vector3d& theta_ddot);
 
 /// a += Jt η̈, alpha += T Jθ η̈. No allocation.
 void add_node_acceleration(const Node& node, const ConstVectorRef& eta, const ConstVectorRef& eta_ddot,

@@ -52,6 +52,12 @@ bool check_flexible(const records::BodyRecord& r, const records::FlexBody& flex,
                           "' has " + std::to_string(flex.num_modes()));
     return false;
   }
+  if (n < flex.num_modes() && r.stiffening && !flex.third_order.empty())
+    diagnostics.error("system.third-order-modes", r.at,
+                      "body " + quote(r.name) + " takes " + std::to_string(n) + " of the " +
+                          std::to_string(flex.num_modes()) + " modes in '" + r.file +
+                          "', whose third order is of all of them",
+                      "take all modes, or reduce the body again with fewer");
   if (flex.integrals().empty() && flex.num_modes() > 0) {
     diagnostics.error(
         "system.missing-integrals", r.at,

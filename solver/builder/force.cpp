@@ -1,3 +1,4 @@
+#include "solver/bodies/third_order.hpp"
 #include "solver/builder/build.hpp"
 #include "solver/text/names.hpp"
 
@@ -22,9 +23,13 @@ bool set_locator(const records::ForceRecord& r, const Body& body, const records:
       return force.node >= 0;
     }
     const int n = body.num_modes();
+    if (body.third_order() != nullptr) {
+      force.pattern_higher = body.third_order()->make_load(*flex, static_cast<int>(e));
+      force.monomials = body.third_order()->list();
+    }
     force.pattern = flex->external_load.col(static_cast<Eigen::Index>(e)).head(n);
     force.pattern_K2 = MatrixXd::Zero(n, n);
-    if (body.stiffened()) force.pattern_K2 = flex->kg_external[e].topLeftCorner(n, n);
+    if (body.stiffened() && body.third_order() == nullptr) force.pattern_K2 = flex->kg_external[e].topLeftCorner(n, n);
     force.pattern_moment = MatrixXd::Zero(3, n);
     if (flex->load_resultant.size() > 0) {
       force.pattern_resultant = flex->load_resultant.col(static_cast<Eigen::Index>(e));

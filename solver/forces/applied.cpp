@@ -1,5 +1,7 @@
 #include "solver/forces/applied.hpp"
 
+#include "solver/bodies/kernels.hpp"
+
 #include <cmath>
 #include <sstream>
 
@@ -52,7 +54,16 @@ void add_applied_load(const AppliedForce& force, const Tree& tree, double value,
     data.applied.segment<6>(tb.v_offset) += value * force.pattern_resultant;
     data.applied.segment<3>(tb.v_offset + 3).noalias() += value * (force.pattern_moment * eta);
     modal += value * force.pattern;
-    modal.noalias() -= value * (force.pattern_K2 * eta);
+    if (force.pattern_higher.empty()) {
+      modal.noalias() -= value * (force.pattern_K2 * eta);
+    } else {
+      MonomialList::Values z(force.monomials->size(force.pattern_higher.degree() - 1));
+      Eigen::Matrix<double, Eigen::Dynamic, 1, 0, records::kMaxThirdOrderModes, 1> gradient(pad(n));
+      double work;
+      force.monomials->calc(eta, force.pattern_higher.degree() - 1, z.data());
+      force.pattern_higher.calc(*force.monomials, eta, z.data(), gradient.data(), &work);
+      modal += value * gradient.head(n);
+    }
     return;
   }
   Vector3d load = value * force.direction;

@@ -139,6 +139,7 @@ void Plant::compute(const OperatingPoint& point, const PlantInput* input, double
       one.direction *= value;
       one.pattern *= value;
       one.pattern_K2 *= value;
+      one.pattern_higher *= value;
       one.pattern_resultant *= value;
       one.pattern_moment *= value;
       add_applied_force(one, system_.tree, point.t, data_->tree);

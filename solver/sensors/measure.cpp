@@ -102,9 +102,7 @@ void measure_modes(const Motion& motion, const Sensor& e, double* out) {
   const int n = tb.num_modes();
   const auto eta = motion.data.q.segment(tb.eta_offset(), n);
   if (e.type == SensorType::StrainEnergy) {
-    const MatrixXd& K = tb.body.K();
-    *out = 0;
-    for (int j = 0; j < n; ++j) *out += 0.5 * eta[j] * K.col(j).dot(eta);
+    *out = tb.body.calc_strain_energy(eta);
     return;
   }
   const int first = e.coordinate == 0 ? 0 : e.coordinate - 1;

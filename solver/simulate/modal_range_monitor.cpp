@@ -72,13 +72,16 @@ std::vector<ModalRangeMonitor::Crossing> ModalRangeMonitor::find_crossings(doubl
         largest = d.norm();
         where = node.id;
       }
-      if (largest > kLinearLimit * w.size) {
+      const bool is_third = get_body(system_, w.body).body.third_order() != nullptr;
+      const double limit = is_third ? kThirdOrderLimit : kLinearLimit;
+      if (largest > limit * w.size) {
         w.deflection_reported = true;
         found.push_back({w.body, "run.linear-limit",
                          "body '" + system_.body_name(w.body) + "' deflects by " + short_text(largest) + " at node " +
-                             std::to_string(where) + " at t = " + short_text(t) + ", more than 10 % of its size " +
-                             short_text(w.size),
-                         "linear modes lose their meaning there; split the body into several"});
+                             std::to_string(where) + " at t = " + short_text(t) + ", more than " +
+                             short_text(100 * limit) + " % of its size " + short_text(w.size),
+                         is_third ? "displacements to third order lose their digits there; split the body into several"
+                                  : "linear modes lose their meaning there; split the body into several"});
       }
     }
   }

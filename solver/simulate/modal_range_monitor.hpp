@@ -10,6 +10,8 @@ namespace bough::solver {
 
 /// Share of a body's size that a deflection may reach before it is reported (the habit of Adams/Flex).
 inline constexpr double kLinearLimit = 0.10;
+/// Limit of a body of third order, whose frequency is right to 1e-4 at 0.2 (docs/theory/third-order.md).
+inline constexpr double kThirdOrderLimit = 0.25;
 /// Share of the first frequency that the spin of a body without stiffening may reach: at half, the centrifugal terms
 /// soften the first mode by a quarter of its stiffness (docs/theory/when-stiffening-matters.md).
 inline constexpr double kSpinLimit = 0.5;

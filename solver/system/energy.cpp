@@ -68,9 +68,7 @@ Energies calc_energies(const System& system, const SystemData& data) {
 double calc_strain_energy(const System& system, const SystemData& data, int body) {
   const TreeBody& tb = system.tree[body];
   const auto eta = data.tree.q.segment(tb.eta_offset(), tb.num_modes());
-  double twice = 0;
-  for (int j = 0; j < tb.num_modes(); ++j) twice += eta[j] * tb.body.K().col(j).dot(eta);
-  return 0.5 * twice;
+  return tb.body.calc_strain_energy(eta);
 }
 
 Power calc_powers(const System& system, const SystemData& data) {

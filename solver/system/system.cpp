@@ -46,7 +46,8 @@ int System::eta_offset(int b) const { return at(*this, b).eta_offset(); }
 int System::eta_dot_offset(int b) const { return at(*this, b).eta_dot_offset(); }
 int System::find_node(int b, int id) const { return at(*this, b).body.find_node(id); }
 bool System::has_node_second_order(int b, int node) const {
-  return at(*this, b).body.nodes()[as_index(node)].K2.size() > 0;
+  const Node& n = at(*this, b).body.nodes()[as_index(node)];
+  return n.K2.size() > 0 || !n.higher.empty();
 }
 
 std::unique_ptr<SystemData> System::make_data() const {

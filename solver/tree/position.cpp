@@ -101,8 +101,8 @@ void start_velocity(const Tree& tree, const ConstVectorRef& u, TreeData& data) {
   for (const int m : tree.moving) {
     const Marker& marker = tree.markers[static_cast<size_t>(m)];
     const TreeBody& tb = tree[marker.body];
-    calc_marker_velocity(tb.body, marker, data.u.segment(tb.eta_dot_offset(), tb.num_modes()),
-                         data.markers[static_cast<size_t>(m)]);
+    calc_marker_velocity(tb.body, marker, data.q.segment(tb.eta_offset(), tb.num_modes()),
+                         data.u.segment(tb.eta_dot_offset(), tb.num_modes()), data.markers[static_cast<size_t>(m)]);
   }
 }
 

@@ -77,6 +77,38 @@ void visit_stiffening(Archive& archive, Body& body, long n) {
 }
 
 template <class Archive, class Body>
+void visit_third_order(Archive& archive, Body& body, long n) {
+  using Third = records::ThirdOrder;
+  auto& third = body.third_order;
+  if (!archive.has("/third_order/large", !third.empty())) return;
+  archive.array("/third_order/large", third.large, {-1}, {.max_value = static_cast<int>(n) - 1});
+  const long N = count(third.large);
+  if (!records::is_valid_choice(third.large, static_cast<int>(n))) return;  // find_body_faults() says so
+  const auto name = [](const char* word, int degree) {
+    return std::string("/third_order/") + word + std::to_string(degree);
+  };
+  for (int k = Third::kMinEnergy; k <= Third::kMaxEnergy; ++k)
+    archive.array(name("energy_", k), third.energy[static_cast<std::size_t>(k - Third::kMinEnergy)],
+                  {records::count_monomials(static_cast<int>(N), k)});
+  archive.array("/third_order/energy_small", third.energy_small,
+                {records::count_monomials(static_cast<int>(N), 2), n - N}, kOptional);
+  for (int k = Third::kMinField; k <= Third::kMaxField; ++k) {
+    const auto at = static_cast<std::size_t>(k - Third::kMinField);
+    const long rows = records::count_monomials(static_cast<int>(k == 2 ? n : N), k);
+    archive.array(name("amplitudes_", k), third.amplitudes[at], {rows, -1});
+    archive.array(name("load_", k), third.load[at], {rows, count(body.locators)}, kOptional);
+    for (std::size_t i = 0; i < body.interface_nodes.size(); ++i) {
+      if constexpr (Archive::kReads) third.node.resize(body.interface_nodes.size());
+      archive.array("/third_order/node/" + std::to_string(i + 1) + "/" + std::to_string(k), third.node[i][at],
+                    {rows, 6});
+    }
+  }
+  const long m = third.amplitudes[0].cols();
+  archive.array("/third_order/fields", third.fields, {count(body.node_id), 6, m});
+  visit_integrals(archive, "/third_order/integrals", third.integrals, n + m);
+}
+
+template <class Archive, class Body>
 void visit_recovery(Archive& archive, Body& body, long n) {
   archive.array("/recovery/inertial_load", body.inertial_load, {n, records::kNumInertialLoads}, kOptional);
   visit_column(
@@ -153,6 +185,7 @@ void visit_body(Archive& archive, Body& body) {
   archive.array("/inertial_loads/f", body.F_I, {ndof, records::kNumInertialLoads}, kOptional);
   archive.array("/full/phi", body.full_phi, {ndof, n}, kOptional);
   visit_stiffening(archive, body, n);
+  visit_third_order(archive, body, n);
   visit_recovery(archive, body, n);
   visit_mesh(archive, body, n);
 }

@@ -15,8 +15,9 @@ TEST(Marker, MotionIsTheRateOfItsPlaceAndOfItsAxes) {
   const VectorXd eta = random.vector_n(n, 0.3), eta_dot = random.vector_n(n), eta_ddot = random.vector_n(n);
   const auto at = [&](double t) {
     MarkerMotion m = make_marker_motion(body, marker);
-    calc_marker_position(body, marker, eta + t * eta_dot + 0.5 * t * t * eta_ddot, m);
-    calc_marker_velocity(body, marker, eta_dot + t * eta_ddot, m);
+    const VectorXd eta_t = eta + t * eta_dot + 0.5 * t * t * eta_ddot;
+    calc_marker_position(body, marker, eta_t, m);
+    calc_marker_velocity(body, marker, eta_t, eta_dot + t * eta_ddot, m);
     return m;
   };
   const double h = 1e-4;

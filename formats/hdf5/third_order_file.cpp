@@ -1,0 +1,94 @@
+#include "formats/hdf5/detail/third_order.hpp"
+
+namespace bough::hdf5 {
+namespace {
+
+using Eigen::MatrixXd;
+using records::ThirdOrder;
+using Tables = ThirdOrder::Tables;
+
+std::string name_degree(const std::string& path, int degree) { return path + "_" + std::to_string(degree); }
+
+const std::string kPacked = "monomials in ascending lexical order of their exponents";
+
+}  // namespace
+
+void write_third_order(FileWriter& file, const records::FlexBody& body) {
+  const ThirdOrder& third = body.third_order;
+  if (third.empty()) return;
+  std::vector<int> numbers;
+  for (const int j : third.large) numbers.push_back(j + 1);
+  file.write_integers("/third_order/large", numbers, {"the large modes, from 1", "1"});
+  for (int k = ThirdOrder::kMinEnergy; k <= ThirdOrder::kMaxEnergy; ++k)
+    file.write_vector(name_degree("/third_order/energy", k),
+                      third.energy[static_cast<std::size_t>(k - ThirdOrder::kMinEnergy)],
+                      {"strain energy of degree " + std::to_string(k) + " in the large modes: " + kPacked,
+                       "M L^2/(T^2 E^" + std::to_string(k) + ")"});
+  file.write_matrix("/third_order/energy_small", third.energy_small,
+                    {"strain energy of two large modes and another one: monomials of the large modes of degree 2, the "
+                     "other modes",
+                     "M L^2/(T^2 E^3)"});
+  std::vector<double> fields, nodes;
+  const auto append = [](std::vector<double>& data, const MatrixXd& m) {
+    for (Eigen::Index i = 0; i < m.rows(); ++i)
+      for (Eigen::Index j = 0; j < m.cols(); ++j) data.push_back(m(i, j));
+  };
+  for (const auto& field : third.fields) append(fields, field);
+  const auto m = static_cast<hsize_t>(third.num_fields());
+  file.write_numbers("/third_order/fields", {third.fields.size(), 6, m}, fields.data(),
+                     {"displacement fields beyond the modes, orthonormal under the mass: output node, translations and "
+                      "rotations, field",
+                      "M^-1/2, M^-1/2/L"});
+  for (int k = ThirdOrder::kMinField; k <= ThirdOrder::kMaxField; ++k) {
+    const auto at = static_cast<std::size_t>(k - ThirdOrder::kMinField);
+    const std::string degree = std::to_string(k), of = k == 2 ? "all modes" : "the large modes";
+    file.write_matrix(
+        name_degree("/third_order/amplitudes", k), third.amplitudes[at],
+        {"amplitudes of the fields, degree " + degree + " in " + of + ": monomials, fields", "M^1/2 L/E^" + degree});
+    nodes.clear();
+    for (const auto& tables : third.node) append(nodes, tables[at]);
+    file.write_numbers(name_degree("/third_order/node", k),
+                       {third.node.size(), static_cast<hsize_t>(third.amplitudes[at].rows()), 6}, nodes.data(),
+                       {"displacements of the interface nodes, degree " + degree + " in " + of +
+                            ": node, monomials, translations and rotation vector",
+                        "L/E^" + degree + ", 1/E^" + degree});
+    file.write_matrix(name_degree("/third_order/load", k), third.load[at],
+                      {"work of each locator's load, degree " + degree + " in " + of + ": monomials, locator",
+                       "M L^2/(T^2 E^" + degree + ") per load"});
+  }
+  write_integrals(file, "/third_order/integrals", third.integrals);
+}
+
+void read_third_order(FileReader& file, records::FlexBody& body) {
+  if (!file.has("/third_order")) return;
+  ThirdOrder& third = body.third_order;
+  const int n = body.num_modes();
+  third.large = file.read_integers("/third_order/large", -1);
+  for (int& j : third.large) --j;
+  const int N = third.num_large();
+  if (!records::is_valid_choice(third.large, n)) return;  // find_body_faults() says so
+  for (int k = ThirdOrder::kMinEnergy; k <= ThirdOrder::kMaxEnergy; ++k)
+    third.energy[static_cast<std::size_t>(k - ThirdOrder::kMinEnergy)] =
+        file.read_vector(name_degree("/third_order/energy", k), records::count_monomials(N, k));
+  third.energy_small = file.read_matrix("/third_order/energy_small", records::count_monomials(N, 2), n - N);
+  using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  const NumberArray fields = file.read_array("/third_order/fields", {body.num_nodes(), 6, -1});
+  const long m = fields.shape.size() == 3 ? static_cast<long>(fields.shape[2]) : 0;
+  for (int k = 0; k < body.num_nodes(); ++k)
+    third.fields.emplace_back(Eigen::Map<const RowMajor>(fields.data.data() + k * 6 * m, 6, m));
+  third.node.resize(body.interface_nodes.size());
+  const auto num_nodes = static_cast<long>(third.node.size()), ne = static_cast<long>(body.locators.size());
+  for (int k = ThirdOrder::kMinField; k <= ThirdOrder::kMaxField; ++k) {
+    const auto at = static_cast<std::size_t>(k - ThirdOrder::kMinField);
+    const long rows = records::count_monomials(third.num_variables(k, n), k);
+    third.amplitudes[at] = file.read_matrix(name_degree("/third_order/amplitudes", k), rows, m);
+    third.load[at] = file.read_matrix(name_degree("/third_order/load", k), rows, ne);
+    const NumberArray nodes = file.read_array(name_degree("/third_order/node", k), {num_nodes, rows, 6});
+    for (long i = 0; i < num_nodes; ++i)
+      third.node[static_cast<std::size_t>(i)][at] =
+          Eigen::Map<const RowMajor>(nodes.data.data() + i * rows * 6, rows, 6);
+  }
+  third.integrals = read_integrals(file, "/third_order/integrals", n + m);
+}
+
+}  // namespace bough::hdf5

@@ -1,0 +1,36 @@
+#include "formats/records/third_order.hpp"
+
+namespace bough::records {
+
+int count_monomials(int n, int degree) {
+  long count = 1;
+  for (int k = 1; k <= degree; ++k) count = count * (n + k - 1) / k;
+  return static_cast<int>(count);
+}
+
+Eigen::MatrixXi list_exponents(int n, int degree) {
+  Eigen::MatrixXi all(count_monomials(n, degree), n);
+  Eigen::RowVectorXi row = Eigen::RowVectorXi::Zero(n);
+  Eigen::Index next = 0;
+  const auto fill = [&](const auto& self, int variable, int left) -> void {
+    if (variable == n - 1) {
+      row[variable] = left;
+      all.row(next++) = row;
+      return;
+    }
+    for (int e = 0; e <= left; ++e) {
+      row[variable] = e;
+      self(self, variable + 1, left - e);
+    }
+  };
+  if (n > 0) fill(fill, 0, degree);
+  return all;
+}
+
+bool is_valid_choice(const std::vector<int>& large, int num_modes) {
+  for (std::size_t i = 0; i < large.size(); ++i)
+    if (large[i] < 0 || large[i] >= num_modes || (i > 0 && large[i] <= large[i - 1])) return false;
+  return !large.empty() && large.size() <= kMaxLargeModes && num_modes <= kMaxThirdOrderModes;
+}
+
+}  // namespace bough::records

@@ -1,0 +1,197 @@
+#include "solver/bodies/third_order.hpp"
+
+#include <algorithm>
+
+#include "base/diagnostic.hpp"
+#include "solver/bodies/kernels.hpp"
+
+namespace bough::solver {
+
+using records::ThirdOrder;
+
+namespace {
+
+/// Modes whose monomials a table of displacements of this degree has.
+std::vector<int> list_variables(const ThirdOrder& third, int degree, int n) {
+  if (degree > 2) return third.large;
+  std::vector<int> all;
+  for (int j = 0; j < n; ++j) all.push_back(j);
+  return all;
+}
+
+void add_tables(const MonomialList& list, const ThirdOrder& third, const ThirdOrder::Tables& tables,
+                Polynomials& polynomials) {
+  for (int k = ThirdOrder::kMinField; k <= ThirdOrder::kMaxField; ++k)
+    polynomials.add(list, k, list_variables(third, k, list.num_modes()),
+                    tables[static_cast<size_t>(k - ThirdOrder::kMinField)]);
+}
+
+/// The record of the linear body of n + m modes, without stiffness.
+records::FlexBody make_linear_record(const records::FlexBody& flex) {
+  const ThirdOrder& third = flex.third_order;
+  const Eigen::Index n = flex.num_modes(), N = n + third.num_fields();
+  records::FlexBody linear;
+  linear.mass = flex.mass;
+  linear.cg = flex.cg;
+  linear.inertia = flex.inertia;
+  linear.is_free_free = flex.is_free_free;
+  linear.eigenvalue = linear.frequency_hz = VectorXd::Zero(N);
+  linear.integrals_method = "exact";
+  linear.exact = third.integrals;
+  linear.modal_mass = MatrixXd::Identity(N, N);
+  linear.modal_mass.topLeftCorner(n, n) = flex.modal_mass;
+  linear.modal_stiffness = MatrixXd::Zero(N, N);
+  return linear;
+}
+
+}  // namespace
+
+ThirdOrderBody::ThirdOrderBody(const records::FlexBody& flex)
+    : n_(flex.num_modes()),
+      m_(flex.third_order.num_fields()),
+      list_(std::make_shared<const MonomialList>(n_, flex.third_order.large, ThirdOrder::kMaxEnergy - 1)),
+      amplitudes_(*list_, m_, ThirdOrder::kMaxField),
+      energy_(*list_, 1, ThirdOrder::kMaxEnergy, 1),
+      linear_(Body::make_flexible(make_linear_record(flex), -1, false, {})) {
+  const ThirdOrder& third = flex.third_order;
+  add_tables(*list_, third, third.amplitudes, amplitudes_);
+  for (int k = ThirdOrder::kMinEnergy; k <= ThirdOrder::kMaxEnergy; ++k)
+    energy_.add(*list_, k, third.large, third.energy[static_cast<size_t>(k - ThirdOrder::kMinEnergy)]);
+  for (int j = 0; j < n_; ++j) {
+    if (!std::binary_search(third.large.begin(), third.large.end(), j)) small_.push_back(j);
+  }
+  if (small_.empty()) return;
+  on_small_ = Polynomials(*list_, static_cast<int>(small_.size()), 2);
+  on_small_.add(*list_, 2, third.large, third.energy_small);
+}
+
+ThirdOrderData ThirdOrderBody::make_data() const {
+  ThirdOrderData data;
+  data.linear = linear_.make_inertia();
+  data.z = data.z_dot = VectorXd::Zero(list_->size());
+  data.xi = data.xi_dot = VectorXd::Zero(n_ + m_);
+  const Eigen::Index stride = amplitudes_.stride();
+  data.J = data.J_dot = MatrixXd::Zero(stride, n_);
+  data.M_pp = MatrixXd::Zero(stride, stride);
+  data.U = MatrixXd::Zero(stride, n_);
+  data.product = MatrixXd::Zero(n_, n_);
+  data.p_ddot = data.force = VectorXd::Zero(stride);
+  data.gradient = VectorXd::Zero(pad(n_));
+  const auto num_small = static_cast<Eigen::Index>(small_.size());
+  data.J_small = VectorXd::Zero(pad(num_small) * n_);
+  data.on_small = VectorXd::Zero(num_small);
+  return data;
+}
+
+bool ThirdOrderBody::is_exact(const records::FlexBody& flex, int node_id) {
+  return std::find(flex.interface_nodes.begin(), flex.interface_nodes.end(), node_id) != flex.interface_nodes.end();
+}
+
+Polynomials ThirdOrderBody::make_node_motion(const records::FlexBody& flex, std::size_t k) const {
+  const ThirdOrder& third = flex.third_order;
+  Polynomials motion(*list_, 6, ThirdOrder::kMaxField);
+  const auto found = std::find(flex.interface_nodes.begin(), flex.interface_nodes.end(), flex.node_id[k]);
+  if (found != flex.interface_nodes.end()) {
+    add_tables(*list_, third, third.node[static_cast<size_t>(found - flex.interface_nodes.begin())], motion);
+    return motion;
+  }
+  ThirdOrder::Tables tables;
+  for (size_t i = 0; i < tables.size(); ++i) tables[i] = third.amplitudes[i] * third.fields[k].transpose();
+  add_tables(*list_, third, tables, motion);
+  return motion;
+}
+
+Polynomials ThirdOrderBody::make_load(const records::FlexBody& flex, int locator) const {
+  Polynomials load(*list_, 1, ThirdOrder::kMaxField, 1);
+  ThirdOrder::Tables tables;
+  for (size_t i = 0; i < tables.size(); ++i) tables[i] = flex.third_order.load[i].col(locator);
+  add_tables(*list_, flex.third_order, tables, load);
+  return load;
+}
+
+void ThirdOrderBody::calc_mass(const ConstVectorRef& eta, ThirdOrderData& d, BodyInertia& x) const {
+  list_->calc(eta, list_->degree(), d.z.data());
+  d.xi.head(n_) = eta;
+  amplitudes_.calc(*list_, eta, d.z.data(), d.J.data(), d.xi.data() + n_);
+  linear_.calc_mass(d.xi, d.linear);
+  const BodyInertia& l = d.linear;
+  x.M6 = l.M6;
+  x.S = l.S;
+  const Eigen::Index stride = amplitudes_.stride();
+  const MatrixXd& P = d.J;
+  x.M_top = l.M_top.leftCols(n_);
+  for (int j = 0; j < n_; ++j) {
+    for (int q = 0; q < m_; ++q) x.M_top.col(j) += P(q, j) * l.M_top.col(n_ + q);
+  }
+  // M_ηη + UᵀP + PᵀU, U = M_pη + ½ M_pp P.
+  for (int q = 0; q < m_; ++q) {
+    for (int i = q; i < m_; ++i) d.M_pp(i, q) = d.M_pp(q, i) = 0.5 * l.M_modal(n_ + i, n_ + q);
+    for (int j = 0; j < n_; ++j) d.U(q, j) = l.M_modal(n_ + q, j);
+  }
+  add_product(d.M_pp.data(), stride, stride, d.J.data(), n_, d.U.data());
+  for (int j = 0; j < n_; ++j)
+    multiply_transposed(d.U.data(), stride, n_, d.J.data() + j * stride, d.product.data() + j * n_);
+  for (int j = 0; j < n_; ++j) {
+    for (int i = j; i < n_; ++i) x.M_modal(i, j) = l.M_modal(i, j) + d.product(i, j) + d.product(j, i);
+  }
+}
+
+void ThirdOrderBody::calc_bias(const Vector3d& w, const ConstVectorRef& eta, const ConstVectorRef& eta_dot,
+                               ThirdOrderData& d, BodyInertia& x) const {
+  const MatrixXd& P = d.J;
+  list_->calc_rates(eta, eta_dot, amplitudes_.degree() - 1, d.z.data(), d.z_dot.data());
+  amplitudes_.calc_bias(*list_, eta_dot, d.z_dot.data(), d.J_dot.data(), d.p_ddot.data());
+  d.xi_dot.head(n_) = eta_dot;
+  for (int q = 0; q < m_; ++q) {
+    double rate = 0;
+    for (int j = 0; j < n_; ++j) rate += P(q, j) * eta_dot[j];
+    d.xi_dot[n_ + q] = rate;
+  }
+  linear_.calc_bias(w, d.xi, d.xi_dot, d.linear);
+  const BodyInertia& l = d.linear;
+  x.h.head<6>() = l.h.head<6>();
+  for (int q = 0; q < m_; ++q) {
+    x.h.head<6>() += d.p_ddot[q] * l.M_top.col(n_ + q);
+    d.force[q] = l.h[6 + n_ + q];
+    for (int i = 0; i < m_; ++i) d.force[q] += 2 * d.M_pp(i, q) * d.p_ddot[i];
+  }
+  double beyond;
+  energy_.calc(*list_, eta, d.z.data(), d.gradient.data(), &beyond);
+  for (int j = 0; j < n_; ++j) {
+    double force = l.h[6 + j] + d.gradient[j];
+    for (int q = 0; q < m_; ++q) force += l.M_modal(n_ + q, j) * d.p_ddot[q] + P(q, j) * d.force[q];
+    x.h[6 + j] = force;
+  }
+  if (small_.empty()) return;
+  on_small_.calc(*list_, eta, d.z.data(), d.J_small.data(), d.on_small.data());
+  for (size_t s = 0; s < small_.size(); ++s) {
+    const auto at = static_cast<Eigen::Index>(s);
+    x.h[6 + small_[s]] += d.on_small[at];
+    for (int j = 0; j < n_; ++j) x.h[6 + j] += d.J_small[at + on_small_.stride() * j] * eta[small_[s]];
+  }
+}
+
+LinearField ThirdOrderBody::make_linear_field(const Matrix3d& T, const ThirdOrderData& d) const {
+  return linear_.make_linear_field(T, d.linear);
+}
+
+double ThirdOrderBody::calc_modal_force(const LinearField& field, const ThirdOrderData& d, int j) const {
+  double force = linear_.calc_modal_force(field, d.linear, j);
+  for (int q = 0; q < m_; ++q) force += d.J(q, j) * linear_.calc_modal_force(field, d.linear, n_ + q);
+  return force;
+}
+
+double ThirdOrderBody::calc_energy(const ConstVectorRef& eta) const {
+  MonomialList::Values z(list_->size());
+  list_->calc(eta, list_->degree(), z.data());
+  VectorXd J(pad(n_)), value(std::max<size_t>(1, small_.size()));
+  energy_.calc(*list_, eta, z.data(), J.data(), value.data());
+  double energy = value[0];
+  if (small_.empty()) return energy;
+  J.resize(on_small_.stride() * n_);
+  on_small_.calc(*list_, eta, z.data(), J.data(), value.data());
+  for (size_t s = 0; s < small_.size(); ++s) energy += eta[small_[s]] * value[static_cast<Eigen::Index>(s)];
+  return energy;
+}
+
+}  // namespace bough::solver

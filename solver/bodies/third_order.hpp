@@ -1,0 +1,44 @@
+#pragma once
+/// \file A body whose displacements have degree 4 in its amplitudes: a linear body of n + m modes, of which the last m
+/// are moved by polynomials of the first n (docs/theory/third-order.md, ADR 0031).
+///
+///     ξ = (η, p(η))     M(η) = JᵀM(ξ)J, J = [1; ∂p/∂η]     h = Jᵀ(h(ξ, ξ̇) + M(ξ) J̇η̇)
+/// with the elastic forces ∂V/∂η of degree 5 in place of those of ξ.
+#include <memory>
+
+#include "solver/bodies/body.hpp"
+#include "solver/bodies/polynomial.hpp"
+
+namespace bough::solver {
+
+class ThirdOrderBody {
+ public:
+  explicit ThirdOrderBody(const records::FlexBody& flex);
+
+  ThirdOrderData make_data() const;
+  const std::shared_ptr<const MonomialList>& list() const { return list_; }
+  /// Returns true if the file has the node's own polynomials.
+  static bool is_exact(const records::FlexBody& flex, int node_id);
+  /// The motion of output node k beyond φη: translations and rotation vector.
+  Polynomials make_node_motion(const records::FlexBody& flex, std::size_t k) const;
+  /// Work of the load of a locator beyond that on φη.
+  Polynomials make_load(const records::FlexBody& flex, int locator) const;
+
+  void calc_mass(const ConstVectorRef& eta, ThirdOrderData& data, BodyInertia& inertia) const;
+  /// h without the modal stiffness and damping of η.
+  void calc_bias(const Vector3d& w_B, const ConstVectorRef& eta, const ConstVectorRef& eta_dot, ThirdOrderData& data,
+                 BodyInertia& inertia) const;
+  LinearField make_linear_field(const Matrix3d& T, const ThirdOrderData& data) const;
+  double calc_modal_force(const LinearField& field, const ThirdOrderData& data, int j) const;
+  /// Strain energy beyond ½ ηᵀKη.
+  double calc_energy(const ConstVectorRef& eta) const;
+
+ private:
+  int n_ = 0, m_ = 0;
+  std::shared_ptr<const MonomialList> list_;
+  Polynomials amplitudes_, energy_, on_small_;
+  std::vector<int> small_;
+  Body linear_;
+};
+
+}  // namespace bough::solver

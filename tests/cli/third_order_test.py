@@ -1,0 +1,174 @@
+"""Bodies of third order, from deck to time history: docs/theory/third-order.md."""
+import os
+import re
+import sys
+import unittest
+
+import h5py
+import numpy as np
+
+from support import SOURCE, ProgramTest
+
+sys.path.insert(0, os.path.join(SOURCE, "tests/oracle/third_order"))
+from inextensible import Cantilever, spin_up  # noqa: E402
+
+LENGTH, EI, MASS = 8., 6.895e10 * 8.2181e-9, 1.6154
+
+
+class ThirdOrder(ProgramTest):
+    def reduce(self, keys="order = 3", replace=(), name="boom.h5", code=0, **more):
+        self.copy_example("ex01-spinup")
+        text = self.read("boom.toml") + f"\n[body.stiffening]\n{keys}\n"
+        for old, new in replace:
+            self.assertIn(old, text)
+            text = text.replace(old, new)
+        self.write("boom.toml", text)
+        call = self.bough if code == 0 else lambda *a: self.fails(code, *a, **more)
+        return call("reduce", "boom.toml", "-o", name, "-q")
+
+    def spin(self, rate, file, duration=7.2):
+        text = self.read("spinup.toml").replace("rate = 4.0", f"rate = {rate}")
+        self.write("run.toml", text.replace("duration = 20.0", f"duration = {duration}"))
+        self.bough("run", "run.toml", "-o", file, "-q")
+        with h5py.File(self.path(file)) as f:
+            self.assertLess(f["energy"].attrs["energy_error"], 1e-8)
+            return f["time"][:], f["sensors/tip_deflection"][:]
+
+    def make_fixed(self):
+        """The system with the boom clamped to the ground."""
+        text = self.read("spinup.toml").replace('type = "revolute"', 'type = "fixed"')
+        for line in ("axis = ", "motion = "):
+            text = re.sub(f"(?m)^{line}.*\n", "", text)
+        return re.sub(r'(?s)\[\[sensor\]\]\nname = "angle".*?\n\n', "", text)
+
+    def test_spin_up_is_that_of_exact_beams(self):
+        """Peaks of the same three modes of an inextensible beam: -0.53384 and -0.75089 m; three geometrically exact beams with
+        shear: -0.5338 and -0.7508. Second order: -0.5360, -0.7566."""
+        self.reduce()
+        for rate, tolerance in ((4., 1e-4), (6., 3e-4)):
+            exact = Cantilever(LENGTH, EI, MASS, 3, cells=24)
+            s = exact.integrate(7.0, spin_up(rate), rtol=1e-7)
+            expected = (exact.tip @ s.sol(np.linspace(6.3, 7.0, 701))[:3]).min()
+            t, tip = self.spin(rate, "spin.h5")
+            print(f"{rate} rad/s: {tip[:, 1].min():.6f}, exact {expected:.6f}, off by {tip[:, 1].min() / expected - 1:.1e}")
+            self.assertAlmostEqual(tip[:, 1].min() / expected, 1, delta=tolerance)
+
+    def test_free_swing_keeps_energy_and_the_backbone_of_exact_beams(self):
+        """Period of the first mode at a tip amplitude of 0.2 lengths."""
+        self.reduce()
+        with h5py.File(self.path("boom.h5")) as f:
+            node = list(f["nodes/id"][:]).index(41)
+            phi, omega = f["modes/phi"][node, 1], f["modes/frequency_hz"][:] * 2 * np.pi
+        exact = Cantilever(LENGTH, EI, MASS, 3, cells=16)
+        amplitude = .2 * LENGTH
+        # The exact motion that starts with these amplitudes and rests; φ of the file has its own size and sign.
+        start = np.array([amplitude / exact.tip[0], 0, 0])
+        t = np.linspace(0, 6, 1201)
+        q = exact.integrate(6., start=np.r_[start, 0, 0, 0], rtol=1e-9).sol(t)[:3]
+        system = self.make_fixed().replace("stiffening = true", f"stiffening = true\neta = [{float(amplitude / phi[0])!r}, 0.0, 0.0]")
+        system = system.replace("duration = 20.0", "duration = 6.0").replace("output_step = 0.01", "output_step = 0.005")
+        self.write("swing.toml", system)
+        self.bough("run", "swing.toml", "-o", "swing.h5", "-q")
+        with h5py.File(self.path("swing.h5")) as f:
+            tip = f["sensors/tip_deflection"][:, 1]
+            total = sum(f["energy"][name][:].ravel() for name in ("kinetic", "strain", "potential"))
+        off = np.abs(tip - exact.tip @ q).max() / amplitude
+        print(f"swing of 0.2 lengths over {6 * omega[0] / 2 / np.pi:.1f} periods: off by {off:.1e}; energy {np.ptp(total) / total[0]:.1e}")
+        self.assertLess(off, 2e-3)
+        self.assertLess(np.ptp(total), 1e-8 * total[0])
+
+    def test_free_flight_in_space_keeps_energy_and_momentum(self):
+        """Six large modes of an L-frame of 2 m: 126 coefficients of degree 4."""
+        self.copy_example("ex04-free-flyer")
+        deck = ["SOL 103", "CEND", "BEGIN BULK", "MAT1,1,7.+10,2.6+10,,2700.", "PBAR,1,1,1.-4,8.-10,2.-9,1.5-9"]
+        deck += [f"GRID,{i + 1},,{i / 8},0.,0." for i in range(9)] + [f"GRID,{i + 9},,1.,{i / 8},{i / 40}" for i in range(1, 9)]
+        deck += [f"CBAR,{i},1,{i},{i + 1}," + ("0.,1.,0." if i < 9 else "1.,0.,0.") for i in range(1, 17)]
+        self.write("flyer.bdf", "\n".join(deck) + "\nENDDATA\n")
+        self.write("flyer.toml", self.read("flyer.toml") + "\n[body.stiffening]\norder = 3\n")
+        self.bough("reduce", "flyer.toml", "-q")
+        with h5py.File(self.path("flyer.h5")) as f:
+            self.assertEqual([f[f"third_order/energy_{k}"].shape[0] for k in (3, 4, 5, 6)], [56, 126, 252, 462])
+        system = re.sub("(?m)^eta = .*$", "eta = [0.05, -0.03, 0.01, 0.002, 0.0, 0.0]", self.read("free-flyer.toml"))
+        self.write("free-flyer.toml", system.replace("duration = 5.0", "duration = 1.0").replace("node = 21", "node = 17"))
+        self.bough("run", "free-flyer.toml", "-o", "run.h5", "-q")
+        with h5py.File(self.path("run.h5")) as f:
+            kinetic, strain = f["energy/kinetic"][:].ravel(), f["energy/strain"][:].ravel()
+            linear, angular = f["momentum/linear"][:], f["momentum/angular"][:]
+            tip = f["sensors/tip_deflection"][:]
+        print(f"tip {np.linalg.norm(tip, axis=1).max():.2f} of 2 m; energy {np.ptp(kinetic + strain) / kinetic.max():.1e}")
+        self.assertGreater(np.linalg.norm(tip, axis=1).max(), .1)
+        self.assertLess(np.ptp(kinetic + strain), 1e-10 * kinetic.max())
+        self.assertLess(np.abs(linear - linear[0]).max(), 1e-10 * np.abs(linear).max())
+        self.assertLess(np.abs(angular - angular[0]).max(), 1e-10 * np.abs(angular).max())
+
+    def test_second_order_of_the_file_is_what_it_was(self):
+        self.reduce()
+        self.reduce("order = 2", name="two.h5")
+        with h5py.File(self.path("boom.h5")) as three, h5py.File(self.path("two.h5")) as two:
+            self.assertEqual((three.attrs["format_version"], two.attrs["format_version"]), ("1.3", "1.1"))
+            self.assertNotIn("third_order", two)
+            for name in ("stiffening/kg_inertial", "stiffening/kg_external", "modal/stiffness"):
+                self.assertTrue((three[name][:] == two[name][:]).all())
+            # Degree 2 is K_G2 but for the stress of the modes on the stretch by the load ((7) of the theory): (radius of
+            # gyration times wave number)², 1e-4 of the third mode.
+            K = two["stiffening/kg_external"][0]
+            pairs = three["third_order/node_2"][0][:, 0]
+        order = [(0, 0, 2), (0, 1, 1), (0, 2, 0), (1, 0, 1), (1, 1, 0), (2, 0, 0)]
+        full = np.zeros((3, 3))
+        for c, x in zip(pairs, order):
+            i, j = [k for k in range(3) for _ in range(x[k])]
+            full[i, j] = full[j, i] = c * (2 if i == j else 1)
+        np.testing.assert_allclose(full, -K, rtol=0, atol=3e-4 * np.abs(K).max())
+
+    def test_fewer_modes_have_second_order(self):
+        self.reduce()
+        printed = self.bough("select", "boom.h5", "-n", 2, "--inputs", "41", "--outputs", "41", "-o", "two.h5").stderr
+        self.assertIn("[select.third-order]", printed)
+        with h5py.File(self.path("two.h5")) as f:
+            self.assertNotIn("third_order", f)
+
+    def test_flat_bodies_and_units(self):
+        self.reduce()
+        _, tip = self.spin(6., "spin.h5", 3.)
+        self.bough("export", "boom.h5", "--to", "flat", "-o", "boom.flat", "-q")
+        self.write("spinup.toml", self.read("spinup.toml").replace("boom.h5", "boom.flat"))
+        _, flat = self.spin(6., "flat.h5", 3.)
+        self.assertTrue((flat == tip).all())
+        self.bough("convert", "boom.h5", "--units", "m-kg-s:mm-t-s", "-o", "mm.h5", "-q")
+        self.write("spinup.toml", self.read("spinup.toml").replace("boom.flat", "mm.h5"))
+        _, mm = self.spin(6., "mm-run.h5", 3.)
+        np.testing.assert_allclose(mm, 1e3 * tip, rtol=0, atol=1e-3 * np.abs(tip).max())
+
+    def test_statics_and_linear_models_about_a_deflected_state(self):
+        """A force at the tip bends it by a fifth of its length: rest, and the frequency about it by small swings."""
+        self.reduce()
+        text = self.make_fixed().replace("duration = 20.0", "duration = 1.0")
+        text += '[[force]]\nname = "pull"\nbody = "boom"\nnode = 41\nforce = [0.0, 6.0, 0.0]\n'
+        self.write("rest.toml", text)
+        self.bough("equilibrium", "rest.toml", "-o", "rest.h5", "-q")
+        self.bough("linearize", "rest.toml", "--equilibrium", "-o", "rest-linear.h5", "-q")
+        with h5py.File(self.path("rest-linear.h5")) as f:
+            A = f["A"][:]
+            q = f["operating_point/q"][:]
+        self.assertGreater(np.abs(q).max(), 0)
+        values = np.linalg.eigvals(A)
+        self.assertTrue((np.abs(values.real) < 1e-6 * np.abs(values)).all())
+
+    def test_what_third_order_cannot_have(self):
+        for keys, says in (("order = 3\nlarge = 9", ["large = 9", "3 modes"]), ("order = 3\nlarge = [1, 7]", ["mode 7"]),
+                           ("order = 3\nlarge = [1, 1]", ["twice"])):
+            self.reduce(keys, code=1, says=says, error="reduce.bad-order")
+        self.reduce("large = 2", code=1, says=["order = 3"], error="toml.conflicting-keys")
+        self.copy_example("ex01-spinup")
+        deck = self.read("boom.bdf")
+        for cards, says in (("CELAS2,900,10.,41,2", ["CELAS2 900"]), ("RBE2,901,41,123456,902\nGRID,902,,8.,1.,0.,,0\nCONM2,903,902,,1.", ["rigid"]),
+                            ("CONM2,904,41,,1.,0.,1.,0.", ["CONM2 904", "off its grid"])):
+            self.write("other.bdf", deck.replace("ENDDATA", cards + "\nENDDATA"))
+            self.reduce(replace=[('"boom.bdf"', '"other.bdf"')], code=1, says=says, error="reduce.bad-order")
+        self.reduce()
+        self.write("spinup.toml", self.read("spinup.toml").replace("stiffening = true", "stiffening = true\nmodes = 2"))
+        self.fails(1, "run", "spinup.toml", "-o", "x.h5", says=["2 of the 3 modes"], error="system.third-order-modes")
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,127 @@
+"""`reduce` with [body.stiffening] order = 3 against the manifold of the oracle: energies, displacements, work of loads
+of an L-frame in space, held at its foot or free in its mean frame."""
+import os
+import sys
+import unittest
+
+import h5py
+import numpy as np
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+sys.path.insert(0, os.path.join(HERE, "../../cli"))
+sys.path.insert(0, HERE)
+from beams import axes_along, make_beams  # noqa: E402
+from corotational import Elements  # noqa: E402
+from structure import Manifold, Structure, exponents  # noqa: E402
+from support import ProgramTest  # noqa: E402
+
+E, G, RHO = 7e10, 2.6e10, 2700.
+A, I1, I2, J = 1e-4, 8e-10, 2e-9, 1.5e-9
+NUM = 4                                            # beams a leg
+CORNERS = np.array([(0, 0, 0), (1, 0, 0), (1, .7, .2)], float)
+MODES = 3
+
+
+class TestReduced(ProgramTest):
+    def make(self, body, modes=MODES):
+        X = [CORNERS[0]]
+        for a, b in zip(CORNERS[:-1], CORNERS[1:]):
+            X += [a + (b - a) * i / NUM for i in range(1, NUM + 1)]
+        self.X = np.array(X)
+        self.tip = len(X)
+        v = [(0., 1., 0.)] * NUM + [(1., 0., 0.)] * NUM
+        lines = ["SOL 103", "CEND", "SPC = 1", "BEGIN BULK", "SPC1,1,123456,1", f"MAT1,1,{E!r},{G!r},,{RHO!r}",
+                 f"PBAR,1,1,{A!r},{I1!r},{I2!r},{J!r}", "FORCE,20,5,,3.,0.,1.,2.", f"FORCE,20,{self.tip},,1.,1.,0.,-1."]
+        lines += [f"GRID,{i + 1},,{x},{y},{z}" for i, (x, y, z) in enumerate(self.X.tolist())]
+        lines += [f"CBAR,{i + 1},1,{i + 1},{i + 2},{a},{b},{c}" for i, (a, b, c) in enumerate(v)]
+        self.write("frame.bdf", "\n".join(lines) + "\nENDDATA\n")
+        self.write("frame.toml", f'[body]\nname = "frame"\ndeck = "frame.bdf"\ninterface = [{self.tip}]\n{body}\n'
+                   f'[body.modes]\nnumber = {modes}\n[body.output]\nfull = true\n'
+                   '[[body.load]]\nname = "two forces"\nload_set = 20\n')
+        self.bough("reduce", "frame.toml", "-o", "frame.h5", "-q")
+        nodes = np.array([(i, i + 1) for i in range(2 * NUM)])
+        axes = np.concatenate([axes_along(self.X, nodes[i:i + 1], np.array(v[i])) for i in range(2 * NUM)])
+        return nodes, axes
+
+    def read_tables(self):
+        with h5py.File(self.path("frame.h5")) as f:
+            self.assertEqual(f.attrs["format_version"], "1.3")
+            phi = f["full/phi"][:]
+            third = {name: f["third_order"][name][:] for name in f["third_order"] if name != "integrals"}
+            names = [n.decode() if isinstance(n, bytes) else n for n in f["stiffening/locator/name"][:]]
+            K = f["modal/stiffness"][:]
+        return phi, third, names, K
+
+    def check_tables(self, structure, phi, third, names, C=None):
+        n = phi.shape[1]
+        m = Manifold(structure, phi, order=4, C=C)
+        s = np.diag(phi.T @ structure.K @ phi)**-.5        # size of amplitudes
+        for k, table in zip((3, 4, 5, 6), m.energy((3, 4, 5, 6))):
+            scale = np.prod(s**exponents(n, k), 1)
+            found, exact = third[f"energy_{k}"] * scale, table.c.ravel() * scale
+            np.testing.assert_allclose(found, exact, rtol=1e-6, atol=1e-7 * max(1., np.abs(exact).max()), err_msg=f"energy {k}")
+        f = np.zeros((len(self.X), 6))
+        f[4, :3] = 3 * np.array([0., 1., 2.])
+        f[-1, :3] += (1., 0., -1.)
+        pattern = names.index("two forces")
+        for k in (2, 3, 4):
+            scale = np.prod(s**exponents(n, k), 1)
+            u = m.u[k].c * scale[:, None]
+            found = third[f"node_{k}"][0] * scale[:, None]
+            np.testing.assert_allclose(found, u[:, -6:], rtol=0, atol=1e-6 * np.abs(u).max(), err_msg=f"node {k}")
+            work = third[f"load_{k}"][:, pattern] * scale
+            np.testing.assert_allclose(work, u @ f.ravel(), rtol=0, atol=1e-6 * np.abs(u).max(), err_msg=f"load {k}")
+
+    def test_clamped_frame(self):
+        nodes, axes = self.make('frame = "fixed"\n[body.stiffening]\norder = 3')
+        beams = make_beams(self.X, nodes, axes, E * A, G * J, E * I2, E * I1, (I1 + I2) / A)
+        structure = Structure(self.X, [Elements(**beams)], held=range(6))
+        phi, third, names, K = self.read_tables()
+        np.testing.assert_allclose(np.diag(phi.T @ structure.K @ phi), np.diag(K), rtol=1e-7)
+        self.assertEqual(third["large"].tolist(), [1, 2, 3])
+        self.check_tables(structure, phi, third, names)
+
+    def test_free_frame_in_its_mean_axes(self):
+        nodes, axes = self.make('frame = "free"\n[body.stiffening]\norder = 3')
+        beams = make_beams(self.X, nodes, axes, E * A, G * J, E * I2, E * I1, (I1 + I2) / A)
+        structure = Structure(self.X, [Elements(**beams)])
+        phi, third, names, K = self.read_tables()
+        mass = np.zeros(len(self.X))
+        for a, b in nodes:
+            mass[[a, b]] += RHO * A * np.linalg.norm(self.X[b] - self.X[a]) / 2
+        C = np.zeros((6 * len(self.X), 6))
+        for k in range(3):
+            C[k::6, k] = mass
+            C.reshape(-1, 6, 6)[:, :3, 3 + k] = mass[:, None] * np.cross(np.eye(3)[k], self.X)
+        np.testing.assert_allclose(C.T @ phi, 0, atol=1e-9)
+        self.check_tables(structure, phi, third, names, C)
+
+    def test_small_modes(self):
+        """Two large modes of four: V₃ of two large ones and a small one, displacements of degree 2 of all."""
+        nodes, axes = self.make('frame = "fixed"\n[body.stiffening]\norder = 3\nlarge = [1, 3]', modes=4)
+        beams = make_beams(self.X, nodes, axes, E * A, G * J, E * I2, E * I1, (I1 + I2) / A)
+        structure = Structure(self.X, [Elements(**beams)], held=range(6))
+        phi, third, _, _ = self.read_tables()
+        m = Manifold(structure, phi, order=4)
+        s = np.diag(phi.T @ structure.K @ phi)**-.5
+        self.assertEqual(third["large"].tolist(), [1, 3])
+        scale = np.prod(s**exponents(4, 2), 1)[:, None]
+        np.testing.assert_allclose(third["node_2"][0] * scale, m.u[2].c[:, -6:] * scale,
+                                   rtol=0, atol=1e-6 * np.abs(m.u[2].c * scale).max())
+        V3 = dict(zip(map(tuple, exponents(4, 3)), m.energy((3,))[0].c.ravel()))
+        for i, e in enumerate(exponents(2, 2)):
+            for column, small in enumerate((1, 3)):
+                key = np.zeros(4, int)
+                key[[0, 2]] = e
+                key[small] = 1
+                size = np.prod(s**key)
+                self.assertAlmostEqual(third["energy_small"][i, column] * size, V3[tuple(key)] * size, delta=1e-7)
+        two = Manifold(structure, phi[:, [0, 2]], order=4, W=structure.K @ phi)
+        for k, table in zip((3, 4, 5, 6), two.energy((3, 4, 5, 6))):
+            size = np.prod(s[[0, 2]]**exponents(2, k), 1)
+            np.testing.assert_allclose(third[f"energy_{k}"] * size, table.c.ravel() * size,
+                                       rtol=1e-6, atol=1e-7 * max(1., np.abs(table.c.ravel() * size).max()))
+
+
+if __name__ == "__main__":
+    unittest.main()
