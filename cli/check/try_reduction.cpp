@@ -5,11 +5,12 @@
 #include <cstdint>
 #include <filesystem>
 
+#include "analysis/common/failures.hpp"
+#include "analysis/common/subcase_failures.hpp"
+#include "analysis/common/system_files.hpp"
+#include "analysis/reduce/reduce_body.hpp"
 #include "cli/common/console.hpp"
 #include "cli/common/options.hpp"
-#include "cli/common/subcase_failures.hpp"
-#include "cli/common/system_files.hpp"
-#include "cli/reduce/reduce_body.hpp"
 
 namespace bough::cli {
 
@@ -38,19 +39,19 @@ void try_reduction(const std::string& file, records::BodySpec spec, int num_free
                      "a mechanism within it, or modes that do not exist, are found by reduce");
     return;
   }
-  if (!spec.deck.empty()) spec.deck = resolve_beside(file, spec.deck);
+  if (!spec.deck.empty()) spec.deck = analysis::resolve_beside(file, spec.deck);
   Diagnostics found;
   try {
-    with_file(file, [&] {
-      reduce_body(spec, {}, found);
+    analysis::with_file(file, [&] {
+      analysis::reduce_body(spec, {}, found);
       return kSuccess;
     });
   } catch (const Failure& failure) {
     Diagnostics own;
     for (const auto& item : failure.items()) own.add(item);
-    add_new(own, diagnostics);
+    analysis::add_new(own, diagnostics);
   }
-  add_new(found, diagnostics);
+  analysis::add_new(found, diagnostics);
 }
 
 }  // namespace bough::cli

@@ -8,10 +8,13 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "analysis/common/failures.hpp"
+#include "analysis/common/inputs.hpp"
+#include "analysis/common/system_files.hpp"
+#include "analysis/linearize/operating_point.hpp"
 #include "cli/common/console.hpp"
 #include "cli/common/options.hpp"
 #include "cli/common/text_file.hpp"
-#include "cli/linearize/operating_point.hpp"
 #include "cli/run/provenance_sink.hpp"
 #include "cli/verbs.hpp"
 #include "formats/hdf5/files.hpp"
@@ -30,7 +33,7 @@ struct EquilibriumOptions : CommonOptions {
 };
 
 /// A results file of one sample: plot, export and --start-from take it as any other.
-void write_equilibrium(const LoadedSystem& loaded, solver::Plant& plant, const solver::Equilibrium& found,
+void write_equilibrium(const analysis::LoadedSystem& loaded, solver::Plant& plant, const solver::Equilibrium& found,
                        const std::vector<std::string>& sources, const std::string& path) {
   const auto& point = found.point;
   const Eigen::VectorXd u = plant.calc_speeds(point);
@@ -43,7 +46,7 @@ void write_equilibrium(const LoadedSystem& loaded, solver::Plant& plant, const s
   header.max_samples = 1;
   header.settings = {{"equilibrium_residual", fmt::format("{:.17g}", found.residual)}};
   const auto writer = hdf5::make_results_writer(path);
-  ProvenanceSink sink(*writer, calc_sources(sources));
+  ProvenanceSink sink(*writer, analysis::calc_sources(sources));
   sink.begin(header);
   sink.write_sample(recorder.calc_sample(point.t, plant.data(), point.q, u, 0, 0));
   Eigen::VectorXd state = Eigen::VectorXd::Zero(point.q.size() + u.size() + point.z.size() + 2);
@@ -68,14 +71,14 @@ std::string join(const std::vector<std::string>& words) {
 int run_equilibrium(const EquilibriumOptions& o) {
   Console console(o.quiet, o.verbosity);
   if (!console.is_root()) return kSuccess;
-  demand_file(o.file);
-  if (has_suffix(o.file, ".toml")) demand_kind(o.file, toml_files::detect_kind(o.file), "system");
+  analysis::demand_file(o.file);
+  if (analysis::has_suffix(o.file, ".toml")) analysis::demand_kind(o.file, toml_files::detect_kind(o.file), "system");
   Diagnostics diagnostics;
-  const auto loaded = load_system(o.file, diagnostics, {}, o.set);
-  const auto sources = collect_sources(o.file, loaded);
+  const auto loaded = analysis::load_system(o.file, diagnostics, {}, o.set);
+  const auto sources = analysis::collect_sources(o.file, loaded);
   if (!o.output.empty()) check_output(o, o.output, sources);
   solver::warn_of_latches(loaded.system, {o.file}, diagnostics);
-  auto plant = make_plant(loaded);
+  auto plant = analysis::make_plant(loaded);
   const auto start = plant.make_initial_point();
   const auto found = solver::find_equilibrium(plant, start, {o.file});
   if (!found.unstable.empty())
@@ -137,7 +140,8 @@ void add_equilibrium(CLI::App& app, Action& action) {
       "Example:\n  bough equilibrium arm.toml -o rest.h5\n"
       "  bough linearize arm.toml --start-from rest.h5 -o arm-linear.h5\n"
       "Hinge rates of the system file are kept: other than zero they give a steady spin.");
-  verb->callback([&action, o] { action = [o] { return with_file(o->file, [&] { return run_equilibrium(*o); }); }; });
+  verb->callback(
+      [&action, o] { action = [o] { return analysis::with_file(o->file, [&] { return run_equilibrium(*o); }); }; });
 }
 
 }  // namespace bough::cli

@@ -8,19 +8,23 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "analysis/common/failures.hpp"
+#include "analysis/common/inputs.hpp"
+#include "analysis/common/model_choice.hpp"
+#include "analysis/common/ranks.hpp"
+#include "analysis/common/solution.hpp"
+#include "analysis/common/subcase_failures.hpp"
+#include "analysis/listing/listing.hpp"
+#include "analysis/listing/response_listing.hpp"
 #include "cli/common/console.hpp"
+#include "cli/common/deck_tables.hpp"
 #include "cli/common/options.hpp"
-#include "cli/common/ranks.hpp"
-#include "cli/common/solution.hpp"
-#include "cli/common/subcase_failures.hpp"
 #include "cli/common/text_file.hpp"
 #include "cli/common/usage_text.hpp"
 #include "cli/frequency/frequency.hpp"
 #include "cli/frequency/random_tables.hpp"
 #include "cli/frequency/response_tables.hpp"
-#include "cli/listing/listing.hpp"
-#include "cli/listing/response_listing.hpp"
-#include "cli/modes/eigen_choices.hpp"
+#include "cli/modes/modes_options.hpp"
 #include "fe/statics/build_model.hpp"
 #include "fe/statics/preload.hpp"
 #include "formats/export/response_text.hpp"
@@ -41,8 +45,8 @@ struct DeckResponseOptions : ModesOptions {
 /// The deck's EIGRL with the command line; where neither says how many modes, those up to twice the highest frequency.
 modal::EigenOptions choose_eigen(const DeckResponseOptions& options, const records::DynamicDeck& deck,
                                  const records::DynamicSubcase& subcase, Diagnostics& diagnostics) {
-  auto eigen = choose_eigen_options(options, deck, subcase.method, diagnostics);
-  const bool is_said = options.number > 0 || options.max_hz || !deck.eigen_methods.empty();
+  auto eigen = analysis::choose_eigen_options(options.eigen, deck, subcase.method, diagnostics);
+  const bool is_said = options.eigen.number > 0 || options.eigen.max_hz || !deck.eigen_methods.empty();
   const double highest = modal::response::find_highest(deck, subcase.dynamics.frequency);
   if (!is_said && !options.is_over_time && highest > 0) {
     eigen.num_modes = 0;
@@ -65,7 +69,7 @@ void demand_grids(const DeckResponseOptions& options, const records::DynamicDeck
 bool choose_direct(const DeckResponseOptions& options, const records::DynamicDeck& deck, Diagnostics& diagnostics) {
   static const std::array direct{"108", "109", "26", "27", "SEDFREQ", "SEDTRAN", "DFREQ", "DTRAN", "DIRECT"};
   const bool is_asked = std::find(direct.begin(), direct.end(), deck.sol) != direct.end();
-  const bool wants_modes = options.is_modal || options.number > 0 || options.max_hz || options.no_residuals;
+  const bool wants_modes = options.is_modal || options.eigen.number > 0 || options.eigen.max_hz || options.no_residuals;
   if (options.is_direct || (is_asked && !wants_modes)) return true;
   if (is_asked)
     diagnostics.note("cli.by-modes", deck.locate({}),
@@ -86,18 +90,18 @@ void note_random(const records::DynamicDeck& deck, const std::vector<records::Dy
 int run_deck_response(const DeckResponseOptions& options) {
   Console console(options.quiet, options.verbosity);
   console.set_subject(options.deck);
-  do_once([&] {
-    demand_deck(options.deck);
+  analysis::do_once([&] {
+    analysis::demand_deck(options.deck);
     check_outputs(options, {options.output, options.csv, options.punch, options.listing.f06, options.listing.op2},
                   {options.deck});
   });
   console.set_rank(fe::initialize_petsc().rank);
   Diagnostics diagnostics;
-  const auto model_options = make_model_options(options.model);
-  const auto deck = read_loads_deck_or_throw(options.deck, model_options, true, diagnostics);
+  const auto model_options = analysis::make_model_options(options.model);
+  const auto deck = analysis::read_loads_deck_or_throw(options.deck, model_options, true, diagnostics);
   std::vector<records::DynamicSubcase> subcases;
   std::unique_ptr<modal::response::RandomAnalysis> random;
-  with_prior_messages(diagnostics, [&] {
+  analysis::with_prior_messages(diagnostics, [&] {
     demand_grids(options, deck);
     subcases = modal::response::choose_response_subcases(deck, options.model.subcase, options.is_over_time);
     if (options.is_over_time) note_random(deck, subcases, diagnostics);
@@ -106,7 +110,7 @@ int run_deck_response(const DeckResponseOptions& options) {
         deck, options.is_over_time ? std::vector<records::DynamicSubcase>{} : subcases, own);
     own.throw_if_errors();
   });
-  note_solution(deck, diagnostics);
+  analysis::note_solution(deck, diagnostics);
   if (subcases.empty()) {  // build_model() reports it
     subcases.emplace_back();
     subcases.back().id = options.model.subcase;
@@ -128,7 +132,7 @@ int run_deck_response(const DeckResponseOptions& options) {
   modal::response::DeckResponseSolver solver(deck, model_options, response_options);
   records::DeckResponse response;
   response.is_over_time = options.is_over_time;
-  SubcaseFailures failures(subcases.size(), deck.subcases.size());
+  analysis::SubcaseFailures failures(subcases.size(), deck.subcases.size());
   for (const auto& subcase : subcases) {
     Diagnostics own;
     try {
@@ -138,23 +142,23 @@ int run_deck_response(const DeckResponseOptions& options) {
       failures.add(subcase.id, failure);
     }
     console.end_progress();
-    add_new(own, diagnostics);
+    analysis::add_new(own, diagnostics);
   }
   if (response.subcases.empty()) failures.throw_all(diagnostics);
-  with_prior_messages(diagnostics,
-                      [&] { response.random = random->calc(response.subcases, solver.sources(), diagnostics); });
-  response.source = calc_sources(deck.files);
+  analysis::with_prior_messages(
+      diagnostics, [&] { response.random = random->calc(response.subcases, solver.sources(), diagnostics); });
+  response.source = analysis::calc_sources(deck.files);
   records::Listing listing;
   if (!options.listing.empty()) {
     Diagnostics heard;  // by the solver
     auto of_first = model_options;
     for (const auto& subcase : subcases)
       if (std::max(subcase.id, 1) == response.subcases.front().id) of_first.subcase = subcase.id;
-    listing = make_response_listing(response, deck, fe::build_model(deck, of_first, heard), diagnostics);
+    listing = analysis::make_response_listing(response, deck, fe::build_model(deck, of_first, heard), diagnostics);
   }
   console.print(diagnostics);
   console.print(failures.get_items(diagnostics));
-  do_once([&] {
+  analysis::do_once([&] {
     if (!options.output.empty()) hdf5::write_response(response, options.output);
     if (!options.csv.empty()) write_text_file(options.csv, exports::make_response_csv(response));
     if (!options.punch.empty()) write_text_file(options.punch, exports::make_punch_text(response));
@@ -165,7 +169,7 @@ int run_deck_response(const DeckResponseOptions& options) {
     for (const auto& subcase : response.subcases)
       json["subcases"].push_back(to_json(subcase, options.is_over_time, options.full));
     for (const auto& result : response.random) json["random"].push_back(to_json(result, options.full));
-    if (!failures.is_empty()) json["failed"] = failures.to_json();
+    if (!failures.is_empty()) json["failed"] = to_json(failures);
     console.print_data(json.dump(2) + "\n");
   } else {
     for (const auto& subcase : response.subcases)
@@ -176,7 +180,7 @@ int run_deck_response(const DeckResponseOptions& options) {
     for (const auto& path : {options.output, options.csv, options.punch, options.listing.f06, options.listing.op2})
       if (!path.empty()) console.print("written: " + path + "\n");
   }
-  do_once([] { flush_data(); });
+  analysis::do_once([] { flush_data(); });
   return failures.get_exit_code();
 }
 
@@ -192,9 +196,9 @@ void add_response_verb(CLI::App& app, Action& action, bool is_over_time, const c
   auto* direct = verb->add_flag("--direct", o->is_direct, "Without modes, whatever SOL of the deck");
   const auto add_modal = [&](CLI::Option* option) { option->excludes(direct); };
   add_modal(verb->add_flag("--modal", o->is_modal, "By modes, whatever SOL of the deck"));
-  add_modal(verb->add_option("-n,--number,--modes", o->number, "Number of modes (default: the deck's EIGRL)")
+  add_modal(verb->add_option("-n,--number,--modes", o->eigen.number, "Number of modes (default: the deck's EIGRL)")
                 ->check(make_positive()));
-  add_modal(verb->add_option("--max-hz", o->max_hz, "Modes up to this frequency"));
+  add_modal(verb->add_option("--max-hz", o->eigen.max_hz, "Modes up to this frequency"));
   add_modal(
       verb->add_flag("--no-residuals", o->no_residuals, "Modes alone, without residual vectors of what drives them"));
   verb->add_flag("--full", o->full, "Every curve in the table, their samples in --json");
@@ -204,7 +208,8 @@ void add_response_verb(CLI::App& app, Action& action, bool is_over_time, const c
   add_model_options(*verb, o->model);
   add_common_options(*verb, *o, kOutput | kJson, "Write the curves to this HDF5 file");
   verb->footer(footer);
-  verb->callback([&action, o] { action = [o] { return with_file(o->deck, [&] { return run_deck_response(*o); }); }; });
+  verb->callback(
+      [&action, o] { action = [o] { return analysis::with_file(o->deck, [&] { return run_deck_response(*o); }); }; });
 }
 
 }  // namespace

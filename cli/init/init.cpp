@@ -6,6 +6,7 @@
 #include <memory>
 #include <sstream>
 
+#include "analysis/common/inputs.hpp"
 #include "cli/common/console.hpp"
 #include "cli/common/options.hpp"
 #include "cli/common/text_file.hpp"
@@ -97,7 +98,7 @@ Files make_files(const InitOptions& o, Diagnostics& diagnostics) {
     for (const auto& file : chosen.files) made.files.push_back({file.name, file.text});
     return made;
   }
-  demand_deck(o.name);
+  analysis::demand_deck(o.name);
   const auto deck = nastran::read_deck(o.name, {}, diagnostics);
   if (deck.grids.empty())
     diagnostics.error("fe.no-grids", {o.name}, "the deck has no GRID", "give the bulk data of a model");

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <set>
 
+#include "analysis/modes/eigen_choices.hpp"
 #include "base/diagnostic.hpp"
-#include "cli/modes/eigen_choices.hpp"
 #include "fe/matrices/connected_parts.hpp"
 #include "fe/statics/build_model.hpp"
 
@@ -65,7 +65,7 @@ std::string make_modes_table(const records::Deck& deck, bool is_fixed) {
     text += fmt::format("{:<25}# as {}{}\n", fmt::format("number = {}", at->num_modes - num_rigid), card,
                         is_fixed ? "" : ", without six rigid modes");
   const bool is_buckling = deck.sol == "105" || deck.sol == "SEBUCKL";
-  if (at->f2 && *at->f2 > 0 && !is_buckling && !counts_whatever_range(*at))
+  if (at->f2 && *at->f2 > 0 && !is_buckling && !analysis::counts_whatever_range(*at))
     text += fmt::format("{:<25}# Hz, as {}\n", fmt::format("max_frequency = {}", *at->f2), card);
   if (!text.empty()) return text;
   return fmt::format("number = 10              # {} {}\n", card,

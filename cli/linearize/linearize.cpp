@@ -6,12 +6,15 @@
 #include <algorithm>
 #include <memory>
 
+#include "analysis/common/failures.hpp"
+#include "analysis/common/inputs.hpp"
+#include "analysis/common/system_files.hpp"
+#include "analysis/linearize/operating_point.hpp"
 #include "cli/common/console.hpp"
 #include "cli/common/options.hpp"
 #include "cli/common/text_file.hpp"
 #include "cli/common/usage_text.hpp"
 #include "cli/linearize/linear_model_files.hpp"
-#include "cli/linearize/operating_point.hpp"
 #include "cli/linearize/sweep.hpp"
 #include "cli/verbs.hpp"
 #include "formats/hdf5/linear_file.hpp"
@@ -33,7 +36,7 @@ struct LinearizeVerbOptions : CommonOptions {
 
 records::LinearModel linearize_at(const LinearizeVerbOptions& o, solver::Plant& plant, solver::OperatingPoint point,
                                   bool check, Diagnostics& diagnostics) {
-  if (o.equilibrium) point = find_rest(plant, std::move(point), o.file);
+  if (o.equilibrium) point = analysis::find_rest(plant, std::move(point), o.file);
   plant.hold_commands(point);
   return solver::linearize(plant, point, {o.inputs, o.outputs, check, o.cut}, {o.file}, diagnostics);
 }
@@ -52,9 +55,9 @@ records::LinearSweep sweep_parameter(const LinearizeVerbOptions& o, Diagnostics&
     auto set = o.set;
     set.push_back(fmt::format("{}={:.17g}", range.name, value));
     Diagnostics found;
-    const auto loaded = load_system(o.file, found, o.start_from, set);
-    auto plant = make_plant(loaded, o.open);
-    auto point = o.at ? run_to(loaded, plant, *o.at, found) : make_start(loaded, plant, found);
+    const auto loaded = analysis::load_system(o.file, found, o.start_from, set);
+    auto plant = analysis::make_plant(loaded, o.open);
+    auto point = o.at ? analysis::run_to(loaded, plant, *o.at, found) : analysis::make_start(loaded, plant, found);
     auto model = linearize_at(o, plant, std::move(point), false, found);
     keep_new(found, diagnostics);
     return model;
@@ -63,18 +66,19 @@ records::LinearSweep sweep_parameter(const LinearizeVerbOptions& o, Diagnostics&
 }
 
 /// At every N-th sample of the run.
-records::LinearSweep sweep_run(const LinearizeVerbOptions& o, const LoadedSystem& loaded, Diagnostics& diagnostics) {
+records::LinearSweep sweep_run(const LinearizeVerbOptions& o, const analysis::LoadedSystem& loaded,
+                               Diagnostics& diagnostics) {
   Diagnostics checked;
   const auto plan = solver::make_run_plan(loaded.spec.simulation, checked);
   checked.throw_if_errors();
   const solver::TimeEvents samples(plan);
   std::vector<double> times;
   for (long i = 0; i < samples.num_outputs(); i += o.each) times.push_back(samples.calc_output(i));
-  auto plant = make_plant(loaded, o.open);
+  auto plant = analysis::make_plant(loaded, o.open);
   std::optional<records::Checkpoint> last;
   const auto linearize = [&](double t) {
     Diagnostics found;
-    auto point = run_to(loaded, plant, t, found, &last);
+    auto point = analysis::run_to(loaded, plant, t, found, &last);
     auto model = linearize_at(o, plant, std::move(point), false, found);
     keep_new(found, diagnostics);
     return model;
@@ -82,10 +86,10 @@ records::LinearSweep sweep_run(const LinearizeVerbOptions& o, const LoadedSystem
   return make_sweep("time", times, linearize, o.file, diagnostics);
 }
 
-int run_sweep(const LinearizeVerbOptions& o, const Console& console, const LoadedSystem& loaded,
+int run_sweep(const LinearizeVerbOptions& o, const Console& console, const analysis::LoadedSystem& loaded,
               const std::vector<std::string>& sources, Diagnostics& diagnostics) {
   auto sweep = o.each > 0 ? sweep_run(o, loaded, diagnostics) : sweep_parameter(o, diagnostics);
-  sweep.source = calc_sources(sources);
+  sweep.source = analysis::calc_sources(sources);
   console.print(diagnostics);
   if (o.json)
     console.print_data(make_json(sweep).dump(2) + "\n");
@@ -99,8 +103,8 @@ int run_sweep(const LinearizeVerbOptions& o, const Console& console, const Loade
 int run_linearize(const LinearizeVerbOptions& o) {
   Console console(o.quiet, o.verbosity);
   if (!console.is_root()) return kSuccess;
-  demand_file(o.file);
-  if (has_suffix(o.file, ".toml")) demand_kind(o.file, toml_files::detect_kind(o.file), "system");
+  analysis::demand_file(o.file);
+  if (analysis::has_suffix(o.file, ".toml")) analysis::demand_kind(o.file, toml_files::detect_kind(o.file), "system");
   Diagnostics diagnostics;
   auto set = o.set;
   try {
@@ -112,8 +116,8 @@ int run_linearize(const LinearizeVerbOptions& o) {
     report_failure(error, console);
     return kUsageError;
   }
-  const auto loaded = load_system(o.file, diagnostics, o.start_from, set);
-  const auto sources = collect_sources(o.file, loaded);
+  const auto loaded = analysis::load_system(o.file, diagnostics, o.start_from, set);
+  const auto sources = analysis::collect_sources(o.file, loaded);
   check_outputs(o, {o.output, o.mat, o.csv}, sources);
   if (o.each > 0 || !o.sweep.empty()) {
     const int code = run_sweep(o, console, loaded, sources, diagnostics);
@@ -121,11 +125,12 @@ int run_linearize(const LinearizeVerbOptions& o) {
       if (!path.empty() && !o.json) console.print("written: " + path + "\n");
     return code;
   }
-  auto plant = make_plant(loaded, o.open);
-  auto point = o.at ? run_to(loaded, plant, *o.at, diagnostics) : make_start(loaded, plant, diagnostics);
+  auto plant = analysis::make_plant(loaded, o.open);
+  auto point =
+      o.at ? analysis::run_to(loaded, plant, *o.at, diagnostics) : analysis::make_start(loaded, plant, diagnostics);
   solver::warn_of_latches(loaded.system, {o.file}, diagnostics);
   auto model = linearize_at(o, plant, std::move(point), true, diagnostics);
-  model.source = calc_sources(sources);
+  model.source = analysis::calc_sources(sources);
   console.print(diagnostics);
   if (o.json)
     console.print_data(make_json(model).dump(2) + "\n");
@@ -180,7 +185,8 @@ void add_linearize(CLI::App& app, Action& action) {
       "  bough linearize arm.toml --inputs shoulder,elbow --outputs tip:y --at 2.5 --json\n"
       "  bough linearize rotor.toml --equilibrium --sweep rate=0:6:25 -o campbell.h5\n"
       "  bough linearize arm.toml --break motor -o loop.h5 && bough response loop.h5");
-  verb->callback([&action, o] { action = [o] { return with_file(o->file, [&] { return run_linearize(*o); }); }; });
+  verb->callback(
+      [&action, o] { action = [o] { return analysis::with_file(o->file, [&] { return run_linearize(*o); }); }; });
 }
 
 }  // namespace bough::cli

@@ -6,11 +6,14 @@
 #include <optional>
 #include <sstream>
 
+#include "analysis/common/failures.hpp"
+#include "analysis/common/inputs.hpp"
+#include "analysis/common/model_choice.hpp"
+#include "analysis/common/ranks.hpp"
+#include "analysis/common/subcase_failures.hpp"
 #include "cli/common/console.hpp"
 #include "cli/common/model_options.hpp"
 #include "cli/common/options.hpp"
-#include "cli/common/ranks.hpp"
-#include "cli/common/subcase_failures.hpp"
 #include "cli/common/text_file.hpp"
 #include "fe/loads/second_order.hpp"
 #include "fe/loads/wide_links.hpp"
@@ -27,7 +30,7 @@ namespace {
 
 struct MatricesOptions : CommonOptions {
   std::string deck, format = "h5";
-  DeckModelOptions model;
+  analysis::ModelChoice model;
   std::vector<int> loads;
   bool no_kg = false;
 };
@@ -90,15 +93,15 @@ class GeometricStiffness {
 
  private:
   void change_to(int subcase, Diagnostics& diagnostics) {
-    auto model_options = make_model_options(options_.model);
+    auto model_options = analysis::make_model_options(options_.model);
     model_options.subcase = subcase;
     model_options.uses_enforced = true;
-    with_prior_messages(diagnostics,
-                        [&] { model_options.prestress = calc_prestress(deck_, model_options, diagnostics); });
+    analysis::with_prior_messages(
+        diagnostics, [&] { model_options.prestress = analysis::calc_prestress(deck_, model_options, diagnostics); });
     solver_.reset();
     Diagnostics own;  // what the other model said too is not said again
     model_ = &own_.emplace(fe::build_model(deck_, model_options, own));
-    add_new(own, diagnostics);
+    analysis::add_new(own, diagnostics);
   }
 
   const records::Deck& deck_;
@@ -164,8 +167,8 @@ std::vector<std::string> write(const records::MatricesResult& result, const Matr
 int run_matrices(const MatricesOptions& options) {
   Console console(options.quiet, options.verbosity);
   console.set_subject(options.deck);
-  do_once([&] {
-    demand_deck(options.deck);
+  analysis::do_once([&] {
+    analysis::demand_deck(options.deck);
     check_output(options, options.output, {options.deck});
     if (options.format == "op4") check_outputs(options, {name_dof_file(options.output)}, {options.deck});
     if (options.format == "mtx")
@@ -176,14 +179,15 @@ int run_matrices(const MatricesOptions& options) {
   console.set_rank(fe::initialize_petsc().rank);
 
   Diagnostics diagnostics;
-  const auto deck = read_deck_or_throw(options.deck, make_model_options(options.model), diagnostics);
-  auto model_options = make_model_options(options.model);
+  const auto deck =
+      analysis::read_deck_or_throw(options.deck, analysis::make_model_options(options.model), diagnostics);
+  auto model_options = analysis::make_model_options(options.model);
   model_options.uses_enforced = true;
-  model_options.prestress = calc_prestress(deck, model_options, diagnostics);
+  model_options.prestress = analysis::calc_prestress(deck, model_options, diagnostics);
   const auto model = fe::build_model(deck, model_options, diagnostics);
   diagnostics.throw_if_errors();
   records::MatricesResult result;
-  result.source = calc_sources(deck.files);
+  result.source = analysis::calc_sources(deck.files);
   result.dof_map = model.calc_dof_map();
   result.mesh = model.calc_mesh();
   result.K = fe::gather_sparse(fe::assemble_stiffness(model, fe::DofSet::Global));
@@ -235,7 +239,8 @@ void add_matrices(CLI::App& app, Action& action) {
   verb->get_option("--output")->required();
   verb->footer(
       "Example:\n  bough matrices column.bdf -o column.h5\n  bough matrices column.bdf --to mtx -o column.mtx");
-  verb->callback([&action, o] { action = [o] { return with_file(o->deck, [&] { return run_matrices(*o); }); }; });
+  verb->callback(
+      [&action, o] { action = [o] { return analysis::with_file(o->deck, [&] { return run_matrices(*o); }); }; });
 }
 
 }  // namespace bough::cli

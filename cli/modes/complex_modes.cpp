@@ -8,10 +8,15 @@
 #include <numbers>
 #include <optional>
 
+#include "analysis/common/inputs.hpp"
+#include "analysis/common/model_choice.hpp"
+#include "analysis/common/ranks.hpp"
+#include "analysis/common/solution.hpp"
+#include "analysis/common/subcase_failures.hpp"
+#include "analysis/listing/listing.hpp"
+#include "analysis/modes/eigen_choices.hpp"
+#include "cli/common/deck_tables.hpp"
 #include "cli/common/options.hpp"
-#include "cli/common/ranks.hpp"
-#include "cli/common/solution.hpp"
-#include "cli/common/subcase_failures.hpp"
 #include "cli/common/text_file.hpp"
 #include "cli/common/vtu_file.hpp"
 #include "cli/modes/modes_tables.hpp"
@@ -157,20 +162,20 @@ nlohmann::json make_json(const ComplexModesResult& r) {
 int run_complex_modes(const ModesOptions& options, const std::vector<int>& subcases, Console& console) {
   demand_supported(options);
   Diagnostics diagnostics;
-  auto model_options = make_model_options(options.model);
-  const auto deck = read_loads_deck_or_throw(options.deck, model_options, false, diagnostics, true);
-  const auto sources = calc_sources(deck.files);
+  auto model_options = analysis::make_model_options(options.model);
+  const auto deck = analysis::read_loads_deck_or_throw(options.deck, model_options, false, diagnostics, true);
+  const auto sources = analysis::calc_sources(deck.files);
   modal::complex_modes::ComplexModesOptions solver;
   solver.is_by_modes = is_by_modes(deck.sol);
   // In SOL 110 the number of real modes is that of EIGRL.
-  solver.num_modes = options.number;
+  solver.num_modes = options.eigen.number;
   solver.has_shapes = true;
   solver.choose_eigen = [&](const records::DynamicSubcase& subcase, Diagnostics& own) {
-    auto of_real = options;
+    auto of_real = options.eigen;
     of_real.number = 0;
-    return choose_eigen_options(of_real, deck, subcase.method, own);
+    return analysis::choose_eigen_options(of_real, deck, subcase.method, own);
   };
-  SubcaseFailures failures(subcases.size(), deck.subcases.size());
+  analysis::SubcaseFailures failures(subcases.size(), deck.subcases.size());
   nlohmann::json json;
   std::vector<listing::ListedComplexModes> listed;
   std::string text, written;
@@ -187,13 +192,13 @@ int run_complex_modes(const ModesOptions& options, const std::vector<int>& subca
       const auto& control = found == deck.subcases.end() ? deck.subcases.front() : *found;
       const auto selection = deck.selections.find(control.id);
       subcase = {control, selection == deck.selections.end() ? records::DynamicSelection{} : selection->second};
-      model_options.prestress = calc_prestress(deck, model_options, own);
+      model_options.prestress = analysis::calc_prestress(deck, model_options, own);
       console.show_progress(fmt::format("subcase {}", id));
       result = modal::complex_modes::solve_complex_modes(deck, model_options, subcase, solver, own);
     } catch (const Failure& failure) {
       console.end_progress();
       failures.add(id, failure);
-      add_warnings(own, diagnostics);
+      analysis::add_warnings(own, diagnostics);
       continue;
     }
     console.end_progress();
@@ -206,7 +211,7 @@ int run_complex_modes(const ModesOptions& options, const std::vector<int>& subca
     if (!vtu.empty() && console.is_root())
       pictures.emplace_back(
           vtu, make_vtu_text(exports::make_picture(result), exports::VtuEncoding::Base64, options.deck, own));
-    add_new(own, diagnostics);
+    analysis::add_new(own, diagnostics);
     if (subcases.size() > 1) text += fmt::format("{}subcase {}\n\n", is_first ? "" : "\n", result.subcase);
     text += format_text(result);
     const auto one = make_json(result);
@@ -215,28 +220,28 @@ int run_complex_modes(const ModesOptions& options, const std::vector<int>& subca
     const auto output = name_output(options.output, result.subcase, is_first);
     is_first = false;
     if (output.empty()) continue;
-    do_once([&] {
+    analysis::do_once([&] {
       check_outputs(options, {output, options.vtu, vtu == options.vtu ? "" : vtu}, {options.deck});
       hdf5::write_complex_modes(result, output);
     });
     written += "written: " + output + "\n";
   }
   if (is_first) failures.throw_all(diagnostics);
-  if (!failures.is_empty()) json["failed"] = failures.to_json();
+  if (!failures.is_empty()) json["failed"] = to_json(failures);
   console.print(diagnostics);
   console.print(failures.get_items(diagnostics));
   if (options.json)
     console.print_data(json.dump(2) + "\n");
   else
     console.print(text);
-  do_once([&] {
+  analysis::do_once([&] {
     for (const auto& [path, picture] : pictures) write_text_file(path, picture);
     if (!options.listing.f06.empty()) write_text_file(options.listing.f06, listing::make_complex_f06(listed));
   });
   if (!options.listing.f06.empty()) written += "written: " + options.listing.f06 + "\n";
   for (const auto& [path, picture] : pictures) written += "written: " + path + "\n";
   if (!options.json) console.print(written);
-  do_once([] { flush_data(); });
+  analysis::do_once([] { flush_data(); });
   return failures.get_exit_code();
 }
 

@@ -1,7 +1,7 @@
 #pragma once
 /// \file `bough modes` of SOL 107 and 110: complex eigenvalues.
 #include "cli/common/console.hpp"
-#include "cli/modes/eigen_choices.hpp"
+#include "cli/modes/modes_options.hpp"
 
 namespace bough::cli {
 

@@ -8,18 +8,20 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "analysis/common/failures.hpp"
+#include "analysis/common/inputs.hpp"
+#include "analysis/common/ranks.hpp"
+#include "analysis/common/solution.hpp"
+#include "analysis/common/system_files.hpp"
+#include "analysis/reduce/matrix_files.hpp"
+#include "analysis/reduce/reduce_body.hpp"
 #include "cli/common/console.hpp"
 #include "cli/common/deck_tables.hpp"
 #include "cli/common/options.hpp"
-#include "cli/common/ranks.hpp"
-#include "cli/common/solution.hpp"
 #include "cli/common/solver_option.hpp"
-#include "cli/common/system_files.hpp"
 #include "cli/common/text_file.hpp"
 #include "cli/common/usage_text.hpp"
 #include "cli/compare/compare_report.hpp"
-#include "cli/reduce/matrix_files.hpp"
-#include "cli/reduce/reduce_body.hpp"
 #include "formats/hdf5/body_accuracy.hpp"
 #include "formats/nastran/loads_deck.hpp"
 #include "formats/toml/specs.hpp"
@@ -97,22 +99,22 @@ void add_matrices(const ReduceVerbOptions& o, records::BodySpec& spec) {
   // The common file first: ":NAME" of the others is in it.
   for (const bool is_file : {true, false})
     for (const auto& text : o.matrices)
-      if ((text.find('=') == std::string::npos) == is_file) add_matrices_option(text, *spec.matrices);
+      if ((text.find('=') == std::string::npos) == is_file) analysis::add_matrices_option(text, *spec.matrices);
   if (spec.name.empty())
     spec.name = fs::path(spec.matrices->file.empty() ? spec.matrices->stiffness.file : spec.matrices->file).stem();
 }
 
 records::BodySpec make_spec(const ReduceVerbOptions& o, Diagnostics& diagnostics) {
   records::BodySpec spec;
-  const bool is_toml = has_suffix(o.file, ".toml");
+  const bool is_toml = analysis::has_suffix(o.file, ".toml");
   if (is_toml) {
-    do_once([&] { demand_kind(o.file, toml_files::detect_kind(o.file), "body"); });
-    spec = read_body_spec_once(o.file, diagnostics);
+    analysis::do_once([&] { analysis::demand_kind(o.file, toml_files::detect_kind(o.file), "body"); });
+    spec = analysis::read_body_spec_once(o.file, diagnostics);
     diagnostics.throw_if_errors();
-    if (!spec.deck.empty()) spec.deck = resolve_beside(o.file, spec.deck);
+    if (!spec.deck.empty()) spec.deck = analysis::resolve_beside(o.file, spec.deck);
     add_matrices(o, spec);
   } else {
-    if (!o.file.empty()) do_once([&] { demand_deck(o.file); });
+    if (!o.file.empty()) analysis::do_once([&] { analysis::demand_deck(o.file); });
     spec.deck = o.file;
     spec.name = fs::path(o.file).stem().string();
     add_matrices(o, spec);
@@ -144,7 +146,7 @@ records::BodySpec make_spec(const ReduceVerbOptions& o, Diagnostics& diagnostics
 
 std::string choose_output(const ReduceVerbOptions& o, const records::BodySpec& spec) {
   if (!o.output.empty()) return o.output;
-  if (!spec.output_file.empty()) return resolve_beside(spec.file, spec.output_file);
+  if (!spec.output_file.empty()) return analysis::resolve_beside(spec.file, spec.output_file);
   return spec.name + ".h5";
 }
 
@@ -213,11 +215,11 @@ Table make_check_table(const records::FlexBody& body, const stiffening::ModeChec
 int run_reduce(const ReduceVerbOptions& o) {
   Console console(o.quiet, o.verbosity);
   console.set_subject(o.file);
-  if (!o.file.empty()) do_once([&] { demand_file(o.file); });
+  if (!o.file.empty()) analysis::do_once([&] { analysis::demand_file(o.file); });
   Diagnostics diagnostics;
   const auto spec = make_spec(o, diagnostics);
   const auto output = choose_output(o, spec);
-  do_once([&] {
+  analysis::do_once([&] {
     // A body file may come from anywhere: it does not choose which file of the user's goes.
     if (o.output.empty() && !spec.output_file.empty() && !o.force_outside &&
         !is_inside(output, fs::path(o.file).parent_path().string()))
@@ -230,11 +232,11 @@ int run_reduce(const ReduceVerbOptions& o) {
   stiffening::ReduceOptions options;
   options.progress = [&](const std::string& stage) { console.show_progress("reduce: " + stage); };
   if (!o.solver.empty()) options.solver = modal::find_eps_type(o.solver);
-  const auto [body, basis, check] = reduce_body(spec, options, diagnostics);
+  const auto [body, basis, check] = analysis::reduce_body(spec, options, diagnostics);
   console.end_progress();
   console.print(diagnostics);
   diagnostics.throw_if_errors();
-  do_once([&, &body = body, &basis = basis] {
+  analysis::do_once([&, &body = body, &basis = basis] {
     hdf5::write_flex_body(body, hdf5::BodyAccuracy{basis.mass, basis.stiffness}, output);
     if (!o.loads_deck.empty()) write_text_file(o.loads_deck, nastran::write_loads_deck(body, o.loads_set));
   });
@@ -323,7 +325,7 @@ void add_reduce(CLI::App& app, Action& action) {
       "  bough reduce boom.bdf --matrices boom.op4 --modes 3\n  mpirun -n 2 bough reduce boom.toml");
   verb->callback([&action, o] {
     if (o->file.empty() && o->matrices.empty()) throw CLI::RequiredError("file");
-    action = [o] { return with_file(o->file, [&] { return run_reduce(*o); }); };
+    action = [o] { return analysis::with_file(o->file, [&] { return run_reduce(*o); }); };
   });
 }
 

@@ -10,6 +10,8 @@
 #include <numbers>
 #include <sstream>
 
+#include "analysis/common/failures.hpp"
+#include "analysis/common/inputs.hpp"
 #include "cli/common/console.hpp"
 #include "cli/common/options.hpp"
 #include "cli/common/text_file.hpp"
@@ -134,7 +136,7 @@ nlohmann::json make_json(const FrequencyResponse& response, const records::PeakG
 int run_response(const ResponseOptions& o) {
   Console console(o.quiet, o.verbosity);
   if (!console.is_root()) return kSuccess;
-  demand_file(o.file);
+  analysis::demand_file(o.file);
   check_outputs(o, {o.output, o.csv}, {o.file});
   if (o.range.to_hz > 0 && o.range.to_hz <= o.range.from_hz)
     throw InputError("cli.bad-range", {},
@@ -164,7 +166,7 @@ int run_response(const ResponseOptions& o) {
   const bool is_loop = is_cut || (is_single && o.is_loop);
   auto response =
       statespace::calc_frequency_response(model, is_loop ? statespace::widen_for_loop(model, o.range) : o.range);
-  response.source = calc_sources({o.file});
+  response.source = analysis::calc_sources({o.file});
   const auto peak = statespace::calc_peak_gain(model, response);
   records::Margins margins;
   if (is_loop) margins = statespace::calc_margins(model, response);
@@ -203,7 +205,8 @@ void add_response(CLI::App& app, Action& action) {
       "Example:\n  bough linearize arm.toml --break motor -o loop.h5 && bough response loop.h5\n"
       "  bough response arm-linear.h5 --outputs tip:y --csv tip.csv\n"
       "bough plot arm-linear.h5 --kind bode draws it.");
-  verb->callback([&action, o] { action = [o] { return with_file(o->file, [&] { return run_response(*o); }); }; });
+  verb->callback(
+      [&action, o] { action = [o] { return analysis::with_file(o->file, [&] { return run_response(*o); }); }; });
 }
 
 }  // namespace bough::cli

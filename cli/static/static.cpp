@@ -7,16 +7,20 @@
 #include <nlohmann/json.hpp>
 #include <span>
 
+#include "analysis/common/failures.hpp"
+#include "analysis/common/inputs.hpp"
+#include "analysis/common/model_choice.hpp"
+#include "analysis/common/ranks.hpp"
+#include "analysis/common/solution.hpp"
+#include "analysis/common/subcase_failures.hpp"
+#include "analysis/listing/listing.hpp"
+#include "analysis/static/combinations.hpp"
 #include "cli/common/console.hpp"
+#include "cli/common/deck_tables.hpp"
 #include "cli/common/model_options.hpp"
 #include "cli/common/options.hpp"
-#include "cli/common/ranks.hpp"
-#include "cli/common/solution.hpp"
-#include "cli/common/subcase_failures.hpp"
 #include "cli/common/text_file.hpp"
 #include "cli/common/vtu_file.hpp"
-#include "cli/listing/listing.hpp"
-#include "cli/static/combinations.hpp"
 #include "cli/static/static_output.hpp"
 #include "fe/statics/build_model.hpp"
 #include "fe/statics/case_solver.hpp"
@@ -28,7 +32,7 @@ namespace {
 
 struct StaticOptions : CommonOptions {
   std::string deck, vtu;
-  DeckModelOptions model;
+  analysis::ModelChoice model;
   std::vector<std::string> grid_forces;
   bool full = false, in_cd = false, is_linear = false, has_extremes = false, has_strains = false;
   ListingOptions listing;
@@ -69,11 +73,11 @@ void keep_grid_forces(const std::vector<std::string>& words, records::StaticSubc
 
 /// SUBCOM, SYMCOM and REPCASE after the subcases.
 void add_combinations(const records::Deck& deck, const records::CaseRequests& requests, const fe::Model& model,
-                      StaticOutput& output, SubcaseFailures& failures, ListingMaker* listing,
+                      StaticOutput& output, analysis::SubcaseFailures& failures, analysis::ListingMaker* listing,
                       Diagnostics& diagnostics) {
   for (const auto& combination : requests.combinations) {
     try {
-      auto sum = combine(model, deck, combination, output.get_result().subcases);
+      auto sum = analysis::combine(model, deck, combination, output.get_result().subcases);
       if (listing) listing->add_static(model, sum, diagnostics);
       output.add({std::move(sum)});
     } catch (const Failure& failure) {
@@ -98,12 +102,13 @@ StaticOutputOptions make_output_options(const StaticOptions& options, const reco
 
 /// Reads the deck as read_deck_or_throw does; without --subcase this command makes the combinations.
 records::Deck read_static_deck(const StaticOptions& options, Diagnostics& diagnostics) {
-  const auto model_options = make_model_options(options.model);
-  if (options.model.subcase != 0) return read_deck_or_throw(options.deck, model_options, diagnostics);
+  const auto model_options = analysis::make_model_options(options.model);
+  if (options.model.subcase != 0) return analysis::read_deck_or_throw(options.deck, model_options, diagnostics);
   const nastran::ReadOptions read{model_options.ignore_cards};
-  auto deck = is_one_of_many() ? nastran::read_packed_combined_deck(
-                                     share([&] { return nastran::pack_deck(options.deck); }), read, diagnostics)
-                               : nastran::read_combined_deck(options.deck, read, diagnostics);
+  auto deck = analysis::is_one_of_many()
+                  ? nastran::read_packed_combined_deck(
+                        analysis::share([&] { return nastran::pack_deck(options.deck); }), read, diagnostics)
+                  : nastran::read_combined_deck(options.deck, read, diagnostics);
   if (diagnostics.num_errors() > 0) fe::build_model(deck, model_options, diagnostics);
   diagnostics.throw_if_errors();
   return deck;
@@ -112,8 +117,8 @@ records::Deck read_static_deck(const StaticOptions& options, Diagnostics& diagno
 int run_static(const StaticOptions& options) {
   Console console(options.quiet, options.verbosity);
   console.set_subject(options.deck);
-  do_once([&] {
-    demand_deck(options.deck);
+  analysis::do_once([&] {
+    analysis::demand_deck(options.deck);
     check_outputs(options, {options.output, options.vtu, options.listing.f06, options.listing.op2}, {options.deck});
   });
   console.set_rank(fe::initialize_petsc().rank);
@@ -121,27 +126,27 @@ int run_static(const StaticOptions& options) {
   Diagnostics diagnostics;
   const auto deck = read_static_deck(options, diagnostics);
   std::vector<records::Subcase> subcases;
-  with_prior_messages(diagnostics, [&] {
+  analysis::with_prior_messages(diagnostics, [&] {
     subcases = fe::choose_static_subcases(deck, options.model.subcase);
-    demand_static_solution(deck, options.is_linear, diagnostics);
+    analysis::demand_static_solution(deck, options.is_linear, diagnostics);
     check_forces_grids(read_grids(options.grid_forces), deck);
   });
   if (subcases.empty()) {  // build_model() reports it
     subcases.emplace_back();
     subcases.back().id = options.model.subcase;
   }
-  fe::CaseSolver solver(deck, make_model_options(options.model));
-  SubcaseFailures failures(subcases.size(), deck.subcases.size());
-  std::optional<ListingMaker> listing;
-  const auto requests = read_requests_once(options.deck, diagnostics);
-  if (options.has_strains || asks_for(requests, "STRAIN")) solver.ask_strains();
+  fe::CaseSolver solver(deck, analysis::make_model_options(options.model));
+  analysis::SubcaseFailures failures(subcases.size(), deck.subcases.size());
+  std::optional<analysis::ListingMaker> listing;
+  const auto requests = analysis::read_requests_once(options.deck, diagnostics);
+  if (options.has_strains || analysis::asks_for(requests, "STRAIN")) solver.ask_strains();
   if (!options.listing.empty()) listing.emplace(deck, requests, diagnostics);
-  const bool lists_forces = listing && asks_for(requests, "GPFORCE");
+  const bool lists_forces = listing && analysis::asks_for(requests, "GPFORCE");
   if (lists_forces || !options.grid_forces.empty())
     solver.ask_grid_forces(lists_forces ? std::vector<int>{} : read_grids(options.grid_forces));
-  if (!listing) note_requests(deck, requests, {{"ESE", "--f06 FILE, or -o FILE.h5,"}}, diagnostics);
+  if (!listing) analysis::note_requests(deck, requests, {{"ESE", "--f06 FILE, or -o FILE.h5,"}}, diagnostics);
   if (!listing && options.grid_forces.empty())
-    note_requests(deck, requests, {{"GPFORCE", "--f06 FILE, or --grid-forces all,"}}, diagnostics);
+    analysis::note_requests(deck, requests, {{"GPFORCE", "--f06 FILE, or --grid-forces all,"}}, diagnostics);
   diagnostics.throw_if_errors();
   StaticOutput output(deck, make_output_options(options, requests, console.is_root()));
   const auto take = [&](fe::CaseSolver::Solved& one) {
@@ -162,7 +167,7 @@ int run_static(const StaticOptions& options) {
       } catch (const Failure& failure) {
         failures.add(id, failure);
       }
-      add_new(one.said, diagnostics);
+      analysis::add_new(one.said, diagnostics);
     }
     if (solved.empty()) continue;
     if (output.is_empty()) output.set_model(solver.model());
@@ -182,17 +187,17 @@ int run_static(const StaticOptions& options) {
   if (options.json) {
     nlohmann::json json{{"subcases", output.get_subcases()}};
     if (options.has_extremes) json["extremes"] = output.get_extremes();
-    if (!failures.is_empty()) json["failed"] = failures.to_json();
+    if (!failures.is_empty()) json["failed"] = to_json(failures);
     console.print_data(json.dump(2) + "\n");
   } else {
     console.print(output.get_text());
   }
   if (!picture.empty()) write_text_file(options.vtu, picture);
-  if (listing) do_once([&] { write_listings(options.listing, listing->get()); });
+  if (listing) analysis::do_once([&] { write_listings(options.listing, listing->get()); });
   for (const auto& path : {options.output, options.vtu, options.listing.f06, options.listing.op2})
     if (!path.empty() && !options.json) console.print("written: " + path + "\n");
   // A rank that ends with an error ends the others: the first one must be through.
-  do_once([] { flush_data(); });
+  analysis::do_once([] { flush_data(); });
   return failures.get_exit_code();
 }
 
@@ -215,7 +220,8 @@ void add_static(CLI::App& app, Action& action) {
   add_model_options(*verb, o->model);
   add_common_options(*verb, *o, kOutput | kJson, "Write displacements, reactions and forces to this HDF5 file");
   verb->footer("Example:\n  bough static frame.bdf -o frame-static.h5\n  bough static frame.bdf --subcase 2 --full");
-  verb->callback([&action, o] { action = [o] { return with_file(o->deck, [&] { return run_static(*o); }); }; });
+  verb->callback(
+      [&action, o] { action = [o] { return analysis::with_file(o->deck, [&] { return run_static(*o); }); }; });
 }
 
 }  // namespace bough::cli

@@ -6,8 +6,10 @@
 #include <iterator>
 #include <utility>
 
+#include "analysis/common/inputs.hpp"
+#include "analysis/static/case_extremes.hpp"
 #include "cli/common/options.hpp"
-#include "cli/static/case_extremes.hpp"
+#include "cli/static/extremes_tables.hpp"
 #include "cli/static/static_tables.hpp"
 #include "fe/linear/threads.hpp"
 
@@ -59,7 +61,7 @@ const records::StaticResult& StaticOutput::get_result() {
 void StaticOutput::add(std::vector<records::StaticSubcase> subcases) {
   wait();
   count_ += subcases.size();
-  for (auto& subcase : subcases) subcase.margins = calc_margins(deck_, subcase);
+  for (auto& subcase : subcases) subcase.margins = analysis::calc_margins(deck_, subcase);
   if (!is_worth_threads(subcases)) {
     write(subcases);
     show(subcases);
@@ -84,7 +86,7 @@ void StaticOutput::write(const std::vector<records::StaticSubcase>& subcases) {
       file_->start_sync();
     }
     if (options_.has_extremes)
-      for (const auto& subcase : subcases) add_to_extremes(result_.dof_map, subcase, result_.extremes);
+      for (const auto& subcase : subcases) analysis::add_to_extremes(result_.dof_map, subcase, result_.extremes);
   } catch (const Failure&) {
     failure_ = std::current_exception();
   }
@@ -104,7 +106,7 @@ void StaticOutput::show(const std::vector<records::StaticSubcase>& subcases) {
     }
     const auto turned = turn_to_cd(subcase);
     show_one(turned);
-    if (options_.has_extremes) add_to_extremes(result_.dof_map, turned, shown_extremes_);
+    if (options_.has_extremes) analysis::add_to_extremes(result_.dof_map, turned, shown_extremes_);
   }
 }
 
@@ -121,7 +123,7 @@ records::StaticSubcase StaticOutput::turn_to_cd(records::StaticSubcase s) const 
 void StaticOutput::finish() {
   wait();
   if (failure_) std::rethrow_exception(failure_);
-  result_.source = calc_sources(deck_.files);
+  result_.source = analysis::calc_sources(deck_.files);
   if (file_) file_->commit(result_);
   file_.reset();
   if (options_.has_extremes) text_ += format_case_extremes(options_.in_cd ? shown_extremes_ : result_.extremes);

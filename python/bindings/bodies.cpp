@@ -1,10 +1,12 @@
 // Flexible bodies and modes: views of the records' own arrays.
 #include "python/bindings/bindings.hpp"
 
-#include "cli/common/body_files.hpp"
+#include "analysis/common/body_files.hpp"
+#include "analysis/common/failures.hpp"
+#include "analysis/common/inputs.hpp"
+#include "analysis/common/system_files.hpp"
+#include "analysis/reduce/reduce_body.hpp"
 #include "cli/common/options.hpp"
-#include "cli/common/system_files.hpp"
-#include "cli/reduce/reduce_body.hpp"
 #include "fe/linear/petsc.hpp"
 #include "formats/hdf5/files.hpp"
 #include "formats/records/mode_kind.hpp"
@@ -48,14 +50,14 @@ struct ReduceCall {
 
 records::BodySpec make_spec(const ReduceCall& call, Diagnostics& diagnostics) {
   records::BodySpec spec;
-  cli::demand_file(call.file);
-  if (cli::has_suffix(call.file, ".toml")) {
-    cli::demand_kind(call.file, toml_files::detect_kind(call.file), "body");
+  analysis::demand_file(call.file);
+  if (analysis::has_suffix(call.file, ".toml")) {
+    analysis::demand_kind(call.file, toml_files::detect_kind(call.file), "body");
     spec = toml_files::read_body_spec(call.file, diagnostics);
     diagnostics.throw_if_errors();
-    if (!spec.deck.empty()) spec.deck = cli::resolve_beside(call.file, spec.deck);
+    if (!spec.deck.empty()) spec.deck = analysis::resolve_beside(call.file, spec.deck);
   } else {
-    cli::demand_deck(call.file);
+    analysis::demand_deck(call.file);
     spec.deck = call.file;
     const auto slash = call.file.rfind('/') + 1;
     spec.name = call.file.substr(slash, call.file.rfind('.') - slash);
@@ -100,8 +102,8 @@ py::tuple reduce(const ReduceCall& call, const py::object& progress) {
         const py::gil_scoped_acquire acquired;
         progress(stage);
       };
-    cli::with_file(call.file, [&] {
-      body = cli::reduce_body(spec, options, diagnostics).body;
+    analysis::with_file(call.file, [&] {
+      body = analysis::reduce_body(spec, options, diagnostics).body;
       return 0;
     });
     diagnostics.throw_if_errors();
@@ -205,7 +207,7 @@ void bind_bodies(py::module_& m) {
       "read_flex_body",
       [](const std::string& path) {
         Diagnostics notes;  // of what a .FLX leaves out: docs/formats/flx.md
-        return cli::read_body(path, notes);
+        return analysis::read_body(path, notes);
       },
       py::arg("path"), OneAtATime());
   m.def("read_modes", &hdf5::read_modes, py::arg("path"), OneAtATime());
