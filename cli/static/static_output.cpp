@@ -6,7 +6,6 @@
 #include <iterator>
 #include <utility>
 
-#include "analysis/common/inputs.hpp"
 #include "analysis/static/case_extremes.hpp"
 #include "cli/common/options.hpp"
 #include "cli/static/extremes_tables.hpp"
@@ -25,9 +24,6 @@ bool is_worth_threads(const std::vector<records::StaticSubcase>& subcases) {
 }
 
 }  // namespace
-
-StaticOutput::StaticOutput(const records::Deck& deck, StaticOutputOptions options)
-    : deck_(deck), options_(std::move(options)) {}
 
 StaticOutput::~StaticOutput() {
   if (running_.valid()) running_.wait();
@@ -60,8 +56,6 @@ const records::StaticResult& StaticOutput::get_result() {
 
 void StaticOutput::add(std::vector<records::StaticSubcase> subcases) {
   wait();
-  count_ += subcases.size();
-  for (auto& subcase : subcases) subcase.margins = analysis::calc_margins(deck_, subcase);
   if (!is_worth_threads(subcases)) {
     write(subcases);
     show(subcases);
@@ -120,10 +114,10 @@ records::StaticSubcase StaticOutput::turn_to_cd(records::StaticSubcase s) const 
   return s;
 }
 
-void StaticOutput::finish() {
+void StaticOutput::finish(const std::vector<std::pair<std::string, std::string>>& source) {
   wait();
   if (failure_) std::rethrow_exception(failure_);
-  result_.source = analysis::calc_sources(deck_.files);
+  result_.source = source;
   if (file_) file_->commit(result_);
   file_.reset();
   if (options_.has_extremes) text_ += format_case_extremes(options_.in_cd ? shown_extremes_ : result_.extremes);
