@@ -1,17 +1,24 @@
 #include "analysis/reduce/reduce_body.hpp"
 
+#include <filesystem>
 #include <optional>
 
 #include "analysis/common/failures.hpp"
 #include "analysis/common/inputs.hpp"
+#include "analysis/common/ranks.hpp"
 #include "analysis/common/solution.hpp"
+#include "analysis/common/system_files.hpp"
 #include "analysis/listing/listing.hpp"
 #include "analysis/reduce/matrix_files.hpp"
 #include "analysis/reduce/point_files.hpp"
+#include "fe/linear/petsc.hpp"
 #include "fe/model/model.hpp"
+#include "formats/toml/specs.hpp"
 #include "modal/response/residual_modes.hpp"
 
 namespace bough::analysis {
+
+namespace fs = std::filesystem;
 
 namespace {
 
@@ -76,6 +83,95 @@ Reduced reduce_given(const records::BodySpec& spec, const stiffening::ReduceOpti
   return result;
 }
 
+/// "[NAME=]NODE:DIRECTIONS", "[NAME=]set:ID" or "[NAME=]temperature:ID".
+records::ExternalLoadSpec parse_load(const std::string& text) {
+  const auto fail = [&]() -> InputError {
+    return {"cli.bad-load",
+            {},
+            "cannot read --load \"" + text + "\"",
+            "write NODE:DIRECTIONS such as 41:2 or 41:123, set:ID or temperature:ID; NAME= may stand before"};
+  };
+  records::ExternalLoadSpec load;
+  std::string rest = text;
+  if (const auto equals = rest.find('='); equals != std::string::npos) {
+    load.name = rest.substr(0, equals);
+    rest.erase(0, equals + 1);
+  }
+  const auto colon = rest.find(':');
+  if (colon == std::string::npos || colon + 1 == rest.size()) throw fail();
+  const auto before = rest.substr(0, colon), after = rest.substr(colon + 1);
+  const auto is_number = [](const std::string& s) {
+    return !s.empty() && s.size() < 9 && s.find_first_not_of("0123456789") == std::string::npos;
+  };
+  if (!is_number(after)) throw fail();
+  if (before == "set") {
+    load.load_set = std::stoi(after);
+  } else if (before == "temperature") {
+    load.temperature_set = std::stoi(after);
+  } else {
+    if (!is_number(before)) throw fail();
+    load.node = std::stoi(before);
+    for (char c : after) {
+      if (c < '1' || c > '6') throw fail();
+      load.directions.push_back(c - '0');
+    }
+  }
+  if (load.name.empty()) load.name = "load " + rest;
+  return load;
+}
+
+void add_matrices(const ReduceRequest& request, records::BodySpec& spec) {
+  if (request.matrices.empty()) return;
+  if (!spec.matrices) spec.matrices.emplace();
+  // The common file first: ":NAME" of the others is in it.
+  for (const bool is_file : {true, false})
+    for (const auto& text : request.matrices)
+      if ((text.find('=') == std::string::npos) == is_file) add_matrices_option(text, *spec.matrices);
+  if (spec.name.empty())
+    spec.name = fs::path(spec.matrices->file.empty() ? spec.matrices->stiffness.file : spec.matrices->file).stem();
+}
+
+records::BodySpec make_spec(const ReduceRequest& request, Diagnostics& diagnostics) {
+  records::BodySpec spec;
+  const bool is_toml = has_suffix(request.file, ".toml");
+  if (is_toml) {
+    do_once([&] { demand_kind(request.file, toml_files::detect_kind(request.file), "body"); });
+    spec = read_body_spec_once(request.file, diagnostics);
+    diagnostics.throw_if_errors();
+    if (!spec.deck.empty()) spec.deck = resolve_beside(request.file, spec.deck);
+    add_matrices(request, spec);
+  } else {
+    if (!request.file.empty()) do_once([&] { demand_deck(request.file); });
+    spec.deck = request.file;
+    spec.name = fs::path(request.file).stem().string();
+    add_matrices(request, spec);
+    const bool has_modes = spec.matrices && !spec.matrices->modes.empty();
+    if (request.num_modes == 0 && !request.max_hz && !has_modes) {
+      throw InputError("cli.no-modes", {request.file}, "the number of modes is not given",
+                       "add --modes N or --max-hz F");
+    }
+  }
+  if (!request.name.empty()) spec.name = request.name;
+  if (request.num_modes > 0) spec.num_modes = request.num_modes;
+  if (request.max_hz) spec.max_frequency_hz = request.max_hz;
+  if (request.free) spec.frame = records::BodyFrame::Free;
+  if (!request.interface_nodes.empty()) spec.interface_nodes = request.interface_nodes;
+  for (const auto& load : request.loads) spec.loads.push_back(parse_load(load));
+  if (request.full) spec.full = true;
+  if (!request.recover.empty()) spec.recover = request.recover;
+  if (request.strain_energy) spec.strain_energy = true;
+  if (!request.mass.empty()) spec.mass = request.mass;
+  if (!request.integrals.empty()) spec.integrals = request.integrals;
+  if (!request.origin.empty()) spec.origin = records::Vector3d(request.origin[0], request.origin[1], request.origin[2]);
+  spec.ignore_cards.insert(spec.ignore_cards.end(), request.ignore_cards.begin(), request.ignore_cards.end());
+  if (request.subcase > 0) spec.subcase = request.subcase;
+  if (request.damping >= 0) {
+    spec.damping_ratio = request.damping;
+    spec.damping_ratios.clear();
+  }
+  return spec;
+}
+
 }  // namespace
 
 Reduced reduce_body(const records::BodySpec& spec, const stiffening::ReduceOptions& options, Diagnostics& diagnostics) {
@@ -85,6 +181,23 @@ Reduced reduce_body(const records::BodySpec& spec, const stiffening::ReduceOptio
   if (!spec.file.empty()) files.insert(files.begin(), spec.file);
   result.body.source = calc_sources(files);
   return result;
+}
+
+Reduced reduce_body(const ReduceRequest& request, const std::function<void(const records::BodySpec&)>& check_spec,
+                    Events& events) {
+  if (!request.file.empty()) do_once([&] { demand_file(request.file); });
+  Diagnostics diagnostics;
+  const auto spec = make_spec(request, diagnostics);
+  check_spec(spec);
+  fe::initialize_petsc();
+  stiffening::ReduceOptions options;
+  options.progress = [&](const std::string& stage) { events.show_progress("reduce: " + stage); };
+  if (!request.solver.empty()) options.solver = modal::find_eps_type(request.solver);
+  auto reduced = reduce_body(spec, options, diagnostics);
+  events.show_progress("");
+  diagnostics.throw_if_errors();
+  add_messages(diagnostics, events);
+  return reduced;
 }
 
 }  // namespace bough::analysis
