@@ -6,6 +6,10 @@
 #include <cmath>
 #include <limits>
 
+#include "analysis/common/body_files.hpp"
+#include "analysis/common/inputs.hpp"
+#include "formats/records/mode_subset.hpp"
+#include "formats/toml/specs.hpp"
 #include "solver/statespace/frequency_response.hpp"
 #include "solver/statespace/hankel.hpp"
 #include "solver/statespace/poles.hpp"
@@ -132,9 +136,21 @@ Loss weigh_loss(const Weighing& w, const std::vector<int>& kept) {
   return loss;
 }
 
-}  // namespace
+/// Warns if the outputs lose more than half, or if more modes are kept than requested.
+void warn_of_losses(const SelectRequest& o, const Selection& s, Diagnostics& diagnostics) {
+  if (o.number > 0 && static_cast<int>(s.kept.size()) > o.number)
+    diagnostics.warning("select.always-kept", {o.body},
+                        "--number " + std::to_string(o.number) + ", and " + std::to_string(s.kept.size()) +
+                            " modes are kept: static shapes and those of --keep always are",
+                        "ask for more modes than those, or reduce the body without residual vectors");
+  if (s.lost > 0.5 && !s.kept.empty())
+    diagnostics.warning("select.most-is-lost", {o.body},
+                        "the modes kept lose " + std::to_string(std::lround(100 * s.lost)) +
+                            " % of what the outputs do: they are no model of the body",
+                        "keep more modes, or weigh them by the inputs and outputs that matter");
+}
 
-Selection select_modes(const SelectRequest& o, const records::FlexBody& body, const std::vector<Weighing>& weighings) {
+Selection choose_kept(const SelectRequest& o, const records::FlexBody& body, const std::vector<Weighing>& weighings) {
   Selection s;
   std::vector<statespace::ModeRanking> rankings;
   for (const auto& w : weighings) rankings.push_back(w.ranking);
@@ -156,8 +172,56 @@ Selection select_modes(const SelectRequest& o, const records::FlexBody& body, co
   return s;
 }
 
-void weigh_losses(const std::vector<Weighing>& weighings, Selection& s) {
+}  // namespace
+
+std::vector<std::string> list_select_inputs(const SelectRequest& request) {
+  demand_body_file(request.body);
+  std::vector<std::string> files{get_body_path(request.body)};
+  for (const auto& system : request.systems) {
+    demand_file(system);
+    demand_kind(system, toml_files::detect_kind(system), "system");
+    files.push_back(system);
+  }
+  if (!request.spectrum.empty()) files.push_back(request.spectrum);
+  return files;
+}
+
+Selection select_modes(const SelectRequest& request, const records::FlexBody& body, Events& events) {
+  Diagnostics diagnostics;
+  std::vector<Weighing> weighings;
+  std::vector<statespace::NodeDirection> inputs, outputs;
+  if (request.systems.empty()) {
+    inputs = choose_places(body, request.inputs, request.weights, false, request.body);
+    outputs = choose_places(body, request.outputs, request.weights, true, request.body);
+    if (inputs.empty() || outputs.empty()) {
+      throw InputError("select.no-signals", {request.body},
+                       "no output node of the body moves: nothing to weigh its modes by",
+                       "reduce the body with output nodes that its modes move");
+    }
+    weighings.push_back(weigh_alone(request, body, inputs, outputs));
+  } else {
+    weighings = weigh_in_systems(request, body, diagnostics);
+  }
+  Selection s = choose_kept(request, body, weighings);
+  if (request.systems.empty()) {
+    if (!s.kept.empty()) s.static_error = statespace::calc_static_error(body, s.kept, inputs, outputs);
+    s.modal_hankel = statespace::calc_modal_hankel(body, inputs, outputs, request.damping);
+  }
   for (const auto& w : weighings) s.losses.push_back(weigh_loss(w, s.kept));
+  warn_of_losses(request, s, diagnostics);
+  add_messages(diagnostics, events);
+  return s;
+}
+
+records::FlexBody keep_selected(const SelectRequest& request, const records::FlexBody& body, const Selection& selection,
+                                const std::vector<std::string>& files) {
+  if (selection.kept.empty())
+    throw InputError("select.nothing-kept", {request.body}, "no mode would be left",
+                     "keep more, by --number or --below");
+  auto small = records::keep_modes(body, selection.kept);
+  const auto more = calc_sources(files);
+  small.source.insert(small.source.end(), more.begin(), more.end());
+  return small;
 }
 
 }  // namespace bough::analysis

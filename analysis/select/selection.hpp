@@ -1,5 +1,9 @@
 #pragma once
 /// \file Retained modes and the cost of the truncation.
+#include <string>
+#include <vector>
+
+#include "analysis/common/events.hpp"
 #include "analysis/select/weighing.hpp"
 
 namespace bough::analysis {
@@ -29,9 +33,17 @@ struct Selection {
   std::vector<Loss> losses;
 };
 
-/// The modes by the rules; of a rule by tolerance as many as every configuration allows.
-Selection select_modes(const SelectRequest& o, const records::FlexBody& body, const std::vector<Weighing>& weighings);
-/// Fills losses.
-void weigh_losses(const std::vector<Weighing>& weighings, Selection& selection);
+/// Files that the selection reads, those of the body and of the systems first. Throws InputError "cli.no-file",
+/// "cli.wrong-file".
+std::vector<std::string> list_select_inputs(const SelectRequest& request);
+
+/// Ranks the modes of `body`, which `request.body` names, chooses those to keep and computes the loss without the
+/// others. Warnings: select.always-kept, select.most-is-lost.
+/// \throws InputError "select.no-signals", "select.unknown-mode" and those of the weighings.
+Selection select_modes(const SelectRequest& request, const records::FlexBody& body, Events& events);
+
+/// The body with the modes kept; `files` are added to its source. Throws InputError "select.nothing-kept".
+records::FlexBody keep_selected(const SelectRequest& request, const records::FlexBody& body, const Selection& selection,
+                                const std::vector<std::string>& files);
 
 }  // namespace bough::analysis

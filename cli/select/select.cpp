@@ -1,21 +1,16 @@
 #include <CLI/CLI.hpp>
-#include <cmath>
 #include <memory>
 
 #include "analysis/common/body_files.hpp"
 #include "analysis/common/failures.hpp"
-#include "analysis/common/inputs.hpp"
-#include "analysis/common/system_files.hpp"
 #include "analysis/select/selection.hpp"
 #include "analysis/select/weighing.hpp"
-#include "cli/common/console.hpp"
+#include "cli/common/console_events.hpp"
 #include "cli/common/options.hpp"
 #include "cli/common/usage_text.hpp"
 #include "cli/select/selection_tables.hpp"
 #include "cli/verbs.hpp"
 #include "formats/hdf5/files.hpp"
-#include "formats/records/mode_subset.hpp"
-#include "formats/toml/specs.hpp"
 
 namespace bough::cli {
 
@@ -27,71 +22,27 @@ struct SelectOptions : CommonOptions {
   int inertial_load = 0;
 };
 
-/// More is lost than kept of what the outputs do, or fewer modes are wanted than what always stays.
-void warn_of_losses(const SelectOptions& o, const analysis::Selection& s, Diagnostics& diagnostics) {
-  if (o.request.number > 0 && static_cast<int>(s.kept.size()) > o.request.number)
-    diagnostics.warning("select.always-kept", {o.request.body},
-                        "--number " + std::to_string(o.request.number) + ", and " + std::to_string(s.kept.size()) +
-                            " modes are kept: static shapes and those of --keep always are",
-                        "ask for more modes than those, or reduce the body without residual vectors");
-  if (s.lost > 0.5 && !s.kept.empty())
-    diagnostics.warning("select.most-is-lost", {o.request.body},
-                        "the modes kept lose " + std::to_string(std::lround(100 * s.lost)) +
-                            " % of what the outputs do: they are no model of the body",
-                        "keep more modes, or weigh them by the inputs and outputs that matter");
-}
-
 int run_select(const SelectOptions& o) {
   Console console(o.quiet, o.verbosity);
   if (!console.is_root()) return kSuccess;
-  analysis::demand_body_file(o.request.body);
-  std::vector<std::string> sources{analysis::get_body_path(o.request.body)};
-  for (const auto& system : o.request.systems) {
-    analysis::demand_file(system);
-    analysis::demand_kind(system, toml_files::detect_kind(system), "system");
-    sources.push_back(system);
-  }
-  if (!o.request.spectrum.empty()) sources.push_back(o.request.spectrum);
+  const auto& request = o.request;
+  const auto sources = analysis::list_select_inputs(request);
   check_outputs(o, {o.output, o.response}, sources);
-  Diagnostics diagnostics;
-  const auto body = o.output.empty() ? analysis::read_body(o.request.body, diagnostics)
-                                     : analysis::read_moving_body(o.request.body, diagnostics);
-  std::vector<analysis::Weighing> weighings;
-  std::vector<statespace::NodeDirection> inputs, outputs;
-  if (o.request.systems.empty()) {
-    inputs = analysis::choose_places(body, o.request.inputs, o.request.weights, false, o.request.body);
-    outputs = analysis::choose_places(body, o.request.outputs, o.request.weights, true, o.request.body);
-    if (inputs.empty() || outputs.empty()) {
-      throw InputError("select.no-signals", {o.request.body},
-                       "no output node of the body moves: nothing to weigh its modes by",
-                       "reduce the body with output nodes that its modes move");
-    }
-    weighings.push_back(analysis::weigh_alone(o.request, body, inputs, outputs));
-  } else {
-    weighings = analysis::weigh_in_systems(o.request, body, diagnostics);
-  }
-  analysis::Selection s = analysis::select_modes(o.request, body, weighings);
-  if (o.request.systems.empty()) {
-    if (!s.kept.empty()) s.static_error = statespace::calc_static_error(body, s.kept, inputs, outputs);
-    s.modal_hankel = statespace::calc_modal_hankel(body, inputs, outputs, o.request.damping);
-  }
-  analysis::weigh_losses(weighings, s);
-  warn_of_losses(o, s, diagnostics);
-  console.print(diagnostics);
+  Diagnostics of_file;
+  const auto body =
+      o.output.empty() ? analysis::read_body(request.body, of_file) : analysis::read_moving_body(request.body, of_file);
+  ConsoleEvents events(console);
+  analysis::add_messages(of_file, events);
+  const auto selection = analysis::select_modes(request, body, events);
+  console.print(events.get_messages());
   if (o.json)
-    console.print_data(make_json(body, s).dump(2) + "\n");
+    console.print_data(make_json(body, selection).dump(2) + "\n");
   else
-    console.print(format(body, s, o.inertial_load));
-  if (!o.response.empty()) write_response(s, o.response);
+    console.print(format(body, selection, o.inertial_load));
+  if (!o.response.empty()) write_response(selection, o.response);
   if (!o.response.empty() && !o.json) console.print("written: " + o.response + "\n");
   if (o.output.empty()) return kSuccess;
-  if (s.kept.empty())
-    throw InputError("select.nothing-kept", {o.request.body}, "no mode would be left",
-                     "keep more, by --number or --below");
-  auto small = records::keep_modes(body, s.kept);
-  const auto more = analysis::calc_sources(sources);
-  small.source.insert(small.source.end(), more.begin(), more.end());
-  hdf5::write_flex_body(small, o.output);
+  hdf5::write_flex_body(analysis::keep_selected(request, body, selection, sources), o.output);
   if (!o.json) console.print("written: " + o.output + "\n");
   return kSuccess;
 }
