@@ -146,18 +146,18 @@ records::BodySpec make_spec(const ReduceRequest& request, Diagnostics& diagnosti
     spec.name = fs::path(request.file).stem().string();
     add_matrices(request, spec);
     const bool has_modes = spec.matrices && !spec.matrices->modes.empty();
-    if (request.num_modes == 0 && !request.max_hz && !has_modes) {
+    if (!request.num_modes && !request.max_hz && !has_modes) {
       throw InputError("cli.no-modes", {request.file}, "the number of modes is not given",
                        "add --modes N or --max-hz F");
     }
   }
   if (!request.name.empty()) spec.name = request.name;
-  if (request.num_modes > 0) spec.num_modes = request.num_modes;
+  if (request.num_modes) spec.num_modes = *request.num_modes;
   if (request.max_hz) spec.max_frequency_hz = request.max_hz;
   if (request.free) spec.frame = records::BodyFrame::Free;
   if (!request.interface_nodes.empty()) spec.interface_nodes = request.interface_nodes;
   for (const auto& load : request.loads) spec.loads.push_back(parse_load(load));
-  if (request.full) spec.full = true;
+  if (request.full) spec.full = *request.full;
   if (!request.recover.empty()) spec.recover = request.recover;
   if (request.strain_energy) spec.strain_energy = true;
   if (!request.mass.empty()) spec.mass = request.mass;
@@ -165,8 +165,8 @@ records::BodySpec make_spec(const ReduceRequest& request, Diagnostics& diagnosti
   if (!request.origin.empty()) spec.origin = records::Vector3d(request.origin[0], request.origin[1], request.origin[2]);
   spec.ignore_cards.insert(spec.ignore_cards.end(), request.ignore_cards.begin(), request.ignore_cards.end());
   if (request.subcase > 0) spec.subcase = request.subcase;
-  if (request.damping >= 0) {
-    spec.damping_ratio = request.damping;
+  if (request.damping) {
+    spec.damping_ratio = *request.damping;
     spec.damping_ratios.clear();
   }
   return spec;

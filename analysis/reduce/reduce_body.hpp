@@ -16,18 +16,19 @@ namespace bough::analysis {
 /// A body file (.toml), a deck, or matrices alone; every other choice replaces or extends that of the body file.
 struct ReduceRequest {
   std::string file, name;
-  int num_modes = 0;  ///< 0: that of the body file
+  std::optional<int> num_modes;
   std::optional<double> max_hz;
   bool free = false;  ///< frame of free-free modes
   std::vector<int> interface_nodes;
   std::vector<std::string> loads;  ///< "[NAME=]NODE:DIRECTIONS", "[NAME=]set:ID" or "[NAME=]temperature:ID"
-  bool full = false, strain_energy = false;
+  std::optional<bool> full;
+  bool strain_energy = false;
   std::vector<std::string> recover;  ///< kinds of recovery
   std::string mass, integrals;
   std::vector<double> origin;  ///< [3], or empty
   std::vector<std::string> ignore_cards;
   int subcase = 0;
-  double damping = -1;                ///< ratio; negative: that of the body file
+  std::optional<double> damping;      ///< ratio of every mode
   std::vector<std::string> matrices;  ///< FILE or KEY=VALUE (add_matrices_option)
   std::string solver;                 ///< of SLEPc; empty: the one that suits the model
 };

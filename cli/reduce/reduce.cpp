@@ -207,7 +207,8 @@ void add_reduce(CLI::App& app, Action& action) {
   verb->add_option("--loads-set", o->loads_set, "First of the twelve load sets of --loads-deck")
       ->check(CLI::Range(1, 99999988))
       ->capture_default_str();
-  verb->add_flag("--full", o->request.full, "Write the modes and inertial loads of every dof too");
+  verb->add_flag_callback(
+      "--full", [o] { o->request.full = true; }, "Write the modes and inertial loads of every dof too");
   add_common_options(*verb, *o, kOutput | kJson, "Flexible-body HDF5 file (default: the body file's, else NAME.h5)");
   verb->footer(
       "Example:\n  bough reduce boom.toml\n  bough reduce boom.bdf --modes 3 --interface 41 -o boom.h5\n"
