@@ -19,7 +19,7 @@
 #include "cli/export/export_matrices.hpp"
 #include "cli/export/moving_system.hpp"
 #include "cli/linearize/linear_model_files.hpp"
-#include "cli/linearize/sweep.hpp"
+#include "cli/linearize/sweep_tables.hpp"
 #include "cli/response/response_csv.hpp"
 #include "formats/export/response_text.hpp"
 #include "formats/export/uff.hpp"

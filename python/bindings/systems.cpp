@@ -3,12 +3,11 @@
 
 #include "analysis/common/inputs.hpp"
 #include "analysis/common/system_files.hpp"
-#include "analysis/linearize/operating_point.hpp"
+#include "analysis/linearize/linearize.hpp"
 #include "cli/common/options.hpp"
 #include "formats/hdf5/files.hpp"
 #include "python/bindings/controllers.hpp"
 #include "python/bindings/simulations.hpp"
-#include "solver/linear/linearize.hpp"
 #include "solver/simulate/memory_sink.hpp"
 #include "solver/simulate/simulate.hpp"
 
@@ -231,11 +230,14 @@ class PySystem {
     records::LinearModel model;
     {
       const py::gil_scoped_release released;
-      auto plant = analysis::make_plant(*loaded_, open);
-      auto point = at ? analysis::run_to(*loaded_, plant, *at, diagnostics) : plant.make_initial_point();
-      if (equilibrium) point = analysis::find_rest(plant, std::move(point), file_);
-      plant.hold_commands(point);
-      model = solver::linearize(plant, point, {std::move(inputs), std::move(outputs), true}, {file_}, diagnostics);
+      analysis::LinearizeRequest request;
+      request.file = file_;
+      request.at = at;
+      request.equilibrium = equilibrium;
+      request.open = open;
+      request.inputs = std::move(inputs);
+      request.outputs = std::move(outputs);
+      model = analysis::linearize(request, *loaded_, diagnostics);
       model.source = calc_sources();
     }
     return py::make_tuple(std::move(model), tell(diagnostics));

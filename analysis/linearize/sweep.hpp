@@ -1,14 +1,13 @@
 #pragma once
 /// \file Linear models along a parameter of the system file, or along its run.
 #include <functional>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "base/diagnostic.hpp"
 #include "formats/records/linear_sweep.hpp"
 
-namespace bough::cli {
+namespace bough::analysis {
 
 /// "name=from:to:n" or, evenly on a logarithmic scale, "name=from:to:n:log"; n >= 2 values. Throws
 /// InputError("cli.bad-sweep").
@@ -24,9 +23,4 @@ records::LinearSweep make_sweep(const std::string& name, const std::vector<doubl
                                 const std::function<records::LinearModel(double)>& linearize, const std::string& file,
                                 Diagnostics& diagnostics);
 
-nlohmann::json make_json(const records::LinearSweep& sweep);
-std::string format_sweep(const records::LinearSweep& sweep);
-/// A row a value: the parameter, then real, imaginary part, frequency and damping of each branch.
-std::string make_sweep_csv(const records::LinearSweep& sweep);
-
-}  // namespace bough::cli
+}  // namespace bough::analysis
