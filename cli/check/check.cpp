@@ -6,6 +6,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "analysis/check/try_reduction.hpp"
 #include "analysis/common/body_files.hpp"
 #include "analysis/common/inputs.hpp"
 #include "analysis/common/model_choice.hpp"
@@ -15,7 +16,6 @@
 #include "cli/check/check_solutions.hpp"
 #include "cli/check/check_subcases.hpp"
 #include "cli/check/diagram.hpp"
-#include "cli/check/try_reduction.hpp"
 #include "cli/common/console.hpp"
 #include "cli/common/deck_tables.hpp"
 #include "cli/common/model_options.hpp"
@@ -216,7 +216,8 @@ int check_body(const CheckOptions& options, Console& console) {
       }
     }
   }
-  if (diagnostics.num_errors() == 0) try_reduction(options.file, spec, json.value("num_free_dofs", 0), diagnostics);
+  if (diagnostics.num_errors() == 0)
+    analysis::try_reduction(options.file, spec, json.value("num_free_dofs", 0), diagnostics);
   return finish(options, console, text, json, diagnostics);
 }
 

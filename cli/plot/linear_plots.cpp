@@ -10,6 +10,7 @@
 
 #include "analysis/common/body_files.hpp"
 #include "analysis/common/inputs.hpp"
+#include "analysis/linearize/choose_channels.hpp"
 #include "cli/common/options.hpp"
 #include "cli/export/export_matrices.hpp"
 #include "cli/linearize/linear_model_files.hpp"
@@ -197,7 +198,7 @@ std::vector<Plot> make_linear_plots(const std::vector<std::string>& files, const
       models.emplace_back(files.size() > 1 ? std::filesystem::path(file).stem().string() : "", std::move(all));
       continue;
     }
-    const auto model = choose_channels(all, choice.inputs, choice.outputs, file);
+    const auto model = analysis::choose_channels(all, choice.inputs, choice.outputs, file);
     if (model.inputs.size() == 0 || model.outputs.size() == 0)
       throw InputError("linear.no-channels", {file}, "the model has no input or no output",
                        "name some with --inputs and --outputs of bough linearize");

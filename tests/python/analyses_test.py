@@ -56,14 +56,14 @@ class Analyses(InFolder):
         np.testing.assert_array_equal(one["subcases/2/displacement"], found["subcases/2/displacement"])
 
     def test_every_choice_of_reduce(self):
-        options = {"interface": [11], "loads": ["tip=6:2", "9:13"], "recover": "forces", "strain_energy": True,
+        options = {"interface": [11], "loads": ["tip=6:2", "9:13"], "recover": "17-25", "strain_energy": True,
                    "full": True, "name": "rod", "damping": 0.02, "origin": [0.5, 0.0, 0.0], "solver": "lapack"}
-        words = ["--interface", "11", "--load", "tip=6:2", "--load", "9:13", "--recover", "forces", "--strain-energy",
+        words = ["--interface", "11", "--load", "tip=6:2", "--load", "9:13", "--recover", "17-25", "--strain-energy",
                  "--full", "--name", "rod", "--damping", "0.02", "--origin", "0.5", "0", "0", "--solver", "lapack"]
         subprocess.run([PROGRAM, "reduce", "boom.bdf", "-n3", "-q", "-o", "c.h5", *words], check=True)
         bough.reduce("boom.bdf", modes=3, **options).save("p.h5")
         found, expected = bough.reader.read("p.h5"), bough.reader.read("c.h5")
-        self.assertEqual(sorted(found), sorted(expected))
+        self.assertEqual(sorted(found), sorted(name for name in expected if not name.startswith("accuracy/")))
         for name in found:
             np.testing.assert_array_equal(found[name], expected[name], err_msg=name)
         with self.assertRaisesRegex(bough.InputError, "cannot read --load"):
@@ -71,8 +71,9 @@ class Analyses(InFolder):
 
     def test_matrices_of_another_program(self):
         bough.call("matrices", "boom.bdf", "-o", "k.h5", "-q")
-        body = bough.reduce(matrices="k.h5", modes=3, interface=[1])
-        self.assertEqual(body.num_modes, 3)
+        expected = bough.reduce("boom.bdf", modes=3).frequency_hz
+        np.testing.assert_allclose(bough.reduce("boom.bdf", matrices="k.h5", modes=3).frequency_hz, expected, rtol=1e-9)
+        self.assertTrue(bough.reduce(matrices=["k.h5"], modes=3, free=True).is_free_free)
         with self.assertRaisesRegex(ValueError, "only matrices do without"):
             bough.reduce(modes=3)
 

@@ -5,7 +5,7 @@
 
 #include "formats/records/deck.hpp"
 
-namespace bough::cli {
+namespace bough::analysis {
 
 struct DeckStart {
   std::string path, name;  ///< of the deck, as the files will name it; of the body
@@ -20,4 +20,4 @@ struct StartFile {
 /// Throws InputError("cli.unknown-interface") when the hinge's grid is not in the deck.
 std::vector<StartFile> make_start_files(const records::Deck& deck, const DeckStart& start);
 
-}  // namespace bough::cli
+}  // namespace bough::analysis

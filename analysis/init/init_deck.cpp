@@ -1,4 +1,4 @@
-#include "cli/init/init_deck.hpp"
+#include "analysis/init/init_deck.hpp"
 
 #include <fmt/format.h>
 
@@ -10,7 +10,7 @@
 #include "fe/matrices/connected_parts.hpp"
 #include "fe/statics/build_model.hpp"
 
-namespace bough::cli {
+namespace bough::analysis {
 
 namespace {
 
@@ -65,7 +65,7 @@ std::string make_modes_table(const records::Deck& deck, bool is_fixed) {
     text += fmt::format("{:<25}# as {}{}\n", fmt::format("number = {}", at->num_modes - num_rigid), card,
                         is_fixed ? "" : ", without six rigid modes");
   const bool is_buckling = deck.sol == "105" || deck.sol == "SEBUCKL";
-  if (at->f2 && *at->f2 > 0 && !is_buckling && !analysis::counts_whatever_range(*at))
+  if (at->f2 && *at->f2 > 0 && !is_buckling && !counts_whatever_range(*at))
     text += fmt::format("{:<25}# Hz, as {}\n", fmt::format("max_frequency = {}", *at->f2), card);
   if (!text.empty()) return text;
   return fmt::format("number = 10              # {} {}\n", card,
@@ -136,4 +136,4 @@ std::vector<StartFile> make_start_files(const records::Deck& deck, const DeckSta
   return {{name + ".toml", body}, {name + "-run.toml", system}};
 }
 
-}  // namespace bough::cli
+}  // namespace bough::analysis

@@ -1,4 +1,4 @@
-#include "cli/check/try_reduction.hpp"
+#include "analysis/check/try_reduction.hpp"
 
 #include <fmt/format.h>
 
@@ -9,10 +9,8 @@
 #include "analysis/common/subcase_failures.hpp"
 #include "analysis/common/system_files.hpp"
 #include "analysis/reduce/reduce_body.hpp"
-#include "cli/common/console.hpp"
-#include "cli/common/options.hpp"
 
-namespace bough::cli {
+namespace bough::analysis {
 
 namespace {
 
@@ -39,19 +37,19 @@ void try_reduction(const std::string& file, records::BodySpec spec, int num_free
                      "a mechanism within it, or modes that do not exist, are found by reduce");
     return;
   }
-  if (!spec.deck.empty()) spec.deck = analysis::resolve_beside(file, spec.deck);
+  if (!spec.deck.empty()) spec.deck = resolve_beside(file, spec.deck);
   Diagnostics found;
   try {
-    analysis::with_file(file, [&] {
-      analysis::reduce_body(spec, {}, found);
-      return kSuccess;
+    with_file(file, [&] {
+      reduce_body(spec, {}, found);
+      return 0;
     });
   } catch (const Failure& failure) {
     Diagnostics own;
     for (const auto& item : failure.items()) own.add(item);
-    analysis::add_new(own, diagnostics);
+    add_new(own, diagnostics);
   }
-  analysis::add_new(found, diagnostics);
+  add_new(found, diagnostics);
 }
 
-}  // namespace bough::cli
+}  // namespace bough::analysis
