@@ -1,5 +1,3 @@
-#include "cli/command.hpp"
-
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <functional>
@@ -94,7 +92,7 @@ int print_checked(const cli::Console& console, const std::function<void()>& prin
   }
 }
 
-int run(int argc, const char* const* argv, std::vector<Diagnostic>& failures) {
+int run(int argc, const char* const* argv) {
   CLI::App app("Bough: from a finite-element model to a flexible multibody simulation", "bough");
   app.formatter(cli::make_formatter());
   app.set_help_flag("-h,--help", "Print this help and exit");
@@ -165,7 +163,6 @@ int run(int argc, const char* const* argv, std::vector<Diagnostic>& failures) {
     cli::flush_data();
     return code;
   } catch (const Failure& failure) {
-    failures = failure.items();
     return cli::report_failure(failure, cli::Console(count_given("--quiet") > 0, count_given("--verbose")));
   } catch (const std::bad_alloc&) {
     console.print_error({}, "not enough memory", "use a smaller model or fewer modes");
@@ -180,7 +177,7 @@ int run(int argc, const char* const* argv, std::vector<Diagnostic>& failures) {
 
 namespace bough::cli {
 
-CommandOutcome run_and_tell(const std::vector<std::string>& given) {
+int run_command(const std::vector<std::string>& given) {
   std::vector<std::string> words = given;
   for (auto& word : words)  // -.5, as decks have it, would be an option
     if (word.size() > 2 && word.compare(0, 2, "-.") == 0 && word[2] >= '0' && word[2] <= '9') word.insert(1, "0");
@@ -191,12 +188,8 @@ CommandOutcome run_and_tell(const std::vector<std::string>& given) {
   }
   std::vector<const char*> arguments{"bough"};
   for (const auto& word : words) arguments.push_back(word.c_str());
-  CommandOutcome outcome;
-  outcome.exit_code = run(static_cast<int>(arguments.size()), arguments.data(), outcome.failures);
-  return outcome;
+  return run(static_cast<int>(arguments.size()), arguments.data());
 }
-
-int run_command(const std::vector<std::string>& words) { return run_and_tell(words).exit_code; }
 
 std::vector<std::string> list_verbs() {
   std::vector<std::string> names;

@@ -23,7 +23,8 @@ ROOMS = {
     "solver": ("bodies + system -> motion,\nlinear models", "SUNDIALS, muParser"),
     "cosim": ("FMUs as controllers", ""),
     "embed": ("libbough.so, bough.h, FMUs", ""),
-    "cli": ("commands: options -> files, tables", "CLI11"),
+    "analysis": ("commands as functions:\nrequest -> records", ""),
+    "cli": ("options -> request,\nrecords -> tables, files", "CLI11"),
     "python": ("import bough", "pybind11"),
 }
 

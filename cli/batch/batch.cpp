@@ -16,6 +16,7 @@
 #include <set>
 #include <thread>
 
+#include "analysis/common/ranks.hpp"
 #include "base/version.hpp"
 #include "cli/batch/batch_outcome.hpp"
 #include "cli/batch/worker.hpp"
@@ -23,7 +24,6 @@
 #include "cli/common/console.hpp"
 #include "cli/common/interrupt.hpp"
 #include "cli/common/options.hpp"
-#include "cli/common/ranks.hpp"
 #include "cli/common/text_file.hpp"
 #include "cli/common/usage_text.hpp"
 #include "cli/verbs.hpp"
@@ -428,7 +428,7 @@ int run_merge(const BatchOptions& o, const BatchPlan& plan, const fs::path& fold
 int run_batch(const BatchOptions& o) {
   Console console(o.quiet, o.verbosity);
   Rank rank;
-  if (is_one_of_many() && o.worker_fd < 0 && !o.dry_run && !o.merges) {
+  if (analysis::is_one_of_many() && o.worker_fd < 0 && !o.dry_run && !o.merges) {
     const auto& petsc = fe::initialize_petsc();
     rank = {petsc.rank, petsc.size};
     console.set_rank(petsc.rank);
@@ -445,7 +445,7 @@ int run_batch(const BatchOptions& o) {
   }
   if (o.merges) return run_merge(o, plan, folder, console);
   std::optional<Folder> state;  // of the first rank
-  do_once([&] { state.emplace(folder, plan, shard, o.restart); });
+  analysis::do_once([&] { state.emplace(folder, plan, shard, o.restart); });
 
   Tally tally;
   std::vector<int> selected, open;
@@ -461,7 +461,7 @@ int run_batch(const BatchOptions& o) {
     ++tally.num_before;
     if (!outcome->error.empty()) tally.failed.push_back(*outcome);
   }
-  wait_for_all(true);  // the count before is right only while no rank works
+  analysis::wait_for_all(true);  // the count before is right only while no rank works
 
   PoolOptions pool;
   pool.command = {"bough", "batch", o.campaign, "-o", folder.string()};
@@ -489,14 +489,14 @@ int run_batch(const BatchOptions& o) {
                     selected.size(), tally.failed.size(), each,
                     each * static_cast<double>(open.size() - static_cast<std::size_t>(tally.num_done))));
   });
-  tally.completed = wait_for_all(tally.completed);
+  tally.completed = analysis::wait_for_all(tally.completed);
   tally.seconds = count_seconds();
   console.end_progress();
   if (rank.count > 1) count_again(plan, selected, folder, tally);
   std::sort(tally.failed.begin(), tally.failed.end(), [](const auto& a, const auto& b) { return a.number < b.number; });
 
   int code = tally.failed.empty() && tally.completed ? kSuccess : kComputationFailed;
-  do_once([&] {
+  analysis::do_once([&] {
     const TableLock lock(folder);
     std::vector<BatchOutcome> outcomes;  // of all shards, as far as they are
     for (const auto& one : plan.get_cases())

@@ -6,9 +6,10 @@
 #include <set>
 #include <sstream>
 
+#include "analysis/common/body_files.hpp"
+#include "analysis/common/inputs.hpp"
 #include "base/file_roles.hpp"
 #include "cli/batch/batch_steps.hpp"
-#include "cli/common/body_files.hpp"
 #include "cli/common/options.hpp"
 #include "cli/common/text_file.hpp"
 #include "formats/hdf5/files.hpp"
@@ -33,7 +34,8 @@ std::string read_all(const std::string& path) {
 }
 
 bool is_deck_name(const std::string& path) {
-  return has_suffix(path, ".bdf") || has_suffix(path, ".dat") || has_suffix(path, ".nas") || has_suffix(path, ".fem");
+  return analysis::has_suffix(path, ".bdf") || analysis::has_suffix(path, ".dat") ||
+         analysis::has_suffix(path, ".nas") || analysis::has_suffix(path, ".fem");
 }
 
 /// The value as a deck holds it.
@@ -54,7 +56,7 @@ std::string describe(const Diagnostics& diagnostics) {
 }  // namespace
 
 BatchPlan::BatchPlan(const std::string& campaign_file, const std::vector<std::string>& verbs, bool may_leave) {
-  demand_file(campaign_file);
+  analysis::demand_file(campaign_file);
   campaign_folder_ = fs::absolute(campaign_file).parent_path().string();
   spec_ = toml_files::read_campaign(campaign_file, diagnostics_);
   diagnostics_.throw_if_errors();
@@ -93,7 +95,7 @@ void BatchPlan::carry(const std::string& file, const SourceLocation& at, bool ha
       if (of_other.local == carried.local)
         diagnostics_.error("batch.no-file", at, file + " and " + other + " would both be " + carried.local,
                            "rename one of them");
-    if (has_suffix(file, ".toml")) {
+    if (analysis::has_suffix(file, ".toml")) {
       carried.kind = FileKind::Toml;
       carried.text = read_all(file);
     } else if (has_cards || is_deck_name(file)) {
@@ -109,7 +111,7 @@ void BatchPlan::carry(const std::string& file, const SourceLocation& at, bool ha
 void BatchPlan::carry_all() {
   for (const auto& p : spec_.parameters) {
     if (p.file.empty()) continue;
-    if (p.key.empty() == has_suffix(p.file, ".toml") && fs::is_regular_file(p.file)) {
+    if (p.key.empty() == analysis::has_suffix(p.file, ".toml") && fs::is_regular_file(p.file)) {
       diagnostics_.error("batch.bad-parameter", p.at,
                          p.key.empty() ? "card is for decks, " + p.file + " is a TOML file"
                                        : "key is for TOML files, " + p.file + " is none",
@@ -123,7 +125,7 @@ void BatchPlan::carry_all() {
   for (const auto& step : spec_.steps) {
     for (std::size_t i = 1; i < step.words.size(); ++i) {
       const auto file = make_absolute(campaign_folder_, step.words[i]);
-      if (is_input_word(step.words, i) && has_suffix(file, ".toml") && fs::is_regular_file(file))
+      if (is_input_word(step.words, i) && analysis::has_suffix(file, ".toml") && fs::is_regular_file(file))
         carry(file, step.at, false);
     }
   }
@@ -161,7 +163,7 @@ void BatchPlan::check_filled_names() {
 void BatchPlan::resolve_paths(const std::string& file, Carried& carried) {
   const auto local_folder = fs::path(carried.local).parent_path();
   toml_files::change_file_keys(carried.text, [&](const std::string& path) -> std::string {
-    const auto alone = get_body_path(path), of_body = path.substr(alone.size());  // "panels.FLX" ":2"
+    const auto alone = analysis::get_body_path(path), of_body = path.substr(alone.size());  // "panels.FLX" ":2"
     const auto target = make_absolute(fs::path(file).parent_path().string(), alone);
     if (const auto own = carried_.find(target); own != carried_.end())
       return fs::path(own->second.local).lexically_relative(local_folder.empty() ? "." : local_folder).string() +

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "analysis/common/inputs.hpp"
 #include "cli/common/options.hpp"
 #include "formats/toml/specs.hpp"
 
@@ -78,7 +79,8 @@ std::vector<std::string> find_outputs(const CampaignSpec& spec, const std::strin
     if (output.empty() && words[0] == "flx") output = stem + ".FLX";
     if (output.empty() && words[0] == "reduce") {
       auto name = find_option(words, {"--name"});
-      if (const auto file = make_absolute(folder, input); has_suffix(file, ".toml") && fs::is_regular_file(file)) {
+      if (const auto file = make_absolute(folder, input);
+          analysis::has_suffix(file, ".toml") && fs::is_regular_file(file)) {
         Diagnostics ignored;
         const auto body = toml_files::read_body_spec(file, ignored);
         output = body.output_file;

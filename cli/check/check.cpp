@@ -6,19 +6,21 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "analysis/check/try_reduction.hpp"
+#include "analysis/common/body_files.hpp"
+#include "analysis/common/inputs.hpp"
+#include "analysis/common/model_choice.hpp"
+#include "analysis/common/ranks.hpp"
+#include "analysis/common/solution.hpp"
+#include "analysis/common/system_files.hpp"
 #include "cli/check/check_components.hpp"
 #include "cli/check/check_solutions.hpp"
 #include "cli/check/check_subcases.hpp"
 #include "cli/check/diagram.hpp"
-#include "cli/check/try_reduction.hpp"
-#include "cli/common/body_files.hpp"
 #include "cli/common/console.hpp"
 #include "cli/common/deck_tables.hpp"
 #include "cli/common/model_options.hpp"
 #include "cli/common/options.hpp"
-#include "cli/common/ranks.hpp"
-#include "cli/common/solution.hpp"
-#include "cli/common/system_files.hpp"
 #include "fe/linear/factor.hpp"
 #include "fe/matrices/assembly.hpp"
 #include "fe/matrices/connected_parts.hpp"
@@ -40,7 +42,7 @@ namespace {
 struct CheckOptions : CommonOptions {
   std::vector<std::string> set;
   std::string file, diagram;
-  DeckModelOptions model;
+  analysis::ModelChoice model;
   std::optional<int> gpwg;  ///< grid of the weight table; 0: the origin
 };
 
@@ -79,7 +81,7 @@ void check_model(const CheckOptions& options, const records::Deck& deck, fe::Mod
                  std::string& text, nlohmann::json& json, Diagnostics& diagnostics) {
   model_options.uses_enforced = true;
   fe::check_preloads(deck, diagnostics);
-  note_solution(deck, diagnostics);
+  analysis::note_solution(deck, diagnostics);
   const auto model = fe::build_model(deck, model_options, diagnostics);
   if (diagnostics.num_errors() > 0) return;
   const auto mass = fe::calc_mass_properties(model, model.mass_kind(), Vector3d::Zero());
@@ -150,15 +152,15 @@ void describe_deck(const records::Deck& deck, std::string& text, nlohmann::json&
 }
 
 int check_deck(const CheckOptions& options, Console& console) {
-  do_once([&] { demand_deck(options.file); });
+  analysis::do_once([&] { analysis::demand_deck(options.file); });
   console.set_rank(fe::initialize_petsc().rank);
   Diagnostics diagnostics;
-  const auto deck = read_deck_once(options.file, options.model.ignore_cards, diagnostics);
+  const auto deck = analysis::read_deck_once(options.file, options.model.ignore_cards, diagnostics);
   std::string text;
   nlohmann::json json;
   describe_deck(deck, text, json);
   // A deck with errors is still taken as far as it goes, so that one pass shows all of them.
-  check_model(options, deck, make_model_options(options.model), text, json, diagnostics);
+  check_model(options, deck, analysis::make_model_options(options.model), text, json, diagnostics);
   return finish(options, console, text, json, diagnostics);
 }
 
@@ -187,20 +189,20 @@ void check_support(const CheckOptions& options, bool is_free, const nlohmann::js
 int check_body(const CheckOptions& options, Console& console) {
   console.set_rank(fe::initialize_petsc().rank);
   Diagnostics diagnostics;
-  const auto spec = read_body_spec_once(options.file, diagnostics);
+  const auto spec = analysis::read_body_spec_once(options.file, diagnostics);
   nlohmann::json json{{"kind", "body"}, {"name", spec.name}, {"deck", spec.deck}};
   std::string text =
       fmt::format("body file: \"{}\" from {}, {} frame, {}, {}, {}\n", spec.name, spec.deck,
                   spec.frame == records::BodyFrame::Fixed ? "fixed" : "free",
                   count(static_cast<std::size_t>(spec.num_modes), "mode"),
                   count(spec.interface_nodes.size(), "interface node"), count(spec.loads.size(), "load"));
-  const auto deck_path = resolve_beside(options.file, spec.deck);
+  const auto deck_path = analysis::resolve_beside(options.file, spec.deck);
   if (!spec.deck.empty()) {
-    do_once([&] { demand_file(deck_path); });
-    const auto deck = read_deck_once(deck_path, spec.ignore_cards, diagnostics);
+    analysis::do_once([&] { analysis::demand_file(deck_path); });
+    const auto deck = analysis::read_deck_once(deck_path, spec.ignore_cards, diagnostics);
     describe_deck(deck, text, json);
     json["kind"] = "body";
-    auto model_options = make_model_options(options.model);
+    auto model_options = analysis::make_model_options(options.model);
     model_options.subcase = spec.subcase;
     model_options.ignore_spc = spec.frame != records::BodyFrame::Fixed;
     model_options.origin = spec.origin;
@@ -216,13 +218,14 @@ int check_body(const CheckOptions& options, Console& console) {
       }
     }
   }
-  if (diagnostics.num_errors() == 0) try_reduction(options.file, spec, json.value("num_free_dofs", 0), diagnostics);
+  if (diagnostics.num_errors() == 0)
+    analysis::try_reduction(options.file, spec, json.value("num_free_dofs", 0), diagnostics);
   return finish(options, console, text, json, diagnostics);
 }
 
 int check_system(const CheckOptions& options, const Console& console) {
   Diagnostics diagnostics;
-  const auto loaded = load_system(options.file, diagnostics, {}, options.set);
+  const auto loaded = analysis::load_system(options.file, diagnostics, {}, options.set);
   const auto& system = loaded.system;
   solver::check_start(system, loaded.spec, diagnostics);
   Table table{{"body", "hinge", "free coordinates", "modes"}, {}};
@@ -258,7 +261,7 @@ int check_system(const CheckOptions& options, const Console& console) {
 }
 
 void check_flex_body(const std::string& path, std::string& text, nlohmann::json& json, Diagnostics& diagnostics) {
-  const auto body = read_body(path, diagnostics);
+  const auto body = analysis::read_body(path, diagnostics);
   int computed = 0;
   for (bool flag : body.kg_inertial_computed) computed += flag ? 1 : 0;
   double worst = 0;
@@ -371,21 +374,22 @@ int check_flx(const CheckOptions& options, const Console& console) {
 }
 
 int check_file(const CheckOptions& options, Console& console) {
-  do_once([&] { demand_body_file(options.file); });
+  analysis::do_once([&] { analysis::demand_body_file(options.file); });
   if (!options.diagram.empty()) {
-    const bool is_toml = has_suffix(options.file, ".toml");
-    demand_kind(options.file, is_toml ? toml_files::detect_kind(options.file) : "", "system");
+    const bool is_toml = analysis::has_suffix(options.file, ".toml");
+    analysis::demand_kind(options.file, is_toml ? toml_files::detect_kind(options.file) : "", "system");
     if (!is_toml)
       throw InputError("cli.bad-diagram", {options.file}, "--diagram draws the blocks of a system file",
                        "name a system.toml");
   }
-  if (is_flat(options.file)) return check_flat(options, console);
-  if (is_flx(options.file)) return check_flx(options, console);
-  if (has_suffix(options.file, ".h5") || has_suffix(options.file, ".hdf5")) return check_hdf5(options, console);
-  if (has_suffix(options.file, ".toml")) {
-    const auto kind = share([&] { return toml_files::detect_kind(options.file); });
+  if (analysis::is_flat(options.file)) return check_flat(options, console);
+  if (analysis::is_flx(options.file)) return check_flx(options, console);
+  if (analysis::has_suffix(options.file, ".h5") || analysis::has_suffix(options.file, ".hdf5"))
+    return check_hdf5(options, console);
+  if (analysis::has_suffix(options.file, ".toml")) {
+    const auto kind = analysis::share([&] { return toml_files::detect_kind(options.file); });
     if (kind == "body") return check_body(options, console);
-    demand_kind(options.file, kind, "system");
+    analysis::demand_kind(options.file, kind, "system");
     return check_system(options, console);
   }
   return check_deck(options, console);
@@ -393,7 +397,9 @@ int check_file(const CheckOptions& options, Console& console) {
 
 int run_check(const CheckOptions& options) {
   Console console(options.quiet, options.verbosity);
-  do_once([&] { check_outputs(options, {options.output, options.diagram}, {get_body_path(options.file)}); });
+  analysis::do_once([&] {
+    check_outputs(options, {options.output, options.diagram}, {analysis::get_body_path(options.file)});
+  });
   try {
     return check_file(options, console);
   } catch (const InputError& failure) {

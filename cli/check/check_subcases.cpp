@@ -8,9 +8,9 @@
 #include <optional>
 #include <set>
 
+#include "analysis/common/subcase_failures.hpp"
 #include "cli/common/console.hpp"
 #include "cli/common/deck_tables.hpp"
-#include "cli/common/subcase_failures.hpp"
 #include "fe/statics/build_model.hpp"
 #include "fe/statics/static_case.hpp"
 
@@ -57,7 +57,7 @@ void check_subcases(const records::Deck& deck, const fe::Model& model, const fe:
     if (s.load != 0 || s.temperature != 0 || s.deform != 0 || enforces(deck, s.spc)) rows.push_back({s});
   json["subcases"] = nlohmann::json::array();
   if (rows.empty()) return;
-  SubcaseFailures failures(rows.size(), deck.subcases.size());
+  analysis::SubcaseFailures failures(rows.size(), deck.subcases.size());
   const auto get_held = [](const records::Subcase& s) { return std::array<int, 3>{s.spc, s.mpc, s.suport1}; };
   std::optional<fe::Model> own;
   const fe::Model* current = &model;
@@ -81,7 +81,7 @@ void check_subcases(const records::Deck& deck, const fe::Model& model, const fe:
         diagnostics.warning("cli.empty-load", deck.locate(row.subcase.find_command("LOAD")),
                             fmt::format("subcase {}: its loads and temperatures apply nothing", row.subcase.id),
                             "look at the factors of LOAD, at zero loads, and at grids that the loads miss");
-      add_new(found, diagnostics);
+      analysis::add_new(found, diagnostics);
     } catch (const Failure& failure) {
       current = own ? &*own : &model;
       failures.add(row.subcase.id, failure);

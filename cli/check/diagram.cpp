@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "analysis/common/inputs.hpp"
 #include "cli/common/converter.hpp"
 #include "cli/common/options.hpp"
 #include "cli/common/text_file.hpp"
@@ -198,10 +199,10 @@ std::string make_diagram(const records::SystemSpec& spec) { return Writer(spec).
 
 void write_diagram(const records::SystemSpec& spec, const std::string& path) {
   const std::string text = make_diagram(spec);
-  if (has_suffix(path, ".dot")) return write_text_file(path, text);
+  if (analysis::has_suffix(path, ".dot")) return write_text_file(path, text);
   std::string format;
   for (const char* known : {"svg", "png", "pdf"})
-    if (has_suffix(path, std::string(".") + known)) format = known;
+    if (analysis::has_suffix(path, std::string(".") + known)) format = known;
   if (format.empty())
     throw InputError("cli.bad-diagram", {path}, "the ending of the diagram's file names no format",
                      "end it in .dot, .svg, .png or .pdf");

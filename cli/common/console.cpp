@@ -14,6 +14,8 @@
 #include <sstream>
 #include <tuple>
 
+#include "analysis/common/failures.hpp"
+#include "analysis/common/ranks.hpp"
 #include "cli/common/interrupt.hpp"
 
 namespace bough::cli {
@@ -119,17 +121,10 @@ std::size_t get_terminal_width() {
 Console::Console(bool quiet, int verbosity)
     : quiet_(quiet),
       verbosity_(verbosity),
-      is_root_(get_launch_rank() == 0),
+      is_root_(analysis::get_launch_rank() == 0),
       stderr_is_terminal_(isatty(STDERR_FILENO) != 0) {
   const char* no_color = std::getenv("NO_COLOR");
   colors_ = stderr_is_terminal_ && (no_color == nullptr || *no_color == '\0');
-}
-
-int Console::get_launch_rank() {
-  for (const char* name : {"OMPI_COMM_WORLD_RANK", "PMIX_RANK", "PMI_RANK"}) {
-    if (const char* value = std::getenv(name)) return std::atoi(value);
-  }
-  return 0;
 }
 
 void Console::print_data(const std::string& text) const {
@@ -148,7 +143,7 @@ void Console::print_detail(const std::string& text) const {
 
 void Console::print(const Diagnostic& diagnostic) const {
   if (!is_root_) return;
-  const auto located = locate(diagnostic, subject_);
+  const auto located = analysis::locate(diagnostic, subject_);
   std::string text = format(located);
   if (colors_) {
     const bool is_error = diagnostic.severity == Severity::Error;
@@ -199,11 +194,6 @@ void flush_data() {
   if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) throw fail_to_print();
 }
 
-Diagnostic locate(Diagnostic diagnostic, const std::string& file) {
-  if (diagnostic.where.file.empty() && !diagnostic.id.starts_with("cli.")) diagnostic.where.file = file;
-  return diagnostic;
-}
-
 std::vector<Diagnostic> shorten(const std::vector<Diagnostic>& items, std::size_t max_shown) {
   struct Kind {
     std::size_t count = 0, line = 0;  ///< how many there are; where the line about the rest stands
@@ -231,18 +221,10 @@ std::vector<Diagnostic> shorten(const std::vector<Diagnostic>& items, std::size_
   return shown;
 }
 
-int choose_exit_code(const Failure& failure) {
-  // Both are found by the computation, and both are mended in the deck.
-  const bool is_input = std::any_of(failure.items().begin(), failure.items().end(), [](const auto& item) {
-    return item.id == "fe.mechanism" || item.id == "modal.no-mass";
-  });
-  return is_input ? kInputError : failure.exit_code();
-}
-
 int report_failure(const Failure& failure, const Console& console) {
   end_in_silence();
   console.print(failure.items());
-  return choose_exit_code(failure);
+  return analysis::choose_exit_code(failure);
 }
 
 }  // namespace bough::cli

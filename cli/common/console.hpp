@@ -31,9 +31,6 @@ class Console {
  public:
   Console(bool quiet, int verbosity);
 
-  /// Rank of this process as mpirun's environment tells it; 0 outside mpirun.
-  static int get_launch_rank();
-
   /// The file that a message is about when it names none, unless it concerns the command line.
   void set_subject(std::string file) { subject_ = std::move(file); }
 
@@ -74,15 +71,10 @@ class Console {
 /// Everything printed so far goes out: ComputationError("cli.write") when it does not, or did not before.
 void flush_data();
 
-/// Returns the message with location `file` if it has none and does not concern the command line.
-Diagnostic locate(Diagnostic diagnostic, const std::string& file);
-
 /// The first `most` messages of each id, severity and file, in their order; one line where the next would stand says
 /// how many follow.
 std::vector<Diagnostic> shorten(const std::vector<Diagnostic>& items, std::size_t max_shown = 10);
 
-/// A mechanism and a model without mass count as wrong input (docs/adr/0006).
-int choose_exit_code(const Failure& failure);
 /// Prints the diagnostics of a Failure and gives the exit code.
 int report_failure(const Failure& failure, const Console& console);
 

@@ -256,6 +256,16 @@ nlohmann::json to_json(const Eigen::Ref<const Eigen::MatrixXd>& matrix) {
   return rows;
 }
 
+nlohmann::json to_json(const analysis::SubcaseFailures& failures) {
+  auto list = nlohmann::json::array();
+  for (const auto& [id, items] : failures.get_failed()) {
+    auto messages = nlohmann::json::array();
+    for (const auto& item : items) messages.push_back(format(item));
+    list.push_back({{"id", id}, {"messages", messages}});
+  }
+  return list;
+}
+
 nlohmann::json to_json(const fe::GridPointWeight& w) {
   return {{"grid", w.grid},
           {"MO", to_json(Eigen::MatrixXd(w.MO))},

@@ -3,6 +3,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
+#include "analysis/common/subcase_failures.hpp"
 #include "fe/matrices/checks.hpp"
 #include "fe/matrices/grid_point_weight.hpp"
 #include "formats/records/deck.hpp"
@@ -27,6 +28,8 @@ nlohmann::json make_sections_json(const records::Deck& deck);
 std::string format_autospc(const fe::Model& model);
 std::string format_card_counts(const records::Deck& deck);
 
+/// [{"id": 7, "messages": [...]}, ...]
+nlohmann::json to_json(const analysis::SubcaseFailures& failures);
 nlohmann::json to_json(const fe::GridPointWeight& weight);
 nlohmann::json to_json(const records::MassProperties& properties);
 /// Rows of any matrix or the entries of any vector as nested JSON arrays.

@@ -6,6 +6,7 @@
 #include <csignal>
 #include <cstring>
 
+#include "analysis/common/ranks.hpp"
 #include "base/foreign_call.hpp"
 #include "base/part_file.hpp"
 #include "cli/common/console.hpp"
@@ -88,7 +89,7 @@ void end_cleanly_on_signals() {
 }
 
 void leave_word_to_first_rank() {
-  if (Console::get_launch_rank() != 0) says_it = 0;
+  if (analysis::get_launch_rank() != 0) says_it = 0;
 }
 
 void end_in_silence() { says_it = 0; }

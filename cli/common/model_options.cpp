@@ -2,37 +2,32 @@
 
 #include <CLI/CLI.hpp>
 
-#include "fe/model/sets.hpp"
-#include "fe/statics/preload.hpp"
+#include "cli/common/text_file.hpp"
+#include "formats/listing/f06.hpp"
+#include "formats/listing/op2.hpp"
 
 namespace bough::cli {
 
-void add_model_options(CLI::App& verb, DeckModelOptions& options) {
-  verb.add_option("--subcase", options.subcase,
-                  "Subcase whose SPC, MPC, LOAD and METHOD are used (default: the first)");
-  verb.add_flag("--free", options.free, "Leave the SPC sets out: the free-free structure");
-  verb.add_option("--mass", options.mass, "Mass matrix: deck (PARAM,COUPMASS decides), lumped or consistent")
+void add_model_options(CLI::App& verb, analysis::ModelChoice& choice) {
+  verb.add_option("--subcase", choice.subcase, "Subcase whose SPC, MPC, LOAD and METHOD are used (default: the first)");
+  verb.add_flag("--free", choice.free, "Leave the SPC sets out: the free-free structure");
+  verb.add_option("--mass", choice.mass, "Mass matrix: deck (PARAM,COUPMASS decides), lumped or consistent")
       ->check(CLI::IsMember({"deck", "lumped", "consistent"}))
       ->capture_default_str();
-  verb.add_option("--ignore", options.ignore_cards,
+  verb.add_option("--ignore", choice.ignore_cards,
                   "Leave out this card, command or parameter though it changes the answer; may be repeated")
       ->allow_extra_args(false);
 }
 
-fe::ModelOptions make_model_options(const DeckModelOptions& options) {
-  fe::ModelOptions model;
-  model.subcase = options.subcase;
-  model.ignore_spc = options.free;
-  model.ignore_cards = options.ignore_cards;
-  if (options.mass == "lumped") model.mass_kind = fe::MassKind::Lumped;
-  if (options.mass == "consistent") model.mass_kind = fe::MassKind::Consistent;
-  return model;
+void add_listing_options(CLI::App& verb, ListingOptions& options) {
+  verb.add_option("--f06", options.f06, "Write a listing in Nastran's order, as the output requests of the deck say");
+  verb.add_option("--op2", options.op2, "Write the same as a Nastran OUTPUT2 file");
 }
 
-std::shared_ptr<const fe::Prestress> calc_prestress(const records::Deck& deck, const fe::ModelOptions& options,
-                                                    Diagnostics& diagnostics) {
-  Diagnostics unknown;  // build_model() reports a subcase that is not there
-  return fe::calc_subcase_prestress(deck, options, fe::select_subcase(deck, options.subcase, unknown), diagnostics);
+void write_listings(const ListingOptions& options, const records::Listing& listing) {
+  const auto op2 = options.op2.empty() ? std::string() : listing::make_op2(listing);
+  if (!options.f06.empty()) write_text_file(options.f06, listing::make_f06(listing));
+  if (!options.op2.empty()) write_text_file(options.op2, op2);
 }
 
 }  // namespace bough::cli

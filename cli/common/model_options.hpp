@@ -1,9 +1,9 @@
 #pragma once
-/// \file Options of the verbs that make a finite-element model of a deck.
+/// \file Options of the verbs that make a finite-element model of a deck, and of those that list its results.
 #include <string>
-#include <vector>
 
-#include "fe/model/model.hpp"
+#include "analysis/common/model_choice.hpp"
+#include "formats/records/listing.hpp"
 
 namespace CLI {
 class App;
@@ -11,18 +11,16 @@ class App;
 
 namespace bough::cli {
 
-struct DeckModelOptions {
-  int subcase = 0;
-  bool free = false;
-  std::string mass = "deck";
-  std::vector<std::string> ignore_cards;
+void add_model_options(CLI::App& verb, analysis::ModelChoice& choice);
+
+struct ListingOptions {
+  std::string f06, op2;
+  bool empty() const { return f06.empty() && op2.empty(); }
 };
 
-void add_model_options(CLI::App& verb, DeckModelOptions& options);
-fe::ModelOptions make_model_options(const DeckModelOptions& options);
+void add_listing_options(CLI::App& verb, ListingOptions& options);
 
-/// The stress that STATSUB of the subcase of `options` asks for; nullptr for none.
-std::shared_ptr<const fe::Prestress> calc_prestress(const records::Deck& deck, const fe::ModelOptions& options,
-                                                    Diagnostics& diagnostics);
+/// On the first rank.
+void write_listings(const ListingOptions& options, const records::Listing& listing);
 
 }  // namespace bough::cli

@@ -2,12 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
-#include <fstream>
-#include <iterator>
 #include <map>
-
-#include "base/diagnostic.hpp"
-#include "cli/common/options.hpp"
 
 namespace bough::cli {
 
@@ -28,16 +23,6 @@ std::string find_successor(std::string_view word) {
   std::transform(lower.begin(), lower.end(), lower.begin(), [](unsigned char c) { return std::tolower(c); });
   const auto found = successors.find(lower);
   return found == successors.end() ? "" : found->second;
-}
-
-void refuse_treetops_input(const std::string& path) {
-  if (!has_suffix(path, ".int")) return;
-  std::ifstream in(path, std::ios::binary);
-  const std::string text{std::istreambuf_iterator<char>(in), {}};
-  if (text.find("GRID") != std::string::npos || text.find("BEGIN BULK") != std::string::npos) return;
-  throw InputError("cli.wrong-file", {path}, "the file is a .INT of TREETOPS, which Bough does not read",
-                   "describe the system in TOML: bough init lists examples to start from, bough edit asks for each key "
-                   "(docs/coming-from-treetops.md)");
 }
 
 }  // namespace bough::cli

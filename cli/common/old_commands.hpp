@@ -8,7 +8,4 @@ namespace bough::cli {
 /// The command line or the word of `bough edit` that replaces `word`, in any case, as advice; empty for other words.
 std::string find_successor(std::string_view word);
 
-/// Throws InputError "cli.wrong-file" for a .INT file of TREETOPS: it is recognized by its name, and no deck.
-void refuse_treetops_input(const std::string& path);
-
 }  // namespace bough::cli

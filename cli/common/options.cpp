@@ -4,25 +4,14 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <cctype>
 #include <cerrno>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <system_error>
 
 #include "base/file_roles.hpp"
 #include "base/part_file.hpp"
 #include "cli/common/console.hpp"
-#include "cli/common/old_commands.hpp"
-#include "cli/common/ranks.hpp"
-#include "cli/common/subcase_failures.hpp"
 #include "cli/common/text_file.hpp"
-#include "fe/statics/build_model.hpp"
-#include "formats/hdf5/files.hpp"
-#include "formats/matrices/superelements.hpp"
-#include "formats/nastran/reader.hpp"
-#include "formats/toml/specs.hpp"
 
 namespace bough::cli {
 
@@ -43,6 +32,11 @@ void add_common_options(CLI::App& verb, CommonOptions& options, unsigned offers,
   if (offers & kJson) verb.add_flag("--json", options.json, "Print JSON instead of tables");
   verb.add_flag("-q,--quiet", options.quiet, "Print errors only");
   verb.add_flag("-v,--verbose", options.verbosity, "Print more; may be repeated");
+}
+
+void add_set_option(CLI::App& verb, std::vector<std::string>& set) {
+  verb.add_option("--set", set, "NAME=VALUE: another number for a parameter of [parameters]; may be repeated")
+      ->allow_extra_args(false);
 }
 
 namespace {
@@ -130,120 +124,6 @@ void write_report(const CommonOptions& options, const Console& console, const st
   if (!console.is_root()) return;
   write_text_file(options.output, text);
   console.print("written: " + options.output + "\n");
-}
-
-int with_file(const std::string& file, const std::function<int()>& act, const std::string& excluded_file) {
-  const auto is_of_reduce = [](const Diagnostic& item) { return item.id.starts_with("reduce."); };
-  const auto place = [&](const Failure& failure) {
-    auto items = failure.items();
-    for (auto& item : items) {
-      if (!excluded_file.empty() && item.where.file == excluded_file && item.where.line == 0 && !is_of_reduce(item))
-        item.where.file.clear();
-      item = locate(std::move(item), file);
-    }
-    return items;
-  };
-  try {
-    return act();
-  } catch (const InputError& failure) {
-    throw InputError(place(failure));
-  } catch (const ComputationError& failure) {
-    throw ComputationError(place(failure));
-  }
-}
-
-void with_prior_messages(const Diagnostics& prior, const std::function<void()>& act) {
-  const auto join = [&prior](const Failure& failure) {
-    Diagnostics own, all;
-    for (const auto& item : failure.items()) own.add(item);
-    add_new(prior, all);
-    add_new(own, all);
-    return all.items();
-  };
-  try {
-    act();
-  } catch (const InputError& failure) {
-    throw InputError(join(failure));
-  } catch (const ComputationError& failure) {
-    throw ComputationError(join(failure));
-  }
-}
-
-bool has_suffix(const std::string& path, const std::string& suffix) {
-  auto same = [](char a, char b) {
-    return std::tolower(static_cast<unsigned char>(a)) == std::tolower(static_cast<unsigned char>(b));
-  };
-  return path.size() >= suffix.size() && std::equal(suffix.rbegin(), suffix.rend(), path.rbegin(), same);
-}
-
-void demand_file(const std::string& path) {
-  std::error_code failed;
-  const auto kind = fs::status(path, failed).type();
-  const bool is_stream =
-      kind == fs::file_type::fifo || kind == fs::file_type::character || kind == fs::file_type::socket;
-  if (is_stream)
-    throw InputError("cli.no-file", {path}, "is a pipe or a device, not a regular file, and input is read twice",
-                     "write it to a file first");
-  if (kind != fs::file_type::regular || !std::ifstream(path)) {
-    throw InputError("cli.no-file", {path},
-                     kind == fs::file_type::directory ? "is a folder, not a file" : "no such file, or not readable",
-                     "check the path");
-  }
-  note_input(path);
-}
-
-void demand_kind(const std::string& path, const std::string& kind, const std::string& expected) {
-  if (kind.empty() || kind == expected) return;
-  const std::string verb = kind == "body" ? "reduce" : kind == "system" ? "run" : "batch";
-  throw InputError("cli.wrong-file", {path}, "the file is a " + kind + " file, expected a " + expected + " file",
-                   "bough " + verb + " takes it" + (kind == "campaign" ? ", with --dry-run to check it" : ""));
-}
-
-void demand_deck(const std::string& path) {
-  demand_file(path);
-  refuse_treetops_input(path);
-  std::string begin(8, '\0');
-  std::ifstream(path, std::ios::binary).read(begin.data(), 8);
-  const bool is_hdf5 = begin == "\x89HDF\r\n\x1a\n";
-  if (!is_hdf5 && !has_suffix(path, ".toml")) return;
-  throw InputError("cli.wrong-file", {path},
-                   std::string("the file is ") + (is_hdf5 ? "HDF5" : "TOML") + ", expected a Nastran deck",
-                   is_hdf5 ? "bough info tells what it holds" : "bough check tells what it is");
-}
-
-records::Deck read_deck_once(const std::string& path, const std::vector<std::string>& ignore_cards,
-                             Diagnostics& diagnostics) {
-  auto deck = is_one_of_many() ? nastran::read_packed_deck(share([&] { return nastran::pack_deck(path); }),
-                                                           {ignore_cards}, diagnostics)
-                               : nastran::read_deck(path, {ignore_cards}, diagnostics);
-  matrices::read_superelements(deck, diagnostics);
-  return deck;
-}
-
-records::BodySpec read_body_spec_once(const std::string& path, Diagnostics& diagnostics) {
-  if (!is_one_of_many()) return toml_files::read_body_spec(path, diagnostics);
-  const auto text = share([&] {
-    demand_file(path);
-    std::ifstream in(path, std::ios::binary);
-    return std::string(std::istreambuf_iterator<char>(in), {});
-  });
-  return toml_files::read_body_spec_text(text, path, diagnostics);
-}
-
-records::Deck read_deck_or_throw(const std::string& path, const fe::ModelOptions& options, Diagnostics& diagnostics) {
-  do_once([&] { demand_deck(path); });
-  auto deck = read_deck_once(path, options.ignore_cards, diagnostics);
-  // A deck with errors is still taken as far as it goes, so that one pass shows all of them.
-  if (diagnostics.num_errors() > 0) fe::build_model(deck, options, diagnostics);
-  diagnostics.throw_if_errors();
-  return deck;
-}
-
-std::vector<std::pair<std::string, std::string>> calc_sources(const std::vector<std::string>& files) {
-  std::vector<std::pair<std::string, std::string>> source;
-  if (Console::get_launch_rank() != 0) return source;
-  for (const auto& file : files) source.emplace_back(fs::path(file).filename().string(), hdf5::calc_sha256(file));
-  return source;
 }
 
 }  // namespace bough::cli

@@ -3,7 +3,8 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 
-#include "cli/common/body_files.hpp"
+#include "analysis/common/body_files.hpp"
+#include "analysis/common/inputs.hpp"
 #include "cli/common/console.hpp"
 #include "cli/common/options.hpp"
 #include "cli/compare/compare_report.hpp"
@@ -29,10 +30,10 @@ struct Loaded {
 };
 
 Loaded load(const std::string& file, Diagnostics& diagnostics) {
-  demand_body_file(file);
-  const auto format = read_file_format(file);
+  analysis::demand_body_file(file);
+  const auto format = analysis::read_file_format(file);
   if (format == "bough-flexbody") {
-    auto body = read_body(file, diagnostics);
+    auto body = analysis::read_body(file, diagnostics);
     auto model = modal::ModalModel::from(body);
     return {std::move(model), std::move(body)};
   }
@@ -57,7 +58,7 @@ SingleReport compare_with_itself(const records::FlexBody& body, const std::strin
 }
 
 MatrixXd calc_mass_mac(const CompareOptions& o, const PairReport& r) {
-  demand_file(o.mass);
+  analysis::demand_file(o.mass);
   const auto file = hdf5::read_sparse_file(o.mass);
   for (const auto& [name, matrix] : file.matrices) {
     if (name != "M" || file.dof_map.rows() != matrix.num_rows) continue;
@@ -100,8 +101,8 @@ void write_report(const Report& report, const CompareOptions& o, const Console& 
   if (!o.output.empty()) {
     records::Comparison file;
     std::vector<std::string> files;
-    for (const auto& name : o.files) files.push_back(get_body_path(name));
-    file.source = calc_sources(files);
+    for (const auto& name : o.files) files.push_back(analysis::get_body_path(name));
+    file.source = analysis::calc_sources(files);
     add_arrays(report, file);
     hdf5::write_comparison(file, o.output);
   }
@@ -122,7 +123,7 @@ int run_compare(const CompareOptions& o) {
   }
   if (!o.output.empty()) {
     std::vector<std::string> inputs{o.mass};
-    for (const auto& name : o.files) inputs.push_back(get_body_path(name));
+    for (const auto& name : o.files) inputs.push_back(analysis::get_body_path(name));
     check_output(o, o.output, inputs);
   }
   Diagnostics diagnostics;

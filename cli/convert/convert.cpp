@@ -8,7 +8,8 @@
 #include <map>
 #include <memory>
 
-#include "cli/common/body_files.hpp"
+#include "analysis/common/body_files.hpp"
+#include "analysis/common/inputs.hpp"
 #include "cli/common/console.hpp"
 #include "cli/common/options.hpp"
 #include "cli/common/text_file.hpp"
@@ -71,7 +72,7 @@ class FileFacts {
     std::unique_ptr<records::FlexBody> body;
     try {
       Diagnostics quiet;
-      body = std::make_unique<records::FlexBody>(read_body(file->second, quiet));
+      body = std::make_unique<records::FlexBody>(analysis::read_body(file->second, quiet));
     } catch (const InputError&) {  // reported where it is needed
     }
     return bodies_.emplace(name, std::move(body)).first->second.get();
@@ -126,7 +127,7 @@ void convert_toml(const ConvertOptions& o, const records::UnitChange& change, co
 void convert_body(const ConvertOptions& o, const records::UnitChange& change, const std::string& names,
                   const Console& console) {
   check_output(o, o.output, {o.file});
-  const bool is_to_flat = is_flat(o.file);
+  const bool is_to_flat = analysis::is_flat(o.file);
   auto body = is_to_flat ? flat::read_flex_body(o.file) : hdf5::read_flex_body(o.file);
   records::change_units(body, change);
   if (is_to_flat)
@@ -145,7 +146,7 @@ bool is_hdf5(const std::string& path) {
 int run_convert(const ConvertOptions& o) {
   const Console console(o.quiet, o.verbosity);
   if (!console.is_root()) return kSuccess;
-  demand_file(o.file);
+  analysis::demand_file(o.file);
   const bool is_toml = fs::path(o.file).extension() == ".toml", has_units = !(o.units.empty() && o.from.empty());
   if (!has_units && !(is_toml && o.to_radians))
     throw InputError("cli.bad-units", {}, "the units are not given", "write --units mm-N-tonne:m-kg-s");
@@ -159,7 +160,7 @@ int run_convert(const ConvertOptions& o) {
   }
   if (is_toml)
     convert_toml(o, change, names, console);
-  else if (is_hdf5(o.file) || is_flat(o.file))
+  else if (is_hdf5(o.file) || analysis::is_flat(o.file))
     convert_body(o, change, names, console);
   else
     convert_deck(o, change, names, console);

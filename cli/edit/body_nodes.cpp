@@ -3,8 +3,8 @@
 #include <filesystem>
 #include <regex>
 
+#include "analysis/common/body_files.hpp"
 #include "base/diagnostic.hpp"
-#include "cli/common/body_files.hpp"
 #include "formats/toml/system_editor.hpp"
 
 namespace bough::cli {
@@ -22,7 +22,8 @@ std::vector<std::string> list_body_nodes(const std::string& text, const std::str
     file = file.substr(1, file.size() - 2);
     try {
       Diagnostics quiet;
-      const auto flexible = read_body((std::filesystem::path(system_file).parent_path() / file).string(), quiet);
+      const auto flexible =
+          analysis::read_body((std::filesystem::path(system_file).parent_path() / file).string(), quiet);
       for (const int node : flexible.node_id) ids.push_back(std::to_string(node));
     } catch (const Failure&) {  // not reduced yet, or damaged: `check` says so
       if (ids.size() == 1) return {};

@@ -6,6 +6,7 @@
 #include <iterator>
 #include <memory>
 
+#include "analysis/common/inputs.hpp"
 #include "base/file_roles.hpp"
 #include "cli/common/console.hpp"
 #include "cli/common/options.hpp"
@@ -32,7 +33,7 @@ std::vector<Diagnostic> place(const Failure& failure, int line) {
 }
 
 EditText read_edit_text(const std::string& file) {
-  if (!has_suffix(file, ".toml"))
+  if (!analysis::has_suffix(file, ".toml"))
     throw InputError("cli.wrong-file", {file}, "edit takes body and system files in TOML", "name a .toml file");
   std::error_code failed;
   if (!fs::exists(file, failed)) {
@@ -40,9 +41,9 @@ EditText read_edit_text(const std::string& file) {
     return {file, "", false};
   }
   FileRoles::allow_both(file);
-  demand_file(file);
+  analysis::demand_file(file);
   const auto kind = toml_files::detect_kind(file);
-  if (kind != "body") demand_kind(file, kind, "system");
+  if (kind != "body") analysis::demand_kind(file, kind, "system");
   std::ifstream in(file, std::ios::binary);
   return {file, std::string(std::istreambuf_iterator<char>(in), {}), kind == "body"};
 }

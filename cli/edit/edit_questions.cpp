@@ -1,8 +1,8 @@
 /// Questions of `add` at a terminal.
 #include <algorithm>
 
+#include "analysis/common/system_files.hpp"
 #include "base/diagnostic.hpp"
-#include "cli/common/system_files.hpp"
 #include "cli/edit/command_words.hpp"
 #include "cli/edit/edit_session.hpp"
 #include "formats/toml/key_editor.hpp"
@@ -24,9 +24,9 @@ std::vector<Diagnostic> EditSession::list_errors(const std::string& text) const 
   try {
     toml_files::check_text(text, text_.get_file(), diagnostics);
     if (diagnostics.num_errors() == 0 && !text_.is_body_file()) {
-      LoadOptions options;
+      analysis::LoadOptions options;
       options.text = text;
-      load_system(text_.get_file(), diagnostics, options);
+      analysis::load_system(text_.get_file(), diagnostics, options);
     }
   } catch (const Failure& failure) {
     return failure.items();

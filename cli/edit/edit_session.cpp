@@ -6,11 +6,11 @@
 #include <fstream>
 #include <iterator>
 
+#include "analysis/common/system_files.hpp"
 #include "base/diagnostic.hpp"
 #include "base/file_roles.hpp"
 #include "cli/common/old_commands.hpp"
 #include "cli/common/options.hpp"
-#include "cli/common/system_files.hpp"
 #include "cli/common/text_file.hpp"
 #include "cli/edit/command_words.hpp"
 #include "cli/edit/edit_commands.hpp"
@@ -269,9 +269,9 @@ void EditSession::check() const {
     console_.print("the keys are sound; 'save' and 'reduce' try the deck\n");
     return;
   }
-  LoadOptions options;
+  analysis::LoadOptions options;
   options.text = text_.get_text();
-  const auto loaded = load_system(text_.get_file(), diagnostics, options);
+  const auto loaded = analysis::load_system(text_.get_file(), diagnostics, options);
   diagnostics.throw_if_errors();
   console_.print(diagnostics);
   console_.print("sound: " + count(loaded.spec.bodies.size(), "body") + ", " +

@@ -5,12 +5,13 @@
 #include <sstream>
 #include <utility>
 
-#include "cli/common/body_files.hpp"
-#include "cli/common/channels.hpp"
+#include "analysis/common/body_files.hpp"
+#include "analysis/common/channels.hpp"
+#include "analysis/common/inputs.hpp"
+#include "analysis/common/system_files.hpp"
 #include "cli/common/console.hpp"
 #include "cli/common/event_list.hpp"
 #include "cli/common/options.hpp"
-#include "cli/common/system_files.hpp"
 #include "cli/common/text_file.hpp"
 #include "cli/common/vtu_file.hpp"
 #include "cli/export/export_bodies.hpp"
@@ -19,7 +20,7 @@
 #include "cli/export/export_matrices.hpp"
 #include "cli/export/moving_system.hpp"
 #include "cli/linearize/linear_model_files.hpp"
-#include "cli/linearize/sweep.hpp"
+#include "cli/linearize/sweep_tables.hpp"
 #include "cli/response/response_csv.hpp"
 #include "formats/export/response_text.hpp"
 #include "formats/export/uff.hpp"
@@ -58,14 +59,14 @@ std::vector<exports::CsvColumn> read_columns(const ExportOptions& o) {
   if (o.channels.empty()) {
     for (const auto& [path, values] : results.channels) {
       if (path == "/time") continue;
-      for (auto& column : choose_columns(results, o.file, path)) columns.push_back(std::move(column));
+      for (auto& column : analysis::choose_columns(results, o.file, path)) columns.push_back(std::move(column));
     }
   }
   for (const auto& choice : o.channels) {
-    for (auto& column : choose_columns(results, o.file, choice)) columns.push_back(std::move(column));
+    for (auto& column : analysis::choose_columns(results, o.file, choice)) columns.push_back(std::move(column));
   }
-  columns.front().unit = get_unit(results, "/time");
-  if (!has_unit_labels(results))
+  columns.front().unit = analysis::get_unit(results, "/time");
+  if (!analysis::has_unit_labels(results))
     for (auto& column : columns) column.unit.clear();
   return columns;
 }
@@ -73,7 +74,7 @@ std::vector<exports::CsvColumn> read_columns(const ExportOptions& o) {
 std::string make_csv(const ExportOptions& o, Diagnostics& diagnostics) {
   std::ostringstream text;
   if (!o.channels.empty()) {
-    if (const auto own = read_file_format(o.file); has_shapes(own)) {
+    if (const auto own = analysis::read_file_format(o.file); has_shapes(own)) {
       if (o.channels != std::vector<std::string>{"modes"})
         throw InputError("cli.unknown-channel", {o.file},
                          "a file of modes or a body has no channel '" + o.channels[0] + "'",
@@ -84,7 +85,7 @@ std::string make_csv(const ExportOptions& o, Diagnostics& diagnostics) {
   }
   if (o.channels == std::vector<std::string>{"events"} || o.channels == std::vector<std::string>{"/events"})
     return make_events_csv(hdf5::read_results(o.file).events);
-  const auto format = o.channels.empty() ? read_file_format(o.file) : "";
+  const auto format = o.channels.empty() ? analysis::read_file_format(o.file) : "";
   if (format == "bough-linear") return make_linear_csv(hdf5::read_linear_model(o.file));
   if (format == "bough-sweep") return make_sweep_csv(hdf5::read_sweep(o.file));
   if (format == "bough-response") return make_response_csv(hdf5::read_model_response(o.file).response);
@@ -96,9 +97,9 @@ std::string make_csv(const ExportOptions& o, Diagnostics& diagnostics) {
 std::string make_universal(const ExportOptions& o, Diagnostics& diagnostics) {
   if (o.is_moving)
     return make_moving_uff(read_moving_system(o.file, o.moving, diagnostics), o.moving.scale, o.file, diagnostics);
-  const auto format = read_file_format(o.file);
+  const auto format = analysis::read_file_format(o.file);
   if (format == "bough-modes") return exports::make_uff(hdf5::read_modes(o.file));
-  if (format == "bough-flexbody") return exports::make_uff(read_body(o.file, diagnostics));
+  if (format == "bough-flexbody") return exports::make_uff(analysis::read_body(o.file, diagnostics));
   if (format == "bough-results") return exports::make_uff(read_columns(o));
   if (is_response(format)) return exports::make_uff(hdf5::read_response(o.file));
   refuse_export(o.file, "uff", "a flexible body, or what bough modes, run, frequency or transient wrote");
@@ -106,20 +107,21 @@ std::string make_universal(const ExportOptions& o, Diagnostics& diagnostics) {
 
 /// The mode shapes of a modes file or a flexible body.
 std::string make_shapes(const ExportOptions& o, Diagnostics& diagnostics) {
-  const std::string format = read_file_format(o.file);
+  const std::string format = analysis::read_file_format(o.file);
   const auto encoding = o.ascii ? exports::VtuEncoding::Ascii : exports::VtuEncoding::Base64;
   if (format == "bough-modes")
     return make_vtu_text(exports::make_picture(hdf5::read_modes(o.file)), encoding, o.file, diagnostics);
   if (format == "bough-complex-modes")
     return make_vtu_text(exports::make_picture(hdf5::read_complex_modes(o.file)), encoding, o.file, diagnostics);
   if (format == "bough-flexbody")
-    return make_vtu_text(exports::make_picture(read_body(o.file, diagnostics)), encoding, o.file, diagnostics);
+    return make_vtu_text(exports::make_picture(analysis::read_body(o.file, diagnostics)), encoding, o.file,
+                         diagnostics);
   throw InputError("cli.no-shapes", {o.file}, "the file holds no mode shapes, found format \"" + format + "\"",
                    "give a file that bough modes or bough reduce wrote");
 }
 
 std::string make_bdf(const ExportOptions& o, Diagnostics& diagnostics) {
-  demand_deck(o.file);
+  analysis::demand_deck(o.file);
   const auto deck = nastran::read_deck(o.file, {o.ignore_cards}, diagnostics);
   diagnostics.throw_if_errors();
   nastran::WriteOptions options;
@@ -147,7 +149,7 @@ int export_system(const ExportOptions& o, const Console& console, Diagnostics& d
     console.print_error("cli.usage", "--to fmu writes no text: give the .fmu with -o", "see bough export --help");
     return kUsageError;
   }
-  demand_kind(o.file, toml_files::detect_kind(o.file), "system");
+  analysis::demand_kind(o.file, toml_files::detect_kind(o.file), "system");
   auto options = o.fmu;
   options.outputs = o.channels;
   const auto summary = export_fmu(o.file, o.output, options, diagnostics);
@@ -161,7 +163,7 @@ bool take_outputs(ExportOptions& o) {
   if (o.output.find('\n') == std::string::npos) return true;
   std::istringstream lines(std::exchange(o.output, {}));
   for (std::string line; std::getline(lines, line);) {
-    if (o.format == "fmu" && !has_suffix(line, ".fmu"))
+    if (o.format == "fmu" && !analysis::has_suffix(line, ".fmu"))
       o.channels.push_back(line);
     else if (std::exchange(o.output, line) != "")
       return false;
@@ -176,8 +178,8 @@ int run_export(ExportOptions o) {
     console.print_error("cli.usage", "-o is given twice", "name one file to write");
     return kUsageError;
   }
-  demand_body_file(o.file);
-  if (!o.output.empty()) check_output(o, o.output, {get_body_path(o.file)});
+  analysis::demand_body_file(o.file);
+  if (!o.output.empty()) check_output(o, o.output, {analysis::get_body_path(o.file)});
   Diagnostics diagnostics;
   if (o.format == "fmu") return export_system(o, console, diagnostics);
   if (o.format == "extseout") {
@@ -191,7 +193,7 @@ int run_export(ExportOptions o) {
     console.print(summary);
     return kSuccess;
   }
-  if (o.format != "bdf") warn_incomplete(o.file, diagnostics);
+  if (o.format != "bdf") analysis::warn_incomplete(o.file, diagnostics);
   if (o.format == "mat") {
     if (o.output.empty()) {
       console.print_error("cli.usage", "--to mat writes no text: give the file with -o", "see bough export --help");

@@ -4,7 +4,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "cli/common/body_files.hpp"
+#include "analysis/common/body_files.hpp"
 #include "cli/export/export_matrices.hpp"
 #include "formats/flat/flex_body.hpp"
 #include "formats/hdf5/complex_modes_file.hpp"
@@ -29,8 +29,9 @@ bool is_body_format(const std::string& format) { return format == "sid" || forma
 
 std::string make_body_text(const std::string& file, const std::string& format, const BodyExportOptions& o,
                            Diagnostics& diagnostics) {
-  if (read_file_format(file) != "bough-flexbody") refuse_export(file, format, "a flexible body, from bough reduce");
-  const auto body = read_moving_body(file, diagnostics);
+  if (analysis::read_file_format(file) != "bough-flexbody")
+    refuse_export(file, format, "a flexible body, from bough reduce");
+  const auto body = analysis::read_moving_body(file, diagnostics);
   if (format == "flat") return flat::format_flex_body(body);
   if (format == "mbdyn") return mbdyn::make_fem(body, {file}, diagnostics);
   sid::Layout layout;
@@ -78,7 +79,7 @@ std::vector<exports::CsvColumn> read_shape_columns(const std::string& file, cons
     const auto modes = hdf5::read_modes(file);
     return make_real(modes.node_id, modes.node_xyz, modes.phi);
   }
-  const auto body = read_body(file, diagnostics);
+  const auto body = analysis::read_body(file, diagnostics);
   return make_real(body.node_id, body.node_xyz, body.phi);
 }
 
@@ -114,7 +115,7 @@ std::vector<exports::CsvColumn> read_mode_columns(const std::string& file, const
               {"load_factor", modes.load_factor}};
     make(modes.frequency_hz, modes.eigenvalue, modes.modal_mass, modes.effective_mass);
   } else {
-    const auto body = read_body(file, diagnostics);
+    const auto body = analysis::read_body(file, diagnostics);
     make(body.frequency_hz, body.eigenvalue, body.modal_mass.diagonal(), body.effective_mass);
   }
   return columns;

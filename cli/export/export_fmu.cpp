@@ -14,10 +14,10 @@
 #include <string_view>
 #include <vector>
 
+#include "analysis/common/system_files.hpp"
 #include "base/version.hpp"
 #include "cli/common/console.hpp"
 #include "cli/common/options.hpp"
-#include "cli/common/system_files.hpp"
 #include "cli/common/text_file.hpp"
 #include "cli/export/fmu_units.hpp"
 #include "embed/bough.h"
@@ -75,7 +75,7 @@ std::string format_matrix(const Eigen::MatrixXd& matrix) {
 /// Rewrites a system so that everything it needs is in one folder.
 class Packing {
  public:
-  explicit Packing(const LoadedSystem& loaded) : loaded_(loaded), text_(loaded.spec.text) {}
+  explicit Packing(const analysis::LoadedSystem& loaded) : loaded_(loaded), text_(loaded.spec.text) {}
 
   /// \return the resources in the order of their names, without the manifest.
   std::vector<fmi::Resource> pack() {
@@ -167,7 +167,7 @@ class Packing {
     set(item, "file", toml_files::quote_text(name));
   }
 
-  const LoadedSystem& loaded_;
+  const analysis::LoadedSystem& loaded_;
   std::string text_;
   std::map<std::string, std::string> names_;  ///< by source
   std::map<std::string, std::string> files_;  ///< by name
@@ -331,7 +331,7 @@ void set_units(const embed::Model& model, const std::string& text, fmu::ModelDes
 std::string export_fmu(const std::string& file, const std::string& output, const FmuOptions& options,
                        Diagnostics& diagnostics) {
   const auto binary = find_binary();
-  const embed::Model model(load_system(file, diagnostics, "", options.set));
+  const embed::Model model(analysis::load_system(file, diagnostics, "", options.set));
   const auto& spec = model.loaded().spec;
   const auto resources = Packing(model.loaded()).pack();
   const auto manifest = fmi::make_manifest(resources, std::string(get_version()));

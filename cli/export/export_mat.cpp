@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cctype>
 
-#include "cli/common/body_files.hpp"
+#include "analysis/common/body_files.hpp"
 #include "cli/linearize/linear_model_files.hpp"
 #include "formats/hdf5/files.hpp"
 #include "formats/hdf5/linear_file.hpp"
@@ -186,10 +186,10 @@ void put(MatFields& fields, const std::string& path, MatValue value) {
 }  // namespace
 
 void export_mat(const std::string& file, const std::string& output, Diagnostics& diagnostics) {
-  const auto format = read_file_format(file);
+  const auto format = analysis::read_file_format(file);
   MatFields variables;
   if (format == "bough-flexbody") {
-    const auto body = read_body(file, diagnostics);
+    const auto body = analysis::read_body(file, diagnostics);
     variables = make_variables(body);
     if (const auto solid = find_solid(body, file, diagnostics); solid) {
       variables.emplace_back("P", solid->P);

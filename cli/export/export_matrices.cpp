@@ -2,21 +2,14 @@
 
 #include <algorithm>
 
-#include "cli/common/body_files.hpp"
+#include "analysis/common/body_files.hpp"
 #include "formats/hdf5/files.hpp"
 
 namespace bough::cli {
 
-std::string read_file_format(const std::string& file) {
-  if (is_flat(file) || is_flx(file)) return "bough-flexbody";
-  const auto attributes = hdf5::read_info(file).attributes;
-  const auto found = attributes.find("format");
-  return found == attributes.end() ? std::string{} : found->second;
-}
-
 void refuse_export(const std::string& file, const std::string& format, const std::string& expected) {
   throw InputError("cli.no-export", {file},
-                   "a file of format \"" + read_file_format(file) + "\" has no export to " + format,
+                   "a file of format \"" + analysis::read_file_format(file) + "\" has no export to " + format,
                    "give " + expected);
 }
 

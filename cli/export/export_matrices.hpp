@@ -16,9 +16,6 @@ void export_mat(const std::string& file, const std::string& output, Diagnostics&
 /// The text of the OUTPUT4 file of a flexible body, modes or matrices file. Throws "cli.no-export".
 std::string make_op4(const std::string& file, Diagnostics& diagnostics);
 
-/// The root attribute "format" of an HDF5 file; empty when there is none.
-std::string read_file_format(const std::string& file);
-
 /// "cli.no-export": the file is of a kind that has no export to `format`.
 [[noreturn]] void refuse_export(const std::string& file, const std::string& format, const std::string& expected);
 

@@ -5,8 +5,8 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 
-#include "cli/common/body_files.hpp"
-#include "cli/common/run_bodies.hpp"
+#include "analysis/common/body_files.hpp"
+#include "analysis/common/run_bodies.hpp"
 #include "formats/toml/specs.hpp"
 
 namespace bough::cli {
@@ -82,17 +82,17 @@ MovingSystem read_moving_system(const std::string& file, const MovingOptions& o,
     }
     known += (known.empty() ? "" : ", ") + body.name;
     if (body.file.empty()) {
-      moving.drawing = report::make_box(body.mass, body.cg, body.inertia, list_rigid_points(spec, body));
+      moving.drawing = report::make_box(body.mass, body.cg, body.inertia, analysis::list_rigid_points(spec, body));
     } else {
       std::string why;
-      const auto written = get_body_path(body.file);
-      const auto place = find_body_file(written, file, o.bodies, inputs.source, why);
+      const auto written = analysis::get_body_path(body.file);
+      const auto place = analysis::find_body_file(written, file, o.bodies, inputs.source, why);
       if (place.empty()) {
         diagnostics.warning("export.no-body", {file}, "body " + body.name + " is not drawn: " + why,
                             "name its file with --body");
         continue;
       }
-      moving.flex = read_body(place + body.file.substr(written.size()), unused);
+      moving.flex = analysis::read_body(place + body.file.substr(written.size()), unused);
       moving.drawing = report::make_drawing(*moving.flex, true);
     }
     system.bodies.push_back(std::move(moving));

@@ -7,7 +7,9 @@
 #include <memory>
 #include <set>
 
-#include "cli/common/body_files.hpp"
+#include "analysis/common/body_files.hpp"
+#include "analysis/common/failures.hpp"
+#include "analysis/common/inputs.hpp"
 #include "cli/common/console.hpp"
 #include "cli/common/options.hpp"
 #include "cli/common/text_file.hpp"
@@ -36,7 +38,7 @@ void print_written(const FlxVerbOptions& o, const std::string& output, const Con
 }
 
 int run_read(const FlxVerbOptions& o, const Console& console) {
-  demand_body_file(o.read);
+  analysis::demand_body_file(o.read);
   const auto name = flx::parse_flx_name(o.read).value_or(flx::FlxName{o.read, 0});
   std::vector<flx::FlxFile> files;
   if (name.body_id > 0)
@@ -87,7 +89,7 @@ int run_flx(const FlxVerbOptions& o) {
   }
   const auto ids = choose_ids(o);
   auto inputs = o.bodies;
-  for (const auto& name : o.bodies) demand_file(name);
+  for (const auto& name : o.bodies) analysis::demand_file(name);
   const std::string output =
       o.output.empty() ? std::filesystem::path(o.bodies.front()).stem().string() + ".FLX" : o.output;
   inputs.push_back(o.layout);
@@ -103,9 +105,10 @@ int run_flx(const FlxVerbOptions& o) {
   std::string text;
   for (std::size_t b = 0; b < ids.size(); ++b) {
     options.body_id = ids[b];
-    with_file(o.bodies[b], [&] {
+    analysis::with_file(o.bodies[b], [&] {
       files.push_back(flx::make_flx(
-          is_flat(o.bodies[b]) ? flat::read_flex_body(o.bodies[b]) : hdf5::read_flex_body(o.bodies[b]), options));
+          analysis::is_flat(o.bodies[b]) ? flat::read_flex_body(o.bodies[b]) : hdf5::read_flex_body(o.bodies[b]),
+          options));
       return kSuccess;
     });
     text += flx::write_flx(files.back(), layout);

@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include "analysis/common/inputs.hpp"
 #include "formats/records/mode_kind.hpp"
 
 namespace bough::cli {
@@ -42,7 +43,7 @@ void add_flx_options(CLI::App& verb, FlxOptions& options) {
 
 flx::Layout choose_layout(const FlxOptions& options, int digits) {
   if (options.layout.empty()) return flx::make_native_layout(digits);
-  demand_file(options.layout);
+  analysis::demand_file(options.layout);
   return flx::read_layout(options.layout);
 }
 

@@ -2,7 +2,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "cli/common/body_files.hpp"
+#include "analysis/common/body_files.hpp"
 #include "cli/common/console.hpp"
 #include "cli/common/event_list.hpp"
 #include "cli/common/options.hpp"
@@ -70,11 +70,11 @@ hdf5::FileInfo read_flat_info(const std::string& path) {
 
 int run_info(const InfoOptions& o) {
   const Console console(o.quiet, o.verbosity);
-  demand_body_file(o.file);
-  if (!o.output.empty()) check_output(o, o.output, {get_body_path(o.file)});
-  const auto info = is_flat(o.file)  ? read_flat_info(o.file)
-                    : is_flx(o.file) ? read_flx_info(o.file)
-                                     : hdf5::read_info(o.file);
+  analysis::demand_body_file(o.file);
+  if (!o.output.empty()) check_output(o, o.output, {analysis::get_body_path(o.file)});
+  const auto info = analysis::is_flat(o.file)  ? read_flat_info(o.file)
+                    : analysis::is_flx(o.file) ? read_flx_info(o.file)
+                                               : hdf5::read_info(o.file);
   const auto format = info.attributes.find("format");
   std::vector<records::EventRecord> events;
   if (format != info.attributes.end() && format->second == "bough-results") events = hdf5::read_events(o.file);

@@ -6,10 +6,11 @@
 #include <memory>
 #include <sstream>
 
+#include "analysis/common/inputs.hpp"
+#include "analysis/init/init_deck.hpp"
 #include "cli/common/console.hpp"
 #include "cli/common/options.hpp"
 #include "cli/common/text_file.hpp"
-#include "cli/init/init_deck.hpp"
 #include "cli/init/templates.hpp"
 #include "formats/nastran/reader.hpp"
 
@@ -27,7 +28,7 @@ struct InitOptions {
 
 struct Files {
   std::string folder, advice;
-  std::vector<StartFile> files;
+  std::vector<analysis::StartFile> files;
 };
 
 const Template& find_template(const std::string& name) {
@@ -77,7 +78,7 @@ std::string make_uri(const std::string& path) {
 }
 
 /// Tells editors by which schema the file is checked and completed.
-void add_schema_line(StartFile& file) {
+void add_schema_line(analysis::StartFile& file) {
   if (!file.name.ends_with(".toml")) return;
   const auto folder = find_schemas();
   if (folder.empty()) return;
@@ -97,14 +98,14 @@ Files make_files(const InitOptions& o, Diagnostics& diagnostics) {
     for (const auto& file : chosen.files) made.files.push_back({file.name, file.text});
     return made;
   }
-  demand_deck(o.name);
+  analysis::demand_deck(o.name);
   const auto deck = nastran::read_deck(o.name, {}, diagnostics);
   if (deck.grids.empty())
     diagnostics.error("fe.no-grids", {o.name}, "the deck has no GRID", "give the bulk data of a model");
   diagnostics.throw_if_errors();
   made.folder = ".";
   const fs::path folder = fs::absolute(o.output.empty() ? "." : o.output);
-  made.files = make_start_files(
+  made.files = analysis::make_start_files(
       deck, {fs::absolute(o.name).lexically_relative(folder).string(), fs::path(o.name).stem().string(), o.hinge});
   made.advice = "reduce the first, then run the second\n";
   return made;

@@ -4,6 +4,8 @@
 #include <filesystem>
 #include <memory>
 
+#include "analysis/common/failures.hpp"
+#include "analysis/common/inputs.hpp"
 #include "cli/common/console.hpp"
 #include "cli/common/options.hpp"
 #include "cli/common/text_file.hpp"
@@ -79,8 +81,8 @@ void write_inertial_loads(const IntegralsOptions& o, const flx::ModelInput& inpu
 int run_integrals(const IntegralsOptions& o) {
   const Console console(o.quiet, o.verbosity);
   if (!console.is_root()) return kSuccess;
-  demand_file(o.model);
-  demand_file(o.matrices);
+  analysis::demand_file(o.model);
+  analysis::demand_file(o.matrices);
   const std::string output = o.output.empty() ? std::filesystem::path(o.model).stem().string() + ".FLX" : o.output;
   check_outputs(o, {output, o.fi}, {o.model, o.matrices, o.layout});
   const auto layout = choose_layout(o, o.digits);
@@ -129,7 +131,8 @@ void add_integrals(CLI::App& app, Action& action) {
   verb->footer(
       "Example:\n  bough integrals test.inp test.mat -o test.FLX\n"
       "  bough integrals test.inp test.mat --fi test.fi --digits 17 -o test.FLX");
-  verb->callback([&action, o] { action = [o] { return with_file(o->matrices, [&] { return run_integrals(*o); }); }; });
+  verb->callback(
+      [&action, o] { action = [o] { return analysis::with_file(o->matrices, [&] { return run_integrals(*o); }); }; });
 }
 
 }  // namespace bough::cli

@@ -20,10 +20,6 @@ std::string format_linear_model(const records::LinearModel& model);
 std::string format_hankel(const records::Hankel& hankel);
 /// [A B; C D] as one table: a row for each state's rate, then for each output; the first column names it.
 std::string make_linear_csv(const records::LinearModel& model);
-/// The model with these inputs and outputs only, by name ("tip" is all its components); empty lists: all. InputError
-/// "linear.unknown-input", "linear.unknown-output".
-records::LinearModel choose_channels(records::LinearModel model, const std::vector<std::string>& inputs,
-                                     const std::vector<std::string>& outputs, const std::string& file);
 nlohmann::json make_json(const records::LinearModel& model);
 
 }  // namespace bough::cli

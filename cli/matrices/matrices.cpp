@@ -3,20 +3,17 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <sstream>
 
-#include "cli/common/console.hpp"
+#include "analysis/common/failures.hpp"
+#include "analysis/common/inputs.hpp"
+#include "analysis/common/ranks.hpp"
+#include "analysis/matrices/matrices.hpp"
+#include "cli/common/console_events.hpp"
 #include "cli/common/model_options.hpp"
 #include "cli/common/options.hpp"
-#include "cli/common/ranks.hpp"
-#include "cli/common/subcase_failures.hpp"
 #include "cli/common/text_file.hpp"
-#include "fe/loads/second_order.hpp"
-#include "fe/loads/wide_links.hpp"
-#include "fe/matrices/system.hpp"
-#include "fe/statics/build_model.hpp"
-#include "fe/statics/static_case.hpp"
+#include "fe/linear/petsc.hpp"
 #include "formats/hdf5/files.hpp"
 #include "formats/matrices/matrix_market.hpp"
 #include "formats/matrices/op4.hpp"
@@ -26,87 +23,8 @@ namespace bough::cli {
 namespace {
 
 struct MatricesOptions : CommonOptions {
-  std::string deck, format = "h5";
-  DeckModelOptions model;
-  std::vector<int> loads;
-  bool no_kg = false;
-};
-
-/// A load set and the subcase whose constraints hold the structure under it.
-struct LoadCase {
-  int load = 0, temperature = 0, subcase = 0;
-
-  std::string get_name() const { return load > 0 ? fmt::format("LOAD_{}", load) : fmt::format("TEMP_{}", temperature); }
-};
-
-/// --load, or every LOAD of the case control (of one subcase with --subcase), each set once.
-std::vector<LoadCase> choose_load_cases(const records::Deck& deck, const MatricesOptions& options) {
-  std::vector<LoadCase> cases;
-  if (options.no_kg) return cases;
-  const auto add = [&](const LoadCase& one) {
-    const auto same = [&](const LoadCase& c) { return c.get_name() == one.get_name(); };
-    if ((one.load > 0 || one.temperature > 0) && std::none_of(cases.begin(), cases.end(), same)) cases.push_back(one);
-  };
-  for (int load : options.loads) {
-    LoadCase one{load, 0, options.model.subcase};
-    for (const auto& s : deck.subcases)
-      if (one.subcase == 0 && s.load == load) one = {load, s.temperature, s.id};
-    add(one);
-  }
-  if (!options.loads.empty()) return cases;
-  for (const auto& s : deck.subcases)
-    if (options.model.subcase == 0 || s.id == options.model.subcase) add({s.load, s.temperature, s.id});
-  return cases;
-}
-
-/// K_G of one load case after the other; model and factor stay while the subcase does.
-class GeometricStiffness {
- public:
-  /// `model`: of the subcase that --subcase names, else the first.
-  GeometricStiffness(const records::Deck& deck, const MatricesOptions& options, const fe::Model& model)
-      : deck_(deck), options_(options), model_(&model) {}
-
-  fe::SymmetricMatrix calc(const LoadCase& load_case, Diagnostics& diagnostics) {
-    if (load_case.subcase != 0 && load_case.subcase != model_->subcase().id) change_to(load_case.subcase, diagnostics);
-    records::Subcase subcase;
-    subcase.load = load_case.load;
-    subcase.temperature = load_case.temperature;
-    auto load = fe::calc_static_load(*model_, deck_, subcase, diagnostics);
-    fe::report_wide_links(deck_, diagnostics);
-    diagnostics.throw_if_errors();
-    if (!solver_) {
-      const auto relief = fe::read_inertia_relief(deck_, diagnostics);
-      auto held = fe::choose_suport(*model_, deck_, relief, diagnostics);
-      diagnostics.throw_if_errors();
-      solver_.emplace(*model_, fe::get_stiffness(*model_), held);
-      suport_ =
-          fe::calc_suport(*model_, *solver_, std::move(held), relief, fe::locate_relief(*model_, deck_), diagnostics);
-    }
-    fe::add_relief(*model_, suport_, load);
-    return fe::assemble_geometric_stiffness(*model_, fe::DofSet::Global, load,
-                                            fe::solve_static_case(*model_, *solver_, load, suport_).displacement,
-                                            &load.initial);
-  }
-
- private:
-  void change_to(int subcase, Diagnostics& diagnostics) {
-    auto model_options = make_model_options(options_.model);
-    model_options.subcase = subcase;
-    model_options.uses_enforced = true;
-    with_prior_messages(diagnostics,
-                        [&] { model_options.prestress = calc_prestress(deck_, model_options, diagnostics); });
-    solver_.reset();
-    Diagnostics own;  // what the other model said too is not said again
-    model_ = &own_.emplace(fe::build_model(deck_, model_options, own));
-    add_new(own, diagnostics);
-  }
-
-  const records::Deck& deck_;
-  const MatricesOptions& options_;
-  const fe::Model* model_;
-  std::optional<fe::Model> own_;
-  std::optional<fe::StaticSolver> solver_;
-  fe::Suport suport_;
+  analysis::MatricesRequest request;
+  std::string format = "h5";
 };
 
 /// "boom.mtx" for K gives "boom.K.mtx".
@@ -163,36 +81,21 @@ std::vector<std::string> write(const records::MatricesResult& result, const Matr
 
 int run_matrices(const MatricesOptions& options) {
   Console console(options.quiet, options.verbosity);
-  console.set_subject(options.deck);
-  do_once([&] {
-    demand_deck(options.deck);
-    check_output(options, options.output, {options.deck});
-    if (options.format == "op4") check_outputs(options, {name_dof_file(options.output)}, {options.deck});
+  console.set_subject(options.request.deck);
+  analysis::do_once([&] {
+    analysis::demand_deck(options.request.deck);
+    check_output(options, options.output, {options.request.deck});
+    if (options.format == "op4") check_outputs(options, {name_dof_file(options.output)}, {options.request.deck});
     if (options.format == "mtx")
       check_outputs(options,
                     {insert_name(options.output, "K"), insert_name(options.output, "M"), name_dof_file(options.output)},
-                    {options.deck});
+                    {options.request.deck});
   });
   console.set_rank(fe::initialize_petsc().rank);
 
-  Diagnostics diagnostics;
-  const auto deck = read_deck_or_throw(options.deck, make_model_options(options.model), diagnostics);
-  auto model_options = make_model_options(options.model);
-  model_options.uses_enforced = true;
-  model_options.prestress = calc_prestress(deck, model_options, diagnostics);
-  const auto model = fe::build_model(deck, model_options, diagnostics);
-  diagnostics.throw_if_errors();
-  records::MatricesResult result;
-  result.source = calc_sources(deck.files);
-  result.dof_map = model.calc_dof_map();
-  result.mesh = model.calc_mesh();
-  result.K = fe::gather_sparse(fe::assemble_stiffness(model, fe::DofSet::Global));
-  result.M = fe::gather_sparse(fe::assemble_mass(model, fe::DofSet::Global, model.mass_kind()));
-  if (fe::has_damping(model)) result.B = fe::gather_sparse(fe::assemble_damping(model, fe::DofSet::Global));
-  GeometricStiffness geometric(deck, options, model);
-  for (const auto& load_case : choose_load_cases(deck, options))
-    result.K_G.emplace_back(load_case.get_name(), fe::gather_sparse(geometric.calc(load_case, diagnostics)));
-  console.print(diagnostics);
+  ConsoleEvents events(console);
+  const auto result = analysis::assemble_matrices(options.request, events);
+  console.print(events.get_messages());
   if (!console.is_root()) return kSuccess;
 
   const auto files = write(result, options);
@@ -221,21 +124,23 @@ void add_matrices(CLI::App& app, Action& action) {
   auto o = std::make_shared<MatricesOptions>();
   auto* verb =
       add_verb(app, "matrices", "Stiffness, mass, damping and geometric stiffness of a deck before constraints");
-  verb->add_option("deck", o->deck, "Nastran deck")->required();
+  verb->add_option("deck", o->request.deck, "Nastran deck")->required();
   verb->add_option("--to", o->format, "h5 (HDF5), mtx (Matrix Market) or op4 (Nastran OUTPUT4, formatted)")
       ->check(CLI::IsMember({"h5", "mtx", "op4"}))
       ->capture_default_str();
-  auto* loads = verb->add_option("--load", o->loads,
+  auto* loads = verb->add_option("--load", o->request.loads,
                                  "Geometric stiffness of this load set (default: every LOAD of the "
                                  "case control); may be repeated")
                     ->allow_extra_args(false);
-  verb->add_flag("--no-kg", o->no_kg, "No geometric stiffness")->excludes(loads);
-  add_model_options(*verb, o->model);
+  verb->add_flag("--no-kg", o->request.no_kg, "No geometric stiffness")->excludes(loads);
+  add_model_options(*verb, o->request.model);
   add_common_options(*verb, *o, kOutput | kJson, "File to write; mtx puts the name of each matrix before its ending");
   verb->get_option("--output")->required();
   verb->footer(
       "Example:\n  bough matrices column.bdf -o column.h5\n  bough matrices column.bdf --to mtx -o column.mtx");
-  verb->callback([&action, o] { action = [o] { return with_file(o->deck, [&] { return run_matrices(*o); }); }; });
+  verb->callback([&action, o] {
+    action = [o] { return analysis::with_file(o->request.deck, [&] { return run_matrices(*o); }); };
+  });
 }
 
 }  // namespace bough::cli

@@ -8,6 +8,9 @@
 #include <map>
 #include <numbers>
 
+#include "analysis/common/body_files.hpp"
+#include "analysis/common/inputs.hpp"
+#include "analysis/linearize/choose_channels.hpp"
 #include "cli/common/options.hpp"
 #include "cli/export/export_matrices.hpp"
 #include "cli/linearize/linear_model_files.hpp"
@@ -178,9 +181,9 @@ std::vector<Plot> make_linear_plots(const std::vector<std::string>& files, const
   if (kind == "locus") plots[0].x_label = "real part [1/T]", plots[0].y_label = "imaginary part [1/T]";
   std::vector<std::pair<std::string, records::LinearModel>> models;
   for (const auto& file : files) {
-    demand_file(file);
+    analysis::demand_file(file);
     const std::string prefix = files.size() > 1 ? std::filesystem::path(file).stem().string() + " " : "";
-    const auto format = read_file_format(file);
+    const auto format = analysis::read_file_format(file);
     const std::string expected = is_of_sweeps(kind) ? "bough-sweep" : "bough-linear";
     if (format != expected)
       throw InputError("cli.plot-kind", {file}, fmt::format("--kind {} draws no file of format \"{}\"", kind, format),
@@ -195,7 +198,7 @@ std::vector<Plot> make_linear_plots(const std::vector<std::string>& files, const
       models.emplace_back(files.size() > 1 ? std::filesystem::path(file).stem().string() : "", std::move(all));
       continue;
     }
-    const auto model = choose_channels(all, choice.inputs, choice.outputs, file);
+    const auto model = analysis::choose_channels(all, choice.inputs, choice.outputs, file);
     if (model.inputs.size() == 0 || model.outputs.size() == 0)
       throw InputError("linear.no-channels", {file}, "the model has no input or no output",
                        "name some with --inputs and --outputs of bough linearize");

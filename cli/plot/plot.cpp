@@ -7,6 +7,8 @@
 #include <memory>
 #include <sstream>
 
+#include "analysis/common/body_files.hpp"
+#include "analysis/common/inputs.hpp"
 #include "cli/common/console.hpp"
 #include "cli/common/converter.hpp"
 #include "cli/common/options.hpp"
@@ -43,7 +45,7 @@ struct PlotOptions : CommonOptions {
 
 /// Two numeric columns of a CSV file; lines that start with # or a letter are skipped.
 report::Curve read_points(const std::string& path) {
-  demand_file(path);
+  analysis::demand_file(path);
   std::ifstream in(path);
   std::vector<double> x, y;
   std::string line;
@@ -67,7 +69,9 @@ report::Curve read_points(const std::string& path) {
 
 /// The library of rsvg-convert draws the same picture as points or as pages.
 void write_picture(const std::string& path, const std::string& svg) {
-  const std::string format = has_suffix(path, ".png") ? "png" : has_suffix(path, ".pdf") ? "pdf" : "svg";
+  const std::string format = analysis::has_suffix(path, ".png")   ? "png"
+                             : analysis::has_suffix(path, ".pdf") ? "pdf"
+                                                                  : "svg";
   if (format == "svg") return write_text_file(path, svg);
   write_converted(path, svg,
                   {"rsvg-convert", "librsvg2-bin", "write .svg",
@@ -79,9 +83,9 @@ void write_picture(const std::string& path, const std::string& svg) {
 
 /// The file to write: as given, or `otherwise` with .svg.
 std::string choose_picture(const PlotOptions& o, std::string otherwise) {
-  if (const auto ending = fs::path(o.output).extension().string(); !ending.empty() && !has_suffix(o.output, ".svg") &&
-                                                                   !has_suffix(o.output, ".png") &&
-                                                                   !has_suffix(o.output, ".pdf"))
+  if (const auto ending = fs::path(o.output).extension().string();
+      !ending.empty() && !analysis::has_suffix(o.output, ".svg") && !analysis::has_suffix(o.output, ".png") &&
+      !analysis::has_suffix(o.output, ".pdf"))
     throw InputError("cli.picture-format", {o.output}, "no picture format " + ending, "choose .svg, .png or .pdf");
   if (!o.output.empty()) return o.output;
   for (char& c : otherwise)
@@ -219,7 +223,7 @@ int run_plot(const PlotOptions& o) {
                      "give --sensor NAME of results, or --kind bode of a linear model");
   if (is_deck_response(o.files)) {
     const auto& c = o.curves;
-    const bool is_over_time = read_file_format(o.files.front()) == "bough-transient";
+    const bool is_over_time = analysis::read_file_format(o.files.front()) == "bough-transient";
     demand_unused(o.files.front(), "a response of a deck", {{"--x", !c.x.empty()}, {"--difference", c.difference}});
     if (!is_over_time)
       demand_unused(o.files.front(), "curves over frequency", {{"--spectrum", c.spectrum}, {"--srs", !c.srs.empty()}});
@@ -228,8 +232,8 @@ int run_plot(const PlotOptions& o) {
     plots = shape_plots(std::move(plots), c, is_over_time, diagnostics);
     return draw_plots(o, std::move(plots), o.sensors.front(), diagnostics, console);
   }
-  demand_file(o.files.front());
-  const bool is_campaign = read_file_format(o.files.front()) == "bough-outcomes";
+  analysis::demand_file(o.files.front());
+  const bool is_campaign = analysis::read_file_format(o.files.front()) == "bough-outcomes";
   if (is_campaign)
     demand_unused(o.files.front(), "a campaign",
                   {{"--psd", o.curves.psd},

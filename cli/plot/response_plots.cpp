@@ -5,6 +5,8 @@
 #include <cmath>
 #include <filesystem>
 
+#include "analysis/common/body_files.hpp"
+#include "analysis/common/inputs.hpp"
 #include "base/diagnostic.hpp"
 #include "cli/common/options.hpp"
 #include "cli/export/export_matrices.hpp"
@@ -64,9 +66,9 @@ void cut_window(const std::string& file, const std::vector<double>& window, std:
 }  // namespace
 
 bool is_deck_response(const std::vector<std::string>& files) {
-  if (files.empty() || !has_suffix(files.front(), ".h5")) return false;
-  demand_file(files.front());
-  const auto format = read_file_format(files.front());
+  if (files.empty() || !analysis::has_suffix(files.front(), ".h5")) return false;
+  analysis::demand_file(files.front());
+  const auto format = analysis::read_file_format(files.front());
   return format == "bough-frequency" || format == "bough-transient";
 }
 
@@ -75,7 +77,7 @@ std::vector<report::Plot> make_response_plots(const std::vector<std::string>& fi
                                               bool has_decades) {
   std::vector<report::Plot> plots(1);
   for (const auto& file : files) {
-    demand_file(file);
+    analysis::demand_file(file);
     const auto response = hdf5::read_response(file);
     const bool is_over_time = response.is_over_time;
     plots.resize(is_over_time ? 1 : 2);
@@ -114,7 +116,7 @@ std::vector<report::Plot> make_density_plots(const std::vector<std::string>& fil
   plots[0].y_label = "spectral density [unit²/Hz]";
   plots[0].has_log_x = plots[0].has_log_y = true;
   for (const auto& file : files) {
-    demand_file(file);
+    analysis::demand_file(file);
     const auto response = hdf5::read_response(file);
     if (response.random.empty())
       throw InputError("cli.no-random", {file}, "--psd: the file has no random response",

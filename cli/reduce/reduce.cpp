@@ -8,21 +8,20 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "cli/common/console.hpp"
+#include "analysis/common/failures.hpp"
+#include "analysis/common/inputs.hpp"
+#include "analysis/common/ranks.hpp"
+#include "analysis/common/system_files.hpp"
+#include "analysis/reduce/reduce_body.hpp"
+#include "cli/common/console_events.hpp"
 #include "cli/common/deck_tables.hpp"
 #include "cli/common/options.hpp"
-#include "cli/common/ranks.hpp"
-#include "cli/common/solution.hpp"
 #include "cli/common/solver_option.hpp"
-#include "cli/common/system_files.hpp"
 #include "cli/common/text_file.hpp"
 #include "cli/common/usage_text.hpp"
 #include "cli/compare/compare_report.hpp"
-#include "cli/reduce/matrix_files.hpp"
-#include "cli/reduce/reduce_body.hpp"
 #include "formats/hdf5/body_accuracy.hpp"
 #include "formats/nastran/loads_deck.hpp"
-#include "formats/toml/specs.hpp"
 
 namespace bough::cli {
 
@@ -31,120 +30,15 @@ namespace fs = std::filesystem;
 namespace {
 
 struct ReduceVerbOptions : CommonOptions {
-  std::string file;
-  std::string name;
-  int num_modes = 0;
-  std::optional<double> max_hz;
-  bool free = false;
-  std::vector<int> interface_nodes;
-  std::vector<std::string> loads;
-  bool full = false;
-  std::vector<std::string> recover;
-  bool strain_energy = false;
-  bool integrals_report = false;
-  std::string mass, integrals;
-  std::vector<double> origin;
-  std::vector<std::string> ignore_cards;
-  int subcase = 0;
-  double damping = -1;
-  std::vector<std::string> matrices;
-  bool force_outside = false;
-  std::string solver;
+  analysis::ReduceRequest request;
+  bool integrals_report = false, force_outside = false;
   std::string loads_deck;
   int loads_set = nastran::kFirstInertialSet;
 };
 
-/// "[NAME=]NODE:DIRECTIONS", "[NAME=]set:ID" or "[NAME=]temperature:ID".
-records::ExternalLoadSpec parse_load(const std::string& text) {
-  const auto fail = [&]() -> InputError {
-    return {"cli.bad-load",
-            {},
-            "cannot read --load \"" + text + "\"",
-            "write NODE:DIRECTIONS such as 41:2 or 41:123, set:ID or temperature:ID; NAME= may stand before"};
-  };
-  records::ExternalLoadSpec load;
-  std::string rest = text;
-  if (const auto equals = rest.find('='); equals != std::string::npos) {
-    load.name = rest.substr(0, equals);
-    rest.erase(0, equals + 1);
-  }
-  const auto colon = rest.find(':');
-  if (colon == std::string::npos || colon + 1 == rest.size()) throw fail();
-  const auto before = rest.substr(0, colon), after = rest.substr(colon + 1);
-  const auto is_number = [](const std::string& s) {
-    return !s.empty() && s.size() < 9 && s.find_first_not_of("0123456789") == std::string::npos;
-  };
-  if (!is_number(after)) throw fail();
-  if (before == "set") {
-    load.load_set = std::stoi(after);
-  } else if (before == "temperature") {
-    load.temperature_set = std::stoi(after);
-  } else {
-    if (!is_number(before)) throw fail();
-    load.node = std::stoi(before);
-    for (char c : after) {
-      if (c < '1' || c > '6') throw fail();
-      load.directions.push_back(c - '0');
-    }
-  }
-  if (load.name.empty()) load.name = "load " + rest;
-  return load;
-}
-
-void add_matrices(const ReduceVerbOptions& o, records::BodySpec& spec) {
-  if (o.matrices.empty()) return;
-  if (!spec.matrices) spec.matrices.emplace();
-  // The common file first: ":NAME" of the others is in it.
-  for (const bool is_file : {true, false})
-    for (const auto& text : o.matrices)
-      if ((text.find('=') == std::string::npos) == is_file) add_matrices_option(text, *spec.matrices);
-  if (spec.name.empty())
-    spec.name = fs::path(spec.matrices->file.empty() ? spec.matrices->stiffness.file : spec.matrices->file).stem();
-}
-
-records::BodySpec make_spec(const ReduceVerbOptions& o, Diagnostics& diagnostics) {
-  records::BodySpec spec;
-  const bool is_toml = has_suffix(o.file, ".toml");
-  if (is_toml) {
-    do_once([&] { demand_kind(o.file, toml_files::detect_kind(o.file), "body"); });
-    spec = read_body_spec_once(o.file, diagnostics);
-    diagnostics.throw_if_errors();
-    if (!spec.deck.empty()) spec.deck = resolve_beside(o.file, spec.deck);
-    add_matrices(o, spec);
-  } else {
-    if (!o.file.empty()) do_once([&] { demand_deck(o.file); });
-    spec.deck = o.file;
-    spec.name = fs::path(o.file).stem().string();
-    add_matrices(o, spec);
-    const bool has_modes = spec.matrices && !spec.matrices->modes.empty();
-    if (o.num_modes == 0 && !o.max_hz && !has_modes) {
-      throw InputError("cli.no-modes", {o.file}, "the number of modes is not given", "add --modes N or --max-hz F");
-    }
-  }
-  if (!o.name.empty()) spec.name = o.name;
-  if (o.num_modes > 0) spec.num_modes = o.num_modes;
-  if (o.max_hz) spec.max_frequency_hz = o.max_hz;
-  if (o.free) spec.frame = records::BodyFrame::Free;
-  if (!o.interface_nodes.empty()) spec.interface_nodes = o.interface_nodes;
-  for (const auto& load : o.loads) spec.loads.push_back(parse_load(load));
-  if (o.full) spec.full = true;
-  if (!o.recover.empty()) spec.recover = o.recover;
-  if (o.strain_energy) spec.strain_energy = true;
-  if (!o.mass.empty()) spec.mass = o.mass;
-  if (!o.integrals.empty()) spec.integrals = o.integrals;
-  if (!o.origin.empty()) spec.origin = Vector3d(o.origin[0], o.origin[1], o.origin[2]);
-  spec.ignore_cards.insert(spec.ignore_cards.end(), o.ignore_cards.begin(), o.ignore_cards.end());
-  if (o.subcase > 0) spec.subcase = o.subcase;
-  if (o.damping >= 0) {
-    spec.damping_ratio = o.damping;
-    spec.damping_ratios.clear();
-  }
-  return spec;
-}
-
 std::string choose_output(const ReduceVerbOptions& o, const records::BodySpec& spec) {
   if (!o.output.empty()) return o.output;
-  if (!spec.output_file.empty()) return resolve_beside(spec.file, spec.output_file);
+  if (!spec.output_file.empty()) return analysis::resolve_beside(spec.file, spec.output_file);
   return spec.name + ".h5";
 }
 
@@ -212,29 +106,26 @@ Table make_check_table(const records::FlexBody& body, const stiffening::ModeChec
 
 int run_reduce(const ReduceVerbOptions& o) {
   Console console(o.quiet, o.verbosity);
-  console.set_subject(o.file);
-  if (!o.file.empty()) do_once([&] { demand_file(o.file); });
-  Diagnostics diagnostics;
-  const auto spec = make_spec(o, diagnostics);
-  const auto output = choose_output(o, spec);
-  do_once([&] {
-    // A body file may come from anywhere: it does not choose which file of the user's goes.
-    if (o.output.empty() && !spec.output_file.empty() && !o.force_outside &&
-        !is_inside(output, fs::path(o.file).parent_path().string()))
-      throw InputError("cli.output-outside", {o.file},
-                       "[body.output] file = \"" + output + "\" does not lie in the folder of the body file",
-                       "name the file with -o, or give --force-outside");
-    check_outputs(o, {output, o.loads_deck}, {o.file, spec.deck});
-  });
-  console.set_rank(fe::initialize_petsc().rank);
-  stiffening::ReduceOptions options;
-  options.progress = [&](const std::string& stage) { console.show_progress("reduce: " + stage); };
-  if (!o.solver.empty()) options.solver = modal::find_eps_type(o.solver);
-  const auto [body, basis, check] = reduce_body(spec, options, diagnostics);
-  console.end_progress();
-  console.print(diagnostics);
-  diagnostics.throw_if_errors();
-  do_once([&, &body = body, &basis = basis] {
+  const auto& file = o.request.file;
+  console.set_subject(file);
+  std::string output;
+  const auto check_spec = [&](const records::BodySpec& spec) {
+    output = choose_output(o, spec);
+    analysis::do_once([&] {
+      // A body file may come from anywhere: it does not choose which file of the user's goes.
+      if (o.output.empty() && !spec.output_file.empty() && !o.force_outside &&
+          !is_inside(output, fs::path(file).parent_path().string()))
+        throw InputError("cli.output-outside", {file},
+                         "[body.output] file = \"" + output + "\" does not lie in the folder of the body file",
+                         "name the file with -o, or give --force-outside");
+      check_outputs(o, {output, o.loads_deck}, {file, spec.deck});
+    });
+    console.set_rank(fe::initialize_petsc().rank);
+  };
+  ConsoleEvents events(console);
+  const auto [body, basis, check] = analysis::reduce_body(o.request, check_spec, events);
+  console.print(events.get_messages());
+  analysis::do_once([&, &body = body, &basis = basis] {
     hdf5::write_flex_body(body, hdf5::BodyAccuracy{basis.mass, basis.stiffness}, output);
     if (!o.loads_deck.empty()) write_text_file(o.loads_deck, nastran::write_loads_deck(body, o.loads_set));
   });
@@ -270,32 +161,33 @@ int run_reduce(const ReduceVerbOptions& o) {
 void add_reduce(CLI::App& app, Action& action) {
   auto o = std::make_shared<ReduceVerbOptions>();
   auto* verb = add_verb(app, "reduce", "A deck becomes a flexible body: modes, mass integrals, geometric stiffness");
-  verb->add_option("file", o->file, "Body file (.toml) or Nastran deck; may be missing with --matrices");
-  verb->add_option("-n,--modes,--number", o->num_modes, "Number of elastic modes")->check(make_positive());
-  verb->add_option("--max-hz", o->max_hz, "Highest frequency wanted");
-  add_solver_option(*verb, o->solver);
-  verb->add_option("--name", o->name, "Name of the body (default: the file's)");
-  verb->add_flag("--free", o->free, "Free-free modes: no node carries the frame, SPC sets are left out");
-  verb->add_option("--interface", o->interface_nodes,
+  verb->add_option("file", o->request.file, "Body file (.toml) or Nastran deck; may be missing with --matrices");
+  verb->add_option("-n,--modes,--number", o->request.num_modes, "Number of elastic modes")->check(make_positive());
+  verb->add_option("--max-hz", o->request.max_hz, "Highest frequency wanted");
+  add_solver_option(*verb, o->request.solver);
+  verb->add_option("--name", o->request.name, "Name of the body (default: the file's)");
+  verb->add_flag("--free", o->request.free, "Free-free modes: no node carries the frame, SPC sets are left out");
+  verb->add_option("--interface", o->request.interface_nodes,
                    "Grids where hinges or forces attach: six locators each (forces, moments), e.g. 1,41")
       ->delimiter(',');
   verb->add_option(
-          "--load", o->loads,
+          "--load", o->request.loads,
           "Unit loads NODE:DIRECTIONS, a load set set:ID or a temperature set temperature:ID, with K_G; may be "
           "repeated")
       ->allow_extra_args(false);
-  verb->add_option("--mass", o->mass, "Mass matrix: deck, lumped or consistent")
+  verb->add_option("--mass", o->request.mass, "Mass matrix: deck, lumped or consistent")
       ->check(CLI::IsMember({"deck", "lumped", "consistent"}));
-  verb->add_option("--integrals", o->integrals, "Mass integrals that the solver uses: exact, consistent or lumped")
+  verb->add_option("--integrals", o->request.integrals,
+                   "Mass integrals that the solver uses: exact, consistent or lumped")
       ->check(CLI::IsMember({"exact", "consistent", "lumped"}));
-  verb->add_option("--origin", o->origin, "Origin of the body frame in basic: X Y Z")->expected(3);
-  verb->add_option("--damping", o->damping, "Modal damping ratio of every mode")->check(make_not_negative());
-  verb->add_option("--subcase", o->subcase, "Subcase whose SPC and MPC sets are used (default: the first)");
-  verb->add_option("--ignore", o->ignore_cards,
+  verb->add_option("--origin", o->request.origin, "Origin of the body frame in basic: X Y Z")->expected(3);
+  verb->add_option("--damping", o->request.damping, "Modal damping ratio of every mode")->check(make_not_negative());
+  verb->add_option("--subcase", o->request.subcase, "Subcase whose SPC and MPC sets are used (default: the first)");
+  verb->add_option("--ignore", o->request.ignore_cards,
                    "Leave out this card, command or parameter though it changes the answer")
       ->allow_extra_args(false);
   verb->add_option(
-          "--matrices", o->matrices,
+          "--matrices", o->request.matrices,
           "Matrices of another program instead of the deck's elements: FILE with K and M, or KEY=FILE:NAME with "
           "K, M, B, phi, check, wx2, ...; may be repeated (docs/other-fe-codes.md)")
       ->allow_extra_args(false);
@@ -303,11 +195,11 @@ void add_reduce(CLI::App& app, Action& action) {
                  "Print the mass integrals by three methods side by side, as bough compare BODY.h5 does");
   verb->add_flag("--force-outside", o->force_outside,
                  "Write to [body.output] file also outside the body file's folder");
-  verb->add_option("--recover", o->recover,
+  verb->add_option("--recover", o->request.recover,
                    "Elements whose forces and stresses the body recovers: ALL, ids, ranges 17-25, property:3, "
                    "card:CBAR; e.g. 17,20-25")
       ->delimiter(',');
-  verb->add_flag("--strain-energy", o->strain_energy,
+  verb->add_flag("--strain-energy", o->request.strain_energy,
                  "Write the strain energy of each element in the modes too: colours of the report page and of export");
   verb->add_option("--loads-deck", o->loads_deck,
                    "Also write the twelve inertial loads F_I to this file, as FORCE and MOMENT cards for another FE "
@@ -315,15 +207,16 @@ void add_reduce(CLI::App& app, Action& action) {
   verb->add_option("--loads-set", o->loads_set, "First of the twelve load sets of --loads-deck")
       ->check(CLI::Range(1, 99999988))
       ->capture_default_str();
-  verb->add_flag("--full", o->full, "Write the modes and inertial loads of every dof too");
+  verb->add_flag_callback(
+      "--full", [o] { o->request.full = true; }, "Write the modes and inertial loads of every dof too");
   add_common_options(*verb, *o, kOutput | kJson, "Flexible-body HDF5 file (default: the body file's, else NAME.h5)");
   verb->footer(
       "Example:\n  bough reduce boom.toml\n  bough reduce boom.bdf --modes 3 --interface 41 -o boom.h5\n"
       "  bough reduce boom.bdf --modes 3 --interface 41 --recover 1,20-25 -o boom.h5\n"
       "  bough reduce boom.bdf --matrices boom.op4 --modes 3\n  mpirun -n 2 bough reduce boom.toml");
   verb->callback([&action, o] {
-    if (o->file.empty() && o->matrices.empty()) throw CLI::RequiredError("file");
-    action = [o] { return with_file(o->file, [&] { return run_reduce(*o); }); };
+    if (o->request.file.empty() && o->request.matrices.empty()) throw CLI::RequiredError("file");
+    action = [o] { return analysis::with_file(o->request.file, [&] { return run_reduce(*o); }); };
   });
 }
 

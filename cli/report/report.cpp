@@ -4,9 +4,10 @@
 #include <filesystem>
 #include <memory>
 
+#include "analysis/common/body_files.hpp"
+#include "analysis/common/channels.hpp"
+#include "analysis/common/inputs.hpp"
 #include "base/version.hpp"
-#include "cli/common/body_files.hpp"
-#include "cli/common/channels.hpp"
 #include "cli/common/console.hpp"
 #include "cli/common/options.hpp"
 #include "cli/common/text_file.hpp"
@@ -29,8 +30,8 @@ int run_report(const ReportOptions& o) {
   const auto& files = o.request.files;
   std::vector<std::string> paths;
   for (const auto& file : files) {
-    demand_body_file(file);
-    paths.push_back(get_body_path(file));
+    analysis::demand_body_file(file);
+    paths.push_back(analysis::get_body_path(file));
   }
   const std::string output = o.output.empty() ? fs::path(paths.front()).stem().string() + ".html" : o.output;
   check_output(o, output, paths);
@@ -38,7 +39,7 @@ int run_report(const ReportOptions& o) {
   report::Page page{
       o.title.empty() ? fs::path(paths.front()).stem().string() : o.title, std::string("Bough ") + get_version(), {}};
   for (const auto& file : files) {
-    if (!has_suffix(file, ".json")) warn_incomplete(file, diagnostics);
+    if (!analysis::has_suffix(file, ".json")) analysis::warn_incomplete(file, diagnostics);
     page.chapters.push_back(make_chapter(file, o.request, diagnostics));
   }
   if (auto overlay = report::make_overlay(page.chapters); !overlay.panels.empty())

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <numbers>
 
-#include "cli/common/body_files.hpp"
+#include "analysis/common/body_files.hpp"
 #include "cli/report/report_files.hpp"
 #include "formats/hdf5/files.hpp"
 #include "formats/records/mode_kind.hpp"
@@ -113,7 +113,7 @@ void check_matrices(const records::FlexBody& body, report::ModalModel& m) {
 }  // namespace
 
 report::Chapter make_body_chapter(const std::string& file, Diagnostics& diagnostics) {
-  const auto body = read_body(file, diagnostics);
+  const auto body = analysis::read_body(file, diagnostics);
   report::ModalModel m;
   m.kind = "flexible body";
   m.file = file;

@@ -7,8 +7,9 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "analysis/common/body_files.hpp"
+#include "analysis/common/inputs.hpp"
 #include "base/file_roles.hpp"
-#include "cli/common/body_files.hpp"
 #include "cli/common/options.hpp"
 #include "cli/export/export_matrices.hpp"
 #include "formats/hdf5/comparison_file.hpp"
@@ -74,8 +75,8 @@ report::Chapter make_campaign_chapter(const std::string& file) {
 }  // namespace
 
 std::vector<std::pair<std::string, std::string>> list_facts(const std::string& file) {
-  if (is_flat(file)) return {{"file", file}, {"format", "flat"}};
-  if (is_flx(file)) return {{"file", file}, {"format", ".FLX"}};
+  if (analysis::is_flat(file)) return {{"file", file}, {"format", "flat"}};
+  if (analysis::is_flx(file)) return {{"file", file}, {"format", ".FLX"}};
   const auto info = hdf5::read_info(file);
   std::vector<std::pair<std::string, std::string>> facts{{"file", file}};
   const auto add = [&](const char* attribute, const char* name) {
@@ -122,8 +123,8 @@ std::vector<std::pair<std::string, std::string>> list_settings(const std::string
 }
 
 report::Chapter make_chapter(const std::string& file, const ReportRequest& request, Diagnostics& diagnostics) {
-  if (has_suffix(file, ".json")) return make_selection_chapter(file);
-  const auto format = read_file_format(file);
+  if (analysis::has_suffix(file, ".json")) return make_selection_chapter(file);
+  const auto format = analysis::read_file_format(file);
   if (format == "bough-results") return make_results_chapter(file, request, diagnostics);
   if (format == "bough-flexbody") return make_body_chapter(file, diagnostics);
   if (format == "bough-modes") return make_modes_chapter(file);

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <memory>
 
-#include "cli/common/run_bodies.hpp"
+#include "analysis/common/run_bodies.hpp"
 #include "solver/functions/function.hpp"
 
 namespace bough::cli {
@@ -217,7 +217,7 @@ report::ScenePlace ScenePlaces::find(const std::string& body, int node, const Ve
   const auto& record = spec_.bodies[static_cast<std::size_t>(place.body)];
   const auto& drawing = scene_.bodies[static_cast<std::size_t>(place.body)].drawing;
   if (record.file.empty()) {
-    place.p += find_rigid_node(record, node);
+    place.p += analysis::find_rigid_node(record, node);
   } else {
     place.point = drawing.find(node);
     if (place.point >= 0) place.p += drawing.xyz.row(place.point).transpose();

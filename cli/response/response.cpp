@@ -1,5 +1,3 @@
-#include "solver/statespace/frequency_response.hpp"
-
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -10,7 +8,10 @@
 #include <numbers>
 #include <sstream>
 
-#include "cli/common/console.hpp"
+#include "analysis/common/failures.hpp"
+#include "analysis/common/inputs.hpp"
+#include "analysis/response/response.hpp"
+#include "cli/common/console_events.hpp"
 #include "cli/common/options.hpp"
 #include "cli/common/text_file.hpp"
 #include "cli/linearize/linear_model_files.hpp"
@@ -28,16 +29,11 @@ using records::FrequencyResponse;
 using records::LinearModel;
 
 struct ResponseOptions : CommonOptions {
-  std::string file, csv;
-  std::vector<std::string> inputs, outputs;
-  statespace::FrequencyRange range;
-  bool is_loop = false;
+  analysis::ResponseRequest request;
+  std::string csv;
 };
 
 constexpr std::size_t kMaxRows = 24;
-/// Models with a larger error are reported, as by linearize.
-constexpr double kMaxUncertainty = 1e-4;
-
 double to_decibel(double gain) { return 20 * std::log10(gain); }
 double to_degrees(double angle) { return angle * 180 / std::numbers::pi; }
 
@@ -134,41 +130,12 @@ nlohmann::json make_json(const FrequencyResponse& response, const records::PeakG
 int run_response(const ResponseOptions& o) {
   Console console(o.quiet, o.verbosity);
   if (!console.is_root()) return kSuccess;
-  demand_file(o.file);
-  check_outputs(o, {o.output, o.csv}, {o.file});
-  if (o.range.to_hz > 0 && o.range.to_hz <= o.range.from_hz)
-    throw InputError("cli.bad-range", {},
-                     fmt::format("frequencies from {:g} to {:g} are none", o.range.from_hz, o.range.to_hz),
-                     "give --to above --from");
-  auto model = hdf5::read_linear_model(o.file);
-  const int num_cut = records::is_cut_loop(model) ? model.inputs.size() : 0;
-  model = choose_channels(std::move(model), o.inputs, o.outputs, o.file);
-  Diagnostics diagnostics;
-  if (const double worst = std::max(model.error, model.difference); worst > kMaxUncertainty)
-    diagnostics.warning(
-        "linear.inaccurate", {o.file},
-        fmt::format("entries of the linear model are uncertain by {:.3g} relative to their row, expected below {:g}",
-                    worst, kMaxUncertainty),
-        "bough linearize names what makes it uncertain: linearize on one side of it");
-  console.print(diagnostics);
-  if (model.inputs.size() == 0 || model.outputs.size() == 0)
-    throw InputError("linear.no-channels", {o.file}, "the model has no input or no output",
-                     "name some with --inputs and --outputs of bough linearize");
-  const bool is_single = model.inputs.size() == 1 && model.outputs.size() == 1;
-  const bool is_cut = num_cut > 0 && model.inputs.size() == num_cut && model.outputs.size() == num_cut;
-  if (o.is_loop && !is_single && !is_cut)
-    throw InputError("linear.no-loop", {o.file},
-                     fmt::format("a loop has one input and one output, this model has {} and {}", model.inputs.size(),
-                                 model.outputs.size()),
-                     "choose them with --inputs and --outputs");
-  const bool is_loop = is_cut || (is_single && o.is_loop);
-  auto response =
-      statespace::calc_frequency_response(model, is_loop ? statespace::widen_for_loop(model, o.range) : o.range);
-  response.source = calc_sources({o.file});
-  const auto peak = statespace::calc_peak_gain(model, response);
-  records::Margins margins;
-  if (is_loop) margins = statespace::calc_margins(model, response);
-  const records::Margins* given = is_loop ? &margins : nullptr;
+  analysis::demand_file(o.request.file);
+  check_outputs(o, {o.output, o.csv}, {o.request.file});
+  ConsoleEvents events(console);
+  const auto [model, response, peak, margins] = analysis::calc_response(o.request, events);
+  console.print(events.get_messages());
+  const records::Margins* given = margins ? &*margins : nullptr;
   if (o.json)
     console.print_data(make_json(response, peak, given).dump(2) + "\n");
   else
@@ -185,17 +152,17 @@ int run_response(const ResponseOptions& o) {
 void add_response(CLI::App& app, Action& action) {
   auto o = std::make_shared<ResponseOptions>();
   auto* verb = add_verb(app, "response", "Frequency response, largest gain and margins of a linear model");
-  verb->add_option("file", o->file, "Linear model (.h5) of bough linearize")->required();
-  verb->add_option("--inputs", o->inputs, "Only these inputs (default: all)")->delimiter(',');
-  verb->add_option("--outputs", o->outputs, "Only these outputs (default: all)")->delimiter(',');
-  verb->add_option("--from", o->range.from_hz, "Lowest frequency (default: a decade below the poles)")
+  verb->add_option("file", o->request.file, "Linear model (.h5) of bough linearize")->required();
+  verb->add_option("--inputs", o->request.inputs, "Only these inputs (default: all)")->delimiter(',');
+  verb->add_option("--outputs", o->request.outputs, "Only these outputs (default: all)")->delimiter(',');
+  verb->add_option("--from", o->request.range.from_hz, "Lowest frequency (default: a decade below the poles)")
       ->check(CLI::PositiveNumber);
-  verb->add_option("--to", o->range.to_hz, "Highest frequency (default: a decade above the poles)")
+  verb->add_option("--to", o->request.range.to_hz, "Highest frequency (default: a decade above the poles)")
       ->check(CLI::PositiveNumber);
-  verb->add_option("--points", o->range.points, "Frequencies at least; resonances and notches get more")
+  verb->add_option("--points", o->request.range.points, "Frequencies at least; resonances and notches get more")
       ->check(CLI::Range(1, 100000))
       ->capture_default_str();
-  verb->add_flag("--loop", o->is_loop,
+  verb->add_flag("--loop", o->request.is_loop,
                  "Margins of the one input and output as a loop with negative feedback (always of linearize --break)");
   verb->add_option("--csv", o->csv, "Write the response to this CSV file");
   add_common_options(*verb, *o, kOutput | kJson, "Write the response to this HDF5 file");
@@ -203,7 +170,9 @@ void add_response(CLI::App& app, Action& action) {
       "Example:\n  bough linearize arm.toml --break motor -o loop.h5 && bough response loop.h5\n"
       "  bough response arm-linear.h5 --outputs tip:y --csv tip.csv\n"
       "bough plot arm-linear.h5 --kind bode draws it.");
-  verb->callback([&action, o] { action = [o] { return with_file(o->file, [&] { return run_response(*o); }); }; });
+  verb->callback([&action, o] {
+    action = [o] { return analysis::with_file(o->request.file, [&] { return run_response(*o); }); };
+  });
 }
 
 }  // namespace bough::cli

@@ -10,14 +10,15 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "analysis/common/inputs.hpp"
+#include "analysis/common/start_state.hpp"
+#include "analysis/common/system_files.hpp"
 #include "base/file_roles.hpp"
 #include "base/part_file.hpp"
 #include "cli/common/console.hpp"
 #include "cli/common/event_list.hpp"
 #include "cli/common/interrupt.hpp"
 #include "cli/common/options.hpp"
-#include "cli/common/start_state.hpp"
-#include "cli/common/system_files.hpp"
 #include "cli/run/provenance_sink.hpp"
 #include "formats/hdf5/files.hpp"
 #include "formats/toml/specs.hpp"
@@ -47,8 +48,9 @@ std::string choose_output(const RunOptions& o) {
   return o.output.empty() ? fs::path(o.file).stem().string() + ".h5" : o.output;
 }
 
-void demand_other_file(const std::string& output, const LoadedSystem& loaded, const std::string& system_file) {
-  for (const auto& input : collect_sources(system_file, loaded)) {
+void demand_other_file(const std::string& output, const analysis::LoadedSystem& loaded,
+                       const std::string& system_file) {
+  for (const auto& input : analysis::collect_sources(system_file, loaded)) {
     std::error_code ignored;
     if (fs::equivalent(output, input, ignored)) {
       throw InputError("cli.output-is-input", {output}, "the results would overwrite the input file " + input,
@@ -168,18 +170,18 @@ int report(const RunOptions& o, const Console& console, const solver::SimulateOu
 int run_run(const RunOptions& o) {
   Console console(o.quiet, o.verbosity);
   if (!console.is_root()) return kSuccess;  // one process integrates; the others have nothing to do
-  demand_file(o.file);
-  if (has_suffix(o.file, ".toml")) demand_kind(o.file, toml_files::detect_kind(o.file), "system");
+  analysis::demand_file(o.file);
+  if (analysis::has_suffix(o.file, ".toml")) analysis::demand_kind(o.file, toml_files::detect_kind(o.file), "system");
   Diagnostics diagnostics;
-  const auto loaded = load_system(o.file, diagnostics, o.start_from, o.set);
+  const auto loaded = analysis::load_system(o.file, diagnostics, o.start_from, o.set);
   const auto output = choose_output(o);
   demand_other_file(output, loaded, o.file);
 
-  const auto sources = calc_sources(collect_sources(o.file, loaded));
+  const auto sources = analysis::calc_sources(analysis::collect_sources(o.file, loaded));
   solver::SimulateOptions options;
   std::unique_ptr<records::ResultSink> writer;
   if (o.resume) {
-    demand_file(output);
+    analysis::demand_file(output);
     check_place(output);
     if (is_file_locked(output))  // before it is read: it changes all the time
       throw InputError("hdf5.busy", {output}, "another process writes this file",
@@ -199,7 +201,8 @@ int run_run(const RunOptions& o) {
     writer = hdf5::make_results_appender(output, options.resume->time);
   } else {  // also where a run was killed before its first checkpoint: there is nothing to keep
     check_output(o, output);
-    options.resume = find_start_control(o.start_from, loaded.system, loaded.spec.simulation.start, diagnostics);
+    options.resume =
+        analysis::find_start_control(o.start_from, loaded.system, loaded.spec.simulation.start, diagnostics);
     if (options.resume) solver::demand_resumable(loaded.system.signals);
     writer = hdf5::make_results_writer(output);
   }

@@ -1,88 +1,48 @@
 #include <CLI/CLI.hpp>
-#include <cmath>
 #include <memory>
 
-#include "cli/common/body_files.hpp"
-#include "cli/common/console.hpp"
+#include "analysis/common/body_files.hpp"
+#include "analysis/common/failures.hpp"
+#include "analysis/select/selection.hpp"
+#include "analysis/select/weighing.hpp"
+#include "cli/common/console_events.hpp"
 #include "cli/common/options.hpp"
-#include "cli/common/system_files.hpp"
 #include "cli/common/usage_text.hpp"
-#include "cli/select/selection.hpp"
+#include "cli/select/selection_tables.hpp"
 #include "cli/verbs.hpp"
 #include "formats/hdf5/files.hpp"
-#include "formats/records/mode_subset.hpp"
-#include "formats/toml/specs.hpp"
 
 namespace bough::cli {
 
 namespace {
 
-/// More is lost than kept of what the outputs do, or fewer modes are wanted than what always stays.
-void warn_of_losses(const SelectOptions& o, const Selection& s, Diagnostics& diagnostics) {
-  if (o.number > 0 && static_cast<int>(s.kept.size()) > o.number)
-    diagnostics.warning("select.always-kept", {o.body},
-                        "--number " + std::to_string(o.number) + ", and " + std::to_string(s.kept.size()) +
-                            " modes are kept: static shapes and those of --keep always are",
-                        "ask for more modes than those, or reduce the body without residual vectors");
-  if (s.lost > 0.5 && !s.kept.empty())
-    diagnostics.warning("select.most-is-lost", {o.body},
-                        "the modes kept lose " + std::to_string(std::lround(100 * s.lost)) +
-                            " % of what the outputs do: they are no model of the body",
-                        "keep more modes, or weigh them by the inputs and outputs that matter");
-}
+struct SelectOptions : CommonOptions {
+  analysis::SelectRequest request;
+  std::string response;
+  int inertial_load = 0;
+};
 
 int run_select(const SelectOptions& o) {
   Console console(o.quiet, o.verbosity);
   if (!console.is_root()) return kSuccess;
-  demand_body_file(o.body);
-  std::vector<std::string> sources{get_body_path(o.body)};
-  for (const auto& system : o.systems) {
-    demand_file(system);
-    demand_kind(system, toml_files::detect_kind(system), "system");
-    sources.push_back(system);
-  }
-  if (!o.spectrum.empty()) sources.push_back(o.spectrum);
+  const auto& request = o.request;
+  const auto sources = analysis::list_select_inputs(request);
   check_outputs(o, {o.output, o.response}, sources);
-  Diagnostics diagnostics;
-  const auto body = o.output.empty() ? read_body(o.body, diagnostics) : read_moving_body(o.body, diagnostics);
-  std::vector<Weighing> weighings;
-  std::vector<statespace::NodeDirection> inputs, outputs;
-  if (o.systems.empty()) {
-    inputs = choose_places(body, o.inputs, o.weights, false, o.body);
-    outputs = choose_places(body, o.outputs, o.weights, true, o.body);
-    if (inputs.empty() || outputs.empty()) {
-      throw InputError("select.no-signals", {o.body}, "no output node of the body moves: nothing to weigh its modes by",
-                       "reduce the body with output nodes that its modes move");
-    }
-    weighings.push_back(weigh_alone(o, body, inputs, outputs));
-  } else {
-    weighings = weigh_in_systems(o, body, diagnostics);
-  }
-  Selection s = select_modes(o, body, weighings);
-  if (o.systems.empty()) {
-    if (!s.kept.empty()) s.static_error = statespace::calc_static_error(body, s.kept, inputs, outputs);
-    s.modal_hankel = statespace::calc_modal_hankel(body, inputs, outputs, o.damping);
-  }
-  weigh_losses(weighings, s);
-  warn_of_losses(o, s, diagnostics);
-  if (!body.third_order.empty() && s.kept.size() < static_cast<std::size_t>(body.num_modes()))
-    diagnostics.warning("select.third-order", {o.body},
-                        "the third order of the body is of all its modes: the body with fewer has second order",
-                        "reduce the deck again with [body.modes] select, to keep third order");
-  console.print(diagnostics);
+  Diagnostics of_file;
+  const auto body =
+      o.output.empty() ? analysis::read_body(request.body, of_file) : analysis::read_moving_body(request.body, of_file);
+  ConsoleEvents events(console);
+  analysis::add_messages(of_file, events);
+  const auto selection = analysis::select_modes(request, body, events);
+  console.print(events.get_messages());
   if (o.json)
-    console.print_data(make_json(body, s).dump(2) + "\n");
+    console.print_data(make_json(body, selection).dump(2) + "\n");
   else
-    console.print(format(body, s, o.inertial_load));
-  if (!o.response.empty()) write_response(s, o.response);
+    console.print(format(body, selection, o.inertial_load));
+  if (!o.response.empty()) write_response(selection, o.response);
   if (!o.response.empty() && !o.json) console.print("written: " + o.response + "\n");
   if (o.output.empty()) return kSuccess;
-  if (s.kept.empty())
-    throw InputError("select.nothing-kept", {o.body}, "no mode would be left", "keep more, by --number or --below");
-  auto small = records::keep_modes(body, s.kept);
-  const auto more = calc_sources(sources);
-  small.source.insert(small.source.end(), more.begin(), more.end());
-  hdf5::write_flex_body(small, o.output);
+  hdf5::write_flex_body(analysis::keep_selected(request, body, selection, sources), o.output);
   if (!o.json) console.print("written: " + o.output + "\n");
   return kSuccess;
 }
@@ -92,46 +52,48 @@ int run_select(const SelectOptions& o) {
 void add_select(CLI::App& app, Action& action) {
   auto o = std::make_shared<SelectOptions>();
   auto* verb = add_verb(app, "select", "Ranks the modes of a body by component cost and picks those to keep");
-  verb->add_option("body", o->body, "Flexible-body HDF5 file, or .FLX (panels.FLX:2: its body 2)")->required();
-  verb->add_option("system", o->systems,
+  verb->add_option("body", o->request.body, "Flexible-body HDF5 file, or .FLX (panels.FLX:2: its body 2)")->required();
+  verb->add_option("system", o->request.systems,
                    "System files (.toml) with their forces, actuators, sensors, in closed loop; of several the worst "
                    "counts; without, the body alone");
-  verb->add_option("--inputs", o->inputs,
+  verb->add_option("--inputs", o->request.inputs,
                    "Nodes that are pushed, ID or ID:x, y, z, rx, ry, rz (default: interface); of a system: its forces")
       ->delimiter(',');
-  verb->add_option("--outputs", o->outputs,
+  verb->add_option("--outputs", o->request.outputs,
                    "Nodes whose motion counts, as above, or ID:vx, vy, vz, wx, wy, wz for rates; of a system: its "
                    "sensors")
       ->delimiter(',');
-  verb->add_option("--weight", o->weights, "NAME=W: an output or the amplitude of an input counts W times; repeatable")
+  verb->add_option("--weight", o->request.weights,
+                   "NAME=W: an output or the amplitude of an input counts W times; repeatable")
       ->allow_extra_args(false);
-  verb->add_option("--spectrum", o->spectrum,
+  verb->add_option("--spectrum", o->request.spectrum,
                    "CSV of frequency_hz and a one-sided density of the inputs (a column a name, or one for all) in "
                    "place of white noise");
-  verb->add_option("-n,--number", o->number, "Keep so many modes")->check(make_positive());
-  verb->add_option("--tolerance", o->tolerance,
+  verb->add_option("-n,--number", o->request.number, "Keep so many modes")->check(make_positive());
+  verb->add_option("--tolerance", o->request.tolerance,
                    "Drop modes without which the outputs lose at most this part of their mean square (default: 0.01)")
       ->check(CLI::Range(0.0, 1.0));
-  verb->add_option("--below", o->below_hz, "Drop modes above this frequency")->check(CLI::PositiveNumber);
-  verb->add_option("--keep", o->pinned, "Modes that stay, by their numbers")->delimiter(',');
-  verb->add_option("--damping", o->damping, "Damping ratio of modes that have none (default: 0.01)")
+  verb->add_option("--below", o->request.below_hz, "Drop modes above this frequency")->check(CLI::PositiveNumber);
+  verb->add_option("--keep", o->request.pinned, "Modes that stay, by their numbers")->delimiter(',');
+  verb->add_option("--damping", o->request.damping, "Damping ratio of modes that have none (default: 0.01)")
       ->check(CLI::PositiveNumber);
-  verb->add_option("--at", o->at, "With a system: weigh the modes at these times of its run; the worst counts")
+  verb->add_option("--at", o->request.at, "With a system: weigh the modes at these times of its run; the worst counts")
       ->delimiter(',');
-  verb->add_flag("--equilibrium", o->equilibrium, "With a system: at its state of rest or steady spin");
-  verb->add_flag("--open", o->open, "With a system: without its controllers");
+  verb->add_flag("--equilibrium", o->request.equilibrium, "With a system: at its state of rest or steady spin");
+  verb->add_flag("--open", o->request.open, "With a system: without its controllers");
   verb->add_option("--stiffening", o->inertial_load,
                    "Also list K_G1 over K of each mode for this inertial load, 1 to 12 (1: ax ... 7: wx^2 ...)")
       ->check(CLI::Range(1, 12));
   verb->add_option("--response", o->response,
                    "Write the largest singular value over frequency before and after: .svg, or CSV");
-  add_set_option(*verb, o->set);
+  add_set_option(*verb, o->request.set);
   add_common_options(*verb, *o, kOutput | kJson, "Write the body with the modes kept to this HDF5 file");
   verb->footer(
       "Example:\n  bough select panel.h5 --number 12 -o small.h5\n"
       "  bough select panel.h5 satellite.toml --tolerance 0.001 -o small.h5\n"
       "  bough select panel.h5 slew.toml hold.toml --weight gyro=10 --keep 1,2 --response loss.svg");
-  verb->callback([&action, o] { action = [o] { return with_file(o->body, [&] { return run_select(*o); }); }; });
+  verb->callback(
+      [&action, o] { action = [o] { return analysis::with_file(o->request.body, [&] { return run_select(*o); }); }; });
 }
 
 }  // namespace bough::cli

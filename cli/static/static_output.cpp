@@ -6,8 +6,9 @@
 #include <iterator>
 #include <utility>
 
+#include "analysis/static/case_extremes.hpp"
 #include "cli/common/options.hpp"
-#include "cli/static/case_extremes.hpp"
+#include "cli/static/extremes_tables.hpp"
 #include "cli/static/static_tables.hpp"
 #include "fe/linear/threads.hpp"
 
@@ -23,9 +24,6 @@ bool is_worth_threads(const std::vector<records::StaticSubcase>& subcases) {
 }
 
 }  // namespace
-
-StaticOutput::StaticOutput(const records::Deck& deck, StaticOutputOptions options)
-    : deck_(deck), options_(std::move(options)) {}
 
 StaticOutput::~StaticOutput() {
   if (running_.valid()) running_.wait();
@@ -58,8 +56,6 @@ const records::StaticResult& StaticOutput::get_result() {
 
 void StaticOutput::add(std::vector<records::StaticSubcase> subcases) {
   wait();
-  count_ += subcases.size();
-  for (auto& subcase : subcases) subcase.margins = calc_margins(deck_, subcase);
   if (!is_worth_threads(subcases)) {
     write(subcases);
     show(subcases);
@@ -84,7 +80,7 @@ void StaticOutput::write(const std::vector<records::StaticSubcase>& subcases) {
       file_->start_sync();
     }
     if (options_.has_extremes)
-      for (const auto& subcase : subcases) add_to_extremes(result_.dof_map, subcase, result_.extremes);
+      for (const auto& subcase : subcases) analysis::add_to_extremes(result_.dof_map, subcase, result_.extremes);
   } catch (const Failure&) {
     failure_ = std::current_exception();
   }
@@ -104,7 +100,7 @@ void StaticOutput::show(const std::vector<records::StaticSubcase>& subcases) {
     }
     const auto turned = turn_to_cd(subcase);
     show_one(turned);
-    if (options_.has_extremes) add_to_extremes(result_.dof_map, turned, shown_extremes_);
+    if (options_.has_extremes) analysis::add_to_extremes(result_.dof_map, turned, shown_extremes_);
   }
 }
 
@@ -118,10 +114,10 @@ records::StaticSubcase StaticOutput::turn_to_cd(records::StaticSubcase s) const 
   return s;
 }
 
-void StaticOutput::finish() {
+void StaticOutput::finish(const std::vector<std::pair<std::string, std::string>>& source) {
   wait();
   if (failure_) std::rethrow_exception(failure_);
-  result_.source = calc_sources(deck_.files);
+  result_.source = source;
   if (file_) file_->commit(result_);
   file_.reset();
   if (options_.has_extremes) text_ += format_case_extremes(options_.in_cd ? shown_extremes_ : result_.extremes);

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "analysis/static/static.hpp"
 #include "fe/model/model.hpp"
 #include "formats/hdf5/files.hpp"
 #include "formats/records/static_result.hpp"
@@ -21,24 +22,24 @@ struct StaticOutputOptions {
 };
 
 /// Processes subcases while the next ones are solved, on a second thread if there is one and enough work for it.
-class StaticOutput {
+class StaticOutput final : public analysis::StaticReceiver {
  public:
-  StaticOutput(const records::Deck& deck, StaticOutputOptions options);
-  ~StaticOutput();
+  explicit StaticOutput(StaticOutputOptions options) : options_(std::move(options)) {}
+  ~StaticOutput() override;
   StaticOutput(const StaticOutput&) = delete;
   StaticOutput& operator=(const StaticOutput&) = delete;
 
-  /// Sets the data common to all subcases; before the first of them. The model may change afterwards.
-  void set_model(const fe::Model& model);
-  void add(std::vector<records::StaticSubcase> subcases);
-  /// Returns true if the file could not be written: there is no use in continuing. finish() throws the error.
-  bool has_failed();
-  bool is_empty() const { return count_ == 0; }
+  void begin(bool keeps) override { options_.keeps = options_.keeps || keeps; }
+  void set_model(const fe::Model& model) override;
+  void add(std::vector<records::StaticSubcase> subcases) override;
+  /// Returns true if the file could not be written; finish() throws the error.
+  bool has_failed() override;
+  const std::vector<records::StaticSubcase>& get_kept() override { return get_result().subcases; }
   /// With the subcases where they are kept; without extremes before finish().
   const records::StaticResult& get_result();
 
   /// The file appears. Throws ComputationError "hdf5.write".
-  void finish();
+  void finish(const std::vector<std::pair<std::string, std::string>>& source);
   const std::string& get_text() const { return text_; }         ///< after finish()
   const nlohmann::json& get_subcases() const { return json_; }  ///< after finish(); a list
   nlohmann::json get_extremes() const;                          ///< after finish()
@@ -49,11 +50,9 @@ class StaticOutput {
   void show(const std::vector<records::StaticSubcase>& subcases);
   records::StaticSubcase turn_to_cd(records::StaticSubcase subcase) const;
 
-  const records::Deck& deck_;
   StaticOutputOptions options_;
   records::StaticResult result_;
   std::vector<std::pair<int, Eigen::Matrix3d>> turns_;  ///< first row of three numbers, basic to CD
-  std::size_t count_ = 0;
   std::optional<hdf5::StaticWriter> file_;
   std::vector<records::CaseExtremes> shown_extremes_;  ///< with in_cd other than the file's
   std::string text_;

@@ -8,7 +8,7 @@
 
 #include "cli/common/console.hpp"
 #include "cli/common/deck_tables.hpp"
-#include "cli/static/case_extremes.hpp"
+#include "cli/static/extremes_tables.hpp"
 
 namespace bough::cli {
 

@@ -26,6 +26,8 @@ void write_modes(const records::ModesResult& modes, const std::string& path);
 records::ModesResult read_modes(const std::string& path);
 
 void write_static(const records::StaticResult& result, const std::string& path);
+/// The bytes of that file, without a file.
+std::string make_static_image(const records::StaticResult& result);
 /// Writes the file of write_static one subcase after the other, without keeping them. commit() makes the file appear.
 class StaticWriter {
  public:

@@ -129,6 +129,14 @@ void write_sparse(FileWriter& file, const std::string& path, const records::Spar
 
 constexpr const char* kDofMap = "a row per dof: node id and code 1..6 (0 for a scalar point), basic axes";
 
+/// All but the subcases.
+void write_common(FileWriter& file, const records::StaticResult& whole) {
+  file.write_source(whole.source);
+  file.write_integers("/dof_map", whole.dof_map, {kDofMap, "1"});
+  write_mesh(file, whole.mesh);
+  for (const auto& block : whole.extremes) write_extremes(file, block);
+}
+
 }  // namespace
 
 StaticWriter::StaticWriter(const std::string& path)
@@ -141,10 +149,7 @@ void StaticWriter::add(const records::StaticSubcase& subcase) { write_subcase(*f
 void StaticWriter::start_sync() { file_->start_sync(); }
 
 void StaticWriter::commit(const records::StaticResult& whole) {
-  file_->write_source(whole.source);
-  file_->write_integers("/dof_map", whole.dof_map, {kDofMap, "1"});
-  write_mesh(*file_, whole.mesh);
-  for (const auto& block : whole.extremes) write_extremes(*file_, block);
+  write_common(*file_, whole);
   file_->commit();
 }
 
@@ -152,6 +157,13 @@ void write_static(const records::StaticResult& result, const std::string& path) 
   StaticWriter file(path);
   for (const auto& subcase : result.subcases) file.add(subcase);
   file.commit(result);
+}
+
+std::string make_static_image(const records::StaticResult& result) {
+  FileWriter file("bough-static", kStaticFormatVersion);
+  for (const auto& subcase : result.subcases) write_subcase(file, subcase);
+  write_common(file, result);
+  return file.get_image();
 }
 
 void write_matrices(const records::MatricesResult& result, const std::string& path) {

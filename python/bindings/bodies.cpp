@@ -1,14 +1,10 @@
 // Flexible bodies and modes: views of the records' own arrays.
 #include "python/bindings/bindings.hpp"
 
-#include "cli/common/body_files.hpp"
+#include "analysis/common/body_files.hpp"
 #include "cli/common/options.hpp"
-#include "cli/common/system_files.hpp"
-#include "cli/reduce/reduce_body.hpp"
-#include "fe/linear/petsc.hpp"
 #include "formats/hdf5/files.hpp"
 #include "formats/records/mode_kind.hpp"
-#include "formats/toml/specs.hpp"
 
 namespace bough::python {
 
@@ -32,82 +28,6 @@ auto show(Member Record::*member) {
 template <class Record, class Member>
 auto show_all(Member Record::*member) {
   return [member](py::object self) { return view_all(self.cast<Record&>().*member, self); };
-}
-
-struct ReduceCall {
-  std::string file;
-  std::optional<int> modes;
-  std::optional<double> max_hz;
-  std::optional<std::vector<int>> interface;
-  std::optional<bool> free, full;
-  std::optional<std::string> name, mass, integrals;
-  std::optional<std::vector<double>> origin;
-  std::optional<double> damping;
-  std::optional<int> subcase;
-};
-
-records::BodySpec make_spec(const ReduceCall& call, Diagnostics& diagnostics) {
-  records::BodySpec spec;
-  cli::demand_file(call.file);
-  if (cli::has_suffix(call.file, ".toml")) {
-    cli::demand_kind(call.file, toml_files::detect_kind(call.file), "body");
-    spec = toml_files::read_body_spec(call.file, diagnostics);
-    diagnostics.throw_if_errors();
-    if (!spec.deck.empty()) spec.deck = cli::resolve_beside(call.file, spec.deck);
-  } else {
-    cli::demand_deck(call.file);
-    spec.deck = call.file;
-    const auto slash = call.file.rfind('/') + 1;
-    spec.name = call.file.substr(slash, call.file.rfind('.') - slash);
-    if (!call.modes && !call.max_hz)
-      throw InputError("cli.no-modes", {call.file}, "the number of modes is not given", "give modes=N or max_hz=F");
-  }
-  if (call.modes && *call.modes < 0)
-    throw py::value_error("modes is a number of modes, 0 or more, not " + std::to_string(*call.modes));
-  if (call.max_hz && !(*call.max_hz > 0))
-    throw py::value_error("max_hz is a frequency above 0, not " + std::to_string(*call.max_hz));
-  if (call.name) spec.name = *call.name;
-  if (call.modes) spec.num_modes = *call.modes;
-  if (call.max_hz) spec.max_frequency_hz = *call.max_hz;
-  if (call.interface) spec.interface_nodes = *call.interface;
-  if (call.free && *call.free) spec.frame = records::BodyFrame::Free;
-  if (call.full) spec.full = *call.full;
-  if (call.mass) spec.mass = *call.mass;
-  if (call.integrals) spec.integrals = *call.integrals;
-  if (call.origin) {
-    if (call.origin->size() != 3) throw py::value_error("origin has three numbers");
-    spec.origin = Eigen::Vector3d((*call.origin)[0], (*call.origin)[1], (*call.origin)[2]);
-  }
-  if (call.damping) {
-    spec.damping_ratio = *call.damping;
-    spec.damping_ratios.clear();
-  }
-  if (call.subcase) spec.subcase = *call.subcase;
-  return spec;
-}
-
-py::tuple reduce(const ReduceCall& call, const py::object& progress) {
-  Diagnostics diagnostics;
-  FlexBody body;
-  {
-    const py::gil_scoped_release released;
-    const Exclusive held;
-    fe::initialize_petsc();
-    const auto spec = make_spec(call, diagnostics);
-    stiffening::ReduceOptions options;
-    if (!progress.is_none())
-      options.progress = [&](const std::string& stage) {
-        const py::gil_scoped_acquire acquired;
-        progress(stage);
-      };
-    cli::with_file(call.file, [&] {
-      body = cli::reduce_body(spec, options, diagnostics).body;
-      return 0;
-    });
-    diagnostics.throw_if_errors();
-  }
-  auto messages = tell(diagnostics);
-  return py::make_tuple(std::move(body), messages);
 }
 
 void bind_flex_body(py::module_& m) {
@@ -205,26 +125,10 @@ void bind_bodies(py::module_& m) {
       "read_flex_body",
       [](const std::string& path) {
         Diagnostics notes;  // of what a .FLX leaves out: docs/formats/flx.md
-        return cli::read_body(path, notes);
+        return analysis::read_body(path, notes);
       },
       py::arg("path"), OneAtATime());
   m.def("read_modes", &hdf5::read_modes, py::arg("path"), OneAtATime());
-  m.def(
-      "reduce",
-      [](std::string file, std::optional<int> modes, std::optional<double> max_hz,
-         std::optional<std::vector<int>> interface, std::optional<bool> free, std::optional<bool> full,
-         std::optional<std::string> name, std::optional<std::string> mass, std::optional<std::string> integrals,
-         std::optional<std::vector<double>> origin, std::optional<double> damping, std::optional<int> subcase,
-         const py::object& progress) {
-        return reduce({std::move(file), modes, max_hz, std::move(interface), free, full, std::move(name),
-                       std::move(mass), std::move(integrals), std::move(origin), damping, subcase},
-                      progress);
-      },
-      py::arg("file"), py::kw_only(), py::arg("modes") = py::none(), py::arg("max_hz") = py::none(),
-      py::arg("interface") = py::none(), py::arg("free") = py::none(), py::arg("full") = py::none(),
-      py::arg("name") = py::none(), py::arg("mass") = py::none(), py::arg("integrals") = py::none(),
-      py::arg("origin") = py::none(), py::arg("damping") = py::none(), py::arg("subcase") = py::none(),
-      py::arg("progress") = py::none());
 }
 
 }  // namespace bough::python

@@ -1,6 +1,7 @@
 // Failures as exceptions with their messages, each with file and line.
 #include <cstdlib>
 
+#include "analysis/common/failures.hpp"
 #include "python/bindings/bindings.hpp"
 
 namespace bough::python {
@@ -9,10 +10,13 @@ namespace {
 
 py::handle g_input_error, g_computation_error, g_warning;
 
-void raise(py::handle type, const Failure& failure) {
+/// With the exit code that the command line has for the failure.
+void raise(const Failure& failure) {
+  const int exit_code = analysis::choose_exit_code(failure);
+  const py::handle type = exit_code == 1 ? g_input_error : g_computation_error;
   const py::object error = type(failure.what());
   error.attr("messages") = py::cast(failure.items());
-  error.attr("exit_code") = failure.exit_code();
+  error.attr("exit_code") = exit_code;
   PyErr_SetObject(type.ptr(), error.ptr());
 }
 
@@ -58,10 +62,8 @@ void bind_messages(py::module_& m) {
   py::register_exception_translator([](std::exception_ptr thrown) {
     try {
       if (thrown) std::rethrow_exception(thrown);
-    } catch (const InputError& error) {
-      raise(g_input_error, error);
-    } catch (const ComputationError& error) {
-      raise(g_computation_error, error);
+    } catch (const Failure& failure) {
+      raise(failure);
     }
   });
 }

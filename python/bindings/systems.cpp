@@ -1,13 +1,13 @@
 // Systems and their runs.
 #include <atomic>
 
+#include "analysis/common/inputs.hpp"
+#include "analysis/common/system_files.hpp"
+#include "analysis/linearize/linearize.hpp"
 #include "cli/common/options.hpp"
-#include "cli/common/system_files.hpp"
-#include "cli/linearize/operating_point.hpp"
 #include "formats/hdf5/files.hpp"
 #include "python/bindings/controllers.hpp"
 #include "python/bindings/simulations.hpp"
-#include "solver/linear/linearize.hpp"
 #include "solver/simulate/memory_sink.hpp"
 #include "solver/simulate/simulate.hpp"
 
@@ -151,7 +151,7 @@ class PySystem {
            std::vector<std::string> set, std::string start_from, std::optional<std::string> text)
       : file_(std::move(file)), controllers_(controllers) {
     Diagnostics diagnostics;
-    cli::LoadOptions options;
+    analysis::LoadOptions options;
     options.start_from = std::move(start_from);
     options.set = std::move(set);
     options.text = std::move(text);
@@ -161,7 +161,7 @@ class PySystem {
     {
       const py::gil_scoped_release released;
       const Exclusive held;
-      loaded_.emplace(cli::load_system(file_, diagnostics, std::move(options)));
+      loaded_.emplace(analysis::load_system(file_, diagnostics, std::move(options)));
     }
     messages = tell(diagnostics);
   }
@@ -230,11 +230,14 @@ class PySystem {
     records::LinearModel model;
     {
       const py::gil_scoped_release released;
-      auto plant = cli::make_plant(*loaded_, open);
-      auto point = at ? cli::run_to(*loaded_, plant, *at, diagnostics) : plant.make_initial_point();
-      if (equilibrium) point = cli::find_rest(plant, std::move(point), file_);
-      plant.hold_commands(point);
-      model = solver::linearize(plant, point, {std::move(inputs), std::move(outputs), true}, {file_}, diagnostics);
+      analysis::LinearizeRequest request;
+      request.file = file_;
+      request.at = at;
+      request.equilibrium = equilibrium;
+      request.open = open;
+      request.inputs = std::move(inputs);
+      request.outputs = std::move(outputs);
+      model = analysis::linearize(request, *loaded_, diagnostics);
       model.source = calc_sources();
     }
     return py::make_tuple(std::move(model), tell(diagnostics));
@@ -243,16 +246,16 @@ class PySystem {
  private:
   /// Names and hashes of the files; controllers from Python have none.
   std::vector<std::pair<std::string, std::string>> calc_sources() const {
-    auto files = cli::collect_sources(file_, *loaded_);
+    auto files = analysis::collect_sources(file_, *loaded_);
     if (!is_file_) files.erase(files.begin());
     std::erase_if(files, [](const std::string& name) { return name.starts_with("python:"); });
-    return cli::calc_sources(files);
+    return analysis::calc_sources(files);
   }
 
   std::string file_;
   bool is_file_ = true;
   Controllers controllers_;
-  std::optional<cli::LoadedSystem> loaded_;
+  std::optional<analysis::LoadedSystem> loaded_;
 };
 
 }  // namespace

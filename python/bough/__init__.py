@@ -10,26 +10,36 @@ What is wrong with an input is raised as bough.InputError, a computation that fa
 `messages`, each with file, line, what is wrong and what to do. Warnings are Python warnings (bough.Warning).
 """
 import contextlib as _contextlib
+import io as _io
 import json as _json
 import os as _os
 import sys as _sys
-import tempfile as _tempfile
 
 from . import reader
 
 try:
     from ._bough import (ComputationError, Event, Failure, FlexBody, InputError, LinearModel, Locator, MassIntegrals,
-                         Message, Modes, Results, Warning, read_flex_body, read_linear_model, read_modes, read_results,
-                         verbs)
+                         Message, Modes, Results, Warning, __version__, read_flex_body, read_linear_model, read_modes,
+                         read_results, verbs)
     from . import _bough
-except ImportError as _missing:  # the reader does without
-    _bough = None
+except ImportError as _missing:  # bough.reader does without
+    class _Missing:
+        """In place of the compiled module: every use of it is an ImportError."""
+
+        def __init__(self, reason):
+            self._reason = reason
+
+        def __getattr__(self, name):
+            raise ImportError(f"bough.{name} needs the compiled module bough._bough, which cannot be loaded "
+                              f"({self._reason}); ./dev demo or ./dev build makes it, for this Python at "
+                              "PYTHONPATH=build/python; bough.reader reads files without it", name="bough._bough")
+
+    _bough = _Missing(str(_missing))
 
     def __getattr__(name):
-        raise AttributeError(f"bough.{name} needs the compiled module, which cannot be loaded ({_missing_text}); "
-                             "bough.reader reads files without it")
-
-    _missing_text = str(_missing)
+        if name in __all__ or name == "__version__":
+            return getattr(_bough, name)
+        raise AttributeError(f"module 'bough' has no attribute {name!r}")
 
 __all__ = ["ComputationError", "Event", "Failure", "FlexBody", "InputError", "LinearModel", "Locator", "MassIntegrals",
            "Message", "Modes", "Results", "Simulation", "System", "Warning", "call", "modes", "read_flex_body", "read_linear_model",
@@ -62,85 +72,70 @@ def _worker_launcher():
             _os.environ[name] = before
 
 
-@_contextlib.contextmanager
-def _redirected(descriptor, file):
-    kept = _os.dup(descriptor)
-    try:
-        _os.dup2(file.fileno(), descriptor)
-        yield
-    finally:
-        _os.dup2(kept, descriptor)
-        _os.close(kept)
+def _list(words):
+    """The words of an option that may be repeated: a list, or one alone."""
+    if words is None:
+        return []
+    return list(words) if isinstance(words, (list, tuple)) else [words]
 
 
-def _call_quietly(words):
-    """(stdout, stderr) of a verb; raises what the messages say."""
-    with _bough.Exclusive(), _tempfile.TemporaryFile() as out, _tempfile.TemporaryFile() as err:
-        _sys.stdout.flush()
-        _sys.stderr.flush()
-        with _redirected(1, out), _redirected(2, err):
-            code, messages = _bough.call_and_tell([str(word) for word in words])
-        texts = []
-        for file in (out, err):
-            file.seek(0)
-            texts.append(file.read().decode("utf-8", "replace"))
-    if code:
-        error = (InputError if code in (1, 2) else ComputationError)(texts[1].strip())
-        error.messages, error.exit_code = messages, code
-        raise error
-    return texts
-
-
-def _make_words(options):
-    words = []
-    for key, value in options.items():
-        if value is None or value is False:
-            continue
-        option = "--" + key.replace("_", "-")
-        for item in value if isinstance(value, (list, tuple)) else [value]:
-            words += [option] if item is True else [option, item]
-    return words
-
-
-def reduce(file, **options):
+def reduce(file="", **options):
     """A body file (.toml) or a Nastran deck becomes a FlexBody, with modes, mass integrals and geometric stiffness.
 
-    Options, each instead of what the file says: modes, max_hz, interface=[node, ...], free, full, name, mass
-    ("deck", "lumped", "consistent"), integrals ("exact", ...), origin, damping, subcase; progress(stage) is called on
-    the way.
+    Options, each instead of that of the file: modes, max_hz, interface=[node, ...], free, full, name, mass ("deck",
+    "lumped", "consistent"), integrals ("exact", ...), origin, damping, subcase, solver; in addition to those of the
+    file: loads=["41:2", "tip=41:123", "set:7", "temperature:8"], ignore=[card, ...], recover=[kind, ...],
+    strain_energy, matrices=["model.op4", "K=k.mtx"] of another program, with which the file may be missing. Words that
+    are alone need no list. progress(stage) is called on the way.
     """
+    for name in ("loads", "recover", "ignore", "matrices"):
+        if name in options:
+            options[name] = [str(word) for word in _list(options[name])]
     body, _ = _bough.reduce(_os.fspath(file), **options)
     return body
 
 
-def modes(deck, number=None, **options):
-    """Normal modes (or with buckling=True load factors) of a deck as Modes; options as of `bough modes`."""
-    with _tempfile.TemporaryDirectory() as folder:
-        path = _os.path.join(folder, "modes.h5")
-        _call_quietly(["modes", _os.fspath(deck), "-q", "-o", path, *_make_words({"number": number, **options})])
-        return read_modes(path)
+def modes(deck, number=None, *, min_hz=None, max_hz=None, buckling=False, no_check=False, solver="", energies=False,
+          meffmass=0, subcase=0, free=False, mass="deck", ignore=(), progress=None):
+    """Normal modes (or with buckling=True load factors) of a deck as Modes; options as of `bough modes`.
+
+    Of several subcases those of the first, or of `subcase`. progress(stage) is called on the way.
+    """
+    found, _ = _bough.modes(_os.fspath(deck), number, min_hz=min_hz, max_hz=max_hz, buckling=buckling,
+                            no_check=no_check, solver=solver, energies=energies, meffmass=meffmass, subcase=subcase,
+                            free=free, mass=mass, ignore=_list(ignore), progress=progress)
+    return found
 
 
-def static(deck, **options):
-    """Static solutions of a deck, as reader.File in memory: displacements, reactions, element forces by path."""
-    with _tempfile.TemporaryDirectory() as folder:
-        path = _os.path.join(folder, "static.h5")
-        _call_quietly(["static", _os.fspath(deck), "-q", "-o", path, *_make_words(options)])
-        with _bough.Exclusive():  # the reader uses the same HDF5
-            return reader.read(path)
+def static(deck, *, subcase=0, free=False, mass="deck", ignore=(), grid_forces=(), linear=False, strains=False,
+           extremes=False, progress=None):
+    """Static solutions of a deck, as reader.File in memory: displacements, reactions, element forces by path.
+
+    Options as of `bough static`; grid_forces="all" or ids.
+    """
+    image, _ = _bough.static(_os.fspath(deck), subcase=subcase, free=free, mass=mass, ignore=_list(ignore),
+                             grid_forces=[str(word) for word in _list(grid_forces)], linear=linear, strains=strains,
+                             extremes=extremes, progress=progress)
+    with _bough.Exclusive():  # the reader uses the same HDF5
+        return reader.File(_os.fspath(deck), _io.BytesIO(image))
 
 
-def select(body, system=None, **options):
-    """(FlexBody with the modes that count, ranking as a dict); options as of `bough select`. body: FlexBody or file."""
-    with _tempfile.TemporaryDirectory() as folder:
-        output = _os.path.join(folder, "selected.h5")
-        path = body
-        if not isinstance(body, (str, _os.PathLike)):
-            path = _os.path.join(folder, "body.h5")
-            body.save(path)
-        words = ["select", _os.fspath(path), *([_os.fspath(system)] if system else []), "--json", "-o", output]
-        ranking = _call_quietly(words + _make_words(options))[0]
-        return read_flex_body(output), _json.loads(ranking)
+def select(body, system=None, *, inputs=(), outputs=(), weight=(), spectrum="", number=0, tolerance=None, below=0.0,
+           keep=(), damping=0.01, at=(), equilibrium=False, open=False, set=(), progress=None):
+    """(FlexBody with the modes that count, ranking as a dict); options as of `bough select`.
+
+    body: FlexBody or file; with a system (a file, or a list of them) the file that the system names.
+    """
+    is_file = isinstance(body, (str, _os.PathLike))
+    if not is_file and system:
+        raise ValueError("a body of a system is selected by its file: save() it where the system has it")
+    small, ranking, _ = _bough.select(
+        _os.fspath(body) if is_file else body.name, None if is_file else body,
+        systems=[_os.fspath(file) for file in _list(system)], inputs=[str(word) for word in _list(inputs)],
+        outputs=[str(word) for word in _list(outputs)], weight=_list(weight), spectrum=_os.fspath(spectrum),
+        number=number, tolerance=tolerance, below=below, keep=_list(keep), damping=damping, at=_list(at),
+        equilibrium=equilibrium, open=open, set=_list(set), progress=progress)
+    return small, _json.loads(ranking)
 
 
 def _make_settings(parameters):

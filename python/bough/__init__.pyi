@@ -25,6 +25,8 @@ from ._bough import read_modes as read_modes
 from ._bough import read_results as read_results
 from ._bough import verbs as verbs
 
+__version__: str
+
 _Path = str | PathLike[str]
 _Array = NDArray[np.float64]
 _Numbers = float | Sequence[float] | _Array
@@ -36,13 +38,27 @@ class _Law(Protocol):
 _Controller = Callable[[float, _Array], _Numbers] | _Law
 
 def call(*words: object) -> int: ...
-def reduce(file: _Path, *, modes: int | None = ..., max_hz: float | None = ..., interface: Sequence[int] | None = ...,
-           free: bool | None = ..., full: bool | None = ..., name: str | None = ..., mass: str | None = ...,
-           integrals: str | None = ..., origin: Sequence[float] | None = ..., damping: float | None = ...,
-           subcase: int | None = ..., progress: Callable[[str], object] | None = ...) -> FlexBody: ...
-def modes(deck: _Path, number: int | None = None, **options: Any) -> Modes: ...
-def static(deck: _Path, **options: Any) -> reader.File: ...
-def select(body: FlexBody | _Path, system: _Path | None = None, **options: Any) -> tuple[FlexBody, dict[str, Any]]: ...
+def reduce(file: _Path = "", *, modes: int | None = ..., max_hz: float | None = ...,
+           interface: Sequence[int] | None = ..., free: bool | None = ..., full: bool | None = ...,
+           name: str | None = ..., mass: str | None = ..., integrals: str | None = ...,
+           origin: Sequence[float] | None = ..., damping: float | None = ..., subcase: int | None = ...,
+           loads: str | Sequence[str] = ..., recover: str | Sequence[str] = ..., ignore: str | Sequence[str] = ...,
+           matrices: _Path | Sequence[_Path] = ..., strain_energy: bool = ..., solver: str = ...,
+           progress: Callable[[str], object] | None = ...) -> FlexBody: ...
+def modes(deck: _Path, number: int | None = None, *, min_hz: float | None = None, max_hz: float | None = None,
+          buckling: bool = False, no_check: bool = False, solver: str = "", energies: bool = False, meffmass: int = 0,
+          subcase: int = 0, free: bool = False, mass: str = "deck", ignore: str | Sequence[str] = (),
+          progress: Callable[[str], object] | None = None) -> Modes: ...
+def static(deck: _Path, *, subcase: int = 0, free: bool = False, mass: str = "deck", ignore: str | Sequence[str] = (),
+           grid_forces: str | int | Sequence[str | int] = (), linear: bool = False, strains: bool = False,
+           extremes: bool = False, progress: Callable[[str], object] | None = None) -> reader.File: ...
+def select(body: FlexBody | _Path, system: _Path | Sequence[_Path] | None = None, *,
+           inputs: str | int | Sequence[str | int] = (), outputs: str | int | Sequence[str | int] = (),
+           weight: str | Sequence[str] = (), spectrum: _Path = "", number: int = 0, tolerance: float | None = None,
+           below: float = 0.0, keep: int | Sequence[int] = (), damping: float = 0.01,
+           at: float | Sequence[float] = (), equilibrium: bool = False, open: bool = False,
+           set: str | Sequence[str] = (),
+           progress: Callable[[str], object] | None = None) -> tuple[FlexBody, dict[str, Any]]: ...
 
 class System:
     def __init__(self, file: _Path, *, controllers: dict[str, _Controller] | None = None,

@@ -13,10 +13,11 @@ SCALES = ("CLASS", "NAME", "DIMENSION_LIST", "REFERENCE_LIST")  # what h5py's `d
 class File:
     """Everything in a file, by path. `format` says which kind it is: bough-results, bough-flexbody, ..."""
 
-    def __init__(self, path):
+    def __init__(self, path, data=None):
+        """data: an open file with the bytes, instead of the file at the path."""
         self.path = path
         self.arrays, self.descriptions, self.attributes = {}, {}, {}
-        with h5py.File(path, "r") as f:
+        with h5py.File(path if data is None else data, "r") as f:
             self.attributes[""] = dict(f.attrs)
             self._take_all(f, "")
         self.format = self._get_text("format")

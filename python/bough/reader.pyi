@@ -1,7 +1,7 @@
 # Types of the reader, which needs h5py alone.
 from collections.abc import Iterator, KeysView
 from os import PathLike
-from typing import Any
+from typing import Any, BinaryIO
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,7 +13,7 @@ class File:
     attributes: dict[str, dict[str, Any]]
     format: str
     format_version: str
-    def __init__(self, path: str | PathLike[str]) -> None: ...
+    def __init__(self, path: str | PathLike[str], data: BinaryIO | None = None) -> None: ...
     def __getitem__(self, name: str) -> Any: ...
     def __contains__(self, name: str) -> bool: ...
     def __iter__(self) -> Iterator[str]: ...

@@ -35,6 +35,7 @@ MAY_INCLUDE = [
     ("solver/statespace", RECORDS),
     *[("solver/" + room, RECORDS + ["solver/" + below for below in SOLVER[:i]]) for i, room in enumerate(SOLVER)],
     ("embed", RECORDS + ["formats/toml", "formats/flx", "formats/flat", "solver"]),
+    ("analysis", ["base", "formats", "fe", "modal", "stiffening", "solver", "embed/load.hpp", "cosim"]),
     ("cosim", RECORDS + ["formats/fmu", "solver/control", "embed/fmi2_types.h", "embed/fmi3_types.h"]),
 ]
 # Outside headers and the only folders that may see them.
@@ -49,11 +50,11 @@ OUTSIDE = [
     (r"^matio", ["formats/matrices"]),
     (r"^zip\.h", ["formats/fmu"]),
     (r"^pugixml", ["formats/fmu"]),
-    (r"^nlohmann", ["formats/toml", "formats/report", "cli"]),
+    (r"^nlohmann", ["formats/toml", "formats/report", "analysis/common/ranks.cpp", "cli"]),
     (r"^muParser", ["solver/text/formulas.cpp"]),
     (r"^dlfcn", ["solver/control/library.cpp", "cosim/slave.cpp", "fe/linear/petsc.cpp", "cli/common/memory_limit.cpp"]),
     (r"^CLI/", ["cli"]),
-    (r"^fmt/", ["cli", "formats"]),
+    (r"^fmt/", ["analysis", "cli", "formats"]),
     (r"^(sundials|cvode|nvector|sunlinsol|sunmatrix|sunnonlinsol)", ["solver/integrate", "cli/common/versions.cpp"]),
 ]
 
@@ -63,8 +64,8 @@ def lies_in(path, folders):
 
 
 # Seen by nobody outside: the integrators and the linear models stand above the rest of the solver.
-TOP = ["solver/simulate", "solver/linear", "cli"]
-ABOVE = ["embed"]  # stands above them
+TOP = ["solver/simulate", "solver/linear", "analysis", "cli"]
+ABOVE = ["embed", "analysis"]  # stand above them
 
 findings = []
 for source in list_sources():

@@ -378,6 +378,7 @@ class Equilibrium(LinearTest):
         self.write("pendulum.toml", PENDULUM.replace("POSITION", "0.9").replace("value = 0.0", "value = 5.0")
                    .replace("force = [1.0", 'frame = "inertial"\nforce = [1.0'))
         self.bough("equilibrium", "pendulum.toml", "-o", "rest.h5")
+        self.assertEqual(self.bough("export", "rest.h5", "--to", "csv", "-o", "rest.csv").stderr, "")  # it is complete
         angle = math.atan2(5, 2 * 9.81)
         data = json.loads(self.bough("equilibrium", "pendulum.toml", "--json").stdout)
         self.assertAlmostEqual(data["q"][0], angle, places=10)

@@ -42,7 +42,7 @@ def read(path):
 
 @functools.cache
 def has_module():
-    tries = "import bough, sys; sys.exit(bough._bough is None)"  # without it, the reader alone
+    tries = "import bough; bough.FlexBody"  # without it, an ImportError
     return subprocess.run(["/usr/bin/python3", "-B", "-c", tries], capture_output=True,
                           env={**os.environ, "PYTHONPATH": MODULE}).returncode == 0
 

@@ -14,7 +14,7 @@ import sys
 SOURCE = os.path.abspath(sys.argv[1])
 FOLDER = os.path.join(SOURCE, "docs/developer")
 ENDINGS = "cpp|hpp|h|py|json|md|txt|toml|yml|cff|svg|in|cmake|spdx"
-ROOMS = ["base", "formats", "fe", "modal", "stiffening", "solver", "embed", "cosim", "cli", "python", "data/schema"]
+ROOMS = ["base", "formats", "fe", "modal", "stiffening", "solver", "embed", "cosim", "analysis", "cli", "python", "data/schema"]
 # Page: the expression that finds the files of what it traces, and files that match for another reason.
 TRACED = {
     "add-a-card.md": (r"\b[CP]VISC\b|\b[CcPp]visc\b|\bclass Viscous\b|\bViscous::", []),

@@ -26,6 +26,10 @@ with tempfile.TemporaryDirectory() as folder:
     # longer by the factor 1 + angle^2/16, and it comes back to where it started.
     assert abs(time - 2.00732) < 1e-9, time
     assert abs(angle - 0.1) < 1e-4, angle
+    # The first bending mode of the boom, of EI = 566.64 N m2 and 1.61543 kg in 8 m: 1.8751^2 sqrt(EI / (m L^3)) / 2 pi.
+    printed = run(os.path.join(build, "modes"), os.path.join(ROOT, "data/examples/ex01-spinup/boom.bdf"),
+                  stdout=subprocess.PIPE).stdout
+    assert abs(float(printed) / 0.463175 - 1) < 1e-4, printed
     # The example hosts, as an outside project that knows of libbough.so alone: by CMake and by pkg-config.
     hosts, build = os.path.join(prefix, "share/bough/examples/hosts"), os.path.join(folder, "hosts")
     system = os.path.join(hosts, "system.toml")

@@ -75,7 +75,7 @@ class Stubs(unittest.TestCase):
                                     (reader, "reader.pyi", ("File", "read"))):
             declared = collect(read_stub(stub).body)
             public = {name for name in names if not name.startswith("_")}
-            self.assertEqual(public, set(declared), stub)
+            self.assertEqual(public, {name for name in declared if not name.startswith("_")}, stub)
             for name in public:
                 self.assertTrue(hasattr(module, name), f"{stub}: {name}")
 

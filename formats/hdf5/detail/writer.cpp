@@ -32,10 +32,21 @@ bool has_elements(const Dims& shape) {
 
 FileWriter::FileWriter(const std::string& path, const std::string& format, const std::string& version)
     : path_(path), part_(path) {
+  errno = part_->error().value();
+  check(!part_->error() && takes_a_block(part_->get_descriptor()), "the file cannot be created");
+  open(part_->get_name().c_str(), make_file_access(), format, version);
+}
+
+FileWriter::FileWriter(const std::string& format, const std::string& version) : path_("memory") {
+  const Handle access = make_file_access();
+  H5Pset_fapl_core(access.get(), 1 << 20, false);
+  open("memory", access, format, version);
+}
+
+void FileWriter::open(const char* name, const Handle& access, const std::string& format, const std::string& version) {
   // Creation times are left out, so that the same content gives the same bytes.
   Handle creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
   H5Pset_obj_track_times(creation.get(), false);
-  const Handle access = make_file_access();
   string_type_ = make_string_type();
   scalar_ = make_space({});
   creation_ = Handle(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
@@ -44,9 +55,7 @@ FileWriter::FileWriter(const std::string& path, const std::string& format, const
   H5Pset_obj_track_times(group_creation_.get(), false);
   link_creation_ = Handle(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
   H5Pset_create_intermediate_group(link_creation_.get(), 1);
-  errno = part_.error().value();
-  check(!part_.error() && takes_a_block(part_.get_descriptor()), "the file cannot be created");
-  file_ = Handle(H5Fcreate(part_.get_name().c_str(), H5F_ACC_TRUNC, creation.get(), access.get()), H5Fclose);
+  file_ = Handle(H5Fcreate(name, H5F_ACC_TRUNC, creation.get(), access.get()), H5Fclose);
   check(file_.is_valid(), "the file cannot be created");
   write_attribute("/", "format", format);
   write_attribute("/", "format_version", version);
@@ -272,10 +281,21 @@ void FileWriter::commit() {
   groups_.clear();
   check(flush_file(file_.get()), "the file cannot be written");
   check(file_.reset(), "the file cannot be written");
-  const bool is_there = part_.commit();
-  errno = part_.error().value();
+  const bool is_there = part_->commit();
+  errno = part_->error().value();
   check(is_there, "the file cannot be put in its place");
   trust_file(path_);
+}
+
+std::string FileWriter::get_image() {
+  groups_.clear();
+  check(H5Fflush(file_.get(), H5F_SCOPE_GLOBAL) >= 0, "the file cannot be written");
+  const auto size = H5Fget_file_image(file_.get(), nullptr, 0);
+  check(size > 0, "the file cannot be written");
+  std::string image(static_cast<std::size_t>(size), '\0');
+  check(H5Fget_file_image(file_.get(), image.data(), image.size()) == size, "the file cannot be written");
+  file_.reset();
+  return image;
 }
 
 void FileWriter::link(const std::string& path, const std::string& existing) {

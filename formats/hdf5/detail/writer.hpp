@@ -2,6 +2,7 @@
 /// \\file Writes one HDF5 file: first under another name, renamed when complete.
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,8 @@ struct ArrayAttributes {
 class FileWriter {
  public:
   FileWriter(const std::string& path, const std::string& format, const std::string& version);
+  /// Writes to memory: get_image() takes the place of commit().
+  FileWriter(const std::string& format, const std::string& version);
   ~FileWriter() = default;
   FileWriter(const FileWriter&) = delete;
   FileWriter& operator=(const FileWriter&) = delete;
@@ -58,11 +61,14 @@ class FileWriter {
   void attach_scale(const std::string& scale, const std::vector<std::string>& users);
 
   /// Starts to write the bytes so far to disk, in the background.
-  void start_sync() { part_.start_sync(); }
+  void start_sync() { part_->start_sync(); }
   /// Closes, forces the bytes to disk and renames. The file appears now.
   void commit();
+  /// Closes and gives the bytes of a file in memory.
+  std::string get_image();
 
  private:
+  void open(const char* name, const Handle& access, const std::string& format, const std::string& version);
   void check(bool ok, const std::string& what);
   /// put(dataset, its space) writes all that is in it; false: it could not.
   using Put = std::function<bool(hid_t, hid_t)>;
@@ -82,7 +88,7 @@ class FileWriter {
 
   QuietErrors quiet_;
   std::string path_;
-  PartFile part_;
+  std::optional<PartFile> part_;  ///< none: in memory
   // Made once: most of the time of a small dataset goes to what describes it.
   Handle string_type_, scalar_, creation_, group_creation_, link_creation_;
   Handle file_;

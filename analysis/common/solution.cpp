@@ -1,0 +1,93 @@
+#include "analysis/common/solution.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+
+namespace bough::analysis {
+
+namespace {
+
+struct OtherSolution {
+  const char* name;
+  bool has_nonlinear_statics;
+  bool has_complex_modes = false;
+};
+
+/// Solutions whose answer is not that of the linear cards, by number and by name of the MSC and NX sequences; 4 and 13
+/// are the differential stiffness of COSMIC, 6 its piecewise linear statics.
+const OtherSolution* find_other_solution(const std::string& sol) {
+  static const std::map<std::string, OtherSolution> all{{"4", {"statics with differential stiffness", true}},
+                                                        {"6", {"piecewise linear statics", true}},
+                                                        {"13", {"modes with differential stiffness", false}},
+                                                        {"66", {"nonlinear statics", true}},
+                                                        {"64", {"nonlinear statics", true}},
+                                                        {"99", {"nonlinear transient response", true}},
+                                                        {"106", {"nonlinear statics", true}},
+                                                        {"NLSTATIC", {"nonlinear statics", true}},
+                                                        {"129", {"nonlinear transient response", true}},
+                                                        {"NLTRAN", {"nonlinear transient response", true}},
+                                                        {"144", {"static aeroelasticity", false}},
+                                                        {"SAESTAT", {"static aeroelasticity", false}},
+                                                        {"AESTAT", {"static aeroelasticity", false}},
+                                                        {"145", {"flutter", false}},
+                                                        {"SEFLUTTR", {"flutter", false}},
+                                                        {"FLUTTR", {"flutter", false}},
+                                                        {"146", {"aeroelastic response", false}},
+                                                        {"SEAERO", {"aeroelastic response", false}},
+                                                        {"AERO", {"aeroelastic response", false}},
+                                                        {"28", {"complex eigenvalues", false, true}},
+                                                        {"29", {"complex eigenvalues", false, true}},
+                                                        {"107", {"complex eigenvalues", false, true}},
+                                                        {"SEDCEIG", {"complex eigenvalues", false, true}},
+                                                        {"DCEIG", {"complex eigenvalues", false, true}},
+                                                        {"110", {"complex eigenvalues by modes", false, true}},
+                                                        {"SEMCEIG", {"complex eigenvalues by modes", false, true}},
+                                                        {"MCEIG", {"complex eigenvalues by modes", false, true}},
+                                                        {"153", {"static heat transfer with structure", true}},
+                                                        {"NLSCSH", {"static heat transfer with structure", true}},
+                                                        {"159", {"transient heat transfer with structure", true}},
+                                                        {"NLTCSH", {"transient heat transfer with structure", true}},
+                                                        {"200", {"design optimization", false}},
+                                                        {"DESOPT", {"design optimization", false}},
+                                                        {"400", {"nonlinear analysis", true}},
+                                                        {"NONLIN", {"nonlinear analysis", true}},
+                                                        {"401", {"multistep nonlinear analysis", true}},
+                                                        {"402", {"multistep nonlinear kinematics", true}},
+                                                        {"414", {"multistep nonlinear analysis", true}},
+                                                        {"600", {"nonlinear analysis", true}},
+                                                        {"601", {"nonlinear analysis", true}},
+                                                        {"700", {"explicit nonlinear analysis", true}},
+                                                        {"701", {"explicit nonlinear analysis", true}}};
+  const auto found = all.find(sol);
+  return found == all.end() ? nullptr : &found->second;
+}
+
+}  // namespace
+
+void note_solution(const records::Deck& deck, Diagnostics& diagnostics) {
+  const auto* other = find_other_solution(deck.sol);
+  if (other)
+    diagnostics.note("cli.other-solution", deck.locate({0, 0}), fmt::format("SOL {} is {}", deck.sol, other->name),
+                     other->has_complex_modes ? "bough modes gives them; with --ignore CMETHOD the real ones"
+                                              : "this is the linear solution of the cards as they stand");
+}
+
+void demand_static_solution(const records::Deck& deck, bool is_linear, Diagnostics& diagnostics) {
+  const auto* other = find_other_solution(deck.sol);
+  if (other && other->has_nonlinear_statics && !is_linear)
+    throw InputError("cli.nonlinear-static", deck.locate({0, 0}),
+                     fmt::format("SOL {} is {}, found no --linear", deck.sol, other->name),
+                     "bough static --linear gives the linear solution of the cards as they stand");
+  note_solution(deck, diagnostics);
+}
+
+bool asks_complex_modes(const records::Deck& deck, const std::vector<std::string>& ignored) {
+  const auto* other = find_other_solution(deck.sol);
+  return other && other->has_complex_modes && std::none_of(ignored.begin(), ignored.end(), [](const std::string& name) {
+           return name == "CMETHOD" || name == "cmethod" || name == "EIGC";
+         });
+}
+
+}  // namespace bough::analysis

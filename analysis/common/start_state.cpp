@@ -1,0 +1,132 @@
+#include "analysis/common/start_state.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "analysis/common/channels.hpp"
+#include "formats/hdf5/files.hpp"
+#include "solver/linear/plant.hpp"
+
+namespace bough::analysis {
+namespace {
+
+class Starter {
+ public:
+  Starter(const hdf5::ResultsFile& results, std::string path, SourceLocation at, Diagnostics& diagnostics)
+      : results_(results), path_(std::move(path)), at_(std::move(at)), diagnostics_(diagnostics) {}
+
+  bool has(const std::string& channel) const { return results_.channels.count(channel) > 0; }
+
+  /// The last row; `expected` 0: any size.
+  std::vector<double> read(const std::string& channel, std::size_t expected) {
+    const auto found = results_.channels.find(channel);
+    if (found == results_.channels.end() || found->second.rows() == 0) {
+      fail(channel + " is missing");
+      return {};
+    }
+    const Eigen::RowVectorXd row = found->second.bottomRows(1);
+    const auto size = static_cast<std::size_t>(row.size());
+    if (expected == 0 || size == expected) return {row.begin(), row.end()};
+    fail(channel + " has " + std::to_string(size) + " values, expected " + std::to_string(expected));
+    return {};
+  }
+
+ private:
+  void fail(const std::string& what) {
+    diagnostics_.error("cli.start-mismatch", at_, "--start-from names " + path_ + ", in which " + what,
+                       "start from a file of this system, made by bough run or bough equilibrium");
+  }
+
+  const hdf5::ResultsFile& results_;
+  std::string path_;
+  SourceLocation at_;
+  Diagnostics& diagnostics_;
+};
+
+/// A run writes how its energy stands; equilibrium has none.
+bool is_of_run(const records::Checkpoint& checkpoint) { return checkpoint.find("energy") != nullptr; }
+
+/// Says which state it is; warns where the run went on past it.
+void report_time(const records::SystemSpec& spec, const hdf5::ResultsFile& results, const std::string& path,
+                 Diagnostics& diagnostics) {
+  if (results.time.size() == 0) return;  // missing channels are reported one by one
+  const double t = results.time[results.time.size() - 1];
+  double reached = t;
+  bool is_run = true;
+  try {
+    const auto checkpoint = hdf5::read_checkpoint(path);
+    reached = checkpoint.time;
+    is_run = is_of_run(checkpoint);
+  } catch (const Failure&) {
+    // It has none: the last sample is all there is.
+  }
+  diagnostics.note("cli.start-state", {path}, fmt::format("the start is its state at t = {:g}", t),
+                   spec.controllers.empty() && spec.actuators.empty() ? ""
+                   : is_run ? "controllers and actuators start as the system file says, from no state of their own"
+                            : "controllers and actuators start from the states in which they rest there");
+  if (reached > t + 1e-12 * std::max(std::abs(reached), std::abs(results.time[0])))
+    diagnostics.warning(
+        "cli.start-earlier", {path},
+        fmt::format("its last sample is of t = {:g}, its run came to t = {:g}: the start is the former", t, reached),
+        "take samples up to the end of that run (output_until, output_every), or resume it");
+}
+
+}  // namespace
+
+void set_start_state(records::SystemSpec& spec, const std::string& path, Diagnostics& diagnostics) {
+  const auto results = hdf5::read_results(path);
+  warn_incomplete(path, diagnostics);
+  report_time(spec, results, path, diagnostics);
+  Starter starter(results, path, spec.simulation.at, diagnostics);
+  for (auto& body : spec.bodies) {
+    const auto carries = [&](const records::HingeRecord& hinge) { return hinge.child == body.name; };
+    const bool floats = std::none_of(spec.hinges.begin(), spec.hinges.end(), carries);
+    if (floats && starter.has("/hinges/" + body.name + "/q")) {
+      records::HingeRecord hinge;
+      hinge.name = hinge.child = body.name;
+      hinge.type = records::HingeType::Free;
+      hinge.at = body.at;
+      spec.hinges.push_back(hinge);
+    }
+    if (body.file.empty() || body.num_modes == 0) continue;
+    const auto expected = static_cast<std::size_t>(std::max(0, body.num_modes));
+    body.eta = starter.read("/bodies/" + body.name + "/eta", expected);
+    body.eta_dot = starter.read("/bodies/" + body.name + "/eta_dot", expected);
+  }
+  for (auto& hinge : spec.hinges) {
+    if (hinge.type == records::HingeType::Fixed || !hinge.motion.empty()) continue;
+    hinge.position = starter.read("/hinges/" + hinge.name + "/q", 0);
+    hinge.rate = starter.read("/hinges/" + hinge.name + "/qdot", 0);
+  }
+}
+
+std::optional<records::Checkpoint> find_start_control(const std::string& path, const solver::System& system,
+                                                      double time, Diagnostics& diagnostics) {
+  if (path.empty()) return {};
+  records::Checkpoint found;
+  try {
+    found = hdf5::read_checkpoint(path);
+  } catch (const Failure&) {
+    return {};
+  }
+  if (is_of_run(found)) return {};
+  const int nq = system.num_q(), nu = system.num_u(), nz = system.num_z();
+  const auto* control = found.find("control");
+  const Eigen::Index held = solver::Plant(system).make_initial_point().memory.size();
+  if (found.state.size() != nq + nu + nz + 2 || (control ? control->size() - 1 : 0) != held) {
+    diagnostics.note("cli.start-state", {path}, "it has other controllers or actuators than this system",
+                     "they start as the system file says");
+    return {};
+  }
+  records::Checkpoint start;
+  start.time = time;
+  start.state = Eigen::VectorXd::Zero(found.state.size());
+  system.calc_initial_state(start.state.head(nq), start.state.segment(nq, nu));
+  start.state.segment(nq + nu, nz) = found.state.segment(nq + nu, nz);
+  start.memory.emplace_back("start", Eigen::VectorXd::Zero(1));
+  if (control) start.memory.emplace_back("control", *control);
+  return start;
+}
+
+}  // namespace bough::analysis

@@ -1,0 +1,136 @@
+#include "analysis/frequency/frequency.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <memory>
+
+#include "analysis/common/failures.hpp"
+#include "analysis/common/inputs.hpp"
+#include "analysis/common/ranks.hpp"
+#include "analysis/common/solution.hpp"
+#include "analysis/listing/listing.hpp"
+#include "analysis/listing/response_listing.hpp"
+#include "fe/statics/build_model.hpp"
+#include "fe/statics/preload.hpp"
+#include "modal/response/deck_response.hpp"
+#include "modal/response/random/random_response.hpp"
+
+namespace bough::analysis {
+namespace {
+
+/// The deck's EIGRL with the request; where neither says how many modes, those up to twice the highest frequency.
+modal::EigenOptions choose_eigen(const DeckResponseRequest& request, const records::DynamicDeck& deck,
+                                 const records::DynamicSubcase& subcase, Diagnostics& diagnostics) {
+  auto eigen = choose_eigen_options(request.eigen, deck, subcase.method, diagnostics);
+  const bool is_given = request.eigen.number > 0 || request.eigen.max_hz || !deck.eigen_methods.empty();
+  const double highest = modal::response::find_highest(deck, subcase.dynamics.frequency);
+  if (!is_given && !request.is_transient && highest > 0) {
+    eigen.num_modes = 0;
+    eigen.max_hz = 2 * highest;
+  }
+  return eigen;
+}
+
+void demand_grids(const DeckResponseRequest& request, const records::DynamicDeck& deck) {
+  for (const int id : request.grids) {
+    const bool is_grid = std::any_of(deck.grids.begin(), deck.grids.end(), [id](const auto& g) { return g.id == id; });
+    const auto& points = deck.scalar_points;
+    if (!is_grid && std::find(points.begin(), points.end(), id) == points.end())
+      throw InputError("fe.missing-grid", deck.locate({}),
+                       fmt::format("--grid names {}, which the deck does not define", id), "name a GRID or SPOINT");
+  }
+}
+
+/// SOL 108 and 109 solve without modes, unless the request has a number of modes.
+bool choose_direct(const DeckResponseRequest& request, const records::DynamicDeck& deck, Diagnostics& diagnostics) {
+  static const std::array direct{"108", "109", "26", "27", "SEDFREQ", "SEDTRAN", "DFREQ", "DTRAN", "DIRECT"};
+  const bool is_direct_sol = std::find(direct.begin(), direct.end(), deck.sol) != direct.end();
+  const bool needs_modes = request.is_modal || request.eigen.number > 0 || request.eigen.max_hz || request.no_residuals;
+  if (request.is_direct || (is_direct_sol && !needs_modes)) return true;
+  if (is_direct_sol)
+    diagnostics.note("cli.by-modes", deck.locate({}),
+                     "SOL " + deck.sol + " solves directly; this is the solution by modes",
+                     "take modes well beyond the highest frequency of the excitation (--modes, --max-hz), or --direct");
+  return false;
+}
+
+void note_random(const records::DynamicDeck& deck, const std::vector<records::DynamicSubcase>& subcases,
+                 Diagnostics& diagnostics) {
+  const auto found =
+      std::find_if(subcases.begin(), subcases.end(), [](const auto& subcase) { return subcase.dynamics.random != 0; });
+  if (found != subcases.end())
+    diagnostics.note("modal.random-transient", deck.locate(found->find_command("RANDOM")),
+                     "RANDOM has no effect on a transient response", "use 'bough frequency' for the random response");
+}
+
+}  // namespace
+
+DeckResponseAnswer solve_deck_response(const DeckResponseRequest& request, Events& events) {
+  fe::initialize_petsc();
+  do_once([&] { demand_deck(request.deck); });
+  Diagnostics diagnostics;
+  const auto model_options = make_model_options(request.model);
+  const auto deck = read_loads_deck_or_throw(request.deck, model_options, true, diagnostics);
+  std::vector<records::DynamicSubcase> subcases;
+  std::unique_ptr<modal::response::RandomAnalysis> random;
+  with_prior_messages(diagnostics, [&] {
+    demand_grids(request, deck);
+    subcases = modal::response::choose_response_subcases(deck, request.model.subcase, request.is_transient);
+    if (request.is_transient) note_random(deck, subcases, diagnostics);
+    Diagnostics own;
+    random = std::make_unique<modal::response::RandomAnalysis>(
+        deck, request.is_transient ? std::vector<records::DynamicSubcase>{} : subcases, own);
+    own.throw_if_errors();
+  });
+  note_solution(deck, diagnostics);
+  if (subcases.empty()) {  // build_model() reports it
+    subcases.emplace_back();
+    subcases.back().id = request.model.subcase;
+  }
+  modal::response::ResponseOptions response_options;
+  response_options.is_over_time = request.is_transient;
+  response_options.is_direct = choose_direct(request, deck, diagnostics);
+  if (request.no_residuals) response_options.residual_vectors = false;
+  response_options.grids = request.grids;
+  response_options.with_listing = request.has_listing;
+  response_options.with_random = !random->is_empty();
+  response_options.choose_eigen = [&](const records::DynamicSubcase& subcase, Diagnostics& own) {
+    return choose_eigen(request, deck, subcase, own);
+  };
+  response_options.choose_prestress = [&](const fe::ModelOptions& of, const records::DynamicSubcase& subcase,
+                                          Diagnostics& own) {
+    return fe::calc_subcase_prestress(deck, of, subcase, own);
+  };
+  modal::response::DeckResponseSolver solver(deck, model_options, response_options);
+  DeckResponseAnswer answer{{}, SubcaseFailures(subcases.size(), deck.subcases.size()), {}};
+  auto& response = answer.response;
+  response.is_over_time = request.is_transient;
+  for (const auto& subcase : subcases) {
+    Diagnostics own;
+    try {
+      events.show_progress(fmt::format("subcase {}", subcase.id));
+      response.subcases.push_back(solver.solve(subcase, own));
+    } catch (const Failure& failure) {
+      answer.failures.add(subcase.id, failure);
+    }
+    events.show_progress("");
+    add_new(own, diagnostics);
+  }
+  if (response.subcases.empty()) answer.failures.throw_all(diagnostics);
+  with_prior_messages(diagnostics,
+                      [&] { response.random = random->calc(response.subcases, solver.sources(), diagnostics); });
+  response.source = calc_sources(deck.files);
+  if (request.has_listing) {
+    Diagnostics of_model;  // reported by the solver
+    auto of_first = model_options;
+    for (const auto& subcase : subcases)
+      if (std::max(subcase.id, 1) == response.subcases.front().id) of_first.subcase = subcase.id;
+    answer.listing = make_response_listing(response, deck, fe::build_model(deck, of_first, of_model), diagnostics);
+  }
+  add_messages(diagnostics, events);
+  return answer;
+}
+
+}  // namespace bough::analysis

@@ -1,0 +1,139 @@
+#include "analysis/init/init_deck.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "analysis/modes/eigen_choices.hpp"
+#include "base/diagnostic.hpp"
+#include "fe/matrices/connected_parts.hpp"
+#include "fe/statics/build_model.hpp"
+
+namespace bough::analysis {
+
+namespace {
+
+/// Returns true if constraints and springs to ground prevent the six rigid-body motions of the model of the first
+/// subcase: an SPC set of rotations of solids alone does not. For a deck with errors: if it has constraints at all.
+bool is_constrained(const records::Deck& deck) {
+  const bool has_constraints =
+      std::any_of(deck.subcases.begin(), deck.subcases.end(), [](const auto& s) { return s.spc > 0; }) ||
+      std::any_of(deck.grids.begin(), deck.grids.end(), [](const auto& g) { return g.ps != 0; });
+  try {
+    Diagnostics diagnostics;
+    const auto model = fe::build_model(deck, {}, diagnostics);
+    return diagnostics.num_errors() > 0 ? has_constraints : fe::count_held_motions(model) == 6;
+  } catch (const Failure&) {
+    return has_constraints;
+  }
+}
+
+/// Grids at which other structures hang: independent grids of RBE2, reference grids of RBE3, SUPORT. Without those that
+/// a constraint holds.
+std::vector<int> find_interface(const records::Deck& deck) {
+  std::set<int> grids, held;
+  for (const auto& rigid : deck.rbe2)
+    if (rigid.gm.size() > 1) grids.insert(rigid.gn);
+  for (const auto& mean : deck.rbe3) grids.insert(mean.ref_grid);
+  for (const auto& support : deck.suport) grids.insert(support.g);
+  for (const auto& [set, supports] : deck.suport1)
+    for (const auto& support : supports) grids.insert(support.g);
+  for (const auto& constraint : deck.spc) held.insert(constraint.g);
+  std::vector<int> found;
+  for (const auto& grid : deck.grids)
+    if (grids.count(grid.id) != 0 && held.count(grid.id) == 0 && grid.ps == 0) found.push_back(grid.id);
+  return found;
+}
+
+std::string join_ids(const std::vector<int>& ids) { return fmt::format("{}", fmt::join(ids, ", ")); }
+
+/// More are written as a comment: each costs six static solutions.
+constexpr std::size_t kMaxInterfaceGrids = 12;
+
+/// [body.modes] as the first subcase's METHOD says.
+std::string make_modes_table(const records::Deck& deck, bool is_fixed) {
+  const int requested = deck.subcases.empty() ? 0 : deck.subcases.front().method;
+  const auto at = std::find_if(deck.eigen_methods.begin(), deck.eigen_methods.end(),
+                               [&](const auto& method) { return method.sid == requested; });
+  if (at == deck.eigen_methods.end()) return "number = 10              # the deck selects no METHOD\n";
+  const auto card = fmt::format("{} {} of the deck", at->is_eigrl ? "EIGRL" : "EIGR", at->sid);
+  std::string text;
+  // The deck counts the rigid modes, the body file does not.
+  const int num_rigid = is_fixed ? 0 : 6;
+  if (at->num_modes > num_rigid)
+    text += fmt::format("{:<25}# as {}{}\n", fmt::format("number = {}", at->num_modes - num_rigid), card,
+                        is_fixed ? "" : ", without six rigid modes");
+  const bool is_buckling = deck.sol == "105" || deck.sol == "SEBUCKL";
+  if (at->f2 && *at->f2 > 0 && !is_buckling && !counts_whatever_range(*at))
+    text += fmt::format("{:<25}# Hz, as {}\n", fmt::format("max_frequency = {}", *at->f2), card);
+  if (!text.empty()) return text;
+  return fmt::format("number = 10              # {} {}\n", card,
+                     at->num_modes > 0 ? "gives no more than the six rigid modes" : "gives no number");
+}
+
+// TOML: a literal string as long as the path has no quote.
+std::string quote(const std::string& path) {
+  if (path.find('\'') == std::string::npos) return "'" + path + "'";
+  std::string text = "\"";
+  for (const char c : path) text += c == '"' || c == '\\' ? std::string("\\") + c : std::string(1, c);
+  return text + "\"";
+}
+
+}  // namespace
+
+std::vector<StartFile> make_start_files(const records::Deck& deck, const DeckStart& start) {
+  const int grid = start.hinge_grid;
+  if (grid > 0 && std::none_of(deck.grids.begin(), deck.grids.end(), [&](const auto& g) { return g.id == grid; }))
+    throw InputError("cli.unknown-interface", {start.path},
+                     fmt::format("interface node {} is not a grid of {}", grid, start.path), "name a GRID of the deck");
+  const bool is_fixed = grid == 0 && is_constrained(deck);
+  const auto& name = start.name;
+  auto interface = find_interface(deck);
+  if (grid > 0) {
+    std::erase(interface, grid);
+    if (interface.size() >= kMaxInterfaceGrids) interface.clear();
+    interface.insert(interface.begin(), grid);
+  }
+  std::string frame = "frame = \"free\"           # no constraints of the deck hold the body: free-free modes\n";
+  if (is_fixed) frame = "frame = \"fixed\"          # the deck's constraints hold the body frame\n";
+  if (grid > 0)
+    frame = fmt::format(
+        "frame = \"mean\"           # not \"fixed\": modes clamped at a free hinge take nearly all inertia away from "
+        "it\n"
+        "interface = [{}]          # the hinge; add each grid that a hinge, force or moment loads\n",
+        join_ids(interface));
+  else if (!interface.empty())
+    frame += fmt::format(
+        "{}interface = [{}]          # centres of RBE2 and RBE3, SUPORT: where other bodies, forces and moments may "
+        "be\n",
+        interface.size() > kMaxInterfaceGrids ? "# " : "", join_ids(interface));
+  else
+    frame += "# interface = [1]        # each grid that a hinge, force or moment loads\n";
+  auto modes = make_modes_table(deck, is_fixed);
+  // Free-free modes alone come slowly to a shape that the hinge clamps in its other directions (a slender arm: 19 % off
+  // with ten of them). The residual vectors do it, and their own fast motion is damped out.
+  if (grid > 0)
+    modes +=
+        "residual = [\"interface\"]  # what the hinge holds in its other directions\n\n[body.damping]\n"
+        "ratio = 0.005            # of the modes\nresidual_ratio = 1.0     # of the residual vectors: much faster than "
+        "the modes\n";
+  const std::string body = fmt::format(
+      "# bough reduce {0}.toml\n[body]\nname = \"{0}\"\ndeck = {1}\n{2}\n[body.modes]\n{3}\n"
+      "[body.output]\nfile = \"{0}.h5\"\n",
+      name, quote(start.path), frame, modes);
+  std::string hinge = fmt::format("type = \"{}\"\nparent = \"ground\"\nchild = \"{}\"\n",
+                                  grid > 0   ? "revolute"
+                                  : is_fixed ? "fixed"
+                                             : "free",
+                                  name);
+  if (grid > 0) hinge += fmt::format("child_node = {}\naxis = [0.0, 0.0, 1.0]\n", grid);
+  const std::string system = fmt::format(
+      "# bough run {0}-run.toml -o {0}-run.h5\n[[body]]\nname = \"{0}\"\nfile = \"{0}.h5\"\n\n"
+      "[[hinge]]\nname = \"base\"\n{1}\n[simulation]\nduration = 1.0\noutput_step = 0.01\n{2}"
+      "gravity = [0.0, 0.0, -9.81]  # a load to begin with, in the units of the deck (-9810.0 of mm, 0.0 in space)\n",
+      name, hinge, grid > 0 ? "integrator = \"auto\"\n" : "");
+  return {{name + ".toml", body}, {name + "-run.toml", system}};
+}
+
+}  // namespace bough::analysis

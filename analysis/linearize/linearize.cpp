@@ -1,0 +1,117 @@
+#include "analysis/linearize/linearize.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "analysis/common/inputs.hpp"
+#include "analysis/linearize/operating_point.hpp"
+#include "analysis/linearize/sweep.hpp"
+#include "formats/toml/specs.hpp"
+#include "solver/linear/linearize.hpp"
+#include "solver/simulate/time_events.hpp"
+
+namespace bough::analysis {
+
+namespace {
+
+records::LinearModel linearize_at(const LinearizeRequest& request, solver::Plant& plant, solver::OperatingPoint point,
+                                  bool check, Diagnostics& diagnostics) {
+  if (request.equilibrium) point = find_rest(plant, std::move(point), request.file);
+  plant.hold_commands(point);
+  return solver::linearize(plant, point, {request.inputs, request.outputs, check, request.cut}, {request.file},
+                           diagnostics);
+}
+
+/// Warnings and notes of the first model; of the others only those that it did not have.
+void keep_new(const Diagnostics& found, Diagnostics& diagnostics) {
+  for (const auto& item : found.items()) {
+    const auto is_same = [&](const Diagnostic& d) { return d.id == item.id; };
+    if (std::none_of(diagnostics.items().begin(), diagnostics.items().end(), is_same)) diagnostics.add(item);
+  }
+}
+
+records::LinearSweep sweep_parameter(const LinearizeRequest& request, Diagnostics& diagnostics) {
+  const auto range = parse_sweep(request.sweep);
+  const auto linearize = [&](double value) {
+    auto set = request.set;
+    set.push_back(fmt::format("{}={:.17g}", range.name, value));
+    Diagnostics found;
+    const auto loaded = load_system(request.file, found, request.start_from, set);
+    auto plant = make_plant(loaded, request.open);
+    auto point = request.at ? run_to(loaded, plant, *request.at, found) : make_start(loaded, plant, found);
+    auto model = linearize_at(request, plant, std::move(point), false, found);
+    keep_new(found, diagnostics);
+    return model;
+  };
+  return make_sweep(range.name, range.values, linearize, request.file, diagnostics);
+}
+
+/// At every N-th sample of the run.
+records::LinearSweep sweep_run(const LinearizeRequest& request, const LoadedSystem& loaded, Diagnostics& diagnostics) {
+  Diagnostics checked;
+  const auto plan = solver::make_run_plan(loaded.spec.simulation, checked);
+  checked.throw_if_errors();
+  const solver::TimeEvents samples(plan);
+  std::vector<double> times;
+  for (long i = 0; i < samples.num_outputs(); i += request.each) times.push_back(samples.calc_output(i));
+  auto plant = make_plant(loaded, request.open);
+  std::optional<records::Checkpoint> last;
+  const auto linearize = [&](double t) {
+    Diagnostics found;
+    auto point = run_to(loaded, plant, t, found, &last);
+    auto model = linearize_at(request, plant, std::move(point), false, found);
+    keep_new(found, diagnostics);
+    return model;
+  };
+  return make_sweep("time", times, linearize, request.file, diagnostics);
+}
+
+/// Loads the system, with the first value of a sweep: a parameter without a value has one from it.
+LoadedSystem load(const LinearizeRequest& request, Diagnostics& diagnostics) {
+  demand_file(request.file);
+  if (has_suffix(request.file, ".toml")) demand_kind(request.file, toml_files::detect_kind(request.file), "system");
+  auto set = request.set;
+  if (!request.sweep.empty()) {
+    const auto range = parse_sweep(request.sweep);
+    set.push_back(fmt::format("{}={:.17g}", range.name, range.values.front()));
+  }
+  return load_system(request.file, diagnostics, request.start_from, set);
+}
+
+}  // namespace
+
+void check_sweep(const LinearizeRequest& request) {
+  if (!request.sweep.empty()) parse_sweep(request.sweep);
+}
+
+records::LinearModel linearize(const LinearizeRequest& request, const LoadedSystem& loaded, Diagnostics& diagnostics) {
+  auto plant = make_plant(loaded, request.open);
+  auto point = request.at ? run_to(loaded, plant, *request.at, diagnostics) : make_start(loaded, plant, diagnostics);
+  solver::warn_of_latches(loaded.system, {request.file}, diagnostics);
+  return linearize_at(request, plant, std::move(point), true, diagnostics);
+}
+
+records::LinearModel linearize(const LinearizeRequest& request, const CheckFiles& check, Events& events) {
+  Diagnostics diagnostics;
+  const auto loaded = load(request, diagnostics);
+  const auto files = collect_sources(request.file, loaded);
+  check(files);
+  auto model = linearize(request, loaded, diagnostics);
+  model.source = calc_sources(files);
+  add_messages(diagnostics, events);
+  return model;
+}
+
+records::LinearSweep sweep_linear_models(const LinearizeRequest& request, const CheckFiles& check, Events& events) {
+  Diagnostics diagnostics;
+  const auto loaded = load(request, diagnostics);
+  const auto files = collect_sources(request.file, loaded);
+  check(files);
+  auto sweep = request.each > 0 ? sweep_run(request, loaded, diagnostics) : sweep_parameter(request, diagnostics);
+  sweep.source = calc_sources(files);
+  add_messages(diagnostics, events);
+  return sweep;
+}
+
+}  // namespace bough::analysis

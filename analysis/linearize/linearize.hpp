@@ -1,0 +1,40 @@
+#pragma once
+/// \file Linear models of a multibody system: about a state, along its run, along a parameter.
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "analysis/common/events.hpp"
+#include "analysis/common/system_files.hpp"
+#include "formats/records/linear_model.hpp"
+#include "formats/records/linear_sweep.hpp"
+
+namespace bough::analysis {
+
+struct LinearizeRequest {
+  std::string file;              ///< system file
+  std::vector<std::string> set;  ///< "name=value" of [parameters]
+  std::string start_from;        ///< results file with the initial state; empty: that of the system file
+  std::optional<double> at;      ///< time of the run; none: its start
+  bool equilibrium = false;      ///< at rest or in steady spin near that state
+  bool open = false;             ///< without the controllers
+  std::vector<std::string> inputs, outputs;
+  std::string cut;    ///< actuator, sensor or controller at which one loop is opened; empty: none
+  int each = 0;       ///< sweep over every each-th sample of the run; 0: none
+  std::string sweep;  ///< sweep over "NAME=FROM:TO:N[:log]" of [parameters]; empty: none
+};
+
+/// Called with the files that were read, before the work.
+using CheckFiles = std::function<void(const std::vector<std::string>& files)>;
+
+/// Throws InputError "cli.bad-sweep" unless the sweep of the request can be parsed.
+void check_sweep(const LinearizeRequest& request);
+
+/// The model of a system that is loaded; its source stays empty.
+records::LinearModel linearize(const LinearizeRequest& request, const LoadedSystem& loaded, Diagnostics& diagnostics);
+records::LinearModel linearize(const LinearizeRequest& request, const CheckFiles& check, Events& events);
+/// A model for each value of the sweep, their poles followed.
+records::LinearSweep sweep_linear_models(const LinearizeRequest& request, const CheckFiles& check, Events& events);
+
+}  // namespace bough::analysis

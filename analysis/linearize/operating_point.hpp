@@ -1,0 +1,26 @@
+#pragma once
+/// \file The state to linearize about: the start, a later time of the run, or an equilibrium.
+#include <optional>
+
+#include "analysis/common/system_files.hpp"
+#include "formats/records/results.hpp"
+#include "solver/linear/plant.hpp"
+
+namespace bough::analysis {
+
+/// `is_open`: without the controllers.
+solver::Plant make_plant(const LoadedSystem& loaded, bool is_open = false);
+
+/// The initial state; with --start-from a file of equilibrium the states of controllers and actuators are its own.
+solver::OperatingPoint make_start(const LoadedSystem& loaded, const solver::Plant& plant, Diagnostics& diagnostics);
+
+/// The state at time t, by the run's own integrator; the plant gets the modes that hinges and constraints have then.
+/// `last`: where the run has come, goes on from there and holds where it has come then. InputError("linear.bad-time")
+/// before the start; "linear.changed-system" with `last` where an event has changed the system before t.
+solver::OperatingPoint run_to(const LoadedSystem& loaded, solver::Plant& plant, double t, Diagnostics& diagnostics,
+                              std::optional<records::Checkpoint>* last = nullptr);
+
+/// Rest or steady spin near `start`, by the hinge rates of the system file whatever those at `start` are.
+solver::OperatingPoint find_rest(solver::Plant& plant, solver::OperatingPoint start, const std::string& file);
+
+}  // namespace bough::analysis

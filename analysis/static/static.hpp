@@ -1,0 +1,50 @@
+#pragma once
+/// \file Static solutions (SOL 101) of the subcases of a deck.
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "analysis/common/events.hpp"
+#include "analysis/common/model_choice.hpp"
+#include "analysis/common/subcase_failures.hpp"
+#include "formats/records/listing.hpp"
+#include "formats/records/static_result.hpp"
+
+namespace bough::analysis {
+
+struct StaticRequest {
+  std::string deck;  ///< file
+  ModelChoice model;
+  std::vector<std::string> grid_forces;  ///< ids of grids whose forces are listed, or "all"; empty: none
+  bool is_linear = false;                ///< the linear solution of a nonlinear SOL
+  bool has_strains = false;              ///< strains of elements too
+  bool has_listing = false;              ///< print file of the output requests
+};
+
+/// Takes the subcases in the order of the deck, those of one model together, combinations last.
+class StaticReceiver {
+ public:
+  virtual ~StaticReceiver() = default;
+  /// Before the first subcase. `keeps`: get_kept() is called for combinations.
+  virtual void begin(bool keeps) = 0;
+  /// Before the first add(). The model may change afterwards.
+  virtual void set_model(const fe::Model& model) = 0;
+  virtual void add(std::vector<records::StaticSubcase> subcases) = 0;
+  /// Returns true if more subcases are of no use: a file cannot be written.
+  virtual bool has_failed() { return false; }
+  virtual const std::vector<records::StaticSubcase>& get_kept() = 0;
+};
+
+struct StaticAnswer {
+  SubcaseFailures failures;  ///< of the subcases without a solution
+  std::optional<records::Listing> listing;
+  std::vector<std::pair<std::string, std::string>> source;  ///< file, SHA-256
+};
+
+/// Solves every subcase with a load, or the requested one, then SUBCOM, SYMCOM and REPCASE. Collective.
+/// \throws InputError "cli.bad-grids", "cli.nonlinear-static"; the failures of all subcases if none has a solution;
+/// what reading and fe throw.
+StaticAnswer solve_static(const StaticRequest& request, StaticReceiver& receiver, Events& events);
+
+}  // namespace bough::analysis

@@ -1,0 +1,131 @@
+#include "cli/select/selection_tables.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "analysis/common/inputs.hpp"
+#include "cli/common/console.hpp"
+#include "cli/common/text_file.hpp"
+#include "formats/export/csv.hpp"
+#include "formats/report/svg_plot.hpp"
+
+namespace bough::cli {
+
+nlohmann::json make_json(const records::FlexBody& body, const analysis::Selection& s) {
+  auto modes = nlohmann::json::array();
+  for (int i = 0; i < body.num_modes(); ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    const auto& mode = s.ranking.modes[k];
+    nlohmann::json one{{"mode", i + 1},
+                       {"frequency_hz", body.frequency_hz[i]},
+                       {"cost", mode.cost},
+                       {"share", s.ranking.total > 0 ? mode.cost / s.ranking.total : 0},
+                       {"closed_form", mode.closed_form},
+                       {"kept", s.choices[k].kept},
+                       {"reason", s.choices[k].reason}};
+    if (s.modal_hankel.size() > 0) one["hankel"] = s.modal_hankel[i];
+    if (body.effective_mass.rows() == body.num_modes()) {
+      const Eigen::VectorXd row = body.effective_mass.row(i);
+      one["effective_mass"] = std::vector<double>(row.begin(), row.end());
+    }
+    modes.push_back(std::move(one));
+  }
+  auto losses = nlohmann::json::array();
+  for (const auto& loss : s.losses)
+    losses.push_back({{"name", loss.name},
+                      {"total_cost", loss.total},
+                      {"lost_share", loss.lost},
+                      {"peak_gain", loss.peak},
+                      {"peak_error", loss.error},
+                      {"peak_error_hz", loss.error_hz},
+                      {"balanced_bound", loss.balanced_bound},
+                      {"steady_error", loss.steady_error}});
+  nlohmann::json json{{"modes", modes},
+                      {"total_cost", s.ranking.total},
+                      {"other_cost", s.ranking.other},
+                      {"dropped_share", s.dropped},
+                      {"lost_share", s.lost},
+                      {"configurations", losses}};
+  if (s.static_error >= 0) json["static_error"] = s.static_error;
+  return json;
+}
+
+std::string format(const records::FlexBody& body, const analysis::Selection& s, int inertial_load) {
+  Table table{{"mode", "frequency Hz", "cost", "share %"}, {}};
+  const bool has_hankel = s.modal_hankel.size() > 0, has_mass = body.effective_mass.rows() == body.num_modes();
+  if (has_hankel) table.headings.push_back("Hankel");
+  if (has_mass) table.headings.push_back("eff. mass %");
+  if (inertial_load > 0) table.headings.push_back("K_G");
+  for (const char* heading : {"kept", "reason"}) table.headings.push_back(heading);
+  for (int i = 0; i < body.num_modes(); ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    const double cost = s.ranking.modes[k].cost;
+    std::vector<std::string> row{std::to_string(i + 1), fmt::format("{:.6g}", body.frequency_hz[i]),
+                                 fmt::format("{:.4g}", cost),
+                                 fmt::format("{:.3g}", s.ranking.total > 0 ? 100 * cost / s.ranking.total : 0)};
+    if (has_hankel) row.push_back(fmt::format("{:.3g}", s.modal_hankel[i]));
+    if (has_mass)
+      row.push_back(fmt::format("{:.3g}", 100 * body.effective_mass.row(i).head<3>().maxCoeff() / body.mass));
+    if (inertial_load > 0) {
+      const auto& kg = body.kg_inertial[static_cast<std::size_t>(inertial_load - 1)];
+      const double stiffness = body.modal_stiffness(i, i);
+      row.push_back(kg.size() > 0 && stiffness > 0 ? fmt::format("{:.3g}", kg(i, i) / stiffness) : "-");
+    }
+    row.push_back(s.choices[k].kept ? "yes" : "no");
+    row.push_back(s.choices[k].reason);
+    table.rows.push_back(std::move(row));
+  }
+  auto text = table.to_text();
+  if (s.losses.size() == 1) {
+    text += fmt::format("\ntotal cost {:.6g}", s.ranking.total);
+    if (s.ranking.other != 0) text += fmt::format(", of it {:.4g} by the rest of the system", s.ranking.other);
+  } else {
+    text += fmt::format("\nshares are the largest of {}", count(s.losses.size(), "configuration"));
+  }
+  text += fmt::format("\n{} kept, {} dropped with {:.3g} % of the cost", count(s.kept.size(), "mode"),
+                      static_cast<std::size_t>(body.num_modes()) - s.kept.size(), 100 * s.dropped);
+  text += fmt::format("; the outputs lose {:.3g} % (mean square)", 100 * s.lost);
+  if (s.static_error >= 0) text += fmt::format(", static response off by {:.3g} %", 100 * s.static_error);
+  text += "\n";
+  for (const auto& loss : s.losses) {
+    if (s.losses.size() > 1)
+      text += fmt::format("{}: total cost {:.6g}, loses {:.3g} %\n", loss.name, loss.total, 100 * loss.lost);
+    text += fmt::format(
+        "largest gain {:.4g}, of what is lost {:.4g} at {:.4g} Hz (a balanced model of as many states: at most "
+        "{:.4g}), "
+        "steady gain off by {:.3g} %\n",
+        loss.peak, loss.error, loss.error_hz, loss.balanced_bound, 100 * loss.steady_error);
+  }
+  return text;
+}
+
+void write_response(const analysis::Selection& s, const std::string& path) {
+  if (s.losses.empty() || s.losses.front().frequency_hz.size() == 0) return;
+  const analysis::Loss& loss = s.losses.front();
+  if (analysis::has_suffix(path, ".svg")) {
+    const auto decibel = [](const Eigen::VectorXd& gain) {
+      return Eigen::VectorXd(20 * gain.array().max(1e-300).log10());
+    };
+    report::Plot plot;
+    plot.title = loss.name;
+    plot.x_label = "frequency [1/T]";
+    plot.y_label = "largest singular value [dB]";
+    plot.has_log_x = true;
+    plot.curves = {{"all modes", loss.frequency_hz, decibel(loss.before)},
+                   {"modes kept", loss.frequency_hz, decibel(loss.after)},
+                   {"difference", loss.frequency_hz, decibel(loss.difference)}};
+    write_text_file(path, report::draw_svg(plot));
+    return;
+  }
+  std::ostringstream text;
+  exports::write_csv(text, {{"frequency_hz", loss.frequency_hz},
+                            {"before", loss.before},
+                            {"after", loss.after},
+                            {"difference", loss.difference}});
+  write_text_file(path, text.str());
+}
+
+}  // namespace bough::cli

@@ -1,0 +1,250 @@
+// Commands as functions: reduce, modes, static, select.
+#include "analysis/common/body_files.hpp"
+#include "analysis/common/failures.hpp"
+#include "analysis/modes/modes.hpp"
+#include "analysis/reduce/reduce_body.hpp"
+#include "analysis/select/selection.hpp"
+#include "analysis/static/case_extremes.hpp"
+#include "analysis/static/static.hpp"
+#include "cli/select/selection_tables.hpp"
+#include "fe/linear/petsc.hpp"
+#include "formats/hdf5/files.hpp"
+#include "python/bindings/bindings.hpp"
+
+namespace bough::python {
+
+namespace {
+
+using Strings = std::vector<std::string>;
+
+/// Keeps messages for Python's warnings; progress(stage) of Python is called with the interpreter's lock.
+class PythonEvents final : public analysis::Events {
+ public:
+  explicit PythonEvents(const py::object& progress) : progress_(progress) {}
+  void add_message(const Diagnostic& message) override { messages_.add(message); }
+  void show_progress(const std::string& stage) override {
+    if (progress_.is_none() || stage.empty()) return;
+    const py::gil_scoped_acquire acquired;
+    progress_(stage);
+  }
+  const Diagnostics& get_messages() const { return messages_; }
+
+ private:
+  const py::object& progress_;
+  Diagnostics messages_;
+};
+
+/// Runs act(events) with the lock of the module and without that of the interpreter; failures get the location `file`.
+/// Gives the messages, of which warnings are Python's too.
+template <class Act>
+std::vector<Diagnostic> run(const std::string& file, const py::object& progress, const Act& act) {
+  PythonEvents events(progress);
+  {
+    const py::gil_scoped_release released;
+    const Exclusive held;
+    fe::initialize_petsc();
+    analysis::with_file(file, [&] {
+      act(events);
+      return 0;
+    });
+  }
+  return tell(events.get_messages());
+}
+
+py::tuple reduce(const std::string& file, std::optional<int> modes, std::optional<double> max_hz,
+                 std::optional<std::vector<int>> interface, std::optional<bool> free, std::optional<bool> full,
+                 std::optional<std::string> name, std::optional<std::string> mass, std::optional<std::string> integrals,
+                 std::optional<std::vector<double>> origin, std::optional<double> damping, std::optional<int> subcase,
+                 Strings loads, Strings recover, Strings ignore, Strings matrices, bool strain_energy,
+                 const std::string& solver, const py::object& progress) {
+  if (modes && *modes < 0)
+    throw py::value_error("modes is a number of modes, 0 or more, not " + std::to_string(*modes));
+  if (max_hz && !(*max_hz > 0)) throw py::value_error("max_hz is a frequency above 0, not " + std::to_string(*max_hz));
+  if (origin && origin->size() != 3) throw py::value_error("origin has three numbers");
+  if (file.empty() && matrices.empty()) throw py::value_error("file is missing; only matrices do without");
+  analysis::ReduceRequest request;
+  request.file = file;
+  request.name = name.value_or("");
+  request.num_modes = modes;
+  request.max_hz = max_hz;
+  request.free = free.value_or(false);
+  request.interface_nodes = interface.value_or(std::vector<int>{});
+  request.loads = std::move(loads);
+  request.full = full;
+  request.strain_energy = strain_energy;
+  request.recover = std::move(recover);
+  request.mass = mass.value_or("");
+  request.integrals = integrals.value_or("");
+  request.origin = origin.value_or(std::vector<double>{});
+  request.ignore_cards = std::move(ignore);
+  request.subcase = subcase.value_or(0);
+  request.damping = damping;
+  request.matrices = std::move(matrices);
+  request.solver = solver;
+  records::FlexBody body;
+  auto messages = run(file, progress, [&](PythonEvents& events) {
+    body = analysis::reduce_body(
+               request, [](const records::BodySpec&) {}, events)
+               .body;
+  });
+  return py::make_tuple(std::move(body), std::move(messages));
+}
+
+analysis::ModelChoice make_model_choice(int subcase, bool free, const std::string& mass, Strings ignore) {
+  if (mass != "deck" && mass != "lumped" && mass != "consistent")
+    throw py::value_error("mass is deck, lumped or consistent, not " + mass);
+  return {subcase, free, mass, std::move(ignore)};
+}
+
+/// Keeps the modes of the first subcase.
+class FirstModes final : public analysis::ModesReceiver {
+ public:
+  explicit FirstModes(std::string deck) : deck_(std::move(deck)) {}
+  void begin(std::size_t, bool is_complex) override {
+    if (is_complex)
+      throw InputError("cli.complex-option", {deck_}, "the deck requests complex modes, bough.modes gives real ones",
+                       "add ignore=\"CMETHOD\", or write a file by bough.call(\"modes\", deck, \"-o\", file)");
+  }
+  void take(analysis::SubcaseModes& modes, Diagnostics&) override {
+    if (!result) result = std::move(modes.result);
+  }
+  void take(records::ComplexModesResult&, Diagnostics&) override {}
+
+  std::optional<records::ModesResult> result;
+
+ private:
+  std::string deck_;
+};
+
+py::tuple modes(const std::string& deck, std::optional<int> number, std::optional<double> min_hz,
+                std::optional<double> max_hz, bool buckling, bool no_check, const std::string& solver, bool energies,
+                int meffmass, int subcase, bool free, const std::string& mass, Strings ignore,
+                const py::object& progress) {
+  if (number && *number < 1)
+    throw py::value_error("number is a number of modes above 0, not " + std::to_string(*number));
+  analysis::ModesRequest request;
+  request.deck = deck;
+  request.model = make_model_choice(subcase, free, mass, std::move(ignore));
+  request.eigen = {number.value_or(0), min_hz, max_hz, buckling, no_check, solver};
+  request.energies = energies;
+  request.about_grid = meffmass;
+  FirstModes found(deck);
+  auto messages = run(deck, progress, [&](PythonEvents& events) {
+    const auto answer = analysis::solve_modes(request, found, events);
+    if (!answer.failures.is_empty()) answer.failures.throw_all(events.get_messages());
+  });
+  return py::make_tuple(std::move(*found.result), std::move(messages));
+}
+
+/// Keeps all subcases.
+class StaticRecord final : public analysis::StaticReceiver {
+ public:
+  explicit StaticRecord(bool has_extremes) : has_extremes_(has_extremes) {}
+  void begin(bool) override {}
+  void set_model(const fe::Model& model) override {
+    result.dof_map = model.calc_dof_map();
+    result.mesh = model.calc_mesh();
+  }
+  void add(std::vector<records::StaticSubcase> subcases) override {
+    for (auto& subcase : subcases) {
+      if (has_extremes_) analysis::add_to_extremes(result.dof_map, subcase, result.extremes);
+      result.subcases.push_back(std::move(subcase));
+    }
+  }
+  const std::vector<records::StaticSubcase>& get_kept() override { return result.subcases; }
+
+  records::StaticResult result;
+
+ private:
+  bool has_extremes_;
+};
+
+/// The bytes of the HDF5 file, and the messages.
+py::tuple solve_static(const std::string& deck, int subcase, bool free, const std::string& mass, Strings ignore,
+                       Strings grid_forces, bool linear, bool strains, bool extremes, const py::object& progress) {
+  analysis::StaticRequest request;
+  request.deck = deck;
+  request.model = make_model_choice(subcase, free, mass, std::move(ignore));
+  request.grid_forces = std::move(grid_forces);
+  request.is_linear = linear;
+  request.has_strains = strains;
+  std::string image;
+  auto messages = run(deck, progress, [&](PythonEvents& events) {
+    StaticRecord record(extremes);
+    auto answer = analysis::solve_static(request, record, events);
+    if (!answer.failures.is_empty()) answer.failures.throw_all(events.get_messages());
+    record.result.source = std::move(answer.source);
+    image = hdf5::make_static_image(record.result);
+  });
+  return py::make_tuple(py::bytes(image), std::move(messages));
+}
+
+/// The smaller body, the ranking as JSON, the messages. `body`: instead of the file.
+py::tuple select(const std::string& file, const records::FlexBody* body, Strings systems, Strings inputs,
+                 Strings outputs, Strings weight, const std::string& spectrum, int number,
+                 std::optional<double> tolerance, double below, std::vector<int> keep, double damping,
+                 std::vector<double> at, bool equilibrium, bool open, Strings set, const py::object& progress) {
+  analysis::SelectRequest request;
+  request.body = file;
+  request.systems = std::move(systems);
+  request.set = std::move(set);
+  request.inputs = std::move(inputs);
+  request.outputs = std::move(outputs);
+  request.weights = std::move(weight);
+  request.spectrum = spectrum;
+  request.pinned = std::move(keep);
+  request.number = number;
+  request.tolerance = tolerance;
+  request.below_hz = below;
+  request.damping = damping;
+  request.at = std::move(at);
+  request.equilibrium = equilibrium;
+  request.open = open;
+  records::FlexBody small;
+  std::string ranking;
+  auto messages = run(file, progress, [&](PythonEvents& events) {
+    Strings files;
+    records::FlexBody of_file;
+    if (body == nullptr) {
+      files = analysis::list_select_inputs(request);
+      Diagnostics notes;
+      of_file = analysis::read_moving_body(file, notes);
+      analysis::add_messages(notes, events);
+    } else if (!spectrum.empty()) {
+      files = {spectrum};
+    }
+    const auto& whole = body == nullptr ? of_file : *body;
+    const auto selection = analysis::select_modes(request, whole, events);
+    small = analysis::keep_selected(request, whole, selection, files);
+    ranking = cli::make_json(whole, selection).dump();
+  });
+  return py::make_tuple(std::move(small), std::move(ranking), std::move(messages));
+}
+
+}  // namespace
+
+void bind_analyses(py::module_& m) {
+  const auto none = py::none();
+  m.def("reduce", &reduce, py::arg("file") = "", py::kw_only(), py::arg("modes") = none, py::arg("max_hz") = none,
+        py::arg("interface") = none, py::arg("free") = none, py::arg("full") = none, py::arg("name") = none,
+        py::arg("mass") = none, py::arg("integrals") = none, py::arg("origin") = none, py::arg("damping") = none,
+        py::arg("subcase") = none, py::arg("loads") = Strings(), py::arg("recover") = Strings(),
+        py::arg("ignore") = Strings(), py::arg("matrices") = Strings(), py::arg("strain_energy") = false,
+        py::arg("solver") = "", py::arg("progress") = none);
+  m.def("modes", &modes, py::arg("deck"), py::arg("number") = none, py::kw_only(), py::arg("min_hz") = none,
+        py::arg("max_hz") = none, py::arg("buckling") = false, py::arg("no_check") = false, py::arg("solver") = "",
+        py::arg("energies") = false, py::arg("meffmass") = 0, py::arg("subcase") = 0, py::arg("free") = false,
+        py::arg("mass") = "deck", py::arg("ignore") = Strings(), py::arg("progress") = none);
+  m.def("static", &solve_static, py::arg("deck"), py::kw_only(), py::arg("subcase") = 0, py::arg("free") = false,
+        py::arg("mass") = "deck", py::arg("ignore") = Strings(), py::arg("grid_forces") = Strings(),
+        py::arg("linear") = false, py::arg("strains") = false, py::arg("extremes") = false, py::arg("progress") = none,
+        "The bytes of the file of bough static.");
+  m.def("select", &select, py::arg("file"), py::arg("body"), py::kw_only(), py::arg("systems") = Strings(),
+        py::arg("inputs") = Strings(), py::arg("outputs") = Strings(), py::arg("weight") = Strings(),
+        py::arg("spectrum") = "", py::arg("number") = 0, py::arg("tolerance") = none, py::arg("below") = 0.0,
+        py::arg("keep") = std::vector<int>(), py::arg("damping") = 0.01, py::arg("at") = std::vector<double>(),
+        py::arg("equilibrium") = false, py::arg("open") = false, py::arg("set") = Strings(), py::arg("progress") = none,
+        "The body with the modes kept, and the JSON of bough select.");
+}
+
+}  // namespace bough::python

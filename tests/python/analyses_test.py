@@ -1,0 +1,122 @@
+"""reduce, modes, static and select of Python have the numbers and the options of the commands of the same name."""
+import json
+import os
+import shutil
+import subprocess
+import sys
+import unittest
+
+import numpy as np
+
+import bough
+from module_test import EXAMPLES, InFolder
+
+PROGRAM = os.environ["BOUGH_PROGRAM"]
+
+
+class Analyses(InFolder):
+    def setUp(self):
+        super().setUp()
+        for name in ("boom.bdf", "boom.toml", "spinup.toml"):
+            shutil.copy(os.path.join(EXAMPLES, "ex01-spinup", name), self.folder)
+
+    def test_modes_are_those_of_the_command(self):
+        stages = []
+        for options, words in (({"max_hz": 20.0}, ["--max-hz", "20"]), ({"free": True, "number": 8}, ["--free", "-n8"]),
+                               ({"mass": "lumped", "no_check": True}, ["--mass", "lumped", "--no-check"])):
+            subprocess.run([PROGRAM, "modes", "boom.bdf", "-q", "-o", "m.h5", *words], check=True)
+            modes, expected = bough.modes("boom.bdf", progress=stages.append, **options), bough.read_modes("m.h5")
+            np.testing.assert_array_equal(modes.frequency_hz, expected.frequency_hz)
+            np.testing.assert_array_equal(modes.phi[-1], expected.phi[-1])
+        self.assertTrue(all(isinstance(stage, str) for stage in stages))
+        with self.assertRaisesRegex(ValueError, "mass is deck, lumped or consistent, not heavy"):
+            bough.modes("boom.bdf", mass="heavy")
+        with self.assertRaises(TypeError):
+            bough.modes("boom.bdf", nmber=3)
+
+    def test_static_is_the_file_of_the_command(self):
+        with open("boom.bdf", encoding="utf-8") as f:
+            text = f.read()
+        begin = text.index("BEGIN BULK")
+        control = "SOL 101\nCEND\nSPC = 1\nSUBCASE 1\nLOAD = 7\nSUBCASE 2\nLOAD = 8\n"
+        self.write("loaded.bdf", control + text[begin:].replace(
+            "ENDDATA", "FORCE,7,11,,1.,0.,1.,0.\nMOMENT,8,11,,1.,0.,0.,1.\nENDDATA"))
+        words = ["--extremes", "--strains", "--grid-forces", "all"]
+        subprocess.run([PROGRAM, "static", "loaded.bdf", "-q", "-o", "s.h5", *words], check=True)
+        found = bough.static("loaded.bdf", extremes=True, strains=True, grid_forces="all")
+        expected = bough.reader.read("s.h5")
+        self.assertEqual((found.format, found.path), ("bough-static", "loaded.bdf"))
+        self.assertEqual(sorted(found), sorted(expected))
+        for name in found:
+            np.testing.assert_array_equal(found[name], expected[name], err_msg=name)
+            self.assertEqual(found.describe(name), expected.describe(name))
+        self.assertEqual(str(found.attributes), str(expected.attributes))
+        one = bough.static("loaded.bdf", subcase=2)
+        self.assertNotIn("subcases/1/displacement", one)
+        np.testing.assert_array_equal(one["subcases/2/displacement"], found["subcases/2/displacement"])
+
+    def test_every_choice_of_reduce(self):
+        options = {"interface": [11], "loads": ["tip=6:2", "9:13"], "recover": "17-25", "strain_energy": True,
+                   "full": True, "name": "rod", "damping": 0.02, "origin": [0.5, 0.0, 0.0], "solver": "lapack"}
+        words = ["--interface", "11", "--load", "tip=6:2", "--load", "9:13", "--recover", "17-25", "--strain-energy",
+                 "--full", "--name", "rod", "--damping", "0.02", "--origin", "0.5", "0", "0", "--solver", "lapack"]
+        subprocess.run([PROGRAM, "reduce", "boom.bdf", "-n3", "-q", "-o", "c.h5", *words], check=True)
+        bough.reduce("boom.bdf", modes=3, **options).save("p.h5")
+        found, expected = bough.reader.read("p.h5"), bough.reader.read("c.h5")
+        self.assertEqual(sorted(found), sorted(name for name in expected if not name.startswith("accuracy/")))
+        for name in found:
+            np.testing.assert_array_equal(found[name], expected[name], err_msg=name)
+        with self.assertRaisesRegex(bough.InputError, "cannot read --load"):
+            bough.reduce("boom.bdf", modes=3, loads="here")
+
+    def test_matrices_of_another_program(self):
+        bough.call("matrices", "boom.bdf", "-o", "k.h5", "-q")
+        expected = bough.reduce("boom.bdf", modes=3).frequency_hz
+        np.testing.assert_allclose(bough.reduce("boom.bdf", matrices="k.h5", modes=3).frequency_hz, expected, rtol=1e-9)
+        self.assertTrue(bough.reduce(matrices=["k.h5"], modes=3, free=True).is_free_free)
+        with self.assertRaisesRegex(ValueError, "only matrices do without"):
+            bough.reduce(modes=3)
+
+    def test_nothing_is_written_or_redirected(self):
+        before = sorted(os.listdir())
+        read_end, write_end = os.pipe()
+        kept = os.dup(1)
+        os.dup2(write_end, 1)
+        try:
+            bough.select(bough.reduce("boom.bdf", modes=3), number=1)
+            bough.modes("boom.bdf", 2)
+        finally:
+            os.dup2(kept, 1)
+            os.close(kept)
+            os.close(write_end)
+        with os.fdopen(read_end) as printed:
+            self.assertEqual(printed.read(), "")
+        self.assertEqual(sorted(os.listdir()), before)
+
+    def test_ranking_is_that_of_the_command(self):
+        body = bough.reduce("boom.toml")
+        body.save("boom.h5")
+        words = ["select", "boom.h5", "--keep", "2", "-n1", "--json"]
+        ran = subprocess.run([PROGRAM, *words], check=True, capture_output=True, text=True)
+        self.assertEqual(bough.select("boom.h5", keep=2, number=1)[1], json.loads(ran.stdout))
+        with self.assertRaisesRegex(ValueError, "selected by its file"):
+            bough.select(body, "spinup.toml")
+
+    def test_version(self):
+        ran = subprocess.run([PROGRAM, "--version"], check=True, capture_output=True, text=True)
+        self.assertIn(bough.__version__, ran.stdout.split("\n")[0])
+
+    def test_without_the_compiled_module(self):
+        shutil.copytree(os.path.join(os.path.dirname(bough.__file__)), "bare/bough",
+                        ignore=shutil.ignore_patterns("*.so"))
+        for text in ("import bough; bough.modes('boom.bdf')", "from bough import FlexBody",
+                     "import bough; bough.__version__"):
+            ran = subprocess.run([sys.executable, "-B", "-c", text], text=True, capture_output=True,
+                                 env={**os.environ, "PYTHONPATH": "bare"})
+            self.assertRegex(ran.stderr, r"ImportError: bough\.\w+ needs the compiled module bough\._bough.*\./dev demo")
+        subprocess.run([sys.executable, "-B", "-c", "import bough; bough.reader.read"], check=True,
+                       env={**os.environ, "PYTHONPATH": "bare"})
+
+
+if __name__ == "__main__":
+    unittest.main()
