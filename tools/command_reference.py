@@ -8,6 +8,7 @@ import os
 import re
 import subprocess
 import sys
+import textwrap
 
 PAGE = os.path.join(os.path.dirname(os.path.dirname(os.path.abspath(__file__))), "docs", "commands.md")
 HEAD = """# Options of every command
@@ -85,7 +86,7 @@ def make_section(command, page):
 
 def make_page(program):
     commands = list_commands(program)
-    text = HEAD + " ".join(f"[{c}](#{c})" for c in commands) + "\n\n"
+    text = HEAD + textwrap.fill(", ".join(f"[{c}](#{c})" for c in commands), 120) + "\n\n"
     text += "".join(make_section(c, print_page(program, f"--man-page={c}")) for c in commands)
     return text.rstrip("\n") + "\n"
 

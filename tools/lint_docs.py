@@ -7,6 +7,7 @@ import sys
 ROOT = sys.argv[1]
 files = subprocess.run(["git", "-C", ROOT, "ls-files", "*.hpp", "*.cpp", "*.py", "*.md"], capture_output=True, text=True,
                        check=True).stdout.split()
+GENERATED = {"docs/commands.md"}
 findings = []
 for path in files:
     with open(os.path.join(ROOT, path), encoding="utf-8") as f:
@@ -18,7 +19,7 @@ for path in files:
             findings.append(f"{path}:{number}: {len(line)} columns, 120 is the limit")
         if re.search(r"[ \t]+$", line):
             findings.append(f"{path}:{number}: trailing blanks")
-    if len(lines) > 700:
+    if len(lines) > 700 and path not in GENERATED:
         findings.append(f"{path}: {len(lines)} lines; is it one idea?")
     if path.endswith(".hpp") and not path.startswith("tests/") and "///" not in "\n".join(lines[:40]):
         findings.append(f"{path}: no description at the top")

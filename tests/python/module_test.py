@@ -19,28 +19,23 @@ name = "arm"
 mass = 2.0
 cg = [0.5, 0.0, 0.0]
 inertia = [0.001, 0.17, 0.17]
-
 [[hinge]]
 name = "pivot"
 type = "revolute"
 child = "arm"
 axis = [0.0, 1.0, 0.0]
 position_deg = 30.0
-
 [[sensor]]
 name = "angle"
 type = "hinge_angle"
 hinge = "pivot"
-
 [[sensor]]
 name = "rate"
 type = "hinge_rate"
 hinge = "pivot"
-
 [[controller]]
 name = "law"
 {law}
-
 [[actuator]]
 name = "motor"
 type = "hinge"
