@@ -186,6 +186,8 @@ class Deck(ProgramTest):
         if first.returncode != 0:  # cards of a kind that Bough does not read
             if "[deck.unsupported-section]" in first.stderr or "[deck.include-missing]" in first.stderr:
                 return False  # superelements in sections of their own; a part of another deck
+            if "error: SEBULK cannot be written" in first.stderr:
+                return False  # an external superelement, whose matrices are in other files
             cards = sorted({line.split(": error: ")[1].split(" ")[0] for line in first.stderr.splitlines()
                             if "[deck.unsupported-card]" in line})
             self.assertTrue(cards, first.stderr)

@@ -38,6 +38,8 @@ void write_dof_sets(const records::Deck& deck, CardSink& sink) {
   write_lists("ASET1", deck.aset, sink);
   write_lists("OMIT1", deck.omit, sink);
   write_lists("QSET1", deck.qset, sink);
+  write_lists("BSET1", deck.bset, sink);
+  write_lists("CSET1", deck.cset, sink);
 }
 
 void write_direct_matrices(const records::Deck& deck, CardSink& sink) {

@@ -277,7 +277,7 @@ TEST(Corotational, ScalarSpringsStayLinear) {
   m.make();
   const CorotationalElement e(*m.elements[0], list_nodes(m));
   EXPECT_FALSE(e.follows_nodes());
-  const MatrixXd u = make_random(1, 4 * e.num_dofs()).reshaped(e.num_dofs(), 4);
+  const MatrixXd u = make_random(1, kSeriesTop * e.num_dofs()).reshaped(e.num_dofs(), kSeriesTop);
   EXPECT_EQ(e.calc_forces(u), e.K() * u);
 }
 

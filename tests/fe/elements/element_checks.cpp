@@ -98,11 +98,11 @@ struct FrameCheck {
   }
 
   double calc_third(const VectorXd& a, const VectorXd& b, const VectorXd& c) const {
-    MatrixXd u = MatrixXd::Zero(a.size(), 8);
+    MatrixXd u = MatrixXd::Zero(a.size(), 2 * kSeriesTop);
     u.col(0) = a + b;
-    u.col(4) = a - b;
+    u.col(kSeriesTop) = a - b;
     const MatrixXd f = corotational.calc_forces(u);
-    return 0.5 * c.dot(f.col(1) - f.col(5));
+    return 0.5 * c.dot(f.col(1) - f.col(kSeriesTop + 1));
   }
 
   MatrixXd calc_geometric(const VectorXd& a) const {

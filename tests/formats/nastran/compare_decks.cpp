@@ -268,6 +268,8 @@ void expect_equal_decks(const Deck& a, const Deck& b, double tolerance) {
   BOUGH_COMPARE(qset);
   BOUGH_COMPARE(bset);
   BOUGH_COMPARE(cset);
+  BOUGH_COMPARE(bset);
+  BOUGH_COMPARE(cset);
   BOUGH_COMPARE(omit);
   BOUGH_COMPARE(spc);
   BOUGH_COMPARE(spcadd);

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <filesystem>
 #include <random>
+#include <set>
+#include <string_view>
 
 #include "formats/nastran/detail/card_text.hpp"
 #include "formats/nastran/detail/parsers.hpp"
@@ -105,8 +107,12 @@ TEST(WrittenDecks, EveryCardThatIsRead) {
   const auto r = read(every_card);
   ASSERT_EQ(r.diagnostics.num_errors(), 0) << r.get_messages();
   // A parser without a card here is not tested: add the card to every_card.hpp, and to the writer.
-  for (const auto& [name, parser] : detail::get_card_parsers())
+  // Cards of external superelements need their files: superelements_test.cpp.
+  const std::set<std::string_view> of_superelements{"SEBULK", "SECONCT", "SELOAD", "EXTRN", "DTI"};
+  for (const auto& [name, parser] : detail::get_card_parsers()) {
+    if (of_superelements.contains(name)) continue;
     EXPECT_EQ(r.deck.card_counts.count(std::string(name)), 1u) << name << " is read but not in every_card.hpp";
+  }
   expect_round_trip(r.deck);
 }
 
