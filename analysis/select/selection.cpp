@@ -186,8 +186,8 @@ std::vector<std::string> list_select_inputs(const SelectRequest& request) {
   return files;
 }
 
-Selection select_modes(const SelectRequest& request, const records::FlexBody& body, Events& events) {
-  Diagnostics diagnostics;
+Selection select_modes(const SelectRequest& request, const records::FlexBody& body, Events& events,
+                       Diagnostics diagnostics) {
   std::vector<Weighing> weighings;
   std::vector<statespace::NodeDirection> inputs, outputs;
   if (request.systems.empty()) {

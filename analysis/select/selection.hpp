@@ -38,9 +38,10 @@ struct Selection {
 std::vector<std::string> list_select_inputs(const SelectRequest& request);
 
 /// Ranks the modes of `body`, which `request.body` names, chooses those to keep and computes the loss without the
-/// others. Warnings: select.always-kept, select.most-is-lost.
+/// others. Warnings: select.always-kept, select.most-is-lost. `diagnostics`: messages from reading the body.
 /// \throws InputError "select.no-signals", "select.unknown-mode" and those of the weighings.
-Selection select_modes(const SelectRequest& request, const records::FlexBody& body, Events& events);
+Selection select_modes(const SelectRequest& request, const records::FlexBody& body, Events& events,
+                       Diagnostics diagnostics = {});
 
 /// The body with the modes kept; `files` are added to its source. Throws InputError "select.nothing-kept".
 records::FlexBody keep_selected(const SelectRequest& request, const records::FlexBody& body, const Selection& selection,

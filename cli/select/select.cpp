@@ -1,5 +1,6 @@
 #include <CLI/CLI.hpp>
 #include <memory>
+#include <utility>
 
 #include "analysis/common/body_files.hpp"
 #include "analysis/common/failures.hpp"
@@ -32,8 +33,7 @@ int run_select(const SelectOptions& o) {
   const auto body =
       o.output.empty() ? analysis::read_body(request.body, of_file) : analysis::read_moving_body(request.body, of_file);
   ConsoleEvents events(console);
-  analysis::add_messages(of_file, events);
-  const auto selection = analysis::select_modes(request, body, events);
+  const auto selection = analysis::select_modes(request, body, events, std::move(of_file));
   console.print(events.get_messages());
   if (o.json)
     console.print_data(make_json(body, selection).dump(2) + "\n");

@@ -238,7 +238,7 @@ PAGES = {
                            stands_for={"spinup.toml": "short.toml", "spinup.h5": "run.h5"}),
     "docs/report.md": Page(),
     "docs/developer/tour.md": Page(),
-    "docs/command-line.md": boom({**TIP, "density.toml": DENSITY}, ("batch density.toml -q",), left_out=("VERB",), stands_for={
+    "docs/command-line.md": boom({**TIP, "density.toml": DENSITY}, ("batch density.toml -q",), left_out=("VERB", "--srs"), stands_for={  # curves_test.py
         "a.h5": "run.h5", "b.h5": "run.h5", "outcomes.h5": "density/outcomes.h5"}),
     "docs/other-fe-codes.md": boom(
         {"wing.bdf": read("data/examples/ex08-satellite/wing.bdf")},
@@ -276,6 +276,7 @@ for page_name, page_needs in PAGES.items():
 ELSEWHERE = {
     "docs/tutorial.md": "docs_test.py",
     "docs/your-deck.md": "docs_test.py",
+    "docs/external-superelements.md": "superelements_test.py",
     **{f"data/examples/{name}/README.md": "docs_test.py" for name in (
         "ex01-spinup", "ex04-free-flyer", "ex05-plate", "ex06-campaign")},
 }

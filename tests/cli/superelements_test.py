@@ -1,5 +1,5 @@
 """External superelements: read (extseout and se_static of the shared models, with the vendor's results), written and read
-again, as bodies with recovery rows, checked as delivered components, and half ones refused."""
+again, as bodies with recovery rows (docs/external-superelements.md), checked as delivered components, half ones refused."""
 import json
 import os
 import re
