@@ -29,7 +29,8 @@ constexpr std::array written_cards{
     "CQUAD1", "CQUAD2", "CRBAR", "CRBE1", "CRBE2", "CRBE3", "CRIGD3", "CRROD", "CRSPLINE", "CRTRPLT", "CTRBSC",
     "CTRIA1", "CTRIA2", "CTRIM6", "CTRMEM", "CTRPLT", "CTRPLT1", "CTRSHL", "CWEDGE", "MAT6", "PCOMP1", "PCOMP2",
     "PELBOW", "PIHEX", "PIS2D8", "PLOAD3", "PQDMEM", "PQDMEM1", "PQDMEM2", "PQDPLT", "PQUAD1", "PQUAD2", "PTRBSC",
-    "PTRIA1", "PTRIA2", "PTRIM6", "PTRMEM", "PTRPLT", "PTRPLT1", "PTRSHL", "QSET", "QSET1"};
+    "PTRIA1", "PTRIA2", "PTRIM6", "PTRMEM", "PTRPLT", "PTRPLT1", "PTRSHL", "QSET", "QSET1", "BSET", "BSET1", "CSET",
+    "CSET1"};
 
 /// "1.5*K1, 1.*K2": a line for each, so that none grows beyond 72 columns.
 std::string join_matrices(const std::vector<std::pair<double, std::string>>& matrices) {
