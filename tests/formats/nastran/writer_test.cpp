@@ -161,6 +161,7 @@ TEST(WrittenDecks, OwnAndSharedModels) {
     SCOPED_TRACE(path);
     Read r;
     r.deck = read_deck(path, {}, r.diagnostics);
+    if (!r.deck.super.sebulk.empty()) continue;  // refused: its matrices are in other files
     // Cards that are in no record cannot be compared.
     ReadOptions options;
     for (const auto& card : r.deck.unused) options.ignore_cards.push_back(card.name);
