@@ -19,7 +19,7 @@
 
 namespace {
 
-using bough::fe::check_petsc;
+using bough::linear::check_petsc;
 
 /// Of this process: what others do on the machine counts little.
 double get_processor_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
@@ -31,10 +31,10 @@ void write(Mat A, const std::string& path) {
   check_petsc(PetscViewerDestroy(&viewer));
 }
 
-bough::fe::PetscMat read(const std::string& path) {
+bough::linear::PetscMat read(const std::string& path) {
   PetscViewer viewer = nullptr;
   check_petsc(PetscViewerBinaryOpen(PETSC_COMM_WORLD, path.c_str(), FILE_MODE_READ, &viewer));
-  bough::fe::PetscMat A;
+  bough::linear::PetscMat A;
   check_petsc(MatCreate(PETSC_COMM_WORLD, A.out()));
   check_petsc(MatSetType(A.get(), MATAIJ));
   check_petsc(MatLoad(A.get(), viewer));
@@ -105,7 +105,7 @@ int main(int argc, char** argv) {
     std::fputs("usage: raw_modes write DECK PREFIX | solve PREFIX cholmod|mumps [PETSc options]\n", stderr);
     return 2;
   }
-  bough::fe::initialize_petsc();
+  bough::linear::initialize_petsc();
   int no_argc = 0;
   char** no_argv = nullptr;
   check_petsc(SlepcInitialize(&no_argc, &no_argv, nullptr, nullptr));

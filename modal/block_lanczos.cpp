@@ -15,20 +15,20 @@ namespace {
 
 /// W -= V C.
 void subtract(const Eigen::Ref<const MatrixXd>& V, const MatrixXd& C, MatrixXd& W) {
-  fe::multiply_dense(false, V, -C, 1, W);
+  linear::multiply_dense(false, V, -C, 1, W);
 }
 
 /// The first columns of V become V S: a few rows at a time, since a second V would be the largest thing in memory.
 void turn(const MatrixXd& S, Eigen::Index size, MatrixXd& V) {
   constexpr Eigen::Index kRows = 1024;
   const auto num_blocks = static_cast<int>((V.rows() + kRows - 1) / kRows);
-  fe::do_halves(num_blocks, 20, [&](int from, int to) {
+  linear::do_halves(num_blocks, 20, [&](int from, int to) {
     MatrixXd rows, turned;
     for (Eigen::Index first = from * kRows; first < std::min(to * kRows, V.rows()); first += kRows) {
       const auto count = std::min(kRows, V.rows() - first);
       rows = V.block(first, 0, count, size);
       turned.resize(count, S.cols());
-      fe::multiply_dense(false, rows, S, 0, turned);
+      linear::multiply_dense(false, rows, S, 0, turned);
       V.block(first, 0, count, S.cols()) = turned;
     }
   });
@@ -105,7 +105,7 @@ VectorXd BlockLanczos::make_unit(const MatrixXd& G, double floor, MatrixXd& W, M
 double BlockLanczos::relieve(MatrixXd& W, MatrixXd& B_W, MatrixXd& C) const {
   const auto b = B_before_.cols(), both = b + B_next_.cols();
   const auto V = V_.middleCols(size_ - both, both);
-  const MatrixXd C_near = fe::calc_inner_products(V, B_W);
+  const MatrixXd C_near = linear::calc_inner_products(V, B_W);
   subtract(V, C_near, W);
   subtract(B_before_, C_near.topRows(b), B_W);
   subtract(B_next_, C_near.bottomRows(both - b), B_W);
@@ -121,7 +121,7 @@ void BlockLanczos::orthonormalize(MatrixXd& W, MatrixXd& C, MatrixXd& R) {
   // What the recurrence couples first: left in, it would carry errors of the basis into the other directions, which
   // grow by the ratio of both from block to block. Known vectors, whose θ may be much larger, are off before.
   if (is_recurrent_ && has_known) {
-    subtract(problem_.deflate, fe::calc_inner_products(problem_.deflate, B_W), W);
+    subtract(problem_.deflate, linear::calc_inner_products(problem_.deflate, B_W), W);
     B_W = problem_.multiply_mass(W);
   }
   const double near = is_recurrent_ ? relieve(W, B_W, C) : 0;
@@ -129,17 +129,17 @@ void BlockLanczos::orthonormalize(MatrixXd& W, MatrixXd& C, MatrixXd& R) {
   for (int pass = 0; pass < 5 && W.cols() > 0; ++pass) {
     VectorXd squares = VectorXd::Zero(W.cols());  // of W as it was given: of what is taken off, and what is left
     if (has_known) {
-      const MatrixXd D = fe::calc_inner_products(problem_.deflate, B_W);
+      const MatrixXd D = linear::calc_inner_products(problem_.deflate, B_W);
       subtract(problem_.deflate, D, W);
       squares += D.colwise().squaredNorm().transpose();
     }
     const auto V = V_.leftCols(size_);
-    const MatrixXd C_pass = fe::calc_inner_products(V, B_W);
+    const MatrixXd C_pass = linear::calc_inner_products(V, B_W);
     subtract(V, C_pass, W);
     C += C_pass * R;
     B_W.resize(0, 0);  // as large as what comes
     B_W = problem_.multiply_mass(W);
-    const MatrixXd G = fe::calc_inner_products(W, B_W);
+    const MatrixXd G = linear::calc_inner_products(W, B_W);
     squares += C_pass.colwise().squaredNorm().transpose() + G.diagonal();
     const double given = std::sqrt(squares.cwiseAbs().maxCoeff());
     if (pass == 0) scale_ = std::max({scale_, near, given});
@@ -151,7 +151,7 @@ void BlockLanczos::orthonormalize(MatrixXd& W, MatrixXd& C, MatrixXd& R) {
     // as their ratio squared.
     if (given > most * length.minCoeff()) continue;
     if (length.maxCoeff() > 3 * length.minCoeff())
-      make_unit(fe::calc_inner_products(W, B_W), kDependentColumn, W, B_W, R);
+      make_unit(linear::calc_inner_products(W, B_W), kDependentColumn, W, B_W, R);
     break;
   }
   B_before_ = std::move(B_next_);

@@ -52,10 +52,10 @@ class BucklingModes {
   const EigenOptions& options_;
   Diagnostics& diagnostics_;
   detail::Pencil pencil_;
-  fe::SymmetricMatrix K_G_, signed_K_G_;
+  linear::SymmetricMatrix K_G_, signed_K_G_;
   Side signed_as_ = Both;
-  std::optional<fe::SymmetricFactor> own_factor_;
-  const fe::SymmetricFactor* factor_;  ///< of K
+  std::optional<linear::SymmetricFactor> own_factor_;
+  const linear::SymmetricFactor* factor_;  ///< of K
   double largest_theta_ = 0;
   int round_ = 0, count_ = -1;
   std::vector<SolverUse> uses_;
@@ -67,7 +67,7 @@ void BucklingModes::add_roots(Side side, int number, Roots& roots) {
   // A: -K_G, whose positive θ are positive load factors, or K_G for the negative ones.
   const Side sign = side == Negative ? Negative : Positive;
   if (!signed_K_G_ || signed_as_ != sign) {
-    signed_K_G_ = fe::scale(K_G_, -sign);
+    signed_K_G_ = linear::scale(K_G_, -sign);
     signed_as_ = sign;
   }
   if (!factor_) factor_ = &own_factor_.emplace(pencil_.K, false);
@@ -104,7 +104,7 @@ int BucklingModes::count_below(Side side, double magnitude) const {
     if (side == -sign) continue;
     int count = -1;
     for (double f = magnitude; count < 0 && f < 1.001 * magnitude; f *= 1 + detail::kMoveOfLoadFactor)
-      count = fe::count_negative_eigenvalues(pencil_.K, sign * f, K_G_).value_or(-1);
+      count = linear::count_negative_eigenvalues(pencil_.K, sign * f, K_G_).value_or(-1);
     if (count < 0) return -1;
     sum += count;
   }
@@ -173,9 +173,9 @@ EigenPairs BucklingModes::make_pairs(Roots roots, int number) {
   pairs.inertia_count = std::max(count_, -1);
   pairs.solvers = uses_;
   pairs.residual =
-      fe::calc_residuals(fe::calc_residual_scale(pencil_.K_diagonal, fe::get_diagonal(K_G_), lambda), X,
-                         pencil_.calc_K_times(X), -fe::multiply(K_G_, X) * lambda.asDiagonal(), pencil_.kinds);
-  fe::check_residuals(pairs.residual, "load factor", diagnostics_);
+      linear::calc_residuals(linear::calc_residual_scale(pencil_.K_diagonal, linear::get_diagonal(K_G_), lambda), X,
+                             pencil_.calc_K_times(X), -linear::multiply(K_G_, X) * lambda.asDiagonal(), pencil_.kinds);
+  linear::check_residuals(pairs.residual, "load factor", diagnostics_);
   return pairs;
 }
 

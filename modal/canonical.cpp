@@ -23,7 +23,7 @@ VectorXd calc_basis_weights(const fe::Model& model) {
   VectorXd weights = VectorXd::Zero(model.num_gdofs());
   for (std::size_t k = 0; k < model.nodes().size(); ++k) {
     const auto& node = model.nodes()[k];
-    const double own = 1.25 + 0.25 * fe::calc_fixed_number(static_cast<int>(k), 7);
+    const double own = 1.25 + 0.25 * linear::calc_fixed_number(static_cast<int>(k), 7);
     for (int c = 0; c < node.num_dofs; ++c)
       weights(node.first_gdof + c) = own * (c + 1) * (c < 3 ? 1.0 : 0.01 * size * size);
   }
@@ -45,14 +45,14 @@ void orthonormalize_ascending(const MatrixXd& G, MatrixXd& X) {
   else
     inverse = Eigen::SelfAdjointEigenSolver<MatrixXd>(0.5 * (G + G.transpose())).operatorInverseSqrt();
   MatrixXd Y(X.rows(), X.cols());
-  fe::multiply_dense(false, X, inverse, 0, Y);
+  linear::multiply_dense(false, X, inverse, 0, Y);
   X = std::move(Y);
 }
 
-void project_out(const fe::SymmetricMatrix& M, const MatrixXd& R, MatrixXd& X) {
+void project_out(const linear::SymmetricMatrix& M, const MatrixXd& R, MatrixXd& X) {
   if (R.cols() == 0) return;
-  const MatrixXd MR = fe::multiply(M, R);
-  for (int pass = 0; pass < 2; ++pass) X -= R * fe::calc_inner_products(MR, X);
+  const MatrixXd MR = linear::multiply(M, R);
+  for (int pass = 0; pass < 2; ++pass) X -= R * linear::calc_inner_products(MR, X);
 }
 
 VectorXd find_largest(const Eigen::Ref<const MatrixXd>& X) {

@@ -25,7 +25,7 @@ MatrixXd calc_cluster_rotation(const VectorXd& weights, const Eigen::Ref<const M
 void orthonormalize_ascending(const MatrixXd& G, MatrixXd& X);
 
 /// Subtracts from X what it has of the M-orthonormal R, twice.
-void project_out(const fe::SymmetricMatrix& M, const MatrixXd& R, MatrixXd& X);
+void project_out(const linear::SymmetricMatrix& M, const MatrixXd& R, MatrixXd& X);
 
 /// Makes the component of largest magnitude of each column positive, the first among those within 1e-6 of it.
 void fix_signs(MatrixXd& Phi);

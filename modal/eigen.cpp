@@ -137,12 +137,12 @@ EigenPairs calc_normal_modes(const fe::System& system, const EigenOptions& optio
   check_request(system.model, options);
   detail::initialize_slepc();
   auto answer = find_answer(system, options);
-  if (answer.pairs.Phi.cols() > detail::kColumnsAtOnce) fe::release_freed_memory();
+  if (answer.pairs.Phi.cols() > detail::kColumnsAtOnce) linear::release_freed_memory();
   const auto restored = find_soft(system, options, answer.pairs);
   for (const auto& item : answer.said.items())
     if (!restored.is_done || item.id != "modal.roundoff") diagnostics.add(item);
   detail::warn_of_lost_digits(restored, diagnostics);
-  fe::check_residuals(answer.pairs.residual, "mode", diagnostics);
+  linear::check_residuals(answer.pairs.residual, "mode", diagnostics);
   warn_of_negative(system.model, answer.pairs, diagnostics);
   return std::move(answer.pairs);
 }

@@ -20,8 +20,8 @@ struct EigenOptions {
   bool check_inertia = true;  ///< Sylvester count: no mode missed below the highest
   std::string solver = {};    ///< EPS type of SLEPc (find_eps_type); empty: the one that suits the model
   std::function<void(int converged, int wanted)> progress;
-  const fe::SymmetricFactor* factor = nullptr;  ///< LLᵀ of K of the system, where the caller has it: saves one
-  int least_rows_to_release = 500000;           ///< from so many f-dofs on K gives its memory back while Lanczos runs
+  const linear::SymmetricFactor* factor = nullptr;  ///< LLᵀ of K of the system, where the caller has it: saves one
+  int least_rows_to_release = 500000;  ///< from so many f-dofs on K gives its memory back while Lanczos runs
 };
 
 /// K φ = λ M φ, φᵀMφ = 1, ascending λ. Sign rule: the component of largest magnitude (first by g-dof among those

@@ -85,7 +85,7 @@ std::string number_text(double value) {
 class SoftModes {
  public:
   SoftModes(const fe::System& system, const Pencil& pencil, MatrixXd X)
-      : pencil_(pencil), factor_(shift(system), false, fe::FactorMethod::Pivoting), X_(std::move(X)) {}
+      : pencil_(pencil), factor_(shift(system), false, linear::FactorMethod::Pivoting), X_(std::move(X)) {}
 
   /// False where nothing came of it.
   bool improve() {
@@ -120,8 +120,8 @@ class SoftModes {
   }
 
  private:
-  fe::SymmetricMatrix shift(const fe::System& system) const {
-    return fe::add_diagonal(system.K, kShift * fe::fill_diagonal(system.K_diagonal, pencil_.kinds));
+  linear::SymmetricMatrix shift(const fe::System& system) const {
+    return linear::add_diagonal(system.K, kShift * linear::fill_diagonal(system.K_diagonal, pencil_.kinds));
   }
 
   void find_ritz() {
@@ -148,15 +148,15 @@ class SoftModes {
   }
 
   const Pencil& pencil_;
-  fe::SymmetricFactor factor_;
+  linear::SymmetricFactor factor_;
   MatrixXd X_, M_X_, forces_;
   VectorXd theta_, eta_, parts_, whole_;
 };
 
 /// Puts the improved modes in the place of the `soft` ones and sorts all.
 void replace(const Pencil& pencil, const SoftModes& better, const std::vector<Index>& soft, EigenPairs& pairs) {
-  const VectorXd residual = fe::calc_pair_residuals(pencil.K_diagonal, pencil.M_diagonal, better.theta(), better.X(),
-                                                    better.forces(), better.M_X(), pencil.kinds);
+  const VectorXd residual = linear::calc_pair_residuals(pencil.K_diagonal, pencil.M_diagonal, better.theta(),
+                                                        better.X(), better.forces(), better.M_X(), pencil.kinds);
   for (std::size_t i = 0; i < soft.size(); ++i) {
     const auto c = static_cast<Index>(i);
     pairs.lambda(soft[i]) = better.theta()(c);
@@ -188,11 +188,11 @@ ElementStrain calc_element_strain(const fe::Model& model, const MatrixXd& X_g, b
     add_element(K, u, is_fine ? kMostDofs : 0, forces, strain);
     for (int i = 0; i < element.num_dofs(); ++i) strain.forces.row(element.gdofs()[i]) += forces.row(i);
   });
-  fe::sum_over_ranks(strain.forces);
-  fe::sum_over_ranks(strain.energy);
+  linear::sum_over_ranks(strain.forces);
+  linear::sum_over_ranks(strain.energy);
   MatrixXd parts(m, 2);
   parts << strain.parts, strain.whole;
-  fe::sum_over_ranks(parts);
+  linear::sum_over_ranks(parts);
   strain.parts = parts.col(0);
   strain.whole = parts.col(1);
   return strain;

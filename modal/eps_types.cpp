@@ -14,7 +14,7 @@ namespace bough::modal::detail {
 namespace {
 
 using Eigen::VectorXd;
-using fe::check_petsc;
+using linear::check_petsc;
 
 /// What both types have in eps->data.
 class OwnSolver {
@@ -130,7 +130,7 @@ PetscErrorCode set_up_sort(EPS eps) {
 /// columns.
 void set_basis_size(EPS eps, PetscInt number) {
   Mat B = nullptr;
-  fe::PetscVec like;
+  linear::PetscVec like;
   check_petsc(STGetMatrix(eps->st, 1, &B));
   check_petsc(MatCreateVecs(B, like.out(), nullptr));
   check_petsc(BVDestroy(&eps->V));
@@ -172,7 +172,7 @@ PetscErrorCode compute_vectors(EPS eps) {
   PetscCall(MatCreateVecs(B, &column, nullptr));
   PetscCall(BVSetType(eps->V, BVVECS));
   for (Eigen::Index j = 0; j < X.cols(); ++j) {
-    const PetscErrorCode code = run_guarded(get(eps).failure, [&] { fe::scatter(X.col(j), column); });
+    const PetscErrorCode code = run_guarded(get(eps).failure, [&] { linear::scatter(X.col(j), column); });
     PetscCall(code);
     PetscCall(BVInsertVec(eps->V, static_cast<PetscInt>(j), column));
   }

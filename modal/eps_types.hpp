@@ -33,7 +33,7 @@ struct BlockLanczosSettings {
 void set_settings(EPS eps, BlockLanczosSettings settings);
 
 struct LowRankSettings {
-  fe::SymmetricMatrix K, B;                        ///< of the problem; K without springs that only `deflation` moves
+  linear::SymmetricMatrix K, B;                    ///< of the problem; K without springs that only `deflation` moves
   const Eigen::SparseMatrix<double>* C = nullptr;  ///< B = C Cᵀ; outlives the solution
   MatrixXd deflation;                              ///< B-orthonormal eigenvectors that are known
   bool projects_deflation = false;                 ///< out of every solution (LowRankProblem)

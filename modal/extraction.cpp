@@ -22,11 +22,11 @@
 
 namespace bough::modal::detail {
 
-using fe::check_petsc;
+using linear::check_petsc;
 
 namespace {
 
-using SlepcEps = fe::PetscHandle<EPS, EPSDestroy>;
+using SlepcEps = linear::PetscHandle<EPS, EPSDestroy>;
 
 /// Above this size a solve of one right-hand side mostly waits for the factor's entries.
 constexpr PetscInt kBlockRows = 5000;
@@ -34,7 +34,7 @@ constexpr PetscInt kBlockRows = 5000;
 }  // namespace
 
 void initialize_slepc() {
-  fe::initialize_petsc();
+  linear::initialize_petsc();
   PetscBool initialized = PETSC_FALSE;
   SlepcInitialized(&initialized);
   if (initialized) return;
@@ -63,7 +63,7 @@ std::string choose_solver(const SolverFacts& facts) {
 struct Factored {
   FactoredOperator op;
   bool is_definite = false, is_singular = false;
-  std::optional<fe::SymmetricFactor> own;
+  std::optional<linear::SymmetricFactor> own;
 };
 
 namespace {
@@ -77,36 +77,36 @@ MatrixXd make_start(const EigenProblem& problem, int b) {
   const PetscInt n = get_size(problem);
   MatrixXd start(n, b);
   for (int c = 0; c < b; ++c)
-    for (int i = 0; i < n; ++i) start(i, c) = fe::calc_fixed_number(i, problem.start + 1000 * c);
+    for (int i = 0; i < n; ++i) start(i, c) = linear::calc_fixed_number(i, problem.start + 1000 * c);
   return start;
 }
 
-BlockApply multiply_by(const fe::SymmetricMatrix& A) {
-  return [A](const Eigen::Ref<const MatrixXd>& X) { return fe::multiply(A, X); };
+BlockApply multiply_by(const linear::SymmetricMatrix& A) {
+  return [A](const Eigen::Ref<const MatrixXd>& X) { return linear::multiply(A, X); };
 }
 
 /// The caller's factor, else LLᵀ by CHOLMOD on one process, else LDLᵀ by MUMPS.
 FactoredHandle factor(const EigenProblem& problem) {
   auto made = std::make_shared<Factored>();
-  const bool is_alone = fe::initialize_petsc().size == 1;
-  fe::SymmetricMatrix shifted;
-  if (is_near(problem) && problem.shift != 0) shifted = fe::add(problem.A, -problem.shift, problem.B);
-  const fe::SymmetricMatrix F = !is_near(problem) ? problem.B : shifted ? shifted : problem.A;
-  const fe::SymmetricFactor* factor = problem.factor;
+  const bool is_alone = linear::initialize_petsc().size == 1;
+  linear::SymmetricMatrix shifted;
+  if (is_near(problem) && problem.shift != 0) shifted = linear::add(problem.A, -problem.shift, problem.B);
+  const linear::SymmetricMatrix F = !is_near(problem) ? problem.B : shifted ? shifted : problem.A;
+  const linear::SymmetricFactor* factor = problem.factor;
   if (!factor && is_alone) {
-    made->own = fe::SymmetricFactor::try_definite(F);
-    if (shifted) fe::copy_row_order(shifted, problem.A);  // the count takes its dissection
+    made->own = linear::SymmetricFactor::try_definite(F);
+    if (shifted) linear::copy_row_order(shifted, problem.A);  // the count takes its dissection
     if (!made->own && problem.definite_only) {
       made->is_singular = true;
       return made;
     }
   }
-  if (!factor && !made->own) made->own.emplace(F, false, fe::FactorMethod::Pivoting);
+  if (!factor && !made->own) made->own.emplace(F, false, linear::FactorMethod::Pivoting);
   if (!factor) factor = &*made->own;
   made->is_definite = factor->is_definite();
   made->is_singular =
       factor->is_singular() ||
-      (problem.min_energy > 0 && fe::calc_softest_energy(F, problem.kinds, *factor) < problem.min_energy);
+      (problem.min_energy > 0 && linear::calc_softest_energy(F, problem.kinds, *factor) < problem.min_energy);
   if (made->is_singular) return made;
   made->op.factor = factor;
   made->op.solve = [factor](const Eigen::Ref<const MatrixXd>& X) { return factor->solve(X); };
@@ -116,10 +116,10 @@ FactoredHandle factor(const EigenProblem& problem) {
   return made;
 }
 
-fe::PetscVec make_vector(const fe::SymmetricMatrix& A, const Eigen::Ref<const VectorXd>& values) {
-  fe::PetscVec v;
+linear::PetscVec make_vector(const linear::SymmetricMatrix& A, const Eigen::Ref<const VectorXd>& values) {
+  linear::PetscVec v;
   check_petsc(MatCreateVecs(A.sparse(), v.out(), nullptr));
-  fe::scatter(values, v.get());
+  linear::scatter(values, v.get());
   return v;
 }
 
@@ -140,7 +140,7 @@ PetscErrorCode apply_preconditioner(PC pc, Vec b, Vec x) {
   if (const PetscErrorCode code = PCShellGetContext(pc, &context); code != 0) return code;
   std::exception_ptr failure;
   return run_guarded(failure, [&] {
-    fe::scatter(static_cast<const FactoredOperator*>(context)->solve(MatrixXd(fe::gather(b))).col(0), x);
+    linear::scatter(static_cast<const FactoredOperator*>(context)->solve(MatrixXd(linear::gather(b))).col(0), x);
   });
 }
 
@@ -201,12 +201,12 @@ class EpsRun {
       check_petsc(EPSGetConverged(eps(), &converged));
     }
     const bool is_own = is_own_type(eps());
-    reason = code != 0 ? fe::get_petsc_message(code) : "it did not converge";
+    reason = code != 0 ? linear::get_petsc_message(code) : "it did not converge";
     if (code != 0 || (is_own ? end < 0 : converged == 0)) return std::nullopt;
     Extraction result;
     if (is_own) {
       result.vectors = take_vectors(eps(), result.values);
-      fe::release_freed_memory();  // of the vectors that are left out
+      linear::release_freed_memory();  // of the vectors that are left out
     } else {
       copy_pairs(converged, result);
     }
@@ -258,7 +258,7 @@ class EpsRun {
       check_petsc(EPSSetDimensions(eps(), wanted_, PETSC_DEFAULT, PETSC_DEFAULT));
       check_petsc(EPSSetTolerances(eps(), is_large ? std::max(problem_.tolerance, kBlockTolerance) : problem_.tolerance,
                                    kMaxBlockRestarts));
-      fe::release_freed_memory();
+      linear::release_freed_memory();
       BlockLanczosSettings settings;
       settings.start = make_start(problem_, problem_.block > 0 ? std::min(problem_.block, wanted_)
                                             : wanted_ > 100    ? 8
@@ -291,7 +291,7 @@ class EpsRun {
       op_.deflation = &deflation_;
       return;
     }
-    std::vector<fe::PetscVec> known;
+    std::vector<linear::PetscVec> known;
     std::vector<Vec> known_raw;
     for (Eigen::Index c = 0; c < deflation_.cols(); ++c) {
       known.push_back(make_vector(problem_.A, deflation_.col(c)));
@@ -306,7 +306,7 @@ class EpsRun {
       const int block = std::min(16, wanted_);
       start = op_.solve(op_.multiply_mass(make_start(problem_, ((wanted_ - 1) / block + 2) * block)));
     }
-    std::vector<fe::PetscVec> first;
+    std::vector<linear::PetscVec> first;
     std::vector<Vec> first_raw;
     for (Eigen::Index c = 0; c < start.cols(); ++c) {
       first.push_back(make_vector(problem_.A, start.col(c)));
@@ -321,14 +321,14 @@ class EpsRun {
     const PetscInt number = converged == n ? std::min<PetscInt>(converged, wanted_) : converged;
     result.values.resize(number);
     result.vectors.resize(n, number);
-    fe::PetscVec x;
+    linear::PetscVec x;
     check_petsc(MatCreateVecs(problem_.A.sparse(), x.out(), nullptr));
     for (PetscInt i = 0; i < number; ++i) {
       PetscScalar value = 0;
       check_petsc(EPSGetEigenpair(eps(), i, &value, nullptr, x.get(), nullptr));
       if (const auto failure = get_failure(eps())) std::rethrow_exception(failure);
       result.values(i) = value;
-      result.vectors.col(i) = fe::gather(x.get());
+      result.vectors.col(i) = linear::gather(x.get());
     }
   }
 
@@ -343,7 +343,7 @@ class EpsRun {
 
   const EigenProblem& problem_;
   FactoredOperator& op_;
-  const fe::PetscMat A_ = make_operator(problem_.A), B_ = make_operator(problem_.B);
+  const linear::PetscMat A_ = make_operator(problem_.A), B_ = make_operator(problem_.B);
   int wanted_, room_;
   bool is_preconditioned_ = false;
   MatrixXd deflation_;

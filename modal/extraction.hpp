@@ -33,7 +33,7 @@ struct Factored;
 using FactoredHandle = std::shared_ptr<Factored>;
 
 struct EigenProblem {
-  fe::SymmetricMatrix A, B;
+  linear::SymmetricMatrix A, B;
   Spectrum spectrum = Spectrum::NearShift;
   double shift = 0;
   int num_wanted = 1;
@@ -41,17 +41,17 @@ struct EigenProblem {
   int max_subspace = 0;  ///< rank of the operator, 0: the size of A
   MatrixXd deflate;      ///< n x k known eigenvectors, kept out; k may be 0
   double tolerance = 1e-12;
-  const fe::SymmetricFactor* factor = nullptr;  ///< of A - shift B or of B, whichever is factored; null: made here
-  FactoredHandle* kept = nullptr;               ///< keeps the factor made here for the next call; null: nobody asks
-  bool definite_only = false;                   ///< an indefinite matrix to factor counts as singular
-  double min_energy = 0;    ///< below this relative energy of its softest motion it does too (calc_softest_energy)
-  fe::RowKinds kinds = {};  ///< of the rows, where min_energy is set
-  int start = 0;            ///< picks one of the fixed start vectors
-  int block = 0;            ///< columns of the blocks, as many as a root has copies; 0: what is fastest
-  std::string solver = {};  ///< EPS type that overrules choose_solver(); empty: none does
+  const linear::SymmetricFactor* factor = nullptr;  ///< of A - shift B or of B, whichever is factored; null: made here
+  FactoredHandle* kept = nullptr;                   ///< keeps the factor made here for the next call; null: nobody asks
+  bool definite_only = false;                       ///< an indefinite matrix to factor counts as singular
+  double min_energy = 0;        ///< below this relative energy of its softest motion it does too (calc_softest_energy)
+  linear::RowKinds kinds = {};  ///< of the rows, where min_energy is set
+  int start = 0;                ///< picks one of the fixed start vectors
+  int block = 0;                ///< columns of the blocks, as many as a root has copies; 0: what is fastest
+  std::string solver = {};      ///< EPS type that overrules choose_solver(); empty: none does
   const Eigen::SparseMatrix<double>* low_rank = nullptr;  ///< C of B = C Cᵀ where B has a low rank
-  fe::SymmetricMatrix stiffness;  ///< with `low_rank`: A without the springs that only `deflate` moves
-  bool projects_deflate = false;  ///< with `low_rank`: A has such springs
+  linear::SymmetricMatrix stiffness;  ///< with `low_rank`: A without the springs that only `deflate` moves
+  bool projects_deflate = false;      ///< with `low_rank`: A has such springs
   std::function<void(int converged, int wanted)> progress = {};
   /// From `release` on A is not needed any more, `restore` asks for it back. The caller brings
   /// it back in the end, when the factor's memory is free again.

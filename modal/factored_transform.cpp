@@ -7,11 +7,11 @@
 namespace bough::modal::detail {
 namespace {
 
-using fe::check_petsc;
+using linear::check_petsc;
 
 struct Transform {
   const FactoredOperator* op = nullptr;
-  fe::PetscVec product;
+  linear::PetscVec product;
   std::exception_ptr failure;
 };
 
@@ -27,8 +27,8 @@ PetscErrorCode apply(ST st, Vec x, Vec y) {
     check_petsc(MatMult(right, x, own.product.get()));
     op.factor->solve_vector(own.product.get(), y);
     if (!op.deflation || op.deflation->cols() == 0) return;
-    const Eigen::MatrixXd value = fe::gather(y);
-    fe::scatter((value - *op.deflation * (op.deflation->transpose() * op.multiply_mass(value))).col(0), y);
+    const Eigen::MatrixXd value = linear::gather(y);
+    linear::scatter((value - *op.deflation * (op.deflation->transpose() * op.multiply_mass(value))).col(0), y);
   });
 }
 

@@ -19,11 +19,11 @@ using BlockApply = std::function<Eigen::MatrixXd(const Eigen::Ref<const Eigen::M
 
 /// The operator of an ST "bough-factor". F is the factored matrix: A - σB near a shift, else B.
 struct FactoredOperator {
-  BlockApply solve;                             ///< F⁻¹X
-  BlockApply multiply_mass;                     ///< B X, of the inner product
-  BlockApply multiply_operator;                 ///< A X where the operator is B⁻¹A; empty: (A - σB)⁻¹B
-  const fe::SymmetricFactor* factor = nullptr;  ///< of F
-  const Eigen::MatrixXd* deflation = nullptr;   ///< B-orthonormal, projected out of each product; null: none
+  BlockApply solve;                                 ///< F⁻¹X
+  BlockApply multiply_mass;                         ///< B X, of the inner product
+  BlockApply multiply_operator;                     ///< A X where the operator is B⁻¹A; empty: (A - σB)⁻¹B
+  const linear::SymmetricFactor* factor = nullptr;  ///< of F
+  const Eigen::MatrixXd* deflation = nullptr;       ///< B-orthonormal, projected out of each product; null: none
   std::string factor_name;
 
   bool is_near_shift() const { return !multiply_operator; }

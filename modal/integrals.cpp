@@ -120,8 +120,8 @@ MassIntegrals calc_momentum_integrals(const NodalDofs& dofs, const MassTimes& ma
   MassIntegrals g = make_empty(n);
   const MatrixXd p = dofs.xyz.rowwise() - reference.transpose(), A = take_translations(dofs, M_Phi);
   MatrixXd p_A(3, 3 * n), G(3 * n, 3 * n);  // Σ_k p_k(b) A_kj(a), Σ_k A_kj(a) φ_kl(b), x of every mode first
-  fe::multiply_dense(true, p, A, 0, p_A);
-  fe::multiply_dense(true, A, take_translations(dofs, Phi), 0, G);
+  linear::multiply_dense(true, p, A, 0, p_A);
+  linear::multiply_dense(true, A, take_translations(dofs, Phi), 0, G);
   for (int a = 0; a < 3; ++a) {
     const int b = (a + 1) % 3, c = (a + 2) % 3;
     g.gamma0.row(a) = A.middleCols(a * n, n).colwise().sum();
@@ -145,7 +145,7 @@ MassIntegrals calc_momentum_integrals(const NodalDofs& dofs, const MassTimes& ma
 MassIntegrals calc_exact_integrals(const fe::Model& model, fe::MassKind kind, const MatrixXd& Phi,
                                    const Vector3d& reference) {
   const auto M = fe::assemble_grid_mass(model, kind);
-  const auto mass_times = [&M](const MatrixXd& X) -> MatrixXd { return fe::multiply(M, X); };
+  const auto mass_times = [&M](const MatrixXd& X) -> MatrixXd { return linear::multiply(M, X); };
   const auto dofs = NodalDofs::from_model(model);
   MassIntegrals g = moves_alike(dofs, mass_times) ? calc_momentum_integrals(dofs, mass_times, Phi, reference)
                                                   : calc_exact_integrals(dofs, mass_times, Phi, reference);
@@ -167,8 +167,8 @@ MassIntegrals calc_exact_integrals(const NodalDofs& dofs, const MassTimes& mass_
   MatrixXd gram_R(6, 4 * n), gram(3 * n, 4 * n);  // of Φ_R, and of e_a×φ_j, with X
   for (int a = 0; a < 4; ++a) {                   // a quarter of M X at a time: less memory
     const MatrixXd M_X = mass_times(X.middleCols(a * n, n));
-    fe::multiply_dense(true, Phi_R, M_X, 0, gram_R.middleCols(a * n, n));
-    fe::multiply_dense(true, X.leftCols(3 * n), M_X, 0, gram.middleCols(a * n, n));
+    linear::multiply_dense(true, Phi_R, M_X, 0, gram_R.middleCols(a * n, n));
+    linear::multiply_dense(true, X.leftCols(3 * n), M_X, 0, gram.middleCols(a * n, n));
   }
   const auto turned = [n](int a, int j) { return a * n + j; };
   const auto plain = [n](int j) { return 3 * n + j; };

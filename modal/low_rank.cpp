@@ -12,7 +12,7 @@
 namespace bough::modal::detail {
 namespace {
 
-using fe::check_petsc;
+using linear::check_petsc;
 
 struct Entry {
   int row;
@@ -21,8 +21,8 @@ struct Entry {
 using Column = std::vector<Entry>;
 
 /// Row i of M on every rank: its column, M being symmetric.
-Column get_column(const fe::SymmetricMatrix& of, int i) {
-  if (const fe::LowRankPart* part = of.low_rank()) {
+Column get_column(const linear::SymmetricMatrix& of, int i) {
+  if (const linear::LowRankPart* part = of.low_rank()) {
     const Eigen::VectorXd t = part->W * Eigen::VectorXd(part->U.transpose().col(i));
     Eigen::VectorXd full = part->U * t;
     for (const auto& [row, value] : get_column(of.sparse_part(), i)) full(row) += value;
@@ -43,7 +43,7 @@ Column get_column(const fe::SymmetricMatrix& of, int i) {
       if (values[k] != 0) column.push_back({rows[k], values[k]});
     check_petsc(MatRestoreRow(M, i, &num, &rows, &values));
   }
-  if (fe::initialize_petsc().size == 1) return column;
+  if (linear::initialize_petsc().size == 1) return column;
   const PetscInt* starts = nullptr;
   check_petsc(MatGetOwnershipRanges(M, &starts));
   int owner = 0;
@@ -57,10 +57,10 @@ Column get_column(const fe::SymmetricMatrix& of, int i) {
 
 }  // namespace
 
-std::optional<Eigen::SparseMatrix<double>> factor_low_rank(const fe::SymmetricMatrix& M,
+std::optional<Eigen::SparseMatrix<double>> factor_low_rank(const linear::SymmetricMatrix& M,
                                                            const Eigen::VectorXd& diagonal, int max_rank) {
   // The rank is that of the sparse part at least, which is found from fewer entries.
-  if (M.low_rank() && !factor_low_rank(M.sparse_part(), fe::get_diagonal(M.sparse_part()), max_rank))
+  if (M.low_rank() && !factor_low_rank(M.sparse_part(), linear::get_diagonal(M.sparse_part()), max_rank))
     return std::nullopt;
   const auto n = static_cast<int>(diagonal.size());
   Eigen::VectorXd root(n), left(n), column = Eigen::VectorXd::Zero(n);
@@ -115,10 +115,10 @@ constexpr Eigen::Index kBlock = 24;  ///< right-hand sides at once
 MatrixXd symmetrize(const MatrixXd& A) { return 0.5 * (A + A.transpose()); }
 
 /// Values and vectors among X by K itself.
-void solve_among(const fe::SymmetricMatrix& K, const fe::SymmetricMatrix& M, Roots& roots) {
+void solve_among(const linear::SymmetricMatrix& K, const linear::SymmetricMatrix& M, Roots& roots) {
   const MatrixXd& X = roots.X;
-  const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd> ritz(symmetrize(X.transpose() * fe::multiply(K, X)),
-                                                                symmetrize(X.transpose() * fe::multiply(M, X)));
+  const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd> ritz(symmetrize(X.transpose() * linear::multiply(K, X)),
+                                                                symmetrize(X.transpose() * linear::multiply(M, X)));
   if (ritz.info() != Eigen::Success) return;
   roots.value = ritz.eigenvalues();
   roots.X = (X * ritz.eigenvectors()).eval();
@@ -181,7 +181,7 @@ Roots solve_low_rank(const LowRankProblem& problem) {
     if (all.size() > 0) solve_among(problem.K, problem.M, stage);
     if (all.size() + stage.size() < wanted) {
       MatrixXd X = stage.X;
-      orthonormalize_ascending(X.transpose() * fe::multiply(problem.M, X), X);
+      orthonormalize_ascending(X.transpose() * linear::multiply(problem.M, X), X);
       known = join(known, X);
     }
     all.add(stage.value, stage.X);

@@ -14,12 +14,12 @@ namespace bough::modal::detail {
 /// nothing where it is higher or M is indefinite. Cholesky of the matrix scaled to a unit diagonal, pivots from the
 /// largest decade down; what is left below 3e-12 is roundoff of masses that dependent dofs shared out (Higham, Accuracy
 /// and Stability of Numerical Algorithms, 2nd ed., 10.3). Touches no more than max_rank columns.
-std::optional<Eigen::SparseMatrix<double>> factor_low_rank(const fe::SymmetricMatrix& M,
+std::optional<Eigen::SparseMatrix<double>> factor_low_rank(const linear::SymmetricMatrix& M,
                                                            const Eigen::VectorXd& diagonal, int max_rank);
 
 /// K x = λ C Cᵀ x, with vectors that are whole on every rank.
 struct LowRankProblem {
-  fe::SymmetricMatrix K, M;
+  linear::SymmetricMatrix K, M;
   const Eigen::SparseMatrix<double>* C = nullptr;
   BlockApply solve;             ///< (A - σM)⁻¹X, A = K but for springs that `known` alone moves
   double shift = 0;             ///< σ

@@ -26,9 +26,9 @@ records::ModeEnergies calc_mode_energies(const fe::Model& model, const records::
     strain.row(e) = 0.5 * u.cwiseProduct(K * u).colwise().sum();
     kinetic.row(e) = 0.5 * u.cwiseProduct(M * u).colwise().sum();
   });
-  fe::sum_over_ranks(strain);
-  fe::sum_over_ranks(kinetic);
-  fe::sum_over_ranks(has);
+  linear::sum_over_ranks(strain);
+  linear::sum_over_ranks(kinetic);
+  linear::sum_over_ranks(has);
   records::ModeEnergies result;
   const auto properties = fe::list_element_properties(deck);
   std::vector<Eigen::Index> rows;

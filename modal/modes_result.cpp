@@ -83,7 +83,7 @@ records::ModesResult make_modes_result(const fe::Model& model, const EigenPairs&
   const auto calc_momentum = [&](const Vector3d& point) {
     MatrixXd L(n, 6);
     const MatrixXd Phi_R = model.calc_rigid_modes(point);
-    fe::multiply_dense(true, pairs.Phi, fe::calc_mass_times(model, model.mass_kind(), Phi_R), 0, L);
+    linear::multiply_dense(true, pairs.Phi, fe::calc_mass_times(model, model.mass_kind(), Phi_R), 0, L);
     return L;
   };
   result.modal_mass = modal_mass;

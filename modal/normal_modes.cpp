@@ -25,14 +25,14 @@ std::vector<std::pair<int, double>> make_springs(const std::vector<int>& dofs, c
 
 /// What many vectors had: the next ones are longer and would not fit where these were.
 void release_columns(Eigen::Index number) {
-  if (number > kColumnsAtOnce) fe::release_freed_memory();
+  if (number > kColumnsAtOnce) linear::release_freed_memory();
 }
 
 }  // namespace
 
 void NormalModes::add_supports() {
   if (rigid_.supports.empty()) return;
-  supported_ = fe::add_diagonal(pencil_.K, make_springs(rigid_.supports, pencil_.K_diagonal));
+  supported_ = linear::add_diagonal(pencil_.K, make_springs(rigid_.supports, pencil_.K_diagonal));
 }
 
 void warn_of_cut_root(int num_more, Diagnostics& said) {
@@ -62,7 +62,7 @@ EigenPairs NormalModes::answer_nothing(Diagnostics& said) {
 void NormalModes::hold_massless(Diagnostics& said) {
   if (rigid_.held.empty()) return;
   springs_ = make_springs(rigid_.held, pencil_.K_diagonal);
-  pencil_.K = fe::add_diagonal(pencil_.K, springs_);  // the system's own stays as it is
+  pencil_.K = linear::add_diagonal(pencil_.K, springs_);  // the system's own stays as it is
   has_own_stiffness_ = false;
   std::string where;
   for (const int f : rigid_.held) where += (where.empty() ? "" : ", ") + describe(pencil_.model, f);
@@ -105,9 +105,9 @@ void NormalModes::make_solver(const std::string& eps_type) {
     problem.release = [this] { is_away_ = fe::drop_stiffness(pencil_.K); };
     problem.restore = [this] {
       if (!std::exchange(is_away_, false)) return;
-      fe::release_freed_memory();  // of the factor, and of what assembly takes
+      linear::release_freed_memory();  // of the factor, and of what assembly takes
       fe::restore_stiffness(pencil_.model, pencil_.K);
-      fe::release_freed_memory();
+      linear::release_freed_memory();
     };
   }
   solver_.emplace(problem, std::max(0, range_.last - num_rigid()));
@@ -219,9 +219,9 @@ bool NormalModes::has_every_root() {
   add_roots(found_, solver_->num_available() - found_.size(), 0);
   if (found_.size() < solver_->num_available()) return false;
   const VectorXd residual =
-      fe::calc_pair_residuals(pencil_.K_diagonal, pencil_.M_diagonal, found_.value, found_.X,
-                              pencil_.calc_K_times(found_.X), pencil_.calc_M_times(found_.X), pencil_.kinds);
-  return residual.size() > 0 && residual.maxCoeff() <= fe::kResidualError;
+      linear::calc_pair_residuals(pencil_.K_diagonal, pencil_.M_diagonal, found_.value, found_.X,
+                                  pencil_.calc_K_times(found_.X), pencil_.calc_M_times(found_.X), pencil_.kinds);
+  return residual.size() > 0 && residual.maxCoeff() <= linear::kResidualError;
 }
 
 EigenPairs NormalModes::make_pairs(int cut, int count, Diagnostics& said) {
@@ -244,8 +244,9 @@ VectorXd NormalModes::calc_residuals(const VectorXd& lambda, const MatrixXd& X) 
     const auto some = X.middleCols(c, num);
     MatrixXd KX = pencil_.calc_K_times(some);
     for (const auto& [f, stiffness] : springs_) KX.row(f) -= stiffness * some.row(f);  // rigid motions move them
-    residual.segment(c, num) = fe::calc_pair_residuals(pencil_.K_diagonal, pencil_.M_diagonal, lambda.segment(c, num),
-                                                       some, KX, pencil_.calc_M_times(some), pencil_.kinds);
+    residual.segment(c, num) =
+        linear::calc_pair_residuals(pencil_.K_diagonal, pencil_.M_diagonal, lambda.segment(c, num), some, KX,
+                                    pencil_.calc_M_times(some), pencil_.kinds);
   }
   return residual;
 }
@@ -349,7 +350,7 @@ EigenPairs NormalModes::find_pairs(const std::string& eps_type, bool& is_sound, 
   pairs.solvers = solver_->get_uses();
   // As many vectors as modes, orthogonal and each with a small residual: they are there, whatever the pivots say.
   if (options_.check_inertia && result.count < 0) is_sound = overlap_ < kOverlap;
-  is_sound = is_sound && (pairs.residual.size() == 0 || pairs.residual.maxCoeff() <= fe::kResidualError);
+  is_sound = is_sound && (pairs.residual.size() == 0 || pairs.residual.maxCoeff() <= linear::kResidualError);
   return pairs;
 }
 

@@ -23,7 +23,7 @@ struct Answer {
 
   double worst() const { return pairs.residual.size() > 0 ? pairs.residual.maxCoeff() : 0; }
   /// No mode may be missing, and no residual needs a word.
-  bool is_clean() const { return is_sound && worst() <= fe::kResidualWarning; }
+  bool is_clean() const { return is_sound && worst() <= linear::kResidualWarning; }
 };
 
 void warn_of_cut_root(int num_more, Diagnostics& said);
@@ -89,13 +89,13 @@ class NormalModes {
   bool add_window(const Edge& lower, const Edge& upper, Roots& roots, std::vector<SolverUse>& uses) const;
 
   const EigenOptions& options_;
-  const fe::SymmetricFactor* factor_;  ///< LLᵀ of K where there is one
+  const linear::SymmetricFactor* factor_;  ///< LLᵀ of K where there is one
   Pencil pencil_;
   bool has_own_stiffness_ = !pencil_.model.checked_stiffness();  ///< K as assemble_stiffness() makes it
   bool is_away_ = false;                                         ///< K, while Lanczos runs
   RigidMotions rigid_;
   std::vector<std::pair<int, double>> springs_;  ///< f-dofs of the massless motions, held by them in K
-  fe::SymmetricMatrix supported_;                ///< K with springs at the supports too
+  linear::SymmetricMatrix supported_;            ///< K with springs at the supports too
   std::optional<PencilSolver> solver_;
   ModeRange range_;
   double shift_ = 0;  ///< K + shift M is definite

@@ -20,7 +20,7 @@ using Eigen::Index;
 /// diag K; where nothing stiffens a dof what is in keeping with its mass.
 VectorXd calc_scale(const Pencil& pencil) {
   const VectorXd &D = pencil.K_diagonal, &M = pencil.M_diagonal;
-  VectorXd scale = fe::fill_diagonal(D, pencil.kinds);
+  VectorXd scale = linear::fill_diagonal(D, pencil.kinds);
   double mass = 0;  // per stiffness
   for (Index i = 0; i < D.size(); ++i)
     if (D(i) == scale(i)) mass = std::max(mass, M(i) / D(i));
@@ -30,8 +30,8 @@ VectorXd calc_scale(const Pencil& pencil) {
 }
 
 /// The D-orthonormal motions of K whose forces are roundoff, found among m; all of them where fewer than m come out.
-MatrixXd find_null_motions_of(const Pencil& pencil, const VectorXd& D, const fe::SymmetricFactor& factor, Index m) {
-  const auto space = fe::calc_soft_space(pencil.K, D, factor, m);
+MatrixXd find_null_motions_of(const Pencil& pencil, const VectorXd& D, const linear::SymmetricFactor& factor, Index m) {
+  const auto space = linear::calc_soft_space(pencil.K, D, factor, m);
   std::vector<Index> low;
   for (Index c = 0; c < m; ++c)
     if (space.energy(c) < kStrainlessEnergy) low.push_back(c);
@@ -41,7 +41,8 @@ MatrixXd find_null_motions_of(const Pencil& pencil, const VectorXd& D, const fe:
 
 /// Nothing when they are too many, or the factor fails.
 std::optional<MatrixXd> find_null_space(const Pencil& pencil, const VectorXd& D, int expected) {
-  const fe::SymmetricFactor factor(fe::add_diagonal(pencil.K, fe::kNullShift * D), false, fe::FactorMethod::Pivoting);
+  const linear::SymmetricFactor factor(linear::add_diagonal(pencil.K, linear::kNullShift * D), false,
+                                       linear::FactorMethod::Pivoting);
   if (factor.is_singular()) return std::nullopt;
   constexpr Index most = 400;
   for (Index m = expected + 6;; m *= 2) {

@@ -51,15 +51,15 @@ MatrixXd find_loose(const Pencil& pencil) {
   VectorXd coupled = VectorXd::Zero(pencil.size());  // by the part of low rank
   if (const auto* part = pencil.K.low_rank()) coupled = part->U.cwiseAbs() * VectorXd::Ones(part->rank());
   PetscInt first = 0, last = 0, num = 0;
-  fe::check_petsc(MatGetOwnershipRange(K, &first, &last));
+  linear::check_petsc(MatGetOwnershipRange(K, &first, &last));
   const PetscScalar* values = nullptr;
   for (PetscInt row = first; row < last; ++row) {
     if (coupled(row) != 0 || pencil.K_diagonal(row) != 0 || !(pencil.M_diagonal(row) > 0)) continue;
-    fe::check_petsc(MatGetRow(K, row, &num, nullptr, &values));
+    linear::check_petsc(MatGetRow(K, row, &num, nullptr, &values));
     loose(row) = std::all_of(values, values + num, [](double v) { return v == 0; });
-    fe::check_petsc(MatRestoreRow(K, row, &num, nullptr, &values));
+    linear::check_petsc(MatRestoreRow(K, row, &num, nullptr, &values));
   }
-  fe::sum_over_ranks(loose);
+  linear::sum_over_ranks(loose);
   MatrixXd X = MatrixXd::Zero(pencil.size(), static_cast<Eigen::Index>(loose.sum()));
   for (int f = 0, c = 0; f < pencil.size(); ++f)
     if (loose(f) > 0) X(f, c++) = 1;
@@ -147,13 +147,13 @@ MatrixXd find_forceless(const Pencil& pencil, const MatrixXd& Y, double floor) {
     terms_of_part = part->U.cwiseAbs() * (part->W.cwiseAbs() * t.cwiseAbs());
   }
   PetscInt first = 0, last = 0, num = 0;
-  fe::check_petsc(MatGetOwnershipRange(K, &first, &last));
+  linear::check_petsc(MatGetOwnershipRange(K, &first, &last));
   const PetscInt* columns = nullptr;
   const PetscScalar* values = nullptr;
   MatrixXd G = MatrixXd::Zero(Y.cols(), Y.cols());
   Eigen::RowVectorXd force(Y.cols()), terms(Y.cols());
   for (PetscInt row = first; row < last; ++row) {
-    fe::check_petsc(MatGetRow(K, row, &num, &columns, &values));
+    linear::check_petsc(MatGetRow(K, row, &num, &columns, &values));
     force.setZero(), terms.setZero();
     if (of_part.size() > 0) force = of_part.row(row), terms = terms_of_part.row(row);
     for (PetscInt k = 0; k < num; ++k)
@@ -162,12 +162,12 @@ MatrixXd find_forceless(const Pencil& pencil, const MatrixXd& Y, double floor) {
         force(c) += term;
         terms(c) += std::abs(term);
       }
-    fe::check_petsc(MatRestoreRow(K, row, &num, &columns, &values));
+    linear::check_petsc(MatRestoreRow(K, row, &num, &columns, &values));
     const double scale = terms.maxCoeff() + floor * std::sqrt(pencil.K_diagonal(row));
     if (scale > 0) force /= scale;
     G += force.transpose() * force;
   }
-  fe::sum_over_ranks(G);
+  linear::sum_over_ranks(G);
   const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(G);
   return solver.eigenvectors().leftCols((solver.eigenvalues().array() < kForcelessSquare).count());
 }
@@ -183,7 +183,7 @@ Strainless find_strainless(const Pencil& pencil, const Vector3d& centre) {
   const auto& model = pencil.model;
   const MatrixXd B = restrict_to_fdofs(model, model.calc_rigid_modes(centre));
   Strainless result{pencil.K_diagonal.asDiagonal() * B, MatrixXd(model.num_fdofs(), 0)};
-  const MatrixXd D = fe::calc_inner_products(B, result.DB);
+  const MatrixXd D = linear::calc_inner_products(B, result.DB);
   const VectorXd scale = D.diagonal().unaryExpr([](double d) { return d > 0 ? 1 / std::sqrt(d) : 0.0; });
   VectorXd d;
   const MatrixXd V = calc_range(scale.asDiagonal() * D * scale.asDiagonal(), kDependentMotions, true, &d);
@@ -195,8 +195,8 @@ Strainless find_strainless(const Pencil& pencil, const Vector3d& centre) {
   VectorXd energy;
   for (int pass = 0; pass < 2; ++pass) {
     const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd> solver(
-        fe::calc_inner_products(Y, pencil.calc_K_times(Y)),
-        fe::calc_inner_products(Y, pencil.K_diagonal.asDiagonal() * Y));
+        linear::calc_inner_products(Y, pencil.calc_K_times(Y)),
+        linear::calc_inner_products(Y, pencil.K_diagonal.asDiagonal() * Y));
     energy = solver.eigenvalues();
     if (pass == 0 && energy.minCoeff() > kHeldEnergy) return result;
     Y = (Y * solver.eigenvectors()).eval();
@@ -333,8 +333,8 @@ std::string describe(const fe::Model& model, int fdof) {
 }
 
 void throw_singular(const Pencil& pencil, double shift) {
-  const fe::SymmetricMatrix A = fe::add(pencil.K, shift, pencil.M);
-  const MatrixXd motions = fe::find_mechanisms(A, pencil.kinds, 1);
+  const linear::SymmetricMatrix A = linear::add(pencil.K, shift, pencil.M);
+  const MatrixXd motions = linear::find_mechanisms(A, pencil.kinds, 1);
   std::string where;
   for (Eigen::Index c = 0; c < motions.cols(); ++c) {
     Eigen::Index largest = 0;

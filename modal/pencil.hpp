@@ -23,14 +23,14 @@ struct Pencil {
   explicit Pencil(const fe::System& system);
 
   const fe::Model& model;
-  fe::SymmetricMatrix K, M;
+  linear::SymmetricMatrix K, M;
   VectorXd K_diagonal, M_diagonal;  ///< |K_ii| and M_ii, num_fdofs
-  fe::RowKinds kinds;               ///< of the f-dofs
+  linear::RowKinds kinds;           ///< of the f-dofs
 
   int size() const { return model.num_fdofs(); }
-  MatrixXd calc_K_times(const Block& X) const { return fe::multiply(K, X); }
-  MatrixXd calc_M_times(const Block& X) const { return fe::multiply(M, X); }
-  MatrixXd dot(const Block& X, const Block& Y) const { return fe::calc_inner_products(X, Y); }  ///< XᵀY
+  MatrixXd calc_K_times(const Block& X) const { return linear::multiply(K, X); }
+  MatrixXd calc_M_times(const Block& X) const { return linear::multiply(M, X); }
+  MatrixXd dot(const Block& X, const Block& Y) const { return linear::calc_inner_products(X, Y); }  ///< XᵀY
   MatrixXd calc_mass_gram(const MatrixXd& X) const;  ///< XᵀMX; M X of some columns at a time
   /// φᵀKφ / Σ K_ii φ_i²: about 1e-16 for a motion without strain, whatever the units and the mesh.
   double calc_relative_energy(const VectorXd& x, double energy) const;

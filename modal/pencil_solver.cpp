@@ -22,13 +22,14 @@ PencilSolver::PencilSolver(const PencilProblem& problem, int request) : problem_
 /// Of fewer roots than were asked for some may be what roundoff made of a root with more copies than a Krylov space
 /// sees; those whose residual is large are looked for once more, beside the good ones.
 void PencilSolver::drop_rough(Extraction& result) const {
-  const VectorXd K_diagonal = fe::get_diagonal(problem_.K).cwiseAbs(), M_diagonal = fe::get_diagonal(problem_.M);
-  const VectorXd residual = fe::calc_pair_residuals(K_diagonal, M_diagonal, result.values, result.vectors,
-                                                    fe::multiply(problem_.K, result.vectors),
-                                                    fe::multiply(problem_.M, result.vectors), problem_.kinds);
+  const VectorXd K_diagonal = linear::get_diagonal(problem_.K).cwiseAbs(),
+                 M_diagonal = linear::get_diagonal(problem_.M);
+  const VectorXd residual = linear::calc_pair_residuals(K_diagonal, M_diagonal, result.values, result.vectors,
+                                                        linear::multiply(problem_.K, result.vectors),
+                                                        linear::multiply(problem_.M, result.vectors), problem_.kinds);
   std::vector<int> kept;
   for (int j = 0; j < residual.size(); ++j)
-    if (residual(j) <= fe::kResidualWarning) kept.push_back(j);
+    if (residual(j) <= linear::kResidualWarning) kept.push_back(j);
   if (kept.empty() || static_cast<Eigen::Index>(kept.size()) == residual.size()) return;
   result.values = result.values(kept).eval();
   result.vectors = result.vectors(Eigen::all, kept).eval();
@@ -59,7 +60,7 @@ bool PencilSolver::solve(double shift, int number, int num_guard, bool definite_
     problem.max_subspace = num_available_;
     problem.num_wanted += roots.size();
     if (problem_.rigid.cols() == 0 && !problem_.is_complete) {
-      problem.min_energy = shift == 0 ? fe::kMechanismEnergy : kShiftedMechanismEnergy;
+      problem.min_energy = shift == 0 ? linear::kMechanismEnergy : kShiftedMechanismEnergy;
       problem.kinds = problem_.kinds;
     }
   } else {
@@ -98,9 +99,9 @@ bool PencilSolver::solve(double shift, int number, int num_guard, bool definite_
   return true;
 }
 
-int count_roots_below(const fe::SymmetricMatrix& K, const fe::SymmetricMatrix& M, double mu) {
+int count_roots_below(const linear::SymmetricMatrix& K, const linear::SymmetricMatrix& M, double mu) {
   for (int attempt = 0; attempt < 4; ++attempt, mu *= 1 + kMoveOfPivot) {
-    if (const auto count = fe::count_eigenvalues_below(K, M, mu)) return *count;
+    if (const auto count = linear::count_eigenvalues_below(K, M, mu)) return *count;
   }
   return -1;
 }

@@ -12,13 +12,13 @@
 namespace bough::modal::detail {
 
 struct PencilProblem {
-  fe::SymmetricMatrix K, M;
+  linear::SymmetricMatrix K, M;
   VectorXd M_diagonal;
-  fe::RowKinds kinds;                           ///< of the rows
-  MatrixXd rigid;                               ///< n x k, M-orthonormal motions without strain, known; kept out
-  fe::SymmetricMatrix supported;                ///< K with a spring for each rigid motion, statically determinate
-  bool is_complete = false;                     ///< every motion without strain is in `rigid`: no look for another
-  const fe::SymmetricFactor* factor = nullptr;  ///< of K, where the caller has it
+  linear::RowKinds kinds;                           ///< of the rows
+  MatrixXd rigid;                                   ///< n x k, M-orthonormal motions without strain, known; kept out
+  linear::SymmetricMatrix supported;                ///< K with a spring for each rigid motion, statically determinate
+  bool is_complete = false;                         ///< every motion without strain is in `rigid`: no look for another
+  const linear::SymmetricFactor* factor = nullptr;  ///< of K, where the caller has it
   double tolerance = 1e-12;
   std::string solver = {};  ///< EPS type that is asked for (EigenProblem)
   std::function<void(int converged, int wanted)> progress = {};
@@ -59,6 +59,6 @@ class PencilSolver {
 };
 
 /// Roots of K x = λ M x below mu by the inertia of K - μM, moved a little where a pivot is zero; -1 where it stays so.
-int count_roots_below(const fe::SymmetricMatrix& K, const fe::SymmetricMatrix& M, double mu);
+int count_roots_below(const linear::SymmetricMatrix& K, const linear::SymmetricMatrix& M, double mu);
 
 }  // namespace bough::modal::detail

@@ -33,11 +33,11 @@ std::string find_eps_type(const std::string& name) {
   std::string known;
   const char** types = nullptr;
   int number = 0;
-  fe::check_petsc(PetscFunctionListGet(EPSList, &types, &number));
+  linear::check_petsc(PetscFunctionListGet(EPSList, &types, &number));
   std::vector<std::string> names;
   for (int i = 0; i < number; ++i)
     if (types[i]) names.emplace_back(types[i]);  // the last of the list may be none
-  fe::check_petsc(PetscFree(types));
+  linear::check_petsc(PetscFree(types));
   std::sort(names.begin(), names.end());
   for (const auto& type : names) {
     if (type == name || type == "bough-" + name) return type;

@@ -110,7 +110,7 @@ std::optional<EigenPairs> NormalModes::find_window(Diagnostics& said) {
   if (cut > number) warn_of_cut_root(cut - number, own);
   if (number < asked) warn_of_fewer(number, asked, true, own);
   auto pairs = finish_pairs(std::move(found), options_.check_inertia ? range_.first + cut : -1, own);
-  if (!(overlap_ < kOverlap && pairs.residual.maxCoeff() <= fe::kResidualError)) return std::nullopt;
+  if (!(overlap_ < kOverlap && pairs.residual.maxCoeff() <= linear::kResidualError)) return std::nullopt;
   pairs.solvers = std::move(uses);
   range_.last = range_.first + number;
   for (const auto& item : own.items()) said.add(item);

@@ -34,14 +34,14 @@ double find_largest_difference(const Eigen::MatrixXd& A, const Eigen::MatrixXd& 
 BasisCheck check_basis(const fe::Model& model, const Eigen::MatrixXd& Phi, const Eigen::MatrixXd& modal_mass,
                        const Eigen::MatrixXd& modal_stiffness) {
   if (Phi.cols() == 0) return {};
-  const auto M = fe::calc_inner_products(Phi, fe::calc_mass_times(model, model.mass_kind(), Phi));
-  const auto K = fe::calc_inner_products(Phi, fe::calc_stiffness_times(model, Phi));
+  const auto M = linear::calc_inner_products(Phi, fe::calc_mass_times(model, model.mass_kind(), Phi));
+  const auto K = linear::calc_inner_products(Phi, fe::calc_stiffness_times(model, Phi));
   BasisCheck check;
   check.mass = find_largest_difference(M, modal_mass);
   check.stiffness = find_largest_difference(K, modal_stiffness);
   check.beyond_roundoff = std::max(check.mass, check.stiffness);
   if (check.mass <= kBasisError && check.stiffness > kBasisError) {
-    const Eigen::VectorXd diagonal = fe::get_diagonal(fe::assemble_stiffness(model, fe::DofSet::Global)).cwiseAbs();
+    const Eigen::VectorXd diagonal = linear::get_diagonal(fe::assemble_stiffness(model, fe::DofSet::Global)).cwiseAbs();
     const Eigen::VectorXd parts = (Phi.cwiseAbs2().transpose() * diagonal).cwiseSqrt();
     check.beyond_roundoff = find_largest_difference(K, modal_stiffness, kStiffnessRoundoff * parts * parts.transpose());
   }

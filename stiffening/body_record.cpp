@@ -70,7 +70,7 @@ InertialLoads calc_body_inertial_loads(const fe::Model& model) {
   const auto kind = model.mass_kind();
   InertialLoads loads{fe::assemble_mass(model, fe::DofSet::Global, kind), {}};
   loads.F_I = fe::calc_inertial_loads(model, kind, MatrixXd::Identity(12, 12),
-                                      [&](const MatrixXd& X) { return fe::multiply(loads.M, X); });
+                                      [&](const MatrixXd& X) { return linear::multiply(loads.M, X); });
   return loads;
 }
 
@@ -78,7 +78,7 @@ void set_integrals(const BodyRequest& request, const fe::Model& model, const Mat
                    FlexBody& body) {
   const auto kind = model.mass_kind();
   const bool is_lumped = kind == fe::MassKind::Lumped, is_approximate = fe::has_approximate_mass(model, kind);
-  const auto mass_times = [&](const MatrixXd& X) { return fe::multiply(loads.M, X); };
+  const auto mass_times = [&](const MatrixXd& X) { return linear::multiply(loads.M, X); };
   body.exact = modal::calc_exact_integrals(model, kind, Phi);
   body.masses = is_approximate ? "nodal momenta" : "bodies";
   if (is_approximate)
@@ -116,8 +116,8 @@ void set_strain_energy(const BodyRequest& request, const fe::Model& model, const
     for (Eigen::Index i = 0, column = 0; i < n; ++i)
       for (Eigen::Index j = i; j < n; ++j) all(e, column++) = 0.5 * (k(i, j) + k(j, i));
   });
-  fe::sum_over_ranks(all);
-  fe::sum_over_ranks(is_stiff);
+  linear::sum_over_ranks(all);
+  linear::sum_over_ranks(is_stiff);
   auto& energy = body.strain_energy;
   std::vector<Eigen::Index> rows;
   for (Eigen::Index e = 0; e < all.rows(); ++e) {

@@ -106,7 +106,7 @@ class RowSums {
       if (size[k] != 0) entries_.push_back(k);
     const MatrixXd products = terms.products(entries_, Eigen::all);
     values_.resize(products.rows(), U_.cols());
-    fe::multiply_dense(false, products, terms.weights, 0, values_);
+    linear::multiply_dense(false, products, terms.weights, 0, values_);
     projection.drop_terms();
   }
 
@@ -132,10 +132,10 @@ std::vector<MatrixXd> calc_generalized_geometric_stiffness(const fe::Model& mode
   const bool by_rows = Phi.cols() >= kMinModesForRows;
   // Forms have their own split over ranks.
   const auto forms = U.cols() > 0 ? fe::calc_second_order(model, loads, U) : std::vector<fe::QuadraticForm>{};
-  const fe::MpiWorld world = fe::initialize_petsc();
+  const linear::MpiWorld world = linear::initialize_petsc();
   const auto range = fe::get_own_elements(model);
   std::vector<MatrixXd> result, second;
-  fe::do_halves(range.last - range.first, kMinElementsOfThread, [&](int from, int to) {
+  linear::do_halves(range.last - range.first, kMinElementsOfThread, [&](int from, int to) {
     fe::GeometricProjection sums(Phi.cols(), U.cols());
     RowSums rows(model, U, Phi);
     const auto add = [&](int, const fe::Element& element) {
@@ -164,7 +164,7 @@ std::vector<MatrixXd> calc_generalized_geometric_stiffness(const fe::Model& mode
     }
   });
   for (std::size_t c = 0; c < second.size(); ++c) result[c] += second[c];
-  for (auto& K_G : result) fe::sum_over_ranks(K_G);
+  for (auto& K_G : result) linear::sum_over_ranks(K_G);
   return result;
 }
 

@@ -33,8 +33,8 @@ void report_unrelated_modes(const GivenModel& given, const fe::System& system, c
   if (X.cols() == 0 || !(mass.minCoeff() > 0) || model.num_fdofs() == 0) return;  // reduce.no-modal-mass reports it
   const VectorXd lambda = stiffness.cwiseQuotient(mass);
   const double shift = lambda.minCoeff();
-  const fe::SymmetricMatrix shifted = fe::add(system.K, shift, system.M);
-  const fe::SymmetricFactor factor(shifted, true, fe::FactorMethod::Pivoting);
+  const linear::SymmetricMatrix shifted = linear::add(system.K, shift, system.M);
+  const linear::SymmetricFactor factor(shifted, true, linear::FactorMethod::Pivoting);
   if (factor.is_singular()) return;
   const MatrixXd f = model.T().transpose() * M_X;
   const MatrixXd E = X - model.T() * (factor.solve(f) * (lambda.array() + shift).matrix().asDiagonal());
@@ -75,7 +75,7 @@ MatrixXd calc_given_modes(const GivenModel& given, const fe::System& system, Dia
   const fe::Model& model = system.model;
   const MatrixXd& Phi = given.Phi;
   // Rigid-body modes of a free body: its frame has them already.
-  const VectorXd diagonal = fe::get_diagonal(fe::assemble_stiffness(model, fe::DofSet::Global)).cwiseAbs();
+  const VectorXd diagonal = linear::get_diagonal(fe::assemble_stiffness(model, fe::DofSet::Global)).cwiseAbs();
   const MatrixXd K_Phi = fe::calc_stiffness_times(model, Phi);
   std::vector<int> elastic;
   for (int j = 0; j < Phi.cols(); ++j) {

@@ -48,9 +48,9 @@ void set_loads(const BodyRequest& request, const fe::Model& model, const MatrixX
   body.interface_nodes = list_interface_nodes(request.spec);
   for (const auto& pattern : patterns) body.locators.push_back(pattern.locator);
   const MatrixXd F = gather_forces(patterns, model.num_gdofs());
-  body.external_load = fe::calc_inner_products(Phi, F);
+  body.external_load = linear::calc_inner_products(Phi, F);
   // Φ_Rᵀ F, and Σ φ_kj × f_k by which mode j shifts its moment.
-  body.load_resultant = fe::calc_inner_products(model.calc_rigid_modes(), F);
+  body.load_resultant = linear::calc_inner_products(model.calc_rigid_modes(), F);
   body.load_moment.assign(patterns.size(), MatrixXd::Zero(3, Phi.cols()));
   for (Eigen::Index e = 0; e < F.cols(); ++e)
     for (const auto& node : model.nodes()) {

@@ -121,7 +121,7 @@ void ProjectedRows::close(Group& group) {
     Phi_packed.topRows(num_kept) = Phi_columns(kept, Eigen::all);
     if (used_ == L_Phi_.cols()) flush();
     Eigen::Map<MatrixXd> L_Phi(L_Phi_.col(used_).data(), m_, n_);
-    fe::multiply_dense(true, packed.topRows(num_kept), Phi_packed.topRows(num_kept), 0, L_Phi);
+    linear::multiply_dense(true, packed.topRows(num_kept), Phi_packed.topRows(num_kept), 0, L_Phi);
     rows_.push_back(group.rows[static_cast<std::size_t>(r)]);
     ++used_;
   }
@@ -133,7 +133,7 @@ void ProjectedRows::close(Group& group) {
 void ProjectedRows::flush() {
   if (used_ == 0) return;
   Phi_rows_.topRows(used_) = Phi_(rows_, Eigen::all);
-  fe::multiply_dense(false, L_Phi_.leftCols(used_), Phi_rows_.topRows(used_), 1, sums_);
+  linear::multiply_dense(false, L_Phi_.leftCols(used_), Phi_rows_.topRows(used_), 1, sums_);
   used_ = 0;
   rows_.clear();
 }

@@ -178,7 +178,7 @@ void set_recovery(const BodyRequest& request, const fe::Model& model, const Matr
           forces.col(0) = prestress->force[static_cast<std::size_t>(e)];
         });
     }
-    fe::sum_over_ranks(rows);
+    linear::sum_over_ranks(rows);
     block.matrix = rows.leftCols(n);
     block.inertial = MatrixXd::Zero(rows.rows(), records::kNumInertialLoads);
     for (Eigen::Index i = 0; i < num_inertial; ++i)

@@ -7,7 +7,7 @@ namespace {
 
 /// The order of work.
 ReducedBody reduce_body(const BodyRequest& request) {
-  fe::initialize_petsc();
+  linear::initialize_petsc();
   check_spec(request);
   request.report("model");
   const BodyModel body_model = build_body_model(request);

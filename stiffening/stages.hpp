@@ -48,7 +48,7 @@ struct BodyModel {
 /// Static solutions on the SPC set of a fixed body, on a statically determinate support of a free one.
 struct StaticSupport {
   modal::bases::StaticSolve solve;
-  const fe::SymmetricFactor* factor = nullptr;  ///< LLᵀ of K without more support, owned by `solve`; nullptr: none
+  const linear::SymmetricFactor* factor = nullptr;  ///< LLᵀ of K without more support, owned by `solve`; nullptr: none
 };
 
 /// A load whose K_G the body has: a unit at a node and direction, or a load pattern; `F` num_gdofs in basic.
@@ -62,7 +62,7 @@ struct LoadPattern {
 
 /// M on the g-set and the twelve inertial loads that it makes.
 struct InertialLoads {
-  fe::SymmetricMatrix M;
+  linear::SymmetricMatrix M;
   MatrixXd F_I;  ///< num_gdofs x 12
 };
 

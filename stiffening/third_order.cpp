@@ -95,7 +95,7 @@ bool has_links(const fe::Model& model) {
 class Manifold {
  public:
   Manifold(const BodyRequest& request, const fe::Model& model, const ModalBasis& basis, const StaticSupport& support,
-           const std::vector<int>& large, const fe::SymmetricMatrix& M)
+           const std::vector<int>& large, const linear::SymmetricMatrix& M)
       : model_(model), support_(support), large_(large) {
     const Eigen::Index n = basis.Phi.cols();
     scale_.resize(n);
@@ -108,7 +108,7 @@ class Manifold {
       Phi_R_ = model.calc_rigid_modes();
       C_ = request.moves_to_frame()
                ? MatrixXd(modal::bases::calc_reference_conditions(model, make_frame_spec(request.spec)).transpose())
-               : fe::multiply(M, Phi_R_);
+               : linear::multiply(M, Phi_R_);
       const MatrixXd CR = C_.transpose() * Phi_R_;
       const VectorXd unit = CR.rowwise().norm().cwiseMax(1e-300).cwiseInverse();
       const Eigen::FullPivLU<MatrixXd> factor(unit.asDiagonal() * CR);
@@ -129,10 +129,10 @@ class Manifold {
   MatrixXd solve(const MatrixXd& R) const {
     MatrixXd F = -R;
     if (C_.size() > 0)  // the frame's condition takes what has a resultant
-      F += C_ * (CR_inverse_.transpose() * fe::calc_inner_products(Phi_R_, R));
+      F += C_ * (CR_inverse_.transpose() * linear::calc_inner_products(Phi_R_, R));
     MatrixXd u = support_.solve(F);
-    u -= Phi_ * K_factor_.solve(fe::calc_inner_products(Phi_, F));
-    if (C_.size() > 0) u -= Phi_R_ * (CR_inverse_ * fe::calc_inner_products(C_, u));
+    u -= Phi_ * K_factor_.solve(linear::calc_inner_products(Phi_, F));
+    if (C_.size() > 0) u -= Phi_R_ * (CR_inverse_ * linear::calc_inner_products(C_, u));
     return u;
   }
 
@@ -177,7 +177,7 @@ class Manifold {
       else
         result(gdofs, Eigen::all) += f_k;
     });
-    fe::sum_over_ranks(result);
+    linear::sum_over_ranks(result);
     return result;
   }
 
@@ -223,13 +223,13 @@ MatrixXd calc_affine_fields(const fe::Model& model, const Eigen::Vector3d& centr
 
 /// Appends X without its parts along `basis`, orthonormal under M; columns of a smaller mass than no_mass, relative,
 /// are left out.
-void append_orthonormal(const fe::SymmetricMatrix& M, const MatrixXd& X, double no_mass, MatrixXd& basis) {
+void append_orthonormal(const linear::SymmetricMatrix& M, const MatrixXd& X, double no_mass, MatrixXd& basis) {
   for (Eigen::Index c = 0; c < X.cols(); ++c) {
     VectorXd x = X.col(c);
-    const double own = x.dot(VectorXd(fe::multiply(M, x)));
+    const double own = x.dot(VectorXd(linear::multiply(M, x)));
     if (!(own > 0)) continue;
-    for (int pass = 0; pass < 2; ++pass) x -= basis * (basis.transpose() * VectorXd(fe::multiply(M, x)));
-    const double left = x.dot(VectorXd(fe::multiply(M, x)));
+    for (int pass = 0; pass < 2; ++pass) x -= basis * (basis.transpose() * VectorXd(linear::multiply(M, x)));
+    const double left = x.dot(VectorXd(linear::multiply(M, x)));
     if (!(left > no_mass * own)) continue;
     basis.conservativeResize(Eigen::NoChange, basis.cols() + 1);
     basis.rightCols<1>() = x / std::sqrt(left);
@@ -334,7 +334,7 @@ void set_third_order(const BodyRequest& request, const fe::Model& model, const M
   // Degree 2 is of all modes: stiffening by loads concerns the small ones as well.
   const Lattice pairs(n, 2);
   const MatrixXd r2 = pairs.fit(manifold.calc_forces(pairs.points(), 2, false));
-  const MatrixXd on_modes = fe::calc_inner_products(manifold.Phi(), r2);  // n x pairs
+  const MatrixXd on_modes = linear::calc_inner_products(manifold.Phi(), r2);  // n x pairs
   manifold.add_field(2, manifold.solve(r2));
   std::vector<MatrixXd> work;  // forces on the large modes at the lattice of degree k, k = 3..6
   std::vector<Lattice> lattices;
@@ -347,7 +347,7 @@ void set_third_order(const BodyRequest& request, const fe::Model& model, const M
     const Lattice& own = lattices[static_cast<std::size_t>(k - 3)];
     const MatrixXd r = own.fit(manifold.calc_forces(spread(own.points(), large, n), k, false));
     const Lattice& next = lattices[static_cast<std::size_t>(k - 2)];
-    work.push_back(fe::calc_inner_products(manifold.Phi()(Eigen::all, large), r) *
+    work.push_back(linear::calc_inner_products(manifold.Phi()(Eigen::all, large), r) *
                    calc_monomials(own.exponents(), next.points()).transpose());
     manifold.add_field(k, manifold.solve(r));
   }
@@ -385,12 +385,12 @@ void set_third_order(const BodyRequest& request, const fe::Model& model, const M
     for (Eigen::Index i = 0; i < rest.cols(); ++i)
       for (int j = 0; j < n; ++j) rest.col(i) *= std::pow(weight[j], pairs.exponents()(i, j));
     const auto calc_gram = [&] {
-      MatrixXd gram = fe::calc_inner_products(rest, fe::multiply(inertial.M, rest));
+      MatrixXd gram = linear::calc_inner_products(rest, linear::multiply(inertial.M, rest));
       return MatrixXd(0.5 * (gram + gram.transpose()));
     };
     const double whole = calc_gram().trace();
-    const MatrixXd M_along = fe::multiply(inertial.M, along);
-    for (int pass = 0; pass < 2; ++pass) rest -= along * fe::calc_inner_products(M_along, rest);
+    const MatrixXd M_along = linear::multiply(inertial.M, along);
+    for (int pass = 0; pass < 2; ++pass) rest -= along * linear::calc_inner_products(M_along, rest);
     const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(calc_gram());
     double left = eigen.eigenvalues().sum();
     int num_extra = 0;
@@ -401,8 +401,8 @@ void set_third_order(const BodyRequest& request, const fe::Model& model, const M
     append_orthonormal(inertial.M, rest * eigen.eigenvectors().rightCols(num_extra).rowwise().reverse(), 0, along);
     psi = along.rightCols(along.cols() - num);
     // Fields that nothing moves along.
-    const MatrixXd p = fe::calc_inner_products(fe::multiply(inertial.M, psi), manifold.field(2));
-    const MatrixXd p3 = fe::calc_inner_products(fe::multiply(inertial.M, psi), manifold.field(3));
+    const MatrixXd p = linear::calc_inner_products(linear::multiply(inertial.M, psi), manifold.field(2));
+    const MatrixXd p3 = linear::calc_inner_products(linear::multiply(inertial.M, psi), manifold.field(3));
     std::vector<Eigen::Index> used;
     double total = 0;
     VectorXd of_field = VectorXd::Zero(psi.cols());
@@ -424,7 +424,7 @@ void set_third_order(const BodyRequest& request, const fe::Model& model, const M
       if (of_field[q] > kNoUse * total) used.push_back(q);
     psi = MatrixXd(psi(Eigen::all, used));
   }
-  const MatrixXd M_psi = fe::multiply(inertial.M, psi);
+  const MatrixXd M_psi = linear::multiply(inertial.M, psi);
   const auto find_node = [&](int id) -> const fe::Node& { return model.node(model.find_node(id)); };
   for (const int id : body.node_id) {
     const auto& node = find_node(id);
@@ -443,8 +443,8 @@ void set_third_order(const BodyRequest& request, const fe::Model& model, const M
       return MatrixXd(c.transpose());
     };
     const MatrixXd& u = manifold.field(k);
-    third.amplitudes[at] = unscaled(fe::calc_inner_products(M_psi, u));
-    third.load[at] = unscaled(fe::calc_inner_products(F, u));
+    third.amplitudes[at] = unscaled(linear::calc_inner_products(M_psi, u));
+    third.load[at] = unscaled(linear::calc_inner_products(F, u));
     for (std::size_t i = 0; i < third.node.size(); ++i) {
       const auto& node = find_node(body.interface_nodes[i]);
       MatrixXd rows = u.middleRows(node.first_gdof, 6);

@@ -59,7 +59,7 @@ bool is_one_of_many() {
 std::string share(const std::function<std::string()>& make) {
   if (!is_one_of_many()) return make();
   std::string bytes, failed;
-  if (fe::initialize_petsc().rank == 0) {
+  if (linear::initialize_petsc().rank == 0) {
     try {
       bytes = make();
     } catch (const Failure& failure) {
@@ -78,7 +78,7 @@ bool wait_for_all(bool is_true) {
   if (!is_one_of_many()) return is_true;
   int all = 0;
   const int own = is_true ? 1 : 0;
-  fe::initialize_petsc();
+  linear::initialize_petsc();
   MPI_Allreduce(&own, &all, 1, MPI_INT, MPI_MIN, PETSC_COMM_WORLD);
   return all != 0;
 }

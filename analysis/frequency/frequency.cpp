@@ -68,7 +68,7 @@ void note_random(const records::DynamicDeck& deck, const std::vector<records::Dy
 }  // namespace
 
 DeckResponseAnswer solve_deck_response(const DeckResponseRequest& request, Events& events) {
-  fe::initialize_petsc();
+  linear::initialize_petsc();
   do_once([&] { demand_deck(request.deck); });
   Diagnostics diagnostics;
   const auto model_options = make_model_options(request.model);

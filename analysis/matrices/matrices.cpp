@@ -53,7 +53,7 @@ class GeometricStiffness {
   GeometricStiffness(const records::Deck& deck, const MatricesRequest& request, const fe::Model& model)
       : deck_(deck), request_(request), model_(&model) {}
 
-  fe::SymmetricMatrix calc(const LoadCase& load_case, Diagnostics& diagnostics) {
+  linear::SymmetricMatrix calc(const LoadCase& load_case, Diagnostics& diagnostics) {
     if (load_case.subcase != 0 && load_case.subcase != model_->subcase().id) change_to(load_case.subcase, diagnostics);
     records::Subcase subcase;
     subcase.load = load_case.load;
@@ -99,7 +99,7 @@ class GeometricStiffness {
 }  // namespace
 
 records::MatricesResult assemble_matrices(const MatricesRequest& request, Events& events) {
-  fe::initialize_petsc();
+  linear::initialize_petsc();
   do_once([&] { demand_deck(request.deck); });
   Diagnostics diagnostics;
   const auto deck = read_deck_or_throw(request.deck, make_model_options(request.model), diagnostics);

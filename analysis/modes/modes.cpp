@@ -141,7 +141,7 @@ records::DynamicDeck read_modes_deck(const ModesRequest& request, const records:
 }  // namespace
 
 ModesAnswer solve_modes(const ModesRequest& request, ModesReceiver& receiver, Events& events) {
-  fe::initialize_petsc();
+  linear::initialize_petsc();
   Diagnostics diagnostics;
   auto model_options = make_model_options(request.model);
   model_options.uses_enforced = request.eigen.buckling;

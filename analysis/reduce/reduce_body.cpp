@@ -189,7 +189,7 @@ Reduced reduce_body(const ReduceRequest& request, const std::function<void(const
   Diagnostics diagnostics;
   const auto spec = make_spec(request, diagnostics);
   check_spec(spec);
-  fe::initialize_petsc();
+  linear::initialize_petsc();
   stiffening::ReduceOptions options;
   options.progress = [&](const std::string& stage) { events.show_progress("reduce: " + stage); };
   if (!request.solver.empty()) options.solver = modal::find_eps_type(request.solver);

@@ -88,7 +88,7 @@ records::Deck read_static_deck(const StaticRequest& request, Diagnostics& diagno
 }  // namespace
 
 StaticAnswer solve_static(const StaticRequest& request, StaticReceiver& receiver, Events& events) {
-  fe::initialize_petsc();
+  linear::initialize_petsc();
   do_once([&] { demand_deck(request.deck); });
   Diagnostics diagnostics;
   const auto deck = read_static_deck(request, diagnostics);

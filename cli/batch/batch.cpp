@@ -429,7 +429,7 @@ int run_batch(const BatchOptions& o) {
   Console console(o.quiet, o.verbosity);
   Rank rank;
   if (analysis::is_one_of_many() && o.worker_fd < 0 && !o.dry_run && !o.merges) {
-    const auto& petsc = fe::initialize_petsc();
+    const auto& petsc = linear::initialize_petsc();
     rank = {petsc.rank, petsc.size};
     console.set_rank(petsc.rank);
   } else if (!console.is_root()) {

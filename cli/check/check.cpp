@@ -87,7 +87,7 @@ void check_model(const CheckOptions& options, const records::Deck& deck, fe::Mod
   const auto mass = fe::calc_mass_properties(model, model.mass_kind(), Vector3d::Zero());
   if (mass.rigid_mass.isZero(0)) {
     const auto M = fe::assemble_mass(model, fe::DofSet::Global, model.mass_kind());
-    if (model.num_gdofs() > 0 && fe::get_diagonal(M).maxCoeff() > 0)
+    if (model.num_gdofs() > 0 && linear::get_diagonal(M).maxCoeff() > 0)
       diagnostics.note("cli.no-mass", deck.locate({}), "the only mass is at scalar points, which have no place",
                        "modes are right; a body needs mass at grids");
     else
@@ -153,7 +153,7 @@ void describe_deck(const records::Deck& deck, std::string& text, nlohmann::json&
 
 int check_deck(const CheckOptions& options, Console& console) {
   analysis::do_once([&] { analysis::demand_deck(options.file); });
-  console.set_rank(fe::initialize_petsc().rank);
+  console.set_rank(linear::initialize_petsc().rank);
   Diagnostics diagnostics;
   const auto deck = analysis::read_deck_once(options.file, options.model.ignore_cards, diagnostics);
   std::string text;
@@ -187,7 +187,7 @@ void check_support(const CheckOptions& options, bool is_free, const nlohmann::js
 }
 
 int check_body(const CheckOptions& options, Console& console) {
-  console.set_rank(fe::initialize_petsc().rank);
+  console.set_rank(linear::initialize_petsc().rank);
   Diagnostics diagnostics;
   const auto spec = analysis::read_body_spec_once(options.file, diagnostics);
   nlohmann::json json{{"kind", "body"}, {"name", spec.name}, {"deck", spec.deck}};

@@ -42,7 +42,7 @@ int run_deck_response(const DeckResponseOptions& options) {
     check_outputs(options, {options.output, options.csv, options.punch, options.listing.f06, options.listing.op2},
                   {request.deck});
   });
-  console.set_rank(fe::initialize_petsc().rank);
+  console.set_rank(linear::initialize_petsc().rank);
   request.has_listing = !options.listing.empty();
   ConsoleEvents events(console);
   const auto answer = analysis::solve_deck_response(request, events);

@@ -91,7 +91,7 @@ int run_matrices(const MatricesOptions& options) {
                     {insert_name(options.output, "K"), insert_name(options.output, "M"), name_dof_file(options.output)},
                     {options.request.deck});
   });
-  console.set_rank(fe::initialize_petsc().rank);
+  console.set_rank(linear::initialize_petsc().rank);
 
   ConsoleEvents events(console);
   const auto result = analysis::assemble_matrices(options.request, events);

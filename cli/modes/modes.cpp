@@ -163,7 +163,7 @@ int run_modes(const ModesOptions& options) {
                   {request.deck, options.compare});
     if (!options.compare.empty()) analysis::demand_file(options.compare);
   });
-  console.set_rank(fe::initialize_petsc().rank);
+  console.set_rank(linear::initialize_petsc().rank);
   request.has_shapes = !options.output.empty() || !options.vtu.empty() || !options.compare.empty();
   request.has_listing = !options.listing.empty();
   ModesOutput output(options, console);

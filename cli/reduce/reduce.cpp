@@ -120,7 +120,7 @@ int run_reduce(const ReduceVerbOptions& o) {
                          "name the file with -o, or give --force-outside");
       check_outputs(o, {output, o.loads_deck}, {file, spec.deck});
     });
-    console.set_rank(fe::initialize_petsc().rank);
+    console.set_rank(linear::initialize_petsc().rank);
   };
   ConsoleEvents events(console);
   const auto [body, basis, check] = analysis::reduce_body(o.request, check_spec, events);

@@ -46,7 +46,7 @@ int run_static(const StaticOptions& options) {
     analysis::demand_deck(request.deck);
     check_outputs(options, {options.output, options.vtu, options.listing.f06, options.listing.op2}, {request.deck});
   });
-  console.set_rank(fe::initialize_petsc().rank);
+  console.set_rank(linear::initialize_petsc().rank);
   request.has_listing = !options.listing.empty();
   StaticOutput output(make_output_options(options, console.is_root()));
   ConsoleEvents events(console);

@@ -20,7 +20,7 @@ constexpr Eigen::Index kNumbersOfThread = 100000;
 
 bool is_worth_threads(const std::vector<records::StaticSubcase>& subcases) {
   const auto count = static_cast<Eigen::Index>(subcases.size());
-  return count > 0 && count * subcases.front().displacement.size() > kNumbersOfThread && fe::get_num_threads() > 1;
+  return count > 0 && count * subcases.front().displacement.size() > kNumbersOfThread && linear::get_num_threads() > 1;
 }
 
 }  // namespace
@@ -65,7 +65,7 @@ void StaticOutput::add(std::vector<records::StaticSubcase> subcases) {
   running_ = std::async(
       std::launch::async,
       [this](std::vector<records::StaticSubcase> own) {
-        fe::do_both([&] { write(own); }, [&] { show(own); });
+        linear::do_both([&] { write(own); }, [&] { show(own); });
         if (options_.keeps) std::move(own.begin(), own.end(), std::back_inserter(result_.subcases));
       },
       std::move(subcases));

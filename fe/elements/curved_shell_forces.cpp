@@ -107,7 +107,7 @@ void CurvedShell::calc_internal_forces(const Eigen::Ref<const VectorXd>& u, Eige
 
 void CurvedShell::calc_internal_forces_of(const Eigen::Ref<const MatrixXd>& U, Eigen::Ref<MatrixXd> forces) const {
   const Operators o = calc_operators(true);
-  multiply_dense(false, calc_force_map(o, calc_inner_map(o)), U, 0, forces);
+  linear::multiply_dense(false, calc_force_map(o, calc_inner_map(o)), U, 0, forces);
 }
 
 std::vector<std::string> CurvedShell::internal_force_names() const {

@@ -34,7 +34,7 @@ GeometricProjection::Terms GeometricProjection::add_terms(Eigen::Index num_terms
 }
 
 void GeometricProjection::flush() {
-  multiply_dense(false, products_.leftCols(used_), weights_.topRows(used_), 1, sums_);
+  linear::multiply_dense(false, products_.leftCols(used_), weights_.topRows(used_), 1, sums_);
   used_ = 0;
 }
 
@@ -68,8 +68,8 @@ void add_cross(const Field& a, const Field& b, double scale, Product product) {
 void add_projection(const Eigen::Ref<const Eigen::MatrixXd>& K, const Eigen::Ref<const Eigen::MatrixXd>& Phi,
                     Product product) {
   Eigen::MatrixXd K_Phi(K.rows(), Phi.cols()), full(Phi.cols(), Phi.cols());
-  multiply_dense(false, K, Phi, 0, K_Phi);
-  multiply_dense(true, Phi, K_Phi, 0, full);
+  linear::multiply_dense(false, K, Phi, 0, K_Phi);
+  linear::multiply_dense(true, Phi, K_Phi, 0, full);
   for (Eigen::Index j = 0, k = 0; j < full.cols(); k += ++j)
     product.segment(k, j + 1) += 0.5 * (full.col(j).head(j + 1) + full.row(j).head(j + 1).transpose());
 }

@@ -246,9 +246,9 @@ void Shell::calc_internal_forces(const Eigen::Ref<const VectorXd>& u, Eigen::Ref
 
 void Shell::calc_internal_forces_of(const Eigen::Ref<const MatrixXd>& U, Eigen::Ref<MatrixXd> forces) const {
   if (num_nodes_ == 4)
-    multiply_dense(false, calc_force_map<4>(calc_fields<4>()), U, 0, forces);
+    linear::multiply_dense(false, calc_force_map<4>(calc_fields<4>()), U, 0, forces);
   else
-    multiply_dense(false, calc_force_map<3>(calc_fields<3>()), U, 0, forces);
+    linear::multiply_dense(false, calc_force_map<3>(calc_fields<3>()), U, 0, forces);
 }
 
 std::vector<std::string> Shell::internal_force_names() const {

@@ -180,10 +180,10 @@ void Shell::add_projected_of(const Eigen::Ref<const MatrixXd>& U, const Eigen::R
   if (U.cols() > 6 * N) {  // the weights are linear in u: of unit displacements, then of all loads at once
     MatrixXd of_unit(terms.weights.rows(), 6 * N);
     weigh(map, of_unit);
-    multiply_dense(false, of_unit, U, 0, terms.weights);
+    linear::multiply_dense(false, of_unit, U, 0, terms.weights);
   } else {
     MatrixXd force((kNumForces + 1) * N, U.cols());
-    multiply_dense(false, map, U, 0, force);
+    linear::multiply_dense(false, map, U, 0, force);
     weigh(force, terms.weights);
   }
 

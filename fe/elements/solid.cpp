@@ -161,7 +161,7 @@ void Solid::calc_internal_forces(const Eigen::Ref<const VectorXd>& u, Eigen::Ref
 }
 
 void Solid::calc_internal_forces_of(const Eigen::Ref<const MatrixXd>& U, Eigen::Ref<MatrixXd> forces) const {
-  multiply_dense(false, calc_force_map(calc_fields(false)), U, 0, forces);
+  linear::multiply_dense(false, calc_force_map(calc_fields(false)), U, 0, forces);
 }
 
 ThermalState Solid::calc_thermal(const ElementTemperature& given) const {
@@ -304,8 +304,8 @@ void Solid::add_projected_geometric_stiffness(const Eigen::Ref<const MatrixXd>& 
   }
   auto terms = sums.add_terms(num_pairs);
   MatrixXd force(num_internal_forces(), U.cols());
-  multiply_dense(false, calc_force_map(fields), U, 0, force);
-  multiply_dense(false, pairs, force, 0, terms.weights);
+  linear::multiply_dense(false, calc_force_map(fields), U, 0, force);
+  linear::multiply_dense(false, pairs, force, 0, terms.weights);
   const MatrixXd X = Phi.transpose();
   for (int j = 0, k = 0; j < m; ++j)
     for (int i = 0; i < j; ++i, ++k)

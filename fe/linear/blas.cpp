@@ -11,7 +11,7 @@
 #include "fe/linear/threads.hpp"
 #include "fe/linear/wide.hpp"
 
-namespace bough::fe {
+namespace bough::linear {
 
 namespace {
 
@@ -143,4 +143,4 @@ Eigen::MatrixXd calc_inner_products(const Eigen::Ref<const Eigen::MatrixXd>& A,
   return C;
 }
 
-}  // namespace bough::fe
+}  // namespace bough::linear

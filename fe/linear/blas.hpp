@@ -3,7 +3,7 @@
 /// use the processor's wide registers.
 #include <Eigen/Dense>
 
-namespace bough::fe {
+namespace bough::linear {
 
 /// C = op(A) B + beta C, op(A) = Aᵀ when `transposed`; column-major blocks with leading dimensions of their own.
 void multiply_dense(bool transposed, const Eigen::Ref<const Eigen::MatrixXd>& A,
@@ -12,4 +12,4 @@ void multiply_dense(bool transposed, const Eigen::Ref<const Eigen::MatrixXd>& A,
 Eigen::MatrixXd calc_inner_products(const Eigen::Ref<const Eigen::MatrixXd>& A,
                                     const Eigen::Ref<const Eigen::MatrixXd>& B);
 
-}  // namespace bough::fe
+}  // namespace bough::linear

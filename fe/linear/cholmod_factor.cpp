@@ -9,7 +9,7 @@
 #include "fe/linear/dissection.hpp"
 #include "fe/linear/memory_need.hpp"
 
-namespace bough::fe {
+namespace bough::linear {
 namespace {
 
 using Eigen::MatrixXd;
@@ -133,4 +133,4 @@ FactorSolverHandle factor_by_cholmod(const SymmetricMatrix& A) {
   return solver;
 }
 
-}  // namespace bough::fe
+}  // namespace bough::linear

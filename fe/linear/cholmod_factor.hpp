@@ -8,7 +8,7 @@
 #include "fe/linear/factor_solver.hpp"
 #include "fe/linear/symmetric_matrix.hpp"
 
-namespace bough::fe {
+namespace bough::linear {
 
 /// "fe.out-of-memory" of a factor; `what` says why, empty: it does not fit.
 ComputationError make_out_of_memory(const std::string& what = "");
@@ -20,4 +20,4 @@ void check_cholmod(int status);
 /// the factor needs more memory than there is.
 FactorSolverHandle factor_by_cholmod(const SymmetricMatrix& A);
 
-}  // namespace bough::fe
+}  // namespace bough::linear

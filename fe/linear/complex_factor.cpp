@@ -2,7 +2,7 @@
 
 #include <vector>
 
-namespace bough::fe {
+namespace bough::linear {
 namespace {
 
 using Eigen::Index;
@@ -141,4 +141,4 @@ MatrixXcd ComplexFactor::solve(const Eigen::Ref<const MatrixXcd>& F) const {
   return X;
 }
 
-}  // namespace bough::fe
+}  // namespace bough::linear

@@ -2,7 +2,7 @@
 /// \file Solutions with a complex symmetric matrix A + iB, by a real symmetric one of twice the size.
 #include "fe/linear/factor.hpp"
 
-namespace bough::fe {
+namespace bough::linear {
 
 /// [A -B; -B -A] with the unknowns side by side: rows 2k and 2k + 1 are the real and the imaginary part of row k, so
 /// that an order of elimination that is good for A is good for it.
@@ -26,4 +26,4 @@ class ComplexFactor {
   SymmetricFactor factor_;
 };
 
-}  // namespace bough::fe
+}  // namespace bough::linear

@@ -8,7 +8,7 @@
 #include "fe/linear/mumps.hpp"
 #include "fe/linear/petsc.hpp"
 
-namespace bough::fe {
+namespace bough::linear {
 
 using Eigen::MatrixXcd;
 
@@ -96,4 +96,4 @@ MatrixXcd ComplexLu::solve(const Eigen::Ref<const MatrixXcd>& F, bool transposed
   return X;
 }
 
-}  // namespace bough::fe
+}  // namespace bough::linear

@@ -6,7 +6,7 @@
 #include <Eigen/Dense>
 #include <Eigen/SparseCore>
 
-namespace bough::fe {
+namespace bough::linear {
 
 using ComplexSparse = Eigen::SparseMatrix<std::complex<double>, Eigen::RowMajor>;
 
@@ -30,4 +30,4 @@ class ComplexLu {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace bough::fe
+}  // namespace bough::linear

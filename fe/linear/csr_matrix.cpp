@@ -9,7 +9,7 @@
 
 #include "base/diagnostic.hpp"
 
-namespace bough::fe {
+namespace bough::linear {
 namespace {
 
 static_assert(sizeof(PetscInt) == sizeof(int), "rows are handed to PETSc as int");
@@ -94,4 +94,4 @@ void copy_entries(const Csr& from, const Csr& to) {
   std::copy(from.values.get(), from.values.get() + size, to.values.get());
 }
 
-}  // namespace bough::fe
+}  // namespace bough::linear

@@ -5,7 +5,7 @@
 
 #include "fe/linear/petsc.hpp"
 
-namespace bough::fe {
+namespace bough::linear {
 
 /// Rows with their columns ascending, and no room to spare.
 struct Csr {
@@ -31,4 +31,4 @@ void give_back_entries(const Csr& rows);
 /// The entries of `from` into `to`, which has as many in each row.
 void copy_entries(const Csr& from, const Csr& to);
 
-}  // namespace bough::fe
+}  // namespace bough::linear

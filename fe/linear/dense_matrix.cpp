@@ -4,7 +4,7 @@
 
 #include "base/diagnostic.hpp"
 
-namespace bough::fe {
+namespace bough::linear {
 
 using Eigen::MatrixXd;
 
@@ -59,4 +59,4 @@ MatrixXd replicate(Mat dense) {
   return values;
 }
 
-}  // namespace bough::fe
+}  // namespace bough::linear

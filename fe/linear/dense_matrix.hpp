@@ -4,7 +4,7 @@
 /// Internal to linear.
 #include "fe/linear/petsc.hpp"
 
-namespace bough::fe {
+namespace bough::linear {
 
 /// A PETSc matrix on the storage of `values`, which outlives it and, if const, is not written to. One process only.
 PetscMat share_dense(const Eigen::Ref<const Eigen::MatrixXd>& values);
@@ -13,4 +13,4 @@ PetscMat make_dense(Mat A, const Eigen::Ref<const Eigen::MatrixXd>& values);
 /// The rows of all ranks on every rank.
 Eigen::MatrixXd replicate(Mat dense);
 
-}  // namespace bough::fe
+}  // namespace bough::linear

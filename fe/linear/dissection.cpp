@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace bough::fe {
+namespace bough::linear {
 namespace {
 
 /// Rows between the parts, of all: their dense blocks are factored three times.
@@ -62,4 +62,4 @@ std::optional<TwoParts> find_parts(const SymmetricMatrix& A, PetscInt least) {
   return TwoParts{*order, {}, {}};
 }
 
-}  // namespace bough::fe
+}  // namespace bough::linear

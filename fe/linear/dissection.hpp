@@ -7,7 +7,7 @@
 #include "fe/linear/ordering.hpp"
 #include "fe/linear/threads.hpp"
 
-namespace bough::fe {
+namespace bough::linear {
 
 /// The rows of a matrix on one process, both triangles.
 struct MatrixRows {
@@ -46,4 +46,4 @@ void do_all(std::size_t num_parts, const Work& work) {
     do_alone([&] { work(0); });
 }
 
-}  // namespace bough::fe
+}  // namespace bough::linear

@@ -8,7 +8,7 @@
 #include "fe/linear/sum_factor.hpp"
 #include "fe/linear/supernodal_factor.hpp"
 
-namespace bough::fe {
+namespace bough::linear {
 namespace {
 
 /// LLᵀ; null where A is not positive definite, or on several processes.
@@ -50,4 +50,4 @@ std::optional<SymmetricFactor> SymmetricFactor::try_definite(const SymmetricMatr
   return result;
 }
 
-}  // namespace bough::fe
+}  // namespace bough::linear

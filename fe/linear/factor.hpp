@@ -6,7 +6,7 @@
 #include "fe/linear/factor_solver.hpp"
 #include "fe/linear/products.hpp"
 
-namespace bough::fe {
+namespace bough::linear {
 
 enum class FactorMethod {
   Fastest,  ///< LLᵀ by CHOLMOD on one process, MUMPS where A is not positive definite and on several
@@ -42,4 +42,4 @@ class SymmetricFactor {
   int num_null_pivots_ = 0;
 };
 
-}  // namespace bough::fe
+}  // namespace bough::linear

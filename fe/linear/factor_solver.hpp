@@ -6,7 +6,7 @@
 
 #include "fe/linear/ranks.hpp"
 
-namespace bough::fe {
+namespace bough::linear {
 
 class FactorSolver {
  public:
@@ -20,4 +20,4 @@ class FactorSolver {
 };
 using FactorSolverHandle = std::unique_ptr<FactorSolver>;
 
-}  // namespace bough::fe
+}  // namespace bough::linear

@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-namespace bough::fe {
+namespace bough::linear {
 
 double calc_fixed_number(int index, int start) {
   // splitmix64, a public-domain mixer by S. Vigna.
@@ -14,4 +14,4 @@ double calc_fixed_number(int index, int start) {
   return 2.0 * (static_cast<double>(z >> 11) * 0x1p-53) - 1.0;
 }
 
-}  // namespace bough::fe
+}  // namespace bough::linear

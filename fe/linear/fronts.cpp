@@ -9,7 +9,7 @@
 #include "fe/linear/memory_need.hpp"
 #include "fe/linear/part_fronts.hpp"
 
-namespace bough::fe {
+namespace bough::linear {
 namespace {
 
 using Eigen::MatrixXd;
@@ -90,4 +90,4 @@ std::optional<int> count_negative_by_fronts(const SymmetricMatrix& A, double fac
   return count;
 }
 
-}  // namespace bough::fe
+}  // namespace bough::linear

@@ -4,7 +4,7 @@
 
 #include "fe/linear/symmetric_matrix.hpp"
 
-namespace bough::fe {
+namespace bough::linear {
 
 /// The number of negative eigenvalues of A + factor B (Sylvester's law of inertia), by a multifrontal LDLᵀ (Duff &
 /// Reid, ACM TOMS 9 (1983) 302) that keeps no factor: O(n^1.5) operations and a stack of O(n log n) numbers on shells.
@@ -20,4 +20,4 @@ std::optional<int> count_negative_by_fronts(const SymmetricMatrix& A, double fac
 /// Negative eigenvalues of a dense matrix, of which the lower triangle is given and lost; -1 where a pivot is zero.
 int count_negative_of_dense(Eigen::MatrixXd& S);
 
-}  // namespace bough::fe
+}  // namespace bough::linear

@@ -2,7 +2,7 @@
 
 #include <numeric>
 
-namespace bough::fe {
+namespace bough::linear {
 Graph take_vertices(const Graph& graph, const std::vector<idx_t>& which) {
   std::vector<idx_t> place(graph.weight.size(), -1);
   for (std::size_t i = 0; i < which.size(); ++i) place[static_cast<std::size_t>(which[i])] = static_cast<idx_t>(i);
@@ -42,4 +42,4 @@ std::vector<idx_t> find_separator(Graph& graph) {
   return part;
 }
 
-}  // namespace bough::fe
+}  // namespace bough::linear

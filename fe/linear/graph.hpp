@@ -4,7 +4,7 @@
 
 #include <metis.h>
 
-namespace bough::fe {
+namespace bough::linear {
 
 /// Neighbours of each vertex, not itself, and its weight.
 struct Graph {
@@ -23,4 +23,4 @@ std::vector<idx_t> find_dissection(Graph& graph);
 /// ends of the edges that a cut by edges has are a third more on a plate. Empty where it fails.
 std::vector<idx_t> find_separator(Graph& graph);
 
-}  // namespace bough::fe
+}  // namespace bough::linear

@@ -15,7 +15,7 @@
 #include "fe/linear/mumps.hpp"
 #include "fe/linear/sum_factor.hpp"
 
-namespace bough::fe {
+namespace bough::linear {
 namespace {
 
 using Eigen::MatrixXd;
@@ -75,4 +75,4 @@ std::optional<int> count_eigenvalues_below(const SymmetricMatrix& A, const Symme
   return count_negative_eigenvalues(A, -mu, B);
 }
 
-}  // namespace bough::fe
+}  // namespace bough::linear

@@ -4,7 +4,7 @@
 
 #include "fe/linear/symmetric_matrix.hpp"
 
-namespace bough::fe {
+namespace bough::linear {
 
 /// Eigenvalues of A x = λ B x below mu: the negative ones of A - μB; B positive semidefinite. Empty where a pivot is
 /// zero, so that it has no sign. Throws ComputationError "fe.out-of-memory". Collective.
@@ -15,4 +15,4 @@ std::optional<int> count_negative_eigenvalues(const SymmetricMatrix& A, double f
 /// Negative eigenvalues of A; empty as above.
 std::optional<int> count_negative_eigenvalues(const SymmetricMatrix& A);
 
-}  // namespace bough::fe
+}  // namespace bough::linear

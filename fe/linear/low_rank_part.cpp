@@ -7,7 +7,7 @@
 
 #include "base/diagnostic.hpp"
 
-namespace bough::fe {
+namespace bough::linear {
 namespace {
 
 using Eigen::MatrixXd;
@@ -118,4 +118,4 @@ LowRankPart take_kept(const LowRankPart& part, const std::vector<int>& kept) {
   return result;
 }
 
-}  // namespace bough::fe
+}  // namespace bough::linear

@@ -5,7 +5,7 @@
 #include <Eigen/Dense>
 #include <Eigen/SparseCore>
 
-namespace bough::fe {
+namespace bough::linear {
 
 /// U W Uᵀ, n x n, the same on every rank.
 struct LowRankPart {
@@ -33,4 +33,4 @@ LowRankPart join(const LowRankPart& a, double factor_a, const LowRankPart& b, do
 /// Rows and columns `kept` of A, ascending.
 LowRankPart take_kept(const LowRankPart& part, const std::vector<int>& kept);
 
-}  // namespace bough::fe
+}  // namespace bough::linear

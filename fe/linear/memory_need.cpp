@@ -14,7 +14,7 @@
 
 #include "base/diagnostic.hpp"
 
-namespace bough::fe {
+namespace bough::linear {
 
 namespace {
 
@@ -103,4 +103,4 @@ void release_freed_memory() {
 #endif
 }
 
-}  // namespace bough::fe
+}  // namespace bough::linear

@@ -2,7 +2,7 @@
 /// \file Whether what is to be computed fits the memory, told before it begins.
 #include <string>
 
-namespace bough::fe {
+namespace bough::linear {
 
 /// Bytes that this process may still take: of the system (free, in caches that it gives up, swapped), below a limit of
 /// its address space (ulimit -v) and of its control groups (version 2). Infinity where the system tells none of them.
@@ -22,4 +22,4 @@ void require_memory(double num_equations, double num_entries, double free_bytes)
 /// Gives the pages between what is still used back to the system, before what takes the most: the C library keeps them.
 void release_freed_memory();
 
-}  // namespace bough::fe
+}  // namespace bough::linear

@@ -7,7 +7,7 @@
 #include "base/diagnostic.hpp"
 #include "fe/linear/dense_matrix.hpp"
 
-namespace bough::fe {
+namespace bough::linear {
 namespace {
 
 using Eigen::MatrixXd;
@@ -126,4 +126,4 @@ MumpsFactor factor_by_mumps(Mat A, const MumpsOptions& options) {
   return result;
 }
 
-}  // namespace bough::fe
+}  // namespace bough::linear

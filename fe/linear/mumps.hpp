@@ -4,7 +4,7 @@
 /// Internal to linear.
 #include "fe/linear/factor_solver.hpp"
 
-namespace bough::fe {
+namespace bough::linear {
 
 /// What a MUMPS factorization ended with (INFOG(1), INFOG(2)).
 enum class FactorState { Done, Singular, NeedsWorkspace };
@@ -26,4 +26,4 @@ struct MumpsFactor {
 /// Factors A (MATAIJ, both triangles), with more workspace until pivoting has enough. Collective.
 MumpsFactor factor_by_mumps(Mat A, const MumpsOptions& options);
 
-}  // namespace bough::fe
+}  // namespace bough::linear

@@ -7,7 +7,7 @@
 
 #include "fe/linear/fixed_number.hpp"
 
-namespace bough::fe {
+namespace bough::linear {
 namespace {
 
 using Eigen::MatrixXd;
@@ -82,4 +82,4 @@ MatrixXd find_mechanisms(const SymmetricMatrix& K, const RowKinds& kinds, int ex
   return basis;
 }
 
-}  // namespace bough::fe
+}  // namespace bough::linear

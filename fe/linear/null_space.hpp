@@ -3,7 +3,7 @@
 #include "fe/linear/factor.hpp"
 #include "fe/linear/row_kinds.hpp"
 
-namespace bough::fe {
+namespace bough::linear {
 
 /// Share of the diagonal's energy xᵀDx below which xᵀKx counts as none: a solution along x would be round-off.
 inline constexpr double kMechanismEnergy = 4e-15;
@@ -37,4 +37,4 @@ double calc_softest_energy(const SymmetricMatrix& K, const RowKinds& kinds, cons
 Eigen::MatrixXd find_mechanisms(const SymmetricMatrix& K, const RowKinds& kinds, int expected,
                                 double energy = kMechanismEnergy);
 
-}  // namespace bough::fe
+}  // namespace bough::linear

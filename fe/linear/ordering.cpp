@@ -7,7 +7,7 @@
 
 #include "fe/linear/graph.hpp"
 
-namespace bough::fe {
+namespace bough::linear {
 namespace {
 
 static_assert(std::is_same_v<idx_t, PetscInt>, "graphs are handed to METIS as PetscInt");
@@ -144,4 +144,4 @@ std::shared_ptr<const TwoParts> find_two_parts(const SymmetricMatrix& A, PetscIn
   return known;
 }
 
-}  // namespace bough::fe
+}  // namespace bough::linear

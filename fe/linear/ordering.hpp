@@ -7,7 +7,7 @@
 
 #include "fe/linear/symmetric_matrix.hpp"
 
-namespace bough::fe {
+namespace bough::linear {
 
 /// Gives `to`, a matrix of the same rows, what is known of `from`.
 void copy_row_order(const SymmetricMatrix& from, const SymmetricMatrix& to);
@@ -25,4 +25,4 @@ std::shared_ptr<const std::vector<PetscInt>> find_elimination_order(const Symmet
 /// The same with the first dissection told apart, kept alike; null as find_elimination_order(), and below `least` rows.
 std::shared_ptr<const TwoParts> find_two_parts(const SymmetricMatrix& A, PetscInt least);
 
-}  // namespace bough::fe
+}  // namespace bough::linear

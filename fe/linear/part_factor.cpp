@@ -8,7 +8,7 @@
 extern "C" void dlauum_(const char* part, const PetscBLASInt* n, double* A, const PetscBLASInt* lda,
                         PetscBLASInt* info);
 
-namespace bough::fe {
+namespace bough::linear {
 
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
@@ -183,4 +183,4 @@ VectorXd calc_separator_shift(const MatrixRows& A, const std::vector<PetscInt>& 
   return shift;
 }
 
-}  // namespace bough::fe
+}  // namespace bough::linear

@@ -13,7 +13,7 @@
 #include "fe/linear/dissection.hpp"
 #include "fe/linear/supernodes.hpp"
 
-namespace bough::fe {
+namespace bough::linear {
 
 /// Of one part with the rows between it and others: its LLᵀ by CHOLMOD, and the trailing block of that as a dense
 /// matrix (substructures: Przemieniecki, AIAA J. 1 (1963) 138).
@@ -81,4 +81,4 @@ void solve_dense(const Eigen::MatrixXd& L, Eigen::MatrixXd& X);
 /// \return one per row of `rows`; 0 if the diagonal entry is not positive (A is not definite then).
 Eigen::VectorXd calc_separator_shift(const MatrixRows& A, const std::vector<PetscInt>& rows, PetscInt size);
 
-}  // namespace bough::fe
+}  // namespace bough::linear

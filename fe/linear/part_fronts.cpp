@@ -6,7 +6,7 @@ extern "C" void dsytrs2_(const char* uplo, const PetscBLASInt* n, const PetscBLA
                          const PetscBLASInt* lda, const PetscBLASInt* pivots, double* B, const PetscBLASInt* ldb,
                          double* work, PetscBLASInt* info);
 
-namespace bough::fe {
+namespace bough::linear {
 namespace {
 
 /// What a front may add to a diagonal entry, over what the matrices have there. LLᵀ of a definite matrix takes off no
@@ -271,4 +271,4 @@ int count_negative_of_dense(MatrixXd& S) {
   return info != 0 ? -1 : count_negative_pivots(S.data(), n, order.data());
 }
 
-}  // namespace bough::fe
+}  // namespace bough::linear

@@ -16,7 +16,7 @@
 #include "base/diagnostic.hpp"
 #include "fe/linear/dissection.hpp"
 
-namespace bough::fe {
+namespace bough::linear {
 
 /// "fe.out-of-memory" of a count.
 ComputationError make_no_memory_for_count();
@@ -127,4 +127,4 @@ class PartFronts {
   FrontElimination elimination_;
 };
 
-}  // namespace bough::fe
+}  // namespace bough::linear

@@ -12,7 +12,7 @@
 
 #include "base/diagnostic.hpp"
 
-namespace bough::fe {
+namespace bough::linear {
 
 std::string get_petsc_message(PetscErrorCode code) {
   const char* text = nullptr;
@@ -148,4 +148,4 @@ MpiWorld initialize_petsc() {
   return world;
 }
 
-}  // namespace bough::fe
+}  // namespace bough::linear

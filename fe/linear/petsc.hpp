@@ -7,7 +7,7 @@
 
 #include <Eigen/Dense>
 
-namespace bough::fe {
+namespace bough::linear {
 
 /// PETSc's own text of the last error with this code, on one line.
 std::string get_petsc_message(PetscErrorCode code);
@@ -50,4 +50,4 @@ using PetscMat = PetscHandle<Mat, MatDestroy>;
 using PetscVec = PetscHandle<Vec, VecDestroy>;
 using PetscKsp = PetscHandle<KSP, KSPDestroy>;
 
-}  // namespace bough::fe
+}  // namespace bough::linear

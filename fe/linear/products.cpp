@@ -5,7 +5,7 @@
 #include "fe/linear/ranks.hpp"
 #include "fe/linear/row_products.hpp"
 
-namespace bough::fe {
+namespace bough::linear {
 
 using Eigen::MatrixXd;
 
@@ -66,4 +66,4 @@ Eigen::VectorXd get_diagonal(const SymmetricMatrix& A) {
   return gather(v.get());
 }
 
-}  // namespace bough::fe
+}  // namespace bough::linear

@@ -2,7 +2,7 @@
 /// \file Products and diagonals of symmetric matrices, sparse or with a part of low rank.
 #include "fe/linear/symmetric_matrix.hpp"
 
-namespace bough::fe {
+namespace bough::linear {
 
 /// A X of A and a replicated X, replicated.
 Eigen::MatrixXd multiply(const SymmetricMatrix& A, const Eigen::Ref<const Eigen::MatrixXd>& X);
@@ -12,4 +12,4 @@ Eigen::MatrixXd calc_residual(const SymmetricMatrix& A, const Eigen::Ref<const E
 /// The diagonal of A, replicated.
 Eigen::VectorXd get_diagonal(const SymmetricMatrix& A);
 
-}  // namespace bough::fe
+}  // namespace bough::linear

@@ -5,7 +5,7 @@
 
 #include "base/diagnostic.hpp"
 
-namespace bough::fe {
+namespace bough::linear {
 
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
@@ -64,4 +64,4 @@ std::pair<int, int> split_rows(int size) {
   return {last - own, last};
 }
 
-}  // namespace bough::fe
+}  // namespace bough::linear

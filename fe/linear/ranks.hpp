@@ -4,7 +4,7 @@
 
 #include "fe/linear/petsc.hpp"
 
-namespace bough::fe {
+namespace bough::linear {
 
 /// Sums a replicated matrix over ranks in place. Every rank gets the same bits, whatever MPI does: all decide by them.
 void sum_over_ranks(Eigen::Ref<Eigen::MatrixXd> values);
@@ -16,4 +16,4 @@ void scatter(const Eigen::Ref<const Eigen::VectorXd>& values, Vec v);
 /// Rows [first, last) of this rank, of `size` as PETSc distributes them.
 std::pair<int, int> split_rows(int size);
 
-}  // namespace bough::fe
+}  // namespace bough::linear

@@ -7,7 +7,7 @@
 #include "base/diagnostic.hpp"
 #include "fe/linear/threads.hpp"
 
-namespace bough::fe {
+namespace bough::linear {
 
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
@@ -82,4 +82,4 @@ void check_residuals(const VectorXd& residual, std::string_view name, Diagnostic
   diagnostics.warning("fe.residual", {}, what + "1e-08", advice);
 }
 
-}  // namespace bough::fe
+}  // namespace bough::linear

@@ -11,7 +11,7 @@ namespace bough {
 class Diagnostics;
 }
 
-namespace bough::fe {
+namespace bough::linear {
 
 /// Above the first a solution is printed with a warning, above the second it is an error.
 inline constexpr double kResidualWarning = 1e-8, kResidualError = 1e-5;
@@ -42,4 +42,4 @@ Eigen::MatrixXd calc_residual_scale(const Eigen::VectorXd& K_diagonal, const Eig
 /// is no number. `name` is "mode", "load factor", "load case".
 void check_residuals(const Eigen::VectorXd& residual, std::string_view name, Diagnostics& diagnostics);
 
-}  // namespace bough::fe
+}  // namespace bough::linear

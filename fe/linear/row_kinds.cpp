@@ -5,7 +5,7 @@
 
 #include "base/diagnostic.hpp"
 
-namespace bough::fe {
+namespace bough::linear {
 
 namespace {
 
@@ -47,4 +47,4 @@ VectorXd raise_diagonal(VectorXd D, const RowKinds& kinds, double share) {
   return D;
 }
 
-}  // namespace bough::fe
+}  // namespace bough::linear

@@ -5,7 +5,7 @@
 
 #include <Eigen/Dense>
 
-namespace bough::fe {
+namespace bough::linear {
 
 enum class RowKind : char { Translation, Rotation, Scalar };
 /// One per row; empty: the rows are of one kind.
@@ -19,4 +19,4 @@ Eigen::VectorXd fill_diagonal(Eigen::VectorXd D, const RowKinds& kinds);
 /// D with every entry raised to `share` of the largest of its kind.
 Eigen::VectorXd raise_diagonal(Eigen::VectorXd D, const RowKinds& kinds, double share);
 
-}  // namespace bough::fe
+}  // namespace bough::linear

@@ -9,7 +9,7 @@
 #include <immintrin.h>
 #endif
 
-namespace bough::fe {
+namespace bough::linear {
 namespace {
 
 using Eigen::Index;
@@ -102,4 +102,4 @@ MatrixXd subtract_precisely(const MatrixRows& A, const Matrix& X, const Matrix& 
   return R;
 }
 
-}  // namespace bough::fe
+}  // namespace bough::linear

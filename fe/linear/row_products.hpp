@@ -4,7 +4,7 @@
 /// Internal to linear.
 #include "fe/linear/dissection.hpp"
 
-namespace bough::fe {
+namespace bough::linear {
 
 /// A X of all rows; two halves at once where there are two threads.
 Eigen::MatrixXd multiply_rows(const MatrixRows& A, const Eigen::Ref<const Eigen::MatrixXd>& X);
@@ -14,4 +14,4 @@ Eigen::MatrixXd multiply_rows(const MatrixRows& A, const Eigen::Ref<const Eigen:
 Eigen::MatrixXd subtract_precisely(const MatrixRows& A, const Eigen::Ref<const Eigen::MatrixXd>& X,
                                    const Eigen::Ref<const Eigen::MatrixXd>& B);
 
-}  // namespace bough::fe
+}  // namespace bough::linear

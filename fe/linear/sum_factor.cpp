@@ -5,7 +5,7 @@
 
 #include <Eigen/Eigenvalues>
 
-namespace bough::fe {
+namespace bough::linear {
 
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
@@ -43,4 +43,4 @@ MatrixXd SumSolver::solve(const Eigen::Ref<const MatrixXd>& B) const {
   return X;
 }
 
-}  // namespace bough::fe
+}  // namespace bough::linear

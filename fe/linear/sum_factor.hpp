@@ -7,7 +7,7 @@
 #include "fe/linear/factor_solver.hpp"
 #include "fe/linear/low_rank_part.hpp"
 
-namespace bough::fe {
+namespace bough::linear {
 
 /// A⁻¹ = A_0⁻¹ - Y S⁻¹ Yᵀ, Y = A_0⁻¹U, S = W⁻¹ + UᵀY (Sherman, Morrison & Woodbury; Hager, SIAM Rev. 31 (1989) 221).
 /// Costs k solutions and n x k numbers, k the rank.
@@ -30,4 +30,4 @@ class SumSolver final : public FactorSolver {
   int num_extra_negative_ = 0;
 };
 
-}  // namespace bough::fe
+}  // namespace bough::linear

@@ -9,7 +9,7 @@
 #include "fe/linear/memory_need.hpp"
 #include "fe/linear/part_factor.hpp"
 
-namespace bough::fe {
+namespace bough::linear {
 namespace {
 
 using Eigen::MatrixXd;
@@ -101,4 +101,4 @@ SupernodalFactor make_supernodal_factor(const SymmetricMatrix& A, PetscInt least
   return result;
 }
 
-}  // namespace bough::fe
+}  // namespace bough::linear

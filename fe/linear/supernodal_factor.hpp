@@ -5,7 +5,7 @@
 #include "fe/linear/factor_solver.hpp"
 #include "fe/linear/symmetric_matrix.hpp"
 
-namespace bough::fe {
+namespace bough::linear {
 
 /// Smaller matrices gain nothing.
 constexpr PetscInt kLeastSupernodalRows = 20000;
@@ -25,4 +25,4 @@ struct SupernodalFactor {
 /// those of the parts.
 SupernodalFactor make_supernodal_factor(const SymmetricMatrix& A, PetscInt least = kLeastSupernodalRows);
 
-}  // namespace bough::fe
+}  // namespace bough::linear

@@ -7,7 +7,7 @@
 #include "base/diagnostic.hpp"
 #include "fe/linear/wide.hpp"
 
-namespace bough::fe {
+namespace bough::linear {
 
 using Eigen::Index;
 
@@ -195,4 +195,4 @@ void solve_lower_transposed(const Supernodes& L, Eigen::MatrixXd& Z) {
     solve_backward<kManySides>(L, get_backward_8(), Z.data());
 }
 
-}  // namespace bough::fe
+}  // namespace bough::linear

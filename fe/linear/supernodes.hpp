@@ -3,7 +3,7 @@
 #include <Eigen/Dense>
 #include <cstddef>
 
-namespace bough::fe {
+namespace bough::linear {
 
 /// L by supernodes: columns super[k] to super[k + 1] share the rows row[row_at[k]] and on, of which the first are their
 /// own. `num` supernodes have some of the first `size` columns of L; a solution uses those columns alone.
@@ -31,4 +31,4 @@ void solve_lower(const Supernodes& L, Eigen::MatrixXd& Z);
 /// The first `size` columns of Z become those of L⁻ᵀZ, the others being the solution already.
 void solve_lower_transposed(const Supernodes& L, Eigen::MatrixXd& Z);
 
-}  // namespace bough::fe
+}  // namespace bough::linear

@@ -6,7 +6,7 @@
 #include "fe/linear/ordering.hpp"
 #include "fe/linear/ranks.hpp"
 
-namespace bough::fe {
+namespace bough::linear {
 namespace {
 
 using Eigen::VectorXd;
@@ -216,4 +216,4 @@ PetscMat make_operator(const SymmetricMatrix& A) {
   return shell;
 }
 
-}  // namespace bough::fe
+}  // namespace bough::linear

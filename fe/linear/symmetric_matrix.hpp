@@ -8,7 +8,7 @@
 #include "fe/linear/low_rank_part.hpp"
 #include "fe/linear/petsc.hpp"
 
-namespace bough::fe {
+namespace bough::linear {
 
 /// Rows, each part in the order of its elimination: no row of `first` couples to one of `second`.
 struct TwoParts {
@@ -75,4 +75,4 @@ SymmetricMatrix take_kept(const SymmetricMatrix& A, const std::vector<int>& kept
 /// part for the whole unseen.
 PetscMat make_operator(const SymmetricMatrix& A);
 
-}  // namespace bough::fe
+}  // namespace bough::linear

@@ -9,7 +9,7 @@
 
 #include "fe/linear/petsc.hpp"
 
-namespace bough::fe {
+namespace bough::linear {
 
 namespace {
 
@@ -75,4 +75,4 @@ void do_columns(std::ptrdiff_t rows, std::ptrdiff_t columns, const std::function
   do_halves(num, rows > kLeast ? 1 : num, work);
 }
 
-}  // namespace bough::fe
+}  // namespace bough::linear

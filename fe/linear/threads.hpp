@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <functional>
 
-namespace bough::fe {
+namespace bough::linear {
 
 /// OMP_NUM_THREADS, or two where the machine has them; one of each rank of several, and where ulimit -v limits memory.
 int get_num_threads();
@@ -18,4 +18,4 @@ void do_halves(int size, int least, const std::function<void(int, int)>& work);
 /// The same of the columns of an array, where it has rows enough.
 void do_columns(std::ptrdiff_t rows, std::ptrdiff_t columns, const std::function<void(int, int)>& work);
 
-}  // namespace bough::fe
+}  // namespace bough::linear

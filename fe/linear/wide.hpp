@@ -7,7 +7,7 @@
 #endif
 #define BOUGH_INLINE inline __attribute__((always_inline))
 
-namespace bough::fe {
+namespace bough::linear {
 
 /// W numbers side by side.
 template <int W>
@@ -28,4 +28,4 @@ inline bool has_wide() {
 }
 #endif
 
-}  // namespace bough::fe
+}  // namespace bough::linear

@@ -16,8 +16,8 @@ VectorXd gather_rows(const VectorXd& x, const std::vector<int>& rows) {
 
 }  // namespace
 
-SymmetricMatrix assemble_geometric_stiffness(const Model& model, DofSet set, const AppliedLoad& load,
-                                             const VectorXd& u_g, const InitialForces* initial) {
+linear::SymmetricMatrix assemble_geometric_stiffness(const Model& model, DofSet set, const AppliedLoad& load,
+                                                     const VectorXd& u_g, const InitialForces* initial) {
   BOUGH_DEMAND(u_g.size() == model.num_gdofs());
   const auto add = [&u_g, initial](const Element& e, Eigen::Ref<MatrixXd> K_G) {
     const StressState* state = e.stress_state();

@@ -133,10 +133,10 @@ struct SpinLoads {
     M.setZero(element.num_dofs(), element.num_dofs());
     element.add_mass(kind, model.wtmass(), M);
     f.resize(M.rows(), spin.cols());
-    multiply_dense(false, M, grid_field(element.gdofs(), Eigen::all), 0, f);
+    linear::multiply_dense(false, M, grid_field(element.gdofs(), Eigen::all), 0, f);
     CarriedMass carried(element.num_dofs(), CarriedDetail::Points);
     if (calc_carried(model, element, kind, carried)) {
-      multiply_dense(true, stack_motions(carried), fields.calc_point_loads(carried), 1, f);
+      linear::multiply_dense(true, stack_motions(carried), fields.calc_point_loads(carried), 1, f);
     } else {
       f += turn_momenta(model, element, M, spin);
     }
@@ -158,7 +158,7 @@ MatrixXd calc_inertial_loads(const Model& model, MassKind kind, const MatrixXd& 
   MatrixXd change = sum_over_elements(model, get_own_elements(model), kMinElementsOfThread, [&] {
                       return SpinLoads{model, kind, spin, grid_field, fields};
                     }).loads;
-  sum_over_ranks(change);
+  linear::sum_over_ranks(change);
   return F + change;
 }
 
@@ -220,13 +220,13 @@ struct CarriedGram {
       Z.row(used + r).segment<3>(1) = point.x.transpose();
     }
     u.resize(3 * count, n);
-    multiply_dense(false, stack_motions(carried), Phi_e, 0, u);
+    linear::multiply_dense(false, stack_motions(carried), Phi_e, 0, u);
     for (int a = 0; a < 3; ++a) Z.block(used, 4 + a * n, count, n) = u.middleRows(a * count, count);
-    multiply_dense(false, carried.mu, Z.middleRows(used, count), 0, mu_Z.middleRows(used, count));
+    linear::multiply_dense(false, carried.mu, Z.middleRows(used, count), 0, mu_Z.middleRows(used, count));
     used += count;
   }
   void flush() {
-    multiply_dense(true, Z.topRows(used), mu_Z.topRows(used), 1, gram);
+    linear::multiply_dense(true, Z.topRows(used), mu_Z.topRows(used), 1, gram);
     used = 0;
   }
   void merge(CarriedGram second) {
@@ -243,11 +243,11 @@ MatrixXd calc_carried_gram(const Model& model, MassKind kind, const MatrixXd& Ph
     return CarriedGram{model, kind, Phi};
   });
   sum.flush();
-  sum_over_ranks(sum.gram);
+  linear::sum_over_ranks(sum.gram);
   return sum.gram;
 }
 
-SymmetricMatrix assemble_grid_mass(const Model& model, MassKind kind) {
+linear::SymmetricMatrix assemble_grid_mass(const Model& model, MassKind kind) {
   const double scale = model.wtmass();
   const auto is_carried = [&](const Element& e) {
     CarriedMass carried(e.num_dofs(), CarriedDetail::Whether);

@@ -43,7 +43,7 @@ bool calc_carried(const Model& model, const Element& element, MassKind kind, Car
 
 /// The part of M on the g-set that moves as the translations of the grids do, and what is not known to do otherwise:
 /// all but what calc_carried() tells of.
-SymmetricMatrix assemble_grid_mass(const Model& model, MassKind kind);
+linear::SymmetricMatrix assemble_grid_mass(const Model& model, MassKind kind);
 
 /// Σ μ_rs z_r z_sᵀ over the points of all carried masses, z = [1 or 0 for an arm, x, u] with u the motions of the point
 /// in Phi (num_gdofs x n), x of every column first: 4 + 3n square. Summed over ranks.

@@ -25,7 +25,7 @@ std::vector<QuadraticForm> calc_second_order(const Model& model, const AppliedLo
 
 /// K_G of a load with its static displacements u (num_gdofs) and the forces of heated elements
 /// (fe/loads/temperatures.hpp), f-set or g-set: of internal forces, carried masses, loads on arms and links.
-SymmetricMatrix assemble_geometric_stiffness(const Model& model, DofSet set, const AppliedLoad& load,
-                                             const VectorXd& u_g, const InitialForces* initial = nullptr);
+linear::SymmetricMatrix assemble_geometric_stiffness(const Model& model, DofSet set, const AppliedLoad& load,
+                                                     const VectorXd& u_g, const InitialForces* initial = nullptr);
 
 }  // namespace bough::fe

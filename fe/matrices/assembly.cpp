@@ -39,7 +39,7 @@ class Parts {
  public:
   Parts(const SparseRows& T, std::vector<const std::vector<int>*> parts) : gdofs_(std::move(parts)) {
     std::vector<int> seconds;
-    do_halves(size(), kLeast, [&](int from, int to) {
+    linear::do_halves(size(), kLeast, [&](int from, int to) {
       std::vector<int> columns, all;
       for (int e = from; e < to; ++e) {
         calc_element_columns(T, this->gdofs(e), columns);
@@ -146,17 +146,17 @@ void drop_zeros(Rows& rows, int first) {
   rows.start.back() = kept;
 }
 
-void copy_rows(const Rows& rows, int row, int entry, Csr& csr) {
+void copy_rows(const Rows& rows, int row, int entry, linear::Csr& csr) {
   for (size_t i = 1; i < rows.start.size(); ++i) csr.start[row + static_cast<int>(i)] = entry + rows.start[i];
   std::copy(rows.columns.begin(), rows.columns.end(), csr.columns.get() + entry);
   std::copy(rows.values.begin(), rows.values.end(), csr.values.get() + entry);
 }
 
 /// `first` and the rows behind it, from row number `begin` on.
-Csr join(Rows first, Rows second, int begin) {
+linear::Csr join(Rows first, Rows second, int begin) {
   const int num_first = static_cast<int>(first.start.size()) - 1, entries = first.start.back();
   const size_t num_rows = first.start.size() + second.start.size() - 2;
-  Csr csr = make_csr(num_rows, first.columns.size() + second.columns.size());
+  linear::Csr csr = linear::make_csr(num_rows, first.columns.size() + second.columns.size());
   csr.start[0] = 0;
   const auto copy_first = [&] { copy_rows(std::exchange(first, {}), 0, 0, csr); };
   const auto copy_second = [&] { copy_rows(std::exchange(second, {}), num_first, entries, csr); };
@@ -168,7 +168,7 @@ Csr join(Rows first, Rows second, int begin) {
     copy_first();
     copy_second();
   } else {
-    do_both(copy_first, copy_second);
+    linear::do_both(copy_first, copy_second);
   }
   return csr;
 }
@@ -197,7 +197,7 @@ struct ProductSum {
     X_e.resize(n, X.cols());
     for (int d = 0; d < n; ++d) X_e.row(d) = X.row(gdofs[d]);
     Y_e.resize(n, X.cols());
-    multiply_dense(false, K_e, X_e, 0, Y_e);
+    linear::multiply_dense(false, K_e, X_e, 0, Y_e);
     if (energy) energy->row(e) = 0.5 * X_e.cwiseProduct(Y_e).colwise().sum();
     for (int d = 0; d < n; ++d) Y.row(gdofs[d]) += Y_e.row(d);
   }
@@ -221,10 +221,10 @@ MatrixXd calc_times(const Model& model, const AddElementMatrix& add, const Eigen
   BOUGH_DEMAND(X.rows() == model.num_gdofs());
   if (X.cols() == 0) return MatrixXd::Zero(X.rows(), 0);
   MatrixXd Y = sum_own_elements(model, add, X, energy);
-  const MpiWorld world = initialize_petsc();
+  const linear::MpiWorld world = linear::initialize_petsc();
   for (size_t k = static_cast<size_t>(world.rank); k < forms.size(); k += static_cast<size_t>(world.size))
     Y(forms[k].gdofs, Eigen::all) += calc_form(forms[k], 0) * X(forms[k].gdofs, Eigen::all);
-  sum_over_ranks(Y);
+  linear::sum_over_ranks(Y);
   return Y;
 }
 
@@ -281,19 +281,20 @@ int find_cut(const Parts& parts, int first, int last) {
 }
 
 /// Two threads take a half each as two ranks would, where few elements touch both.
-Csr sum_rows(const Elements& elements, const SparseRows& T, const AddElementMatrix& add,
-             const std::vector<QuadraticForm>& forms, const Parts& parts, int first, int last) {
-  const int cut = get_num_threads() > 1 && last - first > 2 * kRowsOfThread ? find_cut(parts, first, last) : -1;
+linear::Csr sum_rows(const Elements& elements, const SparseRows& T, const AddElementMatrix& add,
+                     const std::vector<QuadraticForm>& forms, const Parts& parts, int first, int last) {
+  const int cut = linear::get_num_threads() > 1 && last - first > 2 * kRowsOfThread ? find_cut(parts, first, last) : -1;
   if (cut < 0) return join(sum_some_rows(elements, T, add, forms, parts, first, last), {}, first);
   Rows rows, second;
-  do_both([&] { rows = sum_some_rows(elements, T, add, forms, parts, first, cut); },
-          [&] { second = sum_some_rows(elements, T, add, forms, parts, cut, last); });
+  linear::do_both([&] { rows = sum_some_rows(elements, T, add, forms, parts, first, cut); },
+                  [&] { second = sum_some_rows(elements, T, add, forms, parts, cut, last); });
   return join(std::move(rows), std::move(second), first);
 }
 
 /// Rows [first, last) of TᵀAT; last < 0: all.
-Csr sum_rows(const Elements& elements, const SparseRows& T, const AddElementMatrix& add,
-             const std::vector<QuadraticForm>& forms, int first = 0, int last = -1, const TakesElement& takes = {}) {
+linear::Csr sum_rows(const Elements& elements, const SparseRows& T, const AddElementMatrix& add,
+                     const std::vector<QuadraticForm>& forms, int first = 0, int last = -1,
+                     const TakesElement& takes = {}) {
   static const std::vector<int> none;
   std::vector<const std::vector<int>*> gdofs;
   for (const auto& element : elements) gdofs.push_back(takes && !takes(*element) ? &none : &element->gdofs());
@@ -304,33 +305,34 @@ Csr sum_rows(const Elements& elements, const SparseRows& T, const AddElementMatr
 
 /// TᵀAT, sparse. Every rank adds, in the order of the deck, all elements that touch its rows: nothing is sent, and an
 /// entry does not depend on the number of ranks.
-SymmetricMatrix assemble_sparse(const Elements& elements, const SparseRows& T, const AddElementMatrix& add,
-                                const std::vector<QuadraticForm>& forms, const TakesElement& takes = {}) {
+linear::SymmetricMatrix assemble_sparse(const Elements& elements, const SparseRows& T, const AddElementMatrix& add,
+                                        const std::vector<QuadraticForm>& forms, const TakesElement& takes = {}) {
   const PetscInt size = static_cast<PetscInt>(T.cols());
-  if (initialize_petsc().size == 1) return SymmetricMatrix(sum_rows(elements, T, add, forms, 0, -1, takes), 0, size);
-  const auto [first, last] = split_rows(size);
-  return SymmetricMatrix(sum_rows(elements, T, add, forms, first, last, takes), first, size);
+  if (linear::initialize_petsc().size == 1)
+    return linear::SymmetricMatrix(sum_rows(elements, T, add, forms, 0, -1, takes), 0, size);
+  const auto [first, last] = linear::split_rows(size);
+  return linear::SymmetricMatrix(sum_rows(elements, T, add, forms, first, last, takes), first, size);
 }
 
 }  // namespace
 
-SymmetricMatrix assemble(const Model& model, DofSet set, MatrixKind kind, const AddElementMatrix& add,
-                         std::vector<QuadraticForm> forms) {
-  initialize_petsc();
+linear::SymmetricMatrix assemble(const Model& model, DofSet set, MatrixKind kind, const AddElementMatrix& add,
+                                 std::vector<QuadraticForm> forms) {
+  linear::initialize_petsc();
   if (set == DofSet::Global) return assemble_sparse(model.elements(), make_identity(model.num_gdofs()), add, forms);
-  const LowRankPart of_forms = take_wide_forms(model, forms);
+  const linear::LowRankPart of_forms = take_wide_forms(model, forms);
   const auto split = split_transform(model, kind == MatrixKind::Stiffness);
   if (!split) return assemble_sparse(model.elements(), model.T(), add, forms).with_low_rank(of_forms);
   return assemble_sparse(model.elements(), split->T, add, forms)
       .with_low_rank(join(calc_wide_part(model, *split, add, forms), 1, of_forms, 1));
 }
 
-SymmetricMatrix assemble_some(const Model& model, const AddElementMatrix& add, const TakesElement& takes) {
+linear::SymmetricMatrix assemble_some(const Model& model, const AddElementMatrix& add, const TakesElement& takes) {
   return assemble_sparse(model.elements(), make_identity(model.num_gdofs()), add, {}, takes);
 }
 
 SparseRows sum_elements(const Elements& elements, int num_gdofs, const AddElementMatrix& add) {
-  const Csr rows = sum_rows(elements, make_identity(num_gdofs), add, {});
+  const linear::Csr rows = sum_rows(elements, make_identity(num_gdofs), add, {});
   return Eigen::Map<const SparseRows>(num_gdofs, num_gdofs, rows.start[num_gdofs], rows.start.get(), rows.columns.get(),
                                       rows.values.get());
 }
@@ -347,24 +349,24 @@ AddElementMatrix add_stiffness_of(const Model& model) {
 
 }  // namespace
 
-SymmetricMatrix assemble_stiffness(const Model& model, DofSet set) {
+linear::SymmetricMatrix assemble_stiffness(const Model& model, DofSet set) {
   if (set == DofSet::Free) require_memory_for_factor(model);
   return assemble(model, set, MatrixKind::Stiffness, add_stiffness_of(model), get_forms(model));
 }
 
-bool drop_stiffness(const SymmetricMatrix& K) { return K.drop_entries(); }
+bool drop_stiffness(const linear::SymmetricMatrix& K) { return K.drop_entries(); }
 
-void restore_stiffness(const Model& model, const SymmetricMatrix& K) {
+void restore_stiffness(const Model& model, const linear::SymmetricMatrix& K) {
   K.fill_entries(sum_rows(model.elements(), model.T(), add_stiffness_of(model), get_forms(model)));
 }
 
-SymmetricMatrix assemble_mass(const Model& model, DofSet set, MassKind kind) {
+linear::SymmetricMatrix assemble_mass(const Model& model, DofSet set, MassKind kind) {
   const double scale = model.wtmass();
   return assemble(model, set, MatrixKind::Other,
                   [kind, scale](const Element& e, Eigen::Ref<MatrixXd> M) { e.add_mass(kind, scale, M); });
 }
 
-SymmetricMatrix assemble_damping(const Model& model, DofSet set) {
+linear::SymmetricMatrix assemble_damping(const Model& model, DofSet set) {
   return assemble(model, set, MatrixKind::Other, add_damping_of);
 }
 

@@ -13,23 +13,23 @@ enum class MatrixKind { Stiffness, Other };
 /// Σ of element matrices and of forms on PETSC_COMM_WORLD; MATAIJ, zeros left out except on the diagonal; the same to
 /// the last bit on any number of ranks. With a part of low rank where constraints or forms of the f-set are wide
 /// (wide_part.hpp). O(elements).
-SymmetricMatrix assemble(const Model& model, DofSet set, MatrixKind kind, const AddElementMatrix& add,
-                         std::vector<QuadraticForm> forms = {});
+linear::SymmetricMatrix assemble(const Model& model, DofSet set, MatrixKind kind, const AddElementMatrix& add,
+                                 std::vector<QuadraticForm> forms = {});
 /// The same of the elements that `takes` says, on the g-set; the others are not asked.
 using TakesElement = std::function<bool(const Element&)>;
-SymmetricMatrix assemble_some(const Model& model, const AddElementMatrix& add, const TakesElement& takes);
+linear::SymmetricMatrix assemble_some(const Model& model, const AddElementMatrix& add, const TakesElement& takes);
 /// Sum over elements that no model has yet, on the g-set, whole on every rank.
 SparseRows sum_elements(const Elements& elements, int num_gdofs, const AddElementMatrix& add);
 
 /// K (with K_G0 of a prestressed model), or M (times WTMASS).
-SymmetricMatrix assemble_stiffness(const Model& model, DofSet set);
-SymmetricMatrix assemble_mass(const Model& model, DofSet set, MassKind kind);
+linear::SymmetricMatrix assemble_stiffness(const Model& model, DofSet set);
+linear::SymmetricMatrix assemble_mass(const Model& model, DofSet set, MassKind kind);
 /// Gives the memory of K of the f-set back to the system as long as nobody reads it, until restore_stiffness() makes it
 /// again, bit for bit. False, and nothing happens, where K has a part of low rank or is on several processes.
-bool drop_stiffness(const SymmetricMatrix& K);
-void restore_stiffness(const Model& model, const SymmetricMatrix& K);
+bool drop_stiffness(const linear::SymmetricMatrix& K);
+void restore_stiffness(const Model& model, const linear::SymmetricMatrix& K);
 /// The viscous damping B of dampers and bushes.
-SymmetricMatrix assemble_damping(const Model& model, DofSet set);
+linear::SymmetricMatrix assemble_damping(const Model& model, DofSet set);
 /// Products with the g-set mass matrix without forming it: M X, num_gdofs x k, replicated on every rank. O(elements k).
 MatrixXd calc_mass_times(const Model& model, MassKind kind, const Eigen::Ref<const MatrixXd>& X_g);
 /// The same with K. `energy`, if given: ½ x_eᵀ K_e x_e, elements x k, of this rank's elements; others have zeros.

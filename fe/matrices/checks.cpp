@@ -46,7 +46,7 @@ Vector6d calc_ground_check(const Model& model, GroundSet set) {
     for (int i = 0; i < element.num_dofs(); ++i)
       scale += K(i, i) * u.row(element.gdofs()[static_cast<std::size_t>(i)]).cwiseAbs2().transpose();
   });
-  sum_over_ranks(scale);
+  linear::sum_over_ranks(scale);
   Vector6d result = Vector6d::Zero();
   for (int r = 0; r < 6; ++r)
     if (scale(r, 0) > 0) result[r] = std::abs(u.col(r).dot(K_u.col(r))) / scale(r, 0);

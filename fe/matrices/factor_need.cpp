@@ -100,13 +100,13 @@ double estimate_factor_entries(const Model& model) {
 
 void require_memory_for_factor(const Model& model, int least) {
   constexpr double kMostCounted = 2147483647;
-  if (model.num_fdofs() < least || initialize_petsc().size > 1) return;
+  if (model.num_fdofs() < least || linear::initialize_petsc().size > 1) return;
   const double num_entries = estimate_factor_entries(model), num_equations = model.num_fdofs();
-  require_memory(num_equations, num_entries, calc_free_memory());
+  linear::require_memory(num_equations, num_entries, linear::calc_free_memory());
   if (num_entries > kMostCounted)
     throw ComputationError("fe.out-of-memory", {},
                            "the factor of " + std::to_string(model.num_fdofs()) + " equations needs about " +
-                               format_bytes(calc_factor_bytes(num_entries)) +
+                               linear::format_bytes(linear::calc_factor_bytes(num_entries)) +
                                ": more entries than CHOLMOD counts on one process",
                            "run on two processes or more, where MUMPS factors (mpirun -n 2 bough ...)");
 }

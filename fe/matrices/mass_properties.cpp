@@ -33,7 +33,7 @@ Eigen::Matrix<double, 6, 1> calc_ground_check(const Model& model) {
     element.add_stiffness(1, K_e);
     for (int i = 0; i < element.num_dofs(); ++i) diagonal[element.gdofs()[i]] += K_e(i, i);
   });
-  sum_over_ranks(diagonal);
+  linear::sum_over_ranks(diagonal);
   const MatrixXd K_Phi = calc_stiffness_times(model, Phi_R);
   Eigen::Matrix<double, 6, 1> result;
   for (int r = 0; r < 6; ++r) {

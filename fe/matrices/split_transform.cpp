@@ -146,8 +146,8 @@ SparseRows find_near_rows(const Model& model, const SparseRows& T, const SparseR
 
 int get_max_dense_terms() {
   PetscInt terms = kMaxDenseTerms;
-  initialize_petsc();
-  check_petsc(PetscOptionsGetInt(nullptr, nullptr, "-bough_max_dense_terms", &terms, nullptr));
+  linear::initialize_petsc();
+  linear::check_petsc(PetscOptionsGetInt(nullptr, nullptr, "-bough_max_dense_terms", &terms, nullptr));
   return static_cast<int>(terms);
 }
 

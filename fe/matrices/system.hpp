@@ -10,12 +10,12 @@ namespace bough::fe {
 /// K of the f-set before anyone asked for it, from the check that a preloaded model does not buckle
 /// (statics/preload_check.cpp), and its LLᵀ where it has one.
 struct CheckedStiffness {
-  SymmetricMatrix K;
-  std::optional<SymmetricFactor> factor;
+  linear::SymmetricMatrix K;
+  std::optional<linear::SymmetricFactor> factor;
 };
 
 /// K on the f-set, with K_G0 of a preloaded model: that of its check, else assembled here.
-SymmetricMatrix get_stiffness(const Model& model);
+linear::SymmetricMatrix get_stiffness(const Model& model);
 
 /// K and M (times WTMASS) of one model on its f-set; both carry the order in which they are eliminated
 /// (linear/ordering.hpp), found once. Const after; `model` outlives it.
@@ -25,9 +25,9 @@ struct System {
   System& operator=(const System&) = delete;
 
   const Model& model;
-  const SymmetricMatrix K, M;
+  const linear::SymmetricMatrix K, M;
   const VectorXd K_diagonal, M_diagonal;  ///< |K_ii| and M_ii, num_fdofs, replicated
-  const SymmetricFactor* factor;          ///< LLᵀ of K where the check of a preload left one, else nullptr
+  const linear::SymmetricFactor* factor;  ///< LLᵀ of K where the check of a preload left one, else nullptr
 };
 
 }  // namespace bough::fe

@@ -9,7 +9,7 @@ namespace bough::fe {
 
 MatrixXd expand(const Model& model, const Eigen::Ref<const MatrixXd>& X) {
   MatrixXd U(model.num_gdofs(), X.cols());
-  do_columns(X.rows(), X.cols(), [&](int from, int to) {
+  linear::do_columns(X.rows(), X.cols(), [&](int from, int to) {
     U.middleCols(from, to - from).noalias() = model.T() * X.middleCols(from, to - from);
   });
   return U;
@@ -19,8 +19,8 @@ MatrixXd calc_mass_gram(const Model& model, MassKind kind, const MatrixXd& X) {
   MatrixXd G(X.cols(), X.cols());
   for (Eigen::Index c = 0; c < X.cols(); c += kColumnsAtOnce) {
     const Eigen::Index num = std::min(kColumnsAtOnce, X.cols() - c);
-    multiply_dense(true, X.leftCols(c + num), calc_mass_times(model, kind, X.middleCols(c, num)), 0,
-                   G.block(0, c, c + num, num));
+    linear::multiply_dense(true, X.leftCols(c + num), calc_mass_times(model, kind, X.middleCols(c, num)), 0,
+                           G.block(0, c, c + num, num));
   }
   G.triangularView<Eigen::StrictlyLower>() = G.transpose();
   return G;

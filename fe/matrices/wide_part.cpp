@@ -30,10 +30,10 @@ class Products {
         for (int w = 0; w < AP.cols(); ++w)
           if (AP(i, w) != 0) V_.emplace_back(static_cast<int>(it.col()), w, it.value() * AP(i, w));
   }
-  LowRankPart finish(const SparseColumns& D) const {
+  linear::LowRankPart finish(const SparseColumns& D) const {
     SparseColumns V(T_.cols(), P_.cols());
     V.setFromTriplets(V_.begin(), V_.end());
-    return make_product_part(D, V, K_);
+    return linear::make_product_part(D, V, K_);
   }
 
  private:
@@ -45,8 +45,8 @@ class Products {
 
 }  // namespace
 
-LowRankPart calc_wide_part(const Model& model, const SplitTransform& split, const AddElementMatrix& add,
-                           const std::vector<QuadraticForm>& forms) {
+linear::LowRankPart calc_wide_part(const Model& model, const SplitTransform& split, const AddElementMatrix& add,
+                                   const std::vector<QuadraticForm>& forms) {
   Products products(split.T, split.P);
   MatrixXd A;
   for (const auto& element : model.elements()) {
@@ -60,7 +60,7 @@ LowRankPart calc_wide_part(const Model& model, const SplitTransform& split, cons
   return products.finish(split.G.transpose());
 }
 
-LowRankPart take_wide_forms(const Model& model, std::vector<QuadraticForm>& forms) {
+linear::LowRankPart take_wide_forms(const Model& model, std::vector<QuadraticForm>& forms) {
   constexpr Eigen::Index most = 500;  // columns of dense storage
   const auto count = [&](std::size_t limit) {
     Eigen::Index rows = 0;
@@ -70,7 +70,7 @@ LowRankPart take_wide_forms(const Model& model, std::vector<QuadraticForm>& form
   };
   auto limit = static_cast<std::size_t>(get_max_dense_terms());
   while (count(limit) > most) limit *= 2;
-  LowRankPart part;
+  linear::LowRankPart part;
   for (const auto& form : forms) {
     if (form.gdofs.size() <= limit) continue;
     Triplets entries;
@@ -85,7 +85,7 @@ LowRankPart take_wide_forms(const Model& model, std::vector<QuadraticForm>& form
     const auto r = static_cast<int>(W.rows());
     for (int j = 0; j < r; ++j)
       for (int i = j; i < r; ++i) W(i, j) = W(j, i) = form.weights(find_weight(r, i, j), 0);
-    part = join(part, 1, make_form_part(X, W), 1);
+    part = join(part, 1, linear::make_form_part(X, W), 1);
   }
   std::erase_if(forms, [&](const QuadraticForm& form) { return form.gdofs.size() > limit; });
   return part;

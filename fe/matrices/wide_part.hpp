@@ -30,10 +30,10 @@ int get_max_dense_terms();
 std::optional<SplitTransform> split_transform(const Model& model, bool keeps_supports);
 
 /// TᵀAT - T_sᵀ A T_s for A the sum of element matrices and `forms`. O(elements).
-LowRankPart calc_wide_part(const Model& model, const SplitTransform& split, const AddElementMatrix& add,
-                           const std::vector<QuadraticForm>& forms);
+linear::LowRankPart calc_wide_part(const Model& model, const SplitTransform& split, const AddElementMatrix& add,
+                                   const std::vector<QuadraticForm>& forms);
 
 /// Takes those of `forms` over many g-dofs out and returns Σ TᵀLᵀWLT of them.
-LowRankPart take_wide_forms(const Model& model, std::vector<QuadraticForm>& forms);
+linear::LowRankPart take_wide_forms(const Model& model, std::vector<QuadraticForm>& forms);
 
 }  // namespace bough::fe

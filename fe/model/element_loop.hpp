@@ -30,7 +30,7 @@ void visit_elements(const Model& model, const ElementRange& range, const Visit& 
 /// `min_of_thread` elements (fewer take less time than the start of a thread); else half 0 is the whole range.
 template <class Visit>
 void visit_elements_by_halves(const Model& model, const ElementRange& range, int min_of_thread, const Visit& visit) {
-  do_halves(range.last - range.first, min_of_thread, [&](int from, int to) {
+  linear::do_halves(range.last - range.first, min_of_thread, [&](int from, int to) {
     const std::size_t half = from == 0 ? 0 : 1;
     visit_elements(model, {range.first + from, range.first + to},
                    [&](int e, const Element& element) { visit(half, e, element); });
@@ -43,7 +43,7 @@ template <class Make>
 auto sum_over_elements(const Model& model, const ElementRange& range, int min_of_thread, const Make& make) {
   auto sum = make();
   std::optional<decltype(sum)> second;
-  do_halves(range.last - range.first, min_of_thread, [&](int from, int to) {
+  linear::do_halves(range.last - range.first, min_of_thread, [&](int from, int to) {
     auto& own = from == 0 ? sum : second.emplace(make());
     visit_elements(model, {range.first + from, range.first + to},
                    [&](int e, const Element& element) { own.add(e, element); });

@@ -4,17 +4,19 @@
 
 namespace bough::fe {
 
-RowKinds list_row_kinds(const Model& model, const std::vector<int>& fdofs) {
-  RowKinds kinds;
+linear::RowKinds list_row_kinds(const Model& model, const std::vector<int>& fdofs) {
+  linear::RowKinds kinds;
   kinds.reserve(fdofs.size());
   for (const int f : fdofs) {
     const int component = model.describe_fdof(f).second;
-    kinds.push_back(component == 0 ? RowKind::Scalar : component <= 3 ? RowKind::Translation : RowKind::Rotation);
+    kinds.push_back(component == 0   ? linear::RowKind::Scalar
+                    : component <= 3 ? linear::RowKind::Translation
+                                     : linear::RowKind::Rotation);
   }
   return kinds;
 }
 
-RowKinds list_row_kinds(const Model& model) {
+linear::RowKinds list_row_kinds(const Model& model) {
   std::vector<int> all(static_cast<std::size_t>(model.num_fdofs()));
   std::iota(all.begin(), all.end(), 0);
   return list_row_kinds(model, all);

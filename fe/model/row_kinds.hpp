@@ -6,8 +6,8 @@
 namespace bough::fe {
 
 /// Kinds of all f-dofs (num_fdofs), in their order.
-RowKinds list_row_kinds(const Model& model);
+linear::RowKinds list_row_kinds(const Model& model);
 /// Kinds of the f-dofs `fdofs`.
-RowKinds list_row_kinds(const Model& model, const std::vector<int>& fdofs);
+linear::RowKinds list_row_kinds(const Model& model, const std::vector<int>& fdofs);
 
 }  // namespace bough::fe

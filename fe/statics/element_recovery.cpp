@@ -117,8 +117,8 @@ class PointTables {
     for (std::size_t g = 0; g < groups_.size(); ++g)
       for (auto& result : results_) {
         auto& block = (result.*blocks_)[g];
-        sum_over_ranks(block.stress);
-        if (block.corner.cols() > 0) sum_over_ranks(block.corner);
+        linear::sum_over_ranks(block.stress);
+        if (block.corner.cols() > 0) linear::sum_over_ranks(block.corner);
       }
   }
 
@@ -194,8 +194,8 @@ class ForceTables {
     for (std::size_t g = 0; g < groups_.size(); ++g)
       for (std::size_t c = 0; c < results_.size(); ++c) {
         auto& block = results_[c].forces[g];
-        sum_over_ranks(block.force);
-        sum_over_ranks(energies_[g][c]);
+        linear::sum_over_ranks(block.force);
+        linear::sum_over_ranks(energies_[g][c]);
         block.strain_energy = energies_[g][c].col(0);
       }
   }
@@ -206,7 +206,7 @@ class ForceTables {
     K.setZero(at.U.rows(), at.U.rows());
     model_.add_stiffness(at.element, K);
     K_U.resize(at.U.rows(), at.U.cols());
-    multiply_dense(false, K, at.U, 0, K_U);
+    linear::multiply_dense(false, K, at.U, 0, K_U);
     return 0.5 * at.U.cwiseProduct(K_U).colwise().sum();
   }
 

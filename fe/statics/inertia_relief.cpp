@@ -87,7 +87,7 @@ Suport calc_suport(const Model& model, const StaticSolver& solver, std::vector<i
   }
   for (int j = 0; j < num; ++j) {
     const double diagonal = 0.5 * suport.motions.col(j).cwiseAbs2().dot(D);
-    if (suport.strain_energy[j] <= kMechanismEnergy * diagonal) continue;
+    if (suport.strain_energy[j] <= linear::kMechanismEnergy * diagonal) continue;
     const auto [grid, component] = model.describe_fdof(suport.fdofs[static_cast<std::size_t>(j)]);
     const std::string what = "the motion of SUPORT " + name_suport(grid, component) + " strains the model: energy " +
                              show_number(suport.strain_energy[j]) + " for a unit, epsilon " +

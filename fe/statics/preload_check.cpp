@@ -15,21 +15,21 @@ namespace {
 
 /// A with rows of these kinds, and a little of its diagonal, so that motions without stiffness are not negative by
 /// roundoff.
-SymmetricMatrix lift(const SymmetricMatrix& A, const RowKinds& kinds) {
-  return add_diagonal(A, 1e-13 * raise_diagonal(get_diagonal(A).cwiseAbs(), kinds, 1e-6));
+linear::SymmetricMatrix lift(const linear::SymmetricMatrix& A, const linear::RowKinds& kinds) {
+  return linear::add_diagonal(A, 1e-13 * linear::raise_diagonal(linear::get_diagonal(A).cwiseAbs(), kinds, 1e-6));
 }
 
 /// Whether A, which is not positive definite, has a negative eigenvalue beyond roundoff; those of motions without
 /// stiffness are none.
-bool has_negative(const SymmetricMatrix& A, const RowKinds& kinds) {
-  const SymmetricMatrix lifted = lift(A, kinds);
-  if (initialize_petsc().size == 1) return !SymmetricFactor::try_definite(lifted);
-  return count_negative_eigenvalues(lifted).value_or(0) > 0;
+bool has_negative(const linear::SymmetricMatrix& A, const linear::RowKinds& kinds) {
+  const linear::SymmetricMatrix lifted = lift(A, kinds);
+  if (linear::initialize_petsc().size == 1) return !linear::SymmetricFactor::try_definite(lifted);
+  return linear::count_negative_eigenvalues(lifted).value_or(0) > 0;
 }
 
 /// Negative directions of the stress among the rigid motions of a model that nothing holds; 0 where it is held. A
 /// motion on which the stress does no work, but whose forces strain the body, is one of second order.
-int count_tipping(const Model& model, const SymmetricMatrix& K) {
+int count_tipping(const Model& model, const linear::SymmetricMatrix& K) {
   for (const int dof : model.fixed_dofs()) {
     const auto is_it = [&](const AutospcEntry& entry) {
       return model.node(model.find_node(entry.node)).first_gdof + std::max(entry.component - 1, 0) == dof;
@@ -41,7 +41,7 @@ int count_tipping(const Model& model, const SymmetricMatrix& K) {
   const MatrixXd R = model.calc_rigid_modes(centre), K_G_R = calc_prestress_times(model, R);
   const Eigen::Matrix<double, 6, 6> G = R.transpose() * K_G_R,
                                     elastic = R.transpose() * calc_stiffness_times(model, R) - G;
-  const double roundoff = 1e-14 * get_diagonal(K).cwiseAbs().sum() * R.cwiseAbs2().maxCoeff();
+  const double roundoff = 1e-14 * linear::get_diagonal(K).cwiseAbs().sum() * R.cwiseAbs2().maxCoeff();
   if (!(elastic.norm() < 1e-6 * G.norm() + roundoff)) return 0;  // springs to ground
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> solver(0.5 * (G + G.transpose()));
   const double most = solver.eigenvalues().cwiseAbs().maxCoeff();
@@ -55,7 +55,7 @@ int count_tipping(const Model& model, const SymmetricMatrix& K) {
 }
 
 /// Takes out what carries the rigid motions of a free model: where those need no force, the sign of the rest stays.
-SymmetricMatrix hold_support(const Model& model, const SymmetricMatrix& A, RowKinds& kinds) {
+linear::SymmetricMatrix hold_support(const Model& model, const linear::SymmetricMatrix& A, linear::RowKinds& kinds) {
   std::vector<int> held, kept;
   try {
     held = choose_determinate_support(model, 0);
@@ -65,7 +65,7 @@ SymmetricMatrix hold_support(const Model& model, const SymmetricMatrix& A, RowKi
   for (int f = 0; f < model.num_fdofs(); ++f)
     if (std::find(held.begin(), held.end(), f) == held.end()) kept.push_back(f);
   kinds = list_row_kinds(model, kept);
-  return take_kept(A, kept);
+  return linear::take_kept(A, kept);
 }
 
 }  // namespace
@@ -74,16 +74,16 @@ std::shared_ptr<const CheckedStiffness> check_preload(const Model& model, bool i
   if (!model.prestress() || model.num_fdofs() == 0) return nullptr;
   auto checked = std::make_shared<CheckedStiffness>();
   checked->K = assemble_stiffness(model, DofSet::Free);
-  checked->factor = SymmetricFactor::try_definite(checked->K);
+  checked->factor = linear::SymmetricFactor::try_definite(checked->K);
   if (checked->factor) return checked;
-  RowKinds kinds = list_row_kinds(model);
-  const SymmetricMatrix held = is_free ? hold_support(model, checked->K, kinds) : SymmetricMatrix();
-  if (held && SymmetricFactor::try_definite(held)) return checked;
+  linear::RowKinds kinds = list_row_kinds(model);
+  const linear::SymmetricMatrix held = is_free ? hold_support(model, checked->K, kinds) : linear::SymmetricMatrix();
+  if (held && linear::SymmetricFactor::try_definite(held)) return checked;
   if (!has_negative(held ? held : checked->K, kinds)) return checked;
   // With as many negative directions in all as among the rigid-body motions, the energy of the elastic motions is
   // positive (Haynsworth): Nastran has such modes too, with negative eigenvalues.
   const int tipping = held ? 0 : count_tipping(model, checked->K);
-  if (const int negative = tipping > 0 ? count_negative_eigenvalues(lift(checked->K, kinds)).value_or(0) : 0;
+  if (const int negative = tipping > 0 ? linear::count_negative_eigenvalues(lift(checked->K, kinds)).value_or(0) : 0;
       negative > 0 && negative <= tipping) {
     diagnostics.warning("fe.preload-tips", model.prestress()->at,
                         "the loads of the preload, " + model.prestress()->name +

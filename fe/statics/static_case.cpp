@@ -255,18 +255,18 @@ Eigen::Matrix<double, 6, 1> calc_resultant(const Model& model, const VectorXd& F
   return sum;
 }
 
-records::SparseMatrix gather_sparse(const SymmetricMatrix& A) {
-  const MpiWorld world = initialize_petsc();
+records::SparseMatrix gather_sparse(const linear::SymmetricMatrix& A) {
+  const linear::MpiWorld world = linear::initialize_petsc();
   PetscInt first = 0, last = 0, num_rows = 0, num_cols = 0;
-  check_petsc(MatGetOwnershipRange(A.sparse(), &first, &last));
-  check_petsc(MatGetSize(A.sparse(), &num_rows, &num_cols));
+  linear::check_petsc(MatGetOwnershipRange(A.sparse(), &first, &last));
+  linear::check_petsc(MatGetSize(A.sparse(), &num_rows, &num_cols));
   std::vector<double> data;
   std::vector<int> indices, sizes;
   for (PetscInt row = first; row < last; ++row) {
     PetscInt count = 0;
     const PetscInt* columns = nullptr;
     const PetscScalar* values = nullptr;
-    check_petsc(MatGetRow(A.sparse(), row, &count, &columns, &values));
+    linear::check_petsc(MatGetRow(A.sparse(), row, &count, &columns, &values));
     const std::size_t before = data.size();
     for (PetscInt i = 0; i < count; ++i)
       if (values[i] != 0) {
@@ -274,7 +274,7 @@ records::SparseMatrix gather_sparse(const SymmetricMatrix& A) {
         indices.push_back(columns[i]);
       }
     sizes.push_back(static_cast<int>(data.size() - before));
-    check_petsc(MatRestoreRow(A.sparse(), row, &count, &columns, &values));
+    linear::check_petsc(MatRestoreRow(A.sparse(), row, &count, &columns, &values));
   }
   // One block after the other, to every rank.
   records::SparseMatrix result;

@@ -49,6 +49,6 @@ Eigen::Matrix<double, 6, 1> calc_resultant(const Model& model, const VectorXd& F
                                            const Vector3d& point = Vector3d::Zero());
 
 /// A distributed matrix as a whole on every rank, without zero entries.
-records::SparseMatrix gather_sparse(const SymmetricMatrix& A);
+records::SparseMatrix gather_sparse(const linear::SymmetricMatrix& A);
 
 }  // namespace bough::fe

@@ -48,7 +48,7 @@ double calc_model_size(const Model& model) {
     Diagnostic item;
     item.id = "fe.mechanism";
     item.what = "the stiffness matrix is singular: mechanism " + std::to_string(c + 1) + " of " +
-                std::to_string(motions.cols()) + (motions.cols() < kMostMechanisms ? "" : " or more") +
+                std::to_string(motions.cols()) + (motions.cols() < linear::kMostMechanisms ? "" : " or more") +
                 " moves most at " + describe_motion(model, kept, motions.col(c), size);
     item.advice = "hold or stiffen these dofs (components in the displacement axes of the grids)";
     const auto& subcase = model.subcase();
@@ -71,12 +71,12 @@ struct StaticSolver::Impl {
   SparseRows T;             ///< a copy: the model may move, or be reduced
   OmittedSolution omitted;  ///< of the model
   std::vector<int> kept;    ///< f-dofs that are not held, ascending
-  std::optional<SymmetricFactor> factor;
-  RowKinds kinds;     ///< of `kept`
-  SymmetricMatrix K;  ///< what was factored, for residuals
+  std::optional<linear::SymmetricFactor> factor;
+  linear::RowKinds kinds;     ///< of `kept`
+  linear::SymmetricMatrix K;  ///< what was factored, for residuals
 };
 
-StaticSolver::StaticSolver(const Model& model, const SymmetricMatrix& K_f, std::vector<int> held_fdofs)
+StaticSolver::StaticSolver(const Model& model, const linear::SymmetricMatrix& K_f, std::vector<int> held_fdofs)
     : impl_(std::make_unique<Impl>()) {
   impl_->T = model.T();
   impl_->omitted = model.omitted();
@@ -89,23 +89,24 @@ StaticSolver::StaticSolver(const Model& model, const SymmetricMatrix& K_f, std::
     throw ComputationError("fe.no-free-dofs", {}, "the model has no free dof left after its constraints",
                            "remove constraints or add stiffness");
   impl_->kinds = list_row_kinds(model, kept);
-  const SymmetricMatrix K = impl_->K = held_fdofs.empty() ? K_f : take_kept(K_f, kept);
+  const linear::SymmetricMatrix K = impl_->K = held_fdofs.empty() ? K_f : linear::take_kept(K_f, kept);
 
   // Null pivots are a suspicion; the energy of the motion decides. A singular matrix may also factor without one, and
   // by LLᵀ, which is quicker, always without: then it is pivoted to see how many motions there are.
   impl_->factor.emplace(K, true);
   const auto is_sound = [&] {
-    return !impl_->factor->is_singular() && calc_softest_energy(K, impl_->kinds, *impl_->factor) >= kMechanismEnergy;
+    return !impl_->factor->is_singular() &&
+           linear::calc_softest_energy(K, impl_->kinds, *impl_->factor) >= linear::kMechanismEnergy;
   };
   if (impl_->factor->is_definite()) {
     if (is_sound()) return;
-    impl_->factor.emplace(K, true, FactorMethod::Pivoting);
+    impl_->factor.emplace(K, true, linear::FactorMethod::Pivoting);
   }
   const int suspects = impl_->factor->is_singular() ? 1 : impl_->factor->num_null_pivots();
   if (suspects == 0 && is_sound()) return;
-  const MatrixXd motions = find_mechanisms(K, impl_->kinds, suspects);
+  const MatrixXd motions = linear::find_mechanisms(K, impl_->kinds, suspects);
   if (motions.cols() > 0) throw_mechanisms(model, kept, motions);
-  impl_->factor.emplace(K, false, FactorMethod::Pivoting);
+  impl_->factor.emplace(K, false, linear::FactorMethod::Pivoting);
   if (!is_sound())
     throw ComputationError("fe.mechanism", {}, "the stiffness matrix is singular to working precision",
                            "look for very soft and very stiff parts side by side, or for values that are not numbers");
@@ -118,14 +119,14 @@ StaticSolver::StaticSolver(const Model& model) : impl_(std::make_unique<Impl>())
 
 StaticSolver::~StaticSolver() = default;
 
-const SymmetricFactor* StaticSolver::find_definite_factor() const {
+const linear::SymmetricFactor* StaticSolver::find_definite_factor() const {
   const bool is_whole = impl_->kept.size() == static_cast<size_t>(impl_->T.cols());
   return is_whole && impl_->factor && impl_->factor->is_definite() ? &*impl_->factor : nullptr;
 }
 
 void StaticSolver::demand_no_mechanism(const Model& model) const {
   if (impl_->kept.empty()) return;
-  const MatrixXd motions = find_mechanisms(impl_->K, impl_->kinds, 1, kSoftMotionEnergy);
+  const MatrixXd motions = linear::find_mechanisms(impl_->K, impl_->kinds, 1, linear::kSoftMotionEnergy);
   if (motions.cols() > 0) throw_mechanisms(model, impl_->kept, motions);
 }
 
@@ -141,9 +142,9 @@ MatrixXd StaticSolver::solve(const Eigen::Ref<const MatrixXd>& F_g, Diagnostics*
   // Stability of Numerical Algorithms, 2nd ed., ch. 12).
   u_kept += impl_->factor->solve(calc_residual(impl_->K, u_kept, F_kept));
   Diagnostics unheard;
-  check_residuals(
-      calc_static_residuals(get_diagonal(impl_->K), u_kept, multiply(impl_->K, u_kept), F_kept, impl_->kinds),
-      "load case", diagnostics ? *diagnostics : unheard);
+  linear::check_residuals(linear::calc_static_residuals(linear::get_diagonal(impl_->K), u_kept,
+                                                        multiply(impl_->K, u_kept), F_kept, impl_->kinds),
+                          "load case", diagnostics ? *diagnostics : unheard);
   u_f(impl_->kept, Eigen::all) = u_kept;
   MatrixXd u_g = T * u_f;
   if (impl_->omitted) u_g += impl_->omitted(F_g);  // K_oo^-1 P_o

@@ -11,7 +11,7 @@ class StaticSolver {
  public:
   /// Factors K on the f-set with `held_fdofs` fixed as well (a support for a free-free model; empty for a fixed one).
   /// A singular K throws ComputationError("fe.mechanism") naming the nodes and dofs of the mechanism.
-  StaticSolver(const Model& model, const SymmetricMatrix& K_f, std::vector<int> held_fdofs = {});
+  StaticSolver(const Model& model, const linear::SymmetricMatrix& K_f, std::vector<int> held_fdofs = {});
   /// Solver of a model whose every dof is prescribed: it has no factor, and solve() returns zeros.
   explicit StaticSolver(const Model& model);
   ~StaticSolver();
@@ -23,7 +23,7 @@ class StaticSolver {
   /// `model`: the one this was made of.
   void demand_no_mechanism(const Model& model) const;
   /// LLᵀ of K on the whole f-set, as long as this lives; nullptr where dofs are held or K took pivoting.
-  const SymmetricFactor* find_definite_factor() const;
+  const linear::SymmetricFactor* find_definite_factor() const;
 
  private:
   struct Impl;

@@ -31,11 +31,11 @@ VectorXd calc_norms(const fe::Model& model, const MatrixXd& X) {
   return X.cwiseProduct(times_M(model, X)).colwise().sum().cwiseMax(0).cwiseSqrt();
 }
 MatrixXd calc_gram_M(const fe::Model& model, const MatrixXd& X) {
-  const MatrixXd G = fe::calc_inner_products(X, times_M(model, X));
+  const MatrixXd G = linear::calc_inner_products(X, times_M(model, X));
   return 0.5 * (G + G.transpose());
 }
 MatrixXd calc_gram_K(const fe::Model& model, const MatrixXd& X) {
-  const MatrixXd G = fe::calc_inner_products(X, fe::calc_stiffness_times(model, X));
+  const MatrixXd G = linear::calc_inner_products(X, fe::calc_stiffness_times(model, X));
   return 0.5 * (G + G.transpose());
 }
 
@@ -206,7 +206,7 @@ void orthogonalize(const fe::Model& model, const MatrixXd& rigid, Eigen::Index n
                               " moves no mass: it follows the other shapes without force",
                           "a hinge passes nothing in that direction; give the model inertia there if it should");
     MatrixXd orthogonal(Phi.rows(), pairs.N.cols());
-    fe::multiply_dense(false, Phi, pairs.N, 0, orthogonal);
+    linear::multiply_dense(false, Phi, pairs.N, 0, orthogonal);
     Phi = std::move(orthogonal);
     N = N * pairs.N;
     basis.lambda = pairs.lambda;

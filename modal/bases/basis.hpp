@@ -20,7 +20,7 @@ struct BasisOptions {
   bool is_free = false;              ///< the six rigid motions of the model are removed
   bool orthogonalize = true;         ///< Craig-Bampton: K^N = M^ND, else the coordinates stay q = [u_b, η_i]
   MatrixXd residual_loads;           ///< num_gdofs x m, in basic
-  const fe::SymmetricFactor* factor = nullptr;  ///< LLᵀ of K of the system, where the caller has it
+  const linear::SymmetricFactor* factor = nullptr;  ///< LLᵀ of K of the system, where the caller has it
   std::string solver;  ///< EPS type of SLEPc (find_eps_type); empty: the one that suits the model
 };
 

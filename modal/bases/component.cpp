@@ -8,7 +8,7 @@ namespace bough::modal::bases {
 namespace {
 
 MatrixXd calc_gram(const MatrixXd& X, const MatrixXd& A_X) {
-  const MatrixXd G = fe::calc_inner_products(X, A_X);
+  const MatrixXd G = linear::calc_inner_products(X, A_X);
   return 0.5 * (G + G.transpose());
 }
 

@@ -19,8 +19,8 @@ namespace bough::modal::bases {
 
 namespace {
 
-[[noreturn]] void throw_mechanism(const fe::Model& model, const Partition& part, const fe::SymmetricMatrix& K_ii) {
-  const MatrixXd motions = fe::find_mechanisms(K_ii, fe::list_row_kinds(model, part.interior), 1);
+[[noreturn]] void throw_mechanism(const fe::Model& model, const Partition& part, const linear::SymmetricMatrix& K_ii) {
+  const MatrixXd motions = linear::find_mechanisms(K_ii, fe::list_row_kinds(model, part.interior), 1);
   std::string where;
   for (Eigen::Index c = 0; c < motions.cols(); ++c) {
     Eigen::Index largest = 0;
@@ -37,10 +37,10 @@ namespace {
 struct FixedInterface::Impl {
   const fe::Model& model;
   Partition part;
-  fe::RowKinds kinds;  ///< of the interior
-  const fe::SymmetricMatrix& K;
-  fe::SymmetricMatrix K_ii, M_ii;
-  std::optional<fe::SymmetricFactor> factor;
+  linear::RowKinds kinds;  ///< of the interior
+  const linear::SymmetricMatrix& K;
+  linear::SymmetricMatrix K_ii, M_ii;
+  std::optional<linear::SymmetricFactor> factor;
 
   Impl(const fe::System& system, const std::vector<int>& nodes, Diagnostics& diagnostics)
       : model(system.model),
@@ -48,13 +48,13 @@ struct FixedInterface::Impl {
         kinds(fe::list_row_kinds(model, part.interior)),
         K(system.K) {
     if (part.interior.empty()) return;
-    const auto take_interior = [this](const fe::SymmetricMatrix& A) {
-      return part.is_selection() ? fe::take_kept(A, part.interior) : calc_triple_product(A, part.S_i);
+    const auto take_interior = [this](const linear::SymmetricMatrix& A) {
+      return part.is_selection() ? linear::take_kept(A, part.interior) : calc_triple_product(A, part.S_i);
     };
     K_ii = take_interior(K);
     M_ii = take_interior(system.M);
     const auto is_sound = [&] {
-      return !factor->is_singular() && fe::calc_softest_energy(K_ii, kinds, *factor) >= fe::kMechanismEnergy;
+      return !factor->is_singular() && linear::calc_softest_energy(K_ii, kinds, *factor) >= linear::kMechanismEnergy;
     };
     factor.emplace(K_ii, false);
     if (!is_sound()) throw_mechanism(model, part, K_ii);
@@ -62,10 +62,11 @@ struct FixedInterface::Impl {
   /// As StaticSolver::solve: one refinement with a residual of more digits.
   MatrixXd solve_refined(const MatrixXd& F_i) const {
     MatrixXd X = factor->solve(F_i);
-    X += factor->solve(fe::calc_residual(K_ii, X, F_i));
+    X += factor->solve(linear::calc_residual(K_ii, X, F_i));
     Diagnostics unheard;
-    fe::check_residuals(fe::calc_static_residuals(fe::get_diagonal(K_ii), X, fe::multiply(K_ii, X), F_i, kinds),
-                        "load case with the interface held", unheard);
+    linear::check_residuals(
+        linear::calc_static_residuals(linear::get_diagonal(K_ii), X, linear::multiply(K_ii, X), F_i, kinds),
+        "load case with the interface held", unheard);
     return X;
   }
   MatrixXd expand(const MatrixXd& X_i) const { return model.T() * MatrixXd(part.S_i * X_i); }
@@ -85,7 +86,7 @@ MatrixXd FixedInterface::calc_constraint_modes() const {
   const auto& part = impl_->part;
   MatrixXd X = part.S_b;
   if (impl_->factor && part.num_boundary() > 0)
-    X -= part.S_i * impl_->solve_refined(part.S_i.transpose() * fe::multiply(impl_->K, part.S_b));
+    X -= part.S_i * impl_->solve_refined(part.S_i.transpose() * linear::multiply(impl_->K, part.S_b));
   return impl_->model.T() * X;
 }
 
@@ -99,7 +100,7 @@ MatrixXd FixedInterface::solve(const MatrixXd& F_g) const {
 
 /// Orthonormal once more, and one basis of each repeated root.
 void FixedInterface::Impl::make_canonical(VectorXd& lambda, MatrixXd& X) const {
-  const MatrixXd G = fe::calc_inner_products(X, fe::multiply(M_ii, X));
+  const MatrixXd G = linear::calc_inner_products(X, linear::multiply(M_ii, X));
   detail::orthonormalize_ascending(G, X);
   detail::make_canonical(
       detail::calc_basis_weights(model), [this](const MatrixXd& Y) { return expand(Y); }, lambda, X);
@@ -138,11 +139,11 @@ ModeSet FixedInterface::calc_modes(int number, std::optional<double> max_hz, Dia
   if (max_hz) wanted = std::min(wanted, in.count_below(*max_hz));
   if (wanted == 0) return set;
 
-  const VectorXd K_diagonal = fe::get_diagonal(in.K_ii);
+  const VectorXd K_diagonal = linear::get_diagonal(in.K_ii);
   detail::PencilProblem problem;
   problem.K = in.K_ii;
   problem.M = in.M_ii;
-  problem.M_diagonal = fe::get_diagonal(in.M_ii);
+  problem.M_diagonal = linear::get_diagonal(in.M_ii);
   problem.kinds = in.kinds;
   problem.rigid.resize(size, 0);
   problem.factor = &*in.factor;
@@ -160,10 +161,10 @@ ModeSet FixedInterface::calc_modes(int number, std::optional<double> max_hz, Dia
   if (result.cut == 0) return set;
   in.make_canonical(roots.value, roots.X);
   roots.keep(std::min(wanted, result.cut));
-  const VectorXd residual = fe::calc_residuals(fe::calc_residual_scale(K_diagonal, problem.M_diagonal, roots.value),
-                                               roots.X, fe::multiply(in.K_ii, roots.X),
-                                               fe::multiply(in.M_ii, roots.X) * roots.value.asDiagonal(), in.kinds);
-  fe::check_residuals(residual, "mode with the interface held", diagnostics);
+  const VectorXd residual = linear::calc_residuals(
+      linear::calc_residual_scale(K_diagonal, problem.M_diagonal, roots.value), roots.X,
+      linear::multiply(in.K_ii, roots.X), linear::multiply(in.M_ii, roots.X) * roots.value.asDiagonal(), in.kinds);
+  linear::check_residuals(residual, "mode with the interface held", diagnostics);
   set.check = {result.cut, result.count, residual.maxCoeff(), solver.get_uses()};
   set.lambda = roots.value;
   set.Phi = in.expand(roots.X);

@@ -152,8 +152,8 @@ Partition make_partition(const fe::Model& model, const std::vector<int>& nodes, 
   return part;
 }
 
-fe::PetscMat make_petsc(const SparseRows& S, const fe::SymmetricMatrix& A) {
-  using fe::check_petsc;
+linear::PetscMat make_petsc(const SparseRows& S, const linear::SymmetricMatrix& A) {
+  using linear::check_petsc;
   PetscInt first = 0, last = 0;
   check_petsc(MatGetOwnershipRange(A.sparse(), &first, &last));
   std::vector<PetscInt> starts{0}, columns;
@@ -165,7 +165,7 @@ fe::PetscMat make_petsc(const SparseRows& S, const fe::SymmetricMatrix& A) {
     }
     starts.push_back(static_cast<PetscInt>(columns.size()));
   }
-  fe::PetscMat result;
+  linear::PetscMat result;
   check_petsc(MatCreate(PETSC_COMM_WORLD, result.out()));
   check_petsc(MatSetSizes(result.get(), last - first, PETSC_DECIDE, PETSC_DETERMINE, static_cast<PetscInt>(S.cols())));
   check_petsc(MatSetType(result.get(), MATAIJ));
@@ -189,10 +189,10 @@ std::vector<int> find_wide_rows(const SparseRows& S, int max_terms) {
 
 }  // namespace
 
-fe::SymmetricMatrix calc_triple_product(const fe::SymmetricMatrix& A, const SparseRows& S) {
+linear::SymmetricMatrix calc_triple_product(const linear::SymmetricMatrix& A, const SparseRows& S) {
   const std::vector<int> wide = find_wide_rows(S, fe::get_max_dense_terms());
   const auto r = static_cast<Eigen::Index>(wide.size());
-  fe::LowRankPart part;
+  linear::LowRankPart part;
   SparseRows S_0 = S;
   if (r > 0) {
     // S = S_0 + P H, P the unit vectors of the wide rows.
@@ -206,19 +206,20 @@ fe::SymmetricMatrix calc_triple_product(const fe::SymmetricMatrix& A, const Spar
       P(row, w) = 1;
     }
     S_0.prune([&](Eigen::Index row, Eigen::Index, double) { return !is_wide[static_cast<std::size_t>(row)]; });
-    const MatrixXd AP = fe::multiply(A.sparse_part(), P);
+    const MatrixXd AP = linear::multiply(A.sparse_part(), P);
     const MatrixXd V = S_0.transpose() * AP;
-    part = fe::make_product_part(SparseColumns(H.transpose()), SparseColumns(V.sparseView(0, 0)), P.transpose() * AP);
+    part =
+        linear::make_product_part(SparseColumns(H.transpose()), SparseColumns(V.sparseView(0, 0)), P.transpose() * AP);
   }
   if (const auto* of_A = A.low_rank()) {
-    fe::LowRankPart projected = *of_A;
+    linear::LowRankPart projected = *of_A;
     projected.U = SparseColumns(SparseColumns(S.transpose()) * of_A->U);
-    part = fe::join(part, 1, projected, 1);
+    part = linear::join(part, 1, projected, 1);
   }
-  const fe::PetscMat P = make_petsc(S_0, A);
-  fe::PetscMat result;
-  fe::check_petsc(MatPtAP(A.sparse(), P.get(), MAT_INITIAL_MATRIX, PETSC_DEFAULT, result.out()));
-  return fe::SymmetricMatrix(std::move(result), std::move(part));
+  const linear::PetscMat P = make_petsc(S_0, A);
+  linear::PetscMat result;
+  linear::check_petsc(MatPtAP(A.sparse(), P.get(), MAT_INITIAL_MATRIX, PETSC_DEFAULT, result.out()));
+  return linear::SymmetricMatrix(std::move(result), std::move(part));
 }
 
 }  // namespace bough::modal::bases

@@ -29,8 +29,8 @@ struct Partition {
 Partition make_partition(const fe::Model& model, const std::vector<int>& nodes, Diagnostics& diagnostics);
 
 /// S on PETSC_COMM_WORLD, its rows laid out as those of A.
-fe::PetscMat make_petsc(const SparseRows& S, const fe::SymmetricMatrix& A);
+linear::PetscMat make_petsc(const SparseRows& S, const linear::SymmetricMatrix& A);
 /// Sᵀ A S.
-fe::SymmetricMatrix calc_triple_product(const fe::SymmetricMatrix& A, const SparseRows& S);
+linear::SymmetricMatrix calc_triple_product(const linear::SymmetricMatrix& A, const SparseRows& S);
 
 }  // namespace bough::modal::bases

@@ -80,7 +80,7 @@ VectorXd calc_lost_flexibility(const fe::Model& model, const MatrixXd& Y, const 
   VectorXd held = VectorXd::Zero(F.cols());
   if (Y.cols() > 0) {
     const MatrixXd YF = Y.transpose() * F;
-    const Eigen::LDLT<MatrixXd> K(symmetrize(fe::calc_inner_products(Y, fe::calc_stiffness_times(model, Y))));
+    const Eigen::LDLT<MatrixXd> K(symmetrize(linear::calc_inner_products(Y, fe::calc_stiffness_times(model, Y))));
     held = YF.cwiseProduct(K.solve(YF)).colwise().sum();
   }
   const VectorXd whole = F.cwiseProduct(X).colwise().sum();
@@ -193,7 +193,7 @@ ResidualVectors calc_residual_vectors(const fe::Model& model, const StaticSolve&
   std::sort(result.unused.begin(), result.unused.end());
 
   if (used.empty()) return result;
-  const MatrixXd K = fe::calc_inner_products(X, fe::calc_stiffness_times(model, X));
+  const MatrixXd K = linear::calc_inner_products(X, fe::calc_stiffness_times(model, X));
   const Eigen::SelfAdjointEigenSolver<MatrixXd> ritz(symmetrize(K));
   result.modes.lambda = ritz.eigenvalues();
   result.modes.Phi = X * ritz.eigenvectors();

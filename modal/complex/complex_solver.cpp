@@ -75,7 +75,7 @@ VectorXcd make_random(Index n, unsigned seed) {
 /// `transposed`, of the pencil with transposed matrices, by the same factor.
 class ShiftedOperator {
  public:
-  ShiftedOperator(const QuadraticPencil& pencil, Complex sigma, const fe::ComplexLu& factor, bool transposed)
+  ShiftedOperator(const QuadraticPencil& pencil, Complex sigma, const linear::ComplexLu& factor, bool transposed)
       : M_(pencil.M), B_sigma_(pencil.B + sigma * pencil.M), sigma_(sigma), factor_(factor), transposed_(transposed) {
     if (!transposed) return;
     M_ = ComplexSparse(M_.transpose());
@@ -96,7 +96,7 @@ class ShiftedOperator {
  private:
   ComplexSparse M_, B_sigma_;
   Complex sigma_;
-  const fe::ComplexLu& factor_;
+  const linear::ComplexLu& factor_;
   bool transposed_;
 };
 
@@ -192,15 +192,16 @@ RitzPairs solve_krylov(const ShiftedOperator& op, int num_wanted, int max_restar
 }
 
 /// A factor at the first shift at which the pencil is regular; `sigma` is that shift.
-std::unique_ptr<fe::ComplexLu> factor_pencil(const ScaledPencil& scaled, const std::vector<Complex>& shifts,
-                                             Complex& sigma, const std::function<std::string(Index)>& name_unknown) {
+std::unique_ptr<linear::ComplexLu> factor_pencil(const ScaledPencil& scaled, const std::vector<Complex>& shifts,
+                                                 Complex& sigma,
+                                                 const std::function<std::string(Index)>& name_unknown) {
   const Index n = scaled.pencil.size();
   const VectorXcd probe = make_random(n, 20);
   Index worst = -1;
   for (const Complex shift : shifts) {
     sigma = shift / scaled.scale;
     const auto Q = scaled.pencil.calc_matrix(sigma);
-    auto factor = std::make_unique<fe::ComplexLu>(Q, scaled.pencil.is_symmetric);
+    auto factor = std::make_unique<linear::ComplexLu>(Q, scaled.pencil.is_symmetric);
     if (factor->is_singular()) continue;
     const VectorXcd x = factor->solve(probe);
     if (x.allFinite() && x.norm() < kSingularGrowth * probe.norm()) return factor;

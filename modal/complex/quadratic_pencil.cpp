@@ -36,7 +36,7 @@ void PencilBuilder::add_term(int power, Index row, Index column, Complex value) 
   if (value != 0.0) terms_[power].emplace_back(static_cast<int>(row), static_cast<int>(column), value);
 }
 
-void PencilBuilder::add(const fe::SymmetricMatrix& A, Complex factor, int power) {
+void PencilBuilder::add(const linear::SymmetricMatrix& A, Complex factor, int power) {
   const auto* part = A.low_rank();
   const auto rows = fe::gather_sparse(A.sparse_part());
   for (int i = 0; i < rows.num_rows; ++i)

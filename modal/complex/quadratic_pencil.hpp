@@ -11,7 +11,7 @@ using Complex = std::complex<double>;
 using Eigen::Index;
 using Eigen::MatrixXcd;
 using Eigen::VectorXcd;
-using fe::ComplexSparse;
+using linear::ComplexSparse;
 
 /// Matrices on n unknowns, the same on every rank. Structural damping is the imaginary part of K.
 struct QuadraticPencil {
@@ -30,9 +30,9 @@ class PencilBuilder {
 
   /// Adds factor times a symmetric matrix. A part of low rank, U W Uᵀ, gets unknowns z = W Uᵀ x after the others, so
   /// that the pencil remains sparse.
-  void add_stiffness(const fe::SymmetricMatrix& A, Complex factor) { add(A, factor, 0); }
-  void add_damping(const fe::SymmetricMatrix& A, Complex factor) { add(A, factor, 1); }
-  void add_mass(const fe::SymmetricMatrix& A, Complex factor) { add(A, factor, 2); }
+  void add_stiffness(const linear::SymmetricMatrix& A, Complex factor) { add(A, factor, 0); }
+  void add_damping(const linear::SymmetricMatrix& A, Complex factor) { add(A, factor, 1); }
+  void add_mass(const linear::SymmetricMatrix& A, Complex factor) { add(A, factor, 2); }
   /// Adds Nᵀ A N, where N has a column for each unknown.
   void add_projected(const Eigen::SparseMatrix<double>& N, const ComplexSparse& K, const ComplexSparse& B,
                      const ComplexSparse& M);
@@ -41,7 +41,7 @@ class PencilBuilder {
   QuadraticPencil build() const;
 
  private:
-  void add(const fe::SymmetricMatrix& A, Complex factor, int power);
+  void add(const linear::SymmetricMatrix& A, Complex factor, int power);
   void add_term(int power, Index row, Index column, Complex value);
 
   Index n_;

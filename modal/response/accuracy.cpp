@@ -16,8 +16,9 @@ using namespace std::complex_literals;
 BasisError calc_basis_error(const fe::Model& model, const ResponseModel& response) {
   constexpr double kRoundoff = 1e-13;
   const auto n = response.lambda.size(), num = response.num_dynamic();
-  const MatrixXd M = fe::calc_inner_products(response.Phi, fe::calc_mass_times(model, model.mass_kind(), response.Phi));
-  const MatrixXd K = fe::calc_inner_products(response.Phi, fe::calc_stiffness_times(model, response.Phi));
+  const MatrixXd M =
+      linear::calc_inner_products(response.Phi, fe::calc_mass_times(model, model.mass_kind(), response.Phi));
+  const MatrixXd K = linear::calc_inner_products(response.Phi, fe::calc_stiffness_times(model, response.Phi));
   BasisError error;
   const auto raise = [](double& worst, double value) {
     if (!std::isnan(worst) && !(value <= worst)) worst = value;
@@ -25,7 +26,7 @@ BasisError calc_basis_error(const fe::Model& model, const ResponseModel& respons
   VectorXd parts;  // made only if the error is large
   const auto is_roundoff = [&](double off, Eigen::Index i, Eigen::Index j) {
     if (parts.size() == 0) {
-      const VectorXd diagonal = fe::get_diagonal(fe::assemble_stiffness(model, fe::DofSet::Global)).cwiseAbs();
+      const VectorXd diagonal = linear::get_diagonal(fe::assemble_stiffness(model, fe::DofSet::Global)).cwiseAbs();
       parts = (response.Phi.cwiseAbs2().transpose() * diagonal).cwiseSqrt();
     }
     return off <= kRoundoff * parts(i) * parts(j);

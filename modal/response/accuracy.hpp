@@ -25,7 +25,7 @@ BasisError calc_basis_error(const fe::Model& model, const ResponseModel& respons
 double calc_solution_error(const ResponseModel& response, const Spectrum& spectrum);
 
 /// The worst residual of the equations A x = b that a direct solution solves: |D⁻¹ᐟ²(A x - b)| over |D⁻¹ᐟ²A x| and what
-/// the entries of A alone could bring about, as fe::calc_residuals has it. Over frequency of each, over time of the
+/// the entries of A alone could bring about, as linear::calc_residuals has it. Over frequency of each, over time of the
 /// largest forces that were there: what is at rest has no residual of its own.
 class ResidualRecord {
  public:

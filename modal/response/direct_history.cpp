@@ -53,19 +53,19 @@ struct Radau {
   Matrix3cd P, P_inverse;
 };
 
-void accumulate(fe::SymmetricMatrix& sum, double factor, const fe::SymmetricMatrix& A) {
-  if (factor != 0 && A) sum = fe::add(sum, factor, A);
+void accumulate(linear::SymmetricMatrix& sum, double factor, const linear::SymmetricMatrix& A) {
+  if (factor != 0 && A) sum = linear::add(sum, factor, A);
 }
 
 /// Along a motion that next to nothing resists, neither stiffness nor damping nor mass, the answer to any load is
 /// round-off.
-void demand_held(const fe::SymmetricFactor& factor, const VectorXd& D) {
+void demand_held(const linear::SymmetricFactor& factor, const VectorXd& D) {
   const VectorXd size = D.cwiseMax(detail::kIdleDof * D.maxCoeff()).cwiseSqrt();
   bool is_free = factor.is_singular();
   if (!is_free) {
     const VectorXd load = size.cwiseProduct(make_probe(D.size()));
     const VectorXd x = factor.solve(load);
-    is_free = !(std::abs(x.dot(load)) > fe::kMechanismEnergy * x.cwiseProduct(size).squaredNorm());
+    is_free = !(std::abs(x.dot(load)) > linear::kMechanismEnergy * x.cwiseProduct(size).squaredNorm());
   }
   if (is_free)
     throw ComputationError("modal.unbounded-response", {},
@@ -78,20 +78,20 @@ struct StepFactors {
   StepFactors(const DirectModel& m, const Radau& radau, double h) : real(make_real(m, radau.s(0).real() / h)) {
     demand_held(real, m.K_diagonal + std::norm(radau.s(0) / h) * m.M_diagonal);
     const auto s = radau.s(1) / h;
-    fe::SymmetricMatrix A = m.K, B = fe::scale(m.M, (s * s).imag());
+    linear::SymmetricMatrix A = m.K, B = linear::scale(m.M, (s * s).imag());
     accumulate(A, (s * s).real(), m.M);
     accumulate(A, s.real(), m.B);
     accumulate(B, s.imag(), m.B);
     pair.emplace(A, B);
   }
-  static fe::SymmetricFactor make_real(const DirectModel& m, double s) {
-    fe::SymmetricMatrix A = m.K;
+  static linear::SymmetricFactor make_real(const DirectModel& m, double s) {
+    linear::SymmetricMatrix A = m.K;
     accumulate(A, s * s, m.M);
     accumulate(A, s, m.B);
     return {A, false};
   }
-  fe::SymmetricFactor real;
-  std::optional<fe::ComplexFactor> pair;
+  linear::SymmetricFactor real;
+  std::optional<linear::ComplexFactor> pair;
 };
 
 /// d over a step as the cubic through values and rates at both ends.
@@ -150,8 +150,8 @@ class DirectMotion {
     block_.p.resize(m_.F.cols(), count);
   }
 
-  MatrixXd times(const fe::SymmetricMatrix& A, const MatrixXd& X) const {
-    return A && n_ > 0 ? fe::multiply(A, X) : MatrixXd::Zero(X.rows(), X.cols());
+  MatrixXd times(const linear::SymmetricMatrix& A, const MatrixXd& X) const {
+    return A && n_ > 0 ? linear::multiply(A, X) : MatrixXd::Zero(X.rows(), X.cols());
   }
 
   VectorXd calc_load(const VectorXd& p, const VectorXd& d, const VectorXd& d_dot, const VectorXd& d_ddot) const {
@@ -232,7 +232,7 @@ class DirectMotion {
   MatrixXd solve_quick(const MatrixXd& F) {
     if (n_ == 0) return F;
     if (!quick_) {
-      fe::SymmetricMatrix A = m_.M;
+      linear::SymmetricMatrix A = m_.M;
       accumulate(A, delta(), m_.B);
       accumulate(A, delta() * delta(), m_.K);
       quick_.emplace(A, false);
@@ -299,7 +299,7 @@ class DirectMotion {
   Sides forces_;
   Index n_, first_ = 0;
   std::map<long long, StepFactors> factors_;
-  std::optional<fe::SymmetricFactor> quick_;
+  std::optional<linear::SymmetricFactor> quick_;
   VectorXd u_, v_, a_, end_acceleration_;
   ResidualRecord residual_{true};
   MotionBlock<MatrixXd> block_;

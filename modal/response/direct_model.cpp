@@ -7,18 +7,18 @@
 namespace bough::modal::response {
 namespace {
 
-using fe::SymmetricMatrix;
+using linear::SymmetricMatrix;
 
 /// sum += factor A; an empty sum is zero.
 void accumulate(SymmetricMatrix& sum, double factor, const SymmetricMatrix& A) {
   if (factor == 0 || !A) return;
-  sum = sum ? fe::add(sum, factor, A) : fe::scale(A, factor);
+  sum = sum ? linear::add(sum, factor, A) : linear::scale(A, factor);
 }
 
 bool is_zero(const SymmetricMatrix& A) {
   if (A.low_rank()) return false;
   PetscReal norm = 0;
-  fe::check_petsc(MatNorm(A.sparse(), NORM_INFINITY, &norm));
+  linear::check_petsc(MatNorm(A.sparse(), NORM_INFINITY, &norm));
   return norm == 0;
 }
 
@@ -56,7 +56,7 @@ DirectModel make_direct_model(const fe::System& system, const records::DynamicDe
   SymmetricMatrix structure = system.K;
   if (damping.times_direct) {
     const auto none = [](const fe::Element&, Eigen::Ref<MatrixXd>) {};
-    structure = fe::add(
+    structure = linear::add(
         system.K, -1,
         fe::assemble(model, fe::DofSet::Free, fe::MatrixKind::Other, none, list_direct_forms(model, deck, subcase)));
   }

@@ -15,10 +15,10 @@ using Eigen::MatrixXcd;
 ///   M q̈ + B q̇ + (K + i S) q = Tᵀ (F p - M X d̈ - B X ḋ - (K + i S) X d).
 /// Over time S is in B, at the rates W3 and W4.
 struct DirectModel {
-  fe::SymmetricMatrix K, M, B, S;   ///< B, S: empty where nothing damps
-  VectorXd K_diagonal, M_diagonal;  ///< |K_ii|, M_ii
-  MatrixXd X;                       ///< num_gdofs x k
-  MatrixXd F, K_X, M_X, B_X, S_X;   ///< Tᵀ of the patterns, num_fdofs x m or k
+  linear::SymmetricMatrix K, M, B, S;  ///< B, S: empty where nothing damps
+  VectorXd K_diagonal, M_diagonal;     ///< |K_ii|, M_ii
+  MatrixXd X;                          ///< num_gdofs x k
+  MatrixXd F, K_X, M_X, B_X, S_X;      ///< Tᵀ of the patterns, num_fdofs x m or k
 };
 DirectModel make_direct_model(const fe::System& system, const records::DynamicDeck& deck,
                               const records::DynamicSubcase& subcase, const Excitation& excitation,

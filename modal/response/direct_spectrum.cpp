@@ -28,20 +28,20 @@ class DirectSpectrum {
   VectorXcd solve(double hz, const VectorXcd& p, const VectorXcd& d) {
     const double omega = 2 * std::numbers::pi * hz;
     const auto& m = direct_;
-    const fe::SymmetricMatrix A = omega == 0 ? m.K : fe::add(m.K, -omega * omega, m.M);
-    const fe::SymmetricMatrix imaginary = make_imaginary(omega);
+    const linear::SymmetricMatrix A = omega == 0 ? m.K : linear::add(m.K, -omega * omega, m.M);
+    const linear::SymmetricMatrix imaginary = make_imaginary(omega);
     VectorXd D = m.K_diagonal + omega * omega * m.M_diagonal;
     const double largest = D.maxCoeff();
     D = (D.array() > detail::kIdleDof * largest).select(D, largest > 0 ? largest : 1.0);
     MatrixXcd sides(n_, 2);
     sides.col(0) = m.F * p - (m.K_X - omega * omega * m.M_X) * d - 1i * ((omega * m.B_X + m.S_X) * d);
     sides.col(1) = D.cwiseSqrt().cwiseProduct(probe_).cast<std::complex<double>>();
-    const fe::ComplexFactor factor(A, imaginary);
+    const linear::ComplexFactor factor(A, imaginary);
     if (factor.is_singular()) throw_unbounded(hz, kWhy);
     const MatrixXcd x = factor.solve(sides);
     // Along a motion that next to nothing resists, the answer to any load is round-off.
     const double energy = std::abs(x.col(1).dot(sides.col(1))), size = D.dot(x.col(1).cwiseAbs2());
-    if (!(energy > fe::kMechanismEnergy * size)) throw_unbounded(hz, kWhy);
+    if (!(energy > linear::kMechanismEnergy * size)) throw_unbounded(hz, kWhy);
     VectorXcd A_x = multiply(A, x.col(0));
     if (imaginary) A_x += 1i * multiply(imaginary, x.col(0));
     residual_.add(D, x.col(0), A_x, sides.col(0));
@@ -52,17 +52,17 @@ class DirectSpectrum {
  private:
   static constexpr const char* kWhy = "the model moves freely, or a mode at this frequency is not damped";
 
-  static VectorXcd multiply(const fe::SymmetricMatrix& A, const VectorXcd& x) {
+  static VectorXcd multiply(const linear::SymmetricMatrix& A, const VectorXcd& x) {
     MatrixXd parts(x.size(), 2);
     parts << x.real(), x.imag();
-    const MatrixXd y = fe::multiply(A, parts);
+    const MatrixXd y = linear::multiply(A, parts);
     return y.col(0) + 1i * y.col(1);
   }
 
-  fe::SymmetricMatrix make_imaginary(double omega) const {
+  linear::SymmetricMatrix make_imaginary(double omega) const {
     const auto& m = direct_;
-    if (!m.B || omega == 0) return m.S ? m.S : fe::SymmetricMatrix();
-    return m.S ? fe::add(m.S, omega, m.B) : fe::scale(m.B, omega);
+    if (!m.B || omega == 0) return m.S ? m.S : linear::SymmetricMatrix();
+    return m.S ? linear::add(m.S, omega, m.B) : linear::scale(m.B, omega);
   }
 
   const DirectModel& direct_;

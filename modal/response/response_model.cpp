@@ -155,8 +155,8 @@ class Maker {
     bases::ModeSet modes;
     for (int pass = 0; pass < 2 && X.cols() > 0; ++pass) {
       const auto pairs =
-          bases::calc_ritz_pairs(make_symmetric(fe::calc_inner_products(X, times_mass(model_, X))),
-                                 make_symmetric(fe::calc_inner_products(X, fe::calc_stiffness_times(model_, X))));
+          bases::calc_ritz_pairs(make_symmetric(linear::calc_inner_products(X, times_mass(model_, X))),
+                                 make_symmetric(linear::calc_inner_products(X, fe::calc_stiffness_times(model_, X))));
       const auto num = (pairs.lambda.array() <= max_lambda).count();
       modes.lambda = pairs.lambda.head(num);
       X = (X * pairs.N.leftCols(num)).eval();
@@ -232,7 +232,7 @@ class Maker {
     if (kept.empty()) return;
     const MatrixXd X = rest(Eigen::all, kept);
     const Eigen::SelfAdjointEigenSolver<MatrixXd> gram(
-        make_symmetric(fe::calc_inner_products(X, fe::calc_stiffness_times(model_, X))));
+        make_symmetric(linear::calc_inner_products(X, fe::calc_stiffness_times(model_, X))));
     const auto num = (gram.eigenvalues().array() > detail::kDependentVector).count();
     const MatrixXd Z =
         X * gram.eigenvectors().rightCols(num) * gram.eigenvalues().tail(num).cwiseSqrt().cwiseInverse().asDiagonal();
@@ -252,10 +252,10 @@ class Maker {
   /// k: motions of the supports.
   void damp(ResponseModel& r, Eigen::Index k) const {
     const auto n = r.lambda.size();
-    r.D = make_symmetric(fe::calc_inner_products(r.Phi, fe::calc_damping_times(model_, r.Phi)));
+    r.D = make_symmetric(linear::calc_inner_products(r.Phi, fe::calc_damping_times(model_, r.Phi)));
     r.S = MatrixXd::Zero(n, n);
     const MatrixXd K_e =
-        make_symmetric(fe::calc_inner_products(r.Phi, fe::calc_structural_damping_times(model_, 0, r.Phi)));
+        make_symmetric(linear::calc_inner_products(r.Phi, fe::calc_structural_damping_times(model_, 0, r.Phi)));
     MatrixXd K = r.lambda.asDiagonal();
     if (damping_.times_direct) K -= make_symmetric(r.Phi.transpose() * damping_.times_direct(r.Phi));
     const MatrixXd K_g = damping_.g * K;

@@ -42,7 +42,7 @@ std::vector<Diagnostic> run(const std::string& file, const py::object& progress,
   {
     const py::gil_scoped_release released;
     const Exclusive held;
-    fe::initialize_petsc();
+    linear::initialize_petsc();
     analysis::with_file(file, [&] {
       act(events);
       return 0;

@@ -168,8 +168,8 @@ TEST(System, StaysAsItIs) {
     EXPECT_TRUE(pairs.lambda == own.lambda && pairs.Phi == own.Phi);
   }
   EXPECT_EQ(own.num_massless, 1);
-  EXPECT_EQ(fe::get_diagonal(system.K).cwiseAbs(), system.K_diagonal);
-  EXPECT_EQ(fe::get_diagonal(system.M), system.M_diagonal);
+  EXPECT_EQ(linear::get_diagonal(system.K).cwiseAbs(), system.K_diagonal);
+  EXPECT_EQ(linear::get_diagonal(system.M), system.M_diagonal);
 }
 
 // A straight line of bars has no inertia about itself: five zeros and one massless motion, and the same bending.

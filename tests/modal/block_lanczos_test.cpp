@@ -37,7 +37,7 @@ struct Diagonal {
     problem.multiply_mass = [this](const Eigen::Ref<const MatrixXd>& X) { return MatrixXd(b.asDiagonal() * X); };
     problem.start.resize(a.size(), width);
     for (int c = 0; c < width; ++c)
-      for (int i = 0; i < a.size(); ++i) problem.start(i, c) = fe::calc_fixed_number(i, c);
+      for (int i = 0; i < a.size(); ++i) problem.start(i, c) = linear::calc_fixed_number(i, c);
     problem.deflate.resize(a.size(), 0);
     problem.num_wanted = wanted;
     return problem;
@@ -191,11 +191,11 @@ TEST(BlockLanczos, AgreesWithKrylovSchurOnHeldBeams) {
 TEST(BlockLanczos, AgreesWithKrylovSchurOnFreeBeams) { expect_like_krylov_schur(false, -1e4, false); }
 
 TEST(Ordering, IsAPermutationThatKeepsTheDofsOfAGridTogether) {
-  if (fe::initialize_petsc().size > 1) GTEST_SKIP() << "several processes leave the order to the solver";
+  if (linear::initialize_petsc().size > 1) GTEST_SKIP() << "several processes leave the order to the solver";
   Diagnostics diagnostics;
   const auto model = make_pair(false, true, diagnostics);
   const auto K = fe::assemble_stiffness(model, fe::DofSet::Free);
-  const auto order = fe::find_elimination_order(K);
+  const auto order = linear::find_elimination_order(K);
   ASSERT_TRUE(static_cast<bool>(order));
   const std::vector<PetscInt>& rows = *order;
   const int size = model.num_fdofs();
@@ -210,27 +210,27 @@ TEST(Ordering, IsAPermutationThatKeepsTheDofsOfAGridTogether) {
   EXPECT_EQ(jumps, 2 * 600 - 1);
 
   // Nested dissection of a line leaves little fill, and the factor solves.
-  const auto factor = fe::SymmetricFactor::try_definite(K);
+  const auto factor = linear::SymmetricFactor::try_definite(K);
   ASSERT_TRUE(static_cast<bool>(factor));
   const MatrixXd X = MatrixXd::Ones(size, 3);
-  const MatrixXd B = fe::multiply(K, X);
-  const MatrixXd residual = fe::multiply(K, factor->solve(B)) - B;
-  EXPECT_LT(residual.norm(), 1e-9 * fe::get_diagonal(K).norm());
+  const MatrixXd B = linear::multiply(K, X);
+  const MatrixXd residual = linear::multiply(K, factor->solve(B)) - B;
+  EXPECT_LT(residual.norm(), 1e-9 * linear::get_diagonal(K).norm());
 }
 
 // What is left of a matrix keeps its groups and its order: neighbours stay together, and the factor is the same size.
 TEST(Ordering, RowsThatAreLeftKeepTheirGroups) {
-  if (fe::initialize_petsc().size > 1) GTEST_SKIP() << "several processes leave the order to the solver";
+  if (linear::initialize_petsc().size > 1) GTEST_SKIP() << "several processes leave the order to the solver";
   Diagnostics diagnostics;
   const auto model = make_pair(false, true, diagnostics);
   const auto K = fe::assemble_stiffness(model, fe::DofSet::Free);
   for (const bool is_ordered : {false, true}) {
-    if (is_ordered) fe::find_elimination_order(K);
+    if (is_ordered) linear::find_elimination_order(K);
     std::vector<int> kept;
     for (int row = 0; row < model.num_fdofs(); ++row)
       if (row % 60 != 0 && row / 6 != 17) kept.push_back(row);
-    const auto part = fe::take_kept(K, kept);
-    const auto order = fe::find_elimination_order(part);
+    const auto part = linear::take_kept(K, kept);
+    const auto order = linear::find_elimination_order(part);
     ASSERT_TRUE(static_cast<bool>(order)) << is_ordered;
     const std::vector<PetscInt>& rows = *order;
     ASSERT_EQ(rows.size(), kept.size());

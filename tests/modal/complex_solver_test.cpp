@@ -18,7 +18,7 @@ constexpr double kAlpha = 0.02, kBeta = 1e-3;
 /// A chain of unit masses between unit springs with B = α M + β K; `turn`: an unsymmetric K similar to the symmetric
 /// one, D K D⁻¹ with D = diag(1 + turn i / n).
 QuadraticPencil make_chain(double turn) {
-  fe::initialize_petsc();
+  linear::initialize_petsc();
   std::vector<Eigen::Triplet<Complex>> K, M;
   const auto d = [turn](int i) { return 1 + turn * i / kSize; };
   for (int i = 0; i < kSize; ++i) {
@@ -87,7 +87,7 @@ TEST(ComplexSolver, SaysWhenItDoesNotConverge) {
 }
 
 TEST(ComplexSolver, FactorOfTransposedMatrix) {
-  fe::initialize_petsc();
+  linear::initialize_petsc();
   std::mt19937 random(4);
   const int n = 60;
   MatrixXcd dense = MatrixXcd::Zero(n, n);
@@ -95,11 +95,11 @@ TEST(ComplexSolver, FactorOfTransposedMatrix) {
     dense(random() % n, random() % n) = Complex(random() % 100, random() % 100) / 50.0 - Complex(1, 1);
   dense.diagonal().array() += 7;
   const MatrixXcd F = MatrixXcd::Constant(n, 2, Complex(1, -2));
-  const fe::ComplexLu factor(dense.sparseView(), false);
+  const linear::ComplexLu factor(dense.sparseView(), false);
   EXPECT_LT((dense * factor.solve(F) - F).norm(), 1e-12 * F.norm());
   EXPECT_LT((dense.transpose() * factor.solve(F, true) - F).norm(), 1e-12 * F.norm());
   const MatrixXcd symmetric = dense + dense.transpose();
-  EXPECT_LT((symmetric * fe::ComplexLu(symmetric.sparseView(), true).solve(F) - F).norm(), 1e-12 * F.norm());
+  EXPECT_LT((symmetric * linear::ComplexLu(symmetric.sparseView(), true).solve(F) - F).norm(), 1e-12 * F.norm());
 }
 
 }  // namespace

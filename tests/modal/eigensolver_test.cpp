@@ -23,7 +23,7 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
-using fe::check_petsc;
+using linear::check_petsc;
 using modal::EigenOptions;
 using modal::EigenPairs;
 using modal::detail::kBlockLanczos;
@@ -31,7 +31,7 @@ using modal::detail::kLowRank;
 
 constexpr const char* kKrylovSchur = "krylovschur";
 
-bool is_alone() { return fe::initialize_petsc().size == 1; }
+bool is_alone() { return linear::initialize_petsc().size == 1; }
 
 /// Calls of what PETSc logs while it lives: a stage of its own, which no error within a call before can spoil.
 class CallCount {
@@ -303,8 +303,8 @@ TEST(Eigensolver, BlockLanczosIsAnEpsType) {
   if (!is_alone()) GTEST_SKIP() << "the operator of this test is one of whole vectors";
   modal::detail::initialize_slepc();
   constexpr PetscInt n = 400, number = 6;
-  fe::PetscMat A, B;
-  for (fe::PetscMat* matrix : {&A, &B}) {
+  linear::PetscMat A, B;
+  for (linear::PetscMat* matrix : {&A, &B}) {
     check_petsc(MatCreateSeqAIJ(PETSC_COMM_SELF, n, n, 1, nullptr, matrix->out()));
     for (PetscInt i = 0; i < n; ++i)
       check_petsc(MatSetValue(matrix->get(), i, i, matrix == &A ? i + 1.0 : 1.0, INSERT_VALUES));
@@ -315,7 +315,7 @@ TEST(Eigensolver, BlockLanczosIsAnEpsType) {
   modal::detail::FactoredOperator op;
   op.solve = [&](const Eigen::Ref<const MatrixXd>& X) { return MatrixXd(a.cwiseInverse().asDiagonal() * X); };
   op.multiply_mass = [](const Eigen::Ref<const MatrixXd>& X) { return MatrixXd(X); };
-  fe::PetscHandle<EPS, EPSDestroy> eps;
+  linear::PetscHandle<EPS, EPSDestroy> eps;
   ST st = nullptr;
   check_petsc(EPSCreate(PETSC_COMM_SELF, eps.out()));
   check_petsc(EPSSetOperators(eps.get(), A.get(), B.get()));
@@ -329,7 +329,7 @@ TEST(Eigensolver, BlockLanczosIsAnEpsType) {
   modal::detail::BlockLanczosSettings settings;
   settings.start.resize(n, 3);
   for (int i = 0; i < n; ++i)
-    for (int c = 0; c < 3; ++c) settings.start(i, c) = fe::calc_fixed_number(i, c);
+    for (int c = 0; c < 3; ++c) settings.start(i, c) = linear::calc_fixed_number(i, c);
   settings.deflation.resize(n, 0);
   set_settings(eps.get(), settings);
   check_petsc(EPSSolve(eps.get()));

@@ -220,31 +220,31 @@ TEST(LowRank, KrylovEndsAtTheRank) {
 TEST(LowRank, KrylovThatDoesNotConvergeSaysSo) {
   modal::detail::initialize_slepc();
   constexpr PetscInt n = 2000;
-  fe::PetscMat A, B;
-  for (fe::PetscMat* matrix : {&A, &B}) {
-    fe::check_petsc(
+  linear::PetscMat A, B;
+  for (linear::PetscMat* matrix : {&A, &B}) {
+    linear::check_petsc(
         MatCreateAIJ(PETSC_COMM_WORLD, PETSC_DECIDE, PETSC_DECIDE, n, n, 1, nullptr, 0, nullptr, matrix->out()));
     PetscInt first = 0, last = 0;
-    fe::check_petsc(MatGetOwnershipRange(matrix->get(), &first, &last));
+    linear::check_petsc(MatGetOwnershipRange(matrix->get(), &first, &last));
     for (PetscInt i = first; i < last; ++i)
-      fe::check_petsc(MatSetValue(matrix->get(), i, i, matrix == &A ? 1 + 1e-3 * i / n : 1.0, INSERT_VALUES));
-    fe::check_petsc(MatAssemblyBegin(matrix->get(), MAT_FINAL_ASSEMBLY));
-    fe::check_petsc(MatAssemblyEnd(matrix->get(), MAT_FINAL_ASSEMBLY));
-    fe::check_petsc(MatSetOption(matrix->get(), MAT_SYMMETRIC, PETSC_TRUE));
+      linear::check_petsc(MatSetValue(matrix->get(), i, i, matrix == &A ? 1 + 1e-3 * i / n : 1.0, INSERT_VALUES));
+    linear::check_petsc(MatAssemblyBegin(matrix->get(), MAT_FINAL_ASSEMBLY));
+    linear::check_petsc(MatAssemblyEnd(matrix->get(), MAT_FINAL_ASSEMBLY));
+    linear::check_petsc(MatSetOption(matrix->get(), MAT_SYMMETRIC, PETSC_TRUE));
   }
   modal::detail::EigenProblem problem;
-  problem.A = fe::SymmetricMatrix(std::move(A));
-  problem.B = fe::SymmetricMatrix(std::move(B));
+  problem.A = linear::SymmetricMatrix(std::move(A));
+  problem.B = linear::SymmetricMatrix(std::move(B));
   problem.spectrum = modal::detail::Spectrum::LargestMagnitude;
   problem.deflate.resize(n, 0);
-  fe::check_petsc(PetscOptionsSetValue(nullptr, "-eps_max_it", "1"));
+  linear::check_petsc(PetscOptionsSetValue(nullptr, "-eps_max_it", "1"));
   try {
     modal::detail::extract(problem);
     ADD_FAILURE() << "no error";
   } catch (const ComputationError& error) {
     EXPECT_EQ(error.items().front().id, "modal.no-convergence");
   }
-  fe::check_petsc(PetscOptionsClearValue(nullptr, "-eps_max_it"));
+  linear::check_petsc(PetscOptionsClearValue(nullptr, "-eps_max_it"));
 }
 
 // The same structure with nothing held: the six rigid motions of the mass and nothing else, since the legs follow it.

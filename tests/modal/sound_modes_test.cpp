@@ -126,25 +126,25 @@ TEST(Residual, IsThePartOfTheForceThatIsNotBalanced) {
   const double delta = 1e-6;
   const MatrixXd X = (MatrixXd(2, 2) << 1, 1, 0, delta).finished();
   const VectorXd lambda = VectorXd::Ones(2);
-  const auto r = fe::calc_residuals(fe::calc_residual_scale(K, M, lambda), X, K.asDiagonal() * X,
-                                    M.asDiagonal() * X * lambda.asDiagonal());
+  const auto r = linear::calc_residuals(linear::calc_residual_scale(K, M, lambda), X, K.asDiagonal() * X,
+                                        M.asDiagonal() * X * lambda.asDiagonal());
   EXPECT_EQ(r(0), 0);
   EXPECT_NEAR(r(1), 3 * delta * std::sqrt(2. / 5.), 1e-5 * delta);
   // Units, and a stiff dof beside, change nothing.
-  const auto big = fe::calc_residuals(1e9 * fe::calc_residual_scale(K, M, lambda), X, 1e9 * (K.asDiagonal() * X).eval(),
-                                      1e9 * (M.asDiagonal() * X).eval());
+  const auto big = linear::calc_residuals(1e9 * linear::calc_residual_scale(K, M, lambda), X,
+                                          1e9 * (K.asDiagonal() * X).eval(), 1e9 * (M.asDiagonal() * X).eval());
   EXPECT_NEAR(big(1), r(1), 1e-12);
 }
 
 TEST(Residual, WarnsThenRefuses) {
   Diagnostics d;
-  fe::check_residuals(VectorXd::Constant(2, 1e-9), "mode", d);
+  linear::check_residuals(VectorXd::Constant(2, 1e-9), "mode", d);
   EXPECT_TRUE(d.items().empty());
-  fe::check_residuals((VectorXd(2) << 0, 1e-7).finished(), "mode", d);
+  linear::check_residuals((VectorXd(2) << 0, 1e-7).finished(), "mode", d);
   EXPECT_TRUE(d.has("fe.residual"));
   const auto refuses = [&](double value) {
     try {
-      fe::check_residuals((VectorXd(2) << value, 0).finished(), "mode", d);
+      linear::check_residuals((VectorXd(2) << value, 0).finished(), "mode", d);
     } catch (const ComputationError& error) {
       return std::string(error.what()).find("mode 1") != std::string::npos && error.exit_code() == 3;
     }

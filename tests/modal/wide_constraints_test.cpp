@@ -53,8 +53,8 @@ records::Deck make_deck(const Plate& plate) {
 class MaxDenseTerms {
  public:
   explicit MaxDenseTerms(int terms) {
-    fe::initialize_petsc();
-    fe::check_petsc(PetscOptionsSetValue(nullptr, kName, std::to_string(terms).c_str()));
+    linear::initialize_petsc();
+    linear::check_petsc(PetscOptionsSetValue(nullptr, kName, std::to_string(terms).c_str()));
   }
   ~MaxDenseTerms() { PetscOptionsClearValue(nullptr, kName); }
   MaxDenseTerms(const MaxDenseTerms&) = delete;
@@ -141,12 +141,12 @@ TEST(WideConstraints, ModesAreThoseOfTheWholeElimination) {
     const auto model = build(make_deck(plate));
     const MatrixXd one = MatrixXd::Identity(model.num_fdofs(), model.num_fdofs());
     const auto [K, K_wide] =
-        calc_both([&] { return fe::multiply(fe::assemble_stiffness(model, fe::DofSet::Free), one); });
+        calc_both([&] { return linear::multiply(fe::assemble_stiffness(model, fe::DofSet::Free), one); });
     expect_near(K_wide, K, 1e-12);
     const auto [M, M_wide] = calc_both([&] {
       const auto matrix = fe::assemble_mass(model, fe::DofSet::Free, model.mass_kind());
       EXPECT_EQ(matrix.low_rank() != nullptr, fe::get_max_dense_terms() == 30);
-      return fe::multiply(matrix, one);
+      return linear::multiply(matrix, one);
     });
     expect_near(M_wide, M, 1e-12);
     const auto [expected, found] =
@@ -234,9 +234,9 @@ TEST(WideConstraints, ManyGridsSolveTheElementsEquations) {
   const MatrixXd M_Phi = fe::calc_mass_times(model, model.mass_kind(), pairs.Phi);
   const MatrixXd K = model.T().transpose() * fe::calc_stiffness_times(model, pairs.Phi);
   const MatrixXd M = model.T().transpose() * M_Phi;
-  const VectorXd diagonal = fe::get_diagonal(fe::assemble_stiffness(model, fe::DofSet::Free));
+  const VectorXd diagonal = linear::get_diagonal(fe::assemble_stiffness(model, fe::DofSet::Free));
   const VectorXd residual =
-      fe::calc_residuals(diagonal, MatrixXd::Zero(K.rows(), K.cols()), K, M * pairs.lambda.asDiagonal());
+      linear::calc_residuals(diagonal, MatrixXd::Zero(K.rows(), K.cols()), K, M * pairs.lambda.asDiagonal());
   EXPECT_LT(residual.maxCoeff(), 1e-7);
   expect_near(pairs.Phi.transpose() * M_Phi, MatrixXd::Identity(5, 5), 1e-9);
 }

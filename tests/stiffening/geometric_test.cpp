@@ -63,11 +63,11 @@ TEST(GeometricStiffness, EqualsTheDenseProjection) {
         fe::assemble_geometric_stiffness(model, DofSet::Global, {loads.F.col(c), loads.A_I.col(c), {}}, U.col(c));
     MatrixXd projected(5, 5);
     for (int j = 0; j < 5; ++j) {
-      fe::PetscVec x, y;
-      fe::check_petsc(MatCreateVecs(K_G.sparse(), x.out(), y.out()));
-      fe::scatter(pairs.Phi.col(j), x.get());
-      fe::check_petsc(MatMult(K_G.sparse(), x.get(), y.get()));
-      projected.col(j) = pairs.Phi.transpose() * fe::gather(y.get());
+      linear::PetscVec x, y;
+      linear::check_petsc(MatCreateVecs(K_G.sparse(), x.out(), y.out()));
+      linear::scatter(pairs.Phi.col(j), x.get());
+      linear::check_petsc(MatMult(K_G.sparse(), x.get(), y.get()));
+      projected.col(j) = pairs.Phi.transpose() * linear::gather(y.get());
     }
     const double scale = projected.cwiseAbs().maxCoeff();
     ASSERT_GT(scale, 0);

@@ -85,7 +85,7 @@ SparseRows to_eigen(const records::SparseMatrix& a) {
 /// Bough's own matrices of a deck, in basic axes, with their dofs.
 struct Exported {
   explicit Exported(const records::Deck& deck) : model(build(deck)) {
-    const auto gather = [](const fe::SymmetricMatrix& A) { return to_eigen(fe::gather_sparse(A)); };
+    const auto gather = [](const linear::SymmetricMatrix& A) { return to_eigen(fe::gather_sparse(A)); };
     given.K.values = gather(fe::assemble_stiffness(model, fe::DofSet::Global));
     given.M.values = gather(fe::assemble_mass(model, fe::DofSet::Global, model.mass_kind()));
     if (fe::has_damping(model)) given.B.values = gather(fe::assemble_damping(model, fe::DofSet::Global));

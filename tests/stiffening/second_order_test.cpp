@@ -70,7 +70,7 @@ VectorXd turn_load(const fe::Model& model, const BalancedLoad& load, const Vecto
   for (const auto& [first, arm, force] : load.load.arms)  // moments arm×(θ×f)
     turned.segment<3>(first) += arm.cross(theta.cross(force)) - 0.5 * theta.cross(arm.cross(force));
   for (const auto& node : model.nodes()) field.segment<3>(node.first_gdof) = a.a_o + a.A * node.x;
-  turned -= fe::multiply(fe::assemble_grid_mass(model, model.mass_kind()), field);
+  turned -= linear::multiply(fe::assemble_grid_mass(model, model.mass_kind()), field);
   for (const auto& element : model.elements()) {
     fe::CarriedMass carried(element->num_dofs());
     if (!element->offset_mass(model.mass_kind()) || !fe::calc_carried(model, *element, model.mass_kind(), carried))
@@ -136,7 +136,7 @@ TEST(SecondOrder, TurnsTheLoadWithTheBody) {
     const VectorXd u = solver.solve(load.load.F);
     const auto K_G = fe::assemble_geometric_stiffness(model, fe::DofSet::Global, load.load, u);
     const MatrixXd Phi_R = model.calc_rigid_modes();
-    const MatrixXd seen = model.T().transpose() * fe::multiply(K_G, Phi_R);
+    const MatrixXd seen = model.T().transpose() * linear::multiply(K_G, Phi_R);
     EXPECT_LT(seen.leftCols<3>().norm(), 1e-7 * seen.norm());
     for (int a = 0; a < 3; ++a) {
       const VectorXd expected = model.T().transpose() * turn_load(model, load, Vector3d::Unit(a));
@@ -189,7 +189,7 @@ TEST(SecondOrder, RowsAndProductsGiveTheSameProjection) {
       for (int c = 0; c < num_loads; c += 29) {
         const auto K_G = fe::assemble_geometric_stiffness(model, fe::DofSet::Global,
                                                           {loads.F.col(c), loads.A_I.col(c), {}}, U.col(c));
-        const MatrixXd expected = Phi.transpose() * fe::multiply(K_G, Phi);
+        const MatrixXd expected = Phi.transpose() * linear::multiply(K_G, Phi);
         const auto& found = by_rows[static_cast<std::size_t>(c)];
         ASSERT_GT(expected.norm(), 0);
         EXPECT_LT((found - expected).norm(), 1e-12 * expected.norm()) << c << " of " << num_loads;

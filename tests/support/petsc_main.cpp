@@ -4,6 +4,6 @@
 
 int main(int argc, char** argv) {
   ::testing::InitGoogleTest(&argc, argv);
-  bough::fe::initialize_petsc();
+  bough::linear::initialize_petsc();
   return RUN_ALL_TESTS();
 }

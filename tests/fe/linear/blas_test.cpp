@@ -5,7 +5,7 @@
 
 #include "tests/support/threads.hpp"
 
-namespace bough::fe {
+namespace bough::linear {
 namespace {
 
 using Eigen::MatrixXd;
@@ -41,4 +41,4 @@ TEST(MultiplyDense, IsTheProductHoweverTall) {
 }
 
 }  // namespace
-}  // namespace bough::fe
+}  // namespace bough::linear

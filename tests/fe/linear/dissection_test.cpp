@@ -7,7 +7,7 @@
 #include <set>
 #include <vector>
 
-namespace bough::fe {
+namespace bough::linear {
 namespace {
 
 constexpr int kSize = 40;
@@ -84,4 +84,4 @@ TEST(Postorder, HasSubtreesBeforeTheirRoots) {
 }
 
 }  // namespace
-}  // namespace bough::fe
+}  // namespace bough::linear

@@ -10,7 +10,7 @@
 #include "fe/linear/ordering.hpp"
 #include "tests/support/threads.hpp"
 
-namespace bough::fe {
+namespace bough::linear {
 namespace {
 
 using Eigen::MatrixXd;
@@ -146,4 +146,4 @@ TEST(Fronts, DenseMatricesAreCounted) {
 }
 
 }  // namespace
-}  // namespace bough::fe
+}  // namespace bough::linear

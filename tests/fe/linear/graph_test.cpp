@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <set>
 
-namespace bough::fe {
+namespace bough::linear {
 namespace {
 
 /// Corners of num x num quadrilaterals: neighbours share one.
@@ -55,4 +55,4 @@ TEST(Graph, VerticesKeepWhatCouplesThem) {
 }
 
 }  // namespace
-}  // namespace bough::fe
+}  // namespace bough::linear

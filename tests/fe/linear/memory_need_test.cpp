@@ -12,7 +12,7 @@
 #include "fe/linear/factor.hpp"
 #include "fe/linear/memory_need.hpp"
 
-namespace bough::fe {
+namespace bough::linear {
 namespace {
 
 TEST(MemoryNeed, IsToldWithWhatIsFree) {
@@ -70,4 +70,4 @@ TEST(MemoryNeed, EntriesOfAFactorAreThoseOfItsAnalysis) {
 }
 
 }  // namespace
-}  // namespace bough::fe
+}  // namespace bough::linear

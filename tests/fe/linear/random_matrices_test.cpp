@@ -11,7 +11,7 @@
 #include "fe/linear/residual.hpp"
 #include "tests/support/threads.hpp"
 
-namespace bough::fe {
+namespace bough::linear {
 namespace {
 
 using Eigen::MatrixXd;
@@ -128,4 +128,4 @@ TEST(RandomSums, WithAPartOfLowRankAndAnImaginaryPartAreSolved) {
 }
 
 }  // namespace
-}  // namespace bough::fe
+}  // namespace bough::linear

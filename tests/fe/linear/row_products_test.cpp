@@ -7,7 +7,7 @@
 
 #include "fe/linear/wide.hpp"
 
-namespace bough::fe {
+namespace bough::linear {
 namespace {
 
 using Eigen::MatrixXd;
@@ -72,4 +72,4 @@ TEST_P(RowProducts, WhatCancelsKeepsItsDigits) {
 INSTANTIATE_TEST_SUITE_P(Columns, RowProducts, testing::Values(1, 3, 4, 7));
 
 }  // namespace
-}  // namespace bough::fe
+}  // namespace bough::linear

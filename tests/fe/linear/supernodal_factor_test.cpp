@@ -12,7 +12,7 @@
 #include "fe/linear/symmetric_matrix.hpp"
 #include "tests/support/threads.hpp"
 
-namespace bough::fe {
+namespace bough::linear {
 namespace {
 
 using bough::test::Threads;
@@ -184,4 +184,4 @@ TEST(SupernodalFactor, PartsAreThoseOfTheMatrixAsItIs) {
 }
 
 }  // namespace
-}  // namespace bough::fe
+}  // namespace bough::linear

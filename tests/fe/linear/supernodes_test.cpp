@@ -8,9 +8,9 @@
 
 // The same as compiled for a processor without wide registers, under another name.
 namespace bough::narrow {
-using fe::kFewSides;
-using fe::kManySides;
-using fe::Supernodes;
+using linear::kFewSides;
+using linear::kManySides;
+using linear::Supernodes;
 }  // namespace bough::narrow
 #define BOUGH_NARROW
 #define fe narrow
@@ -18,7 +18,7 @@ using fe::Supernodes;
 #undef fe
 #undef BOUGH_NARROW
 
-namespace bough::fe {
+namespace bough::linear {
 namespace {
 
 using Eigen::MatrixXd;
@@ -100,4 +100,4 @@ TEST(Supernodes, ArePackedWithoutUpperTriangles) {
 }
 
 }  // namespace
-}  // namespace bough::fe
+}  // namespace bough::linear

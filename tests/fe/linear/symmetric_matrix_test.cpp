@@ -8,7 +8,7 @@
 #include "fe/linear/ranks.hpp"
 #include "fe/linear/symmetric_matrix.hpp"
 
-namespace bough::fe {
+namespace bough::linear {
 namespace {
 
 using Eigen::MatrixXd;
@@ -134,4 +134,4 @@ TEST(SymmetricMatrixSum, FactorSolvesAndCounts) {
 }
 
 }  // namespace
-}  // namespace bough::fe
+}  // namespace bough::linear

@@ -12,7 +12,7 @@ namespace {
 
 using namespace test;
 
-MatrixXd to_dense(const SymmetricMatrix& A, int size) { return multiply(A, MatrixXd::Identity(size, size)); }
+MatrixXd to_dense(const linear::SymmetricMatrix& A, int size) { return multiply(A, MatrixXd::Identity(size, size)); }
 
 Model make_clamped(Diagnostics& diagnostics) {
   auto deck = make_deck(make_points());
@@ -48,9 +48,9 @@ TEST(AssemblyMpi, products_equal_matrices) {
 TEST(AssemblyMpi, gather_inverts_scatter) {
   Diagnostics diagnostics;
   const Model model = make_clamped(diagnostics);
-  const SymmetricMatrix K = assemble_stiffness(model, DofSet::Free);
-  PetscVec v;
-  check_petsc(MatCreateVecs(K.sparse(), v.out(), nullptr));
+  const linear::SymmetricMatrix K = assemble_stiffness(model, DofSet::Free);
+  linear::PetscVec v;
+  linear::check_petsc(MatCreateVecs(K.sparse(), v.out(), nullptr));
   const VectorXd x = make_random(model.num_fdofs(), 1, 8);
   scatter(x, v.get());
   EXPECT_EQ(gather(v.get()), x);

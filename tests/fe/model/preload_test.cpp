@@ -87,16 +87,17 @@ TEST(FollowerPressure, OfAClosedSurfaceIsSymmetricByItself) {
 }
 
 /// LLᵀ says so of small matrices too, for which CHOLMOD has another method than for large ones.
-TEST(SymmetricFactor, OfAnIndefiniteMatrixIsNoCholeskyFactor) {
-  if (initialize_petsc().size > 1) GTEST_SKIP() << "CHOLMOD factors on one process";
+TEST(linear::SymmetricFactor, OfAnIndefiniteMatrixIsNoCholeskyFactor) {
+  if (linear::initialize_petsc().size > 1) GTEST_SKIP() << "CHOLMOD factors on one process";
   for (const int size : {1, 2, 40})
     for (const double last : {1.0, -1.0}) {
-      PetscMat A;
-      check_petsc(MatCreateSeqAIJ(PETSC_COMM_SELF, size, size, 1, nullptr, A.out()));
-      for (int i = 0; i < size; ++i) check_petsc(MatSetValue(A.get(), i, i, i + 1 == size ? last : 1.0, INSERT_VALUES));
-      check_petsc(MatAssemblyBegin(A.get(), MAT_FINAL_ASSEMBLY));
-      check_petsc(MatAssemblyEnd(A.get(), MAT_FINAL_ASSEMBLY));
-      const SymmetricFactor factor(SymmetricMatrix(std::move(A)), false);
+      linear::PetscMat A;
+      linear::check_petsc(MatCreateSeqAIJ(PETSC_COMM_SELF, size, size, 1, nullptr, A.out()));
+      for (int i = 0; i < size; ++i)
+        linear::check_petsc(MatSetValue(A.get(), i, i, i + 1 == size ? last : 1.0, INSERT_VALUES));
+      linear::check_petsc(MatAssemblyBegin(A.get(), MAT_FINAL_ASSEMBLY));
+      linear::check_petsc(MatAssemblyEnd(A.get(), MAT_FINAL_ASSEMBLY));
+      const linear::SymmetricFactor factor(linear::SymmetricMatrix(std::move(A)), false);
       EXPECT_EQ(factor.is_definite(), last > 0) << size;
       EXPECT_NEAR(factor.solve(VectorXd::Ones(size))(size - 1, 0), last, 1e-15);
     }

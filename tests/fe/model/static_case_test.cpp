@@ -70,7 +70,7 @@ std::string write_hanging(const std::string& spring, const std::string& load) {
 
 // The factor takes it, but no digit of the answer is left: what is said is the motion, not its residual.
 TEST(StaticCase, ResidualOfAMotionThatHardlyAnythingHoldsNamesTheMotion) {
-  if (initialize_petsc().size > 1) GTEST_SKIP() << "the factor of several processes keeps digits enough";
+  if (linear::initialize_petsc().size > 1) GTEST_SKIP() << "the factor of several processes keeps digits enough";
   Solved hanging;
   try {
     solve(write_hanging(".6", "FORCE,3,11,,1.,1.,0.,0.\n"), hanging);

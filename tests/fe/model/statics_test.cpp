@@ -85,7 +85,7 @@ TEST(StaticsMpi, unheld_model_is_a_mechanism_of_six_motions) {
   Diagnostics d;
   const Model model = build_model(deck, {}, make_links(kLinks), d);
   EXPECT_THAT(catch_mechanism(model), HasSubstr("mechanism 6 of 6"));
-  EXPECT_EQ(find_mechanisms(assemble_stiffness(model, DofSet::Free), list_row_kinds(model), 6).cols(), 6);
+  EXPECT_EQ(linear::find_mechanisms(assemble_stiffness(model, DofSet::Free), list_row_kinds(model), 6).cols(), 6);
 }
 
 TEST(StaticsMpi, more_motions_than_those_of_a_body_are_all_found) {
@@ -169,27 +169,27 @@ TEST(StaticsMpi, stiffness_that_is_not_a_number_does_not_pass) {
   deck.grids[0].ps = 63;
   Diagnostics d;
   const Model model = build_model(deck, {}, make_links({{1, 2}}), d);
-  const SymmetricMatrix K = assemble_stiffness(model, DofSet::Free);
-  check_petsc(MatScale(K.sparse(), std::nan("")));
+  const linear::SymmetricMatrix K = assemble_stiffness(model, DofSet::Free);
+  linear::check_petsc(MatScale(K.sparse(), std::nan("")));
   EXPECT_EQ(catch_id([&] { StaticSolver(model, K); }), "fe.mechanism");
 }
 
 TEST(Factor, states_of_mumps) {
-  EXPECT_EQ(judge_factorization(0, 0), FactorState::Done);
-  EXPECT_EQ(judge_factorization(-10, 3), FactorState::Singular);
-  EXPECT_EQ(judge_factorization(-9, 100), FactorState::NeedsWorkspace);
-  EXPECT_EQ(catch_id([] { judge_factorization(-13, 100); }), "fe.out-of-memory");
-  EXPECT_EQ(catch_id([] { judge_factorization(-3, 100); }), "fe.factorization");
+  EXPECT_EQ(linear::judge_factorization(0, 0), linear::FactorState::Done);
+  EXPECT_EQ(linear::judge_factorization(-10, 3), linear::FactorState::Singular);
+  EXPECT_EQ(linear::judge_factorization(-9, 100), linear::FactorState::NeedsWorkspace);
+  EXPECT_EQ(catch_id([] { linear::judge_factorization(-13, 100); }), "fe.out-of-memory");
+  EXPECT_EQ(catch_id([] { linear::judge_factorization(-3, 100); }), "fe.factorization");
 }
 
 TEST(Petsc, error_codes_become_failures) {
-  EXPECT_EQ(catch_id([] { check_petsc(PETSC_ERR_ARG_WRONG); }), "fe.petsc");
-  EXPECT_EQ(catch_id([] { check_petsc(PETSC_ERR_MEM); }), "fe.out-of-memory");
+  EXPECT_EQ(catch_id([] { linear::check_petsc(PETSC_ERR_ARG_WRONG); }), "fe.petsc");
+  EXPECT_EQ(catch_id([] { linear::check_petsc(PETSC_ERR_MEM); }), "fe.out-of-memory");
   // CHOLMOD_OUT_OF_MEMORY, CHOLMOD_TOO_LARGE; CHOLMOD_NOT_POSDEF sends a matrix on to MUMPS.
-  EXPECT_EQ(catch_id([] { check_cholmod(-2); }), "fe.out-of-memory");
-  EXPECT_EQ(catch_id([] { check_cholmod(-3); }), "fe.out-of-memory");
-  EXPECT_EQ(catch_id([] { check_cholmod(1); }), "no error");
-  check_petsc(0);
+  EXPECT_EQ(catch_id([] { linear::check_cholmod(-2); }), "fe.out-of-memory");
+  EXPECT_EQ(catch_id([] { linear::check_cholmod(-3); }), "fe.out-of-memory");
+  EXPECT_EQ(catch_id([] { linear::check_cholmod(1); }), "no error");
+  linear::check_petsc(0);
 }
 
 TEST(StaticsMpi, determinate_supports_give_the_same_strain_for_a_balanced_load) {
@@ -203,7 +203,7 @@ TEST(StaticsMpi, determinate_supports_give_the_same_strain_for_a_balanced_load) 
   deck.coord_systems.push_back(cylinder);
   Diagnostics d;
   const Model model = build_model(deck, {}, make_links(kLinks), d);
-  const SymmetricMatrix K = assemble_stiffness(model, DofSet::Free);
+  const linear::SymmetricMatrix K = assemble_stiffness(model, DofSet::Free);
   // Balanced: no work on any rigid motion.
   const MatrixXd Phi_R = model.calc_rigid_modes();
   MatrixXd F = make_random(model.num_gdofs(), 1, 6);

@@ -44,14 +44,14 @@ std::string write_shell(int num, bool mixed = false) {
   return "SPC = 1\nBEGIN BULK\n" + text;
 }
 
-void expect_same(const SymmetricMatrix& A, const SymmetricMatrix& B) {
+void expect_same(const linear::SymmetricMatrix& A, const linear::SymmetricMatrix& B) {
   PetscBool equal = PETSC_FALSE;
-  check_petsc(MatEqual(A.sparse(), B.sparse(), &equal));
+  linear::check_petsc(MatEqual(A.sparse(), B.sparse(), &equal));
   EXPECT_TRUE(equal);
 }
 
 TEST(TwoThreads, AssembleTheSameBitForBit) {
-  if (initialize_petsc().size > 1) GTEST_SKIP() << "several processes have one thread each";
+  if (linear::initialize_petsc().size > 1) GTEST_SKIP() << "several processes have one thread each";
   for (const bool mixed : {false, true}) {
     const Model model = test::build(write_shell(46, mixed));
     ASSERT_GT(model.num_fdofs(), 10000);
@@ -64,14 +64,14 @@ TEST(TwoThreads, AssembleTheSameBitForBit) {
     expect_same(one.first, two.first);
     expect_same(one.second, two.second);
     // The same rows belong together: the order of elimination is the same.
-    const auto first = find_elimination_order(one.first), second = find_elimination_order(two.first);
+    const auto first = linear::find_elimination_order(one.first), second = linear::find_elimination_order(two.first);
     ASSERT_TRUE(first && second);
     EXPECT_EQ(*first, *second);
   }
 }
 
 TEST(TwoThreads, HoldTheSameDofs) {
-  if (initialize_petsc().size > 1) GTEST_SKIP() << "several processes have one thread each";
+  if (linear::initialize_petsc().size > 1) GTEST_SKIP() << "several processes have one thread each";
   // Rods along a bent line: a grid has stiffness along them, one where they bend in a plane.
   constexpr int num_rods = 4500;
   std::string deck = "BEGIN BULK\nMAT1,1,7.+10,,0.3,2700.\nPROD,1,1,1.-4\n";
@@ -95,9 +95,9 @@ TEST(TwoThreads, HoldTheSameDofs) {
 }
 
 TEST(TwoThreads, MultiplyTheSame) {
-  if (initialize_petsc().size > 1) GTEST_SKIP() << "several processes have one thread each";
+  if (linear::initialize_petsc().size > 1) GTEST_SKIP() << "several processes have one thread each";
   const Model model = test::build(write_shell(46));
-  const SymmetricMatrix K = assemble_stiffness(model, DofSet::Free);
+  const linear::SymmetricMatrix K = assemble_stiffness(model, DofSet::Free);
   const MatrixXd X = MatrixXd::Random(model.num_fdofs(), 7), X_g = MatrixXd::Random(model.num_gdofs(), 3);
   const MatrixXd B = MatrixXd::Random(model.num_fdofs(), 7);
   const auto multiply_by = [&](int num) {
@@ -109,18 +109,18 @@ TEST(TwoThreads, MultiplyTheSame) {
   EXPECT_EQ(one[1], two[1]);
   EXPECT_LT((one[2] - two[2]).cwiseAbs().maxCoeff(), 1e-14 * one[2].cwiseAbs().maxCoeff());
   // By another code: PETSc's own product.
-  PetscVec x, y;
-  check_petsc(MatCreateVecs(K.sparse(), x.out(), y.out()));
+  linear::PetscVec x, y;
+  linear::check_petsc(MatCreateVecs(K.sparse(), x.out(), y.out()));
   for (const int c : {0, 6}) {
     PetscScalar* values = nullptr;
-    check_petsc(VecGetArray(x.get(), &values));
+    linear::check_petsc(VecGetArray(x.get(), &values));
     Eigen::VectorXd::Map(values, X.rows()) = X.col(c);
-    check_petsc(VecRestoreArray(x.get(), &values));
-    check_petsc(MatMult(K.sparse(), x.get(), y.get()));
+    linear::check_petsc(VecRestoreArray(x.get(), &values));
+    linear::check_petsc(MatMult(K.sparse(), x.get(), y.get()));
     const PetscScalar* found = nullptr;
-    check_petsc(VecGetArrayRead(y.get(), &found));
+    linear::check_petsc(VecGetArrayRead(y.get(), &found));
     const Eigen::VectorXd expected = Eigen::VectorXd::Map(found, X.rows());
-    check_petsc(VecRestoreArrayRead(y.get(), &found));
+    linear::check_petsc(VecRestoreArrayRead(y.get(), &found));
     EXPECT_LT((one[0].col(c) - expected).cwiseAbs().maxCoeff(), 1e-14 * expected.cwiseAbs().maxCoeff());
     EXPECT_LT((one[1].col(c) - (B.col(c) - expected)).cwiseAbs().maxCoeff(), 1e-13 * expected.cwiseAbs().maxCoeff());
   }
@@ -153,11 +153,11 @@ TEST(TwoThreads, RecoverTheSameBitForBit) {
 }
 
 TEST(FactorNeed, IsAboutWhatTheFactorTakes) {
-  if (initialize_petsc().size > 1) GTEST_SKIP() << "one process factors by CHOLMOD";
+  if (linear::initialize_petsc().size > 1) GTEST_SKIP() << "one process factors by CHOLMOD";
   const auto expect_about = [](const std::string& deck) {
     const Model model = test::build(deck);
-    const SymmetricMatrix K = assemble_stiffness(model, DofSet::Free);
-    const auto factor = SymmetricFactor::try_definite(K);
+    const linear::SymmetricMatrix K = assemble_stiffness(model, DofSet::Free);
+    const auto factor = linear::SymmetricFactor::try_definite(K);
     ASSERT_TRUE(factor);
     const double estimate = estimate_factor_entries(model);
     EXPECT_GT(estimate, 0.7 * factor->num_entries());

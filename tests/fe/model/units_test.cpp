@@ -95,15 +95,15 @@ TEST(UnitsMpi, MechanismsAreMechanismsInAnyUnits) {
   }
 }
 
-TEST(RowKinds, RowsAreJudgedAmongTheirKind) {
-  const auto T = RowKind::Translation, R = RowKind::Rotation, S = RowKind::Scalar;
+TEST(linear::RowKinds, RowsAreJudgedAmongTheirKind) {
+  const auto T = linear::RowKind::Translation, R = linear::RowKind::Rotation, S = linear::RowKind::Scalar;
   const Eigen::VectorXd D = (Eigen::VectorXd(6) << 1e5, 1e-12, -2e5, 1e-12, 1e-30, 0).finished();
-  const RowKinds kinds{T, T, T, R, R, S};
+  const linear::RowKinds kinds{T, T, T, R, R, S};
   const Eigen::VectorXd filled = (Eigen::VectorXd(6) << 1e5, 2e5, 2e5, 1e-12, 1e-12, 2e5).finished();
-  EXPECT_EQ(fill_diagonal(D, kinds), filled);
-  EXPECT_EQ(fill_diagonal(Eigen::VectorXd::Zero(2), {}), Eigen::VectorXd::Ones(2));
+  EXPECT_EQ(linear::fill_diagonal(D, kinds), filled);
+  EXPECT_EQ(linear::fill_diagonal(Eigen::VectorXd::Zero(2), {}), Eigen::VectorXd::Ones(2));
   const Eigen::VectorXd raised = (Eigen::VectorXd(6) << 1e5, 10, 10, 1e-12, 1e-16, 0).finished();
-  EXPECT_TRUE(raise_diagonal(D, kinds, 1e-4).isApprox(raised, 1e-12));
+  EXPECT_TRUE(linear::raise_diagonal(D, kinds, 1e-4).isApprox(raised, 1e-12));
 }
 
 }  // namespace
