@@ -109,9 +109,8 @@ class SuperelementMaker {
       return error(who + " is joined to " + (node.num_dofs == 6 ? "grid " : "scalar point ") + std::to_string(node.id),
                    "join grids to grids, scalar points to scalar points"),
              -1;
-    // A tolerance of places is a length of any unit: a boundary that was moved by mistake is off by more.
-    const double away = own ? (node.x - x).norm() : 0, allowed = std::max(record_.tolerance, 1e-6 * x.norm());
-    if (own && record_.checks_places && away > std::max(allowed, 1e-5))
+    const double away = own ? (node.x - x).norm() : 0;
+    if (own && record_.checks_places && away > calc_tolerance(x))
       return error(who + " is " + show_distance(away) + " away from grid " + std::to_string(node.id) + " that it joins",
                    "the matrices are of another boundary, or the component was moved: SELOC is not supported"),
              -1;
@@ -121,10 +120,13 @@ class SuperelementMaker {
   int find_place(const Vector3d& x) const {
     for (const auto& grid : deck_.grids) {
       const int index = nodes_.find_node(grid.id);
-      if (index >= 0 && (nodes_.node(index).x - x).norm() <= std::max(record_.tolerance, 1e-5)) return index;
+      if (index >= 0 && (nodes_.node(index).x - x).norm() <= calc_tolerance(x)) return index;
     }
     return -1;
   }
+
+  /// Distance of points that are the same: TOL of SEBULK, or what six digits of a punched coordinate leave.
+  double calc_tolerance(const Vector3d& x) const { return std::max(record_.tolerance, 1e-6 * x.norm()); }
 
   /// Nodes, rows of the g-set and the map C from the joined nodes' dofs (basic) to the exterior dofs.
   bool connect() {
