@@ -1,4 +1,5 @@
 #include "modal/block_lanczos.hpp"
+#include "fe/linear/products.hpp"
 #include "modal/tolerances.hpp"
 
 #include <algorithm>
@@ -88,7 +89,7 @@ BlockLanczos::BlockLanczos(BlockLanczosProblem problem)
 }
 
 VectorXd BlockLanczos::make_unit(const MatrixXd& G, double floor, MatrixXd& W, MatrixXd& B_W, MatrixXd& R) {
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> gram(0.5 * (G + G.transpose()));
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> gram(linear::symmetrize(G));
   const VectorXd& g = gram.eigenvalues();
   const auto dropped = (g.array() <= floor * floor).count();
   const VectorXd length = g.tail(g.size() - dropped).cwiseSqrt();

@@ -6,6 +6,7 @@
 #include "fe/linear/blas.hpp"
 #include "fe/linear/factor.hpp"
 #include "fe/linear/fixed_number.hpp"
+#include "fe/linear/products.hpp"
 #include "modal/tolerances.hpp"
 
 namespace bough::modal::detail {
@@ -32,18 +33,18 @@ VectorXd calc_basis_weights(const fe::Model& model) {
 
 MatrixXd calc_cluster_rotation(const VectorXd& weights, const Eigen::Ref<const MatrixXd>& Phi) {
   const MatrixXd W = Phi.transpose() * weights.asDiagonal() * Phi;
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(0.5 * (W + W.transpose()));
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(linear::symmetrize(W));
   return solver.eigenvectors();
 }
 
 void orthonormalize_ascending(const MatrixXd& G, MatrixXd& X) {
   if (X.cols() == 0) return;
-  const Eigen::LLT<MatrixXd> cholesky(0.5 * (G + G.transpose()));
+  const Eigen::LLT<MatrixXd> cholesky(linear::symmetrize(G));
   MatrixXd inverse = MatrixXd::Identity(G.rows(), G.cols());
   if (cholesky.info() == Eigen::Success)
     inverse = cholesky.matrixU().solve(inverse);
   else
-    inverse = Eigen::SelfAdjointEigenSolver<MatrixXd>(0.5 * (G + G.transpose())).operatorInverseSqrt();
+    inverse = Eigen::SelfAdjointEigenSolver<MatrixXd>(linear::symmetrize(G)).operatorInverseSqrt();
   MatrixXd Y(X.rows(), X.cols());
   linear::multiply_dense(false, X, inverse, 0, Y);
   X = std::move(Y);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "fe/linear/factor.hpp"
+#include "fe/linear/products.hpp"
 #include "fe/linear/symmetric_matrix.hpp"
 #include "modal/canonical.hpp"
 #include "modal/tolerances.hpp"
@@ -112,13 +113,12 @@ namespace {
 
 constexpr Eigen::Index kBlock = 24;  ///< right-hand sides at once
 
-MatrixXd symmetrize(const MatrixXd& A) { return 0.5 * (A + A.transpose()); }
-
 /// Values and vectors among X by K itself.
 void solve_among(const linear::SymmetricMatrix& K, const linear::SymmetricMatrix& M, Roots& roots) {
   const MatrixXd& X = roots.X;
-  const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd> ritz(symmetrize(X.transpose() * linear::multiply(K, X)),
-                                                                symmetrize(X.transpose() * linear::multiply(M, X)));
+  const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd> ritz(
+      linear::symmetrize(X.transpose() * linear::multiply(K, X)),
+      linear::symmetrize(X.transpose() * linear::multiply(M, X)));
   if (ritz.info() != Eigen::Success) return;
   roots.value = ritz.eigenvalues();
   roots.X = (X * ritz.eigenvectors()).eval();
@@ -146,7 +146,7 @@ Roots solve_stage(const LowRankProblem& problem, const MatrixXd& known, int numb
     const auto size = std::min(kBlock, Z.cols() - first);
     G.middleCols(first, size) = Z.transpose() * (C.transpose() * solve_for(Z.middleCols(first, size)));
   }
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(symmetrize(G));
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(linear::symmetrize(G));
   const VectorXd theta = solver.eigenvalues(), lambda = theta.cwiseInverse().array() + shift;
   const double largest = theta.size() > 0 ? theta.cwiseAbs().maxCoeff() : 0;
   std::vector<int> order;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "fe/linear/null_space.hpp"
+#include "fe/linear/products.hpp"
 #include "fe/linear/symmetric_matrix.hpp"
 #include "modal/canonical.hpp"
 #include "modal/extraction.hpp"
@@ -67,7 +68,7 @@ MatrixXd split_by_mass(const Pencil& pencil, const VectorXd& D, MatrixXd Y, Matr
       Y -= heavy * (pencil.calc_M_times(heavy).transpose() * Y).eval();
     Y *= (Y.cwiseAbs2().transpose() * D).cwiseSqrt().cwiseInverse().asDiagonal();
     const MatrixXd G = Y.transpose() * pencil.calc_M_times(Y);
-    const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(0.5 * (G + G.transpose()));
+    const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(linear::symmetrize(G));
     Y = (Y * solver.eigenvectors()).eval();
     const VectorXd mass = solver.eigenvalues(), parts = Y.cwiseAbs2().transpose() * pencil.M_diagonal;
     most = std::max(most, mass.maxCoeff());

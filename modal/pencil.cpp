@@ -5,6 +5,7 @@
 
 #include "fe/linear/blas.hpp"
 #include "fe/linear/null_space.hpp"
+#include "fe/linear/products.hpp"
 #include "fe/linear/symmetric_matrix.hpp"
 #include "fe/model/row_kinds.hpp"
 #include "modal/canonical.hpp"
@@ -34,7 +35,7 @@ MatrixXd restrict_to_fdofs(const fe::Model& model, const MatrixXd& U) {
 
 /// Eigenvectors of the symmetric A whose eigenvalue is above (or not above) threshold times the largest.
 MatrixXd calc_range(const MatrixXd& A, double threshold, bool above, VectorXd* values = nullptr) {
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(0.5 * (A + A.transpose()));
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(linear::symmetrize(A));
   const VectorXd& w = solver.eigenvalues();
   const double limit = threshold * std::max(w.size() ? w.maxCoeff() : 0.0, 0.0);
   const auto low = (w.array() <= limit).count();
@@ -226,7 +227,7 @@ RigidMotions find_global_motions(const Pencil& pencil) {
   VectorXd mass;
   for (int pass = 0; pass < 2; ++pass) {
     const MatrixXd G = Y.transpose() * pencil.calc_M_times(Y);
-    const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(0.5 * (G + G.transpose()));
+    const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(linear::symmetrize(G));
     Y = (Y * solver.eigenvectors()).eval();
     mass = solver.eigenvalues();
   }

@@ -1,5 +1,6 @@
 // Modes of the body with the mass of other bodies at its nodes, which is removed again (docs/theory/bases.md).
 #include "fe/elements/point_mass.hpp"
+#include "fe/linear/products.hpp"
 #include "fe/statics/build_model.hpp"
 #include "stiffening/stages.hpp"
 
@@ -46,7 +47,7 @@ void remove_augmentation(const BodyRequest& request, const fe::Model& model, mod
     basis.Phi = modal::bases::shift_to_frame(model, C, basis.Phi);
   }
   const MatrixXd M = basis.Phi.transpose() * fe::calc_mass_times(model, model.mass_kind(), basis.Phi);
-  basis.M = 0.5 * (M + M.transpose());
+  basis.M = linear::symmetrize(M);
   if (basis.is_raw || !request.spec.orthogonalize) {
     basis.lambda = basis.K.diagonal().cwiseQuotient(basis.M.diagonal());
     return;

@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <numbers>
 
+#include "fe/linear/products.hpp"
 #include "stiffening/given_model.hpp"
 #include "stiffening/stages.hpp"
 
@@ -146,10 +147,7 @@ ModalBasis make_given_basis(const BodyRequest& request, const fe::System& system
     const auto C = modal::bases::calc_reference_conditions(model, make_frame_spec(spec));
     basis.Phi = modal::bases::shift_to_frame(model, C, basis.Phi);
   }
-  const auto project = [&](const MatrixXd& A_Phi) -> MatrixXd {
-    const MatrixXd A = basis.Phi.transpose() * A_Phi;
-    return 0.5 * (A + A.transpose());
-  };
+  const auto project = [&](const MatrixXd& A_Phi) { return linear::symmetrize(basis.Phi.transpose() * A_Phi); };
   basis.M = project(fe::calc_mass_times(model, model.mass_kind(), basis.Phi));
   basis.K = project(fe::calc_stiffness_times(model, basis.Phi));
   for (Eigen::Index j = 0; j < basis.M.cols(); ++j)

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "fe/linear/products.hpp"
 #include "formats/records/params.hpp"
 #include "modal/bases/damping.hpp"
 #include "stiffening/stages.hpp"
@@ -25,8 +26,6 @@ modal::bases::DampingSpec make_damping_spec(const records::BodySpec& spec) {
   damping.residual_ratio = spec.residual_damping;
   return damping;
 }
-
-MatrixXd symmetrize(const MatrixXd& A) { return 0.5 * (A + A.transpose()); }
 
 }  // namespace
 
@@ -57,13 +56,13 @@ MatrixXd calc_body_damping(const BodyRequest& request, const fe::Model& model, c
   MatrixXd K_g;
   if (request.spec.has_material_damping) {
     const double g = records::get_real_param(request.deck, "G", 0, request.diagnostics);
-    K_g = symmetrize(basis.Phi.transpose() * fe::calc_structural_damping_times(model, g, basis.Phi));
+    K_g = linear::symmetrize(basis.Phi.transpose() * fe::calc_structural_damping_times(model, g, basis.Phi));
   }
   return modal::bases::calc_damping(basis.M, basis.K, spec, K_g, is_residual);
 }
 
 void add_dampers(const fe::Model& model, const MatrixXd& Phi, MatrixXd& damping) {
-  if (fe::has_damping(model)) damping += symmetrize(Phi.transpose() * fe::calc_damping_times(model, Phi));
+  if (fe::has_damping(model)) damping += linear::symmetrize(Phi.transpose() * fe::calc_damping_times(model, Phi));
 }
 
 }  // namespace bough::stiffening

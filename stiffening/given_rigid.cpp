@@ -1,4 +1,5 @@
 #include "stiffening/given_rigid.hpp"
+#include "fe/linear/products.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -105,12 +106,12 @@ VectorXd calc_ritz_values(const SparseRows& M, const MatrixXd& R, const MatrixXd
     const MatrixXd energy = Y.transpose() * F, mass = Y.transpose() * (M * Y);  // K Y = F
     const VectorXd s = mass.diagonal().unaryExpr([](double a) { return a > 0 ? 1 / std::sqrt(a) : 0.0; });
     const MatrixXd A = s.asDiagonal() * energy * s.asDiagonal(), B = s.asDiagonal() * mass * s.asDiagonal();
-    const Eigen::SelfAdjointEigenSolver<MatrixXd> range(0.5 * (B + B.transpose()));
+    const Eigen::SelfAdjointEigenSolver<MatrixXd> range(linear::symmetrize(B));
     const VectorXd& b = range.eigenvalues();
     const auto rank = (b.array() > kRitzRank * b.maxCoeff()).count();
     if (rank == 0 || !std::isfinite(b.sum()) || !std::isfinite(A.sum())) return {};
     const MatrixXd W = range.eigenvectors().rightCols(rank) * b.tail(rank).cwiseSqrt().cwiseInverse().asDiagonal();
-    const Eigen::SelfAdjointEigenSolver<MatrixXd> ritz(W.transpose() * (0.5 * (A + A.transpose())) * W);
+    const Eigen::SelfAdjointEigenSolver<MatrixXd> ritz(W.transpose() * linear::symmetrize(A) * W);
     X.leftCols(rank) = Y * (s.asDiagonal() * (W * ritz.eigenvectors()));
     // Free of those kept: K_oo⁻¹ would bring a mechanism to the top of any vector that has a part of it, and leave one.
     const MatrixXd M_kept = M * X.leftCols(rank);
@@ -135,7 +136,7 @@ SparseRows restore(const SparseRows& K, const VectorXd& D, const MatrixXd& R, co
   R_o(support, Eigen::all).setZero();
   MatrixXd K_s = -((K * R_o) * inverse);  // columns of the support, rows of the others
   const MatrixXd K_ss = -(R(others, Eigen::all) * inverse).transpose() * K_s(others, Eigen::all);
-  K_s(support, Eigen::all) = 0.5 * (K_ss + K_ss.transpose());
+  K_s(support, Eigen::all) = linear::symmetrize(K_ss);
   std::vector<int> place(static_cast<std::size_t>(K.rows()), -1);
   for (std::size_t j = 0; j < support.size(); ++j) place[static_cast<std::size_t>(support[j])] = static_cast<int>(j);
   std::vector<Eigen::Triplet<double>> entries;
@@ -202,7 +203,7 @@ RigidMotionCheck check_rigid_motions(const PointTable& points, const SparseRows&
 
   const MatrixXd mass = R.transpose() * (M * R), energy = R.transpose() * (K * R);
   MatrixXd massless;
-  const MatrixXd mass_inverse = invert(0.5 * (mass + mass.transpose()), massless);
+  const MatrixXd mass_inverse = invert(linear::symmetrize(mass), massless);
   const VectorXd ritz = calc_ritz_values(M, R, mass_inverse, others, K_oo);
   if (ritz.size() == 0) return result;
   result.num_mechanisms = static_cast<int>(count_mechanisms(ritz));
@@ -217,7 +218,7 @@ RigidMotionCheck check_rigid_motions(const PointTable& points, const SparseRows&
   const Index num = 6 - massless.cols();
   const MatrixXd W =
       root.eigenvectors().rightCols(num) * root.eigenvalues().tail(num).cwiseMax(0).cwiseSqrt().asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> quotients(W.transpose() * (0.5 * (energy + energy.transpose())) * W);
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> quotients(W.transpose() * linear::symmetrize(energy) * W);
   result.worst = quotients.eigenvalues().cwiseAbs().maxCoeff();
   const double max_quotient = kMaxRigidQuotient * result.elastic;
   result.num_rigid += static_cast<int>((quotients.eigenvalues().array().abs() < max_quotient).count());

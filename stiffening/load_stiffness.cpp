@@ -4,6 +4,7 @@
 #include "base/rotation.hpp"
 #include "fe/elements/stress_state.hpp"
 #include "fe/linear/blas.hpp"
+#include "fe/linear/products.hpp"
 #include "stiffening/stages.hpp"
 
 namespace bough::stiffening {
@@ -38,7 +39,7 @@ void add_thermal_stiffness(const fe::Model& model, const fe::InitialForces& init
     const MatrixXd Phi_e = Phi(element->gdofs(), Eigen::all);
     sum += Phi_e.transpose() * K * Phi_e;
   }
-  K_G += 0.5 * (sum + sum.transpose());
+  K_G += linear::symmetrize(sum);
 }
 
 }  // namespace
@@ -105,7 +106,7 @@ void set_preload(const BodyRequest& request, const fe::Model& model, const Matri
   const auto* prestress = model.prestress();
   if (!prestress) return;
   const MatrixXd K = Phi.transpose() * fe::calc_prestress_times(model, Phi);
-  body.kg_preload = 0.5 * (K + K.transpose());
+  body.kg_preload = linear::symmetrize(K);
   body.preload_A_I = prestress->A_I;
   for (std::size_t i = 0; i < body.kg_inertial.size(); ++i)
     if (prestress->A_I[static_cast<Eigen::Index>(i)] != 0 && !body.kg_inertial_computed[i]) {

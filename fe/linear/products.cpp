@@ -58,6 +58,8 @@ MatrixXd calc_residual(const SymmetricMatrix& A, const Eigen::Ref<const MatrixXd
   return R;
 }
 
+MatrixXd symmetrize(const MatrixXd& A) { return 0.5 * (A + A.transpose()); }
+
 Eigen::VectorXd get_diagonal(const SymmetricMatrix& A) {
   if (const LowRankPart* part = A.low_rank()) return get_diagonal(A.sparse_part()) + part->calc_diagonal();
   PetscVec v;

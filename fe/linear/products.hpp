@@ -1,5 +1,5 @@
 #pragma once
-/// \file Products and diagonals of symmetric matrices, sparse or with a part of low rank.
+/// \file Products and diagonals of symmetric matrices, dense, sparse or with a part of low rank.
 #include "fe/linear/symmetric_matrix.hpp"
 
 namespace bough::linear {
@@ -9,6 +9,8 @@ Eigen::MatrixXd multiply(const SymmetricMatrix& A, const Eigen::Ref<const Eigen:
 /// B - A X, every entry summed in extended precision before it is rounded; all replicated.
 Eigen::MatrixXd calc_residual(const SymmetricMatrix& A, const Eigen::Ref<const Eigen::MatrixXd>& X,
                               const Eigen::Ref<const Eigen::MatrixXd>& B);
+/// ½ (A + Aᵀ), for a square A that is symmetric up to round-off.
+Eigen::MatrixXd symmetrize(const Eigen::MatrixXd& A);
 /// The diagonal of A, replicated.
 Eigen::VectorXd get_diagonal(const SymmetricMatrix& A);
 

@@ -6,6 +6,7 @@
 
 #include "fe/linear/factor.hpp"
 #include "fe/linear/inertia.hpp"
+#include "fe/linear/products.hpp"
 #include "fe/linear/symmetric_matrix.hpp"
 #include "fe/model/row_kinds.hpp"
 #include "fe/statics/statics.hpp"
@@ -43,7 +44,7 @@ int count_tipping(const Model& model, const linear::SymmetricMatrix& K) {
                                     elastic = R.transpose() * calc_stiffness_times(model, R) - G;
   const double roundoff = 1e-14 * linear::get_diagonal(K).cwiseAbs().sum() * R.cwiseAbs2().maxCoeff();
   if (!(elastic.norm() < 1e-6 * G.norm() + roundoff)) return 0;  // springs to ground
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> solver(0.5 * (G + G.transpose()));
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> solver(linear::symmetrize(G));
   const double most = solver.eigenvalues().cwiseAbs().maxCoeff();
   const VectorXd force = (MatrixXd(model.T().transpose() * K_G_R) * solver.eigenvectors()).colwise().norm();
   int count = 0;

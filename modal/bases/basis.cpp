@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "fe/linear/blas.hpp"
+#include "fe/linear/products.hpp"
 #include "modal/canonical.hpp"
 #include "modal/pencil.hpp"
 #include "modal/tolerances.hpp"
@@ -31,12 +32,10 @@ VectorXd calc_norms(const fe::Model& model, const MatrixXd& X) {
   return X.cwiseProduct(times_M(model, X)).colwise().sum().cwiseMax(0).cwiseSqrt();
 }
 MatrixXd calc_gram_M(const fe::Model& model, const MatrixXd& X) {
-  const MatrixXd G = linear::calc_inner_products(X, times_M(model, X));
-  return 0.5 * (G + G.transpose());
+  return linear::symmetrize(linear::calc_inner_products(X, times_M(model, X)));
 }
 MatrixXd calc_gram_K(const fe::Model& model, const MatrixXd& X) {
-  const MatrixXd G = linear::calc_inner_products(X, fe::calc_stiffness_times(model, X));
-  return 0.5 * (G + G.transpose());
+  return linear::symmetrize(linear::calc_inner_products(X, fe::calc_stiffness_times(model, X)));
 }
 
 /// Unit loads on the interface dofs: Tᵀ of them is the row of T that a boundary dof is.

@@ -3,13 +3,13 @@
 #include <algorithm>
 
 #include "fe/linear/blas.hpp"
+#include "fe/linear/products.hpp"
 
 namespace bough::modal::bases {
 namespace {
 
 MatrixXd calc_gram(const MatrixXd& X, const MatrixXd& A_X) {
-  const MatrixXd G = linear::calc_inner_products(X, A_X);
-  return 0.5 * (G + G.transpose());
+  return linear::symmetrize(linear::calc_inner_products(X, A_X));
 }
 
 /// Columns in basic axes of those in the displacement axes of each grid.

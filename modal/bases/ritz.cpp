@@ -4,14 +4,13 @@
 #include <cmath>
 
 #include "fe/linear/blas.hpp"
+#include "fe/linear/products.hpp"
 #include "modal/canonical.hpp"
 #include "modal/tolerances.hpp"
 
 namespace bough::modal::bases {
 
 namespace {
-
-MatrixXd symmetrize(const MatrixXd& A) { return 0.5 * (A + A.transpose()); }
 
 /// Coordinates to units in which each has mass 1; those whose mass is next to none for their stiffness (frequencies
 /// 1e7 times that of the softest) go by their stiffness, so that their mass stays next to none.
@@ -35,7 +34,7 @@ MatrixXd find_stiff(const MatrixXd& Z, const MatrixXd& K) {
   const VectorXd diagonal = (Z.cwiseAbs2().transpose() * K.diagonal().cwiseMax(0)).cwiseSqrt();
   const VectorXd scale = diagonal.unaryExpr([](double d) { return d > 0 ? 1 / d : 0.0; });
   const MatrixXd unit = Z * scale.asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> energy(symmetrize(unit.transpose() * K * unit));
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> energy(linear::symmetrize(unit.transpose() * K * unit));
   const VectorXd& e = energy.eigenvalues();
   const auto num = (e.array() > detail::kDependentDirection).count();
   return unit * energy.eigenvectors().rightCols(num) * e.tail(num).cwiseSqrt().cwiseInverse().asDiagonal();
@@ -47,7 +46,7 @@ RitzPairs calc_ritz_pairs(const MatrixXd& M, const MatrixXd& K) {
   RitzPairs pairs{VectorXd(0), MatrixXd(M.rows(), 0)};
   if (M.rows() == 0) return pairs;
   const VectorXd scale = calc_mass_scale(M, K);
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> gram(symmetrize(scale.asDiagonal() * M * scale.asDiagonal()));
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> gram(linear::symmetrize(scale.asDiagonal() * M * scale.asDiagonal()));
   const VectorXd& d = gram.eigenvalues();
   const auto dropped = (d.array() <= detail::kMasslessDirection * std::max(d.maxCoeff(), 0.0)).count();
   const auto n = d.size() - dropped;
@@ -57,7 +56,7 @@ RitzPairs calc_ritz_pairs(const MatrixXd& M, const MatrixXd& K) {
   if (n == 0) return pairs;
   // What has no mass follows without force. Left out instead, it would be held.
   if (pairs.massless.cols() > 0) W -= pairs.massless * (pairs.massless.transpose() * K * W).eval();
-  const MatrixXd K_w = symmetrize(W.transpose() * K * W);
+  const MatrixXd K_w = linear::symmetrize(W.transpose() * K * W);
   if (Eigen::LLT<MatrixXd>(K_w).info() == Eigen::Success) {
     const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd> solver(MatrixXd::Identity(n, n), K_w);
     const VectorXd theta = solver.eigenvalues().reverse();
@@ -80,7 +79,8 @@ VectorXd calc_lost_flexibility(const fe::Model& model, const MatrixXd& Y, const 
   VectorXd held = VectorXd::Zero(F.cols());
   if (Y.cols() > 0) {
     const MatrixXd YF = Y.transpose() * F;
-    const Eigen::LDLT<MatrixXd> K(symmetrize(linear::calc_inner_products(Y, fe::calc_stiffness_times(model, Y))));
+    const Eigen::LDLT<MatrixXd> K(
+        linear::symmetrize(linear::calc_inner_products(Y, fe::calc_stiffness_times(model, Y))));
     held = YF.cwiseProduct(K.solve(YF)).colwise().sum();
   }
   const VectorXd whole = F.cwiseProduct(X).colwise().sum();
@@ -194,7 +194,7 @@ ResidualVectors calc_residual_vectors(const fe::Model& model, const StaticSolve&
 
   if (used.empty()) return result;
   const MatrixXd K = linear::calc_inner_products(X, fe::calc_stiffness_times(model, X));
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> ritz(symmetrize(K));
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> ritz(linear::symmetrize(K));
   result.modes.lambda = ritz.eigenvalues();
   result.modes.Phi = X * ritz.eigenvectors();
   detail::fix_signs(result.modes.Phi);

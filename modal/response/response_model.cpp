@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "fe/linear/blas.hpp"
+#include "fe/linear/products.hpp"
 #include "fe/matrices/assembly.hpp"
 #include "fe/statics/static_case.hpp"
 #include "modal/tolerances.hpp"
@@ -29,8 +30,6 @@ MatrixXd join_columns(const MatrixXd& A, const MatrixXd& B) {
 MatrixXd times_mass(const fe::Model& model, const MatrixXd& X) {
   return fe::calc_mass_times(model, model.mass_kind(), X);
 }
-MatrixXd make_symmetric(const MatrixXd& A) { return 0.5 * (A + A.transpose()); }
-
 /// Forces of the viscous dampers, in directions that span them; of the modes where the dampers are many.
 MatrixXd calc_damper_loads(const fe::Model& model, const MatrixXd& Phi) {
   const auto none = MatrixXd(model.num_gdofs(), 0);
@@ -58,7 +57,7 @@ MatrixXd calc_damper_loads(const fe::Model& model, const MatrixXd& Phi) {
   VectorXd root = dense.diagonal().cwiseAbs().cwiseSqrt();
   for (double& r : root) r = r > 0 ? r : 1;
   const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(
-      make_symmetric(root.cwiseInverse().asDiagonal() * dense * root.cwiseInverse().asDiagonal()));
+      linear::symmetrize(root.cwiseInverse().asDiagonal() * dense * root.cwiseInverse().asDiagonal()));
   const VectorXd size = solver.eigenvalues().cwiseAbs();
   MatrixXd loads = none;
   for (Eigen::Index c = 0; c < n; ++c) {
@@ -154,9 +153,9 @@ class Maker {
   bases::ModeSet separate(MatrixXd X, double max_lambda) const {
     bases::ModeSet modes;
     for (int pass = 0; pass < 2 && X.cols() > 0; ++pass) {
-      const auto pairs =
-          bases::calc_ritz_pairs(make_symmetric(linear::calc_inner_products(X, times_mass(model_, X))),
-                                 make_symmetric(linear::calc_inner_products(X, fe::calc_stiffness_times(model_, X))));
+      const auto pairs = bases::calc_ritz_pairs(
+          linear::symmetrize(linear::calc_inner_products(X, times_mass(model_, X))),
+          linear::symmetrize(linear::calc_inner_products(X, fe::calc_stiffness_times(model_, X))));
       const auto num = (pairs.lambda.array() <= max_lambda).count();
       modes.lambda = pairs.lambda.head(num);
       X = (X * pairs.N.leftCols(num)).eval();
@@ -232,7 +231,7 @@ class Maker {
     if (kept.empty()) return;
     const MatrixXd X = rest(Eigen::all, kept);
     const Eigen::SelfAdjointEigenSolver<MatrixXd> gram(
-        make_symmetric(linear::calc_inner_products(X, fe::calc_stiffness_times(model_, X))));
+        linear::symmetrize(linear::calc_inner_products(X, fe::calc_stiffness_times(model_, X))));
     const auto num = (gram.eigenvalues().array() > detail::kDependentVector).count();
     const MatrixXd Z =
         X * gram.eigenvectors().rightCols(num) * gram.eigenvalues().tail(num).cwiseSqrt().cwiseInverse().asDiagonal();
@@ -252,12 +251,12 @@ class Maker {
   /// k: motions of the supports.
   void damp(ResponseModel& r, Eigen::Index k) const {
     const auto n = r.lambda.size();
-    r.D = make_symmetric(linear::calc_inner_products(r.Phi, fe::calc_damping_times(model_, r.Phi)));
+    r.D = linear::symmetrize(linear::calc_inner_products(r.Phi, fe::calc_damping_times(model_, r.Phi)));
     r.S = MatrixXd::Zero(n, n);
     const MatrixXd K_e =
-        make_symmetric(linear::calc_inner_products(r.Phi, fe::calc_structural_damping_times(model_, 0, r.Phi)));
+        linear::symmetrize(linear::calc_inner_products(r.Phi, fe::calc_structural_damping_times(model_, 0, r.Phi)));
     MatrixXd K = r.lambda.asDiagonal();
-    if (damping_.times_direct) K -= make_symmetric(r.Phi.transpose() * damping_.times_direct(r.Phi));
+    if (damping_.times_direct) K -= linear::symmetrize(r.Phi.transpose() * damping_.times_direct(r.Phi));
     const MatrixXd K_g = damping_.g * K;
     const auto num = r.num_dynamic();
     r.D += damping_.alpha2 * K;
