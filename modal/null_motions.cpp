@@ -89,7 +89,8 @@ std::vector<int> choose_dofs(const VectorXd& D, const MatrixXd& X) {
   std::vector<int> dofs;
   if (X.cols() == 0) return dofs;
   MatrixXd scaled = D.cwiseSqrt().asDiagonal() * X;
-  scaled *= scaled.colwise().norm().cwiseInverse().asDiagonal();
+  const VectorXd norms = scaled.colwise().norm().transpose();  // not lazily: the product changes what they are of
+  scaled *= norms.cwiseInverse().asDiagonal();
   const Eigen::ColPivHouseholderQR<MatrixXd> qr(scaled.transpose());
   for (Index i = 0; i < X.cols(); ++i) dofs.push_back(static_cast<int>(qr.colsPermutation().indices()(i)));
   return dofs;

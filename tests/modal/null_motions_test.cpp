@@ -1,6 +1,7 @@
 /// Motions without strain that are none of the whole, with mass, with next to none, with none; ends of ranges.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "fe/statics/build_model.hpp"
@@ -119,8 +120,41 @@ TEST(NullMotions, BasisAndSupports) {
   EXPECT_LT((whole.modes - found.modes.leftCols(6)).cwiseAbs().maxCoeff(), 1e-6 * whole.modes.cwiseAbs().maxCoeff());
   ASSERT_EQ(found.supports.size(), 8u);
   MatrixXd at_supports = found.modes(found.supports, Eigen::all);
-  at_supports *= at_supports.colwise().norm().cwiseInverse().asDiagonal();
+  const VectorXd norms = at_supports.colwise().norm().transpose();
+  at_supports *= norms.cwiseInverse().asDiagonal();
   EXPECT_GT(Eigen::JacobiSVD<MatrixXd>(at_supports).singularValues().minCoeff(), 1e-3);
+}
+
+/// A line of free bars with lumped masses: it spins about itself without mass.
+std::string make_line(int first, int num, double x, double y, double z, double length) {
+  std::string text;
+  for (int i = 0; i < num; ++i)
+    text += "GRID," + std::to_string(first + i) + ",," + std::to_string(x + i * length) + "," + std::to_string(y) +
+            "," + std::to_string(z) + "\n";
+  for (int i = 0; i + 1 < num; ++i)
+    text += "CBAR," + std::to_string(first + i) + ",1," + std::to_string(first + i) + "," +
+            std::to_string(first + i + 1) + ",.3,.2,1.\n";
+  return text;
+}
+
+TEST(NullMotions, TwoLinesSpinEachByItself) {
+  const std::string head = "SOL 103\nCEND\nBEGIN BULK\nPBAR,1,1,1.-4,1.-8,2.-8,2.-8\nMAT1,1,7.+10,,.3,2700.\n";
+  const auto first = make_line(1, 5, -2.838848, -2.263246, -1.077986, 1.062292);
+  const auto second = make_line(101, 4, 1.128933, -1.763154, -1.406437, 1.256237);
+  std::vector<double> expected(10, 0.0);
+  for (const auto& line : {first, second}) {
+    const auto alone = solve(head + line + "ENDDATA\n", 9);
+    ASSERT_EQ(alone.num_rigid, 5);
+    for (Eigen::Index j = 5; j < alone.lambda.size(); ++j) expected.push_back(alone.lambda[j]);
+  }
+  std::sort(expected.begin(), expected.end());
+  for (const int number : {11, 13, 16}) {
+    const auto both = solve(head + first + second + "ENDDATA\n", number);
+    ASSERT_EQ(both.lambda.size(), number);
+    EXPECT_EQ(both.num_rigid, 10);
+    EXPECT_EQ(both.num_massless, 2);
+    for (int j = 10; j < number; ++j) EXPECT_NEAR(both.lambda[j] / expected[static_cast<std::size_t>(j)], 1, 1e-9) << j;
+  }
 }
 
 // A free bar along an oblique line, far from the origin, with next to no inertia about itself: its motions are
