@@ -6,6 +6,7 @@
 
 #include "fe/linear/memory_need.hpp"
 #include "modal/element_strain.hpp"
+#include "modal/eps_types.hpp"
 #include "modal/normal_modes.hpp"
 #include "modal/null_motions.hpp"
 #include "modal/tolerances.hpp"
@@ -17,26 +18,33 @@ namespace {
 using detail::Answer;
 using detail::NormalModes;
 
-/// From K shifted by a little M; where that leaves a doubt and there are motions without strain, with these known
-/// before and supports in K in their place.
+/// Solves by Krylov-Schur or what suits (choose_solver), and by blocks where Krylov-Schur has missed some.
+Answer solve_twice(NormalModes& modes, const EigenOptions& options) {
+  Answer answer = modes.solve(options.solver);
+  if (!answer.is_sound && modes.has_second_solver()) answer = modes.solve(detail::kBlockLanczos);
+  return answer;
+}
+
+/// The plan of every solution: first from K shifted by a little M, the rigid motions of the whole known; where that
+/// leaves a doubt, every motion without strain known before, of parts too, with supports in K in place of the shift.
+/// The second answer counts where it is sound and better.
 Answer find_answer(const fe::System& system, const EigenOptions& options) {
   std::optional<Answer> answer;
   std::optional<ComputationError> refusal;
   try {
-    answer = NormalModes(system, options, detail::find_rigid_motions).solve();
+    NormalModes modes(system, options, detail::find_rigid_motions);
+    answer = solve_twice(modes, options);
     if (answer->is_clean()) return std::move(*answer);
   } catch (const ComputationError& error) {
     if (error.items().front().id == "modal.no-mass") throw;
     refusal = error;
   }
   try {
-    NormalModes again(system, options, detail::find_null_motions);
-    if (again.knows_motions()) {
-      Answer other = again.solve();
+    NormalModes modes(system, options, detail::find_null_motions);
+    if (modes.knows_motions()) {
+      Answer other = solve_twice(modes, options);
       const bool is_better = !answer || !answer->is_sound || other.worst() < answer->worst();
-      if (is_better && other.is_sound &&
-          other.worst_roundoff < detail::kVagueRoundoff)  // of vague values the first do no worse
-        answer = std::move(other);
+      if (is_better && other.is_sound && other.worst_roundoff < detail::kVagueRoundoff) answer = std::move(other);
     }
   } catch (const ComputationError&) {  // what was said first is nearer to the model
   }

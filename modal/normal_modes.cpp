@@ -360,21 +360,24 @@ bool NormalModes::has_second_solver() const {
   return std::any_of(uses.begin(), uses.end(), [](const SolverUse& use) { return use.eps == "krylovschur"; });
 }
 
-Answer NormalModes::solve() {
+NormalModes::NormalModes(const fe::System& system, const EigenOptions& options, FindRigid find_rigid)
+    : options_(options),
+      factor_(options.factor ? options.factor : system.factor),
+      pencil_(system),
+      rigid_(find_rigid(pencil_)) {
+  rigid_.massless.resize(pencil_.size(), 0);  // nobody asks for them
   if (!(pencil_.M_diagonal.maxCoeff() > 0))
     throw ComputationError("modal.no-mass", {}, "no free dof of the model has mass",
                            "give RHO in MAT1, NSM in a property, or CONM2 and CMASS cards");
-  Diagnostics about_model;
-  hold_massless(about_model);
+  hold_massless(about_model_);
   add_supports();
+}
+
+Answer NormalModes::solve(const std::string& eps_type) {
   Answer answer;
-  const auto solve_by = [&](const std::string& eps_type) {
-    answer.said = about_model;
-    answer.pairs = find_pairs(eps_type, answer.is_sound, answer.said);
-    answer.worst_roundoff = worst_roundoff_;
-  };
-  solve_by(options_.solver);
-  if (!answer.is_sound && has_second_solver()) solve_by(kBlockLanczos);
+  answer.said = about_model_;
+  answer.pairs = find_pairs(eps_type, answer.is_sound, answer.said);
+  answer.worst_roundoff = worst_roundoff_;
   return answer;
 }
 

@@ -32,19 +32,17 @@ void warn_of_fewer(int found, int asked, bool is_range, Diagnostics& said);
 class NormalModes {
  public:
   using FindRigid = RigidMotions (*)(const Pencil&);
-  NormalModes(const fe::System& system, const EigenOptions& options, FindRigid find_rigid)
-      : options_(options),
-        factor_(options.factor ? options.factor : system.factor),
-        pencil_(system),
-        rigid_(find_rigid(pencil_)) {
-    rigid_.massless.resize(pencil_.size(), 0);  // nobody asks for them
-  }
+  /// Throws ComputationError modal.no-mass.
+  NormalModes(const fe::System& system, const EigenOptions& options, FindRigid find_rigid);
 
-  Answer solve();
-  bool has_supports() const { return !rigid_.supports.empty(); }
+  /// The modes, by the EPS type that is named; empty: by the one that suits.
+  Answer solve(const std::string& eps_type);
   bool knows_motions() const { return rigid_.is_complete; }
+  /// Returns true if Krylov-Schur found a part of them, where no EPS type is asked for: blocks may find the others.
+  bool has_second_solver() const;
 
  private:
+  bool has_supports() const { return !rigid_.supports.empty(); }
   int num_rigid() const { return static_cast<int>(rigid_.modes.cols()); }
   /// Eigenvalue by position in the whole list: rigid ones, then the found ones.
   double value(int i) const { return i < num_rigid() + num_zero_ ? 0 : found_.value(i - num_rigid()); }
@@ -66,8 +64,6 @@ class NormalModes {
   /// The modes, by the EPS type that suits or by the one that is named; `is_sound` false where it missed some or left
   /// a residual.
   EigenPairs find_pairs(const std::string& eps_type, bool& is_sound, Diagnostics& said);
-  /// Whether Krylov-Schur found a part of them, where no EPS type is asked for: blocks may find the others.
-  bool has_second_solver() const;
   EigenPairs make_pairs(int cut, int count, Diagnostics& said);
   /// M-orthonormal values and vectors of whole clusters, the first `num_known` and `num_zero` without strain; those of
   /// [first, first + size) are wanted.
@@ -94,6 +90,7 @@ class NormalModes {
   bool has_own_stiffness_ = !pencil_.model.checked_stiffness();  ///< K as assemble_stiffness() makes it
   bool is_away_ = false;                                         ///< K, while Lanczos runs
   RigidMotions rigid_;
+  Diagnostics about_model_;
   std::vector<std::pair<int, double>> springs_;  ///< f-dofs of the massless motions, held by them in K
   linear::SymmetricMatrix supported_;            ///< K with springs at the supports too
   std::optional<PencilSolver> solver_;
