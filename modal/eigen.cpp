@@ -25,9 +25,9 @@ Answer solve_twice(NormalModes& modes, const EigenOptions& options) {
   return answer;
 }
 
-/// The plan of every solution: first from K shifted by a little M, the rigid motions of the whole known; where that
-/// leaves a doubt, every motion without strain known before, of parts too, with supports in K in place of the shift.
-/// The second answer counts where it is sound and better.
+/// The plan of every solution: first from K shifted by a little M, the rigid-body motions of the whole known; where
+/// that leaves a doubt, every motion without strain known before, of parts too, with supports in K in place of the
+/// shift. The second answer counts where it is sound and better.
 Answer find_answer(const fe::System& system, const EigenOptions& options) {
   std::optional<Answer> answer;
   std::optional<ComputationError> refusal;

@@ -131,16 +131,6 @@ struct Motion {
   std::vector<SeriesVector> rotation;  ///< rotation vectors in basic
 };
 
-SeriesVector get_vector(const Eigen::Ref<const MatrixXd>& u, int row) {
-  SeriesVector v = make_zero_vector();
-  for (int k = 1; k <= kSeriesTop; ++k) v[static_cast<std::size_t>(k)] = u.block<3, 1>(row, k - 1);
-  return v;
-}
-
-void put_vector(const SeriesVector& v, int row, Eigen::Ref<MatrixXd> u) {
-  for (int k = 1; k <= kSeriesTop; ++k) u.block<3, 1>(row, k - 1) = v[static_cast<std::size_t>(k)];
-}
-
 /// The rotation R nearest to the nodes: Rᵀ B symmetric. Newton with the matrix of order 0 finds an order a step.
 void find_frame(const SeriesMatrix& B, const Matrix3d& inverse, Motion& motion) {
   motion.R = make_zero_matrix();

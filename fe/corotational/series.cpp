@@ -32,6 +32,16 @@ SeriesVector cross(const SeriesVector& a, const SeriesVector& b) {
   return c;
 }
 
+SeriesVector get_vector(const Eigen::Ref<const Eigen::MatrixXd>& u, Eigen::Index row) {
+  SeriesVector v = make_zero_vector();
+  for (int k = 1; k <= kSeriesTop; ++k) v[static_cast<std::size_t>(k)] = u.block<3, 1>(row, k - 1);
+  return v;
+}
+
+void put_vector(const SeriesVector& v, Eigen::Index row, Eigen::Ref<Eigen::MatrixXd> u) {
+  for (int k = 1; k <= kSeriesTop; ++k) u.block<3, 1>(row, k - 1) = v[static_cast<std::size_t>(k)];
+}
+
 SeriesVector solve(const SeriesMatrix& A, const Matrix3d& inverse_0, const SeriesVector& b) {
   SeriesVector x;
   for (std::size_t k = 0; k < x.size(); ++k) {
@@ -103,6 +113,21 @@ SeriesMatrix calc_tangent(const SeriesVector& theta) {
 
 SeriesMatrix calc_inverse_tangent(const SeriesVector& theta) {
   return combine({-0.5}, calc_even_function(kInverse, theta), theta);
+}
+
+SeriesVector calc_arm_motion(const SeriesVector& theta, const Vector3d& arm) {
+  const SeriesMatrix R = calc_exponential(theta);
+  SeriesVector motion;
+  for (std::size_t k = 0; k < motion.size(); ++k) motion[k] = R[k] * arm;
+  motion[0].setZero();
+  return motion;
+}
+
+SeriesVector calc_arm_moment(const SeriesVector& theta, const Vector3d& arm, const SeriesVector& force) {
+  const SeriesMatrix R = calc_exponential(theta);
+  SeriesVector turned;
+  for (std::size_t k = 0; k < turned.size(); ++k) turned[k] = R[k] * arm;
+  return multiply(transpose(calc_tangent(theta)), cross(turned, force));
 }
 
 }  // namespace bough::fe

@@ -35,6 +35,9 @@ SeriesMatrix transpose(const SeriesMatrix& A);
 SeriesVector multiply(const SeriesMatrix& A, const SeriesVector& b);
 SeriesMatrix multiply(const SeriesMatrix& A, const SeriesMatrix& B);
 SeriesVector cross(const SeriesVector& a, const SeriesVector& b);
+/// Orders 1 to 5 at rows [row, row + 3) of a curve of N dofs, N x 5, and back.
+SeriesVector get_vector(const Eigen::Ref<const Eigen::MatrixXd>& u, Eigen::Index row);
+void put_vector(const SeriesVector& v, Eigen::Index row, Eigen::Ref<Eigen::MatrixXd> u);
 /// x of A x = b, given A_0⁻¹.
 SeriesVector solve(const SeriesMatrix& A, const Eigen::Matrix3d& inverse_0, const SeriesVector& b);
 /// ax(A - Aᵀ): the vector of A_32 - A_23 and so on.
@@ -49,5 +52,10 @@ SeriesVector calc_logarithm(const SeriesMatrix& R);
 /// T(θ) of the spin δφ = T δθ of R = exp(θ̃), in fixed axes (base/rotation.hpp), and its inverse.
 SeriesMatrix calc_tangent(const SeriesVector& theta);
 SeriesMatrix calc_inverse_tangent(const SeriesVector& theta);
+
+/// (R - 1) arm: what the end of an arm moves more than its foot, which turns by R = exp(θ̃).
+SeriesVector calc_arm_motion(const SeriesVector& theta, const Eigen::Vector3d& arm);
+/// Moment at the foot, conjugate to θ, of a force on the end of the arm: Tᵀ(R arm × force).
+SeriesVector calc_arm_moment(const SeriesVector& theta, const Eigen::Vector3d& arm, const SeriesVector& force);
 
 }  // namespace bough::fe

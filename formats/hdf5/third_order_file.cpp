@@ -56,6 +56,8 @@ void write_third_order(FileWriter& file, const records::FlexBody& body) {
                       {"work of each locator's load, degree " + degree + " in " + of + ": monomials, locator",
                        "M L^2/(T^2 E^" + degree + ") per load"});
   }
+  if (third.coupling.size() > 0)
+    file.write_matrix("/third_order/coupling", third.coupling, {"mass between modes and fields", "M L^2/E^2"});
   write_integrals(file, "/third_order/integrals", third.integrals);
 }
 
@@ -88,6 +90,7 @@ void read_third_order(FileReader& file, records::FlexBody& body) {
       third.node[static_cast<std::size_t>(i)][at] =
           Eigen::Map<const RowMajor>(nodes.data.data() + i * rows * 6, rows, 6);
   }
+  if (file.has("/third_order/coupling")) third.coupling = file.read_matrix("/third_order/coupling", n, m);
   third.integrals = read_integrals(file, "/third_order/integrals", n + m);
 }
 

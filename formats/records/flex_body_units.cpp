@@ -98,6 +98,7 @@ void scale_third_order(FlexBody& body, const UnitChange& c) {
           energy / std::pow(e, k) / calc_locator_unit(body.locators[i].direction, c);
   }
   for (auto& psi : third.fields) scale_shapes(psi, c);  // their amplitudes have the unit of a modal coordinate
+  third.coupling *= c.mass * c.length * c.length / (e * e);
   scale_integrals(third.integrals, c);
 }
 

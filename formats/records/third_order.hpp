@@ -38,6 +38,7 @@ struct ThirdOrder {
   Eigen::MatrixXd energy_small;
   Tables amplitudes;                    ///< columns: m fields; p_q = ψ_qᵀM u(η)
   std::vector<Eigen::MatrixXd> fields;  ///< [k] 6 x m: ψ at the output nodes, as FlexBody::phi
+  Eigen::MatrixXd coupling;             ///< n x m: ΦᵀMψ; empty: zero
   MassIntegrals integrals;              ///< of [Φ ψ], n + m columns, by the method that the solver uses
   std::vector<Tables> node;             ///< [interface node] columns: translations and rotation vector
   Tables load;                          ///< columns: work of the load of each locator

@@ -40,6 +40,10 @@ records::FlexBody make_linear_record(const records::FlexBody& flex) {
   linear.exact = third.integrals;
   linear.modal_mass = MatrixXd::Identity(N, N);
   linear.modal_mass.topLeftCorner(n, n) = flex.modal_mass;
+  if (third.coupling.size() > 0) {
+    linear.modal_mass.topRightCorner(n, N - n) = third.coupling;
+    linear.modal_mass.bottomLeftCorner(N - n, n) = third.coupling.transpose();
+  }
   linear.modal_stiffness = MatrixXd::Zero(N, N);
   return linear;
 }

@@ -105,6 +105,7 @@ void visit_third_order(Archive& archive, Body& body, long n) {
   }
   const long m = third.amplitudes[0].cols();
   archive.array("/third_order/fields", third.fields, {count(body.node_id), 6, m});
+  archive.array("/third_order/coupling", third.coupling, {n, m}, kOptional);
   visit_integrals(archive, "/third_order/integrals", third.integrals, n + m);
 }
 

@@ -1,0 +1,377 @@
+#include "stiffening/static_manifold.hpp"
+
+#include <algorithm>
+
+#include "fe/corotational/corotational_element.hpp"
+#include "fe/elements/carried.hpp"
+#include "fe/linear/blas.hpp"
+#include "fe/linear/products.hpp"
+#include "fe/loads/inertial_loads.hpp"
+#include "fe/model/element_loop.hpp"
+
+namespace bough::stiffening {
+namespace {
+
+using Eigen::Index;
+using Eigen::Vector3d;
+using fe::kSeriesTop;
+using fe::SeriesVector;
+
+/// Negligible inertia about an axis, relative to the largest.
+constexpr double kNoInertia = 1e-8;
+
+std::vector<int> list_gdofs(const fe::Node& node) {
+  std::vector<int> gdofs;
+  for (int d = 0; d < node.num_dofs; ++d) gdofs.push_back(node.first_gdof + d);
+  return gdofs;
+}
+
+/// Rows of a grid's translations and rotations among the dofs of an element; -1: none.
+struct NodeRows {
+  int node = 0;
+  Index translations = -1, rotations = -1;
+};
+
+std::vector<NodeRows> find_rows(const fe::Element& element, const std::vector<fe::Node>& nodes) {
+  const auto& gdofs = element.gdofs();
+  std::vector<NodeRows> rows;
+  for (const int k : element.nodes()) {
+    if (std::any_of(rows.begin(), rows.end(), [&](const NodeRows& r) { return r.node == k; })) continue;
+    const fe::Node& node = nodes[static_cast<std::size_t>(k)];
+    const auto find = [&](int gdof) -> Index {
+      const auto at = std::find(gdofs.begin(), gdofs.end(), gdof);
+      return at == gdofs.end() ? -1 : at - gdofs.begin();
+    };
+    if (node.num_dofs == 6) rows.push_back({k, find(node.first_gdof), find(node.first_gdof + 3)});
+  }
+  return rows;
+}
+
+/// One order of (R - 1) arm - θ × arm at each point. theta: 3 x 5 points.
+Eigen::Matrix3Xd calc_turned_arm(const MatrixXd& theta, const Vector3d& arm, int order) {
+  Eigen::Matrix3Xd moved(3, theta.cols() / kSeriesTop);
+  const auto at = static_cast<std::size_t>(order);
+  for (Index p = 0; p < moved.cols(); ++p) {
+    const SeriesVector angle = fe::get_vector(theta.middleCols<kSeriesTop>(kSeriesTop * p), 0);
+    moved.col(p) = fe::calc_arm_motion(angle, arm)[at] - angle[at].cross(arm);
+  }
+  return moved;
+}
+
+/// Order `order` of Tᵀ(R arm × force) - arm × force in its place of the five, the others zero: 3 x 5 points.
+Eigen::Matrix3Xd calc_turned_moment(const MatrixXd& theta, const Vector3d& arm, const MatrixXd& force, int order) {
+  Eigen::Matrix3Xd moment = Eigen::Matrix3Xd::Zero(3, theta.cols());
+  const auto at = static_cast<std::size_t>(order);
+  for (Index c = 0; c < theta.cols(); c += kSeriesTop) {
+    const SeriesVector f = fe::get_vector(force.middleCols<kSeriesTop>(c), 0);
+    const SeriesVector angle = fe::get_vector(theta.middleCols<kSeriesTop>(c), 0);
+    moment.col(c + order - 1) = fe::calc_arm_moment(angle, arm, f)[at] - arm.cross(f[at]);
+  }
+  return moment;
+}
+
+bool has_stiffness(const fe::Element& element) {
+  MatrixXd K = MatrixXd::Zero(element.num_dofs(), element.num_dofs());
+  element.add_stiffness(1, K);
+  return !K.isZero(0);
+}
+
+}  // namespace
+
+MatrixXd calc_monomials(const Eigen::MatrixXi& exponents, const MatrixXd& amplitudes) {
+  MatrixXd values = MatrixXd::Ones(amplitudes.rows(), exponents.rows());
+  for (Index p = 0; p < values.rows(); ++p)
+    for (Index i = 0; i < values.cols(); ++i)
+      for (Index j = 0; j < exponents.cols(); ++j)
+        for (int e = 0; e < exponents(i, j); ++e) values(p, i) *= amplitudes(p, j);
+  return values;
+}
+
+MatrixXd spread(const MatrixXd& points, const std::vector<int>& large, Index n) {
+  MatrixXd all = MatrixXd::Zero(points.rows(), n);
+  all(Eigen::all, large) = points;
+  return all;
+}
+
+Lattice::Lattice(int n, int degree) : exponents_(records::list_exponents(n, degree)) {
+  points_ = exponents_.cast<double>() / degree;
+  factor_.compute(calc_monomials(exponents_, points_));
+}
+
+StaticManifold::StaticManifold(const BodyRequest& request, const fe::Model& model, const ModalBasis& basis,
+                               const StaticSupport& support, const std::vector<int>& large,
+                               const linear::SymmetricMatrix& M)
+    : model_(model), support_(support), large_(large), arms_(model) {
+  const Index n = basis.Phi.cols();
+  scale_.resize(n);
+  for (Index j = 0; j < n; ++j) scale_[j] = 1 / std::sqrt(basis.stiffness(j, j));  // a shape of unit strain energy
+  Phi_ = basis.Phi * scale_.asDiagonal();
+  const MatrixXd K = scale_.asDiagonal() * basis.stiffness * scale_.asDiagonal();
+  K_factor_.compute(K);
+  set_rigid_motions(request, M);
+  set_loads(request, basis, M);
+}
+
+void StaticManifold::set_rigid_motions(const BodyRequest& request, const linear::SymmetricMatrix& M) {
+  if (!request.is_free()) return;
+  Phi_R_ = model_.calc_rigid_modes();
+  C_ = request.moves_to_frame()
+           ? MatrixXd(modal::bases::calc_reference_conditions(model_, make_frame_spec(request.spec)).transpose())
+           : linear::multiply(M, Phi_R_);
+  const MatrixXd CR = C_.transpose() * Phi_R_;
+  const VectorXd unit = CR.rowwise().norm().cwiseMax(1e-300).cwiseInverse();
+  const Eigen::FullPivLU<MatrixXd> factor(unit.asDiagonal() * CR);
+  if (!(factor.rcond() > kNoInertia)) {
+    request.error("reduce.bad-order",
+                  "[body.stiffening] order = 3 is given, but the free body has no inertia about an axis",
+                  "use frame = \"node\", give it that inertia, or set order = 2");
+    request.diagnostics.throw_if_errors();
+  }
+  CR_inverse_ = factor.inverse() * unit.asDiagonal();
+}
+
+void StaticManifold::set_loads(const BodyRequest& request, const ModalBasis& basis, const linear::SymmetricMatrix& M) {
+  const bool is_normal = std::all_of(basis.kind.begin(), basis.kind.end(),
+                                     [](records::ModeKind kind) { return kind == records::ModeKind::Normal; });
+  if (!is_normal) return;
+  psi_ = Phi_;
+  if (request.is_free()) {  // of a body whose frame does not hold it
+    const MatrixXd M_R = linear::multiply(M, Phi_R_);
+    psi_ -= Phi_R_ * (Phi_R_.transpose() * M_R).ldlt().solve(linear::calc_inner_products(M_R, Phi_));
+  }
+  const MatrixXd M_psi = linear::multiply(M, psi_);
+  const MatrixXd mass = linear::calc_inner_products(psi_, M_psi);
+  const MatrixXd stiffness = scale_.asDiagonal() * basis.stiffness * scale_.asDiagonal();
+  const MatrixXd eigenvalues = mass.ldlt().solve(stiffness);
+  psi_ = psi_ * eigenvalues;
+  W_ = M_psi * eigenvalues;
+}
+
+MatrixXd StaticManifold::solve(const MatrixXd& R) const {
+  MatrixXd F = -R;
+  if (C_.size() > 0)  // the frame's condition takes what has a resultant
+    F += C_ * (CR_inverse_.transpose() * linear::calc_inner_products(Phi_R_, R));
+  MatrixXd u = support_.solve(F);
+  u -= Phi_ * K_factor_.solve(linear::calc_inner_products(Phi_, F));
+  if (C_.size() > 0) u -= Phi_R_ * (CR_inverse_ * linear::calc_inner_products(C_, u));
+  return u;
+}
+
+StaticManifold::Curves StaticManifold::make_curves(const MatrixXd& points) const {
+  Curves curves{points, {}};
+  const int N = static_cast<int>(large_.size()), n = static_cast<int>(points.cols());
+  for (int degree = 2; degree < 2 + static_cast<int>(fields_.size()); ++degree)
+    curves.monomials.push_back(degree == 2
+                                   ? calc_monomials(records::list_exponents(n, 2), points)
+                                   : calc_monomials(records::list_exponents(N, degree), points(Eigen::all, large_)));
+  return curves;
+}
+
+MatrixXd StaticManifold::calc_curve(const Curves& curves, const std::vector<int>& gdofs) const {
+  const Index m = curves.points.rows();
+  MatrixXd u = MatrixXd::Zero(static_cast<Index>(gdofs.size()), kSeriesTop * m);
+  const auto set_order = [&](int k, const MatrixXd& u_k) {
+    for (Index p = 0; p < m; ++p) u.col(kSeriesTop * p + k - 1) = u_k.col(p);
+  };
+  set_order(1, Phi_(gdofs, Eigen::all) * curves.points.transpose());
+  for (std::size_t k = 0; k < fields_.size(); ++k)
+    set_order(static_cast<int>(k) + 2, fields_[k](gdofs, Eigen::all) * curves.monomials[k].transpose());
+  return u;
+}
+
+MatrixXd StaticManifold::calc_node_curve(const Curves& curves, int node) const {
+  return calc_curve(curves, list_gdofs(model_.nodes()[static_cast<std::size_t>(node)]));
+}
+
+MatrixXd StaticManifold::calc_element_curve(const Curves& curves, const fe::Element& element) const {
+  MatrixXd u = calc_curve(curves, element.gdofs());
+  if (arms_.list().empty()) return u;
+  for (const NodeRows& rows : find_rows(element, model_.nodes())) {
+    const RigidArm* arm = arms_.find(rows.node);
+    if (!arm) continue;
+    const MatrixXd parent = calc_node_curve(curves, arm->parent);
+    for (Index c = 0; c < u.cols(); c += kSeriesTop) {
+      const auto of_parent = parent.middleCols<kSeriesTop>(c);
+      if (arm->rotates && rows.rotations >= 0) u.block<3, kSeriesTop>(rows.rotations, c) = of_parent.bottomRows<3>();
+      if (!arm->translates || rows.translations < 0) continue;
+      SeriesVector moved = fe::calc_arm_motion(fe::get_vector(of_parent, 3), arm->arm);
+      const SeriesVector foot = fe::get_vector(of_parent, 0);
+      for (std::size_t k = 0; k < moved.size(); ++k) moved[k] += foot[k];
+      fe::put_vector(moved, rows.translations, u.middleCols<kSeriesTop>(c));
+    }
+  }
+  return u;
+}
+
+MatrixXd StaticManifold::calc_multipliers(const Curves& curves) const {
+  const Index m = curves.points.rows();
+  MatrixXd lambda = MatrixXd::Zero(Phi_.cols(), kSeriesTop * m);
+  for (Index p = 0; p < m; ++p) lambda.col(kSeriesTop * p) = curves.points.row(p).transpose();
+  for (std::size_t k = 0; k < multipliers_.size(); ++k) {
+    const MatrixXd lambda_k = multipliers_[k] * curves.monomials[k].transpose();
+    for (Index p = 0; p < m; ++p) lambda.col(kSeriesTop * p + static_cast<Index>(k) + 1) = lambda_k.col(p);
+  }
+  return lambda;
+}
+
+MatrixXd StaticManifold::calc_arm_gauge(const Curves& curves, int order) const {
+  MatrixXd work = MatrixXd::Zero(Phi_.cols(), curves.points.rows());
+  if (W_.size() == 0) return work;
+  for (const RigidArm& arm : arms_.list()) {
+    if (!arm.translates || arm.arm.isZero(0)) continue;
+    const auto moved = calc_turned_arm(calc_node_curve(curves, arm.parent).bottomRows<3>(), arm.arm, order);
+    work += W_.middleRows<3>(model_.nodes()[static_cast<std::size_t>(arm.node)].first_gdof).transpose() * moved;
+  }
+  return work + calc_carried_work(curves, order, psi_).on_fields;
+}
+
+MatrixXd StaticManifold::calc_gradient(const MatrixXd& points, int degree) const {
+  const Curves curves = make_curves(points);
+  return Phi_.transpose() * calc_forces(curves, degree) - calc_arm_gauge(curves, degree);
+}
+
+MatrixXd StaticManifold::advance(int degree, const Lattice& lattice) {
+  BOUGH_DEMAND(static_cast<int>(fields_.size()) == degree - 2);
+  const Curves curves = make_curves(degree, lattice);
+  const MatrixXd R = lattice.fit(calc_forces(curves, degree)), gauge = lattice.fit(calc_arm_gauge(curves, degree));
+  const MatrixXd gradient = linear::calc_inner_products(Phi_, R) - gauge;
+  MatrixXd u = solve(R) - Phi_ * K_factor_.solve(gauge);
+  for (const RigidArm& arm : arms_.list()) {
+    if (!arm.translates || arm.arm.isZero(0)) continue;
+    const auto moved = calc_turned_arm(calc_node_curve(curves, arm.parent).bottomRows<3>(), arm.arm, degree);
+    u.middleRows<3>(model_.nodes()[static_cast<std::size_t>(arm.node)].first_gdof) += lattice.fit(moved);
+  }
+  multipliers_.push_back(K_factor_.solve(gradient));
+  fields_.push_back(std::move(u));
+  return gradient;
+}
+
+MatrixXd StaticManifold::calc_forces(const Curves& curves, int order) const {
+  const Index m = curves.points.rows();
+  MatrixXd result = MatrixXd::Zero(model_.num_gdofs(), m);
+  const auto add = [&](const std::vector<int>& gdofs, const MatrixXd& f) {
+    MatrixXd f_k(f.rows(), m);
+    for (Index p = 0; p < m; ++p) f_k.col(p) = f.col(kSeriesTop * p + order - 1);
+    result(gdofs, Eigen::all) += f_k;
+  };
+  /// Forces at the end of an arm go to its parent, with the moment of where they act.
+  const auto move_to_parent = [&](const RigidArm& arm, const NodeRows& rows, MatrixXd& f) {
+    const MatrixXd parent = calc_node_curve(curves, arm.parent);
+    MatrixXd moved = MatrixXd::Zero(6, f.cols());
+    for (Index c = 0; c < f.cols(); c += kSeriesTop) {
+      if (arm.rotates && rows.rotations >= 0)
+        moved.block<3, kSeriesTop>(3, c) += f.block<3, kSeriesTop>(rows.rotations, c);
+      if (!arm.translates || rows.translations < 0) continue;
+      moved.block<3, kSeriesTop>(0, c) = f.block<3, kSeriesTop>(rows.translations, c);
+      const SeriesVector moment = fe::calc_arm_moment(fe::get_vector(parent.middleCols<kSeriesTop>(c), 3), arm.arm,
+                                                      fe::get_vector(f.middleCols<kSeriesTop>(c), rows.translations));
+      for (int k = 1; k <= kSeriesTop; ++k) moved.block<3, 1>(3, c + k - 1) += moment[static_cast<std::size_t>(k)];
+    }
+    if (arm.rotates && rows.rotations >= 0) f.middleRows<3>(rows.rotations).setZero();
+    if (arm.translates && rows.translations >= 0) f.middleRows<3>(rows.translations).setZero();
+    add(list_gdofs(model_.nodes()[static_cast<std::size_t>(arm.parent)]), moved);
+  };
+  const auto add_element = [&](const fe::Element& element, MatrixXd f) {
+    if (!arms_.list().empty())
+      for (const NodeRows& rows : find_rows(element, model_.nodes()))
+        if (const RigidArm* arm = arms_.find(rows.node)) move_to_parent(*arm, rows, f);
+    add(element.gdofs(), f);
+  };
+  fe::visit_elements(model_, fe::get_own_elements(model_), [&](int, const fe::Element& element) {
+    if (element.num_dofs() == 0 || !has_stiffness(element)) return;
+    const fe::CorotationalElement corotational(element, model_.nodes());
+    add_element(element, corotational.calc_forces(calc_element_curve(curves, element)));
+  });
+  if (W_.size() > 0) {
+    // Loads on turned arms have moments that they lack at the undeformed state.
+    const MatrixXd lambda = calc_multipliers(curves);
+    visit_carried(curves, [&](const fe::Element& element, const Carried& carried) {
+      const MatrixXd along = carried.motion * (psi_(element.gdofs(), Eigen::all) * lambda);
+      MatrixXd f = MatrixXd::Zero(element.num_dofs(), along.cols());
+      for (const auto& turn : carried.mass.turns)
+        for (const auto& part : turn.parts) {
+          Eigen::Matrix3Xd force = Eigen::Matrix3Xd::Zero(3, along.cols());
+          for (Index r = 0; r < carried.mass.mu.rows(); ++r)
+            force += carried.mass.mu(r, part.point) * along.middleRows<3>(3 * r);
+          f -= turn.Theta.transpose() *
+               calc_turned_moment(turn.Theta * carried.u, part.arm, part.B.transpose() * force, order);
+        }
+      add_element(element, f);
+    });
+    if (linear::initialize_petsc().rank == 0)
+      for (const RigidArm& arm : arms_.list()) {
+        if (!arm.translates || arm.arm.isZero(0)) continue;
+        const MatrixXd force = W_.middleRows<3>(model_.nodes()[static_cast<std::size_t>(arm.node)].first_gdof) * lambda;
+        const int turn = model_.nodes()[static_cast<std::size_t>(arm.parent)].first_gdof + 3;
+        add({turn, turn + 1, turn + 2},
+            -calc_turned_moment(calc_node_curve(curves, arm.parent).bottomRows<3>(), arm.arm, force, order));
+      }
+  }
+  linear::sum_over_ranks(result);
+  return result;
+}
+
+StaticManifold::Curves StaticManifold::make_curves(int degree, const Lattice& lattice) const {
+  return make_curves(degree == 2 ? lattice.points() : spread(lattice.points(), large_, Phi_.cols()));
+}
+
+MatrixXd StaticManifold::calc_arm_work(int degree, const Lattice& lattice,
+                                       const std::vector<std::vector<fe::ArmLoad>>& loads) const {
+  const Curves curves = make_curves(degree, lattice);
+  MatrixXd work = MatrixXd::Zero(static_cast<Index>(loads.size()), lattice.size());
+  for (std::size_t e = 0; e < loads.size(); ++e)
+    for (const auto& load : loads[e]) {
+      const int g = load.first_rotation;
+      work.row(static_cast<Index>(e)) +=
+          load.force.transpose() * calc_turned_arm(calc_curve(curves, {g, g + 1, g + 2}), load.arm, degree);
+    }
+  return lattice.fit(work);
+}
+
+template <class Visit>
+void StaticManifold::visit_carried(const Curves& curves, const Visit& visit) const {
+  fe::visit_elements(model_, fe::get_own_elements(model_), [&](int, const fe::Element& element) {
+    if (!element.offset_mass(model_.mass_kind()) || has_stiffness(element)) return;
+    Carried carried{fe::CarriedMass(element.num_dofs()), {}, {}};
+    if (!fe::calc_carried(model_, element, model_.mass_kind(), carried.mass)) return;
+    carried.u = calc_element_curve(curves, element);
+    const auto num = static_cast<Index>(carried.mass.points.size());
+    carried.motion.resize(3 * num, element.num_dofs());
+    for (Index s = 0; s < num; ++s)
+      carried.motion.middleRows<3>(3 * s) = carried.mass.points[static_cast<std::size_t>(s)].H;
+    visit(element, carried);
+  });
+}
+
+StaticManifold::CarriedWork StaticManifold::calc_carried_work(int degree, const Lattice& lattice,
+                                                              const MatrixXd& psi) const {
+  const auto work = calc_carried_work(make_curves(degree, lattice), degree, psi);
+  return {lattice.fit(work.on_fields), lattice.fit(work.on_inertial)};
+}
+
+StaticManifold::CarriedWork StaticManifold::calc_carried_work(const Curves& curves, int order,
+                                                              const MatrixXd& psi) const {
+  const Index m = curves.points.rows();
+  CarriedWork work{MatrixXd::Zero(psi.cols(), m), MatrixXd::Zero(records::kNumInertialLoads, m)};
+  const fe::AccelerationFields units(MatrixXd::Identity(records::kNumInertialLoads, records::kNumInertialLoads));
+  visit_carried(curves, [&](const fe::Element& element, const Carried& carried) {
+    const auto num = static_cast<Index>(carried.mass.points.size());
+    MatrixXd moved = MatrixXd::Zero(3 * num, m);
+    for (const auto& turn : carried.mass.turns)
+      for (const auto& part : turn.parts)
+        moved.middleRows<3>(3 * part.point) += part.B * calc_turned_arm(turn.Theta * carried.u, part.arm, order);
+    const MatrixXd along = carried.motion * psi(element.gdofs(), Eigen::all);
+    const MatrixXd loads = units.calc_point_loads(carried.mass);
+    for (Index s = 0; s < num; ++s) {
+      for (Index r = 0; r < num; ++r)
+        if (carried.mass.mu(r, s) != 0)
+          work.on_fields += carried.mass.mu(r, s) * along.middleRows<3>(3 * r).transpose() * moved.middleRows<3>(3 * s);
+      for (int a = 0; a < 3; ++a) work.on_inertial += loads.row(a * num + s).transpose() * moved.row(3 * s + a);
+    }
+  });
+  linear::sum_over_ranks(work.on_fields);
+  linear::sum_over_ranks(work.on_inertial);
+  return work;
+}
+
+}  // namespace bough::stiffening

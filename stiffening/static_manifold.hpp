@@ -1,0 +1,110 @@
+#pragma once
+/// \file Displacements of a body beyond its modes: the static manifold of given amplitudes, degree by degree
+/// (docs/theory/third-order.md). Amplitudes are scaled: 1/ω of a mode each.
+#include "fe/elements/carried.hpp"
+#include "stiffening/rigid_arms.hpp"
+#include "stiffening/stages.hpp"
+
+namespace bough::stiffening {
+
+/// Values of all monomials of a degree: points x monomials; amplitudes: points x n.
+MatrixXd calc_monomials(const Eigen::MatrixXi& exponents, const MatrixXd& amplitudes);
+
+/// Points that fix a polynomial of one degree, the principal lattice of a simplex, and coefficients from values there.
+class Lattice {
+ public:
+  Lattice(int n, int degree);
+
+  const Eigen::MatrixXi& exponents() const { return exponents_; }
+  const MatrixXd& points() const { return points_; }  ///< points x n
+  Eigen::Index size() const { return points_.rows(); }
+  /// values, result: rows x points, rows x monomials.
+  MatrixXd fit(const MatrixXd& values) const { return factor_.solve(values.transpose()).transpose(); }
+
+ private:
+  Eigen::MatrixXi exponents_;
+  MatrixXd points_;
+  Eigen::PartialPivLU<MatrixXd> factor_;
+};
+
+class StaticManifold {
+ public:
+  /// `large`: modes whose amplitudes fields beyond degree 2 have. All references must outlive it. Throws
+  /// reduce.bad-order where a free body has no inertia about an axis.
+  StaticManifold(const BodyRequest& request, const fe::Model& model, const ModalBasis& basis,
+                 const StaticSupport& support, const std::vector<int>& large, const linear::SymmetricMatrix& M);
+
+  const VectorXd& scale() const { return scale_; }
+  const MatrixXd& Phi() const { return Phi_; }
+
+  /// Adds u of the next degree, from 2 on, and returns the gradient of V of one degree more by the amplitudes, n x
+  /// monomials. `lattice`: of that degree, in all modes for degree 2, else in the large ones.
+  MatrixXd advance(int degree, const Lattice& lattice);
+  const MatrixXd& field(int degree) const { return fields_[static_cast<std::size_t>(degree - 2)]; }
+  /// The gradient of V by the amplitudes where no field of that degree is needed: n x points. points: points x n.
+  MatrixXd calc_gradient(const MatrixXd& points, int degree) const;
+
+  /// Work of dead forces on arms (of each load a list) on degree `degree` of the ends' motion beyond θ × arm: loads x
+  /// monomials.
+  MatrixXd calc_arm_work(int degree, const Lattice& lattice, const std::vector<std::vector<fe::ArmLoad>>& loads) const;
+  /// Work on degree `degree` of the motion e of masses off their grids and of rotary inertia, beyond the linear H u.
+  struct CarriedWork {
+    MatrixXd on_fields;    ///< Σ (H ψ)·μ e: fields x monomials
+    MatrixXd on_inertial;  ///< work of the twelve inertial loads, 12 x monomials
+  };
+  /// psi: num_gdofs x fields.
+  CarriedWork calc_carried_work(int degree, const Lattice& lattice, const MatrixXd& psi) const;
+
+ private:
+  /// Points, and the monomials of each field there.
+  struct Curves {
+    MatrixXd points;
+    std::vector<MatrixXd> monomials;
+  };
+  /// Carried points of an element along the curves.
+  struct Carried {
+    fe::CarriedMass mass;
+    MatrixXd u;       ///< dofs along the curves, N x 5 points
+    MatrixXd motion;  ///< H of every point, 3 points x N
+  };
+  Curves make_curves(const MatrixXd& points) const;
+  Curves make_curves(int degree, const Lattice& lattice) const;
+  /// u of these dofs along the curves, the five orders of a point side by side: gdofs x 5 points.
+  MatrixXd calc_curve(const Curves& curves, const std::vector<int>& gdofs) const;
+  /// The six dofs of a grid along the curves, 6 x 5 points.
+  MatrixXd calc_node_curve(const Curves& curves, int node) const;
+  /// Dofs of an element along the curves; ends of rigid arms are where their parents take them.
+  MatrixXd calc_element_curve(const Curves& curves, const fe::Element& element) const;
+  /// Multipliers λ of the amplitudes along the curves, n x 5 points.
+  MatrixXd calc_multipliers(const Curves& curves) const;
+
+  void set_rigid_motions(const BodyRequest& request, const linear::SymmetricMatrix& M);
+  void set_loads(const BodyRequest& request, const ModalBasis& basis, const linear::SymmetricMatrix& M);
+  /// Displacements -G R of the forces R that each monomial has, num_gdofs x monomials, without a part along the modes.
+  MatrixXd solve(const MatrixXd& R) const;
+  /// Order `order` of the elements' forces along u_1 .. of the fields there are, less what the loads W λ have more on
+  /// turned arms, at each point: num_gdofs x points, none at the ends of rigid arms.
+  MatrixXd calc_forces(const Curves& curves, int order) const;
+  /// Work of the loads W on what arms move beyond the linear motion: n x points.
+  MatrixXd calc_arm_gauge(const Curves& curves, int order) const;
+  template <class Visit>
+  void visit_carried(const Curves& curves, const Visit& visit) const;
+  CarriedWork calc_carried_work(const Curves& curves, int order, const MatrixXd& psi) const;
+
+  const fe::Model& model_;
+  const StaticSupport& support_;
+  const std::vector<int>& large_;
+  RigidArms arms_;
+  VectorXd scale_;
+  MatrixXd Phi_, Phi_R_, C_, CR_inverse_;
+  /// Loads whose work on u is ηᵀK: inertia M ψ of the modes at the ends of arms too. Empty: K Φ of the other grids.
+  MatrixXd W_, psi_;
+  Eigen::LDLT<MatrixXd> K_factor_;
+  std::vector<MatrixXd> fields_;       ///< degree 2, 3, ...; num_gdofs x monomials
+  std::vector<MatrixXd> multipliers_;  ///< the same; n x monomials
+};
+
+/// Amplitudes of the large modes as those of all.
+MatrixXd spread(const MatrixXd& points, const std::vector<int>& large, Eigen::Index n);
+
+}  // namespace bough::stiffening
