@@ -87,6 +87,9 @@ nlohmann::json make_json(const PairReport& r) {
       json["integrals"][modal::kMethodNames[m]] = {{"norm_a", to_json(r.bodies->norm_a[m])},
                                                    {"norm_b", to_json(r.bodies->norm_b[m])},
                                                    {"difference", to_json(r.bodies->difference[m])}};
+  for (const auto& d : r.bodies->energy)
+    json["third_order_energy"].push_back(
+        {{"degree", d.load}, {"norm_a", d.norm_a}, {"norm_b", d.norm_b}, {"difference", d.difference}});
   json["stiffness"] = nlohmann::json::array();
   for (const auto& d : r.bodies->stiffness)
     json["stiffness"].push_back(

@@ -102,6 +102,10 @@ std::string format_bodies(const PairReport& r) {
   for (const auto& d : c.stiffness)
     stiffness.rows.push_back({d.load.substr(0, 40), number(d.norm_a), number(d.norm_b), difference(d.difference)});
   if (!stiffness.rows.empty()) text += "\n" + stiffness.to_text();
+  Table energy{{"strain energy of third order", "|A|", "|B|", "relative difference"}, {}};
+  for (const auto& d : c.energy)
+    energy.rows.push_back({d.load, number(d.norm_a), number(d.norm_b), difference(d.difference)});
+  if (!energy.rows.empty()) text += "\n" + energy.to_text();
   return text;
 }
 

@@ -1,5 +1,6 @@
 #include "modal/compare/bodies.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -77,6 +78,46 @@ StiffnessDifference compare(const std::string& load, const MatrixXd& a, const Ma
   return d;
 }
 
+/// Coefficients of one degree by the exponents of other modes: mode of a paired with the mode of b, for each large
+/// mode.
+VectorXd permute(const VectorXd& of_b, int degree, const std::vector<int>& order) {
+  const Eigen::MatrixXi exponents = records::list_exponents(static_cast<int>(order.size()), degree);
+  VectorXd of_a(of_b.size());
+  for (Index i = 0; i < exponents.rows(); ++i)
+    for (Index k = 0; k < exponents.rows(); ++k)
+      if (exponents.row(i) == exponents(k, order)) of_a[i] = of_b[k];
+  return of_a;
+}
+
+void compare_energies(const FlexBody& a, const FlexBody& b, const std::vector<ModePair>& pairs,
+                      std::vector<StiffnessDifference>& differences) {
+  const auto &x = a.third_order, &y = b.third_order;
+  if (x.empty() || x.num_large() != y.num_large()) return;
+  std::vector<int> order;  // place in b's large modes of each of a's
+  VectorXd scale(x.num_large()), scale_b(x.num_large());
+  for (const int mode : x.large) {
+    const auto pair = std::find_if(pairs.begin(), pairs.end(), [&](const ModePair& p) { return p.a == mode; });
+    if (pair == pairs.end()) return;
+    const auto found = std::find(y.large.begin(), y.large.end(), pair->b);
+    if (found == y.large.end()) return;
+    const auto at = static_cast<Index>(order.size());
+    scale[at] = 1 / std::sqrt(a.eigenvalue[mode] * a.modal_mass(mode, mode));
+    scale_b[at] = pair->sign / std::sqrt(a.eigenvalue[mode] * b.modal_mass(pair->b, pair->b));
+    order.push_back(static_cast<int>(found - y.large.begin()));
+  }
+  const auto calc_scaled = [&](VectorXd c, int degree, const VectorXd& s) {
+    const Eigen::MatrixXi exponents = records::list_exponents(x.num_large(), degree);
+    for (Index i = 0; i < c.size(); ++i)
+      for (Index j = 0; j < s.size(); ++j) c[i] *= std::pow(s[j], exponents(i, j));
+    return c;
+  };
+  for (int k = records::ThirdOrder::kMinEnergy; k <= records::ThirdOrder::kMaxEnergy; ++k) {
+    const auto at = static_cast<std::size_t>(k - records::ThirdOrder::kMinEnergy);
+    differences.push_back(compare("degree " + std::to_string(k), calc_scaled(x.energy[at], k, scale),
+                                  calc_scaled(permute(y.energy[at], k, order), k, scale_b)));
+  }
+}
+
 }  // namespace
 
 bool can_move_gamma3(const Vector3d& offset) { return offset.isZero(0); }
@@ -127,6 +168,7 @@ BodyComparison compare_bodies(const FlexBody& a, const FlexBody& b, const std::v
     result.norm_b[kExact].col(3).setConstant(std::numeric_limits<double>::quiet_NaN());
   }
   if (pairs.empty()) return result;
+  compare_energies(a, b, pairs, result.energy);
   // Angular accelerations and rates turn about the origin: with another one only accelerations can be compared.
   const std::size_t count = offset.isZero(0) ? x.kg_inertial.size() : 3;
   for (std::size_t i = 0; i < count; ++i)

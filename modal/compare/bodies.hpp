@@ -26,6 +26,8 @@ struct BodyComparison {
   std::array<MatrixXd, kNumMethods> difference;      ///< pairs x 5 (calc_integral_differences)
   std::array<MatrixXd, kNumMethods> norm_a, norm_b;  ///< pairs x 5
   std::vector<StiffnessDifference> stiffness;        ///< inertial loads that both have, then locators of one name
+  /// Strain energy of degrees 3 to 6 in amplitudes of 1/ω, where both bodies have third order in the same modes.
+  std::vector<StiffnessDifference> energy;
 };
 BodyComparison compare_bodies(const records::FlexBody& a, const records::FlexBody& b,
                               const std::vector<ModePair>& pairs, const Vector3d& offset);

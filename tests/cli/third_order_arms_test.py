@@ -88,6 +88,10 @@ class ThirdOrderArms(ProgramTest):
                                    self.UNEQUAL + [("CBAR,21,1,21,22", "CBAR,21,1,921,22")])
                 for k in plain.energy:
                     self.assert_close(plain.energy[k], linked.energy[k], 1e-9)
+                printed = self.bough("compare", "plain.h5", "linked.h5").stdout
+                rows = re.findall(r"(?m)^ *degree (\d) +(\S+) +(\S+) +(\S+)$", printed)
+                self.assertEqual([int(row[0]) for row in rows], [3, 4, 5, 6])
+                self.assertTrue(all(abs(float(row[1]) - float(row[2])) < 1e-5 for row in rows), rows)
                 for k in plain.node:
                     self.assert_close(plain.node[k], linked.node[k], 1e-9)
                     self.assert_close(plain.load[k], linked.load[k], 1e-9)
