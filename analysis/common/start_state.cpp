@@ -64,13 +64,13 @@ void report_time(const records::SystemSpec& spec, const hdf5::ResultsFile& resul
   const bool has_memory = std::any_of(spec.sensors.begin(), spec.sensors.end(), [](const auto& sensor) {
     return sensor.chain.has("lag") || sensor.chain.has("delay") || sensor.chain.has("random_walk");
   });
-  diagnostics.note("cli.start-state", {path}, fmt::format("the start is its state at t = {:g}", t),
-                   spec.controllers.empty() && spec.actuators.empty() && !has_memory ? ""
-                   : !is_run ? "controllers, actuators and lags start from the states in which they rest there"
-                   : has_memory
-                       ? "controllers, actuators and lag, delay and random walk of sensors start as the system "
-                         "file says; bough run --resume goes on with their states"
-                       : "controllers and actuators start as the system file says, from no state of their own");
+  diagnostics.note(
+      "cli.start-state", {path}, fmt::format("the start is its state at t = {:g}", t),
+      spec.controllers.empty() && spec.actuators.empty() && !has_memory ? ""
+      : !is_run    ? "controllers, actuators and lags start from the states in which they rest there"
+      : has_memory ? "controllers, actuators and lag, delay and random walk of sensors start from no state of their "
+                     "own; bough run --resume continues with their states"
+                   : "controllers and actuators start as the system file says, from no state of their own");
   if (reached > t + 1e-12 * std::max(std::abs(reached), std::abs(results.time[0])))
     diagnostics.warning(
         "cli.start-earlier", {path},
