@@ -13,9 +13,9 @@ using linear::kManySides;
 using linear::Supernodes;
 }  // namespace bough::narrow
 #define BOUGH_NARROW
-#define fe narrow
+#define linear narrow
 #include "fe/linear/supernodes.cpp"
-#undef fe
+#undef linear
 #undef BOUGH_NARROW
 
 namespace bough::linear {
