@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/diagnostic.hpp"
 #include "base/rotation.hpp"
 
 namespace bough::analysis::splitting {
@@ -13,6 +14,7 @@ using Eigen::Index;
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
 using records::FlexBody;
 
+constexpr double kMassless = 1e-14;      ///< of the largest diagonal term or eigenvalue of K + σM: round-off
 constexpr double kDependentRow = 1e-10;  ///< of the largest pivot: a constraint that others contain
 
 /// M of [velocity of Bo, angular velocity, η̇] at rest, (6 + n) x (6 + n).
@@ -167,15 +169,21 @@ Eigen::VectorXd calc_assembled_eigenvalues(const std::vector<const FlexBody*>& b
                                            const Assembly& assembly, double shift) {
   const Coordinates coordinates(bodies, structure, assembly);
   MatrixXd M = coordinates.calc_mass(), A = coordinates.calc_stiffness() + shift * M;
-  const VectorXd scale = A.diagonal().cwiseSqrt().cwiseInverse();
+  const double empty = kMassless * A.diagonal().maxCoeff();
+  const VectorXd scale = A.diagonal().unaryExpr([&](double a) { return a > empty ? 1 / std::sqrt(a) : 1.0; });
   M = scale.asDiagonal() * M * scale.asDiagonal();
   A = scale.asDiagonal() * A * scale.asDiagonal();
   const MatrixXd N = calc_null_space(coordinates.constraints() * scale.asDiagonal(), coordinates.size());
   const MatrixXd M_N = N.transpose() * M * N, A_N = N.transpose() * A * N;
-  const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd> solver(M_N, A_N, Eigen::EigenvaluesOnly);
-  if (solver.info() != Eigen::Success)
-    throw ComputationError("split.no-assembly", structure.locate({}), "the modes of the assembled parts were not found",
-                           "cut elsewhere, or skip the comparison with --no-check");
+  const auto [values, vectors] = [&] {
+    const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(A_N);
+    return std::pair<VectorXd, MatrixXd>(solver.eigenvalues(), solver.eigenvectors());
+  }();
+  // Directions without stiffness and mass: the twist of a free line of bars.
+  const double smallest = kMassless * values.maxCoeff();
+  const Index num_empty = (values.array() <= smallest).count(), size = values.size() - num_empty;
+  const MatrixXd W = vectors.rightCols(size) * values.tail(size).cwiseSqrt().cwiseInverse().asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(MatrixXd(W.transpose() * M_N * W), Eigen::EigenvaluesOnly);
   Eigen::VectorXd lambda = solver.eigenvalues().reverse();
   for (double& value : lambda) value = value > 0 ? 1 / value - shift : INFINITY;
   return lambda;

@@ -27,9 +27,11 @@ using namespace splitting;
 
 namespace {
 
-/// Of the modes of a part: their highest frequency with the cuts held, over that of the whole deck which is compared.
+/// Highest frequency of the modes of a part, with the cuts held, over that of the highest mode compared.
 constexpr double kFirstRange = 3;
-constexpr int kMaxRounds = 3;  ///< each doubles the range
+constexpr int kMaxRounds = 5;           ///< each doubles the range
+constexpr double kTwistInertia = 1e-5;  ///< of what a line of bars carries
+constexpr double kParallel = 1e-9;      ///< sine of the angle, and relative inertia that is round-off
 
 double calc_hz(double lambda) { return std::sqrt(std::max(lambda, 0.0)) / (2 * std::numbers::pi); }
 
@@ -49,6 +51,10 @@ WholeModes calc_whole_modes(const fe::Model& model, int number, Diagnostics& dia
   modes.hz.resize(std::max<Eigen::Index>(kept, 0));
   for (Eigen::Index i = 0; i < modes.hz.size(); ++i) modes.hz(i) = calc_hz(pairs.lambda(pairs.num_rigid + i));
   return modes;
+}
+
+bool has_rigid_joint(const Assembly& assembly) {
+  return std::any_of(assembly.joints.begin(), assembly.joints.end(), [](const auto& joint) { return joint.is_new; });
 }
 
 /// Returns true if the constraints of the deck hold the part by themselves.
@@ -72,8 +78,69 @@ bool is_held_by_deck(const Structure& structure, Partition partition, int part) 
 struct Part {
   records::Deck deck;
   double mass = 0;
+  Eigen::Vector3d moment = Eigen::Vector3d::Zero();   ///< mass times centre of mass, basic
+  Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();  ///< about the origin of basic
   int num_elements = 0;
 };
+
+/// Direction of the line elements of the part at the grid; zero if others are there or they are not parallel.
+Eigen::Vector3d find_line(const Structure& structure, const Partition& partition, int part, int grid) {
+  Eigen::Vector3d line = Eigen::Vector3d::Zero();
+  for (std::size_t i = 0; i < structure.elements.size(); ++i) {
+    const auto& element = structure.elements[i];
+    if (partition.element_part[i] != part || !is_structural(element) ||
+        std::find(element.grids.begin(), element.grids.end(), grid) == element.grids.end())
+      continue;
+    if (element.card != "CBAR" && element.card != "CBEAM") return Eigen::Vector3d::Zero();
+    const Eigen::Vector3d along =
+        (structure.position.at(element.grids[0]) - structure.position.at(element.grids[1])).normalized();
+    if (line.isZero(0)) line = along;
+    if (line.cross(along).norm() > kParallel) return Eigen::Vector3d::Zero();
+  }
+  return line;
+}
+
+/// A line of bars has no inertia in twist: the twist of a part has mass only through what its cut carries, in other
+/// parts. Each such cut gets a CONM2 with kTwistInertia of that inertia about the line.
+void add_twist_inertia(const Structure& structure, const Partition& partition, const Assembly& assembly, double wtmass,
+                       std::vector<Part>& parts) {
+  std::vector<Part> carried(parts.size());
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    carried[i].mass = parts[i].mass;
+    carried[i].moment = parts[i].moment;
+    carried[i].inertia = parts[i].inertia;
+  }
+  int next_id = 0;
+  for (const auto& element : structure.elements) next_id = std::max(next_id, element.id);
+  for (const auto& rigid : structure.rigid) next_id = std::max(next_id, rigid.id);
+  next_id += static_cast<int>(assembly.joints.size()) * 64;  // above the RBE2 of joints
+  for (auto link = assembly.links.rbegin(); link != assembly.links.rend(); ++link) {
+    if (link->closes_loop || link->parent < 0) continue;
+    const auto parent = static_cast<std::size_t>(link->parent), child = static_cast<std::size_t>(link->child);
+    const Part& load = carried[child];
+    carried[parent].mass += load.mass;
+    carried[parent].moment += load.moment;
+    carried[parent].inertia += load.inertia;
+    const auto position = structure.position.find(link->node);
+    if (position == structure.position.end()) continue;
+    const Eigen::Vector3d line = find_line(structure, partition, link->parent, link->node);
+    if (line.isZero(0)) continue;
+    // About the line through the grid: I - 2 (p·m_c 1 - ...) + m (p·p 1 - p pᵀ), projected.
+    const Eigen::Vector3d& p = position->second;
+    const double about_line = line.dot(load.inertia * line) -
+                              2 * (p.dot(load.moment) - line.dot(p) * line.dot(load.moment)) +
+                              load.mass * (p.squaredNorm() - std::pow(line.dot(p), 2));
+    const double J = kTwistInertia * about_line / wtmass;
+    if (!(about_line > kParallel * load.inertia.trace())) continue;
+    records::Conm2 mass;
+    mass.id = ++next_id;
+    mass.g = link->node;
+    // Off-diagonal terms of the card are products of inertia, those of the tensor their negatives.
+    mass.inertia = {J * line.x() * line.x(),  -J * line.x() * line.y(), J * line.y() * line.y(),
+                    -J * line.x() * line.z(), -J * line.y() * line.z(), J * line.z() * line.z()};
+    parts[parent].deck.conm2.push_back(mass);
+  }
+}
 
 std::vector<Part> make_parts(const Structure& structure, const Partition& partition, const Assembly& assembly,
                              Diagnostics& diagnostics) {
@@ -90,7 +157,10 @@ std::vector<Part> make_parts(const Structure& structure, const Partition& partit
     Diagnostics of_part;
     const auto model = fe::build_model(part.deck, {}, of_part);
     of_part.throw_if_errors();
-    part.mass = fe::calc_mass_properties(model, model.mass_kind(), Eigen::Vector3d::Zero()).mass;
+    const auto mass = fe::calc_mass_properties(model, model.mass_kind(), Eigen::Vector3d::Zero());
+    part.mass = mass.mass;
+    part.moment = mass.mass * mass.cg;
+    part.inertia = mass.inertia;
     if (!(part.mass > 0))
       diagnostics.error("split.no-mass", first, fmt::format("part {} has no mass", i + 1),
                         "give its material a density, or cut such that each part has mass");
@@ -138,6 +208,24 @@ Reduction reduce_parts(const std::vector<Part>& parts, const PartNames& names, c
 /// Rounded, so that the body file has the number of the reduction.
 double round_hz(double hz) { return std::stod(fmt::format("{:.3g}", hz)); }
 
+/// Widens the range of the modes until the frequencies of the assembly are accurate to kMaxSplitError, once only if
+/// cuts are rigid: more modes do not correct these.
+Reduction reduce_to_accuracy(const std::vector<Part>& parts, const PartNames& names, const Structure& structure,
+                             const Assembly& assembly, const WholeModes& whole, double& max_hz, Events& events) {
+  const int max_rounds = has_rigid_joint(assembly) ? 2 : kMaxRounds;
+  for (int round = 1;; ++round) {
+    auto reduction = reduce_parts(parts, names, structure, assembly, whole, max_hz, events);
+    if (round == max_rounds || reduction.calc_error() <= kMaxSplitError) return reduction;
+    max_hz = round_hz(2 * max_hz);
+  }
+}
+
+/// Returns true for warnings of directions of a cut that move no mass, if the assembly is accurate without these.
+bool is_expected(const Diagnostic& item, const Reduction& reduction) {
+  const bool is_massless = item.id == "modal.massless-interface" || item.id == "modal.massless-constraint";
+  return is_massless && reduction.calc_error() <= kMaxSplitError;
+}
+
 void warn_of_error(const Reduction& reduction, const Structure& structure, const Assembly& assembly,
                    Diagnostics& diagnostics) {
   const double error = reduction.calc_error();
@@ -184,26 +272,24 @@ SplitAnswer split_deck(const SplitRequest& request, Events& events) {
     PartNames names{request.name, request.deck_path.empty() ? request.deck : request.deck_path};
     if (names.base.empty()) names.base = std::filesystem::path(request.deck).stem().string();
     auto parts = make_parts(structure, partition, assembly, diagnostics);
+    add_twist_inertia(structure, partition, assembly, model.wtmass(), parts);
     events.show_progress("split: modes of the deck");
     const auto whole = calc_whole_modes(model, std::max(request.num_compared, 1), diagnostics);
     events.show_progress("");
     if (whole.hz.size() == 0)
-      throw ComputationError("split.no-modes", deck.locate({}), "the deck has no elastic mode to compare with",
-                             "give the model elements with stiffness and mass");
+      throw InputError("split.no-elements", deck.locate({}), "the deck has no elastic mode",
+                       "give the model elements with stiffness and mass");
     answer.mass = fe::calc_mass_properties(model, model.mass_kind(), Eigen::Vector3d::Zero()).mass;
 
     double max_hz = round_hz(kFirstRange * whole.hz(whole.hz.size() - 1));
     Reduction reduction;
-    for (int round = 0; request.is_checked && round < kMaxRounds; ++round) {
-      if (round > 0) max_hz = round_hz(2 * max_hz);
-      reduction = reduce_parts(parts, names, structure, assembly, whole, max_hz, events);
-      if (reduction.calc_error() <= kMaxSplitError) break;
-    }
-    for (const auto& item : reduction.diagnostics.items()) diagnostics.add_new(item);
+    if (request.is_checked) reduction = reduce_to_accuracy(parts, names, structure, assembly, whole, max_hz, events);
+    for (const auto& item : reduction.diagnostics.items())
+      if (!is_expected(item, reduction)) diagnostics.add_new(item);
     answer.frequencies = reduction.frequencies;
     warn_of_error(reduction, structure, assembly, diagnostics);
 
-    parts.front().deck.unused = deck.unused;  // the writer reports once what it leaves out
+    parts.front().deck.unused = deck.unused;  // reported once by the writer
     parts.front().deck.left_out = deck.left_out;
     parts.front().deck.card_counts = deck.card_counts;
     for (int i = 0; i < partition.num_parts; ++i) {

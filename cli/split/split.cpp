@@ -123,7 +123,7 @@ void add_split(CLI::App& app, Action& action) {
   auto& choice = o->request.choice;
   auto* verb = add_verb(app, "split", "Cuts a deck into several bodies with a system file that joins them");
   verb->add_option("deck", o->request.deck, "Nastran deck")->required();
-  verb->add_option("--parts", choice.num_parts, "Cut into so many parts of equal length, at grids")
+  verb->add_option("--parts", choice.num_parts, "Number of parts of equal length, cut at grids")
       ->check(make_positive());
   verb->add_option("--along", choice.along,
                    "Direction of --parts: path (over the elements from the held end), long (principal axis), x, y, z")
