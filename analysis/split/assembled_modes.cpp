@@ -135,10 +135,8 @@ class Coordinates {
   }
   void add_constraint(const PartLink& link) {
     MatrixXd rows = calc_motion(link.child, link.node);
-    if (link.parent >= 0)
-      rows -= calc_motion(link.parent, link.node);
-    else
-      rows = (choose_axes(calc_axes(structure_, link.node), link.held, true).transpose() * rows).eval();
+    if (link.parent >= 0) rows -= calc_motion(link.parent, link.node);
+    rows = (choose_axes(calc_axes(structure_, link.node), link.held, true).transpose() * rows).eval();
     const Index before = constraints_.rows();
     constraints_.conservativeResize(before + rows.rows(), size());
     constraints_.bottomRows(rows.rows()) = rows;

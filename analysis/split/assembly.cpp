@@ -17,7 +17,8 @@ constexpr double kFlat = 1e-9;               ///< of the largest distance: grids
 constexpr unsigned kAll = 0b111111;
 
 /// Grids of the cut by their union: two that an element or a rigid element has, both in at least two of the same parts.
-std::vector<std::vector<int>> group_shared(const Structure& structure, const Partition& partition) {
+/// Each grid by itself unless `joins`.
+std::vector<std::vector<int>> group_shared(const Structure& structure, const Partition& partition, bool joins) {
   std::map<int, int> group;  // shared grid: lowest known member
   for (const auto& [grid, parts] : partition.grid_parts)
     if (parts.size() > 1) group[grid] = grid;
@@ -26,7 +27,7 @@ std::vector<std::vector<int>> group_shared(const Structure& structure, const Par
     return grid;
   };
   for (const auto& element : structure.elements) {
-    if (!is_structural(element)) continue;
+    if (!joins || !is_structural(element)) continue;
     std::vector<int> shared;
     for (const int grid : element.grids)
       if (group.count(grid) > 0) shared.push_back(grid);
@@ -112,7 +113,7 @@ void check_strength(const Structure& structure, const Partition& partition, cons
         fmt::format("the cut at {} {} leaves a joint that does not transfer all moments: rods and solids there can "
                     "turn about it",
                     joint.grids.size() == 1 ? "grid" : "grids", fmt::join(joint.grids, ", ")),
-        "cut where beams, shells, or three grids off one line are");
+        "cut where beams, shells, or three grids off one line are; or use --interface rigid");
     return;
   }
 }
@@ -165,9 +166,9 @@ void add_ground_links(const Structure& structure, const Partition& partition, As
 
 }  // namespace
 
-std::vector<Joint> find_joints(const Structure& structure, const Partition& partition) {
+std::vector<Joint> find_joints(const Structure& structure, const Partition& partition, const std::string& interface) {
   std::vector<Joint> joints;
-  for (auto& grids : group_shared(structure, partition)) {
+  for (auto& grids : group_shared(structure, partition, interface != "grids")) {
     Joint joint;
     joint.grids = std::move(grids);
     for (const int grid : joint.grids)
@@ -182,7 +183,7 @@ std::vector<Joint> find_joints(const Structure& structure, const Partition& part
                           fmt::format("the cut goes through scalar point {}", grid),
                           "keep all elements of a scalar point in one part");
   diagnostics.throw_if_errors();
-  merge_pinned(structure, partition, joints);
+  if (interface != "grids") merge_pinned(structure, partition, joints);
   const auto dependent = name_dependent(structure);
   int next = find_max_grid(structure) + 1;
   for (auto& joint : joints) {
@@ -191,7 +192,12 @@ std::vector<Joint> find_joints(const Structure& structure, const Partition& part
     joint.node = joint.is_new ? next++ : joint.grids.front();
     for (const int grid : joint.grids) joint.x += structure.position.at(grid);
     joint.x /= static_cast<double>(joint.grids.size());
-    if (joint.is_new) check_independent(structure, joint, dependent, diagnostics);
+    joint.is_average = joint.is_new && interface == "average";
+    if (joint.is_average && structure.common_held != 0)
+      throw InputError("split.bad-choice", structure.locate({}),
+                       "--interface average needs a deck whose grids do not all hold a component",
+                       "use --interface rigid or grids");
+    if (joint.is_new && !joint.is_average) check_independent(structure, joint, dependent, diagnostics);
   }
   diagnostics.throw_if_errors();
   return joints;
@@ -229,8 +235,13 @@ Assembly make_assembly(const Structure& structure, std::vector<Joint> joints, bo
           its_number = next++;
           open.push_back(child);
         }
+        // Components that all grids or AUTOSPC hold in both parts are held already.
+        const auto soft = structure.without_stiffness.find(joints[j].node);
+        const unsigned stiff =
+            kAll & ~structure.common_held & ~(soft == structure.without_stiffness.end() ? 0U : soft->second);
         (is_first ? tree : loops)
-            .push_back({number[static_cast<std::size_t>(parent)], its_number, joints[j].node, kAll, !is_first});
+            .push_back({number[static_cast<std::size_t>(parent)], its_number, joints[j].node, is_first ? kAll : stiff,
+                        !is_first});
       }
     }
   }
@@ -265,7 +276,13 @@ Assembly make_assembly(const Structure& structure, std::vector<Joint> joints, bo
   assembly.links.push_back(base);
   assembly.links.insert(assembly.links.end(), tree.begin(), tree.end());
   assembly.clamp.assign(num_parts, 0);
-  for (const auto& link : assembly.links) assembly.clamp[static_cast<std::size_t>(link.child)] = link.node;
+  assembly.is_averaged.assign(num_parts, 0);
+  for (const auto& link : assembly.links) {
+    const auto child = static_cast<std::size_t>(link.child);
+    assembly.clamp[child] = link.node;
+    for (const auto& joint : assembly.joints)
+      if (joint.node == link.node && joint.is_average) assembly.is_averaged[child] = 1;
+  }
   assembly.links.insert(assembly.links.end(), loops.begin(), loops.end());
   add_ground_links(structure, partition, assembly);
   assembly.interface.resize(num_parts);

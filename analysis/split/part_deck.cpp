@@ -144,7 +144,7 @@ int find_next_element(const Structure& structure) {
   return max + 1;
 }
 
-/// The new grid of a joint and RBE2 from it to the grids of the cut, without their held components.
+/// The new grid of a joint, and RBE2 from it to the grids of the cut, without their held components, or an RBE3.
 void add_joint(const Structure& structure, const Joint& joint, bool is_held_by_deck, int& next_id,
                records::Deck& deck) {
   const auto find_grid = [&](int id) -> const records::Grid& {
@@ -156,6 +156,16 @@ void add_joint(const Structure& structure, const Joint& joint, bool is_held_by_d
   if (structure.common_held != 0) {
     node.cd = find_grid(joint.grids.front()).cd;
     node.ps = structure.common_held;
+  }
+  if (joint.is_average) {
+    records::Rbe3 mean;
+    mean.id = next_id++;
+    mean.ref_grid = joint.node;
+    mean.ref_c = kAllComponents;
+    mean.groups.push_back({1.0, 0b000111, joint.grids});
+    deck.grids.push_back(node);
+    deck.rbe3.push_back(mean);
+    return;
   }
   std::map<unsigned, std::vector<int>> grids_by_mask;
   for (const int grid : joint.grids) {
@@ -228,7 +238,7 @@ records::Deck make_part_deck(const Structure& structure, const Partition& partit
   for (const auto& joint : assembly.joints)
     if (joint.is_new && joint.parts.count(part) > 0) add_joint(structure, joint, is_held_by_deck, next_id, deck);
   const int clamp = assembly.clamp[static_cast<std::size_t>(part)];
-  if (clamp != 0) clamp_grid(structure, clamp, deck);
+  if (clamp != 0 && assembly.is_averaged[static_cast<std::size_t>(part)] == 0) clamp_grid(structure, clamp, deck);
   deck.subcases.front().spc = deck.spc.empty() ? 0 : kClampSet;
   deck.subcases.front().mpc = deck.mpc.empty() ? 0 : deck.subcases.front().mpc;
   keep_sets(deck);

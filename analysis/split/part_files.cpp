@@ -47,6 +47,14 @@ std::string write_type(unsigned held) {
   return text;
 }
 
+/// Axes of a link whose components are free in part.
+std::string write_axes(const Structure& structure, const PartLink& link) {
+  const auto axes = structure.axes.find(link.node);
+  if (link.held == kFixed || link.held == 0 || axes == structure.axes.end() || axes->second.isIdentity(0)) return {};
+  const auto angles = format_vector(calc_angles(axes->second));
+  return "parent_rotation = " + angles + "\nchild_rotation = " + angles + "\n";
+}
+
 /// Place of a link with the ground: position in basic and, if components are free, the CD axes.
 std::string write_ground_end(const Structure& structure, const Assembly& assembly, const PartLink& link) {
   if (link.node == 0) return {};
@@ -54,11 +62,8 @@ std::string write_ground_end(const Structure& structure, const Assembly& assembl
   if (const auto grid = structure.position.find(link.node); grid != structure.position.end()) x = grid->second;
   for (const auto& joint : assembly.joints)
     if (joint.node == link.node) x = joint.x;
-  std::string text = fmt::format("child_node = {}\nparent_position = {}\n", link.node, format_vector(x));
-  const auto axes = structure.axes.find(link.node);
-  if (link.held == kFixed || link.held == 0 || axes == structure.axes.end() || axes->second.isIdentity(0)) return text;
-  const auto angles = format_vector(calc_angles(axes->second));
-  return text + "parent_rotation = " + angles + "\nchild_rotation = " + angles + "\n";
+  return fmt::format("child_node = {}\nparent_position = {}\n", link.node, format_vector(x)) +
+         write_axes(structure, link);
 }
 
 std::string write_link(const PartNames& names, const Structure& structure, const Assembly& assembly,
@@ -70,11 +75,11 @@ std::string write_link(const PartNames& names, const Structure& structure, const
     return text + write_type(link.held) + "parent = \"ground\"\nchild = " + quote_text(names.get_part(link.child)) +
            "\n" + write_ground_end(structure, assembly, link) + "\n";
   }
-  return text + fmt::format(
-                    "name = \"cut-{}\"\ntype = \"fixed\"\nparent = {}\nparent_node = {}\nchild = {}\n"
-                    "child_node = {}\n\n",
-                    number, quote_text(names.get_part(link.parent)), link.node, quote_text(names.get_part(link.child)),
-                    link.node);
+  return text + fmt::format("name = \"cut-{}\"\n", number) + write_type(link.held) +
+         fmt::format("parent = {}\nparent_node = {}\nchild = {}\nchild_node = {}\n",
+                     quote_text(names.get_part(link.parent)), link.node, quote_text(names.get_part(link.child)),
+                     link.node) +
+         write_axes(structure, link) + "\n";
 }
 
 }  // namespace
@@ -85,9 +90,14 @@ records::BodySpec make_part_spec(const PartNames& names, const Assembly& assembl
   spec.deck = spec.name + ".bdf";
   spec.output_file = spec.name + ".h5";
   spec.interface_nodes = assembly.interface[static_cast<std::size_t>(part)];
+  if (assembly.is_averaged[static_cast<std::size_t>(part)] != 0) {
+    spec.frame = records::BodyFrame::Node;
+    spec.frame_nodes = {assembly.clamp[static_cast<std::size_t>(part)]};
+    spec.interface_nodes.push_back(spec.frame_nodes.front());
+  }
   spec.basis = spec.interface_nodes.empty() ? BodyBasis::Normal : BodyBasis::CraigBampton;
   const bool is_carried = assembly.is_held || assembly.clamp[static_cast<std::size_t>(part)] != 0;
-  spec.frame = is_carried ? records::BodyFrame::Fixed : records::BodyFrame::Free;
+  if (spec.frame_nodes.empty()) spec.frame = is_carried ? records::BodyFrame::Fixed : records::BodyFrame::Free;
   spec.max_frequency_hz = max_hz;
   return spec;
 }
@@ -97,7 +107,10 @@ std::string write_part_file(const PartNames& names, const Assembly& assembly, in
   std::string text =
       fmt::format("# bough reduce {0}.toml\n# Part {1} of {2}, cut by bough split.\n[body]\nname = {3}\ndeck = {4}\n",
                   spec.name, part + 1, names.deck, quote_text(spec.name), quote_text(spec.deck));
-  if (spec.frame == records::BodyFrame::Free)
+  if (spec.frame == records::BodyFrame::Node)
+    text += fmt::format("frame = \"node\"           # its hinge carries this average of grids\nframe_nodes = [{}]\n",
+                        clamp);
+  else if (spec.frame == records::BodyFrame::Free)
     text += "frame = \"free\"\n";
   else if (clamp == 0)
     text += "frame = \"fixed\"          # the deck's constraints hold the body frame\n";

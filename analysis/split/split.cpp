@@ -30,6 +30,7 @@ namespace {
 /// Highest frequency of the modes of a part, with the cuts held, over that of the highest mode compared.
 constexpr double kFirstRange = 3;
 constexpr int kMaxRounds = 5;           ///< each doubles the range
+constexpr int kMaxRigidRounds = 3;      ///< with cuts along several grids
 constexpr double kTwistInertia = 1e-5;  ///< of what a line of bars carries
 constexpr double kParallel = 1e-9;      ///< sine of the angle, and relative inertia that is round-off
 
@@ -65,6 +66,7 @@ bool is_held_by_deck(const Structure& structure, Partition partition, int part) 
   Assembly alone;
   alone.is_held = true;
   alone.clamp.assign(static_cast<std::size_t>(partition.num_parts) + 1, 0);
+  alone.is_averaged.assign(alone.clamp.size(), 0);
   try {
     Diagnostics ignored;
     const auto model = fe::build_model(make_part_deck(structure, partition, alone, 0), {}, ignored);
@@ -100,45 +102,55 @@ Eigen::Vector3d find_line(const Structure& structure, const Partition& partition
   return line;
 }
 
-/// A line of bars has no inertia in twist: the twist of a part has mass only through what its cut carries, in other
-/// parts. Each such cut gets a CONM2 with kTwistInertia of that inertia about the line.
+/// Mass, its moment and its inertia of several parts.
+void add_mass(const Part& part, Part& sum) {
+  sum.mass += part.mass;
+  sum.moment += part.moment;
+  sum.inertia += part.inertia;
+}
+
+/// Moment of inertia of the mass about a line through p.
+double calc_inertia_about(const Part& mass, const Eigen::Vector3d& p, const Eigen::Vector3d& line) {
+  return line.dot(mass.inertia * line) - 2 * (p.dot(mass.moment) - line.dot(p) * line.dot(mass.moment)) +
+         mass.mass * (p.squaredNorm() - std::pow(line.dot(p), 2));
+}
+
+/// A line of bars has no inertia in twist: the twist of a part has mass only through other parts. Each cut of a line,
+/// except the one that carries the part, gets a CONM2 with kTwistInertia of the inertia about the line: of what the cut
+/// carries, or of all parts if it closes a loop. At the ground it does not move.
 void add_twist_inertia(const Structure& structure, const Partition& partition, const Assembly& assembly, double wtmass,
                        std::vector<Part>& parts) {
-  std::vector<Part> carried(parts.size());
-  for (std::size_t i = 0; i < parts.size(); ++i) {
-    carried[i].mass = parts[i].mass;
-    carried[i].moment = parts[i].moment;
-    carried[i].inertia = parts[i].inertia;
-  }
+  Part whole;
+  for (const auto& part : parts) add_mass(part, whole);
+  std::vector<Part> carried = parts;
   int next_id = 0;
   for (const auto& element : structure.elements) next_id = std::max(next_id, element.id);
   for (const auto& rigid : structure.rigid) next_id = std::max(next_id, rigid.id);
-  next_id += static_cast<int>(assembly.joints.size()) * 64;  // above the RBE2 of joints
-  for (auto link = assembly.links.rbegin(); link != assembly.links.rend(); ++link) {
-    if (link->closes_loop || link->parent < 0) continue;
-    const auto parent = static_cast<std::size_t>(link->parent), child = static_cast<std::size_t>(link->child);
-    const Part& load = carried[child];
-    carried[parent].mass += load.mass;
-    carried[parent].moment += load.moment;
-    carried[parent].inertia += load.inertia;
-    const auto position = structure.position.find(link->node);
-    if (position == structure.position.end()) continue;
-    const Eigen::Vector3d line = find_line(structure, partition, link->parent, link->node);
-    if (line.isZero(0)) continue;
-    // About the line through the grid: I - 2 (p·m_c 1 - ...) + m (p·p 1 - p pᵀ), projected.
-    const Eigen::Vector3d& p = position->second;
-    const double about_line = line.dot(load.inertia * line) -
-                              2 * (p.dot(load.moment) - line.dot(p) * line.dot(load.moment)) +
-                              load.mass * (p.squaredNorm() - std::pow(line.dot(p), 2));
+  next_id += static_cast<int>(64 * (1 + assembly.joints.size()));  // above the RBE2 of joints
+  const auto add = [&](int part, int node, const Part& load) {
+    const auto position = structure.position.find(node);
+    if (part < 0 || position == structure.position.end()) return;
+    const Eigen::Vector3d t = find_line(structure, partition, part, node);
+    const double about_line = t.isZero(0) ? 0 : calc_inertia_about(load, position->second, t);
+    if (!(about_line > kParallel * load.inertia.trace())) return;
     const double J = kTwistInertia * about_line / wtmass;
-    if (!(about_line > kParallel * load.inertia.trace())) continue;
     records::Conm2 mass;
     mass.id = ++next_id;
-    mass.g = link->node;
+    mass.g = node;
     // Off-diagonal terms of the card are products of inertia, those of the tensor their negatives.
-    mass.inertia = {J * line.x() * line.x(),  -J * line.x() * line.y(), J * line.y() * line.y(),
-                    -J * line.x() * line.z(), -J * line.y() * line.z(), J * line.z() * line.z()};
-    parts[parent].deck.conm2.push_back(mass);
+    mass.inertia = {J * t.x() * t.x(),  -J * t.x() * t.y(), J * t.y() * t.y(),
+                    -J * t.x() * t.z(), -J * t.y() * t.z(), J * t.z() * t.z()};
+    parts[static_cast<std::size_t>(part)].deck.conm2.push_back(mass);
+  };
+  for (auto link = assembly.links.rbegin(); link != assembly.links.rend(); ++link) {
+    if (link->closes_loop) {
+      add(link->parent, link->node, whole);
+      if (assembly.clamp[static_cast<std::size_t>(link->child)] != link->node) add(link->child, link->node, whole);
+    } else if (link->parent >= 0) {
+      const Part& load = carried[static_cast<std::size_t>(link->child)];
+      add(link->parent, link->node, load);
+      add_mass(load, carried[static_cast<std::size_t>(link->parent)]);
+    }
   }
 }
 
@@ -208,11 +220,11 @@ Reduction reduce_parts(const std::vector<Part>& parts, const PartNames& names, c
 /// Rounded, so that the body file has the number of the reduction.
 double round_hz(double hz) { return std::stod(fmt::format("{:.3g}", hz)); }
 
-/// Widens the range of the modes until the frequencies of the assembly are accurate to kMaxSplitError, once only if
-/// cuts are rigid: more modes do not correct these.
+/// Widens the range of the modes until the frequencies of the assembly are accurate to kMaxSplitError, less often if
+/// cuts are rigid or averages: more modes do not correct these.
 Reduction reduce_to_accuracy(const std::vector<Part>& parts, const PartNames& names, const Structure& structure,
                              const Assembly& assembly, const WholeModes& whole, double& max_hz, Events& events) {
-  const int max_rounds = has_rigid_joint(assembly) ? 2 : kMaxRounds;
+  const int max_rounds = has_rigid_joint(assembly) ? kMaxRigidRounds : kMaxRounds;
   for (int round = 1;; ++round) {
     auto reduction = reduce_parts(parts, names, structure, assembly, whole, max_hz, events);
     if (round == max_rounds || reduction.calc_error() <= kMaxSplitError) return reduction;
@@ -236,8 +248,8 @@ void warn_of_error(const Reduction& reduction, const Structure& structure, const
       "split.inaccurate", structure.locate({}),
       fmt::format("frequencies of the assembled parts differ by up to {:.2g} from those of the deck, "
                   "allowed {:.0e}{}",
-                  error, kMaxSplitError, has_rigid ? "; cuts along several grids hold these rigidly" : ""),
-      has_rigid ? "cut where the section is stiff, or in fewer parts"
+                  error, kMaxSplitError, has_rigid ? "; cuts along several grids join these by a rigid element" : ""),
+      has_rigid ? "use --interface grids, or cut where the section is stiff"
                 : "raise max_frequency of the body files, refine the mesh, or use PARAM,COUPMASS,1");
 }
 
@@ -266,7 +278,8 @@ SplitAnswer split_deck(const SplitRequest& request, Events& events) {
     assign_attached(structure, partition);
     const int root = find_most_held(structure, partition);
     const bool is_held = is_held_by_deck(structure, partition, root);
-    const auto assembly = make_assembly(structure, find_joints(structure, partition), is_held, root, partition);
+    const auto assembly =
+        make_assembly(structure, find_joints(structure, partition, request.choice.interface), is_held, root, partition);
     note_pieces(partition, structure, diagnostics);
 
     PartNames names{request.name, request.deck_path.empty() ? request.deck : request.deck_path};
