@@ -17,8 +17,7 @@ constexpr double kFlat = 1e-9;               ///< of the largest distance: grids
 constexpr unsigned kAll = 0b111111;
 
 /// Grids of the cut by their union: two that an element or a rigid element has, both in at least two of the same parts.
-/// Each grid by itself unless `joins`.
-std::vector<std::vector<int>> group_shared(const Structure& structure, const Partition& partition, bool joins) {
+std::vector<std::vector<int>> group_shared(const Structure& structure, const Partition& partition) {
   std::map<int, int> group;  // shared grid: lowest known member
   for (const auto& [grid, parts] : partition.grid_parts)
     if (parts.size() > 1) group[grid] = grid;
@@ -27,7 +26,7 @@ std::vector<std::vector<int>> group_shared(const Structure& structure, const Par
     return grid;
   };
   for (const auto& element : structure.elements) {
-    if (!joins || !is_structural(element)) continue;
+    if (!is_structural(element)) continue;
     std::vector<int> shared;
     for (const int grid : element.grids)
       if (group.count(grid) > 0) shared.push_back(grid);
@@ -61,17 +60,6 @@ bool has_moments(const Structure& structure, const Partition& partition, int par
     if (partition.rigid_part[i] == part && structure.rigid[i].has_moments && is_at(structure.rigid[i], grids))
       return true;
   return false;
-}
-
-/// Returns true if three of the grids are not on one line.
-bool spans_plane(const Structure& structure, const std::vector<int>& grids) {
-  const Vector3d& first = structure.position.at(grids.front());
-  Vector3d far = Vector3d::Zero();
-  for (const int grid : grids)
-    if (const Vector3d d = structure.position.at(grid) - first; d.norm() > far.norm()) far = d;
-  return std::any_of(grids.begin(), grids.end(), [&](int grid) {
-    return (structure.position.at(grid) - first).cross(far).norm() > kFlat * far.squaredNorm();
-  });
 }
 
 /// Joints at single grids without moments, between the same parts, become one joint: longerons of a truss.
@@ -113,7 +101,7 @@ void check_strength(const Structure& structure, const Partition& partition, cons
         fmt::format("the cut at {} {} leaves a joint that does not transfer all moments: rods and solids there can "
                     "turn about it",
                     joint.grids.size() == 1 ? "grid" : "grids", fmt::join(joint.grids, ", ")),
-        "cut where beams, shells, or three grids off one line are; or use --interface rigid");
+        "cut where beams, shells, or three grids off one line are");
     return;
   }
 }
@@ -166,9 +154,19 @@ void add_ground_links(const Structure& structure, const Partition& partition, As
 
 }  // namespace
 
+bool spans_plane(const Structure& structure, const std::vector<int>& grids) {
+  const Vector3d& first = structure.position.at(grids.front());
+  Vector3d far = Vector3d::Zero();
+  for (const int grid : grids)
+    if (const Vector3d d = structure.position.at(grid) - first; d.norm() > far.norm()) far = d;
+  return std::any_of(grids.begin(), grids.end(), [&](int grid) {
+    return (structure.position.at(grid) - first).cross(far).norm() > kFlat * far.squaredNorm();
+  });
+}
+
 std::vector<Joint> find_joints(const Structure& structure, const Partition& partition, const std::string& interface) {
   std::vector<Joint> joints;
-  for (auto& grids : group_shared(structure, partition, interface != "grids")) {
+  for (auto& grids : group_shared(structure, partition)) {
     Joint joint;
     joint.grids = std::move(grids);
     for (const int grid : joint.grids)
@@ -183,7 +181,7 @@ std::vector<Joint> find_joints(const Structure& structure, const Partition& part
                           fmt::format("the cut goes through scalar point {}", grid),
                           "keep all elements of a scalar point in one part");
   diagnostics.throw_if_errors();
-  if (interface != "grids") merge_pinned(structure, partition, joints);
+  merge_pinned(structure, partition, joints);
   const auto dependent = name_dependent(structure);
   int next = find_max_grid(structure) + 1;
   for (auto& joint : joints) {
@@ -196,7 +194,7 @@ std::vector<Joint> find_joints(const Structure& structure, const Partition& part
     if (joint.is_average && structure.common_held != 0)
       throw InputError("split.bad-choice", structure.locate({}),
                        "--interface average needs a deck whose grids do not all hold a component",
-                       "use --interface rigid or grids");
+                       "use --interface rigid");
     if (joint.is_new && !joint.is_average) check_independent(structure, joint, dependent, diagnostics);
   }
   diagnostics.throw_if_errors();
@@ -235,13 +233,9 @@ Assembly make_assembly(const Structure& structure, std::vector<Joint> joints, bo
           its_number = next++;
           open.push_back(child);
         }
-        // Components that all grids or AUTOSPC hold in both parts are held already.
-        const auto soft = structure.without_stiffness.find(joints[j].node);
-        const unsigned stiff =
-            kAll & ~structure.common_held & ~(soft == structure.without_stiffness.end() ? 0U : soft->second);
+        const unsigned held = is_first ? kAll : kAll & ~structure.common_held;
         (is_first ? tree : loops)
-            .push_back({number[static_cast<std::size_t>(parent)], its_number, joints[j].node, is_first ? kAll : stiff,
-                        !is_first});
+            .push_back({number[static_cast<std::size_t>(parent)], its_number, joints[j].node, held, !is_first});
       }
     }
   }

@@ -35,9 +35,12 @@ struct Assembly {
   std::vector<std::vector<int>> interface;  ///< of each part: grids of its other links
 };
 
+/// Returns true if three of the grids are not on one line.
+bool spans_plane(const Structure& structure, const std::vector<int>& grids);
+
 /// Joints along the grids that parts share.
 ///
-/// \param interface  "rigid", "average" or "grids", of joints of several grids
+/// \param interface  "rigid" or "average", of joints of several grids
 /// \throws InputError split.weak-cut if a joint does not transfer moments, split.dependent-cut if grids of a joint of
 ///     several depend on a rigid element
 std::vector<Joint> find_joints(const Structure& structure, const Partition& partition, const std::string& interface);

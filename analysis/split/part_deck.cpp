@@ -162,7 +162,7 @@ void add_joint(const Structure& structure, const Joint& joint, bool is_held_by_d
     mean.id = next_id++;
     mean.ref_grid = joint.node;
     mean.ref_c = kAllComponents;
-    mean.groups.push_back({1.0, 0b000111, joint.grids});
+    mean.groups.push_back({1.0, spans_plane(structure, joint.grids) ? 0b000111U : kAllComponents, joint.grids});
     deck.grids.push_back(node);
     deck.rbe3.push_back(mean);
     return;

@@ -37,6 +37,8 @@ std::string list_free(unsigned held, int first) {
   return axes;
 }
 
+double round_digit(double x) { return std::stod(fmt::format("{:.1g}", x)); }
+
 /// Type of a hinge or constraint that holds these components.
 std::string write_type(unsigned held) {
   if (held == kFixed) return "type = \"fixed\"\n";
@@ -127,7 +129,8 @@ std::string write_part_file(const PartNames& names, const Assembly& assembly, in
   return text + fmt::format("[body.output]\nfile = {}\n", quote_text(spec.output_file));
 }
 
-std::string write_system_file(const PartNames& names, const Structure& structure, const Assembly& assembly) {
+std::string write_system_file(const PartNames& names, const Structure& structure, const Assembly& assembly,
+                              double lowest_hz) {
   std::string text = fmt::format("# bough run {0}-run.toml -o {0}-run.h5\n# The parts of {1}, cut by bough split.\n\n",
                                  names.base, names.deck);
   for (int part = 0; part < static_cast<int>(assembly.clamp.size()); ++part)
@@ -138,10 +141,14 @@ std::string write_system_file(const PartNames& names, const Structure& structure
     text += write_link(names, structure, assembly, link, number);
     if (link.parent >= 0) ++number;
   }
-  return text +
-         "[simulation]\nduration = 1.0\noutput_step = 0.01\nintegrator = \"auto\"\n"
-         "gravity = [0.0, 0.0, -9.81]  # a load to begin with, in the units of the deck (-9810.0 of mm, 0.0 in "
-         "space)\n";
+  const double step = round_digit(1 / (400 * lowest_hz));
+  return text + fmt::format(
+                    "[simulation]\nduration = {}\noutput_step = {}\nintegrator = \"implicit\"  # fixed steps: the "
+                    "fastest modes "
+                    "of the parts need not be followed\nstep = {}\ngravity = [0.0, 0.0, -9.81]  # a load to begin "
+                    "with, in the "
+                    "units of the deck (-9810.0 of mm, 0.0 in space)\n",
+                    round_digit(3 / lowest_hz), round_digit(2 * step), step);
 }
 
 }  // namespace bough::analysis::splitting

@@ -22,6 +22,9 @@ records::BodySpec make_part_spec(const PartNames& names, const Assembly& assembl
 /// `spec` as a body file.
 std::string write_part_file(const PartNames& names, const Assembly& assembly, int part, const records::BodySpec& spec);
 
-std::string write_system_file(const PartNames& names, const Structure& structure, const Assembly& assembly);
+/// The system of the parts under gravity along -z. Its integrator does not follow the fastest modes of the parts.
+/// \param lowest_hz  [1/T] first elastic frequency of the deck: 400 steps in its period
+std::string write_system_file(const PartNames& names, const Structure& structure, const Assembly& assembly,
+                              double lowest_hz);
 
 }  // namespace bough::analysis::splitting

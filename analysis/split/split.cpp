@@ -127,13 +127,13 @@ void add_twist_inertia(const Structure& structure, const Partition& partition, c
   for (const auto& element : structure.elements) next_id = std::max(next_id, element.id);
   for (const auto& rigid : structure.rigid) next_id = std::max(next_id, rigid.id);
   next_id += static_cast<int>(64 * (1 + assembly.joints.size()));  // above the RBE2 of joints
-  const auto add = [&](int part, int node, const Part& load) {
+  const auto add = [&](int part, int node, const Part& load, double share = kTwistInertia) {
     const auto position = structure.position.find(node);
     if (part < 0 || position == structure.position.end()) return;
     const Eigen::Vector3d t = find_line(structure, partition, part, node);
     const double about_line = t.isZero(0) ? 0 : calc_inertia_about(load, position->second, t);
     if (!(about_line > kParallel * load.inertia.trace())) return;
-    const double J = kTwistInertia * about_line / wtmass;
+    const double J = share * about_line / wtmass;
     records::Conm2 mass;
     mass.id = ++next_id;
     mass.g = node;
@@ -145,7 +145,8 @@ void add_twist_inertia(const Structure& structure, const Partition& partition, c
   for (auto link = assembly.links.rbegin(); link != assembly.links.rend(); ++link) {
     if (link->closes_loop) {
       add(link->parent, link->node, whole);
-      if (assembly.clamp[static_cast<std::size_t>(link->child)] != link->node) add(link->child, link->node, whole);
+      if (assembly.clamp[static_cast<std::size_t>(link->child)] != link->node)
+        add(link->child, link->node, whole, link->parent < 0 ? 1.0 : kTwistInertia);
     } else if (link->parent >= 0) {
       const Part& load = carried[static_cast<std::size_t>(link->child)];
       add(link->parent, link->node, load);
@@ -249,7 +250,7 @@ void warn_of_error(const Reduction& reduction, const Structure& structure, const
       fmt::format("frequencies of the assembled parts differ by up to {:.2g} from those of the deck, "
                   "allowed {:.0e}{}",
                   error, kMaxSplitError, has_rigid ? "; cuts along several grids join these by a rigid element" : ""),
-      has_rigid ? "use --interface grids, or cut where the section is stiff"
+      has_rigid ? "cut where the section is stiff, or try the other --interface"
                 : "raise max_frequency of the body files, refine the mesh, or use PARAM,COUPMASS,1");
 }
 
@@ -322,7 +323,7 @@ SplitAnswer split_deck(const SplitRequest& request, Events& events) {
       if (request.is_checked) part.body = std::move(reduction.bodies[index]);
       answer.parts.push_back(std::move(part));
     }
-    answer.files.push_back({names.base + "-run.toml", write_system_file(names, structure, assembly)});
+    answer.files.push_back({names.base + "-run.toml", write_system_file(names, structure, assembly, whole.hz(0))});
     diagnostics.throw_if_errors();
   });
   add_messages(diagnostics, events);

@@ -17,7 +17,7 @@ struct SplitChoice {
   std::vector<std::string> planes;    ///< "x=2.5" or "nx,ny,nz=d", each: n·r = d in basic
   std::vector<std::string> elements;  ///< a part each: ids, ranges, property:P, card:NAME, separated by commas
   std::vector<int> grids;             ///< cut at these
-  /// Of cuts along several grids: "rigid" (RBE2 to a new grid), "average" (RBE3), "grids" (each is joined by itself).
+  /// Joint of cuts along several grids: "rigid" (RBE2 to a new grid) or "average" (RBE3).
   std::string interface = "rigid";
 };
 

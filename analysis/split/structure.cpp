@@ -93,9 +93,6 @@ Structure make_structure(const records::Deck& deck, const fe::Model& model, Diag
     structure.axes[node.id] = node.R_basic_cd;
   }
   for (const auto& grid : deck.grids) structure.at[grid.id] = grid.at;
-  for (const auto& entry : model.autospc())
-    if (entry.terms.empty() && entry.component > 0)
-      structure.without_stiffness[entry.node] |= 1U << (entry.component - 1);
   for (const auto& element : structure.elements)
     if (!element.is_drawn) structure.joined.insert(element.grids.begin(), element.grids.end());
   for (const auto& rigid : structure.rigid) structure.joined.insert(rigid.grids.begin(), rigid.grids.end());

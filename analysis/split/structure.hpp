@@ -15,13 +15,12 @@ namespace bough::analysis::splitting {
 struct Structure {
   records::Deck deck;  ///< of one subcase: its SPC and MPC sets alone, under one id each
   std::vector<DeckItem> elements, rigid;
-  std::map<int, Eigen::Vector3d> position;    ///< of the grids, in basic
-  std::map<int, Eigen::Matrix3d> axes;        ///< CD axes of the grids, columns in basic
-  std::map<int, records::CardLocation> at;    ///< of the GRID cards
-  std::set<int> joined;                       ///< grids and points of elements and rigid elements
-  std::map<int, unsigned> held;               ///< components of joined grids that the deck holds, without common_held
-  std::map<int, unsigned> without_stiffness;  ///< components of grids that AUTOSPC fixes
-  unsigned common_held = 0;                   ///< components that are held at every grid of an element: a planar model
+  std::map<int, Eigen::Vector3d> position;  ///< of the grids, in basic
+  std::map<int, Eigen::Matrix3d> axes;      ///< CD axes of the grids, columns in basic
+  std::map<int, records::CardLocation> at;  ///< of the GRID cards
+  std::set<int> joined;                     ///< grids and points of elements and rigid elements
+  std::map<int, unsigned> held;             ///< components of joined grids that the deck holds, without common_held
+  unsigned common_held = 0;                 ///< components that are held at every grid of an element: a planar model
 
   SourceLocation locate(const records::CardLocation& card) const { return deck.locate(card); }
   SourceLocation locate_grid(int id) const {

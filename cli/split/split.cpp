@@ -139,9 +139,8 @@ void add_split(CLI::App& app, Action& action) {
       ->allow_extra_args(false);
   verb->add_option("--grids", choice.grids, "Cut at these grids")->delimiter(',');
   verb->add_option("--interface", choice.interface,
-                   "Of a cut along several grids: rigid (RBE2 to a new grid), average (RBE3), grids (each is joined by "
-                   "itself: exact, six modes a grid)")
-      ->check(CLI::IsMember({"rigid", "average", "grids"}))
+                   "Of a cut along several grids: rigid (RBE2 to a new grid) or average (RBE3)")
+      ->check(CLI::IsMember({"rigid", "average"}))
       ->capture_default_str();
   verb->add_option("--name", o->request.name, "Name of the bodies NAME-1, NAME-2, ... (default: the deck's)");
   verb->add_option("--modes", o->request.num_compared, "Elastic modes of the deck that the parts are to have")
