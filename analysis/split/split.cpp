@@ -32,6 +32,7 @@ constexpr double kFirstRange = 3;
 constexpr int kMaxRounds = 5;           ///< each doubles the range
 constexpr int kMaxRigidRounds = 3;      ///< with cuts along several grids
 constexpr double kTwistInertia = 1e-5;  ///< of what a line of bars carries
+constexpr double kDiscInertia = 0.6;    ///< of a disc about its diameter over that about its axis
 constexpr double kParallel = 1e-9;      ///< sine of the angle, and relative inertia that is round-off
 
 double calc_hz(double lambda) { return std::sqrt(std::max(lambda, 0.0)) / (2 * std::numbers::pi); }
@@ -127,26 +128,26 @@ void add_twist_inertia(const Structure& structure, const Partition& partition, c
   for (const auto& element : structure.elements) next_id = std::max(next_id, element.id);
   for (const auto& rigid : structure.rigid) next_id = std::max(next_id, rigid.id);
   next_id += static_cast<int>(64 * (1 + assembly.joints.size()));  // above the RBE2 of joints
-  const auto add = [&](int part, int node, const Part& load, double share = kTwistInertia) {
+  const auto add = [&](int part, int node, const Part& load) {
     const auto position = structure.position.find(node);
     if (part < 0 || position == structure.position.end()) return;
     const Eigen::Vector3d t = find_line(structure, partition, part, node);
     const double about_line = t.isZero(0) ? 0 : calc_inertia_about(load, position->second, t);
     if (!(about_line > kParallel * load.inertia.trace())) return;
-    const double J = share * about_line / wtmass;
+    const double J = kTwistInertia * about_line / wtmass;
     records::Conm2 mass;
     mass.id = ++next_id;
     mass.g = node;
+    // A disc across the line, a little thick: a body has no moment of inertia above the sum of the other two.
+    const Eigen::Matrix3d I = J * (kDiscInertia * Eigen::Matrix3d::Identity() + (1 - kDiscInertia) * t * t.transpose());
     // Off-diagonal terms of the card are products of inertia, those of the tensor their negatives.
-    mass.inertia = {J * t.x() * t.x(),  -J * t.x() * t.y(), J * t.y() * t.y(),
-                    -J * t.x() * t.z(), -J * t.y() * t.z(), J * t.z() * t.z()};
+    mass.inertia = {I(0, 0), -I(0, 1), I(1, 1), -I(0, 2), -I(1, 2), I(2, 2)};
     parts[static_cast<std::size_t>(part)].deck.conm2.push_back(mass);
   };
   for (auto link = assembly.links.rbegin(); link != assembly.links.rend(); ++link) {
     if (link->closes_loop) {
       add(link->parent, link->node, whole);
-      if (assembly.clamp[static_cast<std::size_t>(link->child)] != link->node)
-        add(link->child, link->node, whole, link->parent < 0 ? 1.0 : kTwistInertia);
+      if (assembly.clamp[static_cast<std::size_t>(link->child)] != link->node) add(link->child, link->node, whole);
     } else if (link->parent >= 0) {
       const Part& load = carried[static_cast<std::size_t>(link->child)];
       add(link->parent, link->node, load);

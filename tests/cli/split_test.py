@@ -129,7 +129,23 @@ class Split(ProgramTest):
         answer, messages = self.split(deck, "--grids", f"{corner},{other}")
         self.assertEqual(len(answer["parts"]), 4)
         self.assertIn(f'name = "ground-{feet[1]}"', self.read("deck-run.toml"))
-        self.compare(answer)
+        np.testing.assert_allclose([f["parts_hz"] for f in answer["frequencies"]], self.list_hz("deck.bdf", 10), rtol=1e-4)
+        # The system of the parts falls as one body with many modes does.
+        sensor = '\n[[sensor]]\nname = "middle"\ntype = "position"\nbody = "{}"\nnode = 10\n'
+        text = self.read("deck-run.toml").replace("duration = 2\n", "duration = 1\n")
+        self.write("parts.toml", text + sensor.format("deck-2"))
+        self.write("whole.toml", '[body]\ndeck = "deck.bdf"\n[body.modes]\nnumber = 60\n')
+        self.bough("reduce", "whole.toml", "-o", "whole.h5", "-q")
+        self.write("one.toml", '[[body]]\nname = "whole"\nfile = "whole.h5"\n[[hinge]]\nname = "base"\ntype = "fixed"\n'
+                   'child = "whole"\n\n' + text[text.index("[simulation]"):] + sensor.format("whole"))
+        histories = []
+        for name in ("parts", "one"):
+            self.bough("run", f"{name}.toml", "-o", f"{name}.h5", "-q")
+            with h5py.File(self.path(f"{name}.h5")) as f:
+                histories.append(f["sensors/middle"][:])
+        way = np.ptp(histories[1], axis=0)
+        self.assertGreater(way[2], .005)
+        np.testing.assert_allclose(histories[0], histories[1], atol=.03 * way.max())
 
     def test_free_beam_and_planar_deck(self):
         """Free in space; and free in a plane of which every grid holds 345: the hinge leaves the plane's motions."""
@@ -168,13 +184,12 @@ class Split(ProgramTest):
         np.testing.assert_allclose(system, [f["parts_hz"] for f in answer["frequencies"]], rtol=1e-6)
 
     def test_plate_by_averages(self):
-        """RBE3 leave the sections free to bend."""
+        """RBE3 leave the sections free to bend: the parts are softer than the deck."""
         answer, messages = self.split(make_plate(), "--parts", 3, "--interface", "average", number=5)
         self.assertIn("[split.inaccurate]", messages)
         self.assertEqual(self.read("deck-2.bdf").count("RBE3"), 2)
         hz = np.array([[f["deck_hz"], f["parts_hz"]] for f in answer["frequencies"]])
-        print(hz)
-        np.testing.assert_allclose(hz[:, 1], hz[:, 0], rtol=.3)
+        self.assertTrue((hz[:, 1] < hz[:, 0]).all(), hz)
         np.testing.assert_allclose(self.list_system_hz(number=5, shift=.1), hz[:, 1], rtol=3e-5)
 
     def test_solids_by_rigid_interfaces(self):
