@@ -144,6 +144,17 @@ int find_next_element(const Structure& structure) {
   return max + 1;
 }
 
+/// Components whose mean the new grid follows: translations, and of grids on one line the rotation nearest to it.
+/// Other rotations of shells, about their normal, have hardly any stiffness.
+unsigned find_averaged(const Structure& structure, const std::vector<int>& grids) {
+  constexpr unsigned kTranslations = 0b000111;
+  if (spans_plane(structure, grids)) return kTranslations;
+  const Eigen::Vector3d line = structure.position.at(grids.back()) - structure.position.at(grids.front());
+  Eigen::Index nearest = 0;
+  (structure.axes.at(grids.front()).transpose() * line).cwiseAbs().maxCoeff(&nearest);
+  return kTranslations | (1U << (3 + nearest));
+}
+
 /// The new grid of a joint, and RBE2 from it to the grids of the cut, without their held components, or an RBE3.
 void add_joint(const Structure& structure, const Joint& joint, bool is_held_by_deck, int& next_id,
                records::Deck& deck) {
@@ -162,7 +173,7 @@ void add_joint(const Structure& structure, const Joint& joint, bool is_held_by_d
     mean.id = next_id++;
     mean.ref_grid = joint.node;
     mean.ref_c = kAllComponents;
-    mean.groups.push_back({1.0, spans_plane(structure, joint.grids) ? 0b000111U : kAllComponents, joint.grids});
+    mean.groups.push_back({1.0, find_averaged(structure, joint.grids), joint.grids});
     deck.grids.push_back(node);
     deck.rbe3.push_back(mean);
     return;
