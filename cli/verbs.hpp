@@ -16,6 +16,7 @@ void add_check(CLI::App& app, Action& action);
 void add_modes(CLI::App& app, Action& action);
 void add_static(CLI::App& app, Action& action);
 void add_matrices(CLI::App& app, Action& action);
+void add_split(CLI::App& app, Action& action);
 void add_reduce(CLI::App& app, Action& action);
 void add_integrals(CLI::App& app, Action& action);
 void add_flx(CLI::App& app, Action& action);

@@ -80,8 +80,9 @@ std::vector<ModalRangeMonitor::Crossing> ModalRangeMonitor::find_crossings(doubl
                          "body '" + system_.body_name(w.body) + "' deflects by " + short_text(largest) + " at node " +
                              std::to_string(where) + " at t = " + short_text(t) + ", more than " +
                              short_text(100 * limit) + " % of its size " + short_text(w.size),
-                         is_third ? "displacements to third order lose their digits there; split the body into several"
-                                  : "linear modes lose their meaning there; split the body into several"});
+                         std::string(is_third ? "displacements to third order lose their digits there"
+                                              : "linear modes lose their meaning there") +
+                             "; cut its deck into several bodies with bough split DECK --parts N"});
       }
     }
   }

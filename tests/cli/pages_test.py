@@ -234,6 +234,7 @@ PAGES = {
     "docs/tutorials/stage-separation.md": Page(output=True),
     "docs/tutorials/flx-batch.md": Page(output=True),
     "docs/tutorials/rotor-blade.md": Page(output=True),
+    "docs/tutorials/mast-in-parts.md": Page(output=True),
     "docs/python.md": boom({"arm.toml": ARM}, python=f"import sys\nsys.path.insert(0, {READER!r})",
                            stands_for={"spinup.toml": "short.toml", "spinup.h5": "run.h5"}),
     "docs/report.md": Page(),

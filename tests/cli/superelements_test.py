@@ -71,6 +71,9 @@ class Written(ProgramTest):
         self.write("assembly.bdf", ASSEMBLY)
         self.result = self.bough("export", "top.bdf", "--to", "extseout", "-o", "top.op4")
 
+    def test_split_refuses_superelements(self):
+        self.fails(1, "split", "assembly.bdf", "--parts", 2, error="split.superelements")
+
     def find_modes(self, deck, *options):
         return np.array(json.loads(self.bough("modes", deck, "--json", *options).stdout)["frequency_hz"])
 

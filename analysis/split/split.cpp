@@ -1,0 +1,334 @@
+#include "analysis/split/split.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <numbers>
+
+#include "analysis/common/failures.hpp"
+#include "analysis/common/inputs.hpp"
+#include "analysis/common/ranks.hpp"
+#include "analysis/split/assembled_modes.hpp"
+#include "analysis/split/part_deck.hpp"
+#include "analysis/split/part_files.hpp"
+#include "fe/linear/petsc.hpp"
+#include "fe/matrices/assembly.hpp"
+#include "fe/matrices/connected_parts.hpp"
+#include "fe/statics/build_model.hpp"
+#include "formats/nastran/writer.hpp"
+#include "modal/eigen.hpp"
+#include "stiffening/reduce.hpp"
+
+namespace bough::analysis {
+
+using namespace splitting;
+
+namespace {
+
+/// Highest frequency of the modes of a part, with the cuts held, over that of the highest mode compared.
+constexpr double kFirstRange = 3;
+constexpr int kMaxRounds = 5;           ///< each doubles the range
+constexpr int kMaxRigidRounds = 3;      ///< with cuts along several grids
+constexpr double kTwistInertia = 1e-5;  ///< of what a line of bars carries
+constexpr double kDiscInertia = 0.6;    ///< of a disc about its diameter over that about its axis
+constexpr double kParallel = 1e-9;      ///< sine of the angle, and relative inertia that is round-off
+
+double calc_hz(double lambda) { return std::sqrt(std::max(lambda, 0.0)) / (2 * std::numbers::pi); }
+
+/// Elastic modes of the whole deck.
+struct WholeModes {
+  Eigen::VectorXd hz;
+  int num_rigid = 0;
+};
+
+WholeModes calc_whole_modes(const fe::Model& model, int number, Diagnostics& diagnostics) {
+  modal::EigenOptions options;
+  options.num_modes = number + 6;
+  const auto pairs = modal::calc_normal_modes(model, options, diagnostics);
+  WholeModes modes;
+  modes.num_rigid = pairs.num_rigid;
+  const Eigen::Index kept = std::min<Eigen::Index>(number, pairs.lambda.size() - pairs.num_rigid);
+  modes.hz.resize(std::max<Eigen::Index>(kept, 0));
+  for (Eigen::Index i = 0; i < modes.hz.size(); ++i) modes.hz(i) = calc_hz(pairs.lambda(pairs.num_rigid + i));
+  return modes;
+}
+
+bool has_rigid_joint(const Assembly& assembly) {
+  return std::any_of(assembly.joints.begin(), assembly.joints.end(), [](const auto& joint) { return joint.is_new; });
+}
+
+/// Returns true if the constraints of the deck hold the part by themselves.
+bool is_held_by_deck(const Structure& structure, Partition partition, int part) {
+  std::vector<int> number(static_cast<std::size_t>(partition.num_parts));
+  for (int i = 0; i < partition.num_parts; ++i) number[static_cast<std::size_t>(i)] = i == part ? 0 : i + 1;
+  renumber(number, partition);
+  Assembly alone;
+  alone.is_held = true;
+  alone.clamp.assign(static_cast<std::size_t>(partition.num_parts) + 1, 0);
+  alone.is_averaged.assign(alone.clamp.size(), 0);
+  try {
+    Diagnostics ignored;
+    const auto model = fe::build_model(make_part_deck(structure, partition, alone, 0), {}, ignored);
+    return ignored.num_errors() == 0 && fe::count_held_motions(model) == 6;
+  } catch (const Failure&) {
+    return false;
+  }
+}
+
+/// A part with its deck.
+struct Part {
+  records::Deck deck;
+  double mass = 0;
+  Eigen::Vector3d moment = Eigen::Vector3d::Zero();   ///< mass times centre of mass, basic
+  Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();  ///< about the origin of basic
+  int num_elements = 0;
+};
+
+/// Direction of the line elements of the part at the grid; zero if others are there or they are not parallel.
+Eigen::Vector3d find_line(const Structure& structure, const Partition& partition, int part, int grid) {
+  Eigen::Vector3d line = Eigen::Vector3d::Zero();
+  for (std::size_t i = 0; i < structure.elements.size(); ++i) {
+    const auto& element = structure.elements[i];
+    if (partition.element_part[i] != part || !is_structural(element) ||
+        std::find(element.grids.begin(), element.grids.end(), grid) == element.grids.end())
+      continue;
+    if (element.card != "CBAR" && element.card != "CBEAM") return Eigen::Vector3d::Zero();
+    const Eigen::Vector3d along =
+        (structure.position.at(element.grids[0]) - structure.position.at(element.grids[1])).normalized();
+    if (line.isZero(0)) line = along;
+    if (line.cross(along).norm() > kParallel) return Eigen::Vector3d::Zero();
+  }
+  return line;
+}
+
+/// Mass, its moment and its inertia of several parts.
+void add_mass(const Part& part, Part& sum) {
+  sum.mass += part.mass;
+  sum.moment += part.moment;
+  sum.inertia += part.inertia;
+}
+
+/// Moment of inertia of the mass about a line through p.
+double calc_inertia_about(const Part& mass, const Eigen::Vector3d& p, const Eigen::Vector3d& line) {
+  return line.dot(mass.inertia * line) - 2 * (p.dot(mass.moment) - line.dot(p) * line.dot(mass.moment)) +
+         mass.mass * (p.squaredNorm() - std::pow(line.dot(p), 2));
+}
+
+/// A line of bars has no inertia in twist: the twist of a part has mass only through other parts. Each cut of a line,
+/// except the one that carries the part, gets a CONM2 with kTwistInertia of the inertia about the line: of what the cut
+/// carries, or of all parts if it closes a loop. At the ground it does not move.
+void add_twist_inertia(const Structure& structure, const Partition& partition, const Assembly& assembly, double wtmass,
+                       std::vector<Part>& parts) {
+  Part whole;
+  for (const auto& part : parts) add_mass(part, whole);
+  std::vector<Part> carried = parts;
+  int next_id = 0;
+  for (const auto& element : structure.elements) next_id = std::max(next_id, element.id);
+  for (const auto& rigid : structure.rigid) next_id = std::max(next_id, rigid.id);
+  next_id += static_cast<int>(64 * (1 + assembly.joints.size()));  // above the RBE2 of joints
+  const auto add = [&](int part, int node, const Part& load) {
+    const auto position = structure.position.find(node);
+    if (part < 0 || position == structure.position.end()) return;
+    const Eigen::Vector3d t = find_line(structure, partition, part, node);
+    const double about_line = t.isZero(0) ? 0 : calc_inertia_about(load, position->second, t);
+    if (!(about_line > kParallel * load.inertia.trace())) return;
+    const double J = kTwistInertia * about_line / wtmass;
+    records::Conm2 mass;
+    mass.id = ++next_id;
+    mass.g = node;
+    // A disc across the line, a little thick: a body has no moment of inertia above the sum of the other two.
+    const Eigen::Matrix3d I = J * (kDiscInertia * Eigen::Matrix3d::Identity() + (1 - kDiscInertia) * t * t.transpose());
+    // Off-diagonal terms of the card are products of inertia, those of the tensor their negatives.
+    mass.inertia = {I(0, 0), -I(0, 1), I(1, 1), -I(0, 2), -I(1, 2), I(2, 2)};
+    parts[static_cast<std::size_t>(part)].deck.conm2.push_back(mass);
+  };
+  for (auto link = assembly.links.rbegin(); link != assembly.links.rend(); ++link) {
+    if (link->closes_loop) {
+      add(link->parent, link->node, whole);
+      if (assembly.clamp[static_cast<std::size_t>(link->child)] != link->node) add(link->child, link->node, whole);
+    } else if (link->parent >= 0) {
+      const Part& load = carried[static_cast<std::size_t>(link->child)];
+      add(link->parent, link->node, load);
+      add_mass(load, carried[static_cast<std::size_t>(link->parent)]);
+    }
+  }
+}
+
+std::vector<Part> make_parts(const Structure& structure, const Partition& partition, const Assembly& assembly,
+                             Diagnostics& diagnostics) {
+  std::vector<Part> parts;
+  for (int i = 0; i < partition.num_parts; ++i) {
+    Part part;
+    part.deck = make_part_deck(structure, partition, assembly, i);
+    SourceLocation first{structure.locate({})};
+    for (std::size_t e = structure.elements.size(); e-- > 0;)
+      if (partition.element_part[e] == i) {
+        ++part.num_elements;
+        first = structure.locate(structure.elements[e].at);
+      }
+    Diagnostics of_part;
+    const auto model = fe::build_model(part.deck, {}, of_part);
+    of_part.throw_if_errors();
+    const auto mass = fe::calc_mass_properties(model, model.mass_kind(), Eigen::Vector3d::Zero());
+    part.mass = mass.mass;
+    part.moment = mass.mass * mass.cg;
+    part.inertia = mass.inertia;
+    if (!(part.mass > 0))
+      diagnostics.error("split.no-mass", first, fmt::format("part {} has no mass", i + 1),
+                        "give its material a density, or cut such that each part has mass");
+    parts.push_back(std::move(part));
+  }
+  diagnostics.throw_if_errors();
+  return parts;
+}
+
+/// The parts reduced with modes to `max_hz`, and what their assembly has of the modes of the whole.
+struct Reduction {
+  std::vector<records::FlexBody> bodies;
+  std::vector<ComparedFrequency> frequencies;
+  Diagnostics diagnostics;
+
+  double calc_error() const {
+    double error = 0;
+    for (const auto& frequency : frequencies) error = std::max(error, std::abs(frequency.error()));
+    return error;
+  }
+};
+
+Reduction reduce_parts(const std::vector<Part>& parts, const PartNames& names, const Structure& structure,
+                       const Assembly& assembly, const WholeModes& whole, double max_hz, Events& events) {
+  Reduction reduction;
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    events.show_progress(fmt::format("split: reduction of part {} of {}", i + 1, parts.size()));
+    const auto spec = make_part_spec(names, assembly, static_cast<int>(i), max_hz);
+    reduction.bodies.push_back(stiffening::reduce(parts[i].deck, spec, {}, reduction.diagnostics).body);
+    reduction.diagnostics.throw_if_errors();
+  }
+  events.show_progress("split: modes of the assembled parts");
+  std::vector<const records::FlexBody*> bodies;
+  for (const auto& body : reduction.bodies) bodies.push_back(&body);
+  const double omega = 2 * std::numbers::pi * whole.hz(0);
+  const auto lambda = calc_assembled_eigenvalues(bodies, structure, assembly, omega * omega);
+  for (Eigen::Index i = 0; i < whole.hz.size(); ++i) {
+    const auto j = i + whole.num_rigid;
+    reduction.frequencies.push_back({whole.hz(i), j < lambda.size() ? calc_hz(lambda(j)) : INFINITY});
+  }
+  events.show_progress("");
+  return reduction;
+}
+
+/// Rounded, so that the body file has the number of the reduction.
+double round_hz(double hz) { return std::stod(fmt::format("{:.3g}", hz)); }
+
+/// Widens the range of the modes until the frequencies of the assembly are accurate to kMaxSplitError, less often if
+/// cuts are rigid or averages: more modes do not correct these.
+Reduction reduce_to_accuracy(const std::vector<Part>& parts, const PartNames& names, const Structure& structure,
+                             const Assembly& assembly, const WholeModes& whole, double& max_hz, Events& events) {
+  const int max_rounds = has_rigid_joint(assembly) ? kMaxRigidRounds : kMaxRounds;
+  for (int round = 1;; ++round) {
+    auto reduction = reduce_parts(parts, names, structure, assembly, whole, max_hz, events);
+    if (round == max_rounds || reduction.calc_error() <= kMaxSplitError) return reduction;
+    max_hz = round_hz(2 * max_hz);
+  }
+}
+
+/// Returns true for warnings of directions of a cut that move no mass, if the assembly is accurate without these.
+bool is_expected(const Diagnostic& item, const Reduction& reduction) {
+  const bool is_massless = item.id == "modal.massless-interface" || item.id == "modal.massless-constraint";
+  return is_massless && reduction.calc_error() <= kMaxSplitError;
+}
+
+void warn_of_error(const Reduction& reduction, const Structure& structure, const Assembly& assembly,
+                   Diagnostics& diagnostics) {
+  const double error = reduction.calc_error();
+  if (!(error > kMaxSplitError)) return;
+  const bool has_rigid =
+      std::any_of(assembly.joints.begin(), assembly.joints.end(), [](const auto& joint) { return joint.is_new; });
+  diagnostics.warning(
+      "split.inaccurate", structure.locate({}),
+      fmt::format("frequencies of the assembled parts differ by up to {:.2g} from those of the deck, "
+                  "allowed {:.0e}{}",
+                  error, kMaxSplitError, has_rigid ? "; cuts along several grids join these by a rigid element" : ""),
+      has_rigid ? "cut where the section is stiff, or try the other --interface"
+                : "raise max_frequency of the body files, refine the mesh, or use PARAM,COUPMASS,1");
+}
+
+void note_pieces(const Partition& partition, const Structure& structure, Diagnostics& diagnostics) {
+  if (partition.num_pieces > 0)
+    diagnostics.note("split.pieces", structure.locate({}),
+                     fmt::format("{} parts were chosen, {} are made: pieces that nothing connects are separate parts",
+                                 partition.num_parts - partition.num_pieces, partition.num_parts),
+                     "nothing to do");
+}
+
+}  // namespace
+
+SplitAnswer split_deck(const SplitRequest& request, Events& events) {
+  do_once([&] { demand_deck(request.deck); });
+  fe::initialize_petsc();
+  Diagnostics diagnostics;
+  const auto model_options = make_model_options(request.model);
+  const auto deck = read_deck_or_throw(request.deck, model_options, diagnostics);
+  SplitAnswer answer;
+  with_prior_messages(diagnostics, [&] {
+    const auto model = fe::build_model(deck, model_options, diagnostics);
+    diagnostics.throw_if_errors();
+    const auto structure = make_structure(deck, model, diagnostics);
+    auto partition = assign_elements(structure, request.choice);
+    assign_attached(structure, partition);
+    const int root = find_most_held(structure, partition);
+    const bool is_held = is_held_by_deck(structure, partition, root);
+    const auto assembly =
+        make_assembly(structure, find_joints(structure, partition, request.choice.interface), is_held, root, partition);
+    note_pieces(partition, structure, diagnostics);
+
+    PartNames names{request.name, request.deck_path.empty() ? request.deck : request.deck_path};
+    if (names.base.empty()) names.base = std::filesystem::path(request.deck).stem().string();
+    auto parts = make_parts(structure, partition, assembly, diagnostics);
+    add_twist_inertia(structure, partition, assembly, model.wtmass(), parts);
+    events.show_progress("split: modes of the deck");
+    const auto whole = calc_whole_modes(model, std::max(request.num_compared, 1), diagnostics);
+    events.show_progress("");
+    if (whole.hz.size() == 0)
+      throw InputError("split.no-elements", deck.locate({}), "the deck has no elastic mode",
+                       "give the model elements with stiffness and mass");
+    answer.mass = fe::calc_mass_properties(model, model.mass_kind(), Eigen::Vector3d::Zero()).mass;
+
+    double max_hz = round_hz(kFirstRange * whole.hz(whole.hz.size() - 1));
+    Reduction reduction;
+    if (request.is_checked) reduction = reduce_to_accuracy(parts, names, structure, assembly, whole, max_hz, events);
+    for (const auto& item : reduction.diagnostics.items())
+      if (!is_expected(item, reduction)) diagnostics.add_new(item);
+    answer.frequencies = reduction.frequencies;
+    warn_of_error(reduction, structure, assembly, diagnostics);
+
+    parts.front().deck.unused = deck.unused;  // reported once by the writer
+    parts.front().deck.left_out = deck.left_out;
+    parts.front().deck.card_counts = deck.card_counts;
+    for (int i = 0; i < partition.num_parts; ++i) {
+      const auto index = static_cast<std::size_t>(i);
+      const auto spec = make_part_spec(names, assembly, i, max_hz);
+      answer.files.push_back({spec.deck, nastran::write_deck(parts[index].deck, {}, diagnostics)});
+      answer.files.push_back({spec.name + ".toml", write_part_file(names, assembly, i, spec)});
+      SplitPart part;
+      part.name = spec.name;
+      for (const auto& link : assembly.links)
+        if (link.child == i && !link.closes_loop)
+          part.parent = link.parent < 0 ? "ground" : names.get_part(link.parent);
+      part.node = assembly.clamp[index];
+      part.num_elements = parts[index].num_elements;
+      part.num_grids = static_cast<int>(parts[index].deck.grids.size());
+      part.mass = parts[index].mass;
+      if (request.is_checked) part.body = std::move(reduction.bodies[index]);
+      answer.parts.push_back(std::move(part));
+    }
+    answer.files.push_back({names.base + "-run.toml", write_system_file(names, structure, assembly, whole.hz(0))});
+    diagnostics.throw_if_errors();
+  });
+  add_messages(diagnostics, events);
+  return answer;
+}
+
+}  // namespace bough::analysis

@@ -1,0 +1,298 @@
+"""`bough split`: a deck cut into bodies. The frequencies of the written system, whose bodies are reduced here from the
+written decks, are those that `bough modes` finds for the deck."""
+import json
+import os
+import unittest
+
+import h5py
+import numpy as np
+
+from support import ProgramTest
+
+MATERIAL = "MAT1,1,7.+10,,.3,2700.\n"
+HEAD = "SOL 103\nCEND\n{control}BEGIN BULK\nPARAM,COUPMASS,1\nPARAM,AUTOSPC,YES\n"
+
+
+def make_line(points, first=1):
+    """Grids through points and CBAR between them, ids from `first`."""
+    text = "".join(f"GRID,{first + i},,{x:.12g},{y:.12g},{z:.12g}\n" for i, (x, y, z) in enumerate(points))
+    return text + "".join(f"CBAR,{first + i},1,{first + i},{first + i + 1},.1,.2,1.\n" for i in range(len(points) - 1))
+
+
+def make_deck(bulk, control="SPC = 1\n", more="SPC1,1,123456,1\n"):
+    return HEAD.format(control=control) + "PBAR,1,1,1.-4,2.-8,1.-8,2.-8\n" + MATERIAL + bulk + more + "ENDDATA\n"
+
+
+def make_boom(n=40, length=8., **more):
+    return make_deck(make_line([(length * i / n, 0., 0.) for i in range(n + 1)]), **more)
+
+
+def make_l_frame(n=12):
+    points = [(3. * i / n, 0., 0.) for i in range(n)] + [(3., 2. * i / n, .5 * i / n) for i in range(n + 1)]
+    return make_deck(make_line(points))
+
+
+def make_plate(nx=12, ny=3, more="SPC1,1,123456,1,14,27,40\n", control="SPC = 1\n"):
+    """1.2 by 0.3 of 2 mm; grid j (nx + 1) + i + 1 at station i."""
+    text = "PSHELL,1,1,.002,1,,1\nPARAM,K6ROT,100.\n"
+    for j in range(ny + 1):
+        for i in range(nx + 1):
+            text += f"GRID,{j * (nx + 1) + i + 1},,{.1 * i:.6g},{.1 * j:.6g},0.\n"
+    for j in range(ny):
+        for i in range(nx):
+            a = j * (nx + 1) + i + 1
+            text += f"CQUAD4,{j * nx + i + 1},1,{a},{a + 1},{a + nx + 2},{a + nx + 1}\n"
+    return HEAD.format(control=control) + MATERIAL + text + more + "ENDDATA\n"
+
+
+class Split(ProgramTest):
+    def split(self, deck, *arguments, name="deck.bdf", number=10):
+        self.write(name, deck)
+        result = self.bough("split", name, *arguments, "--modes", number, "--json")
+        return json.loads(result.stdout), result.stderr
+
+    def modes(self, name, number):
+        return json.loads(self.bough("modes", name, "-n", number, "--json").stdout)
+
+    def list_hz(self, name, number):
+        """Elastic frequencies by `bough modes`."""
+        self.bough("modes", name, "-n", number + 6, "-o", self.path("whole.h5"), "-q")
+        with h5py.File(self.path("whole.h5")) as f:
+            hz = f["modes/frequency_hz"][:]
+        return hz[hz > 1e-6 * hz.max()][:number]
+
+    def list_system_hz(self, system="deck-run.toml", number=10, shift=1.):
+        """Elastic frequencies of the system of the written files, every body reduced again, without gravity."""
+        for name in sorted(os.listdir(self.folder)):
+            if name.startswith("deck-") and name.endswith(".toml") and not name.endswith("-run.toml"):
+                os.remove(self.path(name.replace(".toml", ".h5")))
+                self.bough("reduce", name, "-q")
+        self.write(system, self.read(system).replace("[0.0, 0.0, -9.81]", "[0.0, 0.0, 0.0]"))
+        self.bough("linearize", system, "-o", self.path("linear.h5"), "-q")
+        with h5py.File(self.path("linear.h5")) as f:
+            poles = f["poles/real"][:] + 1j * f["poles/imag"][:]
+        hz = np.sort(poles.imag[poles.imag > 0]) / (2 * np.pi)
+        return hz[hz > shift][:number]
+
+    def compare(self, answer, number=10, tolerance=1e-4, shift=None, name="deck.bdf"):
+        """The system and the program's own table, with the modes of the deck."""
+        expected = self.list_hz(name, number)
+        table = np.array([[f["deck_hz"], f["parts_hz"]] for f in answer["frequencies"]])
+        np.testing.assert_allclose(table[:, 0], expected, rtol=1e-9)
+        np.testing.assert_allclose(table[:, 1], expected, rtol=tolerance)
+        system = self.list_system_hz(number=number, shift=.1 * expected[0] if shift is None else shift)
+        np.testing.assert_allclose(system, table[:, 1], rtol=3e-5)
+        self.assertAlmostEqual(answer["parts_mass"] / answer["mass"], 1, delta=1e-12)
+        self.assertAlmostEqual(sum(part["mass"] for part in answer["parts"]) / answer["mass"], 1, delta=1e-12)
+
+    def test_boom_in_one_four_and_eight_parts(self):
+        """First frequencies by the closed form of a clamped beam, too."""
+        for parts in (1, 4, 8):
+            answer, messages = self.split(make_boom(), "--parts", parts)
+            self.assertEqual(len(answer["parts"]), parts)
+            self.assertEqual([p["elements"] for p in answer["parts"]], parts * [40 // parts])
+            self.assertNotIn("warning", messages)
+            self.compare(answer)
+            mass = 2700e-4
+            exact = 1.875104069 ** 2 / (2 * np.pi) * np.sqrt(7e10 * 1e-8 / (mass * 8. ** 4))
+            self.assertAlmostEqual(answer["frequencies"][0]["parts_hz"] / exact, 1, delta=1e-4)
+            self.assertAlmostEqual(answer["mass"] / (8 * mass), 1, delta=1e-12)
+            for name in os.listdir(self.folder):
+                os.remove(self.path(name))
+
+    def test_l_frame_twists_through_its_cuts(self):
+        """Path over the corner; the twist of the first leg has mass only through the second."""
+        answer, messages = self.split(make_l_frame(), "--parts", 4)
+        self.assertNotIn("warning", messages)
+        self.assertEqual([p["parent"] for p in answer["parts"]], ["ground", "deck-1", "deck-2", "deck-3"])
+        self.compare(answer)
+
+    def test_branches_become_parts_and_loops_are_closed(self):
+        """A portal frame with a cantilevered branch, cut at grids: two feet at the ground, a joint of three parts."""
+        n = 6
+        left = [(0., 0., 3. * i / n) for i in range(n + 1)]
+        beam = [(4. * i / n, 0., 3.) for i in range(n + 1)]
+        right = [(4., 0., 3. - 3. * i / n) for i in range(n + 1)]
+        text, ids = "", {}
+        for x, y, z in left + beam[1:] + right[1:] + [(0., .5, 3.), (0., 1., 3.), (0., 1.5, 3.)]:
+            ids[(x, y, z)] = len(ids) + 1
+            text += f"GRID,{len(ids)},,{x:.12g},{y:.12g},{z:.12g}\n"
+        chains = [left, beam, right, [(0., 0., 3.), (0., .5, 3.), (0., 1., 3.), (0., 1.5, 3.)]]
+        element = 0
+        for chain in chains:
+            for a, b in zip(chain, chain[1:]):
+                element += 1
+                text += f"CBAR,{element},1,{ids[a]},{ids[b]},.3,.5,.2\n"
+        feet = ids[left[0]], ids[right[-1]]
+        corner, other = ids[(0., 0., 3.)], ids[(4., 0., 3.)]
+        deck = make_deck(text, more="".join(f"SPC1,1,123456,{g}\n" for g in feet))
+        answer, messages = self.split(deck, "--grids", f"{corner},{other}")
+        self.assertEqual(len(answer["parts"]), 4)
+        self.assertIn(f'name = "ground-{feet[1]}"', self.read("deck-run.toml"))
+        np.testing.assert_allclose([f["parts_hz"] for f in answer["frequencies"]], self.list_hz("deck.bdf", 10), rtol=1e-4)
+        # The system of the parts falls as one body with many modes does.
+        sensor = '\n[[sensor]]\nname = "middle"\ntype = "position"\nbody = "{}"\nnode = 10\n'
+        text = self.read("deck-run.toml").replace("duration = 2\n", "duration = 1\n")
+        self.write("parts.toml", text + sensor.format("deck-2"))
+        self.write("whole.toml", '[body]\ndeck = "deck.bdf"\n[body.modes]\nnumber = 60\n')
+        self.bough("reduce", "whole.toml", "-o", "whole.h5", "-q")
+        self.write("one.toml", '[[body]]\nname = "whole"\nfile = "whole.h5"\n[[hinge]]\nname = "base"\ntype = "fixed"\n'
+                   'child = "whole"\n\n' + text[text.index("[simulation]"):] + sensor.format("whole"))
+        histories = []
+        for name in ("parts", "one"):
+            self.bough("run", f"{name}.toml", "-o", f"{name}.h5", "-q")
+            with h5py.File(self.path(f"{name}.h5")) as f:
+                histories.append(f["sensors/middle"][:])
+        way = np.ptp(histories[1], axis=0)
+        self.assertGreater(way[2], .005)
+        np.testing.assert_allclose(histories[0], histories[1], atol=.03 * way.max())
+
+    def test_free_beam_and_planar_deck(self):
+        """Free in space; and free in a plane of which every grid holds 345: the hinge leaves the plane's motions."""
+        ends = "CONM2,201,1,,.5,.0,.1,.3\nCONM2,202,41,,.5,.0,.3,-.1\n"  # without them nothing has inertia in twist
+        answer, _ = self.split(make_boom(control="", more=ends), "--parts", 3, number=6)
+        self.assertIn('type = "free"', self.read("deck-run.toml"))
+        self.compare(answer, number=6)
+        for name in os.listdir(self.folder):
+            os.remove(self.path(name))
+        deck = make_boom(control="", more="").replace("PARAM,AUTOSPC,YES", "PARAM,AUTOSPC,YES\nGRDSET,,,,,,,345")
+        answer, _ = self.split(deck, "--parts", 3, number=6)
+        self.compare(answer, number=6)
+
+    def test_simply_supported_beam(self):
+        """A pin at one end, a roller at the other: no part is held by itself."""
+        deck = make_boom(more="SPC1,1,1234,1\nSPC1,1,23,41\n")
+        answer, _ = self.split(deck, "--parts", 4)
+        self.assertIn('type = "general"', self.read("deck-run.toml"))
+        self.compare(answer)
+        exact = np.pi / 2 * np.sqrt(7e10 * 1e-8 / (2700e-4 * 8. ** 4))
+        self.assertAlmostEqual(answer["frequencies"][0]["parts_hz"] / exact, 1, delta=1e-4)
+
+    def test_plate_by_rigid_interfaces(self):
+        """The frequencies of the parts are those of the whole deck with RBE2 along the cuts; their error is reported."""
+        answer, messages = self.split(make_plate(), "--parts", 3, number=5)
+        self.assertEqual(len(answer["parts"]), 3)
+        self.assertIn("[split.inaccurate]", messages)
+        rigid = make_plate(more="SPC1,1,123456,1,14,27,40\n" + "".join(
+            f"GRID,{100 + c},,{.1 * c:.6g},.15,0.\nRBE2,{900 + c},{100 + c},123456,{c + 1},{c + 14},{c + 27},{c + 40}\n"
+            for c in (4, 8)))
+        self.write("rigid.bdf", rigid)
+        expected = self.list_hz("rigid.bdf", 5)
+        np.testing.assert_allclose([f["parts_hz"] for f in answer["frequencies"]], expected, rtol=5e-4)
+        self.assertEqual(self.read("deck-2.bdf").count("RBE2"), 2)
+        system = self.list_system_hz(number=5)
+        np.testing.assert_allclose(system, [f["parts_hz"] for f in answer["frequencies"]], rtol=1e-6)
+
+    def test_plate_by_averages(self):
+        """RBE3 leave the sections free to bend: the parts are softer than the deck."""
+        answer, messages = self.split(make_plate(), "--parts", 3, "--interface", "average", number=5)
+        self.assertIn("[split.inaccurate]", messages)
+        self.assertEqual(self.read("deck-2.bdf").count("RBE3"), 2)
+        hz = np.array([[f["deck_hz"], f["parts_hz"]] for f in answer["frequencies"]])
+        self.assertTrue((hz[:, 1] < hz[:, 0]).all(), hz)
+        np.testing.assert_allclose(hz[:, 1], hz[:, 0], rtol=.04)
+        np.testing.assert_allclose(self.list_system_hz(number=5, shift=.1), hz[:, 1], rtol=3e-5)
+
+    def test_solids_by_rigid_interfaces(self):
+        """A column of bricks; the section is stiff: the cuts cost less than 2 %."""
+        text, n = "PSOLID,1,1\n", 12
+        for i in range(n + 1):
+            for k, (y, z) in enumerate(((0., 0.), (.1, 0.), (.1, .1), (0., .1))):
+                text += f"GRID,{4 * i + k + 1},,{.1 * i:.6g},{y},{z}\n"
+        for i in range(n):
+            a = 4 * i
+            text += f"CHEXA,{i + 1},1,{a + 1},{a + 5},{a + 6},{a + 2},{a + 4},{a + 8},\n,{a + 7},{a + 3}\n"
+        deck = HEAD.format(control="SPC = 1\n") + MATERIAL + text + "SPC1,1,123,1,2,3,4\nENDDATA\n"
+        answer, _ = self.split(deck, "--parts", 2, number=4)
+        hz = np.array([[f["deck_hz"], f["parts_hz"]] for f in answer["frequencies"]])
+        np.testing.assert_allclose(hz[:, 1], hz[:, 0], rtol=.02)
+        np.testing.assert_allclose(self.list_system_hz(number=4), hz[:, 1], rtol=1e-6)
+
+    def test_masses_loads_and_rigid_elements_come_once(self):
+        more = ("SPC1,1,123456,1\nCONM2,101,21,,3.,.1,0.,.2\nCONM2,102,31,,2.\nCMASS2,103,1.5,41,1\nCMASS2,106,1.5,41,2\n"
+                "CMASS2,107,1.5,41,3\n"
+                "GRID,50,,4.,.3,0.\nRBE2,104,21,123456,50\nCONM2,105,50,,.7\nFORCE,7,21,,10.,0.,0.,1.\n"
+                "FORCE,7,31,,5.,0.,1.,0.\nFORCE,7,41,,1.,1.,0.,0.\n")
+        deck = make_boom(control="SPC = 1\nLOAD = 7\n", more=more)
+        answer, messages = self.split(deck, "--parts", 4)
+        texts = [self.read(f"deck-{i}.bdf") for i in range(1, 5)]
+        counts = {card: [text.count(f"\n{card} ") for text in texts] for card in ("FORCE", "CMASS2", "RBE2")}
+        self.assertEqual(counts, {"FORCE": [0, 1, 1, 1], "CMASS2": [0, 0, 0, 3], "RBE2": [0, 1, 0, 0]})
+        self.assertAlmostEqual(answer["parts_mass"], 8 * .27 + 3 + 2 + .7 + 1.5, delta=1e-9)
+        self.compare(answer)
+
+    def test_planes_properties_and_elements(self):
+        """Two cuts by planes, by lists and by properties give equal parts."""
+        by_plane, _ = self.split(make_boom(), "--plane", "x=2", "--plane", "2,0,0=10")
+        elements = [p["elements"] for p in by_plane["parts"]]
+        self.assertEqual(elements, [10, 15, 15])
+        by_list, _ = self.split(make_boom(), "--elements", "1-10", "--elements", "11-20,21-25")
+        self.assertEqual([p["elements"] for p in by_list["parts"]], elements)
+        np.testing.assert_allclose([f["parts_hz"] for f in by_list["frequencies"]],
+                                   [f["parts_hz"] for f in by_plane["frequencies"]], rtol=1e-9)
+        two = make_boom().replace("PBAR,1,1", "PBAR,2,1,1.-4,2.-8,1.-8,2.-8\nPBAR,1,1")
+        for i in range(26, 41):
+            two = two.replace(f"\nCBAR,{i},1,", f"\nCBAR,{i},2,")
+        by_property, messages = self.split(two, "--elements", "property:1")
+        self.assertNotIn("split.pieces", messages)
+        _, messages = self.split(make_boom(), "--elements", "11-20")  # two pieces are left
+        self.assertIn("[split.pieces]", messages)
+        self.assertEqual([p["elements"] for p in by_property["parts"]], [25, 15])
+
+    def test_bad_cuts_are_named(self):
+        self.write("deck.bdf", make_boom(n=8))
+        bad = [(("--grids", "9"), "split.nothing-separated", "deck.bdf:"), (("--grids", "77"), "split.unknown-grid", "77"),
+               (("--grids", "3,3"), "split.bad-choice", "twice"), ((), "split.bad-choice", "--parts"),
+               (("--parts", "2", "--grids", "3"), "split.bad-choice", "two ways"),
+               (("--plane", "x=99"), "split.nothing-separated", "x=99"), (("--plane", "w=1"), "split.bad-plane", "w=1"),
+               (("--plane", "0,0,0=1"), "split.bad-plane", "0,0,0=1"),
+               (("--elements", "1-8"), "split.nothing-separated", "one part"),
+               (("--elements", "1-3", "--elements", "3-5"), "split.element-in-two-parts", "deck.bdf:"),
+               (("--elements", "90"), "split.unknown-element", "90"), (("--elements", "a"), "split.bad-choice", "--elements"),
+               (("--parts", "9"), "split.too-many-parts", "--parts 8")]
+        for arguments, error, words in bad:
+            self.fails(1, "split", "deck.bdf", *arguments, error=error, says=[words])
+        self.assertEqual(os.listdir(self.folder), ["deck.bdf"])
+
+    def test_bad_decks_are_named(self):
+        boom = make_boom(n=8)
+        bad = [("RBE2,90,4,123456,6\n", ("--plane", "x=4"), "split.rigid-across-cut", "RBE2 90"),
+               ("CELAS2,91,1.+3,9,3\n", ("--parts", "2"), "split.grounded", "CELAS2 91"),
+               ("ASET1,12356,9\n", ("--parts", "2"), "split.omitted-dofs", "ASET"),
+               ("GRID,70,,0.,9.,0.\nGRID,71,,0.,9.,1.\nCBAR,92,1,70,71,1.,0.,0.\n", ("--parts", "2"),
+                "split.loose-parts", "deck.bdf:"),
+               ("GRID,70,,0.,9.,0.\nGRID,71,,0.,9.,1.\nCBAR,92,1,70,71,1.,0.,0.\n", ("--plane", "x=4"),
+                "split.loose-parts", "CBAR 92"),
+               ("SPOINT,80\nCELAS2,93,1.+3,3,3,80\nCELAS2,94,1.+3,7,3,80\n", ("--plane", "x=4"), "split.scalar-cut", "80"),
+               ("DMIG,KK,0,6,1\nDMIG,KK,4,3,,6,3,1.+2\n", ("--plane", "x=4"), "split.matrix-across-cut", "DMIG KK")]
+        for more, arguments, error, words in bad:
+            text = boom.replace("ENDDATA", more + "ENDDATA")
+            self.write("deck.bdf", text.replace("SPC = 1", "SPC = 1\nK2GG = KK") if "DMIG" in more else text)
+            self.fails(1, "split", "deck.bdf", *arguments, error=error, says=[words])
+        self.write("deck.bdf", make_plate(more="SPC1,1,123456,1,14,27,40\nGRID,80,,.6,.15,0.\nRBE2,95,80,123456,7,20,33\n"))
+        self.fails(1, "split", "deck.bdf", "--parts", "2", error="split.dependent-cut", says=["RBE2 95"])
+        self.write("deck.bdf", make_plate(ny=15, more="SPC1,1,123456," + ",".join(str(13 * k + 1) for k in range(6)) + "\n" + "SPC1,1,123456," +
+                   ",".join(str(13 * k + 1) for k in range(6, 12)) + "\n" + "SPC1,1,3,13,26,39,52,65,78\n,91,104,117,130,143,156,169\n"))
+        self.fails(1, "split", "deck.bdf", "--plane", "x=.6", error="split.held-grids", says=["13 grids"])
+        self.write("deck.bdf", "SOL 103\nCEND\nBEGIN BULK\nGRID,1\nCONM2,1,1,,3.\nENDDATA\n")
+        self.fails(1, "split", "deck.bdf", "--parts", "2", error="split.no-elements")
+        self.write("deck.bdf", boom.replace("SPC = 1", "SPC = 1\nNSM = 5").replace("ENDDATA", "NSML,5,PBAR,1,3.\nENDDATA"))
+        self.fails(1, "split", "deck.bdf", "--parts", "2", error="split.spread-mass", says=["deck.bdf:"])
+        self.write("deck.bdf", boom.replace("SPC = 1\n", "SPC = 1\nSUBCASE 1\nLOAD = 7\nSUBCASE 2\nSTATSUB(PRELOAD) = 1\n")
+                   .replace("ENDDATA", "FORCE,7,9,,1.,1.,0.,0.\nENDDATA"))
+        self.fails(1, "split", "deck.bdf", "--parts", "2", "--subcase", "2", error="split.preload")
+        light = boom.replace("MAT1,1,", "MAT1,2,7.+10,,.3\nMAT1,1,").replace("PBAR,1,1", "PBAR,2,2,1.-4,2.-8,1.-8,2.-8\nPBAR,1,1")
+        for i in range(5, 9):
+            light = light.replace(f"\nCBAR,{i},1,", f"\nCBAR,{i},2,")
+        self.write("deck.bdf", light)
+        self.fails(1, "split", "deck.bdf", "--parts", "2", error="split.no-mass", says=["deck.bdf:", "part 2"])
+        rods = boom.replace("PBAR,1,1,1.-4,2.-8,1.-8,2.-8", "PROD,1,1,1.-4")
+        for i in range(1, 9):
+            rods = rods.replace(f"CBAR,{i},1,{i},{i + 1},.1,.2,1.", f"CROD,{i},1,{i},{i + 1}")
+        self.write("deck.bdf", rods)
+        self.fails(1, "split", "deck.bdf", "--parts", "2", error="split.weak-cut", says=["deck.bdf:", "grid 5"])
+
+
+
+if __name__ == "__main__":
+    unittest.main()
