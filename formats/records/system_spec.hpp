@@ -15,6 +15,7 @@
 #include "formats/records/flex_body.hpp"
 #include "formats/records/force_spec.hpp"
 #include "formats/records/function_spec.hpp"
+#include "formats/records/tank_spec.hpp"
 #include "formats/records/unit_labels.hpp"
 
 namespace bough::records {
@@ -175,6 +176,7 @@ struct SystemSpec {
   UnitLabels units;                                        ///< [units]
   std::vector<std::pair<std::string, double>> parameters;  ///< [parameters]; their numbers stand where they are named
   std::vector<BodyRecord> bodies;
+  std::vector<TankRecord> tanks;
   std::vector<HingeRecord> hinges;
   std::vector<ConstraintRecord> constraints;
   std::vector<FunctionRecord> functions;

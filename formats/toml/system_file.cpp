@@ -6,6 +6,7 @@
 
 #include <Eigen/Eigenvalues>
 
+#include "formats/records/slosh.hpp"
 #include "formats/toml/detail/constraint_table.hpp"
 #include "formats/toml/detail/control_tables.hpp"
 #include "formats/toml/detail/event_table.hpp"
@@ -17,6 +18,7 @@
 #include "formats/toml/detail/parameters.hpp"
 #include "formats/toml/detail/references.hpp"
 #include "formats/toml/detail/schema.hpp"
+#include "formats/toml/detail/tank_table.hpp"
 #include "formats/toml/key_editor.hpp"
 #include "formats/toml/specs.hpp"
 #include "formats/toml/system_text.hpp"
@@ -230,6 +232,7 @@ records::SystemSpec read_system_spec_text(const std::string& text, const std::st
     for (const auto& entry : parameters->entries)
       if (entry.value.is_number()) spec.parameters.emplace_back(entry.key, entry.value.number);
   for (const Fields& table : fields.get_tables("body")) spec.bodies.push_back(read_body(table, path, diagnostics));
+  for (const Fields& table : fields.get_tables("tank")) spec.tanks.push_back(read_tank(table, diagnostics));
   for (const Fields& table : fields.get_tables("hinge")) spec.hinges.push_back(read_hinge(table, diagnostics));
   for (const Fields& table : fields.get_tables("constraint"))
     spec.constraints.push_back(read_constraint(table, diagnostics));
@@ -248,6 +251,7 @@ records::SystemSpec read_system_spec_text(const std::string& text, const std::st
   for (const Fields& table : fields.get_tables("connect")) spec.connects.push_back(read_connect(table));
   for (const Fields& table : fields.get_tables("event")) spec.events.push_back(read_event(table, diagnostics));
   spec.simulation = read_simulation(fields.get_table("simulation"), diagnostics);
+  if (!spec.tanks.empty()) records::add_slosh(spec, diagnostics);
   check_names(spec, diagnostics);
   return spec;
 }

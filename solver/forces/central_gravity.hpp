@@ -32,11 +32,13 @@ class CentralGravity final : public ForceElement {
   /// Acceleration of a free particle at p; in W.
   Vector3d calc_acceleration(const Vector3d& p_W) const;
   /// The affine field whose loads calc() puts on a body with mass. After calc_position.
-  BodyGravity calc_on_body(const Tree& tree, const TreeData& data, int body) const;
+  BodyGravity calc_on_body(const TreeData& data, int body) const;
+  /// ∂V/∂m of a body whose content changes as `by` does. After calc_position.
+  double calc_potential_rate(const BodyData& d, const TankContent& by) const;
 
  private:
   struct Pull;
-  Pull calc_pull(const TreeBody& tb, const BodyData& d) const;
+  Pull calc_pull(const BodyData& d) const;
 
   Field field_;
   std::vector<int> bodies_;

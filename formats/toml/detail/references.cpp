@@ -62,6 +62,7 @@ void check_names(const records::SystemSpec& spec, Diagnostics& diagnostics) {
   for (const auto& force : spec.force_elements) forces.push_back({force.name, force.at});
   std::stable_sort(forces.begin(), forces.end(), [](const auto& a, const auto& b) { return a.at.line < b.at.line; });
   collect_names(forces, "force", diagnostics);
+  const auto tanks = collect_names(spec.tanks, "tank", diagnostics);
   collect_names(spec.sensors, "sensor", diagnostics);
   collect_names(spec.inputs, "input", diagnostics);
   collect_names(spec.events, "event", diagnostics);
@@ -103,6 +104,16 @@ void check_names(const records::SystemSpec& spec, Diagnostics& diagnostics) {
     }
     for (const auto* names : {&hinge.law.spring_table, &hinge.law.damper_table})
       for (const auto& name : *names) checker.check(name, functions, role, "function", hinge.at);
+  }
+  for (const auto& tank : spec.tanks) {
+    const std::string role = "tank '" + tank.name + "'";
+    checker.check(tank.body, bodies, role, "body", tank.at);
+    checker.check(tank.function, functions, role, "function", tank.at);
+  }
+  for (const auto& actuator : spec.actuators) {
+    const auto named = actuator.settings.words.find("tank");
+    if (named != actuator.settings.words.end() && !named->second.empty())
+      checker.check(named->second.front(), tanks, "actuator '" + actuator.name + "'", "tank", actuator.at);
   }
   for (const auto& function : spec.functions)
     for (const auto& name : function.of)
