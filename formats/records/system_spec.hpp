@@ -102,6 +102,7 @@ enum class SensorType {
   Tachometer,
   Direction,
   Horizon,
+  Magnetometer,
   HingeForce,
   HingeMoment,
   StrainEnergy,
@@ -118,6 +119,7 @@ struct SensorRecord {
   int node = 0;
   std::string frame = "inertial";  ///< "inertial", "body" (the node's own body) or another body's name: components
   std::string relative_to;         ///< relative to the motion of this body (not deflection, rotation); empty: none
+  bool is_orbital = false;         ///< relative_to: to the LVLH frame of the body about its central gravity
   bool from_turning = true;        ///< relative_to: as an observer who turns with that body sees it
   std::string hinge;               ///< hinge sensors
   int coordinate = 0;              ///< hinge sensors: 1-based; 0 = all; modal sensors: the mode

@@ -27,6 +27,7 @@ const std::map<std::string, Keys>& get_name_keys() {
       {"function",
        {"hinge/motion", "hinge/spring_table", "hinge/damper_table", "force/function", "force/spring_table",
         "force/damper_table", "function/of", "tank/function"}},
+      {"force", {"force/planet"}},
       {"controller", {"event/controller"}},
       {"body.load", {"body/modes/residual"}}};
   return keys;

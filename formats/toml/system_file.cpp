@@ -84,6 +84,7 @@ records::SensorRecord read_sensor(const Fields& table, const std::string& path, 
                                                        {"tachometer", SensorType::Tachometer},
                                                        {"direction", SensorType::Direction},
                                                        {"horizon", SensorType::Horizon},
+                                                       {"magnetometer", SensorType::Magnetometer},
                                                        {"hinge_force", SensorType::HingeForce},
                                                        {"hinge_moment", SensorType::HingeMoment},
                                                        {"strain_energy", SensorType::StrainEnergy},
@@ -97,13 +98,16 @@ records::SensorRecord read_sensor(const Fields& table, const std::string& path, 
   sensor.body = table.get_string("body");
   sensor.node = table.get_int("node", 0);
   sensor.relative_to = table.get_string("relative_to");
+  constexpr std::string_view kOrbit = "lvlh:";
+  sensor.is_orbital = sensor.relative_to.starts_with(kOrbit);
+  if (sensor.is_orbital) sensor.relative_to.erase(0, kOrbit.size());
   sensor.hinge = table.get_string("hinge");
   sensor.coordinate = table.get_int("coordinate", 0);
   const auto it = types.find(table.get_string("type"));
   if (it == types.end()) return sensor;  // reported by the schema
   sensor.type = it->second;
   const bool is_elastic = sensor.type == SensorType::Deflection || sensor.type == SensorType::Rotation;
-  sensor.frame = table.get_string("frame", is_elastic ? "body" : "inertial");
+  sensor.frame = table.get_string("frame", is_elastic ? "body" : sensor.is_orbital ? "" : "inertial");
 
   read_sensor_keys(table, path, it->first, sensor, diagnostics);
   const bool is_hinge_load = sensor.type == SensorType::HingeForce || sensor.type == SensorType::HingeMoment;
@@ -133,6 +137,9 @@ records::SensorRecord read_sensor(const Fields& table, const std::string& path, 
     if (is_modal || is_element || sensor.type == SensorType::StrainEnergy)
       refuse_keys(table, {"node"}, because, diagnostics);
     if (is_elastic) refuse_keys(table, {"relative_to", "observer"}, because, diagnostics);
+    if (sensor.is_orbital &&
+        (sensor.type == SensorType::Acceleration || sensor.type == SensorType::AngularAcceleration))
+      refuse_keys(table, {"relative_to"}, because + ": an LVLH frame gives no accelerations", diagnostics);
     if (is_vector && !is_elastic && !table.has("relative_to"))
       refuse_keys(table, {"observer"}, because + ", which has no relative_to", diagnostics);
   }

@@ -137,11 +137,14 @@ void change_force(const UnitTable& t, SignalUnits& units, const BodyFacts& facts
     t.scale("stiffness", force / length);
     t.scale("damping", force * c.time / length);
   }
-  for (const char* key : {"free_length", "radius", "to_radius", "centre"}) t.scale(key, length);
+  for (const char* key : {"free_length", "radius", "to_radius", "centre", "scale_height", "altitude"}) t.scale(key, length);
   t.scale("preload", force);
   for (const char* key : {"slip_velocity", "wind"}) t.scale(key, length / c.time);
   t.scale("mu", std::pow(length, 3) / (c.time * c.time));
   t.scale("area", length * length);
+  t.scale("pressure", force / (length * length));
+  t.scale("spin", 1 / c.time);
+  t.scale("dipole", std::pow(length, 3));
   t.scale("density", c.mass / std::pow(length, 3));
 }
 

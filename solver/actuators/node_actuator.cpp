@@ -32,6 +32,26 @@ class NodeActuator : public Actuator {
   }
 };
 
+/// A magnetic dipole along its axis: moment m e × B. Outputs: dipole, the three components of the moment in B.
+class TorqueRod final : public NodeActuator {
+ public:
+  void calc_outputs(const BlockInput& in, double* y) const override {
+    y[0] = calc_command(in);
+    Eigen::Map<Vector3d>{y + 1} = calc_moment(in, in.motion->data, y[0]);
+  }
+  void add_load(const BlockInput& in, const double* y, TreeData& data) const override {
+    add_marker_wrench(in.motion->tree, marker, Vector3d::Zero(), Eigen::Map<const Vector3d>(y + 1), data);
+  }
+
+ private:
+  Vector3d calc_moment(const BlockInput& in, const TreeData& data, double dipole) const {
+    const Tree& tree = in.motion->tree;
+    const BodyState& s = data[tree.markers[static_cast<size_t>(marker)].body].state;
+    const Vector3d p = s.p_WBo + s.R_WB * data.markers[static_cast<size_t>(marker)].r;
+    return dipole * calc_axis(tree, data).cross(s.R_WB.transpose() * in.motion->gravity.calc_magnetic_field(p));
+  }
+};
+
 /// Uses propellant. The last state: what it has used. With a tank, the last memory is 1 once the tank is empty.
 class Thruster : public NodeActuator {
  public:
@@ -75,7 +95,8 @@ class Thruster : public NodeActuator {
   /// The last event function: positive once the tank is empty.
   void watch_tank(const BlockInput& in, double* g) const {
     if (tank < 0) return;
-    g[sizes.event_functions - 1] = is_empty(in) ? -1 : -in.motion->data.tanks[static_cast<size_t>(tank)].mass;
+    const auto i = static_cast<size_t>(tank);
+    g[sizes.event_functions - 1] = is_empty(in) ? -1 : in.motion->tree.tanks[i].least - in.motion->data.tanks[i].mass;
   }
   bool switch_tank(int function, double* d) const {
     if (tank < 0 || function < sizes.event_functions - 1) return false;
@@ -136,9 +157,12 @@ std::unique_ptr<Actuator> make_node_actuator(const records::ActuatorRecord& r, S
     auto engine = std::make_unique<Engine>();
     engine->read_propellant(keys, place);
     made = std::move(engine);
+  } else if (r.type == "torque_rod") {
+    made = std::make_unique<TorqueRod>();
   } else {
     made = std::make_unique<NodeActuator>();
   }
+  const bool is_rod = r.type == "torque_rod";
   const bool is_thruster = r.type == "jet" || r.type == "engine";
   made->marker = place.marker;
   made->is_moment = r.type == "moment";
@@ -149,8 +173,10 @@ std::unique_ptr<Actuator> make_node_actuator(const records::ActuatorRecord& r, S
   made->read_shaping(keys);
   if (is_thruster && keys.has("exhaust_velocity")) ++made->sizes.states;
   if (r.type == "jet") made->sizes.has_feedthrough = false;  // by its memory
-  made->description = is_thruster ? "force, propellant used" : "along its axis, on the body";
-  made->dims = r.type == "moment" ? "F L" : is_thruster ? "F, M" : "F";
+  made->description = is_thruster ? "force, propellant used"
+                      : is_rod    ? "dipole, moment x, moment y, moment z in the body frame"
+                                  : "along its axis, on the body";
+  made->dims = r.type == "moment" ? "F L" : is_thruster ? "F, M" : is_rod ? "by the field, F L, F L, F L" : "F";
   return made;
 }
 

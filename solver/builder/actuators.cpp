@@ -26,6 +26,7 @@ constexpr Kind kKinds[] = {
     {"moment", 1, Where::Moment, "F L", make_node_actuator},
     {"jet", 2, Where::Force, "", make_node_actuator},
     {"engine", 2, Where::Force, "F", make_node_actuator},
+    {"torque_rod", 4, Where::Moment, "", make_node_actuator},
     {"wheel", 3, Where::Moment, "F L", make_rotor},
     {"cmg", 2, Where::Moment, "1/T", make_rotor},
     {"double_gimbal_cmg", 4, Where::Moment, "1/T", make_rotor},

@@ -83,6 +83,12 @@ Vector3d CentralGravity::calc_acceleration(const Vector3d& p_W) const {
          calc_oblate(0.5 * field_.mu * field_.j2 * field_.equator * field_.equator, R, field_.axis);
 }
 
+Vector3d CentralGravity::calc_magnetic_field(const Vector3d& p_W) const {
+  const Vector3d R = p_W - field_.centre;
+  const double r2 = R.squaredNorm();
+  return (3 * field_.dipole.dot(R) / r2 * R - field_.dipole) / (r2 * std::sqrt(r2));
+}
+
 BodyGravity CentralGravity::calc_on_body(const TreeData& data, int body) const {
   const Pull pull = calc_pull(data[body]);
   return {pull.f / data[body].inertia.mass - pull.gradient * pull.c, pull.gradient};

@@ -11,6 +11,12 @@ Vector3d GravityField::calc_acceleration(int body, const Vector3d& p_W) const {
   return g;
 }
 
+Vector3d GravityField::calc_magnetic_field(const Vector3d& p_W) const {
+  Vector3d B = Vector3d::Zero();
+  for (const CentralGravity* source : central) B += source->calc_magnetic_field(p_W);
+  return B;
+}
+
 BodyGravity GravityField::calc_on_body(const TreeData& data, int body) const {
   BodyGravity sum;
   sum.g.noalias() = data[body].state.R_WB.transpose() * uniform;

@@ -11,6 +11,8 @@ struct GravityField {
 
   /// Acceleration of a free particle at p that is attracted as this body is; in W.
   Vector3d calc_acceleration(int body, const Vector3d& p_W) const;
+  /// Magnetic field of all dipoles at p; in W.
+  Vector3d calc_magnetic_field(const Vector3d& p_W) const;
   /// The affine field whose loads act on a body. After calc_position.
   BodyGravity calc_on_body(const TreeData& data, int body) const;
   /// A_I = [a, α, ωx² ωy² ωz² ωxωy ωxωz ωyωz] of the motion of a body's origin minus gravity, in B. The gradient is

@@ -28,6 +28,8 @@ constexpr double kNearLock = 0.01;
 constexpr double kNoise = 100;
 /// Share of a body's mass used by its jets above which a warning reports that the mass is constant.
 constexpr double kMaxPropellantShare = 0.01;
+/// Of the mass of a slosh pendulum.
+constexpr double kDrained = 1e-9;
 
 std::string text_of(double value) {
   std::ostringstream text;
@@ -547,9 +549,22 @@ void Run::tell_consumption() {
   }
 }
 
+void Run::warn_of_drained_slosh() {
+  const System& system = ode_.system();
+  for (size_t i = 0; i < system.tree.tanks.size(); ++i) {
+    const Tank& tank = system.tree.tanks[i];
+    if (tank.least <= 0 || ode_.data().tree.tanks[i].mass > tank.least * (1 + kDrained)) continue;
+    diagnostics_.warning("run.slosh-drained", tank.at,
+                         "tank '" + tank.name + "' has used all but the mass " + short_text(tank.least) +
+                             " of its slosh pendulum, and its thrusters have stopped",
+                         "run the burn in parts, each with the slosh of its fill level, or leave slosh out");
+  }
+}
+
 SimulateOutcome Run::close(double t, const std::string& reason) {
   sink_.end(true, reason);
   tell_consumption();
+  warn_of_drained_slosh();
   const double worst = monitor_.worst(), limit = spec_.simulation.energy_error_limit;
   const bool is_kept = worst <= limit;
   if (worst > kEnergyWarning * limit) {

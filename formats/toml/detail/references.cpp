@@ -155,7 +155,12 @@ void check_names(const records::SystemSpec& spec, Diagnostics& diagnostics) {
     const std::string role = "sensor '" + sensor.name + "'";
     checker.check(sensor.body, bodies, role, "body", sensor.at);
     checker.check(sensor.frame, with({"inertial", "body", "ground"}), role, "frame", sensor.at);
-    checker.check(sensor.relative_to, with({"ground"}), role, "body", sensor.at);
+    if (sensor.is_orbital && std::find(bodies.begin(), bodies.end(), sensor.relative_to) == bodies.end())
+      diagnostics.error("toml.unknown-name", sensor.at,
+                        role + " is relative to 'lvlh:" + sensor.relative_to + "', and there is no such body",
+                        "name a body after lvlh:");
+    else
+      checker.check(sensor.relative_to, with({"ground"}), role, "body", sensor.at);
     checker.check(sensor.hinge, hinges, role, "hinge", sensor.at);
     checker.check(sensor.to_body, with({"ground"}), role, "body", sensor.at);
   }

@@ -140,6 +140,7 @@ double SignalUnits::get_command_unit(const toml::table& actuator) const {
   if (type == "modal") return force() * c_.length / c_.calc_modal();
   if (type == "moment" || type == "wheel") return force() * c_.length;
   if (type == "cmg" || type == "double_gimbal_cmg") return 1 / c_.time;
+  if (type == "torque_rod") return force() * c_.length;  // over a field, whose numbers stay
   return 1;
 }
 
@@ -149,6 +150,7 @@ std::vector<double> SignalUnits::list_actuator_units(const toml::table& actuator
   if (type == "motor")
     return {get_effort_unit(get_text(actuator, "hinge"), actuator["coordinate"].value_or(std::int64_t{1})), 1};
   if (type == "jet" || type == "engine") return {force(), c_.mass};
+  if (type == "torque_rod") return {torque, torque, torque, torque};
   if (type == "wheel") return {torque, torque * c_.time, rate};
   if (type == "cmg") return {rate, 1};
   if (type == "double_gimbal_cmg") return {rate, rate, 1, 1};

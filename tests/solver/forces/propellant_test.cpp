@@ -4,7 +4,10 @@
 
 #include "solver/bodies/tank.hpp"
 #include "solver/system/derivative.hpp"
-#include "tests/solver/control/support.hpp"
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/solver/support/runs.hpp"
 
 namespace bough::solver::testing {
 namespace {
@@ -98,6 +101,14 @@ TEST(Tanks, ATableOfTheWholeBodyGivesTheWholeBody) {
                      4 * (cg.squaredNorm() * Matrix3d::Identity() - cg * cg.transpose());
   EXPECT_LT((c.J + dry.J - J).norm(), 1e-13);
   expect_derivatives(*shape, 2);
+}
+
+records::FunctionRecord make_step(const std::string& name, double value, double at) {
+  records::FunctionRecord f;
+  f.name = name;
+  f.type = "step";
+  f.values = {{"value", value}, {"at", at}};
+  return f;
 }
 
 /// A free rocket along x with a full tank, an engine at its tail and nothing else.
