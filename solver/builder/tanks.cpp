@@ -97,11 +97,15 @@ void build_tanks(const records::SystemSpec& spec, const TreeOrder& order, const 
     if (!system.is_valid(found->second)) continue;
     TreeBody& tb = tree.bodies[static_cast<size_t>(found->second)];
     Tank tank;
-    tank.shape = TankBuilder(r, tb.body, tb.name, diagnostics).build();
-    if (!tank.shape) continue;
     tank.name = r.name;
     tank.at = r.at;
     tank.body = found->second;
+    tank.shape = TankBuilder(r, tb.body, tb.name, diagnostics).build();
+    if (!tank.shape) {  // reported; an empty one for the thrusters that name it
+      tank.shape = make_tank_table({{0}, {Vector3d::Zero()}, {Matrix3d::Zero()}}, {});
+      tree.tanks.push_back(std::move(tank));
+      continue;
+    }
     tank.initial = r.mass;
     tank.least = r.slosh_mass;
     if (r.slosh_mass > 0) tank.shape = make_tank_without(std::move(tank.shape), r.slosh_mass, r.slosh_position);

@@ -58,8 +58,8 @@ class SpaceEnvironment(ProgramTest):
     def test_lvlh_is_the_reference_of_attitude_rate_and_place(self):
         """Kept to LVLH by its spin: x along the path, z to the centre, y against the orbit's normal (here +z)."""
         # R_WL at x = r: columns x = +y, y = -z, z = -x.
-        found, r, n = self.run_system(attitude="0.5, -0.5, -0.5, 0.5", spin="0.0, PITCH, 0.0".replace("PITCH", repr(
-            -math.sqrt(MU / (EARTH + 400e3)**3))), turns=0.7, more="""
+        found, r, n = self.run_system(attitude="0.5, -0.5, -0.5, 0.5", spin=f"0.0, {-math.sqrt(MU / (EARTH + 400e3)**3)!r}, 0.0",
+                                      turns=0.7, more="""
 [[body]]
 name = "free"
 mass = 1.0
@@ -69,6 +69,7 @@ name = "away"
 type = "free"
 child = "free"
 position = [1.0, 0.0, 0.0, 0.0, 7e6, 0.0, 0.0]
+rate = [0.0, 0.0, 0.0, 0.0, 7500.0, 50.0]
 [[sensor]]
 name = "error"
 type = "euler"
@@ -97,7 +98,7 @@ relative_to = "lvlh:sat"
         np.testing.assert_allclose(found["sensors/place"], expected, rtol=1e-9, atol=1e-3)
 
     def test_drag_lowers_a_circular_orbit_at_its_rate(self):
-        """da/dt = -2 a ρ (C_d A/2m) v... = -ρ C_d A/m √(μ a) of an atmosphere at rest; exponential in altitude."""
+        """da/dt = -ρ C_d A/m √(μ a) in air at rest whose density is exponential in altitude."""
         drag = '[[force]]\nname = "air"\ntype = "drag"\nbody = "sat"\narea = 4.0\ncoefficient = 2.2\ndensity = 5e-11\n' \
                'planet = "earth"\nscale_height = 60e3\naltitude = 300e3\n'
         found, r, n = self.run_system(height=330e3, more=drag, turns=10, samples=100)
@@ -121,7 +122,7 @@ relative_to = "lvlh:sat"
     def test_sunlight_presses_and_the_earth_takes_it_away(self):
         panel = '[[force]]\nname = "panel"\ntype = "solar_pressure"\nbody = "sat"\nnormal = [1.0, 1.0, 0.0]\narea = 10.0\n' \
                 'pressure = 4.56e-6\nsun = [1.0, 0.0, 0.0]\nspecular = 0.3\ndiffuse = 0.2\nplanet = "earth"\n'
-        found, r, n = self.run_system(height=700e3, more=panel, samples=6000)
+        found, r, n = self.run_system(height=700e3, more=panel, samples=3000)
         force, light = found["forces/panel/force"], found["forces/panel/sunlight"].ravel()
         c = math.sqrt(0.5)
         normal, sun = np.array([c, c, 0]), np.array([1.0, 0, 0])
@@ -130,11 +131,11 @@ relative_to = "lvlh:sat"
         np.testing.assert_allclose(force, light[:, None] * force[0], rtol=0, atol=1e-14)
         # Half of the penumbra is where the earth's limb passes the centre of the sun: 2 asin(R/r) of the turn is dark.
         dark = np.sum(1 - light[:-1]) / (len(light) - 1)
-        self.assertAlmostEqual(dark, math.asin(EARTH / r) / math.pi, delta=2e-5)
+        self.assertAlmostEqual(dark, math.asin(EARTH / r) / math.pi, delta=5e-5)
         self.assertEqual(light.min(), 0.0)
         partial = np.sum((light > 0) & (light < 1)) / (len(light) - 1)
         # Penumbra lasts while the angle between limb and sun's centre changes by twice the sun's angular radius.
-        self.assertAlmostEqual(partial, 2 * 2 * 0.004652 / (2 * math.pi), delta=4e-4)
+        self.assertAlmostEqual(partial, 2 * 2 * 0.004652 / (2 * math.pi), delta=8e-4)
 
     def test_the_dipole_and_the_rods_torque(self):
         more = '[[sensor]]\nname = "field"\ntype = "magnetometer"\nbody = "sat"\n[[function]]\nname = "m"\ntype = "constant"\n' \
