@@ -39,7 +39,7 @@ struct ForceElementRecord {
   // Central gravity
   double mu = 0, j2 = 0, equator = 0;  ///< equator: radius that J2 goes with
   Vector3d centre = Vector3d::Zero(), axis = Vector3d::UnitZ();
-  std::vector<std::string> bodies;  ///< empty: all
+  std::vector<std::string> bodies;     ///< empty: all
   Vector3d dipole = Vector3d::Zero();  ///< magnetic, inertial
   // Drag
   double area = 0, coefficient = 0, density = 0;

@@ -59,8 +59,8 @@ std::pair<double, double> solve_sphere(double depth) {
   int first = 0;  // directions of K that are round-off
   while (basis.eigenvalues()[first] <= 1e-13 * basis.eigenvalues()[kHarmonics - 1]) ++first;
   const int kept = kHarmonics - first;
-  const Eigen::MatrixXd T = basis.eigenvectors().rightCols(kept) *
-                            basis.eigenvalues().tail(kept).cwiseSqrt().cwiseInverse().asDiagonal();
+  const Eigen::MatrixXd T =
+      basis.eigenvectors().rightCols(kept) * basis.eigenvalues().tail(kept).cwiseSqrt().cwiseInverse().asDiagonal();
   const Eigen::MatrixXd reduced = T.transpose() * M * T;
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> modes(reduced);
   const Eigen::VectorXd c = T * modes.eigenvectors().col(kept - 1);
@@ -98,7 +98,7 @@ void add_slosh(SystemSpec& spec, Diagnostics& diagnostics) {
     };
     const bool is_sphere = tank.type == TankType::Sphere;
     if (!is_sphere && tank.type != TankType::Cylinder) {
-      refuse("sloshes and is neither a cylinder nor a sphere", "give the pendulum as a body of its own");
+      refuse("sloshes and is neither a cylinder nor a sphere", "give the pendulum as a separate body");
       continue;
     }
     if (!tank.function.empty()) {

@@ -15,14 +15,14 @@ struct SloshPendulum {
 /// The New "Dynamic Behavior of Liquids in Moving Containers" (2000), table 3.1.
 /// \param depth  [L] of the liquid at rest.
 SloshPendulum calc_cylinder_slosh(double radius, double depth, double density);
-/// The Rayleigh-Ritz solution of the potential flow by 20 harmonic polynomials; the hinge is the centre. Relative errors
-/// of ω² below 3e-4 up to 90 % of the diameter (McIver, J. Fluid Mech. 201 (1989) 243), 1e-3 at 95 %.
+/// The Rayleigh-Ritz solution of the potential flow by 20 harmonic polynomials; the hinge is the centre. Relative
+/// errors of ω² below 3e-4 up to 90 % of the diameter (McIver, J. Fluid Mech. 201 (1989) 243), 1e-3 at 95 %.
 SloshPendulum calc_sphere_slosh(double radius, double depth, double density);
 /// Depth of `mass` in a sphere.
 double calc_sphere_depth(double radius, double density, double mass);
 
-/// Adds body and hinge "NAME.slosh" of each tank that sloshes, and takes the pendulum's mass out of the tank's rigid
-/// part. Reports "system.bad-tank".
+/// Adds body and hinge "NAME.slosh" of each tank that sloshes, and subtracts the mass of the pendulum from the
+/// rigid part of the tank. Reports "system.bad-tank".
 void add_slosh(SystemSpec& spec, Diagnostics& diagnostics);
 
 }  // namespace bough::records

@@ -41,9 +41,9 @@ const Keys kSignalKinds{"sensor", "input", "controller", "actuator", "function"}
 const Keys kTargetKinds{"controller", "actuator", "force"};
 /// Groups of the results, by kind: "/sensors/NAME" with more after it.
 const std::map<std::string, std::string> kGroups{
-    {"body", "bodies"},    {"hinge", "hinges"},           {"constraint", "constraints"}, {"force", "forces"},
-    {"sensor", "sensors"}, {"controller", "controllers"}, {"actuator", "actuators"},     {"input", "inputs"},
-    {"tank", "tanks"}};
+    {"body", "bodies"},        {"hinge", "hinges"},   {"constraint", "constraints"},
+    {"force", "forces"},       {"sensor", "sensors"}, {"controller", "controllers"},
+    {"actuator", "actuators"}, {"input", "inputs"},   {"tank", "tanks"}};
 
 struct Use {
   std::string path;  ///< with the numbers of list entries

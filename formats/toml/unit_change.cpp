@@ -137,7 +137,8 @@ void change_force(const UnitTable& t, SignalUnits& units, const BodyFacts& facts
     t.scale("stiffness", force / length);
     t.scale("damping", force * c.time / length);
   }
-  for (const char* key : {"free_length", "radius", "to_radius", "centre", "scale_height", "altitude"}) t.scale(key, length);
+  for (const char* key : {"free_length", "radius", "to_radius", "centre", "scale_height", "altitude"})
+    t.scale(key, length);
   t.scale("preload", force);
   for (const char* key : {"slip_velocity", "wind"}) t.scale(key, length / c.time);
   t.scale("mu", std::pow(length, 3) / (c.time * c.time));

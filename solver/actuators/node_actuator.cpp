@@ -52,7 +52,7 @@ class TorqueRod final : public NodeActuator {
   }
 };
 
-/// Uses propellant. The last state: what it has used. With a tank, the last memory is 1 once the tank is empty.
+/// Uses propellant. The last state: the mass used. With a tank, the last memory is 1 once the tank is empty.
 class Thruster : public NodeActuator {
  public:
   double exhaust = 0, exit_radius = 0;  ///< L/T, 0: uses nothing; L
@@ -96,7 +96,7 @@ class Thruster : public NodeActuator {
   void watch_tank(const BlockInput& in, double* g) const {
     if (tank < 0) return;
     const auto i = static_cast<size_t>(tank);
-    g[sizes.event_functions - 1] = is_empty(in) ? -1 : in.motion->tree.tanks[i].least - in.motion->data.tanks[i].mass;
+    g[sizes.event_functions - 1] = is_empty(in) ? -1 : in.motion->tree.tanks[i].reserve - in.motion->data.tanks[i].mass;
   }
   bool switch_tank(int function, double* d) const {
     if (tank < 0 || function < sizes.event_functions - 1) return false;
@@ -112,9 +112,7 @@ class Engine final : public Thruster {
   void switch_over(const BlockInput&, int function, double* d) const override { switch_tank(function, d); }
 
  protected:
-  double calc_thrust(const BlockInput& in) const override {
-    return is_empty(in) ? 0 : std::max(0.0, calc_command(in));
-  }
+  double calc_thrust(const BlockInput& in) const override { return is_empty(in) ? 0 : std::max(0.0, calc_command(in)); }
 };
 
 /// On while the command is above `on`, until it is below `off` and the shortest pulse is over. Memory: on, since when.

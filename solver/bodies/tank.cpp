@@ -133,8 +133,7 @@ class TableTank final : public TankShape {
     result.S_m = c + m * c_m;
     const Matrix3d unit = c.squaredNorm() * Matrix3d::Identity() - c * c.transpose();
     result.J = I + m * unit - whole_.J;
-    result.J_m = I_m + unit +
-                 m * (2 * c.dot(c_m) * Matrix3d::Identity() - c * c_m.transpose() - c_m * c.transpose());
+    result.J_m = I_m + unit + m * (2 * c.dot(c_m) * Matrix3d::Identity() - c * c_m.transpose() - c_m * c.transpose());
     return result;
   }
 

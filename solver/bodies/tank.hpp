@@ -51,7 +51,7 @@ struct TankTable {
 /// \param whole  if it has mass, the table is of body and content together, and `whole` is the body without content.
 std::unique_ptr<const TankShape> make_tank_table(const TankTable& table, const TankContent& whole);
 
-/// A tank without a point mass that is a body of its own.
+/// A tank without a point mass, which is a separate body.
 std::unique_ptr<const TankShape> make_tank_without(std::shared_ptr<const TankShape> tank, double point_mass,
                                                    const Vector3d& position);
 

@@ -125,11 +125,11 @@ bool find_tank(const records::ActuatorRecord& r, const Tree& tree, SettingsReade
   }
   const Tank& tank = tree.tanks[static_cast<size_t>(found - names.begin())];
   if (tank.function || tree[tank.body].name != r.body) {
-    keys.error("control.unknown-place",
-               "uses the tank '" + name + "', " +
-                   (tank.function ? "whose mass is a function of time" : "which is on body '" + tree[tank.body].name + "'"),
-               tank.function ? "give the tank a mass in place of its function"
-                             : "mount the thruster on the body of its tank");
+    keys.error(
+        "control.unknown-place",
+        "uses the tank '" + name + "', " +
+            (tank.function ? "whose mass is a function of time" : "which is on body '" + tree[tank.body].name + "'"),
+        tank.function ? "give the tank a mass in place of its function" : "mount the thruster on the body of its tank");
     return false;
   }
   place.tank = static_cast<int>(found - names.begin());

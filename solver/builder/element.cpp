@@ -247,12 +247,14 @@ class ElementBuilder {
 
   std::unique_ptr<const ForceElement> build_solar_pressure() {
     demand_finite({r_.pressure, r_.area, r_.specular, r_.diffuse, r_.sun_size, r_.sun.sum(), r_.normal.sum()});
-    if (!(r_.area >= 0) || !(r_.pressure >= 0)) refuse("has a negative area or pressure", "give values of at least zero");
+    if (!(r_.area >= 0) || !(r_.pressure >= 0))
+      refuse("has a negative area or pressure", "give values of at least zero");
     if (!(r_.specular >= 0) || !(r_.diffuse >= 0) || !(r_.specular + r_.diffuse <= 1))
       refuse("has reflectivities below zero or of a sum above one", "give shares of the light");
     if (!(r_.normal.norm() > 0) || !(r_.sun.norm() > 0))
       refuse("has a normal or a sun without direction", "give three numbers, not all zero");
-    if (!(r_.sun_size > 0) || r_.sun_size > 1) refuse("has a sun_size that is no angular radius", "give radians, as 0.00465");
+    if (!(r_.sun_size > 0) || r_.sun_size > 1)
+      refuse("has a sun_size that is no angular radius", "give radians, as 0.00465");
     if (r_.from.body == "ground") refuse("acts on ground", "name a body");
     SolarPressure::Panel panel;
     panel.pressure = r_.pressure;
@@ -262,8 +264,7 @@ class ElementBuilder {
     panel.normal = r_.normal.normalized();
     panel.sun_W = r_.sun.normalized();
     panel.is_one_sided = r_.is_one_sided;
-    if (const ForceElementRecord* planet = find_planet())
-      panel.shadow = {planet->centre, planet->equator, r_.sun_size};
+    if (const ForceElementRecord* planet = find_planet()) panel.shadow = {planet->centre, planet->equator, r_.sun_size};
     return std::make_unique<SolarPressure>(r_.name, add_marker(r_.from, {true, false}), panel);
   }
 

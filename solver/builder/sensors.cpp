@@ -228,9 +228,9 @@ class Resolver {
     else if (e.relative_to >= 0)
       e.description += (r.from_turning ? " as seen from " : " minus that of the origin of ") + other;
     e.description += ", components in the " + (e.in_orbital_frame ? "LVLH frame of body " + r.relative_to
-                                               : frame == "body" ? "frame of body " + r.body
-                                               : e.frame < 0   ? "inertial frame"
-                                                               : "frame of body " + frame);
+                                               : frame == "body"  ? "frame of body " + r.body
+                                               : e.frame < 0      ? "inertial frame"
+                                                                  : "frame of body " + frame);
   }
 
   void resolve_orbit(const SensorRecord& r, Sensor& e) {

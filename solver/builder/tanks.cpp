@@ -57,8 +57,8 @@ class TankBuilder {
     const auto n = r_.masses.size();
     const bool is_sized = n > 0 && r_.cg.size() == n && r_.inertia.size() == n;
     const bool is_ascending = std::is_sorted(r_.masses.begin(), r_.masses.end(), std::less_equal<>());
-    const double least = r_.is_of_body ? body_.mass() : 0;
-    if (!is_sized || !is_ascending || (n > 1 && r_.masses.front() > least * (1 + 1e-9) + 1e-300)) {
+    const double empty = r_.is_of_body ? body_.mass() : 0;
+    if (!is_sized || !is_ascending || (n > 1 && r_.masses.front() > empty * (1 + 1e-9) + 1e-300)) {
       refuse("has masses that do not ascend from " + std::string(r_.is_of_body ? "the mass of its body" : "0"),
              "give ascending masses that begin with the empty tank");
       return nullptr;
@@ -107,7 +107,7 @@ void build_tanks(const records::SystemSpec& spec, const TreeOrder& order, const 
       continue;
     }
     tank.initial = r.mass;
-    tank.least = r.slosh_mass;
+    tank.reserve = r.slosh_mass;
     if (r.slosh_mass > 0) tank.shape = make_tank_without(std::move(tank.shape), r.slosh_mass, r.slosh_position);
     if (!r.function.empty()) {
       const std::string user = "tank " + quote(r.name);
@@ -123,7 +123,7 @@ void build_tanks(const records::SystemSpec& spec, const TreeOrder& order, const 
           tank.initial > tank.shape->capacity() * (1 + 1e-9)) {
         diagnostics.error("system.bad-tank", r.at,
                           user + " has the function " + quote(r.function) +
-                              ", which starts below zero, above what the tank holds, or has no known rate",
+                              ", which starts below zero or above the capacity, or has no known rate",
                           "give a function with a rate from at most " + std::to_string(tank.shape->capacity()));
         continue;
       }

@@ -1,6 +1,7 @@
 #pragma once
 /// \file Drag: F = -½ ρ C_d A |v| v on a point that moves at v through the air; of a plate with normal n, A is what the
-/// air sees of it, A |n·v|/|v|. About a planet ρ falls with the altitude h, ρ exp(-(h - h0)/H), and the air turns with it.
+/// air sees of it, A |n·v|/|v|. About a planet ρ falls with the altitude h, ρ exp(-(h - h0)/H), and the air turns with
+/// it.
 #include <cmath>
 
 #include "solver/forces/element.hpp"

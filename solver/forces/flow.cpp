@@ -21,8 +21,8 @@ void add_outflow(const Tree& tree, int tank, const Outflow& out, TreeData& data)
   const Vector3d leaving = R * (out.flow * (s.v_B + w.cross(e)) - out.thrust);
   const Vector3d turning = R * w.cross(relative);
   data.momentum_out.head<3>() += leaving + turning;
-  data.momentum_out.tail<3>() += (s.p_WBo + R * e).cross(leaving) + s.p_WBo.cross(turning) +
-                                 R * (s.v_B.cross(relative) + out.flow * of_disc);
+  data.momentum_out.tail<3>() +=
+      (s.p_WBo + R * e).cross(leaving) + s.p_WBo.cross(turning) + R * (s.v_B.cross(relative) + out.flow * of_disc);
 }
 
 void add_prescribed_flow(const Tree& tree, int tank, TreeData& data) {

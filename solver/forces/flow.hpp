@@ -13,18 +13,18 @@ namespace bough::solver {
 
 /// Place and velocity of an outflow.
 struct Outflow {
-  double flow = 0;                         ///< M/T
-  Vector3d exit = Vector3d::Zero();        ///< from Bo, in B
-  double radius = 0;                       ///< of the nozzle
-  Vector3d axis = Vector3d::UnitX();       ///< unit normal of its exit, in B
-  Vector3d thrust = Vector3d::Zero();      ///< force of the jet on the body at the exit, in B; zero if none is known
+  double flow = 0;                     ///< M/T
+  Vector3d exit = Vector3d::Zero();    ///< from Bo, in B
+  double radius = 0;                   ///< of the nozzle
+  Vector3d axis = Vector3d::UnitX();   ///< unit normal of its exit, in B
+  Vector3d thrust = Vector3d::Zero();  ///< force of the jet on the body at the exit, in B; zero if none is known
 };
 
-/// Adds the loads of the flow, without the thrust, to the tank's body, and books the momentum that leaves: that of the
-/// mass at its exit, minus the impulse of the thrust, and the change of the flow's own momentum as the body turns. After
-/// calc_velocity. No allocation.
+/// Adds the loads of the flow, without the thrust, to the body of the tank, and books the momentum that leaves: that of
+/// the mass at its exit, minus the impulse of the thrust, and the change of the flow's momentum as the body turns.
+/// After calc_velocity. No allocation.
 void add_outflow(const Tree& tree, int tank, const Outflow& out, TreeData& data);
-/// The same of a tank whose mass is a function of time; nothing for others.
+/// Adds the outflow of a tank whose mass is a function of time; does nothing for other tanks.
 void add_prescribed_flow(const Tree& tree, int tank, TreeData& data);
 
 }  // namespace bough::solver

@@ -28,8 +28,8 @@ double calc_sunlight(const Shadow& shadow, const Vector3d& p_W, const Vector3d& 
   if (c <= b - a) return 0;
   if (c <= a - b) return 1 - b * b / (a * a);
   const double x = (c * c + a * a - b * b) / (2 * c), y = std::sqrt(std::max(0.0, a * a - x * x));
-  const double covered = a * a * std::acos(std::clamp(x / a, -1.0, 1.0)) +
-                         b * b * std::acos(std::clamp((c - x) / b, -1.0, 1.0)) - c * y;
+  const double covered =
+      a * a * std::acos(std::clamp(x / a, -1.0, 1.0)) + b * b * std::acos(std::clamp((c - x) / b, -1.0, 1.0)) - c * y;
   return 1 - covered / (std::numbers::pi * a * a);
 }
 

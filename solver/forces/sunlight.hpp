@@ -16,8 +16,8 @@ struct Shadow {
   double sun_size = 0;  ///< angular radius of the sun
 };
 
-/// Visible share of the sun's disc, of two circles on the sky: 1 lit, 0 umbra, 1 - (share that a smaller planet covers).
-/// \param p_W  outside the planet.  \param sun_W  unit.
+/// Visible share of the sun's disc, of two circles on the sky: 1 lit, 0 umbra, 1 - (share that a smaller planet
+/// covers). \param p_W  outside the planet.  \param sun_W  unit.
 double calc_sunlight(const Shadow& shadow, const Vector3d& p_W, const Vector3d& sun_W);
 /// Angles by which the planet and the sun are apart at first and last contact: zero where penumbra begins and ends.
 Eigen::Vector2d calc_contacts(const Shadow& shadow, const Vector3d& p_W, const Vector3d& sun_W);

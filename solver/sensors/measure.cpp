@@ -33,7 +33,8 @@ Observer calc_observer(const Motion& motion, int body) {
 Matrix3d calc_orbital_axes(const Observer& o, const Sensor& e) {
   const Vector3d R = o.p - e.orbit->field().centre, h = R.cross(o.v);
   if (!(h.norm() > 0))
-    throw ComputationError("run.no-orbit", {}, "sensor '" + e.name + "' has no LVLH frame: its body moves along the radius",
+    throw ComputationError("run.no-orbit", {},
+                           "sensor '" + e.name + "' has no LVLH frame: its body moves along the radius",
                            "give the body a velocity across the direction to the centre");
   Matrix3d axes;
   axes.col(2) = -R.normalized();
@@ -192,8 +193,7 @@ void measure(const Motion& motion, const Sensor& e, double* out) {
     case SensorOf::Point:
       if (e.orbit != nullptr) {
         const Observer o = calc_orbital_observer(motion, e);
-        const Vector3d value =
-            calc_relative(e.type, e.from_turning, calc_node_motion(motion, e.body, e.node), o);
+        const Vector3d value = calc_relative(e.type, e.from_turning, calc_node_motion(motion, e.body, e.node), o);
         Map<Vector3d>{out} = e.in_orbital_frame ? Vector3d(calc_orbital_axes(o, e).transpose() * value)
                                                 : turn_into(motion, e.frame, value);
         return;

@@ -17,8 +17,9 @@
 ///   element                  forces and stresses of an element (solver/motion/recovery.hpp)
 ///   hinge_angle, hinge_rate   coordinates as the user knows them (quaternion w, x, y, z) and rates; one, or all for 0
 ///
-/// With `orbit`, A is the LVLH frame of the body about the centre of gravity: origin Ao, z towards the centre, y against
-/// r × v, x along the path; its rate is r × v / r², without the share about z that forces across the plane give it.
+/// With `orbit`, A is the LVLH frame of the body about the centre of gravity: origin Ao, z towards the centre, y
+/// against r × v, x along the path; its rate is r × v / r², without the share about z that forces across the plane give
+/// it.
 ///
 /// With frame = A and relative_to = A, "turning" is what an observer who rides on A writes down. An empty frame means
 /// "body" for deflection and rotation and "inertial" for the others.

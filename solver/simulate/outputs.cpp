@@ -74,7 +74,8 @@ Outputs::Outputs(const System& system) : system_(system) {
   if (system.num_momentum_out() > 0) {
     add_channel("/momentum/out_linear", 3, "linear momentum that left with propellant, in the inertial frame", "M L/T");
     add_channel("/momentum/out_angular", 3,
-                "angular momentum about the inertial origin that left with propellant, in the inertial frame", "M L^2/T");
+                "angular momentum about the inertial origin that left with propellant, in the inertial frame",
+                "M L^2/T");
   }
   add_channel("/system_mass/mass", 1, "mass of the system", "M");
   add_channel("/system_mass/cg", 3, "centre of mass of the system, in the inertial frame", "L");

@@ -14,7 +14,7 @@ void calc_motion(const System& system, SystemData& data, double t, const Eigen::
                  NodeActuator&& push) {
   set_z(data, z);                          // masses of tanks
   calc_kinematics(system, data, t, q, u);  // markers, R_PB, r, X, H, Jc, M(η); V = X V_P + H u - Jc η̇,   b, h
-  add_forces(system, data, t);  // signals, actuators, applied, springs, dampers, gravity
+  add_forces(system, data, t);             // signals, actuators, applied, springs, dampers, gravity
   push();
   // 𝒫 = M + Σ Xᵀ𝒫⁺X, tip to base; [u̇; η̈] = L⁻ᵀ(z - G X A'_P), base to tip; (G M⁻¹ Gᵀ) λ = γ - G u̇,  u̇ += M⁻¹ Gᵀ λ
   calc_accelerations(system, data, t, u_dot);

@@ -42,8 +42,7 @@ double calc_outflow_power(const System& system, const SystemData& data) {
     if (tank.flow == 0) continue;
     const BodyState& s = data.tree[b].state;
     const TankContent& c = tank.content;
-    const double kinetic =
-        0.5 * s.v_B.squaredNorm() + s.v_B.dot(s.w_B.cross(c.S_m)) + 0.5 * s.w_B.dot(c.J_m * s.w_B);
+    const double kinetic = 0.5 * s.v_B.squaredNorm() + s.v_B.dot(s.w_B.cross(c.S_m)) + 0.5 * s.w_B.dot(c.J_m * s.w_B);
     double potential = -system.gravity.uniform.dot(s.p_WBo + s.R_WB * c.S_m);
     for (const CentralGravity* source : system.gravity.central)
       if (source->attracts(b)) potential += source->calc_potential_rate(data.tree[b], c);
@@ -151,8 +150,7 @@ SystemMass calc_system_mass(const System& system, const SystemData& data) {
   Vector3d moment = Vector3d::Zero();
   for (int b = 0; b < tree.size(); ++b) {
     total.mass += data.tree[b].inertia.mass;
-    moment +=
-        data.tree[b].inertia.mass * data.tree[b].state.p_WBo + data.tree[b].state.R_WB * data.tree[b].inertia.S;
+    moment += data.tree[b].inertia.mass * data.tree[b].state.p_WBo + data.tree[b].state.R_WB * data.tree[b].inertia.S;
   }
   if (!(total.mass > 0)) return total;
   total.cg_W = moment / total.mass;
@@ -160,8 +158,7 @@ SystemMass calc_system_mass(const System& system, const SystemData& data) {
     const BodyData& d = data.tree[b];
     const Matrix3d J = d.inertia.M6.bottomRightCorner<3, 3>();
     // ∫ρ -(r + x)~(r + x)~ with r from cg to Bo, x from Bo.
-    const Matrix3d r = skew(Vector3d(d.state.p_WBo - total.cg_W)),
-                   S = skew(Vector3d(d.state.R_WB * d.inertia.S));
+    const Matrix3d r = skew(Vector3d(d.state.p_WBo - total.cg_W)), S = skew(Vector3d(d.state.R_WB * d.inertia.S));
     total.inertia_W += d.state.R_WB * J * d.state.R_WB.transpose() - r * S - S * r - d.inertia.mass * r * r;
   }
   return total;

@@ -160,8 +160,7 @@ void set_tank_masses(const System& system, SystemData& data, double t) {
     if (!tank.function || mass >= -kTankNoise * tank.initial) continue;
     std::ostringstream what;
     what << "tank '" << tank.name << "' is emptier than empty at t = " << t << ": its mass is " << mass;
-    throw ComputationError("run.tank-empty", tank.at, what.str(),
-                           "end the function at a mass of at least 0");
+    throw ComputationError("run.tank-empty", tank.at, what.str(), "end the function at a mass of at least 0");
   }
 }
 }  // namespace
@@ -198,7 +197,8 @@ void add_forces(const System& system, SystemData& data, double t) {
   system.signals.calc_before_acceleration(get_motion(system, data), data.signals);
   for (const AppliedForce& force : system.forces) add_applied_force(force, system.tree, t, data.tree);
   add_hinge_forces(system.tree, data.tree);
-  for (size_t i = 0; i < system.tree.tanks.size(); ++i) add_prescribed_flow(system.tree, static_cast<int>(i), data.tree);
+  for (size_t i = 0; i < system.tree.tanks.size(); ++i)
+    add_prescribed_flow(system.tree, static_cast<int>(i), data.tree);
   Loads loads(system.tree, data.tree);
   for (size_t i = 0; i < system.elements.size(); ++i)
     data.elements[i] = system.elements[i]->calc(system.tree, data.tree, &loads);

@@ -100,7 +100,7 @@ struct SystemData {
   LoopData loops;
   std::vector<ForceResult> elements;  ///< of add_forces; zero before it
   SignalData signals;
-  VectorXd tangent;  ///< num_u, scratch
+  VectorXd tangent;                          ///< num_u, scratch
   Vector6d momentum_out = Vector6d::Zero();  ///< of the last set_z
 };
 

@@ -70,7 +70,8 @@ struct TreeData {
   VectorXd given_u, given_udot;  ///< num_u: rates and accelerations of the prescribed ones
   std::vector<MarkerMotion> markers;
   std::vector<TankData> tanks;
-  Vector6d momentum_out = Vector6d::Zero();  ///< rate of the momentum that leaves with propellant, about W's origin, in W
+  Vector6d momentum_out =
+      Vector6d::Zero();  ///< rate of the momentum that leaves with propellant, about W's origin, in W
   VectorXd h, applied;   ///< num_v: [f; t about Bo; modal] per body, in B, gravity left out
   VectorXd slide;        ///< num_u: which way a coordinate with dry friction slides, 1 or -1; 0: it has none, or rests
   VectorXd hinge_force;  ///< num_u: load along the coordinate: springs, dampers, elements and actuators of the hinge

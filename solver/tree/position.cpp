@@ -98,7 +98,7 @@ void start_position(const Tree& tree, double t, const ConstVectorRef& q, TreeDat
   data.gravity.setZero();
   data.done = static_cast<unsigned>(Stage::Position);
   for (size_t i = 0; i < tree.tanks.size(); ++i)
-    data.tanks[i].content = tree.tanks[i].shape->calc(std::max(tree.tanks[i].least, data.tanks[i].mass));
+    data.tanks[i].content = tree.tanks[i].shape->calc(std::max(tree.tanks[i].reserve, data.tanks[i].mass));
   for (const int m : tree.moving) {
     const Marker& marker = tree.markers[static_cast<size_t>(m)];
     const TreeBody& tb = tree[marker.body];

@@ -27,7 +27,7 @@ struct Tank {
   int body = 0;
   std::shared_ptr<const TankShape> shape;
   double initial = 0;                      ///< mass at the start
-  double least = 0;                        ///< mass that cannot leave: of a slosh pendulum
+  double reserve = 0;                      ///< mass that cannot leave: of a slosh pendulum
   std::vector<int> used_rows;              ///< states of signals whose sum is the mass used
   const TimeFunction* function = nullptr;  ///< or: its mass
   Vector3d exit = Vector3d::Zero();        ///< function: where the mass leaves, from Bo, in B
@@ -70,7 +70,7 @@ struct TreeBody {
 };
 
 struct Tree {
-  std::vector<TreeBody> bodies;                ///< parents before children
+  std::vector<TreeBody> bodies;  ///< parents before children
   std::vector<Tank> tanks;
   std::vector<Marker> markers;                 ///< each once; [0] is ground's origin
   std::vector<int> moving;                     ///< those that deform

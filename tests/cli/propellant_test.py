@@ -116,7 +116,7 @@ class Propellant(ProgramTest):
             cg = first / total
             about_bo = 3 + 2 * 0.16 + content * (0.25 * 0.25 + height**2 / 3)
             inertia = about_bo - total * cg**2
-            # Moment about the centre of mass: that about Bo, less the arm times the Coriolis force.
+            # Moment about the centre of mass: that about Bo, minus the arm times the Coriolis force.
             moment_bo = flow * (1.0 + 0.25 * 0.04 - (0.25 * 0.25 + height**2))
             force = 2 * flow * (-1.0 - height)  # along, times the rate
             expected = -(moment_bo - cg * force) / inertia
@@ -172,9 +172,9 @@ class Propellant(ProgramTest):
                 ("density = 8.0", "", "toml.missing-key"),
                 ('type = "cylinder"', 'type = "cube"', "toml.")):
             self.write("bad.toml", ROCKET.replace(old, new))
-            said = self.bough("check", "bad.toml", code=1).stderr
-            self.assertIn(error, said)
-            self.assertRegex(said, r"bad\.toml:\d+")
+            errors = self.bough("check", "bad.toml", code=1).stderr
+            self.assertIn(error, errors)
+            self.assertRegex(errors, r"bad\.toml:\d+")
 
 
 if __name__ == "__main__":

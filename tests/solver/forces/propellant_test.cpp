@@ -59,23 +59,22 @@ TEST(Tanks, AreTheSumOfTheirPoints) {
   const auto cylinder = make_cylinder_tank(place, 0.8, 1, density);
   const double half = 0.5 * cylinder->capacity();
   EXPECT_NEAR(cylinder->capacity(), density * kPi * 0.64, 1e-12);
-  expect_near(cylinder->calc(half), sum_points(place, 1, density, [](const Vector3d& s) {
-                return s.head<2>().norm() < 0.8 && s.z() > 0 && s.z() < 0.5;
-              }),
+  expect_near(cylinder->calc(half),
+              sum_points(place, 1, density,
+                         [](const Vector3d& s) { return s.head<2>().norm() < 0.8 && s.z() > 0 && s.z() < 0.5; }),
               8e-3);
   const auto sphere = make_sphere_tank(place, 0.9, density);
   // Filled to a height above the centre between two layers of points.
   const double top = 14.0 / 60, u = top / 0.9, mass = sphere->capacity() * (2 + 3 * u - u * u * u) / 4;
-  expect_near(sphere->calc(mass), sum_points(place, 1, density, [&](const Vector3d& s) {
-                return s.norm() < 0.9 && s.z() < top;
-              }),
-              8e-3);
+  expect_near(sphere->calc(mass),
+              sum_points(place, 1, density, [&](const Vector3d& s) { return s.norm() < 0.9 && s.z() < top; }), 8e-3);
   const auto grain = make_grain(place, 0.9, 0.3, 1, density);
   EXPECT_NEAR(grain->capacity(), density * kPi * 0.72, 1e-12);
-  expect_near(grain->calc(density * kPi * 0.45), sum_points(place, 1, density, [](const Vector3d& s) {
-                return s.head<2>().norm() < 0.9 && s.head<2>().norm() > 0.6 && s.z() > 0;
-              }),
-              8e-3);
+  expect_near(
+      grain->calc(density * kPi * 0.45),
+      sum_points(place, 1, density,
+                 [](const Vector3d& s) { return s.head<2>().norm() < 0.9 && s.head<2>().norm() > 0.6 && s.z() > 0; }),
+      8e-3);
   for (const auto* shape : {cylinder.get(), sphere.get(), grain.get()})
     for (const double share : {0.05, 0.4, 0.9}) expect_derivatives(*shape, share * shape->capacity());
   for (const auto* shape : {cylinder.get(), sphere.get(), grain.get()}) {
@@ -97,8 +96,8 @@ TEST(Tanks, ATableOfTheWholeBodyGivesTheWholeBody) {
   const TankContent c = shape->calc(2);  // of 4: half way between the last rows
   const Vector3d cg = 0.5 * (table.cg[1] + table.cg[2]);
   EXPECT_LT((c.S + dry.S - 4 * cg).norm(), 1e-14);
-  const Matrix3d J = 0.5 * (table.inertia[1] + table.inertia[2]) +
-                     4 * (cg.squaredNorm() * Matrix3d::Identity() - cg * cg.transpose());
+  const Matrix3d J =
+      0.5 * (table.inertia[1] + table.inertia[2]) + 4 * (cg.squaredNorm() * Matrix3d::Identity() - cg * cg.transpose());
   EXPECT_LT((c.J + dry.J - J).norm(), 1e-13);
   expect_derivatives(*shape, 2);
 }
@@ -128,13 +127,13 @@ records::SystemSpec make_rocket() {
   tank.density = 8;
   tank.mass = 10;
   spec.tanks = {tank};
-  spec.functions = {make_step("law", 40, -1)};
+  spec.functions = {make_step("throttle", 40, -1)};
   records::ActuatorRecord engine;
   engine.name = "engine";
   engine.type = "engine";
   engine.body = "body";
   engine.node = 1;
-  engine.input = "law";
+  engine.input = "throttle";
   engine.at = {"system.toml", 50, 1};
   engine.settings.numbers = {{"axis", {1, 0, 0}}, {"exhaust_velocity", {5}}};
   engine.settings.words = {{"tank", {"tank"}}};
@@ -157,9 +156,9 @@ TEST(Propellant, GivesTsiolkovskysSpeed) {
   }
 }
 
-// m k² α = ṁ (k² - l²) ω with a constant radius of gyration k about a centre of mass that stays: ω = ω0 (m/m0)^(l²/k² - 1)
-// (Meriam & Kraige; Thomson, Introduction to Space Dynamics, 8.5). About the axis of a nozzle of radius R:
-// ω = ω0 (m/m0)^(R²/(2 k²) - 1).
+// m k² α = ṁ (k² - l²) ω with a constant radius of gyration k about a centre of mass that stays: ω = ω0 (m/m0)^(l²/k² -
+// 1) (Meriam & Kraige; Thomson, Introduction to Space Dynamics, 8.5). About the axis of a nozzle of radius R: ω = ω0
+// (m/m0)^(R²/(2 k²) - 1).
 TEST(Propellant, DampsTurningAsTheClosedFormSays) {
   for (const bool is_axial : {false, true}) {
     auto spec = make_rocket();
