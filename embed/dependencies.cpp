@@ -131,7 +131,7 @@ Dependencies DependencyGraph::find_of_derivative(int row) const {
       return found;
     }
   }
-  if (row < num_q + num_u || row >= num_q + num_u + num_z) {
+  if (row < num_q + num_u || row >= num_q + num_u + num_z - system_.num_momentum_out()) {
     set = accelerations_;
     // Power of what is applied: all that loads depend on, and accelerations where a motion is prescribed.
     return make(set);

@@ -292,6 +292,8 @@ std::vector<fmu::Variable> choose_outputs(const embed::Model& model, const std::
 std::pair<std::string, bool> find_state_dims(const solver::System& system, int row) {
   const auto layout = system.layout();
   if (row == layout.work() || row == layout.dissipated()) return {"F L", false};
+  if (const int out = layout.work() - system.num_momentum_out(); row >= out)
+    return {row < out + 3 ? "M L/T" : "M L^2/T", false};
   for (const auto& tb : system.tree.bodies) {
     const int q = row - tb.q_offset, u = row - layout.num_q - tb.u_offset;
     std::string dims;

@@ -85,7 +85,7 @@ void add_hinges(const records::SystemSpec& spec, const ScenePlaces& places, repo
 bool has_mount(SensorType type) {
   return type == SensorType::Quaternion || type == SensorType::Euler || type == SensorType::DirectionCosines ||
          type == SensorType::Gyro || type == SensorType::IntegratingGyro || type == SensorType::Accelerometer ||
-         type == SensorType::Direction || type == SensorType::Horizon;
+         type == SensorType::Direction || type == SensorType::Horizon || type == SensorType::Magnetometer;
 }
 
 bool has_no_place(SensorType type) {

@@ -86,6 +86,7 @@ class Arrows {
       case ElementType::CentralGravity:
         return tell("force " + element.name + ": central gravity acts on all of a body");
       case ElementType::Drag:
+      case ElementType::SolarPressure:
         return add(std::move(arrow));
       case ElementType::Spring: {
         arrow.column = 0;

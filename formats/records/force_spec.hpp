@@ -17,7 +17,7 @@ struct EndRecord {
   Matrix3d rotation = Matrix3d::Identity();  ///< axes, in the body's frame
 };
 
-enum class ElementType { Spring, Bushing, CentralGravity, Contact, Drag };
+enum class ElementType { Spring, Bushing, CentralGravity, Contact, Drag, SolarPressure };
 enum class SpringSense { Both, Tension, Compression };  ///< in which it acts
 enum class ContactShape { Plane, Sphere };              ///< of the `to` end
 
@@ -39,10 +39,18 @@ struct ForceElementRecord {
   // Central gravity
   double mu = 0, j2 = 0, equator = 0;  ///< equator: radius that J2 goes with
   Vector3d centre = Vector3d::Zero(), axis = Vector3d::UnitZ();
-  std::vector<std::string> bodies;  ///< empty: all
+  std::vector<std::string> bodies;     ///< empty: all
+  Vector3d dipole = Vector3d::Zero();  ///< magnetic, inertial
   // Drag
   double area = 0, coefficient = 0, density = 0;
   Vector3d wind = Vector3d::Zero();  ///< velocity of the air, inertial
+  std::string planet;                ///< drag, solar pressure: a central gravity with a radius; empty: none
+  double scale_height = 0, altitude = 0;
+  Vector3d spin = Vector3d::Zero();  ///< of the air with its planet, inertial
+  // Solar pressure
+  double pressure = 0, specular = 0, diffuse = 0, sun_size = 0;
+  Vector3d sun = Vector3d::Zero();  ///< direction to it, inertial
+  bool is_one_sided = false;
   SourceLocation at;
 };
 

@@ -15,6 +15,7 @@
 #include "formats/records/flex_body.hpp"
 #include "formats/records/force_spec.hpp"
 #include "formats/records/function_spec.hpp"
+#include "formats/records/tank_spec.hpp"
 #include "formats/records/unit_labels.hpp"
 
 namespace bough::records {
@@ -101,6 +102,7 @@ enum class SensorType {
   Tachometer,
   Direction,
   Horizon,
+  Magnetometer,
   HingeForce,
   HingeMoment,
   StrainEnergy,
@@ -117,6 +119,7 @@ struct SensorRecord {
   int node = 0;
   std::string frame = "inertial";  ///< "inertial", "body" (the node's own body) or another body's name: components
   std::string relative_to;         ///< relative to the motion of this body (not deflection, rotation); empty: none
+  bool is_orbital = false;         ///< relative_to: to the LVLH frame of the body about its central gravity
   bool from_turning = true;        ///< relative_to: as an observer who turns with that body sees it
   std::string hinge;               ///< hinge sensors
   int coordinate = 0;              ///< hinge sensors: 1-based; 0 = all; modal sensors: the mode
@@ -175,6 +178,7 @@ struct SystemSpec {
   UnitLabels units;                                        ///< [units]
   std::vector<std::pair<std::string, double>> parameters;  ///< [parameters]; their numbers stand where they are named
   std::vector<BodyRecord> bodies;
+  std::vector<TankRecord> tanks;
   std::vector<HingeRecord> hinges;
   std::vector<ConstraintRecord> constraints;
   std::vector<FunctionRecord> functions;

@@ -120,7 +120,7 @@ void read_sensor_keys(const Fields& table, const std::string& path, const std::s
     if (!is_known(own, key)) continue;
     const bool is_mounted = type == "quaternion" || type == "euler" || type == "dcm" || type == "gyro" ||
                             type == "integrating_gyro" || type == "accelerometer" || type == "direction" ||
-                            type == "horizon";
+                            type == "horizon" || type == "magnetometer";
     const bool is_taken = key == "rotation"                        ? is_mounted
                           : key == "sequence"                      ? type == "euler"
                           : key == "element" || key == "component" ? type == "element"

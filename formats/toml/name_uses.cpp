@@ -19,12 +19,15 @@ const std::map<std::string, Keys>& get_name_keys() {
   static const std::map<std::string, Keys> keys{
       {"body",
        {"hinge/parent", "hinge/child", "constraint/parent", "constraint/child", "force/body", "force/to_body",
-        "force/bodies", "sensor/body", "sensor/frame", "sensor/relative_to", "sensor/to_body", "actuator/body"}},
+        "force/bodies", "sensor/body", "sensor/frame", "sensor/relative_to", "sensor/to_body", "actuator/body",
+        "tank/body"}},
+      {"tank", {"actuator/tank"}},
       {"hinge", {"constraint/terms/hinge", "sensor/hinge", "actuator/hinge", "event/hinge"}},
       {"constraint", {"event/constraint"}},
       {"function",
        {"hinge/motion", "hinge/spring_table", "hinge/damper_table", "force/function", "force/spring_table",
-        "force/damper_table", "function/of"}},
+        "force/damper_table", "function/of", "tank/function"}},
+      {"force", {"force/planet"}},
       {"controller", {"event/controller"}},
       {"body.load", {"body/modes/residual"}}};
   return keys;
@@ -38,8 +41,9 @@ const Keys kSignalKinds{"sensor", "input", "controller", "actuator", "function"}
 const Keys kTargetKinds{"controller", "actuator", "force"};
 /// Groups of the results, by kind: "/sensors/NAME" with more after it.
 const std::map<std::string, std::string> kGroups{
-    {"body", "bodies"},    {"hinge", "hinges"},           {"constraint", "constraints"}, {"force", "forces"},
-    {"sensor", "sensors"}, {"controller", "controllers"}, {"actuator", "actuators"},     {"input", "inputs"}};
+    {"body", "bodies"},        {"hinge", "hinges"},   {"constraint", "constraints"},
+    {"force", "forces"},       {"sensor", "sensors"}, {"controller", "controllers"},
+    {"actuator", "actuators"}, {"input", "inputs"},   {"tank", "tanks"}};
 
 struct Use {
   std::string path;  ///< with the numbers of list entries

@@ -6,6 +6,7 @@
 
 #include <Eigen/Eigenvalues>
 
+#include "formats/records/slosh.hpp"
 #include "formats/toml/detail/constraint_table.hpp"
 #include "formats/toml/detail/control_tables.hpp"
 #include "formats/toml/detail/event_table.hpp"
@@ -17,6 +18,7 @@
 #include "formats/toml/detail/parameters.hpp"
 #include "formats/toml/detail/references.hpp"
 #include "formats/toml/detail/schema.hpp"
+#include "formats/toml/detail/tank_table.hpp"
 #include "formats/toml/key_editor.hpp"
 #include "formats/toml/specs.hpp"
 #include "formats/toml/system_text.hpp"
@@ -82,6 +84,7 @@ records::SensorRecord read_sensor(const Fields& table, const std::string& path, 
                                                        {"tachometer", SensorType::Tachometer},
                                                        {"direction", SensorType::Direction},
                                                        {"horizon", SensorType::Horizon},
+                                                       {"magnetometer", SensorType::Magnetometer},
                                                        {"hinge_force", SensorType::HingeForce},
                                                        {"hinge_moment", SensorType::HingeMoment},
                                                        {"strain_energy", SensorType::StrainEnergy},
@@ -95,13 +98,16 @@ records::SensorRecord read_sensor(const Fields& table, const std::string& path, 
   sensor.body = table.get_string("body");
   sensor.node = table.get_int("node", 0);
   sensor.relative_to = table.get_string("relative_to");
+  constexpr std::string_view kOrbit = "lvlh:";
+  sensor.is_orbital = sensor.relative_to.starts_with(kOrbit);
+  if (sensor.is_orbital) sensor.relative_to.erase(0, kOrbit.size());
   sensor.hinge = table.get_string("hinge");
   sensor.coordinate = table.get_int("coordinate", 0);
   const auto it = types.find(table.get_string("type"));
   if (it == types.end()) return sensor;  // reported by the schema
   sensor.type = it->second;
   const bool is_elastic = sensor.type == SensorType::Deflection || sensor.type == SensorType::Rotation;
-  sensor.frame = table.get_string("frame", is_elastic ? "body" : "inertial");
+  sensor.frame = table.get_string("frame", is_elastic ? "body" : sensor.is_orbital ? "" : "inertial");
 
   read_sensor_keys(table, path, it->first, sensor, diagnostics);
   const bool is_hinge_load = sensor.type == SensorType::HingeForce || sensor.type == SensorType::HingeMoment;
@@ -131,6 +137,9 @@ records::SensorRecord read_sensor(const Fields& table, const std::string& path, 
     if (is_modal || is_element || sensor.type == SensorType::StrainEnergy)
       refuse_keys(table, {"node"}, because, diagnostics);
     if (is_elastic) refuse_keys(table, {"relative_to", "observer"}, because, diagnostics);
+    if (sensor.is_orbital &&
+        (sensor.type == SensorType::Acceleration || sensor.type == SensorType::AngularAcceleration))
+      refuse_keys(table, {"relative_to"}, because + ": an LVLH frame gives no accelerations", diagnostics);
     if (is_vector && !is_elastic && !table.has("relative_to"))
       refuse_keys(table, {"observer"}, because + ", which has no relative_to", diagnostics);
   }
@@ -230,6 +239,7 @@ records::SystemSpec read_system_spec_text(const std::string& text, const std::st
     for (const auto& entry : parameters->entries)
       if (entry.value.is_number()) spec.parameters.emplace_back(entry.key, entry.value.number);
   for (const Fields& table : fields.get_tables("body")) spec.bodies.push_back(read_body(table, path, diagnostics));
+  for (const Fields& table : fields.get_tables("tank")) spec.tanks.push_back(read_tank(table, diagnostics));
   for (const Fields& table : fields.get_tables("hinge")) spec.hinges.push_back(read_hinge(table, diagnostics));
   for (const Fields& table : fields.get_tables("constraint"))
     spec.constraints.push_back(read_constraint(table, diagnostics));
@@ -248,6 +258,7 @@ records::SystemSpec read_system_spec_text(const std::string& text, const std::st
   for (const Fields& table : fields.get_tables("connect")) spec.connects.push_back(read_connect(table));
   for (const Fields& table : fields.get_tables("event")) spec.events.push_back(read_event(table, diagnostics));
   spec.simulation = read_simulation(fields.get_table("simulation"), diagnostics);
+  if (!spec.tanks.empty()) records::add_slosh(spec, diagnostics);
   check_names(spec, diagnostics);
   return spec;
 }

@@ -40,6 +40,16 @@ void change_body(const UnitTable& t, const records::UnitChange& c) {
       if (const auto* table = node.as_table()) t.edits.scale(table->get("position"), c.length);
 }
 
+void change_tank(const UnitTable& t, const records::UnitChange& c) {
+  for (const char* key : {"mass", "masses"}) t.scale(key, c.mass);
+  for (const char* key : {"position", "radius", "bore", "height", "exit_radius"}) t.scale(key, c.length);
+  t.scale("density", c.mass / std::pow(c.length, 3));
+  t.scale("slosh_acceleration", c.length / (c.time * c.time));
+  for (const auto& [key, unit] : {std::pair{"cg", c.length}, std::pair{"inertia", c.mass * c.length * c.length}})
+    if (const auto* rows = t.table[key].as_array())
+      for (const auto& row : *rows) t.edits.scale(&row, unit);
+}
+
 void change_hinge(const UnitTable& t, const SignalUnits& units) {
   const auto& c = units.change();
   const std::string name = t.text("name");
@@ -127,11 +137,15 @@ void change_force(const UnitTable& t, SignalUnits& units, const BodyFacts& facts
     t.scale("stiffness", force / length);
     t.scale("damping", force * c.time / length);
   }
-  for (const char* key : {"free_length", "radius", "to_radius", "centre"}) t.scale(key, length);
+  for (const char* key : {"free_length", "radius", "to_radius", "centre", "scale_height", "altitude"})
+    t.scale(key, length);
   t.scale("preload", force);
   for (const char* key : {"slip_velocity", "wind"}) t.scale(key, length / c.time);
   t.scale("mu", std::pow(length, 3) / (c.time * c.time));
   t.scale("area", length * length);
+  t.scale("pressure", force / (length * length));
+  t.scale("spin", 1 / c.time);
+  t.scale("dipole", std::pow(length, 3));
   t.scale("density", c.mass / std::pow(length, 3));
 }
 
@@ -174,6 +188,7 @@ void change_system(const toml::table& root, UnitEdits& edits, const records::Uni
       change(UnitTable{*table, std::string(kind) + "." + std::to_string(++number), edits, to_radians});
   };
   visit("body", [&](const UnitTable& t) { change_body(t, c); });
+  visit("tank", [&](const UnitTable& t) { change_tank(t, c); });
   visit("hinge", [&](const UnitTable& t) { change_hinge(t, units); });
   visit("constraint", [&](const UnitTable& t) { change_constraint(t, units); });
   visit("function", [&](const UnitTable& t) { change_function(t, units); });

@@ -11,6 +11,7 @@ namespace bough::solver {
 struct ActuatorPlace {
   std::string effort = "F L or F";  ///< dimension along the hinge coordinate
   int row = -1, marker = -1;
+  int tank = -1;  ///< in Tree::tanks, of thrusters
 };
 
 std::unique_ptr<Actuator> make_hinge_actuator(const records::ActuatorRecord& record, SettingsReader& keys,

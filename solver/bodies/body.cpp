@@ -225,9 +225,10 @@ MatrixXd BodyInertia::make_M() const {
 BodyInertia Body::make_inertia() const {
   BodyInertia inertia;
   inertia.h = VectorXd::Zero(6 + n_);
+  inertia.mass = mass_;
   inertia.S = S0_;
-  if (n_ == 0) return inertia;
   inertia.M6 = M6_;
+  if (n_ == 0) return inertia;
   inertia.M_top = Matrix6Xd::Zero(6, n_);
   const auto rows = pad(n_);
   inertia.by_eta = MatrixXd::Zero(rows, by_eta_.rows() / rows);

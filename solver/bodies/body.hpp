@@ -26,7 +26,8 @@ class ThirdOrderBody;
 
 /// M(η), h and scratch for one body; every array is sized once. But for M6, M_top and h rows are padded (kernels.hpp).
 struct BodyInertia {
-  Matrix6d M6 = Matrix6d::Zero();  ///< M(η) of a flexible body (a rigid one has Body::M6) in three parts
+  double mass = 0;
+  Matrix6d M6 = Matrix6d::Zero();  ///< M(η) in three parts; of a rigid body with tanks, with their content of now
   Matrix6Xd M_top;                 ///< 6 x n
   MatrixXd M_modal;                ///< lower triangle of M_ηη, and some of what is above
   VectorXd h;                      ///< 6+n
@@ -87,8 +88,6 @@ class Body {
   /// h(η, η̇, ω), after calc_mass. O(n²), no allocation.
   void calc_bias(const Vector3d& w_B, const ConstVectorRef& eta, const ConstVectorRef& eta_dot,
                  BodyInertia& inertia) const;
-  /// h (6) of a rigid body.
-  void calc_rigid_bias(const Vector3d& w_B, double* h) const;
   /// After calc_mass. No allocation.
   LinearField make_linear_field(const Matrix3d& T, const BodyInertia& inertia) const;
   /// ∫ρ ∂r/∂η_j·(T r), the derivative of ½ ∫ρ r·(T r): what the acceleration T r of its points does on mode j.
@@ -133,5 +132,8 @@ class Body {
   std::vector<Node> nodes_;
   std::shared_ptr<const ThirdOrderBody> third_;
 };
+
+/// h (6) of a rigid body: [ω×(ω×S); ω×Jω].
+void calc_rigid_bias(const BodyInertia& inertia, const Vector3d& w_B, double* h);
 
 }  // namespace bough::solver

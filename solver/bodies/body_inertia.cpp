@@ -186,9 +186,9 @@ double Body::calc_modal_force(const LinearField& field, const BodyInertia& x, in
   return force;
 }
 
-void Body::calc_rigid_bias(const Vector3d& w, double* h) const {
-  const Matrix3d J = M6_.bottomRightCorner<3, 3>();
-  Eigen::Map<Vector3d>{h} = w.cross(w.cross(S0_));
+void calc_rigid_bias(const BodyInertia& x, const Vector3d& w, double* h) {
+  const Matrix3d J = x.M6.bottomRightCorner<3, 3>();
+  Eigen::Map<Vector3d>{h} = w.cross(w.cross(x.S));
   Eigen::Map<Vector3d>{h + 3} = w.cross(Vector3d(J * w));
 }
 
@@ -213,7 +213,7 @@ double Body::calc_strain_energy(const ConstVectorRef& eta) const {
 
 void Body::calc_bias(const Vector3d& w, const ConstVectorRef& eta, const ConstVectorRef& eta_dot,
                      BodyInertia& x) const {
-  if (n_ == 0) return calc_rigid_bias(w, x.h.data());
+  if (n_ == 0) return calc_rigid_bias(x, w, x.h.data());
   if (third_) return calc_third_order_bias(w, eta, eta_dot, x);
   calc_flexible_bias(w, eta, eta_dot, x);
 }

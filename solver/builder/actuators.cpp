@@ -25,6 +25,8 @@ constexpr Kind kKinds[] = {
     {"force", 1, Where::Force, "F", make_node_actuator},
     {"moment", 1, Where::Moment, "F L", make_node_actuator},
     {"jet", 2, Where::Force, "", make_node_actuator},
+    {"engine", 2, Where::Force, "F", make_node_actuator},
+    {"torque_rod", 4, Where::Moment, "", make_node_actuator},
     {"wheel", 3, Where::Moment, "F L", make_rotor},
     {"cmg", 2, Where::Moment, "1/T", make_rotor},
     {"double_gimbal_cmg", 4, Where::Moment, "1/T", make_rotor},
@@ -109,6 +111,31 @@ bool find_marker(const records::ActuatorRecord& r, const System& system, Tree& t
   return true;
 }
 
+/// The tank that a thruster uses; false: reported.
+bool find_tank(const records::ActuatorRecord& r, const Tree& tree, SettingsReader& keys, ActuatorPlace& place) {
+  const std::string name = keys.get_word("tank", "");
+  if (name.empty()) return true;
+  std::vector<std::string> names;
+  for (const Tank& tank : tree.tanks) names.push_back(tank.name);
+  const auto found = std::find(names.begin(), names.end(), name);
+  if (found == names.end()) {
+    keys.error("control.unknown-place", "uses the tank '" + name + "', which does not exist",
+               suggest_name(name, names, "declare it"));
+    return false;
+  }
+  const Tank& tank = tree.tanks[static_cast<size_t>(found - names.begin())];
+  if (tank.function || tree[tank.body].name != r.body) {
+    keys.error(
+        "control.unknown-place",
+        "uses the tank '" + name + "', " +
+            (tank.function ? "whose mass is a function of time" : "which is on body '" + tree[tank.body].name + "'"),
+        tank.function ? "give the tank a mass in place of its function" : "mount the thruster on the body of its tank");
+    return false;
+  }
+  place.tank = static_cast<int>(found - names.begin());
+  return true;
+}
+
 }  // namespace
 
 int find_actuator_outputs(const std::string& type) {
@@ -136,6 +163,8 @@ std::unique_ptr<Block> make_actuator(const records::ActuatorRecord& r, const Sys
                          : kind->where == Where::Mode
                              ? find_mode(r, system, tree, keys, place)
                              : find_marker(r, system, tree, kind->where, keys, diagnostics, place);
+  const bool is_thruster = r.type == "jet" || r.type == "engine";
+  if (is_thruster && !find_tank(r, tree, keys, place)) return nullptr;
   auto made = kind->make(r, keys, place);
   keys.refuse_others();
   if (!is_placed || keys.has_failed() || !made) return nullptr;
@@ -145,6 +174,7 @@ std::unique_ptr<Block> make_actuator(const records::ActuatorRecord& r, const Sys
   const bool takes_effort = r.type == "hinge" || r.type == "brake";
   if (r.settings.get("scale", 1) == 1) made->input_dims = takes_effort ? place.effort : kind->takes;
   made->sizes.outputs = kind->outputs;
+  made->tank = place.tank;
   return made;
 }
 

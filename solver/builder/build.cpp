@@ -108,6 +108,7 @@ void check_masses(const Tree& tree, const records::SystemSpec& spec, const TreeO
   for (size_t b = tree.bodies.size(); b-- > 0;) {
     const TreeBody& tb = tree.bodies[b];
     carried[b] += tb.body.mass() + tb.body.M6().bottomRightCorner<3, 3>().trace();
+    for (const int i : tb.tanks) carried[b] += tree.tanks[static_cast<size_t>(i)].initial;
     if (tb.parent >= 0) carried[static_cast<size_t>(tb.parent)] += carried[b];
     if (tb.count(HingeMode::Free) > 0 && carried[b] <= 0) {
       diagnostics.error("system.massless", spec.bodies[static_cast<size_t>(order.body[b])].at,
@@ -144,6 +145,7 @@ void collect_jump_times(System& system) {
   };
   for (const AppliedForce& force : system.forces) add_force(force.function);
   for (const auto& element : system.elements) add_force(element->function());
+  for (const Tank& tank : system.tree.tanks) add_force(tank.function);
   for (auto* times : {&system.jump_times, &system.mesh_times}) {
     std::sort(times->begin(), times->end());
     times->erase(std::unique(times->begin(), times->end()), times->end());
@@ -236,6 +238,7 @@ System draft_system(const records::SystemSpec& spec, const FlexMap& flex, Diagno
     }
     tree.bodies.push_back(std::move(tb));
   }
+  build_tanks(spec, order, functions, system, diagnostics);
   std::vector<std::string> body_names;
   for (const auto& record : spec.bodies) body_names.push_back(record.name);
   for (const auto& record : spec.forces) {

@@ -36,6 +36,10 @@ void check_motion(const records::HingeRecord& record, const records::SimulationR
 const TimeFunction* find_function(const FunctionMap& functions, const std::string& name, const SourceLocation& where,
                                   const std::string& user, Diagnostics& diagnostics);
 
+/// Every [[tank]] into system.tree; the bodies are in. Reports "system.unknown-body", "system.bad-tank".
+void build_tanks(const records::SystemSpec& spec, const TreeOrder& order, const FunctionMap& functions, System& system,
+                 Diagnostics& diagnostics);
+
 /// One [[force]]; `flex` is the record of its body or nullptr. Reports and returns nothing on errors.
 std::optional<AppliedForce> build_force(const records::ForceRecord& record, const Tree& tree, int body,
                                         const records::FlexBody* flex, const FunctionMap& functions,

@@ -8,6 +8,7 @@
 #include "solver/forces/contact.hpp"
 #include "solver/forces/drag.hpp"
 #include "solver/forces/spring.hpp"
+#include "solver/forces/sunlight.hpp"
 #include "solver/text/names.hpp"
 
 namespace bough::solver {
@@ -39,6 +40,9 @@ class ElementBuilder {
         break;
       case ElementType::Drag:
         element = build_drag();
+        break;
+      case ElementType::SolarPressure:
+        element = build_solar_pressure();
         break;
     }
     if (diagnostics_.num_errors() != errors) return nullptr;
@@ -181,11 +185,11 @@ class ElementBuilder {
   }
 
   std::unique_ptr<const ForceElement> build_gravity() {
-    demand_finite({r_.mu, r_.j2, r_.equator, r_.centre.sum(), r_.axis.sum()});
+    demand_finite({r_.mu, r_.j2, r_.equator, r_.centre.sum(), r_.axis.sum(), r_.dipole.sum()});
     if (!(r_.mu > 0)) refuse("has no mu", "give the gravitational parameter of the centre, > 0");
     if (r_.j2 != 0 && !(r_.equator > 0))
       refuse("has j2 without radius", "give the equatorial radius that goes with it");
-    CentralGravity::Field field{r_.mu, r_.j2, r_.equator, r_.centre, r_.axis};
+    CentralGravity::Field field{r_.mu, r_.j2, r_.equator, r_.centre, r_.axis, r_.dipole};
     if (r_.axis.norm() > 0)
       field.axis.normalize();
     else
@@ -210,8 +214,58 @@ class ElementBuilder {
     law.half_density_area = 0.5 * r_.density * r_.coefficient * r_.area;
     if (r_.normal.norm() > 0) law.normal = r_.normal.normalized();
     law.wind_W = r_.wind;
+    if ((r_.scale_height != 0 || r_.altitude != 0 || !r_.spin.isZero(0)) && r_.planet.empty())
+      refuse("has scale_height, altitude or spin and no planet", "name a gravity_central with a radius");
+    if (const ForceElementRecord* planet = find_planet()) {
+      if (!(r_.scale_height > 0)) refuse("has a planet without scale_height", "give the scale height of the density");
+      law.scale_height = r_.scale_height;
+      law.altitude = r_.altitude;
+      law.radius = planet->equator;
+      law.centre_W = planet->centre;
+      law.spin_W = r_.spin;
+    }
     if (r_.from.body == "ground") refuse("acts on ground", "name a body");
     return std::make_unique<DragElement>(r_.name, add_marker(r_.from, {true, false}), law);
+  }
+
+  /// The gravity_central of the key planet; nullptr: none is named, or reported.
+  const ForceElementRecord* find_planet() {
+    if (r_.planet.empty()) return nullptr;
+    std::vector<std::string> names;
+    for (const auto& other : context_.spec.force_elements) {
+      if (other.type != ElementType::CentralGravity) continue;
+      names.push_back(other.name);
+      if (other.name != r_.planet) continue;
+      if (other.equator > 0) return &other;
+      refuse("has the planet " + quote(r_.planet) + ", which has no radius", "give its radius");
+      return nullptr;
+    }
+    refuse("has the planet " + quote(r_.planet) + ", which is no gravity_central",
+           suggest_name(r_.planet, names, "declare it"));
+    return nullptr;
+  }
+
+  std::unique_ptr<const ForceElement> build_solar_pressure() {
+    demand_finite({r_.pressure, r_.area, r_.specular, r_.diffuse, r_.sun_size, r_.sun.sum(), r_.normal.sum()});
+    if (!(r_.area >= 0) || !(r_.pressure >= 0))
+      refuse("has a negative area or pressure", "give values of at least zero");
+    if (!(r_.specular >= 0) || !(r_.diffuse >= 0) || !(r_.specular + r_.diffuse <= 1))
+      refuse("has reflectivities below zero or of a sum above one", "give shares of the light");
+    if (!(r_.normal.norm() > 0) || !(r_.sun.norm() > 0))
+      refuse("has a normal or a sun without direction", "give three numbers, not all zero");
+    if (!(r_.sun_size > 0) || r_.sun_size > 1)
+      refuse("has a sun_size that is no angular radius", "give radians, as 0.00465");
+    if (r_.from.body == "ground") refuse("acts on ground", "name a body");
+    SolarPressure::Panel panel;
+    panel.pressure = r_.pressure;
+    panel.area = r_.area;
+    panel.specular = r_.specular;
+    panel.diffuse = r_.diffuse;
+    panel.normal = r_.normal.normalized();
+    panel.sun_W = r_.sun.normalized();
+    panel.is_one_sided = r_.is_one_sided;
+    if (const ForceElementRecord* planet = find_planet()) panel.shadow = {planet->centre, planet->equator, r_.sun_size};
+    return std::make_unique<SolarPressure>(r_.name, add_marker(r_.from, {true, false}), panel);
   }
 
   const ForceElementRecord& r_;

@@ -198,6 +198,7 @@ class Resolver {
               "use one of its output nodes, or 0 for its origin");
     }
     std::string frame = r.frame;
+    e.in_orbital_frame = r.is_orbital && frame.empty();
     if (frame.empty()) frame = is_deflection(r.type) ? "body" : "inertial";
     if (frame == "body") {
       e.frame = e.body;
@@ -215,18 +216,35 @@ class Resolver {
               suggest_among(r.relative_to, bodies_, "bodies"));
     }
     e.from_turning = r.from_turning;
+    if (r.is_orbital && e.relative_to >= 0) resolve_orbit(r, e);
     e.description = std::string(get_kind(r.type).name) + " of node " + std::to_string(r.node) + " of body " + r.body;
     const SensorOf of = get_kind(r.type).of;
-    if (of == SensorOf::Attitude) e.description += e.relative_to >= 0 ? " against body " + r.relative_to : "";
+    const std::string other = std::string(r.is_orbital ? "the LVLH frame of " : "") + "body " + r.relative_to;
+    if (of == SensorOf::Attitude) e.description += e.relative_to >= 0 ? " against " + other : "";
     if (of == SensorOf::Instrument) e.description += ", in the sensor's axes";
     if (of != SensorOf::Point && of != SensorOf::Elastic) return;
     if (is_deflection(r.type))
       e.description += " from its undeformed place";
     else if (e.relative_to >= 0)
-      e.description += (r.from_turning ? " as seen from body " : " less that of the origin of body ") + r.relative_to;
-    e.description += ", components in the " + (frame == "body" ? "frame of body " + r.body
-                                               : e.frame < 0   ? "inertial frame"
-                                                               : "frame of body " + frame);
+      e.description += (r.from_turning ? " as seen from " : " minus that of the origin of ") + other;
+    e.description += ", components in the " + (e.in_orbital_frame ? "LVLH frame of body " + r.relative_to
+                                               : frame == "body"  ? "frame of body " + r.body
+                                               : e.frame < 0      ? "inertial frame"
+                                                                  : "frame of body " + frame);
+  }
+
+  void resolve_orbit(const SensorRecord& r, Sensor& e) {
+    int count = 0;
+    for (const CentralGravity* source : system_.gravity.central) {
+      if (!source->attracts(e.relative_to)) continue;
+      e.orbit = source;
+      ++count;
+    }
+    if (count != 1)
+      error(r, "sensor.no-orbit",
+            "is relative to the LVLH frame of body '" + r.relative_to + "', which " + std::to_string(count) +
+                " [[force]]s of type gravity_central attract",
+            "let one attract it");
   }
 
   static constexpr int kAbsent = -2, kUnplaced = -1;

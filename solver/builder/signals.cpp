@@ -259,6 +259,8 @@ class Builder {
       g.num_states += s.states;
       g.num_memory += s.memory;
       g.num_event_functions += s.event_functions;
+      if (p.block->tank >= 0)
+        system_.tree.tanks[static_cast<std::size_t>(p.block->tank)].used_rows.push_back(p.state + s.states - 1);
       if (p.activity >= 0) p.activity = g.num_memory++;
       if (!p.is_sampled()) continue;
       p.held = g.num_memory;

@@ -24,11 +24,10 @@ struct CentralGravity::Pull {
   double potential;
 };
 
-CentralGravity::Pull CentralGravity::calc_pull(const TreeBody& tb, const BodyData& d) const {
-  const bool is_flexible = tb.is_flexible();
-  const double m = tb.body.mass(), mu = field_.mu;
-  const Vector3d S = is_flexible ? d.inertia.S : tb.body.first_moment();
-  const Matrix3d J = (is_flexible ? d.inertia.M6 : tb.body.M6()).bottomRightCorner<3, 3>();
+CentralGravity::Pull CentralGravity::calc_pull(const BodyData& d) const {
+  const double m = d.inertia.mass, mu = field_.mu;
+  const Vector3d& S = d.inertia.S;
+  const Matrix3d J = d.inertia.M6.bottomRightCorner<3, 3>();
   Pull pull;
   pull.c = S / m;
   const Matrix3d P = calc_second_moment(J) - S * pull.c.transpose();
@@ -53,9 +52,9 @@ ForceResult CentralGravity::calc(const Tree& tree, const TreeData& data, Loads* 
   for (const int b : bodies_) {
     const TreeBody& tb = tree[b];
     const BodyData& d = data[b];
-    const double m = tb.body.mass();
+    const double m = d.inertia.mass;
     if (!(m > 0)) continue;
-    const Pull pull = calc_pull(tb, d);
+    const Pull pull = calc_pull(d);
     result.potential += pull.potential;
     result.power += pull.f.dot(d.state.v_B + d.state.w_B.cross(pull.c)) + pull.torque.dot(d.state.w_B);
     if (loads != nullptr) loads->add_to_body(b, pull.f, pull.torque + pull.c.cross(pull.f));
@@ -84,9 +83,29 @@ Vector3d CentralGravity::calc_acceleration(const Vector3d& p_W) const {
          calc_oblate(0.5 * field_.mu * field_.j2 * field_.equator * field_.equator, R, field_.axis);
 }
 
-BodyGravity CentralGravity::calc_on_body(const Tree& tree, const TreeData& data, int body) const {
-  const Pull pull = calc_pull(tree[body], data[body]);
-  return {pull.f / tree[body].body.mass() - pull.gradient * pull.c, pull.gradient};
+Vector3d CentralGravity::calc_magnetic_field(const Vector3d& p_W) const {
+  const Vector3d R = p_W - field_.centre;
+  const double r2 = R.squaredNorm();
+  return (3 * field_.dipole.dot(R) / r2 * R - field_.dipole) / (r2 * std::sqrt(r2));
+}
+
+BodyGravity CentralGravity::calc_on_body(const TreeData& data, int body) const {
+  const Pull pull = calc_pull(data[body]);
+  return {pull.f / data[body].inertia.mass - pull.gradient * pull.c, pull.gradient};
+}
+
+// With P = P_o - S Sᵀ/m, P_o about Bo: dc = (S' - c)/m, dP = P_o' - S' cᵀ - c S'ᵀ + c cᵀ.
+double CentralGravity::calc_potential_rate(const BodyData& d, const TankContent& by) const {
+  const Pull pull = calc_pull(d);
+  const Vector3d& c = pull.c;
+  const Vector3d dc = (by.S_m - c) / d.inertia.mass;
+  const Matrix3d dP = calc_second_moment(by.J_m) - by.S_m * c.transpose() - c * by.S_m.transpose() + c * c.transpose();
+  const Vector3d R = d.state.R_WB.transpose() * (d.state.p_WBo - field_.centre) + c;
+  const double r2 = R.squaredNorm(), r = std::sqrt(r2), r3 = r * r2, z = R.dot(d.state.R_WB.transpose() * field_.axis);
+  const double oblate = 0.5 * field_.mu * field_.j2 * field_.equator * field_.equator;
+  const double by_mass = -field_.mu / r + oblate / r3 * (3 * z * z / r2 - 1);
+  const double by_P = -0.5 * field_.mu / r3 * (3 * R.dot(dP * R) / r2 - dP.trace());
+  return by_mass + by_P - pull.f.dot(dc);
 }
 
 }  // namespace bough::solver

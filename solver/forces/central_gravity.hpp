@@ -21,6 +21,7 @@ class CentralGravity final : public ForceElement {
   struct Field {
     double mu = 0, j2 = 0, equator = 0;
     Vector3d centre = Vector3d::Zero(), axis = Vector3d::UnitZ();
+    Vector3d dipole = Vector3d::Zero();  ///< of the magnetic field, μ0/4π times its moment; in W
   };
   CentralGravity(std::string name, const Field& field, std::vector<int> bodies)
       : ForceElement(std::move(name)), field_(field), bodies_(std::move(bodies)) {}
@@ -31,12 +32,17 @@ class CentralGravity final : public ForceElement {
   bool attracts(int body) const;
   /// Acceleration of a free particle at p; in W.
   Vector3d calc_acceleration(const Vector3d& p_W) const;
+  /// Magnetic field of the dipole d at p, in W: (3 d·n n - d)/R³.
+  Vector3d calc_magnetic_field(const Vector3d& p_W) const;
+  const Field& field() const { return field_; }
   /// The affine field whose loads calc() puts on a body with mass. After calc_position.
-  BodyGravity calc_on_body(const Tree& tree, const TreeData& data, int body) const;
+  BodyGravity calc_on_body(const TreeData& data, int body) const;
+  /// ∂V/∂m of a body whose content changes as `by` does. After calc_position.
+  double calc_potential_rate(const BodyData& d, const TankContent& by) const;
 
  private:
   struct Pull;
-  Pull calc_pull(const TreeBody& tb, const BodyData& d) const;
+  Pull calc_pull(const BodyData& d) const;
 
   Field field_;
   std::vector<int> bodies_;

@@ -11,11 +11,13 @@ struct GravityField {
 
   /// Acceleration of a free particle at p that is attracted as this body is; in W.
   Vector3d calc_acceleration(int body, const Vector3d& p_W) const;
+  /// Magnetic field of all dipoles at p; in W.
+  Vector3d calc_magnetic_field(const Vector3d& p_W) const;
   /// The affine field whose loads act on a body. After calc_position.
-  BodyGravity calc_on_body(const Tree& tree, const TreeData& data, int body) const;
+  BodyGravity calc_on_body(const TreeData& data, int body) const;
   /// A_I = [a, α, ωx² ωy² ωz² ωxωy ωxωz ωyωz] of the motion of a body's origin minus gravity, in B. The gradient is
   /// symmetric, and the last six span every symmetric matrix: ω̃ω̃ - gradient = Ω - tr Ω 1, Ω in place of ωωᵀ.
-  Eigen::Matrix<double, 12, 1> calc_inertial_acceleration(const Tree& tree, const TreeData& data, int body) const;
+  Eigen::Matrix<double, 12, 1> calc_inertial_acceleration(const TreeData& data, int body) const;
 };
 
 }  // namespace bough::solver

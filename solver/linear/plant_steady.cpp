@@ -54,7 +54,7 @@ VectorXd Plant::calc_unsteadiness(const VectorXd& u_dot) const {
       if (root[static_cast<size_t>(c)] != b) continue;
       Vector3d linear, angular;
       calc_body_momentum(system_, *data_, c, linear, angular);
-      mass += tree[c].body.mass();
+      mass += data[c].inertia.mass;
       momentum += linear;
     }
     if (!(mass > 0)) continue;

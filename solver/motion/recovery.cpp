@@ -74,7 +74,7 @@ std::vector<int> Recovery::connect(const Tree& tree, const Loops& loops, const s
 void Recovery::calc(const Motion& motion, int first, int count, double* out) const {
   const Tree& tree = motion.tree;
   const TreeData& data = motion.data;
-  const Eigen::Matrix<double, 12, 1> A_I = motion.gravity.calc_inertial_acceleration(tree, data, body_) - preload_;
+  const Eigen::Matrix<double, 12, 1> A_I = motion.gravity.calc_inertial_acceleration(data, body_) - preload_;
   Eigen::Map<VectorXd> rows(out, count);
   rows = offset_.segment(first, count);
   rows.noalias() += matrix_.middleRows(first, count) * data.q.segment(tree[body_].eta_offset(), matrix_.cols());

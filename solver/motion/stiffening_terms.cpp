@@ -50,7 +50,7 @@ bool StiffeningTerms::has_hinges() const {
 
 void StiffeningTerms::calc_loads(const Motion& motion, double* y) const {
   const TreeData& data = motion.data;
-  Eigen::Map<Eigen::Matrix<double, 12, 1>>{y} = motion.gravity.calc_inertial_acceleration(motion.tree, data, body_);
+  Eigen::Map<Eigen::Matrix<double, 12, 1>>{y} = motion.gravity.calc_inertial_acceleration(data, body_);
   for (size_t i = 0; i < sources_.size(); ++i) {
     Eigen::Map<Vector6d> load(y + 12 + 6 * i);
     const AppliedForce* f = sources_[i].source.force;

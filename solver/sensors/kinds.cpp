@@ -27,6 +27,7 @@ const SensorKind& get_kind(records::SensorType type) {
       {T::Accelerometer, "accelerometer (acceleration less gravity)", "L/T^2", SensorOf::Instrument, 3, true},
       {T::Direction, "direction to the target", "1", SensorOf::Instrument, 3, false},
       {T::Horizon, "roll and pitch from the direction to the centre", "1", SensorOf::Instrument, 2, false},
+      {T::Magnetometer, "magnetic field", "by the field", SensorOf::Instrument, 3, false},
       {T::HingeForce, "force across the hinge, on the child", "F", SensorOf::HingeLoad, 3, true},
       {T::HingeMoment, "moment across the hinge, on the child", "F L", SensorOf::HingeLoad, 3, true},
       {T::StrainEnergy, "strain energy", "F L", SensorOf::Energy, 1, false},

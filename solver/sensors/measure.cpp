@@ -30,6 +30,30 @@ Observer calc_observer(const Motion& motion, int body) {
   return o;
 }
 
+Matrix3d calc_orbital_axes(const Observer& o, const Sensor& e) {
+  const Vector3d R = o.p - e.orbit->field().centre, h = R.cross(o.v);
+  if (!(h.norm() > 0))
+    throw ComputationError("run.no-orbit", {},
+                           "sensor '" + e.name + "' has no LVLH frame: its body moves along the radius",
+                           "give the body a velocity across the direction to the centre");
+  Matrix3d axes;
+  axes.col(2) = -R.normalized();
+  axes.col(1) = -h.normalized();
+  axes.col(0) = axes.col(1).cross(axes.col(2));
+  return axes;
+}
+
+/// The observer on the LVLH frame of a body, without accelerations.
+Observer calc_orbital_observer(const Motion& motion, const Sensor& e) {
+  const BodyState& s = motion.get_state(e.relative_to);
+  Observer o;
+  o.p = s.p_WBo;
+  o.v.noalias() = s.R_WB * s.v_B;
+  const Vector3d R = o.p - e.orbit->field().centre;
+  o.w = R.cross(o.v) / R.squaredNorm();
+  return o;
+}
+
 Vector3d calc_relative(SensorType type, bool from_turning, const NodeMotion& k, Observer o) {
   if (!from_turning) {  // he keeps his axes
     if (type == SensorType::AngularVelocity) return k.w_WK - o.w;
@@ -73,6 +97,8 @@ void measure_instrument(const Motion& motion, const Sensor& e, double* out) {
     value.noalias() = R_SW * k.w_WK;
   } else if (e.type == SensorType::Accelerometer) {
     value.noalias() = R_SW * (k.a_WK - motion.gravity.calc_acceleration(e.body, k.p_WK));
+  } else if (e.type == SensorType::Magnetometer) {
+    value.noalias() = R_SW * motion.gravity.calc_magnetic_field(k.p_WK);
   } else if (e.type == SensorType::Direction) {
     value.noalias() = R_SW * e.target;
   } else {
@@ -142,6 +168,10 @@ void measure(const Motion& motion, const Sensor& e, double* out) {
     case SensorOf::Attitude: {
       const Matrix3d R_WS = calc_node_motion(motion, e.body, e.node).R_WK * e.mount;
       if (e.relative_to < 0) return measure_attitude(e, R_WS, out);
+      if (e.orbit != nullptr) {
+        const Matrix3d R_WL = calc_orbital_axes(calc_orbital_observer(motion, e), e);
+        return measure_attitude(e, R_WL.transpose() * R_WS, out);
+      }
       return measure_attitude(e, motion.get_state(e.relative_to).R_WB.transpose() * R_WS, out);
     }
     case SensorOf::Element:
@@ -161,6 +191,13 @@ void measure(const Motion& motion, const Sensor& e, double* out) {
       return;
     }
     case SensorOf::Point:
+      if (e.orbit != nullptr) {
+        const Observer o = calc_orbital_observer(motion, e);
+        const Vector3d value = calc_relative(e.type, e.from_turning, calc_node_motion(motion, e.body, e.node), o);
+        Map<Vector3d>{out} = e.in_orbital_frame ? Vector3d(calc_orbital_axes(o, e).transpose() * value)
+                                                : turn_into(motion, e.frame, value);
+        return;
+      }
       Map<Vector3d>{out} = turn_into(motion, e.frame,
                                      calc_relative(e.type, e.from_turning, calc_node_motion(motion, e.body, e.node),
                                                    calc_observer(motion, e.relative_to)));
@@ -193,7 +230,7 @@ void mark_motion(const Tree& tree, const Sensor& e, std::vector<bool>& q, std::v
       break;
   }
   const bool reads_rates = e.type == SensorType::Velocity || e.type == SensorType::AngularVelocity ||
-                           e.type == SensorType::Gyro || e.type == SensorType::IntegratingGyro;
+                           e.type == SensorType::Gyro || e.type == SensorType::IntegratingGyro || e.orbit != nullptr;
   for (int b : {e.body, e.frame, e.relative_to, e.to_body}) {
     for (; b >= 0; b = tree[b].parent) {
       const TreeBody& tb = tree[b];

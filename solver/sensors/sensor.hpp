@@ -17,6 +17,10 @@
 ///   element                  forces and stresses of an element (solver/motion/recovery.hpp)
 ///   hinge_angle, hinge_rate   coordinates as the user knows them (quaternion w, x, y, z) and rates; one, or all for 0
 ///
+/// With `orbit`, A is the LVLH frame of the body about the centre of gravity: origin Ao, z towards the centre, y
+/// against r × v, x along the path; its rate is r × v / r², without the share about z that forces across the plane give
+/// it.
+///
 /// With frame = A and relative_to = A, "turning" is what an observer who rides on A writes down. An empty frame means
 /// "body" for deflection and rotation and "inertial" for the others.
 #include <array>
@@ -40,6 +44,8 @@ struct Sensor {
   int frame = -1;           ///< body index, -1: W
   int relative_to = -1;     ///< body index, -1: W
   bool from_turning = true;
+  const CentralGravity* orbit = nullptr;  ///< relative_to: its LVLH frame about this centre, not its own frame
+  bool in_orbital_frame = false;          ///< components in that frame
   int coordinate = 0;                     ///< 1-based, 0: all
   std::vector<bool> wraps;                ///< resolver: the component is an angle, brought into [-π, π]
   const Recovery* recovery = nullptr;     ///< element: of the body

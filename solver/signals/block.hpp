@@ -60,6 +60,7 @@ class Block {
   std::string input_dims;         ///< what the first input is expected to have; empty: anything
   SourceLocation at;
   BlockSizes sizes;
+  int tank = -1;  ///< thrusters: in Tree::tanks; the last state is the mass used of it
 
   /// For each thread, whose SystemData keeps it; nullptr: none.
   virtual std::shared_ptr<BlockScratch> make_scratch() const { return nullptr; }

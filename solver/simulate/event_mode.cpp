@@ -41,7 +41,7 @@ void Run::initialize_lags(double t) {
       is_done = !signals.settle(get_motion(ode_.system(), ode_.data()), ode_.data().signals) ||
                 ode_.data().signals.z == before;
     });
-    y_.segment(ode_.num_coordinates(), ode_.num_z()) = ode_.data().signals.z;
+    y_.segment(ode_.num_coordinates(), signals.num_states) = ode_.data().signals.z;
     if (is_done) return;
   }
 }

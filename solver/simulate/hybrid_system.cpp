@@ -134,7 +134,8 @@ std::string HybridSystem::name_row(int row) const {
     if (i >= eta && i < eta + system_.num_modes(b))
       return body + (is_rate ? " (modal rate " : " (modal coordinate ") + std::to_string(i - eta + 1) + ")";
   }
-  if (is_rate && i < num_u_ + num_z_) return system_.signals.name_state(i - num_u_);
+  if (is_rate && i < num_u_ + system_.signals.num_states) return system_.signals.name_state(i - num_u_);
+  if (is_rate && i < num_u_ + num_z_) return "the momentum that left with propellant";
   return i == num_u_ + num_z_ ? "the work done" : "the energy dissipated";
 }
 

@@ -60,6 +60,10 @@ Outputs::Outputs(const System& system) : system_(system) {
   }
   for (const auto& p : system.signals.places)
     add_channel(p.block->path, p.block->sizes.outputs, p.block->description, p.block->dims);
+  for (const Tank& tank : system.tree.tanks) {
+    add_channel("/tanks/" + tank.name + "/mass", 1, "mass of the propellant", "M");
+    add_channel("/tanks/" + tank.name + "/flow", 1, "mass that leaves it per unit of time", "M/T");
+  }
   add_channel("/energy/kinetic", 1, "kinetic energy", "F L");
   add_channel("/energy/strain", 1, "strain energy of the modes, of springs and of contacts", "F L");
   add_channel("/energy/potential", 1, "potential energy of gravity", "F L");
@@ -67,6 +71,12 @@ Outputs::Outputs(const System& system) : system_(system) {
   add_channel("/energy/dissipated", 1, "what dampers took since the start; part of work with its minus", "F L");
   add_channel("/momentum/linear", 3, "linear momentum, in the inertial frame", "M L/T");
   add_channel("/momentum/angular", 3, "angular momentum about the inertial origin, in the inertial frame", "M L^2/T");
+  if (system.num_momentum_out() > 0) {
+    add_channel("/momentum/out_linear", 3, "linear momentum that left with propellant, in the inertial frame", "M L/T");
+    add_channel("/momentum/out_angular", 3,
+                "angular momentum about the inertial origin that left with propellant, in the inertial frame",
+                "M L^2/T");
+  }
   add_channel("/system_mass/mass", 1, "mass of the system", "M");
   add_channel("/system_mass/cg", 3, "centre of mass of the system, in the inertial frame", "L");
   add_channel("/system_mass/inertia", 9,
@@ -212,6 +222,10 @@ const VectorXd& Outputs::calc_sample(double t, const SystemData& data, const Eig
       for (int k = 0; k < size; ++k) sample_[at++] = data.elements[i].values[first++];
   }
   put(data.signals.values);
+  for (const TankData& tank : data.tree.tanks) {
+    sample_[at++] = tank.mass;
+    sample_[at++] = tank.flow;
+  }
   energies_ = calc_energies(system_, data);
   put(Eigen::Vector4d(energies_.kinetic, energies_.strain, energies_.potential, work));
   sample_[at++] = dissipated;
@@ -219,6 +233,7 @@ const VectorXd& Outputs::calc_sample(double t, const SystemData& data, const Eig
   calc_momentum(system_, data, linear, angular);
   put(linear);
   put(angular);
+  if (system_.num_momentum_out() > 0) put(data.momentum_out);
   const SystemMass mass = calc_system_mass(system_, data);
   sample_[at++] = mass.mass;
   put(mass.cg_W);

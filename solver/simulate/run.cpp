@@ -28,6 +28,8 @@ constexpr double kNearLock = 0.01;
 constexpr double kNoise = 100;
 /// Share of a body's mass used by its jets above which a warning reports that the mass is constant.
 constexpr double kMaxPropellantShare = 0.01;
+/// Share of the mass of a slosh pendulum within which its tank counts as drained.
+constexpr double kDrained = 1e-9;
 
 std::string text_of(double value) {
   std::ostringstream text;
@@ -341,12 +343,11 @@ double Run::calc_flow() const {
   const TreeData& data = ode_.data().tree;
   double force = 0, moment = 0, size = 0;
   for (int b = 0; b < ode_.system().tree.size(); ++b) {
-    const Body& body = ode_.system().tree[b].body;
+    const BodyInertia& body = data[b].inertia;
     const auto applied = data.applied.segment<6>(ode_.system().tree[b].v_offset);
-    force += body.mass() * ode_.system().gravity.uniform.norm() + applied.head<3>().norm();
+    force += body.mass * ode_.system().gravity.uniform.norm() + applied.head<3>().norm();
     moment += applied.tail<3>().norm();
-    size =
-        std::max(size, data[b].state.p_WBo.norm() + (body.mass() > 0 ? body.first_moment().norm() / body.mass() : 0));
+    size = std::max(size, data[b].state.p_WBo.norm() + (body.mass > 0 ? body.S.norm() / body.mass : 0));
   }
   // Springs, dampers and actuators of hinges: a force along the size, or a moment through one radian.
   double along = 0;
@@ -536,20 +537,32 @@ void Run::tell_consumption() {
   set_z(ode_.data(), y_.segment(ode_.num_coordinates(), ode_.num_z()));
   const VectorXd used = system.signals.calc_consumption(get_motion(system, ode_.data()), ode_.data().signals);
   for (int b = 0; b < system.num_bodies(); ++b) {
-    const double mass = system.tree[b].body.mass();
+    const double mass = ode_.data().tree[b].inertia.mass;
     if (used[b] > kMaxPropellantShare * mass)
-      diagnostics_.warning(
-          "run.propellant", spec_.simulation.at,
-          "the jets of body '" + system.body_name(b) + "' have used " + short_text(used[b]) + " of propellant, " +
-              short_text(100 * used[b] / mass) + " % of its mass " + short_text(mass) +
-              ", which stays as it is: its last accelerations are too small",
-          "run the mission in parts (run --start-from), each with the mass, cg and inertia of its middle");
+      diagnostics_.warning("run.propellant", spec_.simulation.at,
+                           "the jets of body '" + system.body_name(b) + "' have used " + short_text(used[b]) +
+                               " of propellant, " + short_text(100 * used[b] / mass) + " % of its mass " +
+                               short_text(mass) + ", which stays as it is: its last accelerations are too small",
+                           "give them a tank, whose mass leaves the body");
+  }
+}
+
+void Run::warn_of_drained_slosh() {
+  const System& system = ode_.system();
+  for (size_t i = 0; i < system.tree.tanks.size(); ++i) {
+    const Tank& tank = system.tree.tanks[i];
+    if (tank.reserve <= 0 || ode_.data().tree.tanks[i].mass > tank.reserve * (1 + kDrained)) continue;
+    diagnostics_.warning("run.slosh-drained", tank.at,
+                         "tank '" + tank.name + "' has used all but the mass " + short_text(tank.reserve) +
+                             " of its slosh pendulum, and its thrusters have stopped",
+                         "run the burn in parts, each with the slosh of its fill level, or leave slosh out");
   }
 }
 
 SimulateOutcome Run::close(double t, const std::string& reason) {
   sink_.end(true, reason);
   tell_consumption();
+  warn_of_drained_slosh();
   const double worst = monitor_.worst(), limit = spec_.simulation.energy_error_limit;
   const bool is_kept = worst <= limit;
   if (worst > kEnergyWarning * limit) {

@@ -124,6 +124,7 @@ class Run {
   void update_progress(double t);
   /// Warns where jets have used up much of their body.
   void tell_consumption();
+  void warn_of_drained_slosh();
   /// The regular end, with the judgement of the energy.
   SimulateOutcome close(double t, const std::string& reason);
 

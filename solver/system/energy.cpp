@@ -17,7 +17,7 @@ BodyMomentum calc_own_momentum(const TreeBody& tb, const BodyData& d, const Tree
   V << d.state.v_B, d.state.w_B;
   BodyMomentum m;
   if (n == 0) {
-    m.p = tb.body.M6() * V;
+    m.p = d.inertia.M6 * V;
     m.kinetic = 0.5 * V.dot(m.p);
     return m;
   }
@@ -33,8 +33,22 @@ BodyMomentum calc_own_momentum(const TreeBody& tb, const BodyData& d, const Tree
   return m;
 }
 
-Vector3d first_moment(const TreeBody& tb, const BodyData& d) {
-  return tb.is_flexible() ? d.inertia.S : tb.body.first_moment();
+// d/dt of kinetic and potential energy by the mass that leaves, at fixed positions and rates.
+double calc_outflow_power(const System& system, const SystemData& data) {
+  double power = 0;
+  for (size_t i = 0; i < system.tree.tanks.size(); ++i) {
+    const int b = system.tree.tanks[i].body;
+    const TankData& tank = data.tree.tanks[i];
+    if (tank.flow == 0) continue;
+    const BodyState& s = data.tree[b].state;
+    const TankContent& c = tank.content;
+    const double kinetic = 0.5 * s.v_B.squaredNorm() + s.v_B.dot(s.w_B.cross(c.S_m)) + 0.5 * s.w_B.dot(c.J_m * s.w_B);
+    double potential = -system.gravity.uniform.dot(s.p_WBo + s.R_WB * c.S_m);
+    for (const CentralGravity* source : system.gravity.central)
+      if (source->attracts(b)) potential += source->calc_potential_rate(data.tree[b], c);
+    power -= tank.flow * (kinetic + potential);
+  }
+  return power;
 }
 
 }  // namespace
@@ -54,7 +68,7 @@ Energies calc_energies(const System& system, const SystemData& data) {
     if (tb.stiffness.size() > 0)
       e.strain +=
           tb.hinge->calc_spring(data.tree.q.data() + tb.q_offset, tb.null_position.data(), tb.stiffness.data(), force);
-    e.potential -= system.gravity.uniform.dot(tb.body.mass() * d.state.p_WBo + d.state.R_WB * first_moment(tb, d));
+    e.potential -= system.gravity.uniform.dot(d.inertia.mass * d.state.p_WBo + d.state.R_WB * d.inertia.S);
   }
   for (const auto& element : system.elements) {
     const ForceResult result = element->calc(tree, data.tree, nullptr);
@@ -105,6 +119,7 @@ Power calc_powers(const System& system, const SystemData& data) {
       power -= result.power;
   }
   power += system.signals.calc_power(get_motion(system, data), data.signals);
+  power += calc_outflow_power(system, data);
   return {power - lost, dissipated};
 }
 
@@ -134,21 +149,17 @@ SystemMass calc_system_mass(const System& system, const SystemData& data) {
   SystemMass total;
   Vector3d moment = Vector3d::Zero();
   for (int b = 0; b < tree.size(); ++b) {
-    total.mass += tree[b].body.mass();
-    moment +=
-        tree[b].body.mass() * data.tree[b].state.p_WBo + data.tree[b].state.R_WB * first_moment(tree[b], data.tree[b]);
+    total.mass += data.tree[b].inertia.mass;
+    moment += data.tree[b].inertia.mass * data.tree[b].state.p_WBo + data.tree[b].state.R_WB * data.tree[b].inertia.S;
   }
   if (!(total.mass > 0)) return total;
   total.cg_W = moment / total.mass;
   for (int b = 0; b < tree.size(); ++b) {
-    const TreeBody& tb = tree[b];
     const BodyData& d = data.tree[b];
-    const Matrix3d J = tb.is_flexible() ? Matrix3d(d.inertia.M6.bottomRightCorner<3, 3>())
-                                        : Matrix3d(tb.body.M6().bottomRightCorner<3, 3>());
+    const Matrix3d J = d.inertia.M6.bottomRightCorner<3, 3>();
     // ∫ρ -(r + x)~(r + x)~ with r from cg to Bo, x from Bo.
-    const Matrix3d r = skew(Vector3d(d.state.p_WBo - total.cg_W)),
-                   S = skew(Vector3d(d.state.R_WB * first_moment(tb, d)));
-    total.inertia_W += d.state.R_WB * J * d.state.R_WB.transpose() - r * S - S * r - tb.body.mass() * r * r;
+    const Matrix3d r = skew(Vector3d(d.state.p_WBo - total.cg_W)), S = skew(Vector3d(d.state.R_WB * d.inertia.S));
+    total.inertia_W += d.state.R_WB * J * d.state.R_WB.transpose() - r * S - S * r - d.inertia.mass * r * r;
   }
   return total;
 }

@@ -1,10 +1,16 @@
 #include "solver/system/system.hpp"
 
 #include <algorithm>
+#include <sstream>
+
+#include "solver/forces/flow.hpp"
 
 namespace bough::solver {
 
 namespace {
+/// Round-off of a function of time that ends at zero, as a share of the initial mass.
+constexpr double kTankNoise = 1e-9;
+
 size_t as_index(int b) { return static_cast<size_t>(b); }
 const TreeBody& at(const System& s, int b) { return s.tree.bodies[as_index(b)]; }
 }  // namespace
@@ -12,7 +18,8 @@ const TreeBody& at(const System& s, int b) { return s.tree.bodies[as_index(b)]; 
 int System::num_bodies() const { return static_cast<int>(tree.bodies.size()); }
 int System::num_q() const { return tree.num_q; }
 int System::num_u() const { return tree.num_u; }
-int System::num_z() const { return signals.num_states; }
+int System::num_z() const { return signals.num_states + num_momentum_out(); }
+int System::num_momentum_out() const { return tree.tanks.empty() ? 0 : 6; }
 
 int System::find_body(const std::string& name) const {
   for (int b = 0; b < num_bodies(); ++b) {
@@ -91,7 +98,7 @@ State System::make_initial_state() const {
   calc_initial_state(get_q(layout(), state.x), get_u(layout(), state.x));
   const auto data = make_data();
   state.discrete = get_discrete(*data);
-  get_z(layout(), state.x) = data->signals.z;
+  get_z(layout(), state.x).head(signals.num_states) = data->signals.z;
   state.discrete.memory = data->signals.memory;
   return state;
 }
@@ -142,21 +149,41 @@ void get_q_dot(const System& system, const SystemData& data, Eigen::Ref<VectorXd
   }
 }
 
+namespace {
+void set_tank_masses(const System& system, SystemData& data, double t) {
+  for (size_t i = 0; i < system.tree.tanks.size(); ++i) {
+    const Tank& tank = system.tree.tanks[i];
+    double& mass = data.tree.tanks[i].mass;
+    mass = tank.function ? data.tree.functions[*tank.function].calc(t).f : tank.initial;
+    for (const int row : tank.used_rows) mass -= data.signals.z[row];
+    // Thrusters stop at an event, which a trial step may pass.
+    if (!tank.function || mass >= -kTankNoise * tank.initial) continue;
+    std::ostringstream what;
+    what << "tank '" << tank.name << "' is emptier than empty at t = " << t << ": its mass is " << mass;
+    throw ComputationError("run.tank-empty", tank.at, what.str(), "end the function at a mass of at least 0");
+  }
+}
+}  // namespace
+
 void calc_kinematics(const System& system, SystemData& data, double t, const Eigen::Ref<const VectorXd>& q,
                      const Eigen::Ref<const VectorXd>& u) {
+  set_tank_masses(system, data, t);
   calc_kinematics(system.tree, t, q, u, data.tree);
   std::fill(data.elements.begin(), data.elements.end(), ForceResult());
 }
 
 void set_z(SystemData& data, const Eigen::Ref<const VectorXd>& z) {
-  BOUGH_DEMAND(z.size() == data.signals.z.size());
-  data.signals.z = z;
+  const auto num_states = data.signals.z.size();
+  BOUGH_DEMAND(z.size() == num_states || z.size() == num_states + 6);
+  data.signals.z = z.head(num_states);
+  if (z.size() > num_states) data.momentum_out = z.tail<6>();
 }
 
 void calc_z_dot(const System& system, SystemData& data, Eigen::Ref<VectorXd> z_dot) {
   data.tree.demand(Stage::Acceleration);
   system.signals.calc_after_acceleration(get_motion(system, data), data.signals);
-  system.signals.calc_rates(get_motion(system, data), data.signals, z_dot);
+  system.signals.calc_rates(get_motion(system, data), data.signals, z_dot.head(system.signals.num_states));
+  if (system.num_momentum_out() > 0) z_dot.tail<6>() = data.tree.momentum_out;
 }
 
 void calc_signals(const System& system, SystemData& data) {
@@ -170,6 +197,8 @@ void add_forces(const System& system, SystemData& data, double t) {
   system.signals.calc_before_acceleration(get_motion(system, data), data.signals);
   for (const AppliedForce& force : system.forces) add_applied_force(force, system.tree, t, data.tree);
   add_hinge_forces(system.tree, data.tree);
+  for (size_t i = 0; i < system.tree.tanks.size(); ++i)
+    add_prescribed_flow(system.tree, static_cast<int>(i), data.tree);
   Loads loads(system.tree, data.tree);
   for (size_t i = 0; i < system.elements.size(); ++i)
     data.elements[i] = system.elements[i]->calc(system.tree, data.tree, &loads);

@@ -60,7 +60,10 @@ struct System {
   int num_bodies() const;
   int num_q() const;
   int num_u() const;
-  int num_z() const;                              ///< continuous states of controllers, actuators and sensors
+  /// Continuous states of controllers, actuators and sensors, then num_momentum_out().
+  int num_z() const;
+  /// 6 with tanks, else 0: momentum that has left with propellant (linear, then angular about the inertial origin, W).
+  int num_momentum_out() const;
   int find_body(const std::string& name) const;   ///< -1 when absent
   int find_hinge(const std::string& name) const;  ///< hinge h is the inboard hinge of body h
   const std::string& body_name(int body) const;
@@ -97,7 +100,8 @@ struct SystemData {
   LoopData loops;
   std::vector<ForceResult> elements;  ///< of add_forces; zero before it
   SignalData signals;
-  VectorXd tangent;  ///< num_u, scratch
+  VectorXd tangent;                          ///< num_u, scratch
+  Vector6d momentum_out = Vector6d::Zero();  ///< of the last set_z
 };
 
 /// The discrete state from now on (SystemData starts with that of the records): what get_discrete returns. Memory that
@@ -123,7 +127,9 @@ void get_q_dot(const System& system, const SystemData& data, Eigen::Ref<VectorXd
 /// Positions and velocities of every body; clears the applied forces. Must precede the calls below. O(num_bodies).
 void calc_kinematics(const System& system, SystemData& data, double t, const Eigen::Ref<const VectorXd>& q,
                      const Eigen::Ref<const VectorXd>& u);
-/// States of controllers, actuators and sensors from now on; those of the start in a new SystemData. z: num_z.
+/// States of controllers, actuators and sensors from now on; those of the start in a new SystemData. Before
+/// calc_kinematics if the system has tanks.
+/// \param z  num_z, or without the last num_momentum_out.
 void set_z(SystemData& data, const Eigen::Ref<const VectorXd>& z);
 /// ż. After calc_accelerations.
 void calc_z_dot(const System& system, SystemData& data, Eigen::Ref<VectorXd> z_dot);

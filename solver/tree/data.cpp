@@ -35,11 +35,12 @@ TreeData make_tree_data(const Tree& tree) {
     mode.insert(mode.end(), tb.mode.begin(), tb.mode.end());
     mode.insert(mode.end(), static_cast<size_t>(n), HingeMode::Free);
     BodyData d;
-    if (n > 0) d.inertia = tb.body.make_inertia();
+    d.inertia = tb.body.make_inertia();
     d.X = d.PX = Matrix6Xd::Zero(6, tb.on_parent.moves ? 6 + m : 0);
     d.Jc = Matrix6Xd::Zero(6, tb.on_child.moves ? n : 0);
     data.bodies.push_back(std::move(d));
   }
+  for (const Tank& tank : tree.tanks) data.tanks.push_back({tank.initial, tank.shape->calc(tank.initial)});
   set_modes(tree, mode, data);
   return data;
 }

@@ -27,7 +27,7 @@ struct BodyData {
   Matrix6d H = Matrix6d::Zero();       ///< free columns; at Bo, in B
   Matrix6Xd X;                         ///< 6 x (6+m); only where the parent's end deforms
   Matrix6Xd Jc;                        ///< 6 x n; only where the child's end deforms
-  BodyInertia inertia;                 ///< flexible only
+  BodyInertia inertia;                 ///< of a rigid body: mass, S and M6
   BodyState state;                     ///< its parts by stage
   // Factor
   Matrix6d P6 = Matrix6d::Zero();  ///< articulated inertia 𝒫, its 6 x 6
@@ -54,6 +54,13 @@ struct Sweep {
   Vector6d ground = Vector6d::Zero();
 };
 
+/// Propellant of one tank at one time.
+struct TankData {
+  double mass = 0;      ///< set before calc_position
+  TankContent content;  ///< position
+  double flow = 0;      ///< M/T, forces: mass that leaves it
+};
+
 struct TreeData {
   unsigned done = 0;  ///< Stage bits
   std::vector<HingeMode> mode;
@@ -62,6 +69,9 @@ struct TreeData {
   VectorXd q, u;                 ///< rows of prescribed coordinates hold their functions' values, of locked ones zero
   VectorXd given_u, given_udot;  ///< num_u: rates and accelerations of the prescribed ones
   std::vector<MarkerMotion> markers;
+  std::vector<TankData> tanks;
+  Vector6d momentum_out =
+      Vector6d::Zero();  ///< rate of the momentum that leaves with propellant, about W's origin, in W
   VectorXd h, applied;   ///< num_v: [f; t about Bo; modal] per body, in B, gravity left out
   VectorXd slide;        ///< num_u: which way a coordinate with dry friction slides, 1 or -1; 0: it has none, or rests
   VectorXd hinge_force;  ///< num_u: load along the coordinate: springs, dampers, elements and actuators of the hinge

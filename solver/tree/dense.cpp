@@ -55,7 +55,7 @@ void calc_dense_equations(const Tree& tree, const TreeData& data, MatrixXd& mass
     J.block(0, tb.u_offset, 6, nh) += calc_columns(tree, data, b);
     if (tb.on_child.moves) J.block(0, tb.eta_dot_offset(), 6, n) -= d.Jc;
     J.block(6, tb.eta_dot_offset(), n, n).setIdentity();
-    const MatrixXd M = n == 0 ? MatrixXd(tb.body.M6()) : d.inertia.make_M();
+    const MatrixXd M = n == 0 ? MatrixXd(d.inertia.M6) : d.inertia.make_M();
     mass += J.transpose() * M * J;
     force += J.transpose() * (data.applied.segment(tb.v_offset, 6 + n) - data.h.segment(tb.v_offset, 6 + n) - M * bias);
     mass.diagonal().segment(tb.u_offset, nh) += data.added.segment(tb.u_offset, nh);

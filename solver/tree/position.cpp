@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <utility>
 
 #include "solver/tree/data.hpp"
@@ -16,6 +17,20 @@ void set_given(const TreeBody& tb, TreeData& data) {
     data.given_u[row] = value.f_dot;
     data.given_udot[row] = value.f_ddot;
   }
+}
+
+// Mass properties of the body without propellant, and of the propellant of now.
+void add_content(const TreeBody& tb, TreeData& data, BodyInertia& x) {
+  x.mass = tb.body.mass();
+  x.S = tb.body.first_moment();
+  Matrix3d J = tb.body.M6().bottomRightCorner<3, 3>();
+  for (const int i : tb.tanks) {
+    TankData& tank = data.tanks[static_cast<size_t>(i)];
+    x.mass += tank.content.mass;
+    x.S += tank.content.S;
+    J += tank.content.J;
+  }
+  x.M6 << x.mass * Matrix3d::Identity(), -skew(x.S), skew(x.S), J;
 }
 
 }  // namespace
@@ -67,10 +82,11 @@ void calc_body_position(const Tree& tree, int b, TreeData& data) {
     }
     d.modal_size = d.inertia.M_modal.diagonal().head(tb.num_modes());
   } else {
-    d.P6 = tb.body.M6();
+    if (!tb.tanks.empty()) add_content(tb, data, d.inertia);
+    d.P6 = d.inertia.M6;
   }
   d.second_moment = 0.5 * d.P6.diagonal().tail<3>().sum();
-  d.mass_carried = tb.body.mass();
+  d.mass_carried = d.inertia.mass;
 }
 
 namespace {
@@ -81,6 +97,8 @@ void start_position(const Tree& tree, double t, const ConstVectorRef& q, TreeDat
   data.t = t;
   data.gravity.setZero();
   data.done = static_cast<unsigned>(Stage::Position);
+  for (size_t i = 0; i < tree.tanks.size(); ++i)
+    data.tanks[i].content = tree.tanks[i].shape->calc(std::max(tree.tanks[i].reserve, data.tanks[i].mass));
   for (const int m : tree.moving) {
     const Marker& marker = tree.markers[static_cast<size_t>(m)];
     const TreeBody& tb = tree[marker.body];
@@ -94,6 +112,8 @@ void start_velocity(const Tree& tree, const ConstVectorRef& u, TreeData& data) {
   data.demand(Stage::Position);
   data.u = u;
   data.applied.setZero();
+  data.momentum_out.setZero();
+  for (TankData& tank : data.tanks) tank.flow = 0;
   data.hinge_force.setZero();
   data.transmitted.setZero();
   data.done &= static_cast<unsigned>(Stage::Position) | static_cast<unsigned>(Stage::Factor);

@@ -12,11 +12,28 @@
 #include <vector>
 
 #include "solver/bodies/marker.hpp"
+#include "solver/bodies/tank.hpp"
 #include "solver/functions/function.hpp"
 #include "solver/hinges/hinge.hpp"
 #include "solver/state/state.hpp"
 
 namespace bough::solver {
+
+/// Propellant of a rigid body: its mass is what it was at the start, minus what actuators have used (rows of the states
+/// of signals), or a function of time.
+struct Tank {
+  std::string name;
+  SourceLocation at;
+  int body = 0;
+  std::shared_ptr<const TankShape> shape;
+  double initial = 0;                      ///< mass at the start
+  double reserve = 0;                      ///< mass that cannot leave: of a slosh pendulum
+  std::vector<int> used_rows;              ///< states of signals whose sum is the mass used
+  const TimeFunction* function = nullptr;  ///< or: its mass
+  Vector3d exit = Vector3d::Zero();        ///< function: where the mass leaves, from Bo, in B
+  double exit_radius = 0;                  ///< likewise: of the nozzle, a disc normal to its direction
+  Vector3d exit_axis = Vector3d::UnitX();  ///< likewise: normal of the disc, in B
+};
 
 struct TreeBody {
   std::string name, hinge_name;
@@ -29,6 +46,7 @@ struct TreeBody {
   int q_offset = 0, u_offset = 0;              ///< hinge rows, then modal rows
   int v_offset = 0;                            ///< rows of [v; ω; η̇] among those of all bodies
   bool carries_on_modes = false;               ///< a child hangs where it deforms
+  std::vector<int> tanks;                      ///< in Tree::tanks
   std::vector<HingeMode> mode;                 ///< at the start, one per hinge coordinate
   std::vector<const TimeFunction*> motion;     ///< one per coordinate, nullptr: none; empty: none at all
   VectorXd stiffness, damping, null_position;  ///< empty: none
@@ -52,7 +70,8 @@ struct TreeBody {
 };
 
 struct Tree {
-  std::vector<TreeBody> bodies;                ///< parents before children
+  std::vector<TreeBody> bodies;  ///< parents before children
+  std::vector<Tank> tanks;
   std::vector<Marker> markers;                 ///< each once; [0] is ground's origin
   std::vector<int> moving;                     ///< those that deform
   std::vector<const TimeFunction*> functions;  ///< that motions, forces and signals name

@@ -80,7 +80,7 @@ void calc_body_velocity(const Tree& tree, int b, TreeData& data) {
                       d.inertia);
     data.h.segment(tb.v_offset, 6 + n) = d.inertia.h;
   } else {
-    tb.body.calc_rigid_bias(d.state.w_B, data.h.data() + tb.v_offset);
+    calc_rigid_bias(d.inertia, d.state.w_B, data.h.data() + tb.v_offset);
   }
 }
 

@@ -11,6 +11,9 @@ namespace {
 using records::ElementType;
 using records::ForceElementRecord;
 
+/// Angular radius of the sun from the earth.
+constexpr double kSunSize = 0.004652;
+
 /// Keys of a type in addition to name and type.
 struct Keys {
   ElementType type;
@@ -34,9 +37,16 @@ const std::map<std::string, Keys>& get_types() {
         {"body", "shape", "stiffness"},
         {"node", "position", "to_body", "to_node", "to_position", "radius", "to_radius", "normal", "exponent",
          "damping", "friction", "slip_velocity"}}},
-      {"gravity_central", {ElementType::CentralGravity, {"mu"}, {"centre", "j2", "radius", "axis", "bodies"}}},
+      {"gravity_central",
+       {ElementType::CentralGravity, {"mu"}, {"centre", "j2", "radius", "axis", "bodies", "dipole"}}},
       {"drag",
-       {ElementType::Drag, {"body", "area", "coefficient", "density"}, {"node", "position", "normal", "wind"}}}};
+       {ElementType::Drag,
+        {"body", "area", "coefficient", "density"},
+        {"node", "position", "normal", "wind", "planet", "scale_height", "altitude", "spin"}}},
+      {"solar_pressure",
+       {ElementType::SolarPressure,
+        {"body", "normal", "area", "pressure", "sun"},
+        {"node", "position", "specular", "diffuse", "planet", "sun_size", "one_sided"}}}};
   return types;
 }
 
@@ -127,6 +137,17 @@ void read_element(const Fields& table, const Keys& keys, ForceElementRecord& e, 
   e.coefficient = table.get_number("coefficient", 0);
   e.density = table.get_number("density", 0);
   e.wind = table.get_vector("wind", e.wind);
+  e.planet = table.get_string("planet");
+  e.scale_height = table.get_number("scale_height", 0);
+  e.altitude = table.get_number("altitude", 0);
+  e.spin = table.get_vector("spin", e.spin);
+  e.dipole = table.get_vector("dipole", e.dipole);
+  e.pressure = table.get_number("pressure", 0);
+  e.specular = table.get_number("specular", 0);
+  e.diffuse = table.get_number("diffuse", 0);
+  e.sun = table.get_vector("sun", e.sun);
+  e.sun_size = table.get_number("sun_size", kSunSize);
+  e.is_one_sided = table.get_bool("one_sided", false);
 }
 
 void read_typed(const Fields& table, const std::string& type, records::SystemSpec& spec, Diagnostics& diagnostics) {

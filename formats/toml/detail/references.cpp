@@ -62,6 +62,7 @@ void check_names(const records::SystemSpec& spec, Diagnostics& diagnostics) {
   for (const auto& force : spec.force_elements) forces.push_back({force.name, force.at});
   std::stable_sort(forces.begin(), forces.end(), [](const auto& a, const auto& b) { return a.at.line < b.at.line; });
   collect_names(forces, "force", diagnostics);
+  const auto tanks = collect_names(spec.tanks, "tank", diagnostics);
   collect_names(spec.sensors, "sensor", diagnostics);
   collect_names(spec.inputs, "input", diagnostics);
   collect_names(spec.events, "event", diagnostics);
@@ -104,6 +105,16 @@ void check_names(const records::SystemSpec& spec, Diagnostics& diagnostics) {
     for (const auto* names : {&hinge.law.spring_table, &hinge.law.damper_table})
       for (const auto& name : *names) checker.check(name, functions, role, "function", hinge.at);
   }
+  for (const auto& tank : spec.tanks) {
+    const std::string role = "tank '" + tank.name + "'";
+    checker.check(tank.body, bodies, role, "body", tank.at);
+    checker.check(tank.function, functions, role, "function", tank.at);
+  }
+  for (const auto& actuator : spec.actuators) {
+    const auto named = actuator.settings.words.find("tank");
+    if (named != actuator.settings.words.end() && !named->second.empty())
+      checker.check(named->second.front(), tanks, "actuator '" + actuator.name + "'", "tank", actuator.at);
+  }
   for (const auto& function : spec.functions)
     for (const auto& name : function.of)
       checker.check(name, functions, "function '" + function.name + "'", "function", function.at);
@@ -144,7 +155,12 @@ void check_names(const records::SystemSpec& spec, Diagnostics& diagnostics) {
     const std::string role = "sensor '" + sensor.name + "'";
     checker.check(sensor.body, bodies, role, "body", sensor.at);
     checker.check(sensor.frame, with({"inertial", "body", "ground"}), role, "frame", sensor.at);
-    checker.check(sensor.relative_to, with({"ground"}), role, "body", sensor.at);
+    if (sensor.is_orbital && std::find(bodies.begin(), bodies.end(), sensor.relative_to) == bodies.end())
+      diagnostics.error("toml.unknown-name", sensor.at,
+                        role + " is relative to 'lvlh:" + sensor.relative_to + "', and there is no such body",
+                        "name a body after lvlh:");
+    else
+      checker.check(sensor.relative_to, with({"ground"}), role, "body", sensor.at);
     checker.check(sensor.hinge, hinges, role, "hinge", sensor.at);
     checker.check(sensor.to_body, with({"ground"}), role, "body", sensor.at);
   }

@@ -136,10 +136,11 @@ double SignalUnits::get_command_unit(const toml::table& actuator) const {
   if (type == "hinge" || type == "brake") return effort;
   // Currents stay; so a voltage is a power.
   if (type == "motor") return effort * rate;
-  if (type == "force") return force();
+  if (type == "force" || type == "engine") return force();
   if (type == "modal") return force() * c_.length / c_.calc_modal();
   if (type == "moment" || type == "wheel") return force() * c_.length;
   if (type == "cmg" || type == "double_gimbal_cmg") return 1 / c_.time;
+  if (type == "torque_rod") return force() * c_.length;  // over a field, whose numbers stay
   return 1;
 }
 
@@ -148,7 +149,8 @@ std::vector<double> SignalUnits::list_actuator_units(const toml::table& actuator
   const double torque = force() * c_.length, rate = 1 / c_.time;
   if (type == "motor")
     return {get_effort_unit(get_text(actuator, "hinge"), actuator["coordinate"].value_or(std::int64_t{1})), 1};
-  if (type == "jet") return {force(), c_.mass};
+  if (type == "jet" || type == "engine") return {force(), c_.mass};
+  if (type == "torque_rod") return {torque, torque, torque, torque};
   if (type == "wheel") return {torque, torque * c_.time, rate};
   if (type == "cmg") return {rate, 1};
   if (type == "double_gimbal_cmg") return {rate, rate, 1, 1};
@@ -179,6 +181,7 @@ std::optional<double> SignalUnits::find_channel_unit(const std::string& channel)
     if (last == "eta") return c_.calc_modal();
     if (last == "eta_dot") return c_.calc_modal() / c_.time;
   }
+  if (path.starts_with("/tanks/")) return last == "flow" ? c_.mass / c_.time : c_.mass;
   if (path.starts_with("/energy/")) return force() * c_.length;
   if (path == "/momentum/linear") return force() * c_.time;
   if (path == "/momentum/angular") return force() * c_.length * c_.time;
@@ -293,6 +296,8 @@ std::vector<double> SignalUnits::list_demands(const std::string& name) const {
       if (is_it) found.push_back(positions[i]);
     }
   }
+  for (const auto* tank : list_tables(root_, "tank"))
+    if (get_text(*tank, "function") == name) found.push_back(c_.mass);
   for (const auto* taker : list_tables(root_, "force")) {
     const auto wires = list_wires(*taker, "signal", "");
     const bool is_followed =

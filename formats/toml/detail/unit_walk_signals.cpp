@@ -191,6 +191,7 @@ void change_actuator(const UnitTable& t, SignalUnits& units) {
   t.scale("viscous", effort / rate);
   t.scale("stick_rate", rate);
   t.scale("thrust", units.force());
+  t.scale("exit_radius", c.length);
   t.scale("exhaust_velocity", c.length / c.time);
   t.scale("inertia", c.mass * c.length * c.length);
   for (const char* key : {"momentum", "momentum_limit"}) t.scale(key, torque * c.time);

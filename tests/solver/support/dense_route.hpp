@@ -13,7 +13,7 @@
 /// From the solver, not independent: the layout of q and u, M_b(η) of bodies with stiffening (its derivatives, so h_b,
 /// are taken here; its values are tested against sums over points in tests/solver/bodies), K, D, the frame in which a
 /// constraint is caught (ConstraintState), and whether a coordinate is free, locked or prescribed.
-/// Not covered: J2, tables, load patterns, dry friction of hinges, rotors, delays, sampled controllers, noise.
+/// Not covered: J2, tanks, tables, load patterns, dry friction of hinges, rotors, delays, sampled controllers, noise.
 #include "formats/records/system_spec.hpp"
 #include "solver/system/system.hpp"
 

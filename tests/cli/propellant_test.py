@@ -1,0 +1,181 @@
+"""Propellant from outside: a burn resumed and linearized, slosh against formulas, units, messages."""
+import json
+import math
+import unittest
+
+import h5py
+import numpy as np
+
+from support import ProgramTest
+
+XI = 1.8411837813406593
+
+ROCKET = """[parameters]
+fill = 8.0
+[[body]]
+name = "stage"
+mass = 2.0
+cg = [0.4, 0.0, 0.0]
+inertia = [0.5, 3.0, 3.0]
+nodes = [{id = 1, position = [-1.0, 0.0, 0.0]}]
+[[tank]]
+name = "main"
+body = "stage"
+type = "cylinder"
+mass = "$fill"
+axis = [1.0, 0.0, 0.0]
+radius = 0.5
+height = 2.0
+density = 8.0
+[[function]]
+name = "throttle"
+type = "step"
+value = 30.0
+at = 0.5
+[[actuator]]
+name = "engine"
+type = "engine"
+body = "stage"
+node = 1
+axis = [1.0, 0.0, 0.0]
+exhaust_velocity = 5.0
+exit_radius = 0.2
+tank = "main"
+input = "throttle"
+[[sensor]]
+name = "rate"
+type = "angular_velocity"
+body = "stage"
+[[hinge]]
+name = "flight"
+type = "free"
+child = "stage"
+rate = [0.3, 0.1, -0.2, 0.0, 0.0, 0.0]
+[simulation]
+duration = 1.5
+output_step = 0.05
+integrator = "rk"
+relative_tolerance = 1e-11
+absolute_tolerance = 1e-13
+"""
+
+SLOSH = """[parameters]
+fill = {fill}
+[[body]]
+name = "vehicle"
+mass = 3000.0
+[[tank]]
+name = "lox"
+body = "vehicle"
+type = "{type}"
+mass = "$fill"
+radius = 1.0
+{height}
+density = 1000.0
+slosh = true
+{more}
+[[hinge]]
+name = "lateral"
+type = "{hinge}"
+child = "vehicle"
+[simulation]
+duration = 1.0
+gravity = [0.0, 0.0, -9.81]
+"""
+
+
+class Propellant(ProgramTest):
+    def read_h5(self, name, *paths):
+        with h5py.File(self.path(name)) as f:
+            return [f[path][()] for path in paths]
+
+    def test_a_burn_in_two_parts_is_the_burn(self):
+        self.write("rocket.toml", ROCKET)
+        self.bough("run", "rocket.toml", "-o", "whole.h5", "-q")
+        self.write("short.toml", ROCKET.replace("duration = 1.5", "duration = 0.8"))
+        self.bough("run", "short.toml", "-o", "parts.h5", "-q")
+        self.bough("run", "rocket.toml", "-o", "parts.h5", "--resume", "-q")
+        paths = ("/bodies/stage/angular_velocity", "/tanks/main/mass", "/momentum/out_angular", "/momentum/angular")
+        for path, whole, parts in zip(paths, self.read_h5("whole.h5", *paths), self.read_h5("parts.h5", *paths)):
+            np.testing.assert_allclose(parts, whole, atol=1e-9, err_msg=path)
+        mass, angular, out = self.read_h5("whole.h5", "/system_mass/mass", "/momentum/angular", "/momentum/out_angular")
+        self.assertAlmostEqual(mass[-1], 10 - 6, places=9)
+        total = angular + out
+        self.assertLess(np.abs(total - total[0]).max(), 1e-10 * np.linalg.norm(total[0]))
+
+    def test_linear_models_have_the_mass_of_their_time(self):
+        """A of a wobble about the spin axis while the engine burns: w' = -(J' flow + flow l²...) w of the formulas."""
+        self.write("rocket.toml", ROCKET.replace("rate = [0.3, 0.1, -0.2", "rate = [0.0, 0.0, 0.0"))
+        for fill in (8.0, 4.0):
+            self.bough("linearize", "rocket.toml", "--set", f"fill={fill}", "--at", "1.0", "-o", "l.h5")
+            with h5py.File(self.path("l.h5")) as f:
+                A, names = f["/A"][()], [s.decode() for s in f["/states/name"][()]]
+            content, flow = fill - 3.0, 6.0
+            height = content / (8 * math.pi * 0.25)
+            total, first = 2 + content, 2 * 0.4 + content * height / 2
+            cg = first / total
+            about_bo = 3 + 2 * 0.16 + content * (0.25 * 0.25 + height**2 / 3)
+            inertia = about_bo - total * cg**2
+            # Moment about the centre of mass: that about Bo, minus the arm times the Coriolis force.
+            moment_bo = flow * (1.0 + 0.25 * 0.04 - (0.25 * 0.25 + height**2))
+            force = 2 * flow * (-1.0 - height)  # along, times the rate
+            expected = -(moment_bo - cg * force) / inertia
+            row = [i for i, name in enumerate(names) if "flight:ry" in name][-1]
+            self.assertAlmostEqual(A[row, row], expected, delta=1e-6 * abs(expected))
+
+    def find_frequency(self, *arguments):
+        self.bough("linearize", "slosh.toml", *arguments, "-o", "l.h5", "-q")
+        with h5py.File(self.path("l.h5")) as f:
+            poles = np.linalg.eigvals(f["/A"][()])
+        return max(poles, key=lambda p: p.imag)
+
+    def test_slosh_has_the_frequency_and_mass_of_the_formulas(self):
+        """Cylinder of SP-106: R 1, g 9.81, h 2 and 0.5; on a still vehicle, and on one that floats sideways."""
+        for depth, omega, share, length in ((2.0, 4.247253, 0.226967, 0.543817), (0.5, 3.621633, 0.660108, 0.747929)):
+            mass = 1000 * math.pi * depth
+            self.write("slosh.toml", SLOSH.format(fill=mass, type="cylinder", height="height = 3.0", hinge="fixed",
+                                                  more="slosh_damping = 0.01"))
+            pole = self.find_frequency()
+            self.assertAlmostEqual(abs(pole), omega, delta=1e-6)
+            self.assertAlmostEqual(-pole.real / abs(pole), 0.01, delta=1e-9)
+            self.assertAlmostEqual(abs(self.find_frequency("--set", f"fill={mass / 2}")),
+                                   math.sqrt(9.81 * XI * math.tanh(XI * depth / 2)), delta=1e-6)
+            self.write("slosh.toml", SLOSH.format(fill=mass, type="cylinder", height="height = 3.0", more="",
+                                                  hinge='prismatic"\naxis = [1.0, 0.0, 0.0]\nparent = "ground'))
+            pendulum = share * mass
+            expected = omega * math.sqrt((3000 + mass) / (3000 + mass - pendulum))
+            self.assertAlmostEqual(abs(self.find_frequency()), expected, delta=2e-5)
+            self.assertAlmostEqual(9.81 / omega**2, length, delta=1e-6)
+
+    def test_a_sphere_sloshes_as_the_tables_say(self):
+        """ω² R/g of McIver (1989): depth over radius 0.2, 1, 1.6; the hinge is the centre."""
+        for depth, value in ((0.2, 1.0723), (1.0, 1.5602), (1.6, 2.6864)):
+            mass = 1000 * math.pi * depth**2 * (3 - depth) / 3
+            self.write("slosh.toml", SLOSH.format(fill=mass, type="sphere", height="", hinge="fixed", more=""))
+            self.assertAlmostEqual(abs(self.find_frequency())**2 / 9.81, value, delta=2e-4)
+
+    def test_units_are_converted_and_the_motion_stays(self):
+        self.write("rocket.toml", ROCKET)
+        self.bough("convert", "rocket.toml", "--units", "m-kg-s:mm-N-tonne", "-o", "mm.toml")
+        for name in ("rocket", "mm"):
+            self.bough("run", f"{name}.toml", "-o", f"{name}.h5", "-q")
+        (w, m), (w_mm, m_mm) = (self.read_h5(f"{n}.h5", "/bodies/stage/angular_velocity", "/tanks/main/mass")
+                                for n in ("rocket", "mm"))
+        np.testing.assert_allclose(w_mm, w, atol=1e-9)
+        np.testing.assert_allclose(1e3 * m_mm, m, rtol=1e-9)
+
+    def test_what_cannot_be_is_named_with_its_line(self):
+        for old, new, error in (
+                ("fill = 8.0", "fill = 80.0", "system.bad-tank"),
+                ('tank = "main"', 'tank = "mian"', "did you mean 'main'"),
+                ("radius = 0.5\nheight", "radius = 0.5\nbore = 0.1\nheight", "toml.conflicting-keys"),
+                ("density = 8.0", "", "toml.missing-key"),
+                ('type = "cylinder"', 'type = "cube"', "toml.")):
+            self.write("bad.toml", ROCKET.replace(old, new))
+            errors = self.bough("check", "bad.toml", code=1).stderr
+            self.assertIn(error, errors)
+            self.assertRegex(errors, r"bad\.toml:\d+")
+
+
+if __name__ == "__main__":
+    unittest.main()
