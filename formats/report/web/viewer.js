@@ -270,11 +270,29 @@ export class Viewer {
     this.canvas.addEventListener("pointercancel", () => (last = start = null));
     this.canvas.addEventListener("contextmenu", (event) => event.preventDefault());
     this.canvas.addEventListener("dblclick", () => this.home && this.fit(this.home));
+    this.canvas.addEventListener("keydown", (event) => this.on_key?.(event) || this.turn_by_key(event));
     this.canvas.addEventListener("wheel", (event) => {
       event.preventDefault();
       this.distance *= Math.exp(0.001 * event.deltaY);
       this.draw();
     }, { passive: false });
+  }
+
+  // Arrow keys turn, with shift they move; + and - come nearer and go away, 0 shows all.
+  turn_by_key(event) {
+    const steps = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] }[event.key];
+    const near = { "+": 0.9, "-": 1 / 0.9 }[event.key];
+    if (steps && event.shiftKey) {
+      const { right, up } = this.get_axes(), unit = 0.03 * this.distance;
+      this.target = this.target.map((t, i) => t + unit * (steps[0] * right[i] - steps[1] * up[i]));
+    } else if (steps) {
+      this.yaw += 0.1 * steps[0];
+      this.pitch = Math.max(-1.55, Math.min(1.55, this.pitch + 0.1 * steps[1]));
+    } else if (near) this.distance *= near;
+    else if (event.key === "0" && this.home) this.fit(this.home);
+    else return;
+    event.preventDefault();
+    this.draw();
   }
 
   // A click names the nearest node: things with `ids` and `describe(index)`.
@@ -293,6 +311,7 @@ export class Viewer {
       }
     }
     this.picked = found && [found.thing.describe, found.k];
+    this.on_pick?.(found && { thing: found.thing, index: found.k, id: found.thing.ids[found.k] });
     this.tip.hidden = !found;
     if (!found) return;
     this.tip.style.left = Math.min(found.at[0] + 10, rect.width - 240) + "px";
@@ -303,6 +322,12 @@ export class Viewer {
   // The value at the picked node, which goes with the time.
   update_tip() {
     if (this.picked) this.tip.textContent = this.picked[0](this.picked[1]);
+  }
+
+  // Frees the memory of the graphics card; a browser has few such contexts.
+  dispose() {
+    this.gl.getExtension("WEBGL_lose_context")?.loseContext();
+    this.draw = () => {};
   }
 
   make_view_buttons() {
