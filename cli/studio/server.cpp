@@ -3,7 +3,9 @@
 #include <httplib.h>
 #include <sys/random.h>
 
+#include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <filesystem>
 #include <map>
 #include <mutex>
@@ -240,6 +242,8 @@ void StudioServer::start() {
     p.server.listen_after_bind();
     p.is_running = false;
   });
+  // stop() has no effect before the server listens.
+  while (p.is_running && !p.server.is_running()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
 }
 
 bool StudioServer::is_running() const { return parts_->is_running; }

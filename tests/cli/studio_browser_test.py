@@ -148,8 +148,8 @@ class Flow(StudioTest):
         page.visit(self.address)
         self.wait("document.querySelector('.text-pane').dataset.checked")
         page.click("input.command")
-        page.type("set simulation.duration=2\n")
-        self.wait("studio.view.pane.text.includes('duration = 2')")
+        page.type("set simulation.duration=3\n")
+        self.wait("studio.view.pane.text.includes('duration = 3')")
         outside = self.read("spinup.toml") + "# outside\n"
         self.write("spinup.toml", outside)
         page.click("button.save")
@@ -160,7 +160,7 @@ class Flow(StudioTest):
         self.click_text("Cancel", "document.querySelector('dialog')")
         self.wait("!document.querySelector('dialog')")
         self.assertEqual(self.read("spinup.toml"), outside)
-        self.assertIn("duration = 2", page.run("studio.view.pane.text"))
+        self.assertIn("duration = 3", page.run("studio.view.pane.text"))
 
     def test_script_in_names(self):
         """A deck whose name and title are HTML is shown as text."""

@@ -44,7 +44,7 @@ export function parse_messages(text) {
   const messages = [];
   for (const line of text.split("\n")) {
     const found = kLine.exec(line);
-    if (!found) continue;
+    if (!found || /^\s*"/.test(line)) continue;  // JSON repeats them
     const [, file, row, , severity, rest, id] = found;
     const [what, ...advice] = rest.split("; ");
     messages.push({ severity, id: id ?? "", file: file ?? "", line: Number(row ?? 0), what, advice: advice.join("; ") });

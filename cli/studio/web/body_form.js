@@ -38,11 +38,10 @@ export function make_body_form(studio, deck, on_change) {
   const make = () => studio.attempt(async () => {
     const { body, system, line } = await make_texts();
     const known = await ask("read", { file: body.name }).catch(() => ({ text: "", hash: "" }));
-    const saved = await save_text(body.name, known.text, body.text, known.hash);
+    const is_there = await ask("read", { file: system.name }).then(() => true, () => false);
+    const saved = await save_text(body.name, known.text, body.text, known.hash, is_there ? [] : [{ file: system.name, text: system.text }]);
     if (!saved) return;
     history.push(...line);
-    const is_there = await ask("read", { file: system.name }).then(() => true, () => false);
-    if (!is_there) await ask("save", { file: system.name, text: system.text, hash: "" });
     await studio.refresh();
     await studio.open(body.name);
   });

@@ -14,6 +14,7 @@ export class DeckScene {
   constructor(answer) {
     this.drawing = new Drawing(answer.drawing);
     const e = answer.elements;
+    /** @type {any} */
     this.elements = { cards: e.cards, ...Object.fromEntries(["id", "card", "property", "file", "line", "of_triangle", "of_edge"].map((k) => [k, unpack_indices(e[k])])) };
     this.grids = Object.fromEntries(["id", "file", "line", "part"].map((k) => [k, unpack_indices(answer.grids[k])]));
     this.answer = answer;

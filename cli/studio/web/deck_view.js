@@ -54,6 +54,7 @@ export class DeckView {
     this.file = file;
     this.answer = answer;
     this.form = make_body_form(studio, file, (grids) => {
+      if (!this.stage) return;
       this.stage.chosen = new Set(grids);
       this.stage.draw();
     });

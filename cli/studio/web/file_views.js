@@ -45,6 +45,12 @@ function make_compare(studio, file, kind, progress) {
   return list;
 }
 
+/** The text of a file that the studio does not edit. */
+export async function open_text(studio, file) {
+  const { text } = await ask("read", { file });
+  return { element: el("div", { class: "page" }, el("p", { class: "note" }, "This kind of file is shown as text; an editor changes it."), el("pre", { class: "lines", tabindex: "0" }, text)), dispose() {} };
+}
+
 /** A page that bough report saved: named, not shown, since its own policy is another one. */
 export async function open_report(studio, file) {
   const note = el("p", {}, el("strong", {}, file), " is a page for any browser. Open it from the folder; it needs no program and no network.");

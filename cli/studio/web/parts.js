@@ -48,14 +48,19 @@ export function make_diff_view(diff) {
 
 /**
  * Shows what saving changes, then writes. A file that has changed since it was read is not overwritten without a choice.
+ * @param {{file: string, text: string}[]} [others]  new files that are written with it
  * @returns {Promise<{hash: string, text: string} | null>}  null: not saved
  */
-export async function save_text(file, before, text, hash) {
-  const { diff } = await ask("diff", { file, before, after: text });
-  const choice = await ask_user(hash === "" ? `New file ${file}` : `Save ${file}`, make_diff_view(diff), [["save", "Save"], ["", "Cancel"]]);
+export async function save_text(file, before, text, hash, others = []) {
+  const content = el("div", {}, make_diff_view((await ask("diff", { file, before, after: text })).diff));
+  for (const other of others)
+    content.append(el("h4", {}, `New file ${other.file}`), make_diff_view((await ask("diff", { file: other.file, before: "", after: other.text })).diff));
+  const choice = await ask_user(hash === "" ? `New file ${file}` : `Save ${file}`, content, [["save", "Save"], ["", "Cancel"]]);
   if (choice !== "save") return null;
   try {
-    return { ...(await ask("save", { file, text, hash })), text };
+    const saved = await ask("save", { file, text, hash });
+    for (const other of others) await ask("save", { ...other, hash: "" });
+    return { ...saved, text };
   } catch (error) {
     if (!error.has?.("studio.changed-file") && !error.has?.("cli.output-exists")) throw error;
     return resolve_conflict(file, text, error);

@@ -1,13 +1,13 @@
 import { ask, call, StudioError } from "./api.js";
 import { open_body } from "./body_view.js";
 import { open_deck } from "./deck_view.js";
-import { open_chapter, open_report } from "./file_views.js";
+import { open_chapter, open_report, open_text } from "./file_views.js";
 import { el, make_button, make_theme_button } from "./page_parts.js";
 import { ask_user, make_message_list } from "./parts.js";
 import { open_system } from "./system_view.js";
 
 const kKinds = [["Decks", ["deck"]], ["Bodies", ["body", "bough-flexbody"]], ["Systems", ["system"]], ["Results", ["bough-results"]], ["Modes, linear models and more", null], ["Pages", ["report"]]];
-const kViews = { deck: open_deck, body: open_body, system: open_system, report: open_report };
+const kViews = { deck: open_deck, body: open_body, system: open_system, report: open_report, campaign: open_text, toml: open_text };
 const kLookEvery = 3000;  // ms: for changes outside
 
 class Studio {

@@ -28,10 +28,10 @@ export class TextPane {
       this.editor.element, command, this.messages.element);
     this.element.addEventListener("keydown", (event) => {
       if (!(event.ctrlKey || event.metaKey)) return;
-      if (event.key === "s") {
-        event.preventDefault();
-        this.save();
-      }
+      const action = { s: () => this.save(), z: () => this.editor.undo(), y: () => this.editor.redo() }[event.key];
+      if (!action || (event.key !== "s" && event.target !== this.editor.area)) return;
+      event.preventDefault();
+      action();
     });
     this.check();
   }

@@ -56,6 +56,7 @@ const to_rgba = (css, alpha = 1) => {
 // all things. With by_level a point's colour is its size over `reach`; with elements and levels (Drawing) each element
 // has one colour. Dragging turns, the right button or shift moves, the wheel comes nearer, a double click shows all.
 export class Viewer {
+  /** @param {number | string} height  in pixels, or as CSS has it */
   constructor(height = 420) {
     this.canvas = el("canvas", { class: "scene", tabindex: "0", role: "img", "aria-label": "three-dimensional view" });
     this.canvas.style.height = typeof height === "number" ? height + "px" : height;
@@ -102,6 +103,7 @@ export class Viewer {
     this.target = box.get_middle();
     this.extent = box.get_diagonal();
     this.distance = Math.max(this.find_distance(box), 0.3 * this.extent);
+    this.is_fitted_late = this.canvas.clientWidth < 10;  // not on the page yet: its shape is unknown
     this.draw();
   }
 
@@ -156,6 +158,7 @@ export class Viewer {
     const width = Math.round(this.canvas.clientWidth * scale), height = Math.round(this.canvas.clientHeight * scale);
     if (width < 10 || height < 10) return;
     if (this.canvas.width !== width || this.canvas.height !== height) [this.canvas.width, this.canvas.height] = [width, height];
+    if (this.is_fitted_late) return this.fit(this.home);
     gl.viewport(0, 0, width, height);
     gl.clearColor(...to_rgba(get_css("--stage")));
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
