@@ -207,6 +207,11 @@ StudioServer::StudioServer(ServerOptions options) : parts_(std::make_unique<Part
   p.server.new_task_queue = [] { return new httplib::ThreadPool(kNumThreads); };
   p.server.set_payload_max_length(kMaxRequest);
   p.server.set_tcp_nodelay(true);
+  // Not SO_REUSEPORT, the default of the library: two servers would share a port.
+  p.server.set_socket_options([](socket_t socket) {
+    const int yes = 1;
+    setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
+  });
   p.server.set_pre_routing_handler([&p](const httplib::Request& request, httplib::Response& response) {
     Parts::add_headers(response);
     if (!p.is_refused(request)) return httplib::Server::HandlerResponse::Unhandled;

@@ -152,7 +152,7 @@ class Refusals(StudioTest):
         """A file that is no HDF5 file is in the list, and the studio goes on."""
         self.write("inside/broken.h5", "no HDF5")
         self.assertIn("unreadable", [f["kind"] for f in self.ask("list")["files"]])
-        self.refuses("hdf5.cannot-open", "chapter", file="broken.h5")
+        self.refuses("hdf5.not-hdf5", "chapter", file="broken.h5")
         self.refuses("cli.no-file", "chapter", file="missing.h5")
         self.ask("list")
 
