@@ -11,7 +11,7 @@ SOURCE = os.environ["BOUGH_SOURCE_DIR"]
 # Factor of time of a program under the sanitizers; these need address space without end.
 SLOWER = int(os.environ.get("BOUGH_SLOWER", "1"))
 # Guards against hangs only: no command takes a tenth of it, alone or on a busy machine.
-HANG = 60 * SLOWER
+HANG = 600 * SLOWER
 VERBS = ["check", "modes", "static", "frequency", "transient", "matrices", "reduce", "integrals", "flx", "compare", "run",
          "equilibrium", "linearize", "response", "select", "export", "plot", "report", "info", "init", "batch", "edit", "convert", "studio"]
 
