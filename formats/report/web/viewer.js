@@ -52,6 +52,9 @@ const to_rgba = (css, alpha = 1) => {
   return [(v >> 16) / 255, ((v >> 8) & 255) / 255, (v & 255) / 255, alpha];
 };
 
+// Outlines of larger meshes wait until the view rests: lines take most of the time where no graphics card draws.
+export const kMaxTurningEdges = 5000;
+
 // A stage on which things are drawn: { points, size, triangles, edges, color, by_level, line_color }; marks stand before
 // all things. With by_level a point's colour is its size over `reach`; with elements and levels (Drawing) each element
 // has one colour. Dragging turns, the right button or shift moves, the wheel comes nearer, a double click shows all.
@@ -193,7 +196,8 @@ export class Viewer {
     const color = to_rgba(thing.color, thing.alpha ?? 1);
     const has_faces = thing.triangles?.length > 0;
     if (has_faces) draw(gl.TRIANGLES, thing.triangles, color, thing.by_level, true, 0);
-    if (thing.edges?.length > 0)
+    const waits = this.is_turning && has_faces && thing.edges?.length > 2 * kMaxTurningEdges;
+    if (thing.edges?.length > 0 && !waits)
       draw(gl.LINES, thing.edges, has_faces ? to_rgba(get_css("--edge"), (thing.alpha ?? 1) * 0.6) : color, !has_faces && thing.by_level, false, thing.lift ?? 1e-4);
     if (thing.ghosts?.length > 0) draw(gl.LINES, thing.ghosts, to_rgba(get_css("--ghost"), 0.6), false, false, 0);
     if (thing.dots) draw(gl.POINTS, null, color, thing.by_level, false, 2e-4);
@@ -248,6 +252,11 @@ export class Viewer {
   listen() {
     let last = null;
     let start = null;
+    const rest = () => {
+      last = start = null;
+      if (this.is_turning) requestAnimationFrame(() => this.draw());
+      this.is_turning = false;
+    };
     this.canvas.addEventListener("pointerdown", (event) => {
       last = start = event;
       this.canvas.setPointerCapture(event.pointerId);
@@ -257,6 +266,7 @@ export class Viewer {
       const dx = event.clientX - last.clientX, dy = event.clientY - last.clientY;
       const is_shift = last.shiftKey || last.buttons === 2;
       last = { clientX: event.clientX, clientY: event.clientY, shiftKey: event.shiftKey, buttons: event.buttons };
+      this.is_turning = true;
       if (is_shift) {
         const { right, up } = this.get_axes(), unit = (0.75 * this.distance) / this.canvas.clientHeight;
         this.target = this.target.map((t, i) => t - unit * dx * right[i] + unit * dy * up[i]);
@@ -268,9 +278,9 @@ export class Viewer {
     });
     this.canvas.addEventListener("pointerup", (event) => {
       if (start && event.button === 0 && Math.hypot(event.clientX - start.clientX, event.clientY - start.clientY) < 4) this.pick(event);
-      last = start = null;
+      rest();
     });
-    this.canvas.addEventListener("pointercancel", () => (last = start = null));
+    this.canvas.addEventListener("pointercancel", () => rest());
     this.canvas.addEventListener("contextmenu", (event) => event.preventDefault());
     this.canvas.addEventListener("dblclick", () => this.home && this.fit(this.home));
     this.canvas.addEventListener("keydown", (event) => this.on_key?.(event) || this.turn_by_key(event));
