@@ -68,6 +68,12 @@ class Refusals(StudioTest):
         self.assertEqual(headers["Cross-Origin-Resource-Policy"], "same-origin")
         self.assertIsNone(headers["Access-Control-Allow-Origin"])
 
+    def test_nothing_is_compressed(self):
+        """Brotli at its best takes seconds for a mesh."""
+        _, headers, _ = self.request("api/ask", b'{"what": "list"}', {"Accept-Encoding": "gzip, br"})
+        self.assertIsNone(headers["Content-Encoding"])
+        self.assertIsNone(self.request("viewer.js", headers={"Accept-Encoding": "gzip, br"})[1]["Content-Encoding"])
+
     def test_paths_outside(self):
         for name in ["../outside/secret.toml", self.path("outside/secret.toml"), "link.toml", "folder/secret.toml",
                      "folder/../../outside/secret.toml", "/etc/passwd"]:
