@@ -1,7 +1,9 @@
 """bough studio without a browser: what it refuses, files that change outside, and the numbers of what it runs."""
 import hashlib
 import os
+import re
 import resource
+import shlex
 import signal
 import subprocess
 import threading
@@ -11,7 +13,7 @@ import h5py
 import numpy as np
 
 from studio_support import StudioTest
-from support import BEAM, HANG, PROGRAM
+from support import BEAM, HANG, PROGRAM, SOURCE
 
 SCRIPT = "<img src=x onerror=alert(1)><script>alert(2)</script>"
 
@@ -309,6 +311,18 @@ class Limits(StudioTest):
 
 
 class Start(StudioTest):
+    def test_commands_of_the_page(self):
+        """Those of docs/studio.md, in a folder of their own."""
+        with open(os.path.join(SOURCE, "docs/studio.md"), encoding="utf-8") as f:
+            lines = re.findall(r"(?m)^    (.*)$", f.read())
+        self.assertEqual(lines[0], lines[-1])
+        self.assertEqual(lines[2], "cd plate")
+        self.bough(*shlex.split(lines[1])[1:])
+        words = shlex.split(lines[3])
+        self.assertEqual(words[:2], ["bough", "studio"])
+        self.start_studio(*words[2:], folder=self.path("plate"))
+        self.assertGreater(len(self.ask("deck", file=words[2])["cards"]), 3)
+
     def test_files(self):
         self.write("beam.bdf", BEAM)
         self.start_studio("beam.bdf")
