@@ -312,7 +312,7 @@ class Limits(StudioTest):
 
 class Start(StudioTest):
     def test_commands_of_the_page(self):
-        """Those of docs/studio.md, in a folder of their own."""
+        """Runs the commands of docs/studio.md in an empty folder."""
         with open(os.path.join(SOURCE, "docs/studio.md"), encoding="utf-8") as f:
             lines = re.findall(r"(?m)^    (.*)$", f.read())
         self.assertEqual(lines[0], lines[-1])
