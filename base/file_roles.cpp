@@ -2,12 +2,14 @@
 
 #include <sys/stat.h>
 
+#include <filesystem>
 #include <map>
 #include <mutex>
 #include <set>
 #include <utility>
 
 #include "base/diagnostic.hpp"
+#include "base/part_file.hpp"
 
 namespace bough {
 
@@ -26,6 +28,27 @@ bool find_number(const std::string& path, FileNumber& number) {
 [[noreturn]] void refuse(const std::string& output, const std::string& input) {
   throw InputError("cli.output-is-input", {output}, "the output would overwrite the input file " + input,
                    "choose another file with -o");
+}
+
+/// Real path of the folder that confines all files; empty: none.
+std::string& get_folder() {
+  static std::string folder;
+  return folder;
+}
+
+std::filesystem::path find_real_path(const std::string& path) {
+  std::error_code failed;
+  const auto target = find_target(path, failed);
+  return std::filesystem::weakly_canonical(std::filesystem::absolute(target, failed), failed);
+}
+
+void demand_inside(const std::string& path) {
+  const auto& folder = get_folder();
+  if (folder.empty()) return;
+  const auto relative = find_real_path(path).lexically_relative(folder);
+  if (relative.empty() || *relative.begin() == "..")
+    throw InputError("cli.outside-folder", {path}, "the file does not lie in " + folder + ", the folder of the studio",
+                     "start bough studio in a folder that contains all files");
 }
 
 std::mutex& get_mutex() {
@@ -69,8 +92,18 @@ void FileRoles::note(const std::string& path, bool is_input) {
   (is_input ? files->inputs : files->outputs).emplace(number, path);
 }
 
-void note_input(const std::string& path) { FileRoles::note(path, true); }
+void confine_files(const std::string& folder) {
+  get_folder() = folder.empty() ? std::string() : find_real_path(folder).string();
+}
 
-void note_output(const std::string& path) { FileRoles::note(path, false); }
+void note_input(const std::string& path) {
+  demand_inside(path);
+  FileRoles::note(path, true);
+}
+
+void note_output(const std::string& path) {
+  demand_inside(path);
+  FileRoles::note(path, false);
+}
 
 }  // namespace bough

@@ -26,6 +26,10 @@ class FileRoles {
   Files* outer_;
 };
 
+/// From now on note_input and note_output refuse files that are not in this folder or below, symbolic links followed,
+/// with InputError "cli.outside-folder". For the whole process, with or without a FileRoles; empty: no limit.
+void confine_files(const std::string& folder);
+
 /// Every reader calls it with what it opens. InputError "cli.output-is-input" when the call is to write this file.
 void note_input(const std::string& path);
 

@@ -1,5 +1,6 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cstdlib>
 #include <functional>
 #include <iterator>
 #include <string_view>
@@ -15,6 +16,7 @@
 #include "cli/convert/convert.hpp"
 #include "cli/edit/edit.hpp"
 #include "cli/frequency/frequency.hpp"
+#include "cli/studio/studio.hpp"
 #include "cli/verbs.hpp"
 
 namespace {
@@ -49,7 +51,8 @@ constexpr Verb kVerbs[] = {{"check", cli::add_check},
                            {"init", cli::add_init},
                            {"batch", cli::add_batch},
                            {"edit", cli::add_edit},
-                           {"convert", cli::add_convert}};
+                           {"convert", cli::add_convert},
+                           {"studio", cli::add_studio}};
 
 /// Adds one command, or all: setting up the options of all takes longer than solving a small deck.
 void add_verbs(CLI::App& app, cli::Action& action, std::string_view only = {}) {
@@ -159,6 +162,7 @@ int run(int argc, const char* const* argv) {
   }
   try {
     cli::set_work_space_aside();
+    if (const char* const folder = std::getenv("BOUGH_FOLDER")) confine_files(folder);
     const FileRoles roles;
     const int code = action();
     cli::flush_data();

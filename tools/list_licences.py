@@ -19,7 +19,7 @@ BINDING = {
     "slepc": "BSD-2-Clause", "petsc": "BSD-2-Clause", "hypre": "Apache-2.0 OR MIT", "hdf5": "LicenseRef-BSD-style-HDF5",
     "sundials": "BSD-3-Clause", "openblas": "BSD-3-Clause", "metis": "Apache-2.0", "muparser": "BSD-2-Clause",
     "openmpi": "BSD-3-Clause", "fmtlib": "MIT", "tomlplusplus": "MIT", "matio": "BSD-2-Clause", "libmatio": "BSD-2-Clause",
-    "libedit": "BSD-3-Clause", "libzip": "BSD-3-Clause", "pugixml": "MIT", "ncurses": "X11-distribute-modifications-variant",
+    "libedit": "BSD-3-Clause", "libzip": "BSD-3-Clause", "pugixml": "MIT", "cpp-httplib": "MIT", "ncurses": "X11-distribute-modifications-variant",
     "superlu": "BSD-3-Clause", "superlu-dist": "BSD-3-Clause", "scalapack": "BSD-3-Clause", "arpack": "BSD-3-Clause",
     "trilinos": "BSD-3-Clause", "combblas": "BSD-3-Clause", "pmix": "BSD-3-Clause", "hwloc": "BSD-3-Clause",
     "libevent": "BSD-3-Clause", "glibc": "LGPL-2.1-or-later", "libaec": "BSD-2-Clause", "brotli": "MIT",

@@ -3,10 +3,10 @@ import re
 
 from common import finish, line_of, list_files, list_sources, read, strip_comments
 
-ROOMS = "base deck nastran hdf5 toml matrices embed export flat fmu flx report vtu spec file fe model modal stiffening reduce system solver function sensor control run linear equilibrium select split cli batch".split()
+ROOMS = "base deck nastran hdf5 toml matrices embed export flat fmu flx report vtu spec file fe model modal stiffening reduce system solver function sensor control run linear equilibrium select split cli batch studio".split()
 # "room.kebab-words" as a whole string literal; names of files have other endings.
 LITERAL = re.compile(r'"((?:%s)\.[a-z][a-z0-9]*(?:-[a-z0-9]+)*)"' % "|".join(ROOMS))
-FILE_ENDINGS = {"h5", "toml", "bdf", "csv", "svg", "md", "json", "dat", "tmp", "part"}
+FILE_ENDINGS = {"h5", "toml", "html", "bdf", "csv", "svg", "md", "json", "dat", "tmp", "part"}
 
 used, rows, tested = {}, {}, {}
 for source in list_sources():

@@ -54,6 +54,7 @@ OUTSIDE = [
     (r"^muParser", ["solver/text/formulas.cpp"]),
     (r"^dlfcn", ["solver/control/library.cpp", "cosim/slave.cpp", "fe/linear/petsc.cpp", "cli/common/memory_limit.cpp"]),
     (r"^CLI/", ["cli"]),
+    (r"^httplib", ["cli/studio/server.cpp"]),
     (r"^fmt/", ["analysis", "cli", "formats"]),
     (r"^(sundials|cvode|nvector|sunlinsol|sunmatrix|sunnonlinsol)", ["solver/integrate", "cli/common/versions.cpp"]),
 ]

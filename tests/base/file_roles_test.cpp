@@ -69,5 +69,21 @@ TEST_F(FileRolesTest, EachCallHasItsOwn) {
   EXPECT_THROW(note_output(get("a")), InputError);
 }
 
+TEST_F(FileRolesTest, AFolderConfinesAllFiles) {
+  fs::create_directories(folder_ / "inner");
+  std::ofstream(get("inner/b")) << "text";
+  fs::create_symlink("../a", folder_ / "inner/out");
+  fs::create_symlink("../none", folder_ / "inner/dangling");
+  confine_files(get("inner"));
+  EXPECT_NO_THROW(note_input(get("inner/b")));
+  EXPECT_NO_THROW(note_output(get("inner/new")));
+  for (const char* name : {"a", "inner/../a", "inner/out", "inner/dangling", "inner/../inner2"}) {
+    EXPECT_THROW(note_input(get(name)), InputError) << name;
+    EXPECT_THROW(note_output(get(name)), InputError) << name;
+  }
+  confine_files({});
+  EXPECT_NO_THROW(note_input(get("a")));
+}
+
 }  // namespace
 }  // namespace bough

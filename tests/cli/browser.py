@@ -96,6 +96,24 @@ class Browser:
         if not self.wait_for(f"document.readyState === 'complete' && ({ready})"):
             raise RuntimeError("the page does not get ready: " + "; ".join(self.list_errors()))
 
+    def visit(self, address, ready="document.documentElement.dataset.ready === 'true'"):
+        self.events = []
+        self.call("Page.navigate", url=address)
+        if not self.wait_for(f"document.readyState === 'complete' && ({ready})"):
+            raise RuntimeError("the page does not get ready: " + "; ".join(self.list_errors()))
+
+    def type(self, text):
+        """Into the element with the focus, by key events."""
+        for letter in text:
+            key = "Enter" if letter == "\n" else letter
+            code = {"windowsVirtualKeyCode": 13} if letter == "\n" else {}
+            self.call("Input.dispatchKeyEvent", type="keyDown", key=key, text="\r" if letter == "\n" else letter, **code)
+            self.call("Input.dispatchKeyEvent", type="keyUp", key=key, **code)
+
+    def press(self, key, modifiers=0):
+        self.call("Input.dispatchKeyEvent", type="rawKeyDown", key=key, code=key, modifiers=modifiers)
+        self.call("Input.dispatchKeyEvent", type="keyUp", key=key, code=key, modifiers=modifiers)
+
     def list_errors(self):
         """Exceptions of the script, and errors of the console and the log (breaches of the policy among them)."""
         self.run("1")

@@ -278,6 +278,7 @@ ELSEWHERE = {
     "docs/tutorial.md": "docs_test.py",
     "docs/your-deck.md": "docs_test.py",
     "docs/external-superelements.md": "superelements_test.py",
+    "docs/studio.md": "studio_test.py",
     **{f"data/examples/{name}/README.md": "docs_test.py" for name in (
         "ex01-spinup", "ex04-free-flyer", "ex05-plate", "ex06-campaign")},
 }

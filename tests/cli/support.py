@@ -13,7 +13,7 @@ SLOWER = int(os.environ.get("BOUGH_SLOWER", "1"))
 # Guards against hangs only: no command takes a tenth of it, alone or on a busy machine.
 HANG = 600 * SLOWER
 VERBS = ["check", "modes", "static", "frequency", "transient", "matrices", "split", "reduce", "integrals", "flx", "compare", "run",
-         "equilibrium", "linearize", "response", "select", "export", "plot", "report", "info", "init", "batch", "edit", "convert"]
+         "equilibrium", "linearize", "response", "select", "export", "plot", "report", "info", "init", "batch", "edit", "convert", "studio"]
 
 
 class ProgramTest(unittest.TestCase):

@@ -1,34 +1,9 @@
 import { set_printing } from "./chart.js";
-import { HistoryView, Run, RunSet, make_fixed_chart } from "./history.js";
-import { BodeView, ScatterView, make_poles_chart } from "./linear_view.js";
-import { ModesView } from "./modes_view.js";
-import { MotionView } from "./motion_view.js";
+import { ReportChapter, kViews } from "./chapter_views.js";
+import { HistoryView, RunSet } from "./history.js";
 import { el, make_theme_button, set_theme } from "./page_parts.js";
 
-// What stands in the place of the static picture: data-view of the element -> an object with `element`.
-const kViews = {
-  history: (chapter) => new HistoryView(chapter.run),
-  overlay: () => new HistoryView(new RunSet([...document.querySelectorAll('.chapter[data-kind="results"]')].map((section) => ({ name: section.dataset.title, run: by_section.get(section).run })))),
-  motion: (chapter) => new MotionView(chapter.run),
-  energy: (chapter) => make_fixed_chart(chapter.run, "Energy", ["kinetic", "strain", "potential", "work", "dissipated"].map((p) => "/energy/" + p)),
-  balance: (chapter) => make_fixed_chart(chapter.run, "Error of the energy balance", ["/energy/balance"]),
-  "momentum-linear": (chapter) => make_fixed_chart(chapter.run, "Linear momentum", ["/momentum/linear"]),
-  "momentum-angular": (chapter) => make_fixed_chart(chapter.run, "Angular momentum", ["/momentum/angular"]),
-  modes: (chapter) => new ModesView(chapter.data),
-  poles: (chapter) => make_poles_chart(chapter.data),
-  bode: (chapter) => new BodeView(chapter.data),
-  scatter: (chapter) => new ScatterView(chapter.data),
-};
-
-class ReportChapter {
-  constructor(text) {
-    this.data = JSON.parse(text);
-  }
-  get run() {
-    this.kept ??= new Run(this.data);
-    return this.kept;
-  }
-}
+kViews.overlay = () => new HistoryView(new RunSet([...document.querySelectorAll('.chapter[data-kind="results"]')].map((section) => ({ name: section.dataset.title, run: by_section.get(section).run }))));
 
 // A view is built when it comes near the screen: long pages open at once.
 function build(place, chapter, failures) {

@@ -35,6 +35,14 @@ export class ModesView {
       make_check("undeformed", true, (on) => { this.has_overlay = on; this.draw(); }),
       make_select("colour by", kColorings.slice(0, this.drawing.elements ? 4 : 2), (i) => { this.color_by = i; this.show(this.mode); }), this.viewer.make_view_buttons());
     this.element = el("div", { class: "modes" }, tools, this.viewer.element, this.bar.element, this.note);
+    // Left and right show the mode before and the next one; with shift they turn the view.
+    this.viewer.on_key = (event) => {
+      const by = { ArrowLeft: -1, ArrowRight: 1 }[event.key];
+      if (!by || event.shiftKey) return false;
+      event.preventDefault();
+      step(by)();
+      return true;
+    };
     this.viewer.fit(this.box);
     this.show(0);
   }

@@ -4,9 +4,9 @@ import { el, get_style, make_button, make_check, make_color_bar, make_select, ma
 import { SceneMarks, to_rotation, turn } from "./scene_marks.js";
 import { Viewer, make_triad } from "./viewer.js";
 
-// The moving system of a run.
+// The moving system of a run. A viewer that is given keeps its place on the page.
 export class MotionView {
-  constructor(run) {
+  constructor(run, viewer = null) {
     this.run = run;
     this.bodies = run.data.bodies
       .map((b) => ({ name: b.name, drawing: new Drawing(b.drawing), position: run.by_path.get(`/bodies/${b.name}/position`), quaternion: run.by_path.get(`/bodies/${b.name}/quaternion`), eta: run.by_path.get(`/bodies/${b.name}/eta`) }))
@@ -21,7 +21,7 @@ export class MotionView {
     this.color_by = 0;
     this.is_playing = false;
     this.marks = new SceneMarks(this);
-    this.viewer = new Viewer("clamp(320px, calc(100vh - 27rem), 900px)");
+    this.viewer = viewer ?? new Viewer("clamp(320px, calc(100vh - 27rem), 900px)");
     this.scrubber = el("input", { type: "range", class: "scrub", min: 0, max: 1000, step: 1, value: 0, "aria-label": "time" });
     this.scrubber.addEventListener("input", () => this.set_time(this.first + (this.scrubber.value / 1000) * (this.last - this.first)));
     this.clock = el("output", { class: "clock" });
@@ -201,7 +201,7 @@ export class MotionView {
       // Boxes of rigid bodies are seen through, after what they may hold.
       const is_box = d.packed.length === 0 && d.triangles.length > 0;
       const colors = this.most && d.matrix && eta.length > 0 ? { elements: d.elements, levels: this.get_levels(d, eta) } : {};
-      const pick = d.ids.length > 0 ? { ids: d.ids, describe: (k) => d.describe(k, body.name + ", ", `displacement ${format_number(d.size[k] / (this.scale || 1), 4)}`) } : {};
+      const pick = d.ids.length > 0 ? { body: body.name, ids: d.ids, describe: (k) => d.describe(k, body.name + ", ", `displacement ${format_number(d.size[k] / (this.scale || 1), 4)}`) } : {};
       (is_box ? boxes : things).push({ ...colors, ...pick, alpha: is_box ? 0.4 : 1, points: body.world, size: d.size, triangles: d.triangles, edges: d.edges, ghosts: d.ghosts, color: get_style(k).color, by_level: this.color_by === 1 && eta.length > 0, dots: d.triangles.length === 0 });
       if (this.has_frames) things.push(...make_triad(p, [0, 1, 2].map((c) => R.map((row) => row[c])), 0.06 * size));
     });

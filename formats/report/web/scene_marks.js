@@ -34,7 +34,7 @@ function add_rings(mesh, p, u, rings) {
 }
 
 // One head of a force, two of a moment.
-function add_arrow(mesh, from, vector, heads, size) {
+export function add_arrow(mesh, from, vector, heads, size) {
   const length = Math.hypot(...vector);
   if (!(length > 1e-6 * size)) return;
   const head = Math.min(0.035 * size, (0.6 * length) / heads), wide = 0.38 * head, thin = Math.min(0.0035 * size, 0.4 * wide);
@@ -43,7 +43,7 @@ function add_arrow(mesh, from, vector, heads, size) {
   add_rings(mesh, from, vector.map((v) => v / length), rings);
 }
 
-const to_thing = (mesh, color) => ({ points: new Float32Array(mesh.points), triangles: new Uint32Array(mesh.triangles), edges: new Uint32Array(0), color });
+export const to_thing = (mesh, color) => ({ points: new Float32Array(mesh.points), triangles: new Uint32Array(mesh.triangles), edges: new Uint32Array(0), color });
 const make_lines = (points, color) => ({ points: new Float32Array(points.flat()), edges: Uint32Array.from(points, (_, i) => i), color });
 
 // Sensors, and arrows of forces and moments, that go with the bodies.

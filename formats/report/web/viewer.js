@@ -52,10 +52,14 @@ const to_rgba = (css, alpha = 1) => {
   return [(v >> 16) / 255, ((v >> 8) & 255) / 255, (v & 255) / 255, alpha];
 };
 
+// Outlines of larger meshes wait until the view rests: lines take most of the time where no graphics card draws.
+export const kMaxTurningEdges = 5000;
+
 // A stage on which things are drawn: { points, size, triangles, edges, color, by_level, line_color }; marks stand before
 // all things. With by_level a point's colour is its size over `reach`; with elements and levels (Drawing) each element
 // has one colour. Dragging turns, the right button or shift moves, the wheel comes nearer, a double click shows all.
 export class Viewer {
+  /** @param {number | string} height  in pixels, or as CSS has it */
   constructor(height = 420) {
     this.canvas = el("canvas", { class: "scene", tabindex: "0", role: "img", "aria-label": "three-dimensional view" });
     this.canvas.style.height = typeof height === "number" ? height + "px" : height;
@@ -102,6 +106,7 @@ export class Viewer {
     this.target = box.get_middle();
     this.extent = box.get_diagonal();
     this.distance = Math.max(this.find_distance(box), 0.3 * this.extent);
+    this.is_fitted_late = this.canvas.clientWidth < 10;  // not on the page yet: its shape is unknown
     this.draw();
   }
 
@@ -156,6 +161,7 @@ export class Viewer {
     const width = Math.round(this.canvas.clientWidth * scale), height = Math.round(this.canvas.clientHeight * scale);
     if (width < 10 || height < 10) return;
     if (this.canvas.width !== width || this.canvas.height !== height) [this.canvas.width, this.canvas.height] = [width, height];
+    if (this.is_fitted_late) return this.fit(this.home);
     gl.viewport(0, 0, width, height);
     gl.clearColor(...to_rgba(get_css("--stage")));
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
@@ -190,7 +196,8 @@ export class Viewer {
     const color = to_rgba(thing.color, thing.alpha ?? 1);
     const has_faces = thing.triangles?.length > 0;
     if (has_faces) draw(gl.TRIANGLES, thing.triangles, color, thing.by_level, true, 0);
-    if (thing.edges?.length > 0)
+    const waits = this.is_turning && has_faces && thing.edges?.length > 2 * kMaxTurningEdges;
+    if (thing.edges?.length > 0 && !waits)
       draw(gl.LINES, thing.edges, has_faces ? to_rgba(get_css("--edge"), (thing.alpha ?? 1) * 0.6) : color, !has_faces && thing.by_level, false, thing.lift ?? 1e-4);
     if (thing.ghosts?.length > 0) draw(gl.LINES, thing.ghosts, to_rgba(get_css("--ghost"), 0.6), false, false, 0);
     if (thing.dots) draw(gl.POINTS, null, color, thing.by_level, false, 2e-4);
@@ -245,6 +252,11 @@ export class Viewer {
   listen() {
     let last = null;
     let start = null;
+    const rest = () => {
+      last = start = null;
+      if (this.is_turning) requestAnimationFrame(() => this.draw());
+      this.is_turning = false;
+    };
     this.canvas.addEventListener("pointerdown", (event) => {
       last = start = event;
       this.canvas.setPointerCapture(event.pointerId);
@@ -254,6 +266,7 @@ export class Viewer {
       const dx = event.clientX - last.clientX, dy = event.clientY - last.clientY;
       const is_shift = last.shiftKey || last.buttons === 2;
       last = { clientX: event.clientX, clientY: event.clientY, shiftKey: event.shiftKey, buttons: event.buttons };
+      this.is_turning = true;
       if (is_shift) {
         const { right, up } = this.get_axes(), unit = (0.75 * this.distance) / this.canvas.clientHeight;
         this.target = this.target.map((t, i) => t - unit * dx * right[i] + unit * dy * up[i]);
@@ -265,16 +278,34 @@ export class Viewer {
     });
     this.canvas.addEventListener("pointerup", (event) => {
       if (start && event.button === 0 && Math.hypot(event.clientX - start.clientX, event.clientY - start.clientY) < 4) this.pick(event);
-      last = start = null;
+      rest();
     });
-    this.canvas.addEventListener("pointercancel", () => (last = start = null));
+    this.canvas.addEventListener("pointercancel", () => rest());
     this.canvas.addEventListener("contextmenu", (event) => event.preventDefault());
     this.canvas.addEventListener("dblclick", () => this.home && this.fit(this.home));
+    this.canvas.addEventListener("keydown", (event) => this.on_key?.(event) || this.turn_by_key(event));
     this.canvas.addEventListener("wheel", (event) => {
       event.preventDefault();
       this.distance *= Math.exp(0.001 * event.deltaY);
       this.draw();
     }, { passive: false });
+  }
+
+  // Arrow keys turn, with shift they move; + and - come nearer and go away, 0 shows all.
+  turn_by_key(event) {
+    const steps = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] }[event.key];
+    const near = { "+": 0.9, "-": 1 / 0.9 }[event.key];
+    if (steps && event.shiftKey) {
+      const { right, up } = this.get_axes(), unit = 0.03 * this.distance;
+      this.target = this.target.map((t, i) => t + unit * (steps[0] * right[i] - steps[1] * up[i]));
+    } else if (steps) {
+      this.yaw += 0.1 * steps[0];
+      this.pitch = Math.max(-1.55, Math.min(1.55, this.pitch + 0.1 * steps[1]));
+    } else if (near) this.distance *= near;
+    else if (event.key === "0" && this.home) this.fit(this.home);
+    else return;
+    event.preventDefault();
+    this.draw();
   }
 
   // A click names the nearest node: things with `ids` and `describe(index)`.
@@ -293,6 +324,7 @@ export class Viewer {
       }
     }
     this.picked = found && [found.thing.describe, found.k];
+    this.on_pick?.(found && { thing: found.thing, index: found.k, id: found.thing.ids[found.k] });
     this.tip.hidden = !found;
     if (!found) return;
     this.tip.style.left = Math.min(found.at[0] + 10, rect.width - 240) + "px";
@@ -303,6 +335,12 @@ export class Viewer {
   // The value at the picked node, which goes with the time.
   update_tip() {
     if (this.picked) this.tip.textContent = this.picked[0](this.picked[1]);
+  }
+
+  // Frees the memory of the graphics card; a browser has few such contexts.
+  dispose() {
+    this.gl.getExtension("WEBGL_lose_context")?.loseContext();
+    this.draw = () => {};
   }
 
   make_view_buttons() {

@@ -45,6 +45,7 @@ class Bough(CMakePackage):
         depends_on("matio")
         depends_on("libzip")
         depends_on("pugixml")
+        depends_on("cpp-httplib")
         depends_on("cli11@2.1:")
         depends_on("libedit")
 

@@ -1,0 +1,264 @@
+#include "cli/studio/answers.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <iostream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+
+#include "analysis/common/inputs.hpp"
+#include "analysis/common/system_files.hpp"
+#include "analysis/init/init_deck.hpp"
+#include "analysis/picture/deck_picture.hpp"
+#include "base/file_roles.hpp"
+#include "cli/common/console.hpp"
+#include "cli/edit/command_words.hpp"
+#include "cli/edit/edit_session.hpp"
+#include "cli/edit/text_diff.hpp"
+#include "cli/init/schema_line.hpp"
+#include "cli/report/report_files.hpp"
+#include "cli/studio/deck_answer.hpp"
+#include "cli/studio/folder.hpp"
+#include "cli/studio/preview.hpp"
+#include "formats/nastran/reader.hpp"
+#include "formats/toml/key_editor.hpp"
+#include "formats/toml/schema_help.hpp"
+#include "formats/toml/specs.hpp"
+
+namespace bough::cli {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+namespace {
+
+json make_messages(const std::vector<Diagnostic>& items) {
+  auto list = json::array();
+  for (const auto& item : items)
+    list.push_back({{"severity", item.severity == Severity::Error     ? "error"
+                                 : item.severity == Severity::Warning ? "warning"
+                                                                      : "note"},
+                    {"id", item.id},
+                    {"file", item.where.file},
+                    {"line", item.where.line},
+                    {"what", item.what},
+                    {"advice", item.advice}});
+  return list;
+}
+
+/// A text of the request. \throws InputError "studio.bad-request".
+std::string get_text(const json& request, const char* key) {
+  const auto found = request.find(key);
+  if (found == request.end() || !found->is_string())
+    throw InputError("studio.bad-request", {}, fmt::format("the request has no text \"{}\"", key), "reload the page");
+  return found->get<std::string>();
+}
+
+/// Name of a file as the reports show it, relative to the folder.
+std::string get_file(const json& request) {
+  const auto name = get_text(request, "file");
+  if (name.empty() || name.find('\0') != std::string::npos)
+    throw InputError("studio.bad-request", {}, "the name of a file is empty or has a zero byte", "name a file");
+  return name;
+}
+
+const char* name_verdict(report::Verdict verdict) {
+  switch (verdict) {
+    case report::Verdict::Good:
+      return "ok";
+    case report::Verdict::Warning:
+      return "look";
+    case report::Verdict::Bad:
+      return "bad";
+    case report::Verdict::None:
+      break;
+  }
+  return "told";
+}
+
+json to_json(const report::Chapter& chapter) {
+  json out{
+      {"kind", chapter.kind},        {"title", chapter.title},       {"verdict", name_verdict(chapter.get_verdict())},
+      {"facts", chapter.facts},      {"settings", chapter.settings}, {"checks", json::array()},
+      {"highlights", json::array()}, {"panels", json::array()},      {"data", chapter.data}};
+  for (const auto& c : chapter.checks)
+    out["checks"].push_back(
+        {{"what", c.what}, {"value", c.value}, {"verdict", name_verdict(c.verdict)}, {"note", c.note}});
+  for (const auto& h : chapter.highlights)
+    out["highlights"].push_back({{"name", h.name}, {"value", h.value}, {"note", h.note}});
+  for (const auto& p : chapter.panels) out["panels"].push_back({{"id", p.id}, {"title", p.title}, {"html", p.html}});
+  return out;
+}
+
+json answer_list() {
+  auto files = json::array();
+  for (const auto& entry : list_folder())
+    files.push_back({{"name", entry.name}, {"kind", entry.kind}, {"size", entry.size}, {"time", entry.time}});
+  return {{"files", files}, {"folder", fs::current_path().filename().string()}};
+}
+
+json answer_read(const json& request) {
+  const auto name = get_file(request);
+  auto file = read_file_text(name);
+  json out{{"text", std::move(file.text)}, {"hash", file.hash}};
+  if (analysis::has_suffix(name, ".toml")) out["kind"] = toml_files::detect_kind(name);
+  return out;
+}
+
+json answer_save(const json& request) {
+  return {{"hash", save_file_text(get_file(request), get_text(request, "text"), get_text(request, "hash"))}};
+}
+
+json answer_chapter(const json& request) {
+  Diagnostics diagnostics;
+  ReportRequest report;
+  report.files = {get_file(request)};
+  if (const auto more = request.find("bodies"); more != request.end())
+    for (const auto& name : *more) report.files.push_back(name.get<std::string>());
+  analysis::demand_file(report.files.front());
+  const auto chapter = make_chapter(report.files.front(), report, diagnostics);
+  return {{"chapter", to_json(chapter)}, {"messages", make_messages(diagnostics.items())}};
+}
+
+/// Texts of `bough init DECK`; the deck is named relative to the folder of the deck itself.
+json answer_start(const json& request) {
+  const auto name = get_file(request);
+  analysis::demand_deck(name);
+  Diagnostics diagnostics;
+  const auto deck = nastran::read_deck(name, {}, diagnostics);
+  diagnostics.throw_if_errors();
+  const fs::path path(name);
+  auto files = json::array();
+  for (auto& file :
+       analysis::make_start_files(deck, {path.filename().string(), path.stem().string(), request.value("hinge", 0)})) {
+    add_schema_line(file);
+    files.push_back({{"name", (path.parent_path() / file.name).generic_string()}, {"text", file.text}});
+  }
+  return {{"files", files}, {"messages", make_messages(diagnostics.items())}};
+}
+
+/// Commands of `bough edit` on a text that is not saved.
+json answer_edit(const json& request) {
+  static const std::vector<std::string> kAllowed{"add", "set", "unset", "delete", "rename", "copy", "change"};
+  const auto text = get_text(request, "text");
+  const Console console(true, 0);
+  EditSession session(EditText(get_file(request), text, get_text(request, "kind") == "body"), console, {}, {});
+  for (const auto& line : request.at("commands")) {
+    const auto words = split_words(line.get<std::string>());
+    if (!words.empty() && std::find(kAllowed.begin(), kAllowed.end(), words[0]) == kAllowed.end())
+      throw InputError("cli.edit-command", {}, "'" + words[0] + "' is no command here",
+                       "the commands are add, set, unset, delete, rename and copy");
+    session.execute(line.get<std::string>());
+  }
+  return {{"text", session.get_text()}};
+}
+
+/// All messages that `bough edit` has for a text: of the schema, then of what a run or reduce would refuse at once.
+json answer_check(const json& request) {
+  const auto name = get_file(request), text = get_text(request, "text");
+  const bool is_body = get_text(request, "kind") == "body";
+  Diagnostics diagnostics;
+  json out;
+  try {
+    toml_files::check_text(text, name, diagnostics);
+    if (diagnostics.num_errors() == 0 && is_body) {
+      const auto spec = toml_files::read_body_spec_text(text, name, diagnostics);
+      out["deck"] = spec.deck.empty() ? "" : fs::path(analysis::resolve_beside(name, spec.deck)).generic_string();
+      out["interface"] = spec.interface_nodes;
+    } else if (diagnostics.num_errors() == 0) {
+      analysis::LoadOptions options;
+      options.text = text;
+      const auto loaded = analysis::load_system(name, diagnostics, options);
+      out["speeds"] = loaded.system.num_dofs();
+      auto bodies = json::array();
+      for (const auto& [written, path] : loaded.flex_path) bodies.push_back(path);
+      out["bodies"] = bodies;
+    }
+  } catch (const Failure& failure) {
+    for (const auto& item : failure.items()) diagnostics.add_new(item);
+  }
+  out["items"] = json::array();
+  for (const auto& item : toml_files::list_items(text))
+    out["items"].push_back({{"kind", item.kind}, {"name", item.name}, {"type", item.type}, {"line", item.line}});
+  // Numbers of [parameters], for runs with other values.
+  out["parameters"] = json::array();
+  for (const auto& item : toml_files::list_items(text))
+    for (const auto& key : item.keys)
+      if (item.kind == "parameters")
+        out["parameters"].push_back({{"name", key}, {"value", toml_files::get_value_text(text, "parameters." + key)}});
+  out["messages"] = make_messages(diagnostics.items());
+  return out;
+}
+
+json answer_schema(const json& request) {
+  auto kinds = json::array();
+  for (const auto& kind : toml_files::describe_kinds(get_text(request, "kind") == "body")) {
+    auto keys = json::array();
+    for (const auto& key : kind.keys)
+      keys.push_back({{"name", key.name},
+                      {"type", key.type},
+                      {"choices", key.choices},
+                      {"range", key.range},
+                      {"default", key.default_value},
+                      {"description", key.description},
+                      {"required", key.is_required}});
+    kinds.push_back({{"kind", kind.kind}, {"description", kind.description}, {"list", kind.is_list}, {"keys", keys}});
+  }
+  return {{"kinds", kinds}};
+}
+
+json answer_preview(const json& request) {
+  Diagnostics diagnostics;
+  const auto chapter = make_preview(get_file(request), get_text(request, "text"), diagnostics);
+  return {{"chapter", to_json(chapter)}, {"messages", make_messages(diagnostics.items())}};
+}
+
+json answer(const json& request) {
+  const auto what = get_text(request, "what");
+  if (what == "list") return answer_list();
+  if (what == "read") return answer_read(request);
+  if (what == "save") return answer_save(request);
+  if (what == "diff")
+    return {{"diff", make_diff(get_text(request, "before"), get_text(request, "after"), get_file(request))}};
+  if (what == "deck") {
+    Diagnostics diagnostics;
+    auto out = make_deck_answer(get_file(request), diagnostics);
+    out["messages"] = make_messages(diagnostics.items());
+    return out;
+  }
+  if (what == "chapter") return answer_chapter(request);
+  if (what == "start") return answer_start(request);
+  if (what == "edit") return answer_edit(request);
+  if (what == "check") return answer_check(request);
+  if (what == "schema") return answer_schema(request);
+  if (what == "preview") return answer_preview(request);
+  throw InputError("studio.bad-request", {}, "there is no request \"" + what + "\"", "reload the page");
+}
+
+}  // namespace
+
+std::string answer_request(const std::string& request) {
+  json out;
+  try {
+    out = {{"result", answer(json::parse(request))}};
+  } catch (const Failure& failure) {
+    out = {{"messages", make_messages(failure.items())}};
+  } catch (const json::exception& error) {
+    out = {{"messages", make_messages({{Severity::Error, "studio.bad-request", {}, error.what(), "reload the page"}})}};
+  } catch (const std::exception& error) {
+    out = {
+        {"messages", make_messages({{Severity::Error, "", {}, error.what(), "this is a fault in Bough; report it"}})}};
+  }
+  return out.dump(-1, ' ', false, json::error_handler_t::replace);
+}
+
+int answer_standard_input() {
+  const std::string request{std::istreambuf_iterator<char>(std::cin), {}};
+  const Console console(false, 0);
+  console.print_data("\n" + answer_request(request) + "\n");
+  return kSuccess;
+}
+
+}  // namespace bough::cli

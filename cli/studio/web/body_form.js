@@ -1,0 +1,60 @@
+// From picked grids and a few choices to a body file and a first system file: the texts of bough init, then edited by
+// the commands of bough edit.
+import { ask, history } from "./api.js";
+import { el, make_button, make_check, make_select } from "./page_parts.js";
+import { save_text } from "./parts.js";
+
+const kFrames = ["as the deck", "fixed", "free", "mean"];
+const kBases = ["normal", "craig-bampton", "craig-chang"];
+const kJoints = ["as the deck", "revolute hinge at the first grid"];
+
+const quote = (word) => (/^[\w./-]+$/.test(word) ? word : `'${word.replaceAll("'", `'"'"'`)}'`);
+
+/** @param {(grids: number[]) => void} on_change  called with the chosen grids */
+export function make_body_form(studio, deck, on_change) {
+  const grids = [];
+  let frame = 0, basis = 0, joint = 0, is_picking = true;
+  const list = el("output", { class: "chosen", "aria-label": "interface nodes" });
+  const number = el("input", { type: "number", min: 0, max: 1000, step: 1, value: 10, "aria-label": "number of modes" });
+  const update = () => {
+    list.replaceChildren(...(grids.length === 0 ? [el("span", { class: "note" }, "none: click grids")] : grids.map((g) => make_button(`${g} ✕`, "Leave this grid out", () => {
+      grids.splice(grids.indexOf(g), 1);
+      update();
+    }))));
+    on_change(grids);
+  };
+  const make_texts = async () => {
+    const { files } = await ask("start", { file: deck, hinge: joint === 1 ? (grids[0] ?? 0) : 0 });
+    const commands = [];
+    if (frame > 0) commands.push(`set body.frame=${kFrames[frame]}`);
+    if (grids.length > 0) commands.push(`set body.interface=[${grids.join(", ")}]`);
+    if (basis > 0) commands.push(`set body.modes.basis=${kBases[basis]}`);
+    if (Number(number.value) >= 0 && number.value !== "") commands.push(`set body.modes.number=${Number(number.value)}`);
+    const { text } = await ask("edit", { file: files[0].name, text: files[0].text, kind: "body", commands });
+    const line = [`bough init ${quote(deck)}${joint === 1 && grids[0] ? ` --hinge ${grids[0]}` : ""}`];
+    if (commands.length > 0) line.push(`printf '%s\\n' ${commands.map((c) => `'${c}'`).join(" ")} save | bough edit ${quote(files[0].name)}`);
+    return { body: { name: files[0].name, text }, system: files[1], line };
+  };
+  const make = () => studio.attempt(async () => {
+    const { body, system, line } = await make_texts();
+    const known = await ask("read", { file: body.name }).catch(() => ({ text: "", hash: "" }));
+    const is_there = await ask("read", { file: system.name }).then(() => true, () => false);
+    const saved = await save_text(body.name, known.text, body.text, known.hash, is_there ? [] : [{ file: system.name, text: system.text }]);
+    if (!saved) return;
+    history.push(...line);
+    await studio.refresh();
+    await studio.open(body.name);
+  });
+  const element = el("section", { class: "body-form" }, el("h3", {}, "Make a body"),
+    el("div", { class: "tools" }, make_check("a click adds an interface node", true, (on) => (is_picking = on))),
+    el("div", { class: "row" }, "interface ", list),
+    el("div", { class: "tools" }, make_select("frame", kFrames, (i) => (frame = i)), make_select("basis", kBases, (i) => (basis = i)), el("label", {}, "modes ", number)),
+    el("div", { class: "tools" }, make_select("in the system", kJoints, (i) => (joint = i)), Object.assign(make_button("Make body file …", "Shows the file before it is written", make), { className: "main make-body" })));
+  update();
+  const take = (grid) => {
+    if (!is_picking || grids.includes(grid)) return;
+    grids.push(grid);
+    update();
+  };
+  return { element, take };
+}

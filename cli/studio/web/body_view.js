@@ -1,0 +1,89 @@
+import { ask, run_job } from "./api.js";
+import { make_chapter } from "./chapter_panel.js";
+import { DeckStage } from "./deck_view.js";
+import { el, make_button, make_check } from "./page_parts.js";
+import { make_progress, show_history } from "./parts.js";
+import { TextPane } from "./text_view.js";
+
+const stem = (file) => file.replace(/\.[^./]+$/, "");
+
+/** A body file: text and deck side by side, reduce, then its modes. */
+export class BodyView {
+  constructor(studio, file, read) {
+    this.studio = studio;
+    this.file = file;
+    this.stage_host = el("div", { class: "stage-host" });
+    this.result = el("div", { class: "result" });
+    this.progress = make_progress();
+    this.picks = true;
+    this.picked = el("output", { class: "picked", "aria-live": "polite" });
+    this.pane = new TextPane(studio, file, "body", read, { on_check: (answer) => this.show_deck(answer) });
+    const reduce = Object.assign(make_button("Reduce", "bough reduce: modes, mass integrals, geometric stiffness", () => this.reduce()), { className: "main reduce" });
+    this.energy = make_check("with strain energy", false, () => {});
+    const actions = el("div", { class: "tools actions" }, reduce, this.energy, make_check("a click sets an interface node", true, (on) => (this.picks = on)), this.picked, make_button("Copy commands …", "The lines that do the same in a shell", () => show_history()));
+    this.element = el("div", { class: "split reverse" }, el("div", { class: "side wide" }, this.pane.element), el("div", { class: "work-column" }, actions, this.progress.element, this.stage_host, this.result));
+    this.output = stem(file) + ".h5";
+    if (studio.has(this.output)) this.show_result();
+  }
+
+  async show_deck(answer) {
+    if (!answer.deck) return;
+    if (answer.deck !== this.deck) {
+      this.deck = answer.deck;
+      await this.studio.attempt(async () => {
+        const deck = await ask("deck", { file: this.studio.to_name(answer.deck) });
+        this.stage?.dispose();
+        this.stage = new DeckStage(deck, (grid) => this.pick(grid), "100%");
+        this.stage_host.replaceChildren(this.stage.viewer.make_view_buttons(), this.stage.element);
+      });
+    }
+    if (!this.stage) return;
+    this.stage.chosen = new Set(this.pane.answer.interface);
+    this.stage.draw();
+  }
+
+  pick(grid) {
+    this.picked.textContent = grid ? `grid ${grid} ${this.stage.scene.describe_place(this.stage.scene.point_of_grid.get(grid))}` : "";
+    if (!grid || !this.picks) return;
+    const now = this.pane.answer?.interface ?? [];
+    const next = now.includes(grid) ? now.filter((g) => g !== grid) : [...now, grid];
+    this.studio.attempt(() => this.pane.edit([next.length > 0 ? `set body.interface=[${next.join(", ")}]` : "unset body.interface"]));
+  }
+
+  reduce() {
+    return this.studio.attempt(async () => {
+      if (!(await this.pane.make_saved())) return;
+      const with_energy = this.energy.querySelector("input").checked;
+      const done = await run_job({ verb: "reduce", files: [this.file], options: [["-o", this.output], ...(with_energy ? [["--strain-energy"]] : [])] }, this.progress.update);
+      this.progress.finish(done);
+      this.pane.messages.show(done.messages, "Reduced.");
+      await this.studio.refresh();
+      if (done.code === 0) await this.show_result();
+    });
+  }
+
+  async show_result() {
+    await this.studio.attempt(async () => {
+      const { chapter } = await ask("chapter", { file: this.output });
+      this.shown?.dispose();
+      this.shown = make_chapter(chapter);
+      this.result.replaceChildren(el("h2", {}, this.output), this.shown.element);
+      this.result.dataset.ready = "true";
+    });
+  }
+
+  notice() {
+    return this.pane.notice();
+  }
+  is_changed() {
+    return this.pane.is_changed();
+  }
+  dispose() {
+    this.stage?.dispose();
+    this.shown?.dispose();
+  }
+}
+
+export async function open_body(studio, file) {
+  return new BodyView(studio, file, await ask("read", { file }));
+}

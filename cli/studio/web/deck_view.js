@@ -1,0 +1,179 @@
+import { ask, run_job } from "./api.js";
+import { make_body_form } from "./body_form.js";
+import { DeckScene } from "./deck_scene.js";
+import { el, get_css, get_style, make_button, make_check, make_select } from "./page_parts.js";
+import { make_message_list, show_lines } from "./parts.js";
+import { Viewer, kMaxTurningEdges } from "./viewer.js";
+
+/** The mesh of a deck in a viewer: picking, groups, symbols. `on_pick(grid)` is called for each grid that is clicked. */
+export class DeckStage {
+  constructor(answer, on_pick, height = "100%") {
+    this.scene = new DeckScene(answer);
+    this.chosen = new Set();
+    this.picked = 0;
+    this.viewer = new Viewer(height);
+    this.viewer.name = "deck";
+    this.viewer.on_pick = (found) => {
+      this.picked = found ? found.id : 0;
+      on_pick(this.picked);
+      this.draw();
+    };
+    this.element = this.viewer.element;
+    this.viewer.face(this.scene.box);
+    this.draw();
+    this.viewer.fit(this.scene.box);
+  }
+  draw() {
+    const { things, marks } = this.scene.make_things();
+    if (this.chosen.size > 0) marks.push(this.scene.make_marks(this.chosen, "#d55e00"));
+    if (this.picked) marks.push(this.scene.make_marks([this.picked], get_css("--mark")));
+    this.viewer.things = things;
+    this.viewer.marks = marks;
+    this.viewer.draw();
+  }
+  /** Shows a grid in the middle; false: the deck has no such grid. */
+  go(grid) {
+    const place = this.scene.get_place(grid);
+    if (!place) return false;
+    this.picked = grid;
+    this.viewer.target = place;
+    this.viewer.distance = Math.min(this.viewer.distance, 0.6 * this.scene.size);
+    this.draw();
+    return true;
+  }
+  dispose() {
+    this.viewer.dispose();
+  }
+}
+
+const kSymbols = [["masses", "masses"], ["spiders", "rigid elements"], ["supports", "SPC"], ["loads", "loads"], ["systems", "coordinate systems"], ["edges", "edges"]];
+
+export class DeckView {
+  constructor(studio, file, answer) {
+    this.studio = studio;
+    this.file = file;
+    this.answer = answer;
+    this.form = make_body_form(studio, file, (grids) => {
+      if (!this.stage) return;
+      this.stage.chosen = new Set(grids);
+      this.stage.draw();
+    });
+    this.stage = new DeckStage(answer, (grid) => this.pick(grid));
+    this.picked = el("output", { class: "picked", "aria-live": "polite" }, "Click a grid.");
+    this.messages = make_message_list((m) => this.go(m));
+    this.all = answer.messages;
+    this.groups = el("div", { class: "groups" });
+    this.side = el("aside", { class: "side" }, this.make_find(), this.form.element, this.make_messages(), this.make_show(), this.make_cards());
+    this.element = el("div", { class: "split" }, el("div", { class: "stage-host" }, this.stage.viewer.make_view_buttons(), this.stage.element, el("p", { class: "note hint" }, "Drag turns, shift moves, the wheel comes nearer; a click names a grid. Arrow keys, + and − do the same.")), this.side);
+    this.messages.show(this.all, "Reading found nothing. “Check” builds the model too.");
+    this.list_groups();
+  }
+
+  pick(grid) {
+    if (!grid) {
+      this.picked.textContent = "Click a grid.";
+      return;
+    }
+    const { scene } = this.stage, k = scene.point_of_grid.get(grid), row = scene.row_of_grid.get(grid);
+    const parts = this.answer.num_parts > 1 ? `, part ${scene.grids.part[row]} of ${this.answer.num_parts}` : "";
+    this.picked.replaceChildren(el("strong", {}, `grid ${grid}`), ` ${scene.describe_place(k)}${parts} `, make_button("card", "Show the card in the deck", () => this.show_card(scene.grids.file[row], scene.grids.line[row])));
+    this.form.take(grid);
+  }
+
+  show_card(file, line) {
+    this.studio.attempt(() => show_lines(this.studio.to_name(this.answer.files[file]), line));
+  }
+
+  make_find() {
+    const field = el("input", { type: "search", placeholder: "grid or element id", "aria-label": "find an id", inputmode: "numeric" });
+    const find = () => {
+      const id = Number(field.value);
+      if (!(id > 0)) return;
+      if (this.stage.go(id)) return this.pick(id);
+      const { elements, drawing } = this.stage.scene, row = elements.id.indexOf(id);
+      if (row < 0) {
+        this.picked.textContent = `No grid and no drawn element ${id}.`;
+        return;
+      }
+      const t = elements.of_triangle.indexOf(row), e = elements.of_edge.indexOf(row);
+      const point = t >= 0 ? drawing.triangles[3 * t] : e >= 0 ? drawing.edges[2 * e] : -1;
+      if (point >= 0) this.stage.go(drawing.ids[point]);
+      this.picked.replaceChildren(el("strong", {}, `${elements.cards[elements.card[row]]} ${id}`), ` property ${elements.property[row]} `, make_button("card", "Show the card in the deck", () => this.show_card(elements.file[row], elements.line[row])));
+    };
+    field.addEventListener("change", find);
+    return el("section", {}, el("div", { class: "tools" }, field, make_button("Find", "Show this grid or element", find)), this.picked);
+  }
+
+  make_messages() {
+    const button = make_button("Check", "bough check: builds the model and reports all errors", () => this.studio.attempt(async () => {
+      button.disabled = true;
+      try {
+        const { output, messages } = await run_job({ verb: "check", files: [this.file], options: [["--json"]] });
+        this.all = messages;
+        const sum = /"num_nodes": (\d+)/.exec(output), free = /"num_free_dofs": (\d+)/.exec(output);
+        this.messages.show(messages, sum ? `No errors. ${sum[1]} nodes, ${free?.[1] ?? "?"} free DOFs.` : "No messages.");
+      } finally {
+        button.disabled = false;
+      }
+    }));
+    return el("section", {}, el("h3", {}, "Messages ", button), this.messages.element);
+  }
+
+  /** To the grid or element that a message names, else to its line. */
+  go(message) {
+    const grid = /\bgrid (\d+)/.exec(message.what);
+    if (grid && this.stage.go(Number(grid[1]))) this.pick(Number(grid[1]));
+    if (message.line > 0 && message.file) this.studio.attempt(() => show_lines(this.studio.to_name(message.file), message.line));
+  }
+
+  make_show() {
+    const { scene } = this.stage;
+    const choose = make_select("colour by", ["property", "card", "connected part"], (i) => {
+      scene.set_coloring(["property", "card", "part"][i]);
+      scene.hidden.clear();
+      this.list_groups();
+      this.stage.draw();
+    });
+    const boxes = kSymbols.map(([key, text]) => make_check(text, scene.show[key], (on) => {
+      scene.show[key] = on;
+      this.stage.draw();
+    }));
+    const all = (on) => () => {
+      scene.hidden = new Set(on ? [] : scene.groups.map((g) => g.name));
+      this.list_groups();
+      this.stage.draw();
+    };
+    return el("section", {}, el("h3", {}, "Show"), el("div", { class: "tools" }, choose, make_button("all", "Show all groups", all(true)), make_button("none", "Hide all groups", all(false))), this.groups, el("div", { class: "tools" }, ...boxes), el("p", { class: "note" }, [...scene.thinned, ...(scene.groups.some((g) => g.edges.length > 2 * kMaxTurningEdges) ? ["edges wait until the view rests"] : [])].join("; ")));
+  }
+
+  list_groups() {
+    const { scene } = this.stage;
+    this.groups.replaceChildren(...scene.groups.map((g) => {
+      const swatch = el("span", { class: "swatch" });
+      swatch.style.background = get_style(g.style).color;
+      const card = this.answer.properties.find((p) => p.id === g.property && !p.card.startsWith("MAT"));
+      const box = make_check(g.name, !scene.hidden.has(g.name), (on) => {
+        if (on) scene.hidden.delete(g.name);
+        else scene.hidden.add(g.name);
+        this.stage.draw();
+      });
+      return el("div", { class: "group" }, swatch, box, card ? el("span", { class: "note" }, ` ${card.card} ${card.values}`) : "");
+    }));
+  }
+
+  make_cards() {
+    const { cards, properties, files, sol } = this.answer;
+    const rows = Object.entries(cards).map(([name, count]) => el("tr", {}, el("td", { class: "text" }, name), el("td", {}, String(count))));
+    const items = properties.map((p) => el("li", {}, el("button", { type: "button", title: "Show the card", onclick: () => this.show_card(p.file, p.line) }, `${p.card} ${p.id}`), ` ${p.values}`));
+    return el("section", {}, el("details", {}, el("summary", {}, `Properties and materials (${properties.length})`), el("ul", { class: "cards" }, ...items)),
+      el("details", {}, el("summary", {}, `Cards of ${files.length} file${files.length > 1 ? "s" : ""}, SOL ${sol || "–"}`), el("table", {}, el("tbody", {}, ...rows))));
+  }
+
+  dispose() {
+    this.stage.dispose();
+  }
+}
+
+export async function open_deck(studio, file) {
+  return new DeckView(studio, file, await ask("deck", { file }));
+}

@@ -1,0 +1,221 @@
+import { ask, run_job } from "./api.js";
+import { make_add_form } from "./add_form.js";
+import { make_chapter } from "./chapter_panel.js";
+import { ReportChapter } from "./chapter_views.js";
+import { Chart } from "./chart.js";
+import { HistoryView, RunSet } from "./history.js";
+import { MotionView } from "./motion_view.js";
+import { el, make_button } from "./page_parts.js";
+import { make_progress, show_history } from "./parts.js";
+import { TextPane } from "./text_view.js";
+import { Viewer } from "./viewer.js";
+
+const stem = (file) => file.replace(/\.[^./]+$/, "");
+const kLiveEvery = 1500;  // ms
+
+/** A system file: text and scene side by side; run, equilibrium, poles. */
+export class SystemView {
+  constructor(studio, file, read) {
+    this.studio = studio;
+    this.file = file;
+    this.output = stem(file) + ".h5";
+    this.progress = make_progress();
+    this.viewer = new Viewer("100%");
+    this.scene = el("div", { class: "scene-host" });
+    this.result = el("div", { class: "result" });
+    this.picked = el("output", { class: "picked", "aria-live": "polite" });
+    this.parameters = el("div", { class: "tools parameters" });
+    this.set = new Map();
+    this.add_form = make_add_form(studio, this);
+    this.pane = new TextPane(studio, file, "system", read, { on_check: (answer) => this.update(answer) });
+    const button = (text, title, action, name) => Object.assign(make_button(text, title, action), { className: name });
+    const actions = el("div", { class: "tools actions" }, button("Run", "bough run: time history", () => this.run(), "main run"),
+      button("Equilibrium", "bough equilibrium: rest or steady spin", () => this.solve("equilibrium", "-equilibrium.h5"), "equilibrium"),
+      button("Linearize", "bough linearize: poles about the initial state", () => this.solve("linearize", "-linear.h5"), "linearize"),
+      button("… at equilibrium", "bough linearize --equilibrium", () => this.solve("linearize", "-linear.h5", [["--equilibrium"]]), "linearize-rest"),
+      button("Save as page", "bough report of the run and its bodies: one HTML file", () => this.report(), "save-page"),
+      button("Copy commands …", "The lines that do the same in a shell", () => show_history(), "copy"));
+    this.element = el("div", { class: "split reverse" }, el("div", { class: "side wide" }, this.add_form.element, this.pane.element), el("div", { class: "work-column" }, actions, this.parameters, this.progress.element, this.picked, this.scene, this.result));
+    if (studio.has(this.output)) this.show_results();
+  }
+
+  /** After each check without errors: the system at its start. */
+  async update(answer) {
+    this.show_parameters(answer.parameters);
+    this.add_form.update(answer);
+    if (this.is_running || answer.messages.some((m) => m.severity === "error") || this.text_drawn === this.pane.text) return;
+    const text = this.pane.text;
+    try {
+      const { chapter } = await ask("preview", { file: this.file, text });
+      this.text_drawn = text;
+      this.bodies = answer.bodies;
+      this.show_scene(new ReportChapter(chapter.data).run, false);
+    } catch (error) {
+      if (error.messages) this.pane.messages.show(error.messages);
+    }
+  }
+
+  /** Draws a run in the same viewer; the camera stays once there is one. */
+  show_scene(run, at_end) {
+    const { yaw, pitch, distance, target, home } = this.viewer;
+    this.motion?.play(false);
+    this.motion = new MotionView(run, this.viewer);
+    if (home && at_end) Object.assign(this.viewer, { yaw, pitch, distance, target });
+    if (at_end) this.motion.set_time(this.motion.last);
+    this.viewer.on_pick = (found) => this.pick(found);
+    this.viewer.draw();
+    this.scene.replaceChildren(this.motion.element);
+    this.scene.dataset.samples = String(run.time.length);
+  }
+
+  pick(found) {
+    this.picked.textContent = found?.thing.body ? `body ${found.thing.body}, node ${found.id}` : "";
+    if (found?.thing.body) this.add_form.take(found.thing.body, found.id);
+  }
+
+  show_parameters(parameters) {
+    this.parameters.replaceChildren(...(parameters ?? []).map(({ name, value }) => {
+      const field = el("input", { type: "number", step: "any", value: this.set.get(name) ?? value, "aria-label": `parameter ${name}` });
+      field.addEventListener("change", () => (field.value === value || field.value === "" ? this.set.delete(name) : this.set.set(name, field.value)));
+      return el("label", {}, name + " ", field);
+    }));
+    this.parameters.hidden = this.parameters.childElementCount === 0;
+  }
+
+  /** A file as the system file names it: relative to its folder. */
+  get_path(name) {
+    const here = this.file.split("/").slice(0, -1), there = name.split("/");
+    while (here.length > 0 && here[0] === there[0]) {
+      here.shift();
+      there.shift();
+    }
+    return "../".repeat(here.length) + there.join("/");
+  }
+
+  get_set() {
+    return [...this.set].map(([name, value]) => ["--set", `${name}=${value}`]);
+  }
+
+  run() {
+    return this.studio.attempt(async () => {
+      if (!(await this.pane.make_saved())) return;
+      this.is_running = true;
+      this.result.replaceChildren();
+      this.shown?.dispose();
+      const live = new LiveCharts(this);
+      try {
+        const done = await run_job({ verb: "run", files: [this.file], options: [...this.get_set(), ["-o", this.output]] }, (text, job) => {
+          this.progress.update(text, job);
+          live.look();
+        });
+        live.end();
+        this.progress.finish(done);
+        this.pane.messages.show(done.messages, "The run ended without a message.");
+        await this.studio.refresh();
+        if (this.studio.has(this.output)) await this.show_results();
+      } finally {
+        this.is_running = false;
+        live.end();
+      }
+    });
+  }
+
+  /** Whole results: scene, all panels; the run before stays in a chart of both. */
+  async show_results() {
+    await this.studio.attempt(async () => {
+      const { chapter } = await ask("chapter", { file: this.output, bodies: this.bodies ?? [] });
+      this.shown?.dispose();
+      this.shown = make_chapter(chapter, ["system", "motion"]);
+      const run = this.shown.data.run;
+      this.show_scene(run, false);
+      this.result.replaceChildren(el("h2", {}, this.output), ...this.make_ghosts(run), this.shown.element);
+      this.result.dataset.ready = "true";
+      this.earlier = run;
+    });
+  }
+
+  make_ghosts(run) {
+    if (!this.earlier) return [];
+    const both = new HistoryView(new RunSet([{ name: "this run", run }, { name: "run before", run: this.earlier }]));
+    return [el("details", { class: "panel" }, el("summary", {}, "This run and the run before"), both.element)];
+  }
+
+  solve(verb, ending, options = []) {
+    return this.studio.attempt(async () => {
+      if (!(await this.pane.make_saved())) return;
+      const output = stem(this.file) + ending;
+      const done = await run_job({ verb, files: [this.file], options: [...options, ...this.get_set(), ["-o", output]] }, this.progress.update);
+      this.progress.finish(done);
+      this.pane.messages.show(done.messages, "No messages.");
+      await this.studio.refresh();
+      if (done.code !== 0) return;
+      const { chapter } = await ask("chapter", { file: output, bodies: this.bodies ?? [] });
+      this.shown?.dispose();
+      this.shown = make_chapter(chapter);
+      this.result.replaceChildren(el("h2", {}, output), this.shown.element);
+      this.result.dataset.ready = verb;
+    });
+  }
+
+  report() {
+    return this.studio.attempt(async () => {
+      const output = stem(this.file) + ".html";
+      const done = await run_job({ verb: "report", files: [this.output, ...(this.bodies ?? [])], options: [["-o", output]] }, this.progress.update);
+      this.progress.finish(done);
+      await this.studio.refresh();
+      if (done.code === 0) this.studio.say(`written: ${output}`);
+    });
+  }
+
+  notice() {
+    return this.pane.notice();
+  }
+  is_changed() {
+    return this.pane.is_changed();
+  }
+  dispose() {
+    this.motion?.play(false);
+    this.viewer.dispose();
+    this.shown?.dispose();
+  }
+}
+
+/** Curves and scene out of the results file while it grows. */
+class LiveCharts {
+  constructor(view) {
+    this.view = view;
+    this.last = performance.now();
+  }
+  async look() {
+    if (this.is_over || this.is_asking || performance.now() - this.last < kLiveEvery) return;
+    this.is_asking = true;
+    try {
+      const { chapter } = await ask("chapter", { file: this.view.output, bodies: this.view.bodies ?? [] });
+      if (this.is_over || !chapter.data) return;
+      const run = new ReportChapter(chapter.data).run;
+      if (run.time.length < 2) return;
+      this.view.show_scene(run, true);
+      this.show(run);
+    } catch {
+      // The file is not there yet, or it is the one of the run before.
+    } finally {
+      this.is_asking = false;
+      this.last = performance.now();
+    }
+  }
+  show(run) {
+    const channel = run.data.channels.find((c) => c.path.startsWith("/sensors/")) ?? run.data.channels.find((c) => c.path.endsWith("/q"));
+    if (!channel) return;
+    const series = channel.columns.map((column, i) => run.make_series(channel, i, column.name || channel.path));
+    if (this.chart) return this.chart.set_series(series);
+    this.chart = new Chart({ title: channel.path.slice(1), series, x_label: "time", y_label: channel.columns[0].unit, height: 240 });
+    this.view.result.replaceChildren(this.chart.element);
+  }
+  end() {
+    this.is_over = true;
+  }
+}
+
+export async function open_system(studio, file) {
+  return new SystemView(studio, file, await ask("read", { file }));
+}

@@ -1,0 +1,195 @@
+"""bough studio in headless Chromium by mouse and keys: from a deck to a body, a system, a run, poles and a page; the
+files written give the same numbers by the command line. Skipped, with a message, where chromium is not installed."""
+import json
+import os
+import shutil
+import unittest
+
+import h5py
+import numpy as np
+
+from browser import Browser, find_chromium
+from studio_support import StudioTest
+from support import SOURCE
+
+SHARED = os.environ.get("BOUGH_SHARED_DIR", "")
+FOREIGN = os.path.join(SHARED, "models/plate_py/plate_py.dat")
+# Place of a grid of the deck on the screen.
+PROJECT = """(() => { const { viewer, scene } = studio.view.stage, p = scene.get_place(%d), m = viewer.make_view();
+  const [x, y, , w] = [0, 1, 2, 3].map((r) => m[r] * p[0] + m[4 + r] * p[1] + m[8 + r] * p[2] + m[12 + r]);
+  const b = viewer.canvas.getBoundingClientRect();
+  return [b.x + b.width * (1 + x / w) / 2, b.y + b.height * (1 - y / w) / 2]; })()"""
+COLORS = """(() => { const c = document.querySelector('canvas.scene'), s = document.createElement('canvas');
+  s.width = c.width; s.height = c.height; const g = s.getContext('2d'); g.drawImage(c, 0, 0);
+  const d = g.getImageData(0, 0, s.width, s.height).data, seen = new Set();
+  for (let i = 0; i < d.length; i += 4) seen.add((d[i] << 16) | (d[i + 1] << 8) | d[i + 2]); return seen.size; })()"""
+
+
+def make_plate():
+    """A free plate of 0.5 by 1, for machines without the foreign deck."""
+    lines = ["SOL 103", "CEND", "METHOD = 1", "BEGIN BULK", "EIGRL,1,,,10", "PSHELL,1,1,.01,1", "MAT1,1,7.+10,,.3,2700."]
+    lines += [f"GRID,{1 + i + 9 * j},,{i / 8:.4f},{j / 8:.4f},0." for j in range(5) for i in range(9)]
+    lines += [f"CQUAD4,{1 + i + 8 * j},1,{1 + i + 9 * j},{2 + i + 9 * j},{11 + i + 9 * j},{10 + i + 9 * j}"
+              for j in range(4) for i in range(8)]
+    return "\n".join([*lines, "ENDDATA", ""])
+
+
+@unittest.skipUnless(find_chromium(), "chromium is not installed")
+class Flow(StudioTest):
+    def setUp(self):
+        super().setUp()
+        self.browser = Browser(1300, 850)
+        self.addCleanup(self.browser.close)
+
+    def keep(self, name):
+        folder = os.environ.get("BOUGH_ARTEFACTS")
+        if folder:
+            os.makedirs(folder, exist_ok=True)
+            self.browser.screenshot(os.path.join(folder, name + ".png"))
+
+    def wait(self, expression):
+        self.assertTrue(self.browser.wait_for(f"!!({expression})"), expression + self.browser.run("document.querySelector('.notes').textContent"))
+
+    def choose(self, label, text):
+        """An option of a list by keys."""
+        self.browser.run(f"document.querySelector('select[aria-label={json.dumps(label)}]').focus()")
+        self.browser.type(text)
+        self.wait(f"document.querySelector('select[aria-label={json.dumps(label)}]').selectedOptions[0].textContent.startsWith({json.dumps(text)})")
+
+    def click_text(self, text, within="document"):
+        """Clicks the button with this text."""
+        self.browser.run(f"[...{within}.querySelectorAll('button')].find((b) => b.textContent.startsWith({json.dumps(text)}))"
+                         ".setAttribute('data-click', 'here')")
+        self.browser.click("[data-click=here]")
+        self.browser.run("document.querySelector('[data-click=here]')?.removeAttribute('data-click')")
+
+    def open(self, name):
+        self.wait(f"document.querySelector('button[data-file={json.dumps(name)}]')")
+        self.browser.click(f"button[data-file={json.dumps(name)}]")
+        self.wait(f"document.querySelector('main.work').dataset.file === {json.dumps(name)}")
+
+    def test_deck_to_page(self):
+        name = "plate_py.dat"
+        if os.path.exists(FOREIGN):
+            shutil.copy(FOREIGN, self.folder)
+        else:
+            self.write(name, make_plate())
+        stem = name.rsplit(".", 1)[0]
+        self.start_studio(name)
+        page = self.browser
+        page.visit(self.address)
+        self.wait("studio.view?.stage")
+        self.assertGreater(page.run(COLORS), 10)
+
+        grid = page.run("studio.view.stage.scene.drawing.ids[0]")
+        x, y = page.run(PROJECT % grid)
+        page.mouse("mouseMoved", x, y)
+        page.mouse("mousePressed", x, y, button="left", buttons=1, clickCount=1)
+        page.mouse("mouseReleased", x, y, button="left", clickCount=1)
+        self.wait(f"document.querySelector('.side .picked').textContent.startsWith('grid {grid} (')")
+        self.assertIn(str(grid), page.run("document.querySelector('.chosen').textContent"))
+        self.click_text("Check")
+        self.wait("![...document.querySelectorAll('h3 button')].some((b) => b.disabled)")
+        self.keep("studio-deck")
+
+        self.choose("frame", "free")
+        page.run("document.querySelector('[aria-label=\"number of modes\"]').select()")
+        page.type("6")
+        page.click("button.make-body")
+        self.wait("document.querySelector('dialog pre.diff')")
+        self.assertIn("+[body]", page.run("document.querySelector('dialog pre.diff').textContent"))
+        self.assertFalse(os.path.exists(self.path(stem + ".toml")))
+        self.keep("studio-save")
+        self.click_text("Save", "document.querySelector('dialog')")
+        self.wait(f"document.querySelector('main.work').dataset.file === '{stem}.toml'")
+        self.assertIn(f"interface = [{grid}]", self.read(stem + ".toml"))
+        self.wait("document.querySelector('.text-pane').dataset.checked === '0'")
+
+        page.click("button.reduce")
+        self.wait("document.querySelector('.result').dataset.ready === 'true'")
+        self.wait("document.querySelector('.result .modes')")
+        self.keep("studio-body")
+
+        self.open(stem + "-run.toml")
+        self.wait("document.querySelector('.text-pane').dataset.checked === '0'")
+        self.wait("document.querySelector('.scene-host').dataset.samples")
+        # The free body is put on a hinge along its edge, at the grid that was clicked.
+        page.click("input.command")
+        page.type(f"set base.type=revolute base.child_node={grid} base.axis=[1.0,0.0,0.0]\n")
+        self.wait("studio.view.pane.text.includes('revolute')")
+        # A key is changed by keys: the text has the change, the file has it after the difference was shown.
+        page.type("set simulation.duration=0.2\n")
+        self.wait("studio.view.pane.text.includes('duration = 0.2')")
+        self.wait("document.querySelector('.text-pane').dataset.checked === '0'")
+        page.click("button.run")
+        self.wait("document.querySelector('dialog pre.diff')")
+        self.click_text("Save", "document.querySelector('dialog')")
+        self.wait("document.querySelector('.result').dataset.ready === 'true'")
+        self.assertIn("duration = 0.2", self.read(stem + "-run.toml"))
+        self.assertGreater(page.run(COLORS), 10)
+        page.show(".result [data-panel=histories]")
+        self.wait("document.querySelector('.result .chart canvas')")
+        page.show(".scene-host canvas")
+        self.keep("studio-run")
+
+        page.click("button.save-page")
+        self.wait(f"studio.has('{stem}-run.html')")
+        self.assertIn("Content-Security-Policy", self.read(stem + "-run.html"))
+        page.click("button.linearize")
+        self.wait("document.querySelector('.result').dataset.ready === 'linearize'")
+        page.show(".result .live")
+        self.wait("document.querySelector('.result .chart canvas')")
+        self.keep("studio-poles")
+        self.assertEqual([e for e in page.list_errors() if "favicon" not in e], [])
+        self.assertTrue(all(url.startswith((self.address, "blob:", "data:")) or url.endswith("favicon.ico") for url in page.list_requests()))
+
+        # The lines that the page shows, in another folder of the shell.
+        page.click("button.copy")
+        self.wait("document.querySelector('dialog textarea')")
+        lines = page.run("document.querySelector('dialog textarea').value").splitlines()
+        self.assertIn(f"bough run {stem}-run.toml -o {stem}-run.h5", lines)
+        self.bough("reduce", stem + ".toml", "-o", "shell.h5")
+        self.bough("run", stem + "-run.toml", "-o", "shell-run.h5")
+        with h5py.File(self.path("shell.h5")) as a, h5py.File(self.path(stem + ".h5")) as b:
+            np.testing.assert_array_equal(a["/modes/frequency_hz"][:], b["/modes/frequency_hz"][:])
+        with h5py.File(self.path("shell-run.h5")) as a, h5py.File(self.path(stem + "-run.h5")) as b:
+            np.testing.assert_array_equal(a["/hinges/base/q"][:], b["/hinges/base/q"][:])
+            self.assertGreater(np.abs(a["/hinges/base/q"][:]).max(), 1e-3)
+
+    def test_changed_outside(self):
+        """An editor outside and a text that is not saved: both are kept until the user chooses."""
+        self.copy_example("ex01-spinup")
+        self.start_studio("spinup.toml")
+        page = self.browser
+        page.visit(self.address)
+        self.wait("document.querySelector('.text-pane').dataset.checked")
+        page.click("input.command")
+        page.type("set simulation.duration=3\n")
+        self.wait("studio.view.pane.text.includes('duration = 3')")
+        outside = self.read("spinup.toml") + "# outside\n"
+        self.write("spinup.toml", outside)
+        page.click("button.save")
+        self.wait("document.querySelector('dialog pre.diff')")
+        self.click_text("Save", "document.querySelector('dialog')")
+        self.wait("document.querySelector('dialog')?.textContent.includes('has changed since it was read')")
+        self.assertEqual(self.read("spinup.toml"), outside)
+        self.click_text("Cancel", "document.querySelector('dialog')")
+        self.wait("!document.querySelector('dialog')")
+        self.assertEqual(self.read("spinup.toml"), outside)
+        self.assertIn("duration = 3", page.run("studio.view.pane.text"))
+
+    def test_script_in_names(self):
+        """A deck whose name and title are HTML is shown as text."""
+        script = "<img src=x onerror=document.title=1>.bdf"
+        shutil.copy(os.path.join(SOURCE, "data/examples/ex05-plate/plate.bdf"), self.path(script))
+        self.start_studio()
+        page = self.browser
+        page.visit(self.address)
+        self.open(script)
+        self.assertEqual(page.run("document.querySelectorAll('img').length"), 0)
+        self.assertIn("<img", page.run("document.querySelector('.file-title').textContent"))
+        self.assertNotEqual(page.run("document.title"), "1")
+
+
+if __name__ == "__main__":
+    unittest.main()
