@@ -267,7 +267,7 @@ void note_pieces(const Partition& partition, const Structure& structure, Diagnos
 
 SplitAnswer split_deck(const SplitRequest& request, Events& events) {
   do_once([&] { demand_deck(request.deck); });
-  fe::initialize_petsc();
+  linear::initialize_petsc();
   Diagnostics diagnostics;
   const auto model_options = make_model_options(request.model);
   const auto deck = read_deck_or_throw(request.deck, model_options, diagnostics);

@@ -154,6 +154,14 @@ class Propellant(ProgramTest):
             self.write("slosh.toml", SLOSH.format(fill=mass, type="sphere", height="", hinge="fixed", more=""))
             self.assertAlmostEqual(abs(self.find_frequency())**2 / 9.81, value, delta=2e-4)
 
+    def test_a_tank_that_drains_to_its_pendulum_is_named(self):
+        engine = ROCKET[ROCKET.index("[[function]]"):ROCKET.index("[[sensor]]")].replace('"stage"', '"vehicle"').replace(
+            '"main"', '"lox"').replace("value = 30.0", "value = 4000.0")
+        system = SLOSH.format(fill=1000., type="cylinder", height="height = 3.0", hinge="fixed", more="")
+        self.write("drain.toml", system.replace("mass = 3000.0", "mass = 3000.0\nnodes = [{id = 1, position = [0.0, 0.0, -1.0]}]")
+                   + engine)
+        self.assertIn("[run.slosh-drained]", self.bough("run", "drain.toml", "-o", "d.h5").stderr)
+
     def test_units_are_converted_and_the_motion_stays(self):
         self.write("rocket.toml", ROCKET)
         self.bough("convert", "rocket.toml", "--units", "m-kg-s:mm-N-tonne", "-o", "mm.toml")

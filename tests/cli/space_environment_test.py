@@ -187,6 +187,12 @@ relative_to = "lvlh:sat"
             self.assertIn(error, self.bough("check", "bad.toml", code=1).stderr)
         self.write("inside.toml", SYSTEM.format(**{**base, "x": "1e6"}, more=panel + 'planet = "earth"\n'))
         self.assertIn("run.inside-planet", self.bough("run", "inside.toml", "-o", "i.h5", code=3).stderr)
+        attitude = '[[sensor]]\nname = "s"\ntype = "euler"\nbody = "sat"\nrelative_to = "lvlh:sat"\n'
+        self.write("radial.toml", SYSTEM.format(**{**base, "speed": "0.0"}, more=attitude))
+        self.fails(3, "run", "radial.toml", "-o", "r.h5", says=["along the radius"], error="run.no-orbit")
+        moon = '[[force]]\nname = "moon"\ntype = "gravity_central"\nmu = 4.9e12\nposition = [0.0, 4e8, 0.0]\n'
+        self.write("two.toml", SYSTEM.format(**base, more=moon + attitude))
+        self.fails(1, "run", "two.toml", "-o", "t.h5", says=["2 [[force]]s of type gravity_central"], error="sensor.no-orbit")
 
 
 if __name__ == "__main__":

@@ -52,8 +52,8 @@ TEST(AssemblyMpi, gather_inverts_scatter) {
   linear::PetscVec v;
   linear::check_petsc(MatCreateVecs(K.sparse(), v.out(), nullptr));
   const VectorXd x = make_random(model.num_fdofs(), 1, 8);
-  scatter(x, v.get());
-  EXPECT_EQ(gather(v.get()), x);
+  linear::scatter(x, v.get());
+  EXPECT_EQ(linear::gather(v.get()), x);
 }
 
 TEST(StaticsMpi, solution_balances_the_load) {

@@ -87,7 +87,7 @@ TEST(FollowerPressure, OfAClosedSurfaceIsSymmetricByItself) {
 }
 
 /// LLᵀ says so of small matrices too, for which CHOLMOD has another method than for large ones.
-TEST(linear::SymmetricFactor, OfAnIndefiniteMatrixIsNoCholeskyFactor) {
+TEST(SymmetricFactor, OfAnIndefiniteMatrixIsNoCholeskyFactor) {
   if (linear::initialize_petsc().size > 1) GTEST_SKIP() << "CHOLMOD factors on one process";
   for (const int size : {1, 2, 40})
     for (const double last : {1.0, -1.0}) {

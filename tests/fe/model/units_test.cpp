@@ -95,7 +95,7 @@ TEST(UnitsMpi, MechanismsAreMechanismsInAnyUnits) {
   }
 }
 
-TEST(linear::RowKinds, RowsAreJudgedAmongTheirKind) {
+TEST(RowKinds, RowsAreJudgedAmongTheirKind) {
   const auto T = linear::RowKind::Translation, R = linear::RowKind::Rotation, S = linear::RowKind::Scalar;
   const Eigen::VectorXd D = (Eigen::VectorXd(6) << 1e5, 1e-12, -2e5, 1e-12, 1e-30, 0).finished();
   const linear::RowKinds kinds{T, T, T, R, R, S};
