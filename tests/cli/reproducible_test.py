@@ -153,9 +153,9 @@ class ReproducibleTest(ProgramTest):
         for output, *arguments in calls:
             with self.subTest(arguments):
                 self.digest("now", output, *arguments)
-        # Not here: `integrals` below, `init` copies files, cli.edit and cli.studio have their own, `batch` below.
+        # Not here: `integrals` below, `init` copies files, cli.edit and cli.studio have their own, `batch` and `split` below.
         left = set(VERBS) - {arguments[0] for _, *arguments in calls}
-        self.assertEqual(left, {"integrals", "init", "edit", "batch", "studio"})
+        self.assertEqual(left, {"integrals", "init", "edit", "batch", "studio", "split"})
 
     def test_a_campaign(self):
         answers = []
@@ -165,6 +165,14 @@ class ReproducibleTest(ProgramTest):
                 heads, *rows = [line.rstrip("\n").split(",") for line in f if not line.startswith("#")]
             timed = [k for k, head in enumerate(heads) if "seconds" in head]
             answers.append([[x for k, x in enumerate(row) if k not in timed] for row in rows])
+        self.assertEqual(answers[0], answers[1])
+
+    def test_parts_of_a_deck(self):
+        answers = []
+        for _ in range(2):
+            self.bough("split", "beam.bdf", "--parts", "2", "-o", "parts")
+            answers.append(self.look(self.path("parts")))
+        self.assertGreater(len(answers[0]), 5)
         self.assertEqual(answers[0], answers[1])
 
     def test_integrals_of_given_matrices(self):

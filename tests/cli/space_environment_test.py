@@ -190,7 +190,7 @@ relative_to = "lvlh:sat"
         attitude = '[[sensor]]\nname = "s"\ntype = "euler"\nbody = "sat"\nrelative_to = "lvlh:sat"\n'
         self.write("radial.toml", SYSTEM.format(**{**base, "speed": "0.0"}, more=attitude))
         self.fails(3, "run", "radial.toml", "-o", "r.h5", says=["along the radius"], error="run.no-orbit")
-        moon = '[[force]]\nname = "moon"\ntype = "gravity_central"\nmu = 4.9e12\nposition = [0.0, 4e8, 0.0]\n'
+        moon = '[[force]]\nname = "moon"\ntype = "gravity_central"\nmu = 4.9e12\ncentre = [0.0, 4e8, 0.0]\n'
         self.write("two.toml", SYSTEM.format(**base, more=moon + attitude))
         self.fails(1, "run", "two.toml", "-o", "t.h5", says=["2 [[force]]s of type gravity_central"], error="sensor.no-orbit")
 
