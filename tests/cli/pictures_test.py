@@ -45,7 +45,7 @@ class Pictures(ProgramTest):
             self.assertLess(np.abs(a[:rows, :columns] - b[:rows, :columns]).mean(), MAX_DIFFERENCE, name)
 
     def test_every_picture_has_a_printed_command(self):
-        # Those of the studio are of its page in a browser, after the clicks that docs/studio.md describes.
+        # Pictures of the studio show its page in a browser, after the clicks that docs/studio.md describes.
         known = {"edit", "notebook-monte-carlo", "notebook-kg-by-hand", "studio-deck", "studio-run"}
         for name, shot in pictures.SHOTS.items():
             _, command = shot.find_command()
