@@ -99,6 +99,9 @@ void check_third_order(const BodyRequest& request, const fe::Model& model) {
   if (request.spec.frame == BodyFrame::ThreeNodes || request.spec.frame == BodyFrame::MassCentre)
     error("the frame is carried by three nodes or the centre of mass",
           "use frame = \"fixed\", \"free\", \"mean\" or \"node\"");
+  if (request.spec.basis != records::BodyBasis::Normal || !request.spec.residual.empty())
+    error("the basis has static shapes: they hold the stretch that bending takes, so the series do not converge",
+          "use basis = \"normal\" without residual vectors, or " + second);
   if (request.given) return;
   std::vector<std::string> joined;
   const RigidArms arms(model);

@@ -100,6 +100,12 @@ void set_start_state(records::SystemSpec& spec, const std::string& path, Diagnos
     body.eta = starter.read("/bodies/" + body.name + "/eta", expected);
     body.eta_dot = starter.read("/bodies/" + body.name + "/eta_dot", expected);
   }
+  for (auto& tank : spec.tanks) {
+    const std::string channel = "/tanks/" + tank.name + "/mass";
+    if (!tank.function.empty() || !starter.has(channel)) continue;
+    const auto mass = starter.read(channel, 1);
+    if (!mass.empty()) tank.mass = mass.front();
+  }
   for (auto& hinge : spec.hinges) {
     if (hinge.type == records::HingeType::Fixed || !hinge.motion.empty()) continue;
     hinge.position = starter.read("/hinges/" + hinge.name + "/q", 0);

@@ -103,6 +103,17 @@ class Propellant(ProgramTest):
         total = angular + out
         self.assertLess(np.abs(total - total[0]).max(), 1e-10 * np.linalg.norm(total[0]))
 
+    def test_a_mission_in_parts_goes_on_with_what_is_left(self):
+        self.write("rocket.toml", ROCKET)
+        self.bough("run", "rocket.toml", "-o", "whole.h5", "-q")
+        self.write("first.toml", ROCKET.replace("duration = 1.5", "duration = 0.8"))
+        self.bough("run", "first.toml", "-o", "first.h5", "-q")
+        self.write("second.toml", ROCKET.replace("duration = 1.5", "start = 0.8\nduration = 0.7"))
+        self.bough("run", "second.toml", "--start-from", "first.h5", "-o", "second.h5", "-q")
+        paths = ("/bodies/stage/angular_velocity", "/tanks/main/mass", "/bodies/stage/position")
+        for path, whole, second in zip(paths, self.read_h5("whole.h5", *paths), self.read_h5("second.h5", *paths)):
+            np.testing.assert_allclose(second[-1], whole[-1], atol=1e-8, err_msg=path)
+
     def test_linear_models_have_the_mass_of_their_time(self):
         """A of a wobble about the spin axis while the engine burns: w' = -(J' flow + flow l²...) w of the formulas."""
         self.write("rocket.toml", ROCKET.replace("rate = [0.3, 0.1, -0.2", "rate = [0.0, 0.0, 0.0"))

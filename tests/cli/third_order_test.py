@@ -158,6 +158,8 @@ class ThirdOrder(ProgramTest):
         for keys, says in (("order = 3\nlarge = 9", ["large = 9", "3 modes"]), ("order = 3\nlarge = [1, 7]", ["mode 7"]),
                            ("order = 3\nlarge = [1, 1]", ["twice"])):
             self.reduce(keys, code=1, says=says, error="reduce.bad-order")
+        for more in ('[body.modes]\nresidual = ["interface"]', '[body.modes]\nbasis = "craig-bampton"'):
+            self.reduce(replace=[("[body.modes]", more)], code=1, says=["static shapes"], error="reduce.bad-order")
         self.reduce("large = 2", code=1, says=["order = 3"], error="toml.conflicting-keys")
         self.copy_example("ex01-spinup")
         deck = self.read("boom.bdf")
