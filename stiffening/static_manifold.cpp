@@ -1,6 +1,7 @@
 #include "stiffening/static_manifold.hpp"
 
 #include <algorithm>
+#include <numeric>
 
 #include "fe/corotational/corotational_element.hpp"
 #include "fe/elements/carried.hpp"
@@ -21,8 +22,8 @@ using fe::SeriesVector;
 constexpr double kNoInertia = 1e-8;
 
 std::vector<int> list_gdofs(const fe::Node& node) {
-  std::vector<int> gdofs;
-  for (int d = 0; d < node.num_dofs; ++d) gdofs.push_back(node.first_gdof + d);
+  std::vector<int> gdofs(static_cast<std::size_t>(node.num_dofs));
+  std::iota(gdofs.begin(), gdofs.end(), node.first_gdof);
   return gdofs;
 }
 
@@ -131,9 +132,6 @@ void StaticManifold::set_rigid_motions(const BodyRequest& request, const linear:
 }
 
 void StaticManifold::set_loads(const BodyRequest& request, const ModalBasis& basis, const linear::SymmetricMatrix& M) {
-  const bool is_normal = std::all_of(basis.kind.begin(), basis.kind.end(),
-                                     [](records::ModeKind kind) { return kind == records::ModeKind::Normal; });
-  if (!is_normal) return;
   psi_ = Phi_;
   if (request.is_free()) {  // of a body whose frame does not hold it
     const MatrixXd M_R = linear::multiply(M, Phi_R_);
@@ -216,7 +214,6 @@ MatrixXd StaticManifold::calc_multipliers(const Curves& curves) const {
 
 MatrixXd StaticManifold::calc_arm_gauge(const Curves& curves, int order) const {
   MatrixXd work = MatrixXd::Zero(Phi_.cols(), curves.points.rows());
-  if (W_.size() == 0) return work;
   for (const RigidArm& arm : arms_.list()) {
     if (!arm.translates || arm.arm.isZero(0)) continue;
     const auto moved = calc_turned_arm(calc_node_curve(curves, arm.parent).bottomRows<3>(), arm.arm, order);
@@ -234,7 +231,7 @@ MatrixXd StaticManifold::advance(int degree, const Lattice& lattice) {
   BOUGH_DEMAND(static_cast<int>(fields_.size()) == degree - 2);
   const Curves curves = make_curves(degree, lattice);
   const MatrixXd R = lattice.fit(calc_forces(curves, degree)), gauge = lattice.fit(calc_arm_gauge(curves, degree));
-  const MatrixXd gradient = linear::calc_inner_products(Phi_, R) - gauge;
+  MatrixXd gradient = linear::calc_inner_products(Phi_, R) - gauge;
   MatrixXd u = solve(R) - Phi_ * K_factor_.solve(gauge);
   for (const RigidArm& arm : arms_.list()) {
     if (!arm.translates || arm.arm.isZero(0)) continue;
@@ -282,31 +279,29 @@ MatrixXd StaticManifold::calc_forces(const Curves& curves, int order) const {
     const fe::CorotationalElement corotational(element, model_.nodes());
     add_element(element, corotational.calc_forces(calc_element_curve(curves, element)));
   });
-  if (W_.size() > 0) {
-    // Loads on turned arms have moments that they lack at the undeformed state.
-    const MatrixXd lambda = calc_multipliers(curves);
-    visit_carried(curves, [&](const fe::Element& element, const Carried& carried) {
-      const MatrixXd along = carried.motion * (psi_(element.gdofs(), Eigen::all) * lambda);
-      MatrixXd f = MatrixXd::Zero(element.num_dofs(), along.cols());
-      for (const auto& turn : carried.mass.turns)
-        for (const auto& part : turn.parts) {
-          Eigen::Matrix3Xd force = Eigen::Matrix3Xd::Zero(3, along.cols());
-          for (Index r = 0; r < carried.mass.mu.rows(); ++r)
-            force += carried.mass.mu(r, part.point) * along.middleRows<3>(3 * r);
-          f -= turn.Theta.transpose() *
-               calc_turned_moment(turn.Theta * carried.u, part.arm, part.B.transpose() * force, order);
-        }
-      add_element(element, f);
-    });
-    if (linear::initialize_petsc().rank == 0)
-      for (const RigidArm& arm : arms_.list()) {
-        if (!arm.translates || arm.arm.isZero(0)) continue;
-        const MatrixXd force = W_.middleRows<3>(model_.nodes()[static_cast<std::size_t>(arm.node)].first_gdof) * lambda;
-        const int turn = model_.nodes()[static_cast<std::size_t>(arm.parent)].first_gdof + 3;
-        add({turn, turn + 1, turn + 2},
-            -calc_turned_moment(calc_node_curve(curves, arm.parent).bottomRows<3>(), arm.arm, force, order));
+  // Loads on turned arms have moments that they lack at the undeformed state.
+  const MatrixXd lambda = calc_multipliers(curves);
+  visit_carried(curves, [&](const fe::Element& element, const Carried& carried) {
+    const MatrixXd along = carried.motion * (psi_(element.gdofs(), Eigen::all) * lambda);
+    MatrixXd f = MatrixXd::Zero(element.num_dofs(), along.cols());
+    for (const auto& turn : carried.mass.turns)
+      for (const auto& part : turn.parts) {
+        Eigen::Matrix3Xd force = Eigen::Matrix3Xd::Zero(3, along.cols());
+        for (Index r = 0; r < carried.mass.mu.rows(); ++r)
+          force += carried.mass.mu(r, part.point) * along.middleRows<3>(3 * r);
+        f -= turn.Theta.transpose() *
+             calc_turned_moment(turn.Theta * carried.u, part.arm, part.B.transpose() * force, order);
       }
-  }
+    add_element(element, f);
+  });
+  if (linear::initialize_petsc().rank == 0)
+    for (const RigidArm& arm : arms_.list()) {
+      if (!arm.translates || arm.arm.isZero(0)) continue;
+      const MatrixXd force = W_.middleRows<3>(model_.nodes()[static_cast<std::size_t>(arm.node)].first_gdof) * lambda;
+      const int turn = model_.nodes()[static_cast<std::size_t>(arm.parent)].first_gdof + 3;
+      add({turn, turn + 1, turn + 2},
+          -calc_turned_moment(calc_node_curve(curves, arm.parent).bottomRows<3>(), arm.arm, force, order));
+    }
   linear::sum_over_ranks(result);
   return result;
 }
@@ -359,7 +354,8 @@ StaticManifold::CarriedWork StaticManifold::calc_carried_work(const Curves& curv
     MatrixXd moved = MatrixXd::Zero(3 * num, m);
     for (const auto& turn : carried.mass.turns)
       for (const auto& part : turn.parts)
-        moved.middleRows<3>(3 * part.point) += part.B * calc_turned_arm(turn.Theta * carried.u, part.arm, order);
+        moved.middleRows<3>(3 * static_cast<Index>(part.point)) +=
+            part.B * calc_turned_arm(turn.Theta * carried.u, part.arm, order);
     const MatrixXd along = carried.motion * psi(element.gdofs(), Eigen::all);
     const MatrixXd loads = units.calc_point_loads(carried.mass);
     for (Index s = 0; s < num; ++s) {

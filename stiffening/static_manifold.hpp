@@ -97,7 +97,7 @@ class StaticManifold {
   RigidArms arms_;
   VectorXd scale_;
   MatrixXd Phi_, Phi_R_, C_, CR_inverse_;
-  /// Loads whose work on u is ηᵀK: inertia M ψ of the modes at the ends of arms too. Empty: K Φ of the other grids.
+  /// Loads W = M ψ whose work on u is ηᵀK, ψ = Φ Λ without rigid-body motion; at the ends of arms too.
   MatrixXd W_, psi_;
   Eigen::LDLT<MatrixXd> K_factor_;
   std::vector<MatrixXd> fields_;       ///< degree 2, 3, ...; num_gdofs x monomials
