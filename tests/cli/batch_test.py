@@ -9,7 +9,7 @@ import shutil
 import signal
 import subprocess
 
-from support import BEAM, HANG, HOLD, IN_OUTPUTS, PROGRAM, SOURCE, ProgramTest, get_astray, unittest
+from support import BEAM, HANG, HOLD, IN_OUTPUTS, PROGRAM, SOURCE, ProgramTest, get_astray, launch_ranks, unittest
 
 E = """
 [[parameter]]
@@ -318,7 +318,7 @@ take = "min"
     def test_ranks_divide_the_cases(self):
         self.campaign(E + "values = [6e10, 6.5e10, 7e10, -1.0, 8e10]\n" + HZ)
         self.bough("batch", "study.toml", "-o", "whole", code=3)
-        launch = ["mpirun", "--allow-run-as-root", "--oversubscribe", "-n", "2", PROGRAM, "batch", "study.toml"]
+        launch = launch_ranks("-n", 2, PROGRAM, "batch", "study.toml")
         first = subprocess.run([*launch, "--json"], cwd=self.folder, text=True, capture_output=True)
         self.assertEqual(first.returncode, 3, first.stderr)
         summary = json.loads(first.stdout[:first.stdout.rindex("}") + 1])

@@ -9,11 +9,7 @@ import unittest
 import h5py
 import numpy as np
 
-from support import HANG, PROGRAM, SOURCE, ProgramTest
-
-
-def launch(ranks):
-    return ["mpirun", "--allow-run-as-root", "--oversubscribe", "-n", str(ranks)]
+from support import HANG, PROGRAM, SOURCE, ProgramTest, launch_ranks
 
 
 class Ranks(ProgramTest):
@@ -22,13 +18,13 @@ class Ranks(ProgramTest):
         self.copy_example("ex01-spinup")
 
     def test_modes(self):
-        found = [json.loads(self.bough("modes", "boom.bdf", "-n", 5, "--json", launcher=launch(n)).stdout) for n in (1, 2)]
+        found = [json.loads(self.bough("modes", "boom.bdf", "-n", 5, "--json", launcher=launch_ranks("-n", n)).stdout) for n in (1, 2)]
         np.testing.assert_allclose(found[1]["eigenvalue"], found[0]["eigenvalue"], rtol=1e-9)
         np.testing.assert_allclose(found[1]["effective_mass"], found[0]["effective_mass"], atol=1e-8)
 
     def test_a_range_without_a_mode(self):
         for n in (1, 2):
-            result = self.bough("modes", "boom.bdf", "--max-hz", 1e-3, "--json", "-o", "m.h5", launcher=launch(n))
+            result = self.bough("modes", "boom.bdf", "--max-hz", 1e-3, "--json", "-o", "m.h5", launcher=launch_ranks("-n", n))
             self.assertEqual([], json.loads(result.stdout)["frequency_hz"])
             self.assertIn("[modal.empty-range]", result.stderr)
 
@@ -41,7 +37,7 @@ class Ranks(ProgramTest):
                                               "CDAMP2,99001,.5,11,3"))
         found = []
         for n in (1, 2):
-            self.bough("frequency", "driven.bdf", "-n", 6, "-o", f"r{n}.h5", launcher=launch(n))
+            self.bough("frequency", "driven.bdf", "-n", 6, "-o", f"r{n}.h5", launcher=launch_ranks("-n", n))
             with h5py.File(self.path(f"r{n}.h5")) as f:
                 subcase = next(iter(f["subcases"].values()))
                 found.append(subcase["displacement/real"][()] + 1j * subcase["displacement/imag"][()])
@@ -50,7 +46,7 @@ class Ranks(ProgramTest):
 
     def test_reduce(self):
         for n in (1, 2):
-            self.bough("reduce", "boom.toml", "-o", f"boom{n}.h5", launcher=launch(n))
+            self.bough("reduce", "boom.toml", "-o", f"boom{n}.h5", launcher=launch_ranks("-n", n))
         with h5py.File(self.path("boom1.h5")) as a, h5py.File(self.path("boom2.h5")) as b:
             self.assertEqual(sorted(a), sorted(b))
             for path in ["/modes/eigenvalue", "/modes/phi", "/stiffening/kg_inertial", "/stiffening/kg_external",
@@ -61,7 +57,7 @@ class Ranks(ProgramTest):
     def test_the_end_that_is_asked_for_is_said_once(self):
         """The first rank is told; the launcher then ends the other one by the same signal."""
         process, ranks = self.start_held("modes", "boom.bdf", "-n", 5, call="MPI_Allreduce", count=10, processes=2,
-                                         launcher=launch(2))
+                                         launcher=launch_ranks("-n", 2))
         for rank in ranks:
             with open(f"/proc/{rank}/environ", "rb") as f:
                 if b"OMPI_COMM_WORLD_RANK=0" in f.read().split(b"\0"):
@@ -75,7 +71,7 @@ class Ranks(ProgramTest):
                               capture_output=True, text=True, check=True).stdout
         self.write("plate.bdf", deck)
         call = ("modes", "plate.bdf", "--json")
-        found = {n: json.loads(self.bough(*call, launcher=launch(n)).stdout) for n in (1, 2, 3)}
+        found = {n: json.loads(self.bough(*call, launcher=launch_ranks("-n", n)).stdout) for n in (1, 2, 3)}
         self.assertEqual(len(found[1]["frequency_hz"]), 8)
         for n in (2, 3):
             np.testing.assert_allclose(found[n]["frequency_hz"], found[1]["frequency_hz"], rtol=1e-8)
@@ -87,7 +83,7 @@ class Ranks(ProgramTest):
     def launch_apart(self, *arguments):
         """Rank 0 in the folder with the files, ranks 1 and 2 in an empty one: only the first may need the disk."""
         os.makedirs(self.path("empty"), exist_ok=True)
-        command = ["mpirun", "--allow-run-as-root", "--oversubscribe"]
+        command = launch_ranks()
         for count, folder in ((1, self.folder), (2, self.path("empty"))):
             command += [":"] * (count == 2) + ["-n", str(count), "-wdir", folder, PROGRAM, *map(str, arguments)]
         return subprocess.run(command, cwd=self.folder, text=True, capture_output=True, timeout=HANG)
@@ -116,7 +112,7 @@ class Ranks(ProgramTest):
     def test_an_error_is_said_once(self):
         self.write("bad.bdf", "SOL 103\nCEND\nBEGIN BULK\nGRID,1,,0.,0.,0.\nCBAR,1,1,1,2,0.,1.,0.\nENDDATA\n")
         one = self.bough("check", "bad.bdf", code=1).stderr.count("error:")
-        two = self.bough("check", "bad.bdf", code=1, launcher=launch(2)).stderr
+        two = self.bough("check", "bad.bdf", code=1, launcher=launch_ranks("-n", 2)).stderr
         self.assertEqual(two.count("bad.bdf:5: error:"), self.bough("check", "bad.bdf", code=1).stderr.count("bad.bdf:5: error:"))
         self.assertGreater(one, 0)
 

@@ -8,14 +8,11 @@ import unittest
 import h5py
 import numpy as np
 
-from support import HANG, PROGRAM, ProgramTest
-
-# Ranks that wait leave the core to those that work.
-ENV = {"OMPI_MCA_mpi_yield_when_idle": "1", "OMP_NUM_THREADS": "1"}
+from support import HANG, PROGRAM, ProgramTest, launch_ranks
 
 
 def launch(ranks):
-    return ["mpirun", "--allow-run-as-root", "--oversubscribe", "-n", str(ranks)] if ranks > 1 else []
+    return launch_ranks("-n", ranks) if ranks > 1 else []
 
 
 HEAD = "SOL 103\nCEND\nSPC = 1\nBEGIN BULK\nPARAM,COUPMASS,1\nMAT1,1,2.+11,,.3,8000.\n"
@@ -95,7 +92,7 @@ class RanksOfModes(ProgramTest):
         """Eigenvalues, effective masses, shapes as rows."""
         options = options if "-n" in options else ("-n", 8, *options)
         self.bough("modes", "deck.bdf", "-o", f"r{ranks}.h5", *options, launcher=launch(ranks),
-                   env={**ENV, "OMP_NUM_THREADS": str(threads)})
+                   env={"OMP_NUM_THREADS": str(threads)})
         with h5py.File(self.path(f"r{ranks}.h5")) as file:
             phi = file["modes/phi"][()]
             return file["modes/eigenvalue"][()], file["effective_mass"][()], phi.reshape(-1, phi.shape[-1]).T
@@ -168,7 +165,7 @@ class RanksOfModes(ProgramTest):
         """No mass at all: K + sM has no modes, the same words and the same code, and no rank waits for another."""
         self.write("deck.bdf", write_plate().replace(",.3,8000.", ",.3,0."))
         found = [subprocess.run([*launch(n), PROGRAM, "modes", "deck.bdf", "-n", "8"], cwd=self.folder, text=True,
-                                capture_output=True, timeout=HANG, env={**os.environ, **ENV}) for n in (1, 2)]
+                                capture_output=True, timeout=HANG) for n in (1, 2)]
         self.assertEqual([one.returncode for one in found], [1, 1])
         said = [[line for line in one.stderr.splitlines() if "error:" in line] for one in found]
         self.assertIn("[modal.no-mass]", said[0][0])
@@ -178,7 +175,7 @@ class RanksOfModes(ProgramTest):
         """Exit code, messages and tables of one call."""
         self.write("deck.bdf", text)
         done = subprocess.run([*launch(ranks), PROGRAM, "modes", "deck.bdf", "-n", "8", *options], cwd=self.folder,
-                              text=True, capture_output=True, timeout=HANG, env={**os.environ, **ENV})
+                              text=True, capture_output=True, timeout=HANG)
         messages = [line for line in done.stderr.splitlines() if "error:" in line or "warning:" in line or "note:" in line]
         return done.returncode, messages, done.stdout
 
@@ -213,7 +210,7 @@ class RanksOfModes(ProgramTest):
         self.write("deck.bdf", text)
         files = []
         for n in (1, 3):
-            self.bough("modes", "deck.bdf", "-o", f"f{n}.h5", "--meffmass", "90001", launcher=launch(n), env=ENV)
+            self.bough("modes", "deck.bdf", "-o", f"f{n}.h5", "--meffmass", "90001", launcher=launch(n))
             found = {}
             with h5py.File(self.path(f"f{n}.h5")) as file:
                 file.visititems(lambda name, item: found.update({name: item[()]}) if isinstance(item, h5py.Dataset) else None)

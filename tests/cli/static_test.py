@@ -9,7 +9,7 @@ import numpy as np
 import scipy.io
 import scipy.sparse
 
-from support import ProgramTest
+from support import ProgramTest, launch_ranks
 from verbs_test import make_column
 
 FRAME = """SOL 101
@@ -200,14 +200,13 @@ class Static(ProgramTest):
     def test_two_ranks(self):
         self.write("frame.bdf", FRAME)
         one = json.loads(self.bough("static", "frame.bdf", "--json", "--full").stdout)["subcases"]
-        env = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
-        launcher = ("mpirun", "--oversubscribe", "-n", "2")
-        two = json.loads(self.bough("static", "frame.bdf", "--json", "--full", launcher=launcher, env=env).stdout)["subcases"]
+        launcher = launch_ranks("-n", 2)
+        two = json.loads(self.bough("static", "frame.bdf", "--json", "--full", launcher=launcher).stdout)["subcases"]
         for a, b in zip(one, two):
             np.testing.assert_allclose(b["displacement"], a["displacement"], rtol=1e-9, atol=1e-14)
             np.testing.assert_allclose(b["elements"]["CBAR"]["force"], a["elements"]["CBAR"]["force"], rtol=1e-9, atol=1e-8)
         self.bough("matrices", "frame.bdf", "-o", "one.h5")
-        self.bough("matrices", "frame.bdf", "-o", "two.h5", launcher=launcher, env=env)
+        self.bough("matrices", "frame.bdf", "-o", "two.h5", launcher=launcher)
         with h5py.File(self.path("one.h5")) as f, h5py.File(self.path("two.h5")) as g:
             for name in ["K", "M", "KG/LOAD_4"]:
                 difference = read_csr(f[name]) - read_csr(g[name])

@@ -16,6 +16,12 @@ VERBS = ["check", "modes", "static", "frequency", "transient", "matrices", "spli
          "equilibrium", "linearize", "response", "select", "export", "plot", "report", "info", "init", "batch", "edit", "convert", "studio"]
 
 
+def launch_ranks(*arguments):
+    """The words of mpirun with these arguments; a rank that waits sleeps, so a busy machine serves it (patient.c)."""
+    return ["env", f"LD_PRELOAD={os.environ['BOUGH_PATIENT']}", "OMPI_MCA_mpi_yield_when_idle=1", "mpirun",
+            "--allow-run-as-root", "--oversubscribe", *map(str, arguments)]
+
+
 class ProgramTest(unittest.TestCase):
     def setUp(self):
         self.folder = tempfile.mkdtemp(prefix="bough-test-")
@@ -56,7 +62,7 @@ class ProgramTest(unittest.TestCase):
         point = {"ASTRAY_PIPE": self.path("hold.pipe"), **(env or {})}
         if call:
             point.update(POINT_CALL=call, POINT_ACT="hold", POINT_PIPE=self.path("hold.pipe"), POINT_COUNT=str(count),
-                         LD_PRELOAD=os.environ["BOUGH_POINT"], **({"POINT_PATH": path} if path else {}))
+                         LD_PRELOAD=f'{os.environ["BOUGH_POINT"]}:{os.environ["BOUGH_PATIENT"]}', **({"POINT_PATH": path} if path else {}))
         words = [*launcher]
         if launcher:  # the ranks are to sleep, not the launcher
             words += [word for name, value in point.items() for word in ("-x", f"{name}={value}")]
