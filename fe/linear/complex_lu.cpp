@@ -42,7 +42,6 @@ ComplexLu::ComplexLu(const ComplexSparse& A, bool is_symmetric) : impl_(std::mak
   i.run(-1);
   i.is_started = true;
   for (const int output : {1, 2, 3, 4}) i.icntl(output) = output == 4 ? 0 : -1;
-  i.icntl(7) = 5;  // METIS
   std::vector<MUMPS_INT> rows, columns;
   std::vector<ZMUMPS_COMPLEX> values;
   if (i.rank == 0) {

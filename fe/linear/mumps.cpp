@@ -110,14 +110,12 @@ FactorState judge_factorization(int status, int detail) {
 
 MumpsFactor factor_by_mumps(Mat A, const MumpsOptions& options) {
   // PETSc 3.18 loses ICNTL(7) unless it is an option. To count, approximate minimum fill: half the time of MUMPS' own
-  // choice on plates. To solve on several ranks, METIS: 15 % less time on plates, as much on solids.
+  // choice on plates.
   constexpr const char* kOrdering = "-mat_mumps_icntl_7";
-  const bool is_alone = initialize_petsc().size == 1;
   PetscBool is_chosen = PETSC_FALSE;
   check_petsc(PetscOptionsHasName(nullptr, nullptr, kOrdering, &is_chosen));
   std::optional<PetscOption> ordering;
-  if (!is_chosen && (!is_alone || options.counts_negative))
-    ordering.emplace(kOrdering, options.counts_negative ? "2" : "5");
+  if (!is_chosen && options.counts_negative) ordering.emplace(kOrdering, "2");
   MumpsFactor result;
   for (const PetscInt extra_percent : {options.counts_negative ? 60 : 50, 200, 1000}) {
     result = try_factor(A, options, extra_percent);
