@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "fe/corotational/corotational_element.hpp"
+#include "fe/corotational/series.hpp"
 #include "fe/elements/carried.hpp"
 #include "fe/linear/blas.hpp"
 #include "fe/linear/products.hpp"
@@ -185,7 +186,7 @@ MatrixXd StaticManifold::calc_element_curve(const Curves& curves, const fe::Elem
   MatrixXd u = calc_curve(curves, element.gdofs());
   if (arms_.list().empty()) return u;
   for (const NodeRows& rows : find_rows(element, model_.nodes())) {
-    const RigidArm* arm = arms_.find(rows.node);
+    const fe::RigidArm* arm = arms_.find(rows.node);
     if (!arm) continue;
     const MatrixXd parent = calc_node_curve(curves, arm->parent);
     for (Index c = 0; c < u.cols(); c += kSeriesTop) {
@@ -214,7 +215,7 @@ MatrixXd StaticManifold::calc_multipliers(const Curves& curves) const {
 
 MatrixXd StaticManifold::calc_arm_gauge(const Curves& curves, int order) const {
   MatrixXd work = MatrixXd::Zero(Phi_.cols(), curves.points.rows());
-  for (const RigidArm& arm : arms_.list()) {
+  for (const fe::RigidArm& arm : arms_.list()) {
     if (!arm.translates || arm.arm.isZero(0)) continue;
     const auto moved = calc_turned_arm(calc_node_curve(curves, arm.parent).bottomRows<3>(), arm.arm, order);
     work += W_.middleRows<3>(model_.nodes()[static_cast<std::size_t>(arm.node)].first_gdof).transpose() * moved;
@@ -233,7 +234,7 @@ MatrixXd StaticManifold::advance(int degree, const Lattice& lattice) {
   const MatrixXd R = lattice.fit(calc_forces(curves, degree)), gauge = lattice.fit(calc_arm_gauge(curves, degree));
   MatrixXd gradient = linear::calc_inner_products(Phi_, R) - gauge;
   MatrixXd u = solve(R) - Phi_ * K_factor_.solve(gauge);
-  for (const RigidArm& arm : arms_.list()) {
+  for (const fe::RigidArm& arm : arms_.list()) {
     if (!arm.translates || arm.arm.isZero(0)) continue;
     const auto moved = calc_turned_arm(calc_node_curve(curves, arm.parent).bottomRows<3>(), arm.arm, degree);
     u.middleRows<3>(model_.nodes()[static_cast<std::size_t>(arm.node)].first_gdof) += lattice.fit(moved);
@@ -252,7 +253,7 @@ MatrixXd StaticManifold::calc_forces(const Curves& curves, int order) const {
     result(gdofs, Eigen::all) += f_k;
   };
   /// Forces at the end of an arm go to its parent, with the moment of where they act.
-  const auto move_to_parent = [&](const RigidArm& arm, const NodeRows& rows, MatrixXd& f) {
+  const auto move_to_parent = [&](const fe::RigidArm& arm, const NodeRows& rows, MatrixXd& f) {
     const MatrixXd parent = calc_node_curve(curves, arm.parent);
     MatrixXd moved = MatrixXd::Zero(6, f.cols());
     for (Index c = 0; c < f.cols(); c += kSeriesTop) {
@@ -271,7 +272,7 @@ MatrixXd StaticManifold::calc_forces(const Curves& curves, int order) const {
   const auto add_element = [&](const fe::Element& element, MatrixXd f) {
     if (!arms_.list().empty())
       for (const NodeRows& rows : find_rows(element, model_.nodes()))
-        if (const RigidArm* arm = arms_.find(rows.node)) move_to_parent(*arm, rows, f);
+        if (const fe::RigidArm* arm = arms_.find(rows.node)) move_to_parent(*arm, rows, f);
     add(element.gdofs(), f);
   };
   fe::visit_elements(model_, fe::get_own_elements(model_), [&](int, const fe::Element& element) {
@@ -295,7 +296,7 @@ MatrixXd StaticManifold::calc_forces(const Curves& curves, int order) const {
     add_element(element, f);
   });
   if (linear::initialize_petsc().rank == 0)
-    for (const RigidArm& arm : arms_.list()) {
+    for (const fe::RigidArm& arm : arms_.list()) {
       if (!arm.translates || arm.arm.isZero(0)) continue;
       const MatrixXd force = W_.middleRows<3>(model_.nodes()[static_cast<std::size_t>(arm.node)].first_gdof) * lambda;
       const int turn = model_.nodes()[static_cast<std::size_t>(arm.parent)].first_gdof + 3;

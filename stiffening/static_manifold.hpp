@@ -2,7 +2,7 @@
 /// \file Displacements of a body beyond its modes: the static manifold of given amplitudes, degree by degree
 /// (docs/theory/third-order.md). Amplitudes are scaled: 1/ω of a mode each.
 #include "fe/elements/carried.hpp"
-#include "stiffening/rigid_arms.hpp"
+#include "fe/model/rigid_arms.hpp"
 #include "stiffening/stages.hpp"
 
 namespace bough::stiffening {
@@ -94,7 +94,7 @@ class StaticManifold {
   const fe::Model& model_;
   const StaticSupport& support_;
   const std::vector<int>& large_;
-  RigidArms arms_;
+  fe::RigidArms arms_;
   VectorXd scale_;
   MatrixXd Phi_, Phi_R_, C_, CR_inverse_;
   /// Loads W = M ψ whose work on u is ηᵀK, ψ = Φ Λ without rigid-body motion; at the ends of arms too.

@@ -104,7 +104,7 @@ void check_third_order(const BodyRequest& request, const fe::Model& model) {
           "use basis = \"normal\" without residual vectors, or " + second);
   if (request.given) return;
   std::vector<std::string> joined;
-  const RigidArms arms(model);
+  const fe::RigidArms arms(model);
   for (const int id : arms.others()) {
     if (joined.size() < 6) add_unfit(joined, std::to_string(id));
   }

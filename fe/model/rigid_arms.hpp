@@ -3,10 +3,9 @@
 /// motions beyond first order.
 #include <vector>
 
-#include "fe/corotational/series.hpp"
 #include "fe/model/model.hpp"
 
-namespace bough::stiffening {
+namespace bough::fe {
 
 /// A grid at the end of an arm on another one: its translations, its rotations or both follow.
 struct RigidArm {
@@ -18,7 +17,7 @@ struct RigidArm {
 class RigidArms {
  public:
   /// Read off the constraint equations u_g = T u_f of the model, chains resolved.
-  explicit RigidArms(const fe::Model& model);
+  explicit RigidArms(const Model& model);
 
   const std::vector<RigidArm>& list() const { return arms_; }
   /// The arm of a node; nullptr: it moves by itself.
@@ -31,4 +30,4 @@ class RigidArms {
   std::vector<int> others_;
 };
 
-}  // namespace bough::stiffening
+}  // namespace bough::fe

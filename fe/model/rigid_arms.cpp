@@ -1,4 +1,4 @@
-#include "stiffening/rigid_arms.hpp"
+#include "fe/model/rigid_arms.hpp"
 
 #include <algorithm>
 #include <map>
@@ -6,7 +6,7 @@
 
 #include "base/rotation.hpp"
 
-namespace bough::stiffening {
+namespace bough::fe {
 namespace {
 
 using Eigen::Vector3d;
@@ -17,10 +17,10 @@ constexpr double kEquationTolerance = 1e-9;
 /// Coefficients of three motions by the f-dofs that they depend on.
 using Rows = std::map<int, Vector3d>;
 
-Rows get_rows(const fe::Model& model, int first_gdof) {
+Rows get_rows(const Model& model, int first_gdof) {
   Rows rows;
   for (int a = 0; a < 3; ++a)
-    for (fe::SparseRows::InnerIterator it(model.T(), first_gdof + a); it; ++it) {
+    for (SparseRows::InnerIterator it(model.T(), first_gdof + a); it; ++it) {
       if (it.value() == 0) continue;
       rows.try_emplace(static_cast<int>(it.col()), Vector3d::Zero()).first->second[a] = it.value();
     }
@@ -45,7 +45,7 @@ bool is_rigid(const Rows& rows, const Rows& u, const Rows& theta, const Vector3d
 
 }  // namespace
 
-RigidArms::RigidArms(const fe::Model& model) {
+RigidArms::RigidArms(const Model& model) {
   std::vector<int> owner(static_cast<std::size_t>(model.num_fdofs()));
   for (int q = 0; q < model.num_fdofs(); ++q)
     owner[static_cast<std::size_t>(q)] = model.find_node(model.describe_fdof(q).first);
@@ -56,13 +56,13 @@ RigidArms::RigidArms(const fe::Model& model) {
     return nodes;
   };
   for (std::size_t k = 0; k < model.nodes().size(); ++k) {
-    const fe::Node& node = model.nodes()[k];
+    const Node& node = model.nodes()[k];
     RigidArm arm;
     arm.node = static_cast<int>(k);
     bool is_joined = false, is_known = true;
     for (int part = 0; 3 * part < node.num_dofs; ++part) {
       if (node.num_dofs != 6) {
-        for (fe::SparseRows::InnerIterator it(model.T(), node.first_gdof); it; ++it)
+        for (SparseRows::InnerIterator it(model.T(), node.first_gdof); it; ++it)
           if (it.value() != 0 && owner[static_cast<std::size_t>(it.col())] != arm.node) is_joined = true;
         is_known = !is_joined;
         break;
@@ -71,7 +71,7 @@ RigidArms::RigidArms(const fe::Model& model) {
       const auto parents = list_others(rows, arm.node);
       if (parents.empty()) continue;
       const int parent = *parents.begin();
-      const fe::Node& other = model.nodes()[static_cast<std::size_t>(parent)];
+      const Node& other = model.nodes()[static_cast<std::size_t>(parent)];
       is_known = is_known && parents.size() == 1 && other.num_dofs == 6 && (!is_joined || parent == arm.parent);
       is_joined = true;
       if (!is_known) break;
@@ -92,4 +92,4 @@ const RigidArm* RigidArms::find(int node) const {
   return found != arms_.end() && found->node == node ? &*found : nullptr;
 }
 
-}  // namespace bough::stiffening
+}  // namespace bough::fe
