@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 
 namespace bough::analysis {
 
@@ -74,13 +75,51 @@ void note_solution(const records::Deck& deck, Diagnostics& diagnostics) {
                                               : "this is the linear solution of the cards as they stand");
 }
 
-void demand_static_solution(const records::Deck& deck, bool is_linear, Diagnostics& diagnostics) {
+namespace {
+
+bool has_large_displacements(const records::Deck& deck) {
+  const auto* found = deck.find_param("LGDISP");
+  return found && (found->value == "1" || found->value == "2");
+}
+
+/// Names of the cards of the deck that make its elements nonlinear, those that are passed over among them.
+std::string list_nonlinear_cards(const records::Deck& deck) {
+  static const std::set<std::string> names{"MATS1",   "MATEP",    "MATHE",   "MATHP",   "CREEP",
+                                           "CGAP",    "BCONTACT", "BCTABLE", "BCTSET",  "BLSEG",
+                                           "BOUTPUT", "MATVE",    "MATVP",   "PLSOLID", "PLPLANE"};
+  std::string text;
+  for (const auto& card : deck.unused)
+    if (names.count(card.name) > 0) text += (text.empty() ? "" : ", ") + card.name;
+  return text;
+}
+
+}  // namespace
+
+bool is_nonlinear_sequence(const records::Deck& deck) {
   const auto* other = find_other_solution(deck.sol);
-  if (other && other->has_nonlinear_statics && !is_linear)
+  return other && other->has_nonlinear_statics;
+}
+
+bool choose_static_solution(const records::Deck& deck, bool is_linear, bool is_nonlinear, Diagnostics& diagnostics) {
+  const bool is_sequence = is_nonlinear_sequence(deck);
+  if (is_linear && is_nonlinear)
+    throw InputError("cli.nonlinear-static", {}, "found both --linear and --nonlinear", "give one of them");
+  const bool is_chosen = is_nonlinear || (is_sequence && !is_linear && has_large_displacements(deck));
+  if (is_chosen) {
+    if (const auto cards = list_nonlinear_cards(deck); !cards.empty())
+      throw InputError("cli.nonlinear-static", deck.locate({0, 0}),
+                       cards + " describe nonlinear materials or contact, found a solution of elastic materials",
+                       "take these cards away, or give --linear");
+    return true;
+  }
+  if (is_sequence && !is_linear)
     throw InputError("cli.nonlinear-static", deck.locate({0, 0}),
-                     fmt::format("SOL {} is {}, found no --linear", deck.sol, other->name),
-                     "bough static --linear gives the linear solution of the cards as they stand");
+                     fmt::format("SOL {} is {}, found neither PARAM,LGDISP,1 nor --linear", deck.sol,
+                                 find_other_solution(deck.sol)->name),
+                     "bough static --nonlinear solves with large displacements and elastic materials, --linear the "
+                     "cards as they stand");
   note_solution(deck, diagnostics);
+  return false;
 }
 
 bool asks_complex_modes(const records::Deck& deck, const std::vector<std::string>& ignored) {

@@ -12,7 +12,12 @@ void note_solution(const records::Deck& deck, Diagnostics& diagnostics);
 
 /// Static solutions of a SOL that is nonlinear in its statics only when asked for: throws
 /// InputError("cli.nonlinear-static") unless `is_linear`, else notes as note_solution.
-void demand_static_solution(const records::Deck& deck, bool is_linear, Diagnostics& diagnostics);
+/// Returns true if the statics of a deck are to be solved with large displacements: on request, or where a nonlinear
+/// SOL has PARAM,LGDISP,1 or 2. Throws cli.nonlinear-static for a nonlinear SOL without any of these, and for cards of
+/// nonlinear material and contact; notes what a linear solution leaves out.
+bool choose_static_solution(const records::Deck& deck, bool is_linear, bool is_nonlinear, Diagnostics& diagnostics);
+/// SOL 106 and its like: a subcase starts where the one before it ended.
+bool is_nonlinear_sequence(const records::Deck& deck);
 
 /// Returns true for SOL 107, 110 and their kin unless CMETHOD (or EIGC) is among the names of --ignore.
 bool asks_complex_modes(const records::Deck& deck, const std::vector<std::string>& ignored);

@@ -93,9 +93,16 @@ StaticAnswer solve_static(const StaticRequest& request, StaticReceiver& receiver
   Diagnostics diagnostics;
   const auto deck = read_static_deck(request, diagnostics);
   std::vector<records::Subcase> subcases;
+  bool is_nonlinear = false;
   with_prior_messages(diagnostics, [&] {
     subcases = fe::choose_static_subcases(deck, request.model.subcase);
-    demand_static_solution(deck, request.is_linear, diagnostics);
+    is_nonlinear = choose_static_solution(deck, request.is_linear, request.is_nonlinear, diagnostics);
+    if (is_nonlinear && is_one_of_many())
+      throw InputError("cli.nonlinear-ranks", {}, "nonlinear statics run on one process, found several ranks",
+                       "leave mpirun out");
+    if (is_nonlinear && !request.grid_forces.empty())
+      throw InputError("cli.nonlinear-output", {}, "--grid-forces lists forces of linear elements",
+                       "leave it out, or give --linear");
     check_forces_grids(read_grids(request.grid_forces), deck);
   });
   if (subcases.empty()) {  // build_model() reports it
@@ -103,15 +110,20 @@ StaticAnswer solve_static(const StaticRequest& request, StaticReceiver& receiver
     subcases.back().id = request.model.subcase;
   }
   fe::CaseSolver solver(deck, make_model_options(request.model));
+  if (is_nonlinear) solver.ask_nonlinear({request.num_increments}, is_nonlinear_sequence(deck));
   StaticAnswer answer{SubcaseFailures(subcases.size(), deck.subcases.size()), {}, {}};
   std::optional<ListingMaker> listing;
   const auto requests = read_requests_once(request.deck, diagnostics);
   if (request.has_strains || asks_for(requests, "STRAIN")) solver.ask_strains();
   if (request.has_listing) listing.emplace(deck, requests, diagnostics);
-  const bool lists_forces = listing && asks_for(requests, "GPFORCE");
+  const bool lists_forces = listing && asks_for(requests, "GPFORCE") && !is_nonlinear;
   if (lists_forces || !request.grid_forces.empty())
     solver.ask_grid_forces(lists_forces ? std::vector<int>{} : read_grids(request.grid_forces));
   if (!listing) note_requests(deck, requests, {{"ESE", "--f06 FILE, or -o FILE.h5,"}}, diagnostics);
+  if (is_nonlinear && !requests.combinations.empty())
+    diagnostics.error("cli.nonlinear-combination", deck.locate({}),
+                      "SUBCOM, SYMCOM or REPCASE adds subcases, which nonlinear solutions do not allow",
+                      "take it away, or give --linear");
   if (!listing && request.grid_forces.empty())
     note_requests(deck, requests, {{"GPFORCE", "--f06 FILE, or --grid-forces all,"}}, diagnostics);
   diagnostics.throw_if_errors();

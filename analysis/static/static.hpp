@@ -18,8 +18,11 @@ struct StaticRequest {
   ModelChoice model;
   std::vector<std::string> grid_forces;  ///< ids of grids whose forces are listed, or "all"; empty: none
   bool is_linear = false;                ///< the linear solution of a nonlinear SOL
-  bool has_strains = false;              ///< strains of elements too
-  bool has_listing = false;              ///< print file of the output requests
+  /// Large displacements and rotations; also without it where a nonlinear SOL has PARAM,LGDISP,1 or 2.
+  bool is_nonlinear = false;
+  int num_increments = 10;   ///< of each subcase of these
+  bool has_strains = false;  ///< strains of elements too
+  bool has_listing = false;  ///< print file of the output requests
 };
 
 /// Takes the subcases in the order of the deck, those of one model together, combinations last.
@@ -43,7 +46,8 @@ struct StaticAnswer {
 };
 
 /// Solves every subcase with a load, or the requested one, then SUBCOM, SYMCOM and REPCASE. Collective.
-/// \throws InputError "cli.bad-grids", "cli.nonlinear-static"; the failures of all subcases if none has a solution;
+/// \throws InputError "cli.bad-grids", "cli.nonlinear-static", "cli.nonlinear-output",
+/// "cli.nonlinear-ranks"; the failures of all subcases if none has a solution;
 /// what reading and fe throw.
 StaticAnswer solve_static(const StaticRequest& request, StaticReceiver& receiver, Events& events);
 

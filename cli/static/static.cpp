@@ -82,7 +82,7 @@ int run_static(const StaticOptions& options) {
 
 void add_static(CLI::App& app, Action& action) {
   auto o = std::make_shared<StaticOptions>();
-  auto* verb = add_verb(app, "static", "Static solution (SOL 101) of every subcase with a load");
+  auto* verb = add_verb(app, "static", "Static solution (SOL 101, 106) of every subcase with a load");
   verb->add_option("deck", o->request.deck, "Nastran deck")->required();
   verb->add_flag("--full", o->full, "Every grid and element instead of the largest values");
   verb->add_flag("--extremes,--maxmin", o->has_extremes,
@@ -92,6 +92,10 @@ void add_static(CLI::App& app, Action& action) {
   verb->add_flag("--cd", o->in_cd, "Print vectors in the displacement (CD) axes of each grid, not in basic");
   verb->add_flag("--linear", o->request.is_linear,
                  "Solve the cards linearly though SOL is nonlinear (106, 129, 400, ...)");
+  verb->add_flag("--nonlinear", o->request.is_nonlinear,
+                 "Large displacements and rotations, elastic materials; the way of SOL 106 with PARAM,LGDISP,1");
+  verb->add_option("--increments", o->request.num_increments, "Load steps of each nonlinear subcase (default: 10)")
+      ->check(CLI::Range(1, 100000));
   verb->add_option("--vtu", o->vtu, "Write the displacements of every subcase to this file for ParaView");
   verb->add_option("--grid-forces", o->request.grid_forces,
                    "List every force on these grids, or on all: elements, loads, SPC")

@@ -19,13 +19,16 @@ constexpr double kRotationWeight = 1e-3;
 constexpr double kRigidTolerance = 1e-8;   // of K times rigid-body motion
 constexpr double kRangeTolerance = 1e-13;  // of eigenvalues of K scaled by its diagonal
 
-/// Inverse without directions about which nothing turns the frame (rods).
+}  // namespace
+
 Matrix3d invert_symmetric(const Matrix3d& A) {
   const Eigen::SelfAdjointEigenSolver<Matrix3d> eigen(A);
   Vector3d inverse = eigen.eigenvalues();
   for (double& value : inverse) value = value > 1e-12 * eigen.eigenvalues()[2] ? 1 / value : 0;
   return eigen.eigenvectors() * inverse.asDiagonal() * eigen.eigenvectors().transpose();
 }
+
+namespace {
 
 /// X of K X = B, least squares, in units of the diagonal.
 MatrixXd solve_in_range(const MatrixXd& K, const MatrixXd& B) {
@@ -60,11 +63,10 @@ bool CorotationalElement::find_nodes(const Element& element, const std::vector<N
     return it == gdofs.end() ? -1 : static_cast<int>(it - gdofs.begin());
   };
   std::vector<Vector3d> places;
-  std::vector<int> seen;
   int num_rows = 0;
   for (const int index : element.nodes()) {
-    if (std::find(seen.begin(), seen.end(), index) != seen.end()) continue;
-    seen.push_back(index);
+    if (std::find(grids_.begin(), grids_.end(), index) != grids_.end()) continue;
+    grids_.push_back(index);
     const Node& node = nodes[static_cast<std::size_t>(index)];
     const int row = find_row(node.first_gdof);
     const auto is_block = [&](int first) {
@@ -87,6 +89,8 @@ bool CorotationalElement::find_nodes(const Element& element, const std::vector<N
 }
 
 bool CorotationalElement::is_free_of_rigid_motion() const {
+  // The row of a dof that the motion hardly strains has roundoff alone: its size is that of the diagonals.
+  const VectorXd size = K_.diagonal().cwiseMax(0).cwiseSqrt();
   for (int c = 0; c < 6; ++c) {
     VectorXd u = VectorXd::Zero(K_.rows());
     for (std::size_t k = 0; k < translations_.size(); ++k) {
@@ -94,7 +98,7 @@ bool CorotationalElement::is_free_of_rigid_motion() const {
       u.segment<3>(translations_[k]) = c < 3 ? e : Vector3d(e.cross(arms_.col(static_cast<Eigen::Index>(k))));
       if (c >= 3 && rotations_[k] >= 0) u.segment<3>(rotations_[k]) = e;
     }
-    if (((K_ * u).array().abs() > kRigidTolerance * (K_.cwiseAbs() * u.cwiseAbs()).array()).any()) return false;
+    if (((K_ * u).array().abs() > kRigidTolerance * size.dot(u.cwiseAbs()) * size.array()).any()) return false;
   }
   return true;
 }

@@ -7,6 +7,25 @@
 
 namespace bough::fe {
 
+/// An element under finite motion. Dofs as of the element; rotations of the forces are spins in basic.
+struct FiniteForces {
+  VectorXd d;           ///< N: deformations seen from the frame; a linear element gives its forces and stresses of them
+  VectorXd f;           ///< N: forces, moments
+  MatrixXd K;           ///< N x N: ∂f by displacements and spins; symmetric where the moments are zero
+  double energy = 0;    ///< V
+  double max_turn = 0;  ///< largest angle between a node and the frame, rad
+  VectorXd g;           ///< N: ∂V/∂d
+  MatrixXd H;           ///< N x N: ∂g/∂d
+};
+
+/// Inverse of a symmetric matrix without directions whose eigenvalue is 1e-12 of the largest (rods: no twist).
+Matrix3d invert_symmetric(const Matrix3d& A);
+/// T⁻¹(θ) of calc_rotation_tangent, and θ of exp(θ̃) = R, |θ| ≤ π.
+Matrix3d calc_inverse_rotation_tangent(const Vector3d& theta);
+Vector3d calc_rotation_log(const Matrix3d& R);
+/// ∂(T⁻ᵀ(θ) g)/∂θ with g fixed.
+Matrix3d calc_inverse_tangent_slope(const Vector3d& theta, const Vector3d& g);
+
 class CorotationalElement {
  public:
   /// `nodes`: those that element.nodes() and gdofs() index. Both are read here only. Computes K⁺ and K_G of every unit
@@ -21,6 +40,10 @@ class CorotationalElement {
   /// u, result: N x 5 m for m curves, the five orders of each side by side.
   MatrixXd calc_forces(const Eigen::Ref<const MatrixXd>& u) const;
 
+  /// Forces and stiffness of a finite motion. u: N, displacements in basic, rows of rotations unread; `rotations`: of
+  /// grids(), identity where it has none. Needs follows_nodes().
+  FiniteForces calc_finite(const Eigen::Ref<const VectorXd>& u, const std::vector<Matrix3d>& rotations) const;
+
   /// Parts of V, for tests: V = ½ dᵀKd + ½ Σ (F d)_m w_m + ⅛ wᵀEw, w_m = dᵀP_m d.
   const MatrixXd& K() const { return K_; }
   const MatrixXd& F() const { return F_; }
@@ -32,18 +55,20 @@ class CorotationalElement {
   const std::vector<int>& translations() const { return translations_; }
   const std::vector<int>& rotations() const { return rotations_; }
   double rotation_weight() const { return rotation_weight_; }
+  const std::vector<int>& grids() const { return grids_; }  ///< indices of the nodes, each once
 
  private:
   bool find_nodes(const Element& element, const std::vector<Node>& nodes);
   bool is_free_of_rigid_motion() const;
   void set_frame();
   void set_local_strains(const Element& element);
+  void calc_local_forces(FiniteForces& result) const;
 
   bool follows_nodes_ = false;
   MatrixXd K_, F_, E_;
   std::vector<MatrixXd> P_;
   Matrix3Xd arms_;
-  std::vector<int> translations_, rotations_;
+  std::vector<int> grids_, translations_, rotations_;
   double rotation_weight_ = 0;
   Matrix3d frame_inverse_ = Matrix3d::Zero();
 };

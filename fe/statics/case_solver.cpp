@@ -3,7 +3,9 @@
 #include <algorithm>
 
 #include "fe/loads/enforced.hpp"
+#include "fe/loads/load_sets.hpp"
 #include "fe/matrices/system.hpp"
+#include "fe/model/element_loop.hpp"
 #include "fe/statics/build_model.hpp"
 #include "fe/statics/element_results.hpp"
 #include "fe/statics/preload.hpp"
@@ -72,7 +74,7 @@ std::vector<CaseSolver::Solved> CaseSolver::solve_next(std::span<const records::
   // Heated elements keep a kilobyte each and subcase.
   std::size_t count = 0, num_heated = 0;
   const std::size_t most = choose_group(left.size());
-  for (; count < most && is_prepared_for(left[count]); ++count)
+  for (; count < (nonlinear_ ? 1 : most) && is_prepared_for(left[count]); ++count)
     if (left[count].temperature != 0 && ++num_heated > kMostHeated) break;
   solved.resize(count);
   std::vector<StaticLoad> loads(count);
@@ -95,7 +97,8 @@ std::vector<CaseSolver::Solved> CaseSolver::solve_next(std::span<const records::
     result.spc_set = subcase.spc;
     result.mpc_set = subcase.mpc;
   }
-  const MatrixXd energy = solve_displacements(loads, solved);
+  if (nonlinear_ && solved.front().result) solve_nonlinear(loads.front(), solved.front());
+  const MatrixXd energy = nonlinear_ ? MatrixXd() : solve_displacements(loads, solved);
   add_element_results(loads, energy, solved);
   return solved;
 }
@@ -133,6 +136,26 @@ MatrixXd CaseSolver::solve_displacements(std::span<const StaticLoad> loads, std:
   return {};
 }
 
+void CaseSolver::solve_nonlinear(const StaticLoad& load, Solved& solved) {
+  auto& [found, failure, diagnostics] = solved;
+  auto& result = *found;
+  try {
+    if (!suport_.fdofs.empty())
+      throw InputError("fe.nonlinear-model", deck_.locate({}), "SUPORT and inertia relief hold a linear model",
+                       "hold the structure by SPC, or give --linear");
+    if (!calc_beam_end_loads(*model_, deck_, result.load_set, diagnostics).empty())
+      throw InputError("fe.nonlinear-load", deck_.locate({}),
+                       "PLOAD1 of set " + std::to_string(result.load_set) + " loads beams between their grids",
+                       "give forces on the grids, or --linear");
+    if (!path_ || !continues_) path_ = std::make_unique<NonlinearStatics>(*model_, deck_);
+    path_->go_to(load, *nonlinear_, diagnostics);
+    take(path_->make_result(), result);
+  } catch (const Failure&) {
+    failure = std::current_exception();
+    found.reset();
+  }
+}
+
 void CaseSolver::add_element_results(std::span<const StaticLoad> loads, const MatrixXd& energy,
                                      std::span<Solved> solved) {
   if (!layout_) layout_.emplace(*model_, deck_, RecoveredFields{true, true, has_strains_});
@@ -141,10 +164,19 @@ void CaseSolver::add_element_results(std::span<const StaticLoad> loads, const Ma
   for (std::size_t k = 0; k < solved.size(); ++k) {
     if (!solved[k].result) continue;
     auto& result = *solved[k].result;
-    cases.push_back({&result.displacement, result.load_set, &loads[k].initial, &solved[k].said});
+    cases.push_back({&result.displacement, result.load_set, &loads[k].initial, &solved[k].said,
+                     nonlinear_ ? &path_->deformations() : nullptr});
     of.push_back(k);
   }
-  auto fields = recover_elements(*model_, deck_, cases, *layout_, energy.size() > 0 ? &energy : nullptr);
+  MatrixXd own_energy;
+  if (nonlinear_ && !of.empty()) {
+    own_energy = path_->energies();
+    visit_elements(*model_, get_all_elements(*model_), [&](int e, const Element&) {
+      if (!get_own_elements(*model_).contains(e)) own_energy(e, 0) = 0;
+    });
+  }
+  const MatrixXd& known = nonlinear_ ? own_energy : energy;
+  auto fields = recover_elements(*model_, deck_, cases, *layout_, known.size() > 0 ? &known : nullptr);
   for (std::size_t c = 0; c < of.size(); ++c) {
     auto& result = *solved[of[c]].result;
     result.elements = std::move(fields[c].forces);
@@ -167,6 +199,7 @@ void CaseSolver::prepare(const records::Subcase& subcase, Diagnostics& diagnosti
   failure_ = nullptr;
   solver_.reset();
   layout_.reset();
+  path_.reset();
   try {
     Diagnostics own;
     options_.subcase = subcase.id;

@@ -6,6 +6,7 @@
 #include <span>
 
 #include "fe/statics/element_recovery.hpp"
+#include "fe/statics/nonlinear.hpp"
 #include "fe/statics/static_case.hpp"
 
 namespace bough::fe {
@@ -23,6 +24,13 @@ class CaseSolver {
 
   /// Strains of elements beside their stresses.
   void ask_strains() { has_strains_ = true; }
+
+  /// Large displacements and rotations (nonlinear.hpp). `continues`: a subcase starts where the one before it ended, as
+  /// in SOL 106, while both are held alike; else undeformed.
+  void ask_nonlinear(const NonlinearOptions& options, bool continues) {
+    nonlinear_ = options;
+    continues_ = continues;
+  }
 
   /// The result of a subcase, or what is wrong with it alone.
   struct Solved {
@@ -43,6 +51,7 @@ class CaseSolver {
   /// Without the fields of elements. Those with a result are solved together where nothing is wrong with any.
   /// Strain energies of this rank's elements, elements x those that are solved; empty where each was solved alone.
   MatrixXd solve_displacements(std::span<const StaticLoad> loads, std::span<Solved> solved) const;
+  void solve_nonlinear(const StaticLoad& load, Solved& solved);
   void add_element_results(std::span<const StaticLoad> loads, const MatrixXd& energy, std::span<Solved> solved);
 
   const records::Deck& deck_;
@@ -55,6 +64,9 @@ class CaseSolver {
   std::unique_ptr<StaticSolver> solver_;
   std::optional<RecoveryLayout> layout_;
   Suport suport_;
+  std::optional<NonlinearOptions> nonlinear_;
+  bool continues_ = false;
+  std::unique_ptr<NonlinearStatics> path_;  ///< of the last subcase
 };
 
 }  // namespace bough::fe

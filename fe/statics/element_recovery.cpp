@@ -269,9 +269,14 @@ std::vector<ElementResults> recover_elements(const Model& model, const records::
     if (!layout.forces.holds(e) && !layout.stresses.holds(e) && !layout.strains.holds(e)) return;
     const auto& gdofs = element.gdofs();
     Current at{element, e, half, MatrixXd(element.num_dofs(), static_cast<Index>(cases.size()))};
-    for (std::size_t c = 0; c < cases.size(); ++c)
+    for (std::size_t c = 0; c < cases.size(); ++c) {
+      if (cases[c].deformations) {
+        at.U.col(static_cast<Index>(c)) = (*cases[c].deformations)[static_cast<std::size_t>(e)];
+        continue;
+      }
       for (std::size_t i = 0; i < gdofs.size(); ++i)
         at.U(static_cast<Index>(i), static_cast<Index>(c)) = (*cases[c].u_g)[gdofs[i]];
+    }
     if (is_heated)
       for (const auto& one : cases) at.heated.push_back(one.initial ? one.initial->find(element) : nullptr);
     find_forces(cases, end_loads, at);

@@ -10,6 +10,8 @@ struct RecoveryCase {
   int load = 0;                            ///< LOAD: loads along beams; 0: none
   const InitialForces* initial = nullptr;  ///< of heated elements
   Diagnostics* said = nullptr;             ///< of the loads along beams; may be null
+  /// Displacements of each element instead of those of u_g: deformations seen from its frame (nonlinear.hpp).
+  const std::vector<VectorXd>* deformations = nullptr;
 };
 
 struct RecoveredFields {

@@ -161,12 +161,15 @@ class StaticRecord final : public analysis::StaticReceiver {
 
 /// The bytes of the HDF5 file, and the messages.
 py::tuple solve_static(const std::string& deck, int subcase, bool free, const std::string& mass, Strings ignore,
-                       Strings grid_forces, bool linear, bool strains, bool extremes, const py::object& progress) {
+                       Strings grid_forces, bool linear, bool nonlinear, int increments, bool strains, bool extremes,
+                       const py::object& progress) {
   analysis::StaticRequest request;
   request.deck = deck;
   request.model = make_model_choice(subcase, free, mass, std::move(ignore));
   request.grid_forces = std::move(grid_forces);
   request.is_linear = linear;
+  request.is_nonlinear = nonlinear;
+  request.num_increments = increments;
   request.has_strains = strains;
   std::string image;
   auto messages = run(deck, progress, [&](PythonEvents& events) {
@@ -237,8 +240,8 @@ void bind_analyses(py::module_& m) {
         py::arg("mass") = "deck", py::arg("ignore") = Strings(), py::arg("progress") = none);
   m.def("static", &solve_static, py::arg("deck"), py::kw_only(), py::arg("subcase") = 0, py::arg("free") = false,
         py::arg("mass") = "deck", py::arg("ignore") = Strings(), py::arg("grid_forces") = Strings(),
-        py::arg("linear") = false, py::arg("strains") = false, py::arg("extremes") = false, py::arg("progress") = none,
-        "The bytes of the file of bough static.");
+        py::arg("linear") = false, py::arg("nonlinear") = false, py::arg("increments") = 10, py::arg("strains") = false,
+        py::arg("extremes") = false, py::arg("progress") = none, "The bytes of the file of bough static.");
   m.def("select", &select, py::arg("file"), py::arg("body"), py::kw_only(), py::arg("systems") = Strings(),
         py::arg("inputs") = Strings(), py::arg("outputs") = Strings(), py::arg("weight") = Strings(),
         py::arg("spectrum") = "", py::arg("number") = 0, py::arg("tolerance") = none, py::arg("below") = 0.0,

@@ -107,14 +107,15 @@ def modes(deck, number=None, *, min_hz=None, max_hz=None, buckling=False, no_che
     return found
 
 
-def static(deck, *, subcase=0, free=False, mass="deck", ignore=(), grid_forces=(), linear=False, strains=False,
-           extremes=False, progress=None):
+def static(deck, *, subcase=0, free=False, mass="deck", ignore=(), grid_forces=(), linear=False, nonlinear=False,
+           increments=10, strains=False, extremes=False, progress=None):
     """Static solutions of a deck, as reader.File in memory: displacements, reactions, element forces by path.
 
     Options as of `bough static`; grid_forces="all" or ids.
     """
     image, _ = _bough.static(_os.fspath(deck), subcase=subcase, free=free, mass=mass, ignore=_list(ignore),
-                             grid_forces=[str(word) for word in _list(grid_forces)], linear=linear, strains=strains,
+                             grid_forces=[str(word) for word in _list(grid_forces)], linear=linear,
+                             nonlinear=nonlinear, increments=increments, strains=strains,
                              extremes=extremes, progress=progress)
     with _bough.Exclusive():  # the reader uses the same HDF5
         return reader.File(_os.fspath(deck), _io.BytesIO(image))

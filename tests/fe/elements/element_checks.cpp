@@ -127,6 +127,65 @@ struct FrameCheck {
   CorotationalElement corotational;
 };
 
+/// Displacements and rotations of an element's nodes.
+struct FiniteMotion {
+  VectorXd u;
+  std::vector<Matrix3d> R;
+
+  /// Displacements and spins `step` more.
+  FiniteMotion move(const FrameCheck& check, const VectorXd& step) const {
+    FiniteMotion moved = *this;
+    moved.u += step;
+    for (int k = 0; k < check.num_nodes(); ++k) {
+      auto& R_k = moved.R[static_cast<std::size_t>(k)];
+      if (check.get_rotation(k) >= 0) R_k = calc_rotation_exp(step.segment<3>(check.get_rotation(k))) * R_k;
+    }
+    return moved;
+  }
+  FiniteForces calc(const FrameCheck& check) const { return check.corotational.calc_finite(u, R); }
+};
+
+/// Forces are the slope of the energy, their slope is K, a turned element has turned forces, and small motions are
+/// those of the series.
+void expect_finite_forces(const FrameCheck& check, const VectorXd& a, const VectorXd& b) {
+  const VectorXd& size = check.corotational.K().diagonal();
+  const double length = std::max(check.corotational.arms().colwise().norm().maxCoeff(), 1e-3);
+  VectorXd unit = VectorXd::Ones(a.size());  // translations by the size of the element
+  for (int k = 0; k < check.num_nodes(); ++k) unit.segment<3>(check.get_translation(k)) *= length;
+  FiniteMotion rest{VectorXd::Zero(a.size()),
+                    std::vector<Matrix3d>(check.corotational.grids().size(), Matrix3d::Identity())};
+  const Matrix3d turn = calc_rotation_exp(Vector3d(1.1, -0.7, 1.9));
+  FiniteMotion turned = rest;
+  for (int k = 0; k < check.num_nodes(); ++k) {
+    turned.u.segment<3>(check.get_translation(k)) = turn * check.get_arm(k) - check.get_arm(k) + Vector3d(3, -2, 5);
+    if (check.get_rotation(k) >= 0) turned.R[static_cast<std::size_t>(k)] = turn;
+  }
+  const double stiff = (size.array() * unit.array().square()).maxCoeff();
+  EXPECT_LT((turned.calc(check).f.array() * unit.array()).abs().maxCoeff(), 1e-12 * stiff) << check.element.card();
+
+  const FiniteMotion bent = turned.move(check, VectorXd(0.1 * unit.cwiseProduct(a)));
+  const FiniteForces forces = bent.calc(check);
+  const double h = 2e-5;
+  const VectorXd step = h * unit.cwiseProduct(b);
+  const FiniteForces after = bent.move(check, step).calc(check), before = bent.move(check, VectorXd(-step)).calc(check);
+  EXPECT_NEAR((after.energy - before.energy) / 2, forces.f.dot(step), 1e-6 * h * stiff) << check.element.card();
+  const VectorXd slope = (after.f - before.f).cwiseProduct(unit) / 2, expected = (forces.K * step).cwiseProduct(unit);
+  EXPECT_LT((slope - expected).norm(), 1e-6 * expected.norm()) << check.element.card();
+
+  const VectorXd small = 0.01 * unit.cwiseProduct(a);
+  MatrixXd curve = MatrixXd::Zero(a.size(), kSeriesTop);
+  curve.col(0) = small;
+  const VectorXd series = check.corotational.calc_forces(curve).rowwise().sum();
+  VectorXd exact = rest.move(check, small).calc(check).f;
+  for (int k = 0; k < check.num_nodes(); ++k) {
+    if (check.get_rotation(k) < 0) continue;
+    const Vector3d theta = small.segment<3>(check.get_rotation(k));
+    exact.segment<3>(check.get_rotation(k)) =
+        (calc_rotation_tangent(theta).transpose() * exact.segment<3>(check.get_rotation(k))).eval();
+  }
+  EXPECT_LT((series - exact).cwiseProduct(unit).norm(), 1e-7 * exact.cwiseProduct(unit).norm()) << check.element.card();
+}
+
 }  // namespace
 
 void expect_third_derivative_of_geometric(const SmallModel& m, double tolerance) {
@@ -140,6 +199,7 @@ void expect_third_derivative_of_geometric(const SmallModel& m, double tolerance)
     const VectorXd a = make_random(71, n), b = make_random(72, n), c = make_random(73, n);
     const auto local = check.compare(check.remove_rotation(a), check.remove_rotation(b), check.remove_rotation(c));
     EXPECT_NEAR(local[0], local[1], 1e-9) << element->card();
+    expect_finite_forces(check, a, b);
     const auto whole = check.compare(a, b, c);
     EXPECT_NEAR(whole[0], whole[1], tolerance) << element->card();
     const Vector3d omega(0.3, -0.5, 0.8);

@@ -1,0 +1,386 @@
+#include "fe/statics/nonlinear.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <optional>
+
+#include "base/rotation.hpp"
+#include "fe/linear/factor.hpp"
+#include "fe/model/element_loop.hpp"
+#include "fe/statics/reactions.hpp"
+
+namespace bough::fe {
+
+namespace {
+
+using Eigen::Index;
+using Triplets = std::vector<Eigen::Triplet<double>>;
+
+constexpr int kMaxHalvings = 6;
+/// Work of the last correction relative to the strain energy: the correction before it is applied as well, so that the
+/// error left is of the order of its square.
+constexpr double kWorkTolerance = 1e-20;
+/// Limit of that ratio where round-off of stiff parts keeps the corrections from falling.
+constexpr double kStagnation = 1e-10;
+/// Largest angle between a node and its element's frame: far beyond what a linear element can say.
+constexpr double kMaxTurn = 1.5;
+/// Work of the load of a step, relative to what the tangent stiffness at its start gives. On a path that softens
+/// towards a limit point (a parabola) it is 2 at most; a jump to another branch is far above where the step is small.
+constexpr double kMaxSoftening = 2.5;
+/// Growth of that work, relative to the square of the step, from one step to the next: where a step ends at a limit
+/// point itself the stiffness there says nothing of what comes next.
+constexpr double kMaxRateGrowth = 10;
+constexpr int kMinElementsOfThread = 50;
+
+bool is_stiff(const Element& element) {
+  MatrixXd K = MatrixXd::Zero(element.num_dofs(), element.num_dofs());
+  element.add_stiffness(1, K);
+  return !K.isZero(0);
+}
+
+/// LLᵀ or LDLᵀ; none of a singular matrix.
+std::optional<linear::SymmetricFactor> factor_any(const linear::SymmetricMatrix& K) {
+  try {
+    linear::SymmetricFactor factor(K, false);
+    if (!factor.is_singular()) return factor;
+  } catch (const ComputationError&) {  // a step that is too long
+  }
+  return {};
+}
+
+std::string list_ids(const std::vector<int>& ids) {
+  constexpr std::size_t kMaxListed = 5;
+  std::string text;
+  for (std::size_t i = 0; i < std::min(ids.size(), kMaxListed); ++i)
+    text += (i > 0 ? ", " : "") + std::to_string(ids[i]);
+  return ids.size() > kMaxListed ? text + ", ... (" + std::to_string(ids.size()) + ")" : text;
+}
+
+}  // namespace
+
+/// Forces and stiffness at a state, on the g-set without the grids at rigid arms, which are those of their parents.
+struct NonlinearStatics::Tangent {
+  Eigen::SparseMatrix<double, Eigen::RowMajor> K;
+  VectorXd residual;  ///< f - F, at the grids where they act
+};
+
+NonlinearStatics::NonlinearStatics(const Model& model, const records::Deck& deck) : model_(model), arms_(model) {
+  Diagnostics diagnostics;
+  const auto at = deck.locate({});
+  if (!arms_.others().empty())
+    diagnostics.error("fe.nonlinear-link", at,
+                      "RBE3, MPC or rigid elements with some components tie grids " + list_ids(arms_.others()) +
+                          ", and large rotations know RBE2 and RBAR of whole grids only",
+                      "tie the grids by RBE2 or RBAR with 123456, or give --linear");
+  if (model.omitted() || model.prestress())
+    diagnostics.error("fe.nonlinear-model", at, "ASET, OMIT and preloads are linear, the statics are not",
+                      "take ASET, OMIT and STATSUB away, or give --linear");
+  node_of_.resize(static_cast<std::size_t>(model.num_gdofs()));
+  for (std::size_t k = 0; k < model.nodes().size(); ++k)
+    for (int i = 0; i < model.nodes()[k].num_dofs; ++i)
+      node_of_[static_cast<std::size_t>(model.nodes()[k].first_gdof + i)] = static_cast<int>(k);
+  std::vector<int> fixed_in_space;
+  for (const auto& element : model.elements()) {
+    is_stiff_.push_back(is_stiff(*element));
+    if (!is_stiff_.back() || CorotationalElement(*element, model.nodes()).follows_nodes()) continue;
+    const bool turns = std::any_of(element->gdofs().begin(), element->gdofs().end(), [&](int dof) {
+      const Node& node = model.nodes()[static_cast<std::size_t>(node_of_[static_cast<std::size_t>(dof)])];
+      return node.num_dofs == 6 && dof - node.first_gdof >= 3;
+    });
+    if (turns) fixed_in_space.push_back(element->id());
+  }
+  if (!fixed_in_space.empty())
+    diagnostics.error("fe.nonlinear-element", at,
+                      "elements " + list_ids(fixed_in_space) + " act on rotations of grids in fixed directions",
+                      "use CBUSH, whose axes turn with its grids, or give --linear");
+  diagnostics.throw_if_errors();
+  state_.u = VectorXd::Zero(model.num_gdofs());
+  state_.R.assign(model.nodes().size(), Matrix3d::Identity());
+  F_ = VectorXd::Zero(model.num_gdofs());
+  d_ = VectorXd::Zero(static_cast<Index>(model.fixed_dofs().size()));
+  deformations_.resize(model.elements().size());
+  energies_ = VectorXd::Zero(static_cast<Index>(model.elements().size()));
+}
+
+void NonlinearStatics::evaluate_element(const Element& element, FiniteForces& forces) const {
+  const CorotationalElement corotational(element, model_.nodes());
+  const VectorXd u = state_.u(element.gdofs());
+  if (!corotational.follows_nodes()) {
+    forces.d = u;
+    forces.K = corotational.K();
+    forces.f = forces.K * u;
+    forces.energy = 0.5 * u.dot(forces.f);
+    return;
+  }
+  std::vector<Matrix3d> rotations;
+  for (const int k : corotational.grids()) rotations.push_back(state_.R[static_cast<std::size_t>(k)]);
+  forces = corotational.calc_finite(u, rotations);
+}
+
+/// Dofs of grids at rigid arms become those of their parents: δu = δu_p + δφ_p × r, δφ = δφ_p.
+void NonlinearStatics::move_to_parents(const Element& element, FiniteForces& forces, std::vector<int>& gdofs) const {
+  gdofs = element.gdofs();
+  if (arms_.list().empty()) return;
+  const Index N = element.num_dofs();
+  Triplets entries;
+  std::vector<int> columns;
+  const auto find_column = [&](int dof) {
+    const auto found = std::find(columns.begin(), columns.end(), dof);
+    if (found != columns.end()) return static_cast<int>(found - columns.begin());
+    columns.push_back(dof);
+    return static_cast<int>(columns.size()) - 1;
+  };
+  bool is_moved = false;
+  for (Index i = 0; i < N; ++i) {
+    const int dof = gdofs[static_cast<std::size_t>(i)];
+    const int k = node_of_[static_cast<std::size_t>(dof)];
+    const Node& node = model_.nodes()[static_cast<std::size_t>(k)];
+    const RigidArm* arm = arms_.find(k);
+    const int component = dof - node.first_gdof;
+    if (!arm || !(component < 3 ? arm->translates : arm->rotates)) {
+      entries.emplace_back(i, find_column(dof), 1);
+      continue;
+    }
+    is_moved = true;
+    const int first = model_.nodes()[static_cast<std::size_t>(arm->parent)].first_gdof;
+    entries.emplace_back(i, find_column(first + component), 1);
+    if (component >= 3) continue;
+    const Matrix3d back = -skew(state_.R[static_cast<std::size_t>(arm->parent)] * arm->arm);
+    for (int a = 0; a < 3; ++a) entries.emplace_back(i, find_column(first + 3 + a), back(component, a));
+  }
+  if (!is_moved) return;
+  Eigen::SparseMatrix<double> A(N, static_cast<Index>(columns.size()));
+  A.setFromTriplets(entries.begin(), entries.end());
+  const MatrixXd dense = A;
+  forces.K = dense.transpose() * forces.K * dense;
+  gdofs = std::move(columns);
+}
+
+/// Forces on grids at rigid arms moved to their parents.
+VectorXd NonlinearStatics::collect_arms(VectorXd residual) const {
+  for (const RigidArm& arm : arms_.list()) {
+    const int from = model_.nodes()[static_cast<std::size_t>(arm.node)].first_gdof,
+              to = model_.nodes()[static_cast<std::size_t>(arm.parent)].first_gdof;
+    if (arm.translates) {
+      const Vector3d force = residual.segment<3>(from), r = state_.R[static_cast<std::size_t>(arm.parent)] * arm.arm;
+      residual.segment<3>(to) += force;
+      residual.segment<3>(to + 3) += r.cross(force);
+      residual.segment<3>(from).setZero();
+    }
+    if (arm.rotates) {
+      residual.segment<3>(to + 3) += residual.segment<3>(from + 3);
+      residual.segment<3>(from + 3).setZero();
+    }
+  }
+  return residual;
+}
+
+NonlinearStatics::Tangent NonlinearStatics::evaluate(const VectorXd& F) {
+  struct Sum {
+    NonlinearStatics& owner;
+    Triplets entries;
+    VectorXd f;
+    double max_turn = 0;
+
+    void add(int e, const Element& element) {
+      if (!owner.is_stiff_[static_cast<std::size_t>(e)]) {
+        owner.deformations_[static_cast<std::size_t>(e)] = VectorXd::Zero(element.num_dofs());
+        return;
+      }
+      FiniteForces forces;
+      owner.evaluate_element(element, forces);
+      max_turn = std::max(max_turn, forces.max_turn);
+      owner.deformations_[static_cast<std::size_t>(e)] = forces.d;
+      owner.energies_[e] = forces.energy;
+      f(element.gdofs()) += forces.f;
+      std::vector<int> gdofs;
+      owner.move_to_parents(element, forces, gdofs);
+      for (std::size_t i = 0; i < gdofs.size(); ++i)
+        for (std::size_t j = 0; j < gdofs.size(); ++j) {
+          const auto a = static_cast<Index>(i), b = static_cast<Index>(j);
+          const double value = 0.5 * (forces.K(a, b) + forces.K(b, a));
+          if (value != 0) entries.emplace_back(gdofs[i], gdofs[j], value);
+        }
+    }
+    void merge(Sum&& other) {
+      entries.insert(entries.end(), other.entries.begin(), other.entries.end());
+      f += other.f;
+      max_turn = std::max(max_turn, other.max_turn);
+    }
+  };
+  auto sum = sum_over_elements(model_, get_all_elements(model_), kMinElementsOfThread, [&] {
+    return Sum{*this, {}, VectorXd::Zero(model_.num_gdofs())};
+  });
+  max_turn_ = sum.max_turn;
+  energy_ = energies_.sum();
+  Tangent tangent;
+  tangent.residual = sum.f - F;
+  // The moment r × f of an arm turns with it: δ(r × f) = f̃ r̃ δφ.
+  for (const RigidArm& arm : arms_.list()) {
+    if (!arm.translates) continue;
+    const int first = model_.nodes()[static_cast<std::size_t>(arm.parent)].first_gdof + 3;
+    const Vector3d force = tangent.residual.segment<3>(model_.nodes()[static_cast<std::size_t>(arm.node)].first_gdof);
+    const Matrix3d turn = skew(force) * skew(state_.R[static_cast<std::size_t>(arm.parent)] * arm.arm);
+    for (int a = 0; a < 3; ++a)
+      for (int b = 0; b < 3; ++b) sum.entries.emplace_back(first + a, first + b, 0.5 * (turn(a, b) + turn(b, a)));
+  }
+  tangent.K.resize(model_.num_gdofs(), model_.num_gdofs());
+  tangent.K.setFromTriplets(sum.entries.begin(), sum.entries.end());
+  return tangent;
+}
+
+/// `step`: displacements and spins, num_gdofs; rows of grids at rigid arms are not read.
+void NonlinearStatics::advance(const VectorXd& step) {
+  for (std::size_t k = 0; k < model_.nodes().size(); ++k) {
+    const Node& node = model_.nodes()[k];
+    const int size = std::min(node.num_dofs, 3);
+    state_.u.segment(node.first_gdof, size) += step.segment(node.first_gdof, size);
+    if (node.num_dofs == 6) {
+      const Matrix3d R = calc_rotation_exp(step.segment<3>(node.first_gdof + 3)) * state_.R[k];
+      state_.R[k] = Eigen::Quaterniond(R).normalized().toRotationMatrix();
+    }
+  }
+  for (const RigidArm& arm : arms_.list()) {
+    const Matrix3d& R = state_.R[static_cast<std::size_t>(arm.parent)];
+    const int from = model_.nodes()[static_cast<std::size_t>(arm.parent)].first_gdof,
+              to = model_.nodes()[static_cast<std::size_t>(arm.node)].first_gdof;
+    if (arm.translates) state_.u.segment<3>(to) = state_.u.segment<3>(from) + R * arm.arm - arm.arm;
+    if (arm.rotates) state_.R[static_cast<std::size_t>(arm.node)] = R;
+  }
+}
+
+/// TᵀKT.
+linear::SymmetricMatrix NonlinearStatics::reduce(const Eigen::SparseMatrix<double, Eigen::RowMajor>& K) const {
+  const Eigen::SparseMatrix<double, Eigen::RowMajor> reduced = SparseRows(model_.T().transpose()) * K * model_.T();
+  return linear::SymmetricMatrix(reduced);
+}
+
+/// Newton's method from the state; `enforced`: steps of the fixed dofs; `share`: of the load. False where it does not
+/// come to an end, or ends on another branch of the path.
+bool NonlinearStatics::find_equilibrium(const VectorXd& F, const VectorXd& enforced, double share, int max_iterations) {
+  const auto& T = model_.T();
+  VectorXd moved = enforced.isZero(0) ? VectorXd() : VectorXd(model_.T_fixed() * enforced);
+  const VectorXd dF = F - F_;
+  double reference = 0, first_work = 0, work = 0, last = 0;
+  for (int iteration = 0; iteration <= max_iterations; ++iteration) {
+    const Tangent tangent = evaluate(F);
+    residual_ = tangent.residual;
+    if (!residual_.allFinite() || max_turn_ > kMaxTurn) return false;
+    VectorXd right = collect_arms(residual_);
+    if (moved.size() > 0) right += tangent.K * moved;
+    const VectorXd r = T.transpose() * right;
+    VectorXd q = VectorXd::Zero(T.cols());
+    if (T.cols() > 0) {
+      const linear::SymmetricMatrix K = reduce(tangent.K);
+      // Where the step begins K is definite. On the way to its end it need not be: stiff parts stretch for a while.
+      const auto factor = iteration == 0 ? linear::SymmetricFactor::try_definite(K) : factor_any(K);
+      if (!factor) return false;
+      q = -factor->solve(r);
+    }
+    if (!q.allFinite()) return false;
+    ++num_iterations_;
+    VectorXd step = T * q;
+    if (moved.size() > 0) step += moved;
+    const bool is_enforced = moved.size() > 0;
+    moved.resize(0);
+    residual_work_ = std::abs(q.dot(r));
+    advance(step);
+    work += dF.dot(step);
+    if (iteration == 0) first_work = work;
+    reference = std::max({reference, energy_, std::abs(step.dot(F))});
+    const bool stagnates = residual_work_ > 0.8 * last && residual_work_ <= kStagnation * reference;
+    last = residual_work_;
+    if (!is_enforced && (stagnates || residual_work_ <= kWorkTolerance * reference)) {
+      const bool jumps = first_work > 0 && work > kMaxSoftening * first_work;
+      const double rate = work / (share * share);
+      if (jumps || (last_rate_ > 0 && first_work > kMaxRateGrowth * last_rate_ * share * share)) return false;
+      const Tangent end = evaluate(F);
+      residual_ = end.residual;
+      if (T.cols() > 0 && !linear::SymmetricFactor::try_definite(reduce(end.K))) return false;
+      last_rate_ = rate;
+      return true;
+    }
+    if (iteration > 5 && residual_work_ > 1e6 * reference) return false;
+  }
+  return false;
+}
+
+void NonlinearStatics::go_to(const StaticLoad& load, const NonlinearOptions& options, Diagnostics& diagnostics) {
+  if (!load.initial.of.empty())
+    throw InputError("fe.nonlinear-load", {}, "temperatures load a nonlinear static subcase",
+                     "take TEMPERATURE(LOAD) away, or give --linear");
+  if (!load.followers.empty() || !load.arms.empty())
+    diagnostics.warning(
+        "fe.dead-load", {},
+        "pressures and forces on offset beams keep the direction and the arm of the undeformed structure",
+        "give small load steps as several subcases with FORCE cards where they turn far");
+  const VectorXd F_start = F_, d_start = d_, dF = load.F - F_, dd = load.d - d_;
+  const double full = 1.0 / std::max(options.num_increments, 1);
+  double reached = 0, step = full;
+  last_rate_ = 0;
+  while (reached < 1 - 1e-12) {
+    const DeformedState before = state_;
+    const double next = std::min(reached + step, 1.0);
+    const VectorXd F = F_start + next * dF;
+    if (find_equilibrium(F, (next - reached) * dd, next - reached, options.max_iterations)) {
+      reached = next;
+      F_ = F;
+      d_ = d_start + reached * dd;
+      ++num_steps_;
+      step = std::min(2 * step, full);
+      continue;
+    }
+    state_ = before;
+    step /= 2;
+    if (step < full / (1 << kMaxHalvings)) {
+      residual_ = evaluate(F_).residual;
+      char share[32];
+      std::snprintf(share, sizeof share, "%.4g", 100 * reached);
+      throw ComputationError("fe.no-equilibrium", {},
+                             "no stable static equilibrium is found beyond " + std::string(share) + " % of the load",
+                             "look for buckling or a snap-through there: lower the load, or enforce displacements");
+    }
+  }
+}
+
+VectorXd NonlinearStatics::make_displacement() const {
+  VectorXd u = state_.u;
+  for (std::size_t k = 0; k < model_.nodes().size(); ++k)
+    if (model_.nodes()[k].num_dofs == 6)
+      u.segment<3>(model_.nodes()[k].first_gdof + 3) = calc_rotation_log(state_.R[k]);
+  return u;
+}
+
+records::StaticSubcase NonlinearStatics::make_result() const {
+  records::StaticSubcase result;
+  result.displacement = make_displacement();
+  result.load = F_;
+  result.reaction = calc_reactions(model_, collect_arms(residual_));
+  result.mpc_force = residual_ - result.reaction;
+  std::vector<bool> is_tied(model_.nodes().size(), false);
+  for (const RigidArm& arm : arms_.list())
+    for (const int k : {arm.node, arm.parent}) is_tied[static_cast<std::size_t>(k)] = true;
+  for (std::size_t k = 0; k < is_tied.size(); ++k)  // else it is the error of the solution
+    if (const Node& node = model_.nodes()[k]; !is_tied[k])
+      result.mpc_force.segment(node.first_gdof, node.num_dofs).setZero();
+  result.strain_energy = energy_;
+  result.epsilon = energy_ > 0 ? residual_work_ / energy_ : 0;
+  const auto sum = [&](const VectorXd& forces) {
+    Eigen::Matrix<double, 6, 1> total = Eigen::Matrix<double, 6, 1>::Zero();
+    for (const Node& node : model_.nodes()) {
+      if (node.num_dofs != 6) continue;
+      const Vector3d force = forces.segment<3>(node.first_gdof);
+      total.head<3>() += force;
+      total.tail<3>() +=
+          (node.x + state_.u.segment<3>(node.first_gdof)).cross(force) + forces.segment<3>(node.first_gdof + 3);
+    }
+    return total;
+  };
+  result.load_resultant = sum(result.load);
+  result.reaction_resultant = sum(result.reaction);
+  result.mpc_resultant = sum(result.mpc_force);
+  return result;
+}
+
+}  // namespace bough::fe

@@ -1,0 +1,73 @@
+"""`static --nonlinear`: SOL 106 decks with large displacements, from the command line to the results file."""
+import json
+import unittest
+
+import h5py
+import numpy as np
+
+from support import ProgramTest, launch_ranks
+
+BULK = ("BEGIN BULK\nMAT1,1,1.2+9,,0.\nPBAR,1,1,1.,1.-5,1.-5,2.-5\n" +
+        "".join(f"GRID,{k + 1},,{k / 20:.3f},0.,0.\n" for k in range(21)) +
+        "".join(f"CBAR,{k},1,{k},{k + 1},0.,1.,0.\n" for k in range(1, 21)) + "SPC1,1,123456,1\nFORCE,1,21,,24000.,0.,0.,1.\n")
+DECK = "SOL 106\nCEND\nSPC = 1\nLOAD = 1\n" + BULK + "PARAM,LGDISP,1\nENDDATA\n"
+
+
+class Nonlinear(ProgramTest):
+    def test_sol_106(self):
+        self.write("a.bdf", DECK)
+        result = self.bough("static", "a.bdf", "-o", "a.h5")
+        self.assertIn("written: a.h5", result.stdout)
+        with h5py.File(self.path("a.h5")) as f:
+            tip = f["/subcases/1/displacement"][-6:]
+        # P L^2 / EI = 2: Mattiasson, IJNME 17 (1981) 145.
+        np.testing.assert_allclose(tip[[0, 2]], [-0.16064, 0.49346], atol=3e-4)
+        self.assertAlmostEqual(-tip[4], 0.78175, delta=1e-3)
+
+    def test_on_request(self):
+        self.write("a.bdf", DECK.replace("SOL 106", "SOL 101").replace("PARAM,LGDISP,1\n", ""))
+        self.write("b.bdf", DECK)
+        tip = {}
+        for name, options in [("a", ["--nonlinear", "--increments", "4"]), ("b", []), ("c", ["--linear"])]:
+            deck = "b.bdf" if name == "c" else name + ".bdf"
+            found = json.loads(self.bough("static", deck, "--json", "--full", *options).stdout)
+            tip[name] = np.array(found["subcases"][0]["displacement"][-6:])
+        np.testing.assert_allclose(tip["a"], tip["b"], atol=1e-9)
+        self.assertAlmostEqual(tip["c"][2], 2 / 3, places=6)
+
+    def test_listing(self):
+        self.write("a.bdf", DECK.replace("LOAD = 1\n", "LOAD = 1\nDISP = ALL\nFORCE = ALL\nSPCFORCES = ALL\n"))
+        self.bough("static", "a.bdf", "--f06", "a.f06")
+        self.assertIn("F O R C E S", self.read("a.f06"))
+
+    def test_buckles_by_name(self):
+        # Euler's load of the cantilever: pi^2 EI / 4 = 29609.
+        self.write("a.bdf", DECK.replace("24000.,0.,0.,1.", "40000.,-1.,0.,0."))
+        text = self.fails(3, "static", "a.bdf", error="fe.no-equilibrium").stderr
+        reached = float(text.split("beyond ")[1].split()[0])
+        self.assertLess(abs(reached - 100 * 29609 / 40000), 0.5)
+
+    def test_refusals(self):
+        self.write("a.bdf", DECK.replace("PARAM,LGDISP,1\n", ""))
+        self.fails(1, "static", "a.bdf", says=["--nonlinear", "--linear"], error="cli.nonlinear-static")
+        self.write("m.bdf", DECK.replace("ENDDATA", "MATS1,1,,PLASTIC,1.+7,1,1,1.+6\nENDDATA"))
+        self.fails(1, "static", "m.bdf", says=["MATS1"])
+        self.write("b.bdf", DECK)
+        self.fails(1, "static", "b.bdf", "--linear", "--nonlinear", error="cli.nonlinear-static")
+        self.fails(1, "static", "b.bdf", "--grid-forces", "all", error="cli.nonlinear-output")
+        self.write("s.bdf", DECK.replace("LOAD = 1\n", "SUBCASE 1\nLOAD = 1\nSUBCASE 2\nLOAD = 1\nSUBCOM 3\nSUBSEQ = 1.,1.\n"))
+        self.fails(1, "static", "s.bdf", error="cli.nonlinear-combination")
+        ranks = self.bough("static", "b.bdf", launcher=launch_ranks("-n", 2), code=1)
+        self.assertIn("[cli.nonlinear-ranks]", ranks.stderr)
+        self.write("t.bdf", DECK.replace("LOAD = 1\n", "LOAD = 1\nTEMP(LOAD) = 7\n").replace(
+            "MAT1,1,1.2+9,,0.\n", "MAT1,1,1.2+9,,0.,,1.-5,0.\nTEMPD,7,100.\n"))
+        self.fails(1, "static", "t.bdf", error="fe.nonlinear-load")
+        self.write("o.bdf", DECK.replace("ENDDATA", "ASET1,123456,21\nENDDATA"))
+        self.fails(1, "static", "o.bdf", error="fe.nonlinear-model")
+        self.write("p.bdf", DECK.replace("ENDDATA", "PARAM,FOLLOWK,YES\nGRID,31,,1.,.1,0.\nGRID,32,,1.1,.1,0.\nGRID,33,,1.1,0.,0.\n"
+                                         "CQUAD4,99,9,21,33,32,31\nPSHELL,9,1,.01,1,,1\nPLOAD2,1,10.,99\nENDDATA"))
+        self.assertIn("[fe.dead-load]", self.bough("static", "p.bdf").stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()
