@@ -13,8 +13,8 @@
 /// From the solver, not independent: the layout of q and u, M_b(η) of bodies with stiffening (its derivatives, so h_b,
 /// are taken here; its values are tested against sums over points in tests/solver/bodies), K, D, the frame in which a
 /// constraint is caught (ConstraintState), and whether a coordinate is free, locked or prescribed.
-/// Sampled controllers are evaluated at the states that the history gives for their samples, and reach the others a delay
-/// later. Propellant: momentum and energy of a control volume, contents of tanks by sums over discs. Tables: by a
+/// Sampled controllers are evaluated at the states that the history gives for their samples, and reach the others a
+/// delay later. Propellant: momentum and energy of a control volume, contents of tanks by sums over discs. Tables: by a
 /// separate interpolation.
 /// Not covered: load patterns, rigid stops, jets, noise.
 #include <map>

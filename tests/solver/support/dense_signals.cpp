@@ -1,4 +1,4 @@
-// Signals and actuators of the second route: controllers, samples and delays, motors, wheels, gyros, engines, propellant.
+// Signals and actuators of the second route: controllers, samples, delays, motors, wheels, gyros, engines, tanks.
 #include <algorithm>
 #include <cmath>
 #include <numbers>

@@ -120,7 +120,7 @@ void lock_one(Random& random, const System& system, DiscreteState& discrete, Vec
   u[static_cast<Eigen::Index>(row)] = 0;
 }
 
-/// A controller with two states of an angle, its rate and an input, to a motor on the last hinge with plain coordinates.
+/// A controller with two states of an angle, its rate and an input, to a motor on the last hinge of plain coordinates.
 void add_control(Random& random, records::SystemSpec& spec) {
   std::vector<std::string> plain;
   for (const auto& h : spec.hinges)
