@@ -50,7 +50,7 @@ class Route {
  public:
   Route(const records::SystemSpec& spec, const std::map<std::string, records::FlexBody>& flex, const System& system,
         const DiscreteState& discrete, const History& history, double t, const VectorXd& x);
-  VectorXd calc();
+  DenseDerivative calc();
 
  private:
   const records::HingeRecord& get_hinge(int b) const { return spec_.hinges[static_cast<size_t>(b)]; }

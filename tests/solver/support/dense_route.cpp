@@ -35,7 +35,7 @@ Route::Route(const records::SystemSpec& spec, const std::map<std::string, record
   lay_out_states();
 }
 
-VectorXd Route::calc() {
+DenseDerivative Route::calc() {
   const int n = tree_.num_u;
   LongMatrix mass = LongMatrix::Zero(n, n);
   LongVector force = LongVector::Zero(n);
@@ -59,6 +59,7 @@ VectorXd Route::calc() {
   const Eigen::LDLT<LongMatrix> factor(M);
   LongVector solution = factor.solve(LongVector(force(free)));
   LongVector lambda = LongVector::Zero(G.rows());
+  long double condition = 1;
   if (G.rows() > 0) {
     // Pseudo-inverse: constraints may depend on each other.
     const LongMatrix A = own * factor.solve(LongMatrix(own.transpose()));
@@ -66,8 +67,12 @@ VectorXd Route::calc() {
     const LongVector right = eigen.eigenvectors().transpose() * (gamma - own * solution);
     const long double least =
         std::max(1e-11L * eigen.eigenvalues().maxCoeff(), 1e-20L);  // or a row that nothing free can move
-    for (Eigen::Index i = 0; i < right.size(); ++i)
-      if (eigen.eigenvalues()[i] > least) lambda += eigen.eigenvectors().col(i) * (right[i] / eigen.eigenvalues()[i]);
+    for (Eigen::Index i = 0; i < right.size(); ++i) {
+      const long double own_value = eigen.eigenvalues()[i];
+      if (!(own_value > least)) continue;
+      lambda += eigen.eigenvectors().col(i) * (right[i] / own_value);
+      condition = std::max(condition, eigen.eigenvalues().maxCoeff() / own_value);
+    }
     solution += factor.solve(LongVector(own.transpose() * lambda));
   }
   LongVector change = LongVector::Zero(n);  // `force` has u̇ of prescribed coordinates already
@@ -86,7 +91,7 @@ VectorXd Route::calc() {
   get_q(layout, x_dot) = calc_rates();
   x_dot[layout.work()] = acting.power - acting.dissipated;
   x_dot[layout.dissipated()] = acting.dissipated;
-  return x_dot;
+  return {x_dot, static_cast<double>(condition)};
 }
 
 const records::FunctionRecord& Route::find_function(const std::string& name) const {
@@ -405,9 +410,10 @@ VectorXd Route::calc_rates() const {
 
 }  // namespace dense_route
 
-VectorXd calc_dense_derivative(const records::SystemSpec& spec, const std::map<std::string, records::FlexBody>& flex,
-                               const System& system, const DiscreteState& discrete, double t, const VectorXd& x,
-                               const History& history) {
+DenseDerivative calc_dense_derivative(const records::SystemSpec& spec,
+                                      const std::map<std::string, records::FlexBody>& flex, const System& system,
+                                      const DiscreteState& discrete, double t, const VectorXd& x,
+                                      const History& history) {
   return dense_route::Route(spec, flex, system, discrete, history, t, x).calc();
 }
 

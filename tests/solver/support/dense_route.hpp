@@ -27,11 +27,18 @@ namespace bough::solver::testing {
 /// States at the instants of samples.
 using History = std::map<double, VectorXd>;
 
+/// Derivative of the state, and the largest over the smallest eigenvalue of the closed constraints that are kept.
+struct DenseDerivative {
+  VectorXd x_dot;
+  double condition = 1;
+};
+
 /// ẋ of x = [q; u; z; work; dissipated]. Closings and modes are those of `discrete`.
 /// Dry friction slides the way of the rate.
 /// \param flex  records of the flexible bodies, by file.
-VectorXd calc_dense_derivative(const records::SystemSpec& spec, const std::map<std::string, records::FlexBody>& flex,
-                               const System& system, const DiscreteState& discrete, double t, const VectorXd& x,
-                               const History& history = {});
+DenseDerivative calc_dense_derivative(const records::SystemSpec& spec,
+                                      const std::map<std::string, records::FlexBody>& flex, const System& system,
+                                      const DiscreteState& discrete, double t, const VectorXd& x,
+                                      const History& history = {});
 
 }  // namespace bough::solver::testing

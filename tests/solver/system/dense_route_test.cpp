@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <limits>
 #include <tuple>
 
 #include "solver/system/derivative.hpp"
@@ -272,7 +273,7 @@ void shape_tank(Random& random, const records::BodyRecord& body, records::TankRe
   tank.bore = 0.1;
   if (tank.type == records::TankType::Table) {
     tank.is_of_body = random.integer(0, 1) == 1;
-    for (const double mass : {0.0, 1.5, 8.0}) {
+    for (const double mass : {0.0, 0.9, 5.1, 8.0}) {  // no kink where the others differentiate
       const bool is_empty = mass == 0 && tank.is_of_body;
       tank.masses.push_back(mass + (tank.is_of_body ? body.mass : 0));
       tank.cg.push_back(is_empty ? body.cg : Vector3d(body.cg + random.vector(0.1)));
@@ -495,12 +496,15 @@ double compare(unsigned seed, Parts parts, unsigned kind = 0) {
   const StateLayout layout = system.layout();
   VectorXd x_dot = VectorXd::Zero(layout.size());
   calc_derivative(system, *data, kTime, x, x_dot);
-  const VectorXd other = calc_dense_derivative(spec, tree.flex, system, discrete, kTime, x, history);
+  const DenseDerivative dense = calc_dense_derivative(spec, tree.flex, system, discrete, kTime, x, history);
+  const VectorXd& other = dense.x_dot;
+  // Constraints that nearly depend on each other multiply the rounding of both routes.
+  const double tolerance = 1e-11 + std::numeric_limits<double>::epsilon() * dense.condition;
 
   double worst = 0;
   const auto add = [&](const char* part, const VectorXd& a, const VectorXd& b) {
     const double error = (a - b).norm() / (1 + b.norm());
-    if (!(error < 1e-11))
+    if (!(error < tolerance))
       ADD_FAILURE() << "seed " << seed << ", parts " << static_cast<int>(parts) << " (" << kind << "), " << part << ": "
                     << error;
     worst = std::max(worst, error);
