@@ -19,8 +19,8 @@ void add_columns(const std::string& path, const Eigen::MatrixXd& values, const s
   const int chosen = component.empty() ? -1 : records::find_component({path, component}, count, description);
   for (int c = 0; c < count; ++c) {
     if (!component.empty() && c != chosen) continue;
-    columns.push_back({path.substr(1) + (names[c].empty() ? "" : ":" + names[c]), values.col(c),
-                       records::pick_unit(unit, c, count)});
+    columns.push_back(
+        {path.substr(1) + (names[c].empty() ? "" : ":" + names[c]), values.col(c), records::pick_unit(unit, c, count)});
   }
   if (!component.empty() && chosen < 0) {
     std::string list;
