@@ -1,7 +1,5 @@
 #include "cosim/fmu_controller.hpp"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -16,6 +14,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "base/temporary_folder.hpp"
 #include "cosim/slave.hpp"
 #include "formats/fmu/archive.hpp"
 
@@ -28,29 +27,6 @@ using fmu::ForeignVariable;
 
 /// Bytes of the state of the FMU in one number of the memory: an integer that a double holds.
 constexpr std::size_t kPacked = 6;
-
-/// Private folder in TMPDIR.
-class Folder {
- public:
-  Folder() {
-    std::error_code failed;
-    std::string name = (fs::temp_directory_path(failed) / "bough-fmu-XXXXXX").string();
-    if (failed || mkdtemp(name.data()) == nullptr)
-      throw ComputationError("fmu.unpack", {}, "no folder for the FMU can be made in TMPDIR",
-                             "choose a folder by TMPDIR that can be written");
-    path_ = name;
-  }
-  ~Folder() {
-    std::error_code failed;
-    fs::remove_all(path_, failed);
-  }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-  const std::string& path() const { return path_; }
-
- private:
-  std::string path_;
-};
 
 int count(const std::vector<ForeignVariable>& variables) {
   return std::accumulate(variables.begin(), variables.end(), 0, [](int n, const auto& v) { return n + v.size; });
@@ -76,6 +52,7 @@ std::string unpack(const double* numbers, std::size_t size) {
 struct Choice {
   std::vector<ForeignVariable> variables;
   std::vector<std::size_t> places;
+  std::vector<std::string> labels;  ///< of each number: the name as it was given, of an element with its indices
 
   /// Values of all variables: `numbers` at their places, elsewhere the start values, or zero.
   std::vector<double> spread(const std::vector<double>& numbers) const {
@@ -101,7 +78,7 @@ struct Choices {
 class FmuLaw {
  public:
   FmuLaw(const ForeignModel& model, const Choices& choices, const std::vector<double>& parameters,
-         std::shared_ptr<Folder> folder, double step)
+         std::shared_ptr<const TemporaryFolder> folder, double step)
       : folder_(std::move(folder)),
         model_(model),
         inputs_(choices.inputs),
@@ -177,7 +154,7 @@ class FmuLaw {
     return d;
   }
 
-  std::shared_ptr<Folder> folder_;  // goes after the binary is closed
+  std::shared_ptr<const TemporaryFolder> folder_;  // goes after the binary is closed
   ForeignModel model_;
   Choice inputs_, outputs_;
   std::vector<double> all_outputs_, parameters_;
@@ -222,7 +199,7 @@ class Reader {
     std::map<std::string, std::size_t> first;  // place of each variable that is chosen
     std::set<std::size_t> used;
     std::size_t end = 0;
-    const auto add = [&](const ForeignVariable& v, int element) {
+    const auto add = [&](const ForeignVariable& v, int element, const std::string& given) {
       check_type(v, key);
       const auto [found, is_new] = first.emplace(v.name, end);
       if (is_new) {
@@ -234,17 +211,18 @@ class Reader {
         const std::size_t place = found->second + static_cast<std::size_t>(i);
         if (!used.insert(place).second) fail(quote(key) + " names '" + v.name + "' twice", "name each once");
         choice.places.push_back(place);
+        choice.labels.push_back(element < 0 && !v.dimensions.empty() ? given + format_element(v, i) : given);
       }
     };
     const auto words = record_.settings.words.find(key);
     if (words != record_.settings.words.end()) {
       for (const auto& name : words->second) {
         const auto [variable, element] = find(model, name, causality, key);
-        add(*variable, element);
+        add(*variable, element, name);
       }
     } else if (causality != "parameter") {
       for (const auto& v : model.variables)
-        if (v.causality == causality) add(v, -1);
+        if (v.causality == causality) add(v, -1, v.name);
     }
     return choice;
   }
@@ -305,10 +283,19 @@ class Reader {
     if (v.size == 0) fail("the size of '" + v.name + "' of its FMU is not constant", "choose others by " + quote(key));
   }
 
-  /// Place of the element that "[2]" or "[1,3]" of a name means in an array, counted from 0; -1: no element of it.
-  static int find_element(const ForeignVariable& v, const std::string& name) {
-    if (v.dimensions.empty() || !name.starts_with(v.name + "[") || !name.ends_with("]")) return -1;
-    std::istringstream indices(name.substr(v.name.size() + 1));
+  /// "[2]" or "[1,3]": the element of an array that is counted from 0.
+  static std::string format_element(const ForeignVariable& v, int place) {
+    std::string indices;
+    for (auto d = v.dimensions.rbegin(); d != v.dimensions.rend(); place /= *d++)
+      indices = std::to_string(place % *d + 1) + (indices.empty() ? "" : ",") + indices;
+    return "[" + indices + "]";
+  }
+
+  /// Place of the element that "[2]" or "[1,3]" of a name means in an array of this name or alias, counted from 0; -1:
+  /// no element of it.
+  static int find_element(const ForeignVariable& v, const std::string& array, const std::string& name) {
+    if (v.dimensions.empty() || !name.starts_with(array + "[") || !name.ends_with("]")) return -1;
+    std::istringstream indices(name.substr(array.size() + 1));
     long place = 0;
     for (std::size_t d = 0; d < v.dimensions.size(); ++d) {
       long index = 0;
@@ -331,7 +318,9 @@ class Reader {
       if (!is_right) continue;
       names.push_back(v.name);
       if (v.name == name || std::find(v.aliases.begin(), v.aliases.end(), name) != v.aliases.end()) return {&v, -1};
-      if (const int element = find_element(v, name); element >= 0) return {&v, element};
+      if (const int element = find_element(v, v.name, name); element >= 0) return {&v, element};
+      for (const auto& alias : v.aliases)
+        if (const int element = find_element(v, alias, name); element >= 0) return {&v, element};
     }
     std::string list;
     for (const auto& each : names) list += (list.empty() ? "" : ", ") + each;
@@ -357,7 +346,7 @@ solver::ControllerFunctions load_fmu(records::ControllerRecord& record) {
   if (std::error_code failed; !fs::is_regular_file(path, failed))
     throw InputError("fmu.no-file", record.at, reader.label() + ": there is no FMU " + path,
                      "give file = \"NAME.fmu\"");
-  const auto folder = std::make_shared<Folder>();
+  const auto folder = std::make_shared<const TemporaryFolder>("bough-fmu", "the FMU");
   const ForeignModel model = reader.read(path, folder->path());
   const Choices choices{reader.choose(model, "parameter_names", "parameter"),
                         reader.choose(model, "input_names", "input"), reader.choose(model, "output_names", "output"),
@@ -367,6 +356,7 @@ solver::ControllerFunctions load_fmu(records::ControllerRecord& record) {
   const auto num_outputs = static_cast<int>(choices.outputs.places.size());
   if (num_outputs == 0) reader.fail("its FMU has no outputs", "choose some by output_names");
   record.settings.numbers.try_emplace("outputs", std::vector<double>{static_cast<double>(num_outputs)});
+  record.settings.words["output_names"] = choices.outputs.labels;
 
   solver::ControllerFunctions f;
   f.language = "FMU";

@@ -12,7 +12,8 @@ namespace bough::cosim {
 /// its state: equal arguments give equal results then, in other processes too. Outputs of a sample are those after the
 /// step before it, or after the initialization: the inputs of a sample act one sample time later.
 ///
-/// \param record  gets sample_time where it has none and the FMU recommends one, and the number of outputs.
+/// \param record  gets sample_time where it has none and the FMU recommends one, and the number and the
+///                names of its outputs.
 /// \throws InputError "fmu.*".
 solver::ControllerFunctions load_fmu(records::ControllerRecord& record);
 

@@ -315,8 +315,10 @@ bough_status bough_get_outputs(bough_simulation* simulation, int first, int n, d
   if (!values || first < 0 || n < 0 || n > std::ssize(ports) - first)
     return refuse(s, values ? describe_range("outputs", first, n, std::ssize(ports)) : "values is null");
   return compute(s, [&] {
-    const auto& all = s.simulator().calc_outputs();
-    for (int i = 0; i < n; ++i) values[i] = all[ports[static_cast<std::size_t>(first + i)].row];
+    const auto rows =
+        std::span(s.model->output_rows()).subspan(static_cast<std::size_t>(first), static_cast<std::size_t>(n));
+    const auto& all = s.simulator().calc_outputs(rows);
+    for (int i = 0; i < n; ++i) values[i] = all[rows[static_cast<std::size_t>(i)]];
   });
 }
 

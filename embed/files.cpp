@@ -1,6 +1,7 @@
 #include "embed/files.hpp"
 
 #include <array>
+#include <filesystem>
 #include <fstream>
 
 #include "base/diagnostic.hpp"
@@ -16,20 +17,26 @@ bool is_hdf5(const std::string& path) {
   return std::string_view(begin.data(), 4) == "\x89HDF";
 }
 
+std::string name_flat_file(const std::string& path) {
+  return std::filesystem::path(path).replace_extension(".flat").string();
+}
+
 records::FlexBody read_body(const std::string& name, Diagnostics&, const std::optional<RigidPart>& given) {
   const auto parsed = flx::parse_flx_name(name);
   const std::string path = parsed ? parsed->path : name;
   if (is_hdf5(path))
     throw InputError("embed.hdf5", {path}, "the body is an HDF5 file, which this library does not read",
-                     "write it as a flat file: bough export " + path + " --to flat");
+                     "write it as a flat file, bough export " + path + " --to flat -o " + name_flat_file(path) +
+                         ", and name that in the [[body]]");
   if (flat::is_flex_body(path)) {
     auto body = flat::read_flex_body(path);
     give_rigid_part(body, true, given, path);
     return body;
   }
   if (!parsed)
-    throw InputError("embed.body-format", {path}, "the body is neither a flat file nor a .FLX",
-                     "write it as a flat file: bough export BODY.h5 --to flat -o BODY.flat");
+    throw InputError(
+        "embed.body-format", {path}, "the body is neither a flat file nor a .FLX",
+        "write it as a flat file, bough export BODY.h5 --to flat -o BODY.flat, and name that in the [[body]]");
   const auto file = flx::read_flx(path, parsed->body_id);
   std::vector<std::string> lacking;
   auto body = flx::make_flex_body(file, lacking);

@@ -199,7 +199,6 @@ void Instance::start() {
   x_.resize(num_states());
   bough_get_continuous(simulation_.get(), x_.data());
   is_moved_ = true;
-  has_outputs_ = false;
   if (options_.logs_all)
     for (const auto& item : simulation_->own->diagnostics().items()) log(Status::Ok, "logStatusWarning", format(item));
 }
@@ -269,15 +268,9 @@ Status Instance::get_values(std::span<const std::uint32_t> references, double* v
         status = take({options_.is_model_exchange ? t_ : bough_time(simulation_.get())});
         break;
       case VariableKind::Output:
-        if (!has_outputs_) {
-          if (status = sync(); status != Status::Ok) return status;
-          outputs_.resize(model_->list(BOUGH_OUTPUTS)->size());
-          status = check(bough_get_outputs(simulation_.get(), 0, static_cast<int>(outputs_.size()), outputs_.data()),
-                         simulation_.get());
-          if (status != Status::Ok) return status;
-          has_outputs_ = true;
-        }
-        status = take(outputs_);
+        if (index >= model_->list(BOUGH_OUTPUTS)->size()) return take({});
+        if (status = sync(); status != Status::Ok) return status;
+        status = check(bough_get_outputs(simulation_.get(), static_cast<int>(index), 1, values + i), simulation_.get());
         break;
       case VariableKind::State:
         if (x.empty()) {
@@ -330,7 +323,6 @@ Status Instance::set_values(std::span<const std::uint32_t> references, const dou
     auto& to = is_input ? inputs_ : parameters_;
     if (to[index] == values[i]) continue;
     to[index] = values[i];
-    has_outputs_ = false;
     if (is_before) {
       simulation_.reset();
     } else if (const auto status = bough_set_inputs(simulation_.get(), static_cast<int>(index), 1, &values[i]);
@@ -349,7 +341,6 @@ void Instance::extend(double t) {
   longer->simulator().restore(simulator.save());
   simulation_ = std::move(longer);
   is_moved_ = true;
-  has_outputs_ = false;
 }
 
 Status Instance::do_step(double t, double h, StepResult& result) {
@@ -370,7 +361,6 @@ Status Instance::do_step(double t, double h, StepResult& result) {
   const bool may_extend =
       !simulation_->has_failed && (!outcome || (outcome->reason.empty() && outcome->energy_is_kept));
   if (may_extend && t + h > times.start + times.duration + simulation_->simulator().resolution()) extend(t + h);
-  has_outputs_ = false;
   const auto status = bough_advance(simulation_.get(), t + h, &result.time);
   // The end of the duration is none of the FMU: the next step makes it longer.
   outcome = simulation_->simulator().outcome() ? &*simulation_->simulator().outcome() : nullptr;
@@ -388,7 +378,7 @@ Status Instance::do_step(double t, double h, StepResult& result) {
 Status Instance::set_time(double t) {
   if (!std::isfinite(t)) return discard("the time is not finite");
   ensure_started();
-  if (t != t_) is_moved_ = true, has_outputs_ = false;
+  if (t != t_) is_moved_ = true;
   t_ = t;
   return Status::Ok;
 }
@@ -401,7 +391,6 @@ Status Instance::set_states(const double* x, std::size_t n) {
     if (!std::isfinite(x[i])) return discard("the state " + (*model_->list(BOUGH_STATES))[i].name + " is not finite");
   std::copy_n(x, n, x_.begin());
   is_moved_ = true;
-  has_outputs_ = false;
   return Status::Ok;
 }
 
@@ -567,7 +556,6 @@ Status Instance::update_discrete(bough_event_info& info) {
   if (status != Status::Ok) return status;
   if (info.terminated) end_message_ = bough_last_message(simulation_.get());
   bough_get_continuous(simulation_.get(), x_.data());
-  has_outputs_ = false;
   return Status::Ok;
 }
 
@@ -624,7 +612,6 @@ Status Instance::set_state(const SavedState& saved) {
   stop_ = saved.stop;
   phase_ = saved.phase;
   is_moved_ = true;
-  has_outputs_ = false;
   return Status::Ok;
 }
 

@@ -142,8 +142,6 @@ class Instance {
   double t_ = 0;
   std::vector<double> x_;
   bool is_moved_ = true;  ///< simulation_ is not at (t_, x_) yet
-  std::vector<double> outputs_;
-  bool has_outputs_ = false;
   std::string end_message_;
 };
 

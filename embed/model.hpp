@@ -12,6 +12,7 @@ class Model {
 
   const LoadedSystem& loaded() const { return loaded_; }
   const Ports& ports() const { return ports_; }
+  const std::vector<int>& output_rows() const { return ports_.output_rows(); }
   const std::vector<Port>* list(int kind) const { return ports_.list(kind); }
   int find(int kind, const std::string& name) const { return ports_.find(kind, name); }
 

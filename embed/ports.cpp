@@ -26,6 +26,7 @@ Ports::Ports(const records::SystemSpec& spec, const solver::Simulator& simulator
   for (const auto& r : spec.inputs) ports_[BOUGH_INPUTS].push_back({r.name, r.dims, r.start, 0});
   for (const auto& [name, value] : spec.parameters) ports_[BOUGH_PARAMETERS].push_back({name, "", value, 0});
   add_outputs(simulator.channels());
+  for (const auto& port : ports_[BOUGH_OUTPUTS]) output_rows_.push_back(port.row);
   for (int i = 0; i < simulator.num_states(); ++i)
     ports_[BOUGH_STATES].push_back({simulator.name_state(i), "", kNone, i});
   for (const auto& name : simulator.list_event_functions()) ports_[BOUGH_EVENTS].push_back({name, "", kNone, 0});

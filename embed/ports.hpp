@@ -25,6 +25,8 @@ class Ports {
   const std::vector<Port>* list(int kind) const;
   /// Finds a port by its name, by the path of its channel, or by the name of a scalar without component; -1: none.
   int find(int kind, const std::string& name) const;
+  /// Port::row of each output.
+  const std::vector<int>& output_rows() const { return output_rows_; }
   /// Outputs of all components of `name`; that of one if it has a component. Empty: none.
   std::vector<int> find_outputs(const std::string& name) const;
 
@@ -32,6 +34,7 @@ class Ports {
   void add_outputs(const std::vector<records::Channel>& channels);
 
   std::vector<Port> ports_[5];
+  std::vector<int> output_rows_;
   std::unordered_map<std::string, int> index_[5];
   std::unordered_map<std::string, std::pair<int, int>> channels_;  ///< first output and number of each name
 };

@@ -15,14 +15,14 @@ void add_columns(const std::string& path, const Eigen::MatrixXd& values, const s
                  const std::string& unit, const std::string& component, const std::string& file,
                  std::vector<exports::CsvColumn>& columns) {
   const auto names = records::get_component_names(path, static_cast<int>(values.cols()), description);
-  bool found = false;
-  for (int c = 0; c < values.cols(); ++c) {
-    if (!component.empty() && component != names[c] && component != std::to_string(c + 1)) continue;
-    found = true;
-    columns.push_back({path.substr(1) + (names[c].empty() ? "" : ":" + names[c]), values.col(c),
-                       records::pick_unit(unit, c, static_cast<int>(values.cols()))});
+  const int count = static_cast<int>(values.cols());
+  const int chosen = component.empty() ? -1 : records::find_component({path, component}, count, description);
+  for (int c = 0; c < count; ++c) {
+    if (!component.empty() && c != chosen) continue;
+    columns.push_back(
+        {path.substr(1) + (names[c].empty() ? "" : ":" + names[c]), values.col(c), records::pick_unit(unit, c, count)});
   }
-  if (!found) {
+  if (!component.empty() && chosen < 0) {
     std::string list;
     for (const auto& name : names) list += (list.empty() ? "" : " ") + name;
     throw InputError("cli.unknown-channel", {file}, "channel " + path + " has no component \"" + component + "\"",

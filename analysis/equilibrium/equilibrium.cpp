@@ -27,7 +27,7 @@ void make_results(const LoadedSystem& loaded, solver::Plant& plant, EquilibriumA
   solver::label_channels(loaded.system, loaded.spec, header.channels);
   header.max_samples = 1;
   header.settings = {{"equilibrium_residual", fmt::format("{:.17g}", answer.found.residual)}};
-  answer.sample = recorder.calc_sample(point.t, plant.data(), point.q, u, 0, 0);
+  answer.sample = recorder.calc_sample({point.t, plant.data(), point.q, u, 0, 0});
   Eigen::VectorXd state = Eigen::VectorXd::Zero(point.q.size() + u.size() + point.z.size() + 2);
   state.head(state.size() - 2) << point.q, u, point.z;
   answer.checkpoint.time = point.t;

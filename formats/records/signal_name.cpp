@@ -24,17 +24,28 @@ std::vector<std::string> get_component_names(const std::string& path, int size) 
   return names;
 }
 
-std::vector<std::string> get_component_names(const std::string& path, int size, const std::string& description) {
+namespace {
+
+/// Names at the end of a description; empty: it lists none, or not one for each component.
+std::vector<std::string> list_names(const std::string& path, int size, const std::string& description) {
   const auto colon = description.rfind(": ");
-  const bool is_sensor = path.starts_with("/sensors/") && colon != std::string::npos;
-  if (size == 1 || !(is_sensor || path.find("/recovery/") != std::string::npos)) return get_component_names(path, size);
+  const bool is_block = path.starts_with("/sensors/") || path.starts_with("/controllers/");
   std::vector<std::string> names;
-  for (std::size_t at = is_sensor ? colon + 2 : 0; at <= description.size();) {
+  if (is_block ? colon == std::string::npos : path.find("/recovery/") == std::string::npos) return names;
+  for (std::size_t at = is_block ? colon + 2 : 0; at <= description.size();) {
     const auto end = std::min(description.find(", ", at), description.size());
     names.push_back(description.substr(at, end - at));
     at = end + 2;
   }
-  return static_cast<int>(names.size()) == size ? names : get_component_names(path, size);
+  if (static_cast<int>(names.size()) != size) names.clear();
+  return names;
+}
+
+}  // namespace
+
+std::vector<std::string> get_component_names(const std::string& path, int size, const std::string& description) {
+  const auto names = size == 1 ? std::vector<std::string>() : list_names(path, size, description);
+  return names.empty() ? get_component_names(path, size) : names;
 }
 
 int find_component(const SignalName& name, int size, const std::string& description) {
@@ -42,7 +53,8 @@ int find_component(const SignalName& name, int size, const std::string& descript
   for (int i = 0; i < size; ++i) {
     if (name.component == names[static_cast<std::size_t>(i)] || name.component == std::to_string(i + 1)) return i;
   }
-  return -1;
+  const bool is_named = size == 1 && name.path.starts_with("/controllers/");
+  return is_named && list_names(name.path, size, description) == std::vector{name.component} ? 0 : -1;
 }
 
 }  // namespace bough::records

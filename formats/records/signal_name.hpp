@@ -18,7 +18,7 @@ std::vector<std::string> get_component_names(const std::string& path, int size);
 
 /// Names listed at the end of the channel's description, otherwise those of its path. Lists: "axial, shear_y" of
 /// /bodies/B/recovery/..., "CBEAM/101 of body frame: axial, shear_y" and "... in rad: angle1, angle2, angle3" of
-/// sensors.
+/// sensors, "outputs of a controller of type fmu: torque, speed" of controllers. A name stands for a scalar too.
 std::vector<std::string> get_component_names(const std::string& path, int size, const std::string& description);
 
 /// Index from 0 of a component by its name or its count from 1, -1 without such a component; empty: 0 of a scalar.

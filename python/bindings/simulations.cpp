@@ -1,6 +1,7 @@
 #include "python/bindings/simulations.hpp"
 
 #include <cmath>
+#include <numeric>
 #include <span>
 
 #include "embed/bough.h"
@@ -88,14 +89,16 @@ bool Simulation::advance_to(double t) {
   });
 }
 
-const Eigen::VectorXd& Simulation::calc_outputs() {
+Eigen::VectorXd Simulation::calc_outputs(const std::vector<int>& indices) {
   if (failure_) std::rethrow_exception(failure_);
   const py::gil_scoped_release released;
-  return own_->simulator().calc_outputs();
+  std::vector<int> rows;
+  for (const int index : indices) rows.push_back(ports_->output_rows()[static_cast<std::size_t>(index)]);
+  const auto& all = own_->simulator().calc_outputs(rows);
+  return all(rows);
 }
 
 py::array Simulation::outputs(const std::optional<std::vector<std::string>>& names) {
-  const auto& ports = *ports_->list(BOUGH_OUTPUTS);
   std::vector<int> indices;
   if (names) {
     for (const auto& name : *names) {
@@ -104,20 +107,15 @@ py::array Simulation::outputs(const std::optional<std::vector<std::string>>& nam
       indices.insert(indices.end(), found.begin(), found.end());
     }
   } else {
-    for (int i = 0; i < std::ssize(ports); ++i) indices.push_back(i);
+    indices.resize(ports_->list(BOUGH_OUTPUTS)->size());
+    std::iota(indices.begin(), indices.end(), 0);
   }
-  return run([&] {
-    const auto& all = calc_outputs();
-    Eigen::VectorXd values(std::ssize(indices));
-    for (std::size_t i = 0; i < indices.size(); ++i)
-      values[static_cast<Eigen::Index>(i)] = all[ports[static_cast<std::size_t>(indices[i])].row];
-    return give(std::move(values));
-  });
+  return run([&] { return give(calc_outputs(indices)); });
 }
 
 double Simulation::output(const Name& name) {
   const int index = find(BOUGH_OUTPUTS, name);
-  return run([&] { return calc_outputs()[(*ports_->list(BOUGH_OUTPUTS))[static_cast<std::size_t>(index)].row]; });
+  return run([&] { return calc_outputs({index})[0]; });
 }
 
 std::string Simulation::get_reason() const {

@@ -36,7 +36,7 @@ class Simulation {
 
  private:
   int find(int kind, const Name& name) const;
-  const Eigen::VectorXd& calc_outputs();
+  Eigen::VectorXd calc_outputs(const std::vector<int>& indices);
   /// Runs `action` where no other call is within.
   template <class Action>
   auto run(const Action& action);

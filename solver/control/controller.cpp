@@ -36,6 +36,21 @@ const std::map<std::string, Maker>& get_makers() {
   return makers;
 }
 
+/// ": torque, speed" of the outputs that have names, which an FMU gives; the count of one that has a name that signals
+/// cannot have.
+std::string list_outputs(const records::ControllerRecord& r, int count) {
+  const auto found = r.settings.words.find("output_names");
+  if (found == r.settings.words.end() || static_cast<int>(found->second.size()) != count) return "";
+  std::string list;
+  for (const auto& name : found->second) {
+    const bool is_name = name.find_first_not_of("0123456789") != std::string::npos &&
+                         name.find(':') == std::string::npos && name.find(", ") == std::string::npos;
+    const auto place = static_cast<std::size_t>(&name - found->second.data()) + 1;
+    list += (list.empty() ? ": " : ", ") + (is_name ? name : std::to_string(place));
+  }
+  return list;
+}
+
 }  // namespace
 
 int ControllerWiring::size() const { return std::accumulate(inputs.begin(), inputs.end(), 0) + reference + rate; }
@@ -103,7 +118,7 @@ std::unique_ptr<Block> make_controller(const records::ControllerRecord& r, const
   made->sizes.delay = delay;
   made->set_name(BlockKind::Controller, r.name);
   made->label = "controller '" + r.name + "'";
-  made->description = "outputs of a controller of type " + r.type;
+  made->description = "outputs of a controller of type " + r.type + list_outputs(r, made->sizes.outputs);
   made->dims = "by the controller";
   made->at = r.at;
   return made;

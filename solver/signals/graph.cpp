@@ -127,6 +127,22 @@ void SignalGraph::calc_all(const Motion& motion, SignalData& signals) const {
   }
 }
 
+void SignalGraph::calc_some(const Motion& motion, SignalData& signals, std::vector<bool>& chosen) const {
+  for (auto i = order.rbegin(); i != order.rend(); ++i) {
+    const auto& p = places[static_cast<size_t>(*i)];
+    if (!chosen[static_cast<size_t>(*i)] || p.is_sampled() || !p.block->sizes.has_feedthrough) continue;
+    for (const int value : p.sources) {
+      const auto next = std::upper_bound(places.begin(), places.end(), value,
+                                         [](int row, const BlockSlot& place) { return row < place.out; });
+      chosen[static_cast<size_t>(next - places.begin() - 1)] = true;
+    }
+  }
+  for (const int i : order) {
+    const auto& p = places[static_cast<size_t>(i)];
+    if (chosen[static_cast<size_t>(i)] && !p.needs_acceleration) calc(p, motion, signals);
+  }
+}
+
 void SignalGraph::calc_ideal(const BlockSlot& place, const Motion& motion, SignalData& signals, double* y) const {
   place.block->calc_ideal(look(place, motion, signals), y);
 }

@@ -68,6 +68,9 @@ class SignalGraph {
   void calc_after_acceleration(const Motion& motion, SignalData& signals) const;
   /// The blocks that calc_before_acceleration and calc_after_acceleration have left out. After accelerations.
   void calc_all(const Motion& motion, SignalData& signals) const;
+  /// Computes those of the blocks `chosen` (by place) that need no accelerations, and what they depend on, which
+  /// is chosen then too. After kinematics. No allocation.
+  void calc_some(const Motion& motion, SignalData& signals, std::vector<bool>& chosen) const;
   /// After calc_all: outputs y of one sensor for linear models.
   void calc_ideal(const BlockSlot& place, const Motion& motion, SignalData& signals, double* y) const;
   void add_loads(const Motion& motion, const SignalData& signals, TreeData& data) const;

@@ -81,16 +81,12 @@ Outputs::Outputs(const System& system) : system_(system) {
   add_channel("/system_mass/cg", 3, "centre of mass of the system, in the inertial frame", "L");
   add_channel("/system_mass/inertia", 9,
               "inertia of the system about its centre of mass, in the inertial frame: three rows", "M L^2");
-  for (const auto& element : system.elements) {
-    std::vector<int> sizes;
-    for (const ForceChannel& c : element->channels()) sizes.push_back(c.size);
-    element_sizes_.push_back(std::move(sizes));
-  }
   int size = 0;
   for (const auto& channel : channels_) size += channel.size;
   sample_.setZero(size);
   quaternions = VectorXd::Zero(4 * system.num_bodies());
   quaternion_at_.resize(static_cast<size_t>(system.num_bodies()));
+  divide();
   chosen_ = channels_;
   ranges_ = {{0, size}};
   kept_ = sample_;
@@ -166,80 +162,167 @@ void Outputs::add_channel(std::string path, int size, std::string description, s
   channels_.push_back({std::move(path), size, std::move(description), std::move(dims)});
 }
 
-const VectorXd& Outputs::calc_sample(double t, const SystemData& data, const Eigen::Ref<const VectorXd>& q,
-                                     const Eigen::Ref<const VectorXd>& u, double work, double dissipated) {
-  int at = 0;
+void Outputs::add_part(Group group, int index, int size, int num_of_motion) {
+  parts_.push_back({group, index, parts_.empty() ? 0 : parts_.back().first + parts_.back().size, size, num_of_motion});
+  part_of_row_.insert(part_of_row_.end(), static_cast<size_t>(size), static_cast<int>(parts_.size()) - 1);
+}
+
+void Outputs::divide() {
+  add_part(Group::Time, 0, 1, 1);
+  for (int b = 0; b < system_.num_bodies(); ++b) {
+    const int n = system_.num_modes(b);
+    add_part(Group::Body, b, 13 + 2 * n + (n > 0 ? 1 : 0), 13 + 2 * n + (n > 0 ? 1 : 0));
+    const auto& recovery = system_.recoveries[static_cast<size_t>(b)];
+    int size = 0;
+    for (size_t e = 0; recovery && e < recovery->elements().size(); ++e)
+      if (recovery->elements()[e].is_recorded) size += recovery->elements()[e].size();
+    if (size > 0) add_part(Group::Recovery, b, size, 0);
+  }
+  for (int b = 0; b < system_.num_bodies(); ++b) {
+    const int nq = system_.num_hinge_q(b), nu = system_.num_hinge_rates(b);
+    if (nq > 0) add_part(Group::Hinge, b, nq + 2 * nu, nq + nu);
+    add_part(Group::Reaction, b, 6, 0);
+  }
+  for (int c = 0; c < system_.num_constraints(); ++c) add_part(Group::Constraint, c, system_.is_coupler(c) ? 1 : 6, 0);
+  for (size_t i = 0; i < system_.elements.size(); ++i) {
+    int size = 0;
+    for (const ForceChannel& c : system_.elements[i]->channels()) size += c.size;
+    if (size > 0) add_part(Group::Element, static_cast<int>(i), size, 0);
+  }
+  const auto& places = system_.signals.places;
+  for (size_t i = 0; i < places.size(); ++i) {
+    const int size = places[i].block->sizes.outputs;
+    if (size > 0) add_part(Group::Signal, static_cast<int>(i), size, places[i].needs_acceleration ? 0 : size);
+  }
+  for (size_t i = 0; i < system_.tree.tanks.size(); ++i) add_part(Group::Tank, static_cast<int>(i), 2, 0);
+  add_part(Group::Energy, 0, 5, 0);
+  add_part(Group::Momentum, 0, 6 + system_.num_momentum_out(), 0);
+  add_part(Group::Mass, 0, 13, 13);
+  BOUGH_DEMAND(part_of_row_.size() == static_cast<size_t>(sample_.size()));
+}
+
+bool Outputs::is_of_motion(int row) const {
+  const Part& part = parts_[static_cast<size_t>(part_of_row_[static_cast<size_t>(row)])];
+  return row - part.first < part.num_of_motion;
+}
+
+int Outputs::get_place(int row) const {
+  const Part& part = parts_[static_cast<size_t>(part_of_row_[static_cast<size_t>(row)])];
+  return part.group == Group::Signal ? part.index : -1;
+}
+
+const VectorXd& Outputs::calc_sample(const SampleState& at) {
+  for (const Part& part : parts_) calc_part(part, at);
+  return sample_;
+}
+
+const VectorXd& Outputs::calc_rows(std::span<const int> rows, const SampleState& at) {
+  int last = -1;
+  for (const int row : rows) {
+    const int part = part_of_row_[static_cast<size_t>(row)];
+    if (part != last) calc_part(parts_[static_cast<size_t>(part)], at);
+    last = part;
+  }
+  return sample_;
+}
+
+void Outputs::calc_body(int b, int at, const SampleState& state) {
   const auto put = [&](const auto& value) {
     sample_.segment(at, value.size()) = value;
     at += static_cast<int>(value.size());
   };
-  sample_[at++] = t;
-  for (int b = 0; b < system_.num_bodies(); ++b) {
-    const BodyState& s = get_body_state(data, b);
-    Eigen::Quaterniond q_WB(s.R_WB);
-    q_WB.normalize();
-    put(s.p_WBo);
-    Eigen::Vector4d wxyz(q_WB.w(), q_WB.x(), q_WB.y(), q_WB.z());
-    if (wxyz.dot(quaternions.segment<4>(4 * b)) < 0) wxyz = -wxyz;
-    quaternion_at_[static_cast<size_t>(b)] = at;
-    put(wxyz);
-    put(Vector3d(s.R_WB * s.v_B));
-    put(s.w_B);
-    put(q.segment(system_.eta_offset(b), system_.num_modes(b)));
-    put(u.segment(system_.eta_dot_offset(b), system_.num_modes(b)));
-    if (system_.num_modes(b) > 0) sample_[at++] = calc_strain_energy(system_, data, b);
-    if (const auto& recovery = system_.recoveries[static_cast<size_t>(b)]; recovery) {
+  const BodyState& s = get_body_state(state.data, b);
+  Eigen::Quaterniond q_WB(s.R_WB);
+  q_WB.normalize();
+  put(s.p_WBo);
+  Eigen::Vector4d wxyz(q_WB.w(), q_WB.x(), q_WB.y(), q_WB.z());
+  if (wxyz.dot(quaternions.segment<4>(4 * b)) < 0) wxyz = -wxyz;
+  quaternion_at_[static_cast<size_t>(b)] = at;
+  put(wxyz);
+  put(Vector3d(s.R_WB * s.v_B));
+  put(s.w_B);
+  put(state.q.segment(system_.eta_offset(b), system_.num_modes(b)));
+  put(state.u.segment(system_.eta_dot_offset(b), system_.num_modes(b)));
+  if (system_.num_modes(b) > 0) sample_[at++] = calc_strain_energy(system_, state.data, b);
+}
+
+void Outputs::calc_part(const Part& part, const SampleState& state) {
+  const SystemData& data = state.data;
+  int at = part.first;
+  const auto put = [&](const auto& value) {
+    sample_.segment(at, value.size()) = value;
+    at += static_cast<int>(value.size());
+  };
+  const auto index = static_cast<size_t>(part.index);
+  switch (part.group) {
+    case Group::Time:
+      sample_[at] = state.t;
+      break;
+    case Group::Body:
+      calc_body(part.index, at, state);
+      break;
+    case Group::Recovery: {
+      const auto& recovery = system_.recoveries[index];
       for (const auto& element : recovery->elements()) {
         if (!element.is_recorded) continue;
         recovery->calc(get_motion(system_, data), element.first, element.size(), sample_.data() + at);
         at += element.size();
       }
+      break;
     }
-  }
-  for (int b = 0; b < system_.num_bodies(); ++b) {
-    const int nq = system_.num_hinge_q(b), nu = system_.num_hinge_rates(b);
-    if (nq > 0) {
-      get_hinge(get_motion(system_, data), b, sample_.segment(at, nq), sample_.segment(at + nq, nu),
+    case Group::Hinge: {
+      const int nq = system_.num_hinge_q(part.index), nu = system_.num_hinge_rates(part.index);
+      get_hinge(get_motion(system_, data), part.index, sample_.segment(at, nq), sample_.segment(at + nq, nu),
                 sample_.segment(at + nq + nu, nu));
-      at += nq + 2 * nu;
+      break;
     }
-    const HingeReaction reaction = get_hinge_reaction(system_, data, b);
-    put(reaction.force);
-    put(reaction.moment);
-  }
-  for (int c = 0; c < system_.num_constraints(); ++c) {
-    const ConstraintReaction reaction = get_constraint_reaction(system_, data, c);
-    if (system_.is_coupler(c)) {
-      sample_[at++] = reaction.multiplier;
-      continue;
+    case Group::Reaction: {
+      const HingeReaction reaction = get_hinge_reaction(system_, data, part.index);
+      put(reaction.force);
+      put(reaction.moment);
+      break;
     }
-    put(reaction.force);
-    put(reaction.moment);
+    case Group::Constraint: {
+      const ConstraintReaction reaction = get_constraint_reaction(system_, data, part.index);
+      if (system_.is_coupler(part.index)) {
+        sample_[at] = reaction.multiplier;
+        break;
+      }
+      put(reaction.force);
+      put(reaction.moment);
+      break;
+    }
+    case Group::Element:
+      for (int k = 0; k < part.size; ++k) sample_[at++] = data.elements[index].values[static_cast<size_t>(k)];
+      break;
+    case Group::Signal:
+      sample_.segment(at, part.size) = data.signals.values.segment(system_.signals.places[index].out, part.size);
+      break;
+    case Group::Tank:
+      sample_[at++] = data.tree.tanks[index].mass;
+      sample_[at++] = data.tree.tanks[index].flow;
+      break;
+    case Group::Energy:
+      energies_ = calc_energies(system_, data);
+      put(Eigen::Vector4d(energies_.kinetic, energies_.strain, energies_.potential, state.work));
+      sample_[at++] = state.dissipated;
+      break;
+    case Group::Momentum: {
+      Vector3d linear, angular;
+      calc_momentum(system_, data, linear, angular);
+      put(linear);
+      put(angular);
+      if (system_.num_momentum_out() > 0) put(data.momentum_out);
+      break;
+    }
+    case Group::Mass: {
+      const SystemMass mass = calc_system_mass(system_, data);
+      sample_[at++] = mass.mass;
+      put(mass.cg_W);
+      put(Eigen::Map<const Eigen::Matrix<double, 9, 1>>(mass.inertia_W.data()));  // symmetric
+      break;
+    }
   }
-  for (size_t i = 0; i < data.elements.size(); ++i) {
-    size_t first = 0;
-    for (const int size : element_sizes_[i])
-      for (int k = 0; k < size; ++k) sample_[at++] = data.elements[i].values[first++];
-  }
-  put(data.signals.values);
-  for (const TankData& tank : data.tree.tanks) {
-    sample_[at++] = tank.mass;
-    sample_[at++] = tank.flow;
-  }
-  energies_ = calc_energies(system_, data);
-  put(Eigen::Vector4d(energies_.kinetic, energies_.strain, energies_.potential, work));
-  sample_[at++] = dissipated;
-  Vector3d linear, angular;
-  calc_momentum(system_, data, linear, angular);
-  put(linear);
-  put(angular);
-  if (system_.num_momentum_out() > 0) put(data.momentum_out);
-  const SystemMass mass = calc_system_mass(system_, data);
-  sample_[at++] = mass.mass;
-  put(mass.cg_W);
-  put(Eigen::Map<const Eigen::Matrix<double, 9, 1>>(mass.inertia_W.data()));  // symmetric
-  BOUGH_DEMAND(at == sample_.size());
-  return sample_;
 }
 
 }  // namespace bough::solver

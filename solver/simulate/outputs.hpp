@@ -1,9 +1,19 @@
 #pragma once
 /// \file Recorded results of a run: the channels of the results file (docs/formats) and one sample of them.
+#include <span>
+
 #include "formats/records/results.hpp"
 #include "solver/system/system.hpp"
 
 namespace bough::solver {
+
+/// State of which a sample is taken.
+struct SampleState {
+  double t;
+  const SystemData& data;           ///< evaluated at the state
+  Eigen::Ref<const VectorXd> q, u;  ///< as given to calc_kinematics
+  double work, dissipated;
+};
 
 class Outputs {
  public:
@@ -17,10 +27,15 @@ class Outputs {
   const std::vector<records::Channel>& channels() const { return channels_; }
   /// Index in the sample of component `component` (from 0) of the channel, -1 when there is none such.
   int find(const std::string& path, int component) const;
-  /// The sample at t from `data` after calc_signals; q, u as given to calc_kinematics. A quaternion has the sign
-  /// that is nearer to the one kept last. No allocation.
-  const VectorXd& calc_sample(double t, const SystemData& data, const Eigen::Ref<const VectorXd>& q,
-                              const Eigen::Ref<const VectorXd>& u, double work, double dissipated);
+  /// The sample of a state, after calc_signals. A quaternion has the sign that is nearer to the one kept last. No
+  /// allocation.
+  const VectorXd& calc_sample(const SampleState& at);
+  /// Sample of which these rows alone are up to date. No allocation.
+  const VectorXd& calc_rows(std::span<const int> rows, const SampleState& at);
+  /// Returns true if a row is known after calc_kinematics and, of a signal, of the block at get_place().
+  bool is_of_motion(int row) const;
+  /// Index in SignalGraph::places of the block whose output a row is; -1: it is none.
+  int get_place(int row) const;
   /// The last sample of calc_sample.
   const VectorXd& sample() const { return sample_; }
   /// Energies of the last sample.
@@ -40,11 +55,24 @@ class Outputs {
   void add_recovery(const std::string& path, int body);
   void add_channel(std::string path, int size, std::string description, std::string dims);
 
+  /// Rows of the sample that are computed together.
+  enum class Group { Time, Body, Recovery, Hinge, Reaction, Constraint, Element, Signal, Tank, Energy, Momentum, Mass };
+  struct Part {
+    Group group;
+    int index, first, size;
+    int num_of_motion;  ///< the first of them, known without accelerations
+  };
+  void add_part(Group group, int index, int size, int num_of_motion);
+  void divide();
+  void calc_part(const Part& part, const SampleState& state);
+  void calc_body(int body, int at, const SampleState& state);
+
   const System& system_;
   std::vector<records::Channel> channels_, chosen_;
   std::vector<std::pair<int, int>> ranges_;  ///< first and size in sample_ of what is chosen
   std::vector<int> quaternion_at_;
-  std::vector<std::vector<int>> element_sizes_;  ///< of the channels of each element of force
+  std::vector<Part> parts_;  ///< in the order of the sample
+  std::vector<int> part_of_row_;
   VectorXd sample_, kept_;
   Energies energies_;
 };

@@ -134,6 +134,7 @@ Run::Run(const System& system, const records::SystemSpec& spec, RunSetup setup, 
   evaluated_.y = y_;
   evaluated_.memory = ode_.data().signals.memory;
   evaluated_.slide = ode_.data().tree.slide;
+  chosen_.resize(system.signals.places.size());
   start_events();
   for (int b = 0; b < system.num_bodies(); ++b) {
     const TreeBody& tb = system.tree[b];
@@ -504,15 +505,63 @@ void Run::evaluate(double t, bool with_signals) {
   });
 }
 
+SampleState Run::get_sample_state(double t) const {
+  const int num_q = ode_.num_q();
+  return {t,
+          ode_.data(),
+          y_.head(num_q),
+          y_.segment(num_q, ode_.num_coordinates() - num_q),
+          ode_.get_work(y_),
+          ode_.get_dissipated(y_)};
+}
+
 const VectorXd& Run::calc_sample(double t) {
   evaluate(t, true);
-  if (!evaluated_.has_sample) {
-    const int num_q = ode_.num_q();
-    setup_.recorder.calc_sample(t, ode_.data(), y_.head(num_q), y_.segment(num_q, ode_.num_coordinates() - num_q),
-                                ode_.get_work(y_), ode_.get_dissipated(y_));
-    evaluated_.has_sample = true;
-  }
+  if (!evaluated_.has_sample) setup_.recorder.calc_sample(get_sample_state(t));
+  evaluated_.has_sample = true;
   return setup_.recorder.sample();
+}
+
+bool Run::has_motion(double t) const {
+  const SystemData& data = ode_.data();
+  return evaluated_.motion_number == ode_.num_evaluations() && evaluated_.t == t && data.tree.has(Stage::Velocity) &&
+         evaluated_.y == y_ && evaluated_.memory == data.signals.memory;
+}
+
+void Run::calc_motion(double t) {
+  if (has_motion(t)) return;
+  SystemData& data = ode_.data();
+  evaluated_.number = evaluated_.motion_number = -1;
+  set_z(data, y_.segment(ode_.num_coordinates(), ode_.num_z()));
+  calc_kinematics(ode_.system(), data, t, y_.head(ode_.num_q()),
+                  y_.segment(ode_.num_q(), ode_.num_coordinates() - ode_.num_q()));
+  evaluated_.motion_number = ode_.num_evaluations();
+  evaluated_.t = t;
+  evaluated_.y = y_;
+  evaluated_.memory = data.signals.memory;
+  evaluated_.has_signals = evaluated_.has_sample = false;
+}
+
+const VectorXd& Run::calc_rows(double t, std::span<const int> rows) {
+  const Outputs& outputs = setup_.recorder;
+  if (is_evaluated(t) && evaluated_.has_sample) return outputs.sample();
+  const bool is_of_motion = std::all_of(rows.begin(), rows.end(), [&](int row) { return outputs.is_of_motion(row); });
+  bool has_signal = false;
+  for (const int row : rows) has_signal = has_signal || outputs.get_place(row) >= 0;
+  if (!is_of_motion) {
+    evaluate(t, has_signal);
+    return setup_.recorder.calc_rows(rows, get_sample_state(t));
+  }
+  guard([&] {
+    const bool is_whole = is_evaluated(t);
+    if (!is_whole) calc_motion(t);
+    if (!has_signal || (is_whole && evaluated_.has_signals)) return;
+    std::fill(chosen_.begin(), chosen_.end(), false);
+    for (const int row : rows)
+      if (const int place = outputs.get_place(row); place >= 0) chosen_[static_cast<size_t>(place)] = true;
+    ode_.system().signals.calc_some(get_motion(ode_.system(), ode_.data()), ode_.data().signals, chosen_);
+  });
+  return setup_.recorder.calc_rows(rows, get_sample_state(t));
 }
 
 void Run::start_signal_events(double t) {

@@ -37,6 +37,10 @@ class Run {
   const std::optional<SimulateOutcome>& outcome() const { return outcome_; }
   /// All channels at time().
   const VectorXd& calc_outputs() { return calc_sample(time_); }
+  /// All channels, of which these rows are up to date: what they do not need is not computed.
+  const VectorXd& calc_outputs(std::span<const int> rows) {
+    return calc_rows(is_led_ ? calc_seen_time() : time_, rows);
+  }
   const Outputs& recorder() const { return setup_.recorder; }
   /// Sets what is held from time() on by the blocks of `memory`, one row of the signals' memory a value. Whatever a
   /// jump of them brings about comes at once.
@@ -121,6 +125,11 @@ class Run {
   /// Returns true if ode_ holds the evaluation at (t, y_).
   bool is_evaluated(double t) const;
   const VectorXd& calc_sample(double t);
+  const VectorXd& calc_rows(double t, std::span<const int> rows);
+  SampleState get_sample_state(double t) const;
+  /// Kinematics at (t, y_), in place of a whole evaluation.
+  void calc_motion(double t);
+  bool has_motion(double t) const;
   void update_progress(double t);
   /// Warns where jets have used up much of their body.
   void tell_consumption();
@@ -284,12 +293,14 @@ class Run {
   VectorXd y_, y_dot_;
   /// The last evaluation by evaluate().
   struct Evaluated {
-    long number = -1;  ///< HybridSystem::num_evaluations
+    long number = -1;         ///< HybridSystem::num_evaluations
+    long motion_number = -1;  ///< the same, of one that ended with the kinematics
     double t = 0;
     VectorXd y, memory, slide;
     bool has_signals = false, has_sample = false;
   };
   Evaluated evaluated_;
+  std::vector<bool> chosen_;          ///< of calc_rows(), by block
   EventValues events_, last_events_;  ///< at the present and at the last look
   Look look_;
   bool has_look_ = false;                    ///< look_ is of the part of the step after scanned_

@@ -66,8 +66,8 @@ VectorXd Run::differentiate(const VectorXd& dx, const std::vector<std::pair<int,
         for (const auto& [row, change] : dmemory) memory[row] += h * change;
         ode_.calc_derivative(t, x, x_dot);
         calc_signals(ode_.system(), data);
-        const VectorXd& sample = setup_.recorder.calc_sample(t, data, x.head(num_q), x.segment(num_q, num_u),
-                                                             ode_.get_work(x), ode_.get_dissipated(x));
+        const VectorXd& sample = setup_.recorder.calc_sample(
+            {t, data, x.head(num_q), x.segment(num_q, num_u), ode_.get_work(x), ode_.get_dissipated(x)});
         VectorXd all(x_dot.size() + sample.size());
         all << x_dot, sample;
         return all;

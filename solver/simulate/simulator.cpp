@@ -43,6 +43,11 @@ const Eigen::VectorXd& Simulator::calc_outputs() {
   return run_->is_led() ? run_->calc_continuous_outputs() : run_->calc_outputs();
 }
 
+const Eigen::VectorXd& Simulator::calc_outputs(std::span<const int> rows) {
+  apply_inputs();
+  return run_->calc_outputs(rows);
+}
+
 double Simulator::get_input(int i) const {
   const int row = inputs_[static_cast<std::size_t>(i)].memory;
   return InputBlock::calc_value(run_->time(), run_->memory().data() + row);

@@ -40,6 +40,9 @@ class Simulator {
   const std::vector<records::Channel>& channels() const;
   /// The components of all channels at time(), one after another. No allocation.
   const Eigen::VectorXd& calc_outputs();
+  /// Components of all channels, of which `rows` are up to date: those that need no accelerations cost no evaluation of
+  /// the equations of motion. No allocation.
+  const Eigen::VectorXd& calc_outputs(std::span<const int> rows);
 
   // Interface for an integrator of the host, in place of advance_to()
   int num_states() const;

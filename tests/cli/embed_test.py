@@ -1,6 +1,7 @@
 """The shared library against the program: a system stepped from outside moves as `bough run` moves it."""
 import multiprocessing
 import os
+import re
 import shutil
 import subprocess
 import unittest
@@ -202,8 +203,14 @@ class Embed(ProgramTest):
         self.bough("init", "spinup")
         self.bough("reduce", "spinup/boom.toml", "-o", "spinup/boom.h5")
         path = self.path("spinup/spinup.toml")
-        with self.assertRaisesRegex(RuntimeError, "embed.hdf5"):
+        with self.assertRaisesRegex(RuntimeError, r"(?s)--to flat -o \S+boom.flat, and name that .*embed.hdf5") as refused:
             Model(path)
+        with self.subTest("the advice is what helps"):
+            command = re.search(r"bough (export .*?), and", str(refused.exception)).group(1).split()
+            self.bough(*command)
+            with open(path, encoding="utf-8") as f:
+                self.write("spinup/flat.toml", f.read().replace("boom.h5", "boom.flat"))
+            Model(self.path("spinup/flat.toml")).close()
         with open(path, encoding="utf-8") as f:
             text = f.read()
         self.write("spinup/deck.toml", text.replace("boom.h5", "boom.bdf"))

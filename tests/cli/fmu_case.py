@@ -348,12 +348,13 @@ class FmuCase(ProgramTest):
         with h5py.File(self.path("reference.h5")) as f:
             t, columns = f["time"][:], []
             for name in names:
-                sensor, _, component = name.partition(":")
-                columns.append(f["sensors/" + sensor][:].reshape(len(t), -1)[:, COMPONENTS[component]])
+                channel, _, component = name.partition(":")
+                values = f[channel if channel.startswith("/") else "sensors/" + channel][:].reshape(len(t), -1)
+                columns.append(values[:, int(component) - 1 if component.isdecimal() else COMPONENTS[component]])
         return t, np.column_stack(columns)
 
-    def compare_cs(self, system, version, tolerance=0.0, **more):
-        fmu = self.export(system, version)
+    def compare_cs(self, system, version, tolerance=0.0, options=(), **more):
+        fmu = self.export(system, version, *options)
         outputs = fmu.list("output")
         t, expected = self.run_reference(system, outputs)
         instance = self.make(fmu, "cs", **more)
@@ -368,8 +369,8 @@ class FmuCase(ProgramTest):
             np.testing.assert_allclose(instance.get(outputs), expected[k], rtol=tolerance, atol=tolerance, err_msg=str(t[k]))
         instance.call("Terminate")
 
-    def compare_me(self, system, version, tolerance=1e-8):
-        fmu = self.export(system, version)
+    def compare_me(self, system, version, tolerance=1e-8, options=()):
+        fmu = self.export(system, version, *options)
         outputs = fmu.list("output")
         t, expected = self.run_reference(system, outputs)
         instance = self.make(fmu, "me")

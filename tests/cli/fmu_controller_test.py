@@ -1,5 +1,6 @@
 """FMUs as controllers: the law of a shared library bit for bit, states that are saved, and what goes wrong, in words."""
 import os
+import signal
 import subprocess
 import sys
 import unittest
@@ -49,6 +50,7 @@ output_step = 0.005
 integrator = "rk4"
 step = 0.005
 """
+FIRST = SYSTEM.partition('input = "')[2].partition('"')[0]
 FMU = """type = "fmu"
 file = "law.fmu"
 parameter_names = ["kp", "kd", "fault"]
@@ -168,6 +170,10 @@ class FmuControllers(ProgramTest):
         with h5py.File(self.path(name)) as f:
             return f["sensors/angle"][:], f["controllers/law"][:]
 
+    def read_text(self, name="s.toml"):
+        with open(self.path(name), encoding="utf-8") as f:
+            return f.read()
+
     def test_library_and_both_versions_are_the_same(self):
         compile_library(self.path("law.so"), LIBRARY, "-I" + os.path.join(SOURCE, "solver/control"))
         self.make(law='type = "library"\nfile = "law.so"\nparameters = [6.0, 4.0]\nsample_time = 0.01', name="library.toml")
@@ -215,6 +221,27 @@ class FmuControllers(ProgramTest):
                                    (alias, 'output_names = ["moment", "count"]', False)]:
             for left, right in zip(run(change, more, swap), expected):
                 np.testing.assert_array_equal(left, right, more)
+        # Outputs are signals by their names, as they are by their counts, in the system file and in the results.
+        array = lambda x: x.replace('"output"/>', '"output"><Dimension start="2"/><Alias name="moment"/></Float64>', 1)
+        for change, more, name in [
+                (lambda x: x, "", "torque"), (alias, 'output_names = ["moment", "count"]', "moment"), (array, "", "torque[1]"),
+                (array, 'output_names = ["moment[1]", "count"]', "moment[1]"), (array, 'output_names = ["moment", "count"]', "moment[1]"),
+                (lambda x: x.replace('"torque"', '"a:b"'), "", "1"), (lambda x: x, 'output_names = ["torque"]', "torque")]:
+            self.make_fmu(3, change=change)
+            self.make(more=more)
+            text = self.read_text().replace(FIRST, FIRST.replace("1", name))
+            channel = "/controllers/" + FIRST.replace("1", name)
+            self.write("s.toml", text + f'[[event]]\nname = "low"\nsignal = "{channel}"\nvalue = -1.0\naction = "log"\n')
+            self.bough("run", "s.toml")
+            angle, outputs = self.read("s.h5")
+            np.testing.assert_array_equal(angle, expected[0], name)
+            self.bough("plot", "s.h5", "--sensor", channel, "-o", "plot.svg")
+            self.bough("export", "s.h5", "--to", "csv", "-o", "s.csv")
+            self.assertIn((channel if outputs.ndim > 1 else channel.partition(":")[0])[1:], self.read_text("s.csv").partition("\n")[0])
+        self.make_fmu(3)
+        self.make()
+        self.write("s.toml", self.read_text().replace(FIRST, FIRST.replace("1", "torques")))
+        self.fails(1, "check", "s.toml", error="control.unknown-signal", says=["'torques'", "its components are torque, count"])
         # The rate keeps its start value, which the derivative gain makes a constant torque.
         start = lambda x: x.replace('start="0 0"', 'start="0 0.25"')
         self.make_fmu(3, change=start)
@@ -297,6 +324,17 @@ class FmuControllers(ProgramTest):
             self.bough("run", "s.toml", code=code, env={"TMPDIR": self.path("tmp")})
             self.assertEqual(os.listdir(self.path("tmp")), [])
 
+    def test_a_second_interrupt_ends_one_that_does_not_return(self):
+        self.make_fmu(3)
+        self.make(fault=9)
+        process, _ = self.start_held("run", "s.toml")
+        process.send_signal(signal.SIGINT)
+        self.wait_held(process)
+        process.send_signal(signal.SIGINT)
+        _, text = process.communicate(timeout=HANG)
+        self.assertEqual(process.returncode, 3)
+        self.assertRegex(text, "interrupted a second time in controller '.*': update of its FMU .* at t = 0.03")
+
     def test_refused_files(self):
         def refuse(error, *says, code=1, **more):
             self.make(**more)
@@ -349,7 +387,7 @@ class FmuControllers(ProgramTest):
         with self.assertRaisesRegex(RuntimeError, r"\[control.no-fmu\]"):
             Model(self.path("s.toml"))
         result = self.bough("check", "s.toml", code=3, env={"TMPDIR": "/nowhere"})
-        self.assertIn("[fmu.unpack]", result.stderr)
+        self.assertIn("[cli.no-temporary-folder]", result.stderr)
 
     def test_a_system_of_bough_is_one(self):
         """A mass on a spring beside the rotor, as FMU that measures the angle: another program's plant in this one."""

@@ -13,15 +13,32 @@
 /// From the solver, not independent: the layout of q and u, M_b(η) of bodies with stiffening (its derivatives, so h_b,
 /// are taken here; its values are tested against sums over points in tests/solver/bodies), K, D, the frame in which a
 /// constraint is caught (ConstraintState), and whether a coordinate is free, locked or prescribed.
-/// Not covered: J2, tanks, tables, load patterns, dry friction of hinges, rotors, delays, sampled controllers, noise.
+/// Sampled controllers are evaluated at the states that the history gives for their samples, and reach the others a
+/// delay later. Propellant: momentum and energy of a control volume, contents of tanks by sums over discs. Tables: by a
+/// separate interpolation.
+/// Not covered: load patterns, rigid stops, jets, noise.
+#include <map>
+
 #include "formats/records/system_spec.hpp"
 #include "solver/system/system.hpp"
 
 namespace bough::solver::testing {
 
+/// States at the instants of samples.
+using History = std::map<double, VectorXd>;
+
+/// Derivative of the state, and the largest over the smallest eigenvalue of the closed constraints that are kept.
+struct DenseDerivative {
+  VectorXd x_dot;
+  double condition = 1;
+};
+
 /// ẋ of x = [q; u; z; work; dissipated]. Closings and modes are those of `discrete`.
+/// Dry friction slides the way of the rate.
 /// \param flex  records of the flexible bodies, by file.
-VectorXd calc_dense_derivative(const records::SystemSpec& spec, const std::map<std::string, records::FlexBody>& flex,
-                               const System& system, const DiscreteState& discrete, double t, const VectorXd& x);
+DenseDerivative calc_dense_derivative(const records::SystemSpec& spec,
+                                      const std::map<std::string, records::FlexBody>& flex, const System& system,
+                                      const DiscreteState& discrete, double t, const VectorXd& x,
+                                      const History& history = {});
 
 }  // namespace bough::solver::testing
