@@ -9,7 +9,7 @@
 #include "analysis/common/system_files.hpp"
 #include "base/file_roles.hpp"
 #include "cli/report/report_files.hpp"
-#include "cli/run/provenance_sink.hpp"
+#include "analysis/run/provenance_sink.hpp"
 #include "formats/hdf5/files.hpp"
 #include "solver/simulate/simulate.hpp"
 
@@ -49,7 +49,7 @@ report::Chapter make_preview(const std::string& file, const std::string& text, D
   confine_files({});  // all inputs are read; the samples pass through the folder for temporary files
   const TemporaryFile samples;
   const auto writer = hdf5::make_results_writer(samples.get_path());
-  ProvenanceSink sink(*writer, sources);
+  analysis::ProvenanceSink sink(*writer, sources);
   const std::atomic<bool> stop{true};
   solver::SimulateOptions options;
   options.stop = &stop;

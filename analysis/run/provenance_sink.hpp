@@ -7,7 +7,7 @@
 
 #include "formats/records/results.hpp"
 
-namespace bough::cli {
+namespace bough::analysis {
 
 class ProvenanceSink final : public records::ResultSink {
  public:
@@ -48,4 +48,4 @@ class ProvenanceSink final : public records::ResultSink {
   std::optional<std::pair<bool, std::string>> end_;
 };
 
-}  // namespace bough::cli
+}  // namespace bough::analysis
