@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "cli/convert/unit_system.hpp"
+#include "analysis/convert/unit_system.hpp"
 #include "formats/fmu/model_description.hpp"
 
 namespace bough::cli {

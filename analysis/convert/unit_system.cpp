@@ -1,4 +1,4 @@
-#include "cli/convert/unit_system.hpp"
+#include "analysis/convert/unit_system.hpp"
 
 #include <cmath>
 #include <map>
@@ -6,7 +6,7 @@
 
 #include "base/diagnostic.hpp"
 
-namespace bough::cli {
+namespace bough::analysis {
 
 namespace {
 
@@ -84,4 +84,4 @@ std::pair<std::string, std::string> split_units(const std::string& text) {
   return {text.substr(0, colon), text.substr(colon + 1)};
 }
 
-}  // namespace bough::cli
+}  // namespace bough::analysis

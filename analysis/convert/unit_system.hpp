@@ -5,7 +5,7 @@
 
 #include "formats/nastran/unit_conversion.hpp"
 
-namespace bough::cli {
+namespace bough::analysis {
 
 /// The units of mass, length and time in SI units. Three of a length, a mass, a force and a time fix the fourth by
 /// force = mass length / time^2; without a time and one of mass and force, the time is the second. Throws InputError
@@ -22,4 +22,4 @@ UnitNames name_units(const std::string& text);
 /// "mm-N-tonne:m-kg-s" -> its two halves.
 std::pair<std::string, std::string> split_units(const std::string& text);
 
-}  // namespace bough::cli
+}  // namespace bough::analysis
