@@ -73,8 +73,8 @@ class ModesOutput final : public analysis::ModesReceiver {
       one["residual_vectors"] = {{"loads", modes.residual_loads}, {"unused", modes.unused_loads}};
     if (!options_.compare.empty() && console_.is_root()) {
       Diagnostics of_other;
-      const auto pair = compare_models(options_.request.deck, modal::ModalModel::from(result), options_.compare,
-                                       load_model(options_.compare, of_other));
+      const auto pair = analysis::compare_models(options_.request.deck, modal::ModalModel::from(result),
+                                                 options_.compare, analysis::load_model(options_.compare, of_other));
       if (is_first_) console_.print(of_other);
       text_ += "\n" + format_report(pair);
       one["comparison"] = make_json(pair);

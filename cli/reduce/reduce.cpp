@@ -150,7 +150,7 @@ int run_reduce(const ReduceVerbOptions& o) {
   } else {
     console.print(format_summary(body, basis, output));
     if (!o.loads_deck.empty()) console.print("written: " + o.loads_deck + "\n");
-    if (o.integrals_report) console.print("\n" + format_report(SingleReport{body, modal::check_integrals(body)}));
+    if (o.integrals_report) console.print("\n" + format_report(analysis::check_integrals(body)));
     if (check) console.print("compared with other modes:\n" + make_check_table(body, *check).to_text());
   }
   return kSuccess;
