@@ -11,6 +11,7 @@
 #include "analysis/common/body_files.hpp"
 #include "analysis/common/inputs.hpp"
 #include "analysis/convert/unit_system.hpp"
+#include "analysis/reduce/point_files.hpp"
 #include "formats/flat/flex_body.hpp"
 #include "formats/hdf5/files.hpp"
 #include "formats/nastran/unit_conversion.hpp"
@@ -120,12 +121,6 @@ void convert_body(const ConvertRequest& request, const records::UnitChange& chan
     answer.files = {{request.output, flat::format_flex_body(answer.body)}};
   else
     answer.accuracy = hdf5::read_body_accuracy(request.file);
-}
-
-bool is_hdf5(const std::string& path) {
-  std::string begin(8, '\0');
-  std::ifstream(path, std::ios::binary).read(begin.data(), 8);
-  return begin == "\x89HDF\r\n\x1a\n";
 }
 
 }  // namespace

@@ -17,6 +17,7 @@
 #include <thread>
 
 #include "analysis/common/ranks.hpp"
+#include "analysis/common/text_file.hpp"
 #include "base/version.hpp"
 #include "cli/batch/batch_outcome.hpp"
 #include "cli/batch/worker.hpp"
@@ -24,7 +25,6 @@
 #include "cli/common/console.hpp"
 #include "cli/common/interrupt.hpp"
 #include "cli/common/options.hpp"
-#include "cli/common/text_file.hpp"
 #include "cli/common/usage_text.hpp"
 #include "cli/verbs.hpp"
 #include "fe/linear/petsc.hpp"
@@ -100,7 +100,7 @@ class Folder {
     const auto own = fmt::format(".lock-{}-of-{}", shard.index + 1, shard.count);
     lock(own);
     if (restart) remove_cases(own);
-    write_text_file(state, now.dump(2) + "\n");
+    analysis::write_text_file(state, now.dump(2) + "\n");
     fingerprint_ = hdf5::calc_sha256(state);
   }
   ~Folder() {

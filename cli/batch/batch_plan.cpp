@@ -8,10 +8,10 @@
 
 #include "analysis/common/body_files.hpp"
 #include "analysis/common/inputs.hpp"
+#include "analysis/common/text_file.hpp"
 #include "base/file_roles.hpp"
 #include "cli/batch/batch_steps.hpp"
 #include "cli/common/options.hpp"
-#include "cli/common/text_file.hpp"
 #include "formats/hdf5/files.hpp"
 #include "formats/toml/key_editor.hpp"
 #include "formats/toml/specs.hpp"
@@ -270,10 +270,10 @@ void BatchPlan::write_files(const BatchCase& one, const fs::path& folder) const 
         throw InputError("batch.unknown-key", p.at, "key " + p.key + ": " + wrong);
     }
     if (carried.kind == FileKind::Toml) {
-      write_text_file(path.string(), text);
+      analysis::write_text_file(path.string(), text);
     } else {
       for (const auto& part : editors_.at(file).write(path.filename().string(), edits))
-        write_text_file((path.parent_path() / part.name).string(), part.text);
+        analysis::write_text_file((path.parent_path() / part.name).string(), part.text);
     }
   }
 }

@@ -10,6 +10,7 @@
 #include <fstream>
 #include <iostream>
 
+#include "analysis/common/output_folder.hpp"
 #include "cli/common/options.hpp"
 #include "cli/verbs.hpp"
 
@@ -168,7 +169,7 @@ int serve_cases(const BatchPlan& plan, const fs::path& folder, int fd, bool may_
     waiting.erase(0, end + 1);
     if (number < 1 || number > plan.num_cases()) return 1;
     const auto& one = plan.get_cases()[static_cast<std::size_t>(number - 1)];
-    if (!may_leave) confine_outputs((folder / plan.get_folder(number)).string());
+    if (!may_leave) analysis::confine_outputs((folder / plan.get_folder(number)).string());
     const auto outcome = run_case(plan, one, folder);
     if (!send_line(fd, to_text(outcome))) return 0;
   }

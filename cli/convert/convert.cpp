@@ -3,9 +3,9 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 
+#include "analysis/common/text_file.hpp"
 #include "cli/common/console_events.hpp"
 #include "cli/common/options.hpp"
-#include "cli/common/text_file.hpp"
 #include "cli/convert/convert.hpp"
 #include "formats/hdf5/files.hpp"
 
@@ -29,7 +29,7 @@ int run_convert(const ConvertOptions& o) {
   const auto answer = analysis::convert_file(request, check, events);
   console.print(events.get_messages());
   for (const auto& file : answer.files) {
-    write_text_file(file.path, file.text);
+    analysis::write_text_file(file.path, file.text);
     console.print("written: " + file.path + "\n");
   }
   const std::string names =

@@ -8,9 +8,9 @@
 
 #include "analysis/common/failures.hpp"
 #include "analysis/common/inputs.hpp"
+#include "analysis/common/text_file.hpp"
 #include "cli/common/console_events.hpp"
 #include "cli/common/options.hpp"
-#include "cli/common/text_file.hpp"
 #include "cli/flx/flx_output.hpp"
 
 namespace bough::cli {
@@ -50,8 +50,9 @@ int run_integrals(const IntegralsOptions& o) {
   ConsoleEvents events(console);
   const auto answer = analysis::calc_integrals(request, events);
   const auto text = flx::write_flx(answer.file, layout);
-  if (answer.inertial_loads) write_text_file(o.fi, format_inertial_loads(*answer.inertial_loads, answer.dof_map));
-  write_text_file(output, text);
+  if (answer.inertial_loads)
+    analysis::write_text_file(o.fi, format_inertial_loads(*answer.inertial_loads, answer.dof_map));
+  analysis::write_text_file(output, text);
   console.print(events.get_messages());
   if (o.json)
     console.print_data(format_flx_json({answer.file}));

@@ -10,9 +10,9 @@
 
 #include "analysis/common/body_files.hpp"
 #include "analysis/common/inputs.hpp"
+#include "analysis/export/export_matrices.hpp"
 #include "analysis/linearize/choose_channels.hpp"
 #include "cli/common/options.hpp"
-#include "cli/export/export_matrices.hpp"
 #include "cli/linearize/linear_model_files.hpp"
 #include "formats/hdf5/linear_file.hpp"
 #include "formats/hdf5/sweep_file.hpp"

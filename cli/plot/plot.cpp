@@ -8,12 +8,12 @@
 #include <sstream>
 
 #include "analysis/common/body_files.hpp"
+#include "analysis/common/converter.hpp"
 #include "analysis/common/inputs.hpp"
+#include "analysis/common/text_file.hpp"
+#include "analysis/export/export_matrices.hpp"
 #include "cli/common/console.hpp"
-#include "cli/common/converter.hpp"
 #include "cli/common/options.hpp"
-#include "cli/common/text_file.hpp"
-#include "cli/export/export_matrices.hpp"
 #include "cli/plot/history_plots.hpp"
 #include "cli/plot/linear_plots.hpp"
 #include "cli/plot/response_plots.hpp"
@@ -72,13 +72,13 @@ void write_picture(const std::string& path, const std::string& svg) {
   const std::string format = analysis::has_suffix(path, ".png")   ? "png"
                              : analysis::has_suffix(path, ".pdf") ? "pdf"
                                                                   : "svg";
-  if (format == "svg") return write_text_file(path, svg);
-  write_converted(path, svg,
-                  {"rsvg-convert", "librsvg2-bin", "write .svg",
-                   [&](const std::string& source, const std::string& output) -> std::vector<std::string> {
-                     return {"--zoom=2", "--background-color=white", "--format=" + format, "--output=" + output, "--",
-                             source};
-                   }});
+  if (format == "svg") return analysis::write_text_file(path, svg);
+  analysis::write_converted(
+      path, svg,
+      {"rsvg-convert", "librsvg2-bin", "write .svg",
+       [&](const std::string& source, const std::string& output) -> std::vector<std::string> {
+         return {"--zoom=2", "--background-color=white", "--format=" + format, "--output=" + output, "--", source};
+       }});
 }
 
 /// The file to write: as given, or `otherwise` with .svg.
@@ -173,7 +173,7 @@ int draw_plots(const PlotOptions& o, std::vector<report::Plot> plots, const std:
     print_plots(plots, console);
   }
   if (!o.csv.empty()) {
-    write_text_file(o.csv, csv);
+    analysis::write_text_file(o.csv, csv);
     console.print("written: " + o.csv + "\n");
   }
   if (!has_picture) {

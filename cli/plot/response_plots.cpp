@@ -7,9 +7,9 @@
 
 #include "analysis/common/body_files.hpp"
 #include "analysis/common/inputs.hpp"
+#include "analysis/export/export_matrices.hpp"
 #include "base/diagnostic.hpp"
 #include "cli/common/options.hpp"
-#include "cli/export/export_matrices.hpp"
 #include "formats/export/random_text.hpp"
 #include "formats/export/response_text.hpp"
 #include "formats/hdf5/response_file.hpp"

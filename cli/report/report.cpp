@@ -7,10 +7,10 @@
 #include "analysis/common/body_files.hpp"
 #include "analysis/common/channels.hpp"
 #include "analysis/common/inputs.hpp"
+#include "analysis/common/text_file.hpp"
 #include "base/version.hpp"
 #include "cli/common/console.hpp"
 #include "cli/common/options.hpp"
-#include "cli/common/text_file.hpp"
 #include "cli/report/report_files.hpp"
 
 namespace bough::cli {
@@ -45,7 +45,7 @@ int run_report(const ReportOptions& o) {
   if (auto overlay = report::make_overlay(page.chapters); !overlay.panels.empty())
     page.chapters.insert(page.chapters.begin(), std::move(overlay));
   const std::string html = report::make_page(page);
-  write_text_file(output, html);
+  analysis::write_text_file(output, html);
   console.print(diagnostics);
   console.print(fmt::format("written: {} ({:.2f} MB)\n", output, static_cast<double>(html.size()) / 1e6));
   return kSuccess;

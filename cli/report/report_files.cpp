@@ -9,9 +9,9 @@
 
 #include "analysis/common/body_files.hpp"
 #include "analysis/common/inputs.hpp"
+#include "analysis/export/export_matrices.hpp"
 #include "base/file_roles.hpp"
 #include "cli/common/options.hpp"
-#include "cli/export/export_matrices.hpp"
 #include "formats/hdf5/comparison_file.hpp"
 #include "formats/hdf5/complex_modes_file.hpp"
 #include "formats/hdf5/files.hpp"

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "analysis/common/output_folder.hpp"
 #include "cli/common/console.hpp"
 #include "cli/common/event_list.hpp"
 #include "cli/common/interrupt.hpp"
@@ -43,7 +44,7 @@ class ConsoleRun final : public analysis::RunEvents {
     stage.empty() ? console_.end_progress() : console_.show_progress(stage);
   }
   void check_output(const std::string& path, bool resumes) override {
-    resumes ? check_place(path) : cli::check_output(options_, path);
+    resumes ? analysis::check_place(path) : cli::check_output(options_, path);
   }
   void start() override {
     begin_ = shown_ = Clock::now();

@@ -35,7 +35,7 @@ MAY_INCLUDE = [
     ("solver/statespace", RECORDS),
     *[("solver/" + room, RECORDS + ["solver/" + below for below in SOLVER[:i]]) for i, room in enumerate(SOLVER)],
     ("embed", RECORDS + ["formats/toml", "formats/flx", "formats/flat", "solver"]),
-    ("analysis", ["base", "formats", "fe", "modal", "stiffening", "solver", "embed/load.hpp", "cosim"]),
+    ("analysis", ["base", "formats", "fe", "modal", "stiffening", "solver", "embed", "cosim"]),
     ("cosim", RECORDS + ["formats/fmu", "solver/control", "embed/fmi2_types.h", "embed/fmi3_types.h"]),
 ]
 # Outside headers and the only folders that may see them.

@@ -8,7 +8,7 @@
 #include "base/diagnostic.hpp"
 #include "formats/export/reduced_solid.hpp"
 
-namespace bough::cli {
+namespace bough::analysis {
 
 /// Writes the MATLAB file of a flexible body, modes, matrices or results file. Throws "cli.no-export".
 void export_mat(const std::string& file, const std::string& output, Diagnostics& diagnostics);
@@ -28,4 +28,4 @@ std::optional<exports::ReducedSolid> find_solid(const records::FlexBody& body, c
 
 inline std::size_t to_size(Eigen::Index i) { return static_cast<std::size_t>(i); }
 
-}  // namespace bough::cli
+}  // namespace bough::analysis

@@ -1,6 +1,6 @@
-#include "cli/common/vtu_file.hpp"
+#include "analysis/common/vtu_file.hpp"
 
-namespace bough::cli {
+namespace bough::analysis {
 
 std::string make_vtu_text(const exports::Picture& picture, exports::VtuEncoding encoding, const std::string& file,
                           Diagnostics& diagnostics) {
@@ -15,4 +15,4 @@ std::string make_vtu_text(const exports::Picture& picture, exports::VtuEncoding 
   return exports::make_vtu(picture.mesh, picture.arrays, encoding, picture.cells);
 }
 
-}  // namespace bough::cli
+}  // namespace bough::analysis

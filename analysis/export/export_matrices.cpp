@@ -1,15 +1,15 @@
-#include "cli/export/export_matrices.hpp"
+#include "analysis/export/export_matrices.hpp"
 
 #include <algorithm>
 
 #include "analysis/common/body_files.hpp"
 #include "formats/hdf5/files.hpp"
 
-namespace bough::cli {
+namespace bough::analysis {
 
 void refuse_export(const std::string& file, const std::string& format, const std::string& expected) {
   throw InputError("cli.no-export", {file},
-                   "a file of format \"" + analysis::read_file_format(file) + "\" has no export to " + format,
+                   "a file of format \"" + read_file_format(file) + "\" has no export to " + format,
                    "give " + expected);
 }
 
@@ -33,4 +33,4 @@ std::optional<exports::ReducedSolid> find_solid(const records::FlexBody& body, c
   return solid;
 }
 
-}  // namespace bough::cli
+}  // namespace bough::analysis

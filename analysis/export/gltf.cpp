@@ -1,11 +1,11 @@
 #include <fmt/format.h>
 
 #include "analysis/common/body_files.hpp"
-#include "cli/export/export_matrices.hpp"
-#include "cli/export/moving_system.hpp"
+#include "analysis/export/export_matrices.hpp"
+#include "analysis/export/moving_system.hpp"
 #include "formats/report/gltf.hpp"
 
-namespace bough::cli {
+namespace bough::analysis {
 
 namespace {
 
@@ -44,7 +44,7 @@ report::GltfScene make_run_scene(const std::string& file, const MovingOptions& o
 }  // namespace
 
 std::string make_glb(const std::string& file, const MovingOptions& o, Diagnostics& diagnostics) {
-  const auto format = analysis::read_file_format(file);
+  const auto format = read_file_format(file);
   if (format == "bough-results") return report::make_glb(make_run_scene(file, o, diagnostics));
   if (format == "bough-modes") {
     const auto modes = hdf5::read_modes(file);
@@ -55,9 +55,9 @@ std::string make_glb(const std::string& file, const MovingOptions& o, Diagnostic
                                             is_buckling ? "times the load" : "Hz", o.scale));
   }
   if (format != "bough-flexbody") refuse_export(file, "gltf", "what bough run, modes or reduce wrote");
-  const auto body = analysis::read_body(file, diagnostics);
+  const auto body = read_body(file, diagnostics);
   auto drawing = report::make_drawing(body, true);
   return report::make_glb(make_mode_scene(body.name, std::move(drawing), body.frequency_hz, "Hz", o.scale));
 }
 
-}  // namespace bough::cli
+}  // namespace bough::analysis

@@ -1,21 +1,19 @@
-#include "cli/export/export_component.hpp"
+#include "analysis/export/export_component.hpp"
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
 #include <set>
 
 #include "analysis/common/body_files.hpp"
 #include "analysis/common/inputs.hpp"
+#include "analysis/common/text_file.hpp"
+#include "analysis/export/export_matrices.hpp"
+#include "analysis/export/op4_matrices.hpp"
 #include "analysis/listing/listing.hpp"
 #include "analysis/listing/stress_columns.hpp"
 #include "analysis/reduce/point_files.hpp"
-#include "cli/common/options.hpp"
-#include "cli/common/text_file.hpp"
-#include "cli/export/export_matrices.hpp"
-#include "cli/export/op4_matrices.hpp"
 #include "fe/matrices/system.hpp"
 #include "fe/model/sets.hpp"
 #include "fe/statics/build_model.hpp"
@@ -23,7 +21,7 @@
 #include "formats/nastran/superelement_writer.hpp"
 #include "modal/bases/component.hpp"
 
-namespace bough::cli {
+namespace bough::analysis {
 namespace {
 
 using Eigen::Index;
@@ -183,17 +181,16 @@ void add_element_rows(const fe::Model& model, const records::Deck& deck, const r
   std::vector<fe::RecoveryCase> cases;
   for (const auto& column : columns) cases.push_back({&column, 0, nullptr, nullptr});
   const auto results = fe::recover_elements(model, deck, cases, fe::RecoveredFields{});
-  const auto elements = analysis::index_elements(model);
-  const auto limits = analysis::list_stress_limits(deck);
+  const auto elements = index_elements(model);
+  const auto limits = list_stress_limits(deck);
   TableRows force_rows("MEF1"), stress_rows("MES1");
   for (Index c = 0; c < n; ++c) {
     const auto& result = results[static_cast<std::size_t>(c)];
     for (const auto& block : result.forces)
-      if (const auto listed = analysis::make_listed_forces(model, elements, block, {}, forces))
-        force_rows.add(c, n, *listed);
+      if (const auto listed = make_listed_forces(model, elements, block, {}, forces)) force_rows.add(c, n, *listed);
     for (const auto& block : result.stresses)
-      if (auto listed = analysis::make_listed_stresses(model, elements, deck, block, result.forces, limits, stresses)) {
-        analysis::keep_linear_columns(*listed);
+      if (auto listed = make_listed_stresses(model, elements, deck, block, result.forces, limits, stresses)) {
+        keep_linear_columns(*listed);
         if (listed->point.empty()) stress_rows.add(c, n, *listed);
       }
   }
@@ -211,10 +208,10 @@ WrittenComponent make_component(const std::string& file, const ComponentExportOp
   fe::ModelOptions model_options;
   model_options.ignore_cards = ignore_cards;
   Diagnostics reading;
-  auto deck = analysis::read_deck_or_throw(file, model_options, reading);
+  auto deck = read_deck_or_throw(file, model_options, reading);
   copy_but_sets(reading, diagnostics);
-  const auto requests = analysis::read_requests_once(file, diagnostics);
-  const auto* selection = analysis::find_selection(requests, deck.subcases.front().id);
+  const auto requests = read_requests_once(file, diagnostics);
+  const auto* selection = find_selection(requests, deck.subcases.front().id);
 
   std::set<int> generalized;
   for (const auto& term : deck.qset) generalized.insert(term.g);
@@ -296,7 +293,7 @@ void uncouple(Index nb, MatrixXd& K, MatrixXd& M, MatrixXd& C) {
 
 WrittenComponent make_component_of_body(const std::string& file, const ComponentExportOptions& options,
                                         Diagnostics& diagnostics) {
-  const auto body = analysis::read_body(file, diagnostics);
+  const auto body = read_body(file, diagnostics);
   const auto solid = find_solid(body, file, diagnostics);
   if (!solid)
     throw InputError(
@@ -372,38 +369,20 @@ std::string make_matrices(const WrittenComponent& c, const std::string& vendor) 
 
 }  // namespace
 
-void add_component_options(CLI::App& verb, ComponentExportOptions& options) {
-  verb.add_option("--id", options.id, "extseout: id of the superelement (default: EXTID of the deck, else 1)")
-      ->check(CLI::PositiveNumber);
-  verb.add_option("--unit", options.unit,
-                  "extseout: unit of the .op4 file in the assembly deck (default: MATOP4 of the deck, else the id)")
-      ->check(CLI::PositiveNumber);
-  verb.add_option("--vendor", options.vendor, "extseout: names and order of the matrices, nx or msc")
-      ->check(CLI::IsMember({"nx", "msc"}))
-      ->capture_default_str();
-  verb.add_option("--first-point", options.first_point,
-                  "extseout of a body: id of its first generalized coordinate (default: 1001 above its nodes)")
-      ->check(CLI::PositiveNumber);
-}
-
-std::string export_component(const std::string& file, const std::string& output, const ComponentExportOptions& options,
-                             const std::vector<std::string>& ignore_cards, Diagnostics& diagnostics) {
-  const auto component = analysis::is_hdf5(file) ? make_component_of_body(file, options, diagnostics)
-                                                 : make_component(file, options, ignore_cards, diagnostics);
+ComponentSummary export_component(const std::string& file, const std::string& output,
+                                  const ComponentExportOptions& options, const std::vector<std::string>& ignore_cards,
+                                  Diagnostics& diagnostics) {
+  const auto component = is_hdf5(file) ? make_component_of_body(file, options, diagnostics)
+                                       : make_component(file, options, ignore_cards, diagnostics);
   auto stem = std::filesystem::path(output);
-  if (analysis::has_suffix(output, ".op4") || analysis::has_suffix(output, ".asm") ||
-      analysis::has_suffix(output, ".pch"))
-    stem.replace_extension();
+  if (has_suffix(output, ".op4") || has_suffix(output, ".asm") || has_suffix(output, ".pch")) stem.replace_extension();
   const auto texts = nastran::write_external_component(component.cards);
   const auto assign =
       fmt::format("$ ASSIGN INPUTT4='{}.op4',UNIT={}\n", stem.filename().string(), component.cards.unit);
   write_text_file(stem.string() + ".op4", make_matrices(component, options.vendor));
   write_text_file(stem.string() + ".asm", assign + texts.assembly);
   write_text_file(stem.string() + ".pch", texts.section);
-  return fmt::format(
-      "external superelement {}: {} boundary grids, {} generalized coordinates\nwritten: {}.op4, {}.asm, {}.pch\n",
-      component.cards.id, component.cards.grids.size(), component.cards.scalar_points.size(), stem.string(),
-      stem.string(), stem.string());
+  return {component.cards.id, component.cards.grids.size(), component.cards.scalar_points.size(), stem.string()};
 }
 
-}  // namespace bough::cli
+}  // namespace bough::analysis

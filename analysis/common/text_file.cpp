@@ -1,4 +1,4 @@
-#include "cli/common/text_file.hpp"
+#include "analysis/common/text_file.hpp"
 
 #include <unistd.h>
 
@@ -8,7 +8,7 @@
 #include "base/diagnostic.hpp"
 #include "base/part_file.hpp"
 
-namespace bough::cli {
+namespace bough::analysis {
 
 void write_text_file(const std::string& path, const std::string& text) {
   PartFile part(path);
@@ -42,4 +42,4 @@ void write_whole(const std::string& path, const std::function<void(const std::st
   }
 }
 
-}  // namespace bough::cli
+}  // namespace bough::analysis

@@ -1,4 +1,4 @@
-#include "cli/export/export_fmu.hpp"
+#include "analysis/export/export_fmu.hpp"
 
 #include <link.h>
 
@@ -15,11 +15,9 @@
 #include <vector>
 
 #include "analysis/common/system_files.hpp"
+#include "analysis/common/text_file.hpp"
+#include "analysis/export/fmu_units.hpp"
 #include "base/version.hpp"
-#include "cli/common/console.hpp"
-#include "cli/common/options.hpp"
-#include "cli/common/text_file.hpp"
-#include "cli/export/fmu_units.hpp"
 #include "embed/bough.h"
 #include "embed/dependencies.hpp"
 #include "embed/fmi_variables.hpp"
@@ -36,7 +34,7 @@
 #include "solver/simulate/channel_units.hpp"
 #include "solver/tree/coordinates.hpp"
 
-namespace bough::cli {
+namespace bough::analysis {
 
 namespace fs = std::filesystem;
 
@@ -75,7 +73,7 @@ std::string format_matrix(const Eigen::MatrixXd& matrix) {
 /// Rewrites a system so that everything it needs is in one folder.
 class Packing {
  public:
-  explicit Packing(const analysis::LoadedSystem& loaded) : loaded_(loaded), text_(loaded.spec.text) {}
+  explicit Packing(const LoadedSystem& loaded) : loaded_(loaded), text_(loaded.spec.text) {}
 
   /// \return the resources in the order of their names, without the manifest.
   std::vector<fmi::Resource> pack() {
@@ -167,7 +165,7 @@ class Packing {
     set(item, "file", toml_files::quote_text(name));
   }
 
-  const analysis::LoadedSystem& loaded_;
+  const LoadedSystem& loaded_;
   std::string text_;
   std::map<std::string, std::string> names_;  ///< by source
   std::map<std::string, std::string> files_;  ///< by name
@@ -330,10 +328,10 @@ void set_units(const embed::Model& model, const std::string& text, fmu::ModelDes
 
 }  // namespace
 
-std::string export_fmu(const std::string& file, const std::string& output, const FmuOptions& options,
-                       Diagnostics& diagnostics) {
+FmuSummary export_fmu(const std::string& file, const std::string& output, const FmuOptions& options,
+                      Diagnostics& diagnostics) {
   const auto binary = find_binary();
-  const embed::Model model(analysis::load_system(file, diagnostics, "", options.set));
+  const embed::Model model(load_system(file, diagnostics, "", options.set));
   const auto& spec = model.loaded().spec;
   const auto resources = Packing(model.loaded()).pack();
   const auto manifest = fmi::make_manifest(resources, std::string(get_version()));
@@ -375,9 +373,7 @@ std::string export_fmu(const std::string& file, const std::string& output, const
   entries.push_back({std::string("resources/") + fmi::kManifest, manifest});
   for (const auto& resource : resources) entries.push_back({"resources/" + resource.name, resource.bytes});
   write_whole(output, [&](const std::string& part) { fmu::write_archive(part, entries); });
-  return "FMI " + std::to_string(options.version) + ".0: " + count(d.parameters.size(), "parameter") + ", " +
-         count(d.inputs.size(), "input") + ", " + count(d.outputs.size(), "output") + ", " +
-         count(d.states.size(), "continuous state") + ", " + count(d.event_indicators.size(), "event indicator") + "\n";
+  return {d.parameters.size(), d.inputs.size(), d.outputs.size(), d.states.size(), d.event_indicators.size()};
 }
 
-}  // namespace bough::cli
+}  // namespace bough::analysis

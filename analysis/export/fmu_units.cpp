@@ -1,11 +1,11 @@
-#include "cli/export/fmu_units.hpp"
+#include "analysis/export/fmu_units.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include "formats/records/dims.hpp"
 
-namespace bough::cli {
+namespace bough::analysis {
 
 FmuUnits::FmuUnits(const std::string& text) {
   if (text.empty()) return;
@@ -54,4 +54,4 @@ std::string FmuUnits::add(const std::string& dims, bool is_angle) {
   return unit.name;
 }
 
-}  // namespace bough::cli
+}  // namespace bough::analysis

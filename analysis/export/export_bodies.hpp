@@ -7,11 +7,7 @@
 #include "base/diagnostic.hpp"
 #include "formats/export/csv.hpp"
 
-namespace CLI {
-class App;
-}
-
-namespace bough::cli {
+namespace bough::analysis {
 
 struct BodyExportOptions {
   std::string inertia = "6x1";
@@ -19,7 +15,6 @@ struct BodyExportOptions {
   int digits = 17;
 };
 
-void add_body_export_options(CLI::App& verb, BodyExportOptions& options);
 bool is_body_format(const std::string& format);
 /// Throws InputError "cli.no-export" for a file that is no flexible body.
 std::string make_body_text(const std::string& file, const std::string& format, const BodyExportOptions& options,
@@ -34,4 +29,4 @@ std::vector<exports::CsvColumn> read_mode_columns(const std::string& file, const
 std::vector<exports::CsvColumn> read_shape_columns(const std::string& file, const std::string& format,
                                                    Diagnostics& diagnostics);
 
-}  // namespace bough::cli
+}  // namespace bough::analysis

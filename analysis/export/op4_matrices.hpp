@@ -5,7 +5,7 @@
 
 #include "formats/matrices/op4.hpp"
 
-namespace bough::cli {
+namespace bough::analysis {
 
 class Op4Matrices {
  public:
@@ -21,4 +21,4 @@ class Op4Matrices {
   std::ostringstream out_;
 };
 
-}  // namespace bough::cli
+}  // namespace bough::analysis

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace bough::cli {
+namespace bough::analysis {
 
 struct Converter {
   std::string program, package;
@@ -17,4 +17,4 @@ struct Converter {
 /// Throws ComputationError "cli.write" or "cli.no-converter".
 void write_converted(const std::string& path, const std::string& source, const Converter& converter);
 
-}  // namespace bough::cli
+}  // namespace bough::analysis

@@ -3,13 +3,13 @@
 #include <sstream>
 
 #include "analysis/common/body_files.hpp"
-#include "cli/export/export_matrices.hpp"
-#include "cli/export/op4_matrices.hpp"
+#include "analysis/export/export_matrices.hpp"
+#include "analysis/export/op4_matrices.hpp"
 #include "formats/hdf5/files.hpp"
 #include "formats/hdf5/linear_file.hpp"
 #include "formats/hdf5/sparse_file.hpp"
 
-namespace bough::cli {
+namespace bough::analysis {
 
 namespace {
 
@@ -89,10 +89,10 @@ std::string make_op4_name(const std::string& path) {
 }  // namespace
 
 std::string make_op4(const std::string& file, Diagnostics& diagnostics) {
-  const auto format = analysis::read_file_format(file);
+  const auto format = read_file_format(file);
   Op4Matrices out;
   if (format == "bough-flexbody") {
-    const auto body = analysis::read_body(file, diagnostics);
+    const auto body = read_body(file, diagnostics);
     put_body(out, body, find_solid(body, file, diagnostics));
   } else if (format == "bough-modes") {
     const auto modes = hdf5::read_modes(file);
@@ -123,4 +123,4 @@ std::string make_op4(const std::string& file, Diagnostics& diagnostics) {
   return out.take();
 }
 
-}  // namespace bough::cli
+}  // namespace bough::analysis

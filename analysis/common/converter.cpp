@@ -1,4 +1,4 @@
-#include "cli/common/converter.hpp"
+#include "analysis/common/converter.hpp"
 
 #include <spawn.h>
 #include <sys/wait.h>
@@ -7,7 +7,7 @@
 #include "base/diagnostic.hpp"
 #include "base/part_file.hpp"
 
-namespace bough::cli {
+namespace bough::analysis {
 
 void write_converted(const std::string& path, const std::string& text, const Converter& converter) {
   PartFile source(path), part(path);
@@ -35,4 +35,4 @@ void write_converted(const std::string& path, const std::string& text, const Con
   throw fail(converter.program + " could not write the picture", look + ", or " + converter.otherwise);
 }
 
-}  // namespace bough::cli
+}  // namespace bough::analysis

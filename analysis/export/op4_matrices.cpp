@@ -1,10 +1,10 @@
-#include "cli/export/op4_matrices.hpp"
+#include "analysis/export/op4_matrices.hpp"
 
 #include <algorithm>
 
-#include "cli/export/export_matrices.hpp"
+#include "analysis/export/export_matrices.hpp"
 
-namespace bough::cli {
+namespace bough::analysis {
 namespace {
 
 /// Compressed rows of a symmetric matrix hold (j, i) for every (i, j).
@@ -50,4 +50,4 @@ void Op4Matrices::put(const std::string& name, const records::SparseMatrix& a) {
   matrices::write_op4(out_, matrix, options_);
 }
 
-}  // namespace bough::cli
+}  // namespace bough::analysis

@@ -7,7 +7,7 @@
 #include "analysis/convert/unit_system.hpp"
 #include "formats/fmu/model_description.hpp"
 
-namespace bough::cli {
+namespace bough::analysis {
 
 /// Represents the units in use; without a set of units only the radian.
 class FmuUnits {
@@ -29,4 +29,4 @@ class FmuUnits {
   std::vector<fmu::Unit> list_;
 };
 
-}  // namespace bough::cli
+}  // namespace bough::analysis

@@ -3,15 +3,15 @@
 #include <filesystem>
 #include <unordered_map>
 
+#include "analysis/common/output_folder.hpp"
+#include "analysis/common/text_file.hpp"
+#include "analysis/export/moving_system.hpp"
 #include "base/xml_text.hpp"
-#include "cli/common/options.hpp"
-#include "cli/common/text_file.hpp"
-#include "cli/export/moving_system.hpp"
 #include "formats/export/uff.hpp"
 #include "formats/export/vtu.hpp"
 #include "formats/records/mesh_measure.hpp"
 
-namespace bough::cli {
+namespace bough::analysis {
 
 namespace fs = std::filesystem;
 
@@ -297,4 +297,4 @@ int write_pvd(const MovingSystem& system, double scale, bool is_ascii, const std
   return count;
 }
 
-}  // namespace bough::cli
+}  // namespace bough::analysis

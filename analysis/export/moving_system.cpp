@@ -1,15 +1,14 @@
-#include "cli/export/moving_system.hpp"
+#include "analysis/export/moving_system.hpp"
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 
 #include "analysis/common/body_files.hpp"
 #include "analysis/common/run_bodies.hpp"
 #include "formats/toml/specs.hpp"
 
-namespace bough::cli {
+namespace bough::analysis {
 
 namespace {
 
@@ -38,17 +37,6 @@ Eigen::MatrixXd take(const hdf5::ResultsFile& results, const std::string& path,
 }
 
 }  // namespace
-
-void add_moving_options(CLI::App& verb, MovingOptions& o) {
-  verb.add_option("--every", o.every, "pvd, gltf: one in so many samples")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
-  verb.add_option("--window", o.window, "pvd, gltf: only samples from T0 to T1, as T0,T1")->delimiter(',')->expected(2);
-  verb.add_option("--scale", o.scale, "pvd, gltf: the deformation that many times as large")->capture_default_str();
-  verb.add_option("--follow", o.follow, "pvd, gltf: positions from the origin of this body");
-  verb.add_option("--body", o.bodies, "pvd, gltf: a body file of the run that has moved; may be repeated")
-      ->allow_extra_args(false);
-}
 
 Eigen::Matrix3d to_rotation(const Eigen::Ref<const Eigen::RowVectorXd>& q) {
   return Eigen::Quaterniond(q[0], q[1], q[2], q[3]).normalized().toRotationMatrix();
@@ -82,17 +70,17 @@ MovingSystem read_moving_system(const std::string& file, const MovingOptions& o,
     }
     known += (known.empty() ? "" : ", ") + body.name;
     if (body.file.empty()) {
-      moving.drawing = report::make_box(body.mass, body.cg, body.inertia, analysis::list_rigid_points(spec, body));
+      moving.drawing = report::make_box(body.mass, body.cg, body.inertia, list_rigid_points(spec, body));
     } else {
       std::string why;
-      const auto written = analysis::get_body_path(body.file);
-      const auto place = analysis::find_body_file(written, file, o.bodies, inputs.source, why);
+      const auto written = get_body_path(body.file);
+      const auto place = find_body_file(written, file, o.bodies, inputs.source, why);
       if (place.empty()) {
         diagnostics.warning("export.no-body", {file}, "body " + body.name + " is not drawn: " + why,
                             "name its file with --body");
         continue;
       }
-      moving.flex = analysis::read_body(place + body.file.substr(written.size()), unused);
+      moving.flex = read_body(place + body.file.substr(written.size()), unused);
       moving.drawing = report::make_drawing(*moving.flex, true);
     }
     system.bodies.push_back(std::move(moving));
@@ -110,4 +98,4 @@ MovingSystem read_moving_system(const std::string& file, const MovingOptions& o,
   return system;
 }
 
-}  // namespace bough::cli
+}  // namespace bough::analysis

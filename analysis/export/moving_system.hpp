@@ -9,11 +9,7 @@
 #include "formats/hdf5/files.hpp"
 #include "formats/report/drawing.hpp"
 
-namespace CLI {
-class App;
-}
-
-namespace bough::cli {
+namespace bough::analysis {
 
 struct MovingOptions {
   int every = 1;                    ///< of the samples in the window
@@ -22,8 +18,6 @@ struct MovingOptions {
   std::string follow;               ///< the body whose origin the picture goes with; empty: inertial
   std::vector<std::string> bodies;  ///< body files of the run that are not where it found them
 };
-void add_moving_options(CLI::App& verb, MovingOptions& options);
-
 /// One row for each chosen sample. Position of Bo (minus that of the followed body) and velocity: inertial;
 /// quaternion w x y z of B in the inertial frame; angular velocity in B.
 struct MovingBody {
@@ -56,4 +50,4 @@ std::string make_moving_uff(const MovingSystem& system, double scale, const std:
 /// The run, or the modes of a modes file or a body, as one binary glTF file (docs/formats/gltf.md).
 std::string make_glb(const std::string& file, const MovingOptions& options, Diagnostics& diagnostics);
 
-}  // namespace bough::cli
+}  // namespace bough::analysis

@@ -1,37 +1,23 @@
-#include "cli/export/export_bodies.hpp"
+#include "analysis/export/export_bodies.hpp"
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
-
 #include "analysis/common/body_files.hpp"
-#include "cli/export/export_matrices.hpp"
+#include "analysis/export/export_matrices.hpp"
 #include "formats/flat/flex_body.hpp"
 #include "formats/hdf5/complex_modes_file.hpp"
 #include "formats/hdf5/files.hpp"
 #include "formats/mbdyn/fem_file.hpp"
 #include "formats/sid/sid.hpp"
 
-namespace bough::cli {
-
-void add_body_export_options(CLI::App& verb, BodyExportOptions& o) {
-  verb.add_option("--inertia", o.inertia, "sid: the inertia J as 6x1 (11 22 33 12 13 23) or 3x3")
-      ->check(CLI::IsMember({"6x1", "3x3"}))
-      ->capture_default_str();
-  verb.add_option("--ge-order", o.ge_order,
-                  "sid: columns of Ge by mode (3 for each) or by component (one for each mode)")
-      ->check(CLI::IsMember({"mode", "component"}))
-      ->capture_default_str();
-  verb.add_option("--digits", o.digits, "sid: significant digits")->check(CLI::Range(6, 17))->capture_default_str();
-}
+namespace bough::analysis {
 
 bool is_body_format(const std::string& format) { return format == "sid" || format == "mbdyn" || format == "flat"; }
 
 std::string make_body_text(const std::string& file, const std::string& format, const BodyExportOptions& o,
                            Diagnostics& diagnostics) {
-  if (analysis::read_file_format(file) != "bough-flexbody")
-    refuse_export(file, format, "a flexible body, from bough reduce");
-  const auto body = analysis::read_moving_body(file, diagnostics);
+  if (read_file_format(file) != "bough-flexbody") refuse_export(file, format, "a flexible body, from bough reduce");
+  const auto body = read_moving_body(file, diagnostics);
   if (format == "flat") return flat::format_flex_body(body);
   if (format == "mbdyn") return mbdyn::make_fem(body, {file}, diagnostics);
   sid::Layout layout;
@@ -79,7 +65,7 @@ std::vector<exports::CsvColumn> read_shape_columns(const std::string& file, cons
     const auto modes = hdf5::read_modes(file);
     return make_real(modes.node_id, modes.node_xyz, modes.phi);
   }
-  const auto body = analysis::read_body(file, diagnostics);
+  const auto body = read_body(file, diagnostics);
   return make_real(body.node_id, body.node_xyz, body.phi);
 }
 
@@ -115,10 +101,10 @@ std::vector<exports::CsvColumn> read_mode_columns(const std::string& file, const
               {"load_factor", modes.load_factor}};
     make(modes.frequency_hz, modes.eigenvalue, modes.modal_mass, modes.effective_mass);
   } else {
-    const auto body = analysis::read_body(file, diagnostics);
+    const auto body = read_body(file, diagnostics);
     make(body.frequency_hz, body.eigenvalue, body.modal_mass.diagonal(), body.effective_mass);
   }
   return columns;
 }
 
-}  // namespace bough::cli
+}  // namespace bough::analysis

@@ -5,10 +5,10 @@
 #include "base/diagnostic.hpp"
 #include "formats/export/vtu.hpp"
 
-namespace bough::cli {
+namespace bough::analysis {
 
 /// The text; adds "export.partial-shapes" (warning) when some grids of `file` have no shape.
 std::string make_vtu_text(const exports::Picture& picture, exports::VtuEncoding encoding, const std::string& file,
                           Diagnostics& diagnostics);
 
-}  // namespace bough::cli
+}  // namespace bough::analysis

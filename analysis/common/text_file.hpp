@@ -2,7 +2,7 @@
 #include <functional>
 #include <string>
 
-namespace bough::cli {
+namespace bough::analysis {
 
 /// Writes to a temporary file and renames: the file appears whole or not at all. Throws ComputationError("cli.write").
 void write_text_file(const std::string& path, const std::string& text);
@@ -11,4 +11,4 @@ void write_text_file(const std::string& path, const std::string& text);
 /// A failure removes it, leaves an old file as it was, and names `path` in its messages.
 void write_whole(const std::string& path, const std::function<void(const std::string& part)>& write);
 
-}  // namespace bough::cli
+}  // namespace bough::analysis

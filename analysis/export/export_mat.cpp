@@ -1,17 +1,17 @@
-#include "cli/export/export_matrices.hpp"
+#include "analysis/export/export_matrices.hpp"
 
 #include <algorithm>
 #include <cctype>
 
 #include "analysis/common/body_files.hpp"
-#include "cli/linearize/linear_model_files.hpp"
+#include "analysis/export/linear_mat.hpp"
 #include "formats/hdf5/files.hpp"
 #include "formats/hdf5/linear_file.hpp"
 #include "formats/hdf5/sparse_file.hpp"
 #include "formats/matrices/mat_file.hpp"
 #include "formats/records/mode_kind.hpp"
 
-namespace bough::cli {
+namespace bough::analysis {
 
 namespace {
 
@@ -57,24 +57,24 @@ MatArray make_array(const std::vector<std::size_t>& dims, const Get& get) {
   return array;
 }
 
-using Index = std::vector<Eigen::Index>;
+using Subscripts = std::vector<Eigen::Index>;
 
 MatValue make_shapes(const std::vector<Eigen::MatrixXd>& phi, std::size_t num_modes) {
-  return make_array({phi.size(), 6, num_modes}, [&](const Index& i) { return phi[to_size(i[0])](i[1], i[2]); });
+  return make_array({phi.size(), 6, num_modes}, [&](const Subscripts& i) { return phi[to_size(i[0])](i[1], i[2]); });
 }
 
 MatValue make_stack(const std::vector<Eigen::MatrixXd>& stack, std::size_t n) {
-  return make_array({stack.size(), n, n}, [&](const Index& i) { return stack[to_size(i[0])](i[1], i[2]); });
+  return make_array({stack.size(), n, n}, [&](const Subscripts& i) { return stack[to_size(i[0])](i[1], i[2]); });
 }
 
 MatValue make_integrals(const records::MassIntegrals& s, std::size_t n) {
   return MatFields{
       {"gamma0", s.gamma0.transpose()},
       {"gamma1", s.gamma1.transpose()},
-      {"gamma2", make_array({n, n, 3}, [&](const Index& i) { return s.gamma2[to_size(i[0])](i[2], i[1]); })},
-      {"gamma3", make_array({n, 3, 3}, [&](const Index& i) { return s.gamma3[to_size(i[0])](i[1], i[2]); })},
-      {"gamma4",
-       make_array({n, n, 3, 3}, [&](const Index& i) { return s.gamma4[to_size(i[0])][to_size(i[1])](i[2], i[3]); })}};
+      {"gamma2", make_array({n, n, 3}, [&](const Subscripts& i) { return s.gamma2[to_size(i[0])](i[2], i[1]); })},
+      {"gamma3", make_array({n, 3, 3}, [&](const Subscripts& i) { return s.gamma3[to_size(i[0])](i[1], i[2]); })},
+      {"gamma4", make_array({n, n, 3, 3},
+                            [&](const Subscripts& i) { return s.gamma4[to_size(i[0])][to_size(i[1])](i[2], i[3]); })}};
 }
 
 std::vector<Eigen::MatrixXd> list_inertial(const records::FlexBody& body) {
@@ -106,7 +106,7 @@ MatFields make_variables(const records::FlexBody& body) {
       {"external_load", body.external_load}};
   if (body.load_resultant.size() > 0) {
     stiffening.emplace_back("load_resultant", body.load_resultant);
-    stiffening.emplace_back("load_moment", make_array({body.load_moment.size(), 3, n}, [&](const Index& i) {
+    stiffening.emplace_back("load_moment", make_array({body.load_moment.size(), 3, n}, [&](const Subscripts& i) {
                               return body.load_moment[to_size(i[0])](i[1], i[2]);
                             }));
   }
@@ -186,10 +186,10 @@ void put(MatFields& fields, const std::string& path, MatValue value) {
 }  // namespace
 
 void export_mat(const std::string& file, const std::string& output, Diagnostics& diagnostics) {
-  const auto format = analysis::read_file_format(file);
+  const auto format = read_file_format(file);
   MatFields variables;
   if (format == "bough-flexbody") {
-    const auto body = analysis::read_body(file, diagnostics);
+    const auto body = read_body(file, diagnostics);
     variables = make_variables(body);
     if (const auto solid = find_solid(body, file, diagnostics); solid) {
       variables.emplace_back("P", solid->P);
@@ -220,4 +220,4 @@ void export_mat(const std::string& file, const std::string& output, Diagnostics&
   matrices::write_mat(output, variables);
 }
 
-}  // namespace bough::cli
+}  // namespace bough::analysis
