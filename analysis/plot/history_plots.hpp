@@ -6,7 +6,7 @@
 #include "base/diagnostic.hpp"
 #include "formats/report/svg_plot.hpp"
 
-namespace bough::cli {
+namespace bough::analysis {
 
 struct CurveChoice {
   std::string x;               ///< channel or column instead of the time
@@ -36,4 +36,4 @@ report::Plot make_campaign_plot(const std::vector<std::string>& files, const std
 std::vector<report::Plot> shape_plots(std::vector<report::Plot> plots, const CurveChoice& choice, bool is_over_time,
                                       Diagnostics& diagnostics);
 
-}  // namespace bough::cli
+}  // namespace bough::analysis

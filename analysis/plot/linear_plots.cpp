@@ -1,4 +1,4 @@
-#include "cli/plot/linear_plots.hpp"
+#include "analysis/plot/linear_plots.hpp"
 
 #include <fmt/format.h>
 
@@ -12,15 +12,13 @@
 #include "analysis/common/inputs.hpp"
 #include "analysis/export/export_matrices.hpp"
 #include "analysis/linearize/choose_channels.hpp"
-#include "cli/common/options.hpp"
-#include "cli/linearize/linear_model_files.hpp"
 #include "formats/hdf5/linear_file.hpp"
 #include "formats/hdf5/sweep_file.hpp"
 #include "formats/report/bode_plot.hpp"
 #include "formats/report/pole_plot.hpp"
 #include "solver/statespace/frequency_response.hpp"
 
-namespace bough::cli {
+namespace bough::analysis {
 
 namespace {
 
@@ -181,9 +179,9 @@ std::vector<Plot> make_linear_plots(const std::vector<std::string>& files, const
   if (kind == "locus") plots[0].x_label = "real part [1/T]", plots[0].y_label = "imaginary part [1/T]";
   std::vector<std::pair<std::string, records::LinearModel>> models;
   for (const auto& file : files) {
-    analysis::demand_file(file);
+    demand_file(file);
     const std::string prefix = files.size() > 1 ? std::filesystem::path(file).stem().string() + " " : "";
-    const auto format = analysis::read_file_format(file);
+    const auto format = read_file_format(file);
     const std::string expected = is_of_sweeps(kind) ? "bough-sweep" : "bough-linear";
     if (format != expected)
       throw InputError("cli.plot-kind", {file}, fmt::format("--kind {} draws no file of format \"{}\"", kind, format),
@@ -198,7 +196,7 @@ std::vector<Plot> make_linear_plots(const std::vector<std::string>& files, const
       models.emplace_back(files.size() > 1 ? std::filesystem::path(file).stem().string() : "", std::move(all));
       continue;
     }
-    const auto model = analysis::choose_channels(all, choice.inputs, choice.outputs, file);
+    const auto model = choose_channels(all, choice.inputs, choice.outputs, file);
     if (model.inputs.size() == 0 || model.outputs.size() == 0)
       throw InputError("linear.no-channels", {file}, "the model has no input or no output",
                        "name some with --inputs and --outputs of bough linearize");
@@ -218,4 +216,4 @@ std::vector<Plot> make_linear_plots(const std::vector<std::string>& files, const
   return plots;
 }
 
-}  // namespace bough::cli
+}  // namespace bough::analysis

@@ -5,7 +5,7 @@
 
 #include "formats/report/svg_plot.hpp"
 
-namespace bough::cli {
+namespace bough::analysis {
 
 /// "bode", "nichols", "sigma", "poles" of linear models, "campbell", "locus" of sweeps.
 const std::vector<std::string>& list_plot_kinds();
@@ -19,4 +19,4 @@ struct LinearPlotChoice {
 /// is of another format, "linear.unknown-input", "linear.unknown-output".
 std::vector<report::Plot> make_linear_plots(const std::vector<std::string>& files, const LinearPlotChoice& choice);
 
-}  // namespace bough::cli
+}  // namespace bough::analysis

@@ -1,4 +1,4 @@
-#include "cli/plot/response_plots.hpp"
+#include "analysis/plot/response_plots.hpp"
 
 #include <fmt/format.h>
 
@@ -9,12 +9,11 @@
 #include "analysis/common/inputs.hpp"
 #include "analysis/export/export_matrices.hpp"
 #include "base/diagnostic.hpp"
-#include "cli/common/options.hpp"
 #include "formats/export/random_text.hpp"
 #include "formats/export/response_text.hpp"
 #include "formats/hdf5/response_file.hpp"
 
-namespace bough::cli {
+namespace bough::analysis {
 namespace {
 
 using exports::NamedCurve;
@@ -66,9 +65,9 @@ void cut_window(const std::string& file, const std::vector<double>& window, std:
 }  // namespace
 
 bool is_deck_response(const std::vector<std::string>& files) {
-  if (files.empty() || !analysis::has_suffix(files.front(), ".h5")) return false;
-  analysis::demand_file(files.front());
-  const auto format = analysis::read_file_format(files.front());
+  if (files.empty() || !has_suffix(files.front(), ".h5")) return false;
+  demand_file(files.front());
+  const auto format = read_file_format(files.front());
   return format == "bough-frequency" || format == "bough-transient";
 }
 
@@ -77,7 +76,7 @@ std::vector<report::Plot> make_response_plots(const std::vector<std::string>& fi
                                               bool has_decades) {
   std::vector<report::Plot> plots(1);
   for (const auto& file : files) {
-    analysis::demand_file(file);
+    demand_file(file);
     const auto response = hdf5::read_response(file);
     const bool is_over_time = response.is_over_time;
     plots.resize(is_over_time ? 1 : 2);
@@ -116,7 +115,7 @@ std::vector<report::Plot> make_density_plots(const std::vector<std::string>& fil
   plots[0].y_label = "spectral density [unit²/Hz]";
   plots[0].has_log_x = plots[0].has_log_y = true;
   for (const auto& file : files) {
-    analysis::demand_file(file);
+    demand_file(file);
     const auto response = hdf5::read_response(file);
     if (response.random.empty())
       throw InputError("cli.no-random", {file}, "--psd: the file has no random response",
@@ -141,4 +140,4 @@ std::vector<report::Plot> make_density_plots(const std::vector<std::string>& fil
   return plots;
 }
 
-}  // namespace bough::cli
+}  // namespace bough::analysis

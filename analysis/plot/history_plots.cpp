@@ -1,4 +1,4 @@
-#include "cli/plot/history_plots.hpp"
+#include "analysis/plot/history_plots.hpp"
 
 #include <fmt/format.h>
 
@@ -8,13 +8,12 @@
 
 #include "analysis/common/channels.hpp"
 #include "analysis/common/inputs.hpp"
-#include "cli/common/options.hpp"
 #include "formats/hdf5/table_file.hpp"
 #include "formats/report/label.hpp"
 #include "formats/report/shock_spectrum.hpp"
 #include "formats/report/spectrum.hpp"
 
-namespace bough::cli {
+namespace bough::analysis {
 
 namespace fs = std::filesystem;
 
@@ -42,10 +41,10 @@ bool is_time(const std::string& name) { return name == "/time" || name == "time"
 VectorXd read_abscissa(const hdf5::ResultsFile& results, const std::string& file, const std::string& name,
                        std::string& label) {
   if (is_time(name) && results.channels.count("/sensors/" + name) == 0) {
-    label = report::make_label("time", analysis::get_unit(results, "/time"));
+    label = report::make_label("time", get_unit(results, "/time"));
     return results.time;
   }
-  const auto columns = analysis::choose_columns(results, file, name);
+  const auto columns = choose_columns(results, file, name);
   if (columns.size() != 1)
     throw InputError("cli.one-channel", {file}, fmt::format("--x {} names {} curves", name, columns.size()),
                      "name one component, as " + columns.front().name);
@@ -170,16 +169,16 @@ report::Plot make_history_plot(const std::vector<std::string>& files, const std:
   std::vector<report::Curve> first;
   for (std::size_t f = 0; f < files.size(); ++f) {
     const auto& file = files[f];
-    analysis::demand_file(file);
-    analysis::warn_incomplete(file, diagnostics);
+    demand_file(file);
+    warn_incomplete(file, diagnostics);
     const auto results = hdf5::read_results(file);
     const VectorXd x = choice.x.empty() ? results.time : read_abscissa(results, file, choice.x, plot.x_label);
-    if (choice.x.empty()) plot.x_label = report::make_label("time", analysis::get_unit(results, "/time"));
-    if (choice.psd || choice.spectrum) plot.x_label = report::label_frequency(analysis::get_unit(results, "/time"));
+    if (choice.x.empty()) plot.x_label = report::make_label("time", get_unit(results, "/time"));
+    if (choice.psd || choice.spectrum) plot.x_label = report::label_frequency(get_unit(results, "/time"));
     std::size_t number = 0;
     bool is_interpolated = false;
     for (const auto& sensor : sensors) {
-      for (auto& column : analysis::choose_columns(results, file, sensor)) {
+      for (auto& column : choose_columns(results, file, sensor)) {
         const bool one_curve_a_file = sensors.size() == 1 && sensor.find(':') != std::string::npos;
         std::string label = files.size() > 1 ? fs::path(file).stem().string() : "";
         if (files.size() == 1 || !one_curve_a_file) label += (label.empty() ? "" : " ") + column.name;
@@ -211,7 +210,7 @@ report::Plot make_campaign_plot(const std::vector<std::string>& files, const std
   report::Plot plot;
   plot.x_label = choice.x.empty() ? "cases below, %" : choice.x;
   for (const auto& file : files) {
-    analysis::demand_file(file);
+    demand_file(file);
     const auto table = hdf5::read_outcomes(file);
     for (const auto& name : names) {
       VectorXd y = find_outcome(table, file, name);
@@ -275,4 +274,4 @@ std::vector<report::Plot> shape_plots(std::vector<report::Plot> plots, const Cur
   return single;
 }
 
-}  // namespace bough::cli
+}  // namespace bough::analysis

@@ -5,7 +5,7 @@
 
 #include "formats/report/svg_plot.hpp"
 
-namespace bough::cli {
+namespace bough::analysis {
 
 /// Returns true if the first of the files is one of `frequency` or `transient`.
 bool is_deck_response(const std::vector<std::string>& files);
@@ -22,4 +22,4 @@ std::vector<report::Plot> make_response_plots(const std::vector<std::string>& fi
 std::vector<report::Plot> make_density_plots(const std::vector<std::string>& files,
                                              const std::vector<std::string>& names, const std::vector<double>& window);
 
-}  // namespace bough::cli
+}  // namespace bough::analysis
