@@ -8,7 +8,7 @@
 #include "analysis/common/inputs.hpp"
 #include "analysis/common/system_files.hpp"
 #include "base/file_roles.hpp"
-#include "cli/report/report_files.hpp"
+#include "analysis/report/report_files.hpp"
 #include "analysis/run/provenance_sink.hpp"
 #include "formats/hdf5/files.hpp"
 #include "solver/simulate/simulate.hpp"
@@ -44,7 +44,7 @@ report::Chapter make_preview(const std::string& file, const std::string& text, D
   const auto loaded = analysis::load_system(file, diagnostics, load);
   diagnostics.throw_if_errors();
   const auto sources = analysis::calc_sources(analysis::collect_sources(file, loaded));
-  ReportRequest request;
+  analysis::ReportRequest request;
   for (const auto& [written, path] : loaded.flex_path) request.files.push_back(path);
   confine_files({});  // all inputs are read; the samples pass through the folder for temporary files
   const TemporaryFile samples;
@@ -55,7 +55,7 @@ report::Chapter make_preview(const std::string& file, const std::string& text, D
   options.stop = &stop;
   solver::simulate(loaded.system, loaded.spec, sink, options, diagnostics);
   sink.finish();
-  return make_results_chapter(samples.get_path(), request, diagnostics);
+  return analysis::make_results_chapter(samples.get_path(), request, diagnostics);
 }
 
 }  // namespace bough::cli

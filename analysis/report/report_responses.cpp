@@ -3,14 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
-#include "cli/report/report_files.hpp"
+#include "analysis/report/report_files.hpp"
 #include "formats/export/random_text.hpp"
 #include "formats/export/response_text.hpp"
 #include "formats/hdf5/response_file.hpp"
 #include "formats/records/mode_kind.hpp"
 #include "formats/report/html.hpp"
 
-namespace bough::cli {
+namespace bough::analysis {
 
 namespace {
 
@@ -199,4 +199,4 @@ report::Chapter make_response_chapter(const std::string& file) {
   return chapter;
 }
 
-}  // namespace bough::cli
+}  // namespace bough::analysis

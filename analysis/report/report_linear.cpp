@@ -2,15 +2,15 @@
 
 #include <algorithm>
 
-#include "cli/plot/linear_plots.hpp"
-#include "cli/report/report_files.hpp"
+#include "analysis/plot/linear_plots.hpp"
+#include "analysis/report/report_files.hpp"
 #include "formats/hdf5/linear_file.hpp"
 #include "formats/hdf5/sweep_file.hpp"
 #include "formats/report/html.hpp"
 #include "formats/report/linear_chapter.hpp"
 #include "solver/statespace/frequency_response.hpp"
 
-namespace bough::cli {
+namespace bough::analysis {
 
 using Eigen::Index;
 using report::Verdict;
@@ -113,4 +113,4 @@ report::Chapter make_sweep_chapter(const std::string& file) {
   return chapter;
 }
 
-}  // namespace bough::cli
+}  // namespace bough::analysis

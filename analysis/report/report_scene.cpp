@@ -1,13 +1,13 @@
-#include "cli/report/report_scene.hpp"
+#include "analysis/report/report_scene.hpp"
 
 #include <map>
 
 #include "analysis/common/body_files.hpp"
 #include "analysis/common/run_bodies.hpp"
-#include "cli/report/scene_arrows.hpp"
+#include "analysis/report/scene_arrows.hpp"
 #include "formats/toml/specs.hpp"
 
-namespace bough::cli {
+namespace bough::analysis {
 
 namespace {
 
@@ -49,18 +49,18 @@ report::SceneBody read_scene_body(const records::SystemSpec& spec, const records
                                   std::vector<std::string>& missing) {
   report::SceneBody drawn{body.name, {}, 0};
   if (body.file.empty()) {
-    drawn.drawing = report::make_box(body.mass, body.cg, body.inertia, analysis::list_rigid_points(spec, body));
+    drawn.drawing = report::make_box(body.mass, body.cg, body.inertia, list_rigid_points(spec, body));
     return drawn;
   }
   std::string why;
-  const auto written = analysis::get_body_path(body.file);
-  const auto place = analysis::find_body_file(written, file, request.files, inputs.source, why);
+  const auto written = get_body_path(body.file);
+  const auto place = find_body_file(written, file, request.files, inputs.source, why);
   if (place.empty()) {
     missing.push_back("body " + body.name + ": " + why);
     return drawn;
   }
   Diagnostics unused;  // said by the run
-  const auto flex = analysis::read_body(place + body.file.substr(written.size()), unused);
+  const auto flex = read_body(place + body.file.substr(written.size()), unused);
   drawn.drawing = report::make_drawing(flex);
   if (!report::add_energy_matrices(flex, drawn.drawing))
     missing.push_back("body " + body.name + ": the strain energy of its elements in all modes is too large for a page");
@@ -137,4 +137,4 @@ void add_scene(const std::string& file, const hdf5::RunInputs& inputs, const Rep
   add_arrows(spec, places, history);
 }
 
-}  // namespace bough::cli
+}  // namespace bough::analysis

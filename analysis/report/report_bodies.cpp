@@ -4,7 +4,7 @@
 #include <numbers>
 
 #include "analysis/common/body_files.hpp"
-#include "cli/report/report_files.hpp"
+#include "analysis/report/report_files.hpp"
 #include "formats/hdf5/files.hpp"
 #include "formats/records/mode_kind.hpp"
 #include "formats/report/html.hpp"
@@ -13,7 +13,7 @@
 #include "modal/compare/shapes.hpp"
 #include "modal/spin.hpp"
 
-namespace bough::cli {
+namespace bough::analysis {
 
 using report::Verdict;
 
@@ -113,7 +113,7 @@ void check_matrices(const records::FlexBody& body, report::ModalModel& m) {
 }  // namespace
 
 report::Chapter make_body_chapter(const std::string& file, Diagnostics& diagnostics) {
-  const auto body = analysis::read_body(file, diagnostics);
+  const auto body = read_body(file, diagnostics);
   report::ModalModel m;
   m.kind = "flexible body";
   m.file = file;
@@ -189,4 +189,4 @@ report::Chapter make_modes_chapter(const std::string& file) {
   return report::make_chapter(m);
 }
 
-}  // namespace bough::cli
+}  // namespace bough::analysis

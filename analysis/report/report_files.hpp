@@ -3,15 +3,11 @@
 #include <string>
 #include <vector>
 
+#include "analysis/report/report.hpp"
 #include "base/diagnostic.hpp"
 #include "formats/report/page.hpp"
 
-namespace bough::cli {
-
-struct ReportRequest {
-  std::vector<std::string> files;     ///< all of the call: bodies of a run are looked for among them
-  std::vector<std::string> channels;  ///< of results, as for `plot`; empty: all
-};
+namespace bough::analysis {
 
 /// Chapter of an HDF5 file of Bough or of the JSON of `select`. Throws InputError "cli.no-report" for other files.
 report::Chapter make_chapter(const std::string& file, const ReportRequest& request, Diagnostics& diagnostics);
@@ -32,4 +28,4 @@ report::Chapter make_model_response_chapter(const std::string& file);
 report::Chapter make_sweep_chapter(const std::string& file);
 report::Chapter make_results_chapter(const std::string& file, const ReportRequest& request, Diagnostics& diagnostics);
 
-}  // namespace bough::cli
+}  // namespace bough::analysis

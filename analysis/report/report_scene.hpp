@@ -2,15 +2,15 @@
 /// \file The moving system of a run, out of the text that it was started with.
 #include <string>
 
-#include "cli/report/report_files.hpp"
+#include "analysis/report/report_files.hpp"
 #include "formats/hdf5/files.hpp"
 #include "formats/report/history_chapter.hpp"
 
-namespace bough::cli {
+namespace bough::analysis {
 
 /// Adds name, bodies, hinges, sensors and arrows; what cannot be drawn goes into history.missing. Time and channels of
 /// the history are there.
 void add_scene(const std::string& file, const hdf5::RunInputs& inputs, const ReportRequest& request,
                report::History& history);
 
-}  // namespace bough::cli
+}  // namespace bough::analysis

@@ -6,7 +6,7 @@
 #include "formats/records/system_spec.hpp"
 #include "formats/report/history_chapter.hpp"
 
-namespace bough::cli {
+namespace bough::analysis {
 
 /// Where nodes are on the bodies of the scene; both live longer than this.
 class ScenePlaces {
@@ -28,4 +28,4 @@ class ScenePlaces {
 /// history.missing.
 void add_arrows(const records::SystemSpec& spec, const ScenePlaces& places, report::History& history);
 
-}  // namespace bough::cli
+}  // namespace bough::analysis

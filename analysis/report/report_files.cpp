@@ -1,4 +1,4 @@
-#include "cli/report/report_files.hpp"
+#include "analysis/report/report_files.hpp"
 
 #include <fmt/format.h>
 
@@ -11,7 +11,6 @@
 #include "analysis/common/inputs.hpp"
 #include "analysis/export/export_matrices.hpp"
 #include "base/file_roles.hpp"
-#include "cli/common/options.hpp"
 #include "formats/hdf5/comparison_file.hpp"
 #include "formats/hdf5/complex_modes_file.hpp"
 #include "formats/hdf5/files.hpp"
@@ -21,7 +20,7 @@
 #include "formats/report/static_chapter.hpp"
 #include "formats/report/table_chapters.hpp"
 
-namespace bough::cli {
+namespace bough::analysis {
 
 namespace {
 
@@ -75,8 +74,8 @@ report::Chapter make_campaign_chapter(const std::string& file) {
 }  // namespace
 
 std::vector<std::pair<std::string, std::string>> list_facts(const std::string& file) {
-  if (analysis::is_flat(file)) return {{"file", file}, {"format", "flat"}};
-  if (analysis::is_flx(file)) return {{"file", file}, {"format", ".FLX"}};
+  if (is_flat(file)) return {{"file", file}, {"format", "flat"}};
+  if (is_flx(file)) return {{"file", file}, {"format", ".FLX"}};
   const auto info = hdf5::read_info(file);
   std::vector<std::pair<std::string, std::string>> facts{{"file", file}};
   const auto add = [&](const char* attribute, const char* name) {
@@ -123,8 +122,8 @@ std::vector<std::pair<std::string, std::string>> list_settings(const std::string
 }
 
 report::Chapter make_chapter(const std::string& file, const ReportRequest& request, Diagnostics& diagnostics) {
-  if (analysis::has_suffix(file, ".json")) return make_selection_chapter(file);
-  const auto format = analysis::read_file_format(file);
+  if (has_suffix(file, ".json")) return make_selection_chapter(file);
+  const auto format = read_file_format(file);
   if (format == "bough-results") return make_results_chapter(file, request, diagnostics);
   if (format == "bough-flexbody") return make_body_chapter(file, diagnostics);
   if (format == "bough-modes") return make_modes_chapter(file);
@@ -140,4 +139,4 @@ report::Chapter make_chapter(const std::string& file, const ReportRequest& reque
   throw InputError("cli.no-report", {file}, "no page can be made of a file of format \"" + format + "\"", kTakes);
 }
 
-}  // namespace bough::cli
+}  // namespace bough::analysis

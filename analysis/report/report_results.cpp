@@ -4,14 +4,13 @@
 #include <map>
 
 #include "analysis/common/channels.hpp"
-#include "cli/common/options.hpp"
-#include "cli/report/report_files.hpp"
-#include "cli/report/report_scene.hpp"
+#include "analysis/report/report_files.hpp"
+#include "analysis/report/report_scene.hpp"
 #include "formats/hdf5/files.hpp"
 #include "formats/records/signal_name.hpp"
 #include "formats/report/history_chapter.hpp"
 
-namespace bough::cli {
+namespace bough::analysis {
 
 namespace {
 
@@ -41,14 +40,13 @@ bool is_chosen(const std::string& path, const std::vector<std::string>& choices)
 report::Chapter make_results_chapter(const std::string& file, const ReportRequest& request, Diagnostics&) {
   auto results = hdf5::read_results(file);
   const auto inputs = hdf5::read_run_inputs(file);
-  for (const auto& choice : request.channels)
-    analysis::choose_columns(results, file, choice);  // says what is not there
+  for (const auto& choice : request.channels) choose_columns(results, file, choice);  // says what is not there
   report::History history;
   history.file = file;
   history.facts = list_facts(file);
   history.settings = list_settings(file);
   history.time = results.time;
-  history.time_unit = analysis::get_unit(results, "/time");
+  history.time_unit = get_unit(results, "/time");
   history.events = results.events;
   history.system_text = results.system_text;
   history.completed = results.completed;
@@ -56,12 +54,8 @@ report::Chapter make_results_chapter(const std::string& file, const ReportReques
   history.energy_error = results.energy_error;
   for (auto& [path, values] : results.channels)
     if (values.cols() > 0 && is_chosen(path, request.channels))
-      history.channels.push_back({path,
-                                  results.descriptions[path],
-                                  results.dims[path],
-                                  std::move(values),
-                                  analysis::get_unit(results, path),
-                                  {}});
+      history.channels.push_back(
+          {path, results.descriptions[path], results.dims[path], std::move(values), get_unit(results, path), {}});
   std::stable_sort(history.channels.begin(), history.channels.end(),
                    [](const auto& a, const auto& b) { return get_rank(a.path) < get_rank(b.path); });
   add_scene(file, inputs, request, history);
@@ -72,4 +66,4 @@ report::Chapter make_results_chapter(const std::string& file, const ReportReques
   return report::make_chapter(std::move(history));
 }
 
-}  // namespace bough::cli
+}  // namespace bough::analysis

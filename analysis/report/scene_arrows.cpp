@@ -1,4 +1,4 @@
-#include "cli/report/scene_arrows.hpp"
+#include "analysis/report/scene_arrows.hpp"
 
 #include <algorithm>
 #include <memory>
@@ -6,7 +6,7 @@
 #include "analysis/common/run_bodies.hpp"
 #include "solver/functions/function.hpp"
 
-namespace bough::cli {
+namespace bough::analysis {
 
 namespace {
 
@@ -218,7 +218,7 @@ report::ScenePlace ScenePlaces::find(const std::string& body, int node, const Ve
   const auto& record = spec_.bodies[static_cast<std::size_t>(place.body)];
   const auto& drawing = scene_.bodies[static_cast<std::size_t>(place.body)].drawing;
   if (record.file.empty()) {
-    place.p += analysis::find_rigid_node(record, node);
+    place.p += find_rigid_node(record, node);
   } else {
     place.point = drawing.find(node);
     if (place.point >= 0) place.p += drawing.xyz.row(place.point).transpose();
@@ -238,4 +238,4 @@ void add_arrows(const records::SystemSpec& spec, const ScenePlaces& places, repo
   arrows.finish();
 }
 
-}  // namespace bough::cli
+}  // namespace bough::analysis
