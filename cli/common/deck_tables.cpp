@@ -76,7 +76,7 @@ std::string format_weight(const fe::GridPointWeight& w) {
          "  Q\n" + format_rows(w.Q);
 }
 
-std::string format_ground_check(const GroundChecks& ground) {
+std::string format_ground_check(const analysis::GroundChecks& ground) {
   static const char* const kNames[] = {"x", "y", "z", "rx", "ry", "rz"};
   Table table{{"ground check", "g-set", "", "n-set", "", "f-set"}, {}};
   const auto judge = [](double value) { return std::abs(value) < 1e-9 ? "pass" : "FAIL"; };

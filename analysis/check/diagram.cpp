@@ -1,4 +1,4 @@
-#include "cli/check/diagram.hpp"
+#include "analysis/check/diagram.hpp"
 
 #include <fmt/format.h>
 
@@ -7,10 +7,9 @@
 #include "analysis/common/converter.hpp"
 #include "analysis/common/inputs.hpp"
 #include "analysis/common/text_file.hpp"
-#include "cli/common/options.hpp"
 #include "solver/builder/connects.hpp"
 
-namespace bough::cli {
+namespace bough::analysis {
 namespace {
 
 /// A quoted text of the language; \n in it stays a new line.
@@ -199,18 +198,18 @@ std::string make_diagram(const records::SystemSpec& spec) { return Writer(spec).
 
 void write_diagram(const records::SystemSpec& spec, const std::string& path) {
   const std::string text = make_diagram(spec);
-  if (analysis::has_suffix(path, ".dot")) return analysis::write_text_file(path, text);
+  if (has_suffix(path, ".dot")) return write_text_file(path, text);
   std::string format;
   for (const char* known : {"svg", "png", "pdf"})
-    if (analysis::has_suffix(path, std::string(".") + known)) format = known;
+    if (has_suffix(path, std::string(".") + known)) format = known;
   if (format.empty())
     throw InputError("cli.bad-diagram", {path}, "the ending of the diagram's file names no format",
                      "end it in .dot, .svg, .png or .pdf");
-  analysis::write_converted(path, text,
-                            {"dot", "graphviz", "write .dot",
-                             [&](const std::string& source, const std::string& output) -> std::vector<std::string> {
-                               return {"-T" + format, "-o" + output, source};
-                             }});
+  write_converted(path, text,
+                  {"dot", "graphviz", "write .dot",
+                   [&](const std::string& source, const std::string& output) -> std::vector<std::string> {
+                     return {"-T" + format, "-o" + output, source};
+                   }});
 }
 
-}  // namespace bough::cli
+}  // namespace bough::analysis

@@ -1,11 +1,11 @@
-#include "cli/check/check_solutions.hpp"
+#include "analysis/check/check_solutions.hpp"
 
 #include <fmt/format.h>
 
 #include <cstdlib>
 #include <set>
 
-namespace bough::cli {
+namespace bough::analysis {
 
 namespace {
 
@@ -42,38 +42,31 @@ std::string count_dofs(const hdf5::FileInfo& info) {
 
 }  // namespace
 
-void check_static(const std::string& path, const hdf5::FileInfo& info, std::string& text, nlohmann::json& json,
-                  Diagnostics& diagnostics) {
+StaticCheck check_static(const std::string& path, const hdf5::FileInfo& info, Diagnostics& diagnostics) {
   demand_objects(path, info, {"/dof_map"}, diagnostics);
-  json["kind"] = "bough-static";
-  json["subcases"] = nlohmann::json::array();
+  StaticCheck check;
+  check.num_dofs = count_dofs(info);
   std::set<int> ids;
   for (const auto& name : list_children(info, "/subcases")) ids.insert(std::atoi(name.c_str()));
-  text += fmt::format("static solutions: {} subcases on {} dofs\n", ids.size(), count_dofs(info));
   for (const int id : ids) {
     const std::string group = fmt::format("/subcases/{}", id);
     demand_objects(path, info, {group + "/displacement", group + "/reaction"}, diagnostics);
     const auto* load = find_object(info, group + "@load_set");
-    const auto cards = list_children(info, group + "/elements");
-    text += fmt::format("subcase {}: load set {}, forces of {}\n", id, load ? load->description : "?",
-                        cards.empty() ? "no elements" : fmt::format("{}", fmt::join(cards, " ")));
-    json["subcases"].push_back({{"id", id}, {"elements", cards}});
+    check.subcases.push_back({id, load ? load->description : "?", list_children(info, group + "/elements")});
   }
+  return check;
 }
 
-void check_matrices(const std::string& path, const hdf5::FileInfo& info, std::string& text, nlohmann::json& json,
-                    Diagnostics& diagnostics) {
+MatricesCheck check_matrices(const std::string& path, const hdf5::FileInfo& info, Diagnostics& diagnostics) {
   demand_objects(path, info, {"/dof_map"}, diagnostics);
-  std::vector<std::string> names{"K", "M"};
-  if (find_object(info, "/B/data")) names.emplace_back("B");
-  for (const auto& name : list_children(info, "/KG")) names.push_back("KG/" + name);
-  json["kind"] = "bough-matrices";
-  json["matrices"] = names;
-  text += fmt::format("matrices {} on {} dofs\n", fmt::join(names, " "), count_dofs(info));
-  for (const auto& name : names)
+  MatricesCheck check{count_dofs(info), {"K", "M"}};
+  if (find_object(info, "/B/data")) check.names.emplace_back("B");
+  for (const auto& name : list_children(info, "/KG")) check.names.push_back("KG/" + name);
+  for (const auto& name : check.names)
     demand_objects(path, info,
                    {"/" + name + "/data", "/" + name + "/indices", "/" + name + "/indptr", "/" + name + "/shape"},
                    diagnostics);
+  return check;
 }
 
-}  // namespace bough::cli
+}  // namespace bough::analysis

@@ -4,7 +4,7 @@
 
 #include "formats/records/system_spec.hpp"
 
-namespace bough::cli {
+namespace bough::analysis {
 
 /// Graph of functions, sensors, controllers, actuators, forces and bodies in the language of graphviz.
 std::string make_diagram(const records::SystemSpec& spec);
@@ -12,4 +12,4 @@ std::string make_diagram(const records::SystemSpec& spec);
 /// "cli.no-converter", InputError "cli.bad-diagram" for another ending.
 void write_diagram(const records::SystemSpec& spec, const std::string& path);
 
-}  // namespace bough::cli
+}  // namespace bough::analysis
