@@ -50,7 +50,7 @@ OUTSIDE = [
     (r"^matio", ["formats/matrices"]),
     (r"^zip\.h", ["formats/fmu"]),
     (r"^pugixml", ["formats/fmu"]),
-    (r"^nlohmann", ["formats/toml", "formats/report", "analysis/common/ranks.cpp", "cli"]),
+    (r"^nlohmann", ["formats/toml", "formats/report", "analysis", "cli"]),
     (r"^muParser", ["solver/text/formulas.cpp"]),
     (r"^dlfcn", ["solver/control/library.cpp", "cosim/slave.cpp", "fe/linear/petsc.cpp", "cli/common/memory_limit.cpp"]),
     (r"^CLI/", ["cli"]),

@@ -3,10 +3,10 @@
 #include <string>
 #include <vector>
 
+#include "analysis/campaign/batch_cases.hpp"
 #include "base/diagnostic.hpp"
-#include "cli/batch/batch_cases.hpp"
 
-namespace bough::cli {
+namespace bough::analysis {
 
 std::string make_absolute(const std::string& folder, const std::string& path);
 
@@ -29,4 +29,4 @@ void fill_in(std::vector<std::string>& words, const toml_files::CampaignSpec& sp
 /// Returns true if a [[collect]] reads the output of the step (from 0).
 bool is_collected_as_json(const toml_files::CampaignSpec& spec, std::size_t step);
 
-}  // namespace bough::cli
+}  // namespace bough::analysis

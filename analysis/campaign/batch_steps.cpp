@@ -1,13 +1,12 @@
-#include "cli/batch/batch_steps.hpp"
+#include "analysis/campaign/batch_steps.hpp"
 
 #include <algorithm>
 #include <filesystem>
 
 #include "analysis/common/inputs.hpp"
-#include "cli/common/options.hpp"
 #include "formats/toml/specs.hpp"
 
-namespace bough::cli {
+namespace bough::analysis {
 
 namespace fs = std::filesystem;
 using toml_files::CampaignSpec;
@@ -79,8 +78,7 @@ std::vector<std::string> find_outputs(const CampaignSpec& spec, const std::strin
     if (output.empty() && words[0] == "flx") output = stem + ".FLX";
     if (output.empty() && words[0] == "reduce") {
       auto name = find_option(words, {"--name"});
-      if (const auto file = make_absolute(folder, input);
-          analysis::has_suffix(file, ".toml") && fs::is_regular_file(file)) {
+      if (const auto file = make_absolute(folder, input); has_suffix(file, ".toml") && fs::is_regular_file(file)) {
         Diagnostics ignored;
         const auto body = toml_files::read_body_spec(file, ignored);
         output = body.output_file;
@@ -109,4 +107,4 @@ bool is_collected_as_json(const CampaignSpec& spec, std::size_t step) {
                      [&](const auto& c) { return !c.json.empty() && c.step == static_cast<int>(step) + 1; });
 }
 
-}  // namespace bough::cli
+}  // namespace bough::analysis

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "cli/batch/batch_outcome.hpp"
+#include "analysis/campaign/batch_outcome.hpp"
 
-namespace bough::cli {
+namespace bough::analysis {
 
 struct PoolOptions {
   std::vector<std::string> command;  ///< of a worker; the number of its socket is added
@@ -24,4 +24,4 @@ struct PoolOptions {
 bool run_pool(const PoolOptions& options, const std::vector<int>& cases,
               const std::function<void(const BatchOutcome&)>& done);
 
-}  // namespace bough::cli
+}  // namespace bough::analysis

@@ -1,4 +1,4 @@
-#include "cli/batch/worker_pool.hpp"
+#include "analysis/campaign/worker_pool.hpp"
 
 #include <fcntl.h>
 #include <poll.h>
@@ -15,7 +15,7 @@
 #include <cstring>
 #include <sstream>
 
-namespace bough::cli {
+namespace bough::analysis {
 
 namespace {
 
@@ -222,4 +222,4 @@ bool run_pool(const PoolOptions& options, const std::vector<int>& cases,
   return Pool(options, cases, done).run();
 }
 
-}  // namespace bough::cli
+}  // namespace bough::analysis

@@ -1,4 +1,4 @@
-#include "cli/batch/worker.hpp"
+#include "analysis/campaign/worker.hpp"
 
 #include <fcntl.h>
 #include <sys/socket.h>
@@ -11,10 +11,8 @@
 #include <iostream>
 
 #include "analysis/common/output_folder.hpp"
-#include "cli/common/options.hpp"
-#include "cli/verbs.hpp"
 
-namespace bough::cli {
+namespace bough::analysis {
 
 namespace fs = std::filesystem;
 
@@ -73,13 +71,13 @@ void crash_if_told(int number) {
   if (text != nullptr && std::atoi(text) == number) std::abort();
 }
 
-void run_steps(const BatchPlan& plan, const BatchCase& one, BatchOutcome& outcome) {
+void run_steps(const BatchPlan& plan, const BatchCase& one, const RunCommand& run, BatchOutcome& outcome) {
   const auto& steps = plan.get_spec().steps;
   for (std::size_t i = 0; i < steps.size(); ++i) {
     const auto name = "step-" + std::to_string(i + 1);
     {
       const Redirection out(STDOUT_FILENO, name + ".out"), err(STDERR_FILENO, name + ".err");
-      outcome.exit_code = run_command(plan.make_words(one, i));
+      outcome.exit_code = run(plan.make_words(one, i));
     }
     if (outcome.exit_code == 0) continue;
     const auto error = find_error(name + ".err");
@@ -125,7 +123,7 @@ std::string find_printed_error(const BatchPlan& plan, const fs::path& here) {
   return {};
 }
 
-BatchOutcome run_case(const BatchPlan& plan, const BatchCase& one, const fs::path& folder) {
+BatchOutcome run_case(const BatchPlan& plan, const BatchCase& one, const fs::path& folder, const RunCommand& run) {
   using Clock = std::chrono::steady_clock;
   const auto begin = Clock::now();
   BatchOutcome outcome;
@@ -137,7 +135,7 @@ BatchOutcome run_case(const BatchPlan& plan, const BatchCase& one, const fs::pat
     crash_if_told(one.number);
     plan.write_files(one, here);
     fs::current_path(here);
-    run_steps(plan, one, outcome);
+    run_steps(plan, one, run, outcome);
     if (outcome.exit_code == 0) collect_all(plan, here, outcome);
   } catch (const Failure& failure) {
     outcome.exit_code = failure.exit_code();
@@ -153,7 +151,7 @@ BatchOutcome run_case(const BatchPlan& plan, const BatchCase& one, const fs::pat
   return outcome;
 }
 
-int serve_cases(const BatchPlan& plan, const fs::path& folder, int fd, bool may_leave) {
+int serve_cases(const BatchPlan& plan, const fs::path& folder, int fd, bool may_leave, const RunCommand& run) {
   std::string waiting;
   char buffer[256];
   while (true) {
@@ -169,10 +167,10 @@ int serve_cases(const BatchPlan& plan, const fs::path& folder, int fd, bool may_
     waiting.erase(0, end + 1);
     if (number < 1 || number > plan.num_cases()) return 1;
     const auto& one = plan.get_cases()[static_cast<std::size_t>(number - 1)];
-    if (!may_leave) analysis::confine_outputs((folder / plan.get_folder(number)).string());
-    const auto outcome = run_case(plan, one, folder);
+    if (!may_leave) confine_outputs((folder / plan.get_folder(number)).string());
+    const auto outcome = run_case(plan, one, folder, run);
     if (!send_line(fd, to_text(outcome))) return 0;
   }
 }
 
-}  // namespace bough::cli
+}  // namespace bough::analysis

@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
-#include "cli/batch/batch_plan.hpp"
-#include "cli/batch/batch_statistics.hpp"
+#include "analysis/campaign/batch_plan.hpp"
+#include "analysis/campaign/batch_statistics.hpp"
 
-namespace bough::cli {
+namespace bough::analysis {
 
 struct BatchOutcome {
   int number = 0;
@@ -41,4 +41,4 @@ std::vector<double> collect(const toml_files::CampaignCollect& rule, const std::
 std::vector<Statistics> write_tables(const BatchPlan& plan, const std::vector<BatchOutcome>& outcomes,
                                      const std::string& fingerprint, const std::filesystem::path& folder);
 
-}  // namespace bough::cli
+}  // namespace bough::analysis

@@ -4,7 +4,7 @@
 
 #include "formats/toml/campaign.hpp"
 
-namespace bough::cli {
+namespace bough::analysis {
 
 struct BatchCase {
   int number = 0;                           ///< from 1
@@ -19,4 +19,4 @@ std::vector<BatchCase> make_cases(const toml_files::CampaignSpec& spec);
 /// "case-0007"; wider where there are more than 9999 cases.
 std::string get_case_folder(int number, int num_cases);
 
-}  // namespace bough::cli
+}  // namespace bough::analysis

@@ -5,7 +5,7 @@
 
 #include "formats/hdf5/table_file.hpp"
 
-namespace bough::cli {
+namespace bough::analysis {
 
 /// Statistics of one column of outputs, over the cases that have a number there.
 struct Statistics {
@@ -20,4 +20,4 @@ double calc_quantile(const std::vector<double>& sorted, double p);
 /// One for each column of /outputs/NAME; columns without a number are left out.
 std::vector<Statistics> calc_statistics(const hdf5::OutcomeTable& table);
 
-}  // namespace bough::cli
+}  // namespace bough::analysis

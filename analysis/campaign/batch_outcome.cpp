@@ -1,4 +1,4 @@
-#include "cli/batch/batch_outcome.hpp"
+#include "analysis/campaign/batch_outcome.hpp"
 
 #include <cmath>
 #include <cstdlib>
@@ -10,7 +10,7 @@
 #include "analysis/common/text_file.hpp"
 #include "formats/hdf5/table_file.hpp"
 
-namespace bough::cli {
+namespace bough::analysis {
 
 namespace fs = std::filesystem;
 using nlohmann::json;
@@ -218,7 +218,7 @@ void make_case_folder(const fs::path& folder) {
 
 void write_outcome(const BatchOutcome& outcome, const fs::path& case_folder) {
   make_case_folder(case_folder);
-  analysis::write_text_file((case_folder / "outcome.json").string(), to_text(outcome));
+  write_text_file((case_folder / "outcome.json").string(), to_text(outcome));
 }
 
 std::vector<double> collect(const CampaignCollect& rule, const fs::path& case_folder) {
@@ -292,11 +292,11 @@ std::vector<Statistics> write_tables(const BatchPlan& plan, const std::vector<Ba
   for (std::size_t i = 0; i < spec.collect.size(); ++i)
     table.columns.push_back(make_output(spec.collect[i].name, i, outcomes));
   table.columns.push_back(error);
-  analysis::write_text_file((folder / "outcomes.csv").string(), make_csv(table));
+  write_text_file((folder / "outcomes.csv").string(), make_csv(table));
   hdf5::write_outcomes(table, (folder / "outcomes.h5").string());
   auto statistics = calc_statistics(table);
-  if (!spec.collect.empty()) analysis::write_text_file((folder / "statistics.csv").string(), make_csv(statistics));
+  if (!spec.collect.empty()) write_text_file((folder / "statistics.csv").string(), make_csv(statistics));
   return statistics;
 }
 
-}  // namespace bough::cli
+}  // namespace bough::analysis

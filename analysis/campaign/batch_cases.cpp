@@ -1,11 +1,11 @@
-#include "cli/batch/batch_cases.hpp"
+#include "analysis/campaign/batch_cases.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <random>
 
-namespace bough::cli {
+namespace bough::analysis {
 
 using toml_files::CampaignMethod;
 using toml_files::CampaignParameter;
@@ -102,4 +102,4 @@ std::string get_case_folder(int number, int num_cases) {
   return "case-" + std::string(width - std::min(width, digits.size()), '0') + digits;
 }
 
-}  // namespace bough::cli
+}  // namespace bough::analysis

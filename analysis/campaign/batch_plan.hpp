@@ -6,10 +6,10 @@
 #include <utility>
 #include <vector>
 
-#include "cli/batch/batch_cases.hpp"
+#include "analysis/campaign/batch_cases.hpp"
 #include "formats/nastran/field_editor.hpp"
 
-namespace bough::cli {
+namespace bough::analysis {
 
 class BatchPlan {
  public:
@@ -60,4 +60,4 @@ class BatchPlan {
   std::vector<std::pair<std::string, std::string>> inputs_;
 };
 
-}  // namespace bough::cli
+}  // namespace bough::analysis

@@ -1,11 +1,11 @@
-#include "cli/batch/batch_statistics.hpp"
+#include "analysis/campaign/batch_statistics.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numeric>
 
-namespace bough::cli {
+namespace bough::analysis {
 
 double calc_quantile(const std::vector<double>& sorted, double p) {
   const double place = p * static_cast<double>(sorted.size() - 1);
@@ -43,4 +43,4 @@ std::vector<Statistics> calc_statistics(const hdf5::OutcomeTable& table) {
   return all;
 }
 
-}  // namespace bough::cli
+}  // namespace bough::analysis

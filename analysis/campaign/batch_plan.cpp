@@ -1,4 +1,4 @@
-#include "cli/batch/batch_plan.hpp"
+#include "analysis/campaign/batch_plan.hpp"
 
 #include <algorithm>
 #include <cctype>
@@ -6,17 +6,16 @@
 #include <set>
 #include <sstream>
 
+#include "analysis/campaign/batch_steps.hpp"
 #include "analysis/common/body_files.hpp"
 #include "analysis/common/inputs.hpp"
 #include "analysis/common/text_file.hpp"
 #include "base/file_roles.hpp"
-#include "cli/batch/batch_steps.hpp"
-#include "cli/common/options.hpp"
 #include "formats/hdf5/files.hpp"
 #include "formats/toml/key_editor.hpp"
 #include "formats/toml/specs.hpp"
 
-namespace bough::cli {
+namespace bough::analysis {
 
 namespace fs = std::filesystem;
 using toml_files::Setting;
@@ -34,8 +33,7 @@ std::string read_all(const std::string& path) {
 }
 
 bool is_deck_name(const std::string& path) {
-  return analysis::has_suffix(path, ".bdf") || analysis::has_suffix(path, ".dat") ||
-         analysis::has_suffix(path, ".nas") || analysis::has_suffix(path, ".fem");
+  return has_suffix(path, ".bdf") || has_suffix(path, ".dat") || has_suffix(path, ".nas") || has_suffix(path, ".fem");
 }
 
 /// The value as a deck holds it.
@@ -56,7 +54,7 @@ std::string describe(const Diagnostics& diagnostics) {
 }  // namespace
 
 BatchPlan::BatchPlan(const std::string& campaign_file, const std::vector<std::string>& verbs, bool may_leave) {
-  analysis::demand_file(campaign_file);
+  demand_file(campaign_file);
   campaign_folder_ = fs::absolute(campaign_file).parent_path().string();
   spec_ = toml_files::read_campaign(campaign_file, diagnostics_);
   diagnostics_.throw_if_errors();
@@ -95,7 +93,7 @@ void BatchPlan::carry(const std::string& file, const SourceLocation& at, bool ha
       if (of_other.local == carried.local)
         diagnostics_.error("batch.no-file", at, file + " and " + other + " would both be " + carried.local,
                            "rename one of them");
-    if (analysis::has_suffix(file, ".toml")) {
+    if (has_suffix(file, ".toml")) {
       carried.kind = FileKind::Toml;
       carried.text = read_all(file);
     } else if (has_cards || is_deck_name(file)) {
@@ -111,7 +109,7 @@ void BatchPlan::carry(const std::string& file, const SourceLocation& at, bool ha
 void BatchPlan::carry_all() {
   for (const auto& p : spec_.parameters) {
     if (p.file.empty()) continue;
-    if (p.key.empty() == analysis::has_suffix(p.file, ".toml") && fs::is_regular_file(p.file)) {
+    if (p.key.empty() == has_suffix(p.file, ".toml") && fs::is_regular_file(p.file)) {
       diagnostics_.error("batch.bad-parameter", p.at,
                          p.key.empty() ? "card is for decks, " + p.file + " is a TOML file"
                                        : "key is for TOML files, " + p.file + " is none",
@@ -125,7 +123,7 @@ void BatchPlan::carry_all() {
   for (const auto& step : spec_.steps) {
     for (std::size_t i = 1; i < step.words.size(); ++i) {
       const auto file = make_absolute(campaign_folder_, step.words[i]);
-      if (is_input_word(step.words, i) && analysis::has_suffix(file, ".toml") && fs::is_regular_file(file))
+      if (is_input_word(step.words, i) && has_suffix(file, ".toml") && fs::is_regular_file(file))
         carry(file, step.at, false);
     }
   }
@@ -163,7 +161,7 @@ void BatchPlan::check_filled_names() {
 void BatchPlan::resolve_paths(const std::string& file, Carried& carried) {
   const auto local_folder = fs::path(carried.local).parent_path();
   toml_files::change_file_keys(carried.text, [&](const std::string& path) -> std::string {
-    const auto alone = analysis::get_body_path(path), of_body = path.substr(alone.size());  // "panels.FLX" ":2"
+    const auto alone = get_body_path(path), of_body = path.substr(alone.size());  // "panels.FLX" ":2"
     const auto target = make_absolute(fs::path(file).parent_path().string(), alone);
     if (const auto own = carried_.find(target); own != carried_.end())
       return fs::path(own->second.local).lexically_relative(local_folder.empty() ? "." : local_folder).string() +
@@ -270,10 +268,10 @@ void BatchPlan::write_files(const BatchCase& one, const fs::path& folder) const 
         throw InputError("batch.unknown-key", p.at, "key " + p.key + ": " + wrong);
     }
     if (carried.kind == FileKind::Toml) {
-      analysis::write_text_file(path.string(), text);
+      write_text_file(path.string(), text);
     } else {
       for (const auto& part : editors_.at(file).write(path.filename().string(), edits))
-        analysis::write_text_file((path.parent_path() / part.name).string(), part.text);
+        write_text_file((path.parent_path() / part.name).string(), part.text);
     }
   }
 }
@@ -295,4 +293,4 @@ std::vector<std::string> BatchPlan::make_words(const BatchCase& one, std::size_t
   return words;
 }
 
-}  // namespace bough::cli
+}  // namespace bough::analysis
