@@ -18,8 +18,8 @@ struct PoolOptions {
   std::function<std::string(int number)> find_error;
 };
 
-/// Gives `cases` to workers as they come free and hands every outcome to `done`. A worker that dies, or that takes too
-/// long and is killed, fails its case (batch.worker-crashed, batch.time-limit) and is replaced. False when stopped:
+/// Gives `cases` to workers when they become free and hands every outcome to `done`. A worker that dies, or that takes
+/// too long and is killed, fails its case (batch.worker-crashed, batch.time-limit) and is replaced. False when stopped:
 /// what was under way is given up then.
 bool run_pool(const PoolOptions& options, const std::vector<int>& cases,
               const std::function<void(const BatchOutcome&)>& done);

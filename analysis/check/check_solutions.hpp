@@ -1,5 +1,5 @@
 #pragma once
-/// \file `check` of what `static` and `matrices` write: what the file holds, without reading its numbers.
+/// \file `check` of the files of `static` and `matrices`: their contents, without reading the numbers.
 #include <string>
 
 #include "analysis/check/check.hpp"

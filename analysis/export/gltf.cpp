@@ -3,7 +3,7 @@
 #include "analysis/common/body_files.hpp"
 #include "analysis/export/export_matrices.hpp"
 #include "analysis/export/moving_system.hpp"
-#include "formats/report/gltf.hpp"
+#include "report/gltf.hpp"
 
 namespace bough::analysis {
 

@@ -7,7 +7,7 @@
 
 #include "base/diagnostic.hpp"
 #include "formats/hdf5/files.hpp"
-#include "formats/report/drawing.hpp"
+#include "report/drawing.hpp"
 
 namespace bough::analysis {
 

@@ -9,9 +9,9 @@
 #include "analysis/common/channels.hpp"
 #include "analysis/common/inputs.hpp"
 #include "formats/hdf5/table_file.hpp"
-#include "formats/report/label.hpp"
-#include "formats/report/shock_spectrum.hpp"
-#include "formats/report/spectrum.hpp"
+#include "report/label.hpp"
+#include "report/shock_spectrum.hpp"
+#include "report/spectrum.hpp"
 
 namespace bough::analysis {
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "base/diagnostic.hpp"
-#include "formats/report/svg_plot.hpp"
+#include "report/svg_plot.hpp"
 
 namespace bough::analysis {
 

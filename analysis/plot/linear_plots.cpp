@@ -14,8 +14,8 @@
 #include "analysis/linearize/choose_channels.hpp"
 #include "formats/hdf5/linear_file.hpp"
 #include "formats/hdf5/sweep_file.hpp"
-#include "formats/report/bode_plot.hpp"
-#include "formats/report/pole_plot.hpp"
+#include "report/bode_plot.hpp"
+#include "report/pole_plot.hpp"
 #include "solver/statespace/frequency_response.hpp"
 
 namespace bough::analysis {

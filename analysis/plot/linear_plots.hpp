@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "formats/report/svg_plot.hpp"
+#include "report/svg_plot.hpp"
 
 namespace bough::analysis {
 

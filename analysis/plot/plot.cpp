@@ -14,7 +14,7 @@
 #include "analysis/plot/response_plots.hpp"
 #include "base/words.hpp"
 #include "formats/export/csv.hpp"
-#include "formats/report/label.hpp"
+#include "report/label.hpp"
 
 namespace bough::analysis {
 

@@ -7,11 +7,11 @@
 #include "analysis/report/report_files.hpp"
 #include "formats/hdf5/files.hpp"
 #include "formats/records/mode_kind.hpp"
-#include "formats/report/html.hpp"
-#include "formats/report/modal_chapter.hpp"
 #include "modal/compare/integrals_check.hpp"
 #include "modal/compare/shapes.hpp"
 #include "modal/spin.hpp"
+#include "report/html.hpp"
+#include "report/modal_chapter.hpp"
 
 namespace bough::analysis {
 

@@ -15,10 +15,10 @@
 #include "formats/hdf5/complex_modes_file.hpp"
 #include "formats/hdf5/files.hpp"
 #include "formats/hdf5/table_file.hpp"
-#include "formats/report/complex_chapter.hpp"
-#include "formats/report/html.hpp"
-#include "formats/report/static_chapter.hpp"
-#include "formats/report/table_chapters.hpp"
+#include "report/complex_chapter.hpp"
+#include "report/html.hpp"
+#include "report/static_chapter.hpp"
+#include "report/table_chapters.hpp"
 
 namespace bough::analysis {
 

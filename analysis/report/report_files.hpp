@@ -5,7 +5,7 @@
 
 #include "analysis/report/report.hpp"
 #include "base/diagnostic.hpp"
-#include "formats/report/page.hpp"
+#include "report/page.hpp"
 
 namespace bough::analysis {
 

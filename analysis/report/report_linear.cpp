@@ -6,8 +6,8 @@
 #include "analysis/report/report_files.hpp"
 #include "formats/hdf5/linear_file.hpp"
 #include "formats/hdf5/sweep_file.hpp"
-#include "formats/report/html.hpp"
-#include "formats/report/linear_chapter.hpp"
+#include "report/html.hpp"
+#include "report/linear_chapter.hpp"
 #include "solver/statespace/frequency_response.hpp"
 
 namespace bough::analysis {

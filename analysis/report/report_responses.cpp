@@ -8,7 +8,7 @@
 #include "formats/export/response_text.hpp"
 #include "formats/hdf5/response_file.hpp"
 #include "formats/records/mode_kind.hpp"
-#include "formats/report/html.hpp"
+#include "report/html.hpp"
 
 namespace bough::analysis {
 

@@ -8,7 +8,7 @@
 #include "analysis/report/report_scene.hpp"
 #include "formats/hdf5/files.hpp"
 #include "formats/records/signal_name.hpp"
-#include "formats/report/history_chapter.hpp"
+#include "report/history_chapter.hpp"
 
 namespace bough::analysis {
 

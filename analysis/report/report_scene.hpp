@@ -4,7 +4,7 @@
 
 #include "analysis/report/report_files.hpp"
 #include "formats/hdf5/files.hpp"
-#include "formats/report/history_chapter.hpp"
+#include "report/history_chapter.hpp"
 
 namespace bough::analysis {
 

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "formats/records/system_spec.hpp"
-#include "formats/report/history_chapter.hpp"
+#include "report/history_chapter.hpp"
 
 namespace bough::analysis {
 

@@ -46,7 +46,7 @@ int finish(const CheckOptions& options, const Console& console, const std::strin
   } else {
     const auto sum = count(static_cast<std::size_t>(diagnostics.num_errors()), "error") + ", " +
                      count(static_cast<std::size_t>(diagnostics.num_warnings()), "warning") + "\n";
-    // On the screen the messages stand before their sum.
+    // On the screen the messages precede their sum.
     if (options.output.empty()) console.print(text);
     console.print(diagnostics);
     write_report(options, console, options.output.empty() ? sum : text + sum);

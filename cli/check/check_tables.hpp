@@ -1,5 +1,5 @@
 #pragma once
-/// \file What `check` found in a file, as text and as JSON.
+/// \file Answer of `check` as text and as JSON.
 #include <nlohmann/json.hpp>
 #include <string>
 

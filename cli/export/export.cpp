@@ -34,7 +34,7 @@ bool take_outputs(ExportOptions& o) {
   return true;
 }
 
-/// What to do about a missing -o.
+/// Advice for a missing -o.
 std::string describe_output(const std::string& format) {
   if (format == "pvd") return "--to pvd writes several files: give the .pvd with -o";
   if (format == "fmu") return "--to fmu writes no text: give the .fmu with -o";

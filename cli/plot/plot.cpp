@@ -12,8 +12,8 @@
 #include "analysis/common/text_file.hpp"
 #include "cli/common/console_events.hpp"
 #include "cli/common/options.hpp"
-#include "formats/report/shock_spectrum.hpp"
-#include "formats/report/terminal_plot.hpp"
+#include "report/shock_spectrum.hpp"
+#include "report/terminal_plot.hpp"
 
 namespace bough::cli {
 

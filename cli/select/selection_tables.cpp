@@ -10,7 +10,7 @@
 #include "analysis/common/text_file.hpp"
 #include "cli/common/console.hpp"
 #include "formats/export/csv.hpp"
-#include "formats/report/svg_plot.hpp"
+#include "report/svg_plot.hpp"
 
 namespace bough::cli {
 

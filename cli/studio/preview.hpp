@@ -3,7 +3,7 @@
 #include <string>
 
 #include "base/diagnostic.hpp"
-#include "formats/report/page.hpp"
+#include "report/page.hpp"
 
 namespace bough::cli {
 
