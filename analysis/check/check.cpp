@@ -258,6 +258,15 @@ CheckAnswer check_hdf5(const std::string& file) {
 
 }  // namespace
 
+Eigen::Matrix3d calc_central_inertia(const records::MassProperties& p) {
+  const Vector3d c = p.cg - p.reference;
+  return p.inertia - p.mass * (c.squaredNorm() * Eigen::Matrix3d::Identity() - c * c.transpose());
+}
+
+Vector3d calc_principal_inertias(const records::MassProperties& properties) {
+  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(calc_central_inertia(properties)).eigenvalues();
+}
+
 CheckAnswer check_file(const CheckRequest& request, CheckEvents& events) {
   do_once([&] { demand_body_file(request.file); });
   CheckAnswer answer;

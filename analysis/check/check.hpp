@@ -113,6 +113,11 @@ class CheckEvents : public Events {
   virtual void set_rank(int /*rank*/) {}
 };
 
+/// Inertia about the centre of mass: I_ref - m (|c|² 1 - c cᵀ), c from the reference. [M L^2] basic axes.
+Eigen::Matrix3d calc_central_inertia(const records::MassProperties& properties);
+/// Eigenvalues of the central inertia, ascending. [M L^2]
+Eigen::Vector3d calc_principal_inertias(const records::MassProperties& properties);
+
 /// Collective for decks and body files. Throws InputError only for what keeps the file from being read.
 CheckAnswer check_file(const CheckRequest& request, CheckEvents& events);
 

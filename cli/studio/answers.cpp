@@ -12,6 +12,7 @@
 #include "analysis/common/system_files.hpp"
 #include "analysis/init/init_deck.hpp"
 #include "analysis/picture/deck_picture.hpp"
+#include "analysis/report/preview.hpp"
 #include "analysis/report/report_files.hpp"
 #include "base/file_roles.hpp"
 #include "cli/common/console.hpp"
@@ -21,7 +22,6 @@
 #include "cli/init/schema_line.hpp"
 #include "cli/studio/deck_answer.hpp"
 #include "cli/studio/folder.hpp"
-#include "cli/studio/preview.hpp"
 #include "formats/nastran/reader.hpp"
 #include "formats/toml/key_editor.hpp"
 #include "formats/toml/schema_help.hpp"
@@ -211,7 +211,7 @@ json answer_schema(const json& request) {
 
 json answer_preview(const json& request) {
   Diagnostics diagnostics;
-  const auto chapter = make_preview(get_file(request), get_text(request, "text"), diagnostics);
+  const auto chapter = analysis::make_preview(get_file(request), get_text(request, "text"), diagnostics);
   return {{"chapter", to_json(chapter)}, {"messages", make_messages(diagnostics.items())}};
 }
 

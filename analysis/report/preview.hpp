@@ -5,10 +5,10 @@
 #include "base/diagnostic.hpp"
 #include "report/page.hpp"
 
-namespace bough::cli {
+namespace bough::analysis {
 
 /// Builds the system of `text` and takes the first sample of its run. Paths are relative to the folder of `file`.
 /// \throws what loading and simulate throw.
 report::Chapter make_preview(const std::string& file, const std::string& text, Diagnostics& diagnostics);
 
-}  // namespace bough::cli
+}  // namespace bough::analysis

@@ -1,4 +1,4 @@
-#include "cli/studio/preview.hpp"
+#include "analysis/report/preview.hpp"
 
 #include <atomic>
 #include <filesystem>
@@ -7,13 +7,13 @@
 
 #include "analysis/common/inputs.hpp"
 #include "analysis/common/system_files.hpp"
-#include "base/file_roles.hpp"
 #include "analysis/report/report_files.hpp"
 #include "analysis/run/provenance_sink.hpp"
+#include "base/file_roles.hpp"
 #include "formats/hdf5/files.hpp"
 #include "solver/simulate/simulate.hpp"
 
-namespace bough::cli {
+namespace bough::analysis {
 
 namespace fs = std::filesystem;
 
@@ -39,23 +39,23 @@ class TemporaryFile {
 }  // namespace
 
 report::Chapter make_preview(const std::string& file, const std::string& text, Diagnostics& diagnostics) {
-  analysis::LoadOptions load;
+  LoadOptions load;
   load.text = text;
-  const auto loaded = analysis::load_system(file, diagnostics, load);
+  const auto loaded = load_system(file, diagnostics, load);
   diagnostics.throw_if_errors();
-  const auto sources = analysis::calc_sources(analysis::collect_sources(file, loaded));
-  analysis::ReportRequest request;
+  const auto sources = calc_sources(collect_sources(file, loaded));
+  ReportRequest request;
   for (const auto& [written, path] : loaded.flex_path) request.files.push_back(path);
   confine_files({});  // all inputs are read; the samples pass through the folder for temporary files
   const TemporaryFile samples;
   const auto writer = hdf5::make_results_writer(samples.get_path());
-  analysis::ProvenanceSink sink(*writer, sources);
+  ProvenanceSink sink(*writer, sources);
   const std::atomic<bool> stop{true};
   solver::SimulateOptions options;
   options.stop = &stop;
   solver::simulate(loaded.system, loaded.spec, sink, options, diagnostics);
   sink.finish();
-  return analysis::make_results_chapter(samples.get_path(), request, diagnostics);
+  return make_results_chapter(samples.get_path(), request, diagnostics);
 }
 
-}  // namespace bough::cli
+}  // namespace bough::analysis
