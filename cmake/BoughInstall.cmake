@@ -19,7 +19,7 @@ if(TARGET bough)
     COMPONENT bough)
   install(FILES ${help}/bough.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d COMPONENT bough)
 endif()
-foreach(room base formats fe modal stiffening solver embed cosim analysis)
+foreach(room base formats fe modal stiffening solver embed cosim report analysis)
   install(DIRECTORY ${CMAKE_SOURCE_DIR}/${room} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/bough COMPONENT libbough-dev
     FILES_MATCHING PATTERN "*.hpp" PATTERN "*.h" PATTERN "detail" EXCLUDE)
 endforeach()

@@ -4,6 +4,7 @@
 #include <set>
 
 #include "fe/linear/factor.hpp"
+#include "formats/records/element_cards.hpp"
 #include "stiffening/given_checks.hpp"
 #include "stiffening/given_rigid.hpp"
 
@@ -66,8 +67,7 @@ std::vector<char> find_rows(const PointTable& points, const GivenMatrix& matrix,
 
 /// Returns true if the deck ties points that K need not couple.
 bool has_constraint_equations(const Deck& deck) {
-  return !(deck.rbe1.empty() && deck.rbe2.empty() && deck.rbe3.empty() && deck.rbar.empty() && deck.rrod.empty() &&
-           deck.special.rspline.empty() && deck.mpc.empty());
+  return records::count_elements(deck, records::ElementRole::Rigid) > 0;
 }
 
 /// Removes the round-off strain in rigid-body motions from a stiffness that another program condensed.
@@ -103,10 +103,8 @@ void check_integrals(const BodySpec& spec, const GivenModel& given, Diagnostics&
 
 Deck remove_elements(const Deck& deck, const GivenMatrices& matrices) {
   Deck kept = deck;
-  kept.beams.clear(), kept.crod.clear(), kept.conrod.clear(), kept.ctube.clear();
-  kept.springs.clear(), kept.cbush.clear(), kept.cbush1d.clear(), kept.dampers.clear(), kept.cvisc.clear();
-  kept.shells.clear(), kept.shear_panels.clear(), kept.solids.clear();
-  kept.scalar_masses.clear(), kept.conm1.clear(), kept.conm2.clear(), kept.direct_matrices.clear();
+  records::clear_elements(kept, records::ElementRole::Element);
+  kept.direct_matrices.clear();
   for (auto& subcase : kept.subcases) subcase.k2gg.clear(), subcase.m2gg.clear(), subcase.b2gg.clear();
   const std::set<std::string> of_elements = {"WTMASS", "COUPMASS", "CK1", "CK2", "CM1", "CM2", "CB1", "CB2", "AUTOSPC"};
   const auto is_of_elements = [&](const records::Param& p) { return of_elements.count(p.name) > 0; };

@@ -23,6 +23,7 @@ ROOMS = {
     "solver": ("bodies + system -> motion,\nlinear models", "SUNDIALS, muParser"),
     "cosim": ("FMUs as controllers", ""),
     "embed": ("libbough.so, bough.h, FMUs", ""),
+    "report": ("records -> pictures, pages", ""),
     "analysis": ("commands as functions:\nrequest -> records", ""),
     "cli": ("options -> request,\nrecords -> tables, files", "CLI11"),
     "python": ("import bough", "pybind11"),

@@ -7,6 +7,7 @@
 #include <unordered_map>
 
 #include "fe/model/coordinates.hpp"
+#include "formats/records/element_cards.hpp"
 
 namespace bough::analysis {
 
@@ -71,9 +72,7 @@ class PictureBuilder {
   }
 
   void build() {
-    add_lines();
-    add_surfaces();
-    add_solids();
+    add_elements();
     finish_blocks();
     add_masses();
     add_spiders();
@@ -109,35 +108,34 @@ class PictureBuilder {
     for (const int row : rows) sets_.join(static_cast<std::size_t>(rows.front()), static_cast<std::size_t>(row));
   }
 
-  void add_lines() {
-    const auto line = [&](const char* card, int id, int pid, int a, int b, const CardLocation& at) {
-      if (a > 0 && b > 0) add("line2", {a, b}, {id, pid, card, at});
-    };
-    for (const auto& e : deck_.beams) line(e.is_cbeam ? "CBEAM" : "CBAR", e.id, e.pid, e.ga, e.gb, e.at);
-    for (const auto& e : deck_.crod) line("CROD", e.id, e.pid, e.ga, e.gb, e.at);
-    for (const auto& e : deck_.conrod) line("CONROD", e.id, 0, e.ga, e.gb, e.at);
-    for (const auto& e : deck_.ctube) line("CTUBE", e.id, e.pid, e.ga, e.gb, e.at);
-    for (const auto& e : deck_.springs) line("CELAS", e.id, e.pid, e.g1, e.g2, e.at);
-    for (const auto& e : deck_.cbush) line("CBUSH", e.id, e.pid, e.ga, e.gb, e.at);
-    for (const auto& e : deck_.cbush1d) line("CBUSH1D", e.id, e.pid, e.ga, e.gb, e.at);
-    for (const auto& e : deck_.dampers) line("CDAMP", e.id, e.pid, e.g1, e.g2, e.at);
-    for (const auto& e : deck_.cvisc) line("CVISC", e.id, e.pid, e.ga, e.gb, e.at);
-    for (const auto& e : deck_.plotel) line("PLOTEL", e.id, 0, e.ga, e.gb, e.at);
+  void add_elements() {
+    using enum records::ElementRole;
+    records::visit_elements(deck_, {Element, Drawn}, [&](const records::ElementView& view) {
+      if (const auto* type = find_block(view); type != nullptr)
+        add(type, {view.grids.begin(), view.grids.begin() + static_cast<std::ptrdiff_t>(view.num_corners)},
+            {view.id, view.property, name_family(view.card), view.at});
+    });
   }
 
-  void add_surfaces() {
-    for (const auto& e : deck_.shells)
-      add(e.grids.size() == 3 ? "tri3" : "quad4", e.grids, {e.id, e.pid, e.card, e.at});
-    for (const auto& e : deck_.shear_panels)
-      add("quad4", {e.grids.begin(), e.grids.end()}, {e.id, e.pid, "CSHEAR", e.at});
-  }
-
-  void add_solids() {
-    for (const auto& e : deck_.solids) {
-      const auto count = e.corners.size();
-      if (count != 4 && count != 6 && count != 8) continue;
-      add(count == 4 ? "tetra4" : count == 6 ? "penta6" : "hexa8", e.corners, {e.id, e.pid, e.card, e.at});
+  /// Block of the mesh for the corners of an element; nullptr: not drawn.
+  static const char* find_block(const records::ElementView& view) {
+    const auto n = view.num_corners;
+    switch (view.shape) {
+      case records::ElementShape::Line:
+        return view.grids[0] > 0 && view.grids[1] > 0 ? "line2" : nullptr;
+      case records::ElementShape::Surface:
+        return n == 3 ? "tri3" : "quad4";
+      case records::ElementShape::Solid:
+        return n == 4 ? "tetra4" : n == 6 ? "penta6" : n == 8 ? "hexa8" : nullptr;
+      case records::ElementShape::None:
+        break;
     }
+    return nullptr;
+  }
+
+  /// "CELAS" of CELAS1 to CELAS4, likewise CDAMP; other names unchanged.
+  static std::string name_family(const std::string& card) {
+    return card.starts_with("CELAS") || card.starts_with("CDAMP") ? card.substr(0, 5) : card;
   }
 
   void finish_blocks() {
@@ -176,7 +174,7 @@ class PictureBuilder {
         picture.masses.push_back({e.id, e.g1, "CMASS", e.m, get_place(row), e.at});
   }
 
-  void add_spider(const char* card, int id, int centre, std::vector<int> grids, const CardLocation& at) {
+  void add_spider(const std::string& card, int id, int centre, std::vector<int> grids, const CardLocation& at) {
     std::vector<int> rows{find(centre)};
     std::erase_if(grids, [&](int grid) { return find(grid) < 0; });
     if (rows.front() < 0 || grids.empty()) return;
@@ -186,19 +184,9 @@ class PictureBuilder {
   }
 
   void add_spiders() {
-    for (const auto& e : deck_.rbe2) add_spider("RBE2", e.id, e.gn, e.gm, e.at);
-    for (const auto& e : deck_.rbe3) {
-      std::vector<int> grids;
-      for (const auto& group : e.groups) grids.insert(grids.end(), group.grids.begin(), group.grids.end());
-      add_spider("RBE3", e.id, e.ref_grid, std::move(grids), e.at);
-    }
-    for (const auto& e : deck_.rbar) add_spider("RBAR", e.id, e.ga, {e.gb}, e.at);
-    for (const auto& e : deck_.rrod) add_spider("RROD", e.id, e.ga, {e.gb}, e.at);
-    for (const auto& e : deck_.rbe1) {
-      std::vector<int> grids;
-      for (const auto& term : e.dependent) grids.push_back(term.g);
-      if (!e.independent.empty()) add_spider("RBE1", e.id, e.independent.front().g, std::move(grids), e.at);
-    }
+    records::visit_elements(deck_, {records::ElementRole::Rigid}, [&](const records::ElementView& view) {
+      if (view.centre > 0) add_spider(view.card, view.id, view.centre, view.spokes, view.at);
+    });
   }
 
   void add_symbols() {

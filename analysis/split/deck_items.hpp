@@ -1,5 +1,5 @@
 #pragma once
-/// \file Elements, rigid elements and their grids of a deck, each kind visited in one order.
+/// \file Elements, rigid elements and their grids of a deck.
 #include <string>
 #include <utility>
 #include <vector>
@@ -19,21 +19,7 @@ struct DeckItem {
   records::CardLocation at;
 };
 
-/// Calls f(vector of one kind) for each kind of element, in the order of list_elements.
-template <class Deck, class F>
-void visit_elements(Deck& deck, F&& f) {
-  f(deck.beams), f(deck.crod), f(deck.conrod), f(deck.ctube), f(deck.special.cbend);
-  f(deck.springs), f(deck.cbush), f(deck.cbush1d), f(deck.dampers), f(deck.cvisc), f(deck.special.cgap);
-  f(deck.shells), f(deck.shear_panels), f(deck.solids), f(deck.special.genel);
-  f(deck.scalar_masses), f(deck.conm1), f(deck.conm2), f(deck.plotel);
-}
-
-/// Calls f(vector of one kind) for each kind of rigid element and for MPC, in the order of list_rigid.
-template <class Deck, class F>
-void visit_rigid(Deck& deck, F&& f) {
-  f(deck.rbe2), f(deck.rbe3), f(deck.rbar), f(deck.rrod), f(deck.rbe1), f(deck.special.rspline), f(deck.mpc);
-}
-
+// The kinds are rows of formats/records/element_cards.cpp.
 std::vector<DeckItem> list_elements(const records::Deck& deck);
 std::vector<DeckItem> list_rigid(const records::Deck& deck);
 

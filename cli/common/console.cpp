@@ -91,12 +91,6 @@ std::string Table::to_text() const {
   return text;
 }
 
-std::string count(std::size_t number, const std::string& noun) {
-  if (number == 1) return "1 " + noun;
-  const bool is_y = noun.ends_with('y');
-  return std::to_string(number) + " " + (is_y ? noun.substr(0, noun.size() - 1) + "ies" : noun + "s");
-}
-
 std::string wrap(const std::string& text, std::size_t indent, std::size_t width) {
   std::istringstream words(text);
   std::string out, word;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/diagnostic.hpp"
+#include "base/words.hpp"
 
 namespace bough::cli {
 
@@ -17,9 +18,6 @@ struct Table {
   std::vector<std::vector<std::string>> rows;
   std::string to_text() const;
 };
-
-/// "1 mode", "2 modes", "0 bodies".
-std::string count(std::size_t number, const std::string& noun);
 
 /// Words of `text` on lines of at most `width` columns; lines after the first begin with `indent` blanks.
 std::string wrap(const std::string& text, std::size_t indent, std::size_t width);

@@ -25,12 +25,6 @@ std::string format_rows(const Eigen::Ref<const Eigen::MatrixXd>& m) {
   return text;
 }
 
-/// Inertia about the centre of mass: I_ref - m (|c|² 1 - c cᵀ), c from the reference.
-Matrix3d calc_central_inertia(const records::MassProperties& p) {
-  const Vector3d c = p.cg - p.reference;
-  return p.inertia - p.mass * (c.squaredNorm() * Matrix3d::Identity() - c * c.transpose());
-}
-
 /// Where each direction has a mass of its own: three masses with their centres from the reference, as in the weight
 /// table of Nastran.
 std::string format_masses(const fe::GridPointWeight& w) {
@@ -46,8 +40,6 @@ std::string format_masses(const fe::GridPointWeight& w) {
 }  // namespace
 
 std::string format_mass_properties(const records::MassProperties& p) {
-  const Matrix3d central = calc_central_inertia(p);
-  const Eigen::SelfAdjointEigenSolver<Matrix3d> principal(central);
   std::string text = fmt::format("mass properties about ({:g}, {:g}, {:g}), basic axes\n", p.reference.x(),
                                  p.reference.y(), p.reference.z());
   text += "  rigid mass matrix (x y z, rotations x y z)\n" + format_rows(p.rigid_mass);
@@ -57,8 +49,8 @@ std::string format_mass_properties(const records::MassProperties& p) {
   text += fmt::format("  mass {:.8g}\n  centre of mass {:.8g} {:.8g} {:.8g}\n", p.mass, p.cg.x() + 0.0, p.cg.y() + 0.0,
                       p.cg.z() + 0.0);
   text += "  inertia about the reference\n" + format_rows(p.inertia);
-  text += "  inertia about the centre of mass\n" + format_rows(central);
-  text += "  principal inertias\n" + format_rows(principal.eigenvalues().transpose());
+  text += "  inertia about the centre of mass\n" + format_rows(analysis::calc_central_inertia(p));
+  text += "  principal inertias\n" + format_rows(analysis::calc_principal_inertias(p).transpose());
   return text;
 }
 
@@ -76,7 +68,7 @@ std::string format_weight(const fe::GridPointWeight& w) {
          "  Q\n" + format_rows(w.Q);
 }
 
-std::string format_ground_check(const GroundChecks& ground) {
+std::string format_ground_check(const analysis::GroundChecks& ground) {
   static const char* const kNames[] = {"x", "y", "z", "rx", "ry", "rz"};
   Table table{{"ground check", "g-set", "", "n-set", "", "f-set"}, {}};
   const auto judge = [](double value) { return std::abs(value) < 1e-9 ? "pass" : "FAIL"; };
@@ -282,7 +274,7 @@ nlohmann::json to_json(const records::MassProperties& p) {
                       {"mass", p.mass},
                       {"cg", to_json_list(p.cg)},
                       {"inertia", to_json(Eigen::MatrixXd(p.inertia))},
-                      {"inertia_cg", to_json(Eigen::MatrixXd(calc_central_inertia(p)))},
+                      {"inertia_cg", to_json(Eigen::MatrixXd(analysis::calc_central_inertia(p)))},
                       {"rigid_mass", to_json(Eigen::MatrixXd(p.rigid_mass))}};
   if (fe::calc_mass_difference(p.rigid_mass) > fe::kMassDifference) {  // no one mass, no centre
     const auto w = fe::calc_grid_point_weight(p.rigid_mass);

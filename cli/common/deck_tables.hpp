@@ -3,6 +3,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
+#include "analysis/check/check.hpp"
 #include "analysis/common/subcase_failures.hpp"
 #include "fe/matrices/checks.hpp"
 #include "fe/matrices/grid_point_weight.hpp"
@@ -12,12 +13,8 @@ namespace bough::cli {
 
 /// Φ_RᵀMΦ_R about the reference, centre of mass, inertia about the reference, about the centre of mass, principal.
 std::string format_mass_properties(const records::MassProperties& properties);
-/// Energies of the rigid-body motions on the three sets; a support strains the f-set, which is no fault.
-struct GroundChecks {
-  Eigen::Matrix<double, 6, 1> g, n, f;
-};
 std::string format_weight(const fe::GridPointWeight& weight);
-std::string format_ground_check(const GroundChecks& ground);
+std::string format_ground_check(const analysis::GroundChecks& ground);
 /// Connected parts, coincident and unused grids, and the worst shapes of plane and solid elements.
 std::string format_geometry(const fe::Model& model, const records::Deck& deck);
 nlohmann::json make_geometry_json(const fe::Model& model, const records::Deck& deck);

@@ -9,12 +9,6 @@ namespace {
 /// Lines that a reader still looks through, before and after the gap.
 constexpr std::size_t kMaxFirst = 20, kMaxLast = 5;
 
-std::string quote(const std::string& text) {
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return quoted + "\"";
-}
-
 }  // namespace
 
 std::string format_events(const std::vector<records::EventRecord>& events) {
@@ -28,12 +22,6 @@ std::string format_events(const std::vector<records::EventRecord>& events) {
     }
     text += fmt::format("  t = {:<12.9g} {}\n", events[i].time, events[i].what);
   }
-  return text;
-}
-
-std::string make_events_csv(const std::vector<records::EventRecord>& events) {
-  std::string text = "time,what,source\n";
-  for (const auto& e : events) text += fmt::format("{:.17g},{},{}\n", e.time, quote(e.what), quote(e.source));
   return text;
 }
 

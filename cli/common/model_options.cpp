@@ -2,7 +2,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "cli/common/text_file.hpp"
+#include "analysis/common/text_file.hpp"
 #include "formats/listing/f06.hpp"
 #include "formats/listing/op2.hpp"
 
@@ -26,8 +26,8 @@ void add_listing_options(CLI::App& verb, ListingOptions& options) {
 
 void write_listings(const ListingOptions& options, const records::Listing& listing) {
   const auto op2 = options.op2.empty() ? std::string() : listing::make_op2(listing);
-  if (!options.f06.empty()) write_text_file(options.f06, listing::make_f06(listing));
-  if (!options.op2.empty()) write_text_file(options.op2, op2);
+  if (!options.f06.empty()) analysis::write_text_file(options.f06, listing::make_f06(listing));
+  if (!options.op2.empty()) analysis::write_text_file(options.op2, op2);
 }
 
 }  // namespace bough::cli

@@ -8,10 +8,11 @@
 #include <filesystem>
 #include <system_error>
 
+#include "analysis/common/output_folder.hpp"
+#include "analysis/common/text_file.hpp"
 #include "base/file_roles.hpp"
 #include "base/part_file.hpp"
 #include "cli/common/console.hpp"
-#include "cli/common/text_file.hpp"
 
 namespace bough::cli {
 
@@ -39,51 +40,21 @@ void add_set_option(CLI::App& verb, std::vector<std::string>& set) {
       ->allow_extra_args(false);
 }
 
-namespace {
-
-/// Where this process may write: a property of the process, as its working folder is.
-std::string& get_output_folder() {
-  static std::string folder;
-  return folder;
-}
-
-fs::path find_real_path(const std::string& path) {
-  std::error_code failed;
-  const auto target = find_target(path, failed);
-  const auto real = fs::weakly_canonical(fs::absolute(target, failed), failed);
-  return real.empty() ? fs::path(target) : real;
-}
-
-}  // namespace
-
-bool is_inside(const std::string& path, const std::string& folder) {
-  const auto real = find_real_path(path).lexically_relative(find_real_path(folder.empty() ? "." : folder));
-  return !real.empty() && *real.begin() != "..";
-}
-
-void confine_outputs(const std::string& folder) { get_output_folder() = folder; }
-
 void check_outputs(const CommonOptions& options, const std::vector<std::string>& paths,
                    const std::vector<std::string>& inputs) {
   for (std::size_t i = 0; i < paths.size(); ++i) {
     if (paths[i].empty()) continue;
     check_output(options, paths[i], inputs);
     for (std::size_t k = 0; k < i; ++k)
-      if (!paths[k].empty() && find_real_path(paths[k]) == find_real_path(paths[i]))
+      if (!paths[k].empty() && analysis::is_same_output(paths[k], paths[i]))
         throw InputError("cli.same-output", {paths[i]}, "two outputs of this call would be this one file",
                          "give each a name of its own");
   }
 }
 
-void check_place(const std::string& path) {
-  if (get_output_folder().empty() || is_inside(path, get_output_folder())) return;
-  throw InputError("cli.output-outside", {path}, "the file does not lie in " + get_output_folder(),
-                   "let the steps of a campaign write into the case's own folder, or give --force-outside");
-}
-
 void check_output(const CommonOptions& options, const std::string& path, const std::vector<std::string>& inputs) {
   std::error_code ignored;
-  check_place(path);
+  analysis::check_place(path);
   for (const auto& input : inputs) {
     if (fs::equivalent(path, input, ignored))
       throw InputError("cli.output-is-input", {path}, "the output would overwrite the input file " + input,
@@ -122,7 +93,7 @@ void write_report(const CommonOptions& options, const Console& console, const st
     return;
   }
   if (!console.is_root()) return;
-  write_text_file(options.output, text);
+  analysis::write_text_file(options.output, text);
   console.print("written: " + options.output + "\n");
 }
 

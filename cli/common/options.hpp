@@ -38,14 +38,6 @@ void check_output(const CommonOptions& options, const std::string& path, const s
 void check_outputs(const CommonOptions& options, const std::vector<std::string>& paths,
                    const std::vector<std::string>& inputs = {});
 
-/// Returns true if writing to `path` reaches a file in `folder` or below, symbolic links followed.
-bool is_inside(const std::string& path, const std::string& folder);
-
-/// From now on check_place, and check_output with it, refuses files that do not lie in this folder or below, with
-/// InputError "cli.output-outside": the steps of a campaign write in the folder of their case. Empty: anywhere.
-void confine_outputs(const std::string& folder);
-void check_place(const std::string& path);
-
 /// A report, to the output file when one is given, else to stdout: JSON always, text unless quiet.
 void write_report(const CommonOptions& options, const Console& console, const std::string& text);
 

@@ -9,6 +9,10 @@ namespace bough::cli {
 
 namespace {
 
+using analysis::PairReport;
+using analysis::RefinementReport;
+using analysis::SingleReport;
+
 std::string percent(double fraction, int digits = 2) {
   return std::isnan(fraction) ? "-" : fmt::format("{:.{}f}", 100 * fraction, digits);
 }
@@ -19,8 +23,8 @@ std::string format_captured(const SingleReport& r) {
   std::string text = "\ncaptured by the modes so far, exact integrals: Γ0 Γ0ᵀ -> m, Γ1 Γ1ᵀ -> J about Bo\n";
   Table table{{"mode", "Hz", "m x %", "m y %", "m z %", "J x %", "J y %", "J z %"}, {}};
   const auto& exact = r.check.captured[2].fraction;
-  for (int j = 0; j < r.body.num_modes(); ++j) {
-    std::vector<std::string> row{std::to_string(j + 1), number(r.body.frequency_hz[j])};
+  for (int j = 0; j < r.num_modes(); ++j) {
+    std::vector<std::string> row{std::to_string(j + 1), number(r.frequency_hz[j])};
     for (int a = 0; a < 6; ++a) row.push_back(percent(exact(j, a), 3));
     table.rows.push_back(row);
   }
@@ -29,7 +33,7 @@ std::string format_captured(const SingleReport& r) {
   for (std::size_t m = 0; m < modal::kNumMethods; ++m) {
     if (!r.check.has[m]) continue;
     std::vector<std::string> row{modal::kMethodNames[m]};
-    for (int a = 0; a < 6; ++a) row.push_back(percent(r.check.captured[m].fraction(r.body.num_modes() - 1, a), 4));
+    for (int a = 0; a < 6; ++a) row.push_back(percent(r.check.captured[m].fraction(r.num_modes() - 1, a), 4));
     total.rows.push_back(row);
   }
   return text + total.to_text();
@@ -112,12 +116,11 @@ std::string format_bodies(const PairReport& r) {
 }  // namespace
 
 std::string format_report(const SingleReport& r) {
-  std::string text =
-      fmt::format("body \"{}\": mass integrals by method; differences from the exact set\n", r.body.name);
+  std::string text = fmt::format("body \"{}\": mass integrals by method; differences from the exact set\n", r.name);
   Table table{{"mode", "Hz", "", "lumped", "consistent", "exact", "lumped diff", "consistent diff"}, {}};
-  for (int j = 0; j < r.body.num_modes(); ++j)
+  for (int j = 0; j < r.num_modes(); ++j)
     for (int k = 0; k < modal::kNumIntegrals; ++k) {
-      std::vector<std::string> row{k == 0 ? std::to_string(j + 1) : "", k == 0 ? number(r.body.frequency_hz[j]) : "",
+      std::vector<std::string> row{k == 0 ? std::to_string(j + 1) : "", k == 0 ? number(r.frequency_hz[j]) : "",
                                    "|Γ" + std::to_string(k) + "|"};
       for (std::size_t m = 0; m < modal::kNumMethods; ++m)
         row.push_back(r.check.has[m] ? number(r.check.norm[m](j, k)) : "-");
@@ -125,7 +128,7 @@ std::string format_report(const SingleReport& r) {
         row.push_back(r.check.has[m] ? difference(r.check.difference[m](j, k)) : "-");
       table.rows.push_back(row);
     }
-  if (r.body.num_modes() == 0 || !r.check.has[2]) return text;
+  if (r.num_modes() == 0 || !r.check.has[2]) return text;
   return text + table.to_text() + format_captured(r);
 }
 

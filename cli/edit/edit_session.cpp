@@ -7,11 +7,11 @@
 #include <iterator>
 
 #include "analysis/common/system_files.hpp"
+#include "analysis/common/text_file.hpp"
 #include "base/diagnostic.hpp"
 #include "base/file_roles.hpp"
 #include "cli/common/old_commands.hpp"
 #include "cli/common/options.hpp"
-#include "cli/common/text_file.hpp"
 #include "cli/edit/command_words.hpp"
 #include "cli/edit/edit_commands.hpp"
 #include "cli/edit/text_diff.hpp"
@@ -310,7 +310,7 @@ void EditSession::save(const Words& given) {
   Diagnostics diagnostics;
   toml_files::check_text(text_.get_text(), path, diagnostics);
   console_.print(diagnostics);
-  write_text_file(path, text_.get_text());
+  analysis::write_text_file(path, text_.get_text());
   if (path == target_) {
     text_.set_saved();
     is_saved_ = true;

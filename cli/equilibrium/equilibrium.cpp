@@ -5,10 +5,10 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis/common/failures.hpp"
+#include "analysis/common/text_file.hpp"
 #include "analysis/equilibrium/equilibrium.hpp"
 #include "cli/common/console_events.hpp"
 #include "cli/common/options.hpp"
-#include "cli/common/text_file.hpp"
 #include "cli/verbs.hpp"
 #include "formats/hdf5/files.hpp"
 
@@ -78,7 +78,7 @@ int run_equilibrium(const EquilibriumOptions& o) {
     console.print(text);
   }
   if (!o.output.empty()) {
-    write_whole(o.output, [&](const std::string& part) { write_equilibrium(answer, part); });
+    analysis::write_whole(o.output, [&](const std::string& part) { write_equilibrium(answer, part); });
     if (!o.json) console.print("written: " + o.output + "\n");
   }
   return kSuccess;

@@ -1,174 +1,65 @@
+#include "analysis/export/export.hpp"
+
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
-#include <filesystem>
-#include <fstream>
 #include <memory>
 #include <sstream>
 #include <utility>
 
 #include "analysis/common/body_files.hpp"
-#include "analysis/common/channels.hpp"
 #include "analysis/common/inputs.hpp"
-#include "analysis/common/system_files.hpp"
-#include "cli/common/console.hpp"
-#include "cli/common/event_list.hpp"
+#include "analysis/common/text_file.hpp"
+#include "cli/common/console_events.hpp"
 #include "cli/common/options.hpp"
-#include "cli/common/text_file.hpp"
-#include "cli/common/vtu_file.hpp"
-#include "cli/export/export_bodies.hpp"
-#include "cli/export/export_component.hpp"
-#include "cli/export/export_fmu.hpp"
-#include "cli/export/export_matrices.hpp"
-#include "cli/export/moving_system.hpp"
-#include "cli/linearize/linear_model_files.hpp"
-#include "cli/linearize/sweep_tables.hpp"
-#include "cli/response/response_csv.hpp"
-#include "formats/export/response_text.hpp"
-#include "formats/export/uff.hpp"
-#include "formats/export/vtu.hpp"
-#include "formats/hdf5/complex_modes_file.hpp"
-#include "formats/hdf5/linear_file.hpp"
-#include "formats/hdf5/response_file.hpp"
-#include "formats/hdf5/sweep_file.hpp"
-#include "formats/nastran/reader.hpp"
-#include "formats/nastran/writer.hpp"
-#include "formats/toml/specs.hpp"
 
 namespace bough::cli {
 
 namespace {
 
 struct ExportOptions : CommonOptions {
-  std::string file;
-  std::string format;
-  std::vector<std::string> channels;
-  bool ascii = false, is_moving = false;
-  std::string fields = "large";
-  BodyExportOptions body;
-  MovingOptions moving;
-  std::vector<std::string> ignore_cards;
-  FmuOptions fmu;
-  ComponentExportOptions component;
+  analysis::ExportRequest request;
 };
-
-bool is_response(const std::string& format) { return format == "bough-frequency" || format == "bough-transient"; }
-
-/// The time and the channels chosen, all by default.
-std::vector<exports::CsvColumn> read_columns(const ExportOptions& o) {
-  const auto results = hdf5::read_results(o.file);
-  std::vector<exports::CsvColumn> columns{{"time", results.time}};
-  if (o.channels.empty()) {
-    for (const auto& [path, values] : results.channels) {
-      if (path == "/time") continue;
-      for (auto& column : analysis::choose_columns(results, o.file, path)) columns.push_back(std::move(column));
-    }
-  }
-  for (const auto& choice : o.channels) {
-    for (auto& column : analysis::choose_columns(results, o.file, choice)) columns.push_back(std::move(column));
-  }
-  columns.front().unit = analysis::get_unit(results, "/time");
-  if (!analysis::has_unit_labels(results))
-    for (auto& column : columns) column.unit.clear();
-  return columns;
-}
-
-std::string make_csv(const ExportOptions& o, Diagnostics& diagnostics) {
-  std::ostringstream text;
-  if (!o.channels.empty()) {
-    if (const auto own = analysis::read_file_format(o.file); has_shapes(own)) {
-      if (o.channels != std::vector<std::string>{"modes"})
-        throw InputError("cli.unknown-channel", {o.file},
-                         "a file of modes or a body has no channel '" + o.channels[0] + "'",
-                         "--channel modes is the table of modes; without --channel come the shapes");
-      exports::write_csv(text, read_mode_columns(o.file, own, diagnostics));
-      return text.str();
-    }
-  }
-  if (o.channels == std::vector<std::string>{"events"} || o.channels == std::vector<std::string>{"/events"})
-    return make_events_csv(hdf5::read_results(o.file).events);
-  const auto format = o.channels.empty() ? analysis::read_file_format(o.file) : "";
-  if (format == "bough-linear") return make_linear_csv(hdf5::read_linear_model(o.file));
-  if (format == "bough-sweep") return make_sweep_csv(hdf5::read_sweep(o.file));
-  if (format == "bough-response") return make_response_csv(hdf5::read_model_response(o.file).response);
-  if (is_response(format)) return exports::make_response_csv(hdf5::read_response(o.file));
-  exports::write_csv(text, has_shapes(format) ? read_shape_columns(o.file, format, diagnostics) : read_columns(o));
-  return text.str();
-}
-
-std::string make_universal(const ExportOptions& o, Diagnostics& diagnostics) {
-  if (o.is_moving)
-    return make_moving_uff(read_moving_system(o.file, o.moving, diagnostics), o.moving.scale, o.file, diagnostics);
-  const auto format = analysis::read_file_format(o.file);
-  if (format == "bough-modes") return exports::make_uff(hdf5::read_modes(o.file));
-  if (format == "bough-flexbody") return exports::make_uff(analysis::read_body(o.file, diagnostics));
-  if (format == "bough-results") return exports::make_uff(read_columns(o));
-  if (is_response(format)) return exports::make_uff(hdf5::read_response(o.file));
-  refuse_export(o.file, "uff", "a flexible body, or what bough modes, run, frequency or transient wrote");
-}
-
-/// The mode shapes of a modes file or a flexible body.
-std::string make_shapes(const ExportOptions& o, Diagnostics& diagnostics) {
-  const std::string format = analysis::read_file_format(o.file);
-  const auto encoding = o.ascii ? exports::VtuEncoding::Ascii : exports::VtuEncoding::Base64;
-  if (format == "bough-modes")
-    return make_vtu_text(exports::make_picture(hdf5::read_modes(o.file)), encoding, o.file, diagnostics);
-  if (format == "bough-complex-modes")
-    return make_vtu_text(exports::make_picture(hdf5::read_complex_modes(o.file)), encoding, o.file, diagnostics);
-  if (format == "bough-flexbody")
-    return make_vtu_text(exports::make_picture(analysis::read_body(o.file, diagnostics)), encoding, o.file,
-                         diagnostics);
-  throw InputError("cli.no-shapes", {o.file}, "the file holds no mode shapes, found format \"" + format + "\"",
-                   "give a file that bough modes or bough reduce wrote");
-}
-
-std::string make_bdf(const ExportOptions& o, Diagnostics& diagnostics) {
-  analysis::demand_deck(o.file);
-  const auto deck = nastran::read_deck(o.file, {o.ignore_cards}, diagnostics);
-  diagnostics.throw_if_errors();
-  nastran::WriteOptions options;
-  if (o.fields == "small") options.fields = nastran::FieldFormat::Small;
-  if (o.fields == "free") options.fields = nastran::FieldFormat::Free;
-  auto text = nastran::write_deck(deck, options, diagnostics);
-  diagnostics.throw_if_errors();
-  return text;
-}
-
-int export_pvd(const ExportOptions& o, const Console& console, Diagnostics& diagnostics) {
-  if (o.output.empty()) {
-    console.print_error("cli.usage", "--to pvd writes several files: give the .pvd with -o", "see bough export --help");
-    return kUsageError;
-  }
-  const auto system = read_moving_system(o.file, o.moving, diagnostics);
-  const int frames = write_pvd(system, o.moving.scale, o.ascii, o.output, diagnostics);
-  console.print(diagnostics);
-  console.print("written: " + o.output + " of " + count(static_cast<std::size_t>(frames), "frame") + "\n");
-  return kSuccess;
-}
-
-int export_system(const ExportOptions& o, const Console& console, Diagnostics& diagnostics) {
-  if (o.output.empty()) {
-    console.print_error("cli.usage", "--to fmu writes no text: give the .fmu with -o", "see bough export --help");
-    return kUsageError;
-  }
-  analysis::demand_kind(o.file, toml_files::detect_kind(o.file), "system");
-  auto options = o.fmu;
-  options.outputs = o.channels;
-  const auto summary = export_fmu(o.file, o.output, options, diagnostics);
-  console.print(diagnostics);
-  console.print(summary + "written: " + o.output + "\n");
-  return kSuccess;
-}
 
 /// -o, --output given several times, a line each: of an FMU what is no .fmu is an output of it, as --channel.
 bool take_outputs(ExportOptions& o) {
   if (o.output.find('\n') == std::string::npos) return true;
   std::istringstream lines(std::exchange(o.output, {}));
   for (std::string line; std::getline(lines, line);) {
-    if (o.format == "fmu" && !analysis::has_suffix(line, ".fmu"))
-      o.channels.push_back(line);
+    if (o.request.format == "fmu" && !analysis::has_suffix(line, ".fmu"))
+      o.request.channels.push_back(line);
     else if (std::exchange(o.output, line) != "")
       return false;
   }
   return true;
+}
+
+/// Advice for a missing -o.
+std::string describe_output(const std::string& format) {
+  if (format == "pvd") return "--to pvd writes several files: give the .pvd with -o";
+  if (format == "fmu") return "--to fmu writes no text: give the .fmu with -o";
+  if (format == "mat") return "--to mat writes no text: give the file with -o";
+  return "--to extseout writes three files: give their common name with -o";
+}
+
+std::string describe(const analysis::FmuSummary& fmu, int version) {
+  return "FMI " + std::to_string(version) + ".0: " + count(fmu.parameters, "parameter") + ", " +
+         count(fmu.inputs, "input") + ", " + count(fmu.outputs, "output") + ", " +
+         count(fmu.states, "continuous state") + ", " + count(fmu.event_indicators, "event indicator") + "\n";
+}
+
+void print_written(const ExportOptions& o, const analysis::ExportAnswer& answer, const Console& console) {
+  if (const auto* component = std::get_if<analysis::ComponentSummary>(&answer.summary)) {
+    console.print(fmt::format(
+        "external superelement {}: {} boundary grids, {} generalized coordinates\nwritten: {}.op4, {}.asm, {}.pch\n",
+        component->id, component->num_grids, component->num_generalized, component->stem, component->stem,
+        component->stem));
+    return;
+  }
+  const auto* fmu = std::get_if<analysis::FmuSummary>(&answer.summary);
+  std::string frames;
+  if (o.request.format == "pvd") frames = " of " + count(static_cast<std::size_t>(answer.num_frames), "frame");
+  console.print((fmu ? describe(*fmu, o.request.fmu.version) : "") + "written: " + o.output + frames + "\n");
 }
 
 int run_export(ExportOptions o) {
@@ -178,48 +69,63 @@ int run_export(ExportOptions o) {
     console.print_error("cli.usage", "-o is given twice", "name one file to write");
     return kUsageError;
   }
-  analysis::demand_body_file(o.file);
-  if (!o.output.empty()) check_output(o, o.output, {analysis::get_body_path(o.file)});
-  Diagnostics diagnostics;
-  if (o.format == "fmu") return export_system(o, console, diagnostics);
-  if (o.format == "extseout") {
-    if (o.output.empty()) {
-      console.print_error("cli.usage", "--to extseout writes three files: give their common name with -o",
-                          "see bough export --help");
-      return kUsageError;
-    }
-    const auto summary = export_component(o.file, o.output, o.component, o.ignore_cards, diagnostics);
-    console.print(diagnostics);
-    console.print(summary);
-    return kSuccess;
+  const auto& request = o.request;
+  analysis::demand_body_file(request.file);
+  if (!o.output.empty()) check_output(o, o.output, {analysis::get_body_path(request.file)});
+  const bool is_written = analysis::is_written_format(request.format);
+  if (is_written && o.output.empty()) {
+    console.print_error("cli.usage", describe_output(request.format), "see bough export --help");
+    return kUsageError;
   }
-  if (o.format != "bdf") analysis::warn_incomplete(o.file, diagnostics);
-  if (o.format == "mat") {
-    if (o.output.empty()) {
-      console.print_error("cli.usage", "--to mat writes no text: give the file with -o", "see bough export --help");
-      return kUsageError;
-    }
-    export_mat(o.file, o.output, diagnostics);
-    console.print(diagnostics);
-    console.print("written: " + o.output + "\n");
-    return kSuccess;
-  }
-  if (o.format == "pvd") return export_pvd(o, console, diagnostics);
-  const auto text = o.format == "vtu"          ? make_shapes(o, diagnostics)
-                    : o.format == "gltf"       ? make_glb(o.file, o.moving, diagnostics)
-                    : o.format == "bdf"        ? make_bdf(o, diagnostics)
-                    : o.format == "op4"        ? make_op4(o.file, diagnostics)
-                    : o.format == "uff"        ? make_universal(o, diagnostics)
-                    : is_body_format(o.format) ? make_body_text(o.file, o.format, o.body, diagnostics)
-                                               : make_csv(o, diagnostics);
-  console.print(diagnostics);
-  if (o.output.empty()) {
-    console.print_data(text);
+  o.request.output = o.output;
+  ConsoleEvents events(console);
+  const auto answer = analysis::export_file(request, events);
+  console.print(events.get_messages());
+  if (is_written) {
+    print_written(o, answer, console);
+  } else if (o.output.empty()) {
+    console.print_data(answer.text);
   } else {
-    write_text_file(o.output, text);
+    analysis::write_text_file(o.output, answer.text);
     console.print("written: " + o.output + "\n");
   }
   return kSuccess;
+}
+
+void add_body_export_options(CLI::App& verb, analysis::BodyExportOptions& o) {
+  verb.add_option("--inertia", o.inertia, "sid: the inertia J as 6x1 (11 22 33 12 13 23) or 3x3")
+      ->check(CLI::IsMember({"6x1", "3x3"}))
+      ->capture_default_str();
+  verb.add_option("--ge-order", o.ge_order,
+                  "sid: columns of Ge by mode (3 for each) or by component (one for each mode)")
+      ->check(CLI::IsMember({"mode", "component"}))
+      ->capture_default_str();
+  verb.add_option("--digits", o.digits, "sid: significant digits")->check(CLI::Range(6, 17))->capture_default_str();
+}
+
+void add_component_options(CLI::App& verb, analysis::ComponentExportOptions& options) {
+  verb.add_option("--id", options.id, "extseout: id of the superelement (default: EXTID of the deck, else 1)")
+      ->check(CLI::PositiveNumber);
+  verb.add_option("--unit", options.unit,
+                  "extseout: unit of the .op4 file in the assembly deck (default: MATOP4 of the deck, else the id)")
+      ->check(CLI::PositiveNumber);
+  verb.add_option("--vendor", options.vendor, "extseout: names and order of the matrices, nx or msc")
+      ->check(CLI::IsMember({"nx", "msc"}))
+      ->capture_default_str();
+  verb.add_option("--first-point", options.first_point,
+                  "extseout of a body: id of its first generalized coordinate (default: 1001 above its nodes)")
+      ->check(CLI::PositiveNumber);
+}
+
+void add_moving_options(CLI::App& verb, analysis::MovingOptions& o) {
+  verb.add_option("--every", o.every, "pvd, gltf: one in so many samples")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  verb.add_option("--window", o.window, "pvd, gltf: only samples from T0 to T1, as T0,T1")->delimiter(',')->expected(2);
+  verb.add_option("--scale", o.scale, "pvd, gltf: the deformation that many times as large")->capture_default_str();
+  verb.add_option("--follow", o.follow, "pvd, gltf: positions from the origin of this body");
+  verb.add_option("--body", o.bodies, "pvd, gltf: a body file of the run that has moved; may be repeated")
+      ->allow_extra_args(false);
 }
 
 }  // namespace
@@ -228,13 +134,13 @@ void add_export(CLI::App& app, Action& action) {
   auto o = std::make_shared<ExportOptions>();
   auto* verb = add_verb(app, "export", "Bodies, modes, matrices, results or a deck in the format of another program");
   verb->add_option(
-          "file", o->file,
+          "file", o->request.file,
           "csv: results, modes, flexible body, linear model, sweep or response of a deck; vtu: modes file or flexible "
           "body; pvd: results; gltf: results, modes file or flexible body; bdf: Nastran deck; sid, mbdyn, flat: "
           "flexible body; extseout: Nastran deck with BSET1 or flexible body; fmu: system file; mat, op4, uff: any "
           "HDF5 file of Bough that has such arrays")
       ->required();
-  verb->add_option("--to", o->format,
+  verb->add_option("--to", o->request.format,
                    "Format: csv, vtu (mode shapes for ParaView), pvd (the moving system for ParaView), gltf "
                    "(.glb: the moving system or modes), bdf (the deck as Bough reads it), mat (MATLAB), "
                    "op4 (Nastran OUTPUT4), uff (universal file), sid (Standard Input Data), mbdyn (.fem), flat (a "
@@ -243,29 +149,29 @@ void add_export(CLI::App& app, Action& action) {
       ->required()
       ->check(CLI::IsMember(
           {"csv", "vtu", "pvd", "gltf", "bdf", "mat", "op4", "uff", "sid", "mbdyn", "flat", "extseout", "fmu"}));
-  verb->add_option("--channel", o->channels,
+  verb->add_option("--channel", o->request.channels,
                    "csv, uff: only these: a path or folder of the file, or a sensor; with :component; may be repeated "
                    "(default: all). csv of modes or a body: modes, their table instead of the shapes. fmu: the outputs "
                    "(default: every sensor)")
       ->allow_extra_args(false);
-  verb->add_flag("--ascii", o->ascii, "vtu, pvd: numbers as text instead of base64");
-  verb->add_flag("--moving", o->is_moving,
+  verb->add_flag("--ascii", o->request.is_ascii, "vtu, pvd: numbers as text instead of base64");
+  verb->add_flag("--moving", o->request.is_moving,
                  "uff: the moving system of a run, places and displacements at each sample, instead of its channels");
-  verb->add_option("--fields", o->fields,
+  verb->add_option("--fields", o->request.fields,
                    "bdf: large (16 columns where 8 lose digits), small (always 8) or free (commas, every digit)")
       ->check(CLI::IsMember({"large", "small", "free"}))
       ->capture_default_str();
-  verb->add_option("--fmi", o->fmu.version, "fmu: version of the standard, 2 or 3")
+  verb->add_option("--fmi", o->request.fmu.version, "fmu: version of the standard, 2 or 3")
       ->check(CLI::IsMember({2, 3}))
       ->capture_default_str();
-  verb->add_option("--units", o->fmu.units,
+  verb->add_option("--units", o->request.fmu.units,
                    "fmu: units of the system file, as mm-N-tonne or m-kg-s, for the units of the variables");
-  add_set_option(*verb, o->fmu.set);
-  verb->add_option("--ignore", o->ignore_cards, "bdf, extseout: leave this card out; may be repeated")
+  add_set_option(*verb, o->request.fmu.set);
+  verb->add_option("--ignore", o->request.ignore_cards, "bdf, extseout: leave this card out; may be repeated")
       ->allow_extra_args(false);
-  add_body_export_options(*verb, o->body);
-  add_moving_options(*verb, o->moving);
-  add_component_options(*verb, o->component);
+  add_body_export_options(*verb, o->request.body);
+  add_moving_options(*verb, o->request.moving);
+  add_component_options(*verb, o->request.component);
   add_common_options(*verb, *o, kOutput,
                      "Write to this file instead of stdout; fmu: again with a signal, another output of the FMU");
   verb->get_option("--output")->multi_option_policy(CLI::MultiOptionPolicy::Join);

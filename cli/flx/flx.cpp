@@ -1,34 +1,28 @@
-#include "formats/flx/flx_file.hpp"
+#include "analysis/flx/flx.hpp"
 
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <memory>
-#include <set>
 
 #include "analysis/common/body_files.hpp"
-#include "analysis/common/failures.hpp"
 #include "analysis/common/inputs.hpp"
+#include "analysis/common/text_file.hpp"
 #include "cli/common/console.hpp"
 #include "cli/common/options.hpp"
-#include "cli/common/text_file.hpp"
 #include "cli/common/usage_text.hpp"
 #include "cli/flx/flx_output.hpp"
-#include "formats/flat/flex_body.hpp"
 #include "formats/flx/fragment.hpp"
-#include "formats/hdf5/files.hpp"
 
 namespace bough::cli {
 
 namespace {
 
 struct FlxVerbOptions : FlxOptions {
-  std::vector<std::string> bodies;
-  std::string read, integrals, fragment;
-  std::vector<int> body_ids{1};
-  int modopt = 0, first_id = 1;
-  bool special_nodes = false, stiffening = false;
+  analysis::FlxRequest request;
+  std::string read, fragment;
+  int first_id = 1;
   bool digits_given = false;
 };
 
@@ -38,21 +32,15 @@ void print_written(const FlxVerbOptions& o, const std::string& output, const Con
 }
 
 int run_read(const FlxVerbOptions& o, const Console& console) {
-  analysis::demand_body_file(o.read);
-  const auto name = flx::parse_flx_name(o.read).value_or(flx::FlxName{o.read, 0});
-  std::vector<flx::FlxFile> files;
-  if (name.body_id > 0)
-    files.push_back(flx::read_flx(name.path, name.body_id));
-  else
-    files = flx::read_flx_bodies(name.path);
-  check_outputs(o, {o.output, o.fragment}, {name.path, o.layout});
+  const auto files = analysis::read_flx_files(o.read);
+  check_outputs(o, {o.output, o.fragment}, {analysis::get_body_path(o.read), o.layout});
   if (!o.output.empty()) {
     std::string text;
     for (const auto& file : files)
       text += flx::write_flx(file, choose_layout(o, o.digits_given ? o.digits : file.digits));
-    write_text_file(o.output, text);
+    analysis::write_text_file(o.output, text);
   }
-  if (!o.fragment.empty()) write_text_file(o.fragment, flx::make_fragment(files, o.first_id));
+  if (!o.fragment.empty()) analysis::write_text_file(o.fragment, flx::make_fragment(files, o.first_id));
   if (o.json) {
     console.print_data(format_flx_json(files));
   } else if (o.output.empty() && o.fragment.empty()) {
@@ -63,58 +51,33 @@ int run_read(const FlxVerbOptions& o, const Console& console) {
   return kSuccess;
 }
 
-/// The ids as they were given, or counted on from the only one.
-std::vector<int> choose_ids(const FlxVerbOptions& o) {
-  auto ids = o.body_ids;
-  while (o.body_ids.size() == 1 && ids.size() < o.bodies.size()) ids.push_back(ids.back() + 1);
-  if (ids.size() != o.bodies.size())
-    throw InputError("cli.body-ids", {}, fmt::format("{} body ids for {} bodies", ids.size(), o.bodies.size()),
-                     "give the first one, or one a body: --body-id 3,7");
-  if (std::set<int>(ids.begin(), ids.end()).size() != ids.size())
-    throw InputError("cli.body-ids", {}, "one body id is given twice", "give each body an id of its own");
-  return ids;
-}
-
 int run_flx(const FlxVerbOptions& o) {
   const Console console(o.quiet, o.verbosity);
   if (!console.is_root()) return kSuccess;
-  if (o.bodies.empty() == o.read.empty()) {
+  if (o.request.bodies.empty() == o.read.empty()) {
     console.print_error("cli.usage", "give either a flexible body to write or --read FILE", "see bough flx --help");
     return kUsageError;
   }
   if (!o.read.empty()) return run_read(o, console);
-  if (o.bodies.size() > 1 && o.output.empty()) {
+  if (o.request.bodies.size() > 1 && o.output.empty()) {
     console.print_error("cli.usage", "several bodies go into one file: give it with -o", "see bough flx --help");
     return kUsageError;
   }
-  const auto ids = choose_ids(o);
-  auto inputs = o.bodies;
-  for (const auto& name : o.bodies) analysis::demand_file(name);
+  analysis::choose_body_ids(o.request);
+  auto inputs = o.request.bodies;
+  for (const auto& name : o.request.bodies) analysis::demand_file(name);
   const std::string output =
-      o.output.empty() ? std::filesystem::path(o.bodies.front()).stem().string() + ".FLX" : o.output;
+      o.output.empty() ? std::filesystem::path(o.request.bodies.front()).stem().string() + ".FLX" : o.output;
   inputs.push_back(o.layout);
   check_outputs(o, {output, o.fragment}, inputs);
   const auto layout = choose_layout(o, o.digits);
-  flx::MakeOptions options;
-  options.modopt = o.modopt;
-  options.method = o.integrals;
-  options.has_special_nodes = o.special_nodes;
-  options.has_stiffening = o.stiffening;
-  options.digits = o.digits;
-  std::vector<flx::FlxFile> files;
+  auto request = o.request;
+  request.digits = o.digits;
+  const auto files = analysis::make_flx_files(request);
   std::string text;
-  for (std::size_t b = 0; b < ids.size(); ++b) {
-    options.body_id = ids[b];
-    analysis::with_file(o.bodies[b], [&] {
-      files.push_back(flx::make_flx(
-          analysis::is_flat(o.bodies[b]) ? flat::read_flex_body(o.bodies[b]) : hdf5::read_flex_body(o.bodies[b]),
-          options));
-      return kSuccess;
-    });
-    text += flx::write_flx(files.back(), layout);
-  }
-  write_text_file(output, text);
-  if (!o.fragment.empty()) write_text_file(o.fragment, flx::make_fragment(files, o.first_id));
+  for (const auto& file : files) text += flx::write_flx(file, layout);
+  analysis::write_text_file(output, text);
+  if (!o.fragment.empty()) analysis::write_text_file(o.fragment, flx::make_fragment(files, o.first_id));
   if (o.json)
     console.print_data(format_flx_json(files));
   else
@@ -127,22 +90,22 @@ int run_flx(const FlxVerbOptions& o) {
 void add_flx(CLI::App& app, Action& action) {
   auto o = std::make_shared<FlxVerbOptions>();
   auto* verb = add_verb(app, "flx", "Flexible bodies become a .FLX file for TREETOPS, or such a file is read");
-  verb->add_option("body", o->bodies, "Flexible-body files that bough reduce wrote; several go into one .FLX");
+  verb->add_option("body", o->request.bodies, "Flexible-body files that bough reduce wrote; several go into one .FLX");
   verb->add_option("--read", o->read,
                    "Print this .FLX file block by block, of FILE.FLX:2 the body with the id 2; with -o write it again");
-  verb->add_flag("--special-nodes", o->special_nodes,
+  verb->add_flag("--special-nodes", o->request.special_nodes,
                  "Add the nmode + 1 nodes through which a controller applies the geometric stiffness");
-  verb->add_option("--integrals", o->integrals,
+  verb->add_option("--integrals", o->request.integrals,
                    "Mass integrals: lumped, consistent or exact (default: the body's choice)")
       ->check(CLI::IsMember({"lumped", "consistent", "exact"}));
-  verb->add_option("--modopt", o->modopt, "0 all integrals, 1 zero and first order, 2 zero order only")
+  verb->add_option("--modopt", o->request.modopt, "0 all integrals, 1 zero and first order, 2 zero order only")
       ->check(CLI::Range(0, 2))
       ->capture_default_str();
-  verb->add_option("--body-id", o->body_ids,
+  verb->add_option("--body-id", o->request.body_ids,
                    "Number of the body in the multibody model; of several the first, or one each: 3,7 (default: 1)")
       ->delimiter(',')
       ->check(make_positive());
-  verb->add_flag("--stiffening", o->stiffening,
+  verb->add_flag("--stiffening", o->request.stiffening,
                  "Write K_G1, K_G2 and the preload too, in lines that readers of version 1.0 pass over: a run of Bough "
                  "then stiffens as from the HDF5 file");
   verb->add_option("--int", o->fragment,

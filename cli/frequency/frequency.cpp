@@ -9,12 +9,12 @@
 #include "analysis/common/failures.hpp"
 #include "analysis/common/inputs.hpp"
 #include "analysis/common/ranks.hpp"
+#include "analysis/common/text_file.hpp"
 #include "analysis/frequency/frequency.hpp"
 #include "cli/common/console_events.hpp"
 #include "cli/common/deck_tables.hpp"
 #include "cli/common/model_options.hpp"
 #include "cli/common/options.hpp"
-#include "cli/common/text_file.hpp"
 #include "cli/common/usage_text.hpp"
 #include "cli/frequency/frequency.hpp"
 #include "cli/frequency/random_tables.hpp"
@@ -51,8 +51,8 @@ int run_deck_response(const DeckResponseOptions& options) {
   console.print(answer.failures.get_items(events.get_messages()));
   analysis::do_once([&] {
     if (!options.output.empty()) hdf5::write_response(response, options.output);
-    if (!options.csv.empty()) write_text_file(options.csv, exports::make_response_csv(response));
-    if (!options.punch.empty()) write_text_file(options.punch, exports::make_punch_text(response));
+    if (!options.csv.empty()) analysis::write_text_file(options.csv, exports::make_response_csv(response));
+    if (!options.punch.empty()) analysis::write_text_file(options.punch, exports::make_punch_text(response));
     if (answer.listing) write_listings(options.listing, *answer.listing);
   });
   if (options.json) {

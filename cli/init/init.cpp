@@ -4,10 +4,11 @@
 #include <memory>
 
 #include "analysis/common/inputs.hpp"
+#include "analysis/common/output_folder.hpp"
+#include "analysis/common/text_file.hpp"
 #include "analysis/init/init_deck.hpp"
 #include "cli/common/console.hpp"
 #include "cli/common/options.hpp"
-#include "cli/common/text_file.hpp"
 #include "cli/init/schema_line.hpp"
 #include "cli/init/templates.hpp"
 #include "formats/nastran/reader.hpp"
@@ -116,7 +117,7 @@ class NewPaths {
   }
   void write(const fs::path& path, const std::string& text) {
     if (!fs::exists(path)) paths_.push_back(path);
-    write_text_file(path.string(), text);
+    analysis::write_text_file(path.string(), text);
   }
   void keep() { paths_.clear(); }
 
@@ -135,7 +136,7 @@ int run_init(const InitOptions& o) {
   const fs::path folder = o.output.empty() ? fs::path(chosen.folder) : fs::path(o.output);
   for (const auto& file : chosen.files) {
     const auto path = (folder / file.name).string();
-    check_place(path);
+    analysis::check_place(path);
     if (!o.force && fs::exists(path)) {
       diagnostics.error("cli.output-exists", {path}, "the file exists", "choose another folder with -o, or --force");
     }

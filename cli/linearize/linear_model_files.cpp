@@ -15,8 +15,6 @@ using records::LinearModel;
 
 namespace {
 
-matrices::MatCells make_cells(const std::vector<std::string>& words) { return {words.begin(), words.end()}; }
-
 /// Rounding of a value that is zero reads as zero.
 std::string format_number(double value, double scale) {
   return value == 0 || std::abs(value) < 1e-12 * scale ? "0" : fmt::format("{:.6g}", value);
@@ -31,31 +29,6 @@ nlohmann::json to_rows(const Eigen::MatrixXd& m) {
 }
 
 }  // namespace
-
-matrices::MatFields make_linear_fields(const LinearModel& model) {
-  matrices::MatFields fields{{"A", model.A},
-                             {"B", model.B},
-                             {"C", model.C},
-                             {"D", model.D},
-                             {"state_name", make_cells(model.states.name)},
-                             {"input_name", make_cells(model.inputs.name)},
-                             {"output_name", make_cells(model.outputs.name)}};
-  if (model.sample_time > 0) fields.emplace_back("sample_time", Eigen::MatrixXd::Constant(1, 1, model.sample_time));
-  return fields;
-}
-
-matrices::MatFields make_second_order_fields(const LinearModel& model) {
-  const auto second = records::make_second_order(model);
-  if (second.M.size() == 0) return {};
-  matrices::MatFields fields{
-      {"mass", second.M}, {"damping", second.D}, {"stiffness", second.K}, {"input_force", second.F}};
-  if (second.Z.cols() > 0) fields.emplace_back("state_force", second.Z);
-  return fields;
-}
-
-void write_linear_mat(const LinearModel& model, const std::string& path) {
-  matrices::write_mat(path, make_linear_fields(model));
-}
 
 std::string format_hankel(const records::Hankel& hankel) {
   if (hankel.value.size() == 0) return "";
@@ -136,28 +109,6 @@ std::string format_multipliers(const records::Multipliers& m) {
 }
 
 }  // namespace
-
-std::string make_linear_csv(const LinearModel& model) {
-  const auto quote = [](const std::string& name) {
-    return name.find_first_of(",\"") == std::string::npos ? name : "\"" + name + "\"";
-  };
-  std::string text = "row";
-  for (const auto* signals : {&model.states, &model.inputs})
-    for (const auto& name : signals->name) text += "," + quote(name);
-  text += "\n";
-  const auto add = [&](const std::string& name, const Eigen::RowVectorXd& left, const Eigen::RowVectorXd& right) {
-    text += name;
-    for (const double v : left) text += fmt::format(",{:.17g}", v);
-    for (const double v : right) text += fmt::format(",{:.17g}", v);
-    text += "\n";
-  };
-  for (int i = 0; i < model.states.size(); ++i)
-    add((model.sample_time > 0 ? "next " : "d/dt ") + quote(model.states.name[static_cast<std::size_t>(i)]),
-        model.A.row(i), model.B.row(i));
-  for (int i = 0; i < model.outputs.size(); ++i)
-    add(quote(model.outputs.name[static_cast<std::size_t>(i)]), model.C.row(i), model.D.row(i));
-  return text;
-}
 
 /// Poles that the errors of A hide: those of free motion, or soft ones of a very stiff system.
 static std::string format_lost_poles(const records::Poles& poles) {

@@ -3,10 +3,12 @@
 
 #include "analysis/common/failures.hpp"
 #include "analysis/common/inputs.hpp"
+#include "analysis/common/text_file.hpp"
+#include "analysis/export/csv_tables.hpp"
+#include "analysis/export/linear_mat.hpp"
 #include "analysis/linearize/linearize.hpp"
 #include "cli/common/console_events.hpp"
 #include "cli/common/options.hpp"
-#include "cli/common/text_file.hpp"
 #include "cli/common/usage_text.hpp"
 #include "cli/linearize/linear_model_files.hpp"
 #include "cli/linearize/sweep_tables.hpp"
@@ -52,7 +54,7 @@ int run_linearize(const LinearizeVerbOptions& o) {
     else
       console.print(format_sweep(sweep));
     if (!o.output.empty()) hdf5::write_sweep(sweep, o.output);
-    if (!o.csv.empty()) write_text_file(o.csv, make_sweep_csv(sweep));
+    if (!o.csv.empty()) analysis::write_text_file(o.csv, analysis::make_sweep_csv(sweep));
     print_written(o, console, {o.output, o.csv});
     return kSuccess;
   }
@@ -63,8 +65,8 @@ int run_linearize(const LinearizeVerbOptions& o) {
   else
     console.print(format_linear_model(model));
   if (!o.output.empty()) hdf5::write_linear_model(model, o.output);
-  if (!o.mat.empty()) write_linear_mat(model, o.mat);
-  if (!o.csv.empty()) write_text_file(o.csv, make_linear_csv(model));
+  if (!o.mat.empty()) analysis::write_linear_mat(model, o.mat);
+  if (!o.csv.empty()) analysis::write_text_file(o.csv, analysis::make_linear_csv(model));
   print_written(o, console, {o.output, o.mat, o.csv});
   return kSuccess;
 }

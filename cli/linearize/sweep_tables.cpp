@@ -2,10 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <sstream>
-
 #include "cli/common/console.hpp"
-#include "formats/export/csv.hpp"
 
 namespace bough::cli {
 
@@ -75,20 +72,6 @@ std::string format_sweep(const LinearSweep& sweep) {
                           fmt::format("{:.3g} at {:g}", max_real, sweep.value[worst]), name_branch(sweep, b)});
   }
   return text + table.to_text() + format_gone(sweep);
-}
-
-std::string make_sweep_csv(const LinearSweep& sweep) {
-  std::vector<exports::CsvColumn> columns{{sweep.parameter, sweep.value}};
-  for (Index b = 0; b < sweep.real.cols(); ++b) {
-    const std::string name = std::to_string(b + 1) + " " + sweep.mode.front()[static_cast<std::size_t>(b)];
-    columns.push_back({name + ":real", sweep.real.col(b)});
-    columns.push_back({name + ":imag", sweep.imag.col(b)});
-    columns.push_back({name + ":frequency_hz", sweep.frequency_hz.col(b)});
-    columns.push_back({name + ":damping", sweep.damping.col(b)});
-  }
-  std::ostringstream text;
-  exports::write_csv(text, columns);
-  return text.str();
 }
 
 }  // namespace bough::cli

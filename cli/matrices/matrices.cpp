@@ -8,11 +8,11 @@
 #include "analysis/common/failures.hpp"
 #include "analysis/common/inputs.hpp"
 #include "analysis/common/ranks.hpp"
+#include "analysis/common/text_file.hpp"
 #include "analysis/matrices/matrices.hpp"
 #include "cli/common/console_events.hpp"
 #include "cli/common/model_options.hpp"
 #include "cli/common/options.hpp"
-#include "cli/common/text_file.hpp"
 #include "fe/linear/petsc.hpp"
 #include "formats/hdf5/files.hpp"
 #include "formats/matrices/matrix_market.hpp"
@@ -61,7 +61,7 @@ std::vector<std::string> write(const records::MatricesResult& result, const Matr
     matrices.emplace_back((name[0] == 'T' ? "KGT" : "KG") + name.substr(5), &matrix);
   std::vector<std::string> files;
   const auto keep = [&](const std::string& file, const std::string& text) {
-    write_text_file(file, text);
+    analysis::write_text_file(file, text);
     files.push_back(file);
   };
   std::ostringstream op4;

@@ -10,15 +10,15 @@
 #include "analysis/common/failures.hpp"
 #include "analysis/common/inputs.hpp"
 #include "analysis/common/ranks.hpp"
+#include "analysis/common/text_file.hpp"
+#include "analysis/common/vtu_file.hpp"
 #include "analysis/modes/complex_modes.hpp"
 #include "cli/common/console_events.hpp"
 #include "cli/common/deck_tables.hpp"
 #include "cli/common/model_options.hpp"
 #include "cli/common/options.hpp"
 #include "cli/common/solver_option.hpp"
-#include "cli/common/text_file.hpp"
 #include "cli/common/usage_text.hpp"
-#include "cli/common/vtu_file.hpp"
 #include "cli/compare/compare_report.hpp"
 #include "cli/modes/complex_tables.hpp"
 #include "cli/modes/modes_tables.hpp"
@@ -73,8 +73,8 @@ class ModesOutput final : public analysis::ModesReceiver {
       one["residual_vectors"] = {{"loads", modes.residual_loads}, {"unused", modes.unused_loads}};
     if (!options_.compare.empty() && console_.is_root()) {
       Diagnostics of_other;
-      const auto pair = compare_models(options_.request.deck, modal::ModalModel::from(result), options_.compare,
-                                       load_model(options_.compare, of_other));
+      const auto pair = analysis::compare_models(options_.request.deck, modal::ModalModel::from(result),
+                                                 options_.compare, analysis::load_model(options_.compare, of_other));
       if (is_first_) console_.print(of_other);
       text_ += "\n" + format_report(pair);
       one["comparison"] = make_json(pair);
@@ -100,10 +100,10 @@ class ModesOutput final : public analysis::ModesReceiver {
     else
       console_.print(text_);
     analysis::do_once([&] {
-      for (const auto& [path, picture] : pictures_) write_text_file(path, picture);
+      for (const auto& [path, picture] : pictures_) analysis::write_text_file(path, picture);
       if (answer.listing) write_listings(options_.listing, *answer.listing);
       if (is_complex_ && !options_.listing.f06.empty())
-        write_text_file(options_.listing.f06, listing::make_complex_f06(answer.complex_listing));
+        analysis::write_text_file(options_.listing.f06, listing::make_complex_f06(answer.complex_listing));
     });
     for (const auto& path : {options_.listing.f06, options_.listing.op2})
       if (!path.empty()) written_ += "written: " + path + "\n";
@@ -119,8 +119,8 @@ class ModesOutput final : public analysis::ModesReceiver {
   std::string add_picture(int subcase, const MakePicture& make_picture, Diagnostics& diagnostics) {
     const auto path = name_output(options_.vtu, subcase, is_first_);
     if (!path.empty() && console_.is_root())
-      pictures_.emplace_back(
-          path, make_vtu_text(make_picture(), exports::VtuEncoding::Base64, options_.request.deck, diagnostics));
+      pictures_.emplace_back(path, analysis::make_vtu_text(make_picture(), exports::VtuEncoding::Base64,
+                                                           options_.request.deck, diagnostics));
     return path;
   }
 

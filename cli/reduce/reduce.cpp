@@ -10,14 +10,15 @@
 
 #include "analysis/common/failures.hpp"
 #include "analysis/common/inputs.hpp"
+#include "analysis/common/output_folder.hpp"
 #include "analysis/common/ranks.hpp"
 #include "analysis/common/system_files.hpp"
+#include "analysis/common/text_file.hpp"
 #include "analysis/reduce/reduce_body.hpp"
 #include "cli/common/console_events.hpp"
 #include "cli/common/deck_tables.hpp"
 #include "cli/common/options.hpp"
 #include "cli/common/solver_option.hpp"
-#include "cli/common/text_file.hpp"
 #include "cli/common/usage_text.hpp"
 #include "cli/compare/compare_report.hpp"
 #include "formats/hdf5/body_accuracy.hpp"
@@ -114,7 +115,7 @@ int run_reduce(const ReduceVerbOptions& o) {
     analysis::do_once([&] {
       // A body file may come from anywhere: it does not choose which file of the user's goes.
       if (o.output.empty() && !spec.output_file.empty() && !o.force_outside &&
-          !is_inside(output, fs::path(file).parent_path().string()))
+          !analysis::is_inside(output, fs::path(file).parent_path().string()))
         throw InputError("cli.output-outside", {file},
                          "[body.output] file = \"" + output + "\" does not lie in the folder of the body file",
                          "name the file with -o, or give --force-outside");
@@ -127,7 +128,7 @@ int run_reduce(const ReduceVerbOptions& o) {
   console.print(events.get_messages());
   analysis::do_once([&, &body = body, &basis = basis] {
     hdf5::write_flex_body(body, hdf5::BodyAccuracy{basis.mass, basis.stiffness}, output);
-    if (!o.loads_deck.empty()) write_text_file(o.loads_deck, nastran::write_loads_deck(body, o.loads_set));
+    if (!o.loads_deck.empty()) analysis::write_text_file(o.loads_deck, nastran::write_loads_deck(body, o.loads_set));
   });
   if (o.json) {
     nlohmann::json json{{"name", body.name},
@@ -150,7 +151,7 @@ int run_reduce(const ReduceVerbOptions& o) {
   } else {
     console.print(format_summary(body, basis, output));
     if (!o.loads_deck.empty()) console.print("written: " + o.loads_deck + "\n");
-    if (o.integrals_report) console.print("\n" + format_report(SingleReport{body, modal::check_integrals(body)}));
+    if (o.integrals_report) console.print("\n" + format_report(analysis::check_integrals(body)));
     if (check) console.print("compared with other modes:\n" + make_check_table(body, *check).to_text());
   }
   return kSuccess;

@@ -1,52 +1,37 @@
+#include "analysis/report/report.hpp"
+
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <filesystem>
 #include <memory>
 
 #include "analysis/common/body_files.hpp"
-#include "analysis/common/channels.hpp"
-#include "analysis/common/inputs.hpp"
-#include "base/version.hpp"
-#include "cli/common/console.hpp"
+#include "analysis/common/text_file.hpp"
+#include "cli/common/console_events.hpp"
 #include "cli/common/options.hpp"
-#include "cli/common/text_file.hpp"
-#include "cli/report/report_files.hpp"
 
 namespace bough::cli {
-
-namespace fs = std::filesystem;
 
 namespace {
 
 struct ReportOptions : CommonOptions {
-  ReportRequest request;
-  std::string title;
+  analysis::ReportRequest request;
 };
 
 int run_report(const ReportOptions& o) {
-  const Console console(o.quiet, o.verbosity);
+  Console console(o.quiet, o.verbosity);
   if (!console.is_root()) return kSuccess;
-  const auto& files = o.request.files;
   std::vector<std::string> paths;
-  for (const auto& file : files) {
+  for (const auto& file : o.request.files) {
     analysis::demand_body_file(file);
     paths.push_back(analysis::get_body_path(file));
   }
-  const std::string output = o.output.empty() ? fs::path(paths.front()).stem().string() + ".html" : o.output;
+  const std::string output = o.output.empty() ? analysis::choose_report_name(o.request) + ".html" : o.output;
   check_output(o, output, paths);
-  Diagnostics diagnostics;
-  report::Page page{
-      o.title.empty() ? fs::path(paths.front()).stem().string() : o.title, std::string("Bough ") + get_version(), {}};
-  for (const auto& file : files) {
-    if (!analysis::has_suffix(file, ".json")) analysis::warn_incomplete(file, diagnostics);
-    page.chapters.push_back(make_chapter(file, o.request, diagnostics));
-  }
-  if (auto overlay = report::make_overlay(page.chapters); !overlay.panels.empty())
-    page.chapters.insert(page.chapters.begin(), std::move(overlay));
-  const std::string html = report::make_page(page);
-  write_text_file(output, html);
-  console.print(diagnostics);
+  ConsoleEvents events(console);
+  const std::string html = analysis::make_report(o.request, events);
+  analysis::write_text_file(output, html);
+  console.print(events.get_messages());
   console.print(fmt::format("written: {} ({:.2f} MB)\n", output, static_cast<double>(html.size()) / 1e6));
   return kSuccess;
 }
@@ -65,7 +50,7 @@ void add_report(CLI::App& app, Action& action) {
   verb->add_option("--channel", o->request.channels,
                    "Of results only this: a sensor, NAME:component, or a path such as /energy; may be repeated")
       ->allow_extra_args(false);
-  verb->add_option("--title", o->title, "Title of the page (default: the name of the first file)");
+  verb->add_option("--title", o->request.title, "Title of the page (default: the name of the first file)");
   add_common_options(*verb, *o, kOutput, "The page (default: the first file's name with .html, here)");
   verb->footer(
       "The page loads nothing from anywhere. Bodies of a run are drawn from the files that it names, or from those "

@@ -10,12 +10,12 @@
 
 #include "analysis/common/failures.hpp"
 #include "analysis/common/inputs.hpp"
+#include "analysis/common/text_file.hpp"
+#include "analysis/export/csv_tables.hpp"
 #include "analysis/response/response.hpp"
 #include "cli/common/console_events.hpp"
 #include "cli/common/options.hpp"
-#include "cli/common/text_file.hpp"
 #include "cli/linearize/linear_model_files.hpp"
-#include "cli/response/response_csv.hpp"
 #include "cli/verbs.hpp"
 #include "formats/hdf5/linear_file.hpp"
 #include "formats/hdf5/sweep_file.hpp"
@@ -141,7 +141,7 @@ int run_response(const ResponseOptions& o) {
   else
     console.print(format(model, response, peak, given));
   if (!o.output.empty()) hdf5::write_response(response, peak, given, o.output);
-  if (!o.csv.empty()) write_text_file(o.csv, make_response_csv(response));
+  if (!o.csv.empty()) analysis::write_text_file(o.csv, analysis::make_response_csv(response));
   for (const auto& path : {o.output, o.csv})
     if (!path.empty() && !o.json) console.print("written: " + path + "\n");
   return kSuccess;

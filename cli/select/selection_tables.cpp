@@ -7,10 +7,10 @@
 #include <sstream>
 
 #include "analysis/common/inputs.hpp"
+#include "analysis/common/text_file.hpp"
 #include "cli/common/console.hpp"
-#include "cli/common/text_file.hpp"
 #include "formats/export/csv.hpp"
-#include "formats/report/svg_plot.hpp"
+#include "report/svg_plot.hpp"
 
 namespace bough::cli {
 
@@ -117,7 +117,7 @@ void write_response(const analysis::Selection& s, const std::string& path) {
     plot.curves = {{"all modes", loss.frequency_hz, decibel(loss.before)},
                    {"modes kept", loss.frequency_hz, decibel(loss.after)},
                    {"difference", loss.frequency_hz, decibel(loss.difference)}};
-    write_text_file(path, report::draw_svg(plot));
+    analysis::write_text_file(path, report::draw_svg(plot));
     return;
   }
   std::ostringstream text;
@@ -125,7 +125,7 @@ void write_response(const analysis::Selection& s, const std::string& path) {
                             {"before", loss.before},
                             {"after", loss.after},
                             {"difference", loss.difference}});
-  write_text_file(path, text.str());
+  analysis::write_text_file(path, text.str());
 }
 
 }  // namespace bough::cli

@@ -7,10 +7,10 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis/common/failures.hpp"
+#include "analysis/common/text_file.hpp"
 #include "analysis/split/split.hpp"
 #include "cli/common/console_events.hpp"
 #include "cli/common/options.hpp"
-#include "cli/common/text_file.hpp"
 #include "cli/common/usage_text.hpp"
 #include "cli/verbs.hpp"
 #include "formats/hdf5/files.hpp"
@@ -102,7 +102,7 @@ int run_split(SplitOptions o) {
   for (const auto& name : list_body_files(request, answer)) files.push_back((folder / name).string());
   make_output_folder(folder);
   check_outputs(o, files, {request.deck});
-  for (std::size_t i = 0; i < answer.files.size(); ++i) write_text_file(files[i], answer.files[i].text);
+  for (std::size_t i = 0; i < answer.files.size(); ++i) analysis::write_text_file(files[i], answer.files[i].text);
   for (const auto& part : answer.parts)
     if (request.is_checked) hdf5::write_flex_body(part.body, (folder / (part.name + ".h5")).string());
   if (o.json) {

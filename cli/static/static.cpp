@@ -5,13 +5,13 @@
 #include "analysis/common/failures.hpp"
 #include "analysis/common/inputs.hpp"
 #include "analysis/common/ranks.hpp"
+#include "analysis/common/text_file.hpp"
+#include "analysis/common/vtu_file.hpp"
 #include "analysis/static/static.hpp"
 #include "cli/common/console_events.hpp"
 #include "cli/common/deck_tables.hpp"
 #include "cli/common/model_options.hpp"
 #include "cli/common/options.hpp"
-#include "cli/common/text_file.hpp"
-#include "cli/common/vtu_file.hpp"
 #include "cli/static/static_output.hpp"
 #include "fe/linear/petsc.hpp"
 
@@ -54,8 +54,8 @@ int run_static(const StaticOptions& options) {
   Diagnostics of_picture;
   std::string picture;
   if (!options.vtu.empty() && console.is_root())
-    picture = make_vtu_text(exports::make_picture(output.get_result()), exports::VtuEncoding::Base64, request.deck,
-                            of_picture);
+    picture = analysis::make_vtu_text(exports::make_picture(output.get_result()), exports::VtuEncoding::Base64,
+                                      request.deck, of_picture);
   analysis::add_messages(of_picture, events);
   console.print(events.get_messages());
   console.print(answer.failures.get_items(events.get_messages()));
@@ -69,7 +69,7 @@ int run_static(const StaticOptions& options) {
   } else {
     console.print(output.get_text());
   }
-  if (!picture.empty()) write_text_file(options.vtu, picture);
+  if (!picture.empty()) analysis::write_text_file(options.vtu, picture);
   if (answer.listing) analysis::do_once([&] { write_listings(options.listing, *answer.listing); });
   for (const auto& path : {options.output, options.vtu, options.listing.f06, options.listing.op2})
     if (!path.empty() && !options.json) console.print("written: " + path + "\n");

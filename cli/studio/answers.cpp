@@ -12,16 +12,16 @@
 #include "analysis/common/system_files.hpp"
 #include "analysis/init/init_deck.hpp"
 #include "analysis/picture/deck_picture.hpp"
+#include "analysis/report/preview.hpp"
+#include "analysis/report/report_files.hpp"
 #include "base/file_roles.hpp"
 #include "cli/common/console.hpp"
 #include "cli/edit/command_words.hpp"
 #include "cli/edit/edit_session.hpp"
 #include "cli/edit/text_diff.hpp"
 #include "cli/init/schema_line.hpp"
-#include "cli/report/report_files.hpp"
 #include "cli/studio/deck_answer.hpp"
 #include "cli/studio/folder.hpp"
-#include "cli/studio/preview.hpp"
 #include "formats/nastran/reader.hpp"
 #include "formats/toml/key_editor.hpp"
 #include "formats/toml/schema_help.hpp"
@@ -113,12 +113,12 @@ json answer_save(const json& request) {
 
 json answer_chapter(const json& request) {
   Diagnostics diagnostics;
-  ReportRequest report;
+  analysis::ReportRequest report;
   report.files = {get_file(request)};
   if (const auto more = request.find("bodies"); more != request.end())
     for (const auto& name : *more) report.files.push_back(name.get<std::string>());
   analysis::demand_file(report.files.front());
-  const auto chapter = make_chapter(report.files.front(), report, diagnostics);
+  const auto chapter = analysis::make_chapter(report.files.front(), report, diagnostics);
   return {{"chapter", to_json(chapter)}, {"messages", make_messages(diagnostics.items())}};
 }
 
@@ -211,7 +211,7 @@ json answer_schema(const json& request) {
 
 json answer_preview(const json& request) {
   Diagnostics diagnostics;
-  const auto chapter = make_preview(get_file(request), get_text(request, "text"), diagnostics);
+  const auto chapter = analysis::make_preview(get_file(request), get_text(request, "text"), diagnostics);
   return {{"chapter", to_json(chapter)}, {"messages", make_messages(diagnostics.items())}};
 }
 

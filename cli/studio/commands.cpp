@@ -4,6 +4,7 @@
 #include <cctype>
 #include <map>
 
+#include "analysis/common/output_folder.hpp"
 #include "base/diagnostic.hpp"
 #include "cli/common/options.hpp"
 
@@ -43,7 +44,7 @@ const std::map<std::string, Options>& get_commands() {
 /// The name as a command line takes it: a file "-x" would be an option.
 std::string make_path(const std::string& name, const std::string& folder) {
   if (name.empty() || name.find('\0') != std::string::npos) refuse("the name of a file is empty or has a zero byte");
-  if (!is_inside(name, folder))
+  if (!analysis::is_inside(name, folder))
     throw InputError("cli.outside-folder", {name}, "the file does not lie in " + folder + ", the folder of the studio",
                      "start bough studio in a folder that contains all files");
   return name.front() == '-' ? "./" + name : name;

@@ -7,8 +7,8 @@
 #include "analysis/common/inputs.hpp"
 #include "analysis/picture/deck_picture.hpp"
 #include "formats/nastran/reader.hpp"
-#include "formats/report/drawing.hpp"
-#include "formats/report/pack.hpp"
+#include "report/drawing.hpp"
+#include "report/pack.hpp"
 
 namespace bough::cli {
 

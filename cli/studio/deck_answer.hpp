@@ -7,7 +7,7 @@
 
 namespace bough::cli {
 
-/// Drawing, elements, symbols, cards of a deck; arrays packed as formats/report/pack.hpp does. Messages of reading go
+/// Drawing, elements, symbols, cards of a deck; arrays packed as report/pack.hpp does. Messages of reading go
 /// to `diagnostics`. \throws InputError of files that are no deck.
 nlohmann::json make_deck_answer(const std::string& file, Diagnostics& diagnostics);
 

@@ -9,10 +9,11 @@
 
 #include "analysis/common/body_files.hpp"
 #include "analysis/common/inputs.hpp"
+#include "analysis/common/output_folder.hpp"
+#include "analysis/common/text_file.hpp"
 #include "base/diagnostic.hpp"
 #include "base/file_roles.hpp"
 #include "cli/common/options.hpp"
-#include "cli/common/text_file.hpp"
 #include "formats/hdf5/files.hpp"
 #include "formats/toml/specs.hpp"
 
@@ -60,7 +61,8 @@ std::vector<FolderEntry> list_folder() {
         at.disable_recursion_pending();
       continue;
     }
-    if (at->path().filename().string().starts_with('.') || !at->is_regular_file(ignored) || !is_inside(name, "."))
+    if (at->path().filename().string().starts_with('.') || !at->is_regular_file(ignored) ||
+        !analysis::is_inside(name, "."))
       continue;
     FolderEntry entry{name, find_kind(name), static_cast<double>(at->file_size(ignored)), 0};
     entry.time = std::chrono::duration<double>(at->last_write_time(ignored).time_since_epoch()).count();
@@ -97,7 +99,7 @@ std::string save_file_text(const std::string& name, const std::string& text, con
     throw InputError("studio.changed-file", {name}, "the file was removed since it was read; nothing was written",
                      "save the text as a new file");
   }
-  write_text_file(name, text);
+  analysis::write_text_file(name, text);
   return hdf5::calc_sha256(name);
 }
 

@@ -12,6 +12,7 @@
 #include <thread>
 
 #include "analysis/common/body_files.hpp"
+#include "analysis/common/output_folder.hpp"
 #include "analysis/common/ranks.hpp"
 #include "base/diagnostic.hpp"
 #include "cli/common/console.hpp"
@@ -63,7 +64,7 @@ int run_studio(const StudioOptions& o) {
   options.port = o.port;
   for (const auto& file : o.files) {
     analysis::demand_body_file(file);
-    if (!is_inside(analysis::get_body_path(file), options.folder))
+    if (!analysis::is_inside(analysis::get_body_path(file), options.folder))
       throw InputError("cli.outside-folder", {file},
                        "the file does not lie in " + options.folder + ", the folder of the studio",
                        "start bough studio in a folder that contains all files");

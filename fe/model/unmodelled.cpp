@@ -2,6 +2,8 @@
 
 #include <map>
 
+#include "formats/records/element_cards.hpp"
+
 namespace bough::fe {
 
 void report_unmodelled(const records::Deck& deck, const std::set<std::string>& made, Diagnostics& diagnostics) {
@@ -11,14 +13,12 @@ void report_unmodelled(const records::Deck& deck, const std::set<std::string>& m
     records::CardLocation first;
   };
   std::map<std::string, Cards> given;
-  const auto add = [&](const std::string& name, const auto& card) {
-    auto& cards = given[name];
-    if (cards.count++ == 0) cards.first = card.at;
-  };
-  for (const auto& card : deck.shells) add(card.card, card);
-  for (const auto& card : deck.solids) add(card.card, card);
-  for (const auto& card : deck.shear_panels) add("CSHEAR", card);
-  for (const auto& card : deck.cbush1d) add("CBUSH1D", card);
+  for (const auto& kind : records::list_element_kinds())
+    if (kind.is_always_made)
+      kind.visit(deck, [&](const records::ElementView& view) {
+        auto& cards = given[view.card];
+        if (cards.count++ == 0) cards.first = view.at;
+      });
   if (given.empty()) return;
   for (const auto& [name, cards] : given)
     if (made.count(name) == 0)

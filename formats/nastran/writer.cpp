@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
 #include <string_view>
 
 #include "formats/nastran/detail/card_sink.hpp"
+#include "formats/nastran/detail/reading.hpp"
 
 namespace bough::nastran {
 namespace {
@@ -88,7 +90,8 @@ void report_lost(const Deck& deck, Diagnostics& diagnostics) {
   for (const auto& [name, count] : deck.card_counts) {
     const bool is_unused = std::any_of(deck.unused.begin(), deck.unused.end(),
                                        [&, &n = name](const auto& card) { return card.name == n; });
-    if (is_unused ||
+    const auto row = detail::get_card_parsers().find(name);
+    if (is_unused || (row != detail::get_card_parsers().end() && row->second.write != nullptr) ||
         std::find(written_cards.begin(), written_cards.end(), std::string_view(name)) != written_cards.end())
       continue;
     diagnostics.error("deck.not-written", where,
@@ -119,6 +122,9 @@ std::string write_deck(const Deck& deck, const WriteOptions& options, Diagnostic
   detail::write_loads(deck, sink);
   detail::write_temperatures(deck, sink);
   detail::write_special(deck, sink);
+  const auto& rows = detail::get_card_parsers();
+  for (const auto& [name, row] : std::map(rows.begin(), rows.end()))
+    if (row.write != nullptr) row.write(deck, sink);
   sink.out += "ENDDATA\n";
   return std::move(sink.out);
 }

@@ -3,7 +3,8 @@ import os
 import re
 import sys
 
-ROOMS = ["base", "formats", "fe", "modal", "stiffening", "solver", "embed", "cosim", "analysis", "cli", "python"]
+ROOMS = ["base", "formats", "fe", "modal", "stiffening", "solver", "embed", "cosim", "report", "analysis", "cli",
+         "python"]
 ROOT = sys.argv[1] if len(sys.argv) > 1 else "."
 
 

@@ -18,7 +18,6 @@ MAY_INCLUDE = [
     ("formats/hdf5", RECORDS),
     ("formats/toml", RECORDS),
     ("formats/export", RECORDS),
-    ("formats/report", RECORDS),
     ("formats/listing", RECORDS),
     ("formats/matrices", RECORDS + ["formats/nastran/reader.hpp", "formats/hdf5/sparse_file.hpp",
                                     "formats/hdf5/inspect.hpp"]),
@@ -35,7 +34,8 @@ MAY_INCLUDE = [
     ("solver/statespace", RECORDS),
     *[("solver/" + room, RECORDS + ["solver/" + below for below in SOLVER[:i]]) for i, room in enumerate(SOLVER)],
     ("embed", RECORDS + ["formats/toml", "formats/flx", "formats/flat", "solver"]),
-    ("analysis", ["base", "formats", "fe", "modal", "stiffening", "solver", "embed/load.hpp", "cosim"]),
+    ("report", RECORDS),
+    ("analysis", ["base", "formats", "report", "fe", "modal", "stiffening", "solver", "embed", "cosim"]),
     ("cosim", RECORDS + ["formats/fmu", "solver/control", "embed/fmi2_types.h", "embed/fmi3_types.h"]),
 ]
 # Outside headers and the only folders that may see them.
@@ -50,12 +50,12 @@ OUTSIDE = [
     (r"^matio", ["formats/matrices"]),
     (r"^zip\.h", ["formats/fmu"]),
     (r"^pugixml", ["formats/fmu"]),
-    (r"^nlohmann", ["formats/toml", "formats/report", "analysis/common/ranks.cpp", "cli"]),
+    (r"^nlohmann", ["formats/toml", "report", "analysis", "cli"]),
     (r"^muParser", ["solver/text/formulas.cpp"]),
     (r"^dlfcn", ["solver/control/library.cpp", "cosim/slave.cpp", "fe/linear/petsc.cpp", "cli/common/memory_limit.cpp"]),
     (r"^CLI/", ["cli"]),
     (r"^httplib", ["cli/studio/server.cpp"]),
-    (r"^fmt/", ["analysis", "cli", "formats"]),
+    (r"^fmt/", ["analysis", "cli", "formats", "report"]),
     (r"^(sundials|cvode|nvector|sunlinsol|sunmatrix|sunnonlinsol)", ["solver/integrate", "cli/common/versions.cpp"]),
 ]
 
@@ -65,7 +65,7 @@ def lies_in(path, folders):
 
 
 # Seen by nobody outside: the integrators and the linear models stand above the rest of the solver.
-TOP = ["solver/simulate", "solver/linear", "analysis", "cli"]
+TOP = ["report", "solver/simulate", "solver/linear", "analysis", "cli"]
 ABOVE = ["embed", "analysis"]  # stand above them
 
 findings = []

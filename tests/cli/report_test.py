@@ -62,7 +62,7 @@ class PageReader(HTMLParser):
 
 
 def unpack(column, count):
-    """A column as formats/report/pack.hpp packs it."""
+    """A column as report/pack.hpp packs it."""
     if not column["data"]:
         return np.full(count, column["low"])
     b = np.frombuffer(base64.b64decode(column["data"]), np.uint8).reshape(-1, 3).astype(np.int64)

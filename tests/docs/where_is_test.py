@@ -14,12 +14,13 @@ import sys
 SOURCE = os.path.abspath(sys.argv[1])
 FOLDER = os.path.join(SOURCE, "docs/developer")
 ENDINGS = "cpp|hpp|h|py|json|md|txt|toml|yml|cff|svg|in|cmake|spdx"
-ROOMS = ["base", "formats", "fe", "modal", "stiffening", "solver", "embed", "cosim", "analysis", "cli", "python", "data/schema"]
+ROOMS = ["base", "formats", "fe", "modal", "stiffening", "solver", "embed", "cosim", "report", "analysis", "cli", "python",
+         "data/schema"]
 # Page: the expression that finds the files of what it traces, and files that match for another reason.
 TRACED = {
     "add-a-card.md": (r"\b[CP]VISC\b|\b[CcPp]visc\b|\bclass Viscous\b|\bViscous::", []),
     "add-a-key.md": (r"\boutput_every\b", []),
-    "add-a-command.md": (r"\badd_integrals\b|\"bough integrals", ["cli/report/report_bodies.cpp"]),
+    "add-a-command.md": (r"\badd_integrals\b|\"bough integrals", ["analysis/report/report_bodies.cpp"]),
     "add-a-hinge.md": (r'"screw"|\bHingeType::Screw\b|\bScrewHinge\b', []),
     "add-a-format.md": (r'"gltf"|\bmake_glb\b|\bGltfScene\b', []),
 }

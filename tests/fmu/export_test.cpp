@@ -6,8 +6,8 @@
 #include <filesystem>
 #include <fstream>
 
+#include "analysis/export/export_fmu.hpp"
 #include "base/diagnostic.hpp"
-#include "cli/export/export_fmu.hpp"
 #include "formats/fmu/archive.hpp"
 #include "formats/fmu/model_description.hpp"
 #include "solver/control/hosted.hpp"
@@ -52,7 +52,7 @@ TEST(ExportFmu, RefusesControllersOfTheHost) {
   const solver::HostedController lent((folder / "lent").string(), f);
   Diagnostics diagnostics;
   try {
-    cli::export_fmu((folder / "s.toml").string(), (folder / "a.fmu").string(), {}, diagnostics);
+    analysis::export_fmu((folder / "s.toml").string(), (folder / "a.fmu").string(), {}, diagnostics);
     ADD_FAILURE() << "no error";
   } catch (const InputError& error) {
     EXPECT_EQ(error.items()[0].id, "fmu.cannot-pack");

@@ -1,5 +1,5 @@
 # Writes web_files.cpp: the modules and styles that the studio serves, those of the report page among them.
-# cmake -DREPORT=formats/report/web -DSTUDIO=cli/studio/web -DOUTPUT=web_files.cpp -P web_files.cmake
+# cmake -DREPORT=report/web -DSTUDIO=cli/studio/web -DOUTPUT=web_files.cpp -P web_files.cmake
 file(GLOB files ${REPORT}/*.js ${REPORT}/*.css ${STUDIO}/*.js ${STUDIO}/*.css ${STUDIO}/*.html)
 list(FILTER files EXCLUDE REGEX "/report/web/main\\.js$")
 set(entries "")

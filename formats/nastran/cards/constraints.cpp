@@ -215,22 +215,22 @@ void parse_mpc(Card& card, Reading& r) {
 }  // namespace
 
 void add_constraint_parsers(ParserTable& table) {
-  table["RBE1"] = parse_rbe1;
-  table["RBE2"] = parse_rbe2;
-  table["RBE3"] = parse_rbe3;
-  table["RROD"] = parse_rrod;
-  table["RBAR"] = parse_rbar;
-  table["SPC"] = parse_spc;
-  table["SPC1"] = parse_spc1;
-  table["SPCADD"] = parse_spcadd;
+  table["RBE1"] = {parse_rbe1, ""};
+  table["RBE2"] = {parse_rbe2, ""};
+  table["RBE3"] = {parse_rbe3, ""};
+  table["RROD"] = {parse_rrod, ""};
+  table["RBAR"] = {parse_rbar, ""};
+  table["SPC"] = {parse_spc, nullptr, "SID G1 C1 D1 G2 C2 D2"};
+  table["SPC1"] = {parse_spc1, ""};
+  table["SPCADD"] = {parse_spcadd, ""};
   table["MPC"] = parse_mpc;
-  table["MPCADD"] = parse_mpcadd;
+  table["MPCADD"] = {parse_mpcadd, ""};
   // The names of NASTRAN-95, with the same fields.
   table["CRBE1"] = table["CRIGD3"] = parse_rbe1;
-  table["CRBE2"] = parse_rbe2;
-  table["CRBE3"] = parse_rbe3;
-  table["CRROD"] = parse_rrod;
-  table["CRBAR"] = parse_rbar;
+  table["CRBE2"] = {parse_rbe2, ""};
+  table["CRBE3"] = {parse_rbe3, ""};
+  table["CRROD"] = {parse_rrod, ""};
+  table["CRBAR"] = {parse_rbar, ""};
 }
 
 }  // namespace bough::nastran::detail

@@ -260,19 +260,20 @@ void parse_tetra(Card& card, Reading& r) { parse_solid(card, r, 4, 6); }
 }  // namespace
 
 void add_continuum_parsers(ParserTable& table) {
-  table["MAT2"] = parse_mat2;
-  table["MAT8"] = parse_mat8;
-  table["MAT9"] = parse_mat9;
-  table["MAT6"] = parse_mat9;  // NASTRAN-95
-  table["MAT11"] = parse_mat11;
-  table["PSHELL"] = parse_pshell;
+  table["MAT2"] = {parse_mat2, ". P P P P P P R . . . . . P P P .",
+                   "MID G11 G12 G13 G22 G23 G33 RHO A1 A2 A3 TREF GE ST SC SS MCSID"};
+  table["MAT8"] = {parse_mat8, nullptr, "MID E1 E2 NU12 G12 G1Z G2Z RHO A1 A2 TREF XT XC YT YC S GE F12 STRN"};
+  table["MAT9"] = {parse_mat9, ". P P P P P P P P P P P P P P P P P P P P P R . . . . . . . ."};
+  table["MAT6"] = {parse_mat9, ". P P P P P P P P P P P P P P P P P P P P P R . . . . . . . ."};  // NASTRAN-95
+  table["MAT11"] = {parse_mat11, ". P P P . . . P P P R . . . . ."};
+  table["PSHELL"] = {parse_pshell, ". . L . . . . S L L .", "PID MID1 T MID2 12I/T**3 MID3 TS/T NSM Z1 Z2 MID4"};
   table["PCOMP"] = parse_pcomp;
   table["PCOMPG"] = parse_pcompg;
   table["PCOMP1"] = table["PCOMP2"] = parse_equal_plies;
-  table["PSOLID"] = parse_psolid;
-  table["CHEXA"] = parse_hexa;
-  table["CPENTA"] = parse_penta;
-  table["CTETRA"] = parse_tetra;
+  table["PSOLID"] = {parse_psolid, "", "PID MID CORDM IN STRESS ISOP FCTN"};
+  table["CHEXA"] = {parse_hexa, ""};
+  table["CPENTA"] = {parse_penta, ""};
+  table["CTETRA"] = {parse_tetra, ""};
 }
 
 }  // namespace bough::nastran::detail

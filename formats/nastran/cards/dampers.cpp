@@ -125,15 +125,17 @@ void parse_pbush1d(Card& card, Reading& r) {
 }  // namespace
 
 void add_damper_parsers(ParserTable& table) {
-  table["CDAMP1"] = parse_cdamp1;
-  table["CDAMP2"] = parse_cdamp2;
-  table["CDAMP3"] = parse_cdamp3;
-  table["CDAMP4"] = parse_cdamp4;
-  table["PDAMP"] = parse_pdamp;
-  table["CVISC"] = parse_cvisc;
-  table["PVISC"] = parse_pvisc;
+  table["CDAMP1"] = {parse_cdamp1, "", "EID PID G1 C1 G2 C2"};
+  table["CDAMP2"] = {parse_cdamp2, nullptr, "EID B G1 C1 G2 C2"};
+  table["CDAMP3"] = {parse_cdamp3, ""};
+  table["CDAMP4"] = {parse_cdamp4, ". ? . . . ? . ."};
+  table["PDAMP"] = {parse_pdamp, nullptr, "PID B"};
+  table["PDAMP"].entry_size = 2;
+  table["CVISC"] = {parse_cvisc, ""};
+  table["PVISC"] = {parse_pvisc, ". B BR . . B BR .", "PID CE CR"};
+  table["PVISC"].entry_size = 4;
   table["CBUSH1D"] = parse_cbush1d;
-  table["PBUSH1D"] = parse_pbush1d;
+  table["PBUSH1D"] = {parse_pbush1d, ". K B M . . . ."};
 }
 
 }  // namespace bough::nastran::detail

@@ -54,18 +54,18 @@ void parse_cset1(Card& card, Reading& r) { read_list(card, r, r.deck.cset); }
 }  // namespace
 
 void add_dof_set_parsers(ParserTable& table) {
-  table["SUPORT"] = parse_suport;
-  table["SUPORT1"] = parse_suport1;
-  table["ASET"] = parse_aset;
-  table["ASET1"] = parse_aset1;
-  table["OMIT"] = parse_omit;
-  table["OMIT1"] = parse_omit1;
-  table["QSET"] = parse_qset;
-  table["QSET1"] = parse_qset1;
-  table["BSET"] = parse_bset;
-  table["BSET1"] = parse_bset1;
-  table["CSET"] = parse_cset;
-  table["CSET1"] = parse_cset1;
+  table["SUPORT"] = {parse_suport, ""};
+  table["SUPORT1"] = {parse_suport1, ""};
+  table["ASET"] = {parse_aset, ""};
+  table["ASET1"] = {parse_aset1, ""};
+  table["OMIT"] = {parse_omit, ""};
+  table["OMIT1"] = {parse_omit1, ""};
+  table["QSET"] = {parse_qset, ""};
+  table["QSET1"] = {parse_qset1, ""};
+  table["BSET"] = {parse_bset, ""};
+  table["BSET1"] = {parse_bset1, ""};
+  table["CSET"] = {parse_cset, ""};
+  table["CSET1"] = {parse_cset1, ""};
 }
 
 }  // namespace bough::nastran::detail

@@ -62,7 +62,7 @@ void parse_cord2(Card& card, Reading& r) {
 }  // namespace
 
 void add_grid_parsers(ParserTable& table) {
-  table["GRID"] = parse_grid;
+  table["GRID"] = {parse_grid, nullptr, "ID CP X1 X2 X3 CD PS SEID"};
   table["GRDSET"] = parse_grdset;
   table["CORD1R"] = parse_cord1<CoordKind::Rectangular>;
   table["CORD1C"] = parse_cord1<CoordKind::Cylindrical>;

@@ -146,14 +146,16 @@ void parse_plotel(Card& card, Reading& r) {
 }  // namespace
 
 void add_line_element_parsers(ParserTable& table) {
-  table["CBAR"] = parse_cbar;
-  table["CBEAM"] = parse_cbeam;
-  table["BAROR"] = parse_baror;
-  table["BEAMOR"] = parse_beamor;
-  table["CROD"] = parse_crod;
-  table["CTUBE"] = parse_ctube;
-  table["CONROD"] = parse_conrod;
-  table["PLOTEL"] = parse_plotel;
+  table["CBAR"] = {parse_cbar, ". . . . . . . . . . L L L L L L",
+                   "EID PID GA GB X1 X2 X3 OFFT PA PB W1A W2A W3A W1B W2B W3B"};
+  table["CBEAM"] = {parse_cbeam, ". . . . . . . . . . L L L L L L",
+                    "EID PID GA GB X1 X2 X3 OFFT PA PB W1A W2A W3A W1B W2B W3B"};
+  table["BAROR"] = {parse_baror, ""};
+  table["BEAMOR"] = {parse_beamor, ""};
+  table["CROD"] = {parse_crod, "", "EID PID G1 G2"};
+  table["CTUBE"] = {parse_ctube, "", "EID PID G1 G2"};
+  table["CONROD"] = {parse_conrod, ". . . . A I L N", "EID G1 G2 MID A J C NSM"};
+  table["PLOTEL"] = {parse_plotel, ""};
 }
 
 }  // namespace bough::nastran::detail

@@ -265,12 +265,15 @@ void parse_ptube(Card& card, Reading& r) {
 }  // namespace
 
 void add_line_property_parsers(ParserTable& table) {
-  table["PBAR"] = parse_pbar;
-  table["PBARL"] = parse_pbarl;
-  table["PBEAM"] = parse_pbeam;
-  table["PBEAML"] = parse_pbeaml;
-  table["PROD"] = parse_prod;
-  table["PTUBE"] = parse_ptube;
+  table["PBAR"] = {parse_pbar, ". . A I I I N . L L L L L L L L . . I",
+                   "PID MID A I1 I2 J NSM - C1 C2 D1 D2 E1 E2 F1 F2 K1 K2 I12"};
+  table["PBARL"] = {parse_pbarl, nullptr,
+                    "PID MID GROUP TYPE - - - - DIM1 DIM2 DIM3 DIM4 DIM5 DIM6 DIM7 DIM8 DIM9 DIM10"};
+  table["PBEAM"] = {parse_pbeam, nullptr, "PID MID A I1 I2 I12 J NSM C1 C2 D1 D2 E1 E2 F1 F2"};
+  table["PBEAML"] = {parse_pbeaml, nullptr,
+                     "PID MID GROUP TYPE - - - - DIM1 DIM2 DIM3 DIM4 DIM5 DIM6 DIM7 DIM8 DIM9 DIM10"};
+  table["PROD"] = {parse_prod, ". . A I L N", "PID MID A J C NSM"};
+  table["PTUBE"] = {parse_ptube, ". . L L N L", "PID MID OD T NSM OD2"};
 }
 
 }  // namespace bough::nastran::detail

@@ -54,10 +54,10 @@ void parse_load(Card& card, Reading& r) {
 }  // namespace
 
 void add_load_parsers(ParserTable& table) {
-  table["FORCE"] = parse_force;
-  table["MOMENT"] = parse_moment;
-  table["GRAV"] = parse_grav;
-  table["LOAD"] = parse_load;
+  table["FORCE"] = {parse_force, ". . . F", "SID G CID F N1 N2 N3"};
+  table["MOMENT"] = {parse_moment, ". . . Q", "SID G CID M N1 N2 N3"};
+  table["GRAV"] = {parse_grav, ". . G", "SID CID A N1 N2 N3 MB"};
+  table["LOAD"] = {parse_load, "", "SID S S1 L1 S2 L2 S3 L3"};
 }
 
 }  // namespace bough::nastran::detail

@@ -103,8 +103,8 @@ void parse_accel(Card& card, Reading& r) {
 void add_nonstructural_parsers(ParserTable& table) {
   table["NSM"] = table["NSML"] = parse_pairs;
   table["NSM1"] = table["NSML1"] = parse_list;
-  table["NSMADD"] = parse_nsmadd;
-  table["ACCEL1"] = parse_accel1;
+  table["NSMADD"] = {parse_nsmadd, ""};
+  table["ACCEL1"] = {parse_accel1, ". . G . . ."};
   table["ACCEL"] = parse_accel;
 }
 

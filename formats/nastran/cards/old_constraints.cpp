@@ -48,9 +48,9 @@ void parse_crigdr(Card& card, Reading& r) {
 }  // namespace
 
 void add_old_constraint_parsers(ParserTable& table) {
-  table["CRIGD1"] = parse_crigd1;
-  table["CRIGD2"] = parse_crigd2;
-  table["CRIGDR"] = parse_crigdr;
+  table["CRIGD1"] = {parse_crigd1, ""};
+  table["CRIGD2"] = {parse_crigd2, ""};
+  table["CRIGDR"] = {parse_crigdr, ""};
 }
 
 }  // namespace bough::nastran::detail

@@ -212,11 +212,11 @@ void add_old_shell_parsers(ParserTable& table) {
   table["PQUAD2"] = table["PTRIA2"] = parse_thickness<true>;
   table["PQUAD1"] = table["PTRIA1"] = parse_three_materials;
   table["PQDPLT"] = table["PTRPLT"] = table["PTRBSC"] = parse_bending;
-  table["PTRIM6"] = parse_ptrim6;
-  table["PTRPLT1"] = parse_ptrplt1;
-  table["PTRSHL"] = parse_ptrshl;
-  table["CIS2D8"] = parse_is2d8;
-  table["PIS2D8"] = parse_pis2d8;
+  table["PTRIM6"] = {parse_ptrim6, ". . L L L S"};
+  table["PTRPLT1"] = {parse_ptrplt1, ". . L3 L3 L3 . L L L S L L L L L L"};
+  table["PTRSHL"] = {parse_ptrshl, ". . L L L . L3 L3 L3 . L L L S L L L L L L"};
+  table["CIS2D8"] = {parse_is2d8, ""};
+  table["PIS2D8"] = {parse_pis2d8, ". . L"};
 }
 
 }  // namespace bough::nastran::detail

@@ -126,10 +126,10 @@ void parse_pelbow(Card& card, Reading& r) {
 void add_old_solid_parsers(ParserTable& table) {
   table["CHEXA1"] = table["CHEXA2"] = parse_by_material<8>;
   table["CWEDGE"] = parse_by_material<6>;
-  table["CIHEX1"] = parse_cihex1;
-  table["CIHEX2"] = parse_cihex2;
-  table["CIHEX3"] = parse_cihex3;
-  table["PIHEX"] = parse_pihex;
+  table["CIHEX1"] = {parse_cihex1, ""};
+  table["CIHEX2"] = {parse_cihex2, ""};
+  table["CIHEX3"] = {parse_cihex3, ""};
+  table["PIHEX"] = {parse_pihex, ""};
   table["CELBOW"] = parse_celbow;
   table["PELBOW"] = parse_pelbow;
 }

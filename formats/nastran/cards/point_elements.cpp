@@ -147,18 +147,18 @@ void parse_conm2(Card& card, Reading& r) {
 }  // namespace
 
 void add_point_element_parsers(ParserTable& table) {
-  table["CELAS1"] = parse_celas1;
-  table["CELAS2"] = parse_celas2;
-  table["CMASS1"] = parse_cmass1;
-  table["CMASS2"] = parse_cmass2;
-  table["CELAS3"] = parse_celas3;
-  table["CELAS4"] = parse_celas4;
-  table["CMASS3"] = parse_cmass3;
-  table["CMASS4"] = parse_cmass4;
-  table["SPOINT"] = parse_spoint;
+  table["CELAS1"] = {parse_celas1, "", "EID PID G1 C1 G2 C2"};
+  table["CELAS2"] = {parse_celas2, nullptr, "EID K G1 C1 G2 C2 GE S"};
+  table["CMASS1"] = {parse_cmass1, "", "EID PID G1 C1 G2 C2"};
+  table["CMASS2"] = {parse_cmass2, nullptr, "EID M G1 C1 G2 C2"};
+  table["CELAS3"] = {parse_celas3, ""};
+  table["CELAS4"] = {parse_celas4, ". ? . . . ? . ."};
+  table["CMASS3"] = {parse_cmass3, ""};
+  table["CMASS4"] = {parse_cmass4, ". ? . . . ? . ."};
+  table["SPOINT"] = {parse_spoint, ""};
   table["CBUSH"] = parse_cbush;
-  table["CONM1"] = parse_conm1;
-  table["CONM2"] = parse_conm2;
+  table["CONM1"] = {parse_conm1, ". . . M M M M M M ML ML ML J ML ML ML J J ML ML ML J J J"};
+  table["CONM2"] = {parse_conm2, nullptr, "EID G CID M X1 X2 X3 - I11 I21 I22 I31 I32 I33"};
 }
 
 }  // namespace bough::nastran::detail

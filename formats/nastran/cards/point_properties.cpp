@@ -59,9 +59,11 @@ void parse_pmass(Card& card, Reading& r) {
 }  // namespace
 
 void add_point_property_parsers(ParserTable& table) {
-  table["PELAS"] = parse_pelas;
+  table["PELAS"] = {parse_pelas, nullptr, "PID K GE S"};
+  table["PELAS"].entry_size = 4;
   table["PBUSH"] = parse_pbush;
-  table["PMASS"] = parse_pmass;
+  table["PMASS"] = {parse_pmass, nullptr, "PID M"};
+  table["PMASS"].entry_size = 2;
 }
 
 }  // namespace bough::nastran::detail

@@ -188,17 +188,17 @@ void parse_sload(Card& card, Reading& r) {
 }  // namespace
 
 void add_pressure_parsers(ParserTable& table) {
-  table["FORCE1"] = parse_force1;
-  table["FORCE2"] = parse_force2;
-  table["MOMENT1"] = parse_moment1;
-  table["MOMENT2"] = parse_moment2;
-  table["PLOAD"] = parse_pload;
-  table["PLOAD1"] = parse_pload1;
-  table["PLOAD2"] = parse_pload2;
-  table["PLOAD3"] = parse_pload3;
-  table["PLOAD4"] = parse_pload4;
-  table["RFORCE"] = parse_rforce;
-  table["SPCD"] = parse_spcd;
+  table["FORCE1"] = {parse_force1, ". . F"};
+  table["FORCE2"] = {parse_force2, ". . F"};
+  table["MOMENT1"] = {parse_moment1, ". . Q"};
+  table["MOMENT2"] = {parse_moment2, ". . Q"};
+  table["PLOAD"] = {parse_pload, ". P"};
+  table["PLOAD1"] = {parse_pload1, nullptr, "SID EID TYPE SCALE X1 P1 X2 P2"};
+  table["PLOAD2"] = {parse_pload2, ". P", "SID P"};
+  table["PLOAD3"] = {parse_pload3, ". P"};
+  table["PLOAD4"] = {parse_pload4, ". . P P P P", "SID EID P1 P2 P3 P4"};
+  table["RFORCE"] = {parse_rforce, ". . . Hz . . . . Hz2", "SID G CID A R1 R2 R3 METHOD RACC"};
+  table["SPCD"] = {parse_spcd, nullptr, "SID G1 C1 D1 G2 C2 D2"};
   table["SLOAD"] = parse_sload;
 }
 

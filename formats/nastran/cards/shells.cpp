@@ -116,10 +116,10 @@ void parse_pshear(Card& card, Reading& r) {
 void add_shell_parsers(ParserTable& table) {
   table["CQUAD4"] = table["CQUADR"] = parse_quad;
   table["CTRIA3"] = table["CTRIAR"] = parse_triangle;
-  table["CQUAD8"] = parse_quad8;
-  table["CTRIA6"] = parse_triangle6;
-  table["CSHEAR"] = parse_cshear;
-  table["PSHEAR"] = parse_pshear;
+  table["CQUAD8"] = {parse_quad8, ". . . . . . . . . . L L L L . L ."};
+  table["CTRIA6"] = {parse_triangle6, ". . . . . . . . . L L L L ."};
+  table["CSHEAR"] = {parse_cshear, ""};
+  table["PSHEAR"] = {parse_pshear, ". . L S . . L S", "PID MID T NSM F1 F2"};
 }
 
 }  // namespace bough::nastran::detail

@@ -131,10 +131,10 @@ void parse_param(Card& card, Reading& r) {
 }  // namespace
 
 void add_solution_parsers(ParserTable& table) {
-  table["EIGRL"] = parse_eigrl;
-  table["EIGR"] = parse_eigr;
+  table["EIGRL"] = {parse_eigrl, ". Hz Hz", "SID V1 V2 ND MSGLVL MAXSET SHFSCL NORM"};
+  table["EIGR"] = {parse_eigr, ". . Hz Hz", "SID METHOD F1 F2 NE ND - - NORM G C"};
   table["EIGB"] = parse_eigb;
-  table["PARAM"] = parse_param;
+  table["PARAM"] = {parse_param, nullptr, "N V1 V2"};
 }
 
 }  // namespace bough::nastran::detail

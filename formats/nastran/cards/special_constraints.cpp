@@ -86,14 +86,14 @@ void parse_rspline(Card& card, Reading& r) {
 }  // namespace
 
 void add_special_constraint_parsers(ParserTable& table) {
-  table["RBAR1"] = parse_one_follower;
-  table["RJOINT"] = parse_one_follower;
-  table["RTRPLT"] = parse_rtrplt;
-  table["RTRPLT1"] = parse_rtrplt1;
-  table["RSPLINE"] = parse_rspline;
+  table["RBAR1"] = {parse_one_follower, ""};
+  table["RJOINT"] = {parse_one_follower, ""};
+  table["RTRPLT"] = {parse_rtrplt, ""};
+  table["RTRPLT1"] = {parse_rtrplt1, ""};
+  table["RSPLINE"] = {parse_rspline, ""};
   // The names of NASTRAN-95, with the same fields.
-  table["CRTRPLT"] = parse_rtrplt;
-  table["CRSPLINE"] = parse_rspline;
+  table["CRTRPLT"] = {parse_rtrplt, ""};
+  table["CRSPLINE"] = {parse_rspline, ""};
 }
 
 }  // namespace bough::nastran::detail

@@ -195,10 +195,10 @@ void add_special_element_parsers(ParserTable& table) {
   table["PBCOMP"] = parse_pbcomp;
   table["GENEL"] = parse_genel;
   table["PCOMPS"] = parse_pcomps;
-  table["CBEND"] = parse_cbend;
+  table["CBEND"] = {parse_cbend, ""};
   table["PBEND"] = parse_pbend;
-  table["CGAP"] = parse_cgap;
-  table["PGAP"] = parse_pgap;
+  table["CGAP"] = {parse_cgap, ""};
+  table["PGAP"] = {parse_pgap, ". L F K K K . . L . ."};
 }
 
 }  // namespace bough::nastran::detail

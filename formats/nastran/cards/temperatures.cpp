@@ -65,10 +65,10 @@ void parse_tempp1(Card& card, Reading& r) {
 }  // namespace
 
 void add_temperature_parsers(ParserTable& table) {
-  table["TEMP"] = parse_temp;
-  table["TEMPD"] = parse_tempd;
-  table["TEMPRB"] = parse_temprb;
-  table["TEMPP1"] = parse_tempp1;
+  table["TEMP"] = {parse_temp, ""};
+  table["TEMPD"] = {parse_tempd, ""};
+  table["TEMPRB"] = {parse_temprb, ". . . . 1/L 1/L 1/L 1/L"};
+  table["TEMPP1"] = {parse_tempp1, ". . . 1/L"};
 }
 
 }  // namespace bough::nastran::detail

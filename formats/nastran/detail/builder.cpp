@@ -156,7 +156,7 @@ class Builder {
         parsed.fail("deck.duplicate-id", 0, "the card is given twice, first at " + where, "keep one of them");
       return;
     }
-    get_card_parsers().at(name)(parsed, reading_);
+    get_card_parsers().at(name).parse(parsed, reading_);
     leftovers_.add(parsed);
   }
 
@@ -363,7 +363,8 @@ class Builder {
     const auto [found, is_new] = names_.try_emplace(text_.name);
     if (is_new && ignored_.count(text_.name) == 0) {
       const auto& parsers = get_card_parsers();
-      if (const auto parser = parsers.find(text_.name); parser != parsers.end()) found->second.parser = parser->second;
+      if (const auto parser = parsers.find(text_.name); parser != parsers.end())
+        found->second.parser = parser->second.parse;
       const auto& responses = get_dynamic_parsers();
       if (const auto parser = responses.find(text_.name); dynamics_ && parser != responses.end())
         found->second.dynamic = parser->second;

@@ -4,6 +4,7 @@
 #include <sstream>
 
 #include "base/diagnostic.hpp"
+#include "formats/nastran/detail/reading.hpp"
 
 namespace bough::nastran::detail {
 
@@ -11,7 +12,6 @@ namespace {
 
 // Cards whose fields depend on others (GRID, CELAS, PBEAM, ...) are in unit_conversion.cpp.
 // Layouts: Quick Reference Guide.
-constexpr const char* offsets = ". . . . . . . . . . L L L L L L";
 constexpr const char* quad = ". . . . . . . L . . L L L L";
 constexpr const char* triangle = ". . . . . . L . . . L L L";
 constexpr const char* plate = ". . L S . . L S";
@@ -22,99 +22,14 @@ constexpr const char* table[][2] = {
     {"CORD1C", nothing},
     {"CORD1S", nothing},
     {"MAT1", ". P P . R . . . P P P ."},
-    {"MAT2", ". P P P P P P R . . . . . P P P ."},
-    {"MAT9", ". P P P P P P P P P P P P P P P P P P P P P R . . . . . . . ."},
-    {"PBAR", ". . A I I I N . L L L L L L L L . . I"},
-    {"PROD", ". . A I L N"},
-    {"PTUBE", ". . L L N L"},
-    {"CONROD", ". . . . A I L N"},
-    {"PVISC", ". B BR . . B BR ."},
-    {"PSHELL", ". . L . . . . S L L ."},
-    {"PSHEAR", ". . L S . . L S"},  // F1 F2, or another one on the card
-    {"MAT11", ". P P P . . . P P P R . . . . ."},
     {"PCOMP1", ". L S P . . L ."},
-    {"PBUSH1D", ". K B M . . . ."},
-    {"PGAP", ". L F K K K . . L . ."},
-    {"PSOLID", nothing},
-    {"CBAR", offsets},
-    {"CBEAM", offsets},
-    {"CROD", nothing},
-    {"CTUBE", nothing},
-    {"CBEND", nothing},
-    {"CGAP", nothing},
-    {"CVISC", nothing},
-    {"CSHEAR", nothing},
     {"CQUAD4", quad},
     {"CQUADR", quad},
     {"CTRIA3", triangle},
     {"CTRIAR", triangle},
-    {"CQUAD8", ". . . . . . . . . . L L L L . L ."},
-    {"CTRIA6", ". . . . . . . . . L L L L ."},
-    {"CTETRA", solid},
-    {"CPENTA", solid},
-    {"CHEXA", solid},
     {"CPYRAM", solid},
     {"CPYRA", solid},
-    {"CELAS1", nothing},
-    {"CMASS1", nothing},
-    {"CDAMP1", nothing},
-    {"RBE1", nothing},
-    {"RBE2", nothing},
-    {"RBE3", nothing},
-    {"RBAR", nothing},
-    {"RROD", nothing},
-    {"RBAR1", nothing},
-    {"RJOINT", nothing},
-    {"RTRPLT", nothing},
-    {"RTRPLT1", nothing},
-    {"RSPLINE", nothing},  // D/L is a ratio
-    {"CELAS3", nothing},
-    {"CMASS3", nothing},
-    {"CDAMP3", nothing},
     // Nothing tells whether a scalar point is a translation or a rotation.
-    {"CELAS4", ". ? . . . ? . ."},
-    {"CMASS4", ". ? . . . ? . ."},
-    {"CDAMP4", ". ? . . . ? . ."},
-    {"NSMADD", nothing},
-    {"BAROR", nothing},
-    {"BEAMOR", nothing},
-    {"PLOTEL", nothing},
-    {"SPC1", nothing},
-    {"SPCADD", nothing},
-    {"MPCADD", nothing},
-    {"SUPORT", nothing},
-    {"SUPORT1", nothing},
-    {"ASET", nothing},
-    {"ASET1", nothing},
-    {"OMIT", nothing},
-    {"OMIT1", nothing},
-    {"QSET", nothing},
-    {"QSET1", nothing},
-    {"BSET", nothing},
-    {"BSET1", nothing},
-    {"CSET", nothing},
-    {"CSET1", nothing},
-    {"SPOINT", nothing},
-    {"EIGRL", ". Hz Hz"},
-    {"EIGR", ". . Hz Hz"},
-    {"FORCE", ". . . F"},
-    {"FORCE1", ". . F"},
-    {"FORCE2", ". . F"},
-    {"MOMENT", ". . . Q"},
-    {"MOMENT1", ". . Q"},
-    {"MOMENT2", ". . Q"},
-    {"GRAV", ". . G"},
-    {"RFORCE", ". . . Hz . . . . Hz2"},
-    {"PLOAD", ". P"},
-    {"PLOAD2", ". P"},
-    {"PLOAD4", ". . P P P P"},
-    {"LOAD", nothing},
-    {"TEMP", nothing},
-    {"TEMPD", nothing},
-    {"TEMPP1", ". . . 1/L"},
-    {"TEMPRB", ". . . . 1/L 1/L 1/L 1/L"},
-    {"ACCEL1", ". . G . . ."},
-    {"PLOAD3", ". P"},
     {"DLOAD", nothing},
     {"DPHASE", nothing},
     {"DELAY", ". . . T . . T"},
@@ -124,7 +39,6 @@ constexpr const char* table[][2] = {
     {"FREQ4", ". Hz Hz . ."},
     {"FREQ5", ". Hz Hz"},
     // NASTRAN-95, User's Manual, section 2.4.
-    {"MAT6", ". P P P P P P P P P P P P P P P P P P P P P R . . . . . . . ."},
     {"PQUAD1", ". . L . L3 . L S L L"},
     {"PTRIA1", ". . L . L3 . L S L L"},
     {"PQUAD2", plate},
@@ -136,11 +50,6 @@ constexpr const char* table[][2] = {
     {"PQDPLT", ". . L3 . L S L L"},
     {"PTRPLT", ". . L3 . L S L L"},
     {"PTRBSC", ". . L3 . L S L L"},
-    {"PTRIM6", ". . L L L S"},
-    {"PTRPLT1", ". . L3 L3 L3 . L L L S L L L L L L"},
-    {"PTRSHL", ". . L L L . L3 L3 L3 . L L L S L L L L L L"},
-    {"PIS2D8", ". . L"},
-    {"PIHEX", nothing},
     {"CQUAD1", nothing},
     {"CTRIA1", nothing},
     {"CQUAD2", nothing},
@@ -155,25 +64,11 @@ constexpr const char* table[][2] = {
     {"CTRIM6", nothing},
     {"CTRPLT1", nothing},
     {"CTRSHL", nothing},
-    {"CIS2D8", nothing},
     {"CHEXA1", nothing},
     {"CHEXA2", nothing},
     {"CWEDGE", nothing},
-    {"CIHEX1", nothing},
-    {"CIHEX2", nothing},
-    {"CIHEX3", nothing},
-    {"CRIGD1", nothing},
-    {"CRIGD2", nothing},
     {"CRIGD3", nothing},
-    {"CRIGDR", nothing},
-    {"CRBAR", nothing},
     {"CRBE1", nothing},
-    {"CRBE2", nothing},
-    {"CRBE3", nothing},
-    {"CRROD", nothing},
-    {"CRTRPLT", nothing},
-    {"CRSPLINE", nothing},
-    {"CONM1", ". . . M M M M M M ML ML ML J ML ML ML J J ML ML ML J J J"},
 };
 
 const std::map<std::string_view, Dimension> dimensions{
@@ -189,11 +84,14 @@ const std::map<std::string_view, Dimension> dimensions{
 const std::vector<std::string>* find_field_words(std::string_view card) {
   static const auto words = [] {
     std::map<std::string, std::vector<std::string>, std::less<>> made;
-    for (const auto& row : table) {
-      auto& list = made[row[0]];
-      std::istringstream in(row[1]);
+    const auto add = [&](std::string_view card_name, const char* text) {
+      auto& list = made[std::string(card_name)];
+      std::istringstream in(text);
       for (std::string word; in >> word;) list.push_back(word);
-    }
+    };
+    for (const auto& row : table) add(row[0], row[1]);
+    for (const auto& [card_name, row] : get_card_parsers())
+      if (row.dimensions != nullptr) add(card_name, row.dimensions);
     return made;
   }();
   const auto found = words.find(card);

@@ -1,5 +1,5 @@
 #pragma once
-/// \file The groups of card parsers; a new card is one function and one line in the table of its group.
+/// \file The groups of card parsers; a new card is one function and one row in the table of its group.
 #include <string_view>
 #include <unordered_map>
 
@@ -7,7 +7,7 @@
 
 namespace bough::nastran::detail {
 
-using ParserTable = std::unordered_map<std::string_view, CardParser>;
+using ParserTable = std::unordered_map<std::string_view, CardRow>;
 
 void add_grid_parsers(ParserTable& table);                ///< GRID, GRDSET, CORD1x, CORD2x
 void add_material_parsers(ParserTable& table);            ///< MAT1

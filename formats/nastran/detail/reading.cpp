@@ -34,6 +34,10 @@ bool Reading::claim(IdSpace space, int id, Card& card_, int first_field, int num
   return claim_in(ids[static_cast<std::size_t>(space)], id, card_, first_field, num_fields);
 }
 
+bool Reading::claim(const std::string& space, int id, Card& card_, int first_field, int num_fields) {
+  return claim_in(named_ids_[space], id, card_, first_field, num_fields);
+}
+
 bool Reading::claim_rigid(int id, Card& card_, int first_field, int num_fields) {
   const bool is_old = card_.get_name().starts_with("CR");
   auto& table = is_old ? old_rigid_ids_[card_.get_name()] : ids[static_cast<std::size_t>(IdSpace::Rigid)];

@@ -150,21 +150,41 @@ struct Reading {
   /// True if `id` is new in its space. A second card with the same content adds deck.repeated-card, with another
   /// content deck.duplicate-id. The content is num_fields fields from first_field on (all of them by default).
   bool claim(IdSpace space, int id, Card& card_, int first_field = 0, int num_fields = 1 << 20);
+  /// Likewise in the space of that name, for cards that no IdSpace has.
+  bool claim(const std::string& space, int id, Card& card_, int first_field = 0, int num_fields = 1 << 20);
   /// Claims an id of a rigid element: those of NASTRAN-95 (CRIGD1, CRBAR, ...) share ids with the other names.
   bool claim_rigid(int id, Card& card_, int first_field = 0, int num_fields = 1 << 20);
 
  private:
   bool claim_in(IdTable& table, int id, Card& card_, int first_field, int num_fields);
   std::map<std::string, IdTable> old_rigid_ids_;  ///< by card name
+  std::map<std::string, IdTable> named_ids_;
 };
 
 /// Ids of their own for rigid elements of NASTRAN-95 that share theirs with an element of another name.
 void finish_rigid_ids(Reading& r);
 
 using CardParser = void (*)(Card&, Reading&);
+struct CardSink;
+
+/// A row of the table of cards: what formats knows of a card.
+struct CardRow {
+  CardRow() = default;
+  /// \param field_dimensions  words of field_dimensions.hpp, "" without any; nullptr: unit_conversion.cpp or its table.
+  /// \param field_names  words of field_names.hpp.
+  CardRow(CardParser parser, const char* field_dimensions = nullptr, const char* field_names = nullptr)
+      : parse(parser), dimensions(field_dimensions), names(field_names) {}
+
+  CardParser parse = nullptr;
+  const char* dimensions = nullptr;
+  const char* names = nullptr;
+  int entry_size = 0;  ///< fields from one entry to the next, of cards with several entries on a line
+  /// Writes all cards of this name; nullptr: one of the groups of card_sink.hpp does.
+  void (*write)(const records::Deck&, CardSink&) = nullptr;
+};
 
 /// Name -> parser of every card Bough reads.
-const std::unordered_map<std::string_view, CardParser>& get_card_parsers();
+const std::unordered_map<std::string_view, CardRow>& get_card_parsers();
 /// The three that give defaults are parsed before all others.
 bool is_default_card(std::string_view upper_case_name);
 

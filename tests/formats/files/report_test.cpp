@@ -7,8 +7,8 @@
 #include <gtest/gtest.h>
 
 #include "formats/export/csv.hpp"
-#include "formats/report/axis.hpp"
-#include "formats/report/svg_plot.hpp"
+#include "report/axis.hpp"
+#include "report/svg_plot.hpp"
 #include "temp_folder.hpp"
 
 namespace bough::report {

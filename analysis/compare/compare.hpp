@@ -1,0 +1,63 @@
+#pragma once
+/// \file Two bodies or modes files side by side; the integrals of one body; bodies of three meshes.
+#include <array>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "analysis/common/events.hpp"
+#include "formats/records/comparison.hpp"
+#include "modal/compare/bodies.hpp"
+#include "modal/compare/refinement.hpp"
+
+namespace bough::analysis {
+
+struct CompareRequest {
+  std::vector<std::string> files;  ///< one body; two bodies or modes files; three bodies for `refinement`
+  std::string mass;                ///< matrices file of the first deck: the MAC weighted with its mass matrix too
+  bool refinement = false;         ///< three bodies of refined meshes, coarse to fine: observed orders
+};
+
+/// One body by itself: its integrals by the three methods and what its modes capture.
+struct SingleReport {
+  std::string name;              ///< of the body
+  Eigen::VectorXd frequency_hz;  ///< [num_modes]
+  std::string method;            ///< of the mass integrals that the body selects
+  modal::IntegralsCheck check;
+
+  int num_modes() const { return static_cast<int>(frequency_hz.size()); }
+};
+SingleReport check_integrals(const records::FlexBody& body);
+
+/// Two models; bodies only when both are.
+struct PairReport {
+  std::string file_a, file_b;
+  modal::ModalModel a, b;
+  modal::NodeMatch match;
+  Eigen::MatrixXd mac;
+  std::optional<Eigen::MatrixXd> mass_mac;
+  std::vector<modal::ModePair> pairs;
+  std::optional<modal::BodyComparison> bodies;
+};
+/// Nodes matched, MAC, pairs; of bodies nothing more. Throws InputError cli.no-common-nodes.
+PairReport compare_models(const std::string& file_a, modal::ModalModel a, const std::string& file_b,
+                          modal::ModalModel b);
+/// Modal model of a flexible body or a modes file; throws InputError cli.not-comparable for other files.
+modal::ModalModel load_model(const std::string& file, Diagnostics& diagnostics);
+
+struct RefinementReport {
+  std::vector<std::string> files;
+  std::array<double, 3> element_size;
+  std::vector<modal::Convergence> rows;
+};
+
+using CompareAnswer = std::variant<SingleReport, PairReport, RefinementReport>;
+
+/// Throws InputError "cli.not-comparable", "cli.not-a-body", "cli.no-exact-integrals", "cli.no-common-nodes",
+/// "cli.no-mass-matrix", "cli.mass-without-shape", "cli.not-refined", and what the readers throw.
+CompareAnswer compare_files(const CompareRequest& request, Events& events);
+/// Numbers of the answer for an HDF5 file, with the hashes of the files compared.
+records::Comparison make_comparison(const CompareRequest& request, const CompareAnswer& answer);
+
+}  // namespace bough::analysis

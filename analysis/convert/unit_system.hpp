@@ -1,0 +1,25 @@
+#pragma once
+/// \file Sets of units by their names: "mm-N-tonne", "m-kg-s".
+#include <string>
+#include <utility>
+
+#include "formats/nastran/unit_conversion.hpp"
+
+namespace bough::analysis {
+
+/// The units of mass, length and time in SI units. Three of a length, a mass, a force and a time fix the fourth by
+/// force = mass length / time^2; without a time and one of mass and force, the time is the second. Throws InputError
+/// "cli.bad-units".
+nastran::UnitFactors parse_units(const std::string& text);
+
+/// Names of the units of a set: those in its text, others by their size; empty if none has that size.
+struct UnitNames {
+  std::string mass, length, time, force;
+};
+/// Throws InputError "cli.bad-units".
+UnitNames name_units(const std::string& text);
+
+/// "mm-N-tonne:m-kg-s" -> its two halves.
+std::pair<std::string, std::string> split_units(const std::string& text);
+
+}  // namespace bough::analysis

@@ -1,0 +1,162 @@
+#include "analysis/export/export.hpp"
+
+#include <sstream>
+
+#include "analysis/common/body_files.hpp"
+#include "analysis/common/channels.hpp"
+#include "analysis/common/inputs.hpp"
+#include "analysis/common/vtu_file.hpp"
+#include "analysis/export/csv_tables.hpp"
+#include "analysis/export/export_matrices.hpp"
+#include "formats/export/response_text.hpp"
+#include "formats/export/uff.hpp"
+#include "formats/export/vtu.hpp"
+#include "formats/hdf5/complex_modes_file.hpp"
+#include "formats/hdf5/linear_file.hpp"
+#include "formats/hdf5/response_file.hpp"
+#include "formats/hdf5/sweep_file.hpp"
+#include "formats/nastran/reader.hpp"
+#include "formats/nastran/writer.hpp"
+#include "formats/toml/specs.hpp"
+
+namespace bough::analysis {
+
+namespace {
+
+bool is_response(const std::string& format) { return format == "bough-frequency" || format == "bough-transient"; }
+
+/// The time and the channels chosen, all by default.
+std::vector<exports::CsvColumn> read_columns(const ExportRequest& request) {
+  const auto results = hdf5::read_results(request.file);
+  std::vector<exports::CsvColumn> columns{{"time", results.time}};
+  if (request.channels.empty()) {
+    for (const auto& [path, values] : results.channels) {
+      if (path == "/time") continue;
+      for (auto& column : choose_columns(results, request.file, path)) columns.push_back(std::move(column));
+    }
+  }
+  for (const auto& choice : request.channels) {
+    for (auto& column : choose_columns(results, request.file, choice)) columns.push_back(std::move(column));
+  }
+  columns.front().unit = get_unit(results, "/time");
+  if (!has_unit_labels(results))
+    for (auto& column : columns) column.unit.clear();
+  return columns;
+}
+
+std::string make_csv(const ExportRequest& request, Diagnostics& diagnostics) {
+  std::ostringstream text;
+  if (!request.channels.empty()) {
+    if (const auto own = read_file_format(request.file); has_shapes(own)) {
+      if (request.channels != std::vector<std::string>{"modes"})
+        throw InputError("cli.unknown-channel", {request.file},
+                         "a file of modes or a body has no channel '" + request.channels[0] + "'",
+                         "--channel modes is the table of modes; without --channel come the shapes");
+      exports::write_csv(text, read_mode_columns(request.file, own, diagnostics));
+      return text.str();
+    }
+  }
+  if (request.channels == std::vector<std::string>{"events"} || request.channels == std::vector<std::string>{"/events"})
+    return make_events_csv(hdf5::read_results(request.file).events);
+  const auto format = request.channels.empty() ? read_file_format(request.file) : "";
+  if (format == "bough-linear") return make_linear_csv(hdf5::read_linear_model(request.file));
+  if (format == "bough-sweep") return make_sweep_csv(hdf5::read_sweep(request.file));
+  if (format == "bough-response") return make_response_csv(hdf5::read_model_response(request.file).response);
+  if (is_response(format)) return exports::make_response_csv(hdf5::read_response(request.file));
+  exports::write_csv(
+      text, has_shapes(format) ? read_shape_columns(request.file, format, diagnostics) : read_columns(request));
+  return text.str();
+}
+
+std::string make_universal(const ExportRequest& request, Diagnostics& diagnostics) {
+  if (request.is_moving)
+    return make_moving_uff(read_moving_system(request.file, request.moving, diagnostics), request.moving.scale,
+                           request.file, diagnostics);
+  const auto format = read_file_format(request.file);
+  if (format == "bough-modes") return exports::make_uff(hdf5::read_modes(request.file));
+  if (format == "bough-flexbody") return exports::make_uff(read_body(request.file, diagnostics));
+  if (format == "bough-results") return exports::make_uff(read_columns(request));
+  if (is_response(format)) return exports::make_uff(hdf5::read_response(request.file));
+  refuse_export(request.file, "uff", "a flexible body, or what bough modes, run, frequency or transient wrote");
+}
+
+/// The mode shapes of a modes file or a flexible body.
+std::string make_shapes(const ExportRequest& request, Diagnostics& diagnostics) {
+  const std::string format = read_file_format(request.file);
+  const auto encoding = request.is_ascii ? exports::VtuEncoding::Ascii : exports::VtuEncoding::Base64;
+  if (format == "bough-modes")
+    return make_vtu_text(exports::make_picture(hdf5::read_modes(request.file)), encoding, request.file, diagnostics);
+  if (format == "bough-complex-modes")
+    return make_vtu_text(exports::make_picture(hdf5::read_complex_modes(request.file)), encoding, request.file,
+                         diagnostics);
+  if (format == "bough-flexbody")
+    return make_vtu_text(exports::make_picture(read_body(request.file, diagnostics)), encoding, request.file,
+                         diagnostics);
+  throw InputError("cli.no-shapes", {request.file}, "the file holds no mode shapes, found format \"" + format + "\"",
+                   "give a file that bough modes or bough reduce wrote");
+}
+
+std::string make_bdf(const ExportRequest& request, Diagnostics& diagnostics) {
+  demand_deck(request.file);
+  const auto deck = nastran::read_deck(request.file, {request.ignore_cards}, diagnostics);
+  diagnostics.throw_if_errors();
+  nastran::WriteOptions options;
+  if (request.fields == "small") options.fields = nastran::FieldFormat::Small;
+  if (request.fields == "free") options.fields = nastran::FieldFormat::Free;
+  auto text = nastran::write_deck(deck, options, diagnostics);
+  diagnostics.throw_if_errors();
+  return text;
+}
+
+std::string make_text(const ExportRequest& request, Diagnostics& diagnostics) {
+  const auto& format = request.format;
+  if (format == "vtu") return make_shapes(request, diagnostics);
+  if (format == "gltf") return make_glb(request.file, request.moving, diagnostics);
+  if (format == "bdf") return make_bdf(request, diagnostics);
+  if (format == "op4") return make_op4(request.file, diagnostics);
+  if (format == "uff") return make_universal(request, diagnostics);
+  if (is_body_format(format)) return make_body_text(request.file, format, request.body, diagnostics);
+  return make_csv(request, diagnostics);
+}
+
+ExportAnswer export_as(const ExportRequest& request, Diagnostics& diagnostics) {
+  ExportAnswer answer;
+  const auto& format = request.format;
+  if (format == "fmu") {
+    demand_kind(request.file, toml_files::detect_kind(request.file), "system");
+    auto options = request.fmu;
+    options.outputs = request.channels;
+    answer.summary = export_fmu(request.file, request.output, options, diagnostics);
+    return answer;
+  }
+  if (format == "extseout") {
+    answer.summary =
+        export_component(request.file, request.output, request.component, request.ignore_cards, diagnostics);
+    return answer;
+  }
+  if (format != "bdf") warn_incomplete(request.file, diagnostics);
+  if (format == "mat") {
+    export_mat(request.file, request.output, diagnostics);
+  } else if (format == "pvd") {
+    const auto system = read_moving_system(request.file, request.moving, diagnostics);
+    answer.num_frames = write_pvd(system, request.moving.scale, request.is_ascii, request.output, diagnostics);
+  } else {
+    answer.text = make_text(request, diagnostics);
+  }
+  return answer;
+}
+
+}  // namespace
+
+bool is_written_format(const std::string& format) {
+  return format == "pvd" || format == "mat" || format == "fmu" || format == "extseout";
+}
+
+ExportAnswer export_file(const ExportRequest& request, Events& events) {
+  Diagnostics diagnostics;
+  auto answer = export_as(request, diagnostics);
+  add_messages(diagnostics, events);
+  return answer;
+}
+
+}  // namespace bough::analysis

@@ -1,0 +1,16 @@
+#pragma once
+/// \file Arrays of a linear model for MATLAB.
+#include <string>
+
+#include "formats/matrices/mat_file.hpp"
+#include "formats/records/linear_model.hpp"
+
+namespace bough::analysis {
+
+/// A, B, C, D and names.
+matrices::MatFields make_linear_fields(const records::LinearModel& model);
+/// mass, damping, stiffness, input_force, state_force of the same of second order; none where it has no mass matrix.
+matrices::MatFields make_second_order_fields(const records::LinearModel& model);
+void write_linear_mat(const records::LinearModel& model, const std::string& path);
+
+}  // namespace bough::analysis

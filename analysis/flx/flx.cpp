@@ -1,0 +1,52 @@
+#include "analysis/flx/flx.hpp"
+
+#include <fmt/format.h>
+
+#include <set>
+
+#include "analysis/common/body_files.hpp"
+#include "analysis/common/failures.hpp"
+#include "formats/flat/flex_body.hpp"
+#include "formats/hdf5/files.hpp"
+
+namespace bough::analysis {
+
+std::vector<int> choose_body_ids(const FlxRequest& request) {
+  auto ids = request.body_ids;
+  while (request.body_ids.size() == 1 && ids.size() < request.bodies.size()) ids.push_back(ids.back() + 1);
+  if (ids.size() != request.bodies.size())
+    throw InputError("cli.body-ids", {}, fmt::format("{} body ids for {} bodies", ids.size(), request.bodies.size()),
+                     "give the first one, or one a body: --body-id 3,7");
+  if (std::set<int>(ids.begin(), ids.end()).size() != ids.size())
+    throw InputError("cli.body-ids", {}, "one body id is given twice", "give each body an id of its own");
+  return ids;
+}
+
+std::vector<flx::FlxFile> make_flx_files(const FlxRequest& request) {
+  const auto ids = choose_body_ids(request);
+  flx::MakeOptions options;
+  options.modopt = request.modopt;
+  options.method = request.integrals;
+  options.has_special_nodes = request.special_nodes;
+  options.has_stiffening = request.stiffening;
+  options.digits = request.digits;
+  std::vector<flx::FlxFile> files;
+  for (std::size_t b = 0; b < ids.size(); ++b) {
+    const auto& name = request.bodies[b];
+    options.body_id = ids[b];
+    with_file(name, [&] {
+      files.push_back(flx::make_flx(is_flat(name) ? flat::read_flex_body(name) : hdf5::read_flex_body(name), options));
+      return 0;
+    });
+  }
+  return files;
+}
+
+std::vector<flx::FlxFile> read_flx_files(const std::string& file) {
+  demand_body_file(file);
+  const auto name = flx::parse_flx_name(file).value_or(flx::FlxName{file, 0});
+  if (name.body_id > 0) return {flx::read_flx(name.path, name.body_id)};
+  return flx::read_flx_bodies(name.path);
+}
+
+}  // namespace bough::analysis

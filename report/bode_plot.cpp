@@ -1,0 +1,150 @@
+#include "report/bode_plot.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <numbers>
+
+namespace bough::report {
+
+namespace {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+constexpr const char* kFrequency = "frequency [Hz]";
+const double kNaN = std::nan("");
+
+/// Linear in log10 of the frequency.
+double interpolate(const VectorXd& frequency, const VectorXd& y, double at) {
+  for (Index i = 1; i < frequency.size(); ++i)
+    if (frequency[i] >= at && frequency[i - 1] > 0) {
+      const double share = std::log(at / frequency[i - 1]) / std::log(frequency[i] / frequency[i - 1]);
+      return y[i - 1] + share * (y[i] - y[i - 1]);
+    }
+  return kNaN;
+}
+
+/// Marker on the curve, and a line from it to the limit.
+void add_margin(double frequency, double from, double to, const std::string& label, int style, Plot& plot) {
+  plot.curves.push_back({label, VectorXd::Constant(1, frequency), VectorXd::Constant(1, from), true, style});
+  plot.guides.push_back({"", VectorXd::Constant(2, frequency), Eigen::Vector2d(from, to)});
+}
+
+void add_level(double level, const VectorXd& frequency, Plot& plot) {
+  if (frequency.size() > 1)
+    plot.guides.push_back(
+        {"", Eigen::Vector2d(frequency[0], frequency[frequency.size() - 1]), Eigen::Vector2d(level, level)});
+}
+
+/// Contour |L/(1+L)| = M: L = M e^(jφ) / (1 - M e^(jφ)), φ over a turn about a phase of -180 degrees, plus `shift`
+/// degrees. The label is in the middle.
+Curve make_closed_loop_contour(double decibel, double shift) {
+  constexpr int kPoints = 362;
+  const double size = std::pow(10, decibel / 20);
+  Curve contour{shift == 0 ? fmt::format("{:g} dB", decibel) : "", VectorXd(kPoints), VectorXd(kPoints)};
+  for (int i = 0; i < kPoints; ++i) {
+    const auto t = std::polar(size, 2 * std::numbers::pi * ((i + 0.5) / kPoints - (size > 1 ? 0.5 : 0)));
+    const auto loop = t / (1.0 - t);
+    const double degrees = std::arg(loop) * 180 / std::numbers::pi;
+    contour.x[i] = shift + (degrees > 0 ? degrees - 360 : degrees);
+    contour.y[i] = 20 * std::log10(std::abs(loop));
+  }
+  return contour;
+}
+
+}  // namespace
+
+std::vector<BodePair> make_bode_pairs(const records::FrequencyResponse& response, std::size_t max_pairs) {
+  std::vector<BodePair> pairs;
+  if (response.value.empty()) return pairs;
+  const auto& first = response.value.front();
+  const auto count = static_cast<Index>(response.value.size());
+  double largest = 0;
+  for (const auto& h : response.value)
+    if (h.size() > 0) largest = std::max(largest, h.cwiseAbs().maxCoeff());
+  for (Index j = 0; j < first.cols(); ++j)
+    for (Index i = 0; i < first.rows() && pairs.size() < max_pairs; ++i) {
+      BodePair pair{i, j,
+                    response.outputs.name[static_cast<std::size_t>(i)] + " / " +
+                        response.inputs.name[static_cast<std::size_t>(j)],
+                    VectorXd(count), VectorXd(count)};
+      double last = kNaN;
+      for (Index k = 0; k < count; ++k) {
+        const std::complex<double> h = response.value[static_cast<std::size_t>(k)](i, j);
+        const bool is_drawn = std::abs(h) > kResponseFloor * largest;
+        pair.decibel[k] = is_drawn ? 20 * std::log10(std::abs(h)) : kNaN;
+        pair.degrees[k] = kNaN;
+        if (!is_drawn) continue;
+        double phase = std::arg(h) * 180 / std::numbers::pi;
+        if (std::isfinite(last)) phase -= 360 * std::round((phase - last) / 360);
+        pair.degrees[k] = last = phase;
+      }
+      pairs.push_back(std::move(pair));
+    }
+  return pairs;
+}
+
+std::vector<Plot> make_bode_axes() {
+  std::vector<Plot> plots(2);
+  for (auto& plot : plots) plot.has_log_x = true;
+  plots[0].y_label = "magnitude [dB]";
+  plots[1].y_label = "phase [degrees]";
+  plots[1].x_label = kFrequency;
+  plots[1].y_step = 45;
+  return plots;
+}
+
+Plot make_nichols_axes() {
+  Plot plot{"", "open-loop phase [degrees]", "open-loop magnitude [dB]", {}};
+  plot.x_step = 45;
+  for (const double decibel : {12.0, 6.0, 3.0, 1.0, -1.0, -3.0, -6.0, -12.0, -20.0})
+    for (const double shift : {0.0, -360.0, 360.0}) plot.guides.push_back(make_closed_loop_contour(decibel, shift));
+  plot.curves.push_back({"-1", VectorXd::Constant(1, -180), VectorXd::Zero(1), true, 6, Mark::Cross});
+  return plot;
+}
+
+void add_bode_curve(const BodePair& pair, const VectorXd& frequency_hz, const std::string& label,
+                    std::vector<Plot>& plots) {
+  plots[0].curves.push_back({label, frequency_hz, pair.decibel});
+  plots[1].curves.push_back({"", frequency_hz, pair.degrees});
+}
+
+void add_margins(const records::Margins& margins, const BodePair& pair, const VectorXd& frequency_hz,
+                 std::vector<Plot>& plots) {
+  constexpr int kGainStyle = 1, kPhaseStyle = 2;
+  add_level(0, frequency_hz, plots[0]);
+  for (const auto& c : margins.gain) {
+    const double margin = 20 * std::log10(c.margin);
+    if (frequency_hz.size() == 0 || c.frequency_hz < frequency_hz[0] ||
+        c.frequency_hz > frequency_hz[frequency_hz.size() - 1])
+      continue;
+    add_margin(c.frequency_hz, -margin, 0, fmt::format("gain margin {:.3g} dB at {:.3g} Hz", margin, c.frequency_hz),
+               kGainStyle, plots[0]);
+  }
+  for (const auto& c : margins.phase) {
+    const double phase = interpolate(frequency_hz, pair.degrees, c.frequency_hz);
+    if (!std::isfinite(phase)) continue;
+    const double margin = c.margin * 180 / std::numbers::pi, limit = phase - margin;
+    add_level(limit, frequency_hz, plots[1]);
+    add_margin(c.frequency_hz, phase, limit,
+               fmt::format("phase margin {:.3g} degrees at {:.3g} Hz", margin, c.frequency_hz), kPhaseStyle, plots[1]);
+  }
+}
+
+Plot make_sigma_plot(const records::FrequencyResponse& response, const std::string& prefix) {
+  Plot plot{"", kFrequency, "singular value [dB]", {}};
+  plot.has_log_x = true;
+  const auto& values = response.singular_values;
+  const double floor = values.size() > 0 ? kResponseFloor * values.maxCoeff() : 0;
+  for (Index s = 0; s < values.cols(); ++s) {
+    const VectorXd decibel = values.col(s).unaryExpr([&](double v) { return v > floor ? 20 * std::log10(v) : kNaN; });
+    if (decibel.array().isFinite().any())
+      plot.curves.push_back({fmt::format("{}σ{}", prefix, s + 1), response.frequency_hz, decibel});
+  }
+  return plot;
+}
+
+}  // namespace bough::report

@@ -1,0 +1,15 @@
+#pragma once
+/// \file The chapter of complex modes: poles, damping, shapes in motion.
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "formats/records/complex_modes.hpp"
+#include "report/page.hpp"
+
+namespace bough::report {
+
+Chapter make_chapter(const records::ComplexModesResult& modes, const std::string& file,
+                     const std::vector<std::pair<std::string, std::string>>& facts);
+
+}  // namespace bough::report

@@ -1,0 +1,32 @@
+#include "report/label.hpp"
+
+namespace bough::report {
+
+std::string make_label(const std::string& name, const std::string& unit) {
+  if (unit.empty() || unit == "1") return name;
+  return name + (name.empty() ? "[" : " [") + unit + "]";
+}
+
+std::string label_frequency(const std::string& time_unit) {
+  if (time_unit.empty() || time_unit == "s" || time_unit == "T") return "frequency [Hz]";
+  return time_unit == "ms" ? "frequency [kHz]" : "frequency [1/" + time_unit + "]";
+}
+
+void label_units(Plot& plot) {
+  const Curve* first = nullptr;
+  bool is_common = true;
+  for (const auto& curve : plot.curves) {
+    if (curve.markers_only) continue;  // reference points have the unit of the axis
+    if (!first) first = &curve;
+    is_common = is_common && curve.unit == first->unit;
+  }
+  if (!first) return;
+  if (is_common) {
+    plot.y_label = make_label(plot.y_label, first->unit);
+    return;
+  }
+  for (auto& curve : plot.curves)
+    if (!curve.label.empty()) curve.label = make_label(curve.label, curve.unit);
+}
+
+}  // namespace bough::report

@@ -1,0 +1,17 @@
+#pragma once
+/// \file Labels of axes: the quantity with its unit in brackets.
+#include <string>
+
+#include "report/svg_plot.hpp"
+
+namespace bough::report {
+
+/// "tip:y [m]"; without a unit the name alone.
+std::string make_label(const std::string& name, const std::string& unit);
+/// "frequency [Hz]" for a time in seconds or without a label, "frequency [kHz]" for ms, "frequency [1/min]".
+std::string label_frequency(const std::string& time_unit);
+
+/// Puts the unit of the curves on the y axis; if curves have several units, into their labels.
+void label_units(Plot& plot);
+
+}  // namespace bough::report

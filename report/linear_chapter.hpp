@@ -1,0 +1,28 @@
+#pragma once
+/// \file The chapters of a linear model and of its response: poles and zeros, Bode diagrams, singular values, margins.
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "formats/records/frequency_response.hpp"
+#include "report/page.hpp"
+
+namespace bough::report {
+
+/// Results computed from the model, in addition to those in its file.
+struct LinearFindings {
+  records::FrequencyResponse response;
+  records::PeakGain peak;
+  records::Margins margins;  ///< of a model with one input and one output
+  bool has_margins = false;
+};
+
+/// Poles and zeros, Bode diagrams of at most 24 pairs of input and output, singular values, Hankel values.
+Chapter make_chapter(const records::LinearModel& model, const LinearFindings& findings, const std::string& file,
+                     const std::vector<std::pair<std::string, std::string>>& facts);
+
+/// Without a model's poles: what `response` wrote.
+Chapter make_chapter(const LinearFindings& findings, const std::string& file,
+                     const std::vector<std::pair<std::string, std::string>>& facts);
+
+}  // namespace bough::report

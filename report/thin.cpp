@@ -1,0 +1,24 @@
+#include "report/thin.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace bough::report {
+
+std::vector<Eigen::Index> split_samples(const Eigen::VectorXd& x, Eigen::Index parts) {
+  const Eigen::Index n = x.size();
+  std::vector<Eigen::Index> ends{0};
+  const double span = n > 0 ? x[n - 1] - x[0] : 0;
+  const bool is_ascending = n > 1 && x.allFinite() && std::isfinite(span) && span > 0 &&
+                            (x.tail(n - 1).array() >= x.head(n - 1).array()).all();
+  const auto find_part = [&](Eigen::Index i) {
+    const double share = is_ascending ? (x[i] - x[0]) / span : static_cast<double>(i) / static_cast<double>(n);
+    return std::min(parts - 1, static_cast<Eigen::Index>(share * static_cast<double>(parts)));
+  };
+  for (Eigen::Index i = 1; i < n; ++i)
+    if (find_part(i) != find_part(i - 1)) ends.push_back(i);
+  if (n > 0) ends.push_back(n);
+  return ends;
+}
+
+}  // namespace bough::report

@@ -1,0 +1,119 @@
+import { format_number } from "./numbers.js";
+import { unpack_floats, unpack_indices, unpack_shorts } from "./unpack.js";
+
+// A body as report/drawing.hpp writes it, and its points when its modes move.
+export class Drawing {
+  constructor(json) {
+    this.xyz = unpack_floats(json.xyz);
+    this.triangles = unpack_indices(json.triangles);
+    this.edges = unpack_indices(json.edges);
+    this.ghosts = unpack_indices(json.ghosts);
+    this.ids = json.id ? unpack_indices(json.id) : new Uint32Array();  // node of each point
+    this.packed = json.shapes;
+    this.shapes = new Array(json.shapes.length);
+    this.points = new Float32Array(this.xyz);
+    this.size = new Float32Array(this.xyz.length / 3);  // of the displacement of each point
+    if (json.elements) {
+      const { of_triangle, of_edge, kind, measure, energy } = json.elements;
+      this.elements = { of_triangle: unpack_indices(of_triangle), of_edge: unpack_indices(of_edge), kind: unpack_indices(kind), measure: unpack_floats(measure), energy };
+      this.matrix = json.elements.matrix;
+    }
+  }
+
+  // Strain energy of each element for these coefficients of the shapes, and with `is_density` over its extent.
+  calc_energies(coefficients, is_density) {
+    this.matrices ??= { weight: unpack_floats(this.matrix.weight), largest: unpack_floats(this.matrix.largest), data: unpack_shorts(this.matrix.data) };
+    const { weight, largest, data } = this.matrices, { measure } = this.elements, n = weight.length;
+    const a = Array.from(weight, (w, i) => w * (coefficients[i] ?? 0));
+    const pairs = [];
+    for (let i = 0; i < n; ++i) for (let j = i; j < n; ++j) pairs.push((i === j ? 0.5 : 1) * a[i] * a[j]);
+    return Float32Array.from(largest, (scale, k) => {
+      let sum = 0;
+      for (let c = 0, at = k * pairs.length; c < pairs.length; ++c) sum += data[at + c] * pairs[c];
+      const energy = Math.max(0, (sum * scale) / 32767);
+      return !is_density ? energy : measure[k] > 0 ? energy / measure[k] : 0;
+    });
+  }
+
+  // Strain energy of each element in shape j over the largest, 0 to 1; by density lines, surfaces and solids each over
+  // the largest of their own.
+  get_levels(j, is_density) {
+    const { kind, measure, energy } = this.elements, { data, largest } = energy[j];
+    const share = Float32Array.from(unpack_shorts(data), (v) => (v * largest) / 32767);
+    if (!is_density) return { levels: share.map((v) => (largest > 0 ? v / largest : 0)), largest };
+    const density = share.map((v, k) => (measure[k] > 0 ? v / measure[k] : 0)), most = [0, 0, 0];
+    density.forEach((v, k) => (most[kind[k]] = Math.max(most[kind[k]], v)));
+    return { levels: density.map((v, k) => (most[kind[k]] > 0 ? v / most[kind[k]] : 0)), largest };
+  }
+
+  get_shape(j) {
+    if (!this.shapes[j]) {
+      const { data, largest } = this.packed[j];
+      const shorts = unpack_shorts(data);
+      this.shapes[j] = Float32Array.from(shorts, (v) => (v * largest) / 32767);
+    }
+    return this.shapes[j];
+  }
+
+  // "node 41: (8, 0, 0), displacement 0.57": `value` is what the colours show.
+  describe(k, before, value) {
+    const place = Array.from(this.xyz.slice(3 * k, 3 * k + 3), (v) => format_number(v, 5)).join(", ");
+    return `${before}node ${this.ids[k]}: (${place}), ${value}`;
+  }
+
+  // The largest displacement of a point in shape j with coefficient 1.
+  get_reach(j) {
+    const shape = this.get_shape(j);
+    let most = 0;
+    for (let i = 0; i < shape.length; i += 3) most = Math.max(most, Math.hypot(shape[i], shape[i + 1], shape[i + 2]));
+    return most;
+  }
+
+  // The largest displacement of a point over a cycle, of shapes j (real part) and j + 1 (imaginary part).
+  get_complex_reach(j) {
+    const re = this.get_shape(j), im = this.get_shape(j + 1);
+    let most = 0;
+    for (let i = 0; i < re.length; i += 3) {
+      const a = re[i] ** 2 + re[i + 1] ** 2 + re[i + 2] ** 2, b = im[i] ** 2 + im[i + 1] ** 2 + im[i + 2] ** 2;
+      const c = re[i] * im[i] + re[i + 1] * im[i + 1] + re[i + 2] * im[i + 2];
+      most = Math.max(most, Math.sqrt((a + b + Math.hypot(a - b, 2 * c)) / 2));
+    }
+    return most;
+  }
+
+  // points = xyz + scale Σ coefficients[j] shape j.
+  deform(coefficients, scale) {
+    this.points.set(this.xyz);
+    coefficients.forEach((c, j) => {
+      if (c === 0 || j >= this.shapes.length) return;
+      const shape = this.get_shape(j), factor = scale * c;
+      for (let i = 0; i < shape.length; ++i) this.points[i] += factor * shape[i];
+    });
+    for (let i = 0, k = 0; i < this.points.length; i += 3, ++k)
+      this.size[k] = Math.hypot(this.points[i] - this.xyz[i], this.points[i + 1] - this.xyz[i + 1], this.points[i + 2] - this.xyz[i + 2]);
+  }
+}
+
+// Corners of the box around points, three numbers each.
+export class Box {
+  constructor() {
+    this.low = [Infinity, Infinity, Infinity];
+    this.high = [-Infinity, -Infinity, -Infinity];
+  }
+  add(x, y, z) {
+    [x, y, z].forEach((v, i) => {
+      if (!Number.isFinite(v)) return;
+      this.low[i] = Math.min(this.low[i], v);
+      this.high[i] = Math.max(this.high[i], v);
+    });
+  }
+  add_points(points) {
+    for (let i = 0; i < points.length; i += 3) this.add(points[i], points[i + 1], points[i + 2]);
+  }
+  get_middle() {
+    return this.low.map((v, i) => (this.high[i] >= v ? (v + this.high[i]) / 2 : 0));
+  }
+  get_diagonal() {
+    return Math.hypot(...this.low.map((v, i) => (this.high[i] >= v ? this.high[i] - v : 0))) || 1;
+  }
+}
