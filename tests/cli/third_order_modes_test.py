@@ -1,6 +1,7 @@
 """Bodies of third order with stiff modes among those kept: a beam with a mass on a rigid arm, bent by 0.13 lengths, against
 a rod with exact rotations."""
 import os
+import re
 import sys
 import unittest
 
@@ -68,6 +69,36 @@ class ThirdOrderModes(ProgramTest):
         self.bough("equilibrium", "mast-system.toml", "-o", "rest.h5", "-q")
         with h5py.File(self.path("rest.h5")) as f:
             return f["sensors/end"][-1]
+
+    def find_rest_and_estimate(self, force):
+        self.write_system(force)
+        printed = self.bough("equilibrium", "mast-system.toml", "-o", "rest.h5").stderr
+        estimate = re.search(r"estimated at (\S+) % of that.*\[run.linear-limit\]", printed)
+        with h5py.File(self.path("rest.h5")) as f:
+            return f["sensors/end"][-1], float(estimate[1]) / 100 if estimate else None
+
+    def test_next_order_is_estimated(self):
+        """Warnings of equilibrium and of a run that passes the same state; estimates against the error of the end."""
+        for keys, ways in (("order = 2", (.5, 1., 1.5)), ("order = 3", (1., 1.5, 3.))):
+            self.make(4, keys)
+            warned = []
+            for way in ways:
+                exact = find_end(way * self.FORCE)
+                found, estimate = self.find_rest_and_estimate(way * self.FORCE)
+                error = np.linalg.norm(found - exact) / np.linalg.norm(exact)
+                print(f"{keys}, way {np.linalg.norm(exact) / LENGTH:.2f} lengths: off by {error:.1e}, estimate {estimate}")
+                warned.append(estimate is not None)
+                if estimate:
+                    self.assertGreater(estimate, .3 * error)
+                    self.assertLess(estimate, 6 * error)
+                else:
+                    self.assertLess(error, .01)
+            self.assertEqual((warned[0], warned[-1]), (False, True))
+        with h5py.File(self.path("mast.h5")) as f:
+            phi = f["modes/phi"][list(f["nodes/id"][:]).index(END)]
+        self.write_system(eta=[.9 / np.abs(phi[:3, 0]).max(), 0, 0, 0])
+        printed = self.bough("run", "mast-system.toml", "-o", "swing.h5").stderr
+        self.assertRegex(printed, r"body 'mast' deflects by \S+ at node \d+ at t = 0: .*\[run.linear-limit\]")
 
     def test_error_does_not_grow_with_the_number_of_modes(self):
         exact = find_end(self.FORCE)
