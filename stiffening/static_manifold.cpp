@@ -101,7 +101,7 @@ Lattice::Lattice(int n, int degree) : exponents_(records::list_exponents(n, degr
 
 StaticManifold::StaticManifold(const BodyRequest& request, const fe::Model& model, const ModalBasis& basis,
                                const StaticSupport& support, const linear::SymmetricMatrix& M)
-    : model_(model), support_(support), arms_(model) {
+    : model_(model), support_(support), arms_(model), eigenvalue_(basis.eigenvalue) {
   const Index n = basis.Phi.cols();
   scale_.resize(n);
   for (Index j = 0; j < n; ++j) scale_[j] = 1 / std::sqrt(basis.stiffness(j, j));  // a shape of unit strain energy
@@ -247,10 +247,17 @@ void StaticManifold::select_large(const std::vector<int>& large, const MatrixXd&
   multipliers_.push_back(K_factor_.solve(gradient));
   if (small_.empty()) return;
   K_small_.compute(K_(small_, small_));
-  // ζᵀK c + V₃ = 0 for each number of small modes among the three: c = -K⁻¹ ∂V₃/∂ζ over that number.
+  // The stiffest small mode of three takes what cancels V₃: ζ_t K_t c = -V₃, c = -K_t⁻¹ ∂V₃/∂ζ_t / (its power in V₃).
   MatrixXd part = -K_small_.solve(gradient(small_, Eigen::all));
   const Eigen::MatrixXi exponents = records::list_exponents(n, 2);
-  for (Index i = 0; i < part.cols(); ++i) part.col(i) /= 1 + exponents(i, small_).sum();
+  for (Index i = 0; i < part.cols(); ++i)
+    for (std::size_t t = 0; t < small_.size(); ++t) {
+      const bool is_stiffest = std::none_of(small_.begin(), small_.end(), [&](int s) {
+        return exponents(i, s) > 0 &&
+               std::make_pair(eigenvalue_[s], s) > std::make_pair(eigenvalue_[small_[t]], small_[t]);
+      });
+      part(static_cast<Index>(t), i) *= is_stiffest ? 1.0 / (1 + exponents(i, small_[t])) : 0;
+    }
   fields_[0] += Phi_(Eigen::all, small_) * part;
   multipliers_[0](small_, Eigen::all).setZero();
 }

@@ -102,7 +102,7 @@ class StaticManifold {
   const StaticSupport& support_;
   std::vector<int> large_, small_;
   RigidArms arms_;
-  VectorXd scale_;
+  VectorXd eigenvalue_, scale_;
   MatrixXd Phi_, Phi_R_, C_, CR_inverse_;
   /// Loads W = M ψ of normal modes whose work on u is ηᵀK, ψ = Φ Λ without rigid-body motion; at the ends of arms too.
   /// Zero for residual vectors.
