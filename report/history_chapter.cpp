@@ -20,7 +20,6 @@ namespace bough::report {
 
 namespace {
 
-constexpr double kLinearLimit = 0.10;  // of a body's size, as the solver warns
 constexpr std::size_t kMaxPictures = 12;
 constexpr double kNoise = 1e-9;  // of the largest channel of the same unit
 
@@ -320,11 +319,15 @@ void add_checks(const History& h, Chapter& chapter) {
                              fmt::format("{}, {} % of its size, at t = {}", body.name,
                                          format_value(100 * largest_share, 3), with_unit(when, h.time_unit))}};
     }
+    const std::string warning = "body '" + body.name + "' deflects by";
+    const auto event = std::find_if(h.events.begin(), h.events.end(),
+                                    [&](const auto& e) { return e.what.compare(0, warning.size(), warning) == 0; });
+    const bool is_beyond = event != h.events.end();  // run.linear-limit
     chapter.checks.push_back(
         {"deflection of body " + body.name + " to its size", format_percent(largest / body.size) + " %",
-         largest > kLinearLimit * body.size ? Verdict::Warning : Verdict::Good,
-         fmt::format("{} of {} at t = {}; linear modes lose their meaning past 10 %", format_value(largest, 4),
-                     format_value(body.size, 4), format_value(when, 4))});
+         is_beyond ? Verdict::Warning : Verdict::Good,
+         fmt::format("{} of {} at t = {}; {}", format_value(largest, 4), format_value(body.size, 4),
+                     format_value(when, 4), is_beyond ? event->what : "within the range of its modes")});
   }
   for (const auto& body : h.scene.bodies)
     if (body.drawing.num_dropped > 0)

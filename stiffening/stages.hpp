@@ -138,8 +138,6 @@ void set_integrals(const BodyRequest& request, const fe::Model& model, const Mat
 void set_loads(const BodyRequest& request, const fe::Model& model, const MatrixXd& Phi,
                const std::vector<LoadPattern>& patterns, records::FlexBody& body);
 
-/// Large modes of a body of third order, from 0, if the body file names none.
-constexpr int kDefaultLargeModes = 6;
 /// Throws reduce.bad-order if third order is requested and the model has what the series do not contain.
 void check_third_order(const BodyRequest& request, const fe::Model& model);
 /// Third order, if it is requested; after set_loads. Throws reduce.bad-order.

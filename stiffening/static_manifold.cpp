@@ -101,15 +101,14 @@ Lattice::Lattice(int n, int degree) : exponents_(records::list_exponents(n, degr
 }
 
 StaticManifold::StaticManifold(const BodyRequest& request, const fe::Model& model, const ModalBasis& basis,
-                               const StaticSupport& support, const std::vector<int>& large,
-                               const linear::SymmetricMatrix& M)
-    : model_(model), support_(support), large_(large), arms_(model) {
+                               const StaticSupport& support, const linear::SymmetricMatrix& M)
+    : model_(model), support_(support), arms_(model), eigenvalue_(basis.eigenvalue) {
   const Index n = basis.Phi.cols();
   scale_.resize(n);
   for (Index j = 0; j < n; ++j) scale_[j] = 1 / std::sqrt(basis.stiffness(j, j));  // a shape of unit strain energy
   Phi_ = basis.Phi * scale_.asDiagonal();
-  const MatrixXd K = scale_.asDiagonal() * basis.stiffness * scale_.asDiagonal();
-  K_factor_.compute(K);
+  K_ = scale_.asDiagonal() * basis.stiffness * scale_.asDiagonal();
+  K_factor_.compute(K_);
   set_rigid_motions(request, M);
   set_loads(request, basis, M);
 }
@@ -140,10 +139,14 @@ void StaticManifold::set_loads(const BodyRequest& request, const ModalBasis& bas
   }
   const MatrixXd M_psi = linear::multiply(M, psi_);
   const MatrixXd mass = linear::calc_inner_products(psi_, M_psi);
-  const MatrixXd stiffness = scale_.asDiagonal() * basis.stiffness * scale_.asDiagonal();
-  const MatrixXd eigenvalues = mass.ldlt().solve(stiffness);
+  const MatrixXd eigenvalues = mass.ldlt().solve(K_);
   psi_ = psi_ * eigenvalues;
   W_ = M_psi * eigenvalues;
+  for (Index j = 0; j < psi_.cols(); ++j) {  // loads of residual vectors act on the grids that carry arms
+    if (basis.kind[static_cast<std::size_t>(j)] == records::ModeKind::Normal) continue;
+    psi_.col(j).setZero();
+    W_.col(j).setZero();
+  }
 }
 
 MatrixXd StaticManifold::solve(const MatrixXd& R) const {
@@ -225,23 +228,65 @@ MatrixXd StaticManifold::calc_arm_gauge(const Curves& curves, int order) const {
 
 MatrixXd StaticManifold::calc_gradient(const MatrixXd& points, int degree) const {
   const Curves curves = make_curves(points);
-  return Phi_.transpose() * calc_forces(curves, degree) - calc_arm_gauge(curves, degree);
+  const MatrixXd gradient = Phi_.transpose() * calc_forces(curves, degree) - calc_arm_gauge(curves, degree);
+  return gradient(large_, Eigen::all);
+}
+
+MatrixXd StaticManifold::begin(const Lattice& lattice) {
+  BOUGH_DEMAND(fields_.empty());
+  MatrixXd gradient;
+  fields_.push_back(solve_field(2, lattice, gradient));
+  return gradient;
+}
+
+void StaticManifold::select_large(const std::vector<int>& large, const MatrixXd& gradient) {
+  BOUGH_DEMAND(fields_.size() == 1);
+  const int n = static_cast<int>(Phi_.cols());
+  large_ = large;
+  for (int j = 0; j < n; ++j)
+    if (!std::binary_search(large.begin(), large.end(), j)) small_.push_back(j);
+  multipliers_.push_back(K_factor_.solve(gradient));
+  if (small_.empty()) return;
+  K_small_.compute(K_(small_, small_));
+  // The stiffest small mode of three takes what cancels V₃: ζ_t K_t c = -V₃, c = -K_t⁻¹ ∂V₃/∂ζ_t / (its power in V₃).
+  MatrixXd part = -K_small_.solve(gradient(small_, Eigen::all));
+  const Eigen::MatrixXi exponents = records::list_exponents(n, 2);
+  for (Index i = 0; i < part.cols(); ++i)
+    for (std::size_t t = 0; t < small_.size(); ++t) {
+      const bool is_stiffest = std::none_of(small_.begin(), small_.end(), [&](int s) {
+        return exponents(i, s) > 0 &&
+               std::make_pair(eigenvalue_[s], s) > std::make_pair(eigenvalue_[small_[t]], small_[t]);
+      });
+      part(static_cast<Index>(t), i) *= is_stiffest ? 1.0 / (1 + exponents(i, small_[t])) : 0;
+    }
+  fields_[0] += Phi_(Eigen::all, small_) * part;
+  multipliers_[0](small_, Eigen::all).setZero();
 }
 
 MatrixXd StaticManifold::advance(int degree, const Lattice& lattice) {
-  BOUGH_DEMAND(static_cast<int>(fields_.size()) == degree - 2);
+  BOUGH_DEMAND(static_cast<int>(fields_.size()) == degree - 2 && !large_.empty());
+  MatrixXd gradient;
+  MatrixXd u = solve_field(degree, lattice, gradient);
+  if (!small_.empty()) {  // no load holds them
+    u -= Phi_(Eigen::all, small_) * K_small_.solve(gradient(small_, Eigen::all));
+    gradient(small_, Eigen::all).setZero();
+  }
+  multipliers_.push_back(K_factor_.solve(gradient));
+  fields_.push_back(std::move(u));
+  return gradient(large_, Eigen::all);
+}
+
+MatrixXd StaticManifold::solve_field(int degree, const Lattice& lattice, MatrixXd& gradient) const {
   const Curves curves = make_curves(degree, lattice);
   const MatrixXd R = lattice.fit(calc_forces(curves, degree)), gauge = lattice.fit(calc_arm_gauge(curves, degree));
-  MatrixXd gradient = linear::calc_inner_products(Phi_, R) - gauge;
+  gradient = linear::calc_inner_products(Phi_, R) - gauge;
   MatrixXd u = solve(R) - Phi_ * K_factor_.solve(gauge);
   for (const fe::RigidArm& arm : arms_.list()) {
     if (!arm.translates || arm.arm.isZero(0)) continue;
     const auto moved = calc_turned_arm(calc_node_curve(curves, arm.parent).bottomRows<3>(), arm.arm, degree);
     u.middleRows<3>(model_.nodes()[static_cast<std::size_t>(arm.node)].first_gdof) += lattice.fit(moved);
   }
-  multipliers_.push_back(K_factor_.solve(gradient));
-  fields_.push_back(std::move(u));
-  return gradient;
+  return u;
 }
 
 MatrixXd StaticManifold::calc_forces(const Curves& curves, int order) const {
@@ -327,9 +372,10 @@ MatrixXd StaticManifold::calc_arm_work(int degree, const Lattice& lattice,
 template <class Visit>
 void StaticManifold::visit_carried(const Curves& curves, const Visit& visit) const {
   fe::visit_elements(model_, fe::get_own_elements(model_), [&](int, const fe::Element& element) {
-    if (!element.offset_mass(model_.mass_kind()) || has_stiffness(element)) return;
+    if (!element.offset_mass(model_.mass_kind())) return;
     Carried carried{fe::CarriedMass(element.num_dofs()), {}, {}};
     if (!fe::calc_carried(model_, element, model_.mass_kind(), carried.mass)) return;
+    if (!carried.mass.fields.empty()) return;  // between two ends: linear, off as h²
     carried.u = calc_element_curve(curves, element);
     const auto num = static_cast<Index>(carried.mass.points.size());
     carried.motion.resize(3 * num, element.num_dofs());

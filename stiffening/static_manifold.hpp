@@ -29,19 +29,24 @@ class Lattice {
 
 class StaticManifold {
  public:
-  /// `large`: modes whose amplitudes fields beyond degree 2 have. All references must outlive it. Throws
-  /// reduce.bad-order where a free body has no inertia about an axis.
+  /// All references must outlive it. Throws reduce.bad-order if a free body has no inertia about an axis.
   StaticManifold(const BodyRequest& request, const fe::Model& model, const ModalBasis& basis,
-                 const StaticSupport& support, const std::vector<int>& large, const linear::SymmetricMatrix& M);
+                 const StaticSupport& support, const linear::SymmetricMatrix& M);
 
   const VectorXd& scale() const { return scale_; }
   const MatrixXd& Phi() const { return Phi_; }
 
-  /// Adds u of the next degree, from 2 on, and returns the gradient of V of one degree more by the amplitudes, n x
-  /// monomials. `lattice`: of that degree, in all modes for degree 2, else in the large ones.
+  /// Adds u₂ of all modes and returns the gradient of V₃ by the amplitudes, n x monomials. `lattice`: of degree 2 in
+  /// all modes. No mode has a part of u₂ until select_large().
+  MatrixXd begin(const Lattice& lattice);
+  /// Selects the modes whose amplitudes u₃ and u₄ have, ascending. The others take the part of u₂ that cancels their
+  /// cubic strain energy (theory: small modes). `gradient`: the result of begin().
+  void select_large(const std::vector<int>& large, const MatrixXd& gradient);
+  /// Adds u of the next degree, from 3 on, and returns the gradient of V of one degree more by the large amplitudes,
+  /// N x monomials. `lattice`: of that degree in the large modes.
   MatrixXd advance(int degree, const Lattice& lattice);
   const MatrixXd& field(int degree) const { return fields_[static_cast<std::size_t>(degree - 2)]; }
-  /// The gradient of V by the amplitudes where no field of that degree is needed: n x points. points: points x n.
+  /// The gradient of V by the large amplitudes where no field of that degree is needed: N x points. points: points x n.
   MatrixXd calc_gradient(const MatrixXd& points, int degree) const;
 
   /// Work of dead forces on arms (of each load a list) on degree `degree` of the ends' motion beyond θ × arm: loads x
@@ -67,6 +72,8 @@ class StaticManifold {
     MatrixXd u;       ///< dofs along the curves, N x 5 points
     MatrixXd motion;  ///< H of every point, 3 points x N
   };
+  /// The fields of the next degree, held along all modes; gradient: n x monomials.
+  MatrixXd solve_field(int degree, const Lattice& lattice, MatrixXd& gradient) const;
   Curves make_curves(const MatrixXd& points) const;
   Curves make_curves(int degree, const Lattice& lattice) const;
   /// u of these dofs along the curves, the five orders of a point side by side: gdofs x 5 points.
@@ -93,13 +100,15 @@ class StaticManifold {
 
   const fe::Model& model_;
   const StaticSupport& support_;
-  const std::vector<int>& large_;
+  std::vector<int> large_, small_;
   fe::RigidArms arms_;
-  VectorXd scale_;
+  VectorXd eigenvalue_, scale_;
   MatrixXd Phi_, Phi_R_, C_, CR_inverse_;
-  /// Loads W = M ψ whose work on u is ηᵀK, ψ = Φ Λ without rigid-body motion; at the ends of arms too.
+  /// Loads W = M ψ of normal modes whose work on u is ηᵀK, ψ = Φ Λ without rigid-body motion; at the ends of arms too.
+  /// Zero for residual vectors.
   MatrixXd W_, psi_;
-  Eigen::LDLT<MatrixXd> K_factor_;
+  MatrixXd K_;  ///< of the scaled modes
+  Eigen::LDLT<MatrixXd> K_factor_, K_small_;
   std::vector<MatrixXd> fields_;       ///< degree 2, 3, ...; num_gdofs x monomials
   std::vector<MatrixXd> multipliers_;  ///< the same; n x monomials
 };

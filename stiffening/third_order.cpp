@@ -9,13 +9,13 @@
 #include "fe/linear/products.hpp"
 #include "fe/loads/inertial_loads.hpp"
 #include "modal/integrals.hpp"
-#include "stiffening/stages.hpp"
+#include "stiffening/large_modes.hpp"
 #include "stiffening/static_manifold.hpp"
 
 namespace bough::stiffening {
 
-using records::BodyFrame;
 using records::FlexBody;
+using records::ModeKind;
 using records::ThirdOrder;
 
 namespace {
@@ -43,6 +43,12 @@ std::string join_names(const std::vector<std::string>& words) {
   std::string text;
   for (const auto& word : words) text += (text.empty() ? "" : ", ") + word;
   return text;
+}
+
+std::string list_modes(const std::vector<int>& modes) {
+  std::vector<std::string> numbers;
+  for (const int mode : modes) numbers.push_back(std::to_string(mode + 1));
+  return join_names(numbers);
 }
 
 /// V_k from Φη·f_(k-1)/k at the points of its lattice. forces: f_(k-1) on the modes, N x points.
@@ -96,12 +102,9 @@ void check_third_order(const BodyRequest& request, const fe::Model& model) {
   if (model.prestress()) error("the body is preloaded: the series begin at the state without stress", second);
   if (!request.spec.augments.empty()) error("masses augment the modes", second);
   if (model.omitted()) error("ASET or OMIT eliminates dofs", "remove these cards, or " + second);
-  if (request.spec.frame == BodyFrame::ThreeNodes || request.spec.frame == BodyFrame::MassCentre)
-    error("the frame is carried by three nodes or the centre of mass",
-          "use frame = \"fixed\", \"free\", \"mean\" or \"node\"");
-  if (request.spec.basis != records::BodyBasis::Normal || !request.spec.residual.empty())
+  if (request.spec.basis != records::BodyBasis::Normal)
     error("the basis has static shapes: they hold the stretch that bending takes, so the series do not converge",
-          "use basis = \"normal\" without residual vectors, or " + second);
+          "use basis = \"normal\", with residual vectors if need be, or " + second);
   if (request.given) return;
   std::vector<std::string> joined;
   const fe::RigidArms arms(model);
@@ -136,41 +139,6 @@ void check_third_order(const BodyRequest& request, const fe::Model& model) {
 }
 
 namespace {
-
-std::vector<int> choose_large_modes(const BodyRequest& request, int num_modes) {
-  const auto& spec = request.spec;
-  std::vector<int> large;
-  for (const int mode : spec.large_modes) {
-    if (mode < 1 || mode > num_modes)
-      request.error("reduce.bad-order",
-                    "mode " + std::to_string(mode) + " in [body.stiffening] large does not exist: the body has " +
-                        std::to_string(num_modes) + " modes",
-                    "name modes from 1 to " + std::to_string(num_modes));
-    large.push_back(mode - 1);
-  }
-  const int max_number = spec.num_large > 0 ? spec.num_large : kDefaultLargeModes;
-  if (spec.num_large > num_modes)
-    request.error("reduce.bad-order",
-                  "[body.stiffening] large = " + std::to_string(spec.num_large) + ", but the body has " +
-                      std::to_string(num_modes) + " modes",
-                  "give at most " + std::to_string(num_modes));
-  for (int j = 0; j < std::min(max_number, num_modes) && spec.large_modes.empty(); ++j) large.push_back(j);
-  std::sort(large.begin(), large.end());
-  if (std::adjacent_find(large.begin(), large.end()) != large.end())
-    request.error("reduce.bad-order", "a mode occurs twice in [body.stiffening] large", "name each mode once");
-  if (large.size() > records::kMaxLargeModes)
-    request.error("reduce.bad-order",
-                  "[body.stiffening] large has " + std::to_string(large.size()) + " modes, at most " +
-                      std::to_string(records::kMaxLargeModes) + " are possible",
-                  "the tables grow with the sixth power: keep the modes that deflect most");
-  if (num_modes > records::kMaxThirdOrderModes)
-    request.error("reduce.bad-order",
-                  "a body of third order has at most " + std::to_string(records::kMaxThirdOrderModes) +
-                      " modes, this one has " + std::to_string(num_modes),
-                  "keep fewer modes, or set order = 2");
-  request.diagnostics.throw_if_errors();
-  return large;
-}
 
 /// Fields of T, num_gdofs x m, orthonormal under M: the span of the modes, affine fields, and the leading directions of
 /// what these leave of u₂; those that move. Amplitudes are weighted by 1/ω² (here 1/ω more than the scale).
@@ -228,21 +196,32 @@ void set_third_order(const BodyRequest& request, const fe::Model& model, const M
                      const InertialLoads& inertial, FlexBody& body) {
   if (request.spec.stiffening_order < 3) return;
   const int n = static_cast<int>(basis.Phi.cols());
-  const auto large = choose_large_modes(request, n);
-  const int N = static_cast<int>(large.size());
+  const auto is_static = [&](int mode) { return basis.kind[static_cast<std::size_t>(mode)] != ModeKind::Normal; };
+  auto large = find_named_large_modes(request, n);
+  if (const auto found = std::find_if(large.begin(), large.end(), is_static); found != large.end()) {
+    request.error("reduce.bad-order",
+                  "[body.stiffening] large selects mode " + std::to_string(*found + 1) + ", a residual vector",
+                  "select normal modes alone: residual vectors follow them");
+    request.diagnostics.throw_if_errors();
+  }
+  const int max_large = large.empty() ? std::min(n, kDefaultLargeModes) : static_cast<int>(large.size());
   double num_columns = records::count_monomials(n, 2) * 2;
-  for (int k = 3; k <= ThirdOrder::kMaxField; ++k) num_columns += 2 * records::count_monomials(N, k);
+  for (int k = 3; k <= ThirdOrder::kMaxField; ++k) num_columns += 2 * records::count_monomials(max_large, k);
   char need[64];
   std::snprintf(need, sizeof need, "%.0f MB", 8e-6 * num_columns * model.num_gdofs());
-  request.report("third order of " + std::to_string(N) + " modes, " + need);
-  ThirdOrder third;
-  third.large = large;
-  StaticManifold manifold(request, model, basis, support, large, inertial.M);
-  const VectorXd scale = manifold.scale(), large_scale = scale(large);
+  request.report("third order of at most " + std::to_string(max_large) + " modes, " + need);
+  StaticManifold manifold(request, model, basis, support, inertial.M);
 
   // Degree 2 is of all modes: stiffening by loads concerns the small ones as well.
   const Lattice pairs(n, 2);
-  const MatrixXd on_modes = manifold.advance(2, pairs);  // n x pairs
+  const MatrixXd on_modes = manifold.begin(pairs);  // n x pairs
+  if (large.empty()) large = find_default_large_modes(model, manifold.Phi(), on_modes, basis.kind);
+  manifold.select_large(large, on_modes);
+  request.report("third order: large modes " + list_modes(large));
+  const int N = static_cast<int>(large.size());
+  ThirdOrder third;
+  third.large = large;
+  const VectorXd scale = manifold.scale(), large_scale = scale(large);
   std::vector<MatrixXd> work;  // forces on the large modes at the lattice of degree k, k = 3..6
   std::vector<Lattice> lattices;
   for (int k = 3; k <= ThirdOrder::kMaxEnergy; ++k) lattices.emplace_back(N, k);
@@ -254,27 +233,17 @@ void set_third_order(const BodyRequest& request, const fe::Model& model, const M
     const Lattice& own = lattices[static_cast<std::size_t>(k - 3)];
     const MatrixXd gradient = manifold.advance(k, own);
     const Lattice& next = lattices[static_cast<std::size_t>(k - 2)];
-    work.push_back(gradient(large, Eigen::all) * calc_monomials(own.exponents(), next.points()).transpose());
+    work.push_back(gradient * calc_monomials(own.exponents(), next.points()).transpose());
   }
   // Degree 6: u₅ is not needed.
-  work.push_back(manifold.calc_gradient(spread(lattices[3].points(), large, n), 5)(large, Eigen::all));
+  work.push_back(manifold.calc_gradient(spread(lattices[3].points(), large, n), 5));
   for (int k = ThirdOrder::kMinEnergy; k <= ThirdOrder::kMaxEnergy; ++k) {
     const auto at = static_cast<std::size_t>(k - ThirdOrder::kMinEnergy);
     MatrixXd c = fit_energy(lattices[at], work[at], k).transpose();
     unscale(lattices[at].exponents(), large_scale, c);
     third.energy[at] = c.transpose();
   }
-  std::vector<int> small;
-  for (int j = 0; j < n; ++j)
-    if (!std::binary_search(large.begin(), large.end(), j)) small.push_back(j);
-  const Lattice large_pairs(N, 2);
-  {
-    const MatrixXd points = spread(large_pairs.points(), large, n);
-    MatrixXd c = large_pairs.fit(on_modes(small, Eigen::all) * calc_monomials(pairs.exponents(), points).transpose());
-    unscale(large_pairs.exponents(), large_scale, c);
-    for (std::size_t s = 0; s < small.size(); ++s) c.row(static_cast<Eigen::Index>(s)) /= scale[small[s]];
-    third.energy_small = c.transpose();
-  }
+  third.energy_small = MatrixXd::Zero(records::count_monomials(N, 2), n - N);
 
   const auto get_lattice = [&](int k) -> const Lattice& {
     return k == 2 ? pairs : lattices[static_cast<std::size_t>(k - 3)];

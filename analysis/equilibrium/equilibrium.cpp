@@ -9,6 +9,7 @@
 #include "formats/toml/specs.hpp"
 #include "solver/linear/linearize.hpp"
 #include "solver/simulate/channel_units.hpp"
+#include "solver/simulate/modal_range_monitor.hpp"
 #include "solver/simulate/outputs.hpp"
 
 namespace bough::analysis {
@@ -59,6 +60,8 @@ EquilibriumAnswer find_equilibrium(const EquilibriumRequest& request, const Chec
                                     found.unstable.front().mode, 1 / found.unstable.front().rate),
                         "start nearer to the state wanted, by position and eta; bough linearize --equilibrium has the "
                         "poles");
+  for (const auto& crossing : solver::ModalRangeMonitor(loaded.system).find_deflections(found.point.q, {}))
+    diagnostics.warning(crossing.id, {request.file}, crossing.what, crossing.advice);
   answer.q = plant.get_for_file(found.point.q);
   for (int b = 0; b < loaded.system.num_bodies(); ++b)
     if (const int size = loaded.system.num_hinge_q(b); size > 0)

@@ -77,6 +77,7 @@ nlohmann::json make_json(const PairReport& r) {
   for (const auto& d : r.bodies->energy)
     json["third_order_energy"].push_back(
         {{"degree", d.load}, {"norm_a", d.norm_a}, {"norm_b", d.norm_b}, {"difference", d.difference}});
+  if (!r.bodies->energy_note.empty()) json["third_order_note"] = r.bodies->energy_note;
   json["stiffness"] = nlohmann::json::array();
   for (const auto& d : r.bodies->stiffness)
     json["stiffness"].push_back(

@@ -110,6 +110,7 @@ std::string format_bodies(const PairReport& r) {
   for (const auto& d : c.energy)
     energy.rows.push_back({d.load, number(d.norm_a), number(d.norm_b), difference(d.difference)});
   if (!energy.rows.empty()) text += "\n" + energy.to_text();
+  if (!c.energy_note.empty()) text += "\n" + c.energy_note + "\n";
   return text;
 }
 

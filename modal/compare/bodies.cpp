@@ -89,17 +89,26 @@ VectorXd permute(const VectorXd& of_b, int degree, const std::vector<int>& order
   return of_a;
 }
 
-void compare_energies(const FlexBody& a, const FlexBody& b, const std::vector<ModePair>& pairs,
+std::string describe_order(const FlexBody& body) {
+  if (body.third_order.empty()) return "second order";
+  std::string text;
+  for (const int mode : body.third_order.large) text += (text.empty() ? "" : ", ") + std::to_string(mode + 1);
+  return "third order (large modes " + text + ")";
+}
+
+/// Returns false if a large mode of one body is none of the other.
+bool compare_energies(const FlexBody& a, const FlexBody& b, const std::vector<ModePair>& pairs,
                       std::vector<StiffnessDifference>& differences) {
   const auto &x = a.third_order, &y = b.third_order;
-  if (x.empty() || x.num_large() != y.num_large()) return;
+  if (x.empty() && y.empty()) return true;
+  if (x.num_large() != y.num_large()) return false;
   std::vector<int> order;  // place in b's large modes of each of a's
   VectorXd scale(x.num_large()), scale_b(x.num_large());
   for (const int mode : x.large) {
     const auto pair = std::find_if(pairs.begin(), pairs.end(), [&](const ModePair& p) { return p.a == mode; });
-    if (pair == pairs.end()) return;
+    if (pair == pairs.end()) return false;
     const auto found = std::find(y.large.begin(), y.large.end(), pair->b);
-    if (found == y.large.end()) return;
+    if (found == y.large.end()) return false;
     const auto at = static_cast<Index>(order.size());
     scale[at] = 1 / std::sqrt(a.eigenvalue[mode] * a.modal_mass(mode, mode));
     scale_b[at] = pair->sign / std::sqrt(a.eigenvalue[mode] * b.modal_mass(pair->b, pair->b));
@@ -116,6 +125,7 @@ void compare_energies(const FlexBody& a, const FlexBody& b, const std::vector<Mo
     differences.push_back(compare("degree " + std::to_string(k), calc_scaled(x.energy[at], k, scale),
                                   calc_scaled(permute(y.energy[at], k, order), k, scale_b)));
   }
+  return true;
 }
 
 }  // namespace
@@ -168,7 +178,9 @@ BodyComparison compare_bodies(const FlexBody& a, const FlexBody& b, const std::v
     result.norm_b[kExact].col(3).setConstant(std::numeric_limits<double>::quiet_NaN());
   }
   if (pairs.empty()) return result;
-  compare_energies(a, b, pairs, result.energy);
+  if (!compare_energies(a, b, pairs, result.energy))
+    result.energy_note = "A has " + describe_order(a) + ", B " + describe_order(b) +
+                         ": strain energies beyond degree 2 are not compared";
   // Angular accelerations and rates turn about the origin: with another one only accelerations can be compared.
   const std::size_t count = offset.isZero(0) ? x.kg_inertial.size() : 3;
   for (std::size_t i = 0; i < count; ++i)

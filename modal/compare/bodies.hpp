@@ -28,6 +28,7 @@ struct BodyComparison {
   std::vector<StiffnessDifference> stiffness;        ///< inertial loads that both have, then locators of one name
   /// Strain energy of degrees 3 to 6 in amplitudes of 1/ω, where both bodies have third order in the same modes.
   std::vector<StiffnessDifference> energy;
+  std::string energy_note;  ///< why a body of third order has no rows in `energy`; empty: it has, or none is of it
 };
 BodyComparison compare_bodies(const records::FlexBody& a, const records::FlexBody& b,
                               const std::vector<ModePair>& pairs, const Vector3d& offset);

@@ -64,6 +64,7 @@ ThirdOrderBody::ThirdOrderBody(const records::FlexBody& flex)
   for (int j = 0; j < n_; ++j) {
     if (!std::binary_search(third.large.begin(), third.large.end(), j)) small_.push_back(j);
   }
+  if (third.energy_small.isZero(0)) small_.clear();
   if (small_.empty()) return;
   on_small_ = Polynomials(*list_, static_cast<int>(small_.size()), 2);
   on_small_.add(*list_, 2, third.large, third.energy_small);
@@ -188,7 +189,9 @@ double ThirdOrderBody::calc_modal_force(const LinearField& field, const ThirdOrd
 double ThirdOrderBody::calc_energy(const ConstVectorRef& eta) const {
   MonomialList::Values z(list_->size());
   list_->calc(eta, list_->degree(), z.data());
-  VectorXd J(pad(n_)), value(std::max<size_t>(1, small_.size()));
+  constexpr int kMax = records::kMaxThirdOrderModes;
+  Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMax * kMax, 1> J(pad(n_));  // on the stack
+  Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMax, 1> value(std::max<size_t>(1, small_.size()));
   energy_.calc(*list_, eta, z.data(), J.data(), value.data());
   double energy = value[0];
   if (small_.empty()) return energy;

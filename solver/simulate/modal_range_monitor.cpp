@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "solver/bodies/next_order.hpp"
 #include "solver/simulate/run.hpp"
 #include "solver/system/system.hpp"
 
@@ -58,35 +59,48 @@ ModalRangeMonitor::ModalRangeMonitor(const System& system) : system_(system) {
 
 std::vector<ModalRangeMonitor::Crossing> ModalRangeMonitor::find_crossings(double t, const SystemData& data,
                                                                            const Eigen::Ref<const VectorXd>& q) {
+  std::vector<Crossing> found = find_deflections(q, t);
+  for (Crossing& spin : find_spins(t, data)) found.push_back(std::move(spin));
+  return found;
+}
+
+std::vector<ModalRangeMonitor::Crossing> ModalRangeMonitor::find_deflections(const Eigen::Ref<const VectorXd>& q,
+                                                                             std::optional<double> t) {
   std::vector<Crossing> found;
   for (Watched& w : watched_) {
-    if (!w.deflection_reported && w.size > 0) {
-      const auto eta = q.segment(system_.eta_offset(w.body), system_.num_modes(w.body));
-      double largest = 0;
-      int where = 0;
-      for (const Node& node : get_body(system_, w.body).body.nodes()) {
-        if (!node.moves) continue;
-        Vector3d d = Vector3d::Zero();
-        for (int j = 0; j < eta.size(); ++j) d += node.phi.col(j) * eta[j];
-        if (d.norm() <= largest) continue;
-        largest = d.norm();
-        where = node.id;
-      }
-      const bool is_third = get_body(system_, w.body).body.third_order() != nullptr;
-      const double limit = is_third ? kThirdOrderLimit : kLinearLimit;
-      if (largest > limit * w.size) {
-        w.deflection_reported = true;
-        found.push_back({w.body, "run.linear-limit",
-                         "body '" + system_.body_name(w.body) + "' deflects by " + short_text(largest) + " at node " +
-                             std::to_string(where) + " at t = " + short_text(t) + ", more than " +
-                             short_text(100 * limit) + " % of its size " + short_text(w.size),
-                         std::string(is_third ? "displacements to third order lose their digits there"
-                                              : "linear modes lose their meaning there") +
-                             "; cut its deck into several bodies with bough split DECK --parts N"});
-      }
+    if (w.deflection_reported || !(w.size > 0)) continue;
+    const Body& body = get_body(system_, w.body).body;
+    const auto eta = q.segment(system_.eta_offset(w.body), system_.num_modes(w.body));
+    double largest = 0;
+    const Node* where = nullptr;
+    for (const Node& node : body.nodes()) {
+      if (!node.moves) continue;
+      Vector3d d = Vector3d::Zero();
+      for (int j = 0; j < eta.size(); ++j) d += node.phi.col(j) * eta[j];
+      if (d.norm() <= largest) continue;
+      largest = d.norm();
+      where = &node;
     }
+    if (!(largest > kCheckedWay * w.size)) continue;
+    const auto report = [&](const std::string& limit, const std::string& advice) {
+      w.deflection_reported = true;
+      found.push_back({w.body, "run.linear-limit",
+                       "body '" + system_.body_name(w.body) + "' deflects by " + short_text(largest) + " at node " +
+                           std::to_string(where->id) + (t ? " at t = " + short_text(*t) : " at rest") + limit,
+                       advice + "cut its deck into several bodies with bough split DECK --parts N"});
+    };
+    if (!body.third_order() && !body.stiffened()) {
+      if (largest > kLinearLimit * w.size)
+        report(", more than " + short_text(100 * kLinearLimit) + " % of its size " + short_text(w.size),
+               "linear modes lose their meaning there; ");
+      continue;
+    }
+    const double next = calc_next_order(body, *where, eta, w.size);
+    if (next > kNextOrderLimit)
+      report(": the next order of its displacements is estimated at " + short_text(100 * next) +
+                 " % of that, more than " + short_text(100 * kNextOrderLimit) + " %",
+             body.third_order() ? "" : "set [body.stiffening] order = 3, or ");
   }
-  for (Crossing& spin : find_spins(t, data)) found.push_back(std::move(spin));
   return found;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 /// \file Watches whether flexible bodies leave the range in which their modes mean something.
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -8,10 +9,12 @@
 
 namespace bough::solver {
 
-/// Share of a body's size that a deflection may reach before it is reported (the habit of Adams/Flex).
+/// Share of a body's size that a deflection of linear modes may reach before it is reported (the habit of Adams/Flex).
 inline constexpr double kLinearLimit = 0.10;
-/// Limit of a body of third order, whose frequency is right to 1e-4 at 0.2 (docs/theory/third-order.md).
-inline constexpr double kThirdOrderLimit = 0.25;
+/// Limit of the estimated next order of a body of second or third order, of the deflection.
+inline constexpr double kNextOrderLimit = 0.01;
+/// Deflection, of the size, from which the next order is estimated.
+inline constexpr double kCheckedWay = 0.02;
 /// Share of the first frequency that the spin of a body without stiffening may reach: at half, the centrifugal terms
 /// soften the first mode by a quarter of its stiffness (docs/theory/when-stiffening-matters.md).
 inline constexpr double kSpinLimit = 0.5;
@@ -37,6 +40,8 @@ class ModalRangeMonitor {
   };
   /// Deflections and spins. No allocation while nothing is passed.
   std::vector<Crossing> find_crossings(double t, const SystemData& data, const Eigen::Ref<const VectorXd>& q);
+  /// Deflections beyond the range of the modes; t: none for a state of rest. No allocation while nothing is passed.
+  std::vector<Crossing> find_deflections(const Eigen::Ref<const VectorXd>& q, std::optional<double> t);
   /// Spins of bodies without stiffening alone, from the kinematics in `data`.
   std::vector<Crossing> find_spins(double t, const SystemData& data);
   bool watches_spins() const;  ///< of at least one body

@@ -179,6 +179,41 @@ class ThirdOrderArms(ProgramTest):
         self.assertLess(np.abs(linear - linear[0]).max(), 1e-10 * np.abs(linear).max())
         self.assertLess(np.abs(angular - angular[0]).max(), 1e-10 * np.abs(angular).max())
 
+    def test_two_ranks_make_the_same_tables(self):
+        """Elements, carried masses and arms are shared out among ranks and summed."""
+        arm = "GRID,941,,8.,.8,.1\nRBE2,901,41,123456,941\nCONM2,902,941,,.4\nCONM2,903,21,,.3,.1,.2,0.\n,.03,,.05,,,.04"
+        one = self.make("one", arm, self.UNEQUAL, modes=4)
+        self.bough("reduce", "one.toml", "-o", "two.h5", "-q",
+                   launcher=["mpirun", "--allow-run-as-root", "--oversubscribe", "-n", "2"])
+        two = Tables(self.path("two.h5"))
+        for k in one.energy:
+            self.assert_close(one.energy[k], two.energy[k], 1e-8)
+        for k in one.node:
+            self.assert_close(one.node[k], two.node[k], 1e-8)
+            self.assert_close(one.load[k], two.load[k], 1e-8)
+
+    def test_offset_bars_are_bars_on_rigid_arms(self):
+        """Lumped masses of bars off their grids: the same bars between grids on RBE2."""
+        w, num = (0., .15, .1), 8
+        head = ["SOL 103", "CEND", "SPC = 1", "BEGIN BULK", "MAT1,1,7.+10,2.6+10,,2700.", "SPC1,1,123456,1",
+                "PBAR,1,1,1.-4,4.-10,9.-9,1.5-9"] + [f"GRID,{i},,{(i - 1) / num},0.,0." for i in range(1, num + 2)]
+        offsets = [f"CBAR,{i},1,{i},{i + 1},0.,1.,0.\n,,,{','.join(map(str, w + w))}" for i in range(1, num + 1)]
+        arms = [f"GRID,{100 + i},,{(i - 1) / num},{w[1]},{w[2]}\nRBE2,{200 + i},{i},123456,{100 + i}" for i in range(1, num + 2)]
+        arms += [f"CBAR,{i},1,{100 + i},{101 + i},0.,1.,0." for i in range(1, num + 1)]
+        tables = []
+        for cards in (offsets, arms):
+            self.write("bars.bdf", "\n".join(head + cards) + "\nENDDATA\n")
+            self.write("bars.toml", f'[body]\nname = "bars"\ndeck = "bars.bdf"\nframe = "fixed"\ninterface = [{num + 1}]\n'
+                       "[body.modes]\nnumber = 4\n[body.stiffening]\norder = 3\nlarge = 2\n")
+            self.bough("reduce", "bars.toml", "-o", "bars.h5", "-q")
+            tables.append(Tables(self.path("bars.h5")))
+        offset, rigid = tables
+        np.testing.assert_allclose(offset.frequency, rigid.frequency, rtol=1e-9)
+        self.assert_close(rigid.energy[4], offset.energy[4], 1e-8)
+        self.assert_close(rigid.node[2], offset.node[2], 1e-8)
+        self.assert_close(rigid.node[3], offset.node[3], 2e-3)      # h²
+        self.assert_close(rigid.node[4], offset.node[4], 5e-2)
+
     def test_other_equations_are_refused_by_grid(self):
         self.copy_example("ex01-spinup")
         for cards, says in (("GRID,941,,8.,1.,0.\nRBE3,901,,941,123456,1.,123456,40,41\nCONM2,902,941,,1.", ["941", "RBE3"]),

@@ -101,6 +101,36 @@ class ThirdOrder(ProgramTest):
         self.assertLess(np.abs(linear - linear[0]).max(), 1e-10 * np.abs(linear).max())
         self.assertLess(np.abs(angular - angular[0]).max(), 1e-10 * np.abs(angular).max())
 
+    def test_frames_see_the_same_motion(self):
+        """A free L-frame at rest that a force at its end bends: the path of the end in space, by frames of the body."""
+        self.copy_example("ex04-free-flyer")
+        deck = ["SOL 103", "CEND", "BEGIN BULK", "MAT1,1,7.+10,2.6+10,,2700.", "PBAR,1,1,1.-4,8.-10,2.-9,1.5-9"]
+        deck += [f"GRID,{i + 1},,{i / 8},0.,0." for i in range(9)] + [f"GRID,{i + 9},,1.,{i / 8},{i / 40}" for i in range(1, 9)]
+        deck += [f"CBAR,{i},1,{i},{i + 1}," + ("0.,1.,0." if i < 9 else "1.,0.,0.") for i in range(1, 17)]
+        self.write("flyer.bdf", "\n".join(deck) + "\nENDDATA\n")
+        system = re.sub("(?m)^(eta|rate) = .*$", "", self.read("free-flyer.toml")).replace("node = 21", "node = 17")
+        system = system.replace("duration = 5.0", "duration = 0.6").replace('type = "deflection"', 'type = "position"')
+        system = system.replace('frame = "body"', 'frame = "inertial"', 1)
+        system += '[[force]]\nname = "pull"\nbody = "flyer"\nnode = 17\nforce = [1.0, 0.5, 1.5]\nframe = "inertial"\n'
+        self.write("free-flyer.toml", system)
+        path, body = {}, self.read("flyer.toml")
+        for order in (2, 3):
+            for frame in ('"free"', '"node"\nframe_nodes = [1]', '"3-2-1"\nframe_nodes = [1, 9, 17]', '"mass-centre"',
+                          '"mass-centre"\nframe_nodes = [9]', '"mass-centre"\nframe_nodes = [1, 9, 17]'):
+                keys = re.sub('(?m)^frame = "free".*$', "frame = " + frame, body).replace("number = 6", "number = 8")
+                self.write("moved.toml", keys.replace("[body.modes]", "interface = [17]\n[body.modes]", 1)
+                           + f"\n[body.stiffening]\norder = {order}\n")
+                self.bough("reduce", "moved.toml", "-o", "flyer.h5", "-q")
+                self.bough("run", "free-flyer.toml", "-o", "run.h5", "-q")
+                with h5py.File(self.path("run.h5")) as f:
+                    path[order, frame] = f["sensors/tip_deflection"][:]
+        off = {order: [np.abs(path[o, frame] - path[3, '"free"']).max() for o, frame in path if o == order] for order in (2, 3)}
+        way = np.ptp(path[3, '"free"'], 0).max()
+        for order in (2, 3):
+            print(f"order {order}: paths of {way:.2f} m differ from that of the free frame by", [f"{x:.1e}" for x in off[order]])
+        self.assertLess(max(off[3]), 1e-5 * way)
+        self.assertLess(10 * max(off[3]), min(off[2]))
+
     def test_second_order_of_the_file_is_what_it_was(self):
         self.reduce()
         self.reduce("order = 2", name="two.h5")
@@ -119,6 +149,16 @@ class ThirdOrder(ProgramTest):
             i, j = [k for k in range(3) for _ in range(x[k])]
             full[i, j] = full[j, i] = c * (2 if i == j else 1)
         np.testing.assert_allclose(full, -K, rtol=0, atol=3e-4 * np.abs(K).max())
+
+    def test_compare_reports_different_orders(self):
+        self.reduce()
+        self.reduce("order = 2", name="two.h5")
+        self.reduce("order = 3\nlarge = 2", name="three.h5")
+        for other, words in (("two.h5", "B second order"), ("three.h5", "B third order (large modes 1, 2)")):
+            printed = self.bough("compare", "boom.h5", other).stdout
+            self.assertIn(f"A has third order (large modes 1, 2, 3), {words}", printed)
+            self.assertNotIn("degree 4", printed)
+        self.assertNotIn("third order", self.bough("compare", "two.h5", "two.h5").stdout)
 
     def test_fewer_modes_have_second_order(self):
         self.reduce()
@@ -158,8 +198,10 @@ class ThirdOrder(ProgramTest):
         for keys, says in (("order = 3\nlarge = 9", ["large = 9", "3 modes"]), ("order = 3\nlarge = [1, 7]", ["mode 7"]),
                            ("order = 3\nlarge = [1, 1]", ["twice"])):
             self.reduce(keys, code=1, says=says, error="reduce.bad-order")
-        for more in ('[body.modes]\nresidual = ["interface"]', '[body.modes]\nbasis = "craig-bampton"'):
-            self.reduce(replace=[("[body.modes]", more)], code=1, says=["static shapes"], error="reduce.bad-order")
+        self.reduce(replace=[("[body.modes]", '[body.modes]\nbasis = "craig-bampton"')], code=1, says=["static shapes"],
+                    error="reduce.bad-order")
+        self.reduce("order = 3\nlarge = 4", replace=[("[body.modes]", '[body.modes]\nresidual = ["interface"]')], code=1,
+                    says=["mode 4", "residual vector"], error="reduce.bad-order")
         self.reduce("large = 2", code=1, says=["order = 3"], error="toml.conflicting-keys")
         self.copy_example("ex01-spinup")
         deck = self.read("boom.bdf")

@@ -97,30 +97,39 @@ class TestReduced(ProgramTest):
         self.check_tables(structure, phi, third, names, C)
 
     def test_small_modes(self):
-        """Two large modes of four: V₃ of two large ones and a small one, displacements of degree 2 of all."""
+        """Two large modes of four: the manifold of these alone, and u₂ of other pairs that cancels their cubic energy."""
         nodes, axes = self.make('frame = "fixed"\n[body.stiffening]\norder = 3\nlarge = [1, 3]', modes=4)
         beams = make_beams(self.X, nodes, axes, E * A, G * J, E * I2, E * I1, (I1 + I2) / A)
         structure = Structure(self.X, [Elements(**beams)], held=range(6))
         phi, third, _, _ = self.read_tables()
-        m = Manifold(structure, phi, order=4)
         s = np.diag(phi.T @ structure.K @ phi)**-.5
         self.assertEqual(third["large"].tolist(), [1, 3])
-        scale = np.prod(s**exponents(4, 2), 1)[:, None]
-        np.testing.assert_allclose(third["node_2"][0] * scale, m.u[2].c[:, -6:] * scale,
-                                   rtol=0, atol=1e-6 * np.abs(m.u[2].c * scale).max())
-        V3 = dict(zip(map(tuple, exponents(4, 3)), m.energy((3,))[0].c.ravel()))
-        for i, e in enumerate(exponents(2, 2)):
-            for column, small in enumerate((1, 3)):
-                key = np.zeros(4, int)
-                key[[0, 2]] = e
-                key[small] = 1
-                size = np.prod(s**key)
-                self.assertAlmostEqual(third["energy_small"][i, column] * size, V3[tuple(key)] * size, delta=1e-7)
-        two = Manifold(structure, phi[:, [0, 2]], order=4, W=structure.K @ phi)
+        all_modes, two = Manifold(structure, phi * s, order=2), Manifold(structure, phi[:, [0, 2]] * s[[0, 2]], order=4)
+        pairs, u = exponents(4, 2), all_modes.u[2].c.copy()
+        force = all_modes.residual[2].c @ (phi * s)         # gradient of V₃
+        for i, e in enumerate(pairs):
+            if e[1] + e[3] == 0:
+                u[i] = two.u[2].c[[tuple(x) for x in exponents(2, 2)].index(tuple(e[[0, 2]]))]
+            else:
+                stiffest = 3 if e[3] else 1              # and mode 4 where none of the pair is stiffer
+                for t in {stiffest, 3}:
+                    u[i] -= (phi * s)[:, t] * force[i, t] / (1 + e[t])
+        scale = np.prod(s**pairs, 1)[:, None]
+        np.testing.assert_allclose(third["node_2"][0] * scale, u[:, -6:], rtol=0, atol=1e-6 * np.abs(u).max())
+        eta = np.random.default_rng(4).normal(size=(6, 4))
+        for k, x in enumerate(eta):
+            x[[1, 3] if k == 0 else []] = 0
+            curve = np.zeros((4, structure.num_dofs))
+            curve[1], curve[2] = phi @ (s * x), np.prod(x**pairs, 1) @ u
+            self.assertAlmostEqual(structure.energy(curve)[3], two.energy((3,))[0](x[[0, 2]])[()], delta=1e-9)
         for k, table in zip((3, 4, 5, 6), two.energy((3, 4, 5, 6))):
             size = np.prod(s[[0, 2]]**exponents(2, k), 1)
-            np.testing.assert_allclose(third[f"energy_{k}"] * size, table.c.ravel() * size,
-                                       rtol=1e-6, atol=1e-7 * max(1., np.abs(table.c.ravel() * size).max()))
+            c = table.c.ravel()
+            np.testing.assert_allclose(third[f"energy_{k}"] * size, c, rtol=1e-6, atol=1e-7 * max(1., np.abs(c).max()))
+        for k in (3, 4):
+            size = np.prod(s[[0, 2]]**exponents(2, k), 1)[:, None]
+            np.testing.assert_allclose(third[f"node_{k}"][0] * size, two.u[k].c[:, -6:],
+                                       rtol=0, atol=1e-6 * np.abs(two.u[k].c).max())
 
 
 if __name__ == "__main__":

@@ -280,6 +280,37 @@ class TestLinks(unittest.TestCase):
                 np.testing.assert_allclose(table(eta), moved @ f.ravel(), atol=1e-12)
 
 
+class TestSmallModes(unittest.TestCase):
+    """A mast with a mass on a rigid arm: four bending modes large, twist modes small."""
+
+    def setUp(self):
+        length, num, arm = 2., 12, np.array([.1, .25, -.15])
+        self.s, self.rods = chain([(0, 0, 0), (length, 0, 0)], [(0, 1, 0)], num, 7e6, (39., 140., 56.),
+                                  links=[(num + 1, num)], extra=[arm + (length, 0, 0)])
+        masses = np.zeros((num + 2, 6))
+        masses[:num + 1, :3], masses[num + 1, :3] = .54 / num, .5
+        masses[:num + 1, 3] = .54 / num * 2.8e-5
+        independent, free = self.s.independent, self.s.free
+        M = np.zeros_like(self.s.K)
+        M[np.ix_(independent, independent)] = self.s.T.T @ np.diag(masses.ravel()) @ self.s.T
+        K = self.s.K[np.ix_(free, free)]
+        values, vectors = eigh(M[np.ix_(free, free)], K)     # massless rotations: infinite eigenvalues of the other order
+        self.Phi = np.zeros((self.s.num_dofs, 6))
+        self.Phi[free] = vectors[:, :-7:-1]                  # unit strain energy
+
+    def test_quartic_energy_without_what_small_modes_follow(self):
+        """V₄ with W of all modes is that of the large ones and ½ cᵀKc, c the static amplitudes of the small ones."""
+        large, small = self.Phi[:, :4], self.Phi[:, 4:]
+        alone, held = Manifold(self.s, large), Manifold(self.s, large, W=self.s.K @ self.Phi)
+        eta = np.random.default_rng(5).normal(size=(4, 4))
+        c = held.residual[2](eta) @ small
+        V = [m.energy((3, 4)) for m in (alone, held)]
+        np.testing.assert_allclose(V[0][0](eta), V[1][0](eta), atol=1e-9)
+        np.testing.assert_allclose(V[0][1](eta) + .5 * (c**2).sum(1), V[1][1](eta), rtol=1e-8)
+        print("V4 of the large modes alone, and with the small ones held:", V[0][1](eta), V[1][1](eta))
+        np.testing.assert_allclose(alone.u[2](eta) @ self.s.K @ small, -c, atol=1e-9)
+
+
 class TestInvariance(unittest.TestCase):
     corners = [(0, 0, 0), (1, 0, 0), (1, .7, 0), (1, .7, .5)]
 

@@ -1,0 +1,75 @@
+#include "solver/bodies/next_order.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "solver/bodies/third_order.hpp"
+
+namespace bough::solver {
+namespace {
+
+/// Amplitudes on the stack.
+using Amplitudes = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, records::kMaxThirdOrderModes, 1>;
+/// Error of a cantilever of second order by (|u_2|/|u_1|)²: 1.03 w² and 0.6 w at a way of w lengths.
+constexpr double kCantilever = 3;
+
+/// Displacement of the node beyond φη.
+Vector3d calc_higher(const Node& node, const ConstVectorRef& eta) {
+  NodeInBody at;
+  const Amplitudes rest = Amplitudes::Zero(eta.size());
+  calc_node_in_body(node, eta, rest, at);
+  Vector3d u = at.r - node.p;
+  for (Eigen::Index j = 0; j < eta.size(); ++j) u -= node.phi.col(j) * eta[j];
+  return u;
+}
+
+double calc_root(double ratio, int degree) { return std::pow(ratio, 1.0 / degree); }
+
+}  // namespace
+
+double calc_next_order(const Body& body, const Node& node, const ConstVectorRef& eta, double size) {
+  Vector3d u1 = Vector3d::Zero();
+  for (Eigen::Index j = 0; j < eta.size(); ++j) u1 += node.phi.col(j) * eta[j];
+  const double first = u1.norm();
+  if (!(first > 0)) return 0;
+  if (!body.third_order()) {
+    const double of_size = size > 0 ? first * first / (size * size) : 0;
+    if (node.K2.size() == 0) return of_size;
+    double square = 0;  // |u_2|²; u_2a = -½ ηᵀK2_a η
+    for (int a = 0; a < 3; ++a) {
+      double twice = 0;
+      for (Eigen::Index j = 0; j < eta.size(); ++j) twice += node.K2.row(a + 3 * j).dot(eta) * eta[j];
+      square += 0.25 * twice * twice;
+    }
+    return std::max(of_size, kCantilever * square / (first * first));
+  }
+  // Degrees apart by their values at ±η and ±½η.
+  const std::array<double, 4> shares = {1, -1, 0.5, -0.5};
+  std::array<Vector3d, 4> u;
+  std::array<double, 4> V{};
+  for (std::size_t i = 0; i < shares.size(); ++i) {
+    const Amplitudes part = shares[i] * eta;
+    u[i] = node.higher.empty() ? Vector3d(Vector3d::Zero()) : calc_higher(node, part);
+    V[i] = body.third_order()->calc_energy(part);
+  }
+  const Vector3d even = 0.5 * (u[0] + u[1]), half = 0.5 * (u[2] + u[3]);
+  const Vector3d u2 = (16 * half - even) / 3, u3 = 0.5 * (u[0] - u[1]), u4 = even - u2;
+  double ratio = 0;
+  ratio = std::max(ratio, u2.norm() / first);
+  ratio = std::max(ratio, calc_root(u3.norm() / first, 2));
+  ratio = std::max(ratio, calc_root(u4.norm() / first, 3));
+  double twice = 0;  // ηᵀKη
+  for (Eigen::Index j = 0; j < eta.size(); ++j) twice += body.K().col(j).dot(eta) * eta[j];
+  if (twice > 0) {
+    const double V_even = 0.5 * (V[0] + V[1]), V_half = 0.5 * (V[2] + V[3]);     // V_4 + V_6, V_4/16 + V_6/64
+    const double V_odd = 0.5 * (V[0] - V[1]), V_odd_half = 0.5 * (V[2] - V[3]);  // V_3 + V_5, V_3/8 + V_5/32
+    const double V4 = (64 * V_half - V_even) / 3, V3 = (32 * V_odd_half - V_odd) / 3;
+    const std::array<double, 4> energies = {V3, V4, V_odd - V3, V_even - V4};
+    for (int k = 3; k <= 6; ++k)
+      ratio = std::max(ratio, calc_root(std::abs(energies[static_cast<std::size_t>(k - 3)]) / (0.5 * twice), k - 2));
+  }
+  return std::pow(ratio, 4);
+}
+
+}  // namespace bough::solver

@@ -1,0 +1,16 @@
+#pragma once
+/// \file Size of the terms that the displacements of a body leave out (docs/theory/third-order.md, "Next order").
+#include "solver/bodies/body.hpp"
+
+namespace bough::solver {
+
+/// Estimates the first order that the body leaves out, relative to the deflection of the node, from the orders that it
+/// has. Order 3: r⁴, r the largest ratio of two orders next to each other, (|u_k|/|u_1|)^(1/(k-1)) of the node's
+/// displacements and (|V_k|/V_2)^(1/(k-2)) of the strain energy. Order 2: (|u_1|/size)², or 3 |u_2|²/|u_1|² of a node
+/// with locators if that is more; both are the error of a cantilever.
+/// \param eta   n amplitudes.
+/// \param size  [L] size of the body.
+/// \return 0 for a node at rest. \note No allocation.
+double calc_next_order(const Body& body, const Node& node, const ConstVectorRef& eta, double size);
+
+}  // namespace bough::solver

@@ -1,0 +1,156 @@
+"""Bodies of third order with stiff modes among those kept: a beam with a mass on a rigid arm, bent by 0.13 lengths, against
+a rod with exact rotations."""
+import os
+import re
+import sys
+import unittest
+
+import h5py
+import numpy as np
+from scipy.optimize import fsolve
+
+from support import SOURCE, ProgramTest
+
+sys.path.insert(0, os.path.join(SOURCE, "tests/oracle/third_order"))
+from rods import Chain, to_matrix  # noqa: E402
+
+E, G, RHO = 7e10, 2.6e10, 2700.
+A, I1, I2, J = 1e-4, 8e-10, 2e-9, 1.5e-9
+LENGTH, NUM = 2., 20
+ARM = np.array([.1, .05, .03])
+TIP, END = NUM + 1, NUM + 2
+
+
+def find_end(force):
+    """Displacement of the end of the arm under a dead force there; exact rods by shooting."""
+    rods = Chain([(LENGTH, np.eye(3))], E * A, (G * J, E * I2, E * I1))
+    moment = np.zeros(3)
+    for share in (.25, .5, .75, 1.):
+        f = share * force
+
+        def miss(m):
+            _, q, _, end = rods.run(np.r_[f, m], [f])
+            return end - np.cross(to_matrix(q[-1]) @ ARM, f)
+        start = np.cross(np.array([LENGTH, 0, 0]) + ARM, f) if share == .25 else moment * share / (share - .25)
+        moment = fsolve(miss, start, xtol=1e-12)
+    x, q, _, _ = rods.run(np.r_[force, moment], [force])
+    return x[-1] + (to_matrix(q[-1]) - np.eye(3)) @ ARM - np.array([LENGTH, 0, 0])
+
+
+class ThirdOrderModes(ProgramTest):
+    FORCE = np.array([0., 4., 8.])
+
+    def make(self, modes, keys="order = 3", more=""):
+        lines = ["SOL 103", "CEND", "SPC = 1", "BEGIN BULK", "SPC1,1,123456,1", f"MAT1,1,{E!r},{G!r},,{RHO!r}",
+                 f"PBAR,1,1,{A!r},{I1!r},{I2!r},{J!r}"]
+        lines += [f"GRID,{i + 1},,{LENGTH * i / NUM},0.,0." for i in range(NUM + 1)]
+        lines += [f"CBAR,{i},1,{i},{i + 1},0.,1.,0." for i in range(1, NUM + 1)]
+        lines += [f"GRID,{END},,{LENGTH + ARM[0]},{ARM[1]},{ARM[2]}", f"RBE2,900,{TIP},123456,{END}", f"CONM2,901,{END},,.5"]
+        self.write("mast.bdf", "\n".join(lines) + "\nENDDATA\n")
+        self.write("mast.toml", f'[body]\nname = "mast"\ndeck = "mast.bdf"\nframe = "fixed"\ninterface = [{END}]\n'
+                   f"[body.modes]\nnumber = {modes}\n{more}[body.stiffening]\n{keys}\n")
+        self.bough("reduce", "mast.toml", "-o", "mast.h5", "-q")
+        with h5py.File(self.path("mast.h5")) as f:
+            large = list(f["third_order/large"][:]) if "third_order" in f else []
+            return f["modes/frequency_hz"][:], large
+
+    def write_system(self, force=None, eta=None):
+        text = '[[body]]\nname = "mast"\nfile = "mast.h5"\n' + (f"eta = {[float(x) for x in eta]}\n" if eta is not None else "")
+        text += '[[hinge]]\nname = "foot"\ntype = "fixed"\nparent = "ground"\nchild = "mast"\n'
+        if force is not None:
+            text += f'[[force]]\nname = "pull"\nbody = "mast"\nnode = {END}\nforce = {force.tolist()}\n'
+        text += f'[[sensor]]\nname = "end"\ntype = "deflection"\nbody = "mast"\nnode = {END}\nframe = "body"\n'
+        text += ('[simulation]\nduration = 1.0\noutput_step = 0.002\nintegrator = "adams"\nrelative_tolerance = 1e-9\n'
+                 "absolute_tolerance = 1e-12\n")
+        self.write("mast-system.toml", text)
+
+    def find_rest(self):
+        self.write_system(self.FORCE)
+        self.bough("equilibrium", "mast-system.toml", "-o", "rest.h5", "-q")
+        with h5py.File(self.path("rest.h5")) as f:
+            return f["sensors/end"][-1]
+
+    def test_frame_with_residual_vectors(self):
+        """An L-frame in space: modes and residual vectors that are not large carry a share of the load."""
+        corners, num = np.array([(0, 0, 0), (1, 0, 0), (1, .7, .2)], float), 10
+        X = np.concatenate([corners[:1]] + [a + (b - a) * np.arange(1, num + 1)[:, None] / num
+                                            for a, b in zip(corners[:-1], corners[1:])])
+        y, tip = [(0., 1., 0.), (1., 0., 0.)], len(X)
+        lines = ["SOL 103", "CEND", "SPC = 1", "BEGIN BULK", "SPC1,1,123456,1", f"MAT1,1,{E!r},{G!r},,{RHO!r}",
+                 f"PBAR,1,1,{A!r},{I1!r},{I2!r},{J!r}"] + [f"GRID,{i + 1},,{a},{b},{c}" for i, (a, b, c) in enumerate(X.tolist())]
+        lines += [f"CBAR,{i + 1},1,{i + 1},{i + 2}," + ",".join(map(str, y[i // num])) for i in range(2 * num)]
+        pieces = []
+        for k, (a, b) in enumerate(zip(corners[:-1], corners[1:])):
+            x = (b - a) / np.linalg.norm(b - a)
+            z = np.cross(x, y[k]) / np.linalg.norm(np.cross(x, y[k]))
+            pieces.append((np.linalg.norm(b - a), np.stack([x, np.cross(z, x), z], 1)))
+        force = np.array([6., 8., 12.])
+        rods = Chain(pieces, E * A, (G * J, E * I2, E * I1))
+        exact = rods.solve([np.zeros(3), force])[0][-1] - corners[-1]
+        for modes in (3, 6, 10):
+            self.write("mast.bdf", "\n".join(lines) + "\nENDDATA\n")
+            self.write("mast.toml", f'[body]\nname = "mast"\ndeck = "mast.bdf"\nframe = "fixed"\ninterface = [{tip}]\n[body.modes]\n'
+                       f'number = {modes}\nresidual = ["interface"]\n[body.stiffening]\norder = 3\n')
+            self.bough("reduce", "mast.toml", "-o", "mast.h5", "-q")
+            self.write_system(force)
+            text = self.read("mast-system.toml").replace(f"node = {END}", f"node = {tip}")
+            self.write("mast-system.toml", text)
+            self.bough("equilibrium", "mast-system.toml", "-o", "rest.h5", "-q")
+            with h5py.File(self.path("rest.h5")) as f:
+                off = np.linalg.norm(f["sensors/end"][-1] - exact) / np.linalg.norm(exact)
+            print(f"L-frame, {modes} modes and residual vectors: off by {100 * off:.3f} % of {np.linalg.norm(exact):.3f} m")
+            self.assertLess(off, 2e-3)
+
+    def find_rest_and_estimate(self, force):
+        self.write_system(force)
+        printed = self.bough("equilibrium", "mast-system.toml", "-o", "rest.h5").stderr
+        estimate = re.search(r"estimated at (\S+) % of that.*\[run.linear-limit\]", printed)
+        with h5py.File(self.path("rest.h5")) as f:
+            return f["sensors/end"][-1], float(estimate[1]) / 100 if estimate else None
+
+    def test_next_order_is_estimated(self):
+        """Warnings of equilibrium and of a run that passes the same state; estimates against the error of the end."""
+        for keys, ways in (("order = 2", (.5, 1., 1.5)), ("order = 3", (1., 1.5, 3.))):
+            self.make(4, keys)
+            warned = []
+            for way in ways:
+                exact = find_end(way * self.FORCE)
+                found, estimate = self.find_rest_and_estimate(way * self.FORCE)
+                error = np.linalg.norm(found - exact) / np.linalg.norm(exact)
+                print(f"{keys}, way {np.linalg.norm(exact) / LENGTH:.2f} lengths: off by {error:.1e}, estimate {estimate}")
+                warned.append(estimate is not None)
+                if estimate:
+                    self.assertGreater(estimate, .3 * error)
+                    self.assertLess(estimate, 6 * error)
+                else:
+                    self.assertLess(error, .01)
+            self.assertEqual((warned[0], warned[-1]), (False, True))
+        with h5py.File(self.path("mast.h5")) as f:
+            phi = f["modes/phi"][list(f["nodes/id"][:]).index(END)]
+        self.write_system(eta=[.9 / np.abs(phi[:3, 0]).max(), 0, 0, 0])
+        printed = self.bough("run", "mast-system.toml", "-o", "swing.h5").stderr
+        self.assertRegex(printed, r"body 'mast' deflects by \S+ at node \d+ at t = 0: .*\[run.linear-limit\]")
+
+    def test_error_does_not_grow_with_the_number_of_modes(self):
+        exact = find_end(self.FORCE)
+        self.assertGreater(np.linalg.norm(exact), .13 * LENGTH)
+        off = {}
+        for modes in (4, 6, 8, 12):
+            frequency, large = self.make(modes)
+            off[modes] = np.linalg.norm(self.find_rest() - exact) / np.linalg.norm(exact)
+            self.assertEqual(large, [1, 2, 3, 4])
+            print(f"{modes} modes to {frequency[-1]:.0f} Hz, large {large}: off by {100 * off[modes]:.3f} % of {np.linalg.norm(exact):.3f} m")
+        frequency, large = self.make(4, more='residual = ["interface"]\n')
+        off["residual"] = np.linalg.norm(self.find_rest() - exact) / np.linalg.norm(exact)
+        print(f"4 modes and residual vectors to {frequency[-1]:.0f} Hz, large {large}: {100 * off['residual']:.3f} %")
+        self.assertEqual(large, [1, 2, 3, 4])
+        self.make(8, "order = 2")
+        print(f"order 2: {100 * np.linalg.norm(self.find_rest() - exact) / np.linalg.norm(exact):.2f} %")
+        self.assertLess(max(off.values()), 1e-3)
+        self.assertLess(off[12], 1.05 * off[4])
+        self.make(6, "order = 3\nlarge = 6")
+        print(f"six large modes of six: {100 * np.linalg.norm(self.find_rest() - exact) / np.linalg.norm(exact):.2f} %")
+
+
+if __name__ == "__main__":
+    unittest.main()
