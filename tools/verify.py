@@ -22,6 +22,7 @@ from scipy.optimize import brentq
 
 import demo_report
 import spinup_numbers
+import verify_nonlinear
 import verify_plates
 import verify_response
 import verify_rotor
@@ -272,7 +273,7 @@ verify_buckling()
 for verify in [verify_rotating, verify_spinup, verify_hub, verify_two_link, verify_free_flyer, verify_plate, verify_blade]:
     with tempfile.TemporaryDirectory() as scratch:
         verify(scratch)
-for cases in [verify_response, verify_rotor]:
+for cases in [verify_response, verify_rotor, verify_nonlinear]:
     with tempfile.TemporaryDirectory() as scratch:
         cases.verify(bough, scratch, add)
 with tempfile.TemporaryDirectory() as scratch:

@@ -16,6 +16,10 @@ class Ran:
         """Identifiers of the errors."""
         return re.findall(r"error: .*\[([\w.-]+)\]", self.err)
 
+    def warnings(self):
+        """Identifiers of the warnings."""
+        return re.findall(r"warning: .*\[([\w.-]+)\]", self.err)
+
     def first_error(self):
         found = re.search(r"error: .*", self.err)
         return found.group(0)[:200] if found else self.err[-200:]
