@@ -29,6 +29,32 @@ bool is_constrained(const records::Deck& deck) {
   }
 }
 
+/// Axis of a hinge at a grid: z, or y or x where z is the normal of shells that alone meet there. About their normal
+/// they leave the grid without mass and nearly without stiffness: the hinge would turn the grid and not the plate.
+std::string choose_hinge_axis(const records::Deck& deck, int grid) {
+  const std::string axes[] = {"axis = [1.0, 0.0, 0.0]", "axis = [0.0, 1.0, 0.0]", "axis = [0.0, 0.0, 1.0]"};
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();
+  try {
+    Diagnostics diagnostics;
+    const auto model = fe::build_model(deck, {}, diagnostics);
+    for (const auto& element : model.elements()) {
+      const auto& nodes = element->nodes();
+      if (std::find(nodes.begin(), nodes.end(), model.find_node(grid)) == nodes.end()) continue;
+      const auto shape = element->shape();
+      if (shape.type == "line2") return axes[2];
+      if (shape.type != "tri3" && shape.type != "quad4") continue;
+      const auto place = [&](std::size_t k) { return model.node(shape.nodes[k]).x; };
+      normal += (place(1) - place(0)).cross(place(2) - place(0)).normalized().cwiseAbs();
+    }
+  } catch (const Failure&) {
+    return axes[2];
+  }
+  for (const int axis : {2, 1, 0})
+    if (normal[axis] <= 0.75 * normal.norm())
+      return axes[axis] + (axis == 2 ? "" : "  # z is the normal of the shells at this grid");
+  return axes[2];
+}
+
 /// Grids at which other structures hang: independent grids of RBE2, reference grids of RBE3, SUPORT. Without those that
 /// a constraint holds.
 std::vector<int> find_interface(const records::Deck& deck) {
@@ -127,7 +153,7 @@ std::vector<StartFile> make_start_files(const records::Deck& deck, const DeckSta
                                   : is_fixed ? "fixed"
                                              : "free",
                                   name);
-  if (grid > 0) hinge += fmt::format("child_node = {}\naxis = [0.0, 0.0, 1.0]\n", grid);
+  if (grid > 0) hinge += fmt::format("child_node = {}\n{}\n", grid, choose_hinge_axis(deck, grid));
   const std::string system = fmt::format(
       "# bough run {0}-run.toml -o {0}-run.h5\n[[body]]\nname = \"{0}\"\nfile = \"{0}.h5\"\n\n"
       "[[hinge]]\nname = \"base\"\n{1}\n[simulation]\nduration = 1.0\noutput_step = 0.01\n{2}"

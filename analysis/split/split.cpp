@@ -268,6 +268,9 @@ void note_pieces(const Partition& partition, const Structure& structure, Diagnos
 SplitAnswer split_deck(const SplitRequest& request, Events& events) {
   do_once([&] { demand_deck(request.deck); });
   linear::initialize_petsc();
+  if (request.name.find('/') != std::string::npos)
+    throw InputError("split.bad-name", {}, "--name is \"" + request.name + "\", expected a name without a slash",
+                     "give the folder by -o");
   Diagnostics diagnostics;
   const auto model_options = make_model_options(request.model);
   const auto deck = read_deck_or_throw(request.deck, model_options, diagnostics);

@@ -245,6 +245,7 @@ class Split(ProgramTest):
                (("--grids", "3,3"), "split.bad-choice", "twice"), ((), "split.bad-choice", "--parts"),
                (("--parts", "2", "--grids", "3"), "split.bad-choice", "two ways"),
                (("--plane", "x=99"), "split.nothing-separated", "x=99"), (("--plane", "w=1"), "split.bad-plane", "w=1"),
+               (("--name", "a/b"), "split.bad-name", "a/b"),
                (("--plane", "0,0,0=1"), "split.bad-plane", "0,0,0=1"),
                (("--elements", "1-8"), "split.nothing-separated", "one part"),
                (("--elements", "1-3", "--elements", "3-5"), "split.element-in-two-parts", "deck.bdf:"),

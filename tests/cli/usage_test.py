@@ -107,6 +107,20 @@ class InitFromDeck(ProgramTest):
         self.assertIn('frame = "mean"', said.stdout + said.stderr)
         self.fails(1, "init", "boom.bdf", "--hinge", "99", "--force", error="cli.unknown-interface")
 
+    def test_a_plate_turns_about_an_axis_in_its_plane(self):
+        """About its normal a hinge would turn the grid alone, which has no mass there: solver.indefinite-mass."""
+        grids = "".join(f"GRID,{5 * j + i + 1},,{0.2 * i:.1f},{0.2 * j:.1f},0.\n" for j in range(5) for i in range(5))
+        quads = "".join(f"CQUAD4,{4 * j + i + 1},1,{5 * j + i + 1},{5 * j + i + 2},{5 * j + i + 7},{5 * j + i + 6}\n"
+                        for j in range(4) for i in range(4))
+        self.write("plate.bdf", "SOL 103\nCEND\nMETHOD = 1\nBEGIN BULK\nEIGRL,1,,,10\nMAT1,1,7.+10,,.3,2700.\n"
+                   f"PSHELL,1,1,.02,1,,1\n{grids}{quads}ENDDATA\n")
+        os.makedirs(self.path("own"))
+        self.folder = self.path("own")
+        self.bough("init", "../plate.bdf", "--hinge", "1")
+        self.assertIn("axis = [0.0, 1.0, 0.0]", self.read("plate-run.toml"))
+        self.bough("reduce", "plate.toml")
+        self.write("plate-run.toml", self.read("plate-run.toml").replace("duration = 1.0", "duration = 0.01"))
+        self.bough("run", "plate-run.toml", "-o", "r.h5")
 
     def test_a_revolute_hinge_clamps_the_other_directions(self):
         self.copy_example("ex10-robot-arm")
