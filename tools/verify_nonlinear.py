@@ -28,7 +28,7 @@ def solve(bough, folder, points, section, load):
         f.write(text + load + "ENDDATA\n")
     bough(folder, "static", "bars.bdf", "-o", "bars.h5")
     with h5py.File(os.path.join(folder, "bars.h5")) as f:
-        return f["/subcases/0/displacement"][:][-6:] if "/subcases/0" in f else f["/subcases/1/displacement"][:][-6:]
+        return f["/subcases/0/displacement"][-6:]
 
 
 def calc_elastica(alpha):

@@ -19,7 +19,7 @@ class Nonlinear(ProgramTest):
         result = self.bough("static", "a.bdf", "-o", "a.h5")
         self.assertIn("written: a.h5", result.stdout)
         with h5py.File(self.path("a.h5")) as f:
-            tip = f["/subcases/1/displacement"][-6:]
+            tip = f["/subcases/0/displacement"][-6:]
         # P L^2 / EI = 2: Mattiasson, IJNME 17 (1981) 145.
         np.testing.assert_allclose(tip[[0, 2]], [-0.16064, 0.49346], atol=3e-4)
         self.assertAlmostEqual(-tip[4], 0.78175, delta=1e-3)

@@ -19,6 +19,8 @@ struct Case {
   double smallest_ratio;  ///< of the stress of the modes to K_G2, which the old road leaves out
 };
 
+void PrintTo(const Case& one, std::ostream* out) { *out << one.name; }
+
 std::string make_grids(int first, int num, const char* direction) {
   std::string text;
   for (int i = 0; i < num; ++i) {
