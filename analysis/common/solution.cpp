@@ -65,22 +65,26 @@ const OtherSolution* find_other_solution(const std::string& sol) {
   return found == all.end() ? nullptr : &found->second;
 }
 
+bool has_large_displacements(const records::Deck& deck) {
+  const auto* found = deck.find_param("LGDISP");
+  return found && (found->value == "1" || found->value == "2");
+}
+
 }  // namespace
 
 void note_solution(const records::Deck& deck, Diagnostics& diagnostics) {
   const auto* other = find_other_solution(deck.sol);
-  if (other)
+  if (other && other->has_nonlinear_statics && has_large_displacements(deck))
+    diagnostics.note("cli.other-solution", deck.locate({0, 0}),
+                     fmt::format("SOL {} is {}, with PARAM,LGDISP", deck.sol, other->name),
+                     "bough static solves it with large displacements and elastic materials, other commands linearly");
+  else if (other)
     diagnostics.note("cli.other-solution", deck.locate({0, 0}), fmt::format("SOL {} is {}", deck.sol, other->name),
                      other->has_complex_modes ? "bough modes gives them; with --ignore CMETHOD the real ones"
                                               : "this is the linear solution of the cards as they stand");
 }
 
 namespace {
-
-bool has_large_displacements(const records::Deck& deck) {
-  const auto* found = deck.find_param("LGDISP");
-  return found && (found->value == "1" || found->value == "2");
-}
 
 /// Names of the cards of the deck that make its elements nonlinear, those that are passed over among them.
 std::string list_nonlinear_cards(const records::Deck& deck) {
@@ -89,7 +93,8 @@ std::string list_nonlinear_cards(const records::Deck& deck) {
                                            "BOUTPUT", "MATVE",    "MATVP",   "PLSOLID", "PLPLANE"};
   std::string text;
   for (const auto& card : deck.unused)
-    if (names.count(card.name) > 0) text += (text.empty() ? "" : ", ") + card.name;
+    if (names.count(card.name) > 0 && card.name != "CGAP") text += (text.empty() ? "" : ", ") + card.name;
+  if (!deck.special.cgap.empty()) text += text.empty() ? "CGAP" : ", CGAP";
   return text;
 }
 

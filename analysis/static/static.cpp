@@ -119,12 +119,15 @@ StaticAnswer solve_static(const StaticRequest& request, StaticReceiver& receiver
   const bool lists_forces = listing && asks_for(requests, "GPFORCE") && !is_nonlinear;
   if (lists_forces || !request.grid_forces.empty())
     solver.ask_grid_forces(lists_forces ? std::vector<int>{} : read_grids(request.grid_forces));
+  if (is_nonlinear && asks_for(requests, "GPFORCE"))
+    diagnostics.warning("cli.nonlinear-output", deck.locate({}), "GPFORCE lists forces of linear elements alone",
+                        "leave it out, or give --linear");
   if (!listing) note_requests(deck, requests, {{"ESE", "--f06 FILE, or -o FILE.h5,"}}, diagnostics);
   if (is_nonlinear && !requests.combinations.empty())
     diagnostics.error("cli.nonlinear-combination", deck.locate({}),
                       "SUBCOM, SYMCOM or REPCASE adds subcases, which nonlinear solutions do not allow",
                       "take it away, or give --linear");
-  if (!listing && request.grid_forces.empty())
+  if (!listing && request.grid_forces.empty() && !is_nonlinear)
     note_requests(deck, requests, {{"GPFORCE", "--f06 FILE, or --grid-forces all,"}}, diagnostics);
   diagnostics.throw_if_errors();
   receiver.begin(request.model.subcase == 0 && !requests.combinations.empty());

@@ -9,11 +9,12 @@ namespace bough::fe {
 
 /// An element under finite motion. Dofs as of the element; rotations of the forces are spins in basic.
 struct FiniteForces {
-  VectorXd d;           ///< N: deformations seen from the frame; a linear element gives its forces and stresses of them
+  VectorXd d;           ///< N: deformations seen from the frame
   VectorXd f;           ///< N: forces, moments
   MatrixXd K;           ///< N x N: ∂f by displacements and spins; symmetric where the moments are zero
   double energy = 0;    ///< V
   double max_turn = 0;  ///< largest angle between a node and the frame, rad
+  VectorXd internal;    ///< s: internal forces of the stress state, with those of second-order strains
   VectorXd g;           ///< N: ∂V/∂d
   MatrixXd H;           ///< N x N: ∂g/∂d
 };

@@ -70,6 +70,7 @@ void CorotationalElement::calc_local_forces(FiniteForces& result) const {
   MatrixXd Pd(N, s);
   for (Index m = 0; m < s; ++m) Pd.col(m) = P_[static_cast<std::size_t>(m)] * d;
   const VectorXd w = Pd.transpose() * d, strain = F_ * d, E_w = E_ * w, h = strain + 0.5 * E_w;
+  result.internal = h;
   result.energy += 0.5 * strain.dot(w) + 0.125 * w.dot(E_w);
   result.g += 0.5 * (F_.transpose() * w) + Pd * h;
   const MatrixXd Pd_F = Pd * F_;

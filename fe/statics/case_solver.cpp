@@ -147,6 +147,12 @@ void CaseSolver::solve_nonlinear(const StaticLoad& load, Solved& solved) {
       throw InputError("fe.nonlinear-load", deck_.locate({}),
                        "PLOAD1 of set " + std::to_string(result.load_set) + " loads beams between their grids",
                        "give forces on the grids, or --linear");
+    const auto& cards = deck_.load_cards;
+    if (!cards.directed.empty() || !cards.pressures.empty() || !cards.grid_pressures.empty())
+      diagnostics.warning(
+          "fe.dead-load", deck_.locate({}),
+          "pressures, FORCE1, FORCE2, MOMENT1 and MOMENT2 keep the direction of the undeformed structure",
+          "load by FORCE cards in several subcases where the faces turn far");
     if (!path_ || !continues_) path_ = std::make_unique<NonlinearStatics>(*model_, deck_);
     path_->go_to(load, *nonlinear_, diagnostics);
     take(path_->make_result(), result);
@@ -165,7 +171,7 @@ void CaseSolver::add_element_results(std::span<const StaticLoad> loads, const Ma
     if (!solved[k].result) continue;
     auto& result = *solved[k].result;
     cases.push_back({&result.displacement, result.load_set, &loads[k].initial, &solved[k].said,
-                     nonlinear_ ? &path_->deformations() : nullptr});
+                     nonlinear_ ? &path_->deformed() : nullptr});
     of.push_back(k);
   }
   MatrixXd own_energy;

@@ -230,6 +230,9 @@ void find_forces(const std::vector<RecoveryCase>& cases, const EndLoads& end_loa
   state->calc_internal_forces_of(at.U, at.forces);
   for (std::size_t c = 0; c < cases.size(); ++c) {
     auto force = at.forces.col(static_cast<Index>(c));
+    if (cases[c].deformed)
+      if (const auto& own = cases[c].deformed->internal_forces[static_cast<std::size_t>(at.index)]; own.size() > 0)
+        force = own;
     if (!at.heated.empty() && at.heated[c]) force += at.heated[c]->force;
     if (const auto own = end_loads[c].find(at.index); own != end_loads[c].end())
       at.element.as_beam()->add_load_forces(own->second, force);
@@ -270,8 +273,8 @@ std::vector<ElementResults> recover_elements(const Model& model, const records::
     const auto& gdofs = element.gdofs();
     Current at{element, e, half, MatrixXd(element.num_dofs(), static_cast<Index>(cases.size()))};
     for (std::size_t c = 0; c < cases.size(); ++c) {
-      if (cases[c].deformations) {
-        at.U.col(static_cast<Index>(c)) = (*cases[c].deformations)[static_cast<std::size_t>(e)];
+      if (cases[c].deformed) {
+        at.U.col(static_cast<Index>(c)) = cases[c].deformed->displacements[static_cast<std::size_t>(e)];
         continue;
       }
       for (std::size_t i = 0; i < gdofs.size(); ++i)

@@ -4,14 +4,20 @@
 
 namespace bough::fe {
 
+/// Large displacements (nonlinear.hpp), by element.
+struct DeformedElements {
+  std::vector<VectorXd> displacements;
+  std::vector<VectorXd> internal_forces;  ///< empty without a stress state
+};
+
 /// Displacements with the loads and temperatures of their case. The pointers outlive the call.
 struct RecoveryCase {
   const VectorXd* u_g = nullptr;           ///< num_gdofs
   int load = 0;                            ///< LOAD: loads along beams; 0: none
   const InitialForces* initial = nullptr;  ///< of heated elements
   Diagnostics* said = nullptr;             ///< of the loads along beams; may be null
-  /// Displacements of each element instead of those of u_g: deformations seen from its frame (nonlinear.hpp).
-  const std::vector<VectorXd>* deformations = nullptr;
+  /// Elements by themselves, instead of u_g.
+  const DeformedElements* deformed = nullptr;
 };
 
 struct RecoveredFields {

@@ -17,7 +17,7 @@ namespace {
 using Eigen::Index;
 using Triplets = std::vector<Eigen::Triplet<double>>;
 
-constexpr int kMaxHalvings = 6;
+constexpr int kMaxHalvings = 10;
 /// Work of the last correction relative to the strain energy: the correction before it is applied as well, so that the
 /// error left is of the order of its square.
 constexpr double kWorkTolerance = 1e-20;
@@ -32,6 +32,8 @@ constexpr double kMaxSoftening = 2.5;
 /// point itself the stiffness there says nothing of what comes next.
 constexpr double kMaxRateGrowth = 10;
 constexpr int kMinElementsOfThread = 50;
+/// Numbers of the matrices of elements that are kept: 2 GB.
+constexpr double kMaxKept = 2.5e8;
 
 bool is_stiff(const Element& element) {
   MatrixXd K = MatrixXd::Zero(element.num_dofs(), element.num_dofs());
@@ -39,14 +41,47 @@ bool is_stiff(const Element& element) {
   return !K.isZero(0);
 }
 
-/// LLᵀ or LDLᵀ; none of a singular matrix.
-std::optional<linear::SymmetricFactor> factor_any(const linear::SymmetricMatrix& K) {
-  try {
-    linear::SymmetricFactor factor(K, false);
-    if (!factor.is_singular()) return factor;
-  } catch (const ComputationError&) {  // a step that is too long
+/// Factor of a tangent stiffness; it is stable where the determinant (of the symmetric one: every pivot) is positive.
+class TangentFactor {
+ public:
+  TangentFactor(const Eigen::SparseMatrix<double, Eigen::RowMajor>& K, bool is_symmetric) {
+    if (!is_symmetric) {
+      lu_.compute(Eigen::SparseMatrix<double>(K));
+      is_made_ = is_lu_ = lu_.info() == Eigen::Success;
+      is_stable_ = is_made_ && lu_.signDeterminant() > 0;
+      return;
+    }
+    const linear::SymmetricMatrix matrix(K);
+    symmetric_ = linear::SymmetricFactor::try_definite(matrix);
+    is_made_ = is_stable_ = symmetric_.has_value();
+    if (is_made_) return;
+    try {
+      symmetric_.emplace(matrix, false);
+      is_made_ = !symmetric_->is_singular();
+    } catch (const ComputationError&) {  // a step that is too long
+    }
   }
-  return {};
+
+  bool is_made() const { return is_made_; }
+  bool is_stable() const { return is_stable_; }
+  VectorXd solve(const VectorXd& r) const { return is_lu_ ? VectorXd(lu_.solve(r)) : VectorXd(symmetric_->solve(r)); }
+
+ private:
+  std::optional<linear::SymmetricFactor> symmetric_;
+  Eigen::SparseLU<Eigen::SparseMatrix<double>> lu_;
+  bool is_made_ = false, is_stable_ = false, is_lu_ = false;
+};
+
+/// Elements that have a mass off their grid: a rigid body on six dofs.
+double find_offset_mass(const Element& element, MassKind kind, Vector3d& arm) {
+  if (element.num_dofs() != 6 || !element.offset_mass(kind)) return 0;
+  MatrixXd M = MatrixXd::Zero(6, 6);
+  element.add_mass(kind, 1, M);
+  const double mass = M(0, 0);
+  if (!(mass > 0)) return 0;
+  const Matrix3d first = M.block<3, 3>(0, 3) / mass;  // -r̃
+  arm = Vector3d(first(1, 2), first(2, 0), first(0, 1));
+  return arm.isZero(0) ? 0 : mass;
 }
 
 std::string list_ids(const std::vector<int>& ids) {
@@ -81,9 +116,16 @@ NonlinearStatics::NonlinearStatics(const Model& model, const records::Deck& deck
     for (int i = 0; i < model.nodes()[k].num_dofs; ++i)
       node_of_[static_cast<std::size_t>(model.nodes()[k].first_gdof + i)] = static_cast<int>(k);
   std::vector<int> fixed_in_space;
+  double num_kept = 0;
   for (const auto& element : model.elements()) {
     is_stiff_.push_back(is_stiff(*element));
-    if (!is_stiff_.back() || CorotationalElement(*element, model.nodes()).follows_nodes()) continue;
+    kept_.emplace_back();
+    if (!is_stiff_.back()) continue;
+    auto corotational = std::make_unique<const CorotationalElement>(*element, model.nodes());
+    const bool follows = corotational->follows_nodes();
+    num_kept += (2.0 + static_cast<double>(corotational->P().size())) * std::pow(element->num_dofs(), 2);
+    if (num_kept < kMaxKept) kept_.back() = std::move(corotational);
+    if (follows) continue;
     const bool turns = std::any_of(element->gdofs().begin(), element->gdofs().end(), [&](int dof) {
       const Node& node = model.nodes()[static_cast<std::size_t>(node_of_[static_cast<std::size_t>(dof)])];
       return node.num_dofs == 6 && dof - node.first_gdof >= 3;
@@ -99,12 +141,18 @@ NonlinearStatics::NonlinearStatics(const Model& model, const records::Deck& deck
   state_.R.assign(model.nodes().size(), Matrix3d::Identity());
   F_ = VectorXd::Zero(model.num_gdofs());
   d_ = VectorXd::Zero(static_cast<Index>(model.fixed_dofs().size()));
-  deformations_.resize(model.elements().size());
+  load_.F = F_;
+  load_.d = d_;
+  deformed_.displacements.resize(model.elements().size());
+  deformed_.internal_forces.resize(model.elements().size());
+  find_offset_masses();
   energies_ = VectorXd::Zero(static_cast<Index>(model.elements().size()));
 }
 
-void NonlinearStatics::evaluate_element(const Element& element, FiniteForces& forces) const {
-  const CorotationalElement corotational(element, model_.nodes());
+void NonlinearStatics::evaluate_element(int e, const Element& element, FiniteForces& forces) const {
+  const auto& kept = kept_[static_cast<std::size_t>(e)];
+  const auto made = kept ? nullptr : std::make_unique<const CorotationalElement>(element, model_.nodes());
+  const CorotationalElement& corotational = kept ? *kept : *made;
   const VectorXd u = state_.u(element.gdofs());
   if (!corotational.follows_nodes()) {
     forces.d = u;
@@ -185,13 +233,14 @@ NonlinearStatics::Tangent NonlinearStatics::evaluate(const VectorXd& F) {
 
     void add(int e, const Element& element) {
       if (!owner.is_stiff_[static_cast<std::size_t>(e)]) {
-        owner.deformations_[static_cast<std::size_t>(e)] = VectorXd::Zero(element.num_dofs());
+        owner.deformed_.displacements[static_cast<std::size_t>(e)] = VectorXd::Zero(element.num_dofs());
         return;
       }
       FiniteForces forces;
-      owner.evaluate_element(element, forces);
+      owner.evaluate_element(e, element, forces);
       max_turn = std::max(max_turn, forces.max_turn);
-      owner.deformations_[static_cast<std::size_t>(e)] = forces.d;
+      owner.deformed_.displacements[static_cast<std::size_t>(e)] = forces.d;
+      owner.deformed_.internal_forces[static_cast<std::size_t>(e)] = forces.internal;
       owner.energies_[e] = forces.energy;
       f(element.gdofs()) += forces.f;
       std::vector<int> gdofs;
@@ -199,7 +248,7 @@ NonlinearStatics::Tangent NonlinearStatics::evaluate(const VectorXd& F) {
       for (std::size_t i = 0; i < gdofs.size(); ++i)
         for (std::size_t j = 0; j < gdofs.size(); ++j) {
           const auto a = static_cast<Index>(i), b = static_cast<Index>(j);
-          const double value = 0.5 * (forces.K(a, b) + forces.K(b, a));
+          const double value = forces.K(a, b);
           if (value != 0) entries.emplace_back(gdofs[i], gdofs[j], value);
         }
     }
@@ -223,11 +272,61 @@ NonlinearStatics::Tangent NonlinearStatics::evaluate(const VectorXd& F) {
     const Vector3d force = tangent.residual.segment<3>(model_.nodes()[static_cast<std::size_t>(arm.node)].first_gdof);
     const Matrix3d turn = skew(force) * skew(state_.R[static_cast<std::size_t>(arm.parent)] * arm.arm);
     for (int a = 0; a < 3; ++a)
-      for (int b = 0; b < 3; ++b) sum.entries.emplace_back(first + a, first + b, 0.5 * (turn(a, b) + turn(b, a)));
+      for (int b = 0; b < 3; ++b) sum.entries.emplace_back(first + a, first + b, turn(a, b));
+  }
+  for (const ArmLoad& load : arm_loads_) {
+    const auto& R = state_.R[static_cast<std::size_t>(node_of_[static_cast<std::size_t>(load.first_rotation)])];
+    const Vector3d arm = R * load.arm;
+    tangent.residual.segment<3>(load.first_rotation) -= (arm - load.arm).cross(load.force);
+    const Matrix3d turn = -skew(load.force) * skew(arm);
+    for (int a = 0; a < 3; ++a)
+      for (int b = 0; b < 3; ++b)
+        sum.entries.emplace_back(load.first_rotation + a, load.first_rotation + b, turn(a, b));
   }
   tangent.K.resize(model_.num_gdofs(), model_.num_gdofs());
   tangent.K.setFromTriplets(sum.entries.begin(), sum.entries.end());
+  if (!has_moments_)
+    tangent.K = (0.5 * (tangent.K + Eigen::SparseMatrix<double, Eigen::RowMajor>(tangent.K.transpose()))).eval();
   return tangent;
+}
+
+void NonlinearStatics::find_offset_masses() {
+  for (const auto& element : model_.elements()) {
+    ArmLoad load;
+    const double mass = find_offset_mass(*element, model_.mass_kind(), load.arm);
+    if (mass == 0) continue;
+    load.first_rotation = element->gdofs()[3];
+    load.force[0] = mass * model_.wtmass();
+    offset_masses_.push_back(load);
+  }
+}
+
+/// Moments about fixed axes, beyond those of forces on arms: they have no potential where a grid turns about other
+/// axes.
+bool NonlinearStatics::has_fixed_moments(const StaticLoad& load) {
+  set_arm_loads(load, load, 1);
+  VectorXd moments = load.F;
+  for (const ArmLoad& arm : arm_loads_) moments.segment<3>(arm.first_rotation) -= arm.arm.cross(arm.force);
+  const double size = load.F.cwiseAbs().maxCoeff();
+  return std::any_of(model_.nodes().begin(), model_.nodes().end(), [&](const Node& node) {
+    return node.num_dofs == 6 && moments.segment<3>(node.first_gdof + 3).cwiseAbs().maxCoeff() > 1e-12 * size;
+  });
+}
+
+/// Forces on arms at a share of the way from one load to the next: of loads on offset beams, and weights of masses off
+/// their grids.
+void NonlinearStatics::set_arm_loads(const StaticLoad& from, const StaticLoad& to, double share) {
+  arm_loads_.clear();
+  for (const auto& [load, part] : {std::pair(&from, 1 - share), std::pair(&to, share)}) {
+    for (ArmLoad arm : load->arms) {
+      arm.force *= part;
+      arm_loads_.push_back(arm);
+    }
+    for (ArmLoad mass : offset_masses_) {
+      mass.force = -part * mass.force[0] * load->A_I.head<3>();
+      arm_loads_.push_back(mass);
+    }
+  }
 }
 
 /// `step`: displacements and spins, num_gdofs; rows of grids at rigid arms are not read.
@@ -251,9 +350,9 @@ void NonlinearStatics::advance(const VectorXd& step) {
 }
 
 /// TᵀKT.
-linear::SymmetricMatrix NonlinearStatics::reduce(const Eigen::SparseMatrix<double, Eigen::RowMajor>& K) const {
-  const Eigen::SparseMatrix<double, Eigen::RowMajor> reduced = SparseRows(model_.T().transpose()) * K * model_.T();
-  return linear::SymmetricMatrix(reduced);
+Eigen::SparseMatrix<double, Eigen::RowMajor> NonlinearStatics::reduce(
+    const Eigen::SparseMatrix<double, Eigen::RowMajor>& K) const {
+  return SparseRows(model_.T().transpose()) * K * model_.T();
 }
 
 /// Newton's method from the state; `enforced`: steps of the fixed dofs; `share`: of the load. False where it does not
@@ -263,6 +362,7 @@ bool NonlinearStatics::find_equilibrium(const VectorXd& F, const VectorXd& enfor
   VectorXd moved = enforced.isZero(0) ? VectorXd() : VectorXd(model_.T_fixed() * enforced);
   const VectorXd dF = F - F_;
   double reference = 0, first_work = 0, work = 0, last = 0;
+  int num_stuck = 0;
   for (int iteration = 0; iteration <= max_iterations; ++iteration) {
     const Tangent tangent = evaluate(F);
     residual_ = tangent.residual;
@@ -272,11 +372,10 @@ bool NonlinearStatics::find_equilibrium(const VectorXd& F, const VectorXd& enfor
     const VectorXd r = T.transpose() * right;
     VectorXd q = VectorXd::Zero(T.cols());
     if (T.cols() > 0) {
-      const linear::SymmetricMatrix K = reduce(tangent.K);
+      const TangentFactor factor(reduce(tangent.K), !has_moments_);
       // Where the step begins K is definite. On the way to its end it need not be: stiff parts stretch for a while.
-      const auto factor = iteration == 0 ? linear::SymmetricFactor::try_definite(K) : factor_any(K);
-      if (!factor) return false;
-      q = -factor->solve(r);
+      if (!(iteration == 0 ? factor.is_stable() : factor.is_made())) return false;
+      q = -factor.solve(r);
     }
     if (!q.allFinite()) return false;
     ++num_iterations_;
@@ -289,7 +388,8 @@ bool NonlinearStatics::find_equilibrium(const VectorXd& F, const VectorXd& enfor
     work += dF.dot(step);
     if (iteration == 0) first_work = work;
     reference = std::max({reference, energy_, std::abs(step.dot(F))});
-    const bool stagnates = residual_work_ > 0.8 * last && residual_work_ <= kStagnation * reference;
+    num_stuck = residual_work_ > 0.8 * last ? num_stuck + 1 : 0;
+    const bool stagnates = num_stuck >= 3 && residual_work_ <= kStagnation * reference;
     last = residual_work_;
     if (!is_enforced && (stagnates || residual_work_ <= kWorkTolerance * reference)) {
       const bool jumps = first_work > 0 && work > kMaxSoftening * first_work;
@@ -297,7 +397,7 @@ bool NonlinearStatics::find_equilibrium(const VectorXd& F, const VectorXd& enfor
       if (jumps || (last_rate_ > 0 && first_work > kMaxRateGrowth * last_rate_ * share * share)) return false;
       const Tangent end = evaluate(F);
       residual_ = end.residual;
-      if (T.cols() > 0 && !linear::SymmetricFactor::try_definite(reduce(end.K))) return false;
+      if (T.cols() > 0 && !TangentFactor(reduce(end.K), !has_moments_).is_stable()) return false;
       last_rate_ = rate;
       return true;
     }
@@ -310,28 +410,31 @@ void NonlinearStatics::go_to(const StaticLoad& load, const NonlinearOptions& opt
   if (!load.initial.of.empty())
     throw InputError("fe.nonlinear-load", {}, "temperatures load a nonlinear static subcase",
                      "take TEMPERATURE(LOAD) away, or give --linear");
-  if (!load.followers.empty() || !load.arms.empty())
-    diagnostics.warning(
-        "fe.dead-load", {},
-        "pressures and forces on offset beams keep the direction and the arm of the undeformed structure",
-        "give small load steps as several subcases with FORCE cards where they turn far");
+  if (!load.A_I.tail<9>().isZero(0))
+    throw InputError("fe.nonlinear-load", {}, "RFORCE loads the places of the undeformed structure",
+                     "give its forces as FORCE cards, or --linear");
+  const StaticLoad start = load_;
   const VectorXd F_start = F_, d_start = d_, dF = load.F - F_, dd = load.d - d_;
   const double full = 1.0 / std::max(options.num_increments, 1);
   double reached = 0, step = full;
   last_rate_ = 0;
-  while (reached < 1 - 1e-12) {
+  has_moments_ = has_fixed_moments(start) || has_fixed_moments(load);
+  while (reached < 1) {
     const DeformedState before = state_;
-    const double next = std::min(reached + step, 1.0);
+    const double next = reached + step > 1 - 1e-12 ? 1 : reached + step;
     const VectorXd F = F_start + next * dF;
+    set_arm_loads(start, load, next);
     if (find_equilibrium(F, (next - reached) * dd, next - reached, options.max_iterations)) {
       reached = next;
       F_ = F;
       d_ = d_start + reached * dd;
       ++num_steps_;
+      if (reached == 1) load_ = load;
       step = std::min(2 * step, full);
       continue;
     }
     state_ = before;
+    set_arm_loads(start, load, reached);
     step /= 2;
     if (step < full / (1 << kMaxHalvings)) {
       residual_ = evaluate(F_).residual;
@@ -339,7 +442,8 @@ void NonlinearStatics::go_to(const StaticLoad& load, const NonlinearOptions& opt
       std::snprintf(share, sizeof share, "%.4g", 100 * reached);
       throw ComputationError("fe.no-equilibrium", {},
                              "no stable static equilibrium is found beyond " + std::string(share) + " % of the load",
-                             "look for buckling or a snap-through there: lower the load, or enforce displacements");
+                             "look for buckling or a snap-through there: lower the load, enforce displacements, or "
+                             "give more --increments");
     }
   }
 }

@@ -8,7 +8,7 @@
 
 #include "fe/corotational/corotational_element.hpp"
 #include "fe/model/rigid_arms.hpp"
-#include "fe/statics/static_case.hpp"
+#include "fe/statics/element_recovery.hpp"
 
 namespace bough::fe {
 
@@ -40,28 +40,36 @@ class NonlinearStatics {
 
   /// Result of the last state. `displacement` has rotation vectors. Moments of resultants are of deformed places.
   records::StaticSubcase make_result() const;
-  /// Deformations seen from the elements' frames (FiniteForces::d), by element, and their strain energies.
-  const std::vector<VectorXd>& deformations() const { return deformations_; }
+  /// FiniteForces::d and internal, by element, and their strain energies.
+  const DeformedElements& deformed() const { return deformed_; }
   const VectorXd& energies() const { return energies_; }
 
  private:
   struct Tangent;
   Tangent evaluate(const VectorXd& F);
-  void evaluate_element(const Element& element, FiniteForces& forces) const;
+  void find_offset_masses();
+  bool has_fixed_moments(const StaticLoad& load);
+  void set_arm_loads(const StaticLoad& from, const StaticLoad& to, double share);
+  void evaluate_element(int e, const Element& element, FiniteForces& forces) const;
   void move_to_parents(const Element& element, FiniteForces& forces, std::vector<int>& gdofs) const;
   VectorXd collect_arms(VectorXd residual) const;
   void advance(const VectorXd& step);
-  linear::SymmetricMatrix reduce(const Eigen::SparseMatrix<double, Eigen::RowMajor>& K) const;
+  Eigen::SparseMatrix<double, Eigen::RowMajor> reduce(const Eigen::SparseMatrix<double, Eigen::RowMajor>& K) const;
   bool find_equilibrium(const VectorXd& F, const VectorXd& enforced, double share, int max_iterations);
   VectorXd make_displacement() const;
 
   const Model& model_;
   RigidArms arms_;
-  std::vector<int> node_of_;    ///< node of each g-dof
-  std::vector<char> is_stiff_;  ///< of each element
+  std::vector<int> node_of_;                                      ///< node of each g-dof
+  std::vector<char> is_stiff_;                                    ///< of each element
+  std::vector<std::unique_ptr<const CorotationalElement>> kept_;  ///< where there is room; else made again each time
+  std::vector<ArmLoad> offset_masses_;                            ///< force: of a unit acceleration, its size the mass
+  std::vector<ArmLoad> arm_loads_;                                ///< of the state
+  bool has_moments_ = false;  ///< moments about fixed axes: the tangent stiffness is not symmetric
   DeformedState state_;
-  VectorXd F_, d_;  ///< of the last state
-  std::vector<VectorXd> deformations_;
+  VectorXd F_, d_;   ///< of the last state
+  StaticLoad load_;  ///< that the last go_to() reached
+  DeformedElements deformed_;
   VectorXd energies_, residual_;
   double residual_work_ = 0, energy_ = 0, max_turn_ = 0, last_rate_ = 0;
   int num_iterations_ = 0, num_steps_ = 0;

@@ -1,11 +1,11 @@
-/* Preloaded into MPI ranks: a rank that waits sleeps instead of asking again at once. On a busy machine sched_yield gives
-   the rest of a slice away at each question; a rank that wakes from sleep is served before programs that never pause.
-   The pause begins at 10 µs and doubles up to 0.5 ms while nothing comes. Needs mpi_yield_when_idle = 1 (Open MPI). */
+/* Preloaded into MPI ranks: a rank that waits long sleeps. On a busy machine sched_yield gives the rest of a slice away
+   at each question, and a rank that asks without end takes a core from those that work; one that wakes from sleep is
+   served before programs that never pause. Needs mpi_yield_when_idle = 1 (Open MPI). */
 #define _GNU_SOURCE
 #include <sched.h>
 #include <time.h>
 
-enum { FIRST_PAUSE = 10000, MAX_PAUSE = 500000, SAME_WAIT = 20000 }; /* ns */
+enum { SAME_WAIT = 20000, SPIN = 150000, PAUSE = 50000 }; /* ns: between questions of one wait, without sleep, asleep */
 
 static long long now(void) {
   struct timespec t;
@@ -14,10 +14,11 @@ static long long now(void) {
 }
 
 int sched_yield(void) {
-  static _Thread_local long long end, pause;
-  pause = now() - end > SAME_WAIT ? FIRST_PAUSE : pause < MAX_PAUSE ? 2 * pause : pause;
-  const struct timespec sleep = {0, pause};
-  nanosleep(&sleep, 0);
-  end = now();
+  static _Thread_local long long start, last;
+  const struct timespec pause = {0, PAUSE};
+  const long long time = now();
+  if (time - last > SAME_WAIT) start = time;
+  if (time - start > SPIN) nanosleep(&pause, 0);
+  last = now();
   return 0;
 }

@@ -1,5 +1,6 @@
 #include "fe/statics/nonlinear.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -63,7 +64,7 @@ TEST(NonlinearStatics, BeamRollsToACircle) {
         solve(write_bars(make_line(n, 10),
                          fmt::format("MOMENT,1,{},,{:.12g},0.,0.,1.\nSPC1,1,345,2,THRU,{}\n", n + 1, 2e3 * pi, n + 1)));
     const double error = (get_place(result[0], n) + Vector3d(10, 0, 0)).norm() / 10;
-    EXPECT_LT(error, 1e-11);  // each element bends to an arc: the series of its strain holds the whole of it
+    EXPECT_LT(error, 1e-11);  // all elements are alike: a polygon that closes
     EXPECT_NEAR(result[0].reaction.segment<3>(3).norm(), 2e3 * pi, 1e-4);
     EXPECT_NEAR(result[0].strain_energy, 0.5 * 1e4 * 4 * pi * pi / 10, 1e-3 * 2e5);
   }
@@ -221,6 +222,41 @@ TEST(NonlinearStatics, ShellsBend) {
   EXPECT_LT((result[0].load_resultant + result[0].reaction_resultant).norm(), 1e-4 * EI);
 }
 
+/// Axial forces are the load seen along the chord of each element, though elements bow.
+TEST(NonlinearStatics, ElementForcesBalanceTheLoad) {
+  const int n = 20;
+  const double P = 6e4;
+  const auto result = solve(write_bars(make_line(n, 1), fmt::format("FORCE,1,{},,{:.9g},0.,0.,1.\n", n + 1, P)));
+  ASSERT_EQ(result[0].elements.at(0).card, "CBAR");
+  const auto& names = result[0].elements[0].components;
+  const auto axial = std::find(names.begin(), names.end(), "axial") - names.begin();
+  ASSERT_LT(axial, static_cast<Eigen::Index>(names.size()));
+  for (int k = 0; k < n; ++k) {
+    const Vector3d chord = Vector3d(1.0 / n, 0, 0) + get_place(result[0], k + 1) - get_place(result[0], k);
+    EXPECT_NEAR(result[0].elements[0].force(k, axial), P * chord.normalized().z(), 2e-3 * P) << k;
+  }
+}
+
+/// The weight of a mass off its grid turns with its arm: the same mass on an RBE2.
+TEST(NonlinearStatics, WeightsOffTheirGridsTurn) {
+  const auto write = [](const std::string& mass) {
+    return write_bars(make_line(6, 1), mass + "GRAV,1,,9.81,0.,0.,-1.\n");
+  };
+  const auto offset = solve(write("CONM2,90,7,,3000.,0.,.3,-.4\n"));
+  const auto linked = solve(write("GRID,8,,1.,.3,-.4\nRBE2,91,7,123456,8\nCONM2,90,8,,3000.\n"));
+  EXPECT_GT(get_place(offset[0], 6).norm(), 0.3);
+  EXPECT_LT((get_place(offset[0], 6) - get_place(linked[0], 6)).norm(), 1e-8);
+}
+
+/// A moment about a fixed axis bends a beam that is free in space to an arc: it has no potential there, and no branch.
+TEST(NonlinearStatics, FixedMomentInSpace) {
+  const auto result = solve(write_bars(make_line(20, 10), fmt::format("MOMENT,1,21,,{:.14g},0.,0.,1.\n", 1.2e3 * pi)));
+  const double angle = 1.2 * pi;
+  EXPECT_LT(
+      (get_place(result[0], 20) - 10 * Vector3d(std::sin(angle) / angle - 1, (1 - std::cos(angle)) / angle, 0)).norm(),
+      5e-6);
+}
+
 TEST(NonlinearStatics, NamesWhatItCannotTurn) {
   const auto get_error = [](const std::string& more) -> std::string {
     try {
@@ -235,6 +271,7 @@ TEST(NonlinearStatics, NamesWhatItCannotTurn) {
                 .find("fe.nonlinear-link"),
             std::string::npos);
   EXPECT_NE(get_error("CELAS2,9,100.,5,5\nFORCE,1,5,,1.,1.,0.,0.\n").find("fe.nonlinear-element"), std::string::npos);
+  EXPECT_NE(get_error("RFORCE,1,1,,1.,0.,0.,1.\nCONM2,9,5,,1.\n").find("fe.nonlinear-load"), std::string::npos);
   EXPECT_NE(get_error("PLOAD1,1,2,FY,FR,0.,1.,1.,1.\n").find("fe.nonlinear-load"), std::string::npos);
 }
 
