@@ -50,8 +50,9 @@ def modes(deck: _Path, number: int | None = None, *, min_hz: float | None = None
           subcase: int = 0, free: bool = False, mass: str = "deck", ignore: str | Sequence[str] = (),
           progress: Callable[[str], object] | None = None) -> Modes: ...
 def static(deck: _Path, *, subcase: int = 0, free: bool = False, mass: str = "deck", ignore: str | Sequence[str] = (),
-           grid_forces: str | int | Sequence[str | int] = (), linear: bool = False, strains: bool = False,
-           extremes: bool = False, progress: Callable[[str], object] | None = None) -> reader.File: ...
+           grid_forces: str | int | Sequence[str | int] = (), linear: bool = False, nonlinear: bool = False,
+           increments: int = 10, strains: bool = False, extremes: bool = False,
+           progress: Callable[[str], object] | None = None) -> reader.File: ...
 def select(body: FlexBody | _Path, system: _Path | Sequence[_Path] | None = None, *,
            inputs: str | int | Sequence[str | int] = (), outputs: str | int | Sequence[str | int] = (),
            weight: str | Sequence[str] = (), spectrum: _Path = "", number: int = 0, tolerance: float | None = None,

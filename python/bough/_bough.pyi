@@ -291,7 +291,8 @@ def modes(deck: str, number: int | None = None, *, min_hz: float | None = None, 
           subcase: int = 0, free: bool = False, mass: str = "deck", ignore: Sequence[str] = [],
           progress: Callable[[str], object] | None = None) -> tuple[Modes, list[Message]]: ...
 def static(deck: str, *, subcase: int = 0, free: bool = False, mass: str = "deck", ignore: Sequence[str] = [],
-           grid_forces: Sequence[str] = [], linear: bool = False, strains: bool = False, extremes: bool = False,
+           grid_forces: Sequence[str] = [], linear: bool = False, nonlinear: bool = False, increments: int = 10,
+           strains: bool = False, extremes: bool = False,
            progress: Callable[[str], object] | None = None) -> tuple[bytes, list[Message]]: ...
 def select(file: str, body: FlexBody | None, *, systems: Sequence[str] = [], inputs: Sequence[str] = [],
            outputs: Sequence[str] = [], weight: Sequence[str] = [], spectrum: str = "", number: int = 0,

@@ -1,5 +1,6 @@
 """FMUs as controllers: the law of a shared library bit for bit, states that are saved, and what goes wrong, in words."""
 import os
+import resource
 import signal
 import subprocess
 import sys
@@ -388,6 +389,12 @@ class FmuControllers(ProgramTest):
             Model(self.path("s.toml"))
         result = self.bough("check", "s.toml", code=3, env={"TMPDIR": "/nowhere"})
         self.assertIn("[cli.no-temporary-folder]", result.stderr)
+        # No file may grow beyond 100 bytes, as on a full disk.
+        limit = lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (100, 100))
+        result = subprocess.run([PROGRAM, "check", "s.toml"], cwd=self.folder, text=True, capture_output=True,
+                                preexec_fn=limit, restore_signals=False)
+        self.assertEqual(result.returncode, 3, result.stderr)
+        self.assertIn("[fmu.unpack]", result.stderr)
 
     def test_a_system_of_bough_is_one(self):
         """A mass on a spring beside the rotor, as FMU that measures the angle: another program's plant in this one."""

@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "base/rotation.hpp"
-#include "fe/matrices/system.hpp"
+#include "fe/linear/petsc.hpp"
 #include "fe/statics/case_solver.hpp"
 #include "formats/nastran/reader.hpp"
 
@@ -16,6 +16,14 @@ namespace bough::fe {
 namespace {
 
 using std::numbers::pi;
+
+/// On one process: cli.nonlinear-ranks refuses more.
+class LargeDisplacements : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    if (linear::initialize_petsc().size > 1) GTEST_SKIP() << "one process alone";
+  }
+};
 
 constexpr const char* kHead = "SOL 106\nCEND\nSPC = 1\nLOAD = 1\nBEGIN BULK\n";
 
@@ -58,7 +66,7 @@ Matrix3Xd make_line(int n, double length) {
 }
 
 /// M L = 2π EI: the beam becomes a circle, the end comes back to the clamp, and turns once.
-TEST(NonlinearStatics, BeamRollsToACircle) {
+TEST_F(LargeDisplacements, BeamRollsToACircle) {
   for (const int n : {10, 20}) {
     const auto result =
         solve(write_bars(make_line(n, 10),
@@ -71,7 +79,7 @@ TEST(NonlinearStatics, BeamRollsToACircle) {
 }
 
 /// The elastica by elliptic integrals (Bisshopp and Drucker 1945): P L² / EI = 10.
-TEST(NonlinearStatics, CantileverUnderAnEndForce) {
+TEST_F(LargeDisplacements, CantileverUnderAnEndForce) {
   const double alpha = 10;
   double low = std::sqrt(0.5) + 1e-12, high = 1 - 1e-12;
   for (int i = 0; i < 200; ++i) {
@@ -95,7 +103,7 @@ TEST(NonlinearStatics, CantileverUnderAnEndForce) {
 }
 
 /// Bathe and Bolourchi, IJNME 14 (1979) 961: radius 100, square of 1, E = 1e7, nu = 0, 600 across the plane.
-TEST(NonlinearStatics, FortyFiveDegreeBend) {
+TEST_F(LargeDisplacements, FortyFiveDegreeBend) {
   Matrix3Xd points(3, 9);
   for (int k = 0; k <= 8; ++k)
     points.col(k) = 100 * Vector3d(std::sin(pi / 4 * k / 8), 1 - std::cos(pi / 4 * k / 8), 0);
@@ -107,7 +115,7 @@ TEST(NonlinearStatics, FortyFiveDegreeBend) {
 }
 
 /// Turned as a whole, with its loads, a structure bends alike.
-TEST(NonlinearStatics, DoesNotDependOnAxes) {
+TEST_F(LargeDisplacements, DoesNotDependOnAxes) {
   const Matrix3d turn = calc_rotation_exp(Vector3d(0.4, -1.2, 0.9));
   Matrix3Xd points = make_line(6, 2);
   points(1, 4) = 0.3;
@@ -123,7 +131,7 @@ TEST(NonlinearStatics, DoesNotDependOnAxes) {
 }
 
 /// Small loads: the linear solution, and the difference is of second order in the load.
-TEST(NonlinearStatics, SmallLoadsAreLinear) {
+TEST_F(LargeDisplacements, SmallLoadsAreLinear) {
   Matrix3Xd points = make_line(4, 2);
   points(2, 2) = 0.4;
   const auto calc = [&](double size) {
@@ -136,7 +144,7 @@ TEST(NonlinearStatics, SmallLoadsAreLinear) {
 }
 
 /// A force on an arm of an RBE2 is one on the end of a bar that hardly bends.
-TEST(NonlinearStatics, RigidElementsTurn) {
+TEST_F(LargeDisplacements, RigidElementsTurn) {
   const auto write = [](bool is_rigid) {
     std::string arm =
         is_rigid ? "RBE2,100,5,123456,6\n" : "PBAR,2,2,1.,.1,.1,.1\nMAT1,2,1.+10,,0.\nCBAR,100,2,5,6,1.,0.,0.\n";
@@ -151,7 +159,7 @@ TEST(NonlinearStatics, RigidElementsTurn) {
 }
 
 /// An end that SPC moves has the reaction of the force that moves it there.
-TEST(NonlinearStatics, EnforcedDisplacementsAreReached) {
+TEST_F(LargeDisplacements, EnforcedDisplacementsAreReached) {
   const auto forced = solve(write_bars(make_line(8, 1), "FORCE,1,9,,40000.,0.,0.,1.\n"));
   const Vector3d place = get_place(forced[0], 8);
   auto text = write_bars(make_line(8, 1), fmt::format("SPC,1,9,3,{:.10g}\n", place.z()));
@@ -162,7 +170,7 @@ TEST(NonlinearStatics, EnforcedDisplacementsAreReached) {
 }
 
 /// Two rods as a flat roof (von Mises): no equilibrium near by above the limit load, which a closed form gives.
-TEST(NonlinearStatics, LimitPointIsNamed) {
+TEST_F(LargeDisplacements, LimitPointIsNamed) {
   const double EA = 1e6, height = 0.1;
   const double length = std::hypot(1.0, height);
   double limit = 0;
@@ -192,7 +200,7 @@ TEST(NonlinearStatics, LimitPointIsNamed) {
 }
 
 /// Subcases of SOL 106 go on from each other, so that the last is reached as by itself.
-TEST(NonlinearStatics, SubcasesGoOn) {
+TEST_F(LargeDisplacements, SubcasesGoOn) {
   auto text = write_bars(make_line(8, 1), "FORCE,1,9,,20000.,0.,0.,1.\nFORCE,2,9,,40000.,0.,0.,1.\n");
   text.replace(text.find("LOAD = 1\n"), 9, "SUBCASE 1\nLOAD = 1\nSUBCASE 2\nLOAD = 2\n");
   const auto both = solve(text);
@@ -203,7 +211,7 @@ TEST(NonlinearStatics, SubcasesGoOn) {
 }
 
 /// A strip of shells bends as the elastica (nu = 0), and forces in its elements' frames are M and N of a beam.
-TEST(NonlinearStatics, ShellsBend) {
+TEST_F(LargeDisplacements, ShellsBend) {
   const int n = 20;
   const double width = 0.1, thickness = 0.01, E = 1.2e9, EI = E * width * std::pow(thickness, 3) / 12;
   std::string text =
@@ -223,7 +231,7 @@ TEST(NonlinearStatics, ShellsBend) {
 }
 
 /// Axial forces are the load seen along the chord of each element, though elements bow.
-TEST(NonlinearStatics, ElementForcesBalanceTheLoad) {
+TEST_F(LargeDisplacements, ElementForcesBalanceTheLoad) {
   const int n = 20;
   const double P = 6e4;
   const auto result = solve(write_bars(make_line(n, 1), fmt::format("FORCE,1,{},,{:.9g},0.,0.,1.\n", n + 1, P)));
@@ -238,7 +246,7 @@ TEST(NonlinearStatics, ElementForcesBalanceTheLoad) {
 }
 
 /// The weight of a mass off its grid turns with its arm: the same mass on an RBE2.
-TEST(NonlinearStatics, WeightsOffTheirGridsTurn) {
+TEST_F(LargeDisplacements, WeightsOffTheirGridsTurn) {
   const auto write = [](const std::string& mass) {
     return write_bars(make_line(6, 1), mass + "GRAV,1,,9.81,0.,0.,-1.\n");
   };
@@ -249,7 +257,7 @@ TEST(NonlinearStatics, WeightsOffTheirGridsTurn) {
 }
 
 /// A moment about a fixed axis bends a beam that is free in space to an arc: it has no potential there, and no branch.
-TEST(NonlinearStatics, FixedMomentInSpace) {
+TEST_F(LargeDisplacements, FixedMomentInSpace) {
   const auto result = solve(write_bars(make_line(20, 10), fmt::format("MOMENT,1,21,,{:.14g},0.,0.,1.\n", 1.2e3 * pi)));
   const double angle = 1.2 * pi;
   EXPECT_LT(
@@ -257,7 +265,7 @@ TEST(NonlinearStatics, FixedMomentInSpace) {
       5e-6);
 }
 
-TEST(NonlinearStatics, NamesWhatItCannotTurn) {
+TEST_F(LargeDisplacements, NamesWhatItCannotTurn) {
   const auto get_error = [](const std::string& more) -> std::string {
     try {
       solve(write_bars(make_line(4, 2), more));
