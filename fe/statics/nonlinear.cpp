@@ -114,11 +114,12 @@ NonlinearStatics::NonlinearStatics(const Model& model, const records::Deck& deck
   node_of_.resize(static_cast<std::size_t>(model.num_gdofs()));
   for (std::size_t k = 0; k < model.nodes().size(); ++k)
     for (int i = 0; i < model.nodes()[k].num_dofs; ++i)
-      node_of_[static_cast<std::size_t>(model.nodes()[k].first_gdof + i)] = static_cast<int>(k);
+      node_of_[static_cast<std::size_t>(model.nodes()[k].first_gdof) + static_cast<std::size_t>(i)] =
+          static_cast<int>(k);
   std::vector<int> fixed_in_space;
   double num_kept = 0;
   for (const auto& element : model.elements()) {
-    is_stiff_.push_back(is_stiff(*element));
+    is_stiff_.push_back(is_stiff(*element) ? 1 : 0);
     kept_.emplace_back();
     if (!is_stiff_.back()) continue;
     auto corotational = std::make_unique<const CorotationalElement>(*element, model.nodes());
