@@ -72,7 +72,7 @@ class TangentFactor {
   bool is_made_ = false, is_stable_ = false, is_lu_ = false;
 };
 
-/// Elements that have a mass off their grid: a rigid body on six dofs.
+/// Mass of an element on the six dofs of one grid, and its arm; 0 where it is on the grid.
 double find_offset_mass(const Element& element, MassKind kind, Vector3d& arm) {
   if (element.num_dofs() != 6 || !element.offset_mass(kind)) return 0;
   MatrixXd M = MatrixXd::Zero(6, 6);

@@ -13,7 +13,7 @@
 namespace bough::fe {
 
 struct NonlinearOptions {
-  int num_increments = 10;  ///< equal steps of a load; a step that finds no equilibrium is halved, six times at most
+  int num_increments = 10;  ///< equal steps of a load; a step that finds no equilibrium is halved, ten times at most
   int max_iterations = 25;  ///< of Newton's method in a step
 };
 
@@ -34,8 +34,9 @@ class NonlinearStatics {
   int num_steps() const { return num_steps_; }
 
   /// Goes from the load of the last call (first: none) to `load` through stable states: their tangent stiffness is
-  /// positive definite. Throws ComputationError fe.no-equilibrium with the share of the load that was reached; the
-  /// state is that of the last equilibrium then.
+  /// positive definite, or of positive determinant where moments about fixed axes make it unsymmetric. Throws
+  /// ComputationError fe.no-equilibrium with the share of the load that was reached; the state is that of the last
+  /// equilibrium then.
   void go_to(const StaticLoad& load, const NonlinearOptions& options, Diagnostics& diagnostics);
 
   /// Result of the last state. `displacement` has rotation vectors. Moments of resultants are of deformed places.
