@@ -107,6 +107,7 @@ void set_modes(const System& system, SystemData& data, const DiscreteState& disc
   set_modes(system.tree, discrete.mode, data.tree);
   if (!discrete.constraints.empty()) set_constraint_states(system.loops, system.tree, discrete.constraints, data.loops);
   if (discrete.memory.size() > 0) data.signals.memory = discrete.memory;
+  if (discrete.slide.size() > 0) data.tree.slide = discrete.slide;
 }
 
 bool has_modes(const SystemData& data, const DiscreteState& discrete) {
@@ -120,7 +121,7 @@ bool has_modes(const SystemData& data, const DiscreteState& discrete) {
 }
 
 DiscreteState get_discrete(const SystemData& data) {
-  return {data.tree.mode, get_constraint_states(data.loops), data.signals.memory};
+  return {data.tree.mode, get_constraint_states(data.loops), data.signals.memory, data.tree.slide};
 }
 
 void calc_q_dot(const System& system, SystemData& data, double t, const Eigen::Ref<const VectorXd>& q,

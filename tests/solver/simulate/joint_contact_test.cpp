@@ -399,6 +399,24 @@ TEST(JointContacts, LinearModelsSayThatTheyLeaveThemOut) {
   EXPECT_TRUE(none.items().empty());
 }
 
+// The direction of sliding belongs to the state: without it an evaluation lacks the force of dry friction.
+TEST(JointContacts, TheDirectionOfSlidingIsState) {
+  auto spec = make_slider(2);
+  add_friction(spec.hinges[0], 1.5);
+  const System system = build(spec);
+  State state = system.make_initial_state();
+  VectorXd x_dot(system.layout().size());
+  for (const double slide : {-1.0, 1.0}) {
+    get_u(system.layout(), state.x)[0] = 3 * slide;
+    state.discrete.slide = VectorXd::Constant(1, slide);
+    auto data = system.make_data();
+    set_modes(system, *data, state.discrete);
+    EXPECT_EQ(get_discrete(*data).slide, state.discrete.slide);
+    calc_derivative(system, *data, state.t, state.x, x_dot);
+    EXPECT_NEAR(get_u(system.layout(), x_dot)[0], -slide * 1.5 / 2, 1e-14);
+  }
+}
+
 TEST(JointContacts, AResumedRunGoesOn) {
   auto spec = make_slider(1);
   spec.simulation.gravity = {-10, 0, 0};

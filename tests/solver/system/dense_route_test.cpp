@@ -414,12 +414,13 @@ VectorXd make_state(const System& system, SystemData& data, double t, unsigned s
 }
 
 /// Dry friction slides the way of the rate.
-void set_slides(const System& system, const VectorXd& x, SystemData& data) {
+VectorXd find_slides(const System& system, const VectorXd& x, const DiscreteState& discrete) {
+  VectorXd slide = VectorXd::Zero(system.num_u());
   for (const auto& contact : system.joint_contacts) {
     const double rate = get_u(system.layout(), x)[contact.u_row];
-    if (data.tree.mode[static_cast<size_t>(contact.u_row)] == HingeMode::Free)
-      data.tree.slide[contact.u_row] = rate > 0 ? 1 : -1;
+    if (discrete.mode[static_cast<size_t>(contact.u_row)] == HingeMode::Free) slide[contact.u_row] = rate > 0 ? 1 : -1;
   }
+  return slide;
 }
 
 /// Takes all samples before kTime, each at a separate state.
@@ -491,7 +492,9 @@ double compare(unsigned seed, Parts parts, unsigned kind = 0) {
   set_modes(system, *data, discrete);
   const History history = take_samples(system, *data, 100 * seed, discrete);
   const VectorXd x = make_state(system, *data, kTime, seed + 1000, discrete);
-  set_slides(system, x, *data);
+  discrete.memory = data->signals.memory;
+  discrete.slide = find_slides(system, x, discrete);
+  set_modes(system, *data, discrete);
 
   const StateLayout layout = system.layout();
   VectorXd x_dot = VectorXd::Zero(layout.size());
