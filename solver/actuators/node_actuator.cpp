@@ -88,6 +88,12 @@ class Thruster : public NodeActuator {
     ++sizes.memory;
     ++sizes.event_functions;
   }
+  std::string describe_switch(const Motion& motion, int function) const final {
+    if (tank < 0 || function < sizes.event_functions - 1) return {};
+    const Tank& used = motion.tree.tanks[static_cast<size_t>(tank)];
+    return "tank '" + used.name + "' is " + (used.reserve > 0 ? "at what cannot leave it" : "empty") + ": " + label +
+           " is cut off";
+  }
 
  protected:
   virtual double calc_thrust(const BlockInput& in) const = 0;

@@ -21,6 +21,7 @@ void Block::calc_rates(const BlockInput&, double*) const {}
 void Block::update(const BlockInput&, double*) const {}
 void Block::calc_event_functions(const BlockInput&, double*) const {}
 void Block::switch_over(const BlockInput&, int, double*) const {}
+std::string Block::describe_switch(const Motion&, int) const { return {}; }
 void Block::choose(int, double*) const {}
 void Block::mark_motion(const Tree&, std::vector<bool>& q, std::vector<bool>& u) const {
   q.assign(q.size(), true);

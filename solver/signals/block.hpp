@@ -78,6 +78,8 @@ class Block {
   /// The memory after event function `function` has become positive; the event function must not be positive any
   /// more.
   virtual void switch_over(const BlockInput& in, int function, double* d) const;
+  /// The line of this switch among the events of the results; empty: none.
+  virtual std::string describe_switch(const Motion& motion, int function) const;
 
   /// Sensors and actuators: marks the rows of q and u that outputs, rates and loads depend on, apart from what
   /// reads_acceleration stands for. All by default.

@@ -311,7 +311,8 @@ void SignalGraph::calc_event_functions(const Motion& motion, SignalData& signals
   }
 }
 
-bool SignalGraph::switch_over(const Motion& motion, SignalData& signals, const VectorXd& g, std::string& what) const {
+bool SignalGraph::switch_over(const Motion& motion, SignalData& signals, const VectorXd& g,
+                              std::vector<BlockSwitch>& switched) const {
   bool has_switched = false;
   SignalData& s = signals;
   for (const auto& p : places) {
@@ -321,7 +322,7 @@ bool SignalGraph::switch_over(const Motion& motion, SignalData& signals, const V
       p.block->switch_over(look(p, motion, signals), i, s.scratch.data() + p.memory);
       s.memory.segment(p.memory, p.block->sizes.memory) = s.scratch.segment(p.memory, p.block->sizes.memory);
       has_switched = true;
-      what = p.block->label;
+      switched.push_back({p.block.get(), i});
       break;  // the others were of the memory before
     }
   }

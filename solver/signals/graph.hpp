@@ -48,6 +48,12 @@ struct SampleTimes {
   double first = 0, period = 0;
 };
 
+/// An event function of a block that has become positive.
+struct BlockSwitch {
+  const Block* block = nullptr;
+  int function = 0;
+};
+
 class SignalGraph {
  public:
   std::vector<BlockSlot> places;  ///< in the order of the file: sensors, controllers, actuators, functions
@@ -94,8 +100,9 @@ class SignalGraph {
   void sample_all(const Motion& motion, SignalData& signals) const;
   /// After calc_all. g: num_event_functions.
   void calc_event_functions(const Motion& motion, SignalData& signals, Eigen::Ref<VectorXd> g) const;
-  /// Switches every block with a positive event function; false when there is none. "pwpf: event function 1" in `what`.
-  bool switch_over(const Motion& motion, SignalData& signals, const VectorXd& g, std::string& what) const;
+  /// Switches every block with a positive event function, and adds it to `switched`; false when there is none.
+  bool switch_over(const Motion& motion, SignalData& signals, const VectorXd& g,
+                   std::vector<BlockSwitch>& switched) const;
   /// "controller 'pid' (state 1)".
   std::string name_state(int row) const;
 

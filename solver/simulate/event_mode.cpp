@@ -49,20 +49,25 @@ void Run::initialize_lags(double t) {
 void Run::iterate_switches(double t) {
   const SignalGraph& signals = ode_.system().signals;
   if (signals.num_event_functions == 0) return;
-  std::string what;
+  std::vector<BlockSwitch> switched;
   for (int i = 0; i < kMaxSwitches; ++i) {
     bool is_open = false;
     calc_switches(t);
+    switched.clear();
     guard([&] {
-      is_open =
-          signals.switch_over(get_motion(ode_.system(), ode_.data()), ode_.data().signals, events_.switches, what);
+      const Motion motion = get_motion(ode_.system(), ode_.data());
+      is_open = signals.switch_over(motion, ode_.data().signals, events_.switches, switched);
+      for (const auto& [block, function] : switched) {
+        const std::string what = block->describe_switch(motion, function);
+        if (!what.empty()) sink_.write_event({t, what, block->label});
+      }
     });
     last_events_.switches = events_.switches;
     if (!is_open) return;
     has_switched_ = true;
-    count_switch(what, t);
+    for (const BlockSwitch& s : switched) count_switch(s.block->label, t);
   }
-  finish_failed(t, "control.chatter", what + " switches without end at t = " + short_text(t),
+  finish_failed(t, "control.chatter", switched.back().block->label + " switches without end at t = " + short_text(t),
                 "give it a hysteresis, or a lag on the way round its loop");
 }
 

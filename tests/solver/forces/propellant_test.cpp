@@ -273,6 +273,10 @@ TEST(Propellant, RunsOutAndTheEngineStops) {
   EXPECT_EQ(get_last(r.sink, "/actuators/engine"), 0);
   EXPECT_NEAR(get_last(r.sink, "/bodies/body/velocity"), 5 * std::log(6.0 / 2), 1e-8);
   EXPECT_FALSE(r.diagnostics.has("run.propellant"));
+  ASSERT_EQ(r.sink.events().size(), 1);
+  EXPECT_NEAR(r.sink.events()[0].time, 0.5, 1e-9);
+  EXPECT_EQ(r.sink.events()[0].what, "tank 'tank' is empty: actuator 'engine' is cut off");
+  EXPECT_EQ(r.sink.events()[0].source, "actuator 'engine'");
 }
 
 // The mass as a function of time and the thrust as a force give what an engine gives.
