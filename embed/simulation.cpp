@@ -109,6 +109,8 @@ void Simulation::save(std::span<std::byte> to) const {
   std::fill(to.begin() + std::ssize(bytes), to.end(), std::byte{0});
 }
 
-void Simulation::restore(std::span<const std::byte> from) { simulator_->restore(decode_state(from, fingerprint_)); }
+void Simulation::restore(std::span<const std::byte> from) {
+  simulator_->restore(decode_state(from, fingerprint_, state_size_));
+}
 
 }  // namespace bough::embed

@@ -1,6 +1,7 @@
 #include "embed/state_bytes.hpp"
 
 #include <cstring>
+#include <string>
 
 #include "base/diagnostic.hpp"
 
@@ -10,7 +11,7 @@ namespace {
 constexpr std::uint64_t kMagic = 0x31545347554f4221u;
 constexpr std::uint64_t kMaxName = 256;
 
-[[noreturn]] void fail(const char* what) {
+[[noreturn]] void fail(const std::string& what) {
   throw InputError("embed.bad-state", {}, what, "restore what a simulation of the same model and options has saved");
 }
 
@@ -78,7 +79,7 @@ std::vector<std::byte> encode_state(const records::Checkpoint& state, std::uint6
   return std::move(w.bytes_);
 }
 
-records::Checkpoint decode_state(std::span<const std::byte> bytes, std::uint64_t fingerprint) {
+records::Checkpoint decode_state(std::span<const std::byte> bytes, std::uint64_t fingerprint, std::size_t size) {
   Reader r(bytes);
   std::uint64_t magic = 0, found = 0, sum = 0;
   r.read(&magic, sizeof magic);
@@ -92,6 +93,8 @@ records::Checkpoint decode_state(std::span<const std::byte> bytes, std::uint64_t
   const std::size_t end = r.at();
   r.read(&sum, sizeof sum);
   if (sum != calc_hash(bytes.first(end))) fail("the state is damaged");
+  if (bytes.size() < size)
+    fail("the state takes " + std::to_string(size) + " bytes, not " + std::to_string(bytes.size()));
   return state;
 }
 

@@ -13,7 +13,8 @@ std::uint64_t calc_hash(std::span<const std::byte> bytes, std::uint64_t hash = 1
 
 /// `fingerprint`: of what must be the same where the state is restored.
 std::vector<std::byte> encode_state(const records::Checkpoint& state, std::uint64_t fingerprint);
-/// Bytes after the state are skipped. Throws InputError "embed.bad-state".
-records::Checkpoint decode_state(std::span<const std::byte> bytes, std::uint64_t fingerprint);
+/// \param size  fewest bytes that a saved state takes. Bytes after the state are skipped.
+/// Throws InputError "embed.bad-state".
+records::Checkpoint decode_state(std::span<const std::byte> bytes, std::uint64_t fingerprint, std::size_t size);
 
 }  // namespace bough::embed

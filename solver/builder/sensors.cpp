@@ -49,6 +49,7 @@ class Resolver {
     }
     if (kind.of == SensorOf::Gap) resolve_other_end(r, e);
     if (r.type == SensorType::Euler) resolve_sequence(r, e);
+    if (r.type == SensorType::Quaternion) e.description += ": w, x, y, z";
     if (r.type == SensorType::Direction) {
       if (!(r.target.norm() > 0)) error(r, "sensor.bad-value", "has no direction", "give target three numbers");
       e.target = r.target.normalized();

@@ -13,6 +13,9 @@ namespace {
 
 constexpr double kSafety = 0.9, kMaxGrowth = 6, kMinGrowth = 0.2;
 constexpr double kAfterFailure = 0.25;  // of the step, where a stage could not be evaluated
+/// A step that would end this near its target, relative to its size, ends there: many equal steps add up their
+/// rounding.
+constexpr double kStretch = 1e-9;
 
 class ErkStepper final : public Integrator {
  public:
@@ -56,7 +59,7 @@ class ErkStepper final : public Integrator {
     double h = h_;
     bool may_grow = true;
     for (int rejected = 0;; ++rejected) {
-      const bool is_cut = t_ + h >= t_target - smallest_;
+      const bool is_cut = t_ + h >= t_target - std::max(smallest_, kStretch * h);
       if (is_cut) h = t_target - t_;
       const double t_end = is_cut ? t_target : t_ + h;
       const bool is_evaluated = calc_step(t_, t_end, h, true);

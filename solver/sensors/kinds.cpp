@@ -19,7 +19,7 @@ const SensorKind& get_kind(records::SensorType type) {
       {T::HingeRate, "hinge rates", "1/T or L/T", SensorOf::Coordinate, 0, false},
       {T::Resolver, "resolver", "1", SensorOf::Coordinate, 0, false},
       {T::Tachometer, "tachometer", "1/T or L/T", SensorOf::Coordinate, 0, false},
-      {T::Quaternion, "attitude as a quaternion w, x, y, z", "1", SensorOf::Attitude, 4, false},
+      {T::Quaternion, "attitude as a quaternion", "1", SensorOf::Attitude, 4, false},
       {T::Euler, "attitude as Euler angles in rad", "1", SensorOf::Attitude, 3, false},
       {T::DirectionCosines, "attitude as direction cosines, row by row", "1", SensorOf::Attitude, 9, false},
       {T::Gyro, "rate gyro", "1/T", SensorOf::Instrument, 3, false},

@@ -204,8 +204,9 @@ Run::Arrival Run::cross_interval(double t_pause) {
       guard([&] { integrator_->calc_state(change->time, y_); });
       reset(change->time);
     }
-    const double reached = scanned_;
-    if (reached < stop_.time && reached >= t_pause - time_events_.resolution()) {
+    // Not where the stop itself is due at the pause: the integrator may end a step short of it by round-off.
+    const double reached = scanned_, slack = time_events_.resolution();
+    if (reached < stop_.time && reached >= t_pause - slack && stop_.time > t_pause + slack) {
       guard([&] { integrator_->calc_state(time_ = reached, y_); });
       return Arrival::Pause;
     }
@@ -233,13 +234,17 @@ void Run::arrive_at_stop() {
 void Run::advance_to(double t) {
   if (is_led_) take_over();
   const double until = std::min(t, time_events_.end());
-  while (!outcome_ && time_ < until - (until < time_events_.end() ? time_events_.resolution() : 0)) {
+  const double slack = until < time_events_.end() ? time_events_.resolution() : 0;
+  bool has_due = false;  // a stop at `until`, after a cut that lies there too
+  while (!outcome_ && (time_ < until - slack || has_due)) {
+    has_due = false;
     if (!is_inside_) enter_interval();
     const Arrival arrival = cross_interval(until);
     if (arrival == Arrival::Cut) {
       needs_restart_ = true;
       is_inside_ = false;
       settle_cut(time_);
+      has_due = time_ < until && time_events_.find_next(time_).time <= until + slack;
     } else if (arrival == Arrival::AtStop) {
       arrive_at_stop();
     }
