@@ -32,8 +32,11 @@ void end_on_signal(int signal) {
 void (*volatile g_handler)(int) = nullptr;
 volatile std::sig_atomic_t g_is_told = 0;
 
+/// Time in s that a user library has to return after the first signal.
+constexpr unsigned kPatience = 5;
+
 /// The verb did not come to a point where it looks whether it is to end: where it is, if that is a user library.
-[[noreturn]] void end_on_second_interrupt() {
+[[noreturn]] void end_where_it_is(const char* why) {
   remove_parts();
   char text[1200];
   std::size_t size = 0;
@@ -41,7 +44,8 @@ volatile std::sig_atomic_t g_is_told = 0;
     std::memcpy(text + size, more, std::strlen(more));
     size += std::strlen(more);
   };
-  add("error: interrupted a second time");
+  add("error: ");
+  add(why);
   if (const auto* call = ForeignCall::find_current()) {
     add(" in ");
     size += call->describe(text + size, 1000);
@@ -51,9 +55,16 @@ volatile std::sig_atomic_t g_is_told = 0;
   leave_at_once(kComputationFailed);
 }
 
+/// One signal is enough where no second one comes (a time limit, a service manager).
+void on_patience_over(int) {
+  if (ForeignCall::find_current()) end_where_it_is("told to end 5 s ago and still");
+}
+
 void on_signal_of_scope(int signal) {
-  if (signal == SIGINT && g_is_told) end_on_second_interrupt();
+  if (signal == SIGINT && g_is_told) end_where_it_is("interrupted a second time");
   g_is_told = 1;
+  std::signal(SIGALRM, on_patience_over);
+  ::alarm(kPatience);
   if (const auto handler = g_handler) handler(signal);
 }
 
@@ -70,6 +81,7 @@ SignalScope::SignalScope(void (*handler)(int)) {
 }
 
 SignalScope::~SignalScope() {
+  ::alarm(0);
   for (std::size_t i = 0; i < kSignals.size(); ++i) {
     // The program is about to end by itself; a signal more does not make it say that nothing was written.
     if (before_[i].sa_handler == end_on_signal) continue;
