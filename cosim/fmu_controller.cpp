@@ -124,7 +124,8 @@ class FmuLaw {
     } else if (in != last_out_) {
       if (!model_.can_save_state)
         throw std::runtime_error(
-            "it would have to go on from an earlier state, which it does not save (canSerializeFMUState)");
+            "it would have to go on from a state that is not its last one (restore, --resume, a second simulation of "
+            "one system), and it saves none (canSerializeFMUState)");
       const std::size_t at = 2 + outputs_.places.size();
       slave_->restore(unpack(in.data() + at + 1, static_cast<std::size_t>(in[at])));
     }

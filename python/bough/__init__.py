@@ -205,6 +205,8 @@ class Simulation:
 
     def __init__(self, system, *, integrator="", step=0.0, relative_tolerance=0.0, absolute_tolerance=0.0,
                  duration=0.0):
+        if not isinstance(system, System):
+            raise TypeError(f"expected a bough.System, got {type(system).__name__}; pass bough.System(FILE)")
         self._own = system._own.start(integrator, step, relative_tolerance, absolute_tolerance, duration)
 
     @property

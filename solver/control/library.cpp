@@ -297,7 +297,7 @@ std::unique_ptr<Block> make_library(SettingsReader& keys, const ControllerWiring
 }  // namespace
 
 std::unique_ptr<Block> make_fmu(SettingsReader& keys, const ControllerWiring& wiring) {
-  keys.accept({"input_names", "output_names", "parameter_names", "string_parameters", "file"});
+  keys.accept({"input_names", "output_names", "parameter_names", "string_parameters", "parameters", "file"});
   const std::string lent = keys.get_lent();
   if (!find_hosted_controller(lent)) {
     keys.error("control.no-fmu", "is an FMU, which this program does not read", "use bough run, or bough in Python");

@@ -605,6 +605,8 @@ class Simulations(InFolder):
         with self.assertRaises(bough.InputError) as caught:
             one.restore(state[:50])
         self.assertEqual(caught.exception.messages[0].id, "embed.bad-state")
+        self.assertRaisesRegex(bough.InputError, "the state", one.restore, state[:-1])
+        self.assertRaisesRegex(TypeError, "pass bough.System", bough.Simulation, "arm.toml")
         with self.assertRaises(bough.InputError):
             bough.Simulation(bough.System.from_text(STEPPED), step=5e-4).restore(state)
 
