@@ -71,13 +71,11 @@ class Fmu:
 
     def __init__(self, path, folder):
         with zipfile.ZipFile(path) as archive:
-            if archive.testzip() is not None:
-                raise ValueError("the archive is damaged")
             self.names = archive.namelist()
             for name in self.names:
                 if name.startswith("/") or ".." in name or "\\" in name:
                     raise ValueError(f"entry {name}")
-            archive.extractall(folder)
+            archive.extractall(folder)    # checks the checksums
         self.folder = folder = os.path.abspath(folder)
         self.resources = os.path.join(folder, "resources")
         with open(os.path.join(folder, "modelDescription.xml"), "rb") as f:
@@ -384,7 +382,7 @@ E = np.array([71 / 57600, 0, -71 / 16695, 71 / 1920, -17253 / 339200, 22 / 525, 
 class MeRun:
     """Model Exchange with its own integrator, location of state events by bisection, and event mode."""
 
-    def __init__(self, instance, tolerance=1e-11, start=0.0):
+    def __init__(self, instance, tolerance=1e-10, start=0.0):
         self.i, self.tolerance, self.h = instance, tolerance, 1e-4
         self.num_state_events = self.num_time_events = self.num_step_events = 0
         self.t, self.terminated = start, False

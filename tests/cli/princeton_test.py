@@ -24,7 +24,7 @@ frame = "fixed"
 interface = [{outer}]
 [body.modes]
 basis = "craig-bampton"
-number = 6
+number = {modes}
 [body.output]
 file = "part.h5"
 """
@@ -75,7 +75,7 @@ def direct(load, angle):
 
 class Princeton(ProgramTest):
     def make_chain(self, parts):
-        bars = BARS // parts
+        bars = BARS // parts    # a chain bends by the shapes of its nodes: more modes of its parts cost time
         length = LENGTH / parts
         deck = ["SOL 103", "CEND", "SPC = 1", "METHOD = 1", "BEGIN BULK", "PARAM,COUPMASS,1", "EIGRL,1,,,6",
                 "SPC1,1,123456,1", f"MAT1,1,{E:.6g},,{NU},{RHO}",
@@ -83,7 +83,7 @@ class Princeton(ProgramTest):
         deck += [f"GRID,{i + 1},,{i * length / bars:.10g},0.,0." for i in range(bars + 1)]
         deck += [f"CBEAM,{i + 1},1,{i + 1},{i + 2},0.,1.,0." for i in range(bars)]
         self.write("part.bdf", "\n".join(deck + ["ENDDATA", ""]))
-        self.bough("reduce", self.write("part.toml", PART.format(outer=bars + 1)), "--force")
+        self.bough("reduce", self.write("part.toml", PART.format(outer=bars + 1, modes=6 if parts == 1 else 3)), "--force")
         text = "[parameters]\nfy = 0.0\nfz = 0.0\n"
         for i in range(parts):
             text += f'[[body]]\nname = "p{i}"\nfile = "part.h5"\nSTIFFENING\n[[hinge]]\nname = "j{i}"\ntype = "fixed"\nchild = "p{i}"\n'
