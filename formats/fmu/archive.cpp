@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr zip_uint16_t kTime = 0, kDate = (0 << 9) | (1 << 5) | 1;  // MS-DOS: 1980-01-01 00:00
-constexpr zip_uint32_t kCompression = 3;  // of 9: half the time of 6, a twentieth larger
+constexpr zip_uint32_t kCompression = 3;                            // of 9: half the time of 6, a twentieth larger
 constexpr zip_uint32_t kFile = 0100644u << 16, kProgram = 0100755u << 16;
 
 [[noreturn]] void fail(const std::string& path, const std::string& why) {
