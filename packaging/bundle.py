@@ -3,6 +3,7 @@
 packaging/release.py makes the files of a release with it.
 """
 import base64
+import functools
 import gzip
 import hashlib
 import io
@@ -34,11 +35,18 @@ def run(*command, **options):
     return done.stdout
 
 
+@functools.lru_cache(maxsize=None)
+def read_ldd(path, size, changed):
+    """What ldd prints of a file of that size and time of change."""
+    return run("ldd", path, env={**os.environ, "LC_ALL": "C"})
+
+
 def list_libraries(paths, is_system):
     """{soname: file} of all libraries that the files load, without those of the system."""
     found = {}
     for path in paths:
-        for line in run("ldd", path, env={**os.environ, "LC_ALL": "C"}).split("\n"):
+        state = os.stat(path)
+        for line in read_ldd(path, state.st_size, state.st_mtime_ns).split("\n"):
             match = re.match(r"\s*(\S+) => (\S+)", line)
             if not match or is_system(os.path.basename(match.group(1))):
                 continue
@@ -57,7 +65,7 @@ def is_elf(path):
 
 def find_glibc(paths):
     """The newest version of glibc's symbols that the files ask for, as (2, 36)."""
-    text = "".join(run("readelf", "-W", "--version-info", path) for path in paths)
+    text = run("readelf", "-W", "--version-info", *paths) if paths else ""
     return max((tuple(map(int, number.split("."))) for number in re.findall(r"Name: GLIBC_(\d+\.\d+)", text)), default=(2, 0))
 
 

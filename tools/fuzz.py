@@ -16,6 +16,9 @@ import tempfile
 import time
 
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+sys.path.insert(0, os.path.join(ROOT, "tests/support"))
+import served  # noqa: E402
+
 NUMBERS = ["0", "-1", "1", "0.", "1e308", "-1e308", "1e-308", "1e400", "nan", "inf", "99999999", "100000000",
            "2147483647", "2147483648", "-2147483648", "9223372036854775808", "18446744073709551616", "1.+400",
            "1.-400", "1.5", "123456", "0123456", "7", "THRU", "BY", "EXCEPT", "", "*", "=", "*(1)", "==", "=(999)",
@@ -110,8 +113,8 @@ def main():
                 f.write(mutant)
             arguments = ["-n", "2", "-o", os.path.join(folder, "modes.h5")] if options.verb == "modes" else []
             try:
-                ran = subprocess.run([os.path.abspath(options.program), options.verb, path, *arguments],
-                                     capture_output=True, timeout=options.timeout)
+                ran = served.run([os.path.abspath(options.program), options.verb, path, *arguments], text=False,
+                                 timeout=options.timeout)
                 code, said = ran.returncode, ran.stderr.strip()
             except subprocess.TimeoutExpired:
                 code, said = "no answer in time", b"-"

@@ -5,6 +5,7 @@
 The list is of the machine that it runs on: run it again where other versions are installed. packaging/release.py writes
 the same list as SPDX JSON, for each file of a release.
 """
+import functools
 import os
 import re
 import subprocess
@@ -42,22 +43,28 @@ def run(*command):
     return subprocess.run(command, text=True, capture_output=True).stdout
 
 
+OWNERS = {}    # of the paths asked for before: dpkg reads the lists of all packages each time
+
+
 def find_owners(paths):
     """The Debian package of each file: {path: package}; files of no package are left out."""
-    places = {path: (path, path.removeprefix("/usr"), "/usr" + path, os.path.realpath(path)) for path in paths}
+    places = {path: (path, path.removeprefix("/usr"), "/usr" + path, os.path.realpath(path)) for path in paths
+              if path not in OWNERS}
     owners = {}
-    for line in run("dpkg-query", "-S", *{where for own in places.values() for where in own}).split("\n"):
+    for line in run("dpkg-query", "-S", *{where for own in places.values() for where in own}).split("\n") if places else []:
         owner, _, where = line.partition(": ")
         if owner and "diversion" not in owner:
             owners.setdefault(where, owner.split(",")[0].split(":")[0])
-    found = {path: [owners[where] for where in own if where in owners] for path, own in places.items()}
-    return {path: names[0] for path, names in found.items() if names}
+    for path, own in places.items():
+        OWNERS[path] = next((owners[where] for where in own if where in owners), None)
+    return {path: OWNERS[path] for path in paths if OWNERS[path]}
 
 
 def find_packages(program):
     return sorted(set(find_owners(re.findall(r"=> (/\S+)", run("ldd", program))).values()))
 
 
+@functools.lru_cache(maxsize=None)
 def describe(package, declared=None):
     """What Debian says of a package; declared: the licence, for headers that are compiled in."""
     version, source, source_version, page = run(

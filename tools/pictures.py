@@ -3,6 +3,7 @@
 150 kB by a palette. A picture comes from the commands of one page, run as printed up to the one that makes it (SHOTS):
 a plot, a table of the terminal, or the report page in headless Chromium (which must be installed). Besides, a session of
 `edit` and the figures of the notebooks (if the Python module is next to PROGRAM). Look at the result."""
+import contextlib
 import dataclasses
 import glob
 import html
@@ -13,7 +14,6 @@ import shlex
 import subprocess
 import sys
 import tempfile
-import time
 
 from PIL import Image
 
@@ -95,7 +95,18 @@ class Pages:
     """Pages followed in folders of their own: each command once, in the order of its page."""
 
     def __init__(self, program, scratch):
-        self.program, self.scratch, self.pages = program, scratch, {}
+        self.program, self.scratch, self.pages, self.browser = program, scratch, {}, None
+
+    def close(self):
+        if self.browser:
+            self.browser.close()
+
+    def show(self, page, width, height, **more):
+        """The browser, with the page in a window of this size."""
+        self.browser = self.browser or Browser()
+        self.browser.renew(width, height)
+        self.browser.open(page, **more)
+        return self.browser
 
     def follow(self, page, commands, last):
         """Runs the commands up to `last`: its folder and what it printed."""
@@ -141,22 +152,15 @@ class Pages:
         where, _ = self.follow(FIGURES[name].page, commands, command)
         return os.path.join(where, name + ".svg")
 
-    def take_page(self, name, page, shot, folder, wait=2.0):
-        browser = Browser(shot.width, shot.height)
-        try:
-            browser.open(page)
-            show = f"document.querySelector({shot.selector!r}).scrollIntoView(), scrollBy(0, -64)"
-            browser.run(show)
-            time.sleep(wait)
-            if shot.before:
-                browser.run(shot.before)
-                browser.run(show)
-                time.sleep(wait)
-            picture = os.path.join(self.scratch, "page.png")
-            browser.screenshot(picture)
-            keep(name, picture, folder, 128)
-        finally:
-            browser.close()
+    def take_page(self, name, page, shot, folder):
+        browser = self.show(page, shot.width, shot.height)
+        show = f"document.querySelector({shot.selector!r}).scrollIntoView(), scrollBy(0, -64)"
+        for script in [show] + [shot.before] * bool(shot.before) + [show]:
+            browser.run(script)
+            browser.settle()
+        picture = os.path.join(self.scratch, "page.png")
+        browser.screenshot(picture)
+        keep(name, picture, folder, 128)
 
     def take_terminal(self, name, text, folder):
         path = os.path.join(self.scratch, "terminal.html")
@@ -164,17 +168,13 @@ class Pages:
         text = html.escape(text, quote=False).replace("\0", "<b>").replace("\1", "</b>")
         with open(path, "w", encoding="utf-8") as f:
             f.write(TERMINAL % text)
-        browser = Browser(1400, 900)
-        try:
-            browser.open(path, ready="true")
-            box = browser.show("#t")
-            browser.call("Emulation.setDeviceMetricsOverride", width=round(box["width"]), height=round(box["height"]),
-                         deviceScaleFactor=1, mobile=False)
-            picture = os.path.join(self.scratch, "terminal.png")
-            browser.screenshot(picture)
-            keep(name, picture, folder, 16)
-        finally:
-            browser.close()
+        browser = self.show(path, 1400, 900, ready="true")
+        box = browser.show("#t")
+        browser.call("Emulation.setDeviceMetricsOverride", width=round(box["width"]), height=round(box["height"]),
+                     deviceScaleFactor=1, mobile=False)
+        picture = os.path.join(self.scratch, "terminal.png")
+        browser.screenshot(picture)
+        keep(name, picture, folder, 16)
 
     def take_edit(self, folder):
         """The session that docs/edit.md prints, in the folder of its example."""
@@ -210,17 +210,17 @@ class Pages:
 def main(program, names):
     os.makedirs(PICTURES, exist_ok=True)
     with tempfile.TemporaryDirectory(prefix="bough-pictures-") as scratch:
-        pages = Pages(os.path.abspath(program), scratch)
-        for name in SHOTS:
-            if not names or name in names:
-                pages.take(name, PICTURES)
-        for name in FIGURES:
-            if not names or name in names:
-                shutil.copy(pages.draw(name), os.path.join(ROOT, "docs"))
-        if not names or "edit" in names:
-            pages.take_edit(PICTURES)
-        if not names or "notebooks" in names:
-            pages.take_notebooks(PICTURES)
+        with contextlib.closing(Pages(os.path.abspath(program), scratch)) as pages:
+            for name in SHOTS:
+                if not names or name in names:
+                    pages.take(name, PICTURES)
+            for name in FIGURES:
+                if not names or name in names:
+                    shutil.copy(pages.draw(name), os.path.join(ROOT, "docs"))
+            if not names or "edit" in names:
+                pages.take_edit(PICTURES)
+            if not names or "notebooks" in names:
+                pages.take_notebooks(PICTURES)
 
 
 if __name__ == "__main__":

@@ -11,7 +11,6 @@ import math
 import os
 import platform
 import shutil
-import subprocess
 import sys
 import tempfile
 
@@ -20,7 +19,9 @@ import numpy as np
 from scipy.linalg import eigh
 from scipy.optimize import brentq
 
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "../tests/support"))
 import demo_report
+import served
 import spinup_numbers
 import verify_nonlinear
 import verify_plates
@@ -33,7 +34,7 @@ ROWS = []
 
 
 def bough(folder, *arguments):
-    return subprocess.run([PROGRAM, *map(str, arguments)], cwd=folder, check=True, capture_output=True, text=True).stdout
+    return served.run([PROGRAM, *map(str, arguments)], cwd=folder, check=True).stdout
 
 
 def add(case, quantity, computed, reference, tolerance, source):

@@ -51,10 +51,10 @@ def calc_bend(radius, angle, section, force):
 
     def miss(end):
         start = np.concatenate([np.zeros(3), np.eye(3).ravel()])
-        return solve_ivp(slope, [0, radius * angle], start, args=(end,), rtol=1e-11, atol=1e-11).y[:3, -1] - end
+        return solve_ivp(slope, [0, radius * angle], start, args=(end,), method="DOP853", rtol=1e-11, atol=1e-11).y[:3, -1] - end
 
     end = radius * np.array([math.sin(angle), 1 - math.cos(angle), 0])
-    for share in np.linspace(0.05, 1, 20):
+    for share in np.linspace(0.2, 1, 5):
         n = np.array([0, 0, share * force])
         end = fsolve(miss, end, xtol=1e-12)
     return end

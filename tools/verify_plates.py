@@ -5,7 +5,8 @@ Every case has a ladder of meshes; the row shows the finest, and the source colu
 import json
 import math
 import os
-import subprocess
+
+import served  # verify.py says where it is
 
 STEEL = (200e9, 0.3, 8000.0)
 UNIT = (1e7, 0.3, 1e-3)
@@ -62,8 +63,8 @@ class Plates:
         with open(self.path, "w", encoding="utf-8") as f:
             f.write(f"SOL {105 if buckling else 103}\nCEND\nSPC = 1\n{case}METHOD = 1\nBEGIN BULK\nEIGRL,1,,,{num}\n")
             f.write("\n".join(cards) + "\nENDDATA\n")
-        found = subprocess.run([self.program, "modes", self.path, "--json", "-n", str(num), "-o", self.path + ".h5",
-                                *(["--buckling"] if buckling else [])], check=True, capture_output=True, text=True)
+        found = served.run([self.program, "modes", self.path, "--json", "-n", str(num), "-o", self.path + ".h5",
+                            *(["--buckling"] if buckling else [])], check=True)
         return json.loads(found.stdout)["load_factor" if buckling else "frequency_hz"]
 
     def climb(self, case, meshes, calc, names, exact, tolerance, source):

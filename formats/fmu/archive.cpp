@@ -15,6 +15,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr zip_uint16_t kTime = 0, kDate = (0 << 9) | (1 << 5) | 1;  // MS-DOS: 1980-01-01 00:00
+constexpr zip_uint32_t kCompression = 3;                            // of 9: half the time of 6, a twentieth larger
 constexpr zip_uint32_t kFile = 0100644u << 16, kProgram = 0100755u << 16;
 
 [[noreturn]] void fail(const std::string& path, const std::string& why) {
@@ -49,7 +50,7 @@ void write_archive(const std::string& path, const std::vector<ArchiveEntry>& ent
     }
     const auto at = static_cast<zip_uint64_t>(index);
     if (zip_file_set_dostime(archive, at, kTime, kDate, 0) < 0 ||
-        zip_set_file_compression(archive, at, ZIP_CM_DEFLATE, 6) < 0 ||
+        zip_set_file_compression(archive, at, ZIP_CM_DEFLATE, kCompression) < 0 ||
         zip_file_set_external_attributes(archive, at, 0, ZIP_OPSYS_UNIX, entry.is_program ? kProgram : kFile) < 0)
       give_up();
   }

@@ -119,16 +119,17 @@ TEST(TwoLinkModes, ClampedModesBehindAFreeHingeAreNoted) {
   }
 }
 
-TEST(TwoLinkModes, ExampleRunsForAMinute) {
+// The drift grows with time at most: a quarter of what a minute may have.
+TEST(TwoLinkModes, ExampleRunsForAQuarterOfAMinute) {
   Example example = load_example("ex03-two-link", "two-link.toml");
-  example.spec.simulation.duration = 60;
+  example.spec.simulation.duration = 15;
   example.spec.simulation.output_step = 0.1;
   solver::MemorySink sink;
   ASSERT_TRUE(example.run(sink).completed);
   const VectorXd balance = calc_energy_balance(sink);
   const double drift = (balance.array() - balance[0]).abs().maxCoeff() / sink.get("/energy/kinetic").maxCoeff();
-  record("energy_drift_60_s", drift);
-  EXPECT_LT(drift, 1e-9);
+  record("energy_drift_15_s", drift);
+  EXPECT_LT(drift, 2.5e-10);
 }
 
 }  // namespace

@@ -10,6 +10,9 @@ import time
 
 from support import HANG
 
+# A view is drawn a frame after it was made.
+WAIT_FRAMES = "new Promise(r => requestAnimationFrame(() => requestAnimationFrame(r)))"
+
 
 def find_chromium():
     return os.environ.get("BOUGH_CHROMIUM") or shutil.which("chromium") or shutil.which("chromium-browser")
@@ -29,8 +32,16 @@ class Browser:
                                         env={**os.environ, "HOME": self.folder})
         os.close(to_read)
         os.close(to_write)
-        self.left, self.number, self.session, self.events = b"", 0, None, []
-        target = self.call("Target.createTarget", url="about:blank")["targetId"]
+        self.left, self.number, self.session, self.context = b"", 0, None, None
+        self.renew(width, height)
+
+    def renew(self, width=1300, height=900):
+        """An empty page that shares nothing with those before it: a start of the browser takes seconds."""
+        self.session, self.events = None, []
+        if self.context:
+            self.call("Target.disposeBrowserContext", browserContextId=self.context)
+        self.context = self.call("Target.createBrowserContext")["browserContextId"]
+        target = self.call("Target.createTarget", url="about:blank", browserContextId=self.context)["targetId"]
         self.session = self.call("Target.attachToTarget", targetId=target, flatten=True)["sessionId"]
         for domain in ["Page", "Runtime", "Log", "Network"]:
             self.call(domain + ".enable")
@@ -90,11 +101,16 @@ class Browser:
             time.sleep(0.05)
         return False
 
-    def open(self, path, ready="document.documentElement.dataset.ready === 'true'"):
-        self.events = []
-        self.call("Page.navigate", url="file://" + os.path.abspath(path))
-        if not self.wait_for(f"document.readyState === 'complete' && ({ready})"):
-            raise RuntimeError("the page does not get ready: " + "; ".join(self.list_errors()))
+    def settle(self):
+        """Views of a report page that are on the screen are built, and what they show is drawn."""
+        shown = ("[...document.querySelectorAll('.live')].filter((one) => { const b = one.getBoundingClientRect();"
+                 " return b.bottom > 0 && b.top < innerHeight; })")
+        if not self.wait_for(f"{shown}.every((one) => one.classList.contains('built'))"):
+            raise RuntimeError("a view is not built: " + "; ".join(self.list_errors()))
+        self.run(WAIT_FRAMES)
+
+    def open(self, path, **more):
+        self.visit("file://" + os.path.abspath(path), **more)
 
     def visit(self, address, ready="document.documentElement.dataset.ready === 'true'"):
         self.events = []

@@ -1,9 +1,8 @@
 """Bodies and systems that `check` passes can be reduced and run: it tries small reductions and the first step."""
 import re
-import subprocess
 import unittest
 
-from support import BEAM, HANG, PROGRAM, ProgramTest
+from support import BEAM, HANG, PROGRAM, ProgramTest, served
 
 BODY = """[body]
 name = "rod"
@@ -40,7 +39,7 @@ class CheckRefuses(ProgramTest):
         self.bough("check", file, code=1)
 
     def run_any(self, *call):
-        return subprocess.run([PROGRAM, *call], cwd=self.folder, capture_output=True, text=True, timeout=HANG)
+        return served.run([PROGRAM, *call], cwd=self.folder, timeout=HANG)
 
     def body(self, deck=BEAM, more="", modes=2, after=""):
         self.write("rod.bdf", deck)

@@ -161,7 +161,7 @@ class OneMass(DeckResponse):
         found = [u]
         for a, b in zip(t[:-1], t[1:]):
             u = solve_ivp(lambda x, y: [y[1], (force(min(max(x, a), b) + (1e-12 if x <= a else 0)) - C * y[1] - K * y[0]) / M],
-                          (a, b), u, rtol=1e-10, atol=1e-14).y[:, -1]
+                          (a, b), u, rtol=1e-10, atol=1e-14, method="DOP853").y[:, -1]
             found.append(u)
         self.near(r["displacement"][1, 1], np.array(found)[:, 0], 2e-5)
 
@@ -183,7 +183,7 @@ class OneMass(DeckResponse):
         self.near(r["velocity"][2, 1], v(t), 1e-11)
         self.near(r["displacement"][2, 1], d(t), 1e-11)
         exact, rate = solve_ivp(lambda x, y: [y[1], (K * (d(x) - y[0]) + C * (v(x) - y[1])) / M], (0, 4), [0, 0],
-                                t_eval=t, rtol=1e-12, atol=1e-14, max_step=.01).y
+                                t_eval=t, rtol=1e-12, atol=1e-14, max_step=.01, method="DOP853").y
         self.near(r["displacement"][1, 1], exact, 1e-8)
         self.near(r["spc_force"][2, 1], M * r["acceleration"][1, 1], 1e-9)
         table = lambda y: "TABLED1,3\n" + "".join(f",{x!r},{y(x)!r}\n" for x in np.arange(401) * .01) + ",ENDT"
@@ -265,7 +265,7 @@ class Chain(DeckResponse):
         f = lambda x: np.interp(x, [0, .5, 1, 1.5], [0, 1, -1, 0])
         A = np.block([[np.zeros((3, 3)), np.eye(3)], [-np.linalg.solve(self.M, self.K), -np.linalg.solve(self.M, self.B)]])
         rate = lambda x, y: A @ y + np.concatenate([np.zeros(3), np.linalg.solve(self.M, [2 * f(x), 0, -f(x - .25)])])
-        exact = solve_ivp(rate, (0, t[-1]), np.zeros(6), t_eval=t, rtol=1e-11, atol=1e-13, max_step=.01).y
+        exact = solve_ivp(rate, (0, t[-1]), np.zeros(6), t_eval=t, rtol=1e-11, atol=1e-13, max_step=.01, method="DOP853").y
         for i, g in enumerate((1, 2, 3)):
             self.near(r["displacement"][g, 1], exact[i], 2e-3 if t[-1] > 3 else 1e-8)
         first = t < 1 - 1e-9  # where the corners of the table lie on steps
@@ -278,7 +278,7 @@ class Chain(DeckResponse):
         r = self.solve("transient", deck)[1]
         A = np.block([[np.zeros((3, 3)), np.eye(3)], [-np.linalg.solve(self.M, self.K), -np.linalg.solve(self.M, self.B + self.S / 12)]])
         force = np.concatenate([np.zeros(3), np.linalg.solve(self.M, [2, 0, -1])])
-        exact = solve_ivp(lambda x, y: A @ y + force, (0, 2), np.zeros(6), t_eval=r["x"], rtol=1e-11, atol=1e-13).y
+        exact = solve_ivp(lambda x, y: A @ y + force, (0, 2), np.zeros(6), t_eval=r["x"], rtol=1e-11, atol=1e-13, method="DOP853").y
         for i, g in enumerate((1, 2, 3)):
             self.near(r["displacement"][g, 1], exact[i], 1e-8)
 

@@ -5,12 +5,11 @@ import os
 import re
 import shlex
 import shutil
-import subprocess
 import unittest
 
 import h5py
 
-from support import PROGRAM, SOURCE, ProgramTest
+from support import PROGRAM, SOURCE, ProgramTest, served
 
 
 def read(path):
@@ -35,7 +34,7 @@ class Pages(ProgramTest):
                     continue
                 if any(word in command for word in skip):
                     continue
-                ran = subprocess.run([PROGRAM, *words[1:]], cwd=folder, text=True, capture_output=True)
+                ran = served.run([PROGRAM, *words[1:]], cwd=folder)
                 self.assertEqual(ran.returncode, 0, f"{command}\n{ran.stdout}{ran.stderr}")
                 printed += ran.stdout
         self.where = folder

@@ -3,7 +3,7 @@ import os
 import subprocess
 import unittest
 
-from support import HANG, PROGRAM, SOURCE, ProgramTest
+from support import HANG, PROGRAM, SOURCE, ProgramTest, served
 
 SYSTEM = """# A pendulum.
 [[body]]
@@ -32,8 +32,7 @@ gravity = [0.0, 0.0, -9.81]
 
 class Edit(ProgramTest):
     def edit(self, *commands, code=0, file="p.toml"):
-        result = subprocess.run([PROGRAM, "edit", file], cwd=self.folder, text=True, timeout=HANG, capture_output=True,
-                                input="\n".join(commands) + "\n")
+        result = served.run([PROGRAM, "edit", file], cwd=self.folder, timeout=HANG, input="\n".join(commands) + "\n")
         self.assertEqual(result.returncode, code, result.stdout + result.stderr)
         return result
 

@@ -73,8 +73,8 @@ class FmuTest(FmuCase):
         self.compare_cs("arm.toml", 3, event_mode=True)
 
     def test_examples_with_flexible_bodies(self):
-        for example, body, system, duration, output_step in (("robot-arm", "arm", "robot", 0.3, 2e-3),
-                                                             ("satellite", "wing", "pointing", 3.0, 0.05)):
+        for example, body, system, duration, output_step in (("robot-arm", "arm", "robot", 0.1, 2e-3),
+                                                             ("satellite", "wing", "pointing", 1.0, 0.05)):
             with self.subTest(example=example):
                 self.bough("init", example)
                 folder = os.path.join(example, "")

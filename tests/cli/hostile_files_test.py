@@ -4,14 +4,13 @@ import random
 import resource
 import shutil
 import struct
-import subprocess
 
 import h5py
 import numpy
 import scipy.io
 import scipy.sparse
 
-from support import HANG, PROGRAM, SLOWER, ProgramTest, unittest
+from support import HANG, PROGRAM, SLOWER, ProgramTest, served, unittest
 
 
 class HostileFiles(ProgramTest):
@@ -50,9 +49,8 @@ class HostileFiles(ProgramTest):
 
     def read(self, words):
         """In little memory, without a crash."""
-        limit = None if SLOWER > 1 else lambda: resource.setrlimit(resource.RLIMIT_DATA, (3 << 30, 3 << 30))
-        result = subprocess.run([PROGRAM, *words], cwd=self.folder, text=True, capture_output=True,
-                                timeout=HANG, errors="replace", preexec_fn=limit)
+        limit = None if SLOWER > 1 else (resource.RLIMIT_DATA, 3 << 30)
+        result = served.run([PROGRAM, *words], cwd=self.folder, timeout=HANG, errors="replace", limit=limit)
         self.assertIn(result.returncode, (0, 1, 3), (words, result.stderr[-500:]))
         return result
 

@@ -1,14 +1,13 @@
 """meshio, which shares no line with Bough, reads the .vtu files and the decks that Bough writes."""
 import glob
 import os
-import subprocess
 import unittest
 
 import h5py
 import meshio
 import numpy as np
 
-from support import BEAM, HANG, PROGRAM, SOURCE, ProgramTest
+from support import BEAM, HANG, PROGRAM, SOURCE, ProgramTest, served
 
 SHARED = os.environ.get("BOUGH_SHARED_DIR", "")
 TYPES = {"vertex": "vertex", "line2": "line", "tri3": "triangle", "quad4": "quad", "tetra4": "tetra", "penta6": "wedge",
@@ -215,8 +214,7 @@ class Deck(ProgramTest):
         return True
 
     def run_export(self, path, name, *options):
-        return subprocess.run([PROGRAM, "export", path, "--to", "bdf", "-o", name, *options], cwd=self.folder,
-                              text=True, capture_output=True, timeout=HANG)
+        return served.run([PROGRAM, "export", path, "--to", "bdf", "-o", name, *options], cwd=self.folder, timeout=HANG)
 
     def count_known_cells(self, mesh):
         return {kind: n for kind, n in count_cells(mesh).items() if kind != "vertex"}  # CELAS1

@@ -16,7 +16,7 @@ import subprocess
 import unittest
 
 from page_blocks import list_blocks, list_commands, split_lines
-from support import HANG, PROGRAM, SOURCE, ProgramTest
+from support import HANG, PROGRAM, SOURCE, ProgramTest, served
 
 HAS_PNG = shutil.which("rsvg-convert") is not None
 MODULE = os.path.join(os.path.dirname(os.path.dirname(PROGRAM)), "python")
@@ -69,8 +69,8 @@ class Pages(ProgramTest):
         if ">" in words:
             given_out = os.path.join(self.where, words.pop(words.index(">") + 1))
             words.remove(">")
-        ran = subprocess.run([PROGRAM, *words], cwd=self.where, text=True, capture_output=True, timeout=HANG,
-                             stdin=open(taken_in) if taken_in else subprocess.DEVNULL)
+        with open(taken_in or os.devnull) as stdin:
+            ran = served.run([PROGRAM, *words], cwd=self.where, timeout=HANG, stdin=stdin)
         self.assertEqual(ran.returncode, 0, f"{page}: {command}\n{ran.stdout}{ran.stderr}")
         if given_out:
             with open(given_out, "w", encoding="utf-8") as f:
@@ -312,8 +312,7 @@ class Others(ProgramTest):
         self.bough("reduce", "boom.toml")
         session = re.findall(r"(?m)^    spinup\.toml> (.*)$", read("docs/edit.md"))
         self.assertIn("save", session)
-        ran = subprocess.run([PROGRAM, "edit", "spinup.toml"], cwd=self.folder, text=True, capture_output=True,
-                             input="\n".join(session) + "\n")
+        ran = served.run([PROGRAM, "edit", "spinup.toml"], cwd=self.folder, input="\n".join(session) + "\n")
         self.assertEqual(ran.returncode, 0, ran.stdout + ran.stderr)
         with open(self.path("spinup.toml")) as f:
             text = f.read()

@@ -6,6 +6,7 @@ import os
 import re
 import shutil
 import sys
+import tempfile
 import unittest
 
 from browser import find_chromium
@@ -28,14 +29,20 @@ def read(path):
 
 @unittest.skipUnless(HAS_PILLOW, "Pillow is not installed (apt install python3-pil): pictures are not compared")
 class Pictures(ProgramTest):
+    @classmethod
+    def setUpClass(cls):
+        scratch = tempfile.mkdtemp(prefix="bough-test-")
+        cls.addClassCleanup(shutil.rmtree, scratch)
+        cls.pages = pictures.Pages(PROGRAM, scratch)
+        cls.addClassCleanup(cls.pages.close)
+
     def load(self, path):
         image = Image.open(path).convert("L")
         return np.asarray(image.resize((max(1, image.width // PATCH), max(1, image.height // PATCH)), Image.BOX), float)
 
     def take(self, names):
-        pages = pictures.Pages(PROGRAM, self.folder)
         for name in names:
-            pages.take(name, self.folder)
+            self.pages.take(name, self.folder)
             stored = os.path.join(SOURCE, "docs/pictures", name + ".png")
             a, b = Image.open(self.path(name + ".png")), Image.open(stored)
             # The height of a terminal and of a page depends on the font.
@@ -61,9 +68,8 @@ class Pictures(ProgramTest):
 
     def test_figures(self):
         """The curves of the stored figure, point by point in pixels."""
-        pages = pictures.Pages(PROGRAM, self.folder)
         for name in pictures.FIGURES:
-            with open(pages.draw(name), encoding="utf-8") as f:
+            with open(self.pages.draw(name), encoding="utf-8") as f:
                 made = self.list_curves(f.read())
             stored = self.list_curves(read(f"docs/{name}.svg"))
             self.assertEqual(len(made), len(stored))

@@ -1,5 +1,6 @@
 """The Princeton beam (Dowell & Traybar 1975): a strip of 7075 aluminium, clamped, a weight at its tip, turned about its
 axis so that it bends both ways and twists. One flexible body and chains of 2, 4, 8 against a geometrically exact rod."""
+import functools
 import unittest
 
 import h5py
@@ -23,44 +24,48 @@ frame = "fixed"
 interface = [{outer}]
 [body.modes]
 basis = "craig-bampton"
-number = 6
+number = {modes}
 [body.output]
 file = "part.h5"
 """
 
 
-def calc_rod(force):
+@functools.cache
+def calc_rod(*force):
     """Tip of the rod x' = R (e1 + Γ), R' = R κ~, with Γ, κ linear in force and moment in the section's axes, clamped at
     0 under a dead force at its end: place (3) and rotation (3 x 3). Shooting by the moment at the root."""
-    strain, bend = 1 / np.array([E * AREA, G * AREA, G * AREA]), 1 / np.array([G * J, E * WEAK, E * STRONG])
+    strain, bend = 1 / np.array([[E * AREA], [G * AREA], [G * AREA]]), 1 / np.array([[G * J], [E * WEAK], [E * STRONG]])
+    load = np.array(force)
 
-    def run(moment, load):
-        def rate(y):
-            R, m = y[3:12].reshape(3, 3), y[12:]
-            x = R @ ([1, 0, 0] + strain * (R.T @ load))
-            k = bend * (R.T @ m)
-            skew = np.array([[0, -k[2], k[1]], [k[2], 0, -k[0]], [-k[1], k[0], 0]])
-            return np.concatenate([x, (R @ skew).ravel(), -np.cross(x, load)])
-        y, h = np.concatenate([np.zeros(3), np.eye(3).ravel(), moment]), LENGTH / STEPS
+    def rate(y):
+        R, m = y[3:12].reshape(3, 3, -1), y[12:]
+        x = np.einsum("ijn,jn->in", R, [[1], [0], [0]] + strain * np.einsum("jin,j->in", R, load))
+        k = bend * np.einsum("jin,jn->in", R, m)
+        turn = np.stack([R[:, i - 2] * k[i - 1] - R[:, i - 1] * k[i - 2] for i in range(3)], axis=1)
+        return np.concatenate([x, turn.reshape(9, -1), np.cross(load, x.T).T])
+
+    def run(moments):
+        """The ends of rods with these moments (3 x n) at their roots."""
+        n = moments.shape[1]
+        y, h = np.concatenate([np.zeros((3, n)), np.repeat(np.eye(3).reshape(9, 1), n, 1), moments]), LENGTH / STEPS
         for _ in range(STEPS):
             a = rate(y)
             b = rate(y + h / 2 * a)
             c = rate(y + h / 2 * b)
             y = y + h / 6 * (a + 2 * b + 2 * c + rate(y + h * c))
         return y
-    size = LENGTH * np.linalg.norm(force)
-    moment = np.cross([LENGTH, 0, 0], force)
+    size = LENGTH * np.linalg.norm(load)
+    moment = np.cross([LENGTH, 0, 0], load)
+    offsets = 1e-5 * size * np.hstack([np.zeros((3, 1)), np.eye(3), -np.eye(3)])
     for _ in range(30):
-        left = run(moment, force)[12:]
+        y = run(moment[:, None] + offsets)
+        left = y[12:, 0]
         if np.abs(left).max() < 1e-10 * size:
             break
-        slope = np.column_stack([(run(moment + step, force) - run(moment - step, force))[12:] / (2e-5 * size)
-                                 for step in 1e-5 * size * np.eye(3)])
-        moment = moment - np.linalg.solve(slope, left)
+        moment = moment - np.linalg.solve((y[12:, 1:4] - y[12:, 4:]) / (2e-5 * size), left)
     else:
         raise AssertionError("the shooting does not converge")
-    y = run(moment, force)
-    return y[:3], y[3:12].reshape(3, 3)
+    return y[:3, 0], y[3:12, 0].reshape(3, 3)
 
 
 def direct(load, angle):
@@ -70,7 +75,7 @@ def direct(load, angle):
 
 class Princeton(ProgramTest):
     def make_chain(self, parts):
-        bars = BARS // parts
+        bars = BARS // parts    # a chain bends by the shapes of its nodes: more modes of its parts cost time
         length = LENGTH / parts
         deck = ["SOL 103", "CEND", "SPC = 1", "METHOD = 1", "BEGIN BULK", "PARAM,COUPMASS,1", "EIGRL,1,,,6",
                 "SPC1,1,123456,1", f"MAT1,1,{E:.6g},,{NU},{RHO}",
@@ -78,7 +83,7 @@ class Princeton(ProgramTest):
         deck += [f"GRID,{i + 1},,{i * length / bars:.10g},0.,0." for i in range(bars + 1)]
         deck += [f"CBEAM,{i + 1},1,{i + 1},{i + 2},0.,1.,0." for i in range(bars)]
         self.write("part.bdf", "\n".join(deck + ["ENDDATA", ""]))
-        self.bough("reduce", self.write("part.toml", PART.format(outer=bars + 1)), "--force")
+        self.bough("reduce", self.write("part.toml", PART.format(outer=bars + 1, modes=6 if parts == 1 else 3)), "--force")
         text = "[parameters]\nfy = 0.0\nfz = 0.0\n"
         for i in range(parts):
             text += f'[[body]]\nname = "p{i}"\nfile = "part.h5"\nSTIFFENING\n[[hinge]]\nname = "j{i}"\ntype = "fixed"\nchild = "p{i}"\n'
@@ -100,7 +105,7 @@ class Princeton(ProgramTest):
 
     def calc_error(self, text, load, angle):
         """Errors of the tip's position relative to its displacement, and of its rotation."""
-        place, rotation = calc_rod(direct(load, angle))
+        place, rotation = calc_rod(*direct(load, angle))
         tip, turn = self.calc_tip(text.replace("STIFFENING", ""), direct(load, angle))
         way = np.linalg.norm(place - [LENGTH, 0, 0])
         return np.linalg.norm(tip - place) / way, np.linalg.norm(turn - rotation), way / LENGTH

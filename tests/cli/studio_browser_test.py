@@ -36,10 +36,14 @@ def make_plate():
 
 @unittest.skipUnless(find_chromium(), "chromium is not installed")
 class Flow(StudioTest):
+    @classmethod
+    def setUpClass(cls):
+        cls.browser = Browser()
+        cls.addClassCleanup(cls.browser.close)
+
     def setUp(self):
         super().setUp()
-        self.browser = Browser(1300, 850)
-        self.addCleanup(self.browser.close)
+        self.browser.renew(1300, 850)
 
     def keep(self, name):
         folder = os.environ.get("BOUGH_ARTEFACTS")

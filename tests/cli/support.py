@@ -3,6 +3,7 @@ import os
 import select
 import shutil
 import subprocess
+import sys
 import tempfile
 import unittest
 
@@ -12,6 +13,9 @@ SOURCE = os.environ["BOUGH_SOURCE_DIR"]
 SLOWER = int(os.environ.get("BOUGH_SLOWER", "1"))
 # Guards against hangs only: no command takes a tenth of it, alone or on a busy machine.
 HANG = 600 * SLOWER
+sys.path.insert(0, os.path.join(SOURCE, "tests/support"))
+import served  # noqa: E402
+
 VERBS = ["check", "modes", "static", "frequency", "transient", "matrices", "split", "reduce", "integrals", "flx", "compare", "run",
          "equilibrium", "linearize", "response", "select", "export", "plot", "report", "info", "init", "batch", "edit", "convert", "studio"]
 
@@ -46,8 +50,8 @@ class ProgramTest(unittest.TestCase):
 
     def bough(self, *arguments, code=0, launcher=(), env=None):
         """Runs and checks the exit code; returns the finished process with stdout and stderr as text."""
-        result = subprocess.run([*launcher, PROGRAM, *map(str, arguments)], cwd=self.folder, text=True,
-                                timeout=HANG, capture_output=True, env={**os.environ, **(env or {})})
+        run = served.start if launcher else served.run
+        result = run([*launcher, PROGRAM, *map(str, arguments)], cwd=self.folder, timeout=HANG, env={**os.environ, **(env or {})})
         self.assertEqual(result.returncode, code,
                          f"bough {' '.join(map(str, arguments))}\n--- stdout\n{result.stdout}\n--- stderr\n{result.stderr}")
         return result

@@ -1,7 +1,7 @@
 """select against scipy's dense Lyapunov solver on random bodies, and linearize against scipy's generalized eigenvalues."""
 import json
 import os
-import subprocess
+import sys
 import tempfile
 import unittest
 
@@ -11,6 +11,8 @@ import scipy.linalg
 
 PROGRAM = os.environ["BOUGH_PROGRAM"]
 SOURCE = os.environ["BOUGH_SOURCE_DIR"]
+sys.path.insert(0, os.path.join(SOURCE, "tests/support"))
+import served  # noqa: E402
 
 
 def put(file, path, value):
@@ -31,7 +33,7 @@ class RandomBodies(unittest.TestCase):
 
     @classmethod
     def bough(cls, *arguments):
-        result = subprocess.run([PROGRAM, *map(str, arguments)], cwd=cls.folder.name, text=True, capture_output=True)
+        result = served.run([PROGRAM, *map(str, arguments)], cwd=cls.folder.name)
         if result.returncode != 0:
             raise AssertionError(result.stdout + result.stderr)
         return result.stdout

@@ -3,9 +3,13 @@ import json
 import os
 import re
 import subprocess
+import sys
 
 import h5py
 import numpy as np
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../support"))
+import served  # noqa: E402
 
 
 class Ran:
@@ -44,8 +48,8 @@ class Program:
 
     def run(self, *arguments):
         try:
-            ran = subprocess.run([self.path, *map(str, arguments)], cwd=self.folder, env=self.env, timeout=self.timeout,
-                                 capture_output=True)
+            ran = served.run([self.path, *map(str, arguments)], cwd=self.folder, env=self.env, timeout=self.timeout,
+                             text=False)
         except subprocess.TimeoutExpired:
             return Ran(None, "", "")
         return Ran(ran.returncode, ran.stdout.decode("utf-8", "replace"), ran.stderr.decode("utf-8", "replace"))

@@ -1,4 +1,5 @@
 """A few seeds of the random structures, sound and spoiled; and planted errors, each of which the judges must see."""
+import copy
 import os
 import sys
 import tempfile
@@ -48,15 +49,22 @@ class PlantedErrors(Case):
 
     SEED, MASSLESS_SEED = 21, 3
 
+    @classmethod
+    def setUpClass(cls):
+        folder = tempfile.TemporaryDirectory(prefix="bough-oracle-")
+        cls.addClassCleanup(folder.cleanup)
+        program = Program(PROGRAM, folder.name)
+        examination = Examination(program, cls.SEED, False, [])
+        eigrl = [5, None, None, 10]
+        examination.write(eigrl)
+        _, matrices = program.matrices("deck.bdf")
+        truth = Truth(examination.model, *matrices)
+        spectrum = pencil.solve(truth.K, truth.M, truth.K_size, truth.M_size)
+        cls.sound = (examination, eigrl, truth, spectrum, *program.modes("deck.bdf"))
+
     def setUp(self):
         super().setUp()
-        self.examination = Examination(self.program, self.SEED, False, [])
-        self.eigrl = [5, None, None, 10]
-        self.examination.write(self.eigrl)
-        _, matrices = self.program.matrices("deck.bdf")
-        self.truth = Truth(self.examination.model, *matrices)
-        self.spectrum = pencil.solve(self.truth.K, self.truth.M, self.truth.K_size, self.truth.M_size)
-        self.ran, self.found = self.program.modes("deck.bdf")
+        self.examination, self.eigrl, self.truth, self.spectrum, self.ran, self.found = copy.deepcopy(self.sound)
 
     def judge(self):
         return judge_modes.judge(self.ran, self.found, self.truth, self.spectrum, self.eigrl)
