@@ -14,7 +14,7 @@ namespace {
 constexpr int kMaxIterations = 60;
 /// Travel in steps of the plant within which the state found is the one that was meant, stable or not.
 constexpr double kNear = 1;
-/// The same if it is stable and Newton's method took whole steps only: a body that bends by a quarter of its size.
+/// Largest travel of a stable state that whole steps of Newton's method found: a quarter of the size of a body.
 constexpr double kDirect = 5;
 
 /// The largest of what dofs move by, in steps of the plant; the size of a state or of a signal says nothing.

@@ -116,7 +116,7 @@ class ThirdOrderModes(ProgramTest):
         self.write("mast.toml", f'[body]\nname = "mast"\ndeck = "mast.bdf"\nframe = "fixed"\ninterface = [{corner}]\n'
                    '[body.modes]\nnumber = 6\nresidual = ["interface"]\n[body.stiffening]\norder = 3\n')
         self.bough("reduce", "mast.toml", "-o", "mast.h5", "-q")
-        for force in ((0., 0., 20.), (0., 3., 10.), (0., 6., 20.), (0., 12., 40.), (0., 0., 55.)):
+        for force in ((0., 0., 20.), (0., 3., 10.), (0., 6., 20.), (0., 12., 40.), (0., 15., 50.)):
             self.write("whole.bdf", "SOL 106\nCEND\n" + bulk + "PARAM,LGDISP,1\nFORCE,1,%d,,1.,%r,%r,%r\nENDDATA\n" % (corner, *force))
             self.bough("static", "whole.bdf", "-o", "whole.h5", "-q")
             with h5py.File(self.path("whole.h5")) as f:
@@ -127,7 +127,7 @@ class ThirdOrderModes(ProgramTest):
             with h5py.File(self.path("rest.h5")) as f:
                 off = np.linalg.norm(f["sensors/end"][-1] - exact) / np.linalg.norm(exact)
             print(f"plate, {force} N: off by {100 * off:.2f} % of {np.linalg.norm(exact) / .6:.3f} lengths")
-            self.assertLess(off, .01 if force[2] <= 20 else .05)
+            self.assertLess(off, .005 if force[2] <= 20 else .12)
 
     def find_rest_and_estimate(self, force):
         self.write_system(force)
