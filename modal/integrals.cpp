@@ -6,7 +6,9 @@
 #include "base/rotation.hpp"
 #include "fe/linear/blas.hpp"
 #include "fe/linear/factor.hpp"
+#include "fe/loads/arm_strains.hpp"
 #include "fe/loads/inertial_loads.hpp"
+#include "modal/strained_integrals.hpp"
 
 namespace bough::modal {
 
@@ -142,15 +144,29 @@ MassIntegrals calc_momentum_integrals(const NodalDofs& dofs, const MassTimes& ma
   return g;
 }
 
-MassIntegrals calc_exact_integrals(const fe::Model& model, fe::MassKind kind, const MatrixXd& Phi,
-                                   const Vector3d& reference) {
+namespace {
+
+MassIntegrals calc_integrals(const fe::Model& model, fe::MassKind kind, const MatrixXd& Phi, const Vector3d& reference,
+                             const MatrixXd& strain) {
   const auto M = fe::assemble_grid_mass(model, kind);
   const auto mass_times = [&M](const MatrixXd& X) -> MatrixXd { return linear::multiply(M, X); };
   const auto dofs = NodalDofs::from_model(model);
   MassIntegrals g = moves_alike(dofs, mass_times) ? calc_momentum_integrals(dofs, mass_times, Phi, reference)
                                                   : calc_exact_integrals(dofs, mass_times, Phi, reference);
-  add_carried(fe::calc_carried_gram(model, kind, Phi), reference, g);
+  add_carried(fe::calc_strained_gram(model, kind, Phi, strain), reference, g);
   return g;
+}
+
+}  // namespace
+
+MassIntegrals calc_exact_integrals(const fe::Model& model, fe::MassKind kind, const MatrixXd& Phi,
+                                   const Vector3d& reference) {
+  return calc_integrals(model, kind, Phi, reference, MatrixXd::Zero(9, 0));
+}
+
+MassIntegrals calc_strained_integrals(const fe::Model& model, fe::MassKind kind, const MatrixXd& Phi,
+                                      const MatrixXd& strain) {
+  return calc_integrals(model, kind, Phi, Vector3d::Zero(), strain);
 }
 
 MassIntegrals calc_named_integrals(const fe::Model& model, fe::MassKind kind, const MatrixXd& Phi) {

@@ -5,6 +5,7 @@
 #include <optional>
 #include <set>
 
+#include "fe/loads/dead_loads.hpp"
 #include "fe/matrices/system.hpp"
 #include "fe/statics/build_model.hpp"
 #include "fe/statics/preload.hpp"
@@ -107,6 +108,7 @@ EigenPairs solve_buckling(const records::Deck& deck, const BucklingCases& cases,
   }
   const fe::Model& statics = own ? *own : model;
   auto load = fe::calc_static_load(statics, deck, cases.statics, diagnostics);
+  fe::report_dead_loads(deck, cases.statics.load, diagnostics);
   diagnostics.throw_if_errors();
   const auto relief = fe::read_inertia_relief(deck, diagnostics);
   auto held = fe::choose_suport(statics, deck, relief, diagnostics);

@@ -4,6 +4,7 @@
 #include "fe/matrices/mass_directions.hpp"
 #include "fe/model/element_loop.hpp"
 #include "modal/integrals.hpp"
+#include "modal/strained_integrals.hpp"
 #include "stiffening/given_model.hpp"
 #include "stiffening/stages.hpp"
 
@@ -75,11 +76,12 @@ InertialLoads calc_body_inertial_loads(const fe::Model& model) {
 }
 
 void set_integrals(const BodyRequest& request, const fe::Model& model, const MatrixXd& Phi, const InertialLoads& loads,
-                   FlexBody& body) {
+                   FlexBody& body, const MatrixXd& strain) {
   const auto kind = model.mass_kind();
   const bool is_lumped = kind == fe::MassKind::Lumped, is_approximate = fe::has_approximate_mass(model, kind);
   const auto mass_times = [&](const MatrixXd& X) { return linear::multiply(loads.M, X); };
-  body.exact = modal::calc_exact_integrals(model, kind, Phi);
+  body.exact = strain.cols() == 0 ? modal::calc_exact_integrals(model, kind, Phi)
+                                  : modal::calc_strained_integrals(model, kind, Phi, strain);
   body.masses = is_approximate ? "nodal momenta" : "bodies";
   if (is_approximate)
     request.warning("reduce.inertia-approximated",

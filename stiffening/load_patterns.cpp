@@ -1,6 +1,7 @@
 // The external loads of a body, and the columns for its residual vectors.
 #include <algorithm>
 
+#include "fe/loads/dead_loads.hpp"
 #include "fe/statics/static_case.hpp"
 #include "stiffening/given_model.hpp"
 #include "stiffening/stages.hpp"
@@ -47,6 +48,7 @@ LoadPattern make_set(const BodyRequest& request, const fe::Model& model, const r
   sets.load = load.load_set;
   sets.temperature = load.temperature_set;
   auto both = fe::calc_static_load(model, request.deck, sets, request.diagnostics);
+  fe::report_dead_loads(request.deck, load.load_set, request.diagnostics);
   LoadPattern pattern;
   pattern.group = pattern.locator.name = name;
   pattern.load_set = load.load_set;

@@ -131,9 +131,10 @@ void remove_augmentation(const BodyRequest& request, const fe::Model& model, mod
 bool lacks_rotation(const fe::Model& model, const fe::Node& node);
 void set_modes(const ModalBasis& basis, records::FlexBody& body);
 void set_nodes(const BodyRequest& request, const fe::Model& model, const MatrixXd& Phi, records::FlexBody& body);
-/// Mass integrals, effective masses, F_I. Reports reduce.inertia-approximated.
+/// Mass integrals, effective masses, F_I. `strain`: of arms in the exact integrals (modal::calc_strained_integrals).
+/// Reports reduce.inertia-approximated.
 void set_integrals(const BodyRequest& request, const fe::Model& model, const MatrixXd& Phi, const InertialLoads& loads,
-                   records::FlexBody& body);
+                   records::FlexBody& body, const MatrixXd& strain = {});
 /// Locators, external loads, their resultants and moments.
 void set_loads(const BodyRequest& request, const fe::Model& model, const MatrixXd& Phi,
                const std::vector<LoadPattern>& patterns, records::FlexBody& body);

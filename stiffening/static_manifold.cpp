@@ -223,7 +223,7 @@ MatrixXd StaticManifold::calc_arm_gauge(const Curves& curves, int order) const {
     const auto moved = calc_turned_arm(calc_node_curve(curves, arm.parent).bottomRows<3>(), arm.arm, order);
     work += W_.middleRows<3>(model_.nodes()[static_cast<std::size_t>(arm.node)].first_gdof).transpose() * moved;
   }
-  return work + calc_carried_work(curves, order, psi_).on_fields;
+  return work + calc_carried_work(curves, order, psi_, MatrixXd::Zero(9, psi_.cols())).on_fields;
 }
 
 MatrixXd StaticManifold::calc_gradient(const MatrixXd& points, int degree) const {
@@ -385,14 +385,14 @@ void StaticManifold::visit_carried(const Curves& curves, const Visit& visit) con
   });
 }
 
-StaticManifold::CarriedWork StaticManifold::calc_carried_work(int degree, const Lattice& lattice,
-                                                              const MatrixXd& psi) const {
-  const auto work = calc_carried_work(make_curves(degree, lattice), degree, psi);
+StaticManifold::CarriedWork StaticManifold::calc_carried_work(int degree, const Lattice& lattice, const MatrixXd& psi,
+                                                              const MatrixXd& strain) const {
+  const auto work = calc_carried_work(make_curves(degree, lattice), degree, psi, strain);
   return {lattice.fit(work.on_fields), lattice.fit(work.on_inertial)};
 }
 
-StaticManifold::CarriedWork StaticManifold::calc_carried_work(const Curves& curves, int order,
-                                                              const MatrixXd& psi) const {
+StaticManifold::CarriedWork StaticManifold::calc_carried_work(const Curves& curves, int order, const MatrixXd& psi,
+                                                              const MatrixXd& strain) const {
   const Index m = curves.points.rows();
   CarriedWork work{MatrixXd::Zero(psi.cols(), m), MatrixXd::Zero(records::kNumInertialLoads, m)};
   const fe::AccelerationFields units(MatrixXd::Identity(records::kNumInertialLoads, records::kNumInertialLoads));
@@ -403,7 +403,12 @@ StaticManifold::CarriedWork StaticManifold::calc_carried_work(const Curves& curv
       for (const auto& part : turn.parts)
         moved.middleRows<3>(3 * static_cast<Index>(part.point)) +=
             part.B * calc_turned_arm(turn.Theta * carried.u, part.arm, order);
-    const MatrixXd along = carried.motion * psi(element.gdofs(), Eigen::all);
+    MatrixXd along = carried.motion * psi(element.gdofs(), Eigen::all);
+    for (Index s = 0; s < num; ++s) {
+      const auto& point = carried.mass.points[static_cast<std::size_t>(s)];
+      for (int b = 0; b < 3 && !point.is_place; ++b)
+        along.middleRows<3>(3 * s) += point.x[b] * strain.middleRows<3>(3 * b);
+    }
     const MatrixXd loads = units.calc_point_loads(carried.mass);
     for (Index s = 0; s < num; ++s) {
       for (Index r = 0; r < num; ++r)

@@ -57,8 +57,8 @@ class StaticManifold {
     MatrixXd on_fields;    ///< Σ (H ψ)·μ e: fields x monomials
     MatrixXd on_inertial;  ///< work of the twelve inertial loads, 12 x monomials
   };
-  /// psi: num_gdofs x fields.
-  CarriedWork calc_carried_work(int degree, const Lattice& lattice, const MatrixXd& psi) const;
+  /// psi: num_gdofs x fields; strain: 9 x fields, E of fields that move arms s by E s in addition.
+  CarriedWork calc_carried_work(int degree, const Lattice& lattice, const MatrixXd& psi, const MatrixXd& strain) const;
 
  private:
   /// Points, and the monomials of each field there.
@@ -96,7 +96,7 @@ class StaticManifold {
   MatrixXd calc_arm_gauge(const Curves& curves, int order) const;
   template <class Visit>
   void visit_carried(const Curves& curves, const Visit& visit) const;
-  CarriedWork calc_carried_work(const Curves& curves, int order, const MatrixXd& psi) const;
+  CarriedWork calc_carried_work(const Curves& curves, int order, const MatrixXd& psi, const MatrixXd& strain) const;
 
   const fe::Model& model_;
   const StaticSupport& support_;

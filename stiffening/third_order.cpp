@@ -7,6 +7,7 @@
 #include "fe/elements/carried.hpp"
 #include "fe/linear/blas.hpp"
 #include "fe/linear/products.hpp"
+#include "fe/loads/arm_strains.hpp"
 #include "fe/loads/inertial_loads.hpp"
 #include "modal/integrals.hpp"
 #include "stiffening/large_modes.hpp"
@@ -51,38 +52,88 @@ std::string list_modes(const std::vector<int>& modes) {
   return join_names(numbers);
 }
 
+/// The first RBE3 or MPC card on one of these grids, with its place; empty: others join them.
+std::pair<std::string, records::CardLocation> find_tie(const records::Deck& deck, const std::vector<int>& ids) {
+  const auto is_joined = [&](int id) { return std::find(ids.begin(), ids.end(), id) != ids.end(); };
+  for (const auto& card : deck.rbe3) {
+    const bool is_dependent =
+        card.um.empty() ? is_joined(card.ref_grid)
+                        : std::any_of(card.um.begin(), card.um.end(), [&](const auto& of) { return is_joined(of.g); });
+    if (is_dependent) return {"RBE3 " + std::to_string(card.id), card.at};
+  }
+  for (const auto& card : deck.mpc)
+    if (!card.terms.empty() && is_joined(card.terms.front().g)) return {"MPC " + std::to_string(card.sid), card.at};
+  return {};
+}
+
 /// V_k from Φη·f_(k-1)/k at the points of its lattice. forces: f_(k-1) on the modes, N x points.
 VectorXd fit_energy(const Lattice& lattice, const MatrixXd& forces, int degree) {
   const MatrixXd work = forces.cwiseProduct(lattice.points().transpose());
   return lattice.fit(work.colwise().sum() / degree).transpose();
 }
 
-/// Rigid-body motions, then the six strains of the body as one; rotations are those of the field. Rows of scalar points
-/// are zero.
+/// Fields are displacements of the grids, with the strain E by which the arms of carried masses move in addition to
+/// their grids' rotations: num_gdofs + 9 rows, E column by column.
+class FieldMass {
+ public:
+  FieldMass(const fe::Model& model, const linear::SymmetricMatrix& M)
+      : M_(M), arms_(fe::calc_arm_strain_mass(model, model.mass_kind())) {}
+
+  MatrixXd multiply(const MatrixXd& X) const {
+    MatrixXd M_X(X.rows(), X.cols());
+    const auto u = X.topRows(X.rows() - 9);
+    const auto strain = X.bottomRows<9>();
+    M_X.topRows(X.rows() - 9) = linear::multiply(M_, u) + arms_.on_dofs * strain;
+    M_X.bottomRows<9>() = arms_.on_dofs.transpose() * u;
+    for (int b = 0; b < 3; ++b)
+      for (int c = 0; c < 3; ++c)
+        M_X.middleRows(X.rows() - 9 + 3 * b, 3) += arms_.moment(b, c) * strain.middleRows<3>(3 * c);
+    return M_X;
+  }
+
+ private:
+  const linear::SymmetricMatrix& M_;
+  fe::ArmStrainMass arms_;
+};
+
+/// Fields without strain of the arms.
+MatrixXd make_fields(const MatrixXd& U) {
+  MatrixXd X = MatrixXd::Zero(U.rows() + 9, U.cols());
+  X.topRows(U.rows()) = U;
+  return X;
+}
+
+/// Rigid-body motions, then the six strains of the body as one, of arms too; rotations are those of the field. Rows of
+/// scalar points are zero.
 MatrixXd calc_affine_fields(const fe::Model& model, const Eigen::Vector3d& centre) {
-  MatrixXd X = MatrixXd::Zero(model.num_gdofs(), 12);
-  X.leftCols<6>() = model.calc_rigid_modes(centre);
+  const int N = model.num_gdofs();
+  MatrixXd X = MatrixXd::Zero(N + 9, 12);
+  X.topLeftCorner(N, 6) = model.calc_rigid_modes(centre);
+  const auto visit_strains = [&](const auto& visit) {
+    for (int a = 0, c = 6; a < 3; ++a)
+      for (int b = a; b < 3; ++b, ++c) visit(a, b, c);
+  };
+  visit_strains([&](int a, int b, int c) { X(N + a + 3 * b, c) = X(N + b + 3 * a, c) = 1; });
   for (const auto& node : model.nodes()) {
     if (node.num_dofs != 6) continue;
     const Eigen::Vector3d p = node.x - centre;
-    for (int a = 0, c = 6; a < 3; ++a)
-      for (int b = a; b < 3; ++b, ++c) {
-        X(node.first_gdof + a, c) += p[b];
-        if (a != b) X(node.first_gdof + b, c) += p[a];
-      }
+    visit_strains([&](int a, int b, int c) {
+      X(node.first_gdof + a, c) += p[b];
+      if (a != b) X(node.first_gdof + b, c) += p[a];
+    });
   }
   return X;
 }
 
 /// Appends X without its parts along `basis`, orthonormal under M; columns of a smaller mass than no_mass, relative,
 /// are left out.
-void append_orthonormal(const linear::SymmetricMatrix& M, const MatrixXd& X, double no_mass, MatrixXd& basis) {
+void append_orthonormal(const FieldMass& M, const MatrixXd& X, double no_mass, MatrixXd& basis) {
   for (Eigen::Index c = 0; c < X.cols(); ++c) {
     VectorXd x = X.col(c);
-    const double own = x.dot(VectorXd(linear::multiply(M, x)));
+    const double own = x.dot(VectorXd(M.multiply(x)));
     if (!(own > 0)) continue;
-    for (int pass = 0; pass < 2; ++pass) x -= basis * (basis.transpose() * VectorXd(linear::multiply(M, x)));
-    const double left = x.dot(VectorXd(linear::multiply(M, x)));
+    for (int pass = 0; pass < 2; ++pass) x -= basis * (basis.transpose() * VectorXd(M.multiply(x)));
+    const double left = x.dot(VectorXd(M.multiply(x)));
     if (!(left > no_mass * own)) continue;
     basis.conservativeResize(Eigen::NoChange, basis.cols() + 1);
     basis.rightCols<1>() = x / std::sqrt(left);
@@ -111,11 +162,14 @@ void check_third_order(const BodyRequest& request, const fe::Model& model) {
   for (const int id : arms.others()) {
     if (joined.size() < 6) add_unfit(joined, std::to_string(id));
   }
-  if (!joined.empty())
-    error("equations join " + join_names(joined) +
-              " to others in another way than as parts of a rigid body: RBE3, MPC, "
-              "or some components alone",
-          "join all of their translations, or rotations, to one grid by RBE2 or RBAR, or " + second);
+  if (!joined.empty()) {
+    const auto [card, at] = find_tie(request.deck, arms.others());
+    request.diagnostics.error(
+        "reduce.bad-order", card.empty() ? request.where() : request.deck.locate(at),
+        "[body.stiffening] order = 3 is given, but " + (card.empty() ? "equations join " : card + " joins ") +
+            join_names(joined) + " to others otherwise than as parts of a rigid body",
+        "join all of their translations, or rotations, to one grid by RBE2 or RBAR, or " + second);
+  }
   std::vector<std::string> elements, masses;
   for (const auto& element : model.elements()) {
     if (element->num_dofs() == 0) continue;
@@ -140,11 +194,12 @@ void check_third_order(const BodyRequest& request, const fe::Model& model) {
 
 namespace {
 
-/// Fields of T, num_gdofs x m, orthonormal under M: the span of the modes, affine fields, and the leading directions of
-/// what these leave of u₂; those that move. Amplitudes are weighted by 1/ω² (here 1/ω more than the scale).
+/// Fields of T, (num_gdofs + 9) x m, orthonormal under M: the span of the modes, affine fields, and the leading
+/// directions of what these leave of u₂; those that move. Amplitudes are weighted by 1/ω² (here 1/ω more than the
+/// scale).
 template <class GetLattice>
 MatrixXd choose_fields(const fe::Model& model, const StaticManifold& manifold, const std::vector<int>& large,
-                       const GetLattice& get_lattice, const ModalBasis& basis, const InertialLoads& inertial,
+                       const GetLattice& get_lattice, const ModalBasis& basis, const FieldMass& M,
                        const FlexBody& body) {
   const double unit = manifold.scale()(large).maxCoeff();
   const VectorXd weight = manifold.scale() / unit;
@@ -157,15 +212,13 @@ MatrixXd choose_fields(const fe::Model& model, const StaticManifold& manifold, c
         weights[i] *= std::pow(weight[degree == 2 ? j : large[static_cast<std::size_t>(j)]], exponents(i, j));
     return weights;
   };
-  MatrixXd fields = MatrixXd::Zero(model.num_gdofs(), 0);
-  append_orthonormal(inertial.M, basis.Phi, 0, fields);
-  append_orthonormal(inertial.M, calc_affine_fields(model, body.cg), kNoMass, fields);
-  MatrixXd rest = manifold.field(2) * calc_weights(2).asDiagonal();
-  const auto calc_gram = [&] {
-    return linear::symmetrize(linear::calc_inner_products(rest, linear::multiply(inertial.M, rest)));
-  };
+  MatrixXd fields = MatrixXd::Zero(model.num_gdofs() + 9, 0);
+  append_orthonormal(M, make_fields(basis.Phi), 0, fields);
+  append_orthonormal(M, calc_affine_fields(model, body.cg), kNoMass, fields);
+  MatrixXd rest = make_fields(manifold.field(2) * calc_weights(2).asDiagonal());
+  const auto calc_gram = [&] { return linear::symmetrize(linear::calc_inner_products(rest, M.multiply(rest))); };
   const double whole = calc_gram().trace();
-  const MatrixXd M_fields = linear::multiply(inertial.M, fields);
+  const MatrixXd M_fields = M.multiply(fields);
   for (int pass = 0; pass < 2; ++pass) rest -= fields * linear::calc_inner_products(M_fields, rest);
   const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(calc_gram());
   double left = eigen.eigenvalues().sum();
@@ -174,13 +227,15 @@ MatrixXd choose_fields(const fe::Model& model, const StaticManifold& manifold, c
     left -= eigen.eigenvalues()[rest.cols() - 1 - num_extra];
     ++num_extra;
   }
-  append_orthonormal(inertial.M, rest * eigen.eigenvectors().rightCols(num_extra).rowwise().reverse(), 0, fields);
+  append_orthonormal(M, rest * eigen.eigenvectors().rightCols(num_extra).rowwise().reverse(), 0, fields);
 
-  const MatrixXd M_psi = linear::multiply(inertial.M, fields);
+  const MatrixXd M_psi = M.multiply(fields).topRows(model.num_gdofs());
   VectorXd of_field = VectorXd::Zero(fields.cols());
   for (int k = 2; k <= 3; ++k) {
-    const MatrixXd p = linear::calc_inner_products(M_psi, manifold.field(k)) +
-                       manifold.calc_carried_work(k, get_lattice(k), fields).on_fields;
+    const MatrixXd p =
+        linear::calc_inner_products(M_psi, manifold.field(k)) +
+        manifold.calc_carried_work(k, get_lattice(k), fields.topRows(model.num_gdofs()), fields.bottomRows<9>())
+            .on_fields;
     of_field += (p * calc_weights(k).asDiagonal()).rowwise().squaredNorm();
   }
   std::vector<Eigen::Index> used;
@@ -248,8 +303,10 @@ void set_third_order(const BodyRequest& request, const fe::Model& model, const M
   const auto get_lattice = [&](int k) -> const Lattice& {
     return k == 2 ? pairs : lattices[static_cast<std::size_t>(k - 3)];
   };
-  const MatrixXd psi = choose_fields(model, manifold, large, get_lattice, basis, inertial, body);
-  const MatrixXd M_psi = linear::multiply(inertial.M, psi);
+  const FieldMass mass(model, inertial.M);
+  const MatrixXd fields = choose_fields(model, manifold, large, get_lattice, basis, mass, body);
+  const MatrixXd psi = fields.topRows(model.num_gdofs()), strain = fields.bottomRows<9>();
+  const MatrixXd M_psi = mass.multiply(fields).topRows(model.num_gdofs());
   const auto find_node = [&](int id) -> const fe::Node& { return model.node(model.find_node(id)); };
   for (const int id : body.node_id) {
     const auto& node = find_node(id);
@@ -274,7 +331,7 @@ void set_third_order(const BodyRequest& request, const fe::Model& model, const M
       return MatrixXd(c.transpose());
     };
     const MatrixXd& u = manifold.field(k);
-    const auto carried = manifold.calc_carried_work(k, get_lattice(k), psi);
+    const auto carried = manifold.calc_carried_work(k, get_lattice(k), psi, strain);
     third.amplitudes[at] = unscaled(linear::calc_inner_products(M_psi, u) + carried.on_fields);
     third.load[at] = unscaled(linear::calc_inner_products(F, u) + A_I.transpose() * carried.on_inertial +
                               manifold.calc_arm_work(k, get_lattice(k), arms));
@@ -288,7 +345,9 @@ void set_third_order(const BodyRequest& request, const fe::Model& model, const M
   MatrixXd both(model.num_gdofs(), n + psi.cols());
   both << basis.Phi, psi;
   FlexBody carrier;
-  set_integrals(request, model, both, inertial, carrier);
+  MatrixXd of_arms = MatrixXd::Zero(9, n + psi.cols());
+  of_arms.rightCols(psi.cols()) = strain;
+  set_integrals(request, model, both, inertial, carrier, of_arms);
   third.integrals = carrier.integrals();
   third.coupling = linear::calc_inner_products(basis.Phi, M_psi);
   body.third_order = std::move(third);

@@ -9,6 +9,7 @@
 #include "analysis/common/inputs.hpp"
 #include "analysis/common/ranks.hpp"
 #include "analysis/common/subcase_failures.hpp"
+#include "fe/loads/dead_loads.hpp"
 #include "fe/loads/second_order.hpp"
 #include "fe/loads/wide_links.hpp"
 #include "fe/matrices/system.hpp"
@@ -60,6 +61,7 @@ class GeometricStiffness {
     subcase.temperature = load_case.temperature;
     auto load = fe::calc_static_load(*model_, deck_, subcase, diagnostics);
     fe::report_wide_links(deck_, diagnostics);
+    fe::report_dead_loads(deck_, load_case.load, diagnostics);
     diagnostics.throw_if_errors();
     if (!solver_) {
       const auto relief = fe::read_inertia_relief(deck_, diagnostics);

@@ -4,6 +4,7 @@
 /// Element-independent: the linear K_e in a frame that follows the nodes, and the second-order strains inside the
 /// element from its K_G. Theory: docs/theory/third-order.md (1) to (3).
 #include "fe/elements/element.hpp"
+#include "fe/elements/thermal_loads.hpp"
 
 namespace bough::fe {
 
@@ -42,8 +43,11 @@ class CorotationalElement {
   MatrixXd calc_forces(const Eigen::Ref<const MatrixXd>& u) const;
 
   /// Forces and stiffness of a finite motion. u: N, displacements in basic, rows of rotations unread; `rotations`: of
-  /// grids(), identity where it has none. Needs follows_nodes().
-  FiniteForces calc_finite(const Eigen::Ref<const VectorXd>& u, const std::vector<Matrix3d>& rotations) const;
+  /// grids(), identity where it has none; `heat`: the loads of temperatures turn with the frame, their internal forces
+  /// act on the second-order strains: V - load·d + ½ force·w. `energy` is without -load·d, `internal` without
+  /// `heat->force`. Needs follows_nodes().
+  FiniteForces calc_finite(const Eigen::Ref<const VectorXd>& u, const std::vector<Matrix3d>& rotations,
+                           const ThermalState* heat = nullptr) const;
 
   /// Parts of V, for tests: V = ½ dᵀKd + ½ Σ (F d)_m w_m + ⅛ wᵀEw, w_m = dᵀP_m d.
   const MatrixXd& K() const { return K_; }
@@ -63,7 +67,7 @@ class CorotationalElement {
   bool is_free_of_rigid_motion() const;
   void set_frame();
   void set_local_strains(const Element& element);
-  void calc_local_forces(FiniteForces& result) const;
+  void calc_local_forces(const ThermalState* heat, FiniteForces& result) const;
 
   bool follows_nodes_ = false;
   MatrixXd K_, F_, E_;

@@ -60,18 +60,24 @@ Vector3d calc_rotation_log(const Matrix3d& R) {
   return turn.angle() * turn.axis();
 }
 
-void CorotationalElement::calc_local_forces(FiniteForces& result) const {
+void CorotationalElement::calc_local_forces(const ThermalState* heat, FiniteForces& result) const {
   const VectorXd& d = result.d;
   const Index N = d.size(), s = static_cast<Index>(P_.size());
   result.g = K_ * d;
   result.H = K_;
   result.energy = 0.5 * d.dot(result.g);
+  if (heat) result.g -= heat->load;
   if (s == 0) return;
   MatrixXd Pd(N, s);
   for (Index m = 0; m < s; ++m) Pd.col(m) = P_[static_cast<std::size_t>(m)] * d;
-  const VectorXd w = Pd.transpose() * d, strain = F_ * d, E_w = E_ * w, h = strain + 0.5 * E_w;
+  const VectorXd w = Pd.transpose() * d, strain = F_ * d, E_w = E_ * w;
+  VectorXd h = strain + 0.5 * E_w;
   result.internal = h;
   result.energy += 0.5 * strain.dot(w) + 0.125 * w.dot(E_w);
+  if (heat) {
+    h += heat->force;
+    result.energy += 0.5 * heat->force.dot(w);
+  }
   result.g += 0.5 * (F_.transpose() * w) + Pd * h;
   const MatrixXd Pd_F = Pd * F_;
   result.H += Pd_F + Pd_F.transpose() + Pd * E_ * Pd.transpose();
@@ -79,7 +85,7 @@ void CorotationalElement::calc_local_forces(FiniteForces& result) const {
 }
 
 FiniteForces CorotationalElement::calc_finite(const Eigen::Ref<const VectorXd>& u,
-                                              const std::vector<Matrix3d>& rotations) const {
+                                              const std::vector<Matrix3d>& rotations, const ThermalState* heat) const {
   BOUGH_DEMAND(follows_nodes_ && u.size() == num_dofs() && rotations.size() == translations_.size());
   const Index N = num_dofs();
   const auto num_nodes = static_cast<Index>(translations_.size());
@@ -112,7 +118,7 @@ FiniteForces CorotationalElement::calc_finite(const Eigen::Ref<const VectorXd>& 
     result.d.segment<3>(row_t(k)) = theta.col(k);
     result.max_turn = std::max(result.max_turn, theta.col(k).norm());
   }
-  calc_local_forces(result);
+  calc_local_forces(heat, result);
   const VectorXd& g = result.g;
 
   // Derivatives by the displacements and spins of the nodes: G of the frame's spin in its own axes, D of d.

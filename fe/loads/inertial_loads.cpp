@@ -1,5 +1,7 @@
 #include "fe/loads/inertial_loads.hpp"
 
+#include "fe/loads/arm_strains.hpp"
+
 #include "base/rotation.hpp"
 #include "fe/elements/superelement.hpp"
 #include "fe/linear/blas.hpp"
@@ -200,6 +202,7 @@ struct CarriedGram {
   const Model& model;
   MassKind kind;
   const MatrixXd& Phi;
+  const MatrixXd& strain;
   Eigen::Index n = Phi.cols(), size = 4 + 3 * n, used = 0;
   MatrixXd gram = MatrixXd::Zero(size, size), Z = MatrixXd(512, size), mu_Z = Z, Phi_e = {}, u = {};
 
@@ -221,6 +224,13 @@ struct CarriedGram {
     }
     u.resize(3 * count, n);
     linear::multiply_dense(false, stack_motions(carried), Phi_e, 0, u);
+    if (strain.size() > 0)
+      for (Eigen::Index r = 0; r < count; ++r) {
+        const auto& point = carried.points[static_cast<std::size_t>(r)];
+        if (point.is_place) continue;
+        for (int a = 0; a < 3; ++a)
+          for (int b = 0; b < 3; ++b) u.row(a * count + r) += point.x[b] * strain.row(a + 3 * b);
+      }
     for (int a = 0; a < 3; ++a) Z.block(used, 4 + a * n, count, n) = u.middleRows(a * count, count);
     linear::multiply_dense(false, carried.mu, Z.middleRows(used, count), 0, mu_Z.middleRows(used, count));
     used += count;
@@ -239,12 +249,44 @@ struct CarriedGram {
 }  // namespace
 
 MatrixXd calc_carried_gram(const Model& model, MassKind kind, const MatrixXd& Phi) {
+  return calc_strained_gram(model, kind, Phi, MatrixXd::Zero(9, 0));
+}
+
+MatrixXd calc_strained_gram(const Model& model, MassKind kind, const MatrixXd& Phi, const MatrixXd& strain) {
+  BOUGH_DEMAND(strain.cols() == 0 || (strain.rows() == 9 && strain.cols() == Phi.cols()));
   auto sum = sum_over_elements(model, get_own_elements(model), kMinElementsOfThread, [&] {
-    return CarriedGram{model, kind, Phi};
+    return CarriedGram{model, kind, Phi, strain};
   });
   sum.flush();
   linear::sum_over_ranks(sum.gram);
   return sum.gram;
+}
+
+ArmStrainMass calc_arm_strain_mass(const Model& model, MassKind kind) {
+  ArmStrainMass mass;
+  mass.on_dofs = MatrixXd::Zero(model.num_gdofs(), 9);
+  MatrixXd moment = MatrixXd::Zero(3, 3);
+  visit_elements(model, get_own_elements(model), [&](int, const Element& element) {
+    if (!element.offset_mass(kind)) return;
+    CarriedMass carried(element.num_dofs(), CarriedDetail::Points);
+    if (!calc_carried(model, element, kind, carried)) return;
+    for (std::size_t s = 0; s < carried.points.size(); ++s) {
+      const CarriedPoint& arm = carried.points[s];
+      if (arm.is_place) continue;
+      for (std::size_t r = 0; r < carried.points.size(); ++r) {
+        const double mu = carried.mu(static_cast<Eigen::Index>(r), static_cast<Eigen::Index>(s));
+        if (mu == 0) continue;
+        const CarriedPoint& other = carried.points[r];
+        for (int b = 0; b < 3; ++b)
+          mass.on_dofs(element.gdofs(), Eigen::seqN(3 * b, 3)) += mu * arm.x[b] * other.H.transpose();
+        if (!other.is_place) moment += mu * other.x * arm.x.transpose();
+      }
+    }
+  });
+  linear::sum_over_ranks(mass.on_dofs);
+  linear::sum_over_ranks(moment);
+  mass.moment = moment;
+  return mass;
 }
 
 linear::SymmetricMatrix assemble_grid_mass(const Model& model, MassKind kind) {

@@ -2,6 +2,7 @@
 /// \file The families of load cards, each adding the cards of one set to a load vector. Internal to fe.
 #include <unordered_map>
 
+#include "fe/loads/follower_loads.hpp"
 #include "fe/loads/loads.hpp"
 #include "fe/model/load_selection.hpp"
 
@@ -18,6 +19,7 @@ struct LoadTarget {
   Vector12d& A_I;
   std::vector<ArmLoad>& arms;
   std::vector<QuadraticForm>& followers;
+  FollowerLoads* moving = nullptr;  ///< gains the loads that follow the grids, if it is there
 
   /// Index of a grid with six dofs, or -1 after reporting fe.missing-grid.
   int find_grid(int id, const std::string& card, const records::CardLocation& at) const;
@@ -29,10 +31,6 @@ bool add_body_loads(const LoadTarget& target);          ///< GRAV, RFORCE
 bool add_surface_loads(const LoadTarget& target);       ///< PLOAD, PLOAD2, PLOAD4
 bool add_beam_loads(const LoadTarget& target);          ///< PLOAD1
 bool add_superelement_loads(const LoadTarget& target);  ///< SELOAD
-
-/// Warns of the cards of one plain set that keep their direction although PARAM,FOLLOWK,YES would have them follow
-/// (fe.dead-load).
-void report_dead_loads(const records::Deck& deck, int set, Diagnostics& diagnostics);
 
 /// fe.unread-load for each kind of card of this set that is not read; returns whether there are such.
 bool report_unread_loads(const records::Deck& deck, const std::string& command, int set, Diagnostics& diagnostics);

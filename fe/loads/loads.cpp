@@ -29,9 +29,11 @@ bool add_directed_loads(const LoadTarget& t) {
     const int index = t.find_grid(load.g, card, load.at);
     std::array<Vector3d, 4> x;
     bool is_good = index >= 0;
+    FollowerForce moving{index, load.is_moment, load.is_cross, t.scale * load.f, {}};
     for (std::size_t i = 0; i < (load.is_cross ? 4u : 2u); ++i) {
       const int k = t.find_grid(load.grids[i], card, load.at);
       is_good = is_good && k >= 0;
+      moving.nodes[i] = k;
       if (k >= 0) x[i] = t.model.node(k).x;
     }
     if (!is_good) continue;
@@ -50,6 +52,7 @@ bool add_directed_loads(const LoadTarget& t) {
     }
     t.F.segment<3>(t.model.node(index).first_gdof + (load.is_moment ? 3 : 0)) +=
         t.scale * load.f * direction.normalized();
+    if (t.moving) t.moving->forces.push_back(moving);
   }
   return is_found;
 }
@@ -116,6 +119,20 @@ bool report_unread_loads(const records::Deck& deck, const std::string& command, 
   return is_found;
 }
 
+FollowerLoads find_follower_loads(const Model& model, const records::Deck& deck, int set) {
+  FollowerLoads moving;
+  AppliedLoad ignored;
+  ignored.F = VectorXd::Zero(model.num_gdofs());
+  Diagnostics ignored_diagnostics;
+  for_each_plain_set(deck, set, [&](int sid, double scale, const records::CardLocation&) {
+    const LoadTarget target{
+        model, deck, sid, scale, ignored.F, ignored_diagnostics, ignored.A_I, ignored.arms, ignored.followers, &moving};
+    add_point_loads(target);
+    add_surface_loads(target);
+  });
+  return moving;
+}
+
 VectorXd calc_load(const Model& model, const records::Deck& deck, int set, Diagnostics& diagnostics) {
   return calc_applied_load(model, deck, set, diagnostics).F;
 }
@@ -138,7 +155,6 @@ AppliedLoad calc_applied_load(const Model& model, const records::Deck& deck, int
                             diagnostics, load.A_I, load.arms, load.followers};
     const bool found[] = {add_point_loads(target), add_body_loads(target),         add_surface_loads(target),
                           add_beam_loads(target),  add_superelement_loads(target), has_enforced(deck, plain.sid)};
-    report_dead_loads(deck, plain.sid, diagnostics);
     if (report_unread_loads(deck, "LOAD", plain.sid, diagnostics)) continue;
     if (std::find(std::begin(found), std::end(found), true) == std::end(found)) missing.push_back(plain);
   }

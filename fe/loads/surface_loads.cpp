@@ -167,8 +167,16 @@ class SurfaceLoads {
     const Eigen::Matrix3Xd f = calc_face_load(corners, midside, has_midside, p, traction);
     for (std::size_t i = 0; i < nodes.size(); ++i)
       t_.F.segment<3>(t_.model.node(nodes[i]).first_gdof) += t_.scale * f.col(static_cast<Eigen::Index>(i));
-    if (!follows_ || follows == 0) return;
-    const MatrixXd K = follows * t_.scale * calc_follower_stiffness(corners, midside, has_midside, p);
+    if (follows == 0) return;
+    if (t_.moving) {
+      FollowerPressure& moving = t_.moving->pressures.emplace_back();
+      moving.nodes = nodes;
+      moving.has_midside = has_midside;
+      for (const double value : p) moving.p.push_back(follows * t_.scale * value);
+    }
+    if (!follows_) return;
+    const MatrixXd whole = follows * t_.scale * calc_follower_stiffness(corners, midside, has_midside, p),
+                   K = 0.5 * (whole + whole.transpose());
     const auto size = static_cast<int>(K.rows());
     QuadraticForm form{{}, MatrixXd::Identity(size, size), MatrixXd(size * (size + 1) / 2, 1)};
     for (const int node : nodes)

@@ -78,7 +78,7 @@ Eigen::MatrixXd calc_follower_stiffness(const std::vector<Eigen::Vector3d>& corn
                      for (int i = 0; i < shapes.all.size(); ++i) K.block<3, 3>(3 * i, 3 * j) -= shapes.all[i] * turned;
                    }
                  });
-  return 0.5 * (K + K.transpose());
+  return K;
 }
 
 }  // namespace bough::fe

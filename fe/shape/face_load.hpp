@@ -19,10 +19,9 @@ Eigen::Matrix3Xd calc_face_load(const std::vector<Eigen::Vector3d>& corners,
                                 const std::vector<Eigen::Vector3d>& midside, const std::vector<char>& has_midside,
                                 const std::vector<double>& p, const Traction& traction);
 
-/// The symmetric part of -∂f/∂u of the pressure p n on the face as it follows its nodes u (3 m, node after node), same
-/// arguments. Over a surface whose edge is held, or that has none, the skew parts of the faces cancel for a uniform
-/// pressure: the load has a potential then (H. D. Hibbitt, "Some follower forces and load stiffness", IJNME 14 (1979)
-/// 937).
+/// -∂f/∂u of the pressure p n on the face as it follows its nodes u (3 m, node after node), same arguments. Over a
+/// surface whose edge is held, or that has none, the skew parts of the faces cancel for a uniform pressure: the load
+/// has a potential then (H. D. Hibbitt, "Some follower forces and load stiffness", IJNME 14 (1979) 937).
 Eigen::MatrixXd calc_follower_stiffness(const std::vector<Eigen::Vector3d>& corners,
                                         const std::vector<Eigen::Vector3d>& midside,
                                         const std::vector<char>& has_midside, const std::vector<double>& p);

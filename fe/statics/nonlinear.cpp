@@ -103,11 +103,6 @@ struct NonlinearStatics::Tangent {
 NonlinearStatics::NonlinearStatics(const Model& model, const records::Deck& deck) : model_(model), arms_(model) {
   Diagnostics diagnostics;
   const auto at = deck.locate({});
-  if (!arms_.others().empty())
-    diagnostics.error("fe.nonlinear-link", at,
-                      "RBE3, MPC or rigid elements with some components tie grids " + list_ids(arms_.others()) +
-                          ", and large rotations know RBE2 and RBAR of whole grids only",
-                      "tie the grids by RBE2 or RBAR with 123456, or give --linear");
   if (model.omitted() || model.prestress())
     diagnostics.error("fe.nonlinear-model", at, "ASET, OMIT and preloads are linear, the statics are not",
                       "take ASET, OMIT and STATSUB away, or give --linear");
@@ -147,6 +142,7 @@ NonlinearStatics::NonlinearStatics(const Model& model, const records::Deck& deck
   deformed_.displacements.resize(model.elements().size());
   deformed_.internal_forces.resize(model.elements().size());
   find_offset_masses();
+  find_linear_ties();
   energies_ = VectorXd::Zero(static_cast<Index>(model.elements().size()));
 }
 
@@ -155,23 +151,47 @@ void NonlinearStatics::evaluate_element(int e, const Element& element, FiniteFor
   const auto made = kept ? nullptr : std::make_unique<const CorotationalElement>(element, model_.nodes());
   const CorotationalElement& corotational = kept ? *kept : *made;
   const VectorXd u = state_.u(element.gdofs());
+  const ThermalState* heat = heat_.find(element);
   if (!corotational.follows_nodes()) {
     forces.d = u;
     forces.K = corotational.K();
     forces.f = forces.K * u;
     forces.energy = 0.5 * u.dot(forces.f);
+    if (heat) forces.f -= heat->load;
     return;
   }
   std::vector<Matrix3d> rotations;
   for (const int k : corotational.grids()) rotations.push_back(state_.R[static_cast<std::size_t>(k)]);
-  forces = corotational.calc_finite(u, rotations);
+  forces = corotational.calc_finite(u, rotations, heat);
+}
+
+/// Nodes that equations join otherwise than as rigid bodies, and those of them whose rotations occur in the equations.
+void NonlinearStatics::find_linear_ties() {
+  std::vector<char> is_tied(model_.nodes().size(), 0), is_turned(model_.nodes().size(), 0);
+  for (const int id : arms_.others()) {
+    const int k = model_.find_node(id);
+    const Node& node = model_.node(k);
+    is_tied[static_cast<std::size_t>(k)] = 1;
+    if (node.num_dofs == 6) is_turned[static_cast<std::size_t>(k)] = 1;
+    for (int i = 0; i < node.num_dofs; ++i)
+      for (SparseRows::InnerIterator it(model_.T(), node.first_gdof + i); it; ++it) {
+        if (it.value() == 0) continue;
+        const auto [other, component] = model_.describe_fdof(static_cast<int>(it.col()));
+        const auto found = static_cast<std::size_t>(model_.find_node(other));
+        is_tied[found] = 1;
+        if (component > 3) is_turned[found] = 1;
+      }
+  }
+  for (std::size_t k = 0; k < is_tied.size(); ++k) {
+    if (is_tied[k]) tied_.push_back(static_cast<int>(k));
+    if (is_turned[k]) turned_by_vector_.push_back(static_cast<int>(k));
+  }
 }
 
 /// Dofs of grids at rigid arms become those of their parents: δu = δu_p + δφ_p × r, δφ = δφ_p.
-void NonlinearStatics::move_to_parents(const Element& element, FiniteForces& forces, std::vector<int>& gdofs) const {
-  gdofs = element.gdofs();
+void NonlinearStatics::move_to_parents(std::vector<int>& gdofs, MatrixXd& K) const {
   if (arms_.list().empty()) return;
-  const Index N = element.num_dofs();
+  const auto N = static_cast<Index>(gdofs.size());
   Triplets entries;
   std::vector<int> columns;
   const auto find_column = [&](int dof) {
@@ -202,7 +222,7 @@ void NonlinearStatics::move_to_parents(const Element& element, FiniteForces& for
   Eigen::SparseMatrix<double> A(N, static_cast<Index>(columns.size()));
   A.setFromTriplets(entries.begin(), entries.end());
   const MatrixXd dense = A;
-  forces.K = dense.transpose() * forces.K * dense;
+  K = (dense.transpose() * K * dense).eval();
   gdofs = std::move(columns);
 }
 
@@ -225,6 +245,47 @@ VectorXd NonlinearStatics::collect_arms(VectorXd residual) const {
   return residual;
 }
 
+/// Forces conjugate to the unknowns: those of collect_arms(), and Tᵀ(θ) m where rotation vectors are the unknowns.
+VectorXd NonlinearStatics::collect(VectorXd residual) const {
+  residual = collect_arms(std::move(residual));
+  for (const int k : turned_by_vector_) {
+    const int first = model_.node(k).first_gdof + 3;
+    residual.segment<3>(first) =
+        (calc_rotation_tangent(state_.u.segment<3>(first)).transpose() * residual.segment<3>(first)).eval();
+  }
+  return residual;
+}
+
+/// From spins to rotation vectors of the nodes in linear equations: BᵀKB and the change of Tᵀ(θ) m.
+void NonlinearStatics::use_rotation_vectors(Tangent& tangent) const {
+  if (turned_by_vector_.empty()) return;
+  std::vector<char> is_turned(model_.nodes().size(), 0);
+  for (const int k : turned_by_vector_) is_turned[static_cast<std::size_t>(k)] = 1;
+  const VectorXd moved = collect_arms(tangent.residual);
+  Triplets basis, slopes;
+  for (std::size_t k = 0; k < is_turned.size(); ++k) {
+    const Node& node = model_.nodes()[k];
+    const int num_plain = is_turned[k] ? 3 : node.num_dofs;
+    for (int i = 0; i < num_plain; ++i) basis.emplace_back(node.first_gdof + i, node.first_gdof + i, 1);
+    if (!is_turned[k]) continue;
+    const int first = node.first_gdof + 3;
+    const Vector3d theta = state_.u.segment<3>(first);
+    const Matrix3d turn = calc_rotation_tangent(theta);
+    const Vector3d conjugate = turn.transpose() * moved.segment<3>(first);
+    const Matrix3d slope = -turn.transpose() * calc_inverse_tangent_slope(theta, conjugate);  // of Tᵀm, T⁻ᵀ(Tᵀm) = m
+    for (int a = 0; a < 3; ++a)
+      for (int b = 0; b < 3; ++b) {
+        basis.emplace_back(first + a, first + b, turn(a, b));
+        slopes.emplace_back(first + a, first + b, slope(a, b));
+      }
+  }
+  Eigen::SparseMatrix<double, Eigen::RowMajor> B(model_.num_gdofs(), model_.num_gdofs()), D = B;
+  B.setFromTriplets(basis.begin(), basis.end());
+  D.setFromTriplets(slopes.begin(), slopes.end());
+  tangent.K = (Eigen::SparseMatrix<double, Eigen::RowMajor>(B.transpose()) * tangent.K * B + D).eval();
+}
+
+/// F: dead forces.
 NonlinearStatics::Tangent NonlinearStatics::evaluate(const VectorXd& F) {
   struct Sum {
     NonlinearStatics& owner;
@@ -244,14 +305,14 @@ NonlinearStatics::Tangent NonlinearStatics::evaluate(const VectorXd& F) {
       owner.deformed_.internal_forces[static_cast<std::size_t>(e)] = forces.internal;
       owner.energies_[e] = forces.energy;
       f(element.gdofs()) += forces.f;
-      std::vector<int> gdofs;
-      owner.move_to_parents(element, forces, gdofs);
+      add_stiffness(element.gdofs(), std::move(forces.K));
+    }
+    void add_stiffness(std::vector<int> gdofs, MatrixXd K) {
+      owner.move_to_parents(gdofs, K);
       for (std::size_t i = 0; i < gdofs.size(); ++i)
-        for (std::size_t j = 0; j < gdofs.size(); ++j) {
-          const auto a = static_cast<Index>(i), b = static_cast<Index>(j);
-          const double value = forces.K(a, b);
-          if (value != 0) entries.emplace_back(gdofs[i], gdofs[j], value);
-        }
+        for (std::size_t j = 0; j < gdofs.size(); ++j)
+          if (const double value = K(static_cast<Index>(i), static_cast<Index>(j)); value != 0)
+            entries.emplace_back(gdofs[i], gdofs[j], value);
     }
     void merge(Sum&& other) {
       entries.insert(entries.end(), other.entries.begin(), other.entries.end());
@@ -265,7 +326,9 @@ NonlinearStatics::Tangent NonlinearStatics::evaluate(const VectorXd& F) {
   max_turn_ = sum.max_turn;
   energy_ = energies_.sum();
   Tangent tangent;
-  tangent.residual = sum.f - F;
+  tangent.residual = sum.f - calc_forces(F);
+  visit_follower_stiffness(model_, followers_, state_.u,
+                           [&](const std::vector<int>& gdofs, const MatrixXd& K) { sum.add_stiffness(gdofs, K); });
   // The moment r × f of an arm turns with it: δ(r × f) = f̃ r̃ δφ.
   for (const RigidArm& arm : arms_.list()) {
     if (!arm.translates) continue;
@@ -286,7 +349,8 @@ NonlinearStatics::Tangent NonlinearStatics::evaluate(const VectorXd& F) {
   }
   tangent.K.resize(model_.num_gdofs(), model_.num_gdofs());
   tangent.K.setFromTriplets(sum.entries.begin(), sum.entries.end());
-  if (!has_moments_)
+  use_rotation_vectors(tangent);
+  if (is_symmetric_)
     tangent.K = (0.5 * (tangent.K + Eigen::SparseMatrix<double, Eigen::RowMajor>(tangent.K.transpose()))).eval();
   return tangent;
 }
@@ -304,21 +368,38 @@ void NonlinearStatics::find_offset_masses() {
 
 /// Moments about fixed axes, beyond those of forces on arms: they have no potential where a grid turns about other
 /// axes.
-bool NonlinearStatics::has_fixed_moments(const StaticLoad& load) {
-  set_arm_loads(load, load, 1);
-  VectorXd moments = load.F;
+bool NonlinearStatics::has_fixed_moments(const PathLoad& load) {
+  set_loads(load, load, 1);
+  VectorXd moments = calc_dead_forces(load);
   for (const ArmLoad& arm : arm_loads_) moments.segment<3>(arm.first_rotation) -= arm.arm.cross(arm.force);
-  const double size = load.F.cwiseAbs().maxCoeff();
+  const double size = moments.cwiseAbs().maxCoeff();
   return std::any_of(model_.nodes().begin(), model_.nodes().end(), [&](const Node& node) {
     return node.num_dofs == 6 && moments.segment<3>(node.first_gdof + 3).cwiseAbs().maxCoeff() > 1e-12 * size;
   });
 }
 
-/// Forces on arms at a share of the way from one load to the next: of loads on offset beams, and weights of masses off
-/// their grids.
-void NonlinearStatics::set_arm_loads(const StaticLoad& from, const StaticLoad& to, double share) {
+/// Forces that keep their direction and their grids: the load without temperatures and followers.
+VectorXd NonlinearStatics::calc_dead_forces(const PathLoad& load) const {
+  VectorXd F = load.F - sum_loads(model_, load.initial);
+  add_follower_forces(model_, load.moving, -1, VectorXd::Zero(F.size()), F);
+  return F;
+}
+
+/// All forces at the present places.
+VectorXd NonlinearStatics::calc_forces(const VectorXd& dead) const {
+  VectorXd F = dead;
+  add_follower_forces(model_, followers_, 1, state_.u, F);
+  return F;
+}
+
+/// Loads that depend on the state, at a share of the way from one load to the next: on the arms of offset beams,
+/// weights of masses off their grids, followers, temperatures.
+void NonlinearStatics::set_loads(const PathLoad& from, const PathLoad& to, double share) {
   arm_loads_.clear();
+  followers_ = {};
+  heat_ = {};
   for (const auto& [load, part] : {std::pair(&from, 1 - share), std::pair(&to, share)}) {
+    if (part == 0) continue;
     for (ArmLoad arm : load->arms) {
       arm.force *= part;
       arm_loads_.push_back(arm);
@@ -327,10 +408,26 @@ void NonlinearStatics::set_arm_loads(const StaticLoad& from, const StaticLoad& t
       mass.force = -part * mass.force[0] * load->A_I.head<3>();
       arm_loads_.push_back(mass);
     }
+    for (FollowerPressure pressure : load->moving.pressures) {
+      for (double& p : pressure.p) p *= part;
+      followers_.pressures.push_back(std::move(pressure));
+    }
+    for (FollowerForce force : load->moving.forces) {
+      force.size *= part;
+      followers_.forces.push_back(force);
+    }
+    for (const auto& [element, state] : load->initial.of) {
+      auto& heat =
+          heat_.of.try_emplace(element, static_cast<int>(state.load.size()), static_cast<int>(state.force.size()))
+              .first->second;
+      heat.load += part * state.load;
+      heat.force += part * state.force;
+    }
   }
 }
 
-/// `step`: displacements and spins, num_gdofs; rows of grids at rigid arms are not read.
+/// `step`: displacements and spins, or changes of rotation vectors, num_gdofs; rows of grids at rigid arms are not
+/// read.
 void NonlinearStatics::advance(const VectorXd& step) {
   for (std::size_t k = 0; k < model_.nodes().size(); ++k) {
     const Node& node = model_.nodes()[k];
@@ -340,6 +437,11 @@ void NonlinearStatics::advance(const VectorXd& step) {
       const Matrix3d R = calc_rotation_exp(step.segment<3>(node.first_gdof + 3)) * state_.R[k];
       state_.R[k] = Eigen::Quaterniond(R).normalized().toRotationMatrix();
     }
+  }
+  for (const int k : turned_by_vector_) {
+    const int first = model_.node(k).first_gdof + 3;
+    state_.u.segment<3>(first) += step.segment<3>(first);
+    state_.R[static_cast<std::size_t>(k)] = calc_rotation_exp(state_.u.segment<3>(first));
   }
   for (const RigidArm& arm : arms_.list()) {
     const Matrix3d& R = state_.R[static_cast<std::size_t>(arm.parent)];
@@ -356,24 +458,24 @@ Eigen::SparseMatrix<double, Eigen::RowMajor> NonlinearStatics::reduce(
   return SparseRows(model_.T().transpose()) * K * model_.T();
 }
 
-/// Newton's method from the state; `enforced`: steps of the fixed dofs; `share`: of the load. False where it does not
-/// come to an end, or ends on another branch of the path.
-bool NonlinearStatics::find_equilibrium(const VectorXd& F, const VectorXd& enforced, double share, int max_iterations) {
+/// Newton's method from the state; F: dead forces, dF: change of all forces; `enforced`: steps of the fixed dofs;
+/// `share`: of the load. False where it does not come to an end, or ends on another branch of the path.
+bool NonlinearStatics::find_equilibrium(const VectorXd& F, const VectorXd& dF, const VectorXd& enforced, double share,
+                                        int max_iterations) {
   const auto& T = model_.T();
   VectorXd moved = enforced.isZero(0) ? VectorXd() : VectorXd(model_.T_fixed() * enforced);
-  const VectorXd dF = F - F_;
   double reference = 0, first_work = 0, work = 0, last = 0;
   int num_stuck = 0;
   for (int iteration = 0; iteration <= max_iterations; ++iteration) {
     const Tangent tangent = evaluate(F);
     residual_ = tangent.residual;
     if (!residual_.allFinite() || max_turn_ > kMaxTurn) return false;
-    VectorXd right = collect_arms(residual_);
+    VectorXd right = collect(residual_);
     if (moved.size() > 0) right += tangent.K * moved;
     const VectorXd r = T.transpose() * right;
     VectorXd q = VectorXd::Zero(T.cols());
     if (T.cols() > 0) {
-      const TangentFactor factor(reduce(tangent.K), !has_moments_);
+      const TangentFactor factor(reduce(tangent.K), is_symmetric_);
       // Where the step begins K is definite. On the way to its end it need not be: stiff parts stretch for a while.
       if (!(iteration == 0 ? factor.is_stable() : factor.is_made())) return false;
       q = -factor.solve(r);
@@ -388,7 +490,7 @@ bool NonlinearStatics::find_equilibrium(const VectorXd& F, const VectorXd& enfor
     advance(step);
     work += dF.dot(step);
     if (iteration == 0) first_work = work;
-    reference = std::max({reference, energy_, std::abs(step.dot(F))});
+    reference = std::max({reference, energy_, std::abs(step.dot(calc_forces(F)))});
     num_stuck = residual_work_ > 0.8 * last ? num_stuck + 1 : 0;
     const bool stagnates = num_stuck >= 3 && residual_work_ <= kStagnation * reference;
     last = residual_work_;
@@ -398,7 +500,7 @@ bool NonlinearStatics::find_equilibrium(const VectorXd& F, const VectorXd& enfor
       if (jumps || (last_rate_ > 0 && first_work > kMaxRateGrowth * last_rate_ * share * share)) return false;
       const Tangent end = evaluate(F);
       residual_ = end.residual;
-      if (T.cols() > 0 && !TangentFactor(reduce(end.K), !has_moments_).is_stable()) return false;
+      if (T.cols() > 0 && !TangentFactor(reduce(end.K), is_symmetric_).is_stable()) return false;
       last_rate_ = rate;
       return true;
     }
@@ -407,25 +509,26 @@ bool NonlinearStatics::find_equilibrium(const VectorXd& F, const VectorXd& enfor
   return false;
 }
 
-void NonlinearStatics::go_to(const StaticLoad& load, const NonlinearOptions& options, Diagnostics& diagnostics) {
-  if (!load.initial.of.empty())
-    throw InputError("fe.nonlinear-load", {}, "temperatures load a nonlinear static subcase",
-                     "take TEMPERATURE(LOAD) away, or give --linear");
+void NonlinearStatics::go_to(const StaticLoad& to, const FollowerLoads& moving, const NonlinearOptions& options,
+                             Diagnostics& diagnostics) {
+  const PathLoad load{to, moving};
   if (!load.A_I.tail<9>().isZero(0))
     throw InputError("fe.nonlinear-load", {}, "RFORCE loads the places of the undeformed structure",
                      "give its forces as FORCE cards, or --linear");
-  const StaticLoad start = load_;
-  const VectorXd F_start = F_, d_start = d_, dF = load.F - F_, dd = load.d - d_;
+  const PathLoad start = load_;
+  const VectorXd F_start = F_, d_start = d_, dF = calc_dead_forces(load) - F_, dd = load.d - d_;
   const double full = 1.0 / std::max(options.num_increments, 1);
   double reached = 0, step = full;
   last_rate_ = 0;
-  has_moments_ = has_fixed_moments(start) || has_fixed_moments(load);
+  is_symmetric_ = start.moving.empty() && load.moving.empty() && !has_fixed_moments(start) && !has_fixed_moments(load);
+  set_loads(start, load, 0);
   while (reached < 1) {
     const DeformedState before = state_;
     const double next = reached + step > 1 - 1e-12 ? 1 : reached + step;
-    const VectorXd F = F_start + next * dF;
-    set_arm_loads(start, load, next);
-    if (find_equilibrium(F, (next - reached) * dd, next - reached, options.max_iterations)) {
+    const VectorXd F = F_start + next * dF, before_step = calc_forces(F_);
+    set_loads(start, load, next);
+    if (find_equilibrium(F, calc_forces(F) - before_step, (next - reached) * dd, next - reached,
+                         options.max_iterations)) {
       reached = next;
       F_ = F;
       d_ = d_start + reached * dd;
@@ -435,7 +538,7 @@ void NonlinearStatics::go_to(const StaticLoad& load, const NonlinearOptions& opt
       continue;
     }
     state_ = before;
-    set_arm_loads(start, load, reached);
+    set_loads(start, load, reached);
     step /= 2;
     if (step < full / (1 << kMaxHalvings)) {
       residual_ = evaluate(F_).residual;
@@ -447,6 +550,29 @@ void NonlinearStatics::go_to(const StaticLoad& load, const NonlinearOptions& opt
                              "give more --increments");
     }
   }
+  report_turned_ties(diagnostics);
+}
+
+/// Equations of RBE3, MPC and single components are those of small rotations.
+void NonlinearStatics::report_turned_ties(Diagnostics& diagnostics) const {
+  constexpr double kSmall = 0.1;  // rad: 0.5 % of the arms
+  double largest = 0;
+  std::vector<int> ids;
+  for (const int k : tied_) {
+    const Node& node = model_.node(k);
+    if (node.num_dofs != 6) continue;
+    ids.push_back(node.id);
+    largest = std::max(largest, calc_rotation_log(state_.R[static_cast<std::size_t>(k)]).norm());
+  }
+  if (largest <= kSmall) return;
+  char angle[32];
+  std::snprintf(angle, sizeof angle, "%.3g", largest);
+  diagnostics.warning("fe.nonlinear-link", {},
+                      "RBE3, MPC or rigid elements of single components tie grids " + list_ids(ids) +
+                          ", which turn by up to " + angle +
+                          " rad; the equations are linear in displacements, as in "
+                          "Nastran, and hold for small rotations",
+                      "tie the grids by RBE2 or RBAR with 123456 if the error matters");
 }
 
 VectorXd NonlinearStatics::make_displacement() const {
@@ -454,22 +580,30 @@ VectorXd NonlinearStatics::make_displacement() const {
   for (std::size_t k = 0; k < model_.nodes().size(); ++k)
     if (model_.nodes()[k].num_dofs == 6)
       u.segment<3>(model_.nodes()[k].first_gdof + 3) = calc_rotation_log(state_.R[k]);
+  for (const int k : turned_by_vector_) {  // may exceed half a turn
+    const int first = model_.node(k).first_gdof + 3;
+    u.segment<3>(first) = state_.u.segment<3>(first);
+  }
   return u;
 }
 
 records::StaticSubcase NonlinearStatics::make_result() const {
   records::StaticSubcase result;
   result.displacement = make_displacement();
-  result.load = F_;
-  result.reaction = calc_reactions(model_, collect_arms(residual_));
+  result.load = calc_forces(F_);
+  result.reaction = calc_reactions(model_, collect(residual_));
   result.mpc_force = residual_ - result.reaction;
   std::vector<bool> is_tied(model_.nodes().size(), false);
   for (const RigidArm& arm : arms_.list())
     for (const int k : {arm.node, arm.parent}) is_tied[static_cast<std::size_t>(k)] = true;
+  for (const int k : tied_) is_tied[static_cast<std::size_t>(k)] = true;
   for (std::size_t k = 0; k < is_tied.size(); ++k)  // else it is the error of the solution
     if (const Node& node = model_.nodes()[k]; !is_tied[k])
       result.mpc_force.segment(node.first_gdof, node.num_dofs).setZero();
   result.strain_energy = energy_;
+  for (std::size_t e = 0; e < model_.elements().size(); ++e)
+    if (const ThermalState* heat = load_.initial.find(*model_.elements()[e]))
+      result.strain_energy += heat->energy - heat->load.dot(deformed_.displacements[e]);
   result.epsilon = energy_ > 0 ? residual_work_ / energy_ : 0;
   const auto sum = [&](const VectorXd& forces) {
     Eigen::Matrix<double, 6, 1> total = Eigen::Matrix<double, 6, 1>::Zero();

@@ -1,12 +1,13 @@
 #pragma once
 /// \file Static equilibrium under large displacements and rotations, elastic material: load steps, Newton's method.
 ///
-/// Elements are linear in frames that follow their nodes (fe/corotational), rigid elements turn as rigid bodies, loads
-/// keep their directions. Theory: docs/theory/nonlinear-statics.md.
+/// Elements are linear in frames that follow their nodes (fe/corotational), rigid elements turn as rigid bodies, other
+/// constraint equations are linear in displacements and rotation vectors. Theory: docs/theory/nonlinear-statics.md.
 #include <memory>
 #include <vector>
 
 #include "fe/corotational/corotational_element.hpp"
+#include "fe/loads/follower_loads.hpp"
 #include "fe/model/rigid_arms.hpp"
 #include "fe/statics/element_recovery.hpp"
 
@@ -19,7 +20,9 @@ struct NonlinearOptions {
 
 /// Places of all nodes. Start: undeformed.
 struct DeformedState {
-  VectorXd u;               ///< num_gdofs: translations and scalar points in basic; rows of rotations are zero
+  /// num_gdofs: translations and scalar points in basic; rotation vectors of the nodes that linear equations turn,
+  /// other rows of rotations are zero.
+  VectorXd u;
   std::vector<Matrix3d> R;  ///< rotation of every node
 };
 
@@ -33,11 +36,13 @@ class NonlinearStatics {
   int num_iterations() const { return num_iterations_; }  ///< of all steps so far
   int num_steps() const { return num_steps_; }
 
-  /// Goes from the load of the last call (first: none) to `load` through stable states: their tangent stiffness is
+  /// Goes from the load of the last call (first: none) to `to` through stable states: their tangent stiffness is
   /// positive definite, or of positive determinant where moments about fixed axes make it unsymmetric. Throws
   /// ComputationError fe.no-equilibrium with the share of the load that was reached; the state is that of the last
   /// equilibrium then.
-  void go_to(const StaticLoad& load, const NonlinearOptions& options, Diagnostics& diagnostics);
+  /// `moving`: the part of `to` that follows the grids.
+  void go_to(const StaticLoad& to, const FollowerLoads& moving, const NonlinearOptions& options,
+             Diagnostics& diagnostics);
 
   /// Result of the last state. `displacement` has rotation vectors. Moments of resultants are of deformed places.
   records::StaticSubcase make_result() const;
@@ -49,14 +54,25 @@ class NonlinearStatics {
   struct Tangent;
   Tangent evaluate(const VectorXd& F);
   void find_offset_masses();
-  bool has_fixed_moments(const StaticLoad& load);
-  void set_arm_loads(const StaticLoad& from, const StaticLoad& to, double share);
+  void find_linear_ties();
+  /// A load, and the part of it that follows the grids.
+  struct PathLoad : StaticLoad {
+    FollowerLoads moving;
+  };
+  bool has_fixed_moments(const PathLoad& load);
+  VectorXd calc_dead_forces(const PathLoad& load) const;
+  VectorXd calc_forces(const VectorXd& dead) const;
+  void set_loads(const PathLoad& from, const PathLoad& to, double share);
   void evaluate_element(int e, const Element& element, FiniteForces& forces) const;
-  void move_to_parents(const Element& element, FiniteForces& forces, std::vector<int>& gdofs) const;
+  void move_to_parents(std::vector<int>& gdofs, MatrixXd& K) const;
   VectorXd collect_arms(VectorXd residual) const;
+  VectorXd collect(VectorXd residual) const;
+  void use_rotation_vectors(Tangent& tangent) const;
+  void report_turned_ties(Diagnostics& diagnostics) const;
   void advance(const VectorXd& step);
   Eigen::SparseMatrix<double, Eigen::RowMajor> reduce(const Eigen::SparseMatrix<double, Eigen::RowMajor>& K) const;
-  bool find_equilibrium(const VectorXd& F, const VectorXd& enforced, double share, int max_iterations);
+  bool find_equilibrium(const VectorXd& F, const VectorXd& dF, const VectorXd& enforced, double share,
+                        int max_iterations);
   VectorXd make_displacement() const;
 
   const Model& model_;
@@ -65,11 +81,15 @@ class NonlinearStatics {
   std::vector<char> is_stiff_;                                    ///< of each element
   std::vector<std::unique_ptr<const CorotationalElement>> kept_;  ///< where there is room; else made again each time
   std::vector<ArmLoad> offset_masses_;                            ///< force: of a unit acceleration, its size the mass
-  std::vector<ArmLoad> arm_loads_;                                ///< of the state
-  bool has_moments_ = false;  ///< moments about fixed axes: the tangent stiffness is not symmetric
+  std::vector<int> tied_;              ///< nodes that equations join otherwise than as rigid bodies: RBE3, MPC
+  std::vector<int> turned_by_vector_;  ///< of these: rotation vectors are their unknowns
+  std::vector<ArmLoad> arm_loads_;     ///< of the state, as the next two
+  FollowerLoads followers_;
+  InitialForces heat_;
+  bool is_symmetric_ = true;  ///< false: moments about fixed axes, or loads that follow the grids
   DeformedState state_;
-  VectorXd F_, d_;   ///< of the last state
-  StaticLoad load_;  ///< that the last go_to() reached
+  VectorXd F_, d_;  ///< of the last state: dead forces, enforced displacements
+  PathLoad load_;   ///< that the last go_to() reached
   DeformedElements deformed_;
   VectorXd energies_, residual_;
   double residual_work_ = 0, energy_ = 0, max_turn_ = 0, last_rate_ = 0;

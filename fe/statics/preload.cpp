@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "fe/elements/stress_state.hpp"
+#include "fe/loads/dead_loads.hpp"
 #include "fe/loads/inertial_loads.hpp"
 #include "fe/loads/second_order.hpp"
 #include "fe/matrices/system.hpp"
@@ -76,6 +77,7 @@ std::shared_ptr<const Prestress> calc_prestress(const records::Deck& deck, const
   subcase.load = preload.load;
   subcase.temperature = preload.temperature;
   auto load = calc_static_load(model, deck, subcase, own);
+  report_dead_loads(deck, subcase.load, own);
   own.throw_if_errors();
   if (!preload.spin.isZero(0)) {
     const Vector12d A_I = calc_load_factors(Vector3d::Zero(), Vector3d::Zero(), preload.spin);

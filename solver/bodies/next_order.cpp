@@ -4,6 +4,9 @@
 #include <array>
 #include <cmath>
 
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+
 #include "solver/bodies/third_order.hpp"
 
 namespace bough::solver {
@@ -13,6 +16,8 @@ namespace {
 using Amplitudes = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, records::kMaxThirdOrderModes, 1>;
 /// Error of a cantilever of second order by (|u_2|/|u_1|)²: 1.03 w² and 0.6 w at a way of w lengths.
 constexpr double kCantilever = 3;
+/// Error of a strip that bends about both axes and twists, by the square of what calc_coupling() gives.
+constexpr double kStrip = 2;
 
 /// Displacement of the node beyond φη.
 Vector3d calc_higher(const Node& node, const ConstVectorRef& eta) {
@@ -24,6 +29,35 @@ Vector3d calc_higher(const Node& node, const ConstVectorRef& eta) {
   return u;
 }
 
+/// Ratio of modal forces -f·∂u_2/∂η to K η, in the norm of K⁻¹, f the loads at the node (locators) that fit K η best:
+/// the stress of the deflection on its own second strains, as bending of a strip about its stiff axis twists it.
+double calc_coupling(const Body& body, const Node& node, const ConstVectorRef& eta, double twice_energy) {
+  constexpr int kMax = records::kMaxThirdOrderModes;
+  if (eta.size() > kMax || !(twice_energy > 0)) return 0;
+  using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMax, kMax>;
+  using Loads = Eigen::Matrix<double, Eigen::Dynamic, 6, 0, kMax, 6>;
+  const Eigen::LDLT<Square> K(body.K().topLeftCorner(eta.size(), eta.size()));
+  Loads phi = Loads::Zero(eta.size(), 6);
+  phi.leftCols<3>() = node.phi.transpose();
+  if (node.K2_theta.size() > 0) phi.rightCols<3>() = node.psi.transpose();
+  const Loads flexible = K.solve(phi);
+  const Matrix6d G = phi.transpose() * flexible;
+  const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(Matrix6d(0.5 * (G + G.transpose())));
+  Vector6d inverse = eigen.eigenvalues();
+  for (double& value : inverse) value = value > 1e-12 * eigen.eigenvalues()[5] ? 1 / value : 0;
+  const Vector6d u = phi.transpose() * eta,
+                 f = eigen.eigenvectors() * (inverse.asDiagonal() * (eigen.eigenvectors().transpose() * u));
+  Amplitudes force(eta.size());
+  for (Eigen::Index j = 0; j < eta.size(); ++j) {
+    force[j] = 0;
+    for (int a = 0; a < 3; ++a) {
+      force[j] += f[a] * node.K2.row(a + 3 * j).dot(eta);
+      if (node.K2_theta.size() > 0) force[j] += f[3 + a] * node.K2_theta.row(a + 3 * j).dot(eta);
+    }
+  }
+  return std::sqrt(std::max(0.0, force.dot(K.solve(force))) / twice_energy);
+}
+
 double calc_root(double ratio, int degree) { return std::pow(ratio, 1.0 / degree); }
 
 }  // namespace
@@ -33,16 +67,19 @@ double calc_next_order(const Body& body, const Node& node, const ConstVectorRef&
   for (Eigen::Index j = 0; j < eta.size(); ++j) u1 += node.phi.col(j) * eta[j];
   const double first = u1.norm();
   if (!(first > 0)) return 0;
+  double twice = 0;  // ηᵀKη
+  for (Eigen::Index j = 0; j < eta.size(); ++j) twice += body.K().col(j).dot(eta) * eta[j];
   if (!body.third_order()) {
     const double of_size = size > 0 ? first * first / (size * size) : 0;
     if (node.K2.size() == 0) return of_size;
     double square = 0;  // |u_2|²; u_2a = -½ ηᵀK2_a η
     for (int a = 0; a < 3; ++a) {
-      double twice = 0;
-      for (Eigen::Index j = 0; j < eta.size(); ++j) twice += node.K2.row(a + 3 * j).dot(eta) * eta[j];
-      square += 0.25 * twice * twice;
+      double twice_u2 = 0;
+      for (Eigen::Index j = 0; j < eta.size(); ++j) twice_u2 += node.K2.row(a + 3 * j).dot(eta) * eta[j];
+      square += 0.25 * twice_u2 * twice_u2;
     }
-    return std::max(of_size, kCantilever * square / (first * first));
+    const double coupling = calc_coupling(body, node, eta, twice);
+    return std::max({of_size, kCantilever * square / (first * first), kStrip * coupling * coupling});
   }
   // Degrees apart by their values at ±η and ±½η.
   const std::array<double, 4> shares = {1, -1, 0.5, -0.5};
@@ -59,8 +96,6 @@ double calc_next_order(const Body& body, const Node& node, const ConstVectorRef&
   ratio = std::max(ratio, u2.norm() / first);
   ratio = std::max(ratio, calc_root(u3.norm() / first, 2));
   ratio = std::max(ratio, calc_root(u4.norm() / first, 3));
-  double twice = 0;  // ηᵀKη
-  for (Eigen::Index j = 0; j < eta.size(); ++j) twice += body.K().col(j).dot(eta) * eta[j];
   if (twice > 0) {
     const double V_even = 0.5 * (V[0] + V[1]), V_half = 0.5 * (V[2] + V[3]);     // V_4 + V_6, V_4/16 + V_6/64
     const double V_odd = 0.5 * (V[0] - V[1]), V_odd_half = 0.5 * (V[2] - V[3]);  // V_3 + V_5, V_3/8 + V_5/32

@@ -6,8 +6,9 @@ namespace bough::solver {
 
 /// Estimates the first order that the body leaves out, relative to the deflection of the node, from the orders that it
 /// has. Order 3: r⁴, r the largest ratio of two orders next to each other, (|u_k|/|u_1|)^(1/(k-1)) of the node's
-/// displacements and (|V_k|/V_2)^(1/(k-2)) of the strain energy. Order 2: (|u_1|/size)², or 3 |u_2|²/|u_1|² of a node
-/// with locators if that is more; both are the error of a cantilever.
+/// displacements and (|V_k|/V_2)^(1/(k-2)) of the strain energy. Order 2: (|u_1|/size)², or of a node with locators
+/// 3 |u_2|²/|u_1|² if that is more, both the error of a cantilever, or 2 ρ² if that is more, ρ the coupling by the
+/// stress of the deflection (strips).
 /// \param eta   n amplitudes.
 /// \param size  [L] size of the body.
 /// \return 0 for a node at rest. \note No allocation.

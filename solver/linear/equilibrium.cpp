@@ -14,6 +14,8 @@ namespace {
 constexpr int kMaxIterations = 60;
 /// Travel in steps of the plant within which the state found is the one that was meant, stable or not.
 constexpr double kNear = 1;
+/// Largest travel of a stable state that whole steps of Newton's method found: a quarter of the size of a body.
+constexpr double kDirect = 5;
 
 /// The largest of what dofs move by, in steps of the plant; the size of a state or of a signal says nothing.
 double calc_way(const EquilibriumResidual& at, const VectorXd& steps) {
@@ -45,9 +47,11 @@ class Newton {
   }
 
   const EquilibriumResidual& at() const { return at_; }
+  /// Returns true if no step was damped.
+  bool is_direct() const { return is_direct_; }
   int num_iterations() const { return num_iterations_; }
 
-  /// The dof with the largest u̇ relative to the effect of a small displacement; -1 if all vanish.
+  /// The row with the largest residual relative to the effect of a small displacement; -1 if all vanish.
   int find_restless() const {
     const VectorXd& residual = at_.residual();
     const double floor = row_scale_.size() > 0 ? 1e-9 * row_scale_.maxCoeff() : 0;
@@ -135,7 +139,10 @@ class Newton {
 
   void take(const VectorXd& step) {
     EquilibriumResidual moved = at_.move(step);
-    if (!(moved.residual().norm() <= at_.residual().norm())) return;
+    const auto calc_norm = [this](const EquilibriumResidual& at) {
+      return (weight_.array() * at.residual().array()).matrix().norm();
+    };
+    if (!(calc_norm(moved) <= calc_norm(at_))) return;
     at_ = std::move(moved);
   }
 
@@ -148,6 +155,7 @@ class Newton {
         EquilibriumResidual moved = at_.move(by * step);
         if (!moved.residual().allFinite() || solve_step(moved).norm() > (1 - by / 4) * step.norm()) continue;
         at_ = std::move(moved);
+        is_direct_ = is_direct_ && by == 1;
         return true;
       } catch (const ComputationError&) {
         // Too far: the equations have no solution there.
@@ -158,6 +166,7 @@ class Newton {
 
   EquilibriumResidual at_;
   int num_iterations_ = 0;
+  bool is_direct_ = true;
   VectorXd row_scale_, weight_;
   bool has_kept_ = false;
   MatrixXd conserved_, null_space_;  ///< k x m; m x (m - k), orthonormal
@@ -174,9 +183,9 @@ Newton run_newton(const EquilibriumResidual& start) {
   const int worst = newton.find_restless();
   std::ostringstream what;
   what << "no state of rest or steady spin was found: after " << newton.num_iterations() << " iterations |u_dot| is "
-       << newton.at().residual().norm() << ", most of all " << newton.at().name(worst)
+       << newton.at().rates().norm() << ", most of all " << newton.at().name(worst)
        << (worst < newton.at().plant().num_dofs() ? ", which accelerates by " : ", which changes by ")
-       << newton.at().residual()[worst];
+       << newton.at().rates()[worst];
   const auto& free = newton.at().free();
   const bool spins = std::find(free.begin(), free.end(), worst) == free.end();
   throw ComputationError(
@@ -195,6 +204,7 @@ Newton search(const EquilibriumResidual& start, const SourceLocation& at) {
   Newton first = run_newton(start);
   const bool is_found = first.find_restless() < 0;
   if (is_found && calc_way(first.at()) <= kNear) return first;
+  if (is_found && first.is_direct() && calc_way(first.at()) <= kDirect && is_stable_rest(first.at())) return first;
   Newton second = run_newton(follow_gradient_flow(start));
   const bool is_other = second.find_restless() < 0;
   if (!is_found && !is_other) fail(second, at);
@@ -236,7 +246,7 @@ Equilibrium find_equilibrium(Plant& plant, const OperatingPoint& start, const So
   const Newton newton = search(EquilibriumResidual(plant, start), at);
   Equilibrium found;
   found.point = newton.at().point();
-  found.residual = newton.at().residual().norm();
+  found.residual = newton.at().rates().norm();
   found.num_iterations = newton.num_iterations();
   found.neutral = newton.name_neutral();
   found.kept = newton.name_kept();

@@ -14,26 +14,45 @@ EquilibriumResidual::EquilibriumResidual(Plant& plant, const OperatingPoint& sta
     plant.fill_queues(point_.memory);
   }
   travel_.setZero(static_cast<Eigen::Index>(free_.size()));
-  residual_ = calc_residual();
+  evaluate();
+}
+
+VectorXd EquilibriumResidual::calc_rounding() const {
+  VectorXd rounding = VectorXd::Zero(size());
+  const int n = plant_->num_dofs();
+  const VectorXd of_rates = plant_->calc_spin_rounding(point_);
+  if (!of_rates.isZero(0)) rounding.head(n) = plant_->calc_mass(point_).cwiseAbs() * of_rates;
+  return rounding;
 }
 
 void EquilibriumResidual::linearize() {
   const int m = static_cast<int>(free_.size());
-  jacobian_.setZero(size(), m);
+  const int n = size(), num_dofs = plant_->num_dofs();
+  jacobian_.setZero(n, m);
+  rate_jacobian_.setZero(n, m);
   for (int j = 0; j < m; ++j) {
-    const auto f = [&](double h) -> VectorXd { return move(h * VectorXd::Unit(m, j)).residual_; };
-    jacobian_.col(j) = plant_->differentiate(f, 0.5).calc_clean();
+    const auto f = [&](double h) -> VectorXd {
+      const EquilibriumResidual moved = move(h * VectorXd::Unit(m, j));
+      VectorXd both(n + num_dofs);
+      both << moved.residual_, moved.rates_.head(num_dofs);
+      return both;
+    };
+    const VectorXd slope = plant_->differentiate(f, 0.5).calc_clean();
+    jacobian_.col(j) = rate_jacobian_.col(j) = slope.head(n);
+    rate_jacobian_.col(j).head(num_dofs) = slope.tail(num_dofs);
   }
 }
 
-VectorXd EquilibriumResidual::calc_residual() const {
+void EquilibriumResidual::evaluate() {
   const int n = plant_->num_dofs();
   const VectorXd rates = plant_->evaluate(point_);
-  VectorXd residual(size());
-  residual.head(n) = plant_->calc_unsteadiness(rates);
-  residual.segment(n, plant_->num_states()) = rates.segment(n, plant_->num_states());
-  residual.tail(size() - n - plant_->num_states()) = plant_->calc_sample_rates(point_);
-  return residual;
+  rates_.resize(size());
+  rates_.head(n) = plant_->calc_unsteadiness(rates);
+  rates_.segment(n, plant_->num_states()) = rates.segment(n, plant_->num_states());
+  residual_ = rates_;
+  residual_.head(n) = plant_->calc_mass(point_) * rates_.head(n);
+  rates_.tail(size() - n - plant_->num_states()) = plant_->calc_sample_rates(point_);
+  residual_.tail(size() - n) = rates_.tail(size() - n);
 }
 
 MatrixXd EquilibriumResidual::calc_conserved() const {
@@ -60,7 +79,8 @@ MatrixXd EquilibriumResidual::calc_conserved() const {
     const auto f = [&](double h) -> VectorXd {
       EquilibriumResidual moved = *this;
       moved.point_.u[i] += h;
-      return moved.calc_residual().tail(rows);
+      moved.evaluate();
+      return moved.rates_.tail(rows);
     };
     const VectorXd by_rate = plant_->differentiate(f, step(static_cast<int>(j))).calc_clean();
     conserved.col(j) = -step(static_cast<int>(j)) * (b * by_rate);
@@ -88,7 +108,7 @@ EquilibriumResidual EquilibriumResidual::move(const VectorXd& steps) const {
     plant_->fill_queues(moved.point_.memory);
   }
   moved.travel_ += steps;
-  moved.residual_ = moved.calc_residual();
+  moved.evaluate();
   return moved;
 }
 

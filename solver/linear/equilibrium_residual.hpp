@@ -1,6 +1,7 @@
 #pragma once
-/// \file Residual of an equilibrium: u̇, ż and the changes at samples, as functions of the dofs that may be displaced,
-/// of the states of controllers and actuators and of the memory of sampled blocks; with its Jacobian.
+/// \file Residual of an equilibrium: forces that are not in balance, ż and the changes at samples, as functions of the
+/// dofs that may be displaced, of the states of controllers and actuators and of the memory of sampled blocks; with its
+/// Jacobian.
 #include "base/diagnostic.hpp"
 #include "solver/linear/plant.hpp"
 
@@ -21,15 +22,15 @@ class EquilibriumResidual {
   std::string name(int row) const;
   /// Rows that may be displaced; m of n.
   const std::vector<int>& free() const { return free_; }
-  /// u̇ minus that of a steady spin, ż, change of the memory per sample time; n.
+  /// M times u̇ minus that of a steady spin (Plant::calc_mass), ż, change of the memory per sample time; n.
   const VectorXd& residual() const { return residual_; }
+  /// Rates of change: u̇ in place of M u̇, else as the residual; n.
+  const VectorXd& rates() const { return rates_; }
   /// Round-off of the residual in a steady spin; n.
-  VectorXd calc_rounding() const {
-    VectorXd rounding = VectorXd::Zero(size());
-    rounding.head(plant_->num_dofs()) = plant_->calc_spin_rounding(point_);
-    return rounding;
-  }
-  const MatrixXd& jacobian() const { return jacobian_; }  ///< of the residual by steps, n x m, of the last linearize
+  VectorXd calc_rounding() const;
+  /// Derivatives of residual and rates by steps, n x m, of the last linearize.
+  const MatrixXd& jacobian() const { return jacobian_; }
+  const MatrixXd& rate_jacobian() const { return rate_jacobian_; }
   double step(int j) const {
     const int i = free_[static_cast<size_t>(j)];
     return i < plant_->num_dofs() ? plant_->step(i) : 1;
@@ -45,13 +46,13 @@ class EquilibriumResidual {
   const VectorXd& travel() const { return travel_; }
 
  private:
-  VectorXd calc_residual() const;
+  void evaluate();
 
   Plant* plant_;
   OperatingPoint point_;
   std::vector<int> free_;
-  VectorXd residual_, travel_;
-  MatrixXd jacobian_;
+  VectorXd residual_, rates_, travel_;
+  MatrixXd jacobian_, rate_jacobian_;
 };
 
 }  // namespace bough::solver

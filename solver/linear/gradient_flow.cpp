@@ -14,14 +14,14 @@ MatrixXd calc_slope(const EquilibriumResidual& at) {
   const auto m = static_cast<Eigen::Index>(at.free().size());
   MatrixXd slope(m, m);
   for (Eigen::Index j = 0; j < m; ++j)
-    slope.row(j) = at.jacobian().row(at.free()[static_cast<size_t>(j)]) / at.step(static_cast<int>(j));
+    slope.row(j) = at.rate_jacobian().row(at.free()[static_cast<size_t>(j)]) / at.step(static_cast<int>(j));
   return slope;
 }
 
 VectorXd calc_pull(const EquilibriumResidual& at) {
   VectorXd pull(static_cast<Eigen::Index>(at.free().size()));
   for (Eigen::Index j = 0; j < pull.size(); ++j)
-    pull[j] = at.residual()[at.free()[static_cast<size_t>(j)]] / at.step(static_cast<int>(j));
+    pull[j] = at.rates()[at.free()[static_cast<size_t>(j)]] / at.step(static_cast<int>(j));
   return pull;
 }
 

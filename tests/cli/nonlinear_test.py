@@ -59,14 +59,17 @@ class Nonlinear(ProgramTest):
         self.fails(1, "static", "s.bdf", error="cli.nonlinear-combination")
         ranks = self.bough("static", "b.bdf", launcher=launch_ranks("-n", 2), code=1)
         self.assertIn("[cli.nonlinear-ranks]", ranks.stderr)
-        self.write("t.bdf", DECK.replace("LOAD = 1\n", "LOAD = 1\nTEMP(LOAD) = 7\n").replace(
-            "MAT1,1,1.2+9,,0.\n", "MAT1,1,1.2+9,,0.,,1.-5,0.\nTEMPD,7,100.\n"))
-        self.fails(1, "static", "t.bdf", error="fe.nonlinear-load")
+        self.write("r.bdf", DECK.replace("FORCE,1,21,,24000.,0.,0.,1.", "RFORCE,1,1,,1.,0.,0.,1.\nCONM2,9,21,,1."))
+        self.fails(1, "static", "r.bdf", error="fe.nonlinear-load")
         self.write("o.bdf", DECK.replace("ENDDATA", "ASET1,123456,21\nENDDATA"))
         self.fails(1, "static", "o.bdf", error="fe.nonlinear-model")
         self.write("p.bdf", DECK.replace("ENDDATA", "PARAM,FOLLOWK,YES\nGRID,31,,1.,.1,0.\nGRID,32,,1.1,.1,0.\nGRID,33,,1.1,0.,0.\n"
                                          "CQUAD4,99,9,21,33,32,31\nPSHELL,9,1,.01,1,,1\nPLOAD2,1,10.,99\nENDDATA"))
-        self.assertIn("[fe.dead-load]", self.bough("static", "p.bdf").stderr)
+        self.assertNotIn("dead-load", self.bough("static", "p.bdf").stderr)  # it follows its face
+
+    def test_ties_that_turn(self):
+        self.write("a.bdf", DECK.replace("ENDDATA", "GRID,31,,1.,0.,.1\nRBE3,9,,31,123,1.,123456,20,21\nENDDATA"))
+        self.assertIn("[fe.nonlinear-link]", self.bough("static", "a.bdf").stderr)
 
 
 if __name__ == "__main__":

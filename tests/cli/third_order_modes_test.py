@@ -101,6 +101,34 @@ class ThirdOrderModes(ProgramTest):
             print(f"L-frame, {modes} modes and residual vectors: off by {100 * off:.3f} % of {np.linalg.norm(exact):.3f} m")
             self.assertLess(off, 2e-3)
 
+    def test_plate_with_residual_vectors(self):
+        """A cantilever plate of shells, residual vectors at a corner up to 2e5 times as stiff as its first mode, against
+        the whole deck by static --nonlinear."""
+        nx, ny, corner = 9, 3, 37
+        lines = ["SPC = 1", "LOAD = 1", "BEGIN BULK", "SPC1,1,123456,1,THRU,4", "MAT1,1,7.+10,,.3,2700.", "PSHELL,1,1,.003,1,,1"]
+        lines += [f"GRID,{1 + i * (ny + 1) + j},,{.6 * i / nx:.7f},{.2 * j / ny:.7f},0." for i in range(nx + 1) for j in range(ny + 1)]
+        for i in range(nx):
+            for j in range(ny):
+                first = 1 + i * (ny + 1) + j
+                lines.append(f"CQUAD4,{1 + i * ny + j},1,{first},{first + ny + 1},{first + ny + 2},{first + 1}")
+        bulk = "\n".join(lines) + "\n"
+        self.write("mast.bdf", "SOL 103\nCEND\n" + bulk.replace("LOAD = 1\n", "") + "ENDDATA\n")
+        self.write("mast.toml", f'[body]\nname = "mast"\ndeck = "mast.bdf"\nframe = "fixed"\ninterface = [{corner}]\n'
+                   '[body.modes]\nnumber = 6\nresidual = ["interface"]\n[body.stiffening]\norder = 3\n')
+        self.bough("reduce", "mast.toml", "-o", "mast.h5", "-q")
+        for force in ((0., 0., 20.), (0., 3., 10.), (0., 6., 20.), (0., 12., 40.), (0., 15., 50.)):
+            self.write("whole.bdf", "SOL 106\nCEND\n" + bulk + "PARAM,LGDISP,1\nFORCE,1,%d,,1.,%r,%r,%r\nENDDATA\n" % (corner, *force))
+            self.bough("static", "whole.bdf", "-o", "whole.h5", "-q")
+            with h5py.File(self.path("whole.h5")) as f:
+                exact = f["/subcases/0/displacement"][6 * (corner - 1):6 * (corner - 1) + 3]
+            self.write_system(np.array(force))
+            self.write("mast-system.toml", self.read("mast-system.toml").replace(f"node = {END}", f"node = {corner}"))
+            self.bough("equilibrium", "mast-system.toml", "-o", "rest.h5", "-q")
+            with h5py.File(self.path("rest.h5")) as f:
+                off = np.linalg.norm(f["sensors/end"][-1] - exact) / np.linalg.norm(exact)
+            print(f"plate, {force} N: off by {100 * off:.2f} % of {np.linalg.norm(exact) / .6:.3f} lengths")
+            self.assertLess(off, .005 if force[2] <= 20 else .12)
+
     def find_rest_and_estimate(self, force):
         self.write_system(force)
         printed = self.bough("equilibrium", "mast-system.toml", "-o", "rest.h5").stderr
