@@ -1,5 +1,6 @@
 """Runs the built program in a folder of its own."""
 import os
+import re
 import select
 import shutil
 import subprocess
@@ -12,8 +13,15 @@ SOURCE = os.environ["BOUGH_SOURCE_DIR"]
 SLOWER = int(os.environ.get("BOUGH_SLOWER", "1"))
 # Guards against hangs only: no command takes a tenth of it, alone or on a busy machine.
 HANG = 600 * SLOWER
-VERBS = ["check", "modes", "static", "frequency", "transient", "matrices", "split", "reduce", "integrals", "flx", "compare", "run",
-         "equilibrium", "linearize", "response", "select", "export", "plot", "report", "info", "init", "batch", "edit", "convert", "studio"]
+
+
+def list_verbs():
+    """Names of the commands in the order of --help; docs/commands.md, which a test compares, keeps any from loss."""
+    page = subprocess.run([PROGRAM, "--help"], text=True, capture_output=True, check=True).stdout
+    return re.findall(r"^  (\w+) ", page.split("Subcommands:\n")[1].split("\n\n")[0], re.MULTILINE)
+
+
+VERBS = list_verbs()
 
 
 def launch_ranks(*arguments):
