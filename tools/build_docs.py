@@ -18,6 +18,7 @@ import re
 import shutil
 import subprocess
 import sys
+import tempfile
 import urllib.parse
 
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
@@ -265,7 +266,7 @@ div.sphinxsidebar, div.related, div.footer, a.headerlink { display: none; }
 
 
 def write_pdf():
-    """One document of all pages, printed by weasyprint."""
+    """One document of all pages, printed by chromium: weasyprint takes more than eight minutes for them."""
     pages = OUTPUT + "-pages"
     index = os.path.join(STAGE, "README.md")
     with open(index, encoding="utf-8") as f:
@@ -280,10 +281,15 @@ def write_pdf():
         f.write(head + "```{toctree}\n:hidden:\n\n" + "\n".join("/" + name for name in names) + "\n```\n")
     subprocess.run(["/usr/bin/sphinx-build", "-q", "-b", "singlehtml", "-d", STAGE + "-doctrees-pdf", STAGE, pages],
                    check=True, stderr=subprocess.DEVNULL)
-    style = os.path.join(pages, "print.css")
-    with open(style, "w", encoding="utf-8") as f:
-        f.write(PRINT)
-    subprocess.run(["weasyprint", "-q", "-s", style, os.path.join(pages, "README.html"), OUTPUT + ".pdf"], check=True)
+    page = os.path.join(pages, "README.html")
+    with open(page, encoding="utf-8") as f:
+        text = f.read()
+    with open(page, "w", encoding="utf-8") as f:
+        f.write(text.replace("</head>", f"<style>{PRINT}</style></head>", 1))
+    with tempfile.TemporaryDirectory() as profile:
+        subprocess.run(["chromium", "--headless", "--no-sandbox", "--disable-gpu", f"--user-data-dir={profile}",
+                        "--no-pdf-header-footer", f"--print-to-pdf={OUTPUT}.pdf", page], check=True,
+                       stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     print(f"manual: {OUTPUT}.pdf, {os.path.getsize(OUTPUT + '.pdf') >> 10} kB")
 
 

@@ -81,7 +81,7 @@ inline constexpr SensorKind kSensorKinds[] = {
      false, false},
     {SensorType::Gyro, "gyro", "rate gyro", "1/T", SensorOf::Instrument, 3, false, true},
     {SensorType::IntegratingGyro, "integrating_gyro", "integrating gyro", "1", SensorOf::Instrument, 3, false, true},
-    {SensorType::Accelerometer, "accelerometer", "accelerometer (acceleration less gravity)", "L/T^2",
+    {SensorType::Accelerometer, "accelerometer", "accelerometer (acceleration minus gravity)", "L/T^2",
      SensorOf::Instrument, 3, true, false},
     {SensorType::Direction, "direction", "direction to the target", "1", SensorOf::Instrument, 3, false, false},
     {SensorType::Horizon, "horizon", "roll and pitch from the direction to the centre", "1", SensorOf::Instrument, 2,

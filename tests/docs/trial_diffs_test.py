@@ -34,7 +34,7 @@ def check(source, page):
         wrong.append(f"{len(tests)} tests, expected {MAX_TESTS}: {', '.join(tests)}")
     applied = subprocess.run(["git", "apply", "--check", "-"], cwd=source, input=diff, text=True, capture_output=True)
     if applied.returncode != 0:
-        wrong.append("does not apply; mend it (--print, git apply --3way, git diff):\n" + applied.stderr.strip())
+        wrong.append("does not apply; correct it (--print, git apply --3way, git diff):\n" + applied.stderr.strip())
     return [f"docs/developer/{page}: error: {what}" for what in wrong]
 
 

@@ -23,7 +23,7 @@ TRACED = {
     "add-a-sensor.md": (r"\bSensorType::StrainEnergy\b", []),
     "add-a-command.md": (r"\badd_integrals\b|\"bough integrals", ["analysis/report/report_bodies.cpp"]),
     "add-a-hinge.md": (r'"screw"|\bHingeType::Screw\b|\bScrewHinge\b', []),
-    "add-a-format.md": (r'"gltf"|\bmake_glb\b|\bGltfScene\b', []),
+    "add-a-format.md": (r'"gltf"|\bmake_glb\b|\bGltfScene\b', ["python/bough/__init__.py"]),
 }
 
 

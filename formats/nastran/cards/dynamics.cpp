@@ -584,7 +584,7 @@ void convert_tabled2(UnitConverter& u) {
   u.scale(1, find_table_axis(u));
   convert_tabled1(u);
 }
-/// Of (x - X1) / X2.
+/// Scales X1 and X2; the table is one of (x - X1) / X2.
 void convert_tabled3(UnitConverter& u) { u.scale(1, 2, find_table_axis(u)); }
 void convert_tabled4(UnitConverter& u) { u.scale(1, 4, find_table_axis(u)); }
 

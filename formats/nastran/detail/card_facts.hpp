@@ -1,5 +1,5 @@
 #pragma once
-/// \file What is known of the fields of a card, in whatever table its parser is.
+/// \file Facts about the fields of a card, in whatever table its parser is.
 #include <string>
 #include <string_view>
 #include <vector>

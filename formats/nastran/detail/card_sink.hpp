@@ -1,5 +1,5 @@
 #pragma once
-/// \file What the writers of cards write to.
+/// \file Target of the writers of cards.
 #include <string>
 
 #include "formats/nastran/detail/card_text.hpp"

@@ -1,5 +1,5 @@
 #pragma once
-/// \file The groups of cards; a new card is one row in the table of its group, beside its functions: parser, writer,
+/// \file The groups of cards; a new card is one row in the table of its group, next to its functions: parser, writer,
 /// and the conversion of units where dimensions depend on other fields.
 #include "formats/nastran/detail/card_sink.hpp"
 #include "formats/nastran/detail/reading.hpp"

@@ -13,7 +13,7 @@ enum class Axes { Rectangular, Cylindrical, Spherical };
 /// Motions coupled by a scalar element: translations, rotations, both, or not known from the deck.
 enum class Motion { Translation, Rotation, Mixed, Unknown };
 
-/// What the dimensions of fields depend on in other cards.
+/// Facts of other cards on which the dimensions of fields depend.
 struct UnitNotes {
   std::map<int, Axes> axes;                         ///< by CID; others are rectangular
   std::map<std::string, std::set<Motion>> motions;  ///< of elements with a property: "CELAS", "CMASS", "CDAMP" and PID

@@ -101,7 +101,7 @@ std::vector<Wire> SignalUnits::list_wires(const toml::table& block, const std::s
   return wires;
 }
 
-/// Of "L/T^2", "F L", "1"; 1 for words that are no dimensions.
+/// Unit of dimensions as "L/T^2", "F L", "1"; 1 for words that are no dimensions.
 double SignalUnits::calc_unit(const std::string& dims) const {
   const auto powers = records::parse_dims(dims).value_or(std::array<double, 3>{});
   return std::pow(c_.mass, powers[0]) * std::pow(c_.length, powers[1]) * std::pow(c_.time, powers[2]);

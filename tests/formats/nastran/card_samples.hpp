@@ -1,5 +1,5 @@
 #pragma once
-/// \file Cards that a test file of its own adds to every_card.hpp.
+/// \file Cards that other test files add to every_card.hpp.
 #include <string>
 
 namespace bough::nastran {

@@ -68,7 +68,7 @@ std::string make_page() {
          "names\nand dimensions (M mass, L length, T time) of the data fields of each card that is read, and the card "
          "that\n`export --to bdf` writes for it. [Nastran decks](nastran.md) says what a card does. Made from the "
          "table "
-         "of cards by the\ntest `formats.CardTable` (`BOUGH_WRITE_PAGES=1`).\n\n"
+         "of cards by the\ntest `nastran.CardTable` (`BOUGH_WRITE_PAGES=1`).\n\n"
          "A field without a name is counted from the first after the name of the card. \"by others\": dimensions "
          "depend "
          "on other\nfields or cards, such as the component of a spring. [?]: nothing tells the dimension, a number "
@@ -124,7 +124,7 @@ TEST(CardTable, ManualHasARowForEveryCard) {
   std::ostringstream found;
   found << in.rdbuf();
   EXPECT_TRUE(found.str() == make_page())
-      << path << " is stale; BOUGH_WRITE_PAGES=1 ctest -R formats.CardTable writes it";
+      << path << " is stale; BOUGH_WRITE_PAGES=1 ctest -R nastran.CardTable writes it";
 }
 
 }  // namespace
