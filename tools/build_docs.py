@@ -257,10 +257,13 @@ PARTS = ["README", "docs/README", "docs/install", "docs/tutorial", "docs/tutoria
          "docs/command-line", "docs/commands", "docs/formats/", "docs/elements/", "docs/theory/", "docs/errors/",
          "docs/verification/"]
 PRINT = """@page { size: A4; margin: 20mm 18mm; @bottom-center { content: counter(page); font: 9pt sans-serif; } }
-body { font: 9.5pt/1.35 sans-serif; } h1 { page-break-before: always; string-set: title content(); }
-pre, td, th, code { font-size: 8pt; } pre { white-space: pre-wrap; border-left: 2pt solid #bbb; padding-left: 6pt; }
+body { font: 9.5pt/1.35 sans-serif; } h1 { page-break-before: always; }
+h1, h2, h3 { page-break-after: avoid; } pre, td, th, code { font-size: 8pt; }
+pre { white-space: pre-wrap; border-left: 2pt solid #bbb; padding-left: 6pt; }
 table { border-collapse: collapse; width: 100%; } td, th { border: 0.5pt solid #aaa; padding: 2pt 4pt;
-vertical-align: top; text-align: left; overflow-wrap: anywhere; } img { max-width: 100%; } a { color: #024; }
+vertical-align: top; text-align: left; overflow-wrap: break-word; }
+code, code span.pre { white-space: pre-wrap !important; overflow-wrap: anywhere; }
+img { max-width: 100%; } a { color: #024; } div.body, div.document, div.bodywrapper { border: 0; margin: 0; }
 div.sphinxsidebar, div.related, div.footer, a.headerlink { display: none; }
 """
 

@@ -63,6 +63,7 @@ class Function:
         where = node.find("location")
         self.declared = where.get("declfile") or where.get("file")
         self.file = where.get("bodyfile") or where.get("file")
+        self.declared_line = int(where.get("declline") or where.get("line") or 0)
         self.line = int(where.get("bodystart") or where.get("line") or 0)
         self.is_local = "anonymous_namespace" in owner or node.get("static") == "yes" and self.file.endswith(".cpp")
         self.is_public = node.get("prot") == "public" and not self.is_local and self.declared.endswith((".hpp", ".h"))
@@ -128,9 +129,28 @@ def read_functions():
             for base in function.overrides:
                 if not function.purpose and base in functions:
                     function.purpose = functions[base].purpose
+        share_comments(functions)
         return {i: f for i, f in functions.items() if not f.name.startswith("~")}
     finally:
         shutil.rmtree(folder)
+
+
+def share_comments(functions):
+    """One comment above several declarations without a blank line between them belongs to all of them."""
+    by_file = collections.defaultdict(list)
+    for function in functions.values():
+        by_file[function.declared].append(function)
+    for file, members in by_file.items():
+        path = os.path.join(ROOT, file)
+        if not os.path.isfile(path):
+            continue
+        with open(path, encoding="utf-8") as f:
+            lines = f.read().split("\n")
+        members.sort(key=lambda f: f.declared_line)
+        for before, function in zip(members, members[1:]):
+            between = lines[before.declared_line:function.declared_line - 1]
+            if not function.purpose and before.purpose and all(line.strip() for line in between):
+                function.purpose = before.purpose
 
 
 def get_page(function):
