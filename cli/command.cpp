@@ -13,10 +13,6 @@
 #include "cli/common/old_commands.hpp"
 #include "cli/common/usage_text.hpp"
 #include "cli/common/versions.hpp"
-#include "cli/convert/convert.hpp"
-#include "cli/edit/edit.hpp"
-#include "cli/frequency/frequency.hpp"
-#include "cli/studio/studio.hpp"
 #include "cli/verbs.hpp"
 
 namespace {
@@ -28,31 +24,9 @@ struct Verb {
   void (*add)(CLI::App& app, cli::Action& action);
 };
 
-constexpr Verb kVerbs[] = {{"check", cli::add_check},
-                           {"modes", cli::add_modes},
-                           {"static", cli::add_static},
-                           {"frequency", cli::add_frequency},
-                           {"transient", cli::add_transient},
-                           {"matrices", cli::add_matrices},
-                           {"split", cli::add_split},
-                           {"reduce", cli::add_reduce},
-                           {"integrals", cli::add_integrals},
-                           {"flx", cli::add_flx},
-                           {"compare", cli::add_compare},
-                           {"run", cli::add_run},
-                           {"equilibrium", cli::add_equilibrium},
-                           {"linearize", cli::add_linearize},
-                           {"response", cli::add_response},
-                           {"select", cli::add_select},
-                           {"export", cli::add_export},
-                           {"plot", cli::add_plot},
-                           {"report", cli::add_report},
-                           {"info", cli::add_info},
-                           {"init", cli::add_init},
-                           {"batch", cli::add_batch},
-                           {"edit", cli::add_edit},
-                           {"convert", cli::add_convert},
-                           {"studio", cli::add_studio}};
+#define BOUGH_LIST_COMMAND(name) {#name, cli::add_##name},
+constexpr Verb kVerbs[] = {BOUGH_COMMANDS(BOUGH_LIST_COMMAND)};
+#undef BOUGH_LIST_COMMAND
 
 /// Adds one command, or all: setting up the options of all takes longer than solving a small deck.
 void add_verbs(CLI::App& app, cli::Action& action, std::string_view only = {}) {

@@ -12,26 +12,40 @@ namespace bough::cli {
 
 using Action = std::function<int()>;
 
-void add_check(CLI::App& app, Action& action);
-void add_modes(CLI::App& app, Action& action);
-void add_static(CLI::App& app, Action& action);
-void add_matrices(CLI::App& app, Action& action);
-void add_split(CLI::App& app, Action& action);
-void add_reduce(CLI::App& app, Action& action);
-void add_integrals(CLI::App& app, Action& action);
-void add_flx(CLI::App& app, Action& action);
-void add_compare(CLI::App& app, Action& action);
-void add_run(CLI::App& app, Action& action);
-void add_export(CLI::App& app, Action& action);
-void add_plot(CLI::App& app, Action& action);
-void add_report(CLI::App& app, Action& action);
-void add_info(CLI::App& app, Action& action);
-void add_init(CLI::App& app, Action& action);
-void add_batch(CLI::App& app, Action& action);
-void add_equilibrium(CLI::App& app, Action& action);
-void add_linearize(CLI::App& app, Action& action);
-void add_response(CLI::App& app, Action& action);
-void add_select(CLI::App& app, Action& action);
+/// The commands in the order of `bough --help`, manual pages and completions: a new one is a name here and its
+/// add_NAME in a source of cli.
+// clang-format off
+#define BOUGH_COMMANDS(X) \
+  X(check) \
+  X(modes) \
+  X(static) \
+  X(frequency) \
+  X(transient) \
+  X(matrices) \
+  X(split) \
+  X(reduce) \
+  X(integrals) \
+  X(flx) \
+  X(compare) \
+  X(run) \
+  X(equilibrium) \
+  X(linearize) \
+  X(response) \
+  X(select) \
+  X(export) \
+  X(plot) \
+  X(report) \
+  X(info) \
+  X(init) \
+  X(batch) \
+  X(edit) \
+  X(convert) \
+  X(studio)
+// clang-format on
+
+#define BOUGH_DECLARE_COMMAND(name) void add_##name(CLI::App& app, Action& action);
+BOUGH_COMMANDS(BOUGH_DECLARE_COMMAND)
+#undef BOUGH_DECLARE_COMMAND
 
 /// Runs one command line in this process, messages and exit code as from the shell. Words without the program's name.
 int run_command(const std::vector<std::string>& words);

@@ -1,11 +1,13 @@
 """Builds the manual as web pages with search: every .md of the repository by Sphinx, the C++ headers by Doxygen, the
-Python module from its types; then follows every link inside it.
+Python module from its types, the software design by design_document.py; then follows every link inside it.
 
     /usr/bin/python3 tools/build_docs.py build/html [--no-cpp]
     /usr/bin/python3 tools/build_docs.py build/site --site
+    /usr/bin/python3 tools/build_docs.py build/manual --pdf
 
 --site: a folder for a web server, with the manual of this version in a folder of that name next to those of other
 versions, which each page offers, and an index that leads to the newest one.
+--pdf: build/manual.pdf, the pages as one document to print, without the C++ headers and the software design.
 Exit 1 when a page has a warning or a link that leads nowhere.
 """
 import ast
@@ -16,6 +18,7 @@ import re
 import shutil
 import subprocess
 import sys
+import tempfile
 import urllib.parse
 
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
@@ -213,7 +216,7 @@ def check_links():
     """Links of the pages that lead nowhere: to files that are missing, to headings that are not there."""
     pages = {}
     for folder, _, names in os.walk(OUTPUT):
-        if os.path.relpath(folder, OUTPUT).split(os.sep)[0] not in ("cpp", "_static"):
+        if os.path.relpath(folder, OUTPUT).split(os.sep)[0] not in ("cpp", "design", "_static"):
             for name in names:
                 if name.endswith(".html"):
                     pages[os.path.join(folder, name)] = Page(os.path.join(folder, name))
@@ -249,9 +252,56 @@ def finish_site():
     print(f"site: {SITE}/index.html; versions {', '.join(versions)}")
 
 
+# Pages in the order in which a book has them; others follow.
+PARTS = ["README", "docs/README", "docs/install", "docs/tutorial", "docs/tutorials/", "docs/guide", "docs/your-deck",
+         "docs/command-line", "docs/commands", "docs/formats/", "docs/elements/", "docs/theory/", "docs/errors/",
+         "docs/verification/"]
+PRINT = """@page { size: A4; margin: 20mm 18mm; @bottom-center { content: counter(page); font: 9pt sans-serif; } }
+body { font: 9.5pt/1.35 sans-serif; } h1 { page-break-before: always; }
+h1, h2, h3 { page-break-after: avoid; } pre, td, th, code { font-size: 8pt; }
+pre { white-space: pre-wrap; border-left: 2pt solid #bbb; padding-left: 6pt; }
+table { border-collapse: collapse; width: 100%; } td, th { border: 0.5pt solid #aaa; padding: 2pt 4pt;
+vertical-align: top; text-align: left; overflow-wrap: break-word; }
+code, code span.pre { white-space: pre-wrap !important; overflow-wrap: anywhere; }
+img { max-width: 100%; } a { color: #024; } div.body, div.document, div.bodywrapper { border: 0; margin: 0; }
+div.sphinxsidebar, div.related, div.footer, a.headerlink { display: none; }
+"""
+
+
+def write_pdf():
+    """One document of all pages, printed by chromium: weasyprint takes more than eight minutes for them."""
+    pages = OUTPUT + "-pages"
+    index = os.path.join(STAGE, "README.md")
+    with open(index, encoding="utf-8") as f:
+        text = f.read()
+    head, _, tail = text.partition("```{toctree}\n:hidden:\n\n")
+    names = [line[1:] for line in tail.split("```")[0].split() if not re.match("/(python-reference|CHANGELOG|docs/adr|"
+                                                                           "docs/developer|bench)", line)]
+    rank = lambda name: next((k for k, part in enumerate(PARTS) if name == part or part[-1] == "/" and
+                              name.startswith(part)), len(PARTS))
+    names.sort(key=lambda name: (rank(name), name))
+    with open(index, "w", encoding="utf-8") as f:
+        f.write(head + "```{toctree}\n:hidden:\n\n" + "\n".join("/" + name for name in names) + "\n```\n")
+    subprocess.run(["/usr/bin/sphinx-build", "-q", "-b", "singlehtml", "-d", STAGE + "-doctrees-pdf", STAGE, pages],
+                   check=True, stderr=subprocess.DEVNULL)
+    page = os.path.join(pages, "README.html")
+    with open(page, encoding="utf-8") as f:
+        text = f.read()
+    with open(page, "w", encoding="utf-8") as f:
+        f.write(text.replace("</head>", f"<style>{PRINT}</style></head>", 1))
+    with tempfile.TemporaryDirectory() as profile:
+        subprocess.run(["chromium", "--headless", "--no-sandbox", "--disable-gpu", f"--user-data-dir={profile}",
+                        "--no-pdf-header-footer", f"--print-to-pdf={OUTPUT}.pdf", page], check=True,
+                       stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    print(f"manual: {OUTPUT}.pdf, {os.path.getsize(OUTPUT + '.pdf') >> 10} kB")
+
+
 def main():
     shutil.rmtree(OUTPUT, ignore_errors=True)
     version = stage(list_files())
+    if "--pdf" in sys.argv:
+        write_pdf()
+        return 0
     built = subprocess.run(["/usr/bin/sphinx-build", "-q", "-b", "html", "-d", STAGE + "-doctrees", STAGE, OUTPUT],
                            text=True, stderr=subprocess.PIPE)
     warnings = [line for line in built.stderr.split("\n") if "WARNING" in line or "ERROR" in line]
@@ -261,6 +311,8 @@ def main():
     write_redirect(os.path.join(OUTPUT, "index.html"), "README.html")
     if "--no-cpp" not in sys.argv:
         describe_cpp(version)
+        subprocess.run([sys.executable, "-B", os.path.join(ROOT, "tools/design_document.py"),
+                        os.path.join(OUTPUT, "design")], check=True)
     if SITE:
         finish_site()
     found, count = check_links()

@@ -108,53 +108,91 @@ std::string make_bdf(const ExportRequest& request, Diagnostics& diagnostics) {
   return text;
 }
 
-std::string make_text(const ExportRequest& request, Diagnostics& diagnostics) {
-  const auto& format = request.format;
-  if (format == "vtu") return make_shapes(request, diagnostics);
-  if (format == "gltf") return make_glb(request.file, request.moving, diagnostics);
-  if (format == "bdf") return make_bdf(request, diagnostics);
-  if (format == "op4") return make_op4(request.file, diagnostics);
-  if (format == "uff") return make_universal(request, diagnostics);
-  if (is_body_format(format)) return make_body_text(request.file, format, request.body, diagnostics);
-  return make_csv(request, diagnostics);
+using MakeText = std::string (*)(const ExportRequest&, Diagnostics&);
+
+/// A format whose writer gives a text or one block of bytes.
+template <MakeText make>
+void set_text(const ExportRequest& request, ExportAnswer& answer, Diagnostics& diagnostics) {
+  answer.text = make(request, diagnostics);
 }
 
-ExportAnswer export_as(const ExportRequest& request, Diagnostics& diagnostics) {
-  ExportAnswer answer;
-  const auto& format = request.format;
-  if (format == "fmu") {
-    demand_kind(request.file, toml_files::detect_kind(request.file), "system");
-    auto options = request.fmu;
-    options.outputs = request.channels;
-    answer.summary = export_fmu(request.file, request.output, options, diagnostics);
-    return answer;
-  }
-  if (format == "extseout") {
-    answer.summary =
-        export_component(request.file, request.output, request.component, request.ignore_cards, diagnostics);
-    return answer;
-  }
-  if (format != "bdf") warn_incomplete(request.file, diagnostics);
-  if (format == "mat") {
-    export_mat(request.file, request.output, diagnostics);
-  } else if (format == "pvd") {
-    const auto system = read_moving_system(request.file, request.moving, diagnostics);
-    answer.num_frames = write_pvd(system, request.moving.scale, request.is_ascii, request.output, diagnostics);
-  } else {
-    answer.text = make_text(request, diagnostics);
-  }
-  return answer;
+std::string make_gltf(const ExportRequest& request, Diagnostics& diagnostics) {
+  return make_glb(request.file, request.moving, diagnostics);
+}
+std::string make_output4(const ExportRequest& request, Diagnostics& diagnostics) {
+  return make_op4(request.file, diagnostics);
+}
+std::string make_body(const ExportRequest& request, Diagnostics& diagnostics) {
+  return make_body_text(request.file, request.format, request.body, diagnostics);
+}
+
+void write_mat(const ExportRequest& request, ExportAnswer&, Diagnostics& diagnostics) {
+  export_mat(request.file, request.output, diagnostics);
+}
+void write_frames(const ExportRequest& request, ExportAnswer& answer, Diagnostics& diagnostics) {
+  const auto system = read_moving_system(request.file, request.moving, diagnostics);
+  answer.num_frames = write_pvd(system, request.moving.scale, request.is_ascii, request.output, diagnostics);
+}
+void write_component(const ExportRequest& request, ExportAnswer& answer, Diagnostics& diagnostics) {
+  answer.summary = export_component(request.file, request.output, request.component, request.ignore_cards, diagnostics);
+}
+void write_fmu(const ExportRequest& request, ExportAnswer& answer, Diagnostics& diagnostics) {
+  demand_kind(request.file, toml_files::detect_kind(request.file), "system");
+  auto options = request.fmu;
+  options.outputs = request.channels;
+  answer.summary = export_fmu(request.file, request.output, options, diagnostics);
 }
 
 }  // namespace
 
+const std::vector<ExportFormat>& list_export_formats() {
+  static const std::vector<ExportFormat> formats{
+      {"csv", "csv", "results, modes, flexible body, linear model, sweep or response of a deck", false,
+       set_text<make_csv>},
+      {"vtu", "vtu (mode shapes for ParaView)", "modes file or flexible body", false, set_text<make_shapes>},
+      {"pvd", "pvd (the moving system for ParaView)", "results", true, write_frames},
+      {"gltf", "gltf (.glb: the moving system or modes)", "results, modes file or flexible body", false,
+       set_text<make_gltf>},
+      {"bdf", "bdf (the deck as Bough reads it)", "Nastran deck", false, set_text<make_bdf>},
+      {"mat", "mat (MATLAB)", "any HDF5 file of Bough that has such arrays", true, write_mat},
+      {"op4", "op4 (Nastran OUTPUT4)", "any HDF5 file of Bough that has such arrays", false, set_text<make_output4>},
+      {"uff", "uff (universal file)", "any HDF5 file of Bough that has such arrays", false, set_text<make_universal>},
+      {"sid", "sid (Standard Input Data)", "flexible body", false, set_text<make_body>},
+      {"mbdyn", "mbdyn (.fem)", "flexible body", false, set_text<make_body>},
+      {"flat", "flat (a body for hosts without HDF5)", "flexible body", false, set_text<make_body>},
+      {"extseout", "extseout (external superelement of Nastran: .op4, .asm, .pch)",
+       "Nastran deck with BSET1 or flexible body", true, write_component},
+      {"fmu", "fmu (the system for other simulators)", "system file", true, write_fmu}};
+  return formats;
+}
+
+namespace {
+
+const ExportFormat* find_export_format(const std::string& word) {
+  for (const auto& format : list_export_formats())
+    if (word == format.word) return &format;
+  return nullptr;
+}
+
+/// Formats of inputs other than the HDF5 files of Bough, of which nothing can be incomplete.
+bool takes_text(const std::string& format) { return format == "bdf" || format == "fmu" || format == "extseout"; }
+
+}  // namespace
+
 bool is_written_format(const std::string& format) {
-  return format == "pvd" || format == "mat" || format == "fmu" || format == "extseout";
+  const auto* row = find_export_format(format);
+  return row != nullptr && row->is_written;
 }
 
 ExportAnswer export_file(const ExportRequest& request, Events& events) {
+  const auto* format = find_export_format(request.format);
+  if (format == nullptr)
+    throw InputError("cli.no-export", {request.file}, "there is no format \"" + request.format + "\"",
+                     "bough export --help lists the formats");
   Diagnostics diagnostics;
-  auto answer = export_as(request, diagnostics);
+  if (!takes_text(request.format)) warn_incomplete(request.file, diagnostics);
+  ExportAnswer answer;
+  format->make(request, answer, diagnostics);
   add_messages(diagnostics, events);
   return answer;
 }

@@ -13,13 +13,13 @@
 namespace bough::analysis {
 
 struct ExportRequest {
-  std::string file;                   ///< may name one body of a .FLX, "panels.FLX:2"
-  std::string output;                 ///< file to write; needed by the formats that are no text (is_written_format)
-  std::string format;                 ///< csv, vtu, pvd, gltf, bdf, mat, op4, uff, sid, mbdyn, flat, extseout or fmu
-  std::vector<std::string> channels;  ///< csv, uff: only these channels; fmu: its outputs; empty: all
-  bool is_ascii = false;              ///< vtu, pvd: numbers as text instead of base64
-  bool is_moving = false;             ///< uff: the moving system of a run instead of its channels
-  std::string fields = "large";       ///< bdf: "large", "small" or "free"
+  std::string file;                       ///< may name one body of a .FLX, "panels.FLX:2"
+  std::string output;                     ///< file to write; needed by the formats that are no text (is_written_format)
+  std::string format;                     ///< word of an ExportFormat
+  std::vector<std::string> channels;      ///< csv, uff: only these channels; fmu: its outputs; empty: all
+  bool is_ascii = false;                  ///< vtu, pvd: numbers as text instead of base64
+  bool is_moving = false;                 ///< uff: the moving system of a run instead of its channels
+  std::string fields = "large";           ///< bdf: "large", "small" or "free"
   std::vector<std::string> ignore_cards;  ///< bdf, extseout: cards to leave out
   BodyExportOptions body;
   MovingOptions moving;
@@ -33,7 +33,18 @@ struct ExportAnswer {
   std::variant<std::monostate, FmuSummary, ComponentSummary> summary;
 };
 
-/// Returns true for pvd, mat, fmu and extseout, whose files export_file() writes.
+/// A row of the table of formats (export.cpp); a new format is its writer and a row.
+struct ExportFormat {
+  const char* word;
+  const char* what;   ///< in the help: "vtu (mode shapes for ParaView)"
+  const char* takes;  ///< files of Bough that it takes
+  bool is_written;    ///< export_file() writes its files, which need an output
+  /// Sets the text of the answer, or writes `request.output`.
+  void (*make)(const ExportRequest& request, ExportAnswer& answer, Diagnostics& diagnostics);
+};
+const std::vector<ExportFormat>& list_export_formats();
+
+/// Returns true for the formats whose files export_file() writes.
 bool is_written_format(const std::string& format);
 
 /// Throws InputError "cli.no-export", "cli.no-shapes", "cli.unknown-channel" and what the readers and writers report.

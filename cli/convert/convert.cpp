@@ -6,7 +6,7 @@
 #include "analysis/common/text_file.hpp"
 #include "cli/common/console_events.hpp"
 #include "cli/common/options.hpp"
-#include "cli/convert/convert.hpp"
+#include "cli/verbs.hpp"
 #include "formats/hdf5/files.hpp"
 
 namespace bough::cli {

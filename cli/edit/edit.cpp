@@ -1,4 +1,4 @@
-#include "cli/edit/edit.hpp"
+#include "cli/verbs.hpp"
 
 #include <CLI/CLI.hpp>
 #include <filesystem>

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <memory>
 #include <sstream>
 #include <utility>
@@ -128,27 +129,32 @@ void add_moving_options(CLI::App& verb, analysis::MovingOptions& o) {
       ->allow_extra_args(false);
 }
 
+/// "csv: results ...; sid, mbdyn, flat: flexible body": formats that take the same files together.
+std::string list_inputs() {
+  std::vector<std::pair<std::string, std::string>> groups;  // files, formats
+  for (const auto& format : analysis::list_export_formats()) {
+    auto group = std::find_if(groups.begin(), groups.end(), [&](const auto& g) { return g.first == format.takes; });
+    if (group == groups.end()) group = groups.insert(groups.end(), {format.takes, ""});
+    group->second += (group->second.empty() ? "" : ", ") + std::string(format.word);
+  }
+  std::string text;
+  for (const auto& [takes, formats] : groups) text += (text.empty() ? "" : "; ") + formats + ": " + takes;
+  return text;
+}
+
 }  // namespace
 
 void add_export(CLI::App& app, Action& action) {
   auto o = std::make_shared<ExportOptions>();
   auto* verb = add_verb(app, "export", "Bodies, modes, matrices, results or a deck in the format of another program");
-  verb->add_option(
-          "file", o->request.file,
-          "csv: results, modes, flexible body, linear model, sweep or response of a deck; vtu: modes file or flexible "
-          "body; pvd: results; gltf: results, modes file or flexible body; bdf: Nastran deck; sid, mbdyn, flat: "
-          "flexible body; extseout: Nastran deck with BSET1 or flexible body; fmu: system file; mat, op4, uff: any "
-          "HDF5 file of Bough that has such arrays")
-      ->required();
-  verb->add_option("--to", o->request.format,
-                   "Format: csv, vtu (mode shapes for ParaView), pvd (the moving system for ParaView), gltf "
-                   "(.glb: the moving system or modes), bdf (the deck as Bough reads it), mat (MATLAB), "
-                   "op4 (Nastran OUTPUT4), uff (universal file), sid (Standard Input Data), mbdyn (.fem), flat (a "
-                   "body for hosts without HDF5), extseout (external superelement of Nastran: .op4, .asm, .pch), fmu "
-                   "(the system for other simulators)")
-      ->required()
-      ->check(CLI::IsMember(
-          {"csv", "vtu", "pvd", "gltf", "bdf", "mat", "op4", "uff", "sid", "mbdyn", "flat", "extseout", "fmu"}));
+  verb->add_option("file", o->request.file, list_inputs())->required();
+  std::string formats = "Format: ";
+  std::vector<std::string> words;
+  for (const auto& format : analysis::list_export_formats()) {
+    formats += (words.empty() ? "" : ", ") + std::string(format.what);
+    words.emplace_back(format.word);
+  }
+  verb->add_option("--to", o->request.format, formats)->required()->check(CLI::IsMember(words));
   verb->add_option("--channel", o->request.channels,
                    "csv, uff: only these: a path or folder of the file, or a sensor; with :component; may be repeated "
                    "(default: all). csv of modes or a body: modes, their table instead of the shapes. fmu: the outputs "

@@ -1,4 +1,4 @@
-#include "cli/studio/studio.hpp"
+#include "cli/verbs.hpp"
 
 #include <spawn.h>
 #include <sys/wait.h>

@@ -8,7 +8,7 @@
 #include "formats/nastran/detail/card_text.hpp"
 #include "formats/nastran/detail/changed_files.hpp"
 #include "formats/nastran/detail/control.hpp"
-#include "formats/nastran/detail/field_names.hpp"
+#include "formats/nastran/detail/card_facts.hpp"
 #include "formats/nastran/detail/field_text.hpp"
 #include "formats/nastran/detail/images.hpp"
 #include "formats/nastran/detail/lines.hpp"

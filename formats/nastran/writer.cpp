@@ -1,9 +1,7 @@
 #include "formats/nastran/writer.hpp"
 
 #include <algorithm>
-#include <array>
 #include <map>
-#include <string_view>
 
 #include "formats/nastran/detail/card_sink.hpp"
 #include "formats/nastran/detail/reading.hpp"
@@ -12,27 +10,6 @@ namespace bough::nastran {
 namespace {
 
 using records::Deck;
-
-/// Cards that the writer keeps; GRDSET, BAROR and BEAMOR are written as fields of the cards that use their defaults.
-constexpr std::array written_cards{
-    "ACCEL", "ACCEL1", "CBEND", "PCOMPS", "PBEND", "CGAP", "GENEL", "NSM", "NSM1", "NSML", "NSML1", "NSMADD", "PBCOMP",
-    "PGAP", "RBAR1", "RJOINT", "RSPLINE", "RTRPLT", "RTRPLT1", "ASET", "ASET1", "BAROR", "BEAMOR", "CBAR", "CBEAM",
-    "CBUSH", "CBUSH1D", "CDAMP1", "CDAMP2", "CDAMP3", "CDAMP4", "CELAS1", "CELAS2", "CELAS3", "CELAS4", "CHEXA",
-    "CMASS1", "CMASS2", "CMASS3", "CMASS4", "CONM1", "CONM2", "CONROD", "CORD1C", "CORD1R", "CORD1S", "CORD2C",
-    "CORD2R", "CORD2S", "CPENTA", "CQUAD4", "CQUAD8", "CQUADR", "CRIGD1", "CRIGD2", "CRIGDR", "CROD", "CSHEAR",
-    "CTETRA", "CTRIA3", "CTRIA6", "CTRIAR", "CTUBE", "CVISC", "DMIG", "EIGB", "EIGR", "EIGRL", "FORCE", "FORCE1",
-    "FORCE2", "GRAV", "GRDSET", "GRID", "LOAD", "MAT1", "MAT11", "MAT2", "MAT8", "MAT9", "MOMENT", "MOMENT1", "MOMENT2",
-    "MPC", "MPCADD", "OMIT", "OMIT1", "PARAM", "PBAR", "PBARL", "PBEAM", "PBEAML", "PBUSH", "PBUSH1D", "PCOMP",
-    "PCOMPG", "PDAMP", "PELAS", "PLOAD", "PLOAD1", "PLOAD2", "PLOAD4", "PLOTEL", "PMASS", "PROD", "PSHEAR", "PSHELL",
-    "PSOLID", "PTUBE", "PVISC", "RBAR", "RBE1", "RBE2", "RBE3", "RFORCE", "RROD", "SLOAD", "SPC", "SPC1", "SPCADD",
-    "SPCD", "SPOINT", "SUPORT", "SUPORT1", "TEMP", "TEMPD", "TEMPP1", "TEMPRB",
-    // Cards of NASTRAN-95 are written as the cards they were converted to.
-    "CELBOW", "CHEXA1", "CHEXA2", "CIHEX1", "CIHEX2", "CIHEX3", "CIS2D8", "CQDMEM", "CQDMEM1", "CQDMEM2", "CQDPLT",
-    "CQUAD1", "CQUAD2", "CRBAR", "CRBE1", "CRBE2", "CRBE3", "CRIGD3", "CRROD", "CRSPLINE", "CRTRPLT", "CTRBSC",
-    "CTRIA1", "CTRIA2", "CTRIM6", "CTRMEM", "CTRPLT", "CTRPLT1", "CTRSHL", "CWEDGE", "MAT6", "PCOMP1", "PCOMP2",
-    "PELBOW", "PIHEX", "PIS2D8", "PLOAD3", "PQDMEM", "PQDMEM1", "PQDMEM2", "PQDPLT", "PQUAD1", "PQUAD2", "PTRBSC",
-    "PTRIA1", "PTRIA2", "PTRIM6", "PTRMEM", "PTRPLT", "PTRPLT1", "PTRSHL", "QSET", "QSET1", "BSET", "BSET1", "CSET",
-    "CSET1"};
 
 /// "1.5*K1, 1.*K2": a line for each, so that none grows beyond 72 columns.
 std::string join_matrices(const std::vector<std::pair<double, std::string>>& matrices) {
@@ -91,9 +68,9 @@ void report_lost(const Deck& deck, Diagnostics& diagnostics) {
     const bool is_unused = std::any_of(deck.unused.begin(), deck.unused.end(),
                                        [&, &n = name](const auto& card) { return card.name == n; });
     const auto row = detail::get_card_parsers().find(name);
-    if (is_unused || (row != detail::get_card_parsers().end() && row->second.write != nullptr) ||
-        std::find(written_cards.begin(), written_cards.end(), std::string_view(name)) != written_cards.end())
-      continue;
+    const bool is_written =
+        row != detail::get_card_parsers().end() && (row->second.write != nullptr || row->second.written_as != nullptr);
+    if (is_unused || is_written) continue;
     diagnostics.error("deck.not-written", where,
                       name + " cannot be written (" + std::to_string(count) + " in the deck)",
                       "--ignore " + name + " writes the deck without it");
@@ -107,24 +84,10 @@ std::string write_deck(const Deck& deck, const WriteOptions& options, Diagnostic
   detail::CardSink sink;
   sink.format = options.fields;
   write_control(deck, sink.out);
-  detail::write_solution(deck, sink);
-  detail::write_points(deck, sink);
-  detail::write_materials(deck, sink);
-  detail::write_properties(deck, sink);
-  detail::write_line_elements(deck, sink);
-  detail::write_point_elements(deck, sink);
-  detail::write_dampers(deck, sink);
-  detail::write_shells(deck, sink);
-  detail::write_continua(deck, sink);
-  detail::write_constraints(deck, sink);
-  detail::write_dof_sets(deck, sink);
-  detail::write_direct_matrices(deck, sink);
-  detail::write_loads(deck, sink);
-  detail::write_temperatures(deck, sink);
-  detail::write_special(deck, sink);
-  const auto& rows = detail::get_card_parsers();
-  for (const auto& [name, row] : std::map(rows.begin(), rows.end()))
-    if (row.write != nullptr) row.write(deck, sink);
+  std::map<int, detail::CardWriter> writers;
+  for (const auto& [name, row] : detail::get_card_parsers())
+    if (row.write != nullptr) writers[row.write_order] = row.write;
+  for (const auto& [order, write] : writers) write(deck, sink);
   sink.out += "ENDDATA\n";
   return std::move(sink.out);
 }

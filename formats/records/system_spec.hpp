@@ -15,6 +15,7 @@
 #include "formats/records/flex_body.hpp"
 #include "formats/records/force_spec.hpp"
 #include "formats/records/function_spec.hpp"
+#include "formats/records/sensor_kinds.hpp"
 #include "formats/records/tank_spec.hpp"
 #include "formats/records/unit_labels.hpp"
 
@@ -80,36 +81,6 @@ struct ForceRecord {
   std::string signal;    ///< instead of a function: a signal of one component
   std::string locator;   ///< or: a load pattern of the body file, then node and direction are unused
   SourceLocation at;
-};
-
-enum class SensorType {
-  Position,
-  Velocity,
-  Acceleration,
-  Deflection,
-  Rotation,
-  AngularVelocity,
-  AngularAcceleration,
-  HingeAngle,
-  HingeRate,
-  Quaternion,
-  Euler,
-  DirectionCosines,
-  Gyro,
-  IntegratingGyro,
-  Accelerometer,
-  Resolver,
-  Tachometer,
-  Direction,
-  Horizon,
-  Magnetometer,
-  HingeForce,
-  HingeMoment,
-  StrainEnergy,
-  ModalCoordinate,
-  ModalRate,
-  Distance,
-  Element
 };
 
 struct SensorRecord {

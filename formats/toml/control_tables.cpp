@@ -113,19 +113,18 @@ void read_sensor_keys(const Fields& table, const std::string& path, const std::s
   sensor.sequence = table.get_string("sequence", "321");
   sensor.target = table.get_vector("target", type == "direction" ? sensor.target : Eigen::Vector3d::Zero());
   sensor.mount = read_rotation(table, "rotation", diagnostics);
+  const auto of = records::get_kind(sensor.type).of;
   std::vector<std::string> others;
   for (const auto& entry : table.entries()) {
     const std::string key = entry.key.ends_with("_deg") ? entry.key.substr(0, entry.key.size() - 4) : entry.key;
     if (!is_known(common, key)) others.push_back(entry.key);
     if (!is_known(own, key)) continue;
-    const bool is_mounted = type == "quaternion" || type == "euler" || type == "dcm" || type == "gyro" ||
-                            type == "integrating_gyro" || type == "accelerometer" || type == "direction" ||
-                            type == "horizon" || type == "magnetometer";
+    const bool is_mounted = of == records::SensorOf::Attitude || of == records::SensorOf::Instrument;
     const bool is_taken = key == "rotation"                        ? is_mounted
                           : key == "sequence"                      ? type == "euler"
-                          : key == "element" || key == "component" ? type == "element"
-                          : key == "target" ? type == "direction" || type == "horizon" || type == "distance"
-                                            : type == "distance";
+                          : key == "element" || key == "component" ? of == records::SensorOf::Element
+                          : key == "target" ? type == "direction" || type == "horizon" || of == records::SensorOf::Gap
+                                            : of == records::SensorOf::Gap;
     if (!is_taken)
       diagnostics.error("toml.conflicting-keys", {path, entry.line},
                         "'" + entry.key + "' has no meaning in sensor '" + sensor.name + "' of type " + type,

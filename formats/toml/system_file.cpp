@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <map>
 #include <numbers>
 #include <set>
 #include <sstream>
@@ -64,34 +63,8 @@ records::BodyRecord read_body(const Fields& table, const std::string& path, Diag
 }
 
 records::SensorRecord read_sensor(const Fields& table, const std::string& path, Diagnostics& diagnostics) {
+  using records::SensorOf;
   using records::SensorType;
-  static const std::map<std::string, SensorType> types{{"position", SensorType::Position},
-                                                       {"velocity", SensorType::Velocity},
-                                                       {"acceleration", SensorType::Acceleration},
-                                                       {"deflection", SensorType::Deflection},
-                                                       {"rotation", SensorType::Rotation},
-                                                       {"angular_velocity", SensorType::AngularVelocity},
-                                                       {"angular_acceleration", SensorType::AngularAcceleration},
-                                                       {"hinge_angle", SensorType::HingeAngle},
-                                                       {"hinge_rate", SensorType::HingeRate},
-                                                       {"quaternion", SensorType::Quaternion},
-                                                       {"euler", SensorType::Euler},
-                                                       {"dcm", SensorType::DirectionCosines},
-                                                       {"gyro", SensorType::Gyro},
-                                                       {"integrating_gyro", SensorType::IntegratingGyro},
-                                                       {"accelerometer", SensorType::Accelerometer},
-                                                       {"resolver", SensorType::Resolver},
-                                                       {"tachometer", SensorType::Tachometer},
-                                                       {"direction", SensorType::Direction},
-                                                       {"horizon", SensorType::Horizon},
-                                                       {"magnetometer", SensorType::Magnetometer},
-                                                       {"hinge_force", SensorType::HingeForce},
-                                                       {"hinge_moment", SensorType::HingeMoment},
-                                                       {"strain_energy", SensorType::StrainEnergy},
-                                                       {"modal_coordinate", SensorType::ModalCoordinate},
-                                                       {"modal_rate", SensorType::ModalRate},
-                                                       {"distance", SensorType::Distance},
-                                                       {"element", SensorType::Element}};
   records::SensorRecord sensor;
   sensor.at = table.locate();
   sensor.name = table.get_string("name");
@@ -103,22 +76,19 @@ records::SensorRecord read_sensor(const Fields& table, const std::string& path, 
   if (sensor.is_orbital) sensor.relative_to.erase(0, kOrbit.size());
   sensor.hinge = table.get_string("hinge");
   sensor.coordinate = table.get_int("coordinate", 0);
-  const auto it = types.find(table.get_string("type"));
-  if (it == types.end()) return sensor;  // reported by the schema
-  sensor.type = it->second;
-  const bool is_elastic = sensor.type == SensorType::Deflection || sensor.type == SensorType::Rotation;
+  const auto* kind = records::find_sensor_kind(table.get_string("type"));
+  if (kind == nullptr) return sensor;  // reported by the schema
+  sensor.type = kind->type;
+  const bool is_elastic = kind->of == SensorOf::Elastic;
   sensor.frame = table.get_string("frame", is_elastic ? "body" : sensor.is_orbital ? "" : "inertial");
 
-  read_sensor_keys(table, path, it->first, sensor, diagnostics);
-  const bool is_hinge_load = sensor.type == SensorType::HingeForce || sensor.type == SensorType::HingeMoment;
-  const bool is_hinge_sensor = sensor.type == SensorType::HingeAngle || sensor.type == SensorType::HingeRate ||
-                               sensor.type == SensorType::Resolver || sensor.type == SensorType::Tachometer ||
-                               is_hinge_load;
-  const bool is_modal = sensor.type == SensorType::ModalCoordinate || sensor.type == SensorType::ModalRate;
-  const bool is_attitude = sensor.type == SensorType::Quaternion || sensor.type == SensorType::Euler ||
-                           sensor.type == SensorType::DirectionCosines;
-  const bool is_vector = sensor.type <= SensorType::AngularAcceleration;
-  const std::string because = "in sensor '" + sensor.name + "' of type " + it->first;
+  read_sensor_keys(table, path, kind->word, sensor, diagnostics);
+  const bool is_hinge_load = kind->of == SensorOf::HingeLoad;
+  const bool is_hinge_sensor = kind->of == SensorOf::Coordinate || is_hinge_load;
+  const bool is_modal = kind->of == SensorOf::Modes;
+  const bool is_attitude = kind->of == SensorOf::Attitude;
+  const bool is_vector = kind->of == SensorOf::Point || is_elastic;
+  const std::string because = "in sensor '" + sensor.name + "' of type " + kind->word;
   const char* needed = is_hinge_sensor ? "hinge" : "body";
   if (!table.has(needed)) {
     diagnostics.error("toml.missing-key", sensor.at, "missing key '" + std::string(needed) + "' " + because, "add it");
@@ -131,11 +101,10 @@ records::SensorRecord read_sensor(const Fields& table, const std::string& path, 
     if (!is_modal) refuse_keys(table, {"coordinate"}, because, diagnostics);
     if (!is_vector) refuse_keys(table, {"frame", "observer"}, because, diagnostics);
     if (!is_vector && !is_attitude) refuse_keys(table, {"relative_to"}, because, diagnostics);
-    const bool is_element = sensor.type == SensorType::Element;
+    const bool is_element = kind->of == SensorOf::Element;
     if (is_element && !table.has("element"))
       diagnostics.error("toml.missing-key", sensor.at, "missing key 'element' " + because, "add it");
-    if (is_modal || is_element || sensor.type == SensorType::StrainEnergy)
-      refuse_keys(table, {"node"}, because, diagnostics);
+    if (is_modal || is_element || kind->of == SensorOf::Energy) refuse_keys(table, {"node"}, because, diagnostics);
     if (is_elastic) refuse_keys(table, {"relative_to", "observer"}, because, diagnostics);
     if (sensor.is_orbital &&
         (sensor.type == SensorType::Acceleration || sensor.type == SensorType::AngularAcceleration))

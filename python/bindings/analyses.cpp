@@ -1,55 +1,16 @@
-// Commands as functions: reduce, modes, static, select.
+// Commands as functions: reduce, modes, static, select. Those that take files of Bough are in commands.cpp.
 #include "analysis/common/body_files.hpp"
-#include "analysis/common/failures.hpp"
 #include "analysis/modes/modes.hpp"
 #include "analysis/reduce/reduce_body.hpp"
 #include "analysis/select/selection.hpp"
 #include "analysis/static/case_extremes.hpp"
 #include "analysis/static/static.hpp"
-#include "cli/select/selection_tables.hpp"
-#include "fe/linear/petsc.hpp"
 #include "formats/hdf5/files.hpp"
-#include "python/bindings/bindings.hpp"
+#include "python/bindings/requests.hpp"
 
 namespace bough::python {
 
 namespace {
-
-using Strings = std::vector<std::string>;
-
-/// Keeps messages for Python's warnings; progress(stage) of Python is called with the interpreter's lock.
-class PythonEvents final : public analysis::Events {
- public:
-  explicit PythonEvents(const py::object& progress) : progress_(progress) {}
-  void add_message(const Diagnostic& message) override { messages_.add(message); }
-  void show_progress(const std::string& stage) override {
-    if (progress_.is_none() || stage.empty()) return;
-    const py::gil_scoped_acquire acquired;
-    progress_(stage);
-  }
-  const Diagnostics& get_messages() const { return messages_; }
-
- private:
-  const py::object& progress_;
-  Diagnostics messages_;
-};
-
-/// Runs act(events) with the lock of the module and without that of the interpreter; failures get the location `file`.
-/// Gives the messages, of which warnings are Python's too.
-template <class Act>
-std::vector<Diagnostic> run(const std::string& file, const py::object& progress, const Act& act) {
-  PythonEvents events(progress);
-  {
-    const py::gil_scoped_release released;
-    const Exclusive held;
-    linear::initialize_petsc();
-    analysis::with_file(file, [&] {
-      act(events);
-      return 0;
-    });
-  }
-  return tell(events.get_messages());
-}
 
 py::tuple reduce(const std::string& file, std::optional<int> modes, std::optional<double> max_hz,
                  std::optional<std::vector<int>> interface, std::optional<bool> free, std::optional<bool> full,
@@ -82,7 +43,7 @@ py::tuple reduce(const std::string& file, std::optional<int> modes, std::optiona
   request.matrices = std::move(matrices);
   request.solver = solver;
   records::FlexBody body;
-  auto messages = run(file, progress, [&](PythonEvents& events) {
+  auto messages = run_request(file, progress, [&](PythonEvents& events) {
     body = analysis::reduce_body(
                request, [](const records::BodySpec&) {}, events)
                .body;
@@ -90,11 +51,15 @@ py::tuple reduce(const std::string& file, std::optional<int> modes, std::optiona
   return py::make_tuple(std::move(body), std::move(messages));
 }
 
+}  // namespace
+
 analysis::ModelChoice make_model_choice(int subcase, bool free, const std::string& mass, Strings ignore) {
   if (mass != "deck" && mass != "lumped" && mass != "consistent")
     throw py::value_error("mass is deck, lumped or consistent, not " + mass);
   return {subcase, free, mass, std::move(ignore)};
 }
+
+namespace {
 
 /// Keeps the modes of the first subcase.
 class FirstModes final : public analysis::ModesReceiver {
@@ -129,7 +94,7 @@ py::tuple modes(const std::string& deck, std::optional<int> number, std::optiona
   request.energies = energies;
   request.about_grid = meffmass;
   FirstModes found(deck);
-  auto messages = run(deck, progress, [&](PythonEvents& events) {
+  auto messages = run_request(deck, progress, [&](PythonEvents& events) {
     const auto answer = analysis::solve_modes(request, found, events);
     if (!answer.failures.is_empty()) answer.failures.throw_all(events.get_messages());
   });
@@ -172,7 +137,7 @@ py::tuple solve_static(const std::string& deck, int subcase, bool free, const st
   request.num_increments = increments;
   request.has_strains = strains;
   std::string image;
-  auto messages = run(deck, progress, [&](PythonEvents& events) {
+  auto messages = run_request(deck, progress, [&](PythonEvents& events) {
     StaticRecord record(extremes);
     auto answer = analysis::solve_static(request, record, events);
     if (!answer.failures.is_empty()) answer.failures.throw_all(events.get_messages());
@@ -182,7 +147,51 @@ py::tuple solve_static(const std::string& deck, int subcase, bool free, const st
   return py::make_tuple(py::bytes(image), std::move(messages));
 }
 
-/// The smaller body, the ranking as JSON, the messages. `body`: instead of the file.
+/// Members as of `bough select --json`.
+py::dict make_ranking(const records::FlexBody& body, const analysis::Selection& s) {
+  py::list modes, losses;
+  for (int i = 0; i < body.num_modes(); ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    const auto& mode = s.ranking.modes[k];
+    py::dict one;
+    one["mode"] = i + 1;
+    one["frequency_hz"] = body.frequency_hz[i];
+    one["cost"] = mode.cost;
+    one["share"] = s.ranking.total > 0 ? mode.cost / s.ranking.total : 0;
+    one["closed_form"] = mode.closed_form;
+    one["kept"] = static_cast<bool>(s.choices[k].kept);
+    one["reason"] = s.choices[k].reason;
+    if (s.modal_hankel.size() > 0) one["hankel"] = s.modal_hankel[i];
+    if (body.effective_mass.rows() == body.num_modes()) {
+      const Eigen::VectorXd row = body.effective_mass.row(i);
+      one["effective_mass"] = std::vector<double>(row.begin(), row.end());
+    }
+    modes.append(one);
+  }
+  for (const auto& loss : s.losses) {
+    py::dict one;
+    one["name"] = loss.name;
+    one["total_cost"] = loss.total;
+    one["lost_share"] = loss.lost;
+    one["peak_gain"] = loss.peak;
+    one["peak_error"] = loss.error;
+    one["peak_error_hz"] = loss.error_hz;
+    one["balanced_bound"] = loss.balanced_bound;
+    one["steady_error"] = loss.steady_error;
+    losses.append(one);
+  }
+  py::dict ranking;
+  ranking["modes"] = modes;
+  ranking["total_cost"] = s.ranking.total;
+  ranking["other_cost"] = s.ranking.other;
+  ranking["dropped_share"] = s.dropped;
+  ranking["lost_share"] = s.lost;
+  ranking["configurations"] = losses;
+  if (s.static_error >= 0) ranking["static_error"] = s.static_error;
+  return ranking;
+}
+
+/// The smaller body, the ranking, the messages. `body`: instead of the file.
 py::tuple select(const std::string& file, const records::FlexBody* body, Strings systems, Strings inputs,
                  Strings outputs, Strings weight, const std::string& spectrum, int number,
                  std::optional<double> tolerance, double below, std::vector<int> keep, double damping,
@@ -204,10 +213,10 @@ py::tuple select(const std::string& file, const records::FlexBody* body, Strings
   request.equilibrium = equilibrium;
   request.open = open;
   records::FlexBody small;
-  std::string ranking;
-  auto messages = run(file, progress, [&](PythonEvents& events) {
+  records::FlexBody of_file;
+  analysis::Selection selection;
+  auto messages = run_request(file, progress, [&](PythonEvents& events) {
     Strings files;
-    records::FlexBody of_file;
     if (body == nullptr) {
       files = analysis::list_select_inputs(request);
       Diagnostics notes;
@@ -217,10 +226,10 @@ py::tuple select(const std::string& file, const records::FlexBody* body, Strings
       files = {spectrum};
     }
     const auto& whole = body == nullptr ? of_file : *body;
-    const auto selection = analysis::select_modes(request, whole, events);
+    selection = analysis::select_modes(request, whole, events);
     small = analysis::keep_selected(request, whole, selection, files);
-    ranking = cli::make_json(whole, selection).dump();
   });
+  auto ranking = make_ranking(body == nullptr ? of_file : *body, selection);
   return py::make_tuple(std::move(small), std::move(ranking), std::move(messages));
 }
 
@@ -247,7 +256,7 @@ void bind_analyses(py::module_& m) {
         py::arg("spectrum") = "", py::arg("number") = 0, py::arg("tolerance") = none, py::arg("below") = 0.0,
         py::arg("keep") = std::vector<int>(), py::arg("damping") = 0.01, py::arg("at") = std::vector<double>(),
         py::arg("equilibrium") = false, py::arg("open") = false, py::arg("set") = Strings(), py::arg("progress") = none,
-        "The body with the modes kept, and the JSON of bough select.");
+        "The body with the modes kept, and what bough select --json prints.");
 }
 
 }  // namespace bough::python

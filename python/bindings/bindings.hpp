@@ -23,6 +23,7 @@ using OneAtATime = py::call_guard<py::gil_scoped_release, Exclusive>;
 void bind_messages(py::module_& m);
 void bind_exclusive(py::module_& m);
 void bind_analyses(py::module_& m);
+void bind_commands(py::module_& m);
 void bind_bodies(py::module_& m);
 void bind_linear(py::module_& m);
 void bind_systems(py::module_& m);

@@ -11,7 +11,6 @@ What is wrong with an input is raised as bough.InputError, a computation that fa
 """
 import contextlib as _contextlib
 import io as _io
-import json as _json
 import os as _os
 import sys as _sys
 
@@ -42,8 +41,10 @@ except ImportError as _missing:  # bough.reader does without
         raise AttributeError(f"module 'bough' has no attribute {name!r}")
 
 __all__ = ["ComputationError", "Event", "Failure", "FlexBody", "InputError", "LinearModel", "Locator", "MassIntegrals",
-           "Message", "Modes", "Results", "Simulation", "System", "Warning", "call", "modes", "read_flex_body", "read_linear_model",
-           "read_modes", "read_results", "reader", "reduce", "select", "static", "verbs"]
+           "Message", "Modes", "Results", "Simulation", "System", "Warning", "batch", "call", "check", "compare",
+           "convert", "equilibrium", "export", "flx", "info", "integrals", "modes", "plot", "read_flex_body",
+           "read_flx", "read_linear_model", "read_modes", "read_results", "reader", "reduce", "report", "response",
+           "run", "select", "static", "verbs"]
 
 
 def call(*words):
@@ -136,7 +137,152 @@ def select(body, system=None, *, inputs=(), outputs=(), weight=(), spectrum="", 
         outputs=[str(word) for word in _list(outputs)], weight=_list(weight), spectrum=_os.fspath(spectrum),
         number=number, tolerance=tolerance, below=below, keep=_list(keep), damping=damping, at=_list(at),
         equilibrium=equilibrium, open=open, set=_list(set), progress=progress)
-    return small, _json.loads(ranking)
+    return small, ranking
+
+
+def _paths(files):
+    return [_os.fspath(file) for file in _list(files)]
+
+
+def _words(words):
+    return [str(word) for word in _list(words)]
+
+
+def check(file, *, parameters=None, subcase=0, free=False, mass="deck", ignore=()):
+    """Content of a deck, body, system, HDF5 or .FLX file as a dict, with every message about it.
+
+    "kind" and what `bough check --json` has of it; "messages" is a list of Message, errors too, "errors" and "warnings"
+    are their numbers. Errors are raised only if the file cannot be read.
+    """
+    found, messages = _bough.check(_os.fspath(file), set=_make_settings(parameters), subcase=subcase, free=free,
+                                   mass=mass, ignore=_list(ignore))
+    severities = [message.severity for message in messages]
+    return {**found, "messages": messages, "errors": severities.count("error"),
+            "warnings": severities.count("warning")}
+
+
+def compare(*files, mass="", refinement=False, progress=None):
+    """Two bodies or modes files, the integrals of one body, or with refinement=True three bodies of finer meshes.
+
+    Arrays and lists of names by path, as in the file of `bough compare -o`: found["mac"].
+    """
+    found, _ = _bough.compare(_paths(files), mass=_os.fspath(mass), refinement=refinement, progress=progress)
+    return found
+
+
+def info(file):
+    """Content of a file: "attributes", "objects" with path, shape, type, description, dims, and "events" of a run."""
+    return _bough.info(_os.fspath(file))
+
+
+def export(file, to, output="", *, channels=(), ascii=False, moving=False, fields="large", ignore=(), every=1,
+           window=(), scale=1.0, follow="", bodies=(), parameters=None, units="", fmi=3, id=0):
+    """A file in the format `to` of another program: "csv", "vtu", "bdf", "gltf", ...; options as of `bough export`.
+
+    Gives its text (bytes of gltf), and writes it where `output` is given. The formats pvd, mat, op4, fmu and extseout
+    need an output and give an empty text if they are several files or no text.
+    """
+    made, _, _ = _bough.export(_os.fspath(file), to, _os.fspath(output), channels=_words(channels), ascii=ascii,
+                               moving=moving, fields=fields, ignore=_list(ignore), every=every, window=_list(window),
+                               scale=scale, follow=follow, bodies=_paths(bodies), set=_make_settings(parameters),
+                               units=units, fmi=fmi, id=id)
+    return made if to in ("gltf", "op4") else made.decode("utf-8")
+
+
+def plot(files, sensors=(), *, labels=(), points=(), title="", x_label="", y_label="", kind="", x="", psd=False,
+         spectrum=False, difference=False, subplots=False, srs="", output=""):
+    """Curves of results, campaigns, responses and linear models, as `bough plot` draws them: {"plots", "svg", "csv"}.
+
+    Each of plots has title, x_label, y_label and curves with label, x, y. The SVG is written where `output` is given.
+    """
+    plots, svg, csv, _ = _bough.plot(_paths(files), _words(sensors), labels=_list(labels), points=_paths(points),
+                                     title=title, x_label=x_label, y_label=y_label, kind=kind, x=x, psd=psd,
+                                     spectrum=spectrum, difference=difference, subplots=subplots, srs=srs)
+    _write(output, svg)
+    return {"plots": plots, "svg": svg, "csv": csv}
+
+
+def report(files, output="", *, channels=(), title="", progress=None):
+    """One HTML page of results, bodies, modes, responses and linear models; written where `output` is given."""
+    page, _ = _bough.report(_paths(files), channels=_words(channels), title=title, progress=progress)
+    _write(output, page)
+    return page
+
+
+def _write(path, text):
+    if path:
+        with open(path, "w", encoding="utf-8", newline="") as f:
+            f.write(text)
+
+
+def flx(bodies, output="", *, body_ids=1, integrals="", modopt=0, digits=9, special_nodes=False, stiffening=False):
+    """The text of a .FLX file of flexible-body files; written where `output` is given."""
+    text, _ = _bough.flx(_paths(bodies), body_ids=_list(body_ids), integrals=integrals, modopt=modopt, digits=digits,
+                         special_nodes=special_nodes, stiffening=stiffening)
+    _write(output, text)
+    return text
+
+
+def read_flx(file):
+    """The bodies of a .FLX file, a dict each: body_id, name, mass, M, K, D, alpha, integrals, node_id, gains, ..."""
+    return _bough.read_flx(_os.fspath(file))
+
+
+def integrals(model, matrices, *, integrals="momentum", digits=9, inertial_loads=False):
+    """Mass integrals of given matrices and modes (NASA-CR-202063 4.2.3): as of read_flx(), its text "flx", "dof_map".
+
+    inertial_loads: the twelve inertial loads too, an array num_dofs x 12.
+    """
+    found, _ = _bough.integrals(_os.fspath(model), _os.fspath(matrices), integrals=integrals, digits=digits,
+                                inertial_loads=inertial_loads)
+    return found
+
+
+def convert(file, output, units="", *, radians=False):
+    """A deck, system or body file in other units, as {path: text}: `output` and the INCLUDE files; or a FlexBody.
+
+    units="mm-N-tonne:m-kg-s". Nothing is written.
+    """
+    texts, body, _, _ = _bough.convert(_os.fspath(file), _os.fspath(output), units=units, radians=radians)
+    return texts if body is None else body
+
+
+def run(file, output="", *, parameters=None, start_from="", resume=False, progress=None):
+    """The time history of a system file into a results file; what `bough run --json` prints, as a dict.
+
+    output: the system's name with .h5, here. progress(time, end) ends the run with a checkpoint when it returns False.
+    System(file).run() keeps the results in memory instead.
+    """
+    found, _ = _bough.run(_os.fspath(file), _os.fspath(output), start_from=_os.fspath(start_from),
+                          set=_make_settings(parameters), resume=resume, progress=progress)
+    return found
+
+
+def batch(campaign, output="", *, jobs=0, shard="", time_limit=0.0, retry=False, restart=False, progress=None):
+    """A campaign; what `bough batch --json` prints, as a dict. Cases that fail are in "failed", and raise nothing.
+
+    progress(done, open) is called after each case. Ctrl-C ends it; the same call goes on with the other cases.
+    """
+    with _worker_launcher():
+        found, _ = _bough.batch(_os.fspath(campaign), _os.fspath(output), jobs=jobs, shard=shard,
+                                time_limit=time_limit, retry=retry, restart=restart, progress=progress)
+    return found
+
+
+def response(file, *, inputs=(), outputs=(), from_hz=0.0, to_hz=0.0, points=0, loop=False):
+    """Frequency response of a linear-model file: frequency_hz, value (a matrix each), singular_values, peak_gain.
+
+    loop: gain_margins, phase_margins as (frequency, margin), distance, is_stable of negative feedback too.
+    """
+    found, _ = _bough.response(_os.fspath(file), inputs=_words(inputs), outputs=_words(outputs), from_hz=from_hz,
+                               to_hz=to_hz, points=points, loop=loop)
+    return found
+
+
+def equilibrium(file, *, parameters=None):
+    """A state of rest, or of steady spin, of a system file: q, hinges by name, residual, iterations, unstable."""
+    found, _ = _bough.equilibrium(_os.fspath(file), set=_make_settings(parameters))
+    return found
 
 
 def _make_settings(parameters):

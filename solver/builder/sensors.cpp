@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "solver/sensors/kinds.hpp"
 #include "solver/system/system.hpp"
 #include "solver/text/names.hpp"
 #include "solver/tree/coordinates.hpp"
@@ -10,6 +9,9 @@
 namespace bough::solver {
 namespace {
 
+using records::get_kind;
+using records::SensorKind;
+using records::SensorOf;
 using records::SensorRecord;
 using records::SensorType;
 

@@ -3,13 +3,15 @@
 #include <cmath>
 
 #include "solver/motion/recovery.hpp"
-#include "solver/sensors/kinds.hpp"
 #include "solver/sensors/sensor.hpp"
 
 namespace bough::solver {
 namespace {
 
 using Eigen::Map;
+using records::get_kind;
+using records::SensorKind;
+using records::SensorOf;
 using records::SensorType;
 
 /// Motion of the observer, in W; at rest for the inertial frame.

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "solver/sensors/kinds.hpp"
 #include "solver/sensors/noise.hpp"
 
 namespace bough::solver {
@@ -131,7 +130,7 @@ std::unique_ptr<Block> make_sensor_block(const Sensor& entry, const records::Sen
   s.dims = entry.dims;
   s.at = r.at;
   const int n = s.sizes.outputs = entry.size;
-  s.sizes.reads_acceleration = get_kind(r.type).reads_acceleration;
+  s.sizes.reads_acceleration = records::get_kind(r.type).reads_acceleration;
   s.scale = reader.get_list("scale", n);
   s.bias = reader.get_list("bias", n);
   s.quantum = reader.get_list("quantization", n);

@@ -5,7 +5,6 @@
 namespace bough::solver {
 
 bool is_angle(const System& system, const records::SystemSpec& spec, const std::string& path) {
-  using T = records::SensorType;
   const auto has_angles = [&](const std::string& hinge) {  // not the components of a quaternion
     const int b = system.find_hinge(hinge);
     return b >= 0 && system.num_hinge_q(b) == system.num_hinge_rates(b);
@@ -18,23 +17,8 @@ bool is_angle(const System& system, const records::SystemSpec& spec, const std::
   const auto& sensors = spec.sensors;
   const auto sensor = std::find_if(sensors.begin(), sensors.end(), [&](const auto& s) { return s.name == name; });
   if (sensor == sensors.end()) return false;
-  switch (sensor->type) {
-    case T::HingeAngle:
-      return has_angles(sensor->hinge);
-    case T::Rotation:
-    case T::AngularVelocity:
-    case T::AngularAcceleration:
-    case T::HingeRate:
-    case T::Euler:
-    case T::Gyro:
-    case T::IntegratingGyro:
-    case T::Resolver:
-    case T::Tachometer:
-    case T::Horizon:
-      return true;
-    default:
-      return false;
-  }
+  if (sensor->type == records::SensorType::HingeAngle) return has_angles(sensor->hinge);
+  return records::get_kind(sensor->type).is_angle;
 }
 
 void label_channels(const System& system, const records::SystemSpec& spec, std::vector<records::Channel>& channels) {

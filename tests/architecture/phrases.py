@@ -74,6 +74,7 @@ def blank(text):
 def split(path, text):
     """Text of the three kinds, each with the other two blanked; line numbers stay."""
     if path.endswith(".md"):
+        text = re.sub(r"(?ms)^```diff$.*?^```$", lambda diff: blank(diff.group()), text)  # counted in the sources
         return {"prose": text, "start": "", "code": ""}
     is_python = path.endswith(".py")
     opening = PY_OPENING if is_python else C_OPENING

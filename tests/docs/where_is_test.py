@@ -20,9 +20,10 @@ ROOMS = ["base", "formats", "fe", "modal", "stiffening", "solver", "embed", "cos
 TRACED = {
     "add-a-card.md": (r"\b[CP]VISC\b|\b[CcPp]visc\b|\bclass Viscous\b|\bViscous::", []),
     "add-a-key.md": (r"\boutput_every\b", []),
+    "add-a-sensor.md": (r"\bSensorType::StrainEnergy\b", []),
     "add-a-command.md": (r"\badd_integrals\b|\"bough integrals", ["analysis/report/report_bodies.cpp"]),
     "add-a-hinge.md": (r'"screw"|\bHingeType::Screw\b|\bScrewHinge\b', []),
-    "add-a-format.md": (r'"gltf"|\bmake_glb\b|\bGltfScene\b', []),
+    "add-a-format.md": (r'"gltf"|\bmake_glb\b|\bGltfScene\b', ["python/bough/__init__.py"]),
 }
 
 

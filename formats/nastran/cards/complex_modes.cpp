@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "formats/nastran/detail/dynamic_cards.hpp"
+#include "formats/nastran/detail/unit_converter.hpp"
 
 namespace bough::nastran::detail {
 namespace {
@@ -73,10 +74,23 @@ void parse_epoint(Card& card, DynamicCards& r) {
   for (const int id : read_ids(card, 0, card.get_size(), "ID")) r.extra_points.insert(id);
 }
 
+/// Shifts, or ends and width of regions; LAN and CLAN have block sizes there.
+void convert_eigc(UnitConverter& u) {
+  const bool has_ends = u.get(1) == "INV" || u.get(1) == "DET";
+  for (int line = 8; line < u.size(); line += 8) u.scale(line, line + (has_ends ? 4 : 1), "Hz");
+}
+/// An extra point has any unit, and so have the factors of a function that connects one.
+void convert_tf(UnitConverter& u) {
+  u.scale(3, 5, "?");
+  for (int line = 8; line < u.size(); line += 8) u.scale(line + 2, line + 4, "?");
+}
+
 }  // namespace
 
 const DynamicParserTable& get_complex_parsers() {
-  static const DynamicParserTable table{{"EIGC", parse_eigc}, {"TF", parse_tf}, {"EPOINT", parse_epoint}};
+  static const DynamicParserTable table{{"EIGC", {parse_eigc, nullptr, convert_eigc}},
+                                        {"TF", {parse_tf, nullptr, convert_tf}},
+                                        {"EPOINT", {parse_epoint, ""}}};
   return table;
 }
 

@@ -1,5 +1,6 @@
 #include <array>
 #include <cmath>
+#include <set>
 #include <string>
 
 #include <Eigen/Cholesky>
@@ -9,89 +10,6 @@
 
 namespace bough::nastran::detail {
 namespace {
-
-void parse_mat2(Card& card, Reading& r) {
-  records::Mat2 mat;
-  mat.id = card.read_id(0, "MID");
-  static constexpr int kPlace[6][2] = {{0, 0}, {0, 1}, {0, 2}, {1, 1}, {1, 2}, {2, 2}};
-  for (int i = 0; i < 6; ++i)
-    mat.G(kPlace[i][0], kPlace[i][1]) = mat.G(kPlace[i][1], kPlace[i][0]) = card.read_real(1 + i, "Gij", 0.0);
-  mat.rho = card.read_real(7, "RHO", 0.0);
-  mat.alpha = card.read_vector(8, "A1 A2 A3");
-  mat.tref = card.read_optional_real(11, "TREF");
-  mat.ge = card.read_real(12, "GE", 0.0);
-  card.use(13, 17);  // stress limits, MCSID
-  mat.at = card.get_location();
-  if (r.claim(IdSpace::Material, mat.id, card)) r.deck.mat2.push_back(mat);
-}
-
-void parse_mat8(Card& card, Reading& r) {
-  records::Mat8 mat;
-  mat.id = card.read_id(0, "MID");
-  mat.E1 = card.read_real(1, "E1");
-  mat.E2 = card.read_real(2, "E2");
-  mat.nu12 = card.read_real(3, "NU12", 0.0);
-  mat.G12 = card.read_real(4, "G12", 0.0);
-  mat.G1z = card.read_real(5, "G1Z", 0.0);
-  mat.G2z = card.read_real(6, "G2Z", 0.0);
-  mat.rho = card.read_real(7, "RHO", 0.0);
-  mat.a1 = card.read_real(8, "A1", 0.0);
-  mat.a2 = card.read_real(9, "A2", 0.0);
-  mat.tref = card.read_optional_real(10, "TREF");
-  mat.ge = card.read_real(16, "GE", 0.0);
-  auto& s = mat.strength;
-  s.Xt = card.read_real(11, "Xt", 0.0);
-  s.Xc = std::abs(card.read_real(12, "Xc", s.Xt));
-  s.Yt = card.read_real(13, "Yt", 0.0);
-  s.Yc = std::abs(card.read_real(14, "Yc", s.Yt));
-  s.S = card.read_real(15, "S", 0.0);
-  s.F12 = card.read_real(17, "F12", 0.0);
-  s.is_strain = card.read_real(18, "STRN", 0.0) == 1;
-  card.use(19, card.get_size());
-  mat.at = card.get_location();
-  if (r.claim(IdSpace::Material, mat.id, card)) r.deck.mat8.push_back(mat);
-}
-
-void parse_mat9(Card& card, Reading& r) {
-  records::Mat9 mat;
-  mat.id = card.read_id(0, "MID");
-  int field = 1;
-  for (int i = 0; i < 6; ++i)
-    for (int j = i; j < 6; ++j) mat.G(i, j) = mat.G(j, i) = card.read_real(field++, "Gij", 0.0);
-  mat.rho = card.read_real(field++, "RHO", 0.0);
-  for (int i = 0; i < 6; ++i) mat.alpha[i] = card.read_real(field++, "Ai", 0.0);
-  mat.tref = card.read_optional_real(field, "TREF");
-  mat.ge = card.read_real(field + 1, "GE", 0.0);
-  mat.at = card.get_location();
-  if (r.claim(IdSpace::Material, mat.id, card)) r.deck.mat9.push_back(mat);
-}
-
-/// MAT11, an orthotropic solid, becomes the MAT9 of the same law.
-void parse_mat11(Card& card, Reading& r) {
-  records::Mat9 mat;
-  mat.id = card.read_id(0, "MID");
-  const double E1 = card.read_real(1, "E1"), E2 = card.read_real(2, "E2"), E3 = card.read_real(3, "E3");
-  const double nu12 = card.read_real(4, "NU12"), nu13 = card.read_real(5, "NU13"), nu23 = card.read_real(6, "NU23");
-  const std::array<double, 3> shear{card.read_real(7, "G12"), card.read_real(9, "G23"), card.read_real(8, "G13")};
-  mat.rho = card.read_real(10, "RHO", 0.0);
-  for (int i = 0; i < 3; ++i) mat.alpha[i] = card.read_real(11 + i, "Ai", 0.0);
-  mat.tref = card.read_optional_real(14, "TREF");
-  mat.ge = card.read_real(15, "GE", 0.0);
-  mat.at = card.get_location();
-  if (card.is_ok()) {
-    Eigen::Matrix3d compliance;
-    compliance << 1 / E1, -nu12 / E1, -nu13 / E1,  //
-        -nu12 / E1, 1 / E2, -nu23 / E2,            //
-        -nu13 / E1, -nu23 / E2, 1 / E3;
-    const bool is_law = E1 > 0 && E2 > 0 && E3 > 0 && Eigen::LLT<Eigen::Matrix3d>(compliance).info() == Eigen::Success;
-    if (!is_law)
-      card.fail("deck.field-range", 1, "the law of E1 to NU23 is not positive definite", "correct the material");
-    else
-      mat.G.topLeftCorner<3, 3>() = compliance.inverse();
-    for (int i = 0; i < 3; ++i) mat.G(3 + i, 3 + i) = shear[static_cast<std::size_t>(i)];
-  }
-  if (r.claim(IdSpace::Material, mat.id, card)) r.deck.mat9.push_back(mat);
-}
 
 void parse_pshell(Card& card, Reading& r) {
   records::Pshell p;
@@ -257,23 +175,141 @@ void parse_hexa(Card& card, Reading& r) { parse_solid(card, r, 8, 12); }
 void parse_penta(Card& card, Reading& r) { parse_solid(card, r, 6, 9); }
 void parse_tetra(Card& card, Reading& r) { parse_solid(card, r, 4, 6); }
 
+void write_pshell(const records::Pshell& p, CardSink& sink) {
+  CardFields card("PSHELL");
+  card.add(p.id).add_id(p.mid1);
+  if (p.t)
+    card.add(*p.t);
+  else
+    card.add_blank();
+  card.add_id(p.mid2).add(p.bending_ratio).add_id(p.mid3);
+  // 5/6 has no end in any field; it is the default.
+  if (p.shear_ratio == 5.0 / 6)
+    card.add_blank();
+  else
+    card.add(p.shear_ratio);
+  card.add(p.nsm);
+  for (const auto& z : {p.z1, p.z2}) z ? card.add(*z) : card.add_blank();
+  sink.put(card.add_id(p.mid4));
+}
+
+void write_pcomp(const records::Pcomp& p, CardSink& sink) {
+  double total = 0;
+  for (const auto& ply : p.plies) total += ply.t;
+  CardFields card("PCOMP");
+  card.add(p.id);
+  if (p.z0 == -0.5 * total)
+    card.add_blank();
+  else
+    card.add(p.z0);
+  card.add(p.nsm);
+  p.sb != 0 ? card.add(p.sb) : card.add_blank();
+  p.failure.empty() ? card.add_blank() : card.add_word(p.failure);
+  card.add(p.tref).add(p.ge);
+  if (!p.membrane || !p.bending)
+    card.add_word(p.membrane ? "MEM" : "BEND");
+  else if (p.layup != records::Layup::Stacked)
+    card.add_word(p.layup == records::Layup::Smeared ? "SMEAR" : "SMCORE");
+  else
+    card.add_blank();
+  for (const auto& ply : p.plies) card.add(ply.mid).add(ply.t).add(ply.theta_deg).add_blank();
+  sink.put(card);
+}
+
+/// CIHEX3 in its own order: rings of corners and thirds, the thirds of the upright edges between them.
+void write_cubic(const records::SolidElement& e, CardSink& sink) {
+  const auto third = [&](int edge, int k) { return e.midsides[static_cast<std::size_t>(2 * edge + k)]; };
+  CardFields card("CIHEX3");
+  card.add(e.id).add(e.pid);
+  const auto add_ring = [&](int first_corner, int first_edge) {
+    for (int i = 0; i < 4; ++i)
+      card.add(e.corners[static_cast<std::size_t>(first_corner + i)])
+          .add(third(first_edge + i, 0))
+          .add(third(first_edge + i, 1));
+  };
+  add_ring(0, 0);
+  for (const int k : {0, 1})
+    for (int edge = 4; edge < 8; ++edge) card.add(third(edge, k));
+  add_ring(4, 8);
+  sink.put(card);
+}
+
+/// Properties that cubic bricks alone have stand as PIHEX, which those want.
+std::set<int> find_cubic_properties(const records::Deck& deck) {
+  std::set<int> cubic;
+  for (const auto& e : deck.solids)
+    if (e.card == "CIHEX3") cubic.insert(e.pid);
+  return cubic;
+}
+
+void write_pshells(const records::Deck& deck, CardSink& sink) {
+  for (const auto& p : deck.pshell) write_pshell(p, sink);
+}
+
+void write_pcomps(const records::Deck& deck, CardSink& sink) {
+  for (const auto& p : deck.pcomp) write_pcomp(p, sink);
+}
+
+void write_psolids(const records::Deck& deck, CardSink& sink) {
+  const auto cubic = find_cubic_properties(deck);
+  for (const auto& p : deck.psolid) {
+    if (cubic.count(p.id) > 0) {  // the reader gives no property to both kinds
+      sink.put(CardFields("PIHEX").add(p.id).add(p.mid).add_id(p.cordm).add(p.points > 0 ? p.points : 4));
+      continue;
+    }
+    CardFields card("PSOLID");
+    card.add(p.id).add(p.mid).add_id(p.cordm).add_id(p.points);
+    if (p.is_full || p.is_reduced) card.add_blank().add_word(p.is_full ? "FULL" : "REDUCED");
+    sink.put(card);
+  }
+}
+
+void write_solids(const records::Deck& deck, CardSink& sink) {
+  for (const auto& e : deck.solids) {
+    if (e.card == "CIHEX3") {
+      write_cubic(e, sink);
+      continue;
+    }
+    CardFields card(e.card);
+    card.add(e.id).add(e.pid);
+    for (const int grid : e.corners) card.add(grid);
+    for (const int grid : e.midsides) card.add_id(grid);
+    sink.put(card);
+  }
+}
+
+/// Z0 NSM SB, then plies of `step` fields with T at `first`.
+template <int first, int step>
+void convert_plies(UnitConverter& u) {
+  u.scale(1, "L");
+  u.scale(2, "S");
+  u.scale(3, "P");
+  for (int ply = 8; ply < u.size(); ply += step) u.scale(ply + first, "L");
+}
+
 }  // namespace
 
 void add_continuum_parsers(ParserTable& table) {
-  table["MAT2"] = {parse_mat2, ". P P P P P P R . . . . . P P P .",
-                   "MID G11 G12 G13 G22 G23 G33 RHO A1 A2 A3 TREF GE ST SC SS MCSID"};
-  table["MAT8"] = {parse_mat8, nullptr, "MID E1 E2 NU12 G12 G1Z G2Z RHO A1 A2 TREF XT XC YT YC S GE F12 STRN"};
-  table["MAT9"] = {parse_mat9, ". P P P P P P P P P P P P P P P P P P P P P R . . . . . . . ."};
-  table["MAT6"] = {parse_mat9, ". P P P P P P P P P P P P P P P P P P P P P R . . . . . . . ."};  // NASTRAN-95
-  table["MAT11"] = {parse_mat11, ". P P P . . . P P P R . . . . ."};
   table["PSHELL"] = {parse_pshell, ". . L . . . . S L L .", "PID MID1 T MID2 12I/T**3 MID3 TS/T NSM Z1 Z2 MID4"};
-  table["PCOMP"] = parse_pcomp;
-  table["PCOMPG"] = parse_pcompg;
-  table["PCOMP1"] = table["PCOMP2"] = parse_equal_plies;
+  table["PCOMP"] = {parse_pcomp, nullptr,
+                    "PID Z0 NSM SB FT TREF GE LAM MID1 T1 THETA1 SOUT1 MID2 T2 THETA2 SOUT2 MID3 T3 THETA3 SOUT3 "
+                    "MID4 T4 THETA4 SOUT4 MID5 T5 THETA5 SOUT5 MID6 T6 THETA6 SOUT6 MID7 T7 THETA7 SOUT7 "
+                    "MID8 T8 THETA8 SOUT8"};
+  table["PCOMPG"] = {parse_pcompg, nullptr};
+  table["PCOMP1"] = {parse_equal_plies, ". L S P . . L ."};
+  table["PCOMP2"] = {parse_equal_plies, nullptr};
+  table["PCOMP"].convert = convert_plies<1, 4>;
+  table["PCOMPG"].convert = convert_plies<2, 8>;
+  table["PCOMP2"].convert = convert_plies<0, 2>;
   table["PSOLID"] = {parse_psolid, "", "PID MID CORDM IN STRESS ISOP FCTN"};
   table["CHEXA"] = {parse_hexa, ""};
   table["CPENTA"] = {parse_penta, ""};
   table["CTETRA"] = {parse_tetra, ""};
+  write_by(table, write_pshells, {"PSHELL"});
+  write_by(table, write_pcomps, {"PCOMP"});
+  write_as(table, "PCOMP", {"PCOMPG", "PCOMP1", "PCOMP2"});
+  write_by(table, write_psolids, {"PSOLID"});
+  write_by(table, write_solids, {"CHEXA", "CPENTA", "CTETRA"});
 }
 
 }  // namespace bough::nastran::detail

@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "formats/nastran/detail/parsers.hpp"
 
 namespace bough::nastran::detail {
@@ -122,6 +124,58 @@ void parse_pbush1d(Card& card, Reading& r) {
   if (r.claim(IdSpace::Bush1dProperty, p.id, card)) r.deck.pbush1d.push_back(p);
 }
 
+void write_pdamp(const records::Deck& deck, CardSink& sink) {
+  for (const auto& p : deck.pdamp) sink.put(CardFields("PDAMP").add(p.id).add(p.b));
+}
+
+void write_pvisc(const records::Deck& deck, CardSink& sink) {
+  for (const auto& p : deck.pvisc) sink.put(CardFields("PVISC").add(p.id).add(p.ce).add(p.cr));
+}
+
+void write_pbush1d(const records::Deck& deck, CardSink& sink) {
+  for (const auto& p : deck.pbush1d) sink.put(CardFields("PBUSH1D").add(p.id).add(p.k).add(p.c).add(p.m));
+}
+
+void write_dampers(const records::Deck& deck, CardSink& sink) {
+  for (const auto& e : deck.dampers) {
+    CardFields card("CDAMP" + std::to_string((e.by_scalar_points ? 3 : 1) + (e.pid > 0 ? 0 : 1)));
+    card.add(e.id);
+    if (e.pid > 0)
+      card.add(e.pid);
+    else
+      card.add(e.b);
+    if (e.by_scalar_points)
+      card.add_id(e.g1).add_id(e.g2);
+    else
+      card.add_id(e.g1).add_id(e.c1).add_id(e.g2).add_id(e.c2);
+    sink.put(card);
+  }
+}
+
+void write_cvisc(const records::Deck& deck, CardSink& sink) {
+  for (const auto& e : deck.cvisc) sink.put(CardFields("CVISC").add(e.id).add(e.pid).add(e.ga).add(e.gb));
+}
+
+void write_cbush1d(const records::Deck& deck, CardSink& sink) {
+  for (const auto& e : deck.cbush1d) {
+    CardFields card("CBUSH1D");
+    card.add(e.id).add(e.pid).add(e.ga).add_id(e.gb);
+    if (e.cid) card.add(*e.cid);
+    sink.put(card);
+  }
+}
+
+void convert_cdamp2(UnitConverter& u) { u.scale_by(u.find_scalar_motion(), 1, "B", "BR", "BL"); }
+void convert_pdamp(UnitConverter& u) {
+  for (int first = 0; first < std::min(u.size(), 8); first += 2)
+    if (!u.get(first).empty()) u.scale_by(u.find_property_motion("CDAMP", u.get(first)), first + 1, "B", "BR", "BL");
+}
+/// Fields after those of the linear spring are its nonlinear parts.
+void convert_pbush1d(UnitConverter& u) {
+  u.scale_words();
+  u.scale(8, u.size() - 1, "?");
+}
+
 }  // namespace
 
 void add_damper_parsers(ParserTable& table) {
@@ -131,11 +185,22 @@ void add_damper_parsers(ParserTable& table) {
   table["CDAMP4"] = {parse_cdamp4, ". ? . . . ? . ."};
   table["PDAMP"] = {parse_pdamp, nullptr, "PID B"};
   table["PDAMP"].entry_size = 2;
-  table["CVISC"] = {parse_cvisc, ""};
+  table["CVISC"] = {parse_cvisc, "", "EID PID G1 G2"};
   table["PVISC"] = {parse_pvisc, ". B BR . . B BR .", "PID CE CR"};
   table["PVISC"].entry_size = 4;
-  table["CBUSH1D"] = parse_cbush1d;
-  table["PBUSH1D"] = {parse_pbush1d, ". K B M . . . ."};
+  table["CBUSH1D"] = {parse_cbush1d, "", "EID PID GA GB CID"};
+  table["PBUSH1D"] = {parse_pbush1d, ". K B M . . . .", "PID K C M"};
+  table["CDAMP1"].note = note_scalar_element;
+  table["CDAMP3"].note = note_scalar_points;
+  table["CDAMP2"].convert = convert_cdamp2;
+  table["PDAMP"].convert = convert_pdamp;
+  table["PBUSH1D"].convert = convert_pbush1d;
+  write_by(table, write_pdamp, {"PDAMP"});
+  write_by(table, write_pvisc, {"PVISC"});
+  write_by(table, write_pbush1d, {"PBUSH1D"});
+  write_by(table, write_dampers, {"CDAMP1", "CDAMP2", "CDAMP3", "CDAMP4"});
+  write_by(table, write_cvisc, {"CVISC"});
+  write_by(table, write_cbush1d, {"CBUSH1D"});
 }
 
 }  // namespace bough::nastran::detail

@@ -98,6 +98,61 @@ void find_repeated_term(const DirectMatrix& matrix, const Reading& r) {
                                        : "give each term once");
 }
 
+void write_direct_matrices(const records::Deck& deck, CardSink& sink) {
+  for (const auto& matrix : deck.direct_matrices) {
+    int num_columns = 0;
+    for (const auto& e : matrix.entries) num_columns = std::max(num_columns, e.gj);
+    CardFields header("DMIG");
+    header.add_word(matrix.name).add(0).add(matrix.form).add(matrix.is_complex ? 4 : 2).add(0).add_blank(2);
+    sink.put(header.add_id(matrix.form == 9 ? num_columns : 0));
+    for (std::size_t i = 0; i < matrix.entries.size();) {
+      const int gj = matrix.entries[i].gj, cj = matrix.entries[i].cj;
+      CardFields card("DMIG");
+      card.add_word(matrix.name).add(gj).add(cj).add_blank();
+      for (; i < matrix.entries.size() && matrix.entries[i].gj == gj && matrix.entries[i].cj == cj; ++i) {
+        const auto& e = matrix.entries[i];
+        card.add(e.gi).add(e.ci).add(e.value);
+        if (matrix.is_complex)
+          card.add(e.imaginary);
+        else
+          card.add_blank();
+      }
+      sink.put(card);
+    }
+  }
+}
+
+/// NAME GJ CJ blank, then G C A B for each row; the header has no dimension.
+void convert_dmig(UnitConverter& u) {
+  if (u.get(1) == "0") return;
+  const auto name = make_upper(u.get(0));
+  const auto& kinds = u.get_notes().matrix_kinds;
+  const auto found = kinds.find(name);
+  const auto kind = found == kinds.end() ? "?" : found->second;
+  const bool is_polar = u.get_notes().polar_matrices.count(name) > 0;
+  const auto scale_term = [&](int field, Motion motion) {
+    if (kind == "K")
+      u.scale_by(motion, field, "K", "Q", "F");
+    else if (kind == "M")
+      u.scale_by(motion, field, "M", "J", "ML");
+    else if (kind == "B")
+      u.scale_by(motion, field, "B", "BR", "BL");
+    else if (kind == "P")
+      u.scale_by(motion, field, "F", "Q", "?");
+    else
+      u.scale(field, "?");
+  };
+  for (int i = 4; i < u.size(); i += 4) {
+    if (u.get(i).empty()) continue;
+    const auto motion = UnitConverter::find_motion(u.get(i + 1), u.get(2), kind != "P");
+    scale_term(i + 2, motion);
+    if (!is_polar) scale_term(i + 3, motion);
+  }
+}
+void note_dmig(const UnitConverter& u, UnitNotes& notes) {
+  if (u.get(1) == "0" && u.get_int(5) > 0) notes.polar_matrices.insert(make_upper(u.get(0)));
+}
+
 }  // namespace
 
 void finish_direct_matrices(Reading& r) {
@@ -122,6 +177,11 @@ void finish_direct_matrices(Reading& r) {
   }
 }
 
-void add_direct_matrix_parsers(ParserTable& table) { table["DMIG"] = parse_dmig; }
+void add_direct_matrix_parsers(ParserTable& table) {
+  table["DMIG"] = {parse_dmig, nullptr};
+  table["DMIG"].convert = convert_dmig;
+  table["DMIG"].note = note_dmig;
+  write_by(table, write_direct_matrices, {"DMIG"});
+}
 
 }  // namespace bough::nastran::detail

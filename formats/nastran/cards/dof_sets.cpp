@@ -51,6 +51,44 @@ void parse_qset1(Card& card, Reading& r) { read_list(card, r, r.deck.qset); }
 void parse_bset1(Card& card, Reading& r) { read_list(card, r, r.deck.bset); }
 void parse_cset1(Card& card, Reading& r) { read_list(card, r, r.deck.cset); }
 
+/// One card for each run of ids with the same components: C ID1 ID2 ...
+void write_lists(const char* name, const std::vector<records::GridComponents>& terms, CardSink& sink) {
+  for (std::size_t i = 0; i < terms.size();) {
+    CardFields card(name);
+    const unsigned c = terms[i].c;
+    card.add_components(c);
+    for (; i < terms.size() && terms[i].c == c; ++i) card.add(terms[i].g);
+    sink.put(card);
+  }
+}
+
+/// Pairs, as many as one line holds after `head`.
+void write_pairs(const CardFields& head, std::size_t per_card, const std::vector<records::GridComponents>& terms,
+                 CardSink& sink) {
+  for (std::size_t i = 0; i < terms.size();) {
+    CardFields card = head;
+    for (std::size_t end = i + per_card; i < end && i < terms.size(); ++i)
+      card.add(terms[i].g).add_components(terms[i].c);
+    sink.put(card);
+  }
+}
+
+void write_suport(const records::Deck& deck, CardSink& sink) {
+  write_pairs(CardFields("SUPORT"), 4, deck.suport, sink);
+}
+void write_suport1(const records::Deck& deck, CardSink& sink) {
+  for (const auto& [sid, terms] : deck.suport1) {
+    CardFields head("SUPORT1");
+    write_pairs(head.add(sid), 3, terms, sink);
+  }
+}
+
+void write_aset(const records::Deck& deck, CardSink& sink) { write_lists("ASET1", deck.aset, sink); }
+void write_omit(const records::Deck& deck, CardSink& sink) { write_lists("OMIT1", deck.omit, sink); }
+void write_qset(const records::Deck& deck, CardSink& sink) { write_lists("QSET1", deck.qset, sink); }
+void write_bset(const records::Deck& deck, CardSink& sink) { write_lists("BSET1", deck.bset, sink); }
+void write_cset(const records::Deck& deck, CardSink& sink) { write_lists("CSET1", deck.cset, sink); }
+
 }  // namespace
 
 void add_dof_set_parsers(ParserTable& table) {
@@ -66,6 +104,13 @@ void add_dof_set_parsers(ParserTable& table) {
   table["BSET1"] = {parse_bset1, ""};
   table["CSET"] = {parse_cset, ""};
   table["CSET1"] = {parse_cset1, ""};
+  write_by(table, write_suport, {"SUPORT"});
+  write_by(table, write_suport1, {"SUPORT1"});
+  write_by(table, write_aset, {"ASET", "ASET1"});
+  write_by(table, write_omit, {"OMIT", "OMIT1"});
+  write_by(table, write_qset, {"QSET", "QSET1"});
+  write_by(table, write_bset, {"BSET", "BSET1"});
+  write_by(table, write_cset, {"CSET", "CSET1"});
 }
 
 }  // namespace bough::nastran::detail

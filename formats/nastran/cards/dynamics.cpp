@@ -4,6 +4,7 @@
 
 #include "formats/nastran/detail/dynamic_cards.hpp"
 #include "formats/nastran/detail/text.hpp"
+#include "formats/nastran/detail/unit_converter.hpp"
 
 namespace bough::nastran::detail {
 namespace {
@@ -503,18 +504,123 @@ void parse_uset1(Card& card, DynamicCards& r) {
 void parse_rvdof(Card& card, DynamicCards& r) { read_residual_pairs(card, 0, r); }
 void parse_rvdof1(Card& card, DynamicCards& r) { read_residual_list(card, 0, r); }
 
+// Conversion of units. Tables are pure numbers over hertz or time: the units of a load are those of its DAREA, static
+// loads or SPCD.
+
+/// TYPE of a load over frequency or time: 0 force, 1 motion, 2 velocity, 3 acceleration.
+int find_excitation(const std::string& type) {
+  const auto word = make_upper(type);
+  const char first = word.empty() ? 'L' : word[0];
+  return first == 'D' || first == '1' ? 1 : first == 'V' || first == '2' ? 2 : first == 'A' || first == '3' ? 3 : 0;
+}
+void note_rload(const UnitConverter& u, UnitNotes& notes) {
+  for (const int field : {4, 5}) notes.table_axes[u.get(field)].insert("Hz");
+  notes.enforced[u.get(1)].insert(find_excitation(u.get(6)));
+}
+void note_tload(const UnitConverter& u, UnitNotes& notes) {
+  notes.enforced[u.get(1)].insert(find_excitation(u.get(3)));
+}
+void note_tload1(const UnitConverter& u, UnitNotes& notes) {
+  notes.table_axes[u.get(4)].insert("T");
+  note_tload(u, notes);
+}
+
+/// A delay in time; an integer is a set of DELAY.
+void convert_load(UnitConverter& u) {
+  if (!parse_int(u.get(2))) u.scale(2, "T");
+}
+void convert_tload1(UnitConverter& u) {
+  convert_load(u);
+  u.scale(5, 6, "?");
+}
+/// t^B exp(C t) cos(2 pi F t + P) between T1 and T2: with B the load has a unit of time in it.
+void convert_tload2(UnitConverter& u) {
+  convert_load(u);
+  u.scale(4, 5, "T");
+  u.scale(6, "Hz");
+  u.scale(8, "Hz");
+  if (parse_real(u.get(9)).value_or(0) != 0 && !u.keeps_time()) u.scale(9, "?");
+  u.scale(10, 11, "?");
+}
+void convert_darea(UnitConverter& u) {
+  for (const int first : {1, 4})
+    if (!u.get(first).empty()) u.scale_by(u.find_components(first + 1), first + 2, "F", "Q", "?");
+}
+void convert_tic(UnitConverter& u) {
+  const auto motion = u.find_components(2);
+  u.scale_by(motion, 3, "L", ".", "?");
+  u.scale_by(motion, 4, "V", "Hz", "?");
+}
+void convert_freq(UnitConverter& u) { u.scale(1, u.size() - 1, "Hz"); }
+void convert_tstep(UnitConverter& u) {
+  for (int line = 0; line < u.size(); line += 8) u.scale(line + 2, "T");
+}
+/// Per hertz, as G of a table.
+void convert_randps(UnitConverter& u) {
+  if (u.get_int(5) == 0) u.scale(3, 4, "T");
+}
+void convert_tabrnd1(UnitConverter& u) {
+  for (int i = 8; i < u.size(); i += 2) {
+    u.scale(i, "Hz");
+    u.scale(i + 1, "T");
+  }
+}
+void convert_tabdmp1(UnitConverter& u) {
+  for (int i = 8; i < u.size(); i += 2) u.scale(i, "Hz");
+}
+
+/// Dimension of the argument of a table by the loads that name it.
+std::string find_table_axis(const UnitConverter& u) {
+  const auto& axes = u.get_notes().table_axes;
+  const auto found = axes.find(u.get(0));
+  if (found != axes.end() && found->second.size() == 1) return *found->second.begin();
+  return u.keeps_time() ? "." : "?";
+}
+void convert_tabled1(UnitConverter& u) {
+  const auto axis = find_table_axis(u);
+  for (int i = 8; i < u.size(); i += 2) u.scale(i, axis);
+}
+void convert_tabled2(UnitConverter& u) {
+  u.scale(1, find_table_axis(u));
+  convert_tabled1(u);
+}
+/// Scales X1 and X2; the table is one of (x - X1) / X2.
+void convert_tabled3(UnitConverter& u) { u.scale(1, 2, find_table_axis(u)); }
+void convert_tabled4(UnitConverter& u) { u.scale(1, 4, find_table_axis(u)); }
+
 }  // namespace
 
 const DynamicParserTable& get_dynamic_parsers() {
-  static const DynamicParserTable table{
-      {"RLOAD1", parse_rload1},   {"RLOAD2", parse_rload2},   {"TLOAD1", parse_tload1},   {"TLOAD2", parse_tload2},
-      {"DLOAD", parse_dload},     {"DAREA", parse_darea},     {"DELAY", parse_delay},     {"DPHASE", parse_dphase},
-      {"LSEQ", parse_lseq},       {"TIC", parse_tic},         {"TABLED1", parse_tabled1}, {"TABLED2", parse_tabled2},
-      {"TABLED3", parse_tabled3}, {"TABLED4", parse_tabled4}, {"TABDMP1", parse_tabdmp1}, {"FREQ", parse_freq},
-      {"FREQ1", parse_freq1},     {"FREQ2", parse_freq2},     {"FREQ3", parse_freq3},     {"FREQ4", parse_freq4},
-      {"FREQ5", parse_freq5},     {"TSTEP", parse_tstep},     {"USET", parse_uset},       {"USET1", parse_uset1},
-      {"RVDOF", parse_rvdof},     {"RVDOF1", parse_rvdof1},   {"RANDPS", parse_randps},   {"RANDT1", parse_randt1},
-      {"TABRND1", parse_tabrnd1}, {"TABRNDG", parse_tabrndg}};
+  static const DynamicParserTable table{{"RLOAD1", {parse_rload1, nullptr, convert_load, note_rload}},
+                                        {"RLOAD2", {parse_rload2, nullptr, convert_load, note_rload}},
+                                        {"TLOAD1", {parse_tload1, nullptr, convert_tload1, note_tload1}},
+                                        {"TLOAD2", {parse_tload2, nullptr, convert_tload2, note_tload}},
+                                        {"DLOAD", {parse_dload, ""}},
+                                        {"DAREA", {parse_darea, nullptr, convert_darea}},
+                                        {"DELAY", {parse_delay, ". . . T . . T"}},
+                                        {"DPHASE", {parse_dphase, ""}},
+                                        {"LSEQ", {parse_lseq, ""}},
+                                        {"TIC", {parse_tic, nullptr, convert_tic}},
+                                        {"TABLED1", {parse_tabled1, nullptr, convert_tabled1}},
+                                        {"TABLED2", {parse_tabled2, nullptr, convert_tabled2}},
+                                        {"TABLED3", {parse_tabled3, nullptr, convert_tabled3}},
+                                        {"TABLED4", {parse_tabled4, nullptr, convert_tabled4}},
+                                        {"TABDMP1", {parse_tabdmp1, nullptr, convert_tabdmp1}},
+                                        {"FREQ", {parse_freq, nullptr, convert_freq}},
+                                        {"FREQ1", {parse_freq1, ". Hz Hz ."}},
+                                        {"FREQ2", {parse_freq2, ". Hz Hz ."}},
+                                        {"FREQ3", {parse_freq3, ". Hz Hz . . ."}},
+                                        {"FREQ4", {parse_freq4, ". Hz Hz . ."}},
+                                        {"FREQ5", {parse_freq5, ". Hz Hz"}},
+                                        {"TSTEP", {parse_tstep, nullptr, convert_tstep}},
+                                        {"USET", {parse_uset, ""}},
+                                        {"USET1", {parse_uset1, ""}},
+                                        {"RVDOF", {parse_rvdof, ""}},
+                                        {"RVDOF1", {parse_rvdof1, ""}},
+                                        {"RANDPS", {parse_randps, nullptr, convert_randps}},
+                                        {"RANDT1", {parse_randt1, ". . T T"}},
+                                        {"TABRND1", {parse_tabrnd1, nullptr, convert_tabrnd1}},
+                                        {"TABRNDG", {parse_tabrndg, ". . T ?"}}};
   return table;
 }
 

@@ -143,6 +143,48 @@ void parse_plotel(Card& card, Reading& r) {
   }
 }
 
+void write_beam(const records::BeamElement& e, CardSink& sink) {
+  CardFields card(e.is_cbeam ? "CBEAM" : "CBAR");
+  card.add(e.id).add(e.pid).add(e.ga).add(e.gb);
+  if (e.g0 != 0)
+    card.add(e.g0).add_blank(2);
+  else
+    card.add(e.v);
+  if (e.offt != "GGG")
+    card.add_word(e.offt);
+  else
+    card.add_blank();
+  card.add_components(e.pin_a).add_components(e.pin_b);
+  const bool is_offset = !e.wa.isZero(0.0) || !e.wb.isZero(0.0);
+  if (is_offset)
+    card.add(e.wa).add(e.wb);
+  else
+    card.add_blank(6);
+  if (e.is_cbeam) card.add_id(e.sa).add_id(e.sb);
+  sink.put(card);
+}
+
+void write_beams(const records::Deck& deck, CardSink& sink) {
+  for (const auto& e : deck.beams) write_beam(e, sink);
+}
+
+void write_crods(const records::Deck& deck, CardSink& sink) {
+  for (const auto& e : deck.crod) sink.put(CardFields("CROD").add(e.id).add(e.pid).add(e.ga).add(e.gb));
+}
+
+void write_conrods(const records::Deck& deck, CardSink& sink) {
+  for (const auto& e : deck.conrod)
+    sink.put(CardFields("CONROD").add(e.id).add(e.ga).add(e.gb).add(e.mid).add(e.A).add(e.J).add(e.c).add(e.nsm));
+}
+
+void write_ctubes(const records::Deck& deck, CardSink& sink) {
+  for (const auto& e : deck.ctube) sink.put(CardFields("CTUBE").add(e.id).add(e.pid).add(e.ga).add(e.gb));
+}
+
+void write_plotels(const records::Deck& deck, CardSink& sink) {
+  for (const auto& e : deck.plotel) sink.put(CardFields("PLOTEL").add(e.id).add(e.ga).add(e.gb));
+}
+
 }  // namespace
 
 void add_line_element_parsers(ParserTable& table) {
@@ -156,6 +198,13 @@ void add_line_element_parsers(ParserTable& table) {
   table["CTUBE"] = {parse_ctube, "", "EID PID G1 G2"};
   table["CONROD"] = {parse_conrod, ". . . . A I L N", "EID G1 G2 MID A J C NSM"};
   table["PLOTEL"] = {parse_plotel, ""};
+  write_by(table, write_beams, {"CBAR", "CBEAM"});
+  write_as(table, "CBAR", {"BAROR"});
+  write_as(table, "CBEAM", {"BEAMOR"});
+  write_by(table, write_crods, {"CROD"});
+  write_by(table, write_conrods, {"CONROD"});
+  write_by(table, write_ctubes, {"CTUBE"});
+  write_by(table, write_plotels, {"PLOTEL"});
 }
 
 }  // namespace bough::nastran::detail

@@ -262,6 +262,147 @@ void parse_ptube(Card& card, Reading& r) {
   if (r.claim(IdSpace::TubeProperty, p.id, card)) r.deck.ptube.push_back(p);
 }
 
+using Recovery = std::array<Eigen::Vector2d, 4>;
+
+void add_optional(CardFields& card, const std::optional<double>& value) {
+  if (value)
+    card.add(*value);
+  else
+    card.add_blank();
+}
+
+bool is_zero(const Recovery& points) {
+  return std::all_of(points.begin(), points.end(), [](const auto& p) { return p.isZero(0.0); });
+}
+
+void add_recovery(CardFields& card, const Recovery& points) {
+  for (const auto& p : points) card.add(p[0]).add(p[1]);
+}
+
+void add_section(CardFields& card, const records::PbeamStation& s) {
+  card.add(s.A).add(s.I1).add(s.I2).add(s.I12).add(s.J).add(s.nsm);
+}
+
+/// A section of every station, so that nothing is left to the rules for blanks.
+void write_pbeam(const records::Pbeam& p, CardSink& sink) {
+  CardFields card("PBEAM");
+  const auto& a = p.stations.front();
+  card.add(p.id).add(p.mid);
+  add_section(card, a);
+  if (!is_zero(a.recovery)) add_recovery(card, a.recovery);
+  for (std::size_t i = 1; i < p.stations.size(); ++i) {
+    const auto& s = p.stations[i];
+    const bool has_none = is_zero(s.recovery), is_as_a = s.recovery == a.recovery;
+    card.add_word(has_none ? "NO" : is_as_a ? "YESA" : "YES").add(s.x_over_L);
+    add_section(card, s);
+    if (!has_none && !is_as_a) add_recovery(card, s.recovery);
+  }
+  add_optional(card, p.k1);
+  add_optional(card, p.k2);
+  const std::array<double, 14> rest{p.s1,   p.s2,   p.nsi_a, p.nsi_b, p.cw_a, p.cw_b, p.m1_a,
+                                    p.m2_a, p.m1_b, p.m2_b,  p.n1_a,  p.n2_a, p.n1_b, p.n2_b};
+  if (std::any_of(rest.begin(), rest.end(), [](double x) { return x != 0; }))
+    for (const double x : rest) card.add(x);
+  sink.put(card);
+}
+
+void write_pbars(const records::Deck& deck, CardSink& sink) {
+  for (const auto& p : deck.pbar) {
+    CardFields card("PBAR");
+    card.add(p.id).add(p.mid).add(p.A).add(p.I1).add(p.I2).add(p.J).add(p.nsm).end_line();
+    const bool more = p.k1 || p.k2 || p.I12 != 0;
+    if (more || !is_zero(p.recovery)) add_recovery(card, p.recovery);
+    if (more) {
+      add_optional(card, p.k1);
+      add_optional(card, p.k2);
+      card.add(p.I12);
+    }
+    sink.put(card);
+  }
+}
+
+void write_pbarls(const records::Deck& deck, CardSink& sink) {
+  for (const auto& p : deck.pbarl) {
+    CardFields card("PBARL");
+    card.add(p.id).add(p.mid).add_blank().add_word(p.shape).end_line();
+    for (const double dim : p.dims) card.add(dim);
+    sink.put(card.add(p.nsm));
+  }
+}
+
+void write_pbeams(const records::Deck& deck, CardSink& sink) {
+  for (const auto& p : deck.pbeam) write_pbeam(p, sink);
+}
+
+void write_pbeamls(const records::Deck& deck, CardSink& sink) {
+  for (const auto& p : deck.pbeaml) {
+    CardFields card("PBEAML");
+    card.add(p.id).add(p.mid).add_blank().add_word(p.shape).end_line();
+    for (std::size_t i = 0; i < p.stations.size(); ++i) {
+      const auto& s = p.stations[i];
+      if (i > 0) card.add_word("YES").add(s.x_over_L);
+      for (const double dim : s.dims) card.add(dim);
+      card.add(s.nsm);
+    }
+    sink.put(card);
+  }
+}
+
+void write_prods(const records::Deck& deck, CardSink& sink) {
+  for (const auto& p : deck.prod)
+    sink.put(CardFields("PROD").add(p.id).add(p.mid).add(p.A).add(p.J).add(p.c).add(p.nsm));
+}
+
+void write_ptubes(const records::Deck& deck, CardSink& sink) {
+  for (const auto& p : deck.ptube) {
+    CardFields card("PTUBE");
+    card.add(p.id).add(p.mid).add(p.od).add(p.t).add(p.nsm);
+    add_optional(card, p.od2);
+    sink.put(card);
+  }
+}
+
+void convert_pbeam(UnitConverter& u) {
+  const auto scale_station = [&](int first) {
+    u.scale(first, "A");
+    u.scale(first + 1, first + 4, "I");
+    u.scale(first + 5, "N");
+  };
+  const auto begins_station = [&](int first) {
+    return is_word(u.get(first), "YES") || is_word(u.get(first), "YESA") || is_word(u.get(first), "NO");
+  };
+  scale_station(2);
+  int line = 8;
+  if (!begins_station(line)) {
+    u.scale(line, line + 7, "L");
+    line += 8;
+  }
+  while (line < u.size() && begins_station(line)) {
+    scale_station(line + 2);
+    const bool has_points = is_word(u.get(line), "YES");
+    line += 8;
+    if (!has_points || begins_station(line)) continue;
+    u.scale(line, line + 7, "L");
+    line += 8;
+  }
+  // K1 K2 S1 S2 NSI(A) NSI(B) CW(A) CW(B), then the offsets of the mass and of the neutral axis.
+  u.scale(line + 4, line + 5, "ML");
+  u.scale(line + 6, line + 7, "L6");
+  u.scale(line + 8, line + 15, "L");
+}
+
+void convert_section(UnitConverter& u) {
+  const int dims = get_num_dimensions(make_upper(u.get(3)));
+  if (dims == 0) return u.fail(3, "the section is not known");
+  u.scale(8, 8 + dims - 1, "L");
+  u.scale(8 + dims, "N");
+  if (u.get_name() == "PBARL") return;
+  for (int station = 9 + dims; station < u.size(); station += dims + 3) {
+    u.scale(station + 2, station + 1 + dims, "L");
+    u.scale(station + 2 + dims, "N");
+  }
+}
+
 }  // namespace
 
 void add_line_property_parsers(ParserTable& table) {
@@ -274,6 +415,14 @@ void add_line_property_parsers(ParserTable& table) {
                      "PID MID GROUP TYPE - - - - DIM1 DIM2 DIM3 DIM4 DIM5 DIM6 DIM7 DIM8 DIM9 DIM10"};
   table["PROD"] = {parse_prod, ". . A I L N", "PID MID A J C NSM"};
   table["PTUBE"] = {parse_ptube, ". . L L N L", "PID MID OD T NSM OD2"};
+  table["PBEAM"].convert = convert_pbeam;
+  table["PBARL"].convert = table["PBEAML"].convert = convert_section;
+  write_by(table, write_pbars, {"PBAR"});
+  write_by(table, write_pbarls, {"PBARL"});
+  write_by(table, write_pbeams, {"PBEAM"});
+  write_by(table, write_pbeamls, {"PBEAML"});
+  write_by(table, write_prods, {"PROD"});
+  write_by(table, write_ptubes, {"PTUBE"});
 }
 
 }  // namespace bough::nastran::detail

@@ -51,13 +51,42 @@ void parse_load(Card& card, Reading& r) {
   if (r.claim(IdSpace::Load, load.sid, card)) r.deck.loads.push_back(std::move(load));
 }
 
+void write_point_loads(const records::Deck& deck, CardSink& sink) {
+  for (const auto& load : deck.point_loads)
+    sink.put(CardFields(load.is_moment ? "MOMENT" : "FORCE")
+                 .add(load.sid)
+                 .add(load.g)
+                 .add_id(load.cid)
+                 .add(load.f)
+                 .add(load.n));
+}
+
+void write_gravity(const records::Deck& deck, CardSink& sink) {
+  for (const auto& g : deck.gravity) sink.put(CardFields("GRAV").add(g.sid).add_id(g.cid).add(g.a).add(g.n));
+}
+
+void write_load_sets(const records::Deck& deck, CardSink& sink) {
+  for (const auto& load : deck.loads) {
+    CardFields card("LOAD");
+    card.add(load.sid).add(load.s);
+    for (const auto& [scale, set] : load.terms) card.add(scale).add(set);
+    sink.put(card);
+  }
+}
+
 }  // namespace
 
 void add_load_parsers(ParserTable& table) {
   table["FORCE"] = {parse_force, ". . . F", "SID G CID F N1 N2 N3"};
   table["MOMENT"] = {parse_moment, ". . . Q", "SID G CID M N1 N2 N3"};
   table["GRAV"] = {parse_grav, ". . G", "SID CID A N1 N2 N3 MB"};
+  write_by(table, write_point_loads, {"FORCE", "MOMENT"});
+  write_by(table, write_gravity, {"GRAV"});
+}
+
+void add_load_set_parsers(ParserTable& table) {
   table["LOAD"] = {parse_load, "", "SID S S1 L1 S2 L2 S3 L3"};
+  write_by(table, write_load_sets, {"LOAD"});
 }
 
 }  // namespace bough::nastran::detail

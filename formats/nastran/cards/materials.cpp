@@ -1,4 +1,9 @@
+#include <array>
 #include <cmath>
+#include <string>
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
 
 #include "formats/nastran/detail/parsers.hpp"
 
@@ -41,8 +46,185 @@ void parse_mat1(Card& card, Reading& r) {
   if (r.claim(IdSpace::Material, mat.id, card)) r.deck.mat1.push_back(mat);
 }
 
+void parse_mat2(Card& card, Reading& r) {
+  records::Mat2 mat;
+  mat.id = card.read_id(0, "MID");
+  static constexpr int kPlace[6][2] = {{0, 0}, {0, 1}, {0, 2}, {1, 1}, {1, 2}, {2, 2}};
+  for (int i = 0; i < 6; ++i)
+    mat.G(kPlace[i][0], kPlace[i][1]) = mat.G(kPlace[i][1], kPlace[i][0]) = card.read_real(1 + i, "Gij", 0.0);
+  mat.rho = card.read_real(7, "RHO", 0.0);
+  mat.alpha = card.read_vector(8, "A1 A2 A3");
+  mat.tref = card.read_optional_real(11, "TREF");
+  mat.ge = card.read_real(12, "GE", 0.0);
+  card.use(13, 17);  // stress limits, MCSID
+  mat.at = card.get_location();
+  if (r.claim(IdSpace::Material, mat.id, card)) r.deck.mat2.push_back(mat);
+}
+
+void parse_mat8(Card& card, Reading& r) {
+  records::Mat8 mat;
+  mat.id = card.read_id(0, "MID");
+  mat.E1 = card.read_real(1, "E1");
+  mat.E2 = card.read_real(2, "E2");
+  mat.nu12 = card.read_real(3, "NU12", 0.0);
+  mat.G12 = card.read_real(4, "G12", 0.0);
+  mat.G1z = card.read_real(5, "G1Z", 0.0);
+  mat.G2z = card.read_real(6, "G2Z", 0.0);
+  mat.rho = card.read_real(7, "RHO", 0.0);
+  mat.a1 = card.read_real(8, "A1", 0.0);
+  mat.a2 = card.read_real(9, "A2", 0.0);
+  mat.tref = card.read_optional_real(10, "TREF");
+  mat.ge = card.read_real(16, "GE", 0.0);
+  auto& s = mat.strength;
+  s.Xt = card.read_real(11, "Xt", 0.0);
+  s.Xc = std::abs(card.read_real(12, "Xc", s.Xt));
+  s.Yt = card.read_real(13, "Yt", 0.0);
+  s.Yc = std::abs(card.read_real(14, "Yc", s.Yt));
+  s.S = card.read_real(15, "S", 0.0);
+  s.F12 = card.read_real(17, "F12", 0.0);
+  s.is_strain = card.read_real(18, "STRN", 0.0) == 1;
+  card.use(19, card.get_size());
+  mat.at = card.get_location();
+  if (r.claim(IdSpace::Material, mat.id, card)) r.deck.mat8.push_back(mat);
+}
+
+void parse_mat9(Card& card, Reading& r) {
+  records::Mat9 mat;
+  mat.id = card.read_id(0, "MID");
+  int field = 1;
+  for (int i = 0; i < 6; ++i)
+    for (int j = i; j < 6; ++j) mat.G(i, j) = mat.G(j, i) = card.read_real(field++, "Gij", 0.0);
+  mat.rho = card.read_real(field++, "RHO", 0.0);
+  for (int i = 0; i < 6; ++i) mat.alpha[i] = card.read_real(field++, "Ai", 0.0);
+  mat.tref = card.read_optional_real(field, "TREF");
+  mat.ge = card.read_real(field + 1, "GE", 0.0);
+  mat.at = card.get_location();
+  if (r.claim(IdSpace::Material, mat.id, card)) r.deck.mat9.push_back(mat);
+}
+
+/// MAT11, an orthotropic solid, becomes the MAT9 of the same law.
+void parse_mat11(Card& card, Reading& r) {
+  records::Mat9 mat;
+  mat.id = card.read_id(0, "MID");
+  const double E1 = card.read_real(1, "E1"), E2 = card.read_real(2, "E2"), E3 = card.read_real(3, "E3");
+  const double nu12 = card.read_real(4, "NU12"), nu13 = card.read_real(5, "NU13"), nu23 = card.read_real(6, "NU23");
+  const std::array<double, 3> shear{card.read_real(7, "G12"), card.read_real(9, "G23"), card.read_real(8, "G13")};
+  mat.rho = card.read_real(10, "RHO", 0.0);
+  for (int i = 0; i < 3; ++i) mat.alpha[i] = card.read_real(11 + i, "Ai", 0.0);
+  mat.tref = card.read_optional_real(14, "TREF");
+  mat.ge = card.read_real(15, "GE", 0.0);
+  mat.at = card.get_location();
+  if (card.is_ok()) {
+    Eigen::Matrix3d compliance;
+    compliance << 1 / E1, -nu12 / E1, -nu13 / E1,  //
+        -nu12 / E1, 1 / E2, -nu23 / E2,            //
+        -nu13 / E1, -nu23 / E2, 1 / E3;
+    const bool is_law = E1 > 0 && E2 > 0 && E3 > 0 && Eigen::LLT<Eigen::Matrix3d>(compliance).info() == Eigen::Success;
+    if (!is_law)
+      card.fail("deck.field-range", 1, "the law of E1 to NU23 is not positive definite", "correct the material");
+    else
+      mat.G.topLeftCorner<3, 3>() = compliance.inverse();
+    for (int i = 0; i < 3; ++i) mat.G(3 + i, 3 + i) = shear[static_cast<std::size_t>(i)];
+  }
+  if (r.claim(IdSpace::Material, mat.id, card)) r.deck.mat9.push_back(mat);
+}
+
+/// The reader's rule for the blank one of E, G, NU; what it gives back bit for bit is left blank, so that a derived
+/// value does not lose digits in the width of a field.
+void add_moduli(const records::Mat1& mat, CardFields& card) {
+  if (mat.G == 0 && mat.nu == 0)
+    card.add(mat.E).add_blank(2);
+  else if (mat.E == 0 && mat.nu == 0)
+    card.add_blank().add(mat.G).add_blank();
+  else if (mat.nu > -1 && mat.E / (2 * (1 + mat.nu)) == mat.G)
+    card.add(mat.E).add_blank().add(mat.nu);
+  else if (2 * (1 + mat.nu) * mat.G == mat.E)
+    card.add_blank().add(mat.G).add(mat.nu);
+  else if (mat.G > 0 && mat.E / (2 * mat.G) - 1 == mat.nu)
+    card.add(mat.E).add(mat.G).add_blank();
+  else
+    card.add(mat.E).add(mat.G).add(mat.nu);
+}
+
+/// Adds a blank for a TREF that was not given: TEMPERATURE(INITIAL) may take its place.
+CardFields& add_tref(CardFields& card, const std::optional<double>& tref) {
+  return tref ? card.add(*tref) : card.add_blank();
+}
+
+void write_mat1(const records::Deck& deck, CardSink& sink) {
+  for (const auto& mat : deck.mat1) {
+    CardFields card("MAT1");
+    card.add(mat.id);
+    add_moduli(mat, card);
+    add_tref(card.add(mat.rho).add(mat.alpha), mat.tref).add(mat.ge);
+    if (mat.st != 0 || mat.sc != 0 || mat.ss != 0) card.add(mat.st).add(mat.sc).add(mat.ss);
+    sink.put(card);
+  }
+}
+
+void write_mat2(const records::Deck& deck, CardSink& sink) {
+  for (const auto& mat : deck.mat2) {
+    CardFields card("MAT2");
+    card.add(mat.id);
+    for (int i = 0; i < 3; ++i)
+      for (int j = i; j < 3; ++j) card.add(mat.G(i, j));
+    sink.put(add_tref(card.add(mat.rho).add(mat.alpha), mat.tref).add(mat.ge));
+  }
+}
+
+void write_mat8(const records::Deck& deck, CardSink& sink) {
+  for (const auto& mat : deck.mat8) {
+    CardFields card("MAT8");
+    card.add(mat.id).add(mat.E1).add(mat.E2).add(mat.nu12).add(mat.G12).add(mat.G1z).add(mat.G2z).add(mat.rho);
+    add_tref(card.add(mat.a1).add(mat.a2), mat.tref);
+    const auto& s = mat.strength;
+    const bool is_strong = s.Xt != 0 || s.Xc != 0 || s.Yt != 0 || s.Yc != 0 || s.S != 0;
+    if (is_strong)
+      card.add(s.Xt).add(s.Xc).add(s.Yt).add(s.Yc).add(s.S).add(mat.ge).add(s.F12);
+    else if (mat.ge != 0)
+      card.add_blank(5).add(mat.ge);
+    if (is_strong && s.is_strain) card.add(1.0);
+    sink.put(card);
+  }
+}
+
+void write_mat9(const records::Deck& deck, CardSink& sink) {
+  for (const auto& mat : deck.mat9) {
+    CardFields card("MAT9");
+    card.add(mat.id);
+    for (int i = 0; i < 6; ++i)
+      for (int j = i; j < 6; ++j) card.add(mat.G(i, j));
+    card.add(mat.rho);
+    for (int i = 0; i < 6; ++i) card.add(mat.alpha[i]);
+    sink.put(add_tref(card, mat.tref).add(mat.ge));
+  }
+}
+
+/// Strengths are strains with STRN = 1.
+void convert_mat8(UnitConverter& u) {
+  for (const int field : {1, 2, 4, 5, 6}) u.scale(field, "P");
+  u.scale(7, "R");
+  if (parse_real(u.get(18)).value_or(0) == 1) return;
+  u.scale(11, 15, "P");
+  u.scale(17, "1/P2");
+}
+
 }  // namespace
 
-void add_material_parsers(ParserTable& table) { table["MAT1"] = parse_mat1; }
+void add_material_parsers(ParserTable& table) {
+  table["MAT1"] = {parse_mat1, ". P P . R . . . P P P .", "MID E G NU RHO A TREF GE ST SC SS MCSID"};
+  table["MAT2"] = {parse_mat2, ". P P P P P P R . . . . . P P P .",
+                   "MID G11 G12 G13 G22 G23 G33 RHO A1 A2 A3 TREF GE ST SC SS MCSID"};
+  table["MAT8"] = {parse_mat8, nullptr, "MID E1 E2 NU12 G12 G1Z G2Z RHO A1 A2 TREF XT XC YT YC S GE F12 STRN"};
+  table["MAT9"] = {parse_mat9, ". P P P P P P P P P P P P P P P P P P P P P R . . . . . . . ."};
+  table["MAT6"] = {parse_mat9, ". P P P P P P P P P P P P P P P P P P P P P R . . . . . . . ."};  // NASTRAN-95
+  table["MAT11"] = {parse_mat11, ". P P P . . . P P P R . . . . ."};
+  table["MAT8"].convert = convert_mat8;
+  write_by(table, write_mat1, {"MAT1"});
+  write_by(table, write_mat2, {"MAT2"});
+  write_by(table, write_mat8, {"MAT8"});
+  write_by(table, write_mat9, {"MAT9"});
+  write_as(table, "MAT9", {"MAT6", "MAT11"});
+}
 
 }  // namespace bough::nastran::detail

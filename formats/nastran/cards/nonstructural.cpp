@@ -1,4 +1,6 @@
 /// Nonstructural mass by sets (NSM = n of the case control), and accelerations of grids as loads.
+#include <set>
+
 #include "formats/nastran/detail/parsers.hpp"
 
 namespace bough::nastran::detail {
@@ -98,14 +100,94 @@ void parse_accel(Card& card, Reading& r) {
   if (card.is_ok()) r.deck.special.accelerations.push_back(std::move(a));
 }
 
+void write_nsm(const records::NonstructuralMass& m, CardSink& sink) {
+  CardFields card(m.is_total ? "NSML1" : "NSM1");
+  card.add(m.sid).add_word(m.type).add(m.value);
+  if (m.is_all) card.add_word("ALL");
+  // A card each: a range stands alone on its card.
+  if (m.is_all) return sink.put(card);
+  for (const auto& [first, last] : m.range) {
+    card.add(first);
+    if (last > first) card.add_word("THRU").add(last);
+  }
+  sink.put(card);
+}
+
+void write_acceleration(const records::GridAcceleration& a, CardSink& sink) {
+  CardFields card(a.direction < 0 ? "ACCEL1" : "ACCEL");
+  card.add(a.sid).add_id(a.cid);
+  if (a.direction >= 0) {
+    card.add(a.n).add_word(std::string(1, static_cast<char>('X' + a.direction))).end_line();
+    for (const auto& [place, value] : a.table) card.add(place).add(value);
+    return sink.put(card);
+  }
+  card.add(a.a).add(a.n).end_line();
+  if (a.is_all) card.add_word("ALL");
+  for (std::size_t i = 0; i < a.grids.size(); ++i) {
+    std::size_t last = i;
+    while (a.skip_if_missing && last + 1 < a.grids.size() && a.grids[last + 1] == a.grids[last] + 1) ++last;
+    card.add(a.grids[i]);
+    if (last > i) card.add_word("THRU").add(a.grids[last]);
+    i = last;
+  }
+  sink.put(card);
+}
+
+void write_nsms(const records::Deck& deck, CardSink& sink) {
+  for (const auto& m : deck.special.nsm) write_nsm(m, sink);
+}
+
+void write_nsmadd(const records::Deck& deck, CardSink& sink) {
+  for (const auto& [sid, sets] : deck.special.nsmadd) {
+    CardFields card("NSMADD");
+    card.add(sid);
+    for (const int set : sets) card.add(set);
+    sink.put(card);
+  }
+}
+
+void write_accelerations(const records::Deck& deck, CardSink& sink) {
+  for (const auto& a : deck.special.accelerations) write_acceleration(a, sink);
+}
+
+/// NSM: pairs of id and value; NSM1: one value. NSML and NSML1: the whole mass.
+void convert_nsm(UnitConverter& u) {
+  static const std::set<std::string> areas{"PSHELL", "PCOMP", "PCOMPG", "PSHEAR", "PRAC2D"};
+  static const std::set<std::string> lines{"PBAR",  "PBARL", "PBEAM",  "PBEAML", "PBCOMP",
+                                           "PBEND", "PROD",  "CONROD", "PTUBE"};
+  const auto& name = u.get_name();
+  const auto type = make_upper(u.get(1));
+  const bool is_whole = name.starts_with("NSML");
+  const char* word = is_whole ? "M" : areas.count(type) > 0 ? "S" : lines.count(type) > 0 ? "N" : "?";
+  if (name.ends_with('1')) return u.scale(2, word);
+  for (int i = 3; i < u.size(); i += 2) u.scale(i, word);
+}
+
+void convert_accel(UnitConverter& u) {
+  for (int i = 8; i < u.size(); i += 2) {
+    u.scale(i, "L");
+    u.scale(i + 1, "G");
+  }
+}
+
 }  // namespace
 
 void add_nonstructural_parsers(ParserTable& table) {
-  table["NSM"] = table["NSML"] = parse_pairs;
-  table["NSM1"] = table["NSML1"] = parse_list;
+  table["NSM"] = table["NSML"] = {parse_pairs, nullptr};
+  table["NSM1"] = table["NSML1"] = {parse_list, nullptr};
   table["NSMADD"] = {parse_nsmadd, ""};
+  for (const char* name : {"NSM", "NSML", "NSM1", "NSML1"}) table[name].convert = convert_nsm;
+  write_by(table, write_nsms, {"NSM1", "NSML1"});
+  write_as(table, "NSM1", {"NSM"});
+  write_as(table, "NSML1", {"NSML"});
+  write_by(table, write_nsmadd, {"NSMADD"});
+}
+
+void add_acceleration_parsers(ParserTable& table) {
   table["ACCEL1"] = {parse_accel1, ". . G . . ."};
-  table["ACCEL"] = parse_accel;
+  table["ACCEL"] = {parse_accel, nullptr};
+  table["ACCEL"].convert = convert_accel;
+  write_by(table, write_accelerations, {"ACCEL", "ACCEL1"});
 }
 
 }  // namespace bough::nastran::detail

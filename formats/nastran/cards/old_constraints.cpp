@@ -51,6 +51,9 @@ void add_old_constraint_parsers(ParserTable& table) {
   table["CRIGD1"] = {parse_crigd1, ""};
   table["CRIGD2"] = {parse_crigd2, ""};
   table["CRIGDR"] = {parse_crigdr, ""};
+  write_as(table, "RBE2", {"CRIGD1"});
+  write_as(table, "RBE1", {"CRIGD2"});
+  write_as(table, "RROD", {"CRIGDR"});
 }
 
 }  // namespace bough::nastran::detail

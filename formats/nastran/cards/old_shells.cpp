@@ -205,18 +205,27 @@ void parse_pis2d8(Card& card, Reading& r) {
 }  // namespace
 
 void add_old_shell_parsers(ParserTable& table) {
-  for (const char* name : {"CQUAD1", "CQUAD2", "CQDMEM", "CQDMEM1", "CQDMEM2", "CQDPLT"}) table[name] = parse_linear<4>;
-  for (const char* name : {"CTRIA1", "CTRIA2", "CTRMEM", "CTRPLT", "CTRBSC"}) table[name] = parse_linear<3>;
-  for (const char* name : {"CTRSHL", "CTRIM6", "CTRPLT1"}) table[name] = parse_six_grids;
-  for (const char* name : {"PQDMEM", "PQDMEM1", "PQDMEM2", "PTRMEM"}) table[name] = parse_thickness<false>;
-  table["PQUAD2"] = table["PTRIA2"] = parse_thickness<true>;
-  table["PQUAD1"] = table["PTRIA1"] = parse_three_materials;
-  table["PQDPLT"] = table["PTRPLT"] = table["PTRBSC"] = parse_bending;
+  constexpr const char* plate = ". . L S . . L S";
+  for (const char* name : {"CQUAD1", "CQUAD2", "CQDMEM", "CQDMEM1", "CQDMEM2", "CQDPLT"})
+    table[name] = {parse_linear<4>, ""};
+  for (const char* name : {"CTRIA1", "CTRIA2", "CTRMEM", "CTRPLT", "CTRBSC"}) table[name] = {parse_linear<3>, ""};
+  for (const char* name : {"CTRSHL", "CTRIM6", "CTRPLT1"}) table[name] = {parse_six_grids, ""};
+  for (const char* name : {"PQDMEM", "PQDMEM1", "PQDMEM2", "PTRMEM"}) table[name] = {parse_thickness<false>, plate};
+  table["PQUAD2"] = table["PTRIA2"] = {parse_thickness<true>, plate};
+  table["PQUAD1"] = table["PTRIA1"] = {parse_three_materials, ". . L . L3 . L S L L"};
+  table["PQDPLT"] = table["PTRPLT"] = table["PTRBSC"] = {parse_bending, ". . L3 . L S L L"};
   table["PTRIM6"] = {parse_ptrim6, ". . L L L S"};
   table["PTRPLT1"] = {parse_ptrplt1, ". . L3 L3 L3 . L L L S L L L L L L"};
   table["PTRSHL"] = {parse_ptrshl, ". . L L L . L3 L3 L3 . L L L S L L L L L L"};
   table["CIS2D8"] = {parse_is2d8, ""};
   table["PIS2D8"] = {parse_pis2d8, ". . L"};
+  write_as(table, "CQUAD4", {"CQUAD1", "CQUAD2", "CQDMEM", "CQDMEM1", "CQDMEM2", "CQDPLT"});
+  write_as(table, "CTRIA3", {"CTRIA1", "CTRIA2", "CTRMEM", "CTRPLT", "CTRBSC"});
+  write_as(table, "CTRIA6", {"CTRSHL", "CTRIM6", "CTRPLT1"});
+  write_as(table, "CQUAD8", {"CIS2D8"});
+  write_as(table, "PSHELL",
+           {"PQDMEM", "PQDMEM1", "PQDMEM2", "PTRMEM", "PQUAD1", "PTRIA1", "PQUAD2", "PTRIA2", "PQDPLT", "PTRPLT",
+            "PTRBSC", "PTRIM6", "PTRPLT1", "PTRSHL", "PIS2D8"});
 }
 
 }  // namespace bough::nastran::detail

@@ -124,14 +124,20 @@ void parse_pelbow(Card& card, Reading& r) {
 }  // namespace
 
 void add_old_solid_parsers(ParserTable& table) {
-  table["CHEXA1"] = table["CHEXA2"] = parse_by_material<8>;
-  table["CWEDGE"] = parse_by_material<6>;
+  table["CHEXA1"] = table["CHEXA2"] = {parse_by_material<8>, ""};
+  table["CWEDGE"] = {parse_by_material<6>, ""};
   table["CIHEX1"] = {parse_cihex1, ""};
   table["CIHEX2"] = {parse_cihex2, ""};
   table["CIHEX3"] = {parse_cihex3, ""};
   table["PIHEX"] = {parse_pihex, ""};
-  table["CELBOW"] = parse_celbow;
-  table["PELBOW"] = parse_pelbow;
+  table["CELBOW"] = {parse_celbow, "", "EID PID GA GB X1 X2 X3 GEOM"};
+  table["PELBOW"] = {parse_pelbow, ". . A I I I N . L . L . L . L . . . . . . . L .",
+                     "PID MID A I1 I2 J NSM - R1 T1 R2 T2 R3 T3 R4 T4 K1 K2 C KX KY KZ R BETA"};
+  write_as(table, "CHEXA", {"CHEXA1", "CHEXA2", "CIHEX1", "CIHEX2", "CIHEX3"});
+  write_as(table, "CPENTA", {"CWEDGE"});
+  write_as(table, "PSOLID", {"PIHEX"});
+  write_as(table, "CBEND", {"CELBOW"});
+  write_as(table, "PBEND", {"PELBOW"});
 }
 
 }  // namespace bough::nastran::detail

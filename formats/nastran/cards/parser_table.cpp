@@ -1,10 +1,28 @@
 #include "formats/nastran/detail/parsers.hpp"
 
+#include <algorithm>
+
 namespace bough::nastran::detail {
 
+void write_by(ParserTable& table, CardWriter write, std::initializer_list<const char*> cards) {
+  int order = 1;
+  for (const auto& [name, row] : table) order = std::max(order, row.write_order + 1);
+  for (const char* card : cards) {
+    auto& row = table.at(card);
+    row.write = write;
+    row.write_order = order;
+  }
+}
+
+void write_as(ParserTable& table, const char* card, std::initializer_list<const char*> others) {
+  for (const char* other : others) table.at(other).written_as = card;
+}
+
+/// Cards are written in this order.
 const ParserTable& get_card_parsers() {
   static const ParserTable table = [] {
     ParserTable t;
+    add_solution_parsers(t);
     add_grid_parsers(t);
     add_material_parsers(t);
     add_line_property_parsers(t);
@@ -19,15 +37,16 @@ const ParserTable& get_card_parsers() {
     add_direct_matrix_parsers(t);
     add_load_parsers(t);
     add_pressure_parsers(t);
+    add_load_set_parsers(t);
     add_temperature_parsers(t);
     add_old_constraint_parsers(t);
     add_old_shell_parsers(t);
     add_old_solid_parsers(t);
     add_special_element_parsers(t);
-    add_special_constraint_parsers(t);
     add_nonstructural_parsers(t);
+    add_special_constraint_parsers(t);
+    add_acceleration_parsers(t);
     add_superelement_parsers(t);
-    add_solution_parsers(t);
     return t;
   }();
   return table;

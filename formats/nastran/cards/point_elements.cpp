@@ -89,12 +89,6 @@ void parse_cmass4(Card& card, Reading& r) {
   parse_scalar_pairs(card, r, false, &records::ScalarMass::m, IdSpace::ScalarMass, r.deck.scalar_masses);
 }
 
-void parse_spoint(Card& card, Reading& r) {
-  const auto ids = read_ids(card, 0, card.get_size(), "ID");
-  if (ids.empty() && card.is_ok()) card.fail("deck.missing-field", 0, "ID is blank, expected a scalar point at least");
-  if (card.is_ok()) r.deck.scalar_points.insert(r.deck.scalar_points.end(), ids.begin(), ids.end());
-}
-
 void parse_cbush(Card& card, Reading& r) {
   records::Cbush e;
   e.id = card.read_id(0, "EID");
@@ -144,6 +138,92 @@ void parse_conm2(Card& card, Reading& r) {
   if (r.claim(IdSpace::ConcentratedMass, e.id, card)) r.deck.conm2.push_back(e);
 }
 
+/// "CELAS" or "CMASS" with its number: 1 and 2 name grid and component, 3 and 4 scalar points; odd ones a property.
+template <class Element>
+CardFields make_scalar_card(const char* stem, const Element& e, double value) {
+  const int number = (e.by_scalar_points ? 3 : 1) + (e.pid > 0 ? 0 : 1);
+  CardFields card(stem + std::to_string(number));
+  card.add(e.id);
+  if (e.pid > 0)
+    card.add(e.pid);
+  else
+    card.add(value);
+  if (e.by_scalar_points)
+    card.add_id(e.g1).add_id(e.g2);
+  else
+    card.add_id(e.g1).add_id(e.c1).add_id(e.g2).add_id(e.c2);
+  return card;
+}
+
+void write_cbush(const records::Cbush& e, CardSink& sink) {
+  CardFields card("CBUSH");
+  card.add(e.id).add(e.pid).add(e.ga).add_id(e.gb);
+  if (e.g0 != 0)
+    card.add(e.g0).add_blank(2);
+  else if (e.v)
+    card.add(*e.v);
+  else
+    card.add_blank(3);
+  if (e.cid)
+    card.add(*e.cid);
+  else
+    card.add_blank();
+  if (e.s != 0.5 || e.ocid != -1 || !e.s_offset.isZero(0.0)) card.add(e.s).add(e.ocid).add(e.s_offset);
+  sink.put(card);
+}
+
+void write_springs(const records::Deck& deck, CardSink& sink) {
+  for (const auto& e : deck.springs) {
+    auto card = make_scalar_card("CELAS", e, e.k);
+    if (e.pid == 0 && !e.by_scalar_points && (e.ge != 0 || e.s != 0)) card.add(e.ge).add(e.s);
+    sink.put(card);
+  }
+}
+
+void write_bushes(const records::Deck& deck, CardSink& sink) {
+  for (const auto& e : deck.cbush) write_cbush(e, sink);
+}
+
+void write_scalar_masses(const records::Deck& deck, CardSink& sink) {
+  for (const auto& e : deck.scalar_masses) sink.put(make_scalar_card("CMASS", e, e.m));
+}
+
+void write_conm1(const records::Deck& deck, CardSink& sink) {
+  for (const auto& e : deck.conm1) {
+    CardFields card("CONM1");
+    card.add(e.id).add(e.g).add_id(e.cid);
+    for (int row = 0; row < 6; ++row)
+      for (int column = 0; column <= row; ++column) card.add(e.m(row, column));
+    sink.put(card);
+  }
+}
+
+void write_conm2(const records::Deck& deck, CardSink& sink) {
+  for (const auto& e : deck.conm2) {
+    CardFields card("CONM2");
+    card.add(e.id).add(e.g).add_id(e.cid).add(e.m).add(e.x).end_line();
+    for (const double value : e.inertia) card.add(value);
+    sink.put(card);
+  }
+}
+
+void convert_celas2(UnitConverter& u) {
+  u.scale_by(u.find_scalar_motion(), 1, "K", "Q", "F");
+  u.scale(7, "?");
+}
+void convert_cmass2(UnitConverter& u) { u.scale_by(u.find_scalar_motion(), 1, "M", "J", "ML"); }
+void convert_cbush(UnitConverter& u) {
+  if (u.get_int(9) >= 0) u.scale_lengths(10, u.get_int(9));
+}
+void convert_conm2(UnitConverter& u) {
+  u.scale(3, "M");
+  if (u.get_int(2) == -1)
+    u.scale(4, 6, "L");
+  else
+    u.scale_lengths(4, u.get_int(2));
+  u.scale(8, 13, "J");
+}
+
 }  // namespace
 
 void add_point_element_parsers(ParserTable& table) {
@@ -155,10 +235,20 @@ void add_point_element_parsers(ParserTable& table) {
   table["CELAS4"] = {parse_celas4, ". ? . . . ? . ."};
   table["CMASS3"] = {parse_cmass3, ""};
   table["CMASS4"] = {parse_cmass4, ". ? . . . ? . ."};
-  table["SPOINT"] = {parse_spoint, ""};
-  table["CBUSH"] = parse_cbush;
+  table["CBUSH"] = {parse_cbush, nullptr};
   table["CONM1"] = {parse_conm1, ". . . M M M M M M ML ML ML J ML ML ML J J ML ML ML J J J"};
   table["CONM2"] = {parse_conm2, nullptr, "EID G CID M X1 X2 X3 - I11 I21 I22 I31 I32 I33"};
+  table["CELAS1"].note = table["CMASS1"].note = note_scalar_element;
+  table["CELAS3"].note = table["CMASS3"].note = note_scalar_points;
+  table["CELAS2"].convert = convert_celas2;
+  table["CMASS2"].convert = convert_cmass2;
+  table["CBUSH"].convert = convert_cbush;
+  table["CONM2"].convert = convert_conm2;
+  write_by(table, write_springs, {"CELAS1", "CELAS2", "CELAS3", "CELAS4"});
+  write_by(table, write_bushes, {"CBUSH"});
+  write_by(table, write_scalar_masses, {"CMASS1", "CMASS2", "CMASS3", "CMASS4"});
+  write_by(table, write_conm1, {"CONM1"});
+  write_by(table, write_conm2, {"CONM2"});
 }
 
 }  // namespace bough::nastran::detail

@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "formats/nastran/detail/parsers.hpp"
 
 namespace bough::nastran::detail {
@@ -56,14 +58,77 @@ void parse_pmass(Card& card, Reading& r) {
   }
 }
 
+void write_pelas(const records::Deck& deck, CardSink& sink) {
+  for (const auto& p : deck.pelas) sink.put(CardFields("PELAS").add(p.id).add(p.k).add(p.ge).add(p.s));
+}
+
+void write_pbush(const records::Pbush& p, CardSink& sink) {
+  CardFields card("PBUSH");
+  card.add(p.id);
+  const auto add_six = [&](const char* flag, const std::array<double, 6>& values) {
+    if (std::all_of(values.begin(), values.end(), [](double x) { return x == 0; })) return;
+    // The first line begins with the id, the others with a blank.
+    if (card.get_size() > 1) card.end_line().add_blank();
+    card.add_word(flag);
+    for (const double x : values) card.add(x);
+  };
+  add_six("K", p.k);
+  add_six("B", p.b);
+  add_six("GE", p.ge);
+  if (p.mass != 0) {
+    if (card.get_size() > 1) card.end_line().add_blank();
+    card.add_word("M").add(p.mass);
+  }
+  sink.put(card);
+}
+
+void write_pbushes(const records::Deck& deck, CardSink& sink) {
+  for (const auto& p : deck.pbush) write_pbush(p, sink);
+}
+
+void write_pmass(const records::Deck& deck, CardSink& sink) {
+  for (const auto& p : deck.pmass) sink.put(CardFields("PMASS").add(p.id).add(p.m));
+}
+
+void convert_pelas(UnitConverter& u) {
+  for (int first = 0; first < std::min(u.size(), 8); first += 4) {
+    if (u.get(first).empty()) continue;
+    u.scale_by(u.find_property_motion("CELAS", u.get(first)), first + 1, "K", "Q", "F");
+    u.scale(first + 3, "?");
+  }
+}
+void convert_pmass(UnitConverter& u) {
+  for (int first = 0; first < std::min(u.size(), 8); first += 2)
+    if (!u.get(first).empty()) u.scale_by(u.find_property_motion("CMASS", u.get(first)), first + 1, "M", "J", "ML");
+}
+void convert_pbush(UnitConverter& u) {
+  for (int line = 0; line < u.size(); line += 8) {
+    const auto flag = make_upper(u.get(line + 1));
+    if (flag == "K" || flag == "B") {
+      u.scale(line + 2, line + 4, flag == "K" ? "K" : "B");
+      u.scale(line + 5, line + 7, flag == "K" ? "Q" : "BR");
+    } else if (flag == "M") {
+      u.scale(line + 2, "M");
+    } else if (flag != "GE" && !flag.empty()) {
+      u.scale(line + 2, line + 7, "?");
+    }
+  }
+}
+
 }  // namespace
 
 void add_point_property_parsers(ParserTable& table) {
   table["PELAS"] = {parse_pelas, nullptr, "PID K GE S"};
   table["PELAS"].entry_size = 4;
-  table["PBUSH"] = parse_pbush;
+  table["PBUSH"] = {parse_pbush, nullptr};
   table["PMASS"] = {parse_pmass, nullptr, "PID M"};
   table["PMASS"].entry_size = 2;
+  table["PELAS"].convert = convert_pelas;
+  table["PBUSH"].convert = convert_pbush;
+  table["PMASS"].convert = convert_pmass;
+  write_by(table, write_pelas, {"PELAS"});
+  write_by(table, write_pbushes, {"PBUSH"});
+  write_by(table, write_pmass, {"PMASS"});
 }
 
 }  // namespace bough::nastran::detail

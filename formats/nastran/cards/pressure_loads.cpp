@@ -185,6 +185,124 @@ void parse_sload(Card& card, Reading& r) {
   }
 }
 
+using records::ElementPressure;
+
+void add_optional(CardFields& card, const std::optional<double>& value) {
+  if (value)
+    card.add(*value);
+  else
+    card.add_blank();
+}
+
+void write_beam_load(const records::BeamLoad& load, CardSink& sink) {
+  std::string type{load.is_moment ? 'M' : 'F', static_cast<char>('X' + load.axis)};
+  if (load.in_element_axes) type += 'E';
+  std::string scale = load.is_fraction ? "FR" : "LE";
+  if (load.is_projected) scale += "PR";
+  CardFields card("PLOAD1");
+  card.add(load.sid).add(load.element).add_word(type).add_word(scale).add(load.x1).add(load.p1);
+  add_optional(card, load.x2);
+  sink.put(card.add(load.p2));
+}
+
+/// Equal but for the element, which is the next one.
+bool follows(const ElementPressure& a, const ElementPressure& b) {
+  return b.skip_if_missing && b.element == a.element + 1 && b.sid == a.sid && b.p == a.p && b.cid == a.cid &&
+         b.n == a.n;
+}
+
+/// PLOAD2 and PLOAD4 are one record; ranges become ranges again.
+void write_pressures(const std::vector<ElementPressure>& loads, CardSink& sink) {
+  for (std::size_t i = 0; i < loads.size(); ++i) {
+    const auto& load = loads[i];
+    CardFields card("PLOAD4");
+    card.add(load.sid).add(load.element);
+    for (const double p : load.p) card.add(p);
+    if (load.skip_if_missing) {
+      while (i + 1 < loads.size() && follows(loads[i], loads[i + 1])) ++i;
+      card.add_word("THRU").add(loads[i].element);
+    } else {
+      card.add_id(load.g1).add_id(load.g34);
+    }
+    card.add_id(load.cid);
+    if (load.n) card.add(*load.n);
+    sink.put(card);
+  }
+}
+
+void write_directed(const records::Deck& deck, CardSink& sink) {
+  for (const auto& load : deck.load_cards.directed) {
+    CardFields card(std::string(load.is_moment ? "MOMENT" : "FORCE") + (load.is_cross ? "2" : "1"));
+    card.add(load.sid).add(load.g).add(load.f);
+    for (const int grid : load.grids) card.add_id(grid);
+    sink.put(card);
+  }
+}
+
+void write_beam_loads(const records::Deck& deck, CardSink& sink) {
+  for (const auto& load : deck.load_cards.beams) write_beam_load(load, sink);
+}
+
+void write_grid_pressures(const records::Deck& deck, CardSink& sink) {
+  for (const auto& load : deck.load_cards.grid_pressures) {
+    CardFields card("PLOAD");
+    card.add(load.sid).add(load.p);
+    for (const int grid : load.grids) card.add(grid);
+    sink.put(card);
+  }
+}
+
+void write_element_pressures(const records::Deck& deck, CardSink& sink) {
+  write_pressures(deck.load_cards.pressures, sink);
+}
+
+void write_rotations(const records::Deck& deck, CardSink& sink) {
+  for (const auto& load : deck.load_cards.rotations)
+    sink.put(CardFields("RFORCE").add(load.sid).add(load.g).add_id(load.cid).add(load.a).add(load.r).add_blank().add(
+        load.racc));
+}
+
+void write_spcd(const records::Deck& deck, CardSink& sink) {
+  for (const auto& load : deck.load_cards.spcd)
+    sink.put(CardFields("SPCD").add(load.sid).add(load.g).add_components(load.c).add(load.d));
+}
+
+void write_scalar_loads(const records::Deck& deck, CardSink& sink) {
+  for (const auto& load : deck.load_cards.scalar)
+    sink.put(CardFields("SLOAD").add(load.sid).add(load.point).add(load.f));
+}
+
+void convert_pload1(UnitConverter& u) {
+  const auto type = make_upper(u.get(2)), kind = make_upper(u.get(3));
+  const bool is_moment = type.starts_with("M");
+  const bool is_point = u.get(6).empty() || u.get(6) == u.get(4);
+  const char* word = is_moment ? (is_point ? "Q" : "F") : (is_point ? "F" : "K");
+  u.scale(5, word);
+  u.scale(7, word);
+  if (!kind.starts_with("LE")) return;
+  u.scale(4, "L");
+  u.scale(6, "L");
+}
+/// Where an SPCD is the excitation of a load of TYPE VELO or ACCE it is a velocity or acceleration.
+void convert_spcd(UnitConverter& u) {
+  const auto& enforced = u.get_notes().enforced;
+  const auto found = enforced.find(u.get(0));
+  const bool is_excited = found != enforced.end();
+  const int order = is_excited && *found->second.begin() > 0 ? *found->second.begin() - 1 : 0;
+  static constexpr const char *length[] = {"L", "V", "G"}, *angle[] = {".", "Hz", "Hz2"};
+  for (const int first : {1, 4}) {
+    if (parse_real(u.get(first + 2)).value_or(0) == 0) continue;
+    if (is_excited && found->second.size() > 1 && !u.keeps_time())
+      u.scale(first + 2, "?");
+    else
+      u.scale_by(u.find_components(first + 1), first + 2, length[order], angle[order], "?");
+  }
+}
+void convert_sload(UnitConverter& u) {
+  for (const int i : {1, 3, 5})
+    if (!u.get(i).empty()) u.scale(i + 1, u.get_notes().grids.count(u.get(i)) > 0 ? "F" : "?");
+}
+
 }  // namespace
 
 void add_pressure_parsers(ParserTable& table) {
@@ -199,7 +317,18 @@ void add_pressure_parsers(ParserTable& table) {
   table["PLOAD4"] = {parse_pload4, ". . P P P P", "SID EID P1 P2 P3 P4"};
   table["RFORCE"] = {parse_rforce, ". . . Hz . . . . Hz2", "SID G CID A R1 R2 R3 METHOD RACC"};
   table["SPCD"] = {parse_spcd, nullptr, "SID G1 C1 D1 G2 C2 D2"};
-  table["SLOAD"] = parse_sload;
+  table["SLOAD"] = {parse_sload, nullptr};
+  table["PLOAD1"].convert = convert_pload1;
+  table["SPCD"].convert = convert_spcd;
+  table["SLOAD"].convert = convert_sload;
+  write_by(table, write_directed, {"FORCE1", "FORCE2", "MOMENT1", "MOMENT2"});
+  write_by(table, write_beam_loads, {"PLOAD1"});
+  write_by(table, write_grid_pressures, {"PLOAD"});
+  write_by(table, write_element_pressures, {"PLOAD4"});
+  write_as(table, "PLOAD4", {"PLOAD2", "PLOAD3"});
+  write_by(table, write_rotations, {"RFORCE"});
+  write_by(table, write_spcd, {"SPCD"});
+  write_by(table, write_scalar_loads, {"SLOAD"});
 }
 
 }  // namespace bough::nastran::detail

@@ -111,15 +111,91 @@ void parse_pshear(Card& card, Reading& r) {
   }
 }
 
+/// Blank where zero: readers of meshes take every number after PID for a grid.
+void add_axes(const ShellElement& e, CardFields& card) {
+  if (e.mcid)
+    card.add(*e.mcid);
+  else if (e.theta_deg != 0)
+    card.add(e.theta_deg);
+  else
+    card.add_blank();
+  if (e.z_offset != 0)
+    card.add(e.z_offset);
+  else
+    card.add_blank();
+}
+
+void add_thickness(const ShellElement& e, CardFields& card) {
+  for (const double t : e.t) std::isnan(t) ? card.add_blank() : card.add(t);
+  if (e.t.empty()) card.add_blank(static_cast<int>(e.grids.size()));
+}
+
+void write_shell(const ShellElement& e, CardSink& sink) {
+  CardFields card(e.card);
+  card.add(e.id).add(e.pid);
+  for (const int grid : e.grids) card.add(grid);
+  const bool is_quadratic = e.card == "CQUAD8" || e.card == "CTRIA6";
+  if (!is_quadratic) {
+    add_axes(e, card);
+    if (e.relative_thickness || !e.t.empty()) {
+      card.end_line().add_blank().add(e.relative_thickness ? 1 : 0);
+      add_thickness(e, card);
+    }
+    sink.put(card);
+    return;
+  }
+  for (const int grid : e.midsides) card.add_id(grid);
+  if (e.midsides.empty()) card.add_blank(static_cast<int>(e.grids.size()));
+  if (e.grids.size() == 3) add_axes(e, card);
+  add_thickness(e, card);
+  if (e.grids.size() == 4) add_axes(e, card);
+  sink.put(card.add_id(e.relative_thickness ? 1 : 0));
+}
+
+void write_shells(const records::Deck& deck, CardSink& sink) {
+  for (const auto& e : deck.shells) write_shell(e, sink);
+}
+
+void write_pshear(const records::Deck& deck, CardSink& sink) {
+  for (const auto& p : deck.pshear)
+    sink.put(CardFields("PSHEAR").add(p.id).add(p.mid).add(p.t).add(p.nsm).add(p.f1).add(p.f2));
+}
+
+void write_shear_panels(const records::Deck& deck, CardSink& sink) {
+  for (const auto& e : deck.shear_panels) {
+    CardFields card("CSHEAR");
+    card.add(e.id).add(e.pid);
+    for (const int grid : e.grids) card.add(grid);
+    sink.put(card);
+  }
+}
+
+/// Thicknesses are shares of the property's with TFLAG = 1.
+void convert_linear(UnitConverter& u) { u.get(9) == "1" ? u.scale_words(10) : u.scale_words(); }
+void convert_quad8(UnitConverter& u) {
+  if (u.get(16) != "1") return u.scale_words();
+  u.scale_words(10);
+  u.scale(15, "L");
+}
+void convert_triangle6(UnitConverter& u) { u.get(13) == "1" ? u.scale_words(10) : u.scale_words(); }
+
 }  // namespace
 
 void add_shell_parsers(ParserTable& table) {
-  table["CQUAD4"] = table["CQUADR"] = parse_quad;
-  table["CTRIA3"] = table["CTRIAR"] = parse_triangle;
+  table["CQUAD4"] = table["CQUADR"] = {parse_quad, ". . . . . . . L . . L L L L",
+                                       "EID PID G1 G2 G3 G4 THETA ZOFFS - TFLAG T1 T2 T3 T4"};
+  table["CTRIA3"] = table["CTRIAR"] = {parse_triangle, ". . . . . . L . . . L L L",
+                                       "EID PID G1 G2 G3 THETA ZOFFS - - TFLAG T1 T2 T3"};
   table["CQUAD8"] = {parse_quad8, ". . . . . . . . . . L L L L . L ."};
   table["CTRIA6"] = {parse_triangle6, ". . . . . . . . . L L L L ."};
   table["CSHEAR"] = {parse_cshear, ""};
   table["PSHEAR"] = {parse_pshear, ". . L S . . L S", "PID MID T NSM F1 F2"};
+  for (const char* name : {"CQUAD4", "CQUADR", "CTRIA3", "CTRIAR"}) table[name].convert = convert_linear;
+  table["CQUAD8"].convert = convert_quad8;
+  table["CTRIA6"].convert = convert_triangle6;
+  write_by(table, write_shells, {"CQUAD4", "CQUADR", "CTRIA3", "CTRIAR", "CQUAD8", "CTRIA6"});
+  write_by(table, write_pshear, {"PSHEAR"});
+  write_by(table, write_shear_panels, {"CSHEAR"});
 }
 
 }  // namespace bough::nastran::detail

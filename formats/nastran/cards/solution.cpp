@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <map>
 
 #include "formats/nastran/detail/parsers.hpp"
 #include "formats/nastran/detail/text.hpp"
@@ -128,13 +129,64 @@ void parse_param(Card& card, Reading& r) {
   r.deck.params.push_back(std::move(p));
 }
 
+void add_optional(CardFields& card, const std::optional<double>& value) {
+  if (value)
+    card.add(*value);
+  else
+    card.add_blank();
+}
+
+void write_eigen_methods(const records::Deck& deck, CardSink& sink) {
+  for (const auto& m : deck.eigen_methods) {
+    CardFields card(m.is_eigrl ? "EIGRL" : "EIGR");
+    card.add(m.sid);
+    if (!m.is_eigrl) card.add_word(m.method);
+    add_optional(card, m.f1);
+    add_optional(card, m.f2);
+    if (m.is_eigrl) {
+      sink.put(card.add_id(m.num_modes).add_blank(3).add_word(m.norm));
+      continue;
+    }
+    card.add_blank().add_id(m.num_modes).end_line().add_word(m.norm);
+    sink.put(card.add_id(m.norm_grid).add_id(m.norm_component));
+  }
+}
+
+void write_params(const records::Deck& deck, CardSink& sink) {
+  const auto put = [&](const records::Param& p) {
+    CardFields card("PARAM");
+    card.add_word(p.name);
+    if (!p.value.empty()) card.add_word(p.value);
+    sink.put(card);
+  };
+  for (const auto& p : deck.params)
+    if (!deck.autospc_command || p.name != "AUTOSPC") put(p);
+  if (deck.autospc_command) put(*deck.autospc_command);
+}
+
+void convert_param(UnitConverter& u) {
+  static const std::map<std::string, std::string> words{
+      {"W3", "Hz"},    {"W4", "Hz"},   {"ALPHA1", "Hz"}, {"ALPHA2", "T"}, {"LFREQ", "Hz"},   {"HFREQ", "Hz"},
+      {"WTMASS", "."}, {"G", "."},     {"GFL", "."},     {"K6ROT", "."},  {"MAXRATIO", "."}, {"EPZERO", "."},
+      {"EPPRT", "."},  {"SNORM", "."}, {"CB1", "."},     {"CB2", "."},    {"CK1", "."},      {"CK2", "."},
+      {"CM1", "."},    {"CM2", "."},   {"CP1", "."},     {"CP2", "."},    {"CK3", "."},      {"BAILOUT", "."},
+      {"TINY", "."},   {"SIGMA", "?"}};
+  const auto found = words.find(make_upper(u.get(0)));
+  if (found != words.end()) return u.scale(1, found->second);
+  if (!parse_int(u.get(1)) && parse_real(u.get(1))) u.fail(1, "nothing tells its dimension");
+}
+
 }  // namespace
 
 void add_solution_parsers(ParserTable& table) {
   table["EIGRL"] = {parse_eigrl, ". Hz Hz", "SID V1 V2 ND MSGLVL MAXSET SHFSCL NORM"};
   table["EIGR"] = {parse_eigr, ". . Hz Hz", "SID METHOD F1 F2 NE ND - - NORM G C"};
-  table["EIGB"] = parse_eigb;
+  table["EIGB"] = {parse_eigb, "", "SID METHOD L1 L2 NEP NDP NDN - NORM G C"};  // L1, L2: factors of the load
   table["PARAM"] = {parse_param, nullptr, "N V1 V2"};
+  table["PARAM"].convert = convert_param;
+  write_by(table, write_eigen_methods, {"EIGRL", "EIGR"});
+  write_as(table, "EIGR", {"EIGB"});
+  write_by(table, write_params, {"PARAM"});
 }
 
 }  // namespace bough::nastran::detail

@@ -83,6 +83,15 @@ void parse_rspline(Card& card, Reading& r) {
   if (r.claim_rigid(e.id, card)) r.deck.special.rspline.push_back(std::move(e));
 }
 
+void write_rspline(const records::Deck& deck, CardSink& sink) {
+  for (const auto& e : deck.special.rspline) {
+    CardFields card("RSPLINE");
+    card.add(e.id).add(e.ratio).add(e.points.front().g);
+    for (std::size_t i = 1; i < e.points.size(); ++i) card.add(e.points[i].g).add_components(e.points[i].c);
+    sink.put(card);
+  }
+}
+
 }  // namespace
 
 void add_special_constraint_parsers(ParserTable& table) {
@@ -94,6 +103,10 @@ void add_special_constraint_parsers(ParserTable& table) {
   // The names of NASTRAN-95, with the same fields.
   table["CRTRPLT"] = {parse_rtrplt, ""};
   table["CRSPLINE"] = {parse_rspline, ""};
+  write_by(table, write_rspline, {"RSPLINE"});
+  write_as(table, "RSPLINE", {"CRSPLINE"});
+  write_as(table, "RBE2", {"RBAR1", "RJOINT"});
+  write_as(table, "RBE1", {"RTRPLT", "RTRPLT1", "CRTRPLT"});
 }
 
 }  // namespace bough::nastran::detail

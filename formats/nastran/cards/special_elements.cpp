@@ -189,16 +189,184 @@ void parse_pcomps(Card& card, Reading& r) {
   if (r.claim(IdSpace::SolidProperty, p.id, card)) r.deck.psolid.push_back(p);
 }
 
+void write_pbcomp(const records::Pbcomp& p, CardSink& sink) {
+  CardFields card("PBCOMP");
+  card.add(p.id).add(p.mid).add(p.A).add(p.I1).add(p.I2).add(p.I12).add(p.J).add(p.nsm);
+  card.add(p.k1).add(p.k2).add(p.m[0]).add(p.m[1]).add(p.n[0]).add(p.n[1]).add(p.section);
+  for (const auto& lump : p.lumps) card.end_line().add(lump.r[0]).add(lump.r[1]).add(lump.fraction).add(lump.mid);
+  sink.put(card);
+}
+
+void add_pairs(CardFields& card, const std::vector<records::GridComponent>& pairs) {
+  for (const auto& pair : pairs) card.add(pair.g).add(pair.c);
+}
+
+void write_genel(const records::Genel& e, CardSink& sink) {
+  CardFields card("GENEL");
+  card.add(e.id).add_blank();
+  add_pairs(card, e.ui);
+  if (!e.ud.empty()) {
+    card.end_line().add_word("UD").add_blank();
+    add_pairs(card, e.ud);
+  }
+  card.end_line().add_word(e.is_flexibility ? "Z" : "K");
+  for (Eigen::Index column = 0; column < e.matrix.cols(); ++column)
+    for (Eigen::Index row = column; row < e.matrix.rows(); ++row) card.add(e.matrix(row, column));
+  if (e.s.size() > 0) {
+    card.end_line().add_word("S");
+    for (Eigen::Index row = 0; row < e.s.rows(); ++row)
+      for (Eigen::Index column = 0; column < e.s.cols(); ++column) card.add(e.s(row, column));
+  }
+  sink.put(card);
+}
+
+void write_cgap(const records::Cgap& e, CardSink& sink) {
+  CardFields card("CGAP");
+  card.add(e.id).add(e.pid).add(e.ga).add(e.gb);
+  if (e.v)
+    card.add(*e.v);
+  else
+    card.add_id(e.g0).add_blank(2);
+  if (e.cid) card.add(*e.cid);
+  sink.put(card);
+}
+
+void write_cbend(const records::Cbend& e, CardSink& sink) {
+  CardFields card("CBEND");
+  card.add(e.id).add(e.pid).add(e.ga).add(e.gb);
+  if (e.g0 != 0)
+    card.add(e.g0).add_blank(2);
+  else
+    card.add(e.v);
+  sink.put(card.add(e.geom));
+}
+
+void write_pbend(const records::Pbend& p, CardSink& sink) {
+  CardFields card("PBEND");
+  card.add(p.id).add(p.mid);
+  if (p.is_pipe)
+    card.add(p.fsi).add(p.rm).add(p.t).add(p.pressure);
+  else
+    card.add(p.A).add(p.I1).add(p.I2).add(p.J);
+  card.add(p.rb).add(p.theta_b_deg);
+  if (p.is_pipe)
+    card.add_blank(2);
+  else
+    card.add_blank(8).add(p.k1).add(p.k2);
+  card.add(p.nsm).add(p.rc).add(p.zc);
+  if (p.delta_n) card.add(*p.delta_n);
+  sink.put(card);
+}
+
+void write_pbcomps(const records::Deck& deck, CardSink& sink) {
+  for (const auto& p : deck.special.pbcomp) write_pbcomp(p, sink);
+}
+
+void write_genels(const records::Deck& deck, CardSink& sink) {
+  for (const auto& e : deck.special.genel) write_genel(e, sink);
+}
+
+void write_cbends(const records::Deck& deck, CardSink& sink) {
+  for (const auto& e : deck.special.cbend) write_cbend(e, sink);
+}
+
+void write_pbends(const records::Deck& deck, CardSink& sink) {
+  for (const auto& p : deck.special.pbend) write_pbend(p, sink);
+}
+
+void write_cgaps(const records::Deck& deck, CardSink& sink) {
+  for (const auto& e : deck.special.cgap) write_cgap(e, sink);
+}
+
+void write_pgaps(const records::Deck& deck, CardSink& sink) {
+  for (const auto& p : deck.special.pgap)
+    sink.put(CardFields("PGAP").add(p.id).add(p.u0).add(p.f0).add(p.ka).add(p.kb).add(p.kt));
+}
+
+/// K1 K2 M1 M2 N1 N2 SECTION, then lines of Y Z C MID.
+void convert_pbcomp(UnitConverter& u) {
+  u.scale(2, "A");
+  u.scale(3, 6, "I");
+  u.scale(7, "N");
+  u.scale(10, 13, "L");
+  for (int line = 16; line < u.size(); line += 8) u.scale(line, line + 1, "L");
+}
+
+/// A card with its section, or with that of a pipe (FSI, RM, T, P).
+void convert_pbend(UnitConverter& u) {
+  const bool is_pipe = !u.get(2).empty() && parse_int(u.get(2));
+  if (is_pipe) {
+    u.scale(3, 4, "L");
+    u.scale(5, "P");
+    u.scale(6, "L");
+    u.scale(8, 9, "?");
+    u.scale(10, "N");
+    u.scale(11, 12, "L");
+    return;
+  }
+  u.scale(2, "A");
+  u.scale(3, 5, "I");
+  u.scale(6, "L");
+  u.scale(8, 15, "L");
+  u.scale(18, "N");
+  u.scale(19, 21, "L");
+}
+
+/// SB NB are stresses; nothing tells whether TR is a thickness or a share of one.
+void convert_pcomps(UnitConverter& u) {
+  u.scale(3, 4, "P");
+  for (int ply = 8; ply < u.size(); ply += 8) u.scale(ply + 2, "?");
+}
+
+/// UI and UD by pairs of grid and component; K or Z by columns from the diagonal on; S by rows.
+void convert_genel(UnitConverter& u) {
+  const auto is = [&](int i, const char* word) { return make_upper(u.get(i)) == word; };
+  std::vector<std::string> ui, ud;
+  const auto read_pairs = [&](int first, std::vector<std::string>& components) {
+    int i = first;
+    for (; i < u.size() && !is(i, "UD") && !is(i, "K") && !is(i, "Z"); ++i)
+      if (!u.get(i).empty()) components.push_back(u.get(++i));
+    return i;
+  };
+  int i = read_pairs(2, ui);
+  if (is(i, "UD")) i = read_pairs(i + 1, ud);
+  const bool is_stiffness = is(i, "K");
+  ++i;
+  for (std::size_t column = 0; column < ui.size(); ++column)
+    for (std::size_t row = column; row < ui.size() && i < u.size(); ++row, ++i) {
+      const auto motion = UnitConverter::find_motion(ui[row], ui[column], true);
+      is_stiffness ? u.scale_by(motion, i, "K", "Q", "F") : u.scale_by(motion, i, "1/K", "1/Q", "1/F");
+    }
+  while (i < u.size() && !is(i, "S")) ++i;
+  ++i;
+  for (const auto& row : ui)
+    for (std::size_t column = 0; column < ud.size() && i < u.size(); ++column, ++i) {
+      const bool is_rotation = UnitConverter::find_motion(row, "", false) == Motion::Rotation;
+      u.scale_by(UnitConverter::find_motion(row, ud[column], true), i, ".", ".", is_rotation ? "1/L" : "L");
+    }
+}
+
 }  // namespace
 
 void add_special_element_parsers(ParserTable& table) {
-  table["PBCOMP"] = parse_pbcomp;
-  table["GENEL"] = parse_genel;
-  table["PCOMPS"] = parse_pcomps;
+  table["PBCOMP"] = {parse_pbcomp, nullptr, "PID MID A I1 I2 I12 J NSM K1 K2 M1 M2 N1 N2 SECTION"};
+  table["GENEL"] = {parse_genel, nullptr};
+  table["PCOMPS"] = {parse_pcomps, nullptr};
   table["CBEND"] = {parse_cbend, ""};
-  table["PBEND"] = parse_pbend;
+  table["PBEND"] = {parse_pbend, nullptr};
   table["CGAP"] = {parse_cgap, ""};
   table["PGAP"] = {parse_pgap, ". L F K K K . . L . ."};
+  table["PBCOMP"].convert = convert_pbcomp;
+  table["GENEL"].convert = convert_genel;
+  table["PCOMPS"].convert = convert_pcomps;
+  table["PBEND"].convert = convert_pbend;
+  write_by(table, write_pbcomps, {"PBCOMP"});
+  write_by(table, write_genels, {"GENEL"});
+  write_by(table, write_cbends, {"CBEND"});
+  write_by(table, write_pbends, {"PBEND"});
+  write_by(table, write_cgaps, {"CGAP"});
+  write_by(table, write_pgaps, {"PGAP"});
+  write_as(table, "PSOLID", {"PCOMPS"});
 }
 
 }  // namespace bough::nastran::detail

@@ -128,14 +128,20 @@ void parse_dti(Card& card, Reading& r) {
   r.deck.super.rows.push_back(std::move(rows));
 }
 
+void convert_sebulk(UnitConverter& u) {
+  u.fail_card("SEBULK takes matrices from a file, which keeps its units",
+              "convert the deck of the component and write its files again");
+}
+
 }  // namespace
 
 void add_superelement_parsers(ParserTable& table) {
-  table["SEBULK"] = parse_sebulk;
-  table["SECONCT"] = parse_seconct;
-  table["SELOAD"] = parse_seload;
-  table["EXTRN"] = parse_extrn;
-  table["DTI"] = parse_dti;
+  table["SEBULK"] = {parse_sebulk, nullptr, "SEID TYPE RSEID METHOD TOL LOC UNITNO"};
+  table["SEBULK"].convert = convert_sebulk;
+  table["SECONCT"] = {parse_seconct, ". . L", "SEIDA SEIDB TOL LOC"};
+  table["SELOAD"] = {parse_seload, ""};
+  table["EXTRN"] = {parse_extrn, ""};
+  table["DTI"] = {parse_dti, ""};
 }
 
 }  // namespace bough::nastran::detail

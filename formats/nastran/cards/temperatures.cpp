@@ -62,6 +62,28 @@ void parse_tempp1(Card& card, Reading& r) {
   add_elements(card, t, 8, r.deck.temperatures.plates);
 }
 
+void write_temp(const records::Deck& deck, CardSink& sink) {
+  for (const auto& grid : deck.temperatures.grids) sink.put(CardFields("TEMP").add(grid.sid).add(grid.g).add(grid.t));
+}
+
+void write_tempd(const records::Deck& deck, CardSink& sink) {
+  for (const auto& all : deck.temperatures.defaults) sink.put(CardFields("TEMPD").add(all.sid).add(all.t));
+}
+
+void write_temprb(const records::Deck& deck, CardSink& sink) {
+  for (const auto& bar : deck.temperatures.bars) {
+    CardFields card("TEMPRB");
+    card.add(bar.sid).add(bar.element).add(bar.t_a).add(bar.t_b);
+    for (int i = 0; i < 2; ++i) card.add(bar.gradient_a[i]).add(bar.gradient_b[i]);
+    sink.put(card);
+  }
+}
+
+void write_tempp1(const records::Deck& deck, CardSink& sink) {
+  for (const auto& plate : deck.temperatures.plates)
+    sink.put(CardFields("TEMPP1").add(plate.sid).add(plate.element).add(plate.t).add(plate.gradient));
+}
+
 }  // namespace
 
 void add_temperature_parsers(ParserTable& table) {
@@ -69,6 +91,10 @@ void add_temperature_parsers(ParserTable& table) {
   table["TEMPD"] = {parse_tempd, ""};
   table["TEMPRB"] = {parse_temprb, ". . . . 1/L 1/L 1/L 1/L"};
   table["TEMPP1"] = {parse_tempp1, ". . . 1/L"};
+  write_by(table, write_temp, {"TEMP"});
+  write_by(table, write_tempd, {"TEMPD"});
+  write_by(table, write_temprb, {"TEMPRB"});
+  write_by(table, write_tempp1, {"TEMPP1"});
 }
 
 }  // namespace bough::nastran::detail

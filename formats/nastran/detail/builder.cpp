@@ -367,10 +367,10 @@ class Builder {
         found->second.parser = parser->second.parse;
       const auto& responses = get_dynamic_parsers();
       if (const auto parser = responses.find(text_.name); dynamics_ && parser != responses.end())
-        found->second.dynamic = parser->second;
+        found->second.dynamic = parser->second.parse;
       const auto& of_complex_modes = get_complex_parsers();
       if (const auto parser = of_complex_modes.find(text_.name); is_complex_ && parser != of_complex_modes.end())
-        found->second.dynamic = parser->second;
+        found->second.dynamic = parser->second.parse;
     }
     return found->second;
   }

@@ -4,12 +4,28 @@
 #include <unordered_map>
 
 #include "formats/nastran/detail/card.hpp"
+#include "formats/nastran/detail/card_facts.hpp"
 #include "formats/records/deck_dynamics.hpp"
 
 namespace bough::nastran::detail {
 
 using DynamicParser = void (*)(Card&, records::DynamicCards&);
-using DynamicParserTable = std::unordered_map<std::string_view, DynamicParser>;
+
+/// A row of their table.
+struct DynamicRow : CardFacts {
+  DynamicRow() = default;
+  /// \param field_dimensions  CardFacts::dimensions; nullptr: converter does.
+  DynamicRow(DynamicParser parser, const char* field_dimensions, void (*converter)(UnitConverter&) = nullptr,
+             void (*noter)(const UnitConverter&, UnitNotes&) = nullptr)
+      : parse(parser) {
+    dimensions = field_dimensions;
+    convert = converter;
+    note = noter;
+  }
+
+  DynamicParser parse = nullptr;
+};
+using DynamicParserTable = std::unordered_map<std::string_view, DynamicRow>;
 
 /// xLOADn, DLOAD, DAREA, DELAY, DPHASE, LSEQ, TIC, TABLEDn, TABDMP1, FREQn, TSTEP, RANDPS, RANDT1, TABRND1,
 /// TABRNDG.

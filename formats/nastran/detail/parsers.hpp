@@ -1,35 +1,35 @@
 #pragma once
-/// \file The groups of card parsers; a new card is one function and one row in the table of its group.
-#include <string_view>
-#include <unordered_map>
-
+/// \file The groups of cards; a new card is one row in the table of its group, next to its functions: parser, writer,
+/// and the conversion of units where dimensions depend on other fields.
+#include "formats/nastran/detail/card_sink.hpp"
 #include "formats/nastran/detail/reading.hpp"
+#include "formats/nastran/detail/unit_converter.hpp"
 
 namespace bough::nastran::detail {
 
-using ParserTable = std::unordered_map<std::string_view, CardRow>;
-
-void add_grid_parsers(ParserTable& table);                ///< GRID, GRDSET, CORD1x, CORD2x
-void add_material_parsers(ParserTable& table);            ///< MAT1
+void add_grid_parsers(ParserTable& table);                ///< GRID, GRDSET, CORD1x, CORD2x, SPOINT
+void add_material_parsers(ParserTable& table);            ///< MAT1, MAT2, MAT8, MAT9, MAT11
 void add_line_property_parsers(ParserTable& table);       ///< PBAR, PBARL, PBEAM, PBEAML, PROD, PTUBE
 void add_point_property_parsers(ParserTable& table);      ///< PELAS, PBUSH, PMASS
 void add_line_element_parsers(ParserTable& table);        ///< CBAR, CBEAM, BAROR, BEAMOR, CROD, CONROD, CTUBE, PLOTEL
-void add_point_element_parsers(ParserTable& table);       ///< CELASx, CBUSH, CMASSx, CONMx, SPOINT
+void add_point_element_parsers(ParserTable& table);       ///< CELASx, CBUSH, CMASSx, CONMx
 void add_damper_parsers(ParserTable& table);              ///< CDAMPx, PDAMP, CVISC, PVISC, CBUSH1D, PBUSH1D
 void add_shell_parsers(ParserTable& table);               ///< CQUADx, CTRIAx, CSHEAR, PSHEAR
-void add_continuum_parsers(ParserTable& table);           ///< MAT2, MAT8, MAT9, PSHELL, PCOMP, PSOLID, solids
+void add_continuum_parsers(ParserTable& table);           ///< PSHELL, PCOMP, PSOLID, solids
 void add_constraint_parsers(ParserTable& table);          ///< RBE1, RBE2, RBE3, RBAR, RROD, SPC, SPC1, MPC, xADD
 void add_dof_set_parsers(ParserTable& table);             ///< SUPORT, SUPORT1, ASETi, OMITi, BSETi, CSETi, QSETi
 void add_direct_matrix_parsers(ParserTable& table);       ///< DMIG
-void add_load_parsers(ParserTable& table);                ///< FORCE, MOMENT, GRAV, LOAD
+void add_load_parsers(ParserTable& table);                ///< FORCE, MOMENT, GRAV
 void add_pressure_parsers(ParserTable& table);            ///< FORCE1/2, MOMENT1/2, PLOAD, 1, 2, 4, RFORCE, SPCD, SLOAD
+void add_load_set_parsers(ParserTable& table);            ///< LOAD
 void add_old_constraint_parsers(ParserTable& table);      ///< CRIGD1, CRIGD2, CRIGD3, CRIGDR
 void add_old_shell_parsers(ParserTable& table);           ///< CQUAD1, CTRIA1, CQDMEM, CTRPLT ... and their properties
 void add_old_solid_parsers(ParserTable& table);           ///< CHEXA1, CHEXA2, CWEDGE, CIHEX1 to CIHEX3, PIHEX, CELBOW
 void add_temperature_parsers(ParserTable& table);         ///< TEMP, TEMPD, TEMPRB, TEMPP1
 void add_special_element_parsers(ParserTable& table);     ///< PBCOMP, GENEL, CGAP, PGAP, CBEND, PBEND
 void add_special_constraint_parsers(ParserTable& table);  ///< RBAR1, RJOINT, RTRPLT, RTRPLT1, RSPLINE
-void add_nonstructural_parsers(ParserTable& table);       ///< NSM, NSM1, NSML, NSML1, NSMADD, ACCEL, ACCEL1
+void add_nonstructural_parsers(ParserTable& table);       ///< NSM, NSM1, NSML, NSML1, NSMADD
+void add_acceleration_parsers(ParserTable& table);        ///< ACCEL, ACCEL1
 void add_superelement_parsers(ParserTable& table);        ///< SEBULK, SECONCT, SELOAD, EXTRN, DTI
 void add_solution_parsers(ParserTable& table);            ///< EIGRL, EIGR, PARAM
 

@@ -1,6 +1,7 @@
 #pragma once
 /// \file State shared by the card parsers while a deck is read, and the table of parsers.
 #include <functional>
+#include <initializer_list>
 #include <map>
 #include <set>
 #include <string>
@@ -9,6 +10,7 @@
 #include <vector>
 
 #include "formats/nastran/detail/card.hpp"
+#include "formats/nastran/detail/card_facts.hpp"
 
 namespace bough::nastran::detail {
 
@@ -166,25 +168,32 @@ void finish_rigid_ids(Reading& r);
 
 using CardParser = void (*)(Card&, Reading&);
 struct CardSink;
+using CardWriter = void (*)(const records::Deck&, CardSink&);
 
-/// A row of the table of cards: what formats knows of a card.
-struct CardRow {
+/// A row of the table of cards: what formats knows of the card.
+struct CardRow : CardFacts {
   CardRow() = default;
-  /// \param field_dimensions  words of field_dimensions.hpp, "" without any; nullptr: unit_conversion.cpp or its table.
-  /// \param field_names  words of field_names.hpp.
-  CardRow(CardParser parser, const char* field_dimensions = nullptr, const char* field_names = nullptr)
-      : parse(parser), dimensions(field_dimensions), names(field_names) {}
+  /// \param field_dimensions  CardFacts::dimensions; nullptr: the row has `convert`.
+  /// \param field_names  CardFacts::names.
+  CardRow(CardParser parser, const char* field_dimensions, const char* field_names = nullptr) : parse(parser) {
+    dimensions = field_dimensions;
+    names = field_names;
+  }
 
   CardParser parse = nullptr;
-  const char* dimensions = nullptr;
-  const char* names = nullptr;
-  int entry_size = 0;  ///< fields from one entry to the next, of cards with several entries on a line
-  /// Writes all cards of this name; nullptr: one of the groups of card_sink.hpp does.
-  void (*write)(const records::Deck&, CardSink&) = nullptr;
+  CardWriter write = nullptr;  ///< writes all cards that have this function
+  int write_order = 0;         ///< place in a deck that is written: from 1, in the order of write_by
+  /// Card that this one is written as, with its `write` for want of another: its fields, or the element of today.
+  const char* written_as = nullptr;
 };
 
-/// Name -> parser of every card Bough reads.
-const std::unordered_map<std::string_view, CardRow>& get_card_parsers();
+/// Name -> row of every card that models are read from.
+using ParserTable = std::unordered_map<std::string_view, CardRow>;
+const ParserTable& get_card_parsers();
+/// Sets the writer of these cards, which writes them after all that were set before.
+void write_by(ParserTable& table, CardWriter write, std::initializer_list<const char*> cards);
+/// Cards that the reader turns into others, which are written in their place.
+void write_as(ParserTable& table, const char* card, std::initializer_list<const char*> others);
 /// The three that give defaults are parsed before all others.
 bool is_default_card(std::string_view upper_case_name);
 

@@ -1,6 +1,7 @@
 #include "formats/toml/detail/signal_units.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdlib>
 
@@ -100,6 +101,12 @@ std::vector<Wire> SignalUnits::list_wires(const toml::table& block, const std::s
   return wires;
 }
 
+/// Unit of dimensions as "L/T^2", "F L", "1"; 1 for words that are no dimensions.
+double SignalUnits::calc_unit(const std::string& dims) const {
+  const auto powers = records::parse_dims(dims).value_or(std::array<double, 3>{});
+  return std::pow(c_.mass, powers[0]) * std::pow(c_.length, powers[1]) * std::pow(c_.time, powers[2]);
+}
+
 std::vector<double> SignalUnits::list_sensor_units(const toml::table& sensor) const {
   const std::string type = get_text(sensor, "type"), hinge = get_text(sensor, "hinge");
   const long coordinate = sensor["coordinate"].value_or(std::int64_t{0});
@@ -107,19 +114,13 @@ std::vector<double> SignalUnits::list_sensor_units(const toml::table& sensor) co
     const auto i = static_cast<std::size_t>(coordinate - 1);
     return coordinate >= 1 && i < all.size() ? std::vector<double>{all[i]} : all;
   };
-  const double l = c_.length, t = c_.time;
-  if (type == "position" || type == "deflection" || type == "distance") return {l};
-  if (type == "velocity") return {l / t};
-  if (type == "acceleration" || type == "accelerometer") return {l / (t * t)};
-  if (type == "angular_velocity" || type == "gyro") return {1 / t};
-  if (type == "angular_acceleration") return {1 / (t * t)};
+  const auto* kind = records::find_sensor_kind(type);
+  if (kind == nullptr) return {1};
   if (type == "hinge_angle" || type == "resolver") return pick(list_positions(hinge));
-  if (type == "hinge_rate" || type == "tachometer") return pick(list_rates(hinge));
-  if (type == "hinge_force") return {force()};
-  if (type == "hinge_moment" || type == "strain_energy") return {force() * l};
+  if (kind->of == records::SensorOf::Coordinate) return pick(list_rates(hinge));
   if (type == "modal_coordinate") return {c_.calc_modal()};
-  if (type == "modal_rate") return {c_.calc_modal() / t};
-  if (type != "element") return {1};
+  if (type == "modal_rate") return {c_.calc_modal() / c_.time};
+  if (kind->of != records::SensorOf::Element) return {calc_unit(kind->dims)};
   std::vector<double> units;
   if (const std::string one = get_text(sensor, "component"); !one.empty())
     return {records::calc_component_unit(one, c_)};

@@ -60,6 +60,7 @@ class SignalUnits {
 
  private:
   HingeCoordinates get_coordinates(const std::string& hinge) const;
+  double calc_unit(const std::string& dims) const;
   std::vector<double> list_sensor_units(const toml::table& sensor) const;
   std::vector<double> list_actuator_units(const toml::table& actuator) const;
   std::optional<double> find_channel_unit(const std::string& channel) const;

@@ -1,0 +1,55 @@
+#pragma once
+/// \file Requests of Python: messages and progress, the locks, choices of a model.
+#include "analysis/common/events.hpp"
+#include "analysis/common/failures.hpp"
+#include "analysis/common/model_choice.hpp"
+#include "fe/linear/petsc.hpp"
+#include "python/bindings/bindings.hpp"
+
+namespace bough::python {
+
+using Strings = std::vector<std::string>;
+
+/// Keeps messages for Python's warnings; progress(stage) of Python is called with the interpreter's lock.
+template <class Base>
+class PythonEventsOf : public Base {
+ public:
+  explicit PythonEventsOf(const py::object& progress) : progress_(progress) {}
+  void add_message(const Diagnostic& message) override { messages_.add(message); }
+  void show_progress(const std::string& stage) override {
+    if (progress_.is_none() || stage.empty()) return;
+    const py::gil_scoped_acquire acquired;
+    progress_(stage);
+  }
+  const Diagnostics& get_messages() const { return messages_; }
+
+ protected:
+  const py::object& progress_;
+  Diagnostics messages_;
+};
+using PythonEvents = PythonEventsOf<analysis::Events>;
+
+/// Runs act() with the lock of the module and without that of the interpreter; failures get the location `file`.
+template <class Act>
+void run_exclusive(const std::string& file, const Act& act) {
+  const py::gil_scoped_release released;
+  const Exclusive held;
+  linear::initialize_petsc();
+  analysis::with_file(file, [&] {
+    act();
+    return 0;
+  });
+}
+
+/// Runs act(events) likewise. Gives the messages, of which warnings are Python's too.
+template <class Act>
+std::vector<Diagnostic> run_request(const std::string& file, const py::object& progress, const Act& act) {
+  PythonEvents events(progress);
+  run_exclusive(file, [&] { act(events); });
+  return tell(events.get_messages());
+}
+
+/// Throws ValueError for a word that names no mass matrix.
+analysis::ModelChoice make_model_choice(int subcase, bool free, const std::string& mass, Strings ignore);
+
+}  // namespace bough::python
