@@ -33,16 +33,20 @@ std::string format(const Diagnostic& d);
 /// Collects diagnostics; nothing is thrown until throw_if_errors.
 class Diagnostics {
  public:
+  /// Adds an error, warning or note.
   void error(std::string_view id, SourceLocation where, std::string what, std::string advice = {});
   void warning(std::string_view id, SourceLocation where, std::string what, std::string advice = {});
   void note(std::string_view id, SourceLocation where, std::string what, std::string advice = {});
+  /// Adds one message of any severity.
   void add(Diagnostic d);
   /// Unless one with the same id and text is here already.
   void add_new(const Diagnostic& d);
 
+  /// All messages in the order in which they were added.
   const std::vector<Diagnostic>& items() const { return items_; }
   int num_errors() const { return num_errors_; }
   int num_warnings() const { return num_warnings_; }
+  /// Returns true if a message with this id is there.
   bool has(std::string_view id) const;
 
   /// Throws InputError with everything collected so far if there is an error among it.
@@ -59,8 +63,10 @@ class Diagnostics {
 class Failure : public std::exception {
  public:
   Failure(std::vector<Diagnostic> items, int exit_code);
+  /// The messages as text, one per line.
   const char* what() const noexcept override { return text_.c_str(); }
   const std::vector<Diagnostic>& items() const { return items_; }
+  /// Exit code of the command line: 1 wrong input, 3 failed computation.
   int exit_code() const { return exit_code_; }
 
  private:

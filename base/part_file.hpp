@@ -24,6 +24,7 @@ class PartFile {
   /// The name to write to; the target's is get_target.
   const std::string& get_name() const { return name_; }
   const std::string& get_target() const { return target_; }
+  /// File descriptor of the file that is written.
   int get_descriptor() const { return descriptor_; }
 
   /// Appends; false, with error(), when the file did not take all of it.

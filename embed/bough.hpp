@@ -17,6 +17,7 @@ namespace bough {
 class Error : public std::runtime_error {
  public:
   Error(bough_status status, const std::string& text) : std::runtime_error(text), status_(status) {}
+  /// Status of the call that failed.
   bough_status status() const { return status_; }
 
  private:
@@ -44,12 +45,17 @@ class Model {
     });
   }
 
+  /// Inputs in order, with their dimensions.
   std::vector<Port> inputs() const { return list(BOUGH_INPUTS); }
+  /// Components of all outputs in order, with their dimensions.
   std::vector<Port> outputs() const { return list(BOUGH_OUTPUTS); }
+  /// Numbers of [parameters], with their dimensions.
   std::vector<Port> parameters() const { return list(BOUGH_PARAMETERS); }
   /// Index of a port. Throws Error when there is none.
   int find_input(const std::string& name) const { return find(BOUGH_INPUTS, "input", name); }
+  /// Index of an output. Throws Error when there is none.
   int find_output(const std::string& name) const { return find(BOUGH_OUTPUTS, "output", name); }
+  /// The handle for functions of bough.h; it stays the model's.
   const bough_model* get() const { return model_.get(); }
 
  private:
@@ -120,8 +126,11 @@ class Simulation {
     simulation_.reset(simulation);
   }
 
+  /// Time reached. [T]
   double time() const { return bough_time(get()); }
+  /// Sets one input from the present time on.
   void set_input(int input, double value) { set_inputs(input, &value, 1); }
+  /// Sets n inputs from index `first` on.
   void set_inputs(int first, const double* values, int n) { demand(bough_set_inputs(get(), first, n, values)); }
   /// Terminated: by an event or at the end of the run; reason() says which, time() where.
   Reached advance_to(double t) {
@@ -130,13 +139,17 @@ class Simulation {
     demand(status);
     return Reached::Time;
   }
+  /// Reason of the end of the run, or the message of the last call that failed.
   std::string reason() const { return bough_last_message(get()); }
+  /// One output at the present time.
   double output(int index) const {
     double value = 0;
     demand(bough_get_outputs(get(), index, 1, &value));
     return value;
   }
+  /// Copies n outputs from index `first` on.
   void outputs(int first, double* values, int n) const { demand(bough_get_outputs(get(), first, n, values)); }
+  /// The whole state as bytes, for restore().
   std::vector<std::byte> save() const {
     std::vector<std::byte> state(bough_state_size(get()));
     demand(bough_save(get(), state.data(), state.size()));

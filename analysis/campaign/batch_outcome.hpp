@@ -32,6 +32,7 @@ void make_case_folder(const std::filesystem::path& folder);
 
 /// The outcome kept in this folder; nothing when the case is not over.
 std::optional<BatchOutcome> read_outcome(const std::filesystem::path& case_folder);
+/// Writes outcome.json into the folder of a case. Throws ComputationError "cli.write".
 void write_outcome(const BatchOutcome& outcome, const std::filesystem::path& case_folder);
 
 /// The numbers that a [[collect]] asks for, from the case's folder. Throws InputError "batch.collect".

@@ -19,9 +19,13 @@ class BatchPlan {
   /// the steps `may_leave` the folder of their case, cli.output-outside.
   BatchPlan(const std::string& campaign_file, const std::vector<std::string>& verbs, bool may_leave = false);
 
+  /// The campaign file.
   const toml_files::CampaignSpec& get_spec() const { return spec_; }
+  /// Every case, numbered from 1.
   const std::vector<BatchCase>& get_cases() const { return cases_; }
+  /// Number of cases of all shards.
   int num_cases() const { return static_cast<int>(cases_.size()); }
+  /// Name of the folder of a case within that of the campaign.
   std::string get_folder(int number) const { return get_case_folder(number, num_cases()); }
   /// (file, SHA-256) of all that the outcomes depend on, the campaign first.
   const std::vector<std::pair<std::string, std::string>>& get_inputs() const { return inputs_; }

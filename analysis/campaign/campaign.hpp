@@ -25,6 +25,7 @@ struct CampaignRequest {
 /// Share of the cases of a call: those with (number - 1) % count == index.
 struct Shard {
   int index = 0, count = 1;
+  /// Returns true if the case belongs to the shard.
   bool holds(int number) const { return (number - 1) % count == index; }
 };
 /// Throws InputError "batch.bad-shard".
@@ -49,6 +50,7 @@ class CampaignEvents : public Events {
   virtual void show(const CampaignAnswer& /*so_far*/, std::size_t /*num_open*/) {}
 };
 
+/// Absolute path of the folder: that of the request, else the name of the campaign in the working directory.
 std::filesystem::path find_campaign_folder(const CampaignRequest& request, const BatchPlan& plan);
 
 /// Does the cases that are not done, then writes the tables. Collective, outside mpirun alone. Workers are calls of

@@ -16,6 +16,7 @@ class Events {
   virtual void show_progress(const std::string& /*stage*/) {}
 };
 
+/// Passes every message to Events::add_message().
 void add_messages(const Diagnostics& diagnostics, Events& events);
 
 }  // namespace bough::analysis

@@ -16,6 +16,7 @@ class SubcaseFailures {
       : num_solved_(num_solved), is_named_(std::max(num_solved, num_in_deck) > 1) {}
 
   void add(int subcase, const Failure& failure);
+  /// Returns true if no subcase has failed.
   bool is_empty() const { return failed_.empty(); }
   /// Every message once, its errors with the subcases that they are about; without the warnings that are `said`.
   std::vector<Diagnostic> get_items(const Diagnostics& prior = {}) const;

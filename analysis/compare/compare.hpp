@@ -26,8 +26,10 @@ struct SingleReport {
   std::string method;            ///< of the mass integrals that the body selects
   modal::IntegralsCheck check;
 
+  /// Number of modes of the body.
   int num_modes() const { return static_cast<int>(frequency_hz.size()); }
 };
+/// Compares the mass integrals of a body by its methods, and what its modes capture.
 SingleReport check_integrals(const records::FlexBody& body);
 
 /// Two models; bodies only when both are.

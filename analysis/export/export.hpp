@@ -42,6 +42,7 @@ struct ExportFormat {
   /// Sets the text of the answer, or writes `request.output`.
   void (*make)(const ExportRequest& request, ExportAnswer& answer, Diagnostics& diagnostics);
 };
+/// Every format, in the order of the help.
 const std::vector<ExportFormat>& list_export_formats();
 
 /// Returns true for the formats whose files export_file() writes.

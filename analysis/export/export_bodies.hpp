@@ -15,6 +15,7 @@ struct BodyExportOptions {
   int digits = 17;
 };
 
+/// Returns true for sid, mbdyn and flat.
 bool is_body_format(const std::string& format);
 /// Throws InputError "cli.no-export" for a file that is no flexible body.
 std::string make_body_text(const std::string& file, const std::string& format, const BodyExportOptions& options,

@@ -33,6 +33,7 @@ void check_sweep(const LinearizeRequest& request);
 
 /// The model of a system that is loaded; its source stays empty.
 records::LinearModel linearize(const LinearizeRequest& request, const LoadedSystem& loaded, Diagnostics& diagnostics);
+/// Loads the system and makes its model, with its source. Throws what loading and linearizing throw.
 records::LinearModel linearize(const LinearizeRequest& request, const CheckFiles& check, Events& events);
 /// A model for each value of the sweep, their poles followed.
 records::LinearSweep sweep_linear_models(const LinearizeRequest& request, const CheckFiles& check, Events& events);

@@ -37,6 +37,7 @@ class RunEvents : public Events {
   virtual void check_output(const std::string& /*path*/, bool /*resumes*/) {}
   /// Called when the integration begins.
   virtual void start() {}
+  /// Called at each sample, and between many switches.
   virtual void show(const solver::Progress& /*progress*/) {}
 };
 

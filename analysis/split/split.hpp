@@ -42,6 +42,7 @@ struct SplitPart {
 
 struct ComparedFrequency {
   double whole_hz = 0, parts_hz = 0;
+  /// Relative error of the frequency of the parts.
   double error() const { return parts_hz / whole_hz - 1; }
 };
 

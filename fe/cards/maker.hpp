@@ -28,8 +28,11 @@ class Maker {
   Maker(const records::Deck& deck, const NodeTable& nodes, Diagnostics& diagnostics, ElementList& list)
       : deck_(deck), nodes_(nodes), diagnostics_(diagnostics), list_(list), mat1_(deck.mat1) {}
 
+  /// Deck whose cards become elements.
   const records::Deck& deck() const { return deck_; }
+  /// Nodes of the model by grid.
   const NodeTable& nodes() const { return nodes_; }
+  /// Receives errors and warnings of the cards.
   Diagnostics& diagnostics() { return diagnostics_; }
   /// ge: structural damping of the material or property.
   void add(std::unique_ptr<Element> element, double ge = 0) {
@@ -37,6 +40,7 @@ class Maker {
     list_.add(std::move(element));
   }
 
+  /// Adds an error at the line of a card.
   void error(const std::string& id, const records::CardLocation& at, std::string what, std::string advice = {}) {
     diagnostics_.error(id, deck_.locate(at), std::move(what), std::move(advice));
   }
@@ -64,16 +68,27 @@ class Maker {
 /// A number as a message shows it (six digits, exponent where needed).
 std::string show(double value);
 
+/// CBAR and CBEAM with PBAR, PBARL, PBEAM, PBEAML, PBCOMP.
 void make_beams(Maker& maker);
+/// CROD, CONROD, CTUBE.
 void make_rods(Maker& maker);
+/// CELASi, CMASSi, CDAMPi, CBUSH, CGAP.
 void make_springs(Maker& maker);
+/// CVISC, CBUSH1D.
 void make_line_dampers(Maker& maker);
+/// CONM1, CONM2.
 void make_masses(Maker& maker);
+/// Shells without midside grids.
 void make_shells(Maker& maker);
+/// Shells with midside grids: CQUAD8, CTRIA6.
 void make_curved_shells(Maker& maker);
+/// CSHEAR.
 void make_shear_panels(Maker& maker);
+/// CHEXA, CPENTA, CTETRA, CIHEX3.
 void make_solids(Maker& maker);
+/// CBEND.
 void make_bends(Maker& maker);
+/// GENEL.
 void make_generals(Maker& maker);
 
 }  // namespace bough::fe

@@ -20,11 +20,15 @@ class FileWriter;
 /// Throw InputError: "hdf5.cannot-open", "hdf5.truncated", "hdf5.wrong-format", "hdf5.missing", "hdf5.shape";
 /// ComputationError "hdf5.write" (disk full, no permission).
 void write_flex_body(const records::FlexBody& body, const std::string& path);
+/// Reads a flexible body; throws as write_flex_body().
 records::FlexBody read_flex_body(const std::string& path);
 
+/// Writes real modes or buckling load factors of a deck.
 void write_modes(const records::ModesResult& modes, const std::string& path);
+/// Reads the file of write_modes().
 records::ModesResult read_modes(const std::string& path);
 
+/// Writes static solutions with all their subcases at once.
 void write_static(const records::StaticResult& result, const std::string& path);
 /// The bytes of that file, without a file.
 std::string make_static_image(const records::StaticResult& result);
@@ -35,6 +39,7 @@ class StaticWriter {
   ~StaticWriter();
   StaticWriter(const StaticWriter&) = delete;
   StaticWriter& operator=(const StaticWriter&) = delete;
+  /// Writes one subcase.
   void add(const records::StaticSubcase& subcase);
   /// Starts to write the subcases so far to disk, in the background.
   void start_sync();
@@ -46,6 +51,7 @@ class StaticWriter {
 };
 /// All but extremes, forces on grids and strains at corners.
 records::StaticResult read_static(const std::string& path);
+/// Writes K, M, B and geometric stiffness matrices as sparse arrays.
 void write_matrices(const records::MatricesResult& result, const std::string& path);
 
 struct ResultsWriterOptions {

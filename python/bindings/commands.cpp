@@ -180,7 +180,13 @@ py::tuple check(const std::string& file, Strings set, int subcase, bool free, co
   analysis::CheckAnswer answer;
   const py::object none = py::none();
   CheckEvents events(none);
-  run_exclusive(file, [&] { answer = analysis::check_file(request, events); });
+  try {
+    run_exclusive(file, [&] { answer = analysis::check_file(request, events); });
+  } catch (const InputError& failure) {
+    // Errors in the file are findings; those of the call, as a file that is not there, are raised.
+    if (failure.items().empty() || failure.items().front().id.starts_with("cli.")) throw;
+    for (const auto& item : failure.items()) answer.messages.add(item);
+  }
   py::dict d;
   std::visit([&](const auto& content) { describe(content, d); }, answer.content);
   return py::make_tuple(d, answer.messages.items());
@@ -276,6 +282,7 @@ py::tuple plot(Strings files, Strings sensors, Strings labels, Strings points, c
   analysis::PlotAnswer answer;
   auto messages = run_request(request.files.empty() ? "" : request.files.front(), py::none(),
                               [&](PythonEvents& events) { answer = analysis::make_plots(request, events); });
+  const auto svg = answer.plots.size() == 1 ? report::draw_svg(answer.plots.front()) : report::draw_svg(answer.plots);
   py::list plots;
   for (const auto& one : answer.plots) {
     py::list curves;
@@ -293,7 +300,7 @@ py::tuple plot(Strings files, Strings sensors, Strings labels, Strings points, c
     p["curves"] = curves;
     plots.append(p);
   }
-  return py::make_tuple(plots, report::draw_svg(answer.plots), answer.csv, std::move(messages));
+  return py::make_tuple(plots, svg, answer.csv, std::move(messages));
 }
 
 py::tuple make_report(Strings files, Strings channels, const std::string& title, const py::object& progress) {

@@ -45,15 +45,20 @@ class Plant {
   /// at the operating point, and controllers' states are none of the plant's.
   explicit Plant(const System& system, bool is_open = false);
 
+  /// Returns true if actuators keep their commands.
   bool is_open() const { return is_open_; }
+  /// Number of independent displacements.
   int num_dofs() const { return static_cast<int>(dofs_.size()); }
   /// "shoulder:1"; "ball:rx" for rotations, "flyer:x" for translations of a spherical or free hinge; "boom:eta3".
   const std::string& dof_name(int i) const { return dofs_[static_cast<size_t>(i)].name; }
+  /// Dimensions of a displacement: "1", "L", "by normalisation".
   const std::string& dof_dims(int i) const { return dofs_[static_cast<size_t>(i)].dims; }
+  /// Returns true for a modal coordinate.
   bool is_mode(int i) const { return dofs_[static_cast<size_t>(i)].is_mode; }
   /// A displacement that is large but not absurd: 0.1 rad, 5 % of the size of the bodies.
   double step(int i) const { return dofs_[static_cast<size_t>(i)].step; }
 
+  /// Number of states of controllers and actuators.
   int num_states() const { return static_cast<int>(state_rows_.size()); }
   /// "controller 'pid' (state 1)".
   std::string state_name(int i) const;
@@ -66,6 +71,7 @@ class Plant {
 
   /// Sets dofs and loops to the modes of hinges and constraints after an event, for the positions (t, q).
   void set_modes(const DiscreteState& discrete, double t, const VectorXd& q);
+  /// The state of the start of the run.
   OperatingPoint make_initial_point() const;
   /// Where is_open: from now on actuators keep the commands they have there.
   void hold_commands(const OperatingPoint& point);
@@ -86,11 +92,14 @@ class Plant {
   /// Every force, then every actuator, then every free hinge coordinate, then components of sensors and controllers
   /// and every [[input]] (by their path, "/sensors/tip:x", where the name alone is taken).
   const std::vector<PlantInput>& inputs() const { return inputs_; }
+  /// Number of inputs that are forces; they come first.
   int num_forces() const { return num_forces_; }
+  /// Number of inputs that are actuators; they follow the forces.
   int num_actuators() const { return num_actuators_; }
   /// Components of the sensors: "tip:x", or the sensor's name when it is a scalar; then those of controllers and
   /// actuators; then the command of each actuator, "motor:command".
   const records::Signals& outputs() const { return outputs_; }
+  /// Number of outputs that are components of sensors; they come first.
   int num_sensor_outputs() const { return num_sensor_outputs_; }
   /// The controller of output i where is_open leaves out states or memory of it; "": none.
   std::string find_frozen_law(int i) const;
@@ -100,6 +109,7 @@ class Plant {
     int output = -1, input = -1;
   };
   Cut find_cut(const std::string& name) const;
+  /// Names at which find_cut() finds a point.
   std::vector<std::string> list_cuts() const;
 
   /// Computes f'(0) of a function that evaluates this plant, as evaluate, sample or sample_all.

@@ -57,8 +57,11 @@ struct System {
   /// Terms, by body, that would stiffen a body whose stiffening is off. nullptr: it is on, or the file has none.
   std::vector<std::shared_ptr<const StiffeningTerms>> left_out;
 
+  /// Number of bodies, ground not counted.
   int num_bodies() const;
+  /// Number of coordinates: hinge coordinates with quaternions, then modal coordinates, body by body.
   int num_q() const;
+  /// Number of rates: hinge rates, then modal rates, body by body; prescribed and locked rows included.
   int num_u() const;
   /// Continuous states of controllers, actuators and sensors, then num_momentum_out().
   int num_z() const;
@@ -66,30 +69,40 @@ struct System {
   int num_momentum_out() const;
   int find_body(const std::string& name) const;   ///< -1 when absent
   int find_hinge(const std::string& name) const;  ///< hinge h is the inboard hinge of body h
+  /// Name of a body as in the system file.
   const std::string& body_name(int body) const;
+  /// Name of the inboard hinge of a body.
   const std::string& hinge_name(int body) const;
   bool is_valid(int body) const;  ///< false only after draft_system: neither its nodes nor its hinge are known
+  /// Number of modes of a body; 0 if it is rigid.
   int num_modes(int body) const;
   int q_offset(int body) const;  ///< hinge coordinates start here; η follows
+  /// Row of u at which the hinge rates of a body start.
   int u_offset(int body) const;
+  /// Rows of the hinge in q, quaternions with four.
   int num_hinge_q(int body) const;
   int num_hinge_u(int body) const;      ///< hinge coordinates that are free at the start
   int num_hinge_rates(int body) const;  ///< rows of the hinge in u; rates and forces of get_hinge
   int num_dofs() const;                 ///< rows of u that are free at the start
   int eta_offset(int body) const;       ///< in q
   int eta_dot_offset(int body) const;   ///< in u
+  /// Number of constraints that close loops, open ones too.
   int num_constraints() const;
   int find_constraint(const std::string& name) const;  ///< -1 when absent
+  /// Name of a constraint as in the system file.
   const std::string& constraint_name(int constraint) const;
+  /// Returns true for a constraint between hinge coordinates.
   bool is_coupler(int constraint) const;
   /// Index of node `id` for calc_node_motion (0: Bo), -1 when the body has none such.
   int find_node(int body, int id) const;
   /// Returns true if the node has the second-order (foreshortening) term.
   bool has_node_second_order(int body, int node_index) const;
 
+  /// Results and scratch for one thread, with the discrete state of the records. Allocates.
   std::unique_ptr<SystemData> make_data() const;
   /// Initial state as the records say; q (num_q), u (num_u).
   void calc_initial_state(Eigen::Ref<VectorXd> q, Eigen::Ref<VectorXd> u) const;
+  /// The initial state as calc_initial_state() gives it, with the states z of the start.
   State make_initial_state() const;
   StateLayout layout() const { return {num_q(), num_u(), num_z()}; }
 };
@@ -107,6 +120,7 @@ struct SystemData {
 /// The discrete state from now on (SystemData starts with that of the records): what get_discrete returns. Memory that
 /// is left empty stays. Not within a step: allocates.
 void set_modes(const System& system, SystemData& data, const DiscreteState& discrete);
+/// Modes of hinges and constraints, and the memory of blocks.
 DiscreteState get_discrete(const SystemData& data);
 /// Returns true if coordinates and constraints have the modes of `discrete`. No allocation.
 bool has_modes(const SystemData& data, const DiscreteState& discrete);
@@ -157,6 +171,7 @@ inline Motion get_motion(const System& system, const SystemData& data) {
   return {system.tree, data.tree, system.loops, data.loops, system.gravity};
 }
 
+/// Motion of a body at the last state that was evaluated.
 const BodyState& get_body_state(const SystemData& data, int body);
 inline NodeMotion calc_node_motion(const System& system, const SystemData& data, int body, int node_index) {
   return calc_node_motion(get_motion(system, data), body, node_index);

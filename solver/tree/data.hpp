@@ -93,8 +93,11 @@ struct TreeData {
   /// close_loops where constraints are closed.
   double calc_constraint_force(int row) const { return transmitted[row] - hinge_force[row]; }
 
+  /// Returns true if the arrays of a stage are valid.
   bool has(Stage s) const { return (done & static_cast<unsigned>(s)) != 0; }
+  /// Assertion that the arrays of a stage are valid.
   void demand(Stage s) const { BOUGH_DEMAND(has(s)); }
+  /// Data of a body; -1: of the ground.
   const BodyData& operator[](int b) const { return b < 0 ? ground : bodies[static_cast<size_t>(b)]; }
   BodyData& operator[](int b) { return b < 0 ? ground : bodies[static_cast<size_t>(b)]; }
 };
@@ -104,6 +107,7 @@ inline const Matrix6Xd& get_P_top(const TreeBody& tb, const BodyData& d) {
   return tb.carries_on_modes ? d.P_top : d.inertia.M_top;
 }
 
+/// Arrays for all passes over the tree. Allocates.
 TreeData make_tree_data(const Tree& tree);
 /// Sets the mode of each coordinate; mode: num_u. Resizes the arrays of flexible bodies: allocates.
 void set_modes(const Tree& tree, const std::vector<HingeMode>& mode, TreeData& data);

@@ -163,7 +163,7 @@ class Commands(InFolder):
         self.write("mass.toml", '[[body]]\nname = "m"\nmass = 2.0\n[[hinge]]\nname = "h"\ntype = "prismatic"\n'
                                 'child = "m"\naxis = [1.0, 0.0, 0.0]\nstiffness = 8.0\ndamping = 0.4\n'
                                 '[[sensor]]\nname = "x"\ntype = "hinge_angle"\nhinge = "h"\n[[input]]\nname = "f"\n'
-                                'value = 0.0\n[[actuator]]\nname = "a"\ntype = "hinge"\nhinge = "h"\ninput = "f"\n'
+                                'start = 0.0\n[[actuator]]\nname = "a"\ntype = "hinge"\nhinge = "h"\ninput = "f"\n'
                                 "[simulation]\nduration = 1.0\noutput_step = 0.1\n")
         bough.System("mass.toml").linearize(open=True).save("l.h5")
         found = bough.response("l.h5", outputs="x", points=40)

@@ -71,24 +71,30 @@ class Card {
   SourceLocation locate(int i) const;
 
   int read_int(int i, const char* what);  ///< required
+  /// An integer, `fallback` if the field is blank.
   int read_int(int i, const char* what, int fallback);
   int read_id(int i, const char* what);                           ///< required, > 0
   int read_id(int i, const char* what, int fallback);             ///< > 0 or blank
   int read_reference(int i, const char* what, int fallback = 0);  ///< >= 0 or blank: coordinate systems, open ends
   double read_real(int i, const std::string& what);               ///< required
+  /// A real number, `fallback` if the field is blank.
   double read_real(int i, const std::string& what, double fallback);
+  /// A real number; nothing if the field is blank.
   std::optional<double> read_optional_real(int i, const char* what);
   Eigen::Vector3d read_vector(int i, const char* names);  ///< fields i..i+2, blank = 0; names "N1 N2 N3"
   Eigen::Vector2d read_point(int i, const char* names);   ///< fields i, i+1, blank = 0; names "C1 C2"
   unsigned read_components(int i, const char* what);      ///< required
+  /// Bit mask of components 1 to 6, `fallback` if the field is blank.
   unsigned read_components(int i, const char* what, unsigned fallback);
   int read_component(int i, const char* what);  ///< one component 0..6, blank = 0
   /// A word of `choices` (upper case), `fallback` when blank.
   std::string read_word(int i, const char* what, std::string_view fallback, const std::vector<std::string>& choices);
+  /// Text of the field in upper case; marks it as read.
   std::string get_upper(int i);
 
   /// An error of this card at field i (its line), or at the card's first line.
   void fail(std::string_view id, int i, std::string what, std::string advice = {});
+  /// A warning of this card at field i.
   void warn(std::string_view id, int i, std::string what, std::string advice = {});
   /// deck.field-range unless `condition`.
   void demand(bool condition, int i, const char* what, const char* expected);
@@ -112,6 +118,7 @@ struct IdRange {
   int first = 0, last = 0, step = 1;  ///< a single id: first = last
   bool is_thru = false;
   std::vector<int> except;
+  /// Returns true if the list has the id.
   bool contains(int id) const;
 };
 /// Reads fields first .. last-1, skipping blanks. Adds deck.bad-list.
