@@ -74,7 +74,7 @@ void make_beams(Maker& maker);
 void make_rods(Maker& maker);
 /// CELASi, CMASSi, CDAMPi, CBUSH, CGAP.
 void make_springs(Maker& maker);
-/// CVISC, CBUSH1D.
+/// Dampers and springs along the line between two grids.
 void make_line_dampers(Maker& maker);
 /// CONM1, CONM2.
 void make_masses(Maker& maker);
