@@ -83,7 +83,7 @@ class FmuDependenciesTest(FmuCase):
         inputs = {name: {i for i in of or () if i in fmu.list("input")} for name, of in fmu.dependencies.items()}
         loads = {"i3", "i4", "i7", "i9"}  # what accelerates at once: neither sampled, switched nor behind a lag
         rate = next(name for name in fmu.derivatives if "hinge rate" in name)
-        expected = {"spin:x": set(), "held:x": set(), "attitude:1": set(), "seen:x": set(), "far": set(), "push:x": set(),
+        expected = {"spin:x": set(), "held:x": set(), "attitude:w": set(), "seen:x": set(), "far": set(), "push:x": set(),
                     "/controllers/held_law": set(), "/controllers/turns": set(), "/controllers/slow": set(), "/controllers/mixed": {"i3"},
                     "/controllers/late": loads, "felt:x": loads, rate: loads, "/actuators/wheel:1": {"i4"},
                     "/actuators/motor:1": set(), "der(controller 'slow' (state 1))": loads}

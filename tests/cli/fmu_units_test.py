@@ -25,7 +25,7 @@ class FmuUnitsTest(FmuCase):
                 work = fmu.states[-2]
                 flyer = [name for name in fmu.states if "flyer" in name]
                 expected = {"torque": torque, "upper": "rad", "rate": f"rad/{s}", "shake:x": f"{m}/{s}2", "tip:x": m, "k": None,
-                            "target": None, "attitude:1": None, "spin:x": f"rad/{s}", q1: "rad", "der(" + q1 + ")": f"rad/{s}",
+                            "target": None, "attitude:w": None, "spin:x": f"rad/{s}", q1: "rad", "der(" + q1 + ")": f"rad/{s}",
                             fmu.derivatives[fmu.states.index(flyer[-1])]: f"{m}/{s}2", flyer[0]: None, flyer[4]: m, work: torque,
                             "der(" + work + ")": f"{kg}.{m}2/{s}3"}
                 self.assertEqual({name: fmu.unit_of[name] for name in expected}, expected)
