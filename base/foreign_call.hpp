@@ -24,6 +24,7 @@ class ForeignCall {
   ForeignCall(const ForeignCall&) = delete;
   ForeignCall& operator=(const ForeignCall&) = delete;
 
+  /// Returns the line of the input file that names the user library.
   const SourceLocation& get_place() const { return at_; }
   /// Writes "controller 'law': bough_controller_outputs at t = 0.3", without a terminating zero; returns the length.
   /// Async-signal-safe.

@@ -16,6 +16,7 @@ class TemporaryFolder {
   TemporaryFolder(const TemporaryFolder&) = delete;
   TemporaryFolder& operator=(const TemporaryFolder&) = delete;
 
+  /// Returns the path of the folder, without a slash at its end.
   const std::string& path() const { return path_; }
 
  private:
