@@ -17,6 +17,7 @@ struct RandomOutput {
   const records::RandomCurves* curves = nullptr;
   Eigen::Index column = 0;
 };
+/// Lists the outputs of all curves in their order; the pointers are valid as long as `response`.
 std::vector<RandomOutput> list_random_outputs(const records::RandomResponse& response);
 
 /// Comma-separated values, a row per output: random (the set), output, rms, zero_crossings_hz, with modes modal_rms and

@@ -17,6 +17,8 @@ struct NamedCurve {
   bool is_phase = false;
   Eigen::VectorXd real, imag;  ///< imag: empty over time
 };
+/// Lists the curves of displacements, velocities, accelerations, forces and elements of a subcase, each with its values
+/// at all frequencies or times.
 std::vector<NamedCurve> list_curves(const records::ResponseSubcase& subcase);
 
 /// The columns below of every subcase as text, then those of the random responses.

@@ -35,8 +35,11 @@ struct FlxFile {
   bool has_rigid = false, has_stiffening = false;
   records::FlexBody more;
 
+  /// Number of modes in the file.
   int num_modes() const { return static_cast<int>(modes.size()); }
+  /// Returns true if the file contains Γ4 (MODOPT 0).
   bool has_gamma4() const { return modopt == 0; }
+  /// Returns true if the file contains Γ2 and Γ3 (MODOPT 0 or 1).
   bool has_gamma23() const { return modopt <= 1; }
 };
 

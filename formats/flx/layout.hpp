@@ -57,6 +57,7 @@ Layout make_native_layout(int digits);
 struct BlockInfo {
   std::string name, indices;
 };
+/// Returns all blocks that a layout may name.
 const std::vector<BlockInfo>& get_blocks();
 
 }  // namespace bough::flx

@@ -14,7 +14,9 @@ class NumberFormat {
   std::optional<std::string> print(double value) const;
   std::optional<std::string> print_integer(long value) const;
 
+  /// Returns true for %d and I, which take whole numbers.
   bool is_integer() const { return style_ == 'd'; }
+  /// Returns true if the format gives a width in columns.
   bool has_width() const { return width_ > 0; }
   /// Fortran's repeat count: values on a line; 0 when none is given.
   int per_line() const { return repeat_; }

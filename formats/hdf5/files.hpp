@@ -79,6 +79,7 @@ struct ResultsFile {
   std::string reason;
   double energy_error = std::numeric_limits<double>::quiet_NaN();  ///< worst of the run, relative; NaN: not given
 };
+/// Reads all samples and events of a results file; repeats while the file is being written.
 ResultsFile read_results(const std::string& path);
 /// Inputs of the run of a results file, and its outcome.
 struct RunInputs {
@@ -87,6 +88,7 @@ struct RunInputs {
   bool completed = false;
   std::string reason;
 };
+/// Reads the inputs and the outcome alone, without the samples. Throws as read_results().
 RunInputs read_run_inputs(const std::string& path);
 /// Events of a results file: time, text and source.
 std::vector<records::EventRecord> read_events(const std::string& path);
@@ -101,6 +103,7 @@ struct RunState {
   double time = 0;          ///< of the last sample
   bool is_written = false;  ///< a process of Bough is at it now
 };
+/// Reads the state of a run, also while it goes on. Throws as read_results().
 RunState read_run_state(const std::string& path);
 
 /// One line per object: path, shape, type, description; for `info`.
@@ -111,6 +114,7 @@ struct FileInfo {
   std::map<std::string, std::string> attributes;  ///< of the root
   std::vector<ObjectInfo> objects;
 };
+/// Lists attributes and objects of any HDF5 file. Throws InputError "hdf5.cannot-open".
 FileInfo read_info(const std::string& path);
 
 /// SHA-256 of a file's bytes, hex.

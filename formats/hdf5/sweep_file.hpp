@@ -19,6 +19,7 @@ struct ResponseOfModel {
   records::Margins margins;
   bool has_margins = false;
 };
+/// Reads the frequency response of a linear model, its peak gain and its margins.
 ResponseOfModel read_model_response(const std::string& path);
 
 /// `margins`: of a loop, or nullptr.

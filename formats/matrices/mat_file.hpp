@@ -22,16 +22,25 @@ struct MatArray {
 struct MatValue {
   std::variant<MatArray, records::SparseMatrix, std::string, MatFields, MatCells> value;
 
+  /// A real scalar, 1 x 1.
   MatValue(double number);  // NOLINT: a number is a value
+  /// A real matrix, rows x columns.
   template <class Derived>
   MatValue(const Eigen::DenseBase<Derived>& matrix) : MatValue(from_matrix(matrix.derived())) {}
+  /// A real array of any number of dimensions.
   MatValue(MatArray array);
+  /// A sparse real matrix.
   MatValue(records::SparseMatrix matrix);
+  /// A row of characters.
   MatValue(std::string text);
+  /// A row of characters; `text` ends with a zero.
   MatValue(const char* text);
+  /// A struct, 1 x 1.
   MatValue(MatFields fields);
+  /// A cell array, n x 1.
   MatValue(MatCells cells);
 
+  /// Copies a matrix to an array of two dimensions, column by column.
   static MatArray from_matrix(const Eigen::MatrixXd& matrix);
 };
 

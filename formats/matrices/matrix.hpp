@@ -19,6 +19,7 @@ struct Matrix {
   Eigen::MatrixXi row_dofs;       ///< rows x 2: node id, code 1..6 (0 for a scalar point); 0 x 2 when not known
   Eigen::MatrixXi column_dofs;    ///< the same for the columns; those of the rows in a square matrix
 
+  /// Returns true if the file names the dofs of the rows.
   bool has_dofs() const { return row_dofs.rows() > 0; }
 };
 

@@ -8,7 +8,9 @@
 
 namespace bough::nastran {
 
+/// Reads a deck with its dynamic loads, tables and output requests. Throws and reports as read_deck().
 records::DynamicDeck read_dynamic_deck(const std::string& path, const ReadOptions& options, Diagnostics& diagnostics);
+/// Reads a deck from text; `name` takes the place of the path in messages.
 records::DynamicDeck read_dynamic_deck_text(std::string_view text, const std::string& name, const ReadOptions& options,
                                             Diagnostics& diagnostics);
 /// Dynamic deck from the bytes of pack_deck().

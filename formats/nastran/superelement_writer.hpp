@@ -21,6 +21,7 @@ struct ExternalTexts {
   std::string assembly;  ///< .asm: for the main bulk data
   std::string section;   ///< .pch: BEGIN SUPER, after the main bulk data
 };
+/// Writes SEBULK, SECONCT and grids for the assembly, and EXTRN, ASET and recovery tables for the section.
 ExternalTexts write_external_component(const ExternalComponent& component);
 
 }  // namespace bough::nastran

@@ -16,7 +16,9 @@ struct Settings {
   std::map<std::string, Eigen::MatrixXd> matrices;        ///< a list of rows, or out of `file`
   std::map<std::string, std::vector<std::string>> words;  ///< a text or a list of texts
 
+  /// Returns true if a number, matrix or word has this key.
   bool has(const std::string& key) const { return numbers.count(key) + matrices.count(key) + words.count(key) > 0; }
+  /// Returns the number of a key; `otherwise` if it is absent or a list.
   double get(const std::string& key, double otherwise) const {
     const auto it = numbers.find(key);
     return it == numbers.end() || it->second.size() != 1 ? otherwise : it->second[0];

@@ -181,6 +181,7 @@ struct CaseSet {
   };
   bool is_all = false;
   std::vector<Range> ranges;
+  /// Returns true if the set includes the id; a range of EXCEPT takes precedence over all others.
   bool contains(int id) const {
     bool is_in = is_all;
     for (const auto& range : ranges) {
@@ -221,6 +222,7 @@ struct DynamicSelection {
 
 struct DynamicSubcase : Subcase {
   DynamicSubcase() = default;
+  /// A subcase of a static deck with the selection of its dynamic commands.
   DynamicSubcase(const Subcase& subcase, DynamicSelection selection)
       : Subcase(subcase), dynamics(std::move(selection)) {}
   DynamicSelection dynamics;

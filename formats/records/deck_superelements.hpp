@@ -93,6 +93,7 @@ struct SuperelementCards {
   std::optional<ExternalOutput> output;
   bool is_joined = false;  ///< Deck::superelements is made of these
 
+  /// Returns true if the deck has no superelement.
   bool empty() const { return sebulk.empty() && seconct.empty() && sections.empty(); }
 };
 
@@ -119,6 +120,7 @@ struct Superelement {
   std::map<int, int> load_columns;  ///< 0-based column of P, by load
   std::vector<RecoveryTable> recovery;
 
+  /// Number of exterior dofs: 1 for a scalar point, else the components of each point.
   Eigen::Index num_dofs() const {
     Eigen::Index sum = 0;
     for (const auto& point : points) sum += point.c == 0 ? 1 : std::popcount(point.c);

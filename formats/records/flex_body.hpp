@@ -50,6 +50,7 @@ struct ElementStrainEnergy {
   std::vector<std::string> card;
   MatrixXd matrix;  ///< e x n(n+1)/2: the upper triangle of each k, row by row
 
+  /// Returns true if the body has no element strain energies.
   bool empty() const { return id.empty(); }
   /// Column of k_ij, i <= j, of n modes.
   static Eigen::Index find_column(Eigen::Index i, Eigen::Index j, Eigen::Index n) {
@@ -108,7 +109,9 @@ struct FlexBody {
   /// `full_phi` has them.
   Eigen::MatrixXf mesh_phi;
 
+  /// Number n of modes.
   int num_modes() const { return static_cast<int>(eigenvalue.size()); }
+  /// Number p of output nodes.
   int num_nodes() const { return static_cast<int>(node_id.size()); }
   /// Index into node_id, -1 when absent.
   int find_node(int id) const;

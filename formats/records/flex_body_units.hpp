@@ -9,6 +9,7 @@ namespace bough::records {
 /// Factors from old to new units: values in new units per old unit.
 struct UnitChange {
   double mass = 1, length = 1, time = 1;
+  /// Factor of forces, M L/T².
   double calc_force() const;
   /// Factor of the modal coordinates, M^1/2 L: modes normalized by mass stay so.
   double calc_modal() const;

@@ -12,6 +12,7 @@ namespace bough::records {
 /// States, inputs or outputs of a linear model: a name each, and its dimensions in M L T F.
 struct Signals {
   std::vector<std::string> name, dims;
+  /// Number of signals.
   int size() const { return static_cast<int>(name.size()); }
 };
 
@@ -23,6 +24,7 @@ struct Poles {
   Eigen::VectorXd error;                      ///< estimated, of λ; empty where it was not asked for
   std::vector<std::string> mode;              ///< the coordinate that takes part most
   std::vector<std::string> body_mode, hinge;  ///< the mode and the hinge coordinate that do; "" where none does
+  /// Number of poles, equal to that of states.
   int size() const { return static_cast<int>(real.size()); }
 };
 

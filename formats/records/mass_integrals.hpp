@@ -16,6 +16,7 @@ struct MassIntegrals {
   std::vector<MatrixXd> gamma2;               ///< [j] 3 x n: column k is Γ2_jk = Σ A^T_j × φ_k
   std::vector<Matrix3d> gamma3;               ///< [j] 3 x 3
   std::vector<std::vector<Matrix3d>> gamma4;  ///< [j][k] 3 x 3
+  /// Returns true if the set is not given; its method was not requested or the body has no modes.
   bool empty() const { return gamma0.size() == 0; }
 };
 

@@ -13,6 +13,7 @@ namespace bough::records {
 struct MatrixSource {
   std::string file;  ///< resolved
   std::string name;  ///< empty: the file's only matrix, or its only one of a usual name
+  /// Returns true if no file is named.
   bool empty() const { return file.empty(); }
 };
 

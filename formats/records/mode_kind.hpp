@@ -4,6 +4,7 @@
 
 namespace bough::records {
 
+/// Returns "normal", "constraint", "attachment" or "residual".
 inline const char* get_name(ModeKind kind) {
   switch (kind) {
     case ModeKind::Normal:

@@ -20,6 +20,7 @@ struct ModeEnergies {
   std::vector<std::string> card;         ///< of each
   MatrixXd strain, kinetic;              ///< elements x n
   VectorXd total_strain, total_kinetic;  ///< n: of the whole matrices
+  /// Returns true if no element energies were requested.
   bool empty() const { return strain.size() == 0; }
 };
 

@@ -22,6 +22,7 @@ struct RecoveryBlock {
   Eigen::MatrixXd external;             ///< rows x ne, in the order of the locators
   Eigen::VectorXd offset;               ///< of the preload, at rest; zero without
 
+  /// Number of rows: elements times components.
   Eigen::Index num_rows() const { return static_cast<Eigen::Index>(id.size() * components.size()); }
 };
 

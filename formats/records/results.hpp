@@ -51,6 +51,7 @@ struct Checkpoint {
 class ResultSink {
  public:
   virtual ~ResultSink() = default;
+  /// Starts the results; called once, before all samples.
   virtual void begin(const ResultsHeader& header) = 0;
   /// One sample: the channels' components one after another, in the header's order (time first).
   virtual void write_sample(const Eigen::Ref<const Eigen::VectorXd>& sample) = 0;

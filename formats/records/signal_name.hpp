@@ -10,6 +10,7 @@ struct SignalName {
   std::string path;       ///< "/sensors/tip", "/hinges/root/q"
   std::string component;  ///< "x", "2"; may be empty
 };
+/// Splits a name at its last colon; a path without a slash is that of a sensor.
 SignalName parse_signal_name(const std::string& text);
 
 /// Names of the components of a channel: x y z, w x y z, or counts from 1 (hinges, modes, actuators); one empty name

@@ -43,8 +43,11 @@ struct ThirdOrder {
   std::vector<Tables> node;             ///< [interface node] columns: translations and rotation vector
   Tables load;                          ///< columns: work of the load of each locator
 
+  /// Returns true if the body has no displacements of third order.
   bool empty() const { return large.empty(); }
+  /// Number N of large modes.
   int num_large() const { return static_cast<int>(large.size()); }
+  /// Number m of displacement fields beyond the modes.
   int num_fields() const { return static_cast<int>(amplitudes[0].cols()); }
   /// Variables of the tables of displacements of this degree, of n modes.
   int num_variables(int degree, int n) const { return degree == 2 ? n : num_large(); }

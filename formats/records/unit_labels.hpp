@@ -7,6 +7,7 @@ namespace bough::records {
 /// Labels of the base units; empty: not given.
 struct UnitLabels {
   std::string length, mass, time, force;
+  /// Returns true if no label is given.
   bool empty() const { return length.empty() && mass.empty() && time.empty() && force.empty(); }
 };
 

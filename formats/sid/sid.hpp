@@ -18,6 +18,7 @@ struct Taylor {
   MatrixXd m0;               ///< rows x columns
   std::vector<MatrixXd> m1;  ///< [k] rows x columns, k = 0..nq-1; empty: order 0
 
+  /// Zero series of order 0.
   static Taylor zero(Eigen::Index rows, Eigen::Index columns) { return {MatrixXd::Zero(rows, columns), {}}; }
   /// Zero series with a first order of nq zero matrices.
   static Taylor zero(Eigen::Index rows, Eigen::Index columns, int nq);
@@ -47,6 +48,7 @@ struct Sid {
   Taylor ksigma;  ///< nq x 1
   Taylor Ke, De;  ///< nq x nq
 
+  /// Number nq of modes.
   int num_modes() const { return static_cast<int>(mode_name.size()); }
 };
 
@@ -63,6 +65,7 @@ struct Layout {
 Sid make_sid(const records::FlexBody& body, const Layout& layout, const SourceLocation& where,
              Diagnostics& diagnostics);
 
+/// Writes the blocks of the file in the order of the standard, numbers with layout.digits.
 std::string write_sid(const Sid& sid, const Layout& layout);
 
 /// Throws InputError "export.sid-syntax", "export.sid-missing", "export.sid-shape" with the line.
@@ -78,6 +81,7 @@ struct Relations {
   double AP_psi = 0;          ///< AP.m1 = skew(psi), worst node
   double origin_phi = 0;      ///< origin.m1 = phi, worst node
 };
+/// Computes the differences, each relative to the larger of its two sides; a body without modes has none.
 Relations calc_relations(const Sid& sid);
 
 }  // namespace bough::sid

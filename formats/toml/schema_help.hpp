@@ -25,6 +25,7 @@ struct KindHelp {
   /// "one of file, mass": what the schema wants besides the required keys.
   std::vector<std::string> expected;
 
+  /// Returns the help of a key; nullptr if the table has no such key.
   const KeyHelp* find(const std::string& key) const;
 };
 

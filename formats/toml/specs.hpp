@@ -6,6 +6,7 @@
 
 namespace bough::toml_files {
 
+/// Reads a body file; an unreadable file is reported and gives a spec with its path alone.
 records::BodySpec read_body_spec(const std::string& path, Diagnostics& diagnostics);
 /// Reads the spec from the text of the file `path`, which is not opened.
 records::BodySpec read_body_spec_text(const std::string& text, const std::string& path, Diagnostics& diagnostics);

@@ -20,6 +20,7 @@ struct FieldOptions {
 inline constexpr FieldOptions kOptional{.is_optional = true};
 inline constexpr FieldOptions kTransposed{.is_transposed = true};
 
+/// Number of items as the shapes have it.
 template <class Container>
 long count(const Container& items) {
   return static_cast<long>(items.size());
@@ -44,6 +45,7 @@ void visit_column(Archive& archive, const std::string& name, Items& items, long 
   }
 }
 
+/// Visits Γ0 to Γ4 of n modes below `path`; absent integrals have no arrays.
 template <class Archive, class Integrals>
 void visit_integrals(Archive& archive, const std::string& path, Integrals& g, long n) {
   if (!archive.has(path + "/gamma0", !g.empty())) return;
@@ -54,6 +56,7 @@ void visit_integrals(Archive& archive, const std::string& path, Integrals& g, lo
   archive.array(path + "/gamma4", g.gamma4, {n, n, 3, 3});
 }
 
+/// Visits K_G1, the locators with K_G2 and their loads, and the preload, all of n modes.
 template <class Archive, class Body>
 void visit_stiffening(Archive& archive, Body& body, long n) {
   constexpr const char* kLoads[] = {"ax", "ay", "az", "alx", "aly", "alz", "wx2", "wy2", "wz2", "wxwy", "wxwz", "wywz"};
@@ -76,6 +79,7 @@ void visit_stiffening(Archive& archive, Body& body, long n) {
   archive.array("/stiffening/kg_preload", body.kg_preload, {n, n}, kOptional);
 }
 
+/// Visits the tables of third order; a body without large modes has none.
 template <class Archive, class Body>
 void visit_third_order(Archive& archive, Body& body, long n) {
   using Third = records::ThirdOrder;
@@ -109,6 +113,7 @@ void visit_third_order(Archive& archive, Body& body, long n) {
   visit_integrals(archive, "/third_order/integrals", third.integrals, n + m);
 }
 
+/// Visits the recovery matrices and the strain energies of elements, all of n modes.
 template <class Archive, class Body>
 void visit_recovery(Archive& archive, Body& body, long n) {
   archive.array("/recovery/inertial_load", body.inertial_load, {n, records::kNumInertialLoads}, kOptional);
@@ -131,6 +136,7 @@ void visit_recovery(Archive& archive, Body& body, long n) {
   archive.array("/strain_energy/matrix", energy.matrix, {count(energy.id), n * (n + 1) / 2});
 }
 
+/// Visits grids, element blocks and mode shapes for pictures.
 template <class Archive, class Body>
 void visit_mesh(Archive& archive, Body& body, long n) {
   auto& mesh = body.mesh;

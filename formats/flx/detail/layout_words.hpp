@@ -11,6 +11,7 @@ struct FieldInfo {
   std::string name, indices;
   bool is_text = false;
 };
+/// Returns all fields that a text of a layout may name.
 const std::vector<FieldInfo>& get_fields();
 
 /// The entry of that name; null when there is none.

@@ -17,9 +17,13 @@ class FileImage {
  public:
   explicit FileImage(Address begin) : begin_(begin) {}
 
+  /// Address of the first byte in the file.
   Address begin() const { return begin_; }
+  /// Address after the last byte.
   Address end() const { return begin_ + bytes_.size(); }
+  /// The bytes from begin() to end().
   const std::string& bytes() const { return bytes_; }
+  /// Returns the byte at an address of the file; valid until the next block is added. \pre begin() <= address < end().
   char* at(Address address) { return bytes_.data() + (address - begin_); }
 
   /// Space for a block, zero.
@@ -37,7 +41,9 @@ class FileImage {
 /// Texts of variable length and other objects of global heaps (III.E); equal ones are one.
 class TextHeap {
  public:
+  /// Adds a text before place(); a text that is there already is shared.
   void add(const std::string& text) { places_.emplace(text, Place{}); }
+  /// Writes the heaps of all texts into the image and stores their addresses.
   void place(FileImage& image);
   /// The reference to a text that was added: length, heap, number. An empty text needs no heap.
   std::string encode(const std::string& text, std::uint64_t length) const;

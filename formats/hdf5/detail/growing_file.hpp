@@ -27,6 +27,7 @@ class GrowingFile {
   bool has_failed() const { return failed_; }
   const std::string& path() const { return path_; }
 
+  /// Writes `size` bytes at the offset `place`, beyond the end too; repeats interrupted and partial writes.
   void write(std::uint64_t place, const char* data, std::size_t size);
   /// To at least this size, with zeros.
   void extend(std::uint64_t size);

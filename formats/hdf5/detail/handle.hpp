@@ -29,7 +29,9 @@ class Handle {
   }
   ~Handle() { reset(); }
 
+  /// The identifier, still owned by this.
   hid_t get() const { return id_; }
+  /// Returns false if the call that gave the identifier failed.
   bool is_valid() const { return id_ >= 0; }
   /// Closes now; false when closing failed (a full disk shows here).
   bool reset() {

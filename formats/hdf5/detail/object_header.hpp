@@ -50,8 +50,10 @@ inline constexpr int kSpace = 0x01, kLinkInfo = 0x02, kType = 0x03, kFill = 0x05
 /// Bytes of the messages that the size field of a header message can hold.
 inline constexpr std::size_t kMaxMessage = 65535;
 
+/// Message of an attribute, version 3; `type` and `space` are encoded messages.
 Message make_attribute(const std::string& name, const std::string& type, const std::string& space,
                        const std::string& data);
+/// Message of a hard link to the object header at `target`.
 Message make_link(const std::string& name, Address target);
 /// A group whose links are messages.
 std::vector<Message> make_group_messages();

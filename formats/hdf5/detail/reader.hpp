@@ -29,11 +29,14 @@ struct NumberArray {
 
 class FileReader {
  public:
+  /// Opens a file of Bough. Throws InputError if its format or version is not the expected one.
   FileReader(const std::string& path, const std::string& format, const std::string& version);
   /// Opens a file of any format, as of another program.
   explicit FileReader(const std::string& path);
 
+  /// The identifier of the file, owned by this.
   hid_t get() const { return file_.get(); }
+  /// Returns true if the file has an object at `path`.
   bool has(const std::string& path) const { return exists(file_.get(), path); }
 
   /// These report "hdf5.missing", "hdf5.shape" (found against expected), "hdf5.type", "hdf5.damaged" and, unless
@@ -50,6 +53,7 @@ class FileReader {
   /// The one text of a dataset that is there.
   std::string read_text(const std::string& path);
 
+  /// Text of an attribute; empty if the object or the attribute is missing.
   std::string read_attribute(const std::string& object, const std::string& name);
   /// A list of texts; empty where it is missing or of another kind.
   std::vector<std::string> read_attribute_words(const std::string& object, const std::string& name);
@@ -57,6 +61,7 @@ class FileReader {
   std::vector<std::pair<std::string, std::string>> read_source();
   std::vector<std::string> get_children(const std::string& group);
 
+  /// Reports an error of this file, thrown by throw_if_errors().
   void error(const char* id, const std::string& what, const std::string& advice = {});
   /// Throws InputError with everything reported.
   void throw_if_errors() const { diagnostics_.throw_if_errors(); }
@@ -74,8 +79,11 @@ class FileReader {
 /// Matrix of a two-dimensional array.
 Eigen::MatrixXd to_matrix(const NumberArray& array);
 
+/// Reads /mesh; an empty mesh if the file has none. Reports "hdf5.value" for elements with unknown grids.
 records::BodyMesh read_mesh(FileReader& file);
+/// Reads /modes/phi: for each node 6 x num_modes, translations first.
 std::vector<Eigen::MatrixXd> read_mode_shapes(FileReader& file, long num_nodes, long num_modes);
+/// Reads /modes/kind. Reports "hdf5.value" for an unknown kind.
 std::vector<records::ModeKind> read_mode_kinds(FileReader& file, long num_modes);
 
 }  // namespace bough::hdf5

@@ -23,6 +23,7 @@ struct ResultsOrigin {
 struct RowGroups {
   std::uint64_t chunk_rows = 1, max_groups = 1;
   std::uint64_t sample_size = 0;
+  /// [bytes] of a row group in storage.
   std::uint64_t group_bytes() const { return chunk_rows * sample_size * sizeof(double); }
 };
 /// For max_rows samples of sample_size numbers.
@@ -40,6 +41,8 @@ struct ResultsState {
 
 class ResultsImage {
  public:
+  /// Lays out all metadata for at most groups.max_groups row groups; `reason`: the state that a new file has,
+  /// "running".
   ResultsImage(const ResultsOrigin& origin, const RowGroups& groups, const std::string& reason);
 
   /// All of it but the first page, from kPage on.
@@ -86,6 +89,7 @@ struct CheckpointBlock {
   std::string bytes;
   Address header = 0;
 };
+/// Lays out state, time and memory of a checkpoint; the descriptions are those of the heap of `texts`.
 CheckpointBlock encode_checkpoint(const records::Checkpoint& checkpoint, Address begin, const ResultsImage& texts);
 
 /// The datasets of /events, of one chunk each in a block: rows beyond their number may be filled.
@@ -101,9 +105,13 @@ class EventTable {
 
   EventTable(Address begin, std::uint64_t capacity, const ResultsImage& texts);
 
+  /// Address of the block in the file.
   Address begin() const { return image_.begin(); }
+  /// Address after the block.
   Address end() const { return image_.end(); }
+  /// The bytes of the block, headers first.
   const std::string& bytes() const { return image_.bytes(); }
+  /// Number of rows that the block has space for.
   std::uint64_t capacity() const { return capacity_; }
   /// [bytes] of the headers, which come first in the block.
   std::size_t headers_size() const { return headers_size_; }

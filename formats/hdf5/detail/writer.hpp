@@ -29,6 +29,7 @@ class FileWriter {
   FileWriter(const FileWriter&) = delete;
   FileWriter& operator=(const FileWriter&) = delete;
 
+  /// Writes an array of doubles, last index fastest.
   void write_numbers(const std::string& path, const Dims& shape, const double* data, const ArrayAttributes& attributes);
   /// Writes numbers that are not contiguous: fill(first, data) stores item `first` of the first dimension at `data`. A
   /// few megabytes at a time.
@@ -39,7 +40,9 @@ class FileWriter {
   void write_integers(const std::string& path, const Dims& shape, const int* data, const ArrayAttributes& attributes);
   void write_strings(const std::string& path, const std::vector<std::string>& data, const ArrayAttributes& attributes);
 
+  /// Writes one number as an array of length 1.
   void write_number(const std::string& path, double value, const ArrayAttributes& attributes);
+  /// Writes a vector as an array of one dimension.
   void write_vector(const std::string& path, const Eigen::VectorXd& v, const ArrayAttributes& attributes);
   /// In chunks, of which those of zeros take no space.
   void write_vector_with_zeros(const std::string& path, const Eigen::VectorXd& v, const ArrayAttributes& attributes);

@@ -16,7 +16,9 @@ std::string show_pair(const records::ListedElements& block, std::size_t k, Eigen
 void begin_table(const records::ListedStep& step, const records::ListedElements& block, const std::string& title,
                  const std::vector<std::string>& columns, Pages& pages);
 
+/// Adds the table of element forces of a block in Nastran's columns.
 void add_force_pages(const records::ListedStep& step, const records::ListedElements& block, Pages& pages);
+/// Adds the table of element stresses of a block in Nastran's columns.
 void add_stress_pages(const records::ListedStep& step, const records::ListedElements& block, Pages& pages);
 
 }  // namespace bough::listing::detail

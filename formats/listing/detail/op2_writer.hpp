@@ -11,6 +11,7 @@ namespace bough::listing::detail {
 /// Words of 4 bytes.
 class Words {
  public:
+  /// Appends a 32-bit integer.
   void add(int value) { add_bits(static_cast<std::uint32_t>(value)); }
   /// No number: 1 as an integer, as Nastran has it.
   void add(double value) { add_bits(std::isnan(value) ? 1U : std::bit_cast<std::uint32_t>(static_cast<float>(value))); }
@@ -61,6 +62,7 @@ class Op2Writer {
     put_key(0);
   }
 
+  /// Starts a table. \param name  of 8 characters at most. \param inner  name in its header record.
   void begin_table(const std::string& name, const std::string& inner) {
     Words words;
     words.add(name, 8);
@@ -76,14 +78,17 @@ class Op2Writer {
     for (const int word : {1, 1, 0, 0, 1}) head.add(word);
     put_block(head);
   }
+  /// Appends a record with all its words.
   void add_record(const Words& words) {
     begin_record();
     put_block(words);
   }
+  /// Ends the table after its last record.
   void end_table() {
     begin_record();
     put_key(0);
   }
+  /// Ends the file and moves its bytes out; this is empty afterwards.
   std::string finish() {
     put_key(0);
     return std::move(bytes_);

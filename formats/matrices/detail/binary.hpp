@@ -14,15 +14,22 @@ class BinaryInput {
  public:
   BinaryInput(std::string path, std::string bytes) : path_(std::move(path)), bytes_(std::move(bytes)) {}
 
+  /// Sets byte order and word size of the file, which the caller finds from its first record.
   void set_layout(bool is_swapped, bool is_64_bit) {
     is_swapped_ = is_swapped;
     word_ = is_64_bit ? 8 : 4;
   }
+  /// Returns true if integers and reals have 8 bytes.
   bool is_64_bit() const { return word_ == 8; }
+  /// [bytes] of an integer, 4 or 8.
   std::size_t get_word_size() const { return word_; }
+  /// [bytes] of the file.
   std::size_t get_size() const { return bytes_.size(); }
+  /// Returns true after the last record.
   bool is_at_end() const { return next_ >= bytes_.size(); }
+  /// Offset [bytes] of the next record.
   std::size_t get_offset() const { return next_; }
+  /// The path, for messages.
   const std::string& get_path() const { return path_; }
 
   /// Reads one record; the cursor is after it. Throws "matrices.truncated", "matrices.record".
@@ -53,11 +60,14 @@ class BinaryInput {
     return is_double || word_ == 8 ? get<double>(record, offset) : static_cast<double>(get<float>(record, offset));
   }
 
+  /// Throws InputError `id` with the offset in its text.
   [[noreturn]] void fail(const char* id, std::size_t offset, const std::string& what,
                          const std::string& advice = {}) const {
     throw InputError(id, {path_}, "at byte " + std::to_string(offset) + ": " + what, advice);
   }
 
+  /// Returns the value of sizeof(T) bytes at `offset`, in the byte order of the processor. \pre The record is long
+  /// enough.
   template <class T>
   T get(std::string_view record, std::size_t offset) const {
     BOUGH_DEMAND(offset + sizeof(T) <= record.size());

@@ -14,7 +14,9 @@ using Dof = std::pair<int, int>;  ///< node id, component 1..6 (0: scalar point)
 /// Numbers dofs in the order of the file; sorted by node and component at the end.
 class DofNumbers {
  public:
+  /// Returns the number of a dof; a new one gets the next number, from 0.
   int find_or_add(const Dof& dof) { return number_.try_emplace(dof, static_cast<int>(number_.size())).first->second; }
+  /// Number of dofs so far.
   int size() const { return static_cast<int>(number_.size()); }
   /// New place of each number, and the dofs in their new order.
   std::vector<int> sort(Eigen::MatrixXi& dofs) const {

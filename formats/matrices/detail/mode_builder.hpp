@@ -47,7 +47,9 @@ inline bool make_table(const std::vector<ModeRows>& modes, ModeTable& table) {
   return true;
 }
 
+/// Reads eigenvectors from an OUTPUT2 file, a table for each subcase. Throws InputError "matrices.*" with the offset.
 std::vector<ModeTable> read_op2(const std::string& path);
+/// Reads eigenvectors from a punch file, a table for each subcase. Throws InputError "matrices.*" with the line.
 std::vector<ModeTable> read_punch(const std::string& path);
 
 }  // namespace bough::matrices::detail

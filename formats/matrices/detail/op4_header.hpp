@@ -16,8 +16,11 @@ struct Op4Header {
   std::string name;
   bool is_bigmat = false;
 
+  /// Returns true for types 3 and 4.
   bool is_complex() const { return type > 2; }
+  /// Returns true for types 2 and 4, double precision.
   bool is_double() const { return type % 2 == 0; }
+  /// Number of reals per entry: 1, or 2 for complex ones.
   long reals_per_entry() const { return is_complex() ? 2 : 1; }
 };
 
@@ -58,6 +61,7 @@ inline Matrix make_op4_matrix(const Op4Header& header, Triplets& entries) {
 struct StringHeader {
   long num_words = 0, row = 0;
 };
+/// Unpacks IS.
 inline StringHeader unpack_string_header(long is) {
   const long words = is / 65536;
   return {words - 1, is - 65536 * words};

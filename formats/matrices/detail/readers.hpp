@@ -9,7 +9,9 @@
 
 namespace bough::matrices::detail {
 
+/// Reads all DMIG of a deck or punch file; the dofs are those of the cards.
 std::vector<Matrix> read_dmig(const std::string& path, Diagnostics& diagnostics);
+/// Reads a Matrix Market file, coordinate or array; it has no dofs.
 std::vector<Matrix> read_matrix_market(const std::string& path);
 /// Lines "row column value"; the dofs from a file of the same name that ends in .dof, when there is one.
 std::vector<Matrix> read_triplet_lines(const std::string& path);

@@ -18,12 +18,14 @@ enum class Triangle { Both, Mirror, MirrorNegative, MirrorConjugate };
 
 class Triplets {
  public:
+  /// Adds an entry at 0-based indices.
   void add(int row, int column, double value, double imaginary = 0) {
     row_.push_back(row);
     column_.push_back(column);
     value_.push_back(value);
     imaginary_.push_back(imaginary);
   }
+  /// Number of entries added.
   std::size_t size() const { return row_.size(); }
   /// Returns true if there are entries (i, j) off the diagonal, but none with an entry (j, i) too, for any dof order.
   bool is_triangular() const;

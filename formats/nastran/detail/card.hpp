@@ -23,6 +23,7 @@ struct CardText {
   };
   std::vector<LineStart> lines;
 
+  /// Empties the card for the next one and keeps its memory.
   void clear() {
     name.clear();
     fields.clear();
@@ -40,9 +41,13 @@ class Card {
     while (size_ > 0 && text.fields[static_cast<std::size_t>(size_ - 1)].empty()) --size_;
   }
 
+  /// Name in upper case.
   const std::string& get_name() const { return text_.name; }
+  /// The bare text with the line of each field.
   const CardText& get_text() const { return text_; }
+  /// File and line of the first line of the card.
   records::CardLocation get_location() const { return text_.lines.front().at; }
+  /// Returns false if a field had an error.
   bool is_ok() const { return ok_; }
   /// Index after the last field that is not blank.
   int get_size() const { return size_; }

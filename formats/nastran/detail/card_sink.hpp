@@ -10,6 +10,7 @@ namespace bough::nastran::detail {
 struct CardSink {
   FieldFormat format = FieldFormat::Large;
   std::string out;
+  /// Appends the lines of a card to `out`.
   void put(const CardFields& card) { card.write(format, out); }
 };
 

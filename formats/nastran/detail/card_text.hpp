@@ -23,16 +23,23 @@ class CardFields {
  public:
   explicit CardFields(std::string name) : name_(std::move(name)) {}
 
+  /// Adds an integer.
   CardFields& add(int value);
+  /// Adds a real, written with as many digits as the columns of its field hold.
   CardFields& add(double value);
+  /// Adds three reals.
   CardFields& add(const Eigen::Vector3d& v);
+  /// Adds a word, unchanged.
   CardFields& add_word(std::string_view word);
+  /// Adds `count` blank fields.
   CardFields& add_blank(int count = 1);
   CardFields& add_id(int id);                 ///< blank for 0
   CardFields& add_components(unsigned mask);  ///< blank for 0
   CardFields& end_line();                     ///< blanks up to the next line's first field
 
+  /// Name of the card.
   const std::string& get_name() const { return name_; }
+  /// Number of fields after the name so far.
   std::size_t get_size() const { return fields_.size(); }
   /// Appends the lines of the card.
   void write(FieldFormat format, std::string& out) const;

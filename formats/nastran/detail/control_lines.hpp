@@ -18,6 +18,7 @@ struct Command {
   std::string_view value;  ///< after "=" or, without one, after the word
 };
 
+/// Splits a line of the case control; the value is a view of `text`.
 Command split_command(std::string_view text);
 
 /// Lines of CEND and BEGIN BULK.
@@ -25,6 +26,7 @@ struct Sections {
   static constexpr std::size_t none = static_cast<std::size_t>(-1);
   std::size_t cend = none, begin_bulk = none;
 };
+/// Finds CEND and the first BEGIN BULK; a bare BEGIN of a DMAP sequence before CEND does not count.
 Sections find_sections(const Source& source);
 
 /// SOL, out of the lines before `last`.

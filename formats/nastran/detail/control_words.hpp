@@ -21,6 +21,7 @@ std::string find_nearest_command(std::string_view word);
 /// Known commands that are not used, for one note.
 class IgnoredCommands {
  public:
+  /// Adds a command with its line; only its first line is kept.
   void add(const std::string& word, const records::CardLocation& at);
   /// Adds deck.case-control-ignored, with the option that gives what a request asks for.
   void report(const records::Deck& deck, Diagnostics& diagnostics) const;

@@ -123,6 +123,7 @@ struct OldElements {
   std::map<std::pair<std::string, std::string>, int> counts;  ///< (old card, card of today)
   records::CardLocation first;
 
+  /// Counts a card of NASTRAN-95 that is read as the card `today`.
   void count(Card& card, const char* today) {
     if (counts.empty()) first = card.get_location();
     ++counts[{card.get_name(), today}];
@@ -130,6 +131,7 @@ struct OldElements {
 };
 
 struct Reading {
+  /// Starts with an empty state; both arguments must outlive it.
   Reading(records::Deck& deck_read, Diagnostics& diagnostics_of_deck)
       : deck(deck_read), diagnostics(diagnostics_of_deck) {}
 
@@ -189,6 +191,7 @@ struct CardRow : CardFacts {
 
 /// Name -> row of every card that models are read from.
 using ParserTable = std::unordered_map<std::string_view, CardRow>;
+/// Returns the table of cards, made at the first call.
 const ParserTable& get_card_parsers();
 /// Sets the writer of these cards, which writes them after all that were set before.
 void write_by(ParserTable& table, CardWriter write, std::initializer_list<const char*> cards);

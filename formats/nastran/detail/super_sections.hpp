@@ -12,6 +12,7 @@ struct BulkSections {
     records::CardLocation at;
     Source source;  ///< points into the text of the deck's Source
   };
+  /// Returns true if the deck has sections of superelements.
   bool has_sections() const { return !sections.empty(); }
   Source main;  ///< all lines before the first section
   std::vector<Section> sections;

@@ -27,17 +27,24 @@ struct UnitNotes {
 
 class UnitConverter {
  public:
+  /// Lists the cards of the deck; all arguments must outlive this.
   UnitConverter(const DeckEditor& deck, const UnitFactors& factors, Diagnostics& diagnostics);
+  /// Converts all cards and returns the edits; reports "deck.unit-replication" and what the cards report.
   std::vector<FieldEdit> convert();
 
+  /// Facts that several cards share, filled by convert().
   const UnitNotes& get_notes() const { return notes_; }
   /// Ratio of new to old unit of time is 1.
   bool keeps_time() const;
 
   // The card that is converted or noted; field 0 is the first after the name.
+  /// Name of the present card.
   const std::string& get_name() const { return card_->name; }
+  /// Text of a field; empty after the last one.
   const std::string& get(int field) const;
+  /// Integer of a field; 0 if it is blank or no integer.
   int get_int(int field) const;
+  /// Number of fields of the present card.
   int size() const { return static_cast<int>(card_->fields.size()); }
   /// Adds deck.unit-field for a field that cannot be converted.
   void fail(int field, const std::string& why);

@@ -7,6 +7,7 @@
 
 namespace bough::toml_files {
 
+/// Removes blanks, tabs and carriage returns from both ends.
 std::string trim(const std::string& text);
 
 /// Cells between commas, without the blanks around them; double quotes keep commas.

@@ -17,7 +17,9 @@ class Fields {
  public:
   Fields(const Value& table, const std::string& file) : table_(table), file_(file) {}
 
+  /// Returns true if the table has the key, whatever its type.
   bool has(const std::string& key) const { return table_.find(key) != nullptr; }
+  /// Returns the value of a key; nullptr if it is absent.
   const Value* find(const std::string& key) const { return table_.find(key); }
   /// In the order of the file.
   std::vector<std::string> get_keys() const {
@@ -30,11 +32,17 @@ class Fields {
   /// Location of the key; of the table if the key is absent.
   SourceLocation locate(const std::string& key) const;
 
+  /// Text of a key.
   std::string get_string(const std::string& key, const std::string& otherwise = {}) const;
+  /// Integer of a key.
   int get_int(const std::string& key, int otherwise) const;
+  /// Number of a key, integer or real.
   double get_number(const std::string& key, double otherwise) const;
+  /// Number of a key; none if it is absent.
   std::optional<double> get_number(const std::string& key) const;
+  /// Boolean of a key.
   bool get_bool(const std::string& key, bool otherwise) const;
+  /// List of three numbers; `otherwise` for a list of another length.
   Eigen::Vector3d get_vector(const std::string& key, const Eigen::Vector3d& otherwise) const;
   /// One number or a list of them; empty when absent.
   std::vector<double> get_numbers(const std::string& key) const;

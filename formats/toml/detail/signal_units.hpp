@@ -21,6 +21,7 @@ struct Wire {
 
 class SignalUnits {
  public:
+  /// All arguments must outlive this; `facts` are those of the files of the bodies.
   SignalUnits(const toml::table& root, const records::UnitChange& change, const BodyFacts& facts);
 
   /// Units of a hinge's coordinates as they stand in lists of positions and of rates, and of the efforts along them.
@@ -50,9 +51,13 @@ class SignalUnits {
   /// Unit of the command of an actuator.
   double get_command_unit(const toml::table& actuator) const;
 
+  /// Returns the table of a kind, as "hinge", with this name; nullptr if it is absent.
   const toml::table* find(const char* kind, const std::string& name) const;
+  /// Factors from old to new units.
   const records::UnitChange& change() const { return c_; }
+  /// Returns the whole system file.
   const toml::table& root() const { return root_; }
+  /// Factor of forces.
   double force() const { return c_.calc_force(); }
 
   /// Returns true if the output of a controller has the unit of its first input.

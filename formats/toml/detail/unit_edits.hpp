@@ -20,6 +20,7 @@ std::string rewrite_formula(const std::string& formula, double factor, double ti
 
 class UnitEdits {
  public:
+  /// Starts without edits; `file` is the name in messages, and all arguments must outlive this.
   UnitEdits(const std::string& text, const std::string& file, Diagnostics& diagnostics);
 
   /// Multiplies a number, "$parameter" or every number of a list, rows too. A null node is nothing.

@@ -21,9 +21,13 @@ struct Value {
   std::vector<Entry> entries;  ///< Table, in the order of the file
   int line = 0;
 
+  /// Returns true for an integer or a real.
   bool is_number() const { return kind == Kind::Integer || kind == Kind::Float; }
+  /// Returns true for a text.
   bool is_string() const { return kind == Kind::String; }
+  /// Returns true for a list, of tables too.
   bool is_array() const { return kind == Kind::Array; }
+  /// Returns true for a table.
   bool is_table() const { return kind == Kind::Table; }
   /// The value at a key of a table; nullptr when absent or when this is no table.
   const Value* find(const std::string& key) const;
