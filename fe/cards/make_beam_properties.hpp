@@ -8,10 +8,12 @@
 
 namespace bough::fe {
 
+/// Copies E, G, density, thermal expansion, TREF and GE of a MAT1.
 Isotropic make_isotropic(const records::Mat1& material);
 
 class BeamProperties {
  public:
+  /// Indexes the property cards of the deck; `maker` must outlive this.
   explicit BeamProperties(Maker& maker);
   /// The property of a CBAR or CBEAM; nullptr after reporting (what is wrong with a property is reported once, a
   /// missing one for every element).

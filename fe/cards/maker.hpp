@@ -25,6 +25,7 @@ class RecordIndex {
 
 class Maker {
  public:
+  /// All arguments must outlive this; elements are added to `list`.
   Maker(const records::Deck& deck, const NodeTable& nodes, Diagnostics& diagnostics, ElementList& list)
       : deck_(deck), nodes_(nodes), diagnostics_(diagnostics), list_(list), mat1_(deck.mat1) {}
 

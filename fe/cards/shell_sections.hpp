@@ -11,6 +11,7 @@ namespace bough::fe {
 
 class ShellSections {
  public:
+  /// Indexes the property and material cards of the deck, and reads PARAM,K6ROT; `maker` must outlive this.
   explicit ShellSections(Maker& maker);
 
   /// The section of property `pid` in its material axes, made once, or nullptr after reporting (`who`: the element,

@@ -29,11 +29,17 @@ Series<R> multiply(const Series<A>& a, const Series<B>& b) {
 using SeriesVector = Series<Eigen::Vector3d>;
 using SeriesMatrix = Series<Eigen::Matrix3d>;
 
+/// The series with six coefficients 0.
 SeriesVector make_zero_vector();
+/// The series with six coefficients 0.
 SeriesMatrix make_zero_matrix();
+/// Aᵀ, coefficient by coefficient.
 SeriesMatrix transpose(const SeriesMatrix& A);
+/// A b, truncated after order 5.
 SeriesVector multiply(const SeriesMatrix& A, const SeriesVector& b);
+/// A B, truncated after order 5.
 SeriesMatrix multiply(const SeriesMatrix& A, const SeriesMatrix& B);
+/// a × b, truncated after order 5.
 SeriesVector cross(const SeriesVector& a, const SeriesVector& b);
 /// Orders 1 to 5 at rows [row, row + 3) of a curve of N dofs, N x 5, and back.
 SeriesVector get_vector(const Eigen::Ref<const Eigen::MatrixXd>& u, Eigen::Index row);

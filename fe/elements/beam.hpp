@@ -80,7 +80,9 @@ class Beam final : public Element, public StressState, public StressRecovery, pu
   void add_load_forces(const Eigen::Matrix<double, 12, 1>& end_load, Eigen::Ref<VectorXd> force) const;
 
   const Beam* as_beam() const override { return this; }
+  /// Length, element axes in basic, offsets and pin flags of the ends.
   const BeamGeometry& geometry() const { return geometry_; }
+  /// Sections and material, shared by the beams of a property.
   const BeamProperty& property() const { return *property_; }
 
  private:

@@ -27,6 +27,8 @@ struct ActiveForces {
 
 class BeamField {
  public:
+  /// Computes the inverse flexibility of a beam of this length, along the breaks of a tapered one. `property` must
+  /// outlive the field.
   BeamField(const BeamProperty& property, double length);
 
   /// 6 x 6 inverse flexibility: forces at B per displacement of B with A clamped. Rows and columns of a stiffness that
@@ -42,12 +44,15 @@ class BeamField {
   /// At x: displacement D (6 x 12) and section deformation e (6 x 12) per nodal displacement [A; B].
   void calc_shape(double x, Matrix6x12d* D, Matrix6x12d* e) const;
 
+  /// [L] distance of the ends along x.
   double length() const { return length_; }
+  /// Returns true if the section is constant along x.
   bool is_uniform() const { return uniform_; }
   /// Gauss points for integrals over the element (mass, geometric stiffness); absolute x, weights sum to L.
   struct Point {
     double x, weight;
   };
+  /// Quadrature points: `num_uniform` for a uniform beam, else `num_tapered` in each interval between stations.
   std::vector<Point> calc_points(int num_uniform, int num_tapered) const;
 
   /// ∫ Dᵀ m D with the inertia of the sections, 12 x 12 in element axes, and the mass of the line.
@@ -55,6 +60,7 @@ class BeamField {
     Matrix12d M;
     double mass;
   };
+  /// Integrates over calc_points(4, 7), or returns the kept matrix.
   LineMass calc_line_mass() const;
 
   /// Keeps the shapes at calc_points(3, 7) and calc_points(4, 7) and the mass, some 9 kB of a uniform beam;
@@ -85,6 +91,7 @@ class BeamField {
 /// them. The properties must outlive the fields.
 class BeamFields {
  public:
+  /// Returns the field, made at the first call; the first 512 are shared and keep their shapes.
   std::shared_ptr<const BeamField> find(std::shared_ptr<const BeamProperty> property, double length);
 
  private:

@@ -73,6 +73,8 @@ struct CarriedMass {
   /// Points of an element that deforms in the frame of its chord from x_a to x_a + chord, turned by the mean of the end
   /// rotations: adds their second order, so that a rigid-body motion of the ends is one of the points. ends: 12 x N.
   std::vector<ChordPoint> chord_points;  ///< those of the last call, for an element made of such elements
+  /// Adds the second order of points of an element that deforms in the frame of its chord; `moved`: their motion by the
+  /// ends.
   void add_chord_field(const Vector3d& x_a, const Vector3d& chord, const Eigen::Ref<const MatrixXd>& ends,
                        const std::vector<ChordPoint>& moved);
 

@@ -84,6 +84,7 @@ class CurvedShell final : public Element,
   /// absent).
   ThermalState calc_thermal(const ElementTemperature& T) const override;
 
+  /// Area of the reference surface by the points of quadrature [L²].
   double calc_area() const;
 
   static constexpr int kNumForces = 8;

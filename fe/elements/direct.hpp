@@ -18,6 +18,7 @@ class DirectElement final : public Element, public OffsetMass, public Damping {
   DirectElement(DirectKind kind, std::vector<int> nodes, std::vector<int> gdofs, MatrixXd block)
       : Element(0, "DMIG", std::move(nodes), std::move(gdofs)), kind_(kind), block_(std::move(block)) {}
 
+  /// Returns the matrix that the block is part of: stiffness, mass or damping.
   DirectKind kind() const { return kind_; }
   void add_stiffness(double scale, Eigen::Ref<MatrixXd> K) const override;
   /// Consistent and lumped alike.

@@ -49,17 +49,21 @@ struct ElementShape {
 
 class Element {
  public:
+  /// \param card  for messages, "CBAR". \param nodes  indices into Model::nodes(). \param gdofs  rows of the g-set, N
+  /// of them.
   Element(int id, std::string card, std::vector<int> nodes, std::vector<int> gdofs)
       : id_(id), card_(std::move(card)), nodes_(std::move(nodes)), gdofs_(std::move(gdofs)) {}
   virtual ~Element() = default;
   Element(const Element&) = delete;
   Element& operator=(const Element&) = delete;
 
+  /// Element id of the deck; 0 for direct matrices.
   int id() const { return id_; }
   const std::string& card() const { return card_; }         ///< "CBAR", ...
   const std::vector<int>& nodes() const { return nodes_; }  ///< indices into Model::nodes()
   const std::vector<int>& gdofs() const { return gdofs_; }  ///< rows of the g-set; size() = N below
   int num_dofs() const { return static_cast<int>(gdofs_.size()); }
+  /// Shape for pictures and VTU files; by default none.
   virtual ElementShape shape() const { return {}; }
 
   /// K += scale K_e, N x N. Symmetric; K_e times any rigid-body motion is zero for an ungrounded element. Default: K_e
@@ -123,6 +127,7 @@ struct ElementList {
   std::set<std::string> cards;
   bool has_damping = false;
 
+  /// Adds an element at the end and records its card and damping.
   void add(std::unique_ptr<const Element> element);
 };
 

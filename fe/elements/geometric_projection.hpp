@@ -15,6 +15,7 @@ class GeometricProjection {
 
   GeometricProjection(Eigen::Index num_columns, Eigen::Index num_loads);
 
+  /// Number m of loads.
   Eigen::Index num_loads() const { return weights_.cols(); }
 
   /// Room for the terms of one element, all zero. Good until the next call.
@@ -22,6 +23,7 @@ class GeometricProjection {
     Eigen::Ref<MatrixXd> products;  ///< n(n+1)/2 x terms
     Eigen::Ref<MatrixXd> weights;   ///< terms x m
   };
+  /// Reserves terms of one element; sums up the terms before them if they do not fit.
   Terms add_terms(Eigen::Index num_terms);
 
   /// Terms that are not yet summed: after drop_terms(), those of the last add_terms().

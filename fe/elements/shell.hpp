@@ -71,6 +71,7 @@ class Shell final : public Element, public StressState, public StressRecovery, p
   /// The temperature is interpolated between the corners.
   ThermalState calc_thermal(const ElementTemperature& T) const override;
 
+  /// [L²] area between the corners, projected along the normal.
   double area() const { return area_; }
   const Matrix3d& R_basic_element() const { return R_; }  ///< columns: element axes in basic
 

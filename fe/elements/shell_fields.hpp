@@ -53,6 +53,7 @@ struct Plate {
   std::array<std::array<Eigen::Vector3d, N>, N> side_bending;
   std::array<std::array<Eigen::Vector2d, N>, N> side_shear;
 };
+/// Computes the plate operators at the points, `xy` the corners in element axes (Katili 1993, DKMT and DKMQ).
 template <int N>
 Plate<N> calc_plate(const Corners<N>& xy, const Points<N>& points, const ShellSection& section);
 

@@ -38,6 +38,7 @@ struct SolidGeometry {
 struct SolidQuality {
   double volume = 0, smallest_ratio = 0;
 };
+/// Integrates the Jacobian determinant over the points of quadrature; both numbers are 0 for an element without volume.
 SolidQuality calc_quality(const SolidGeometry& geometry);
 
 /// The mirror image in natural coordinates: the same body counted the other way round. `nodes` goes with geometry.x.
@@ -88,6 +89,7 @@ class Solid final : public Element, public StressState, public StressRecovery, p
   ThermalState calc_thermal(const ElementTemperature& T) const override;
 
   const Solid* as_solid() const override { return this; }
+  /// [L³] volume by the points of quadrature.
   double calc_volume() const { return calc_quality(geometry_).volume; }
 
  private:

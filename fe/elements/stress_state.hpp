@@ -15,6 +15,7 @@ class GeometricProjection;
 /// Forces that static solutions print of an element.
 class PrintedForces {
  public:
+  /// Names of the printed forces: "force" or those of the internal forces.
   virtual std::vector<std::string> printed_force_names() const = 0;
   /// Forces of nodal displacements u (N), linear in u, in the order of the names.
   virtual VectorXd calc_printed_forces(const Eigen::Ref<const VectorXd>& u) const = 0;
@@ -26,7 +27,9 @@ class PrintedForces {
 /// Stress resultants of an element, s > 0 of them, and its K_G; the first of the resultants are printed.
 class StressState : public PrintedForces {
  public:
+  /// Number s of internal forces.
   virtual int num_internal_forces() const = 0;
+  /// Names of the internal forces, s of them, with the point of an element that has several.
   virtual std::vector<std::string> internal_force_names() const = 0;
   /// force (s) = internal forces of nodal displacements u (N), linear in u.
   virtual void calc_internal_forces(const Eigen::Ref<const VectorXd>& u, Eigen::Ref<VectorXd> force) const = 0;

@@ -46,6 +46,7 @@ struct ThermalState {
 
 class ThermalLoads {
  public:
+  /// Computes initial forces, free strains and the load of temperatures at u = 0; only for a material that expands.
   virtual ThermalState calc_thermal(const ElementTemperature& T) const = 0;
 
  protected:

@@ -9,6 +9,7 @@ namespace bough::linear {
 /// Neighbours of each vertex, not itself, and its weight.
 struct Graph {
   std::vector<idx_t> start{0}, neighbours, weight;
+  /// Number of vertices.
   idx_t size() const { return static_cast<idx_t>(weight.size()); }
 };
 

@@ -13,6 +13,7 @@ struct LowRankPart {
   Eigen::MatrixXd W, W_inverse;   ///< k x k, symmetric
   int num_positive = 0;           ///< eigenvalues of W above zero; the others are below
 
+  /// Number k of columns of U.
   int rank() const { return static_cast<int>(W.rows()); }
 
   /// U W Uᵀ X.

@@ -19,6 +19,7 @@ void check_petsc(PetscErrorCode code);
 struct MpiWorld {
   int rank = 0, size = 1;
 };
+/// Initializes MPI and PETSc in the first call and returns rank and size; signal handlers stay those of the process.
 MpiWorld initialize_petsc();
 
 /// How deep parallel regions of OpenMP may be nested from this thread on: 0 is one thread. Returns what it was before;

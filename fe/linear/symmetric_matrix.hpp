@@ -35,7 +35,9 @@ class SymmetricMatrix {
   /// Collective.
   explicit SymmetricMatrix(Csr rows, int first, int size);
 
+  /// Returns false for the default-constructed matrix, which has no rows.
   explicit operator bool() const { return sparse_ != nullptr; }
+  /// Number of rows over all ranks. \pre The matrix is not empty.
   int num_rows() const;
   /// A_0 as PETSc has it; lives as long as this matrix or a copy of it.
   Mat sparse() const { return sparse_ ? sparse_->matrix.get() : nullptr; }

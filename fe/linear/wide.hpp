@@ -22,6 +22,7 @@ struct Register<2> {
 };
 
 #ifdef BOUGH_WIDE
+/// Returns true if the processor has AVX2 and FMA.
 inline bool has_wide() {
   static const bool has = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
   return has;

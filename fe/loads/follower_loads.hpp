@@ -27,6 +27,7 @@ struct FollowerLoads {
   std::vector<FollowerPressure> pressures;
   std::vector<FollowerForce> forces;
 
+  /// Returns true if no load follows the grids.
   bool empty() const { return pressures.empty() && forces.empty(); }
 };
 

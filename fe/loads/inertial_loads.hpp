@@ -16,6 +16,7 @@ struct AccelerationField {
   Vector3d a_o = Vector3d::Zero();
   Matrix3d A = Matrix3d::Zero();
 };
+/// Computes a_o and A of the load factors [12]; ω̃ω̃ = ωωᵀ - |ω|² 1 from the six products.
 AccelerationField calc_acceleration_field(const Vector12d& A_I);
 /// A_I of a_o, α and ω.
 Vector12d calc_load_factors(const Vector3d& a_o, const Vector3d& alpha, const Vector3d& omega);

@@ -15,6 +15,7 @@ struct AppliedLoads {
   std::vector<std::vector<ArmLoad>> arms;                  ///< per load; may be shorter than m
   std::vector<std::vector<QuadraticForm>> followers = {};  ///< the same
 };
+/// The loads with one column, m = 1.
 AppliedLoads make_loads(const AppliedLoad& load);
 
 /// Second order of carried masses, of loads on arms and of links under the loads, with U their static solutions

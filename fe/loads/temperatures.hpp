@@ -11,6 +11,7 @@ namespace bough::fe {
 struct InitialForces {
   std::unordered_map<const Element*, ThermalState> of;  ///< all elements, on every rank
 
+  /// Returns the state of a heated element; nullptr if it is not heated.
   const ThermalState* find(const Element& element) const {
     const auto found = of.find(&element);
     return found == of.end() ? nullptr : &found->second;

@@ -41,6 +41,8 @@ struct WorstQuality {
   ElementQuality worst;
   int aspect_id = 0, warp_id = 0, jacobian_id = 0;
 };
+/// Finds the worst aspect ratio, warp and Jacobian of the surface and solid elements of each card; curved shells by
+/// their corners.
 std::vector<WorstQuality> find_worst_quality(const Model& model);
 
 }  // namespace bough::fe

@@ -27,6 +27,7 @@ int count_held_motions(const Model& model);
 struct LooseParts {
   std::string what, advice;
 };
+/// Describes at most five loose parts; without any ground the first part counts as the structure.
 LooseParts describe_loose_parts(const Model& model);
 
 }  // namespace bough::fe

@@ -22,6 +22,7 @@ struct SplitTransform {
 /// A row of T with more entries than this is wide: below it the dense block that it makes costs next to nothing. Tests
 /// lower it by PETSc's option -bough_max_dense_terms.
 inline constexpr int kMaxDenseTerms = 300;
+/// Returns kMaxDenseTerms or the value of -bough_max_dense_terms; initializes PETSc.
 int get_max_dense_terms();
 
 /// Nothing where no row of T is wide. With `keeps_supports` T_s is such that T_sᵀ A T_s is definite where TᵀAT is: in

@@ -7,6 +7,7 @@ namespace bough::fe {
 
 class ModelBuilder {
  public:
+  /// All arguments must outlive this.
   ModelBuilder(const records::Deck& deck, const ModelOptions& options, Diagnostics& diagnostics)
       : deck_(deck), options_(options), diagnostics_(diagnostics) {}
 

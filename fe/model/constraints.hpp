@@ -47,6 +47,7 @@ struct FixedPart {
   SparseRows C;            ///< num_ldofs x ldofs.size()
   std::vector<int> ldofs;  ///< fixed and not dependent, ascending
 };
+/// Collects the terms of fixed dofs in the resolved equations; `is_fixed` has num_ldofs entries.
 FixedPart collect_fixed_part(int num_ldofs, const std::vector<ConstraintEquation>& resolved,
                              const std::vector<char>& is_fixed);
 

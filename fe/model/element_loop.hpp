@@ -13,9 +13,11 @@ namespace bough::fe {
 struct ElementRange {
   int first = 0, last = 0;
 
+  /// Returns true if the index `e` is in the range.
   bool contains(int e) const { return e >= first && e < last; }
 };
 
+/// The range of all elements, on every rank.
 ElementRange get_all_elements(const Model& model);
 /// The elements that this rank adds to sums over ranks.
 ElementRange get_own_elements(const Model& model);

@@ -37,6 +37,7 @@ class Links {
   /// `equations`: u_dependent = Σ c u over the l-set, without cycles.
   Links(std::vector<Link> links, std::vector<ConstraintEquation> equations);
 
+  /// Returns true if the model has no link with a second order.
   bool empty() const { return links_.empty(); }
   /// l-dofs whose residual forces are needed, ascending.
   const std::vector<int>& dependents() const { return dependents_; }
@@ -67,8 +68,11 @@ class LinkBuilder {
   /// The frame's motion: v of its point, θ.
   LinkBuilder(const std::array<DofSum, 3>& v, const std::array<DofSum, 3>& theta);
 
+  /// Number of rows of L so far.
   int num_rows() const { return static_cast<int>(rows_.size()); }
+  /// Adds a row to L and returns its index.
   int add_row(DofSum row);
+  /// Starts W of the next equation, zero.
   void start_equation() { W_.emplace_back(); }
   /// W of the current equation += factor times that of a unit force (moment) on the component: the second order of
   /// where it goes as the frame turns, axes and all.
@@ -76,6 +80,8 @@ class LinkBuilder {
   /// W(i, j) and W(j, i) += value; twice on the diagonal is for the caller to avoid.
   void add_weight(int i, int j, double value) { W_.back()[{std::max(i, j), std::min(i, j)}] += value; }
 
+  /// Returns the link: L on the g-dofs of its rows, ascending, and a symmetric W per equation. `first_equation`: index
+  /// of the first one.
   Link finish(int first_equation) const;
 
  private:

@@ -76,7 +76,9 @@ class Model final : public NodeTable {
   static Model build(const records::Deck& deck, const ModelOptions& options, const ElementFactory& factory,
                      Diagnostics& diagnostics);
 
+  /// Grids and scalar points, with their positions and CD axes; the index of a node is its position here.
   const std::vector<Node>& nodes() const { return nodes_; }
+  /// Elements in the order in which the factory made them.
   const std::vector<std::unique_ptr<const Element>>& elements() const { return elements_; }
   bool has_card(const std::string& card) const {
     return cards_.contains(card);

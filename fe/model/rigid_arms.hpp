@@ -19,6 +19,7 @@ class RigidArms {
   /// Read off the constraint equations u_g = T u_f of the model, chains resolved.
   explicit RigidArms(const Model& model);
 
+  /// All arms, one per dependent grid.
   const std::vector<RigidArm>& list() const { return arms_; }
   /// The arm of a node; nullptr: it moves by itself.
   const RigidArm* find(int node) const;

@@ -29,6 +29,7 @@ struct BeamProperty {
   /// Where stresses are given at ends A and B, (y, z) from the shear centre, as many at both; empty: on the axis.
   std::vector<Eigen::Vector2d> points_a, points_b;
 
+  /// Returns true if one station describes the whole length.
   bool is_uniform() const { return stations.size() == 1; }
   /// Linear between stations (as PBEAM defines it).
   BeamSection calc_section(double x_over_L) const;

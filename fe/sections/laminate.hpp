@@ -17,6 +17,7 @@ struct PlaneMaterial {
   double ge = 0;  ///< structural damping
 };
 
+/// Plane stress of an isotropic material: Q11 = E/(1 - ν²), Q33 = G, both transverse shear moduli G.
 PlaneMaterial make_isotropic_plane(double E, double G, double nu, double rho);
 /// MAT8 (Jones, "Mechanics of composite materials", 2nd ed., eq. 2.70).
 PlaneMaterial make_orthotropic_plane(double E1, double E2, double nu12, double G12, double G1z, double G2z, double rho);

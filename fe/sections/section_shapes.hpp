@@ -10,8 +10,11 @@ namespace bough::fe::section_shapes {
 
 using Dims = std::vector<double>;
 
+/// Solid circle of radius d0; shear factors 0.9.
 LibrarySection calc_rod(const Dims& d);
+/// Circular ring between two radii; shear factors 0.5, those of a thin wall, or 0.9 for inner = 0.
 LibrarySection calc_annulus(double outer, double inner);
+/// Solid rectangle of width d0 along z and height d1 along y; shear factors 5/6, J of Saint-Venant.
 LibrarySection calc_bar(const Dims& d);
 /// Hexagon: rectangle of width d2 - 2 d1 with a triangle of height d1 on each side; J by Saint-Venant's A⁴ / 40 Ip.
 LibrarySection calc_hexa(const Dims& d);

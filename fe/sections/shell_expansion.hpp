@@ -15,8 +15,11 @@ struct ShellExpansion {
   double e_tt = 0, e_tg = 0, e_gg = 0;
   std::optional<double> tref;  ///< empty: TEMPERATURE(INITIAL)
 
+  /// Membrane forces N [F/L] of the temperature t and the gradient g.
   Eigen::Vector3d calc_N(double t, double g) const { return t * N_t + g * N_g; }
+  /// Moments M [F] of the temperature t and the gradient g.
   Eigen::Vector3d calc_M(double t, double g) const { return t * M_t + g * M_g; }
+  /// Strain energy per area [F/L] of the hindered expansion.
   double calc_energy(double t, double g) const { return 0.5 * (e_tt * t * t + 2 * e_tg * t * g + e_gg * g * g); }
 };
 

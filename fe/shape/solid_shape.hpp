@@ -16,6 +16,7 @@ struct SolidPoint {
   double weight = 0;
 };
 
+/// Number of corners: 8, 6 or 4.
 int get_num_corners(SolidKind kind);
 /// Edges as corner pairs, in the order of the midside nodes.
 const std::vector<std::pair<int, int>>& get_edges(SolidKind kind);

@@ -50,6 +50,7 @@ struct RecoveryLayout {
     bool is_asked = false;
     std::vector<RecoveryGroup> groups;
     std::vector<Place> places;  ///< of all elements
+    /// Returns true if results of this element, an index into Model::elements(), are requested and exist.
     bool holds(int element) const { return is_asked && places[static_cast<std::size_t>(element)].group >= 0; }
   };
   Table forces, stresses, strains;

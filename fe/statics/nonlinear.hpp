@@ -32,6 +32,7 @@ class NonlinearStatics {
   /// `model` outlives this.
   NonlinearStatics(const Model& model, const records::Deck& deck);
 
+  /// State of the last equilibrium: displacements with rotation vectors [num_gdofs] and the rotation of each node.
   const DeformedState& state() const { return state_; }
   int num_iterations() const { return num_iterations_; }  ///< of all steps so far
   int num_steps() const { return num_steps_; }
