@@ -20,6 +20,7 @@ inline constexpr const char* kLowRank = "bough-low-rank";
 /// Registers both; again is harmless.
 void register_eps_types();
 
+/// Returns true if the type of `eps` is one of these two.
 bool is_own_type(EPS eps);
 
 struct BlockLanczosSettings {
@@ -30,6 +31,7 @@ struct BlockLanczosSettings {
   bool positive_only = false;     ///< θ > 0 from the largest down, else by magnitude
   std::function<void()> release;  ///< called before the first block: A is needed no more
 };
+/// Sets what block Lanczos takes beyond the options of EPS; before EPSSolve. \pre The type is kBlockLanczos.
 void set_settings(EPS eps, BlockLanczosSettings settings);
 
 struct LowRankSettings {
@@ -38,6 +40,7 @@ struct LowRankSettings {
   MatrixXd deflation;                              ///< B-orthonormal eigenvectors that are known
   bool projects_deflation = false;                 ///< out of every solution (LowRankProblem)
 };
+/// Sets what the low-rank solver takes beyond the options of EPS; before EPSSolve. \pre The type is kLowRank.
 void set_settings(EPS eps, LowRankSettings settings);
 
 /// Moves the eigenvectors out, in the order of EPS' own array of eigenvalues (raw order): no copy of the largest thing

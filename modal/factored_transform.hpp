@@ -26,6 +26,7 @@ struct FactoredOperator {
   const Eigen::MatrixXd* deflation = nullptr;       ///< B-orthonormal, projected out of each product; null: none
   std::string factor_name;
 
+  /// Returns true if the operator is (A - σB)⁻¹B, false if it is B⁻¹A.
   bool is_near_shift() const { return !multiply_operator; }
 };
 

@@ -4,6 +4,7 @@
 
 namespace bough::modal::detail {
 
+/// Converts a frequency to an eigenvalue: (2π hz)².
 double calc_lambda(double hz);
 
 /// The least and the first too large eigenvalue of a range: roots on its ends lie inside, whatever their last digits
@@ -16,6 +17,7 @@ double calc_upper(const EigenOptions& options);
 struct ModeRange {
   int first = 0, last = 0;
 
+  /// Returns true if the range contains no eigenvalue.
   bool is_empty() const { return last <= first; }
   /// Adjusts both ends to the roots: `lambda`, ascending, the first `cut` of them complete, `available` exist. True
   /// when more roots have to be found first.

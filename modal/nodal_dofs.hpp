@@ -18,6 +18,7 @@ struct NodalDofs {
   /// dof_map: ndof x 2, node 1..p and code 1..6; rows with another code belong to no node.
   static NodalDofs from_map(const Eigen::Ref<const Eigen::MatrixXi>& dof_map, const MatrixXd& xyz);
 
+  /// Number of nodes, with or without dofs.
   int num_nodes() const { return static_cast<int>(xyz.rows()); }
   /// The six values of node k in every column of X (num_dofs x m): 6 x m, zero where the dof is missing.
   MatrixXd gather(const Eigen::Ref<const MatrixXd>& X, int k) const;

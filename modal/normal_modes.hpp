@@ -21,12 +21,15 @@ struct Answer {
   Diagnostics said;
   double worst_roundoff = 0;  ///< relative, of the eigenvalues with strain
 
+  /// Largest residual of the eigenpairs; 0 without any.
   double worst() const { return pairs.residual.size() > 0 ? pairs.residual.maxCoeff() : 0; }
   /// No mode may be missing, and no residual needs a word.
   bool is_clean() const { return is_sound && worst() <= linear::kResidualWarning; }
 };
 
+/// Adds the warning "modal.cut-root": `num_more` further modes have the frequency of the last one.
 void warn_of_cut_root(int num_more, Diagnostics& said);
+/// Adds the warning "modal.fewer-modes". \param is_range  the number was requested from the start of a range on.
 void warn_of_fewer(int found, int asked, bool is_range, Diagnostics& said);
 
 class NormalModes {

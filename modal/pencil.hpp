@@ -27,8 +27,11 @@ struct Pencil {
   VectorXd K_diagonal, M_diagonal;  ///< |K_ii| and M_ii, num_fdofs
   linear::RowKinds kinds;           ///< of the f-dofs
 
+  /// Number of f-dofs, the rows of K and M.
   int size() const { return model.num_fdofs(); }
+  /// K X, num_fdofs x m.
   MatrixXd calc_K_times(const Block& X) const { return linear::multiply(K, X); }
+  /// M X, num_fdofs x m.
   MatrixXd calc_M_times(const Block& X) const { return linear::multiply(M, X); }
   MatrixXd dot(const Block& X, const Block& Y) const { return linear::calc_inner_products(X, Y); }  ///< XᵀY
   MatrixXd calc_mass_gram(const MatrixXd& X) const;  ///< XᵀMX; M X of some columns at a time

@@ -18,7 +18,9 @@ using Eigen::VectorXd;
 struct Roots {
   VectorXd value;
   MatrixXd X;  ///< n x value.size()
+  /// Number of eigenvalues.
   int size() const { return static_cast<int>(value.size()); }
+  /// Keeps the first `count` eigenvalues and vectors.
   void keep(int count);
   /// Ascending afterwards, or by ascending magnitude.
   void add(const VectorXd& values, MatrixXd vectors, bool by_magnitude = false);
@@ -62,6 +64,7 @@ RootSearchResult search_roots(const RootSearch& search, Roots& roots);
 void report_count(const RootSearchResult& result, int num_known, const std::string& name, bool counts,
                   Diagnostics& diagnostics);
 
+/// Returns [A B], of equal numbers of rows.
 MatrixXd join(const MatrixXd& A, const MatrixXd& B);
 
 }  // namespace bough::modal::detail

@@ -5,6 +5,7 @@
 
 namespace bough::modal {
 
+/// Returns true for SOL 105, 5, SEBUCKL and BUCKLING.
 bool is_buckling_solution(const records::Deck& deck);
 
 /// The subcases that SOL 103 solves one after the other, each with its METHOD, SPC and MPC; those that select the same

@@ -23,6 +23,7 @@ struct DampingSpec {
   double alpha = 0, beta = 0;            ///< Rayleigh: αM + βK
   double structural = 0;                 ///< g of K(1 + ig): the viscous g ω at each mode's own frequency
   std::optional<double> residual_ratio;  ///< ζ of residual and attachment vectors, instead of the others' ζ
+  /// Returns true if no factor or ratio is set: the damping matrix is zero.
   bool is_zero() const;
 };
 

@@ -34,6 +34,7 @@ class FixedInterface {
   ~FixedInterface();
   FixedInterface(FixedInterface&&) noexcept;
 
+  /// Returns the coordinates of interface and interior; the reference is valid as long as this object.
   const Partition& partition() const;
   /// Ψ, num_gdofs x nb: one interface dof moves by one, the others are held, u_i = -K_ii^-1 K_ib u_b.
   MatrixXd calc_constraint_modes() const;

@@ -19,6 +19,7 @@ struct Partition {
   std::vector<int> interior;                  ///< f-dof of each column of S_i, ascending
   SparseRows S_i;                             ///< num_fdofs x ni
   MatrixXd S_b;                               ///< num_fdofs x nb
+  /// Number nb of interface coordinates.
   int num_boundary() const { return static_cast<int>(boundary.size()); }
   /// S_i is columns of the identity: SᵢᵀASᵢ are rows and columns of A.
   bool is_selection() const { return S_i.nonZeros() == S_i.cols(); }

@@ -16,6 +16,7 @@ struct RitzPairs {
   MatrixXd N;
   MatrixXd massless = {};  ///< m x k, those that strain and have no mass, xᵀKx = 1
 };
+/// Solves the dense problem; M and K are symmetric, M positive semidefinite.
 RitzPairs calc_ritz_pairs(const MatrixXd& M, const MatrixXd& K);
 
 /// Loads F [num_gdofs x m] in equilibrium with the inertia of the body: F - M R RᵀF, R = `rigid`, M-orthonormal. Twice:

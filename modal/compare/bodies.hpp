@@ -30,6 +30,8 @@ struct BodyComparison {
   std::vector<StiffnessDifference> energy;
   std::string energy_note;  ///< why a body of third order has no rows in `energy`; empty: it has, or none is of it
 };
+/// Compares a and b on the paired modes, b in the origin, signs and modal masses of a; loads that need a common origin
+/// are left out for another one.
 BodyComparison compare_bodies(const records::FlexBody& a, const records::FlexBody& b,
                               const std::vector<ModePair>& pairs, const Vector3d& offset);
 

@@ -37,6 +37,8 @@ struct Captured {
   Eigen::Matrix<double, 6, 6> total = Eigen::Matrix<double, 6, 6>::Zero();  ///< with all modes, translations first
   Eigen::Matrix<double, 6, 6> rigid = Eigen::Matrix<double, 6, 6>::Zero();  ///< of the body about Bo
 };
+/// Computes the effective masses from Γ0 and Γ1 of `set`, mode after mode through the Cholesky factor of the modal
+/// mass, which may be full.
 Captured calc_captured(const records::FlexBody& body, const records::MassIntegrals& set);
 
 struct IntegralsCheck {

@@ -27,8 +27,11 @@ struct ModalModel {
   bool is_buckling = false;
   MatrixXd effective_mass;  ///< n x 6, or empty
 
+  /// Modes of a body at its output nodes, in frame B.
   static ModalModel from(const records::FlexBody& body);
+  /// Modes of a modes or buckling file at its nodes, in basic.
   static ModalModel from(const records::ModesResult& modes);
+  /// Number n of modes.
   int num_modes() const { return static_cast<int>(frequency_hz.size()); }
 };
 
@@ -53,6 +56,7 @@ struct MassMac {
   std::optional<MatrixXd> mac;
   int num_missing = 0;
 };
+/// Computes the MAC with x the modes of a and y those of b on the dofs of the matrix, na x nb.
 MassMac calc_mass_mac(const ModalModel& a, const ModalModel& b, const NodeMatch& match,
                       const records::SparseMatrix& mass, const Eigen::MatrixXi& dof_map);
 

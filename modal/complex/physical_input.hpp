@@ -15,6 +15,7 @@ struct PhysicalInput {
   Eigen::SparseMatrix<double> N_e;  ///< p x extra points
   ComplexSparse K, B, M;            ///< p x p
   std::vector<std::string> names;   ///< "grid 3 component 2", "extra point 9"
+  /// Returns true if the subcase selects no direct input.
   bool is_empty() const { return K.rows() == 0; }
   /// [N_g T, N_e] for coordinates q with u_g = T q.
   Eigen::SparseMatrix<double> calc_transform(const Eigen::SparseMatrix<double>& T) const;

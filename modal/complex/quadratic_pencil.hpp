@@ -18,6 +18,7 @@ struct QuadraticPencil {
   ComplexSparse K, B, M;
   bool is_symmetric = true;  ///< K = Kᵀ, B = Bᵀ, M = Mᵀ
 
+  /// Number n of unknowns.
   Index size() const { return K.rows(); }
   ComplexSparse calc_matrix(Complex lambda) const;  ///< λ² M + λ B + K
   QuadraticPencil transpose() const;

@@ -20,6 +20,8 @@ struct DirectModel {
   MatrixXd X;                          ///< num_gdofs x k
   MatrixXd F, K_X, M_X, B_X, S_X;      ///< Tᵀ of the patterns, num_fdofs x m or k
 };
+/// Assembles the matrices with the direct input of the subcase; B contains α1 M + α2 K, and over time the viscous
+/// equivalents g/ω3 and 1/ω4 of the structural damping. Collective.
 DirectModel make_direct_model(const fe::System& system, const records::DynamicDeck& deck,
                               const records::DynamicSubcase& subcase, const Excitation& excitation,
                               const DampingChoice& damping);

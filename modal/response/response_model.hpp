@@ -47,6 +47,7 @@ struct ResponseModel {
   VectorXd damping_ratio;   ///< n, of each coordinate: D_jj / 2ω + S_jj / 2λ; 0 for rigid and massless ones
   VectorXd u0, v0;          ///< start of those with mass: M-projection of TIC; empty without
 
+  /// Number of coordinates with mass, the first ones.
   Eigen::Index num_dynamic() const { return lambda.size() - num_massless; }
 };
 

@@ -16,9 +16,11 @@ class InputSpectrum {
   /// Reports modal.missing-random, modal.missing-table, modal.bad-spectrum, modal.random-subcase.
   InputSpectrum(const records::DynamicDeck& deck, int set, const SourceLocation& at, Diagnostics& diagnostics);
 
+  /// Id of the RANDPS set.
   int set() const { return set_; }
   const std::vector<int>& subcases() const { return subcases_; }  ///< ascending; rows of S
 
+  /// S at a frequency [n x n], n subcases: each card's factor times its table or, without a table, times 1.
   Eigen::MatrixXcd calc(double hz) const;
   /// L [n x n] with S = L Lᴴ of the rows `members`.
   Eigen::MatrixXcd factor(double hz, const std::vector<int>& members) const;

@@ -8,6 +8,7 @@ namespace bough::modal::response {
 
 struct ModalSource {
   ModalSource() = default;
+  /// Copies the modal coordinates without their shapes, which are not needed after the output maps are made.
   ModalSource(const ResponseModel& model, const Excitation& loads, std::vector<CoordinateMap> output_maps);
 
   /// [q; d; p] (n + k + m) per frequency.

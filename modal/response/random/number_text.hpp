@@ -5,6 +5,7 @@
 
 namespace bough::modal::response {
 
+/// Decimal digits.
 inline std::string to_text(int value) { return std::to_string(value); }
 /// Six significant digits.
 inline std::string to_text(double value) {
