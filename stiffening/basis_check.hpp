@@ -18,6 +18,7 @@ inline constexpr double kBasisWarning = 1e-5;
 /// Largest difference that is not an error: above it, frequencies are wrong by 0.05 % and more.
 inline constexpr double kBasisError = 1e-3;
 
+/// Compares the modal matrices [n x n] with the sums over elements of Phi [num_gdofs x n]; no modes: no difference.
 BasisCheck check_basis(const fe::Model& model, const Eigen::MatrixXd& Phi, const Eigen::MatrixXd& modal_mass,
                        const Eigen::MatrixXd& modal_stiffness);
 

@@ -25,6 +25,7 @@ records::BodySpec add_given_loads(const records::BodySpec& spec, const GivenMatr
 GivenModel make_given_model(const records::Deck& deck, const records::BodySpec& spec, const GivenMatrices& matrices,
                             Diagnostics& diagnostics);
 
+/// Returns true if the files contain mode shapes.
 inline bool has_modes(const GivenModel& given) { return !given.matrices.modes.Phi.empty(); }
 /// The matrices as elements, and the deck's elements as shapes. `nodes`: of a model of `deck`.
 fe::ElementList make_given_elements(const GivenModel& given, const records::Deck& deck, const fe::NodeTable& nodes);

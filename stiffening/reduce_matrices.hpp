@@ -14,6 +14,7 @@ struct GivenMatrix {
   Eigen::MatrixXi row_dofs = Eigen::MatrixXi::Zero(0, 2);  ///< node, code; 0 rows: the g-set, points by id
   bool is_basic = false;                                   ///< else in the displacement systems (CD) of the grids
   SourceLocation at;
+  /// Returns true if no matrix is given.
   bool empty() const { return values.rows() == 0; }
 };
 

@@ -80,6 +80,7 @@ struct SolvedLoads {
   std::vector<int> inertial;  ///< records::InertialLoad of the first columns, ascending
   fe::AppliedLoads columns;
   MatrixXd U;  ///< num_gdofs x m
+  /// Number of inertial loads, the first columns.
   Eigen::Index num_inertial() const { return static_cast<Eigen::Index>(inertial.size()); }
 };
 
@@ -146,8 +147,12 @@ void set_third_order(const BodyRequest& request, const fe::Model& model, const M
                      const std::vector<LoadPattern>& patterns, const StaticSupport& support,
                      const InertialLoads& inertial, records::FlexBody& body);
 
+/// Solves K u = f for each inertial load of the spec, a column of F_I [num_gdofs x 12], and for each pattern, on the
+/// static support.
 SolvedLoads solve_loads(const BodyRequest& request, const std::vector<LoadPattern>& patterns, const MatrixXd& F_I,
                         const StaticSupport& support);
+/// Sets K_G1 of the inertial loads and K_G2 of the patterns, n x n each; those of thermal patterns contain their
+/// initial stress.
 void set_geometric_stiffness(const fe::Model& model, const MatrixXd& Phi, const std::vector<LoadPattern>& patterns,
                              const SolvedLoads& solved, records::FlexBody& body);
 /// Forces and stresses of elements. Throws reduce.bad-recover, reduce.unknown-element.

@@ -15,6 +15,7 @@ class Lattice {
  public:
   Lattice(int n, int degree);
 
+  /// Returns the exponents of the monomials, one row each.
   const Eigen::MatrixXi& exponents() const { return exponents_; }
   const MatrixXd& points() const { return points_; }  ///< points x n
   Eigen::Index size() const { return points_.rows(); }
@@ -33,7 +34,9 @@ class StaticManifold {
   StaticManifold(const BodyRequest& request, const fe::Model& model, const ModalBasis& basis,
                  const StaticSupport& support, const linear::SymmetricMatrix& M);
 
+  /// Returns 1/ω of each mode [n], the factor between a scaled amplitude and that of the basis.
   const VectorXd& scale() const { return scale_; }
+  /// Returns the mode shapes of scaled amplitudes [num_gdofs x n].
   const MatrixXd& Phi() const { return Phi_; }
 
   /// Adds u₂ of all modes and returns the gradient of V₃ by the amplitudes, n x monomials. `lattice`: of degree 2 in
