@@ -14,12 +14,16 @@ struct ActuatorPlace {
   int tank = -1;  ///< in Tree::tanks, of thrusters
 };
 
+/// Makes a force, motor or brake on a hinge coordinate. Reports control.* through `keys`.
 std::unique_ptr<Actuator> make_hinge_actuator(const records::ActuatorRecord& record, SettingsReader& keys,
                                               const ActuatorPlace& place);
+/// Makes a generalized force on a modal coordinate; all keys are those of read_shaping().
 std::unique_ptr<Actuator> make_modal_actuator(const records::ActuatorRecord& record, SettingsReader& keys,
                                               const ActuatorPlace& place);
+/// Makes a force, moment, jet, engine or torque rod at a marker.
 std::unique_ptr<Actuator> make_node_actuator(const records::ActuatorRecord& record, SettingsReader& keys,
                                              const ActuatorPlace& place);
+/// Makes a momentum wheel or a control moment gyro with one or two gimbals at a marker.
 std::unique_ptr<Actuator> make_rotor(const records::ActuatorRecord& record, SettingsReader& keys,
                                      const ActuatorPlace& place);
 /// A unit vector: "axis".

@@ -61,13 +61,17 @@ struct LinearField {
 
 class Body {
  public:
+  /// Makes a body without modes. \param mass  [M]. \param cg  centre of mass from Bo, in B. \param inertia_about_cg  [3
+  /// x 3] in B.
   static Body make_rigid(double mass, const Vector3d& cg, const Matrix3d& inertia_about_cg);
   /// The first `num_modes` modes of `flex` (-1: all). The file's own damping unless `damping_ratios` is not empty (one
   /// = uniform): then D_jj = 2 ζ_j √(K_jj M_jj).
   static Body make_flexible(const records::FlexBody& flex, int num_modes, bool stiffening,
                             const std::vector<double>& damping_ratios);
 
+  /// Number n of modes; 0 for a rigid body.
   int num_modes() const { return n_; }
+  /// [M] mass.
   double mass() const { return mass_; }
   Vector3d first_moment() const { return S0_; }  ///< of the undeformed body about Bo
   bool stiffened() const { return stiffened_; }
@@ -82,6 +86,7 @@ class Body {
   int find_node(int id) const;                               ///< index into nodes(), -1 when absent
   void add_rigid_node(int id, const Vector3d& p);
 
+  /// Results and scratch arrays of this size, those that never change set. Allocates.
   BodyInertia make_inertia() const;
   /// M(η) and S; eta: n. O(n²), no allocation.
   void calc_mass(const ConstVectorRef& eta, BodyInertia& inertia) const;

@@ -7,6 +7,7 @@
 
 namespace bough::solver {
 
+/// Rounds a number of rows up to a multiple of four.
 inline Eigen::Index pad(Eigen::Index n) { return (n + 3) / 4 * 4; }
 
 /// y = A x; A: rows (padded) x cols.

@@ -15,6 +15,7 @@ struct Marker {
   Matrix3d R_KM = Matrix3d::Identity();
   bool moves = false;  ///< the node deforms
 
+  /// Returns true if both are one frame of one node, by exact comparison.
   bool is_same(const Marker& m) const { return body == m.body && node == m.node && p_KM == m.p_KM && R_KM == m.R_KM; }
 };
 

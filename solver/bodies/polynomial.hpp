@@ -17,10 +17,14 @@ class MonomialList {
   using Values = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxSize, 1>;
 
   MonomialList() = default;
+  /// Lists the monomials of n amplitudes up to `degree`; `large`: modes of degrees above 1, ascending.
   MonomialList(int n, const std::vector<int>& large, int degree);
 
+  /// Number n of amplitudes.
   int num_modes() const { return n_; }
+  /// Indices of the large modes, ascending.
   const std::vector<int>& large() const { return large_; }
+  /// Highest degree.
   int degree() const { return static_cast<int>(first_.size()) - 1; }
   /// Number of monomials of degrees 1 to `degree`.
   int size(int degree) const { return first_[static_cast<std::size_t>(degree)]; }
@@ -52,12 +56,16 @@ class Polynomials {
   /// Adds c (monomials of the degree in the modes `variables`, packed, x m).
   void add(const MonomialList& list, int degree, const std::vector<int>& variables, const MatrixXd& c);
 
+  /// Returns true if no term has been added.
   bool empty() const { return degree_ == 0; }
+  /// Multiplies all coefficients.
   Polynomials& operator*=(double factor) {
     G_ *= factor;
     return *this;
   }
+  /// Returns true if every coefficient is 0.
   bool is_zero() const { return G_.isZero(0); }
+  /// Number m of polynomials.
   int num_values() const { return m_; }
   Eigen::Index stride() const { return stride_; }  ///< rows of J, padded
   int degree() const { return degree_; }

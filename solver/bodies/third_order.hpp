@@ -13,9 +13,12 @@ namespace bough::solver {
 
 class ThirdOrderBody {
  public:
+  /// Makes the linear body of n + m modes and the polynomials of its tables. \pre flex.third_order is not empty.
   explicit ThirdOrderBody(const records::FlexBody& flex);
 
+  /// Results and scratch arrays, zero. Allocates.
   ThirdOrderData make_data() const;
+  /// Monomials of all polynomials of this body.
   const std::shared_ptr<const MonomialList>& list() const { return list_; }
   /// Returns true if the file has the node's own polynomials.
   static bool is_exact(const records::FlexBody& flex, int node_id);
@@ -24,6 +27,7 @@ class ThirdOrderBody {
   /// Work of the load of a locator beyond that on φη.
   Polynomials make_load(const records::FlexBody& flex, int locator) const;
 
+  /// M(η) and S in `inertia`, of the n modes. No allocation.
   void calc_mass(const ConstVectorRef& eta, ThirdOrderData& data, BodyInertia& inertia) const;
   /// h without the modal stiffness and damping of η.
   void calc_bias(const Vector3d& w_B, const ConstVectorRef& eta, const ConstVectorRef& eta_dot, ThirdOrderData& data,

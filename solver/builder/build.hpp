@@ -22,6 +22,8 @@ struct TreeOrder {
   std::vector<int> hinge;  ///< inboard hinge by tree index, -1: none given (a free hinge is made)
   std::map<std::string, int> tree_index;
 };
+/// Sorts bodies and hinges into a tree. Reports system.duplicate-name, system.ground-child and the names that are
+/// unknown.
 TreeOrder order_tree(const records::SystemSpec& spec, Diagnostics& diagnostics);
 
 /// Springs, dampers, motion and initial coordinates of one hinge into `tb` (tb.hinge is set).

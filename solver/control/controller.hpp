@@ -12,6 +12,7 @@ struct ControllerWiring {
   std::vector<int> inputs;
   int reference = 0, rate = 0;
 
+  /// Number of all input components, with reference and rate.
   int size() const;
   /// Returns true if all inputs have the size of the first, as sum and product require ("control.bad-size").
   bool are_alike() const;

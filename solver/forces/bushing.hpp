@@ -11,6 +11,8 @@ namespace bough::solver {
 
 class BushingElement final : public ForceElement {
  public:
+  /// \param from  marker A. \param to  marker B. \param K  [6 x 6] stiffness in A, translations first. \param C  [6 x
+  /// 6] damping.
   BushingElement(std::string name, SourceLocation at, int from, int to, const Matrix6d& K, const Matrix6d& C)
       : ForceElement(std::move(name)), at_(std::move(at)), from_(from), to_(to), K_(K), C_(C) {}
 

@@ -23,6 +23,7 @@ class CentralGravity final : public ForceElement {
     Vector3d centre = Vector3d::Zero(), axis = Vector3d::UnitZ();
     Vector3d dipole = Vector3d::Zero();  ///< of the magnetic field, μ0/4π times its moment; in W
   };
+  /// \param bodies  tree indices of the bodies that the field acts on.
   CentralGravity(std::string name, const Field& field, std::vector<int> bodies)
       : ForceElement(std::move(name)), field_(field), bodies_(std::move(bodies)) {}
 

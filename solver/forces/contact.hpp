@@ -17,6 +17,8 @@ class ContactElement final : public ForceElement {
     bool is_plane = true;
     Vector3d normal = Vector3d::UnitZ();  ///< unit, in the frame of B's marker
   };
+  /// \param from  marker A, centre of the sphere. \param to  marker B, on the plane or at the centre of the other
+  /// sphere.
   ContactElement(std::string name, int from, int to, Law law)
       : ForceElement(std::move(name)), from_(from), to_(to), law_(std::move(law)) {}
 

@@ -18,6 +18,7 @@ class DragElement final : public ForceElement {
     double scale_height = 0, radius = 0, altitude = 0;  ///< H; radius of the planet; h0
     Vector3d centre_W = Vector3d::Zero(), spin_W = Vector3d::Zero();
   };
+  /// \param marker  point that the air acts on.
   DragElement(std::string name, int marker, Law law) : ForceElement(std::move(name)), marker_(marker), law_(law) {}
 
   ForceResult calc(const Tree& tree, const TreeData& data, Loads* loads) const override {

@@ -32,6 +32,7 @@ struct MarkerInWorld {
   Vector3d p, v, w;
   Matrix3d R;
 };
+/// Motion of a marker, its node deformed, after calc_velocity. R_WM; v and w in W.
 MarkerInWorld calc_marker_in_world(const TreeData& data, const Tree& tree, int marker);
 
 /// Where an element puts its loads.
@@ -52,8 +53,10 @@ class Loads {
 
 class ForceElement {
  public:
+  /// \param name  of the table in the system file, for results and messages.
   explicit ForceElement(std::string name) : name_(std::move(name)) {}
   virtual ~ForceElement() = default;
+  /// Name of the table in the system file.
   const std::string& name() const { return name_; }
 
   /// After calc_velocity. With `loads` it also acts. No allocation.

@@ -24,6 +24,7 @@ class HingeLaw final : public ForceElement {
     double coulomb = 0, static_friction = 0, stribeck_velocity = 1, smoothing = 1;
     bool is_dry = false;  ///< friction by TreeData::slide in place of tanh(q̇/v_0)
   };
+  /// \param q_row  row of the coordinate in q. \param u_row  row of its rate in u.
   HingeLaw(std::string name, int q_row, int u_row, Law law)
       : ForceElement(std::move(name)), q_row_(q_row), u_row_(u_row), law_(std::move(law)) {}
 

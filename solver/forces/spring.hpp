@@ -16,6 +16,7 @@ class SpringElement final : public ForceElement {
     std::unique_ptr<const Curve> spring, damper;
     const TimeFunction* function = nullptr;
   };
+  /// \param from  marker A. \param to  marker B.
   SpringElement(std::string name, int from, int to, Law law)
       : ForceElement(std::move(name)), from_(from), to_(to), law_(std::move(law)) {}
 

@@ -30,6 +30,7 @@ class SolarPressure final : public ForceElement {
     bool is_one_sided = false;
     Shadow shadow;
   };
+  /// \param marker  centre of the panel, where the force acts.
   SolarPressure(std::string name, int marker, const Panel& panel)
       : ForceElement(std::move(name)), marker_(marker), panel_(panel) {}
 

@@ -17,6 +17,7 @@ class TimeFunction {
   struct Value {
     double f = 0, f_dot = 0, f_ddot = 0;
   };
+  /// Value with its first and second derivative at t; at a jump that of the right limit.
   virtual Value calc(double t) const = 0;
   /// Times at which f or a derivative jumps: where f is a motion, the integrator stops and restarts there. Ascending.
   virtual std::vector<double> jump_times() const { return {}; }

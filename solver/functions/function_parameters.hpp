@@ -14,7 +14,9 @@ class FunctionParameters {
   FunctionParameters(const records::FunctionRecord& record, Diagnostics& diagnostics)
       : record_(record), diagnostics_(diagnostics) {}
 
+  /// Returns true if the function has the parameter.
   bool has(const std::string& key) const { return record_.values.count(key) > 0; }
+  /// Returns a required parameter. Reports "function.missing-parameter", and "function.bad-value" if it is not finite.
   double get(const std::string& key) {
     known_.insert(key);
     const auto it = record_.values.find(key);
@@ -24,11 +26,13 @@ class FunctionParameters {
     }
     return check(key, it->second);
   }
+  /// Returns a parameter, or `otherwise` if it is absent.
   double get(const std::string& key, double otherwise) {
     known_.insert(key);
     const auto it = record_.values.find(key);
     return it == record_.values.end() ? otherwise : check(key, it->second);
   }
+  /// Reports "function.unknown-parameter" for each parameter that was not read.
   void refuse_others() {
     for (const auto& [key, value] : record_.values) {
       if (known_.count(key)) continue;
@@ -39,13 +43,16 @@ class FunctionParameters {
             suggest_name(key, names, "it takes: " + (list.empty() ? "none" : list)));
     }
   }
+  /// Reports "function.bad-value" unless the condition holds or an error was reported before.
   void demand(bool condition, const std::string& what, const std::string& advice) {
     if (!condition && !failed_) error("function.bad-value", what, advice);
   }
+  /// Reports an error of this function; `what` follows its name and type.
   void error(const char* id, const std::string& what, const std::string& advice) {
     failed_ = true;
     diagnostics_.error(id, record_.at, "function '" + record_.name + "' of type " + record_.type + " " + what, advice);
   }
+  /// Returns true after an error.
   bool failed() const { return failed_; }
 
  private:

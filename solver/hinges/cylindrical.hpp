@@ -7,6 +7,7 @@ namespace bough::solver {
 
 class CylindricalHinge final : public Hinge {
  public:
+  /// \param unit_axis  in Hp and Hc.
   explicit CylindricalHinge(const Vector3d& unit_axis) : Hinge(2, 2), axis_(unit_axis) {}
   void calc_position(const double* q, HingeMotion& motion) const override;
   bool is_constant_in_child() const override { return true; }

@@ -7,6 +7,7 @@ namespace bough::solver {
 
 class FreeHinge final : public SphericalHinge {
  public:
+  /// Hinge with num_q = 7, num_u = 6.
   FreeHinge() : SphericalHinge(7, 6) {}
   void calc_position(const double* q, HingeMotion& motion) const override;
   bool is_constant_in_child() const override { return false; }

@@ -25,6 +25,8 @@ class GeneralHinge final : public Hinge {
 
 class OrientedHinge final : public SphericalHinge {
  public:
+  /// \param translations  axes of Hp in the order of the travels, as "xz"; num_q = 4 and num_u = 3, plus one per
+  /// travel.
   explicit OrientedHinge(const std::string& translations);
   void calc_position(const double* q, HingeMotion& motion) const override;
   bool is_constant_in_child() const override { return false; }

@@ -23,9 +23,12 @@ struct HingeMotion {
 
 class Hinge {
  public:
+  /// \param num_q  rows of q. \param num_u  rows of u; less than num_q with a quaternion.
   Hinge(int num_q, int num_u) : num_q_(num_q), num_u_(num_u) {}
   virtual ~Hinge() = default;
+  /// Number of rows of q; 0 to 7.
   int num_q() const { return num_q_; }
+  /// Number of rows of u; 0 to 6.
   int num_u() const { return num_u_; }
 
   /// Pose and H. q: num_q (any quaternion length but zero). Fills every used part of `motion`.

@@ -8,6 +8,7 @@ namespace bough::solver {
 
 class PlanarHinge final : public Hinge {
  public:
+  /// \param unit_normal  n, in Hp and Hc.
   explicit PlanarHinge(const Vector3d& unit_normal);
   void calc_position(const double* q, HingeMotion& motion) const override;
 

@@ -6,6 +6,7 @@ namespace bough::solver {
 
 class RevoluteHinge final : public Hinge {
  public:
+  /// \param unit_axis  in Hp and Hc; the angle is positive by the right-hand rule.
   explicit RevoluteHinge(const Vector3d& unit_axis) : Hinge(1, 1), axis_(unit_axis) {}
   void calc_position(const double* q, HingeMotion& motion) const override;
   bool is_constant_in_child() const override { return true; }

@@ -7,6 +7,7 @@ namespace bough::solver {
 
 class ScrewHinge final : public Hinge {
  public:
+  /// \param unit_axis  in Hp and Hc. \param pitch  [L] travel per radian.
   ScrewHinge(const Vector3d& unit_axis, double pitch) : Hinge(1, 1), axis_(unit_axis), pitch_(pitch) {}
   void calc_position(const double* q, HingeMotion& motion) const override;
   bool is_constant_in_child() const override { return true; }

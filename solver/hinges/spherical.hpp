@@ -8,6 +8,7 @@ namespace bough::solver {
 
 class SphericalHinge : public Hinge {
  public:
+  /// Hinge with num_q = 4, num_u = 3.
   SphericalHinge() : SphericalHinge(4, 3) {}
   void calc_position(const double* q, HingeMotion& motion) const override;
   bool is_constant_in_child() const override { return true; }

@@ -8,6 +8,7 @@ namespace bough::solver {
 
 class UniversalHinge final : public Hinge {
  public:
+  /// \param unit_axis  in Hp. \param unit_axis2  in Hp at q = 0; not parallel to the first.
   UniversalHinge(const Vector3d& unit_axis, const Vector3d& unit_axis2)
       : Hinge(2, 2), axis_(unit_axis), axis2_(unit_axis2) {}
   void calc_position(const double* q, HingeMotion& motion) const override;

@@ -7,6 +7,7 @@ namespace bough::solver {
 
 class FixedStepIntegrator : public Integrator {
  public:
+  /// \param order  of the method. \pre options.step > 0. `ode` must outlive this. Allocates.
   FixedStepIntegrator(Ode& ode, const StepperOptions& options, int order);
 
   void reset(double t, const Eigen::Ref<const VectorXd>& y, double t_stop, double left) override;

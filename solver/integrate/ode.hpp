@@ -13,6 +13,7 @@ using Eigen::VectorXd;
 class Ode {
  public:
   virtual ~Ode() = default;
+  /// Number of rows of y.
   virtual int size() const = 0;
   /// y, y_dot: size(). May throw; may leave values that are not finite where y has left its domain.
   virtual void calc_derivative(double t, const Eigen::Ref<const VectorXd>& y, Eigen::Ref<VectorXd> y_dot) = 0;
@@ -34,7 +35,9 @@ class GuardedOde {
  public:
   explicit GuardedOde(Ode& ode) : ode_(ode) {}
 
+  /// Number of rows of y.
   int size() const { return ode_.size(); }
+  /// Sets the last moment before the next jump; later times are evaluated there.
   void set_left_limit(double left) { left_limit_ = left; }
   /// 0: fine; 1: the derivative is not finite or the equations threw (kept for throw_pending).
   int calc(double t, const double* y, double* y_dot) noexcept;

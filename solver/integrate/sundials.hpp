@@ -22,11 +22,13 @@ class Context {
 #if SUNDIALS_VERSION_MAJOR >= 7
   Context() { BOUGH_DEMAND(SUNContext_Create(SUN_COMM_NULL, &context_) == 0); }
 #else
+  /// Makes a context for one process.
   Context() { BOUGH_DEMAND(SUNContext_Create(nullptr, &context_) == 0); }
 #endif
   ~Context() { SUNContext_Free(&context_); }
   Context(const Context&) = delete;
   Context& operator=(const Context&) = delete;
+  /// The context, owned by this.
   operator SUNContext() const { return context_; }
 
  private:
@@ -35,11 +37,14 @@ class Context {
 
 class Vector {
  public:
+  /// Vector of `size` numbers in the memory of this process, not initialized.
   Vector(int size, SUNContext context) : v_(N_VNew_Serial(size, context)) { BOUGH_DEMAND(v_ != nullptr); }
   ~Vector() { N_VDestroy(v_); }
   Vector(const Vector&) = delete;
   Vector& operator=(const Vector&) = delete;
+  /// The vector, owned by this.
   operator N_Vector() const { return v_; }
+  /// View of the numbers, to read and write.
   Eigen::Map<VectorXd> values() const { return {N_VGetArrayPointer(v_), N_VGetLength(v_)}; }
 
  private:

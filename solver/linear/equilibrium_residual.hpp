@@ -13,7 +13,9 @@ class EquilibriumResidual {
  public:
   EquilibriumResidual(Plant& plant, const OperatingPoint& start);
 
+  /// The plant whose equilibrium is sought.
   const Plant& plant() const { return *plant_; }
+  /// The present point of the search.
   const OperatingPoint& point() const { return point_; }
   /// Rows: the dofs, then the states, then the steady rows of the memory.
   int size() const {
@@ -36,6 +38,7 @@ class EquilibriumResidual {
     return i < plant_->num_dofs() ? plant_->step(i) : 1;
   }
 
+  /// Computes both Jacobians at the present point, column by column by differences (Plant::differentiate).
   void linearize();
   /// Rows c (k x m) with c · travel = const on every motion, to first order: of what no displacement and no state
   /// changes the rate of, as the integral of a rate, or two integrals of one error. At the last linearize.

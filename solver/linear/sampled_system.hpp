@@ -47,8 +47,12 @@ Jacobian differentiate_column(Plant& plant, const std::function<VectorXd(double)
 
 class SampledSystem {
  public:
+  /// Sets the operating point; a controller without a sample yet gets its first one, so that differences are those of
+  /// later samples.
   SampledSystem(Plant& plant, const OperatingPoint& point);
+  /// Number of rows of x.
   int num_x() const { return 2 * n_ + nz_; }
+  /// Number of rows of m.
   int num_m() const { return static_cast<int>(plant_.sampled_rows().size()); }
   /// num_x + num_m.
   std::vector<std::string> list_names() const;

@@ -28,6 +28,8 @@ struct Redundancy {
   int constraint = 0;
   Matrix6Xd wrenches;
 };
+/// Finds the dependent rows of the closed constraints by orthogonalization, constraint after constraint, and an SVD of
+/// the rest of each.
 std::vector<Redundancy> find_redundancies(const Loops& loops, const Tree& tree,
                                           const std::vector<AssemblyPriority>& priority, const TreeData& tree_data,
                                           const LoopData& data);

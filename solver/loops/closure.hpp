@@ -21,8 +21,10 @@ struct ClosureMotion {
 
 class Closure {
  public:
+  /// \param num_rows  of W, 1 to 6. \param num_q  coordinates of the closing hinge, 0 without one.
   Closure(int num_rows, int num_q) : num_rows_(num_rows), num_q_(num_q) {}
   virtual ~Closure() = default;
+  /// Number of constraint rows.
   int num_rows() const { return num_rows_; }
   /// Coordinates of the closing hinge; 0 where it is none.
   int num_q() const { return num_q_; }

@@ -31,7 +31,9 @@ struct Constraint {
   std::vector<int> path;    ///< bodies it acts on and those between them and ground, ascending
   std::vector<int> roots;   ///< of the trees they belong to
 
+  /// Number of rows: those of the closure, 1 for a coupler.
   int num_rows() const { return closure ? closure->num_rows() : 1; }
+  /// Coordinates of the closing hinge; 0 without one.
   int num_q() const { return closure ? closure->num_q() : 0; }
 };
 
@@ -39,7 +41,9 @@ struct Loops {
   std::vector<Constraint> constraints;
   double length = 1;  ///< that gaps are small to
 
+  /// Constraint i, in the order of the system file.
   const Constraint& operator[](int i) const { return constraints[static_cast<size_t>(i)]; }
+  /// Number of constraints, open ones too.
   int size() const { return static_cast<int>(constraints.size()); }
   int find(const std::string& name) const;  ///< -1 when absent
 };
@@ -69,6 +73,7 @@ struct LoopData {
   std::vector<ConstraintData> constraints;
   std::vector<LoopBlock> blocks;  ///< of those that are closed
 
+  /// Results of constraint i.
   const ConstraintData& operator[](int i) const { return constraints[static_cast<size_t>(i)]; }
   ConstraintData& operator[](int i) { return constraints[static_cast<size_t>(i)]; }
 };

@@ -30,6 +30,7 @@ Vector6d calc_relative_response(const Tree& tree, const TreeData& data, int pare
 struct MarkerWrenches {
   Vector6d on_parent, on_child;
 };
+/// Transfers a wrench from Hc to both markers; moments are about the marker's own origin.
 MarkerWrenches calc_marker_wrenches(const Tree& tree, const TreeData& data, int parent_marker, int child_marker,
                                     const RelativeMotion& motion, const Vector6d& wrench);
 

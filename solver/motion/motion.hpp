@@ -16,6 +16,7 @@ struct Motion {
   const LoopData& loop_data;
   const GravityField& gravity;
 
+  /// Pose and velocity of a body by its tree index; -1: ground.
   const BodyState& get_state(int body) const { return data[body].state; }
 };
 

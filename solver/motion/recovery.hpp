@@ -22,12 +22,15 @@ class Recovery {
     int first = 0;  ///< row
     std::vector<std::string> components;
     bool is_recorded = false;
+    /// Number of rows.
     int size() const { return static_cast<int>(components.size()); }
   };
 
+  /// Copies the recovery matrices of all blocks; `body`: tree index.
   Recovery(const records::FlexBody& flex, int body);
   ~Recovery();
 
+  /// All elements in the order of the rows.
   const std::vector<Element>& elements() const { return elements_; }
   /// nullptr when absent.
   const Element* find(int id) const;

@@ -17,7 +17,9 @@ class StiffeningTerms {
                                  const std::vector<AppliedForce>& forces, const records::FlexBody& flex, int b,
                                  bool constraints);
 
+  /// Number of loads: A_I (12), then 6 of each source.
   int num_loads() const { return 12 + 6 * static_cast<int>(sources_.size()); }
+  /// Returns true if a source is the reaction of a hinge, which is known after calc_accelerations.
   bool has_hinges() const;
   /// A_I minus gravity (12), then of each source force and moment at its node in B, or the value of a pattern and five
   /// zeros; y: num_loads. After calc_accelerations. No allocation.

@@ -49,6 +49,7 @@ const char* get_folder(BlockKind kind);
 class Block {
  public:
   virtual ~Block() = default;
+  /// Owner of the tangents of this block (LawTangents); valid as long as the block.
   LawOwner as_owner() const { return {this, "", label}; }
   /// Sets kind, name and path.
   void set_name(BlockKind block_kind, const std::string& block_name);
@@ -68,6 +69,7 @@ class Block {
   virtual void start(double* z, double* d) const;
   /// At the start of a run: lags that are to start at rest take the value of what they follow. False without any.
   virtual bool settle(const BlockInput& in, double* z) const;
+  /// Computes the outputs y [sizes.outputs] from inputs, states and memory; sensors and actuators from the motion too.
   virtual void calc_outputs(const BlockInput& in, double* y) const = 0;
   /// Sampled: the outputs as if they were not, without noise; for linear models.
   virtual void calc_ideal(const BlockInput& in, double* y) const;
@@ -97,6 +99,7 @@ class Block {
   virtual void choose(int choice, double* d) const;
 
   // Actuators
+  /// Returns true if the block acts on bodies.
   virtual bool is_actuator() const { return false; }
   /// Adds what the actuator does to the bodies; y: its outputs.
   virtual void add_load(const BlockInput& in, const double* y, TreeData& data) const;

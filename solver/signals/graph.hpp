@@ -25,6 +25,7 @@ struct BlockSlot {
   bool drives_motion = false;       ///< the motion depends on it
   bool needs_acceleration = false;  ///< depends on u̇ at the same moment
 
+  /// Returns true if the outputs are computed at samples and held.
   bool is_sampled() const { return block->sizes.sample_time > 0; }
 };
 
@@ -88,6 +89,7 @@ class SignalGraph {
   /// Propellant used up on each body.
   VectorXd calc_consumption(const Motion& motion, const SignalData& signals) const;
 
+  /// Returns true if a block is sampled.
   bool has_samples() const {
     return std::any_of(places.begin(), places.end(), [](const BlockSlot& p) { return p.is_sampled(); });
   }

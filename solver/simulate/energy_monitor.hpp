@@ -32,7 +32,9 @@ class EnergyMonitor {
   void add_energy_input(const Energies& e, double work, double dissipated);
   void add_energy_input(double energy) { energy_input_ = std::max(energy_input_, energy); }
 
+  /// Writes the numbers of a checkpoint; memory: kMemory.
   void get_memory(Eigen::Ref<Eigen::VectorXd> memory) const;
+  /// Restores the numbers of get_memory().
   void set_memory(const Eigen::VectorXd& memory);
   static constexpr int kMemory = 8;
 

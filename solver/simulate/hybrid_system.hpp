@@ -11,10 +11,13 @@ namespace bough::solver {
 
 class HybridSystem final : public Ode {
  public:
+  /// `system` must outlive this. Allocates all results of an evaluation.
   explicit HybridSystem(const System& system);
 
   int size() const override { return num_q_ + num_u_ + num_z_ + 2; }
+  /// The system whose equations these are.
   const System& system() const { return system_; }
+  /// Number of rows of q.
   int num_q() const { return num_q_; }
   /// Rows of y that are q and u.
   int num_coordinates() const { return num_q_ + num_u_; }

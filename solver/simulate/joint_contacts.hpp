@@ -15,9 +15,12 @@ namespace bough::solver {
 
 class JointContacts {
  public:
+  /// `system` must outlive this; no contact sticks until settle().
   explicit JointContacts(const System& system);
+  /// Returns true if no hinge has dry friction or rigid stops.
   bool empty() const { return joint_contacts_.empty(); }
   static constexpr int kNumEventFunctions = 3;  ///< of each joint contact
+  /// Storage for calc_event_functions(), zero.
   VectorXd make_guards() const {
     return VectorXd::Zero(kNumEventFunctions * static_cast<Eigen::Index>(joint_contacts_.size()));
   }
@@ -35,8 +38,11 @@ class JointContacts {
   /// of the time.
   void demand_inside(const HybridSystem& ode, double t, double slack, const VectorXd& y) const;
 
+  /// Storage for get_memory(), zero.
   VectorXd make_memory() const { return VectorXd::Zero(kMemory * static_cast<Eigen::Index>(joint_contacts_.size())); }
+  /// Writes the numbers of a checkpoint: mode, stop, largest impact speed and excursion of each contact.
   void get_memory(VectorXd& memory) const;
+  /// Restores the numbers of get_memory(), and the directions of sliding in `ode`.
   void set_memory(const VectorXd& memory, HybridSystem& ode);
 
  private:
@@ -47,7 +53,9 @@ class JointContacts {
     int slide = 0;        ///< with friction and moving: which way
     double hardest = 0;   ///< the fastest that it came at its stops
     double farthest = 0;  ///< from zero, where it was looked at
+    /// Lower limit of the constraint force of a sticking contact; -infinity at the upper stop.
     double low() const { return stop > 0 ? -kFree : -contact.static_friction; }
+    /// Upper limit of the constraint force of a sticking contact; infinity at the lower stop.
     double high() const { return stop < 0 ? kFree : contact.static_friction; }
   };
   static constexpr int kMemory = 4;  ///< numbers of each joint contact in a checkpoint

@@ -16,8 +16,11 @@ class MemorySink final : public records::ResultSink {
   void write_energy_error(double worst) override { energy_error_ = worst; }
   void end(bool completed, const std::string& reason) override;
 
+  /// Channels and attributes of the run.
   const records::ResultsHeader& header() const { return header_; }
+  /// Number of samples so far.
   int num_samples() const { return static_cast<int>(samples_.size()); }
+  /// Returns true if the run has the channel.
   bool has(const std::string& path) const;
   /// num_samples x size of the channel; BOUGH_DEMAND that it exists.
   Eigen::MatrixXd get(const std::string& path) const;

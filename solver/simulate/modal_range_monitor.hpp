@@ -30,6 +30,7 @@ class ModalRangeMonitor {
  public:
   static constexpr std::string_view spin_id = "run.unstiffened-spin";
 
+  /// Watches every flexible body; the spin limit only of bodies without stiffening. `system` must outlive this.
   explicit ModalRangeMonitor(const System& system);
 
   /// A limit that was exceeded at t for the first time, as one message.

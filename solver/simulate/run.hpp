@@ -18,6 +18,7 @@ std::string short_text(double value);
 
 class Run {
  public:
+  /// Prepares a run; nothing is written before start(). References must outlive it.
   Run(const System& system, const records::SystemSpec& spec, RunSetup setup, records::ResultSink& sink,
       const SimulateOptions& options, Diagnostics& diagnostics);
   /// The beginning, through its first step.
@@ -47,7 +48,9 @@ class Run {
   void set_held(const std::vector<std::pair<int, double>>& rows);
 
   // Interface for an integrator of the host (run_continuous.cpp)
+  /// Present state x = [q; u; z; work; dissipated].
   const VectorXd& state() const { return y_; }
+  /// Name of a row of the state, as in bough_name().
   std::string name_state(int row) const { return ode_.name_row(row); }
   /// From here on the state is the host's, until advance_to().
   void lead();

@@ -30,13 +30,16 @@ class Simulator {
   /// Outcome of a run that has ended; none before.
   const std::optional<SimulateOutcome>& outcome() const;
 
+  /// Number of [[input]] tables, each a scalar.
   int num_inputs() const { return static_cast<int>(inputs_.size()); }
+  /// The [[input]] block of input i.
   const InputBlock& input(int i) const { return *inputs_[static_cast<std::size_t>(i)].block; }
   /// Value of input i at time(), from which on it is held; a linear one gets there at the time advanced to next.
   void set_inputs(int first, std::span<const double> values);
   /// At time().
   double get_input(int i) const;
 
+  /// Channels of the results, time first.
   const std::vector<records::Channel>& channels() const;
   /// The components of all channels at time(), one after another. No allocation.
   const Eigen::VectorXd& calc_outputs();
@@ -45,8 +48,11 @@ class Simulator {
   const Eigen::VectorXd& calc_outputs(std::span<const int> rows);
 
   // Interface for an integrator of the host, in place of advance_to()
+  /// Number of rows of the state.
   int num_states() const;
+  /// Present state x = [q; u; z; work; dissipated], at time().
   const Eigen::VectorXd& state() const;
+  /// Name of a row of the state.
   std::string name_state(int row) const;
   /// Puts it at (t, x), t not past next_event_time().
   void set_continuous(double t, const Eigen::Ref<const Eigen::VectorXd>& x);

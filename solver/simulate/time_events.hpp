@@ -39,9 +39,13 @@ class TimeEvents {
     next_ = calc_output(index_);
   }
 
+  /// Start time [T] of the run.
   double start() const { return plan_.start; }
+  /// End time [T] of the run.
   double end() const { return plan_.end; }
+  /// Number of output samples, with those at start and end.
   long num_outputs() const { return num_outputs_; }
+  /// Time of output sample i, exactly the end for the last one; infinite after it.
   double calc_output(long i) const;
   /// The next sample that has not been taken; infinite after the last.
   double next_output() const { return next_; }

@@ -36,8 +36,11 @@ struct DiscreteState {
 /// dampers.
 struct StateLayout {
   int num_q = 0, num_u = 0, num_z = 0;
+  /// Number of rows of x.
   int size() const { return num_q + num_u + num_z + 2; }
+  /// Row of the work.
   int work() const { return num_q + num_u + num_z; }
+  /// Row of the dissipated work.
   int dissipated() const { return work() + 1; }
 };
 

@@ -9,6 +9,7 @@ struct StablePart {
   Eigen::MatrixXcd T, U, L;
   int num_rigid = 0;                  ///< states left out: poles at 0, or all that do not decay
   std::complex<double> unstable = 0;  ///< a pole that neither decays nor is at 0; 0: there is none
+  /// Returns true if every pole decays or is at 0.
   bool is_stable() const { return unstable == std::complex<double>(0); }
 };
 

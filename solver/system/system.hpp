@@ -182,6 +182,8 @@ inline ConstraintReaction get_constraint_reaction(const System& system, const Sy
 /// The wrench across the inboard hinge of a body, of every type. After calc_accelerations.
 HingeReaction get_hinge_reaction(const System& system, const SystemData& data, int body);
 
+/// Kinetic, strain and potential energy, those of hinge springs, force elements, motors and rotors too. After
+/// calc_velocity.
 Energies calc_energies(const System& system, const SystemData& data);
 /// Strain energy of the modes of one body.
 double calc_strain_energy(const System& system, const SystemData& data, int body);

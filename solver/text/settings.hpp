@@ -21,8 +21,11 @@ class SettingsReader {
                  Diagnostics& diagnostics)
       : settings_(settings), what_(std::move(what)), at_(at), diagnostics_(diagnostics) {}
 
+  /// Returns true if the table has the key, whatever its type.
   bool has(const std::string& key) const { return settings_.has(key); }
+  /// Returns true if the key has a number or a list of numbers.
   bool has_number(const std::string& key) const { return settings_.numbers.count(key) > 0; }
+  /// Returns true if the key has a list of rows.
   bool has_matrix(const std::string& key) const { return settings_.matrices.count(key) > 0; }
   /// "control.missing-key" without it.
   double get(const std::string& key);

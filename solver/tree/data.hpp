@@ -114,7 +114,10 @@ void set_modes(const Tree& tree, const std::vector<HingeMode>& mode, TreeData& d
 /// Leaves in TreeData::added the inertia of motors alone, and no K and D.
 void clear_added(const Tree& tree, TreeData& data);
 
+/// Position stage at the state q (num_q) and the time t of prescribed motions.
 void calc_position(const Tree& tree, double t, const ConstVectorRef& q, TreeData& data);
+/// Velocity stage at the rates u (num_u); rows of coordinates that are not free are overwritten by the given rates.
+/// After calc_position.
 void calc_velocity(const Tree& tree, const ConstVectorRef& u, TreeData& data);
 /// Both in one walk over the bodies.
 void calc_kinematics(const Tree& tree, double t, const ConstVectorRef& q, const ConstVectorRef& u, TreeData& data);
@@ -139,6 +142,7 @@ void solve_response(const Tree& tree, TreeData& data, int marker, const Vector6d
 void solve_jump(const Tree& tree, TreeData& data, const ConstVectorRef& given, Eigen::Ref<VectorXd> du);
 
 // Response to several loads that act together: start, add the loads, run; the result is in the sweep (u_dot, A).
+/// Starts a response of all bodies, zero. After calc_factor.
 Sweep& start_response(TreeData& data);
 /// Starts a response of these bodies only; the rows of other bodies must not be read.
 Sweep& start_response(const Tree& tree, TreeData& data, const std::vector<int>& bodies);
@@ -165,10 +169,15 @@ void calc_dense_accelerations(const Tree& tree, const TreeData& data, Eigen::Ref
 void calc_dense_equations(const Tree& tree, const TreeData& data, MatrixXd& mass, VectorXd& force);
 
 // One body at a time, for the walks.
+/// Pose, hinge columns and mass matrix of body b; after its parent.
 void calc_body_position(const Tree& tree, int b, TreeData& data);
+/// Velocity, bias and d'Alembert forces of body b; after its parent.
 void calc_body_velocity(const Tree& tree, int b, TreeData& data);
+/// Articulated inertia of body b, added to that of its parent; after its children.
 void factor_body(const Tree& tree, int b, TreeData& data);
+/// Articulated bias force of body b, passed on to its parent; after its children.
 void solve_to_base(const Tree& tree, int b, const TreeData& data, Sweep& s);
+/// Accelerations of body b and its rows of u̇; after its parent.
 void solve_to_tip(const Tree& tree, int b, const TreeData& data, Sweep& s);
 
 }  // namespace bough::solver

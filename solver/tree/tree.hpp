@@ -55,11 +55,17 @@ struct TreeBody {
   /// Hinge columns at Bo, in B, where they are constant: neither end deforms and the hinge says so. Else empty.
   Matrix6Xd constant_H;
 
+  /// Rows of q of the inboard hinge.
   int num_hinge_q() const { return hinge->num_q(); }
+  /// Rows of u of the inboard hinge.
   int num_hinge_u() const { return hinge->num_u(); }
+  /// Number of modes; 0 for a rigid body.
   int num_modes() const { return body.num_modes(); }
+  /// First row of η in q.
   int eta_offset() const { return q_offset + hinge->num_q(); }
+  /// First row of η̇ in u.
   int eta_dot_offset() const { return u_offset + hinge->num_u(); }
+  /// Returns true if the body has modes.
   bool is_flexible() const { return body.num_modes() > 0; }
   /// Hinge coordinates in this mode at the start.
   int count(HingeMode m) const {
@@ -77,7 +83,9 @@ struct Tree {
   std::vector<const TimeFunction*> functions;  ///< that motions, forces and signals name
   int num_q = 0, num_u = 0, num_v = 0;
 
+  /// Body by tree index, parents first.
   const TreeBody& operator[](int b) const { return bodies[static_cast<size_t>(b)]; }
+  /// Number of bodies, without ground.
   int size() const { return static_cast<int>(bodies.size()); }
   /// Its index; a marker that is there already is taken. The marker's body is in the tree.
   int add_marker(const Marker& marker);
