@@ -64,9 +64,11 @@ typedef struct bough_options {
   double duration; /* how long it may go on at most */
 } bough_options;
 
+/** BOUGH_ABI_VERSION of the library; a host compares it with that of the header it was compiled with. */
 BOUGH_API int bough_abi_version(void);
 /** "0.3.0", of the library. */
 BOUGH_API const char *bough_library_version(void);
+/** Options that leave everything as in the system file, with `size` set. */
 BOUGH_API bough_options bough_default_options(void);
 
 /** Reads a system file and all files that it names. `settings`: "name=value" of [parameters], ended by NULL; may be
@@ -114,9 +116,13 @@ typedef struct bough_event_info {
   double next_event_time; /* where the host has to stop at the latest */
 } bough_event_info;
 
+/** Continuous states [bough_count(model, BOUGH_STATES)] at the present time. */
 BOUGH_API bough_status bough_get_continuous(bough_simulation *simulation, double *x);
+/** Sets time and continuous states. BOUGH_BAD_ARGUMENT: a value is not finite, or t is after the next time event. */
 BOUGH_API bough_status bough_set_continuous(bough_simulation *simulation, double t, const double *x);
+/** Time derivatives [bough_count(model, BOUGH_STATES)] of the continuous states at the present (t, x). */
 BOUGH_API bough_status bough_derivatives(bough_simulation *simulation, double *x_dot);
+/** Event functions [bough_count(model, BOUGH_EVENTS)] at the present (t, x); an event is where one changes its sign. */
 BOUGH_API bough_status bough_event_functions(bough_simulation *simulation, double *g);
 /** After each step of the host: whether event mode is called for, since constraints have drifted apart. */
 BOUGH_API bough_status bough_completed_step(bough_simulation *simulation, int *enter_event_mode);

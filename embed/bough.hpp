@@ -160,6 +160,7 @@ class Simulation {
 
  private:
   struct Stop {
+    /// Releases the simulation, as the deleter of the handle.
     void operator()(bough_simulation* simulation) const { bough_stop(simulation); }
   };
   void demand(bough_status status) const {

@@ -33,6 +33,7 @@ class DependencyGraph {
  private:
   struct Set {
     std::vector<bool> q, u, z, inputs;
+    /// Forms the union with `other`, which has equal sizes.
     void add(const Set& other);
   };
   Set make_set() const;

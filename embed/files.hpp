@@ -4,6 +4,7 @@
 
 namespace bough::embed {
 
+/// Readers of flat and .FLX bodies. They throw InputError "embed.hdf5" for HDF5 bodies, "embed.body-format" for others.
 FileReaders get_file_readers();
 
 }  // namespace bough::embed

@@ -60,9 +60,13 @@ class Instance {
   Instance(const Instance&) = delete;
   Instance& operator=(const Instance&) = delete;
 
+  /// Returns the options of the constructor, with the logging of the last set_logging().
   const InstanceOptions& options() const { return options_; }
+  /// Returns the phase that the last set_phase() entered.
   Phase phase() const { return phase_; }
+  /// Enters a phase; the callers check that the standard permits the transition.
   void set_phase(Phase phase) { phase_ = phase; }
+  /// Selects if all categories of messages are logged.
   void set_logging(bool is_on) { options_.logs_all = is_on; }
 
   /// Logs a message. \return Status::Error.
@@ -76,7 +80,10 @@ class Instance {
   Status terminate();
   Status reset();
 
+  /// Reads variables by their value references, in Model Exchange at the time and states last set. \param values  one
+  /// per reference. \return Status::Error for an unknown reference.
   Status get_values(std::span<const std::uint32_t> references, double* values);
+  /// Sets inputs, and parameters before the end of the initialization. If one value is rejected, none is set.
   Status set_values(std::span<const std::uint32_t> references, const double* values);
 
   /// Phases in which get_directional_derivative() may be called.
@@ -91,24 +98,40 @@ class Instance {
                                     const double* seed, double* sensitivity);
 
   // Co-Simulation
+  /// Advances a Co-Simulation from t, the present time, to t + h. `result.time` is earlier if an event ends the run.
+  /// \return Status::Error for a step beyond the stop time.
   Status do_step(double t, double h, StepResult& result);
+  /// Returns the time [T] reached; before the start of the simulation the start time.
   double time();
+  /// Returns the message of the event that ended the run; empty: none did.
   const std::string& end_message() const { return end_message_; }
 
   // Model Exchange
+  /// Number of continuous states.
   std::size_t num_states() const;
+  /// Number of event functions, which FMI calls event indicators.
   std::size_t num_event_functions() const;
+  /// Sets the time [T] of the next evaluations. \return Status::Discard for a time that is not finite.
   Status set_time(double t);
+  /// Sets the n = num_states() states of the next evaluations. \return Status::Discard for a value that is not finite.
   Status set_states(const double* x, std::size_t n);
+  /// Reads the states: in Model Exchange those last set, which events may have changed; in Co-Simulation those reached.
   Status get_states(double* x, std::size_t n);
+  /// Computes the derivatives of the n = num_states() states; in Co-Simulation on a copy, so that the run is unchanged.
   Status get_derivatives(double* x_dot, std::size_t n);
+  /// Computes the n = num_event_functions() event functions, in Co-Simulation on a copy.
   Status get_event_functions(double* g, std::size_t n);
+  /// Ends a step of the importer. \param[out] enter_event_mode  true if constraints have drifted.
   Status complete_step(bool& enter_event_mode);
+  /// Iterates the events at the present time; the states may jump. In Co-Simulation only `info` is reset.
   Status update_discrete(bough_event_info& info);
 
   // FMU states
+  /// Copies everything that the instance continues from. \return null if the present state cannot be computed.
   std::unique_ptr<SavedState> get_state();
+  /// Continues from a state of an instance of the same FMU. \return Status::Error for a state of another FMU.
   Status set_state(const SavedState& saved);
+  /// Writes a state as bytes, with the token of the FMU before and a hash after them.
   std::vector<std::byte> serialize(const SavedState& saved) const;
   /// \throws InputError "fmu.state".
   std::unique_ptr<SavedState> deserialize(std::span<const std::byte> bytes) const;

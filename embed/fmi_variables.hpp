@@ -12,6 +12,7 @@ enum class VariableKind : std::uint32_t { Time = 0, Input, Output, Parameter, St
 
 constexpr std::uint32_t kMaxIndex = 0xffffff;
 
+/// Composes a value reference; index <= kMaxIndex.
 constexpr std::uint32_t make_reference(VariableKind kind, std::size_t index) {
   return static_cast<std::uint32_t>(kind) << 24 | static_cast<std::uint32_t>(index);
 }

@@ -20,6 +20,7 @@ struct bough_simulation {
   std::string message;
   bool has_failed = false;
 
+  /// Returns the simulator that the handle steps.
   bough::solver::Simulator& simulator() const { return own->simulator(); }
 };
 
@@ -28,14 +29,17 @@ namespace bough::embed {
 /// Represents the set of live handles: a released or foreign pointer is reported, not dereferenced. Thread-safe.
 class Handles {
  public:
+  /// Registers a handle.
   void add(const void* handle) {
     const std::unique_lock held(mutex_);
     alive_.insert(handle);
   }
+  /// Removes a handle. Returns false if it was not registered.
   bool remove(const void* handle) {
     const std::unique_lock held(mutex_);
     return alive_.erase(handle) > 0;
   }
+  /// Returns true if the handle is registered.
   bool has(const void* handle) {
     const std::shared_lock held(mutex_);
     return alive_.count(handle) > 0;
@@ -45,7 +49,9 @@ class Handles {
   std::shared_mutex mutex_;
   std::unordered_set<const void*> alive_;
 };
+/// Returns the registered models of the process.
 Handles& get_model_handles();
+/// Returns the registered simulations of the process.
 Handles& get_simulation_handles();
 
 /// Starts a simulation and registers its handle; bough_stop() releases it.

@@ -19,6 +19,7 @@ struct Port {
 
 class Ports {
  public:
+  /// Lists inputs and parameters of the file, and channels, states and event functions of its simulator.
   Ports(const records::SystemSpec& spec, const solver::Simulator& simulator);
 
   /// \param kind  a bough_kind. NULL: no such kind.

@@ -34,9 +34,12 @@ class Simulation {
   /// Throws what solver::Simulator throws. \param loaded and what `run` points to must outlive it.
   Simulation(const LoadedSystem& loaded, records::SystemSpec spec, solver::SimulateOptions run = {});
 
+  /// Returns the simulator, at time() between calls.
   solver::Simulator& simulator() { return *simulator_; }
   const solver::Simulator& simulator() const { return *simulator_; }
+  /// Returns warnings and notes since the construction.
   const Diagnostics& diagnostics() const { return diagnostics_; }
+  /// Returns the specification with the options of the host.
   const records::SystemSpec& spec() const { return spec_; }
   /// Hash of all that must be the same where a state is restored.
   std::uint64_t fingerprint() const { return fingerprint_; }
