@@ -9,6 +9,8 @@
 
 namespace bough::report {
 
+/// Composes the chapter: eigenvalues, damping ratios, shapes, and checks of residuals and of unstable modes. \param
+/// facts  names and values for its head.
 Chapter make_chapter(const records::ComplexModesResult& modes, const std::string& file,
                      const std::vector<std::pair<std::string, std::string>>& facts);
 

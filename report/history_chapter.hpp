@@ -17,6 +17,7 @@ struct HistoryChannel {
   std::string unit{};            ///< in labels, otherwise the dimensions; of components that differ a list
   std::vector<bool> is_noise{};  ///< of each column: constant or below 1e-9 of the channels of its unit
 
+  /// Returns the unit of a column; empty if it has none.
   std::string get_unit(Eigen::Index column) const {
     return records::pick_unit(unit, static_cast<int>(column), static_cast<int>(values.cols()));
   }

@@ -11,8 +11,11 @@ namespace bough::report {
 struct Strides {
   long first = 1, others = 1;
 };
+/// Selects the smallest strides for which all samples fit the budget of 4.1e6 characters; channels of bodies, reactions
+/// and mass are thinned first.
 Strides choose_strides(const History& history);
 
+/// Writes time, channels, components and events as the JSON that the script of the page reads.
 std::string make_data(const History& history, const Strides& strides);
 
 }  // namespace bough::report

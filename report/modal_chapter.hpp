@@ -46,6 +46,8 @@ struct ModalModel {
   bool is_buckling = false;
 };
 
+/// Composes the chapter: animated shapes, mass properties, table of modes, mass integrals, frequencies against spin
+/// rate, MAC; a panel without data is left out.
 Chapter make_chapter(const ModalModel& model);
 
 /// A matrix between 0 and 1 as squares of grey, with its numbers as titles.

@@ -9,6 +9,7 @@
 
 namespace bough::report {
 
+/// Encodes `size` bytes in base64 (RFC 4648, with padding).
 std::string encode_base64(const void* data, std::size_t size);
 
 /// A column of samples in 24 bits each, four characters a sample: value = low + code · step, big-endian codes; code
@@ -18,6 +19,7 @@ struct PackedColumn {
   double low = 0, step = 0;
   std::string data;  ///< empty where every sample is `low`
 };
+/// Packs samples so that 0 stays exact for a column with both signs.
 PackedColumn pack_column(const Eigen::Ref<const Eigen::VectorXd>& values);
 
 /// Little-endian 32-bit floats, 32-bit unsigned integers, 64-bit floats.

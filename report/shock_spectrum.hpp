@@ -23,9 +23,13 @@ enum class ShockPart {
   Primary,   ///< largest magnitude during the samples
   Residual   ///< largest magnitude after the last sample, where the base does not accelerate
 };
+/// Names of ShockKind in its order: "absolute-acceleration" and others.
 const std::vector<std::string>& list_shock_kinds();
+/// Names of ShockPart in its order: "maximax" and others.
 const std::vector<std::string>& list_shock_parts();
+/// Returns the kind of a name. \pre The name is in list_shock_kinds().
 ShockKind find_shock_kind(const std::string& name);
+/// Returns the part of a name. \pre The name is in list_shock_parts().
 ShockPart find_shock_part(const std::string& name);
 
 /// Spectrum at frequencies [1/T], from rest at the first sample. The acceleration is linear between the samples

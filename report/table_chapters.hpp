@@ -26,6 +26,8 @@ struct CampaignTable {
   Facts facts;
   std::vector<CampaignColumn> columns;  ///< "case" first; "exit_code" among them
 };
+/// Composes the chapter: number of cases with a nonzero exit code, scatter plot, percentiles, table of the first 1000
+/// cases.
 Chapter make_chapter(const CampaignTable& table);
 
 /// `select --json`.
@@ -35,6 +37,7 @@ struct SelectedMode {
   bool kept = true;
   std::string reason;
 };
+/// Composes the table of modes, with the sum of the shares of the modes that are not kept.
 Chapter make_chapter(const std::vector<SelectedMode>& modes, double total_cost, const std::string& file);
 
 }  // namespace bough::report

@@ -4,9 +4,13 @@
 
 namespace bough::report {
 
+/// Returns the JavaScript of the page.
 const char* get_script();
+/// Returns the hash of get_script() for the policy.
 const char* get_script_hash();
+/// Returns the CSS of the page.
 const char* get_style();
+/// Returns the hash of get_style() for the policy.
 const char* get_style_hash();
 
 }  // namespace bough::report
