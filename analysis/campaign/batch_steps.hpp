@@ -8,6 +8,7 @@
 
 namespace bough::analysis {
 
+/// Joins `path` to `folder` and normalizes the result lexically; an absolute `path` is only normalized.
 std::string make_absolute(const std::string& folder, const std::string& path);
 
 /// A word that may be an input file: no option, and not the value of one.

@@ -16,6 +16,7 @@ struct ModelChoice {
   std::vector<std::string> ignore_cards;
 };
 
+/// Converts the choice to options of the model builder; mass "deck" leaves the kind of mass matrix to PARAM,COUPMASS.
 fe::ModelOptions make_model_options(const ModelChoice& choice);
 
 /// The stress that STATSUB of the subcase of `options` asks for; nullptr for none.

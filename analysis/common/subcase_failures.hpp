@@ -15,6 +15,7 @@ class SubcaseFailures {
   SubcaseFailures(std::size_t num_solved, std::size_t num_in_deck)
       : num_solved_(num_solved), is_named_(std::max(num_solved, num_in_deck) > 1) {}
 
+  /// Records the messages of a subcase that failed; the largest exit code of all failures is kept.
   void add(int subcase, const Failure& failure);
   /// Returns true if no subcase has failed.
   bool is_empty() const { return failed_.empty(); }

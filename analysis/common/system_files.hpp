@@ -22,6 +22,8 @@ LoadedSystem load_system(const std::string& path, Diagnostics& diagnostics, cons
 struct LoadOptions : embed::LoadOptions {
   std::string start_from;
 };
+/// Loads a system file or `options.text`, its bodies, tables, controllers and FMUs; the initial state is that of
+/// `start_from`, unless it is empty. Throws InputError with the errors of all files.
 LoadedSystem load_system(const std::string& path, Diagnostics& diagnostics, LoadOptions options);
 
 /// path itself when absolute or when `from_file` is empty, else relative to the folder of from_file.

@@ -26,6 +26,7 @@ std::vector<std::pair<std::string, const records::MassIntegrals*>> list_integral
 std::optional<exports::ReducedSolid> find_solid(const records::FlexBody& body, const std::string& file,
                                                 Diagnostics& diagnostics);
 
+/// Converts an index of Eigen to an index of std containers; i >= 0.
 inline std::size_t to_size(Eigen::Index i) { return static_cast<std::size_t>(i); }
 
 }  // namespace bough::analysis

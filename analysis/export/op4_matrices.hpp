@@ -9,6 +9,7 @@ namespace bough::analysis {
 
 class Op4Matrices {
  public:
+  /// Starts an empty file; `options` select the number format and the digits of each matrix.
   explicit Op4Matrices(matrices::Op4Options options = {}) : options_(options) {}
 
   /// Nothing of a matrix without entries in size.

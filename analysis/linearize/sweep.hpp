@@ -15,6 +15,7 @@ struct SweepRange {
   std::string name;
   std::vector<double> values;
 };
+/// Parses the value of --sweep; both end values are in the range exactly.
 SweepRange parse_sweep(const std::string& text);
 
 /// One model a value, their poles followed. Throws ComputationError("linear.sweep-states") where a model has other

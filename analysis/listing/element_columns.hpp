@@ -15,6 +15,7 @@ using BeamLoads = std::map<int, Eigen::Vector4d>;
 
 /// Elements of a model by their card and id.
 using ElementIndex = std::map<std::pair<std::string, int>, const fe::Element*>;
+/// Indexes all elements of the model; the pointers are valid as long as the model.
 ElementIndex index_elements(const fe::Model& model);
 
 /// The elements of `forces` that `is_wanted` names; none where Nastran's table of that card is not written.

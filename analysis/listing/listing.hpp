@@ -42,6 +42,7 @@ class ListingMaker {
   void add_modes(const fe::Model& model, const modal::EigenPairs& pairs, int num_residual, Diagnostics& diagnostics);
   void add_static(const fe::Model& model, const records::StaticSubcase& solved, Diagnostics& diagnostics);
 
+  /// Returns the listing of all steps added so far.
   const records::Listing& get() const { return listing_; }
   /// Grid of MEFFMASS(GRID = ...) of a subcase; 0: the origin; none where it is not asked for.
   std::optional<int> find_effective_mass_grid(int subcase) const;
@@ -51,6 +52,7 @@ class ListingMaker {
   struct Choice {
     const records::CaseSet* set = nullptr;  ///< nullptr: all
     bool is_printed = true;
+    /// Returns true if the request includes the grid or element `id`; a request without a set includes all.
     bool contains(int id) const { return set == nullptr || set->contains(id); }
   };
   std::optional<Choice> choose(int subcase, const std::string& command) const;

@@ -15,6 +15,8 @@ namespace bough::analysis {
 struct StressLimits {
   double tension = 0, compression = 0, shear = 0;
 };
+/// Collects the stress limits of each bar, beam, tube and rod element by its id; elements whose material has no limit
+/// are absent.
 std::map<int, StressLimits> list_stress_limits(const records::Deck& deck);
 
 /// limit / |stress| - 1 for tension and compression; no number without a limit, or where nothing of that sign acts.

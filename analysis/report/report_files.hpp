@@ -17,7 +17,11 @@ std::vector<std::pair<std::string, std::string>> list_facts(const std::string& f
 /// The settings of a run.
 std::vector<std::pair<std::string, std::string>> list_settings(const std::string& file);
 
+/// Chapter of a flexible body: mass properties about Bo in frame B, modes, MAC, mass integrals, frequencies against
+/// spin rate.
 report::Chapter make_body_chapter(const std::string& file, Diagnostics& diagnostics);
+/// Chapter of a modes or buckling file: mass properties in the basic system with the inertia about the origin, modes,
+/// MAC.
 report::Chapter make_modes_chapter(const std::string& file);
 /// Chapter of `frequency` or `transient`: the largest curves of each quantity, their peaks, the modes.
 report::Chapter make_response_chapter(const std::string& file);

@@ -15,6 +15,7 @@ class ProvenanceSink final : public records::ResultSink {
   ProvenanceSink(records::ResultSink& inner, std::vector<std::pair<std::string, std::string>> source)
       : inner_(inner), source_(std::move(source)) {}
 
+  /// Adds the input files to the header before the inner sink receives it.
   void begin(const records::ResultsHeader& header) override {
     auto with_source = header;
     with_source.source = source_;

@@ -46,6 +46,8 @@ std::vector<statespace::NodeDirection> choose_places(const records::FlexBody& bo
                                                      const std::vector<std::string>& weights, bool may_be_rates,
                                                      const std::string& file);
 
+/// Ranks the modes of a body without a system: costs of the paths from `inputs` to `outputs` with the modal damping of
+/// `o`, weighted by its spectrum of inputs if it has one.
 Weighing weigh_alone(const SelectRequest& o, const records::FlexBody& body,
                      const std::vector<statespace::NodeDirection>& inputs,
                      const std::vector<statespace::NodeDirection>& outputs);

@@ -20,7 +20,10 @@ struct DeckItem {
 };
 
 // The kinds are rows of formats/records/element_cards.cpp.
+/// Lists the elements of the deck, then its PLOTEL elements; the grids of each are ascending, without repetition and
+/// without 0.
 std::vector<DeckItem> list_elements(const records::Deck& deck);
+/// Lists the rigid elements and MPC equations of the deck.
 std::vector<DeckItem> list_rigid(const records::Deck& deck);
 
 /// Keeps the elements (rigid: rigid elements and MPC) with is_kept[index in the list of the deck].

@@ -12,6 +12,7 @@ struct PartNames {
   std::string base;  ///< NAME of NAME-1.bdf, NAME-1.toml, NAME-1.h5, NAME-run.toml
   std::string deck;  ///< the deck that was split, in comments
 
+  /// Returns "NAME-1" for part 0.
   std::string get_part(int part) const { return base + "-" + std::to_string(part + 1); }
 };
 

@@ -22,7 +22,9 @@ struct Structure {
   std::map<int, unsigned> held;             ///< components of joined grids that the deck holds, without common_held
   unsigned common_held = 0;                 ///< components that are held at every grid of an element: a planar model
 
+  /// Returns file and line of a card of the deck.
   SourceLocation locate(const records::CardLocation& card) const { return deck.locate(card); }
+  /// Returns file and line of a GRID card; the file alone for an unknown id.
   SourceLocation locate_grid(int id) const {
     const auto found = at.find(id);
     return deck.locate(found == at.end() ? records::CardLocation{} : found->second);
