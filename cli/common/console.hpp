@@ -16,6 +16,7 @@ enum ExitCode { kSuccess = 0, kInputError = 1, kUsageError = 2, kComputationFail
 struct Table {
   std::vector<std::string> headings;
   std::vector<std::vector<std::string>> rows;
+  /// Formats headings and rows as lines with two blanks between columns, whose widths count characters on the screen.
   std::string to_text() const;
 };
 
@@ -27,12 +28,16 @@ std::size_t get_terminal_width();
 
 class Console {
  public:
+  /// \param quiet  only errors and requested results are printed. \param verbosity  number of -v. Colours are off
+  /// unless stderr is a terminal and NO_COLOR is unset or empty.
   Console(bool quiet, int verbosity);
 
   /// The file that a message is about when it names none, unless it concerns the command line.
   void set_subject(std::string file) { subject_ = std::move(file); }
 
+  /// Returns true on the rank that prints.
   bool is_root() const { return is_root_; }
+  /// Makes rank 0 the one that prints; without a call it is rank 0 of the launcher of MPI.
   void set_rank(int rank) { is_root_ = rank == 0; }
 
   /// To stdout, also when quiet: the result that was asked for. Throws ComputationError("cli.write") when it is not

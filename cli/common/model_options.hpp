@@ -11,13 +11,16 @@ class App;
 
 namespace bough::cli {
 
+/// Adds --subcase, --free, --mass and --ignore to a command.
 void add_model_options(CLI::App& verb, analysis::ModelChoice& choice);
 
 struct ListingOptions {
   std::string f06, op2;
+  /// Returns true if neither a listing nor an OUTPUT2 file is requested.
   bool empty() const { return f06.empty() && op2.empty(); }
 };
 
+/// Adds --f06 and --op2 to a command.
 void add_listing_options(CLI::App& verb, ListingOptions& options);
 
 /// On the first rank.

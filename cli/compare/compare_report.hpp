@@ -7,11 +7,19 @@
 
 namespace bough::cli {
 
+/// Table of the norms of the mass integrals per mode by each method, with differences from the exact set, and of the
+/// captured effective mass.
 std::string format_report(const analysis::SingleReport& report);
+/// The numbers of the table as JSON, at full precision.
 nlohmann::json make_json(const analysis::SingleReport& report);
+/// Tables of two models: nodes in common, pairs of modes with frequencies and MAC, effective masses, and matrices if
+/// both are bodies.
 std::string format_report(const analysis::PairReport& report);
+/// The numbers of the tables as JSON, with the whole MAC matrix.
 nlohmann::json make_json(const analysis::PairReport& report);
+/// Table of three refined meshes: each quantity on the meshes A to C, its observed order and its extrapolated value.
 std::string format_report(const analysis::RefinementReport& report);
+/// The numbers of the table as JSON.
 nlohmann::json make_json(const analysis::RefinementReport& report);
 
 }  // namespace bough::cli

@@ -18,6 +18,7 @@ class EditSession {
   /// `output`: where `save` writes; empty: the file itself.
   EditSession(EditText text, const Console& console, Ask ask, std::string output);
 
+  /// Returns the text with all changes, saved or not.
   const std::string& get_text() const { return text_.get_text(); }
 
   /// Does one line; false when the session is to end. Throws InputError and ComputationError.

@@ -21,14 +21,22 @@ struct EditTarget {
 
 class EditText {
  public:
+  /// Starts without changes: `text` counts as saved. \param is_body_file  selects the schema: body file or system file.
   EditText(std::string file, std::string text, bool is_body_file);
 
+  /// Returns the path of the file, for messages.
   const std::string& get_file() const { return file_; }
+  /// Returns the text with all changes.
   const std::string& get_text() const { return text_; }
+  /// Returns the text as last saved.
   const std::string& get_saved() const { return saved_; }
+  /// Returns the tables that the schema of this file permits.
   const std::vector<toml_files::KindHelp>& get_kinds() const { return kinds_; }
+  /// Returns true for a body file, false for a system file.
   bool is_body_file() const { return is_body_file_; }
+  /// Returns true if the text differs from the saved text.
   bool is_changed() const { return text_ != saved_; }
+  /// Marks the present text as saved; the undo history stays.
   void set_saved() { saved_ = text_; }
 
   /// Takes the new text unless it has toml.* errors that the old one has not; these are thrown. `allows_missing`: keys

@@ -14,6 +14,7 @@ struct Template {
   const char* folder;  ///< in data/examples
   std::vector<TemplateFile> files;
 };
+/// Returns all examples that `init` offers.
 const std::vector<Template>& get_templates();
 
 }  // namespace bough::cli

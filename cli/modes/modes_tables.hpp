@@ -9,7 +9,10 @@
 
 namespace bough::cli {
 
+/// Tables of eigenvalues, frequencies and modal masses, and of effective masses in percent of mass and of inertia about
+/// the origin.
 std::string format_modes(const records::ModesResult& result);
+/// Table of load factors, with the residual of each.
 std::string format_buckling(const records::ModesResult& result);
 /// Energies of properties, then of the elements with the largest; empty without energies.
 std::string format_energies(const records::ModesResult& result);

@@ -30,6 +30,7 @@ class Job {
   Job(const Job&) = delete;
   Job& operator=(const Job&) = delete;
 
+  /// Returns the words of the command, without the name of the program.
   const std::vector<std::string>& get_words() const { return words_; }
   struct State {
     bool is_running = true;
@@ -37,6 +38,7 @@ class Job {
     std::string output;     ///< from byte `from` on
     std::size_t total = 0;  ///< bytes so far
   };
+  /// Returns the state of the command with its output from byte `from` on; thread-safe.
   State get_state(std::size_t from) const;
   /// Interrupts the command as Ctrl-C does: a run writes a checkpoint and ends.
   void stop();

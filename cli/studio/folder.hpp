@@ -16,6 +16,7 @@ struct FolderEntry {
 /// and folders, and links out of the folder, are left out.
 constexpr std::size_t kMaxEntries = 1000;
 constexpr int kMaxDepth = 4;
+/// Lists the files below the present folder in the order of their names; unreadable folders are skipped.
 std::vector<FolderEntry> list_folder();
 
 struct FileText {

@@ -9,6 +9,7 @@ namespace bough::cli {
 struct WebFile {
   std::string_view name, text;
 };
+/// Returns all files that the studio serves.
 const std::vector<WebFile>& get_web_files();
 
 }  // namespace bough::cli
