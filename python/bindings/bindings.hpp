@@ -20,12 +20,19 @@ namespace py = pybind11;
 /// Guard of functions that use MPI, PETSc or HDF5: other Python threads continue, one thread at a time is inside.
 using OneAtATime = py::call_guard<py::gil_scoped_release, Exclusive>;
 
+/// Defines Message and the exceptions Failure, InputError, ComputationError and Warning.
 void bind_messages(py::module_& m);
+/// Defines Exclusive, a context in which one thread uses MPI, PETSc or HDF5.
 void bind_exclusive(py::module_& m);
+/// Defines reduce, modes, static and select.
 void bind_analyses(py::module_& m);
+/// Defines the functions of the other commands: check, compare, info, export, plot, report, flx and others.
 void bind_commands(py::module_& m);
+/// Defines FlexBody and Modes and their readers.
 void bind_bodies(py::module_& m);
+/// Defines LinearModel and the functions on linear models.
 void bind_linear(py::module_& m);
+/// Defines Event, Results, System and read_results.
 void bind_systems(py::module_& m);
 
 /// An array that shows the numbers of `data`, which `owner` keeps: nothing is copied, what is written there counts.
@@ -44,6 +51,7 @@ py::array view(const Matrix& data, py::handle owner) {
   }
 }
 
+/// A list of views of matrices; `owner` keeps their numbers.
 template <class Matrices>
 py::list view_all(const Matrices& data, py::handle owner) {
   py::list list;

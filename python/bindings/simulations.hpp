@@ -22,14 +22,24 @@ class Simulation {
   /// \param loaded  must outlive it.
   Simulation(const embed::LoadedSystem& loaded, const embed::SimulationOptions& options);
 
+  /// Sets an input from the present time on. Raises ValueError for a value that is not finite.
   void set(const Name& name, double value);
+  /// Advances to t [T] without the interpreter lock. Returns False if the run has ended; raises ValueError for a time
+  /// that has passed, KeyboardInterrupt after Ctrl-C.
   bool advance_to(double t);
+  /// Returns the outputs of these names, in their order, at the present time; None: all outputs.
   py::array outputs(const std::optional<std::vector<std::string>>& names);
+  /// Returns one output at the present time.
   double output(const Name& name);
+  /// Names of all ports of a bough_kind, in the order of their indices.
   std::vector<std::string> list_names(int kind) const;
+  /// Time [T] reached.
   double time() const { return own_->simulator().time(); }
+  /// Describes the end of the run; empty if the run goes on.
   std::string get_reason() const;
+  /// Returns the state as bytes; raises the error of a failed advance.
   py::bytes save();
+  /// Continues from the bytes of save(), also after a failed advance.
   void restore(const std::string& bytes);
 
   std::vector<Diagnostic> messages;
@@ -48,6 +58,7 @@ class Simulation {
   std::unique_ptr<embed::Ports> ports_;
 };
 
+/// Defines Simulation.
 void bind_simulations(py::module_& m);
 
 }  // namespace bough::python
