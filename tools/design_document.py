@@ -65,7 +65,7 @@ class Function:
         self.file = where.get("bodyfile") or where.get("file")
         self.declared_line = int(where.get("declline") or where.get("line") or 0)
         self.line = int(where.get("bodystart") or where.get("line") or 0)
-        self.is_local = "anonymous_namespace" in owner or node.get("static") == "yes" and self.file.endswith(".cpp")
+        self.is_local = "anonymous_namespace" in owner or node.get("static") == "yes" and self.declared.endswith(".cpp")
         self.is_public = node.get("prot") == "public" and not self.is_local and self.declared.endswith((".hpp", ".h"))
         self.overrides = [r.get("refid") for r in node.findall("reimplements")]
         self.callees = [r.get("refid") for r in node.findall("references")]
