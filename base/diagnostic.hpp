@@ -44,7 +44,9 @@ class Diagnostics {
 
   /// All messages in the order in which they were added.
   const std::vector<Diagnostic>& items() const { return items_; }
+  /// Number of errors among the messages.
   int num_errors() const { return num_errors_; }
+  /// Number of warnings among the messages.
   int num_warnings() const { return num_warnings_; }
   /// Returns true if a message with this id is there.
   bool has(std::string_view id) const;
@@ -65,6 +67,7 @@ class Failure : public std::exception {
   Failure(std::vector<Diagnostic> items, int exit_code);
   /// The messages as text, one per line.
   const char* what() const noexcept override { return text_.c_str(); }
+  /// All messages of the failure, errors and warnings.
   const std::vector<Diagnostic>& items() const { return items_; }
   /// Exit code of the command line: 1 wrong input, 3 failed computation.
   int exit_code() const { return exit_code_; }

@@ -29,6 +29,7 @@ class ForeignCall {
   /// Writes "controller 'law': bough_controller_outputs at t = 0.3", without a terminating zero; returns the length.
   /// Async-signal-safe.
   std::size_t describe(char* to, std::size_t size) const noexcept;
+  /// Returns the same text as a string; allocates, hence not in a signal handler.
   std::string describe() const;
 
   /// Innermost call in progress on this thread, or, on a thread that marks none, on the thread of the first call of the

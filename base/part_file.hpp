@@ -23,6 +23,7 @@ class PartFile {
   const std::error_code& error() const { return error_; }
   /// The name to write to; the target's is get_target.
   const std::string& get_name() const { return name_; }
+  /// The name that the complete file gets.
   const std::string& get_target() const { return target_; }
   /// File descriptor of the file that is written.
   int get_descriptor() const { return descriptor_; }
