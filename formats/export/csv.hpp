@@ -15,6 +15,7 @@ struct CsvColumn {
 };
 /// Quoted when it needs to be (RFC 4180).
 std::string write_csv_field(const std::string& name);
+/// Writes a heading with units and a row per value; all columns have equal lengths.
 void write_csv(std::ostream& out, const std::vector<CsvColumn>& columns);
 
 }  // namespace bough::exports

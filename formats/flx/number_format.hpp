@@ -12,6 +12,7 @@ class NumberFormat {
 
   /// One number in its columns. Empty when it does not fit its width (Fortran would print stars).
   std::optional<std::string> print(double value) const;
+  /// One whole number in its columns; with a format of reals as a real.
   std::optional<std::string> print_integer(long value) const;
 
   /// Returns true for %d and I, which take whole numbers.

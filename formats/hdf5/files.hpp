@@ -92,6 +92,7 @@ struct RunInputs {
 RunInputs read_run_inputs(const std::string& path);
 /// Events of a results file: time, text and source.
 std::vector<records::EventRecord> read_events(const std::string& path);
+/// Reads the checkpoint of a results file. Throws InputError "hdf5.missing" if the file has none.
 records::Checkpoint read_checkpoint(const std::string& path);
 /// Nothing where the run has come to none yet.
 std::optional<records::Checkpoint> find_checkpoint(const std::string& path);

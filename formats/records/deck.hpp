@@ -481,6 +481,7 @@ struct Deck {
   /// Value of a PARAM, the last one given; nullptr when absent.
   /// The last of its name; for AUTOSPC the command of the case control, where there is one.
   const Param* find_param(const std::string& name) const;
+  /// File and line of a card; an empty file name if it is not of this deck.
   SourceLocation locate(const CardLocation& at) const;
   /// Returns true if one of the cards (names such as "MAT1") was rejected under this id.
   bool is_refused(int id, const std::vector<std::string>& cards) const;

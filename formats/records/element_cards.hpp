@@ -52,9 +52,11 @@ const std::vector<ElementKind>& list_element_kinds();
 /// Calls `f` for each card of the roles, kind by kind.
 void visit_elements(const Deck& deck, const std::vector<ElementRole>& roles,
                     const std::function<void(const ElementView&)>& f);
+/// Number of cards of a role.
 std::size_t count_elements(const Deck& deck, ElementRole role);
 /// Erases the cards of the roles whose flag is 0, one flag per card in the order of visit_elements().
 void keep_elements(Deck& deck, const std::vector<ElementRole>& roles, const std::vector<char>& is_kept);
+/// Erases all cards of a role.
 void clear_elements(Deck& deck, ElementRole role);
 
 }  // namespace bough::records

@@ -13,6 +13,7 @@ struct UnitChange {
   double calc_force() const;
   /// Factor of the modal coordinates, M^1/2 L: modes normalized by mass stay so.
   double calc_modal() const;
+  /// Returns true if nothing changes.
   bool is_none() const { return mass == 1 && length == 1 && time == 1; }
 };
 

@@ -55,7 +55,9 @@ class ResultSink {
   virtual void begin(const ResultsHeader& header) = 0;
   /// One sample: the channels' components one after another, in the header's order (time first).
   virtual void write_sample(const Eigen::Ref<const Eigen::VectorXd>& sample) = 0;
+  /// Receives an event, in the order of time.
   virtual void write_event(const EventRecord& event) = 0;
+  /// Receives a state to continue from; it replaces the one before.
   virtual void write_checkpoint(const Checkpoint& checkpoint) = 0;
   /// The worst relative energy error so far: with each checkpoint, and before the end.
   virtual void write_energy_error(double) {}

@@ -22,6 +22,7 @@ struct Taylor {
   static Taylor zero(Eigen::Index rows, Eigen::Index columns) { return {MatrixXd::Zero(rows, columns), {}}; }
   /// Zero series with a first order of nq zero matrices.
   static Taylor zero(Eigen::Index rows, Eigen::Index columns, int nq);
+  /// m0 + Σ_k m1[k] q_k; q: nq, not read with order 0.
   MatrixXd evaluate(const Eigen::Ref<const Eigen::VectorXd>& q) const;
 };
 

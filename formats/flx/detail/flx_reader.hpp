@@ -74,6 +74,7 @@ class FlxReader {
 /// Whole and finite or not is for the caller; false where the word is no number of this kind.
 bool parse_value(const std::string& word, double& value);
 bool parse_value(const std::string& word, int& value);
+/// Returns the words between blanks.
 std::vector<std::string> split_blanks(const std::string& line);
 
 }  // namespace bough::flx::detail

@@ -28,6 +28,7 @@ class FileImage {
 
   /// Space for a block, zero.
   Address reserve(std::size_t size);
+  /// Copies a block to new space and returns its address.
   Address place(const std::string& block);
   /// An object header. One that does not fit into a page goes on in a continuation block; its first messages stay.
   Address place_header(const std::vector<Message>& messages);
@@ -64,7 +65,9 @@ class GroupTree {
  public:
   /// A group at the path, made where it is absent.
   GroupTree& make_group(const std::string& path);
+  /// Sets the object header at the path; groups above are made.
   void add_object(const std::string& path, Address header);
+  /// Adds an attribute to this group.
   void add_attribute(Message attribute) { attributes_.push_back(std::move(attribute)); }
   /// Headers of this group's members, from the leaves up; those placed already stay.
   void place_members(FileImage& image);

@@ -22,9 +22,13 @@ class GrowingFile {
   void create();
   /// The new file, synced, gets the name now.
   void publish();
+  /// Returns true after publish().
   bool is_published() const { return is_published_; }
+  /// Returns true until the file is closed.
   bool is_open() const { return part_.has_value(); }
+  /// Returns true after a function has thrown.
   bool has_failed() const { return failed_; }
+  /// The path as given, before symbolic links are followed.
   const std::string& path() const { return path_; }
 
   /// Writes `size` bytes at the offset `place`, beyond the end too; repeats interrupted and partial writes.
@@ -33,7 +37,9 @@ class GrowingFile {
   void extend(std::uint64_t size);
   /// False where the device takes no file of this size.
   bool try_extend(std::uint64_t size);
+  /// Shortens the file to this size.
   void truncate(std::uint64_t size);
+  /// [bytes] written so far, zeros of extend() included.
   std::uint64_t size() const { return size_; }
   /// Bytes written so far survive a power cut.
   void sync();

@@ -19,6 +19,7 @@ class Handle {
   Handle() = default;
   Handle(hid_t id, Close close) : id_(id), close_(close) {}
   Handle(Handle&& other) noexcept : id_(std::exchange(other.id_, -1)), close_(other.close_) {}
+  /// Closes the present identifier and takes that of `other`.
   Handle& operator=(Handle&& other) noexcept {
     if (this != &other) {
       reset();

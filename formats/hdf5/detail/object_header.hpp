@@ -15,7 +15,9 @@ inline constexpr Address kUndefined = ~Address{0};
 
 /// Little-endian numbers of 1 to 8 bytes.
 void append_number(std::string& to, std::uint64_t value, int size);
+/// Writes a little-endian number of `size` bytes at `at`.
 void set_number(char* at, std::uint64_t value, int size);
+/// Bits of a double in IEEE 754.
 std::uint64_t get_bits(double value);
 
 /// Jenkins' lookup3 (hashlittle), the checksum of metadata blocks.
@@ -28,7 +30,9 @@ std::string encode_real();
 std::string encode_integer(int size);
 /// UTF-8 of variable length: 16 bytes in the file, a reference into a global heap.
 std::string encode_text();
+/// Text of `size` bytes, padded with zeros.
 std::string encode_fixed_text(std::size_t size);
+/// Reference to an object by the address of its header, 8 bytes.
 std::string encode_object_reference();
 /// A list of variable length of object references.
 std::string encode_reference_list();
@@ -71,6 +75,7 @@ std::string encode_header(const std::vector<Message>& messages);
 std::string encode_continuation(const std::vector<Message>& messages);
 /// Bytes before the first message, and before the body of a message.
 inline constexpr std::size_t kHeaderPrefix = 10, kMessagePrefix = 4;
+/// [bytes] of an object header with these messages.
 std::size_t calc_header_size(const std::vector<Message>& messages);
 
 }  // namespace bough::hdf5

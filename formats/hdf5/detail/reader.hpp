@@ -43,11 +43,17 @@ class FileReader {
   /// told, "hdf5.nan", and then return zeros of the expected shape (0 where it is open).
   /// If given, only the first `most_rows` of a longer array are read.
   NumberArray read_array(const std::string& path, const Shape& shape, bool may_be_nan = false, long most_rows = -1);
+  /// Vector of `size` numbers; -1: any.
   Eigen::VectorXd read_vector(const std::string& path, long size, bool may_be_nan = false);
+  /// Matrix, row by row in the file; -1: any number.
   Eigen::MatrixXd read_matrix(const std::string& path, long rows, long cols);
+  /// Array of length 1.
   double read_number(const std::string& path);
+  /// Integers; -1: any number of them.
   std::vector<int> read_integers(const std::string& path, long size);
+  /// Matrix of integers; -1: any number of rows or columns.
   Eigen::MatrixXi read_integer_matrix(const std::string& path, long rows, long cols);
+  /// Texts of variable length; -1: any number of them.
   std::vector<std::string> read_strings(const std::string& path, long size) { return read_strings(path, Shape{size}); }
   std::vector<std::string> read_strings(const std::string& path, const Shape& shape);
   /// The one text of a dataset that is there.
@@ -57,8 +63,11 @@ class FileReader {
   std::string read_attribute(const std::string& object, const std::string& name);
   /// A list of texts; empty where it is missing or of another kind.
   std::vector<std::string> read_attribute_words(const std::string& object, const std::string& name);
+  /// Integer of an attribute; `otherwise` if it is missing or of another kind.
   int read_integer_attribute(const std::string& object, const std::string& name, int otherwise);
+  /// Root attribute `source`: pairs of file name and SHA-256; empty if it is missing.
   std::vector<std::pair<std::string, std::string>> read_source();
+  /// Names of the members of a group, in alphabetical order; empty if it is missing.
   std::vector<std::string> get_children(const std::string& group);
 
   /// Reports an error of this file, thrown by throw_if_errors().

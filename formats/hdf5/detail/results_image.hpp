@@ -49,17 +49,22 @@ class ResultsImage {
   const FileImage& image() const { return image_; }
   /// Where the headers of the channels lie.
   Address changing_begin() const { return changing_begin_; }
+  /// Address after the headers of the channels.
   Address changing_end() const { return changing_end_; }
 
   /// The next row group begins at the address.
   void add_group(Address begin);
+  /// Sets the number of samples that a reader may read.
   void set_num_rows(std::uint64_t rows);
+  /// Sets the largest relative error of the energy balance.
   void set_energy_error(double worst);
   /// Headers of the datasets of /events.
   void set_events(const std::vector<Address>& headers);
+  /// Encodes the first page: superblock and root group, with the state of the run as attributes.
   std::string encode_first_page(const ResultsState& state) const;
   /// One of the texts that the image holds, as a reference to it.
   std::string find_text(const std::string& text) const { return heap_.encode(text); }
+  /// Largest number of row groups that the metadata have space for.
   std::uint64_t get_max_groups() const { return groups_.max_groups; }
 
  private:
@@ -115,9 +120,13 @@ class EventTable {
   std::uint64_t capacity() const { return capacity_; }
   /// [bytes] of the headers, which come first in the block.
   std::size_t headers_size() const { return headers_size_; }
+  /// Addresses of the headers of the datasets, in the order of the columns.
   const std::vector<Address>& headers() const { return headers_; }
+  /// Sets the number of events that a reader may read.
   void set_num_rows(std::uint64_t rows);
+  /// Sets the columns of a row below capacity().
   void set_row(std::uint64_t row, const Row& data);
+  /// Address in the file of a row of a column.
   Address find_row(int column, std::uint64_t row) const {
     const auto c = static_cast<std::size_t>(column);
     return data_[c] + kWidths[c] * row;

@@ -37,7 +37,9 @@ class FileWriter {
                    const ArrayAttributes& attributes);
   /// Single precision, for what is only drawn.
   void write_floats(const std::string& path, const Dims& shape, const float* data, const ArrayAttributes& attributes);
+  /// Writes 32-bit integers, last index fastest.
   void write_integers(const std::string& path, const Dims& shape, const int* data, const ArrayAttributes& attributes);
+  /// Writes texts of variable length in UTF-8.
   void write_strings(const std::string& path, const std::vector<std::string>& data, const ArrayAttributes& attributes);
 
   /// Writes one number as an array of length 1.
@@ -46,8 +48,11 @@ class FileWriter {
   void write_vector(const std::string& path, const Eigen::VectorXd& v, const ArrayAttributes& attributes);
   /// In chunks, of which those of zeros take no space.
   void write_vector_with_zeros(const std::string& path, const Eigen::VectorXd& v, const ArrayAttributes& attributes);
+  /// Writes a matrix row by row.
   void write_matrix(const std::string& path, const Eigen::MatrixXd& m, const ArrayAttributes& attributes);
+  /// Writes a list of 32-bit integers.
   void write_integers(const std::string& path, const std::vector<int>& data, const ArrayAttributes& attributes);
+  /// Writes a matrix of 32-bit integers row by row.
   void write_integers(const std::string& path, const Eigen::MatrixXi& m, const ArrayAttributes& attributes);
 
   /// `object` "/" is the root.
@@ -57,6 +62,7 @@ class FileWriter {
   void write_attribute(const std::string& object, const std::string& name, const std::vector<std::string>& words);
   /// Root attribute `source`: rows of (file name, SHA-256).
   void write_source(const std::vector<std::pair<std::string, std::string>>& source);
+  /// Makes an empty group; groups above it are made too.
   void make_group(const std::string& path);
   /// A second name of an existing dataset.
   void link(const std::string& path, const std::string& existing);
@@ -100,7 +106,9 @@ class FileWriter {
 
 /// The blocks that flexible-body and modes files share.
 void write_mesh(FileWriter& file, const records::BodyMesh& mesh);
+/// Writes /modes/phi: node after node 6 x num_modes.
 void write_mode_shapes(FileWriter& file, const std::vector<Eigen::MatrixXd>& phi, int num_modes);
+/// Writes /modes/kind as words.
 void write_mode_kinds(FileWriter& file, const std::vector<records::ModeKind>& kinds);
 
 }  // namespace bough::hdf5

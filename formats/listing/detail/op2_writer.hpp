@@ -15,6 +15,7 @@ class Words {
   void add(int value) { add_bits(static_cast<std::uint32_t>(value)); }
   /// No number: 1 as an integer, as Nastran has it.
   void add(double value) { add_bits(std::isnan(value) ? 1U : std::bit_cast<std::uint32_t>(static_cast<float>(value))); }
+  /// Appends `size` characters of a text, filled with blanks; other characters than those of ASCII become "?".
   void add(const std::string& text, std::size_t size) {
     std::string padded = text.substr(0, size);
     for (char& c : padded)
@@ -22,11 +23,15 @@ class Words {
     padded.resize(size, ' ');
     bytes_ += padded;
   }
+  /// Replaces the word at an index by an integer.
   void set(std::size_t index, int value) { set_bits(index, static_cast<std::uint32_t>(value)); }
+  /// Replaces the word at an index by a real.
   void set(std::size_t index, double value) {
     set_bits(index, std::bit_cast<std::uint32_t>(static_cast<float>(value)));
   }
+  /// Number of words.
   int count() const { return static_cast<int>(bytes_.size() / 4); }
+  /// The bytes of all words, in the order of the processor.
   const std::string& bytes() const { return bytes_; }
 
  private:

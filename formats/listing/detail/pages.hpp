@@ -18,6 +18,7 @@ class Pages {
   void begin_table(std::vector<std::string> headings);
   /// Lines that stay on one page.
   void add_row(const std::string& lines, int count = 1);
+  /// Returns the text of all pages; this is empty afterwards.
   std::string finish() { return std::move(text_); }
 
  private:

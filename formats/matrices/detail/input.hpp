@@ -19,7 +19,9 @@ std::optional<long> parse_integer(std::string_view text);
 std::optional<double> parse_real(std::string_view text);
 /// Words between blanks, and `separator` too unless it is a blank.
 std::vector<std::string_view> split(std::string_view line, char separator = ' ');
+/// Removes blanks at both ends; a view of `text`.
 std::string_view trim(std::string_view text);
+/// Compares texts, letters of ASCII without regard to case.
 bool equals_ignoring_case(std::string_view a, std::string_view b);
 /// Numbers per line and columns per number: 3 and 23 for 1P,3E23.16.
 struct NumberFormat {
@@ -39,13 +41,17 @@ class TextInput {
   bool next_line();
   /// Throws "matrices.truncated" at the end; `expected` says what should follow.
   void demand_line(const char* expected);
+  /// Present line, valid until the next one is read.
   std::string_view get_line() const { return line_; }
+  /// Number of the present line, from 1.
   int get_line_number() const { return number_; }
   /// The line will be read again by next_line.
   void unread() { is_unread_ = true; }
+  /// The path, for messages.
   const std::string& get_path() const { return path_; }
   /// Upper bound of how many things of `bytes_each` the file can hold.
   std::size_t count_most(std::size_t bytes_each) const { return bytes_.size() / bytes_each + 1; }
+  /// Throws InputError `id` at the present line.
   [[noreturn]] void fail(const char* id, const std::string& what, const std::string& advice = {}) const;
   /// fail("matrices.bad-number"): found against expected.
   [[noreturn]] void fail_line(const std::string& expected) const;

@@ -19,7 +19,9 @@ std::vector<Matrix> read_triplet_lines(const std::string& path);
 std::vector<Matrix> read_abaqus_labels(const std::string& path);
 /// The dofs from a file of the same name that ends in .mapping, when there is one.
 std::vector<Matrix> read_harwell_boeing(const std::string& path);
+/// Reads the sparse matrices of an HDF5 file of Bough, with its dof_map.
 std::vector<Matrix> read_hdf5(const std::string& path);
+/// Reads the numeric matrices of a MATLAB file, level 5 or 7.3.
 std::vector<Matrix> read_mat(const std::string& path);
 
 }  // namespace bough::matrices::detail

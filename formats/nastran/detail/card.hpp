@@ -51,12 +51,16 @@ class Card {
   bool is_ok() const { return ok_; }
   /// Index after the last field that is not blank.
   int get_size() const { return size_; }
+  /// Text of a field, trimmed; empty beyond the last one.
   std::string_view get(int i) const {
     return i >= 0 && i < size_ ? text_.fields[static_cast<std::size_t>(i)] : std::string_view{};
   }
+  /// Returns true if the field is blank or absent.
   bool is_blank(int i) const { return get(i).empty(); }
   bool is_blank(int first, int last) const;  ///< fields first .. last-1
+  /// Returns true if the text of the field is an integer.
   bool is_integer(int i) const;
+  /// Returns true if the field is this word, in any case.
   bool is_word(int i, std::string_view upper_case_word) const;
 
   /// Fields that the card may have and that need no word when they are not looked at; reading a field does the same.
@@ -64,6 +68,7 @@ class Card {
     if (i >= 0 && i < 64) used_ |= std::uint64_t{1} << i;
     used_end_ = std::max(used_end_, i + 1);
   }
+  /// Marks the fields first to last - 1 as used.
   void use(int first, int last) {
     for (int i = first; i < std::min(last, size_); ++i) use(i);
   }

@@ -40,6 +40,7 @@ struct SplitLine {
 void split_line(std::string_view text, SplitLine& line);
 /// Field 1 of a line, trimmed, as written.
 std::string_view get_first_field(std::string_view text);
+/// Returns true if a comma is among the first columns of the line, as in free field format.
 bool is_free_field(std::string_view text);
 /// True if `next_line` is the continuation that names `tag`.
 bool is_continued_by(std::string_view tag, std::string_view next_line);

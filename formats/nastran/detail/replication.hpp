@@ -21,6 +21,7 @@ class Replicator {
   std::string resolve(CardText& card);
   /// The next copy of the remembered card by its increments.
   std::string make_copy(CardText& card);
+  /// Keeps a card as the one that the next replication copies.
   void remember(const CardText& card) {
     previous_ = card;
     has_previous_ = true;

@@ -8,6 +8,7 @@ namespace bough::nastran::detail {
 
 /// Number of dimensions of a shape (upper case), 0 when there is no such shape.
 int get_num_dimensions(std::string_view shape);
+/// Names of all shapes.
 std::vector<std::string> get_shapes();
 
 }  // namespace bough::nastran::detail

@@ -10,6 +10,7 @@ namespace bough::nastran::detail {
 
 /// Without blanks, tabs and carriage returns at both ends.
 std::string_view trim(std::string_view text);
+/// Letters of ASCII in upper case.
 std::string make_upper(std::string_view text);
 /// Equal without regard to case.
 bool is_word(std::string_view text, std::string_view upper_case_word);

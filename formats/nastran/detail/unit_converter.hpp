@@ -52,6 +52,7 @@ class UnitConverter {
   void fail_card(const std::string& why, const std::string& advice);
   /// Scales a field by the word of its dimension: "." none, "?" not known.
   void scale(int field, const std::string& word);
+  /// Scales the fields first to last - 1 by one dimension.
   void scale(int first, int last, const std::string& word);
   /// Scales the fields before `end` by CardFacts::dimensions.
   void scale_words(int end = 1 << 20);
@@ -59,6 +60,7 @@ class UnitConverter {
   void scale_point(int field, Axes axes);
   /// Scales components along the axes of a system.
   void scale_lengths(int field, int cid);
+  /// Axes of a coordinate system; rectangular for an unknown one.
   Axes get_axes(int cid) const;
   /// Scales a field by the motion that it acts on; "?" where that is not known.
   void scale_by(Motion motion, int field, const char* translation, const char* rotation, const char* mixed);
@@ -69,6 +71,7 @@ class UnitConverter {
   Motion find_property_motion(const std::string& element, const std::string& pid) const;
   /// Components "123" of SPC.
   Motion find_components(int field) const;
+  /// Kind of motion that two components couple, `c2` only with has_second.
   static Motion find_motion(const std::string& c1, const std::string& c2, bool has_second);
 
  private:

@@ -9,9 +9,13 @@ namespace bough::toml_files {
 /// radians. Reports "toml.wrong-type" for rows of different lengths.
 records::Settings read_settings(const Fields& table, const std::string& path, const std::vector<std::string>& known,
                                 Diagnostics& diagnostics);
+/// Reads a [[controller]]; keys that depend on its type become settings.
 records::ControllerRecord read_controller(const Fields& table, const std::string& path, Diagnostics& diagnostics);
+/// Reads an [[actuator]]; keys that depend on its type become settings.
 records::ActuatorRecord read_actuator(const Fields& table, const std::string& path, Diagnostics& diagnostics);
+/// Reads a [[connect]]; the gain is 1 by default.
 records::ConnectRecord read_connect(const Fields& table);
+/// Reads an [[input]]; it starts at 0 and is held by default.
 records::InputRecord read_input(const Fields& table);
 /// Mount, target, the other end, sequence, and what becomes of the measurement; refuses those that the type does not
 /// take.

@@ -27,7 +27,9 @@ class Fields {
     for (const auto& entry : table_.entries) keys.push_back(entry.key);
     return keys;
   }
+  /// All keys and values, in the order of the file.
   const std::vector<Entry>& entries() const { return table_.entries; }
+  /// Location of the head of the table.
   SourceLocation locate() const { return {file_, table_.line}; }
   /// Location of the key; of the table if the key is absent.
   SourceLocation locate(const std::string& key) const;

@@ -28,9 +28,11 @@ class SignalUnits {
   std::vector<double> list_positions(const std::string& hinge) const;
   std::vector<double> list_rates(const std::string& hinge) const;
   std::vector<double> list_efforts(const std::string& hinge) const;
+  /// Returns true if coordinate i of a hinge, of its positions or of its rates, is an angle.
   bool is_angle(const std::string& hinge, bool of_positions, std::size_t i) const;
   /// Unit of the rate of one coordinate, counted from 1.
   double get_rate_unit(const std::string& hinge, long coordinate) const;
+  /// Unit of the effort along one coordinate, counted from 1.
   double get_effort_unit(const std::string& hinge, long coordinate) const;
 
   /// Wires to "law", "law:reference" or "law:rate", from its own keys and from [[connect]].

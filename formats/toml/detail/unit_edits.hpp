@@ -27,14 +27,18 @@ class UnitEdits {
   void scale(const toml::node* node, double factor);
   /// A number or a list with an entry for each factor; one number that stands for all becomes a list where they differ.
   void scale(const toml::node* node, const std::vector<double>& factors);
+  /// Replaces the text of a value.
   void replace(const toml::node& node, const std::string& value);
+  /// Replaces the name of a key.
   void rename_key(const toml::key& key, const std::string& name);
   /// A key that the text does not have yet.
   void add(const std::string& path, const std::string& value);
+  /// Reports an error at the line of the node.
   void error(const char* id, const toml::node& node, const std::string& what, const std::string& fix);
 
   /// The text with all of it. Parameters used with two factors: "toml.unit-parameter".
   std::string apply(const toml::table& root);
+  /// Number of edits so far.
   int count() const { return static_cast<int>(edits_.size() + added_.size()); }
 
  private:

@@ -22,6 +22,7 @@ struct UnitTable {
   void scale(const char* key, const std::vector<double>& factors) const { edits.scale(table.get(key), factors); }
   /// `key` and key_deg, whose angles may become radians: `is_angle` of each number.
   void scale_angles(const std::string& key, std::vector<double> factors, const std::vector<bool>& is_angle) const;
+  /// Scales keys whose numbers are all angles.
   void scale_angles(const std::string& key, double factor = 1) const { scale_angles(key, {factor}, {true}); }
   /// Multiplies the key, which is 1 where it is absent.
   void scale_or_add(const char* key, double factor) const;
