@@ -36,6 +36,7 @@ class CorotationalElement {
 
   /// False: V = ½ uᵀKu. Scalar springs, grounded elements, matrices without grids.
   bool follows_nodes() const { return follows_nodes_; }
+  /// Number N of dofs.
   int num_dofs() const { return static_cast<int>(K_.rows()); }
 
   /// Coefficients 1 to 5 of ∂V/∂u along u(ε) = Σ ε^k u_k: conjugate to translations and rotation vectors in basic.

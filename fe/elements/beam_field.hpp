@@ -34,6 +34,7 @@ class BeamField {
   /// 6 x 6 inverse flexibility: forces at B per displacement of B with A clamped. Rows and columns of a stiffness that
   /// the property lacks still hold a shape (unit) stiffness; mask() tells which.
   const Matrix6d& shape_stiffness() const { return G_; }
+  /// Stiffnesses that the property has: axial, torsion, bending in either plane.
   ActiveForces active() const { return active_; }
   /// shape_stiffness() with zeros where the property has no stiffness.
   Matrix6d calc_stiffness() const;

@@ -62,6 +62,7 @@ class Element {
   const std::string& card() const { return card_; }         ///< "CBAR", ...
   const std::vector<int>& nodes() const { return nodes_; }  ///< indices into Model::nodes()
   const std::vector<int>& gdofs() const { return gdofs_; }  ///< rows of the g-set; size() = N below
+  /// Number N of dofs.
   int num_dofs() const { return static_cast<int>(gdofs_.size()); }
   /// Shape for pictures and VTU files; by default none.
   virtual ElementShape shape() const { return {}; }
@@ -74,6 +75,7 @@ class Element {
   virtual void add_mass(MassKind, double, Eigen::Ref<MatrixXd>) const {}
   /// GE of the material or property; springs with one per direction override add_structural_damping().
   double structural_damping() const { return structural_damping_; }
+  /// Sets GE, the structural damping coefficient; by the maker of the element.
   void set_structural_damping(double ge) { structural_damping_ = ge; }
   /// K += (g + GE) K_e, N x N: the imaginary part of the stiffness (Nastran's K4 with g of PARAM,G).
   virtual void add_structural_damping(double g, Eigen::Ref<MatrixXd> K) const;
@@ -113,6 +115,7 @@ class NodeTable {
   virtual int find_node(int id) const = 0;  ///< index, -1 when absent
   /// Its GRID card has an error of its own: who names it need not say that it is missing.
   virtual bool is_refused(int /*id*/) const { return false; }
+  /// Node by its index, valid as long as the table.
   virtual const Node& node(int index) const = 0;
   /// R_basic_cid at point x (the axes of a cylindrical or spherical system depend on it); nullptr-safe: reports and
   /// returns identity when cid does not exist.

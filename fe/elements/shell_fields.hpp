@@ -31,6 +31,7 @@ using Points = std::array<Point<N>, N>;
 /// 2 x 2 Gauss, or three inner points.
 template <int N>
 Points<N> calc_points(const Corners<N>& xy);
+/// The point at the centre, with the whole area as its weight.
 template <int N>
 Point<N> calc_centre(const Corners<N>& xy);
 

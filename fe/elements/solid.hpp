@@ -76,6 +76,7 @@ class Solid final : public Element, public StressState, public StressRecovery, p
   MatrixXd calc_corner_stresses(const Eigen::Ref<const VectorXd>& force) const;
   /// C⁻¹ of those stresses. Where C is singular: the least strains that have them.
   MatrixXd calc_strains(const Eigen::Ref<const MatrixXd>& forces) const override;
+  /// Number of corners: 8, 6 or 4.
   int num_corners() const { return get_num_corners(geometry_.kind); }
   /// Mechanical strains at the corners, six per corner in the order of the grids; a column per column of `forces`.
   MatrixXd calc_corner_strains(const Eigen::Ref<const MatrixXd>& forces) const;

@@ -16,6 +16,7 @@ class StressRecovery {
  public:
   /// Points and components of the stresses (fe/sections/stress.hpp).
   virtual std::vector<StressPoint> stress_points() const = 0;
+  /// Stresses at the points, in the order of stress_points().
   virtual MatrixXd calc_stresses(const Eigen::Ref<const MatrixXd>& forces) const = 0;
   /// Points of the strains: stress_points(), and for shells the reference surface ("mid").
   virtual std::vector<StressPoint> strain_points() const { return stress_points(); }

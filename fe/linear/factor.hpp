@@ -25,6 +25,7 @@ class SymmetricFactor {
 
   bool is_singular() const { return is_singular_; }  ///< an exact zero pivot ended the factorization
   bool is_definite() const { return is_definite_; }  ///< LLᵀ: every pivot was above zero, in roundoff
+  /// Number of pivots that MUMPS set aside as zero; 0 unless `find_null_pivots` was set.
   int num_null_pivots() const { return num_null_pivots_; }
   /// Library and method: "LLᵀ CHOLMOD", "LDLᵀ MUMPS".
   const char* name() const { return solver_->name(); }

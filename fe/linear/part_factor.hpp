@@ -40,6 +40,7 @@ class PartFactor {
   /// what does not couple is sorted too. A: size x size. False where CHOLMOD wants another order or no supernodes.
   bool analyse(const MatrixRows& A, PetscInt size, std::vector<PetscInt> own, const std::vector<PetscInt>& between,
                const Eigen::VectorXd& delta, int num_parts);
+  /// Number of entries of L; after analyse().
   double num_entries() const { return common_.lnz; }
   /// False: not positive definite.
   bool factor();

@@ -63,6 +63,7 @@ class FrontElimination {
   /// Lower triangle of F, num_rows square, in place: the first `num` rows by LLᵀ where they are positive, else by LDLᵀ
   /// with pivots among them. Their negative eigenvalues; -1 where a pivot is zero.
   int eliminate(double* F, PetscBLASInt ld, int num, int num_rows);
+  /// Reserves work space for fronts with this many rows to eliminate.
   void reserve(int num_columns);
 
   Eigen::VectorXd change;  ///< by how much the diagonal of the rows that are left changed

@@ -33,6 +33,7 @@ class PetscHandle {
   PetscHandle() = default;
   explicit PetscHandle(T object) : object_(object) {}
   PetscHandle(PetscHandle&& other) noexcept : object_(std::exchange(other.object_, nullptr)) {}
+  /// Exchanges the objects; the destructor of `other` destroys the former one.
   PetscHandle& operator=(PetscHandle&& other) noexcept {
     std::swap(object_, other.object_);
     return *this;
@@ -40,8 +41,11 @@ class PetscHandle {
   ~PetscHandle() {
     if (object_) Destroy(&object_);
   }
+  /// The object, still owned by this.
   T get() const { return object_; }
+  /// Address for PETSc's functions that create an object; the former object is not destroyed.
   T* out() { return &object_; }
+  /// Returns true if there is an object.
   explicit operator bool() const { return object_ != nullptr; }
 
  private:

@@ -23,10 +23,12 @@ SparseRows sum_elements(const Elements& elements, int num_gdofs, const AddElemen
 
 /// K (with K_G0 of a prestressed model), or M (times WTMASS).
 linear::SymmetricMatrix assemble_stiffness(const Model& model, DofSet set);
+/// M of a kind on a set, times WTMASS.
 linear::SymmetricMatrix assemble_mass(const Model& model, DofSet set, MassKind kind);
 /// Gives the memory of K of the f-set back to the system as long as nobody reads it, until restore_stiffness() makes it
 /// again, bit for bit. False, and nothing happens, where K has a part of low rank or is on several processes.
 bool drop_stiffness(const linear::SymmetricMatrix& K);
+/// Assembles K again after drop_stiffness(), equal bit for bit.
 void restore_stiffness(const Model& model, const linear::SymmetricMatrix& K);
 /// The viscous damping B of dampers and bushes.
 linear::SymmetricMatrix assemble_damping(const Model& model, DofSet set);

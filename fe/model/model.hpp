@@ -84,7 +84,9 @@ class Model final : public NodeTable {
     return cards_.contains(card);
   }                                                  ///< whether an element is of this card
   bool has_damping() const { return has_damping_; }  ///< whether any element damps
+  /// Number of rows of the g-set.
   int num_gdofs() const { return num_gdofs_; }
+  /// Number of dofs of the f-set, the columns of T.
   int num_fdofs() const { return static_cast<int>(T_.cols()); }
   const SparseRows& T() const { return T_; }  ///< num_gdofs x num_fdofs
   /// Static solution of the dofs that ASET or OMIT eliminate; empty if none is eliminated.
@@ -102,12 +104,17 @@ class Model final : public NodeTable {
   /// Motions of the oblique directions that AUTOSPC fixes: a column for each entry of autospc() with terms, in their
   /// order.
   const SparseRows& T_oblique() const { return T_oblique_; }
+  /// The kind of mass matrix of the options or of PARAM,COUPMASS.
   MassKind mass_kind() const { return mass_kind_; }
+  /// Factor of all masses, PARAM,WTMASS.
   double wtmass() const { return wtmass_; }
+  /// Dofs and directions without stiffness that AUTOSPC has fixed.
   const std::vector<AutospcEntry>& autospc() const { return autospc_; }
+  /// The subcase whose sets the model uses.
   const records::Subcase& subcase() const { return subcase_; }
   /// ndof_g x 2: node id, code 1..6 (0 for a scalar point).
   Eigen::MatrixXi calc_dof_map() const;
+  /// Grids and shapes of the elements for pictures, blocks by shape, without scalar points.
   records::BodyMesh calc_mesh() const;
 
   /// K += K_e of an element of this model (N x N, as Element::add_stiffness), with K_G of its part of the prestress.

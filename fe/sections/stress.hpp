@@ -56,7 +56,9 @@ Eigen::VectorXd calc_strain_results(const std::vector<StressPoint>& points,
 class PointResults {
  public:
   PointResults(std::vector<StressPoint> points, bool of_strain);
+  /// Number of results of an element.
   Eigen::Index size() const { return size_; }
+  /// Computes the results of one column of values: `given` as the points have them, `out` of size().
   void calc(const Eigen::Ref<const Eigen::VectorXd>& given, Eigen::Ref<Eigen::VectorXd> out) const;
 
  private:

@@ -35,6 +35,7 @@ class NonlinearStatics {
   /// State of the last equilibrium: displacements with rotation vectors [num_gdofs] and the rotation of each node.
   const DeformedState& state() const { return state_; }
   int num_iterations() const { return num_iterations_; }  ///< of all steps so far
+  /// Number of load steps so far, halved ones included.
   int num_steps() const { return num_steps_; }
 
   /// Goes from the load of the last call (first: none) to `to` through stable states: their tangent stiffness is
