@@ -40,6 +40,7 @@ class NormalModes {
 
   /// The modes, by the EPS type that is named; empty: by the one that suits.
   Answer solve(const std::string& eps_type);
+  /// Returns true if all zero-energy modes of the model were found.
   bool knows_motions() const { return rigid_.is_complete; }
   /// Returns true if Krylov-Schur found a part of them, where no EPS type is asked for: blocks may find the others.
   bool has_second_solver() const;

@@ -33,6 +33,7 @@ class PencilSolver {
 
   /// No more roots than this exist beside the rigid motions; exact where the rank of M is known.
   int num_available() const { return num_available_; }
+  /// Returns true if M = C Cᵀ has been found, so that its rank is known.
   bool knows_rank() const { return C_.has_value(); }
   /// Of all solutions.
   const std::vector<SolverUse>& get_uses() const { return uses_; }

@@ -21,6 +21,7 @@ struct QuadraticPencil {
   /// Number n of unknowns.
   Index size() const { return K.rows(); }
   ComplexSparse calc_matrix(Complex lambda) const;  ///< λ² M + λ B + K
+  /// The pencil of the left eigenvectors: Kᵀ, Bᵀ, Mᵀ.
   QuadraticPencil transpose() const;
 };
 
@@ -39,6 +40,7 @@ class PencilBuilder {
                      const ComplexSparse& M);
   /// Adds dense matrices on the first unknowns.
   void add_dense(const MatrixXcd& K, const MatrixXcd& B, const MatrixXcd& M);
+  /// Compresses the sums to sparse matrices.
   QuadraticPencil build() const;
 
  private:

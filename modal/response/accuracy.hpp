@@ -32,6 +32,7 @@ class ResidualRecord {
   explicit ResidualRecord(bool is_over_time) : is_over_time_(is_over_time) {}
   /// D > 0: diagonal of A; real and imaginary parts count alike.
   void add(const VectorXd& D, const Eigen::VectorXcd& x, const Eigen::VectorXcd& A_x, const Eigen::VectorXcd& b);
+  /// The largest relative residual so far; 0 without any.
   double worst() const;
 
  private:

@@ -19,6 +19,7 @@ struct Spectrum {
 };
 /// Amplitudes of the loads ((m + 3k): of F, M Ψ, B Ψ, K_s Ψ) and of the motions d of the supports (k).
 Eigen::VectorXcd calc_amplitudes(const Excitation& excitation, double hz, Eigen::VectorXcd& d);
+/// Throws ComputationError "modal.unbounded-response" with the frequency.
 [[noreturn]] void throw_unbounded(double hz, const std::string& why);
 
 /// Keeps the frequencies at which the response has a bound: of a list over an undamped mode the others count.

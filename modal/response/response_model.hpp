@@ -61,6 +61,7 @@ StartMotion calc_start(const fe::Model& model, const records::DynamicDeck& deck,
 
 /// B X and K_s X on the g-set: over time K_s is in B, at the rates W3 and W4.
 MatrixXd times_damping(const fe::Model& model, const DampingChoice& damping, const MatrixXd& X);
+/// K_s X, structural damping of elements and g of PARAM,G; zero over time, where it is in B.
 MatrixXd times_structural(const fe::Model& model, const DampingChoice& damping, const MatrixXd& X);
 
 /// `solve`: static solutions on the supports (with rigid modes: any determinate ones). `with_residuals`: RESVEC.

@@ -13,6 +13,7 @@ struct ModalSource {
 
   /// [q; d; p] (n + k + m) per frequency.
   MatrixXcd calc_coordinates(const VectorXd& hz) const;
+  /// Number of coordinates n + k + m.
   Eigen::Index num_coordinates() const { return coordinates.lambda.size() + num_motions + num_forces; }
 
   ResponseModel coordinates;  ///< without shapes

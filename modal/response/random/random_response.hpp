@@ -19,6 +19,7 @@ class RandomAnalysis {
   /// Reports what is wrong with the cards before anything is solved: see InputSpectrum.
   RandomAnalysis(const records::DynamicDeck& deck, const std::vector<records::DynamicSubcase>& subcases,
                  Diagnostics& diagnostics);
+  /// Returns true if no subcase selects RANDOM.
   bool is_empty() const { return inputs_.empty(); }
 
   /// S_y(f) = Σ_jk H_j S_jk H_k*; by RANDT1 the autocorrelations; with `sources` the modal integrals.
