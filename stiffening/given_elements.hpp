@@ -24,6 +24,7 @@ struct PointTable {
   /// Rows of a file that names none: grids and scalar points by id, six dofs and one.
   Eigen::MatrixXi calc_default_dofs() const;
   Eigen::MatrixXi calc_dof_map() const;  ///< num_gdofs x 2: node, code (scalar point: 0)
+  /// The dofs of calc_dof_map() with the positions of the grids, for the mass integrals.
   modal::NodalDofs calc_nodal_dofs() const;
 };
 

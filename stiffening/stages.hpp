@@ -20,19 +20,25 @@ struct BodyRequest {
 
   /// The body file, or the deck when there is none.
   SourceLocation where() const { return spec.file.empty() ? deck.locate({0, 0}) : SourceLocation{spec.file, 0, 0}; }
+  /// Returns true if the frame is not that of the constraints.
   bool is_free() const { return spec.frame != records::BodyFrame::Fixed; }
   /// Returns true if the frame is neither that of the constraints nor the mean axes of free-free modes.
   bool moves_to_frame() const { return is_free() && spec.frame != records::BodyFrame::Free; }
+  /// Makes the elements of the deck, or those of the given matrices.
   fe::ElementFactory make_factory() const;
+  /// Reports a stage of the work to the caller's progress function, if any.
   void report(const std::string& stage) const {
     if (options.progress) options.progress(stage);
   }
+  /// Adds an error at where().
   void error(std::string_view id, const std::string& message, const std::string& advice = {}) const {
     diagnostics.error(id, where(), message, advice);
   }
+  /// Adds a warning at where().
   void warning(std::string_view id, const std::string& message, const std::string& advice) const {
     diagnostics.warning(id, where(), message, advice);
   }
+  /// Adds a note at where().
   void note(std::string_view id, const std::string& message, const std::string& advice) const {
     diagnostics.note(id, where(), message, advice);
   }
@@ -89,6 +95,7 @@ void check_spec(const BodyRequest& request);
 
 /// Bo in basic if the body file or a grid of the deck gives it; empty: the basic origin or the centre of mass.
 std::optional<Eigen::Vector3d> find_origin(const records::Deck& deck, const records::BodySpec& spec);
+/// Builds the model with the selected constraints, about Bo; a frame of reference conditions is checked first.
 BodyModel build_body_model(const BodyRequest& request);
 /// Name, mass, centre of mass, inertia, preload. Throws reduce.no-mass; reports reduce.mass-by-direction.
 records::FlexBody make_rigid_body(const BodyRequest& request, const fe::Model& model);
@@ -102,6 +109,7 @@ std::vector<int> list_interface_nodes(const records::BodySpec& spec);
 /// Units at the interface nodes, then the loads of the body file, then the loads of given K_G. Throws
 /// reduce.load-on-nothing.
 std::vector<LoadPattern> make_load_patterns(const BodyRequest& request, const fe::Model& model);
+/// Assembles M on the g-set and computes F_I for unit load factors. Collective.
 InertialLoads calc_body_inertial_loads(const fe::Model& model);
 /// Returns true if residual vectors of the inertial loads are requested.
 bool needs_inertial_residuals(const records::BodySpec& spec);
@@ -130,7 +138,9 @@ void remove_augmentation(const BodyRequest& request, const fe::Model& model, mod
 /// Returns true if the node translates without rotating: a grid of solids or rods alone. A rotation in its rows is that
 /// of the frame, not of the node.
 bool lacks_rotation(const fe::Model& model, const fe::Node& node);
+/// Sets eigenvalues, frequencies [Hz], kinds and modal matrices of the body.
 void set_modes(const ModalBasis& basis, records::FlexBody& body);
+/// Sets the output nodes, by default all grids, their positions from Bo and the rows of Phi.
 void set_nodes(const BodyRequest& request, const fe::Model& model, const MatrixXd& Phi, records::FlexBody& body);
 /// Mass integrals, effective masses, F_I. `strain`: of arms in the exact integrals (modal::calc_strained_integrals).
 /// Reports reduce.inertia-approximated.
@@ -160,6 +170,7 @@ void set_recovery(const BodyRequest& request, const fe::Model& model, const Matr
                   const std::vector<LoadPattern>& patterns, const SolvedLoads& solved, records::FlexBody& body);
 /// K_G0 of the preload and its inertial load factors. Throws reduce.bad-preload.
 void set_preload(const BodyRequest& request, const fe::Model& model, const MatrixXd& Phi, records::FlexBody& body);
+/// Sets the strain energy matrices of all elements, if they are requested.
 void set_strain_energy(const BodyRequest& request, const fe::Model& model, const MatrixXd& Phi,
                        records::FlexBody& body);
 

@@ -18,6 +18,7 @@ class Lattice {
   /// Returns the exponents of the monomials, one row each.
   const Eigen::MatrixXi& exponents() const { return exponents_; }
   const MatrixXd& points() const { return points_; }  ///< points x n
+  /// Number of points, equal to that of the monomials.
   Eigen::Index size() const { return points_.rows(); }
   /// values, result: rows x points, rows x monomials.
   MatrixXd fit(const MatrixXd& values) const { return factor_.solve(values.transpose()).transpose(); }
@@ -48,6 +49,7 @@ class StaticManifold {
   /// Adds u of the next degree, from 3 on, and returns the gradient of V of one degree more by the large amplitudes,
   /// N x monomials. `lattice`: of that degree in the large modes.
   MatrixXd advance(int degree, const Lattice& lattice);
+  /// Coefficients of u of a degree from 2 on, num_gdofs x monomials; after the call that adds it.
   const MatrixXd& field(int degree) const { return fields_[static_cast<std::size_t>(degree - 2)]; }
   /// The gradient of V by the large amplitudes where no field of that degree is needed: N x points. points: points x n.
   MatrixXd calc_gradient(const MatrixXd& points, int degree) const;
