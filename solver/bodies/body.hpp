@@ -74,16 +74,22 @@ class Body {
   /// [M] mass.
   double mass() const { return mass_; }
   Vector3d first_moment() const { return S0_; }  ///< of the undeformed body about Bo
+  /// Returns true if displacements of second order stiffen the body.
   bool stiffened() const { return stiffened_; }
   const Matrix6d& M6() const { return M6_; }  ///< the mass matrix of the undeformed body
+  /// Modal stiffness [n x n].
   const MatrixXd& K() const { return K_; }
+  /// Modal damping [n x n].
   const MatrixXd& D() const { return D_; }
+  /// Affine field of the displacements of second order.
   const AffineField& field() const { return field_; }
   const ThirdOrderBody* third_order() const { return third_.get(); }  ///< nullptr: second order
+  /// Strain energy [F L] of the amplitudes eta (n), of third order if the body has it.
   double calc_strain_energy(const ConstVectorRef& eta) const;
 
   const std::vector<Node>& nodes() const { return nodes_; }  ///< [0] is Bo
   int find_node(int id) const;                               ///< index into nodes(), -1 when absent
+  /// Adds a node of a rigid body at p from Bo, in B. \pre The body has no modes, and the id is new.
   void add_rigid_node(int id, const Vector3d& p);
 
   /// Results and scratch arrays of this size, those that never change set. Allocates.
@@ -97,6 +103,7 @@ class Body {
   LinearField make_linear_field(const Matrix3d& T, const BodyInertia& inertia) const;
   /// ∫ρ ∂r/∂η_j·(T r), the derivative of ½ ∫ρ r·(T r): what the acceleration T r of its points does on mode j.
   double calc_modal_force(const LinearField& field, const BodyInertia& inertia, int j) const;
+  /// Computes M(η), S and h(η, η̇, ω). No allocation.
   void calc_inertia(const Vector3d& w_B, const ConstVectorRef& eta, const ConstVectorRef& eta_dot,
                     BodyInertia& inertia) const {
     calc_mass(eta, inertia);

@@ -68,6 +68,7 @@ class Polynomials {
   /// Number m of polynomials.
   int num_values() const { return m_; }
   Eigen::Index stride() const { return stride_; }  ///< rows of J, padded
+  /// Highest degree of the polynomials; 0 without terms.
   int degree() const { return degree_; }
 
   /// J (stride x n) and the values (m). z: the list's, to degree() - 1. No allocation.

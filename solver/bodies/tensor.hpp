@@ -10,6 +10,7 @@ inline Vector6d pack_tensor(const Matrix3d& J) {
   c << J(0, 0), J(1, 1), J(2, 2), 0.5 * (J(0, 1) + J(1, 0)), 0.5 * (J(0, 2) + J(2, 0)), 0.5 * (J(1, 2) + J(2, 1));
   return c;
 }
+/// The full symmetric tensor of the components xx yy zz xy xz yz.
 inline Matrix3d unpack_tensor(const Vector6d& c) {
   Matrix3d J;
   J << c[0], c[3], c[4], c[3], c[1], c[5], c[4], c[5], c[2];

@@ -32,7 +32,9 @@ class ThirdOrderBody {
   /// h without the modal stiffness and damping of η.
   void calc_bias(const Vector3d& w_B, const ConstVectorRef& eta, const ConstVectorRef& eta_dot, ThirdOrderData& data,
                  BodyInertia& inertia) const;
+  /// Linear field T r on the linear body with n + m modes (Body::make_linear_field()).
   LinearField make_linear_field(const Matrix3d& T, const ThirdOrderData& data) const;
+  /// Effect of the acceleration T r on mode j of the n (Body::calc_modal_force()).
   double calc_modal_force(const LinearField& field, const ThirdOrderData& data, int j) const;
   /// Strain energy beyond ½ ηᵀKη.
   double calc_energy(const ConstVectorRef& eta) const;

@@ -64,6 +64,7 @@ struct ElementContext {
   const FlexMap& flex;
   const FunctionMap& functions;
   const std::vector<bool>& body_is_valid;
+  /// Returns true if the body, by its tree index, was built without errors.
   bool is_valid(int body) const { return body_is_valid[static_cast<size_t>(body)]; }
 };
 /// The [[function]] of that name as a curve; nullptr for "" and with errors reported.

@@ -28,7 +28,9 @@ class Sources {
 
   /// The wire of a use. Reports "control.unknown-signal" and returns false; user: "controller 'pid'".
   bool find(const SignalUse& use, const std::string& user, Wire& wire, Diagnostics& diagnostics) const;
+  /// Number of components that a wire carries.
   int size_of(const Wire& wire) const { return wire.component >= 0 ? 1 : list[wire.source].size; }
+  /// Source by its path. \pre The path is in the list.
   Source& at_path(const std::string& path);
 };
 

@@ -15,6 +15,7 @@ std::unique_ptr<Block> make_gain(SettingsReader& keys, const ControllerWiring& w
 std::unique_ptr<Block> make_sum(SettingsReader& keys, const ControllerWiring& wiring);
 /// The bilinear transform where it is sampled.
 std::unique_ptr<Block> make_notch(SettingsReader& keys, const ControllerWiring& wiring, double sample_time);
+/// gain (1 + lead s) / (1 + lag s) for each input component, by the bilinear transform where it is sampled.
 std::unique_ptr<Block> make_lead_lag(SettingsReader& keys, const ControllerWiring& wiring, double sample_time);
 
 /// PID with derivative filter, limits and back-calculation against windup; in discrete form for sample_time > 0.

@@ -35,6 +35,7 @@ class CentralGravity final : public ForceElement {
   Vector3d calc_acceleration(const Vector3d& p_W) const;
   /// Magnetic field of the dipole d at p, in W: (3 d·n n - d)/R³.
   Vector3d calc_magnetic_field(const Vector3d& p_W) const;
+  /// Constants of the field.
   const Field& field() const { return field_; }
   /// The affine field whose loads calc() puts on a body with mass. After calc_position.
   BodyGravity calc_on_body(const TreeData& data, int body) const;

@@ -43,7 +43,9 @@ class Loads {
   void add_wrench(int marker, const Vector3d& f_W, const Vector3d& t_W);
   /// A force at Bo and a moment about it, in B.
   void add_to_body(int body, const Vector3d& f_B, const Vector3d& t_B);
+  /// Adds a generalized force on a mode of a body.
   void add_to_mode(int body, int mode, double force) { data_.applied[tree_[body].v_offset + 6 + mode] += force; }
+  /// Adds a force or moment along a hinge coordinate, by its row of u.
   void add_to_hinge(int row, double force) { data_.hinge_force[row] += force; }
 
  private:
@@ -69,6 +71,7 @@ class ForceElement {
   virtual bool is_along_hinge() const { return false; }
   /// The function of time in it, or nullptr.
   virtual const TimeFunction* function() const { return nullptr; }
+  /// Further channels of the results; none by default.
   virtual std::vector<ForceChannel> channels() const { return {}; }
   /// Adds -∂force/∂q and -∂force/∂u of the coordinates that it acts along, where they are not negative (num_u).
   virtual void add_tangent(const Tree&, const TreeData&, Eigen::Ref<VectorXd> /*stiffness*/,

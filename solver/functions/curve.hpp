@@ -19,11 +19,13 @@ class Curve {
   /// "system.not-a-table" for another type and what make_time_function reports, and returns nullptr then.
   static std::unique_ptr<const Curve> make(const records::FunctionRecord& record, const SourceLocation& where,
                                            const std::string& user, Diagnostics& diagnostics);
+  /// Value, slope and integral from 0 at x.
   Value calc(double x) const;
   /// y with its one-sided slope along x.
   struct DualValue {
     Dual y;
   };
+  /// y and its derivative along x.dx, one-sided at a point of the table.
   DualValue calc(Dual x) const { return {Dual(calc(x.x).y, calc_slope(x.x, x.dx < 0) * x.dx)}; }
 
  private:

@@ -36,6 +36,7 @@ class FunctionCopies {
  public:
   FunctionCopies() = default;
   explicit FunctionCopies(const std::vector<const TimeFunction*>& functions);
+  /// The copy of a function of the system, or the function itself where threads can share it.
   const TimeFunction& operator[](const TimeFunction& f) const { return copies_.empty() ? f : find(f); }
 
  private:

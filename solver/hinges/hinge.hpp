@@ -35,6 +35,7 @@ class Hinge {
   virtual void calc_position(const double* q, HingeMotion& motion) const = 0;
   /// The bias, after calc_position. u: num_u. Default: it is zero and stays so.
   virtual void calc_bias(const double*, HingeMotion&) const {}
+  /// Pose, H and bias at q and u.
   void calc_motion(const double* q, const double* u, HingeMotion& motion) const {
     calc_position(q, motion);
     calc_bias(u, motion);

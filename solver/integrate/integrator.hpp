@@ -41,6 +41,7 @@ class Integrator {
   /// One step from time(). Multistep methods may pass t_target (not t_stop); the others end on it when it is in reach.
   /// Throws StepFailure, or what the equations threw; the state is then that before the step.
   virtual void step(double t_target) = 0;
+  /// Time [T] of the state.
   virtual double time() const = 0;
   /// Where the last step began; time() before the first.
   virtual double last_time() const = 0;
@@ -48,6 +49,7 @@ class Integrator {
   virtual Eigen::Map<const VectorXd> state() const = 0;
   /// At t within the last step, as exactly as the method steps: by its interpolant, or (rk, rk4) by a step to t.
   virtual void calc_state(double t, Eigen::Ref<VectorXd> y) = 0;
+  /// Steps, evaluations and failures since the start.
   virtual StepStatistics statistics() const = 0;
   /// Returns true if a step depends on those before it: a jump of anything but the state then needs a restart.
   virtual bool has_history() const { return true; }

@@ -41,11 +41,15 @@ class GuardedOde {
   void set_left_limit(double left) { left_limit_ = left; }
   /// 0: fine; 1: the derivative is not finite or the equations threw (kept for throw_pending).
   int calc(double t, const double* y, double* y_dot) noexcept;
+  /// Returns true if each accepted step must be projected.
   bool has_projection() const { return ode_.has_projection(); }
   /// y, in and out. 0: fine; 1: it threw or is not finite.
   int project(double t, double* y) noexcept;
+  /// Projects an error estimate onto the constraints, in place. 0: fine; 1: it threw or is not finite.
   int project_error(double* error) noexcept;
+  /// k of a stage of an implicit method (Ode::calc_stage). 0: fine; 1: it threw or is not finite.
   int calc_stage(double t, const double* y, double gamma_h, bool is_first, double* k) noexcept;
+  /// Forgets exceptions and non-finite derivatives of earlier steps.
   void begin_step() {
     pending_ = nullptr;
     non_finite_ = false;
@@ -56,7 +60,9 @@ class GuardedOde {
   }
   /// Returns true if a derivative since begin_step was not finite; the last of them at bad_time().
   bool was_non_finite() const { return non_finite_; }
+  /// Time of the last derivative that was not finite.
   double bad_time() const { return bad_time_; }
+  /// Number of evaluations so far.
   long num_evaluations() const { return num_evaluations_; }
 
  private:

@@ -21,6 +21,7 @@ class EquilibriumResidual {
   int size() const {
     return plant_->num_dofs() + plant_->num_states() + static_cast<int>(plant_->steady_rows().size());
   }
+  /// Name of a row, for messages.
   std::string name(int row) const;
   /// Rows that may be displaced; m of n.
   const std::vector<int>& free() const { return free_; }
@@ -33,6 +34,7 @@ class EquilibriumResidual {
   /// Derivatives of residual and rates by steps, n x m, of the last linearize.
   const MatrixXd& jacobian() const { return jacobian_; }
   const MatrixXd& rate_jacobian() const { return rate_jacobian_; }
+  /// Step of the displacement j, of m: that of the plant for dofs, 1 for states and memory.
   double step(int j) const {
     const int i = free_[static_cast<size_t>(j)];
     return i < plant_->num_dofs() ? plant_->step(i) : 1;

@@ -79,6 +79,7 @@ class Plant {
   VectorXd displace(const VectorXd& q, const VectorXd& delta) const;
   /// num_u of the system, of one value for each dof: zero where a motion is prescribed or loops are closed; and back.
   VectorXd expand(const VectorXd& free) const;
+  /// Rows of the dofs, out of the num_u of the system.
   VectorXd restrict(const VectorXd& u) const { return u(rows_); }
   /// All speeds at a point, those that loops give too. Throws ComputationError "linear.dead-point".
   VectorXd calc_speeds(const OperatingPoint& point) const;
@@ -108,6 +109,7 @@ class Plant {
   struct Cut {
     int output = -1, input = -1;
   };
+  /// Finds the cut by the name of an input.
   Cut find_cut(const std::string& name) const;
   /// Names at which find_cut() finds a point.
   std::vector<std::string> list_cuts() const;
@@ -146,9 +148,11 @@ class Plant {
     int first = 0, size = 0, length = 0;
     double period = 0;
   };
+  /// All queues of delayed samples.
   const std::vector<Queue>& list_queues() const { return queues_; }
   /// Rows of the memory that a steady state has to find: what sampled blocks keep and hold. Empty where is_open.
   const std::vector<int>& steady_rows() const { return steady_rows_; }
+  /// Name of a steady row, for messages.
   const std::string& steady_name(int i) const { return steady_names_[static_cast<size_t>(i)]; }
   /// All memory after one sample of every block, nothing delayed, sensors as in `sample`. May throw ComputationError.
   VectorXd sample_all(const OperatingPoint& point);

@@ -28,6 +28,7 @@ struct Uncertainty {
 
   /// Rows with scale 0 are left out.
   void add(const Jacobian& jacobian, const VectorXd& scale);
+  /// Joins another bound; the larger of both is kept.
   void add(const Uncertainty& other);
 };
 
@@ -56,7 +57,9 @@ class SampledSystem {
   int num_m() const { return static_cast<int>(plant_.sampled_rows().size()); }
   /// num_x + num_m.
   std::vector<std::string> list_names() const;
+  /// Sets the time of the operating point.
   void set_time(double t) { point_.t = t; }
+  /// The operating point, with the memory after its first sample.
   const OperatingPoint& point() const { return point_; }
 
   /// E: num_x x num_m, of ẋ = A x + E m.

@@ -36,6 +36,7 @@ class Closure {
                              ClosureMotion& motion) const = 0;
   /// A first q from nowhere near.
   virtual void find_start(const Matrix3d&, const Vector3d&, double*) const {}
+  /// Returns true if the constraint is a closing hinge with coordinates.
   virtual bool is_hinge() const { return false; }
 
  private:

@@ -80,10 +80,12 @@ struct LoopData {
 
 /// Paths of the constraints through the tree.
 void finish_loops(const Tree& tree, Loops& loops);
+/// Results and scratch arrays with every constraint in its initial state. Allocates.
 LoopData make_loop_data(const Loops& loops, const Tree& tree);
 /// Opens and closes the constraints. Allocates.
 void set_constraint_states(const Loops& loops, const Tree& tree, const std::vector<ConstraintState>& constraints,
                            LoopData& data);
+/// State of each constraint, in the order of the system file.
 std::vector<ConstraintState> get_constraint_states(const LoopData& data);
 
 /// Constraint i closed as it is found at the positions of the tree: what it is off by is kept, so that nothing jumps.
@@ -94,6 +96,7 @@ void calc_closure_positions(const Loops& loops, const Tree& tree, const TreeData
 void calc_closure_velocities(const Loops& loops, const Tree& tree, const TreeData& tree_data, LoopData& data);
 /// Position error of a constraint: relative to Loops::length, and in radians. After calc_closure_positions.
 double calc_gap(const Loops& loops, const LoopData& data, int constraint);
+/// Largest position error of the closed constraints. \param[out] which  its constraint.
 double calc_largest_position_error(const Loops& loops, const LoopData& data, int* which = nullptr);
 
 /// After solve: u̇ with the constraints, by their multipliers and a second solve. Does nothing where none is closed. No

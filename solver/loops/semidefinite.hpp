@@ -35,8 +35,11 @@ class SemidefiniteFactor {
   void set_void(int row, bool is_void) { is_void_[static_cast<size_t>(row)] = is_void; }
   /// Factors what pairs hold. Allocates only where more rows depend on others than ever before.
   void compute();
+  /// Rank found by compute().
   int rank() const { return rank_; }
+  /// Number of rows.
   int size() const { return static_cast<int>(scale_.size()); }
+  /// Number of fronts of the elimination.
   int num_fronts() const { return static_cast<int>(fronts_.size()); }
   /// b: size, in and out.
   void solve(Eigen::Ref<VectorXd> b);

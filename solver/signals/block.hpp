@@ -73,9 +73,11 @@ class Block {
   virtual void calc_outputs(const BlockInput& in, double* y) const = 0;
   /// Sampled: the outputs as if they were not, without noise; for linear models.
   virtual void calc_ideal(const BlockInput& in, double* y) const;
+  /// Rates of the states z_dot [sizes.states]; without states nothing is written.
   virtual void calc_rates(const BlockInput& in, double* z_dot) const;
   /// Sampled: the memory after this sample; d holds what in.d holds. After calc_outputs of the same sample.
   virtual void update(const BlockInput& in, double* d) const;
+  /// Event functions g [sizes.event_functions], which switch the block where they become positive.
   virtual void calc_event_functions(const BlockInput& in, double* g) const;
   /// The memory after event function `function` has become positive; the event function must not be positive any
   /// more.

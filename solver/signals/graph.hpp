@@ -65,9 +65,11 @@ class SignalGraph {
 
   /// The order, what is needed and what is late, from sources and sizes. Reports "control.algebraic-loop".
   void arrange(Diagnostics& diagnostics);
+  /// Vectors of the signals, the scratch of each block among them. Allocates.
   SignalData make_data() const;
   /// After calc_all, at the start of a run: lags that are to start at rest follow what is there. False without any.
   bool settle(const Motion& motion, SignalData& signals) const;
+  /// Block by the path of its outputs; nullptr if it is absent.
   const BlockSlot* find(const std::string& path) const;
   /// Computes the blocks that the motion needs and that do not need accelerations. After kinematics, before loads.
   void calc_before_acceleration(const Motion& motion, SignalData& signals) const;
@@ -80,11 +82,15 @@ class SignalGraph {
   void calc_some(const Motion& motion, SignalData& signals, std::vector<bool>& chosen) const;
   /// After calc_all: outputs y of one sensor for linear models.
   void calc_ideal(const BlockSlot& place, const Motion& motion, SignalData& signals, double* y) const;
+  /// Adds the loads of all actuators to the bodies. After their outputs.
   void add_loads(const Motion& motion, const SignalData& signals, TreeData& data) const;
   /// After calc_after_acceleration. z_dot: num_states.
   void calc_rates(const Motion& motion, SignalData& signals, Eigen::Ref<VectorXd> z_dot) const;
+  /// Power of the actuators that no wrench on a body has.
   double calc_power(const Motion& motion, const SignalData& signals) const;
+  /// Kinetic energy of the actuators themselves, as of rotors.
   double calc_energy(const Motion& motion, const SignalData& signals) const;
+  /// Angular momentum of the actuators themselves, in W.
   Vector3d calc_momentum(const Motion& motion, const SignalData& signals) const;
   /// Propellant used up on each body.
   VectorXd calc_consumption(const Motion& motion, const SignalData& signals) const;

@@ -18,7 +18,9 @@ class InputBlock final : public Block {
 
   /// Returns true if a new value is reached at the next time that is asked for, not at once.
   bool is_linear() const { return is_linear_; }
+  /// Value at the start of a run.
   double start_value() const { return start_; }
+  /// Value at t of the memory rows d: held, or on the line to the next value.
   static double calc_value(double t, const double* d);
 
  private:

@@ -25,11 +25,14 @@ class EnergyMonitor {
   double latest() const { return latest_ / scale(); }
   /// The largest of all moments added, without sign; relative.
   double worst() const { return worst_ / scale(); }
+  /// Time [T] of the largest error.
   double time_of_worst() const { return time_; }
   /// Upper bound of the energy put into the motion: the largest so far of the initial kinetic and strain energy, of the
   /// change of the potential energy and of the work without dampers. Kinetic energy far above it is an error.
   double energy_input() const { return std::max(energy_input_, noise_); }
+  /// Adds the energies of a moment; strain energy below zero, that of a buckled body, counts by its magnitude.
   void add_energy_input(const Energies& e, double work, double dissipated);
+  /// Adds an energy, as that of an impact.
   void add_energy_input(double energy) { energy_input_ = std::max(energy_input_, energy); }
 
   /// Writes the numbers of a checkpoint; memory: kMemory.

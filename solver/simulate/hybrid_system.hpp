@@ -21,6 +21,7 @@ class HybridSystem final : public Ode {
   int num_q() const { return num_q_; }
   /// Rows of y that are q and u.
   int num_coordinates() const { return num_q_ + num_u_; }
+  /// Number of states of controllers, actuators and sensors.
   int num_z() const { return num_z_; }
   /// Also leaves data() at (t, y): kinematics, forces, accelerations. No allocation.
   void calc_derivative(double t, const Eigen::Ref<const VectorXd>& y, Eigen::Ref<VectorXd> y_dot) override;
@@ -35,8 +36,10 @@ class HybridSystem final : public Ode {
                   Eigen::Ref<VectorXd> k) override;
   /// Evaluations of the equations of motion so far, by calc_derivative and calc_stage.
   long num_evaluations() const { return num_evaluations_; }
+  /// Results of the last evaluation.
   const SystemData& data() const { return *data_; }
   SystemData& data() { return *data_; }
+  /// y at the start: the initial state with work and dissipated 0.
   VectorXd make_initial_state() const;
   /// Takes y over the jump at t; `before` is the last moment that sees what was. Describes each jump of a rate.
   std::vector<std::string> cross_jump(double before, double t, Eigen::Ref<VectorXd> y);
@@ -55,8 +58,11 @@ class HybridSystem final : public Ode {
   /// hinges follow the motion and do not count.
   bool is_alike(const VectorXd& memory) const;
   void get_memory(VectorXd& memory) const;  ///< of that size; no allocation
+  /// Restores the modes of hinge coordinates and constraints of get_memory(). Allocates.
   void set_memory(const VectorXd& memory);
+  /// Row `work` of y.
   double get_work(const Eigen::Ref<const VectorXd>& y) const { return y[num_coordinates() + num_z_]; }
+  /// Row `dissipated` of y.
   double get_dissipated(const Eigen::Ref<const VectorXd>& y) const { return y[num_coordinates() + num_z_ + 1]; }
   /// "body 'boom' (modal rate 2)" for a row of y.
   std::string name_row(int row) const;

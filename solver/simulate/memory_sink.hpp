@@ -24,11 +24,17 @@ class MemorySink final : public records::ResultSink {
   bool has(const std::string& path) const;
   /// num_samples x size of the channel; BOUGH_DEMAND that it exists.
   Eigen::MatrixXd get(const std::string& path) const;
+  /// Time [T] of each sample.
   Eigen::VectorXd time() const { return get("/time").col(0); }
+  /// Events in the order of time.
   const std::vector<records::EventRecord>& events() const { return events_; }
+  /// All checkpoints of the run.
   const std::vector<records::Checkpoint>& checkpoints() const { return checkpoints_; }
+  /// Returns true after end().
   bool ended() const { return ended_; }
+  /// Returns true if the run reached its duration.
   bool completed() const { return completed_; }
+  /// Reason of an early end; empty: none.
   const std::string& reason() const { return reason_; }
   double energy_error() const { return energy_error_; }  ///< the worst, as last written
 

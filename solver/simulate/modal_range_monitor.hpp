@@ -54,6 +54,7 @@ class ModalRangeMonitor {
   /// Limits that were reported, for a checkpoint.
   int num_watched() const { return static_cast<int>(watched_.size()); }
   void get_memory(Eigen::Ref<VectorXd> memory) const;  ///< 2 num_watched
+  /// Restores the limits of get_memory(), so that they are not reported again.
   void set_memory(const VectorXd& memory);
 
  private:

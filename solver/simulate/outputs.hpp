@@ -44,6 +44,7 @@ class Outputs {
   /// Leaves of calc_sample what `groups` name ("bodies", "hinges/root", ...; empty: all), and /time, for the file.
   /// Reports "run.unknown-group".
   void choose(const std::vector<std::string>& groups, const SourceLocation& where, Diagnostics& diagnostics);
+  /// Channels of the file, time first.
   const std::vector<records::Channel>& chosen_channels() const { return chosen_; }
   /// The chosen channels of the last sample, whose quaternions are kept. No allocation.
   const VectorXd& keep_sample();

@@ -30,11 +30,15 @@ class Run {
   void advance_to(double t);
   /// Reached; of an end, its own.
   double time() const { return time_; }
+  /// Times closer together than this are one.
   double resolution() const { return time_events_.resolution(); }
+  /// Number of rows of the state.
   int num_states() const { return ode_.size(); }
   /// Memory of the signals.
   const VectorXd& memory() const;
+  /// Sets one row of the memory of the signals, without an evaluation.
   void put_memory(int row, double value);
+  /// Outcome of a run that has ended; none before.
   const std::optional<SimulateOutcome>& outcome() const { return outcome_; }
   /// All channels at time().
   const VectorXd& calc_outputs() { return calc_sample(time_); }
@@ -42,6 +46,7 @@ class Run {
   const VectorXd& calc_outputs(std::span<const int> rows) {
     return calc_rows(is_led_ ? calc_seen_time() : time_, rows);
   }
+  /// Channels and the samples made of them.
   const Outputs& recorder() const { return setup_.recorder; }
   /// Sets what is held from time() on by the blocks of `memory`, one row of the signals' memory a value. Whatever a
   /// jump of them brings about comes at once.
@@ -54,14 +59,19 @@ class Run {
   std::string name_state(int row) const { return ode_.name_row(row); }
   /// From here on the state is the host's, until advance_to().
   void lead();
+  /// Returns true if the host integrates.
   bool is_led() const { return is_led_; }
   /// Puts it at (t, x). No time event lies between the last one and t, which may be the next one's.
   void set_continuous(double t, const Eigen::Ref<const VectorXd>& x);
+  /// Time derivatives of the state at the present (t, x).
   void calc_derivatives(Eigen::Ref<VectorXd> x_dot);
+  /// All channels at the present (t, x).
   const VectorXd& calc_continuous_outputs();
   /// An event is where one of them changes its sign.
   int num_event_functions() const;
+  /// Values at the present (t, x): kinks of force elements, switches of blocks, joint contacts and user events.
   void calc_event_functions(Eigen::Ref<VectorXd> g);
+  /// Names of the event functions, in their order.
   std::vector<std::string> list_event_functions() const;
   /// Derivative of [ẋ; all channels] at (t, x) along dx and along changes of memory rows; modes and the
   /// rest of the memory are held (run_directional.cpp).

@@ -22,6 +22,7 @@ class Simulator {
 
   /// Goes on to t, or to the end or the event that ends the run where that comes first. What is due at t has come then.
   void advance_to(double t);
+  /// Time [T] reached.
   double time() const;
   /// Times closer together than that are one.
   double resolution() const;
@@ -56,10 +57,13 @@ class Simulator {
   std::string name_state(int row) const;
   /// Puts it at (t, x), t not past next_event_time().
   void set_continuous(double t, const Eigen::Ref<const Eigen::VectorXd>& x);
+  /// Time derivatives of the state at the present (t, x).
   void calc_derivatives(Eigen::Ref<Eigen::VectorXd> x_dot);
   /// An event is where an event function changes its sign.
   int num_event_functions() const;
+  /// Values of the event functions at the present (t, x).
   void calc_event_functions(Eigen::Ref<Eigen::VectorXd> g);
+  /// Names of the event functions, in their order.
   std::vector<std::string> list_event_functions() const;
   /// Derivative of [ẋ; components of all channels] along a direction of states and inputs, at (t, x) of
   /// set_continuous(). Modes and samples are held, as in linear models; at a kink the mean of both slopes.
@@ -71,6 +75,7 @@ class Simulator {
   /// Event mode at (t, x): what is due, what has crossed, and what follows, until nothing changes. Whether x has
   /// jumped. The run may have ended then.
   bool update_discrete();
+  /// Time [T] of the next time event, which no step of the host may pass.
   double next_event_time();
 
   /// Everything that it goes on from, also in another process: bit for bit where the step is fixed.

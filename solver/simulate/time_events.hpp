@@ -49,7 +49,9 @@ class TimeEvents {
   double calc_output(long i) const;
   /// The next sample that has not been taken; infinite after the last.
   double next_output() const { return next_; }
+  /// Index of the next output sample.
   long next_index() const { return index_; }
+  /// Goes on to the next output sample.
   void take_output();
   /// Passes over the samples up to t, and t itself.
   void skip_outputs(double t);

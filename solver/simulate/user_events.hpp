@@ -21,13 +21,16 @@ class UserEvents {
 
   /// Times of the events at a time; either those that only log, or the others.
   std::vector<double> collect_times(bool log_only) const;
+  /// Returns true if an event watches a signal.
   bool has_signals() const { return num_signals_ > 0; }
+  /// Record of an event of the system file.
   const records::UserEventRecord& get(size_t trigger) const { return records_[trigger]; }
   /// "event 'contact': tip:x rises through 0.1"
   std::string describe(size_t trigger) const;
 
   /// Values minus thresholds of all signals of a sample; NaN for events at a time.
   void calc_gaps(const VectorXd& sample, VectorXd& gaps) const;
+  /// Storage for calc_gaps(), zero.
   VectorXd make_gaps() const { return VectorXd::Zero(static_cast<Eigen::Index>(records_.size())); }
 
   /// From here on crossings count: the signs at the start, or after a jump of the state.

@@ -49,6 +49,7 @@ inline Dual tanh(Dual a) {
 }
 /// At 0 of a sum of squares the derivative is that of the norm, abs(dx) at most: callers keep the argument positive.
 inline Dual sqrt(Dual a) { return {std::sqrt(a.x), a.dx == 0 ? 0 : a.dx / (2 * std::sqrt(a.x))}; }
+/// a^e with a constant exponent; for a.x = 0 the derivative is that of the power rule.
 inline Dual pow(Dual a, double e) { return {std::pow(a.x, e), a.dx == 0 ? 0 : e * std::pow(a.x, e - 1) * a.dx}; }
 
 }  // namespace bough::solver

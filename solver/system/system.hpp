@@ -104,6 +104,7 @@ struct System {
   void calc_initial_state(Eigen::Ref<VectorXd> q, Eigen::Ref<VectorXd> u) const;
   /// The initial state as calc_initial_state() gives it, with the states z of the start.
   State make_initial_state() const;
+  /// Numbers of rows of q, u and z.
   StateLayout layout() const { return {num_q(), num_u(), num_z()}; }
 };
 
@@ -173,6 +174,7 @@ inline Motion get_motion(const System& system, const SystemData& data) {
 
 /// Motion of a body at the last state that was evaluated.
 const BodyState& get_body_state(const SystemData& data, int body);
+/// Motion of a node of a body at the last state that was evaluated.
 inline NodeMotion calc_node_motion(const System& system, const SystemData& data, int body, int node_index) {
   return calc_node_motion(get_motion(system, data), body, node_index);
 }
@@ -193,6 +195,7 @@ struct Power {
 };
 /// After calc_accelerations.
 Power calc_powers(const System& system, const SystemData& data);
+/// Total power of calc_powers().
 inline double calc_power(const System& system, const SystemData& data) { return calc_powers(system, data).total; }
 /// Linear momentum and angular momentum about the inertial origin, in W.
 void calc_momentum(const System& system, const SystemData& data, Vector3d& linear, Vector3d& angular);

@@ -20,9 +20,11 @@ class Formulas {
 
   /// Adds a formula of the variables, of pi and of step(x). Returns what is wrong with it; empty: nothing.
   std::string add(const std::string& text);
+  /// Number of formulas.
   int size() const;
   /// Returns true if a formula reads the variable `name`.
   bool uses(const std::string& name) const;
+  /// Value of a variable, to set before an evaluation.
   double& operator[](int variable) { return variables_[static_cast<size_t>(variable)]; }
   /// Formula i at the variables.
   double calc(int i) const;

@@ -150,6 +150,7 @@ Sweep& start_response(const Tree& tree, TreeData& data, const std::vector<int>& 
 void add_response_wrench(const Tree& tree, const TreeData& data, int marker, const Vector6d& wrench, Sweep& s);
 /// given: as solve_jump.
 void add_response_jump(const Tree& tree, const TreeData& data, const ConstVectorRef& given, Sweep& s);
+/// Solves tip to base, then base to tip, all bodies.
 void run_response(const Tree& tree, const TreeData& data, Sweep& s);
 /// Base to tip: the velocities (A) of all bodies at rates u (num_u), without those of prescribed rates; or small
 /// rotations and displacements. No load, no mass. After Stage::Position.

@@ -22,6 +22,8 @@ struct GimbalLock {
   int body = -1;
   std::string lock;
 };
+/// Checks each hinge at the present position. \param sine  largest sine of the angle between axes that counts as
+/// locked.
 GimbalLock find_gimbal_lock(const Tree& tree, const TreeData& data, double sine);
 
 inline constexpr const char* kGimbalAdvice =
