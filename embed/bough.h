@@ -95,6 +95,7 @@ BOUGH_API double bough_start_value(const bough_model *model, bough_kind kind, in
 /** A simulation at its start: loops closed, samples of the start taken. `options` may be NULL. */
 BOUGH_API bough_status bough_start(const bough_model *model, const bough_options *options,
                                    bough_simulation **simulation, bough_message *message);
+/** Releases a simulation; NULL is nothing to do. */
 BOUGH_API void bough_stop(bough_simulation *simulation);
 
 /** Time reached; NaN: no simulation. */
@@ -133,6 +134,7 @@ BOUGH_API bough_status bough_update_discrete(bough_simulation *simulation, bough
 BOUGH_API size_t bough_state_size(const bough_simulation *simulation);
 /** Everything that the simulation goes on from, also in another process with the same system, options and version. */
 BOUGH_API bough_status bough_save(const bough_simulation *simulation, void *buffer, size_t size);
+/** Continues from the bytes of bough_save; the state is unchanged if they do not belong to this simulation. */
 BOUGH_API bough_status bough_restore(bough_simulation *simulation, const void *buffer, size_t size);
 
 /** Of the last call that did not return BOUGH_OK; empty: none. Valid until the next call. */

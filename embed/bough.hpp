@@ -155,7 +155,9 @@ class Simulation {
     demand(bough_save(get(), state.data(), state.size()));
     return state;
   }
+  /// Continues from the bytes of save(), of this or of an equal simulation.
   void restore(const std::vector<std::byte>& state) { demand(bough_restore(get(), state.data(), state.size())); }
+  /// The handle, still owned by this; null after a move.
   bough_simulation* get() const { return simulation_.get(); }
 
  private:

@@ -71,13 +71,16 @@ class Instance {
 
   /// Logs a message. \return Status::Error.
   Status fail(const std::string& text);
+  /// Logs a message: the importer may try again with another step or value. \return Status::Discard.
   Status discard(const std::string& text);
 
   /// \param tolerance  relative; 0: of the system file. \param stop  NaN: not defined.
   Status set_up(double tolerance, double start, double stop);
   /// Starts the simulation if it is not started yet.
   Status finish_initialization();
+  /// Enters the phase Terminated; the last values remain readable.
   Status terminate();
+  /// Returns to the phase Instantiated with the start values of the system file.
   Status reset();
 
   /// Reads variables by their value references, in Model Exchange at the time and states last set. \param values  one
