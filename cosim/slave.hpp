@@ -22,8 +22,11 @@ class Slave {
   /// Creates a new instance and initializes it. The values belong to `variables`, one after the
   /// other; inputs may be null: the start values of the FMU stay.
   virtual void start(double t, const double* parameters, const double* inputs) = 0;
+  /// Sets all inputs, in the order of `variables`.
   virtual void set_inputs(const double* values) = 0;
+  /// Reads all outputs, in the order of `variables`.
   virtual void get_outputs(double* values) = 0;
+  /// Advances from t by `step` [T].
   virtual void step(double t, double step) = 0;
   /// Serialized state; both need can_save_state.
   virtual std::string save() = 0;
