@@ -20,7 +20,9 @@ class HtmlTable {
     bool is_text = false;
   };
   HtmlTable(std::string caption, std::vector<Column> columns);
+  /// Adds a row, a cell for each column.
   void add_row(std::vector<std::string> cells);
+  /// Returns true if the table has no row.
   bool empty() const { return rows_.empty(); }
   /// \param max_rows  number of rows in the table; a line reports the others.
   std::string to_html(std::size_t max_rows = 2000) const;

@@ -40,6 +40,7 @@ struct Chapter {
 
   /// The worst of its checks.
   Verdict get_verdict() const;
+  /// Adds a part of the page below its title; `html` is trusted. \param id  unique in the chapter, for links.
   void add_panel(const std::string& id, const std::string& panel_title, const std::string& html);
 };
 

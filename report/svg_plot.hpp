@@ -39,6 +39,7 @@ struct Plot {
 };
 /// log10 of what is drawn in decades, ends of the axis too; NaN where there is none.
 Plot take_logarithms(Plot plot);
+/// Draws curves, axes, labels and legend as one SVG element; decades where the plot selects them.
 std::string draw_svg(const Plot& plot);
 /// One above the other, in one picture.
 std::string draw_svg(const std::vector<Plot>& plots);
