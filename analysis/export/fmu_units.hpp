@@ -21,6 +21,7 @@ class FmuUnits {
   ///
   /// \param dims  as "F L/T". \param is_angle  an angle, or a derivative of one by the time.
   std::string add(const std::string& dims, bool is_angle);
+  /// Returns all units added, each once, in the order of their first use.
   const std::vector<fmu::Unit>& list() const { return list_; }
 
  private:

@@ -11,6 +11,7 @@ namespace bough::analysis {
 matrices::MatFields make_linear_fields(const records::LinearModel& model);
 /// mass, damping, stiffness, input_force, state_force of the same of second order; none where it has no mass matrix.
 matrices::MatFields make_second_order_fields(const records::LinearModel& model);
+/// Writes A, B, C, D, names and the fields of make_second_order_fields() to a MATLAB file.
 void write_linear_mat(const records::LinearModel& model, const std::string& path);
 
 }  // namespace bough::analysis

@@ -15,6 +15,7 @@ class Op4Matrices {
   /// Nothing of a matrix without entries in size.
   void put(const std::string& name, const Eigen::MatrixXd& dense);
   void put(const std::string& name, const records::SparseMatrix& a);
+  /// Returns the bytes of the file so far.
   std::string take() const { return out_.str(); }
 
  private:

@@ -40,6 +40,8 @@ class ListingMaker {
   void add_weight(const fe::Model& model);
   /// `pairs` in their order of the record, residual vectors last; masses of modes: φᵀMφ. Collective.
   void add_modes(const fe::Model& model, const modal::EigenPairs& pairs, int num_residual, Diagnostics& diagnostics);
+  /// Adds the results of a static subcase as its output requests select them: displacements, loads, constraint forces,
+  /// elements.
   void add_static(const fe::Model& model, const records::StaticSubcase& solved, Diagnostics& diagnostics);
 
   /// Returns the listing of all steps added so far.

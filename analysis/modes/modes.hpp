@@ -41,7 +41,9 @@ class ModesReceiver {
   virtual ~ModesReceiver() = default;
   /// Before the work on `num_subcases`.
   virtual void begin(std::size_t /*num_subcases*/, bool /*is_complex*/) {}
+  /// Receives the normal or buckling modes of a subcase, which it may move from.
   virtual void take(SubcaseModes& modes, Diagnostics& diagnostics) = 0;
+  /// Receives the complex modes of a subcase, which it may move from.
   virtual void take(records::ComplexModesResult& modes, Diagnostics& diagnostics) = 0;
 };
 

@@ -27,9 +27,12 @@ report::Chapter make_modes_chapter(const std::string& file);
 report::Chapter make_response_chapter(const std::string& file);
 /// Poles, Bode diagrams, singular values, margins of what `linearize` wrote; all but the poles of what `response` did.
 report::Chapter make_linear_chapter(const std::string& file);
+/// Chapter of what `response` wrote: Bode diagrams, singular values, peak gain, margins.
 report::Chapter make_model_response_chapter(const std::string& file);
 /// Chapter of `linearize --sweep` or `--each`: Campbell diagram, root locus, instabilities.
 report::Chapter make_sweep_chapter(const std::string& file);
+/// Chapter of a run: histories of the requested channels, energy, events, the moving system. Throws InputError for an
+/// unknown channel.
 report::Chapter make_results_chapter(const std::string& file, const ReportRequest& request, Diagnostics& diagnostics);
 
 }  // namespace bough::analysis

@@ -33,9 +33,11 @@ class StaticReceiver {
   virtual void begin(bool keeps) = 0;
   /// Before the first add(). The model may change afterwards.
   virtual void set_model(const fe::Model& model) = 0;
+  /// Receives the results of further subcases.
   virtual void add(std::vector<records::StaticSubcase> subcases) = 0;
   /// Returns true if more subcases are of no use: a file cannot be written.
   virtual bool has_failed() { return false; }
+  /// Returns the subcases received, for combinations; after begin(true).
   virtual const std::vector<records::StaticSubcase>& get_kept() = 0;
 };
 
