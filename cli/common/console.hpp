@@ -55,10 +55,13 @@ class Console {
   void print_unless_quiet(const Diagnostic& diagnostic) const;
   /// All of them; warnings and notes are left out when quiet, and all but the first of a kind without -v (shorten).
   void print(const Diagnostics& diagnostics) const;
+  /// Prints a list as print(const Diagnostics&) does.
   void print(const std::vector<Diagnostic>& items) const;
   /// Overwrites the progress line on a terminal; elsewhere, with -v, prints lines.
   void show_progress(const std::string& text);
+  /// Ends the progress line, so that the next output begins on a new one.
   void end_progress();
+  /// Returns true if show_progress() prints: on the printing rank, not quiet, on a terminal or with -v.
   bool shows_progress() const { return is_root_ && !quiet_ && (stderr_is_terminal_ || verbosity_ > 0); }
 
  private:

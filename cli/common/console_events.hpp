@@ -13,6 +13,7 @@ class ConsoleEvents final : public analysis::Events {
   void show_progress(const std::string& stage) override {
     stage.empty() ? console_.end_progress() : console_.show_progress(stage);
   }
+  /// Messages so far, not printed yet.
   const Diagnostics& get_messages() const { return messages_; }
 
  private:

@@ -10,6 +10,7 @@ struct EditCommand {
 
 /// The commands of `bough edit`, as `help` lists them.
 const std::vector<EditCommand>& get_edit_commands();
+/// Returns a command of the list. \pre The name is in it.
 const EditCommand& get_edit_command(const std::string& name);
 
 }  // namespace bough::cli

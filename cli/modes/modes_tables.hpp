@@ -16,6 +16,7 @@ std::string format_modes(const records::ModesResult& result);
 std::string format_buckling(const records::ModesResult& result);
 /// Energies of properties, then of the elements with the largest; empty without energies.
 std::string format_energies(const records::ModesResult& result);
+/// Table of modal effective masses about the grid of MEFFMASS; empty without one.
 std::string format_effective_mass_about(const records::ModesResult& result);
 /// Rigid-body modes, the norm, the Sturm count, the largest residual, the eigensolver.
 std::string format_health(const records::ModesResult& result, const std::vector<modal::SolverUse>& solvers,
@@ -23,6 +24,7 @@ std::string format_health(const records::ModesResult& result, const std::vector<
 /// Number of residual vectors, their loads, and the loads without any; empty without loads.
 std::string format_residual_vectors(const records::ModesResult& result, const std::vector<std::string>& loads,
                                     const std::vector<std::string>& unused);
+/// All numbers of the modes as JSON, with norm, Sturm count and eigensolvers.
 nlohmann::json make_json(const records::ModesResult& result, const std::vector<modal::SolverUse>& solvers,
                          const std::string& norm, bool buckling);
 

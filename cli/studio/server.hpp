@@ -25,7 +25,9 @@ class StudioServer {
   std::string get_address() const;
   /// Serves in another thread until stop() or a request for the end of the studio.
   void start();
+  /// Returns true until stop() or a request for the end.
   bool is_running() const;
+  /// Ends the thread and all jobs.
   void stop();
 
  private:
