@@ -21,6 +21,7 @@ class PythonEventsOf : public Base {
     const py::gil_scoped_acquire acquired;
     progress_(stage);
   }
+  /// Messages so far.
   const Diagnostics& get_messages() const { return messages_; }
 
  protected:
