@@ -3,6 +3,9 @@
 A light reading of the headers that finds what tools/design_document.py --undocumented finds with doxygen, in a second.
 A function has text if a comment is before it or, with ///<, after it; if it follows a function with text without a
 blank line between them; if it overrides another one; or if it is a constructor of a class with text.
+
+At most MAX_SHARED functions have no text but that of the function before, as overloads and inverses may; lower the
+number where it has fallen.
 """
 import re
 
@@ -10,6 +13,7 @@ from common import ROOMS, finish, line_of, list_files, read
 
 TOKEN = re.compile(r'//[^\n]*|/\*.*?\*/|R"(\w*)\(.*?\)\1"|"(?:\\.|[^"\\\n])*"'
                    r"|(?<![0-9a-fA-F])'(?:\\.|[^'\\\n])*'", re.S)
+MAX_SHARED = 78
 NO_FUNCTION = re.compile(r"(using|typedef|friend|static_assert|extern\s+template|template\s+(class|struct))\b")
 OPERATOR = re.compile(r"operator\s*(?:\(\)|\[\]|[^\s\w(]+|[\w:<>,\s*&]+?)\s*(?=\()")
 CLASS = re.compile(r"(?:typedef\s+)?(?:class|struct|union)\b\s*(?:alignas\([^)]*\)\s*)?(\w*)")
@@ -176,10 +180,10 @@ def share_text(text, functions):
     return shared
 
 
-def list_undocumented(text):
-    """[(line, name)] of the public functions of a header without text, and the number of public functions."""
+def list_undocumented(functions):
+    """[(line, name)] of the public ones of the functions without text, and the number of public functions."""
     public, texts = {}, {}
-    for line, name, arguments, is_public, has_text in share_text(text, list_functions(text)):
+    for line, name, arguments, is_public, has_text in functions:
         key = (name, re.sub(r"\s*=[^,)]*", "", arguments))
         texts[key] = texts.get(key, False) or has_text
         if is_public:
@@ -225,19 +229,29 @@ class Base : public Data {
 
 
 def main():
-    findings, count = [], 0
-    if [name for _, name in list_undocumented(SAMPLE)[0]] != ["bad_first", "bad_second", "Data::operator()",
-                                                              "Base::bad_third"]:
+    findings, count, shared = [], 0, []
+    of_sample = list_undocumented(share_text(SAMPLE, list_functions(SAMPLE)))[0]
+    if [name for _, name in of_sample] != ["bad_first", "bad_second", "Data::operator()", "Base::bad_third"]:
         findings.append("the sample of this test is read in another way than it must be")
     for path in list_files(ROOMS, (".hpp", ".h")):
+        text = read(path)
         try:
-            missing, number = list_undocumented(read(path))
+            functions = list_functions(text)
         except ValueError as error:
             findings.append(f"{path}: {error}")
             continue
+        missing, number = list_undocumented(share_text(text, functions))
+        alone = list_undocumented(functions)[0]
+        shared += [f"{path}:{line}: {name}" for line, name in alone if (line, name) not in missing]
         count += number
         findings += [f"{path}:{line}: {name} has no text; write what it computes, with frame, dimensions and errors"
                      for line, name in missing]
+    if len(shared) > MAX_SHARED:
+        findings += [f"{one} has the text of the function before; write one, if it is among the new ones"
+                     for one in shared]
+        findings.append(f"{len(shared)} functions have the text of another one, at most {MAX_SHARED} may")
+    elif len(shared) < MAX_SHARED:
+        print(f"{len(shared)} functions have the text of another one; lower MAX_SHARED")
     print(f"{count} public functions")
     finish(findings, "docstrings")
 
