@@ -10,7 +10,7 @@ namespace bough::cli {
 /// Poles, frequencies [Hz], damping ratios and correlations of all branches, one row per value of the parameter.
 nlohmann::json make_json(const records::LinearSweep& sweep);
 /// Table of the branches: frequencies and damping ratios at both ends of the sweep and the largest real part of the
-/// pole, with the branches that end inside the sweep below.
+/// pole; then the number of poles at z = 0, if any.
 std::string format_sweep(const records::LinearSweep& sweep);
 
 }  // namespace bough::cli

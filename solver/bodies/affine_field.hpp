@@ -35,7 +35,7 @@ struct AffineField {
     x.rightCols<3>().noalias() = Q * both;
     return x;
   }
-  /// Number of terms of the field.
+  /// Number r of columns of B; 0 without K_G1.
   int rank() const { return static_cast<int>(c.size()); }
   /// From mass, inertia, Γ0, Γ1, Γ3 and those of the twelve K_G1 that were computed. The first n modes.
   static AffineField fit(const records::FlexBody& flex, int n, bool stiffening);

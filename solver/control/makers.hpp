@@ -25,7 +25,7 @@ std::unique_ptr<Block> make_pid(SettingsReader& keys, const ControllerWiring& wi
 std::unique_ptr<Block> make_product(SettingsReader& keys, const ControllerWiring& wiring);
 /// Saturation with a dead band, for each component.
 std::unique_ptr<Block> make_limit(SettingsReader& keys, const ControllerWiring& wiring);
-/// Interpolation in a table of one input, for each component, or of two inputs.
+/// Linear interpolation in a table of one input, for each component, or of two inputs; end values outside.
 std::unique_ptr<Block> make_table(SettingsReader& keys, const ControllerWiring& wiring);
 
 /// Relay with a dead band and hysteresis, for each component; its output depends on its memory alone.

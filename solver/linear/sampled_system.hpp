@@ -59,7 +59,7 @@ class SampledSystem {
   std::vector<std::string> list_names() const;
   /// Sets the time of the operating point.
   void set_time(double t) { point_.t = t; }
-  /// The operating point, with the memory after its first sample.
+  /// The operating point; its memory may be that after the first sample.
   const OperatingPoint& point() const { return point_; }
 
   /// E: num_x x num_m, of ẋ = A x + E m.

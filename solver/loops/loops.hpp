@@ -41,7 +41,7 @@ struct Loops {
   std::vector<Constraint> constraints;
   double length = 1;  ///< that gaps are small to
 
-  /// Constraint i, in the order of the system file.
+  /// Constraint by its index.
   const Constraint& operator[](int i) const { return constraints[static_cast<size_t>(i)]; }
   /// Number of constraints, open ones too.
   int size() const { return static_cast<int>(constraints.size()); }
@@ -85,7 +85,7 @@ LoopData make_loop_data(const Loops& loops, const Tree& tree);
 /// Opens and closes the constraints. Allocates.
 void set_constraint_states(const Loops& loops, const Tree& tree, const std::vector<ConstraintState>& constraints,
                            LoopData& data);
-/// State of each constraint, in the order of the system file.
+/// State of each constraint, by its index.
 std::vector<ConstraintState> get_constraint_states(const LoopData& data);
 
 /// Constraint i closed as it is found at the positions of the tree: what it is off by is kept, so that nothing jumps.

@@ -30,9 +30,9 @@ std::string encode_real();
 std::string encode_integer(int size);
 /// UTF-8 of variable length: 16 bytes in the file, a reference into a global heap.
 std::string encode_text();
-/// Text of `size` bytes, padded with zeros.
+/// Texts of `size` bytes, ended by zero.
 std::string encode_fixed_text(std::size_t size);
-/// Reference to an object by the address of its header, 8 bytes.
+/// References to objects, 8 bytes each.
 std::string encode_object_reference();
 /// A list of variable length of object references.
 std::string encode_reference_list();

@@ -16,7 +16,7 @@ class Design {
  public:
   /// True for the cards that add() takes.
   static bool is_design(std::string_view name);
-  /// Adds a card of design optimization to the counts; reports the errors of those whose values matter.
+  /// Counts a card of design optimization, and reads it if it is one of those above; reports the errors of its fields.
   void add(const CardText& text, const std::vector<std::string>& files, Diagnostics& diagnostics);
   /// Returns true if the deck has no such card.
   bool is_empty() const { return num_cards_.empty(); }

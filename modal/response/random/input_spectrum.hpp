@@ -20,7 +20,7 @@ class InputSpectrum {
   int set() const { return set_; }
   const std::vector<int>& subcases() const { return subcases_; }  ///< ascending; rows of S
 
-  /// S at a frequency [n x n], n subcases: each card's factor times its table or, without a table, times 1.
+  /// S at a frequency [n x n], n subcases: each card's factor times its table or gust spectrum.
   Eigen::MatrixXcd calc(double hz) const;
   /// L [n x n] with S = L Lᴴ of the rows `members`.
   Eigen::MatrixXcd factor(double hz, const std::vector<int>& members) const;
