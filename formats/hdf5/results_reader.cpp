@@ -158,14 +158,16 @@ ResultsFile read_results(const std::string& path) {
 }
 
 RunInputs read_run_inputs(const std::string& path) {
-  FileReader file(path, kResultsFormat, kResultsFormatVersion);
-  RunInputs inputs;
-  inputs.system_text = file.has("/system") ? file.read_text("/system") : std::string();
-  inputs.source = file.read_source();
-  inputs.completed = file.read_integer_attribute("/", "completed", 0) != 0;
-  inputs.reason = file.read_attribute("/", "reason");
-  file.throw_if_errors();
-  return inputs;
+  return read_patiently(path, [&] {
+    FileReader file(path, kResultsFormat, kResultsFormatVersion);
+    RunInputs inputs;
+    inputs.system_text = file.has("/system") ? file.read_text("/system") : std::string();
+    inputs.source = file.read_source();
+    inputs.completed = file.read_integer_attribute("/", "completed", 0) != 0;
+    inputs.reason = file.read_attribute("/", "reason");
+    file.throw_if_errors();
+    return inputs;
+  });
 }
 
 RunState read_run_state(const std::string& path) {

@@ -227,7 +227,7 @@ double calc_largest_position_error(const Loops& loops, const LoopData& data, int
   for (const LoopBlock& block : data.blocks) {
     for (const int i : block.constraints) {
       const double gap = calc_gap(loops, data, i);
-      if (!(gap <= largest)) {  // NaN too
+      if (!std::isnan(largest) && !(gap <= largest)) {  // NaN is the largest
         largest = gap;
         if (which) *which = i;
       }

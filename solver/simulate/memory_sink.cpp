@@ -5,8 +5,8 @@
 namespace bough::solver {
 
 void MemorySink::begin(const records::ResultsHeader& header) {
+  *this = MemorySink();
   header_ = header;
-  samples_.clear();
 }
 
 void MemorySink::write_sample(const Eigen::Ref<const Eigen::VectorXd>& sample) { samples_.emplace_back(sample); }
