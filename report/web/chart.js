@@ -42,16 +42,29 @@ function stroke_mark(g, kind, x, y, size) {
     g.lineTo(x + size, y + size);
     g.moveTo(x - size, y + size);
     g.lineTo(x + size, y - size);
-  } else g.arc(x, y, size, 0, 2 * Math.PI);
+  } else g.arc(x, y, kind === "dot" ? 1 : size, 0, 2 * Math.PI);
   g.stroke();
 }
 
 // Curves and points on a canvas. options: series [{ name, x, y, points, tip(i) }] (x ascending for curves), x_label,
-// y_label, x_log, y_log, marks [{ x, label }], guides [{ label, x, y }], y_step (ticks at its multiples), file (name of the picture), notes [{ x, y, text }], link, equal (one scale for both axes), height.
+// y_label, x_log, y_log, marks [{ x, label }], guides [{ label, x, y }], y_step (ticks at its multiples), notes [{ x, y, text }], link, equal (one scale for both axes), height,
+// on_point(series, i): a point was clicked.
 export class Chart {
   constructor(options) {
-    Object.assign(this, { series: [], marks: [], guides: [], notes: [], x_log: false, y_log: false, equal: false, height: 280 }, options);
-    this.link ??= new Link();
+    this.series = options.series ?? [];
+    this.marks = options.marks ?? [];
+    this.guides = options.guides ?? [];
+    this.notes = options.notes ?? [];
+    this.x_log = options.x_log ?? false;
+    this.y_log = options.y_log ?? false;
+    this.equal = options.equal ?? false;
+    this.height = options.height ?? 280;
+    this.title = options.title;
+    this.x_label = options.x_label;
+    this.y_label = options.y_label;
+    this.y_step = options.y_step;
+    this.on_point = options.on_point;
+    this.link = options.link ?? new Link();
     this.link.charts.push(this);
     this.hidden = new Set();
     this.y_window = null;
@@ -88,13 +101,18 @@ export class Chart {
       const entry = el("button", { type: "button", "aria-pressed": "true", title: "Show or hide" }, el("canvas", { width: 28, height: 10 }), " " + (s.name ?? ""), value);
       entry.addEventListener("click", () => {
         if (!this.hidden.delete(i)) this.hidden.add(i);
-        entry.setAttribute("aria-pressed", String(!this.hidden.has(i)));
-        this.draw();
+        this.show_hidden();
       });
       this.values.push(value);
       this.legend.append(entry);
     });
     this.legend.append(make_button("PNG", "Save this picture", () => this.save()));
+  }
+
+  // What `hidden` holds, in the legend and in the picture.
+  show_hidden() {
+    this.legend.querySelectorAll("button[aria-pressed]").forEach((entry, i) => entry.setAttribute("aria-pressed", String(!this.hidden.has(i))));
+    this.draw();
   }
 
   // x and y in the coordinates of the axes: logarithms where these are.
@@ -451,7 +469,8 @@ export class Chart {
       start = null;
       if (!from) return;
       if (Math.abs(at.x - from.x) < 5) {
-        const x = this.unmap_x(at.x);
+        const x = this.unmap_x(at.x), point = this.find_point(at);
+        if (point && this.on_point) return this.on_point(point.series, point.i);
         return this.link.pick(this.x_log ? 10 ** x : x);
       }
       if (Math.abs(at.y - from.y) >= 20) this.y_window = [this.unmap_y(Math.max(at.y, from.y)), this.unmap_y(Math.min(at.y, from.y))];
@@ -489,16 +508,22 @@ export class Chart {
     this.link.set_window(null);
   }
 
-  // Of points: what the nearest one is.
-  show_tip(at) {
-    let best = 12, text = "";
+  // The nearest point with a tip, within 12 pixels.
+  find_point(at) {
+    let best = 12, found = null;
     for (const s of this.get_visible()) {
       if (!s.points || !s.tip) continue;
       for (let i = 0; i < s.x.length; ++i) {
         const distance = Math.hypot(this.map_x(this.to_x(s.x[i])) - at.x, this.map_y(this.to_y(s.y[i])) - at.y);
-        if (distance < best) [best, text] = [distance, s.tip(i)];
+        if (distance < best) [best, found] = [distance, { series: s, i }];
       }
     }
+    return found;
+  }
+
+  // Of points: what the nearest one is.
+  show_tip(at) {
+    const found = this.find_point(at), text = found ? found.series.tip(found.i) : "";
     this.tip.hidden = text === "";
     this.tip.textContent = text;
     this.tip.style.left = Math.min(at.x + 12, this.stage.clientWidth - 200) + "px";

@@ -10,6 +10,7 @@ export class Drawing {
     this.ghosts = unpack_indices(json.ghosts);
     this.ids = json.id ? unpack_indices(json.id) : new Uint32Array();  // node of each point
     this.packed = json.shapes;
+    this.matrices = null;
     this.shapes = new Array(json.shapes.length);
     this.points = new Float32Array(this.xyz);
     this.size = new Float32Array(this.xyz.length / 3);  // of the displacement of each point

@@ -4,12 +4,16 @@ import { el, make_check, make_select } from "./page_parts.js";
 import { unpack_doubles } from "./unpack.js";
 
 // The s plane, or the z plane of a sampled model, with lines of constant damping.
-export function make_poles_chart({ poles, zeros, plane }) {
+export function list_pole_series({ poles, zeros }) {
   const tip = (i) => `${poles.mode[i]}: ${format_number(poles.real[i], 5)} ${poles.imag[i] < 0 ? "−" : "+"} ${format_number(Math.abs(poles.imag[i]), 5)}j, ${format_number(poles.frequency[i], 5)} Hz, damping ${format_number(100 * poles.damping[i], 4)} %`;
   const series = [{ name: "poles", x: Float64Array.from(poles.x), y: Float64Array.from(poles.y), points: "cross", tip }];
   if (zeros.real.length > 0)
     series.push({ name: "zeros", x: Float64Array.from(zeros.real), y: Float64Array.from(zeros.imag), points: "circle", tip: (i) => `zero: ${format_number(zeros.real[i], 5)}, ${format_number(zeros.imag[i], 5)}j` });
-  return new Chart({ title: "Poles and zeros", series, ...plane, height: 420 });
+  return series;
+}
+
+export function make_poles_chart(data) {
+  return new Chart({ title: "Poles and zeros", series: list_pole_series(data), ...data.plane, height: 420 });
 }
 
 // Magnitude and phase of chosen pairs of input and output.

@@ -3,7 +3,7 @@ import { ReportChapter, kViews } from "./chapter_views.js";
 import { HistoryView, RunSet } from "./history.js";
 import { el, make_theme_button, set_theme } from "./page_parts.js";
 
-kViews.overlay = () => new HistoryView(new RunSet([...document.querySelectorAll('.chapter[data-kind="results"]')].map((section) => ({ name: section.dataset.title, run: by_section.get(section).run }))));
+kViews.overlay = () => new HistoryView(new RunSet([.../** @type {NodeListOf<HTMLElement>} */ (document.querySelectorAll('.chapter[data-kind="results"]'))].map((section) => ({ name: section.dataset.title, run: by_section.get(section).run }))));
 
 // A view is built when it comes near the screen: long pages open at once.
 function build(place, chapter, failures) {

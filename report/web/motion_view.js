@@ -20,6 +20,7 @@ export class MotionView {
     this.has_frames = true;
     this.color_by = 0;
     this.is_playing = false;
+    this.is_looping = false;  // starts again at the end
     this.marks = new SceneMarks(this);
     this.viewer = viewer ?? new Viewer("clamp(320px, calc(100vh - 27rem), 900px)");
     this.scrubber = el("input", { type: "range", class: "scrub", min: 0, max: 1000, step: 1, value: 0, "aria-label": "time" });
@@ -162,7 +163,8 @@ export class MotionView {
       const time = this.time + (Math.min(0.1, (now - before) / 1000) / this.seconds) * (this.last - this.first);
       before = now;
       this.set_time(time);
-      if (time >= this.last) return this.play(false);
+      if (time >= this.last && this.is_looping) this.time = this.first;
+      else if (time >= this.last) return this.play(false);
       requestAnimationFrame(step);
     };
     requestAnimationFrame(step);

@@ -70,6 +70,9 @@ export class Viewer {
     this.gl = gl;
     this.program = this.make_program();
     this.buffers = { place: gl.createBuffer(), size: gl.createBuffer(), index: gl.createBuffer() };
+    this.name = "";
+    this.on_pick = null;  // called with what was clicked, and null for nothing
+    this.on_key = null;  // returns true for a key that it has handled
     this.things = [];
     this.marks = [];
     this.reach = 0;
@@ -355,7 +358,7 @@ export class Viewer {
 
   save() {
     this.draw();
-    this.canvas.toBlob((blob) => save_blob(blob, make_file_name(this.name ?? "view", "png")));
+    this.canvas.toBlob((blob) => save_blob(blob, make_file_name(this.name || "view", "png")));
   }
 }
 

@@ -6,6 +6,7 @@ import { el, make_button, make_theme_button } from "./page_parts.js";
 import { ask_user, make_message_list } from "./parts.js";
 import { open_system } from "./system_view.js";
 
+/** @type {[string, string[] | null][]} */
 const kKinds = [["Decks", ["deck"]], ["Bodies", ["body", "bough-flexbody"]], ["Systems", ["system"]], ["Results", ["bough-results"]], ["Modes, linear models and more", null], ["Pages", ["report"]]];
 const kViews = { deck: open_deck, body: open_body, system: open_system, report: open_report, campaign: open_text, toml: open_text };
 const kLookEvery = 3000;  // ms: for changes outside
@@ -14,7 +15,7 @@ class Studio {
   constructor() {
     this.files = [];
     this.list = document.querySelector("nav.files");
-    this.work = document.querySelector("main.work");
+    this.work = /** @type {HTMLElement} */ (document.querySelector("main.work"));
     this.notes = el("div", { class: "notes", role: "status" });
     document.body.append(this.notes);
     const end = make_button("End", "End bough studio", () => this.end());
@@ -75,6 +76,7 @@ class Studio {
     const { files } = await ask("list");
     this.files = files;
     const left = new Set(files);
+    /** @type {[string, any[]][]} */
     const groups = [];
     for (const [title, kinds] of kKinds) {
       const members = [...left].filter((f) => (kinds ? kinds.includes(f.kind) : f.kind !== "report"));
@@ -120,7 +122,7 @@ class Studio {
       this.work.dataset.file = name;
     });
     this.work.removeAttribute("aria-busy");
-    for (const button of this.list.querySelectorAll("button[data-file]")) button.toggleAttribute("aria-current", button.dataset.file === this.name);
+    for (const button of /** @type {NodeListOf<HTMLElement>} */ (this.list.querySelectorAll("button[data-file]"))) button.toggleAttribute("aria-current", button.dataset.file === this.name);
   }
 
   async end() {

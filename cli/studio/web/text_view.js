@@ -8,7 +8,12 @@ export class TextPane {
    * @param {{on_check?: (answer: any) => void, on_saved?: () => void}} hooks
    */
   constructor(studio, file, kind, { text, hash }, hooks = {}) {
-    Object.assign(this, { studio, file, kind, hash, saved: text, hooks });
+    this.studio = studio;
+    this.file = file;
+    this.kind = kind;
+    this.hash = hash;
+    this.saved = text;
+    this.hooks = hooks;
     this.editor = new Editor(() => this.check());
     this.editor.reset(text);
     this.messages = make_message_list((m) => m.line > 0 && this.editor.go(m.line));
