@@ -19,6 +19,20 @@ matrices::MatFields make_linear_fields(const LinearModel& model) {
                              {"input_name", make_cells(model.inputs.name)},
                              {"output_name", make_cells(model.outputs.name)}};
   if (model.sample_time > 0) fields.emplace_back("sample_time", Eigen::MatrixXd::Constant(1, 1, model.sample_time));
+  if (!model.uncertainty.empty()) {
+    const auto count = static_cast<Eigen::Index>(model.uncertainty.size());
+    std::vector<std::string> names;
+    Eigen::MatrixXd range(count, 2), size(count, 1);
+    for (Eigen::Index i = 0; i < count; ++i) {
+      const auto& one = model.uncertainty[static_cast<std::size_t>(i)];
+      names.push_back(one.name);
+      range.row(i) << one.low, one.high;
+      size(i, 0) = one.size;
+    }
+    fields.emplace_back("delta_name", make_cells(names));
+    fields.emplace_back("delta_range", range);
+    fields.emplace_back("delta_size", size);
+  }
   return fields;
 }
 

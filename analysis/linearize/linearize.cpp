@@ -7,6 +7,7 @@
 #include "analysis/common/inputs.hpp"
 #include "analysis/linearize/operating_point.hpp"
 #include "analysis/linearize/sweep.hpp"
+#include "analysis/linearize/uncertain.hpp"
 #include "formats/toml/specs.hpp"
 #include "solver/linear/linearize.hpp"
 #include "solver/simulate/time_events.hpp"
@@ -17,7 +18,6 @@ namespace {
 
 records::LinearModel linearize_at(const LinearizeRequest& request, solver::Plant& plant, solver::OperatingPoint point,
                                   bool check, Diagnostics& diagnostics) {
-  if (request.equilibrium) point = find_rest(plant, std::move(point), request.file);
   plant.hold_commands(point);
   return solver::linearize(plant, point, {request.inputs, request.outputs, check, request.cut}, {request.file},
                            diagnostics);
@@ -39,8 +39,7 @@ records::LinearSweep sweep_parameter(const LinearizeRequest& request, Diagnostic
     Diagnostics found;
     const auto loaded = load_system(request.file, found, request.start_from, set);
     auto plant = make_plant(loaded, request.open);
-    auto point = request.at ? run_to(loaded, plant, *request.at, found) : make_start(loaded, plant, found);
-    auto model = linearize_at(request, plant, std::move(point), false, found);
+    auto model = linearize_at(request, plant, find_point(request, loaded, plant, found), false, found);
     keep_new(found, diagnostics);
     return model;
   };
@@ -60,6 +59,7 @@ records::LinearSweep sweep_run(const LinearizeRequest& request, const LoadedSyst
   const auto linearize = [&](double t) {
     Diagnostics found;
     auto point = run_to(loaded, plant, t, found, &last);
+    if (request.equilibrium) point = find_rest(plant, std::move(point), request.file);
     auto model = linearize_at(request, plant, std::move(point), false, found);
     keep_new(found, diagnostics);
     return model;
@@ -76,20 +76,29 @@ LoadedSystem load(const LinearizeRequest& request, Diagnostics& diagnostics) {
     const auto range = parse_sweep(request.sweep);
     set.push_back(fmt::format("{}={:.17g}", range.name, range.values.front()));
   }
+  for (const auto& text : request.uncertain)
+    if (const auto range = parse_uncertain(text); range.body.empty())
+      set.push_back(fmt::format("{}={:.17g}", range.name, range.low));
   return load_system(request.file, diagnostics, request.start_from, set);
 }
 
 }  // namespace
 
+solver::OperatingPoint find_point(const LinearizeRequest& request, const LoadedSystem& loaded, solver::Plant& plant,
+                                  Diagnostics& diagnostics) {
+  auto point = request.at ? run_to(loaded, plant, *request.at, diagnostics) : make_start(loaded, plant, diagnostics);
+  return request.equilibrium ? find_rest(plant, std::move(point), request.file) : point;
+}
+
 void check_sweep(const LinearizeRequest& request) {
   if (!request.sweep.empty()) parse_sweep(request.sweep);
+  for (const auto& text : request.uncertain) parse_uncertain(text);
 }
 
 records::LinearModel linearize(const LinearizeRequest& request, const LoadedSystem& loaded, Diagnostics& diagnostics) {
   auto plant = make_plant(loaded, request.open);
-  auto point = request.at ? run_to(loaded, plant, *request.at, diagnostics) : make_start(loaded, plant, diagnostics);
   solver::warn_of_latches(loaded.system, {request.file}, diagnostics);
-  return linearize_at(request, plant, std::move(point), true, diagnostics);
+  return linearize_at(request, plant, find_point(request, loaded, plant, diagnostics), true, diagnostics);
 }
 
 records::LinearModel linearize(const LinearizeRequest& request, const CheckFiles& check, Events& events) {
@@ -97,7 +106,11 @@ records::LinearModel linearize(const LinearizeRequest& request, const CheckFiles
   const auto loaded = load(request, diagnostics);
   const auto files = collect_sources(request.file, loaded);
   check(files);
-  auto model = linearize(request, loaded, diagnostics);
+  LoadOptions options;
+  options.set = request.set;
+  options.start_from = request.start_from;
+  auto model = request.uncertain.empty() ? linearize(request, loaded, diagnostics)
+                                         : linearize_uncertain(request, options, diagnostics);
   model.source = calc_sources(files);
   add_messages(diagnostics, events);
   return model;

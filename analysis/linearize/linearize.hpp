@@ -9,6 +9,7 @@
 #include "analysis/common/system_files.hpp"
 #include "formats/records/linear_model.hpp"
 #include "formats/records/linear_sweep.hpp"
+#include "solver/linear/plant.hpp"
 
 namespace bough::analysis {
 
@@ -22,15 +23,19 @@ struct LinearizeRequest {
   std::vector<std::string> inputs, outputs;
   std::string cut;    ///< actuator, sensor or controller at which one loop is opened; empty: none
   int each = 0;       ///< sweep over every each-th sample of the run; 0: none
+  std::vector<std::string> uncertain;  ///< "NAME=LOW:HIGH": with inputs and outputs of these parameters (uncertain.hpp)
   std::string sweep;  ///< sweep over "NAME=FROM:TO:N[:log]" of [parameters]; empty: none
 };
 
 /// Called with the files that were read, before the work.
 using CheckFiles = std::function<void(const std::vector<std::string>& files)>;
 
-/// Throws InputError "cli.bad-sweep" unless the sweep of the request can be parsed.
+/// Throws InputError "cli.bad-sweep" or "cli.bad-uncertain" unless sweep and ranges of the request can be parsed.
 void check_sweep(const LinearizeRequest& request);
 
+/// The state to linearize about: start or time of the run, or the rest near it. Throws what these throw.
+solver::OperatingPoint find_point(const LinearizeRequest& request, const LoadedSystem& loaded, solver::Plant& plant,
+                                  Diagnostics& diagnostics);
 /// The model of a system that is loaded; its source stays empty.
 records::LinearModel linearize(const LinearizeRequest& request, const LoadedSystem& loaded, Diagnostics& diagnostics);
 /// Loads the system and makes its model, with its source. Throws what loading and linearizing throw.

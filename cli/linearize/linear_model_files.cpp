@@ -137,6 +137,15 @@ static std::string format_sampling(const LinearModel& model) {
   return text + table.to_text();
 }
 
+static std::string format_uncertainty(const LinearModel& model) {
+  if (model.uncertainty.empty()) return "";
+  Table table{{"uncertain parameter", "delta = -1", "delta = 1", "inputs w, outputs z"}, {}};
+  for (const auto& one : model.uncertainty)
+    table.rows.push_back(
+        {one.name, fmt::format("{:g}", one.low), fmt::format("{:g}", one.high), std::to_string(one.size)});
+  return "\nw = delta z, the poles are those of delta = 0\n" + table.to_text();
+}
+
 std::string format_linear_model(const LinearModel& model) {
   std::string text = fmt::format(
       "{} states, {} inputs, {} outputs at t = {:g}, |u_dot| {:.1e}\n"
@@ -162,7 +171,8 @@ std::string format_linear_model(const LinearModel& model) {
   }
   if (!table.rows.empty()) text += table.to_text() + format_lost_poles(poles);
   text += format_sampling(model);
-  const std::string tail = format_multipliers(model.multipliers) + format_hankel(model.hankel);
+  const std::string tail =
+      format_uncertainty(model) + format_multipliers(model.multipliers) + format_hankel(model.hankel);
   if (!model.has_zeros) return text + tail;
   text += model.zeros_real.size() == 0 ? "\nno finite zeros\n" : "\nzeros\n";
   for (Eigen::Index i = 0; i < model.zeros_real.size(); ++i) {
@@ -217,6 +227,8 @@ nlohmann::json make_json(const LinearModel& model) {
                            {"real", to_list(model.multipliers.real)},
                            {"imag", to_list(model.multipliers.imag)},
                            {"mode", model.multipliers.mode}};
+  for (const auto& one : model.uncertainty)
+    json["uncertainty"].push_back({{"name", one.name}, {"low", one.low}, {"high", one.high}, {"size", one.size}});
   json["hankel"] = {{"value", to_list(model.hankel.value)}, {"left_out", model.hankel.num_left_out}};
   if (model.has_zeros) json["zeros"] = {{"real", to_list(model.zeros_real)}, {"imag", to_list(model.zeros_imag)}};
   return json;

@@ -103,6 +103,11 @@ void add_linearize(CLI::App& app, Action& action) {
           "NAME=FROM:TO:N, a model for each of N values of a parameter, their poles followed; with :log evenly "
           "by ratio")
       ->excludes(each);
+  auto* uncertain = verb->add_option("--uncertain", o->request.uncertain,
+                                     "NAME=LOW:HIGH, a parameter, or BODY:eta1:frequency, stiffness or damping as a "
+                                     "factor: the model with inputs w and "
+                                     "outputs z for w = delta z, delta in [-1, 1]; may be repeated");
+  uncertain->excludes(each)->excludes("--sweep");
   verb->add_option("--csv", o->csv, "Write [A B; C D] with names, or the poles of a sweep, to this CSV file");
   verb->add_option("--mat", o->mat, "Write A B C D and the names to this MATLAB file")
       ->excludes(each)
@@ -113,6 +118,7 @@ void add_linearize(CLI::App& app, Action& action) {
       "Example:\n  bough linearize arm.toml -o arm-linear.h5 --mat arm.mat\n"
       "  bough linearize arm.toml --inputs shoulder,elbow --outputs tip:y --at 2.5 --json\n"
       "  bough linearize rotor.toml --equilibrium --sweep rate=0:6:25 -o campbell.h5\n"
+      "  bough linearize arm.toml --uncertain gain=4:6 --uncertain boom:eta1:frequency=0.95:1.05 --mat arm.mat\n"
       "  bough linearize arm.toml --break motor -o loop.h5 && bough response loop.h5");
   verb->callback([&action, o] {
     action = [o] { return analysis::with_file(o->request.file, [&] { return run_linearize(*o); }); };

@@ -59,6 +59,23 @@ void write_hankel(FileWriter& file, const records::Hankel& hankel) {
   file.write_integers("/hankel/left_out", std::vector<int>{hankel.num_left_out}, {"poles that do not decay", "1"});
 }
 
+void write_uncertainty(FileWriter& file, const std::vector<records::UncertainParameter>& parameters) {
+  std::vector<std::string> name;
+  std::vector<int> size;
+  Eigen::VectorXd low(static_cast<long>(parameters.size())), high(low.size());
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    name.push_back(parameters[i].name);
+    size.push_back(parameters[i].size);
+    low[static_cast<long>(i)] = parameters[i].low;
+    high[static_cast<long>(i)] = parameters[i].high;
+  }
+  file.write_strings("/uncertainty/name", name,
+                     {"parameters whose inputs w and outputs z come first: w = delta z", "1"});
+  file.write_vector("/uncertainty/low", low, {"value at delta = -1", "as the names' dims say"});
+  file.write_vector("/uncertainty/high", high, {"value at delta = 1", "as the names' dims say"});
+  file.write_integers("/uncertainty/size", size, {"number of inputs, and of outputs, of the parameter", "1"});
+}
+
 void write_second_order(FileWriter& file, const LinearModel& model) {
   const auto second = records::make_second_order(model);
   if (second.M.size() == 0) return;
@@ -111,6 +128,7 @@ void write_linear_model(const LinearModel& model, const std::string& path) {
   }
   if (model.multipliers.period > 0) write_multipliers(file, model.multipliers);
   if (model.hankel.value.size() > 0) write_hankel(file, model.hankel);
+  if (!model.uncertainty.empty()) write_uncertainty(file, model.uncertainty);
   file.commit();
 }
 
@@ -172,6 +190,14 @@ LinearModel read_linear_model(const std::string& path) {
     model.hankel.controllability = file.read_matrix("/hankel/controllability", nx, nx);
     model.hankel.observability = file.read_matrix("/hankel/observability", nx, nx);
     model.hankel.num_left_out = file.read_integers("/hankel/left_out", 1).front();
+  }
+  if (file.has("/uncertainty/name")) {
+    const auto name = file.read_strings("/uncertainty/name", -1);
+    const auto count = static_cast<long>(name.size());
+    const auto low = file.read_vector("/uncertainty/low", count), high = file.read_vector("/uncertainty/high", count);
+    const auto size = file.read_integers("/uncertainty/size", count);
+    for (std::size_t i = 0; i < name.size(); ++i)
+      model.uncertainty.push_back({name[i], low[static_cast<long>(i)], high[static_cast<long>(i)], size[i]});
   }
   model.has_zeros = file.has("/zeros/real");
   if (model.has_zeros) {

@@ -53,6 +53,14 @@ struct AliasedMode {
   double appears_at_hz = 0;  ///< [1/T] of the pole ln z / sample_time, at most 1 / (2 sample_time)
 };
 
+/// A parameter that is known between two values: w = δ z with δ from -1 at `low` to 1 at `high`, and as many inputs w
+/// and outputs z of the model as `size`.
+struct UncertainParameter {
+  std::string name;
+  double low = 0, high = 0;
+  int size = 0;
+};
+
 /// With a sample_time: x, u and y from sample to sample, x⁺ = A x + B u; poles are those of ln z / sample_time.
 struct LinearModel {
   std::vector<std::pair<std::string, std::string>> source;  ///< (file name, SHA-256)
@@ -77,6 +85,9 @@ struct LinearModel {
 
   Multipliers multipliers;
   Hankel hankel;
+
+  /// Inputs and outputs of these parameters come first, parameter by parameter (solver/statespace/uncertainty.hpp).
+  std::vector<UncertainParameter> uncertainty;
 };
 
 /// M δ̈ + D δ̇ + K δ = F u + Z z, δ the displacements of the DOFs, z the states behind their rates, of controllers,

@@ -2,6 +2,7 @@
 #include "python/bindings/bindings.hpp"
 
 #include "formats/hdf5/linear_file.hpp"
+#include "solver/statespace/uncertainty.hpp"
 
 namespace bough::python {
 
@@ -43,6 +44,23 @@ void bind_linear(py::module_& m) {
       .def_property_readonly("states", [](const LinearModel& l) { return l.states.name; })
       .def_property_readonly("inputs", [](const LinearModel& l) { return l.inputs.name; })
       .def_property_readonly("outputs", [](const LinearModel& l) { return l.outputs.name; })
+      .def_property_readonly(
+          "uncertainty",
+          [](const LinearModel& l) {
+            py::list list;
+            for (const auto& one : l.uncertainty) list.append(py::make_tuple(one.name, one.low, one.high, one.size));
+            return list;
+          },
+          "(name, value at delta -1, value at delta 1, number of inputs w and outputs z), which come first")
+      .def(
+          "close",
+          [](const LinearModel& l, const Eigen::VectorXd& delta) {
+            if (delta.size() != static_cast<Eigen::Index>(l.uncertainty.size()))
+              throw py::value_error("delta has " + std::to_string(delta.size()) + " values, expected " +
+                                    std::to_string(l.uncertainty.size()));
+            return statespace::close_uncertainty(l, delta);
+          },
+          py::arg("delta"), "The model with w = delta z closed, one value in [-1, 1] a parameter.")
       .def_readonly("time", &LinearModel::time)
       .def_property_readonly("q", show(&LinearModel::q))
       .def_property_readonly("u", show(&LinearModel::u))

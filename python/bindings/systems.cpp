@@ -3,7 +3,7 @@
 
 #include "analysis/common/inputs.hpp"
 #include "analysis/common/system_files.hpp"
-#include "analysis/linearize/linearize.hpp"
+#include "analysis/linearize/uncertain.hpp"
 #include "cli/common/options.hpp"
 #include "formats/hdf5/files.hpp"
 #include "python/bindings/controllers.hpp"
@@ -161,6 +161,7 @@ class PySystem {
     {
       const py::gil_scoped_release released;
       const Exclusive held;
+      options_ = options;
       loaded_.emplace(analysis::load_system(file_, diagnostics, std::move(options)));
     }
     messages = tell(diagnostics);
@@ -225,7 +226,7 @@ class PySystem {
   }
 
   py::tuple linearize(std::optional<double> at, bool equilibrium, bool open, std::vector<std::string> inputs,
-                      std::vector<std::string> outputs) {
+                      std::vector<std::string> outputs, std::vector<std::string> uncertain) {
     Diagnostics diagnostics;
     records::LinearModel model;
     {
@@ -237,7 +238,13 @@ class PySystem {
       request.open = open;
       request.inputs = std::move(inputs);
       request.outputs = std::move(outputs);
-      model = analysis::linearize(request, *loaded_, diagnostics);
+      request.uncertain = std::move(uncertain);
+      if (request.uncertain.empty()) {
+        model = analysis::linearize(request, *loaded_, diagnostics);
+      } else {
+        const Exclusive held;  // it reads the system again, for each value
+        model = analysis::linearize_uncertain(request, options_, diagnostics);
+      }
       model.source = calc_sources();
     }
     return py::make_tuple(std::move(model), tell(diagnostics));
@@ -255,6 +262,7 @@ class PySystem {
   std::string file_;
   bool is_file_ = true;
   Controllers controllers_;
+  analysis::LoadOptions options_;  ///< of loaded_
   std::optional<analysis::LoadedSystem> loaded_;
 };
 
@@ -312,7 +320,7 @@ void bind_systems(py::module_& m) {
       .def("start", &PySystem::start, py::arg("integrator"), py::arg("step"), py::arg("relative_tolerance"),
            py::arg("absolute_tolerance"), py::arg("duration"), py::keep_alive<0, 1>())
       .def("linearize", &PySystem::linearize, py::arg("at"), py::arg("equilibrium"), py::arg("open"), py::arg("inputs"),
-           py::arg("outputs"));
+           py::arg("outputs"), py::arg("uncertain"));
 }
 
 }  // namespace bough::python

@@ -331,9 +331,14 @@ class System:
         """
         return self._own.run(_os.fspath(output) if output else "", progress)
 
-    def linearize(self, *, at=None, equilibrium=False, open=False, inputs=(), outputs=()):
-        """A B C D, poles and zeros about the start, a time or the equilibrium, as LinearModel."""
-        model, _ = self._own.linearize(at, equilibrium, open, list(inputs), list(outputs))
+    def linearize(self, *, at=None, equilibrium=False, open=False, inputs=(), outputs=(), uncertain=None):
+        """A B C D, poles and zeros about the start, a time or the equilibrium, as LinearModel.
+
+        uncertain: {"gain": (4, 6), "boom:eta1:frequency": (0.95, 1.05)}, ranges of parameters and factors on the
+        stiffness, frequency or damping of modes; the model then has inputs w and outputs z for w = delta z.
+        """
+        ranges = [f"{name}={float(low)!r}:{float(high)!r}" for name, (low, high) in (uncertain or {}).items()]
+        model, _ = self._own.linearize(at, equilibrium, open, list(inputs), list(outputs), ranges)
         return model
 
 

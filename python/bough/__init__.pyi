@@ -107,7 +107,8 @@ class System:
     def run(self, output: _Path | None = None,
             progress: Callable[[float, float], bool | None] | None = None) -> Results: ...
     def linearize(self, *, at: float | None = None, equilibrium: bool = False, open: bool = False,
-                  inputs: Sequence[str] = (), outputs: Sequence[str] = ()) -> LinearModel: ...
+                  inputs: Sequence[str] = (), outputs: Sequence[str] = (),
+                  uncertain: Mapping[str, tuple[float, float]] | None = None) -> LinearModel: ...
 
 class Simulation:
     def __init__(self, system: System, *, integrator: str = "", step: float = 0.0, relative_tolerance: float = 0.0,

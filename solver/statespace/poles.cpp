@@ -123,4 +123,20 @@ records::Poles calc_poles(const MatrixXd& A, const std::vector<std::string>& nam
   return out;
 }
 
+Eigen::VectorXcd calc_eigenvector(const MatrixXd& A, std::complex<double> value) {
+  BOUGH_DEMAND(A.rows() == A.cols() && A.rows() > 0);
+  MatrixXd a = A;
+  const VectorXd scale = balance(a);
+  // Beside the eigenvalue, so that the matrix has an inverse; the vector is the same.
+  const double size = std::max(a.norm(), std::numeric_limits<double>::min());
+  Eigen::MatrixXcd shifted = a.cast<std::complex<double>>();
+  shifted.diagonal().array() -= value + 1e-10 * size;
+  const Eigen::PartialPivLU<Eigen::MatrixXcd> lu(shifted);
+  // Start vector without a symmetry that an eigenvector could be orthogonal to.
+  Eigen::VectorXcd y(a.rows());
+  for (Eigen::Index i = 0; i < y.size(); ++i) y[i] = 1 + 0.1 * std::sin(1.0 + 2.3 * static_cast<double>(i));
+  for (int k = 0; k < 3; ++k) y = lu.solve(y).eval().normalized();
+  return scale.cwiseProduct(y).normalized();
+}
+
 }  // namespace bough::statespace

@@ -1,5 +1,7 @@
 #pragma once
 /// \file Eigenvalues of a linear model, each with its frequency, damping and the state that takes part most.
+#include <complex>
+
 #include "formats/records/linear_model.hpp"
 
 namespace bough::statespace {
@@ -12,5 +14,9 @@ namespace bough::statespace {
 /// Problem, 1965, ch. 2): soft poles of a stiff system have fewer digits than A.
 records::Poles calc_poles(const Eigen::MatrixXd& A, const std::vector<std::string>& names,
                           const Eigen::MatrixXd& error = {});
+
+/// Right eigenvector of A next to the eigenvalue `value`, of length 1, by inverse iteration on the balanced matrix.
+/// Where several eigenvalues are one, some vector of their space. \pre value is an eigenvalue up to rounding.
+Eigen::VectorXcd calc_eigenvector(const Eigen::MatrixXd& A, std::complex<double> value);
 
 }  // namespace bough::statespace
