@@ -127,11 +127,12 @@ json to_list(const Eigen::VectorXd& values) {
   return list;
 }
 
-/// Every pole of the table, with its point in the plane of make_pole_plot (x, y).
+/// Every pole of the table, with its point in the plane of make_pole_plot (x, y) and its number in the model.
 json list_poles(const records::LinearModel& model) {
   const auto poles = round_poles(model.poles);
-  json list{{"real", json::array()}, {"imag", json::array()},      {"x", json::array()},      {"y", json::array()},
-            {"mode", json::array()}, {"frequency", json::array()}, {"damping", json::array()}};
+  json list{{"real", json::array()},    {"imag", json::array()}, {"x", json::array()},
+            {"y", json::array()},       {"mode", json::array()}, {"frequency", json::array()},
+            {"damping", json::array()}, {"index", json::array()}};
   for (Eigen::Index i = 0; i < poles.real.size(); ++i) {
     if (records::is_gone(model, i)) continue;
     const std::complex<double> s(poles.real[i], poles.imag[i]);
@@ -142,6 +143,7 @@ json list_poles(const records::LinearModel& model) {
           std::pair("damping", poles.damping[i])})
       list[key].push_back(std::isfinite(value) ? json(value) : json());
     list["mode"].push_back(poles.mode[static_cast<std::size_t>(i)]);
+    list["index"].push_back(i);
   }
   return list;
 }

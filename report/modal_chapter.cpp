@@ -9,6 +9,7 @@
 
 #include "base/xml_text.hpp"
 #include "report/html.hpp"
+#include "report/pack.hpp"
 #include "report/shape_plot.hpp"
 
 namespace bough::report {
@@ -120,6 +121,7 @@ std::string make_spin(const ModalModel& m) {
       "softening "
       "and Coriolis terms of the integrals, about the undeformed body. The first modes; beside them once per turn.",
       "note");
+  html += "<div class=\"live\" data-view=\"spin\">\n";
   for (const auto& curves : m.spin) {
     Plot plot{"Spin about " + curves.axis + (curves.has_stiffness ? "" : " (K_G1 not computed)"),
               "spin rate [1/T, radians]",
@@ -143,6 +145,9 @@ std::string make_spin(const ModalModel& m) {
       table.add_row(std::move(row));
     }
     html += table.to_html();
+  }
+  html += "</div>\n";
+  for (const auto& curves : m.spin) {
     const double step = curves.rate.size() > 1 ? curves.rate[1] - curves.rate[0] : 0;
     for (const auto& [from, to] : curves.diverges) {
       const bool is_open = to >= curves.rate[curves.rate.size() - 1];
@@ -153,6 +158,24 @@ std::string make_spin(const ModalModel& m) {
     }
   }
   return html;
+}
+
+/// Curves of the interactive view: a column for each mode.
+nlohmann::json list_spin(const ModalModel& m) {
+  auto list = nlohmann::json::array();
+  for (const auto& curves : m.spin) {
+    auto frequency = nlohmann::json::array(), without = nlohmann::json::array();
+    for (Eigen::Index k = 0; k < curves.frequency_hz.cols(); ++k) {
+      frequency.push_back(pack_doubles(curves.frequency_hz.col(k)));
+      without.push_back(pack_doubles(curves.without_hz.col(k)));
+    }
+    list.push_back({{"axis", curves.axis},
+                    {"has_stiffness", curves.has_stiffness},
+                    {"rate", pack_doubles(curves.rate)},
+                    {"frequency", std::move(frequency)},
+                    {"without", std::move(without)}});
+  }
+  return list;
 }
 
 }  // namespace
@@ -245,6 +268,7 @@ Chapter make_chapter(const ModalModel& m) {
     chapter.data = nlohmann::json{{"frequency", modes},
                                   {"kinds", m.mode_kind},
                                   {"buckling", m.is_buckling},
+                                  {"spin", list_spin(m)},
                                   {"drawing", nlohmann::json::parse(to_json_text(m.drawing))}}
                        .dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
   return chapter;

@@ -27,17 +27,39 @@ std::string quote(const std::string& text) {
 }
 
 struct Style {
-  const char *shape, *fill;
+  const char *kind, *shape, *fill;
 };
-constexpr Style kFunction{"ellipse", "#f3e8d2"}, kSensor{"cds", "#dcebdd"}, kInput{"parallelogram", "#ffffff"},
-    kController{"box", "#dde6f3"}, kActuator{"house", "#f2dcdc"}, kForce{"house", "#efe3ee"}, kBody{"box3d", "#e6e6e6"},
-    kEvent{"diamond", "#ffffff"};
+constexpr Style kStyles[] = {
+    {"function", "ellipse", "#f3e8d2"}, {"sensor", "cds", "#dcebdd"},     {"input", "parallelogram", "#ffffff"},
+    {"controller", "box", "#dde6f3"},   {"actuator", "house", "#f2dcdc"}, {"force", "house", "#efe3ee"},
+    {"body", "box3d", "#e6e6e6"},       {"event", "diamond", "#ffffff"},  {"ground", "plaintext", "#ffffff"}};
 
-class Writer {
+const char* get_attributes(Diagram::Link link) {
+  using Link = Diagram::Link;
+  switch (link) {
+    case Link::Signal:
+      break;
+    case Link::Push:
+      return "style=bold";
+    case Link::Measurement:
+      return "style=dashed";
+    case Link::Hinge:
+      return "style=bold, color=\"#999999\", arrowhead=none";
+    case Link::Constraint:
+      return "style=bold, color=\"#999999\", arrowhead=odot, arrowtail=odot, dir=both";
+    case Link::Element:
+      return "style=dotted, dir=both";
+    case Link::Event:
+      return "style=dotted";
+  }
+  return "";
+}
+
+class Builder {
  public:
-  explicit Writer(const records::SystemSpec& spec) : spec_(spec) {}
+  explicit Builder(const records::SystemSpec& spec) : spec_(spec) {}
 
-  std::string write() {
+  Diagram build() {
     Diagnostics ignored;  // the system is built, which reports what is wrong
     const auto uses = solver::collect_uses(spec_, ignored);
     for (const auto& r : spec_.sensors) sources_.push_back({"sensor", r.name, "/sensors/" + r.name});
@@ -45,15 +67,12 @@ class Writer {
     for (const auto& r : spec_.controllers) sources_.push_back({"controller", r.name, "/controllers/" + r.name});
     for (const auto& r : spec_.actuators) sources_.push_back({"actuator", r.name, "/actuators/" + r.name});
     for (const auto& r : spec_.functions) sources_.push_back({"function", r.name, "/signals/" + r.name});
-    text_ = "digraph " + quote(spec_.name) + " {\n  rankdir=LR;\n  label=" + quote(spec_.name) +
-            ";\n  labelloc=t;\n  fontname=\"Helvetica\";\n  nodesep=0.25;\n  ranksep=0.6;\n"
-            "  node [fontname=\"Helvetica\", fontsize=11, style=filled, color=\"#555555\"];\n"
-            "  edge [fontname=\"Helvetica\", fontsize=9, color=\"#555555\", arrowsize=0.7];\n";
+    diagram_.name = spec_.name;
     add_signals(uses);
     add_plant();
     add_functions();
     add_events();
-    return text_ + "}\n";
+    return std::move(diagram_);
   }
 
  private:
@@ -61,15 +80,13 @@ class Writer {
     std::string kind, name, path;
   };
 
-  void node(const std::string& kind, const std::string& name, const std::string& label, const Style& style) {
-    text_ += fmt::format("  {} [label={}, shape={}, fillcolor=\"{}\"];\n", quote(kind + " " + name), quote(label),
-                         style.shape, style.fill);
+  using Link = Diagram::Link;
+
+  void node(const std::string& kind, const std::string& name, const std::string& label) {
+    diagram_.nodes.push_back({kind, name, label});
   }
-  void edge(const std::string& from, const std::string& to, const std::string& label, const char* style = "") {
-    text_ += "  " + quote(from) + " -> " + quote(to);
-    std::string attributes = label.empty() ? "" : "label=" + quote(label);
-    if (*style != '\0') attributes += (attributes.empty() ? "" : ", ") + std::string(style);
-    text_ += (attributes.empty() ? "" : " [" + attributes + "]") + std::string(";\n");
+  void edge(const std::string& from, const std::string& to, const std::string& label, Link link = Link::Signal) {
+    diagram_.edges.push_back({from, to, label, link});
   }
 
   /// A wire from what `use` names.
@@ -96,11 +113,10 @@ class Writer {
   }
 
   void add_signals(const solver::SignalUses& uses) {
-    for (const auto& r : spec_.inputs) node("input", r.name, r.name + "\n(input)", kInput);
+    for (const auto& r : spec_.inputs) node("input", r.name, r.name + "\n(input)");
     for (const auto& r : spec_.controllers) {
       const std::string me = "controller " + r.name;
-      node("controller", r.name, r.name + "\n" + r.type + describe_rate(r.settings) + (r.active ? "" : "\n(off)"),
-           kController);
+      node("controller", r.name, r.name + "\n" + r.type + describe_rate(r.settings) + (r.active ? "" : "\n(off)"));
       const auto& own = uses.controllers.at(r.name);
       for (std::size_t i = 0; i < own.inputs.size(); ++i)
         wire(own.inputs[i], me, own.inputs.size() > 1 ? fmt::format("→ {}", i + 1) : "");
@@ -108,24 +124,24 @@ class Writer {
       for (const auto& use : own.rate) wire(use, me, "→ rate");
     }
     for (const auto& r : spec_.actuators) {
-      node("actuator", r.name, r.name + "\n" + r.type, kActuator);
+      node("actuator", r.name, r.name + "\n" + r.type);
       if (const auto use = uses.actuators.find(r.name); use != uses.actuators.end())
         wire(use->second, "actuator " + r.name, "");
       if (!r.hinge.empty())
-        edge("actuator " + r.name, find_child(r.hinge), r.hinge, "style=bold");
+        edge("actuator " + r.name, find_child(r.hinge), r.hinge, Link::Push);
       else if (!r.body.empty())
-        edge("actuator " + r.name, "body " + r.body, name_node(r.node), "style=bold");
+        edge("actuator " + r.name, "body " + r.body, name_node(r.node), Link::Push);
     }
     for (const auto& r : spec_.forces) {
-      node("force", r.name, r.name + (r.locator.empty() ? "" : "\n" + r.locator), kForce);
-      edge("force " + r.name, "body " + r.body, r.locator.empty() ? name_node(r.node) : "", "style=bold");
+      node("force", r.name, r.name + (r.locator.empty() ? "" : "\n" + r.locator));
+      edge("force " + r.name, "body " + r.body, r.locator.empty() ? name_node(r.node) : "", Link::Push);
       if (!r.function.empty()) wire({"/signals/" + r.function, 1, r.at}, "force " + r.name, "");
       if (const auto use = uses.forces.find(r.name); use != uses.forces.end()) wire(use->second, "force " + r.name, "");
     }
     for (const auto& r : spec_.sensors) {
-      node("sensor", r.name, r.name + describe_rate(r.chain), kSensor);
+      node("sensor", r.name, r.name + describe_rate(r.chain));
       const std::string from = !r.hinge.empty() ? find_child(r.hinge) : "body " + r.body;
-      edge(from, "sensor " + r.name, !r.hinge.empty() ? r.hinge : name_node(r.node), "style=dashed");
+      edge(from, "sensor " + r.name, !r.hinge.empty() ? r.hinge : name_node(r.node), Link::Measurement);
     }
   }
 
@@ -139,27 +155,25 @@ class Writer {
 
   void add_plant() {
     const auto note_ground = [&](const std::string& name) { has_ground_ = has_ground_ || name == "ground"; };
-    for (const auto& r : spec_.bodies)
-      node("body", r.name, r.name + (r.file.empty() ? "\nrigid" : "\nflexible"), kBody);
+    for (const auto& r : spec_.bodies) node("body", r.name, r.name + (r.file.empty() ? "\nrigid" : "\nflexible"));
     for (const auto& r : spec_.hinges) {
       note_ground(r.parent);
-      edge("body " + r.parent, "body " + r.child, r.name, "style=bold, color=\"#999999\", arrowhead=none");
+      edge("body " + r.parent, "body " + r.child, r.name, Link::Hinge);
     }
     for (const auto& r : spec_.constraints) {
       if (r.child.empty()) continue;
       note_ground(r.parent);
       note_ground(r.child);
-      edge("body " + r.parent, "body " + r.child, r.name,
-           "style=bold, color=\"#999999\", arrowhead=odot, arrowtail=odot, dir=both");
+      edge("body " + r.parent, "body " + r.child, r.name, Link::Constraint);
     }
     for (const auto& r : spec_.force_elements) {
       if (r.from.body.empty()) continue;
       note_ground(r.from.body);
       note_ground(r.to.body);
-      edge("body " + r.from.body, "body " + r.to.body, r.name, "style=dotted, dir=both");
+      edge("body " + r.from.body, "body " + r.to.body, r.name, Link::Element);
       if (!r.function.empty()) wire({"/signals/" + r.function, 1, r.at}, "body " + r.from.body, r.name);
     }
-    if (has_ground_) node("body", "ground", "ground", {"plaintext", "#ffffff"});
+    if (has_ground_) node("ground", "ground", "ground");
   }
 
   void add_functions() {
@@ -168,7 +182,7 @@ class Writer {
         if (!name.empty()) wire({"/signals/" + name, 1, r.at}, "body " + r.child, r.name);
     for (const auto& r : spec_.functions)
       for (const auto& name : r.of) wire({"/signals/" + name, 1, r.at}, "function " + r.name, "");
-    for (const auto& r : spec_.functions) node("function", r.name, r.name + "\n" + r.type, kFunction);
+    for (const auto& r : spec_.functions) node("function", r.name, r.name + "\n" + r.type);
   }
 
   void add_events() {
@@ -177,11 +191,11 @@ class Writer {
       const bool is_shown =
           r.action == EventAction::Enable || r.action == EventAction::Disable || r.action == EventAction::Switch;
       if (!is_shown) continue;
-      node("event", r.name, r.name, kEvent);
+      node("event", r.name, r.name);
       const std::string what = r.action == EventAction::Enable    ? "enables"
                                : r.action == EventAction::Disable ? "disables"
                                                                   : fmt::format("switches to {}", r.choice);
-      edge("event " + r.name, "controller " + r.target, what, "style=dotted");
+      edge("event " + r.name, "controller " + r.target, what, Link::Event);
       if (!r.signal.empty()) wire({r.signal, 1, r.at}, "event " + r.name, "");
     }
   }
@@ -189,15 +203,35 @@ class Writer {
   const records::SystemSpec& spec_;
   std::vector<Source> sources_;
   bool has_ground_ = false;
-  std::string text_;
+  Diagram diagram_;
 };
 
 }  // namespace
 
-std::string make_diagram(const records::SystemSpec& spec) { return Writer(spec).write(); }
+Diagram make_diagram(const records::SystemSpec& spec) { return Builder(spec).build(); }
+
+std::string write_dot(const Diagram& diagram) {
+  std::string text = "digraph " + quote(diagram.name) + " {\n  rankdir=LR;\n  label=" + quote(diagram.name) +
+                     ";\n  labelloc=t;\n  fontname=\"Helvetica\";\n  nodesep=0.25;\n  ranksep=0.6;\n"
+                     "  node [fontname=\"Helvetica\", fontsize=11, style=filled, color=\"#555555\"];\n"
+                     "  edge [fontname=\"Helvetica\", fontsize=9, color=\"#555555\", arrowsize=0.7];\n";
+  for (const auto& node : diagram.nodes)
+    for (const auto& style : kStyles)
+      if (node.kind == style.kind)
+        text += fmt::format("  {} [label={}, shape={}, fillcolor=\"{}\"];\n", quote(node.id()), quote(node.label),
+                            style.shape, style.fill);
+  for (const auto& edge : diagram.edges) {
+    const std::string label = edge.label.empty() ? "" : "label=" + quote(edge.label);
+    const std::string look = get_attributes(edge.link);
+    const std::string attributes = label + (label.empty() || look.empty() ? "" : ", ") + look;
+    text +=
+        "  " + quote(edge.from) + " -> " + quote(edge.to) + (attributes.empty() ? "" : " [" + attributes + "]") + ";\n";
+  }
+  return text + "}\n";
+}
 
 void write_diagram(const records::SystemSpec& spec, const std::string& path) {
-  const std::string text = make_diagram(spec);
+  const std::string text = write_dot(make_diagram(spec));
   if (has_suffix(path, ".dot")) return write_text_file(path, text);
   std::string format;
   for (const char* known : {"svg", "png", "pdf"})

@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "analysis/common/run_bodies.hpp"
-#include "solver/functions/function.hpp"
+#include "analysis/common/spec_functions.hpp"
 
 namespace bough::analysis {
 
@@ -15,30 +15,6 @@ using Eigen::Vector3d;
 using records::ElementType;
 using records::HingeType;
 using report::SceneArrow;
-
-/// The functions of a system file, made as a run makes them. One that cannot be made is a nullptr.
-class Functions {
- public:
-  explicit Functions(const records::SystemSpec& spec) : spec_(spec) {}
-  const solver::TimeFunction* find(const std::string& name) {
-    if (const auto made = made_.find(name); made != made_.end()) return made->second;
-    made_[name] = nullptr;  // of itself: a loop, which no run has
-    for (const auto& record : spec_.functions) {
-      if (record.name != name) continue;
-      for (const auto& other : record.of) find(other);
-      Diagnostics unused;
-      const auto& run = spec_.simulation;
-      kept_.push_back(solver::make_time_function(record, unused, {run.start, run.start + run.duration}, made_));
-      return made_[name] = kept_.back().get();
-    }
-    return nullptr;
-  }
-
- private:
-  const records::SystemSpec& spec_;
-  std::vector<std::unique_ptr<const solver::TimeFunction>> kept_;
-  solver::FunctionMap made_;
-};
 
 /// Its first column is the direction.
 Matrix3d make_axes(const Vector3d& direction) {
@@ -197,7 +173,7 @@ class Arrows {
   const records::SystemSpec& spec_;
   const ScenePlaces& places_;
   report::History& history_;
-  Functions functions_;
+  SpecFunctions functions_;
   std::string unrecorded_;
 };
 

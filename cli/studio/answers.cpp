@@ -8,7 +8,9 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
+#include "analysis/check/diagram.hpp"
 #include "analysis/common/inputs.hpp"
+#include "analysis/common/spec_functions.hpp"
 #include "analysis/common/system_files.hpp"
 #include "analysis/init/init_deck.hpp"
 #include "analysis/picture/deck_picture.hpp"
@@ -26,6 +28,7 @@
 #include "formats/toml/key_editor.hpp"
 #include "formats/toml/schema_help.hpp"
 #include "formats/toml/specs.hpp"
+#include "report/linear_chapter.hpp"
 
 namespace bough::cli {
 
@@ -209,6 +212,67 @@ json answer_schema(const json& request) {
   return {{"kinds", kinds}};
 }
 
+/// Block diagram and curves of the functions of a system file's text, each with its line.
+json answer_diagram(const json& request) {
+  const auto name = get_file(request), text = get_text(request, "text");
+  Diagnostics diagnostics;
+  analysis::LoadOptions options;
+  options.text = text;
+  const auto loaded = analysis::load_system(name, diagnostics, options);
+  const auto items = toml_files::list_items(text);
+  const auto find_line = [&](const std::string& kind, const std::string& of) {
+    const auto found =
+        std::find_if(items.begin(), items.end(), [&](const auto& i) { return i.kind == kind && i.name == of; });
+    return found == items.end() ? 0 : found->line;
+  };
+  static constexpr const char* kLinks[] = {"signal", "push", "measurement", "hinge", "constraint", "element", "event"};
+  const auto diagram = analysis::make_diagram(loaded.spec);
+  json nodes = json::array(), edges = json::array(), functions = json::array();
+  for (const auto& node : diagram.nodes)
+    nodes.push_back({{"id", node.id()},
+                     {"kind", node.kind},
+                     {"name", node.name},
+                     {"label", node.label},
+                     {"line", find_line(node.kind, node.name)}});
+  for (const auto& edge : diagram.edges)
+    edges.push_back({{"from", edge.from},
+                     {"to", edge.to},
+                     {"label", edge.label},
+                     {"link", kLinks[static_cast<std::size_t>(edge.link)]}});
+  for (const auto& curve : analysis::list_function_curves(loaded.spec))
+    functions.push_back({{"name", curve.name},
+                         {"type", curve.type},
+                         {"of_time", curve.is_of_time},
+                         {"line", find_line("function", curve.name)},
+                         {"x", std::vector<double>(curve.x.begin(), curve.x.end())},
+                         {"y", std::vector<double>(curve.y.begin(), curve.y.end())}});
+  return {{"nodes", nodes}, {"edges", edges}, {"functions", functions}};
+}
+
+/// Returns the model that "poles" and "pole-motion" ask for: other values of parameters, at the start or at rest.
+analysis::LinearizeRequest get_linearize_request(const json& request) {
+  analysis::LinearizeRequest linearize;
+  linearize.file = get_file(request);
+  if (const auto set = request.find("set"); set != request.end()) linearize.set = set->get<std::vector<std::string>>();
+  linearize.equilibrium = request.value("equilibrium", false);
+  return linearize;
+}
+
+json answer_poles(const json& request) {
+  Diagnostics diagnostics;
+  const auto linearize = get_linearize_request(request);
+  const auto model = analysis::linearize_text(linearize, get_text(request, "text"), diagnostics);
+  return {{"chapter", to_json(report::make_chapter(model, {}, linearize.file, {}))},
+          {"messages", make_messages(diagnostics.items())}};
+}
+
+json answer_pole_motion(const json& request) {
+  Diagnostics diagnostics;
+  const auto chapter = analysis::make_pole_motion(get_linearize_request(request), get_text(request, "text"),
+                                                  request.value("pole", 0), diagnostics);
+  return {{"chapter", to_json(chapter)}, {"messages", make_messages(diagnostics.items())}};
+}
+
 json answer_preview(const json& request) {
   Diagnostics diagnostics;
   const auto chapter = analysis::make_preview(get_file(request), get_text(request, "text"), diagnostics);
@@ -234,6 +298,9 @@ json answer(const json& request) {
   if (what == "check") return answer_check(request);
   if (what == "schema") return answer_schema(request);
   if (what == "preview") return answer_preview(request);
+  if (what == "diagram") return answer_diagram(request);
+  if (what == "poles") return answer_poles(request);
+  if (what == "pole-motion") return answer_pole_motion(request);
   throw InputError("studio.bad-request", {}, "there is no request \"" + what + "\"", "reload the page");
 }
 

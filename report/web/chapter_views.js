@@ -2,6 +2,7 @@ import { HistoryView, Run, make_fixed_chart } from "./history.js";
 import { BodeView, ScatterView, make_poles_chart } from "./linear_view.js";
 import { ModesView } from "./modes_view.js";
 import { MotionView } from "./motion_view.js";
+import { SpinView } from "./spin_view.js";
 
 // Interactive view of each static picture: data-view of its element -> an object with `element`.
 export const kViews = {
@@ -14,6 +15,7 @@ export const kViews = {
   modes: (chapter) => new ModesView(chapter.data),
   poles: (chapter) => make_poles_chart(chapter.data),
   bode: (chapter) => new BodeView(chapter.data),
+  spin: (chapter) => new SpinView(chapter.data),
   scatter: (chapter) => new ScatterView(chapter.data),
 };
 
@@ -21,6 +23,7 @@ export const kViews = {
 export class ReportChapter {
   constructor(text) {
     this.data = JSON.parse(text);
+    this.kept = null;
   }
   get run() {
     this.kept ??= new Run(this.data);

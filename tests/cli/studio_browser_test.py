@@ -9,6 +9,7 @@ import h5py
 import numpy as np
 
 from browser import Browser, find_chromium
+from studio_control_test import SYSTEM
 from studio_support import StudioTest
 from support import SOURCE
 
@@ -159,6 +160,57 @@ class Flow(StudioTest):
         with h5py.File(self.path("shell-run.h5")) as a, h5py.File(self.path(stem + "-run.h5")) as b:
             np.testing.assert_array_equal(a["/hinges/base/q"][:], b["/hinges/base/q"][:])
             self.assertGreater(np.abs(a["/hinges/base/q"][:]).max(), 1e-3)
+
+    def test_poles_and_blocks(self):
+        """A pole that is clicked moves the system, poles follow a gain that is dragged, a block leads to its line."""
+        self.write("sliders.toml", SYSTEM)
+        self.start_studio("sliders.toml")
+        page = self.browser
+        page.visit(self.address)
+        self.wait("document.querySelector('.scene-host').dataset.samples")
+        page.click("button.linearize")
+        self.wait("document.querySelector('.result').dataset.ready === 'linearize'")
+        page.show(".result .live[data-view=poles]")
+        self.wait("studio.view.poles && studio.view.poles.chart.frame")
+        x, y = page.run("""(() => { const { chart, poles } = studio.view.poles, b = chart.overlay.getBoundingClientRect();
+          return [b.x + chart.map_x(poles.x[0]), b.y + chart.map_y(poles.y[0])]; })()""")
+        page.mouse("mouseMoved", x, y)
+        page.mouse("mousePressed", x, y, button="left", buttons=1, clickCount=1)
+        page.mouse("mouseReleased", x, y, button="left", clickCount=1)
+        self.wait("document.querySelector('.scene-host').dataset.pole === '0'")
+        self.assertTrue(page.run("studio.view.motion.is_playing"))
+        self.assertIn("Hz", page.run("document.querySelector('.work-column .picked').textContent"))
+        # It goes round and does not end.
+        self.wait("(() => { const m = studio.view.motion; m.set_time(m.last); return m.is_playing; })()")
+        self.choose("move in the shape of", "1.27")
+        # The gain by its slider, from the middle to the right: the poles follow.
+        box = page.show('[aria-label="gain by dragging"]')
+        start = (box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
+        page.drag(start, (start[0] + 30, start[1]))
+        self.wait("Number(studio.view.poles.chart.element.dataset.followed) >= 4")
+        self.wait("!studio.view.poles.is_asking")
+        gain = float(page.run("document.querySelector('[aria-label=\"parameter gain\"]').value"))
+        self.assertGreater(gain, 5)
+        self.bough("linearize", "sliders.toml", "--set", f"gain={gain}", "-o", "shell.h5")
+        with h5py.File(self.path("shell.h5")) as f:
+            np.testing.assert_allclose(page.run("studio.view.poles.poles.imag"), f["/poles/imag"][:], rtol=1e-12)
+        page.show(".result .live[data-view=poles]")
+        self.keep("studio-locus")
+
+        page.click("details.block-diagram summary")
+        self.wait("Number(document.querySelector('.diagram-host').dataset.blocks) > 5")
+        page.show("svg.diagram")
+        self.keep("studio-diagram")
+        page.run("document.querySelector('svg.diagram [aria-label=\"controller pid\"]').focus()")
+        page.press("Enter")
+        line = SYSTEM[:SYSTEM.index("[[controller]]")].count("\n")
+        self.assertEqual(page.run("studio.view.pane.editor.area.value.slice(0, studio.view.pane.editor.area.selectionStart).split('\\n').length"), line + 1)
+        page.click("details.functions summary")
+        self.wait("document.querySelector('.function-curves').dataset.count === '3'")
+        page.show(".function-curves")
+        self.wait("document.querySelector('.function-curves canvas.curves').width > 50")
+        self.keep("studio-functions")
+        self.assertEqual([e for e in page.list_errors() if "favicon" not in e], [])
 
     def test_changed_outside(self):
         """An editor outside and a text that is not saved: both are kept until the user chooses."""

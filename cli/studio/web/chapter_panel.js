@@ -2,8 +2,12 @@
 import { ReportChapter, kViews } from "./chapter_views.js";
 import { el } from "./page_parts.js";
 
-/** @returns {{element: HTMLElement, data: ReportChapter | null, dispose: () => void}} */
-export function make_chapter(chapter, skip = []) {
+/**
+ * @param {string[]} skip  panels that are left out
+ * @param {(name: string, view: any, data: ReportChapter) => void} [on_built]  called with each interactive view
+ * @returns {{element: HTMLElement, data: ReportChapter | null, dispose: () => void}}
+ */
+export function make_chapter(chapter, skip = [], on_built = () => {}) {
   const data = chapter.data ? new ReportChapter(chapter.data) : null;
   const views = [];
   const watcher = new IntersectionObserver((entries) => {
@@ -20,6 +24,7 @@ export function make_chapter(chapter, skip = []) {
       place.classList.add("built");
       views.push(view);
       view.draw?.();
+      on_built(place.dataset.view, view, data);
     } catch (error) {
       place.append(el("p", { class: "note" }, `The interactive view could not be made: ${error.message}`));
     }

@@ -3,10 +3,12 @@ import { make_add_form } from "./add_form.js";
 import { make_chapter } from "./chapter_panel.js";
 import { ReportChapter } from "./chapter_views.js";
 import { Chart } from "./chart.js";
+import { DiagramPanels } from "./diagram_view.js";
 import { HistoryView, RunSet } from "./history.js";
 import { MotionView } from "./motion_view.js";
 import { el, make_button } from "./page_parts.js";
 import { make_progress, show_history } from "./parts.js";
+import { PolePanel } from "./pole_panel.js";
 import { TextPane } from "./text_view.js";
 import { Viewer } from "./viewer.js";
 
@@ -27,15 +29,17 @@ export class SystemView {
     this.parameters = el("div", { class: "tools parameters" });
     this.set = new Map();
     this.add_form = make_add_form(studio, this);
+    this.diagrams = new DiagramPanels(studio, this);
     this.pane = new TextPane(studio, file, "system", read, { on_check: (answer) => this.update(answer) });
     const button = (text, title, action, name) => Object.assign(make_button(text, title, action), { className: name });
     const actions = el("div", { class: "tools actions" }, button("Run", "bough run: time history", () => this.run(), "main run"),
+      button("Resume", "bough run --resume: go on where the results file ends, after Stop or a longer duration", () => this.run([["--resume"]]), "resume"),
       button("Equilibrium", "bough equilibrium: rest or steady spin", () => this.solve("equilibrium", "-equilibrium.h5"), "equilibrium"),
       button("Linearize", "bough linearize: poles about the initial state", () => this.solve("linearize", "-linear.h5"), "linearize"),
       button("… at equilibrium", "bough linearize --equilibrium", () => this.solve("linearize", "-linear.h5", [["--equilibrium"]]), "linearize-rest"),
       button("Save as page", "bough report of the run and its bodies: one HTML file", () => this.report(), "save-page"),
       button("Copy commands …", "The lines that do the same in a shell", () => show_history(), "copy"));
-    this.element = el("div", { class: "split reverse" }, el("div", { class: "side wide" }, this.add_form.element, this.pane.element), el("div", { class: "work-column" }, actions, this.parameters, this.progress.element, this.picked, this.scene, this.result));
+    this.element = el("div", { class: "split reverse" }, el("div", { class: "side wide" }, this.add_form.element, this.pane.element), el("div", { class: "work-column" }, actions, this.parameters, this.progress.element, this.picked, this.scene, this.diagrams.element, this.result));
     if (studio.has(this.output)) this.show_results();
   }
 
@@ -45,6 +49,7 @@ export class SystemView {
     this.add_form.update(answer);
     if (this.is_running || answer.messages.some((m) => m.severity === "error") || this.text_drawn === this.pane.text) return;
     const text = this.pane.text;
+    this.diagrams.update();
     try {
       const { chapter } = await ask("preview", { file: this.file, text });
       this.text_drawn = text;
@@ -55,17 +60,18 @@ export class SystemView {
     }
   }
 
-  /** Draws a run in the same viewer; the camera stays once there is one. */
-  show_scene(run, at_end) {
+  /** Draws a run in the same viewer, its end while it grows; the camera stays if `is_kept` and there is one. */
+  show_scene(run, at_end, is_kept = at_end) {
     const { yaw, pitch, distance, target, home } = this.viewer;
     this.motion?.play(false);
     this.motion = new MotionView(run, this.viewer);
-    if (home && at_end) Object.assign(this.viewer, { yaw, pitch, distance, target });
+    if (home && is_kept) Object.assign(this.viewer, { yaw, pitch, distance, target });
     if (at_end) this.motion.set_time(this.motion.last);
     this.viewer.on_pick = (found) => this.pick(found);
     this.viewer.draw();
     this.scene.replaceChildren(this.motion.element);
     this.scene.dataset.samples = String(run.time.length);
+    delete this.scene.dataset.pole;
   }
 
   pick(found) {
@@ -75,9 +81,23 @@ export class SystemView {
 
   show_parameters(parameters) {
     this.parameters.replaceChildren(...(parameters ?? []).map(({ name, value }) => {
-      const field = el("input", { type: "number", step: "any", value: this.set.get(name) ?? value, "aria-label": `parameter ${name}` });
-      field.addEventListener("change", () => (field.value === value || field.value === "" ? this.set.delete(name) : this.set.set(name, field.value)));
-      return el("label", {}, name + " ", field);
+      const now = this.set.get(name) ?? value, size = Math.abs(Number(value)) || 0.5;
+      const field = el("input", { type: "number", step: "any", value: now, "aria-label": `parameter ${name}` });
+      const [low, high] = Number(value) > 0 ? [0, 2 * size] : Number(value) < 0 ? [-2 * size, 0] : [-1, 1];
+      const drag = el("input", { type: "range", min: low, max: high, step: (high - low) / 200, value: now, title: "Drag: the poles follow, once there are some", "aria-label": `${name} by dragging` });
+      const change = (text) => {
+        text === value || text === "" ? this.set.delete(name) : this.set.set(name, text);
+        this.poles?.follow();
+      };
+      field.addEventListener("change", () => {
+        drag.value = field.value;
+        change(field.value);
+      });
+      drag.addEventListener("input", () => {
+        field.value = String(Number(Number(drag.value).toPrecision(6)));
+        change(field.value);
+      });
+      return el("label", {}, name + " ", field, drag);
     }));
     this.parameters.hidden = this.parameters.childElementCount === 0;
   }
@@ -92,11 +112,14 @@ export class SystemView {
     return "../".repeat(here.length) + there.join("/");
   }
 
+  list_set() {
+    return [...this.set].map(([name, value]) => `${name}=${value}`);
+  }
   get_set() {
-    return [...this.set].map(([name, value]) => ["--set", `${name}=${value}`]);
+    return this.list_set().map((text) => ["--set", text]);
   }
 
-  run() {
+  run(more = []) {
     return this.studio.attempt(async () => {
       if (!(await this.pane.make_saved())) return;
       this.is_running = true;
@@ -104,7 +127,7 @@ export class SystemView {
       this.shown?.dispose();
       const live = new LiveCharts(this);
       try {
-        const done = await run_job({ verb: "run", files: [this.file], options: [...this.get_set(), ["-o", this.output]] }, (text, job) => {
+        const done = await run_job({ verb: "run", files: [this.file], options: [...more, ...this.get_set(), ["-o", this.output]] }, (text, job) => {
           this.progress.update(text, job);
           live.look();
         });
@@ -125,6 +148,7 @@ export class SystemView {
     await this.studio.attempt(async () => {
       const { chapter } = await ask("chapter", { file: this.output, bodies: this.bodies ?? [] });
       this.shown?.dispose();
+      this.poles = null;
       this.shown = make_chapter(chapter, ["system", "motion"]);
       const run = this.shown.data.run;
       this.show_scene(run, false);
@@ -151,7 +175,10 @@ export class SystemView {
       if (done.code !== 0) return;
       const { chapter } = await ask("chapter", { file: output, bodies: this.bodies ?? [] });
       this.shown?.dispose();
-      this.shown = make_chapter(chapter);
+      this.poles = null;
+      this.shown = make_chapter(chapter, [], (name, chart, data) => {
+        if (name === "poles") this.poles = new PolePanel(this, chart, data, options.some(([name]) => name === "--equilibrium"));
+      });
       this.result.replaceChildren(el("h2", {}, output), this.shown.element);
       this.result.dataset.ready = verb;
     });

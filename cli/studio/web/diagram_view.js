@@ -1,0 +1,98 @@
+// The block diagram of a system and the curves of its functions; a click goes to the line in the text.
+import { ask } from "./api.js";
+import { Chart } from "./chart.js";
+import { lay_out } from "./diagram_layout.js";
+import { el, make_button } from "./page_parts.js";
+
+const kNamespace = "http://www.w3.org/2000/svg";
+function svg(tag, attributes, ...children) {
+  const element = document.createElementNS(kNamespace, tag);
+  for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, value);
+  element.append(...children);
+  return element;
+}
+
+const kMarks = { push: "wide", measurement: "dashed", hinge: "mount", constraint: "mount", element: "dotted", event: "dotted", signal: "" };
+
+/** A smooth curve through the points, level at both ends. @param {number[][]} points */
+function make_path(points) {
+  let path = `M ${points[0][0]} ${points[0][1]}`;
+  for (let i = 1; i < points.length; ++i) {
+    const [[x0, y0], [x1, y1]] = [points[i - 1], points[i]], middle = (x0 + x1) / 2;
+    path += ` C ${middle} ${y0}, ${middle} ${y1}, ${x1} ${y1}`;
+  }
+  return path;
+}
+
+function draw_node(node, box, go) {
+  const { x, y, width, height, lines } = box;
+  const round = { function: 12, input: 12, event: 12, body: 0 }[node.kind] ?? 4;
+  const group = svg("g", { class: `block ${node.kind}`, tabindex: node.line > 0 ? "0" : "-1", role: "button", "aria-label": `${node.kind} ${node.name}` },
+    svg("title", {}, document.createTextNode(`${node.kind} ${node.name}${node.line > 0 ? `, line ${node.line}` : ""}`)),
+    svg("rect", { x, y, width, height, rx: round }),
+    ...lines.map((line, i) => svg("text", { x: x + width / 2, y: y + 18 + 15 * i, class: i === 0 ? "name" : "" }, document.createTextNode(line))));
+  const act = () => node.line > 0 && go(node.line);
+  group.addEventListener("click", act);
+  group.addEventListener("keydown", (event) => {
+    if (event.key !== "Enter" && event.key !== " ") return;
+    event.preventDefault();
+    act();
+  });
+  return group;
+}
+
+/** @param {{nodes: any[], edges: any[]}} diagram @param {(line: number) => void} go */
+export function draw_diagram({ nodes, edges }, go) {
+  const { boxes, paths, width, height } = lay_out(nodes, edges);
+  const picture = svg("svg", { viewBox: `0 0 ${width} ${height}`, width, height, class: "diagram", role: "group", "aria-label": "block diagram" },
+    svg("defs", {}, svg("marker", { id: "arrow", viewBox: "0 0 8 8", refX: 8, refY: 4, markerWidth: 7, markerHeight: 7, orient: "auto" }, svg("path", { d: "M 0 0 L 8 4 L 0 8 z" }))));
+  picture.style.minWidth = `${Math.round(0.65 * width)}px`;  // smaller it could not be read: it is scrolled
+  for (const { edge, points } of paths) {
+    const is_mount = kMarks[edge.link] === "mount";
+    picture.append(svg("path", { d: make_path(points), class: `wire ${kMarks[edge.link]}`, ...(is_mount ? {} : { "marker-end": "url(#arrow)" }) }, svg("title", {}, document.createTextNode(`${edge.from} → ${edge.to}${edge.label ? ": " + edge.label : ""}`))));
+    if (!edge.label) continue;
+    // In the first gap that the edge crosses.
+    const [[x0, y0], [x1, y1]] = points;
+    picture.append(svg("text", { x: (x0 + x1) / 2, y: (y0 + y1) / 2 - 3, class: "wire-label" }, document.createTextNode(edge.label)));
+  }
+  for (const node of nodes) picture.append(draw_node(node, boxes.get(node.id), go));
+  return picture;
+}
+
+/** Two folded panels of the system view, filled when they are opened and with each valid text. */
+export class DiagramPanels {
+  constructor(studio, view) {
+    this.studio = studio;
+    this.view = view;
+    this.diagram = el("div", { class: "diagram-host", tabindex: "0" });
+    this.curves = el("div", { class: "function-curves" });
+    const fold = (name, title, host) => {
+      const details = el("details", { class: `panel ${name}` }, el("summary", {}, title), host);
+      details.addEventListener("toggle", () => details.open && this.update());
+      return details;
+    };
+    this.folds = [fold("block-diagram", "Block diagram", this.diagram), fold("functions", "Functions", this.curves)];
+    this.element = el("div", {}, ...this.folds);
+  }
+
+  /** After each check without errors, and when a panel is opened. */
+  update() {
+    const text = this.view.pane.text;
+    if (text === this.drawn || !this.folds.some((f) => f.open)) return;
+    return this.studio.attempt(async () => {
+      const answer = await ask("diagram", { file: this.view.file, text });
+      this.drawn = text;
+      const go = (line) => this.view.pane.editor.go(line);
+      this.diagram.replaceChildren(answer.nodes.length > 0 ? draw_diagram(answer, go) : el("p", { class: "note" }, "The system has no blocks."));
+      this.diagram.dataset.blocks = String(answer.nodes.length);
+      this.curves.replaceChildren(...answer.functions.map((f) => this.draw_function(f, go)));
+      if (answer.functions.length === 0) this.curves.append(el("p", { class: "note" }, "The file has no [[function]]; one is added by the form on the left."));
+      this.curves.dataset.count = String(answer.functions.length);
+    });
+  }
+
+  draw_function({ name, type, of_time, line, x, y }, go) {
+    const chart = new Chart({ title: "", series: [{ name: `${name} (${type})`, x: Float64Array.from(x), y: Float64Array.from(y, (v) => v ?? NaN) }], x_label: of_time ? "time" : "argument", y_label: name, height: 170 });
+    return el("div", {}, make_button(`${name}: line ${line}`, "Go to the function in the text", () => go(line)), chart.element);
+  }
+}
