@@ -8,10 +8,10 @@
 #include <system_error>
 
 #include "analysis/common/ranks.hpp"
+#include "analysis/common/superelements.hpp"
 #include "base/file_roles.hpp"
 #include "fe/statics/build_model.hpp"
 #include "formats/hdf5/files.hpp"
-#include "formats/matrices/superelements.hpp"
 #include "formats/nastran/reader.hpp"
 #include "formats/toml/specs.hpp"
 
@@ -76,7 +76,7 @@ records::Deck read_deck_once(const std::string& path, const std::vector<std::str
   auto deck = is_one_of_many() ? nastran::read_packed_deck(share([&] { return nastran::pack_deck(path); }),
                                                            {ignore_cards}, diagnostics)
                                : nastran::read_deck(path, {ignore_cards}, diagnostics);
-  matrices::read_superelements(deck, diagnostics);
+  join_superelements(deck, diagnostics);
   return deck;
 }
 
