@@ -129,6 +129,14 @@ struct CrossRequest {
   CardLocation at;
 };
 
+/// DESVAR of SOL 200 that a relation to a property uses.
+struct DesignVariable {
+  int id = 0;
+  std::string label;
+  double value = 0;  ///< at the start
+  CardLocation at;
+};
+
 /// USET and USET1 with U6, RVDOF, RVDOF1: unit forces whose residual vectors join the modes.
 struct ResidualDofs {
   int first = 0, last = 0;  ///< grids; of a range those that exist
@@ -179,6 +187,7 @@ struct DynamicCards {
   std::vector<GustSpectrum> gust_spectra;
   std::vector<TimeLags> lags;
   std::vector<CrossRequest> crosses;
+  std::vector<DesignVariable> design_variables;  ///< by id; empty but for SOL 200
   std::vector<ResidualDofs> residual_dofs;
   std::vector<ComplexMethod> complex_methods;
   std::vector<TransferFunction> transfer_functions;
