@@ -44,7 +44,10 @@ void demand_file(const std::string& path) {
 
 void demand_kind(const std::string& path, const std::string& kind, const std::string& expected) {
   if (kind.empty() || kind == expected) return;
-  const std::string verb = kind == "body" ? "reduce" : kind == "system" ? "run" : "batch";
+  const std::string verb = kind == "body"     ? "reduce"
+                           : kind == "system" ? "run"
+                           : kind == "psd"    ? "response --psd"
+                                              : "batch";
   throw InputError("cli.wrong-file", {path}, "the file is a " + kind + " file, expected a " + expected + " file",
                    "bough " + verb + " takes it" + (kind == "campaign" ? ", with --dry-run to check it" : ""));
 }
