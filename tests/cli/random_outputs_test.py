@@ -1,6 +1,7 @@
 """response --psd: Lyapunov's equation, band-limited Gramians and quadrature by SciPy, long simulated histories."""
 import json
 import math
+import os
 import unittest
 
 import h5py
@@ -11,6 +12,7 @@ import scipy.signal
 import scipy.stats
 
 from linear_test import LinearTest
+from support import SOURCE
 
 # Two carts in a row on springs and dampers, a force on each.
 CARTS = """[[body]]
@@ -201,6 +203,18 @@ class RandomOutputs(LinearTest):
         self.assertEqual(a, b)
         # One number for all inputs is a number for each.
         self.assertEqual(self.respond("--psd", "2"), self.respond("--psd", "f1=2", "--psd", "f2=2"))
+
+    def test_the_file_of_the_page(self):
+        """The [[psd]] of docs/random-response.md, with the inputs of the carts."""
+        self.make_carts()
+        with open(os.path.join(SOURCE, "docs/random-response.md"), encoding="utf-8") as page:
+            block = page.read().split("```toml\n")[1].split("```")[0]
+        self.write("wheel.csv", "1,1e-3\n100,1e-3\n")
+        self.write("noise.toml", block.replace('"thruster"', '"f1"').replace('"wheel"', '"f2"'))
+        for arguments in (["--psd", "1e-6"], ["--psd", "f2=1e-6", "--psd", "f1=2"], ["--psd", "noise.toml"]):
+            random = self.respond(*arguments, "-o", "random.h5", "--csv", "random.csv")
+            self.assertTrue(all(one["band_rms"] > 0 for one in random["outputs"]))
+        self.assertAlmostEqual(random["to_hz"], 100, delta=1e-9)
 
     def test_a_long_history_lies_within_chi_square_bounds(self):
         A, B, C, D = self.make_carts()
