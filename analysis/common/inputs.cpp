@@ -8,10 +8,10 @@
 #include <system_error>
 
 #include "analysis/common/ranks.hpp"
+#include "analysis/common/superelements.hpp"
 #include "base/file_roles.hpp"
 #include "fe/statics/build_model.hpp"
 #include "formats/hdf5/files.hpp"
-#include "formats/matrices/superelements.hpp"
 #include "formats/nastran/reader.hpp"
 #include "formats/toml/specs.hpp"
 
@@ -44,7 +44,10 @@ void demand_file(const std::string& path) {
 
 void demand_kind(const std::string& path, const std::string& kind, const std::string& expected) {
   if (kind.empty() || kind == expected) return;
-  const std::string verb = kind == "body" ? "reduce" : kind == "system" ? "run" : "batch";
+  const std::string verb = kind == "body"     ? "reduce"
+                           : kind == "system" ? "run"
+                           : kind == "psd"    ? "response --psd"
+                                              : "batch";
   throw InputError("cli.wrong-file", {path}, "the file is a " + kind + " file, expected a " + expected + " file",
                    "bough " + verb + " takes it" + (kind == "campaign" ? ", with --dry-run to check it" : ""));
 }
@@ -76,7 +79,7 @@ records::Deck read_deck_once(const std::string& path, const std::vector<std::str
   auto deck = is_one_of_many() ? nastran::read_packed_deck(share([&] { return nastran::pack_deck(path); }),
                                                            {ignore_cards}, diagnostics)
                                : nastran::read_deck(path, {ignore_cards}, diagnostics);
-  matrices::read_superelements(deck, diagnostics);
+  join_superelements(deck, diagnostics);
   return deck;
 }
 

@@ -111,6 +111,9 @@ CompareAnswer compare_files(const CompareRequest& request, Events& events) {
   Diagnostics diagnostics;
   CompareAnswer answer = [&]() -> CompareAnswer {
     if (request.refinement) return compare_meshes(request, diagnostics);
+    if (!request.test.empty())
+      return compare_with_test({request.files[0], request.test, request.deck, request.tam}, events);
+    if (request.sensors > 0) return place_sensors(request.files[0], request.sensors, events);
     if (request.files.size() == 2) return compare_two(request, diagnostics);
     return compare_with_itself(request.files[0], diagnostics);
   }();

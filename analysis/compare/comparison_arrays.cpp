@@ -74,12 +74,47 @@ void add_arrays(const RefinementReport& r, Comparison& file) {
   file.words.emplace_back("/refinement/quantity", quantities);
 }
 
+void add_arrays(const TestReport& r, Comparison& file) {
+  MatrixXd pairs(static_cast<Index>(r.pairs.size()), 6), dofs(static_cast<Index>(r.dofs.size()), 2);
+  for (std::size_t i = 0; i < r.pairs.size(); ++i) {
+    const auto& p = r.pairs[i];
+    pairs.row(static_cast<Index>(i)) << p.a + 1, p.b + 1, r.a.frequency_hz[p.a], r.b.frequency_hz[p.b], p.mac,
+        r.cross_orthogonality(p.a, p.b);
+  }
+  for (std::size_t k = 0; k < r.dofs.size(); ++k)
+    dofs.row(static_cast<Index>(k)) << r.a.node_id[static_cast<std::size_t>(r.dofs[k].a)], r.dofs[k].component + 1;
+  file.arrays.push_back({"/mac", r.mac, "modal assurance criterion at the measured dofs, analysis by test", "1"});
+  file.arrays.push_back(
+      {"/pairs", pairs, "mode of the analysis, of the test (from 1), their Hz, MAC, cross-orthogonality", ""});
+  file.arrays.push_back({"/dofs", dofs, "measured: node of the analysis, component 1..6", "1"});
+  file.arrays.push_back({"/mass", r.mass, "mass matrix of the test-analysis model", "M, M L, M L^2"});
+  file.arrays.push_back({"/cross_orthogonality", r.cross_orthogonality, "analysis by test, shapes of unit mass", "1"});
+  file.arrays.push_back({"/self_orthogonality", r.self_orthogonality, "test by test", "1"});
+  file.arrays.push_back({"/comac", r.comac, "of each measured dof over the pairs", "1"});
+  file.arrays.push_back({"/collinearity", r.collinearity, "modal phase collinearity of each test mode", "1"});
+  file.arrays.push_back({"/test/frequency_hz", r.b.frequency_hz, "of each test mode", "1/T"});
+  file.arrays.push_back({"/test/damping", r.damping, "viscous damping ratio of each test mode", "1"});
+  if (r.model_hz.size() > 0)
+    file.arrays.push_back({"/model_frequency_hz", r.model_hz, "of the test-analysis model", "1/T"});
+  file.words.emplace_back("/test_analysis_model", std::vector<std::string>{r.kind});
+}
+
+void add_arrays(const SensorReport& r, Comparison& file) {
+  MatrixXd dofs(static_cast<Index>(r.dofs.size()), 2);
+  for (std::size_t k = 0; k < r.dofs.size(); ++k) dofs.row(static_cast<Index>(k)) << r.dofs[k].first, r.dofs[k].second;
+  file.arrays.push_back({"/dofs", dofs, "of the sensors: node, component 1..3", "1"});
+  file.arrays.push_back({"/independence", r.independence, "effective independence of each", "1"});
+  file.arrays.push_back({"/mac", r.mac, "of the modes with themselves at these dofs", "1"});
+}
+
 }  // namespace
 
 records::Comparison make_comparison(const CompareRequest& request, const CompareAnswer& answer) {
   Comparison file;
   std::vector<std::string> files;
   for (const auto& name : request.files) files.push_back(get_body_path(name));
+  for (const auto& name : {request.test, request.deck})
+    if (!name.empty()) files.push_back(name);
   file.source = calc_sources(files);
   std::visit([&](const auto& report) { add_arrays(report, file); }, answer);
   return file;

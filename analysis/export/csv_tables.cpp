@@ -43,6 +43,18 @@ std::string make_response_csv(const records::FrequencyResponse& response) {
   return text.str();
 }
 
+std::string make_random_csv(const records::RandomOutputs& random) {
+  std::vector<exports::CsvColumn> columns{{"frequency_hz", random.frequency_hz}};
+  for (int i = 0; i < random.outputs.size(); ++i) {
+    const auto& name = random.outputs.name[static_cast<std::size_t>(i)];
+    columns.push_back({name + ":psd", random.psd.col(i)});
+    columns.push_back({name + ":cumulative_rms", random.cumulative_rms.col(i)});
+  }
+  std::ostringstream text;
+  exports::write_csv(text, columns);
+  return text.str();
+}
+
 std::string make_linear_csv(const LinearModel& model) {
   const auto quote = [](const std::string& name) {
     return name.find_first_of(",\"") == std::string::npos ? name : "\"" + name + "\"";

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "analysis/common/ranks.hpp"
+#include "analysis/common/superelements.hpp"
 #include "analysis/listing/element_columns.hpp"
 #include "fe/loads/load_sets.hpp"
 #include "fe/matrices/assembly.hpp"
@@ -15,7 +16,6 @@
 #include "fe/statics/element_results.hpp"
 #include "fe/statics/reactions.hpp"
 #include "fe/statics/static_case.hpp"
-#include "formats/matrices/superelements.hpp"
 #include "formats/nastran/dynamic_reader.hpp"
 #include "formats/records/params.hpp"
 
@@ -64,7 +64,7 @@ records::DynamicDeck read_loads_deck_or_throw(const std::string& path, const fe:
   auto deck = is_one_of_many() ? nastran::read_packed_dynamic_deck(share([&] { return nastran::pack_deck(path); }),
                                                                    read, diagnostics)
                                : nastran::read_dynamic_deck(path, read, diagnostics);
-  matrices::read_superelements(deck, diagnostics);
+  join_superelements(deck, diagnostics);
   if (diagnostics.num_errors() > 0) fe::build_model(deck, options, diagnostics);
   diagnostics.throw_if_errors();
   return deck;

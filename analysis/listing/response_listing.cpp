@@ -26,9 +26,15 @@ ListedKind find_kind(const std::string& quantity) {
   return kinds.at(quantity);
 }
 
+/// Columns of the points, ascending.
+std::map<int, std::vector<Index>> list_points(const std::vector<std::pair<int, int>>& dofs) {
+  std::map<int, std::vector<Index>> columns;
+  for (std::size_t i = 0; i < dofs.size(); ++i) columns[dofs[i].first].push_back(static_cast<Index>(i));
+  return columns;
+}
+
 records::ListedVector make_vector(const records::ResponseCurves& curves, Index sample) {
-  std::map<int, std::vector<Index>> columns;  // of each point
-  for (std::size_t i = 0; i < curves.dofs.size(); ++i) columns[curves.dofs[i].first].push_back(static_cast<Index>(i));
+  const auto columns = list_points(curves.dofs);
   const bool is_complex = curves.imag.size() > 0;
   records::ListedVector vector;
   vector.kind = find_kind(curves.quantity);
@@ -146,6 +152,56 @@ class ResponseElements {
   std::set<std::string> left_out_;
 };
 
+records::ListedRandom make_random(const records::RandomResponse& random, const records::RandomCurves& curves) {
+  const auto points = list_points(curves.dofs);
+  records::ListedRandom listed;
+  listed.kind = find_kind(curves.quantity);
+  listed.hz = random.hz;
+  listed.lags = random.lags;
+  listed.rms = listed.crossing_hz = Eigen::MatrixXd::Zero(static_cast<Index>(points.size()), 6);
+  const Eigen::MatrixXd cumulative = records::calc_cumulative_rms(random, curves);
+  for (const auto& [point, columns] : points) {
+    const auto row = static_cast<Index>(listed.id.size());
+    const auto get_component = [&](Index i) {
+      return std::max(curves.dofs[static_cast<std::size_t>(i)].second - 1, 0);
+    };
+    listed.id.push_back(point);
+    listed.is_scalar.push_back(curves.dofs[static_cast<std::size_t>(columns.front())].second == 0);
+    const auto take = [&columns = columns, &get_component](const Eigen::MatrixXd& values) {
+      Eigen::MatrixXd six = Eigen::MatrixXd::Zero(values.rows(), 6);
+      for (const Index i : columns) six.col(get_component(i)) = values.col(i);
+      return six;
+    };
+    for (const Index i : columns) {
+      listed.rms(row, get_component(i)) = curves.rms(i);
+      listed.crossing_hz(row, get_component(i)) = curves.crossing_hz(i);
+    }
+    listed.psd.push_back(take(curves.psd));
+    listed.cumulative_rms.push_back(take(cumulative));
+    if (curves.autocorrelation.size() > 0) listed.autocorrelation.push_back(take(curves.autocorrelation));
+  }
+  return listed;
+}
+
+void add_random(const records::DeckResponse& response, records::Listing& listing) {
+  for (const auto& random : response.random) {
+    const int first = random.subcases.empty() ? 1 : random.subcases.front();
+    const auto subcase = std::find_if(response.subcases.begin(), response.subcases.end(),
+                                      [first](const auto& s) { return std::max(s.id, 1) == first; });
+    for (const auto& curves : random.curves) {
+      if (!curves.card.empty()) continue;
+      auto listed = make_random(random, curves);
+      listed.subcase = first;
+      if (subcase != response.subcases.end()) {
+        listed.title = subcase->title;
+        listed.subtitle = subcase->subtitle;
+        listed.label = subcase->label;
+      }
+      listing.random.push_back(std::move(listed));
+    }
+  }
+}
+
 }  // namespace
 
 records::Listing make_response_listing(const records::DeckResponse& response, const records::Deck& deck,
@@ -165,6 +221,7 @@ records::Listing make_response_listing(const records::DeckResponse& response, co
       elements.add(subcase, sample, step);
       listing.steps.push_back(std::move(step));
     }
+  add_random(response, listing);
   return listing;
 }
 

@@ -10,6 +10,7 @@
 #include "analysis/common/solution.hpp"
 #include "analysis/listing/listing.hpp"
 #include "analysis/modes/complex_modes.hpp"
+#include "analysis/modes/sensitivities.hpp"
 #include "fe/linear/petsc.hpp"
 #include "fe/matrices/assembly.hpp"
 #include "fe/matrices/mass_directions.hpp"
@@ -100,6 +101,11 @@ SubcaseModes solve_task(const ModesRequest& request, const records::DynamicDeck&
                    : solve_normal(request, deck, has_residuals ? selection : nullptr, model, solved, num_residual,
                                   events, diagnostics);
   events.show_progress("");
+  if (request.sensitivities) {
+    const auto n = pairs.lambda.size() - num_residual;
+    solved.sensitivities =
+        calc_sensitivities(request.deck, model_options, model, pairs.lambda.head(n), pairs.Phi.leftCols(n));
+  }
   const auto mass = fe::calc_mass_properties(model, model.mass_kind(), Vector3d::Zero());
   const bool is_buckling = request.eigen.buckling;
   if (!is_buckling) fe::report_mass(model, deck, mass, diagnostics);

@@ -8,6 +8,7 @@
 #include "analysis/common/model_choice.hpp"
 #include "analysis/common/subcase_failures.hpp"
 #include "analysis/modes/eigen_choices.hpp"
+#include "analysis/modes/sensitivities.hpp"
 #include "formats/listing/complex_f06.hpp"
 #include "formats/records/complex_modes.hpp"
 #include "formats/records/listing.hpp"
@@ -20,10 +21,11 @@ struct ModesRequest {
   std::string deck;  ///< file
   ModelChoice model;
   EigenChoice eigen;
-  bool energies = false;     ///< strain and kinetic energies of elements and properties
-  int about_grid = 0;        ///< effective masses about this grid too; 0: as the case control
-  bool has_shapes = true;    ///< else the records have no shapes and no mesh
-  bool has_listing = false;  ///< print file of the output requests
+  bool energies = false;       ///< strain and kinetic energies of elements and properties
+  bool sensitivities = false;  ///< derivatives of the eigenvalues with respect to DESVAR of SOL 200
+  int about_grid = 0;          ///< effective masses about this grid too; 0: as the case control
+  bool has_shapes = true;      ///< else the records have no shapes and no mesh
+  bool has_listing = false;    ///< print file of the output requests
 };
 
 /// Modes of one subcase.
@@ -33,6 +35,7 @@ struct SubcaseModes {
   std::string load;  ///< description of the static load of load factors
   std::vector<modal::SolverUse> solvers;
   std::vector<std::string> residual_loads, unused_loads;  ///< of the residual vectors; loads without one
+  std::optional<ModeSensitivities> sensitivities;
 };
 
 /// Takes the modes of one subcase after the other. Messages about them go to `diagnostics`.

@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "analysis/common/failures.hpp"
 #include "analysis/common/inputs.hpp"
 #include "analysis/linearize/choose_channels.hpp"
+#include "analysis/response/input_spectrum.hpp"
 #include "formats/hdf5/linear_file.hpp"
 
 namespace bough::analysis {
@@ -15,6 +17,53 @@ namespace {
 
 /// Models with a larger error are reported, as by linearize.
 constexpr double kMaxUncertainty = 1e-4;
+/// Relative difference of two RMS values that is reported.
+constexpr double kRmsDifference = 0.01;
+
+/// Band and corners of the densities; from 0 if G(0) is finite.
+void choose_band(const records::LinearModel& model, const statespace::InputSpectrum& input,
+                 statespace::FrequencyRange& range) {
+  const double nyquist = model.sample_time > 0 ? 0.5 / model.sample_time : std::numeric_limits<double>::infinity();
+  const bool is_open = range.from_hz <= 0;
+  if (const auto band = input.get_range()) {
+    if (range.from_hz <= 0) range.from_hz = band->first;
+    if (range.to_hz <= 0) range.to_hz = std::min(band->second, nyquist);
+  }
+  bool has_origin = false;
+  for (Eigen::Index i = 0; i < model.poles.size(); ++i)
+    if (std::hypot(model.poles.real[i], model.poles.imag[i]) <= records::calc_origin_radius(model.poles, i))
+      has_origin = true;
+  const double max_hz = range.to_hz > 0 ? range.to_hz : nyquist;
+  for (const double hz : input.list_corners())
+    if (hz > 0 && (is_open || hz >= range.from_hz) && hz <= max_hz) range.corners_hz.push_back(hz);
+  if (is_open && range.from_hz <= 0 && !has_origin) range.corners_hz.push_back(0);
+}
+
+void compare_integrals(const records::RandomOutputs& random, const std::string& file, Diagnostics& diagnostics) {
+  Eigen::Index worst = -1, narrow = -1;
+  double max_difference = kRmsDifference, min_share = 1 - kRmsDifference;
+  for (Eigen::Index i = 0; i < random.rms.size(); ++i) {
+    if (!(random.band_rms[i] > 0)) continue;
+    const double difference = std::abs(random.rms[i] / random.band_rms[i] - 1);
+    if (difference > max_difference) max_difference = difference, worst = i;
+    if (random.total_rms.size() == 0 || !std::isfinite(random.total_rms[i])) continue;
+    const double share = random.band_rms[i] / random.total_rms[i];
+    if (share < min_share) min_share = share, narrow = i;
+  }
+  const auto name = [&](Eigen::Index i) { return random.outputs.name[static_cast<std::size_t>(i)]; };
+  if (worst >= 0)
+    diagnostics.warning("linear.random-sampling", {file},
+                        fmt::format("straight lines between the frequencies give output {} an RMS of {:.6g}, the "
+                                    "integral over the band {:.6g}",
+                                    name(worst), random.rms[worst], random.band_rms[worst]),
+                        "take the RMS of the band, or give more frequencies with --points");
+  if (narrow >= 0)
+    diagnostics.note("linear.random-band", {file},
+                     fmt::format("white inputs give output {} an RMS of {:.6g} over all frequencies, {:.3g} % of it in "
+                                 "the band",
+                                 name(narrow), random.total_rms[narrow], 100 * min_share),
+                     "widen the band with --from and --to if the inputs are white beyond it");
+}
 
 }  // namespace
 
@@ -49,11 +98,31 @@ ResponseAnswer calc_response(const ResponseRequest& request, Events& events) {
                        "choose them with --inputs and --outputs");
   });
   const bool is_loop = is_cut || (is_single && request.is_loop);
-  answer.response = statespace::calc_frequency_response(
-      model, is_loop ? statespace::widen_for_loop(model, request.range) : request.range);
-  answer.response.source = calc_sources({request.file});
+  std::optional<statespace::InputSpectrum> input;
+  auto range = is_loop ? statespace::widen_for_loop(model, request.range) : request.range;
+  if (!request.psd.empty()) {
+    input = read_input_spectrum(request.psd, model, request.file);
+    choose_band(model, *input, range);
+    if (range.to_hz > 0 && range.to_hz <= range.from_hz)
+      throw InputError("cli.bad-range", {request.file},
+                       fmt::format("the spectral densities end at {:g} Hz, the frequencies begin at {:g}", range.to_hz,
+                                   range.from_hz),
+                       "give --from below the end of the tables");
+  }
+  answer.response = statespace::calc_frequency_response(model, range);
+  auto files = list_spectrum_files(request.psd);
+  files.insert(files.begin(), request.file);
+  answer.response.source = calc_sources(files);
   answer.peak = statespace::calc_peak_gain(model, answer.response);
   if (is_loop) answer.margins = statespace::calc_margins(model, answer.response);
+  if (input) {
+    const auto& hz = answer.response.frequency_hz;
+    with_prior_messages(diagnostics, [&] {
+      check_input_spectrum(*input, {hz.begin(), hz.end()}, request.psd, request.file);
+      answer.random = statespace::calc_random_outputs(model, *input, answer.response);
+    });
+    compare_integrals(*answer.random, request.file, diagnostics);
+  }
   add_messages(diagnostics, events);
   return answer;
 }

@@ -9,13 +9,13 @@
 #include "analysis/common/inputs.hpp"
 #include "analysis/common/ranks.hpp"
 #include "analysis/common/solution.hpp"
+#include "analysis/common/superelements.hpp"
 #include "analysis/listing/listing.hpp"
 #include "analysis/static/case_extremes.hpp"
 #include "analysis/static/combinations.hpp"
 #include "fe/linear/petsc.hpp"
 #include "fe/statics/build_model.hpp"
 #include "fe/statics/case_solver.hpp"
-#include "formats/matrices/superelements.hpp"
 #include "formats/nastran/dynamic_reader.hpp"
 
 namespace bough::analysis {
@@ -79,7 +79,7 @@ records::Deck read_static_deck(const StaticRequest& request, Diagnostics& diagno
   auto deck = is_one_of_many() ? nastran::read_packed_combined_deck(
                                      share([&] { return nastran::pack_deck(request.deck); }), read, diagnostics)
                                : nastran::read_combined_deck(request.deck, read, diagnostics);
-  matrices::read_superelements(deck, diagnostics);
+  join_superelements(deck, diagnostics);
   if (diagnostics.num_errors() > 0) fe::build_model(deck, model_options, diagnostics);
   diagnostics.throw_if_errors();
   return deck;

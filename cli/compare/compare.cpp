@@ -30,14 +30,21 @@ void print_report(const Report& report, const CompareOptions& o, const Console& 
 int run_compare(const CompareOptions& o) {
   Console console(o.quiet, o.verbosity);
   if (!console.is_root()) return kSuccess;
-  const std::size_t max_files = o.request.refinement ? 3 : 2, min_files = o.request.refinement ? 3 : 1;
+  const bool is_of_one = !o.request.test.empty() || o.request.sensors > 0;
+  const std::size_t max_files = o.request.refinement ? 3 : is_of_one ? 1 : 2, min_files = o.request.refinement ? 3 : 1;
   if (o.request.files.size() < min_files || o.request.files.size() > max_files) {
     console.print_error("cli.usage", fmt::format("{} files given", o.request.files.size()),
-                        o.request.refinement ? "--refinement takes three" : "give one or two; three with --refinement");
+                        o.request.refinement ? "--refinement takes three"
+                        : is_of_one          ? "--test and --sensors take one"
+                                             : "give one or two; three with --refinement");
+    return kUsageError;
+  }
+  if (o.request.tam != "serep" && o.request.deck.empty()) {
+    console.print_error("cli.usage", "--tam " + o.request.tam + " needs the deck of the model", "give it by --deck");
     return kUsageError;
   }
   if (!o.output.empty()) {
-    std::vector<std::string> inputs{o.request.mass};
+    std::vector<std::string> inputs{o.request.mass, o.request.test, o.request.deck};
     for (const auto& name : o.request.files) inputs.push_back(analysis::get_body_path(name));
     check_output(o, o.output, inputs);
   }
@@ -53,7 +60,8 @@ int run_compare(const CompareOptions& o) {
 
 void add_compare(CLI::App& app, Action& action) {
   auto o = std::make_shared<CompareOptions>();
-  auto* verb = add_verb(app, "compare", "Two bodies or modes files side by side; the integrals of one body");
+  auto* verb = add_verb(app, "compare",
+                        "Two bodies or modes files side by side; modes against a test; the integrals of one body");
   verb->add_option("files", o->request.files,
                    "Two flexible bodies or modes files; or one body: its integrals by method; or three with "
                    "--refinement")
@@ -61,10 +69,23 @@ void add_compare(CLI::App& app, Action& action) {
   verb->add_option("--mass", o->request.mass, "Matrices file of A's deck: the MAC weighted with its mass matrix, too");
   verb->add_flag("--refinement", o->request.refinement,
                  "Three bodies of refined meshes, coarse to fine: observed orders");
+  auto* test = verb->add_option("--test", o->request.test,
+                                "Universal file (dataset 55) with the shapes of a test of the one model: MAC, "
+                                "cross-orthogonality, COMAC");
+  verb->add_option("--tam", o->request.tam, "Test-analysis model: serep (from the modes), guyan or irs (from --deck)")
+      ->check(CLI::IsMember({"serep", "guyan", "irs"}))
+      ->capture_default_str()
+      ->needs(test);
+  verb->add_option("--deck", o->request.deck, "Nastran deck of the model, for --tam guyan and irs")->needs(test);
+  verb->add_option("--sensors", o->request.sensors,
+                   "Places for this many sensors on the one model, by effective independence of its modes")
+      ->check(CLI::PositiveNumber)
+      ->excludes(test);
   add_common_options(*verb, *o, kOutput | kJson, "HDF5 file with the numbers");
   verb->footer(
       "Example:\n  bough compare boom.h5\n  bough compare boom.h5 boom-modes.h5 --mass boom-matrices.h5\n"
-      "  bough compare --refinement boom10.h5 boom20.h5 boom40.h5");
+      "  bough compare --refinement boom10.h5 boom20.h5 boom40.h5\n"
+      "  bough compare boom-modes.h5 --test survey.unv --tam guyan --deck boom.bdf");
   verb->callback([&action, o] { action = [o] { return run_compare(*o); }; });
 }
 

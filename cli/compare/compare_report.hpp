@@ -21,5 +21,9 @@ nlohmann::json make_json(const analysis::PairReport& report);
 std::string format_report(const analysis::RefinementReport& report);
 /// The numbers of the table as JSON.
 nlohmann::json make_json(const analysis::RefinementReport& report);
+std::string format_report(const analysis::TestReport& report);
+nlohmann::json make_json(const analysis::TestReport& report);
+std::string format_report(const analysis::SensorReport& report);
+nlohmann::json make_json(const analysis::SensorReport& report);
 
 }  // namespace bough::cli

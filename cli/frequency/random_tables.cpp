@@ -56,6 +56,18 @@ std::string format_random(const records::RandomResponse& r, std::size_t max_outp
     text += group.empty() ? "zero throughout\n" : table.to_text();
     if (left > 0) text += fmt::format("and {} smaller; -o, --csv or --full has them\n", count(left, "output"));
   }
+  if (!r.crosses.empty()) {
+    Table table{{"a", "b", "covariance", "largest coherence", "at Hz"}, {}};
+    for (const auto& cross : r.crosses) {
+      const auto name = exports::name_cross(cross);
+      Eigen::Index at = 0;
+      const double coherence = cross.coherence.size() > 0 ? cross.coherence.maxCoeff(&at) : 0;
+      table.rows.push_back({name.substr(0, name.find('|')), name.substr(name.find('|') + 1),
+                            fmt::format("{:.6g}", cross.covariance), fmt::format("{:.4g}", coherence),
+                            fmt::format("{:.6g}", r.hz.size() > 0 ? r.hz(at) : 0)});
+    }
+    text += "\ncross-spectral densities\n" + table.to_text();
+  }
   return text;
 }
 
@@ -79,6 +91,14 @@ nlohmann::json to_json(const records::RandomResponse& r, bool full) {
     if (full) one["psd"] = to_json_list(curves.psd.col(output.column));
     if (full && r.lags.size() > 0) one["autocorrelation"] = to_json_list(curves.autocorrelation.col(output.column));
     json["outputs"].push_back(std::move(one));
+  }
+  for (const auto& cross : r.crosses) {
+    nlohmann::json one{{"name", exports::name_cross(cross)}, {"covariance", cross.covariance}};
+    if (full) one["real"] = to_json_list(cross.psd.real());
+    if (full) one["imag"] = to_json_list(cross.psd.imag());
+    if (full) one["coherence"] = to_json_list(cross.coherence);
+    if (full && cross.correlation.size() > 0) one["correlation"] = to_json_list(cross.correlation);
+    json["crosses"].push_back(std::move(one));
   }
   return json;
 }

@@ -69,6 +69,10 @@ class ModesOutput final : public analysis::ModesReceiver {
              format_residual_vectors(result, modes.residual_loads, modes.unused_loads);
     text_ += format_effective_mass_about(result) + format_energies(result);
     auto one = make_json(result, modes.solvers, modes.norm, is_buckling);
+    if (modes.sensitivities) {
+      text_ += format_sensitivities(*modes.sensitivities);
+      one["sensitivities"] = make_json(*modes.sensitivities);
+    }
     if (!modes.residual_loads.empty())
       one["residual_vectors"] = {{"loads", modes.residual_loads}, {"unused", modes.unused_loads}};
     if (!options_.compare.empty() && console_.is_root()) {
@@ -195,6 +199,9 @@ void add_modes(CLI::App& app, Action& action) {
   add_solver_option(*verb, o->request.eigen.solver);
   verb->add_flag("--ese,--energies", o->request.energies,
                  "Strain and kinetic energy of elements and properties in each mode: table, HDF5, VTU")
+      ->excludes(buckling);
+  verb->add_flag("--sensitivities", o->request.sensitivities,
+                 "Derivatives of the eigenvalues with respect to the DESVAR of a deck of SOL 200")
       ->excludes(buckling);
   verb->add_option("--meffmass", o->request.about_grid, "Effective masses in units of mass, about this grid")
       ->excludes(buckling)

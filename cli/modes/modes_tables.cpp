@@ -142,4 +142,33 @@ nlohmann::json make_json(const records::ModesResult& r, const std::vector<modal:
   return json;
 }
 
+std::string format_sensitivities(const analysis::ModeSensitivities& s) {
+  Table table{{"mode", "Hz", "DESVAR", "label", "value", "dHz/dx", "(x/Hz) dHz/dx", "d eigenvalue/dx"}, {}};
+  for (Eigen::Index j = 0; j < s.frequency_hz.size(); ++j)
+    for (std::size_t v = 0; v < s.variables.size(); ++v) {
+      const auto& variable = s.variables[v];
+      const auto column = static_cast<Eigen::Index>(v);
+      const double hz = s.frequency_hz[j], slope = s.frequency_slope_hz(j, column);
+      table.rows.push_back({v == 0 ? std::to_string(j + 1) : "", v == 0 ? fmt::format("{:.6g}", hz) : "",
+                            std::to_string(variable.id), variable.label, fmt::format("{:.6g}", variable.value),
+                            std::isnan(slope) ? "-" : fmt::format("{:.6g}", slope),
+                            std::isnan(slope) ? "-" : fmt::format("{:.6g}", variable.value / hz * slope),
+                            fmt::format("{:.6g}", s.eigenvalue(j, column))});
+    }
+  return "\nsensitivities to the design variables\n" + table.to_text();
+}
+
+nlohmann::json make_json(const analysis::ModeSensitivities& s) {
+  auto variables = nlohmann::json::array();
+  for (std::size_t v = 0; v < s.variables.size(); ++v) {
+    const auto column = static_cast<Eigen::Index>(v);
+    variables.push_back({{"id", s.variables[v].id},
+                         {"label", s.variables[v].label},
+                         {"value", s.variables[v].value},
+                         {"eigenvalue", to_json_list(Eigen::VectorXd(s.eigenvalue.col(column)))},
+                         {"frequency_hz", to_json_list(Eigen::VectorXd(s.frequency_slope_hz.col(column)))}});
+  }
+  return variables;
+}
+
 }  // namespace bough::cli

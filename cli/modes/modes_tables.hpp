@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "analysis/modes/sensitivities.hpp"
 #include "formats/records/modes.hpp"
 #include "modal/solver_use.hpp"
 
@@ -27,5 +28,9 @@ std::string format_residual_vectors(const records::ModesResult& result, const st
 /// All numbers of the modes as JSON, with norm, Sturm count and eigensolvers.
 nlohmann::json make_json(const records::ModesResult& result, const std::vector<modal::SolverUse>& solvers,
                          const std::string& norm, bool buckling);
+
+/// Slopes of the frequencies: df/dx and (x/f) df/dx of each mode and design variable.
+std::string format_sensitivities(const analysis::ModeSensitivities& s);
+nlohmann::json make_json(const analysis::ModeSensitivities& s);
 
 }  // namespace bough::cli

@@ -12,6 +12,7 @@
 #include "analysis/common/inputs.hpp"
 #include "analysis/common/text_file.hpp"
 #include "analysis/export/csv_tables.hpp"
+#include "analysis/response/input_spectrum.hpp"
 #include "analysis/response/response.hpp"
 #include "cli/common/console_events.hpp"
 #include "cli/common/options.hpp"
@@ -127,21 +128,77 @@ nlohmann::json make_json(const FrequencyResponse& response, const records::PeakG
   return json;
 }
 
+/// "-" where the integral has no bound.
+std::string format_value(const Eigen::VectorXd& values, Index i) {
+  return std::isfinite(values[i]) ? fmt::format("{:.6g}", values[i]) : "-";
+}
+
+std::string format_random(const records::RandomOutputs& random) {
+  std::string text = fmt::format("\nrandom response, {:.4g} to {:.4g} Hz\n", random.frequency_hz[0],
+                                 random.frequency_hz[random.frequency_hz.size() - 1]);
+  const bool has_total = random.total_rms.size() > 0;
+  Table table{{"output", "RMS", "N0 Hz", "band RMS", "band N0 Hz"}, {}};
+  if (has_total) table.headings.insert(table.headings.end(), {"white RMS", "white N0 Hz"});
+  for (Index i = 0; i < random.rms.size() && static_cast<std::size_t>(i) < kMaxRows; ++i) {
+    std::vector<std::string> row{random.outputs.name[static_cast<std::size_t>(i)]};
+    for (const auto* values : {&random.rms, &random.crossing_hz, &random.band_rms, &random.band_crossing_hz})
+      row.push_back(format_value(*values, i));
+    if (has_total)
+      row.insert(row.end(), {format_value(random.total_rms, i), format_value(random.total_crossing_hz, i)});
+    table.rows.push_back(std::move(row));
+  }
+  text += table.to_text();
+  if (static_cast<std::size_t>(random.rms.size()) > kMaxRows)
+    text += fmt::format("and {} more\n", static_cast<std::size_t>(random.rms.size()) - kMaxRows);
+  return has_total ? text + "white: of all frequencies, by Lyapunov's equation; - has no bound\n" : text;
+}
+
+nlohmann::json make_random_json(const records::RandomOutputs& random) {
+  auto outputs = nlohmann::json::array();
+  const auto get = [](const Eigen::VectorXd& values, Index i) {
+    return std::isfinite(values[i]) ? nlohmann::json(values[i]) : nlohmann::json(nullptr);
+  };
+  for (Index i = 0; i < random.rms.size(); ++i) {
+    nlohmann::json one{{"name", random.outputs.name[static_cast<std::size_t>(i)]},
+                       {"rms", random.rms[i]},
+                       {"zero_crossings_hz", random.crossing_hz[i]},
+                       {"band_rms", random.band_rms[i]},
+                       {"band_zero_crossings_hz", random.band_crossing_hz[i]}};
+    if (random.total_rms.size() > 0) {
+      one["total_rms"] = get(random.total_rms, i);
+      one["total_zero_crossings_hz"] = get(random.total_crossing_hz, i);
+    }
+    outputs.push_back(one);
+  }
+  const Index last = random.frequency_hz.size() - 1;
+  nlohmann::json json{{"from_hz", random.frequency_hz[0]}, {"to_hz", random.frequency_hz[last]}, {"outputs", outputs}};
+  if (!random.no_total.empty()) json["no_total"] = random.no_total;
+  return json;
+}
+
 int run_response(const ResponseOptions& o) {
   Console console(o.quiet, o.verbosity);
   if (!console.is_root()) return kSuccess;
   analysis::demand_file(o.request.file);
-  check_outputs(o, {o.output, o.csv}, {o.request.file});
+  auto inputs = analysis::list_spectrum_files(o.request.psd);
+  inputs.push_back(o.request.file);
+  check_outputs(o, {o.output, o.csv}, inputs);
   ConsoleEvents events(console);
-  const auto [model, response, peak, margins] = analysis::calc_response(o.request, events);
+  const auto [model, response, peak, margins, random] = analysis::calc_response(o.request, events);
   console.print(events.get_messages());
   const records::Margins* given = margins ? &*margins : nullptr;
-  if (o.json)
-    console.print_data(make_json(response, peak, given).dump(2) + "\n");
-  else
-    console.print(format(model, response, peak, given));
-  if (!o.output.empty()) hdf5::write_response(response, peak, given, o.output);
-  if (!o.csv.empty()) analysis::write_text_file(o.csv, analysis::make_response_csv(response));
+  const records::RandomOutputs* outputs = random ? &*random : nullptr;
+  if (o.json) {
+    auto json = make_json(response, peak, given);
+    if (outputs) json["random"] = make_random_json(*outputs);
+    console.print_data(json.dump(2) + "\n");
+  } else {
+    console.print(format(model, response, peak, given) + (outputs ? format_random(*outputs) : ""));
+  }
+  if (!o.output.empty()) hdf5::write_response(response, peak, given, outputs, o.output);
+  if (!o.csv.empty())
+    analysis::write_text_file(o.csv,
+                              outputs ? analysis::make_random_csv(*outputs) : analysis::make_response_csv(response));
   for (const auto& path : {o.output, o.csv})
     if (!path.empty() && !o.json) console.print("written: " + path + "\n");
   return kSuccess;
@@ -151,7 +208,8 @@ int run_response(const ResponseOptions& o) {
 
 void add_response(CLI::App& app, Action& action) {
   auto o = std::make_shared<ResponseOptions>();
-  auto* verb = add_verb(app, "response", "Frequency response, largest gain and margins of a linear model");
+  auto* verb =
+      add_verb(app, "response", "Frequency response, largest gain, margins and random response of a linear model");
   verb->add_option("file", o->request.file, "Linear model (.h5) of bough linearize")->required();
   verb->add_option("--inputs", o->request.inputs, "Only these inputs (default: all)")->delimiter(',');
   verb->add_option("--outputs", o->request.outputs, "Only these outputs (default: all)")->delimiter(',');
@@ -164,11 +222,16 @@ void add_response(CLI::App& app, Action& action) {
       ->capture_default_str();
   verb->add_flag("--loop", o->request.is_loop,
                  "Margins of the one input and output as a loop with negative feedback (always of linearize --break)");
-  verb->add_option("--csv", o->csv, "Write the response to this CSV file");
+  verb->add_option("--psd", o->request.psd,
+                   "Random response to these one-sided spectral densities of the inputs: NUMBER for all, NAME=NUMBER, "
+                   "or a .toml or .csv file; as often as needed")
+      ->excludes("--loop");
+  verb->add_option("--csv", o->csv, "Write the response to this CSV file, with --psd the densities and running RMS");
   add_common_options(*verb, *o, kOutput | kJson, "Write the response to this HDF5 file");
   verb->footer(
       "Example:\n  bough linearize arm.toml --break motor -o loop.h5 && bough response loop.h5\n"
       "  bough response arm-linear.h5 --outputs tip:y --csv tip.csv\n"
+      "  bough response arm-linear.h5 --psd motor=1e-4 --psd wind.csv -o random.h5\n"
       "bough plot arm-linear.h5 --kind bode draws it.");
   verb->callback([&action, o] {
     action = [o] { return analysis::with_file(o->request.file, [&] { return run_response(*o); }); };

@@ -68,4 +68,33 @@ std::vector<CsvColumn> make_autocorrelation_columns(const records::RandomRespons
   return columns;
 }
 
+std::string name_cross(const records::RandomCross& cross) {
+  const auto name = [](const records::RandomCross::Output& output) {
+    return output.quantity + ":" + std::to_string(output.id) + ":" + std::to_string(output.component);
+  };
+  return name(cross.a) + "|" + name(cross.b);
+}
+
+std::vector<CsvColumn> make_cross_columns(const records::RandomResponse& response) {
+  if (response.crosses.empty()) return {};
+  std::vector<CsvColumn> columns{{"random", Eigen::VectorXd::Constant(response.hz.size(), response.set)},
+                                 {"frequency_hz", response.hz}};
+  for (const auto& cross : response.crosses) {
+    const auto name = name_cross(cross);
+    columns.push_back({"cross_psd:" + name + ":real", cross.psd.real()});
+    columns.push_back({"cross_psd:" + name + ":imag", cross.psd.imag()});
+    columns.push_back({"coherence:" + name, cross.coherence});
+  }
+  return columns;
+}
+
+std::vector<CsvColumn> make_correlation_columns(const records::RandomResponse& response) {
+  if (response.crosses.empty() || response.lags.size() == 0) return {};
+  std::vector<CsvColumn> columns{{"random", Eigen::VectorXd::Constant(response.lags.size(), response.set)},
+                                 {"lag", response.lags}};
+  for (const auto& cross : response.crosses)
+    columns.push_back({"cross_correlation:" + name_cross(cross), cross.correlation});
+  return columns;
+}
+
 }  // namespace bough::exports

@@ -28,4 +28,11 @@ std::vector<CsvColumn> make_psd_columns(const records::RandomResponse& response)
 /// A row per lag: random, lag, autocorrelation:NAME; empty without lags.
 std::vector<CsvColumn> make_autocorrelation_columns(const records::RandomResponse& response);
 
+/// random, frequency_hz, of each RCROSS A|B:real, :imag, :coherence.
+std::vector<CsvColumn> make_cross_columns(const records::RandomResponse& response);
+/// random, lag, cross_correlation:A|B.
+std::vector<CsvColumn> make_correlation_columns(const records::RandomResponse& response);
+/// "displacement:1:3|acceleration:5:2".
+std::string name_cross(const records::RandomCross& cross);
+
 }  // namespace bough::exports

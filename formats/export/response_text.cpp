@@ -84,6 +84,74 @@ void add_block(const ResponseSubcase& s, const Block& block, const Eigen::Matrix
   }
 }
 
+const char* get_punch_title(const std::string& quantity);
+
+void add_random_head(const std::string& title, const ResponseSubcase* subcase, int id, PunchLines& lines) {
+  lines.add("$TITLE   = " + (subcase ? subcase->title : ""));
+  lines.add("$SUBTITLE= " + (subcase ? subcase->subtitle : ""));
+  lines.add("$LABEL   = " + (subcase ? subcase->label : ""));
+  lines.add("$" + title);
+  lines.add("$REAL OUTPUT");
+  char text[96];
+  std::snprintf(text, sizeof text, "$SUBCASE ID = %11d", id);
+  lines.add(text);
+}
+
+/// Spectral densities, running RMS and autocorrelation by point, RMS and N0 of all points; with `chosen_only` of the
+/// quantities that the subcase punches.
+void add_random(const records::DeckResponse& response, const records::RandomResponse& random, bool chosen_only,
+                PunchLines& lines) {
+  const int id = random.subcases.empty() ? 1 : random.subcases.front();
+  const auto found = std::find_if(response.subcases.begin(), response.subcases.end(),
+                                  [id](const auto& s) { return std::max(s.id, 1) == id; });
+  const auto* subcase = found == response.subcases.end() ? nullptr : &*found;
+  for (const auto& curves : random.curves) {
+    const auto is_chosen = [&](const auto& of) { return of.quantity == curves.quantity && of.is_punched; };
+    if (!curves.card.empty()) continue;
+    if (chosen_only && (!subcase || std::none_of(subcase->curves.begin(), subcase->curves.end(), is_chosen))) continue;
+    const std::string name = get_punch_title(curves.quantity);
+    const Eigen::MatrixXd cumulative = records::calc_cumulative_rms(random, curves);
+    const auto take_six = [](const auto& values) {
+      std::vector<double> six(values.begin(), values.end());
+      while (six.size() % 3 != 0) six.push_back(0);
+      return six;
+    };
+    const auto for_each_point = [&](const auto& add) {
+      for (std::size_t first = 0, last = 0; first < curves.dofs.size(); first = last) {
+        while (last < curves.dofs.size() && curves.dofs[last].first == curves.dofs[first].first) ++last;
+        add(curves.dofs[first].first, static_cast<Eigen::Index>(first), static_cast<Eigen::Index>(last - first));
+      }
+    };
+    const auto add_curves = [&](const char* what, const char* by, const Eigen::VectorXd& at,
+                                const Eigen::MatrixXd& values) {
+      if (values.size() == 0) return;
+      for_each_point([&](int point, Eigen::Index first, Eigen::Index count) {
+        char text[96];
+        add_random_head(name + " - " + what, subcase, id, lines);
+        std::snprintf(text, sizeof text, "$POINT ID = %11d  IDENTIFIED BY %s", point, by);
+        lines.add(text);
+        for (Eigen::Index i = 0; i < at.size(); ++i) {
+          std::snprintf(text, sizeof text, "%16.6E %c", at(i), count == 1 ? 'S' : 'G');
+          add_values(text, take_six(values.row(i).segment(first, count)), lines);
+        }
+      });
+    };
+    const auto add_rows = [&](const char* what, const Eigen::VectorXd& values) {
+      add_random_head(name + " - " + what, subcase, id, lines);
+      for_each_point([&](int point, Eigen::Index first, Eigen::Index count) {
+        char text[96];
+        std::snprintf(text, sizeof text, "%10d       %c", point, count == 1 ? 'S' : 'G');
+        add_values(text, take_six(values.segment(first, count)), lines);
+      });
+    };
+    add_curves("PSDF", "FREQUENCY", random.hz, curves.psd);
+    add_curves("CRMS", "FREQUENCY", random.hz, cumulative);
+    add_curves("AUTO", "TIME", random.lags, curves.autocorrelation);
+    add_rows("RMS", curves.rms);
+    add_rows("NO", curves.crossing_hz);
+  }
+}
+
 const char* get_punch_title(const std::string& quantity) {
   if (quantity == "displacement") return "DISPLACEMENTS";
   if (quantity == "velocity") return "VELOCITY";
@@ -160,7 +228,8 @@ std::string make_response_csv(const records::DeckResponse& response) {
     write_csv(text, columns);
   }
   for (const auto& random : response.random)
-    for (const auto& columns : {make_psd_columns(random), make_autocorrelation_columns(random)}) {
+    for (const auto& columns : {make_psd_columns(random), make_autocorrelation_columns(random),
+                                make_cross_columns(random), make_correlation_columns(random)}) {
       if (columns.empty()) continue;
       text << "\n";
       write_csv(text, columns);
@@ -197,6 +266,7 @@ std::string make_punch_text(const records::DeckResponse& response) {
       }
     }
   }
+  for (const auto& random : response.random) add_random(response, random, chosen_only, lines);
   return lines.take();
 }
 

@@ -1,5 +1,8 @@
 #include "formats/hdf5/sweep_file.hpp"
 
+#include <cmath>
+#include <limits>
+
 #include "formats/hdf5/detail/reader.hpp"
 #include "formats/hdf5/detail/signals.hpp"
 #include "formats/hdf5/detail/writer.hpp"
@@ -40,6 +43,48 @@ void read_stack(FileReader& file, const std::string& path, std::vector<LinearMod
     for (Index i = 0; i < rows; ++i)
       for (Index j = 0; j < cols; ++j) m(i, j) = array.data[k * size + static_cast<std::size_t>(i * cols + j)];
   }
+}
+
+/// Infinite values are -1 in the file.
+void write_random_outputs(FileWriter& file, const records::RandomOutputs& random) {
+  const auto write = [&](const char* name, Eigen::VectorXd values, const ArrayAttributes& attributes) {
+    for (double& value : values)
+      if (!std::isfinite(value)) value = -1;
+    if (values.size() > 0) file.write_vector(std::string("/random/") + name, values, attributes);
+  };
+  const std::string dims = "the output's dims", squared = "square of the output's dims times T";
+  file.write_matrix("/random/psd", random.psd, {"one-sided spectral density, frequency x output", squared});
+  file.write_matrix("/random/cumulative_rms", random.cumulative_rms, {"RMS from the first frequency to each", dims});
+  write("rms", random.rms, {"over the frequencies, by straight lines of the density", dims});
+  write("zero_crossings_hz", random.crossing_hz, {"N0, zero crossings with positive slope, likewise", "1/T"});
+  write("band_rms", random.band_rms, {"by integration from the first to the last frequency", dims});
+  write("band_zero_crossings_hz", random.band_crossing_hz, {"N0 by integration over the band", "1/T"});
+  write("total_rms", random.total_rms, {"white inputs, all frequencies, by Lyapunov's equation; -1: no bound", dims});
+  write("total_zero_crossings_hz", random.total_crossing_hz, {"N0 of white inputs; -1: no bound", "1/T"});
+}
+
+records::RandomOutputs read_random_outputs(FileReader& file, const records::FrequencyResponse& response) {
+  records::RandomOutputs random;
+  random.outputs = response.outputs;
+  random.frequency_hz = response.frequency_hz;
+  const Index count = response.frequency_hz.size(), ny = response.outputs.size();
+  random.psd = file.read_matrix("/random/psd", count, ny);
+  random.cumulative_rms = file.read_matrix("/random/cumulative_rms", count, ny);
+  const auto read = [&](const char* name) {
+    const std::string path = std::string("/random/") + name;
+    if (!file.has(path)) return Eigen::VectorXd();
+    Eigen::VectorXd values = file.read_vector(path, ny);
+    for (double& value : values)
+      if (value < 0) value = std::numeric_limits<double>::infinity();
+    return values;
+  };
+  random.rms = read("rms");
+  random.crossing_hz = read("zero_crossings_hz");
+  random.band_rms = read("band_rms");
+  random.band_crossing_hz = read("band_zero_crossings_hz");
+  random.total_rms = read("total_rms");
+  random.total_crossing_hz = read("total_zero_crossings_hz");
+  return random;
 }
 
 }  // namespace
@@ -130,7 +175,7 @@ records::LinearSweep read_sweep(const std::string& path) {
 }
 
 void write_response(const records::FrequencyResponse& response, const records::PeakGain& peak,
-                    const records::Margins* margins, const std::string& path) {
+                    const records::Margins* margins, const records::RandomOutputs* random, const std::string& path) {
   FileWriter file(path, kResponseFormat, kVersion);
   file.write_source(response.source);
   write_signals(file, "/inputs", response.inputs, "inputs");
@@ -149,7 +194,6 @@ void write_response(const records::FrequencyResponse& response, const records::P
                      {"C (jw - A)^-1 B + D: frequency, output, input; real part", "as the names' dims say"});
   file.write_numbers("/imag", shape, imag.data(), {"likewise, imaginary part", "as the names' dims say"});
   file.write_matrix("/singular_values", response.singular_values, {"frequency, descending", "as the names' dims say"});
-  file.attach_scale("/frequency_hz", {"/real", "/imag", "/singular_values"});
   file.write_number("/peak/value", peak.is_finite ? peak.value : -1,
                     {"largest singular value of all frequencies; -1: it is infinite", "as the names' dims say"});
   file.write_number("/peak/frequency_hz", std::isfinite(peak.frequency_hz) ? peak.frequency_hz : -1,
@@ -172,6 +216,12 @@ void write_response(const records::FrequencyResponse& response, const records::P
     file.write_number("/margins/distance_hz", margins->distance_hz, {"where", "1/T"});
     file.write_number("/margins/largest_real", margins->largest_real, {"of the poles with the loop closed", "1/T"});
   }
+  std::vector<std::string> over_frequency{"/real", "/imag", "/singular_values"};
+  if (random) {
+    write_random_outputs(file, *random);
+    over_frequency.insert(over_frequency.end(), {"/random/psd", "/random/cumulative_rms"});
+  }
+  file.attach_scale("/frequency_hz", over_frequency);
   file.commit();
 }
 
@@ -204,6 +254,10 @@ ResponseOfModel read_model_response(const std::string& path) {
     found.margins.distance_hz = file.read_number("/margins/distance_hz");
     found.margins.largest_real = file.read_number("/margins/largest_real");
     found.margins.is_stable = found.margins.largest_real <= 0;
+  }
+  if (file.has("/random")) {
+    found.has_random = true;
+    found.random = read_random_outputs(file, response);
   }
   file.throw_if_errors();
   const auto size = static_cast<std::size_t>(ny * nu);

@@ -4,6 +4,7 @@
 
 #include "formats/records/frequency_response.hpp"
 #include "formats/records/linear_sweep.hpp"
+#include "formats/records/random_outputs.hpp"
 
 namespace bough::hdf5 {
 
@@ -18,12 +19,14 @@ struct ResponseOfModel {
   records::PeakGain peak;  ///< is_certified is not in the file
   records::Margins margins;
   bool has_margins = false;
+  records::RandomOutputs random;
+  bool has_random = false;
 };
 /// Reads the frequency response of a linear model, its peak gain and its margins.
 ResponseOfModel read_model_response(const std::string& path);
 
-/// `margins`: of a loop, or nullptr.
+/// `margins`: of a loop, or nullptr. `random`: of --psd, or nullptr.
 void write_response(const records::FrequencyResponse& response, const records::PeakGain& peak,
-                    const records::Margins* margins, const std::string& path);
+                    const records::Margins* margins, const records::RandomOutputs* random, const std::string& path);
 
 }  // namespace bough::hdf5

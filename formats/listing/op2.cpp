@@ -357,6 +357,71 @@ void add_blocks(const records::Listing& listing, const char* name,
   if (is_open) file.end_table();
 }
 
+/// Function codes of word 2: real random results by frequency (SORT1) and by point (SORT2).
+constexpr int kRandomSort1 = 4000, kRandomSort2 = 6000;
+constexpr int kFrequencyAnalysis = 5;
+
+Words make_random_ident(const records::ListedRandom& random, int function) {
+  Words ident = make_ident({kFrequencyAnalysis, function + static_cast<int>(random.kind), random.subcase, random.title,
+                            random.subtitle, random.label});
+  ident.set(8, 1);
+  ident.set(9, 8);
+  return ident;
+}
+
+/// A record per point: frequency or lag, type of the point, six values.
+void add_random_curves(const records::ListedRandom& random, const Eigen::VectorXd& at,
+                       const std::vector<Eigen::MatrixXd>& values, Op2Writer& file) {
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    Words ident = make_random_ident(random, kRandomSort2), data;
+    ident.set(4, 10 * random.id[k] + kDevice);
+    for (Eigen::Index i = 0; i < at.size(); ++i) {
+      data.add(at(i));
+      data.add(random.is_scalar[k] ? 2 : 1);
+      for (int c = 0; c < 6; ++c) data.add(values[k](i, c));
+    }
+    file.add_record(ident);
+    file.add_record(data);
+  }
+}
+
+/// One record of all points, at 0 Hz.
+void add_random_values(const records::ListedRandom& random, const Eigen::MatrixXd& values, Op2Writer& file) {
+  Words ident = make_random_ident(random, kRandomSort1), data;
+  ident.set(4, 0.0);
+  for (std::size_t k = 0; k < random.id.size(); ++k) {
+    data.add(10 * random.id[k] + kDevice);
+    data.add(random.is_scalar[k] ? 2 : 1);
+    for (int c = 0; c < 6; ++c) data.add(values(static_cast<Eigen::Index>(k), c));
+  }
+  file.add_record(ident);
+  file.add_record(data);
+}
+
+/// Tables of one kind of quantity; several sets of RANDPS with one first subcase cannot be told apart in the file.
+void add_random(const std::vector<records::ListedRandom>& all, const std::string& name, ListedKind kind,
+                Op2Writer& file) {
+  std::vector<const records::ListedRandom*> chosen;
+  for (const auto& random : all) {
+    const bool is_first =
+        std::none_of(chosen.begin(), chosen.end(), [&](const auto* other) { return other->subcase == random.subcase; });
+    if (random.kind == kind && !random.id.empty() && is_first) chosen.push_back(&random);
+  }
+  if (chosen.empty()) return;
+  const auto add_table = [&](const std::string& suffix, const auto& add) {
+    file.begin_table(name + suffix, name + suffix);
+    for (const auto* random : chosen) add(*random);
+    file.end_table();
+  };
+  add_table("PSD2", [&](const auto& random) { add_random_curves(random, random.hz, random.psd, file); });
+  add_table("CRM2", [&](const auto& random) { add_random_curves(random, random.hz, random.cumulative_rms, file); });
+  if (std::any_of(chosen.begin(), chosen.end(), [](const auto* random) { return !random->autocorrelation.empty(); }))
+    add_table("ATO2",
+              [&](const auto& random) { add_random_curves(random, random.lags, random.autocorrelation, file); });
+  add_table("RMS1", [&](const auto& random) { add_random_values(random, random.rms, file); });
+  add_table("NO1", [&](const auto& random) { add_random_values(random, random.crossing_hz, file); });
+}
+
 }  // namespace
 
 std::string make_op2(const records::Listing& listing) {
@@ -387,6 +452,9 @@ std::string make_op2(const records::Listing& listing) {
   add_blocks(
       listing, "OES1", &ListedStep::stresses, [](int type) { return !is_layered(type); }, add_stresses, file);
   add_blocks(listing, "OES1C", &ListedStep::stresses, is_layered, add_stresses, file);
+  for (const auto& [name, kind] : {std::pair("OUG", ListedKind::Displacement), std::pair("OVG", ListedKind::Velocity),
+                                   std::pair("OAG", ListedKind::Acceleration), std::pair("OQG", ListedKind::SpcForce)})
+    add_random(listing.random, name, kind, file);
   return file.finish();
 }
 

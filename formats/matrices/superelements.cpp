@@ -61,7 +61,9 @@ class Joiner {
 
   void join() {
     std::set<int> external;
+    for (const auto& part : deck_.superelements) external.insert(part.id);
     for (const auto& bulk : deck_.super.sebulk) {
+      if (bulk.type == "PRIMARY" && external.count(bulk.id) > 0) continue;
       if (!external.insert(bulk.id).second) {
         error("matrices.superelement-half", bulk.at, name(bulk.id) + " has two SEBULK", "remove one of them");
         continue;
@@ -80,7 +82,7 @@ class Joiner {
       if (section.deck->super.extrn.empty() && has_elements(*section.deck))
         error("matrices.superelement-type", section.at,
               "BEGIN SUPER=" + std::to_string(section.id) +
-                  " is a superelement with elements, which is not reduced in the deck of the residual structure",
+                  " is a superelement with elements, which is not condensed here",
               "make its section a deck, write it with bough export --to extseout and include the files");
       else
         error("matrices.superelement-half", section.at,

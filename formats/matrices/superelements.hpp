@@ -4,7 +4,8 @@
 
 namespace bough::matrices {
 
-/// Makes deck.superelements of deck.super: exterior points, matrices, recovery rows of each external superelement.
+/// Adds to deck.superelements from deck.super: exterior points, matrices, recovery rows of each external superelement.
+/// Sections that deck.superelements has already are left alone.
 /// Reports matrices.superelement-half (no section, no SEBULK, no file), matrices.superelement-size (the matrices are of
 /// another boundary), matrices.superelement-type, matrices.superelement-rows, and what is wrong with a file.
 void read_superelements(records::Deck& deck, Diagnostics& diagnostics);

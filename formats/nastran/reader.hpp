@@ -1,5 +1,6 @@
 #pragma once
 /// \file Nastran decks: bytes to records::Deck.
+#include <map>
 #include <string>
 #include <string_view>
 
@@ -15,6 +16,7 @@ struct ReadOptions {
   /// read_dynamic_deck: for complex modes. CMETHOD, TFL, K2PP, M2PP, B2PP and EIGC, TF, EPOINT count; the direct input
   /// does not join the matrices of the model. With is_response = false.
   bool is_complex = false;
+  std::map<int, double> design_values = {};  ///< of DESVAR by id, in place of XINIT
 };
 
 /// Reads a deck or fragment with its INCLUDE files. Every error of the deck is added to `diagnostics` (none is thrown);

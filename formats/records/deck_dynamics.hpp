@@ -117,6 +117,26 @@ struct TimeLags {
   CardLocation at;
 };
 
+/// RCROSS: cross-spectral density and cross-correlation of two components of grids.
+struct CrossRequest {
+  struct Output {
+    std::string quantity;  ///< DISP, VELO, ACCE, SPCF or a word that is not computed
+    int id = 0, component = 0;
+  };
+  int sid = 0;
+  Output a, b;
+  int curve = 0;  ///< CURID, 0: none
+  CardLocation at;
+};
+
+/// DESVAR of SOL 200 that a relation to a property uses.
+struct DesignVariable {
+  int id = 0;
+  std::string label;
+  double value = 0;  ///< at the start
+  CardLocation at;
+};
+
 /// USET and USET1 with U6, RVDOF, RVDOF1: unit forces whose residual vectors join the modes.
 struct ResidualDofs {
   int first = 0, last = 0;  ///< grids; of a range those that exist
@@ -166,6 +186,8 @@ struct DynamicCards {
   std::vector<DynamicTable> spectra;  ///< TABRND1
   std::vector<GustSpectrum> gust_spectra;
   std::vector<TimeLags> lags;
+  std::vector<CrossRequest> crosses;
+  std::vector<DesignVariable> design_variables;  ///< by id; empty but for SOL 200
   std::vector<ResidualDofs> residual_dofs;
   std::vector<ComplexMethod> complex_methods;
   std::vector<TransferFunction> transfer_functions;
@@ -209,6 +231,7 @@ struct DynamicSelection {
   int cmethod = 0, tfl = 0;  ///< of complex modes
   int ofreq = 0;             ///< a SET; 0: all
   int random = 0;            ///< set of RANDPS and RANDT1
+  int rcross = 0;            ///< set of RCROSS
   /// (scale, DMIG name) of K2PP, M2PP, B2PP. In a response they are in k2gg, m2gg and b2gg of the subcase too.
   std::vector<std::pair<double, std::string>> k2pp, m2pp, b2pp;
   std::optional<bool> resvec;  ///< RESVEC = YES, NO

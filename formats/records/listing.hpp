@@ -98,11 +98,25 @@ struct ListedWeight {
   Eigen::Vector3d mass, I_Q;
 };
 
+/// One quantity of a random response at points in ascending order, in displacement (CD) axes.
+struct ListedRandom {
+  ListedKind kind = ListedKind::Displacement;
+  int subcase = 0;  ///< the first that RANDPS relates
+  std::string title, subtitle, label;
+  std::vector<int> id;
+  std::vector<bool> is_scalar;
+  Eigen::VectorXd hz, lags;
+  Eigen::MatrixXd rms, crossing_hz;  ///< points x 6
+  /// Per point, frequencies x 6, and lags x 6; without RANDT1 no autocorrelation.
+  std::vector<Eigen::MatrixXd> psd, cumulative_rms, autocorrelation;
+};
+
 struct Listing {
   std::optional<ListedWeight> weight;
   std::vector<ListedRoots> roots;
   std::vector<ListedEffectiveMass> effective_mass;
   std::vector<ListedStep> steps;
+  std::vector<ListedRandom> random;
 };
 
 }  // namespace bough::records

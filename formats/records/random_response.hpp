@@ -24,6 +24,20 @@ struct RandomCurves {
   Eigen::MatrixXd autocorrelation;  ///< lags x columns; empty without RANDT1
 };
 
+/// Two components of grids together (RCROSS).
+struct RandomCross {
+  struct Output {
+    std::string quantity;  ///< displacement, velocity, acceleration, spc_force
+    int id = 0, component = 0;
+  };
+  Output a, b;
+  int curve = 0;                ///< CURID, 0: none
+  Eigen::VectorXcd psd;         ///< S_ab = E[A B*] per frequency, one-sided, [unit_a unit_b/Hz]
+  Eigen::VectorXd coherence;    ///< abs(S_ab)²/(S_aa S_bb) per frequency, 0 where S_aa or S_bb is 0
+  double covariance = 0;        ///< ∫Re S_ab df by straight lines, E[a(t) b(t)]
+  Eigen::VectorXd correlation;  ///< E[a(t + τ) b(t)] per lag; empty without RANDT1
+};
+
 struct RandomResponse {
   int set = 0;                ///< of RANDPS
   std::vector<int> subcases;  ///< whose loads RANDPS relates
@@ -31,6 +45,7 @@ struct RandomResponse {
   bool is_loglog = false;      ///< integrated by lines on logarithmic axes (PARAM,RMSINT,LOGLOG)
   double integral_error = -1;  ///< relative, of the mean squares of the coordinates in modal_rms; -1: none
   std::vector<RandomCurves> curves;
+  std::vector<RandomCross> crosses;
 };
 
 /// ∫f^r S df between the frequencies a < b, r = 0 or 2: exact for S as a straight line, or, if `is_loglog` and a, S_a

@@ -267,6 +267,7 @@ std::string detect_kind(const std::string& path) {
     const Value* body = root.find("body");
     if (body && body->is_table()) return "body";
     if (root.find("campaign")) return "campaign";
+    if (root.find("psd")) return "psd";
     if ((body && body->is_array()) || root.find("simulation") || root.find("hinge")) return "system";
     return {};
   }

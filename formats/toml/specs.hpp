@@ -2,6 +2,7 @@
 /// \file Body and system files in TOML: text to records, every error with file and line, unknown keys with the nearest
 /// match.
 #include "formats/records/body_spec.hpp"
+#include "formats/records/input_density.hpp"
 #include "formats/records/system_spec.hpp"
 
 namespace bough::toml_files {
@@ -21,7 +22,9 @@ void check_same_system(const std::string& before, const std::string& after, cons
                        Diagnostics& diagnostics);
 /// "FILE", "FILE:NAME", or ":NAME" of the common file; not resolved.
 records::MatrixSource parse_matrix_source(const std::string& text, const std::string& common);
-/// Kind of a file by its tables: "body", "system", "campaign", or empty.
+/// The [[psd]] of a file for bough response --psd. Reports "linear.bad-psd" (negative, not Hermitian, lengths), toml.*.
+std::vector<records::InputDensity> read_input_densities(const std::string& path, Diagnostics& diagnostics);
+/// Kind of a file by its tables: "body", "system", "campaign", "psd", or empty.
 std::string detect_kind(const std::string& path);
 
 }  // namespace bough::toml_files

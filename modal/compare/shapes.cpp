@@ -76,6 +76,7 @@ ModalModel ModalModel::from(const records::FlexBody& body) {
   m.node_xyz = body.node_xyz;
   m.phi = body.phi;
   m.frequency_hz = body.frequency_hz;
+  m.modal_mass = body.modal_mass.diagonal();
   m.effective_mass = body.effective_mass;
   return m;
 }
@@ -90,6 +91,7 @@ ModalModel ModalModel::from(const records::ModesResult& modes) {
   m.phi = modes.phi;
   m.is_buckling = modes.load_factor.size() > 0;
   m.frequency_hz = m.is_buckling ? modes.load_factor : modes.frequency_hz;
+  m.modal_mass = modes.modal_mass;
   m.effective_mass = modes.effective_mass;
   return m;
 }

@@ -24,6 +24,7 @@ struct ModalModel {
   MatrixXd node_xyz;          ///< p x 3
   std::vector<MatrixXd> phi;  ///< [k] 6 x n
   VectorXd frequency_hz;      ///< n; load factors of buckling modes
+  VectorXd modal_mass;        ///< n: φᵀMφ
   bool is_buckling = false;
   MatrixXd effective_mass;  ///< n x 6, or empty
 

@@ -100,6 +100,19 @@ ComponentCost calc_component_cost(const MatrixXd& A, const MatrixXd& B, const Ma
   return cost;
 }
 
+bool is_seen(const StateSpace& s, const MatrixXd& projector) {
+  MatrixXd A = s.A;
+  const Eigen::VectorXd scale = balance(A);
+  const MatrixXd inverse = scale.cwiseInverse().asDiagonal(), C = s.C * scale.asDiagonal();
+  MatrixXd all = inverse * s.B, part = inverse * projector * s.B;
+  for (Index k = 0; k < std::min<Index>(A.rows(), 4); ++k) {
+    if ((C * part).norm() > 1e-9 * C.norm() * all.norm()) return true;
+    all = A * all;
+    part = A * part;
+  }
+  return false;
+}
+
 double calc_mean_square_difference(const StateSpace& full, const StateSpace& reduced) {
   const StateSpace both = subtract(full, reduced);
   return std::max(0.0, calc_component_cost(both.A, both.B, both.C).total);

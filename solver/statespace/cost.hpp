@@ -35,6 +35,10 @@ struct StateSpace {
   Eigen::MatrixXd A, B, C;
 };
 
+/// Returns true if the poles of the invariant subspace of the projector Π couple inputs to outputs: C Aᵏ Π B is not
+/// negligible to |C| |Aᵏ B|, k = 0 to 3.
+bool is_seen(const StateSpace& s, const Eigen::MatrixXd& projector);
+
 /// Mean square of y - y_r of two models with the same inputs and outputs, white noise of unit intensity at the inputs;
 /// poles at 0 of either take no part. Throws ComputationError "select.unstable".
 double calc_mean_square_difference(const StateSpace& full, const StateSpace& reduced);

@@ -47,7 +47,8 @@ std::vector<double> choose_frequencies(const records::LinearModel& model, const 
   if (high < low) std::swap(low, high);
   std::set<double> chosen;
   const double from = std::log(low), to = std::log(high);
-  for (int i = 0; i <= range.points; ++i) chosen.insert(std::exp(from + (to - from) * i / std::max(1, range.points)));
+  for (int i = 0; i <= range.points; ++i)
+    chosen.insert(std::clamp(std::exp(from + (to - from) * i / std::max(1, range.points)), low, high));
   if (model.sample_time > 0) chosen.erase(std::prev(chosen.end())), chosen.insert(high);  // that one to the last bit
   const auto max_chosen = static_cast<std::size_t>(range.max_points / 2);
   for (Index i = 0; i < poles.size() && chosen.size() < max_chosen; ++i) {
@@ -58,6 +59,7 @@ std::vector<double> choose_frequencies(const records::LinearModel& model, const 
     for (const double k : {-8.0, -4.0, -2.0, -1.0, -0.5, 0.0, 0.5, 1.0, 2.0, 4.0, 8.0})
       if (im + k * width >= low && im + k * width <= high) chosen.insert(im + k * width);
   }
+  for (const double hz : range.corners_hz) chosen.insert(2 * std::numbers::pi * hz);
   return {chosen.begin(), chosen.end()};
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 /// \file The transfer matrix of a linear model over frequency (docs/theory/linear.md).
 #include <complex>
+#include <vector>
 
 #include "formats/records/frequency_response.hpp"
 
@@ -26,9 +27,10 @@ class TransferMatrix {
 std::complex<double> calc_argument(const records::LinearModel& model, double omega);
 
 struct FrequencyRange {
-  double from_hz = 0, to_hz = 0;  ///< 0: a decade beyond the poles, and the zeros near them
-  int points = 300;               ///< even on a logarithmic scale; more where a resonance or a notch wants them
-  int max_points = 6000;          ///< in all
+  double from_hz = 0, to_hz = 0;   ///< 0: a decade beyond the poles, and the zeros near them
+  int points = 300;                ///< even on a logarithmic scale; more where a resonance or a notch wants them
+  int max_points = 6000;           ///< in all
+  std::vector<double> corners_hz;  ///< more of them, of the inputs; also 0
 };
 
 /// Frequencies: even on a logarithmic scale, about the lightly damped poles, and between them until no entry changes by

@@ -187,22 +187,6 @@ double calc_sigma(const MatrixXcd& value) {
   return value.size() == 0 ? 0 : Eigen::JacobiSVD<MatrixXcd>(value).singularValues()[0];
 }
 
-/// Returns true if poles outside `part` couple inputs to outputs: C Aᵏ (1 - U L) B is not negligible to |C| |Aᵏ B|.
-bool is_seen(const records::LinearModel& model, const StablePart& part) {
-  const Index n = model.A.rows();
-  MatrixXd A = model.A;
-  const Eigen::VectorXd scale = balance(A);
-  const MatrixXd inverse = scale.cwiseInverse().asDiagonal(), C = model.C * scale.asDiagonal();
-  const MatrixXd decays = inverse * (part.U * part.L).real() * scale.asDiagonal();
-  MatrixXd all = inverse * model.B, rest = all - decays * all;
-  for (Index k = 0; k < std::min<Index>(n, 4); ++k) {
-    if ((C * rest).norm() > 1e-9 * C.norm() * all.norm()) return true;
-    all = A * all;
-    rest = A * rest;
-  }
-  return false;
-}
-
 /// Frequencies at which a singular value of G is gamma: eigenvalues of the Hamiltonian matrix on the imaginary axis.
 std::vector<double> find_level(const StateSpace& s, const MatrixXd& D, double gamma) {
   const Index n = s.A.rows(), nu = s.B.cols();
@@ -457,7 +441,9 @@ records::PeakGain calc_peak_gain(const records::LinearModel& model, const record
     std::ostringstream why;
     why << "the pole " << part.unstable.real() << " ± " << std::abs(part.unstable.imag()) << " i does not decay";
     peak.why = why.str();
-  } else if (part.num_rigid > 0 && is_seen(model, part)) {
+  } else if (part.num_rigid > 0 &&
+             is_seen({model.A, model.B, model.C},
+                     MatrixXd::Identity(model.A.rows(), model.A.rows()) - (part.U * part.L).real())) {
     peak.why = "poles at 0 come through to the outputs";
   }
   if (!peak.why.empty()) {

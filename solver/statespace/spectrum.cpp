@@ -1,13 +1,12 @@
 #include "solver/statespace/spectrum.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
-#include <set>
 
 #include "base/diagnostic.hpp"
 #include "solver/statespace/frequency_response.hpp"
+#include "solver/statespace/quadrature.hpp"
 
 namespace bough::statespace {
 namespace {
@@ -16,31 +15,6 @@ using Eigen::Index;
 using Eigen::MatrixXcd;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-
-// Abramowitz & Stegun, Handbook of Mathematical Functions, table 25.4, n = 8.
-constexpr std::array<double, 4> kPoints{0.183434642495649805, 0.525532409916328986, 0.796666477413626740,
-                                        0.960289856497536232};
-constexpr std::array<double, 4> kWeights{0.362683783378361983, 0.313706645877887287, 0.222381034453374471,
-                                         0.101228536290376259};
-
-/// Ends of the intervals, ascending.
-std::vector<double> choose_intervals(const StablePart& part, const Spectrum& spectrum) {
-  const double low = spectrum.frequency_hz[0], high = spectrum.frequency_hz[spectrum.frequency_hz.size() - 1];
-  std::set<double> ends(spectrum.frequency_hz.begin(), spectrum.frequency_hz.end());
-  const auto add = [&](double f) {
-    if (f > low && f < high) ends.insert(f);
-  };
-  for (Index i = 0; i < part.T.rows(); ++i) {
-    const double at = std::abs(part.T(i, i).imag()) / (2 * std::numbers::pi);
-    const double width = std::abs(part.T(i, i).real()) / (2 * std::numbers::pi);
-    add(at);
-    for (double far = 0.5 * width; far < high + at; far *= 2) {
-      add(at - far);
-      add(at + far);
-    }
-  }
-  return {ends.begin(), ends.end()};
-}
 
 VectorXd calc_density(const Spectrum& spectrum, double f, Index num_inputs) {
   const auto& all = spectrum.frequency_hz;
@@ -64,17 +38,14 @@ ComponentCost calc_component_cost(const StateSpace& s, const Spectrum& spectrum)
   const MatrixXd decays = (part.U * part.L).real();
   const MatrixXd seen = s.C * decays, driven = decays * s.B;
   const TransferMatrix transfer(s.A, driven, seen, MatrixXd::Zero(s.C.rows(), s.B.cols()));
-  const auto ends = choose_intervals(part, spectrum);
-  for (std::size_t k = 0; k + 1 < ends.size(); ++k) {
-    const double middle = 0.5 * (ends[k] + ends[k + 1]), half = 0.5 * (ends[k + 1] - ends[k]);
-    for (std::size_t p = 0; p < 2 * kPoints.size(); ++p) {
-      const double f = middle + (p % 2 == 0 ? half : -half) * kPoints[p / 2];
-      const MatrixXcd x = transfer.calc_states({0, 2 * std::numbers::pi * f});
-      const MatrixXcd y = seen * x;
-      const VectorXd density = calc_density(spectrum, f, s.B.cols());
-      const MatrixXcd back = (seen.transpose() * y).conjugate();
-      cost.state += half * kWeights[p / 2] * (x.cwiseProduct(back).real() * density);
-    }
+  const auto rule = make_quadrature(part.T.diagonal(), {spectrum.frequency_hz.begin(), spectrum.frequency_hz.end()});
+  for (Index k = 0; k < rule.weight.size(); ++k) {
+    const double f = rule.frequency_hz[k];
+    const MatrixXcd x = transfer.calc_states({0, 2 * std::numbers::pi * f});
+    const MatrixXcd y = seen * x;
+    const VectorXd density = calc_density(spectrum, f, s.B.cols());
+    const MatrixXcd back = (seen.transpose() * y).conjugate();
+    cost.state += rule.weight[k] * (x.cwiseProduct(back).real() * density);
   }
   cost.total = cost.state.sum();
   return cost;

@@ -11,10 +11,9 @@ struct Spectrum {
   Eigen::MatrixXd density;       ///< a row a frequency; a column an input, or one column for all
 };
 
-/// V = ∫ Σ_j S_j |y_j|² df and V_i = ∫ Σ_j S_j Re(x_ij (Cᵀȳ_j)_i) df, Σ V_i = V: Gauss' rule of eight points on
-/// intervals between the frequencies given and, twice as long from one to the next, away from each pole. White noise of
-/// unit intensity is a density of 2 at all frequencies. Poles at 0 take no part; throws ComputationError
-/// "select.unstable" as calc_component_cost does.
+/// V = ∫ Σ_j S_j |y_j|² df and V_i = ∫ Σ_j S_j Re(x_ij (Cᵀȳ_j)_i) df, Σ V_i = V: by make_quadrature with corners at the
+/// frequencies given. White noise of unit intensity is a density of 2 at all frequencies. Poles at 0 take no part;
+/// throws ComputationError "select.unstable" as calc_component_cost does.
 ComponentCost calc_component_cost(const StateSpace& model, const Spectrum& spectrum);
 
 /// Mean square of the difference y - y_r for inputs of the given spectrum.

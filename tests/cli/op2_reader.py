@@ -114,6 +114,32 @@ class Op2:
                           rows))
         return found
 
+    def random_curves(self, name):
+        """SORT2: {(table code, subcase, point): (type, frequencies or lags, values)} of real random results."""
+        found = {}
+        for ident, data in self.tables[name]:
+            words = ident[0]
+            assert words[1] // 1000 == 6 and words[0] // 10 == 5 and words[8:10] == (1, 8), words[:10]
+            assert words[4] % 10 == words[0] % 10 and len(data) % 32 == 0
+            rows = [struct.unpack_from("<fi6f", data, 32 * k) for k in range(len(data) // 32)]
+            types = {row[1] for row in rows}
+            assert len(types) == 1 and types <= {1, 2}
+            found[words[1] % 1000, words[3], words[4] // 10] = types.pop(), [r[0] for r in rows], [r[2:] for r in rows]
+        return found
+
+    def random_values(self, name):
+        """SORT1: {(table code, subcase): {point: (type, values)}} of real random results."""
+        found = {}
+        for ident, data in self.tables[name]:
+            words = ident[0]
+            assert words[1] // 1000 == 4 and words[0] // 10 == 5 and words[8:10] == (1, 8), words[:10]
+            assert self.real(ident, 5) == 0 and len(data) % 32 == 0
+            rows = [struct.unpack_from("<2i6f", data, 32 * k) for k in range(len(data) // 32)]
+            assert all(row[0] % 10 == words[0] % 10 for row in rows)
+            assert [row[0] for row in rows] == sorted(row[0] for row in rows)
+            found[words[1] % 1000, words[3]] = {row[0] // 10: (row[1], row[2:]) for row in rows}
+        return found
+
     def elements(self, name, code):
         """(approach, element type, subcase, word 5, {element: values}) of each record."""
         found = []

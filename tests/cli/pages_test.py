@@ -265,7 +265,7 @@ PAGES = {
         stands_for={"samples = 20": "samples = 2", "[1, 1000]": "[1, 2]", "number = 1000": "number = 2"}),
     "docs/formats/comparison.md": boom(
         before=("matrices boom.bdf -o MATRICES.h5 -q",), stands_for={**SAME, "DECK": "boom.bdf", "N": "3"},
-        left_out=("--refinement",)),  # compare_test.py: three meshes
+        left_out=("--refinement", "--test", "--sensors")),  # compare_test.py: three meshes; correlation_test.py
     **{f"data/examples/{name}/README.md": example(name) for name in (
         "ex02-hub", "ex03-two-link", "ex07-four-bar", "ex08-satellite", "ex09-stage-separation", "ex10-robot-arm",
         "ex11-rotor-blade")},
@@ -278,6 +278,7 @@ ELSEWHERE = {
     "docs/tutorial.md": "docs_test.py",
     "docs/your-deck.md": "docs_test.py",
     "docs/external-superelements.md": "superelements_test.py",
+    "docs/random-response.md": "random_outputs_test.py",
     "docs/studio.md": "studio_test.py",
     **{f"data/examples/{name}/README.md": "docs_test.py" for name in (
         "ex01-spinup", "ex04-free-flyer", "ex05-plate", "ex06-campaign")},

@@ -8,6 +8,7 @@ import numpy as np
 from scipy.integrate import quad
 
 from deck_response_case import CHAIN, ONE
+from op2_reader import Op2
 from support import ProgramTest
 
 DECKS = os.path.join(os.environ.get("BOUGH_SHARED_DIR", ""), "models/random")
@@ -248,6 +249,88 @@ class Random(ProgramTest):
         self.assertAlmostEqual(one["rms"], pick(part, "rms", (1, 1)), delta=1e-12)
         self.bough("export", "d.h5", "--to", "csv", "-o", "e.csv")
         self.assertEqual(self.read("e.csv"), self.read("d.csv"))
+
+    def test_cross_spectral_densities(self):
+        """RCROSS: S_ab = H_a S H_bᴴ of dense matrices; E[a(t + τ) b(t)] by fine quadrature of its straight lines."""
+        cards = "RCROSS,40,DISP,1,1,,3\nRCROSS,40,ACCE,2,1,DISP,3,,7\nRCROSS,41,DISP,1,1,,2\n"
+        bulk = TERMS + cards + "RANDT1,30,4,0.,2.\n"
+        found, _ = self.solve(PAIR.format(sol=111, above="RCROSS = 40", bulk=bulk), "--csv", "d.csv", "--punch", "d.pch")
+        with h5py.File(self.path("d.h5")) as f:
+            crosses = [{key: value[()] for key, value in f[f"random/30/cross/{k}"].items()} for k in (1, 2)]
+            self.assertNotIn("3", f["random/30/cross"])
+            self.assertEqual([str(w) if isinstance(w, str) else w.decode() for w in f["random/30/cross/2"].attrs["quantities"]],
+                             ["acceleration", "displacement"])
+        hz, lags = found["hz"], found["lag"]
+        x, w = np.polynomial.legendre.leggauss(12)
+        for cross, dofs, (a, b), curve in zip(crosses, ([[1, 1], [3, 1]], [[2, 1], [3, 1]]), ((0, 2), (1, 2)), (0, 7)):
+            np.testing.assert_array_equal(cross["dofs"], dofs)
+            self.assertEqual(cross["curve"][0], curve)
+            exact, coherence = [], []
+            for f in hz:
+                h = chain(f) * np.array([1, -(2 * np.pi * f)**2 if curve else 1, 1])[:, None]
+                S = h @ spectrum(f) @ h.conj().T
+                exact.append(S[a, b])
+                coherence.append(abs(S[a, b])**2 / (S[a, a] * S[b, b]).real)
+            S = cross["real"] + 1j * cross["imag"]
+            np.testing.assert_allclose(S, exact, rtol=1e-8, atol=1e-12 * np.abs(exact).max())
+            np.testing.assert_allclose(cross["coherence"], coherence, rtol=1e-7)
+            self.assertAlmostEqual(float(np.squeeze(cross["covariance"])), np.trapz(S.real, hz), delta=1e-12 * np.abs(S).max())
+            for lag, value in zip(lags, cross["correlation"]):
+                total = 0
+                for p, q, u, v in zip(hz, hz[1:], S, S[1:]):
+                    f = (p + q) / 2 + (q - p) / 2 * x
+                    total += ((q - p) / 2 * w) @ ((u + (f - p) / (q - p) * (v - u)) * np.exp(2j * np.pi * f * lag)).real
+                self.assertAlmostEqual(value, total, delta=1e-9 * np.trapz(np.abs(S), hz))
+        self.assertIn("cross_psd:acceleration:2:1|displacement:3:1:real", self.read("d.csv"))
+        self.assertIn("cross_correlation:displacement:1:1|displacement:3:1", self.read("d.csv"))
+        self.bough("export", "d.h5", "--to", "csv", "-o", "e.csv")
+        self.assertEqual(self.read("e.csv"), self.read("d.csv"))
+
+    def test_bad_cross_requests(self):
+        deck = PAIR.format(sol=111, above="RCROSS = 40", bulk=TERMS + "RCROSS,40,DISP,1,1,,{}\n")
+        self.write("d.bdf", PAIR.format(sol=111, above="RCROSS = 40", bulk=TERMS))
+        self.fails(1, "frequency", "d.bdf", error="modal.missing-random", says=["RCROSS = 40", "d.bdf:11"])
+        self.write("d.bdf", deck.format(3).replace("RANDOM = 30\n", ""))
+        self.fails(1, "frequency", "d.bdf", error="modal.missing-random", says=["RCROSS without RANDOM"])
+        self.write("d.bdf", deck.format(99))
+        printed = self.bough("frequency", "d.bdf").stderr
+        self.assertIn("[modal.random-cross]", printed)
+        self.assertIn("DISP of 99, component 1", printed)
+        self.write("d.bdf", deck.format(3).replace("RCROSS,40,DISP,1,1", "RCROSS,40,,1,1"))
+        self.fails(1, "frequency", "d.bdf", says=["RTYPE1"])
+
+    def test_op2_and_punch(self):
+        """Tables of the vendor's names: SORT2 of densities, running RMS, autocorrelation; SORT1 of RMS and N0."""
+        found, _ = self.solve(PAIR.format(sol=111, above="VELOCITY = ALL", bulk=TERMS + "RANDT1,30,4,0.,2.\n"),
+                              "--op2", "d.op2", "--punch", "d.pch")
+        op2 = Op2(self.path("d.op2"))
+        for letters, code, quantity in (("OUG", 1, "displacement"), ("OVG", 10, "velocity"), ("OAG", 11, "acceleration"),
+                                        ("OQG", 3, "spc_force")):
+            part = found[quantity]
+            dofs = list(map(tuple, part["dofs"]))
+            for suffix, name, at in (("PSD2", "psd", "hz"), ("CRM2", "cumulative_rms", "hz"), ("ATO2", "autocorrelation", "lag")):
+                curves = op2.random_curves(letters + suffix)
+                self.assertEqual(sorted(curves), [(code, 1, grid) for grid in sorted({grid for grid, _ in dofs})])
+                for (_, _, grid), (kind, x, values) in curves.items():
+                    self.assertEqual(kind, 1)
+                    np.testing.assert_allclose(x, found[at], rtol=1e-6)
+                    for c in range(6):
+                        column = part[name][:, dofs.index((grid, c + 1))] if (grid, c + 1) in dofs else 0 * found[at]
+                        np.testing.assert_allclose(np.array(values)[:, c], column, rtol=1e-6, atol=1e-30)
+            for suffix, name in (("RMS1", "rms"), ("NO1", "zero_crossings_hz")):
+                ((key, rows),) = op2.random_values(letters + suffix).items()
+                self.assertEqual(key, (code, 1))
+                for grid, (kind, values) in rows.items():
+                    for c, value in enumerate(values):
+                        exact = part[name][dofs.index((grid, c + 1))] if (grid, c + 1) in dofs else 0
+                        self.assertAlmostEqual(value, exact, delta=1e-6 * abs(exact))
+        lines = [line[:72].rstrip() for line in self.read("d.pch").splitlines()]
+        at = lines.index("$ACCELERATION - RMS")
+        row = next(line for line in lines[at:] if line.split()[:2] == ["1", "G"])
+        self.assertAlmostEqual(float(row.split()[2]) / pick(found["acceleration"], "rms", (1, 1)), 1, delta=1e-6)
+        at = lines.index("$DISPLACEMENTS - PSDF")
+        self.assertEqual(lines[at + 3].split(), ["$POINT", "ID", "=", "1", "IDENTIFIED", "BY", "FREQUENCY"])
+        self.assertAlmostEqual(float(lines[at + 4].split()[2]) / pick(found["displacement"], "psd", (1, 1))[0], 1, delta=1e-6)
 
     def test_rms_in_csv(self):
         """The last table of --csv has RMS and N0, of both integrals by modes."""

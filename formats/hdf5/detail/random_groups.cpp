@@ -60,6 +60,41 @@ void write_curves(FileWriter& file, const std::string& path, const records::Rand
   if (of_elements) file.write_attribute(group, "components", curves.components);
 }
 
+void write_cross(FileWriter& file, const std::string& group, const records::RandomCross& cross) {
+  Eigen::MatrixXi dofs(2, 2);
+  dofs << cross.a.id, cross.a.component, cross.b.id, cross.b.component;
+  file.make_group(group);
+  file.write_attribute(group, "quantities", std::vector<std::string>{cross.a.quantity, cross.b.quantity});
+  file.write_integers(group + "/dofs", dofs, {"grid and component of a, then of b", "1"});
+  file.write_integers(group + "/curve", {cross.curve}, {"CURID of RCROSS, 0: none", "1"});
+  const std::string units = "unit of a times that of b";
+  file.write_vector(group + "/real", cross.psd.real(), {"of S_ab = E[A B*], one-sided", units + " times T"});
+  file.write_vector(group + "/imag", cross.psd.imag(), {"of S_ab", units + " times T"});
+  file.write_vector(group + "/coherence", cross.coherence, {"abs(S_ab)^2 / (S_aa S_bb)", "1"});
+  file.write_number(group + "/covariance", cross.covariance, {"E[a(t) b(t)] over the output frequencies", units});
+  if (cross.correlation.size() > 0)
+    file.write_vector(group + "/correlation", cross.correlation, {"E[a(t + lag) b(t)]", units});
+}
+
+records::RandomCross read_cross(FileReader& file, const std::string& group, const records::RandomResponse& response) {
+  records::RandomCross cross;
+  const auto quantities = file.read_attribute_words(group, "quantities");
+  const auto dofs = file.read_integer_matrix(group + "/dofs", 2, 2);
+  const auto curve = file.read_integers(group + "/curve", 1);
+  const auto num = static_cast<long>(response.hz.size());
+  const VectorXd real = file.read_vector(group + "/real", num), imag = file.read_vector(group + "/imag", num);
+  cross.coherence = file.read_vector(group + "/coherence", num);
+  cross.covariance = file.read_number(group + "/covariance");
+  if (file.has(group + "/correlation"))
+    cross.correlation = file.read_vector(group + "/correlation", static_cast<long>(response.lags.size()));
+  if (quantities.size() != 2 || dofs.rows() != 2 || curve.size() != 1 || real.size() != imag.size()) return cross;
+  cross.a = {quantities[0], dofs(0, 0), dofs(0, 1)};
+  cross.b = {quantities[1], dofs(1, 0), dofs(1, 1)};
+  cross.curve = curve[0];
+  cross.psd = real.cast<std::complex<double>>() + std::complex<double>(0, 1) * imag.cast<std::complex<double>>();
+  return cross;
+}
+
 }  // namespace
 
 void write_random(FileWriter& file, const records::RandomResponse& response) {
@@ -73,6 +108,8 @@ void write_random(FileWriter& file, const records::RandomResponse& response) {
     file.write_number(path + "/integral_error", response.integral_error,
                       {"relative, of the mean squares of the coordinates by integration over the band", "1"});
   for (const auto& curves : response.curves) write_curves(file, path, response, curves);
+  for (std::size_t k = 0; k < response.crosses.size(); ++k)
+    write_cross(file, path + "/cross/" + std::to_string(k + 1), response.crosses[k]);
 }
 
 records::RandomResponse read_random(FileReader& file, const std::string& path) {
@@ -106,6 +143,8 @@ records::RandomResponse read_random(FileReader& file, const std::string& path) {
     curves.modal_crossing_hz = read_one("modal_zero_crossings_hz");
     response.curves.push_back(std::move(curves));
   };
+  for (int k = 1; file.has(path + "/cross/" + std::to_string(k)); ++k)
+    response.crosses.push_back(read_cross(file, path + "/cross/" + std::to_string(k), response));
   for (const char* quantity : {"displacement", "velocity", "acceleration", "spc_force"}) {
     const std::string group = path + "/" + quantity;
     if (!file.has(group)) continue;

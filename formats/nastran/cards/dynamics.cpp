@@ -421,6 +421,30 @@ void parse_randt1(Card& card, DynamicCards& r) {
   add_unique(card, r.lags, std::move(lags), &std::remove_reference_t<decltype(lags)>::sid);
 }
 
+/// SID RTYPE1 ID1 COMP1 RTYPE2 ID2 COMP2 CURID. A blank field of one output is that of the other.
+void parse_rcross(Card& card, DynamicCards& r) {
+  static const std::vector<std::string> types{"DISP", "VELO",   "ACCE",   "OLOAD", "SPCF",
+                                              "MPCF", "STRESS", "STRAIN", "FORCE", "VAR"};
+  records::CrossRequest request;
+  request.sid = card.read_id(0, "SID");
+  request.a = {card.read_word(1, "RTYPE1", "", types), card.read_reference(2, "ID1"), card.read_reference(3, "COMP1")};
+  request.b = {card.read_word(4, "RTYPE2", "", types), card.read_reference(5, "ID2"), card.read_reference(6, "COMP2")};
+  request.curve = card.read_reference(7, "CURID");
+  request.at = card.get_location();
+  const auto share = [](auto& a, auto& b, const auto& none) {
+    if (a == none) a = b;
+    if (b == none) b = a;
+    return a != none;
+  };
+  const bool has_type = share(request.a.quantity, request.b.quantity, std::string());
+  const bool has_id = share(request.a.id, request.b.id, 0);
+  const bool has_component = share(request.a.component, request.b.component, 0);
+  if (card.is_ok()) card.demand(has_type, 1, "RTYPE1", "a type of output here or in field 6");
+  if (card.is_ok()) card.demand(has_id, 2, "ID1", "a grid here or in field 7");
+  if (card.is_ok()) card.demand(has_component, 3, "COMP1", "a component here or in field 8");
+  if (card.is_ok()) r.crosses.push_back(std::move(request));
+}
+
 /// TID XAXIS YAXIS FLAT, pairs from the second line on.
 void parse_tabrnd1(Card& card, DynamicCards& r) {
   auto t = read_table_head(card, 1);
@@ -619,6 +643,7 @@ const DynamicParserTable& get_dynamic_parsers() {
                                         {"RVDOF1", {parse_rvdof1, ""}},
                                         {"RANDPS", {parse_randps, nullptr, convert_randps}},
                                         {"RANDT1", {parse_randt1, ". . T T"}},
+                                        {"RCROSS", {parse_rcross, ""}},
                                         {"TABRND1", {parse_tabrnd1, nullptr, convert_tabrnd1}},
                                         {"TABRNDG", {parse_tabrndg, ". . T ?"}}};
   return table;
@@ -630,6 +655,7 @@ int records::DynamicSelection::*find_selection_of(std::string_view card) {
   if (card == "TSTEP") return &DynamicSelection::tstep;
   if (card == "TIC") return &DynamicSelection::ic;
   if (card == "RANDPS" || card == "RANDT1") return &DynamicSelection::random;
+  if (card == "RCROSS") return &DynamicSelection::rcross;
   if (card == "TABDMP1") return &DynamicSelection::sdamping;
   if (card == "EIGC") return &DynamicSelection::cmethod;
   if (card == "TF") return &DynamicSelection::tfl;

@@ -53,6 +53,7 @@ class Builder {
         images_(make_card_images(source, first_line, diagnostics)),
         reading_(deck, diagnostics) {
     for (const auto& name : options.ignore_cards) ignored_.insert(make_upper(trim(name)));
+    design_.set_values(options.design_values);
     reading_.reread = [this](int card, CardText& text) {
       join(card, text);
       design_.apply(text);
@@ -64,6 +65,7 @@ class Builder {
     for (int card = 0; card < num_cards && !begins_section(card); ++card) read_ahead(card);
     const bool is_design = deck_.sol == "200" || deck_.sol == "DESOPT";
     design_.finish(is_design, deck_.sol, deck_, diagnostics_);
+    if (dynamics_) dynamics_->dynamics.design_variables = design_.list_variables();
     for (int card = 0; card < num_cards && !stopped_; ++card) read_card(card);
     if (num_unreadable_ > max_unreadable)
       diagnostics_.error("deck.unreadable-line", {deck_.files.front(), 0, 0},

@@ -1,5 +1,8 @@
 #include "formats/nastran/detail/design.hpp"
 
+#include <algorithm>
+#include <set>
+
 #include "formats/nastran/detail/card_text.hpp"
 #include "formats/nastran/detail/design_fields.hpp"
 #include "formats/nastran/detail/text.hpp"
@@ -31,7 +34,10 @@ void Design::add(const CardText& text, const std::vector<std::string>& files, Di
   if (num_cards_[text.name]++ == 0) first_[text.name] = card.get_location();
   if (text.name == "DESVAR") {
     const int id = card.read_id(0, "ID");
-    variables_[id] = card.read_real(2, "XINIT");
+    const double initial = card.read_real(2, "XINIT");
+    const auto given = given_.find(id);
+    variables_[id] = given == given_.end() ? initial : given->second;
+    declared_.push_back({id, std::string(card.get_upper(1)), variables_[id], card.get_location()});
   } else if (text.name == "DLINK") {
     Link link;
     link.variable = card.read_id(1, "DDVID");
@@ -91,6 +97,23 @@ double Design::find_value(int variable, const Relation& relation, const records:
                         ", which the deck does not define",
                     "add the DESVAR or correct the id");
   return 0;
+}
+
+std::vector<records::DesignVariable> Design::list_variables() const {
+  std::set<int> used;
+  for (const auto& relation : relations_) {
+    for (const auto& [variable, coefficient] : relation.terms) used.insert(variable);
+    if (relation.by_value > 0) used.insert(relation.by_value);
+  }
+  for (auto link = links_.rbegin(); link != links_.rend(); ++link)
+    if (used.count(link->variable) > 0)
+      for (const auto& [variable, coefficient] : link->terms) used.insert(variable);
+  std::vector<records::DesignVariable> variables;
+  for (const auto& link : links_) used.erase(link.variable);
+  for (const auto& one : declared_)
+    if (is_active_ && used.count(one.id) > 0) variables.push_back(one);
+  std::sort(variables.begin(), variables.end(), [](const auto& a, const auto& b) { return a.id < b.id; });
+  return variables;
 }
 
 void Design::apply(CardText& text) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "formats/nastran/detail/card.hpp"
+#include "formats/records/deck_dynamics.hpp"
 
 namespace bough::nastran::detail {
 
@@ -20,6 +21,10 @@ class Design {
   void add(const CardText& text, const std::vector<std::string>& files, Diagnostics& diagnostics);
   /// Returns true if the deck has no such card.
   bool is_empty() const { return num_cards_.empty(); }
+  /// Values in place of XINIT, by id of the variable; before add().
+  void set_values(const std::map<int, double>& values) { given_ = values; }
+  /// Independent DESVAR that relations use, directly or by DLINK; empty if they give no values. After finish().
+  std::vector<records::DesignVariable> list_variables() const;
 
   /// Sums up the variables; without `is_active` (another SOL) no value is given.
   void finish(bool is_active, const std::string& sol, const records::Deck& deck, Diagnostics& diagnostics);
@@ -49,7 +54,8 @@ class Design {
   };
   double find_value(int variable, const Relation& relation, const records::Deck& deck, Diagnostics& diagnostics) const;
 
-  std::map<int, double> variables_;
+  std::map<int, double> variables_, given_;
+  std::vector<records::DesignVariable> declared_;
   std::vector<Link> links_;
   std::vector<Relation> relations_;
   std::multimap<std::pair<std::string, int>, std::size_t> by_target_;

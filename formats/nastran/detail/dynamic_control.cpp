@@ -17,9 +17,10 @@ struct Selection {
   int DynamicSelection::*set;
 };
 constexpr std::array selections{
-    Selection{"DLOA", "DLOAD", &DynamicSelection::dload}, Selection{"FREQ", "FREQUENCY", &DynamicSelection::frequency},
-    Selection{"TSTE", "TSTEP", &DynamicSelection::tstep}, Selection{"SDAM", "SDAMPING", &DynamicSelection::sdamping},
-    Selection{"OFRE", "OFREQ", &DynamicSelection::ofreq}, Selection{"RAND", "RANDOM", &DynamicSelection::random}};
+    Selection{"DLOA", "DLOAD", &DynamicSelection::dload},  Selection{"FREQ", "FREQUENCY", &DynamicSelection::frequency},
+    Selection{"TSTE", "TSTEP", &DynamicSelection::tstep},  Selection{"SDAM", "SDAMPING", &DynamicSelection::sdamping},
+    Selection{"OFRE", "OFREQ", &DynamicSelection::ofreq},  Selection{"RAND", "RANDOM", &DynamicSelection::random},
+    Selection{"RCRO", "RCROSS", &DynamicSelection::rcross}};
 
 struct Request {
   std::string_view letters;

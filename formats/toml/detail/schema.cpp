@@ -283,6 +283,10 @@ const json& get_parsed(const char* schema_text) {
     static const json system = json::parse(get_system_schema());
     return system;
   }
+  if (schema_text == get_psd_schema()) {
+    static const json psd = json::parse(get_psd_schema());
+    return psd;
+  }
   BOUGH_DEMAND(schema_text == get_campaign_schema());
   static const json campaign = json::parse(get_campaign_schema());
   return campaign;

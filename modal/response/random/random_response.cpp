@@ -152,6 +152,37 @@ void compare_rms(const records::RandomResponse& result, const SourceLocation& at
         "the output frequencies are too coarse for the bandwidth of the modes: add FREQ4 or FREQ3 cards");
 }
 
+/// The curves of this quantity of a subcase and the column of the component; nullptr: not among them.
+const records::ResponseCurves* find_column(const records::ResponseSubcase& response,
+                                           const records::RandomCross::Output& output, Index& column) {
+  for (const auto& curves : response.curves) {
+    if (curves.quantity != output.quantity) continue;
+    for (std::size_t i = 0; i < curves.dofs.size(); ++i) {
+      const auto& [id, component] = curves.dofs[i];
+      if (id != output.id || std::max(component, 1) != output.component) continue;
+      column = static_cast<Index>(i);
+      return &curves;
+    }
+  }
+  return nullptr;
+}
+
+/// H_a L: the response of an output to each factor of S = L Lᴴ, frequencies x factors; empty: not requested.
+MatrixXcd calc_driven(const Responses& responses, const std::vector<MatrixXcd>& factors,
+                      const records::RandomCross::Output& output) {
+  MatrixXcd H(static_cast<Index>(factors.size()), static_cast<Index>(responses.size()));
+  for (std::size_t j = 0; j < responses.size(); ++j) {
+    Index column = 0;
+    const auto* curves = find_column(*responses[j], output, column);
+    if (!curves) return {};
+    H.col(static_cast<Index>(j)).real() = curves->real.col(column);
+    H.col(static_cast<Index>(j)).imag() = curves->imag.col(column);
+  }
+  MatrixXcd driven(H.rows(), factors.empty() ? 0 : factors.front().cols());
+  for (Index i = 0; i < H.rows(); ++i) driven.row(i) = H.row(i) * factors[static_cast<std::size_t>(i)];
+  return driven;
+}
+
 VectorXd list_lags(const records::DynamicDeck& deck, int set) {
   for (const auto& card : deck.dynamics.lags)
     if (card.sid == set) return VectorXd::LinSpaced(card.count + 1, card.first, card.last);
@@ -164,6 +195,7 @@ RandomAnalysis::RandomAnalysis(const records::DynamicDeck& deck, const std::vect
                                Diagnostics& diagnostics)
     : deck_(deck) {
   for (const auto& subcase : subcases) {
+    add_cross_set(subcase, diagnostics);
     const int set = subcase.dynamics.random;
     const bool is_known =
         std::any_of(inputs_.begin(), inputs_.end(), [set](const auto& input) { return input.first->set() == set; });
@@ -173,6 +205,58 @@ RandomAnalysis::RandomAnalysis(const records::DynamicDeck& deck, const std::vect
   }
   const auto* param = deck.find_param("RMSINT");
   is_loglog_ = param && param->value == "LOGLOG";
+}
+
+void RandomAnalysis::add_cross_set(const records::DynamicSubcase& subcase, Diagnostics& diagnostics) {
+  const int set = subcase.dynamics.rcross;
+  if (set == 0 || std::count(cross_sets_.begin(), cross_sets_.end(), set) > 0) return;
+  cross_sets_.push_back(set);
+  const auto at = deck_.locate(subcase.find_command("RCROSS"));
+  const auto& cards = deck_.dynamics.crosses;
+  if (std::none_of(cards.begin(), cards.end(), [set](const auto& card) { return card.sid == set; }))
+    diagnostics.error("modal.missing-random", at,
+                      "RCROSS = " + std::to_string(set) + " names no RCROSS card of the deck",
+                      "add RCROSS with this id, or correct the id");
+  if (subcase.dynamics.random == 0)
+    diagnostics.error("modal.missing-random", at, "RCROSS without RANDOM has no spectral densities",
+                      "select RANDPS by RANDOM in the same subcase");
+}
+
+void RandomAnalysis::add_crosses(const Responses& responses, const std::vector<MatrixXcd>& factors,
+                                 records::RandomResponse& result, Diagnostics& diagnostics) const {
+  static const std::map<std::string, std::string> quantities{
+      {"DISP", "displacement"}, {"VELO", "velocity"}, {"ACCE", "acceleration"}, {"SPCF", "spc_force"}};
+  for (const auto& card : deck_.dynamics.crosses) {
+    if (std::count(cross_sets_.begin(), cross_sets_.end(), card.sid) == 0) continue;
+    records::RandomCross cross;
+    std::string missing;
+    const auto find = [&](const records::CrossRequest::Output& output, records::RandomCross::Output& found) {
+      const auto quantity = quantities.find(output.quantity);
+      found = {quantity == quantities.end() ? "" : quantity->second, output.id, output.component};
+      MatrixXcd driven;
+      if (!found.quantity.empty()) driven = calc_driven(responses, factors, found);
+      if (driven.size() == 0)
+        missing =
+            output.quantity + " of " + std::to_string(output.id) + ", component " + std::to_string(output.component);
+      return driven;
+    };
+    const MatrixXcd a = find(card.a, cross.a), b = find(card.b, cross.b);
+    if (!missing.empty()) {
+      diagnostics.warning("modal.random-cross", deck_.locate(card.at),
+                          "RCROSS " + std::to_string(card.sid) + " is left out: " + missing +
+                              " is no output of every subcase of RANDPS",
+                          "request DISPLACEMENT, VELOCITY, ACCELERATION or SPCFORCES of the grid above the subcases");
+      continue;
+    }
+    cross.curve = card.curve;
+    cross.psd = a.cwiseProduct(b.conjugate()).rowwise().sum();
+    const VectorXd S_aa = a.rowwise().squaredNorm(), S_bb = b.rowwise().squaredNorm();
+    const VectorXd product = S_aa.cwiseProduct(S_bb);
+    cross.coherence = (product.array() > 0).select(cross.psd.cwiseAbs2().array() / product.array(), 0);
+    cross.covariance = calc_moments(result.hz, cross.psd.real(), false).m0(0);
+    if (result.lags.size() > 0) cross.correlation = calc_correlation(result.hz, cross.psd, result.lags);
+    result.crosses.push_back(std::move(cross));
+  }
 }
 
 std::vector<records::RandomResponse> RandomAnalysis::calc(const std::vector<records::ResponseSubcase>& responses,
@@ -248,6 +332,7 @@ records::RandomResponse RandomAnalysis::calc_set(const InputSpectrum& input, con
     }
     result.curves.push_back(std::move(curves));
   }
+  add_crosses(responses, factors, result, diagnostics);
   compare_rms(result, at, diagnostics);
   return result;
 }

@@ -22,10 +22,11 @@ class RandomAnalysis {
   /// Returns true if no subcase selects RANDOM.
   bool is_empty() const { return inputs_.empty(); }
 
-  /// S_y(f) = Σ_jk H_j S_jk H_k*; by RANDT1 the autocorrelations; with `sources` the modal integrals.
+  /// S_y(f) = Σ_jk H_j S_jk H_k*; by RANDT1 the autocorrelations; by RCROSS S_ab = Σ_jk H_aj S_jk H_bk*; with `sources`
+  /// the modal integrals.
   ///
   /// Errors: modal.random-frequencies, modal.bad-spectrum. Warnings: modal.random-subcase (a subcase is not solved),
-  /// modal.random-output, modal.random-range, modal.random-sampling, modal.random-unbounded.
+  /// modal.random-output, modal.random-range, modal.random-sampling, modal.random-unbounded, modal.random-cross.
   std::vector<records::RandomResponse> calc(const std::vector<records::ResponseSubcase>& responses,
                                             const std::map<int, ModalSource>& sources, Diagnostics& diagnostics) const;
 
@@ -35,7 +36,12 @@ class RandomAnalysis {
                                    const std::map<int, ModalSource>& sources, const SourceLocation& at,
                                    Diagnostics& diagnostics) const;
 
+  void add_cross_set(const records::DynamicSubcase& subcase, Diagnostics& diagnostics);
+  void add_crosses(const std::vector<const records::ResponseSubcase*>& responses, const std::vector<MatrixXcd>& factors,
+                   records::RandomResponse& result, Diagnostics& diagnostics) const;
+
   const records::DynamicDeck& deck_;
+  std::vector<int> cross_sets_;  ///< of RCROSS, that the case control selects
   std::vector<std::pair<std::unique_ptr<InputSpectrum>, SourceLocation>> inputs_;
   bool is_loglog_ = false;
 };

@@ -36,7 +36,10 @@ SpectralMoments calc_moments(const VectorXd& hz, const MatrixXd& psd, bool is_lo
   return moments;
 }
 
-MatrixXd calc_autocorrelation(const VectorXd& hz, const MatrixXd& psd, const VectorXd& lags) {
+namespace {
+
+/// Weights of the values of S, lags x frequencies: ∫S cos 2πfτ df, or with sin, for straight lines.
+MatrixXd calc_fourier_weights(const VectorXd& hz, const VectorXd& lags, bool is_sine) {
   const Index n = hz.size();
   MatrixXd weights = MatrixXd::Zero(lags.size(), n);
   for (Index t = 0; t < lags.size(); ++t)
@@ -46,11 +49,22 @@ MatrixXd calc_autocorrelation(const VectorXd& hz, const MatrixXd& psd, const Vec
       double even = 0, odd = 0;
       calc_filon(rate * half, even, odd);
       // S = mean + slope x/half about the centre.
-      const double mean = 2 * half * even * std::cos(rate * centre), slope = 2 * half * odd * std::sin(rate * centre);
+      const double c = std::cos(rate * centre), s = std::sin(rate * centre);
+      const double mean = 2 * half * even * (is_sine ? s : c), slope = 2 * half * odd * (is_sine ? -c : s);
       weights(t, i - 1) += 0.5 * (mean + slope);
       weights(t, i) += 0.5 * (mean - slope);
     }
-  return weights * psd;
+  return weights;
+}
+
+}  // namespace
+
+MatrixXd calc_autocorrelation(const VectorXd& hz, const MatrixXd& psd, const VectorXd& lags) {
+  return calc_fourier_weights(hz, lags, false) * psd;
+}
+
+VectorXd calc_correlation(const VectorXd& hz, const Eigen::VectorXcd& psd, const VectorXd& lags) {
+  return calc_fourier_weights(hz, lags, false) * psd.real() - calc_fourier_weights(hz, lags, true) * psd.imag();
 }
 
 }  // namespace bough::modal::response

@@ -17,4 +17,7 @@ SpectralMoments calc_moments(const Eigen::VectorXd& hz, const Eigen::MatrixXd& p
 Eigen::MatrixXd calc_autocorrelation(const Eigen::VectorXd& hz, const Eigen::MatrixXd& psd,
                                      const Eigen::VectorXd& lags);
 
+/// R_ab(τ) = Re ∫S_ab exp(2πifτ) df per lag; exact for straight lines of the real and the imaginary part.
+Eigen::VectorXd calc_correlation(const Eigen::VectorXd& hz, const Eigen::VectorXcd& psd, const Eigen::VectorXd& lags);
+
 }  // namespace bough::modal::response

@@ -1,0 +1,176 @@
+#include "analysis/response/input_spectrum.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <map>
+#include <optional>
+
+#include "analysis/common/inputs.hpp"
+#include "analysis/common/spectrum_file.hpp"
+#include "formats/toml/specs.hpp"
+
+namespace bough::analysis {
+
+namespace {
+
+using Eigen::Index;
+using records::InputDensity;
+using Term = statespace::InputSpectrum::Term;
+
+std::optional<double> read_number(const std::string& text) {
+  char* end = nullptr;
+  const double value = std::strtod(text.c_str(), &end);
+  if (text.empty() || *end != '\0') return {};
+  return value;
+}
+
+/// "NUMBER" or "NAME=NUMBER"; nothing: the item is a file.
+std::optional<InputDensity> read_constant(const std::string& item, const std::string& file) {
+  const auto sign = item.rfind('=');
+  const auto value = read_number(sign == std::string::npos ? item : item.substr(sign + 1));
+  if (!value) return {};
+  InputDensity term;
+  if (sign != std::string::npos) term.input = item.substr(0, sign);
+  term.real = {*value};
+  term.at = {file};
+  if (!std::isfinite(*value) || *value < 0)
+    throw InputError("linear.bad-psd", {file}, fmt::format("--psd {}: the density is {}", item, *value),
+                     "give a finite number of zero or above");
+  return term;
+}
+
+/// Rows of the inputs with this name or these components.
+std::vector<Index> find_inputs(const std::string& name, const records::Signals& known) {
+  std::vector<Index> found;
+  for (int i = 0; i < known.size(); ++i) {
+    const auto& one = known.name[static_cast<std::size_t>(i)];
+    if (name.empty() || one == name || one.starts_with(name + ":")) found.push_back(i);
+  }
+  return found;
+}
+
+void report_unknown(const InputDensity& term, const std::string& name, const records::Signals& known,
+                    Diagnostics& diagnostics) {
+  const auto near = find_nearest(name, known.name);
+  diagnostics.error(
+      "linear.unknown-input", term.at, fmt::format("there is no input '{}'", name),
+      !near.empty() ? "did you mean '" + near + "'?" : fmt::format("the model has {}", fmt::join(known.name, ", ")));
+}
+
+Term make_term(const InputDensity& given, Index a, Index b) {
+  Term term{a, b, Eigen::VectorXd(static_cast<Index>(given.frequency_hz.size())),
+            Eigen::VectorXcd(static_cast<Index>(given.real.size())), given.is_log};
+  std::copy(given.frequency_hz.begin(), given.frequency_hz.end(), term.frequency_hz.begin());
+  for (Index k = 0; k < term.density.size(); ++k) {
+    const auto at = static_cast<std::size_t>(k);
+    term.density[k] = {given.real[at], given.imag.empty() ? 0 : given.imag[at]};
+  }
+  return term;
+}
+
+std::vector<Term> read_table(const std::string& path, const records::Signals& known) {
+  const auto spectrum = read_spectrum(path, known.name, "linear.bad-psd");
+  std::vector<Term> terms;
+  for (Index j = 0; j < known.size(); ++j)
+    terms.push_back({j, j, spectrum.frequency_hz,
+                     spectrum.density.col(spectrum.density.cols() == 1 ? 0 : j).cast<std::complex<double>>(), false});
+  return terms;
+}
+
+class Reader {
+ public:
+  Reader(const records::Signals& known, Diagnostics& diagnostics) : known_(known), diagnostics_(diagnostics) {}
+
+  void add(const InputDensity& given) {
+    const auto rows = find_inputs(given.input, known_);
+    if (rows.empty()) report_unknown(given, given.input, known_, diagnostics_);
+    if (given.with.empty() || given.with == given.input) {
+      for (const Index row : rows) terms_.push_back(make_term(given, row, row));
+      return;
+    }
+    const auto columns = find_inputs(given.with, known_);
+    if (columns.empty()) report_unknown(given, given.with, known_, diagnostics_);
+    if (rows.empty() || columns.empty()) return;
+    if (rows.size() > 1 || columns.size() > 1)
+      diagnostics_.error("linear.bad-psd", given.at,
+                         fmt::format("'{}' with '{}' are several inputs", given.input, given.with),
+                         "name one component each");
+    else
+      add_cross(given, rows[0], columns[0]);
+  }
+  void add(std::vector<Term> terms) { terms_.insert(terms_.end(), terms.begin(), terms.end()); }
+  const std::vector<Term>& terms() const { return terms_; }
+
+ private:
+  /// S_ab once, or S_ab and S_ba that are conjugate to each other.
+  void add_cross(const InputDensity& given, Index a, Index b) {
+    const auto term = make_term(given, a, b);
+    const auto [other, is_first] = crosses_.emplace(std::minmax(a, b), std::pair(term, given.at));
+    if (is_first) return terms_.push_back(term);
+    const auto& [before, at] = other->second;
+    if (before.a == a)
+      diagnostics_.error("linear.bad-psd", given.at,
+                         fmt::format("the cross-spectral density of '{}' with '{}' is given in line {} too",
+                                     given.input, given.with, at.line),
+                         "remove one of them");
+    else if (before.frequency_hz.size() != term.frequency_hz.size() || before.frequency_hz != term.frequency_hz ||
+             before.density != term.density.conjugate())
+      diagnostics_.error("linear.bad-psd", given.at,
+                         fmt::format("the spectral densities are not Hermitian: '{}' with '{}' is not the conjugate of "
+                                     "'{}' with '{}' of line {}",
+                                     given.input, given.with, given.with, given.input, at.line),
+                         "remove one of them");
+  }
+
+  const records::Signals& known_;
+  Diagnostics& diagnostics_;
+  std::vector<Term> terms_;
+  std::map<std::pair<Index, Index>, std::pair<Term, SourceLocation>> crosses_;
+};
+
+}  // namespace
+
+statespace::InputSpectrum read_input_spectrum(const std::vector<std::string>& items, const records::LinearModel& model,
+                                              const std::string& file) {
+  Diagnostics diagnostics;
+  Reader reader(model.inputs, diagnostics);
+  for (const auto& item : items) {
+    if (const auto constant = read_constant(item, file)) {
+      reader.add(*constant);
+      continue;
+    }
+    demand_file(item);
+    if (!has_suffix(item, ".toml"))
+      reader.add(read_table(item, model.inputs));
+    else
+      for (const auto& term : toml_files::read_input_densities(item, diagnostics)) reader.add(term);
+  }
+  diagnostics.throw_if_errors();
+  return {model.B.cols(), reader.terms()};
+}
+
+std::vector<std::string> list_spectrum_files(const std::vector<std::string>& items) {
+  std::vector<std::string> files;
+  for (const auto& item : items)
+    if (!read_constant(item, {})) files.push_back(item);
+  return files;
+}
+
+void check_input_spectrum(const statespace::InputSpectrum& input, const std::vector<double>& hz,
+                          const std::vector<std::string>& items, const std::string& file) {
+  auto all = input.list_corners();
+  all.insert(all.end(), hz.begin(), hz.end());
+  const auto worst = input.find_indefinite(all);
+  if (!worst) return;
+  const auto files = list_spectrum_files(items);
+  throw InputError(
+      "linear.bad-psd", {files.empty() ? file : files.front()},
+      fmt::format("the matrix of spectral densities of the inputs is not positive semi-definite at {:g} Hz", *worst),
+      "keep |S_ab|^2 at or below S_aa S_bb");
+}
+
+}  // namespace bough::analysis
