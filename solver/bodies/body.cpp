@@ -187,7 +187,6 @@ void Body::add_flexible_nodes(const records::FlexBody& flex) {
     // A held node outside the interface stays at rest: the fields are its motion but for a thousandth of u₂.
     if (third_ && (node.moves || third_->is_exact(flex, node.id))) {
       node.higher = third_->make_node_motion(flex, static_cast<size_t>(k));
-      node.monomials = third_->list();
       node.moves = node.moves || !node.higher.is_zero();
     }
     node.has_locators = stack_locators(1, node.K2);

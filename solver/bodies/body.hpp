@@ -46,8 +46,8 @@ struct BodyInertia {
 /// Scratch of ThirdOrderBody.
 struct ThirdOrderData {
   BodyInertia linear;                    ///< of the n + m modes
-  VectorXd z, z_dot, xi, xi_dot;         ///< monomials; ξ = (η, p)
-  MatrixXd J, J_dot, M_pp, U, product;   ///< J = ∂p/∂η; M_pp is halved
+  VectorXd xi, xi_dot, tensors;          ///< ξ = (η, p); scratch of the polynomials
+  MatrixXd J, M_pp, U, product;          ///< J = ∂p/∂η; M_pp is halved
   VectorXd p_ddot, force;                ///< m, padded
   VectorXd gradient, J_small, on_small;  ///< of the strain energy
 };

@@ -16,13 +16,12 @@ class ThirdOrderBody {
   explicit ThirdOrderBody(const records::FlexBody& flex);
 
   ThirdOrderData make_data() const;
-  const std::shared_ptr<const MonomialList>& list() const { return list_; }
   /// Returns true if the file has the node's own polynomials.
   static bool is_exact(const records::FlexBody& flex, int node_id);
   /// The motion of output node k beyond φη: translations and rotation vector.
   Polynomials make_node_motion(const records::FlexBody& flex, std::size_t k) const;
   /// Work of the load of a locator beyond that on φη.
-  Polynomials make_load(const records::FlexBody& flex, int locator) const;
+  Potential make_load(const records::FlexBody& flex, int locator) const;
 
   void calc_mass(const ConstVectorRef& eta, ThirdOrderData& data, BodyInertia& inertia) const;
   /// h without the modal stiffness and damping of η.
@@ -35,8 +34,8 @@ class ThirdOrderBody {
 
  private:
   int n_ = 0, m_ = 0;
-  std::shared_ptr<const MonomialList> list_;
-  Polynomials amplitudes_, energy_, on_small_;
+  Polynomials amplitudes_, on_small_;
+  Potential energy_;
   std::vector<int> small_;
   Body linear_;
 };
