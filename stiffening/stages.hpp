@@ -141,6 +141,8 @@ void set_loads(const BodyRequest& request, const fe::Model& model, const MatrixX
 
 /// Throws reduce.bad-order if third order is requested and the model has what the series do not contain.
 void check_third_order(const BodyRequest& request, const fe::Model& model);
+/// Returns true if check_third_order() finds nothing in this body.
+bool has_series(const BodyRequest& request, const fe::Model& model);
 /// Third order, if it is requested; after set_loads. Throws reduce.bad-order.
 void set_third_order(const BodyRequest& request, const fe::Model& model, const ModalBasis& basis,
                      const std::vector<LoadPattern>& patterns, const StaticSupport& support,
