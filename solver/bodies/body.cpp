@@ -5,6 +5,7 @@
 #include "base/diagnostic.hpp"
 #include "solver/bodies/kernels.hpp"
 #include "solver/bodies/row_basis.hpp"
+#include "solver/bodies/soft_energy.hpp"
 #include "solver/bodies/tensor.hpp"
 #include "solver/bodies/third_order.hpp"
 
@@ -77,6 +78,8 @@ Body Body::make_flexible(const records::FlexBody& flex, int num_modes, bool stif
   if (body.D_.isDiagonal(0)) body.D_diagonal_ = body.D_.diagonal();
   if (stiffening && n == flex.num_modes() && !flex.third_order.empty())
     body.third_ = std::make_shared<const ThirdOrderBody>(flex);
+  else if (stiffening && !flex.next_order.empty() && flex.next_order.modes.back() < n)
+    body.soft_energy_ = std::make_shared<const SoftEnergy>(flex.next_order);
   body.add_second_order(flex);
   body.add_flexible_nodes(flex);
   return body;

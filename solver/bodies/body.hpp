@@ -23,6 +23,7 @@ namespace bough::solver {
 
 struct ThirdOrderData;
 class ThirdOrderBody;
+class SoftEnergy;
 
 /// M(η), h and scratch for one body; every array is sized once. But for M6, M_top and h rows are padded (kernels.hpp).
 struct BodyInertia {
@@ -75,7 +76,8 @@ class Body {
   const MatrixXd& K() const { return K_; }
   const MatrixXd& D() const { return D_; }
   const AffineField& field() const { return field_; }
-  const ThirdOrderBody* third_order() const { return third_.get(); }  ///< nullptr: second order
+  const ThirdOrderBody* third_order() const { return third_.get(); }    ///< nullptr: second order
+  const SoftEnergy* soft_energy() const { return soft_energy_.get(); }  ///< nullptr: not in the body's file
   double calc_strain_energy(const ConstVectorRef& eta) const;
 
   const std::vector<Node>& nodes() const { return nodes_; }  ///< [0] is Bo
@@ -131,6 +133,7 @@ class Body {
   VectorXd K_diagonal_, D_diagonal_;  ///< empty where there is more than it
   std::vector<Node> nodes_;
   std::shared_ptr<const ThirdOrderBody> third_;
+  std::shared_ptr<const SoftEnergy> soft_energy_;
 };
 
 /// h (6) of a rigid body: [ω×(ω×S); ω×Jω].
