@@ -11,13 +11,13 @@ namespace {
 
 using records::NextOrder;
 
-/// Elements times curves at most: shells take 0.07 ms each, so less than a second.
-constexpr double kMaxWork = 10000;
+/// Elements times curves at most, 0.07 ms each for shells: a second. The frames and K_G of an element count as curves.
+constexpr double kMaxWork = 15000, kCurvesOfElement = 7;
 
 /// Number of modes whose energy is computed: kMaxModes, fewer of models with many elements, none of very large ones.
 int find_num_modes(const fe::Model& model) {
   for (int N = NextOrder::kMaxModes; N > 0; --N) {
-    const double num_curves = records::count_monomials(N, 2) + records::count_monomials(N, 4);
+    const double num_curves = kCurvesOfElement + records::count_monomials(N, 2) + records::count_monomials(N, 4);
     if (num_curves * static_cast<double>(model.elements().size()) <= kMaxWork) return N;
   }
   return 0;
