@@ -194,7 +194,7 @@ std::optional<FlexBodyCheck::Reach> find_reach(const records::FlexBody& record) 
   const auto is_inside = [&](double way) {
     return body.soft_energy()->calc_error(*node, body.K(), way * shape) < solver::kNextOrderLimit;
   };
-  double inside = 0, outside = 1;
+  double inside = 0, outside = 1e-12;
   for (int i = 0; i < 200 && is_inside(outside); ++i) outside *= 2;
   if (is_inside(outside)) return {};
   for (int i = 0; i < 200 && outside - inside > 1e-3 * outside; ++i)

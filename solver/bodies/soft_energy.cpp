@@ -74,14 +74,14 @@ double SoftEnergy::calc_error(const Node& node, const MatrixXd& K_all, const Con
   const Eigen::LLT<Square> factor(K);
   const Derivatives here(energy_, soft);
   const Eigen::LLT<Square> softened(Square(K - here.of_cubic / 3));
-  if (factor.info() != Eigen::Success || softened.info() != Eigen::Success) return 1;
+  if (factor.info() != Eigen::Success || softened.info() != Eigen::Success) return 0;
   const Amplitudes load = K * softened.solve(linear), second = soft - factor.solve(here.cubic) / 3;
   Amplitudes state = second;
   const double size = second.dot(K * second);
   for (int step = 0; step < kMaxSteps && size > 0; ++step) {
     const Derivatives at(energy_, state);
     const Eigen::LLT<Square> tangent(Square(K + at.of_cubic + at.of_quartic));
-    if (tangent.info() != Eigen::Success) return 1;
+    if (tangent.info() != Eigen::Success) return 0;
     const Amplitudes change = tangent.solve(load - K * state - at.cubic - at.quartic);
     state += change;
     if (!(change.dot(K * change) < 1e-16 * size)) continue;
@@ -90,7 +90,7 @@ double SoftEnergy::calc_error(const Node& node, const MatrixXd& K_all, const Con
       error += node.phi.col(modes_[static_cast<std::size_t>(i)]) * (second[i] - state[i]);
     return error.norm() / way.norm();
   }
-  return size > 0 ? 1 : 0;
+  return 0;
 }
 
 }  // namespace bough::solver

@@ -11,7 +11,7 @@ class SoftEnergy {
   explicit SoftEnergy(const records::NextOrder& next);
 
   /// Estimated error of the deflection φη of a node in a static state, relative to it: the way to the state that the
-  /// same load has with V_3 and V_4. 1: no such state. K: modal stiffness. No allocation.
+  /// same load has with V_3 and V_4. 0: no such state is found. K: modal stiffness. No allocation.
   double calc_error(const Node& node, const MatrixXd& K, const ConstVectorRef& eta) const;
 
  private:
