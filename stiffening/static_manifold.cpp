@@ -418,6 +418,13 @@ void StaticManifold::visit_carried(const Curves& curves, const Visit& visit) con
     if (!element.offset_mass(model_.mass_kind())) return;
     Carried carried{fe::CarriedMass(element.num_dofs()), {}, {}};
     if (!fe::calc_carried(model_, element, model_.mass_kind(), carried.mass)) return;
+    // Places between two ends alone move linearly, off as h²: so are their elements' bows.
+    const auto has_arms = [&](const fe::CarriedField& field) {
+      return std::any_of(field.moved.begin(), field.moved.end(), [&](const fe::ChordPoint& p) {
+        return !carried.mass.points[static_cast<std::size_t>(p.point)].is_place;
+      });
+    };
+    if (!carried.mass.fields.empty() && !has_arms(carried.mass.fields.front())) return;
     carried.u = calc_element_curve(curves, element);
     const auto num = static_cast<Index>(carried.mass.points.size());
     carried.motion.resize(3 * num, element.num_dofs());
