@@ -22,15 +22,14 @@ double calc_model_size(const fe::Model& model) {
   return box.isEmpty() ? 0 : box.diagonal().norm();
 }
 
-/// Largest translation of a grid in each mode.
+}  // namespace
+
 VectorXd calc_largest_ways(const fe::Model& model, const MatrixXd& Phi) {
   VectorXd ways = VectorXd::Zero(Phi.cols());
   for (const auto& node : model.nodes())
     if (node.num_dofs == 6) ways = ways.cwiseMax(Phi.middleRows<3>(node.first_gdof).colwise().norm().transpose());
   return ways;
 }
-
-}  // namespace
 
 std::vector<int> find_named_large_modes(const BodyRequest& request, int num_modes) {
   const auto& spec = request.spec;

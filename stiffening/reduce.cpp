@@ -40,6 +40,7 @@ ReducedBody reduce_body(const BodyRequest& request) {
   set_integrals(request, model, basis.Phi, inertial, body);
   set_loads(request, model, basis.Phi, patterns, body);
   set_third_order(request, model, basis, patterns, support, inertial, body);
+  set_next_order(request, model, basis, support, inertial, body);
   inertial.M = {};
 
   request.report("static solutions");

@@ -152,6 +152,12 @@ void set_loads(const BodyRequest& request, const fe::Model& model, const MatrixX
 
 /// Throws reduce.bad-order if third order is requested and the model has what the series do not contain.
 void check_third_order(const BodyRequest& request, const fe::Model& model);
+/// Returns true if check_third_order() finds nothing in this body.
+bool has_series(const BodyRequest& request, const fe::Model& model);
+/// Energy of the soft modes of a body of second order, if the model has power series (docs/theory/third-order.md, "Next
+/// order").
+void set_next_order(const BodyRequest& request, const fe::Model& model, const ModalBasis& basis,
+                    const StaticSupport& support, const InertialLoads& inertial, records::FlexBody& body);
 /// Third order, if it is requested; after set_loads. Throws reduce.bad-order.
 void set_third_order(const BodyRequest& request, const fe::Model& model, const ModalBasis& basis,
                      const std::vector<LoadPattern>& patterns, const StaticSupport& support,

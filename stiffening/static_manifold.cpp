@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "fe/corotational/chord_series.hpp"
 #include "fe/corotational/corotational_element.hpp"
 #include "fe/corotational/series.hpp"
 #include "fe/elements/carried.hpp"
@@ -72,13 +73,13 @@ Eigen::Matrix3Xd calc_turned_moment(const MatrixXd& theta, const Vector3d& arm, 
   return moment;
 }
 
+}  // namespace
+
 bool has_stiffness(const fe::Element& element) {
   MatrixXd K = MatrixXd::Zero(element.num_dofs(), element.num_dofs());
   element.add_stiffness(1, K);
   return !K.isZero(0);
 }
-
-}  // namespace
 
 MatrixXd calc_monomials(const Eigen::MatrixXi& exponents, const MatrixXd& amplitudes) {
   MatrixXd values = MatrixXd::Ones(amplitudes.rows(), exponents.rows());
@@ -100,6 +101,17 @@ Lattice::Lattice(int n, int degree) : exponents_(records::list_exponents(n, degr
   factor_.compute(calc_monomials(exponents_, points_));
 }
 
+void unscale(const Eigen::MatrixXi& exponents, const VectorXd& scale, MatrixXd& c) {
+  for (Eigen::Index i = 0; i < exponents.rows(); ++i)
+    for (Eigen::Index j = 0; j < exponents.cols(); ++j)
+      for (int e = 0; e < exponents(i, j); ++e) c.col(i) /= scale[j];
+}
+
+VectorXd fit_energy(const Lattice& lattice, const MatrixXd& forces, int degree) {
+  const MatrixXd work = forces.cwiseProduct(lattice.points().transpose());
+  return lattice.fit(work.colwise().sum() / degree).transpose();
+}
+
 StaticManifold::StaticManifold(const BodyRequest& request, const fe::Model& model, const ModalBasis& basis,
                                const StaticSupport& support, const linear::SymmetricMatrix& M)
     : model_(model), support_(support), arms_(model), eigenvalue_(basis.eigenvalue) {
@@ -110,7 +122,7 @@ StaticManifold::StaticManifold(const BodyRequest& request, const fe::Model& mode
   K_ = scale_.asDiagonal() * basis.stiffness * scale_.asDiagonal();
   K_factor_.compute(K_);
   set_rigid_motions(request, M);
-  set_loads(request, basis, M);
+  if (has_frame_) set_loads(request, basis, M);
 }
 
 void StaticManifold::set_rigid_motions(const BodyRequest& request, const linear::SymmetricMatrix& M) {
@@ -122,12 +134,8 @@ void StaticManifold::set_rigid_motions(const BodyRequest& request, const linear:
   const MatrixXd CR = C_.transpose() * Phi_R_;
   const VectorXd unit = CR.rowwise().norm().cwiseMax(1e-300).cwiseInverse();
   const Eigen::FullPivLU<MatrixXd> factor(unit.asDiagonal() * CR);
-  if (!(factor.rcond() > kNoInertia)) {
-    request.error("reduce.bad-order",
-                  "[body.stiffening] order = 3 is given, but the free body has no inertia about an axis",
-                  "use frame = \"node\", give it that inertia, or set order = 2");
-    request.diagnostics.throw_if_errors();
-  }
+  has_frame_ = factor.rcond() > kNoInertia;
+  if (!has_frame_) return;
   CR_inverse_ = factor.inverse() * unit.asDiagonal();
 }
 
@@ -330,6 +338,7 @@ MatrixXd StaticManifold::calc_forces(const Curves& curves, int order) const {
   visit_carried(curves, [&](const fe::Element& element, const Carried& carried) {
     const MatrixXd along = carried.motion * (psi_(element.gdofs(), Eigen::all) * lambda);
     MatrixXd f = MatrixXd::Zero(element.num_dofs(), along.cols());
+    if (!carried.mass.fields.empty()) return add_element(element, -calc_chord_forces(carried, along, order));
     for (const auto& turn : carried.mass.turns)
       for (const auto& part : turn.parts) {
         Eigen::Matrix3Xd force = Eigen::Matrix3Xd::Zero(3, along.cols());
@@ -369,13 +378,53 @@ MatrixXd StaticManifold::calc_arm_work(int degree, const Lattice& lattice,
   return lattice.fit(work);
 }
 
+MatrixXd StaticManifold::calc_chord_forces(const Carried& carried, const MatrixXd& along, int order) {
+  const auto& moved = carried.mass.fields.front().moved;
+  const Index num = carried.mass.mu.rows();
+  MatrixXd result = MatrixXd::Zero(carried.u.rows(), carried.u.cols());
+  for (Index c = 0; c < carried.u.cols(); c += kSeriesTop) {
+    std::vector<SeriesVector> forces;
+    VectorXd linear = VectorXd::Zero(carried.u.rows());
+    for (const auto& point : moved) {
+      MatrixXd force = MatrixXd::Zero(3, kSeriesTop);
+      for (Index r = 0; r < num; ++r) force += carried.mass.mu(r, point.point) * along.block<3, kSeriesTop>(3 * r, c);
+      linear += carried.motion.middleRows<3>(3 * point.point).transpose() * force.col(order - 1);
+      forces.push_back(fe::get_vector(force, 0));
+    }
+    const fe::ChordSeries chord(carried.mass, carried.u.middleCols<kSeriesTop>(c));
+    result.col(c + order - 1) = chord.calc_forces(forces).col(order - 1) - linear;
+  }
+  return result;
+}
+
+MatrixXd StaticManifold::calc_chord_motion(const Carried& carried, int order) {
+  const auto& points = carried.mass.fields.front().moved;
+  MatrixXd moved = MatrixXd::Zero(carried.motion.rows(), carried.u.cols() / kSeriesTop);
+  for (Index c = 0; c < moved.cols(); ++c) {
+    const auto u = carried.u.middleCols<kSeriesTop>(kSeriesTop * c);
+    const fe::ChordSeries chord(carried.mass, u);
+    for (std::size_t p = 0; p < points.size(); ++p) {
+      const Index row = 3 * points[p].point;
+      moved.block<3, 1>(row, c) =
+          chord.calc_motion(p)[static_cast<std::size_t>(order)] - carried.motion.middleRows<3>(row) * u.col(order - 1);
+    }
+  }
+  return moved;
+}
+
 template <class Visit>
 void StaticManifold::visit_carried(const Curves& curves, const Visit& visit) const {
   fe::visit_elements(model_, fe::get_own_elements(model_), [&](int, const fe::Element& element) {
     if (!element.offset_mass(model_.mass_kind())) return;
     Carried carried{fe::CarriedMass(element.num_dofs()), {}, {}};
     if (!fe::calc_carried(model_, element, model_.mass_kind(), carried.mass)) return;
-    if (!carried.mass.fields.empty()) return;  // between two ends: linear, off as h²
+    // Places between two ends alone move linearly, off as h²: so are their elements' bows.
+    const auto has_arms = [&](const fe::CarriedField& field) {
+      return std::any_of(field.moved.begin(), field.moved.end(), [&](const fe::ChordPoint& p) {
+        return !carried.mass.points[static_cast<std::size_t>(p.point)].is_place;
+      });
+    };
+    if (!carried.mass.fields.empty() && !has_arms(carried.mass.fields.front())) return;
     carried.u = calc_element_curve(curves, element);
     const auto num = static_cast<Index>(carried.mass.points.size());
     carried.motion.resize(3 * num, element.num_dofs());
@@ -399,7 +448,8 @@ StaticManifold::CarriedWork StaticManifold::calc_carried_work(const Curves& curv
   visit_carried(curves, [&](const fe::Element& element, const Carried& carried) {
     const auto num = static_cast<Index>(carried.mass.points.size());
     MatrixXd moved = MatrixXd::Zero(3 * num, m);
-    for (const auto& turn : carried.mass.turns)
+    if (!carried.mass.fields.empty()) moved = calc_chord_motion(carried, order);
+    for (const auto& turn : carried.mass.fields.empty() ? carried.mass.turns : std::vector<fe::CarriedTurn>())
       for (const auto& part : turn.parts)
         moved.middleRows<3>(3 * static_cast<Index>(part.point)) +=
             part.B * calc_turned_arm(turn.Theta * carried.u, part.arm, order);

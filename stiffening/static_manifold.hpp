@@ -29,12 +29,23 @@ class Lattice {
   Eigen::PartialPivLU<MatrixXd> factor_;
 };
 
+/// Returns true if K of the element is not zero.
+bool has_stiffness(const fe::Element& element);
+
+/// V_k from Φη·f_(k-1)/k at the points of its lattice. forces: f_(k-1) on the modes, N x points.
+VectorXd fit_energy(const Lattice& lattice, const MatrixXd& forces, int degree);
+
+/// Coefficients of polynomials in η from those in η / scale, in place. c: rows x monomials.
+void unscale(const Eigen::MatrixXi& exponents, const VectorXd& scale, MatrixXd& c);
+
 class StaticManifold {
  public:
-  /// All references must outlive it. Throws reduce.bad-order if a free body has no inertia about an axis.
+  /// All references must outlive it. basis: the modes that are held, of positive stiffness.
   StaticManifold(const BodyRequest& request, const fe::Model& model, const ModalBasis& basis,
                  const StaticSupport& support, const linear::SymmetricMatrix& M);
 
+  /// False: a free body has no inertia about an axis, so nothing else may be called.
+  bool has_frame() const { return has_frame_; }
   /// Returns 1/ω of each mode [n], the factor between a scaled amplitude and that of the basis.
   const VectorXd& scale() const { return scale_; }
   /// Returns the mode shapes of scaled amplitudes [num_gdofs x n].
@@ -99,6 +110,11 @@ class StaticManifold {
   MatrixXd calc_forces(const Curves& curves, int order) const;
   /// Work of the loads W on what arms move beyond the linear motion: n x points.
   MatrixXd calc_arm_gauge(const Curves& curves, int order) const;
+  /// Points between the ends of a consistent beam. Forces (N x 5 points, this order alone) of the loads `along` (3
+  /// points of the element x 5 points) beyond those on the linear motion; motion of this order beyond H u, 3 points of
+  /// the element x points.
+  static MatrixXd calc_chord_forces(const Carried& carried, const MatrixXd& along, int order);
+  static MatrixXd calc_chord_motion(const Carried& carried, int order);
   template <class Visit>
   void visit_carried(const Curves& curves, const Visit& visit) const;
   CarriedWork calc_carried_work(const Curves& curves, int order, const MatrixXd& psi, const MatrixXd& strain) const;
@@ -106,6 +122,7 @@ class StaticManifold {
   const fe::Model& model_;
   const StaticSupport& support_;
   std::vector<int> large_, small_;
+  bool has_frame_ = true;
   fe::RigidArms arms_;
   VectorXd eigenvalue_, scale_;
   MatrixXd Phi_, Phi_R_, C_, CR_inverse_;

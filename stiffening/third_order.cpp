@@ -29,13 +29,6 @@ constexpr double kLeftOut = 1e-3;
 constexpr double kNoUse = 1e-9;
 constexpr int kMaxExtraFields = 12;
 
-/// c of polynomials in η from those in η / scale. c: rows x monomials.
-void unscale(const Eigen::MatrixXi& exponents, const VectorXd& scale, MatrixXd& c) {
-  for (Eigen::Index i = 0; i < exponents.rows(); ++i)
-    for (Eigen::Index j = 0; j < exponents.cols(); ++j)
-      for (int e = 0; e < exponents(i, j); ++e) c.col(i) /= scale[j];
-}
-
 void add_unfit(std::vector<std::string>& names, const std::string& name) {
   if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
 }
@@ -64,12 +57,6 @@ std::pair<std::string, records::CardLocation> find_tie(const records::Deck& deck
   for (const auto& card : deck.mpc)
     if (!card.terms.empty() && is_joined(card.terms.front().g)) return {"MPC " + std::to_string(card.sid), card.at};
   return {};
-}
-
-/// V_k from Φη·f_(k-1)/k at the points of its lattice. forces: f_(k-1) on the modes, N x points.
-VectorXd fit_energy(const Lattice& lattice, const MatrixXd& forces, int degree) {
-  const MatrixXd work = forces.cwiseProduct(lattice.points().transpose());
-  return lattice.fit(work.colwise().sum() / degree).transpose();
 }
 
 /// Fields are displacements of the grids, with the strain E by which the arms of carried masses move in addition to
@@ -140,10 +127,8 @@ void append_orthonormal(const FieldMass& M, const MatrixXd& X, double no_mass, M
   }
 }
 
-}  // namespace
-
-void check_third_order(const BodyRequest& request, const fe::Model& model) {
-  if (request.spec.stiffening_order < 3) return;
+/// Adds an error for each part of the body that has no power series.
+void add_series_errors(const BodyRequest& request, const fe::Model& model) {
   const auto error = [&](const std::string& what, const std::string& advice) {
     request.error("reduce.bad-order", "[body.stiffening] order = 3 is given, but " + what, advice);
   };
@@ -173,13 +158,13 @@ void check_third_order(const BodyRequest& request, const fe::Model& model) {
   std::vector<std::string> elements, masses;
   for (const auto& element : model.elements()) {
     if (element->num_dofs() == 0) continue;
-    const fe::CorotationalElement corotational(*element, model.nodes());
     const auto name = element->card() + " " + std::to_string(element->id());
-    if (!corotational.follows_nodes() && !corotational.K().isZero(0)) add_unfit(elements, name);
-    fe::CarriedMass carried(element->num_dofs());
-    if (corotational.K().isZero(0) && element->offset_mass(model.mass_kind()) &&
-        !fe::calc_carried(model, *element, model.mass_kind(), carried))
-      add_unfit(masses, name);
+    if (has_stiffness(*element)) {
+      if (!fe::follows_nodes(*element, model.nodes())) add_unfit(elements, name);
+    } else if (element->offset_mass(model.mass_kind())) {
+      fe::CarriedMass carried(element->num_dofs());
+      if (!fe::calc_carried(model, *element, model.mass_kind(), carried)) add_unfit(masses, name);
+    }
     if (elements.size() + masses.size() > 5) break;
   }
   if (!elements.empty())
@@ -189,7 +174,20 @@ void check_third_order(const BodyRequest& request, const fe::Model& model) {
     error(join_names(masses) + (masses.size() > 1 ? " have mass" : " has mass") +
               " that is none of a rigid body: it differs by direction",
           "give it one mass for all directions, or " + second);
+}
+
+}  // namespace
+
+void check_third_order(const BodyRequest& request, const fe::Model& model) {
+  if (request.spec.stiffening_order < 3) return;
+  add_series_errors(request, model);
   request.diagnostics.throw_if_errors();
+}
+
+bool has_series(const BodyRequest& request, const fe::Model& model) {
+  Diagnostics found;
+  add_series_errors({request.deck, request.spec, request.options, request.given, found}, model);
+  return found.num_errors() == 0;
 }
 
 namespace {
@@ -266,6 +264,12 @@ void set_third_order(const BodyRequest& request, const fe::Model& model, const M
   std::snprintf(need, sizeof need, "%.0f MB", 8e-6 * num_columns * model.num_gdofs());
   request.report("third order of at most " + std::to_string(max_large) + " modes, " + need);
   StaticManifold manifold(request, model, basis, support, inertial.M);
+  if (!manifold.has_frame()) {
+    request.error("reduce.bad-order",
+                  "[body.stiffening] order = 3 is given, but the free body has no inertia about an axis",
+                  "use frame = \"node\", give it that inertia, or set order = 2");
+    request.diagnostics.throw_if_errors();
+  }
 
   // Degree 2 is of all modes: stiffening by loads concerns the small ones as well.
   const Lattice pairs(n, 2);

@@ -25,6 +25,9 @@
 #include "formats/nastran/reader.hpp"
 #include "formats/records/params.hpp"
 #include "formats/toml/specs.hpp"
+#include "solver/bodies/body.hpp"
+#include "solver/bodies/soft_energy.hpp"
+#include "solver/simulate/modal_range_monitor.hpp"
 #include "solver/simulate/simulate.hpp"
 
 namespace bough::analysis {
@@ -163,6 +166,48 @@ CheckAnswer check_system(const CheckRequest& request) {
   return answer;
 }
 
+/// Size of /third_order of a body in kB, if it has the fields of a body in space.
+double calc_third_order_size(const records::FlexBody& body, int num_large) {
+  constexpr double kNumFields = 14;
+  const int n = body.num_modes();
+  double numbers = 6 * kNumFields * body.num_nodes() + 12 * (n + kNumFields) * (n + kNumFields);
+  for (int k = 3; k <= records::ThirdOrder::kMaxEnergy; ++k) numbers += records::count_monomials(num_large, k);
+  for (int k = 2; k <= records::ThirdOrder::kMaxField; ++k)
+    numbers += records::count_monomials(k == 2 ? n : num_large, k) *
+               (kNumFields + 6.0 * static_cast<double>(body.interface_nodes.size()) +
+                static_cast<double>(body.locators.size()));
+  return 8e-3 * numbers;
+}
+
+std::optional<FlexBodyCheck::Reach> find_reach(const records::FlexBody& record) {
+  if (record.next_order.empty()) return {};
+  constexpr int kMaxLarge = 6;  // that reduce selects
+  const auto body = solver::Body::make_flexible(record, -1, true, {});
+  FlexBodyCheck::Reach reach;
+  reach.mode = record.next_order.modes.front();
+  const solver::Node* node = nullptr;
+  const auto calc_way = [&](const solver::Node& at) { return at.phi.col(reach.mode).norm(); };
+  for (const auto& one : body.nodes())
+    if (one.moves && (!node || calc_way(one) > calc_way(*node))) node = &one;
+  if (!node || !(calc_way(*node) > 0)) return {};
+  const Eigen::VectorXd shape = Eigen::VectorXd::Unit(body.num_modes(), reach.mode) / calc_way(*node);
+  const auto is_inside = [&](double way) {
+    return body.soft_energy()->calc_error(*node, body.K(), way * shape) < solver::kNextOrderLimit;
+  };
+  double inside = 0, outside = 1e-12;
+  for (int i = 0; i < 200 && is_inside(outside); ++i) outside *= 2;
+  if (is_inside(outside)) return {};
+  for (int i = 0; i < 200 && outside - inside > 1e-3 * outside; ++i)
+    (is_inside(0.5 * (inside + outside)) ? inside : outside) = 0.5 * (inside + outside);
+  reach.node = node->id;
+  reach.deflection = outside;
+  reach.num_large = std::min<int>(
+      kMaxLarge, static_cast<int>(std::count(record.kind.begin(), record.kind.end(), records::ModeKind::Normal)));
+  reach.file_kilobytes = calc_third_order_size(record, reach.num_large);
+  reach.evaluation_microseconds = 0.4 + 1.6 * records::count_monomials(reach.num_large, 4) / 126;
+  return reach;
+}
+
 FlexBodyCheck check_flex_body(const std::string& path, Diagnostics& diagnostics) {
   const auto body = read_body(path, diagnostics);
   FlexBodyCheck check{body.name,
@@ -173,7 +218,9 @@ FlexBodyCheck check_flex_body(const std::string& path, Diagnostics& diagnostics)
                       0,
                       body.interface_nodes.size(),
                       body.locators.size(),
-                      0};
+                      0,
+                      body.third_order.large,
+                      find_reach(body)};
   for (bool flag : body.kg_inertial_computed) check.num_kg_inertial += flag ? 1 : 0;
   auto& worst = check.kg_asymmetry;
   for (const auto& list : {std::vector<MatrixXd>(body.kg_inertial.begin(), body.kg_inertial.end()), body.kg_external}) {

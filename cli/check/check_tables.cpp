@@ -192,6 +192,16 @@ void add(const analysis::FlexBodyCheck& check, std::string& text, nlohmann::json
                   num_modes ? check.frequency_hz[num_modes - 1] : 0.0, check.num_nodes, check.num_interface_nodes);
   text += fmt::format("geometric stiffness: {} of 12 inertial loads, {} locators; asymmetry {:.1e}\n",
                       check.num_kg_inertial, check.num_locators, check.kg_asymmetry);
+  if (!check.large.empty()) text += fmt::format("third order: {} large\n", count(check.large.size(), "mode"));
+  if (check.reach) {
+    const auto& reach = *check.reach;
+    text += fmt::format(
+        "second order: a deflection of {:.3g} in mode {} (node {}) is estimated to be off by 1 %; beyond it set "
+        "[body.stiffening] order = 3: at most {} large, about {:.0f} kB of file and {:.1f} µs an evaluation more\n",
+        reach.deflection, reach.mode + 1, reach.node, count(static_cast<std::size_t>(reach.num_large), "mode"),
+        reach.file_kilobytes, reach.evaluation_microseconds);
+    json["next_order"] = {{"mode", reach.mode + 1}, {"node", reach.node}, {"deflection", reach.deflection}};
+  }
   json["kind"] = "bough-flexbody";
   json["num_modes"] = num_modes;
   json["mass"] = check.mass;

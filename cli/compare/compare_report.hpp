@@ -21,9 +21,13 @@ nlohmann::json make_json(const analysis::PairReport& report);
 std::string format_report(const analysis::RefinementReport& report);
 /// The numbers of the table as JSON.
 nlohmann::json make_json(const analysis::RefinementReport& report);
+/// Tables of test and analysis: pairs with frequencies and MAC, cross-orthogonality, COMAC.
 std::string format_report(const analysis::TestReport& report);
+/// The numbers of these tables as JSON.
 nlohmann::json make_json(const analysis::TestReport& report);
+/// Table of the places of sensors, in the order in which effective independence keeps them.
 std::string format_report(const analysis::SensorReport& report);
+/// The places of sensors as JSON.
 nlohmann::json make_json(const analysis::SensorReport& report);
 
 }  // namespace bough::cli

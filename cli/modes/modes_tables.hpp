@@ -31,6 +31,7 @@ nlohmann::json make_json(const records::ModesResult& result, const std::vector<m
 
 /// Slopes of the frequencies: df/dx and (x/f) df/dx of each mode and design variable.
 std::string format_sensitivities(const analysis::ModeSensitivities& s);
+/// The slopes as JSON.
 nlohmann::json make_json(const analysis::ModeSensitivities& s);
 
 }  // namespace bough::cli

@@ -45,11 +45,19 @@ MatrixXd solve_in_range(const MatrixXd& K, const MatrixXd& B) {
 
 }  // namespace
 
-CorotationalElement::CorotationalElement(const Element& element, const std::vector<Node>& nodes) {
+bool CorotationalElement::find_stiffness(const Element& element, const std::vector<Node>& nodes) {
   const int N = element.num_dofs();
   K_ = MatrixXd::Zero(N, N);
   element.add_stiffness(1, K_);
-  follows_nodes_ = find_nodes(element, nodes) && is_free_of_rigid_motion();
+  return find_nodes(element, nodes) && is_free_of_rigid_motion();
+}
+
+bool follows_nodes(const Element& element, const std::vector<Node>& nodes) {
+  return CorotationalElement().find_stiffness(element, nodes);
+}
+
+CorotationalElement::CorotationalElement(const Element& element, const std::vector<Node>& nodes) {
+  follows_nodes_ = find_stiffness(element, nodes);
   if (!follows_nodes_) return;
   set_frame();
   set_local_strains(element);

@@ -28,6 +28,9 @@ Vector3d calc_rotation_log(const Matrix3d& R);
 /// ∂(T⁻ᵀ(θ) g)/∂θ with g fixed.
 Matrix3d calc_inverse_tangent_slope(const Vector3d& theta, const Vector3d& g);
 
+/// Returns true if the stiffness of the element turns with its grids (CorotationalElement::follows_nodes); O(N²).
+bool follows_nodes(const Element& element, const std::vector<Node>& nodes);
+
 class CorotationalElement {
  public:
   /// `nodes`: those that element.nodes() and gdofs() index. Both are read here only. Computes K⁺ and K_G of every unit
@@ -64,6 +67,9 @@ class CorotationalElement {
   const std::vector<int>& grids() const { return grids_; }  ///< indices of the nodes, each once
 
  private:
+  friend bool follows_nodes(const Element& element, const std::vector<Node>& nodes);
+  CorotationalElement() = default;
+  bool find_stiffness(const Element& element, const std::vector<Node>& nodes);
   bool find_nodes(const Element& element, const std::vector<Node>& nodes);
   bool is_free_of_rigid_motion() const;
   void set_frame();

@@ -84,7 +84,7 @@ void Beam::add_consistent_bodies(const Eigen::Ref<const Matrix3Xd>& x, CarriedMa
   const bool needs_second = carried.detail == CarriedDetail::SecondOrder;
   // Second-order motion of the points by that of the ends of the arms.
   std::vector<std::pair<int, Matrix3d>> by_end[2];
-  std::vector<CarriedMass::ChordPoint> moved;
+  std::vector<ChordPoint> moved;
   const auto add_ends = [&](int p, const Motion& motion) {
     for (int k = 0; k < 2; ++k)
       if (!arms[k].isZero(0)) by_end[k].emplace_back(p, motion.middleCols<3>(6 * k));

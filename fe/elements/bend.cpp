@@ -140,7 +140,7 @@ void Bend::add_mass(MassKind kind, double scale, Eigen::Ref<MatrixXd> M) const {
 
 bool Bend::add_carried(MassKind, const Eigen::Ref<const Matrix3Xd>&, CarriedMass& carried) const {
   if (carried.detail == CarriedDetail::Whether) return true;
-  std::vector<CarriedMass::ChordPoint> moved;
+  std::vector<ChordPoint> moved;
   for (int k = 0; k < kNumParts; ++k) {
     const Eigen::Matrix<double, 12, 12> motion = motion_.middleRows<12>(6 * k);
     CarriedMass part(12, carried.detail);

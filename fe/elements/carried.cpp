@@ -99,6 +99,11 @@ void CarriedMass::add_chord_field(const Vector3d& x_a, const Vector3d& chord, co
     }
     field.parts.push_back(std::move(part));
   }
+  field.x_a = x_a;
+  field.chord = chord;
+  field.moved = moved;
+  if (num_dofs == 12)  // blocks -w̃
+    field.arms = {Vector3d(ends(1, 5), ends(2, 3), ends(0, 4)), Vector3d(ends(7, 11), ends(8, 9), ends(6, 10))};
   fields.push_back(std::move(field));
   chord_points = moved;
 }

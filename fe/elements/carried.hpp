@@ -27,6 +27,12 @@ struct CarriedTurn {
   std::vector<Part> parts;
 };
 
+/// A point that two ends move: by `motion` of their dofs [u_A θ_A u_B θ_B] (basic); an arm by `turn` too.
+struct ChordPoint {
+  int point = 0;
+  Eigen::Matrix<double, 3, 12> motion = Eigen::Matrix<double, 3, 12>::Zero(), turn = motion;
+};
+
 /// The second order of points that move between two ends: point p moves by (L q)ᵀ Q_pa (L q) more along axis a.
 struct CarriedField {
   struct Part {
@@ -35,6 +41,10 @@ struct CarriedField {
   };
   MatrixXd L;  ///< 9 x N: θ of end A, motion of end B from A, θ of end B
   std::vector<Part> parts;
+  // For higher orders (fe/corotational/chord_series.hpp)
+  Vector3d x_a = Vector3d::Zero(), chord = x_a;  ///< end A and the way to end B
+  std::array<Vector3d, 2> arms = {x_a, x_a};     ///< from the grids to the ends
+  std::vector<ChordPoint> moved;                 ///< in the order of `parts`
 };
 
 /// Detail of the offset mass that is requested of an element: each level contains the one before.
@@ -65,13 +75,9 @@ struct CarriedMass {
   /// Adds a rigid body at a grid whose six dofs start at `first`.
   void add_grid_body(const Vector3d& x, double m, const Vector3d& S, const Matrix3d& E, int first);
 
-  /// A point that two ends move: by `motion` of their dofs [u_A θ_A u_B θ_B] (basic); an arm by `turn` too.
-  struct ChordPoint {
-    int point = 0;
-    Eigen::Matrix<double, 3, 12> motion = Eigen::Matrix<double, 3, 12>::Zero(), turn = motion;
-  };
   /// Points of an element that deforms in the frame of its chord from x_a to x_a + chord, turned by the mean of the end
-  /// rotations: adds their second order, so that a rigid-body motion of the ends is one of the points. ends: 12 x N.
+  /// rotations: adds their second order, so that a rigid-body motion of the ends is one of the points. ends: 12 x N, of
+  /// grids that carry the ends by arms.
   std::vector<ChordPoint> chord_points;  ///< those of the last call, for an element made of such elements
   /// Adds the second order of points of an element that deforms in the frame of its chord; `moved`: their motion by the
   /// ends.

@@ -258,6 +258,7 @@ void write_flex_body(const FlexBody& body, const BodyAccuracy& accuracy, const s
   write_stiffening(file, body);
   write_preload(file, body);
   write_third_order(file, body);
+  write_next_order(file, body.next_order);
   write_recovery(file, body);
   if (!body.strain_energy.empty()) {
     file.write_integers("/strain_energy/id", body.strain_energy.id, {"element ids", "1"});
@@ -316,6 +317,7 @@ FlexBody read_flex_body(const std::string& path) {
   read_stiffening(file, body);
   read_preload(file, body);
   read_third_order(file, body);
+  body.next_order = read_next_order(file, body.num_modes());
   read_recovery(file, body);
   if (file.has("/strain_energy/matrix")) {
     auto& energy = body.strain_energy;

@@ -94,4 +94,27 @@ void read_third_order(FileReader& file, records::FlexBody& body) {
   third.integrals = read_integrals(file, "/third_order/integrals", n + m);
 }
 
+void write_next_order(FileWriter& file, const records::NextOrder& next) {
+  if (next.empty()) return;
+  std::vector<int> numbers;
+  for (const int j : next.modes) numbers.push_back(j + 1);
+  file.write_integers("/next_order/modes", numbers, {"soft modes, from 1", "1"});
+  file.write_vector("/next_order/energy_3", next.cubic,
+                    {"strain energy of degree 3 in the soft modes: " + kPacked, "M L^2/(T^2 E^3)"});
+  file.write_vector("/next_order/energy_4", next.quartic,
+                    {"strain energy of degree 4 in the soft modes: " + kPacked, "M L^2/(T^2 E^4)"});
+}
+
+records::NextOrder read_next_order(FileReader& file, int num_modes) {
+  records::NextOrder next;
+  if (!file.has("/next_order")) return next;
+  next.modes = file.read_integers("/next_order/modes", -1);
+  for (int& j : next.modes) --j;
+  const auto N = static_cast<int>(next.modes.size());
+  if (!records::are_modes(next.modes, num_modes) || N > records::kMaxLargeModes) return next;  // a body fault
+  next.cubic = file.read_vector("/next_order/energy_3", records::count_monomials(N, 3));
+  next.quartic = file.read_vector("/next_order/energy_4", records::count_monomials(N, 4));
+  return next;
+}
+
 }  // namespace bough::hdf5

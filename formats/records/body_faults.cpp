@@ -83,6 +83,9 @@ Faults find_unknown_names(const FlexBody& body) {
     faults.push_back("/third_order/large holds " + std::to_string(body.third_order.num_large()) + " of " +
                      std::to_string(body.num_modes()) + " modes, expected 1 to " + std::to_string(kMaxLargeModes) +
                      " mode numbers, ascending, of at most " + std::to_string(kMaxThirdOrderModes) + " modes");
+  if (!are_modes(body.next_order.modes, body.num_modes()) || body.next_order.modes.size() > kMaxLargeModes)
+    faults.push_back("/next_order/modes is expected to hold at most " + std::to_string(kMaxLargeModes) +
+                     " mode numbers up to " + std::to_string(body.num_modes()) + ", ascending");
   const auto num_grids = static_cast<long>(body.mesh.grid_id.size());
   for (std::size_t i = 0; i < body.mesh.blocks.size(); ++i) {
     const auto& indices = body.mesh.blocks[i].connectivity;

@@ -93,6 +93,7 @@ struct FlexBody {
   std::vector<MatrixXd> load_moment;  ///< [e] 3 x n: Σ φ_kj × f_k, what mode j adds to that moment; as load_resultant
 
   ThirdOrder third_order;  ///< empty: the body has second order alone
+  NextOrder next_order;    ///< of a body of second order; empty in older files and where the series do not exist
 
   std::string preload;   ///< what stresses the body before anything else does; empty: nothing
   MatrixXd kg_preload;   ///< n x n: its geometric stiffness, part of modal_stiffness; empty without

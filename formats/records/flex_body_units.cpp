@@ -102,6 +102,12 @@ void scale_third_order(FlexBody& body, const UnitChange& c) {
   scale_integrals(third.integrals, c);
 }
 
+void scale_next_order(FlexBody& body, const UnitChange& c) {
+  const double e = c.calc_modal(), energy = c.calc_force() * c.length;
+  body.next_order.cubic *= energy / std::pow(e, 3);
+  body.next_order.quartic *= energy / std::pow(e, 4);
+}
+
 void scale_recovery(FlexBody& body, const UnitChange& c) {
   for (auto& block : body.recovery) {
     const auto num = static_cast<Eigen::Index>(block.components.size());
@@ -138,6 +144,7 @@ void change_units(FlexBody& body, const UnitChange& c) {
   scale_full(body, c);
   scale_stiffening(body, c);
   scale_third_order(body, c);
+  scale_next_order(body, c);
   scale_recovery(body, c);
   body.strain_energy.matrix *= energy / (e * e);
   body.mesh.grid_xyz *= c.length;

@@ -1,5 +1,7 @@
 #include "formats/records/mode_subset.hpp"
 
+#include <algorithm>
+
 #include <Eigen/Cholesky>
 
 #include "base/diagnostic.hpp"
@@ -48,6 +50,12 @@ FlexBody keep_modes(const FlexBody& body, const std::vector<int>& kept) {
   FlexBody small = body;
   // Third order is about the manifold of all modes; K_G1 and K_G2 stay.
   if (static_cast<int>(kept.size()) < body.num_modes()) small.third_order = {};
+  // The energy of soft modes belongs to all of them.
+  for (int& mode : small.next_order.modes) {
+    const auto found = std::lower_bound(kept.begin(), kept.end(), mode);
+    mode = found != kept.end() && *found == mode ? static_cast<int>(found - kept.begin()) : -1;
+  }
+  if (!are_modes(small.next_order.modes, static_cast<int>(kept.size()))) small.next_order = {};
   cut.entries(small.frequency_hz);
   cut.entries(small.eigenvalue);
   cut.entries(small.kind);

@@ -27,10 +27,15 @@ Eigen::MatrixXi list_exponents(int n, int degree) {
   return all;
 }
 
+bool are_modes(const std::vector<int>& numbers, int num_modes) {
+  for (std::size_t i = 0; i < numbers.size(); ++i)
+    if (numbers[i] < 0 || numbers[i] >= num_modes || (i > 0 && numbers[i] <= numbers[i - 1])) return false;
+  return true;
+}
+
 bool is_valid_choice(const std::vector<int>& large, int num_modes) {
-  for (std::size_t i = 0; i < large.size(); ++i)
-    if (large[i] < 0 || large[i] >= num_modes || (i > 0 && large[i] <= large[i - 1])) return false;
-  return !large.empty() && large.size() <= kMaxLargeModes && num_modes <= kMaxThirdOrderModes;
+  return are_modes(large, num_modes) && !large.empty() && large.size() <= kMaxLargeModes &&
+         num_modes <= kMaxThirdOrderModes;
 }
 
 }  // namespace bough::records

@@ -20,6 +20,9 @@ Eigen::MatrixXi list_exponents(int n, int degree);
 /// C(n + degree - 1, degree), the rows of list_exponents.
 int count_monomials(int n, int degree);
 
+/// Returns true if these are mode numbers from 0, ascending.
+bool are_modes(const std::vector<int>& numbers, int num_modes);
+
 /// Returns true if these are one to kMaxLargeModes modes from 0, ascending, of at most kMaxThirdOrderModes.
 bool is_valid_choice(const std::vector<int>& large, int num_modes);
 
@@ -51,6 +54,18 @@ struct ThirdOrder {
   int num_fields() const { return static_cast<int>(amplitudes[0].cols()); }
   /// Variables of the tables of displacements of this degree, of n modes.
   int num_variables(int degree, int n) const { return degree == 2 ? n : num_large(); }
+};
+
+/// Strain energy of a few soft normal modes to degree 4, packed as that of ThirdOrder. By it solvers estimate what a
+/// body of second order leaves out.
+struct NextOrder {
+  static constexpr int kMaxModes = 4;
+
+  std::vector<int> modes;          ///< N mode numbers from 0, ascending; empty: the energy is unknown
+  Eigen::VectorXd cubic, quartic;  ///< V_3, V_4: every other dof follows as statics take it
+
+  /// Returns true if the energy is unknown.
+  bool empty() const { return modes.empty(); }
 };
 
 }  // namespace bough::records

@@ -5,6 +5,7 @@
 #include "base/diagnostic.hpp"
 #include "solver/bodies/kernels.hpp"
 #include "solver/bodies/row_basis.hpp"
+#include "solver/bodies/soft_energy.hpp"
 #include "solver/bodies/tensor.hpp"
 #include "solver/bodies/third_order.hpp"
 
@@ -77,6 +78,8 @@ Body Body::make_flexible(const records::FlexBody& flex, int num_modes, bool stif
   if (body.D_.isDiagonal(0)) body.D_diagonal_ = body.D_.diagonal();
   if (stiffening && n == flex.num_modes() && !flex.third_order.empty())
     body.third_ = std::make_shared<const ThirdOrderBody>(flex);
+  else if (stiffening && !flex.next_order.empty() && flex.next_order.modes.back() < n)
+    body.soft_energy_ = std::make_shared<const SoftEnergy>(flex.next_order);
   body.add_second_order(flex);
   body.add_flexible_nodes(flex);
   return body;
@@ -187,7 +190,6 @@ void Body::add_flexible_nodes(const records::FlexBody& flex) {
     // A held node outside the interface stays at rest: the fields are its motion but for a thousandth of u₂.
     if (third_ && (node.moves || third_->is_exact(flex, node.id))) {
       node.higher = third_->make_node_motion(flex, static_cast<size_t>(k));
-      node.monomials = third_->list();
       node.moves = node.moves || !node.higher.is_zero();
     }
     node.has_locators = stack_locators(1, node.K2);

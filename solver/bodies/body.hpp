@@ -23,6 +23,7 @@ namespace bough::solver {
 
 struct ThirdOrderData;
 class ThirdOrderBody;
+class SoftEnergy;
 
 /// M(η), h and scratch for one body; every array is sized once. But for M6, M_top and h rows are padded (kernels.hpp).
 struct BodyInertia {
@@ -46,8 +47,8 @@ struct BodyInertia {
 /// Scratch of ThirdOrderBody.
 struct ThirdOrderData {
   BodyInertia linear;                    ///< of the n + m modes
-  VectorXd z, z_dot, xi, xi_dot;         ///< monomials; ξ = (η, p)
-  MatrixXd J, J_dot, M_pp, U, product;   ///< J = ∂p/∂η; M_pp is halved
+  VectorXd xi, xi_dot, tensors;          ///< ξ = (η, p); scratch of the polynomials
+  MatrixXd J, M_pp, U, product;          ///< J = ∂p/∂η; M_pp is halved
   VectorXd p_ddot, force;                ///< m, padded
   VectorXd gradient, J_small, on_small;  ///< of the strain energy
 };
@@ -83,7 +84,8 @@ class Body {
   const MatrixXd& D() const { return D_; }
   /// Affine field of the displacements of second order.
   const AffineField& field() const { return field_; }
-  const ThirdOrderBody* third_order() const { return third_.get(); }  ///< nullptr: second order
+  const ThirdOrderBody* third_order() const { return third_.get(); }    ///< nullptr: second order
+  const SoftEnergy* soft_energy() const { return soft_energy_.get(); }  ///< nullptr: not in the body's file
   /// Strain energy [F L] of the amplitudes eta (n), of third order if the body has it.
   double calc_strain_energy(const ConstVectorRef& eta) const;
 
@@ -143,6 +145,7 @@ class Body {
   VectorXd K_diagonal_, D_diagonal_;  ///< empty where there is more than it
   std::vector<Node> nodes_;
   std::shared_ptr<const ThirdOrderBody> third_;
+  std::shared_ptr<const SoftEnergy> soft_energy_;
 };
 
 /// h (6) of a rigid body: [ω×(ω×S); ω×Jω].

@@ -166,19 +166,65 @@ struct Kernels {
     accumulate_rows<W, 1>(A, rows, x, 1, 0, cols, 1, y, rows, rows);
   }
 
-  static BOUGH_INLINE void multiply_transposed(const double* A, Index rows, Index cols, const double* x, double* y) {
+  // C columns at once: sums of two registers each.
+  template <int C>
+  static BOUGH_INLINE void multiply_columns(const double* A, Index rows, const double* x, double* y) {
     using V = typename Register<W>::type;
-    for (Index k = 0; k < cols; ++k) {
-      const double* a = A + k * rows;
-      V s = V{}, t = V{};
-      Index i = 0;
-      for (; i + 2 * W <= rows; i += 2 * W) {
-        s += load<W>(a + i) * load<W>(x + i);
-        t += load<W>(a + i + W) * load<W>(x + i + W);
+    V s[C], t[C];
+    for (int c = 0; c < C; ++c) s[c] = t[c] = V{};
+    Index i = 0;
+    for (; i + 2 * W <= rows; i += 2 * W) {
+      for (int c = 0; c < C; ++c) {
+        s[c] += load<W>(A + c * rows + i) * load<W>(x + i);
+        t[c] += load<W>(A + c * rows + i + W) * load<W>(x + i + W);
       }
-      if (i < rows) s += load<W>(a + i) * load<W>(x + i);
-      y[k] = sum(V(s + t));
     }
+    for (int c = 0; c < C; ++c) {
+      if (i < rows) s[c] += load<W>(A + c * rows + i) * load<W>(x + i);
+      y[c] = sum(V(s[c] + t[c]));
+    }
+  }
+
+  static BOUGH_INLINE void multiply_transposed(const double* A, Index rows, Index cols, const double* x, double* y) {
+    Index k = 0;
+    for (; k + 3 <= cols; k += 3) multiply_columns<3>(A + k * rows, rows, x, y + k);
+    for (; k < cols; ++k) multiply_columns<1>(A + k * rows, rows, x, y + k);
+  }
+
+  // R registers of every row, from `in` and `out` on. F factors, 0: N.
+  template <int R, int F>
+  static BOUGH_INLINE void contract_part(const double* in, Index stride, const int* offset, Index num, const double* x,
+                                         Index N, double* out) {
+    using V = typename Register<W>::type;
+    const Index num_factors = F > 0 ? F : N;
+    for (Index t = 0; t < num; ++t, offset += num_factors, out += stride) {
+      V acc[R];
+      for (int r = 0; r < R; ++r) acc[r] = V{};
+      for (Index f = 0; f < num_factors; ++f) {
+        const double* a = in + offset[f];
+        for (int r = 0; r < R; ++r) acc[r] += load<W>(a + W * r) * x[f];
+      }
+      for (int r = 0; r < R; ++r) store<W>(out + W * r, acc[r]);
+    }
+  }
+
+  template <int F>
+  static BOUGH_INLINE void contract_rows(const double* in, Index stride, const int* offset, Index num, const double* x,
+                                         Index N, double* out) {
+    Index i = 0;
+    for (; i + 4 * W <= stride; i += 4 * W) contract_part<4, F>(in + i, stride, offset, num, x, N, out + i);
+    for (; i + 2 * W <= stride; i += 2 * W) contract_part<2, F>(in + i, stride, offset, num, x, N, out + i);
+    for (; i < stride; i += W) contract_part<1, F>(in + i, stride, offset, num, x, N, out + i);
+  }
+
+  static BOUGH_INLINE void contract(const double* in, Index stride, const int* offset, Index num, const double* x,
+                                    Index N, double* out) {
+    if (N == 6) return contract_rows<6>(in, stride, offset, num, x, N, out);  // the default number of large modes
+    contract_rows<0>(in, stride, offset, num, x, N, out);
+  }
+
+  static BOUGH_INLINE void add_scaled(double a, const double* x, double b, const double* y, Index rows, double* out) {
+    for (Index i = 0; i < rows; i += W) store<W>(out + i, load<W>(out + i) + load<W>(x + i) * a + load<W>(y + i) * b);
   }
 
   static BOUGH_INLINE void add_product(const double* A, Index rows, Index r, const double* B, Index m, double* C) {
@@ -235,6 +281,11 @@ BOUGH_KERNEL(multiply_transposed, (const double* A, Index rows, Index cols, cons
              (A, rows, cols, x, y))
 BOUGH_KERNEL(add_product, (const double* A, Index rows, Index r, const double* B, Index m, double* C),
              (A, rows, r, B, m, C))
+BOUGH_KERNEL(contract,
+             (const double* in, Index stride, const int* offset, Index num, const double* x, Index N, double* out),
+             (in, stride, offset, num, x, N, out))
+BOUGH_KERNEL(add_scaled, (double a, const double* x, double b, const double* y, Index rows, double* out),
+             (a, x, b, y, rows, out))
 BOUGH_KERNEL(add_square, (const double* A, const double* V, Index rows, double* C), (A, V, rows, C))
 BOUGH_KERNEL(factor_trapezoid, (double* A, Index rows, Index n), (A, rows, n))
 BOUGH_KERNEL(solve_lower, (const double* L, Index ld, Index n, double* z), (L, ld, n, z))
@@ -251,6 +302,12 @@ void multiply_transposed(const double* A, Index rows, Index cols, const double* 
 void add_product(const double* A, Index rows, Index r, const double* B, Index m, double* C) {
   if (r == 0) return;  // nothing is added, and there may be no A and B
   BOUGH_CALL(add_product, (A, rows, r, B, m, C));
+}
+void contract(const double* in, Index stride, const int* offset, Index num, const double* x, Index N, double* out) {
+  BOUGH_CALL(contract, (in, stride, offset, num, x, N, out));
+}
+void add_scaled(double a, const double* x, double b, const double* y, Index rows, double* out) {
+  BOUGH_CALL(add_scaled, (a, x, b, y, rows, out));
 }
 void add_square(const double* A, const double* V, Index rows, double* C) { BOUGH_CALL(add_square, (A, V, rows, C)); }
 void factor_trapezoid(double* A, Index rows, Index n) { BOUGH_CALL(factor_trapezoid, (A, rows, n)); }

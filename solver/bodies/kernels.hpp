@@ -19,6 +19,13 @@ void multiply_transposed(const double* A, Eigen::Index rows, Eigen::Index cols, 
 /// C += A B; A: rows (padded) x r, B: r x m, C: rows x m.
 void add_product(const double* A, Eigen::Index rows, Eigen::Index r, const double* B, Eigen::Index m, double* C);
 
+/// Rows of `stride` (padded) doubles: out_t = Σ_f x_f (row at in + offset[t N + f]) over N factors, for t < num.
+void contract(const double* in, Eigen::Index stride, const int* offset, Eigen::Index num, const double* x,
+              Eigen::Index N, double* out);
+
+/// out += a x + b y; rows: padded.
+void add_scaled(double a, const double* x, double b, const double* y, Eigen::Index rows, double* out);
+
 /// Lower triangle of C = A + V Vᵀ and some of what is above; A, C: rows x rows, V: rows x 12, all padded.
 void add_square(const double* A, const double* V, Eigen::Index rows, double* C);
 

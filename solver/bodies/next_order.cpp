@@ -7,6 +7,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 
+#include "solver/bodies/soft_energy.hpp"
 #include "solver/bodies/third_order.hpp"
 
 namespace bough::solver {
@@ -70,8 +71,9 @@ double calc_next_order(const Body& body, const Node& node, const ConstVectorRef&
   double twice = 0;  // ηᵀKη
   for (Eigen::Index j = 0; j < eta.size(); ++j) twice += body.K().col(j).dot(eta) * eta[j];
   if (!body.third_order()) {
-    const double of_size = size > 0 ? first * first / (size * size) : 0;
-    if (node.K2.size() == 0) return of_size;
+    double of_body = size > 0 ? first * first / (size * size) : 0;
+    if (body.soft_energy()) of_body = std::max(of_body, body.soft_energy()->calc_error(node, body.K(), eta));
+    if (node.K2.size() == 0) return of_body;
     double square = 0;  // |u_2|²; u_2a = -½ ηᵀK2_a η
     for (int a = 0; a < 3; ++a) {
       double twice_u2 = 0;
@@ -79,7 +81,7 @@ double calc_next_order(const Body& body, const Node& node, const ConstVectorRef&
       square += 0.25 * twice_u2 * twice_u2;
     }
     const double coupling = calc_coupling(body, node, eta, twice);
-    return std::max({of_size, kCantilever * square / (first * first), kStrip * coupling * coupling});
+    return std::max({of_body, kCantilever * square / (first * first), kStrip * coupling * coupling});
   }
   // Degrees apart by their values at ±η and ±½η.
   const std::array<double, 4> shares = {1, -1, 0.5, -0.5};

@@ -13,28 +13,22 @@ Vector3d calc_K2_column(const RowMatrixXd& K2, int j, const ConstVectorRef& x) {
 struct HigherMotion {
   Eigen::Matrix<double, 8, Eigen::Dynamic, 0, 8, records::kMaxThirdOrderModes> J;
   Vector6d value = Vector6d::Zero();
-  MonomialList::Values z;
+  Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 8 * Polynomials::kMaxScratchRows, 1> tensors;
 
-  HigherMotion(const Node& node, const ConstVectorRef& eta) : J(8, eta.size()) {
-    const int degree = node.higher.degree() - 1;
-    z.resize(node.monomials->size(degree));
-    node.monomials->calc(eta, degree, z.data());
-    node.higher.calc(*node.monomials, eta, z.data(), J.data(), value.data());
+  HigherMotion(const Node& node, const ConstVectorRef& eta) : J(8, eta.size()), tensors(node.higher.scratch_size()) {
+    node.higher.calc(eta, J.data(), value.data(), tensors.data());
   }
-  Vector6d calc_bias(const Node& node, const ConstVectorRef& eta, const ConstVectorRef& eta_dot) const {
-    MonomialList::Values z_dot(z.size());
-    auto J_dot = J;
-    Vector6d bias;
-    node.monomials->calc_rates(eta, eta_dot, node.higher.degree() - 1, z.data(), z_dot.data());
-    node.higher.calc_bias(*node.monomials, eta_dot, z_dot.data(), J_dot.data(), bias.data());
-    return bias;
+  Vector6d calc_bias(const Node& node, const ConstVectorRef& eta_dot) const {
+    Eigen::Matrix<double, 8, 1> bias;
+    node.higher.calc_bias(eta_dot, tensors.data(), bias.data());
+    return bias.head<6>();
   }
 };
 
 // [r̈; θ̈] at η̈ = 0.
 Vector6d calc_second_rates(const Node& node, const ConstVectorRef& eta, const ConstVectorRef& eta_dot) {
   Vector6d rates = Vector6d::Zero();
-  if (!node.higher.empty()) return HigherMotion(node, eta).calc_bias(node, eta, eta_dot);
+  if (!node.higher.empty()) return HigherMotion(node, eta).calc_bias(node, eta_dot);
   for (int j = 0; j < eta_dot.size(); ++j) {
     if (node.K2.size() > 0) rates.head<3>() -= calc_K2_column(node.K2, j, eta_dot) * eta_dot[j];
     if (node.K2_theta.size() > 0) rates.tail<3>() -= calc_K2_column(node.K2_theta, j, eta_dot) * eta_dot[j];
@@ -60,7 +54,7 @@ void calc_node_in_body(const Node& node, const ConstVectorRef& eta, const ConstV
       out.v += (node.phi.col(j) + motion.J.col(j).head<3>()) * eta_dot[j];
       theta_dot += (node.psi.col(j) + motion.J.col(j).segment<3>(3)) * eta_dot[j];
     }
-    const Vector6d bias = motion.calc_bias(node, eta, eta_dot);
+    const Vector6d bias = motion.calc_bias(node, eta_dot);
     out.gamma_t = bias.head<3>();
     theta_ddot = bias.tail<3>();
   } else {

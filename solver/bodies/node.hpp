@@ -20,11 +20,10 @@ struct Node {
   RowMatrixXd K2;                 ///< 3n x n, row a + 3j: row j of K_G2(force a); empty without second-order term
   RowMatrixXd K2_theta;           ///< the same for unit moments
   Polynomials higher;             ///< third order: three translations, rotation vector; empty: K2 and K2_theta
-  std::shared_ptr<const MonomialList> monomials;  ///< of `higher`
-  bool moves = false;                             ///< φ or ψ is not zero
-  bool is_material = true;                        ///< false: the origin of a free frame, which is no point of the body
-  bool has_locators = false;                      ///< the body file holds all three translational locators of this node
-  bool has_moments = false;                       ///< and all three of moments
+  bool moves = false;             ///< φ or ψ is not zero
+  bool is_material = true;        ///< false: the origin of a free frame, which is no point of the body
+  bool has_locators = false;      ///< the body file holds all three translational locators of this node
+  bool has_moments = false;       ///< and all three of moments
 
   /// Moves, but its file has no rotation of it: a grid of solids.
   bool has_no_rotation() const;

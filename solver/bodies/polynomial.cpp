@@ -6,111 +6,217 @@
 #include "solver/bodies/kernels.hpp"
 
 namespace bough::solver {
-
-MonomialList::MonomialList(int n, const std::vector<int>& large, int degree) : n_(n), large_(large) {
-  for (int j = 0; j < n; ++j) {
-    parent_.push_back(-1);
-    last_.push_back(j);
-    factors_.push_back({j});
-  }
-  first_.push_back(n);
-  for (int k = 2; k <= degree; ++k) {
-    const int begin = first_[static_cast<std::size_t>(k) - 2], end = first_.back();
-    for (int i = begin; i < end; ++i) {
-      if (std::find(large.begin(), large.end(), factors_[static_cast<std::size_t>(i)][0]) == large.end()) continue;
-      for (const int j : large) {
-        if (j < last_[static_cast<std::size_t>(i)]) continue;
-        parent_.push_back(i);
-        last_.push_back(j);
-        auto factors = factors_[static_cast<std::size_t>(i)];
-        factors.push_back(j);
-        factors_.push_back(std::move(factors));
-      }
-    }
-    first_.push_back(static_cast<int>(parent_.size()));
-  }
-  BOUGH_DEMAND(size() <= kMaxSize);
-}
-
-int MonomialList::find(const std::vector<int>& factors) const {
-  const auto begin = factors_.begin() + first_[factors.size() - 1], end = factors_.begin() + first_[factors.size()];
-  const auto found = std::find(begin, end, factors);
-  BOUGH_DEMAND(found != end);
-  return static_cast<int>(found - factors_.begin());
-}
-
-void MonomialList::calc(const ConstVectorRef& eta, int degree, double* z) const {
-  for (int j = 0; j < n_; ++j) z[j] = eta[j];
-  for (int i = n_; i < size(degree); ++i) {
-    const auto at = static_cast<std::size_t>(i);
-    z[i] = z[parent_[at]] * eta[last_[at]];
-  }
-}
-
-void MonomialList::calc_rates(const ConstVectorRef& eta, const ConstVectorRef& eta_dot, int degree, const double* z,
-                              double* z_dot) const {
-  for (int j = 0; j < n_; ++j) z_dot[j] = eta_dot[j];
-  for (int i = n_; i < size(degree); ++i) {
-    const auto at = static_cast<std::size_t>(i);
-    z_dot[i] = z_dot[parent_[at]] * eta[last_[at]] + z[parent_[at]] * eta_dot[last_[at]];
-  }
-}
-
-Polynomials::Polynomials(const MonomialList& list, int m, int max_degree, Eigen::Index stride)
-    : m_(m), n_(list.num_modes()), degree_(max_degree), stride_(stride > 0 ? stride : pad(m)) {
-  G_ = MatrixXd::Zero(pad(stride_ * n_), list.size(max_degree - 1));
-}
-
-void Polynomials::add(const MonomialList& list, int degree, const std::vector<int>& variables, const MatrixXd& c) {
-  const auto num = static_cast<int>(variables.size());
-  const Eigen::MatrixXi exponents = records::list_exponents(num, degree);
-  BOUGH_DEMAND(degree >= 2 && degree <= degree_ && c.rows() == exponents.rows() && c.cols() == m_);
-  for (Eigen::Index i = 0; i < exponents.rows(); ++i) {
-    for (int v = 0; v < num; ++v) {
-      if (exponents(i, v) == 0) continue;
-      std::vector<int> factors;
-      for (int w = 0; w < num; ++w)
-        factors.insert(factors.end(), static_cast<std::size_t>(exponents(i, w) - (w == v ? 1 : 0)),
-                       variables[static_cast<std::size_t>(w)]);
-      std::sort(factors.begin(), factors.end());
-      G_.block(stride_ * variables[static_cast<std::size_t>(v)], list.find(factors), m_, 1) +=
-          exponents(i, v) * c.row(i).transpose();
-    }
-  }
-}
-
 namespace {
 
-/// J += G(:, first..last) z.
-void add_columns(const MatrixXd& G, int first, int last, const double* z, double* J) {
-  add_product(G.data() + G.rows() * first, G.rows(), last - first, z + first, 1, J);
+using Factors = std::vector<int>;
+
+/// All sorted lists of `degree` factors among N, in lexical order.
+std::vector<Factors> list_factors(int N, int degree) {
+  std::vector<Factors> all = {{}};
+  for (int k = 0; k < degree; ++k) {
+    std::vector<Factors> longer;
+    for (const Factors& one : all) {
+      for (int f = one.empty() ? 0 : one.back(); f < N; ++f) {
+        longer.push_back(one);
+        longer.back().push_back(f);
+      }
+    }
+    all = std::move(longer);
+  }
+  return all;
+}
+
+int find_entry(const std::vector<Factors>& all, Factors factors) {
+  std::sort(factors.begin(), factors.end());
+  const auto found = std::lower_bound(all.begin(), all.end(), factors);
+  BOUGH_DEMAND(found != all.end() && *found == factors);
+  return static_cast<int>(found - all.begin());
+}
+
+/// Visits the monomials of one degree in the order of records::list_exponents: sorted factors, and the product of the
+/// factorials of the exponents. variables: the number of each variable.
+template <class Visit>
+void visit_monomials(const std::vector<int>& variables, int degree, const Visit& visit) {
+  const Eigen::MatrixXi exponents = records::list_exponents(static_cast<int>(variables.size()), degree);
+  for (Eigen::Index i = 0; i < exponents.rows(); ++i) {
+    Factors factors;
+    double factorial = 1;
+    for (Eigen::Index v = 0; v < exponents.cols(); ++v) {
+      for (int e = 1; e <= exponents(i, v); ++e) {
+        factors.push_back(variables[static_cast<std::size_t>(v)]);
+        factorial *= e;
+      }
+    }
+    visit(i, factors, factorial);
+  }
+}
+
+std::vector<int> list_all(std::size_t N) {
+  std::vector<int> all(N);
+  for (std::size_t i = 0; i < N; ++i) all[i] = static_cast<int>(i);
+  return all;
 }
 
 }  // namespace
 
-/// p_k = J_k η / k of each degree (Euler).
-void Polynomials::calc(const MonomialList& list, const ConstVectorRef& eta, const double* z, double* J,
-                       double* value) const {
-  Eigen::Map<MatrixXd> J_map(J, stride_, n_);
-  Eigen::Map<VectorXd>(J, G_.rows()).setZero();
-  Eigen::Map<VectorXd> p(value, m_);
-  p.setZero();
-  for (int k = 2; k <= degree_; ++k) {
-    add_columns(G_, list.size(k - 2), list.size(k - 1), z, J);
-    // Σ_k J_k η / k by sums to each degree.
-    const double weight = k < degree_ ? 1.0 / k - 1.0 / (k + 1) : 1.0 / k;
-    for (int j = 0; j < n_; ++j) p += weight * eta[j] * J_map.col(j).head(m_);
-  }
+Polynomials::Polynomials(int n, const std::vector<int>& large, int m) : m_(m), n_(n), stride_(pad(m)), large_(large) {
+  BOUGH_DEMAND(large.size() <= records::kMaxLargeModes && stride_ <= kMaxStride);
+  G2_ = MatrixXd::Zero(stride_ * n_, n_);
 }
 
-void Polynomials::calc_bias(const MonomialList& list, const ConstVectorRef& eta_dot, const double* z_dot, double* J_dot,
-                            double* bias) const {
-  Eigen::Map<MatrixXd> J_map(J_dot, stride_, n_);
-  Eigen::Map<VectorXd>(J_dot, G_.rows()).setZero();
-  add_columns(G_, 0, list.size(degree_ - 1), z_dot, J_dot);
-  Eigen::Map<VectorXd> b(bias, m_);
-  b.setZero();
-  for (int j = 0; j < n_; ++j) b += eta_dot[j] * J_map.col(j).head(m_);
+void Polynomials::add(int degree, const std::vector<int>& variables, const MatrixXd& c) {
+  BOUGH_DEMAND(degree >= 2 && degree <= kMaxDegree && c.cols() == m_);
+  if (degree == 2) {
+    visit_monomials(variables, 2, [&](Eigen::Index i, const Factors& f, double factorial) {
+      G2_.block(stride_ * f[0], f[1], m_, 1) += factorial * c.row(i).transpose();
+      if (f[0] != f[1]) G2_.block(stride_ * f[1], f[0], m_, 1) += factorial * c.row(i).transpose();
+    });
+    return;
+  }
+  BOUGH_DEMAND(variables == large_);
+  const auto N = static_cast<int>(large_.size());
+  if (to_[0].empty()) {
+    for (int r = 0; r < 3; ++r) {
+      const auto longer = list_factors(N, r + 2);
+      for (Factors factors : list_factors(N, r + 1)) {
+        factors.push_back(0);
+        for (factors.back() = 0; factors.back() < N; ++factors.back())
+          to_[static_cast<std::size_t>(r)].push_back(static_cast<int>(stride_) * find_entry(longer, factors));
+      }
+    }
+    D3_ = MatrixXd::Zero(stride_, records::count_monomials(N, 3));
+    D4_ = MatrixXd::Zero(stride_, records::count_monomials(N, 4));
+    scratch_rows_ = records::count_monomials(N, 3) + 3 * records::count_monomials(N, 2) + 2 * N;
+  }
+  MatrixXd& D = degree == 3 ? D3_ : D4_;
+  const auto entries = list_factors(N, degree);
+  visit_monomials(list_all(large_.size()), degree, [&](Eigen::Index i, const Factors& factors, double factorial) {
+    D.col(find_entry(entries, factors)).head(m_) += factorial * c.row(i).transpose();
+  });
+}
+
+void Polynomials::calc(const ConstVectorRef& eta, double* J, double* value, double* scratch) const {
+  Eigen::Map<VectorXd>(J, G2_.rows()).setZero();
+  add_product(G2_.data(), G2_.rows(), n_, eta.data(), 1, J);
+  double p[kMaxStride] = {};  // padded
+  double half[records::kMaxThirdOrderModes];
+  for (int j = 0; j < n_; ++j) half[j] = 0.5 * eta[j];
+  add_product(J, stride_, n_, half, 1, p);
+  if (scratch_rows_ > 0) {
+    const auto N = static_cast<Eigen::Index>(large_.size()), num_pairs = N * (N + 1) / 2;
+    double x[records::kMaxLargeModes];
+    for (Eigen::Index f = 0; f < N; ++f) x[f] = eta[large_[static_cast<std::size_t>(f)]];
+    // Second derivatives: D3 η of degree 3, half of D4 η η of degree 4.
+    double *H = scratch, *A = H + stride_ * num_pairs, *B = A + stride_ * num_pairs, *J3 = B + stride_ * num_pairs,
+           *J4 = J3 + stride_ * N, *C = J4 + stride_ * N;
+    contract(D3_.data(), stride_, to_[1].data(), num_pairs, x, N, A);
+    contract(D4_.data(), stride_, to_[2].data(), D3_.cols(), x, N, C);
+    contract(C, stride_, to_[1].data(), num_pairs, x, N, B);
+    contract(A, stride_, to_[0].data(), N, x, N, J3);
+    contract(B, stride_, to_[0].data(), N, x, N, J4);
+    Eigen::Map<VectorXd>(H, stride_ * num_pairs).setZero();
+    add_scaled(1, A, 0.5, B, stride_ * num_pairs, H);
+    for (Eigen::Index f = 0; f < N; ++f) {
+      const double *a = J3 + stride_ * f, *b = J4 + stride_ * f;
+      add_scaled(0.5, a, 1.0 / 6, b, stride_, J + stride_ * large_[static_cast<std::size_t>(f)]);
+      add_scaled(x[f] / 6, a, x[f] / 24, b, stride_, p);
+    }
+  }
+  std::copy_n(p, m_, value);
+}
+
+void Polynomials::calc_bias(const ConstVectorRef& eta_dot, const double* scratch, double* bias) const {
+  Eigen::Map<VectorXd>(bias, stride_).setZero();
+  double weight[records::kMaxThirdOrderModes];
+  for (int k = 0; k < n_; ++k) {  // entries j ≤ k
+    for (int j = 0; j < k; ++j) weight[j] = 2 * eta_dot[j] * eta_dot[k];
+    weight[k] = eta_dot[k] * eta_dot[k];
+    add_product(G2_.data() + G2_.rows() * k, stride_, k + 1, weight, 1, bias);
+  }
+  if (scratch_rows_ == 0) return;
+  double pairs[records::kMaxLargeModes * (records::kMaxLargeModes + 1) / 2];
+  Eigen::Index num_pairs = 0;
+  for (std::size_t f = 0; f < large_.size(); ++f) {
+    for (std::size_t g = f; g < large_.size(); ++g)
+      pairs[num_pairs++] = (f == g ? 1 : 2) * eta_dot[large_[f]] * eta_dot[large_[g]];
+  }
+  add_product(scratch, stride_, num_pairs, pairs, 1, bias);
+}
+
+Potential::Potential(int n, const std::vector<int>& large, int max_degree) : n_(n), large_(large) {
+  const auto N = static_cast<int>(large.size());
+  BOUGH_DEMAND(N <= records::kMaxLargeModes && max_degree <= 6);
+  int next = 0;
+  for (int k = 1; k < max_degree; ++k) {
+    const auto all = list_factors(N, k);
+    Degree degree;
+    degree.size = static_cast<int>(all.size());
+    degree.padded = static_cast<int>(pad(degree.size));
+    degree.first = k == 1 ? 0 : next;  // those of degree 1 are the amplitudes
+    if (k > 1) next += degree.padded;
+    for (int f = 0; f < N; ++f)
+      degree.start.push_back(static_cast<int>(
+          std::find_if(all.begin(), all.end(), [&](const Factors& one) { return one[0] >= f; }) - all.begin()));
+    degree.G = MatrixXd::Zero(k > 1 ? degree.padded : 0, N);
+    degrees_.push_back(std::move(degree));
+  }
+  BOUGH_DEMAND(next <= kMaxMonomials);
+}
+
+void Potential::add(int degree, const std::vector<int>& variables, const VectorXd& c) {
+  BOUGH_DEMAND(degree >= 2 && degree <= static_cast<int>(degrees_.size()) + 1);
+  if (degree == 2) {
+    if (G2_.size() == 0) G2_ = MatrixXd::Zero(n_, n_);
+    visit_monomials(variables, 2, [&](Eigen::Index i, const Factors& f, double factorial) {
+      G2_(f[0], f[1]) += factorial * c[i];
+      if (f[0] != f[1]) G2_(f[1], f[0]) += factorial * c[i];
+    });
+    return;
+  }
+  BOUGH_DEMAND(variables == large_);
+  const auto entries = list_factors(static_cast<int>(large_.size()), degree - 1);
+  MatrixXd& G = degrees_[static_cast<std::size_t>(degree) - 2].G;
+  visit_monomials(list_all(large_.size()), degree, [&](Eigen::Index i, const Factors& factors, double) {
+    for (std::size_t at = 0; at < factors.size(); ++at) {
+      Factors rest = factors;
+      rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(at));
+      G(find_entry(entries, rest), factors[at]) += c[i];  // once for each equal factor
+    }
+  });
+}
+
+Potential& Potential::operator*=(double factor) {
+  G2_ *= factor;
+  for (Degree& degree : degrees_) degree.G *= factor;
+  return *this;
+}
+
+double Potential::calc(const ConstVectorRef& eta, double* gradient) const {
+  Eigen::Map<VectorXd> g(gradient, n_);
+  g.setZero();
+  if (G2_.size() > 0) g = G2_.lazyProduct(eta);
+  double value = 0.5 * g.dot(eta);
+  const auto N = static_cast<Eigen::Index>(large_.size());
+  double x[records::kMaxLargeModes], z[kMaxMonomials], part[records::kMaxLargeModes];
+  for (Eigen::Index f = 0; f < N; ++f) x[f] = eta[large_[static_cast<std::size_t>(f)]];
+  const double* shorter = x;
+  for (std::size_t k = 1; k < degrees_.size(); ++k) {
+    const Degree &degree = degrees_[k], &before = degrees_[k - 1];
+    double* at = z + degree.first;
+    for (Eigen::Index f = 0; f < N; ++f) {  // η_f times the monomials without factors before it
+      for (int i = before.start[static_cast<std::size_t>(f)]; i < before.size; ++i) *at++ = x[f] * shorter[i];
+    }
+    while (at < z + degree.first + degree.padded) *at++ = 0;
+    shorter = z + degree.first;
+    multiply_transposed(degree.G.data(), degree.padded, N, shorter, part);
+    double along = 0;
+    for (Eigen::Index f = 0; f < N; ++f) {
+      gradient[large_[static_cast<std::size_t>(f)]] += part[f];
+      along += part[f] * x[f];
+    }
+    value += along / static_cast<double>(k + 2);
+  }
+  return value;
 }
 
 }  // namespace bough::solver

@@ -1,6 +1,7 @@
 #pragma once
 /// \file Polynomials of modal amplitudes, with gradients and rates (docs/theory/third-order.md; packed as
 /// records::ThirdOrder).
+#include <array>
 #include <vector>
 
 #include "formats/records/third_order.hpp"
@@ -8,79 +9,78 @@
 
 namespace bough::solver {
 
-/// Monomials of all n amplitudes to degree 1 and of the large ones to a higher degree, as gradients of polynomials have
-/// them.
-class MonomialList {
- public:
-  static constexpr int kMaxSize = 2048;  ///< 8 large modes of 64
-  /// On the stack.
-  using Values = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxSize, 1>;
-
-  MonomialList() = default;
-  /// Lists the monomials of n amplitudes up to `degree`; `large`: modes of degrees above 1, ascending.
-  MonomialList(int n, const std::vector<int>& large, int degree);
-
-  /// Number n of amplitudes.
-  int num_modes() const { return n_; }
-  /// Indices of the large modes, ascending.
-  const std::vector<int>& large() const { return large_; }
-  /// Highest degree.
-  int degree() const { return static_cast<int>(first_.size()) - 1; }
-  /// Number of monomials of degrees 1 to `degree`.
-  int size(int degree) const { return first_[static_cast<std::size_t>(degree)]; }
-  int size() const { return first_.back(); }
-  /// Position of the monomial whose factors are these modes, ascending.
-  int find(const std::vector<int>& factors) const;
-
-  /// Values z, the first size(degree) of them.
-  void calc(const ConstVectorRef& eta, int degree, double* z) const;
-  /// ż, after calc.
-  void calc_rates(const ConstVectorRef& eta, const ConstVectorRef& eta_dot, int degree, const double* z,
-                  double* z_dot) const;
-
- private:
-  int n_ = 0;
-  std::vector<int> large_;
-  std::vector<int> first_{0};       ///< [k]: number of monomials of degrees 1 to k
-  std::vector<int> parent_, last_;  ///< z_i = z_parent η_last; those of degree 1: -1
-  std::vector<std::vector<int>> factors_;
-};
-
-/// m polynomials without terms of degrees 0 and 1, by their gradients: one product gives J = ∂p/∂η.
+/// m polynomials of degrees 2 (all n amplitudes) to 4 (the N large ones), by their symmetric derivative tensors.
+///
+/// Degree 4: its third derivatives D4 η, from them the second ones, gradients and values by Euler, each a sum over N
+/// rows per entry; so for degree 3. Rows are `stride` doubles, one per polynomial.
 class Polynomials {
  public:
+  static constexpr int kMaxDegree = 4, kMaxStride = 128;
+  /// Rows of scratch at most: C(N + 2, 3) + 3 C(N + 1, 2) + 2 N of 8 large modes.
+  static constexpr int kMaxScratchRows = 244;
+
   Polynomials() = default;
-  /// stride: rows per mode, 0: m, padded (kernels.hpp).
-  Polynomials(const MonomialList& list, int m, int max_degree, Eigen::Index stride = 0);
+  Polynomials(int n, const std::vector<int>& large, int m);
 
-  /// Adds c (monomials of the degree in the modes `variables`, packed, x m).
-  void add(const MonomialList& list, int degree, const std::vector<int>& variables, const MatrixXd& c);
+  /// Adds c (monomials of the degree in the modes `variables`, packed, x m). Degrees 3 and 4: the large modes.
+  void add(int degree, const std::vector<int>& variables, const MatrixXd& c);
 
-  /// Returns true if no term has been added.
-  bool empty() const { return degree_ == 0; }
-  /// Multiplies all coefficients.
-  Polynomials& operator*=(double factor) {
-    G_ *= factor;
-    return *this;
-  }
+  /// Returns true if there are no polynomials.
+  bool empty() const { return m_ == 0; }
   /// Returns true if every coefficient is 0.
-  bool is_zero() const { return G_.isZero(0); }
+  bool is_zero() const { return G2_.isZero(0) && D3_.isZero(0) && D4_.isZero(0); }
   /// Number m of polynomials.
   int num_values() const { return m_; }
-  Eigen::Index stride() const { return stride_; }  ///< rows of J, padded
-  /// Highest degree of the polynomials; 0 without terms.
-  int degree() const { return degree_; }
+  Eigen::Index stride() const { return stride_; }  ///< rows of J: m, padded (kernels.hpp)
+  /// Number of doubles that calc() needs as scratch.
+  Eigen::Index scratch_size() const { return stride_ * scratch_rows_; }
 
-  /// J (stride x n) and the values (m). z: the list's, to degree() - 1. No allocation.
-  void calc(const MonomialList& list, const ConstVectorRef& eta, const double* z, double* J, double* value) const;
-  /// J̇η̇: the values' second derivatives by time at η̈ = 0 (m). Scratch J_dot: stride x n. No allocation.
-  void calc_bias(const MonomialList& list, const ConstVectorRef& eta_dot, const double* z_dot, double* J_dot,
-                 double* bias) const;
+  /// J = ∂p/∂η (stride x n) and the values (m). scratch: scratch_size(); begins with the second derivatives of degrees
+  /// 3 and 4 by two large modes f ≤ g, stride x pairs in lexical order. No allocation.
+  void calc(const ConstVectorRef& eta, double* J, double* value, double* scratch) const;
+  /// J̇η̇: the values' second derivatives by time at η̈ = 0 (stride). scratch: of the last calc(). No allocation.
+  void calc_bias(const ConstVectorRef& eta_dot, const double* scratch, double* bias) const;
 
  private:
-  int m_ = 0, n_ = 0, degree_ = 0;
+  int m_ = 0, n_ = 0, scratch_rows_ = 0;
   Eigen::Index stride_ = 0;
-  MatrixXd G_;  ///< (stride n) x monomials: row q + stride j is ∂p_q/∂η_j
+  std::vector<int> large_;
+  MatrixXd G2_;       ///< (stride n) x n: row q + stride j of column k is ∂²p_q/∂η_j∂η_k
+  MatrixXd D3_, D4_;  ///< stride x entries i ≤ j ≤ k (≤ l) in lexical order; empty: no such degree
+  std::array<std::vector<int>, 3> to_;  ///< [r]: entry of each of r + 1 sorted factors and one more, N per entry
+};
+
+/// A polynomial of degrees 2 (all n amplitudes) to max_degree (the N large ones) by its gradient.
+class Potential {
+ public:
+  Potential() = default;
+  Potential(int n, const std::vector<int>& large, int max_degree);
+
+  /// Adds c (monomials of the degree in the modes `variables`, packed). Degrees from 3 on: the large modes.
+  void add(int degree, const std::vector<int>& variables, const VectorXd& c);
+
+  /// Returns true if there is no polynomial.
+  bool empty() const { return n_ == 0; }
+  /// Multiplies all coefficients.
+  Potential& operator*=(double factor);
+
+  /// Value, and its gradient (n). No allocation.
+  double calc(const ConstVectorRef& eta, double* gradient) const;
+
+ private:
+  /// Monomials of the degrees 2 to 5 in 8 large modes, each degree padded.
+  static constexpr int kMaxMonomials = 36 + 120 + 332 + 792;
+
+  /// Monomials of one degree in lexical order of their sorted factors, for the gradient of the next degree.
+  struct Degree {
+    int first = 0, size = 0, padded = 0;  ///< among all monomials
+    std::vector<int> start;               ///< N: first monomial without factors before this mode
+    MatrixXd G;                           ///< padded x N: ∂/∂η_f of the terms of one degree more
+  };
+  int n_ = 0;
+  std::vector<int> large_;
+  MatrixXd G2_;                  ///< n x n, second derivatives; empty: zero
+  std::vector<Degree> degrees_;  ///< of monomials, 1 to max_degree - 1
 };
 
 }  // namespace bough::solver

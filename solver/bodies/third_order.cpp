@@ -19,11 +19,9 @@ std::vector<int> list_variables(const ThirdOrder& third, int degree, int n) {
   return all;
 }
 
-void add_tables(const MonomialList& list, const ThirdOrder& third, const ThirdOrder::Tables& tables,
-                Polynomials& polynomials) {
+void add_tables(int n, const ThirdOrder& third, const ThirdOrder::Tables& tables, Polynomials& polynomials) {
   for (int k = ThirdOrder::kMinField; k <= ThirdOrder::kMaxField; ++k)
-    polynomials.add(list, k, list_variables(third, k, list.num_modes()),
-                    tables[static_cast<size_t>(k - ThirdOrder::kMinField)]);
+    polynomials.add(k, list_variables(third, k, n), tables[static_cast<size_t>(k - ThirdOrder::kMinField)]);
 }
 
 /// The record of the linear body of n + m modes, without stiffness.
@@ -53,35 +51,34 @@ records::FlexBody make_linear_record(const records::FlexBody& flex) {
 ThirdOrderBody::ThirdOrderBody(const records::FlexBody& flex)
     : n_(flex.num_modes()),
       m_(flex.third_order.num_fields()),
-      list_(std::make_shared<const MonomialList>(n_, flex.third_order.large, ThirdOrder::kMaxEnergy - 1)),
-      amplitudes_(*list_, m_, ThirdOrder::kMaxField),
-      energy_(*list_, 1, ThirdOrder::kMaxEnergy, 1),
+      amplitudes_(n_, flex.third_order.large, m_),
+      energy_(n_, flex.third_order.large, ThirdOrder::kMaxEnergy),
       linear_(Body::make_flexible(make_linear_record(flex), -1, false, {})) {
   const ThirdOrder& third = flex.third_order;
-  add_tables(*list_, third, third.amplitudes, amplitudes_);
+  add_tables(n_, third, third.amplitudes, amplitudes_);
   for (int k = ThirdOrder::kMinEnergy; k <= ThirdOrder::kMaxEnergy; ++k)
-    energy_.add(*list_, k, third.large, third.energy[static_cast<size_t>(k - ThirdOrder::kMinEnergy)]);
+    energy_.add(k, third.large, third.energy[static_cast<size_t>(k - ThirdOrder::kMinEnergy)]);
   for (int j = 0; j < n_; ++j) {
     if (!std::binary_search(third.large.begin(), third.large.end(), j)) small_.push_back(j);
   }
   if (third.energy_small.isZero(0)) small_.clear();
   if (small_.empty()) return;
-  on_small_ = Polynomials(*list_, static_cast<int>(small_.size()), 2);
-  on_small_.add(*list_, 2, third.large, third.energy_small);
+  on_small_ = Polynomials(n_, third.large, static_cast<int>(small_.size()));
+  on_small_.add(2, third.large, third.energy_small);
 }
 
 ThirdOrderData ThirdOrderBody::make_data() const {
   ThirdOrderData data;
   data.linear = linear_.make_inertia();
-  data.z = data.z_dot = VectorXd::Zero(list_->size());
+  data.tensors = VectorXd::Zero(amplitudes_.scratch_size());
   data.xi = data.xi_dot = VectorXd::Zero(n_ + m_);
   const Eigen::Index stride = amplitudes_.stride();
-  data.J = data.J_dot = MatrixXd::Zero(stride, n_);
+  data.J = MatrixXd::Zero(stride, n_);
   data.M_pp = MatrixXd::Zero(stride, stride);
   data.U = MatrixXd::Zero(stride, n_);
   data.product = MatrixXd::Zero(n_, n_);
   data.p_ddot = data.force = VectorXd::Zero(stride);
-  data.gradient = VectorXd::Zero(pad(n_));
+  data.gradient = VectorXd::Zero(n_);
   const auto num_small = static_cast<Eigen::Index>(small_.size());
   data.J_small = VectorXd::Zero(pad(num_small) * n_);
   data.on_small = VectorXd::Zero(num_small);
@@ -94,30 +91,29 @@ bool ThirdOrderBody::is_exact(const records::FlexBody& flex, int node_id) {
 
 Polynomials ThirdOrderBody::make_node_motion(const records::FlexBody& flex, std::size_t k) const {
   const ThirdOrder& third = flex.third_order;
-  Polynomials motion(*list_, 6, ThirdOrder::kMaxField);
+  Polynomials motion(n_, third.large, 6);
   const auto found = std::find(flex.interface_nodes.begin(), flex.interface_nodes.end(), flex.node_id[k]);
   if (found != flex.interface_nodes.end()) {
-    add_tables(*list_, third, third.node[static_cast<size_t>(found - flex.interface_nodes.begin())], motion);
+    add_tables(n_, third, third.node[static_cast<size_t>(found - flex.interface_nodes.begin())], motion);
     return motion;
   }
   ThirdOrder::Tables tables;
   for (size_t i = 0; i < tables.size(); ++i) tables[i] = third.amplitudes[i] * third.fields[k].transpose();
-  add_tables(*list_, third, tables, motion);
+  add_tables(n_, third, tables, motion);
   return motion;
 }
 
-Polynomials ThirdOrderBody::make_load(const records::FlexBody& flex, int locator) const {
-  Polynomials load(*list_, 1, ThirdOrder::kMaxField, 1);
-  ThirdOrder::Tables tables;
-  for (size_t i = 0; i < tables.size(); ++i) tables[i] = flex.third_order.load[i].col(locator);
-  add_tables(*list_, flex.third_order, tables, load);
+Potential ThirdOrderBody::make_load(const records::FlexBody& flex, int locator) const {
+  const ThirdOrder& third = flex.third_order;
+  Potential load(n_, third.large, ThirdOrder::kMaxField);
+  for (int k = ThirdOrder::kMinField; k <= ThirdOrder::kMaxField; ++k)
+    load.add(k, list_variables(third, k, n_), third.load[static_cast<size_t>(k - ThirdOrder::kMinField)].col(locator));
   return load;
 }
 
 void ThirdOrderBody::calc_mass(const ConstVectorRef& eta, ThirdOrderData& d, BodyInertia& x) const {
-  list_->calc(eta, list_->degree(), d.z.data());
   d.xi.head(n_) = eta;
-  amplitudes_.calc(*list_, eta, d.z.data(), d.J.data(), d.xi.data() + n_);
+  amplitudes_.calc(eta, d.J.data(), d.xi.data() + n_, d.tensors.data());
   linear_.calc_mass(d.xi, d.linear);
   const BodyInertia& l = d.linear;
   x.M6 = l.M6;
@@ -144,8 +140,7 @@ void ThirdOrderBody::calc_mass(const ConstVectorRef& eta, ThirdOrderData& d, Bod
 void ThirdOrderBody::calc_bias(const Vector3d& w, const ConstVectorRef& eta, const ConstVectorRef& eta_dot,
                                ThirdOrderData& d, BodyInertia& x) const {
   const MatrixXd& P = d.J;
-  list_->calc_rates(eta, eta_dot, amplitudes_.degree() - 1, d.z.data(), d.z_dot.data());
-  amplitudes_.calc_bias(*list_, eta_dot, d.z_dot.data(), d.J_dot.data(), d.p_ddot.data());
+  amplitudes_.calc_bias(eta_dot, d.tensors.data(), d.p_ddot.data());
   d.xi_dot.head(n_) = eta_dot;
   for (int q = 0; q < m_; ++q) {
     double rate = 0;
@@ -160,15 +155,14 @@ void ThirdOrderBody::calc_bias(const Vector3d& w, const ConstVectorRef& eta, con
     d.force[q] = l.h[6 + n_ + q];
     for (int i = 0; i < m_; ++i) d.force[q] += 2 * d.M_pp(i, q) * d.p_ddot[i];
   }
-  double beyond;
-  energy_.calc(*list_, eta, d.z.data(), d.gradient.data(), &beyond);
+  energy_.calc(eta, d.gradient.data());
   for (int j = 0; j < n_; ++j) {
     double force = l.h[6 + j] + d.gradient[j];
     for (int q = 0; q < m_; ++q) force += l.M_modal(n_ + q, j) * d.p_ddot[q] + P(q, j) * d.force[q];
     x.h[6 + j] = force;
   }
   if (small_.empty()) return;
-  on_small_.calc(*list_, eta, d.z.data(), d.J_small.data(), d.on_small.data());
+  on_small_.calc(eta, d.J_small.data(), d.on_small.data(), nullptr);
   for (size_t s = 0; s < small_.size(); ++s) {
     const auto at = static_cast<Eigen::Index>(s);
     x.h[6 + small_[s]] += d.on_small[at];
@@ -187,16 +181,13 @@ double ThirdOrderBody::calc_modal_force(const LinearField& field, const ThirdOrd
 }
 
 double ThirdOrderBody::calc_energy(const ConstVectorRef& eta) const {
-  MonomialList::Values z(list_->size());
-  list_->calc(eta, list_->degree(), z.data());
   constexpr int kMax = records::kMaxThirdOrderModes;
-  Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMax * kMax, 1> J(pad(n_));  // on the stack
-  Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMax, 1> value(std::max<size_t>(1, small_.size()));
-  energy_.calc(*list_, eta, z.data(), J.data(), value.data());
-  double energy = value[0];
+  Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMax * kMax, 1> J(n_);  // on the stack
+  double energy = energy_.calc(eta, J.data());
   if (small_.empty()) return energy;
+  Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMax, 1> value(static_cast<Eigen::Index>(small_.size()));
   J.resize(on_small_.stride() * n_);
-  on_small_.calc(*list_, eta, z.data(), J.data(), value.data());
+  on_small_.calc(eta, J.data(), value.data(), nullptr);
   for (size_t s = 0; s < small_.size(); ++s) energy += eta[small_[s]] * value[static_cast<Eigen::Index>(s)];
   return energy;
 }

@@ -18,14 +18,12 @@ class ThirdOrderBody {
 
   /// Results and scratch arrays, zero. Allocates.
   ThirdOrderData make_data() const;
-  /// Monomials of all polynomials of this body.
-  const std::shared_ptr<const MonomialList>& list() const { return list_; }
   /// Returns true if the file has the node's own polynomials.
   static bool is_exact(const records::FlexBody& flex, int node_id);
   /// The motion of output node k beyond φη: translations and rotation vector.
   Polynomials make_node_motion(const records::FlexBody& flex, std::size_t k) const;
   /// Work of the load of a locator beyond that on φη.
-  Polynomials make_load(const records::FlexBody& flex, int locator) const;
+  Potential make_load(const records::FlexBody& flex, int locator) const;
 
   /// M(η) and S in `inertia`, of the n modes. No allocation.
   void calc_mass(const ConstVectorRef& eta, ThirdOrderData& data, BodyInertia& inertia) const;
@@ -41,8 +39,8 @@ class ThirdOrderBody {
 
  private:
   int n_ = 0, m_ = 0;
-  std::shared_ptr<const MonomialList> list_;
-  Polynomials amplitudes_, energy_, on_small_;
+  Polynomials amplitudes_, on_small_;
+  Potential energy_;
   std::vector<int> small_;
   Body linear_;
 };

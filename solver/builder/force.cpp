@@ -25,7 +25,6 @@ bool set_locator(const records::ForceRecord& r, const Body& body, const records:
     const int n = body.num_modes();
     if (body.third_order() != nullptr) {
       force.pattern_higher = body.third_order()->make_load(*flex, static_cast<int>(e));
-      force.monomials = body.third_order()->list();
     }
     force.pattern = flex->external_load.col(static_cast<Eigen::Index>(e)).head(n);
     force.pattern_K2 = MatrixXd::Zero(n, n);

@@ -57,12 +57,9 @@ void add_applied_load(const AppliedForce& force, const Tree& tree, double value,
     if (force.pattern_higher.empty()) {
       modal.noalias() -= value * (force.pattern_K2 * eta);
     } else {
-      MonomialList::Values z(force.monomials->size(force.pattern_higher.degree() - 1));
-      Eigen::Matrix<double, Eigen::Dynamic, 1, 0, records::kMaxThirdOrderModes, 1> gradient(pad(n));
-      double work;
-      force.monomials->calc(eta, force.pattern_higher.degree() - 1, z.data());
-      force.pattern_higher.calc(*force.monomials, eta, z.data(), gradient.data(), &work);
-      modal += value * gradient.head(n);
+      Eigen::Matrix<double, Eigen::Dynamic, 1, 0, records::kMaxThirdOrderModes, 1> gradient(n);
+      force.pattern_higher.calc(eta, gradient.data());
+      modal += value * gradient;
     }
     return;
   }

@@ -14,8 +14,7 @@ struct AppliedForce {
   const TimeFunction* function = nullptr;  ///< nullptr: constant 1
   VectorXd pattern;                        ///< n, ΦᵀF_ext; empty: a node force
   MatrixXd pattern_K2;                     ///< n x n, K_G2 of the pattern (zero without stiffening)
-  Polynomials pattern_higher;  ///< third order: work beyond that of `pattern`, in place of K_G2; empty: second order
-  std::shared_ptr<const MonomialList> monomials;  ///< of pattern_higher
+  Potential pattern_higher;  ///< third order: work beyond that of `pattern`, in place of K_G2; empty: second order
   Vector6d pattern_resultant = Vector6d::Zero();  ///< force and moment about Bo on the undeformed body
   MatrixXd pattern_moment;                        ///< 3 x n, what η adds to the moment
 };

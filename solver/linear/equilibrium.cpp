@@ -14,7 +14,8 @@ namespace {
 constexpr int kMaxIterations = 60;
 /// Travel in steps of the plant within which the state found is the one that was meant, stable or not.
 constexpr double kNear = 1;
-/// Largest travel of a stable state that whole steps of Newton's method found: a quarter of the size of a body.
+/// Largest travel of a stable state that whole steps of Newton's method found from a start that does not diverge (there
+/// its steps are those of the way downhill): a quarter of the size of a body.
 constexpr double kDirect = 5;
 
 /// The largest of what dofs move by, in steps of the plant; the size of a state or of a signal says nothing.
@@ -30,11 +31,12 @@ double calc_way(const EquilibriumResidual& at) { return calc_way(at, at.travel()
 
 class Newton {
  public:
-  explicit Newton(EquilibriumResidual at) : at_(std::move(at)) {}
+  explicit Newton(EquilibriumResidual at) : at_(std::move(at)), start_(at_) {}
 
   void solve() {
     for (; num_iterations_ < kMaxIterations; ++num_iterations_) {
       linearize();
+      if (num_iterations_ == 0) start_ = at_;
       const VectorXd step = solve_step(at_);
       const double size = step.size() > 0 ? step.cwiseAbs().maxCoeff() : 0;
       if (size < 1e-9) {
@@ -47,6 +49,8 @@ class Newton {
   }
 
   const EquilibriumResidual& at() const { return at_; }
+  /// The start, linearized.
+  const EquilibriumResidual& start() const { return start_; }
   /// Returns true if no step was damped.
   bool is_direct() const { return is_direct_; }
   int num_iterations() const { return num_iterations_; }
@@ -164,7 +168,7 @@ class Newton {
     return false;
   }
 
-  EquilibriumResidual at_;
+  EquilibriumResidual at_, start_;
   int num_iterations_ = 0;
   bool is_direct_ = true;
   VectorXd row_scale_, weight_;
@@ -204,7 +208,9 @@ Newton search(const EquilibriumResidual& start, const SourceLocation& at) {
   Newton first = run_newton(start);
   const bool is_found = first.find_restless() < 0;
   if (is_found && calc_way(first.at()) <= kNear) return first;
-  if (is_found && first.is_direct() && calc_way(first.at()) <= kDirect && is_stable_rest(first.at())) return first;
+  if (is_found && first.is_direct() && calc_way(first.at()) <= kDirect && is_stable_rest(first.start()) &&
+      is_stable_rest(first.at()))
+    return first;
   Newton second = run_newton(follow_gradient_flow(start));
   const bool is_other = second.find_restless() < 0;
   if (!is_found && !is_other) fail(second, at);

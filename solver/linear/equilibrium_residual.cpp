@@ -50,7 +50,7 @@ void EquilibriumResidual::evaluate() {
   rates_.head(n) = plant_->calc_unsteadiness(rates);
   rates_.segment(n, plant_->num_states()) = rates.segment(n, plant_->num_states());
   residual_ = rates_;
-  residual_.head(n) = plant_->calc_mass(point_) * rates_.head(n);
+  residual_.head(n) = plant_->multiply_mass(point_, rates_.head(n));
   rates_.tail(size() - n - plant_->num_states()) = plant_->calc_sample_rates(point_);
   residual_.tail(size() - n) = rates_.tail(size() - n);
 }

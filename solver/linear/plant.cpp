@@ -209,6 +209,12 @@ MatrixXd Plant::calc_mass(const OperatingPoint& point) {
   return follow.transpose() * mass * follow;
 }
 
+VectorXd Plant::multiply_mass(const OperatingPoint& point, const VectorXd& x) {
+  if (!has_loops()) return solver::multiply_mass(system_.tree, data_->tree, expand(x))(rows_);
+  const MatrixXd follow = calc_follow(point);
+  return follow.transpose() * solver::multiply_mass(system_.tree, data_->tree, follow * x);
+}
+
 VectorXd Plant::get_for_file(const VectorXd& q) const {
   VectorXd file = q;
   for (int b = 0; b < system_.num_bodies(); ++b) {

@@ -87,6 +87,8 @@ class Plant {
   MatrixXd calc_turning(const OperatingPoint& point) const;
   /// The mass matrix of the dofs; where loops are closed what follows moves along. num_dofs².
   MatrixXd calc_mass(const OperatingPoint& point);
+  /// M x at the point of the last evaluate(). num_dofs.
+  VectorXd multiply_mass(const OperatingPoint& point, const VectorXd& x);
   /// Quaternions as the files have them: w, x, y, z.
   VectorXd get_for_file(const VectorXd& q) const;
 

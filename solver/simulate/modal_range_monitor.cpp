@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "solver/bodies/next_order.hpp"
+#include "solver/bodies/soft_energy.hpp"
 #include "solver/simulate/run.hpp"
 #include "solver/system/system.hpp"
 
@@ -81,7 +82,10 @@ std::vector<ModalRangeMonitor::Crossing> ModalRangeMonitor::find_deflections(con
       largest = d.norm();
       where = &node;
     }
-    if (!(largest > kCheckedWay * w.size)) continue;
+    if (!where) continue;
+    const bool is_far = largest > kCheckedWay * w.size;
+    // Clamped plates stretch at a way of their thickness.
+    if (!is_far && !body.soft_energy()) continue;
     const auto report = [&](const std::string& limit, const std::string& advice) {
       w.deflection_reported = true;
       found.push_back({w.body, "run.linear-limit",
@@ -95,7 +99,8 @@ std::vector<ModalRangeMonitor::Crossing> ModalRangeMonitor::find_deflections(con
                "linear modes lose their meaning there; ");
       continue;
     }
-    const double next = calc_next_order(body, *where, eta, w.size);
+    const double next =
+        is_far ? calc_next_order(body, *where, eta, w.size) : body.soft_energy()->calc_error(*where, body.K(), eta);
     if (next > kNextOrderLimit)
       report(": the next order of its displacements is estimated at " + short_text(100 * next) +
                  " % of that, more than " + short_text(100 * kNextOrderLimit) + " %",

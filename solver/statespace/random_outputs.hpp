@@ -21,10 +21,13 @@ class InputSpectrum {
   };
   InputSpectrum(Eigen::Index num_inputs, std::vector<Term> terms) : num_inputs_(num_inputs), terms_(std::move(terms)) {}
 
+  /// Number of inputs, rows of S.
   Eigen::Index num_inputs() const { return num_inputs_; }
+  /// Computes S at a frequency [1/T]; num_inputs², Hermitian, 0 outside the tables.
   Eigen::MatrixXcd calc(double hz) const;
   /// Returns true if all densities are real and the same at all frequencies.
   bool is_white() const;
+  /// Returns true if a table is interpolated on logarithmic scales.
   bool has_powers() const;
   /// Frequencies of the tables, ascending [1/T].
   std::vector<double> list_corners() const;

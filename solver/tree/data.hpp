@@ -156,6 +156,10 @@ void run_response(const Tree& tree, const TreeData& data, Sweep& s);
 /// rotations and displacements. No load, no mass. After Stage::Position.
 void run_rates(const Tree& tree, const TreeData& data, const ConstVectorRef& u, Sweep& s);
 
+/// M x over the rows of u, without columns and rows of coordinates that are not free. O(bodies n²). After
+/// Stage::Position. Allocates.
+VectorXd multiply_mass(const Tree& tree, const TreeData& data, const ConstVectorRef& x);
+
 /// The impulse across the hinge of body b along its coordinate i, of the last solve_jump or run_response.
 double calc_jump_impulse(const Tree& tree, const TreeData& data, int b, int i);
 

@@ -5,6 +5,7 @@ import unittest
 
 import h5py
 import numpy as np
+from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 from support import ProgramTest
@@ -25,11 +26,11 @@ class ThirdOrderSpin(ProgramTest):
                    f'number = 3\nresidual = ["interface"]\n[body.stiffening]\n{keys}\n[body.output]\nfile = "blade.h5"\n')
         self.bough("reduce", "blade.toml", "-q")
 
-    def find_twist(self, moment):
+    def find_twist(self, moment, node=3, spin=OMEGA):
         self.write("spin.toml", '[[body]]\nname = "blade"\nfile = "blade.h5"\n[[hinge]]\nname = "hub"\ntype = "revolute"\n'
-                   f'parent = "ground"\nchild = "blade"\naxis = [0.0, 0.0, 1.0]\nrate = [{OMEGA}]\n[[force]]\nname = "twist"\n'
-                   f'body = "blade"\nnode = 3\nmoment = [{moment!r}, 0.0, 0.0]\n[[sensor]]\nname = "twist"\ntype = "rotation"\n'
-                   'body = "blade"\nnode = 3\n[simulation]\nduration = 1.0\noutput_step = 0.1\n')
+                   f'parent = "ground"\nchild = "blade"\naxis = [0.0, 0.0, 1.0]\nrate = [{spin}]\n[[force]]\nname = "twist"\n'
+                   f'body = "blade"\nnode = {node}\nmoment = [{moment!r}, 0.0, 0.0]\n[[sensor]]\nname = "twist"\ntype = "rotation"\n'
+                   f'body = "blade"\nnode = {node}\n[simulation]\nduration = 1.0\noutput_step = 0.1\n')
         self.bough("equilibrium", "spin.toml", "-o", "rest.h5", "-q")
         with h5py.File(self.path("rest.h5")) as f:
             return f["sensors/twist"][-1][0]
@@ -54,6 +55,31 @@ class ThirdOrderSpin(ProgramTest):
                     found = self.find_twist(moment)
                     print(f"{name}, {keys}, {moment} N m: {found:.6f} rad, exact {exact:.6f}, off by {found / exact - 1:.1e}")
                     self.assertLess(abs(found / exact - 1), tolerance)
+
+    def test_propeller_moment_of_sections(self):
+        """A blade of consistent beams: ((GJ + N I_p / A) theta')' = Omega^2 rho (I_chord - I_thick) sin theta cos theta, N the
+        pull of the spin, moment at its end."""
+        length, num, gj, rho, area, chord, thick, spin = .5, 12, 8., 1e4, 1e-3, 2e-6, 2e-7, 60.
+        lines = ["SOL 103", "CEND", "SPC = 1", "BEGIN BULK", "PARAM,COUPMASS,1", "SPC1,1,123456,1", f"MAT1,1,1.+11,8.+9,,{rho}",
+                 f"PBEAM,1,1,{area},{chord},{thick},,1.-9", *(f"GRID,{k + 1},,{length * k / num:.7f},0.,0." for k in range(num + 1)),
+                 *(f"CBEAM,{k},1,{k},{k + 1},0.,1.,0." for k in range(1, num + 1))]
+        self.write("blade.bdf", "\n".join(lines) + "\nENDDATA\n")
+
+        def find_torque(at_root):
+            def slope(x, y):
+                pull = .5 * rho * area * spin ** 2 * (length ** 2 - x ** 2)
+                return [y[1] / (gj + pull * (chord + thick) / area), spin ** 2 * rho * (chord - thick) * np.sin(y[0]) * np.cos(y[0])]
+            return solve_ivp(slope, (0, length), [0, at_root], rtol=1e-10, atol=1e-12).y[:, -1]
+
+        for keys, tolerances in (("order = 3\nlarge = 3", (3e-3, 5e-3, 1e-2)), ("order = 2", (3e-3, 5e-3, 1e-2))):
+            self.write("blade.toml", f'[body]\nname = "blade"\ndeck = "blade.bdf"\nframe = "fixed"\ninterface = [{num + 1}]\n[body.modes]\n'
+                       f'number = 6\nresidual = ["interface"]\n[body.stiffening]\n{keys}\n[body.output]\nfile = "blade.h5"\n')
+            self.bough("reduce", "blade.toml", "-q")
+            for moment, tolerance in zip((1., 5., 10.), tolerances):
+                exact = find_torque(brentq(lambda root, m=moment: find_torque(root)[1] - m, 0, 60))[0]
+                found = self.find_twist(moment, num + 1, spin)
+                print(f"sections, {keys[:9]}, {moment} N m: {found:.6f} rad, exact {exact:.6f}, off by {found / exact - 1:.1e}")
+                self.assertLess(abs(found / exact - 1), tolerance)
 
     def test_next_order_of_strips_is_estimated(self):
         """Bodies of second order against the whole deck by static --nonlinear: thin strips with torsional mass, a beam."""

@@ -63,6 +63,13 @@ std::string make_strip() {
   return text;
 }
 
+/// The frame with an arc, a rod, a tube and a bush across it.
+std::string make_braced_frame() {
+  return make_frame() +
+         "PBEND,3,1,4.-4,3.-8,5.-8,6.-8,2,1.5\nCBEND,105,3,6,14,0.,1.,0.,1\nPROD,4,1,2.-5\nCROD,106,4,2,14\n"
+         "PTUBE,5,1,.02,.002\nCTUBE,107,5,3,15\nPBUSH,6,K,1.+5,2.+5,3.+5,1.+3,2.+3,3.+3\nCBUSH,108,6,5,13,0.,0.,1.\n";
+}
+
 class DegreeTwo : public ::testing::TestWithParam<Case> {};
 
 // Work of a unit load at degree 2: -½ ηᵀK_G2 η - K_G(Φη)(Φη, u_s) + ½ V‴(Φη, Φη, Φ K⁻¹Φᵀf), u_s its static solution.
@@ -133,7 +140,7 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Values(Case{"frame", make_frame(), 18, 1e-2},
                       Case{"rigid links", make_frame("30") + "GRID,30,,1.,.05,.02\nRBE2,40,11,123456,30\n", 18, 1e-2},
                       Case{"mass", make_frame() + "CONM2,50,18,,.2\n", 18, 1e-2},
-                      Case{"strip", make_strip(), 82, 1e-6}),
+                      Case{"braces", make_braced_frame(), 18, 1e-2}, Case{"strip", make_strip(), 82, 1e-6}),
     [](const auto& info) {
       std::string name = info.param.name;
       std::replace(name.begin(), name.end(), ' ', '_');

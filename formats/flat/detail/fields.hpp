@@ -115,6 +115,18 @@ void visit_third_order(Archive& archive, Body& body, long n) {
 
 /// Visits the recovery matrices and the strain energies of elements, all of n modes.
 template <class Archive, class Body>
+void visit_next_order(Archive& archive, Body& body, long n) {
+  auto& next = body.next_order;
+  if (!archive.has("/next_order/modes", !next.empty())) return;
+  archive.array("/next_order/modes", next.modes, {-1}, {.max_value = static_cast<int>(n) - 1});
+  const int N = static_cast<int>(count(next.modes));
+  if (N > records::kMaxLargeModes) return;  // find_body_faults() says so
+  archive.array("/next_order/energy_3", next.cubic, {records::count_monomials(N, 3)});
+  archive.array("/next_order/energy_4", next.quartic, {records::count_monomials(N, 4)});
+}
+
+/// Visits /recovery: the rows that give element forces, stresses and strains of the n modes.
+template <class Archive, class Body>
 void visit_recovery(Archive& archive, Body& body, long n) {
   archive.array("/recovery/inertial_load", body.inertial_load, {n, records::kNumInertialLoads}, kOptional);
   visit_column(
@@ -193,6 +205,7 @@ void visit_body(Archive& archive, Body& body) {
   archive.array("/full/phi", body.full_phi, {ndof, n}, kOptional);
   visit_stiffening(archive, body, n);
   visit_third_order(archive, body, n);
+  visit_next_order(archive, body, n);
   visit_recovery(archive, body, n);
   visit_mesh(archive, body, n);
 }

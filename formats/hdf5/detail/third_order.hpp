@@ -1,5 +1,5 @@
 #pragma once
-/// \file /third_order of a flexible-body file (docs/formats/flexbody.md).
+/// \file /third_order and /next_order of a flexible-body file (docs/formats/flexbody.md).
 #include "formats/hdf5/detail/reader.hpp"
 #include "formats/hdf5/detail/writer.hpp"
 
@@ -13,5 +13,10 @@ records::MassIntegrals read_integrals(FileReader& file, const std::string& path,
 void write_third_order(FileWriter& file, const records::FlexBody& body);
 /// After the modes, nodes and locators.
 void read_third_order(FileReader& file, records::FlexBody& body);
+
+/// Nothing for a body without the energy of its soft modes.
+void write_next_order(FileWriter& file, const records::NextOrder& next);
+/// \param num_modes  of the body.
+records::NextOrder read_next_order(FileReader& file, int num_modes);
 
 }  // namespace bough::hdf5

@@ -9,6 +9,7 @@ namespace bough::toml_files {
 const char* get_body_schema();
 const char* get_system_schema();
 const char* get_campaign_schema();
+/// The text of data/schema/psd.schema.json, of spectral densities for `response --psd`.
 const char* get_psd_schema();
 
 /// Reports every departure of `root` from the schema with the line of the key. The part of JSON Schema 2020-12 that is

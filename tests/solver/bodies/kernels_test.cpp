@@ -10,6 +10,8 @@ struct OfThisMachine {
   static constexpr auto multiply = solver::multiply;
   static constexpr auto multiply_transposed = solver::multiply_transposed;
   static constexpr auto add_product = solver::add_product;
+  static constexpr auto contract = solver::contract;
+  static constexpr auto add_scaled = solver::add_scaled;
   static constexpr auto add_square = solver::add_square;
   static constexpr auto factor_trapezoid = solver::factor_trapezoid;
   static constexpr auto solve_lower = solver::solve_lower;

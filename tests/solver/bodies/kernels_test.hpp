@@ -1,5 +1,7 @@
 #pragma once
 /// \file The dense loops next to Eigen, for one namespace of them.
+#include <vector>
+
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
@@ -29,6 +31,20 @@ void compare_kernels_with_eigen() {
       K::add_product(A.data(), rows, n, B.data(), m, sum.data());
       expect_near(sum, C + A * B, n);
     }
+    const MatrixXd in = MatrixXd::Random(rows, 5);
+    for (const int num_factors : {3, 6}) {
+      std::vector<int> offsets;
+      for (int i = 0; i < 2 * num_factors; ++i) offsets.push_back((7 * i + 4) % 5 * static_cast<int>(rows));
+      const VectorXd weights = VectorXd::Random(num_factors);
+      MatrixXd out(rows, 2), expected = MatrixXd::Zero(rows, 2);
+      for (int i = 0; i < 2 * num_factors; ++i)
+        expected.col(i / num_factors) += weights[i % num_factors] * in.col((7 * i + 4) % 5);
+      K::contract(in.data(), rows, offsets.data(), 2, weights.data(), num_factors, out.data());
+      expect_near(out, expected, n);
+    }
+    VectorXd scaled = in.col(0);
+    K::add_scaled(0.3, in.col(1).data(), -2, in.col(2).data(), rows, scaled.data());
+    expect_near(scaled, in.col(0) + 0.3 * in.col(1) - 2 * in.col(2), n);
     MatrixXd square(rows, rows);
     K::add_square(Q.data(), V.data(), rows, square.data());
     expect_near(lower(square), lower(Q + V * V.transpose()), n);

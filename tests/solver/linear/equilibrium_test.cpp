@@ -42,6 +42,30 @@ TEST(Equilibrium, TwoLinksHangAgainstASpring) {
   EXPECT_TRUE(found.neutral.empty());
 }
 
+TEST(Equilibrium, AStartThatDivergesGoesDownhill) {
+  // Torque x - x³, x = angle / 0.3 rad. Newton's method takes one whole step from x = 0.5 to the stable state x = -1,
+  // against the torque; the way downhill ends at x = 1.
+  records::SystemSpec spec;
+  spec.bodies = {make_point("beam", 1, {0, 0, 0})};
+  spec.bodies[0].inertia = Matrix3d::Identity();
+  spec.hinges = {make_hinge_record("snap", HingeType::Revolute, "ground", "beam")};
+  spec.hinges[0].position = {0.15};
+  spec.hinges[0].law.spring_table = {"wells"};
+  records::FunctionRecord wells;
+  wells.name = "wells";
+  wells.type = "table";
+  wells.interpolation = "cubic";
+  for (int i = -60; i <= 60; ++i) {
+    const double angle = 0.01 * i, x = angle / 0.3;
+    wells.x.push_back(angle);
+    wells.y.push_back(x * x * x - x);
+  }
+  spec.functions = {wells};
+  const auto found = find(spec);
+  EXPECT_NEAR(found.point.q[0], 0.3, 1e-4);
+  EXPECT_TRUE(found.unstable.empty());
+}
+
 TEST(Equilibrium, AGovernorSpins) {
   // A mass on a hinge that a turning hub carries: w² l cos(angle) = g.
   records::SystemSpec spec;

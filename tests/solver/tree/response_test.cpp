@@ -97,6 +97,26 @@ TEST_P(ResponseTest, LockedCoordinatesAreTheDenseEquationsWithoutTheirRows) {
   }
 }
 
+TEST_P(ResponseTest, ProductsWithTheMassMatrixAreThoseOfTheDenseEquations) {
+  auto data = system_.make_data();
+  Random random(GetParam());
+  for (const bool is_locked : {false, true}) {
+    const DiscreteState discrete = lock_some();
+    if (is_locked) set_modes(system_, *data, discrete);
+    calc_u_dot(system_, *data, 0.3, q_, u_);
+    MatrixXd mass;
+    VectorXd force, x = random.vector_n(tree().num_u);
+    calc_dense_equations(tree(), data->tree, mass, force);
+    const VectorXd product = multiply_mass(tree(), data->tree, x);
+    const auto is_free = [&](int row) { return data->tree.mode[static_cast<size_t>(row)] == HingeMode::Free; };
+    for (int row = 0; row < tree().num_u; ++row)
+      if (!is_free(row)) x[row] = 0;
+    const VectorXd expected = mass * x;
+    for (int row = 0; row < tree().num_u; ++row)
+      EXPECT_NEAR(product[row], is_free(row) ? expected[row] : 0, 1e-12 * (1 + expected.norm())) << row;
+  }
+}
+
 TEST_P(ResponseTest, JumpsOfGivenRatesKeepTheMomentaAlongFreeCoordinates) {
   auto data = system_.make_data();
   const DiscreteState discrete = lock_some();

@@ -1,0 +1,22 @@
+#pragma once
+/// \file Strain energy of the soft modes of a body of second order to degree 4: what such a body leaves out
+/// (docs/theory/third-order.md, "Next order").
+#include "solver/bodies/node.hpp"
+
+namespace bough::solver {
+
+class SoftEnergy {
+ public:
+  /// next: with modes of the body.
+  explicit SoftEnergy(const records::NextOrder& next);
+
+  /// Estimated error of the deflection φη of a node in a static state, relative to it: the way to the state that the
+  /// same load has with V_3 and V_4. 0: no such state is found. K: modal stiffness. No allocation.
+  double calc_error(const Node& node, const MatrixXd& K, const ConstVectorRef& eta) const;
+
+ private:
+  std::vector<int> modes_;
+  Polynomials energy_;  ///< V_3, V_4
+};
+
+}  // namespace bough::solver
