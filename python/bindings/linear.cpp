@@ -54,11 +54,12 @@ void bind_linear(py::module_& m) {
           "(name, value at delta -1, value at delta 1, number of inputs w and outputs z), which come first")
       .def(
           "close",
-          [](const LinearModel& l, const Eigen::VectorXd& delta) {
-            if (delta.size() != static_cast<Eigen::Index>(l.uncertainty.size()))
-              throw py::value_error("delta has " + std::to_string(delta.size()) + " values, expected " +
-                                    std::to_string(l.uncertainty.size()));
-            return statespace::close_uncertainty(l, delta);
+          [](const LinearModel& l, const std::vector<double>& delta) {
+            if (delta.size() != l.uncertainty.size())
+              throw py::value_error("expected " + std::to_string(l.uncertainty.size()) + " values, found " +
+                                    std::to_string(delta.size()));
+            return statespace::close_uncertainty(
+                l, Eigen::Map<const Eigen::VectorXd>(delta.data(), static_cast<Eigen::Index>(delta.size())));
           },
           py::arg("delta"), "The model with w = delta z closed, one value in [-1, 1] a parameter.")
       .def_readonly("time", &LinearModel::time)

@@ -195,7 +195,7 @@ class LinearModel:
     @property
     def uncertainty(self) -> list[tuple[str, float, float, int]]:
         """(name, value at delta -1, value at delta 1, number of inputs w and outputs z), which come first."""
-    def close(self, delta: Array) -> LinearModel:
+    def close(self, delta: Sequence[float]) -> LinearModel:
         """The model with w = delta z closed, one value in [-1, 1] a parameter."""
     @property
     def time(self) -> float: ...

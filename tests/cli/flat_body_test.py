@@ -75,7 +75,9 @@ class FlatBody(ProgramTest):
             def look(name, item):
                 nonlocal seen
                 if isinstance(item, h5py.Dataset) and item.dtype.kind in "fi" and "/" + name in arrays:
-                    np.testing.assert_array_equal(arrays["/" + name].ravel(), item[()].ravel(), name)
+                    # Numbers of modes count from 0 there (docs/formats/flat.md).
+                    base = 1 if name in ("next_order/modes", "third_order/large") else 0
+                    np.testing.assert_array_equal(arrays["/" + name].ravel() + base, item[()].ravel(), name)
                     seen += 1
             f.visititems(look)
             for i, load in enumerate(f["stiffening/kg_inertial"].attrs["loads"]):

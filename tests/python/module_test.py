@@ -485,6 +485,38 @@ class LinearModels(InFolder):
         np.testing.assert_array_equal(bough.read_linear_model("closed.h5").A, closed.A)
         self.assertEqual(model.outputs[0].split(":")[0], "angle")
 
+    def test_uncertain_parameters(self):
+        """An oscillator: the model closed at each value has its poles."""
+        text = """[parameters]
+k = 50.0
+c = 1.0
+[[body]]
+name = "bob"
+mass = 2.0
+[[hinge]]
+name = "slide"
+type = "prismatic"
+child = "bob"
+axis = [1.0, 0.0, 0.0]
+stiffness = ["$k"]
+damping = ["$c"]
+[simulation]
+duration = 1.0
+output_step = 0.1
+"""
+        system = bough.System.from_text(text)
+        model = system.linearize(inputs=["slide"], uncertain={"k": (30, 90), "c": (0, 4)})
+        self.assertEqual(model.uncertainty, [("k", 30, 90, 1), ("c", 0, 4, 1)])
+        self.assertEqual(model.inputs, ["k:w1", "c:w1", "slide:1"])
+        for delta in ([0, 0], [-0.5, 1], np.array([1, -0.2])):
+            expected = np.roots([2.0, 2 + 2 * delta[1], 60 + 30 * delta[0]])
+            for pole in expected:
+                self.assertLess(np.abs(model.close(delta).poles - pole).min(), 1e-9)
+        with self.assertRaisesRegex(ValueError, "expected 2 values, found 1"):
+            model.close([0.5])
+        with self.assertRaises(bough.InputError):
+            system.linearize(uncertain={"other": (1, 2)})
+
 
 class Verbs(InFolder):
     def test_call_is_the_shell(self):

@@ -113,7 +113,7 @@ void visit_third_order(Archive& archive, Body& body, long n) {
   visit_integrals(archive, "/third_order/integrals", third.integrals, n + m);
 }
 
-/// Visits the recovery matrices and the strain energies of elements, all of n modes.
+/// Visits /next_order: the energy of degrees 3 and 4 of soft modes.
 template <class Archive, class Body>
 void visit_next_order(Archive& archive, Body& body, long n) {
   auto& next = body.next_order;
@@ -125,7 +125,7 @@ void visit_next_order(Archive& archive, Body& body, long n) {
   archive.array("/next_order/energy_4", next.quartic, {records::count_monomials(N, 4)});
 }
 
-/// Visits /recovery: the rows that give element forces, stresses and strains of the n modes.
+/// Visits the recovery matrices and the strain energies of elements, all of n modes.
 template <class Archive, class Body>
 void visit_recovery(Archive& archive, Body& body, long n) {
   archive.array("/recovery/inertial_load", body.inertial_load, {n, records::kNumInertialLoads}, kOptional);
