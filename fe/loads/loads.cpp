@@ -175,8 +175,7 @@ AppliedLoad calc_applied_load(const Model& model, const records::Deck& deck, int
   load.F -= of_superelements.col(0);
   if (!of_superelements.isZero(0))
     diagnostics.warning("fe.superelement-gravity", deck.locate(records::find_selection(deck, "LOAD", set)),
-                        "GRAV and RFORCE of LOAD " + std::to_string(set) +
-                            " do not act on the mass of external superelements, as in Nastran",
+                        "GRAV and RFORCE of LOAD " + std::to_string(set) + " do not act on the mass of superelements",
                         "apply the load when the component is written, or as forces on its boundary");
   return load;
 }
