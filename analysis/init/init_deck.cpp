@@ -3,12 +3,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <set>
 
+#include "analysis/common/inputs.hpp"
 #include "analysis/modes/eigen_choices.hpp"
 #include "base/diagnostic.hpp"
 #include "fe/matrices/connected_parts.hpp"
 #include "fe/statics/build_model.hpp"
+#include "formats/nastran/reader.hpp"
 
 namespace bough::analysis {
 
@@ -160,6 +163,18 @@ std::vector<StartFile> make_start_files(const records::Deck& deck, const DeckSta
       "gravity = [0.0, 0.0, -9.81]  # a load to begin with, in the units of the deck (-9810.0 of mm, 0.0 in space)\n",
       name, hinge, grid > 0 ? "integrator = \"auto\"\n" : "");
   return {{name + ".toml", body}, {name + "-run.toml", system}};
+}
+
+std::vector<StartFile> make_start_files(const std::string& deck, const std::string& folder, int hinge_grid,
+                                        Diagnostics& diagnostics) {
+  namespace fs = std::filesystem;
+  demand_deck(deck);
+  const auto content = nastran::read_deck(deck, {}, diagnostics);
+  if (content.grids.empty())
+    diagnostics.error("fe.no-grids", {deck}, "the deck has no GRID", "give the bulk data of a model");
+  diagnostics.throw_if_errors();
+  const auto path = fs::absolute(deck).lexically_relative(fs::absolute(folder.empty() ? "." : folder));
+  return make_start_files(content, {path.string(), fs::path(deck).stem().string(), hinge_grid});
 }
 
 }  // namespace bough::analysis

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "base/diagnostic.hpp"
 #include "formats/records/deck.hpp"
 
 namespace bough::analysis {
@@ -19,5 +20,10 @@ struct StartFile {
 /// hinge, whose motion clamped modes would nearly span, the modes are free-free and the frame is their mean axes.
 /// Throws InputError("cli.unknown-interface") when the hinge's grid is not in the deck.
 std::vector<StartFile> make_start_files(const records::Deck& deck, const DeckStart& start);
+
+/// make_start_files() of a deck file; the files will be in `folder` (empty: the present one) and name it from there.
+/// \throws InputError of demand_deck and of reading; "fe.no-grids" where the deck has none.
+std::vector<StartFile> make_start_files(const std::string& deck, const std::string& folder, int hinge_grid,
+                                        Diagnostics& diagnostics);
 
 }  // namespace bough::analysis

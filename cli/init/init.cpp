@@ -3,7 +3,6 @@
 #include <filesystem>
 #include <memory>
 
-#include "analysis/common/inputs.hpp"
 #include "analysis/common/output_folder.hpp"
 #include "analysis/common/text_file.hpp"
 #include "analysis/init/init_deck.hpp"
@@ -11,7 +10,6 @@
 #include "cli/common/options.hpp"
 #include "cli/init/schema_line.hpp"
 #include "cli/init/templates.hpp"
-#include "formats/nastran/reader.hpp"
 
 namespace bough::cli {
 
@@ -54,15 +52,8 @@ Files make_files(const InitOptions& o, Diagnostics& diagnostics) {
     for (const auto& file : chosen.files) made.files.push_back({file.name, file.text});
     return made;
   }
-  analysis::demand_deck(o.name);
-  const auto deck = nastran::read_deck(o.name, {}, diagnostics);
-  if (deck.grids.empty())
-    diagnostics.error("fe.no-grids", {o.name}, "the deck has no GRID", "give the bulk data of a model");
-  diagnostics.throw_if_errors();
   made.folder = ".";
-  const fs::path folder = fs::absolute(o.output.empty() ? "." : o.output);
-  made.files = analysis::make_start_files(
-      deck, {fs::absolute(o.name).lexically_relative(folder).string(), fs::path(o.name).stem().string(), o.hinge});
+  made.files = analysis::make_start_files(o.name, o.output, o.hinge, diagnostics);
   made.advice = "reduce the first, then run the second\n";
   return made;
 }

@@ -53,6 +53,8 @@ class StaticWriter {
 records::StaticResult read_static(const std::string& path);
 /// Writes K, M, B and geometric stiffness matrices as sparse arrays.
 void write_matrices(const records::MatricesResult& result, const std::string& path);
+/// The bytes of that file, without a file.
+std::string make_matrices_image(const records::MatricesResult& result);
 
 struct ResultsWriterOptions {
   int flush_every = 100;  ///< samples after which it is looked whether a commit is due, where commit_every is zero

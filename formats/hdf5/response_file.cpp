@@ -87,6 +87,17 @@ void write_subcase(FileWriter& file, const records::ResponseSubcase& s, bool is_
   file.write_integers(path + "/modes/is_residual", residual, {"1: a residual vector", "1"});
 }
 
+std::string get_format(const records::DeckResponse& response) {
+  return response.is_over_time ? "bough-transient" : "bough-frequency";
+}
+
+void write_all(FileWriter& file, const records::DeckResponse& response) {
+  file.write_source(response.source);
+  file.make_group("/subcases");
+  for (const auto& subcase : response.subcases) write_subcase(file, subcase, response.is_over_time);
+  for (const auto& random : response.random) write_random(file, random);
+}
+
 void read_samples(FileReader& file, const std::string& group, long rows, const Shape& columns, bool is_over_time,
                   MatrixXd& real, MatrixXd& imag) {
   long count = 1;
@@ -107,12 +118,15 @@ void read_samples(FileReader& file, const std::string& group, long rows, const S
 }  // namespace
 
 void write_response(const records::DeckResponse& response, const std::string& path) {
-  FileWriter file(path, response.is_over_time ? "bough-transient" : "bough-frequency", kResponseFormatVersion);
-  file.write_source(response.source);
-  file.make_group("/subcases");
-  for (const auto& subcase : response.subcases) write_subcase(file, subcase, response.is_over_time);
-  for (const auto& random : response.random) write_random(file, random);
+  FileWriter file(path, get_format(response), kResponseFormatVersion);
+  write_all(file, response);
   file.commit();
+}
+
+std::string make_response_image(const records::DeckResponse& response) {
+  FileWriter file(get_format(response), kResponseFormatVersion);
+  write_all(file, response);
+  return file.get_image();
 }
 
 records::DeckResponse read_response(const std::string& path) {

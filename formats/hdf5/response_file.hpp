@@ -10,6 +10,8 @@ inline constexpr const char* kResponseFormatVersion = "1.0";
 
 /// Format "bough-frequency" or "bough-transient". Throws ComputationError "hdf5.write".
 void write_response(const records::DeckResponse& response, const std::string& path);
+/// The bytes of that file, without a file.
+std::string make_response_image(const records::DeckResponse& response);
 /// Throws InputError as the other readers (hdf5/files.hpp).
 records::DeckResponse read_response(const std::string& path);
 

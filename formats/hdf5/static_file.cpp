@@ -137,6 +137,18 @@ void write_common(FileWriter& file, const records::StaticResult& whole) {
   for (const auto& block : whole.extremes) write_extremes(file, block);
 }
 
+void write_all(FileWriter& file, const records::MatricesResult& result) {
+  file.write_source(result.source);
+  file.write_integers("/dof_map", result.dof_map, {kDofMap, "1"});
+  write_mesh(file, result.mesh);
+  write_sparse(file, "/K", result.K, "stiffness before constraints", "F/L, F, F L");
+  write_sparse(file, "/M", result.M, "mass before constraints", "M, M L, M L^2");
+  if (result.B.num_rows > 0)
+    write_sparse(file, "/B", result.B, "viscous damping before constraints", "F T/L, F T, F T L");
+  for (const auto& [name, matrix] : result.K_G)
+    write_sparse(file, "/KG/" + name, matrix, "geometric stiffness of the static solution", "F/L, F, F L");
+}
+
 }  // namespace
 
 StaticWriter::StaticWriter(const std::string& path)
@@ -168,16 +180,14 @@ std::string make_static_image(const records::StaticResult& result) {
 
 void write_matrices(const records::MatricesResult& result, const std::string& path) {
   FileWriter file(path, "bough-matrices", kMatricesFormatVersion);
-  file.write_source(result.source);
-  file.write_integers("/dof_map", result.dof_map, {kDofMap, "1"});
-  write_mesh(file, result.mesh);
-  write_sparse(file, "/K", result.K, "stiffness before constraints", "F/L, F, F L");
-  write_sparse(file, "/M", result.M, "mass before constraints", "M, M L, M L^2");
-  if (result.B.num_rows > 0)
-    write_sparse(file, "/B", result.B, "viscous damping before constraints", "F T/L, F T, F T L");
-  for (const auto& [name, matrix] : result.K_G)
-    write_sparse(file, "/KG/" + name, matrix, "geometric stiffness of the static solution", "F/L, F, F L");
+  write_all(file, result);
   file.commit();
+}
+
+std::string make_matrices_image(const records::MatricesResult& result) {
+  FileWriter file("bough-matrices", kMatricesFormatVersion);
+  write_all(file, result);
+  return file.get_image();
 }
 
 }  // namespace bough::hdf5

@@ -26,6 +26,8 @@ void bind_messages(py::module_& m);
 void bind_exclusive(py::module_& m);
 /// Defines reduce, modes, static and select.
 void bind_analyses(py::module_& m);
+/// Defines matrices, solve_response, split and init.
+void bind_decks(py::module_& m);
 /// Defines the functions of the other commands: check, compare, info, export, plot, report, flx and others.
 void bind_commands(py::module_& m);
 /// Defines FlexBody and Modes and their readers.

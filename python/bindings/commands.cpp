@@ -519,8 +519,24 @@ py::tuple batch(const std::string& campaign, const std::string& output, int jobs
   return py::make_tuple(d, tell(events.get_messages()));
 }
 
+py::dict make_random(const records::RandomOutputs& random) {
+  py::dict d;
+  d["outputs"] = random.outputs.name;
+  d["frequency_hz"] = copy(random.frequency_hz);
+  d["psd"] = copy(random.psd);
+  d["rms"] = copy(random.rms);
+  d["crossing_hz"] = copy(random.crossing_hz);
+  d["cumulative_rms"] = copy(random.cumulative_rms);
+  d["band_rms"] = copy(random.band_rms);
+  d["band_crossing_hz"] = copy(random.band_crossing_hz);
+  const bool has_total = random.total_rms.size() > 0;
+  d["total_rms"] = has_total ? py::object(copy(random.total_rms)) : py::none();
+  d["total_crossing_hz"] = has_total ? py::object(copy(random.total_crossing_hz)) : py::none();
+  return d;
+}
+
 py::tuple response(const std::string& file, Strings inputs, Strings outputs, double from_hz, double to_hz, int points,
-                   bool loop) {
+                   bool loop, Strings psd) {
   analysis::ResponseRequest request;
   request.file = file;
   request.inputs = std::move(inputs);
@@ -529,6 +545,7 @@ py::tuple response(const std::string& file, Strings inputs, Strings outputs, dou
   request.range.to_hz = to_hz;
   if (points > 0) request.range.points = points;
   request.is_loop = loop;
+  request.psd = std::move(psd);
   analysis::ResponseAnswer answer;
   auto messages =
       run_request(file, py::none(), [&](PythonEvents& events) { answer = analysis::calc_response(request, events); });
@@ -553,6 +570,7 @@ py::tuple response(const std::string& file, Strings inputs, Strings outputs, dou
     d["distance"] = answer.margins->distance;
     d["is_stable"] = answer.margins->is_stable;
   }
+  if (answer.random) d["random"] = make_random(*answer.random);
   return py::make_tuple(d, std::move(messages));
 }
 
@@ -612,7 +630,7 @@ void bind_commands(py::module_& m) {
         py::arg("progress") = none);
   m.def("response", &response, py::arg("file"), py::kw_only(), py::arg("inputs") = no_words,
         py::arg("outputs") = no_words, py::arg("from_hz") = 0.0, py::arg("to_hz") = 0.0, py::arg("points") = 0,
-        py::arg("loop") = false);
+        py::arg("loop") = false, py::arg("psd") = no_words);
   m.def("equilibrium", &equilibrium, py::arg("file"), py::kw_only(), py::arg("set") = no_words);
 }
 

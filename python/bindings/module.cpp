@@ -14,6 +14,7 @@ PYBIND11_MODULE(_bough, m) {
   bind_exclusive(m);
   bind_bodies(m);
   bind_analyses(m);
+  bind_decks(m);
   bind_commands(m);
   bind_linear(m);
   bind_simulations(m);

@@ -42,9 +42,9 @@ except ImportError as _missing:  # bough.reader does without
 
 __all__ = ["ComputationError", "Event", "Failure", "FlexBody", "InputError", "LinearModel", "Locator", "MassIntegrals",
            "Message", "Modes", "Results", "Simulation", "System", "Warning", "batch", "call", "check", "compare",
-           "convert", "equilibrium", "export", "flx", "info", "integrals", "modes", "plot", "read_flex_body",
-           "read_flx", "read_linear_model", "read_modes", "read_results", "reader", "reduce", "report", "response",
-           "run", "select", "static", "verbs"]
+           "convert", "equilibrium", "export", "flx", "frequency", "info", "init", "integrals", "matrices", "modes", "plot",
+           "read_flex_body", "read_flx", "read_linear_model", "read_modes", "read_results", "reader", "reduce",
+           "report", "response", "run", "select", "split", "static", "transient", "verbs"]
 
 
 def call(*words):
@@ -118,8 +118,72 @@ def static(deck, *, subcase=0, free=False, mass="deck", ignore=(), grid_forces=(
                              grid_forces=[str(word) for word in _list(grid_forces)], linear=linear,
                              nonlinear=nonlinear, increments=increments, strains=strains,
                              extremes=extremes, progress=progress)
+    return _read_image(deck, image)
+
+
+def _read_image(deck, image):
+    """Arrays of the file, given as bytes, that a command would write for the deck."""
     with _bough.Exclusive():  # the reader uses the same HDF5
         return reader.File(_os.fspath(deck), _io.BytesIO(image))
+
+
+def matrices(deck, *, loads=(), no_kg=False, subcase=0, free=False, mass="deck", ignore=(), progress=None):
+    """Stiffness, mass, damping and geometric stiffness of a deck before constraints, as reader.File in memory.
+
+    found["dof_map"] has a row (node, component) for each dof; found["K/data"], found["K/indices"], found["K/indptr"]
+    are what scipy.sparse.csr_matrix takes; M, B, KG/LOAD_7 likewise. Options as of `bough matrices`.
+    """
+    image, _ = _bough.matrices(_os.fspath(deck), loads=_list(loads), no_kg=no_kg, subcase=subcase, free=free, mass=mass,
+                               ignore=_list(ignore), progress=progress)
+    return _read_image(deck, image)
+
+
+def frequency(deck, **options):
+    """Frequency and random response of a deck (SOL 108, 111) as reader.File in memory: curves by path.
+
+    Options as of `bough frequency`: grids=[41, ...], direct, modal, number, max_hz, no_residuals, subcase, free, mass,
+    ignore. found["subcases/1/displacement/real"] has a row per frequency and a column per row of its "dofs".
+    """
+    return _solve_response(deck, False, options)
+
+
+def transient(deck, **options):
+    """Transient response of a deck (SOL 109, 112) as reader.File in memory; options and paths as of `frequency`.
+
+    found["subcases/1/displacement/value"] has a row per time.
+    """
+    return _solve_response(deck, True, options)
+
+
+def _solve_response(deck, is_over_time, options):
+    for name in ("grids", "ignore"):
+        if name in options:
+            options[name] = _list(options[name])
+    image, _ = _bough.solve_response(_os.fspath(deck), is_over_time, **options)
+    return _read_image(deck, image)
+
+
+def split(deck, *, parts=0, along="path", planes=(), elements=(), grids=(), interface="rigid", name="", modes=10,
+          check=True, subcase=0, ignore=(), progress=None):
+    """A deck cut into several bodies: what `bough split` writes, as a dict; nothing is written.
+
+    "files": {name: text} of a deck and a body file for each part, the system file last; "parts": a dict each with name,
+    parent, node, elements, grids, mass and (with check) its reduced "body"; "frequencies": (of the deck, of the parts)
+    in Hz; "mass". Cut by one of parts, planes=["x=2.5"], elements=["property:3", "1-200"], grids=[11, 21].
+    """
+    found, _ = _bough.split(_os.fspath(deck), parts=parts, along=along, planes=_words(planes),
+                            elements=_words(elements), grids=_list(grids), interface=interface, name=name, modes=modes,
+                            check=check, subcase=subcase, ignore=_list(ignore), progress=progress)
+    return found
+
+
+def init(deck, folder="", *, hinge=0):
+    """A body file and a system file to begin with, {name: text}, for a deck; nothing is written.
+
+    folder: where they will be, from which they name the deck; empty: here. hinge: a grid that is to turn.
+    """
+    texts, _ = _bough.init(_os.fspath(deck), folder=_os.fspath(folder), hinge=hinge)
+    return texts
 
 
 def select(body, system=None, *, inputs=(), outputs=(), weight=(), spectrum="", number=0, tolerance=None, below=0.0,
@@ -269,13 +333,15 @@ def batch(campaign, output="", *, jobs=0, shard="", time_limit=0.0, retry=False,
     return found
 
 
-def response(file, *, inputs=(), outputs=(), from_hz=0.0, to_hz=0.0, points=0, loop=False):
+def response(file, *, inputs=(), outputs=(), from_hz=0.0, to_hz=0.0, points=0, loop=False, psd=()):
     """Frequency response of a linear-model file: frequency_hz, value (a matrix each), singular_values, peak_gain.
 
     loop: gain_margins, phase_margins as (frequency, margin), distance, is_stable of negative feedback too.
+    psd: spectral densities of the inputs, [1e-4, "motor=1e-3", "wind.csv", "noise.toml"]; then "random" has psd (a
+    column for each output), rms, crossing_hz, cumulative_rms, band_rms, band_crossing_hz, total_rms, total_crossing_hz.
     """
     found, _ = _bough.response(_os.fspath(file), inputs=_words(inputs), outputs=_words(outputs), from_hz=from_hz,
-                               to_hz=to_hz, points=points, loop=loop)
+                               to_hz=to_hz, points=points, loop=loop, psd=_words(psd))
     return found
 
 
