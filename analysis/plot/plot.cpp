@@ -145,6 +145,18 @@ PlotAnswer choose_plots(const PlotRequest& request, Diagnostics& diagnostics) {
     return {std::move(plots), {}, request.sensors.front()};
   }
   demand_file(request.files.front());
+  if (read_file_format(request.files.front()) == "bough-response") {
+    const auto& c = request.curves;
+    demand_unused(
+        request.files.front(), "a response of a linear model",
+        {{"--x", !c.x.empty()}, {"--difference", c.difference}, {"--spectrum", c.spectrum}, {"--srs", !c.srs.empty()}});
+    if (!c.psd)
+      throw InputError("cli.nothing-to-plot", {request.files.front()},
+                       "a response of a linear model has no curves over time",
+                       "add --psd for its spectral densities, or draw the model by --kind bode");
+    auto plots = make_density_plots(request.files, request.sensors, c.window);
+    return {shape_plots(std::move(plots), c, false, diagnostics), {}, request.sensors.front()};
+  }
   const bool is_campaign = read_file_format(request.files.front()) == "bough-outcomes";
   if (is_campaign)
     demand_unused(request.files.front(), "a campaign",

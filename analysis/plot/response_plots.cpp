@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 
@@ -12,6 +13,7 @@
 #include "formats/export/random_text.hpp"
 #include "formats/export/response_text.hpp"
 #include "formats/hdf5/response_file.hpp"
+#include "formats/hdf5/sweep_file.hpp"
 
 namespace bough::analysis {
 namespace {
@@ -39,12 +41,19 @@ bool is_named(const std::string& curve, const std::string& name) {
   return curve == name || curve.substr(0, curve.rfind(':')) == name;
 }
 
+std::string list_start(const std::vector<std::string>& known) {
+  constexpr std::size_t kMax = 8;
+  const auto count = std::min(known.size(), kMax);
+  std::string list = known.empty() ? "the file has none" : "choose one of ";
+  for (std::size_t i = 0; i < count; ++i) list += (i > 0 ? ", " : "") + known[i];
+  return list + (known.size() > kMax ? ", ..." : "");
+}
+
 [[noreturn]] void throw_unknown(const std::string& file, const std::string& name,
                                 const std::vector<std::string>& known) {
   const auto nearest = find_nearest(name, known);
-  throw InputError(
-      "cli.unknown-channel", {file}, "no curve \"" + name + "\"",
-      nearest.empty() ? "write displacement:12:3: quantity, grid, component" : "did you mean \"" + nearest + "\"");
+  throw InputError("cli.unknown-channel", {file}, "no curve \"" + name + "\"",
+                   nearest.empty() ? list_start(known) : "did you mean \"" + nearest + "\"");
 }
 
 void cut_window(const std::string& file, const std::vector<double>& window, std::vector<report::Plot>& plots) {
@@ -60,6 +69,38 @@ void cut_window(const std::string& file, const std::vector<double>& window, std:
       curve.x = curve.x.segment(first, last - first + 1).eval();
       curve.y = curve.y.segment(first, last - first + 1).eval();
     }
+}
+
+struct Density {
+  std::string prefix, name;
+  Eigen::VectorXd hz, psd;
+  double rms = 0;
+};
+
+/// Lists the densities of a deck (`frequency`) or of a linear model (`response --psd`).
+std::vector<Density> list_densities(const std::string& file) {
+  demand_file(file);
+  std::vector<Density> found;
+  if (read_file_format(file) == "bough-response") {
+    const auto read = hdf5::read_model_response(file);
+    const auto& random = read.random;
+    for (Eigen::Index i = 0; i < random.psd.cols(); ++i)
+      found.push_back({"", random.outputs.name[static_cast<std::size_t>(i)], random.frequency_hz, random.psd.col(i),
+                       random.rms[i]});
+    if (found.empty())
+      throw InputError("cli.no-random", {file}, "--psd: the file has no random response",
+                       "write it by bough response MODEL --psd INPUT=NUMBER -o FILE");
+    return found;
+  }
+  const auto response = hdf5::read_response(file);
+  if (response.random.empty())
+    throw InputError("cli.no-random", {file}, "--psd: the file has no random response",
+                     "write RANDOM with RANDPS in the deck, or leave --psd out");
+  for (const auto& random : response.random)
+    for (const auto& output : exports::list_random_outputs(random))
+      found.push_back({response.random.size() > 1 ? "random " + std::to_string(random.set) + " " : "", output.name,
+                       random.hz, output.curves->psd.col(output.column), output.curves->rms(output.column)});
+  return found;
 }
 
 }  // namespace
@@ -115,24 +156,18 @@ std::vector<report::Plot> make_density_plots(const std::vector<std::string>& fil
   plots[0].y_label = "spectral density [unit²/Hz]";
   plots[0].has_log_x = plots[0].has_log_y = true;
   for (const auto& file : files) {
-    demand_file(file);
-    const auto response = hdf5::read_response(file);
-    if (response.random.empty())
-      throw InputError("cli.no-random", {file}, "--psd: the file has no random response",
-                       "write RANDOM with RANDPS in the deck, or leave --psd out");
+    const auto densities = list_densities(file);
     for (const auto& name : names) {
       bool is_found = false;
       std::vector<std::string> known;
-      for (const auto& random : response.random)
-        for (const auto& output : exports::list_random_outputs(random)) {
-          known.push_back(output.name);
-          if (!is_named(output.name, name)) continue;
-          is_found = true;
-          std::string label = files.size() > 1 ? std::filesystem::path(file).stem().string() + " " : "";
-          if (response.random.size() > 1) label += "random " + std::to_string(random.set) + " ";
-          label += fmt::format("{}, RMS {:.4g}", output.name, output.curves->rms(output.column));
-          plots[0].curves.push_back({label, random.hz, output.curves->psd.col(output.column)});
-        }
+      for (const auto& density : densities) {
+        known.push_back(density.name);
+        if (!is_named(density.name, name)) continue;
+        is_found = true;
+        std::string label = files.size() > 1 ? std::filesystem::path(file).stem().string() + " " : "";
+        label += fmt::format("{}{}, RMS {:.4g}", density.prefix, density.name, density.rms);
+        plots[0].curves.push_back({label, density.hz, density.psd});
+      }
       if (!is_found) throw_unknown(file, name, known);
     }
   }

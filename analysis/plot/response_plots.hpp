@@ -17,8 +17,9 @@ std::vector<report::Plot> make_response_plots(const std::vector<std::string>& fi
                                               const std::vector<std::string>& names,
                                               const std::vector<double>& window = {}, bool has_decades = false);
 
-/// Spectral densities of random responses on logarithmic axes, with the RMS in the legend. Throws InputError
-/// "cli.no-random" for a file without a random response, else as make_response_plots.
+/// Spectral densities of random responses, of decks and of linear models (`response --psd`), on logarithmic axes, with
+/// the RMS in the legend. Throws InputError "cli.no-random" for a file without a random response, else as
+/// make_response_plots.
 std::vector<report::Plot> make_density_plots(const std::vector<std::string>& files,
                                              const std::vector<std::string>& names, const std::vector<double>& window);
 

@@ -8,6 +8,7 @@
 #include "formats/hdf5/sweep_file.hpp"
 #include "report/html.hpp"
 #include "report/linear_chapter.hpp"
+#include "report/random_panel.hpp"
 #include "solver/statespace/frequency_response.hpp"
 
 namespace bough::analysis {
@@ -28,12 +29,38 @@ report::Chapter make_linear_chapter(const std::string& file) {
   return report::make_chapter(model, findings, file, list_facts(file));
 }
 
+namespace {
+
+void add_random_outputs(const records::RandomOutputs& random, report::Chapter& chapter) {
+  report::RandomTable table{"random response",
+                            "RMS and zero crossings per unit of time (N0)",
+                            {"RMS", "N0 [Hz]", "RMS of the band", "N0 of the band [Hz]"},
+                            random.frequency_hz,
+                            {}};
+  const bool has_total = random.total_rms.size() > 0;
+  if (has_total) table.columns.insert(table.columns.end(), {"RMS of all frequencies", "N0 of all frequencies [Hz]"});
+  for (Index i = 0; i < random.outputs.size(); ++i) {
+    report::RandomRow row{random.outputs.name[static_cast<std::size_t>(i)],
+                          random.psd.col(i),
+                          random.cumulative_rms.col(i),
+                          random.rms[i],
+                          {random.rms[i], random.crossing_hz[i], random.band_rms[i], random.band_crossing_hz[i]}};
+    if (has_total) row.numbers.insert(row.numbers.end(), {random.total_rms[i], random.total_crossing_hz[i]});
+    table.rows.push_back(std::move(row));
+  }
+  chapter.add_panel("random", "Random response", report::make_random_panel(std::move(table)));
+}
+
+}  // namespace
+
 report::Chapter make_model_response_chapter(const std::string& file) {
   auto read = hdf5::read_model_response(file);
   report::LinearFindings findings{std::move(read.response), std::move(read.peak), std::move(read.margins),
                                   read.has_margins};
   if (!findings.peak.is_finite) findings.peak.why = "a pole on the imaginary axis";
-  return report::make_chapter(findings, file, list_facts(file));
+  auto chapter = report::make_chapter(findings, file, list_facts(file));
+  if (read.has_random) add_random_outputs(read.random, chapter);
+  return chapter;
 }
 
 namespace {

@@ -9,6 +9,7 @@
 #include "formats/hdf5/response_file.hpp"
 #include "formats/records/mode_kind.hpp"
 #include "report/html.hpp"
+#include "report/random_panel.hpp"
 
 namespace bough::analysis {
 
@@ -93,62 +94,31 @@ void add_subcase(const records::ResponseSubcase& s, bool is_over_time, const std
   chapter.add_panel(fmt::format("modes-{}", s.id), prefix + "modes", modes.to_html(400));
 }
 
-/// Spectral densities and running RMS of the outputs with the largest RMS, and a table of all.
+/// A panel for each quantity.
 void add_random(const records::RandomResponse& random, report::Chapter& chapter) {
   const auto outputs = exports::list_random_outputs(random);
   for (std::size_t first = 0, last = 0; first < outputs.size(); first = last) {
-    while (last < outputs.size() && outputs[last].quantity == outputs[first].quantity) ++last;
-    const auto get_rms = [](const exports::RandomOutput& output) { return output.curves->rms(output.column); };
-    std::vector<exports::RandomOutput> group(outputs.begin() + static_cast<std::ptrdiff_t>(first),
-                                             outputs.begin() + static_cast<std::ptrdiff_t>(last));
-    std::erase_if(group, [&](const auto& output) { return get_rms(output) == 0; });
-    std::stable_sort(group.begin(), group.end(), [&](const auto& a, const auto& b) { return get_rms(a) > get_rms(b); });
-    const auto title = fmt::format("random {}: {}", random.set, outputs[first].quantity);
-    if (group.empty()) {
-      chapter.add_panel(fmt::format("random-{}-{}", random.set, outputs[first].quantity), title,
-                        report::make_text("Zero throughout."));
-      continue;
-    }
-    const auto& curves = *group.front().curves;
+    const auto& quantity = outputs[first].quantity;
+    const auto& curves = *outputs[first].curves;
     const bool has_modal = curves.modal_rms.size() > 0;
-    const Eigen::MatrixXd running = records::calc_cumulative_rms(random, curves);
-    report::Plot densities, sums;
-    densities.title = title + ", spectral density";
-    sums.title = title + ", RMS up to each frequency";
-    densities.x_label = sums.x_label = "frequency [Hz]";
-    densities.y_label = "spectral density [unit²/Hz]";
-    sums.y_label = "cumulative RMS";
-    densities.has_log_y = true;
-    densities.has_log_x = sums.has_log_x = random.hz.size() > 1 && random.hz[0] > 0;
-    report::HtmlTable table("RMS and zero crossings per unit of time (N0)", {{"output", true}, {"RMS"}, {"N0 [Hz]"}});
-    if (has_modal)
-      table = report::HtmlTable(
-          "RMS and zero crossings per unit of time (N0), by the output frequencies and by "
-          "integration over the band",
-          {{"output", true}, {"RMS"}, {"N0 [Hz]"}, {"modal RMS"}, {"modal N0 [Hz]"}});
-    for (std::size_t k = 0; k < group.size(); ++k) {
-      const auto& output = group[k];
-      const auto c = output.column;
-      if (k < kMaxCurves) {
-        const auto label = fmt::format("{}, RMS {}", output.name, report::format_value(get_rms(output), 4));
-        densities.curves.push_back(report::thin_curve({label, random.hz, output.curves->psd.col(c), false},
-                                                      kMaxPicturePoints, densities.has_log_x));
-        sums.curves.push_back(
-            report::thin_curve({output.name, random.hz, running.col(c), false}, kMaxPicturePoints, sums.has_log_x));
-      }
-      std::vector<std::string> row{output.name, report::format_value(get_rms(output)),
-                                   report::format_value(curves.crossing_hz[c])};
-      if (has_modal) {
-        row.push_back(report::format_value(curves.modal_rms[c]));
-        row.push_back(report::format_value(curves.modal_crossing_hz[c]));
-      }
-      table.add_row(std::move(row));
+    const auto title = fmt::format("random {}: {}", random.set, quantity);
+    report::RandomTable table{title, "RMS and zero crossings per unit of time (N0)", {"RMS", "N0 [Hz]"}, random.hz, {}};
+    if (has_modal) {
+      table.caption += ", by the output frequencies and by integration over the band";
+      table.columns.insert(table.columns.end(), {"modal RMS", "modal N0 [Hz]"});
     }
-    std::string html = report::make_figure(densities) + report::make_figure(sums) + table.to_html(60);
-    if (group.size() > kMaxCurves)
-      html +=
-          report::make_text(fmt::format("The {} largest of {} outputs are drawn.", kMaxCurves, group.size()), "note");
-    chapter.add_panel(fmt::format("random-{}-{}", random.set, outputs[first].quantity), title, html);
+    const records::RandomCurves* of = nullptr;
+    Eigen::MatrixXd running;
+    for (; last < outputs.size() && outputs[last].quantity == quantity; ++last) {
+      const auto& output = outputs[last];
+      const auto c = output.column;
+      if (output.curves != of) running = records::calc_cumulative_rms(random, *(of = output.curves));
+      report::RandomRow row{output.name, of->psd.col(c), running.col(c), of->rms[c], {of->rms[c], of->crossing_hz[c]}};
+      if (has_modal) row.numbers.insert(row.numbers.end(), {of->modal_rms[c], of->modal_crossing_hz[c]});
+      table.rows.push_back(std::move(row));
+    }
+    chapter.add_panel(fmt::format("random-{}-{}", random.set, quantity), title,
+                      report::make_random_panel(std::move(table)));
   }
 }
 

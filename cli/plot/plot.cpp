@@ -120,9 +120,8 @@ void add_plot(CLI::App& app, Action& action) {
       ->expected(2)
       ->excludes("--kind");
   auto* psd =
-      verb->add_flag(
-              "--psd", c.psd,
-              "Power spectral density (Welch, Hann's window, overlap of a half); of random responses of decks theirs")
+      verb->add_flag("--psd", c.psd,
+                     "Power spectral density (Welch, Hann's window, overlap of a half); of random responses their own")
           ->excludes("--kind");
   verb->add_flag("--spectrum", c.spectrum, "Amplitudes over frequency (Hann's window, straight line removed)")
       ->excludes(psd)

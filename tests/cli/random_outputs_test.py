@@ -1,4 +1,5 @@
 """response --psd: Lyapunov's equation, band-limited Gramians and quadrature by SciPy, long simulated histories."""
+import csv
 import json
 import math
 import os
@@ -281,6 +282,32 @@ class RandomOutputs(LinearTest):
         self.assertEqual(table.dtype.names[:3], ("frequency_hz", "place:x:psd", "place:x:cumulative_rms"))
         found = json.loads(self.bough("response", "model.h5", "--psd", "1", "--json").stdout)["random"]
         self.assertAlmostEqual(table["place:x:cumulative_rms"][-1] / found["outputs"][0]["rms"], 1, delta=1e-10)
+
+    def test_pictures_and_page(self):
+        """The curves of --psd are the columns of the file; the page has every RMS."""
+        self.make_carts()
+        random = self.respond("--psd", "f1=4", "--psd", "f2=1", "-o", "r.h5")
+        self.bough("plot", "r.h5", "--sensor", "place", "--sensor", "speed:x", "--psd", "-o", "p.svg", "--csv", "p.csv")
+        with open(self.path("p.csv"), encoding="utf-8") as f:
+            rows = [(name, float(x), float(y)) for name, x, y in list(csv.reader(f))[1:]]
+        names = {row[0] for row in rows}
+        with h5py.File(self.path("r.h5")) as f:
+            for i, name in enumerate(OUTPUTS[:2]):
+                label = next(n for n in names if name in n)
+                self.assertIn(f"RMS {random['outputs'][i]['rms']:.4g}", label)
+                curve = np.array([(x, y) for which, x, y in rows if which == label])
+                np.testing.assert_allclose(curve[:, 0], f["frequency_hz"], rtol=1e-15)
+                np.testing.assert_allclose(curve[:, 1], f["random/psd"][:, i], rtol=1e-15)
+        self.bough("report", "r.h5", "-o", "r.html")
+        with open(self.path("r.html"), encoding="utf-8") as f:
+            page = f.read()
+        for one in random["outputs"][:2]:
+            self.assertIn(f"{one['rms']:.6g}", page)
+        self.assertIn("no bound", page)  # an acceleration under white noise
+        self.fails(1, "plot", "r.h5", "--sensor", "speed:x", error="cli.nothing-to-plot", says=["--psd"])
+        self.fails(1, "plot", "r.h5", "--sensor", "sped:x", "--psd", error="cli.unknown-channel", says=["speed:x"])
+        self.bough("response", "model.h5", "-o", "plain.h5")
+        self.fails(1, "plot", "plain.h5", "--sensor", "speed:x", "--psd", error="cli.no-random", says=["--psd INPUT"])
 
     def test_bad_densities_are_named_with_file_and_line(self):
         self.make_carts()
