@@ -76,6 +76,7 @@ DirectModel make_direct_model(const fe::System& system, const records::DynamicDe
   }
   const auto on_free = [&](const MatrixXd& Y) { return MatrixXd(model.T().transpose() * Y); };
   direct.X = model.T_fixed() * excitation.D;
+  if (model.omitted()) direct.X -= model.omitted()(fe::calc_stiffness_times(model, direct.X));  // follow the supports
   direct.F = on_free(excitation.F);
   direct.K_X = on_free(fe::calc_stiffness_times(model, direct.X));
   direct.M_X = on_free(fe::calc_mass_times(model, model.mass_kind(), direct.X));

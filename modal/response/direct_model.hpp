@@ -11,7 +11,7 @@ namespace bough::modal::response {
 
 using Eigen::MatrixXcd;
 
-/// u = T q + X d with X = T_fixed D, on the f-set
+/// u = T q + X d with X = T_fixed D, and u_o = -K_oo⁻¹ K_os d of what ASET leaves out, on the f-set
 ///   M q̈ + B q̇ + (K + i S) q = Tᵀ (F p - M X d̈ - B X ḋ - (K + i S) X d).
 /// Over time S is in B, at the rates W3 and W4.
 struct DirectModel {

@@ -130,6 +130,12 @@ class Maker {
   }
 
  private:
+  /// Static solutions in the a-set: what ASET leaves out only follows it.
+  MatrixXd solve_within(const MatrixXd& F) const {
+    MatrixXd U = solve_(F);
+    if (model_.omitted()) U -= model_.omitted()(F);
+    return U;
+  }
   Eigen::Index num_elastic() const { return modes_.lambda.size() - modes_.num_rigid; }
   MatrixXd rigid() const { return modes_.Phi.leftCols(modes_.num_rigid); }
   MatrixXd elastic() const { return modes_.Phi.rightCols(num_elastic()); }
@@ -173,7 +179,8 @@ class Maker {
       MatrixXd F = take_nonzero(
           join_columns(join_columns(loads.leftCols(m + k), calc_inner_loads(kept)), calc_start_loads(model_, start)));
       if (more_loads_.cols() > 0) F = join_columns(F, more_loads_);
-      const auto residual = bases::calc_residual_vectors(model_, solve_, rigid(), kept, F);
+      const auto solve = [this](const MatrixXd& loads_g) { return solve_within(loads_g); };
+      const auto residual = bases::calc_residual_vectors(model_, solve, rigid(), kept, F);
       if (residual.modes.lambda.size() > 0) {
         const double highest = lambda.size() > 0 ? lambda(lambda.size() - 1) : residual.modes.lambda(0);
         const auto pseudo = separate(residual.modes.Phi, kMasslessResidual * highest);
@@ -201,7 +208,7 @@ class Maker {
   /// is next to no mass in it, or a residual vector would have it. Orthonormal in K.
   void add_massless(const MatrixXd& loads, ResponseModel& r) const {
     const MatrixXd Phi_r = rigid(), F = bases::equilibrate(model_, Phi_r, loads);
-    MatrixXd rest = solve_(F);
+    MatrixXd rest = solve_within(F);
     if (Phi_r.cols() > 0) rest -= Phi_r * (Phi_r.transpose() * times_mass(model_, rest));
     const VectorXd work = rest.cwiseProduct(F).colwise().sum();
     const auto take = [&](const MatrixXd& Phi, const VectorXd& lambda) {
