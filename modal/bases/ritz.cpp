@@ -155,8 +155,10 @@ ResidualVectors calc_residual_vectors(const fe::Model& model, const StaticSolve&
       const double norm = std::sqrt(std::max(X.col(c).dot(MX.col(c)), 0.0));
       // A load that inertia balances of itself (a uniform acceleration) leaves roundoff only.
       const bool is_balanced = F_e.col(used[i]).norm() < detail::kBalancedLoad * F.col(used[i]).norm();
-      if (pass == 0 &&
-          (is_balanced || !(norm > std::max(detail::kDependentResidual * before(used[i]), least(used[i]))))) {
+      const double moved = F_e.col(used[i]).dot(X.col(c)) / norm, carried = (rigid.transpose() * F.col(used[i])).norm();
+      const bool is_massless = carried > 0 && std::sqrt(detail::kMasslessVector) * std::abs(moved) > carried;
+      if (pass == 0 && (is_balanced || is_massless ||
+                        !(norm > std::max(detail::kDependentResidual * before(used[i]), least(used[i]))))) {
         X.col(c).setZero();
         MX.col(c).setZero();
         (is_balanced ? balanced : result.unused).push_back(used[i]);
