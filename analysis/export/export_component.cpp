@@ -230,8 +230,11 @@ WrittenComponent make_component(const std::string& file, const ComponentExportOp
   if (!method || generalized.empty()) component_options.max_hz = 0;
   component_options.has_inertial_residuals =
       method && !generalized.empty() && (!selection || selection->resvec.value_or(true));
-  const auto component = modal::bases::calc_component(system, component_options,
-                                                      fe::get_real_param(deck, "G", 0, diagnostics), diagnostics);
+  const auto component = modal::bases::calc_component(system, component_options, diagnostics);
+  if (fe::get_real_param(deck, "G", 0, diagnostics) != 0)
+    diagnostics.note("export.component-damping", deck.locate(deck.find_param("G")->at),
+                     "PARAM,G is not in the component, whose K4 is of GE",
+                     "give PARAM,G in the deck that assembles: it acts on the stiffness of its components too");
 
   WrittenComponent written;
   auto& cards = written.cards;

@@ -38,8 +38,7 @@ void demand_all(const std::vector<int>& grids, const Partition& partition) {
 
 }  // namespace
 
-Component calc_component(const fe::System& system, const ComponentOptions& options, double structural,
-                         Diagnostics& diagnostics) {
+Component calc_component(const fe::System& system, const ComponentOptions& options, Diagnostics& diagnostics) {
   const fe::Model& model = system.model;
   Component component;
   component.boundary = options.boundary;
@@ -67,7 +66,7 @@ Component calc_component(const fe::System& system, const ComponentOptions& optio
   component.M = calc_gram(X, fe::calc_mass_times(model, model.mass_kind(), X));
   component.M.bottomRightCorner(nq, nq).setIdentity();
   if (fe::has_damping(model)) component.B = calc_gram(X, fe::calc_damping_times(model, X));
-  const MatrixXd K4 = calc_gram(X, fe::calc_structural_damping_times(model, structural, X));
+  const MatrixXd K4 = calc_gram(X, fe::calc_structural_damping_times(model, 0, X));
   if (!K4.isZero(0)) component.K4 = K4;
   return component;
 }

@@ -22,10 +22,10 @@ struct Component {
   int num_modes = 0;
 };
 
-/// K_bq is zero and K_qq diagonal by construction. `structural`: g of PARAM,G; K4 and B are empty where nothing damps.
+/// K_bq is zero and K_qq diagonal by construction. K4 is of GE: PARAM,G of the assembly acts on all of K. K4 and B are
+/// empty where nothing damps.
 /// Throws as FixedInterface; InputError "modal.held-boundary" for a dof of a boundary grid that a constraint holds or
 /// that follows others.
-Component calc_component(const fe::System& system, const ComponentOptions& options, double structural,
-                         Diagnostics& diagnostics);
+Component calc_component(const fe::System& system, const ComponentOptions& options, Diagnostics& diagnostics);
 
 }  // namespace bough::modal::bases
