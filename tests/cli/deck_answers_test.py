@@ -283,6 +283,10 @@ class Modes(ProgramTest):
             np.testing.assert_allclose(self.hz(146, case, bulk), PAIR_HZ, rtol=1e-10)
         self.fails(1, "frequency", "d.bdf", error="deck.unsupported-card", says=["EPOINT"])
 
+    def test_a_bearing_is_an_element(self):
+        self.write("d.bdf", PAIR.format(sol=103, case="", bulk="CBEAR,77,7,1,2\n", method="EIGRL,1,,,2"))
+        self.fails(1, "modes", "d.bdf", error="deck.unsupported-card", says=["CBEAR", "stiffness"])
+
 
 class Response(ProgramTest):
     """A base moved by an acceleration of 1, a mass on a spring of 10 Hz with G = 0.1 or 2 ζ of the mode."""

@@ -292,6 +292,10 @@ class Random(ProgramTest):
         self.fails(1, "frequency", "d.bdf", error="modal.missing-random", says=["RCROSS = 40", "d.bdf:11"])
         self.write("d.bdf", deck.format(3).replace("RANDOM = 30\n", ""))
         self.fails(1, "frequency", "d.bdf", error="modal.missing-random", says=["RCROSS without RANDOM"])
+        # RCROSS asks of the random response alone: other commands solve the deck.
+        self.write("d.bdf", deck.format(3))
+        for verb in ("check", "modes"):
+            self.bough(verb, "d.bdf")
         self.write("d.bdf", deck.format(99))
         printed = self.bough("frequency", "d.bdf").stderr
         self.assertIn("[modal.random-cross]", printed)
