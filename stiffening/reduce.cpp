@@ -1,3 +1,4 @@
+#include "fe/statics/superelement_check.hpp"
 #include "stiffening/given_model.hpp"
 #include "stiffening/stages.hpp"
 
@@ -51,6 +52,7 @@ ReducedBody reduce_body(const BodyRequest& request) {
     set_given_stiffness(request, basis.Phi, body);
   else
     set_geometric_stiffness(model, basis.Phi, patterns, solved, body);
+  fe::report_unstiffened(model, request.deck, request.diagnostics);
   set_preload(request, model, basis.Phi, body);
   set_strain_energy(request, model, basis.Phi, body);
   return {std::move(body), check};

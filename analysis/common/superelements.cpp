@@ -13,6 +13,7 @@
 #include "fe/statics/build_model.hpp"
 #include "formats/matrices/superelements.hpp"
 #include "modal/bases/fixed_interface.hpp"
+#include "stiffening/reduce.hpp"
 
 namespace bough::analysis {
 
@@ -27,6 +28,8 @@ using records::Superelement;
 
 /// Distance of grids that are one, if no card gives it (TOL of SEBULK).
 constexpr double kTolerance = 1e-5;
+/// Boundary dofs up to which geometric stiffness is condensed: N matrices N x N, 27 MB.
+constexpr Index kMaxStiffenedDofs = 150;
 
 bool has_elements(const Deck& deck) {
   return !(deck.beams.empty() && deck.shells.empty() && deck.solids.empty() && deck.crod.empty() &&
@@ -44,13 +47,20 @@ class Places {
                      [](const auto& a, const auto& b) { return a.second.x() < b.second.x(); });
   }
   const std::vector<std::pair<int, Vector3d>>& all() const { return places_; }
-  /// A grid at x, or 0.
-  int find(const Vector3d& x, double tolerance) const {
+  /// Grids at x, ascending.
+  std::vector<int> find_all(const Vector3d& x, double tolerance) const {
+    std::vector<int> found;
     auto at = std::lower_bound(places_.begin(), places_.end(), x.x() - tolerance,
                                [](const auto& place, double limit) { return place.second.x() < limit; });
     for (; at != places_.end() && at->second.x() <= x.x() + tolerance; ++at)
-      if ((at->second - x).norm() <= tolerance) return at->first;
-    return 0;
+      if ((at->second - x).norm() <= tolerance) found.push_back(at->first);
+    std::sort(found.begin(), found.end());
+    return found;
+  }
+  /// A grid at x, or 0.
+  int find(const Vector3d& x, double tolerance) const {
+    const auto found = find_all(x, tolerance);
+    return found.empty() ? 0 : found.front();
   }
 
  private:
@@ -111,8 +121,13 @@ class PartReducer {
     const double tolerance = get_tolerance(section.id);
     for (const auto& [id, x] : own.at(section.id).all()) {
       if (joined.count(id) > 0) continue;
-      if (const int found = main.find(x, tolerance)) {
-        joined[id] = found;
+      if (const auto found = main.find_all(x, tolerance); !found.empty()) {
+        joined[id] = found.front();
+        if (found.size() > 1)
+          error("fe.part-boundary", section.at,
+                fmt::format("grids {} and {} of the main bulk data are at grid {} of superelement {}", found[0],
+                            found[1], id, section.id),
+                "name the one that it joins by SECONCT");
         continue;
       }
       for (const auto& [other, places] : own)
@@ -132,9 +147,9 @@ class PartReducer {
       return error("fe.part-boundary", section.at,
                    fmt::format("superelement {} joins no grid of the main bulk data", section.id),
                    "give its boundary grids to the main bulk data at the same places, or join them by SECONCT");
-    if (has_loads(*section.deck))
+    if (const auto load = find_load(*section.deck); !load.empty())
       return error("fe.part-load", section.at,
-                   fmt::format("superelement {} has loads on its interior, which are not condensed", section.id),
+                   fmt::format("superelement {} has {} on its interior, which are not condensed", section.id, load),
                    "put the loads on its boundary in the main bulk data, or the elements into it");
     Deck part = *section.deck;
     // The last of a PARAM counts: that of the section.
@@ -149,11 +164,26 @@ class PartReducer {
     if (s.K.size() > 0) deck_.superelements.push_back(std::move(s));
   }
 
-  static bool has_loads(const Deck& deck) {
+  /// Name of the loads of a section: "loads", "temperatures" that a subcase selects, "DAREA cards"; empty: none.
+  std::string find_load(const Deck& deck) const {
     const auto& more = deck.load_cards;
-    return !(deck.point_loads.empty() && deck.gravity.empty() && more.directed.empty() && more.beams.empty() &&
-             more.grid_pressures.empty() && more.pressures.empty() && more.rotations.empty() && more.spcd.empty() &&
-             more.scalar.empty());
+    if (!(deck.point_loads.empty() && deck.gravity.empty() && more.directed.empty() && more.beams.empty() &&
+          more.grid_pressures.empty() && more.pressures.empty() && more.rotations.empty() && more.spcd.empty() &&
+          more.scalar.empty()))
+      return "loads";
+    for (const char* card : {"DAREA", "LSEQ", "RLOAD1", "RLOAD2", "TLOAD1", "TLOAD2"})
+      if (deck.card_counts.count(card) > 0) return std::string(card) + " cards";
+    const auto& t = deck.temperatures;
+    for (const auto& subcase : deck_.subcases) {
+      const int set = subcase.temperature;
+      const auto is_of = [set](const auto& card) { return card.sid == set; };
+      if (set != 0 &&
+          (std::any_of(t.grids.begin(), t.grids.end(), is_of) ||
+           std::any_of(t.defaults.begin(), t.defaults.end(), is_of) ||
+           std::any_of(t.bars.begin(), t.bars.end(), is_of) || std::any_of(t.plates.begin(), t.plates.end(), is_of)))
+        return "temperatures";
+    }
+    return {};
   }
 
   void condense(const Deck& part, const DeckSection& section, Superelement& s) {
@@ -173,6 +203,22 @@ class PartReducer {
     const auto symmetrize = [](const MatrixXd& A) { return MatrixXd(0.5 * (A + A.transpose())); };
     s.K = symmetrize(Psi.transpose() * fe::calc_stiffness_times(model, Psi));
     s.M = symmetrize(Psi.transpose() * fe::calc_mass_times(model, model.mass_kind(), Psi));
+    const auto condense_to = [&](MatrixXd& A, const MatrixXd& times_Psi) {
+      if (times_Psi.size() > 0 && !times_Psi.isZero(0)) A = symmetrize(Psi.transpose() * times_Psi);
+    };
+    condense_to(s.B, fe::calc_damping_times(model, Psi));
+    condense_to(s.K4, fe::calc_structural_damping_times(model, 0, Psi));
+    if (Psi.cols() <= kMaxStiffenedDofs) {
+      // The forces on the boundary that hold each of the constraint modes.
+      fe::AppliedLoads loads{MatrixXd::Zero(Psi.rows(), Psi.cols()), MatrixXd::Zero(12, Psi.cols()), {}, {}};
+      for (Index i = 0; i < s.K.rows(); ++i) {
+        const auto& [id, component] = fixed.partition().boundary[static_cast<std::size_t>(i)];
+        const fe::Node& node = model.node(model.find_node(id));
+        const int c = (component - 1) % 3, half = component > 3 ? 3 : 0;
+        loads.F.middleRows(node.first_gdof + half, 3) += node.R_basic_cd.col(c) * s.K.row(i);
+      }
+      s.K_G = stiffening::calc_generalized_geometric_stiffness(model, loads, Psi, Psi);
+    }
     for (const auto& [id, component] : fixed.partition().boundary) {
       if (s.points.empty() || s.points.back().id != id) s.points.push_back({id, 0});
       s.points.back().c |= 1U << static_cast<unsigned>(component - 1);
@@ -223,7 +269,10 @@ class PartReducer {
 }  // namespace
 
 void join_superelements(Deck& deck, Diagnostics& diagnostics) {
-  if (diagnostics.num_errors() == 0) PartReducer(deck, diagnostics).reduce_all();
+  if (diagnostics.num_errors() == 0) {
+    PartReducer(deck, diagnostics).reduce_all();
+    diagnostics.throw_if_errors();  // reading a section that is not condensed would report it again
+  }
   matrices::read_superelements(deck, diagnostics);
 }
 

@@ -8,6 +8,7 @@
 #include "base/rotation.hpp"
 #include "fe/corotational/series.hpp"
 #include "fe/elements/stress_state.hpp"
+#include "fe/elements/solve_in_range.hpp"
 
 namespace bough::fe {
 
@@ -17,7 +18,6 @@ namespace {
 /// and little else. Any value gives the same V to third order.
 constexpr double kRotationWeight = 1e-3;
 constexpr double kRigidTolerance = 1e-8;   // of K times rigid-body motion
-constexpr double kRangeTolerance = 1e-13;  // of eigenvalues of K scaled by its diagonal
 
 }  // namespace
 
@@ -27,23 +27,6 @@ Matrix3d invert_symmetric(const Matrix3d& A) {
   for (double& value : inverse) value = value > 1e-12 * eigen.eigenvalues()[2] ? 1 / value : 0;
   return eigen.eigenvectors() * inverse.asDiagonal() * eigen.eigenvectors().transpose();
 }
-
-namespace {
-
-/// X of K X = B, least squares, in units of the diagonal.
-MatrixXd solve_in_range(const MatrixXd& K, const MatrixXd& B) {
-  VectorXd scale = K.diagonal();
-  for (double& value : scale) value = value > 0 ? 1 / std::sqrt(value) : 0;
-  const MatrixXd scaled = scale.asDiagonal() * K * scale.asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(scaled);
-  VectorXd inverse = eigen.eigenvalues();
-  const double limit = kRangeTolerance * static_cast<double>(K.rows()) * inverse.maxCoeff();
-  for (double& value : inverse) value = value > limit ? 1 / value : 0;
-  const MatrixXd V = scale.asDiagonal() * eigen.eigenvectors();
-  return V * (inverse.asDiagonal() * (V.transpose() * B));
-}
-
-}  // namespace
 
 bool CorotationalElement::find_stiffness(const Element& element, const std::vector<Node>& nodes) {
   const int N = element.num_dofs();

@@ -11,11 +11,15 @@
 namespace bough::fe {
 
 /// K, M, B and K4 (structural damping) given on N dofs in basic axes; empty: zero. The interior has followed these dofs
-/// already: K has the rigid-body motions of the component to the round-off of its condensation.
-class Superelement final : public Element, public OffsetMass, public Damping {
+/// already: K has the rigid-body motions of the component to the round-off of its condensation. Its internal forces are
+/// the forces on its exterior dofs.
+class Superelement final : public Element, public OffsetMass, public Damping, public StressState {
  public:
   struct Matrices {
     MatrixXd K, M, B, K4;
+    /// Forces of its exterior dofs: rows of K u, and K_G of a unit of each; empty: K_G is not known.
+    MatrixXd force;
+    std::vector<MatrixXd> K_G;
     MatrixXd P;                       ///< loads, a column each
     std::map<int, int> load_columns;  ///< of P, by load of the component
   };
@@ -34,6 +38,19 @@ class Superelement final : public Element, public OffsetMass, public Damping {
   bool add_carried(MassKind, const Eigen::Ref<const Matrix3Xd>&, CarriedMass&) const override { return false; }
   const Damping* damping() const override { return m_.B.size() > 0 ? this : nullptr; }
   void add_damping(double scale, Eigen::Ref<MatrixXd> B) const override { add(scale, m_.B, B); }
+  const StressState* stress_state() const override { return m_.K_G.empty() ? nullptr : this; }
+  /// The forces on its exterior dofs are not printed.
+  const PrintedForces* printed_forces() const override { return nullptr; }
+  int num_internal_forces() const override { return static_cast<int>(m_.K_G.size()); }
+  std::vector<std::string> internal_force_names() const override;
+  void calc_internal_forces(const Eigen::Ref<const VectorXd>& u, Eigen::Ref<VectorXd> force) const override {
+    force = m_.force * u;
+  }
+  void add_geometric_stiffness(const Eigen::Ref<const VectorXd>& force, double scale,
+                               Eigen::Ref<MatrixXd> K_G) const override {
+    for (std::size_t i = 0; i < m_.K_G.size(); ++i) K_G += scale * force[static_cast<Eigen::Index>(i)] * m_.K_G[i];
+  }
+  int num_printed_forces() const override { return 0; }
   /// Forces of a load of the component on the N dofs, in basic; empty: it has no such load.
   VectorXd get_load(int load) const {
     const auto column = m_.load_columns.find(load);

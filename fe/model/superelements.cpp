@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 
+#include "fe/elements/solve_in_range.hpp"
 #include "fe/elements/superelement.hpp"
 #include "fe/model/coordinates.hpp"
 
@@ -53,8 +54,18 @@ class SuperelementMaker {
   void add(double wtmass, ElementList& list) {
     if (!connect()) return;
     const MatrixXd P = record_.P.size() == 0 ? MatrixXd() : MatrixXd(C_.transpose() * record_.P);
-    Superelement::Matrices matrices{turn(record_.K),     turn(record_.M) / wtmass, turn(record_.B), turn(record_.K4), P,
-                                    record_.load_columns};
+    Superelement::Matrices matrices{
+        turn(record_.K), turn(record_.M) / wtmass, turn(record_.B), turn(record_.K4), {}, {}, P, record_.load_columns};
+    if (!record_.K_G.empty()) {
+      matrices.force = record_.K * C_;
+      // Geometric stiffness of a unit of force in place of motion: rigid-body motion has no force.
+      const MatrixXd motion = solve_in_range(record_.K, MatrixXd::Identity(record_.K.rows(), record_.K.cols()));
+      for (Index j = 0; j < motion.cols(); ++j) {
+        MatrixXd K_G = MatrixXd::Zero(motion.rows(), motion.rows());
+        for (Index i = 0; i < motion.rows(); ++i) K_G += motion(i, j) * record_.K_G[static_cast<std::size_t>(i)];
+        matrices.K_G.push_back(turn(K_G));
+      }
+    }
     list.add(std::make_unique<Superelement>(record_.id, nodes_joined_, gdofs_, std::move(matrices)));
     for (const auto& table : record_.recovery)
       for (const auto& item : table.items) {

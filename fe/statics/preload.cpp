@@ -9,6 +9,7 @@
 #include "fe/matrices/system.hpp"
 #include "fe/statics/build_model.hpp"
 #include "fe/statics/static_case.hpp"
+#include "fe/statics/superelement_check.hpp"
 #include "formats/records/load_name.hpp"
 
 namespace bough::fe {
@@ -78,6 +79,7 @@ std::shared_ptr<const Prestress> calc_prestress(const records::Deck& deck, const
   subcase.temperature = preload.temperature;
   auto load = calc_static_load(model, deck, subcase, own);
   report_dead_loads(deck, subcase.load, own);
+  report_unstiffened(model, deck, own);
   own.throw_if_errors();
   if (!preload.spin.isZero(0)) {
     const Vector12d A_I = calc_load_factors(Vector3d::Zero(), Vector3d::Zero(), preload.spin);

@@ -161,4 +161,17 @@ SuperelementCheck check_superelement(const records::Deck& deck, const records::S
   return check;
 }
 
+void report_unstiffened(const Model& model, const records::Deck& deck, Diagnostics& diagnostics) {
+  for (const auto& element : model.elements()) {
+    if (element->card() != "SEBULK" || element->stress_state()) continue;
+    const auto record = std::find_if(deck.superelements.begin(), deck.superelements.end(),
+                                     [&](const auto& one) { return one.id == element->id(); });
+    diagnostics.warning(
+        "fe.superelement-stiffening", record == deck.superelements.end() ? deck.locate({}) : deck.locate(record->at),
+        "superelement " + std::to_string(element->id()) +
+            " has no geometric stiffness: its stress changes neither buckling loads nor frequencies",
+        "give its elements in a section (BEGIN SUPER) with at most 150 boundary dofs, or in the main bulk data");
+  }
+}
+
 }  // namespace bough::fe

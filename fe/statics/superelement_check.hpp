@@ -22,4 +22,8 @@ struct SuperelementCheck {
 SuperelementCheck check_superelement(const records::Deck& deck, const records::Superelement& superelement,
                                      Diagnostics& diagnostics);
 
+/// Warns fe.superelement-stiffening of superelements of the model whose geometric stiffness is not known: delivered
+/// matrices, and parts of many boundary dofs.
+void report_unstiffened(const Model& model, const records::Deck& deck, Diagnostics& diagnostics);
+
 }  // namespace bough::fe

@@ -64,6 +64,10 @@ void report_lost(const Deck& deck, Diagnostics& diagnostics) {
   if (!left_out.empty())
     diagnostics.warning("deck.left-out", where, "cards that are not in the new deck: " + left_out,
                         "copy them from the old one if they are needed");
+  for (const auto& section : deck.super.sections)
+    diagnostics.error("deck.not-written", deck.locate(section.at),
+                      "the section BEGIN SUPER = " + std::to_string(section.id) + " cannot be written",
+                      "put its cards into the main bulk data, or keep the deck as it is");
   for (const auto& [name, count] : deck.card_counts) {
     const bool is_unused = std::any_of(deck.unused.begin(), deck.unused.end(),
                                        [&, &n = name](const auto& card) { return card.name == n; });

@@ -111,11 +111,13 @@ struct Superelement {
   std::shared_ptr<const Deck> section;  ///< grids and coordinate systems of the exterior points
   std::string file;                     ///< of the matrices; empty: those of the section
   std::vector<ExteriorPoint> points;
-  std::map<int, int> joined;        ///< point of the deck, by exterior point
-  bool joins_places = false;        ///< exterior points that `joined` lacks join the coincident point of the deck
-  double tolerance = 0;             ///< of coincident points
-  bool checks_places = false;       ///< joined points are to be at one place
-  Eigen::MatrixXd K, M, B, K4;      ///< empty: zero
+  std::map<int, int> joined;    ///< point of the deck, by exterior point
+  bool joins_places = false;    ///< exterior points that `joined` lacks join the coincident point of the deck
+  double tolerance = 0;         ///< of coincident points
+  bool checks_places = false;   ///< joined points are to be at one place
+  Eigen::MatrixXd K, M, B, K4;  ///< empty: zero
+  /// Geometric stiffness of a unit motion of each exterior dof, num_dofs() matrices; empty: not known.
+  std::vector<Eigen::MatrixXd> K_G;
   Eigen::MatrixXd P;                ///< loads on the exterior dofs, a column each
   std::map<int, int> load_columns;  ///< 0-based column of P, by load
   std::vector<RecoveryTable> recovery;

@@ -84,16 +84,87 @@ class Parts(ProgramTest):
         found = json.loads(self.bough("modes", "d.bdf", "--json").stdout)["eigenvalue"]
         self.write("w.bdf", make_whole(103, ",2700."))
         self.bough("matrices", "w.bdf", "-o", "k.h5")
+        T, K, M = self.condense("K", "M")
+        exact = 1 / eigh(T.T @ M @ T, T.T @ K @ T, eigvals_only=True)[::-1][:6]  # torsion has no mass
+        np.testing.assert_allclose(found, exact, rtol=1e-8)
+
+    def condense(self, *names):
+        """Guyan's T of the whole deck, whose matrices are in k.h5, and these."""
         with h5py.File(self.path("k.h5")) as f:
-            K, M = (csr_matrix((f[f"/{m}/data"], f[f"/{m}/indices"], f[f"/{m}/indptr"]), shape=f[f"/{m}/shape"]).toarray()
-                    for m in "KM")
+            K, A = (csr_matrix((f[f"/{m}/data"], f[f"/{m}/indices"], f[f"/{m}/indptr"]), shape=f[f"/{m}/shape"]).toarray()
+                    for m in names)
         inside = [6 * (k - 1) + c for k in (2, 3, 4, 6, 7, 8) for c in range(6)]
         kept = [i for i in range(6, 78) if i not in inside]
         T = np.zeros((78, len(kept)))
         T[kept] = np.eye(len(kept))
         T[inside] = -np.linalg.solve(K[np.ix_(inside, inside)], K[np.ix_(inside, kept)])
-        exact = 1 / eigh(T.T @ M @ T, T.T @ K @ T, eigvals_only=True)[::-1][:6]  # torsion has no mass
-        np.testing.assert_allclose(found, exact, rtol=1e-8)
+        return T, K, A
+
+    def condense_whole(self, deck):
+        """Parts are what OMIT makes of the whole deck: the interior of both follows statically."""
+        return deck.replace("BEGIN BULK\n", "BEGIN BULK\nOMIT1,123456,2,3,4,6,7,8\n")
+
+    def test_damping(self):
+        """Dampers and GE of a part: complex modes of the whole deck with OMIT."""
+        control = "CMETHOD = 8\nBEGIN BULK\nEIGC,8,CLAN,MAX,,,,4\n"
+        dampers = "CDAMP2,81,40.,3,3,4,3\nCDAMP2,82,25.,{},2,{},2\nCELAS2,83,1.+4,2,2,4,2,.3\n"
+        found = []
+        for text in (self.condense_whole(make_whole(107) + dampers.format(7, 8)), make_parts(107)):
+            text = text.replace("BEGIN BULK\n", control).replace(",,.3\n", ",,.3,,,,.02\n").replace("METHOD = 1\n", "")
+            text = text.replace("LOAD = 3\n", "")
+            if "BEGIN SUPER" in text:
+                one, two, three = dampers.format(3, 4).splitlines(keepends=True)
+                text = text.replace("BEGIN SUPER=2", one + three + "BEGIN SUPER=2").replace("ENDDATA", two + "ENDDATA")
+            else:
+                text = text.replace("ENDDATA\n", "") + "ENDDATA\n"
+            self.write("d.bdf", text)
+            modes = json.loads(self.bough("modes", "d.bdf", "--json").stdout)["modes"]
+            found.append(np.array([complex(*(mode["eigenvalue"][part] for part in ("real", "imag"))) for mode in modes]))
+        self.assertGreater(np.abs(found[0].real).min(), 1e-3)
+        np.testing.assert_allclose(found[1], found[0], rtol=1e-7)
+
+    def test_stiffness_of_stress(self):
+        """Buckling and preloaded modes: K_G of a part is that of the whole deck with OMIT."""
+        control = ("SOL {sol}\nCEND\nSPC = 1\nSUBCASE 1\nLOAD = 3\nSUBCASE 2\nMETHOD = 1\n{more}BEGIN BULK\nPARAM,COUPMASS,1\n"
+                   "EIGRL,1,,,3\nSPC1,1,123456,1\nFORCE,3,13,0,-90.,1.,2.,1.\nMOMENT,3,5,0,5.,0.,1.,1.\n" + MASSES)
+        def solve(text, *options):
+            self.write("d.bdf", text)
+            modes = json.loads(self.bough("modes", "d.bdf", "--json", *options).stdout)
+            return modes.get("subcases", [modes])[-1]
+
+        whole, parts = (deck.split(MASSES, 1)[1] for deck in (self.condense_whole(make_whole()), make_parts()))
+        found = solve(control.format(sol=105, more="") + parts, "--buckling")["load_factor"]
+        self.write("w.bdf", control.format(sol=105, more="") + whole.replace("OMIT1", "$"))
+        self.bough("matrices", "w.bdf", "--load", 3, "-o", "k.h5")
+        T, K, K_G = self.condense("K", "KG/LOAD_3")
+        exact = -1 / eigh(T.T @ K_G @ T, T.T @ K @ T, eigvals_only=True)
+        np.testing.assert_allclose(found, sorted(exact[exact > 0])[:3], rtol=1e-8)
+        # The stress changes what the interior of the whole deck follows by too: to second order in it.
+        control = control.format(sol=103, more="STATSUB = 1\n")
+        np.testing.assert_allclose(solve(control + parts)["eigenvalue"], solve(control + whole)["eigenvalue"], rtol=2e-6)
+
+    def test_a_column_buckles_at_eulers_load(self):
+        bars = "".join(f"CBAR,{k},1,{k},{k + 1},0.,1.,0.\n" for k in range(1, 11))
+        grids = [f"GRID,{k},,{.1 * (k - 1)},0.,0.\n" for k in range(1, 12)]
+        shared = "PBAR,1,1,1.-4,1.-9,2.-9,3.-9\nMAT1,1,2.+11,,.3,7800.\n"
+        lines = bars.splitlines(keepends=True)
+        self.write("d.bdf", "SOL 105\nCEND\nSPC = 1\nSUBCASE 1\nLOAD = 2\nSUBCASE 2\nMETHOD = 3\nBEGIN BULK\nEIGRL,3,,,1\n"
+                   "SPC1,1,123456,1\nFORCE,2,11,,-1.,1.,0.,0.\n" + shared + "".join(grids[:6]) + grids[10] + "".join(lines[:5])
+                   + "BEGIN SUPER=7\n" + shared + "".join(grids[5:]) + "".join(lines[5:]) + "ENDDATA\n")
+        factor = json.loads(self.bough("modes", "d.bdf", "--buckling", "--json").stdout)["load_factor"][0]
+        self.assertAlmostEqual(factor / (np.pi**2 * 2e11 * 1e-9 / 4), 1, delta=2e-3)
+
+    def test_what_is_not_condensed_is_named(self):
+        self.write("d.bdf", make_parts().replace("LOAD = 3\n", "LOAD = 3\nTEMPERATURE(LOAD) = 5\n")
+                   .replace("BEGIN SUPER=2", "TEMPD,5,100.\nBEGIN SUPER=2\nTEMPD,5,100."))
+        result = self.fails(1, "static", "d.bdf", error="fe.part-load", says=["superelement 1", "temperatures"])
+        self.assertNotIn("matrices.superelement-type", result.stderr)
+        self.write("d.bdf", make_parts().replace("BEGIN SUPER=2", "BEGIN SUPER=2\nDAREA,9,2,1,1."))
+        self.fails(1, "static", "d.bdf", error="fe.part-load", says=["superelement 2", "DAREA"])
+        self.write("d.bdf", make_parts(more="GRID,105,,2.,0.,.5\nCBUSH,105,105,5,105,,,,0\nPBUSH,105,K,1.+6,1.+6,1.+6,1.+6,1.+6,1.+6\n"))
+        self.fails(1, "static", "d.bdf", error="fe.part-boundary", says=["grids 5 and 105", "grid 5 of superelement 1"])
+        self.write("d.bdf", make_parts())
+        self.fails(1, "export", "d.bdf", "--to", "bdf", "-o", "e.bdf", error="deck.not-written", says=["BEGIN SUPER = 1"])
 
     def test_a_part_with_supports(self):
         """A support inside of a part, by the set of the subcase."""

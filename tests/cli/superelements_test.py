@@ -118,6 +118,21 @@ class Written(ProgramTest):
             for i, c in ((33, 0), (33, 1), (33, 2)):
                 self.assertAlmostEqual(rows[i][c], u[(i, c + 1)], delta=1e-8 * largest)
 
+    def test_structural_damping_counts_once(self):
+        """PARAM,G of the component's deck is not in its K4: that of the assembly acts on its stiffness."""
+        K4 = self.read_op4()["K4XX1"]
+        self.write("top.bdf", COMPONENT.replace("BEGIN BULK\n", "BEGIN BULK\nPARAM,G,.1\n"))
+        result = self.bough("export", "top.bdf", "--to", "extseout", "-o", "top.op4")
+        self.assertIn("export.component-damping", result.stderr)
+        np.testing.assert_array_equal(self.read_op4()["K4XX1"], K4)
+
+    def test_geometric_stiffness_that_is_not_known(self):
+        text = ASSEMBLY.replace("METHOD=1\n", "SUBCASE 1\nLOAD = 5\nSUBCASE 2\nMETHOD=1\nSTATSUB = 1\n")
+        self.write("p.bdf", text.replace("INCLUDE 'top.pch'", LOADS + "INCLUDE 'top.pch'"))
+        self.assertIn("fe.superelement-stiffening", self.bough("modes", "p.bdf").stderr)
+        self.write("a.toml", '[body]\nname = "a"\ndeck = "assembly.bdf"\n[body.modes]\nnumber = 3\n')
+        self.assertIn("fe.superelement-stiffening", self.bough("reduce", "a.toml").stderr)
+
     def test_matrices_are_those_of_numpy(self):
         """Dense Craig-Bampton of the component's K and M."""
         deck = re.sub(r"SPOINT.*\nQSET1.*\nBSET1.*\n", "", COMPONENT)
