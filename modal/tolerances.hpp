@@ -130,9 +130,9 @@ inline constexpr double kDependentDirection = 1e-10;
 inline constexpr double kBalancedLoad = 1e-10;
 /// Flexibility FᵀK⁻¹F of a load over the least that it has in the f-set, (FᵀF)² / FᵀKF: less is a load on held dofs.
 inline constexpr double kHeldFlexibility = 1e-8;
-/// Mass of a residual vector as its load feels it, over that of the rigid body: less is no mass, as of a grid that turns
-/// about the normal of shells. The solver takes pivots above 1e-12; ten times more keeps a digit. Vectors that have mass
-/// have shares above 1e-6.
+/// Mass of a residual vector as its load feels it, over that of the rigid body: less is no mass, as of a turn of a grid
+/// about the normal of shells. The solver takes pivots above 1e-12; ten times more keeps a digit. Shares of vectors
+/// that have mass are above 1e-6.
 inline constexpr double kMasslessVector = 1e-11;
 /// Norm of a residual vector over that of its load's static response: less is a combination of the others.
 inline constexpr double kDependentResidual = 1e-6;
