@@ -11,6 +11,7 @@ import h5py
 import numpy as np
 
 from support import BEAM, PROGRAM, SOURCE, VERBS, ProgramTest
+from toml_text import section, table, toml
 
 # A strip of four plates on a clamped bar, with an MPC, a rigid element and a scalar point: every kind of row of the g-set.
 PANEL = """SOL 103
@@ -47,27 +48,11 @@ CMASS4,6,1.,20
 ENDDATA
 """
 
-PENDULUM = """[[body]]
-name = "arm"
-file = "panel.h5"
-
-[[hinge]]
-name = "pivot"
-type = "revolute"
-child = "arm"
-axis = [0.0, 1.0, 0.0]
-
-[[sensor]]
-name = "tip"
-type = "deflection"
-body = "arm"
-node = 7
-
-[simulation]
-duration = 0.05
-output_step = 0.01
-gravity = [0.0, 0.0, -9.81]
-"""
+PENDULUM = toml(
+    table("body", "arm", file="panel.h5"),
+    table("hinge", "pivot", "revolute", child="arm", axis=[0.0, 1.0, 0.0]),
+    table("sensor", "tip", "deflection", body="arm", node=7),
+    section("simulation", duration=0.05, output_step=0.01, gravity=[0.0, 0.0, -9.81]))
 
 
 def cap_files(size):
