@@ -1,5 +1,6 @@
 """Text of TOML files: systems, bodies and campaigns, one call for each table."""
 import json
+import os
 
 
 class Bare(str):
@@ -40,3 +41,9 @@ def section(path, **keys):
 def toml(*tables, **keys):
     """A file: the keys of its root, then its tables; a part may be any text."""
     return write_keys(keys) + "".join(tables)
+
+
+def read_toml(name):
+    """Text of a file of this folder, where comments and notation matter."""
+    with open(os.path.join(os.path.dirname(os.path.abspath(__file__)), name), encoding="utf-8") as f:
+        return f.read()
