@@ -1,4 +1,5 @@
 """The page docs/verification/robustness.md: each script puts its table between its two marks."""
+import argparse
 import os
 import re
 
@@ -32,6 +33,16 @@ def write_table(mark, heads, rows, notes=(), num_keys=1):
     text = "\n".join([begin, *table, *(["", *below] if below else []), end])
     with open(PAGE, "w", encoding="utf-8") as f:
         f.write(before + text + after)
+
+
+def make_parser(doc, written):
+    """Options of a script whose docstring is `doc` and which can write `written` into the page."""
+    parser = argparse.ArgumentParser(description=doc.split("\n", maxsplit=1)[0])
+    parser.add_argument("program")
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--keep")
+    parser.add_argument("--write", action="store_true", help=f"{written} into docs/verification/robustness.md")
+    return parser
 
 
 def read_table(mark):

@@ -8,7 +8,6 @@ the sensors must agree ("sensitive": rk differs as much from itself at 1e-10), t
 that fails is made smaller as long as it fails the same way, and kept with its seed. Exit 1 when there was one. --write
 puts the counts into docs/verification/robustness.md.
 """
-import argparse
 import collections
 import json
 import os
@@ -23,7 +22,7 @@ import time
 import h5py
 import numpy as np
 
-from robustness_page import write_table
+from robustness_page import make_parser, write_table
 
 HINGES = {"fixed": 0, "revolute": 1, "prismatic": 1, "universal": 2, "cylindrical": 2, "planar": 3, "spherical": 3,
           "free": 6, "screw": 1, "gimbal": 3, "general": 3}
@@ -395,13 +394,9 @@ class Soak:
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.split("\n", maxsplit=1)[0])
-    parser.add_argument("program")
+    parser = make_parser(__doc__, "the counts")
     parser.add_argument("--minutes", type=float, default=5)
-    parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--timeout", type=float, default=60)
-    parser.add_argument("--keep")
-    parser.add_argument("--write", action="store_true", help="the counts into docs/verification/robustness.md")
     options = parser.parse_args()
     sys.exit(Soak(options).soak(options.minutes, options.seed))
 

@@ -11,7 +11,6 @@ words; what SIGKILL leaves goes with the next call. --times: of each signal, at 
 unbroken call took; --disks: of each other way. --jobs verbs and ways at once. Prints one row a verb and way as soon as
 it is done; exit 1 when something was found. --write puts the table into docs/verification/robustness.md.
 """
-import argparse
 import collections
 import concurrent.futures
 import glob
@@ -31,7 +30,10 @@ import traceback
 import h5py
 import numpy as np
 
-from robustness_page import write_table
+from robustness_page import make_parser, write_table
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "../tests/support"))
+from toml_text import section, table, toml  # noqa: E402
 
 # Counts what goes to regular files; in the n-th the process dies, or from it on the disk fails.
 with open(os.path.join(os.path.dirname(os.path.abspath(__file__)), "failing_disk.c"), encoding="ascii") as c_source:
@@ -51,68 +53,24 @@ CALLS = {
     "run": (["run", "fixed.toml"], "out.h5"),
     "run (adaptive)": (["run", "free.toml"], "out.h5"),
 }
-SYSTEM = """[[body]]
-name = "plate"
-file = "plate.h5"
-[[body]]
-name = "arm"
-mass = 1.0
-cg = [0.3, 0.0, 0.0]
-inertia = [0.01, 0.1, 0.1]
-nodes = [{{id = 1, position = [0.6, 0.0, 0.0]}}]
-[[hinge]]
-name = "root"
-type = "revolute"
-parent = "ground"
-child = "arm"
-axis = [0.0, 0.0, 1.0]
-rate = 1.0
-stiffness = 3.0
-[[hinge]]
-name = "tip"
-type = "revolute"
-parent = "arm"
-parent_node = 1
-child = "plate"
-axis = [0.0, 1.0, 0.0]
-rate = 0.3
-[[sensor]]
-name = "edge"
-type = "deflection"
-body = "plate"
-node = {node}
-[[actuator]]
-name = "motor"
-type = "hinge"
-hinge = "root"
-input = "push"
-[[function]]
-name = "push"
-type = "sine"
-amplitude = 0.1
-frequency_hz = 1.3
-[simulation]
-duration = {duration}
-output_step = 0.01
-integrator = "{integrator}"
-{more}
-"""
+CAMPAIGN = toml(
+    section("campaign", steps=["modes small.bdf -o modes.h5"]),
+    table("parameter", "E", file="small.bdf", card="MAT1", id=1, field="E", values=[6e10, 7e10, 8e10]),
+    table("collect", "f", file="modes.h5", dataset="/modes/frequency_hz", take="first"))
 
-CAMPAIGN = """[campaign]
-steps = ["modes small.bdf -o modes.h5"]
-[[parameter]]
-name = "E"
-file = "small.bdf"
-card = "MAT1"
-id = 1
-field = "E"
-values = [6e10, 7e10, 8e10]
-[[collect]]
-name = "f"
-file = "modes.h5"
-dataset = "/modes/frequency_hz"
-take = "first"
-"""
+
+def write_system(node, **simulation):
+    """A plate on an arm that a motor turns; the keys are those of the simulation."""
+    return toml(
+        table("body", "plate", file="plate.h5"),
+        table("body", "arm", mass=1.0, cg=[0.3, 0.0, 0.0], inertia=[0.01, 0.1, 0.1],
+              nodes=[{"id": 1, "position": [0.6, 0.0, 0.0]}]),
+        table("hinge", "root", "revolute", parent="ground", child="arm", axis=[0.0, 0.0, 1.0], rate=1.0, stiffness=3.0),
+        table("hinge", "tip", "revolute", parent="arm", parent_node=1, child="plate", axis=[0.0, 1.0, 0.0], rate=0.3),
+        table("sensor", "edge", "deflection", body="plate", node=node),
+        table("actuator", "motor", "hinge", hinge="root", input="push"),
+        table("function", "push", "sine", amplitude=0.1, frequency_hz=1.3),
+        section("simulation", output_step=0.01, **simulation))
 
 
 def make_plate(n):
@@ -159,11 +117,13 @@ class Trials:
             out.write(PRELOAD)
         subprocess.run(["cc", "-O1", "-w", "-shared", "-fPIC", "-o", self.preload, source, "-ldl"], check=True)
         self.write("plate.bdf", make_plate(12))
-        self.write("plate.toml", '[body]\nname = "plate"\ndeck = "plate.bdf"\n[body.modes]\nnumber = 6\n'
-                   '[body.output]\nnodes = [1, 13, 169]\n')
+        self.write("plate.toml", toml(
+            section("body", name="plate", deck="plate.bdf"),
+            section("body.modes", number=6),
+            section("body.output", nodes=[1, 13, 169])))
         self.call("reduce", "plate.toml", "-o", "plate.h5")
-        self.write("fixed.toml", SYSTEM.format(node=169, duration=4.0, integrator="rk4", more="step = 0.0005"))
-        self.write("free.toml", SYSTEM.format(node=169, duration=6.0, integrator="rk", more=""))
+        self.write("fixed.toml", write_system(169, duration=4.0, integrator="rk4", step=0.0005))
+        self.write("free.toml", write_system(169, duration=6.0, integrator="rk"))
         self.write("small.bdf", make_plate(2))
         self.write("campaign.toml", CAMPAIGN)
         self.worst = None  # of runs that were resumed: largest difference, relative to the largest value
@@ -476,16 +436,12 @@ def run(options):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.split("\n", maxsplit=1)[0])
-    parser.add_argument("program")
+    parser = make_parser(__doc__, "the table")
     parser.add_argument("--times", type=int, default=20)
     parser.add_argument("--disks", type=int, default=20)
     parser.add_argument("--jobs", type=int, default=min(2, os.cpu_count() or 1))
     parser.add_argument("--signals", type=lambda text: text.split(","), default=["KILL", "TERM", "INT"])
-    parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--verbs", type=lambda text: text.split(","), default=[])
-    parser.add_argument("--keep")
-    parser.add_argument("--write", action="store_true", help="the table into docs/verification/robustness.md")
     sys.exit(run(parser.parse_args()))
 
 

@@ -9,6 +9,7 @@ import scipy.linalg
 import scipy.sparse
 
 from support import ProgramTest
+from toml_text import section, toml
 
 CARDS = """PARAM,COUPMASS,1
 SPC1,1,123456,1
@@ -138,10 +139,10 @@ class Augment(ProgramTest):
         self.assertLess(np.abs(held["phi"][list(held["id"]).index(N)]).max(), 1e-12)
 
     def test_faults(self):
-        self.write("beam.toml", '[body]\ndeck = "beam.bdf"\n[body.modes]\nnumber = 2\n' + AUGMENT.replace(
+        self.write("beam.toml", toml(section("body", deck="beam.bdf"), section("body.modes", number=2)) + AUGMENT.replace(
             f"node = {N}", "node = 77"))
         self.fails(1, "reduce", "beam.toml", says=["augment names node 77"], error="reduce.unknown-node")
-        self.write("beam.toml", '[body]\ndeck = "beam.bdf"\n[body.modes]\nnumber = 2\n' + AUGMENT.replace(
+        self.write("beam.toml", toml(section("body", deck="beam.bdf"), section("body.modes", number=2)) + AUGMENT.replace(
             "mass = 12.0", "mass = -1.0"))
         self.fails(1, "reduce", "beam.toml", error="toml.out-of-range")
         self.bough("matrices", "beam.bdf", "-o", "beam-matrices.h5", "--no-kg")
@@ -149,8 +150,10 @@ class Augment(ProgramTest):
         with h5py.File(self.path("beam-modes.h5")) as modes:
             phi = modes["/modes/phi"][:]
         scipy.io.savemat(self.path("phi.mat"), {"PHI": phi.reshape(-1, phi.shape[2])})
-        self.write("given.toml", '[body]\ndeck = "beam.bdf"\n[body.modes]\nnumber = 3\n[body.matrices]\n'
-                   'file = "beam-matrices.h5"\nmodes = "phi.mat:PHI"\n' + AUGMENT)
+        self.write("given.toml", toml(
+            section("body", deck="beam.bdf"),
+            section("body.modes", number=3),
+            section("body.matrices", file="beam-matrices.h5", modes="phi.mat:PHI")) + AUGMENT)
         self.fails(1, "reduce", "given.toml", error="reduce.bad-augment")
 
 
@@ -163,8 +166,10 @@ class LoadsDeck(ProgramTest):
         for i in range(1, N + 1):
             cards = cards.replace(f"GRID,{i},,{2.0 * (i - 1) / (N - 1)},0.,0.",
                                   f"GRID,{i},,{2.0 * (i - 1) / (N - 1)},{0.02 * i * i},{0.1 * (i % 3)}")
-        body = '[body]\nname = "beam"\ndeck = "{}"\norigin = [0.3, -0.2, 0.1]\n[body.modes]\nnumber = 5\n' \
-               '[body.output]\nfull = true\n'
+        body = toml(
+            section("body", name="beam", deck="{}", origin=[0.3, -0.2, 0.1]),
+            section("body.modes", number=5),
+            section("body.output", full=True))
         self.write("beam.bdf", DECK.format(cards=cards, more=masses))
         self.write("beam.toml", body.format("beam.bdf"))
         self.bough("reduce", "beam.toml", "--loads-deck", "loads.bdf", "--loads-set", 201, "-o", "beam.h5")

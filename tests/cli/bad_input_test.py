@@ -4,35 +4,14 @@ import os
 import unittest
 
 from support import BEAM, ProgramTest
+from toml_text import section, table, toml
 
-SYSTEM = """[[body]]
-name = "a"
-mass = 1.0
-inertia = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]
-
-[[body]]
-name = "b"
-mass = 1.0
-inertia = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]
-
-[[hinge]]
-name = "ha"
-type = "revolute"
-parent = "ground"
-child = "a"
-axis = [0.0, 0.0, 1.0]
-
-[[hinge]]
-name = "hb"
-type = "revolute"
-parent = "a"
-child = "b"
-axis = [0.0, 0.0, 1.0]
-
-[simulation]
-duration = 0.1
-output_step = 0.01
-"""
+SYSTEM = toml(
+    table("body", "a", mass=1.0, inertia=[[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]),
+    table("body", "b", mass=1.0, inertia=[[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]),
+    table("hinge", "ha", "revolute", parent="ground", child="a", axis=[0.0, 0.0, 1.0]),
+    table("hinge", "hb", "revolute", parent="a", child="b", axis=[0.0, 0.0, 1.0]),
+    section("simulation", duration=0.1, output_step=0.01))
 
 
 class BadDeck(ProgramTest):
@@ -89,7 +68,9 @@ class BadDeck(ProgramTest):
         self.fails(1, "reduce", "deck.bdf", error="cli.no-modes")
         self.fails(1, "reduce", "deck.bdf", "--modes", "2", "--load", "3", error="cli.bad-load")
         self.fails(1, "modes", "deck.bdf", "--buckling", error="cli.no-static-load")
-        self.write("body.toml", '[body]\nname = "b"\ndeck = "deck.bdf"\ninterface = [99]\n[body.modes]\nnumber = 2\n')
+        self.write("body.toml", toml(
+            section("body", name="b", deck="deck.bdf", interface=[99]),
+            section("body.modes", number=2)))
         self.fails(1, "check", "body.toml", says=["99"], error="cli.unknown-interface")
 
 
@@ -108,7 +89,7 @@ class BadSystem(ProgramTest):
         self.bough("run", "system.toml", "-o", "out.h5")
 
     def test_each_error_is_told_once(self):
-        sensor = '[[sensor]]\nname = "s"\ntype = "position"\nbody = "a"\nnode = 7\n\n'
+        sensor = table("sensor", "s", "position", body="a", node=7)
         self.write("bad.toml", SYSTEM.replace("[simulation]", sensor + "[simulation]"))
         result = self.fails(1, "run", "bad.toml", "-o", "bad.h5", says=["sensor.unknown-node"])
         self.assertEqual(result.stderr.count("sensor.unknown-node"), 1)
@@ -144,8 +125,10 @@ class BadSystem(ProgramTest):
             whole = f.read()
         with open(self.path("cut.h5"), "wb") as f:
             f.write(whole[:len(whole) // 2])
-        self.write("system.toml", '[[body]]\nname = "a"\nfile = "cut.h5"\n[[hinge]]\nname = "h"\ntype = "fixed"\nchild = "a"\n'
-                   '[simulation]\nduration = 0.1\n')
+        self.write("system.toml", toml(
+            table("body", "a", file="cut.h5"),
+            table("hinge", "h", "fixed", child="a"),
+            section("simulation", duration=0.1)))
         for call in [["check", "cut.h5"], ["check", "system.toml"], ["run", "system.toml"], ["info", "cut.h5"]]:
             with self.subTest(" ".join(call)):
                 self.fails(1, *call, says=["cut.h5"])
@@ -153,8 +136,10 @@ class BadSystem(ProgramTest):
     def test_wrong_kind_of_hdf5_file(self):
         self.write("system.toml", SYSTEM)
         self.bough("run", "system.toml", "-o", "out.h5")
-        self.write("other.toml", '[[body]]\nname = "a"\nfile = "out.h5"\n[[hinge]]\nname = "h"\ntype = "fixed"\nchild = "a"\n'
-                   '[simulation]\nduration = 0.1\n')
+        self.write("other.toml", toml(
+            table("body", "a", file="out.h5"),
+            table("hinge", "h", "fixed", child="a"),
+            section("simulation", duration=0.1)))
         self.fails(1, "run", "other.toml", says=["out.h5"])
 
     def test_results_over_the_input(self):

@@ -10,38 +10,14 @@ import signal
 import subprocess
 
 from support import BEAM, HANG, HOLD, IN_OUTPUTS, PROGRAM, SOURCE, ProgramTest, get_astray, launch_ranks, unittest
+from toml_text import section, table, toml
 
-E = """
-[[parameter]]
-name = "E"
-file = "beam.bdf"
-card = "MAT1"
-id = 1
-field = "E"
-"""
-HZ = """
-[[collect]]
-name = "hz"
-json = "/frequency_hz"
-"""
-
-
-SLIDE = """[[body]]
-name = "bob"
-mass = 2.0
-[[hinge]]
-name = "slide"
-type = "prismatic"
-child = "bob"
-axis = [1.0, 0.0, 0.0]
-stiffness = [50.0]
-position = [0.1]
-[simulation]
-duration = 400.0
-integrator = "rk4"
-step = 1e-3
-output_step = 1.0
-"""
+E = table("parameter", "E", file="beam.bdf", card="MAT1", id=1, field="E")
+HZ = table("collect", "hz", json="/frequency_hz")
+SLIDE = toml(
+    table("body", "bob", mass=2.0),
+    table("hinge", "slide", "prismatic", child="bob", axis=[1.0, 0.0, 0.0], stiffness=[50.0], position=[0.1]),
+    section("simulation", duration=400.0, integrator="rk4", step=1e-3, output_step=1.0))
 
 
 class BatchTest(ProgramTest):
@@ -66,7 +42,7 @@ class BatchTest(ProgramTest):
 
 class Cases(BatchTest):
     def test_grid_varies_the_last_parameter_fastest(self):
-        self.campaign(E + "range = [6e10, 8e10]\nnumber = 3\n[[parameter]]\nname = \"n\"\nvalues = [1, 2]\n",
+        self.campaign(E + "range = [6e10, 8e10]\nnumber = 3\n" + table("parameter", "n", values=[1, 2]),
                       'steps = ["modes beam.bdf -n {n}"]')
         found = self.cases()
         self.assertEqual([(c["parameters"]["E"], c["parameters"]["n"]) for c in found],
@@ -80,7 +56,7 @@ class Cases(BatchTest):
             self.assertAlmostEqual(found["parameters"]["E"] / expected, 1, 12)
 
     def test_list_takes_values_together_and_from_a_table(self):
-        self.campaign(E + "values = [6e10, 8e10]\n[[parameter]]\nname = \"n\"\nvalues = [1, 2]\n",
+        self.campaign(E + "values = [6e10, 8e10]\n" + table("parameter", "n", values=[1, 2]),
                       'method = "list"\nsteps = ["modes beam.bdf -n {n}"]')
         self.assertEqual([tuple(c["parameters"].values()) for c in self.cases()], [(6e10, 1), (8e10, 2)])
         self.write("cases.csv", "# two beams\nE, n\n6.5e10, 2\n7.5e10, 3\n")
@@ -88,9 +64,8 @@ class Cases(BatchTest):
         self.assertEqual([tuple(c["parameters"].values()) for c in self.cases()], [(6.5e10, 2), (7.5e10, 3)])
 
     def test_latin_hypercube_hits_every_bin_once(self):
-        text = (E + "range = [1e10, 2e10]\n[[parameter]]\nname = \"f\"\nrange = [1.0, 1000.0]\nspacing = \"log\"\n"
-                "[[parameter]]\nname = \"k\"\nrange = [1, 20]\ninteger = true\n"
-                "[[parameter]]\nname = \"w\"\nvalues = [\"a\", \"b\"]\n")
+        text = (E + "range = [1e10, 2e10]\n" + table("parameter", "f", range=[1.0, 1000.0], spacing="log")
+                + table("parameter", "k", range=[1, 20], integer=True) + table("parameter", "w", values=["a", "b"]))
         head = 'method = "latin-hypercube"\nsamples = 40\nseed = {}\nsteps = ["modes beam.bdf"]'
         self.campaign(text, head.format(3))
         found = self.cases()
@@ -113,7 +88,7 @@ class Cases(BatchTest):
                 (E, "batch.bad-parameter", "has no values"),
                 (E + "range = [1.0, 2.0]\n", "batch.bad-parameter", "without number"),
                 (E.replace("beam.bdf", "bean.bdf") + "values = [1.0]\n", "batch.no-file", "is no file"),
-                ("\n[[parameter]]\nname = \"x\"\nvalues = [1]\n[[parameter]]\nname = \"x\"\nvalues = [1]\n",
+                (toml(table("parameter", "x", values=[1]), table("parameter", "x", values=[1])),
                  "toml.duplicate-name", "already given"),
                 (E + "values = [1.0]\nvalue = 2\n", "toml.unknown-key", "did you mean 'values'")):
             with self.subTest(error=error, words=words):
@@ -127,8 +102,8 @@ class Cases(BatchTest):
         self.fails(1, "batch", "study.toml", says=["study.toml:2", "did you mean modes"], error="batch.bad-step")
         self.campaign(E + "values = [1.0]\n", 'steps = ["modes beam.bdf -n {F}"]')
         self.fails(1, "batch", "study.toml", says=["study.toml:2", "{F} is no parameter"], error="batch.bad-step")
-        self.write("beam.toml", '[body]\ndeck = "beam.bdf"\n[body.modes]\nnumber = 2\n')
-        key = '[[parameter]]\nname = "n"\nfile = "beam.toml"\nkey = "{}"\nvalues = [{}]\n'
+        self.write("beam.toml", toml(section("body", deck="beam.bdf"), section("body.modes", number=2)))
+        key = table("parameter", "n", file="beam.toml", key="{}", values=[{}])
         for path, value, error in (("body.modes.numbr", "2", "batch.unknown-key"),
                                    ("body.deck.name", "2", "batch.unknown-key"),
                                    ("body.modes.number", "-2", "batch.bad-value")):
@@ -162,41 +137,14 @@ class Runs(BatchTest):
 
     def test_chain_of_steps_over_deck_body_and_system(self):
         self.copy_example("ex01-spinup")
-        self.write("study.toml", """[campaign]
-steps = ["reduce boom.toml", "flx boom.h5 -o boom.FLX", "run spinup.toml -o spinup.h5"]
-[[parameter]]
-name = "A"
-file = "boom.bdf"
-card = "PBAR"
-id = 1
-field = 4
-values = [7.2986e-5, 1e-4]
-[[parameter]]
-name = "modes"
-file = "boom.toml"
-key = "body.modes.number"
-values = [2]
-[[parameter]]
-name = "rate"
-file = "spinup.toml"
-key = "function.angle.rate"
-values = [2.0]
-[[parameter]]
-name = "end"
-file = "spinup.toml"
-key = "simulation.duration"
-values = [2.0]
-[[collect]]
-name = "mass"
-step = 1
-json = "/mass"
-[[collect]]
-name = "tip"
-file = "spinup.h5"
-dataset = "/sensors/tip_deflection"
-column = 2
-take = "min"
-""")
+        self.write("study.toml", toml(
+            section("campaign", steps=["reduce boom.toml", "flx boom.h5 -o boom.FLX", "run spinup.toml -o spinup.h5"]),
+            table("parameter", "A", file="boom.bdf", card="PBAR", id=1, field=4, values=[7.2986e-5, 1e-4]),
+            table("parameter", "modes", file="boom.toml", key="body.modes.number", values=[2]),
+            table("parameter", "rate", file="spinup.toml", key="function.angle.rate", values=[2.0]),
+            table("parameter", "end", file="spinup.toml", key="simulation.duration", values=[2.0]),
+            table("collect", "mass", step=1, json="/mass"),
+            table("collect", "tip", file="spinup.h5", dataset="/sensors/tip_deflection", column=2, take="min")))
         # A body of the same name beside the campaign must not get in the way of the cases' own.
         self.bough("reduce", "boom.toml")
         self.bough("batch", "study.toml", "-j", 2)
@@ -235,7 +183,7 @@ take = "min"
         self.assertNotEqual(os.stat(self.path("study/case-0002/outcome.json")).st_mtime_ns, stamp)
 
     def test_output_that_is_not_there_fails_the_case(self):
-        self.campaign(E + "values = [7e10]\n[[collect]]\nname = \"x\"\njson = \"/mass_properties/masses\"\n" + HZ)
+        self.campaign(E + "values = [7e10]\n" + table("collect", "x", json="/mass_properties/masses") + HZ)
         self.bough("batch", "study.toml", code=3)
         row = self.table()[0]
         self.assertIn("[batch.collect]", row["error"])
@@ -254,9 +202,9 @@ take = "min"
 
     def test_time_limit(self):
         self.copy_example("ex01-spinup")
-        self.write("study.toml", '[campaign]\nsteps = ["run spinup.toml -o spinup.h5"]\n'
-                   '[[parameter]]\nname = "end"\nfile = "spinup.toml"\nkey = "simulation.duration"\n'
-                   'values = [1e5, 0.1]\n')
+        self.write("study.toml", toml(
+            section("campaign", steps=["run spinup.toml -o spinup.h5"]),
+            table("parameter", "end", file="spinup.toml", key="simulation.duration", values=[1e5, 0.1])))
         self.bough("reduce", "boom.toml")
         self.bough("batch", "study.toml", "-j", 1, "--time-limit", "2", code=3)
         rows = self.table()
@@ -351,10 +299,10 @@ take = "min"
 
     def test_a_worker_that_is_stopped_fails_its_case_alone(self):
         self.write("slide.toml", get_astray(IN_OUTPUTS, HOLD, 5.0, "x:x") +
-                   '[[sensor]]\nname = "x"\ntype = "position"\nbody = "bob"\n' + SLIDE)
+                   table("sensor", "x", "position", body="bob") + SLIDE)
         # Only the second lives until its controller holds.
-        self.campaign('[[parameter]]\nname = "end"\nfile = "slide.toml"\nkey = "simulation.duration"\n'
-                      'values = [2.0, 8.0, 3.0, 4.0]\n',
+        self.campaign(table("parameter", "end", file="slide.toml", key="simulation.duration",
+                            values=[2.0, 8.0, 3.0, 4.0]),
                       'steps = ["run slide.toml -o out.h5"]')
         process, workers = self.start_held("batch", "study.toml", "-j", "1", stderr=subprocess.DEVNULL)
         os.kill(workers[0], signal.SIGTERM)

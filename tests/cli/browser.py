@@ -8,7 +8,7 @@ import subprocess
 import tempfile
 import time
 
-from support import HANG
+from support import HANG, ProgramTest
 
 # A view is drawn a frame after it was made.
 WAIT_FRAMES = "new Promise(r => requestAnimationFrame(() => requestAnimationFrame(r)))"
@@ -179,3 +179,12 @@ class Browser:
         data = self.call("Page.captureScreenshot", format="png", captureBeyondViewport=whole)["data"]
         with open(path, "wb") as f:
             f.write(base64.b64decode(data))
+
+
+class BrowserTest(ProgramTest):
+    """One browser for the tests of a class."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.browser = Browser()
+        cls.addClassCleanup(cls.browser.close)

@@ -8,7 +8,8 @@ c_ij = sum_k m h a_ki a_kj (+ m h^3/12 on the diagonal):
 Springs EI/h act between the pieces of one link and none at the hinges.
 """
 import numpy as np
-from scipy.integrate import solve_ivp
+
+from planar_chain import swing
 
 
 def simulate(pieces, length, mass_per_length, EI, g, times):
@@ -22,13 +23,6 @@ def simulate(pieces, length, mass_per_length, EI, g, times):
         if i + 1 != pieces:
             spring[i:i + 2, i:i + 2] += EI / h * np.array([[1.0, -1.0], [-1.0, 1.0]])
 
-    def rate(_, state):
-        theta, omega = state[:n], state[n:]
-        difference = theta[:, None] - theta[None, :]
-        force = -weight * np.cos(theta) - spring @ theta - (c * np.sin(difference)) @ omega**2
-        return np.concatenate([omega, np.linalg.solve(c * np.cos(difference), force)])
-
-    solution = solve_ivp(rate, (0, times[-1]), np.zeros(2 * n), method="DOP853", t_eval=times, rtol=1e-8, atol=1e-10)
-    theta = solution.y[:n]
+    theta = swing(c, weight, spring, times, rtol=1e-8, atol=1e-10)
     x, y = h * np.cumsum(np.cos(theta), axis=0), h * np.cumsum(np.sin(theta), axis=0)
     return np.stack([np.stack([x[k], y[k]], axis=1) for k in (pieces - 1, n - 1)], axis=1)

@@ -3,30 +3,18 @@ import re
 import unittest
 
 from support import BEAM, HANG, PROGRAM, ProgramTest, served
+from toml_text import Bare, section, table, toml
 
-BODY = """[body]
-name = "rod"
-deck = "rod.bdf"
-{more}
-[body.modes]
-number = {modes}
-"""
-SYSTEM = """[[body]]
-name = "rod"
-mass = 1.0
-cg = [0.5, 0.0, 0.0]
-inertia = [{spin}, 0.1, 0.1]
-[[hinge]]
-name = "pin"
-type = "{hinge}"
-parent = "ground"
-child = "rod"
-{position}
-[simulation]
-duration = 0.1
-output_step = 0.05
-{more}
-"""
+BODY = toml(
+    section("body", name="rod", deck="rod.bdf"),
+    "{more}\n",
+    section("body.modes", number=Bare("{modes}")))
+SYSTEM = toml(
+    table("body", "rod", mass=1.0, cg=[0.5, 0.0, 0.0], inertia=[Bare("{spin}"), 0.1, 0.1]),
+    table("hinge", "pin", "{hinge}", parent="ground", child="rod"),
+    "{position}\n",
+    section("simulation", duration=0.1, output_step=0.05),
+    "{more}\n")
 
 
 class CheckRefuses(ProgramTest):
@@ -72,9 +60,9 @@ class CheckRefuses(ProgramTest):
                 ("a rate past all bounds", "run.diverged",
                  {"hinge": "gimbal", "spin": 0.1, "position": "rate = [0.0, 1e200, 0.0]"}),
                 ("a force that is no number", "run.diverged", {
-                    "hinge": "gimbal", "spin": 0.1, "more": '[[function]]\nname = "f"\ntype = "expression"\n'
-                    'expression = "sqrt(-1-t)"\n[[force]]\nname = "push"\nbody = "rod"\nforce = [1, 0, 0]\n'
-                    'function = "f"\n'}),
+                    "hinge": "gimbal", "spin": 0.1, "more": toml(
+                        table("function", "f", "expression", expression="sqrt(-1-t)"),
+                        table("force", "push", body="rod", force=[1, 0, 0], function="f"))}),
                 ("a tolerance that nothing meets", "run.stalled", {
                     "hinge": "gimbal", "spin": 0.1, "position": "rate = [0.1, 1.0, 0.0]",
                     "more": "relative_tolerance = 1e-300\nabsolute_tolerance = 1e-300"})]:
@@ -86,54 +74,18 @@ class CheckRefuses(ProgramTest):
 
     def test_a_motor_that_pushes_at_what_a_loop_holds(self):
         """Nothing moves: the rounding of the motor's work is no error of the energy."""
-        self.write("held.toml", """[[body]]
-name = "b0"
-mass = 0.582
-cg = [-0.1029, -0.3049, -0.2477]
-inertia = [0.91918, 0.96942, 1.04554]
-[[hinge]]
-name = "h0"
-type = "screw"
-parent = "ground"
-child = "b0"
-parent_position = [0.3224, -1.475, 0.3501]
-parent_rotation = [0.0317, -0.0679, 0.0949]
-axis = [-0.8425, 0.7196, -0.9203]
-pitch = 0.083
-rate = [-0.4]
-position = [0.393]
-[[constraint]]
-name = "loop"
-type = "point_on_plane"
-parent = "ground"
-child = "b0"
-parent_position = [-0.3988, 0.5532, 0.2047]
-axis = [-0.7736, 0.0496, 0.1502]
-[[sensor]]
-name = "angle"
-type = "hinge_angle"
-hinge = "h0"
-coordinate = 1
-[[controller]]
-name = "law"
-type = "pid"
-inputs = "angle"
-kp = 1.63
-kd = 0.24
-filter = 0.05
-setpoint = 0.09
-[[actuator]]
-name = "motor"
-type = "hinge"
-hinge = "h0"
-input = "law"
-[simulation]
-duration = 0.6
-output_step = 0.02
-relative_tolerance = 1e-9
-absolute_tolerance = 1e-11
-integrator = "rk"
-""")
+        self.write("held.toml", toml(
+            table("body", "b0", mass=0.582, cg=[-0.1029, -0.3049, -0.2477], inertia=[0.91918, 0.96942, 1.04554]),
+            table("hinge", "h0", "screw", parent="ground", child="b0", parent_position=[0.3224, -1.475, 0.3501],
+                  parent_rotation=[0.0317, -0.0679, 0.0949], axis=[-0.8425, 0.7196, -0.9203], pitch=0.083, rate=[-0.4],
+                  position=[0.393]),
+            table("constraint", "loop", "point_on_plane", parent="ground", child="b0",
+                  parent_position=[-0.3988, 0.5532, 0.2047], axis=[-0.7736, 0.0496, 0.1502]),
+            table("sensor", "angle", "hinge_angle", hinge="h0", coordinate=1),
+            table("controller", "law", "pid", inputs="angle", kp=1.63, kd=0.24, filter=0.05, setpoint=0.09),
+            table("actuator", "motor", "hinge", hinge="h0", input="law"),
+            section("simulation", duration=0.6, output_step=0.02, relative_tolerance=1e-9, absolute_tolerance=1e-11,
+                    integrator="rk")))
         self.bough("run", "held.toml", "-o", "held.h5")
 
 

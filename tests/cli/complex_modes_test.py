@@ -7,24 +7,11 @@ import numpy as np
 import scipy.linalg
 
 from support import ProgramTest
+from decks import OSCILLATOR, begin
 
-# m = 4, k = 36 to ground, moves along x.
-ONE = """SOL {sol}
-CEND
-SPC = 1
-METHOD = 1
-CMETHOD = 9
-{case}
-BEGIN BULK
-EIGRL,1,,,{modes}
+ONE = begin("{sol}", "SPC = 1", "METHOD = 1", "CMETHOD = 9", "{case}") + """EIGRL,1,,,{modes}
 EIGC,9,{eigc}
-GRID,1,,0.,0.,0.
-GRID,2,,1.,0.,0.
-CONM2,1,1,,4.0
-CELAS2,2,36.0,1,1,2,1
-SPC1,1,23456,1
-SPC1,1,123456,2
-{bulk}
+""" + OSCILLATOR + """{bulk}
 ENDDATA
 """
 # Six masses in a row that move along x, springs between neighbours and to ground at both ends.
@@ -34,13 +21,7 @@ SPRING = np.array([800.0, 500.0, 900.0, 300.0, 700.0, 400.0, 600.0])
 
 
 # Millimetres and tonnes: a plate with a lumped mass (75 modes) and a mast on a bush, GE of two materials, a damper at a corner.
-PLATE = """SOL {sol}
-CEND
-SPC = 1
-METHOD = 1
-{case}
-BEGIN BULK
-EIGRL,1,,,{modes}
+PLATE = begin("{sol}", "SPC = 1", "METHOD = 1", "{case}") + """EIGRL,1,,,{modes}
 {bulk}
 PARAM,G,.01
 PSHELL,1,1,1.6,1,,1

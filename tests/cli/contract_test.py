@@ -11,6 +11,8 @@ import h5py
 import numpy as np
 
 from support import BEAM, PROGRAM, SOURCE, VERBS, ProgramTest
+from decks import grids
+from toml_text import section, table, toml
 
 # A strip of four plates on a clamped bar, with an MPC, a rigid element and a scalar point: every kind of row of the g-set.
 PANEL = """SOL 103
@@ -27,16 +29,7 @@ RBE2,30,6,123456,9
 FORCE,3,5,,1.,0.,0.,1.
 MAT1,1,7.+10,,.3,2700.
 PSHELL,1,1,.01,1,,1
-GRID,1,,0.,0.,0.
-GRID,2,,0.,1.,0.
-GRID,3,,1.,0.,0.
-GRID,4,,1.,1.,0.
-GRID,5,,2.,0.,0.
-GRID,6,,2.,1.,0.
-GRID,7,,3.,0.,0.
-GRID,8,,3.,1.,0.
-GRID,9,,2.,1.5,0.
-CQUAD4,1,1,1,3,4,2
+""" + grids((0, 0, 0), (0, 1, 0), (1, 0, 0), (1, 1, 0), (2, 0, 0), (2, 1, 0), (3, 0, 0), (3, 1, 0), (2, 1.5, 0)) + """CQUAD4,1,1,1,3,4,2
 CQUAD4,2,1,3,5,6,4
 CQUAD4,3,1,5,7,8,6
 CONM2,4,9,,5.,,,,,+
@@ -47,27 +40,11 @@ CMASS4,6,1.,20
 ENDDATA
 """
 
-PENDULUM = """[[body]]
-name = "arm"
-file = "panel.h5"
-
-[[hinge]]
-name = "pivot"
-type = "revolute"
-child = "arm"
-axis = [0.0, 1.0, 0.0]
-
-[[sensor]]
-name = "tip"
-type = "deflection"
-body = "arm"
-node = 7
-
-[simulation]
-duration = 0.05
-output_step = 0.01
-gravity = [0.0, 0.0, -9.81]
-"""
+PENDULUM = toml(
+    table("body", "arm", file="panel.h5"),
+    table("hinge", "pivot", "revolute", child="arm", axis=[0.0, 1.0, 0.0]),
+    table("sensor", "tip", "deflection", body="arm", node=7),
+    section("simulation", duration=0.05, output_step=0.01, gravity=[0.0, 0.0, -9.81]))
 
 
 def cap_files(size):
@@ -298,12 +275,18 @@ class Layout(ProgramTest):
         self.assertEqual(len(blocks["special_nodes"]["id"]), 3 + 1)
 
 
-class Outputs(ProgramTest):
-    def make_files(self):
+class PanelTest(ProgramTest):
+    def swing_panel(self):
+        """The panel, its reduction and a run of it as a pendulum."""
         self.write("panel.bdf", PANEL)
         self.write("pendulum.toml", PENDULUM)
         self.bough("reduce", "panel.bdf", "--modes", 3)
         self.bough("run", "pendulum.toml")
+
+
+class Outputs(PanelTest):
+    def make_files(self):
+        self.swing_panel()
         self.bough("flx", "panel.h5")
 
     def read_all(self):
@@ -361,12 +344,9 @@ class Outputs(ProgramTest):
                 self.assertIn("written: out.svg", self.bough(*call, "-o", "out.svg").stdout)
 
 
-class Pictures(ProgramTest):
+class Pictures(PanelTest):
     def test_png_and_pdf(self):
-        self.write("panel.bdf", PANEL)
-        self.write("pendulum.toml", PENDULUM)
-        self.bough("reduce", "panel.bdf", "--modes", 3)
-        self.bough("run", "pendulum.toml")
+        self.swing_panel()
         plot = ["plot", "pendulum.h5", "--sensor", "tip"]
         self.fails(1, *plot, "-o", "tip.jpg", says=[".png"], error="cli.picture-format")
         # Without the converter: a clear message, no file.

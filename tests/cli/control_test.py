@@ -8,61 +8,20 @@ import scipy.io
 import scipy.signal
 
 from support import ProgramTest
+from toml_text import section, table, toml
 
-AXIS = """
-[parameters]
-kp = 6.0
-
-[[body]]
-name = "rotor"
-mass = 1.0
-inertia = [1.0, 1.0, 2.0]
-
-[[hinge]]
-name = "axis"
-type = "revolute"
-child = "rotor"
-
-[[function]]
-name = "target"
-type = "constant"
-value = 0.5
-
-[[sensor]]
-name = "angle"
-type = "hinge_angle"
-hinge = "axis"
-
-[[controller]]
-name = "law"
-type = "pid"
-inputs = ["angle"]
-reference = "target"
-kp = "$kp"
-ki = 3.0
-kd = 4.0
-filter = 0.1
-
-[[controller]]
-name = "filter"
-type = "transfer_function"
-inputs = ["angle"]
-numerator = [2.0, 1.0]
-denominator = [0.3, 1.0, 4.0]
-
-[[actuator]]
-name = "drive"
-type = "hinge"
-hinge = "axis"
-input = "law"
-
-[simulation]
-duration = 5.0
-output_step = 0.01
-integrator = "rk"
-relative_tolerance = 1e-11
-absolute_tolerance = 1e-13
-"""
+AXIS = toml(
+    section("parameters", kp=6.0),
+    table("body", "rotor", mass=1.0, inertia=[1.0, 1.0, 2.0]),
+    table("hinge", "axis", "revolute", child="rotor"),
+    table("function", "target", "constant", value=0.5),
+    table("sensor", "angle", "hinge_angle", hinge="axis"),
+    table("controller", "law", "pid", inputs=["angle"], reference="target", kp="$kp", ki=3.0, kd=4.0, filter=0.1),
+    table("controller", "filter", "transfer_function", inputs=["angle"], numerator=[2.0, 1.0],
+          denominator=[0.3, 1.0, 4.0]),
+    table("actuator", "drive", "hinge", hinge="axis", input="law"),
+    section("simulation", duration=5.0, output_step=0.01, integrator="rk", relative_tolerance=1e-11,
+            absolute_tolerance=1e-13))
 
 
 class Control(ProgramTest):
@@ -136,8 +95,8 @@ class Control(ProgramTest):
 
     def test_a_run_is_resumed_bit_for_bit(self):
         text = AXIS.replace('"rk"', '"rk4"\nstep = 0.01').replace("filter = 0.1", "sample_time = 0.04\ndelay = 0.02")
-        text = text.replace('hinge = "axis"\n\n[[controller]]',
-                            'hinge = "axis"\nsample_time = 0.02\nnoise_density = 1e-3\nseed = 7\n\n[[controller]]', 1)
+        text = text.replace('hinge = "axis"\n[[controller]]',
+                            'hinge = "axis"\nsample_time = 0.02\nnoise_density = 1e-3\nseed = 7\n[[controller]]', 1)
         whole, _ = self.run_axis(text, output="whole.h5")
         self.write("axis.toml", text.replace("duration = 5.0", "duration = 2.0"))
         self.bough("run", "axis.toml", "-o", "part.h5")

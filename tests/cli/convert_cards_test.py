@@ -6,6 +6,7 @@ import h5py
 import numpy as np
 
 from support import ProgramTest
+from decks import grids
 
 MM_TO_M = ("--units", "mm-N-tonne:m-kg-s")
 MM_TO_MS = ("--units", "mm-N-tonne:mm-kg-ms")  # kN, and hertz become kilohertz
@@ -338,15 +339,8 @@ M2GG = MX
 BEGIN BULK
 EIGRL,1,,,6
 MAT1,1,7.+4,,.3,2.7-9
-GRID,1,,0.,0.,0.
-GRID,2,,500.,0.,0.
-GRID,3,,1000.,0.,0.
-GRID,6,,1250.,0.,0.
-GRID,4,,1500.,0.,0.
-GRID,5,,1500.,200.,0.
-GRID,7,,1500.,200.,100.
-GRID,8,,1600.,0.,0.
-CBAR,1,1,1,2,0.,1.,0.
+""" + grids((0, 0, 0), (500, 0, 0), (1000, 0, 0)) + grids((1250, 0, 0), first=6) + grids(
+    (1500, 0, 0), (1500, 200, 0), first=4) + grids((1500, 200, 100), (1600, 0, 0), first=7) + """CBAR,1,1,1,2,0.,1.,0.
 CBAR,2,1,2,3,0.,1.,0.
 CBAR,3,1,3,4,0.,1.,0.
 PBAR,1,1,400.,2.+4,1.+4,1.+4

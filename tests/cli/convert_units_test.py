@@ -7,197 +7,12 @@ import h5py
 import numpy as np
 
 from support import ProgramTest
+from toml_text import read_toml, table
 
 
 TO_MM_KG = ("--units", "m-kg-s:mm-kg-s")  # another unit of force too
 SI_TO_MM = ("--units", "m-kg-s:mm-N-tonne")
-ALL = """# the whole set
-name = "all"
-[parameters]
-drop = 0.25              # m
-[[body]]
-name = "hub"
-mass = 3.0
-cg = [0.1, 0.0, 0.05]
-inertia = [0.2, 0.3, 0.4]
-nodes = [{id = 1, position = [0.5, 0.0, 0.0]}]
-[[body]]
-name = "slide"
-mass = 1.5
-inertia = [0.1, 0.1, 0.1]
-nodes = [{id = 1, position = [0.0, 0.3, 0.0]}]
-[[body]]
-name = "boom"
-file = "boom.h5"
-eta = [0.02, 0.0, 0.0]
-[[body]]
-name = "ball"
-mass = 0.5
-inertia = [0.02, 0.02, 0.02]
-[[hinge]]
-name = "turn"
-type = "cylindrical"
-child = "hub"
-position_deg = [10.0, 0.2]   # degrees, m
-rate = [0.5, 0.1]
-stiffness = 40.0
-damping = [0.5, 0.3]
-friction = {coulomb = 0.2, smoothing = 0.05}
-rotor_inertia = [0.01, 0.1]
-[[hinge]]
-name = "rail"
-type = "prismatic"
-parent = "hub"
-parent_node = 1
-child = "slide"
-parent_position = ["$drop", 0.0, 0.0]
-position = 0.05
-stops = {lower = -0.1, upper = 0.08, stiffness = 5e3, damping = 0.4}
-spring_table = "hard"
-[[hinge]]
-name = "root"
-type = "revolute"
-parent = "slide"
-parent_node = 1
-child = "boom"
-motion = "swing"
-[[hinge]]
-name = "flight"
-type = "free"
-child = "ball"
-position = [1.0, 0.0, 0.0, 0.0, 3.0, 0.0, 0.4]
-[[function]]
-name = "hard"
-type = "table"
-x = [-1.0, 0.0, 1.0]
-y = [-300.0, 0.0, 500.0]
-[[function]]
-name = "swing"
-type = "sine"
-amplitude_deg = 5.0
-frequency_hz = 0.7
-[[function]]
-name = "push"
-type = "expression"
-expression = "1 + 0.5*sin(2*t)*exp(-1e-1*t)"
-[[function]]
-name = "tug"
-type = "sine"
-amplitude = 2.0
-omega = 3.0
-[[function]]
-name = "target"
-type = "ramp"
-value = 0.03
-from = 0.1
-to = 0.4
-[[force]]
-name = "side"
-body = "slide"
-force = [1.0, 2.0, 0.0]
-function = "push"
-[[force]]
-name = "tip"
-body = "boom"
-locator = "node41_y"
-function = "tug"
-[[force]]
-name = "tie"
-type = "spring"
-body = "slide"
-to_position = [1.0, 1.0, 0.0]
-stiffness = 50.0
-damping = 2.0
-free_length = 0.6
-[[force]]
-name = "floor"
-type = "contact"
-shape = "plane"
-body = "ball"
-normal = [0.0, 0.0, 1.0]
-radius = 0.3
-stiffness = 4e4
-damping = 0.2
-friction = 0.3
-slip_velocity = 0.01
-[[force]]
-name = "air"
-type = "drag"
-body = "ball"
-area = 0.3
-coefficient = 1.1
-density = 1.2
-wind = [1.0, 0.0, 0.0]
-[[sensor]]
-name = "travel"
-type = "hinge_angle"
-hinge = "rail"
-lag = 0.02
-bias = 0.001
-[[sensor]]
-name = "speed"
-type = "hinge_rate"
-hinge = "rail"
-[[sensor]]
-name = "tip"
-type = "deflection"
-body = "boom"
-node = 41
-[[sensor]]
-name = "hub_turn"
-type = "gyro"
-body = "hub"
-[[controller]]
-name = "law"
-type = "pid"
-inputs = ["travel"]
-reference = "target"
-rate = "speed"
-kp = 300.0
-ki = 100.0
-kd = 20.0
-upper = 100.0
-lower = -100.0
-[[controller]]
-name = "shape"
-type = "expression"
-inputs = ["law", "travel"]
-expression = "u1 + 3*u2*abs(u1) + 1e-2*t"
-[[controller]]
-name = "lead"
-type = "transfer_function"
-inputs = ["tip:y"]
-numerator = [3.0, 40.0]
-denominator = [0.01, 1.0]
-[[actuator]]
-name = "drive"
-type = "hinge"
-hinge = "rail"
-input = "shape"
-upper = 50.0
-[[actuator]]
-name = "spin"
-type = "hinge"
-hinge = "turn"
-input = "lead"
-[[actuator]]
-name = "direct"
-type = "hinge"
-hinge = "turn"
-coordinate = 2
-input = "speed"
-scale = -4.0
-[[event]]
-name = "far"
-signal = "travel"
-value = 0.02
-[simulation]
-duration = 0.5
-output_step = 0.01
-integrator = "rk4"
-step = 2e-4
-gravity = [0.0, 0.0, -9.81]
-"""
+ALL = read_toml("whole_system.toml")
 
 
 def calc_factor(dims, mass, length, time):
@@ -338,7 +153,7 @@ class ConvertUnits(ProgramTest):
 
     def test_what_cannot_be_converted_is_named_and_nothing_is_written(self):
         self.make_all()
-        law = '[[controller]]\nname = "own"\ntype = "library"\nfile = "law.so"\ninputs = ["travel"]\noutputs = 1\n'
+        law = table("controller", "own", "library", file="law.so", inputs=["travel"], outputs=1)
         for old, new, error in [
                 ("mass = 1.5", 'mass = "$drop"', "toml.unit-parameter"),
                 ("[[event]]", law + "[[event]]", "toml.unit-file"),

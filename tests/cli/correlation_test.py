@@ -9,20 +9,15 @@ from scipy.linalg import eigh
 from scipy.sparse import csr_matrix
 
 from support import ProgramTest
+from decks import begin, bent_cantilever
 
 N = 9  # grids of a cantilever with a bend
 
 
 def make_deck(inertia="2.-6", modes=6):
-    grids, bars = "", ""
-    for k in range(N):
-        x, y = (1.0 * k, 0.0) if k < 5 else (4.0, 1.0 * (k - 4))
-        grids += f"GRID,{k + 1},,{x},{y},0.\n"
-    for k in range(N - 1):
-        bars += f"CBAR,{k + 1},1,{k + 1},{k + 2},0.,0.,1.\n"
-    return (f"SOL 103\nCEND\nSPC = 1\nMETHOD = 1\nBEGIN BULK\nPARAM,COUPMASS,1\nEIGRL,1,,,{modes}\n"
-            f"PBAR,1,1,1.-3,1.-6,{inertia},3.-6\nMAT1,1,7.+10,,.3,2700.\n{grids}{bars}SPC1,1,123456,1\n"
-            f"CONM2,90,9,,0.5\nENDDATA\n")
+    return begin(103, "SPC = 1", "METHOD = 1") + (
+        f"PARAM,COUPMASS,1\nEIGRL,1,,,{modes}\nPBAR,1,1,1.-3,1.-6,{inertia},3.-6\nMAT1,1,7.+10,,.3,2700.\n"
+        f"{bent_cantilever(N)}SPC1,1,123456,1\nCONM2,90,9,,0.5\nENDDATA\n")
 
 
 MEASURED = [(3, "xyz"), (5, "xyz"), (7, "xz"), (8, "z"), (9, "xyz")]

@@ -10,29 +10,16 @@ import numpy as np
 from scipy import signal
 
 from support import ProgramTest
+from toml_text import Bare, section, table, toml
 
 SVG = "{http://www.w3.org/2000/svg}"
-SYSTEM = """name = "oscillator"
-[[body]]
-name = "bob"
-mass = 2.0
-[[hinge]]
-name = "slide"
-type = "prismatic"
-parent = "ground"
-child = "bob"
-axis = [1.0, 0.0, 0.0]
-stiffness = [50.0]
-damping = [{damping}]
-position = [0.1]
-[[sensor]]
-name = "place"
-type = "position"
-body = "bob"
-[simulation]
-duration = 20.0
-output_step = {step}
-"""
+SYSTEM = toml(
+    table("body", "bob", mass=2.0),
+    table("hinge", "slide", "prismatic", parent="ground", child="bob", axis=[1.0, 0.0, 0.0], stiffness=[50.0],
+          damping=[Bare("{damping}")], position=[0.1]),
+    table("sensor", "place", "position", body="bob"),
+    section("simulation", duration=20.0, output_step=Bare("{step}")),
+    name="oscillator")
 
 
 def read_ticks(svg):

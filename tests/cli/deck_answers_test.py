@@ -6,6 +6,7 @@ import h5py
 import numpy as np
 
 from support import ProgramTest
+from decks import grids
 
 ROD = """SOL 101
 CEND
@@ -176,12 +177,7 @@ CEND
 SPC = 1
 LOAD = 5
 BEGIN BULK
-GRID,1,,0.,0.,0.
-GRID,2,,1.,0.,0.
-GRID,3,,1.,1.,0.
-GRID,4,,0.,1.,0.
-GRID,9,,.5,.5,1.
-CQUAD4,1,1,1,2,3,4{angle}
+""" + grids((0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)) + grids((.5, .5, 1), first=9) + """CQUAD4,1,1,1,2,3,4{angle}
 {property}
 MAT1,1,2.+11,,.3
 MAT8,8,1.4+11,1.+10,.3,5.+9,5.+9,5.+9

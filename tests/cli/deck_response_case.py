@@ -3,8 +3,9 @@ import h5py
 import numpy as np
 
 from support import ProgramTest
+from decks import OSCILLATOR, THREE_MASSES
 
-# m = 4, k = 36 to a fixed grid, c = 2.4: moves along x.
+# The oscillator with c = 2.4.
 ONE = """SOL {sol}
 CEND
 SPC = 1
@@ -18,18 +19,11 @@ SPCFORCES = 1
 FORCE = ALL
 BEGIN BULK
 EIGRL,1,,,1
-GRID,1,,0.,0.,0.
-GRID,2,,1.,0.,0.
-CONM2,1,1,,4.0
-CELAS2,2,36.0,1,1,2,1
-SPC1,1,23456,1
-SPC1,1,123456,2
-{bulk}
+""" + OSCILLATOR + """{bulk}
 ENDDATA
 """
 M, K, C = 4.0, 36.0, 2.4
 
-# Three masses that move along x: 1 - 2 - 3 to ground, dampers that no mode shape makes diagonal.
 CHAIN = """SOL {sol}
 CEND
 SPC = 1
@@ -40,21 +34,7 @@ ACCELERATION = ALL
 SPCFORCES = ALL
 BEGIN BULK
 EIGRL,1,,,{modes}
-GRID,1,,0.,0.,0.
-GRID,2,,1.,0.,0.
-GRID,3,,2.,0.,0.
-GRID,4,,3.,0.,0.
-CONM2,11,1,,1.0
-CONM2,12,2,,2.0
-CONM2,13,3,,3.0
-CELAS2,21,100.0,1,1,2,1,0.05
-CELAS2,22,200.0,2,1,3,1
-CELAS2,23,300.0,3,1,4,1
-CDAMP2,24,1.5,1,1,2,1
-CDAMP2,25,0.4,3,1,4,1
-SPC1,1,23456,1,2,3
-SPC1,1,123456,4
-{bulk}
+""" + THREE_MASSES + """{bulk}
 ENDDATA
 """
 

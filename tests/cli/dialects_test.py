@@ -3,6 +3,7 @@ import json
 import unittest
 
 from support import ProgramTest
+from decks import begin, grids
 
 COSMIC = """NASTRAN BUFFSIZE=1000, CONFIG=4
 ID BEAM, MODES
@@ -60,25 +61,10 @@ ENDDATA
 """
 ONLY_COSMIC = ["CTWIST", "CTORDRG", "CTRAPRG"]
 # A plate of one quadrilateral and two triangles, and a block on it, in the cards of both programs.
-PLATE = """SOL 103
-CEND
-SPC = 1
-METHOD = 1
-BEGIN BULK
-EIGRL,1,,,6
+PLATE = begin(103, "SPC = 1", "METHOD = 1") + """EIGRL,1,,,6
 MAT1,1,7.+10,,.3,2700.
-GRID,1,,0.,0.,0.
-GRID,2,,1.,0.,0.
-GRID,3,,1.,1.,0.
-GRID,4,,0.,1.,0.
-GRID,5,,2.,0.,0.
-GRID,6,,2.,1.,0.
-GRID,11,,0.,0.,1.
-GRID,12,,1.,0.,1.
-GRID,13,,1.,1.,1.
-GRID,14,,0.,1.,1.
-SPC1,1,123456,1,4
-"""
+""" + grids((0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (2, 0, 0), (2, 1, 0)) + grids(
+    (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1), first=11) + "SPC1,1,123456,1,4\n"
 OLD_ELEMENTS = """CQUAD2,1,7,1,2,3,4
 PQUAD2,7,1,.05,3.
 CTRIA1,2,7,2,5,6

@@ -4,30 +4,9 @@ import subprocess
 import unittest
 
 from support import HANG, PROGRAM, SOURCE, ProgramTest, served
+from toml_text import read_toml
 
-SYSTEM = """# A pendulum.
-[[body]]
-name = "bob"       # of lead
-mass = 2.0
-cg = [0.0, 0.0, -1.0]
-
-# The pin.
-[[hinge]]
-name = "pin"
-type = "revolute"
-child = "bob"
-axis = [0.0, 1.0, 0.0]
-position_deg = 30.0
-
-[[sensor]]
-name = "angle"
-type = "hinge_angle"
-hinge = "pin"
-
-[simulation]
-duration = 1.0
-gravity = [0.0, 0.0, -9.81]
-"""
+SYSTEM = read_toml("pendulum.toml")
 
 
 class Edit(ProgramTest):

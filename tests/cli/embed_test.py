@@ -11,84 +11,24 @@ import numpy as np
 
 from host import INPUTS, OUTPUTS, Model, Simulation
 from support import ProgramTest
+from toml_text import section, table, toml
 
 # Dry friction, an elastic stop, a sampled noisy sensor, a delayed sampled law, a relay, an event that only logs.
-ARM = """
-[[body]]
-name = "a"
-mass = 2.0
-cg = [0.5, 0.0, 0.0]
-inertia = [0.01, 0.17, 0.17]
-[[body]]
-name = "b"
-mass = 1.0
-cg = [0.3, 0.0, 0.0]
-inertia = [0.01, 0.07, 0.07]
-[[hinge]]
-name = "h1"
-type = "revolute"
-child = "a"
-axis = [0.0, 0.0, 1.0]
-damping = [0.1]
-friction = {coulomb = 0.4}
-[[hinge]]
-name = "h2"
-type = "revolute"
-parent = "a"
-parent_position = [1.0, 0.0, 0.0]
-child = "b"
-axis = [0.0, 0.0, 1.0]
-position = [0.4]
-stops = {lower = -1.0, upper = 1.0, restitution = 0.4}
-[[sensor]]
-name = "angle"
-type = "hinge_angle"
-hinge = "h1"
-noise_density = 0.01
-seed = 3
-sample_time = 0.013
-[[sensor]]
-name = "tip"
-type = "position"
-body = "b"
-[[input]]
-name = "torque"
-dims = "F L"
-[[controller]]
-name = "law"
-type = "gain"
-inputs = ["angle"]
-gain = 3.0
-sample_time = 0.02
-delay = 0.03
-[[controller]]
-name = "relay"
-type = "relay"
-inputs = ["tip:y"]
-on = 0.2
-off = 0.1
-value = 0.5
-[[controller]]
-name = "sum"
-type = "sum"
-inputs = ["law", "torque", "relay"]
-weights = [-1.0, 1.0, 1.0]
-[[actuator]]
-name = "motor"
-type = "hinge"
-hinge = "h1"
-input = "sum"
-[[event]]
-name = "low"
-signal = "tip:y"
-value = -1.0
-[simulation]
-duration = 2.0
-output_step = 0.01
-integrator = "rk4"
-step = 0.002
-gravity = [0.0, -9.81, 0.0]
-"""
+ARM = toml(
+    table("body", "a", mass=2.0, cg=[0.5, 0.0, 0.0], inertia=[0.01, 0.17, 0.17]),
+    table("body", "b", mass=1.0, cg=[0.3, 0.0, 0.0], inertia=[0.01, 0.07, 0.07]),
+    table("hinge", "h1", "revolute", child="a", axis=[0.0, 0.0, 1.0], damping=[0.1], friction={"coulomb": 0.4}),
+    table("hinge", "h2", "revolute", parent="a", parent_position=[1.0, 0.0, 0.0], child="b", axis=[0.0, 0.0, 1.0],
+          position=[0.4], stops={"lower": -1.0, "upper": 1.0, "restitution": 0.4}),
+    table("sensor", "angle", "hinge_angle", hinge="h1", noise_density=0.01, seed=3, sample_time=0.013),
+    table("sensor", "tip", "position", body="b"),
+    table("input", "torque", dims="F L"),
+    table("controller", "law", "gain", inputs=["angle"], gain=3.0, sample_time=0.02, delay=0.03),
+    table("controller", "relay", "relay", inputs=["tip:y"], on=0.2, off=0.1, value=0.5),
+    table("controller", "sum", "sum", inputs=["law", "torque", "relay"], weights=[-1.0, 1.0, 1.0]),
+    table("actuator", "motor", "hinge", hinge="h1", input="sum"),
+    table("event", "low", signal="tip:y", value=-1.0),
+    section("simulation", duration=2.0, output_step=0.01, integrator="rk4", step=0.002, gravity=[0.0, -9.81, 0.0]))
 
 
 def go_on(path, state, times, names, queue):
@@ -195,8 +135,9 @@ class Embed(ProgramTest):
                 lines = [line for line in tail.splitlines()
                          if not line.startswith(("integrator", "step", "relative_tol", "absolute_tol", "duration",
                                                  "output_step", "rk_order", "energy_error_limit"))]
-                self.write(folder + "s.toml", head + "[simulation]\nduration = 0.3\noutput_step = 2e-3\n"
-                           "integrator = \"rk4\"\nstep = 2e-4\nenergy_error_limit = 10.0\n" + "\n".join(lines) + "\n")
+                self.write(folder + "s.toml", head + section(
+                    "simulation", duration=0.3, output_step=2e-3, integrator="rk4", step=2e-4,
+                    energy_error_limit=10.0) + "\n".join(lines) + "\n")
                 self.compare(folder + "s.toml", [2e-3 * k for k in range(1, 151)])
 
     def test_bodies_and_matrices_in_other_formats_are_refused(self):

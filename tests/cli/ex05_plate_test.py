@@ -22,8 +22,8 @@ class Plate(ProgramTest):
         deflection = {}
         for p in ["0.165", "0.170"]:
             self.bough("run", f"plate-{p}.toml", "-o", f"plate-{p}.h5")
-            with h5py.File(self.path(f"plate-{p}.h5")) as f:
-                t, deflection[p] = f["/time"][:], np.abs(f["/sensors/deflection"][:, 2])
+            t, found = self.read_arrays(f"plate-{p}.h5", "time", "sensors/deflection")
+            deflection[p] = np.abs(found[:, 2])
             self.assertLess(deflection[p][t < 1].max(), 1e-8)  # flat until the tap
         self.assertLess(deflection["0.165"].max(), 0.01)
         self.assertGreater(deflection["0.170"][-1], 1.0)

@@ -1,7 +1,6 @@
 """ex09-stage-separation: momentum is kept when springs push two flexible stages apart."""
 import unittest
 
-import h5py
 import numpy as np
 
 from support import ProgramTest
@@ -12,13 +11,10 @@ class StageSeparation(ProgramTest):
         self.copy_example("ex09-stage-separation")
         self.bough("reduce", "stage.toml")
         self.bough("run", "separation.toml", "-o", "separation.h5")
-        with h5py.File(self.path("separation.h5")) as f:
-            time = f["time"][:].ravel()
-            linear, angular = f["momentum/linear"][:], f["momentum/angular"][:]
-            gap = f["sensors/gap"][:].ravel()
-            turn = f["sensors/tip_off"][:]
-            kinetic = f["energy/kinetic"][:].ravel()
-            total = kinetic + f["energy/strain"][:].ravel() - f["energy/work"][:].ravel()
+        linear, angular, turn = self.read_arrays("separation.h5", "momentum/linear", "momentum/angular", "sensors/tip_off")
+        time, gap, kinetic, strain, work = map(np.ravel, self.read_arrays(
+            "separation.h5", "time", "sensors/gap", "energy/kinetic", "energy/strain", "energy/work"))
+        total = kinetic + strain - work
         # p = m v of either stage is about 500, L about 950.
         self.assertLess(np.abs(linear - linear[0]).max(), 1e-10 * 500)
         self.assertLess(np.abs(angular - angular[0]).max(), 1e-10 * np.abs(angular[0]).max())

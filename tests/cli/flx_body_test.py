@@ -8,6 +8,7 @@ import h5py
 import numpy as np
 
 from support import ProgramTest
+from toml_text import section, table, toml
 
 ARM = """SOL 103
 CEND
@@ -23,34 +24,13 @@ CONM2,99,5,,0.3,0.,0.05,0.02,,+
 +,.001,0.,.002,0.,0.,.002
 ENDDATA
 """
-SYSTEM = """[[body]]
-name = "arm"
-file = "{file}"
-{more}
-[[hinge]]
-name = "root"
-type = "revolute"
-parent = "ground"
-child = "arm"
-axis = [0.0, 0.0, 1.0]
-rate = 3.0
-stiffness = 40.0
-[[force]]
-name = "push"
-body = "arm"
-node = 5
-force = [0.0, 0.5, 0.2]
-[[sensor]]
-name = "tip"
-type = "deflection"
-body = "arm"
-node = 5
-[simulation]
-duration = 0.5
-output_step = 0.05
-relative_tolerance = 1e-9
-absolute_tolerance = 1e-12
-"""
+SYSTEM = toml(
+    table("body", "arm", file="{file}"),
+    "{more}\n",
+    table("hinge", "root", "revolute", parent="ground", child="arm", axis=[0.0, 0.0, 1.0], rate=3.0, stiffness=40.0),
+    table("force", "push", body="arm", node=5, force=[0.0, 0.5, 0.2]),
+    table("sensor", "tip", "deflection", body="arm", node=5),
+    section("simulation", duration=0.5, output_step=0.05, relative_tolerance=1e-9, absolute_tolerance=1e-12))
 
 
 def make_arm(length):
@@ -140,27 +120,11 @@ class FlxBody(ProgramTest):
         self.fails(1, "flx", "a.h5", "b.h5", "--body-id", "7,7", "-o", "c.FLX", error="cli.body-ids")
         # Both bodies in one system, the file hashed once.
         self.bough("flx", "a.h5", "b.h5", "--stiffening", "--digits", 17, "-o", "both.FLX")
-        text = SYSTEM.format(file="both.FLX:1", more="").replace("[simulation]", """[[body]]
-name = "other"
-file = "both.FLX:2"
-[[hinge]]
-name = "other root"
-type = "revolute"
-parent = "ground"
-child = "other"
-rate = 3.0
-stiffness = 40.0
-[[force]]
-name = "other push"
-body = "other"
-node = 5
-force = [0.0, 0.5, 0.2]
-[[sensor]]
-name = "other tip"
-type = "deflection"
-body = "other"
-node = 5
-[simulation]""")
+        text = SYSTEM.format(file="both.FLX:1", more="").replace("[simulation]", toml(
+            table("body", "other", file="both.FLX:2"),
+            table("hinge", "other root", "revolute", parent="ground", child="other", rate=3.0, stiffness=40.0),
+            table("force", "other push", body="other", node=5, force=[0.0, 0.5, 0.2]),
+            table("sensor", "other tip", "deflection", body="other", node=5), "[simulation]"))
         self.write("two.toml", text)
         self.bough("run", "two.toml", "-o", "two.h5")
         with h5py.File(self.path("two.h5")) as f:
@@ -179,16 +143,9 @@ node = 5
         given = f"stiffening = false\ncg = {c.tolist()}\ninertia = {J.tolist()}"
         self.assertLess(np.abs(self.tip("old.FLX", given) - expected).max(), 1e-9 * np.abs(expected).max())
         self.fails(1, "run", self.system("new.FLX", given), error="flx.two-inertias")
-        twice = SYSTEM.format(file="old.FLX", more=given).replace("[[hinge]]", """[[body]]
-name = "twin"
-file = "old.FLX"
-cg = [1.0, 0.0, 0.0]
-inertia = [1.0, 1.0, 1.0]
-[[hinge]]
-type = "free"
-name = "t"
-child = "twin"
-[[hinge]]""", 1)
+        twice = SYSTEM.format(file="old.FLX", more=given).replace("[[hinge]]", toml(
+            table("body", "twin", file="old.FLX", cg=[1.0, 0.0, 0.0], inertia=[1.0, 1.0, 1.0]),
+            table("hinge", "t", "free", child="twin"), "[[hinge]]"), 1)
         self.fails(1, "run", self.write("twice.toml", twice), says=["another inertia"], error="flx.two-inertias")
         self.fails(1, "run", self.system("a.h5", "cg = [1.0, 0.0, 0.0]"), error="toml.conflicting-keys")
 

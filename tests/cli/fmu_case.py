@@ -7,313 +7,75 @@ import numpy as np
 
 from fmu_importer import Fmu, Instance, MeRun
 from support import SOURCE, ProgramTest
+from toml_text import section, table, toml
 
 # x'' = push / mass from rest; an event that ends the run.
-SLIDE = """[parameters]
-mass = 2.0
-[[body]]
-name = "bob"
-mass = "$mass"
-inertia = [1.0, 1.0, 1.0]
-[[hinge]]
-name = "slide"
-type = "prismatic"
-child = "bob"
-axis = [1.0, 0.0, 0.0]
-[[sensor]]
-name = "x"
-type = "position"
-body = "bob"
-[[input]]
-name = "push"
-dims = "F"
-start = 1.0
-[[actuator]]
-name = "motor"
-type = "hinge"
-hinge = "slide"
-input = "push"
-[[event]]
-name = "there"
-signal = "x:x"
-value = 1.0
-action = "stop"
-[simulation]
-duration = 10.0
-output_step = 0.1
-integrator = "rk4"
-step = 0.01
-"""
+SLIDE = toml(
+    section("parameters", mass=2.0),
+    table("body", "bob", mass="$mass", inertia=[1.0, 1.0, 1.0]),
+    table("hinge", "slide", "prismatic", child="bob", axis=[1.0, 0.0, 0.0]),
+    table("sensor", "x", "position", body="bob"),
+    table("input", "push", dims="F", start=1.0),
+    table("actuator", "motor", "hinge", hinge="slide", input="push"),
+    table("event", "there", signal="x:x", value=1.0, action="stop"),
+    section("simulation", duration=10.0, output_step=0.1, integrator="rk4", step=0.01))
 # Two links with a lag of a controller and one of a sensor.
-CHAIN = """[[body]]
-name = "a"
-mass = 2.0
-cg = [0.5, 0.0, 0.0]
-inertia = [0.01, 0.17, 0.17]
-[[body]]
-name = "b"
-mass = 1.0
-cg = [0.3, 0.0, 0.1]
-inertia = [0.01, 0.07, 0.07]
-[[hinge]]
-name = "h1"
-type = "revolute"
-child = "a"
-axis = [0.0, 0.0, 1.0]
-position = [0.3]
-damping = [0.1]
-[[hinge]]
-name = "h2"
-type = "revolute"
-parent = "a"
-parent_position = [1.0, 0.0, 0.0]
-child = "b"
-axis = [0.0, 0.0, 1.0]
-position = [0.4]
-stiffness = [3.0]
-[[input]]
-name = "torque"
-dims = "F L"
-start = 0.7
-[[input]]
-name = "target"
-dims = "1"
-[[sensor]]
-name = "upper"
-type = "hinge_angle"
-hinge = "h1"
-[[sensor]]
-name = "rate"
-type = "hinge_rate"
-hinge = "h2"
-[[sensor]]
-name = "slow"
-type = "hinge_angle"
-hinge = "h2"
-lag = 0.05
-[[sensor]]
-name = "shake"
-type = "accelerometer"
-body = "b"
-[[sensor]]
-name = "tip"
-type = "position"
-body = "b"
-[[controller]]
-name = "error"
-type = "sum"
-inputs = ["target", "upper"]
-weights = [1.0, -1.0]
-[[controller]]
-name = "lag"
-type = "transfer_function"
-inputs = ["error"]
-numerator = [4.0]
-denominator = [0.1, 1.0]
-[[controller]]
-name = "sum"
-type = "sum"
-inputs = ["lag", "torque"]
-[[actuator]]
-name = "motor"
-type = "hinge"
-hinge = "h1"
-input = "sum"
-[simulation]
-duration = 1.0
-output_step = 0.01
-integrator = "rk4"
-step = 0.002
-gravity = [0.0, -9.81, 0.0]
-"""
+CHAIN = toml(
+    table("body", "a", mass=2.0, cg=[0.5, 0.0, 0.0], inertia=[0.01, 0.17, 0.17]),
+    table("body", "b", mass=1.0, cg=[0.3, 0.0, 0.1], inertia=[0.01, 0.07, 0.07]),
+    table("hinge", "h1", "revolute", child="a", axis=[0.0, 0.0, 1.0], position=[0.3], damping=[0.1]),
+    table("hinge", "h2", "revolute", parent="a", parent_position=[1.0, 0.0, 0.0], child="b", axis=[0.0, 0.0, 1.0],
+          position=[0.4], stiffness=[3.0]),
+    table("input", "torque", dims="F L", start=0.7),
+    table("input", "target", dims="1"),
+    table("sensor", "upper", "hinge_angle", hinge="h1"),
+    table("sensor", "rate", "hinge_rate", hinge="h2"),
+    table("sensor", "slow", "hinge_angle", hinge="h2", lag=0.05),
+    table("sensor", "shake", "accelerometer", body="b"),
+    table("sensor", "tip", "position", body="b"),
+    table("controller", "error", "sum", inputs=["target", "upper"], weights=[1.0, -1.0]),
+    table("controller", "lag", "transfer_function", inputs=["error"], numerator=[4.0], denominator=[0.1, 1.0]),
+    table("controller", "sum", "sum", inputs=["lag", "torque"]),
+    table("actuator", "motor", "hinge", hinge="h1", input="sum"),
+    section("simulation", duration=1.0, output_step=0.01, integrator="rk4", step=0.002, gravity=[0.0, -9.81, 0.0]))
 # A hull that flies and carries an arm: actuators and sensors of every kind.
-DRIVEN = """[[body]]
-name = "hull"
-mass = 5.0
-cg = [0.1, 0.0, 0.05]
-inertia = [1.0, 1.2, 1.5]
-[[body]]
-name = "arm"
-mass = 1.0
-cg = [0.3, 0.02, 0.0]
-inertia = [0.01, 0.07, 0.07]
-nodes = [{id = 1, position = [0.6, 0.0, 0.0]}]
-[[hinge]]
-name = "float"
-type = "free"
-child = "hull"
-position = [0.9, 0.1, 0.3, 0.2, 0.2, 0.1, 0.9]
-[[hinge]]
-name = "joint"
-type = "revolute"
-parent = "hull"
-child = "arm"
-axis = [0.0, 0.0, 1.0]
-[[function]]
-name = "wave"
-type = "sine"
-amplitude = 1.0
-omega = 3.0
-""" + "".join(f'[[input]]\nname = "i{k}"\nstart = {0.3 + 0.1 * k}\n' for k in range(1, 11)) + """
-[[sensor]]
-name = "spin"
-type = "gyro"
-body = "hull"
-lag = 0.1
-[[sensor]]
-name = "turned"
-type = "integrating_gyro"
-body = "hull"
-[[sensor]]
-name = "held"
-type = "gyro"
-body = "arm"
-sample_time = 0.1
-[[sensor]]
-name = "attitude"
-type = "quaternion"
-body = "arm"
-[[sensor]]
-name = "seen"
-type = "position"
-body = "arm"
-node = 1
-relative_to = "hull"
-frame = "hull"
-[[sensor]]
-name = "drift"
-type = "velocity"
-body = "arm"
-node = 1
-relative_to = "hull"
-frame = "hull"
-[[sensor]]
-name = "far"
-type = "distance"
-body = "arm"
-node = 1
-target = [3.0, 1.0, 0.0]
-[[sensor]]
-name = "felt"
-type = "hinge_moment"
-hinge = "joint"
-[[sensor]]
-name = "push"
-type = "accelerometer"
-body = "arm"
-lag = 0.05
-[[sensor]]
-name = "pull"
-type = "accelerometer"
-body = "hull"
-[[controller]]
-name = "held_law"
-type = "gain"
-inputs = ["i1"]
-gain = 2.0
-sample_time = 0.1
-[[controller]]
-name = "late"
-type = "gain"
-inputs = ["pull:x"]
-gain = 2.0
-[[controller]]
-name = "turns"
-type = "relay"
-inputs = ["i2"]
-on = 0.9
-off = 0.8
-value = 1.0
-[[controller]]
-name = "mixed"
-type = "expression"
-inputs = ["i3", "spin:z"]
-expression = "u1*u2 + sin(t)"
-[[controller]]
-name = "slow"
-type = "transfer_function"
-inputs = ["late"]
-numerator = [1.0]
-denominator = [0.2, 1.0]
-[[actuator]]
-name = "wheel"
-type = "wheel"
-body = "hull"
-axis = [0.0, 1.0, 0.0]
-inertia = 0.02
-viscous = 0.01
-momentum = 0.4
-input = "i4"
-[[actuator]]
-name = "cmg"
-type = "cmg"
-body = "hull"
-gimbal_axis = [1.0, 0.0, 0.0]
-spin_axis = [0.0, 0.0, 1.0]
-momentum = 0.7
-lag = 0.2
-input = "i5"
-[[actuator]]
-name = "motor"
-type = "motor"
-hinge = "joint"
-torque_constant = 0.5
-resistance = 2.0
-lag = 0.1
-input = "i6"
-[[actuator]]
-name = "brake"
-type = "brake"
-hinge = "joint"
-stick_rate = 0.1
-input = "i7"
-[[actuator]]
-name = "thruster"
-type = "force"
-body = "arm"
-node = 1
-axis = [0.0, 1.0, 0.2]
-input = "mixed"
-[[actuator]]
-name = "jet"
-type = "jet"
-body = "hull"
-axis = [1.0, 0.0, 0.0]
-thrust = 2.0
-input = "i8"
-[[actuator]]
-name = "valve"
-type = "force"
-body = "hull"
-axis = [1.0, 0.5, 0.0]
-input = "held_law"
-[[actuator]]
-name = "trim"
-type = "moment"
-body = "hull"
-axis = [1.0, 0.5, 0.0]
-input = "turns"
-[[force]]
-name = "tug"
-body = "arm"
-force = [0.0, 0.0, 1.0]
-signal = "i9"
-[[force]]
-name = "gust"
-body = "hull"
-force = [0.1, 0.0, 0.0]
-function = "wave"
-[[event]]
-name = "near"
-signal = "far"
-value = 1.0
-[simulation]
-duration = 1.0
-output_step = 0.01
-integrator = "rk4"
-step = 0.002
-gravity = [0.0, 0.0, -1.0]
-"""
+DRIVEN = toml(
+    table("body", "hull", mass=5.0, cg=[0.1, 0.0, 0.05], inertia=[1.0, 1.2, 1.5]),
+    table("body", "arm", mass=1.0, cg=[0.3, 0.02, 0.0], inertia=[0.01, 0.07, 0.07],
+          nodes=[{"id": 1, "position": [0.6, 0.0, 0.0]}]),
+    table("hinge", "float", "free", child="hull", position=[0.9, 0.1, 0.3, 0.2, 0.2, 0.1, 0.9]),
+    table("hinge", "joint", "revolute", parent="hull", child="arm", axis=[0.0, 0.0, 1.0]),
+    table("function", "wave", "sine", amplitude=1.0, omega=3.0),
+    *(table("input", f"i{k}", start=0.3 + 0.1 * k) for k in range(1, 11)),
+    table("sensor", "spin", "gyro", body="hull", lag=0.1),
+    table("sensor", "turned", "integrating_gyro", body="hull"),
+    table("sensor", "held", "gyro", body="arm", sample_time=0.1),
+    table("sensor", "attitude", "quaternion", body="arm"),
+    table("sensor", "seen", "position", body="arm", node=1, relative_to="hull", frame="hull"),
+    table("sensor", "drift", "velocity", body="arm", node=1, relative_to="hull", frame="hull"),
+    table("sensor", "far", "distance", body="arm", node=1, target=[3.0, 1.0, 0.0]),
+    table("sensor", "felt", "hinge_moment", hinge="joint"),
+    table("sensor", "push", "accelerometer", body="arm", lag=0.05),
+    table("sensor", "pull", "accelerometer", body="hull"),
+    table("controller", "held_law", "gain", inputs=["i1"], gain=2.0, sample_time=0.1),
+    table("controller", "late", "gain", inputs=["pull:x"], gain=2.0),
+    table("controller", "turns", "relay", inputs=["i2"], on=0.9, off=0.8, value=1.0),
+    table("controller", "mixed", "expression", inputs=["i3", "spin:z"], expression="u1*u2 + sin(t)"),
+    table("controller", "slow", "transfer_function", inputs=["late"], numerator=[1.0], denominator=[0.2, 1.0]),
+    table("actuator", "wheel", "wheel", body="hull", axis=[0.0, 1.0, 0.0], inertia=0.02, viscous=0.01, momentum=0.4,
+          input="i4"),
+    table("actuator", "cmg", "cmg", body="hull", gimbal_axis=[1.0, 0.0, 0.0], spin_axis=[0.0, 0.0, 1.0], momentum=0.7,
+          lag=0.2, input="i5"),
+    table("actuator", "motor", "motor", hinge="joint", torque_constant=0.5, resistance=2.0, lag=0.1, input="i6"),
+    table("actuator", "brake", "brake", hinge="joint", stick_rate=0.1, input="i7"),
+    table("actuator", "thruster", "force", body="arm", node=1, axis=[0.0, 1.0, 0.2], input="mixed"),
+    table("actuator", "jet", "jet", body="hull", axis=[1.0, 0.0, 0.0], thrust=2.0, input="i8"),
+    table("actuator", "valve", "force", body="hull", axis=[1.0, 0.5, 0.0], input="held_law"),
+    table("actuator", "trim", "moment", body="hull", axis=[1.0, 0.5, 0.0], input="turns"),
+    table("force", "tug", body="arm", force=[0.0, 0.0, 1.0], signal="i9"),
+    table("force", "gust", body="hull", force=[0.1, 0.0, 0.0], function="wave"),
+    table("event", "near", signal="far", value=1.0),
+    section("simulation", duration=1.0, output_step=0.01, integrator="rk4", step=0.002, gravity=[0.0, 0.0, -1.0]))
 TIGHT = 'integrator = "rk"\nrelative_tolerance = 1e-12\nabsolute_tolerance = 1e-13\n'
 COMPONENTS = {"": 0, "x": 0, "y": 1, "z": 2, "angle1": 0, "angle2": 1, "angle3": 2}
 

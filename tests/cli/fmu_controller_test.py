@@ -1,7 +1,6 @@
 """FMUs as controllers: the law of a shared library bit for bit, states that are saved, and what goes wrong, in words."""
 import os
 import resource
-import signal
 import subprocess
 import sys
 import unittest
@@ -13,44 +12,19 @@ import numpy as np
 from fmu_sources import LIBRARY, compile_library, make_fmu
 from host import Model
 from support import HANG, PROGRAM, SLOWER, SOURCE, ProgramTest
+from toml_text import Bare, section, table, toml
 
-SYSTEM = """
-[[body]]
-name = "rotor"
-mass = 1.0
-inertia = [1.0, 1.0, 2.0]
-[[hinge]]
-name = "axis"
-type = "revolute"
-child = "rotor"
-position = [0.3]
-[[function]]
-name = "on"
-type = "constant"
-value = 1.0
-[[sensor]]
-name = "angle"
-type = "hinge_angle"
-hinge = "axis"
-[[sensor]]
-name = "rate"
-type = "hinge_rate"
-hinge = "axis"
-[[controller]]
-name = "law"
-inputs = ["angle", "rate", "on"]
-{law}
-[[actuator]]
-name = "drive"
-type = "hinge"
-hinge = "axis"
-input = "law:1"
-[simulation]
-duration = {duration}
-output_step = 0.005
-integrator = "rk4"
-step = 0.005
-"""
+ON = table("function", "on", "constant", value=1.0)
+LAW = table("controller", "law", inputs=["angle", "rate", "on"]) + "{law}\n"
+SYSTEM = toml(
+    table("body", "rotor", mass=1.0, inertia=[1.0, 1.0, 2.0]),
+    table("hinge", "axis", "revolute", child="rotor", position=[0.3]),
+    ON,
+    table("sensor", "angle", "hinge_angle", hinge="axis"),
+    table("sensor", "rate", "hinge_rate", hinge="axis"),
+    LAW,
+    table("actuator", "drive", "hinge", hinge="axis", input="law:1"),
+    section("simulation", duration=Bare("{duration}"), output_step=0.005, integrator="rk4", step=0.005))
 FIRST = SYSTEM.partition('input = "')[2].partition('"')[0]
 FMU = """type = "fmu"
 file = "law.fmu"
@@ -59,78 +33,30 @@ parameters = [6.0, 4.0, {fault}]
 sample_time = 0.01
 {more}"""
 
+
 # A four-bar linkage, its crank driven by a law.
-FOUR_BAR = """
-[[body]]
-name = "crank"
-mass = 0.5
-cg = [0.15, 0.0, 0.0]
-inertia = [0.0001, 0.004, 0.004]
-nodes = [{{id = 1, position = [0.3, 0.0, 0.0]}}]
-[[body]]
-name = "coupler"
-mass = 0.6
-cg = [0.5, 0.0, 0.0]
-inertia = [0.0001, 0.05, 0.05]
-nodes = [{{id = 1, position = [1.0, 0.0, 0.0]}}]
-[[body]]
-name = "rocker"
-mass = 0.8
-cg = [0.4, 0.0, 0.0]
-inertia = [0.0001, 0.043, 0.043]
-nodes = [{{id = 1, position = [0.8, 0.0, 0.0]}}]
-[[hinge]]
-name = "axis"
-type = "revolute"
-child = "crank"
-position_deg = 60.0
-rate = 1.0
-[[hinge]]
-name = "pin"
-type = "revolute"
-parent = "crank"
-parent_node = 1
-child = "coupler"
-[[hinge]]
-name = "pivot"
-type = "revolute"
-parent_position = [1.0, 0.0, 0.0]
-child = "rocker"
-position_deg = 90.0
-guess = true
-[[constraint]]
-name = "closure"
-type = "revolute"
-parent = "coupler"
-parent_node = 1
-child = "rocker"
-child_node = 1
-[[sensor]]
-name = "angle"
-type = "hinge_angle"
-hinge = "axis"
-[[sensor]]
-name = "rate"
-type = "hinge_rate"
-hinge = "axis"
-[[sensor]]
-name = "rocker"
-type = "hinge_angle"
-hinge = "pivot"
-{rest}
-[[actuator]]
-name = "drive"
-type = "hinge"
-hinge = "axis"
-input = "{input}"
-[simulation]
-duration = {duration}
-output_step = 0.005
-integrator = "{integrator}"
-step = 0.005
-gravity = [0.0, -9.81, 0.0]
-"""
-RULED = SYSTEM[SYSTEM.index("[[function]]"):SYSTEM.index("[[sensor]]")] + SYSTEM[SYSTEM.index("[[controller]]"):SYSTEM.index("[[actuator]]")]
+def write_four_bar(rest, controller, duration, integrator):
+    """The system: `rest` are further tables, `controller` drives the crank."""
+    return toml(
+        table("body", "crank", mass=0.5, cg=[0.15, 0.0, 0.0], inertia=[0.0001, 0.004, 0.004],
+              nodes=[{"id": 1, "position": [0.3, 0.0, 0.0]}]),
+        table("body", "coupler", mass=0.6, cg=[0.5, 0.0, 0.0], inertia=[0.0001, 0.05, 0.05],
+              nodes=[{"id": 1, "position": [1.0, 0.0, 0.0]}]),
+        table("body", "rocker", mass=0.8, cg=[0.4, 0.0, 0.0], inertia=[0.0001, 0.043, 0.043],
+              nodes=[{"id": 1, "position": [0.8, 0.0, 0.0]}]),
+        table("hinge", "axis", "revolute", child="crank", position_deg=60.0, rate=1.0),
+        table("hinge", "pin", "revolute", parent="crank", parent_node=1, child="coupler"),
+        table("hinge", "pivot", "revolute", parent_position=[1.0, 0.0, 0.0], child="rocker", position_deg=90.0, guess=True),
+        table("constraint", "closure", "revolute", parent="coupler", parent_node=1, child="rocker", child_node=1),
+        table("sensor", "angle", "hinge_angle", hinge="axis"),
+        table("sensor", "rate", "hinge_rate", hinge="axis"),
+        table("sensor", "rocker", "hinge_angle", hinge="pivot"),
+        rest,
+        table("actuator", "drive", "hinge", hinge="axis", input=controller),
+        section("simulation", duration=duration, output_step=0.005, integrator=integrator, step=0.005,
+                gravity=[0.0, -9.81, 0.0]))
+
+
 MODULE = os.path.join(os.path.dirname(os.path.dirname(PROGRAM)), "python")
 THREADS = """
 import sys, threading
@@ -329,13 +255,8 @@ class FmuControllers(ProgramTest):
         self.make_fmu(3)
         self.make(fault=9)
         process, _ = self.start_held("run", "s.toml")
-        process.send_signal(signal.SIGINT)
-        self.wait_held(process)
-        process.send_signal(signal.SIGINT)
-        _, text = process.communicate(timeout=HANG)
-        self.assertEqual(process.returncode, 3)
-        self.assertRegex(text, "(interrupted a second time|told to end 5 s ago and still) in controller '.*': update of its FMU .* "
-                               "at t = 0.03")
+        self.interrupt_twice(process, "(interrupted a second time|told to end 5 s ago and still) in controller '.*': "
+                                      "update of its FMU .* at t = 0.03")
 
     def test_refused_files(self):
         def refuse(error, *says, code=1, **more):
@@ -400,33 +321,13 @@ class FmuControllers(ProgramTest):
 
     def test_a_system_of_bough_is_one(self):
         """A mass on a spring beside the rotor, as FMU that measures the angle: another program's plant in this one."""
-        self.write("mass.toml", """
-[[input]]
-name = "angle"
-[[body]]
-name = "bob"
-mass = 2.0
-inertia = [1.0, 1.0, 1.0]
-[[hinge]]
-name = "slide"
-type = "prismatic"
-child = "bob"
-axis = [1.0, 0.0, 0.0]
-stiffness = [8.0]
-[[actuator]]
-name = "push"
-type = "hinge"
-hinge = "slide"
-input = "angle"
-[[sensor]]
-name = "x"
-type = "position"
-body = "bob"
-[simulation]
-duration = 1.0
-integrator = "rk4"
-step = 0.01
-""")
+        self.write("mass.toml", toml(
+            table("input", "angle"),
+            table("body", "bob", mass=2.0, inertia=[1.0, 1.0, 1.0]),
+            table("hinge", "slide", "prismatic", child="bob", axis=[1.0, 0.0, 0.0], stiffness=[8.0]),
+            table("actuator", "push", "hinge", hinge="slide", input="angle"),
+            table("sensor", "x", "position", body="bob"),
+            section("simulation", duration=1.0, integrator="rk4", step=0.01)))
         for version in (2, 3):
             self.bough("export", "mass.toml", "--to", "fmu", "--fmi", version, "-o", "law.fmu")
             text = SYSTEM.format(law='type = "fmu"\nfile = "law.fmu"\nsample_time = 0.01\noutput_names = ["x:x"]',
@@ -485,7 +386,7 @@ step = 0.01
         library = 'type = "library"\nfile = "law.so"\nparameters = [6.0, 4.0]\nsample_time = 0.01'
 
         def write(name, law, integrator, duration=0.75):
-            self.write(name, FOUR_BAR.format(rest=RULED.format(law=law), input="law:1", integrator=integrator, duration=duration))
+            self.write(name, write_four_bar(ON + LAW.format(law=law), "law:1", duration, integrator))
 
         for integrator in ("rk4", "implicit"):
             write("library.toml", library, integrator)
@@ -508,7 +409,7 @@ step = 0.01
     def test_a_closed_loop_is_one(self):
         """A four-bar linkage as FMU that a constant drives: it moves as in a run of its own."""
         given = '[[input]]\nname = "push"\nstart = 1.0\n'
-        self.write("four.toml", FOUR_BAR.format(rest=given, input="push", integrator="rk4", duration=1.0))
+        self.write("four.toml", write_four_bar(given, "push", 1.0, "rk4"))
         self.bough("run", "four.toml")
         with h5py.File(self.path("four.h5")) as f:
             expected = np.column_stack([f["sensors/angle"][:], f["sensors/rate"][:], f["sensors/rocker"][:]])

@@ -15,47 +15,17 @@ from fmu_case import SLIDE, TIGHT, FmuCase, with_integrator
 from fmu_importer import ERROR, REAL, SIZE, Failed, Instance, MeRun
 from propellant_test import ROCKET
 from support import PROGRAM, get_astray
+from toml_text import table, toml
 
 # A tank that a function drains, and one whose liquid sloshes.
-MORE_TANKS = """[[function]]
-name = "leak"
-type = "ramp"
-value = -0.6
-from = 0.2
-to = 1.4
-[[function]]
-name = "full"
-type = "constant"
-value = 1.5
-[[function]]
-name = "rest"
-type = "sum"
-of = ["full", "leak"]
-[[tank]]
-name = "side"
-body = "stage"
-type = "sphere"
-function = "rest"
-position = [0.2, 0.6, 0.0]
-axis = [0.0, 1.0, 0.0]
-radius = 0.5
-density = 4.0
-exit_node = 1
-exit_radius = 0.1
-[[tank]]
-name = "ballast"
-body = "stage"
-type = "cylinder"
-mass = 1.0
-position = [0.3, -0.4, 0.0]
-axis = [1.0, 0.0, 0.0]
-radius = 0.3
-height = 0.8
-density = 8.0
-slosh = true
-slosh_damping = 0.02
-slosh_acceleration = 5.0
-"""
+MORE_TANKS = toml(
+    table("function", "leak", "ramp", value=-0.6, from_=0.2, to=1.4),
+    table("function", "full", "constant", value=1.5),
+    table("function", "rest", "sum", of=["full", "leak"]),
+    table("tank", "side", "sphere", body="stage", function="rest", position=[0.2, 0.6, 0.0], axis=[0.0, 1.0, 0.0],
+          radius=0.5, density=4.0, exit_node=1, exit_radius=0.1),
+    table("tank", "ballast", "cylinder", body="stage", mass=1.0, position=[0.3, -0.4, 0.0], axis=[1.0, 0.0, 0.0],
+          radius=0.3, height=0.8, density=8.0, slosh=True, slosh_damping=0.02, slosh_acceleration=5.0))
 
 
 class FmuTest(FmuCase):

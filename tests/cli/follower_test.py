@@ -6,45 +6,21 @@ import numpy as np
 import scipy.optimize
 
 from support import ProgramTest
+from toml_text import section, table, toml
 
 BARS, EI, LENGTH = 20, 7.0, 1.0
 
-BODY = """[body]
-name = "column"
-deck = "column.bdf"
-frame = "fixed"
-interface = [21]
+BODY = toml(
+    section("body", name="column", deck="column.bdf", frame="fixed", interface=[21]),
+    section("body.modes", number=8),
+    section("body.output", file="column.h5"))
 
-[body.modes]
-number = 8
-
-[body.output]
-file = "column.h5"
-"""
-
-SYSTEM = """[parameters]
-load = 1.0
-
-[[body]]
-name = "column"
-file = "column.h5"
-damping = 0.0
-
-[[hinge]]
-name = "clamp"
-type = "fixed"
-child = "column"
-
-[[force]]
-name = "push"
-body = "column"
-node = 21
-force = ["$load", 0.0, 0.0]
-frame = "FRAME"
-
-[simulation]
-duration = 1.0
-"""
+SYSTEM = toml(
+    section("parameters", load=1.0),
+    table("body", "column", file="column.h5", damping=0.0),
+    table("hinge", "clamp", "fixed", child="column"),
+    table("force", "push", body="column", node=21, force=["$load", 0.0, 0.0], frame="FRAME"),
+    section("simulation", duration=1.0))
 
 
 class Follower(ProgramTest):

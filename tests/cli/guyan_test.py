@@ -8,20 +8,17 @@ from scipy.linalg import eigh
 from scipy.sparse import csr_matrix
 
 from support import ProgramTest, launch_ranks
+from decks import begin, bent_cantilever
 
 N = 9  # grids of a bent cantilever with a rotated displacement system and an MPC
 
 
 def make_deck(cards="", spc="SPC1,1,123456,1\n"):
-    grids, bars = "", ""
-    for k in range(N):
-        x, y = (1.0 * k, 0.0) if k < 5 else (4.0, 1.0 * (k - 4))
-        grids += f"GRID,{k + 1},,{x},{y},0.,{7 if k == 3 else ''}\n"
-    for k in range(N - 1):
-        bars += f"CBAR,{k + 1},1,{k + 1},{k + 2},0.,0.,1.\n"
-    return (f"SOL 103\nCEND\nSPC = 1\nMPC = 5\nMETHOD = 1\nSUBCASE 1\nLOAD = 3\nBEGIN BULK\nPARAM,COUPMASS,1\n"
-            f"EIGRL,1,,,4\nCORD2R,7,,0.,0.,0.,0.,0.,1.\n,0.6,0.8,0.\nPBAR,1,1,1.-3,1.-6,2.-6,3.-6\nMAT1,1,7.+10,,.3,2700.\n{grids}{bars}"
-            f"MPC,5,9,3,1.,7,3,-0.5\nCONM2,90,9,,0.5\nFORCE,3,6,0,10.,1.,2.,3.\nMOMENT,3,4,0,5.,0.,1.,1.\n"
+    """A bent cantilever with a rotated displacement system and an MPC."""
+    line = bent_cantilever(N, lambda k: ",7" if k == 3 else ",")
+    return begin(103, "SPC = 1", "MPC = 5", "METHOD = 1", "SUBCASE 1", "LOAD = 3") + (
+            f"PARAM,COUPMASS,1\nEIGRL,1,,,4\nCORD2R,7,,0.,0.,0.,0.,0.,1.\n,0.6,0.8,0.\nPBAR,1,1,1.-3,1.-6,2.-6,3.-6\n"
+            f"MAT1,1,7.+10,,.3,2700.\n{line}MPC,5,9,3,1.,7,3,-0.5\nCONM2,90,9,,0.5\nFORCE,3,6,0,10.,1.,2.,3.\nMOMENT,3,4,0,5.,0.,1.,1.\n"
             f"FORCE,3,9,0,-4.,0.,1.,1.\n"
             f"GRAV,4,0,9.81,0.,0.,-1.\n{spc}{cards}ENDDATA\n")
 

@@ -8,74 +8,22 @@ import scipy.interpolate
 import scipy.optimize
 
 from support import ProgramTest
+from toml_text import Bare, section, table, toml
 
-RAIL = """[[body]]
-name = "b"
-mass = {mass}
-inertia = [1.0, 1.0, 1.0]
-nodes = [{{ id = 1, position = [0.0, 0.0, 0.0] }}]
+TABLE = table("function", "t", "table", x=Bare("{x}"), y=Bare("{y}"), interpolation="{kind}")
 
-[[hinge]]
-name = "h"
-type = "prismatic"
-child = "b"
-axis = [0.0, 0.0, 1.0]
-position = {q}
-rate = {u}
-{hinge}
-{more}
-[simulation]
-duration = 1.0
-"""
-
-TABLE = """
-[[function]]
-name = "t"
-type = "table"
-x = {x}
-y = {y}
-interpolation = "{kind}"
-"""
-
-HUB = """[[body]]
-name = "hub"
-mass = 1.0
-inertia = [500, 600, 1000]
-[[hinge]]
-name = "h"
-type = "revolute"
-child = "hub"
-[[sensor]]
-name = "a"
-type = "hinge_angle"
-hinge = "h"
-SENSOR
-[[sensor]]
-name = "w"
-type = "hinge_rate"
-hinge = "h"
-SENSOR
-[[controller]]
-name = "law"
-type = "pid"
-inputs = ["a"]
-rate = "w"
-kp = 160
-kd = 800
-LAW
-[[actuator]]
-name = "m"
-input = "law"
-ACTUATOR
-type = "wheel"
-body = "hub"
-axis = [0, 0, 1]
-inertia = 0.01
-scale = -1.0
-momentum = 12.0
-[simulation]
-duration = 10
-"""
+HUB = toml(
+    table("body", "hub", mass=1.0, inertia=[500, 600, 1000]),
+    table("hinge", "h", "revolute", child="hub"),
+    table("sensor", "a", "hinge_angle", hinge="h"),
+    "SENSOR\n",
+    table("sensor", "w", "hinge_rate", hinge="h"),
+    "SENSOR\n",
+    table("controller", "law", "pid", inputs=["a"], rate="w", kp=160, kd=800),
+    "LAW\n",
+    table("actuator", "m", "wheel", input="law", body="hub", axis=[0, 0, 1], inertia=0.01, scale=-1.0, momentum=12.0),
+    "ACTUATOR\n",
+    section("simulation", duration=10))
 SAMPLED = {"SENSOR": "sample_time = 0.1", "LAW": "sample_time = 0.1\ndelay = 0.05"}
 
 
@@ -87,7 +35,10 @@ class KinksTest(ProgramTest):
             return {name: f[name][()] for name in ("A", "B", "C", "D", "accuracy/error")}, result.stderr
 
     def rail(self, mass=1.0, q=0.0, u=0.0, hinge="", more=""):
-        model, said = self.linearize(RAIL.format(mass=mass, q=q, u=u, hinge=hinge, more=more))
+        model, said = self.linearize(toml(
+            table("body", "b", mass=mass, inertia=[1.0, 1.0, 1.0], nodes=[{"id": 1, "position": [0.0, 0.0, 0.0]}]),
+            table("hinge", "h", "prismatic", child="b", axis=[0.0, 0.0, 1.0], position=q, rate=u), hinge + "\n", more + "\n",
+            section("simulation", duration=1.0)))
         return -mass * model["A"][1, 0], -mass * model["A"][1, 1], said, model
 
     def expect(self, found, stiffness, damping, quiet=True):
@@ -153,14 +104,16 @@ class Slopes(KinksTest):
 
 class Kinks(KinksTest):
     def test_are_named_with_both_slopes(self):
-        table = TABLE.format(x=[-1.0, 0.2, 1.0], y=[0.0, 0.0, 40.0], kind="linear")
+        spring = TABLE.format(x=[-1.0, 0.2, 1.0], y=[0.0, 0.0, 40.0], kind="linear")
         stop = "stiffness = 2.0\nstops = { upper = 0.2, stiffness = 100.0 }"
-        cable = ('[[force]]\nname = "cable"\ntype = "spring"\nbody = "b"\nnode = 1\nstiffness = 10.0\n'
-                 'free_length = 0.3\ntension_only = true\n')
-        law = ('[[sensor]]\nname = "s"\ntype = "hinge_angle"\nhinge = "h"\n[[controller]]\nname = "law"\n{0}\n'
-               'inputs = ["s"]\n[[actuator]]\nname = "m"\ntype = "hinge"\nhinge = "h"\ninput = "law"\nscale = -1.0\n')
+        cable = table("force", "cable", "spring", body="b", node=1, stiffness=10.0, free_length=0.3, tension_only=True)
+        law = toml(
+            table("sensor", "s", "hinge_angle", hinge="h"),
+            table("controller", "law", inputs=["s"]),
+            "{0}\n",
+            table("actuator", "m", "hinge", hinge="h", input="law", scale=-1.0))
         for hinge, more, q, name, at, below, above in (
-                ('spring_table = "t"', table, 0.2, "hinge coordinate 'h:1'", 0.2, "-?0", "-50"),
+                ('spring_table = "t"', spring, 0.2, "hinge coordinate 'h:1'", 0.2, "-?0", "-50"),
                 (stop, "", 0.2, "hinge coordinate 'h:1'", 0.2, "-?0", "-100"),
                 ("", cable, 0.3, "force 'cable'", 0.3, "0", "10"),
                 ("", law.format('type = "limit"\nupper = 0.5'), 0.5, "controller 'law'", 0.5, "1", "0"),
@@ -177,8 +130,9 @@ class Kinks(KinksTest):
             self.assertGreater(model["accuracy/error"], 0.1)
 
     def test_that_no_output_sees_are_none(self):
-        more = ('[[sensor]]\nname = "s"\ntype = "hinge_angle"\nhinge = "h"\n[[controller]]\nname = "law"\n'
-                'type = "limit"\nupper = 0.5\ninputs = ["s"]\n')
+        more = toml(
+            table("sensor", "s", "hinge_angle", hinge="h"),
+            table("controller", "law", "limit", upper=0.5, inputs=["s"]))
         _, _, said, _ = self.rail(q=0.5, more=more)
         self.assertNotIn("linear.inaccurate", said)
 

@@ -6,6 +6,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from support import ProgramTest
+from toml_text import section, table, toml
 
 
 class Lagged(ProgramTest):
@@ -48,7 +49,7 @@ class Lagged(ProgramTest):
         self.bough("reduce", "boom.toml")
         text = open(self.path("hub-2.18.toml")).read()
         text = text.replace("[simulation]", '[simulation]\nstiffening = "lagged"\nstiffening_step = 0.01')
-        self.write("jet.toml", text + '\n[[actuator]]\nname = "jet"\ntype = "force"\nbody = "hub"\naxis = [1.0, 0.0, 0.0]\n')
+        self.write("jet.toml", text + table("actuator", "jet", "force", body="hub", axis=[1.0, 0.0, 0.0]))
         said = self.bough("check", "jet.toml").stderr
         self.assertIn("[system.lagged-loads]", said)
         self.assertIn("not of: jet", said)
@@ -90,44 +91,18 @@ class Lagged(ProgramTest):
         for body, node, types in (("load", 0, ("acceleration", "angular_velocity", "angular_acceleration", "position")),
                                   ("upper", 11, ("position",))):
             for kind in types:
-                sensors += f'[[sensor]]\nname = "{body}_{kind}"\ntype = "{kind}"\nbody = "{body}"\nnode = {node}\n'
+                sensors += table("sensor", f"{body}_{kind}", kind, body=body, node=node)
         off = []
         for step in (0.0005, 0.00025):
-            self.write("run.toml", f"""
-[[body]]
-name = "upper"
-file = "link.h5"
-modes = 2
-
-[[body]]
-name = "load"
-mass = 0.5
-inertia = [0.002, 0.003, 0.004, 0.0003, -0.0002, 0.0001]
-
-[[hinge]]
-name = "shoulder"
-type = "revolute"
-child = "upper"
-position = 0.3
-
-[[hinge]]
-name = "clamp"
-type = "fixed"
-parent = "upper"
-parent_node = 11
-parent_position = [0.03, 0.02, 0.01]
-parent_rotation_deg = [20.0, 35.0, -50.0]
-child = "load"
-
-{sensors}
-[simulation]
-duration = 0.4
-output_step = 0.01
-gravity = [0.0, -9.81, 0.0]
-integrator = "rk4"
-step = {step}
-stiffening = "lagged"
-""")
+            self.write("run.toml", toml(
+                table("body", "upper", file="link.h5", modes=2),
+                table("body", "load", mass=0.5, inertia=[0.002, 0.003, 0.004, 0.0003, -0.0002, 0.0001]),
+                table("hinge", "shoulder", "revolute", child="upper", position=0.3),
+                table("hinge", "clamp", "fixed", parent="upper", parent_node=11, parent_position=[0.03, 0.02, 0.01],
+                      parent_rotation_deg=[20.0, 35.0, -50.0], child="load"),
+                sensors,
+                section("simulation", duration=0.4, output_step=0.01, gravity=[0.0, -9.81, 0.0], integrator="rk4", step=step,
+                        stiffening="lagged")))
             self.bough("run", "run.toml", "-o", "run.h5")
             with h5py.File(self.path("run.h5")) as f:
                 fconi = f["stiffening/upper"][5:, 12:]

@@ -11,108 +11,30 @@ import scipy.linalg
 import scipy.optimize
 
 from support import SOURCE, ProgramTest
+from toml_text import Bare, section, table, toml
 
-PENDULUM = """[[body]]
-name = "bob"
-mass = 2.0
-cg = [0.0, -0.7, 0.0]
-nodes = [{ id = 1, position = [0.0, -0.7, 0.0] }]
+PENDULUM = toml(
+    table("body", "bob", mass=2.0, cg=[0.0, -0.7, 0.0], nodes=[{"id": 1, "position": [0.0, -0.7, 0.0]}]),
+    table("hinge", "pin", "revolute", child="bob", axis=[0.0, 0.0, 1.0], damping=0.05, position=[Bare("POSITION")]),
+    table("function", "push", "constant", value=0.0),
+    table("force", "push", body="bob", node=1, force=[1.0, 0.0, 0.0], function="push"),
+    table("sensor", "angle", "hinge_angle", hinge="pin"),
+    table("sensor", "place", "position", body="bob", node=1),
+    section("simulation", duration=1.0, gravity=[0.0, -9.81, 0.0]))
 
-[[hinge]]
-name = "pin"
-type = "revolute"
-child = "bob"
-axis = [0.0, 0.0, 1.0]
-damping = 0.05
-position = [POSITION]
-
-[[function]]
-name = "push"
-type = "constant"
-value = 0.0
-
-[[force]]
-name = "push"
-body = "bob"
-node = 1
-force = [1.0, 0.0, 0.0]
-function = "push"
-
-[[sensor]]
-name = "angle"
-type = "hinge_angle"
-hinge = "pin"
-
-[[sensor]]
-name = "place"
-type = "position"
-body = "bob"
-node = 1
-
-[simulation]
-duration = 1.0
-gravity = [0.0, -9.81, 0.0]
-"""
-
-HUB = """[[body]]
-name = "hub"
-mass = 3.0
-cg = [0.0, 0.0, 0.0]
-inertia = [INERTIA, INERTIA, INERTIA]
-
-[[body]]
-name = "boom"
-file = "boom.h5"
-ETA
-
-[[hinge]]
-name = "spin"
-type = "revolute"
-child = "hub"
-axis = [0.0, 0.0, 1.0]
-MOTION
-
-[[hinge]]
-name = "clamp"
-type = "fixed"
-parent = "hub"
-child = "boom"
-
-[[function]]
-name = "angle"
-type = "ramp"
-value = RATE
-from = 0.0
-to = 1.0
-
-[[function]]
-name = "nothing"
-type = "constant"
-value = 0.0
-
-[[force]]
-name = "torque"
-body = "hub"
-moment = [0.0, 0.0, 1.0]
-function = "nothing"
-
-[[sensor]]
-name = "angle"
-type = "hinge_angle"
-hinge = "spin"
-
-[[sensor]]
-name = "tip"
-type = "deflection"
-body = "boom"
-node = 41
-
-[simulation]
-duration = 0.5
-integrator = "rk"
-relative_tolerance = 1e-11
-absolute_tolerance = 1e-18
-"""
+HUB = toml(
+    table("body", "hub", mass=3.0, cg=[0.0, 0.0, 0.0], inertia=[Bare("INERTIA"), Bare("INERTIA"), Bare("INERTIA")]),
+    table("body", "boom", file="boom.h5"),
+    "ETA\n",
+    table("hinge", "spin", "revolute", child="hub", axis=[0.0, 0.0, 1.0]),
+    "MOTION\n",
+    table("hinge", "clamp", "fixed", parent="hub", child="boom"),
+    table("function", "angle", "ramp", value=Bare("RATE"), from_=0.0, to=1.0),
+    table("function", "nothing", "constant", value=0.0),
+    table("force", "torque", body="hub", moment=[0.0, 0.0, 1.0], function="nothing"),
+    table("sensor", "angle", "hinge_angle", hinge="spin"),
+    table("sensor", "tip", "deflection", body="boom", node=41),
+    section("simulation", duration=0.5, integrator="rk", relative_tolerance=1e-11, absolute_tolerance=1e-18))
 
 
 def calc_hub_beam(mu):
@@ -203,9 +125,9 @@ class Linearize(LinearTest):
 
     def test_soft_poles_beside_stiff_ones_are_doubted(self):
         """Two masses on rails, a stiff strut between them, a soft spring to the wall: l^2 - 2 (1 + K) l + 2 K = 0."""
-        body = '[[body]]\nname = "{0}"\nmass = 1.0\ncg = [0.0, 0.0, 0.0]\ninertia = [1.0, 1.0, 1.0]\n'
-        hinge = ('[[hinge]]\nname = "r{0}"\ntype = "prismatic"\nchild = "{0}"\naxis = [1.0, 0.0, 0.0]\n'
-                 'parent_position = [{1}, 0.0, 0.0]\nstiffness = {2}\n')
+        body = table("body", "{0}", mass=1.0, cg=[0.0, 0.0, 0.0], inertia=[1.0, 1.0, 1.0])
+        hinge = table("hinge", "r{0}", "prismatic", child="{0}", axis=[1.0, 0.0, 0.0],
+                      parent_position=[Bare("{1}"), 0.0, 0.0], stiffness=Bare("{2}"))
         for stiff, warned in ((1e3, False), (1e12, True), (1e16, None)):
             self.write("rails.toml", body.format("a") + body.format("b") + hinge.format("a", 0.0, 2.0) +
                        hinge.format("b", 1.0, 0.0) + '[[force]]\nname = "strut"\ntype = "spring"\nbody = "a"\n'
@@ -267,7 +189,7 @@ class Linearize(LinearTest):
 
     def test_a_floating_beam(self):
         self.make_boom(20, "CONM2,9001,21,,1.-9\n,1.-5,,1.-5,,,1.-5\n")  # a line has no inertia about itself
-        text = '[[body]]\nname = "boom"\nfile = "boom.h5"\n[simulation]\nduration = 1.0\n'
+        text = toml(table("body", "boom", file="boom.h5"), section("simulation", duration=1.0))
         self.write("float.toml", text)
         model = self.linearize("float.toml")
         omega = np.sort(2 * math.pi * model["poles/frequency_hz"])
@@ -328,9 +250,10 @@ class SecondOrder(LinearTest):
 
     def test_a_free_body_turns(self):
         """Axes that turn along: torque-free I w' = Iw x w."""
-        self.write("top.toml", '[[body]]\nname = "top"\nmass = 2.0\ncg = [0.0, 0.0, 0.0]\ninertia = [1.0, 2.0, 2.5]\n'
-                               '[[hinge]]\nname = "float"\ntype = "free"\nchild = "top"\nrate = [0.0, 0.0, 3.0, 0.0, 0.0, 0.0]\n'
-                               '[simulation]\nduration = 1.0\n')
+        self.write("top.toml", toml(
+            table("body", "top", mass=2.0, cg=[0.0, 0.0, 0.0], inertia=[1.0, 2.0, 2.5]),
+            table("hinge", "float", "free", child="top", rate=[0.0, 0.0, 3.0, 0.0, 0.0, 0.0]),
+            section("simulation", duration=1.0)))
         M, D, K, _ = self.check_form(self.linearize("top.toml"))
         np.testing.assert_allclose(np.diag(M), [1, 2, 2.5, 2, 2, 2], rtol=1e-12)
         np.testing.assert_allclose(D[:2, :2], [[0, -(1 + 2 - 2.5) * 3], [(1 + 2 - 2.5) * 3, 0]], atol=1e-8)
@@ -359,8 +282,10 @@ class SecondOrder(LinearTest):
 
     def test_states_of_controllers_drive_the_second_order(self):
         self.write("sampled.toml", PENDULUM.replace("POSITION", "0.0") +
-                   '[[controller]]\nname = "lag"\ntype = "transfer_function"\ninputs = ["angle"]\nnumerator = [1.0]\n'
-                   'denominator = [1.0, 0.1]\n[[actuator]]\nname = "motor"\ntype = "hinge"\nhinge = "pin"\ninput = "lag"\n')
+                   toml(
+                       table("controller", "lag", "transfer_function", inputs=["angle"], numerator=[1.0],
+                             denominator=[1.0, 0.1]),
+                       table("actuator", "motor", "hinge", hinge="pin", input="lag")))
         model = self.linearize("sampled.toml")
         M, Z, A = model["second_order/M"], model["second_order/Z"], model["A"]
         np.testing.assert_allclose(Z, M @ A[1:2, 2:], atol=1e-12 * np.abs(A).max())
@@ -435,15 +360,17 @@ class Equilibrium(LinearTest):
         self.assertAlmostEqual(data["q"][0], 0, places=9)
 
     def test_nothing_holds_a_stone(self):
-        self.write("stone.toml", '[[body]]\nname = "stone"\nmass = 1.0\ninertia = [1.0, 1.0, 1.0]\n'
-                                 "[simulation]\nduration = 1.0\ngravity = [0.0, 0.0, -9.81]\n")
+        self.write("stone.toml", toml(
+            table("body", "stone", mass=1.0, inertia=[1.0, 1.0, 1.0]),
+            section("simulation", duration=1.0, gravity=[0.0, 0.0, -9.81])))
         self.fails(3, "equilibrium", "stone.toml", says=["stone:z", "9.81"], error="equilibrium.not-converged")
 
     def test_a_body_spins_about_a_mass_centre_beside_its_origin(self):
         """Its nutation is that of a free rigid body, ω √((C - A)(C - B) / (A B))."""
-        self.write("sat.toml", '[[body]]\nname = "sat"\nmass = 100.0\ncg = [0.1, 0.0, 0.5]\ninertia = [30.0, 40.0, 50.0]\n'
-                   '[[hinge]]\nname = "f"\ntype = "free"\nchild = "sat"\nrate = [0.0, 0.0, 1.0, 0.0, -0.1, 0.0]\n'
-                   "[simulation]\nduration = 10.0\n")
+        self.write("sat.toml", toml(
+            table("body", "sat", mass=100.0, cg=[0.1, 0.0, 0.5], inertia=[30.0, 40.0, 50.0]),
+            table("hinge", "f", "free", child="sat", rate=[0.0, 0.0, 1.0, 0.0, -0.1, 0.0]),
+            section("simulation", duration=10.0)))
         said = self.bough("equilibrium", "sat.toml", "-o", "spin.h5")
         self.assertNotIn("unstable", said.stdout + said.stderr)
         linear = self.bough("linearize", "sat.toml", "--equilibrium", "-o", "l.h5", "-v")
@@ -549,17 +476,20 @@ class Select(LinearTest):
             if z > 1e3 * y:
                 self.assertFalse(mode["kept"], mode)
         with open(self.path("hub.toml"), "a") as f:
-            f.write('[[sensor]]\nname = "felt"\ntype = "acceleration"\nbody = "boom"\nnode = 41\n')
+            f.write(table("sensor", "felt", "acceleration", body="boom", node=41))
         self.assertIn("select.feedthrough", self.bough("select", "boom.h5", "hub.toml").stderr)
         # A sampled rate loop: held between samples it would be ranked open.
         with open(self.path("hub.toml"), "a") as f:
-            f.write('[[sensor]]\nname = "gyro"\ntype = "hinge_rate"\nhinge = "spin"\n[[controller]]\nname = "law"\n'
-                    'type = "gain"\ninputs = ["gyro"]\ngain = -0.1\nsample_time = 0.01\n[[actuator]]\nname = "motor"\n'
-                    'type = "hinge"\nhinge = "spin"\ninput = "law"\n')
+            f.write(toml(
+                table("sensor", "gyro", "hinge_rate", hinge="spin"),
+                table("controller", "law", "gain", inputs=["gyro"], gain=-0.1, sample_time=0.01),
+                table("actuator", "motor", "hinge", hinge="spin", input="law")))
         self.fails(1, "select", "boom.h5", "hub.toml", says=["(law)"], error="select.sampled")
         self.bough("select", "boom.h5", "hub.toml", "--open")
-        self.write("alone.toml", '[[body]]\nname = "boom"\nfile = "other.h5"\n[[hinge]]\nname = "clamp"\n'
-                   'type = "fixed"\nchild = "boom"\n[simulation]\nduration = 1.0\n')
+        self.write("alone.toml", toml(
+            table("body", "boom", file="other.h5"),
+            table("hinge", "clamp", "fixed", child="boom"),
+            section("simulation", duration=1.0)))
         os.rename(self.path("boom.h5"), self.path("other.h5"))
         self.fails(1, "select", "other.h5", "alone.toml", error="select.no-signals")
         self.bough("select", "other.h5", "--number", 3, "-o", "boom.h5")

@@ -5,90 +5,30 @@ import h5py
 import numpy as np
 
 from support import ProgramTest
+from toml_text import section, table, toml
 
-FOUR_BAR = """
-[[body]]
-name = "crank"
-mass = 1.0
-cg = [0.2, 0.0, 0.0]
-inertia = [0.001, 0.014, 0.014]
-nodes = [{id = 1, position = [0.4, 0.0, 0.0]}]
-[[body]]
-name = "coupler"
-mass = 2.0
-cg = [0.55, 0.0, 0.0]
-inertia = [0.002, 0.2, 0.2]
-nodes = [{id = 1, position = [1.1, 0.0, 0.0]}]
-[[body]]
-name = "rocker"
-mass = 1.5
-cg = [0.45, 0.0, 0.0]
-inertia = [0.002, 0.1, 0.1]
-nodes = [{id = 1, position = [0.9, 0.0, 0.0]}]
-[[hinge]]
-name = "crank"
-type = "revolute"
-child = "crank"
-position_deg = 40.0
-rate = 3.0
-[[hinge]]
-name = "elbow"
-type = "revolute"
-parent = "crank"
-parent_node = 1
-child = "coupler"
-[[hinge]]
-name = "rocker"
-type = "revolute"
-child = "rocker"
-parent_position = [1.0, 0.0, 0.0]
-position_deg = 90.0
-guess = true
-[[constraint]]
-name = "pin"
-type = "revolute"
-parent = "coupler"
-parent_node = 1
-child = "rocker"
-child_node = 1
-[simulation]
-duration = 1.0
-output_step = 0.01
-gravity = [0.0, -9.81, 0.0]
-relative_tolerance = 1e-10
-"""
+FOUR_BAR = toml(
+    table("body", "crank", mass=1.0, cg=[0.2, 0.0, 0.0], inertia=[0.001, 0.014, 0.014],
+          nodes=[{"id": 1, "position": [0.4, 0.0, 0.0]}]),
+    table("body", "coupler", mass=2.0, cg=[0.55, 0.0, 0.0], inertia=[0.002, 0.2, 0.2],
+          nodes=[{"id": 1, "position": [1.1, 0.0, 0.0]}]),
+    table("body", "rocker", mass=1.5, cg=[0.45, 0.0, 0.0], inertia=[0.002, 0.1, 0.1],
+          nodes=[{"id": 1, "position": [0.9, 0.0, 0.0]}]),
+    table("hinge", "crank", "revolute", child="crank", position_deg=40.0, rate=3.0),
+    table("hinge", "elbow", "revolute", parent="crank", parent_node=1, child="coupler"),
+    table("hinge", "rocker", "revolute", child="rocker", parent_position=[1.0, 0.0, 0.0], position_deg=90.0,
+          guess=True),
+    table("constraint", "pin", "revolute", parent="coupler", parent_node=1, child="rocker", child_node=1),
+    section("simulation", duration=1.0, output_step=0.01, gravity=[0.0, -9.81, 0.0], relative_tolerance=1e-10))
 
-STAGE = """
-[[body]]
-name = "launcher"
-mass = 5.0
-inertia = [1.0, 2.0, 3.0]
-[[body]]
-name = "stage"
-mass = 2.0
-inertia = [1.0, 1.0, 1.0]
-[[hinge]]
-name = "root"
-type = "free"
-child = "launcher"
-rate = [0.1, 0.2, 0.3, 1.0, 0.0, 0.0]
-[[hinge]]
-name = "joint"
-type = "free"
-parent = "launcher"
-child = "stage"
-locked = true
-stiffness = [0, 0, 0, 10, 10, 10]
-null_position = [1, 0, 0, 0, 0.5, 0, 0]
-[[event]]
-name = "separation"
-time = 0.5
-action = "release"
-hinge = "joint"
-[simulation]
-duration = 1.0
-relative_tolerance = 1e-10
-"""
+STAGE = toml(
+    table("body", "launcher", mass=5.0, inertia=[1.0, 2.0, 3.0]),
+    table("body", "stage", mass=2.0, inertia=[1.0, 1.0, 1.0]),
+    table("hinge", "root", "free", child="launcher", rate=[0.1, 0.2, 0.3, 1.0, 0.0, 0.0]),
+    table("hinge", "joint", "free", parent="launcher", child="stage", locked=True, stiffness=[0, 0, 0, 10, 10, 10],
+          null_position=[1, 0, 0, 0, 0.5, 0, 0]),
+    table("event", "separation", time=0.5, action="release", hinge="joint"),
+    section("simulation", duration=1.0, relative_tolerance=1e-10))
 
 
 class LoopsTest(ProgramTest):
@@ -116,37 +56,14 @@ class LoopsTest(ProgramTest):
         self.assertGreater(np.abs(rates[-1]).max(), 0.1)
 
     def test_bounces_sticks_and_says_what_was_so_already(self):
-        self.write("ball.toml", """
-[[body]]
-name = "ball"
-mass = 2.0
-inertia = [1.0, 1.0, 1.0]
-[[hinge]]
-name = "fall"
-type = "prismatic"
-child = "ball"
-position = [0.5]
-stops = {lower = 0.0, restitution = 0.5}
-[[body]]
-name = "block"
-mass = 1.0
-inertia = [1.0, 1.0, 1.0]
-[[hinge]]
-name = "slide"
-type = "prismatic"
-child = "block"
-axis = [1.0, 0.0, 0.0]
-rate = [1.0]
-friction = {coulomb = 2.0}
-[[event]]
-name = "again"
-time = 0.1
-action = "release"
-hinge = "fall"
-[simulation]
-duration = 2.0
-gravity = [0.0, 0.0, -10.0]
-""")
+        self.write("ball.toml", toml(
+            table("body", "ball", mass=2.0, inertia=[1.0, 1.0, 1.0]),
+            table("hinge", "fall", "prismatic", child="ball", position=[0.5], stops={"lower": 0.0, "restitution": 0.5}),
+            table("body", "block", mass=1.0, inertia=[1.0, 1.0, 1.0]),
+            table("hinge", "slide", "prismatic", child="block", axis=[1.0, 0.0, 0.0], rate=[1.0],
+                  friction={"coulomb": 2.0}),
+            table("event", "again", time=0.1, action="release", hinge="fall"),
+            section("simulation", duration=2.0, gravity=[0.0, 0.0, -10.0])))
         self.bough("run", "ball.toml", "-o", "ball.h5")
         with h5py.File(self.path("ball.h5")) as f:
             fall, slide = np.ravel(f["hinges/fall/q"]), np.ravel(f["hinges/slide/q"])
@@ -237,38 +154,14 @@ gravity = [0.0, 0.0, -10.0]
             return np.sort_complex(np.linalg.eigvals(f["A"][:]))
 
     def test_models_behind_events_are_of_the_system_as_it_is_then(self):
-        pair = """
-[[body]]
-name = "a"
-mass = 1.0
-inertia = [1.0, 1.0, 1.0]
-[[body]]
-name = "b"
-mass = 2.0
-inertia = [1.0, 1.0, 1.0]
-[[hinge]]
-name = "ha"
-type = "prismatic"
-child = "a"
-axis = [1.0, 0.0, 0.0]
-stiffness = [10.0]
-position = [0.1]
-[[hinge]]
-name = "hb"
-type = "prismatic"
-parent = "a"
-child = "b"
-axis = [1.0, 0.0, 0.0]
-stiffness = [6.0]
-LOCKED
-[simulation]
-duration = 3.0
-[[event]]
-name = "go"
-time = 1.0
-action = "ACTION"
-hinge = "hb"
-"""
+        pair = toml(
+            table("body", "a", mass=1.0, inertia=[1.0, 1.0, 1.0]),
+            table("body", "b", mass=2.0, inertia=[1.0, 1.0, 1.0]),
+            table("hinge", "ha", "prismatic", child="a", axis=[1.0, 0.0, 0.0], stiffness=[10.0], position=[0.1]),
+            table("hinge", "hb", "prismatic", parent="a", child="b", axis=[1.0, 0.0, 0.0], stiffness=[6.0]),
+            "LOCKED\n",
+            section("simulation", duration=3.0),
+            table("event", "go", time=1.0, action="ACTION", hinge="hb"))
         for action, locked in (("release", True), ("lock", False)):
             text = pair.replace("ACTION", action)
             self.write("s.toml", text.replace("LOCKED", "locked = true" if locked else ""))

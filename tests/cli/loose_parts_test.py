@@ -3,24 +3,14 @@ import json
 import unittest
 
 from support import ProgramTest
+from decks import begin, grids
 
 # Bars 1-2-3 and 4-5-6 along x; grid 4 is on grid 3 and was never merged with it.
-BARS = """SOL 103
-CEND
-SPC = 1
-METHOD = 1
-BEGIN BULK
-EIGRL,1,,,8
+BARS = begin(103, "SPC = 1", "METHOD = 1") + """EIGRL,1,,,8
 SPC1,1,123456,1
 PBAR,1,1,1.-4,1.-8,1.-8,2.-8
 MAT1,1,7.+10,,.3,2700.
-GRID,1,,0.,0.,0.
-GRID,2,,1.,0.,0.
-GRID,3,,2.,0.,0.
-GRID,4,,2.,0.,0.
-GRID,5,,3.,0.,0.
-GRID,6,,4.,0.,0.
-CBAR,1,1,1,2,0.,1.,0.
+""" + grids(*((x, 0, 0) for x in (0, 1, 2, 2, 3, 4))) + """CBAR,1,1,1,2,0.,1.,0.
 CBAR,2,1,2,3,0.,1.,0.
 CBAR,3,1,4,5,0.,1.,0.
 CBAR,4,1,5,6,0.,1.,0.

@@ -8,6 +8,7 @@ import meshio
 import numpy as np
 
 from support import BEAM, HANG, PROGRAM, SOURCE, ProgramTest, served
+from toml_text import section, toml
 
 SHARED = os.environ.get("BOUGH_SHARED_DIR", "")
 TYPES = {"vertex": "vertex", "line2": "line", "tri3": "triangle", "quad4": "quad", "tetra4": "tetra", "penta6": "wedge",
@@ -53,14 +54,10 @@ CTETRA,6,3,5,6,8,11,12,13,+
 +,14,15,16,17
 ENDDATA
 """
-BODY = """[body]
-name = "beam"
-deck = "beam.bdf"
-[body.modes]
-number = 2
-[body.output]
-nodes = [1, 3]
-"""
+BODY = toml(
+    section("body", name="beam", deck="beam.bdf"),
+    section("body.modes", number=2),
+    section("body.output", nodes=[1, 3]))
 
 
 def count_cells(mesh):

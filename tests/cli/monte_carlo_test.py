@@ -9,74 +9,22 @@ import h5py
 import numpy as np
 
 from support import SLOWER, ProgramTest
+from toml_text import Bare, section, table, toml
 
-SYSTEM = """
-[parameters]
-seed = 1
-kp = 4.0
+SYSTEM = toml(
+    section("parameters", seed=1, kp=4.0),
+    table("body", "rotor", mass=1.0, inertia=[1.0, 1.0, 2.0]),
+    table("hinge", "axis", "revolute", child="rotor", position=0.1),
+    table("sensor", "angle", "hinge_angle", hinge="axis", sample_time=0.1, noise_density=3e-3, seed="$seed"),
+    table("controller", "law", "pid", inputs=["angle"], kp="$kp", kd=4.0, sample_time=0.1),
+    table("actuator", "drive", "hinge", hinge="axis", input="law"),
+    section("simulation", duration=2.0, output_step=0.1, integrator="rk4", step=0.05))
 
-[[body]]
-name = "rotor"
-mass = 1.0
-inertia = [1.0, 1.0, 2.0]
-
-[[hinge]]
-name = "axis"
-type = "revolute"
-child = "rotor"
-position = 0.1
-
-[[sensor]]
-name = "angle"
-type = "hinge_angle"
-hinge = "axis"
-sample_time = 0.1
-noise_density = 3e-3
-seed = "$seed"
-
-[[controller]]
-name = "law"
-type = "pid"
-inputs = ["angle"]
-kp = "$kp"
-kd = 4.0
-sample_time = 0.1
-
-[[actuator]]
-name = "drive"
-type = "hinge"
-hinge = "axis"
-input = "law"
-
-[simulation]
-duration = 2.0
-output_step = 0.1
-integrator = "rk4"
-step = 0.05
-"""
-
-CAMPAIGN = """
-[campaign]
-steps = ["run axis.toml -o axis.h5 --set seed={seed}"]
-
-[[parameter]]
-name = "seed"
-range = [1, COUNT]
-number = COUNT
-integer = true
-
-[[collect]]
-name = "angle"
-file = "axis.h5"
-dataset = "/hinges/axis/q"
-take = "last"
-
-[[collect]]
-name = "noise"
-file = "axis.h5"
-dataset = "/sensors/angle"
-take = "last"
-"""
+CAMPAIGN = toml(
+    section("campaign", steps=["run axis.toml -o axis.h5 --set seed={seed}"]),
+    table("parameter", "seed", range=[1, Bare("COUNT")], number=Bare("COUNT"), integer=True),
+    table("collect", "angle", file="axis.h5", dataset="/hinges/axis/q", take="last"),
+    table("collect", "noise", file="axis.h5", dataset="/sensors/angle", take="last"))
 
 
 class MonteCarlo(ProgramTest):

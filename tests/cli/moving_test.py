@@ -12,37 +12,20 @@ import meshio
 import numpy as np
 
 from support import BEAM, SOURCE, ProgramTest
+from toml_text import section, table, toml
 
 sys.path.insert(0, os.path.join(SOURCE, "tests", "oracle"))
 import uff_reader  # noqa: E402
 
-SYSTEM = """name = "swing"
-[[body]]
-name = "hub"
-mass = 2.0
-inertia = [[0.3, 0.0, 0.0], [0.0, 0.2, 0.0], [0.0, 0.0, 0.4]]
-nodes = [{ id = 1, position = [0.5, 0.0, 0.0] }]
-[[body]]
-name = "beam"
-file = "beam.h5"
-[[hinge]]
-name = "spin"
-type = "spherical"
-parent = "ground"
-parent_position = [1.0, 2.0, 3.0]
-child = "hub"
-rate = [0.2, 0.5, 1.0]
-[[hinge]]
-name = "clamp"
-type = "fixed"
-parent = "hub"
-parent_node = 1
-child = "beam"
-[simulation]
-duration = 1.0
-output_step = 0.05
-gravity = [0.0, 0.0, -9.81]
-"""
+SYSTEM = toml(
+    table("body", "hub", mass=2.0, inertia=[[0.3, 0.0, 0.0], [0.0, 0.2, 0.0], [0.0, 0.0, 0.4]],
+          nodes=[{"id": 1, "position": [0.5, 0.0, 0.0]}]),
+    table("body", "beam", file="beam.h5"),
+    table("hinge", "spin", "spherical", parent="ground", parent_position=[1.0, 2.0, 3.0], child="hub",
+          rate=[0.2, 0.5, 1.0]),
+    table("hinge", "clamp", "fixed", parent="hub", parent_node=1, child="beam"),
+    section("simulation", duration=1.0, output_step=0.05, gravity=[0.0, 0.0, -9.81]),
+    name="swing")
 COMPONENTS = {5125: np.uint32, 5126: np.float32}
 WIDTHS = {"SCALAR": 1, "VEC3": 3, "VEC4": 4}
 

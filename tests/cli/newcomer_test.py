@@ -11,75 +11,30 @@ import unittest
 import h5py
 import numpy as np
 
-from support import BEAM, PROGRAM, SOURCE, ProgramTest
+from support import BEAM, PROGRAM, ProgramTest
+from toml_text import Bare, section, table, toml
 
 # A rigid body turns about z at 0.1 rad/s for 1 s.
-YAW = """[[body]]
-name = "hub"
-mass = 1.0
-inertia = [1.0, 1.0, 1.0]
-[[hinge]]
-name = "z"
-type = "%s"
-child = "hub"
-%s
-[[sensor]]
-name = "attitude"
-type = "euler"
-body = "hub"
-[simulation]
-duration = 1.0
-output_step = 0.5
-"""
+YAW = toml(
+    table("body", "hub", mass=1.0, inertia=[1.0, 1.0, 1.0]),
+    table("hinge", "z", "%s", child="hub"),
+    "%s\n",
+    table("sensor", "attitude", "euler", body="hub"),
+    section("simulation", duration=1.0, output_step=0.5))
 TURNING = YAW % ("revolute", "axis = [0.0, 0.0, 1.0]\nrate = 0.1")
-LAW = """[[controller]]
-name = "law"
-type = "pid"
-inputs = ["%s"]
-kp = 1.0
-[[actuator]]
-name = "motor"
-type = "hinge"
-hinge = "z"
-input = "law"
-"""
-EVENT = '[[event]]\nname = "turned"\nsignal = "%s"\nvalue = 0.05\n'
+LAW = toml(
+    table("controller", "law", "pid", inputs=["%s"], kp=1.0),
+    table("actuator", "motor", "hinge", hinge="z", input="law"))
+EVENT = table("event", "turned", signal="%s", value=0.05)
 # A mass on a sampled law: two poles of the loop are at z = 0 (held sample, delay).
-SAMPLED = """[[body]]
-name = "m"
-mass = 1.0
-inertia = [1.0, 1.0, 1.0]
-[[hinge]]
-name = "z"
-type = "revolute"
-child = "m"
-axis = [0.0, 0.0, 1.0]
-stiffness = %s
-[[sensor]]
-name = "angle"
-type = "hinge_angle"
-hinge = "z"
-[[sensor]]
-name = "rate"
-type = "hinge_rate"
-hinge = "z"
-[[controller]]
-name = "law"
-type = "pid"
-inputs = ["angle"]
-rate = "rate"
-kp = 1.0
-kd = 1.0
-sample_time = 0.1
-delay = 0.05
-[[actuator]]
-name = "motor"
-type = "hinge"
-hinge = "z"
-input = "law"
-[simulation]
-duration = 1.0
-"""
+SAMPLED = toml(
+    table("body", "m", mass=1.0, inertia=[1.0, 1.0, 1.0]),
+    table("hinge", "z", "revolute", child="m", axis=[0.0, 0.0, 1.0], stiffness=Bare("%s")),
+    table("sensor", "angle", "hinge_angle", hinge="z"),
+    table("sensor", "rate", "hinge_rate", hinge="z"),
+    table("controller", "law", "pid", inputs=["angle"], rate="rate", kp=1.0, kd=1.0, sample_time=0.1, delay=0.05),
+    table("actuator", "motor", "hinge", hinge="z", input="law"),
+    section("simulation", duration=1.0))
 
 
 class Components(ProgramTest):
@@ -98,8 +53,7 @@ class Components(ProgramTest):
                          ("report", "yaw.h5", "--channel", name, "-o", "r.html")):
                 self.fails(1, *call, says=["angle1", "angle2", "angle3"], error="cli.unknown-channel")
         self.bough("report", "yaw.h5", "-o", "r.html")
-        with open(self.path("r.html")) as f:
-            page = f.read()
+        page = self.read("r.html")
         self.assertIn("attitude:angle3", page)
         self.assertNotIn("attitude:x", page)
         self.bough("plot", "yaw.h5", "--sensor", "attitude", "-o", "p.svg")
@@ -130,7 +84,7 @@ class Components(ProgramTest):
     def test_three_coordinates_are_no_axes(self):
         """A planar hinge has two travels and an angle, in this order: x, y, z would be the wrong names of them."""
         self.write("planar.toml", YAW % ("planar", "rate = [0.1, 0.2, 0.3]")
-                   + '[[sensor]]\nname = "q"\ntype = "hinge_angle"\nhinge = "z"\n')
+                   + table("sensor", "q", "hinge_angle", hinge="z"))
         self.bough("run", "planar.toml", "-o", "p.h5")
         self.bough("export", "p.h5", "--to", "csv", "--channel", "q:3", "-o", "q.csv")
         self.fails(1, "export", "p.h5", "--to", "csv", "--channel", "q:z", error="cli.unknown-channel")
@@ -293,14 +247,12 @@ class SampledPoles(ProgramTest):
         self.assertIn(f"and {gone} poles at z = 0: gone within a sample", said)
         self.assertNotIn("-368", said)
         self.bough("plot", "loop.h5", "--kind", "poles", "-o", "p.svg")
-        with open(self.path("p.svg")) as f:
-            svg = f.read()
+        svg = self.read("p.svg")
         self.assertIn("real part of z", svg)
         self.assertIn("at 0: gone within a sample", svg)
         self.assertIn("2 at 1", svg)
         self.bough("report", "loop.h5", "-o", "r.html")
-        with open(self.path("r.html")) as f:
-            page = f.read()
+        page = self.read("r.html")
         self.assertNotIn("-368", page)
         self.assertIn("gone within a sample", page)
 
@@ -327,8 +279,7 @@ class PoleMarks(ProgramTest):
             poles, zeros = f["/poles/real"].shape[0], f["/zeros/real"].shape[0]
         self.assertGreater(zeros, 0)
         self.bough("plot", "l.h5", "--kind", "poles", "-o", "p.svg")
-        with open(self.path("p.svg")) as f:
-            svg = f.read()
+        svg = self.read("p.svg")
         # One more of each in the legend.
         self.assertEqual(len(re.findall(r"l9 9m0 -9l-9 9", svg)), poles + 1)
         self.assertEqual(len(re.findall(r'<circle [^>]*fill="none"', svg)), zeros + 1)
@@ -340,9 +291,11 @@ class PoleMarks(ProgramTest):
         self.assertRegex(said, "o  zeros")
 
     def test_poles_at_zero_are_counted(self):
-        self.write("free.toml", '[[body]]\nname = "b"\nmass = 1.0\ninertia = [1.0, 1.0, 1.0]\n[[hinge]]\nname = "f"\n'
-                                'type = "free"\nchild = "b"\n[[force]]\nname = "push"\nbody = "b"\nforce = [1.0, 0.0, 0.0]\n'
-                                '[simulation]\nduration = 1.0\n')
+        self.write("free.toml", toml(
+            table("body", "b", mass=1.0, inertia=[1.0, 1.0, 1.0]),
+            table("hinge", "f", "free", child="b"),
+            table("force", "push", body="b", force=[1.0, 0.0, 0.0]),
+            section("simulation", duration=1.0)))
         self.bough("linearize", "free.toml", "-o", "l.h5")
         self.bough("plot", "l.h5", "--kind", "poles", "-o", "p.svg")
         with open(self.path("p.svg")) as f:

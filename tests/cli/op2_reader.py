@@ -114,6 +114,10 @@ class Op2:
                           rows))
         return found
 
+    def list_stresses(self):
+        """(table, words of its ident, data) of each record of stresses of elements."""
+        return [(table, ident[0], data) for table in ("OES1", "OES1C") for ident, data in self.tables.get(table, [])]
+
     def random_curves(self, name):
         """SORT2: {(table code, subcase, point): (type, frequencies or lags, values)} of real random results."""
         found = {}

@@ -8,6 +8,7 @@ import h5py
 import numpy as np
 
 from support import ProgramTest
+from toml_text import Bare, section, toml
 
 N, L, E, I, AREA, RHO = 40, 1.0, 1e3, 2.022267351e-10, 1e-3, 1.0
 MU, RADIUS = 8e8, 2e4
@@ -27,17 +28,10 @@ SPC1,1,4,1,THRU,{N + 1}
 """ + "".join(f"GRID,{k + 1},,{k * L / N},0.,0.\n" for k in range(N + 1)) + "".join(
     f"CBAR,{k + 1},1,{k + 1},{k + 2},0.,1.,0.\n" for k in range(N)) + "ENDDATA\n"
 
-BODY = """[body]
-name = "boom"
-deck = "boom.bdf"
-origin = [{origin}, 0.0, 0.0]
-[body.modes]
-number = 6
-[body.output]
-nodes = [1, {tip}]
-recover = "all"
-file = "{file}"
-"""
+BODY = toml(
+    section("body", name="boom", deck="boom.bdf", origin=[Bare("{origin}"), 0.0, 0.0]),
+    section("body.modes", number=6),
+    section("body.output", nodes=[1, Bare("{tip}")], recover="all", file="{file}"))
 
 SYSTEM = """[[body]]
 name = "hub"

@@ -10,33 +10,19 @@ import h5py
 import numpy as np
 
 from support import HANG, HOLD, IN_OUTPUTS, PROGRAM, ProgramTest, get_astray
+from toml_text import Bare, section, table, toml
 
-SLIDER = """[[body]]
-name = "a"
-mass = 2.0
-inertia = [1, 1, 1, 0, 0, 0]
-[[hinge]]
-name = "h"
-type = "prismatic"
-child = "a"
-axis = [1, 0, 0]
-{hinge}
-[[sensor]]
-name = "x"
-type = "position"
-body = "a"
-[[sensor]]
-name = "v"
-type = "velocity"
-body = "a"
-{more}
-[simulation]
-duration = {duration}
-output_step = {output_step}
-{simulation}
-"""
+SLIDER = toml(
+    table("body", "a", mass=2.0, inertia=[1, 1, 1, 0, 0, 0]),
+    table("hinge", "h", "prismatic", child="a", axis=[1, 0, 0]),
+    "{hinge}\n",
+    table("sensor", "x", "position", body="a"),
+    table("sensor", "v", "velocity", body="a"),
+    "{more}\n",
+    section("simulation", duration=Bare("{duration}"), output_step=Bare("{output_step}")),
+    "{simulation}\n")
 PULSE = "400*exp(-((t-7.3)/0.06)^2)"
-DRIVE = '[[actuator]]\nname = "j"\ntype = "hinge"\nhinge = "h"\ninput = "c"\n'
+DRIVE = table("actuator", "j", "hinge", hinge="h", input="c")
 STOPS = "position = 5e-7\nrate = {rate}\nstops = {{lower = 0.0, upper = 1e-6, restitution = 1.0}}"
 
 
@@ -79,8 +65,8 @@ class Overnight(ProgramTest):
             np.testing.assert_allclose(x, .05 * (1 + np.tanh((t - 8) / .2)), atol=1e-12)
             np.testing.assert_allclose(kinetic.max(), .25**2, rtol=1e-3)
             np.testing.assert_allclose(work, kinetic, atol=1e-7)
-        self.make('[[function]]\nname = "m"\ntype = "expression"\nexpression = "0.05*(1+tanh((t-8)/0.2))"\n'
-                  'rate = "0.3/cosh((t-8)/0.2)^2"\nacceleration = "-2.5*tanh((t-8)/0.2)/cosh((t-8)/0.2)^2"\n',
+        self.make(table("function", "m", "expression", expression="0.05*(1+tanh((t-8)/0.2))",
+                        rate="0.3/cosh((t-8)/0.2)^2", acceleration="-2.5*tanh((t-8)/0.2)/cosh((t-8)/0.2)^2"),
                   hinge='motion = "m"')
         self.fails(1, "run", "s.toml", "-o", "s.h5", says=["rate"], error="function.bad-value")
 

@@ -17,6 +17,8 @@ import unittest
 
 from page_blocks import list_blocks, list_commands, split_lines
 from support import HANG, PROGRAM, SOURCE, ProgramTest, served
+from decks import begin, row
+from toml_text import section, table, toml
 
 HAS_PNG = shutil.which("rsvg-convert") is not None
 MODULE = os.path.join(os.path.dirname(os.path.dirname(PROGRAM)), "python")
@@ -140,37 +142,15 @@ def example(name, **more):
 BOOM = ("reduce boom.toml -q", "modes boom.bdf -o modes.h5 -q", "run short.toml -o run.h5 -q")
 SHORT = {"short.toml": read("data/examples/ex01-spinup/spinup.toml").replace("duration = 20.0", "duration = 1.0")}
 TIP = {"short.toml": SHORT["short.toml"].replace('"tip_deflection"', '"tip"').replace("duration = 1.0", "duration = 12.0")}
-DENSITY = """[campaign]
-steps = ["reduce boom.toml", "run short.toml -o run.h5"]
-[[parameter]]
-name = "density"
-file = "boom.bdf"
-card = "MAT1"
-id = 1
-field = "RHO"
-values = [2700.0, 2800.0]
-[[collect]]
-name = "tip_max"
-file = "run.h5"
-dataset = "/sensors/tip"
-column = 2
-take = "absmax"
-"""
-RESPONSE = """SOL 111
-CEND
-SPC = 1
-METHOD = 1
-DLOAD = 5
-FREQ = 6
-DISPLACEMENT = ALL
-BEGIN BULK
-EIGRL,1,,,4
+DENSITY = toml(
+    section("campaign", steps=["reduce boom.toml", "run short.toml -o run.h5"]),
+    table("parameter", "density", file="boom.bdf", card="MAT1", id=1, field="RHO", values=[2700.0, 2800.0]),
+    table("collect", "tip_max", file="run.h5", dataset="/sensors/tip", column=2, take="absmax"))
+RESPONSE = begin(111, "SPC = 1", "METHOD = 1", "DLOAD = 5", "FREQ = 6", "DISPLACEMENT = ALL") + """EIGRL,1,,,4
 SPC1,1,123456,1
 PBAR,1,1,1.-4,1.-8,1.-8,1.-8
 MAT1,1,7.+10,,.3,2700.
-GRID,1,,0.,0.,0.
-GRID,2,,1.,0.,0.
-CBAR,1,1,1,2,0.,1.,0.
+""" + row(2) + """CBAR,1,1,1,2,0.,1.,0.
 PARAM,G,0.02
 FREQ1,6,1.,1.,5
 RLOAD1,5,7,,,8
@@ -179,43 +159,16 @@ TABLED1,8
 ,0.,1.,100.,1.,ENDT
 ENDDATA
 """
-ARM = """[[body]]
-name = "rotor"
-mass = 1.0
-inertia = [1.0, 1.0, 2.0]
-[[hinge]]
-name = "axis"
-type = "revolute"
-child = "rotor"
-position = 0.1
-[[sensor]]
-name = "angle"
-type = "hinge_angle"
-hinge = "axis"
-[[sensor]]
-name = "rate"
-type = "hinge_rate"
-hinge = "axis"
-[[controller]]
-name = "law"
-type = "expression"
-inputs = ["angle", "rate"]
-expression = "-8*u1 - 1.6*u2"
-[[actuator]]
-name = "drive"
-type = "hinge"
-hinge = "axis"
-input = "law"
-[[input]]
-name = "torque"
-[[actuator]]
-name = "motor"
-type = "hinge"
-hinge = "axis"
-input = "torque"
-[simulation]
-duration = 1.0
-"""
+ARM = toml(
+    table("body", "rotor", mass=1.0, inertia=[1.0, 1.0, 2.0]),
+    table("hinge", "axis", "revolute", child="rotor", position=0.1),
+    table("sensor", "angle", "hinge_angle", hinge="axis"),
+    table("sensor", "rate", "hinge_rate", hinge="axis"),
+    table("controller", "law", "expression", inputs=["angle", "rate"], expression="-8*u1 - 1.6*u2"),
+    table("actuator", "drive", "hinge", hinge="axis", input="law"),
+    table("input", "torque"),
+    table("actuator", "motor", "hinge", hinge="axis", input="torque"),
+    section("simulation", duration=1.0))
 SAME = {name: "boom.h5" for name in ("A.h5", "B.h5", "C.h5", "BODY.h5")}
 
 

@@ -7,6 +7,7 @@ import h5py
 import numpy as np
 
 from support import ProgramTest
+from toml_text import Bare, section, toml
 
 # 20 in long, 0.4873 in high, 0.12608 in thick; J of a rectangle by its series.
 LENGTH, HEIGHT, THICK, E, NU, RHO = 0.508, 12.377e-3, 3.2024e-3, 71.7e9, 0.31, 2810.0
@@ -17,17 +18,10 @@ J = HEIGHT * THICK**3 / 3 * (1 - 192 / np.pi**5 * THICK / HEIGHT * sum(
 LOADS = [4.448, 8.896, 13.345]  # 1, 2, 3 lbf
 BARS, STEPS = 24, 60
 
-PART = """[body]
-name = "part"
-deck = "part.bdf"
-frame = "fixed"
-interface = [{outer}]
-[body.modes]
-basis = "craig-bampton"
-number = {modes}
-[body.output]
-file = "part.h5"
-"""
+PART = toml(
+    section("body", name="part", deck="part.bdf", frame="fixed", interface=[Bare("{outer}")]),
+    section("body.modes", basis="craig-bampton", number=Bare("{modes}")),
+    section("body.output", file="part.h5"))
 
 
 @functools.cache

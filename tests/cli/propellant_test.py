@@ -1,5 +1,4 @@
 """Propellant from outside: a burn resumed and linearized, slosh against formulas, units, messages."""
-import json
 import math
 import unittest
 
@@ -7,88 +6,35 @@ import h5py
 import numpy as np
 
 from support import ProgramTest
+from toml_text import Bare, section, table, toml
 
 XI = 1.8411837813406593
 
-ROCKET = """[parameters]
-fill = 8.0
-[[body]]
-name = "stage"
-mass = 2.0
-cg = [0.4, 0.0, 0.0]
-inertia = [0.5, 3.0, 3.0]
-nodes = [{id = 1, position = [-1.0, 0.0, 0.0]}]
-[[tank]]
-name = "main"
-body = "stage"
-type = "cylinder"
-mass = "$fill"
-axis = [1.0, 0.0, 0.0]
-radius = 0.5
-height = 2.0
-density = 8.0
-[[function]]
-name = "throttle"
-type = "step"
-value = 30.0
-at = 0.5
-[[actuator]]
-name = "engine"
-type = "engine"
-body = "stage"
-node = 1
-axis = [1.0, 0.0, 0.0]
-exhaust_velocity = 5.0
-exit_radius = 0.2
-tank = "main"
-input = "throttle"
-[[sensor]]
-name = "rate"
-type = "angular_velocity"
-body = "stage"
-[[hinge]]
-name = "flight"
-type = "free"
-child = "stage"
-rate = [0.3, 0.1, -0.2, 0.0, 0.0, 0.0]
-[simulation]
-duration = 1.5
-output_step = 0.05
-integrator = "rk"
-relative_tolerance = 1e-11
-absolute_tolerance = 1e-13
-"""
+ROCKET = toml(
+    section("parameters", fill=8.0),
+    table("body", "stage", mass=2.0, cg=[0.4, 0.0, 0.0], inertia=[0.5, 3.0, 3.0],
+          nodes=[{"id": 1, "position": [-1.0, 0.0, 0.0]}]),
+    table("tank", "main", "cylinder", body="stage", mass="$fill", axis=[1.0, 0.0, 0.0], radius=0.5, height=2.0,
+          density=8.0),
+    table("function", "throttle", "step", value=30.0, at=0.5),
+    table("actuator", "engine", "engine", body="stage", node=1, axis=[1.0, 0.0, 0.0], exhaust_velocity=5.0,
+          exit_radius=0.2, tank="main", input="throttle"),
+    table("sensor", "rate", "angular_velocity", body="stage"),
+    table("hinge", "flight", "free", child="stage", rate=[0.3, 0.1, -0.2, 0.0, 0.0, 0.0]),
+    section("simulation", duration=1.5, output_step=0.05, integrator="rk", relative_tolerance=1e-11,
+            absolute_tolerance=1e-13))
 
-SLOSH = """[parameters]
-fill = {fill}
-[[body]]
-name = "vehicle"
-mass = 3000.0
-[[tank]]
-name = "lox"
-body = "vehicle"
-type = "{type}"
-mass = "$fill"
-radius = 1.0
-{height}
-density = 1000.0
-slosh = true
-{more}
-[[hinge]]
-name = "lateral"
-type = "{hinge}"
-child = "vehicle"
-[simulation]
-duration = 1.0
-gravity = [0.0, 0.0, -9.81]
-"""
+SLOSH = toml(
+    section("parameters", fill=Bare("{fill}")),
+    table("body", "vehicle", mass=3000.0),
+    table("tank", "lox", "{type}", body="vehicle", mass="$fill", radius=1.0, density=1000.0, slosh=True),
+    "{height}\n",
+    "{more}\n",
+    table("hinge", "lateral", "{hinge}", child="vehicle"),
+    section("simulation", duration=1.0, gravity=[0.0, 0.0, -9.81]))
 
 
 class Propellant(ProgramTest):
-    def read_h5(self, name, *paths):
-        with h5py.File(self.path(name)) as f:
-            return [f[path][()] for path in paths]
-
     def test_a_burn_in_two_parts_is_the_burn(self):
         self.write("rocket.toml", ROCKET)
         self.bough("run", "rocket.toml", "-o", "whole.h5", "-q")
@@ -96,9 +42,9 @@ class Propellant(ProgramTest):
         self.bough("run", "short.toml", "-o", "parts.h5", "-q")
         self.bough("run", "rocket.toml", "-o", "parts.h5", "--resume", "-q")
         paths = ("/bodies/stage/angular_velocity", "/tanks/main/mass", "/momentum/out_angular", "/momentum/angular")
-        for path, whole, parts in zip(paths, self.read_h5("whole.h5", *paths), self.read_h5("parts.h5", *paths)):
+        for path, whole, parts in zip(paths, self.read_arrays("whole.h5", *paths), self.read_arrays("parts.h5", *paths)):
             np.testing.assert_allclose(parts, whole, atol=1e-9, err_msg=path)
-        mass, angular, out = self.read_h5("whole.h5", "/system_mass/mass", "/momentum/angular", "/momentum/out_angular")
+        mass, angular, out = self.read_arrays("whole.h5", "/system_mass/mass", "/momentum/angular", "/momentum/out_angular")
         self.assertAlmostEqual(mass[-1], 10 - 6, places=9)
         total = angular + out
         self.assertLess(np.abs(total - total[0]).max(), 1e-10 * np.linalg.norm(total[0]))
@@ -111,7 +57,7 @@ class Propellant(ProgramTest):
         self.write("second.toml", ROCKET.replace("duration = 1.5", "start = 0.8\nduration = 0.7"))
         self.bough("run", "second.toml", "--start-from", "first.h5", "-o", "second.h5", "-q")
         paths = ("/bodies/stage/angular_velocity", "/tanks/main/mass", "/bodies/stage/position")
-        for path, whole, second in zip(paths, self.read_h5("whole.h5", *paths), self.read_h5("second.h5", *paths)):
+        for path, whole, second in zip(paths, self.read_arrays("whole.h5", *paths), self.read_arrays("second.h5", *paths)):
             np.testing.assert_allclose(second[-1], whole[-1], atol=1e-8, err_msg=path)
 
     def test_linear_models_have_the_mass_of_their_time(self):
@@ -178,7 +124,7 @@ class Propellant(ProgramTest):
         self.bough("convert", "rocket.toml", "--units", "m-kg-s:mm-N-tonne", "-o", "mm.toml")
         for name in ("rocket", "mm"):
             self.bough("run", f"{name}.toml", "-o", f"{name}.h5", "-q")
-        (w, m), (w_mm, m_mm) = (self.read_h5(f"{n}.h5", "/bodies/stage/angular_velocity", "/tanks/main/mass")
+        (w, m), (w_mm, m_mm) = (self.read_arrays(f"{n}.h5", "/bodies/stage/angular_velocity", "/tanks/main/mass")
                                 for n in ("rocket", "mm"))
         np.testing.assert_allclose(w_mm, w, atol=1e-9)
         np.testing.assert_allclose(1e3 * m_mm, m, rtol=1e-9)

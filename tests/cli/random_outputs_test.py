@@ -14,96 +14,29 @@ import scipy.stats
 
 from linear_test import LinearTest
 from support import SOURCE
+from toml_text import Bare, section, table, toml
 
 # Two carts in a row on springs and dampers, a force on each.
-CARTS = """[[body]]
-name = "one"
-mass = 2.0
-inertia = [1.0, 1.0, 1.0]
-nodes = [{ id = 1, position = [0.0, 0.0, 0.0] }]
-
-[[body]]
-name = "two"
-mass = 1.0
-inertia = [1.0, 1.0, 1.0]
-nodes = [{ id = 1, position = [0.0, 0.0, 0.0] }]
-
-[[hinge]]
-name = "first"
-type = "prismatic"
-child = "one"
-axis = [1.0, 0.0, 0.0]
-stiffness = [STIFFNESS]
-damping = [DAMPING]
-
-[[hinge]]
-name = "second"
-type = "prismatic"
-parent = "one"
-child = "two"
-axis = [1.0, 0.0, 0.0]
-stiffness = [300.0]
-damping = [0.5]
-
-[[function]]
-name = "nothing"
-type = "constant"
-value = 0.0
-
-[[force]]
-name = "f1"
-body = "one"
-node = 1
-force = [1.0, 0.0, 0.0]
-function = "nothing"
-
-[[force]]
-name = "f2"
-body = "two"
-node = 1
-force = [1.0, 0.0, 0.0]
-function = "nothing"
-
-[[sensor]]
-name = "place"
-type = "position"
-body = "two"
-node = 1
-
-[[sensor]]
-name = "speed"
-type = "velocity"
-body = "one"
-node = 1
-
-[[sensor]]
-name = "shock"
-type = "acceleration"
-body = "two"
-node = 1
-
-[simulation]
-duration = 1.0
-"""
+CARTS = toml(
+    table("body", "one", mass=2.0, inertia=[1.0, 1.0, 1.0], nodes=[{"id": 1, "position": [0.0, 0.0, 0.0]}]),
+    table("body", "two", mass=1.0, inertia=[1.0, 1.0, 1.0], nodes=[{"id": 1, "position": [0.0, 0.0, 0.0]}]),
+    table("hinge", "first", "prismatic", child="one", axis=[1.0, 0.0, 0.0], stiffness=[Bare("STIFFNESS")],
+          damping=[Bare("DAMPING")]),
+    table("hinge", "second", "prismatic", parent="one", child="two", axis=[1.0, 0.0, 0.0], stiffness=[300.0],
+          damping=[0.5]),
+    table("function", "nothing", "constant", value=0.0),
+    table("force", "f1", body="one", node=1, force=[1.0, 0.0, 0.0], function="nothing"),
+    table("force", "f2", body="two", node=1, force=[1.0, 0.0, 0.0], function="nothing"),
+    table("sensor", "place", "position", body="two", node=1),
+    table("sensor", "speed", "velocity", body="one", node=1),
+    table("sensor", "shock", "acceleration", body="two", node=1),
+    section("simulation", duration=1.0))
 OUTPUTS = ["place:x", "speed:x", "shock:x"]
-TABLES = """[[psd]]
-input = "f1"
-frequency_hz = [1.0, 2.5, 8.0]
-density = [0.5, 4.0, 1.0]
-interpolation = "log"
-
-[[psd]]
-input = "f2"
-frequency_hz = [0.5, 3.0, 6.0]
-density = [2.0, 1.0, 3.0]
-
-[[psd]]
-input = "f1"
-with = "f2"
-frequency_hz = [1.0, 4.0, 6.0]
-density = [0.3, -0.2, 0.1]
-imaginary = [0.1, 0.4, 0.0]
-"""
+TABLES = toml(
+    table("psd", input="f1", frequency_hz=[1.0, 2.5, 8.0], density=[0.5, 4.0, 1.0], interpolation="log"),
+    table("psd", input="f2", frequency_hz=[0.5, 3.0, 6.0], density=[2.0, 1.0, 3.0]),
+    table("psd", input="f1", with_="f2", frequency_hz=[1.0, 4.0, 6.0], density=[0.3, -0.2, 0.1],
+          imaginary=[0.1, 0.4, 0.0]))
 
 
 def calc_response(A, B, C, D, f):
@@ -198,8 +131,9 @@ class RandomOutputs(LinearTest):
         self.make_carts()
         self.write("all.csv", "frequency_hz,f1,f2\n1,2,1\n5,3,2\n")
         self.write("one.csv", "1,2\n5,3\n")
-        self.write("all.toml", '[[psd]]\ninput = "f1"\nfile = "one.csv"\n[[psd]]\ninput = "f2"\n'
-                   "frequency_hz = [1, 5]\ndensity = [1, 2]\n")
+        self.write("all.toml", toml(
+            table("psd", input="f1", file="one.csv"),
+            table("psd", input="f2", frequency_hz=[1, 5], density=[1, 2])))
         a, b = self.respond("--psd", "all.csv"), self.respond("--psd", "all.toml")
         self.assertEqual(a, b)
         # One number for all inputs is a number for each.
@@ -255,12 +189,13 @@ class RandomOutputs(LinearTest):
         few = self.bough("response", "model.h5", "--outputs", "place:x", "--psd", "1", "--points", "1", "--from", "1",
                          "--to", "2.9")
         self.assertIn("[linear.random-band]", few.stderr)
-        self.write("spike.toml", '[[psd]]\ninput = "f1"\nfrequency_hz = [1.0, 2.0, 2.001, 2.002]\n'
-                   "density = [0.0, 0.0, 100.0, 0.0]\n")
+        self.write("spike.toml", table("psd", input="f1", frequency_hz=[1.0, 2.0, 2.001, 2.002],
+                                       density=[0.0, 0.0, 100.0, 0.0]))
         self.assertNotIn("random-sampling", self.bough("response", "model.h5", "--psd", "spike.toml").stderr)
         # The table of one input ends where that of another goes on: a line across the jump.
-        self.write("jump.toml", '[[psd]]\ninput = "f1"\nfrequency_hz = [1.0, 2.0]\ndensity = [100.0, 100.0]\n'
-                   '[[psd]]\ninput = "f2"\nfrequency_hz = [1.0, 5.0]\ndensity = [1e-6, 1e-6]\n')
+        self.write("jump.toml", toml(
+            table("psd", input="f1", frequency_hz=[1.0, 2.0], density=[100.0, 100.0]),
+            table("psd", input="f2", frequency_hz=[1.0, 5.0], density=[1e-6, 1e-6])))
         self.assertIn("[linear.random-sampling]", self.bough("response", "model.h5", "--psd", "jump.toml", "--points",
                                                              "1").stderr)
 
@@ -324,13 +259,15 @@ class RandomOutputs(LinearTest):
                 (start + "frequency_hz = [1, 1]\ndensity = [1, 1]\n", 3, "do not rise"),
                 (start + "frequency_hz = [1, 2]\ndensity = [1, 1, 1]\n", 4, "3 numbers, expected 2"),
                 (start + 'frequency_hz = [0, 2]\ndensity = [1, 1]\ninterpolation = "log"\n', 5, "above 0"),
-                (start + 'density = 1\n[[psd]]\ninput = "f1"\nwith = "f2"\ndensity = 0.1\nimaginary = 0.2\n[[psd]]\n'
-                 'input = "f2"\nwith = "f1"\ndensity = 0.1\nimaginary = 0.2\n', 9, "not the conjugate")):
+                (start + "density = 1\n" + table("psd", input="f1", with_="f2", density=0.1, imaginary=0.2)
+                 + table("psd", input="f2", with_="f1", density=0.1, imaginary=0.2), 9, "not the conjugate")):
             self.write("bad.toml", text)
             self.fails(1, "response", "model.h5", "--psd", "bad.toml", error="linear.bad-psd",
                        says=[f"bad.toml:{line}", says])
-        self.write("bad.toml", start + 'density = 1\n[[psd]]\ninput = "f2"\ndensity = 1\n[[psd]]\ninput = "f1"\n'
-                   'with = "f2"\ndensity = 1.2\n')
+        self.write("bad.toml", toml(
+            table("psd", input="f1", density=1),
+            table("psd", input="f2", density=1),
+            table("psd", input="f1", with_="f2", density=1.2)))
         self.fails(1, "response", "model.h5", "--psd", "bad.toml", error="linear.bad-psd", says=["semi-definite"])
         self.write("bad.toml", start + 'file = "none.csv"\n')
         self.fails(1, "response", "model.h5", "--psd", "bad.toml", error="toml.table-file", says=["bad.toml:3"])

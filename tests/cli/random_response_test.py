@@ -7,7 +7,8 @@ import h5py
 import numpy as np
 from scipy.integrate import quad
 
-from deck_response_case import CHAIN, ONE
+from deck_response_case import ONE
+from decks import THREE_MASSES
 from op2_reader import Op2
 from support import ProgramTest
 
@@ -32,21 +33,7 @@ SUBCASE 2
 DLOAD = 12
 BEGIN BULK
 EIGRL,1,,,3
-GRID,1,,0.,0.,0.
-GRID,2,,1.,0.,0.
-GRID,3,,2.,0.,0.
-GRID,4,,3.,0.,0.
-CONM2,11,1,,1.0
-CONM2,12,2,,2.0
-CONM2,13,3,,3.0
-CELAS2,21,100.0,1,1,2,1,0.05
-CELAS2,22,200.0,2,1,3,1
-CELAS2,23,300.0,3,1,4,1
-CDAMP2,24,1.5,1,1,2,1
-CDAMP2,25,0.4,3,1,4,1
-SPC1,1,23456,1,2,3
-SPC1,1,123456,4
-RLOAD1,11,21,,,1.
+""" + THREE_MASSES + """RLOAD1,11,21,,,1.
 RLOAD1,12,22,.05,,1.
 DAREA,21,1,1,1.
 DAREA,22,3,1,2.

@@ -1,12 +1,12 @@
 """Forces and stresses of elements of a flexible body: its /recovery against static solutions, in motion against the
 reactions of its hinge."""
-import json
 import unittest
 
 import h5py
 import numpy as np
 
 from support import ProgramTest
+from toml_text import Bare, section, table, toml
 
 N, L, A, I1, I2, E, RHO = 8, 2.0, 1e-3, 4e-8, 9e-8, 7e10, 2700.0
 H = L / N
@@ -24,37 +24,19 @@ def make_deck(load="FORCE,2,9,,1.,300.,40.,-25.\n", preload=""):
     return text + load + preload + "CONM2,99,9,,1.5\nSPC1,1,123456,1\nENDDATA\n"
 
 
-BODY = """[body]
-name = "boom"
-deck = "boom.bdf"
-frame = "fixed"
-interface = [9]
+BODY = toml(
+    section("body", name="boom", deck="boom.bdf", frame="fixed", interface=[9]),
+    section("body.modes", number=Bare("{modes}")),
+    section("body.output", recover=Bare("{recover}"), full=True))
 
-[body.modes]
-number = {modes}
-
-[body.output]
-recover = {recover}
-full = true
-"""
-
-SYSTEM = """[[body]]
-name = "boom"
-file = "boom.h5"
-stiffening = false
-{body}
-[[hinge]]
-name = "root"
-child = "boom"
-{hinge}
-{more}
-[simulation]
-duration = {duration}
-output_step = 0.01
-integrator = "adams"
-relative_tolerance = 1e-10
-absolute_tolerance = 1e-13
-"""
+SYSTEM = toml(
+    table("body", "boom", file="boom.h5", stiffening=False),
+    "{body}\n",
+    table("hinge", "root", child="boom"),
+    "{hinge}\n",
+    "{more}\n",
+    section("simulation", duration=Bare("{duration}"), output_step=0.01, integrator="adams", relative_tolerance=1e-10,
+            absolute_tolerance=1e-13))
 
 
 class Recovery(ProgramTest):
@@ -148,9 +130,10 @@ class Recovery(ProgramTest):
     def test_accelerated_beam_against_the_reaction_of_its_hinge(self):
         # Carried along y by a prescribed motion: linear, so that the sections hold what the hinge passes on.
         self.reduce(3)
-        more = ('[[function]]\nname = "shake"\ntype = "expression"\nexpression = "0.01*(1-cos(25*t))"\n'
-                'rate = "0.25*sin(25*t)"\nacceleration = "6.25*cos(25*t)"\n'
-                '[[sensor]]\nname = "root moment"\ntype = "element"\nbody = "boom"\nelement = 1\ncomponent = "moment_z_a"\n')
+        more = toml(
+            table("function", "shake", "expression", expression="0.01*(1-cos(25*t))", rate="0.25*sin(25*t)",
+                  acceleration="6.25*cos(25*t)"),
+            table("sensor", "root moment", "element", body="boom", element=1, component="moment_z_a"))
         with self.run_system(hinge='type = "prismatic"\naxis = [0.0, 1.0, 0.0]\nmotion = "shake"', more=more) as f:
             rows = f["bodies/boom/recovery/CBAR/1"][:]
             names = f["bodies/boom/recovery/CBAR/1"].attrs["description"]
@@ -186,8 +169,9 @@ class Recovery(ProgramTest):
 
     def test_tip_force_against_the_reaction_with_modes_left_out(self):
         self.reduce(4)
-        force = ('[[function]]\nname = "kick"\ntype = "sine"\namplitude = 20.0\nfrequency_hz = 4.0\n'
-                 '[[force]]\nname = "tip"\nbody = "boom"\nnode = 9\nforce = [0.0, 1.0, 0.5]\nfunction = "kick"\n')
+        force = toml(
+            table("function", "kick", "sine", amplitude=20.0, frequency_hz=4.0),
+            table("force", "tip", body="boom", node=9, force=[0.0, 1.0, 0.5], function="kick"))
         for body in ("recover = [1]\n", "recover = [1]\nmodes = 2\n"):
             with self.run_system(body=body, more=force) as f:
                 self.assertEqual(list(f["bodies/boom/recovery/CBAR"]), ["1"])
@@ -227,7 +211,7 @@ class Recovery(ProgramTest):
         base = {"more": "", "duration": 0.1, "hinge": 'type = "fixed"'}
         self.write("s.toml", SYSTEM.format(**{**base, "body": "recover = [1, 5]\n"}))
         self.fails(1, "run", "s.toml", "-o", "r.h5", error="system.unknown-element", says=["element 5"])
-        sensor = '[[sensor]]\nname = "m"\ntype = "element"\nbody = "boom"\nelement = 1\ncomponent = "moment_z"\n'
+        sensor = table("sensor", "m", "element", body="boom", element=1, component="moment_z")
         self.write("s.toml", SYSTEM.format(**{**base, "body": "", "more": sensor}))
         self.fails(1, "run", "s.toml", "-o", "r.h5", error="sensor.unknown-element", says=["moment_z_a"])
         self.write("s.toml", SYSTEM.format(**{**base, "body": "", "more": sensor.replace("element = 1\n", "")}))
@@ -237,12 +221,12 @@ class Recovery(ProgramTest):
         self.fails(1, "run", "s.toml", "-o", "r.h5", error="system.no-recovery")
         # A force at a node without locators: modes alone, which is said.
         self.bough("reduce", "boom.bdf", "--modes", 2, "--recover", "1", "-o", "boom.h5")
-        force = '[[force]]\nname = "tip"\nbody = "boom"\nnode = 5\nforce = [0.0, 1.0, 0.0]\n'
+        force = table("force", "tip", body="boom", node=5, force=[0.0, 1.0, 0.0])
         self.write("s.toml", SYSTEM.format(**{**base, "body": "recover = true\n", "more": force}))
         self.assertIn("[system.recovery-loads]", self.bough("run", "s.toml", "-o", "r.h5", "-v").stderr)
         # Loads of an actuator are not those of the interface.
         self.reduce(2, recover="[1]")
-        actuator = '[[actuator]]\nname = "fx"\ntype = "force"\nbody = "boom"\nnode = 9\naxis = [0.0, 1.0, 0.0]\n'
+        actuator = table("actuator", "fx", "force", body="boom", node=9, axis=[0.0, 1.0, 0.0])
         self.write("s.toml", SYSTEM.format(**{**base, "body": "recover = true\n", "more": actuator}))
         said = self.bough("check", "s.toml", "-v").stderr
         self.assertIn("answer to: fx", said)
@@ -250,7 +234,7 @@ class Recovery(ProgramTest):
 
     def test_rows_have_their_names(self):
         self.reduce(3)
-        sensor = '[[sensor]]\nname = "root"\ntype = "element"\nbody = "boom"\nelement = 1\n'
+        sensor = table("sensor", "root", "element", body="boom", element=1)
         self.run_system(more=sensor).close()
         self.bough("plot", "r.h5", "--sensor", "root:moment_y_a", "-o", "a.svg")
         self.bough("plot", "r.h5", "--sensor", "/bodies/boom/recovery/CBAR/1:axial", "-o", "a.svg")

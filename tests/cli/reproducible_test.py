@@ -6,6 +6,7 @@ import h5py
 import numpy as np
 
 from support import BEAM, VERBS, ProgramTest
+from toml_text import section, table, toml
 
 # Values that differ from call to call: times of computing.
 TIMES = {"wall_time", "seconds"}
@@ -15,55 +16,19 @@ DRIVEN = BEAM.replace("SOL 103", "SOL {sol}").replace(
     "METHOD = 1", "METHOD = 1\nDLOAD = 4\n{case}\nSDAMPING = 6\nDISPLACEMENT = ALL").replace(
     "ENDDATA", "DAREA,3,3,2,1.\n{load},4,3,,,7\nTABLED1,7\n,0.,1.,1000.,1.,ENDT\n{card}\n"
     "TABDMP1,6,CRIT\n,0.,.02,1000.,.02,ENDT\nENDDATA")
-SYSTEM = """[[body]]
-name = "beam"
-file = "body.h5"
-[[hinge]]
-name = "root"
-type = "revolute"
-parent = "ground"
-child = "beam"
-axis = [0.0, 0.0, 1.0]
-rate = 1.0
-stiffness = 50.0
-damping = 2.0
-[[force]]
-name = "push"
-body = "beam"
-node = 3
-force = [0.0, 1.0, 0.0]
-function = "push"
-[[function]]
-name = "push"
-type = "sine"
-amplitude = 0.1
-frequency_hz = 1.3
-[[sensor]]
-name = "tip"
-type = "deflection"
-body = "beam"
-node = 3
-[simulation]
-duration = 0.5
-output_step = 0.01
-integrator = "{integrator}"
-{step}
-"""
-CAMPAIGN = """[campaign]
-steps = ["modes beam.bdf -o modes.h5"]
-[[parameter]]
-name = "E"
-file = "beam.bdf"
-card = "MAT1"
-id = 1
-field = "E"
-values = [6e10, 7e10]
-[[collect]]
-name = "f"
-file = "modes.h5"
-dataset = "/modes/frequency_hz"
-take = "first"
-"""
+SYSTEM = toml(
+    table("body", "beam", file="body.h5"),
+    table("hinge", "root", "revolute", parent="ground", child="beam", axis=[0.0, 0.0, 1.0], rate=1.0, stiffness=50.0,
+          damping=2.0),
+    table("force", "push", body="beam", node=3, force=[0.0, 1.0, 0.0], function="push"),
+    table("function", "push", "sine", amplitude=0.1, frequency_hz=1.3),
+    table("sensor", "tip", "deflection", body="beam", node=3),
+    section("simulation", duration=0.5, output_step=0.01, integrator="{integrator}"),
+    "{step}\n")
+CAMPAIGN = toml(
+    section("campaign", steps=["modes beam.bdf -o modes.h5"]),
+    table("parameter", "E", file="beam.bdf", card="MAT1", id=1, field="E", values=[6e10, 7e10]),
+    table("collect", "f", file="modes.h5", dataset="/modes/frequency_hz", take="first"))
 
 
 def read_file(path):
@@ -101,7 +66,9 @@ class ReproducibleTest(ProgramTest):
             "1.,0.,0.,0.", "1.,-1.,0.,0."))
         self.write("frequency.bdf", DRIVEN.format(sol=111, case="FREQUENCY = 5", load="RLOAD1", card="FREQ1,5,1.,5.,20"))
         self.write("transient.bdf", DRIVEN.format(sol=112, case="TSTEP = 5", load="TLOAD1", card="TSTEP,5,50,.001,1"))
-        self.write("body.toml", '[body]\nname = "beam"\ndeck = "beam.bdf"\ninterface = [3]\n[body.modes]\nnumber = 2\n')
+        self.write("body.toml", toml(
+            section("body", name="beam", deck="beam.bdf", interface=[3]),
+            section("body.modes", number=2)))
         for integrator, step in (("adams", ""), ("bdf", ""), ("rk", ""), ("rk4", "step = 0.001"),
                                  ("implicit", "step = 0.001")):
             self.write(integrator + ".toml", SYSTEM.format(integrator=integrator, step=step))

@@ -8,6 +8,7 @@ import numpy as np
 
 from op2_reader import Op2
 from support import ProgramTest
+from decks import grids
 
 # Every element that has tables, each held by itself, all loaded by set 2.
 ELEMENTS = """MAT1,1,7.+10,,.3
@@ -37,11 +38,7 @@ CELAS2,31,1000.,31,1,32,1
 CBUSH,32,32,31,32,,,,0
 PBUSH,32,K,100.,100.,100.,10.,10.,10.
 FORCE,2,32,,4.,1.,.5,.25
-GRID,41,,0.,4.,0.
-GRID,42,,1.,4.,0.
-GRID,43,,1.2,5.,0.
-GRID,44,,0.,5.,0.
-CQUAD4,41,41,41,42,43,44
+""" + grids((0, 4, 0), (1, 4, 0), (1.2, 5, 0), (0, 5, 0), first=41) + """CQUAD4,41,41,41,42,43,44
 PSHELL,41,1,.01,1,,1
 FORCE,2,42,,30.,1.,.2,.3
 FORCE,2,43,,20.,.1,1.,-.4
@@ -50,25 +47,14 @@ GRID,52,,1.,6.,0.
 GRID,53,,0.,7.,0.
 CTRIA3,51,41,51,52,53
 FORCE,2,52,,30.,1.,.2,.3
-GRID,61,,0.,8.,0.
-GRID,62,,1.,8.,0.
-GRID,63,,1.,9.,0.
-GRID,64,,0.,9.,0.
-CQUAD4,61,61,61,62,63,64
+""" + grids((0, 8, 0), (1, 8, 0), (1, 9, 0), (0, 9, 0), first=61) + """CQUAD4,61,61,61,62,63,64
 PCOMP,61
 ,1,.002,0.,YES,1,.003,30.,YES
 ,1,.002,90.,YES
 FORCE,2,62,,30.,1.,.2,.3
 FORCE,2,63,,20.,.1,1.,-.4
-GRID,71,,0.,0.,9.
-GRID,72,,1.,0.,9.
-GRID,73,,1.,1.,9.
-GRID,74,,0.,1.,9.
-GRID,75,,0.,0.,10.
-GRID,76,,1.,0.,10.
-GRID,77,,1.,1.,10.
-GRID,78,,0.,1.,10.
-CHEXA,71,71,71,72,73,74,75,76
+""" + grids(
+    (0, 0, 9), (1, 0, 9), (1, 1, 9), (0, 1, 9), (0, 0, 10), (1, 0, 10), (1, 1, 10), (0, 1, 10), first=71) + """CHEXA,71,71,71,72,73,74,75,76
 ,77,78
 PSOLID,71,1
 FORCE,2,77,,300.,1.,.2,.3
@@ -84,31 +70,29 @@ KINDS = {1: 34, 11: 2, 21: 1, 31: 12, 32: 102, 41: 33, 51: 74, 61: 95, 71: 67}
 def read_stresses(op2):
     """(type, element) -> list of words after the id (and ply, corner) of each record."""
     found = {}
-    for table in ("OES1", "OES1C"):
-        for ident, data in op2.tables.get(table, []):
-            words = ident[0]
-            kind, wide = words[2], words[9]
-            assert words[1] == 1005 and words[8] in (2, 3) and words[0] // 10 == 5
-            for at in range(0, len(data), 4 * wide):
-                element = struct.unpack_from("<i", data, at)[0] // 10
-                if kind == 2:
-                    assert wide == 111
-                    rows = [struct.unpack_from("<i9f", data, at + 4 + 40 * k) for k in (0, 10)]
-                    assert [r[0] for r in rows] == [11, 12] and [r[1] for r in rows] == [0, 1]
-                    row = [np.array(r[2:6]) + 1j * np.array(r[6:]) for r in rows]
-                elif kind in (39, 67, 68):
-                    corners = struct.unpack_from("<i4si", data, at + 4)[2]
-                    assert wide == 4 + 13 * (corners + 1)
-                    rows = [struct.unpack_from("<i12f", data, at + 16 + 52 * k) for k in range(corners + 1)]
-                    row = {r[0]: np.array(r[1:7]) + 1j * np.array(r[7:]) for r in rows}
-                elif kind in (95, 97):
-                    assert wide == 12
-                    r = struct.unpack_from("<i10f", data, at + 4)
-                    found.setdefault((kind, element), []).append(np.array(r[1:6]) + 1j * np.array(r[6:]))
-                    continue
-                else:
-                    row = np.array(struct.unpack_from(f"<{wide - 1}f", data, at + 4))
-                found[kind, element] = row
+    for _, words, data in op2.list_stresses():
+        kind, wide = words[2], words[9]
+        assert words[1] == 1005 and words[8] in (2, 3) and words[0] // 10 == 5
+        for at in range(0, len(data), 4 * wide):
+            element = struct.unpack_from("<i", data, at)[0] // 10
+            if kind == 2:
+                assert wide == 111
+                rows = [struct.unpack_from("<i9f", data, at + 4 + 40 * k) for k in (0, 10)]
+                assert [r[0] for r in rows] == [11, 12] and [r[1] for r in rows] == [0, 1]
+                row = [np.array(r[2:6]) + 1j * np.array(r[6:]) for r in rows]
+            elif kind in (39, 67, 68):
+                corners = struct.unpack_from("<i4si", data, at + 4)[2]
+                assert wide == 4 + 13 * (corners + 1)
+                rows = [struct.unpack_from("<i12f", data, at + 16 + 52 * k) for k in range(corners + 1)]
+                row = {r[0]: np.array(r[1:7]) + 1j * np.array(r[7:]) for r in rows}
+            elif kind in (95, 97):
+                assert wide == 12
+                r = struct.unpack_from("<i10f", data, at + 4)
+                found.setdefault((kind, element), []).append(np.array(r[1:6]) + 1j * np.array(r[6:]))
+                continue
+            else:
+                row = np.array(struct.unpack_from(f"<{wide - 1}f", data, at + 4))
+            found[kind, element] = row
     return found
 
 

@@ -12,84 +12,25 @@ import scipy.linalg
 import scipy.optimize
 
 from linear_test import HUB, PENDULUM, LinearTest
+from toml_text import section, table, toml
 
-AXIS = """[parameters]
-kp = 8.0
-kd = 1.6
+AXIS = toml(
+    section("parameters", kp=8.0, kd=1.6),
+    table("body", "rotor", mass=1.0, cg=[0.0, 0.0, 0.0], inertia=[1.0, 1.0, 2.0]),
+    table("hinge", "axis", "revolute", child="rotor", axis=[0.0, 0.0, 1.0]),
+    table("sensor", "angle", "hinge_angle", hinge="axis"),
+    table("sensor", "rate", "hinge_rate", hinge="axis"),
+    table("controller", "law", "pid", inputs=["angle"], rate="rate", kp="$kp", kd="$kd"),
+    table("actuator", "drive", "hinge", hinge="axis", input="law"),
+    section("simulation", duration=2.0, output_step=0.5))
 
-[[body]]
-name = "rotor"
-mass = 1.0
-cg = [0.0, 0.0, 0.0]
-inertia = [1.0, 1.0, 2.0]
-
-[[hinge]]
-name = "axis"
-type = "revolute"
-child = "rotor"
-axis = [0.0, 0.0, 1.0]
-
-[[sensor]]
-name = "angle"
-type = "hinge_angle"
-hinge = "axis"
-
-[[sensor]]
-name = "rate"
-type = "hinge_rate"
-hinge = "axis"
-
-[[controller]]
-name = "law"
-type = "pid"
-inputs = ["angle"]
-rate = "rate"
-kp = "$kp"
-kd = "$kd"
-
-[[actuator]]
-name = "drive"
-type = "hinge"
-hinge = "axis"
-input = "law"
-
-[simulation]
-duration = 2.0
-output_step = 0.5
-"""
-
-TOP = """[parameters]
-spin = 3.0
-
-[[body]]
-name = "top"
-mass = 1.0
-cg = [0.0, 0.0, 0.0]
-inertia = [2.0, 2.0, 3.0]
-
-[[hinge]]
-name = "gimbal"
-type = "universal"
-child = "cage"
-axis = [1.0, 0.0, 0.0]
-stiffness = [5.0, 5.0]
-
-[[body]]
-name = "cage"
-mass = 1e-6
-inertia = [1e-9, 1e-9, 1e-9]
-
-[[hinge]]
-name = "wheel"
-type = "revolute"
-parent = "cage"
-child = "top"
-axis = [0.0, 0.0, 1.0]
-rate = ["$spin"]
-
-[simulation]
-duration = 1.0
-"""
+TOP = toml(
+    section("parameters", spin=3.0),
+    table("body", "top", mass=1.0, cg=[0.0, 0.0, 0.0], inertia=[2.0, 2.0, 3.0]),
+    table("hinge", "gimbal", "universal", child="cage", axis=[1.0, 0.0, 0.0], stiffness=[5.0, 5.0]),
+    table("body", "cage", mass=1e-6, inertia=[1e-9, 1e-9, 1e-9]),
+    table("hinge", "wheel", "revolute", parent="cage", child="top", axis=[0.0, 0.0, 1.0], rate=["$spin"]),
+    section("simulation", duration=1.0))
 
 
 class Response(LinearTest):
@@ -264,8 +205,11 @@ class Sweep(LinearTest):
 
     def test_what_a_sweep_cannot_follow(self):
         self.make_boom(4)
-        self.write("count.toml", '[parameters]\nn = 2\n[[body]]\nname = "boom"\nfile = "boom.h5"\nmodes = "$n"\n'
-                   '[[hinge]]\nname = "clamp"\ntype = "fixed"\nchild = "boom"\n[simulation]\nduration = 1.0\n')
+        self.write("count.toml", toml(
+            section("parameters", n=2),
+            table("body", "boom", file="boom.h5", modes="$n"),
+            table("hinge", "clamp", "fixed", child="boom"),
+            section("simulation", duration=1.0)))
         self.fails(3, "linearize", "count.toml", "--sweep", "n=2:4:3", error="linear.sweep-states")
         # Two rotors on springs, one spring as stiff as the other is soft: far apart values turn their motions around.
         self.write("two.toml", "\n".join(
@@ -273,8 +217,9 @@ class Sweep(LinearTest):
             [f'[[body]]\nname = "{name}"\nmass = 1.0\ncg = [0.0, 0.0, 0.0]\ninertia = [1.0, 1.0, {inertia}]'
              for name, inertia in [("one", 1.0), ("two", 1.0)]] +
             ['[[hinge]]\nname = "root"\ntype = "revolute"\nchild = "one"\naxis = [0.0, 0.0, 1.0]\nstiffness = ["$k"]',
-             '[[hinge]]\nname = "joint"\ntype = "revolute"\nparent = "one"\nchild = "two"\naxis = [0.0, 0.0, 1.0]\n'
-             'stiffness = [1.0]\n[simulation]\nduration = 1.0\n']))
+             toml(
+                 table("hinge", "joint", "revolute", parent="one", child="two", axis=[0.0, 0.0, 1.0], stiffness=[1.0]),
+                 section("simulation", duration=1.0))]))
         result = self.bough("linearize", "two.toml", "--sweep", "k=0.001:1000:2")
         self.assertIn("[linear.sweep-jump]", result.stderr)
         result = self.bough("linearize", "two.toml", "--sweep", "k=0.1:10:40:log")
@@ -303,7 +248,7 @@ class Zeros(LinearTest):
         for inertia in (0.1, 10.0):
             name = self.write_hub("hub.toml", inertia=inertia)
             with open(self.path(name), "a") as f:
-                f.write('[[sensor]]\nname = "place"\ntype = "position"\nbody = "boom"\nnode = 41\n')
+                f.write(table("sensor", "place", "position", body="boom", node=41))
             model = self.linearize("hub.toml", "--outputs", "place:y")
             zeros = model["zeros/real"] + 1j * model["zeros/imag"]
             for exact in (2 * c * c, -2 * c * c):

@@ -10,56 +10,20 @@ import numpy as np
 import scipy.io
 
 from support import ProgramTest
+from toml_text import section, table, toml
 
-SATELLITE = """[[body]]
-name = "sat"
-mass = 1.0
-inertia = [5.0, 2.0, 9.0, 0.0, 0.0, 0.0]
+SATELLITE = toml(
+    table("body", "sat", mass=1.0, inertia=[5.0, 2.0, 9.0, 0.0, 0.0, 0.0]),
+    table("hinge", "f", "free", child="sat", rate=[0.1, 0.0, 1.0, 0.0, 0.0, 0.0]),
+    table("function", "thrust", "table", file="thrust.csv"),
+    table("force", "push", body="sat", force=[0.0, 0.0, 1.0], function="thrust"),
+    section("simulation", duration=4.0, output_step=0.1))
 
-[[hinge]]
-name = "f"
-type = "free"
-child = "sat"
-rate = [0.1, 0.0, 1.0, 0.0, 0.0, 0.0]
-
-[[function]]
-name = "thrust"
-type = "table"
-file = "thrust.csv"
-
-[[force]]
-name = "push"
-body = "sat"
-force = [0.0, 0.0, 1.0]
-function = "thrust"
-
-[simulation]
-duration = 4.0
-output_step = 0.1
-"""
-
-PENDULUM = """[[body]]
-name = "bob"
-mass = 1.0
-cg = [0.0, -1.0, 0.0]
-inertia = [0.001, 0.001, 0.001, 0.0, 0.0, 0.0]
-
-[[hinge]]
-name = "pin"
-type = "revolute"
-child = "bob"
-position = 1.0
-
-[[sensor]]
-name = "angle"
-type = "hinge_angle"
-hinge = "pin"
-
-[simulation]
-duration = 2.0
-output_step = 0.1
-gravity = [0.0, -9.81, 0.0]
-"""
+PENDULUM = toml(
+    table("body", "bob", mass=1.0, cg=[0.0, -1.0, 0.0], inertia=[0.001, 0.001, 0.001, 0.0, 0.0, 0.0]),
+    table("hinge", "pin", "revolute", child="bob", position=1.0),
+    table("sensor", "angle", "hinge_angle", hinge="pin"),
+    section("simulation", duration=2.0, output_step=0.1, gravity=[0.0, -9.81, 0.0]))
 
 
 def read_text(attribute):
@@ -89,50 +53,17 @@ class Check(ProgramTest):
         self.assertNotIn("expected 3", result.stderr)
 
     def test_all_errors_in_one_round(self):
-        self.write("four.toml", """[[body]]
-name = "a"
-mass = 1.0
-inertia = [1.0, 1.0, -1.0, 0.0, 0.0, 0.0]
-[[body]]
-name = "b"
-mass = 1.0
-inertia = [1.0, 1.0, 1.0, 0.0, 0.0, 0.0]
-[[body]]
-name = "c"
-file = "none.h5"
-[[hinge]]
-name = "h"
-type = "revolute"
-parent = "b"
-parent_node = 7
-child = "a"
-[[force]]
-name = "f"
-body = "b"
-node = 9
-force = [1.0, 0.0, 0.0]
-[[sensor]]
-name = "s"
-type = "position"
-body = "b"
-node = 5
-[[sensor]]
-name = "on_a"
-type = "position"
-body = "a"
-node = 8
-[[sensor]]
-name = "on_c"
-type = "position"
-body = "c"
-node = 8
-[[event]]
-name = "e"
-signal = "on_d:x"
-[simulation]
-duration = 1.0
-start = 1e18
-""")
+        self.write("four.toml", toml(
+            table("body", "a", mass=1.0, inertia=[1.0, 1.0, -1.0, 0.0, 0.0, 0.0]),
+            table("body", "b", mass=1.0, inertia=[1.0, 1.0, 1.0, 0.0, 0.0, 0.0]),
+            table("body", "c", file="none.h5"),
+            table("hinge", "h", "revolute", parent="b", parent_node=7, child="a"),
+            table("force", "f", body="b", node=9, force=[1.0, 0.0, 0.0]),
+            table("sensor", "s", "position", body="b", node=5),
+            table("sensor", "on_a", "position", body="a", node=8),
+            table("sensor", "on_c", "position", body="c", node=8),
+            table("event", "e", signal="on_d:x"),
+            section("simulation", duration=1.0, start=1e18)))
         result = self.fails(1, "check", "four.toml")
         for error, line in [("system.bad-inertia", 1), ("cli.no-body-file", 9), ("system.unknown-node", 12),
                             ("system.unknown-node", 18), ("sensor.unknown-node", 23), ("run.bad-simulation", 41)]:
@@ -172,8 +103,8 @@ class Resume(ProgramTest):
         before = open(self.path("sat.h5"), "rb").read()
         for old, new, line, words in [
                 ("9.0, 0.0", "8.0, 0.0", 4, "body 'sat': inertia is [5, 2, 8, 0, 0, 0], was [5, 2, 9, 0, 0, 0] when the run was started"),
-                ("rate = [0.1", "rate = [0.2", 10, "hinge 'f': rate is"),
-                ("duration = 4.0", "duration = 6.0\nintegrator = \"rk\"", 25, "simulation: integrator was not there"),
+                ("rate = [0.1", "rate = [0.2", 9, "hinge 'f': rate is"),
+                ("duration = 4.0", "duration = 6.0\nintegrator = \"rk\"", 21, "simulation: integrator was not there"),
                 ("child = \"sat\"\n", "", 6, "missing")]:
             with self.subTest(words):
                 self.write("sat.toml", SATELLITE.replace(old, new))

@@ -109,8 +109,8 @@ class SampledLoop(LinearTest):
         self.write_axis(0.04)
         with open(self.path("axis.toml")) as f:
             text = f.read()
-        text = text.replace('hinge = "axis"\n\n[[sensor]]',
-                            'hinge = "axis"\nsample_time = 0.05\n\n[[sensor]]', 1)
+        text = text.replace('hinge = "axis"\n[[sensor]]',
+                            'hinge = "axis"\nsample_time = 0.05\n[[sensor]]', 1)
         self.write("axis.toml", text)
         self.bough("linearize", "axis.toml", "--break", "law", "-o", "loop.h5")
         self.bough("response", "loop.h5", "-o", "r.h5")

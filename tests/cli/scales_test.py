@@ -5,6 +5,7 @@ import h5py
 import numpy as np
 
 from support import ProgramTest
+from toml_text import section, table, toml
 
 
 class Scales(ProgramTest):
@@ -27,28 +28,11 @@ class Scales(ProgramTest):
         return users
 
     def make_run(self):
-        self.write("pendulum.toml", """[[body]]
-name = "bob"
-mass = 2.0
-cg = [0.0, -0.7, 0.0]
-
-[[hinge]]
-name = "pin"
-type = "revolute"
-child = "bob"
-axis = [0.0, 0.0, 1.0]
-position = [0.4]
-
-[[sensor]]
-name = "angle"
-type = "hinge_angle"
-hinge = "pin"
-
-[simulation]
-duration = 0.5
-output_step = 0.01
-gravity = [0.0, -9.81, 0.0]
-""")
+        self.write("pendulum.toml", toml(
+            table("body", "bob", mass=2.0, cg=[0.0, -0.7, 0.0]),
+            table("hinge", "pin", "revolute", child="bob", axis=[0.0, 0.0, 1.0], position=[0.4]),
+            table("sensor", "angle", "hinge_angle", hinge="pin"),
+            section("simulation", duration=0.5, output_step=0.01, gravity=[0.0, -9.81, 0.0])))
         self.bough("run", "pendulum.toml", "-o", "run.h5")
 
     def test_channels_that_are_too_many_have_none(self):

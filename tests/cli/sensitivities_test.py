@@ -5,14 +5,9 @@ import unittest
 import numpy as np
 
 from support import ProgramTest
+from decks import begin
 
-BEAM = """SOL 200
-CEND
-SPC = 1
-METHOD = 1
-{case}
-BEGIN BULK
-EIGRL,1,,,{modes}
+BEAM = begin(200, "SPC = 1", "METHOD = 1", "{case}") + """EIGRL,1,,,{modes}
 {grids}SPC1,1,123456,1
 SPC1,1,14,2,THRU,11
 PBAR,1,1,1.-3,{i1},{i2},3.-6

@@ -5,22 +5,13 @@ import subprocess
 import unittest
 
 from support import ABORT, BEAM, IN_OUTPUTS, LOOP, PROGRAM, ProgramTest, get_astray, served
+from toml_text import section, table, toml
 
-TOP = """[[body]]
-name = "top"
-mass = 1.0
-inertia = [1.0, 1.0, 1.0]
-[[hinge]]
-name = "pin"
-type = "revolute"
-child = "top"
-[[sensor]]
-name = "angle"
-type = "hinge_angle"
-hinge = "pin"
-[simulation]
-duration = 1.0
-"""
+TOP = toml(
+    table("body", "top", mass=1.0, inertia=[1.0, 1.0, 1.0]),
+    table("hinge", "pin", "revolute", child="top"),
+    table("sensor", "angle", "hinge_angle", hinge="pin"),
+    section("simulation", duration=1.0))
 
 
 @unittest.skipUnless(served.LIBRARY, "each call is a start here: the sanitizers want to be loaded first")

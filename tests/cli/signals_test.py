@@ -12,152 +12,44 @@ import scipy.io
 from scipy.interpolate import CubicSpline
 
 from support import ProgramTest
+from toml_text import section, table, toml
 
-CART = """
-[[body]]
-name = "cart"
-mass = 2.0
+CART = toml(
+    table("body", "cart", mass=2.0),
+    table("hinge", "rail", "prismatic", child="cart", axis=[1.0, 0.0, 0.0]),
+    table("function", "push", "table", file="FILE", interpolation="INTERPOLATION"),
+    "COLUMNS\n",
+    table("force", "hand", body="cart", force=[1.0, 0.0, 0.0], function="push"),
+    section("simulation", duration=2.0, output_step=0.1, integrator="rk", relative_tolerance=1e-11,
+            absolute_tolerance=1e-13))
 
-[[hinge]]
-name = "rail"
-type = "prismatic"
-child = "cart"
-axis = [1.0, 0.0, 0.0]
-
-[[function]]
-name = "push"
-type = "table"
-file = "FILE"
-COLUMNS
-interpolation = "INTERPOLATION"
-
-[[force]]
-name = "hand"
-body = "cart"
-force = [1.0, 0.0, 0.0]
-function = "push"
-
-[simulation]
-duration = 2.0
-output_step = 0.1
-integrator = "rk"
-relative_tolerance = 1e-11
-absolute_tolerance = 1e-13
-"""
-
-LOOP = """
-name = 'the "loop" \\ of A'
-
-[[body]]
-name = "rotor <1>"
-mass = 1.0
-inertia = [1.0, 1.0, 2.0]
-
-[[hinge]]
-name = "axis"
-type = "revolute"
-child = "rotor <1>"
-
-[[function]]
-name = "target"
-type = "doublet"
-value = 0.5
-at = 0.5
-width = 1.0
-
-[[sensor]]
-name = "angle"
-type = "hinge_angle"
-hinge = "axis"
-
-[[sensor]]
-name = "rate"
-type = "hinge_rate"
-hinge = "axis"
-sample_time = 0.01
-
-[[controller]]
-name = 'law "a\\b"'
-type = "pid"
-inputs = ["angle"]
-reference = "target"
-kp = 6.0
-
-[[controller]]
-name = "damper"
-type = "gain"
-gain = 1.0
-
-[[controller]]
-name = "command"
-type = "sum"
-
-[[actuator]]
-name = "drive"
-type = "hinge"
-hinge = "axis"
-
-[[connect]]
-from = "rate"
-to = "damper"
-gain = -4.0
-
-[[connect]]
-from = 'law "a\\b"'
-to = "command:1"
-
-[[connect]]
-from = "damper"
-to = "command:2"
-
-[[connect]]
-from = "command"
-to = "drive"
-
-[[event]]
-name = "let_go"
-time = 1.0
-action = "disable"
-controller = 'law "a\\b"'
-
-[simulation]
-duration = 2.0
-"""
+LOOP = toml(
+    table("body", "rotor <1>", mass=1.0, inertia=[1.0, 1.0, 2.0]),
+    table("hinge", "axis", "revolute", child="rotor <1>"),
+    table("function", "target", "doublet", value=0.5, at=0.5, width=1.0),
+    table("sensor", "angle", "hinge_angle", hinge="axis"),
+    table("sensor", "rate", "hinge_rate", hinge="axis", sample_time=0.01),
+    table("controller", 'law "a\\b"', "pid", inputs=["angle"], reference="target", kp=6.0),
+    table("controller", "damper", "gain", gain=1.0),
+    table("controller", "command", "sum"),
+    table("actuator", "drive", "hinge", hinge="axis"),
+    table("connect", from_="rate", to="damper", gain=-4.0),
+    table("connect", from_='law "a\\b"', to="command:1"),
+    table("connect", from_="damper", to="command:2"),
+    table("connect", from_="command", to="drive"),
+    table("event", "let_go", time=1.0, action="disable", controller='law "a\\b"'),
+    section("simulation", duration=2.0),
+    name='the "loop" \\ of A')
 
 
-AXIS = """
-[[body]]
-name = "cart"
-mass = 1.5
-
-[[hinge]]
-name = "rail"
-type = "prismatic"
-child = "cart"
-axis = [1.0, 0.0, 0.0]
-damping = 2.0
-
-[[sensor]]
-name = "x"
-type = "hinge_angle"
-hinge = "rail"
-
-[[controller]]
-name = "law"
-type = "pid"
-inputs = "x"
-LAW
-
-[[actuator]]
-name = "drive"
-type = "hinge"
-hinge = "rail"
-input = "law"
-
-[simulation]
-duration = 3.0
-gravity = [-4.0, 0.0, 0.0]
-"""
+AXIS = toml(
+    table("body", "cart", mass=1.5),
+    table("hinge", "rail", "prismatic", child="cart", axis=[1.0, 0.0, 0.0], damping=2.0),
+    table("sensor", "x", "hinge_angle", hinge="rail"),
+    table("controller", "law", "pid", inputs="x"),
+    "LAW\n",
+    table("actuator", "drive", "hinge", hinge="rail", input="law"),
+    section("simulation", duration=3.0, gravity=[-4.0, 0.0, 0.0]))
 
 
 class BadFunctions(ProgramTest):
@@ -178,16 +70,8 @@ class BadFunctions(ProgramTest):
                 self.fails(1, "check", "bad.toml", says=["bad.toml:"])
 
     def test_a_missing_input_is_said_once(self):
-        self.write("bad.toml", AXIS.replace("LAW", "kp = 25.0").replace("[simulation]", """
-[[controller]]
-name = "c"
-type = "sum"
-
-[[connect]]
-from = "x"
-to = "c:3"
-
-[simulation]"""))
+        self.write("bad.toml", AXIS.replace("LAW", "kp = 25.0").replace("[simulation]", toml(
+            table("controller", "c", "sum"), table("connect", from_="x", to="c:3"), "[simulation]")))
         said = self.fails(1, "check", "bad.toml", error="control.bad-connect", says=["has no input 1, and one after it"])
         self.assertNotIn("''", said.stderr)
 
@@ -214,35 +98,17 @@ class Rest(ProgramTest):
         self.assertIn("it has other controllers or actuators than this system", run.stderr)
 
     def test_a_cut_that_opens_nothing_is_said(self):
-        text = AXIS.replace("LAW", "kp = 25.0").replace("[[controller]]", """[[sensor]]
-name = "spare"
-type = "hinge_rate"
-hinge = "rail"
-
-[[controller]]""", 1)
+        text = AXIS.replace("LAW", "kp = 25.0").replace(
+            "[[controller]]", table("sensor", "spare", "hinge_rate", hinge="rail") + "[[controller]]", 1)
         self.write("axis.toml", text)
         self.assertIn("[linear.nothing-cut]", self.bough("linearize", "axis.toml", "--break", "spare").stderr)
         self.assertNotIn("linear.nothing-cut", self.bough("linearize", "axis.toml", "--break", "x", "-o", "l.h5").stderr)
 
     def test_no_way_from_an_input_to_an_output_is_said(self):
-        self.write("two.toml", AXIS.replace("LAW", "kp = 25.0").replace("[[sensor]]", """[[body]]
-name = "other"
-mass = 1.0
-
-[[hinge]]
-name = "aside"
-type = "prismatic"
-child = "other"
-axis = [0.0, 1.0, 0.0]
-stiffness = 5.0
-damping = 1.0
-
-[[sensor]]
-name = "y"
-type = "hinge_angle"
-hinge = "aside"
-
-[[sensor]]""", 1))
+        self.write("two.toml", AXIS.replace("LAW", "kp = 25.0").replace("[[sensor]]", toml(
+            table("body", "other", mass=1.0),
+            table("hinge", "aside", "prismatic", child="other", axis=[0.0, 1.0, 0.0], stiffness=5.0, damping=1.0),
+            table("sensor", "y", "hinge_angle", hinge="aside"), "[[sensor]]"), 1))
         self.bough("linearize", "two.toml", "--outputs", "y", "-o", "l.h5")
         self.assertIn("no way leads from", self.bough("response", "l.h5").stdout)
 
@@ -250,33 +116,12 @@ hinge = "aside"
 class Kinks(ProgramTest):
     def test_the_balance_of_a_small_energy_under_a_force_with_corners(self):
         """A free mass under a triangle wave, all defaults: the motion is right, and so is its balance."""
-        self.write("wave.toml", """
-[[body]]
-name = "cart"
-mass = 1.0
-
-[[hinge]]
-name = "rail"
-type = "prismatic"
-child = "cart"
-axis = [1.0, 0.0, 0.0]
-
-[[function]]
-name = "f"
-type = "sawtooth"
-amplitude = 0.4
-frequency_hz = 1.6
-rise = 0.5
-
-[[force]]
-name = "push"
-body = "cart"
-force = [1.0, 0.0, 0.0]
-function = "f"
-
-[simulation]
-duration = 4.0
-""")
+        self.write("wave.toml", toml(
+            table("body", "cart", mass=1.0),
+            table("hinge", "rail", "prismatic", child="cart", axis=[1.0, 0.0, 0.0]),
+            table("function", "f", "sawtooth", amplitude=0.4, frequency_hz=1.6, rise=0.5),
+            table("force", "push", body="cart", force=[1.0, 0.0, 0.0], function="f"),
+            section("simulation", duration=4.0)))
         with open(self.path("wave.toml")) as file:
             text = file.read()
         # The backward differences leave the rate itself 1e-3 of its energy.
@@ -292,39 +137,13 @@ duration = 4.0
 
 class DoubleGimbal(ProgramTest):
     def test_keeps_the_momentum(self):
-        self.write("flyer.toml", """
-[[body]]
-name = "craft"
-mass = 5.0
-inertia = [2.0, 3.0, 4.0]
-
-[[function]]
-name = "f"
-type = "sine"
-amplitude = 0.4
-frequency_hz = 0.3
-
-[[controller]]
-name = "rates"
-type = "expression"
-inputs = ["f"]
-expression = ["u1", "0.2 - u1"]
-
-[[actuator]]
-name = "gimbals"
-type = "double_gimbal_cmg"
-body = "craft"
-momentum = 1.5
-gimbal_axis = [0.0, 0.0, 1.0]
-inner_axis = [1.0, 0.0, 0.0]
-spin_axis = [0.0, 1.0, 0.0]
-angle_deg = [10.0, -20.0]
-input = "rates"
-
-[simulation]
-duration = 3.0
-integrator = "rk"
-""")
+        self.write("flyer.toml", toml(
+            table("body", "craft", mass=5.0, inertia=[2.0, 3.0, 4.0]),
+            table("function", "f", "sine", amplitude=0.4, frequency_hz=0.3),
+            table("controller", "rates", "expression", inputs=["f"], expression=["u1", "0.2 - u1"]),
+            table("actuator", "gimbals", "double_gimbal_cmg", body="craft", momentum=1.5, gimbal_axis=[0.0, 0.0, 1.0],
+                  inner_axis=[1.0, 0.0, 0.0], spin_axis=[0.0, 1.0, 0.0], angle_deg=[10.0, -20.0], input="rates"),
+            section("simulation", duration=3.0, integrator="rk")))
         self.bough("run", "flyer.toml", "-o", "flyer.h5")
         with h5py.File(self.path("flyer.h5")) as f:
             momentum = f["/momentum/angular"][:]
@@ -410,17 +229,10 @@ class Functions(ProgramTest):
         self.fails(1, "run", "cart.toml", "-o", "cart.h5", "--resume", error="cli.changed-input")
 
     def test_functions_of_functions(self):
-        text = CART[:CART.index("[[function]]")] + """
-[[function]]
-name = "sway"
-type = "expression"
-expression = "0.1*t^3*exp(-t)"
-rate = "0.1*(3*t^2 - t^3)*exp(-t)"
-acceleration = "0.1*(6*t - 6*t^2 + t^3)*exp(-t)"
-
-[simulation]
-duration = 2.0
-"""
+        text = CART[:CART.index("[[function]]")] + toml(
+            table("function", "sway", "expression", expression="0.1*t^3*exp(-t)", rate="0.1*(3*t^2 - t^3)*exp(-t)",
+                  acceleration="0.1*(6*t - 6*t^2 + t^3)*exp(-t)"),
+            section("simulation", duration=2.0))
         moved = text.replace('axis = [1.0', 'motion = ["sway"]\naxis = [1.0')
         self.write("sway.toml", moved)
         self.bough("run", "sway.toml", "-o", "sway.h5")
@@ -431,7 +243,7 @@ duration = 2.0
             np.testing.assert_allclose(force, 0.2 * (6 * t - 6 * t**2 + t**3) * np.exp(-t), atol=1e-9)
         self.write("bad.toml", re.sub(r"rate = .*\nacceleration = .*\n", "", moved))
         self.fails(1, "check", "bad.toml", error="system.motion-without-rate")
-        loop = '[[function]]\nname = "a"\ntype = "sum"\nof = ["b"]\n[[function]]\nname = "b"\ntype = "product"\nof = ["a"]\n'
+        loop = toml(table("function", "a", "sum", of=["b"]), table("function", "b", "product", of=["a"]))
         self.write("bad.toml", text.replace("[simulation]", loop + "[simulation]"))
         self.fails(1, "check", "bad.toml", error="function.loop", says=["a of b of a"])
 
@@ -480,52 +292,15 @@ class Diagram(ProgramTest):
         self.assertIn("install graphviz, or write .dot", result.stderr)
 
 
-RELAY = """
-[[body]]
-name = "rotor"
-mass = 1.0
-inertia = [1.0, 1.0, 1.0]
-
-[[hinge]]
-name = "axis"
-type = "revolute"
-child = "rotor"
-position = 1.0
-
-[[sensor]]
-name = "angle"
-type = "hinge_angle"
-hinge = "axis"
-
-[[sensor]]
-name = "rate"
-type = "hinge_rate"
-hinge = "axis"
-
-[[controller]]
-name = "line"
-type = "gain"
-inputs = ["angle", "rate"]
-gain = [[1.0, 2.0]]
-
-[[controller]]
-name = "bang"
-type = "relay"
-inputs = ["line"]
-on = 1e-5
-off = -1e-5
-value = -1.0
-low = 1.0
-
-[[actuator]]
-name = "drive"
-type = "hinge"
-hinge = "axis"
-input = "bang"
-
-[simulation]
-duration = 5.0
-"""
+RELAY = toml(
+    table("body", "rotor", mass=1.0, inertia=[1.0, 1.0, 1.0]),
+    table("hinge", "axis", "revolute", child="rotor", position=1.0),
+    table("sensor", "angle", "hinge_angle", hinge="axis"),
+    table("sensor", "rate", "hinge_rate", hinge="axis"),
+    table("controller", "line", "gain", inputs=["angle", "rate"], gain=[[1.0, 2.0]]),
+    table("controller", "bang", "relay", inputs=["line"], on=1e-5, off=-1e-5, value=-1.0, low=1.0),
+    table("actuator", "drive", "hinge", hinge="axis", input="bang"),
+    section("simulation", duration=5.0))
 
 
 class Runs(ProgramTest):
@@ -534,7 +309,7 @@ class Runs(ProgramTest):
         said = self.bough("run", "slide.toml", "-o", "slide.h5")
         self.assertEqual(said.stderr.count("[control.sliding]"), 1)
         self.assertIn("controller 'bang' has switched 500 times", said.stderr)
-        self.assertIn("slide.toml:29: warning", said.stderr)
+        self.assertIn("slide.toml:23: warning", said.stderr)
         self.write("calm.toml", RELAY.replace("1e-5", "1e-2"))
         self.assertNotIn("control.sliding", self.bough("run", "calm.toml", "-o", "calm.h5").stderr)
 

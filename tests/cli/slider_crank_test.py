@@ -5,67 +5,28 @@ import h5py
 import numpy as np
 
 from support import ProgramTest
+from planar_chain import name_sensor, write_segments
+from toml_text import section, table, toml
 
 BARS, EI, RHO_A, LENGTH, CRANK = 20, 7.0, 0.27, 1.0, 0.2
 SEGMENTS = 16
 # Damping in proportion to stiffness: 5 % in the first mode.
 BETA = 0.1 / (np.pi**2 * np.sqrt(EI / RHO_A))
 
-BODY = """[body]
-name = "rod"
-deck = "rod.bdf"
-frame = "fixed"
-interface = [1, 21]
+BODY = toml(
+    section("body", name="rod", deck="rod.bdf", frame="fixed", interface=[1, 21]),
+    section("body.modes", number=3),
+    section("body.output", file="rod.h5"))
 
-[body.modes]
-number = 3
-
-[body.output]
-file = "rod.h5"
-"""
-
-FRAME = """[[body]]
-name = "crank"
-mass = 1.0
-cg = [0.1, 0.0, 0.0]
-inertia = [0.01, 0.01, 0.01]
-nodes = [{id = 1, position = [0.2, 0.0, 0.0]}]
-
-[[body]]
-name = "piston"
-mass = 0.5
-inertia = [0.01, 0.01, 0.01]
-
-[[hinge]]
-name = "shaft"
-type = "revolute"
-child = "crank"
-motion = "angle"
-
-[[hinge]]
-name = "slide"
-type = "prismatic"
-child = "piston"
-axis = [1.0, 0.0, 0.0]
-position = [1.2]
-
-[[function]]
-name = "angle"
-type = "spinup"
-rate = 10.0
-duration = 0.5
-
-[simulation]
-duration = 0.9
-output_step = 0.01
-integrator = "INTEGRATOR"
-relative_tolerance = 1e-7
-absolute_tolerance = 1e-9
-"""
-
-
-def name_sensor(name, body, node):
-    return f'[[sensor]]\nname = "{name}"\ntype = "position"\nbody = "{body}"\nnode = {node}\n'
+FRAME = toml(
+    table("body", "crank", mass=1.0, cg=[0.1, 0.0, 0.0], inertia=[0.01, 0.01, 0.01],
+          nodes=[{"id": 1, "position": [0.2, 0.0, 0.0]}]),
+    table("body", "piston", mass=0.5, inertia=[0.01, 0.01, 0.01]),
+    table("hinge", "shaft", "revolute", child="crank", motion="angle"),
+    table("hinge", "slide", "prismatic", child="piston", axis=[1.0, 0.0, 0.0], position=[1.2]),
+    table("function", "angle", "spinup", rate=10.0, duration=0.5),
+    section("simulation", duration=0.9, output_step=0.01, integrator="INTEGRATOR", relative_tolerance=1e-7,
+            absolute_tolerance=1e-9))
 
 
 class SliderCrank(ProgramTest):
@@ -88,57 +49,20 @@ class SliderCrank(ProgramTest):
         self.write("rod.bdf", "\n".join(deck + ["ENDDATA", ""]))
         self.bough("reduce", self.write("rod.toml", BODY))
         ratios = [BETA / 2 * (j * np.pi)**2 * np.sqrt(EI / RHO_A) for j in (1, 2, 3)]
-        return FRAME.replace("INTEGRATOR", "rk") + f"""
-[[body]]
-name = "rod"
-file = "rod.h5"
-damping = {ratios}
-STIFFENING
-
-[[hinge]]
-name = "pin"
-type = "revolute"
-parent = "crank"
-parent_node = 1
-child = "rod"
-child_node = 1
-
-[[constraint]]
-name = "wrist"
-type = "spherical"
-parent = "rod"
-parent_node = 21
-child = "piston"
-""" + name_sensor("first", "rod", 1) + name_sensor("middle", "rod", 11) + name_sensor("last", "rod", 21)
+        return toml(
+            FRAME.replace("INTEGRATOR", "rk"),
+            table("body", "rod", file="rod.h5", damping=ratios), "STIFFENING\n",
+            table("hinge", "pin", "revolute", parent="crank", parent_node=1, child="rod", child_node=1),
+            table("constraint", "wrist", "spherical", parent="rod", parent_node=21, child="piston"),
+            name_sensor("first", "rod", 1), name_sensor("middle", "rod", 11), name_sensor("last", "rod", 21))
 
     def make_chain(self):
-        text, h = FRAME.replace("INTEGRATOR", "bdf"), LENGTH / SEGMENTS
-        m = RHO_A * h
-        for i in range(SEGMENTS):
-            text += f"""
-[[body]]
-name = "s{i}"
-mass = {m!r}
-cg = [{h / 2!r}, 0.0, 0.0]
-inertia = [1e-6, {m * h * h / 12!r}, {m * h * h / 12!r}]
-nodes = [{{id = 1, position = [{h!r}, 0.0, 0.0]}}]
-
-[[hinge]]
-name = "j{i}"
-type = "revolute"
-parent = "{'crank' if i == 0 else f's{i - 1}'}"
-parent_node = 1
-child = "s{i}"
-""" + (f"stiffness = {EI / h!r}\ndamping = {BETA * EI / h!r}\n" if i > 0 else "")
-        return text + f"""
-[[constraint]]
-name = "wrist"
-type = "spherical"
-parent = "s{SEGMENTS - 1}"
-parent_node = 1
-child = "piston"
-""" + name_sensor("first", "s0", 0) + name_sensor("middle", f"s{SEGMENTS // 2}", 0) + name_sensor(
-            "last", f"s{SEGMENTS - 1}", 1)
+        h = LENGTH / SEGMENTS
+        return toml(
+            FRAME.replace("INTEGRATOR", "bdf"), write_segments(SEGMENTS, h, RHO_A * h, 1e-6, EI, BETA, "crank"),
+            table("constraint", "wrist", "spherical", parent=f"s{SEGMENTS - 1}", parent_node=1, child="piston"),
+            name_sensor("first", "s0", 0), name_sensor("middle", f"s{SEGMENTS // 2}", 0),
+            name_sensor("last", f"s{SEGMENTS - 1}", 1))
 
     def test_flexible_rod_bends_as_its_segments_do(self):
         flexible = self.make_flexible()

@@ -6,33 +6,18 @@ import h5py
 import numpy as np
 
 from support import ProgramTest
+from toml_text import Bare, section, table, toml
 
 MU, EARTH = 3.986004418e14, 6.378137e6
 
-SYSTEM = """[[body]]
-name = "sat"
-mass = 1000.0
-inertia = {inertia}
-[[hinge]]
-name = "orbit"
-type = "free"
-child = "sat"
-position = [{attitude}, {x}, 0.0, 0.0]
-rate = [{spin}, 0.0, {speed}, 0.0]
-[[force]]
-name = "earth"
-type = "gravity_central"
-mu = 3.986004418e14
-radius = 6378137.0
-dipole = [{dipole}]
-{more}
-[simulation]
-duration = {duration}
-output_step = {step}
-integrator = "rk"
-relative_tolerance = 1e-12
-absolute_tolerance = 1e-10
-"""
+SYSTEM = toml(
+    table("body", "sat", mass=1000.0, inertia=Bare("{inertia}")),
+    table("hinge", "orbit", "free", child="sat", position=[Bare("{attitude}"), Bare("{x}"), 0.0, 0.0],
+          rate=[Bare("{spin}"), 0.0, Bare("{speed}"), 0.0]),
+    table("force", "earth", "gravity_central", mu=3.986004418e14, radius=6378137.0, dipole=[Bare("{dipole}")]),
+    "{more}\n",
+    section("simulation", duration=Bare("{duration}"), output_step=Bare("{step}"), integrator="rk",
+            relative_tolerance=1e-12, absolute_tolerance=1e-10))
 
 
 class SpaceEnvironment(ProgramTest):
@@ -58,34 +43,15 @@ class SpaceEnvironment(ProgramTest):
     def test_lvlh_is_the_reference_of_attitude_rate_and_place(self):
         """Kept to LVLH by its spin: x along the path, z to the centre, y against the orbit's normal (here +z)."""
         # R_WL at x = r: columns x = +y, y = -z, z = -x.
+        more = toml(
+            table("body", "free", mass=1.0, inertia=[1.0, 1.0, 1.0]),
+            table("hinge", "away", "free", child="free", position=[1.0, 0.0, 0.0, 0.0, 7e6, 0.0, 0.0],
+                  rate=[0.0, 0.0, 0.0, 0.0, 7500.0, 50.0]),
+            table("sensor", "error", "euler", body="sat", relative_to="lvlh:sat"),
+            table("sensor", "rate", "angular_velocity", body="sat", relative_to="lvlh:sat"),
+            table("sensor", "place", "position", body="free", relative_to="lvlh:sat"))
         found, r, n = self.run_system(attitude="0.5, -0.5, -0.5, 0.5", spin=f"0.0, {-math.sqrt(MU / (EARTH + 400e3)**3)!r}, 0.0",
-                                      turns=0.7, more="""
-[[body]]
-name = "free"
-mass = 1.0
-inertia = [1.0, 1.0, 1.0]
-[[hinge]]
-name = "away"
-type = "free"
-child = "free"
-position = [1.0, 0.0, 0.0, 0.0, 7e6, 0.0, 0.0]
-rate = [0.0, 0.0, 0.0, 0.0, 7500.0, 50.0]
-[[sensor]]
-name = "error"
-type = "euler"
-body = "sat"
-relative_to = "lvlh:sat"
-[[sensor]]
-name = "rate"
-type = "angular_velocity"
-body = "sat"
-relative_to = "lvlh:sat"
-[[sensor]]
-name = "place"
-type = "position"
-body = "free"
-relative_to = "lvlh:sat"
-""")
+                                      turns=0.7, more=more)
         self.assertLess(np.abs(found["sensors/error"]).max(), 1e-9)
         self.assertLess(np.abs(found["sensors/rate"]).max(), 1e-12)
         position, velocity = found["bodies/sat/position"], found["bodies/sat/velocity"]
@@ -99,8 +65,8 @@ relative_to = "lvlh:sat"
 
     def test_drag_lowers_a_circular_orbit_at_its_rate(self):
         """da/dt = -ρ C_d A/m √(μ a) in air at rest whose density is exponential in altitude."""
-        drag = '[[force]]\nname = "air"\ntype = "drag"\nbody = "sat"\narea = 4.0\ncoefficient = 2.2\ndensity = 5e-11\n' \
-               'planet = "earth"\nscale_height = 60e3\naltitude = 300e3\n'
+        drag = table("force", "air", "drag", body="sat", area=4.0, coefficient=2.2, density=5e-11, planet="earth",
+                     scale_height=60e3, altitude=300e3)
         found, r, n = self.run_system(height=330e3, more=drag, turns=10, samples=100)
         p, v = found["bodies/sat/position"], found["bodies/sat/velocity"]
         a = 1 / (2 / np.linalg.norm(p, axis=1) - np.sum(v * v, axis=1) / MU)
@@ -120,8 +86,8 @@ relative_to = "lvlh:sat"
         self.assertAlmostEqual(found["forces/air/force"][0, 1] / (-0.5 * 5e-11 * 8.8 * (n * r - spin * r)**2), 1, delta=1e-12)
 
     def test_sunlight_presses_and_the_earth_takes_it_away(self):
-        panel = '[[force]]\nname = "panel"\ntype = "solar_pressure"\nbody = "sat"\nnormal = [1.0, 1.0, 0.0]\narea = 10.0\n' \
-                'pressure = 4.56e-6\nsun = [1.0, 0.0, 0.0]\nspecular = 0.3\ndiffuse = 0.2\nplanet = "earth"\n'
+        panel = table("force", "panel", "solar_pressure", body="sat", normal=[1.0, 1.0, 0.0], area=10.0,
+                      pressure=4.56e-6, sun=[1.0, 0.0, 0.0], specular=0.3, diffuse=0.2, planet="earth")
         found, r, n = self.run_system(height=700e3, more=panel, samples=3000)
         force, light = found["forces/panel/force"], found["forces/panel/sunlight"].ravel()
         c = math.sqrt(0.5)
@@ -138,8 +104,10 @@ relative_to = "lvlh:sat"
         self.assertAlmostEqual(partial, 2 * 2 * 0.004652 / (2 * math.pi), delta=8e-4)
 
     def test_the_dipole_and_the_rods_torque(self):
-        more = '[[sensor]]\nname = "field"\ntype = "magnetometer"\nbody = "sat"\n[[function]]\nname = "m"\ntype = "constant"\n' \
-               'value = 30.0\n[[actuator]]\nname = "rod"\ntype = "torque_rod"\nbody = "sat"\naxis = [1.0, 0.0, 0.0]\ninput = "m"\n'
+        more = toml(
+            table("sensor", "field", "magnetometer", body="sat"),
+            table("function", "m", "constant", value=30.0),
+            table("actuator", "rod", "torque_rod", body="sat", axis=[1.0, 0.0, 0.0], input="m"))
         found, r, n = self.run_system(dipole="1e15, 2e15, -7.8e15", more=more, turns=0.05, samples=50)
         d = np.array([1e15, 2e15, -7.8e15])
         p, q = found["bodies/sat/position"], found["bodies/sat/quaternion"]
@@ -176,21 +144,21 @@ relative_to = "lvlh:sat"
     def test_what_cannot_be_is_named(self):
         base = {"inertia": "[1.0, 1.0, 1.0]", "attitude": "1.0, 0.0, 0.0, 0.0", "spin": "0.0, 0.0, 0.0", "x": "7e6",
                 "speed": "7.5e3", "dipole": "0.0, 0.0, 0.0", "duration": "10.0", "step": "1.0"}
-        panel = '[[force]]\nname = "p"\ntype = "solar_pressure"\nbody = "sat"\nnormal = [1.0, 0.0, 0.0]\narea = 1.0\n' \
-                'pressure = 4.56e-6\nsun = [1.0, 0.0, 0.0]\n'
+        panel = table("force", "p", "solar_pressure", body="sat", normal=[1.0, 0.0, 0.0], area=1.0, pressure=4.56e-6,
+                      sun=[1.0, 0.0, 0.0])
         for more, error in ((panel + 'planet = "erth"\n', "did you mean 'earth'"),
                             (panel + "specular = 0.8\ndiffuse = 0.4\n", "sum above one"),
-                            ('[[force]]\nname = "d"\ntype = "drag"\nbody = "sat"\narea = 1.0\ncoefficient = 2.0\ndensity = 1.0\n'
-                             'scale_height = 1.0\n', "no planet"),
-                            ('[[sensor]]\nname = "s"\ntype = "euler"\nbody = "sat"\nrelative_to = "lvlh:sot"\n', "lvlh:sot")):
+                            (table("force", "d", "drag", body="sat", area=1.0, coefficient=2.0, density=1.0,
+                                   scale_height=1.0), "no planet"),
+                            (table("sensor", "s", "euler", body="sat", relative_to="lvlh:sot"), "lvlh:sot")):
             self.write("bad.toml", SYSTEM.format(**base, more=more))
             self.assertIn(error, self.bough("check", "bad.toml", code=1).stderr)
         self.write("inside.toml", SYSTEM.format(**{**base, "x": "1e6"}, more=panel + 'planet = "earth"\n'))
         self.assertIn("run.inside-planet", self.bough("run", "inside.toml", "-o", "i.h5", code=3).stderr)
-        attitude = '[[sensor]]\nname = "s"\ntype = "euler"\nbody = "sat"\nrelative_to = "lvlh:sat"\n'
+        attitude = table("sensor", "s", "euler", body="sat", relative_to="lvlh:sat")
         self.write("radial.toml", SYSTEM.format(**{**base, "speed": "0.0"}, more=attitude))
         self.fails(3, "run", "radial.toml", "-o", "r.h5", says=["along the radius"], error="run.no-orbit")
-        moon = '[[force]]\nname = "moon"\ntype = "gravity_central"\nmu = 4.9e12\ncentre = [0.0, 4e8, 0.0]\n'
+        moon = table("force", "moon", "gravity_central", mu=4.9e12, centre=[0.0, 4e8, 0.0])
         self.write("two.toml", SYSTEM.format(**base, more=moon + attitude))
         self.fails(1, "run", "two.toml", "-o", "t.h5", says=["2 [[force]]s of type gravity_central"], error="sensor.no-orbit")
 

@@ -8,6 +8,7 @@ import h5py
 import numpy as np
 
 from support import ProgramTest
+from decks import mesh
 
 MATERIAL = "MAT1,1,7.+10,,.3,2700.\n"
 HEAD = "SOL 103\nCEND\n{control}BEGIN BULK\nPARAM,COUPMASS,1\nPARAM,AUTOSPC,YES\n"
@@ -35,13 +36,7 @@ def make_l_frame(n=12):
 def make_plate(nx=12, ny=3, more="SPC1,1,123456,1,14,27,40\n", control="SPC = 1\n"):
     """1.2 by 0.3 of 2 mm; grid j (nx + 1) + i + 1 at station i."""
     text = "PSHELL,1,1,.002,1,,1\nPARAM,K6ROT,100.\n"
-    for j in range(ny + 1):
-        for i in range(nx + 1):
-            text += f"GRID,{j * (nx + 1) + i + 1},,{.1 * i:.6g},{.1 * j:.6g},0.\n"
-    for j in range(ny):
-        for i in range(nx):
-            a = j * (nx + 1) + i + 1
-            text += f"CQUAD4,{j * nx + i + 1},1,{a},{a + 1},{a + nx + 2},{a + nx + 1}\n"
+    text += mesh(nx, ny, lambda i, j: f"{.1 * i:.6g},{.1 * j:.6g},0.")
     return HEAD.format(control=control) + MATERIAL + text + more + "ENDDATA\n"
 
 

@@ -10,6 +10,7 @@ import scipy.io
 import scipy.sparse
 
 from support import ProgramTest, launch_ranks
+from decks import row
 from verbs_test import make_column
 
 FRAME = """SOL 101
@@ -24,10 +25,7 @@ SUBCASE 3
 SPC = 2
 LOAD = 6
 BEGIN BULK
-GRID,1,,0.,0.,0.
-GRID,2,,1.,0.,0.
-GRID,3,,2.,0.,0.
-CBAR,1,1,1,2,0.,1.,0.
+""" + row(3) + """CBAR,1,1,1,2,0.,1.,0.
 CBAR,2,1,2,3,0.,1.,0.
 PBAR,1,1,1.-3,1.-8,1.-8,1.-8
 MAT1,1,7.+10,,.3,2700.

@@ -8,31 +8,15 @@ import meshio
 import numpy as np
 
 from support import ProgramTest, launch_ranks
+from toml_text import section, table, toml
 
-SYSTEM = """[[body]]
-name = "plate"
-file = "plate.h5"
-[[body]]
-name = "other"
-file = "plate.h5"
-[[hinge]]
-name = "base"
-type = "revolute"
-child = "plate"
-axis = [1.0, 0.0, 0.0]
-rate = [2.0]
-[[hinge]]
-name = "far"
-type = "revolute"
-parent_position = [0.0, 3.0, 0.0]
-child = "other"
-axis = [0.0, 1.0, 0.0]
-rate = [-4.0]
-[simulation]
-duration = 0.05
-output_step = 0.01
-gravity = [0.0, 0.0, -9.81]
-"""
+SYSTEM = toml(
+    table("body", "plate", file="plate.h5"),
+    table("body", "other", file="plate.h5"),
+    table("hinge", "base", "revolute", child="plate", axis=[1.0, 0.0, 0.0], rate=[2.0]),
+    table("hinge", "far", "revolute", parent_position=[0.0, 3.0, 0.0], child="other", axis=[0.0, 1.0, 0.0],
+          rate=[-4.0]),
+    section("simulation", duration=0.05, output_step=0.01, gravity=[0.0, 0.0, -9.81]))
 
 
 def expand(packed):
@@ -67,8 +51,11 @@ class StrainEnergy(ProgramTest):
 
     def test_a_preload_is_not_among_it(self):
         self.copy_example("ex05-plate")
-        self.write("body.toml", '[body]\nname = "plate"\ndeck = "plate.bdf"\n[body.preload]\nspin = [0.0, 0.0, 5.0]\n'
-                                '[body.modes]\nnumber = 3\n[body.output]\nfile = "spun.h5"\nstrain_energy = true\n')
+        self.write("body.toml", toml(
+            section("body", name="plate", deck="plate.bdf"),
+            section("body.preload", spin=[0.0, 0.0, 5.0]),
+            section("body.modes", number=3),
+            section("body.output", file="spun.h5", strain_energy=True)))
         self.bough("reduce", "body.toml")
         _, k, K, _ = self.read("spun.h5")
         with h5py.File(self.path("spun.h5")) as f:
@@ -129,8 +116,10 @@ class StrainEnergy(ProgramTest):
 
     def test_the_key_of_the_body_file(self):
         self.copy_example("ex05-plate")
-        self.write("body.toml", '[body]\nname = "plate"\ndeck = "plate.bdf"\n[body.modes]\nnumber = 2\n'
-                                '[body.output]\nfile = "keyed.h5"\nstrain_energy = true\n')
+        self.write("body.toml", toml(
+            section("body", name="plate", deck="plate.bdf"),
+            section("body.modes", number=2),
+            section("body.output", file="keyed.h5", strain_energy=True)))
         self.bough("reduce", "body.toml")
         _, k, K, _ = self.read("keyed.h5")
         np.testing.assert_allclose(k.sum(axis=0), K, atol=1e-10 * np.abs(K).max())

@@ -16,32 +16,30 @@ WIDTHS = {1: 5, 2: 111, 3: 5, 10: 5, 33: 17, 34: 16, 39: 109, 67: 193, 68: 151, 
 def read_stresses(op2):
     """(type, element) -> words after the id; of plies a list by layer, of solids {grid or 0: 20 numbers}."""
     found = {}
-    for table in ("OES1", "OES1C"):
-        for ident, data in op2.tables.get(table, []):
-            words = ident[0]
-            kind, wide = words[2], words[9]
-            assert words[1] == 5 and words[8] == 1 and wide == WIDTHS[kind], words[:12]
-            assert (words[10] == 0) == (kind in (95, 97))
-            assert (table == "OES1C") == (kind in (95, 97))
-            assert len(data) % (4 * wide) == 0
-            for at in range(0, len(data), 4 * wide):
-                (device,) = struct.unpack_from("<i", data, at)
-                assert device % 10 == words[0] % 10
-                key = (kind, device // 10)
-                if kind == 2:
-                    rows = [struct.unpack_from("<i9f", data, at + 4 + 40 * k) for k in range(11)]
-                    assert not any(any(row) for row in rows[1:10])
-                    found[key] = rows[0], rows[10]
-                elif kind in (39, 67, 68):
-                    cid, word, corners = struct.unpack_from("<i4si", data, at + 4)
-                    assert (cid, word) == (0, b"GRID") and wide == 4 + 21 * (corners + 1)
-                    rows = [struct.unpack_from("<i20f", data, at + 16 + 84 * k) for k in range(corners + 1)]
-                    found[key] = {row[0]: np.array(row[1:]) for row in rows}
-                elif kind in (95, 97):
-                    row = struct.unpack_from("<i9f", data, at + 4)
-                    found.setdefault(key, []).append(row)
-                else:
-                    found[key] = struct.unpack_from(f"<{wide - 1}f", data, at + 4)
+    for table, words, data in op2.list_stresses():
+        kind, wide = words[2], words[9]
+        assert words[1] == 5 and words[8] == 1 and wide == WIDTHS[kind], words[:12]
+        assert (words[10] == 0) == (kind in (95, 97))
+        assert (table == "OES1C") == (kind in (95, 97))
+        assert len(data) % (4 * wide) == 0
+        for at in range(0, len(data), 4 * wide):
+            (device,) = struct.unpack_from("<i", data, at)
+            assert device % 10 == words[0] % 10
+            key = (kind, device // 10)
+            if kind == 2:
+                rows = [struct.unpack_from("<i9f", data, at + 4 + 40 * k) for k in range(11)]
+                assert not any(any(row) for row in rows[1:10])
+                found[key] = rows[0], rows[10]
+            elif kind in (39, 67, 68):
+                cid, word, corners = struct.unpack_from("<i4si", data, at + 4)
+                assert (cid, word) == (0, b"GRID") and wide == 4 + 21 * (corners + 1)
+                rows = [struct.unpack_from("<i20f", data, at + 16 + 84 * k) for k in range(corners + 1)]
+                found[key] = {row[0]: np.array(row[1:]) for row in rows}
+            elif kind in (95, 97):
+                row = struct.unpack_from("<i9f", data, at + 4)
+                found.setdefault(key, []).append(row)
+            else:
+                found[key] = struct.unpack_from(f"<{wide - 1}f", data, at + 4)
     return found
 
 

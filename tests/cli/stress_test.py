@@ -7,6 +7,7 @@ import h5py
 import numpy as np
 
 from support import ProgramTest
+from decks import mesh
 
 HEAD = "SOL 101\nCEND\nSPC = 1\nLOAD = 2\nBEGIN BULK\nMAT1,1,7.+10,,.3,2700.\n"
 
@@ -23,15 +24,7 @@ def make_beam(elements, property_cards, load, card="CBAR"):
 
 def make_plate(cards, loads, n=1):
     """A square of side 1 in n x n CQUAD4, its first grid held, rigid motions alone taken away."""
-    text = HEAD
-    for j in range(n + 1):
-        for i in range(n + 1):
-            text += f"GRID,{j * (n + 1) + i + 1},,{i / n:.12g},{j / n:.12g},0.\n"
-    for j in range(n):
-        for i in range(n):
-            a = j * (n + 1) + i + 1
-            text += f"CQUAD4,{j * n + i + 1},1,{a},{a + 1},{a + n + 2},{a + n + 1}\n"
-    return text + cards + loads + f"SPC1,1,123,1\nSPC1,1,23,{n + 1}\nSPC1,1,3,{n * (n + 1) + 1}\nENDDATA\n"
+    return HEAD + mesh(n, n, lambda i, j: f"{i / n:.12g},{j / n:.12g},0.") + cards + loads + f"SPC1,1,123,1\nSPC1,1,23,{n + 1}\nSPC1,1,3,{n * (n + 1) + 1}\nENDDATA\n"
 
 
 class Case:

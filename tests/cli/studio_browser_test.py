@@ -8,7 +8,7 @@ import unittest
 import h5py
 import numpy as np
 
-from browser import Browser, find_chromium
+from browser import BrowserTest, find_chromium
 from studio_control_test import SYSTEM
 from studio_support import StudioTest
 from support import SOURCE
@@ -36,15 +36,16 @@ def make_plate():
 
 
 @unittest.skipUnless(find_chromium(), "chromium is not installed")
-class Flow(StudioTest):
-    @classmethod
-    def setUpClass(cls):
-        cls.browser = Browser()
-        cls.addClassCleanup(cls.browser.close)
-
+class Flow(StudioTest, BrowserTest):
     def setUp(self):
         super().setUp()
         self.browser.renew(1300, 850)
+
+    def open_studio(self, *arguments):
+        """The browser at the page of a studio with these arguments."""
+        self.start_studio(*arguments)
+        self.browser.visit(self.address)
+        return self.browser
 
     def keep(self, name):
         folder = os.environ.get("BOUGH_ARTEFACTS")
@@ -80,9 +81,7 @@ class Flow(StudioTest):
         else:
             self.write(name, make_plate())
         stem = name.rsplit(".", 1)[0]
-        self.start_studio(name)
-        page = self.browser
-        page.visit(self.address)
+        page = self.open_studio(name)
         self.wait("studio.view?.stage")
         self.assertGreater(page.run(COLORS), 10)
 
@@ -164,9 +163,7 @@ class Flow(StudioTest):
     def test_poles_and_blocks(self):
         """A pole that is clicked moves the system, poles follow a gain that is dragged, a block leads to its line."""
         self.write("sliders.toml", SYSTEM)
-        self.start_studio("sliders.toml")
-        page = self.browser
-        page.visit(self.address)
+        page = self.open_studio("sliders.toml")
         self.wait("document.querySelector('.scene-host').dataset.samples")
         page.click("button.linearize")
         self.wait("document.querySelector('.result').dataset.ready === 'linearize'")
@@ -215,9 +212,7 @@ class Flow(StudioTest):
     def test_changed_outside(self):
         """An editor outside and a text that is not saved: both are kept until the user chooses."""
         self.copy_example("ex01-spinup")
-        self.start_studio("spinup.toml")
-        page = self.browser
-        page.visit(self.address)
+        page = self.open_studio("spinup.toml")
         self.wait("document.querySelector('.text-pane').dataset.checked")
         page.click("input.command")
         page.type("set simulation.duration=3\n")
@@ -238,9 +233,7 @@ class Flow(StudioTest):
         """A deck whose name and title are HTML is shown as text."""
         script = "<img src=x onerror=document.title=1>.bdf"
         shutil.copy(os.path.join(SOURCE, "data/examples/ex05-plate/plate.bdf"), self.path(script))
-        self.start_studio()
-        page = self.browser
-        page.visit(self.address)
+        page = self.open_studio()
         self.open(script)
         self.assertEqual(page.run("document.querySelectorAll('img').length"), 0)
         self.assertIn("<img", page.run("document.querySelector('.file-title').textContent"))

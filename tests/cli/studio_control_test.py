@@ -9,68 +9,23 @@ import numpy as np
 
 from report_test import unpack
 from studio_support import StudioTest
+from toml_text import section, table, toml
 
 # Two sliders on springs, one on the other; a controller with a gain pushes the first.
-SYSTEM = """name = "sliders"
-[parameters]
-gain = 5.0
-[[body]]
-name = "a"
-mass = 2.0
-inertia = [1.0, 1.0, 1.0]
-[[body]]
-name = "b"
-mass = 1.0
-inertia = [1.0, 1.0, 1.0]
-[[hinge]]
-name = "first"
-type = "prismatic"
-child = "a"
-axis = [1.0, 0.0, 0.0]
-stiffness = [300.0]
-[[hinge]]
-name = "second"
-type = "prismatic"
-parent = "a"
-child = "b"
-axis = [1.0, 0.0, 0.0]
-stiffness = [100.0]
-[[function]]
-name = "wave"
-type = "sine"
-amplitude = 2.0
-frequency_hz = 0.5
-[[function]]
-name = "jump"
-type = "step"
-value = 3.0
-at = 0.7
-[[function]]
-name = "curve"
-type = "table"
-x = [0.0, 1.0, 3.0]
-y = [0.0, 2.0, -1.0]
-[[sensor]]
-name = "place"
-type = "hinge_angle"
-hinge = "first"
-[[controller]]
-name = "pid"
-type = "pid"
-inputs = ["place"]
-reference = "wave"
-kp = "$gain"
-ki = 0.0
-kd = 0.0
-[[actuator]]
-name = "motor"
-type = "hinge"
-hinge = "first"
-input = "pid"
-[simulation]
-duration = 2.0
-output_step = 0.01
-"""
+SYSTEM = toml(
+    section("parameters", gain=5.0),
+    table("body", "a", mass=2.0, inertia=[1.0, 1.0, 1.0]),
+    table("body", "b", mass=1.0, inertia=[1.0, 1.0, 1.0]),
+    table("hinge", "first", "prismatic", child="a", axis=[1.0, 0.0, 0.0], stiffness=[300.0]),
+    table("hinge", "second", "prismatic", parent="a", child="b", axis=[1.0, 0.0, 0.0], stiffness=[100.0]),
+    table("function", "wave", "sine", amplitude=2.0, frequency_hz=0.5),
+    table("function", "jump", "step", value=3.0, at=0.7),
+    table("function", "curve", "table", x=[0.0, 1.0, 3.0], y=[0.0, 2.0, -1.0]),
+    table("sensor", "place", "hinge_angle", hinge="first"),
+    table("controller", "pid", "pid", inputs=["place"], reference="wave", kp="$gain", ki=0.0, kd=0.0),
+    table("actuator", "motor", "hinge", hinge="first", input="pid"),
+    section("simulation", duration=2.0, output_step=0.01),
+    name="sliders")
 
 
 class Control(StudioTest):

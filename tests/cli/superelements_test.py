@@ -42,22 +42,26 @@ ASSEMBLY = ("ASSIGN INPUTT4='top.op4',UNIT=51\nSOL 103\nCEND\nSPC=1\nMETHOD=1\nB
 LOADS = "FORCE,5,2,,300.,1.,.4,0.\nFORCE,5,3,,-200.,0.,1.,1.\n"
 
 
-def read_printed_frequencies(path):
-    """The first table of real eigenvalues of a print file, Hz."""
-    found = []
+def list_words_below(path, heading):
+    """Words of each line of a print file below the first line with the heading."""
     with open(path, encoding="latin-1") as f:
         lines = iter(f)
         for line in lines:
-            if "R E A L   E I G E N V A L U E S" in line:
+            if heading in line:
                 break
-        for line in lines:
-            words = line.split()
-            if len(words) == 7 and words[0].isdigit():
-                if found and int(words[0]) != len(found) + 1:
-                    break
-                found.append(float(words[4]))
-            elif found and len(words) > 2 and not words[0].isdigit() and "E" not in words[-1]:
+        return [line.split() for line in lines]
+
+
+def read_printed_frequencies(path):
+    """The first table of real eigenvalues of a print file, Hz."""
+    found = []
+    for words in list_words_below(path, "R E A L   E I G E N V A L U E S"):
+        if len(words) == 7 and words[0].isdigit():
+            if found and int(words[0]) != len(found) + 1:
                 break
+            found.append(float(words[4]))
+        elif found and len(words) > 2 and not words[0].isdigit() and "E" not in words[-1]:
+            break
     return np.array(found)
 
 
@@ -354,16 +358,10 @@ class Static(ProgramTest):
         folder = os.path.join(SHARED, "se_static")
         deck = os.path.join(folder, "se_test_n11_static_10_cases.bdf")
         printed = {}
-        with open(deck.replace(".bdf", ".f06"), encoding="latin-1") as f:
-            lines = iter(f)
-            for line in lines:
-                if "LOAD SEQ. NO." in line:
-                    break
-            for line in lines:
-                words = line.split()
-                if len(words) != 3 or not words[0].isdigit():
-                    break
-                printed[int(words[0])] = float(words[2])
+        for words in list_words_below(deck.replace(".bdf", ".f06"), "LOAD SEQ. NO."):
+            if len(words) != 3 or not words[0].isdigit():
+                break
+            printed[int(words[0])] = float(words[2])
         self.assertEqual(len(printed), 10)
         result = self.bough("static", deck, "--json", "-o", "s.h5")
         self.assertIn("[fe.superelement-gravity]", result.stderr)

@@ -3,6 +3,7 @@ import os
 import re
 import select
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
@@ -16,6 +17,7 @@ SLOWER = int(os.environ.get("BOUGH_SLOWER", "1"))
 HANG = 600 * SLOWER
 sys.path.insert(0, os.path.join(SOURCE, "tests/support"))
 import served  # noqa: E402
+from decks import begin, row  # noqa: E402
 
 
 def list_verbs():
@@ -53,6 +55,12 @@ class ProgramTest(unittest.TestCase):
         with open(self.path(name), "w") as f:
             f.write(text)
         return name
+
+    def read_arrays(self, name, *paths):
+        """Arrays of an HDF5 file."""
+        import h5py
+        with h5py.File(self.path(name)) as f:
+            return [f[path][()] for path in paths]
 
     def copy_example(self, example):
         source = os.path.join(SOURCE, "data/examples", example)
@@ -102,6 +110,15 @@ class ProgramTest(unittest.TestCase):
                 self.fail(f"ended before the point, exit code {process.returncode}: {process.communicate()}")
         return [int(line) for line in sleeping.split()]
 
+    def interrupt_twice(self, process, message):
+        """Interrupts a held process (start_held) and, while it is held again, a second time; it ends with this message."""
+        process.send_signal(signal.SIGINT)
+        self.wait_held(process)
+        process.send_signal(signal.SIGINT)
+        _, text = process.communicate(timeout=HANG)
+        self.assertEqual(process.returncode, 3)
+        self.assertRegex(text, message)
+
     def fails(self, code, *arguments, says=(), error=None):
         """The call must fail with the code, say every word of `says` and name the error id; nothing on stdout."""
         result = self.bough(*arguments, code=code)
@@ -124,19 +141,11 @@ def get_astray(place, act, since, signal_name, more=""):
             f'inputs = ["{signal_name}"]\nparameters = [{place}, {act}, {since}]\n{more}')
 
 
-BEAM = """SOL 103
-CEND
-SPC = 1
-METHOD = 1
-BEGIN BULK
-EIGRL,1,,,3
+BEAM = begin(103, "SPC = 1", "METHOD = 1") + """EIGRL,1,,,3
 SPC1,1,123456,1
 PBAR,1,1,1.-4,1.-8,1.-8,1.-8
 MAT1,1,7.+10,,.3,2700.
-GRID,1,,0.,0.,0.
-GRID,2,,1.,0.,0.
-GRID,3,,2.,0.,0.
-CBAR,1,1,1,2,0.,1.,0.
+""" + row(3) + """CBAR,1,1,1,2,0.,1.,0.
 CBAR,2,1,2,3,0.,1.,0.
 ENDDATA
 """

@@ -71,9 +71,7 @@ class Terminal(ProgramTest):
     def test_progress(self):
         self.copy_example("ex01-spinup")
         self.bough("reduce", "boom.toml")
-        with open(self.path("spinup.toml")) as f:
-            text = f.read().replace("duration = 20.0", "duration = 100.0")
-        self.write("long.toml", text)
+        self.write("long.toml", self.read("spinup.toml").replace("duration = 20.0", "duration = 100.0"))
         code, said = self.at_terminal("run", "long.toml", "-o", "long.h5")
         self.assertEqual(code, 0, said)
         self.assertRegex(said, r"run: +\d+\.\d %  t \S+  step \S+  order \d+  steps \d+  rejected \d+  "

@@ -16,6 +16,14 @@ LENGTH, EI, MASS = 8., 6.895e10 * 8.2181e-9, 1.6154
 
 
 class ThirdOrder(ProgramTest):
+    def write_l_frame(self):
+        """The example of the free flyer with an L-frame of 2 m as its body."""
+        self.copy_example("ex04-free-flyer")
+        deck = ["SOL 103", "CEND", "BEGIN BULK", "MAT1,1,7.+10,2.6+10,,2700.", "PBAR,1,1,1.-4,8.-10,2.-9,1.5-9"]
+        deck += [f"GRID,{i + 1},,{i / 8},0.,0." for i in range(9)] + [f"GRID,{i + 9},,1.,{i / 8},{i / 40}" for i in range(1, 9)]
+        deck += [f"CBAR,{i},1,{i},{i + 1}," + ("0.,1.,0." if i < 9 else "1.,0.,0.") for i in range(1, 17)]
+        self.write("flyer.bdf", "\n".join(deck) + "\nENDDATA\n")
+
     def reduce(self, keys="order = 3", replace=(), name="boom.h5", code=0, **more):
         self.copy_example("ex01-spinup")
         text = self.read("boom.toml") + f"\n[body.stiffening]\n{keys}\n"
@@ -79,11 +87,7 @@ class ThirdOrder(ProgramTest):
 
     def test_free_flight_in_space_keeps_energy_and_momentum(self):
         """Six large modes of an L-frame of 2 m: 126 coefficients of degree 4."""
-        self.copy_example("ex04-free-flyer")
-        deck = ["SOL 103", "CEND", "BEGIN BULK", "MAT1,1,7.+10,2.6+10,,2700.", "PBAR,1,1,1.-4,8.-10,2.-9,1.5-9"]
-        deck += [f"GRID,{i + 1},,{i / 8},0.,0." for i in range(9)] + [f"GRID,{i + 9},,1.,{i / 8},{i / 40}" for i in range(1, 9)]
-        deck += [f"CBAR,{i},1,{i},{i + 1}," + ("0.,1.,0." if i < 9 else "1.,0.,0.") for i in range(1, 17)]
-        self.write("flyer.bdf", "\n".join(deck) + "\nENDDATA\n")
+        self.write_l_frame()
         self.write("flyer.toml", self.read("flyer.toml") + "\n[body.stiffening]\norder = 3\n")
         self.bough("reduce", "flyer.toml", "-q")
         with h5py.File(self.path("flyer.h5")) as f:
@@ -103,11 +107,7 @@ class ThirdOrder(ProgramTest):
 
     def test_frames_see_the_same_motion(self):
         """A free L-frame at rest that a force at its end bends: the path of the end in space, by frames of the body."""
-        self.copy_example("ex04-free-flyer")
-        deck = ["SOL 103", "CEND", "BEGIN BULK", "MAT1,1,7.+10,2.6+10,,2700.", "PBAR,1,1,1.-4,8.-10,2.-9,1.5-9"]
-        deck += [f"GRID,{i + 1},,{i / 8},0.,0." for i in range(9)] + [f"GRID,{i + 9},,1.,{i / 8},{i / 40}" for i in range(1, 9)]
-        deck += [f"CBAR,{i},1,{i},{i + 1}," + ("0.,1.,0." if i < 9 else "1.,0.,0.") for i in range(1, 17)]
-        self.write("flyer.bdf", "\n".join(deck) + "\nENDDATA\n")
+        self.write_l_frame()
         system = re.sub("(?m)^(eta|rate) = .*$", "", self.read("free-flyer.toml")).replace("node = 21", "node = 17")
         system = system.replace("duration = 5.0", "duration = 0.6").replace('type = "deflection"', 'type = "position"')
         system = system.replace('frame = "body"', 'frame = "inertial"', 1)

@@ -6,6 +6,7 @@ import numpy as np
 
 from ex08_satellite_test import fit_poles
 from support import ProgramTest
+from toml_text import Bare, section, table, toml
 
 LINKS = """
 [[body]]
@@ -21,54 +22,18 @@ damping = 0.01
 modes = 2                # more, clamped at a free hinge, are fast and say nothing of the slow poles
 """
 
-JOINT = """
-[[hinge]]
-name = "NAME"
-type = "revolute"
-PARENT
-child = "CHILD"
-axis = [0.0, 0.0, 1.0]
-position = POSITION
+JOINT = toml(
+    table("hinge", "NAME", "revolute", child="CHILD", axis=[0.0, 0.0, 1.0], position=Bare("POSITION")),
+    "PARENT\n",
+    table("function", "NAME_angle", "constant", value=Bare("TARGET")),
+    table("sensor", "NAME_angle", "hinge_angle", hinge="NAME"),
+    table("sensor", "NAME_rate", "hinge_rate", hinge="NAME"),
+    table("controller", "NAME_law", "pid", inputs=["/sensors/NAME_angle"], rate="NAME_rate",
+          reference="/signals/NAME_angle", kp=Bare("KP"), kd=Bare("KD")),
+    table("actuator", "NAME_motor", "hinge", hinge="NAME", input="NAME_law"))
 
-[[function]]
-name = "NAME_angle"
-type = "constant"
-value = TARGET
-
-[[sensor]]
-name = "NAME_angle"
-type = "hinge_angle"
-hinge = "NAME"
-
-[[sensor]]
-name = "NAME_rate"
-type = "hinge_rate"
-hinge = "NAME"
-
-[[controller]]
-name = "NAME_law"
-type = "pid"
-inputs = ["/sensors/NAME_angle"]
-rate = "NAME_rate"
-reference = "/signals/NAME_angle"
-kp = KP
-kd = KD
-
-[[actuator]]
-name = "NAME_motor"
-type = "hinge"
-hinge = "NAME"
-input = "NAME_law"
-"""
-
-SIMULATION = """
-[simulation]
-duration = 8.0
-output_step = 0.02
-integrator = "rk"
-relative_tolerance = 1e-9
-absolute_tolerance = 1e-14
-"""
+SIMULATION = section("simulation", duration=8.0, output_step=0.02, integrator="rk", relative_tolerance=1e-9,
+                     absolute_tolerance=1e-14)
 
 
 class TwoLinkArm(ProgramTest):

@@ -7,60 +7,20 @@ import numpy as np
 import scipy.io
 
 from support import ProgramTest
+from toml_text import section, table, toml
 
-SYSTEM = """name = "sliders"
-[parameters]
-gain = 5.0
-k = 100.0
-c = 2.0
-m = 1.0
-[[body]]
-name = "a"
-mass = 2.0
-inertia = [1.0, 1.0, 1.0]
-[[body]]
-name = "b"
-mass = "$m"
-cg = [0.0, 0.0, 0.3]
-inertia = [1.0, 1.0, 1.0]
-[[hinge]]
-name = "first"
-type = "prismatic"
-child = "a"
-axis = [1.0, 0.0, 0.0]
-stiffness = [300.0]
-[[hinge]]
-name = "second"
-type = "revolute"
-parent = "a"
-child = "b"
-axis = [0.0, 1.0, 0.0]
-stiffness = ["$k"]
-damping = ["$c"]
-[[sensor]]
-name = "place"
-type = "hinge_angle"
-hinge = "first"
-[[sensor]]
-name = "felt"
-type = "accelerometer"
-body = "b"
-[[controller]]
-name = "pid"
-type = "pid"
-inputs = ["place"]
-kp = "$gain"
-ki = 1.0
-kd = 0.0
-[[actuator]]
-name = "motor"
-type = "hinge"
-hinge = "first"
-input = "pid"
-[simulation]
-duration = 1.0
-output_step = 0.01
-"""
+SYSTEM = toml(
+    section("parameters", gain=5.0, k=100.0, c=2.0, m=1.0),
+    table("body", "a", mass=2.0, inertia=[1.0, 1.0, 1.0]),
+    table("body", "b", mass="$m", cg=[0.0, 0.0, 0.3], inertia=[1.0, 1.0, 1.0]),
+    table("hinge", "first", "prismatic", child="a", axis=[1.0, 0.0, 0.0], stiffness=[300.0]),
+    table("hinge", "second", "revolute", parent="a", child="b", axis=[0.0, 1.0, 0.0], stiffness=["$k"], damping=["$c"]),
+    table("sensor", "place", "hinge_angle", hinge="first"),
+    table("sensor", "felt", "accelerometer", body="b"),
+    table("controller", "pid", "pid", inputs=["place"], kp="$gain", ki=1.0, kd=0.0),
+    table("actuator", "motor", "hinge", hinge="first", input="pid"),
+    section("simulation", duration=1.0, output_step=0.01),
+    name="sliders")
 
 
 def close(f, delta):

@@ -9,22 +9,14 @@ import numpy as np
 from curves_test import SYSTEM
 from report_test import PageReader
 from support import ProgramTest
+from toml_text import section, table, toml
 
 LABELS = {"length": "mm", "mass": "tonne", "time": "s", "force": "N"}
 UNITS = "[units]\n" + "".join(f'{key} = "{label}"\n' for key, label in LABELS.items())
-TURN = """[[body]]
-name = "wheel"
-mass = 1.0
-inertia = [1.0, 1.0, 1.0]
-[[hinge]]
-name = "pin"
-type = "revolute"
-child = "wheel"
-axis = [0.0, 0.0, 1.0]
-rate = [0.5]
-[simulation]
-duration = 1.0
-"""
+TURN = toml(
+    table("body", "wheel", mass=1.0, inertia=[1.0, 1.0, 1.0]),
+    table("hinge", "pin", "revolute", child="wheel", axis=[0.0, 0.0, 1.0], rate=[0.5]),
+    section("simulation", duration=1.0))
 
 
 def label(dims):

@@ -9,29 +9,13 @@ import numpy as np
 
 from support import (ABORT, DIVIDE, EXIT, EXIT_AT_ONCE, FORK, HANG, HOLD, IN_CLOSE, IN_OPEN, IN_OUTPUTS, IN_SIZES, IN_START,
                      LOOP, OVERFLOW, PROGRAM, QUICK_EXIT, WRITE_NOWHERE, ProgramTest, get_astray)
+from toml_text import section, table, toml
 
-SPRING = """
-[[body]]
-name = "bob"
-mass = 2.0
-inertia = [1.0, 1.0, 1.0]
-[[hinge]]
-name = "slide"
-type = "prismatic"
-child = "bob"
-axis = [1.0, 0.0, 0.0]
-stiffness = [8.0]
-position = [0.5]
-[[sensor]]
-name = "x"
-type = "position"
-body = "bob"
-[simulation]
-duration = 4.0
-output_step = 0.01
-integrator = "rk4"
-step = 0.01
-"""
+SPRING = toml(
+    table("body", "bob", mass=2.0, inertia=[1.0, 1.0, 1.0]),
+    table("hinge", "slide", "prismatic", child="bob", axis=[1.0, 0.0, 0.0], stiffness=[8.0], position=[0.5]),
+    table("sensor", "x", "position", body="bob"),
+    section("simulation", duration=4.0, output_step=0.01, integrator="rk4", step=0.01))
 CRASHES = {ABORT: "SIGABRT", WRITE_NOWHERE: "SIGSEGV", DIVIDE: "SIGFPE", OVERFLOW: "SIGSEGV"}
 EXITS = {EXIT: "exit()", EXIT_AT_ONCE: "_exit()", QUICK_EXIT: "quick_exit()"}
 EVERY = {**{act: ("control.library-crashed", word) for act, word in CRASHES.items()},
@@ -108,13 +92,8 @@ class UserLibraries(ProgramTest):
         """On a machine that stands still for 5 s between both, the first one has ended it."""
         self.make(IN_OUTPUTS, LOOP, 1.5)
         process, _ = self.start_held("run", "s.toml")
-        process.send_signal(signal.SIGINT)
-        self.wait_held(process)
-        process.send_signal(signal.SIGINT)
-        _, text = process.communicate(timeout=HANG)
-        self.assertEqual(process.returncode, 3)
-        self.assertRegex(text, r"(interrupted a second time|told to end 5 s ago and still) in controller 'law': "
-                               r"bough_controller_outputs at t = 1\.5.*\[cli\.interrupted\]")
+        self.interrupt_twice(process, r"(interrupted a second time|told to end 5 s ago and still) in controller 'law': "
+                                      r"bough_controller_outputs at t = 1\.5.*\[cli\.interrupted\]")
 
     def test_one_request_to_end_does(self):
         self.make(IN_OUTPUTS, LOOP, 1.5)
@@ -145,8 +124,9 @@ class UserLibraries(ProgramTest):
 
     def test_a_case_of_a_campaign_names_it(self):
         self.make(IN_OUTPUTS, WRITE_NOWHERE, 2.0)
-        self.write("study.toml", '[campaign]\nsteps = ["run s.toml -o s.h5"]\n[[parameter]]\nname = "end"\n'
-                   'file = "s.toml"\nkey = "simulation.duration"\nvalues = [1.0, 3.0, 1.5]\n')
+        self.write("study.toml", toml(
+            section("campaign", steps=["run s.toml -o s.h5"]),
+            table("parameter", "end", file="s.toml", key="simulation.duration", values=[1.0, 3.0, 1.5])))
         self.bough("batch", "study.toml", "-j", "1", code=3)
         with open(self.path("study/outcomes.csv")) as f:
             rows = f.read().splitlines()[1:]

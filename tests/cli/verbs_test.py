@@ -3,7 +3,6 @@ import csv
 import io
 import json
 import math
-import os
 import signal
 import unittest
 
@@ -11,6 +10,7 @@ import h5py
 import numpy as np
 
 from support import BEAM, HANG, HOLD, IN_OUTPUTS, ProgramTest, get_astray
+from toml_text import Bare, section, table, toml
 
 # EI = 700 both ways, 40 bars of a pinned column, 10 m, compressed by 1 N: the load factor is Euler's load in N.
 def make_column():
@@ -22,30 +22,12 @@ def make_column():
     return "\n".join(lines + ["ENDDATA", ""])
 
 
-SPRING = """[[body]]
-name = "bob"
-mass = 2.0
-inertia = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]
-
-[[hinge]]
-name = "slide"
-type = "prismatic"
-child = "bob"
-axis = [1.0, 0.0, 0.0]
-stiffness = [8.0]
-position = [0.5]
-
-[[sensor]]
-name = "where"
-type = "position"
-body = "bob"
-
-[simulation]
-duration = DURATION
-output_step = 0.01
-relative_tolerance = 1e-10
-absolute_tolerance = 1e-12
-"""
+SPRING = toml(
+    table("body", "bob", mass=2.0, inertia=[[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]),
+    table("hinge", "slide", "prismatic", child="bob", axis=[1.0, 0.0, 0.0], stiffness=[8.0], position=[0.5]),
+    table("sensor", "where", "position", body="bob"),
+    section("simulation", duration=Bare("DURATION"), output_step=0.01, relative_tolerance=1e-10,
+            absolute_tolerance=1e-12))
 
 
 # The bars alone have no inertia about their own line.
@@ -97,7 +79,10 @@ class Check(ProgramTest):
 
     def test_body_system_and_hdf5(self):
         self.write("beam.bdf", BEAM)
-        self.write("body.toml", '[body]\nname = "b"\ndeck = "beam.bdf"\n[body.modes]\nnumber = 2\n[body.output]\nfile = "b.h5"\n')
+        self.write("body.toml", toml(
+            section("body", name="b", deck="beam.bdf"),
+            section("body.modes", number=2),
+            section("body.output", file="b.h5")))
         self.assertEqual(json.loads(self.bough("check", "body.toml", "--json").stdout)["kind"], "body")
         self.bough("reduce", "body.toml")
         self.assertEqual(json.loads(self.bough("check", "b.h5", "--json").stdout)["num_modes"], 2)
@@ -167,7 +152,9 @@ class Modes(ProgramTest):
 class Reduce(ProgramTest):
     def test_a_deck_and_the_same_body_file_give_the_same_body(self):
         self.write("beam.bdf", BEAM)
-        self.write("body.toml", '[body]\nname = "beam"\ndeck = "beam.bdf"\ninterface = [3]\n[body.modes]\nnumber = 2\n')
+        self.write("body.toml", toml(
+            section("body", name="beam", deck="beam.bdf", interface=[3]),
+            section("body.modes", number=2)))
         self.bough("reduce", "body.toml", "-o", "a.h5")
         self.bough("reduce", "beam.bdf", "--modes", 2, "--interface", 3, "-o", "b.h5")
         with h5py.File(self.path("a.h5")) as a, h5py.File(self.path("b.h5")) as b:

@@ -15,6 +15,9 @@ import tempfile
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 ROOT = os.path.dirname(os.path.dirname(HERE))
+sys.path.insert(0, os.path.join(ROOT, "tests/support"))
+from toml_text import section, table, toml  # noqa: E402
+
 DECK = """SOL 103
 CEND
 METHOD = 1
@@ -30,54 +33,20 @@ ENDDATA
 STATIC = DECK.replace("SOL 103", "SOL 101").replace("METHOD = 1", "LOAD = 7").replace("EIGRL,1,,,2", "FORCE,7,2,,1.,0.,1.,0.")
 SINES = DECK.replace("SOL 103", "SOL 111").replace("METHOD = 1", "METHOD = 1\nDLOAD = 5\nFREQ = 6\nDISP(PHASE) = ALL").replace(
     "EIGRL,1,,,2", "EIGRL,1,,,2\nFREQ1,6,1.,1.,2\nRLOAD1,5,7,,,8\nTABLED1,8,,,,,,,,+\n+,0.,1.,9.,1.,ENDT\nDAREA,7,2,2,1.")
-BODY = """[body]
-name = "rod"
-deck = "rod.bdf"
-[body.modes]
-number = 2
-[body.output]
-nodes = [2]
-"""
-SYSTEM = """[[body]]
-name = "rod"
-file = "rod.h5"
-[[body]]
-name = "ball"
-mass = 1.0
-inertia = [1.0, 1.0, 1.0]
-nodes = [{id = 1, position = [1.0, 0.0, 0.0]}]
-[[hinge]]
-name = "root"
-type = "revolute"
-parent = "ground"
-child = "rod"
-axis = [0.0, 0.0, 1.0]
-rate = [0.1]
-[[hinge]]
-name = "free"
-type = "free"
-parent = "ground"
-child = "ball"
-[[sensor]]
-name = "tip"
-type = "position"
-body = "rod"
-node = 2
-[simulation]
-duration = 0.02
-output_step = 0.01
-"""
-PUSH = """[[function]]
-name = "push"
-type = "constant"
-value = 0.0
-[[force]]
-name = "push"
-body = "ball"
-node = 1
-force = [0.0, 1.0, 0.0]
-function = "push"
-"""
+BODY = toml(
+    section("body", name="rod", deck="rod.bdf"),
+    section("body.modes", number=2),
+    section("body.output", nodes=[2]))
+SYSTEM = toml(
+    table("body", "rod", file="rod.h5"),
+    table("body", "ball", mass=1.0, inertia=[1.0, 1.0, 1.0], nodes=[{"id": 1, "position": [1.0, 0.0, 0.0]}]),
+    table("hinge", "root", "revolute", parent="ground", child="rod", axis=[0.0, 0.0, 1.0], rate=[0.1]),
+    table("hinge", "free", "free", parent="ground", child="ball"),
+    table("sensor", "tip", "position", body="rod", node=2),
+    section("simulation", duration=0.02, output_step=0.01))
+PUSH = toml(
+    table("function", "push", "constant", value=0.0),
+    table("force", "push", body="ball", node=1, force=[0.0, 1.0, 0.0], function="push"))
 
 
 def shrink(path):

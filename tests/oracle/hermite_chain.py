@@ -6,10 +6,14 @@ tests/cases/spinup_test.cpp on its turning hub. Chord angles psi are the coordin
 (2 EI/h)(a^2 + a b + b^2) with a, b the slopes of its ends less psi, and the slopes, which have no mass, are eliminated.
 Masses at the nodes: rho A h, half at the tip, and the tip mass.
 """
+import os
 import sys
 
 import numpy as np
 from scipy.integrate import solve_ivp
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "../support"))
+from planar_chain import swing  # noqa: E402
 
 
 def make_bending(n, h, EI, clamped=False):
@@ -35,14 +39,7 @@ def simulate(pieces, times, length=1.0, rhoA=0.27, EI=2.4, tip=0.05, g=9.81):
     K = np.zeros((n, n))
     K[:pieces, :pieces] = K[pieces:, pieces:] = make_bending(pieces, h, EI)
 
-    def rate(_, state):
-        psi, omega = state[:n], state[n:]
-        d = psi[:, None] - psi[None, :]
-        force = -weight * np.cos(psi) - K @ psi - (c * np.sin(d)) @ omega**2
-        return np.concatenate([omega, np.linalg.solve(c * np.cos(d), force)])
-
-    solution = solve_ivp(rate, (0, times[-1]), np.zeros(2 * n), method="DOP853", t_eval=times, rtol=1e-9, atol=1e-11)
-    psi = solution.y[:n]
+    psi = swing(c, weight, K, times, rtol=1e-9, atol=1e-11)
     return h * np.cos(psi).sum(axis=0), h * np.sin(psi).sum(axis=0)
 
 

@@ -9,17 +9,12 @@ import unittest
 import numpy as np
 
 import bough
-from module_test import EXAMPLES, InFolder
+from module_test import InExample
 
 PROGRAM = os.environ["BOUGH_PROGRAM"]
 
 
-class Analyses(InFolder):
-    def setUp(self):
-        super().setUp()
-        for name in ("boom.bdf", "boom.toml", "spinup.toml"):
-            shutil.copy(os.path.join(EXAMPLES, "ex01-spinup", name), self.folder)
-
+class Analyses(InExample):
     def test_modes_are_those_of_the_command(self):
         stages = []
         for options, words in (({"max_hz": 20.0}, ["--max-hz", "20"]), ({"free": True, "number": 8}, ["--free", "-n8"]),
@@ -78,20 +73,9 @@ class Analyses(InFolder):
             bough.reduce(modes=3)
 
     def test_nothing_is_written_or_redirected(self):
-        before = sorted(os.listdir())
-        read_end, write_end = os.pipe()
-        kept = os.dup(1)
-        os.dup2(write_end, 1)
-        try:
+        with self.nothing_written():
             bough.select(bough.reduce("boom.bdf", modes=3), number=1)
             bough.modes("boom.bdf", 2)
-        finally:
-            os.dup2(kept, 1)
-            os.close(kept)
-            os.close(write_end)
-        with os.fdopen(read_end) as printed:
-            self.assertEqual(printed.read(), "")
-        self.assertEqual(sorted(os.listdir()), before)
 
     def test_ranking_is_that_of_the_command(self):
         body = bough.reduce("boom.toml")

@@ -2,7 +2,6 @@
 have the numbers and texts of the commands of the same name."""
 import json
 import os
-import shutil
 import subprocess
 import unittest
 import warnings
@@ -10,17 +9,12 @@ import warnings
 import numpy as np
 
 import bough
-from module_test import EXAMPLES, InFolder
+from module_test import InExample
 
 PROGRAM = os.environ["BOUGH_PROGRAM"]
 
 
-class Commands(InFolder):
-    def setUp(self):
-        super().setUp()
-        for name in ("boom.bdf", "boom.toml", "spinup.toml"):
-            shutil.copy(os.path.join(EXAMPLES, "ex01-spinup", name), self.folder)
-
+class Commands(InExample):
     def command(self, *words, code=0):
         ran = subprocess.run([PROGRAM, *words], capture_output=True, text=True)
         self.assertEqual(ran.returncode, code, ran.stderr)
@@ -177,11 +171,7 @@ class Commands(InFolder):
 
     def test_nothing_is_printed_and_only_outputs_are_written(self):
         self.make_files()
-        before = sorted(os.listdir())
-        read_end, write_end = os.pipe()
-        kept = os.dup(1)
-        os.dup2(write_end, 1)
-        try:
+        with self.nothing_written():
             bough.check("boom.bdf")
             bough.info("run.h5")
             bough.export("run.h5", "csv")
@@ -190,13 +180,6 @@ class Commands(InFolder):
             bough.flx("boom.h5")
             bough.convert("boom.bdf", "mm.bdf", "m-kg-s:mm-N-tonne")
             bough.compare("boom.h5")
-        finally:
-            os.dup2(kept, 1)
-            os.close(kept)
-            os.close(write_end)
-        with os.fdopen(read_end) as printed:
-            self.assertEqual(printed.read(), "")
-        self.assertEqual(sorted(os.listdir()), before)
 
 
 if __name__ == "__main__":

@@ -5,6 +5,7 @@ import numpy as np
 
 import bough
 from module_test import EXPRESSION, PENDULUM, InFolder
+from toml_text import section, table, toml
 
 
 class LinearModels(InFolder):
@@ -31,23 +32,11 @@ class LinearModels(InFolder):
 
     def test_uncertain_parameters(self):
         """An oscillator: the model closed at each value has its poles."""
-        text = """[parameters]
-k = 50.0
-c = 1.0
-[[body]]
-name = "bob"
-mass = 2.0
-[[hinge]]
-name = "slide"
-type = "prismatic"
-child = "bob"
-axis = [1.0, 0.0, 0.0]
-stiffness = ["$k"]
-damping = ["$c"]
-[simulation]
-duration = 1.0
-output_step = 0.1
-"""
+        text = toml(
+            section("parameters", k=50.0, c=1.0),
+            table("body", "bob", mass=2.0),
+            table("hinge", "slide", "prismatic", child="bob", axis=[1.0, 0.0, 0.0], stiffness=["$k"], damping=["$c"]),
+            section("simulation", duration=1.0, output_step=0.1))
         system = bough.System.from_text(text)
         model = system.linearize(inputs=["slide"], uncertain={"k": (30, 90), "c": (0, 4)})
         self.assertEqual(model.uncertainty, [("k", 30, 90, 1), ("c", 0, 4, 1)])

@@ -1,4 +1,5 @@
 """import bough: views of the records, errors with file and line, runs with controllers in Python."""
+import contextlib
 import os
 import shutil
 import subprocess
@@ -12,43 +13,20 @@ import numpy as np
 
 import bough
 
-EXAMPLES = os.path.join(os.environ["BOUGH_SOURCE_DIR"], "data", "examples")
-PENDULUM = """
-[[body]]
-name = "arm"
-mass = 2.0
-cg = [0.5, 0.0, 0.0]
-inertia = [0.001, 0.17, 0.17]
-[[hinge]]
-name = "pivot"
-type = "revolute"
-child = "arm"
-axis = [0.0, 1.0, 0.0]
-position_deg = 30.0
-[[sensor]]
-name = "angle"
-type = "hinge_angle"
-hinge = "pivot"
-[[sensor]]
-name = "rate"
-type = "hinge_rate"
-hinge = "pivot"
-[[controller]]
-name = "law"
-{law}
-[[actuator]]
-name = "motor"
-type = "hinge"
-hinge = "pivot"
-input = "law"
+sys.path.insert(0, os.path.join(os.environ["BOUGH_SOURCE_DIR"], "tests/support"))
+from toml_text import section, table, toml  # noqa: E402
 
-[simulation]
-duration = 1.0
-output_step = 0.01
-integrator = "rk"
-relative_tolerance = 1e-10
-gravity = [0.0, 0.0, -9.81]
-"""
+EXAMPLES = os.path.join(os.environ["BOUGH_SOURCE_DIR"], "data", "examples")
+PENDULUM = toml(
+    table("body", "arm", mass=2.0, cg=[0.5, 0.0, 0.0], inertia=[0.001, 0.17, 0.17]),
+    table("hinge", "pivot", "revolute", child="arm", axis=[0.0, 1.0, 0.0], position_deg=30.0),
+    table("sensor", "angle", "hinge_angle", hinge="pivot"),
+    table("sensor", "rate", "hinge_rate", hinge="pivot"),
+    table("controller", "law"),
+    "{law}\n",
+    table("actuator", "motor", "hinge", hinge="pivot", input="law"),
+    section("simulation", duration=1.0, output_step=0.01, integrator="rk", relative_tolerance=1e-10,
+            gravity=[0.0, 0.0, -9.81]))
 EXPRESSION = 'type = "expression"\ninputs = ["angle", "rate"]\nexpression = "-40*u1 - 3*u2"'
 LIBRARY = 'type = "library"\ninputs = ["angle", "rate"]'
 
@@ -67,12 +45,33 @@ class InFolder(unittest.TestCase):
         return name
 
 
-class Bodies(InFolder):
+class InExample(InFolder):
+    """In a copy of the example of the spin-up."""
+
     def setUp(self):
         super().setUp()
         for name in ("boom.bdf", "boom.toml", "spinup.toml"):
             shutil.copy(os.path.join(EXAMPLES, "ex01-spinup", name), self.folder)
 
+    @contextlib.contextmanager
+    def nothing_written(self):
+        """The block must print nothing, not past Python either, and leave the files that there were."""
+        before = sorted(os.listdir())
+        read_end, write_end = os.pipe()
+        kept = os.dup(1)
+        os.dup2(write_end, 1)
+        try:
+            yield
+        finally:
+            os.dup2(kept, 1)
+            os.close(kept)
+            os.close(write_end)
+        with os.fdopen(read_end) as printed:
+            self.assertEqual(printed.read(), "")
+        self.assertEqual(sorted(os.listdir()), before)
+
+
+class Bodies(InExample):
     def test_reduce_is_the_verb(self):
         stages = []
         body = bough.reduce("boom.toml", progress=stages.append)
@@ -347,7 +346,7 @@ class Runs(InFolder):
         for given, file in (({}, "<text>"), ({"name": "arm"}, "arm"), ({"folder": "models"}, "models/<text>")):
             with self.assertRaises(bough.InputError) as raised:
                 bough.System.from_text(text, **given)
-            self.assertEqual((raised.exception.messages[0].file, raised.exception.messages[0].line), (file, 4))
+            self.assertEqual((raised.exception.messages[0].file, raised.exception.messages[0].line), (file, 3))
 
     def test_results_are_arrays_by_name(self):
         results = bough.System.from_text(PENDULUM.format(law=EXPRESSION)).run()
@@ -509,12 +508,9 @@ class Reader(unittest.TestCase):
 
 
 STEPPED = PENDULUM.format(law='type = "sum"\ninputs = ["torque", "angle"]\nweights = [1.0, -5.0]').replace(
-    'integrator = "rk"\nrelative_tolerance = 1e-10', 'integrator = "rk4"\nstep = 1e-3') + """
-[[input]]
-name = "torque"
-dims = "F L"
-"""
-STOP = '[[event]]\nname = "through"\nsignal = "angle"\nvalue = 0.8\naction = "stop"\n'
+    'integrator = "rk"\nrelative_tolerance = 1e-10', 'integrator = "rk4"\nstep = 1e-3') + table(
+        "input", "torque", dims="F L")
+STOP = table("event", "through", signal="angle", value=0.8, action="stop")
 
 
 class Simulations(InFolder):

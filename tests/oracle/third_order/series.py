@@ -53,13 +53,18 @@ INVERSE = (1 / 12, 1 / 720, 1 / 30240, 1 / 1209600)
 ARCSINE = (1, 1 / 6, 3 / 40, 5 / 112)
 
 
+def combine(first, second, theta):
+    """I + first(|θ|²) θ~ + second(|θ|²) θ~²."""
+    t2, S = dot(theta, theta), skew(theta)
+    sum_of = multiply("...,...ij->...ij", polynomial(first, t2), S)
+    sum_of += multiply("...,...ij->...ij", polynomial(second, t2), multiply("...ij,...jk->...ik", S, S))
+    sum_of[0] += np.eye(3)
+    return sum_of
+
+
 def rotate(theta):
     """R = exp(θ~)."""
-    t2, S = dot(theta, theta), skew(theta)
-    R = multiply("...,...ij->...ij", polynomial(SINC, t2), S)
-    R += multiply("...,...ij->...ij", polynomial(VERSINE, t2), multiply("...ij,...jk->...ik", S, S))
-    R[0] += np.eye(3)
-    return R
+    return combine(SINC, VERSINE, theta)
 
 
 def rotation_vector(R):
@@ -71,11 +76,7 @@ def rotation_vector(R):
 
 def spin_map(theta):
     """T of the spatial spin δφ = T(θ) δθ, R = exp(θ~)."""
-    t2, S = dot(theta, theta), skew(theta)
-    T = multiply("...,...ij->...ij", polynomial(VERSINE, t2), S)
-    T += multiply("...,...ij->...ij", polynomial(THIRD, t2), multiply("...ij,...jk->...ik", S, S))
-    T[0] += np.eye(3)
-    return T
+    return combine(VERSINE, THIRD, theta)
 
 
 def inverse_spin_map(theta):
