@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <chrono>
 #include <fstream>
+#include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -16,6 +17,7 @@
 
 #include "analysis/campaign/worker.hpp"
 #include "analysis/campaign/worker_pool.hpp"
+#include "analysis/common/choices.hpp"
 #include "analysis/common/ranks.hpp"
 #include "analysis/common/text_file.hpp"
 #include "base/version.hpp"
@@ -252,6 +254,8 @@ CampaignAnswer run_campaign(const CampaignRequest& request, const BatchPlan& pla
     const auto& petsc = linear::initialize_petsc();
     rank = {petsc.rank, petsc.size};
   }
+  demand_range("--jobs", request.jobs, 0, std::numeric_limits<int>::max());
+  demand_positive("--time-limit", request.time_limit, true);
   const auto shard = parse_shard(request.shard);
   const auto folder = find_campaign_folder(request, plan);
   CampaignAnswer answer;

@@ -2,7 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <limits>
+
 #include "analysis/common/body_files.hpp"
+#include "analysis/common/choices.hpp"
 #include "analysis/common/inputs.hpp"
 #include "formats/hdf5/files.hpp"
 #include "formats/hdf5/sparse_file.hpp"
@@ -107,7 +110,18 @@ modal::ModalModel load_model(const std::string& file, Diagnostics& diagnostics) 
   return load(file, diagnostics).model;
 }
 
+std::string find_wrong_number(const CompareRequest& request) {
+  const auto num = request.files.size();
+  if (request.refinement) return num == 3 ? "" : "--refinement takes three";
+  if (!request.test.empty() || request.sensors > 0) return num == 1 ? "" : "--test and --sensors take one";
+  return num == 1 || num == 2 ? "" : "give one or two; three with --refinement";
+}
+
 CompareAnswer compare_files(const CompareRequest& request, Events& events) {
+  if (const auto advice = find_wrong_number(request); !advice.empty())
+    throw InputError("cli.bad-option", {}, fmt::format("{} files given", request.files.size()), advice);
+  demand_word("--tam", request.tam, {"serep", "guyan", "irs"});
+  demand_range("--sensors", request.sensors, 0, std::numeric_limits<int>::max());
   Diagnostics diagnostics;
   CompareAnswer answer = [&]() -> CompareAnswer {
     if (request.refinement) return compare_meshes(request, diagnostics);

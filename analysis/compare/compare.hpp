@@ -61,9 +61,12 @@ struct RefinementReport {
 
 using CompareAnswer = std::variant<SingleReport, PairReport, RefinementReport, TestReport, SensorReport>;
 
-/// Throws InputError "cli.not-comparable", "cli.not-a-body", "cli.no-exact-integrals", "cli.no-common-nodes",
-/// "cli.no-mass-matrix", "cli.mass-without-shape", "cli.not-refined", those of compare_with_test and place_sensors, and
-/// what the readers throw.
+/// Number of files that the request takes, as a phrase, if it has another number; else empty.
+std::string find_wrong_number(const CompareRequest& request);
+
+/// Throws InputError "cli.bad-option", "cli.not-comparable", "cli.not-a-body", "cli.no-exact-integrals",
+/// "cli.no-common-nodes", "cli.no-mass-matrix", "cli.mass-without-shape", "cli.not-refined", those of compare_with_test
+/// and place_sensors, and what the readers throw.
 CompareAnswer compare_files(const CompareRequest& request, Events& events);
 /// Numbers of the answer for an HDF5 file, with the hashes of the files compared.
 records::Comparison make_comparison(const CompareRequest& request, const CompareAnswer& answer);

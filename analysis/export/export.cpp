@@ -1,9 +1,12 @@
 #include "analysis/export/export.hpp"
 
+#include <algorithm>
+#include <limits>
 #include <sstream>
 
 #include "analysis/common/body_files.hpp"
 #include "analysis/common/channels.hpp"
+#include "analysis/common/choices.hpp"
 #include "analysis/common/inputs.hpp"
 #include "analysis/common/vtu_file.hpp"
 #include "analysis/export/csv_tables.hpp"
@@ -147,22 +150,64 @@ void write_fmu(const ExportRequest& request, ExportAnswer& answer, Diagnostics& 
 
 const std::vector<ExportFormat>& list_export_formats() {
   static const std::vector<ExportFormat> formats{
-      {"csv", "csv", "results, modes, flexible body, linear model, sweep or response of a deck", false,
+      {"csv",
+       "csv",
+       "results, modes, flexible body, linear model, sweep or response of a deck",
+       false,
+       {"--channel"},
        set_text<make_csv>},
-      {"vtu", "vtu (mode shapes for ParaView)", "modes file or flexible body", false, set_text<make_shapes>},
-      {"pvd", "pvd (the moving system for ParaView)", "results", true, write_frames},
-      {"gltf", "gltf (.glb: the moving system or modes)", "results, modes file or flexible body", false,
+      {"vtu",
+       "vtu (mode shapes for ParaView)",
+       "modes file or flexible body",
+       false,
+       {"--ascii"},
+       set_text<make_shapes>},
+      {"pvd",
+       "pvd (the moving system for ParaView)",
+       "results",
+       true,
+       {"--ascii", "--every", "--window", "--scale", "--follow", "--body"},
+       write_frames},
+      {"gltf",
+       "gltf (.glb: the moving system or modes)",
+       "results, modes file or flexible body",
+       false,
+       {"--every", "--window", "--scale", "--follow", "--body"},
        set_text<make_gltf>},
-      {"bdf", "bdf (the deck as Bough reads it)", "Nastran deck", false, set_text<make_bdf>},
-      {"mat", "mat (MATLAB)", "any HDF5 file of Bough that has such arrays", true, write_mat},
-      {"op4", "op4 (Nastran OUTPUT4)", "any HDF5 file of Bough that has such arrays", false, set_text<make_output4>},
-      {"uff", "uff (universal file)", "any HDF5 file of Bough that has such arrays", false, set_text<make_universal>},
-      {"sid", "sid (Standard Input Data)", "flexible body", false, set_text<make_body>},
-      {"mbdyn", "mbdyn (.fem)", "flexible body", false, set_text<make_body>},
-      {"flat", "flat (a body for hosts without HDF5)", "flexible body", false, set_text<make_body>},
-      {"extseout", "extseout (external superelement of Nastran: .op4, .asm, .pch)",
-       "Nastran deck with BSET1 or flexible body", true, write_component},
-      {"fmu", "fmu (the system for other simulators)", "system file", true, write_fmu}};
+      {"bdf", "bdf (the deck as Bough reads it)", "Nastran deck", false, {"--fields", "--ignore"}, set_text<make_bdf>},
+      {"mat", "mat (MATLAB)", "any HDF5 file of Bough that has such arrays", true, {}, write_mat},
+      {"op4",
+       "op4 (Nastran OUTPUT4)",
+       "any HDF5 file of Bough that has such arrays",
+       false,
+       {},
+       set_text<make_output4>},
+      {"uff",
+       "uff (universal file)",
+       "any HDF5 file of Bough that has such arrays",
+       false,
+       {"--channel", "--moving", "--every", "--window", "--scale", "--follow", "--body"},
+       set_text<make_universal>},
+      {"sid",
+       "sid (Standard Input Data)",
+       "flexible body",
+       false,
+       {"--inertia", "--ge-order", "--digits"},
+       set_text<make_body>},
+      {"mbdyn", "mbdyn (.fem)", "flexible body", false, {}, set_text<make_body>},
+      {"flat", "flat (a body for hosts without HDF5)", "flexible body", false, {}, set_text<make_body>},
+      {"extseout",
+       "extseout (external superelement of Nastran: .op4, .asm, .pch)",
+       "Nastran deck with BSET1 or flexible body",
+       true,
+       {"--ignore", "--id", "--unit", "--vendor", "--first-point"},
+       write_component},
+      {"fmu",
+       "fmu (the system for other simulators)",
+       "system file",
+       true,
+       {"--channel", "--fmi", "--units", "--set"},
+       write_fmu}};
   return formats;
 }
 
@@ -175,9 +220,67 @@ const ExportFormat* find_export_format(const std::string& word) {
 }
 
 /// Formats of inputs other than the HDF5 files of Bough, of which nothing can be incomplete.
+void check_values(const ExportRequest& request) {
+  demand_word("--fields", request.fields, {"large", "small", "free"});
+  const auto& moving = request.moving;
+  demand_range("--every", moving.every, 1, std::numeric_limits<int>::max());
+  demand_finite("--scale", moving.scale);
+  if (!moving.window.empty() && (moving.window.size() != 2 || !(moving.window[0] <= moving.window[1])))
+    throw InputError("cli.bad-range", {}, fmt::format("the window {:g} is empty", fmt::join(moving.window, " to ")),
+                     "give --window T0,T1 with T1 above T0");
+  if (request.fmu.version != 2 && request.fmu.version != 3)
+    demand_word("--fmi", std::to_string(request.fmu.version), {"2", "3"});
+  demand_word("--inertia", request.body.inertia, {"6x1", "3x3"});
+  demand_word("--ge-order", request.body.ge_order, {"mode", "component"});
+  demand_range("--digits", request.body.digits, 6, 17);
+  const auto& component = request.component;
+  demand_range("--id", component.id, 0, std::numeric_limits<int>::max());
+  demand_range("--unit", component.unit, 0, std::numeric_limits<int>::max());
+  demand_range("--first-point", component.first_point, 0, std::numeric_limits<int>::max());
+  demand_word("--vendor", component.vendor, {"nx", "msc"});
+}
+
 bool takes_text(const std::string& format) { return format == "bdf" || format == "fmu" || format == "extseout"; }
 
 }  // namespace
+
+std::vector<std::string> list_foreign_options(const ExportRequest& request) {
+  const ExportRequest none;
+  const auto &m = request.moving, &m0 = none.moving;
+  const auto &b = request.body, &b0 = none.body;
+  const auto &c = request.component, &c0 = none.component;
+  const std::vector<std::pair<std::string, bool>> of_motion{{"--every", m.every != m0.every},
+                                                            {"--window", !m.window.empty()},
+                                                            {"--scale", m.scale != m0.scale},
+                                                            {"--follow", !m.follow.empty()},
+                                                            {"--body", !m.bodies.empty()}};
+  std::vector<std::pair<std::string, bool>> all{{"--channel", !request.channels.empty()},
+                                                {"--ascii", request.is_ascii},
+                                                {"--moving", request.is_moving},
+                                                {"--fields", request.fields != none.fields},
+                                                {"--fmi", request.fmu.version != none.fmu.version},
+                                                {"--units", !request.fmu.units.empty()},
+                                                {"--set", !request.fmu.set.empty()},
+                                                {"--ignore", !request.ignore_cards.empty()},
+                                                {"--inertia", b.inertia != b0.inertia},
+                                                {"--ge-order", b.ge_order != b0.ge_order},
+                                                {"--digits", b.digits != b0.digits},
+                                                {"--id", c.id != c0.id},
+                                                {"--unit", c.unit != c0.unit},
+                                                {"--vendor", c.vendor != c0.vendor},
+                                                {"--first-point", c.first_point != c0.first_point}};
+  all.insert(all.end(), of_motion.begin(), of_motion.end());
+  std::vector<std::string> foreign;
+  const auto* format = find_export_format(request.format);
+  if (format == nullptr) return foreign;
+  for (const auto& [name, is_given] : all)
+    if (is_given && std::find(format->options.begin(), format->options.end(), name) == format->options.end())
+      foreign.push_back(name);
+  if (request.format == "uff" && !request.is_moving)  // its channels have no motion
+    for (const auto& [name, is_given] : of_motion)
+      if (is_given) foreign.push_back(name + " without --moving");
+  return foreign;
+}
 
 bool is_written_format(const std::string& format) {
   const auto* row = find_export_format(format);
@@ -189,6 +292,10 @@ ExportAnswer export_file(const ExportRequest& request, Events& events) {
   if (format == nullptr)
     throw InputError("cli.no-export", {request.file}, "there is no format \"" + request.format + "\"",
                      "bough export --help lists the formats");
+  if (const auto foreign = list_foreign_options(request); !foreign.empty())
+    throw InputError("cli.bad-option", {},
+                     fmt::format("--to {} does not have {}", request.format, fmt::join(foreign, ", ")), "leave it out");
+  check_values(request);
   Diagnostics diagnostics;
   if (!takes_text(request.format)) warn_incomplete(request.file, diagnostics);
   ExportAnswer answer;

@@ -36,9 +36,10 @@ struct ExportAnswer {
 /// A row of the table of formats (export.cpp); a new format is its writer and a row.
 struct ExportFormat {
   const char* word;
-  const char* what;   ///< in the help: "vtu (mode shapes for ParaView)"
-  const char* takes;  ///< files of Bough that it takes
-  bool is_written;    ///< export_file() writes its files, which need an output
+  const char* what;                  ///< in the help: "vtu (mode shapes for ParaView)"
+  const char* takes;                 ///< files of Bough that it takes
+  bool is_written;                   ///< export_file() writes its files, which need an output
+  std::vector<std::string> options;  ///< of the command line, "--channel", that it has; others are rejected
   /// Sets the text of the answer, or writes `request.output`.
   void (*make)(const ExportRequest& request, ExportAnswer& answer, Diagnostics& diagnostics);
 };
@@ -48,7 +49,11 @@ const std::vector<ExportFormat>& list_export_formats();
 /// Returns true for the formats whose files export_file() writes.
 bool is_written_format(const std::string& format);
 
-/// Throws InputError "cli.no-export", "cli.no-shapes", "cli.unknown-channel" and what the readers and writers report.
+/// Options whose values differ from their defaults and that the format does not have.
+std::vector<std::string> list_foreign_options(const ExportRequest& request);
+
+/// Throws InputError "cli.no-export", "cli.bad-option", "cli.bad-range", "cli.no-shapes", "cli.unknown-channel" and
+/// what the readers and writers report.
 ExportAnswer export_file(const ExportRequest& request, Events& events);
 
 }  // namespace bough::analysis

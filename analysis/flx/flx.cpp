@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <limits>
 #include <set>
 
 #include "analysis/common/body_files.hpp"
+#include "analysis/common/choices.hpp"
 #include "analysis/common/failures.hpp"
 #include "formats/flat/flex_body.hpp"
 #include "formats/hdf5/files.hpp"
@@ -12,6 +14,7 @@
 namespace bough::analysis {
 
 std::vector<int> choose_body_ids(const FlxRequest& request) {
+  for (const int id : request.body_ids) demand_range("--body-id", id, 1, std::numeric_limits<int>::max());
   auto ids = request.body_ids;
   while (request.body_ids.size() == 1 && ids.size() < request.bodies.size()) ids.push_back(ids.back() + 1);
   if (ids.size() != request.bodies.size())
@@ -24,6 +27,9 @@ std::vector<int> choose_body_ids(const FlxRequest& request) {
 
 std::vector<flx::FlxFile> make_flx_files(const FlxRequest& request) {
   const auto ids = choose_body_ids(request);
+  demand_range("--digits", request.digits, 2, 17);
+  demand_range("--modopt", request.modopt, 0, 2);
+  if (!request.integrals.empty()) demand_word("--integrals", request.integrals, {"lumped", "consistent", "exact"});
   flx::MakeOptions options;
   options.modopt = request.modopt;
   options.method = request.integrals;

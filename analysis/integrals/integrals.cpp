@@ -4,6 +4,7 @@
 
 #include <filesystem>
 
+#include "analysis/common/choices.hpp"
 #include "analysis/common/inputs.hpp"
 #include "formats/flx/model_input.hpp"
 #include "modal/matrix_body.hpp"
@@ -62,6 +63,8 @@ MatrixXd calc_inertial_loads(const std::string& file, const flx::ModelInput& inp
 IntegralsAnswer calc_integrals(const IntegralsRequest& request, Events& events) {
   demand_file(request.model);
   demand_file(request.matrices);
+  demand_word("--integrals", request.integrals, {"momentum", "exact"});
+  demand_range("--digits", request.digits, 2, 17);
   Diagnostics diagnostics;
   const auto input = flx::read_model_input(request.model, diagnostics);
   diagnostics.throw_if_errors();

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "analysis/common/choices.hpp"
 #include "analysis/common/start_state.hpp"
 #include "solver/linear/equilibrium.hpp"
 #include "solver/simulate/hybrid_system.hpp"
@@ -43,6 +44,7 @@ solver::OperatingPoint run_to(const LoadedSystem& loaded, solver::Plant& plant, 
   auto spec = loaded.spec;
   auto& s = spec.simulation;
   const int nq = loaded.system.num_q(), nu = loaded.system.num_u();
+  demand_finite("--at", t);
   if (t < s.start) {
     throw InputError("linear.bad-time", s.at,
                      fmt::format("time {:g} lies before the start of the run, {:g}", t, s.start),

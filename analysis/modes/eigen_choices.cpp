@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 #include <set>
 
+#include "analysis/common/choices.hpp"
 #include "formats/records/selection.hpp"
 
 namespace bough::analysis {
@@ -22,6 +24,9 @@ const records::EigenMethod* find_method(const records::Deck& deck, int method) {
 
 modal::EigenOptions choose_eigen_options(const EigenChoice& choice, const records::Deck& deck, int method,
                                          Diagnostics& diagnostics) {
+  if (choice.min_hz) demand_finite("--min-hz", *choice.min_hz);
+  if (choice.max_hz) demand_finite("--max-hz", *choice.max_hz);
+  demand_range("--number", choice.number, 0, std::numeric_limits<int>::max());
   modal::EigenOptions eigen;
   const auto* card = find_method(deck, method);
   if (method != 0 && !card)

@@ -8,6 +8,7 @@
 #include <fstream>
 
 #include "analysis/common/body_files.hpp"
+#include "analysis/common/choices.hpp"
 #include "analysis/common/converter.hpp"
 #include "analysis/common/inputs.hpp"
 #include "analysis/common/text_file.hpp"
@@ -15,6 +16,7 @@
 #include "base/words.hpp"
 #include "formats/export/csv.hpp"
 #include "report/label.hpp"
+#include "report/shock_spectrum.hpp"
 
 namespace bough::analysis {
 
@@ -97,15 +99,35 @@ void finish_plots(const PlotRequest& request, PlotAnswer& answer, Diagnostics& d
                         "give one --label a curve, in the order of the files and sensors, then of --points");
 }
 
+/// Rejects curves that are of two kinds, and words and numbers of curves that are none.
+void check_curves(const CurveChoice& c) {
+  std::vector<std::string> kinds;
+  if (c.psd) kinds.emplace_back("--psd");
+  if (c.spectrum) kinds.emplace_back("--spectrum");
+  if (!c.srs.empty()) kinds.emplace_back("--srs");
+  if (!kinds.empty() && !c.x.empty()) kinds.emplace_back("--x");
+  if (kinds.size() > 1)
+    throw InputError("cli.plot-option", {}, fmt::format("{} exclude each other", fmt::join(kinds, ", ")),
+                     "give one of them");
+  if (c.psd) demand_range("--segment", static_cast<long>(c.segment), 2L, 1L << 30);
+  if (c.srs.empty()) return;
+  demand_word("--srs", c.srs, report::list_shock_kinds());
+  demand_word("--srs-part", c.srs_part, report::list_shock_parts());
+  demand_range("--q", c.quality, 0.51, 1e9);
+  for (const double end : c.srs_range) demand_positive("--srs-range", end);
+}
+
 void check_choices(const PlotRequest& request) {
+  demand_files(request.files);
+  if (!request.linear.kind.empty()) demand_word("--kind", request.linear.kind, list_plot_kinds());
+  check_curves(request.curves);
   if (request.has_limits && !(request.y_min < request.y_max))
     throw InputError("cli.bad-range", {},
                      fmt::format("the axis from {:g} to {:g} is empty", request.y_min, request.y_max),
                      "give --y-max above --y-min");
   const auto& c = request.curves;
-  if (!c.window.empty() && !(c.window[0] < c.window[1]))
-    throw InputError("cli.bad-range", {},
-                     fmt::format("the window from {:g} to {:g} is empty", c.window[0], c.window[1]),
+  if (!c.window.empty() && (c.window.size() != 2 || !(c.window[0] < c.window[1])))
+    throw InputError("cli.bad-range", {}, fmt::format("the window {:g} is empty", fmt::join(c.window, " to ")),
                      "give --window T0,T1 with T1 above T0");
   if (c.difference && request.files.size() < 2)
     throw InputError("cli.nothing-to-plot", {}, "--difference takes two files", "name the run to take off first");

@@ -4,6 +4,7 @@
 
 #include "analysis/common/body_files.hpp"
 #include "analysis/common/channels.hpp"
+#include "analysis/common/choices.hpp"
 #include "analysis/common/inputs.hpp"
 #include "analysis/report/report_files.hpp"
 #include "base/version.hpp"
@@ -15,6 +16,7 @@ std::string choose_report_name(const ReportRequest& request) {
 }
 
 std::string make_report(const ReportRequest& request, Events& events) {
+  demand_files(request.files);
   for (const auto& file : request.files) demand_body_file(file);
   Diagnostics diagnostics;
   report::Page page{

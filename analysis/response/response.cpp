@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "analysis/common/choices.hpp"
 #include "analysis/common/failures.hpp"
 #include "analysis/common/inputs.hpp"
 #include "analysis/linearize/choose_channels.hpp"
@@ -69,6 +70,9 @@ void compare_integrals(const records::RandomOutputs& random, const std::string& 
 
 ResponseAnswer calc_response(const ResponseRequest& request, Events& events) {
   demand_file(request.file);
+  demand_positive("--from", request.range.from_hz, true);
+  demand_positive("--to", request.range.to_hz, true);
+  demand_range("--points", request.range.points, 1, 100000);
   if (request.range.to_hz > 0 && request.range.to_hz <= request.range.from_hz)
     throw InputError("cli.bad-range", {},
                      fmt::format("frequencies from {:g} to {:g} are none", request.range.from_hz, request.range.to_hz),

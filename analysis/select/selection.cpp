@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "analysis/common/body_files.hpp"
+#include "analysis/common/choices.hpp"
 #include "analysis/common/inputs.hpp"
 #include "formats/records/mode_subset.hpp"
 #include "formats/toml/specs.hpp"
@@ -188,6 +189,11 @@ std::vector<std::string> list_select_inputs(const SelectRequest& request) {
 
 Selection select_modes(const SelectRequest& request, const records::FlexBody& body, Events& events,
                        Diagnostics diagnostics) {
+  demand_range("--number", request.number, 0, std::numeric_limits<int>::max());
+  if (request.tolerance) demand_range("--tolerance", *request.tolerance, 0.0, 1.0);
+  demand_positive("--below", request.below_hz, true);
+  demand_positive("--damping", request.damping);
+  for (const double time : request.at) demand_finite("--at", time);
   std::vector<Weighing> weighings;
   std::vector<statespace::NodeDirection> inputs, outputs;
   if (request.systems.empty()) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <span>
 
+#include "analysis/common/choices.hpp"
 #include "analysis/common/failures.hpp"
 #include "analysis/common/inputs.hpp"
 #include "analysis/common/ranks.hpp"
@@ -88,6 +89,7 @@ records::Deck read_static_deck(const StaticRequest& request, Diagnostics& diagno
 }  // namespace
 
 StaticAnswer solve_static(const StaticRequest& request, StaticReceiver& receiver, Events& events) {
+  demand_range("--increments", request.num_increments, 1, 100000);
   linear::initialize_petsc();
   do_once([&] { demand_deck(request.deck); });
   Diagnostics diagnostics;

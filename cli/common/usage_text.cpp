@@ -1,6 +1,7 @@
 #include "cli/common/usage_text.hpp"
 
 #include <CLI/CLI.hpp>
+#include <cmath>
 #include <sstream>
 
 #include "base/diagnostic.hpp"
@@ -14,8 +15,9 @@ CLI::Validator make_bound(const std::string& name, const std::string& expected, 
   const auto check = [expected, takes_zero](const std::string& text) {
     double value = 0;
     const bool is_number = CLI::detail::lexical_cast(text, value);
-    return is_number && (value > 0 || (takes_zero && value == 0)) ? std::string{}
-                                                                  : "found " + text + ", expected " + expected;
+    return is_number && std::isfinite(value) && (value > 0 || (takes_zero && value == 0))
+               ? std::string{}
+               : "found " + text + ", expected " + expected;
   };
   return {check, name};
 }
@@ -82,5 +84,13 @@ std::shared_ptr<CLI::Formatter> make_formatter() { return std::make_shared<Narro
 
 CLI::Validator make_positive() { return make_bound("POSITIVE", "a number above 0", false); }
 CLI::Validator make_not_negative() { return make_bound("NONNEGATIVE", "0 or a number above it", true); }
+CLI::Validator make_finite() {
+  return {[](const std::string& text) {
+            double value = 0;
+            const bool is_number = CLI::detail::lexical_cast(text, value);
+            return is_number && std::isfinite(value) ? std::string{} : "found " + text + ", expected a finite number";
+          },
+          ""};
+}
 
 }  // namespace bough::cli

@@ -22,5 +22,7 @@ std::shared_ptr<CLI::Formatter> make_formatter();
 /// Above 0; at least 0. CLI11's own name the largest double in their message.
 CLI::Validator make_positive();
 CLI::Validator make_not_negative();
+/// Rejects nan and inf.
+CLI::Validator make_finite();
 
 }  // namespace bough::cli

@@ -30,13 +30,8 @@ void print_report(const Report& report, const CompareOptions& o, const Console& 
 int run_compare(const CompareOptions& o) {
   Console console(o.quiet, o.verbosity);
   if (!console.is_root()) return kSuccess;
-  const bool is_of_one = !o.request.test.empty() || o.request.sensors > 0;
-  const std::size_t max_files = o.request.refinement ? 3 : is_of_one ? 1 : 2, min_files = o.request.refinement ? 3 : 1;
-  if (o.request.files.size() < min_files || o.request.files.size() > max_files) {
-    console.print_error("cli.usage", fmt::format("{} files given", o.request.files.size()),
-                        o.request.refinement ? "--refinement takes three"
-                        : is_of_one          ? "--test and --sensors take one"
-                                             : "give one or two; three with --refinement");
+  if (const auto advice = analysis::find_wrong_number(o.request); !advice.empty()) {
+    console.print_error("cli.usage", fmt::format("{} files given", o.request.files.size()), advice);
     return kUsageError;
   }
   if (o.request.tam != "serep" && o.request.deck.empty()) {

@@ -1,6 +1,7 @@
 #include "analysis/export/export.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -13,6 +14,7 @@
 #include "analysis/common/text_file.hpp"
 #include "cli/common/console_events.hpp"
 #include "cli/common/options.hpp"
+#include "cli/common/usage_text.hpp"
 
 namespace bough::cli {
 
@@ -71,6 +73,11 @@ int run_export(ExportOptions o) {
     return kUsageError;
   }
   const auto& request = o.request;
+  if (const auto foreign = analysis::list_foreign_options(request); !foreign.empty()) {
+    console.print_error("cli.usage", fmt::format("--to {} does not have {}", request.format, fmt::join(foreign, ", ")),
+                        "leave it out; see bough export --help");
+    return kUsageError;
+  }
   analysis::demand_body_file(request.file);
   if (!o.output.empty()) check_output(o, o.output, {analysis::get_body_path(request.file)});
   const bool is_written = analysis::is_written_format(request.format);
@@ -123,7 +130,9 @@ void add_moving_options(CLI::App& verb, analysis::MovingOptions& o) {
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   verb.add_option("--window", o.window, "pvd, gltf: only samples from T0 to T1, as T0,T1")->delimiter(',')->expected(2);
-  verb.add_option("--scale", o.scale, "pvd, gltf: the deformation that many times as large")->capture_default_str();
+  verb.add_option("--scale", o.scale, "pvd, gltf: the deformation that many times as large")
+      ->check(make_finite())
+      ->capture_default_str();
   verb.add_option("--follow", o.follow, "pvd, gltf: positions from the origin of this body");
   verb.add_option("--body", o.bodies, "pvd, gltf: a body file of the run that has moved; may be repeated")
       ->allow_extra_args(false);

@@ -15,10 +15,10 @@
 #include "cli/common/deck_tables.hpp"
 #include "cli/common/model_options.hpp"
 #include "cli/common/options.hpp"
-#include "cli/verbs.hpp"
 #include "cli/common/usage_text.hpp"
 #include "cli/frequency/random_tables.hpp"
 #include "cli/frequency/response_tables.hpp"
+#include "cli/verbs.hpp"
 #include "fe/linear/petsc.hpp"
 #include "formats/export/response_text.hpp"
 #include "formats/hdf5/response_file.hpp"
@@ -91,7 +91,7 @@ void add_response_verb(CLI::App& app, Action& action, bool is_over_time, const c
   add_modal(
       verb->add_option("-n,--number,--modes", o->request.eigen.number, "Number of modes (default: the deck's EIGRL)")
           ->check(make_positive()));
-  add_modal(verb->add_option("--max-hz", o->request.eigen.max_hz, "Modes up to this frequency"));
+  add_modal(verb->add_option("--max-hz", o->request.eigen.max_hz, "Modes up to this frequency")->check(make_finite()));
   add_modal(verb->add_flag("--no-residuals", o->request.no_residuals,
                            "Modes alone, without residual vectors of what drives them"));
   verb->add_flag("--full", o->full, "Every curve in the table, their samples in --json");

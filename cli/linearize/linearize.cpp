@@ -77,7 +77,8 @@ void add_linearize(CLI::App& app, Action& action) {
   auto o = std::make_shared<LinearizeVerbOptions>();
   auto* verb = add_verb(app, "linearize", "A B C D, poles and zeros of a multibody system about a state");
   verb->add_option("file", o->request.file, "System file (.toml)")->required();
-  verb->add_option("--at", o->request.at, "Run to this time and linearize there (default: the initial state)");
+  verb->add_option("--at", o->request.at, "Run to this time and linearize there (default: the initial state)")
+      ->check(make_finite());
   verb->add_option("--start-from", o->request.start_from,
                    "Start from the last state of this results file, of run or equilibrium");
   verb->add_flag("--equilibrium", o->request.equilibrium, "Linearize about the state of rest or steady spin nearby");

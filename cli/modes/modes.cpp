@@ -190,8 +190,10 @@ void add_modes(CLI::App& app, Action& action) {
   verb->add_option("-n,--number,--modes", o->request.eigen.number,
                    "Number of modes (default: the deck's EIGRL or EIGC, else 10)")
       ->check(make_positive());
-  verb->add_option("--min-hz", o->request.eigen.min_hz, "Lowest frequency wanted (with --buckling: load factor)");
-  verb->add_option("--max-hz", o->request.eigen.max_hz, "Highest frequency wanted (with --buckling: load factor)");
+  verb->add_option("--min-hz", o->request.eigen.min_hz, "Lowest frequency wanted (with --buckling: load factor)")
+      ->check(make_finite());
+  verb->add_option("--max-hz", o->request.eigen.max_hz, "Highest frequency wanted (with --buckling: load factor)")
+      ->check(make_finite());
   auto* buckling = verb->add_flag("--buckling", o->request.eigen.buckling,
                                   "Load factors of the static subcase instead of normal modes");
   verb->add_flag("--no-check", o->request.eigen.no_check,

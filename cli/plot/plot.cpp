@@ -12,6 +12,7 @@
 #include "analysis/common/text_file.hpp"
 #include "cli/common/console_events.hpp"
 #include "cli/common/options.hpp"
+#include "cli/common/usage_text.hpp"
 #include "report/shock_spectrum.hpp"
 #include "report/terminal_plot.hpp"
 
@@ -146,6 +147,7 @@ void add_plot(CLI::App& app, Action& action) {
       ->needs(srs);
   verb->add_option("--q", c.quality, "Q = 1/(2 damping ratio) of --srs")
       ->check(CLI::Range(0.51, 1e9))
+      ->check(make_finite())
       ->needs(srs)
       ->capture_default_str();
   verb->add_option("--segment", c.segment, "--psd: samples of a segment")
@@ -169,8 +171,9 @@ void add_plot(CLI::App& app, Action& action) {
   verb->add_option("--title", o->request.title, "Title");
   verb->add_option("--x-label", o->request.x_label, "Label of the axis below");
   verb->add_option("--y-label", o->request.y_label, "Label of the other axis");
-  auto* low = verb->add_option("--y-min", o->request.y_min, "Lower end of the y axis; curves are clipped");
-  auto* high = verb->add_option("--y-max", o->request.y_max, "Upper end of the y axis");
+  auto* low = verb->add_option("--y-min", o->request.y_min, "Lower end of the y axis; curves are clipped")
+                  ->check(make_finite());
+  auto* high = verb->add_option("--y-max", o->request.y_max, "Upper end of the y axis")->check(make_finite());
   low->needs(high)->each([o](const std::string&) { o->request.has_limits = true; });
   high->needs(low);
   add_common_options(*verb, *o, kOutput, "Picture: .svg, .png or .pdf (default: the sensor's name with .svg, here)");

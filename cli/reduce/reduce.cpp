@@ -164,7 +164,7 @@ void add_reduce(CLI::App& app, Action& action) {
   auto* verb = add_verb(app, "reduce", "A deck becomes a flexible body: modes, mass integrals, geometric stiffness");
   verb->add_option("file", o->request.file, "Body file (.toml) or Nastran deck; may be missing with --matrices");
   verb->add_option("-n,--modes,--number", o->request.num_modes, "Number of elastic modes")->check(make_positive());
-  verb->add_option("--max-hz", o->request.max_hz, "Highest frequency wanted");
+  verb->add_option("--max-hz", o->request.max_hz, "Highest frequency wanted")->check(make_positive());
   add_solver_option(*verb, o->request.solver);
   verb->add_option("--name", o->request.name, "Name of the body (default: the file's)");
   verb->add_flag("--free", o->request.free, "Free-free modes: no node carries the frame, SPC sets are left out");
@@ -181,7 +181,9 @@ void add_reduce(CLI::App& app, Action& action) {
   verb->add_option("--integrals", o->request.integrals,
                    "Mass integrals that the solver uses: exact, consistent or lumped")
       ->check(CLI::IsMember({"exact", "consistent", "lumped"}));
-  verb->add_option("--origin", o->request.origin, "Origin of the body frame in basic: X Y Z")->expected(3);
+  verb->add_option("--origin", o->request.origin, "Origin of the body frame in basic: X Y Z")
+      ->expected(3)
+      ->check(make_finite());
   verb->add_option("--damping", o->request.damping, "Modal damping ratio of every mode")->check(make_not_negative());
   verb->add_option("--subcase", o->request.subcase, "Subcase whose SPC and MPC sets are used (default: the first)");
   verb->add_option("--ignore", o->request.ignore_cards,

@@ -16,6 +16,7 @@
 #include "analysis/response/response.hpp"
 #include "cli/common/console_events.hpp"
 #include "cli/common/options.hpp"
+#include "cli/common/usage_text.hpp"
 #include "cli/linearize/linear_model_files.hpp"
 #include "cli/verbs.hpp"
 #include "formats/hdf5/linear_file.hpp"
@@ -214,9 +215,9 @@ void add_response(CLI::App& app, Action& action) {
   verb->add_option("--inputs", o->request.inputs, "Only these inputs (default: all)")->delimiter(',');
   verb->add_option("--outputs", o->request.outputs, "Only these outputs (default: all)")->delimiter(',');
   verb->add_option("--from", o->request.range.from_hz, "Lowest frequency (default: a decade below the poles)")
-      ->check(CLI::PositiveNumber);
+      ->check(make_positive());
   verb->add_option("--to", o->request.range.to_hz, "Highest frequency (default: a decade above the poles)")
-      ->check(CLI::PositiveNumber);
+      ->check(make_positive());
   verb->add_option("--points", o->request.range.points, "Frequencies at least; resonances and notches get more")
       ->check(CLI::Range(1, 100000))
       ->capture_default_str();

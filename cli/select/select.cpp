@@ -72,13 +72,15 @@ void add_select(CLI::App& app, Action& action) {
   verb->add_option("-n,--number", o->request.number, "Keep so many modes")->check(make_positive());
   verb->add_option("--tolerance", o->request.tolerance,
                    "Drop modes without which the outputs lose at most this part of their mean square (default: 0.01)")
-      ->check(CLI::Range(0.0, 1.0));
-  verb->add_option("--below", o->request.below_hz, "Drop modes above this frequency")->check(CLI::PositiveNumber);
+      ->check(CLI::Range(0.0, 1.0))
+      ->check(make_finite());
+  verb->add_option("--below", o->request.below_hz, "Drop modes above this frequency")->check(make_positive());
   verb->add_option("--keep", o->request.pinned, "Modes that stay, by their numbers")->delimiter(',');
   verb->add_option("--damping", o->request.damping, "Damping ratio of modes that have none (default: 0.01)")
-      ->check(CLI::PositiveNumber);
+      ->check(make_positive());
   verb->add_option("--at", o->request.at, "With a system: weigh the modes at these times of its run; the worst counts")
-      ->delimiter(',');
+      ->delimiter(',')
+      ->check(make_finite());
   verb->add_flag("--equilibrium", o->request.equilibrium, "With a system: at its state of rest or steady spin");
   verb->add_flag("--open", o->request.open, "With a system: without its controllers");
   verb->add_option("--stiffening", o->inertial_load,

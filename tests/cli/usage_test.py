@@ -46,6 +46,26 @@ class Usage(ProgramTest):
         self.fails(2, "export", "x.h5", "--to", "nonsense", error="cli.usage")
         self.fails(2, "modes", "x.bdf", "--number", "minus", error="cli.usage")
 
+    def test_numbers_that_are_not_finite(self):
+        for call in (("reduce", "x.bdf", "--max-hz"), ("modes", "x.bdf", "--max-hz"), ("modes", "x.bdf", "--min-hz"),
+                     ("frequency", "x.bdf", "--max-hz"), ("response", "x.h5", "--from"), ("response", "x.h5", "--to"),
+                     ("select", "x.h5", "--tolerance"), ("select", "x.h5", "--below"), ("select", "x.h5", "--damping"),
+                     ("select", "x.h5", "--at"), ("linearize", "x.toml", "--at"), ("reduce", "x.bdf", "--damping"),
+                     ("plot", "x.h5", "--y-min"), ("export", "x.h5", "--to", "gltf", "--scale"),
+                     ("batch", "x.toml", "--time-limit")):
+            for number in ("nan", "inf"):
+                with self.subTest(call=call, number=number):
+                    self.fails(2, *call, number, says=[number], error="cli.usage")
+        self.fails(2, "reduce", "x.bdf", "--origin", "0", "nan", "0", says=["nan"], error="cli.usage")
+
+    def test_options_that_a_format_does_not_have(self):
+        for call in (("csv", "--ascii"), ("vtu", "--every", "2"), ("bdf", "--fmi", "2"), ("fmu", "--fields", "free"),
+                     ("flat", "--digits", "9"), ("uff", "--every", "2"), ("mat", "--channel", "tip"),
+                     ("gltf", "--id", "2")):
+            with self.subTest(call):
+                self.fails(2, "export", "x.h5", "--to", *call, "-o", "y", says=[call[1], "--to " + call[0]],
+                           error="cli.usage")
+
     def test_version_names_the_libraries(self):
         text = self.bough("--version").stdout
         for library in ["bough", "PETSc", "SLEPc", "HDF5", "SUNDIALS", "Eigen"]:
