@@ -68,9 +68,13 @@ struct FileRoles::Files {
   }
 };
 
-FileRoles::FileRoles() : files_(new Files), outer_(Files::get_current()) { Files::get_current() = files_; }
+FileRoles::FileRoles() : files_(new Files) {
+  const std::lock_guard lock(get_mutex());
+  outer_ = std::exchange(Files::get_current(), files_);
+}
 
 FileRoles::~FileRoles() {
+  const std::lock_guard lock(get_mutex());
   Files::get_current() = outer_;
   delete files_;
 }

@@ -69,6 +69,10 @@ py::array give(Matrix&& matrix) {
   return view(*kept, owner);
 }
 
+/// Throws InputError "cli.output-is-input" if the file is one of the inputs in `source`: names, and SHA-256 of their
+/// content, without which a file of this name is another one.
+void demand_no_source(const std::string& path, const std::vector<std::pair<std::string, std::string>>& source);
+
 /// Warnings and notes as a list; warnings go to Python's warnings too.
 std::vector<Diagnostic> tell(const Diagnostics& diagnostics);
 

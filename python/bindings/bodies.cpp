@@ -1,4 +1,8 @@
 // Flexible bodies and modes: views of the records' own arrays.
+#include <filesystem>
+
+#include <pybind11/stl/filesystem.h>
+
 #include "python/bindings/bindings.hpp"
 
 #include "analysis/common/body_files.hpp"
@@ -93,8 +97,12 @@ void bind_flex_body(py::module_& m) {
       .def_property_readonly("num_nodes", &FlexBody::num_nodes)
       .def("copy", [](const FlexBody& b) { return FlexBody(b); })
       .def(
-          "save", [](const FlexBody& b, const std::string& path) { hdf5::write_flex_body(b, path); }, py::arg("path"),
-          OneAtATime(), "Write the flexible-body HDF5 file.")
+          "save",
+          [](const FlexBody& b, const std::filesystem::path& path) {
+            demand_no_source(path, b.source);
+            hdf5::write_flex_body(b, path);
+          },
+          py::arg("path"), OneAtATime(), "Write the flexible-body HDF5 file.")
       .def("__repr__", [](const FlexBody& b) {
         return "<FlexBody '" + b.name + "': " + std::to_string(b.num_modes()) + " modes, " +
                std::to_string(b.num_nodes()) + " nodes>";
@@ -102,6 +110,16 @@ void bind_flex_body(py::module_& m) {
 }
 
 }  // namespace
+
+void demand_no_source(const std::string& path, const std::vector<std::pair<std::string, std::string>>& source) {
+  std::error_code failed;
+  if (!std::filesystem::is_regular_file(path, failed)) return;
+  const auto name = std::filesystem::canonical(path, failed).filename().string();
+  for (const auto& [input, hash] : source)
+    if (input == name && hash == hdf5::calc_sha256(path))
+      throw InputError("cli.output-is-input", {path}, "the output would overwrite the input file " + input,
+                       "choose another file");
+}
 
 void bind_bodies(py::module_& m) {
   bind_flex_body(m);
@@ -123,12 +141,14 @@ void bind_bodies(py::module_& m) {
       .def_readonly("num_rigid_modes", &ModesResult::num_rigid_modes);
   m.def(
       "read_flex_body",
-      [](const std::string& path) {
+      [](const std::filesystem::path& path) {
         Diagnostics notes;  // of what a .FLX leaves out: docs/formats/flx.md
         return analysis::read_body(path, notes);
       },
       py::arg("path"), OneAtATime());
-  m.def("read_modes", &hdf5::read_modes, py::arg("path"), OneAtATime());
+  m.def(
+      "read_modes", [](const std::filesystem::path& path) { return hdf5::read_modes(path); }, py::arg("path"),
+      OneAtATime());
 }
 
 }  // namespace bough::python

@@ -250,11 +250,11 @@ py::tuple export_file(const std::string& file, const std::string& to, const std:
   request.fmu = {fmi, std::move(channels), std::move(set), units};
   request.component.id = id;
   if (analysis::is_written_format(to) && output.empty()) throw py::value_error("export to " + to + " needs an output");
-  if (!output.empty()) analysis::check_place(output);
   analysis::ExportAnswer answer;
   auto messages = run_request(file, py::none(), [&](PythonEvents& events) {
+    announce_output(output);
     answer = analysis::export_file(request, events);
-    if (!output.empty() && !analysis::is_written_format(to)) analysis::write_text_file(output, answer.text);
+    if (!analysis::is_written_format(to)) write_output(output, answer.text);
   });
   return py::make_tuple(py::bytes(answer.text), answer.num_frames, std::move(messages));
 }
@@ -262,7 +262,8 @@ py::tuple export_file(const std::string& file, const std::string& to, const std:
 /// (curves of each plot, SVG, CSV), and the messages.
 py::tuple plot(Strings files, Strings sensors, Strings labels, Strings points, const std::string& title,
                const std::string& x_label, const std::string& y_label, const std::string& kind, const std::string& x,
-               bool psd, bool spectrum, bool difference, bool subplots, const std::string& srs) {
+               bool psd, bool spectrum, bool difference, bool subplots, const std::string& srs,
+               const std::string& output) {
   analysis::PlotRequest request;
   request.files = std::move(files);
   request.sensors = std::move(sensors);
@@ -280,9 +281,14 @@ py::tuple plot(Strings files, Strings sensors, Strings labels, Strings points, c
   request.curves.subplots = subplots;
   request.curves.srs = srs;
   analysis::PlotAnswer answer;
-  auto messages = run_request(request.files.empty() ? "" : request.files.front(), py::none(),
-                              [&](PythonEvents& events) { answer = analysis::make_plots(request, events); });
-  const auto svg = answer.plots.size() == 1 ? report::draw_svg(answer.plots.front()) : report::draw_svg(answer.plots);
+  std::string svg;
+  auto messages =
+      run_request(request.files.empty() ? "" : request.files.front(), py::none(), [&](PythonEvents& events) {
+        announce_output(output);
+        answer = analysis::make_plots(request, events);
+        svg = answer.plots.size() == 1 ? report::draw_svg(answer.plots.front()) : report::draw_svg(answer.plots);
+        write_output(output, svg);
+      });
   py::list plots;
   for (const auto& one : answer.plots) {
     py::list curves;
@@ -303,11 +309,15 @@ py::tuple plot(Strings files, Strings sensors, Strings labels, Strings points, c
   return py::make_tuple(plots, svg, answer.csv, std::move(messages));
 }
 
-py::tuple make_report(Strings files, Strings channels, const std::string& title, const py::object& progress) {
+py::tuple make_report(Strings files, const std::string& output, Strings channels, const std::string& title,
+                      const py::object& progress) {
   analysis::ReportRequest request{std::move(files), std::move(channels), title};
   std::string page;
-  auto messages = run_request(request.files.empty() ? "" : request.files.front(), progress,
-                              [&](PythonEvents& events) { page = analysis::make_report(request, events); });
+  auto messages = run_request(request.files.empty() ? "" : request.files.front(), progress, [&](PythonEvents& events) {
+    announce_output(output);
+    page = analysis::make_report(request, events);
+    write_output(output, page);
+  });
   return py::make_tuple(page, std::move(messages));
 }
 
@@ -332,15 +342,17 @@ py::dict make_flx_dict(const flx::FlxFile& file) {
 }
 
 /// The text of the .FLX file and a dict for each body.
-py::tuple make_flx(Strings bodies, std::vector<int> body_ids, const std::string& integrals, int modopt, int digits,
-                   bool special_nodes, bool stiffening) {
+py::tuple make_flx(Strings bodies, const std::string& output, std::vector<int> body_ids, const std::string& integrals,
+                   int modopt, int digits, bool special_nodes, bool stiffening) {
   analysis::FlxRequest request{std::move(bodies), std::move(body_ids), integrals, modopt, digits,
                                special_nodes,     stiffening};
   std::vector<flx::FlxFile> files;
   std::string text;
   run_exclusive(request.bodies.empty() ? "" : request.bodies.front(), [&] {
+    announce_output(output);
     files = analysis::make_flx_files(request);
     for (const auto& file : files) text += flx::write_flx(file, flx::make_native_layout(digits));
+    write_output(output, text);
   });
   py::list list;
   for (const auto& file : files) list.append(make_flx_dict(file));
@@ -543,7 +555,7 @@ py::tuple response(const std::string& file, Strings inputs, Strings outputs, dou
   request.outputs = std::move(outputs);
   request.range.from_hz = from_hz;
   request.range.to_hz = to_hz;
-  if (points > 0) request.range.points = points;
+  if (points != 0) request.range.points = points;
   request.is_loop = loop;
   request.psd = std::move(psd);
   analysis::ResponseAnswer answer;
@@ -612,12 +624,12 @@ void bind_commands(py::module_& m) {
   m.def("plot", &plot, py::arg("files"), py::arg("sensors") = no_words, py::kw_only(), py::arg("labels") = no_words,
         py::arg("points") = no_words, py::arg("title") = "", py::arg("x_label") = "", py::arg("y_label") = "",
         py::arg("kind") = "", py::arg("x") = "", py::arg("psd") = false, py::arg("spectrum") = false,
-        py::arg("difference") = false, py::arg("subplots") = false, py::arg("srs") = "");
-  m.def("report", &make_report, py::arg("files"), py::kw_only(), py::arg("channels") = no_words, py::arg("title") = "",
-        py::arg("progress") = none);
-  m.def("flx", &make_flx, py::arg("bodies"), py::kw_only(), py::arg("body_ids") = std::vector<int>{1},
-        py::arg("integrals") = "", py::arg("modopt") = 0, py::arg("digits") = 9, py::arg("special_nodes") = false,
-        py::arg("stiffening") = false);
+        py::arg("difference") = false, py::arg("subplots") = false, py::arg("srs") = "", py::arg("output") = "");
+  m.def("report", &make_report, py::arg("files"), py::arg("output") = "", py::kw_only(), py::arg("channels") = no_words,
+        py::arg("title") = "", py::arg("progress") = none);
+  m.def("flx", &make_flx, py::arg("bodies"), py::arg("output") = "", py::kw_only(),
+        py::arg("body_ids") = std::vector<int>{1}, py::arg("integrals") = "", py::arg("modopt") = 0,
+        py::arg("digits") = 9, py::arg("special_nodes") = false, py::arg("stiffening") = false);
   m.def("read_flx", &read_flx, py::arg("file"));
   m.def("integrals", &integrals, py::arg("model"), py::arg("matrices"), py::kw_only(),
         py::arg("integrals") = "momentum", py::arg("digits") = 9, py::arg("inertial_loads") = false);

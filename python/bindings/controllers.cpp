@@ -9,7 +9,16 @@ namespace {
 
 using Array = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
-/// Calls Python; its exceptions, a keyboard interrupt too, are converted to exceptions that need no interpreter.
+/// What a controller raised in this thread that is no Exception; a reference.
+thread_local PyObject* g_interrupt = nullptr;
+
+void keep_interrupt(const py::error_already_set& error) {
+  Py_XDECREF(g_interrupt);
+  g_interrupt = error.value().inc_ref().ptr();
+  if (error.trace()) PyException_SetTraceback(g_interrupt, error.trace().ptr());
+}
+
+/// Calls Python; its exceptions are converted to exceptions that need no interpreter, a keyboard interrupt is kept too.
 template <class Act>
 int call(const Act& act) {
   const py::gil_scoped_acquire acquired;
@@ -17,6 +26,9 @@ int call(const Act& act) {
   try {
     act();
     return 0;
+  } catch (const py::error_already_set& error) {
+    why = error.what();
+    if (!error.matches(PyExc_Exception)) keep_interrupt(error);
   } catch (const std::exception& error) {
     why = error.what();
   }
@@ -119,6 +131,13 @@ solver::ControllerFunctions make_functions(const py::object& object) {
 }
 
 }  // namespace
+
+bool restore_interrupt() {
+  if (g_interrupt == nullptr) return false;
+  PyErr_SetObject(reinterpret_cast<PyObject*>(Py_TYPE(g_interrupt)), g_interrupt);
+  Py_CLEAR(g_interrupt);
+  return true;
+}
 
 Controllers::Controllers(const py::dict& by_name) {
   static std::atomic<long> count{0};

@@ -10,6 +10,11 @@
 
 namespace bough::python {
 
+/// Sets the Python error that a controller raised in this thread and that is no Exception (KeyboardInterrupt,
+/// SystemExit); returns false if there is none. It ended the call as a failure, in the place of which it comes out.
+/// \pre this thread holds the interpreter's lock.
+bool restore_interrupt();
+
 /// Lends the functions of Python objects as long as it lives. An object is called as f(t, u) and gives the outputs, or
 /// has methods outputs(t, u, z, d), derivatives(t, u, z, d), update(t, u, z, d), start(), close() and numbers
 /// num_outputs, num_states, num_memory, has_feedthrough, of which only outputs (or the call) must be there.

@@ -1,4 +1,9 @@
 // Linear models: arrays that go straight into python-control and scipy.signal.
+#include <cmath>
+#include <filesystem>
+
+#include <pybind11/stl/filesystem.h>
+
 #include "python/bindings/bindings.hpp"
 
 #include "formats/hdf5/linear_file.hpp"
@@ -58,6 +63,9 @@ void bind_linear(py::module_& m) {
             if (delta.size() != l.uncertainty.size())
               throw py::value_error("expected " + std::to_string(l.uncertainty.size()) + " values, found " +
                                     std::to_string(delta.size()));
+            for (const double value : delta)
+              if (!std::isfinite(value))
+                throw py::value_error("expected finite values, found " + std::to_string(value));
             return statespace::close_uncertainty(
                 l, Eigen::Map<const Eigen::VectorXd>(delta.data(), static_cast<Eigen::Index>(delta.size())));
           },
@@ -79,13 +87,19 @@ void bind_linear(py::module_& m) {
                                return make_complex(l.zeros_real, l.zeros_imag);
                              })
       .def(
-          "save", [](const LinearModel& l, const std::string& path) { hdf5::write_linear_model(l, path); },
+          "save",
+          [](const LinearModel& l, const std::filesystem::path& path) {
+            demand_no_source(path, l.source);
+            hdf5::write_linear_model(l, path);
+          },
           py::arg("path"), OneAtATime(), "Write the linear-model HDF5 file.")
       .def("__repr__", [](const LinearModel& l) {
         return "<LinearModel: " + std::to_string(l.A.rows()) + " states, " + std::to_string(l.B.cols()) + " inputs, " +
                std::to_string(l.C.rows()) + " outputs>";
       });
-  m.def("read_linear_model", &hdf5::read_linear_model, py::arg("path"), OneAtATime());
+  m.def(
+      "read_linear_model", [](const std::filesystem::path& path) { return hdf5::read_linear_model(path); },
+      py::arg("path"), OneAtATime());
 }
 
 }  // namespace bough::python

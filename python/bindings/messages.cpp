@@ -3,6 +3,7 @@
 
 #include "analysis/common/failures.hpp"
 #include "python/bindings/bindings.hpp"
+#include "python/bindings/controllers.hpp"
 
 namespace bough::python {
 
@@ -12,6 +13,7 @@ py::handle g_input_error, g_computation_error, g_warning;
 
 /// With the exit code that the command line has for the failure.
 void raise(const Failure& failure) {
+  if (restore_interrupt()) return;
   const int exit_code = analysis::choose_exit_code(failure);
   const py::handle type = exit_code == 1 ? g_input_error : g_computation_error;
   const py::object error = type(failure.what());

@@ -3,6 +3,9 @@
 #include "analysis/common/events.hpp"
 #include "analysis/common/failures.hpp"
 #include "analysis/common/model_choice.hpp"
+#include "analysis/common/output_folder.hpp"
+#include "analysis/common/text_file.hpp"
+#include "base/file_roles.hpp"
 #include "fe/linear/petsc.hpp"
 #include "python/bindings/bindings.hpp"
 
@@ -30,11 +33,13 @@ class PythonEventsOf : public Base {
 };
 using PythonEvents = PythonEventsOf<analysis::Events>;
 
-/// Runs act() with the lock of the module and without that of the interpreter; failures get the location `file`.
+/// Runs act() with the lock of the module and without that of the interpreter; failures get the location `file`. A file
+/// that act() reads is not overwritten by it: InputError "cli.output-is-input".
 template <class Act>
 void run_exclusive(const std::string& file, const Act& act) {
   const py::gil_scoped_release released;
   const Exclusive held;
+  const FileRoles roles;
   linear::initialize_petsc();
   analysis::with_file(file, [&] {
     act();
@@ -48,6 +53,19 @@ std::vector<Diagnostic> run_request(const std::string& file, const py::object& p
   PythonEvents events(progress);
   run_exclusive(file, [&] { act(events); });
   return tell(events.get_messages());
+}
+
+/// Before the work: refuses an output outside of the folder that a campaign allows; inputs that are read from now on
+/// are not to be this file. Empty: no output.
+inline void announce_output(const std::string& output) {
+  if (output.empty()) return;
+  analysis::check_place(output);
+  note_output(output);
+}
+
+/// Writes the text unless `output` is empty.
+inline void write_output(const std::string& output, const std::string& text) {
+  if (!output.empty()) analysis::write_text_file(output, text);
 }
 
 /// Throws ValueError for a word that names no mass matrix.

@@ -1,5 +1,11 @@
 // Systems and their runs.
+#include <algorithm>
 #include <atomic>
+#include <filesystem>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <pybind11/stl/filesystem.h>
 
 #include "analysis/common/inputs.hpp"
 #include "analysis/common/system_files.hpp"
@@ -7,6 +13,7 @@
 #include "cli/common/options.hpp"
 #include "formats/hdf5/files.hpp"
 #include "python/bindings/controllers.hpp"
+#include "python/bindings/requests.hpp"
 #include "python/bindings/simulations.hpp"
 #include "solver/simulate/memory_sink.hpp"
 #include "solver/simulate/simulate.hpp"
@@ -156,13 +163,20 @@ class PySystem {
     options.set = std::move(set);
     options.text = std::move(text);
     options.flex = bodies;
-    options.change_spec = [&](records::SystemSpec& spec) { controllers_.put_into(spec); };
+    std::vector<std::string> given;
+    for (const auto& [name, body] : bodies) given.push_back(name);
+    options.change_spec = [this, given = std::move(given)](records::SystemSpec& spec) {
+      check_bodies(spec, file_, given);
+      controllers_.put_into(spec);
+    };
     is_file_ = !options.text;
     {
       const py::gil_scoped_release released;
       const Exclusive held;
       options_ = options;
+      options_.flex.clear();
       loaded_.emplace(analysis::load_system(file_, diagnostics, std::move(options)));
+      others_ = calc_other_sources();
     }
     messages = tell(diagnostics);
   }
@@ -183,7 +197,13 @@ class PySystem {
     {
       const py::gil_scoped_release released;
       std::unique_ptr<records::ResultSink> file;
-      if (!output.empty()) file = std::make_unique<ExclusiveSink>(output);
+      if (!output.empty()) {
+        const Exclusive held;
+        const FileRoles roles;
+        for (const auto& input : list_files()) note_input(input);
+        announce_output(output);
+        file = std::make_unique<ExclusiveSink>(output);
+      }
       solver::MemorySink memory;
       Tee sink(memory, file.get(), calc_sources());
       std::atomic<bool> stop{false};
@@ -242,8 +262,16 @@ class PySystem {
       if (request.uncertain.empty()) {
         model = analysis::linearize(request, *loaded_, diagnostics);
       } else {
-        const Exclusive held;  // it reads the system again, for each value
-        model = analysis::linearize_uncertain(request, options_, diagnostics);
+        const Exclusive held;  // it builds the system again, for each value
+        if (calc_other_sources() != others_)
+          throw InputError("cli.changed-input", {file_},
+                           "a table, a matrix, a library or the initial state of the system has changed since it was "
+                           "read",
+                           "make the System again");
+        auto load = options_;
+        load.text = loaded_->spec.text;
+        load.flex = loaded_->flex;
+        model = analysis::linearize_uncertain(request, load, diagnostics);
       }
       model.source = calc_sources();
     }
@@ -252,10 +280,41 @@ class PySystem {
 
  private:
   /// Names and hashes of the files; controllers from Python have none.
-  std::vector<std::pair<std::string, std::string>> calc_sources() const {
+  std::vector<std::pair<std::string, std::string>> calc_sources() const { return analysis::calc_sources(list_files()); }
+  std::vector<std::string> list_files() const {
     auto files = analysis::collect_sources(file_, *loaded_);
     if (!is_file_) files.erase(files.begin());
     std::erase_if(files, [](const std::string& name) { return name.starts_with("python:"); });
+    return files;
+  }
+
+  /// Throws InputError "cli.bad-option" for a body that stands for no file of the system.
+  static void check_bodies(const records::SystemSpec& spec, const std::string& file,
+                           const std::vector<std::string>& given) {
+    const auto place = [&](const std::string& name) {
+      std::error_code none;
+      return std::filesystem::absolute(analysis::resolve_beside(file, name), none).lexically_normal();
+    };
+    std::vector<std::string> names;
+    for (const auto& body : spec.bodies)
+      if (!body.file.empty() && std::find(names.begin(), names.end(), body.file) == names.end())
+        names.push_back(body.file);
+    for (const auto& name : given) {
+      if (std::any_of(names.begin(), names.end(), [&](const auto& own) { return place(own) == place(name); })) continue;
+      throw InputError("cli.bad-option", {file}, "bodies: no [[body]] has file = \"" + name + "\"",
+                       names.empty() ? "leave bodies out: no body of the system has a file"
+                                     : fmt::format("the files are {}", fmt::join(names, ", ")));
+    }
+  }
+
+  /// Names and hashes of files that linearize(uncertain=) reads again: all but the system file and the bodies.
+  std::vector<std::pair<std::string, std::string>> calc_other_sources() const {
+    auto files = list_files();
+    std::erase_if(files, [&](const std::string& name) {
+      const auto& bodies = loaded_->flex_path;
+      return name == file_ ||
+             std::any_of(bodies.begin(), bodies.end(), [&](const auto& b) { return b.second == name; });
+    });
     return analysis::calc_sources(files);
   }
 
@@ -263,6 +322,7 @@ class PySystem {
   bool is_file_ = true;
   Controllers controllers_;
   analysis::LoadOptions options_;  ///< of loaded_
+  std::vector<std::pair<std::string, std::string>> others_;
   std::optional<analysis::LoadedSystem> loaded_;
 };
 
@@ -307,7 +367,9 @@ void bind_systems(py::module_& m) {
         return "<Results: " + std::to_string(r.paths.size()) + " channels, " +
                std::to_string(r.channels.at("/time").rows()) + " samples>";
       });
-  m.def("read_results", &read_results, py::arg("path"), OneAtATime());
+  m.def(
+      "read_results", [](const std::filesystem::path& path) { return read_results(path); }, py::arg("path"),
+      OneAtATime());
 
   py::class_<PySystem>(m, "System")
       .def(py::init<std::string, const py::dict&, const std::map<std::string, records::FlexBody>&,

@@ -42,8 +42,8 @@ except ImportError as _missing:  # bough.reader does without
 
 __all__ = ["ComputationError", "Event", "Failure", "FlexBody", "InputError", "LinearModel", "Locator", "MassIntegrals",
            "Message", "Modes", "Results", "Simulation", "System", "Warning", "batch", "call", "check", "compare",
-           "convert", "equilibrium", "export", "flx", "frequency", "info", "init", "integrals", "matrices", "modes", "plot",
-           "read_flex_body", "read_flx", "read_linear_model", "read_modes", "read_results", "reader", "reduce",
+           "convert", "equilibrium", "export", "flx", "frequency", "info", "init", "integrals", "matrices", "modes",
+           "plot", "read_flex_body", "read_flx", "read_linear_model", "read_modes", "read_results", "reader", "reduce",
            "report", "response", "run", "select", "split", "static", "transient", "verbs"]
 
 
@@ -74,10 +74,13 @@ def _worker_launcher():
 
 
 def _list(words):
-    """The words of an option that may be repeated: a list, or one alone."""
+    """The words of an option that may be repeated: a list, an array, or one alone."""
     if words is None:
         return []
-    return list(words) if isinstance(words, (list, tuple)) else [words]
+    if hasattr(words, "tolist"):  # of NumPy: Python's own numbers
+        words = words.tolist()
+    is_alone = isinstance(words, (str, bytes, _os.PathLike)) or not hasattr(words, "__iter__")
+    return [words] if is_alone else list(words)
 
 
 def reduce(file="", **options):
@@ -92,6 +95,9 @@ def reduce(file="", **options):
     for name in ("loads", "recover", "ignore", "matrices"):
         if name in options:
             options[name] = [str(word) for word in _list(options[name])]
+    for name in ("interface", "origin"):
+        if options.get(name) is not None:
+            options[name] = _list(options[name])
     body, _ = _bough.reduce(_os.fspath(file), **options)
     return body
 
@@ -187,9 +193,10 @@ def init(deck, folder="", *, hinge=0):
 
 
 def select(body, system=None, *, inputs=(), outputs=(), weight=(), spectrum="", number=0, tolerance=None, below=0.0,
-           keep=(), damping=0.01, at=(), equilibrium=False, open=False, set=(), progress=None):
+           keep=(), damping=0.01, at=(), equilibrium=False, open=False, set=(), parameters=None, progress=None):
     """(FlexBody with the modes that count, ranking as a dict); options as of `bough select`.
 
+    parameters: {"kp": 4.0}, numbers of [parameters] of the systems; set: the same as words, "kp=4.0".
     body: FlexBody or file; with a system (a file, or a list of them) the file that the system names.
     """
     is_file = isinstance(body, (str, _os.PathLike))
@@ -200,7 +207,7 @@ def select(body, system=None, *, inputs=(), outputs=(), weight=(), spectrum="", 
         systems=[_os.fspath(file) for file in _list(system)], inputs=[str(word) for word in _list(inputs)],
         outputs=[str(word) for word in _list(outputs)], weight=_list(weight), spectrum=_os.fspath(spectrum),
         number=number, tolerance=tolerance, below=below, keep=_list(keep), damping=damping, at=_list(at),
-        equilibrium=equilibrium, open=open, set=_list(set), progress=progress)
+        equilibrium=equilibrium, open=open, set=_list(set) + _make_settings(parameters), progress=progress)
     return small, ranking
 
 
@@ -243,14 +250,14 @@ def export(file, to, output="", *, channels=(), ascii=False, moving=False, field
            window=(), scale=1.0, follow="", bodies=(), parameters=None, units="", fmi=3, id=0):
     """A file in the format `to` of another program: "csv", "vtu", "bdf", "gltf", ...; options as of `bough export`.
 
-    Gives its text (bytes of gltf), and writes it where `output` is given. The formats pvd, mat, op4, fmu and extseout
-    need an output and give an empty text if they are several files or no text.
+    Gives its text (bytes of gltf, op4 and flat), and writes it where `output` is given. The formats pvd, mat, fmu and
+    extseout need an output and give an empty text: they are several files or no text.
     """
     made, _, _ = _bough.export(_os.fspath(file), to, _os.fspath(output), channels=_words(channels), ascii=ascii,
                                moving=moving, fields=fields, ignore=_list(ignore), every=every, window=_list(window),
                                scale=scale, follow=follow, bodies=_paths(bodies), set=_make_settings(parameters),
                                units=units, fmi=fmi, id=id)
-    return made if to in ("gltf", "op4") else made.decode("utf-8")
+    return made if to in ("gltf", "op4", "flat") else made.decode("utf-8")
 
 
 def plot(files, sensors=(), *, labels=(), points=(), title="", x_label="", y_label="", kind="", x="", psd=False,
@@ -261,29 +268,22 @@ def plot(files, sensors=(), *, labels=(), points=(), title="", x_label="", y_lab
     """
     plots, svg, csv, _ = _bough.plot(_paths(files), _words(sensors), labels=_list(labels), points=_paths(points),
                                      title=title, x_label=x_label, y_label=y_label, kind=kind, x=x, psd=psd,
-                                     spectrum=spectrum, difference=difference, subplots=subplots, srs=srs)
-    _write(output, svg)
+                                     spectrum=spectrum, difference=difference, subplots=subplots, srs=srs,
+                                     output=_os.fspath(output))
     return {"plots": plots, "svg": svg, "csv": csv}
 
 
 def report(files, output="", *, channels=(), title="", progress=None):
     """One HTML page of results, bodies, modes, responses and linear models; written where `output` is given."""
-    page, _ = _bough.report(_paths(files), channels=_words(channels), title=title, progress=progress)
-    _write(output, page)
+    page, _ = _bough.report(_paths(files), _os.fspath(output), channels=_words(channels), title=title,
+                            progress=progress)
     return page
-
-
-def _write(path, text):
-    if path:
-        with open(path, "w", encoding="utf-8", newline="") as f:
-            f.write(text)
 
 
 def flx(bodies, output="", *, body_ids=1, integrals="", modopt=0, digits=9, special_nodes=False, stiffening=False):
     """The text of a .FLX file of flexible-body files; written where `output` is given."""
-    text, _ = _bough.flx(_paths(bodies), body_ids=_list(body_ids), integrals=integrals, modopt=modopt, digits=digits,
-                         special_nodes=special_nodes, stiffening=stiffening)
-    _write(output, text)
+    text, _ = _bough.flx(_paths(bodies), _os.fspath(output), body_ids=_list(body_ids), integrals=integrals,
+                         modopt=modopt, digits=digits, special_nodes=special_nodes, stiffening=stiffening)
     return text
 
 
@@ -356,6 +356,10 @@ def _make_settings(parameters):
     return [f"{name}={value!r}" for name, value in numbers.items()]
 
 
+def _place(bodies):
+    return {_os.fspath(file): body for file, body in (bodies or {}).items()}
+
+
 class System:
     """A multibody system, of a system file or of its text.
 
@@ -366,7 +370,7 @@ class System:
     """
 
     def __init__(self, file, *, controllers=None, bodies=None, parameters=None, start_from=""):
-        self._own = _bough.System(_os.fspath(file), controllers or {}, bodies or {}, _make_settings(parameters),
+        self._own = _bough.System(_os.fspath(file), controllers or {}, _place(bodies), _make_settings(parameters),
                                   _os.fspath(start_from), None)
 
     @classmethod
@@ -376,7 +380,7 @@ class System:
         folder = _os.fspath(folder)
         system = cls.__new__(cls)
         system._own = _bough.System(name if folder in ("", ".") else _os.path.join(folder, name), controllers or {},
-                                    bodies or {}, _make_settings(parameters), _os.fspath(start_from), text)
+                                    _place(bodies), _make_settings(parameters), _os.fspath(start_from), text)
         return system
 
     @property
@@ -404,7 +408,7 @@ class System:
         stiffness, frequency or damping of modes; the model then has inputs w and outputs z for w = delta z.
         """
         ranges = [f"{name}={float(low)!r}:{float(high)!r}" for name, (low, high) in (uncertain or {}).items()]
-        model, _ = self._own.linearize(at, equilibrium, open, list(inputs), list(outputs), ranges)
+        model, _ = self._own.linearize(at, equilibrium, open, _words(inputs), _words(outputs), ranges)
         return model
 
 

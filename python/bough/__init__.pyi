@@ -74,7 +74,7 @@ def select(body: FlexBody | _Path, system: _Path | Sequence[_Path] | None = None
            weight: str | Sequence[str] = (), spectrum: _Path = "", number: int = 0, tolerance: float | None = None,
            below: float = 0.0, keep: int | Sequence[int] = (), damping: float = 0.01,
            at: float | Sequence[float] = (), equilibrium: bool = False, open: bool = False,
-           set: str | Sequence[str] = (),
+           set: str | Sequence[str] = (), parameters: Mapping[str, float] | None = None,
            progress: Callable[[str], object] | None = None) -> tuple[FlexBody, dict[str, Any]]: ...
 def check(file: _Path, *, parameters: Mapping[str, float] | None = None, subcase: int = 0, free: bool = False,
           mass: str = "deck", ignore: str | Sequence[str] = ()) -> dict[str, Any]: ...
@@ -124,7 +124,7 @@ class System:
     def run(self, output: _Path | None = None,
             progress: Callable[[float, float], bool | None] | None = None) -> Results: ...
     def linearize(self, *, at: float | None = None, equilibrium: bool = False, open: bool = False,
-                  inputs: Sequence[str] = (), outputs: Sequence[str] = (),
+                  inputs: str | Sequence[str] = (), outputs: str | Sequence[str] = (),
                   uncertain: Mapping[str, tuple[float, float]] | None = None) -> LinearModel: ...
 
 class Simulation:
