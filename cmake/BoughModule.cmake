@@ -39,6 +39,7 @@ function(bough_module name)
     set(scope INTERFACE)
   endif()
   add_library(bough::${name} ALIAS bough_${name})
+  target_compile_features(bough_${name} INTERFACE cxx_std_20)  # of the headers, for who links the library
   set_target_properties(bough_${name} PROPERTIES EXPORT_NAME ${name})
   target_include_directories(bough_${name} ${scope}
     $<BUILD_INTERFACE:${CMAKE_SOURCE_DIR}> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/bough>)
