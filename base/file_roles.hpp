@@ -5,8 +5,8 @@
 namespace bough {
 
 /// While one lives, files read and files to be written are remembered by device and number (links do not hide them),
-/// and note_input and note_output refuse a file that is both. The innermost counts. Without one, as in a session of
-/// Python that writes again what it read an hour ago, nothing is remembered.
+/// and note_input and note_output refuse a file that is both. The innermost counts. Without one nothing is
+/// remembered: a session of Python has one for each call, and may write again what it read an hour ago.
 class FileRoles {
  public:
   FileRoles();
