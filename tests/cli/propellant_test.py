@@ -83,6 +83,47 @@ duration = 1.0
 gravity = [0.0, 0.0, -9.81]
 """
 
+ORIGIN = """[[body]]
+name = "b"
+mass = 1.0
+cg = [0.0, {y}, 0.0]
+inertia = [1.0, 1.0, 1.0]
+nodes = [{{id = 1, position = [0.0, {y}, -2.0]}}]
+[[tank]]
+name = "t"
+body = "b"
+type = "table"
+masses = [0.0, 100.0]
+cg = [[0.0, {y}, 0.0], [0.0, {y}, 0.0]]
+inertia = [[0.0, 0.0, 0.0], [100.0, 100.0, 100.0]]
+mass = 99.0
+[[hinge]]
+name = "f"
+type = "free"
+child = "b"
+position = [1, 0, 0, 0, 0.0, {place}, 0.0]
+rate = [0.0, 0.5, 0.0, 0.0, 0.0, 0.0]
+[[actuator]]
+name = "e"
+type = "engine"
+body = "b"
+node = 1
+axis = [0.0, 0.0, 1.0]
+input = "thrust"
+exhaust_velocity = 1000.0
+tank = "t"
+[[function]]
+name = "thrust"
+type = "constant"
+value = 1000.0
+[simulation]
+duration = 50.0
+output_step = 1.0
+integrator = "rk"
+relative_tolerance = 1e-12
+absolute_tolerance = 1e-12
+"""
+
 
 class Propellant(ProgramTest):
     def read_h5(self, name, *paths):
@@ -133,6 +174,24 @@ class Propellant(ProgramTest):
             expected = -(moment_bo - cg * force) / inertia
             row = [i for i, name in enumerate(names) if "flight:ry" in name][-1]
             self.assertAlmostEqual(A[row, row], expected, delta=1e-6 * abs(expected))
+
+    def test_damping_is_the_same_whatever_the_origin_is(self):
+        """ω0 (m/m0)^(l²/k² - 1): k 1, l 2, and a body frame that is 0, 1 and 3 aside of the line from tank to nozzle."""
+        for aside in (0.0, 1.0, -3.0):
+            self.write("origin.toml", ORIGIN.format(y=-aside, place=aside))
+            self.bough("run", "origin.toml", "-o", "o.h5", "-q")
+            rate, mass, linear, out = self.read_h5("o.h5", "/bodies/b/angular_velocity", "/system_mass/mass",
+                                                   "/momentum/angular", "/momentum/out_angular")
+            np.testing.assert_allclose(rate[:, 1], 0.5 * (mass / 100) ** 3, atol=1e-9, err_msg=str(aside))
+            self.assertLess(np.abs(rate[:, [0, 2]]).max(), 1e-9)
+            total = linear + out
+            self.assertLess(np.abs(total - total[0]).max(), 1e-9 * np.abs(linear).max())
+            self.bough("linearize", "origin.toml", "-o", "l.h5", "-q")
+            with h5py.File(self.path("l.h5")) as f:
+                A, names = f["/A"][()], [s.decode() for s in f["/states/name"][()]]
+            row = [i for i, name in enumerate(names) if "f:ry" in name][-1]
+            # of ω = ω0 (m/m0)³ with a flow of 1 from 100
+            self.assertAlmostEqual(A[row, row], -0.03, delta=1e-8, msg=str(aside))
 
     def find_frequency(self, *arguments):
         self.bough("linearize", "slosh.toml", *arguments, "-o", "l.h5", "-q")
