@@ -124,6 +124,58 @@ relative_tolerance = 1e-12
 absolute_tolerance = 1e-12
 """
 
+HOVER = """[[body]]
+name = "b"
+mass = 100.0
+inertia = [30.0, 30.0, 20.0]
+nodes = [{{id = 1, position = [0.0, 0.0, -1.0]}}]
+[[tank]]
+name = "t"
+body = "b"
+type = "cylinder"
+mass = 50.0
+radius = 0.3
+height = 1.0
+density = 800.0
+[[hinge]]
+name = "f"
+type = "prismatic"
+child = "b"
+axis = [0, 0, 1.0]
+[[sensor]]
+name = "z"
+type = "hinge_angle"
+hinge = "f"
+coordinate = 1
+[[sensor]]
+name = "v"
+type = "hinge_rate"
+hinge = "f"
+coordinate = 1
+[[controller]]
+name = "law"
+type = "pid"
+inputs = ["z"]
+rate = "v"
+kp = 3000.0
+ki = 800.0
+kd = 2500.0
+[[actuator]]
+name = "e"
+type = "engine"
+body = "b"
+node = 1
+axis = [0, 0, 1.0]
+input = "law"
+lag = 0.1
+bias = 1000.0
+{more}
+[simulation]
+duration = 5.0
+gravity = [0, 0, -9.81]
+integrator = "rk"
+"""
+
 
 class Propellant(ProgramTest):
     def read_h5(self, name, *paths):
@@ -192,6 +244,15 @@ class Propellant(ProgramTest):
             row = [i for i, name in enumerate(names) if "f:ry" in name][-1]
             # of ω = ω0 (m/m0)³ with a flow of 1 from 100
             self.assertAlmostEqual(A[row, row], -0.03, delta=1e-8, msg=str(aside))
+
+    def test_control_starts_from_an_equilibrium_beside_a_tank(self):
+        """The integral of the law carries the weight: the start is at rest and stays there."""
+        self.write("hover.toml", HOVER.format(more=""))
+        self.bough("equilibrium", "hover.toml", "-o", "e.h5", "-q")
+        self.bough("run", "hover.toml", "--start-from", "e.h5", "-o", "r.h5", "-q")
+        height, thrust = self.read_h5("r.h5", "/hinges/f/q", "/actuators/e")
+        self.assertLess(np.abs(height).max(), 1e-9)
+        np.testing.assert_allclose(thrust[:, 0], 150 * 9.81, rtol=1e-9)
 
     def find_frequency(self, *arguments):
         self.bough("linearize", "slosh.toml", *arguments, "-o", "l.h5", "-q")
