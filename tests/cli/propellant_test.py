@@ -254,6 +254,23 @@ class Propellant(ProgramTest):
         self.assertLess(np.abs(height).max(), 1e-9)
         np.testing.assert_allclose(thrust[:, 0], 150 * 9.81, rtol=1e-9)
 
+    def test_equilibrium_holds_what_a_burning_engine_has_used(self):
+        """Thrust is the weight, of a law with an integral; a spring takes the rest of a constant one; with and without tank."""
+        for more in ("exhaust_velocity = 2000.0", 'exhaust_velocity = 2000.0\ntank = "t"'):
+            self.write("hover.toml", HOVER.format(more=more))
+            self.bough("equilibrium", "hover.toml", "-o", "e.h5", "-q")
+            thrust, height = self.read_h5("e.h5", "/actuators/e", "/hinges/f/q")
+            self.assertAlmostEqual(thrust[-1, 0], 150 * 9.81, delta=1e-6)
+            self.assertAlmostEqual(height.flat[-1], 0, delta=1e-9)
+            self.bough("linearize", "hover.toml", "--equilibrium", "-o", "l.h5", "-q")
+            stand = HOVER.format(more=more)
+            stand = stand[:stand.index("[[controller]]")] + stand[stand.index("[[actuator]]"):]
+            self.write("stand.toml", stand.replace('input = "law"\n', "").replace("bias = 1000.0", "bias = 1500.0")
+                       .replace('child = "b"\n', 'child = "b"\nstiffness = 1e4\ndamping = 100.0\n'))
+            self.bough("equilibrium", "stand.toml", "-o", "e.h5", "-q")
+            height, = self.read_h5("e.h5", "/hinges/f/q")
+            self.assertAlmostEqual(height.flat[-1], (1500 - 150 * 9.81) / 1e4, delta=1e-9)
+
     def find_frequency(self, *arguments):
         self.bough("linearize", "slosh.toml", *arguments, "-o", "l.h5", "-q")
         with h5py.File(self.path("l.h5")) as f:
