@@ -104,7 +104,8 @@ void set_start_state(records::SystemSpec& spec, const std::string& path, Diagnos
     const std::string channel = "/tanks/" + tank.name + "/mass";
     if (!tank.function.empty() || !starter.has(channel)) continue;
     const auto mass = starter.read(channel, 1);
-    if (!mass.empty()) tank.mass = mass.front();
+    // Below zero by rounding where a run passed the event at which it was empty.
+    if (!mass.empty()) tank.mass = std::max(0.0, mass.front());
   }
   for (auto& hinge : spec.hinges) {
     if (hinge.type == records::HingeType::Fixed || !hinge.motion.empty()) continue;

@@ -176,6 +176,43 @@ gravity = [0, 0, -9.81]
 integrator = "rk"
 """
 
+EMPTY = """[[body]]
+name = "b"
+mass = 10.0
+inertia = [1.0, 1.0, 1.0]
+nodes = [{{id = 1, position = [0.0, 0.1, -1.0]}}]
+[[tank]]
+name = "t"
+body = "b"
+type = "sphere"
+mass = 0.11
+radius = 0.3
+density = 1000.0
+[[hinge]]
+name = "f"
+type = "free"
+child = "b"
+[[actuator]]
+name = "e"
+type = "engine"
+body = "b"
+node = 1
+axis = [0.0, 0.0, 1.0]
+input = "throttle"
+exhaust_velocity = 20.0
+tank = "t"
+[[function]]
+name = "throttle"
+type = "sine"
+amplitude = 3.0
+omega = 0.9
+offset = 4.0
+[simulation]
+start = {start}
+duration = 3.0
+integrator = "rk"
+"""
+
 
 class Propellant(ProgramTest):
     def read_h5(self, name, *paths):
@@ -253,6 +290,19 @@ class Propellant(ProgramTest):
         height, thrust = self.read_h5("r.h5", "/hinges/f/q", "/actuators/e")
         self.assertLess(np.abs(height).max(), 1e-9)
         np.testing.assert_allclose(thrust[:, 0], 150 * 9.81, rtol=1e-9)
+
+    def test_a_tank_that_ran_empty_is_a_start(self):
+        self.write("first.toml", EMPTY.format(start=0.0))
+        self.bough("run", "first.toml", "-o", "first.h5", "-q")
+        mass, velocity = self.read_h5("first.h5", "/tanks/t/mass", "/bodies/b/velocity")
+        self.assertEqual(mass[-1, 0] if mass.ndim > 1 else mass[-1], 0)
+        self.write("second.toml", EMPTY.format(start=3.0))
+        self.bough("run", "second.toml", "--start-from", "first.h5", "-o", "second.h5", "-q")
+        mass, thrust, after = self.read_h5("second.h5", "/tanks/t/mass", "/actuators/e", "/bodies/b/velocity")
+        self.assertEqual(np.abs(mass).max(), 0)
+        self.assertEqual(np.abs(thrust[:, 0]).max(), 0)
+        np.testing.assert_allclose(after[-1], velocity[-1], atol=1e-9)
+        self.bough("linearize", "second.toml", "--start-from", "first.h5", "-o", "l.h5", "-q")
 
     def test_equilibrium_holds_what_a_burning_engine_has_used(self):
         """Thrust is the weight, of a law with an integral; a spring takes the rest of a constant one; with and without tank."""
