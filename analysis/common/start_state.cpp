@@ -104,7 +104,8 @@ void set_start_state(records::SystemSpec& spec, const std::string& path, Diagnos
     const std::string channel = "/tanks/" + tank.name + "/mass";
     if (!tank.function.empty() || !starter.has(channel)) continue;
     const auto mass = starter.read(channel, 1);
-    if (!mass.empty()) tank.mass = mass.front();
+    // Below zero by rounding where a run passed the event at which it was empty.
+    if (!mass.empty()) tank.mass = std::max(0.0, mass.front());
   }
   for (auto& hinge : spec.hinges) {
     if (hinge.type == records::HingeType::Fixed || !hinge.motion.empty()) continue;
@@ -126,16 +127,18 @@ std::optional<records::Checkpoint> find_start_control(const std::string& path, c
   const int nq = system.num_q(), nu = system.num_u(), nz = system.num_z();
   const auto* control = found.find("control");
   const Eigen::Index held = solver::Plant(system).make_initial_point().memory.size();
-  if (found.state.size() != nq + nu + nz + 2 || (control ? control->size() - 1 : 0) != held) {
+  // An equilibrium has no book of what left: it starts at zero.
+  const int own = nz - system.num_momentum_out();
+  if (found.state.size() != nq + nu + own + 2 || (control ? control->size() - 1 : 0) != held) {
     diagnostics.note("cli.start-state", {path}, "it has other controllers or actuators than this system",
                      "they start as the system file says");
     return {};
   }
   records::Checkpoint start;
   start.time = time;
-  start.state = Eigen::VectorXd::Zero(found.state.size());
+  start.state = Eigen::VectorXd::Zero(nq + nu + nz + 2);
   system.calc_initial_state(start.state.head(nq), start.state.segment(nq, nu));
-  start.state.segment(nq + nu, nz) = found.state.segment(nq + nu, nz);
+  start.state.segment(nq + nu, own) = found.state.segment(nq + nu, own);
   start.memory.emplace_back("start", Eigen::VectorXd::Zero(1));
   if (control) start.memory.emplace_back("control", *control);
   return start;

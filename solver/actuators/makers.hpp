@@ -11,7 +11,8 @@ namespace bough::solver {
 struct ActuatorPlace {
   std::string effort = "F L or F";  ///< dimension along the hinge coordinate
   int row = -1, marker = -1;
-  int tank = -1;  ///< in Tree::tanks, of thrusters
+  int tank = -1;               ///< in Tree::tanks, of thrusters
+  bool is_tank_empty = false;  ///< from the start
 };
 
 /// Makes a force, motor or brake on a hinge coordinate. Reports control.* through `keys`.

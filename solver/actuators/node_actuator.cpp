@@ -56,7 +56,12 @@ class TorqueRod final : public NodeActuator {
 class Thruster : public NodeActuator {
  public:
   double exhaust = 0, exit_radius = 0;  ///< L/T, 0: uses nothing; L
+  bool starts_empty = false;
 
+  void start(double* z, double* d) const final {
+    NodeActuator::start(z, d);
+    if (starts_empty) d[sizes.memory - 1] = 1;
+  }
   void calc_outputs(const BlockInput& in, double* y) const final {
     y[0] = calc_thrust(in);
     y[1] = exhaust > 0 ? in.z[sizes.states - 1] : 0;
@@ -81,6 +86,7 @@ class Thruster : public NodeActuator {
   void read_propellant(SettingsReader& keys, const ActuatorPlace& place) {
     exhaust = keys.has("exhaust_velocity") ? keys.get_positive("exhaust_velocity") : 0;
     tank = place.tank;
+    starts_empty = place.is_tank_empty;
     keys.demand(tank < 0 || exhaust > 0, "has a tank and no exhaust_velocity", "give exhaust_velocity");
     keys.demand(tank >= 0 || !keys.has("exit_radius"), "has an exit_radius and no tank", "give tank, or leave it out");
     exit_radius = keys.get_size("exit_radius", 0);

@@ -133,6 +133,7 @@ bool find_tank(const records::ActuatorRecord& r, const Tree& tree, SettingsReade
     return false;
   }
   place.tank = static_cast<int>(found - names.begin());
+  place.is_tank_empty = tank.initial <= tank.reserve;
   return true;
 }
 

@@ -3,10 +3,11 @@
 ///
 /// Quasi-steady flow ṁ from the place r of a tank (mean S' of its content's derivative) to the exit r_e, without whirl:
 ///     force     -2 ω × ṁ (r_e - S')
-///     moment    -ṁ (E - J') ω about Bo,   E = r_e·r_e 1 - r_e r_eᵀ + ¼ R² (1 + e eᵀ)
-/// with J' the derivative of the content's inertia and R the radius of the nozzle, normal to e. The moment is jet
-/// damping. Sources: Thomson, Introduction to Space Dynamics (1961) 8.5; Meirovitch, Methods of Analytical Dynamics
-/// (1970) 12; Eke, JGCD 21 (1998) 2.
+///     moment    -ṁ (E - J') ω - ω × h about Bo,   E = r_e·r_e 1 - r_e r_eᵀ + ¼ R² (1 + e eᵀ)
+/// with J' the derivative of the content's inertia, R the radius of the nozzle, normal to e, and h = S' × ṁ (r_e - S')
+/// the angular momentum about Bo of the flow in straight lines. The moment is jet damping. Sources: Thomson,
+/// Introduction to Space Dynamics (1961) 8.5; Meirovitch, Methods of Analytical Dynamics (1970) 12; Eke, JGCD 21
+/// (1998) 2.
 #include "solver/tree/data.hpp"
 
 namespace bough::solver {

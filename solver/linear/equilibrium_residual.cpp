@@ -2,7 +2,8 @@
 
 namespace bough::solver {
 
-EquilibriumResidual::EquilibriumResidual(Plant& plant, const OperatingPoint& start) : plant_(&plant), point_(start) {
+EquilibriumResidual::EquilibriumResidual(Plant& plant, const OperatingPoint& start)
+    : plant_(&plant), point_(start), used_up_(plant.find_used_up()) {
   for (int i = 0; i < plant.num_dofs(); ++i) {
     if (plant.is_mode(i)) point_.u[i] = 0;
     if (plant.is_mode(i) || point_.u[i] == 0) free_.push_back(i);
@@ -49,6 +50,7 @@ void EquilibriumResidual::evaluate() {
   rates_.resize(size());
   rates_.head(n) = plant_->calc_unsteadiness(rates);
   rates_.segment(n, plant_->num_states()) = rates.segment(n, plant_->num_states());
+  for (const int i : used_up_) rates_[n + i] = 0;
   residual_ = rates_;
   residual_.head(n) = plant_->multiply_mass(point_, rates_.head(n));
   rates_.tail(size() - n - plant_->num_states()) = plant_->calc_sample_rates(point_);

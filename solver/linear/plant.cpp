@@ -43,6 +43,25 @@ Plant::Plant(const System& system, bool is_open)
   choose_independent(start.t, start.q);
 }
 
+std::vector<int> Plant::find_used_up() {
+  std::vector<int> used_up;
+  VectorXd& z = data_->signals.z;
+  for (int i = 0; i < num_states(); ++i) {
+    const int row = state_row(i);
+    const auto draws = [row](const Tank& tank) {
+      return std::find(tank.used_rows.begin(), tank.used_rows.end(), row) != tank.used_rows.end();
+    };
+    z.setZero();
+    z[row] = 1;
+    // Without a tank: what counts as used by a body.
+    const VectorXd used = system_.signals.calc_consumption(get_motion(system_, *data_), data_->signals);
+    if (!used.isZero(0) || std::any_of(system_.tree.tanks.begin(), system_.tree.tanks.end(), draws))
+      used_up.push_back(i);
+  }
+  z.setZero();
+  return used_up;
+}
+
 void Plant::add_dofs() {
   for (int b = 0; b < system_.num_bodies(); ++b) {
     add_hinge(b);

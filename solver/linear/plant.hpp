@@ -64,6 +64,8 @@ class Plant {
   std::string state_name(int i) const;
   /// The row of z.
   int state_row(int i) const { return state_rows_[static_cast<size_t>(i)]; }
+  /// States that are the propellant that a thruster has used, from a tank or from none: they rise as time does.
+  std::vector<int> find_used_up();
   /// Sampled controllers and sensors, which stand still in a linear model.
   std::vector<std::string> list_sampled() const;
   /// Label of the first block whose samples have no linear model; empty: none.

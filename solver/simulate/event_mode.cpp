@@ -59,7 +59,9 @@ void Run::iterate_switches(double t) {
       is_open = signals.switch_over(motion, ode_.data().signals, events_.switches, switched);
       for (const auto& [block, function] : switched) {
         const std::string what = block->describe_switch(motion, function);
-        if (!what.empty()) sink_.write_event({t, what, block->label});
+        if (what.empty()) continue;
+        sink_.write_event({t, what, block->label});
+        if (block->tank >= 0) end_at_reserve(*block);
       }
     });
     last_events_.switches = events_.switches;
@@ -69,6 +71,20 @@ void Run::iterate_switches(double t) {
   }
   finish_failed(t, "control.chatter", switched.back().block->label + " switches without end at t = " + short_text(t),
                 "give it a hysteresis, or a lag on the way round its loop");
+}
+
+void Run::end_at_reserve(const Block& block) {
+  const auto index = static_cast<size_t>(block.tank);
+  const Tank& tank = ode_.system().tree.tanks[index];
+  const double past = tank.reserve - ode_.data().tree.tanks[index].mass;
+  for (const auto& p : ode_.system().signals.places) {
+    if (p.block.get() != &block || past <= 0) continue;
+    const int row = p.state + block.sizes.states - 1;
+    double& used = y_[ode_.num_coordinates() + row];
+    used = tank.used_rows.size() == 1 ? tank.initial - tank.reserve : used - past;
+    ode_.data().signals.z[row] = used;
+    ode_.data().tree.tanks[index].mass = tank.reserve;
+  }
 }
 
 void Run::count_switch(const std::string& label, double t) {

@@ -236,6 +236,8 @@ class Run {
   void iterate_switches(double t);
   /// Counts a switch of a block; warns once ("control.sliding") where it switches without rest.
   void count_switch(const std::string& label, double t);
+  /// At the event at which a tank is empty: what its thruster has used is no more than what could leave.
+  void end_at_reserve(const Block& block);
   // Dry friction and rigid stops (run_joint_contacts.cpp)
   /// Updates the contacts that stick, slide and strike at (t, y_).
   void iterate_contacts(double t);

@@ -33,6 +33,136 @@ SLOSH = toml(
     table("hinge", "lateral", "{hinge}", child="vehicle"),
     section("simulation", duration=1.0, gravity=[0.0, 0.0, -9.81]))
 
+ORIGIN = """[[body]]
+name = "b"
+mass = 1.0
+cg = [0.0, {y}, 0.0]
+inertia = [1.0, 1.0, 1.0]
+nodes = [{{id = 1, position = [0.0, {y}, -2.0]}}]
+[[tank]]
+name = "t"
+body = "b"
+type = "table"
+masses = [0.0, 100.0]
+cg = [[0.0, {y}, 0.0], [0.0, {y}, 0.0]]
+inertia = [[0.0, 0.0, 0.0], [100.0, 100.0, 100.0]]
+mass = 99.0
+[[hinge]]
+name = "f"
+type = "free"
+child = "b"
+position = [1, 0, 0, 0, 0.0, {place}, 0.0]
+rate = [0.0, 0.5, 0.0, 0.0, 0.0, 0.0]
+[[actuator]]
+name = "e"
+type = "engine"
+body = "b"
+node = 1
+axis = [0.0, 0.0, 1.0]
+input = "thrust"
+exhaust_velocity = 1000.0
+tank = "t"
+[[function]]
+name = "thrust"
+type = "constant"
+value = 1000.0
+[simulation]
+duration = 50.0
+output_step = 1.0
+integrator = "rk"
+relative_tolerance = 1e-12
+absolute_tolerance = 1e-12
+"""
+
+HOVER = """[[body]]
+name = "b"
+mass = 100.0
+inertia = [30.0, 30.0, 20.0]
+nodes = [{{id = 1, position = [0.0, 0.0, -1.0]}}]
+[[tank]]
+name = "t"
+body = "b"
+type = "cylinder"
+mass = 50.0
+radius = 0.3
+height = 1.0
+density = 800.0
+[[hinge]]
+name = "f"
+type = "prismatic"
+child = "b"
+axis = [0, 0, 1.0]
+[[sensor]]
+name = "z"
+type = "hinge_angle"
+hinge = "f"
+coordinate = 1
+[[sensor]]
+name = "v"
+type = "hinge_rate"
+hinge = "f"
+coordinate = 1
+[[controller]]
+name = "law"
+type = "pid"
+inputs = ["z"]
+rate = "v"
+kp = 3000.0
+ki = 800.0
+kd = 2500.0
+[[actuator]]
+name = "e"
+type = "engine"
+body = "b"
+node = 1
+axis = [0, 0, 1.0]
+input = "law"
+lag = 0.1
+bias = 1000.0
+{more}
+[simulation]
+duration = 5.0
+gravity = [0, 0, -9.81]
+integrator = "rk"
+"""
+
+EMPTY = """[[body]]
+name = "b"
+mass = 10.0
+inertia = [1.0, 1.0, 1.0]
+nodes = [{{id = 1, position = [0.0, 0.1, -1.0]}}]
+[[tank]]
+name = "t"
+body = "b"
+type = "sphere"
+mass = 0.11
+radius = 0.3
+density = 1000.0
+[[hinge]]
+name = "f"
+type = "free"
+child = "b"
+[[actuator]]
+name = "e"
+type = "engine"
+body = "b"
+node = 1
+axis = [0.0, 0.0, 1.0]
+input = "throttle"
+exhaust_velocity = 20.0
+tank = "t"
+[[function]]
+name = "throttle"
+type = "sine"
+amplitude = 3.0
+omega = 0.9
+offset = 4.0
+[simulation]
+start = {start}
+duration = 3.0
+integrator = "rk"
+"""
+
 
 class Propellant(ProgramTest):
     def test_a_burn_in_two_parts_is_the_burn(self):
@@ -79,6 +209,63 @@ class Propellant(ProgramTest):
             expected = -(moment_bo - cg * force) / inertia
             row = [i for i, name in enumerate(names) if "flight:ry" in name][-1]
             self.assertAlmostEqual(A[row, row], expected, delta=1e-6 * abs(expected))
+
+    def test_damping_is_the_same_whatever_the_origin_is(self):
+        """ω0 (m/m0)^(l²/k² - 1): k 1, l 2, and a body frame that is 0, 1 and 3 aside of the line from tank to nozzle."""
+        for aside in (0.0, 1.0, -3.0):
+            self.write("origin.toml", ORIGIN.format(y=-aside, place=aside))
+            self.bough("run", "origin.toml", "-o", "o.h5", "-q")
+            rate, mass, linear, out = self.read_h5("o.h5", "/bodies/b/angular_velocity", "/system_mass/mass",
+                                                   "/momentum/angular", "/momentum/out_angular")
+            np.testing.assert_allclose(rate[:, 1], 0.5 * (mass / 100) ** 3, atol=1e-9, err_msg=str(aside))
+            self.assertLess(np.abs(rate[:, [0, 2]]).max(), 1e-9)
+            total = linear + out
+            self.assertLess(np.abs(total - total[0]).max(), 1e-9 * np.abs(linear).max())
+            self.bough("linearize", "origin.toml", "-o", "l.h5", "-q")
+            with h5py.File(self.path("l.h5")) as f:
+                A, names = f["/A"][()], [s.decode() for s in f["/states/name"][()]]
+            row = [i for i, name in enumerate(names) if "f:ry" in name][-1]
+            # of ω = ω0 (m/m0)³ with a flow of 1 from 100
+            self.assertAlmostEqual(A[row, row], -0.03, delta=1e-8, msg=str(aside))
+
+    def test_control_starts_from_an_equilibrium_beside_a_tank(self):
+        """The integral of the law carries the weight: the start is at rest and stays there."""
+        self.write("hover.toml", HOVER.format(more=""))
+        self.bough("equilibrium", "hover.toml", "-o", "e.h5", "-q")
+        self.bough("run", "hover.toml", "--start-from", "e.h5", "-o", "r.h5", "-q")
+        height, thrust = self.read_h5("r.h5", "/hinges/f/q", "/actuators/e")
+        self.assertLess(np.abs(height).max(), 1e-9)
+        np.testing.assert_allclose(thrust[:, 0], 150 * 9.81, rtol=1e-9)
+
+    def test_a_tank_that_ran_empty_is_a_start(self):
+        self.write("first.toml", EMPTY.format(start=0.0))
+        self.bough("run", "first.toml", "-o", "first.h5", "-q")
+        mass, velocity = self.read_h5("first.h5", "/tanks/t/mass", "/bodies/b/velocity")
+        self.assertEqual(mass[-1, 0] if mass.ndim > 1 else mass[-1], 0)
+        self.write("second.toml", EMPTY.format(start=3.0))
+        self.bough("run", "second.toml", "--start-from", "first.h5", "-o", "second.h5", "-q")
+        mass, thrust, after = self.read_h5("second.h5", "/tanks/t/mass", "/actuators/e", "/bodies/b/velocity")
+        self.assertEqual(np.abs(mass).max(), 0)
+        self.assertEqual(np.abs(thrust[:, 0]).max(), 0)
+        np.testing.assert_allclose(after[-1], velocity[-1], atol=1e-9)
+        self.bough("linearize", "second.toml", "--start-from", "first.h5", "-o", "l.h5", "-q")
+
+    def test_equilibrium_holds_what_a_burning_engine_has_used(self):
+        """Thrust is the weight, of a law with an integral; a spring takes the rest of a constant one; with and without tank."""
+        for more in ("exhaust_velocity = 2000.0", 'exhaust_velocity = 2000.0\ntank = "t"'):
+            self.write("hover.toml", HOVER.format(more=more))
+            self.bough("equilibrium", "hover.toml", "-o", "e.h5", "-q")
+            thrust, height = self.read_h5("e.h5", "/actuators/e", "/hinges/f/q")
+            self.assertAlmostEqual(thrust[-1, 0], 150 * 9.81, delta=1e-6)
+            self.assertAlmostEqual(height.flat[-1], 0, delta=1e-9)
+            self.bough("linearize", "hover.toml", "--equilibrium", "-o", "l.h5", "-q")
+            stand = HOVER.format(more=more)
+            stand = stand[:stand.index("[[controller]]")] + stand[stand.index("[[actuator]]"):]
+            self.write("stand.toml", stand.replace('input = "law"\n', "").replace("bias = 1000.0", "bias = 1500.0")
+                       .replace('child = "b"\n', 'child = "b"\nstiffness = 1e4\ndamping = 100.0\n'))
+            self.bough("equilibrium", "stand.toml", "-o", "e.h5", "-q")
+            height, = self.read_h5("e.h5", "/hinges/f/q")
+            self.assertAlmostEqual(height.flat[-1], (1500 - 150 * 9.81) / 1e4, delta=1e-9)
 
     def find_frequency(self, *arguments):
         self.bough("linearize", "slosh.toml", *arguments, "-o", "l.h5", "-q")

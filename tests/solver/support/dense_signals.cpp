@@ -278,10 +278,11 @@ void Route::add_outflow(size_t index, double flow, const Vector3d& exit, double 
   const Vector3d place(change(5, 1), change(3, 2), change(4, 0));
   // Momentum that crosses the boundary at the nozzle; that of the flow inside turns with the body.
   const Vec inside = X.R * make_constant<3, 1>(flow * (exit - place));
+  const Vec turning = X.R * make_constant<3, 1>(flow * place.cross(exit));  // about Bo
   const Vector3d jet = flow * calc_velocity(exit) - thrust;
   const Vector3d of_disc = flow * 0.25 * radius * radius * (w + normal * normal.dot(w));
   const Vector3d out = jet + inside.d1;
-  const Vector3d turn_out = (R * exit).cross(jet) + of_disc + X.p.d1.cross(inside.at);
+  const Vector3d turn_out = (R * exit).cross(jet) + of_disc + X.p.d1.cross(inside.at) + turning.d1;
   // The content loses mass at the momentum that the body gives it at its place.
   const Vector3d lost = flow * calc_velocity(place);
   const Matrix3d inertia = change.block<3, 3>(3, 3);
