@@ -87,6 +87,7 @@ gain = [[0.3, 0.0, 0.5, 0.0, 2.0], [0.0, -0.2, 0.0, 1.5, 0.1]]
 duration = 1.0
 """
 OUTPUTS = ["sight:1", "sight:2"]
+LEGENDRE = np.polynomial.legendre.leggauss(60)
 WHEEL = """[[source]]
 name = "wheel"
 type = "wheel"
@@ -122,7 +123,7 @@ psd = [
 
 def calc_shares(f, T):
     """Shares of mean and line in a window, by Legendre polynomials over the window."""
-    x, w = np.polynomial.legendre.leggauss(60)
+    x, w = LEGENDRE
     wave = np.exp(1j * math.pi * f * T * x)
     return abs(np.sum(w * wave) / 2)**2, abs(np.sum(w * wave * math.sqrt(3) * x) / 2)**2
 
