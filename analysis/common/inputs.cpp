@@ -47,6 +47,7 @@ void demand_kind(const std::string& path, const std::string& kind, const std::st
   const std::string verb = kind == "body"     ? "reduce"
                            : kind == "system" ? "run"
                            : kind == "psd"    ? "response --psd"
+                           : kind == "budget" ? "response --budget"
                                               : "batch";
   throw InputError("cli.wrong-file", {path}, "the file is a " + kind + " file, expected a " + expected + " file",
                    "bough " + verb + " takes it" + (kind == "campaign" ? ", with --dry-run to check it" : ""));

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <limits>
 #include <map>
 #include <optional>
 
@@ -153,6 +154,13 @@ statespace::InputSpectrum read_input_spectrum(const std::vector<std::string>& it
   return {model.B.cols(), reader.terms()};
 }
 
+statespace::InputSpectrum make_input_spectrum(const std::vector<InputDensity>& densities,
+                                              const records::LinearModel& model, Diagnostics& diagnostics) {
+  Reader reader(model.inputs, diagnostics);
+  for (const auto& term : densities) reader.add(term);
+  return {model.B.cols(), reader.terms()};
+}
+
 std::vector<std::string> list_spectrum_files(const std::vector<std::string>& items) {
   std::vector<std::string> files;
   for (const auto& item : items)
@@ -171,6 +179,24 @@ void check_input_spectrum(const statespace::InputSpectrum& input, const std::vec
       "linear.bad-psd", {files.empty() ? file : files.front()},
       fmt::format("the matrix of spectral densities of the inputs is not positive semi-definite at {:g} Hz", *worst),
       "keep |S_ab|^2 at or below S_aa S_bb");
+}
+
+void choose_band(const records::LinearModel& model, const statespace::InputSpectrum& input,
+                 statespace::FrequencyRange& range) {
+  const double nyquist = model.sample_time > 0 ? 0.5 / model.sample_time : std::numeric_limits<double>::infinity();
+  const bool is_open = range.from_hz <= 0;
+  if (const auto band = input.get_range()) {
+    if (range.from_hz <= 0) range.from_hz = band->first;
+    if (range.to_hz <= 0) range.to_hz = std::min(band->second, nyquist);
+  }
+  bool has_origin = false;
+  for (Eigen::Index i = 0; i < model.poles.size(); ++i)
+    if (std::hypot(model.poles.real[i], model.poles.imag[i]) <= records::calc_origin_radius(model.poles, i))
+      has_origin = true;
+  const double max_hz = range.to_hz > 0 ? range.to_hz : nyquist;
+  for (const double hz : input.list_corners())
+    if (hz > 0 && (is_open || hz >= range.from_hz) && hz <= max_hz) range.corners_hz.push_back(hz);
+  if (is_open && range.from_hz <= 0 && !has_origin) range.corners_hz.push_back(0);
 }
 
 }  // namespace bough::analysis

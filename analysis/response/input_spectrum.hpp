@@ -3,7 +3,10 @@
 #include <string>
 #include <vector>
 
+#include "base/diagnostic.hpp"
+#include "formats/records/input_density.hpp"
 #include "formats/records/linear_model.hpp"
+#include "solver/statespace/frequency_response.hpp"
 #include "solver/statespace/random_outputs.hpp"
 
 namespace bough::analysis {
@@ -15,6 +18,14 @@ namespace bough::analysis {
 /// \throws InputError "linear.bad-psd" (negative, not Hermitian, indefinite), "linear.unknown-input", "cli.no-file".
 statespace::InputSpectrum read_input_spectrum(const std::vector<std::string>& items, const records::LinearModel& model,
                                               const std::string& file);
+
+/// Makes the spectrum of the densities of one source. Reports "linear.bad-psd", "linear.unknown-input".
+statespace::InputSpectrum make_input_spectrum(const std::vector<records::InputDensity>& densities,
+                                              const records::LinearModel& model, Diagnostics& diagnostics);
+
+/// Sets the range to the band of the densities where it is open, and adds their corners; from 0 if G(0) is finite.
+void choose_band(const records::LinearModel& model, const statespace::InputSpectrum& input,
+                 statespace::FrequencyRange& range);
 
 /// Files among the items.
 std::vector<std::string> list_spectrum_files(const std::vector<std::string>& items);

@@ -21,25 +21,6 @@ constexpr double kMaxUncertainty = 1e-4;
 /// Relative difference of two RMS values that is reported.
 constexpr double kRmsDifference = 0.01;
 
-/// Band and corners of the densities; from 0 if G(0) is finite.
-void choose_band(const records::LinearModel& model, const statespace::InputSpectrum& input,
-                 statespace::FrequencyRange& range) {
-  const double nyquist = model.sample_time > 0 ? 0.5 / model.sample_time : std::numeric_limits<double>::infinity();
-  const bool is_open = range.from_hz <= 0;
-  if (const auto band = input.get_range()) {
-    if (range.from_hz <= 0) range.from_hz = band->first;
-    if (range.to_hz <= 0) range.to_hz = std::min(band->second, nyquist);
-  }
-  bool has_origin = false;
-  for (Eigen::Index i = 0; i < model.poles.size(); ++i)
-    if (std::hypot(model.poles.real[i], model.poles.imag[i]) <= records::calc_origin_radius(model.poles, i))
-      has_origin = true;
-  const double max_hz = range.to_hz > 0 ? range.to_hz : nyquist;
-  for (const double hz : input.list_corners())
-    if (hz > 0 && (is_open || hz >= range.from_hz) && hz <= max_hz) range.corners_hz.push_back(hz);
-  if (is_open && range.from_hz <= 0 && !has_origin) range.corners_hz.push_back(0);
-}
-
 void compare_integrals(const records::RandomOutputs& random, const std::string& file, Diagnostics& diagnostics) {
   Eigen::Index worst = -1, narrow = -1;
   double max_difference = kRmsDifference, min_share = 1 - kRmsDifference;

@@ -12,12 +12,14 @@
 #include "analysis/common/inputs.hpp"
 #include "analysis/common/text_file.hpp"
 #include "analysis/export/csv_tables.hpp"
+#include "analysis/response/budget.hpp"
 #include "analysis/response/input_spectrum.hpp"
 #include "analysis/response/response.hpp"
 #include "cli/common/console_events.hpp"
 #include "cli/common/options.hpp"
 #include "cli/common/usage_text.hpp"
 #include "cli/linearize/linear_model_files.hpp"
+#include "cli/response/budget_tables.hpp"
 #include "cli/verbs.hpp"
 #include "formats/hdf5/linear_file.hpp"
 #include "formats/hdf5/sweep_file.hpp"
@@ -32,7 +34,7 @@ using records::LinearModel;
 
 struct ResponseOptions : CommonOptions {
   analysis::ResponseRequest request;
-  std::string csv;
+  std::string csv, budget;
 };
 
 constexpr std::size_t kMaxRows = 24;
@@ -177,9 +179,25 @@ nlohmann::json make_random_json(const records::RandomOutputs& random) {
   return json;
 }
 
+int run_budget(const ResponseOptions& o, Console& console) {
+  check_outputs(o, {o.csv}, {o.request.file, o.budget});
+  ConsoleEvents events(console);
+  const auto budget = analysis::calc_budget({o.request.file, o.budget, o.request.outputs, o.request.range}, events);
+  console.print(events.get_messages());
+  if (o.json)
+    console.print_data(make_budget_json(budget).dump(2) + "\n");
+  else
+    console.print(format_budget(budget));
+  if (o.csv.empty()) return kSuccess;
+  analysis::write_text_file(o.csv, analysis::make_budget_csv(budget));
+  if (!o.json) console.print("written: " + o.csv + "\n");
+  return kSuccess;
+}
+
 int run_response(const ResponseOptions& o) {
   Console console(o.quiet, o.verbosity);
   if (!console.is_root()) return kSuccess;
+  if (!o.budget.empty()) return run_budget(o, console);
   analysis::demand_file(o.request.file);
   auto inputs = analysis::list_spectrum_files(o.request.psd);
   inputs.push_back(o.request.file);
@@ -227,12 +245,21 @@ void add_response(CLI::App& app, Action& action) {
                    "Random response to these one-sided spectral densities of the inputs: NUMBER for all, NAME=NUMBER, "
                    "or a .toml or .csv file; as often as needed")
       ->excludes("--loop");
-  verb->add_option("--csv", o->csv, "Write the response to this CSV file, with --psd the densities and running RMS");
+  verb->add_option("--csv", o->csv,
+                   "Write the response to this CSV file, with --psd the densities and running RMS, with --budget its "
+                   "tables");
   add_common_options(*verb, *o, kOutput | kJson, "Write the response to this HDF5 file");
+  verb->add_option("--budget", o->budget,
+                   "Pointing budget: RMS of each output by the sources of this .toml file, by wheel speed and exposure")
+      ->excludes("--psd")
+      ->excludes("--loop")
+      ->excludes("--inputs")
+      ->excludes("--output");
   verb->footer(
       "Example:\n  bough linearize arm.toml --break motor -o loop.h5 && bough response loop.h5\n"
       "  bough response arm-linear.h5 --outputs tip:y --csv tip.csv\n"
       "  bough response arm-linear.h5 --psd motor=1e-4 --psd wind.csv -o random.h5\n"
+      "  bough response satellite-linear.h5 --outputs sight --budget jitter.toml --csv budget.csv\n"
       "bough plot arm-linear.h5 --kind bode draws it.");
   verb->callback([&action, o] {
     action = [o] { return analysis::with_file(o->request.file, [&] { return run_response(*o); }); };

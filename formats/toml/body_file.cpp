@@ -268,6 +268,7 @@ std::string detect_kind(const std::string& path) {
     if (body && body->is_table()) return "body";
     if (root.find("campaign")) return "campaign";
     if (root.find("psd")) return "psd";
+    if (root.find("source")) return "budget";
     if ((body && body->is_array()) || root.find("simulation") || root.find("hinge")) return "system";
     return {};
   }

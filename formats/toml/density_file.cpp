@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "formats/toml/detail/density_table.hpp"
 #include "formats/toml/detail/fields.hpp"
 #include "formats/toml/detail/schema.hpp"
 #include "formats/toml/detail/text_columns.hpp"
@@ -54,6 +55,26 @@ void check_values(const Fields& table, const records::InputDensity& term, Diagno
 
 }  // namespace
 
+records::InputDensity read_density(const Fields& table, const std::string& path, Diagnostics& diagnostics) {
+  records::InputDensity term;
+  term.at = table.locate();
+  term.input = table.get_string("input");
+  term.with = table.get_string("with");
+  term.is_log = table.get_string("interpolation") == "log";
+  if (table.has("file")) {
+    refuse_keys(table, {"frequency_hz", "imaginary"}, "if there is file", diagnostics);
+    read_columns(resolve_path(path, table.get_string("file")), table.locate("file"), {}, term.frequency_hz, term.real,
+                 diagnostics);
+  } else {
+    term.frequency_hz = table.get_numbers("frequency_hz");
+    term.real = table.get_numbers("density");
+    term.imag = table.get_numbers("imaginary");
+    check_lengths(table, term, diagnostics);
+  }
+  check_values(table, term, diagnostics);
+  return term;
+}
+
 std::vector<records::InputDensity> read_input_densities(const std::string& path, Diagnostics& diagnostics) {
   std::vector<records::InputDensity> terms;
   std::string text;
@@ -62,25 +83,8 @@ std::vector<records::InputDensity> read_input_densities(const std::string& path,
   const int errors = diagnostics.num_errors();
   check_schema(root, get_psd_schema(), path, diagnostics);
   if (diagnostics.num_errors() > errors) return terms;
-  for (const Fields& table : Fields(root, path).get_tables("psd")) {
-    records::InputDensity term;
-    term.at = table.locate();
-    term.input = table.get_string("input");
-    term.with = table.get_string("with");
-    term.is_log = table.get_string("interpolation") == "log";
-    if (table.has("file")) {
-      refuse_keys(table, {"frequency_hz", "imaginary"}, "if there is file", diagnostics);
-      read_columns(resolve_path(path, table.get_string("file")), table.locate("file"), {}, term.frequency_hz, term.real,
-                   diagnostics);
-    } else {
-      term.frequency_hz = table.get_numbers("frequency_hz");
-      term.real = table.get_numbers("density");
-      term.imag = table.get_numbers("imaginary");
-      check_lengths(table, term, diagnostics);
-    }
-    check_values(table, term, diagnostics);
-    terms.push_back(std::move(term));
-  }
+  for (const Fields& table : Fields(root, path).get_tables("psd"))
+    terms.push_back(read_density(table, path, diagnostics));
   return terms;
 }
 

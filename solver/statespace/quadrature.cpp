@@ -52,8 +52,8 @@ Quadrature make_quadrature(const Eigen::VectorXcd& poles, const std::vector<doub
       accepted.push_back(i);
     }
   }
-  constexpr auto kNum = static_cast<Index>(2 * kPoints.size());
-  const auto size = kNum * static_cast<Index>(accepted.size());
+  static_assert(kQuadraturePoints == 2 * kPoints.size());
+  const auto size = kQuadraturePoints * static_cast<Index>(accepted.size());
   Quadrature rule{Eigen::VectorXd(size), Eigen::VectorXd(size)};
   Index at = 0;
   for (const auto& i : accepted) {

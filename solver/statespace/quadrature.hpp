@@ -6,6 +6,9 @@
 
 namespace bough::statespace {
 
+/// Points of each interval, one after the other.
+inline constexpr Eigen::Index kQuadraturePoints = 8;
+
 /// ∫ g df = Σ weight_k g(frequency_k).
 struct Quadrature {
   Eigen::VectorXd frequency_hz, weight;

@@ -47,18 +47,6 @@ Complex interpolate(const InputSpectrum::Term& term, double hz) {
   return S_a + (hz - a) / (b - a) * (S_b - S_a);
 }
 
-/// Eigenvalues of the transfer matrix over s; of a model from sample to sample those next to 0 to half the sample rate.
-Eigen::VectorXcd list_poles(const records::LinearModel& model) {
-  const Index n = model.poles.size();
-  Eigen::VectorXcd poles(model.sample_time > 0 ? 3 * n : n);
-  for (Index i = 0; i < n; ++i) {
-    poles[i] = {model.poles.real[i], model.poles.imag[i]};
-    for (const int k : {1, -1})
-      if (model.sample_time > 0) poles[(k > 0 ? 1 : 2) * n + i] = poles[i] + Complex(0, k * kTwoPi / model.sample_time);
-  }
-  return poles;
-}
-
 bool is_at_origin(const records::Poles& poles, Index i) {
   return std::hypot(poles.real[i], poles.imag[i]) <= records::calc_origin_radius(poles, i);
 }
@@ -74,28 +62,6 @@ std::vector<Index> list_driven(const MatrixXcd& S) {
   for (Index j = 0; j < S.cols(); ++j)
     if (S(j, j).real() > 0) driven.push_back(j);
   return driven;
-}
-
-/// Throws if an output follows poles that do not decay.
-void demand_decay(const records::LinearModel& model, const MatrixXd& B) {
-  const std::string advice = "give the modes damping, close the loops, or leave the output out with --outputs";
-  std::ostringstream why;
-  if (model.sample_time > 0) {
-    for (Index i = 0; i < model.poles.size(); ++i) {
-      if (model.poles.real[i] * model.sample_time < -kOnCircle || is_at_origin(model.poles, i)) continue;
-      why << "the pole " << model.poles.real[i] << " ± " << std::abs(model.poles.imag[i]) << " i does not decay";
-      fail(model.outputs.name.front(), why.str(), advice);
-    }
-    return;
-  }
-  const StablePart part = split_stable(model.A, true);
-  if (part.is_stable()) return;
-  const StablePart all = split_stable(model.A);
-  const MatrixXd projector = (all.U * all.L - part.U * part.L).real();
-  why << "the pole " << part.unstable.real() << " ± " << std::abs(part.unstable.imag()) << " i does not decay";
-  for (Index i = 0; i < model.C.rows(); ++i)
-    if (is_seen({model.A, B, model.C.row(i)}, projector))
-      fail(model.outputs.name[static_cast<std::size_t>(i)], why.str(), advice);
 }
 
 /// Mean squares over all frequencies, of white inputs.
@@ -127,6 +93,38 @@ void calc_totals(const records::LinearModel& model, const MatrixXd& S, const Mat
 
 }  // namespace
 
+Eigen::VectorXcd list_poles(const records::LinearModel& model) {
+  const Index n = model.poles.size();
+  Eigen::VectorXcd poles(model.sample_time > 0 ? 3 * n : n);
+  for (Index i = 0; i < n; ++i) {
+    poles[i] = {model.poles.real[i], model.poles.imag[i]};
+    for (const int k : {1, -1})
+      if (model.sample_time > 0) poles[(k > 0 ? 1 : 2) * n + i] = poles[i] + Complex(0, k * kTwoPi / model.sample_time);
+  }
+  return poles;
+}
+
+void demand_decay(const records::LinearModel& model, const MatrixXd& B) {
+  const std::string advice = "give the modes damping, close the loops, or leave the output out with --outputs";
+  std::ostringstream why;
+  if (model.sample_time > 0) {
+    for (Index i = 0; i < model.poles.size(); ++i) {
+      if (model.poles.real[i] * model.sample_time < -kOnCircle || is_at_origin(model.poles, i)) continue;
+      why << "the pole " << model.poles.real[i] << " ± " << std::abs(model.poles.imag[i]) << " i does not decay";
+      fail(model.outputs.name.front(), why.str(), advice);
+    }
+    return;
+  }
+  const StablePart part = split_stable(model.A, true);
+  if (part.is_stable()) return;
+  const StablePart all = split_stable(model.A);
+  const MatrixXd projector = (all.U * all.L - part.U * part.L).real();
+  why << "the pole " << part.unstable.real() << " ± " << std::abs(part.unstable.imag()) << " i does not decay";
+  for (Index i = 0; i < model.C.rows(); ++i)
+    if (is_seen({model.A, B, model.C.row(i)}, projector))
+      fail(model.outputs.name[static_cast<std::size_t>(i)], why.str(), advice);
+}
+
 MatrixXcd InputSpectrum::calc(double hz) const {
   MatrixXcd S = MatrixXcd::Zero(num_inputs_, num_inputs_);
   for (const auto& term : terms_) {
@@ -135,6 +133,19 @@ MatrixXcd InputSpectrum::calc(double hz) const {
     if (term.a != term.b) S(term.b, term.a) += std::conj(value);
   }
   return S;
+}
+
+void InputSpectrum::append(const InputSpectrum& other) {
+  BOUGH_DEMAND(other.num_inputs_ == num_inputs_);
+  terms_.insert(terms_.end(), other.terms_.begin(), other.terms_.end());
+}
+
+std::vector<Index> InputSpectrum::list_inputs() const {
+  std::vector<Index> inputs;
+  for (const auto& term : terms_) inputs.insert(inputs.end(), {term.a, term.b});
+  std::sort(inputs.begin(), inputs.end());
+  inputs.erase(std::unique(inputs.begin(), inputs.end()), inputs.end());
+  return inputs;
 }
 
 bool InputSpectrum::is_white() const {

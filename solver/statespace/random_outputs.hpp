@@ -25,6 +25,10 @@ class InputSpectrum {
   Eigen::Index num_inputs() const { return num_inputs_; }
   /// Computes S at a frequency [1/T]; num_inputs², Hermitian, 0 outside the tables.
   Eigen::MatrixXcd calc(double hz) const;
+  /// Adds the terms of another spectrum of the same inputs.
+  void append(const InputSpectrum& other);
+  /// Inputs with a density, ascending.
+  std::vector<Eigen::Index> list_inputs() const;
   /// Returns true if all densities are real and the same at all frequencies.
   bool is_white() const;
   /// Returns true if a table is interpolated on logarithmic scales.
@@ -40,6 +44,13 @@ class InputSpectrum {
   Eigen::Index num_inputs_;
   std::vector<Term> terms_;
 };
+
+/// Eigenvalues of the transfer matrix over s; of a model from sample to sample those next to 0 to half the sample rate.
+Eigen::VectorXcd list_poles(const records::LinearModel& model);
+
+/// Throws ComputationError "linear.unbounded-random" if an output follows poles that do not decay and that a column of
+/// B drives.
+void demand_decay(const records::LinearModel& model, const Eigen::MatrixXd& B);
 
 /// S_y = G S Gᴴ, its moments by straight lines between the frequencies of `response`, by integration over the band
 /// between the first and the last, and for white inputs of a continuous model by Lyapunov's equation.

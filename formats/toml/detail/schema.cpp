@@ -287,6 +287,10 @@ const json& get_parsed(const char* schema_text) {
     static const json psd = json::parse(get_psd_schema());
     return psd;
   }
+  if (schema_text == get_budget_schema()) {
+    static const json budget = json::parse(get_budget_schema());
+    return budget;
+  }
   BOUGH_DEMAND(schema_text == get_campaign_schema());
   static const json campaign = json::parse(get_campaign_schema());
   return campaign;

@@ -5,12 +5,14 @@
 
 namespace bough::toml_files {
 
-/// The text of data/schema/{body,system,campaign,psd}.schema.json, compiled in.
+/// The text of data/schema/{body,system,campaign,psd,budget}.schema.json, compiled in.
 const char* get_body_schema();
 const char* get_system_schema();
 const char* get_campaign_schema();
 /// The text of data/schema/psd.schema.json, of spectral densities for `response --psd`.
 const char* get_psd_schema();
+/// The text of data/schema/budget.schema.json, of pointing budgets for `response --budget`.
+const char* get_budget_schema();
 
 /// Reports every departure of `root` from the schema with the line of the key. The part of JSON Schema 2020-12 that is
 /// understood: type, enum, pattern (names), properties, required, additionalProperties, items, minItems, maxItems,
