@@ -8,11 +8,12 @@ import unittest
 import h5py
 import numpy as np
 
-from browser import WAIT_FRAMES, Browser, find_chromium
+from browser import WAIT_FRAMES, BrowserTest, find_chromium
 from linear_test import PENDULUM
 from report_test import write_results
 from static_test import FRAME
 from support import ProgramTest
+from toml_text import section, table, toml
 
 # Distinct colours in the middle of a canvas: a blank one has one.
 COUNT_COLORS = """(() => { const c = document.querySelector('%s'); const s = document.createElement('canvas');
@@ -27,112 +28,35 @@ HASH = """(() => { const d = document.querySelector('%s').toDataURL(); let h = 0
 
 
 # Two arms in space, hinge axes askew, a force that follows the lower one, a strut to ground.
-ARMS = """
-[[body]]
-name = "upper"
-mass = 1.5
-cg = [0.5, 0.0, 0.0]
-inertia = [0.02, 0.15, 0.15]
-nodes = [{ id = 1, position = [1.0, 0.0, 0.0] }, { id = 3, position = [0.5, 0.0, 0.0] }]
-[[body]]
-name = "lower"
-mass = 0.8
-cg = [0.4, 0.0, 0.0]
-inertia = [1e-9, 1e-9, 1e-9]
-nodes = [{ id = 1, position = [0.8, 0.0, 0.0] }, { id = 2, position = [0.4, 0.0, 0.0] }]
-[[hinge]]
-name = "shoulder"
-type = "universal"
-parent = "ground"
-child = "upper"
-parent_rotation_deg = [20.0, 30.0, 40.0]
-child_rotation_deg = [20.0, 30.0, 40.0]
-axis = [0.0, 0.0, 1.0]
-axis2 = [0.0, 1.0, 0.0]
-[[hinge]]
-name = "elbow"
-type = "revolute"
-parent = "upper"
-parent_node = 1
-parent_rotation_deg = [70.0, 10.0, 0.0]
-child = "lower"
-child_rotation_deg = [70.0, 10.0, 0.0]
-axis = [0.0, 0.0, 1.0]
-[[function]]
-name = "wave"
-type = "sine"
-amplitude = 1.0
-frequency_hz = 0.7
-phase = 0.5
-[[force]]
-name = "push"
-body = "lower"
-node = 1
-force = [1.0, 2.0, 3.0]
-function = "wave"
-[[force]]
-name = "twist"
-body = "lower"
-node = 1
-moment = [0.0, 0.0, 0.1]
-frame = "inertial"
-[[force]]
-name = "strut"
-type = "spring"
-body = "upper"
-node = 1
-to_position = [0.5, 1.0, 1.0]
-stiffness = 30.0
-free_length = 1.0
-[[sensor]]
-name = "upper_acceleration"
-type = "acceleration"
-body = "upper"
-node = 3
-[[sensor]]
-name = "lower_acceleration"
-type = "acceleration"
-body = "lower"
-node = 2
-[[sensor]]
-name = "upper_cg"
-type = "position"
-body = "upper"
-node = 3
-[[sensor]]
-name = "lower_cg"
-type = "position"
-body = "lower"
-node = 2
-[[sensor]]
-name = "gyro"
-type = "gyro"
-body = "lower"
-node = 1
-rotation_deg = [0.0, 0.0, 30.0]
-[[sensor]]
-name = "bend"
-type = "hinge_angle"
-hinge = "elbow"
-[[sensor]]
-name = "span"
-type = "distance"
-body = "lower"
-node = 1
-target = [0.0, 0.0, 1.0]
-[simulation]
-duration = 2.0
-output_step = 0.005
-gravity = [0.0, 0.0, -9.81]
-"""
+ARMS = toml(
+    table("body", "upper", mass=1.5, cg=[0.5, 0.0, 0.0], inertia=[0.02, 0.15, 0.15],
+          nodes=[{"id": 1, "position": [1.0, 0.0, 0.0]}, {"id": 3, "position": [0.5, 0.0, 0.0]}]),
+    table("body", "lower", mass=0.8, cg=[0.4, 0.0, 0.0], inertia=[1e-9, 1e-9, 1e-9],
+          nodes=[{"id": 1, "position": [0.8, 0.0, 0.0]}, {"id": 2, "position": [0.4, 0.0, 0.0]}]),
+    table("hinge", "shoulder", "universal", parent="ground", child="upper", parent_rotation_deg=[20.0, 30.0, 40.0],
+          child_rotation_deg=[20.0, 30.0, 40.0], axis=[0.0, 0.0, 1.0], axis2=[0.0, 1.0, 0.0]),
+    table("hinge", "elbow", "revolute", parent="upper", parent_node=1, parent_rotation_deg=[70.0, 10.0, 0.0],
+          child="lower", child_rotation_deg=[70.0, 10.0, 0.0], axis=[0.0, 0.0, 1.0]),
+    table("function", "wave", "sine", amplitude=1.0, frequency_hz=0.7, phase=0.5),
+    table("force", "push", body="lower", node=1, force=[1.0, 2.0, 3.0], function="wave"),
+    table("force", "twist", body="lower", node=1, moment=[0.0, 0.0, 0.1], frame="inertial"),
+    table("force", "strut", "spring", body="upper", node=1, to_position=[0.5, 1.0, 1.0], stiffness=30.0,
+          free_length=1.0),
+    table("sensor", "upper_acceleration", "acceleration", body="upper", node=3),
+    table("sensor", "lower_acceleration", "acceleration", body="lower", node=2),
+    table("sensor", "upper_cg", "position", body="upper", node=3),
+    table("sensor", "lower_cg", "position", body="lower", node=2),
+    table("sensor", "gyro", "gyro", body="lower", node=1, rotation_deg=[0.0, 0.0, 30.0]),
+    table("sensor", "bend", "hinge_angle", hinge="elbow"),
+    table("sensor", "span", "distance", body="lower", node=1, target=[0.0, 0.0, 1.0]),
+    section("simulation", duration=2.0, output_step=0.005, gravity=[0.0, 0.0, -9.81]))
 
 
 @unittest.skipUnless(find_chromium(), "chromium is not installed (apt install chromium); the page is not tried in a browser")
-class Page(ProgramTest):
+class Page(BrowserTest):
     @classmethod
     def setUpClass(cls):
-        cls.browser = Browser()
-        cls.addClassCleanup(cls.browser.close)
+        super().setUpClass()
         cls.boom = ProgramTest()
         cls.boom.setUp()
         cls.addClassCleanup(cls.boom.doCleanups)
@@ -159,6 +83,12 @@ class Page(ProgramTest):
                             self.browser.run("document.documentElement.dataset.failures"))
         self.browser.run(WAIT_FRAMES)    # charts draw a frame after they were made
         return count
+
+    def open_built(self, *files):
+        """The browser at the page of these files, every view built."""
+        self.open(*files)
+        self.build_all()
+        return self.browser
 
     def check_sound(self):
         self.assertEqual(self.browser.run("document.documentElement.dataset.failures || ''"), "")
@@ -224,9 +154,7 @@ class Page(ProgramTest):
         self.copy_example("ex03-two-link")
         self.bough("reduce", "link.toml")
         self.bough("run", "two-link.toml", "-o", "run.h5")
-        self.open("run.h5")
-        self.build_all()
-        b = self.browser
+        b = self.open_built("run.h5")
         b.show(".scene")
         self.assertGreater(b.run(COUNT_COLORS % ".scene"), 20)
         clock = b.run("document.querySelector('.clock').textContent")
@@ -279,10 +207,8 @@ class Page(ProgramTest):
         """Forces drawn on each body move it: Σ forces = m (a - g), Σ moments about the centre of mass = 0."""
         self.write("arms.toml", ARMS)
         self.bough("run", "arms.toml", "-o", "run.h5")
-        self.open("run.h5")
-        self.build_all()
+        b = self.open_built("run.h5")
         self.check_sound()
-        b = self.browser
         b.show(".motion")
         with h5py.File(self.path("run.h5")) as f:
             time, a = f["time"][:], {body: f[f"sensors/{body}_acceleration"][:] for body in ("upper", "lower")}
@@ -330,9 +256,7 @@ class Page(ProgramTest):
     def test_modes(self):
         self.copy_example("ex05-plate")
         self.bough("reduce", "plate.toml")
-        self.open("plate.h5")
-        self.build_all()
-        b = self.browser
+        b = self.open_built("plate.h5")
         b.show(".modes")
         self.assertGreater(b.run(COUNT_COLORS % ".scene"), 50)
         first = b.run(HASH % ".scene")
@@ -381,9 +305,7 @@ class Page(ProgramTest):
     def test_controls_of_the_views(self):
         """Amplitude, speed, undeformed overlay of modes; scrub, frames, deformation of a run; PNG of both."""
         self.copy_boom()
-        self.open("spinup.h5", "boom.h5")
-        self.build_all()
-        b = self.browser
+        b = self.open_built("spinup.h5", "boom.h5")
         self.catch_files()
         view = "document.querySelector('[data-view=modes]').view"
         b.show(".modes")
@@ -426,9 +348,7 @@ class Page(ProgramTest):
         """The colour of a plate is that of its energy: five stops of viridis, brightest where the most is."""
         self.copy_example("ex05-plate")
         self.bough("modes", "plate.bdf", "-n", "3", "--ese", "-o", "modes.h5")
-        self.open("modes.h5")
-        self.build_all()
-        b = self.browser
+        b = self.open_built("modes.h5")
         b.show(".modes")
         self.assertEqual(b.run(COLORINGS), ["displacement", "nothing", "strain energy", "strain energy density"])
         shown = set()
@@ -449,13 +369,12 @@ class Page(ProgramTest):
         """Colours of a run are those of the body file's energies at its modal coordinates, over the largest of the run."""
         self.copy_example("ex05-plate")
         self.bough("reduce", "plate.bdf", "--modes", "4", "--strain-energy", "-o", "plate.h5")
-        self.write("swing.toml", '[[body]]\nname = "plate"\nfile = "plate.h5"\n[[hinge]]\nname = "pin"\ntype = "revolute"\n'
-                                 'child = "plate"\naxis = [0.0, 1.0, 0.0]\nrate = 2.0\n[simulation]\nduration = 0.2\n'
-                                 'output_step = 0.005\ngravity = [0.0, 0.0, -9.81]\n')
+        self.write("swing.toml", toml(
+            table("body", "plate", file="plate.h5"),
+            table("hinge", "pin", "revolute", child="plate", axis=[0.0, 1.0, 0.0], rate=2.0),
+            section("simulation", duration=0.2, output_step=0.005, gravity=[0.0, 0.0, -9.81])))
         self.bough("run", "swing.toml", "-o", "run.h5")
-        self.open("run.h5")
-        self.build_all()
-        b = self.browser
+        b = self.open_built("run.h5")
         b.show(".motion")
         self.assertEqual(b.run(COLORINGS), ["body", "displacement", "strain energy", "strain energy density"])
         with h5py.File(self.path("run.h5")) as f:
@@ -484,9 +403,7 @@ class Page(ProgramTest):
     def test_static_solutions(self):
         self.write("frame.bdf", FRAME)
         self.bough("static", "frame.bdf", "-o", "frame.h5")
-        self.open("frame.h5")
-        self.build_all()
-        b = self.browser
+        b = self.open_built("frame.h5")
         b.show(".modes")
         self.assertGreater(b.run(COUNT_COLORS % ".scene"), 5)
         first = b.run(HASH % ".scene")
@@ -512,9 +429,7 @@ class Page(ProgramTest):
     def test_zoom_of_a_long_run(self):
         """20,000 samples of 10 channels: each zoom is drawn with its statistics; how long it took is printed only."""
         write_results(self.path("long.h5"), 20000, [f"s{k}" for k in range(10)])
-        self.open("long.h5")
-        self.build_all()
-        b = self.browser
+        b = self.open_built("long.h5")
         # All 10, each in a chart of its own, then at once in one chart.
         b.run("(() => { for (const box of document.querySelectorAll('.channel input')) if (!box.checked) box.click(); })()")
         for by_dims, charts in [(0, 10), (1, 1)]:
@@ -544,9 +459,7 @@ class Page(ProgramTest):
             window.IntersectionObserver = class extends Real {
               constructor(act, options) { super((entries, self) => act(entries.flatMap(leave), self), options); } }; })()""")
         write_results(self.path("run.h5"), 200, ["s0"])
-        self.open("run.h5")
-        self.build_all()
-        b = self.browser
+        b = self.open_built("run.h5")
         box = b.show(".plots .chart .overlay")
         b.run(WAIT_FRAMES)
         before = b.run(HASH % ".plots .chart .curves")
