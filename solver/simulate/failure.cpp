@@ -1,4 +1,6 @@
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <sstream>
 
 #include "solver/simulate/run.hpp"
@@ -8,7 +10,24 @@
 namespace bough::solver {
 namespace {
 constexpr double kLocked = 0.05;  // sine between axes of a hinge: nearer ones are why a run stalls
+/// Amplitude of a slosh pendulum beyond which it is why a run stalls: its bob, a point, nears the hinge's first axis.
+constexpr double kLargestSlosh = 1.2;
+
+/// "the slosh of tank 'lox' has an amplitude of 90 deg"; empty: none is that large.
+std::string find_large_slosh(const Tree& tree, const TreeData& data) {
+  for (const Tank& tank : tree.tanks) {
+    for (const TreeBody& tb : tree.bodies) {
+      if (tank.reserve <= 0 || tb.name != tank.name + ".slosh") continue;
+      const double cosine = std::cos(data.q[tb.q_offset]) * std::cos(data.q[tb.q_offset + 1]);
+      const double amplitude = std::acos(std::clamp(cosine, -1.0, 1.0));
+      if (amplitude > kLargestSlosh)
+        return "the slosh of tank '" + tank.name + "' has an amplitude of " +
+               std::to_string(std::lround(amplitude * 180 / std::numbers::pi)) + " deg";
+    }
+  }
+  return {};
 }
+}  // namespace
 
 std::string short_text(double value) {
   std::ostringstream text;
@@ -77,6 +96,12 @@ void Run::fail_stalled(double t, const std::string& detail, int row) {
     finish_failed(t, "run.stalled",
                   "the integrator makes no progress at t = " + short_text(t) + ": " + detail + "; " + found.lock,
                   kGimbalAdvice);
+  if (const std::string slosh = find_large_slosh(system.tree, ode_.data().tree); !slosh.empty())
+    finish_failed(t, "run.stalled",
+                  "the integrator makes no progress at t = " + short_text(t) + ": " + slosh +
+                      ", at which its pendulum is no model of the liquid",
+                  "end the run where the acceleration along the tank ends, give slosh_damping, or take slosh = false "
+                  "for what coasts");
   const std::string loops = system.num_constraints() == 0
                                 ? ""
                                 : "look whether a driven or locked hinge takes a loop past its reach (constraint '" +

@@ -38,7 +38,8 @@ struct FrequencyRange {
 records::FrequencyResponse calc_frequency_response(const records::LinearModel& model, const FrequencyRange& range = {});
 
 /// The range, and where its ends are open as much further as |L| > 1 there at the upper end, or |L| < 1 at the lower
-/// end of a loop with poles at 0: to where |L| = 1, by decades, eight at most.
+/// end of a loop with poles at 0: to where |L| = 1, by decades, eight at most; and to a decade beyond all finite zeros
+/// that turn the phase of L.
 FrequencyRange widen_for_loop(const records::LinearModel& loop, const FrequencyRange& range);
 
 /// Margins of a loop L with one input and one output; crossings are located to round-off. Those of a lifted loop (N

@@ -11,6 +11,7 @@
 #include "solver/statespace/cost.hpp"
 #include "solver/statespace/frequency_response.hpp"
 #include "solver/statespace/poles.hpp"
+#include "solver/statespace/zeros.hpp"
 
 namespace bough::statespace {
 namespace {
@@ -30,6 +31,11 @@ constexpr double kLowest = 1e-3;
 constexpr double kOnCircle = 1e-7;
 /// A pole with a smaller damping ratio is undamped; L is taken that far from it, relative to its frequency.
 constexpr double kUndamped = 1e-12, kBesidePole = 1e-7;
+/// L is smooth where it changes by less than kRough over kBesideCorner of the frequency; a zero turns its phase by more
+/// than kTurned from a decade below it to one above.
+constexpr double kBesideCorner = 1e-7, kRough = 1e-3, kTurned = 0.2;
+/// Eigenvalues of a lifted L below that share of its norm are rounding.
+constexpr double kRounding = 1e-12;
 
 /// A root of f between a and b, where its signs differ.
 double bisect(const std::function<double(double)>& f, double a, double b) {
@@ -235,7 +241,7 @@ void find_crossings(const Loci& loci, double a, const Eigen::VectorXcd& here, do
     find_crossings(loci, middle, between, b, next, m);
     return;
   }
-  const double rounding = 1e-12 * std::max(here.cwiseAbs().maxCoeff(), there.cwiseAbs().maxCoeff());
+  const double rounding = kRounding * std::max(here.cwiseAbs().maxCoeff(), there.cwiseAbs().maxCoeff());
   const auto locate = [&](Index i, const std::function<double(Complex)>& f, bool is_phase) {
     double from = a, to = b;
     Complex left = here[i], right = there[i];
@@ -247,7 +253,8 @@ void find_crossings(const Loci& loci, double a, const Eigen::VectorXcd& here, do
       (f(value) > 0) == (f(left) > 0) ? (from = middle, left = value) : (to = middle, right = value);
     }
     const Complex value = 0.5 * (left + right);
-    if (is_phase || (value.real() < 0 && std::abs(value.imag()) < 1e-6 * std::abs(value)))
+    const bool is_known = std::abs(value) > kRounding * loci.calc_L(0.5 * (from + to)).norm();
+    if (is_phase || (is_known && value.real() < 0 && std::abs(value.imag()) < 1e-6 * std::abs(value)))
       add_crossing(loci, 0.5 * (from + to), value, is_phase, m);
   };
   for (Index i = 0; i < here.size(); ++i) {
@@ -266,8 +273,9 @@ void find_crossings(const Loci& loci, double a, const Eigen::VectorXcd& here, do
 /// Branches that are real at the ends: at ω = π/T, and at ω = 0 if their own frequency is another one there.
 void find_real_ends(const Loci& loci, records::Margins& m) {
   const auto values = loci.calc(loci.last());
+  const double rounding = kRounding * loci.calc_L(loci.last()).norm();
   for (const Complex& value : values)
-    if (value.real() < 0 && std::abs(value.imag()) < 1e-9 * std::abs(value))
+    if (value.real() < 0 && std::abs(value.imag()) < 1e-9 * std::abs(value) && std::abs(value) > rounding)
       add_crossing(loci, loci.last(), value.real(), false, m);
   // At ω = 0 an integrator is infinite: the even real part and the odd imaginary part are extrapolated.
   const double h = kLowest * loci.last();
@@ -396,6 +404,53 @@ void find_stability(const records::LinearModel& loop, records::Margins& m) {
 
 }  // namespace
 
+namespace {
+
+/// Zeros as frequencies in Hz, |s| / 2π; of a sampled loop s = ln z / T.
+std::vector<double> find_zero_corners(const records::LinearModel& loop) {
+  const bool is_sampled = loop.sample_time > 0;
+  Eigen::VectorXcd zeros(loop.zeros_real.size());
+  zeros.real() = loop.zeros_real, zeros.imag() = loop.zeros_imag;
+  if (is_sampled || !loop.has_zeros) zeros = calc_zeros(loop.A, loop.B, loop.C, loop.D);
+  std::vector<double> corners;
+  for (const Complex& zero : zeros) {
+    const double size = is_sampled ? std::abs(std::log(zero)) / loop.sample_time : std::abs(zero);
+    if (std::isfinite(size) && size > 0) corners.push_back(size / kTwoPi);
+  }
+  return corners;
+}
+
+/// Widens the open ends to a decade beyond the zeros at which the phase of L turns. One that is at 0 or at infinity but
+/// for rounding turns nothing; where L itself is rounding it is not smooth.
+void widen_for_zeros(const records::LinearModel& loop, const FrequencyRange& range, double low, double high,
+                     FrequencyRange& wide) {
+  const TransferMatrix transfer(loop.A, loop.B, loop.C, loop.D);
+  const auto calc_largest = [&](double hz) -> Complex {
+    const MatrixXcd value = transfer.calc(calc_argument(loop, kTwoPi * hz));
+    if (value.size() == 1 || !value.allFinite()) return value(0, 0);
+    const Eigen::VectorXcd values = calc_eigenvalues(value);
+    Index at = 0;
+    values.cwiseAbs().maxCoeff(&at);
+    return values[at];
+  };
+  const auto is_smooth = [&](double hz) {
+    const Complex here = calc_largest(hz), beside = calc_largest(hz * (1 + kBesideCorner));
+    return std::isfinite(std::abs(here)) && std::abs(here - beside) < kRough * std::abs(here);
+  };
+  const double nyquist = loop.sample_time > 0 ? 0.5 / loop.sample_time : std::numeric_limits<double>::infinity();
+  for (const double corner : find_zero_corners(loop)) {
+    const double below = 0.1 * corner, above = 10 * corner;
+    const bool is_slow = below < low && range.from_hz == 0,
+               is_fast = above > high && range.to_hz == 0 && nyquist > high;
+    if ((!is_slow && !is_fast) || !is_smooth(below) || !is_smooth(std::min(above, nyquist))) continue;
+    if (std::abs(std::arg(calc_largest(std::min(above, nyquist)) / calc_largest(below))) < kTurned) continue;
+    if (is_slow) wide.from_hz = low = below;
+    if (is_fast) wide.to_hz = high = above;
+  }
+}
+
+}  // namespace
+
 FrequencyRange widen_for_loop(const records::LinearModel& loop, const FrequencyRange& range) {
   constexpr int kDecades = 8;
   FrequencyRange wide = range;
@@ -407,6 +462,7 @@ FrequencyRange widen_for_loop(const records::LinearModel& loop, const FrequencyR
     wide.to_hz = high *= 10;
   const bool has_rigid = loop.poles.size() > 0 && loop.poles.frequency_hz.minCoeff() <= 1e-6 * low;
   for (int i = 0; range.from_hz == 0 && has_rigid && i < kDecades && gain(low) < 1; ++i) wide.from_hz = low /= 10;
+  widen_for_zeros(loop, range, low, high, wide);
   return wide;
 }
 

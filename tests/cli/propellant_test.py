@@ -163,6 +163,48 @@ duration = 3.0
 integrator = "rk"
 """
 
+COAST = """[[body]]
+name = "b"
+mass = 500.0
+inertia = [200.0, 220.0, 150.0]
+nodes = [{id = 1, position = [0.0, 0.0, -1.5]}]
+[[tank]]
+name = "t"
+body = "b"
+type = "cylinder"
+mass = 300.0
+position = [0.0, 0.0, 0.3]
+radius = 0.5
+slosh_damping = 0.01
+slosh_acceleration = 2.5
+height = 1.5
+density = 700.0
+slosh = true
+[[hinge]]
+name = "f"
+type = "free"
+child = "b"
+rate = [0.1, 0.05, 0.5, 0, 0, 0]
+[[actuator]]
+name = "e"
+type = "engine"
+body = "b"
+node = 1
+axis = [0.0, 0.0, 1.0]
+input = "th"
+exhaust_velocity = 3000.0
+tank = "t"
+[[function]]
+name = "th"
+type = "pulse"
+value = 2000.0
+at = 0.0
+width = 5.0
+[simulation]
+duration = 200.0
+integrator = "rk"
+"""
+
 
 class Propellant(ProgramTest):
     def test_a_burn_in_two_parts_is_the_burn(self):
@@ -305,6 +347,13 @@ class Propellant(ProgramTest):
         self.write("drain.toml", system.replace("mass = 3000.0", "mass = 3000.0\nnodes = [{id = 1, position = [0.0, 0.0, -1.0]}]")
                    + engine)
         self.assertIn("[run.slosh-drained]", self.bough("run", "drain.toml", "-o", "d.h5").stderr)
+
+    def test_slosh_without_acceleration_names_its_tank(self):
+        """After cutoff nothing pulls the pendulum back: it turns until the axes of its hinge meet."""
+        self.write("coast.toml", COAST)
+        error = self.bough("run", "coast.toml", "-o", "c.h5", code=3).stderr
+        self.assertIn("[run.stalled]", error)
+        self.assertRegex(error, r"the slosh of tank 't' has an amplitude of \d\d+ deg")
 
     def test_units_are_converted_and_the_motion_stays(self):
         self.write("rocket.toml", ROCKET)

@@ -12,6 +12,52 @@ import scipy.signal
 from linear_test import LinearTest
 from response_test import AXIS
 
+POINTING = """[[body]]
+name = "hub"
+mass = 1.0
+inertia = [2.0, 2.0, 3.0]
+[[body]]
+name = "dish"
+mass = 0.5
+inertia = [0.1, 0.1, 0.2]
+[[hinge]]
+name = "gimbal"
+type = "revolute"
+child = "hub"
+[[hinge]]
+name = "mount"
+type = "revolute"
+parent = "hub"
+child = "dish"
+stiffness = {spring}
+damping = 0.05
+[[sensor]]
+name = "angle"
+type = "hinge_angle"
+hinge = "gimbal"
+coordinate = 1
+[[sensor]]
+name = "rate"
+type = "hinge_rate"
+hinge = "gimbal"
+coordinate = 1
+[[controller]]
+name = "law"
+type = "pid"
+inputs = ["angle"]
+rate = "rate"
+kp = {kp}
+kd = {kd}
+ki = {ki}
+{sampled}[[actuator]]
+name = "motor"
+type = "hinge"
+hinge = "gimbal"
+input = "law"
+[simulation]
+duration = 1.0
+"""
+
 
 class SampledLoop(LinearTest):
     """L(z) of a double integrator under a sampled law, z = exp(iωT): zero-order hold by scipy, delays by hand."""
@@ -148,6 +194,31 @@ class LiftedLoop(LinearTest):
     def margins(self, cut, name="axis.toml"):
         self.bough("linearize", name, "--break", cut, "-o", "loop.h5")
         return json.loads(self.bough("response", "loop.h5", "--json").stdout)["margins"]
+
+    def test_a_slow_integral_has_its_margin_downwards(self):
+        """Rigid: 3.2 s³ + k (3 s² + s + 1e-4) is at the edge by Routh where 3 k = 3.2e-4; a stiff mode lies far above."""
+        self.write("pointing.toml", POINTING.format(kp=1.0, kd=3.0, ki=1e-4, spring=4e5, sampled=""))
+        (gain,) = self.margins("motor", "pointing.toml")["gain"]
+        self.assertAlmostEqual(gain["factor"], 3.2e-4 / 3, delta=1e-8)
+
+    def test_margins_of_a_sampled_integral_are_the_same_at_both_cuts(self):
+        """The twin is the closed loop with every gain of the law multiplied, whose multipliers are found without a cut."""
+        def write(factor):
+            self.write("pointing.toml", POINTING.format(kp=4 * factor, kd=6 * factor, ki=factor, spring=40.0,
+                                                        sampled="sample_time = 0.2\ndelay = 0.13\n"))
+        write(1.0)
+        at_motor, at_law = ([c["factor"] for c in self.margins(cut, "pointing.toml")["gain"]] for cut in ("motor", "law"))
+        down, up = max(f for f in at_law if f < 1), min(f for f in at_law if f > 1)
+        np.testing.assert_allclose([max(f for f in at_motor if f < 1), min(f for f in at_motor if f > 1)], [down, up],
+                                   rtol=1e-6)
+        self.assertLess(max(at_motor), 1e6)
+        for margin, sign in ((up, 1), (down, -1)):
+            for side in (-0.01, 0.01):
+                write(margin * (1 + side))
+                self.bough("linearize", "pointing.toml", "-o", "closed.h5", "-q")
+                with h5py.File(self.path("closed.h5")) as f:
+                    largest = max(np.hypot(f["multipliers/real"][()], f["multipliers/imag"][()]))
+                self.assertEqual(largest > 1, sign * side > 0, (margin, side))
 
     def test_a_loop_of_one_rate_has_the_margins_of_its_own_samples(self):
         """A slower sampled controller with gain 0 makes the loop a lifted one and changes nothing else."""
