@@ -103,7 +103,7 @@ type = "hinge_rate"
 hinge = "f"
 coordinate = 1
 [[controller]]
-name = "law"
+name = "pid"
 type = "pid"
 inputs = ["z"]
 rate = "v"
@@ -116,7 +116,7 @@ type = "engine"
 body = "b"
 node = 1
 axis = [0, 0, 1.0]
-input = "law"
+input = "pid"
 lag = 0.1
 bias = 1000.0
 {more}
@@ -271,7 +271,7 @@ class Propellant(ProgramTest):
             self.assertAlmostEqual(A[row, row], -0.03, delta=1e-8, msg=str(aside))
 
     def test_control_starts_from_an_equilibrium_beside_a_tank(self):
-        """The integral of the law carries the weight: the start is at rest and stays there."""
+        """The integral of the controller carries the weight: the start is at rest and stays there."""
         self.write("hover.toml", HOVER.format(more=""))
         self.bough("equilibrium", "hover.toml", "-o", "e.h5", "-q")
         self.bough("run", "hover.toml", "--start-from", "e.h5", "-o", "r.h5", "-q")
@@ -293,7 +293,7 @@ class Propellant(ProgramTest):
         self.bough("linearize", "second.toml", "--start-from", "first.h5", "-o", "l.h5", "-q")
 
     def test_equilibrium_holds_what_a_burning_engine_has_used(self):
-        """Thrust is the weight, of a law with an integral; a spring takes the rest of a constant one; with and without tank."""
+        """Thrust is the weight, of a pid; a spring takes the rest of a constant one; with and without tank."""
         for more in ("exhaust_velocity = 2000.0", 'exhaust_velocity = 2000.0\ntank = "t"'):
             self.write("hover.toml", HOVER.format(more=more))
             self.bough("equilibrium", "hover.toml", "-o", "e.h5", "-q")
@@ -303,7 +303,7 @@ class Propellant(ProgramTest):
             self.bough("linearize", "hover.toml", "--equilibrium", "-o", "l.h5", "-q")
             stand = HOVER.format(more=more)
             stand = stand[:stand.index("[[controller]]")] + stand[stand.index("[[actuator]]"):]
-            self.write("stand.toml", stand.replace('input = "law"\n', "").replace("bias = 1000.0", "bias = 1500.0")
+            self.write("stand.toml", stand.replace('input = "pid"\n', "").replace("bias = 1000.0", "bias = 1500.0")
                        .replace('child = "b"\n', 'child = "b"\nstiffness = 1e4\ndamping = 100.0\n'))
             self.bough("equilibrium", "stand.toml", "-o", "e.h5", "-q")
             height, = self.read_h5("e.h5", "/hinges/f/q")

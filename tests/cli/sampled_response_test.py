@@ -42,7 +42,7 @@ type = "hinge_rate"
 hinge = "gimbal"
 coordinate = 1
 [[controller]]
-name = "law"
+name = "pid"
 type = "pid"
 inputs = ["angle"]
 rate = "rate"
@@ -53,7 +53,7 @@ ki = {ki}
 name = "motor"
 type = "hinge"
 hinge = "gimbal"
-input = "law"
+input = "pid"
 [simulation]
 duration = 1.0
 """
@@ -202,13 +202,13 @@ class LiftedLoop(LinearTest):
         self.assertAlmostEqual(gain["factor"], 3.2e-4 / 3, delta=1e-8)
 
     def test_margins_of_a_sampled_integral_are_the_same_at_both_cuts(self):
-        """The twin is the closed loop with every gain of the law multiplied, whose multipliers are found without a cut."""
+        """The twin is the closed loop with every gain of the controller multiplied, whose multipliers are found without a cut."""
         def write(factor):
             self.write("pointing.toml", POINTING.format(kp=4 * factor, kd=6 * factor, ki=factor, spring=40.0,
                                                         sampled="sample_time = 0.2\ndelay = 0.13\n"))
         write(1.0)
-        at_motor, at_law = ([c["factor"] for c in self.margins(cut, "pointing.toml")["gain"]] for cut in ("motor", "law"))
-        down, up = max(f for f in at_law if f < 1), min(f for f in at_law if f > 1)
+        at_motor, at_pid = ([c["factor"] for c in self.margins(cut, "pointing.toml")["gain"]] for cut in ("motor", "pid"))
+        down, up = max(f for f in at_pid if f < 1), min(f for f in at_pid if f > 1)
         np.testing.assert_allclose([max(f for f in at_motor if f < 1), min(f for f in at_motor if f > 1)], [down, up],
                                    rtol=1e-6)
         self.assertLess(max(at_motor), 1e6)
