@@ -51,6 +51,7 @@ ReducedBody reduce_body(const BodyRequest& request) {
     set_given_stiffness(request, basis.Phi, body);
   else
     set_geometric_stiffness(model, basis.Phi, patterns, solved, body);
+  set_lost_loads(basis, body);
   set_preload(request, model, basis.Phi, body);
   set_strain_energy(request, model, basis.Phi, body);
   return {std::move(body), check};
