@@ -91,8 +91,8 @@ void report_residuals(const BodyRequest& request, const modal::bases::Basis& bas
 
 ModalBasis make_modal_basis(const fe::Model& model, modal::bases::Basis basis, MatrixXd damping) {
   add_dampers(model, basis.Phi, damping);
-  return {std::move(basis.Phi), std::move(basis.lambda), std::move(basis.M),    std::move(basis.K),
-          std::move(damping),   std::move(basis.kind),   std::move(basis.check)};
+  return {std::move(basis.Phi), std::move(basis.lambda), std::move(basis.M),     std::move(basis.K),
+          std::move(damping),   std::move(basis.kind),   std::move(basis.check), {}};
 }
 
 }  // namespace
@@ -130,7 +130,11 @@ ModalBasis calc_body_basis(const BodyRequest& request, const BodyModel& body_mod
   if (augmented.model) remove_augmentation(request, model, basis);
   auto damping = calc_body_damping(request, model, basis);
   if (!basis.is_raw && request.moves_to_frame()) modal::bases::move_to_frame(model, make_frame_spec(spec), basis);
-  return make_modal_basis(model, std::move(basis), std::move(damping));
+  std::vector<std::string> massless;
+  for (const auto& [i, part] : basis.massless_loads) massless.push_back(residual.name[static_cast<std::size_t>(i)]);
+  auto result = make_modal_basis(model, std::move(basis), std::move(damping));
+  result.massless_loads = std::move(massless);
+  return result;
 }
 
 ModalBasis make_given_basis(const BodyRequest& request, const fe::System& system) {

@@ -101,6 +101,10 @@ std::vector<LoadPattern> make_load_patterns(const BodyRequest& request, const fe
   return patterns;
 }
 
+std::string get_unit_name(int node, int direction) {
+  return "node" + std::to_string(node) + " " + std::to_string(direction);
+}
+
 bool needs_inertial_residuals(const records::BodySpec& spec) {
   return std::find(spec.residual.begin(), spec.residual.end(), "inertial") != spec.residual.end();
 }
@@ -123,7 +127,7 @@ modal::response::ResidualLoads make_residual_loads(const BodyRequest& request, c
         MatrixXd units = MatrixXd::Zero(model.num_gdofs(), 6);
         units.middleRows(model.node(model.find_node(id)).first_gdof, 6).setIdentity();
         add(units);
-        for (int c = 1; c <= 6; ++c) result.name.push_back("node" + std::to_string(id) + " " + std::to_string(c));
+        for (int c = 1; c <= 6; ++c) result.name.push_back(get_unit_name(id, c));
       }
     } else {
       for (const auto& pattern : patterns)

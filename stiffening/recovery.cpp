@@ -126,6 +126,11 @@ Groups choose_recovered(const BodyRequest& request, const fe::Model& model) {
 void set_recovery(const BodyRequest& request, const fe::Model& model, const MatrixXd& Phi,
                   const std::vector<LoadPattern>& patterns, const SolvedLoads& solved, records::FlexBody& body) {
   if (request.spec.recover.empty()) return;
+  if (request.spec.stiffening_order > 2)
+    request.warning("reduce.linear-recovery",
+                    "[body.stiffening] order = 3 and recover are given: forces and stresses of elements stay linear in "
+                    "the modes, without those of the displacements beyond, as the membrane stress of a bent plate",
+                    "cut the deck into several bodies by bough split DECK --parts N where they matter");
   request.report("element recovery");
   const auto groups = choose_recovered(request, model);
   const MatrixXd &F = solved.columns.F, &U = solved.U;

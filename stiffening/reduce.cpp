@@ -53,6 +53,7 @@ ReducedBody reduce_body(const BodyRequest& request) {
   else
     set_geometric_stiffness(model, basis.Phi, patterns, solved, body);
   fe::report_unstiffened(model, request.deck, request.diagnostics);
+  set_lost_loads(basis, body);
   set_preload(request, model, basis.Phi, body);
   set_strain_energy(request, model, basis.Phi, body);
   return {std::move(body), check};

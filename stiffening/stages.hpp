@@ -78,7 +78,8 @@ struct ModalBasis {
   VectorXd eigenvalue;
   MatrixXd mass, stiffness, damping;  ///< n x n
   std::vector<records::ModeKind> kind;
-  modal::bases::ModesCheck check;  ///< of the normal modes; none found: none were solved for
+  modal::bases::ModesCheck check;           ///< of the normal modes; none found: none were solved for
+  std::vector<std::string> massless_loads;  ///< names of residual loads whose flexibility is lost in part
 };
 
 /// The loads of K_G as columns, inertial loads first, with their static solutions.
@@ -113,6 +114,8 @@ std::vector<LoadPattern> make_load_patterns(const BodyRequest& request, const fe
 InertialLoads calc_body_inertial_loads(const fe::Model& model);
 /// Returns true if residual vectors of the inertial loads are requested.
 bool needs_inertial_residuals(const records::BodySpec& spec);
+/// Name of a residual load, a unit at an interface node; direction: 1 to 6.
+std::string get_unit_name(int node, int direction);
 /// The columns for residual vectors, in the order of the spec. F_I: as of needs_inertial_residuals().
 modal::response::ResidualLoads make_residual_loads(const BodyRequest& request, const fe::Model& model,
                                                    const std::vector<LoadPattern>& patterns, const MatrixXd& F_I);
@@ -162,6 +165,9 @@ void set_next_order(const BodyRequest& request, const fe::Model& model, const Mo
 void set_third_order(const BodyRequest& request, const fe::Model& model, const ModalBasis& basis,
                      const std::vector<LoadPattern>& patterns, const StaticSupport& support,
                      const InertialLoads& inertial, records::FlexBody& body);
+/// Degree 2 of order 2 for loads that the modes do not follow, in pairs with residual vectors
+/// (docs/theory/third-order.md, "Lost twist"); after set_geometric_stiffness.
+void set_lost_loads(const ModalBasis& basis, records::FlexBody& body);
 
 /// Solves K u = f for each inertial load of the spec, a column of F_I [num_gdofs x 12], and for each pattern, on the
 /// static support.

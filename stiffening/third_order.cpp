@@ -357,4 +357,28 @@ void set_third_order(const BodyRequest& request, const fe::Model& model, const M
   body.third_order = std::move(third);
 }
 
+void set_lost_loads(const ModalBasis& basis, FlexBody& body) {
+  auto& third = body.third_order;
+  const auto n = static_cast<int>(basis.Phi.cols());
+  if (third.empty()) return;
+  const Eigen::MatrixXi exponents = records::list_exponents(n, 2);
+  for (std::size_t e = 0; e < body.locators.size(); ++e) {
+    const auto& [name, node, direction] = body.locators[e];
+    const std::string unit = node != 0 ? get_unit_name(node, direction) : name;
+    const auto& lost = basis.massless_loads;
+    if (std::find(lost.begin(), lost.end(), unit) == lost.end() || (node != 0 && direction <= 3)) continue;
+    const auto at = std::find(body.interface_nodes.begin(), body.interface_nodes.end(), node);
+    for (Eigen::Index i = 0; i < exponents.rows(); ++i) {
+      std::vector<int> pair;
+      for (int j = 0; j < n; ++j) pair.insert(pair.end(), static_cast<std::size_t>(exponents(i, j)), j);
+      const auto is_residual = [&](int j) { return basis.kind[static_cast<std::size_t>(j)] == ModeKind::Residual; };
+      if (!is_residual(pair[0]) && !is_residual(pair[1])) continue;
+      const double second = -(pair[0] == pair[1] ? 0.5 : 1) * body.kg_external[e](pair[0], pair[1]);
+      third.load[0](i, static_cast<Eigen::Index>(e)) = second;
+      if (node != 0 && at != body.interface_nodes.end())
+        third.node[static_cast<std::size_t>(at - body.interface_nodes.begin())][0](i, direction - 1) = second;
+    }
+  }
+}
+
 }  // namespace bough::stiffening

@@ -10,14 +10,28 @@
 #include "analysis/linearize/uncertain.hpp"
 #include "formats/toml/specs.hpp"
 #include "solver/linear/linearize.hpp"
+#include "solver/simulate/modal_range_monitor.hpp"
 #include "solver/simulate/time_events.hpp"
 
 namespace bough::analysis {
 
 namespace {
 
-records::LinearModel linearize_at(const LinearizeRequest& request, solver::Plant& plant, solver::OperatingPoint point,
-                                  bool check, Diagnostics& diagnostics) {
+/// Warns of bodies that leave the range of their modes at the point, once each: a run to there may have said so.
+void warn_of_deflections(const LinearizeRequest& request, const solver::System& system,
+                         const solver::OperatingPoint& point, Diagnostics& diagnostics) {
+  const auto t = request.equilibrium ? std::optional<double>() : point.t;
+  for (const auto& crossing : solver::ModalRangeMonitor(system).find_deflections(point.q, t)) {
+    const std::string subject = "body '" + system.body_name(crossing.body) + "' deflects";
+    const auto is_same = [&](const Diagnostic& d) { return d.id == crossing.id && d.what.starts_with(subject); };
+    if (std::none_of(diagnostics.items().begin(), diagnostics.items().end(), is_same))
+      diagnostics.warning(crossing.id, {request.file}, crossing.what, crossing.advice);
+  }
+}
+
+records::LinearModel linearize_at(const LinearizeRequest& request, const LoadedSystem& loaded, solver::Plant& plant,
+                                  solver::OperatingPoint point, bool check, Diagnostics& diagnostics) {
+  warn_of_deflections(request, loaded.system, point, diagnostics);
   plant.hold_commands(point);
   return solver::linearize(plant, point, {request.inputs, request.outputs, check, request.cut}, {request.file},
                            diagnostics);
@@ -39,7 +53,7 @@ records::LinearSweep sweep_parameter(const LinearizeRequest& request, Diagnostic
     Diagnostics found;
     const auto loaded = load_system(request.file, found, request.start_from, set);
     auto plant = make_plant(loaded, request.open);
-    auto model = linearize_at(request, plant, find_point(request, loaded, plant, found), false, found);
+    auto model = linearize_at(request, loaded, plant, find_point(request, loaded, plant, found), false, found);
     keep_new(found, diagnostics);
     return model;
   };
@@ -60,7 +74,7 @@ records::LinearSweep sweep_run(const LinearizeRequest& request, const LoadedSyst
     Diagnostics found;
     auto point = run_to(loaded, plant, t, found, &last);
     if (request.equilibrium) point = find_rest(plant, std::move(point), request.file);
-    auto model = linearize_at(request, plant, std::move(point), false, found);
+    auto model = linearize_at(request, loaded, plant, std::move(point), false, found);
     keep_new(found, diagnostics);
     return model;
   };
@@ -98,7 +112,7 @@ void check_sweep(const LinearizeRequest& request) {
 records::LinearModel linearize(const LinearizeRequest& request, const LoadedSystem& loaded, Diagnostics& diagnostics) {
   auto plant = make_plant(loaded, request.open);
   solver::warn_of_latches(loaded.system, {request.file}, diagnostics);
-  return linearize_at(request, plant, find_point(request, loaded, plant, diagnostics), true, diagnostics);
+  return linearize_at(request, loaded, plant, find_point(request, loaded, plant, diagnostics), true, diagnostics);
 }
 
 records::LinearModel linearize(const LinearizeRequest& request, const CheckFiles& check, Events& events) {

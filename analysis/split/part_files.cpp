@@ -119,7 +119,7 @@ std::string write_part_file(const PartNames& names, const Assembly& assembly, in
   else
     text += fmt::format("frame = \"fixed\"          # held at grid {}, which its hinge carries\n", clamp);
   if (spec.interface_nodes.empty())
-    text += "# interface = [1]        # each grid that a force or moment loads\n";
+    text += "# interface = [ID]       # each grid that a force or moment loads\n";
   else
     text += fmt::format("interface = [{}]  # cuts; add each grid that a force or moment loads\n",
                         fmt::join(spec.interface_nodes, ", "));

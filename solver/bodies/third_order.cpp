@@ -51,6 +51,7 @@ records::FlexBody make_linear_record(const records::FlexBody& flex) {
 ThirdOrderBody::ThirdOrderBody(const records::FlexBody& flex)
     : n_(flex.num_modes()),
       m_(flex.third_order.num_fields()),
+      large_(flex.third_order.large),
       amplitudes_(n_, flex.third_order.large, m_),
       energy_(n_, flex.third_order.large, ThirdOrder::kMaxEnergy),
       linear_(Body::make_flexible(make_linear_record(flex), -1, false, {})) {
@@ -178,6 +179,15 @@ double ThirdOrderBody::calc_modal_force(const LinearField& field, const ThirdOrd
   double force = linear_.calc_modal_force(field, d.linear, j);
   for (int q = 0; q < m_; ++q) force += d.J(q, j) * linear_.calc_modal_force(field, d.linear, n_ + q);
   return force;
+}
+
+double ThirdOrderBody::calc_twice_small_energy(const MatrixXd& K, const ConstVectorRef& eta) const {
+  const auto is_small = [&](int j) { return !std::binary_search(large_.begin(), large_.end(), j); };
+  double twice = 0;
+  for (int j = 0; j < n_; ++j)
+    for (int k = 0; k < n_; ++k)
+      if (is_small(j) && is_small(k)) twice += eta[j] * K(j, k) * eta[k];
+  return twice;
 }
 
 double ThirdOrderBody::calc_energy(const ConstVectorRef& eta) const {

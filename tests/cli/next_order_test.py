@@ -115,6 +115,24 @@ class NextOrder(ProgramTest):
                 force = share * length * 3 * 7e10 * width * .003 ** 3 / 12 / length ** 3
                 self.check(f"cantilever plate of {length} by {width} m, lengths", corner, (0., 0., round(force, 3)), length)
 
+    def test_linear_models_have_the_estimate_of_their_state(self):
+        nx, ny = 9, 3
+        corner = (nx + 1) * (ny + 1)
+        self.reduce(make_plate(nx, ny, .6, .2, .003, lambda i, j: i == 0), corner)
+        _, estimate = self.find_rest(corner, (0., 0., 24.))
+        self.assertGreater(estimate, .01)
+
+        def read(*arguments):
+            printed = self.bough("linearize", "rest.toml", *arguments, "-o", "linear.h5").stderr
+            return re.findall(r"deflects by .*estimated at (\S+) % of that.*\[run.linear-limit\]", printed)
+        self.assertEqual([float(x) / 100 for x in read("--equilibrium")], [estimate])
+        self.assertEqual([float(x) / 100 for x in read("--start-from", "rest.h5")], [estimate])
+        self.assertEqual(read(), [])
+        self.assertEqual(len(read("--at", "0.5")), 1)
+        self.write("rest.toml", '[parameters]\npull = 1.0\n' + self.read("rest.toml").replace("24.0]", '"pull"]'))
+        self.assertEqual(read("--equilibrium"), [])
+        self.assertEqual(len(read("--equilibrium", "--sweep", "pull=1:24:3")), 1)
+
     def test_older_files_have_the_estimate_by_their_size(self):
         nx, ny = 9, 3
         corner = (nx + 1) * (ny + 1)
