@@ -1,9 +1,65 @@
-"""The page of the studio after a failed run and with files of odd names."""
+"""The page of the studio after a failed run, a change outside, and with files of odd names."""
 import os
 import unittest
 
+from studio_browser_test import PROJECT, make_plate
 from studio_control_test import SYSTEM
 from studio_page import PageTest
+
+
+class Decks(PageTest):
+    def show_plate(self, name="plate.bdf"):
+        self.write(name, make_plate())
+        self.start_studio("./" + name)
+        self.browser.visit(self.address)
+        self.wait("studio.view?.stage")
+
+    def get_chosen(self):
+        return self.browser.run("document.querySelector('.chosen').textContent")
+
+    def test_find_names_a_grid_and_chooses_none(self):
+        self.show_plate()
+        page = self.browser
+        page.click("input[type=search]")
+        page.type("21\n")
+        self.wait("document.querySelector('.side .picked').textContent.startsWith('grid 21 (')")
+        self.assertIn("none", self.get_chosen())
+        self.assertTrue(page.run("document.querySelector('.viewer .tip').textContent").startswith("grid 21:"))
+        page.run("studio.view.go({ what: 'grid 23 has no stiffness', line: 0, file: '' })")
+        self.wait("document.querySelector('.side .picked').textContent.startsWith('grid 23 (')")
+        self.assertIn("none", self.get_chosen())
+        x, y = page.run(PROJECT % 23)
+        page.mouse("mouseMoved", x, y)
+        page.mouse("mousePressed", x, y, button="left", buttons=1, clickCount=1)
+        page.mouse("mouseReleased", x, y, button="left", clickCount=1)
+        self.wait("document.querySelector('.chosen').textContent.includes('23')")
+
+    def test_a_deck_that_changes_outside_is_read_again(self):
+        self.show_plate()
+        page = self.browser
+        page.run("studio.view.form.take(45)")
+        self.write("plate.bdf", make_plate().replace("GRID,45,,1.0000,0.5000,0.", "GRID,45,,1.2500,0.5000,0."))
+        page.run("studio.look()")
+        self.wait("Math.abs(studio.view.stage.scene.get_place(45)[0] - 1.25) < 1e-6")
+        self.assertIn("45", self.get_chosen())
+
+    def test_commands_of_a_name_that_begins_with_a_dash(self):
+        self.show_plate("-dash.bdf")
+        page = self.browser
+        page.click("button.make-body")
+        self.wait("document.querySelector('dialog pre.diff')")
+        self.click_text("Save", "document.querySelector('dialog')")
+        self.wait("document.querySelector('main.work').dataset.file === '-dash.toml'")
+        self.assertTrue(page.run("document.activeElement.classList.contains('file-title')"))
+        self.click_text("Copy commands")
+        self.wait("document.querySelector('dialog textarea')")
+        lines = page.run("document.querySelector('dialog textarea').value").splitlines()
+        os.remove(self.path("-dash.toml"))
+        os.remove(self.path("-dash-run.toml"))
+        for line in lines:
+            if line.startswith("bough "):
+                self.bough(*line.split()[1:])
+        self.assertTrue(os.path.exists(self.path("-dash.toml")))
 
 
 class Systems(PageTest):
