@@ -12,6 +12,14 @@ std::string label_frequency(const std::string& time_unit) {
   return time_unit == "ms" ? "frequency [kHz]" : "frequency [1/" + time_unit + "]";
 }
 
+std::string make_density_unit(const std::string& unit, const std::string& time_unit) {
+  if (unit.empty()) return {};
+  const bool is_product = unit.find_first_of(" /^") != std::string::npos;
+  const auto square = (is_product ? "(" + unit + ")" : unit) + "^2";
+  if (time_unit.empty() || time_unit == "s" || time_unit == "T") return square + "/Hz";
+  return square + (time_unit == "ms" ? "/kHz" : " " + time_unit);
+}
+
 void label_units(Plot& plot) {
   const Curve* first = nullptr;
   bool is_common = true;

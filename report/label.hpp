@@ -10,6 +10,9 @@ namespace bough::report {
 std::string make_label(const std::string& name, const std::string& unit);
 /// "frequency [Hz]" for a time in seconds or without a label, "frequency [kHz]" for ms, "frequency [1/min]".
 std::string label_frequency(const std::string& time_unit);
+/// Unit of a spectral density over the frequencies of label_frequency(): "m^2/Hz", "(m/s)^2/kHz", "N^2 min"; empty if
+/// the unit of the curve is.
+std::string make_density_unit(const std::string& unit, const std::string& time_unit);
 
 /// Puts the unit of the curves on the y axis; if curves have several units, into their labels.
 void label_units(Plot& plot);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <filesystem>
 #include <set>
 
@@ -101,12 +102,39 @@ std::string make_modes_table(const records::Deck& deck, bool is_fixed) {
                      at->num_modes > 0 ? "gives no more than the six rigid modes" : "gives no number");
 }
 
-// TOML: a literal string as long as the path has no quote.
+bool is_control(char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; }
+
+/// A basic TOML string with escapes.
+std::string quote_basic(const std::string& text) {
+  std::string quoted = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') quoted += '\\';
+    quoted += is_control(c) ? fmt::format("\\u{:04X}", c) : std::string(1, c);
+  }
+  return quoted + "\"";
+}
+
+/// A path that neither a system file takes for a parameter ("$x") nor a command line for an option ("-x").
+std::string make_plain(const std::string& path) {
+  return path.starts_with('$') || path.starts_with('-') ? "./" + path : path;
+}
+
+/// TOML: a literal string if the path has neither a quote nor control characters.
 std::string quote(const std::string& path) {
-  if (path.find('\'') == std::string::npos) return "'" + path + "'";
-  std::string text = "\"";
-  for (const char c : path) text += c == '"' || c == '\\' ? std::string("\\") + c : std::string(1, c);
-  return text + "\"";
+  const bool is_literal = path.find('\'') == std::string::npos && std::none_of(path.begin(), path.end(), is_control);
+  return is_literal ? "'" + make_plain(path) + "'" : quote_basic(make_plain(path));
+}
+
+/// A word of a shell in a comment of one line.
+std::string make_word(const std::string& path) {
+  std::string word;
+  bool is_bare = true;
+  for (const char c : make_plain(path)) {
+    is_bare = is_bare &&
+              (std::isalnum(static_cast<unsigned char>(c)) != 0 || std::string("-_./").find(c) != std::string::npos);
+    word += c == '\'' ? "'\\''" : std::string(1, is_control(c) ? '?' : c);
+  }
+  return is_bare ? word : "'" + word + "'";
 }
 
 }  // namespace
@@ -147,21 +175,27 @@ std::vector<StartFile> make_start_files(const records::Deck& deck, const DeckSta
         "residual = [\"interface\"]  # what the hinge holds in its other directions\n\n[body.damping]\n"
         "ratio = 0.005            # of the modes\nresidual_ratio = 1.0     # of the residual vectors: much faster than "
         "the modes\n";
+  // Texts that begin with $ are parameters, and a body's name cannot begin with "./".
+  auto plain_name = name;
+  if (name.starts_with('$')) plain_name.front() = '_';
+  std::replace_if(plain_name.begin(), plain_name.end(), is_control, '_');
+  const auto body_name = quote_basic(plain_name);
+  const auto output = quote_basic(make_plain(name + ".h5"));
   const std::string body = fmt::format(
-      "# bough reduce {0}.toml\n[body]\nname = \"{0}\"\ndeck = {1}\n{2}\n[body.modes]\n{3}\n"
-      "[body.output]\nfile = \"{0}.h5\"\n",
-      name, quote(start.path), frame, modes);
-  std::string hinge = fmt::format("type = \"{}\"\nparent = \"ground\"\nchild = \"{}\"\n",
+      "# bough reduce {0}\n[body]\nname = {1}\ndeck = {2}\n{3}\n[body.modes]\n{4}\n[body.output]\nfile = {5}\n",
+      make_word(name + ".toml"), body_name, quote(start.path), frame, modes, output);
+  std::string hinge = fmt::format("type = \"{}\"\nparent = \"ground\"\nchild = {}\n",
                                   grid > 0   ? "revolute"
                                   : is_fixed ? "fixed"
                                              : "free",
-                                  name);
+                                  body_name);
   if (grid > 0) hinge += fmt::format("child_node = {}\n{}\n", grid, choose_hinge_axis(deck, grid));
   const std::string system = fmt::format(
-      "# bough run {0}-run.toml -o {0}-run.h5\n[[body]]\nname = \"{0}\"\nfile = \"{0}.h5\"\n\n"
-      "[[hinge]]\nname = \"base\"\n{1}\n[simulation]\nduration = 1.0\noutput_step = 0.01\n{2}"
+      "# bough run {0} -o {1}\n[[body]]\nname = {2}\nfile = {3}\n\n"
+      "[[hinge]]\nname = \"base\"\n{4}\n[simulation]\nduration = 1.0\noutput_step = 0.01\n{5}"
       "gravity = [0.0, 0.0, -9.81]  # a load to begin with, in the units of the deck (-9810.0 of mm, 0.0 in space)\n",
-      name, hinge, grid > 0 ? "integrator = \"auto\"\n" : "");
+      make_word(name + "-run.toml"), make_word(name + "-run.h5"), body_name, output, hinge,
+      grid > 0 ? "integrator = \"auto\"\n" : "");
   return {{name + ".toml", body}, {name + "-run.toml", system}};
 }
 

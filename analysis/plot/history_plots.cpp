@@ -108,10 +108,6 @@ void take_spectrum(report::Curve& curve, const CurveChoice& choice, Diagnostics&
   auto spectrum = choice.psd ? report::calc_psd(curve.y, step, choice.segment) : report::calc_amplitudes(curve.y, step);
   curve.x = std::move(spectrum.frequency);
   curve.y = std::move(spectrum.value);
-  if (choice.psd && !curve.unit.empty()) {
-    const bool is_product = curve.unit.find_first_of(" /^") != std::string::npos;
-    curve.unit = (is_product ? "(" + curve.unit + ")" : curve.unit) + "^2/Hz";
-  }
 }
 
 /// A tenth of the rate of the samples: above it extremes are between the samples.
@@ -174,7 +170,9 @@ report::Plot make_history_plot(const std::vector<std::string>& files, const std:
     const auto results = hdf5::read_results(file);
     const VectorXd x = choice.x.empty() ? results.time : read_abscissa(results, file, choice.x, plot.x_label);
     if (choice.x.empty()) plot.x_label = report::make_label("time", get_unit(results, "/time"));
-    if (choice.psd || choice.spectrum) plot.x_label = report::label_frequency(get_unit(results, "/time"));
+    const auto time_unit = get_unit(results, "/time");
+    const bool is_spectrum = choice.x.empty() && (choice.psd || choice.spectrum || !choice.srs.empty());
+    if (is_spectrum) plot.x_label = report::label_frequency(time_unit);
     std::size_t number = 0;
     bool is_interpolated = false;
     for (const auto& sensor : sensors) {
@@ -183,7 +181,7 @@ report::Plot make_history_plot(const std::vector<std::string>& files, const std:
         std::string label = files.size() > 1 ? fs::path(file).stem().string() : "";
         if (files.size() == 1 || !one_curve_a_file) label += (label.empty() ? "" : " ") + column.name;
         report::Curve curve{label, x, std::move(column.values), false};
-        curve.unit = column.unit;
+        curve.unit = is_spectrum && choice.psd ? report::make_density_unit(column.unit, time_unit) : column.unit;
         if (!choice.window.empty()) cut_to_window(curve, results.time, choice.window);
         if (!choice.difference) {
           plot.curves.push_back(std::move(curve));
@@ -249,7 +247,7 @@ std::vector<report::Plot> shape_plots(std::vector<report::Plot> plots, const Cur
       if (is_over_time && !choice.srs.empty()) take_shock_spectrum(curve, choice, diagnostics);
     }
     if (is_over_time && !choice.srs.empty()) {
-      plot.x_label = "natural frequency [Hz]";
+      plot.x_label = "natural " + (plot.x_label.starts_with("frequency") ? plot.x_label : report::label_frequency({}));
       plot.y_label = fmt::format("{}, {}, Q {:g}", choice.srs, choice.srs_part, choice.quality);
       plot.has_log_x = plot.has_log_y = true;
     }

@@ -52,6 +52,12 @@ const to_rgba = (css, alpha = 1) => {
   return [(v >> 16) / 255, ((v >> 8) & 255) / 255, (v & 255) / 255, alpha];
 };
 
+// Place on the canvas of a point in space; null behind the eye.
+const project = (view, rect, p) => {
+  const [x, y, , w] = [0, 1, 2, 3].map((r) => view[r] * p[0] + view[4 + r] * p[1] + view[8 + r] * p[2] + view[12 + r]);
+  return w > 0 ? [(rect.width * (1 + x / w)) / 2, (rect.height * (1 - y / w)) / 2] : null;
+};
+
 // Outlines of larger meshes wait until the view rests: lines take most of the time where no graphics card draws.
 export const kMaxTurningEdges = 5000;
 
@@ -319,19 +325,30 @@ export class Viewer {
       if (!thing.describe) continue;
       const p = thing.points;
       for (let k = 0; k < thing.ids.length; ++k) {
-        const [x, y, , w] = [0, 1, 2, 3].map((r) => view[r] * p[3 * k] + view[4 + r] * p[3 * k + 1] + view[8 + r] * p[3 * k + 2] + view[12 + r]);
-        if (w <= 0) continue;
-        const at = [(rect.width * (1 + x / w)) / 2, (rect.height * (1 - y / w)) / 2];
+        const at = project(view, rect, p.subarray(3 * k, 3 * k + 3));
+        if (!at) continue;
         const distance = Math.hypot(at[0] - (event.clientX - rect.left), at[1] - (event.clientY - rect.top));
         if (distance < best) [best, found] = [distance, { thing, k, at }];
       }
     }
     this.picked = found && [found.thing.describe, found.k];
     this.on_pick?.(found && { thing: found.thing, index: found.k, id: found.thing.ids[found.k] });
-    this.tip.hidden = !found;
-    if (!found) return;
-    this.tip.style.left = Math.min(found.at[0] + 10, rect.width - 240) + "px";
-    this.tip.style.top = found.at[1] + 10 + "px";
+    this.place_tip(found?.at, rect);
+  }
+
+  // Labels the node with this id as a click on it does, without calling on_pick; no label if no thing has the id.
+  name_node(id) {
+    const thing = this.things.find((t) => t.describe && t.ids.includes(id)), k = thing ? thing.ids.indexOf(id) : -1;
+    const rect = this.canvas.getBoundingClientRect();
+    this.picked = thing ? [thing.describe, k] : null;
+    this.place_tip(thing && project(this.make_view(), rect, thing.points.subarray(3 * k, 3 * k + 3)), rect);
+  }
+
+  place_tip(at, rect) {
+    this.tip.hidden = !at;
+    if (!at) return;
+    this.tip.style.left = Math.min(at[0] + 10, rect.width - 240) + "px";
+    this.tip.style.top = at[1] + 10 + "px";
     this.update_tip();
   }
 

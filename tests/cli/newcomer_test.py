@@ -5,13 +5,15 @@ import math
 import os
 import re
 import resource
+import shlex
 import subprocess
 import unittest
 
 import h5py
 import numpy as np
 
-from support import BEAM, PROGRAM, ProgramTest
+from studio_browser_test import make_plate
+from support import BEAM, PROGRAM, SOURCE, ProgramTest
 from toml_text import Bare, section, table, toml
 
 # A rigid body turns about z at 0.1 rad/s for 1 s.
@@ -229,6 +231,20 @@ class Files(ProgramTest):
         for verb in ("check", "modes"):
             result = self.fails(1, verb, "deck.bdf", says=["pipe"], error="cli.no-file")
             self.assertNotIn("no such file", result.stderr)
+
+    def test_decks_with_odd_names(self):
+        """Quotes, backslashes, dollars, dashes and lines in names: the files of init are read, reduced and run."""
+        for stem in ('quote\'d "x"', "a\\b", "$HOME `id`", "-dash", "two\nlines", "it's # x"):
+            with self.subTest(stem):
+                self.write(stem + ".bdf", make_plate())
+                self.bough("init", "./" + stem + ".bdf", "-o", ".")
+                self.bough("reduce", "./" + stem + ".toml")
+                ran = self.bough("run", "./" + stem + "-run.toml", "-o", "run.h5")
+                self.assertNotIn("error", ran.stderr)
+                # The commands in the first comments, as a shell takes them.
+                words = [shlex.split(re.search("# bough (.*)", self.read(stem + end)).group(1)) for end in (".toml", "-run.toml")]
+                if "\n" not in stem:
+                    self.assertEqual([w[1].removeprefix("./") for w in words], [stem + ".toml", stem + "-run.toml"])
 
 
 class SampledPoles(ProgramTest):

@@ -1,6 +1,5 @@
 """bough studio in headless Chromium by mouse and keys: from a deck to a body, a system, a run, poles and a page; the
 files written give the same numbers by the command line. Skipped, with a message, where chromium is not installed."""
-import json
 import os
 import shutil
 import unittest
@@ -8,9 +7,8 @@ import unittest
 import h5py
 import numpy as np
 
-from browser import BrowserTest, find_chromium
 from studio_control_test import SYSTEM
-from studio_support import StudioTest
+from studio_page import PageTest
 from support import SOURCE
 
 SHARED = os.environ.get("BOUGH_SHARED_DIR", "")
@@ -35,45 +33,7 @@ def make_plate():
     return "\n".join([*lines, "ENDDATA", ""])
 
 
-@unittest.skipUnless(find_chromium(), "chromium is not installed")
-class Flow(StudioTest, BrowserTest):
-    def setUp(self):
-        super().setUp()
-        self.browser.renew(1300, 850)
-
-    def open_studio(self, *arguments):
-        """The browser at the page of a studio with these arguments."""
-        self.start_studio(*arguments)
-        self.browser.visit(self.address)
-        return self.browser
-
-    def keep(self, name):
-        folder = os.environ.get("BOUGH_ARTEFACTS")
-        if folder:
-            os.makedirs(folder, exist_ok=True)
-            self.browser.screenshot(os.path.join(folder, name + ".png"))
-
-    def wait(self, expression):
-        self.assertTrue(self.browser.wait_for(f"!!({expression})"), expression + self.browser.run("document.querySelector('.notes').textContent"))
-
-    def choose(self, label, text):
-        """An option of a list by keys."""
-        self.browser.run(f"document.querySelector('select[aria-label={json.dumps(label)}]').focus()")
-        self.browser.type(text)
-        self.wait(f"document.querySelector('select[aria-label={json.dumps(label)}]').selectedOptions[0].textContent.startsWith({json.dumps(text)})")
-
-    def click_text(self, text, within="document"):
-        """Clicks the button with this text."""
-        self.browser.run(f"[...{within}.querySelectorAll('button')].find((b) => b.textContent.startsWith({json.dumps(text)}))"
-                         ".setAttribute('data-click', 'here')")
-        self.browser.click("[data-click=here]")
-        self.browser.run("document.querySelector('[data-click=here]')?.removeAttribute('data-click')")
-
-    def open(self, name):
-        self.wait(f"document.querySelector('button[data-file={json.dumps(name)}]')")
-        self.browser.click(f"button[data-file={json.dumps(name)}]")
-        self.wait(f"document.querySelector('main.work').dataset.file === {json.dumps(name)}")
-
+class Flow(PageTest):
     def test_deck_to_page(self):
         name = "plate_py.dat"
         if os.path.exists(FOREIGN):
@@ -191,6 +151,13 @@ class Flow(StudioTest, BrowserTest):
         self.bough("linearize", "sliders.toml", "--set", f"gain={gain}", "-o", "shell.h5")
         with h5py.File(self.path("shell.h5")) as f:
             np.testing.assert_allclose(page.run("studio.view.poles.poles.imag"), f["/poles/imag"][:], rtol=1e-12)
+            shown = page.run("[...studio.view.poles.picker.list.options].slice(1).map((o) => parseFloat(o.textContent))")
+            np.testing.assert_allclose(shown, f["/poles/frequency_hz"][:][f["/poles/imag"][:] >= 0], rtol=1e-4)
+        # The last of two requests wins, though the answer to the first comes later.
+        page.run("""(async () => { const send = fetch; let count = 0;
+          window.fetch = (u, o) => (o.body.includes("pole-motion") && count++ === 0 ? new Promise((r) => setTimeout(r, 3000)).then(() => send(u, o)) : send(u, o));
+          await Promise.all([studio.view.poles.show(0), studio.view.poles.show(2)]); window.fetch = send; })()""")
+        self.assertEqual(page.run("document.querySelector('.scene-host').dataset.pole"), "2")
         page.show(".result .live[data-view=poles]")
         self.keep("studio-locus")
 

@@ -82,6 +82,21 @@ class Units(ProgramTest):
         term = self.bough("plot", "named.h5", "--sensor", "place:x", "--psd", "--segment", "256", "--term").stdout
         self.assertIn("frequency [Hz]", term)
 
+    def test_densities_are_per_unit_of_their_axis(self):
+        """The integral of a density over the numbers of its axis is the variance, here in mm^2."""
+        for time_unit, axis, density in (("ms", "frequency [kHz]", "[mm^2/kHz]"), ("min", "frequency [1/min]", "[mm^2 min]"), ("s", "frequency [Hz]", "[mm^2/Hz]")):
+            self.run_system("run", UNITS.replace('time = "s"', f'time = "{time_unit}"'), damping=0.01)
+            self.bough("plot", "run.h5", "--sensor", "place:x", "--psd", "--segment", "256", "--csv", "run.csv", "-o", "run.svg")
+            text = self.read("run.svg")
+            self.assertIn(f">{axis}<", text)
+            self.assertIn(density, text)
+            curve = np.genfromtxt(self.path("run.csv"), delimiter=",", skip_header=1)[:, 1:]
+            with h5py.File(self.path("run.h5")) as f:
+                variance = np.var(f["sensors/place"][:, 0])
+            self.assertAlmostEqual(np.sum(curve[:, 1]) * curve[1, 0], variance, delta=0.1 * variance)
+            self.bough("plot", "run.h5", "--sensor", "place:x", "--srs", "relative-displacement", "-o", "run.svg")
+            self.assertIn(f">natural {axis}<", self.read("run.svg"))
+
     def test_other_units_have_other_labels(self):
         self.write("a.toml", UNITS + TURN)
         self.bough("convert", "a.toml", "--units", "mm-N-tonne:m-kg-s", "-o", "b.toml")

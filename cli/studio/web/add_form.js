@@ -39,9 +39,12 @@ export function make_add_form(studio, view) {
     if (rest.length > 0) {
       const more = el("select", { "aria-label": "another key" }, el("option", { value: "" }, "another key …"), ...rest.map((k) => el("option", { value: k.name }, k.name)));
       more.addEventListener("change", () => {
-        add_field(kind, rest.find((k) => k.name === more.value));
+        const name = more.value;
+        add_field(kind, rest.find((k) => k.name === name));
         more.selectedOptions[0].remove();
         more.value = "";
+        host.append(more);  // below the new field
+        fields.get(name).focus();
       });
       host.append(more);
     }

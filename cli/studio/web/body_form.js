@@ -8,7 +8,9 @@ const kFrames = ["as the deck", "fixed", "free", "mean"];
 const kBases = ["normal", "craig-bampton", "craig-chang"];
 const kJoints = ["as the deck", "revolute hinge at the first grid"];
 
-const quote = (word) => (/^[\w./-]+$/.test(word) ? word : `'${word.replaceAll("'", `'"'"'`)}'`);
+const quote_word = (word) => (/^[\w./-]+$/.test(word) ? word : `'${word.replaceAll("'", `'"'"'`)}'`);
+// A name that begins with "-" would be an option.
+const quote = (file) => quote_word(file.startsWith("-") ? "./" + file : file);
 
 /** @param {(grids: number[]) => void} on_change  called with the chosen grids */
 export function make_body_form(studio, deck, on_change) {

@@ -31,7 +31,9 @@ export class BodyView {
     if (answer.deck !== this.deck) {
       this.deck = answer.deck;
       await this.studio.attempt(async () => {
-        const deck = await ask("deck", { file: this.studio.to_name(answer.deck) });
+        const name = this.studio.to_name(answer.deck);
+        this.deck_time = this.studio.find(name)?.time;
+        const deck = await ask("deck", { file: name });
         this.stage?.dispose();
         this.stage = new DeckStage(deck, (grid) => this.pick(grid), "100%");
         this.stage_host.replaceChildren(this.stage.viewer.make_view_buttons(), this.stage.element);
@@ -72,8 +74,11 @@ export class BodyView {
     });
   }
 
-  notice() {
-    return this.pane.notice();
+  async notice() {
+    await this.pane.notice();
+    if (!this.deck || this.studio.find(this.studio.to_name(this.deck))?.time === this.deck_time) return;
+    this.deck = "";
+    await this.show_deck(this.pane.answer);
   }
   is_changed() {
     return this.pane.is_changed();

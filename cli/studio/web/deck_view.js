@@ -39,6 +39,7 @@ export class DeckStage {
     this.viewer.target = place;
     this.viewer.distance = Math.min(this.viewer.distance, 0.6 * this.scene.size);
     this.draw();
+    this.viewer.name_node(grid);
     return true;
   }
   dispose() {
@@ -54,21 +55,60 @@ export class DeckView {
     this.file = file;
     this.answer = answer;
     this.form = make_body_form(studio, file, (grids) => {
+      this.chosen = new Set(grids);
       if (!this.stage) return;
-      this.stage.chosen = new Set(grids);
+      this.stage.chosen = this.chosen;
       this.stage.draw();
     });
-    this.stage = new DeckStage(answer, (grid) => this.pick(grid));
     this.picked = el("output", { class: "picked", "aria-live": "polite" }, "Click a grid.");
     this.messages = make_message_list((m) => this.go(m));
     this.all = answer.messages;
     this.groups = el("div", { class: "groups" });
-    this.side = el("aside", { class: "side" }, this.make_find(), this.form.element, this.make_messages(), this.make_show(), this.make_cards());
-    this.element = el("div", { class: "split" }, el("div", { class: "stage-host" }, this.stage.viewer.make_view_buttons(), this.stage.element, el("p", { class: "note hint" }, "Drag turns, shift moves, the wheel comes nearer; a click names a grid. Arrow keys, + and − do the same.")), this.side);
-    this.messages.show(this.all, "Reading found nothing. “Check” builds the model too.");
-    this.list_groups();
+    this.side = el("aside", { class: "side" });
+    this.stage_host = el("div", { class: "stage-host" });
+    this.element = el("div", { class: "split" }, this.stage_host, this.side);
+    this.fill();
   }
 
+  /** Mesh, messages and lists of the answer. */
+  fill() {
+    this.times = this.get_times();
+    this.stage = new DeckStage(this.answer, (grid) => {
+      this.pick(grid);
+      if (grid) this.form.take(grid);
+    });
+    this.stage.chosen = this.chosen;
+    this.stage_host.replaceChildren(this.stage.viewer.make_view_buttons(), this.stage.element, el("p", { class: "note hint" }, "Drag turns, shift moves, the wheel comes nearer; a click names a grid. Arrow keys, + and − do the same."));
+    this.side.replaceChildren(this.make_find(), this.form.element, this.make_messages(), this.make_show(), this.make_cards());
+    this.messages.show(this.all, "Reading found nothing. “Check” builds the model too.");
+    this.list_groups();
+    this.stage.draw();
+  }
+
+  /** When the deck and the files that it includes were changed last. */
+  get_times() {
+    const names = new Set([this.file, ...this.answer.files.map((f) => this.studio.to_name(f))]);
+    return this.studio.files.filter((f) => names.has(f.name)).map((f) => `${f.name} ${f.time}`).join("\n");
+  }
+
+  /** Reads the deck again if one of its files has changed; interface nodes and the camera stay. */
+  async notice() {
+    if (this.get_times() === this.times) return;
+    this.times = this.get_times();
+    await this.studio.attempt(async () => {
+      this.answer = await ask("deck", { file: this.file });
+      const { yaw, pitch, distance, target } = this.stage.viewer;
+      this.stage.dispose();
+      this.all = this.answer.messages;
+      this.fill();
+      Object.assign(this.stage.viewer, { yaw, pitch, distance, target, is_fitted_late: false });
+      this.stage.draw();
+      this.pick(0);
+      this.studio.say(`${this.file} has changed outside and was read again.`);
+    });
+  }
+
+  /** Names the grid; 0 for none. */
   pick(grid) {
     if (!grid) {
       this.picked.textContent = "Click a grid.";
@@ -77,7 +117,6 @@ export class DeckView {
     const { scene } = this.stage, k = scene.point_of_grid.get(grid), row = scene.row_of_grid.get(grid);
     const parts = this.answer.num_parts > 1 ? `, part ${scene.grids.part[row]} of ${this.answer.num_parts}` : "";
     this.picked.replaceChildren(el("strong", {}, `grid ${grid}`), ` ${scene.describe_place(k)}${parts} `, make_button("card", "Show the card in the deck", () => this.show_card(scene.grids.file[row], scene.grids.line[row])));
-    this.form.take(grid);
   }
 
   show_card(file, line) {

@@ -4,7 +4,7 @@ import { ask } from "./api.js";
 import { ReportChapter } from "./chapter_views.js";
 import { list_pole_series } from "./linear_view.js";
 import { format_number } from "./numbers.js";
-import { make_select } from "./page_parts.js";
+import { el, make_select } from "./page_parts.js";
 
 const describe = ({ frequency, damping, mode }, i) => `${format_number(frequency[i], 5)} Hz, damping ${format_number(100 * damping[i], 4)} %, ${mode[i]}`;
 
@@ -17,22 +17,35 @@ export class PolePanel {
     this.poles = data.data.poles;
     this.base = list_pole_series(data.data);
     this.trail = { x: [], y: [] };
-    chart.on_point = (series, i) => series.name.startsWith("poles") && this.show(this.poles.index[i], this.poles, i);
-    // Of a pair the pole with the positive part; for the keyboard.
-    const upper = this.poles.index.map((_, i) => i).filter((i) => this.poles.imag[i] >= 0);
-    const list = make_select("move in the shape of", ["no pole", ...upper.map((i) => describe(this.poles, i))], (k) => k > 0 && this.show(this.poles.index[upper[k - 1]], this.poles, upper[k - 1]));
-    list.list.classList.add("pole-picker");
-    chart.element.prepend(list);
+    chart.on_point = (series, i) => series.name.startsWith("poles") && this.show(this.poles.index[i]);
+    this.picker = make_select("move in the shape of", [], (k) => k > 0 && this.show(this.poles.index[this.upper[k - 1]]));
+    this.picker.list.classList.add("pole-picker");
+    chart.element.prepend(this.picker);
+    this.list_poles();
+  }
+
+  /** Fills the list with the poles as they are now: of a pair the one with the positive part; for the keyboard. */
+  list_poles() {
+    const { list } = this.picker, chosen = list.selectedIndex, before = list.length;
+    this.upper = this.poles.index.map((_, i) => i).filter((i) => this.poles.imag[i] >= 0);
+    list.replaceChildren(...["no pole", ...this.upper.map((i) => describe(this.poles, i))].map((name, i) => el("option", { value: i }, name)));
+    if (list.length === before) list.selectedIndex = chosen;
   }
 
   get request() {
     return { file: this.view.file, text: this.view.pane.text, set: this.view.list_set(), equilibrium: this.is_at_rest };
   }
 
-  /** The scene moves in the shape of the pole until another run or pole is shown. */
-  show(pole, poles, i) {
+  /** The scene moves in the shape of the pole until another run or pole is shown; of several requests the last one. */
+  show(pole) {
+    const number = (this.last_shown = (this.last_shown ?? 0) + 1);
     return this.view.studio.attempt(async () => {
+      await this.following;
+      if (number !== this.last_shown) return;
+      const { poles } = this, i = poles.index.indexOf(pole);
+      if (i < 0) return;
       const { chapter } = await ask("pole-motion", { ...this.request, pole });
+      if (number !== this.last_shown || this.view.poles !== this) return;
       this.view.show_scene(new ReportChapter(chapter.data).run, false, true);
       const motion = this.view.motion;
       motion.is_looping = true;
@@ -44,9 +57,13 @@ export class PolePanel {
   }
 
   /** Poles with the parameters as they are now; what is asked while an answer is on its way waits, the last one alone. */
-  async follow() {
+  follow() {
     this.is_late = true;
-    if (this.is_asking) return;
+    if (!this.is_asking) this.following = this.ask_poles();
+    return this.following;
+  }
+
+  async ask_poles() {
     this.is_asking = true;
     try {
       while (this.is_late) {
@@ -55,6 +72,7 @@ export class PolePanel {
         const { chapter } = await ask("poles", request);
         const { poles } = JSON.parse(chapter.data);
         this.poles = poles;
+        this.list_poles();
         this.trail.x.push(...poles.x);
         this.trail.y.push(...poles.y);
         const tip = (i) => describe(poles, i);

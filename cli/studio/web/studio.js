@@ -64,8 +64,11 @@ class Studio {
     setTimeout(() => box.remove(), 6000);
   }
 
+  find(name) {
+    return this.files.find((f) => f.name === name);
+  }
   has(name) {
-    return this.files.some((f) => f.name === name);
+    return this.find(name) !== undefined;
   }
   /** A file of a message, which may be absolute, as the list has it. */
   to_name(path) {
@@ -118,7 +121,9 @@ class Studio {
       this.view?.dispose?.();
       this.view = view;
       this.name = name;
-      this.work.replaceChildren(el("h2", { class: "file-title" }, name, " ", el("small", {}, file.kind)), view.element);
+      const title = el("h2", { class: "file-title", tabindex: "-1" }, name, " ", el("small", {}, file.kind));
+      this.work.replaceChildren(title, view.element);
+      if (document.activeElement === document.body) title.focus();  // what had the focus is gone
       this.work.dataset.file = name;
     });
     this.work.removeAttribute("aria-busy");

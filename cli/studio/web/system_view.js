@@ -20,7 +20,7 @@ export class SystemView {
   constructor(studio, file, read) {
     this.studio = studio;
     this.file = file;
-    this.output = stem(file) + ".h5";
+    this.output = this.choose_output();
     this.progress = make_progress();
     this.viewer = new Viewer("100%");
     this.scene = el("div", { class: "scene-host" });
@@ -43,11 +43,19 @@ export class SystemView {
     if (studio.has(this.output)) this.show_results();
   }
 
+  /** Name of the results: that of the system file, unless a body or another kind of file has it. */
+  choose_output() {
+    const name = stem(this.file) + ".h5", found = this.studio.find(name);
+    return found && found.kind !== "bough-results" && found.kind !== "unreadable" ? stem(this.file) + "-run.h5" : name;
+  }
+
   /** After each check without errors: the system at its start. */
   async update(answer) {
+    const has_errors = answer.messages.some((m) => m.severity === "error"), names = new Set(answer.parameters?.map((p) => p.name));
+    if (!has_errors) for (const name of [...this.set.keys()]) if (!names.has(name)) this.set.delete(name);
     this.show_parameters(answer.parameters);
     this.add_form.update(answer);
-    if (this.is_running || answer.messages.some((m) => m.severity === "error") || this.text_drawn === this.pane.text) return;
+    if (this.is_running || has_errors || this.text_drawn === this.pane.text) return;
     const text = this.pane.text;
     this.diagrams.update();
     try {
@@ -123,9 +131,11 @@ export class SystemView {
     return this.studio.attempt(async () => {
       if (!(await this.pane.make_saved())) return;
       this.is_running = true;
+      this.output = this.choose_output();
+      const time_before = this.studio.find(this.output)?.time;
       this.result.replaceChildren();
       this.shown?.dispose();
-      const live = new LiveCharts(this);
+      const live = new LiveCharts(this, time_before);
       try {
         const done = await run_job({ verb: "run", files: [this.file], options: [...more, ...this.get_set(), ["-o", this.output]] }, (text, job) => {
           this.progress.update(text, job);
@@ -135,7 +145,8 @@ export class SystemView {
         this.progress.finish(done);
         this.pane.messages.show(done.messages, "The run ended without a message.");
         await this.studio.refresh();
-        if (this.studio.has(this.output)) await this.show_results();
+        const found = this.studio.find(this.output);
+        if (found) await this.show_results(found.time === time_before);
       } finally {
         this.is_running = false;
         live.end();
@@ -143,8 +154,8 @@ export class SystemView {
     });
   }
 
-  /** Whole results: scene, all panels; the run before stays in a chart of both. */
-  async show_results() {
+  /** Whole results: scene, all panels; the run before stays in a chart of both. `is_old`: the last run wrote none. */
+  async show_results(is_old = false) {
     await this.studio.attempt(async () => {
       const { chapter } = await ask("chapter", { file: this.output, bodies: this.bodies ?? [] });
       this.shown?.dispose();
@@ -152,8 +163,9 @@ export class SystemView {
       this.shown = make_chapter(chapter, ["system", "motion"]);
       const run = this.shown.data.run;
       this.show_scene(run, false);
-      this.result.replaceChildren(el("h2", {}, this.output), ...this.make_ghosts(run), this.shown.element);
-      this.result.dataset.ready = "true";
+      const note = is_old ? [el("p", { class: "banner", role: "alert" }, "The last run wrote no results. These are the results of a run before.")] : [];
+      this.result.replaceChildren(el("h2", {}, this.output), ...note, ...(is_old ? [] : this.make_ghosts(run)), this.shown.element);
+      this.result.dataset.ready = is_old ? "old" : "true";
       this.earlier = run;
     });
   }
@@ -209,14 +221,18 @@ export class SystemView {
 
 /** Curves and scene out of the results file while it grows. */
 class LiveCharts {
-  constructor(view) {
+  /** @param {any} view  @param {number | undefined} time_before  last change of the results file before this run */
+  constructor(view, time_before) {
     this.view = view;
+    this.time_before = time_before;
     this.last = performance.now();
   }
   async look() {
     if (this.is_over || this.is_asking || performance.now() - this.last < kLiveEvery) return;
     this.is_asking = true;
     try {
+      const { files } = await ask("list"), found = files.find((f) => f.name === this.view.output);
+      if (!found || found.time === this.time_before) return;
       const { chapter } = await ask("chapter", { file: this.view.output, bodies: this.view.bodies ?? [] });
       if (this.is_over || !chapter.data) return;
       const run = new ReportChapter(chapter.data).run;
@@ -224,7 +240,7 @@ class LiveCharts {
       this.view.show_scene(run, true);
       this.show(run);
     } catch {
-      // The file is not there yet, or it is the one of the run before.
+      // The file is being made.
     } finally {
       this.is_asking = false;
       this.last = performance.now();

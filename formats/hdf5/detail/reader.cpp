@@ -66,6 +66,8 @@ int get_major(const std::string& version) { return std::atoi(version.c_str()); }
 
 Handle open_file(const std::string& path, bool to_write) {
   std::error_code ignored;
+  if (!std::filesystem::exists(path, ignored))
+    throw InputError("hdf5.cannot-open", {path}, "no such file", "check its path");
   std::ifstream in;  // opening a pipe would wait for a writer
   if (!std::filesystem::is_regular_file(path, ignored) || !(in.open(path, std::ios::binary), in)) {
     throw InputError("hdf5.cannot-open", {path}, "the file cannot be opened", "check its path and permissions");
@@ -95,10 +97,10 @@ Handle open_file(const std::string& path, bool to_write) {
     if (is_file_locked(path))
       throw InputError("hdf5.busy", {path}, "another process writes this file",
                        "wait until it ends, or choose another");
-    throw InputError(
-        "hdf5.truncated", {path},
-        "the file ends early or is damaged: " + std::to_string(std::filesystem::file_size(path, ignored)) + " bytes",
-        "copy or write it again");
+    const auto size = std::filesystem::file_size(path, ignored);
+    if (ignored) throw InputError("hdf5.cannot-open", {path}, "no such file", "check its path");  // removed meanwhile
+    throw InputError("hdf5.truncated", {path}, "the file ends early or is damaged: " + std::to_string(size) + " bytes",
+                     "copy or write it again");
   }
   return file;
 }

@@ -180,6 +180,11 @@ TEST(FlexBodyFile, FilesThatAreNotOursAreRefused) {
   const TempFolder folder;
   EXPECT_EQ(collect_ids([&] { read_flex_body(folder.at("none.h5")); }), std::vector<std::string>{"hdf5.cannot-open"});
   EXPECT_EQ(collect_ids([&] { read_flex_body(folder.get_path()); }), std::vector<std::string>{"hdf5.cannot-open"});
+  try {
+    read_flex_body(folder.at("none.h5"));
+  } catch (const Failure& failure) {
+    EXPECT_EQ(failure.items().front().what, "no such file");
+  }
   EXPECT_EQ(collect_ids([&] { read_flex_body(folder.write("a.h5", "GRID,1,,0.,0.,0.\n")); }),
             std::vector<std::string>{"hdf5.not-hdf5"});
   write_modes(test::make_random_modes(1, 2, 2), folder.at("modes.h5"));

@@ -1,0 +1,47 @@
+"""A page of `bough studio` in headless Chromium. Skipped, with a message, where chromium is not installed."""
+import json
+import os
+import unittest
+
+from browser import BrowserTest, find_chromium
+from studio_support import StudioTest
+
+
+@unittest.skipUnless(find_chromium(), "chromium is not installed")
+class PageTest(StudioTest, BrowserTest):
+    def setUp(self):
+        super().setUp()
+        self.browser.renew(1300, 850)
+
+    def open_studio(self, *arguments):
+        """The browser at the page of a studio with these arguments."""
+        self.start_studio(*arguments)
+        self.browser.visit(self.address)
+        return self.browser
+
+    def keep(self, name):
+        folder = os.environ.get("BOUGH_ARTEFACTS")
+        if folder:
+            os.makedirs(folder, exist_ok=True)
+            self.browser.screenshot(os.path.join(folder, name + ".png"))
+
+    def wait(self, expression):
+        self.assertTrue(self.browser.wait_for(f"!!({expression})"), expression + self.browser.run("document.querySelector('.notes').textContent"))
+
+    def choose(self, label, text):
+        """An option of a list by keys."""
+        self.browser.run(f"document.querySelector('select[aria-label={json.dumps(label)}]').focus()")
+        self.browser.type(text)
+        self.wait(f"document.querySelector('select[aria-label={json.dumps(label)}]').selectedOptions[0].textContent.startsWith({json.dumps(text)})")
+
+    def click_text(self, text, within="document"):
+        """Clicks the button with this text."""
+        self.browser.run(f"[...{within}.querySelectorAll('button')].find((b) => b.textContent.startsWith({json.dumps(text)}))"
+                         ".setAttribute('data-click', 'here')")
+        self.browser.click("[data-click=here]")
+        self.browser.run("document.querySelector('[data-click=here]')?.removeAttribute('data-click')")
+
+    def open(self, name):
+        self.wait(f"document.querySelector('button[data-file={json.dumps(name)}]')")
+        self.browser.click(f"button[data-file={json.dumps(name)}]")
+        self.wait(f"document.querySelector('main.work').dataset.file === {json.dumps(name)}")

@@ -1,0 +1,122 @@
+"""The page of the studio after a failed run, a change outside, and with files of odd names."""
+import os
+import unittest
+
+from studio_browser_test import PROJECT, make_plate
+from studio_control_test import SYSTEM
+from studio_page import PageTest
+
+
+class Decks(PageTest):
+    def show_plate(self, name="plate.bdf"):
+        self.write(name, make_plate())
+        self.start_studio("./" + name)
+        self.browser.visit(self.address)
+        self.wait("studio.view?.stage")
+
+    def get_chosen(self):
+        return self.browser.run("document.querySelector('.chosen').textContent")
+
+    def test_find_names_a_grid_and_chooses_none(self):
+        self.show_plate()
+        page = self.browser
+        page.click("input[type=search]")
+        page.type("21\n")
+        self.wait("document.querySelector('.side .picked').textContent.startsWith('grid 21 (')")
+        self.assertIn("none", self.get_chosen())
+        self.assertTrue(page.run("document.querySelector('.viewer .tip').textContent").startswith("grid 21:"))
+        page.run("studio.view.go({ what: 'grid 23 has no stiffness', line: 0, file: '' })")
+        self.wait("document.querySelector('.side .picked').textContent.startsWith('grid 23 (')")
+        self.assertIn("none", self.get_chosen())
+        x, y = page.run(PROJECT % 23)
+        page.mouse("mouseMoved", x, y)
+        page.mouse("mousePressed", x, y, button="left", buttons=1, clickCount=1)
+        page.mouse("mouseReleased", x, y, button="left", clickCount=1)
+        self.wait("document.querySelector('.chosen').textContent.includes('23')")
+
+    def test_a_deck_that_changes_outside_is_read_again(self):
+        self.show_plate()
+        page = self.browser
+        page.run("studio.view.form.take(45)")
+        self.write("plate.bdf", make_plate().replace("GRID,45,,1.0000,0.5000,0.", "GRID,45,,1.2500,0.5000,0."))
+        page.run("studio.look()")
+        self.wait("Math.abs(studio.view.stage.scene.get_place(45)[0] - 1.25) < 1e-6")
+        self.assertIn("45", self.get_chosen())
+
+    def test_commands_of_a_name_that_begins_with_a_dash(self):
+        self.show_plate("-dash.bdf")
+        page = self.browser
+        page.click("button.make-body")
+        self.wait("document.querySelector('dialog pre.diff')")
+        self.click_text("Save", "document.querySelector('dialog')")
+        self.wait("document.querySelector('main.work').dataset.file === '-dash.toml'")
+        self.assertTrue(page.run("document.activeElement.classList.contains('file-title')"))
+        self.click_text("Copy commands")
+        self.wait("document.querySelector('dialog textarea')")
+        lines = page.run("document.querySelector('dialog textarea').value").splitlines()
+        os.remove(self.path("-dash.toml"))
+        os.remove(self.path("-dash-run.toml"))
+        for line in lines:
+            if line.startswith("bough "):
+                self.bough(*line.split()[1:])
+        self.assertTrue(os.path.exists(self.path("-dash.toml")))
+
+
+class Systems(PageTest):
+    def show_system(self, text=SYSTEM):
+        self.write("sliders.toml", text)
+        self.start_studio("sliders.toml")
+        self.browser.visit(self.address)
+        self.wait("document.querySelector('.text-pane')?.dataset.checked === '0'")
+
+    def command(self, text):
+        self.browser.click("input.command")
+        self.browser.type(text + "\n")
+        self.wait("document.querySelector('input.command').value === ''")
+
+    def save(self):
+        self.wait("document.querySelector('dialog pre.diff')")
+        self.click_text("Save", "document.querySelector('dialog')")
+
+    def test_a_failed_run_says_whose_results_are_shown(self):
+        self.show_system()
+        page = self.browser
+        page.click("button.run")
+        self.wait("document.querySelector('.result').dataset.ready === 'true'")
+        self.assertFalse(page.run("document.querySelector('.result .banner') !== null"))
+        self.command("set simulation.output_step=5")
+        page.click("button.run")
+        self.save()
+        self.wait("document.querySelector('.result').dataset.ready === 'old'")
+        self.assertIn("wrote no results", page.run("document.querySelector('.result .banner').textContent"))
+
+    def test_the_value_of_a_parameter_that_is_gone(self):
+        self.show_system()
+        page = self.browser
+        page.run("""(() => { const field = document.querySelector('[aria-label="parameter gain"]');
+          field.value = "7"; field.dispatchEvent(new Event("change")); })()""")
+        self.assertEqual(page.run("studio.view.list_set()"), ["gain=7"])
+        self.command("set pid.kp=5.0")
+        self.command("unset parameters.gain")
+        self.wait("studio.view.set.size === 0")
+
+    def test_results_have_another_name_than_the_file_of_that_name(self):
+        self.write("sliders.toml", SYSTEM)
+        self.bough("linearize", "sliders.toml", "-o", "sliders.h5")
+        before = self.read_bytes("sliders.h5")
+        self.show_system()
+        page = self.browser
+        page.run("new Promise((done) => setTimeout(done, 500))")
+        self.assertEqual(page.run("document.querySelector('.notes').textContent"), "")
+        page.click("button.run")
+        self.wait("document.querySelector('.result').dataset.ready === 'true'")
+        self.assertTrue(os.path.exists(self.path("sliders-run.h5")))
+        self.assertEqual(self.read_bytes("sliders.h5"), before)
+
+    def read_bytes(self, name):
+        with open(self.path(name), "rb") as f:
+            return f.read()
+
+
+if __name__ == "__main__":
+    unittest.main()
