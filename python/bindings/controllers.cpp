@@ -9,7 +9,7 @@ namespace {
 
 using Array = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
-/// What a controller raised in this thread that is no Exception; a reference.
+/// Interrupt, no Exception, that a controller raised in this thread; a reference.
 thread_local PyObject* g_interrupt = nullptr;
 
 void keep_interrupt(const py::error_already_set& error) {

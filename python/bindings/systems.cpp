@@ -3,8 +3,6 @@
 #include <atomic>
 #include <filesystem>
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <pybind11/stl/filesystem.h>
 
 #include "analysis/common/inputs.hpp"
@@ -296,14 +294,16 @@ class PySystem {
       return std::filesystem::absolute(analysis::resolve_beside(file, name), none).lexically_normal();
     };
     std::vector<std::string> names;
+    std::string list;
     for (const auto& body : spec.bodies)
-      if (!body.file.empty() && std::find(names.begin(), names.end(), body.file) == names.end())
+      if (!body.file.empty() && std::find(names.begin(), names.end(), body.file) == names.end()) {
+        list += (names.empty() ? "" : ", ") + body.file;
         names.push_back(body.file);
+      }
     for (const auto& name : given) {
       if (std::any_of(names.begin(), names.end(), [&](const auto& own) { return place(own) == place(name); })) continue;
       throw InputError("cli.bad-option", {file}, "bodies: no [[body]] has file = \"" + name + "\"",
-                       names.empty() ? "leave bodies out: no body of the system has a file"
-                                     : fmt::format("the files are {}", fmt::join(names, ", ")));
+                       names.empty() ? "leave bodies out: no body of the system has a file" : "the files are " + list);
     }
   }
 

@@ -147,13 +147,13 @@ class Interrupts(InFolder):
             pass
 
         for kind in (KeyboardInterrupt, SystemExit, Exit):
-            def law(t, u):
+            def control(t, u):
                 if t > 0.2:
                     raise kind("now")
                 return 0.0
 
             text = PENDULUM.format(law=LIBRARY)
-            system = bough.System.from_text(text, controllers={"law": law})
+            system = bough.System.from_text(text, controllers=dict(law=control))
             with self.assertRaises(kind) as caught:
                 system.run()
             self.assertEqual(caught.exception.args, ("now",))
@@ -167,7 +167,7 @@ class Interrupts(InFolder):
             raise ValueError("no")
 
         with self.assertRaisesRegex(bough.ComputationError, "no"):
-            bough.System.from_text(text, controllers={"law": fails}).run()
+            bough.System.from_text(text, controllers=dict(law=fails)).run()
 
 
 class Uncertain(InFolder):
