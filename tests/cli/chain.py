@@ -7,9 +7,13 @@ c_ij = sum_k m h a_ki a_kj (+ m h^3/12 on the diagonal):
 
 Springs EI/h act between the pieces of one link and none at the hinges.
 """
+import os
+import sys
+
 import numpy as np
 
-from planar_chain import swing
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "support"))
+from planar_chain import swing  # noqa: E402
 
 
 def simulate(pieces, length, mass_per_length, EI, g, times):

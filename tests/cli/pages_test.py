@@ -232,6 +232,7 @@ ELSEWHERE = {
     "docs/your-deck.md": "docs_test.py",
     "docs/external-superelements.md": "superelements_test.py",
     "docs/random-response.md": "random_outputs_test.py",
+    "docs/pointing.md": "pointing_test.py",
     "docs/studio.md": "studio_test.py",
     **{f"data/examples/{name}/README.md": "docs_test.py" for name in (
         "ex01-spinup", "ex04-free-flyer", "ex05-plate", "ex06-campaign")},

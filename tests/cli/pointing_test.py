@@ -2,6 +2,7 @@
 import csv
 import json
 import math
+import os
 import unittest
 
 import h5py
@@ -9,6 +10,7 @@ import numpy as np
 import scipy.integrate
 
 from linear_test import LinearTest
+from support import SOURCE
 
 # A bench on springs: a planar sled with forces, a universal joint with moments.
 BENCH = """[[body]]
@@ -284,6 +286,17 @@ class Pointing(LinearTest):
         rows = WHEEL[:WHEEL.index("radial =")].replace("SPEEDS", "speed_rpm = 1200.0")
         found = self.budget(rows + "harmonic = [{number = 1.0, radial_force = 4e-6, radial_moment = 3e-7, phase_deg = 45.0}]\n")
         np.testing.assert_allclose(found["tables"][0]["total"], y.std(axis=0), rtol=1e-4)
+
+    def test_the_budget_of_the_page(self):
+        """jitter.toml of docs/pointing.md, with the inputs of the bench."""
+        with open(os.path.join(SOURCE, "docs/pointing.md"), encoding="utf-8") as page:
+            text = next(block for block in page.read().split("```toml\n") if block.startswith("# jitter.toml")).split("```")[0]
+        for name, own in (("w1_fx", "fx"), ("w1_fy", "fy"), ("w1_fz", "mx"), ("w1_mx", "mx"), ("w1_my", "my"),
+                          ("cooler_z", "fx"), ("cooler_my", "my"), ("gyro_noise", "fy")):
+            text = text.replace(f'"{name}"', f'"{own}"')
+        found = json.dumps(self.budget(text))
+        for name in ("wheel 1", "cooler", "gyro noise"):
+            self.assertIn(name, found)
 
     def test_text_names_the_worst_speed(self):
         self.write("budget.toml", WHEEL.replace("SPEEDS", "speed_rpm = [1000.0, 2000.0]"))
