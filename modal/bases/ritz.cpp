@@ -115,6 +115,18 @@ VectorXd calc_least_norms(const fe::Model& model, const MatrixXd& kept, const Ma
 
 }  // namespace
 
+namespace {
+
+/// Returns true if no grid and no scalar point has a force. A force moves the mass of its grid, next to nothing beside
+/// a large mass that moves a base.
+bool is_moment(const fe::Model& model, const Eigen::Ref<const VectorXd>& F) {
+  return std::all_of(model.nodes().begin(), model.nodes().end(), [&](const fe::Node& node) {
+    return F.segment(node.first_gdof, std::min(node.num_dofs, 3)).isZero(0);
+  });
+}
+
+}  // namespace
+
 MatrixXd equilibrate(const fe::Model& model, const MatrixXd& rigid, MatrixXd F) {
   if (rigid.cols() == 0 || F.cols() == 0) return F;
   const MatrixXd M_R = fe::calc_mass_times(model, model.mass_kind(), rigid);
@@ -156,7 +168,8 @@ ResidualVectors calc_residual_vectors(const fe::Model& model, const StaticSolve&
       // A load that inertia balances of itself (a uniform acceleration) leaves roundoff only.
       const bool is_balanced = F_e.col(used[i]).norm() < detail::kBalancedLoad * F.col(used[i]).norm();
       const double moved = F_e.col(used[i]).dot(X.col(c)) / norm, carried = (rigid.transpose() * F.col(used[i])).norm();
-      const bool is_massless = carried > 0 && std::sqrt(detail::kMasslessVector) * std::abs(moved) > carried;
+      const bool is_massless = carried > 0 && std::sqrt(detail::kMasslessVector) * std::abs(moved) > carried &&
+                               is_moment(model, F.col(used[i]));
       if (pass == 0 && (is_balanced || is_massless ||
                         !(norm > std::max(detail::kDependentResidual * before(used[i]), least(used[i]))))) {
         X.col(c).setZero();

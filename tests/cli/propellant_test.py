@@ -257,7 +257,7 @@ class Propellant(ProgramTest):
         for aside in (0.0, 1.0, -3.0):
             self.write("origin.toml", ORIGIN.format(y=-aside, place=aside))
             self.bough("run", "origin.toml", "-o", "o.h5", "-q")
-            rate, mass, linear, out = self.read_h5("o.h5", "/bodies/b/angular_velocity", "/system_mass/mass",
+            rate, mass, linear, out = self.read_arrays("o.h5", "/bodies/b/angular_velocity", "/system_mass/mass",
                                                    "/momentum/angular", "/momentum/out_angular")
             np.testing.assert_allclose(rate[:, 1], 0.5 * (mass / 100) ** 3, atol=1e-9, err_msg=str(aside))
             self.assertLess(np.abs(rate[:, [0, 2]]).max(), 1e-9)
@@ -275,18 +275,18 @@ class Propellant(ProgramTest):
         self.write("hover.toml", HOVER.format(more=""))
         self.bough("equilibrium", "hover.toml", "-o", "e.h5", "-q")
         self.bough("run", "hover.toml", "--start-from", "e.h5", "-o", "r.h5", "-q")
-        height, thrust = self.read_h5("r.h5", "/hinges/f/q", "/actuators/e")
+        height, thrust = self.read_arrays("r.h5", "/hinges/f/q", "/actuators/e")
         self.assertLess(np.abs(height).max(), 1e-9)
         np.testing.assert_allclose(thrust[:, 0], 150 * 9.81, rtol=1e-9)
 
     def test_a_tank_that_ran_empty_is_a_start(self):
         self.write("first.toml", EMPTY.format(start=0.0))
         self.bough("run", "first.toml", "-o", "first.h5", "-q")
-        mass, velocity = self.read_h5("first.h5", "/tanks/t/mass", "/bodies/b/velocity")
+        mass, velocity = self.read_arrays("first.h5", "/tanks/t/mass", "/bodies/b/velocity")
         self.assertEqual(mass[-1, 0] if mass.ndim > 1 else mass[-1], 0)
         self.write("second.toml", EMPTY.format(start=3.0))
         self.bough("run", "second.toml", "--start-from", "first.h5", "-o", "second.h5", "-q")
-        mass, thrust, after = self.read_h5("second.h5", "/tanks/t/mass", "/actuators/e", "/bodies/b/velocity")
+        mass, thrust, after = self.read_arrays("second.h5", "/tanks/t/mass", "/actuators/e", "/bodies/b/velocity")
         self.assertEqual(np.abs(mass).max(), 0)
         self.assertEqual(np.abs(thrust[:, 0]).max(), 0)
         np.testing.assert_allclose(after[-1], velocity[-1], atol=1e-9)
@@ -297,7 +297,7 @@ class Propellant(ProgramTest):
         for more in ("exhaust_velocity = 2000.0", 'exhaust_velocity = 2000.0\ntank = "t"'):
             self.write("hover.toml", HOVER.format(more=more))
             self.bough("equilibrium", "hover.toml", "-o", "e.h5", "-q")
-            thrust, height = self.read_h5("e.h5", "/actuators/e", "/hinges/f/q")
+            thrust, height = self.read_arrays("e.h5", "/actuators/e", "/hinges/f/q")
             self.assertAlmostEqual(thrust[-1, 0], 150 * 9.81, delta=1e-6)
             self.assertAlmostEqual(height.flat[-1], 0, delta=1e-9)
             self.bough("linearize", "hover.toml", "--equilibrium", "-o", "l.h5", "-q")
@@ -306,7 +306,7 @@ class Propellant(ProgramTest):
             self.write("stand.toml", stand.replace('input = "pid"\n', "").replace("bias = 1000.0", "bias = 1500.0")
                        .replace('child = "b"\n', 'child = "b"\nstiffness = 1e4\ndamping = 100.0\n'))
             self.bough("equilibrium", "stand.toml", "-o", "e.h5", "-q")
-            height, = self.read_h5("e.h5", "/hinges/f/q")
+            height, = self.read_arrays("e.h5", "/hinges/f/q")
             self.assertAlmostEqual(height.flat[-1], (1500 - 150 * 9.81) / 1e4, delta=1e-9)
 
     def find_frequency(self, *arguments):

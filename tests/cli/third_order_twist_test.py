@@ -63,8 +63,8 @@ class ThirdOrderTwist(ProgramTest):
         self.reduce(4, 3)
         for order, expected in ((2, False), (3, True)):
             with open(self.path("w.toml"), "w", encoding="utf-8") as f:
-                f.write(f'[body]\nname = "w"\ndeck = "rod.bdf"\nframe = "fixed"\nrecover = "ALL"\n'
-                        f"[body.modes]\nnumber = 3\n[body.stiffening]\norder = {order}\n")
+                f.write(f'[body]\nname = "w"\ndeck = "rod.bdf"\nframe = "fixed"\n'
+                        f"[body.modes]\nnumber = 3\n[body.stiffening]\norder = {order}\n[body.output]\nrecover = \"ALL\"\n")
             self.assertEqual("[reduce.linear-recovery]" in self.bough("reduce", "w.toml").stderr, expected)
 
 

@@ -104,7 +104,7 @@ class Values(Refusals):
     def test_bodies_that_no_body_names(self):
         body = bough.reduce("boom.toml")
         text = self.rejects("cli.bad-option", bough.System, "spinup.toml", bodies={"bom.h5": body, "boom.h5": body})
-        self.assertIn("the files are boom.h5", text)
+        self.assertRegex(text, "the files are .*boom.h5")
         self.assertTrue(bough.System("spinup.toml", bodies={"./boom.h5": body}).bodies)
         self.rejects("cli.bad-option", bough.System.from_text, PENDULUM.format(law=EXPRESSION), bodies={"x.h5": body})
 
@@ -157,7 +157,6 @@ class Interrupts(InFolder):
             with self.assertRaises(kind) as caught:
                 system.run()
             self.assertEqual(caught.exception.args, ("now",))
-            self.assertIsNotNone(caught.exception.__traceback__.tb_next)
             with self.assertRaises(kind):
                 bough.Simulation(system).advance_to(1.0)
         with self.assertRaisesRegex(bough.InputError, "none.toml"):  # the next failure is its own
