@@ -117,8 +117,8 @@ VectorXd calc_least_norms(const fe::Model& model, const MatrixXd& kept, const Ma
 
 namespace {
 
-/// Returns true if no grid and no scalar point has a force. A force moves the mass of its grid, next to nothing beside
-/// a large mass that moves a base.
+/// Returns true if no grid and no scalar point has a force: a force moves the mass of its grid, which a large mass that
+/// drives a base can exceed by any factor.
 bool is_moment(const fe::Model& model, const Eigen::Ref<const VectorXd>& F) {
   return std::all_of(model.nodes().begin(), model.nodes().end(), [&](const fe::Node& node) {
     return F.segment(node.first_gdof, std::min(node.num_dofs, 3)).isZero(0);
