@@ -113,10 +113,6 @@ VectorXd calc_least_norms(const fe::Model& model, const MatrixXd& kept, const Ma
   return least;
 }
 
-}  // namespace
-
-namespace {
-
 /// Returns true if no grid and no scalar point has a force: a force moves the mass of its grid, which a large mass that
 /// drives a base can exceed by any factor.
 bool is_moment(const fe::Model& model, const Eigen::Ref<const VectorXd>& F) {
