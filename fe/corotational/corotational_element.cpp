@@ -7,8 +7,8 @@
 
 #include "base/rotation.hpp"
 #include "fe/corotational/series.hpp"
-#include "fe/elements/stress_state.hpp"
 #include "fe/elements/solve_in_range.hpp"
+#include "fe/elements/stress_state.hpp"
 
 namespace bough::fe {
 
@@ -17,7 +17,7 @@ namespace {
 /// Weight of the nodes' rotations in the frame per mean square distance of the nodes: it decides the twist of a line,
 /// and little else. Any value gives the same V to third order.
 constexpr double kRotationWeight = 1e-3;
-constexpr double kRigidTolerance = 1e-8;   // of K times rigid-body motion
+constexpr double kRigidTolerance = 1e-8;  // of K times rigid-body motion
 
 }  // namespace
 
