@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <numbers>
 
+#include "analysis/common/choices.hpp"
 #include "analysis/common/failures.hpp"
 #include "analysis/common/inputs.hpp"
 #include "analysis/common/ranks.hpp"
@@ -266,6 +267,10 @@ void note_pieces(const Partition& partition, const Structure& structure, Diagnos
 }  // namespace
 
 SplitAnswer split_deck(const SplitRequest& request, Events& events) {
+  demand_word("--along", request.choice.along, {"path", "long", "x", "y", "z"});
+  demand_word("--interface", request.choice.interface, {"rigid", "average"});
+  demand_number(request.choice.num_parts >= 0, "--parts", request.choice.num_parts, "a number above 0");
+  demand_number(request.num_compared > 0, "--modes", request.num_compared, "a number above 0");
   do_once([&] { demand_deck(request.deck); });
   linear::initialize_petsc();
   if (request.name.find('/') != std::string::npos)

@@ -63,8 +63,9 @@ constexpr double kMaxSplitError = 1e-4;
 /// their cuts as interface. The part that the deck holds is the first body, the others are joined by fixed hinges, or
 /// by constraints where they close a loop or where the deck holds them.
 ///
-/// \throws InputError split.* with all errors of one step; what reading, fe and stiffening throw.
-/// \note Warns split.inaccurate if an assembled frequency is off by more than kMaxSplitError.
+/// \throws InputError "cli.bad-option", "cli.bad-range" of the choices; split.* with all errors of one step; what
+/// reading, fe and stiffening throw. \note Warns split.inaccurate if an assembled frequency is off by more than
+/// kMaxSplitError.
 SplitAnswer split_deck(const SplitRequest& request, Events& events);
 
 }  // namespace bough::analysis

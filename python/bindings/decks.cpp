@@ -61,16 +61,6 @@ py::dict list_texts(const std::vector<analysis::StartFile>& files) {
 py::tuple split(const std::string& deck, int parts, const std::string& along, Strings planes, Strings elements,
                 std::vector<int> grids, const std::string& interface, const std::string& name, int modes, bool check,
                 int subcase, Strings ignore, const py::object& progress) {
-  const auto demand_one_of = [](const char* what, const std::string& word, const Strings& words) {
-    if (std::find(words.begin(), words.end(), word) != words.end()) return;
-    std::string list;
-    for (const auto& known : words) list += (list.empty() ? "" : ", ") + known;
-    throw py::value_error(std::string(what) + " is one of " + list + ", not " + word);
-  };
-  demand_one_of("along", along, {"path", "long", "x", "y", "z"});
-  demand_one_of("interface", interface, {"rigid", "average"});
-  if (parts < 0) throw py::value_error("parts is a number above 0, not " + std::to_string(parts));
-  if (modes < 1) throw py::value_error("modes is a number above 0, not " + std::to_string(modes));
   analysis::SplitRequest request;
   request.deck = deck;
   request.name = name;

@@ -90,7 +90,7 @@ class Decks(InFolder):
         for whole, parts in found["frequencies"]:
             self.assertLess(abs(parts / whole - 1), 1e-4)
         self.assertIsNone(bough.split("boom.bdf", grids=[6], check=False)["parts"][0]["body"])
-        with self.assertRaisesRegex(ValueError, "along is one of path, long, x, y, z, not w"):
+        with self.assertRaisesRegex(bough.InputError, 'along is "w"; give one of path, long, x, y, z'):
             bough.split("boom.bdf", parts=2, along="w")
         with self.assertRaises(bough.InputError):
             bough.split("boom.bdf")
