@@ -193,6 +193,7 @@ class Plant {
   void add_dofs();
   MatrixXd calc_follow(const OperatingPoint& point) const;
   void close_positions(VectorXd& q) const;
+  void close_rates(Eigen::Ref<MatrixXd> rates) const;
 
   const System& system_;
   std::unique_ptr<SystemData> data_;

@@ -56,26 +56,30 @@ void Plant::close_positions(VectorXd& q) const {
   if (!found.is_closed) fail_dead(system_.loops, found);
 }
 
-/// Dependent rates: the rates of all coordinates (num_u rows), a column for the unit rate of each dof.
+/// Dependent rates: the rates of all coordinates (num_u rows), a column for the unit rate of each dof. The rows of the
+/// loops depend on positions alone: one factor serves all columns.
 MatrixXd Plant::calc_follow(const OperatingPoint& point) const {
-  OperatingPoint still = point;
-  still.u.setZero();
-  const VectorXd given = calc_speeds(still);
-  MatrixXd follow(given.size(), num_dofs());
-  for (int j = 0; j < num_dofs(); ++j) {
-    still.u = VectorXd::Unit(num_dofs(), j);
-    follow.col(j) = calc_speeds(still) - given;
-  }
-  return follow;
+  const VectorXd none = VectorXd::Zero(num_dofs());
+  MatrixXd rates(system_.num_u(), 1 + num_dofs());
+  for (int j = 0; j < num_dofs(); ++j) rates.col(1 + j) = expand(VectorXd::Unit(num_dofs(), j));
+  rates.col(0).setZero();
+  calc_kinematics(system_, *data_, point.t, point.q, expand(none));
+  rates.colwise() += data_->tree.u;  // those of prescribed motions
+  if (has_loops()) close_rates(rates);
+  return rates.rightCols(num_dofs()).colwise() - VectorXd(rates.col(0));
+}
+
+void Plant::close_rates(Eigen::Ref<MatrixXd> rates) const {
+  calc_closure_positions(system_.loops, system_.tree, data_->tree, data_->loops);
+  const Assembly found = assemble_rates(system_.loops, system_.tree, grip_, rates, data_->tree, data_->loops);
+  if (!found.is_closed) fail_dead(system_.loops, found);
 }
 
 VectorXd Plant::calc_speeds(const OperatingPoint& point) const {
   if (!has_loops()) return expand(point.u);
   calc_kinematics(system_, *data_, point.t, point.q, expand(point.u));
-  calc_closure_positions(system_.loops, system_.tree, data_->tree, data_->loops);
   VectorXd u = data_->tree.u;
-  const Assembly found = assemble_rates(system_.loops, system_.tree, grip_, u, data_->tree, data_->loops);
-  if (!found.is_closed) fail_dead(system_.loops, found);
+  close_rates(u);
   return u;
 }
 

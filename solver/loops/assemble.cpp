@@ -14,7 +14,8 @@ constexpr double kDependent = 1e-8;  // of the largest singular value
 /// Factor between the costs of two priorities: a coordinate of the higher one moves only if the others cannot close.
 constexpr double kPreference = 1e5;
 
-// The size of a step that counts as 1: a radian, the length of the system, a deflection of a hundredth of it.
+// The size of a step that counts as 1: a radian, the length of the system, a deflection of a hundredth of it or a
+// rotation of a hundredth of a radian. A mode in twist has no more than rounding errors of translations.
 VectorXd calc_step_sizes(const Loops& loops, const Tree& tree) {
   VectorXd size = VectorXd::Ones(tree.num_u);
   for (const TreeBody& tb : tree.bodies) {
@@ -27,7 +28,8 @@ VectorXd calc_step_sizes(const Loops& loops, const Tree& tree) {
     }
     for (int j = 0; j < tb.num_modes(); ++j) {
       double largest = 0;
-      for (const Node& node : tb.body.nodes()) largest = std::max(largest, node.phi.col(j).norm());
+      for (const Node& node : tb.body.nodes())
+        largest = std::max({largest, node.phi.col(j).norm(), loops.length * node.psi.col(j).norm()});
       if (largest > 0) size[tb.eta_dot_offset() + j] = 0.01 * loops.length / largest;
     }
   }
@@ -52,13 +54,14 @@ VectorXd weigh(const VectorXd& size, const std::vector<AssemblyPriority>& priori
   return chosen;
 }
 
-// x = size · (G size)⁺ b
-VectorXd solve_least(const MatrixXd& G, const VectorXd& size, const VectorXd& b) {
-  if (G.size() == 0) return VectorXd::Zero(size.size());  // nothing can move, or nothing is asked for
+// x = size · (G size)⁺ b, column by column
+MatrixXd solve_least(const MatrixXd& G, const VectorXd& size, const MatrixXd& b) {
+  // Nothing can move, or nothing is asked for.
+  if (G.size() == 0) return MatrixXd::Zero(size.size(), b.cols());
   Eigen::CompleteOrthogonalDecomposition<MatrixXd> factor;
   factor.setThreshold(kDependent);
   factor.compute(G * size.asDiagonal());
-  return size.asDiagonal() * VectorXd(factor.solve(b));
+  return size.asDiagonal() * MatrixXd(factor.solve(b));
 }
 
 class Positions {
@@ -173,18 +176,19 @@ Assembly assemble_positions(const Loops& loops, const Tree& tree, double t,
 }
 
 Assembly assemble_rates(const Loops& loops, const Tree& tree, const std::vector<AssemblyPriority>& priority,
-                        Eigen::Ref<VectorXd> u, TreeData& tree_data, LoopData& data) {
+                        Eigen::Ref<MatrixXd> u, TreeData& tree_data, LoopData& data) {
   const MatrixXd G = calc_dense_rows(loops, tree, tree_data, data);
   const VectorXd sizes = calc_step_sizes(loops, tree);
   Assembly found;
-  const double scale = G.size() > 0 ? G.cwiseAbs().maxCoeff() * std::max(u.cwiseAbs().maxCoeff(), 1e-300) : 1;
-  const auto judge = [&](const VectorXd& rates) {
-    const VectorXd rows = G * rates;
-    found.gap = rows.size() > 0 ? rows.cwiseAbs().maxCoeff() / scale : 0;
-    found.is_closed = !(found.gap > kClosed);
-    int at = 0;
+  // Gaps are relative to the largest rate of the column.
+  Eigen::RowVectorXd scale = u.colwise().lpNorm<Eigen::Infinity>().cwiseMax(1e-300);
+  if (G.size() > 0) scale *= G.cwiseAbs().maxCoeff();
+  const auto judge = [&](const MatrixXd& rates) {
+    const VectorXd rows = ((G * rates).cwiseAbs() * scale.cwiseInverse().asDiagonal()).rowwise().maxCoeff();
     Eigen::Index largest = 0;
-    if (rows.size() > 0) rows.cwiseAbs().maxCoeff(&largest);
+    found.gap = rows.size() > 0 ? rows.maxCoeff<Eigen::PropagateNaN>(&largest) : 0;
+    found.is_closed = found.gap <= kClosed;
+    int at = 0;
     for (const LoopBlock& block : data.blocks) {
       for (const int i : block.constraints) {
         if (largest >= at && largest < at + loops[i].num_rows()) found.worst = i;
@@ -196,7 +200,7 @@ Assembly assemble_rates(const Loops& loops, const Tree& tree, const std::vector<
   for (const AssemblyPriority last : {AssemblyPriority::Free, AssemblyPriority::Given, AssemblyPriority::Modal}) {
     if (found.is_closed) break;
     const VectorXd size = weigh(sizes, priority, last);
-    VectorXd rates = u;
+    MatrixXd rates = u;
     for (int k = 0; k < 2; ++k) rates += solve_least(G, size, -(G * rates));
     judge(rates);
     if (found.is_closed) u = rates;

@@ -18,9 +18,10 @@ struct Assembly {
 Assembly assemble_positions(const Loops& loops, const Tree& tree, double t,
                             const std::vector<AssemblyPriority>& priority, Eigen::Ref<VectorXd> q, TreeData& tree_data,
                             LoopData& data);
-/// Finds rates u with G u = 0. After assemble_positions.
+/// Finds rates u with G u = 0 near those given. u: num_u x k, in and out, each column one set of rates.
+/// After assemble_positions.
 Assembly assemble_rates(const Loops& loops, const Tree& tree, const std::vector<AssemblyPriority>& priority,
-                        Eigen::Ref<VectorXd> u, TreeData& tree_data, LoopData& data);
+                        Eigen::Ref<MatrixXd> u, TreeData& tree_data, LoopData& data);
 
 /// For each closed constraint what of its wrench the constraints before it can take as well: 6 x k in Hp (coupler: the
 /// first row is 1), reduced to few components. Of coordinates that are not Fixed. After assemble_positions.

@@ -10,15 +10,19 @@ MatrixXd calc_dense_rows(const Loops& loops, const Tree& tree, const TreeData& t
   calc_position(tree, tree_data.t, tree_data.q, free);
   calc_closure_positions(loops, tree, free, own);
   MatrixXd G = MatrixXd::Zero(get_gaps(loops, data).size(), tree.num_u);
+  Sweep sweep = free.response;
   for (int column = 0; column < tree.num_u; ++column) {
-    calc_velocity(tree, VectorXd::Unit(tree.num_u, column), free);
-    calc_closure_velocities(loops, tree, free, own);
+    run_rates(tree, free, VectorXd::Unit(tree.num_u, column), sweep);
     int at = 0;
     for (const LoopBlock& block : own.blocks) {
       for (const int i : block.constraints) {
         const int n = loops[i].num_rows();
         // W as the multipliers have it: a fit that ends elsewhere in rounding may turn its basis.
-        if (loops[i].closure) G.col(column).segment(at, n) = data[i].own.W.leftCols(n).transpose() * own[i].relative.V;
+        const Constraint& c = loops[i];
+        if (c.closure)
+          G.col(column).segment(at, n) =
+              data[i].own.W.leftCols(n).transpose() *
+              calc_relative_response(tree, free, c.parent_marker, c.child_marker, own[i].relative, sweep);
         for (const CouplerTerm& term : loops[i].terms) {
           if (term.u_row == column) G(at, column) += term.ratio;
         }
