@@ -142,6 +142,29 @@ class Split(ProgramTest):
         self.assertGreater(way[2], .005)
         np.testing.assert_allclose(histories[0], histories[1], atol=.03 * way.max())
 
+    def test_portal_whose_cuts_twist(self):
+        """Both feet held, three parts: modes of the cuts in pure twist disturb neither the search of redundant
+        constraints nor the independent coordinates of `linearize`."""
+        places = [(0., 0., 3. * i / 8) for i in range(9)] + [(.5 * i, 0., 3.) for i in range(1, 9)]
+        places += [(4., 0., 3. - 3. * i / 8) for i in range(1, 9)]
+        line = make_line(places).replace(",.1,.2,1.\n", ",0.,1.,0.\n")
+        masses = "".join(f"CONM2,{300 + i},{i},,.2,,,\n,1.-3,,1.-3,,,1.-3\n" for i in range(2, 25))
+        deck = make_deck(line, more=f"SPC1,1,123456,1,25\n{masses}")
+        answer, _ = self.split(deck, "--parts", 3, number=8)
+        self.assertNotIn("redundant-constraint", self.bough("check", "deck-run.toml").stderr)
+        self.compare(answer, number=8, tolerance=3e-4)
+
+    def test_modes_that_span_all_masses(self):
+        """Parts of few lumped masses: all their modes with the cut held leave its rotations no mass, and the moment
+        there would be lost (0.7 % of the third frequency)."""
+        places = [(0., 0., 3. * i / 8) for i in range(9)] + [(.5 * i, 0., 3.) for i in range(1, 9)]
+        places += [(4., 0., 3. - 3. * i / 8) for i in range(1, 9)]
+        deck = make_deck(make_line(places).replace(",.1,.2,1.\n", ",0.,1.,0.\n"), more="SPC1,1,123456,1,25\n")
+        answer, messages = self.split(deck.replace("PARAM,COUPMASS,1\n", ""), "--parts", 4, number=8)
+        table = np.array([[f["deck_hz"], f["parts_hz"]] for f in answer["frequencies"]])
+        np.testing.assert_allclose(table[:, 1], table[:, 0], rtol=2e-4)
+        self.assertIn("[modal.spanned-modes]", messages)
+
     def test_free_beam_and_planar_deck(self):
         """Free in space; and free in a plane of which every grid holds 345: the hinge leaves the plane's motions."""
         ends = "CONM2,201,1,,.5,.0,.1,.3\nCONM2,202,41,,.5,.0,.3,-.1\n"  # without them nothing has inertia in twist
