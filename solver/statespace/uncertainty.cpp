@@ -129,8 +129,10 @@ LinearModel make_uncertain_model(const LinearModel& nominal, const std::vector<P
     factors.push_back(factor(change, row_size, tolerance));
     const auto rank = factors.back().U.cols();
     if (rank == 0)
-      throw InputError("linear.no-effect", at, end.name + " changes nothing in its range",
-                       "leave it out, or give it a wider range");
+      throw InputError(
+          "linear.no-effect", at, end.name + " changes nothing in its range",
+          "leave it out, or give it a wider range; parameters of a controller that --open or --break leaves "
+          "out are not in the model");
     out.uncertainty.push_back({end.name, end.low, end.high, static_cast<int>(rank)});
     num_w += rank;
   }
