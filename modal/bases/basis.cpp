@@ -337,7 +337,7 @@ Basis calc_craig_bampton_basis(const fe::System& system, const BasisOptions& opt
   basis.kind.insert(basis.kind.end(), static_cast<std::size_t>(residual.modes.lambda.size()), ModeKind::Residual);
   // K^ = diag(K_bb + K_bi Ψ, Λ): constraint modes and what moves with the interface held share no strain energy.
   basis.K = MatrixXd::Zero(basis.Phi.cols(), basis.Phi.cols());
-  // Constraint modes of a determinate interface of a free body are rigid motions; their strain is round-off.
+  // Constraint modes of a determinate interface of a free body are rigid-body motions; their strain is round-off.
   if (!options.is_free || nb > basis.num_rigid + basis.num_massless)
     basis.K.topLeftCorner(nb, nb) = calc_gram_K(model, Psi);
   basis.K.bottomRightCorner(lambda.size(), lambda.size()) = lambda.asDiagonal();
