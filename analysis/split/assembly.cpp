@@ -16,7 +16,8 @@ constexpr std::size_t kMaxGroundGrids = 12;  ///< grids at which constraints hol
 constexpr double kFlat = 1e-9;               ///< of the largest distance: grids on one line
 constexpr unsigned kAll = 0b111111;
 
-/// Grids of the cut by their union: two that an element or a rigid element has, both in at least two of the same parts.
+/// Grids of the cut by their union: two that a shell or solid has, both in at least two of the same parts. A bar along
+/// the cut joins nothing: its grids are joints each.
 std::vector<std::vector<int>> group_shared(const Structure& structure, const Partition& partition) {
   std::map<int, int> group;  // shared grid: lowest known member
   for (const auto& [grid, parts] : partition.grid_parts)
@@ -26,7 +27,7 @@ std::vector<std::vector<int>> group_shared(const Structure& structure, const Par
     return grid;
   };
   for (const auto& element : structure.elements) {
-    if (!is_structural(element)) continue;
+    if (!is_structural(element) || element.grids.size() < 3) continue;
     std::vector<int> shared;
     for (const int grid : element.grids)
       if (group.count(grid) > 0) shared.push_back(grid);
@@ -54,7 +55,8 @@ bool is_at(const DeckItem& item, const std::vector<int>& grids) {
 /// Returns true if elements of the part transfer moments to the grids.
 bool has_moments(const Structure& structure, const Partition& partition, int part, const std::vector<int>& grids) {
   for (std::size_t i = 0; i < structure.elements.size(); ++i)
-    if (partition.element_part[i] == part && structure.elements[i].has_moments && is_at(structure.elements[i], grids))
+    if (partition.element_part[i] == part && structure.elements[i].has_moments && is_at(structure.elements[i], grids) &&
+        !(grids.size() == 1 && structure.pinned.count({structure.elements[i].id, grids.front()}) > 0))
       return true;
   for (std::size_t i = 0; i < structure.rigid.size(); ++i)
     if (partition.rigid_part[i] == part && structure.rigid[i].has_moments && is_at(structure.rigid[i], grids))
@@ -98,8 +100,8 @@ void check_strength(const Structure& structure, const Partition& partition, cons
     if (joint.grids.size() > 2 && spans_plane(structure, joint.grids)) continue;
     diagnostics.error(
         "split.weak-cut", structure.locate_grid(joint.grids.front()),
-        fmt::format("the cut at {} {} leaves a joint that does not transfer all moments: rods and solids there can "
-                    "turn about it",
+        fmt::format("the cut at {} {} leaves a joint that does not transfer all moments: rods, solids and pinned "
+                    "beams there can turn about it",
                     joint.grids.size() == 1 ? "grid" : "grids", fmt::join(joint.grids, ", ")),
         "cut where beams, shells, or three grids off one line are");
     return;

@@ -158,14 +158,20 @@ unsigned find_averaged(const Structure& structure, const std::vector<int>& grids
 /// The new grid of a joint, and RBE2 from it to the grids of the cut, without their held components, or an RBE3.
 void add_joint(const Structure& structure, const Joint& joint, bool is_held_by_deck, int& next_id,
                records::Deck& deck) {
-  const auto find_grid = [&](int id) -> const records::Grid& {
-    return *std::find_if(deck.grids.begin(), deck.grids.end(), [&](const auto& grid) { return grid.id == id; });
-  };
+  // A part at the end of a cut may have some of its grids.
+  std::vector<int> own;
+  int cd = 0;
+  for (const auto& grid : deck.grids)
+    if (std::binary_search(joint.grids.begin(), joint.grids.end(), grid.id)) {
+      own.push_back(grid.id);
+      cd = grid.cd;
+    }
+  std::sort(own.begin(), own.end());
   records::Grid node;
   node.id = joint.node;
   node.x = joint.x;
   if (structure.common_held != 0) {
-    node.cd = find_grid(joint.grids.front()).cd;
+    node.cd = cd;
     node.ps = structure.common_held;
   }
   if (joint.is_average) {
@@ -173,13 +179,13 @@ void add_joint(const Structure& structure, const Joint& joint, bool is_held_by_d
     mean.id = next_id++;
     mean.ref_grid = joint.node;
     mean.ref_c = kAllComponents;
-    mean.groups.push_back({1.0, find_averaged(structure, joint.grids), joint.grids});
+    mean.groups.push_back({1.0, find_averaged(structure, own), own});
     deck.grids.push_back(node);
     deck.rbe3.push_back(mean);
     return;
   }
   std::map<unsigned, std::vector<int>> grids_by_mask;
-  for (const int grid : joint.grids) {
+  for (const int grid : own) {
     const auto held = structure.held.find(grid);
     unsigned mask = kAllComponents & ~structure.common_held;
     if (is_held_by_deck && held != structure.held.end()) mask &= ~held->second;

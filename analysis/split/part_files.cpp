@@ -86,8 +86,11 @@ std::string write_link(const PartNames& names, const Structure& structure, const
 
 }  // namespace
 
-records::BodySpec make_part_spec(const PartNames& names, const Assembly& assembly, int part, double max_hz) {
+records::BodySpec make_part_spec(const PartNames& names, const Structure& structure, const Assembly& assembly, int part,
+                                 double max_hz) {
   records::BodySpec spec;
+  spec.has_material_damping = structure.has_material_damping;
+  spec.rayleigh_beta = structure.alpha2;
   spec.name = names.get_part(part);
   spec.deck = spec.name + ".bdf";
   spec.output_file = spec.name + ".h5";
@@ -119,18 +122,24 @@ std::string write_part_file(const PartNames& names, const Assembly& assembly, in
   else
     text += fmt::format("frame = \"fixed\"          # held at grid {}, which its hinge carries\n", clamp);
   if (spec.interface_nodes.empty())
-    text += "# interface = [ID]       # each grid that a force or moment loads\n";
+    text += "# interface = [ID]       # each grid that a force or moment loads, with basis = \"craig-bampton\"\n";
   else
     text += fmt::format("interface = [{}]  # cuts; add each grid that a force or moment loads\n",
                         fmt::join(spec.interface_nodes, ", "));
   text += "\n[body.modes]\n";
   if (spec.basis == BodyBasis::CraigBampton) text += "basis = \"craig-bampton\"\n";
   text += fmt::format("max_frequency = {}  # of its modes with the cuts held\n\n", *spec.max_frequency_hz);
+  if (spec.has_material_damping || spec.rayleigh_beta != 0) {
+    text += "[body.damping]\n";
+    if (spec.has_material_damping) text += "material = true  # GE and PARAM,G of the deck\n";
+    if (spec.rayleigh_beta != 0) text += fmt::format("rayleigh = [0.0, {}]  # PARAM,ALPHA2\n", spec.rayleigh_beta);
+    text += "\n";
+  }
   return text + fmt::format("[body.output]\nfile = {}\n", quote_text(spec.output_file));
 }
 
 std::string write_system_file(const PartNames& names, const Structure& structure, const Assembly& assembly,
-                              double lowest_hz) {
+                              double lowest_hz, double highest_hz) {
   std::string text = fmt::format("# bough run {0}-run.toml -o {0}-run.h5\n# The parts of {1}, cut by bough split.\n\n",
                                  names.base, names.deck);
   for (int part = 0; part < static_cast<int>(assembly.clamp.size()); ++part)
@@ -141,14 +150,14 @@ std::string write_system_file(const PartNames& names, const Structure& structure
     text += write_link(names, structure, assembly, link, number);
     if (link.parent >= 0) ++number;
   }
-  const double step = round_digit(1 / (400 * lowest_hz));
+  const double step = round_digit(std::min(1 / (400 * lowest_hz), 1 / (100 * highest_hz)));
   return text + fmt::format(
                     "[simulation]\nduration = {}\noutput_step = {}\nintegrator = \"implicit\"  # fixed steps: the "
                     "fastest modes "
                     "of the parts need not be followed\nstep = {}\ngravity = [0.0, 0.0, -9.81]  # a load to begin "
                     "with, in the "
                     "units of the deck (-9810.0 of mm, 0.0 in space)\n",
-                    round_digit(3 / lowest_hz), round_digit(2 * step), step);
+                    round_digit(3 / lowest_hz), 2 * step, step);
 }
 
 }  // namespace bough::analysis::splitting

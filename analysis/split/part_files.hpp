@@ -18,14 +18,16 @@ struct PartNames {
 
 /// The reduction of a part: Craig-Bampton on its cuts, normal modes for a part with one cut, which carries it.
 /// \param max_hz  [1/T] highest frequency of its modes, with its cuts held
-records::BodySpec make_part_spec(const PartNames& names, const Assembly& assembly, int part, double max_hz);
+records::BodySpec make_part_spec(const PartNames& names, const Structure& structure, const Assembly& assembly, int part,
+                                 double max_hz);
 
 /// `spec` as a body file.
 std::string write_part_file(const PartNames& names, const Assembly& assembly, int part, const records::BodySpec& spec);
 
 /// The system of the parts under gravity along -z. Its integrator does not follow the fastest modes of the parts.
-/// \param lowest_hz  [1/T] first elastic frequency of the deck: 400 steps in its period
+/// \param lowest_hz   [1/T] first elastic frequency of the deck: at least 400 steps in its period
+/// \param highest_hz  [1/T] highest frequency compared: at least 100 steps in its period
 std::string write_system_file(const PartNames& names, const Structure& structure, const Assembly& assembly,
-                              double lowest_hz);
+                              double lowest_hz, double highest_hz);
 
 }  // namespace bough::analysis::splitting

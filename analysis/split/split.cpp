@@ -28,6 +28,9 @@ using namespace splitting;
 
 namespace {
 
+using Vector6d = Eigen::Matrix<double, 6, 1>;
+using Matrix6d = Eigen::Matrix<double, 6, 6>;
+
 /// Highest frequency of the modes of a part, with the cuts held, over that of the highest mode compared.
 constexpr double kFirstRange = 3;
 constexpr int kMaxRounds = 5;           ///< each doubles the range
@@ -78,14 +81,49 @@ bool is_held_by_deck(const Structure& structure, Partition partition, int part) 
   }
 }
 
+/// Returns ", cut at 11, 21" of the nodes of the cuts of a part.
+std::string describe_cuts(const Assembly& assembly, int part) {
+  std::vector<int> nodes;
+  for (const auto& joint : assembly.joints)
+    if (joint.parts.count(part) > 0) nodes.push_back(joint.node);
+  return nodes.empty() ? "" : fmt::format(", cut at {}", fmt::join(nodes, ", "));
+}
+
+/// Does `work`; its errors name the part and the cuts.
+template <class Work>
+void name_part(const PartNames& names, const Assembly& assembly, int part, const Work& work) {
+  try {
+    work();
+  } catch (const Failure& failure) {
+    auto items = failure.items();
+    for (auto& item : items)
+      if (item.severity == Severity::Error)
+        item.what = "part " + names.get_part(part) + describe_cuts(assembly, part) + ": " + item.what;
+    if (failure.exit_code() == 1) throw InputError(std::move(items));
+    throw ComputationError(std::move(items));
+  }
+}
+
 /// A part with its deck.
 struct Part {
   records::Deck deck;
   double mass = 0;
-  Eigen::Vector3d moment = Eigen::Vector3d::Zero();   ///< mass times centre of mass, basic
-  Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();  ///< about the origin of basic
+  Matrix6d moving =
+      Matrix6d::Zero();  ///< mass matrix of rigid-body motion about the origin of basic, held grids at rest
   int num_elements = 0;
 };
+
+/// Mass matrix of rigid-body motion of the part, 6 x 6, about the origin of basic; held grids do not move.
+Matrix6d calc_moving_mass(const Structure& structure, const fe::Model& model) {
+  constexpr unsigned kTranslations = 0b000111;
+  Eigen::MatrixXd Phi_R = model.calc_rigid_modes();
+  for (const auto& node : model.nodes()) {
+    const auto held = structure.held.find(node.id);
+    if (held != structure.held.end() && (held->second & kTranslations) == kTranslations)
+      Phi_R.middleRows(node.first_gdof, node.num_dofs).setZero();
+  }
+  return Phi_R.transpose() * fe::calc_mass_times(model, model.mass_kind(), Phi_R);
+}
 
 /// Direction of the line elements of the part at the grid; zero if others are there or they are not parallel.
 Eigen::Vector3d find_line(const Structure& structure, const Partition& partition, int part, int grid) {
@@ -104,37 +142,37 @@ Eigen::Vector3d find_line(const Structure& structure, const Partition& partition
   return line;
 }
 
-/// Mass, its moment and its inertia of several parts.
-void add_mass(const Part& part, Part& sum) {
-  sum.mass += part.mass;
-  sum.moment += part.moment;
-  sum.inertia += part.inertia;
-}
-
-/// Moment of inertia of the mass about a line through p.
-double calc_inertia_about(const Part& mass, const Eigen::Vector3d& p, const Eigen::Vector3d& line) {
-  return line.dot(mass.inertia * line) - 2 * (p.dot(mass.moment) - line.dot(p) * line.dot(mass.moment)) +
-         mass.mass * (p.squaredNorm() - std::pow(line.dot(p), 2));
+/// Moment of inertia about a line through p of the mass matrix of rigid-body motion.
+double calc_inertia_about(const Matrix6d& mass, const Eigen::Vector3d& p, const Eigen::Vector3d& line) {
+  Vector6d turn;
+  turn << p.cross(line), line;
+  return turn.dot(mass * turn);
 }
 
 /// A line of bars has no inertia in twist: the twist of a part has mass only through other parts. Each cut of a line,
 /// except the one that carries the part, gets a CONM2 with kTwistInertia of the inertia about the line: of what the cut
-/// carries, or of all parts if it closes a loop. At the ground it does not move.
+/// carries, or of all parts if it closes a loop. At the ground it does not move. A part with as much inertia about the
+/// line needs none.
 void add_twist_inertia(const Structure& structure, const Partition& partition, const Assembly& assembly, double wtmass,
                        std::vector<Part>& parts) {
-  Part whole;
-  for (const auto& part : parts) add_mass(part, whole);
-  std::vector<Part> carried = parts;
+  Matrix6d whole = Matrix6d::Zero();
+  std::vector<Matrix6d> carried;
+  for (const auto& part : parts) {
+    whole += part.moving;
+    carried.push_back(part.moving);
+  }
   int next_id = 0;
   for (const auto& element : structure.elements) next_id = std::max(next_id, element.id);
   for (const auto& rigid : structure.rigid) next_id = std::max(next_id, rigid.id);
   next_id += static_cast<int>(64 * (1 + assembly.joints.size()));  // above the RBE2 of joints
-  const auto add = [&](int part, int node, const Part& load) {
+  const auto add = [&](int part, int node, const Matrix6d& load) {
     const auto position = structure.position.find(node);
     if (part < 0 || position == structure.position.end()) return;
     const Eigen::Vector3d t = find_line(structure, partition, part, node);
     const double about_line = t.isZero(0) ? 0 : calc_inertia_about(load, position->second, t);
-    if (!(about_line > kParallel * load.inertia.trace())) return;
+    if (!(about_line > kParallel * load.bottomRightCorner<3, 3>().trace())) return;
+    const double its_own = calc_inertia_about(parts[static_cast<std::size_t>(part)].moving, position->second, t);
+    if (its_own > kTwistInertia * about_line) return;
     const double J = kTwistInertia * about_line / wtmass;
     records::Conm2 mass;
     mass.id = ++next_id;
@@ -150,15 +188,15 @@ void add_twist_inertia(const Structure& structure, const Partition& partition, c
       add(link->parent, link->node, whole);
       if (assembly.clamp[static_cast<std::size_t>(link->child)] != link->node) add(link->child, link->node, whole);
     } else if (link->parent >= 0) {
-      const Part& load = carried[static_cast<std::size_t>(link->child)];
+      const Matrix6d& load = carried[static_cast<std::size_t>(link->child)];
       add(link->parent, link->node, load);
-      add_mass(load, carried[static_cast<std::size_t>(link->parent)]);
+      carried[static_cast<std::size_t>(link->parent)] += load;
     }
   }
 }
 
-std::vector<Part> make_parts(const Structure& structure, const Partition& partition, const Assembly& assembly,
-                             Diagnostics& diagnostics) {
+std::vector<Part> make_parts(const PartNames& names, const Structure& structure, const Partition& partition,
+                             const Assembly& assembly, Diagnostics& diagnostics) {
   std::vector<Part> parts;
   for (int i = 0; i < partition.num_parts; ++i) {
     Part part;
@@ -170,12 +208,12 @@ std::vector<Part> make_parts(const Structure& structure, const Partition& partit
         first = structure.locate(structure.elements[e].at);
       }
     Diagnostics of_part;
-    const auto model = fe::build_model(part.deck, {}, of_part);
-    of_part.throw_if_errors();
-    const auto mass = fe::calc_mass_properties(model, model.mass_kind(), Eigen::Vector3d::Zero());
-    part.mass = mass.mass;
-    part.moment = mass.mass * mass.cg;
-    part.inertia = mass.inertia;
+    name_part(names, assembly, i, [&] {
+      const auto model = fe::build_model(part.deck, {}, of_part);
+      of_part.throw_if_errors();
+      part.mass = fe::calc_mass_properties(model, model.mass_kind(), Eigen::Vector3d::Zero()).mass;
+      part.moving = calc_moving_mass(structure, model);
+    });
     if (!(part.mass > 0))
       diagnostics.error("split.no-mass", first, fmt::format("part {} has no mass", i + 1),
                         "give its material a density, or cut such that each part has mass");
@@ -203,9 +241,11 @@ Reduction reduce_parts(const std::vector<Part>& parts, const PartNames& names, c
   Reduction reduction;
   for (std::size_t i = 0; i < parts.size(); ++i) {
     events.show_progress(fmt::format("split: reduction of part {} of {}", i + 1, parts.size()));
-    const auto spec = make_part_spec(names, assembly, static_cast<int>(i), max_hz);
-    reduction.bodies.push_back(stiffening::reduce(parts[i].deck, spec, {}, reduction.diagnostics).body);
-    reduction.diagnostics.throw_if_errors();
+    const auto spec = make_part_spec(names, structure, assembly, static_cast<int>(i), max_hz);
+    name_part(names, assembly, static_cast<int>(i), [&] {
+      reduction.bodies.push_back(stiffening::reduce(parts[i].deck, spec, {}, reduction.diagnostics).body);
+      reduction.diagnostics.throw_if_errors();
+    });
   }
   events.show_progress("split: modes of the assembled parts");
   std::vector<const records::FlexBody*> bodies;
@@ -256,6 +296,21 @@ void warn_of_error(const Reduction& reduction, const Structure& structure, const
                 : "raise max_frequency of the body files, refine the mesh, or use PARAM,COUPMASS,1");
 }
 
+void warn_of_damping(const Structure& structure, const WholeModes& whole, Diagnostics& diagnostics) {
+  if (structure.alpha1 != 0)
+    diagnostics.warning("split.damping", structure.locate({}),
+                        "PARAM,ALPHA1 damps motion against the ground, and is left out of the parts",
+                        "give the system dampers to the ground, or modal damping to the body files");
+  if (!structure.has_material_damping) return;
+  diagnostics.warning(
+      "split.damping", structure.locate({}),
+      "GE and PARAM,G become viscous damping at the frequencies of the parts with their cuts held: low modes of the "
+      "system have less than half of G",
+      fmt::format("for the damping ratio G/2 at {:.4g} Hz give each body file rayleigh = [0, {:.4g} G] in place of "
+                  "material = true",
+                  whole.hz(0), 1 / (2 * std::numbers::pi * whole.hz(0))));
+}
+
 void note_pieces(const Partition& partition, const Structure& structure, Diagnostics& diagnostics) {
   if (partition.num_pieces > 0)
     diagnostics.note("split.pieces", structure.locate({}),
@@ -294,7 +349,7 @@ SplitAnswer split_deck(const SplitRequest& request, Events& events) {
 
     PartNames names{request.name, request.deck_path.empty() ? request.deck : request.deck_path};
     if (names.base.empty()) names.base = std::filesystem::path(request.deck).stem().string();
-    auto parts = make_parts(structure, partition, assembly, diagnostics);
+    auto parts = make_parts(names, structure, partition, assembly, diagnostics);
     add_twist_inertia(structure, partition, assembly, model.wtmass(), parts);
     events.show_progress("split: modes of the deck");
     const auto whole = calc_whole_modes(model, std::max(request.num_compared, 1), diagnostics);
@@ -311,13 +366,14 @@ SplitAnswer split_deck(const SplitRequest& request, Events& events) {
       if (!is_expected(item, reduction)) diagnostics.add_new(item);
     answer.frequencies = reduction.frequencies;
     warn_of_error(reduction, structure, assembly, diagnostics);
+    warn_of_damping(structure, whole, diagnostics);
 
     parts.front().deck.unused = deck.unused;  // reported once by the writer
     parts.front().deck.left_out = deck.left_out;
     parts.front().deck.card_counts = deck.card_counts;
     for (int i = 0; i < partition.num_parts; ++i) {
       const auto index = static_cast<std::size_t>(i);
-      const auto spec = make_part_spec(names, assembly, i, max_hz);
+      const auto spec = make_part_spec(names, structure, assembly, i, max_hz);
       answer.files.push_back({spec.deck, nastran::write_deck(parts[index].deck, {}, diagnostics)});
       answer.files.push_back({spec.name + ".toml", write_part_file(names, assembly, i, spec)});
       SplitPart part;
@@ -332,7 +388,8 @@ SplitAnswer split_deck(const SplitRequest& request, Events& events) {
       if (request.is_checked) part.body = std::move(reduction.bodies[index]);
       answer.parts.push_back(std::move(part));
     }
-    answer.files.push_back({names.base + "-run.toml", write_system_file(names, structure, assembly, whole.hz(0))});
+    answer.files.push_back({names.base + "-run.toml",
+                            write_system_file(names, structure, assembly, whole.hz(0), whole.hz(whole.hz.size() - 1))});
     diagnostics.throw_if_errors();
   });
   add_messages(diagnostics, events);

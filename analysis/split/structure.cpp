@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <set>
 
+#include "fe/matrices/assembly.hpp"
 #include "fe/model/sets.hpp"
+#include "formats/records/params.hpp"
 
 namespace bough::analysis::splitting {
 
@@ -93,9 +95,19 @@ Structure make_structure(const records::Deck& deck, const fe::Model& model, Diag
     structure.axes[node.id] = node.R_basic_cd;
   }
   for (const auto& grid : deck.grids) structure.at[grid.id] = grid.at;
+  constexpr unsigned kRotations = 0b111000;
+  for (const auto& beam : structure.deck.beams) {
+    if ((beam.pin_a & kRotations) != 0) structure.pinned.emplace(beam.id, beam.ga);
+    if ((beam.pin_b & kRotations) != 0) structure.pinned.emplace(beam.id, beam.gb);
+  }
   for (const auto& element : structure.elements)
     if (!element.is_drawn) structure.joined.insert(element.grids.begin(), element.grids.end());
   for (const auto& rigid : structure.rigid) structure.joined.insert(rigid.grids.begin(), rigid.grids.end());
+  structure.alpha1 = records::get_real_param(deck, "ALPHA1", 0, diagnostics);
+  structure.alpha2 = records::get_real_param(deck, "ALPHA2", 0, diagnostics);
+  const Eigen::MatrixXd strained = Eigen::VectorXd::LinSpaced(model.num_gdofs(), 0, 1).array().square().matrix();
+  const double g = records::get_real_param(deck, "G", 0, diagnostics);
+  structure.has_material_damping = !fe::calc_structural_damping_times(model, g, strained).isZero(0);
   structure.held = list_held(structure.deck);
   structure.common_held = find_common(structure);
   for (auto& [grid, mask] : structure.held) mask &= ~structure.common_held;

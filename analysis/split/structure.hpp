@@ -18,8 +18,11 @@ struct Structure {
   std::map<int, Eigen::Vector3d> position;  ///< of the grids, in basic
   std::map<int, Eigen::Matrix3d> axes;      ///< CD axes of the grids, columns in basic
   std::map<int, records::CardLocation> at;  ///< of the GRID cards
+  std::set<std::pair<int, int>> pinned;     ///< CBAR or CBEAM and its grid where it releases a rotation
   std::set<int> joined;                     ///< grids and points of elements and rigid elements
   std::map<int, unsigned> held;             ///< components of joined grids that the deck holds, without common_held
+  bool has_material_damping = false;        ///< GE or PARAM,G
+  double alpha1 = 0, alpha2 = 0;            ///< PARAM,ALPHA1 and ALPHA2
   unsigned common_held = 0;                 ///< components that are held at every grid of an element: a planar model
 
   /// Returns file and line of a card of the deck.

@@ -165,6 +165,51 @@ class Split(ProgramTest):
         np.testing.assert_allclose(table[:, 1], table[:, 0], rtol=2e-4)
         self.assertIn("[modal.spanned-modes]", messages)
 
+    def test_bars_along_the_cut_join_nothing(self):
+        """A ladder of CBARs cut through a rung, and at its two grids, by hand too: joints each, not one rigid plane."""
+        text = "".join(f"GRID,{1 + 2 * i + j},,{.8 * j},0.,{.5 * i}\n" for i in range(6) for j in range(2))
+        lines = [(1 + 2 * i + j, 3 + 2 * i + j) for i in range(5) for j in range(2)]
+        lines += [(1 + 2 * i, 2 + 2 * i) for i in range(1, 6)]
+        text += "".join(f"CBAR,{100 + k},1,{a},{b},0.,1.,0.\n" for k, (a, b) in enumerate(lines))
+        deck = make_deck(text, more="SPC1,1,123456,1,2\n")
+        for choice in (["--plane", "z=1."], ["--grids", "5,6"], ["--elements", f"{100 + 10 + 1}"]):
+            answer, messages = self.split(deck, *choice, number=6)
+            table = np.array([[f["deck_hz"], f["parts_hz"]] for f in answer["frequencies"]])
+            np.testing.assert_allclose(table[:, 1], table[:, 0], rtol=1e-4, err_msg=str(choice))
+            self.assertNotIn("warning", messages)
+
+    def test_heavy_mass_on_a_held_grid(self):
+        """A foundation of 1e4 kg at a foot that is held adds nothing to the twist of the cuts."""
+        places = [(0., 0., .5 * i) for i in range(7)] + [(.5 * i, 0., 3.) for i in range(1, 9)]
+        places += [(4., 0., 3. - .5 * i) for i in range(1, 7)]
+        line = make_line(places).replace(",.1,.2,1.\n", ",0.,1.,0.\n")
+        deck = make_deck(line, more="SPC1,1,123456,1,21\nCONM2,900,21,,1.+4\n")
+        answer, _ = self.split(deck, "--parts", 3, number=6)
+        table = np.array([[f["deck_hz"], f["parts_hz"]] for f in answer["frequencies"]])
+        np.testing.assert_allclose(table[:, 1], table[:, 0], rtol=2e-4)
+
+    def test_damping_comes_along_or_is_told(self):
+        deck = make_boom(12).replace("PARAM,COUPMASS,1\n", "PARAM,COUPMASS,1\nPARAM,ALPHA2,1.-4\n")
+        _, messages = self.split(deck, "--parts", 2, number=4)
+        self.assertNotIn("split.damping", messages)
+        hz = self.list_system_hz(number=4, shift=.1)
+        with h5py.File(self.path("linear.h5")) as f:
+            poles = f["poles/real"][:] + 1j * f["poles/imag"][:]
+        poles = poles[poles.imag > 0]
+        poles = poles[np.argsort(poles.imag)][:4]
+        omega = np.abs(poles)
+        self.assertEqual(len(hz), 4)
+        np.testing.assert_allclose(-poles.real / omega, .5e-4 * omega, rtol=1e-4)
+        for card in ("PARAM,ALPHA1,.1", "PARAM,G,.02"):
+            _, messages = self.split(deck.replace("PARAM,ALPHA2,1.-4", card), "--parts", 2, number=4)
+            self.assertIn("[split.damping]", messages)
+        self.assertIn("material = true", self.read("deck-1.toml"))
+
+    def test_pinned_beams_at_a_cut(self):
+        deck = make_boom(12).replace("CBAR,7,1,7,8,.1,.2,1.\n", "CBAR,7,1,7,8,.1,.2,1.,,+\n+,56\n")
+        self.write("deck.bdf", deck)
+        self.fails(1, "split", "deck.bdf", "--grids", "7", error="split.weak-cut")
+
     def test_free_beam_and_planar_deck(self):
         """Free in space; and free in a plane of which every grid holds 345: the hinge leaves the plane's motions."""
         ends = "CONM2,201,1,,.5,.0,.1,.3\nCONM2,202,41,,.5,.0,.3,-.1\n"  # without them nothing has inertia in twist
