@@ -16,6 +16,8 @@ SLOWER = int(os.environ.get("BOUGH_SLOWER", "1"))
 # Guards against hangs only: no command takes a tenth of it, alone or on a busy machine.
 HANG = 600 * SLOWER
 sys.path.insert(0, os.path.join(SOURCE, "tests/support"))
+# Under nohup programs are started with SIGHUP ignored, and some tests send it.
+signal.signal(signal.SIGHUP, signal.SIG_DFL)
 import served  # noqa: E402
 from decks import begin, row  # noqa: E402
 
