@@ -233,6 +233,7 @@ class PartReducer {
     std::set<int> points;
     for (const auto& term : part.qset) points.insert(term.g);
     std::erase_if(constrained.scalar_points, [&](int id) { return points.count(id) > 0; });
+    std::erase_if(constrained.aset, [&](const auto& term) { return points.count(term.g) > 0; });
     constrained.qset.clear();
     constrained.bset.clear();
     constrained.cset.clear();

@@ -126,7 +126,7 @@ class PartLoads(ProgramTest):
     def test_component_modes(self):
         """All fixed-interface modes kept: the section is as good as its elements."""
         whole = self.find_eigenvalues(make_whole("", 103))
-        modes = "EIGRL,1,,,{0}\nSPOINT,901,THRU,960\nQSET1,0,901,THRU,960\n"
+        modes = "EIGRL,1,,,{0}\nSPOINT,901,THRU,960\nQSET1,0,901,THRU,960\nASET1,0,901,THRU,960\n"
         guyan = self.find_eigenvalues(make_parts("", "", "", 103))
         # Bars have no torsional inertia: 5 of 6 dofs of 3 interior grids move mass.
         full = self.find_eigenvalues(make_parts("", modes.format(15), modes.format(15), 103))
@@ -137,6 +137,23 @@ class PartLoads(ProgramTest):
         # Statics do not change, whatever the number of modes.
         loads = GRAVITY + "FORCE,3,3,0,7.,1.,2.,3.\n"
         self.compare(make_whole(loads), make_parts(GRAVITY, loads + modes.format(3), GRAVITY + modes.format(2)))
+
+    def test_frequency_response_with_component_modes(self):
+        """SOL 108 with structural damping: all modes kept, the response of the whole deck."""
+        modes = "EIGRL,1,,,15\nSPOINT,901,THRU,960\nQSET1,0,901,THRU,960\n"
+        found = []
+        for deck in (make_whole("", 108), make_parts("", modes, modes, 108)):
+            deck = deck.replace(",2700.", ",2700.,,,.02").replace("LOAD = 3\n", "DLOAD = 9\nFREQUENCY = 5\n").replace(
+                "EIGRL,1,,,6\n", "RLOAD1,9,10,,,1.\nDAREA,10,13,3,1.\nDAREA,10,5,2,2.\nFREQ1,5,3.,11.,12\n", 1)
+            self.write("d.bdf", deck)
+            self.bough("frequency", "d.bdf", "-o", "d.h5")
+            with h5py.File(self.path("d.h5")) as f:
+                part = f["subcases/1/displacement"]
+                dofs = [tuple(d) for d in part["dofs"][:]]
+                columns = [dofs.index((g, c)) for g in (5, 9, 13) for c in (1, 2, 3, 5, 6)]
+                found.append(part["real"][:, columns] + 1j * part["imag"][:, columns])
+        self.assertGreater(np.abs(found[0].imag).max(), 0)
+        np.testing.assert_allclose(found[1], found[0], atol=1e-7 * np.abs(found[0]).max())
 
     def test_fewer_points_than_modes(self):
         deck = make_parts("", "EIGRL,1,,,9\nSPOINT,901,902\nQSET1,0,901,902\n", "", 103)
