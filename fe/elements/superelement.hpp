@@ -60,7 +60,9 @@ class Superelement final : public Element, public OffsetMass, public Damping, pu
 
   /// Returns true if LOAD of the case control selects its loads; else SELOAD does.
   bool is_part() const { return m_.is_part; }
+  /// Returns true if the component has any load.
   bool has_loads() const { return !m_.load_columns.empty(); }
+  /// Returns true if get_load() of this load is not empty.
   bool has_load(int load) const { return m_.load_columns.contains(load); }
 
  private:
