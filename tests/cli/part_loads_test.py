@@ -168,6 +168,8 @@ class PartLoads(ProgramTest):
         spring = "GRID,203,,1.,0.,.3\nCELAS2,77,1.+5,203,2\n"
         self.compare(make_whole(GRAVITY, more=spring),
                      make_parts(GRAVITY + spring + "SEBNDRY,1,ALL,1,5\n", GRAVITY, GRAVITY))
+        for card, says in (("SENQSET,1,5\n", "QSET1 and SPOINT"), ("SEEXCLD,1,0,3\n", "SEBNDRY")):
+            self.assertIn(says, self.solve(make_parts(GRAVITY + card, GRAVITY, GRAVITY))[2])
         self.write("d.bdf", make_parts(GRAVITY + "SEBNDRY,1,ALL,1,55\n", GRAVITY, GRAVITY))
         self.fails(1, "static", "d.bdf", error="fe.part-boundary", says=["grid 55", "superelement 1"])
 
