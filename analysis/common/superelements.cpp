@@ -4,13 +4,16 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 #include <set>
 
 #include "fe/linear/petsc.hpp"
+#include "fe/loads/loads.hpp"
 #include "fe/matrices/assembly.hpp"
 #include "fe/matrices/system.hpp"
 #include "fe/model/coordinates.hpp"
 #include "fe/statics/build_model.hpp"
+#include "fe/statics/reactions.hpp"
 #include "formats/matrices/superelements.hpp"
 #include "modal/bases/fixed_interface.hpp"
 #include "stiffening/reduce.hpp"
@@ -110,17 +113,20 @@ class PartReducer {
     for (const auto& card : deck_.super.seconct) {
       if (card.a != section.id && card.b != section.id) continue;
       if (card.a != 0 && card.b != 0) {
+        if (!card.points.empty() && card.points.front().second == 0) continue;  // SEBNDRY with another section
         error("fe.part-boundary", card.at,
               fmt::format("SECONCT joins superelements {} and {} to each other", card.a, card.b),
               "join both to grids of the main bulk data (SEIDB = 0)");
         continue;
       }
-      for (const auto& [a, b] : card.points) joined[card.a == section.id ? a : b] = card.a == section.id ? b : a;
+      for (const auto& [a, b] : card.points)
+        if (a != 0 && b != 0) joined[card.a == section.id ? a : b] = card.a == section.id ? b : a;
     }
     if (is_manual) return joined;
     const double tolerance = get_tolerance(section.id);
+    const auto searched = find_searched(section, own.at(section.id));
     for (const auto& [id, x] : own.at(section.id).all()) {
-      if (joined.count(id) > 0) continue;
+      if (joined.count(id) > 0 || (searched && searched->count(id) == 0)) continue;
       if (const auto found = main.find_all(x, tolerance); !found.empty()) {
         joined[id] = found.front();
         if (found.size() > 1)
@@ -139,6 +145,24 @@ class PartReducer {
                 "add a grid of the main bulk data at this place: parts join through it");
     }
     return joined;
+  }
+
+  /// Grids of a section that SEBNDRY names, 0 or more; without SEBNDRY all grids are searched.
+  std::optional<std::set<int>> find_searched(const DeckSection& section, const Places& own) {
+    std::optional<std::set<int>> searched;
+    std::set<int> known;
+    for (const auto& [id, x] : own.all()) known.insert(id);
+    for (const auto& card : deck_.super.seconct)
+      for (const auto& [a, b] : card.points) {
+        if (card.a != section.id || b != 0) continue;
+        if (!searched) searched.emplace();
+        searched->insert(a);
+        if (known.count(a) == 0)
+          error("fe.part-boundary", card.at,
+                fmt::format("SEBNDRY names grid {}, which superelement {} does not have", a, section.id),
+                "correct the id");
+      }
+    return searched;
   }
 
   void reduce(const DeckSection& section, const Places& main, const std::map<int, Places>& own) {
@@ -164,13 +188,29 @@ class PartReducer {
     if (s.K.size() > 0) deck_.superelements.push_back(std::move(s));
   }
 
-  /// Name of the loads of a section: "loads", "temperatures" that a subcase selects, "DAREA cards"; empty: none.
-  std::string find_load(const Deck& deck) const {
+  /// Ids of the load sets of a section, LOAD cards included.
+  static std::set<int> list_load_sets(const Deck& deck) {
+    std::set<int> sets;
+    const auto add = [&](const auto& cards) {
+      for (const auto& card : cards) sets.insert(card.sid);
+    };
     const auto& more = deck.load_cards;
-    if (!(deck.point_loads.empty() && deck.gravity.empty() && more.directed.empty() && more.beams.empty() &&
-          more.grid_pressures.empty() && more.pressures.empty() && more.rotations.empty() && more.spcd.empty() &&
-          more.scalar.empty()))
-      return "loads";
+    add(deck.point_loads);
+    add(deck.gravity);
+    add(deck.loads);
+    add(deck.special.accelerations);
+    add(more.directed);
+    add(more.beams);
+    add(more.grid_pressures);
+    add(more.pressures);
+    add(more.rotations);
+    add(more.scalar);
+    return sets;
+  }
+
+  /// Loads of a section that are not condensed: "temperatures" that a subcase selects, "DAREA cards"; empty: none.
+  std::string find_load(const Deck& deck) const {
+    if (!deck.load_cards.spcd.empty()) return "SPCD cards";
     for (const char* card : {"DAREA", "LSEQ", "RLOAD1", "RLOAD2", "TLOAD1", "TLOAD2"})
       if (deck.card_counts.count(card) > 0) return std::string(card) + " cards";
     const auto& t = deck.temperatures;
@@ -189,6 +229,14 @@ class PartReducer {
   void condense(const Deck& part, const DeckSection& section, Superelement& s) {
     linear::initialize_petsc();
     Deck constrained = part;
+    // The points of the q-set have no structure.
+    std::set<int> points;
+    for (const auto& term : part.qset) points.insert(term.g);
+    std::erase_if(constrained.scalar_points, [&](int id) { return points.count(id) > 0; });
+    std::erase_if(constrained.aset, [&](const auto& term) { return points.count(term.g) > 0; });
+    constrained.qset.clear();
+    constrained.bset.clear();
+    constrained.cset.clear();
     auto& subcase = constrained.subcases.front();
     subcase.spc =
         choose_set(section, [&](const auto& one) { return has_set(part.spc, part.spcadd, one.spc) ? one.spc : 0; });
@@ -199,9 +247,24 @@ class PartReducer {
     std::vector<int> grids;
     for (const auto& [id, other] : s.joined) grids.push_back(id);
     const modal::bases::FixedInterface fixed(system, grids, diagnostics_);
-    const MatrixXd Psi = fixed.calc_constraint_modes();
+    const MatrixXd constraint_modes = fixed.calc_constraint_modes();
+    const auto nb = constraint_modes.cols();
+    for (const auto& [id, component] : fixed.partition().boundary) {
+      if (s.points.empty() || s.points.back().id != id) s.points.push_back({id, 0});
+      s.points.back().c |= 1U << static_cast<unsigned>(component - 1);
+    }
+    const auto modes = calc_component_modes(part, section, fixed, constraint_modes.rows());
+    const auto nq = modes.Phi.cols();
+    add_generalized(nq, s);
+    MatrixXd Psi(constraint_modes.rows(), nb + nq);
+    Psi << constraint_modes, modes.Phi;
     const auto symmetrize = [](const MatrixXd& A) { return MatrixXd(0.5 * (A + A.transpose())); };
-    s.K = symmetrize(Psi.transpose() * fe::calc_stiffness_times(model, Psi));
+    const MatrixXd force = fe::calc_stiffness_times(model, Psi);
+    s.K = symmetrize(Psi.transpose() * force);
+    // Constraint modes and what moves with the boundary held share no strain energy.
+    s.K.topRightCorner(nb, nq).setZero();
+    s.K.bottomLeftCorner(nq, nb).setZero();
+    s.K.bottomRightCorner(nq, nq) = modes.lambda.asDiagonal();
     s.M = symmetrize(Psi.transpose() * fe::calc_mass_times(model, model.mass_kind(), Psi));
     const auto condense_to = [&](MatrixXd& A, const MatrixXd& times_Psi) {
       if (times_Psi.size() > 0 && !times_Psi.isZero(0)) A = symmetrize(Psi.transpose() * times_Psi);
@@ -209,37 +272,150 @@ class PartReducer {
     condense_to(s.B, fe::calc_damping_times(model, Psi));
     condense_to(s.K4, fe::calc_structural_damping_times(model, 0, Psi));
     if (Psi.cols() <= kMaxStiffenedDofs) {
-      // The forces on the boundary that hold each of the constraint modes.
+      // The forces that hold each of the modes.
       fe::AppliedLoads loads{MatrixXd::Zero(Psi.rows(), Psi.cols()), MatrixXd::Zero(12, Psi.cols()), {}, {}};
-      for (Index i = 0; i < s.K.rows(); ++i) {
+      for (Index i = 0; i < nb; ++i) {
         const auto& [id, component] = fixed.partition().boundary[static_cast<std::size_t>(i)];
         const fe::Node& node = model.node(model.find_node(id));
         const int c = (component - 1) % 3, half = component > 3 ? 3 : 0;
         loads.F.middleRows(node.first_gdof + half, 3) += node.R_basic_cd.col(c) * s.K.row(i);
       }
+      loads.F.rightCols(nq) = force.rightCols(nq);
       s.K_G = stiffening::calc_generalized_geometric_stiffness(model, loads, Psi, Psi);
     }
-    for (const auto& [id, component] : fixed.partition().boundary) {
-      if (s.points.empty() || s.points.back().id != id) s.points.push_back({id, 0});
-      s.points.back().c |= 1U << static_cast<unsigned>(component - 1);
+    // Loads: their forces on the exterior dofs, and what they do with these held.
+    const auto sets = list_load_sets(part);
+    MatrixXd F(Psi.rows(), static_cast<Index>(sets.size()));
+    for (const int set : sets) {
+      const auto column = static_cast<int>(s.load_columns.size());
+      s.load_columns[set] = column;
+      F.col(column) = fe::calc_applied_load(model, part, set, diagnostics_).F;
     }
-    records::RecoveryTable table{"MUG1", {}, MatrixXd(0, Psi.cols())};
+    MatrixXd held(Psi.rows(), 0);
+    if (F.cols() > 0) {
+      s.P = Psi.transpose() * F;
+      held = fixed.solve(F);
+      if (nq > 0) held -= modes.Phi * modes.lambda.cwiseInverse().asDiagonal() * (modes.Phi.transpose() * F);
+    }
+    add_displacements(model, Psi, held, s);
+    add_reactions(model, force, fe::calc_stiffness_times(model, held) - F, s);
+    diagnostics_.note("fe.static-reduction", deck_.locate(section.at),
+                      fmt::format("superelement {} is condensed to {} boundary degrees of freedom and {} component "
+                                  "modes of its {} degrees of freedom",
+                                  section.id, nb, nq, model.num_fdofs()),
+                      "its further frequencies with the boundary held should be above those of interest");
+  }
+
+  /// Component modes with the boundary held: EIGRL or EIGR of the section that METHOD selects, as many as the points of
+  /// QSET.
+  modal::bases::ModeSet calc_component_modes(const Deck& part, const DeckSection& section,
+                                             const modal::bases::FixedInterface& fixed, Index num_gdofs) {
+    modal::bases::ModeSet modes;
+    modes.Phi.resize(num_gdofs, 0);
+    std::set<int> points;
+    for (const auto& term : part.qset) points.insert(term.g);
+    const auto count = static_cast<Index>(points.size());
+    if (count == 0) return modes;
+    const auto at = part.qset.front().at;
+    if (!part.cset.empty()) {
+      error("fe.part-modes", part.cset.front().at,
+            fmt::format("CSET of superelement {} frees boundary degrees of freedom for its component modes, which is "
+                        "not supported",
+                        section.id),
+            "remove CSET: the modes are those with the boundary held");
+      return modes;
+    }
+    const int set =
+        choose_set(section, [&](const auto& one) { return find_method(part, one.method) ? one.method : 0; });
+    const auto* method = find_method(part, set);
+    if (!method) {
+      error("fe.part-modes", at,
+            fmt::format("superelement {} has {} generalized coordinates, and METHOD selects no EIGRL of its section",
+                        section.id, count),
+            "write EIGRL with the id of METHOD in the section too");
+      return modes;
+    }
+    const int number = method->num_modes > 0 ? static_cast<int>(std::min<Index>(method->num_modes, count)) : 0;
+    modes = fixed.calc_modes(number, method->f2, diagnostics_);
+    if (modes.lambda.size() > count) {
+      modes.lambda.conservativeResize(count);
+      modes.Phi.conservativeResize(Eigen::NoChange, count);
+      diagnostics_.note("fe.part-modes", deck_.locate(at),
+                        fmt::format("superelement {} has more modes in the range of METHOD than its {} generalized "
+                                    "coordinates: the highest are left out",
+                                    section.id, count),
+                        "name more SPOINTs in QSET1");
+    }
+    return modes;
+  }
+
+  static const records::EigenMethod* find_method(const Deck& deck, int set) {
+    const auto found = std::find_if(deck.eigen_methods.begin(), deck.eigen_methods.end(),
+                                    [set](const auto& one) { return one.sid == set; });
+    return set == 0 || found == deck.eigen_methods.end() ? nullptr : &*found;
+  }
+
+  /// Generalized coordinates are scalar points of the main bulk data with ids above all others.
+  void add_generalized(Index number, Superelement& s) {
+    if (number == 0) return;
+    int highest = 0;
+    for (const Deck* deck : {static_cast<const Deck*>(&deck_), s.section.get()}) {
+      for (const auto& grid : deck->grids) highest = std::max(highest, grid.id);
+      for (const int id : deck->scalar_points) highest = std::max(highest, id);
+    }
+    for (Index k = 0; k < number; ++k) {
+      const int id = ++highest;
+      deck_.scalar_points.push_back(id);
+      s.points.push_back({id, 0});
+      s.joined[id] = id;
+    }
+  }
+
+  /// Components of `values` (num_gdofs x n, basic) at `nodes`, in their displacement axes.
+  static MatrixXd list_rows(const std::vector<const fe::Node*>& nodes, const MatrixXd& values) {
+    MatrixXd rows(6 * static_cast<Index>(nodes.size()), values.cols());
+    for (Index first = 0; const auto* node : nodes) {
+      for (const Index half : {0, 3})
+        rows.middleRows(first + half, 3) = node->R_basic_cd.transpose() * values.middleRows(node->first_gdof + half, 3);
+      first += 6;
+    }
+    return rows;
+  }
+  /// A table and, with loads, that of what they do with the exterior dofs held.
+  static void add_tables(const std::string& name, const std::vector<const fe::Node*>& nodes, const MatrixXd& values,
+                         const MatrixXd& of_loads, Superelement& s) {
+    std::vector<records::RecoveryItem> items;
+    for (const auto* node : nodes) items.push_back({1, node->id, 6, static_cast<int>(6 * items.size())});
+    s.recovery.push_back({name, items, list_rows(nodes, values)});
+    if (of_loads.cols() > 0) s.recovery.push_back({name + "O", items, list_rows(nodes, of_loads)});
+  }
+
+  static void add_displacements(const fe::Model& model, const MatrixXd& Psi, const MatrixXd& held, Superelement& s) {
     std::vector<const fe::Node*> nodes;
     for (const auto& node : model.nodes())
       if (node.num_dofs == 6) nodes.push_back(&node);
-    table.rows.resize(6 * static_cast<Index>(nodes.size()), Psi.cols());
-    for (const auto* node : nodes) {
-      const auto first = static_cast<Index>(6 * table.items.size());
-      for (const Index half : {0, 3})
-        table.rows.middleRows(first + half, 3) =
-            node->R_basic_cd.transpose() * Psi.middleRows(node->first_gdof + half, 3);
-      table.items.push_back({1, node->id, 6, static_cast<int>(first)});
+    add_tables("MUG1", nodes, Psi, held, s);
+  }
+
+  /// Forces of the single-point constraints of the section: K u - F at the dofs that they hold.
+  static void add_reactions(const fe::Model& model, const MatrixXd& force, const MatrixXd& of_loads, Superelement& s) {
+    std::set<std::pair<int, int>> without_stiffness;
+    for (const auto& entry : model.autospc()) without_stiffness.emplace(entry.node, entry.component);
+    std::vector<const fe::Node*> nodes;
+    const std::set<int> fixed(model.fixed_dofs().begin(), model.fixed_dofs().end());
+    for (const auto& node : model.nodes()) {
+      bool is_held = false;
+      for (int c = 0; c < node.num_dofs; ++c)
+        is_held = is_held || (fixed.count(node.first_gdof + c) > 0 && without_stiffness.count({node.id, c + 1}) == 0);
+      if (is_held && node.num_dofs == 6) nodes.push_back(&node);
     }
-    s.recovery.push_back(std::move(table));
-    diagnostics_.note("fe.static-reduction", deck_.locate(section.at),
-                      fmt::format("superelement {} is condensed to {} of its {} degrees of freedom", section.id,
-                                  s.num_dofs(), model.num_fdofs()),
-                      "its frequencies with the boundary held should be above those of interest");
+    const auto calc_all = [&](const MatrixXd& residuals) {
+      MatrixXd reactions(residuals.rows(), residuals.cols());
+      for (Index c = 0; c < residuals.cols(); ++c)
+        reactions.col(c) = fe::calc_reactions(model, Eigen::VectorXd(residuals.col(c)));
+      return reactions;
+    };
+    if (!nodes.empty()) add_tables("MQG1", nodes, calc_all(force), calc_all(of_loads), s);
   }
 
   /// The set of constraints of the section that the subcases select; they may not select several.

@@ -86,11 +86,12 @@ class Reader {
  public:
   Reader(const records::Signals& known, Diagnostics& diagnostics) : known_(known), diagnostics_(diagnostics) {}
 
-  void add(const InputDensity& given) {
+  /// \param name  of the density in messages; empty: its line or file.
+  void add(const InputDensity& given, const std::string& name = {}) {
     const auto rows = find_inputs(given.input, known_);
     if (rows.empty()) report_unknown(given, given.input, known_, diagnostics_);
     if (given.with.empty() || given.with == given.input) {
-      for (const Index row : rows) terms_.push_back(make_term(given, row, row));
+      for (const Index row : rows) add_auto(make_term(given, row, row), given.at, name);
       return;
     }
     const auto columns = find_inputs(given.with, known_);
@@ -103,10 +104,27 @@ class Reader {
     else
       add_cross(given, rows[0], columns[0]);
   }
-  void add(std::vector<Term> terms) { terms_.insert(terms_.end(), terms.begin(), terms.end()); }
+  void add(const std::vector<Term>& terms, const SourceLocation& at) {
+    for (const auto& term : terms) add_auto(term, at, {});
+  }
   const std::vector<Term>& terms() const { return terms_; }
 
  private:
+  /// One density for each input; a column of zeros is none.
+  void add_auto(const Term& term, const SourceLocation& at, const std::string& name) {
+    terms_.push_back(term);
+    if (term.density.isZero(0)) return;
+    const auto source = !name.empty() ? name
+                        : at.line > 0 ? fmt::format("line {} of '{}'", at.line, at.file)
+                                      : fmt::format("'{}'", at.file);
+    const auto [other, is_first] = sources_.emplace(term.a, source);
+    if (is_first) return;
+    diagnostics_.error("linear.bad-psd", at,
+                       fmt::format("the spectral density of '{}' is given twice, by {} and {}",
+                                   known_.name[static_cast<std::size_t>(term.a)], other->second, source),
+                       "give one density for each input; that of uncorrelated sources is their sum");
+  }
+
   /// S_ab once, or S_ab and S_ba that are conjugate to each other.
   void add_cross(const InputDensity& given, Index a, Index b) {
     const auto term = make_term(given, a, b);
@@ -130,6 +148,7 @@ class Reader {
   const records::Signals& known_;
   Diagnostics& diagnostics_;
   std::vector<Term> terms_;
+  std::map<Index, std::string> sources_;
   std::map<std::pair<Index, Index>, std::pair<Term, SourceLocation>> crosses_;
 };
 
@@ -141,12 +160,12 @@ statespace::InputSpectrum read_input_spectrum(const std::vector<std::string>& it
   Reader reader(model.inputs, diagnostics);
   for (const auto& item : items) {
     if (const auto constant = read_constant(item, file)) {
-      reader.add(*constant);
+      reader.add(*constant, "--psd " + item);
       continue;
     }
     demand_file(item);
     if (!has_suffix(item, ".toml"))
-      reader.add(read_table(item, model.inputs));
+      reader.add(read_table(item, model.inputs), {item});
     else
       for (const auto& term : toml_files::read_input_densities(item, diagnostics)) reader.add(term);
   }

@@ -22,6 +22,7 @@ class Superelement final : public Element, public OffsetMass, public Damping, pu
     std::vector<MatrixXd> K_G;
     MatrixXd P;                       ///< loads, a column each
     std::map<int, int> load_columns;  ///< of P, by load of the component
+    bool is_part = false;             ///< loads of the component are sets of LOAD of the case control
   };
 
   Superelement(int id, std::vector<int> nodes, std::vector<int> gdofs, Matrices matrices)
@@ -57,6 +58,13 @@ class Superelement final : public Element, public OffsetMass, public Damping, pu
     return column == m_.load_columns.end() ? VectorXd() : VectorXd(m_.P.col(column->second));
   }
 
+  /// Returns true if LOAD of the case control selects its loads; else SELOAD does.
+  bool is_part() const { return m_.is_part; }
+  /// Returns true if the component has any load.
+  bool has_loads() const { return !m_.load_columns.empty(); }
+  /// Returns true if get_load() of this load is not empty.
+  bool has_load(int load) const { return m_.load_columns.contains(load); }
+
  private:
   static void add(double scale, const MatrixXd& of, Eigen::Ref<MatrixXd> sum) {
     if (of.size() > 0) sum += scale * of;
@@ -65,23 +73,35 @@ class Superelement final : public Element, public OffsetMass, public Damping, pu
   Matrices m_;
 };
 
+/// Values of the loads of a superelement with its exterior points held.
+struct InteriorValues {
+  int superelement = 0;
+  bool is_part = false;             ///< as Superelement::is_part()
+  std::map<int, int> load_columns;  ///< of values, by load
+  MatrixXd values;                  ///< components x loads
+};
+
 /// Recovered values of the interior of a superelement: rows times the motion of its exterior points.
 class RecoveredItem final : public Element, public PrintedForces {
  public:
   /// card: "MUG1_101"; rows: in basic axes of the exterior points, components.size() x N.
   RecoveredItem(int id, std::string card, std::vector<int> nodes, std::vector<int> gdofs,
-                std::vector<std::string> components, MatrixXd rows)
+                std::vector<std::string> components, MatrixXd rows, InteriorValues of_loads = {})
       : Element(id, std::move(card), std::move(nodes), std::move(gdofs)),
         components_(std::move(components)),
-        rows_(std::move(rows)) {}
+        rows_(std::move(rows)),
+        of_loads_(std::move(of_loads)) {}
 
   const PrintedForces* printed_forces() const override { return this; }
   std::vector<std::string> printed_force_names() const override { return components_; }
   VectorXd calc_printed_forces(const Eigen::Ref<const VectorXd>& u) const override { return rows_ * u; }
+  /// Loads of the superelement with the exterior points held: their part of the printed values.
+  const InteriorValues& of_loads() const { return of_loads_; }
 
  private:
   std::vector<std::string> components_;
   MatrixXd rows_;
+  InteriorValues of_loads_;
 };
 
 }  // namespace bough::fe

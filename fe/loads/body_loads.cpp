@@ -56,7 +56,8 @@ void add_grid_accelerations(const LoadTarget& t, const records::GridAcceleration
         t.find_grid(grid, "ACCEL1", load.at);
     }
   }
-  t.F += t.scale * calc_mass_times(t.model, t.model.mass_kind(), field);
+  const VectorXd force = calc_mass_times(t.model, t.model.mass_kind(), field);
+  t.F += t.scale * (force - calc_superelement_force(t.model, field, list_without_gravity(t.model, t.deck)));
 }
 
 }  // namespace

@@ -3,7 +3,6 @@
 #include "fe/loads/arm_strains.hpp"
 
 #include "base/rotation.hpp"
-#include "fe/elements/superelement.hpp"
 #include "fe/linear/blas.hpp"
 #include "fe/model/element_loop.hpp"
 
@@ -173,12 +172,12 @@ MatrixXd calc_inertial_loads(const Model& model, MassKind kind) {
   return calc_inertial_loads(model, kind, MatrixXd::Identity(12, 12));
 }
 
-MatrixXd calc_superelement_loads(const Model& model, MassKind kind, const MatrixXd& A_I) {
+MatrixXd calc_superelement_loads(const Model& model, MassKind kind, const MatrixXd& A_I,
+                                 const std::vector<const Element*>& superelements) {
   MatrixXd spin = A_I, F = MatrixXd::Zero(model.num_gdofs(), A_I.cols()), M;
   spin.topRows<6>().setZero();
   const MatrixXd change = calc_grid_field(model, spin) - calc_grid_field(model, A_I);
-  for (const auto& element : model.elements()) {
-    if (!dynamic_cast<const Superelement*>(element.get())) continue;
+  for (const auto* element : superelements) {
     M.setZero(element->num_dofs(), element->num_dofs());
     element->add_mass(kind, model.wtmass(), M);
     const MatrixXd f = M * change(element->gdofs(), Eigen::all) + turn_momenta(model, *element, M, spin);

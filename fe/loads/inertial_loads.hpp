@@ -32,8 +32,9 @@ MatrixXd calc_inertial_loads(const Model& model, MassKind kind, const MatrixXd& 
 /// F_I itself, num_gdofs x 12.
 MatrixXd calc_inertial_loads(const Model& model, MassKind kind);
 
-/// The part of calc_inertial_loads() that the mass of external superelements has.
-MatrixXd calc_superelement_loads(const Model& model, MassKind kind, const MatrixXd& A_I);
+/// The part of calc_inertial_loads() of these superelements, num_gdofs x k.
+MatrixXd calc_superelement_loads(const Model& model, MassKind kind, const MatrixXd& A_I,
+                                 const std::vector<const Element*>& superelements);
 
 /// Returns true if the mass of an element is off its grids and not that of bodies.
 bool has_approximate_mass(const Model& model, MassKind kind);

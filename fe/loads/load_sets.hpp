@@ -32,6 +32,23 @@ bool add_surface_loads(const LoadTarget& target);       ///< PLOAD, PLOAD2, PLOA
 bool add_beam_loads(const LoadTarget& target);          ///< PLOAD1
 bool add_superelement_loads(const LoadTarget& target);  ///< SELOAD
 
+/// Adds the loads that sections with elements have in set `set`, which LOAD of the case control selects: it is a set of
+/// each section by itself. \return whether a section has such a set.
+bool add_part_loads(const Model& model, int set, VectorXd& F);
+
+/// Superelements on whose mass GRAV, RFORCE and ACCEL of the main bulk data do not act: sections with elements, which
+/// have these cards themselves, and external ones unless PARAM,CMSALOAD,YES requests it.
+std::vector<const Element*> list_without_gravity(const Model& model, const records::Deck& deck);
+/// The force M a of the acceleration field `a` (num_gdofs) on these superelements, num_gdofs.
+VectorXd calc_superelement_force(const Model& model, const VectorXd& a,
+                                 const std::vector<const Element*>& superelements);
+/// Reports fe.superelement-gravity of load set `set`, whose GRAV, RFORCE or ACCEL cards accelerate the model: a warning
+/// for superelements that have no such load, an error for grounded ones that PARAM,CMSALOAD,YES accelerates.
+void report_gravity(const Model& model, const records::Deck& deck, int set, Diagnostics& diagnostics);
+
+/// Values of recovered items (by index into Model::elements()) of the loads inside superelements that set `set` brings.
+std::unordered_map<int, VectorXd> calc_interior_values(const Model& model, const records::Deck& deck, int set);
+
 /// fe.unread-load for each kind of card of this set that is not read; returns whether there are such.
 bool report_unread_loads(const records::Deck& deck, const std::string& command, int set, Diagnostics& diagnostics);
 

@@ -143,6 +143,8 @@ AppliedLoad calc_applied_load(const Model& model, const records::Deck& deck, int
   if (const auto* card = find_combination(deck, set)) report_terms(deck, *card, diagnostics);
   const auto sets = list_plain_sets(deck, set);
   std::vector<PlainLoadSet> missing;
+  const bool has_part_loads = add_part_loads(model, set, load.F);
+  bool is_accelerated = false;
   for (const auto& plain : sets) {
     if (plain.enforced_only) continue;
     if (plain.is_circle) {
@@ -155,8 +157,12 @@ AppliedLoad calc_applied_load(const Model& model, const records::Deck& deck, int
                             diagnostics, load.A_I, load.arms, load.followers};
     const bool found[] = {add_point_loads(target), add_body_loads(target),         add_surface_loads(target),
                           add_beam_loads(target),  add_superelement_loads(target), has_enforced(deck, plain.sid)};
+    const auto& fields = deck.special.accelerations;
+    is_accelerated = is_accelerated ||
+                     std::any_of(fields.begin(), fields.end(), [&](const auto& card) { return card.sid == plain.sid; });
     if (report_unread_loads(deck, "LOAD", plain.sid, diagnostics)) continue;
-    if (std::find(std::begin(found), std::end(found), true) == std::end(found)) missing.push_back(plain);
+    const bool is_of_part = has_part_loads && plain.sid == set;
+    if (!is_of_part && std::find(std::begin(found), std::end(found), true) == std::end(found)) missing.push_back(plain);
   }
   // A LOAD card of which something is left loads the structure, as in Nastran.
   const auto severity = missing.size() < sets.size() ? Severity::Warning : Severity::Error;
@@ -167,16 +173,14 @@ AppliedLoad calc_applied_load(const Model& model, const records::Deck& deck, int
          "load set " + std::to_string(plain.sid) + " has no FORCE, MOMENT, GRAV, PLOAD or LOAD card" +
              (severity == Severity::Warning ? "; LOAD " + std::to_string(set) + " is taken without it" : ""),
          "correct the set id or add its cards"});
-  if (load.A_I.isZero(0)) return load;
-  load.F += calc_inertial_loads(model, model.mass_kind(), load.A_I);
-  if (deck.superelements.empty()) return load;
-  // Nastran: loads of the interior come with the matrices of the superelement, and gravity is such a load.
-  const MatrixXd of_superelements = calc_superelement_loads(model, model.mass_kind(), load.A_I);
-  load.F -= of_superelements.col(0);
-  if (!of_superelements.isZero(0))
-    diagnostics.warning("fe.superelement-gravity", deck.locate(records::find_selection(deck, "LOAD", set)),
-                        "GRAV and RFORCE of LOAD " + std::to_string(set) + " do not act on the mass of superelements",
-                        "apply the load when the component is written, or as forces on its boundary");
+  is_accelerated = is_accelerated || !load.A_I.isZero(0);
+  if (!load.A_I.isZero(0)) {
+    load.F += calc_inertial_loads(model, model.mass_kind(), load.A_I);
+    // Nastran: loads of the interior come with the matrices or the section of the superelement; gravity is such a load.
+    if (const auto without = list_without_gravity(model, deck); !without.empty())
+      load.F -= calc_superelement_loads(model, model.mass_kind(), load.A_I, without).col(0);
+  }
+  if (is_accelerated) report_gravity(model, deck, set, diagnostics);
   return load;
 }
 

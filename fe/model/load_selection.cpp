@@ -17,7 +17,7 @@ bool has_load_cards(const records::Deck& deck, int set) {
   return in(deck.point_loads) || in(deck.gravity) || in(c.directed) || in(c.beams) || in(c.grid_pressures) ||
          std::any_of(deck.super.seload.begin(), deck.super.seload.end(),
                      [set](const auto& s) { return s.set == set; }) ||
-         in(c.pressures) || in(c.rotations) || in(c.spcd) || in(c.scalar);
+         in(deck.special.accelerations) || in(c.pressures) || in(c.rotations) || in(c.spcd) || in(c.scalar);
 }
 
 const records::LoadCombination* find_combination(const records::Deck& deck, int set) {

@@ -41,6 +41,14 @@ std::vector<std::string> name_components(const std::string& table, const records
   return names;
 }
 
+/// Returns true for the record of a section with elements: LOAD of the case control selects its loads.
+bool is_part(const records::Deck& deck, const records::Superelement& record) {
+  const auto& bulk = deck.super.sebulk;
+  return record.file.empty() && record.section->super.extrn.empty() &&
+         std::none_of(bulk.begin(), bulk.end(),
+                      [&](const auto& one) { return one.id == record.id && one.type != "PRIMARY"; });
+}
+
 class SuperelementMaker {
  public:
   SuperelementMaker(const records::Deck& deck, const records::Superelement& record, const NodeTable& nodes,
@@ -55,7 +63,8 @@ class SuperelementMaker {
     if (!connect()) return;
     const MatrixXd P = record_.P.size() == 0 ? MatrixXd() : MatrixXd(C_.transpose() * record_.P);
     Superelement::Matrices matrices{
-        turn(record_.K), turn(record_.M) / wtmass, turn(record_.B), turn(record_.K4), {}, {}, P, record_.load_columns};
+        turn(record_.K),      turn(record_.M) / wtmass, turn(record_.B), turn(record_.K4), {}, {}, P,
+        record_.load_columns, is_part(deck_, record_)};
     if (!record_.K_G.empty()) {
       matrices.force = record_.K * C_;
       // Geometric stiffness of a unit of force in place of motion: rigid-body motion has no force.
@@ -67,19 +76,32 @@ class SuperelementMaker {
       }
     }
     list.add(std::make_unique<Superelement>(record_.id, nodes_joined_, gdofs_, std::move(matrices)));
-    for (const auto& table : record_.recovery)
+    for (const auto& table : record_.recovery) {
+      if (table.name.ends_with("O")) continue;
+      const auto* of_loads = find_table(table.name + "O");
       for (const auto& item : table.items) {
         constexpr int kScalarPoint = 2;
         const bool is_motion = table.name.starts_with("MUG") || table.name.starts_with("MQG");
         const std::string card =
             table.name + "_" + std::to_string(record_.id) + (is_motion && item.type == kScalarPoint ? "_scalar" : "");
-        list.add(std::make_unique<RecoveredItem>(item.id, card, nodes_joined_, gdofs_,
-                                                 name_components(table.name, item),
-                                                 MatrixXd(table.rows.middleRows(item.first_row, item.num_rows) * C_)));
+        InteriorValues interior;
+        if (of_loads)
+          interior = {record_.id, is_part(deck_, record_), record_.load_columns,
+                      of_loads->rows.middleRows(item.first_row, item.num_rows)};
+        list.add(std::make_unique<RecoveredItem>(
+            item.id, card, nodes_joined_, gdofs_, name_components(table.name, item),
+            MatrixXd(table.rows.middleRows(item.first_row, item.num_rows) * C_), std::move(interior)));
       }
+    }
   }
 
  private:
+  const records::RecoveryTable* find_table(const std::string& name) const {
+    const auto& all = record_.recovery;
+    const auto found = std::find_if(all.begin(), all.end(), [&](const auto& table) { return table.name == name; });
+    return found == all.end() ? nullptr : &*found;
+  }
+
   void error(std::string what, std::string advice) {
     diagnostics_.error("fe.superelement-boundary", deck_.locate(record_.at),
                        "superelement " + std::to_string(record_.id) + ": " + std::move(what), std::move(advice));

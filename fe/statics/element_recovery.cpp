@@ -135,6 +135,9 @@ class PointTables {
   std::array<std::vector<TableRows>, 2> tables_, corners_;
 };
 
+/// Loads along beams, or values of loads inside superelements, by element: a case each.
+using EndLoads = std::vector<std::unordered_map<int, VectorXd>>;
+
 /// Forces and strain energies of all groups.
 class ForceTables {
  public:
@@ -163,7 +166,8 @@ class ForceTables {
     }
   }
 
-  void add(const Current& at) {
+  /// \param interior  parts of the values by load of the case, by element index.
+  void add(const Current& at, const EndLoads& interior) {
     const auto [group, row] = layout_.places[static_cast<std::size_t>(at.index)];
     if (group < 0) return;
     const auto g = static_cast<std::size_t>(group);
@@ -176,6 +180,9 @@ class ForceTables {
         forces.col(c) = at.element.printed_forces()->calc_printed_forces(at.U.col(c));
       for (std::size_t c = 0; c < at.heated.size(); ++c)
         if (at.heated[c]) forces.col(static_cast<Index>(c)) += at.heated[c]->force.head(count);
+      for (std::size_t c = 0; c < interior.size(); ++c)
+        if (const auto part = interior[c].find(at.index); part != interior[c].end())
+          forces.col(static_cast<Index>(c)) += part->second;
       tables_[at.half][g].set(row, forces);
     }
     MatrixXd energy = known_energy_ ? MatrixXd(known_energy_->row(at.index)) : calc_energy(at);
@@ -220,9 +227,6 @@ class ForceTables {
   std::array<std::pair<MatrixXd, MatrixXd>, 2> scratch_;  ///< K, K U
 };
 
-/// Loads along beams, by element: a case each.
-using EndLoads = std::vector<std::unordered_map<int, VectorXd>>;
-
 void find_forces(const std::vector<RecoveryCase>& cases, const EndLoads& end_loads, Current& at) {
   const StressState* state = at.element.stress_state();
   at.forces.setZero(state ? state->num_internal_forces() : 0, at.U.cols());
@@ -253,12 +257,13 @@ std::vector<ElementResults> recover_elements(const Model& model, const records::
                                  known_energy->cols() == static_cast<Index>(cases.size())));
   std::vector<ElementResults> results(cases.size());
   if (cases.empty()) return results;
-  EndLoads end_loads(cases.size());
+  EndLoads end_loads(cases.size()), interior(cases.size());
   bool is_heated = false;
   for (std::size_t c = 0; c < cases.size(); ++c) {
     BOUGH_DEMAND(cases[c].u_g->size() == model.num_gdofs());
     is_heated = is_heated || (cases[c].initial && !cases[c].initial->of.empty());
     Diagnostics unheard;
+    if (cases[c].load > 0) interior[c] = calc_interior_values(model, deck, cases[c].load);
     if (cases[c].load > 0)
       end_loads[c] = calc_beam_end_loads(model, deck, cases[c].load, cases[c].said ? *cases[c].said : unheard);
   }
@@ -283,7 +288,7 @@ std::vector<ElementResults> recover_elements(const Model& model, const records::
     if (is_heated)
       for (const auto& one : cases) at.heated.push_back(one.initial ? one.initial->find(element) : nullptr);
     find_forces(cases, end_loads, at);
-    if (forces) forces->add(at);
+    if (forces) forces->add(at, interior);
     if (stresses) stresses->add(at);
     if (strains) strains->add(at);
   };

@@ -246,6 +246,7 @@ class Joiner {
     for (const auto& rows : section.deck->super.rows) {
       const std::string name = "M" + rows.name.substr(1);
       if (const auto* matrix = find(matrices, {name})) take_rows(*matrix, rows, s);
+      if (const auto* matrix = find(matrices, {name + "O"})) take_load_rows(*matrix, rows, s);
     }
   }
 
@@ -311,6 +312,23 @@ class Joiner {
                    "DTI " + rows.name + " lists " + std::to_string(end) + " rows, matrix " + matrix.name + " of '" +
                        s.file + "' has " + std::to_string(dense.rows()) + " x " + std::to_string(dense.cols()) +
                        " terms for " + std::to_string(n) + " exterior degrees of freedom",
+                   "take .op4 and .pch of one run");
+    s.recovery.push_back({matrix.name, rows.items, std::move(dense)});
+  }
+
+  /// MUG1O and the like: what the loads of PX do to the items with the exterior dofs held.
+  void take_load_rows(const Matrix& matrix, const records::RecoveryRows& rows, Superelement& s) {
+    MatrixXd dense = make_dense(matrix);
+    if (s.recovery.empty() || s.recovery.back().name + "O" != matrix.name) return;
+    const auto& table = s.recovery.back();
+    const auto loads = s.P.cols();
+    if (dense.rows() != table.rows.rows() && dense.cols() == table.rows.rows()) dense.transposeInPlace();
+    if (loads == 0 || (dense.rows() == 1 && dense.cols() == 1)) return;
+    if (dense.rows() != table.rows.rows() || dense.cols() != loads)
+      return error("matrices.superelement-rows", rows.at,
+                   "matrix " + matrix.name + " of '" + s.file + "' has " + std::to_string(dense.rows()) + " x " +
+                       std::to_string(dense.cols()) + " terms for " + std::to_string(table.rows.rows()) +
+                       " rows of DTI " + rows.name + " and " + std::to_string(loads) + " loads",
                    "take .op4 and .pch of one run");
     s.recovery.push_back({matrix.name, rows.items, std::move(dense)});
   }

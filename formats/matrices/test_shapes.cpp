@@ -14,6 +14,20 @@ namespace {
 using namespace detail;
 using Complex = std::complex<double>;
 
+/// Coordinate system of the file: x_file = R x_local + origin.
+struct LocalSystem {
+  int type = 0;  ///< 0 Cartesian, 1 cylindrical, 2 spherical
+  int reference = 0;
+  Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();
+  int line = 0;
+};
+
+struct NodePlace {
+  Eigen::Vector3d x = Eigen::Vector3d::Zero();  ///< in the definition system
+  long definition = 0, displacement = 0;        ///< systems
+};
+
 struct Shape {
   double hz = 0, damping = 0;
   std::map<int, Eigen::Matrix<Complex, 6, 1>> values;
@@ -78,6 +92,8 @@ class UffReader {
     if (number == 15) return read_nodes_15();
     if (number == 2411) return read_nodes_2411();
     if (number == 55) return read_shape();
+    if (number == 18) return read_systems_18();
+    if (number == 2420) return read_systems_2420();
     while (next()) continue;
   }
 
@@ -86,17 +102,127 @@ class UffReader {
       const auto line = std::string(in_.get_line());
       const auto id = parse_integer(line.substr(0, 10));
       const auto rest = line.size() > 40 ? line.substr(40) : std::string();
-      if (!id) in_.fail_line("a node of dataset 15");
-      add_node(*id, read_place(rest, 13));
+      if (!id || line.size() < 30) in_.fail_line("a node of dataset 15");
+      const auto definition = parse_integer(line.substr(10, 10)), displacement = parse_integer(line.substr(20, 10));
+      places_[static_cast<int>(*id)] = {read_place(rest, 13), definition.value_or(0), displacement.value_or(0)};
     }
   }
   void read_nodes_2411() {
     while (next()) {
       const auto head = read_integers(10, 1, "a node of dataset 2411");
       demand("the coordinates of the node");
-      add_node(head[0], read_place(std::string(in_.get_line()), 25));
+      places_[static_cast<int>(head[0])] = {read_place(std::string(in_.get_line()), 25), head.size() > 1 ? head[1] : 0,
+                                            head.size() > 2 ? head[2] : 0};
     }
   }
+  /// Number, type and reference; name; origin, a point on the x axis, a point of the xz plane.
+  void read_systems_18() {
+    while (next()) {
+      const auto head = read_integers(10, 3, "a coordinate system of dataset 18");
+      LocalSystem system;
+      system.type = static_cast<int>(head[1]);
+      system.reference = static_cast<int>(head[2]);
+      system.line = in_.get_line_number();
+      demand("the name of the coordinate system");
+      std::vector<double> values;
+      while (values.size() < 9) {
+        demand("nine coordinates of three points");
+        const auto more = read_reals(13, "nine coordinates of three points");
+        if (more.empty()) in_.fail_line("nine coordinates of three points");
+        values.insert(values.end(), more.begin(), more.end());
+      }
+      const Eigen::Map<const Eigen::Matrix3d> points(values.data());
+      system.origin = points.col(0);
+      const Eigen::Vector3d x = points.col(1) - system.origin, in_plane = points.col(2) - system.origin;
+      const Eigen::Vector3d y = in_plane.cross(x);
+      if (!(y.norm() > 1e-6 * x.norm() * in_plane.norm())) in_.fail_line("three points that are not on one line");
+      system.R.col(0) = x.normalized();
+      system.R.col(1) = y.normalized();
+      system.R.col(2) = system.R.col(0).cross(system.R.col(1));
+      systems_[head[0]] = system;
+    }
+  }
+  /// Part and its name; then number, type and colour, name, three rows with the axes, one with the origin.
+  void read_systems_2420() {
+    demand("the part of the coordinate systems");
+    demand("the name of the part");
+    while (next()) {
+      const auto head = read_integers(10, 2, "a coordinate system of dataset 2420");
+      LocalSystem system;
+      system.type = static_cast<int>(head[1]);
+      system.line = in_.get_line_number();
+      demand("the name of the coordinate system");
+      for (int row = 0; row < 4; ++row) {
+        demand("four rows of a transformation matrix");
+        const Eigen::Vector3d values = read_place(std::string(in_.get_line()), 25);
+        if (row < 3)
+          system.R.col(row) = values;
+        else
+          system.origin = values;
+      }
+      if (!((system.R.transpose() * system.R).isIdentity(1e-4) && system.R.determinant() > 0))
+        in_.fail("matrices.uff", "the axes of coordinate system " + std::to_string(head[0]) + " are not orthonormal",
+                 "export the coordinate system again");
+      systems_[head[0]] = system;
+    }
+  }
+
+  /// System `id`; nullptr: the axes of the file, which are 0, and 1 unless the file has a system 1.
+  const LocalSystem* find_system(long id, int node) const {
+    const auto found = systems_.find(id);
+    if (found == systems_.end()) {
+      if (id == 0 || id == 1) return nullptr;
+      in_.fail("matrices.uff",
+               "node " + std::to_string(node) + " refers to coordinate system " + std::to_string(id) +
+                   ", which the file does not define",
+               "export the coordinate systems too (dataset 2420 or 18)");
+    }
+    const auto& system = found->second;
+    if (system.type < 0 || system.type > 2 || (system.reference != 0 && system.reference != 1) ||
+        (system.reference == 1 && id != 1 && systems_.count(1) > 0))
+      in_.fail("matrices.uff",
+               "coordinate system " + std::to_string(id) + " of line " + std::to_string(system.line) + " is of type " +
+                   std::to_string(system.type) + " in system " + std::to_string(system.reference),
+               "export Cartesian, cylindrical or spherical systems in the axes of the file");
+    return &system;
+  }
+
+  Eigen::Vector3d calc_place(int node, const NodePlace& place) const {
+    const auto* system = find_system(place.definition, node);
+    if (!system) return place.x;
+    constexpr double kDegree = std::numbers::pi / 180;
+    const auto& c = place.x;
+    Eigen::Vector3d x = c;
+    if (system->type == 1)
+      x << c[0] * std::cos(kDegree * c[1]), c[0] * std::sin(kDegree * c[1]), c[2];
+    else if (system->type == 2)
+      x << c[0] * std::sin(kDegree * c[1]) * std::cos(kDegree * c[2]),
+          c[0] * std::sin(kDegree * c[1]) * std::sin(kDegree * c[2]), c[0] * std::cos(kDegree * c[1]);
+    return system->R * x + system->origin;
+  }
+
+  /// Axes of the components of a node: (radial, tangential, z) and (radial, θ, φ) where it is.
+  Eigen::Matrix3d calc_axes(int node, const NodePlace& place) const {
+    const auto* system = find_system(place.displacement, node);
+    if (!system) return Eigen::Matrix3d::Identity();
+    if (system->type == 0) return system->R;
+    const Eigen::Vector3d x = system->R.transpose() * (calc_place(node, place) - system->origin);
+    const double r = std::hypot(x[0], x[1]);
+    if (!(r > 1e-9 * x.norm()))
+      in_.fail("matrices.uff",
+               "node " + std::to_string(node) + " is on the axis of its displacement system " +
+                   std::to_string(place.displacement),
+               "give the node a Cartesian system");
+    const double c = x[0] / r, s = x[1] / r;
+    Eigen::Matrix3d axes;
+    axes << c, -s, 0, s, c, 0, 0, 0, 1;
+    if (system->type == 2) {
+      const double cos_theta = x[2] / x.norm(), sin_theta = r / x.norm();
+      axes << sin_theta * c, cos_theta * c, -s, sin_theta * s, cos_theta * s, c, cos_theta, -sin_theta, 0;
+    }
+    return system->R * axes;
+  }
+
   Eigen::Vector3d read_place(const std::string& text, std::size_t width) {
     Eigen::Vector3d place;
     for (int c = 0; c < 3; ++c) {
@@ -107,8 +233,6 @@ class UffReader {
     }
     return place;
   }
-  void add_node(long id, const Eigen::Vector3d& place) { places_[static_cast<int>(id)] = place; }
-
   void read_shape() {
     const int first_line = in_.get_line_number();
     for (int i = 0; i < 5; ++i) demand("five lines of identification");
@@ -164,6 +288,22 @@ class UffReader {
     shapes_.push_back(std::move(shape));
   }
 
+  /// A component that was not measured is no component along other axes.
+  void demand_measured(int id, const NodePlace& place, const Eigen::Matrix3d& axes,
+                       const Eigen::MatrixXcd& rows) const {
+    if ((axes.array() != 0).count() == 3) return;
+    for (const int half : {0, 3}) {
+      if (rows.middleRows(half, 3).isZero(0)) continue;
+      for (int c = half; c < half + 3; ++c)
+        if (rows.row(c).isZero(0))
+          in_.fail("matrices.uff",
+                   "component " + std::to_string(c + 1) + " of node " + std::to_string(id) +
+                       " is zero in all shapes, and its displacement system " + std::to_string(place.displacement) +
+                       " is oblique to the axes of the file",
+                   "measure three components there, or remove the node");
+    }
+  }
+
   TestShapes collect() {
     std::stable_sort(shapes_.begin(), shapes_.end(), [](const Shape& a, const Shape& b) { return a.hz < b.hz; });
     const auto n = static_cast<Eigen::Index>(shapes_.size());
@@ -189,16 +329,23 @@ class UffReader {
         if (place == places_.end())
           in_.fail("matrices.uff", "node " + std::to_string(id) + " of a shape has no coordinates in the file",
                    "export all nodes as dataset 15 or 2411");
-        test.node_xyz.row(static_cast<Eigen::Index>(test.node_id.size())) = place->second.transpose();
+        test.node_xyz.row(static_cast<Eigen::Index>(test.node_id.size())) = calc_place(id, place->second).transpose();
+        const Eigen::Matrix3d axes =
+            calc_axes(id, place->second).unaryExpr([](double c) { return std::abs(c) < 1e-9 ? 0.0 : c; });
+        demand_measured(id, place->second, axes, rows);
+        test.phi.emplace_back(6, n);
+        test.phi.back() << axes * rows.topRows(3), axes * rows.bottomRows(3);
+      } else {
+        test.phi.push_back(rows);
       }
       test.node_id.push_back(id);
-      test.phi.push_back(rows);
     }
     return test;
   }
 
   TextInput in_;
-  std::map<int, Eigen::Vector3d> places_;
+  std::map<int, NodePlace> places_;
+  std::map<long, LocalSystem> systems_;
   std::vector<Shape> shapes_;
   bool is_complex_ = false;
 };

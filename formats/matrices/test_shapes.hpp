@@ -17,7 +17,8 @@ struct TestShapes {
 };
 
 /// Reads datasets 55 of normal modes (analysis type 2) and complex modes (3, 7) with three or six components a node,
-/// and nodes of datasets 15 and 2411. Throws InputError "matrices.uff", "matrices.truncated", "matrices.bad-number"
+/// nodes of datasets 15 and 2411, coordinate systems of 18 and 2420: components are turned to the axes of the file.
+/// Throws InputError "matrices.uff", "matrices.truncated", "matrices.bad-number"
 /// with the line.
 TestShapes read_test_shapes(const std::string& path);
 

@@ -27,7 +27,8 @@ struct Sebulk {
   CardLocation at;
 };
 
-/// SECONCT: points of superelement `a` and the points of `b` to which they are joined.
+/// SECONCT: points of superelement `a` and the points of `b` to which they are joined. SEBNDRY: points of `a` with 0,
+/// the grids that the automatic search looks at.
 struct Seconct {
   int a = 0, b = 0;
   double tolerance = 0;
@@ -97,9 +98,10 @@ struct SuperelementCards {
   bool empty() const { return sebulk.empty() && seconct.empty() && sections.empty(); }
 };
 
-/// A recovery matrix of a superelement: rows x exterior dofs.
+/// A recovery matrix of a superelement: rows x exterior dofs. MUG1O, ... after MUG1, ...: values of each column of P
+/// with the exterior dofs held, rows x loads.
 struct RecoveryTable {
-  std::string name;  ///< "MUG1", "MEF1", "MES1", "MQG1"
+  std::string name;  ///< "MUG1", "MEF1", "MES1", "MQG1"; "MUG1O", ...
   std::vector<RecoveryItem> items;
   Eigen::MatrixXd rows;
 };

@@ -23,12 +23,13 @@ def make_deck(inertia="2.-6", modes=6):
 MEASURED = [(3, "xyz"), (5, "xyz"), (7, "xz"), (8, "z"), (9, "xyz")]
 
 
-def write_uff(path, nodes, shapes, hz, is_complex=False, with_nodes=True):
-    """Datasets 15 and 55; shapes: {node: 3 x n}."""
-    lines = []
+def write_uff(path, nodes, shapes, hz, is_complex=False, with_nodes=True, systems=None, before=()):
+    """Datasets 15 and 55; shapes: {node: 3 x n}; systems: {node: displacement system}; before: lines of datasets."""
+    lines = list(before)
     if with_nodes:
         lines += ["    -1", "    15"]
-        lines += ["%10d%10d%10d%10d%13.5E%13.5E%13.5E" % (node, 0, 0, 1, *nodes[node]) for node in shapes]
+        lines += ["%10d%10d%10d%10d%13.5E%13.5E%13.5E" % (node, 0, (systems or {}).get(node, 0), 1, *nodes[node])
+                  for node in shapes]
         lines += ["    -1"]
     for j, f in enumerate(hz):
         lines += ["    -1", "    55", *["NONE"] * 5]
@@ -146,6 +147,50 @@ class Correlation(ProgramTest):
         with h5py.File(self.path("c.h5")) as f:
             np.testing.assert_allclose(f["test/damping"][:], 0.02, rtol=1e-4)
             np.testing.assert_allclose(f["test/frequency_hz"][:], self.test_hz, rtol=1e-5)
+
+    def test_displacement_systems(self):
+        """Components along local axes (datasets 2420 and 18, three kinds of systems) give the numbers of the basic axes."""
+        rng = np.random.default_rng(3)
+        nodes, shapes = self.nodes, {k: rng.standard_normal((3, 5)) + self.shapes[k] for k in (3, 5, 7, 8, 9)}
+        write_uff(self.path("t.unv"), nodes, shapes, self.test_hz)
+        plain = self.compare()
+        origin, z = np.array([.3, -.7, .2]), np.array([1., 2., 2.]) / 3
+        x = np.cross([0., 0., 1.], z) / np.linalg.norm(np.cross([0., 0., 1.], z))
+        R = np.column_stack([x, np.cross(z, x), z])  # columns: the axes
+
+        def axes(node, kind):
+            p = R.T @ (np.array([float("%.5E" % v) for v in nodes[node]]) - origin)
+            r, rho = np.hypot(*p[:2]), np.linalg.norm(p)
+            radial, around = np.array([p[0], p[1], 0]) / r, np.array([-p[1], p[0], 0]) / r
+            if kind == 0:
+                return R
+            if kind == 1:
+                return R @ np.column_stack([radial, around, [0, 0, 1]])
+            down = np.array([p[0] * p[2] / r, p[1] * p[2] / r, -r]) / rho
+            return R @ np.column_stack([p / rho, down, around])
+
+        lines = ["    -1", "  2420", "%10d" % 1, "part"]
+        for label, kind in ((11, 0), (12, 1), (13, 2)):
+            lines += ["%10d%10d%10d" % (label, kind, 8), "system"]
+            lines += ["%25.16E%25.16E%25.16E" % tuple(row) for row in (*R.T, origin)]
+        points = np.concatenate([origin, origin + 2 * R[:, 0], origin + R[:, 2] + .5 * R[:, 0]])
+        lines += ["    -1", "    -1", "    18", "%10d%10d%10d%10d%10d" % (21, 1, 0, 8, 1), "cylinder",
+                  "".join("%13.5E" % v for v in points[:6]), "".join("%13.5E" % v for v in points[6:]), "    -1"]
+        systems = {3: 11, 5: 12, 7: 13, 8: 21, 9: 0}
+        kinds = {11: 0, 12: 1, 13: 2, 21: 1}
+        local = {k: axes(k, kinds[systems[k]]).T @ v if systems[k] else v for k, v in shapes.items()}
+        write_uff(self.path("t.unv"), nodes, local, self.test_hz, systems=systems, before=lines)
+        turned = self.compare()
+        np.testing.assert_allclose(turned["mac"], plain["mac"], atol=2e-5)
+        np.testing.assert_allclose(turned["cross_orthogonality"], plain["cross_orthogonality"], atol=2e-4)
+        write_uff(self.path("t.unv"), nodes, local, self.test_hz, before=lines)  # axes ignored: other numbers
+        self.assertGreater(np.abs(np.array(self.compare()["mac"]) - plain["mac"]).max(), 1e-2)
+        # A system of which the file has nothing; a component that was not measured.
+        write_uff(self.path("t.unv"), nodes, local, self.test_hz, systems=systems)
+        self.fails(1, "compare", "a.h5", "--test", "t.unv", error="matrices.uff", says=["node 3", "coordinate system 11"])
+        local[3][1] = 0
+        write_uff(self.path("t.unv"), nodes, local, self.test_hz, systems=systems, before=lines)
+        self.fails(1, "compare", "a.h5", "--test", "t.unv", error="matrices.uff", says=["component 2 of node 3"])
 
     def test_a_file_of_ours_is_read(self):
         """Six components a node: the model against itself."""

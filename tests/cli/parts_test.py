@@ -177,8 +177,8 @@ class Parts(ProgramTest):
             self.assertLess(np.abs(u - expected[grid]).max(), 1e-8 * scale)
 
     def test_parts_that_do_not_fit_are_named(self):
-        self.write("d.bdf", make_parts().replace("BEGIN SUPER=2", "BEGIN SUPER=2\nFORCE,3,2,0,1.,1.,0.,0."))
-        self.fails(1, "static", "d.bdf", error="fe.part-load", says=["superelement 2"])
+        self.write("d.bdf", make_parts().replace("BEGIN SUPER=2", "BEGIN SUPER=2\nSPCD,3,2,1,.1"))
+        self.fails(1, "static", "d.bdf", error="fe.part-load", says=["superelement 2", "SPCD"])
         # Without grid 5 of the main bulk data the parts meet outside of it.
         text = make_parts()
         main, rest = text.split("BEGIN SUPER=1")

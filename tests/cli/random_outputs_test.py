@@ -248,6 +248,12 @@ class RandomOutputs(LinearTest):
         self.make_carts()
         for item, says in (("f1=-2", "-2"), ("f1=nan", "nan")):
             self.fails(1, "response", "model.h5", "--psd", item, error="linear.bad-psd", says=[says])
+        for items in (["f1=1", "f1=2"], ["2", "f2=1"], ["f1=1", "all.csv"]):
+            self.write("all.csv", "frequency_hz,f1,f2\n1,2,0\n3,2,0\n")
+            arguments = [word for item in items for word in ("--psd", item)]
+            self.fails(1, "response", "model.h5", *arguments, error="linear.bad-psd",
+                       says=["given twice", "--psd " + items[0]])
+        self.bough("response", "model.h5", "--psd", "f2=1", "--psd", "all.csv")  # its column of f2 is zero
         self.fails(1, "response", "model.h5", "--psd", "f3=1", error="linear.unknown-input")
         self.fails(1, "response", "model.h5", "--psd", "none.toml", error="cli.no-file")
         self.write("bad.csv", "frequency_hz,f1\n1,2\n2,-1\n")

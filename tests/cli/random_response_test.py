@@ -273,6 +273,60 @@ class Random(ProgramTest):
         self.bough("export", "d.h5", "--to", "csv", "-o", "e.csv")
         self.assertEqual(self.read("e.csv"), self.read("d.csv"))
 
+    def test_cross_spectral_densities_of_elements(self):
+        """Item codes of FORCE and STRESS: V = (M_A - M_B)/L of both planes of a bar, F = A sigma of a rod in line."""
+        deck = """SOL 111
+CEND
+SPC = 1
+METHOD = 1
+FREQUENCY = 5
+RANDOM = 30
+RCROSS = 40
+FORCE = ALL
+STRESS = ALL
+DISPLACEMENT = ALL
+DLOAD = 9
+BEGIN BULK
+EIGRL,1,,,9
+PARAM,G,.04
+MAT1,1,7.+10,,.3
+PBAR,1,1,2.-3,3.-6,5.-6,4.-6
+PROD,2,1,3.-3
+GRID,1,,0.,0.,0.
+GRID,2,,2.,0.,0.
+GRID,3,,3.,0.,0.
+CBAR,11,1,1,2,0.,1.,0.
+CROD,12,2,2,3
+CONM2,21,2,,30.,.1,.2,.3
+SPC1,1,123456,1
+SPC1,1,23456,3
+CONM2,22,3,,5.
+RLOAD1,9,10,,,1.
+DAREA,10,2,2,3.
+DAREA,10,2,3,-2.
+DAREA,10,3,1,5.
+RANDPS,30,1,1,1.
+FREQ1,5,1.,7.,60
+""" + "".join(f"RCROSS,40,FORCE,{i},{a},FORCE,{j},{b}\n" for i, a, j, b in (
+            (11, 2, 11, 2), (11, 4, 11, 2), (11, 6, 11, 2), (11, 3, 11, 3), (11, 5, 11, 3), (11, 7, 11, 3), (11, 2, 11, 3),
+            (12, 2, 12, 2), (11, 8, 12, 2))) + """RCROSS,40,STRESS,12,2,FORCE,12,2
+RCROSS,40,DISP,2,2,FORCE,11,6
+ENDDATA
+"""
+        self.write("d.bdf", deck)
+        self.bough("frequency", "d.bdf", "-o", "d.h5")
+        with h5py.File(self.path("d.h5")) as f:
+            S = [f[f"random/30/cross/{k}/real"][:] + 1j * f[f"random/30/cross/{k}/imag"][:] for k in range(1, 12)]
+            u = f["subcases/1/displacement/real"][:] + 1j * f["subcases/1/displacement/imag"][:]
+        m1, m2 = np.abs(S[0]).max(), np.abs(S[3]).max()
+        np.testing.assert_allclose(S[2], (S[0] - S[1]) / 2, atol=1e-9 * m1)
+        np.testing.assert_allclose(S[5], (S[3] - S[4]) / 2, atol=1e-9 * m2)
+        self.assertGreater(np.abs(S[6]).max(), 1e-3 * np.sqrt(m1 * m2))
+        np.testing.assert_allclose(S[9], S[7] / 3e-3, rtol=1e-10)
+        self.assertGreater(np.abs(S[8]).max(), 0)
+        self.assertGreater(np.abs(S[10]).max(), 0)
+        self.assertEqual(u.shape[0], 60 + 1)
+
     def test_bad_cross_requests(self):
         deck = PAIR.format(sol=111, above="RCROSS = 40", bulk=TERMS + "RCROSS,40,DISP,1,1,,{}\n")
         self.write("d.bdf", PAIR.format(sol=111, above="RCROSS = 40", bulk=TERMS))
@@ -432,6 +486,7 @@ class Random(ProgramTest):
         refuse("DLOAD = 12", "DLOAD = 12\nFREQUENCY = 6", "modal.no-frequencies", [])
         self.write("d.bdf", good.replace("DLOAD = 12", "DLOAD = 12\nFREQUENCY = 6").replace("{bulk}", "").replace("RANDPS,30,1,1", "FREQ1,6,.1,.05,60\nRANDPS,30,1,1"))
         self.fails(1, "frequency", "d.bdf", error="modal.random-frequencies", says=["subcases 1 and 2"])
+        refuse("FREQ1,5,.2,.05,60", "FREQ,5,1.", "modal.random-frequencies", ["one frequency, 1 Hz", "integrals"])
         # A line that falls below 0 beyond the table.
         refuse("10.,1.,ENDT\n", "2.5,1.,ENDT\n", "modal.bad-spectrum", ["is -"])
 

@@ -29,6 +29,10 @@ void parse_grav(Card& card, Reading& r) {
   g.cid = card.read_reference(1, "CID");
   g.a = card.read_real(2, "A", 0.0);
   g.n = card.read_vector(3, "N1 N2 N3");
+  if (card.read_int(6, "MB", 0) == -1 && g.cid > 0)
+    card.fail("deck.field-range", 6,
+              "MB = -1: coordinate system " + std::to_string(g.cid) + " of the main bulk data is not read in a section",
+              "give the direction in the basic system, or the system in the section with MB blank");
   g.at = card.get_location();
   demand_direction(card, g.a, g.n, 3);
   if (card.is_ok()) r.deck.gravity.push_back(g);

@@ -57,6 +57,17 @@ void parse_seconct(Card& card, Reading& r) {
   if (card.is_ok()) r.deck.super.seconct.push_back(std::move(s));
 }
 
+/// SEIDA SEIDB GIDA1 GIDA2 ..., also over more lines, with THRU: SECONCT to the grids at the same places.
+void parse_sebndry(Card& card, Reading& r) {
+  records::Seconct s;
+  s.a = card.read_id(0, "SEIDA");
+  if (!card.is_word(1, "ALL")) s.b = card.read_reference(1, "SEIDB");
+  card.use(1);
+  s.at = card.get_location();
+  for (const int id : read_ids(card, 2, card.get_size(), "GIDA")) s.points.emplace_back(id, 0);
+  if (card.is_ok()) r.deck.super.seconct.push_back(std::move(s));
+}
+
 /// GID1 C1 GID2 C2 ..., also over more lines; GID1 THRU GID2 of scalar points.
 void parse_extrn(Card& card, Reading& r) {
   card.use(0, card.get_size());
@@ -140,6 +151,7 @@ void add_superelement_parsers(ParserTable& table) {
   table["SEBULK"].convert = convert_sebulk;
   table["SECONCT"] = {parse_seconct, ". . L", "SEIDA SEIDB TOL LOC"};
   table["SELOAD"] = {parse_seload, ""};
+  table["SEBNDRY"] = {parse_sebndry, ""};
   table["EXTRN"] = {parse_extrn, ""};
   table["DTI"] = {parse_dti, ""};
 }

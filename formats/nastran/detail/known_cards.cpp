@@ -188,6 +188,8 @@ const char* find_loss(std::string_view name) {
   if (name == "EPOINT") return "extra points belong to complex modes and responses: nothing here depends on them";
   if (name == "RVDOF") return "no residual vectors are added to the modes";
   if (name == "SPCOFF") return "AUTOSPC holds its dofs too when they have no stiffness";
+  if (name == "SENQSET") return "sections have the component modes of QSET1 and SPOINT in their own bulk data alone";
+  if (name == "SEEXCLD") return "its grids join by their places all the same; name the others by SEBNDRY";
   if (name.substr(0, 2) == "SE" && find_effect(name) && name != "SEQGP" && name != "SET" && name != "SEBULK" &&
       name != "SECONCT" && name != "SELOAD")
     return "superelements are not formed: the whole model is solved at once";

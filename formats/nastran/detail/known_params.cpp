@@ -44,6 +44,7 @@ const std::vector<Rule>& get_rules() {
       {"CP2", "a number", is_real},
       {"CM1", "a number", is_real},
       {"CM2", "a number", is_real},
+      {"CMSALOAD", "YES or NO", is_answer},
       {"COUPMASS", "an integer", is_integer,
        [](const std::string& v) {
          if (const auto value = parse_real(v)) return std::string(*value > 0 ? "1" : "-1");

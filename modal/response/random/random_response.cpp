@@ -167,11 +167,75 @@ const records::ResponseCurves* find_column(const records::ResponseSubcase& respo
   return nullptr;
 }
 
+/// A component of an element and the sign that Nastran gives it.
+struct ItemCode {
+  const char* name;
+  double sign;
+};
+
+/// Component of an item code of RCROSS; nullptr: not known. Codes on which the tables of real and of complex results
+/// agree (Quick Reference Guide, item codes). Moments of bars are those of the bending planes 1 (xy) and 2 (xz).
+const ItemCode* find_item(const std::string& card, bool is_stress, int code) {
+  static const std::map<std::string, std::vector<ItemCode>> forces{
+      {"CBAR",
+       {{"moment_z_a", 1},
+        {"moment_y_a", -1},
+        {"moment_z_b", 1},
+        {"moment_y_b", -1},
+        {"shear_y", 1},
+        {"shear_z", 1},
+        {"axial", 1},
+        {"torque", 1}}},
+      {"CBUSH", {{"force_x", 1}, {"force_y", 1}, {"force_z", 1}, {"moment_x", 1}, {"moment_y", 1}, {"moment_z", 1}}},
+      {"CROD", {{"axial", 1}}},
+      {"CONROD", {{"axial", 1}}},
+      {"CTUBE", {{"axial", 1}}},
+      {"CELAS1", {{"force", 1}}},
+      {"CELAS2", {{"force", 1}}},
+      {"CELAS3", {{"force", 1}}},
+      {"CELAS4", {{"force", 1}}}};
+  static const std::map<std::string, std::vector<ItemCode>> stresses{
+      {"CROD", {{"xx", 1}}}, {"CONROD", {{"xx", 1}}}, {"CTUBE", {{"xx", 1}}}};
+  const auto& table = is_stress ? stresses : forces;
+  const auto found = table.find(card);
+  constexpr int kFirst = 2;  // code 1 is the id
+  if (found == table.end() || code < kFirst || code - kFirst >= static_cast<int>(found->second.size())) return nullptr;
+  return &found->second[static_cast<std::size_t>(code - kFirst)];
+}
+
+/// Values of an element output over the frequencies; empty: not among the results.
+Eigen::VectorXcd find_element_values(const records::ResponseSubcase& response,
+                                     const records::RandomCross::Output& output) {
+  for (const auto& curves : response.elements) {
+    if (curves.is_stress != (output.quantity == "stress")) continue;
+    const auto id = std::find(curves.ids.begin(), curves.ids.end(), output.id);
+    if (id == curves.ids.end()) continue;
+    const auto* item = find_item(curves.card, curves.is_stress, output.component);
+    if (!item) continue;
+    const auto name = std::find(curves.components.begin(), curves.components.end(), item->name);
+    if (name == curves.components.end()) continue;
+    const auto column = static_cast<Index>((id - curves.ids.begin()) * static_cast<long>(curves.components.size()) +
+                                           (name - curves.components.begin()));
+    Eigen::VectorXcd values(curves.real.rows());
+    values.real() = item->sign * curves.real.col(column);
+    values.imag() = item->sign * curves.imag.col(column);
+    return values;
+  }
+  return {};
+}
+
 /// H_a L: the response of an output to each factor of S = L Lᴴ, frequencies x factors; empty: not requested.
 MatrixXcd calc_driven(const Responses& responses, const std::vector<MatrixXcd>& factors,
                       const records::RandomCross::Output& output) {
+  const bool is_of_element = output.quantity == "force" || output.quantity == "stress";
   MatrixXcd H(static_cast<Index>(factors.size()), static_cast<Index>(responses.size()));
   for (std::size_t j = 0; j < responses.size(); ++j) {
+    if (is_of_element) {
+      const auto values = find_element_values(*responses[j], output);
+      if (values.size() == 0) return {};
+      H.col(static_cast<Index>(j)) = values;
+      continue;
+    }
     Index column = 0;
     const auto* curves = find_column(*responses[j], output, column);
     if (!curves) return {};
@@ -224,8 +288,9 @@ void RandomAnalysis::add_cross_set(const records::DynamicSubcase& subcase, Diagn
 
 void RandomAnalysis::add_crosses(const Responses& responses, const std::vector<MatrixXcd>& factors,
                                  records::RandomResponse& result, Diagnostics& diagnostics) const {
-  static const std::map<std::string, std::string> quantities{
-      {"DISP", "displacement"}, {"VELO", "velocity"}, {"ACCE", "acceleration"}, {"SPCF", "spc_force"}};
+  static const std::map<std::string, std::string> quantities{{"DISP", "displacement"}, {"VELO", "velocity"},
+                                                             {"ACCE", "acceleration"}, {"SPCF", "spc_force"},
+                                                             {"FORCE", "force"},       {"STRESS", "stress"}};
   for (const auto& card : deck_.dynamics.crosses) {
     if (std::count(cross_sets_.begin(), cross_sets_.end(), card.sid) == 0) continue;
     records::RandomCross cross;
@@ -245,7 +310,8 @@ void RandomAnalysis::add_crosses(const Responses& responses, const std::vector<M
       diagnostics.warning("modal.random-cross", deck_.locate(card.at),
                           "RCROSS " + std::to_string(card.sid) + " is left out: " + missing +
                               " is no output of every subcase of RANDPS",
-                          "request DISPLACEMENT, VELOCITY, ACCELERATION or SPCFORCES of the grid above the subcases");
+                          "request DISPLACEMENT, VELOCITY, ACCELERATION or SPCFORCES of the grid, FORCE or STRESS of "
+                          "the element (item codes of CBAR, CBUSH, CROD, CELASi) above the subcases");
       continue;
     }
     cross.curve = card.curve;
@@ -296,6 +362,13 @@ records::RandomResponse RandomAnalysis::calc_set(const InputSpectrum& input, con
                        "RANDPS " + std::to_string(result.set) + ": subcases " + std::to_string(responses.front()->id) +
                            " and " + std::to_string(other->id) + " have different frequencies",
                        "select the same FREQUENCY in both");
+  if (result.hz.size() < 2)
+    throw InputError("modal.random-frequencies", at,
+                     "RANDPS " + std::to_string(result.set) + ": subcase " + std::to_string(responses.front()->id) +
+                         " has one frequency, " + to_text(result.hz(0)) +
+                         " Hz, and RMS values are integrals over two or "
+                         "more",
+                     "add FREQ1 to FREQ4 cards with the id of FREQUENCY");
   Diagnostics own;
   input.check(result.hz, own);
   own.throw_if_errors();

@@ -1,0 +1,178 @@
+"""BEGIN SUPER with elements: loads and gravity, forces of supports, SEBNDRY and component modes of the sections."""
+import json
+import unittest
+
+import h5py
+import numpy as np
+
+from parts_test import MASSES, PLACES, SHARED, list_bars, list_grids
+from support import ProgramTest
+
+DENSE = SHARED.format(density=",2700.")
+GRAVITY = "GRAV,3,,9.81,.2,-.5,-1.\n"
+HEAD = ("SOL {sol}\nCEND\nSPC = 1\nMETHOD = 1\nDISPLACEMENT = ALL\nSPCFORCES = ALL\nSUBCASE 1\nLOAD = 3\nBEGIN BULK\n"
+        "PARAM,COUPMASS,1\nEIGRL,1,,,6\nSPC1,1,123456,1\n" + MASSES)
+PART = "PARAM,COUPMASS,1\n" + DENSE
+
+
+def make_whole(loads, sol=101, more=""):
+    return HEAD.format(sol=sol) + DENSE + loads + more + list_grids(range(1, 14)) + list_bars(1, 13) + "ENDDATA\n"
+
+
+def make_parts(loads, first, second, sol=101, main=(1, 5, 9, 10, 11, 12, 13)):
+    """Section 1 has grids 1 to 5, section 2 has grids 5 to 9 as 1 to 5; `loads` of the main bulk data and of both."""
+    return (HEAD.format(sol=sol) + DENSE + loads + list_grids(main) + list_bars(9, 13) + "BEGIN SUPER=1\n" + PART + first
+            + list_grids(range(1, 6)) + list_bars(1, 5) + "BEGIN SUPER=2\n" + PART + second
+            + list_grids(range(5, 10), -4) + list_bars(5, 9, -4) + "ENDDATA\n")
+
+
+class PartLoads(ProgramTest):
+    def solve(self, deck, name="d"):
+        self.write(name + ".bdf", deck)
+        result = self.bough("static", name + ".bdf", "-o", name + ".h5")
+        with h5py.File(self.path(name + ".h5")) as f:
+            group = f["subcases/1"]
+            u = {(int(g), int(c)): x for (g, c), x in zip(f["dof_map"][:], group["displacement"][:])}
+            tables = {name: {int(i): part["force"][k] for k, i in enumerate(part["id"][:])}
+                      for name, part in group.get("elements", {}).items() if name.startswith("M")}
+        return u, tables, result.stderr
+
+    def compare(self, whole, parts):
+        exact, _, _ = self.solve(whole, "w")
+        found, tables, text = self.solve(parts)
+        scale = max(map(abs, exact.values()))
+        for (grid, c), x in found.items():
+            if grid in PLACES:
+                self.assertLess(abs(x - exact[grid, c]), 1e-8 * scale, (grid, c))
+        for name, shift in (("MUG1_1", 0), ("MUG1_2", 4)):
+            for grid, values in tables[name].items():
+                for c in range(6):
+                    self.assertLess(abs(values[c] - exact[grid + shift, c + 1]), 1e-8 * scale, (name, grid, c))
+        return tables, text
+
+    def test_gravity_and_forces_in_sections(self):
+        """Statics of the whole deck at all grids: GRAV, FORCE, PLOAD1 and LOAD in the sections."""
+        _, text = self.compare(make_whole(GRAVITY), make_parts(GRAVITY, GRAVITY, GRAVITY))
+        self.assertNotIn("superelement-gravity", text)
+        whole = GRAVITY + "FORCE,3,3,0,7.,1.,2.,3.\nMOMENT,3,8,0,4.,1.,0.,2.\nPLOAD1,3,6,FY,FR,0.,5.,1.,9.\n"
+        first = "LOAD,3,2.,.5,21,1.,22\nGRAV,21,,9.81,.2,-.5,-1.\nFORCE,22,3,0,3.5,1.,2.,3.\n"
+        second = GRAVITY + "MOMENT,3,4,0,4.,1.,0.,2.\nPLOAD1,3,6,FY,FR,0.,5.,1.,9.\n"
+        self.compare(make_whole(whole), make_parts(GRAVITY, first, second))
+
+    def test_accelerations_in_sections(self):
+        card = "ACCEL,3,,1.,2.,-3.,X\n,0.,1.,3.,2.5\n"
+        self.compare(make_whole(card), make_parts(card, card, card))
+
+    def test_loads_of_sections_alone(self):
+        self.compare(make_whole("FORCE,3,3,0,7.,1.,2.,3.\n"), make_parts("", "FORCE,3,3,0,7.,1.,2.,3.\n", ""))
+
+    def test_gravity_of_the_main_bulk_data_does_not_reach_sections(self):
+        for card in (GRAVITY, "ACCEL,3,,1.,2.,-3.,Z\n,0.,1.,9.,1.\n"):
+            _, _, text = self.solve(make_parts(card, card, ""))
+            self.assertIn("[fe.superelement-gravity]", text)
+            self.assertIn("superelement(s) 2", text)
+        massless = make_parts("ACCEL,3,,1.,2.,-3.,Z\n,0.,1.,9.,1.\n", "FORCE,3,3,0,0.,1.,0.,0.\n", "FORCE,3,3,0,0.,1.,0.,0.\n")
+        light = massless.split("BEGIN SUPER", 1)
+        light = light[0] + "BEGIN SUPER" + light[1].replace(",2700.", "")
+        heavy, without = self.solve(massless)[0], self.solve(light)[0]
+        for key, x in heavy.items():
+            self.assertAlmostEqual(x, without[key], delta=1e-12 * max(map(abs, heavy.values())))
+
+    def test_forces_of_supports_in_sections(self):
+        """MQG1 against the forces of the whole deck's constraints, with a load at the support."""
+        loads = GRAVITY + "FORCE,3,3,0,7.,1.,2.,3.\n"
+        support = "SPC1,1,23,3\nSPC1,1,2,8\n"
+        self.write("w.bdf", make_whole(loads, more=support))
+        self.bough("static", "w.bdf", "-o", "w.h5")
+        tables, _ = self.compare(make_whole(loads, more=support),
+                                 make_parts(GRAVITY, loads + "SPC1,1,23,3\n", GRAVITY + "SPC1,1,2,4\n"))
+        with h5py.File(self.path("w.h5")) as f:
+            reactions = {(int(g), int(c)): x for (g, c), x in zip(f["dof_map"][:], f["subcases/1/reaction"][:])}
+        scale = max(map(abs, reactions.values()))
+        self.assertGreater(abs(reactions[3, 2]), 1e-3 * scale)
+        self.assertEqual((sorted(tables["MQG1_1"]), sorted(tables["MQG1_2"])), ([3], [4]))
+        for name, grid, of in (("MQG1_1", 3, 3), ("MQG1_2", 4, 8)):
+            for c in range(6):
+                self.assertAlmostEqual(tables[name][grid][c], reactions[of, c + 1], delta=1e-8 * scale)
+
+    def test_gravity_of_external_superelements(self):
+        """PARAM,CMSALOAD,YES: -M Φ_r a of the component's matrix moves the boundary as its elements do."""
+        self.write("c.bdf", "SOL 103\nCEND\nEXTSEOUT(ASMBULK,EXTBULK,EXTID=50,MATOP4=51)\nBEGIN BULK\n" + PART
+                   + "BSET1,123456,5,9\n" + list_grids(range(5, 10)) + list_bars(5, 9) + "ENDDATA\n")
+        self.bough("export", "c.bdf", "--to", "extseout", "-o", "c")
+        for card in (GRAVITY, "ACCEL,3,,1.,2.,-3.,Z\n,0.,1.,9.,1.\n"):
+            exact, _, _ = self.solve(make_whole(card), "w")
+            deck = ("ASSIGN INPUTT4='c.op4',UNIT=51\n" + HEAD.format(sol=101) + "PARAM,CMSALOAD,YES\n" + DENSE + card
+                    + list_grids([1, 2, 3, 4, 10, 11, 12, 13]) + list_bars(1, 5) + list_bars(9, 13)
+                    + "INCLUDE 'c.asm'\nINCLUDE 'c.pch'\nENDDATA\n")
+            found, _, text = self.solve(deck)
+            self.assertNotIn("superelement-gravity", text)
+            scale = max(map(abs, exact.values()))
+            for (grid, c), x in found.items():
+                self.assertLess(abs(x - exact[grid, c]), 1e-8 * scale, (card, grid, c))
+            without, _, text = self.solve(deck.replace("PARAM,CMSALOAD,YES\n", ""))
+            self.assertIn("[fe.superelement-gravity]", text)
+            self.assertGreater(abs(without[13, 3] - exact[13, 3]), 1e-2 * scale)
+        # A component on a support: its mass matrix is not that of a free body.
+        self.write("c.bdf", self.read("c.bdf").replace("BSET1", "SPC1,1,123456,7\nBSET1").replace("EXTSEOUT", "SPC = 1\nEXTSEOUT"))
+        self.bough("export", "c.bdf", "--to", "extseout", "-o", "c")
+        self.write("d.bdf", deck)
+        self.fails(1, "static", "d.bdf", error="fe.superelement-gravity", says=["superelement 50", "CMSALOAD"])
+
+    def find_eigenvalues(self, deck, *options):
+        self.write("d.bdf", deck)
+        return np.array(json.loads(self.bough("modes", "d.bdf", "--json", *options).stdout)["eigenvalue"])
+
+    def test_component_modes(self):
+        """All fixed-interface modes kept: the section is as good as its elements."""
+        whole = self.find_eigenvalues(make_whole("", 103))
+        modes = "EIGRL,1,,,{0}\nSPOINT,901,THRU,960\nQSET1,0,901,THRU,960\nASET1,0,901,THRU,960\n"
+        guyan = self.find_eigenvalues(make_parts("", "", "", 103))
+        # Bars have no torsional inertia: 5 of 6 dofs of 3 interior grids move mass.
+        full = self.find_eigenvalues(make_parts("", modes.format(15), modes.format(15), 103))
+        np.testing.assert_allclose(full, whole, rtol=1e-8)
+        few = self.find_eigenvalues(make_parts("", modes.format(4), modes.format(4), 103))
+        self.assertTrue(np.all(guyan > few) and np.all(few > whole * (1 - 1e-10)))
+        self.assertLess(np.max(few / whole - 1), .02 * np.max(guyan / whole - 1))
+        # Statics do not change, whatever the number of modes.
+        loads = GRAVITY + "FORCE,3,3,0,7.,1.,2.,3.\n"
+        self.compare(make_whole(loads), make_parts(GRAVITY, loads + modes.format(3), GRAVITY + modes.format(2)))
+
+    def test_frequency_response_with_component_modes(self):
+        """SOL 108 with structural damping: all modes kept, the response of the whole deck."""
+        modes = "EIGRL,1,,,15\nSPOINT,901,THRU,960\nQSET1,0,901,THRU,960\n"
+        found = []
+        for deck in (make_whole("", 108), make_parts("", modes, modes, 108)):
+            deck = deck.replace(",2700.", ",2700.,,,.02").replace("LOAD = 3\n", "DLOAD = 9\nFREQUENCY = 5\n").replace(
+                "EIGRL,1,,,6\n", "RLOAD1,9,10,,,1.\nDAREA,10,13,3,1.\nDAREA,10,5,2,2.\nFREQ1,5,3.,11.,12\n", 1)
+            self.write("d.bdf", deck)
+            self.bough("frequency", "d.bdf", "-o", "d.h5")
+            with h5py.File(self.path("d.h5")) as f:
+                part = f["subcases/1/displacement"]
+                dofs = [tuple(d) for d in part["dofs"][:]]
+                columns = [dofs.index((g, c)) for g in (5, 9, 13) for c in (1, 2, 3, 5, 6)]
+                found.append(part["real"][:, columns] + 1j * part["imag"][:, columns])
+        self.assertGreater(np.abs(found[0].imag).max(), 0)
+        np.testing.assert_allclose(found[1], found[0], atol=1e-7 * np.abs(found[0]).max())
+
+    def test_fewer_points_than_modes(self):
+        deck = make_parts("", "EIGRL,1,,,9\nSPOINT,901,902\nQSET1,0,901,902\n", "", 103)
+        self.write("d.bdf", deck)
+        text = self.bough("modes", "d.bdf").stderr
+        self.assertIn("12 boundary degrees of freedom and 2 component modes", text)
+        self.write("d.bdf", deck.replace("EIGRL,1,,,9\nSPOINT", "SPOINT"))
+        self.fails(1, "modes", "d.bdf", error="fe.part-modes", says=["superelement 1", "METHOD"])
+
+    def test_searched_boundary(self):
+        """A main grid at the place of an interior grid joins it unless SEBNDRY leaves it out."""
+        spring = "GRID,203,,1.,0.,.3\nCELAS2,77,1.+5,203,2\n"
+        self.compare(make_whole(GRAVITY, more=spring),
+                     make_parts(GRAVITY + spring + "SEBNDRY,1,ALL,1,5\n", GRAVITY, GRAVITY))
+        for card, says in (("SENQSET,1,5\n", "QSET1 and SPOINT"), ("SEEXCLD,1,0,3\n", "SEBNDRY")):
+            self.assertIn(says, self.solve(make_parts(GRAVITY + card, GRAVITY, GRAVITY))[2])
+        self.write("d.bdf", make_parts(GRAVITY + "SEBNDRY,1,ALL,1,55\n", GRAVITY, GRAVITY))
+        self.fails(1, "static", "d.bdf", error="fe.part-boundary", says=["grid 55", "superelement 1"])
+
+
+if __name__ == "__main__":
+    unittest.main()
