@@ -26,7 +26,7 @@ class PageTest(StudioTest, BrowserTest):
             self.browser.screenshot(os.path.join(folder, name + ".png"))
 
     def wait(self, expression):
-        self.assertTrue(self.browser.wait_for(f"!!({expression})"), expression + self.browser.run("document.querySelector('.notes').textContent"))
+        self.assertTrue(self.browser.wait_for(f"!!({expression})"), expression + self.browser.run("document.querySelector('.notes')?.textContent ?? 'no page'"))
 
     def choose(self, label, text):
         """An option of a list by keys."""

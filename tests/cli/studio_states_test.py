@@ -100,6 +100,35 @@ class Systems(PageTest):
         self.command("unset parameters.gain")
         self.wait("studio.view.set.size === 0")
 
+    def test_a_run_is_found_by_a_page_that_did_not_start_it(self):
+        """After a reload and in a second tab a run has its progress, its curves and Stop; the text of the file is open."""
+        self.show_system(SYSTEM.replace("duration = 2.0", "duration = 1e5"))
+        page = self.browser
+        page.click("button.run")
+        self.wait("document.querySelector('.progress-line').textContent.includes('%')")
+        page.visit(self.address)  # without the hash: the page of a second tab
+        self.wait("document.querySelector('.jobs button')?.textContent.startsWith('run sliders.toml')")
+        page.reload()
+        self.assertEqual(page.run("studio.name"), "sliders.toml")
+        self.wait("document.querySelector('.progress-line').textContent.includes('%')")
+        self.wait("document.querySelector('.result .chart canvas')")
+        self.keep("studio-found-run")
+        self.assertFalse(page.run("document.querySelector('.progress button').hidden"))
+        self.click_text("Stop")
+        self.wait("document.querySelector('.progress-line').textContent.startsWith('ended with code 3: bough run sliders.toml')")
+        self.wait("document.querySelector('.result').dataset.ready === 'true'")
+        self.wait("document.querySelector('.jobs').childElementCount === 0")
+        self.assertEqual(self.call("jobs")["result"]["jobs"], [])
+        self.assertEqual([e for e in page.list_errors() if "favicon" not in e], [])
+
+    def test_a_reload_opens_the_file_that_was_open(self):
+        self.write("plate.bdf", make_plate())
+        self.show_system()
+        page = self.browser
+        self.open("plate.bdf")
+        page.reload()
+        self.assertEqual(page.run("document.querySelector('main.work').dataset.file"), "plate.bdf")
+
     def test_results_have_another_name_than_the_file_of_that_name(self):
         self.write("sliders.toml", SYSTEM)
         self.bough("linearize", "sliders.toml", "-o", "sliders.h5")
