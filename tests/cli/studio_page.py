@@ -3,7 +3,7 @@ import json
 import os
 import unittest
 
-from browser import BrowserTest, find_chromium
+from browser import WAIT_FRAMES, BrowserTest, find_chromium
 from studio_support import StudioTest
 
 
@@ -23,6 +23,7 @@ class PageTest(StudioTest, BrowserTest):
         folder = os.environ.get("BOUGH_ARTEFACTS")
         if folder:
             os.makedirs(folder, exist_ok=True)
+            self.browser.run(WAIT_FRAMES)
             self.browser.screenshot(os.path.join(folder, name + ".png"))
 
     def wait(self, expression):

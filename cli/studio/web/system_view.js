@@ -4,6 +4,7 @@ import { make_chapter } from "./chapter_panel.js";
 import { ReportChapter } from "./chapter_views.js";
 import { Chart } from "./chart.js";
 import { DiagramPanels } from "./diagram_view.js";
+import { HingeAxes } from "./hinge_axes.js";
 import { HistoryView, RunSet } from "./history.js";
 import { MotionView } from "./motion_view.js";
 import { el, make_button } from "./page_parts.js";
@@ -31,6 +32,7 @@ export class SystemView {
     this.is_following = false;  // a command of this file is followed
     this.add_form = make_add_form(studio, this);
     this.diagrams = new DiagramPanels(studio, this);
+    this.hinge_axes = new HingeAxes(this);
     this.pane = new TextPane(studio, file, "system", read, { on_check: (answer) => this.update(answer) });
     const button = (text, title, action, name) => Object.assign(make_button(text, title, action), { className: name });
     const actions = el("div", { class: "tools actions" }, button("Run", "bough run: time history", () => this.run(), "main run"),
@@ -40,7 +42,7 @@ export class SystemView {
       button("… at equilibrium", "bough linearize --equilibrium", () => this.solve("linearize", "-linear.h5", [["--equilibrium"]]), "linearize-rest"),
       button("Save as page", "bough report of the run and its bodies: one HTML file", () => this.report(), "save-page"),
       button("Copy commands …", "The lines that do the same in a shell", () => show_history(), "copy"));
-    this.element = el("div", { class: "split reverse" }, el("div", { class: "side wide" }, this.add_form.element, this.pane.element), el("div", { class: "work-column" }, actions, this.parameters, this.progress.element, this.picked, this.scene, this.diagrams.element, this.result));
+    this.element = el("div", { class: "split reverse" }, el("div", { class: "side wide" }, this.add_form.element, this.pane.element), el("div", { class: "work-column" }, actions, this.parameters, this.progress.element, this.picked, this.hinge_axes.element, this.scene, this.diagrams.element, this.result));
     this.join().then((found) => !found && studio.has(this.output) && this.show_results());
   }
 
@@ -56,14 +58,15 @@ export class SystemView {
     if (!has_errors) for (const name of [...this.set.keys()]) if (!names.has(name)) this.set.delete(name);
     this.show_parameters(answer.parameters);
     this.add_form.update(answer);
+    this.diagrams.update();
     if (this.is_running || has_errors || this.text_drawn === this.pane.text) return;
     const text = this.pane.text;
-    this.diagrams.update();
     try {
       const { chapter } = await ask("preview", { file: this.file, text });
       this.text_drawn = text;
       this.bodies = answer.bodies;
-      this.show_scene(new ReportChapter(chapter.data).run, false);
+      const run = new ReportChapter(chapter.data).run, list_bodies = (r) => r?.data.bodies.map((b) => b.name).join("\n");
+      this.show_scene(run, false, list_bodies(run) === list_bodies(this.motion?.run));
     } catch (error) {
       if (error.messages) this.pane.messages.show(error.messages);
     }
@@ -76,9 +79,10 @@ export class SystemView {
     this.motion = new MotionView(run, this.viewer);
     if (home && is_kept) Object.assign(this.viewer, { yaw, pitch, distance, target });
     if (at_end) this.motion.set_time(this.motion.last);
+    this.hinge_axes.attach(this.motion);
     this.viewer.on_pick = (found) => this.pick(found);
-    this.viewer.draw();
     this.scene.replaceChildren(this.motion.element);
+    this.viewer.draw();  // on the page: before, the canvas has no size
     this.scene.dataset.samples = String(run.time.length);
     delete this.scene.dataset.pole;
   }
