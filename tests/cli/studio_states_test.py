@@ -2,6 +2,7 @@
 import os
 import unittest
 
+from browser import Browser
 from studio_browser_test import PROJECT, make_plate
 from studio_control_test import SYSTEM
 from studio_page import PageTest
@@ -120,6 +121,30 @@ class Systems(PageTest):
         self.wait("document.querySelector('.jobs').childElementCount === 0")
         self.assertEqual(self.call("jobs")["result"]["jobs"], [])
         self.assertEqual([e for e in page.list_errors() if "favicon" not in e], [])
+
+    def test_a_killed_browser(self):
+        """The run goes on, the file is as it was saved, and another browser finds both."""
+        text = SYSTEM.replace("duration = 2.0", "duration = 1e5")
+        self.write("sliders.toml", text)
+        self.start_studio("sliders.toml")
+        other = Browser(1000, 700)
+        self.addCleanup(other.close)
+        other.visit(self.address)
+        run = "document.querySelector('.progress-line')?.textContent.includes('%')"
+        self.assertTrue(other.wait_for("document.querySelector('.text-pane')?.dataset.checked === '0'"))
+        other.click("button.run")
+        self.assertTrue(other.wait_for(run))
+        other.click("textarea.code")
+        other.type("# not saved\n")
+        other.process.kill()
+        other.process.wait()
+        self.assertEqual(self.read("sliders.toml"), text)
+        self.assertEqual([j["request"]["files"] for j in self.call("jobs")["result"]["jobs"]], [["sliders.toml"]])
+        self.browser.visit(self.address)
+        self.wait(run)
+        self.click_text("Stop")
+        self.wait("document.querySelector('.progress-line').textContent.startsWith('ended with code 3')")
+        self.ask("chapter", file="sliders.h5")
 
     def test_a_reload_opens_the_file_that_was_open(self):
         self.write("plate.bdf", make_plate())

@@ -19,8 +19,8 @@ export class Connections {
     this.source = null;  // id of the block from which a connection is being made
     this.erase = make_button("Delete connection", "Takes the chosen connection out of the text (Delete)", () => this.remove(this.chosen));
     this.erase.disabled = true;
-    this.said = el("output", { class: "note", "aria-live": "polite" });
-    this.element = el("div", { class: "tools" }, this.erase, this.said);
+    this.status = el("output", { class: "note", "aria-live": "polite" });
+    this.element = el("div", { class: "tools" }, this.erase, this.status);
     host.addEventListener("pointerdown", (event) => this.press(event));
     host.addEventListener("keydown", (event) => this.key(event));
     this.say();
@@ -37,7 +37,7 @@ export class Connections {
   }
 
   say(text = "") {
-    this.said.textContent = text || "Drag from a block to another, or press c on both: a connection. A click on a connection chooses it.";
+    this.status.textContent = text || "Drag from a block to another, or press c on both: a connection. A click on a connection chooses it.";
   }
 
   find_node(target) {

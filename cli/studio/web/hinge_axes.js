@@ -31,8 +31,8 @@ export class HingeAxes {
     });
     const along = [[1, 0, 0], [0, 1, 0], [0, 0, 1]].map((axis, i) => make_button("xyz"[i], "The axis along " + "xyz"[i] + " of the hinge frame of the parent", () => this.write(axis)));
     this.numbers = el("span", { class: "axis-numbers", hidden: true }, ...this.fields, ...along, make_button("± reverse", "The axis in the other direction", () => this.write(this.fields.map((f) => -Number(f.value)))));
-    this.said = el("output", { class: "note", "aria-live": "polite" });
-    this.element = el("div", { class: "tools hinge-axes", hidden: true }, this.picker, this.numbers, this.said);
+    this.status = el("output", { class: "note", "aria-live": "polite" });
+    this.element = el("div", { class: "tools hinge-axes", hidden: true }, this.picker, this.numbers, this.status);
   }
 
   get motion() {
@@ -122,7 +122,7 @@ export class HingeAxes {
   show_numbers(axis = null) {
     const hinge = this.hinges?.get(this.name);
     this.numbers.hidden = !hinge;
-    this.said.textContent = hinge ? "Drag the tip of the arrow. Near an axis of the hinge frame it is that axis, but for Alt." : "";
+    this.status.textContent = hinge ? "Drag the tip of the arrow. Near an axis of the hinge frame it is that axis, but for Alt." : "";
     if (!hinge) return;
     (axis ?? transpose(hinge.rotation).map((column) => dot(column, hinge.axis))).forEach((v, i) => (this.fields[i].value = String(round(v) || 0)));
   }
@@ -135,7 +135,7 @@ export class HingeAxes {
     if (!item) return;
     return this.view.studio.attempt(async () => {
       await this.view.pane.edit([`set ${item.path}.axis=${to_toml(rounded)}`]);
-      this.said.textContent = `${this.name}: axis = ${to_toml(rounded)}`;
+      this.status.textContent = `${this.name}: axis = ${to_toml(rounded)}`;
     }).then((done) => done === false && this.cancel());
   }
 
