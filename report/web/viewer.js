@@ -60,6 +60,8 @@ const project = (view, rect, p) => {
 
 // Outlines of larger meshes wait until the view rests: lines take most of the time where no graphics card draws.
 export const kMaxTurningEdges = 5000;
+// Larger meshes are turned with a pixel in four, and at most one picture per frame of the browser.
+const kMaxTurningTriangles = 5000;
 
 // A stage on which things are drawn: { points, size, triangles, edges, color, by_level, line_color }; marks stand before
 // all things. With by_level a point's colour is its size over `reach`; with elements and levels (Drawing) each element
@@ -167,8 +169,21 @@ export class Viewer {
     return multiply(lens, look);
   }
 
+  is_large() {
+    return this.things.reduce((sum, thing) => sum + (thing.triangles?.length ?? 0) / 3, 0) > kMaxTurningTriangles;
+  }
+
+  // After a movement of the pointer: there are more of them than pictures that a large mesh can be drawn in.
+  draw_moved() {
+    if (!this.is_large()) return this.draw();
+    this.moved ??= requestAnimationFrame(() => {
+      this.moved = null;
+      this.draw();
+    });
+  }
+
   draw() {
-    const gl = this.gl, scale = devicePixelRatio || 1;
+    const gl = this.gl, scale = (devicePixelRatio || 1) * (this.is_turning && this.is_large() ? 0.5 : 1);
     const width = Math.round(this.canvas.clientWidth * scale), height = Math.round(this.canvas.clientHeight * scale);
     if (width < 10 || height < 10) return;
     if (this.canvas.width !== width || this.canvas.height !== height) [this.canvas.width, this.canvas.height] = [width, height];
@@ -291,7 +306,7 @@ export class Viewer {
         this.yaw -= 0.008 * dx;
         this.pitch = Math.max(-1.55, Math.min(1.55, this.pitch + 0.008 * dy));
       }
-      this.draw();
+      this.draw_moved();
     });
     this.canvas.addEventListener("pointerup", (event) => {
       if (grabbed) {
@@ -313,7 +328,7 @@ export class Viewer {
     this.canvas.addEventListener("wheel", (event) => {
       event.preventDefault();
       this.distance *= Math.exp(0.001 * event.deltaY);
-      this.draw();
+      this.draw_moved();
     }, { passive: false });
   }
 

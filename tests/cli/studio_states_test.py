@@ -44,6 +44,32 @@ class Decks(PageTest):
         self.wait("Math.abs(studio.view.stage.scene.get_place(45)[0] - 1.25) < 1e-6")
         self.assertIn("45", self.get_chosen())
 
+    def test_a_large_mesh_is_turned_with_fewer_pixels(self):
+        """While it is dragged; at rest with all. A small mesh is drawn with all throughout."""
+        size = "[document.querySelector('canvas.scene').width / document.querySelector('canvas.scene').clientWidth, studio.view.stage.viewer.yaw]"
+        for count, share in ((60, 0.5), (20, 1)):
+            n = count + 1
+            lines = ["SOL 103", "CEND", "BEGIN BULK", "PSHELL,1,1,.01,1", "MAT1,1,7.+10,,.3,2700."]
+            lines += [f"GRID,{1 + i + n * j},,{i / n:.4f},{j / n:.4f},0." for j in range(n) for i in range(n)]
+            lines += [f"CQUAD4,{1 + i + n * j},1,{1 + i + n * j},{2 + i + n * j},{2 + i + n * (j + 1)},{1 + i + n * (j + 1)}"
+                      for j in range(count) for i in range(count)]
+            self.write("plate.bdf", "\n".join([*lines, "ENDDATA", ""]))
+            self.start_studio("plate.bdf")
+            page = self.browser
+            page.visit(self.address)
+            self.wait("studio.view?.stage")
+            before = page.run(size)
+            box = page.show("canvas.scene")
+            x, y = box["x"] + 20, box["y"] + 20
+            page.mouse("mouseMoved", x, y)
+            page.mouse("mousePressed", x, y, button="left", buttons=1, clickCount=1)
+            page.mouse("mouseMoved", x + 60, y, button="left", buttons=1)
+            self.wait(f"{size}[1] !== {before[1]}")
+            self.wait(f"Math.abs({size}[0] - {share}) < 0.01")
+            page.mouse("mouseReleased", x + 60, y, button="left", clickCount=1)
+            self.wait(f"Math.abs({size}[0] - 1) < 0.01")
+            self.end_studio()
+
     def test_commands_of_a_name_that_begins_with_a_dash(self):
         self.show_plate("-dash.bdf")
         page = self.browser
