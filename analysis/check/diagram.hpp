@@ -22,7 +22,7 @@ struct Diagram {
     std::string from, to;  ///< ids of nodes
     std::string label;
     Link link = Link::Signal;
-    /// Of Link::Signal: the signal as the file names it, the key that does, `from` in a [[connect]], and the line of
+    /// Signals alone: the name in the file, the key that does, `from` in a [[connect]], and the line of
     /// its table.
     std::string signal, key;
     int line = 0;

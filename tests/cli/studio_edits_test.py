@@ -62,10 +62,10 @@ class Axes(Edits):
         page.show("canvas.scene")
         # In the world, in the arm (turned by 0.6 about z), in the hinge frame (turned by 90 degrees about z in the arm).
         angle = 0.6 + math.pi / 2
-        wanted = (0.48, 0.36, 0.8)
-        page.drag(page.run(TIP), page.run(AIM % list(wanted)), steps=12)
+        direction = (0.48, 0.36, 0.8)
+        page.drag(page.run(TIP), page.run(AIM % list(direction)), steps=12)
         self.wait("studio.view.pane.text !== studio.view.pane.saved")
-        x, y, z = wanted
+        x, y, z = direction
         expected = (math.cos(angle) * x + math.sin(angle) * y, -math.sin(angle) * x + math.cos(angle) * y, z)
         axis = self.get_axis(self.get_text(), "wrist")
         self.assertGreater(sum(a * b for a, b in zip(axis, expected)), math.cos(math.radians(2)))  # a pixel or two
@@ -92,7 +92,7 @@ class Axes(Edits):
             "parent_rotation_deg = [0.0, 0.0, 90.0]\naxis = [0.0, 0.0, 1.0]",
             f"parent_rotation_deg = [0.0, 0.0, 90.0]\naxis = [{', '.join(str(v) for v in axis)}]"))
         self.assertEqual([e for e in page.list_errors() if "favicon" not in e], [])
-        # A drag beside the tip turns the view.
+        # A drag away from the tip turns the view.
         yaw = page.run("studio.view.viewer.yaw")
         box = page.show("canvas.scene")
         page.drag((box["x"] + 20, box["y"] + 20), (box["x"] + 80, box["y"] + 20))
@@ -164,7 +164,7 @@ class Connections(Edits):
         self.wait("document.querySelector('.text-pane').dataset.checked === '0'")
         self.save()
         np.testing.assert_allclose(self.calc_poles("sliders.toml"), before, rtol=1e-12)
-        # That one is a table: it is deleted as a whole.
+        # The new connection is a table, deleted as a whole.
         self.click_at(self.find(wire))
         page.press("Delete")
         self.wait("!studio.view.pane.text.includes('[[connect]]')")
