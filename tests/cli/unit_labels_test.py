@@ -177,7 +177,7 @@ class LinearModels(ProgramTest):
         self.assertIn("frequency kHz", tables["quick"])
         self.assertNotIn("Hz", tables["quick"].replace("kHz", ""))
         self.assertRegex(tables["quick"], r"coordinate +position +speed +unit")
-        self.assertRegex(tables["quick"], r"slide +0 +0 +mm")
+        self.assertRegex(tables["quick"], r"slide:1 +0 +0 +mm")
         with h5py.File(self.path("plain.h5")) as plain, h5py.File(self.path("quick.h5")) as quick:
             self.assertEqual([quick.attrs[key + "_unit"] for key in ("length", "mass", "time", "force")], ["mm", "kg", "ms", "kN"])
             self.assertEqual([key for key in plain.attrs if key.endswith("_unit")], [])  # as older files

@@ -63,6 +63,7 @@ export class SystemView {
     const text = this.pane.text;
     try {
       const { chapter } = await ask("preview", { file: this.file, text });
+      if (text !== this.pane.text) return;  // another text is checked by now
       this.text_drawn = text;
       this.bodies = answer.bodies;
       const run = new ReportChapter(chapter.data).run, list_bodies = (r) => r?.data.bodies.map((b) => b.name).join("\n");
