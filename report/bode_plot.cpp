@@ -7,6 +7,9 @@
 #include <complex>
 #include <numbers>
 
+#include "formats/records/unit_names.hpp"
+#include "report/label.hpp"
+
 namespace bough::report {
 
 namespace {
@@ -14,7 +17,6 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-constexpr const char* kFrequency = "frequency [Hz]";
 const double kNaN = std::nan("");
 
 /// Linear in log10 of the frequency.
@@ -87,12 +89,12 @@ std::vector<BodePair> make_bode_pairs(const records::FrequencyResponse& response
   return pairs;
 }
 
-std::vector<Plot> make_bode_axes() {
+std::vector<Plot> make_bode_axes(const std::string& time_unit) {
   std::vector<Plot> plots(2);
   for (auto& plot : plots) plot.has_log_x = true;
   plots[0].y_label = "magnitude [dB]";
   plots[1].y_label = "phase [degrees]";
-  plots[1].x_label = kFrequency;
+  plots[1].x_label = label_frequency(time_unit);
   plots[1].y_step = 45;
   return plots;
 }
@@ -112,8 +114,10 @@ void add_bode_curve(const BodePair& pair, const VectorXd& frequency_hz, const st
   plots[1].curves.push_back({"", frequency_hz, pair.degrees});
 }
 
-void add_margins(const records::Margins& margins, const BodePair& pair, const VectorXd& frequency_hz,
+void add_margins(const records::Margins& margins, const BodePair& pair, const records::FrequencyResponse& response,
                  std::vector<Plot>& plots) {
+  const VectorXd& frequency_hz = response.frequency_hz;
+  const auto unit = records::name_frequency_unit(response.units.time);
   constexpr int kGainStyle = 1, kPhaseStyle = 2;
   add_level(0, frequency_hz, plots[0]);
   for (const auto& c : margins.gain) {
@@ -121,8 +125,8 @@ void add_margins(const records::Margins& margins, const BodePair& pair, const Ve
     if (frequency_hz.size() == 0 || c.frequency_hz < frequency_hz[0] ||
         c.frequency_hz > frequency_hz[frequency_hz.size() - 1])
       continue;
-    add_margin(c.frequency_hz, -margin, 0, fmt::format("gain margin {:.3g} dB at {:.3g} Hz", margin, c.frequency_hz),
-               kGainStyle, plots[0]);
+    add_margin(c.frequency_hz, -margin, 0,
+               fmt::format("gain margin {:.3g} dB at {:.3g} {}", margin, c.frequency_hz, unit), kGainStyle, plots[0]);
   }
   for (const auto& c : margins.phase) {
     const double phase = interpolate(frequency_hz, pair.degrees, c.frequency_hz);
@@ -130,12 +134,13 @@ void add_margins(const records::Margins& margins, const BodePair& pair, const Ve
     const double margin = c.margin * 180 / std::numbers::pi, limit = phase - margin;
     add_level(limit, frequency_hz, plots[1]);
     add_margin(c.frequency_hz, phase, limit,
-               fmt::format("phase margin {:.3g} degrees at {:.3g} Hz", margin, c.frequency_hz), kPhaseStyle, plots[1]);
+               fmt::format("phase margin {:.3g} degrees at {:.3g} {}", margin, c.frequency_hz, unit), kPhaseStyle,
+               plots[1]);
   }
 }
 
 Plot make_sigma_plot(const records::FrequencyResponse& response, const std::string& prefix) {
-  Plot plot{"", kFrequency, "singular value [dB]", {}};
+  Plot plot{"", label_frequency(response.units.time), "singular value [dB]", {}};
   plot.has_log_x = true;
   const auto& values = response.singular_values;
   const double floor = values.size() > 0 ? kResponseFloor * values.maxCoeff() : 0;

@@ -21,15 +21,16 @@ constexpr double kResponseFloor = 1e-12;
 /// Entries column by column, at most `max_pairs`.
 std::vector<BodePair> make_bode_pairs(const records::FrequencyResponse& response, std::size_t max_pairs);
 
-/// Magnitude and phase over frequency, without curves.
-std::vector<Plot> make_bode_axes();
+/// Magnitude and phase over frequency, without curves. \param time_unit  label of the unit of time, empty: none
+std::vector<Plot> make_bode_axes(const std::string& time_unit);
 /// Phase against magnitude, without curves; with contours of constant |L/(1+L)| and the point -1.
 Plot make_nichols_axes();
 /// Adds one curve to each diagram of make_bode_axes.
 void add_bode_curve(const BodePair& pair, const Eigen::VectorXd& frequency_hz, const std::string& label,
                     std::vector<Plot>& plots);
-/// Marks the margins on the diagrams: lines at 0 dB and at odd multiples of 180 degrees, and the distance to them.
-void add_margins(const records::Margins& margins, const BodePair& pair, const Eigen::VectorXd& frequency_hz,
+/// Marks the margins of `response` on the diagrams: lines at 0 dB and at odd multiples of 180 degrees, and the distance
+/// to them.
+void add_margins(const records::Margins& margins, const BodePair& pair, const records::FrequencyResponse& response,
                  std::vector<Plot>& plots);
 /// Singular values over frequency.
 Plot make_sigma_plot(const records::FrequencyResponse& response, const std::string& prefix);

@@ -50,7 +50,13 @@ json to_json(const SceneBody& body) {
 }
 
 json to_json(const SceneHinge& hinge) {
-  return {{"name", hinge.name}, {"type", hinge.type}, {"at", to_json(hinge.at)}, {"axis", to_list(hinge.axis)}};
+  json rows = json::array();
+  for (int i = 0; i < 3; ++i) rows.push_back(to_list(hinge.rotation.row(i).transpose()));
+  return {{"name", hinge.name},
+          {"type", hinge.type},
+          {"at", to_json(hinge.at)},
+          {"axis", to_list(hinge.axis)},
+          {"rotation", std::move(rows)}};
 }
 
 json to_json(const SceneSensor& sensor) {

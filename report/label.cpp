@@ -1,5 +1,7 @@
 #include "report/label.hpp"
 
+#include "formats/records/unit_names.hpp"
+
 namespace bough::report {
 
 std::string make_label(const std::string& name, const std::string& unit) {
@@ -8,8 +10,7 @@ std::string make_label(const std::string& name, const std::string& unit) {
 }
 
 std::string label_frequency(const std::string& time_unit) {
-  if (time_unit.empty() || time_unit == "s" || time_unit == "T") return "frequency [Hz]";
-  return time_unit == "ms" ? "frequency [kHz]" : "frequency [1/" + time_unit + "]";
+  return make_label("frequency", records::name_frequency_unit(time_unit));
 }
 
 std::string make_density_unit(const std::string& unit, const std::string& time_unit) {

@@ -7,8 +7,10 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "formats/records/unit_names.hpp"
 #include "report/bode_plot.hpp"
 #include "report/html.hpp"
+#include "report/label.hpp"
 #include "report/pack.hpp"
 #include "report/pole_plot.hpp"
 
@@ -24,7 +26,8 @@ std::string make_poles(const records::LinearModel& model) {
   Plot plot = make_pole_plot({{"", &model}});
   plot.title = "Poles and zeros";
   const records::Poles poles = round_poles(model.poles);
-  HtmlTable table("Poles", {{"real"}, {"imaginary"}, {"frequency [Hz]"}, {"damping %"}, {"coordinate", true}});
+  const auto frequency = label_frequency(model.units.time), unit = records::name_frequency_unit(model.units.time);
+  HtmlTable table("Poles", {{"real"}, {"imaginary"}, {frequency}, {"damping %"}, {"coordinate", true}});
   int num_gone = 0;
   for (Eigen::Index i = 0; i < poles.real.size(); ++i) {
     if (records::is_gone(model, i)) {
@@ -40,8 +43,8 @@ std::string make_poles(const records::LinearModel& model) {
                       "note");
   if (!model.aliased.empty()) {
     HtmlTable aliased(
-        fmt::format("Modes above the Nyquist frequency {} Hz: aliased", format_value(0.5 / model.sample_time, 4)),
-        {{"mode", true}, {"frequency [Hz]"}, {"appears at [Hz]"}});
+        fmt::format("Modes above the Nyquist frequency {} {}: aliased", format_value(0.5 / model.sample_time, 4), unit),
+        {{"mode", true}, {frequency}, {make_label("appears at", unit)}});
     for (const auto& one : model.aliased)
       aliased.add_row({one.mode, format_value(one.frequency_hz), format_value(one.appears_at_hz)});
     html += aliased.to_html(400);
@@ -58,9 +61,9 @@ std::string make_poles(const records::LinearModel& model) {
 /// Diagrams of one pair, with the margins of a loop.
 std::vector<Plot> make_bode_plots(const LinearFindings& findings, const BodePair& pair) {
   const auto& frequency = findings.response.frequency_hz;
-  auto plots = make_bode_axes();
+  auto plots = make_bode_axes(findings.response.units.time);
   add_bode_curve(pair, frequency, "", plots);
-  if (findings.has_margins) add_margins(findings.margins, pair, frequency, plots);
+  if (findings.has_margins) add_margins(findings.margins, pair, findings.response, plots);
   plots[0].title = pair.name;
   return plots;
 }
@@ -83,9 +86,10 @@ std::string make_singular_values(const LinearFindings& findings) {
   return make_figure(plot);
 }
 
-std::string make_margins(const records::Margins& m) {
-  HtmlTable table("The loop, with negative feedback",
-                  {{"margin", true}, {"frequency [Hz]"}, {"dB or degrees"}, {"delay [T]"}});
+std::string make_margins(const records::Margins& m, const std::string& time) {
+  HtmlTable table(
+      "The loop, with negative feedback",
+      {{"margin", true}, {label_frequency(time)}, {"dB or degrees"}, {make_label("delay", time.empty() ? "T" : time)}});
   for (const auto& c : m.gain)
     table.add_row({"gain", format_value(c.frequency_hz), format_value(20 * std::log10(c.margin), 5), ""});
   for (const auto& c : m.phase)
@@ -112,13 +116,16 @@ void add_response(const LinearFindings& findings, const std::vector<BodePair>& p
                               findings.margins.is_stable ? Verdict::Good : Verdict::Warning,
                               "largest real part " + format_value(findings.margins.largest_real, 4)});
   if (!pairs.empty()) {
-    chapter.checks.push_back(
-        {"largest gain", findings.peak.is_finite ? format_value(findings.peak.value) : "infinite", Verdict::None,
-         findings.peak.is_finite ? "at " + format_value(findings.peak.frequency_hz) + " Hz" : findings.peak.why});
+    chapter.checks.push_back({"largest gain", findings.peak.is_finite ? format_value(findings.peak.value) : "infinite",
+                              Verdict::None,
+                              findings.peak.is_finite ? "at " + format_value(findings.peak.frequency_hz) + " " +
+                                                            records::name_frequency_unit(findings.response.units.time)
+                                                      : findings.peak.why});
     chapter.add_panel("bode", "Bode", make_bode(findings, pairs));
     chapter.add_panel("sigma", "Singular values", make_singular_values(findings));
   }
-  if (findings.has_margins) chapter.add_panel("margins", "Margins", make_margins(findings.margins));
+  if (findings.has_margins)
+    chapter.add_panel("margins", "Margins", make_margins(findings.margins, findings.response.units.time));
 }
 
 json to_list(const Eigen::VectorXd& values) {
@@ -213,10 +220,10 @@ Chapter make_chapter(const records::LinearModel& model, const LinearFindings& fi
   for (const auto& [id, title, signals] :
        {std::tuple("states", "States", &model.states), std::tuple("inputs", "Inputs", &model.inputs),
         std::tuple("outputs", "Outputs", &model.outputs)}) {
-    HtmlTable table("", {{"number"}, {"name", true}, {"dims", true}});
+    HtmlTable table("", {{"number"}, {"name", true}, {model.units.empty() ? "dims" : "unit", true}});
     for (int i = 0; i < signals->size(); ++i)
       table.add_row({std::to_string(i + 1), signals->name[static_cast<std::size_t>(i)],
-                     signals->dims[static_cast<std::size_t>(i)]});
+                     records::label_dims(signals->dims[static_cast<std::size_t>(i)], model.units)});
     chapter.add_panel(
         id, title,
         "<details><summary>" + std::to_string(signals->size()) + "</summary>\n" + table.to_html(400) + "</details>\n");
@@ -224,6 +231,7 @@ Chapter make_chapter(const records::LinearModel& model, const LinearFindings& fi
   chapter.data = json{{"poles", list_poles(model)},
                       {"plane", make_plane(model)},
                       {"zeros", {{"real", to_list(model.zeros_real)}, {"imag", to_list(model.zeros_imag)}}},
+                      {"frequency_unit", records::name_frequency_unit(model.units.time)},
                       {"frequency", pack_doubles(findings.response.frequency_hz)},
                       {"pairs", list_pairs(findings, pairs_of)}}
                      .dump(-1, ' ', false, json::error_handler_t::replace);
@@ -242,8 +250,10 @@ Chapter make_chapter(const LinearFindings& findings, const std::string& file,
   chapter.facts.emplace_back("inputs", fmt::format("{}", fmt::join(response.inputs.name, ", ")));
   chapter.facts.emplace_back("outputs", fmt::format("{}", fmt::join(response.outputs.name, ", ")));
   add_response(findings, pairs, chapter);
-  chapter.data = json{{"frequency", pack_doubles(response.frequency_hz)}, {"pairs", list_pairs(findings, pairs)}}.dump(
-      -1, ' ', false, json::error_handler_t::replace);
+  chapter.data = json{{"frequency_unit", records::name_frequency_unit(response.units.time)},
+                      {"frequency", pack_doubles(response.frequency_hz)},
+                      {"pairs", list_pairs(findings, pairs)}}
+                     .dump(-1, ' ', false, json::error_handler_t::replace);
   return chapter;
 }
 

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "report/axis.hpp"
+#include "report/label.hpp"
 
 namespace bough::report {
 
@@ -157,7 +158,11 @@ void make_z_plane(Plot& plot) {
 Plot make_pole_plot(const std::vector<std::pair<std::string, const LinearModel*>>& models) {
   const bool is_z =
       std::all_of(models.begin(), models.end(), [](const auto& named) { return named.second->sample_time > 0; });
-  Plot plot{"", "real part [1/T]", "imaginary part [1/T]", {}};
+  std::string time = models.empty() ? "" : models.front().second->units.time;
+  for (const auto& [name, model] : models)
+    if (model->units.time != time) time.clear();
+  const std::string unit = time.empty() ? "1/T" : "1/" + time;
+  Plot plot{"", make_label("real part", unit), make_label("imaginary part", unit), {}};
   for (const auto& [name, model] : models) {
     const std::string prefix = name.empty() ? "" : name + " ";
     is_z ? add_z_poles(prefix, *model, plot) : add_s_poles(prefix, *model, plot);

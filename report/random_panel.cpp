@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "report/html.hpp"
+#include "report/label.hpp"
 
 namespace bough::report {
 
@@ -21,8 +22,8 @@ std::string make_random_panel(RandomTable random) {
   Plot densities, sums;
   densities.title = random.title + ", spectral density";
   sums.title = random.title + ", RMS up to each frequency";
-  densities.x_label = sums.x_label = "frequency [Hz]";
-  densities.y_label = "spectral density [unit²/Hz]";
+  densities.x_label = sums.x_label = make_label("frequency", random.frequency_unit);
+  densities.y_label = make_label("spectral density", "unit²/" + random.frequency_unit);
   sums.y_label = "cumulative RMS";
   densities.has_log_y = true;
   densities.has_log_x = sums.has_log_x = hz.size() > 1 && hz[0] > 0;

@@ -23,6 +23,7 @@ struct RandomTable {
   std::vector<std::string> columns;
   Eigen::VectorXd frequency_hz;
   std::vector<RandomRow> rows;
+  std::string frequency_unit = "Hz";
 };
 
 /// HTML of two figures of the outputs with the largest RMS, and the table of all. Outputs that are zero are left out;

@@ -28,7 +28,8 @@ struct ScenePlace {
 struct SceneHinge {
   std::string name, type;
   ScenePlace at;
-  Eigen::Vector3d axis = Eigen::Vector3d::Zero();  ///< in the frame of the parent; zero: none
+  Eigen::Vector3d axis = Eigen::Vector3d::Zero();          ///< in the frame of the parent; zero: none
+  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();  ///< hinge axes of the parent, in its frame
 };
 
 struct SceneSensor {

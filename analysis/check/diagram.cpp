@@ -86,11 +86,11 @@ class Builder {
     diagram_.nodes.push_back({kind, name, label});
   }
   void edge(const std::string& from, const std::string& to, const std::string& label, Link link = Link::Signal) {
-    diagram_.edges.push_back({from, to, label, link});
+    diagram_.edges.push_back({from, to, label, link, {}, {}, 0});
   }
 
-  /// A wire from what `use` names.
-  void wire(const solver::SignalUse& use, const std::string& to, const std::string& port) {
+  /// A wire from what `use` names; `key` of the table at `to` has it, unless a [[connect]] does.
+  void wire(const solver::SignalUse& use, const std::string& to, const std::string& port, const std::string& key) {
     const auto matches = [](const Source& s, const std::string& name) { return s.name == name || s.path == name; };
     auto found = std::find_if(sources_.begin(), sources_.end(), [&](const auto& s) { return matches(s, use.text); });
     std::string component;
@@ -104,6 +104,12 @@ class Builder {
     if (use.gain != 1) label += fmt::format("{}× {:g}", label.empty() ? "" : " ", use.gain);
     if (!port.empty()) label += (label.empty() ? "" : " ") + port;
     edge(found->kind + " " + found->name, to, label);
+    auto& drawn = diagram_.edges.back();
+    drawn.signal = key == "function" || key == "motion" || key == "of" ? found->name : use.text;
+    drawn.line = use.at.line;
+    const bool is_connect = std::any_of(spec_.connects.begin(), spec_.connects.end(),
+                                        [&](const auto& record) { return record.at.line == use.at.line; });
+    drawn.key = is_connect ? "from" : key;
   }
 
   static std::string describe_rate(const records::Settings& settings) {
@@ -119,14 +125,14 @@ class Builder {
       node("controller", r.name, r.name + "\n" + r.type + describe_rate(r.settings) + (r.active ? "" : "\n(off)"));
       const auto& own = uses.controllers.at(r.name);
       for (std::size_t i = 0; i < own.inputs.size(); ++i)
-        wire(own.inputs[i], me, own.inputs.size() > 1 ? fmt::format("→ {}", i + 1) : "");
-      for (const auto& use : own.reference) wire(use, me, "→ reference");
-      for (const auto& use : own.rate) wire(use, me, "→ rate");
+        wire(own.inputs[i], me, own.inputs.size() > 1 ? fmt::format("→ {}", i + 1) : "", "inputs");
+      for (const auto& use : own.reference) wire(use, me, "→ reference", "reference");
+      for (const auto& use : own.rate) wire(use, me, "→ rate", "rate");
     }
     for (const auto& r : spec_.actuators) {
       node("actuator", r.name, r.name + "\n" + r.type);
       if (const auto use = uses.actuators.find(r.name); use != uses.actuators.end())
-        wire(use->second, "actuator " + r.name, "");
+        wire(use->second, "actuator " + r.name, "", "input");
       if (!r.hinge.empty())
         edge("actuator " + r.name, find_child(r.hinge), r.hinge, Link::Push);
       else if (!r.body.empty())
@@ -135,8 +141,9 @@ class Builder {
     for (const auto& r : spec_.forces) {
       node("force", r.name, r.name + (r.locator.empty() ? "" : "\n" + r.locator));
       edge("force " + r.name, "body " + r.body, r.locator.empty() ? name_node(r.node) : "", Link::Push);
-      if (!r.function.empty()) wire({"/signals/" + r.function, 1, r.at}, "force " + r.name, "");
-      if (const auto use = uses.forces.find(r.name); use != uses.forces.end()) wire(use->second, "force " + r.name, "");
+      if (!r.function.empty()) wire({"/signals/" + r.function, 1, r.at}, "force " + r.name, "", "function");
+      if (const auto use = uses.forces.find(r.name); use != uses.forces.end())
+        wire(use->second, "force " + r.name, "", "signal");
     }
     for (const auto& r : spec_.sensors) {
       node("sensor", r.name, r.name + describe_rate(r.chain));
@@ -171,7 +178,7 @@ class Builder {
       note_ground(r.from.body);
       note_ground(r.to.body);
       edge("body " + r.from.body, "body " + r.to.body, r.name, Link::Element);
-      if (!r.function.empty()) wire({"/signals/" + r.function, 1, r.at}, "body " + r.from.body, r.name);
+      if (!r.function.empty()) wire({"/signals/" + r.function, 1, r.at}, "body " + r.from.body, r.name, "function");
     }
     if (has_ground_) node("ground", "ground", "ground");
   }
@@ -179,9 +186,9 @@ class Builder {
   void add_functions() {
     for (const auto& r : spec_.hinges)
       for (const auto& name : r.motion)
-        if (!name.empty()) wire({"/signals/" + name, 1, r.at}, "body " + r.child, r.name);
+        if (!name.empty()) wire({"/signals/" + name, 1, r.at}, "body " + r.child, r.name, "motion");
     for (const auto& r : spec_.functions)
-      for (const auto& name : r.of) wire({"/signals/" + name, 1, r.at}, "function " + r.name, "");
+      for (const auto& name : r.of) wire({"/signals/" + name, 1, r.at}, "function " + r.name, "", "of");
     for (const auto& r : spec_.functions) node("function", r.name, r.name + "\n" + r.type);
   }
 
@@ -196,7 +203,7 @@ class Builder {
                                : r.action == EventAction::Disable ? "disables"
                                                                   : fmt::format("switches to {}", r.choice);
       edge("event " + r.name, "controller " + r.target, what, Link::Event);
-      if (!r.signal.empty()) wire({r.signal, 1, r.at}, "event " + r.name, "");
+      if (!r.signal.empty()) wire({r.signal, 1, r.at}, "event " + r.name, "", "signal");
     }
   }
 

@@ -22,6 +22,10 @@ struct Diagram {
     std::string from, to;  ///< ids of nodes
     std::string label;
     Link link = Link::Signal;
+    /// Signals alone: the name in the file, the key that does, `from` in a [[connect]], and the line of
+    /// its table.
+    std::string signal, key;
+    int line = 0;
   };
   std::string name;  ///< of the system
   std::vector<Node> nodes;

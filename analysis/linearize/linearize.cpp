@@ -33,8 +33,10 @@ records::LinearModel linearize_at(const LinearizeRequest& request, const LoadedS
                                   solver::OperatingPoint point, bool check, Diagnostics& diagnostics) {
   warn_of_deflections(request, loaded.system, point, diagnostics);
   plant.hold_commands(point);
-  return solver::linearize(plant, point, {request.inputs, request.outputs, check, request.cut}, {request.file},
-                           diagnostics);
+  auto model = solver::linearize(plant, point, {request.inputs, request.outputs, check, request.cut}, {request.file},
+                                 diagnostics);
+  model.units = loaded.spec.units;
+  return model;
 }
 
 /// Warnings and notes of the first model; of the others only those that it did not have.

@@ -12,9 +12,11 @@
 #include "analysis/common/inputs.hpp"
 #include "analysis/export/export_matrices.hpp"
 #include "analysis/linearize/choose_channels.hpp"
+#include "formats/hdf5/files.hpp"
 #include "formats/hdf5/linear_file.hpp"
 #include "formats/hdf5/sweep_file.hpp"
 #include "report/bode_plot.hpp"
+#include "report/label.hpp"
 #include "report/pole_plot.hpp"
 #include "solver/statespace/frequency_response.hpp"
 
@@ -48,7 +50,7 @@ void add_response(const records::LinearModel& model, const std::string& kind, co
       report::add_bode_curve(pair, response.frequency_hz, prefix + pair.name, plots);
   }
   if (is_loop && kind == "bode" && pairs.size() == 1)
-    report::add_margins(statespace::calc_margins(model, response), pairs.front(), response.frequency_hz, plots);
+    report::add_margins(statespace::calc_margins(model, response), pairs.front(), response, plots);
 }
 
 /// The branch of `among` whose conjugate b is wherever the two are complex; -1: none. They may part on the real axis.
@@ -165,6 +167,23 @@ void add_sweep(const records::LinearSweep& sweep, const std::string& kind, const
 
 }  // namespace
 
+/// Label of the unit of time of the files. \throws InputError "cli.plot-units" if two files have labels that differ.
+static std::string read_time_unit(const std::vector<std::string>& files) {
+  std::string unit;
+  for (const auto& file : files) {
+    demand_file(file);
+    const auto attributes = hdf5::read_info(file).attributes;
+    const auto found = attributes.find("time_unit");
+    const std::string own = found == attributes.end() ? "" : found->second;
+    if (!unit.empty() && !own.empty() && own != unit)
+      throw InputError("cli.plot-units", {file},
+                       fmt::format("its unit of time is {}, that of the files before {}", own, unit),
+                       "draw the files one by one, or convert one with bough convert --units");
+    if (!own.empty()) unit = own;
+  }
+  return unit;
+}
+
 const std::vector<std::string>& list_plot_kinds() {
   static const std::vector<std::string> kKinds{"bode", "nichols", "sigma", "poles", "campbell", "locus"};
   return kKinds;
@@ -173,10 +192,14 @@ const std::vector<std::string>& list_plot_kinds() {
 std::vector<Plot> make_linear_plots(const std::vector<std::string>& files, const LinearPlotChoice& choice) {
   const auto& kind = choice.kind;
   std::vector<Plot> plots(1);
-  if (kind == "bode") plots = report::make_bode_axes();
+  if (kind == "bode") plots = report::make_bode_axes(read_time_unit(files));
   if (kind == "nichols") plots[0] = report::make_nichols_axes();
-  if (kind == "campbell") plots[0].y_label = "frequency [Hz]";
-  if (kind == "locus") plots[0].x_label = "real part [1/T]", plots[0].y_label = "imaginary part [1/T]";
+  if (kind == "campbell") plots[0].y_label = report::label_frequency(read_time_unit(files));
+  if (kind == "locus") {
+    const auto time = read_time_unit(files), unit = time.empty() ? "1/T" : "1/" + time;
+    plots[0].x_label = report::make_label("real part", unit);
+    plots[0].y_label = report::make_label("imaginary part", unit);
+  }
   std::vector<std::pair<std::string, records::LinearModel>> models;
   for (const auto& file : files) {
     demand_file(file);

@@ -6,7 +6,9 @@
 #include "analysis/report/report_files.hpp"
 #include "formats/hdf5/linear_file.hpp"
 #include "formats/hdf5/sweep_file.hpp"
+#include "formats/records/unit_names.hpp"
 #include "report/html.hpp"
+#include "report/label.hpp"
 #include "report/linear_chapter.hpp"
 #include "report/random_panel.hpp"
 #include "solver/statespace/frequency_response.hpp"
@@ -31,14 +33,19 @@ report::Chapter make_linear_chapter(const std::string& file) {
 
 namespace {
 
-void add_random_outputs(const records::RandomOutputs& random, report::Chapter& chapter) {
-  report::RandomTable table{"random response",
-                            "RMS and zero crossings per unit of time (N0)",
-                            {"RMS", "N0 [Hz]", "RMS of the band", "N0 of the band [Hz]"},
-                            random.frequency_hz,
-                            {}};
+void add_random_outputs(const records::RandomOutputs& random, const std::string& time, report::Chapter& chapter) {
+  const auto unit = records::name_frequency_unit(time);
+  report::RandomTable table{
+      "random response",
+      "RMS and zero crossings per unit of time (N0)",
+      {"RMS", report::make_label("N0", unit), "RMS of the band", report::make_label("N0 of the band", unit)},
+      random.frequency_hz,
+      {},
+      unit};
   const bool has_total = random.total_rms.size() > 0;
-  if (has_total) table.columns.insert(table.columns.end(), {"RMS of all frequencies", "N0 of all frequencies [Hz]"});
+  if (has_total)
+    table.columns.insert(table.columns.end(),
+                         {"RMS of all frequencies", report::make_label("N0 of all frequencies", unit)});
   for (Index i = 0; i < random.outputs.size(); ++i) {
     report::RandomRow row{random.outputs.name[static_cast<std::size_t>(i)],
                           random.psd.col(i),
@@ -59,7 +66,7 @@ report::Chapter make_model_response_chapter(const std::string& file) {
                                   read.has_margins};
   if (!findings.peak.is_finite) findings.peak.why = "a pole on the imaginary axis";
   auto chapter = report::make_chapter(findings, file, list_facts(file));
-  if (read.has_random) add_random_outputs(read.random, chapter);
+  if (read.has_random) add_random_outputs(read.random, findings.response.units.time, chapter);
   return chapter;
 }
 
@@ -117,14 +124,15 @@ report::Chapter make_sweep_chapter(const std::string& file) {
     plots.front().title = title;
     chapter.add_panel(kind, title, report::make_figure(plots.front()));
   }
-  report::HtmlTable table("Of each motion at the first and the last value", {{"first", true},
-                                                                             {"last", true},
-                                                                             {"frequency [Hz]"},
-                                                                             {"at the end"},
-                                                                             {"damping %"},
-                                                                             {"at the end"},
-                                                                             {"least"},
-                                                                             {"at " + sweep.parameter}});
+  report::HtmlTable table("Of each motion at the first and the last value",
+                          {{"first", true},
+                           {"last", true},
+                           {report::label_frequency(sweep.models.front().units.time)},
+                           {"at the end"},
+                           {"damping %"},
+                           {"at the end"},
+                           {"least"},
+                           {"at " + sweep.parameter}});
   for (Index b = 0; b < branches; ++b) {
     if (sweep.imag.col(b).sum() < 0 || records::is_gone(sweep, b)) continue;  // of a pair one
     Index at = 0;

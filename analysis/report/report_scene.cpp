@@ -73,7 +73,7 @@ void add_hinges(const records::SystemSpec& spec, const ScenePlaces& places, repo
     if (hinge.type == HingeType::Free) continue;
     report::SceneHinge drawn{hinge.name, name_type(hinge.type),
                              places.find(hinge.parent, hinge.parent_node, hinge.parent_position),
-                             Eigen::Vector3d::Zero()};
+                             Eigen::Vector3d::Zero(), hinge.parent_rotation};
     const bool has_axis =
         hinge.type != HingeType::Fixed && hinge.type != HingeType::Spherical && hinge.type != HingeType::General;
     if (has_axis) drawn.axis = hinge.parent_rotation * hinge.axis.normalized();

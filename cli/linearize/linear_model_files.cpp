@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "cli/common/console.hpp"
+#include "formats/records/unit_names.hpp"
 #include "solver/statespace/hankel.hpp"
 
 namespace bough::cli {
@@ -18,6 +19,11 @@ namespace {
 /// Rounding of a value that is zero reads as zero.
 std::string format_number(double value, double scale) {
   return value == 0 || std::abs(value) < 1e-12 * scale ? "0" : fmt::format("{:.6g}", value);
+}
+
+/// Heading of a column of frequencies.
+std::string name_frequency(const LinearModel& model) {
+  return "frequency " + records::name_frequency_unit(model.units.time);
 }
 
 std::vector<double> to_list(const Eigen::VectorXd& v) { return {v.begin(), v.end()}; }
@@ -48,7 +54,7 @@ namespace {
 
 std::string format_operating_point(const LinearModel& model) {
   if (model.q_names.size() == 0) return "";
-  Table table{{"coordinate", "position", "speed", "dims", ""}, {}};
+  Table table{{"coordinate", "position", "speed", model.units.empty() ? "dims" : "unit", ""}, {}};
   const auto is_in = [](const std::vector<std::string>& list, const std::string& name) {
     return std::find(list.begin(), list.end(), name) != list.end();
   };
@@ -64,7 +70,7 @@ std::string format_operating_point(const LinearModel& model) {
     }
     table.rows.push_back({name, fmt::format("{:.6g}", model.q[i]),
                           speed == speeds.end() ? "-" : fmt::format("{:.6g}", rate),
-                          model.q_names.dims[static_cast<std::size_t>(i)],
+                          records::label_dims(model.q_names.dims[static_cast<std::size_t>(i)], model.units),
                           !is_in(model.periodic, name) ? ""
                           : std::abs(rate) > 1e-8      ? "periodic, turns"
                                                        : "periodic"});
@@ -72,8 +78,8 @@ std::string format_operating_point(const LinearModel& model) {
   for (int i = 0; i < model.u_names.size(); ++i) {  // rates that are no coordinate's
     const auto& name = model.u_names.name[static_cast<std::size_t>(i)];
     if (!is_in(model.q_names.name, name))
-      table.rows.push_back(
-          {name, "-", fmt::format("{:.6g}", model.u[i]), model.u_names.dims[static_cast<std::size_t>(i)], ""});
+      table.rows.push_back({name, "-", fmt::format("{:.6g}", model.u[i]),
+                            records::label_dims(model.u_names.dims[static_cast<std::size_t>(i)], model.units), ""});
   }
   std::string text = table.rows.empty() ? "" : table.to_text();
   if (num_zero > 0) text += fmt::format("{} at rest at 0\n", count(num_zero, "modal coordinate"));
@@ -89,11 +95,13 @@ std::string name_partner(const records::Poles& poles, std::size_t i) {
   return poles.hinge[i] + (poles.hinge[i].empty() || poles.body_mode[i].empty() ? "" : ", ") + poles.body_mode[i];
 }
 
-std::string format_multipliers(const records::Multipliers& m) {
+std::string format_multipliers(const LinearModel& model) {
+  const auto& m = model.multipliers;
   if (m.period == 0) return "";
   std::string text = fmt::format("\nmultipliers of a period of the samples, {:g} ({})\n", m.period,
                                  count(static_cast<std::size_t>(m.num_samples), "instant"));
-  Table table{{"real", "imag", "size", "decay 1/T", "frequency Hz", "mode"}, {}};
+  Table table{
+      {"real", "imag", "size", "decay " + records::label_dims("1/T", model.units), name_frequency(model), "mode"}, {}};
   std::size_t num_small = 0;
   for (Eigen::Index i = 0; i < m.real.size(); ++i) {
     const double size = std::hypot(m.real[i], m.imag[i]);
@@ -130,8 +138,9 @@ static std::string format_sampling(const LinearModel& model) {
   std::string text =
       num_gone > 0 ? fmt::format("and {} at z = 0: gone within a sample\n", count(num_gone, "pole")) : "";
   if (model.aliased.empty()) return text;
-  text += fmt::format("\naliased, above the Nyquist frequency {:.6g} Hz\n", 0.5 / model.sample_time);
-  Table table{{"mode", "frequency Hz", "appears at Hz"}, {}};
+  const auto unit = records::name_frequency_unit(model.units.time);
+  text += fmt::format("\naliased, above the Nyquist frequency {:.6g} {}\n", 0.5 / model.sample_time, unit);
+  Table table{{"mode", name_frequency(model), "appears at " + unit}, {}};
   for (const auto& one : model.aliased)
     table.rows.push_back({one.mode, fmt::format("{:.6g}", one.frequency_hz), fmt::format("{:.6g}", one.appears_at_hz)});
   return text + table.to_text();
@@ -159,7 +168,7 @@ std::string format_linear_model(const LinearModel& model) {
     text += fmt::format("lifted: {} values at the cut in that time, {} to {}\n\n", model.inputs.size(),
                         model.inputs.name.front(), model.inputs.name.back());
   text += format_operating_point(model);
-  Table table{{"pole", "real", "imag", "frequency Hz", "damping", "mode", "with"}, {}};
+  Table table{{"pole", "real", "imag", name_frequency(model), "damping", "mode", "with"}, {}};
   const auto& poles = model.poles;
   const double scale = poles.size() > 0 ? poles.frequency_hz.maxCoeff() * 6.28 : 0;
   for (int i = 0; i < poles.size(); ++i) {
@@ -171,8 +180,7 @@ std::string format_linear_model(const LinearModel& model) {
   }
   if (!table.rows.empty()) text += table.to_text() + format_lost_poles(poles);
   text += format_sampling(model);
-  const std::string tail =
-      format_uncertainty(model) + format_multipliers(model.multipliers) + format_hankel(model.hankel);
+  const std::string tail = format_uncertainty(model) + format_multipliers(model) + format_hankel(model.hankel);
   if (!model.has_zeros) return text + tail;
   text += model.zeros_real.size() == 0 ? "\nno finite zeros\n" : "\nzeros\n";
   for (Eigen::Index i = 0; i < model.zeros_real.size(); ++i) {

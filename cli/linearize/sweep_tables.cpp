@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "cli/common/console.hpp"
+#include "formats/records/unit_names.hpp"
 
 namespace bough::cli {
 
@@ -60,7 +61,8 @@ std::string format_sweep(const LinearSweep& sweep) {
     text += fmt::format("from sample to sample, every {:g}{}: of a pole z there is ln z over that time\n\n",
                         first.sample_time,
                         last.sample_time != first.sample_time ? fmt::format(" to {:g}", last.sample_time) : "");
-  Table table{{"branch", "from Hz", "to Hz", "damping from", "to", "largest real", "mode"}, {}};
+  const auto unit = records::name_frequency_unit(first.units.time);
+  Table table{{"branch", "from " + unit, "to " + unit, "damping from", "to", "largest real", "mode"}, {}};
   const Index end = sweep.value.size() - 1;
   for (Index b = 0; b < sweep.real.cols(); ++b) {
     if (!is_shown(sweep, b)) continue;

@@ -23,6 +23,7 @@
 #include "cli/verbs.hpp"
 #include "formats/hdf5/linear_file.hpp"
 #include "formats/hdf5/sweep_file.hpp"
+#include "formats/records/unit_names.hpp"
 
 namespace bough::cli {
 
@@ -64,8 +65,8 @@ std::vector<Summit> find_summits(const FrequencyResponse& response) {
   return summits;
 }
 
-std::string format_margins(const records::Margins& m) {
-  Table table{{"margin", "frequency Hz", "value", "delay"}, {}};
+std::string format_margins(const records::Margins& m, const std::string& unit) {
+  Table table{{"margin", "frequency " + unit, "value", "delay"}, {}};
   for (const auto& c : m.gain)
     table.rows.push_back({c.margin >= 1 ? "gain, up" : "gain, down", fmt::format("{:.6g}", c.frequency_hz),
                           fmt::format("{:.4g} dB", to_decibel(c.margin)), ""});
@@ -75,23 +76,25 @@ std::string format_margins(const records::Margins& m) {
   std::string text = fmt::format("\nthe loop with negative feedback: {} when closed (largest real part {:.3g})\n",
                                  m.is_stable ? "stable" : "unstable", m.largest_real);
   text += table.rows.empty() ? "no crossing: neither |L| = 1 nor L real and negative\n" : table.to_text();
-  return text + fmt::format("nearest to -1: {:.4g} at {:.6g} Hz\n", m.distance, m.distance_hz);
+  return text + fmt::format("nearest to -1: {:.4g} at {:.6g} {}\n", m.distance, m.distance_hz, unit);
 }
 
 std::string format(const LinearModel& model, const FrequencyResponse& response, const records::PeakGain& peak,
                    const records::Margins* margins) {
-  std::string text = fmt::format("{}, {:.4g} to {:.4g} Hz\n", count(response.value.size(), "frequency"),
-                                 response.frequency_hz[0], response.frequency_hz[response.frequency_hz.size() - 1]);
+  const auto unit = records::name_frequency_unit(response.units.time);
+  std::string text =
+      fmt::format("{}, {:.4g} to {:.4g} {}\n", count(response.value.size(), "frequency"), response.frequency_hz[0],
+                  response.frequency_hz[response.frequency_hz.size() - 1], unit);
   if (!peak.is_finite)
     text += "largest gain: infinite, " + peak.why + "\n";
   else if (peak.value == 0)
     text += "the response is 0: no way leads from any of these inputs to any of these outputs\n";
   else
     text += fmt::format("largest gain (H-infinity norm): {:.6g}, {:.4g} dB, {}{}\n", peak.value, to_decibel(peak.value),
-                        std::isfinite(peak.frequency_hz) ? fmt::format("at {:.6g} Hz", peak.frequency_hz)
+                        std::isfinite(peak.frequency_hz) ? fmt::format("at {:.6g} {}", peak.frequency_hz, unit)
                                                          : std::string("beyond all poles"),
                         peak.is_certified ? "" : "; of the frequencies looked at");
-  Table table{{"output over input", "dB at first", "largest dB", "at Hz"}, {}};
+  Table table{{"output over input", "dB at first", "largest dB", "at " + unit}, {}};
   const auto summits = find_summits(response);
   for (std::size_t k = 0; k < std::min(kMaxRows, summits.size()); ++k) {
     const auto& s = summits[k];
@@ -101,7 +104,7 @@ std::string format(const LinearModel& model, const FrequencyResponse& response, 
   }
   text += "\n" + table.to_text();
   if (summits.size() > kMaxRows) text += fmt::format("and {} more\n", summits.size() - kMaxRows);
-  if (margins) text += format_margins(*margins);
+  if (margins) text += format_margins(*margins, unit);
   return text + format_hankel(model.hankel);
 }
 
@@ -136,12 +139,12 @@ std::string format_value(const Eigen::VectorXd& values, Index i) {
   return std::isfinite(values[i]) ? fmt::format("{:.6g}", values[i]) : "-";
 }
 
-std::string format_random(const records::RandomOutputs& random) {
-  std::string text = fmt::format("\nrandom response, {:.4g} to {:.4g} Hz\n", random.frequency_hz[0],
-                                 random.frequency_hz[random.frequency_hz.size() - 1]);
+std::string format_random(const records::RandomOutputs& random, const std::string& unit) {
+  std::string text = fmt::format("\nrandom response, {:.4g} to {:.4g} {}\n", random.frequency_hz[0],
+                                 random.frequency_hz[random.frequency_hz.size() - 1], unit);
   const bool has_total = random.total_rms.size() > 0;
-  Table table{{"output", "RMS", "N0 Hz", "band RMS", "band N0 Hz"}, {}};
-  if (has_total) table.headings.insert(table.headings.end(), {"white RMS", "white N0 Hz"});
+  Table table{{"output", "RMS", "N0 " + unit, "band RMS", "band N0 " + unit}, {}};
+  if (has_total) table.headings.insert(table.headings.end(), {"white RMS", "white N0 " + unit});
   for (Index i = 0; i < random.rms.size() && static_cast<std::size_t>(i) < kMaxRows; ++i) {
     std::vector<std::string> row{random.outputs.name[static_cast<std::size_t>(i)]};
     for (const auto* values : {&random.rms, &random.crossing_hz, &random.band_rms, &random.band_crossing_hz})
@@ -212,7 +215,8 @@ int run_response(const ResponseOptions& o) {
     if (outputs) json["random"] = make_random_json(*outputs);
     console.print_data(json.dump(2) + "\n");
   } else {
-    console.print(format(model, response, peak, given) + (outputs ? format_random(*outputs) : ""));
+    console.print(format(model, response, peak, given) +
+                  (outputs ? format_random(*outputs, records::name_frequency_unit(response.units.time)) : ""));
   }
   if (!o.output.empty()) hdf5::write_response(response, peak, given, outputs, o.output);
   if (!o.csv.empty())

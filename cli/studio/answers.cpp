@@ -184,7 +184,8 @@ json answer_check(const json& request) {
   }
   out["items"] = json::array();
   for (const auto& item : toml_files::list_items(text))
-    out["items"].push_back({{"kind", item.kind}, {"name", item.name}, {"type", item.type}, {"line", item.line}});
+    out["items"].push_back(
+        {{"path", item.path()}, {"kind", item.kind}, {"name", item.name}, {"type", item.type}, {"line", item.line}});
   // Numbers of [parameters], for runs with other values.
   out["parameters"] = json::array();
   for (const auto& item : toml_files::list_items(text))
@@ -212,13 +213,19 @@ json answer_schema(const json& request) {
   return {{"kinds", kinds}};
 }
 
+/// The table that begins at `line`, as commands of `bough edit` name it: "connect.2".
+std::string name_table(const std::vector<toml_files::TableItem>& items, int line) {
+  const auto found = std::find_if(items.begin(), items.end(), [&](const auto& item) { return item.line == line; });
+  return found == items.end() ? "" : found->path();
+}
+
 /// Block diagram and curves of the functions of a system file's text, each with its line.
 json answer_diagram(const json& request) {
   const auto name = get_file(request), text = get_text(request, "text");
   Diagnostics diagnostics;
-  analysis::LoadOptions options;
-  options.text = text;
-  const auto loaded = analysis::load_system(name, diagnostics, options);
+  // Not built: a system whose controller has lost its input is drawn too.
+  const auto spec = toml_files::read_system_spec_text(text, name, diagnostics);
+  diagnostics.throw_if_errors();
   const auto items = toml_files::list_items(text);
   const auto find_line = [&](const std::string& kind, const std::string& of) {
     const auto found =
@@ -226,7 +233,7 @@ json answer_diagram(const json& request) {
     return found == items.end() ? 0 : found->line;
   };
   static constexpr const char* kLinks[] = {"signal", "push", "measurement", "hinge", "constraint", "element", "event"};
-  const auto diagram = analysis::make_diagram(loaded.spec);
+  const auto diagram = analysis::make_diagram(spec);
   json nodes = json::array(), edges = json::array(), functions = json::array();
   for (const auto& node : diagram.nodes)
     nodes.push_back({{"id", node.id()},
@@ -234,12 +241,17 @@ json answer_diagram(const json& request) {
                      {"name", node.name},
                      {"label", node.label},
                      {"line", find_line(node.kind, node.name)}});
-  for (const auto& edge : diagram.edges)
+  for (const auto& edge : diagram.edges) {
     edges.push_back({{"from", edge.from},
                      {"to", edge.to},
                      {"label", edge.label},
                      {"link", kLinks[static_cast<std::size_t>(edge.link)]}});
-  for (const auto& curve : analysis::list_function_curves(loaded.spec))
+    if (edge.key.empty()) continue;
+    edges.back()["signal"] = edge.signal;
+    edges.back()["key"] = edge.key;
+    edges.back()["table"] = name_table(items, edge.line);
+  }
+  for (const auto& curve : analysis::list_function_curves(spec))
     functions.push_back({{"name", curve.name},
                          {"type", curve.type},
                          {"of_time", curve.is_of_time},

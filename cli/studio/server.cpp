@@ -78,7 +78,13 @@ struct StudioServer::Parts {
   std::thread thread;
   std::atomic<bool> is_running{false};
   std::mutex mutex;
-  std::map<int, std::unique_ptr<Job>> jobs;
+  struct StartedJob {
+    std::unique_ptr<Job> job;
+    json request;      ///< as the page sent it
+    std::string line;  ///< for a shell
+    bool is_running() const { return job->get_state(Job::kMaxOutput).is_running; }
+  };
+  std::map<int, StartedJob> jobs;
 
   bool is_own_host(const std::string& host) const {
     const auto number = ":" + std::to_string(port);
@@ -134,6 +140,7 @@ struct StudioServer::Parts {
                      {"version", get_version()}}}});
     if (name == "start") return start_job(request);
     if (name == "job") return report_job(request);
+    if (name == "jobs") return list_jobs();
     if (name == "stop") return stop_job(request);
     if (name == "command") return dump({{"result", {{"line", quote_command(make_command(request, options.folder))}}}});
     if (name == "end") {
@@ -163,18 +170,27 @@ struct StudioServer::Parts {
     words.emplace_back("-v");  // prints the progress as lines
     const std::lock_guard lock(mutex);
     std::size_t running = 0;
-    for (const auto& [number, job] : jobs) running += job->get_state(Job::kMaxOutput).is_running ? 1 : 0;
+    for (const auto& [number, started] : jobs) running += started.is_running() ? 1 : 0;
     if (running >= kMaxJobs)
       return make_error("studio.no-process", "eight commands are running", "stop one, or wait until one ends");
     const int number = jobs.empty() ? 1 : jobs.rbegin()->first + 1;
-    jobs.emplace(number, std::make_unique<Job>(std::move(words), options.folder));
+    jobs.emplace(number, StartedJob{std::make_unique<Job>(std::move(words), options.folder), request, line});
     return dump({{"result", {{"job", number}, {"line", line}}}});
   }
 
-  const Job& find_job(const json& request) const {
+  /// Commands that run, for a page that did not start them: one that was reloaded, another tab.
+  std::string list_jobs() {
+    const std::lock_guard lock(mutex);
+    auto list = json::array();
+    for (const auto& [number, started] : jobs)
+      if (started.is_running()) list.push_back({{"job", number}, {"line", started.line}, {"request", started.request}});
+    return dump({{"result", {{"jobs", list}}}});
+  }
+
+  Job& find_job(const json& request) {
     const auto found = jobs.find(request.at("job").get<int>());
     if (found == jobs.end()) throw InputError("studio.bad-request", {}, "there is no such job", "reload the page");
-    return *found->second;
+    return *found->second.job;
   }
 
   std::string report_job(const json& request) {
@@ -187,8 +203,7 @@ struct StudioServer::Parts {
 
   std::string stop_job(const json& request) {
     const std::lock_guard lock(mutex);
-    find_job(request);
-    jobs.at(request.at("job").get<int>())->stop();
+    find_job(request).stop();
     return dump({{"result", json::object()}});
   }
 
@@ -262,7 +277,7 @@ void StudioServer::stop() {
   p.server.stop();
   if (p.thread.joinable()) p.thread.join();
   const std::lock_guard lock(p.mutex);
-  for (auto& [number, job] : p.jobs) job->stop();
+  for (auto& [number, started] : p.jobs) started.job->stop();
   p.jobs.clear();
 }
 

@@ -2,6 +2,7 @@
 
 #include "formats/hdf5/detail/reader.hpp"
 #include "formats/hdf5/detail/signals.hpp"
+#include "formats/hdf5/detail/unit_attributes.hpp"
 #include "formats/hdf5/detail/writer.hpp"
 
 namespace bough::hdf5 {
@@ -94,6 +95,7 @@ void write_second_order(FileWriter& file, const LinearModel& model) {
 void write_linear_model(const LinearModel& model, const std::string& path) {
   FileWriter file(path, kFormat, kLinearFormatVersion);
   file.write_source(model.source);
+  write_unit_labels(file, model.units);
   if (model.sample_time > 0)
     file.write_number("/sample_time", model.sample_time, {"x+ = A x + B u, y = C x + D u", "T"});
   const char* const dims = "as the names' dims say";
@@ -136,6 +138,7 @@ LinearModel read_linear_model(const std::string& path) {
   FileReader file(path, kFormat, kLinearFormatVersion);
   LinearModel model;
   model.source = file.read_source();
+  model.units = read_unit_labels(file);
   if (file.has("/sample_time")) model.sample_time = file.read_number("/sample_time");
   model.states = read_signals(file, "/states");
   model.inputs = read_signals(file, "/inputs");

@@ -5,6 +5,7 @@
 
 #include "formats/hdf5/detail/reader.hpp"
 #include "formats/hdf5/detail/signals.hpp"
+#include "formats/hdf5/detail/unit_attributes.hpp"
 #include "formats/hdf5/detail/writer.hpp"
 
 namespace bough::hdf5 {
@@ -92,6 +93,7 @@ records::RandomOutputs read_random_outputs(FileReader& file, const records::Freq
 void write_sweep(const records::LinearSweep& sweep, const std::string& path) {
   FileWriter file(path, kSweepFormat, kVersion);
   file.write_source(sweep.source);
+  write_unit_labels(file, sweep.models.front().units);
   file.write_strings("/parameter/name", {sweep.parameter}, {"of the system file, or time", "1"});
   file.write_vector("/parameter/value", sweep.value, {"one a point", "as the parameter's"});
   const auto& first = sweep.models.front();
@@ -148,6 +150,7 @@ records::LinearSweep read_sweep(const std::string& path) {
   sweep.value = file.read_vector("/parameter/value", -1);
   const long np = sweep.value.size();
   LinearModel first;
+  first.units = read_unit_labels(file);
   first.states = read_signals(file, "/states");
   first.inputs = read_signals(file, "/inputs");
   first.outputs = read_signals(file, "/outputs");
@@ -178,6 +181,7 @@ void write_response(const records::FrequencyResponse& response, const records::P
                     const records::Margins* margins, const records::RandomOutputs* random, const std::string& path) {
   FileWriter file(path, kResponseFormat, kVersion);
   file.write_source(response.source);
+  write_unit_labels(file, response.units);
   write_signals(file, "/inputs", response.inputs, "inputs");
   write_signals(file, "/outputs", response.outputs, "outputs");
   file.write_vector("/frequency_hz", response.frequency_hz, {"frequencies", "1/T"});
@@ -230,6 +234,7 @@ ResponseOfModel read_model_response(const std::string& path) {
   ResponseOfModel found;
   auto& response = found.response;
   response.source = file.read_source();
+  response.units = read_unit_labels(file);
   response.inputs = read_signals(file, "/inputs");
   response.outputs = read_signals(file, "/outputs");
   response.frequency_hz = file.read_vector("/frequency_hz", -1);

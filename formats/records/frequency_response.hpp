@@ -11,6 +11,7 @@ namespace bough::records {
 struct FrequencyResponse {
   std::vector<std::pair<std::string, std::string>> source;  ///< (file name, SHA-256)
   Signals inputs, outputs;
+  UnitLabels units;                     ///< of the model
   Eigen::VectorXd frequency_hz;         ///< nf, ascending
   std::vector<Eigen::MatrixXcd> value;  ///< nf of ny x nu: C (jω - A)⁻¹ B + D
   Eigen::MatrixXd singular_values;      ///< nf x min(ny, nu), descending

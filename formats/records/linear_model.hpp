@@ -7,6 +7,8 @@
 
 #include <Eigen/Dense>
 
+#include "formats/records/unit_labels.hpp"
+
 namespace bough::records {
 
 /// States, inputs or outputs of a linear model: a name each, and its dimensions in M L T F.
@@ -67,6 +69,7 @@ struct LinearModel {
   double sample_time = 0;                                   ///< 0: continuous
   Eigen::MatrixXd A, B, C, D;
   Signals states, inputs, outputs;
+  UnitLabels units;  ///< [units] of the system file
 
   double time = 0;       ///< of the operating point
   Eigen::VectorXd q, u;  ///< generalized positions (quaternions w, x, y, z) and speeds there

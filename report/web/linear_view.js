@@ -4,8 +4,8 @@ import { el, make_check, make_select } from "./page_parts.js";
 import { unpack_doubles } from "./unpack.js";
 
 // The s plane, or the z plane of a sampled model, with lines of constant damping.
-export function list_pole_series({ poles, zeros }) {
-  const tip = (i) => `${poles.mode[i]}: ${format_number(poles.real[i], 5)} ${poles.imag[i] < 0 ? "−" : "+"} ${format_number(Math.abs(poles.imag[i]), 5)}j, ${format_number(poles.frequency[i], 5)} Hz, damping ${format_number(100 * poles.damping[i], 4)} %`;
+export function list_pole_series({ poles, zeros, frequency_unit = "Hz" }) {
+  const tip = (i) => `${poles.mode[i]}: ${format_number(poles.real[i], 5)} ${poles.imag[i] < 0 ? "−" : "+"} ${format_number(Math.abs(poles.imag[i]), 5)}j, ${format_number(poles.frequency[i], 5)} ${frequency_unit}, damping ${format_number(100 * poles.damping[i], 4)} %`;
   const series = [{ name: "poles", x: Float64Array.from(poles.x), y: Float64Array.from(poles.y), points: "cross", tip }];
   if (zeros.real.length > 0)
     series.push({ name: "zeros", x: Float64Array.from(zeros.real), y: Float64Array.from(zeros.imag), points: "circle", tip: (i) => `zero: ${format_number(zeros.real[i], 5)}, ${format_number(zeros.imag[i], 5)}j` });
@@ -24,7 +24,7 @@ export class BodeView {
     this.pairs = data.pairs.map((p) => ({ name: p.name, diagrams: p.diagrams, decibel: unpack_doubles(p.decibel), degrees: unpack_doubles(p.degrees) }));
     this.chosen = new Set([0]);
     const link = new Link();
-    const make = (y_label) => new Chart({ series: [], link, x_log: true, x_label: "frequency [Hz]", y_label, height: 250 });
+    const make = (y_label) => new Chart({ series: [], link, x_log: true, x_label: `frequency [${data.frequency_unit ?? "Hz"}]`, y_label, height: 250 });
     this.magnitude = make("magnitude [dB]");
     this.phase = Object.assign(make("phase [degrees]"), { y_step: 45 });
     const boxes = this.pairs.map((p, k) => make_check(p.name, k === 0, (on) => {

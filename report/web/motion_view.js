@@ -21,6 +21,8 @@ export class MotionView {
     this.color_by = 0;
     this.is_playing = false;
     this.is_looping = false;  // starts again at the end
+    /** More things before all others, of places of bodies and the size of the scene. @type {((places: any[], size: number) => any[]) | null} */
+    this.make_overlay = null;
     this.marks = new SceneMarks(this);
     this.viewer = viewer ?? new Viewer("clamp(320px, calc(100vh - 27rem), 900px)");
     this.scrubber = el("input", { type: "range", class: "scrub", min: 0, max: 1000, step: 1, value: 0, "aria-label": "time" });
@@ -68,6 +70,11 @@ export class MotionView {
 
   place(body, time) {
     return { p: this.sample(body.position, time), R: to_rotation(this.sample(body.quaternion, time)), eta: body.eta ? this.sample(body.eta, time) : [] };
+  }
+
+  // Of each body now; null where it is not drawn.
+  get_places() {
+    return this.bodies.map((b) => (b.is_drawn ? this.place(b, this.time) : null));
   }
 
   *list_times(count) {
@@ -191,7 +198,7 @@ export class MotionView {
   draw() {
     if (!this.viewer?.home || !this.clock) return;
     const size = this.viewer.extent, things = [], boxes = [];
-    const places = this.bodies.map((b) => (b.is_drawn ? this.place(b, this.time) : null));
+    const places = this.get_places();
     if (this.has_frames) things.push(...make_triad([0, 0, 0], [[1, 0, 0], [0, 1, 0], [0, 0, 1]], 0.1 * size));
     this.bodies.forEach((body, k) => {
       if (!body.is_drawn) return;
@@ -207,7 +214,7 @@ export class MotionView {
       (is_box ? boxes : things).push({ ...colors, ...pick, alpha: is_box ? 0.4 : 1, points: body.world, size: d.size, triangles: d.triangles, edges: d.edges, ghosts: d.ghosts, color: get_style(k).color, by_level: this.color_by === 1 && eta.length > 0, dots: d.triangles.length === 0 });
       if (this.has_frames) things.push(...make_triad(p, [0, 1, 2].map((c) => R.map((row) => row[c])), 0.06 * size));
     });
-    this.viewer.marks = this.marks.make_things(places, this.time, size);
+    this.viewer.marks = [...this.marks.make_things(places, this.time, size), ...(this.make_overlay?.(places, size) ?? [])];
     if (this.follow >= 0) {
       const p = places[this.follow].p;
       if (this.before) this.viewer.target = this.viewer.target.map((t, i) => t + p[i] - this.before[i]);

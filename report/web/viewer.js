@@ -60,6 +60,8 @@ const project = (view, rect, p) => {
 
 // Outlines of larger meshes wait until the view rests: lines take most of the time where no graphics card draws.
 export const kMaxTurningEdges = 5000;
+// Larger meshes are turned with a pixel in four, and at most one picture per frame of the browser.
+const kMaxTurningTriangles = 5000;
 
 // A stage on which things are drawn: { points, size, triangles, edges, color, by_level, line_color }; marks stand before
 // all things. With by_level a point's colour is its size over `reach`; with elements and levels (Drawing) each element
@@ -79,6 +81,8 @@ export class Viewer {
     this.name = "";
     this.on_pick = null;  // called with what was clicked, and null for nothing
     this.on_key = null;  // returns true for a key that it has handled
+    this.on_grab = null;  // what takes a drag that begins here: { move(event), end() }, or null
+    this.can_grab = null;  // returns true where on_grab takes one
     this.things = [];
     this.marks = [];
     this.reach = 0;
@@ -165,8 +169,21 @@ export class Viewer {
     return multiply(lens, look);
   }
 
+  is_large() {
+    return this.things.reduce((sum, thing) => sum + (thing.triangles?.length ?? 0) / 3, 0) > kMaxTurningTriangles;
+  }
+
+  // After a movement of the pointer: there are more of them than pictures that a large mesh can be drawn in.
+  draw_moved() {
+    if (!this.is_large()) return this.draw();
+    this.moved ??= requestAnimationFrame(() => {
+      this.moved = null;
+      this.draw();
+    });
+  }
+
   draw() {
-    const gl = this.gl, scale = devicePixelRatio || 1;
+    const gl = this.gl, scale = (devicePixelRatio || 1) * (this.is_turning && this.is_large() ? 0.5 : 1);
     const width = Math.round(this.canvas.clientWidth * scale), height = Math.round(this.canvas.clientHeight * scale);
     if (width < 10 || height < 10) return;
     if (this.canvas.width !== width || this.canvas.height !== height) [this.canvas.width, this.canvas.height] = [width, height];
@@ -266,12 +283,18 @@ export class Viewer {
       if (this.is_turning) requestAnimationFrame(() => this.draw());
       this.is_turning = false;
     };
+    let grabbed = null;
     this.canvas.addEventListener("pointerdown", (event) => {
-      last = start = event;
       this.canvas.setPointerCapture(event.pointerId);
+      grabbed = event.button === 0 ? this.on_grab?.(event) : null;
+      if (!grabbed) last = start = event;
     });
     this.canvas.addEventListener("pointermove", (event) => {
-      if (!last) return;
+      if (grabbed) return grabbed.move(event);
+      if (!last) {
+        if (this.can_grab) this.canvas.style.cursor = this.can_grab(event) ? "grab" : "";
+        return;
+      }
       const dx = event.clientX - last.clientX, dy = event.clientY - last.clientY;
       const is_shift = last.shiftKey || last.buttons === 2;
       last = { clientX: event.clientX, clientY: event.clientY, shiftKey: event.shiftKey, buttons: event.buttons };
@@ -283,20 +306,29 @@ export class Viewer {
         this.yaw -= 0.008 * dx;
         this.pitch = Math.max(-1.55, Math.min(1.55, this.pitch + 0.008 * dy));
       }
-      this.draw();
+      this.draw_moved();
     });
     this.canvas.addEventListener("pointerup", (event) => {
+      if (grabbed) {
+        grabbed.end();
+        grabbed = null;
+        return;
+      }
       if (start && event.button === 0 && Math.hypot(event.clientX - start.clientX, event.clientY - start.clientY) < 4) this.pick(event);
       rest();
     });
-    this.canvas.addEventListener("pointercancel", () => rest());
+    this.canvas.addEventListener("pointercancel", () => {
+      grabbed?.end();
+      grabbed = null;
+      rest();
+    });
     this.canvas.addEventListener("contextmenu", (event) => event.preventDefault());
     this.canvas.addEventListener("dblclick", () => this.home && this.fit(this.home));
     this.canvas.addEventListener("keydown", (event) => this.on_key?.(event) || this.turn_by_key(event));
     this.canvas.addEventListener("wheel", (event) => {
       event.preventDefault();
       this.distance *= Math.exp(0.001 * event.deltaY);
-      this.draw();
+      this.draw_moved();
     }, { passive: false });
   }
 
@@ -315,6 +347,17 @@ export class Viewer {
     else return;
     event.preventDefault();
     this.draw();
+  }
+
+  // Place on the canvas of a point in space, null behind the eye; and the way from the eye through a place.
+  find_place(point) {
+    return project(this.make_view(), this.canvas.getBoundingClientRect(), point);
+  }
+  make_ray({ clientX, clientY }) {
+    const rect = this.canvas.getBoundingClientRect(), { back, right, up } = this.get_axes(), [fx, fy] = this.get_lens();
+    const x = ((2 * (clientX - rect.left)) / rect.width - 1) / fx, y = (1 - (2 * (clientY - rect.top)) / rect.height) / fy;
+    const way = back.map((b, i) => x * right[i] + y * up[i] - b), length = Math.hypot(...way);
+    return { eye: this.target.map((t, i) => t + this.distance * back[i]), direction: way.map((v) => v / length) };
   }
 
   // A click names the nearest node: things with `ids` and `describe(index)`.

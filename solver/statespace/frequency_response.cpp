@@ -123,6 +123,7 @@ records::FrequencyResponse calc_frequency_response(const records::LinearModel& m
   records::FrequencyResponse response;
   response.inputs = model.inputs;
   response.outputs = model.outputs;
+  response.units = model.units;
   const TransferMatrix transfer(model.A, model.B, model.C, model.D);
   std::vector<double> omegas = choose_frequencies(model, range);
   std::vector<MatrixXcd> values;

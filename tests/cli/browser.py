@@ -118,6 +118,20 @@ class Browser:
         if not self.wait_for(f"document.readyState === 'complete' && ({ready})"):
             raise RuntimeError("the page does not get ready: " + "; ".join(self.list_errors()))
 
+    def reload(self):
+        """The page again from its start: its objects are new."""
+        self.run("globalThis.is_before = true")
+        self.call("Page.reload")
+        end = time.monotonic() + HANG
+        while time.monotonic() < end:
+            try:
+                if self.run("!globalThis.is_before && document.documentElement.dataset.ready === 'true'"):
+                    return
+            except RuntimeError:  # between two pages
+                pass
+            time.sleep(0.05)
+        raise RuntimeError("the page does not get ready: " + "; ".join(self.list_errors()))
+
     def type(self, text):
         """Into the element with the focus, by key events."""
         for letter in text:

@@ -70,6 +70,40 @@ class Page(BrowserTest):
         self.artefacts = os.environ.get("BOUGH_ARTEFACTS") or self.folder
         os.makedirs(self.artefacts, exist_ok=True)
 
+    def test_narrow_windows(self):
+        """Long names do not make the page wider than the window; at 1,000 x 700 light and dark have the same layout."""
+        words = "_of_a_system_with_names_of_more_than_sixty_letters_each_from_another_program"
+        self.write("long.toml", toml(
+            table("body", "body" + words, mass=2.0, inertia=[1.0, 1.0, 1.0]),
+            table("hinge", "hinge" + words, "prismatic", child="body" + words, axis=[1.0, 0.0, 0.0], stiffness=[300.0], rate=[1.0]),
+            table("sensor", "position" + words, "hinge_angle", hinge="hinge" + words),
+            table("actuator", "motor" + words, "hinge", hinge="hinge" + words),
+            section("simulation", duration=1.0, output_step=0.01), name="long" + words))
+        self.bough("run", "long.toml", "-o", "long.h5", "-q")
+        self.bough("linearize", "long.toml", "-o", "linear.h5", "-q")
+        files = ["long.h5", "linear.h5", self.boom.path("spinup.h5"), self.boom.path("boom.h5")]
+        self.bough("report", *files, "-o", "page.html")
+        for width in (500, 360):
+            self.browser.renew(width, 800)
+            self.browser.open(self.path("page.html"))
+            self.browser.run("""(async () => { for (let k = 0; k * 700 < document.body.scrollHeight && k < 60; ++k) {
+              scrollTo(0, 700 * k); await new Promise((r) => setTimeout(r, 100)); } })()""")
+            self.assertLessEqual(self.browser.run("document.documentElement.scrollWidth"), width)
+            self.assertEqual(self.browser.list_errors(), [])
+        self.browser.screenshot(os.path.join(self.artefacts, "narrow.png"))
+        self.browser.renew(1000, 700)
+        self.browser.open(self.path("page.html"))
+        heights = []
+        for theme in ("light", "dark"):
+            if theme == "dark":
+                self.browser.click("header button")
+                self.assertEqual(self.browser.run("document.documentElement.dataset.theme"), "dark")
+            self.browser.run(WAIT_FRAMES)
+            heights.append(self.browser.run("document.documentElement.scrollHeight"))
+            self.assertLessEqual(self.browser.run("document.documentElement.scrollWidth"), 1000)
+            self.browser.screenshot(os.path.join(self.artefacts, f"page-1000-{theme}.png"))
+        self.assertEqual(*heights)
+
     def open(self, *files):
         self.bough("report", *files, "-o", "page.html")
         self.browser.open(self.path("page.html"))

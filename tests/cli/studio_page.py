@@ -3,7 +3,7 @@ import json
 import os
 import unittest
 
-from browser import BrowserTest, find_chromium
+from browser import WAIT_FRAMES, BrowserTest, find_chromium
 from studio_support import StudioTest
 
 
@@ -23,10 +23,11 @@ class PageTest(StudioTest, BrowserTest):
         folder = os.environ.get("BOUGH_ARTEFACTS")
         if folder:
             os.makedirs(folder, exist_ok=True)
+            self.browser.run(WAIT_FRAMES)
             self.browser.screenshot(os.path.join(folder, name + ".png"))
 
     def wait(self, expression):
-        self.assertTrue(self.browser.wait_for(f"!!({expression})"), expression + self.browser.run("document.querySelector('.notes').textContent"))
+        self.assertTrue(self.browser.wait_for(f"!!({expression})"), expression + self.browser.run("document.querySelector('.notes')?.textContent ?? 'no page'"))
 
     def choose(self, label, text):
         """An option of a list by keys."""

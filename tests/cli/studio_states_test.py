@@ -2,6 +2,7 @@
 import os
 import unittest
 
+from browser import Browser
 from studio_browser_test import PROJECT, make_plate
 from studio_control_test import SYSTEM
 from studio_page import PageTest
@@ -42,6 +43,32 @@ class Decks(PageTest):
         page.run("studio.look()")
         self.wait("Math.abs(studio.view.stage.scene.get_place(45)[0] - 1.25) < 1e-6")
         self.assertIn("45", self.get_chosen())
+
+    def test_a_large_mesh_is_turned_with_fewer_pixels(self):
+        """While it is dragged; at rest with all. A small mesh is drawn with all throughout."""
+        size = "[document.querySelector('canvas.scene').width / document.querySelector('canvas.scene').clientWidth, studio.view.stage.viewer.yaw]"
+        for count, share in ((60, 0.5), (20, 1)):
+            n = count + 1
+            lines = ["SOL 103", "CEND", "BEGIN BULK", "PSHELL,1,1,.01,1", "MAT1,1,7.+10,,.3,2700."]
+            lines += [f"GRID,{1 + i + n * j},,{i / n:.4f},{j / n:.4f},0." for j in range(n) for i in range(n)]
+            lines += [f"CQUAD4,{1 + i + n * j},1,{1 + i + n * j},{2 + i + n * j},{2 + i + n * (j + 1)},{1 + i + n * (j + 1)}"
+                      for j in range(count) for i in range(count)]
+            self.write("plate.bdf", "\n".join([*lines, "ENDDATA", ""]))
+            self.start_studio("plate.bdf")
+            page = self.browser
+            page.visit(self.address)
+            self.wait("studio.view?.stage")
+            before = page.run(size)
+            box = page.show("canvas.scene")
+            x, y = box["x"] + 20, box["y"] + 20
+            page.mouse("mouseMoved", x, y)
+            page.mouse("mousePressed", x, y, button="left", buttons=1, clickCount=1)
+            page.mouse("mouseMoved", x + 60, y, button="left", buttons=1)
+            self.wait(f"{size}[1] !== {before[1]}")
+            self.wait(f"Math.abs({size}[0] - {share}) < 0.01")
+            page.mouse("mouseReleased", x + 60, y, button="left", clickCount=1)
+            self.wait(f"Math.abs({size}[0] - 1) < 0.01")
+            self.end_studio()
 
     def test_commands_of_a_name_that_begins_with_a_dash(self):
         self.show_plate("-dash.bdf")
@@ -99,6 +126,59 @@ class Systems(PageTest):
         self.command("set pid.kp=5.0")
         self.command("unset parameters.gain")
         self.wait("studio.view.set.size === 0")
+
+    def test_a_run_is_found_by_a_page_that_did_not_start_it(self):
+        """After a reload and in a second tab a run has its progress, its curves and Stop; the text of the file is open."""
+        self.show_system(SYSTEM.replace("duration = 2.0", "duration = 1e5"))
+        page = self.browser
+        page.click("button.run")
+        self.wait("document.querySelector('.progress-line').textContent.includes('%')")
+        page.visit(self.address)  # without the hash: the page of a second tab
+        self.wait("document.querySelector('.jobs button')?.textContent.startsWith('run sliders.toml')")
+        page.reload()
+        self.assertEqual(page.run("studio.name"), "sliders.toml")
+        self.wait("document.querySelector('.progress-line').textContent.includes('%')")
+        self.wait("document.querySelector('.result .chart canvas')")
+        self.keep("studio-found-run")
+        self.assertFalse(page.run("document.querySelector('.progress button').hidden"))
+        self.click_text("Stop")
+        self.wait("document.querySelector('.progress-line').textContent.startsWith('ended with code 3: bough run sliders.toml')")
+        self.wait("document.querySelector('.result').dataset.ready === 'true'")
+        self.wait("document.querySelector('.jobs').childElementCount === 0")
+        self.assertEqual(self.call("jobs")["result"]["jobs"], [])
+        self.assertEqual([e for e in page.list_errors() if "favicon" not in e], [])
+
+    def test_a_killed_browser(self):
+        """The run goes on, the file is as it was saved, and another browser finds both."""
+        text = SYSTEM.replace("duration = 2.0", "duration = 1e5")
+        self.write("sliders.toml", text)
+        self.start_studio("sliders.toml")
+        other = Browser(1000, 700)
+        self.addCleanup(other.close)
+        other.visit(self.address)
+        run = "document.querySelector('.progress-line')?.textContent.includes('%')"
+        self.assertTrue(other.wait_for("document.querySelector('.text-pane')?.dataset.checked === '0'"))
+        other.click("button.run")
+        self.assertTrue(other.wait_for(run))
+        other.click("textarea.code")
+        other.type("# not saved\n")
+        other.process.kill()
+        other.process.wait()
+        self.assertEqual(self.read("sliders.toml"), text)
+        self.assertEqual([j["request"]["files"] for j in self.call("jobs")["result"]["jobs"]], [["sliders.toml"]])
+        self.browser.visit(self.address)
+        self.wait(run)
+        self.click_text("Stop")
+        self.wait("document.querySelector('.progress-line').textContent.startsWith('ended with code 3')")
+        self.ask("chapter", file="sliders.h5")
+
+    def test_a_reload_opens_the_file_that_was_open(self):
+        self.write("plate.bdf", make_plate())
+        self.show_system()
+        page = self.browser
+        self.open("plate.bdf")
+        page.reload()
+        self.assertEqual(page.run("document.querySelector('main.work').dataset.file"), "plate.bdf")
 
     def test_results_have_another_name_than_the_file_of_that_name(self):
         self.write("sliders.toml", SYSTEM)

@@ -152,5 +152,66 @@ class Units(ProgramTest):
         self.assertEqual(values["largest place"], f"{sensor:.4g} mm")
 
 
+class LinearModels(ProgramTest):
+    """Labels of the system file in linear models, sweeps and responses: frequencies in cycles per unit of time."""
+    SLIDER = toml(
+        section("parameters", spring=0.09),
+        table("body", "mass", mass=1.0, inertia=[1.0, 1.0, 1.0]),
+        table("hinge", "slide", "prismatic", child="mass", axis=[1.0, 0.0, 0.0], stiffness=["$spring"], damping=[0.01]),
+        table("sensor", "place", "hinge_angle", hinge="slide"),
+        table("actuator", "motor", "hinge", hinge="slide"),
+        section("simulation", duration=1.0))
+
+    def setUp(self):
+        super().setUp()
+        for name, units in (("plain", ""), ("quick", '[units]\nlength = "mm"\nmass = "kg"\ntime = "ms"\nforce = "kN"\n')):
+            self.write(name + ".toml", units + self.SLIDER)
+
+    def draw(self, *arguments):
+        self.bough("plot", *arguments, "-o", "plot.svg")
+        return self.read("plot.svg")
+
+    def test_files_and_tables(self):
+        tables = {name: self.bough("linearize", name + ".toml", "-o", name + ".h5").stdout for name in ("plain", "quick")}
+        self.assertIn("frequency Hz", tables["plain"])
+        self.assertIn("frequency kHz", tables["quick"])
+        self.assertNotIn("Hz", tables["quick"].replace("kHz", ""))
+        self.assertRegex(tables["quick"], r"coordinate +position +speed +unit")
+        self.assertRegex(tables["quick"], r"slide:1 +0 +0 +mm")
+        with h5py.File(self.path("plain.h5")) as plain, h5py.File(self.path("quick.h5")) as quick:
+            self.assertEqual([quick.attrs[key + "_unit"] for key in ("length", "mass", "time", "force")], ["mm", "kg", "ms", "kN"])
+            self.assertEqual([key for key in plain.attrs if key.endswith("_unit")], [])  # as older files
+            np.testing.assert_array_equal(quick["/A"][:], plain["/A"][:])
+            # 0.3 rad/ms without damping
+            np.testing.assert_allclose(quick["/poles/frequency_hz"][:], 0.3 / (2 * np.pi), rtol=1e-9)
+        self.assertIn("time_unit", self.bough("info", "quick.h5").stdout)
+        self.assertIn(" kHz", self.bough("response", "quick.h5", "-o", "response.h5").stdout)
+        with h5py.File(self.path("response.h5")) as f:
+            self.assertEqual(f.attrs["time_unit"], "ms")
+
+    def test_axes_and_pages(self):
+        for name in ("plain", "quick"):
+            self.bough("linearize", name + ".toml", "-o", name + ".h5")
+        self.bough("linearize", "quick.toml", "--sweep", "spring=0.04:0.09:3", "-o", "sweep.h5")
+        self.bough("response", "quick.h5", "--psd", "1", "-o", "random.h5")
+        for kind in ("bode", "sigma"):
+            self.assertIn("frequency [Hz]", self.draw("plain.h5", "--kind", kind))
+            self.assertIn("frequency [kHz]", self.draw("quick.h5", "--kind", kind))
+        self.assertIn("real part [1/T]", self.draw("plain.h5", "--kind", "poles"))
+        self.assertIn("real part [1/ms]", self.draw("quick.h5", "--kind", "poles"))
+        self.assertIn("frequency [kHz]", self.draw("sweep.h5", "--kind", "campbell"))
+        self.assertIn("imaginary part [1/ms]", self.draw("sweep.h5", "--kind", "locus"))
+        self.assertIn("kHz", self.bough("plot", "quick.h5", "--kind", "bode", "--term").stdout)
+        self.bough("report", "quick.h5", "sweep.h5", "random.h5", "-o", "page.html")
+        page = self.read("page.html")
+        self.assertIn("N0 [kHz]", page)
+        self.assertIn("unit²/kHz", page)
+        self.assertNotIn("[Hz]", page.split("<script")[0])
+        self.write("hours.toml", '[units]\ntime = "h"\n' + self.SLIDER)
+        self.bough("linearize", "hours.toml", "-o", "hours.h5")
+        self.assertIn("frequency [1/h]", self.draw("hours.h5", "--kind", "bode"))
+        self.fails(1, "plot", "hours.h5", "quick.h5", "--kind", "bode", "-o", "both.svg", error="cli.plot-units")
+
+
 if __name__ == "__main__":
     unittest.main()

@@ -53,14 +53,32 @@ export function parse_messages(text) {
 }
 
 /**
- * Runs a command of the program until it ends.
- * @param {{verb: string, files: string[], options?: string[][]}} command
- * @param {(output: string, job: {stop: () => Promise<any>}) => void} on_progress  called with all output so far
- * @returns {Promise<{code: number, output: string, line: string, messages: Message[]}>}
+ * @typedef {{verb: string, files: string[], options?: string[][], before?: number}} Command  before: time of the output
+ *   when the command started, as the list of files has it
+ * @typedef {{job: number, line: string, request: Command}} Job
+ * @typedef {{code: number, output: string, line: string, messages: Message[]}} Outcome
+ * @typedef {(output: string, job: {stop: () => Promise<any>}) => void} Progress  called with all output so far
  */
-export async function run_job({ verb, files, options = [] }, on_progress = () => {}) {
-  const { job, line } = await call("start", { verb, files, options });
+
+/**
+ * Runs a command of the program until it ends.
+ * @param {Command} command
+ * @param {Progress} on_progress
+ * @returns {Promise<Outcome>}
+ */
+export async function run_job({ options = [], ...more }, on_progress = () => {}) {
+  const { job, line } = await call("start", { options, ...more });
   history.push(line);
+  return follow_job({ job, line }, on_progress);
+}
+
+/**
+ * Follows a command that runs, started by this page or another, until it ends.
+ * @param {{job: number, line: string}} started
+ * @param {Progress} on_progress
+ * @returns {Promise<Outcome>}
+ */
+export async function follow_job({ job, line }, on_progress = () => {}) {
   const handle = { stop: () => call("stop", { job }) };
   let output = "", from = 0;
   on_progress(output, handle);
@@ -73,3 +91,9 @@ export async function run_job({ verb, files, options = [] }, on_progress = () =>
     await new Promise((done) => setTimeout(done, 200));
   }
 }
+
+/** Commands that run. @returns {Promise<Job[]>} */
+export const list_jobs = async () => (await call("jobs", {})).jobs;
+
+/** The command that runs for a file, if there is one. @param {string} file  @param {string[]} verbs */
+export const find_job = async (file, verbs) => (await list_jobs()).find(({ request }) => verbs.includes(request.verb) && request.files[0] === file);

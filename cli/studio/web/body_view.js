@@ -1,4 +1,4 @@
-import { ask, run_job } from "./api.js";
+import { ask, find_job, follow_job, run_job } from "./api.js";
 import { make_chapter } from "./chapter_panel.js";
 import { DeckStage } from "./deck_view.js";
 import { el, make_button, make_check } from "./page_parts.js";
@@ -23,7 +23,8 @@ export class BodyView {
     const actions = el("div", { class: "tools actions" }, reduce, this.energy, make_check("a click sets an interface node", true, (on) => (this.picks = on)), this.picked, make_button("Copy commands …", "The lines that do the same in a shell", () => show_history()));
     this.element = el("div", { class: "split reverse" }, el("div", { class: "side wide" }, this.pane.element), el("div", { class: "work-column" }, actions, this.progress.element, this.stage_host, this.result));
     this.output = stem(file) + ".h5";
-    if (studio.has(this.output)) this.show_result();
+    this.is_following = false;
+    this.join().then((found) => !found && studio.has(this.output) && this.show_result());
   }
 
   async show_deck(answer) {
@@ -54,14 +55,26 @@ export class BodyView {
 
   reduce() {
     return this.studio.attempt(async () => {
-      if (!(await this.pane.make_saved())) return;
+      if (this.is_following || !(await this.pane.make_saved())) return;
       const with_energy = this.energy.querySelector("input").checked;
-      const done = await run_job({ verb: "reduce", files: [this.file], options: [["-o", this.output], ...(with_energy ? [["--strain-energy"]] : [])] }, this.progress.update);
-      this.progress.finish(done);
-      this.pane.messages.show(done.messages, "Reduced.");
-      await this.studio.refresh();
-      if (done.code === 0) await this.show_result();
+      await this.watch((on_progress) => run_job({ verb: "reduce", files: [this.file], options: [["-o", this.output], ...(with_energy ? [["--strain-energy"]] : [])] }, on_progress));
     });
+  }
+
+  /** Follows a reduction that runs already, of this page before it was loaded again or of another tab. */
+  async join() {
+    const found = await this.studio.attempt(() => find_job(this.file, ["reduce"]));
+    if (found && !this.is_following) await this.studio.attempt(() => this.watch((on_progress) => follow_job(found, on_progress)));
+    return Boolean(found);
+  }
+
+  async watch(follow) {
+    this.is_following = true;
+    const done = await follow(this.progress.update).finally(() => (this.is_following = false));
+    this.progress.finish(done);
+    this.pane.messages.show(done.messages, "Reduced.");
+    await this.studio.refresh();
+    if (done.code === 0) await this.show_result();
   }
 
   async show_result() {
@@ -76,6 +89,7 @@ export class BodyView {
 
   async notice() {
     await this.pane.notice();
+    this.join();
     if (!this.deck || this.studio.find(this.studio.to_name(this.deck))?.time === this.deck_time) return;
     this.deck = "";
     await this.show_deck(this.pane.answer);

@@ -1,6 +1,7 @@
 // The block diagram of a system and the curves of its functions; a click goes to the line in the text.
 import { ask } from "./api.js";
 import { Chart } from "./chart.js";
+import { Connections, is_editable } from "./connections.js";
 import { lay_out } from "./diagram_layout.js";
 import { el, make_button } from "./page_parts.js";
 
@@ -12,6 +13,8 @@ function svg(tag, attributes, ...children) {
   return element;
 }
 
+// Blocks with an output, and blocks that a [[connect]] may end at.
+const kSources = ["sensor", "controller", "actuator", "function", "input"], kTargets = ["controller", "actuator", "force"];
 const kMarks = { push: "wide", measurement: "dashed", hinge: "mount", constraint: "mount", element: "dotted", event: "dotted", signal: "" };
 
 /** A smooth curve through the points, level at both ends. @param {number[][]} points */
@@ -24,38 +27,37 @@ function make_path(points) {
   return path;
 }
 
-function draw_node(node, box, go) {
+function draw_node(node, box) {
   const { x, y, width, height, lines } = box;
   const round = { function: 12, input: 12, event: 12, body: 0 }[node.kind] ?? 4;
-  const group = svg("g", { class: `block ${node.kind}`, tabindex: node.line > 0 ? "0" : "-1", role: "button", "aria-label": `${node.kind} ${node.name}` },
-    svg("title", {}, document.createTextNode(`${node.kind} ${node.name}${node.line > 0 ? `, line ${node.line}` : ""}`)),
+  const hint = kSources.includes(node.kind) ? "; drag to another block, or c: connect" : "";
+  return svg("g", { class: `block ${node.kind}`, tabindex: "0", role: "button", "aria-label": `${node.kind} ${node.name}`, "data-node": node.id },
+    svg("title", {}, document.createTextNode(`${node.kind} ${node.name}${node.line > 0 ? `, line ${node.line}` : ""}${hint}`)),
     svg("rect", { x, y, width, height, rx: round }),
-    ...lines.map((line, i) => svg("text", { x: x + width / 2, y: y + 18 + 15 * i, class: i === 0 ? "name" : "" }, document.createTextNode(line))));
-  const act = () => node.line > 0 && go(node.line);
-  group.addEventListener("click", act);
-  group.addEventListener("keydown", (event) => {
-    if (event.key !== "Enter" && event.key !== " ") return;
-    event.preventDefault();
-    act();
-  });
-  return group;
+    ...lines.map((line, i) => svg("text", { x: x + width / 2, y: y + 18 + 15 * i, class: i === 0 ? "name" : "" }, document.createTextNode(line))),
+    ...(kSources.includes(node.kind) ? [svg("circle", { cx: x + width, cy: y + height / 2, r: 4, class: "port" })] : []));
 }
 
-/** @param {{nodes: any[], edges: any[]}} diagram @param {(line: number) => void} go */
-export function draw_diagram({ nodes, edges }, go) {
+const describe = (edge) => `${edge.from} → ${edge.to}${edge.label ? ": " + edge.label : ""}`;
+
+/** @param {{nodes: any[], edges: any[]}} diagram */
+export function draw_diagram({ nodes, edges }) {
   const { boxes, paths, width, height } = lay_out(nodes, edges);
   const picture = svg("svg", { viewBox: `0 0 ${width} ${height}`, width, height, class: "diagram", role: "group", "aria-label": "block diagram" },
     svg("defs", {}, svg("marker", { id: "arrow", viewBox: "0 0 8 8", refX: 8, refY: 4, markerWidth: 7, markerHeight: 7, orient: "auto" }, svg("path", { d: "M 0 0 L 8 4 L 0 8 z" }))));
   picture.style.minWidth = `${Math.round(0.65 * width)}px`;  // smaller it could not be read: it is scrolled
   for (const { edge, points } of paths) {
-    const is_mount = kMarks[edge.link] === "mount";
-    picture.append(svg("path", { d: make_path(points), class: `wire ${kMarks[edge.link]}`, ...(is_mount ? {} : { "marker-end": "url(#arrow)" }) }, svg("title", {}, document.createTextNode(`${edge.from} → ${edge.to}${edge.label ? ": " + edge.label : ""}`))));
+    const is_mount = kMarks[edge.link] === "mount", d = make_path(points);
+    const wire = svg("path", { d, class: `wire ${kMarks[edge.link]}`, ...(is_mount ? {} : { "marker-end": "url(#arrow)" }) });
+    const title = svg("title", {}, document.createTextNode(describe(edge) + (is_editable(edge) ? "; Delete: take it away" : "")));
+    if (is_editable(edge)) picture.append(svg("g", { class: "connection", tabindex: "0", role: "button", "aria-label": `connection ${describe(edge)}`, "data-edge": edges.indexOf(edge) }, title, wire, svg("path", { d, class: "reach" })));
+    else picture.append(svg("g", {}, title, wire));
     if (!edge.label) continue;
     // In the first gap that the edge crosses.
     const [[x0, y0], [x1, y1]] = points;
     picture.append(svg("text", { x: (x0 + x1) / 2, y: (y0 + y1) / 2 - 3, class: "wire-label" }, document.createTextNode(edge.label)));
   }
-  for (const node of nodes) picture.append(draw_node(node, boxes.get(node.id), go));
+  for (const node of nodes) picture.append(draw_node(node, boxes.get(node.id)));
   return picture;
 }
 
@@ -65,30 +67,31 @@ export class DiagramPanels {
     this.studio = studio;
     this.view = view;
     this.diagram = el("div", { class: "diagram-host", tabindex: "0" });
+    this.connections = new Connections(studio, view, this.diagram);
     this.curves = el("div", { class: "function-curves" });
     const fold = (name, title, host) => {
       const details = el("details", { class: `panel ${name}` }, el("summary", {}, title), host);
       details.addEventListener("toggle", () => details.open && this.update());
       return details;
     };
-    this.folds = [fold("block-diagram", "Block diagram", this.diagram), fold("functions", "Functions", this.curves)];
+    this.folds = [fold("block-diagram", "Block diagram", el("div", {}, this.connections.element, this.diagram)), fold("functions", "Functions", this.curves)];
     this.element = el("div", {}, ...this.folds);
   }
 
-  /** After each check without errors, and when a panel is opened. */
-  update() {
+  /** After each check, and when a panel is opened. A text that cannot be drawn leaves the picture before. */
+  async update() {
     const text = this.view.pane.text;
     if (text === this.drawn || !this.folds.some((f) => f.open)) return;
-    return this.studio.attempt(async () => {
-      const answer = await ask("diagram", { file: this.view.file, text });
-      this.drawn = text;
-      const go = (line) => this.view.pane.editor.go(line);
-      this.diagram.replaceChildren(answer.nodes.length > 0 ? draw_diagram(answer, go) : el("p", { class: "note" }, "The system has no blocks."));
-      this.diagram.dataset.blocks = String(answer.nodes.length);
-      this.curves.replaceChildren(...answer.functions.map((f) => this.draw_function(f, go)));
-      if (answer.functions.length === 0) this.curves.append(el("p", { class: "note" }, "The file has no [[function]]; one is added by the form on the left."));
-      this.curves.dataset.count = String(answer.functions.length);
-    });
+    const answer = await ask("diagram", { file: this.view.file, text }).catch(() => null);
+    if (!answer || text !== this.view.pane.text) return;
+    this.drawn = text;
+    const go = (line) => this.view.pane.editor.go(line);
+    this.diagram.replaceChildren(answer.nodes.length > 0 ? draw_diagram(answer) : el("p", { class: "note" }, "The system has no blocks."));
+    this.connections.attach(answer, go);
+    this.diagram.dataset.blocks = String(answer.nodes.length);
+    this.curves.replaceChildren(...answer.functions.map((f) => this.draw_function(f, go)));
+    if (answer.functions.length === 0) this.curves.append(el("p", { class: "note" }, "The file has no [[function]]; one is added by the form on the left."));
+    this.curves.dataset.count = String(answer.functions.length);
   }
 
   draw_function({ name, type, of_time, line, x, y }, go) {

@@ -6,7 +6,7 @@ import { list_pole_series } from "./linear_view.js";
 import { format_number } from "./numbers.js";
 import { el, make_select } from "./page_parts.js";
 
-const describe = ({ frequency, damping, mode }, i) => `${format_number(frequency[i], 5)} Hz, damping ${format_number(100 * damping[i], 4)} %, ${mode[i]}`;
+const describe = ({ frequency, damping, mode }, i, unit) => `${format_number(frequency[i], 5)} ${unit}, damping ${format_number(100 * damping[i], 4)} %, ${mode[i]}`;
 
 export class PolePanel {
   /** @param {any} view  the SystemView  @param {any} chart  its chart of poles  @param {ReportChapter} data */
@@ -15,6 +15,7 @@ export class PolePanel {
     this.chart = chart;
     this.is_at_rest = is_at_rest;
     this.poles = data.data.poles;
+    this.unit = data.data.frequency_unit ?? "Hz";
     this.base = list_pole_series(data.data);
     this.trail = { x: [], y: [] };
     chart.on_point = (series, i) => series.name.startsWith("poles") && this.show(this.poles.index[i]);
@@ -28,7 +29,7 @@ export class PolePanel {
   list_poles() {
     const { list } = this.picker, chosen = list.selectedIndex, before = list.length;
     this.upper = this.poles.index.map((_, i) => i).filter((i) => this.poles.imag[i] >= 0);
-    list.replaceChildren(...["no pole", ...this.upper.map((i) => describe(this.poles, i))].map((name, i) => el("option", { value: i }, name)));
+    list.replaceChildren(...["no pole", ...this.upper.map((i) => describe(this.poles, i, this.unit))].map((name, i) => el("option", { value: i }, name)));
     if (list.length === before) list.selectedIndex = chosen;
   }
 
@@ -51,7 +52,7 @@ export class PolePanel {
       motion.is_looping = true;
       motion.seconds = 1.5;
       motion.play(true);
-      this.view.picked.textContent = `shape of the pole ${describe(poles, i)}`;
+      this.view.picked.textContent = `shape of the pole ${describe(poles, i, this.unit)}`;
       this.view.scene.dataset.pole = String(pole);
     });
   }
@@ -75,7 +76,7 @@ export class PolePanel {
         this.list_poles();
         this.trail.x.push(...poles.x);
         this.trail.y.push(...poles.y);
-        const tip = (i) => describe(poles, i);
+        const tip = (i) => describe(poles, i, this.unit);
         this.chart.set_series([...this.base.map((s) => ({ ...s, name: s.name.replace("poles", "at the start: poles") })),
           { name: "on the way", x: Float64Array.from(this.trail.x), y: Float64Array.from(this.trail.y), points: "dot", style: 4 },
           { name: "poles with " + request.set.join(", "), x: Float64Array.from(poles.x), y: Float64Array.from(poles.y), points: "cross", style: 1, tip }]);

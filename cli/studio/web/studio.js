@@ -1,4 +1,4 @@
-import { ask, call, StudioError } from "./api.js";
+import { ask, call, list_jobs, StudioError } from "./api.js";
 import { open_body } from "./body_view.js";
 import { open_deck } from "./deck_view.js";
 import { open_chapter, open_report, open_text } from "./file_views.js";
@@ -18,6 +18,8 @@ class Studio {
     this.work = /** @type {HTMLElement} */ (document.querySelector("main.work"));
     this.notes = el("div", { class: "notes", role: "status" });
     document.body.append(this.notes);
+    this.jobs = el("span", { class: "jobs", role: "status", "aria-label": "commands that run" });
+    document.querySelector("header .spacer").before(this.jobs);
     const end = make_button("End", "End bough studio", () => this.end());
     document.querySelector("header").append(make_theme_button(), end);
     addEventListener("beforeunload", (event) => this.view?.is_changed?.() && event.preventDefault());
@@ -29,7 +31,9 @@ class Studio {
     document.querySelector("header .folder").textContent = `${state.folder} · Bough ${state.version}`;
     document.title = `${state.folder} – Bough studio`;
     await this.refresh();
-    if (state.files.length > 0) await this.open(state.files[0]);
+    const before = decodeURIComponent(location.hash.slice(1));  // of this page before it was loaded again
+    if (this.has(before)) await this.open(before);
+    else if (state.files.length > 0) await this.open(state.files[0]);
     else this.show_welcome();
     document.documentElement.dataset.ready = "true";
     setInterval(() => document.visibilityState === "visible" && this.look(), kLookEvery);
@@ -75,7 +79,17 @@ class Studio {
     return this.files.find((f) => f.name === path)?.name ?? this.files.find((f) => path.endsWith("/" + f.name))?.name ?? path;
   }
 
+  /** Commands that run, of this page and of others; a click opens the file of one, with its progress and Stop. */
+  async show_jobs() {
+    const jobs = await list_jobs();
+    const text = jobs.map((j) => j.line).join("\n");
+    if (this.jobs.dataset.lines === text) return;
+    this.jobs.dataset.lines = text;
+    this.jobs.replaceChildren(...jobs.map(({ line, request: { verb, files } }) => make_button(`${verb} ${files[0]} …`, `Runs: ${line}`, () => files[0] !== this.name && this.open(files[0]))));
+  }
+
   async refresh() {
+    await this.show_jobs();
     const { files } = await ask("list");
     this.files = files;
     const left = new Set(files);
@@ -96,6 +110,7 @@ class Studio {
     this.is_looking = true;
     try {
       const before = new Map(this.files.map((f) => [f.name, f.time]));
+      await this.show_jobs();
       const { files } = await ask("list");
       const is_other = files.length !== before.size || files.some((f) => before.get(f.name) !== f.time);
       if (!is_other) return;
@@ -121,6 +136,7 @@ class Studio {
       this.view?.dispose?.();
       this.view = view;
       this.name = name;
+      history.replaceState(null, "", "#" + encodeURIComponent(name));
       const title = el("h2", { class: "file-title", tabindex: "-1" }, name, " ", el("small", {}, file.kind));
       this.work.replaceChildren(title, view.element);
       if (document.activeElement === document.body) title.focus();  // what had the focus is gone

@@ -1,9 +1,10 @@
-import { ask, run_job } from "./api.js";
+import { ask, find_job, follow_job, run_job } from "./api.js";
 import { make_add_form } from "./add_form.js";
 import { make_chapter } from "./chapter_panel.js";
 import { ReportChapter } from "./chapter_views.js";
 import { Chart } from "./chart.js";
 import { DiagramPanels } from "./diagram_view.js";
+import { HingeAxes } from "./hinge_axes.js";
 import { HistoryView, RunSet } from "./history.js";
 import { MotionView } from "./motion_view.js";
 import { el, make_button } from "./page_parts.js";
@@ -28,8 +29,10 @@ export class SystemView {
     this.picked = el("output", { class: "picked", "aria-live": "polite" });
     this.parameters = el("div", { class: "tools parameters" });
     this.set = new Map();
+    this.is_following = false;  // a command of this file is followed
     this.add_form = make_add_form(studio, this);
     this.diagrams = new DiagramPanels(studio, this);
+    this.hinge_axes = new HingeAxes(this);
     this.pane = new TextPane(studio, file, "system", read, { on_check: (answer) => this.update(answer) });
     const button = (text, title, action, name) => Object.assign(make_button(text, title, action), { className: name });
     const actions = el("div", { class: "tools actions" }, button("Run", "bough run: time history", () => this.run(), "main run"),
@@ -39,8 +42,8 @@ export class SystemView {
       button("… at equilibrium", "bough linearize --equilibrium", () => this.solve("linearize", "-linear.h5", [["--equilibrium"]]), "linearize-rest"),
       button("Save as page", "bough report of the run and its bodies: one HTML file", () => this.report(), "save-page"),
       button("Copy commands …", "The lines that do the same in a shell", () => show_history(), "copy"));
-    this.element = el("div", { class: "split reverse" }, el("div", { class: "side wide" }, this.add_form.element, this.pane.element), el("div", { class: "work-column" }, actions, this.parameters, this.progress.element, this.picked, this.scene, this.diagrams.element, this.result));
-    if (studio.has(this.output)) this.show_results();
+    this.element = el("div", { class: "split reverse" }, el("div", { class: "side wide" }, this.add_form.element, this.pane.element), el("div", { class: "work-column" }, actions, this.parameters, this.progress.element, this.picked, this.hinge_axes.element, this.scene, this.diagrams.element, this.result));
+    this.join().then((found) => !found && studio.has(this.output) && this.show_results());
   }
 
   /** Name of the results: that of the system file, unless a body or another kind of file has it. */
@@ -55,14 +58,16 @@ export class SystemView {
     if (!has_errors) for (const name of [...this.set.keys()]) if (!names.has(name)) this.set.delete(name);
     this.show_parameters(answer.parameters);
     this.add_form.update(answer);
+    this.diagrams.update();
     if (this.is_running || has_errors || this.text_drawn === this.pane.text) return;
     const text = this.pane.text;
-    this.diagrams.update();
     try {
       const { chapter } = await ask("preview", { file: this.file, text });
+      if (text !== this.pane.text) return;  // another text is checked by now
       this.text_drawn = text;
       this.bodies = answer.bodies;
-      this.show_scene(new ReportChapter(chapter.data).run, false);
+      const run = new ReportChapter(chapter.data).run, list_bodies = (r) => r?.data.bodies.map((b) => b.name).join("\n");
+      this.show_scene(run, false, list_bodies(run) === list_bodies(this.motion?.run));
     } catch (error) {
       if (error.messages) this.pane.messages.show(error.messages);
     }
@@ -75,9 +80,10 @@ export class SystemView {
     this.motion = new MotionView(run, this.viewer);
     if (home && is_kept) Object.assign(this.viewer, { yaw, pitch, distance, target });
     if (at_end) this.motion.set_time(this.motion.last);
+    this.hinge_axes.attach(this.motion);
     this.viewer.on_pick = (found) => this.pick(found);
-    this.viewer.draw();
     this.scene.replaceChildren(this.motion.element);
+    this.viewer.draw();  // on the page: before, the canvas has no size
     this.scene.dataset.samples = String(run.time.length);
     delete this.scene.dataset.pole;
   }
@@ -129,29 +135,51 @@ export class SystemView {
 
   run(more = []) {
     return this.studio.attempt(async () => {
-      if (!(await this.pane.make_saved())) return;
-      this.is_running = true;
+      if (this.is_following || !(await this.pane.make_saved())) return;
       this.output = this.choose_output();
-      const time_before = this.studio.find(this.output)?.time;
-      this.result.replaceChildren();
-      this.shown?.dispose();
-      const live = new LiveCharts(this, time_before);
-      try {
-        const done = await run_job({ verb: "run", files: [this.file], options: [...more, ...this.get_set(), ["-o", this.output]] }, (text, job) => {
-          this.progress.update(text, job);
-          live.look();
-        });
-        live.end();
-        this.progress.finish(done);
-        this.pane.messages.show(done.messages, "The run ended without a message.");
-        await this.studio.refresh();
-        const found = this.studio.find(this.output);
-        if (found) await this.show_results(found.time === time_before);
-      } finally {
-        this.is_running = false;
-        live.end();
-      }
+      const before = this.studio.find(this.output)?.time;
+      await this.watch_run(before, (on_progress) => run_job({ verb: "run", files: [this.file], options: [...more, ...this.get_set(), ["-o", this.output]], before }, on_progress));
     });
+  }
+
+  /**
+   * Follows a command for this file that runs already: the page was loaded again, or another tab started the command.
+   * @returns {Promise<boolean>}  true if there was one
+   */
+  async join() {
+    const found = await this.studio.attempt(() => find_job(this.file, ["run", "equilibrium", "linearize"]));
+    if (!found || this.is_following) return Boolean(found);
+    const { verb, options, before } = found.request, output = options.find(([name]) => name === "-o")[1];
+    for (const [name, text] of options) if (name === "--set") this.set.set(text.slice(0, text.indexOf("=")), text.slice(text.indexOf("=") + 1));
+    await this.studio.attempt(async () => {
+      if (verb !== "run") return this.show_model(verb, output, options, (on_progress) => follow_job(found, on_progress));
+      this.output = output;
+      return this.watch_run(before, (on_progress) => follow_job(found, on_progress));
+    });
+    return true;
+  }
+
+  /** Follows a run until its results are shown. @param {number | undefined} before  time of its results file at the start */
+  async watch_run(before, follow) {
+    this.is_following = this.is_running = true;
+    this.result.replaceChildren();
+    this.shown?.dispose();
+    const live = new LiveCharts(this, before);
+    try {
+      const done = await follow((text, job) => {
+        this.progress.update(text, job);
+        live.look();
+      });
+      live.end();
+      this.progress.finish(done);
+      this.pane.messages.show(done.messages, "The run ended without a message.");
+      await this.studio.refresh();
+      const found = this.studio.find(this.output);
+      if (found) await this.show_results(found.time === before);
+    } finally {
+      this.is_following = this.is_running = false;
+      live.end();
+    }
   }
 
   /** Whole results: scene, all panels; the run before stays in a chart of both. `is_old`: the last run wrote none. */
@@ -178,22 +206,28 @@ export class SystemView {
 
   solve(verb, ending, options = []) {
     return this.studio.attempt(async () => {
-      if (!(await this.pane.make_saved())) return;
+      if (this.is_following || !(await this.pane.make_saved())) return;
       const output = stem(this.file) + ending;
-      const done = await run_job({ verb, files: [this.file], options: [...options, ...this.get_set(), ["-o", output]] }, this.progress.update);
-      this.progress.finish(done);
-      this.pane.messages.show(done.messages, "No messages.");
-      await this.studio.refresh();
-      if (done.code !== 0) return;
-      const { chapter } = await ask("chapter", { file: output, bodies: this.bodies ?? [] });
-      this.shown?.dispose();
-      this.poles = null;
-      this.shown = make_chapter(chapter, [], (name, chart, data) => {
-        if (name === "poles") this.poles = new PolePanel(this, chart, data, options.some(([name]) => name === "--equilibrium"));
-      });
-      this.result.replaceChildren(el("h2", {}, output), this.shown.element);
-      this.result.dataset.ready = verb;
+      await this.show_model(verb, output, options, (on_progress) => run_job({ verb, files: [this.file], options: [...options, ...this.get_set(), ["-o", output]] }, on_progress));
     });
+  }
+
+  /** Follows a command until its messages, and what it wrote, are shown. */
+  async show_model(verb, output, options, follow) {
+    this.is_following = true;
+    const done = await follow(this.progress.update).finally(() => (this.is_following = false));
+    this.progress.finish(done);
+    this.pane.messages.show(done.messages, "No messages.");
+    await this.studio.refresh();
+    if (done.code !== 0) return;
+    const { chapter } = await ask("chapter", { file: output, bodies: this.bodies ?? [] });
+    this.shown?.dispose();
+    this.poles = null;
+    this.shown = make_chapter(chapter, [], (name, chart, data) => {
+      if (name === "poles") this.poles = new PolePanel(this, chart, data, options.some(([name]) => name === "--equilibrium"));
+    });
+    this.result.replaceChildren(el("h2", {}, output), this.shown.element);
+    this.result.dataset.ready = verb;
   }
 
   report() {
@@ -206,13 +240,15 @@ export class SystemView {
     });
   }
 
-  notice() {
-    return this.pane.notice();
+  async notice() {
+    await this.pane.notice();
+    await this.join();
   }
   is_changed() {
     return this.pane.is_changed();
   }
   dispose() {
+    this.is_following = true;  // joins no more
     this.motion?.play(false);
     this.viewer.dispose();
     this.shown?.dispose();

@@ -1,0 +1,211 @@
+"""The system view of the studio by mouse and keys: axes of hinges are turned, connections are made and deleted. What is
+written is what the commands of `bough edit` write, and what the command line then reads."""
+import math
+import tomllib
+import unittest
+
+import h5py
+import numpy as np
+
+from studio_control_test import SYSTEM
+from studio_page import PageTest
+from toml_text import section, table, toml
+
+# Tip of the arrow of the chosen hinge on the screen, and the length of the arrow.
+TIP = """(() => { const h = studio.view.hinge_axes, now = h.locate(), { canvas } = studio.view.viewer, b = canvas.getBoundingClientRect();
+  const p = studio.view.viewer.find_place(now.at.map((v, i) => v + h.get_length() * now.axis[i])); return [b.x + p[0], b.y + p[1]]; })()"""
+# Where a tip would be in this direction of the world.
+AIM = """((u) => { const h = studio.view.hinge_axes, now = h.locate(), { canvas } = studio.view.viewer, b = canvas.getBoundingClientRect();
+  const p = studio.view.viewer.find_place(now.at.map((v, i) => v + h.get_length() * u[i])); return [b.x + p[0], b.y + p[1]]; })(%s)"""
+
+ARM = toml(
+    table("body", "arm", mass=2.0, cg=[0.5, 0.0, 0.0], inertia=[0.1, 1.0, 1.0]),
+    table("body", "hand", mass=1.0, inertia=[0.2, 0.2, 0.2]),
+    table("hinge", "shoulder", "revolute", child="arm", axis=[0.0, 0.0, 1.0], position=[0.6]),
+    # The hinge frame is turned in the arm, which is turned itself.
+    table("hinge", "wrist", "revolute", parent="arm", parent_position=[1.0, 0.0, 0.0], child="hand",
+          parent_rotation_deg=[0.0, 0.0, 90.0], axis=[0.0, 0.0, 1.0]),
+    section("simulation", duration=1.0, output_step=0.1),
+    name="arm")
+
+
+class Edits(PageTest):
+    def show(self, name, text):
+        self.write(name, text)
+        page = self.open_studio(name)
+        self.wait("document.querySelector('.text-pane')?.dataset.checked === '0'")
+        self.wait("document.querySelector('.scene-host').dataset.samples")
+        return page
+
+    def get_text(self):
+        return self.browser.run("studio.view.pane.text")
+
+    def wait_for_check(self):
+        self.wait("!studio.view.pane.is_checking && studio.view.pane.waiting === studio.view.pane.text && studio.view.text_drawn === studio.view.pane.text")
+
+    def save(self):
+        self.browser.click("button.save")
+        self.wait("document.querySelector('dialog pre.diff')")
+        diff = self.browser.run("document.querySelector('dialog pre.diff').textContent")
+        self.click_text("Save", "document.querySelector('dialog')")
+        self.wait("!document.querySelector('dialog') && !studio.view.is_changed()")
+        return diff
+
+
+class Axes(Edits):
+    def get_axis(self, text, name):
+        return next(h for h in tomllib.loads(text)["hinge"] if h["name"] == name)["axis"]
+
+    def test_drag_of_the_tip(self):
+        page = self.show("arm.toml", ARM)
+        self.choose("turn the axis of", "wrist")
+        page.show("canvas.scene")
+        # In the world, in the arm (turned by 0.6 about z), in the hinge frame (turned by 90 degrees about z in the arm).
+        angle = 0.6 + math.pi / 2
+        direction = (0.48, 0.36, 0.8)
+        page.drag(page.run(TIP), page.run(AIM % list(direction)), steps=12)
+        self.wait("studio.view.pane.text !== studio.view.pane.saved")
+        x, y, z = direction
+        expected = (math.cos(angle) * x + math.sin(angle) * y, -math.sin(angle) * x + math.cos(angle) * y, z)
+        axis = self.get_axis(self.get_text(), "wrist")
+        self.assertGreater(sum(a * b for a, b in zip(axis, expected)), math.cos(math.radians(2)))  # a pixel or two
+        self.assertAlmostEqual(math.hypot(*axis), 1, delta=2e-4)
+        self.assertEqual(self.get_axis(self.get_text(), "shoulder"), [0.0, 0.0, 1.0])
+        self.wait_for_check()
+        self.keep("studio-axis")
+        # Near an axis of the hinge frame it is that axis.
+        near = (-math.cos(angle + 0.03), -math.sin(angle + 0.03), 0.03)
+        page.drag(page.run(TIP), page.run(AIM % list(near)), steps=12)
+        self.wait("studio.view.pane.text.includes('axis = [-1.0, 0.0, 0.0]')")
+        self.assertEqual(self.get_axis(self.get_text(), "wrist"), [-1.0, 0.0, 0.0])
+        self.wait_for_check()
+        # Undo gives the axis before, then the file.
+        self.click_text("Undo")
+        self.assertEqual(self.get_axis(self.get_text(), "wrist"), axis)
+        self.click_text("Undo")
+        self.assertEqual(self.get_text(), ARM)
+        self.click_text("Redo")
+        self.wait_for_check()
+        diff = self.save()
+        self.assertEqual(len([line for line in diff.splitlines() if line[:1] in ("+", "-") and "arm.toml" not in line]), 2)
+        self.assertEqual(self.read("arm.toml"), ARM.replace(
+            "parent_rotation_deg = [0.0, 0.0, 90.0]\naxis = [0.0, 0.0, 1.0]",
+            f"parent_rotation_deg = [0.0, 0.0, 90.0]\naxis = [{', '.join(str(v) for v in axis)}]"))
+        self.assertEqual([e for e in page.list_errors() if "favicon" not in e], [])
+        # A drag away from the tip turns the view.
+        yaw = page.run("studio.view.viewer.yaw")
+        box = page.show("canvas.scene")
+        page.drag((box["x"] + 20, box["y"] + 20), (box["x"] + 80, box["y"] + 20))
+        self.assertNotEqual(page.run("studio.view.viewer.yaw"), yaw)
+
+    def test_numbers_by_keys(self):
+        page = self.show("arm.toml", ARM)
+        self.choose("turn the axis of", "shoulder")
+        page.run("document.querySelector('[aria-label=\"axis y\"]').select()")
+        page.type("2\n")
+        self.wait("studio.view.pane.text.includes('axis = [0.0, 2.0, 1.0]')")
+        self.wait_for_check()
+        # An axis without length is not taken.
+        for name in "yz":
+            page.run(f"document.querySelector('[aria-label=\"axis {name}\"]').select()")
+            page.type("0\n")
+        self.wait("studio.view.pane.text.includes('axis = [0.0, 0.0, 1.0]') || studio.view.pane.text.includes('axis = [0.0, 2.0, 0.0]')")
+        self.assertGreater(math.hypot(*self.get_axis(self.get_text(), "shoulder")), 0.5)
+        self.click_text("x", "document.querySelector('.axis-numbers')")
+        self.wait("studio.view.pane.text.includes('axis = [1.0, 0.0, 0.0]')")
+        self.wait_for_check()
+        self.click_text("± reverse")
+        self.wait("studio.view.pane.text.includes('axis = [-1.0, 0.0, 0.0]')")
+        self.assertEqual([e for e in page.list_errors() if "favicon" not in e], [])
+
+
+class Connections(Edits):
+    def show_diagram(self):
+        page = self.show("sliders.toml", SYSTEM)
+        page.click("details.block-diagram summary")
+        self.wait("document.querySelector('svg.diagram [data-edge]')")
+        return page
+
+    def find(self, selector):
+        """The middle of an element on the screen; of a connection the middle of its line."""
+        return self.browser.run(f"""(() => {{ const e = document.querySelector({selector!r}), wire = e.querySelector(".wire");
+          e.scrollIntoView({{ block: "center", inline: "center" }}); const b = e.getBoundingClientRect();
+          if (!wire) return [b.x + b.width / 2, b.y + b.height / 2];
+          const p = wire.getPointAtLength(wire.getTotalLength() / 2).matrixTransform(wire.getScreenCTM()); return [p.x, p.y]; }})()""")
+
+    def click_at(self, place):
+        page = self.browser
+        page.mouse("mouseMoved", *place)
+        page.mouse("mousePressed", *place, button="left", buttons=1, clickCount=1)
+        page.mouse("mouseReleased", *place, button="left", clickCount=1)
+
+    def calc_poles(self, name):
+        self.bough("linearize", name, "-o", name + ".h5", "--force")
+        with h5py.File(self.path(name + ".h5")) as f:
+            return f["/poles/imag"][:]
+
+    def test_by_mouse(self):
+        """A connection is deleted and drawn again: the command line finds the same poles."""
+        page = self.show_diagram()
+        before = self.calc_poles("sliders.toml")
+        wire = '[aria-label^="connection sensor place → controller pid"]'
+        self.click_at(self.find(wire))
+        self.wait(f"document.querySelector('{wire}').classList.contains('chosen')")
+        self.click_text("Delete connection")
+        self.wait("!studio.view.pane.text.includes('inputs = ')")
+        # The text is not valid without it, and is drawn.
+        self.wait(f"!document.querySelector('{wire}') && Number(document.querySelector('.text-pane').dataset.checked) > 0")
+        page.drag(self.find('[data-node="sensor place"]'), self.find('[data-node="controller pid"]'))
+        self.wait("document.querySelector('dialog .connect-form')")
+        self.keep("studio-connect")
+        self.click_text("Connect", "document.querySelector('dialog')")
+        self.wait(f"document.querySelector('{wire}')")
+        self.assertIn({"from": "place", "to": "pid"}, tomllib.loads(self.get_text())["connect"])
+        self.wait("document.querySelector('.text-pane').dataset.checked === '0'")
+        self.save()
+        np.testing.assert_allclose(self.calc_poles("sliders.toml"), before, rtol=1e-12)
+        # The new connection is a table, deleted as a whole.
+        self.click_at(self.find(wire))
+        page.press("Delete")
+        self.wait("!studio.view.pane.text.includes('[[connect]]')")
+        self.click_text("Undo")
+        self.click_text("Undo")
+        self.click_text("Undo")
+        self.assertEqual(self.get_text(), SYSTEM)
+        self.assertEqual([e for e in page.list_errors() if "favicon" not in e], [])
+
+    def test_by_keys(self):
+        """From the sensor to the motor past the controller, with a gain: the spring that this is has its poles."""
+        page = self.show_diagram()
+        page.run("document.querySelector('[data-node=\"sensor place\"]').focus()")
+        page.type("c")
+        self.wait("document.querySelector('.block.source')")
+        page.run("document.querySelector('[data-node=\"body a\"]').focus()")
+        page.press("Enter")
+        self.wait("document.querySelector('.block-diagram output').textContent.includes('takes no signal')")
+        page.run("document.querySelector('[data-node=\"sensor place\"]').focus()")
+        page.type("c")
+        page.run("document.querySelector('[data-node=\"actuator motor\"]').focus()")
+        page.press("Enter")
+        self.wait("document.querySelector('dialog [aria-label=gain]')")
+        self.assertIn("In place of pid", page.run("document.querySelector('dialog').textContent"))
+        page.run("document.querySelector('dialog [aria-label=gain]').select()")
+        page.type("-7")
+        page.run("document.querySelector('dialog button.main').focus()")
+        page.type("\n")
+        self.wait("studio.view.pane.text.includes('[[connect]]')")
+        text = tomllib.loads(self.get_text())
+        self.assertEqual(text["connect"], [{"from": "place", "to": "motor", "gain": -7}])
+        self.assertNotIn("input", text["actuator"][0])
+        self.wait("document.querySelector('.text-pane').dataset.checked === '0'")
+        self.save()
+        # u: rates of a against the ground, of b against a
+        M, K = np.array([[3.0, 1.0], [1.0, 1.0]]), np.diag([307.0, 100.0])
+        omega = np.sort(np.sqrt(np.linalg.eigvals(np.linalg.solve(M, K)).real))
+        poles = self.calc_poles("sliders.toml")
+        np.testing.assert_allclose(np.sort(poles[poles > 1e-6]), omega, rtol=1e-9)
+        self.assertEqual([e for e in page.list_errors() if "favicon" not in e], [])
+
+
+if __name__ == "__main__":
+    unittest.main()
