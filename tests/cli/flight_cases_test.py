@@ -94,7 +94,7 @@ class FlightCases(ProgramTest):
                  -b2 * x[3] + Jh * s * c * x[2]**2 - g * m * l * s]
             return [x[2], x[3], *np.linalg.solve(M, f)]
 
-        def write(position, law):
+        def write(position, gains):
             return self.write("furuta.toml", toml(
                 table("body", "arm", mass=0.5, cg=[0.1, 0.0, 0.0], inertia=[1e-3, J - 0.5 * 0.01, J - 0.5 * 0.01]),
                 table("body", "rod", mass=m, cg=[0.0, 0.0, -l], inertia=[J2, J2, 0.0]),
@@ -105,8 +105,8 @@ class FlightCases(ProgramTest):
                 table("sensor", "tilt", "hinge_angle", hinge="joint", bias=-math.pi),
                 table("sensor", "rate", "hinge_rate", hinge="base"),
                 table("sensor", "tilt_rate", "hinge_rate", hinge="joint"),
-                table("controller", "law", "gain", inputs=["angle", "tilt", "rate", "tilt_rate"], gain=[law]),
-                table("actuator", "motor", "hinge", hinge="base", input="law"),
+                table("controller", "feedback", "gain", inputs=["angle", "tilt", "rate", "tilt_rate"], gain=[gains]),
+                table("actuator", "motor", "hinge", hinge="base", input="feedback"),
                 section("simulation", duration=3.0, output_step=0.05, gravity=[0.0, 0.0, -g], integrator="rk",
                         relative_tolerance=1e-12, absolute_tolerance=1e-13)))
 
