@@ -84,6 +84,7 @@ class LineOfSight(LinearTest):
     def test_units(self):
         self.bough("run", "sight.toml", "-o", "sight.h5")
         os.mkdir(self.path("mm"))
+        self.bough("convert", "boom.h5", "--units", "m-kg-s:mm-tonne-s", "-o", "mm/boom.h5")
         self.bough("convert", "sight.toml", "--units", "m-kg-s:mm-tonne-s", "-o", "mm/sight.toml")
         self.bough("run", "mm/sight.toml", "-o", "mm.h5")
         np.testing.assert_allclose(*(self.read_arrays(name, "sensors/sight")[0] for name in ("mm.h5", "sight.h5")), atol=2e-5)
