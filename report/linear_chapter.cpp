@@ -1,7 +1,9 @@
 #include "report/linear_chapter.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 #include <complex>
 #include <nlohmann/json.hpp>
@@ -254,6 +256,125 @@ Chapter make_chapter(const LinearFindings& findings, const std::string& file,
                       {"frequency", pack_doubles(response.frequency_hz)},
                       {"pairs", list_pairs(findings, pairs)}}
                      .dump(-1, ' ', false, json::error_handler_t::replace);
+  return chapter;
+}
+
+namespace {
+
+constexpr double kToRpm = 60 / (2 * std::numbers::pi);
+constexpr Eigen::Index kMaxBudgetOutputs = 6;
+
+HtmlTable make_budget_table(const records::PointingBudget& budget, const records::BudgetTable& table) {
+  std::vector<HtmlTable::Column> columns{{"source", true}};
+  for (const auto& name : budget.outputs.name) columns.push_back({name});
+  HtmlTable html(table.exposure > 0 ? table.weighting + " RMS, exposure " + format_value(table.exposure) : "total RMS",
+                 std::move(columns));
+  const auto add = [&](const std::string& name, const Eigen::RowVectorXd& values) {
+    std::vector<std::string> cells{name};
+    for (const double value : values) cells.push_back(format_value(value));
+    html.add_row(std::move(cells));
+  };
+  for (std::size_t s = 0; s < budget.sources.size(); ++s) {
+    const auto row = static_cast<Eigen::Index>(s);
+    add(budget.sources[s], table.rms.row(row));
+    if (budget.speed[s].size() > 0) add(budget.sources[s] + ", at rpm", kToRpm * table.speed.row(row));
+  }
+  add("root of the sum of squares", table.total.transpose());
+  return html;
+}
+
+/// Mean squares up to each of the frequencies; of tones (`has_steps`) those at or below it.
+Eigen::VectorXd sample_squares(const Eigen::VectorXd& hz, const Eigen::VectorXd& rms, bool has_steps,
+                               const std::vector<double>& at) {
+  Eigen::VectorXd squares(std::ssize(at));
+  Eigen::Index next = 0;
+  for (std::size_t k = 0; k < at.size(); ++k) {
+    while (next < hz.size() && hz[next] <= at[k]) ++next;
+    double square = next == 0 ? 0 : rms[next - 1] * rms[next - 1];
+    if (!has_steps && next > 0 && next < hz.size())
+      square += (at[k] - hz[next - 1]) / (hz[next] - hz[next - 1]) * (rms[next] * rms[next] - square);
+    squares[static_cast<Eigen::Index>(k)] = square;
+  }
+  return squares;
+}
+
+/// RMS up to each frequency of one output: a curve for each source, and the root of their sum of squares.
+Plot make_waterfall(const records::PointingBudget& budget, Eigen::Index output) {
+  constexpr Eigen::Index kMaxPicturePoints = 4000, kMaxSteps = 64;
+  const std::string& name = budget.outputs.name[static_cast<std::size_t>(output)];
+  Plot plot;
+  plot.title = name + ", RMS up to each frequency";
+  plot.x_label = "frequency [Hz]";
+  plot.y_label = "cumulative RMS";
+  std::vector<double> at;
+  std::vector<bool> has_steps;
+  for (const auto& curve : budget.curves) {
+    has_steps.push_back(curve.rms.rows() <= kMaxSteps);
+    if (curve.rms.rows() == 0) continue;
+    for (const double f : curve.frequency_hz.col(output)) {
+      at.push_back(f);
+      if (has_steps.back()) at.push_back(std::nextafter(f, 0));
+    }
+  }
+  if (at.empty()) return plot;
+  std::sort(at.begin(), at.end());
+  at.erase(std::unique(at.begin(), at.end()), at.end());
+  at.push_back(1.1 * at.back());
+  plot.has_log_x = at.front() > 0;
+  const Eigen::VectorXd x = Eigen::Map<const Eigen::VectorXd>(at.data(), std::ssize(at));
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(x.size());
+  for (std::size_t s = 0; s < budget.sources.size(); ++s) {
+    const auto& curve = budget.curves[s];
+    if (curve.rms.rows() == 0) continue;
+    const auto squares = sample_squares(curve.frequency_hz.col(output), curve.rms.col(output), has_steps[s], at);
+    sum += squares;
+    plot.curves.push_back(
+        thin_curve({budget.sources[s], x, squares.cwiseSqrt(), false}, kMaxPicturePoints, plot.has_log_x));
+  }
+  plot.curves.push_back(
+      thin_curve({"root of the sum of squares", x, sum.cwiseSqrt(), false}, kMaxPicturePoints, plot.has_log_x));
+  return plot;
+}
+
+/// RMS over the speed of one wheel, a curve for each output.
+Plot make_speed_plot(const records::PointingBudget& budget, const records::BudgetTable& table, std::size_t source) {
+  Plot plot;
+  plot.title = budget.sources[source] + ", " + table.weighting + " RMS over its speed" +
+               (table.exposure > 0 ? ", exposure " + format_value(table.exposure, 4) : "");
+  plot.x_label = "speed [rpm]";
+  plot.y_label = "RMS";
+  for (Eigen::Index i = 0; i < std::min(kMaxBudgetOutputs, table.rms.cols()); ++i)
+    plot.curves.push_back({budget.outputs.name[static_cast<std::size_t>(i)], kToRpm * budget.speed[source],
+                           table.over_speed[source].col(i), false});
+  return plot;
+}
+
+}  // namespace
+
+Chapter make_chapter(const records::PointingBudget& budget, const std::string& file,
+                     const std::vector<std::pair<std::string, std::string>>& facts) {
+  Chapter chapter{"pointing budget", file, facts, {}, {}, {}, {}};
+  chapter.facts.emplace_back("sources", fmt::format("{}", fmt::join(budget.sources, ", ")));
+  chapter.facts.emplace_back("outputs", fmt::format("{}", fmt::join(budget.outputs.name, ", ")));
+  if (budget.to_hz > 0)
+    chapter.facts.emplace_back("spectral densities", fmt::format("{:.4g} to {:.4g} Hz", budget.from_hz, budget.to_hz));
+  std::string tables, waterfall, speeds;
+  for (const auto& table : budget.tables) tables += make_budget_table(budget, table).to_html(200);
+  chapter.add_panel("budget", "Budget", tables);
+  const Eigen::Index num_outputs = budget.outputs.size();
+  for (Eigen::Index i = 0; i < std::min(kMaxBudgetOutputs, num_outputs); ++i) {
+    const Plot plot = make_waterfall(budget, i);
+    if (!plot.curves.empty()) waterfall += make_figure(plot);
+  }
+  if (num_outputs > kMaxBudgetOutputs)
+    waterfall +=
+        make_text(fmt::format("The first {} of {} outputs are drawn.", kMaxBudgetOutputs, num_outputs), "note");
+  if (!waterfall.empty()) chapter.add_panel("waterfall", "RMS up to each frequency", waterfall);
+  for (std::size_t s = 0; s < budget.sources.size(); ++s)
+    for (const auto& table : budget.tables)
+      if (budget.speed[s].size() > 1 && (table.weighting == "total" || table.weighting == "jitter"))
+        speeds += make_figure(make_speed_plot(budget, table, s));
+  if (!speeds.empty()) chapter.add_panel("speeds", "Wheels over their speeds", speeds);
   return chapter;
 }
 

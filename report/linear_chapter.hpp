@@ -1,10 +1,12 @@
 #pragma once
-/// \file The chapters of a linear model and of its response: poles and zeros, Bode diagrams, singular values, margins.
+/// \file The chapters of a linear model, of its response and of its pointing budget: poles and zeros, Bode diagrams,
+/// singular values, margins; RMS by source.
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "formats/records/frequency_response.hpp"
+#include "formats/records/pointing_budget.hpp"
 #include "report/page.hpp"
 
 namespace bough::report {
@@ -19,6 +21,11 @@ struct LinearFindings {
 
 /// Poles and zeros, Bode diagrams of at most 24 pairs of input and output, singular values, Hankel values.
 Chapter make_chapter(const records::LinearModel& model, const LinearFindings& findings, const std::string& file,
+                     const std::vector<std::pair<std::string, std::string>>& facts);
+
+/// Composes the budget: a table for each weighting; RMS up to each frequency by source and over the speeds of wheels,
+/// of at most 6 outputs.
+Chapter make_chapter(const records::PointingBudget& budget, const std::string& file,
                      const std::vector<std::pair<std::string, std::string>>& facts);
 
 /// Without a model's poles: what `response` wrote.

@@ -146,6 +146,18 @@ std::string make_csv(const hdf5::OutcomeTable& table) {
   return text;
 }
 
+std::string make_percentile_csv(const std::vector<Statistics>& statistics, double confidence) {
+  std::string text = "output,count,percent,value,confidence,lower,upper\n";
+  for (const auto& s : statistics)
+    for (const auto& one : s.percentiles) {
+      text += quote_cell(s.name) + "," + std::to_string(s.count) + "," + format_number(one.percent) + "," +
+              format_number(one.value) + "," + format_number(confidence);
+      for (const double x : {one.lower, one.upper}) text += "," + (std::isfinite(x) ? format_number(x) : "");
+      text += "\n";
+    }
+  return text;
+}
+
 std::string make_csv(const std::vector<Statistics>& statistics) {
   std::string text = "output,count,mean,deviation,min,p5,median,p95,max\n";
   for (const auto& s : statistics) {
@@ -294,7 +306,9 @@ std::vector<Statistics> write_tables(const BatchPlan& plan, const std::vector<Ba
   table.columns.push_back(error);
   write_text_file((folder / "outcomes.csv").string(), make_csv(table));
   hdf5::write_outcomes(table, (folder / "outcomes.h5").string());
-  auto statistics = calc_statistics(table);
+  auto statistics = calc_statistics(table, spec.percentiles, spec.confidence);
+  if (!spec.percentiles.empty() && !spec.collect.empty())
+    write_text_file((folder / "percentiles.csv").string(), make_percentile_csv(statistics, spec.confidence));
   if (!spec.collect.empty()) write_text_file((folder / "statistics.csv").string(), make_csv(statistics));
   return statistics;
 }

@@ -5,6 +5,8 @@
 #include <limits>
 #include <numeric>
 
+#include "analysis/campaign/normal_distribution.hpp"
+
 namespace bough::analysis {
 
 double calc_quantile(const std::vector<double>& sorted, double p) {
@@ -14,7 +16,8 @@ double calc_quantile(const std::vector<double>& sorted, double p) {
   return sorted[i] + (place - static_cast<double>(i)) * (sorted[next] - sorted[i]);
 }
 
-std::vector<Statistics> calc_statistics(const hdf5::OutcomeTable& table) {
+std::vector<Statistics> calc_statistics(const hdf5::OutcomeTable& table, const std::vector<double>& percentiles,
+                                        double confidence) {
   const std::string folder = "/outputs/";
   std::vector<Statistics> all;
   for (const auto& column : table.columns) {
@@ -37,6 +40,12 @@ std::vector<Statistics> calc_statistics(const hdf5::OutcomeTable& table) {
       s.median = calc_quantile(values, 0.5);
       s.p95 = calc_quantile(values, 0.95);
       s.max = values.back();
+      for (const double percent : percentiles) {
+        const auto bounds = calc_quantile_bounds(values, percent / 100, confidence / 100);
+        constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+        s.percentiles.push_back({percent, calc_quantile(values, percent / 100), bounds.lower.value_or(kNone),
+                                 bounds.upper.value_or(kNone)});
+      }
       all.push_back(s);
     }
   }

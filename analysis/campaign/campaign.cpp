@@ -103,7 +103,7 @@ class Folder {
                   "choose another folder with -o, or move it away");
     };
     if (!may_write_state) report(path_ / "campaign.json");
-    for (const char* table : {"outcomes.csv", "outcomes.h5", "statistics.csv"})
+    for (const char* table : {"outcomes.csv", "outcomes.h5", "statistics.csv", "percentiles.csv"})
       if (!is_own && fs::exists(path_ / table)) report(path_ / table);
     for (const auto& one : plan_.get_cases())
       if (!is_case_folder(get_case(one.number))) report(get_case(one.number));

@@ -147,6 +147,9 @@ class Builder {
     }
     for (const auto& r : spec_.sensors) {
       node("sensor", r.name, r.name + describe_rate(r.chain));
+      for (const auto& term : r.terms)
+        edge("body " + term.body, "sensor " + r.name, name_node(term.node), Link::Measurement);
+      if (!r.terms.empty()) continue;
       const std::string from = !r.hinge.empty() ? find_child(r.hinge) : "body " + r.body;
       edge(from, "sensor " + r.name, !r.hinge.empty() ? r.hinge : name_node(r.node), Link::Measurement);
     }

@@ -14,9 +14,11 @@
 #include "formats/hdf5/comparison_file.hpp"
 #include "formats/hdf5/complex_modes_file.hpp"
 #include "formats/hdf5/files.hpp"
+#include "formats/hdf5/sweep_file.hpp"
 #include "formats/hdf5/table_file.hpp"
 #include "report/complex_chapter.hpp"
 #include "report/html.hpp"
+#include "report/linear_chapter.hpp"
 #include "report/static_chapter.hpp"
 #include "report/table_chapters.hpp"
 
@@ -132,6 +134,7 @@ report::Chapter make_chapter(const std::string& file, const ReportRequest& reque
   if (format == "bough-frequency" || format == "bough-transient") return make_response_chapter(file);
   if (format == "bough-linear") return make_linear_chapter(file);
   if (format == "bough-response") return make_model_response_chapter(file);
+  if (format == "bough-budget") return report::make_chapter(hdf5::read_budget(file), file, list_facts(file));
   if (format == "bough-sweep") return make_sweep_chapter(file);
   if (format == "bough-static") return report::make_chapter(hdf5::read_static(file), file, list_facts(file));
   if (format == "bough-comparison") return report::make_chapter(hdf5::read_comparison(file), file, list_facts(file));

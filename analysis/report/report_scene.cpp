@@ -110,7 +110,9 @@ void add_sensors(const records::SystemSpec& spec, const ScenePlaces& places, rep
       }
       continue;
     }
-    drawn.at = places.find(sensor.body, sensor.node);
+    const bool is_optical = !sensor.terms.empty();
+    drawn.at =
+        is_optical ? places.find(sensor.terms[0].body, sensor.terms[0].node) : places.find(sensor.body, sensor.node);
     if (sensor.type == SensorType::Distance)
       drawn.to = sensor.to_body.empty() ? report::ScenePlace{-1, -1, sensor.target}
                                         : places.find(sensor.to_body, sensor.to_node);

@@ -186,6 +186,7 @@ class Budget {
       budget_.sources.push_back(source.name);
       budget_.speed.emplace_back(Eigen::Map<const VectorXd>(source.speed.data(), std::ssize(source.speed)));
     }
+    budget_.curves.resize(spec_.sources.size());
     for (const auto& weight : weights_) {
       records::BudgetTable table;
       table.weighting = statespace::get_word(weight.part);
@@ -226,6 +227,27 @@ class Budget {
       for (Index s = 0, k = 0; s < std::ssize(spec_.sources); ++s)
         if (spec_.sources[static_cast<std::size_t>(s)].type == "psd")
           budget_.tables[w].rms.row(s) = squares[w].row(k++).cwiseSqrt();
+    for (std::size_t s = 0, k = 0; s < spec_.sources.size(); ++s)
+      if (spec_.sources[s].type == "psd")
+        budget_.curves[s] = {response.frequency_hz.replicate(1, model_.C.rows()),
+                             statespace::calc_running_rms(spectra_[k++], response)};
+  }
+
+  /// Sets one output, or all with -1, of the curve of a source to the steps of its tones.
+  void add_steps(std::size_t s, const statespace::TransferMatrix& transfer, std::vector<Tone> tones, Index output) {
+    std::sort(tones.begin(), tones.end(), [](const Tone& a, const Tone& b) { return a.omega < b.omega; });
+    auto& [hz, rms] = budget_.curves[s];
+    hz.conservativeResize(std::ssize(tones), model_.C.rows());
+    rms.conservativeResize(std::ssize(tones), model_.C.rows());
+    VectorXd square = VectorXd::Zero(model_.C.rows());
+    for (std::size_t k = 0; k < tones.size(); ++k) {
+      const auto row = static_cast<Index>(k);
+      square += statespace::calc_tones(model_, transfer, {tones[k]}, {ExposureWeight{}})[0];
+      for (Index i = output < 0 ? 0 : output; i < (output < 0 ? model_.C.rows() : output + 1); ++i) {
+        hz(row, i) = tones[k].omega / kTwoPi;
+        rms(row, i) = std::sqrt(square[i]);
+      }
+    }
   }
 
   std::vector<VectorXd> calc_squares(std::size_t s, const statespace::TransferMatrix& transfer,
@@ -240,7 +262,9 @@ class Budget {
   }
 
   void add_tones(std::size_t s, const statespace::TransferMatrix& transfer) {
-    const auto squares = calc_squares(s, transfer, list_fixed_tones(spec_.sources[s], inputs_[s], model_.B.cols()));
+    const auto tones = list_fixed_tones(spec_.sources[s], inputs_[s], model_.B.cols());
+    const auto squares = calc_squares(s, transfer, tones);
+    add_steps(s, transfer, tones, -1);
     for (std::size_t w = 0; w < weights_.size(); ++w)
       budget_.tables[w].rms.row(static_cast<Index>(s)) = squares[w].cwiseSqrt().transpose();
   }
@@ -261,6 +285,9 @@ class Budget {
         table.rms(row, i) = table.over_speed[s].col(i).maxCoeff(&worst);
         table.speed(row, i) = source.speed[static_cast<std::size_t>(worst)];
       }
+    for (Index i = 0; i < ny; ++i)
+      add_steps(s, transfer,
+                list_wheel_tones(source, inputs_[s], budget_.tables.front().speed(row, i), model_.B.cols()), i);
   }
 
   const LinearModel& model_;
@@ -290,6 +317,7 @@ records::PointingBudget calc_budget(const BudgetRequest& request, Events& events
                      "name some with --inputs and --outputs of bough linearize");
   records::PointingBudget budget;
   with_prior_messages(diagnostics, [&] { budget = Budget(model, spec, request).calc(); });
+  budget.source = calc_sources({request.file, request.budget});
   add_messages(diagnostics, events);
   return budget;
 }

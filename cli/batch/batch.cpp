@@ -122,12 +122,30 @@ std::string format_statistics(const std::vector<analysis::Statistics>& statistic
   return statistics.empty() ? "" : table.to_text();
 }
 
+std::string format_percentiles(const std::vector<analysis::Statistics>& statistics, double confidence) {
+  Table table{{"output", "%", "value", "lower", "upper"}, {}};
+  const auto format = [](double x) { return std::isfinite(x) ? fmt::format("{:.6g}", x) : std::string("-"); };
+  for (const auto& s : statistics)
+    for (const auto& one : s.percentiles)
+      table.rows.push_back(
+          {s.name, fmt::format("{:g}", one.percent), format(one.value), format(one.lower), format(one.upper)});
+  if (table.rows.empty()) return "";
+  return fmt::format("\npercentiles, bounds of {:g} % confidence (-: too few cases)\n", confidence) + table.to_text();
+}
+
 json to_json(const std::vector<analysis::Statistics>& statistics) {
   json all = json::object();
-  for (const auto& s : statistics)
+  const auto to_bound = [](double x) { return std::isfinite(x) ? json(x) : json(nullptr); };
+  for (const auto& s : statistics) {
     all[s.name] = {{"count", s.count}, {"mean", s.mean}, {"deviation", s.deviation},
                    {"min", s.min},     {"p5", s.p5},     {"median", s.median},
                    {"p95", s.p95},     {"max", s.max}};
+    for (const auto& one : s.percentiles)
+      all[s.name]["percentiles"].push_back({{"percent", one.percent},
+                                            {"value", one.value},
+                                            {"lower", to_bound(one.lower)},
+                                            {"upper", to_bound(one.upper)}});
+  }
   return all;
 }
 
@@ -153,7 +171,8 @@ int report(const BatchOptions& o, const analysis::BatchPlan& plan, const analysi
   } else {
     constexpr std::size_t max_shown = 40;
     if (answer.num_in_table > 1 && answer.statistics.size() <= max_shown)
-      console.print(format_statistics(answer.statistics));
+      console.print(format_statistics(answer.statistics) +
+                    format_percentiles(answer.statistics, plan.get_spec().confidence));
     console.print(fmt::format("{}: {} of {} cases done{}, {} failed, {:.2f} s\nwritten: {} and .h5, {} cases\n",
                               plan.get_spec().name, answer.num_before + answer.num_done, answer.num_selected,
                               answer.num_before > 0 ? fmt::format(" ({} before)", answer.num_before) : "",

@@ -183,7 +183,7 @@ nlohmann::json make_random_json(const records::RandomOutputs& random) {
 }
 
 int run_budget(const ResponseOptions& o, Console& console) {
-  check_outputs(o, {o.csv}, {o.request.file, o.budget});
+  check_outputs(o, {o.output, o.csv}, {o.request.file, o.budget});
   ConsoleEvents events(console);
   const auto budget = analysis::calc_budget({o.request.file, o.budget, o.request.outputs, o.request.range}, events);
   console.print(events.get_messages());
@@ -191,9 +191,10 @@ int run_budget(const ResponseOptions& o, Console& console) {
     console.print_data(make_budget_json(budget).dump(2) + "\n");
   else
     console.print(format_budget(budget));
-  if (o.csv.empty()) return kSuccess;
-  analysis::write_text_file(o.csv, analysis::make_budget_csv(budget));
-  if (!o.json) console.print("written: " + o.csv + "\n");
+  if (!o.output.empty()) hdf5::write_budget(budget, o.output);
+  if (!o.csv.empty()) analysis::write_text_file(o.csv, analysis::make_budget_csv(budget));
+  for (const auto& path : {o.output, o.csv})
+    if (!path.empty() && !o.json) console.print("written: " + path + "\n");
   return kSuccess;
 }
 
@@ -252,18 +253,17 @@ void add_response(CLI::App& app, Action& action) {
   verb->add_option("--csv", o->csv,
                    "Write the response to this CSV file, with --psd the densities and running RMS, with --budget its "
                    "tables");
-  add_common_options(*verb, *o, kOutput | kJson, "Write the response to this HDF5 file");
+  add_common_options(*verb, *o, kOutput | kJson, "Write the response, or the budget, to this HDF5 file");
   verb->add_option("--budget", o->budget,
                    "Pointing budget: RMS of each output by the sources of this .toml file, by wheel speed and exposure")
       ->excludes("--psd")
       ->excludes("--loop")
-      ->excludes("--inputs")
-      ->excludes("--output");
+      ->excludes("--inputs");
   verb->footer(
       "Example:\n  bough linearize arm.toml --break motor -o loop.h5 && bough response loop.h5\n"
       "  bough response arm-linear.h5 --outputs tip:y --csv tip.csv\n"
       "  bough response arm-linear.h5 --psd motor=1e-4 --psd wind.csv -o random.h5\n"
-      "  bough response satellite-linear.h5 --outputs sight --budget jitter.toml --csv budget.csv\n"
+      "  bough response satellite-linear.h5 --outputs sight --budget jitter.toml -o budget.h5 --csv budget.csv\n"
       "bough plot arm-linear.h5 --kind bode draws it.");
   verb->callback([&action, o] {
     action = [o] { return analysis::with_file(o->request.file, [&] { return run_response(*o); }); };

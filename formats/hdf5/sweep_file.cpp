@@ -13,6 +13,7 @@ namespace {
 
 constexpr const char* kSweepFormat = "bough-sweep";
 constexpr const char* kResponseFormat = "bough-response";
+constexpr const char* kBudgetFormat = "bough-budget";
 constexpr const char* kVersion = "1.0";
 
 using Eigen::Index;
@@ -276,6 +277,110 @@ ResponseOfModel read_model_response(const std::string& path) {
     response.value.push_back(std::move(value));
   }
   return found;
+}
+
+void write_budget(const records::PointingBudget& budget, const std::string& path) {
+  FileWriter file(path, kBudgetFormat, kVersion);
+  file.write_source(budget.source);
+  write_signals(file, "/outputs", budget.outputs, "outputs");
+  file.write_strings("/sources/name", budget.sources, {"names of the sources", "1"});
+  file.write_vector("/band_hz", Eigen::Vector2d(budget.from_hz, budget.to_hz),
+                    {"ends of the spectral densities; 0: there is none", "1/T"});
+  const auto nt = static_cast<Index>(budget.tables.size()), ns = static_cast<Index>(budget.sources.size());
+  const Index ny = budget.outputs.size();
+  std::vector<std::string> weighting;
+  Eigen::VectorXd exposure(nt);
+  MatrixXd total(nt, ny);
+  std::vector<double> rms, speed;
+  for (Index k = 0; k < nt; ++k) {
+    const auto& table = budget.tables[static_cast<std::size_t>(k)];
+    weighting.push_back(table.weighting);
+    exposure[k] = table.exposure;
+    total.row(k) = table.total.transpose();
+    for (Index s = 0; s < ns; ++s) {
+      rms.insert(rms.end(), table.rms.row(s).begin(), table.rms.row(s).end());
+      speed.insert(speed.end(), table.speed.row(s).begin(), table.speed.row(s).end());
+    }
+  }
+  const std::string dims = "the output's dims";
+  const Dims shape{static_cast<hsize_t>(nt), static_cast<hsize_t>(ns), static_cast<hsize_t>(ny)};
+  file.write_strings("/tables/weighting", weighting, {"total, jitter, smear, residual, mean, drift", "1"});
+  file.write_vector("/tables/exposure", exposure, {"window; 0: total", "T"});
+  file.write_numbers("/tables/rms", shape, rms.data(), {"table, source, output; wheels at their worst speed", dims});
+  file.write_numbers("/tables/speed", shape, speed.data(), {"that speed; NaN: the source is no wheel", "1/T"});
+  file.write_matrix("/tables/total", total, {"root of the sum of squares: table, output", dims});
+  for (Index s = 0; s < ns; ++s) {
+    const auto number = static_cast<std::size_t>(s);
+    const std::string of = "/" + std::to_string(s + 1);
+    const auto& curve = budget.curves[number];
+    if (curve.rms.rows() > 0) {
+      file.write_matrix("/curves" + of + "/frequency_hz", curve.frequency_hz, {"of each output", "1/T"});
+      file.write_matrix("/curves" + of + "/rms", curve.rms, {"total RMS up to that frequency", dims});
+    }
+    const auto& speeds = budget.speed[number];
+    if (speeds.size() == 0) continue;
+    file.write_vector("/wheels" + of + "/speed", speeds, {"speeds of the wheel", "1/T"});
+    std::vector<double> over_speed;
+    for (const auto& table : budget.tables)
+      for (const auto& row : table.over_speed[number].rowwise())
+        over_speed.insert(over_speed.end(), row.begin(), row.end());
+    file.write_numbers("/wheels" + of + "/rms",
+                       {static_cast<hsize_t>(nt), static_cast<hsize_t>(speeds.size()), static_cast<hsize_t>(ny)},
+                       over_speed.data(), {"table, speed, output", dims});
+  }
+  file.commit();
+}
+
+records::PointingBudget read_budget(const std::string& path) {
+  FileReader file(path, kBudgetFormat, kVersion);
+  records::PointingBudget budget;
+  budget.source = file.read_source();
+  budget.outputs = read_signals(file, "/outputs");
+  budget.sources = file.read_strings("/sources/name", -1);
+  const auto band = file.read_vector("/band_hz", 2);
+  const auto weighting = file.read_strings("/tables/weighting", -1);
+  const long nt = std::ssize(weighting), ns = std::ssize(budget.sources), ny = budget.outputs.size();
+  const auto exposure = file.read_vector("/tables/exposure", nt);
+  const auto rms = file.read_array("/tables/rms", {nt, ns, ny});
+  const auto speed = file.read_array("/tables/speed", {nt, ns, ny}, true);
+  const auto total = file.read_matrix("/tables/total", nt, ny);
+  file.throw_if_errors();
+  budget.from_hz = band[0];
+  budget.to_hz = band[1];
+  using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  const auto slice = [](const NumberArray& array, long k, long rows, long cols) {
+    return MatrixXd(Eigen::Map<const Rows>(array.data.data() + k * rows * cols, rows, cols));
+  };
+  for (long k = 0; k < nt; ++k) {
+    records::BudgetTable table;
+    table.weighting = weighting[static_cast<std::size_t>(k)];
+    table.exposure = exposure[k];
+    table.rms = slice(rms, k, ns, ny);
+    table.speed = slice(speed, k, ns, ny);
+    table.total = total.row(k).transpose();
+    table.over_speed.resize(budget.sources.size());
+    budget.tables.push_back(std::move(table));
+  }
+  budget.curves.resize(budget.sources.size());
+  budget.speed.resize(budget.sources.size());
+  for (long s = 0; s < ns; ++s) {
+    const auto number = static_cast<std::size_t>(s);
+    const std::string of = "/" + std::to_string(s + 1);
+    if (file.has("/curves" + of)) {
+      auto& curve = budget.curves[number];
+      curve.frequency_hz = file.read_matrix("/curves" + of + "/frequency_hz", -1, ny);
+      curve.rms = file.read_matrix("/curves" + of + "/rms", curve.frequency_hz.rows(), ny);
+    }
+    if (!file.has("/wheels" + of)) continue;
+    budget.speed[number] = file.read_vector("/wheels" + of + "/speed", -1);
+    const long num_speeds = budget.speed[number].size();
+    const auto over_speed = file.read_array("/wheels" + of + "/rms", {nt, num_speeds, ny});
+    file.throw_if_errors();
+    for (long k = 0; k < nt; ++k)
+      budget.tables[static_cast<std::size_t>(k)].over_speed[number] = slice(over_speed, k, num_speeds, ny);
+  }
+  file.throw_if_errors();
+  return budget;
 }
 
 }  // namespace bough::hdf5

@@ -1,9 +1,10 @@
 #pragma once
-/// \file Linear models along a parameter, and frequency responses (docs/formats/linear.md).
+/// \file Linear models along a parameter, frequency responses and pointing budgets (docs/formats/linear.md).
 #include <string>
 
 #include "formats/records/frequency_response.hpp"
 #include "formats/records/linear_sweep.hpp"
+#include "formats/records/pointing_budget.hpp"
 #include "formats/records/random_outputs.hpp"
 
 namespace bough::hdf5 {
@@ -28,5 +29,10 @@ ResponseOfModel read_model_response(const std::string& path);
 /// `margins`: of a loop, or nullptr. `random`: of --psd, or nullptr.
 void write_response(const records::FrequencyResponse& response, const records::PeakGain& peak,
                     const records::Margins* margins, const records::RandomOutputs* random, const std::string& path);
+
+/// Writes the tables and curves of a pointing budget.
+void write_budget(const records::PointingBudget& budget, const std::string& path);
+/// Reads the tables and curves of a pointing budget.
+records::PointingBudget read_budget(const std::string& path);
 
 }  // namespace bough::hdf5

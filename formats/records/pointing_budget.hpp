@@ -3,6 +3,7 @@
 #include <array>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "formats/records/input_density.hpp"
@@ -55,12 +56,20 @@ struct BudgetTable {
   std::vector<Eigen::MatrixXd> over_speed;
 };
 
+/// RMS of one source up to each frequency, without a window; a wheel at the speed that is worst for the output.
+struct BudgetCurve {
+  Eigen::MatrixXd frequency_hz;  ///< n x num_outputs [1/T], ascending in each column
+  Eigen::MatrixXd rms;           ///< n x num_outputs; densities by straight lines between the frequencies
+};
+
 struct PointingBudget {
+  std::vector<std::pair<std::string, std::string>> source;  ///< (file name, SHA-256)
   Signals outputs;
   double from_hz = 0, to_hz = 0;  ///< band of the spectral densities
   std::vector<std::string> sources;
   std::vector<Eigen::VectorXd> speed;  ///< of each source [1/T]; empty unless a wheel
   std::vector<BudgetTable> tables;
+  std::vector<BudgetCurve> curves;  ///< of each source
 };
 
 }  // namespace bough::records

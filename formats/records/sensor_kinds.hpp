@@ -32,7 +32,8 @@ enum class SensorType {
   ModalCoordinate,
   ModalRate,
   Distance,
-  Element
+  Element,
+  LineOfSight
 };
 
 /// Groups of types with the same keys.
@@ -46,7 +47,8 @@ enum class SensorOf {
   Modes,       ///< body, coordinate
   Energy,      ///< body
   Gap,         ///< body, node, to_body, to_node
-  Element      ///< body, element, component
+  Element,     ///< body, element, component
+  Optics       ///< terms, relative_to
 };
 
 struct SensorKind {
@@ -96,6 +98,7 @@ inline constexpr SensorKind kSensorKinds[] = {
     {SensorType::ModalRate, "modal_rate", "modal rates", "by normalisation", SensorOf::Modes, 0, false, false},
     {SensorType::Distance, "distance", "distance", "L", SensorOf::Gap, 1, false, false},
     {SensorType::Element, "element", "element", "F, F L, F/L^2", SensorOf::Element, 0, true, false},
+    {SensorType::LineOfSight, "line_of_sight", "line of sight", "1", SensorOf::Optics, 0, false, true},
 };
 
 /// The row of a type.

@@ -83,6 +83,13 @@ struct ForceRecord {
   SourceLocation at;
 };
 
+/// One optical node of a line of sight: its rows of displacement and rotation weights.
+struct OpticalTerm {
+  std::string body;
+  int node = 0;
+  Eigen::MatrixXd displacement, rotation;  ///< [num_outputs x 3], 1/L and 1; empty: zero
+  SourceLocation at;
+};
 struct SensorRecord {
   std::string name;
   SensorType type = SensorType::Position;
@@ -101,6 +108,7 @@ struct SensorRecord {
   std::string sequence = "321";           ///< euler: axes of the three turns, in their order
   Matrix3d mount = Matrix3d::Identity();  ///< R_KS: the sensor's axes S in those of the node K
   Vector3d target = Vector3d::UnitX();    ///< direction: in the inertial frame; horizon: the centre's position
+  std::vector<OpticalTerm> terms;         ///< line_of_sight
   Settings chain;                         ///< scale, bias, noise, ...: what becomes of the measurement
   SourceLocation at;
 };

@@ -31,9 +31,19 @@ struct CampaignParameter {
   std::optional<double> low, high;
   int number = 0;  ///< grid over low .. high: how many, both ends among them
   bool is_integer = false, is_log = false;
+  std::optional<double> mean;         ///< normal distribution, truncated to low .. high if there are
+  double deviation = 0;               ///< of it, before truncation
+  std::vector<double> probabilities;  ///< of each value; empty: equal
 };
 
-enum class CampaignMethod { Grid, List, LatinHypercube };
+/// Correlation of the normal scores of two parameters, by their numbers from 0.
+struct CampaignCorrelation {
+  std::size_t a = 0, b = 0;
+  double value = 0;
+  SourceLocation at;
+};
+
+enum class CampaignMethod { Grid, List, LatinHypercube, MonteCarlo };
 enum class CollectTake { All, First, Last, Min, Max, AbsMax, Mean };
 
 /// A number, or some, of what each case made.
@@ -58,6 +68,9 @@ struct CampaignSpec {
   CampaignMethod method = CampaignMethod::Grid;
   int samples = 0;
   unsigned long seed = 1;
+  std::vector<double> percentiles;  ///< [%] of outputs
+  double confidence = 90;           ///< [%] of their intervals
+  std::vector<CampaignCorrelation> correlations;
   double time_limit = 0;           ///< s of wall time a case; 0: none
   std::string table;               ///< CSV file of a list, absolute
   std::vector<std::string> files;  ///< more files each case has in its folder, absolute

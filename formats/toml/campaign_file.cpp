@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -32,6 +33,7 @@ class Reader {
     const auto method = campaign.get_string("method", "grid");
     spec_.method = method == "list"              ? CampaignMethod::List
                    : method == "latin-hypercube" ? CampaignMethod::LatinHypercube
+                   : method == "monte-carlo"     ? CampaignMethod::MonteCarlo
                                                  : CampaignMethod::Grid;
     spec_.samples = campaign.get_int("samples", 0);
     spec_.seed = static_cast<unsigned long>(campaign.get_int("seed", 1));
@@ -40,6 +42,14 @@ class Reader {
     read_steps(campaign);
     for (const Fields& table : root.get_tables("parameter")) read_parameter(table);
     for (const Fields& table : root.get_tables("collect")) read_collect(table);
+    spec_.percentiles = campaign.get_numbers("percentiles");
+    spec_.confidence = campaign.get_number("confidence", spec_.confidence);
+    for (const double percent : spec_.percentiles)
+      if (!(percent < 100)) wrong(campaign.locate("percentiles"), "a percentile is 100 or above", "give it below 100");
+    if (!(spec_.confidence < 100))
+      wrong(campaign.locate("confidence"), "the confidence is 100 % or above", "give it below 100");
+    if (spec_.percentiles.empty() && campaign.has("confidence"))
+      wrong(campaign.locate("confidence"), "confidence is given without percentiles", "add percentiles = [50, 95]");
     if (campaign.has("table")) {
       spec_.table = resolve_path(spec_.file, campaign.get_string("table"));
       if (spec_.method != CampaignMethod::List)
@@ -47,11 +57,12 @@ class Reader {
       else
         read_table(campaign.locate("table"));
     }
-    if (spec_.method == CampaignMethod::LatinHypercube && spec_.samples == 0)
-      wrong(campaign.locate(), "latin-hypercube needs samples", "add samples = 100 to [campaign]");
-    if (spec_.method != CampaignMethod::LatinHypercube && campaign.has("samples"))
+    if (is_random() && spec_.samples == 0)
+      wrong(campaign.locate(), method + " needs samples", "add samples = 100 to [campaign]");
+    if (!is_random() && campaign.has("samples"))
       wrong(campaign.locate("samples"), "samples stands with method = \"" + method + "\"",
-            "set method = \"latin-hypercube\", or remove it");
+            "set method = \"latin-hypercube\" or \"monte-carlo\", or remove it");
+    for (const Fields& table : root.get_tables("correlation")) read_correlation(table);
     if (spec_.parameters.empty())
       wrong(campaign.locate(), "there is no parameter", "add [[parameter]] tables, or a table with method = \"list\"");
     check_values();
@@ -59,6 +70,10 @@ class Reader {
   }
 
  private:
+  bool is_random() const {
+    return spec_.method == CampaignMethod::LatinHypercube || spec_.method == CampaignMethod::MonteCarlo;
+  }
+
   void wrong(const SourceLocation& at, const std::string& what, const std::string& advice) {
     diagnostics_.error("batch.bad-parameter", at, what, advice);
   }
@@ -117,7 +132,67 @@ class Reader {
       wrong(table.locate("range"), who + " has logarithmic spacing down to zero or less", "give positive ends");
     if (p.low && p.is_integer && std::floor(*p.high) < std::ceil(*p.low))
       wrong(table.locate("range"), who + " has a range without a whole number", "widen it");
+    read_distribution(table, p);
     spec_.parameters.push_back(std::move(p));
+  }
+
+  void read_distribution(const Fields& table, CampaignParameter& p) {
+    const std::string who = "parameter '" + p.name + "'";
+    for (const char* key : {"mean", "deviation", "probabilities"})
+      if (table.has(key) && !is_random())
+        wrong(table.locate(key), who + " has " + key + ", and the cases are not random",
+              "set method = \"monte-carlo\" or \"latin-hypercube\"");
+    if (table.has("mean") != table.has("deviation"))
+      wrong(p.at, who + " has mean without deviation, or deviation without mean", "give both");
+    if (table.has("mean")) {
+      p.mean = table.get_number("mean", 0);
+      p.deviation = table.get_number("deviation", 1);
+      if (!p.values.empty()) wrong(table.locate("mean"), who + " has values and mean", "keep one of them");
+      if (p.is_log) wrong(table.locate("spacing"), who + " has spacing and mean", "remove spacing");
+      constexpr double kMaxDeviations = 37;  // the probability beyond is below 1e-300
+      if (p.low && std::max(*p.low - *p.mean, *p.mean - *p.high) > kMaxDeviations * p.deviation)
+        wrong(table.locate("range"), who + " has a range more than 37 deviations from its mean",
+              "bring the range nearer to the mean");
+    }
+    p.probabilities = table.get_numbers("probabilities");
+    if (!table.has("probabilities")) return;
+    double sum = 0;
+    for (const double share : p.probabilities) sum += share;
+    if (p.probabilities.size() != p.values.size() || !(sum > 0))
+      wrong(table.locate("probabilities"),
+            who + " has " + std::to_string(p.values.size()) + " values and " + std::to_string(p.probabilities.size()) +
+                " probabilities of the sum " + std::to_string(sum),
+            "give one number for each value, not all zero");
+  }
+
+  void read_correlation(const Fields& table) {
+    CampaignCorrelation one;
+    one.at = table.locate();
+    one.value = table.get_number("value", 0);
+    if (!is_random())
+      wrong(one.at, "a correlation is given, and the cases are not random",
+            "set method = \"monte-carlo\" or \"latin-hypercube\"");
+    if (!(std::abs(one.value) < 1))
+      wrong(table.locate("value"), "a correlation is " + std::to_string(one.value), "give it between -1 and 1");
+    const auto names = table.get_strings("parameters");
+    std::vector<std::size_t> found;
+    for (const auto& name : names) {
+      for (std::size_t i = 0; i < spec_.parameters.size(); ++i)
+        if (spec_.parameters[i].name == name) found.push_back(i);
+      if (found.empty() || spec_.parameters[found.back()].name != name)
+        wrong(table.locate("parameters"), "a correlation names the unknown parameter '" + name + "'",
+              "name two [[parameter]]");
+    }
+    if (found.size() != 2) return;
+    one.a = found[0];
+    one.b = found[1];
+    const auto is_pair = [&](const CampaignCorrelation& other) {
+      return std::minmax(other.a, other.b) == std::minmax(one.a, one.b);
+    };
+    if (one.a == one.b || std::any_of(spec_.correlations.begin(), spec_.correlations.end(), is_pair))
+      wrong(one.at, "the pair '" + names[0] + "', '" + names[1] + "' is one parameter or was given before",
+            "give each pair once");
+    spec_.correlations.push_back(one);
   }
 
   void read_collect(const Fields& table) {
@@ -201,7 +276,8 @@ class Reader {
     std::size_t length = 0;
     for (const auto& p : spec_.parameters) {
       const std::string who = "parameter '" + p.name + "'";
-      if (p.values.empty() && !p.low) wrong(p.at, who + " has no values", "add values = [...], or range = [low, high]");
+      if (p.values.empty() && !p.low && !p.mean)
+        wrong(p.at, who + " has no values", "add values = [...], or range = [low, high]");
       if (spec_.method == CampaignMethod::Grid && p.low && p.number == 0)
         wrong(p.at, who + " has a range without number", "add number = 5, or values = [...]");
       if (spec_.method != CampaignMethod::List) continue;

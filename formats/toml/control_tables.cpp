@@ -99,13 +99,50 @@ records::ActuatorRecord read_actuator(const Fields& table, const std::string& pa
   return r;
 }
 
+std::vector<records::OpticalTerm> read_optical_terms(const Fields& table, const std::string& sensor,
+                                                     Diagnostics& diagnostics) {
+  constexpr Eigen::Index kMaxRows = 3;
+  std::vector<records::OpticalTerm> terms;
+  Eigen::Index num_outputs = 0;
+  for (const Fields& item : table.get_tables("terms")) {
+    records::OpticalTerm term;
+    term.at = item.locate();
+    term.body = item.get_string("body");
+    term.node = item.get_int("node", 0);
+    for (const char* key : {"displacement", "rotation"}) {
+      Eigen::MatrixXd& weights = key[0] == 'd' ? term.displacement : term.rotation;
+      if (!item.has(key)) continue;
+      const bool has_rows = read_rows(*item.find(key), weights) && weights.cols() == 3 && weights.rows() <= kMaxRows &&
+                            weights.allFinite();
+      if (!has_rows) {
+        diagnostics.error("toml.wrong-type", item.locate(key),
+                          std::string("'") + key + "' of line of sight '" + sensor + "' is not a list of rows of 3",
+                          "give a row of 3 finite numbers for each output, 3 rows at most");
+        weights.resize(0, 0);
+        continue;
+      }
+      if (num_outputs == 0) num_outputs = weights.rows();
+      if (weights.rows() != num_outputs)
+        diagnostics.error("toml.wrong-length", item.locate(key),
+                          std::string("'") + key + "' of line of sight '" + sensor + "' has " +
+                              std::to_string(weights.rows()) + " rows, expected " + std::to_string(num_outputs),
+                          "give as many rows in every term");
+    }
+    if (!item.has("displacement") && !item.has("rotation"))
+      diagnostics.error("toml.missing-key", term.at, "a term of line of sight '" + sensor + "' has no weights",
+                        "give displacement, rotation or both");
+    terms.push_back(std::move(term));
+  }
+  return terms;
+}
+
 void read_sensor_keys(const Fields& table, const std::string& path, const std::string& type,
                       records::SensorRecord& sensor, Diagnostics& diagnostics) {
   static const std::vector<std::string> common = {"scale",       "bias", "misalignment", "noise_density",
                                                   "random_walk", "seed", "quantization", "range",
                                                   "delay",       "lag",  "sample_time",  "initial"};
-  static const std::vector<std::string> own = {"rotation", "target",  "to_body",  "to_node",
-                                               "sequence", "element", "component"};
+  static const std::vector<std::string> own = {"rotation", "target",  "to_body",   "to_node",
+                                               "sequence", "element", "component", "terms"};
   sensor.to_body = table.get_string("to_body");
   sensor.to_node = table.get_int("to_node", 0);
   sensor.element = table.get_int("element", 0);
@@ -122,6 +159,7 @@ void read_sensor_keys(const Fields& table, const std::string& path, const std::s
     const bool is_mounted = of == records::SensorOf::Attitude || of == records::SensorOf::Instrument;
     const bool is_taken = key == "rotation"                        ? is_mounted
                           : key == "sequence"                      ? type == "euler"
+                          : key == "terms"                         ? of == records::SensorOf::Optics
                           : key == "element" || key == "component" ? of == records::SensorOf::Element
                           : key == "target" ? type == "direction" || type == "horizon" || of == records::SensorOf::Gap
                                             : of == records::SensorOf::Gap;

@@ -98,12 +98,12 @@ records::FunctionRecord read_function(const Fields& fields, const std::string& p
   read_values(fields, path, function, diagnostics);
   // Texts and lists by type; numbers are checked where the function is made.
   static const std::map<std::string, std::vector<std::string>> owners = {
-      {"x", {"table", "expression"}},
-      {"y", {"table"}},
-      {"file", {"table"}},
-      {"time_column", {"table"}},
-      {"column", {"table"}},
-      {"interpolation", {"table"}},
+      {"x", {"table", "expression", "harmonics", "random"}},
+      {"y", {"table", "harmonics", "random"}},
+      {"file", {"table", "random"}},
+      {"time_column", {"table", "random"}},
+      {"column", {"table", "random"}},
+      {"interpolation", {"table", "random"}},
       {"law", {"sweep"}},
       {"expression", {"expression"}},
       {"acceleration", {"expression"}},
@@ -119,7 +119,7 @@ records::FunctionRecord read_function(const Fields& fields, const std::string& p
     diagnostics.error("toml.wrong-type", fields.locate("rate"),
                       "'rate' of function '" + function.name + "' is not a " + (is_expression ? "formula" : "number"),
                       is_expression ? "give the derivative of the expression, as a text" : "give a number");
-  if (function.type == "table") read_table(fields, path, function, diagnostics);
+  if (function.type == "table" || function.type == "random") read_table(fields, path, function, diagnostics);
   return function;
 }
 

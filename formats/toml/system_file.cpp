@@ -89,11 +89,16 @@ records::SensorRecord read_sensor(const Fields& table, const std::string& path, 
   const bool is_attitude = kind->of == SensorOf::Attitude;
   const bool is_vector = kind->of == SensorOf::Point || is_elastic;
   const std::string because = "in sensor '" + sensor.name + "' of type " + kind->word;
-  const char* needed = is_hinge_sensor ? "hinge" : "body";
+  const bool is_optical = kind->of == SensorOf::Optics;
+  if (is_optical) sensor.terms = read_optical_terms(table, sensor.name, diagnostics);
+  const char* needed = is_hinge_sensor ? "hinge" : is_optical ? "terms" : "body";
   if (!table.has(needed)) {
     diagnostics.error("toml.missing-key", sensor.at, "missing key '" + std::string(needed) + "' " + because, "add it");
   }
-  if (is_hinge_sensor) {
+  if (is_optical) {
+    refuse_keys(table, {"body", "node", "frame", "observer", "hinge", "coordinate"}, because, diagnostics);
+    if (sensor.is_orbital) refuse_keys(table, {"relative_to"}, because + ": the LVLH frame turns", diagnostics);
+  } else if (is_hinge_sensor) {
     refuse_keys(table, {"body", "node", "frame", "relative_to", "observer"}, because, diagnostics);
     if (is_hinge_load) refuse_keys(table, {"coordinate"}, because, diagnostics);
   } else {

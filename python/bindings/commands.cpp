@@ -15,6 +15,7 @@
 #include "analysis/integrals/integrals.hpp"
 #include "analysis/plot/plot.hpp"
 #include "analysis/report/report.hpp"
+#include "analysis/response/budget.hpp"
 #include "analysis/response/response.hpp"
 #include "analysis/run/run.hpp"
 #include "cli/verbs.hpp"
@@ -586,6 +587,45 @@ py::tuple response(const std::string& file, Strings inputs, Strings outputs, dou
   return py::make_tuple(d, std::move(messages));
 }
 
+py::tuple budget(const std::string& file, const std::string& sources, Strings outputs, double from_hz, double to_hz) {
+  analysis::BudgetRequest request{file, sources, std::move(outputs), {}};
+  request.range.from_hz = from_hz;
+  request.range.to_hz = to_hz;
+  records::PointingBudget found;
+  auto messages =
+      run_request(file, py::none(), [&](PythonEvents& events) { found = analysis::calc_budget(request, events); });
+  py::dict d;
+  py::list tables, curves;
+  for (auto& table : found.tables) {
+    py::dict one, over_speed;
+    one["weighting"] = table.weighting;
+    one["exposure"] = table.exposure;
+    one["rms"] = give(std::move(table.rms));
+    one["speed"] = give(std::move(table.speed));
+    one["total"] = give(std::move(table.total));
+    for (std::size_t s = 0; s < found.sources.size(); ++s)
+      if (found.speed[s].size() > 0) over_speed[py::str(found.sources[s])] = give(std::move(table.over_speed[s]));
+    one["over_speed"] = over_speed;
+    tables.append(one);
+  }
+  py::dict speeds;
+  for (std::size_t s = 0; s < found.sources.size(); ++s) {
+    py::dict one;
+    one["frequency_hz"] = give(std::move(found.curves[s].frequency_hz));
+    one["rms"] = give(std::move(found.curves[s].rms));
+    curves.append(one);
+    if (found.speed[s].size() > 0) speeds[py::str(found.sources[s])] = give(std::move(found.speed[s]));
+  }
+  d["outputs"] = found.outputs.name;
+  d["sources"] = found.sources;
+  d["from_hz"] = found.from_hz;
+  d["to_hz"] = found.to_hz;
+  d["tables"] = tables;
+  d["curves"] = curves;
+  d["speeds"] = speeds;
+  return py::make_tuple(d, std::move(messages));
+}
+
 py::tuple equilibrium(const std::string& file, Strings set) {
   analysis::EquilibriumAnswer answer;
   auto messages = run_request(file, py::none(), [&](PythonEvents& events) {
@@ -643,6 +683,8 @@ void bind_commands(py::module_& m) {
   m.def("response", &response, py::arg("file"), py::kw_only(), py::arg("inputs") = no_words,
         py::arg("outputs") = no_words, py::arg("from_hz") = 0.0, py::arg("to_hz") = 0.0, py::arg("points") = 0,
         py::arg("loop") = false, py::arg("psd") = no_words);
+  m.def("budget", &budget, py::arg("file"), py::arg("sources"), py::kw_only(), py::arg("outputs") = no_words,
+        py::arg("from_hz") = 0.0, py::arg("to_hz") = 0.0);
   m.def("equilibrium", &equilibrium, py::arg("file"), py::kw_only(), py::arg("set") = no_words);
 }
 

@@ -333,13 +333,21 @@ def batch(campaign, output="", *, jobs=0, shard="", time_limit=0.0, retry=False,
     return found
 
 
-def response(file, *, inputs=(), outputs=(), from_hz=0.0, to_hz=0.0, points=0, loop=False, psd=()):
+def response(file, *, inputs=(), outputs=(), from_hz=0.0, to_hz=0.0, points=0, loop=False, psd=(), budget=None):
     """Frequency response of a linear-model file: frequency_hz, value (a matrix each), singular_values, peak_gain.
 
     loop: gain_margins, phase_margins as (frequency, margin), distance, is_stable of negative feedback too.
     psd: spectral densities of the inputs, [1e-4, "motor=1e-3", "wind.csv", "noise.toml"]; then "random" has psd (a
     column for each output), rms, crossing_hz, cumulative_rms, band_rms, band_crossing_hz, total_rms, total_crossing_hz.
+    budget: a file of sources; then a pointing budget in place of the response: outputs, sources, from_hz, to_hz,
+    tables (weighting, exposure, rms and speed [source, output], total, over_speed[NAME] [speed, output]), speeds[NAME],
+    curves of each source (frequency_hz, rms [point, output]: RMS up to each frequency). Speeds in radians.
     """
+    if budget is not None:
+        if _words(inputs) or points or loop or _words(psd):
+            raise TypeError("a budget takes no inputs, points, loop and psd")
+        found, _ = _bough.budget(_os.fspath(file), _os.fspath(budget), outputs=_words(outputs), from_hz=from_hz, to_hz=to_hz)
+        return found
     found, _ = _bough.response(_os.fspath(file), inputs=_words(inputs), outputs=_words(outputs), from_hz=from_hz,
                                to_hz=to_hz, points=points, loop=loop, psd=_words(psd))
     return found

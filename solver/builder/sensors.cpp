@@ -46,6 +46,8 @@ class Resolver {
         return resolve_modes(r, kind, e);
       case SensorOf::Element:
         return resolve_element(r, e);
+      case SensorOf::Optics:
+        return resolve_optics(r, e);
       default:
         resolve_node(r, e);
     }
@@ -157,6 +159,37 @@ class Resolver {
     e.description += r.component;
   }
 
+  void resolve_optics(const SensorRecord& r, Sensor& e) {
+    if (r.terms.empty()) return error(r, "sensor.bad-value", "has no terms", "give the optical nodes in terms");
+    e.size = static_cast<int>(std::max(r.terms.front().displacement.rows(), r.terms.front().rotation.rows()));
+    e.description = "line of sight";
+    if (!r.relative_to.empty() && r.relative_to != "ground" && r.relative_to != "inertial") {
+      e.relative_to = find_body(r.relative_to);
+      if (e.relative_to == kAbsent)
+        error(r, "sensor.unknown-body", "is relative to the unknown body '" + r.relative_to + "'",
+              suggest_among(r.relative_to, bodies_, "bodies"));
+      e.description += " relative to body " + r.relative_to;
+    }
+    for (const auto& given : r.terms) {
+      SightTerm term;
+      term.body = find_body(given.body);
+      if (term.body == kAbsent) {
+        error(r, "sensor.unknown-body", "has a term on the unknown body '" + given.body + "'",
+              suggest_among(given.body, bodies_, "bodies"));
+      } else if (term.body >= 0 && system_.is_valid(term.body)) {
+        term.node = system_.find_node(term.body, given.node);
+        if (term.node < 0)
+          error(r, "sensor.unknown-node",
+                "has a term on node " + std::to_string(given.node) + ", which body '" + given.body + "' does not have",
+                "use one of its output nodes, or 0 for its origin");
+      }
+      if (given.displacement.size() > 0) term.displacement.topRows(given.displacement.rows()) = given.displacement;
+      if (given.rotation.size() > 0) term.rotation.topRows(given.rotation.rows()) = given.rotation;
+      e.description += (e.terms.empty() ? ", of node " : ", ") + std::to_string(given.node) + " of body " + given.body;
+      e.terms.push_back(term);
+    }
+  }
+
   void resolve_other_end(const SensorRecord& r, Sensor& e) {
     e.description += " to ";
     if (r.to_body.empty() || r.to_body == "ground") {
@@ -266,12 +299,27 @@ class Resolver {
   std::vector<std::string> bodies_, hinges_;
 };
 
+/// References of lines of sight: hinges as in the file, flexible bodies undeformed.
+void set_references(const System& system, std::vector<Sensor>& sensors) {
+  const auto has_terms = [](const Sensor& sensor) { return !sensor.terms.empty(); };
+  if (std::none_of(sensors.begin(), sensors.end(), has_terms)) return;
+  const auto data = system.make_data();
+  VectorXd q(system.num_q()), u(system.num_u());
+  system.calc_initial_state(q, u);
+  for (const TreeBody& tb : system.tree.bodies) q.segment(tb.eta_offset(), tb.num_modes()).setZero();
+  u.setZero();
+  calc_kinematics(system, *data, system.start, q, u);
+  for (Sensor& sensor : sensors)
+    if (has_terms(sensor)) set_reference(get_motion(system, *data), sensor);
+}
+
 }  // namespace
 
 std::vector<Sensor> build_sensors(const System& system, const records::SystemSpec& spec, Diagnostics& diagnostics) {
   std::vector<Sensor> sensors;
   Resolver resolver(system, spec, diagnostics);
   for (const auto& record : spec.sensors) resolver.resolve(record, sensors.emplace_back());
+  if (diagnostics.num_errors() == 0) set_references(system, sensors);
   return sensors;
 }
 

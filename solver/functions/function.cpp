@@ -142,9 +142,9 @@ const TimeFunction& FunctionCopies::find(const TimeFunction& f) const {
 
 std::unique_ptr<const TimeFunction> make_time_function(const FunctionRecord& r, Diagnostics& diagnostics,
                                                        const TimeSpan& run, const FunctionMap& others) {
-  static const std::vector<std::string> types = {"constant", "step",       "ramp",     "pulse",   "sine",
-                                                 "table",    "spinup",     "sawtooth", "doublet", "chirp",
-                                                 "sweep",    "expression", "sum",      "product"};
+  static const std::vector<std::string> types = {"constant", "step",     "ramp",      "pulse", "sine",  "table",
+                                                 "spinup",   "sawtooth", "doublet",   "chirp", "sweep", "expression",
+                                                 "sum",      "product",  "harmonics", "random"};
   std::unique_ptr<const TimeFunction> made;
   FunctionParameters p(r, diagnostics);
   if (r.type == "constant") {
@@ -190,8 +190,11 @@ std::unique_ptr<const TimeFunction> make_time_function(const FunctionRecord& r, 
       else
         made = std::make_unique<CubicTable>(r.x, r.y);
     }
-  } else if (r.type == "sawtooth" || r.type == "doublet" || r.type == "chirp" || r.type == "sweep") {
+  } else if (r.type == "sawtooth" || r.type == "doublet" || r.type == "chirp" || r.type == "sweep" ||
+             r.type == "harmonics") {
     made = make_wave(r, run, p);
+  } else if (r.type == "random") {
+    if (check_table(r, p)) made = make_wave(r, run, p);
   } else if (r.type == "expression") {
     made = make_time_expression(r, run, p);
   } else if (r.type == "sum" || r.type == "product") {

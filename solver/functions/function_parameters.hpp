@@ -68,7 +68,7 @@ class FunctionParameters {
   bool failed_ = false;
 };
 
-/// sawtooth, doublet, chirp, sweep; nullptr for another type. Errors are in `p`.
+/// sawtooth, doublet, chirp, sweep, harmonics, random; nullptr for another type. Errors are in `p`.
 std::unique_ptr<const TimeFunction> make_wave(const records::FunctionRecord& record, const TimeSpan& run,
                                               FunctionParameters& p);
 /// A formula of t by muParser, its rate and its acceleration where they are given.

@@ -141,7 +141,33 @@ void measure_modes(const Motion& motion, const Sensor& e, double* out) {
     result = motion.data.u.segment(tb.eta_dot_offset() + first, e.size);
 }
 
+/// Position and attitude of an optical node in A; W for A = -1.
+void calc_placement(const Motion& motion, int A, const SightTerm& term, Vector3d& p_AK, Matrix3d& R_AK) {
+  const NodeMotion k = calc_node_motion(motion, term.body, term.node);
+  p_AK = k.p_WK;
+  R_AK = k.R_WK;
+  if (A < 0) return;
+  const BodyState& s = motion.get_state(A);
+  p_AK = s.R_WB.transpose() * (k.p_WK - s.p_WBo);
+  R_AK = s.R_WB.transpose() * k.R_WK;
+}
+
+void measure_sight(const Motion& motion, const Sensor& e, double* out) {
+  Vector3d sum = Vector3d::Zero(), p;
+  Matrix3d R;
+  for (const SightTerm& term : e.terms) {
+    calc_placement(motion, e.relative_to, term, p, R);
+    const Eigen::AngleAxisd turn(Matrix3d(R * term.R_AK.transpose()));
+    sum += term.displacement * (p - term.p_AK) + term.rotation * (turn.angle() * turn.axis());
+  }
+  std::copy_n(sum.data(), e.size, out);
+}
+
 }  // namespace
+
+void set_reference(const Motion& motion, Sensor& e) {
+  for (SightTerm& term : e.terms) calc_placement(motion, e.relative_to, term, term.p_AK, term.R_AK);
+}
 
 Vector3d calc_euler_angles(const Matrix3d& R, const std::array<int, 3>& axes) {
   const int i = axes[0], j = axes[1], k = axes[2] == i ? 3 - i - j : axes[2];
@@ -176,6 +202,8 @@ void measure(const Motion& motion, const Sensor& e, double* out) {
       }
       return measure_attitude(e, motion.get_state(e.relative_to).R_WB.transpose() * R_WS, out);
     }
+    case SensorOf::Optics:
+      return measure_sight(motion, e, out);
     case SensorOf::Element:
       return e.recovery->calc(motion, e.row, e.size, out);
     case SensorOf::Gap: {
@@ -217,7 +245,7 @@ void mark_motion(const Tree& tree, const Sensor& e, std::vector<bool>& q, std::v
     u.assign(u.size(), true);
     return;
   }
-  const TreeBody& own = tree[e.body];
+  const TreeBody& own = tree[std::max(0, e.body)];
   switch (kind.of) {
     case SensorOf::Coordinate:
       fill(q, own.q_offset, own.num_hinge_q());
@@ -233,13 +261,15 @@ void mark_motion(const Tree& tree, const Sensor& e, std::vector<bool>& q, std::v
   }
   const bool reads_rates = e.type == SensorType::Velocity || e.type == SensorType::AngularVelocity ||
                            e.type == SensorType::Gyro || e.type == SensorType::IntegratingGyro || e.orbit != nullptr;
-  for (int b : {e.body, e.frame, e.relative_to, e.to_body}) {
+  const auto mark_path = [&](int b) {
     for (; b >= 0; b = tree[b].parent) {
       const TreeBody& tb = tree[b];
       fill(q, tb.q_offset, tb.num_hinge_q() + tb.num_modes());
       if (reads_rates) fill(u, tb.u_offset, tb.num_hinge_u() + tb.num_modes());
     }
-  }
+  };
+  for (const int b : {e.body, e.frame, e.relative_to, e.to_body}) mark_path(b);
+  for (const SightTerm& term : e.terms) mark_path(term.body);
 }
 
 }  // namespace bough::solver

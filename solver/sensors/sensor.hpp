@@ -15,6 +15,7 @@
 ///   gyro, accelerometer, direction   ω, a - g(p) of all gravity, the target's direction in S
 ///   horizon                  roll, pitch of S against the direction to the target, its z at zero
 ///   element                  forces and stresses of an element (solver/motion/recovery.hpp)
+///   line_of_sight            Σ (L_k u_k + Q_k θ_k) over its terms: u = p_AK - p_AK0, exp(θ) = R_AK R_AK0ᵀ, in A
 ///   hinge_angle, hinge_rate   coordinates as the user knows them (quaternion w, x, y, z) and rates; one, or all for 0
 ///
 /// With `orbit`, A is the LVLH frame of the body about the centre of gravity: origin Ao, z towards the centre, y
@@ -33,6 +34,14 @@
 namespace bough::solver {
 
 class Recovery;
+
+/// One optical node K of a line of sight. Rows of the weights above the number of outputs are zero.
+struct SightTerm {
+  int body = -1, node = 0;
+  Matrix3d displacement = Matrix3d::Zero(), rotation = Matrix3d::Zero();  ///< 1/L, 1; columns in A
+  Vector3d p_AK = Vector3d::Zero();                                       ///< [L] reference position
+  Matrix3d R_AK = Matrix3d::Identity();                                   ///< reference attitude
+};
 
 struct Sensor {
   std::string name;
@@ -54,10 +63,13 @@ struct Sensor {
   Vector3d target = Vector3d::Zero();     ///< in W: a direction, a centre, the other end on ground
   std::array<int, 3> axes{2, 1, 0};       ///< euler: from 0
   int to_body = -1, to_node = 0;          ///< distance; -1: target
+  std::vector<SightTerm> terms;           ///< line_of_sight
 };
 
 /// One sensor's measurement without its imperfections; out: its size. No allocation.
 void measure(const Motion& motion, const Sensor& sensor, double* out);
+/// Sets the reference positions and attitudes of the terms of a line of sight to those of the motion.
+void set_reference(const Motion& motion, Sensor& sensor);
 /// Marks the rows of q and u that the measurement is a function of, besides accelerations and time: of hinges and modes
 /// on the way from ground to its bodies.
 void mark_motion(const Tree& tree, const Sensor& sensor, std::vector<bool>& q, std::vector<bool>& u);

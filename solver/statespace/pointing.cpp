@@ -76,6 +76,23 @@ std::vector<MatrixXd> integrate_exposures(const records::LinearModel& model, con
   return found;
 }
 
+MatrixXd calc_running_rms(const InputSpectrum& input, const records::FrequencyResponse& response) {
+  const Index nf = response.frequency_hz.size(), ny = response.outputs.size();
+  MatrixXd square = MatrixXd::Zero(nf, ny);
+  Eigen::RowVectorXd before(ny);
+  for (Index k = 0; k < nf; ++k) {
+    const MatrixXcd& G = response.value[static_cast<std::size_t>(k)];
+    const MatrixXcd S = input.calc(response.frequency_hz[k]);
+    const Eigen::RowVectorXd density =
+        (G * S).cwiseProduct(G.conjugate()).rowwise().sum().real().cwiseMax(0).transpose();
+    if (k > 0)
+      square.row(k) =
+          square.row(k - 1) + 0.5 * (response.frequency_hz[k] - response.frequency_hz[k - 1]) * (density + before);
+    before = density;
+  }
+  return square.cwiseSqrt();
+}
+
 Complex calc_wheel_transfer(const records::WheelMode& mode, double omega) {
   return calc_suspension(kTwoPi * mode.frequency_hz, mode.damping, omega, 0);
 }

@@ -31,6 +31,12 @@ std::vector<Eigen::MatrixXd> integrate_exposures(const records::LinearModel& mod
                                                  const records::FrequencyResponse& response,
                                                  const std::vector<ExposureWeight>& weights);
 
+/// Computes the RMS of the outputs up to each frequency of `response`, by straight lines of the density.
+///
+/// \param input     spectrum of all inputs of the response.
+/// \return num_frequencies x num_outputs [unit].
+Eigen::MatrixXd calc_running_rms(const InputSpectrum& input, const records::FrequencyResponse& response);
+
 /// Transfer of a radial or axial force, or of an axial moment, through the suspension of a wheel on a base at rest:
 /// (ω₀² + 2iζω₀ω) / (ω₀² - ω² + 2iζω₀ω).
 std::complex<double> calc_wheel_transfer(const records::WheelMode& mode, double omega);

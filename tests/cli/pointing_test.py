@@ -298,6 +298,42 @@ class Pointing(LinearTest):
         for name in ("wheel 1", "cooler", "gyro noise"):
             self.assertIn(name, found)
 
+    def test_file_and_page_have_the_budget(self):
+        text = "exposure = 0.1\n" + NOISE + COOLER + WHEEL.replace("SPEEDS", "range_rpm = [600.0, 6000.0]\npoints = 12")
+        found = self.budget(text, "-o", "budget.h5")
+        with h5py.File(self.path("budget.h5")) as f:
+            self.assertEqual(f.attrs["format"], "bough-budget")
+            self.assertEqual([name.decode() for name in f["sources/name"]], ["noise", "cooler", "wheel"])
+            self.assertEqual([name.decode() for name in f["outputs/name"]], OUTPUTS)
+            for k, table in enumerate(found["tables"]):
+                self.assertEqual(f["tables/weighting"][k].decode(), table["weighting"])
+                np.testing.assert_array_equal(f["tables/rms"][k], [row["rms"] for row in table["rows"]])
+                np.testing.assert_array_equal(f["tables/total"][k], table["total"])
+                np.testing.assert_array_equal(f["wheels/3/rms"][k].T, table["rows"][2]["over_speed"])
+                self.assertTrue(np.isnan(f["tables/speed"][k, :2]).all())
+                np.testing.assert_allclose(f["tables/speed"][k, 2] * 30 / math.pi, table["rows"][2]["worst_rpm"], rtol=1e-12)
+            np.testing.assert_allclose(f["wheels/3/speed"][()] * 30 / math.pi, np.linspace(600, 6000, 12), rtol=1e-12)
+            rms = f["tables/rms"][0]
+            for k, tolerance in ((1, 1e-2), (2, 1e-12), (3, 1e-12)):
+                np.testing.assert_allclose(f[f"curves/{k}/rms"][-1], rms[k - 1], rtol=tolerance)
+            np.testing.assert_allclose(f["curves/2/frequency_hz"][()], [[40, 40], [120, 120]], rtol=1e-14)
+            first = abs(0.2 * self.gain(40, "fx") + 0.01 * np.exp(1j * math.radians(75)) * self.gain(40, "my"))
+            np.testing.assert_allclose(f["curves/2/rms"][0], first / math.sqrt(2), rtol=1e-9)
+            worst = f["tables/speed"][0, 2] / 2 / math.pi
+            np.testing.assert_allclose(f["curves/3/frequency_hz"][()], [worst, 2.82 * worst], rtol=1e-12)
+            # The noise up to a frequency, by NumPy.
+            hz, running = f["curves/1/frequency_hz"][:, 0], f["curves/1/rms"][:, 0]
+            grid = np.linspace(hz[0], 30, 6001)
+            fx = np.interp(grid, [2, 30, 90], [1e-4, 4e-4, 1e-5], left=0)
+            mx = np.exp(np.interp(np.log(grid), np.log([1, 90]), np.log([2e-7, 1e-7])))
+            S = [fx[k] * abs(self.gain(x, "fx")[0])**2 + mx[k] * abs(self.gain(x, "mx")[0])**2 for k, x in enumerate(grid)]
+            self.assertAlmostEqual(np.interp(30, hz, running**2) / np.trapz(S, grid), 1, delta=2e-2)
+        self.bough("report", "budget.h5", "-o", "budget.html")
+        page = self.read("budget.html")
+        for words in ("pointing budget", "sight:1, RMS up to each frequency", "jitter RMS, exposure 0.1",
+                      "wheel, jitter RMS over its speed", "root of the sum of squares"):
+            self.assertIn(words, page)
+
     def test_text_names_the_worst_speed(self):
         self.write("budget.toml", WHEEL.replace("SPEEDS", "speed_rpm = [1000.0, 2000.0]"))
         text = self.bough("response", "model.h5", "--outputs", "sight:1", "--budget", "budget.toml").stdout

@@ -157,6 +157,7 @@ const Hdf5Reader kHdf5Readers[] = {
     {"bough-comparison", [](const std::string& path) { hdf5::read_comparison(path); }},
     {"bough-static", [](const std::string& path) { hdf5::read_static(path); }},
     {"bough-sweep", [](const std::string& path) { hdf5::read_sweep(path); }},
+    {"bough-budget", [](const std::string& path) { hdf5::read_budget(path); }},
     {"bough-response", [](const std::string& path) { hdf5::read_model_response(path); }},
     {"bough-frequency", [](const std::string& path) { hdf5::read_response(path); }},
     {"bough-transient", [](const std::string& path) { hdf5::read_response(path); }},

@@ -127,6 +127,30 @@ class Decks(InFolder):
         with self.assertRaisesRegex(bough.InputError, "wheel"):
             bough.response("loop.h5", psd="wheel=1")
 
+    def test_pointing_budget(self):
+        text = PENDULUM.format(law=EXPRESSION).replace("gravity = [0.0, 0.0, -9.81]", "")
+        model = bough.System.from_text(text).linearize()
+        model.save("loop.h5")
+        name = model.inputs[0]
+        with open("jitter.toml", "w", encoding="utf-8") as f:
+            f.write(f'exposure = 0.3\n[[source]]\nname = "cooler"\ntype = "tones"\nfrequency_hz = 2.0\n'
+                    f'harmonic = [{{number = 1, input = "{name}", amplitude = 0.5}}]\n'
+                    f'[[source]]\nname = "noise"\ntype = "psd"\npsd = [{{input = "{name}", density = 1e-3}}]\n')
+        found = bough.response("loop.h5", budget="jitter.toml", from_hz=0.01, to_hz=100)
+        printed = json.loads(subprocess.run(
+            [PROGRAM, "response", "loop.h5", "--budget", "jitter.toml", "--from", "0.01", "--to", "100", "--json", "-q"],
+            check=True, capture_output=True, text=True).stdout)
+        self.assertEqual(found["outputs"], model.outputs)
+        self.assertEqual(found["sources"], ["cooler", "noise"])
+        self.assertEqual([table["weighting"] for table in found["tables"]], ["total", "jitter", "smear", "residual", "mean"])
+        for table, one in zip(found["tables"], printed["tables"], strict=True):
+            self.assertEqual(table["rms"].tolist(), [row["rms"] for row in one["rows"]])
+            self.assertEqual(table["total"].tolist(), one["total"])
+        self.assertEqual(found["curves"][0]["frequency_hz"][0, 0], 2.0)
+        self.assertEqual(found["curves"][0]["rms"][0].tolist(), found["tables"][0]["rms"][0].tolist())
+        with self.assertRaisesRegex(TypeError, "takes no inputs"):
+            bough.response("loop.h5", budget="jitter.toml", psd=[1e-3])
+
 
 if __name__ == "__main__":
     unittest.main()

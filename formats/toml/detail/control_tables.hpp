@@ -17,6 +17,9 @@ records::ActuatorRecord read_actuator(const Fields& table, const std::string& pa
 records::ConnectRecord read_connect(const Fields& table);
 /// Reads an [[input]]; it starts at 0 and is held by default.
 records::InputRecord read_input(const Fields& table);
+/// Reads the terms of a line of sight. Reports toml.wrong-type, toml.wrong-length and toml.missing-key.
+std::vector<records::OpticalTerm> read_optical_terms(const Fields& table, const std::string& sensor,
+                                                     Diagnostics& diagnostics);
 /// Mount, target, the other end, sequence, and what becomes of the measurement; refuses those that the type does not
 /// take.
 void read_sensor_keys(const Fields& table, const std::string& path, const std::string& type,

@@ -163,6 +163,7 @@ void check_names(const records::SystemSpec& spec, Diagnostics& diagnostics) {
       checker.check(sensor.relative_to, with({"ground"}), role, "body", sensor.at);
     checker.check(sensor.hinge, hinges, role, "hinge", sensor.at);
     checker.check(sensor.to_body, with({"ground"}), role, "body", sensor.at);
+    for (const auto& term : sensor.terms) checker.check(term.body, bodies, role, "body", term.at);
   }
 }
 

@@ -222,6 +222,9 @@ void change_sensor(const UnitTable& t, SignalUnits& units) {
   }
   const std::string type = t.text("type");
   if (type == "horizon" || type == "distance") t.scale("target", c.length);
+  if (const auto* terms = t.table["terms"].as_array())
+    for (const auto& term : *terms)
+      if (const auto* item = term.as_table()) t.edits.scale(item->get("displacement"), 1 / c.length);
   t.scale_angles("rotation");
   t.scale_angles("misalignment");
 }
@@ -279,8 +282,17 @@ void change_function(const UnitTable& t, SignalUnits& units) {
   for (const char* key : {"at", "from", "to", "width", "duration"}) t.scale(key, time);
   for (const char* key : {"frequency_hz", "omega", "from_hz", "to_hz"}) t.scale_angles(key, 1 / time);
   t.scale_angles("phase");
-  t.scale("x", x);
-  t.scale("y", value);
+  if (type == "harmonics") {
+    const auto* power = t.get("power");
+    t.scale("y", value * std::pow(time, power != nullptr ? power->value_or(2.0) : 2.0));
+    t.scale_angles("omega_rate", 1 / (time * time));
+  } else if (type == "random") {
+    t.scale("x", 1 / time);
+    t.scale("y", value * value * time);
+  } else {
+    t.scale("x", x);
+    t.scale("y", value);
+  }
   if (type == "spinup") t.scale_angles("rate", value / time);
   if (type == "expression") {
     rewrite(t, "expression", value, time, {});

@@ -1,0 +1,135 @@
+"""Published cases of spacecraft dynamics: two panels, dual spin, a spinning body with a damper, an inverted pendulum."""
+import math
+import unittest
+
+import numpy as np
+import scipy.integrate
+import scipy.linalg
+
+from support import ProgramTest
+from toml_text import section, table, toml
+
+
+def make_panels(duration, more="", **simulation):
+    """Hub and two panels of Basilisk's test_hingedRigidBodyStateEffector.py (AVS Laboratory, University of Colorado)."""
+    return toml(
+        table("body", "hub", mass=750.0, cg=[0.0, 0.0, 1.0], inertia=[900.0, 800.0, 600.0]),
+        table("body", "panel1", mass=100.0, cg=[1.5, 0.0, 0.0], inertia=[100.0, 50.0, 50.0]),
+        table("body", "panel2", mass=100.0, cg=[-1.5, 0.0, 0.0], inertia=[100.0, 50.0, 50.0]),
+        table("hinge", "flight", "free", child="hub", rate=[0.1, -0.1, 0.1, 0.0, 0.0, 0.0]),
+        table("hinge", "root1", "revolute", parent="hub", child="panel1", parent_position=[0.5, 0.0, 1.0],
+              axis=[0.0, -1.0, 0.0], position=[math.radians(5)], stiffness=[100.0]),
+        table("hinge", "root2", "revolute", parent="hub", child="panel2", parent_position=[-0.5, 0.0, 1.0],
+              axis=[0.0, 1.0, 0.0], stiffness=[100.0]),
+        table("sensor", "attitude", "quaternion", body="hub"),
+        more,
+        section("simulation", duration=duration, integrator="rk", relative_tolerance=1e-12, absolute_tolerance=1e-13,
+                **simulation))
+
+
+SPIN, AXIAL, LATERAL = 20.0, 2.0, 50.0  # rotor: rate and inertia about its axis; inertia of the whole across it
+
+DUAL_SPIN = toml(
+    table("body", "platform", mass=100.0, inertia=[40.0, 40.0, 30.0]),
+    table("body", "rotor", mass=10.0, inertia=[10.0, 10.0, AXIAL]),
+    table("hinge", "flight", "free", child="platform"),
+    table("hinge", "bearing", "revolute", parent="platform", child="rotor", axis=[0.0, 0.0, 1.0], rate=[SPIN]),
+    section("simulation", duration=1.0))
+
+
+class FlightCases(ProgramTest):
+    def test_two_panels_of_basilisk(self):
+        self.write("panels.toml", make_panels(2.5, output_step=0.5))
+        self.bough("run", "panels.toml", "-o", "panels.h5")
+        q, linear, angular, kinetic = self.read_arrays("panels.h5", "sensors/attitude", "momentum/linear", "momentum/angular",
+                                                       "energy/kinetic")
+        # Modified Rodrigues parameters after 2.5 s, printed there to 16 digits and compared to 1e-10.
+        np.testing.assert_allclose(q[-1, 1:] / (1 + q[-1, 0]), [0.06170318243240492, -0.07089090074412899, 0.06409500412692531],
+                                   rtol=1e-9)
+        self.assertLess(abs(angular - angular[0]).max(), 1e-10 * abs(angular[0]).max())
+        self.assertLess(abs(linear - linear[0]).max(), 1e-10 * 950)
+        self.assertEqual(kinetic.size, 6)
+
+    def test_nutation_of_dual_spin(self):
+        """A despun platform: h/I across the axis (Hughes, Spacecraft Attitude Dynamics, 1986, ch. 6)."""
+        self.write("spin.toml", DUAL_SPIN)
+        self.bough("linearize", "spin.toml", "-o", "spin.h5")
+        real, imag = self.read_arrays("spin.h5", "poles/real", "poles/imag")
+        nutation = AXIAL * SPIN / LATERAL
+        self.assertAlmostEqual(imag.max(), nutation, delta=1e-9)
+        self.assertLess(abs(real).max(), 1e-7)
+
+    def test_spin_with_a_damper(self):
+        """A spinning body with a mass on a spring along the axis: stable about the major axis, not about the minor one."""
+        m, b, k, c, rate = 2.0, 0.7, 30.0, 1.5, 3.0
+        for lateral, axial, is_stable in ((8.0, 12.0, True), (12.0, 8.0, False)):
+            self.write("spin.toml", toml(
+                table("body", "disk", mass=50.0, inertia=[lateral, lateral, axial]),
+                table("body", "damper", mass=m),
+                table("hinge", "pivot", "spherical", child="disk", rate=[0.0, 0.0, rate]),
+                table("hinge", "slide", "prismatic", parent="disk", child="damper", parent_position=[b, 0.0, 0.0],
+                      axis=[0.0, 0.0, 1.0], stiffness=[k], damping=[c]),
+                section("simulation", duration=1.0)))
+            self.bough("linearize", "spin.toml", "-o", "spin.h5")
+            real, imag = self.read_arrays("spin.h5", "poles/real", "poles/imag")
+            # Rates across the axis, place and speed of the damper; momentum about the pivot.
+            Ix, Iy, H = lateral, lateral + m * b * b, (axial + m * b * b) * rate
+            M = np.array([[Ix, 0, 0, 0], [0, Iy, 0, -m * b], [0, 0, 1, 0], [0, -m * b, 0, m]])
+            F = np.array([[0, -H + rate * Iy, 0, 0], [H - rate * Ix, 0, m * b * rate**2, 0], [0, 0, 0, 1],
+                          [-m * b * rate, 0, -k, -c]])
+            exact = np.linalg.eigvals(np.linalg.solve(M, F))
+            self.assertEqual(bool(exact.real.max() < 0), is_stable)
+            for pole in exact:
+                self.assertLess(abs(real + 1j * imag - pole).min(), 1e-7, (lateral, exact, real + 1j * imag))
+
+    def test_lqr_of_the_furuta_pendulum(self):
+        """Equations of Cazzolato & Prime, J. Control Sci. Eng. 2011, 528341, with a rigid arm; a gain by Riccati's equation."""
+        J, m, L, l, J2, g, b1, b2 = 0.02, 0.1, 0.3, 0.2, 1.5e-3, 9.81, 2e-3, 1e-3
+        J0, Jh, c12 = J + m * L * L, J2 + m * l * l, m * L * l
+
+        def calc_rates(x, torque):
+            s, c = math.sin(x[1]), math.cos(x[1])
+            M = [[J0 + Jh * s * s, c12 * c], [c12 * c, Jh]]
+            f = [torque - b1 * x[2] - 2 * Jh * s * c * x[2] * x[3] + c12 * s * x[3]**2,
+                 -b2 * x[3] + Jh * s * c * x[2]**2 - g * m * l * s]
+            return [x[2], x[3], *np.linalg.solve(M, f)]
+
+        def write(position, gains):
+            return self.write("furuta.toml", toml(
+                table("body", "arm", mass=0.5, cg=[0.1, 0.0, 0.0], inertia=[1e-3, J - 0.5 * 0.01, J - 0.5 * 0.01]),
+                table("body", "rod", mass=m, cg=[0.0, 0.0, -l], inertia=[J2, J2, 0.0]),
+                table("hinge", "base", "revolute", child="arm", axis=[0.0, 0.0, 1.0], damping=[b1]),
+                table("hinge", "joint", "revolute", parent="arm", child="rod", parent_position=[L, 0.0, 0.0],
+                      axis=[1.0, 0.0, 0.0], position=[position], damping=[b2]),
+                table("sensor", "angle", "hinge_angle", hinge="base"),
+                table("sensor", "tilt", "hinge_angle", hinge="joint", bias=-math.pi),
+                table("sensor", "rate", "hinge_rate", hinge="base"),
+                table("sensor", "tilt_rate", "hinge_rate", hinge="joint"),
+                table("controller", "feedback", "gain", inputs=["angle", "tilt", "rate", "tilt_rate"], gain=[gains]),
+                table("actuator", "motor", "hinge", hinge="base", input="feedback"),
+                section("simulation", duration=3.0, output_step=0.05, gravity=[0.0, 0.0, -g], integrator="rk",
+                        relative_tolerance=1e-12, absolute_tolerance=1e-13)))
+
+        self.bough("linearize", write(math.pi, [0.0] * 4), "--inputs", "motor", "--open", "-o", "plant.h5")
+        A, B = self.read_arrays("plant.h5", "A", "B")
+        M = np.linalg.inv([[J0, -c12], [-c12, Jh]])
+        exact = np.zeros((4, 4))
+        exact[:2, 2:] = np.eye(2)
+        exact[2:, :2] = M @ [[0, 0], [0, g * m * l]]
+        exact[2:, 2:] = -M @ np.diag([b1, b2])
+        np.testing.assert_allclose(A, exact, atol=1e-7)
+        np.testing.assert_allclose(B.ravel(), [0, 0, *M[:, 0]], atol=1e-8)
+        P = scipy.linalg.solve_continuous_are(A, B, np.diag([1.0, 1.0, 0.1, 0.1]), [[10.0]])
+        gain = (B.T @ P / 10).ravel()
+        self.bough("run", write(math.pi + 0.2, [float(-x) for x in gain]), "-o", "furuta.h5")
+        t, angle, tilt = self.read_arrays("furuta.h5", "time", "sensors/angle", "sensors/tilt")
+        goal = np.array([0, math.pi, 0, 0])
+        found = scipy.integrate.solve_ivp(lambda _, x: calc_rates(x, -gain @ (x - goal)), (0, 3), [0, math.pi + 0.2, 0, 0],
+                                          method="DOP853", t_eval=t.ravel(), rtol=1e-12, atol=1e-13)
+        np.testing.assert_allclose(angle.ravel(), found.y[0], atol=1e-9)
+        np.testing.assert_allclose(tilt.ravel(), found.y[1] - math.pi, atol=1e-9)
+        self.assertLess(abs(tilt[-1]).max(), 0.02)
+
+
+if __name__ == "__main__":
+    unittest.main()
