@@ -1,5 +1,6 @@
 // The parts of a flexible body that need no loads: mass, nodes, mass integrals, strain energy.
 #include <set>
+#include <string>
 
 #include "fe/matrices/mass_directions.hpp"
 #include "fe/model/element_loop.hpp"
@@ -12,6 +13,20 @@ namespace bough::stiffening {
 
 using records::BodyFrame;
 using records::FlexBody;
+
+namespace {
+
+constexpr double kMomentRoundoff = 1e-9;  // of the largest
+
+/// Principal moments of inertia about the centre of mass, ascending.
+Eigen::Vector3d calc_principal_moments(const FlexBody& body) {
+  const Eigen::Vector3d& c = body.cg;
+  const Eigen::Matrix3d about_cg =
+      body.inertia - body.mass * (c.squaredNorm() * Eigen::Matrix3d::Identity() - c * c.transpose());
+  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(about_cg, Eigen::EigenvaluesOnly).eigenvalues();
+}
+
+}  // namespace
 
 FlexBody make_rigid_body(const BodyRequest& request, const fe::Model& model) {
   const auto properties = fe::calc_mass_properties(model, model.mass_kind(), Eigen::Vector3d::Zero());
@@ -29,6 +44,16 @@ FlexBody make_rigid_body(const BodyRequest& request, const fe::Model& model) {
   if (fe::calc_mass_difference(properties.rigid_mass) > fe::kMassDifference) {
     SourceLocation at = request.where();
     const auto masses = fe::describe_mass(model, request.deck, properties.rigid_mass, at);
+    const Eigen::Vector3d moments = calc_principal_moments(body);
+    if (moments(0) + moments(1) < (1 - kMomentRoundoff) * moments(2) || moments(0) < -kMomentRoundoff * moments(2)) {
+      request.diagnostics.error("reduce.mass-by-direction", at,
+                                masses +
+                                    ": a rigid body has one; with their mean the principal moments of inertia are " +
+                                    std::to_string(moments(0)) + ", " + std::to_string(moments(1)) + ", " +
+                                    std::to_string(moments(2)) + ", which no body has",
+                                "give CONM2, or CMASS of one value in all three translations of one grid");
+      request.diagnostics.throw_if_errors();
+    }
     request.diagnostics.warning("reduce.mass-by-direction", at,
                                 masses +
                                     ": a rigid body has one; the body gets their mean, by which gravity, joints and "
