@@ -385,6 +385,7 @@ class PartReducer {
   static void add_tables(const std::string& name, const std::vector<const fe::Node*>& nodes, const MatrixXd& values,
                          const MatrixXd& of_loads, Superelement& s) {
     std::vector<records::RecoveryItem> items;
+    items.reserve(nodes.size());
     for (const auto* node : nodes) items.push_back({1, node->id, 6, static_cast<int>(6 * items.size())});
     s.recovery.push_back({name, items, list_rows(nodes, values)});
     if (of_loads.cols() > 0) s.recovery.push_back({name + "O", items, list_rows(nodes, of_loads)});
