@@ -8,7 +8,7 @@ import numpy as np
 from support import ProgramTest
 
 FORCE, SECOND, COUPLE = 7.2e-6, 1.1e-6, 2.9e-7
-INPUTS = "wheel_fx,wheel_fy,wheel_mx,wheel_my,cooler,noise_x,noise_y"
+INPUTS = "fx,fy,mx,my,cooler,noise_x,noise_y"
 
 
 class Observatory(ProgramTest):
@@ -30,8 +30,8 @@ class Observatory(ProgramTest):
         """RMS at one speed [rad/s]: both harmonics turn with the wheel."""
         total = np.zeros(2)
         for number, force, couple in ((1, FORCE, COUPLE), (2, SECOND, 0)):
-            y = speed**2 * (force * (self.gain(number * speed, "wheel_fx") - 1j * self.gain(number * speed, "wheel_fy"))
-                            + couple * (self.gain(number * speed, "wheel_mx") - 1j * self.gain(number * speed, "wheel_my")))
+            y = speed**2 * (force * (self.gain(number * speed, "fx") - 1j * self.gain(number * speed, "fy"))
+                            + couple * (self.gain(number * speed, "mx") - 1j * self.gain(number * speed, "my")))
             total += abs(y)**2 / 2
         return np.sqrt(total)
 
