@@ -9,6 +9,7 @@
 #include "fe/matrices/system.hpp"
 #include "fe/statics/build_model.hpp"
 #include "fe/statics/preload.hpp"
+#include "fe/statics/superelement_check.hpp"
 #include "formats/records/load_name.hpp"
 
 namespace bough::modal {
@@ -109,6 +110,7 @@ EigenPairs solve_buckling(const records::Deck& deck, const BucklingCases& cases,
   const fe::Model& statics = own ? *own : model;
   auto load = fe::calc_static_load(statics, deck, cases.statics, diagnostics);
   fe::report_dead_loads(deck, cases.statics.load, diagnostics);
+  fe::report_unstiffened(statics, deck, diagnostics);
   diagnostics.throw_if_errors();
   const auto relief = fe::read_inertia_relief(deck, diagnostics);
   auto held = fe::choose_suport(statics, deck, relief, diagnostics);

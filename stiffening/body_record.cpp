@@ -45,21 +45,16 @@ FlexBody make_rigid_body(const BodyRequest& request, const fe::Model& model) {
     SourceLocation at = request.where();
     const auto masses = fe::describe_mass(model, request.deck, properties.rigid_mass, at);
     const Eigen::Vector3d moments = calc_principal_moments(body);
-    if (moments(0) + moments(1) < (1 - kMomentRoundoff) * moments(2) || moments(0) < -kMomentRoundoff * moments(2)) {
-      request.diagnostics.error("reduce.mass-by-direction", at,
-                                masses +
-                                    ": a rigid body has one; with their mean the principal moments of inertia are " +
-                                    std::to_string(moments(0)) + ", " + std::to_string(moments(1)) + ", " +
-                                    std::to_string(moments(2)) + ", which no body has",
-                                "give CONM2, or CMASS of one value in all three translations of one grid");
-      request.diagnostics.throw_if_errors();
-    }
-    request.diagnostics.warning("reduce.mass-by-direction", at,
-                                masses +
-                                    ": a rigid body has one; the body gets their mean, by which gravity, joints and "
-                                    "forces move it",
-                                "give CONM2, or CMASS of one value in all three translations of one grid, unless only "
-                                "the modes matter");
+    const bool is_no_body =
+        moments(0) + moments(1) < (1 - kMomentRoundoff) * moments(2) || moments(0) < -kMomentRoundoff * moments(2);
+    request.diagnostics.warning(
+        "reduce.mass-by-direction", at,
+        masses +
+            ": a rigid body has one; the body gets their mean, by which gravity, joints and "
+            "forces move it" +
+            (is_no_body ? "; no body has the moments of inertia that are left: run rejects it" : ""),
+        "give CONM2, or CMASS of one value in all three translations of one grid, unless only "
+        "the modes matter");
   }
   body.is_free_free =
       request.is_free() && request.spec.frame != BodyFrame::Node && request.spec.frame != BodyFrame::ThreeNodes;

@@ -261,6 +261,7 @@ class PartReducer {
     const auto symmetrize = [](const MatrixXd& A) { return MatrixXd(0.5 * (A + A.transpose())); };
     const MatrixXd force = fe::calc_stiffness_times(model, Psi);
     s.K = symmetrize(Psi.transpose() * force);
+    s.K.topLeftCorner(nb, nb) = remove_roundoff(s.K.topLeftCorner(nb, nb), calc_boundary_stiffness(model, fixed));
     // Constraint modes and what moves with the boundary held share no strain energy.
     s.K.topRightCorner(nb, nq).setZero();
     s.K.bottomLeftCorner(nq, nb).setZero();
@@ -304,6 +305,32 @@ class PartReducer {
                                   "modes of its {} degrees of freedom",
                                   section.id, nb, nq, model.num_fdofs()),
                       "its further frequencies with the boundary held should be above those of interest");
+  }
+
+  /// Diagonal of K before condensation at the dofs of the boundary.
+  static VectorXd calc_boundary_stiffness(const fe::Model& model, const modal::bases::FixedInterface& fixed) {
+    const auto& boundary = fixed.partition().boundary;
+    MatrixXd unit = MatrixXd::Zero(model.num_gdofs(), static_cast<Index>(boundary.size()));
+    for (Index i = 0; i < unit.cols(); ++i) {
+      const auto& [id, component] = boundary[static_cast<std::size_t>(i)];
+      const fe::Node& node = model.node(model.find_node(id));
+      const int c = (component - 1) % 3, half = component > 3 ? 3 : 0;
+      unit.block<3, 1>(node.first_gdof + half, i) = node.R_basic_cd.col(c);
+    }
+    return unit.cwiseProduct(fe::calc_stiffness_times(model, unit)).colwise().sum();
+  }
+
+  /// K without what condensation leaves of motions that it does not resist, as rigid-body motions of a section on one
+  /// grid: shares of the stiffness before, in whose range the geometric stiffness would be looked for.
+  static MatrixXd remove_roundoff(const MatrixXd& K, const VectorXd& before) {
+    constexpr double kRoundoff = 1e-11;
+    const VectorXd size = before.cwiseMax(0).cwiseSqrt();
+    const VectorXd inverse = size.unaryExpr([](double x) { return x > 0 ? 1 / x : 0.0; });
+    const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(MatrixXd(inverse.asDiagonal() * K * inverse.asDiagonal()));
+    const VectorXd kept = (eigen.eigenvalues().array() > kRoundoff).select(eigen.eigenvalues(), 0.0);
+    MatrixXd share = eigen.eigenvectors() * kept.asDiagonal() * eigen.eigenvectors().transpose();
+    share = (share.array().abs() > kRoundoff).select(share, 0.0);
+    return size.asDiagonal() * share * size.asDiagonal();
   }
 
   /// Component modes with the boundary held: EIGRL or EIGR of the section that METHOD selects, as many as the points of

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <map>
 #include <numbers>
 
 #include "analysis/common/choices.hpp"
@@ -33,11 +34,12 @@ using Matrix6d = Eigen::Matrix<double, 6, 6>;
 
 /// Highest frequency of the modes of a part, with the cuts held, over that of the highest mode compared.
 constexpr double kFirstRange = 3;
-constexpr int kMaxRounds = 5;           ///< each doubles the range
-constexpr int kMaxRigidRounds = 3;      ///< with cuts along several grids
-constexpr double kTwistInertia = 1e-5;  ///< of what a line of bars carries
-constexpr double kDiscInertia = 0.6;    ///< of a disc about its diameter over that about its axis
-constexpr double kParallel = 1e-9;      ///< sine of the angle, and relative inertia that is round-off
+constexpr int kMaxRounds = 5;            ///< each doubles the range
+constexpr int kMaxRigidRounds = 3;       ///< with cuts along several grids
+constexpr double kTwistInertia = 1e-5;   ///< of what a line of bars carries
+constexpr double kRotaryInertia = 1e-7;  ///< of what a grid of lumped mass carries, about each axis
+constexpr double kDiscInertia = 0.6;     ///< of a disc about its diameter over that about its axis
+constexpr double kParallel = 1e-9;       ///< sine of the angle, and relative inertia that is round-off
 
 double calc_hz(double lambda) { return std::sqrt(std::max(lambda, 0.0)) / (2 * std::numbers::pi); }
 
@@ -89,6 +91,19 @@ std::string describe_cuts(const Assembly& assembly, int part) {
   return nodes.empty() ? "" : fmt::format(", cut at {}", fmt::join(nodes, ", "));
 }
 
+/// Mass matrices of the rotations of the grids at cuts.
+std::map<int, Eigen::Matrix3d> list_rotary_inertia(const Assembly& assembly, int part, const fe::Model& model) {
+  std::map<int, Eigen::Matrix3d> rotary;
+  for (const auto& joint : assembly.joints) {
+    if (joint.is_new || joint.parts.count(part) == 0) continue;
+    const fe::Node& node = model.node(model.find_node(joint.node));
+    Eigen::MatrixXd unit = Eigen::MatrixXd::Zero(model.num_gdofs(), 3);
+    unit.middleRows<3>(node.first_gdof + 3).setIdentity();
+    rotary[joint.node] = fe::calc_mass_times(model, model.mass_kind(), unit).middleRows<3>(node.first_gdof + 3);
+  }
+  return rotary;
+}
+
 /// Does `work`; its errors name the part and the cuts.
 template <class Work>
 void name_part(const PartNames& names, const Assembly& assembly, int part, const Work& work) {
@@ -108,6 +123,7 @@ void name_part(const PartNames& names, const Assembly& assembly, int part, const
 struct Part {
   records::Deck deck;
   double mass = 0;
+  std::map<int, Eigen::Matrix3d> rotary;  ///< mass matrix of the rotations of each grid at a cut, basic
   Matrix6d moving =
       Matrix6d::Zero();  ///< mass matrix of rigid-body motion about the origin of basic, held grids at rest
   int num_elements = 0;
@@ -151,10 +167,11 @@ double calc_inertia_about(const Matrix6d& mass, const Eigen::Vector3d& p, const 
 
 /// A line of bars has no inertia in twist: the twist of a part has mass only through other parts. Each cut of a line,
 /// except the one that carries the part, gets a CONM2 with kTwistInertia of the inertia about the line: of what the cut
-/// carries, or of all parts if it closes a loop. At the ground it does not move. A part with as much inertia about the
-/// line needs none.
-void add_twist_inertia(const Structure& structure, const Partition& partition, const Assembly& assembly, double wtmass,
-                       std::vector<Part>& parts) {
+/// carries, or of all parts if it closes a loop. At the ground it does not move. A grid with inertia about the line
+/// needs none. Grids without rotary inertia (lumped mass) get kRotaryInertia about all axes: where modes with the cuts
+/// held span all masses, rotations of a cut would have none, and a joint there would pass no moment.
+void add_rotary_inertia(const Structure& structure, const Partition& partition, const Assembly& assembly, double wtmass,
+                        std::vector<Part>& parts) {
   Matrix6d whole = Matrix6d::Zero();
   std::vector<Matrix6d> carried;
   for (const auto& part : parts) {
@@ -168,17 +185,26 @@ void add_twist_inertia(const Structure& structure, const Partition& partition, c
   const auto add = [&](int part, int node, const Matrix6d& load) {
     const auto position = structure.position.find(node);
     if (part < 0 || position == structure.position.end()) return;
+    const Part& own = parts[static_cast<std::size_t>(part)];
     const Eigen::Vector3d t = find_line(structure, partition, part, node);
     const double about_line = t.isZero(0) ? 0 : calc_inertia_about(load, position->second, t);
-    if (!(about_line > kParallel * load.bottomRightCorner<3, 3>().trace())) return;
-    const double its_own = calc_inertia_about(parts[static_cast<std::size_t>(part)].moving, position->second, t);
-    if (its_own > kTwistInertia * about_line) return;
-    const double J = kTwistInertia * about_line / wtmass;
+    double about_point = 0;  // trace
+    for (const auto& axis : {Eigen::Vector3d::UnitX(), Eigen::Vector3d::UnitY(), Eigen::Vector3d::UnitZ()})
+      about_point += calc_inertia_about(load, position->second, axis);
+    const auto found = own.rotary.find(node);
+    const Eigen::Matrix3d rotary = found == own.rotary.end() ? Eigen::Matrix3d(Eigen::Matrix3d::Zero()) : found->second;
+    const bool is_twist = about_line > kParallel * about_point && t.dot(rotary * t) <= kRotaryInertia * about_line;
+    const bool is_lumped = found != own.rotary.end() && rotary.trace() <= kRotaryInertia * about_point;
+    if (!is_twist && !is_lumped) return;
+    const double J = is_twist ? kTwistInertia * about_line / wtmass : 0;
+    const double J_lumped = is_lumped ? kRotaryInertia * about_point / wtmass : 0;
     records::Conm2 mass;
     mass.id = ++next_id;
     mass.g = node;
     // A disc across the line, a little thick: a body has no moment of inertia above the sum of the other two.
-    const Eigen::Matrix3d I = J * (kDiscInertia * Eigen::Matrix3d::Identity() + (1 - kDiscInertia) * t * t.transpose());
+    const Eigen::Matrix3d I =
+        J * (kDiscInertia * Eigen::Matrix3d::Identity() + (1 - kDiscInertia) * t * t.transpose()) +
+        J_lumped * Eigen::Matrix3d::Identity();
     // Off-diagonal terms of the card are products of inertia, those of the tensor their negatives.
     mass.inertia = {I(0, 0), -I(0, 1), I(1, 1), -I(0, 2), -I(1, 2), I(2, 2)};
     parts[static_cast<std::size_t>(part)].deck.conm2.push_back(mass);
@@ -213,6 +239,7 @@ std::vector<Part> make_parts(const PartNames& names, const Structure& structure,
       of_part.throw_if_errors();
       part.mass = fe::calc_mass_properties(model, model.mass_kind(), Eigen::Vector3d::Zero()).mass;
       part.moving = calc_moving_mass(structure, model);
+      part.rotary = list_rotary_inertia(assembly, i, model);
     });
     if (!(part.mass > 0))
       diagnostics.error("split.no-mass", first, fmt::format("part {} has no mass", i + 1),
@@ -350,7 +377,7 @@ SplitAnswer split_deck(const SplitRequest& request, Events& events) {
     PartNames names{request.name, request.deck_path.empty() ? request.deck : request.deck_path};
     if (names.base.empty()) names.base = std::filesystem::path(request.deck).stem().string();
     auto parts = make_parts(names, structure, partition, assembly, diagnostics);
-    add_twist_inertia(structure, partition, assembly, model.wtmass(), parts);
+    add_rotary_inertia(structure, partition, assembly, model.wtmass(), parts);
     events.show_progress("split: modes of the deck");
     const auto whole = calc_whole_modes(model, std::max(request.num_compared, 1), diagnostics);
     events.show_progress("");

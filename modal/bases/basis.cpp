@@ -178,41 +178,6 @@ std::string describe_directions(const fe::Model& model, const Basis& basis, cons
   return text;
 }
 
-/// Columns of normal modes that move no mass that the others do not, by the shares of each column in what strains
-/// without mass: where modes with the interface held span all masses, a rotation of the interface is a constraint mode
-/// less a sum of them. Without the highest mode of that sum it has mass, and carries the moment of a neighbour. Sorted.
-std::vector<int> find_spanned_modes(const MatrixXd& K, const MatrixXd& shares, Eigen::Index num_constraint) {
-  constexpr double kShare = 0.05;
-  std::vector<int> by_frequency;
-  for (auto j = static_cast<int>(num_constraint); j < K.rows(); ++j) by_frequency.push_back(j);
-  std::stable_sort(by_frequency.begin(), by_frequency.end(), [&](int a, int b) { return K(a, a) > K(b, b); });
-  std::vector<int> spanned;
-  MatrixXd chosen(shares.cols(), 0);  // orthonormal
-  for (const int j : by_frequency) {
-    if (chosen.cols() == shares.cols()) break;
-    VectorXd share = shares.row(j).transpose();
-    share -= chosen * (chosen.transpose() * share).eval();
-    if (share.norm() < kShare) continue;
-    chosen.conservativeResize(Eigen::NoChange, chosen.cols() + 1);
-    chosen.rightCols(1) = share.normalized();
-    spanned.push_back(j);
-  }
-  std::sort(spanned.begin(), spanned.end());
-  return spanned;
-}
-
-/// The columns without those of `left_out`, with a note.
-std::vector<int> leave_out_modes(const std::vector<int>& left_out, Eigen::Index num_columns, Diagnostics& diagnostics) {
-  diagnostics.note("modal.spanned-modes", {},
-                   "the modes with the interface held span all masses: without the " + std::to_string(left_out.size()) +
-                       " highest that hinder it the interface has inertia",
-                   "ask for fewer modes, or refine the mesh, to choose them");
-  std::vector<int> columns;
-  for (int j = 0; j < num_columns; ++j)
-    if (!std::binary_search(left_out.begin(), left_out.end(), j)) columns.push_back(j);
-  return columns;
-}
-
 /// K^N = M^ND of the component, twice: the second time nearly diagonal, for the digits of the lowest values.
 void orthogonalize(const fe::Model& model, const MatrixXd& rigid, Eigen::Index num_constraint, Basis& basis,
                    Diagnostics& diagnostics) {
@@ -234,18 +199,6 @@ void orthogonalize(const fe::Model& model, const MatrixXd& rigid, Eigen::Index n
   MatrixXd N = MatrixXd::Identity(Phi.cols(), Phi.cols());
   for (int pass = 0; pass < 2; ++pass) {
     const auto pairs = calc_ritz_pairs(calc_gram_M(model, Phi), pass == 0 ? K : calc_gram_K(model, Phi));
-    if (pass == 0) {
-      const auto spanned = find_spanned_modes(K, pairs.massless_shares, num_constraint);
-      if (!spanned.empty()) {
-        const auto columns = leave_out_modes(spanned, Phi.cols(), diagnostics);
-        Phi = Phi(Eigen::all, columns).eval();
-        basis.K = K(columns, columns);
-        std::vector<ModeKind> kind;
-        for (const int c : columns) kind.push_back(basis.kind[static_cast<std::size_t>(c)]);
-        basis.kind = std::move(kind);
-        return orthogonalize(model, rigid, num_constraint, basis, diagnostics);
-      }
-    }
     if (pass == 0 && pairs.massless.cols() > 0)
       diagnostics.warning("modal.massless-interface", {},
                           describe_directions(model, basis, pairs.massless) +
@@ -337,9 +290,7 @@ Basis calc_craig_bampton_basis(const fe::System& system, const BasisOptions& opt
   basis.kind.insert(basis.kind.end(), static_cast<std::size_t>(residual.modes.lambda.size()), ModeKind::Residual);
   // K^ = diag(K_bb + K_bi Ψ, Λ): constraint modes and what moves with the interface held share no strain energy.
   basis.K = MatrixXd::Zero(basis.Phi.cols(), basis.Phi.cols());
-  // Constraint modes of a determinate interface of a free body are rigid-body motions; their strain is round-off.
-  if (!options.is_free || nb > basis.num_rigid + basis.num_massless)
-    basis.K.topLeftCorner(nb, nb) = calc_gram_K(model, Psi);
+  basis.K.topLeftCorner(nb, nb) = calc_gram_K(model, Psi);
   basis.K.bottomRightCorner(lambda.size(), lambda.size()) = lambda.asDiagonal();
   if (options.orthogonalize) {
     orthogonalize(model, rigid, nb, basis, diagnostics);
@@ -349,18 +300,10 @@ Basis calc_craig_bampton_basis(const fe::System& system, const BasisOptions& opt
   basis.M = calc_gram_M(model, basis.Phi);
   basis.lambda = basis.K.diagonal().cwiseQuotient(basis.M.diagonal());
   basis = drop_massless(basis, diagnostics);
-  auto pairs = calc_ritz_pairs(basis.M, basis.K);
-  if (const auto spanned =
-          find_spanned_modes(basis.K, pairs.massless_shares, static_cast<Eigen::Index>(basis.boundary.size()));
-      !spanned.empty()) {
-    basis = select_columns(basis, leave_out_modes(spanned, basis.Phi.cols(), diagnostics));
-    pairs = calc_ritz_pairs(basis.M, basis.K);
-  }
-  if (pairs.massless.cols() > 0)
-    diagnostics.warning(
-        "modal.massless-interface", {},
-        describe_directions(model, basis, pairs.massless) + " moves no mass: the mass matrix is singular",
-        "give the model inertia in that direction, or hold it");
+  if (const auto massless = calc_ritz_pairs(basis.M, basis.K).massless; massless.cols() > 0)
+    diagnostics.warning("modal.massless-interface", {},
+                        describe_directions(model, basis, massless) + " moves no mass: the mass matrix is singular",
+                        "give the model inertia in that direction, or hold it");
   return basis;
 }
 

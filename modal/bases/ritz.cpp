@@ -53,8 +53,6 @@ RitzPairs calc_ritz_pairs(const MatrixXd& M, const MatrixXd& K) {
   MatrixXd W = scale.asDiagonal() * gram.eigenvectors().rightCols(n) *
                d.tail(n).cwiseMax(0).cwiseSqrt().cwiseInverse().asDiagonal();
   pairs.massless = find_stiff(scale.asDiagonal() * gram.eigenvectors().leftCols(dropped), K);
-  pairs.massless_shares = (scale.array() > 0).select(scale.cwiseInverse(), 0).asDiagonal() * pairs.massless;
-  pairs.massless_shares.colwise().normalize();
   if (n == 0) return pairs;
   // What has no mass follows without force. Left out instead, it would be held.
   if (pairs.massless.cols() > 0) W -= pairs.massless * (pairs.massless.transpose() * K * W).eval();

@@ -14,8 +14,7 @@ namespace bough::modal::bases {
 struct RitzPairs {
   VectorXd lambda;
   MatrixXd N;
-  MatrixXd massless = {};         ///< m x k, those that strain and have no mass, xᵀKx = 1
-  MatrixXd massless_shares = {};  ///< m x k, the same in coordinates of unit mass, columns of unit length
+  MatrixXd massless = {};  ///< m x k, those that strain and have no mass, xᵀKx = 1
 };
 /// Solves the dense problem; M and K are symmetric, M positive semidefinite.
 RitzPairs calc_ritz_pairs(const MatrixXd& M, const MatrixXd& K);

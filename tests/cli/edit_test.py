@@ -156,7 +156,7 @@ class Edit(ProgramTest):
         for folder in sorted(os.listdir(os.path.join(SOURCE, "data/examples"))):
             path = os.path.join(SOURCE, "data/examples", folder)
             for name in sorted(os.listdir(path)):
-                if not name.endswith(".toml") or name == "campaign.toml":
+                if not name.endswith(".toml") or name in ("campaign.toml", "jitter.toml"):
                     continue
                 with self.subTest(name), open(os.path.join(path, name), newline="") as f:
                     text = f.read()

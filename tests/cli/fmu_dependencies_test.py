@@ -1,5 +1,6 @@
 """Dependencies listed by exported FMUs: complete by differences of every pair, and sparse."""
 import os
+import re
 import unittest
 
 import h5py
@@ -13,7 +14,8 @@ class FmuDependenciesTest(FmuCase):
     def list_channels(self, system):
         """--channel for all that the results of a system contain."""
         with open(self.path(system), encoding="utf-8") as f:
-            text = with_integrator(f.read(), 'integrator = "rk4"\nstep = 1e-5\n', 2e-5, 1e-5)
+            text = re.sub(r"^output_(from|until) .*\n", "", f.read(), flags=re.MULTILINE)
+        text = with_integrator(text, 'integrator = "rk4"\nstep = 1e-5\n', 2e-5, 1e-5)
         self.bough("run", self.write(os.path.join(os.path.dirname(system), "short.toml"), text), "-o", "channels.h5")
         paths = []
         with h5py.File(self.path("channels.h5")) as f:

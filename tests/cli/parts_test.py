@@ -154,6 +154,20 @@ class Parts(ProgramTest):
         factor = json.loads(self.bough("modes", "d.bdf", "--buckling", "--json").stdout)["load_factor"][0]
         self.assertAlmostEqual(factor / (np.pi**2 * 2e11 * 1e-9 / 4), 1, delta=2e-3)
 
+    def test_section_on_one_grid(self):
+        """An appendage without load hangs at one grid: its condensed stiffness is round-off, and so no stress is in it."""
+        bars = "".join(f"GRID,{k},,{1. + .3 * (k - 3)},{.4 * (k - 3)},.1\nCBAR,{k},1,{k - 1},{k},0.,0.,1.\n" for k in (4, 5))
+        shared = "PBAR,1,1,1.-4,2.-9,1.-9,3.-9\nMAT1,1,7.+10,,.3,2700.\n"
+        main = ("SOL 105\nCEND\nSPC = 1\nSUBCASE 1\nLOAD = 2\nSUBCASE 2\nMETHOD = 3\nBEGIN BULK\nEIGRL,3,,,3\n"
+                "SPC1,1,123456,1\nFORCE,2,3,,50.,-1.,.2,.3\n" + shared + "GRID,1,,-1.,0.,0.\nGRID,2,,0.,0.,0.\n"
+                "GRID,3,,1.,0.,0.\nCBAR,1,1,1,2,0.,0.,1.\nCBAR,2,1,2,3,0.,0.,1.\n")
+        factors = []
+        for text in (main, main + bars, main + "BEGIN SUPER=3\n" + shared + "GRID,3,,1.,0.,0.\n" + bars):
+            self.write("d.bdf", text + "ENDDATA\n")
+            factors.append(json.loads(self.bough("modes", "d.bdf", "--buckling", "--json").stdout)["load_factor"])
+        np.testing.assert_allclose(factors[1], factors[0], rtol=1e-8)
+        np.testing.assert_allclose(factors[2], factors[0], rtol=1e-8)
+
     def test_what_is_not_condensed_is_named(self):
         self.write("d.bdf", make_parts().replace("LOAD = 3\n", "LOAD = 3\nTEMPERATURE(LOAD) = 5\n")
                    .replace("BEGIN SUPER=2", "TEMPD,5,100.\nBEGIN SUPER=2\nTEMPD,5,100."))

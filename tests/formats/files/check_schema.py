@@ -27,6 +27,8 @@ def load(folder, kind):
 def find_kind(document):
     if "campaign" in document:
         return "campaign"
+    if "source" in document:
+        return "budget"
     return "body" if isinstance(document.get("body"), dict) else "system"
 
 
@@ -133,6 +135,7 @@ def main():
     folder = pathlib.Path(sys.argv[1])
     validators = {kind: load(folder, kind) for kind in ("system", "body", "campaign")}
     if sys.argv[2] == "--examples":
+        validators["budget"] = load(folder, "budget")
         faults = check_examples(validators, pathlib.Path(sys.argv[3]))
     elif sys.argv[2] == "--cases":
         faults = check_cases(validators, pathlib.Path(sys.argv[3]))
