@@ -72,7 +72,7 @@ export class MotionView {
     return { p: this.sample(body.position, time), R: to_rotation(this.sample(body.quaternion, time)), eta: body.eta ? this.sample(body.eta, time) : [] };
   }
 
-  // Of each body now; null where it is not drawn.
+  // Positions of the bodies now; null where it is not drawn.
   get_places() {
     return this.bodies.map((b) => (b.is_drawn ? this.place(b, this.time) : null));
   }
