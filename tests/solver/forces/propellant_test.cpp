@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -25,18 +26,31 @@ TankContent sum_points(const TankAxis& place, double size, double density, F&& i
   R.col(2) = place.axis;
   R.col(0) = place.axis.unitOrthogonal();
   R.col(1) = R.col(2).cross(R.col(0));
-  TankContent sum;
+  // Sums of 1, s and s sᵀ over the points inside, in the axes of the tank.
+  double count = 0, first[3] = {}, second[3][3] = {};
   for (int i = 0; i < n; ++i)
     for (int j = 0; j < n; ++j)
       for (int k = 0; k < n; ++k) {
-        const Vector3d s = step * Vector3d(i + 0.5, j + 0.5, k + 0.5) - Vector3d::Constant(size);
-        if (!inside(s)) continue;
-        const Vector3d r = place.position + R * s;
-        const double m = density * step * step * step;
-        sum.mass += m;
-        sum.S += m * r;
-        sum.J += m * (r.squaredNorm() * Matrix3d::Identity() - r * r.transpose());
+        const double v[] = {step * (i + 0.5) - size, step * (j + 0.5) - size, step * (k + 0.5) - size};
+        if (!inside(v[0], v[1], v[2])) continue;
+        ++count;
+        for (int a = 0; a < 3; ++a) {
+          first[a] += v[a];
+          for (int b = 0; b <= a; ++b) second[a][b] += v[a] * v[b];
+        }
       }
+  const double m = density * step * step * step;
+  const Vector3d sum_s = m * R * Vector3d(first[0], first[1], first[2]);
+  Matrix3d sum_ss;
+  for (int a = 0; a < 3; ++a)
+    for (int b = 0; b < 3; ++b) sum_ss(a, b) = m * second[std::max(a, b)][std::min(a, b)];
+  TankContent sum;
+  sum.mass = m * count;
+  sum.S = sum.mass * place.position + sum_s;
+  const Matrix3d cross = place.position * sum_s.transpose();
+  const Matrix3d rr =
+      sum.mass * place.position * place.position.transpose() + cross + cross.transpose() + R * sum_ss * R.transpose();
+  sum.J = rr.trace() * Matrix3d::Identity() - rr;
   return sum;
 }
 
@@ -61,20 +75,23 @@ TEST(Tanks, AreTheSumOfTheirPoints) {
   EXPECT_NEAR(cylinder->capacity(), density * kPi * 0.64, 1e-12);
   expect_near(cylinder->calc(half),
               sum_points(place, 1, density,
-                         [](const Vector3d& s) { return s.head<2>().norm() < 0.8 && s.z() > 0 && s.z() < 0.5; }),
+                         [](double x, double y, double z) { return std::hypot(x, y) < 0.8 && z > 0 && z < 0.5; }),
               8e-3);
   const auto sphere = make_sphere_tank(place, 0.9, density);
   // Filled to a height above the centre between two layers of points.
   const double top = 14.0 / 60, u = top / 0.9, mass = sphere->capacity() * (2 + 3 * u - u * u * u) / 4;
-  expect_near(sphere->calc(mass),
-              sum_points(place, 1, density, [&](const Vector3d& s) { return s.norm() < 0.9 && s.z() < top; }), 8e-3);
+  expect_near(
+      sphere->calc(mass),
+      sum_points(place, 1, density, [&](double x, double y, double z) { return std::hypot(x, y, z) < 0.9 && z < top; }),
+      8e-3);
   const auto grain = make_grain(place, 0.9, 0.3, 1, density);
   EXPECT_NEAR(grain->capacity(), density * kPi * 0.72, 1e-12);
-  expect_near(
-      grain->calc(density * kPi * 0.45),
-      sum_points(place, 1, density,
-                 [](const Vector3d& s) { return s.head<2>().norm() < 0.9 && s.head<2>().norm() > 0.6 && s.z() > 0; }),
-      8e-3);
+  expect_near(grain->calc(density * kPi * 0.45),
+              sum_points(place, 1, density,
+                         [](double x, double y, double z) {
+                           return std::hypot(x, y) < 0.9 && std::hypot(x, y) > 0.6 && z > 0;
+                         }),
+              8e-3);
   for (const auto* shape : {cylinder.get(), sphere.get(), grain.get()})
     for (const double share : {0.05, 0.4, 0.9}) expect_derivatives(*shape, share * shape->capacity());
   for (const auto* shape : {cylinder.get(), sphere.get(), grain.get()}) {
