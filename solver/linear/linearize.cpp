@@ -104,13 +104,18 @@ VectorXd calc_row_scales(const MatrixXd& value, const std::vector<std::string>& 
 /// Commands and signals may pass limits and friction: their columns are differences, with an error estimate.
 VectorXd calc_input_column(Plant& plant, const OperatingPoint& point, const PlantInput& input, const VectorXd& base,
                            Uncertainty& uncertainty) {
+  const double large = base.size() > 0 ? base.cwiseAbs().maxCoeff() : 0;
   if (input.actuator >= 0 || input.signal >= 0) {  // limits, a dead band and friction are not affine
+    constexpr double kMinStep = 1e-2;
+    const VectorXd change = plant.evaluate(point, &input, kMinStep) - base;
+    const double own = change.size() > 0 ? change.cwiseAbs().maxCoeff() / kMinStep : 0;
+    // A tenth of what acts already: a newton more would be lost in the roundoff of an engine's thrust.
+    const double step = own > 0 ? std::max(kMinStep, 0.1 * large / own) : kMinStep;
     const Jacobian column = differentiate_column(
-        plant, [&](double h) { return plant.evaluate(point, &input, h); }, 1e-2);
+        plant, [&](double h) { return plant.evaluate(point, &input, h); }, step);
     uncertainty.add(column, calc_row_scales(column.value, get_row_dims(plant)));
     return column.value;
   }
-  const double large = base.size() > 0 ? base.cwiseAbs().maxCoeff() : 0;
   VectorXd column = plant.evaluate(point, &input, 1) - base;
   const double own = column.size() > 0 ? column.cwiseAbs().maxCoeff() : 0;
   const double value = own > 0 ? std::max(1.0, 10 * large / own) : 1;

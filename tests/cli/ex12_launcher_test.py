@@ -80,7 +80,9 @@ class Launcher(ProgramTest):
         mass, z = mass.item(), cg.ravel()[2]
         upper = (mass, 11 + z, inertia[1, 1] - mass * z * z)
         for time in (0, 60, 110):
-            self.bough("linearize", "ascent.toml", "--at", time, "-o", "model.h5")
+            messages = self.bough("linearize", "ascent.toml", "--at", time, "-o", "model.h5").stderr
+            # A thrust of 240 kN along modes that it does not excite: columns of round-off, and no kink.
+            self.assertNotIn("linear.inaccurate", messages)
             real, imag = self.read_arrays("model.h5", "poles/real", "poles/imag")
             found = real + 1j * imag
             exact = calc_poles(time, upper)
