@@ -14,8 +14,10 @@ struct ScalarEnds {
   VectorXd b;
 };
 
+/// \param is_whole  all six rows of each grid, and not only those in which b is not zero
 std::optional<ScalarEnds> find_ends(Maker& maker, const std::string& who, std::array<int, 2> grids,
-                                    std::array<int, 2> components, const records::CardLocation& at) {
+                                    std::array<int, 2> components, const records::CardLocation& at,
+                                    bool is_whole = false) {
   ScalarEnds ends;
   std::vector<double> b;
   bool ok = true;
@@ -45,13 +47,14 @@ std::optional<ScalarEnds> find_ends(Maker& maker, const std::string& who, std::a
       continue;
     }
     const int first = c <= 3 ? 0 : 3;
-    for (int i = 0; i < 3; ++i) {
-      const double direction = sign * node.R_basic_cd(i, (c - 1) % 3);
-      const int gdof = node.first_gdof + first + i;
+    for (int i = is_whole ? 0 : first; i < (is_whole ? 6 : first + 3); ++i) {
+      const bool is_along = i / 3 == first / 3;
+      const double direction = is_along ? sign * node.R_basic_cd(i % 3, (c - 1) % 3) : 0;
+      const int gdof = node.first_gdof + i;
       const auto it = std::find(ends.gdofs.begin(), ends.gdofs.end(), gdof);
       if (it != ends.gdofs.end()) {
         b[static_cast<std::size_t>(it - ends.gdofs.begin())] += direction;  // both ends on one grid
-      } else if (direction != 0) {
+      } else if (direction != 0 || is_whole) {
         ends.gdofs.push_back(gdof);
         b.push_back(direction);
       }
@@ -156,12 +159,13 @@ void make_gap(Maker& maker, const records::Pgap* property, const records::Cgap& 
   records::Pbush springs;
   const bool is_closed = property && (property->u0 <= 0 || property->f0 > 0);
   if (property) springs.k[0] = is_closed ? property->ka : property->kb;
-  // Equal across the axis: any orientation is as good.
   if (is_closed) springs.k[1] = springs.k[2] = property->kt;
   records::Cbush bush;
   bush.id = card.id, bush.ga = card.ga, bush.gb = card.gb, bush.at = card.at, bush.cid = card.cid;
+  bush.v = card.v, bush.g0 = card.g0;
   const int a = maker.nodes().find_node(card.ga), b = maker.nodes().find_node(card.gb);
-  if (!card.cid && a >= 0 && b >= 0) {
+  // Equal across the axis: without an orientation any is as good.
+  if (!card.cid && !card.v && card.g0 == 0 && a >= 0 && b >= 0) {
     const Node& node_a = maker.nodes().node(a);
     const Vector3d along = maker.nodes().node(b).x - node_a.x;
     if (!along.isZero(0)) bush.v = node_a.R_basic_cd.transpose() * along.unitOrthogonal();
@@ -203,10 +207,11 @@ void make_springs(Maker& maker) {
       ok = property != nullptr;
       if (property) m = property->m;
     }
-    auto ends = find_ends(maker, who, {card.g1, card.g2}, {card.c1, card.c2}, card.at);
+    const bool turns = (card.g1 != 0 && card.c1 > 3) || (card.g2 != 0 && card.c2 > 3);
+    auto ends = find_ends(maker, who, {card.g1, card.g2}, {card.c1, card.c2}, card.at, turns);
     if (!ok || !ends) continue;
     maker.add(std::make_unique<ScalarMass>(card.id, name, std::move(ends->nodes), std::move(ends->gdofs), m,
-                                           std::move(ends->b)));
+                                           std::move(ends->b), turns));
   }
   const RecordIndex<records::Pdamp> pdamp(deck.pdamp);
   for (const records::ScalarDamper& card : deck.dampers) {

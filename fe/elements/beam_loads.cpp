@@ -15,9 +15,21 @@ Vector12d Beam::calc_end_load(const BeamLineLoad& load) const {
   if (load.is_point) return displace(load.x1).transpose() * load.p1;
   Vector12d f = Vector12d::Zero();
   const double span = load.x2 - load.x1;
-  for (const auto& point : get_gauss_points(field.is_uniform() ? 4 : 8))
-    f += span * point.weight *
-         (displace(load.x1 + span * point.x).transpose() * ((1 - point.x) * load.p1 + point.x * load.p2));
+  const auto add = [&](double from, double to) {
+    for (const auto& point : get_gauss_points(field.is_uniform() ? 4 : 8)) {
+      const double x = from + (to - from) * point.x, share = (x - load.x1) / span;
+      f += (to - from) * point.weight * (displace(x).transpose() * ((1 - share) * load.p1 + share * load.p2));
+    }
+  };
+  // The shapes have kinks at stations.
+  double from = load.x1;
+  for (const auto& station : property_->stations) {
+    const double at = station.x_over_L * geometry_.length;
+    if (property_->is_uniform() || at <= from || at >= load.x2) continue;
+    add(from, at);
+    from = at;
+  }
+  add(from, load.x2);
   return f;
 }
 

@@ -1,3 +1,6 @@
+#include <algorithm>
+#include <utility>
+
 #include "fe/elements/beam.hpp"
 
 namespace bough::fe {
@@ -9,12 +12,21 @@ ThermalState Beam::calc_thermal(const ElementTemperature& given) const {
   const BeamField& field = *field_;
   const double L = geometry_.length, alpha = property_->material.alpha;
   const ElementTemperature T = given.calc_change(property_->material.tref);
-  const Eigen::Vector2d n_a = property_->calc_section(0).n, n_b = property_->calc_section(1).n;
-  const double at_a = T.node[0] - n_a.dot(T.gradient_a), at_b = T.node[1] - n_b.dot(T.gradient_b);
+  // ∫ n · gradient dx / L: both are linear between stations, and Simpson's rule is exact.
+  double at_axis = 0;
+  const auto& stations = property_->stations;
+  for (std::size_t k = 1; k < std::max<std::size_t>(stations.size(), 2); ++k) {
+    const double from = property_->is_uniform() ? 0 : stations[k - 1].x_over_L,
+                 to = property_->is_uniform() ? 1 : stations[k].x_over_L;
+    for (const auto& [share, weight] : {std::pair(0.0, 1.0), std::pair(0.5, 4.0), std::pair(1.0, 1.0)}) {
+      const double x = from + share * (to - from);
+      at_axis += (to - from) * weight / 6 * property_->calc_section(x).n.dot((1 - x) * T.gradient_a + x * T.gradient_b);
+    }
+  }
   const Eigen::Vector2d turn = L / 2 * (T.gradient_a + T.gradient_b),  // ∫ gradient dx
       lift = L * L * (T.gradient_a / 3 + T.gradient_b / 6);            // ∫ gradient (L - x) dx
   Eigen::Matrix<double, 6, 1> delta;
-  delta << L / 2 * (at_a + at_b), -lift[0], -lift[1], 0, turn[1], -turn[0];
+  delta << L * (0.5 * (T.node[0] + T.node[1]) - at_axis), -lift[0], -lift[1], 0, turn[1], -turn[0];
   delta *= alpha;
 
   const Matrix6d G = field.calc_stiffness();

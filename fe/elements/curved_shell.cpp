@@ -12,14 +12,16 @@ using Matrix2Xd = Eigen::Matrix2Xd;
 
 namespace {
 
-/// The midside nodes that are not there, by their corners: position and normal.
+/// The midside nodes that are not there, by their corners: position and normal. It is the mean of the surface, off the
+/// grids by z_offset, that moves with the corners.
 void fill_absent(CurvedShellGeometry& g) {
   const std::size_t n = g.is_present.size();
   for (std::size_t k = 0; k < n; ++k) {
     if (g.is_present[k]) continue;
     const std::size_t a = k, b = (k + 1) % n;
-    g.x[n + k] = 0.5 * (g.x[a] + g.x[b]);
-    g.normal[n + k] = (g.normal[a] + g.normal[b]).normalized();
+    const Vector3d normals = g.normal[a] + g.normal[b];
+    g.normal[n + k] = normals.normalized();
+    g.x[n + k] = 0.5 * (g.x[a] + g.x[b]) + g.z_offset * (0.5 * normals - g.normal[n + k]);
   }
 }
 

@@ -48,8 +48,9 @@ class ScalarDamper final : public Element, public Damping {
 /// M = m b bᵀ, lumped and consistent alike.
 class ScalarMass final : public Element, public OffsetMass {
  public:
-  ScalarMass(int id, std::string card, std::vector<int> nodes, std::vector<int> gdofs, double m, VectorXd b)
-      : Element(id, std::move(card), std::move(nodes), std::move(gdofs)), m_(m), b_(std::move(b)) {}
+  /// \param turns  one of its ends is a rotation of a grid
+  ScalarMass(int id, std::string card, std::vector<int> nodes, std::vector<int> gdofs, double m, VectorXd b, bool turns)
+      : Element(id, std::move(card), std::move(nodes), std::move(gdofs)), m_(m), b_(std::move(b)), turns_(turns) {}
 
   void add_mass(MassKind kind, double scale, Eigen::Ref<MatrixXd> M) const override;
   /// At rotations. One grid: the moment of inertia about an axis, of which several make that of a body.
@@ -59,6 +60,7 @@ class ScalarMass final : public Element, public OffsetMass {
  private:
   double m_;
   VectorXd b_;
+  bool turns_;
 };
 
 }  // namespace bough::fe

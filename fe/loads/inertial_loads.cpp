@@ -26,29 +26,37 @@ MatrixXd calc_grid_field(const Model& model, const MatrixXd& A_I) {
   return X;
 }
 
-/// -Σ ω_r ω_s S_r P_s, P = M_e Φ_R of rotations: each nodal momentum turned as if it were that of a mass at the grid
-/// (NASA-CR-202063, eqs. 7-12).
+/// -M_e A c - Σ ω_r ω_s S_r P_s, P = M_e Φ_R of rotations about the mean c of the element's grids: each nodal momentum
+/// turned as if it were that of a mass at the grid (NASA-CR-202063, eqs. 7-12). About a point of the element: mass that
+/// differs by direction makes the turned momenta of a translation other than its inertial forces.
 MatrixXd turn_momenta(const Model& model, const Element& element, const MatrixXd& M, const MatrixXd& A_I) {
-  MatrixXd Phi_R = MatrixXd::Zero(element.num_dofs(), 3), F = MatrixXd::Zero(element.num_dofs(), A_I.cols());
-  std::vector<int> vectors;  // first row of every nodal vector
+  MatrixXd Phi_R = MatrixXd::Zero(element.num_dofs(), 3), moved = MatrixXd::Zero(element.num_dofs(), A_I.cols());
+  std::vector<std::pair<int, Vector3d>> grids;  // first row, place
   int row = 0;
   for (int k : element.nodes()) {
     const Node& node = model.node(k);
     if (node.num_dofs == 6 && row + 6 <= element.num_dofs() &&
-        element.gdofs()[static_cast<std::size_t>(row)] == node.first_gdof) {
-      Phi_R.middleRows<3>(row) = -skew(node.x);
-      Phi_R.middleRows<3>(row + 3).setIdentity();
-      vectors.insert(vectors.end(), {row, row + 3});
-    }
+        element.gdofs()[static_cast<std::size_t>(row)] == node.first_gdof)
+      grids.emplace_back(row, node.x);
     row += node.num_dofs;
   }
+  Vector3d mean = Vector3d::Zero();
+  for (const auto& [first, x] : grids) mean += x / static_cast<double>(grids.size());
+  for (const auto& [first, x] : grids) {
+    Phi_R.middleRows<3>(first) = -skew(x - mean);
+    Phi_R.middleRows<3>(first + 3).setIdentity();
+    for (Eigen::Index c = 0; c < A_I.cols(); ++c)
+      moved.block<3, 1>(first, c) = calc_acceleration_field(A_I.col(c)).A * mean;
+  }
   const MatrixXd P = M * Phi_R;
+  MatrixXd F = -M * moved;
   for (int r = 0; r < 3; ++r)
     for (int s = 0; s < 3; ++s)
-      for (int first : vectors) {
-        const Vector3d turned = Vector3d::Unit(r).cross(Vector3d(P.block<3, 1>(first, s)));
-        F.middleRows<3>(first) -= turned * A_I.row(find_product(r, s));
-      }
+      for (const auto& [grid, x] : grids)
+        for (const int first : {grid, grid + 3}) {
+          const Vector3d turned = Vector3d::Unit(r).cross(Vector3d(P.block<3, 1>(first, s)));
+          F.middleRows<3>(first) -= turned * A_I.row(find_product(r, s));
+        }
   return F;
 }
 

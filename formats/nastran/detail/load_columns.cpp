@@ -84,6 +84,8 @@ class Maker {
       subcase.commands.try_emplace("LOAD", at);
     }
     std::erase_if(deck_.direct_matrices, [&](const auto& matrix) { return used.count(matrix.name) > 0; });
+    // Both are in the load cards now; a deck that is written must not have them again.
+    std::erase_if(deck_.params, [](const auto& param) { return param.name == "CP1" || param.name == "CP2"; });
   }
 
  private:
