@@ -48,7 +48,16 @@ std::optional<ResolvedShell> resolve_shell(Maker& maker, ShellSections& sections
   }
   std::optional<double> mean;
   if (!card.t.empty()) {
-    const double own = sections.find_thickness(card.pid).value_or(0);
+    const auto known = sections.find_thickness(card.pid);
+    const bool needs_own =
+        card.relative_thickness || std::any_of(card.t.begin(), card.t.end(), [](double t) { return std::isnan(t); });
+    if (needs_own && !known) {
+      maker.error("fe.bad-property", card.at,
+                  r.who + " gives a thickness at some corners only, and its property none for the others",
+                  "give T of the property or the thickness of each corner");
+      return std::nullopt;
+    }
+    const double own = known.value_or(0);
     for (double t : card.t) r.thickness.push_back(std::isnan(t) ? own : card.relative_thickness ? t * own : t);
     mean = std::accumulate(r.thickness.begin(), r.thickness.end(), 0.0) / static_cast<double>(r.thickness.size());
     if (std::all_of(r.thickness.begin(), r.thickness.end(), [&](double t) { return t == r.thickness[0]; }))

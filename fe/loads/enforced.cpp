@@ -55,6 +55,12 @@ VectorXd calc_enforced(const Model& model, const records::Deck& deck, int set, D
         continue;
       }
       const Node& where = model.node(index);
+      if (where.num_dofs == 6 && card.c == 0) {
+        diagnostics.error("fe.bad-component", at,
+                          "SPCD names no component of grid " + std::to_string(card.g) + ", expected digits 1 to 6",
+                          "write the components that it moves");
+        continue;
+      }
       for (int c = 0; c < where.num_dofs; ++c) {
         if (where.num_dofs == 6 && !(card.c >> c & 1u)) continue;
         const int i = find(where.first_gdof + c);

@@ -140,7 +140,13 @@ VectorXd calc_load(const Model& model, const records::Deck& deck, int set, Diagn
 AppliedLoad calc_applied_load(const Model& model, const records::Deck& deck, int set, Diagnostics& diagnostics) {
   AppliedLoad load;
   load.F = VectorXd::Zero(model.num_gdofs());
-  if (const auto* card = find_combination(deck, set)) report_terms(deck, *card, diagnostics);
+  if (const auto* card = find_combination(deck, set)) {
+    report_terms(deck, *card, diagnostics);
+    if (has_loading_cards(deck, set))
+      diagnostics.error("fe.duplicate-set", deck.locate(card->at),
+                        "LOAD " + std::to_string(set) + " has the id of load cards, which it would leave out",
+                        "give the LOAD card or these cards another id");
+  }
   const auto sets = list_plain_sets(deck, set);
   std::vector<PlainLoadSet> missing;
   const bool has_part_loads = add_part_loads(model, set, load.F);

@@ -90,6 +90,12 @@ class SurfaceLoads {
     const auto solid = solids_.find(load.element);
     Face face;
     double sign = 1;
+    if (shell != shells_.end() && solid != solids_.end()) {
+      t_.diagnostics.error("fe.ambiguous-element", t_.deck.locate(load.at),
+                           card + ": a shell and a " + solid->second->card + " have this id",
+                           "give one of them another id");
+      return;
+    }
     if (shell != shells_.end()) {
       face.corners = shell->second->grids;
       face.midside = shell->second->midsides;
@@ -115,7 +121,7 @@ class SurfaceLoads {
                              "correct the element id");
       return;
     }
-    if (solid != solids_.end() && shell == shells_.end()) turn_outward(*solid->second, face);
+    if (solid != solids_.end()) turn_outward(*solid->second, face);
     std::vector<double> p(load.p.begin(), load.p.begin() + static_cast<std::ptrdiff_t>(face.corners.size()));
     const SourceLocation at = t_.deck.locate(load.at);
     add_face(face, p, card, load.at, load.n ? 0 : sign,

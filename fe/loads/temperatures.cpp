@@ -1,6 +1,8 @@
 #include "fe/loads/temperatures.hpp"
 
 #include <optional>
+#include <unordered_map>
+#include <unordered_set>
 
 #include "formats/records/selection.hpp"
 
@@ -62,6 +64,50 @@ class TemperatureSet {
   std::optional<double> default_;
 };
 
+/// Cards that heat what is not there, and two of them that differ for one grid or element.
+void report_slips(const Model& model, const records::Deck& deck, int set, Diagnostics& diagnostics) {
+  std::unordered_set<int> lines, plates;
+  for (const auto& element : model.elements()) {
+    if (!element->thermal_loads()) continue;
+    const std::string type = element->shape().type;
+    if (type == "line2") lines.insert(element->id());
+    if (type.rfind("tri", 0) == 0 || type.rfind("quad", 0) == 0) plates.insert(element->id());
+  }
+  const std::string of_set = " of temperature set " + std::to_string(set);
+  const auto look = [&](const auto& cards, const std::string& card, const char* what, auto&& get_id, auto&& is_there,
+                        auto&& is_same) {
+    std::unordered_map<int, std::size_t> first;
+    for (std::size_t i = 0; i < cards.size(); ++i) {
+      if (cards[i].sid != set) continue;
+      const int id = get_id(cards[i]);
+      const auto [known, is_new] = first.emplace(id, i);
+      if (!is_new && !is_same(cards[known->second], cards[i]))
+        diagnostics.error("fe.duplicate-temperature", deck.locate(cards[i].at),
+                          card + of_set + " gives " + what + " " + std::to_string(id) + " another temperature",
+                          "remove one of the two cards");
+      if (is_new && !is_there(id))
+        diagnostics.warning("fe.unused-temperature", deck.locate(cards[i].at),
+                            card + of_set + " names " + what + " " + std::to_string(id) +
+                                ", which is not there or takes none by this card",
+                            "correct the id or remove it");
+    }
+  };
+  const auto get_element = [](const auto& c) { return c.element; };
+  const auto& cards = deck.temperatures;
+  look(
+      cards.grids, "TEMP", "grid", [](const auto& c) { return c.g; },
+      [&](int id) { return model.find_node(id) >= 0 || model.is_refused(id); },
+      [](const auto& a, const auto& b) { return a.t == b.t; });
+  look(
+      cards.bars, "TEMPRB", "element", get_element, [&](int id) { return lines.count(id) > 0; },
+      [](const auto& a, const auto& b) {
+        return a.t_a == b.t_a && a.t_b == b.t_b && a.gradient_a == b.gradient_a && a.gradient_b == b.gradient_b;
+      });
+  look(
+      cards.plates, "TEMPP1", "element", get_element, [&](int id) { return plates.count(id) > 0; },
+      [](const auto& a, const auto& b) { return a.t == b.t && a.gradient == b.gradient; });
+}
+
 }  // namespace
 
 InitialForces calc_thermal(const Model& model, const records::Deck& deck, int set, Diagnostics& diagnostics) {
@@ -74,6 +120,7 @@ InitialForces calc_thermal(const Model& model, const records::Deck& deck, int se
                       "correct TEMPERATURE(LOAD) or add its cards");
     return result;
   }
+  report_slips(model, deck, set, diagnostics);
   const int from = model.subcase().initial_temperature;
   const TemperatureSet initial(deck.temperatures, from);
   if (from != 0 && initial.is_empty()) {
@@ -82,6 +129,7 @@ InitialForces calc_thermal(const Model& model, const records::Deck& deck, int se
                       "correct TEMPERATURE(INITIAL) or add its cards");
     return result;
   }
+  if (from != 0 && from != set) report_slips(model, deck, from, diagnostics);
   int num_missing = 0, first_grid = 0, first_set = set;
   const Element* first_missing = nullptr;
   for (const auto& element : model.elements()) {

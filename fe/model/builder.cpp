@@ -5,6 +5,7 @@
 #include <set>
 #include <utility>
 
+#include "fe/cards/maker.hpp"
 #include "fe/cards/nonstructural.hpp"
 #include "fe/model/coordinates.hpp"
 #include "fe/model/direct_matrices.hpp"
@@ -155,13 +156,29 @@ void ModelBuilder::fix(const records::Spc& spc) {
     return;
   }
   const Node& node = model_.nodes_[index];
+  if (node.num_dofs == 6 && spc.c == 0) {
+    diagnostics_.error("fe.bad-component", at,
+                       "SPC set " + std::to_string(spc.sid) + " names no component of grid " + std::to_string(spc.g) +
+                           ", expected digits 1 to 6",
+                       "write the components that it fixes");
+    return;
+  }
   for (int c = 0; c < node.num_dofs; ++c)
     if (node.num_dofs == 1 || (spc.c >> c & 1u)) {
       is_fixed_[node.first_gdof + c] = 1;
       fixed_by_.emplace_back(node.first_gdof + c, at);
     }
   for (int c = 0; c < node.num_dofs && spc.d != 0; ++c)
-    if (node.num_dofs == 1 || (spc.c >> c & 1u)) model_.spc_displacements_[node.first_gdof + c] = spc.d;
+    if (node.num_dofs == 1 || (spc.c >> c & 1u)) {
+      const auto [known, is_new] = model_.spc_displacements_.emplace(node.first_gdof + c, spc.d);
+      if (is_new || known->second == spc.d) continue;
+      diagnostics_.warning("fe.enforced-twice", at,
+                           "SPC set " + std::to_string(spc.sid) + " moves grid " + std::to_string(spc.g) +
+                               " component " + std::to_string(node.num_dofs == 1 ? 0 : c + 1) + " by " + show(spc.d) +
+                               ", and another card by " + show(known->second) + "; the last card is taken",
+                           "remove one of the two cards");
+      known->second = spc.d;
+    }
   if (spc.d != 0 && !options_.uses_enforced)
     diagnostics_.warning("fe.enforced-ignored", at,
                          "SPC set " + std::to_string(spc.sid) + " enforces a displacement at grid " +

@@ -9,7 +9,7 @@ bool has_enforced(const records::Deck& deck, int set) {
   return std::any_of(spcd.begin(), spcd.end(), [set](const auto& s) { return s.sid == set; });
 }
 
-bool has_load_cards(const records::Deck& deck, int set) {
+bool has_loading_cards(const records::Deck& deck, int set) {
   const auto in = [set](const auto& cards) {
     return std::any_of(cards.begin(), cards.end(), [set](const auto& card) { return card.sid == set; });
   };
@@ -17,7 +17,11 @@ bool has_load_cards(const records::Deck& deck, int set) {
   return in(deck.point_loads) || in(deck.gravity) || in(c.directed) || in(c.beams) || in(c.grid_pressures) ||
          std::any_of(deck.super.seload.begin(), deck.super.seload.end(),
                      [set](const auto& s) { return s.set == set; }) ||
-         in(deck.special.accelerations) || in(c.pressures) || in(c.rotations) || in(c.spcd) || in(c.scalar);
+         in(deck.special.accelerations) || in(c.pressures) || in(c.rotations) || in(c.scalar);
+}
+
+bool has_load_cards(const records::Deck& deck, int set) {
+  return has_loading_cards(deck, set) || has_enforced(deck, set);
 }
 
 const records::LoadCombination* find_combination(const records::Deck& deck, int set) {

@@ -27,7 +27,9 @@ void for_each_plain_set(const records::Deck& deck, int set, const Visit& visit) 
     if (!plain.enforced_only) visit(plain.sid, plain.scale, plain.at);
 }
 
-/// Returns true if the set has load cards, SPCD among them, beside a LOAD card.
+/// Returns true if the set has cards that load, other than LOAD.
+bool has_loading_cards(const records::Deck& deck, int set);
+/// Returns true if the set has load cards other than LOAD, SPCD among them.
 bool has_load_cards(const records::Deck& deck, int set);
 bool has_enforced(const records::Deck& deck, int set);  ///< SPCD cards
 /// LOAD card with this id; nullptr: none.

@@ -42,16 +42,20 @@ std::vector<int> expand_set(int sid, const std::vector<records::SetUnion>& union
     if (std::find(seen.begin(), seen.end(), id) != seen.end()) continue;
     seen.push_back(id);
     path.push_back(id);
-    bool exists = false;
-    if (std::binary_search(plain.begin(), plain.end(), id)) {
-      result.push_back(id);
-      exists = true;
+    const bool is_plain = std::binary_search(plain.begin(), plain.end(), id);
+    const records::SetUnion* first = nullptr;
+    for (const auto& u : unions) {
+      if (u.sid != id) continue;
+      if (!first) first = &u;
+      for (const int member : u.sets) open.push_back({member, u.at, path.size()});
     }
-    for (const auto& u : unions)
-      if (u.sid == id) {
-        for (const int member : u.sets) open.push_back({member, u.at, path.size()});
-        exists = true;
-      }
+    if (is_plain && !first) result.push_back(id);
+    const bool exists = is_plain || first;
+    // The union counts alone (Quick Reference Guide, SPCADD).
+    if (is_plain && first)
+      diagnostics.warning("fe.duplicate-set", deck.locate(first->at),
+                          what + "ADD " + std::to_string(id) + " has the id of " + what + " cards, which are left out",
+                          "give these cards another id and name it, or remove them");
     // Nastran runs such a deck: the selection is often left over when the cards are gone.
     if (!exists)
       diagnostics.warning("fe.missing-set", deck.locate(at),

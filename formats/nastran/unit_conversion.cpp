@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <string_view>
 
 #include "formats/nastran/detail/card_facts.hpp"
 #include "formats/nastran/detail/unit_converter.hpp"
@@ -107,6 +108,12 @@ void UnitConverter::scale_lengths(int field, int cid) {
 
 void UnitConverter::scale_by(Motion motion, int field, const char* translation, const char* rotation,
                              const char* mixed) {
+  if (motion == Motion::Mixed && std::string_view(mixed) == "?" && factors_.length != 1) {
+    if (parse_real(get(field)).value_or(1) != 0)
+      fail(field, "it acts between a translation and a rotation, whose forces take different factors");
+    return;
+  }
+  if (motion == Motion::Mixed && std::string_view(mixed) == "?") mixed = translation;
   scale(field, motion == Motion::Translation ? translation
                : motion == Motion::Rotation  ? rotation
                : motion == Motion::Mixed     ? mixed

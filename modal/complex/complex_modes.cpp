@@ -206,6 +206,8 @@ void append(ComplexPairs& all, const ComplexPairs& more) {
 
 ComplexPairs solve(const Problem& problem, const records::ComplexMethod& method, const ComplexModesOptions& options,
                    const std::function<std::string(Index)>& name_unknown) {
+  if (problem.pencil.size() == 0)
+    throw ComputationError("modal.no-dofs", {}, "the model has no free dof", "check its SPC sets and rigid elements");
   const auto reference = choose_reference(problem);
   SolverOptions solver;
   solver.scale = reference.last;

@@ -208,10 +208,10 @@ void write_conm2(const records::Deck& deck, CardSink& sink) {
 }
 
 void convert_celas2(UnitConverter& u) {
-  u.scale_by(u.find_scalar_motion(), 1, "K", "Q", "F");
+  u.scale_by(u.find_scalar_motion(), 1, "K", "Q", "?");
   u.scale(7, "?");
 }
-void convert_cmass2(UnitConverter& u) { u.scale_by(u.find_scalar_motion(), 1, "M", "J", "ML"); }
+void convert_cmass2(UnitConverter& u) { u.scale_by(u.find_scalar_motion(), 1, "M", "J", "?"); }
 void convert_cbush(UnitConverter& u) {
   if (u.get_int(9) >= 0) u.scale_lengths(10, u.get_int(9));
 }

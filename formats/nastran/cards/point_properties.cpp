@@ -93,7 +93,7 @@ void write_pmass(const records::Deck& deck, CardSink& sink) {
 void convert_pelas(UnitConverter& u) {
   for (int first = 0; first < std::min(u.size(), 8); first += 4) {
     if (u.get(first).empty()) continue;
-    u.scale_by(u.find_property_motion("CELAS", u.get(first)), first + 1, "K", "Q", "F");
+    u.scale_by(u.find_property_motion("CELAS", u.get(first)), first + 1, "K", "Q", "?");
     u.scale(first + 3, "?");
   }
 }
