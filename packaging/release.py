@@ -200,8 +200,9 @@ class Release:
 
     def make_library(self, work):
         folder = os.path.join(work, self.name("libbough"))
-        everything = os.path.join(work, "libbough-dev")
-        install(self.build, "libbough-dev", everything)
+        everything = os.path.join(work, "libbough")
+        for component in ("libbough1", "libbough-dev"):
+            install(self.build, component, everything)
         for name in ("bough.h", "bough.hpp"):
             bundle.copy(os.path.join(everything, "include", name), os.path.join(folder, "include", name))
         real = os.path.realpath(find(everything, "libbough.so"))
