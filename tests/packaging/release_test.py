@@ -93,6 +93,13 @@ class Parts(unittest.TestCase):
         with self.assertRaisesRegex(bundle.ReleaseError, "libtoy.so.1 is not found"):
             bundle.list_libraries([program], release.is_system)
 
+    def test_objects_of_other_sources_are_named(self):
+        with open(self.path("a.cpp"), "w") as f:
+            f.write("namespace bough { int get(int); } int main() { return bough::get(1); }\n")
+        run("c++", "-shared", "-fPIC", self.path("a.cpp"), "-o", self.path("a.so"))
+        self.assertEqual(release.find_undefined(self.path("a.so")), ["bough::get(int)"])
+        self.assertEqual(release.find_undefined(os.path.realpath(PROGRAM)), [])
+
     def test_files_of_no_package_and_unread_licences_end_it(self):
         one = release.Release(BUILD, self.folder)
         with self.assertRaisesRegex(bundle.ReleaseError, "licence is not known: /opt/none.so"):
