@@ -50,7 +50,12 @@ describe(python3-bough python3-bough python "flexible multibody simulation from 
 describe(bough-doc bough-doc doc "flexible multibody simulation from finite-element models (manual)"
   "This package has the manual as web pages that can be searched.")
 
-set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON)   # of libbough1, the only one with a soname of a version
+# Of the library with a soname: who is linked to it depends on its package, and ldconfig runs by a trigger (cpack would
+# write scripts in its place, for the modules of other packages too).
+file(WRITE ${CMAKE_BINARY_DIR}/packaging-libbough1/shlibs "libbough 1 libbough1 (>= ${PROJECT_VERSION})\n")
+file(WRITE ${CMAKE_BINARY_DIR}/packaging-libbough1/triggers "activate-noawait ldconfig\n")
+set(CPACK_DEBIAN_LIBBOUGH1_PACKAGE_CONTROL_EXTRA
+  "${CMAKE_BINARY_DIR}/packaging-libbough1/shlibs;${CMAKE_BINARY_DIR}/packaging-libbough1/triggers")
 set(CPACK_DEBIAN_LIBBOUGH1_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_LIBBOUGH-DEV_PACKAGE_DEPENDS "libbough1 (= ${PROJECT_VERSION}-1)")
 # Up to 0.2.0 libbough-dev contained the static libraries.
