@@ -20,6 +20,19 @@ target_include_directories(bough_sundials SYSTEM INTERFACE $<BUILD_INTERFACE:${S
 target_link_libraries(bough_sundials INTERFACE
   ${SUNDIALS_cvode_LIBRARY} ${SUNDIALS_nvecserial_LIBRARY}
   ${SUNDIALS_core_LIBRARY})
+# Its headers include mpi.h, and its libraries use MPI, from version 7 on where it was built with it, as in Debian 13.
+set(SUNDIALS_WITH_MPI OFF)
+if(SUNDIALS_core_LIBRARY)
+  file(STRINGS ${SUNDIALS_INCLUDE_DIR}/sundials/sundials_config.h with_mpi REGEX "define SUNDIALS_MPI_ENABLED 1")
+  if(with_mpi)
+    set(SUNDIALS_WITH_MPI ON)
+  endif()
+endif()
+if(SUNDIALS_WITH_MPI)
+  find_package(PkgConfig REQUIRED)
+  pkg_search_module(MPI REQUIRED IMPORTED_TARGET GLOBAL ompi-c mpich mpi)
+  target_link_libraries(bough_sundials INTERFACE PkgConfig::MPI)
+endif()
 
 if(NOT BOUGH_SOLVER_ONLY)
   find_package(PkgConfig REQUIRED)

@@ -1,10 +1,11 @@
-# What is installed, in the four components that ./dev package makes Debian packages of:
-# bough (the program), libbough-dev, python3-bough (python/CMakeLists.txt), bough-doc.
+# What is installed, in the components that ./dev package makes Debian packages of: bough (the program), libbough1 and
+# libbough-dev (libbough.so, embed/CMakeLists.txt), bough-dev (static libraries), python3-bough (python/CMakeLists.txt),
+# bough-doc.
 include(CMakePackageConfigHelpers)
 get_property(modules GLOBAL PROPERTY BOUGH_MODULES)
 install(TARGETS ${modules} EXPORT BoughTargets
-  ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT libbough-dev
-  LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT libbough-dev)
+  ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT bough-dev
+  LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT bough-dev)
 if(TARGET bough)
   install(TARGETS bough RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT bough)
   # The program writes its manual pages and completions itself, so that they say what --help says.
@@ -20,13 +21,13 @@ if(TARGET bough)
   install(FILES ${help}/bough.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d COMPONENT bough)
 endif()
 foreach(room base formats fe modal stiffening solver embed cosim report analysis)
-  install(DIRECTORY ${CMAKE_SOURCE_DIR}/${room} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/bough COMPONENT libbough-dev
+  install(DIRECTORY ${CMAKE_SOURCE_DIR}/${room} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/bough COMPONENT bough-dev
     FILES_MATCHING PATTERN "*.hpp" PATTERN "*.h" PATTERN "detail" EXCLUDE)
 endforeach()
 install(DIRECTORY ${CMAKE_SOURCE_DIR}/data/schema ${CMAKE_SOURCE_DIR}/data/examples ${CMAKE_SOURCE_DIR}/data/matlab
   DESTINATION ${CMAKE_INSTALL_DATADIR}/bough COMPONENT bough)
 install(EXPORT BoughEmbedTargets NAMESPACE bough:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/Bough COMPONENT libbough-dev)
-install(EXPORT BoughTargets NAMESPACE bough:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/Bough COMPONENT libbough-dev)
+install(EXPORT BoughTargets NAMESPACE bough:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/Bough COMPONENT bough-dev)
 configure_package_config_file(${CMAKE_SOURCE_DIR}/cmake/BoughConfig.cmake.in ${CMAKE_BINARY_DIR}/BoughConfig.cmake
   INSTALL_DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/Bough)
 write_basic_package_version_file(${CMAKE_BINARY_DIR}/BoughConfigVersion.cmake COMPATIBILITY SameMinorVersion)

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "base/diagnostic.hpp"
 #include "fe/linear/memory_need.hpp"
 #include "fe/linear/ranks.hpp"
 #include "modal/block_lanczos.hpp"

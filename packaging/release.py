@@ -200,8 +200,9 @@ class Release:
 
     def make_library(self, work):
         folder = os.path.join(work, self.name("libbough"))
-        everything = os.path.join(work, "libbough-dev")
-        install(self.build, "libbough-dev", everything)
+        everything = os.path.join(work, "libbough")
+        for component in ("libbough1", "libbough-dev"):
+            install(self.build, component, everything)
         for name in ("bough.h", "bough.hpp"):
             bundle.copy(os.path.join(everything, "include", name), os.path.join(folder, "include", name))
         real = os.path.realpath(find(everything, "libbough.so"))
@@ -304,10 +305,16 @@ class Release:
         return [os.path.join(folder, name) for name in names]
 
 
+def find_undefined(path):
+    """Names of Bough that a file uses and contains not: compiled of other sources than the rest."""
+    names = set(re.findall(r"(?m) U (_ZNK?5bough\w+)", run("nm", "-D", "--undefined-only", path)))
+    return sorted(run("c++filt", *names).split("\n")[:-1]) if names else []
+
+
 def check(release, parts):
     """What would make these parts wrong, a line each; makes nothing."""
     problems = []
-    for tool in ("cmake", "git", "ldd", "patchelf", "readelf", "strip"):
+    for tool in ("c++filt", "cmake", "git", "ldd", "nm", "patchelf", "readelf", "strip"):
         if not shutil.which(tool):
             problems.append(f"no {tool}: apt install it")
     for path in ("CITATION.cff", "packaging/changelog", "packaging/licences.spdx", *RECIPES):
@@ -329,6 +336,10 @@ def check_links(release, part):
     else:
         paths, headers = [release.get_program()], [name for name, _ in list_licences.HEADERS]
         paths += release.find_modules() if part == "wheel" else []
+    for path in paths:
+        missing = find_undefined(path)
+        if missing:
+            raise ReleaseError(f"{path} lacks {missing[0]}; build it again: ./dev release")
     libraries, _, owners = release.collect(paths, outside, part != "library")
     descriptions = release.describe(owners, headers)
     release.demand_licence(part, descriptions)

@@ -33,7 +33,7 @@ def main(folder):
               "Results: spinup.h5, spinup-no-kg.h5 (sensor tip_deflection, in the boom's frame), body: boom.h5.", ""]
     with open(path("report.md"), "w") as f:
         f.write("\n".join(lines))
-    print(f"\nresults, figure5.svg and report.md are in {folder}")
+    print(f"\nspinup.html (open it in a browser), results, figure5.svg and report.md are in {folder}")
     return 0 if all(row[-1] for row in rows) else 1
 
 

@@ -14,12 +14,13 @@ list_missing() {
 # follow WHAT LOG: keeps its input in the log and shows how far a program is, by the steps of ninja ([3/40] ...) or the
 # states of apt (pmstatus:NAME:PERCENT:...): one line of a terminal, elsewhere a line for each tenth.
 follow() {
-  local what="$1" log="$2" line share="" shown=-1 begin="$SECONDS" left
+  local what="$1" log="$2" line share="" shown=-1 begin="$SECONDS" left now=""
   while IFS= read -r line; do
     printf '%s\n' "$line" >>"$log"
     if [[ $line =~ ^\[([0-9]+)/([0-9]+)\] ]]; then
       share=$((1000 * BASH_REMATCH[1] / BASH_REMATCH[2]))
-    elif [[ $line =~ ^(pm|dl)status:[^:]*:([0-9]+)\.?([0-9])? ]]; then
+    elif [[ $line =~ ^(pm|dl)status:.*:([0-9]+)\.([0-9])[0-9]*:(.*) ]]; then
+      now=", ${BASH_REMATCH[4]:0:40}"
       share="${BASH_REMATCH[2]}${BASH_REMATCH[3]:-0}"
       share=$((10#$share / 2))   # downloads are one half, unpacking and setting up the other
       [ "${BASH_REMATCH[1]}" = dl ] || share=$((500 + share))
@@ -31,7 +32,7 @@ follow() {
     [ "$share" -lt 50 ] || left=", about $(((SECONDS - begin) * (1000 - share) / share / 60 + 1)) min left"
     [ "$share" -lt 1000 ] || left=""
     if [ -t 2 ]; then
-      printf '\r%s: %d %%%s          ' "$what" $((share / 10)) "$left" >&2
+      printf '\r%s: %d %%%s%s\033[K' "$what" $((share / 10)) "$left" "$now" >&2
     elif [ $((share / 100)) -gt "$shown" ]; then
       say "$what: $((share / 10)) %$left"
     fi
@@ -53,7 +54,7 @@ install_packages() {
     sudo=sudo
   fi
   if { $sudo apt-get update && $sudo env DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends \
-        -o APT::Status-Fd=1 "$@"; } 2>&1 | follow "installing $# packages" "$log"; then
+        -o APT::Status-Fd=1 "$@"; } 2>&1 | follow "installing $# package$([ $# -eq 1 ] || echo s)" "$log"; then
     rm -f "$log"
     return 0
   fi
@@ -70,7 +71,7 @@ build_all() {
   [ -z "${BOUGH_VERBOSE:-}" ] || { cmake --build "$folder" "$@" >&2; return; }
   : >"$log"
   if ! cmake --build "$folder" "$@" 2>&1 | follow building "$log"; then
-    grep -n -m 1 -A 60 '^FAILED:' "$log" >&2 || tail -n 30 "$log" >&2
+    grep -n -m 1 -A 20 '^CMake Error' "$log" >&2 || grep -n -m 1 -A 60 '^FAILED:' "$log" >&2 || tail -n 30 "$log" >&2
     say "error: the build failed; all of its output is in $log"
     return 1
   fi

@@ -137,7 +137,7 @@ class CvodeStepper final : public Integrator {
     const auto check = [](int flag) { BOUGH_DEMAND(flag == 0); };
     check(CVodeInit(cvode_, detail::call_ode, t, y_));
     check(CVodeSetUserData(cvode_, static_cast<GuardedOde*>(&ode_)));
-    check(CVodeSetErrHandlerFn(cvode_, detail::ignore_message, nullptr));
+    check(detail::silence_messages(cvode_));
     check(CVodeWFtolerances(cvode_, weigh));
     check(CVodeSetMaxErrTestFails(cvode_, detail::kMaxRejections));
     if (options_.step > 0) check(CVodeSetMaxStep(cvode_, options_.step));

@@ -2,6 +2,7 @@
 /// \file Owners of SUNDIALS handles; included by .cpp files of this folder only.
 #include <cstdlib>
 
+#include <cvode/cvode.h>
 #include <nvector/nvector_serial.h>
 #include <sundials/sundials_config.h>
 #include <sundials/sundials_context.h>
@@ -17,12 +18,19 @@ inline constexpr double kSmallestStep = 1e-13;
 /// Rejections of one step by the error test before it counts as stalled: at a kink of a force steps get ever shorter.
 inline constexpr int kMaxRejections = 40;
 
+/// Context for one process. From SUNDIALS 7 on it owns the error handlers: without one, messages are in the exception
+/// alone, and the logger of warnings writes nothing (see silence_messages for older versions).
 class Context {
  public:
 #if SUNDIALS_VERSION_MAJOR >= 7
-  Context() { BOUGH_DEMAND(SUNContext_Create(SUN_COMM_NULL, &context_) == 0); }
+  Context() {
+    BOUGH_DEMAND(SUNContext_Create(SUN_COMM_NULL, &context_) == 0);
+    BOUGH_DEMAND(SUNContext_ClearErrHandlers(context_) == 0);
+    SUNLogger logger = nullptr;
+    BOUGH_DEMAND(SUNContext_GetLogger(context_, &logger) == 0);
+    if (logger != nullptr) BOUGH_DEMAND(SUNLogger_SetWarningFilename(logger, "/dev/null") == 0);
+  }
 #else
-  /// Makes a context for one process.
   Context() { BOUGH_DEMAND(SUNContext_Create(nullptr, &context_) == 0); }
 #endif
   ~Context() { SUNContext_Free(&context_); }
@@ -56,8 +64,15 @@ inline int call_ode(sunrealtype t, N_Vector y, N_Vector y_dot, void* user) {
   return static_cast<GuardedOde*>(user)->calc(t, N_VGetArrayPointer(y), N_VGetArrayPointer(y_dot));
 }
 
-/// Messages go into the exception, not to the terminal.
-inline void ignore_message(int, const char*, const char*, char*, void*) {}
+/// Messages go into the exception, not to the terminal. Returns SUNDIALS' flag, 0 if it took the handler.
+#if SUNDIALS_VERSION_MAJOR >= 7
+inline int silence_messages(void*) { return 0; }
+#else
+inline int silence_messages(void* cvode) {
+  return CVodeSetErrHandlerFn(
+      cvode, [](int, const char*, const char*, char*, void*) {}, nullptr);
+}
+#endif
 
 /// After a failed step: what the equations threw, or a StepFailure.
 /// row: StepFailure::row.

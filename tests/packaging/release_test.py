@@ -1,5 +1,4 @@
 """packaging/release.py without making a release: its check of this build, and its parts on a small program."""
-import ast
 import json
 import os
 import re
@@ -15,6 +14,7 @@ sys.path[:0] = [os.path.join(SOURCE, "packaging"), os.path.join(SOURCE, "tools")
 import bundle  # noqa: E402
 import list_licences  # noqa: E402
 import release  # noqa: E402
+import try_recipes  # noqa: E402
 
 needs_patchelf = unittest.skipUnless(shutil.which("patchelf"), "no patchelf: apt install patchelf")
 
@@ -93,6 +93,13 @@ class Parts(unittest.TestCase):
         with self.assertRaisesRegex(bundle.ReleaseError, "libtoy.so.1 is not found"):
             bundle.list_libraries([program], release.is_system)
 
+    def test_objects_of_other_sources_are_named(self):
+        with open(self.path("a.cpp"), "w") as f:
+            f.write("namespace bough { int get(int); } int main() { return bough::get(1); }\n")
+        run("c++", "-shared", "-fPIC", self.path("a.cpp"), "-o", self.path("a.so"))
+        self.assertEqual(release.find_undefined(self.path("a.so")), ["bough::get(int)"])
+        self.assertEqual(release.find_undefined(os.path.realpath(PROGRAM)), [])
+
     def test_files_of_no_package_and_unread_licences_end_it(self):
         one = release.Release(BUILD, self.folder)
         with self.assertRaisesRegex(bundle.ReleaseError, "licence is not known: /opt/none.so"):
@@ -125,11 +132,29 @@ class Parts(unittest.TestCase):
         json.dumps(table)
 
     def test_scripts_and_recipes_parse(self):
-        for name in ("try_release", "try_release_inside", "get_python", "bare_root"):
+        for name in ("try", "try_inside", "try_release", "try_release_inside", "get_python", "bare_root", "package_in",
+                     "make_container"):
             run("bash", "-n", os.path.join(SOURCE, "packaging", name))
+        run("bash", "-n", os.path.join(SOURCE, "dev"))
         run("sh", "-n", os.path.join(SOURCE, "packaging/bough-mpirun"))
-        with open(os.path.join(SOURCE, "packaging/recipes/spack/package.py"), encoding="utf-8") as f:
-            ast.parse(f.read())
+
+    def test_recipes_name_what_cmake_looks_for(self):
+        cmake = try_recipes.list_cmake()
+        for name, (read, _, _) in try_recipes.READERS.items():
+            recipe = read()
+            if recipe is None:   # Homebrew's is Ruby
+                continue
+            self.assertEqual(try_recipes.check(name, recipe, cmake), [], name)
+            package = "fmt"
+            problems = try_recipes.check(name, {**recipe, "packages": recipe["packages"] - {package}}, cmake)
+            self.assertEqual(problems, [f"no package for {package} ({package})"], name)
+            problems = try_recipes.check(name, {**recipe, "packages": recipe["packages"] | {"scalapack"}}, cmake)
+            self.assertEqual(problems, ["scalapack is asked for and not looked for by CMake"], name)
+            problems = try_recipes.check(name, {**recipe, "steps": ["cmake -DBOUGH_NONE=ON"]}, cmake)
+            self.assertEqual(problems, ["CMake has no option BOUGH_NONE"], name)
+        problems = try_recipes.check("spack", try_recipes.read_spack(False), cmake + "find_package(Zstd REQUIRED)")
+        self.assertEqual(len(problems), 1)
+        self.assertIn("Zstd", problems[0])
 
     def test_components_of_mpi_come_from_next_to_its_library(self):
         library = bundle.list_libraries([PROGRAM], release.is_system).get("libmpi.so.40", "")

@@ -66,6 +66,13 @@ class Setup(unittest.TestCase):
         shown = [line.split(",")[0] for line in done.stderr.strip().split("\n")]
         self.assertEqual(shown, [f"installing 2 packages: {n} %" for n in (25, 75, 100)])
 
+    def test_a_terminal_shows_the_package(self):
+        self.put("apt-get", WORKS)
+        done = subprocess.run(["/usr/bin/script", "-qec", f"/usr/bin/bash -c '. {SOURCE}/tools/setup.sh; install_packages libx'",
+                               "/dev/null"], text=True, capture_output=True, env={"PATH": self.folder, "TMPDIR": self.folder})
+        self.assertIn("installing 1 package: 75 %", done.stdout)
+        self.assertIn(", Unpacking libx\033[K", done.stdout)
+
     def test_progress_of_the_build(self):
         self.put("cmake", "for n in 1 2 3 4; do echo \"[$n/4] Building x\"; done; echo 'a.cpp:1: warning: w'")
         done = self.run_script(f"build_all {self.folder} -j 2")
@@ -81,6 +88,13 @@ class Setup(unittest.TestCase):
         self.assertEqual(done.returncode, 1)
         self.assertIn("b.cpp:3: error: no", done.stderr)
         self.assertIn("build.log", done.stderr)
+
+    def test_failure_of_cmake_is_shown(self):
+        self.put("cmake", """echo '[0/1] Re-running CMake...'; echo 'CMake Error at CMakeLists.txt:3 (find_package):'
+echo '  Could not find x'; echo 'FAILED: build.ninja'; exit 1""")
+        done = self.run_script(f"build_all {self.folder}")
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("Could not find x", done.stderr)
 
 
 if __name__ == "__main__":

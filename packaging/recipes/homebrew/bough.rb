@@ -1,10 +1,10 @@
-# Formula of Homebrew, on Linux: HOMEBREW_BOUGH_SOURCE=$PWD/bough-0.2.0.tar.gz brew install --formula ./bough.rb
+# Formula of Homebrew, on Linux: HOMEBREW_BOUGH_SOURCE=$PWD/bough-0.3.0.tar.gz brew install --formula ./bough.rb
 # Not run: the machines of the project have no Homebrew. Homebrew's petsc has neither MUMPS nor CHOLMOD (docs/install.md),
 # so that this builds the multibody solver and libbough.so alone. On macOS see docs/install.md.
 class Bough < Formula
   desc "Flexible multibody solver: libbough with its C and C++ interface"
-  url "file://#{ENV.fetch("HOMEBREW_BOUGH_SOURCE", "/bough-0.2.0.tar.gz")}"
-  version "0.2.0"
+  url "file://#{ENV.fetch("HOMEBREW_BOUGH_SOURCE", "/bough-0.3.0.tar.gz")}"
+  version "0.3.0"
   license "BSD-3-Clause"
 
   depends_on "cmake" => :build

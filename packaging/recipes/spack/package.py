@@ -1,6 +1,6 @@
 """Package of Spack: copy to packages/bough/package.py of a repository of packages, then in a checkout of Bough
 
-    spack dev-build bough@0.2.0
+    spack dev-build bough@0.3.0
 
 Not run: the machines of the project have no Spack. Names of packages after Spack's own repository.
 """
@@ -15,7 +15,7 @@ class Bough(CMakePackage):
 
     license("BSD-3-Clause")  # linked to SuiteSparse the whole is under the GPL, version 3 or later
 
-    version("0.2.0")
+    version("0.3.0")
 
     variant("solver_only", default=False, description="the multibody solver and libbough.so alone, without PETSc")
     variant("python", default=True, when="~solver_only", description="the Python module")
