@@ -83,7 +83,7 @@ class Starts(ProgramTest):
         np.testing.assert_allclose(np.sort_complex(poles), np.sort_complex(np.linalg.eigvals(expected)), atol=1e-6)
         self.bough("run", "case.toml", "-o", "run.h5")
         with h5py.File(self.path("run.h5")) as f:
-            end = f["hinges/h/q"][-1, 0]
+            end = f["hinges/h/q"][()].ravel()[-1]
         slope = -1 if end < 0.5 else slope
         expected[1, 2] = slope
         np.testing.assert_allclose(self.linearize(LAG, "--start-from", "run.h5"), expected, atol=1e-6)
@@ -188,7 +188,7 @@ class PrescribedMotions(ProgramTest):
                     RAMP, curve, table("event", "r", time=0.2, action=action, hinge="h"),
                     section("simulation", duration=0.6, output_step=0.02)))
                 self.assertLess(error, 1e-6, (law, action))
-                q, rate = case["hinges/h/q"][-1, 0], case["hinges/h/qdot"][-1, 0]
+                q, rate = case["hinges/h/q"].ravel()[-1], case["hinges/h/qdot"].ravel()[-1]
                 self.assertIn("up to a release", messages)
                 if action == "lock":
                     np.testing.assert_allclose([q, rate], [0.12, 0], atol=1e-9)
@@ -216,7 +216,7 @@ class FixedSteps(ProgramTest):
                     section("simulation", duration=duration, output_step=0.1, integrator=integrator, step=0.02,
                             gravity=[0.0, 0.0, -9.81], energy_error_limit=1.0)))
                 self.bough("run", "case.toml", "-o", "case.h5")
-                found.append(self.read_arrays("case.h5", "hinges/h/q")[0][:8])
+                found.append(self.read_arrays("case.h5", "hinges/h/q")[0][:7])
             np.testing.assert_array_equal(*found)
 
 
