@@ -6,7 +6,6 @@
 
 #include "analysis/common/channels.hpp"
 #include "formats/hdf5/files.hpp"
-#include "solver/linear/plant.hpp"
 
 namespace bough::analysis {
 namespace {
@@ -126,7 +125,8 @@ std::optional<records::Checkpoint> find_start_control(const std::string& path, c
   if (is_of_run(found)) return {};
   const int nq = system.num_q(), nu = system.num_u(), nz = system.num_z();
   const auto* control = found.find("control");
-  const Eigen::Index held = solver::Plant(system).make_initial_point().memory.size();
+  const Eigen::VectorXd initial = system.signals.make_data().memory;
+  const Eigen::Index held = initial.size();
   // An equilibrium has no book of what left: it starts at zero.
   const int own = nz - system.num_momentum_out();
   if (found.state.size() != nq + nu + own + 2 || (control ? control->size() - 1 : 0) != held) {
@@ -140,7 +140,15 @@ std::optional<records::Checkpoint> find_start_control(const std::string& path, c
   system.calc_initial_state(start.state.head(nq), start.state.segment(nq, nu));
   start.state.segment(nq + nu, own) = found.state.segment(nq + nu, own);
   start.memory.emplace_back("start", Eigen::VectorXd::Zero(1));
-  if (control) start.memory.emplace_back("control", *control);
+  if (control) {
+    Eigen::VectorXd memory = *control;
+    // Inputs start at the values of the system file, as hosts and --set give them.
+    for (const auto& place : system.signals.places) {
+      const int rows = place.block->kind == solver::BlockKind::Input ? place.block->sizes.memory : 0;
+      memory.segment(1 + place.memory, rows) = initial.segment(place.memory, rows);
+    }
+    start.memory.emplace_back("control", memory);
+  }
   return start;
 }
 

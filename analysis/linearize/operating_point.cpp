@@ -30,12 +30,13 @@ class LastState final : public records::ResultSink {
 
 solver::Plant make_plant(const LoadedSystem& loaded, bool is_open) { return solver::Plant(loaded.system, is_open); }
 
-solver::OperatingPoint make_start(const LoadedSystem& loaded, const solver::Plant& plant, Diagnostics& diagnostics) {
+solver::OperatingPoint make_start(const LoadedSystem& loaded, solver::Plant& plant, Diagnostics& diagnostics) {
   auto point = plant.make_initial_point();
   const auto start = find_start_control(loaded.start_from, loaded.system, point.t, diagnostics);
   if (!start) return point;
   point.z = start->state.segment(loaded.system.num_q() + loaded.system.num_u(), loaded.system.num_z());
   if (const auto* control = start->find("control")) point.memory = control->tail(control->size() - 1);
+  plant.initialize_signals(point);
   return point;
 }
 
@@ -56,7 +57,19 @@ solver::OperatingPoint run_to(const LoadedSystem& loaded, solver::Plant& plant, 
   solver::SimulateOptions options;
   if (last) options.resume = *last;
   if (!options.resume) options.resume = find_start_control(loaded.start_from, loaded.system, s.start, diagnostics);
-  solver::simulate(loaded.system, spec, sink, options, diagnostics);
+  Diagnostics of_run;
+  const auto keep = [&] {
+    // Events past the operating point are none that the user expects.
+    for (const auto& item : of_run.items())
+      if (item.id != "run.event-never" || item.severity == Severity::Error) diagnostics.add(item);
+  };
+  try {
+    solver::simulate(loaded.system, spec, sink, options, of_run);
+  } catch (...) {
+    keep();
+    throw;
+  }
+  keep();
   if (last) *last = sink.last();
   const auto& state = sink.last().state;
   const auto* discrete = sink.last().find("discrete");
@@ -80,7 +93,7 @@ solver::OperatingPoint run_to(const LoadedSystem& loaded, solver::Plant& plant, 
 }
 
 solver::OperatingPoint find_rest(solver::Plant& plant, solver::OperatingPoint start, const std::string& file) {
-  start.u = plant.make_initial_point().u;
+  start.u = plant.get_initial_state().u;
   return solver::find_equilibrium(plant, start, {file}).point;
 }
 

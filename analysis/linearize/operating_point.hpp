@@ -12,7 +12,7 @@ namespace bough::analysis {
 solver::Plant make_plant(const LoadedSystem& loaded, bool is_open = false);
 
 /// The initial state; with --start-from a file of equilibrium the states of controllers and actuators are its own.
-solver::OperatingPoint make_start(const LoadedSystem& loaded, const solver::Plant& plant, Diagnostics& diagnostics);
+solver::OperatingPoint make_start(const LoadedSystem& loaded, solver::Plant& plant, Diagnostics& diagnostics);
 
 /// The state at time t, by the run's own integrator; the plant gets the modes that hinges and constraints have then.
 /// `last`: where the run has come, goes on from there and holds where it has come then. InputError("linear.bad-time")

@@ -139,6 +139,7 @@ RunAnswer run_system(const RunRequest& request, RunEvents& events) {
     if (answer.was_complete) return answer;
   }
   if (options.resume) {
+    answer.resumed = options.resume->time;
     solver::demand_resumable(loaded.system.signals);
     writer = hdf5::make_results_appender(answer.output, options.resume->time);
   } else {  // also where a run was killed before its first checkpoint: there is nothing to keep
@@ -152,7 +153,6 @@ RunAnswer run_system(const RunRequest& request, RunEvents& events) {
   if (!answer.outcome.energy_is_kept)
     std::copy_if(diagnostics.items().begin(), diagnostics.items().end(), std::back_inserter(answer.errors),
                  [](const Diagnostic& item) { return item.severity == Severity::Error; });
-  if (options.resume) answer.resumed = options.resume->time;
   answer.events = sink.events();
   return answer;
 }

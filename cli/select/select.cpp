@@ -57,7 +57,8 @@ void add_select(CLI::App& app, Action& action) {
                    "System files (.toml) with their forces, actuators, sensors, in closed loop; of several the worst "
                    "counts; without, the body alone");
   verb->add_option("--inputs", o->request.inputs,
-                   "Nodes that are pushed, ID or ID:x, y, z, rx, ry, rz (default: interface); of a system: its forces")
+                   "Nodes that are pushed, ID or ID:x, y, z, rx, ry, rz (default: interface); of a system: its "
+                   "actuators, without actuators its forces")
       ->delimiter(',');
   verb->add_option("--outputs", o->request.outputs,
                    "Nodes whose motion counts, as above, or ID:vx, vy, vz, wx, wy, wz for rates; of a system: its "

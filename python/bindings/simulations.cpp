@@ -8,8 +8,10 @@
 
 namespace bough::python {
 
-Simulation::Simulation(const embed::LoadedSystem& loaded, const embed::SimulationOptions& options) {
+Simulation::Simulation(const embed::LoadedSystem& loaded, const embed::SimulationOptions& options,
+                       std::optional<records::Checkpoint> start) {
   solver::SimulateOptions run;
+  run.resume = std::move(start);
   run.stop = &stop_;
   run.progress = [this](const solver::Progress&) {
     const py::gil_scoped_acquire acquired;

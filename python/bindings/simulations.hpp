@@ -20,7 +20,9 @@ class Simulation {
   using Name = std::variant<int, std::string>;
 
   /// \param loaded  must outlive it.
-  Simulation(const embed::LoadedSystem& loaded, const embed::SimulationOptions& options);
+  /// \param start  memory and states of controllers and actuators to start from; none: those of the system file.
+  Simulation(const embed::LoadedSystem& loaded, const embed::SimulationOptions& options,
+             std::optional<records::Checkpoint> start);
 
   /// Sets an input from the present time on. Raises ValueError for a value that is not finite.
   void set(const Name& name, double value);

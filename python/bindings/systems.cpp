@@ -6,6 +6,7 @@
 #include <pybind11/stl/filesystem.h>
 
 #include "analysis/common/inputs.hpp"
+#include "analysis/common/start_state.hpp"
 #include "analysis/common/system_files.hpp"
 #include "analysis/linearize/uncertain.hpp"
 #include "cli/common/options.hpp"
@@ -13,6 +14,7 @@
 #include "python/bindings/controllers.hpp"
 #include "python/bindings/requests.hpp"
 #include "python/bindings/simulations.hpp"
+#include "solver/control/user_code.hpp"
 #include "solver/simulate/memory_sink.hpp"
 #include "solver/simulate/simulate.hpp"
 
@@ -174,6 +176,9 @@ class PySystem {
       options_ = options;
       options_.flex.clear();
       loaded_.emplace(analysis::load_system(file_, diagnostics, std::move(options)));
+      start_ = analysis::find_start_control(loaded_->start_from, loaded_->system, loaded_->spec.simulation.start,
+                                            diagnostics);
+      if (start_) solver::demand_resumable(loaded_->system.signals);
       others_ = calc_other_sources();
     }
     messages = tell(diagnostics);
@@ -206,6 +211,7 @@ class PySystem {
       Tee sink(memory, file.get(), calc_sources());
       std::atomic<bool> stop{false};
       solver::SimulateOptions options;
+      options.resume = start_;
       options.stop = &stop;
       options.progress = [&](const solver::Progress& p) {
         const py::gil_scoped_acquire acquired;
@@ -240,7 +246,7 @@ class PySystem {
   std::unique_ptr<Simulation> start(const std::string& integrator, double step, double relative_tolerance,
                                     double absolute_tolerance, double duration) const {
     return std::make_unique<Simulation>(
-        *loaded_, embed::SimulationOptions{integrator, step, relative_tolerance, absolute_tolerance, duration});
+        *loaded_, embed::SimulationOptions{integrator, step, relative_tolerance, absolute_tolerance, duration}, start_);
   }
 
   py::tuple linearize(std::optional<double> at, bool equilibrium, bool open, std::vector<std::string> inputs,
@@ -324,6 +330,7 @@ class PySystem {
   analysis::LoadOptions options_;  ///< of loaded_
   std::vector<std::pair<std::string, std::string>> others_;
   std::optional<analysis::LoadedSystem> loaded_;
+  std::optional<records::Checkpoint> start_;  ///< controllers and actuators of start_from, out of an equilibrium
 };
 
 }  // namespace

@@ -12,6 +12,20 @@ std::string quote(const std::string& name) { return "'" + name + "'"; }
 
 namespace {
 
+/// A function without mesh times.
+class UnmarkedFunction final : public TimeFunction {
+ public:
+  explicit UnmarkedFunction(std::unique_ptr<const TimeFunction> own) : own_(std::move(own)) {}
+  Value calc(double t) const override { return own_->calc(t); }
+  std::vector<double> jump_times() const override { return own_->jump_times(); }
+  std::vector<double> force_jump_times() const override { return own_->force_jump_times(); }
+  bool has_derivatives() const override { return own_->has_derivatives(); }
+  std::unique_ptr<const TimeFunction> clone() const override { return own_->clone(); }
+
+ private:
+  std::unique_ptr<const TimeFunction> own_;
+};
+
 /// Each after those that it is made of. Reports "function.loop".
 class FunctionBuilder {
  public:
@@ -44,6 +58,10 @@ class FunctionBuilder {
     path_.pop_back();
     const auto& run = spec_.simulation;
     system_.functions.push_back(make_time_function(record, diagnostics_, {run.start, run.start + run.duration}, made_));
+    // Mesh times of a formula are found by intervals of the whole run; fixed steps must not depend on its duration.
+    const bool is_fixed = run.integrator == "rk4" || run.integrator == "implicit";
+    if (is_fixed && !record.expression.empty() && system_.functions.back())
+      system_.functions.back() = std::make_unique<UnmarkedFunction>(std::move(system_.functions.back()));
     if (system_.functions.back()) system_.tree.functions.push_back(system_.functions.back().get());
     made_.emplace(record.name, system_.functions.back().get());
   }

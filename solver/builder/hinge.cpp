@@ -70,8 +70,10 @@ void build_motion(const records::HingeRecord& r, const FunctionMap& functions, T
   }
   if (given == nu && (!r.stiffness.empty() || !r.damping.empty())) {
     diagnostics.warning("system.ignored-spring", r.at,
-                        "hinge " + quote(r.name) + " has a prescribed motion: its stiffness and damping have no effect",
-                        "remove them");
+                        "hinge " + quote(r.name) +
+                            " has a prescribed motion: its stiffness and damping have no effect "
+                            "on it, up to a release",
+                        "remove them, unless an event releases the hinge");
   }
   if (given == nu && (!r.position.empty() || !r.rate.empty())) {
     diagnostics.warning("system.ignored-position", r.at,
@@ -142,11 +144,6 @@ void build_hinge_coordinates(const records::HingeRecord& r, const FunctionMap& f
   build_locks(r, tb, diagnostics);
   tb.stiffness = as_vector(r.stiffness);
   tb.damping = as_vector(r.damping);
-  for (int i = 0; i < nu; ++i) {
-    if (tb.mode[static_cast<size_t>(i)] != HingeMode::Prescribed) continue;
-    if (i < tb.stiffness.size()) tb.stiffness[i] = 0;
-    if (i < tb.damping.size()) tb.damping[i] = 0;
-  }
 }
 
 }  // namespace bough::solver

@@ -36,10 +36,14 @@ class LawBuilder {
       if (tb_.mode[static_cast<size_t>(i)] == HingeMode::Prescribed) ++ignored;
       add(i, elements, joint_contacts);
     }
-    if (ignored == tb_.num_hinge_u() && ignored > 0) {
+    const bool has_forces = law.has_stops || law.has_friction || !law.preload.empty() || !law.spring_table.empty() ||
+                            !law.damper_table.empty();
+    if (has_forces && ignored == tb_.num_hinge_u() && ignored > 0) {
       diagnostics_.warning("system.ignored-spring", r_.at,
-                           user_ + " has a prescribed motion: what acts along its coordinates has no effect",
-                           "remove it");
+                           user_ +
+                               " has a prescribed motion: its preload, tables, stops and friction have no effect on "
+                               "it, up to a release",
+                           "remove them, unless an event releases the hinge");
     }
   }
 

@@ -81,6 +81,9 @@ void add_hinge_forces(const Tree& tree, TreeData& data) {
             tb.hinge->calc_spring(data.q.data() + tb.q_offset, tb.null_position.data(), tb.stiffness.data(), force)))
       fail_spring(tb, data.t);
     for (int i = 0; i < tb.damping.size(); ++i) force[i] -= tb.damping[i] * data.u[tb.u_offset + i];
+    if (tb.motion.empty()) continue;
+    for (int i = 0; i < tb.num_hinge_u(); ++i)
+      if (data.mode[static_cast<size_t>(tb.u_offset + i)] == HingeMode::Prescribed) force[i] = 0;
   }
 }
 

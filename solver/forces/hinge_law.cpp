@@ -40,8 +40,11 @@ std::array<T, 2> HingeLaw::calc_forces(const std::array<T, 2>& at, double slide,
 
 ForceResult HingeLaw::calc(const Tree&, const TreeData& data, Loads* loads) const {
   ForceResult result;
-  if (data.mode[static_cast<size_t>(u_row_)] == HingeMode::Prescribed) return result;
   const double rate = data.u[u_row_], slide = data.slide[u_row_];
+  if (is_prescribed(data)) {
+    result.power = calc_forces<double>({data.q[q_row_], rate}, slide, result.strain)[0] * rate;
+    return result;
+  }
   const auto [elastic, damper] =
       evaluate_law<2, 2>(data.tangents, {this, "hinge coordinate", name()}, 0, {data.q[q_row_], rate},
                          [&](const auto& at) { return calc_forces(at, slide, result.strain); });
@@ -53,7 +56,7 @@ ForceResult HingeLaw::calc(const Tree&, const TreeData& data, Loads* loads) cons
 
 void HingeLaw::add_tangent(const Tree&, const TreeData& data, Eigen::Ref<VectorXd> stiffness,
                            Eigen::Ref<VectorXd> damping) const {
-  if (data.mode[static_cast<size_t>(u_row_)] == HingeMode::Prescribed) return;
+  if (is_prescribed(data)) return;
   const double q = data.q[q_row_], rate = data.u[u_row_];
   double k = 0, c = 0;
   if (law_.spring) k += std::max(0.0, law_.spring->calc(q - law_.null_position).slope);

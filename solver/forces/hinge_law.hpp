@@ -5,7 +5,7 @@
 ///     friction  [F_c + (F_s - F_c) exp(-(q̇/v_s)²)] tanh(q̇/v_0)        Stribeck's, smooth over v_0
 ///               the same times the direction of sliding                  dry: solver/forces/joint_contact.hpp
 ///     stop      k δ (1 + c δ̇), not below zero, for δ past the stop       Hunt & Crossley with exponent 1
-/// Along a prescribed coordinate the motion has it: nothing acts.
+/// Along a prescribed coordinate nothing acts on the system: the prescribed motion strains springs by its own work.
 #include <cmath>
 #include <limits>
 
@@ -35,6 +35,10 @@ class HingeLaw final : public ForceElement {
     if (std::isfinite(law_.upper)) *g = data.q[q_row_] - law_.upper;
   }
   bool is_along_hinge() const override { return true; }
+  /// Returns true while the coordinate follows a prescribed motion, which then does the work of springs.
+  bool is_prescribed(const TreeData& data) const {
+    return data.mode[static_cast<size_t>(u_row_)] == HingeMode::Prescribed;
+  }
   void add_tangent(const Tree& tree, const TreeData& data, Eigen::Ref<VectorXd> stiffness,
                    Eigen::Ref<VectorXd> damping) const override;
 

@@ -17,6 +17,8 @@ constexpr double kNear = 1;
 /// Largest travel of a stable state that whole steps of Newton's method found from a start that does not diverge (there
 /// its steps are those of the way downhill): a quarter of the size of a body.
 constexpr double kDirect = 5;
+/// Largest difference of two states that are the same.
+constexpr double kSameState = 1e-9;
 
 /// The largest of what dofs move by, in steps of the plant; the size of a state or of a signal says nothing.
 double calc_way(const EquilibriumResidual& at, const VectorXd& steps) {
@@ -246,10 +248,34 @@ void find_unstable(Plant& plant, const SourceLocation& at, Equilibrium& found) {
   }
 }
 
+/// State of rest whose switches stay as they are in it: a search in the modes of `from`, then with those that its
+/// result switches to.
+Newton find_rest(Plant& plant, OperatingPoint from, const SourceLocation& at) {
+  plant.iterate_switches(from);
+  std::vector<VectorXd> modes;
+  for (;;) {
+    const OperatingPoint before = from;
+    Newton newton = search(EquilibriumResidual(plant, from), at);
+    from = newton.at().point();
+    modes.push_back(from.memory);
+    const std::string switched = plant.iterate_switches(from);
+    if (switched.empty()) return newton;
+    const bool is_known = std::find(modes.begin(), modes.end(), from.memory) != modes.end();
+    // On the line itself both modes rest.
+    if (is_known && (from.q - before.q).isZero(kSameState) && (from.z - before.z).isZero(kSameState)) return newton;
+    if (is_known || std::ssize(modes) >= kMaxIterations)
+      throw ComputationError("equilibrium.switching", at,
+                             "no state of rest was found: " + switched +
+                                 " switches in each state in which the system would rest without the switch",
+                             "start nearer to a state of rest, or replace it by a continuous law: the system may have "
+                             "a limit cycle in place of a state of rest");
+  }
+}
+
 }  // namespace
 
 Equilibrium find_equilibrium(Plant& plant, const OperatingPoint& start, const SourceLocation& at) {
-  const Newton newton = search(EquilibriumResidual(plant, start), at);
+  const Newton newton = find_rest(plant, start, at);
   Equilibrium found;
   found.point = newton.at().point();
   found.residual = newton.at().rates().norm();

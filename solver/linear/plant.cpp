@@ -14,6 +14,18 @@ size_t as_index(int i) { return static_cast<size_t>(i); }
 /// A quaternion has one coordinate more than rates; it comes first, its rates too.
 bool has_quaternion(const System& s, int b) { return s.num_hinge_q(b) == s.num_hinge_rates(b) + 1; }
 
+/// Name of a rate of a hinge with a quaternion: rotations, then travels along x, y or z of the parent's hinge frame.
+std::string name_rate(const TreeBody& tb, int rate) {
+  if (rate < 3) return std::string("r") + "xyz"[rate];
+  VectorXd q(tb.hinge->num_q()), u = VectorXd::Zero(tb.hinge->num_u());
+  tb.hinge->set_neutral(q.data());
+  HingeMotion motion;
+  tb.hinge->calc_motion(q.data(), u.data(), motion);
+  Eigen::Index axis = 0;
+  motion.H.col(rate).head<3>().cwiseAbs().maxCoeff(&axis);
+  return std::string(1, "xyz"[axis]);
+}
+
 /// Turns without moving: back where it was after 2 pi. Orientations of quaternions have small rotations, not angles.
 bool is_angle(const TreeBody& tb, int coordinate) {
   if (tb.hinge->num_q() != tb.hinge->num_u()) return false;
@@ -39,7 +51,7 @@ Plant::Plant(const System& system, bool is_open)
   add_inputs();
   add_outputs();
   add_sampled();
-  const OperatingPoint start = make_initial_point();
+  const OperatingPoint start = get_initial_state();
   choose_independent(start.t, start.q);
 }
 
@@ -87,13 +99,12 @@ void Plant::set_modes(const DiscreteState& discrete, double t, const VectorXd& q
 }
 
 void Plant::add_hinge(int b) {
-  static const char* const kNames[] = {"rx", "ry", "rz", "x", "y", "z"};
   const TreeBody& tb = system_.tree.bodies[as_index(b)];
   for (int i = 0; i < system_.num_hinge_rates(b); ++i) {
     const int row = system_.u_offset(b) + i;
     if (data_->tree.mode[as_index(row)] != HingeMode::Free) continue;
     rows_.push_back(row);
-    const std::string coordinate = has_quaternion(system_, b) ? kNames[i] : std::to_string(i + 1);
+    const std::string coordinate = has_quaternion(system_, b) ? name_rate(tb, i) : std::to_string(i + 1);
     dofs_.push_back(
         {system_.hinge_name(b) + ":" + coordinate, is_translation(tb, i) ? "L" : "1", false, is_angle(tb, i)});
   }
@@ -116,9 +127,10 @@ records::Signals Plant::name_positions() const {
     const auto& hinge = system_.hinge_name(b);
     const bool is_free = has_quaternion(system_, b);
     for (int i = 0; i < system_.num_hinge_q(b); ++i) {
-      static const char* const kNames[] = {"qw", "qx", "qy", "qz", "x", "y", "z"};
       const TreeBody& tb = system_.tree.bodies[as_index(b)];
-      const std::string coordinate = is_free ? kNames[i] : std::to_string(i + 1);
+      const std::string coordinate = !is_free ? std::to_string(i + 1)
+                                     : i < 4  ? std::string("q") + "wxyz"[i]
+                                              : name_rate(tb, i - 1);
       const int rate = is_free ? i - 1 : i;
       add(hinge + ":" + coordinate, (is_free && i < 4) || !is_translation(tb, rate) ? "1" : "L");
     }
@@ -128,7 +140,13 @@ records::Signals Plant::name_positions() const {
   return names;
 }
 
-OperatingPoint Plant::make_initial_point() const {
+OperatingPoint Plant::make_initial_point() {
+  OperatingPoint point = get_initial_state();
+  initialize_signals(point);
+  return point;
+}
+
+OperatingPoint Plant::get_initial_state() const {
   OperatingPoint point;
   point.t = system_.start;
   point.q = VectorXd::Zero(system_.num_q());

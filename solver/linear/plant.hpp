@@ -73,8 +73,18 @@ class Plant {
 
   /// Sets dofs and loops to the modes of hinges and constraints after an event, for the positions (t, q).
   void set_modes(const DiscreteState& discrete, double t, const VectorXd& q);
-  /// The state of the start of the run.
-  OperatingPoint make_initial_point() const;
+  /// Returns the start of the run, after initialize_signals().
+  OperatingPoint make_initial_point();
+  /// Returns the initial state of the system file, before steady lags, samples and switches of the start.
+  OperatingPoint get_initial_state() const;
+  /// Initializes z and the memory at a point as a run does at its start: steady lags, the samples due, switches.
+  /// Throws ComputationError "control.chatter".
+  void initialize_signals(OperatingPoint& point);
+  /// Switches every block with a positive event function at a point, until none is left.
+  ///
+  /// \return label of the last block that switched; empty if none did.
+  /// \throws ComputationError "control.chatter" if the switches do not end.
+  std::string iterate_switches(OperatingPoint& point);
   /// Where is_open: from now on actuators keep the commands they have there.
   void hold_commands(const OperatingPoint& point);
   /// q ⊕ δ; delta: num_dofs. Throws ComputationError "linear.dead-point" where the loops cannot follow.
@@ -186,6 +196,9 @@ class Plant {
   std::vector<bool> find_in_loop() const;
   /// Kinematics to accelerations and signals, as they are at the point.
   void compute(const OperatingPoint& point, const PlantInput* input, double value, VectorXd& u_dot);
+  /// compute() and all signals. \return the motion there.
+  Motion gather_signals(const OperatingPoint& point);
+  void initialize_lags(OperatingPoint& point);
   VectorXd displace_tree(const VectorXd& q, const VectorXd& delta) const;
   // Loops (plant_loops.cpp)
   bool has_loops() const { return !grip_.empty(); }

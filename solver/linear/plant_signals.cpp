@@ -1,6 +1,8 @@
 // A plant's inputs and outputs, and what of it changes at samples.
 #include <algorithm>
 #include <functional>
+#include <limits>
+#include <utility>
 
 #include "formats/records/signal_name.hpp"
 #include "solver/linear/plant.hpp"
@@ -9,6 +11,9 @@
 
 namespace bough::solver {
 namespace {
+
+/// Limits of the iterations at the start, as of a run (solver/simulate/event_mode.cpp).
+constexpr int kMaxStartLags = 50, kMaxStartSwitches = 100;
 
 /// `name` with component i (from 0) of the block's outputs: names of its description, x y z of three, counts of others.
 std::string name_component(const Block& block, const std::string& name, int i) {
@@ -323,6 +328,61 @@ VectorXd Plant::calc_sample_rates(const OperatingPoint& point) {
   if (steady_rows_.empty()) return {};
   const VectorXd change = (sample_all(point) - point.memory)(steady_rows_);
   return change.cwiseQuotient(Eigen::Map<const VectorXd>(steady_period_.data(), change.size()));
+}
+
+Motion Plant::gather_signals(const OperatingPoint& point) {
+  VectorXd u_dot(system_.num_u());
+  compute(point, nullptr, 0, u_dot);
+  calc_signals(system_, *data_);
+  return get_motion(system_, *data_);
+}
+
+void Plant::initialize_lags(OperatingPoint& point) {
+  const SignalGraph& signals = system_.signals;
+  if (signals.num_states == 0) return;
+  for (int i = 0; i < kMaxStartLags; ++i) {
+    const Motion motion = gather_signals(point);
+    const VectorXd before = data_->signals.z;
+    const bool has_steady = signals.settle(motion, data_->signals);
+    point.z.head(signals.num_states) = data_->signals.z;
+    if (!has_steady || data_->signals.z == before) return;
+  }
+}
+
+std::string Plant::iterate_switches(OperatingPoint& point) {
+  const SignalGraph& signals = system_.signals;
+  std::string label;
+  if (signals.num_event_functions == 0) return label;
+  VectorXd g(signals.num_event_functions);
+  std::vector<BlockSwitch> switched;
+  for (int i = 0; i < kMaxStartSwitches; ++i) {
+    const Motion motion = gather_signals(point);
+    signals.calc_event_functions(motion, data_->signals, g);
+    switched.clear();
+    if (!signals.switch_over(motion, data_->signals, g, switched)) return label;
+    point.memory = data_->signals.memory;
+    label = switched.back().block->label;
+  }
+  throw ComputationError("control.chatter", switched.back().block->at, label + " switches without end at one time",
+                         "give it a hysteresis, or a lag on the way round its loop");
+}
+
+void Plant::initialize_signals(OperatingPoint& point) {
+  const SignalGraph& signals = system_.signals;
+  if (signals.places.empty()) return;
+  SignalData& s = data_->signals;
+  const bool was_open = std::exchange(s.is_open, false);
+  initialize_lags(point);
+  if (signals.has_samples()) {
+    double shortest = std::numeric_limits<double>::infinity();
+    for (const SampleTimes& times : signals.collect_samples()) shortest = std::min(shortest, times.period);
+    const Motion motion = gather_signals(point);
+    signals.sample(motion, s, 1e-9 * shortest);
+    point.memory = s.memory;
+  }
+  iterate_switches(point);
+  initialize_lags(point);  // lags that follow samples
+  s.is_open = was_open;
 }
 
 void Plant::fill_queues(VectorXd& memory) const {

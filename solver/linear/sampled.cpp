@@ -36,7 +36,7 @@ records::Multipliers calc_multipliers(Plant& plant, const OperatingPoint& point,
   flow.topLeftCorner(nx, nx) = A;
   flow.topRightCorner(nx, nm) = departures.calc_held();
   // Numbers of samples count from the start, and the queues are full a whole number of periods later.
-  const double start = plant.make_initial_point().t;
+  const double start = plant.get_initial_state().t;
   const auto samples = plant.collect_samples();
   double latest = 0;
   for (const auto& s : samples) latest = std::max(latest, s.first - start);

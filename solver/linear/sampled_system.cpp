@@ -48,14 +48,7 @@ std::vector<double> list_instants(const std::vector<SampleTimes>& samples, doubl
 }
 
 SampledSystem::SampledSystem(Plant& plant, const OperatingPoint& point)
-    : plant_(plant), point_(point), n_(plant.num_dofs()), nz_(plant.num_states()) {
-  if (plant.sampled_rows().empty()) return;
-  // A law that has seen no sample yet takes its first one otherwise than all that follow, as a difference does.
-  const OperatingPoint start = plant.make_initial_point();
-  if (point.t != start.t || point.memory != start.memory) return;
-  point_.memory = plant.sample_all(point);
-  plant.fill_queues(point_.memory);
-}
+    : plant_(plant), point_(point), n_(plant.num_dofs()), nz_(plant.num_states()) {}
 
 std::vector<std::string> SampledSystem::list_names() const {
   std::vector<std::string> names;

@@ -45,14 +45,17 @@ Matrix3d calc_orbital_axes(const Observer& o, const Sensor& e) {
   return axes;
 }
 
-/// The observer on the LVLH frame of a body, without accelerations.
+/// The observer on the LVLH frame of a body, without accelerations: h/R² and the turning of the orbit plane by gravity,
+/// (g·h)/h² R, with h = R × v. Other loads across the plane are left out; they are not known before accelerations.
 Observer calc_orbital_observer(const Motion& motion, const Sensor& e) {
   const BodyState& s = motion.get_state(e.relative_to);
   Observer o;
   o.p = s.p_WBo;
   o.v.noalias() = s.R_WB * s.v_B;
   const Vector3d R = o.p - e.orbit->field().centre;
-  o.w = R.cross(o.v) / R.squaredNorm();
+  const Vector3d h = R.cross(o.v);
+  o.w = h / R.squaredNorm();
+  if (!h.isZero(0)) o.w += motion.gravity.calc_acceleration(e.relative_to, o.p).dot(h) / h.squaredNorm() * R;
   return o;
 }
 

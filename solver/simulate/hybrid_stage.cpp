@@ -13,6 +13,9 @@ void HybridSystem::calc_tangent() {
   for (const TreeBody& tb : system_.tree.bodies) {
     k_.segment(tb.u_offset, tb.stiffness.size()) = tb.stiffness;
     c_.segment(tb.u_offset, tb.damping.size()) = tb.damping;
+    if (tb.motion.empty()) continue;
+    for (int row = tb.u_offset; row < tb.u_offset + tb.num_hinge_u(); ++row)
+      if (data_->tree.mode[static_cast<size_t>(row)] == HingeMode::Prescribed) k_[row] = c_[row] = 0;
   }
   for (const auto& element : system_.elements) element->add_tangent(system_.tree, data_->tree, k_, c_);
 }

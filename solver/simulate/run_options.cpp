@@ -76,7 +76,8 @@ double calc_fastest_frequency(const System& system) {
     const int n = tb.body.num_modes();
     K.block(tb.eta_dot_offset(), tb.eta_dot_offset(), n, n) = tb.body.K();
     for (int i = 0; i < std::min<int>(tb.num_hinge_u(), static_cast<int>(tb.stiffness.size())); ++i)
-      K(tb.u_offset + i, tb.u_offset + i) = tb.stiffness[i];
+      if (tb.mode[static_cast<size_t>(i)] != HingeMode::Prescribed)
+        K(tb.u_offset + i, tb.u_offset + i) = tb.stiffness[i];
   }
   if (K.isZero(0)) return 0;
   const auto data = system.make_data();

@@ -34,7 +34,7 @@ constexpr double kUndamped = 1e-12, kBesidePole = 1e-7;
 /// L is smooth where it changes by less than kRough over kBesideCorner of the frequency; a zero turns its phase by more
 /// than kTurned from a decade below it to one above.
 constexpr double kBesideCorner = 1e-7, kRough = 1e-3, kTurned = 0.2;
-/// Eigenvalues of a lifted L below that share of its norm are rounding.
+/// Eigenvalues of a lifted L below that share of its norm, times their condition number, are rounding.
 constexpr double kRounding = 1e-12;
 
 /// A root of f between a and b, where its signs differ.
@@ -123,6 +123,16 @@ class Loci {
   }
   Eigen::VectorXcd calc(double omega) const { return calc_eigenvalues(calc_L(omega)); }
 
+  /// Returns true if the eigenvalue nearest to `value` exceeds its rounding, kRounding norm(L) / abs(yᴴx) of its
+  /// eigenvectors of length 1 (Golub & Van Loan, Matrix Computations, 7.2.2).
+  bool is_significant(double omega, Complex value) const {
+    const MatrixXcd L = calc_L(omega);
+    const Eigen::ComplexEigenSolver<MatrixXcd> solver(L);
+    const Index i = find_nearest(solver.eigenvalues(), value);
+    const MatrixXcd left = solver.eigenvectors().fullPivLu().inverse();
+    const double condition = left.row(i).norm() * solver.eigenvectors().col(i).norm();
+    return std::abs(value) > kRounding * L.norm() * condition;
+  }
   /// m of the nearest eigenvalue to `value`.
   Index find_alias(double omega, Complex value) const {
     const Eigen::ComplexEigenSolver<MatrixXcd> solver(calc_L(omega));
@@ -253,8 +263,8 @@ void find_crossings(const Loci& loci, double a, const Eigen::VectorXcd& here, do
       (f(value) > 0) == (f(left) > 0) ? (from = middle, left = value) : (to = middle, right = value);
     }
     const Complex value = 0.5 * (left + right);
-    const bool is_known = std::abs(value) > kRounding * loci.calc_L(0.5 * (from + to)).norm();
-    if (is_phase || (is_known && value.real() < 0 && std::abs(value.imag()) < 1e-6 * std::abs(value)))
+    if (is_phase || (value.real() < 0 && std::abs(value.imag()) < 1e-6 * std::abs(value) &&
+                     loci.is_significant(0.5 * (from + to), value)))
       add_crossing(loci, 0.5 * (from + to), value, is_phase, m);
   };
   for (Index i = 0; i < here.size(); ++i) {
@@ -273,9 +283,8 @@ void find_crossings(const Loci& loci, double a, const Eigen::VectorXcd& here, do
 /// Branches that are real at the ends: at ω = π/T, and at ω = 0 if their own frequency is another one there.
 void find_real_ends(const Loci& loci, records::Margins& m) {
   const auto values = loci.calc(loci.last());
-  const double rounding = kRounding * loci.calc_L(loci.last()).norm();
   for (const Complex& value : values)
-    if (value.real() < 0 && std::abs(value.imag()) < 1e-9 * std::abs(value) && std::abs(value) > rounding)
+    if (value.real() < 0 && std::abs(value.imag()) < 1e-9 * std::abs(value) && loci.is_significant(loci.last(), value))
       add_crossing(loci, loci.last(), value.real(), false, m);
   // At ω = 0 an integrator is infinite: the even real part and the odd imaginary part are extrapolated.
   const double h = kLowest * loci.last();

@@ -1,4 +1,5 @@
 // Energies, power and momenta of the whole system, from M(η) of each body (docs/theory/multibody.md).
+#include "solver/forces/hinge_law.hpp"
 #include "solver/system/system.hpp"
 
 namespace bough::solver {
@@ -100,10 +101,14 @@ Power calc_powers(const System& system, const SystemData& data) {
       dissipated += eta_dot[j] * tb.body.D().col(j).dot(eta_dot);
     }
     if (tb.motion.empty() && tb.damping.size() == 0) continue;
+    // A prescribed motion does the work that strains the springs along it.
+    double spring[6] = {};
+    if (!tb.motion.empty() && tb.stiffness.size() > 0)
+      tb.hinge->calc_spring(data.tree.q.data() + tb.q_offset, tb.null_position.data(), tb.stiffness.data(), spring);
     for (int i = 0; i < tb.num_hinge_u(); ++i) {
       const int row = tb.u_offset + i;
       if (data.tree.mode[static_cast<size_t>(row)] == HingeMode::Prescribed)
-        power += data.tree.transmitted[row] * u[row];
+        power += (data.tree.transmitted[row] - spring[i]) * u[row];
       else if (tb.damping.size() > 0)
         dissipated += tb.damping[i] * u[row] * u[row];
     }
@@ -113,10 +118,12 @@ Power calc_powers(const System& system, const SystemData& data) {
   for (size_t i = 0; i < data.elements.size(); ++i) {
     const ForceResult& result = data.elements[i];
     dissipated += result.dissipated;
-    if (system.elements[i]->is_along_hinge())
-      lost += result.dissipated;
-    else
+    if (!system.elements[i]->is_along_hinge()) {
       power -= result.power;
+      continue;
+    }
+    lost += result.dissipated;
+    if (static_cast<const HingeLaw&>(*system.elements[i]).is_prescribed(data.tree)) power -= result.power;
   }
   power += system.signals.calc_power(get_motion(system, data), data.signals);
   power += calc_outflow_power(system, data);

@@ -341,6 +341,18 @@ class Runs(InFolder):
         with self.assertRaisesRegex(bough.InputError, "kq"):
             bough.System.from_text(text, parameters={"kq": 1.0})
 
+    def test_states_of_controllers_out_of_an_equilibrium(self):
+        law = 'type = "pid"\ninputs = "angle"\nkp = 40.0\nki = 10.0\nkd = 3.0\nfilter = 0.02\nsetpoint = 0.2'
+        self.write("p.toml", PENDULUM.format(law=law))
+        bough.equilibrium("p.toml", "rest.h5")
+        system = bough.System("p.toml", start_from="rest.h5")
+        rest = bough.read_results("rest.h5")["angle"][0, 0]
+        np.testing.assert_allclose(system.run()["angle"], rest, rtol=0, atol=1e-7)
+        simulation = bough.Simulation(system)
+        for t in (0.1, 0.3):
+            simulation.advance_to(t)
+            self.assertAlmostEqual(simulation.output("angle"), rest, delta=1e-7)
+
     def test_messages_name_the_text(self):
         text = PENDULUM.format(law=EXPRESSION).replace("mass = 2.0", 'mass = "heavy"')
         for given, file in (({}, "<text>"), ({"name": "arm"}, "arm"), ({"folder": "models"}, "models/<text>")):

@@ -1,0 +1,245 @@
+"""Where linearize, equilibrium and run start: steady lags, samples, switches, released motions, against closed forms."""
+import unittest
+
+import h5py
+import numpy as np
+
+from support import ProgramTest
+from toml_text import section, table, toml
+
+
+def make_body(**keys):
+    """A body of unit inertia on a revolute hinge, which starts at 0.7 rad with 0.6 rad/s."""
+    return (table("body", "b", mass=1.0, inertia=[1.0, 1.0, 1.0]) +
+            table("hinge", "h", "revolute", child="b", **{"position": 0.7, "rate": 0.6, **keys}))
+
+
+ANGLE = table("sensor", "a", "hinge_angle", hinge="h")
+RELAY = table("controller", "rl", "relay", inputs="a", on=0.5, off=0.2, value=1.0, low=0.0)
+END = section("simulation", duration=1.0)
+
+LAG = toml(
+    make_body(damping=1.0, stiffness=3.0),
+    table("sensor", "a", "hinge_angle", hinge="h", lag=0.1, initial="steady"),
+    table("controller", "s", "table", inputs="a", x=[-1.0, 0.5, 1.0], y=[1.0, -0.5, -3.0]),
+    table("actuator", "m", "hinge", hinge="h", input="s"), END)
+
+SWITCHED = toml(
+    make_body(), ANGLE, RELAY,
+    table("controller", "law", "expression", inputs=["rl", "a"], expression="-u1*3*u2"),
+    table("actuator", "m", "hinge", hinge="h", input="law"), END)
+
+SAMPLED = toml(
+    make_body(),
+    table("sensor", "rs", "hinge_rate", hinge="h", sample_time=0.1), ANGLE,
+    table("controller", "pr", "expression", inputs=["rs", "a"], expression="-u1*u2"),
+    table("actuator", "m", "hinge", hinge="h", input="pr"),
+    table("actuator", "n", "hinge", hinge="h", input="a", scale=-1.0, lag=0.1, initial="steady", rate_limit=3.0), END)
+
+SATURATED = toml(
+    make_body(),
+    table("sensor", "r", "hinge_rate", hinge="h", lag=0.02, initial="steady"),
+    table("controller", "lim", "limit", inputs="r", upper=0.5, lower=-0.5),
+    table("actuator", "m", "hinge", hinge="h", input="lim", scale=-1.0), END)
+
+
+def make_relay(value, duration=20.0):
+    """A spring of 4 N m/rad at rest at 1 rad, and a relay that adds a moment above 0.5 rad, none below 0.2 rad."""
+    relay = table("controller", "rl", "relay", inputs="a", on=0.5, off=0.2, value=value, low=0.0)
+    return toml(make_body(rate=0.0, stiffness=4.0, damping=2.0, preload=4.0), ANGLE, relay,
+                table("actuator", "m", "hinge", hinge="h", input="rl"), section("simulation", duration=duration))
+
+
+PI = toml(
+    table("body", "b", mass=1.0, cg=[0.5, 0.0, 0.0], inertia=[0.1, 0.1, 0.1]),
+    table("hinge", "h", "revolute", child="b", axis=[0.0, 1.0, 0.0], damping=0.5),
+    ANGLE,
+    table("controller", "pd", "pid", inputs="a", kp=20.0, ki=10.0, kd=1.0, filter=0.02, setpoint=0.2),
+    table("actuator", "m", "hinge", hinge="h", input="pd", lag=0.05),
+    section("simulation", duration=1.0, gravity=[0.0, 0.0, -9.81]))
+
+INPUT = toml(
+    section("parameters", t0=0.0), table("input", "torque", start="$t0"),
+    make_body(position=0.0, rate=0.0, stiffness=4.0),
+    table("actuator", "m", "hinge", hinge="h", input="torque"), END)
+
+RAMP = table("function", "f", "expression", expression="0.6*t", rate="0.6", acceleration="0")
+
+
+class Starts(ProgramTest):
+    def linearize(self, text, *arguments):
+        self.write("case.toml", text)
+        self.bough("linearize", "case.toml", *arguments, "-o", "case.h5")
+        return self.read_arrays("case.h5", "A")[0]
+
+    def test_a_steady_lag_starts_at_the_slope_of_its_operating_point(self):
+        slope = -(3.0 - 0.5) / (1.0 - 0.5)  # of the table at 0.7 rad
+        expected = np.array([[0, 1, 0], [-3, -1, slope], [10, 0, -10]])
+        for more in ((), ("--at", 0), ("--at", 1e-9)):
+            np.testing.assert_allclose(self.linearize(LAG, *more), expected, atol=1e-6)
+        self.bough("linearize", "case.toml", "--each", 500, "-o", "many.h5")
+        with h5py.File(self.path("many.h5")) as f:
+            poles = f["poles/real"][0] + 1j * f["poles/imag"][0]
+        np.testing.assert_allclose(np.sort_complex(poles), np.sort_complex(np.linalg.eigvals(expected)), atol=1e-6)
+        self.bough("run", "case.toml", "-o", "run.h5")
+        with h5py.File(self.path("run.h5")) as f:
+            end = f["hinges/h/q"][()].ravel()[-1]
+        slope = -1 if end < 0.5 else slope
+        expected[1, 2] = slope
+        np.testing.assert_allclose(self.linearize(LAG, "--start-from", "run.h5"), expected, atol=1e-6)
+
+    def test_a_relay_is_switched_at_the_start(self):
+        np.testing.assert_allclose(self.linearize(SWITCHED), [[0, 1], [-3, 0]], atol=1e-9)
+
+    def test_samples_of_the_start_are_taken(self):
+        A = self.linearize(SAMPLED)
+        np.testing.assert_allclose(A, [[0, 1, 0], [-0.6, 0, 1], [-10, 0, -10]] if A[1, 2] > 0 else
+                                   [[0, 1, 0], [-0.6, 0, -1], [10, 0, -10]], atol=1e-6)
+        np.testing.assert_allclose(A, self.linearize(SAMPLED, "--at", 1e-6), atol=1e-6)
+
+    def test_a_limit_is_saturated_at_the_start(self):
+        A = self.linearize(SATURATED)
+        np.testing.assert_allclose(A, [[0, 1, 0], [0, 0, 0], [0, 50, -50]], atol=1e-9)
+
+    def test_a_sweep_starts_as_a_run(self):
+        text = section("parameters", p=0.7) + SWITCHED.replace("position = 0.7", 'position = "$p"')
+        self.write("case.toml", text)
+        self.bough("linearize", "case.toml", "--sweep", "p=0.4:0.8:3", "-o", "many.h5")
+        with h5py.File(self.path("many.h5")) as f:
+            np.testing.assert_allclose(f["poles/imag"][()].max(axis=1), [0, 3**0.5, 3**0.5], atol=1e-6)
+
+    def test_equilibrium_settles_relays(self):
+        self.write("case.toml", make_relay(1.0))
+        self.bough("equilibrium", "case.toml", "-o", "rest.h5")
+        self.bough("run", "case.toml", "--start-from", "rest.h5", "-o", "run.h5")
+        for name in ("rest.h5", "run.h5"):
+            np.testing.assert_allclose(self.read_arrays(name, "hinges/h/q")[0], (4 + 1) / 4, atol=1e-9)
+
+    def test_equilibrium_switches_what_its_state_switches(self):
+        # From 0 rad the relay is off, and at the rest without it, 1 rad, it is on.
+        self.write("case.toml", make_relay(1.0).replace("position = 0.7", "position = 0.0"))
+        self.bough("equilibrium", "case.toml", "-o", "rest.h5")
+        np.testing.assert_allclose(self.read_arrays("rest.h5", "hinges/h/q")[0], 1.25, atol=1e-9)
+
+    def test_a_limit_cycle_has_no_equilibrium(self):
+        self.write("case.toml", make_relay(-4.0))  # at rest at 0 rad while on, at 1 rad while off
+        message = self.bough("equilibrium", "case.toml", "-o", "rest.h5", code=3).stderr
+        self.assertIn("equilibrium.switching", message)
+        self.assertIn("'rl'", message)
+
+    def test_an_input_starts_as_the_system_file_says(self):
+        self.write("case.toml", INPUT)
+        self.bough("equilibrium", "case.toml", "-o", "rest.h5")
+        messages = self.bough("run", "case.toml", "--start-from", "rest.h5", "--set", "t0=1", "-o", "run.h5")
+        self.assertNotIn("resumed", messages.stdout + messages.stderr)
+        t, q = self.read_arrays("run.h5", "time", "hinges/h/q")
+        np.testing.assert_allclose(q.ravel(), (1 - np.cos(2 * t)) / 4, atol=1e-6)
+
+    def test_states_of_controllers_out_of_an_equilibrium(self):
+        self.write("case.toml", PI)
+        self.bough("equilibrium", "case.toml", "-o", "rest.h5")
+        self.bough("run", "case.toml", "--start-from", "rest.h5", "-o", "run.h5")
+        np.testing.assert_allclose(self.read_arrays("run.h5", "sensors/a")[0], 0.2, atol=1e-7)
+
+    def test_no_warning_of_events_after_the_operating_point(self):
+        self.write("case.toml", toml(make_body(), table("event", "late", time=0.8, action="lock", hinge="h"), END))
+        self.assertNotIn("run.event-never", self.bough("linearize", "case.toml", "--at", 0.5, "-o", "case.h5").stderr)
+
+    def test_names_of_travels_follow_their_axes(self):
+        self.write("case.toml", toml(
+            table("body", "b", mass=1.0, inertia=[1.0, 1.0, 1.0]),
+            table("hinge", "h", "general", child="b", rotations="q", translations="zx"), END))
+        self.bough("linearize", "case.toml", "-o", "case.h5")
+        with h5py.File(self.path("case.h5")) as f:
+            names = [name.decode() if isinstance(name, bytes) else name for name in f["states/name"][()]]
+        self.assertEqual(names[:5], ["h:rx", "h:ry", "h:rz", "h:z", "h:x"])
+
+
+class PrescribedMotions(ProgramTest):
+    """What acts along a coordinate before and after a motion that prescribes it ends."""
+    def run_case(self, text):
+        self.write("case.toml", text)
+        messages = self.bough("run", "case.toml", "-o", "case.h5").stderr
+        with h5py.File(self.path("case.h5")) as f:
+            error = float(f["energy"].attrs["energy_error"])
+            return {name: f[name][()] for name in ("time", "hinges/h/q", "hinges/h/qdot", "energy/strain")}, error, messages
+
+    def test_spring_and_damper_act_after_the_release(self):
+        for integrator in ("adams", "implicit", "bdf"):
+            case, error, messages = self.run_case(toml(
+                table("body", "b", mass=1.0, inertia=[1.0, 1.0, 1.0]),
+                table("hinge", "h", "cylindrical", child="b", stiffness=[3.0, 30.0], damping=[0.1, 0.2], motion=["", "f"]),
+                RAMP, table("event", "r", time=0.2, action="release", hinge="h", coordinates=[2]),
+                section("simulation", duration=1.0, integrator=integrator,
+                        **({"step": 1e-4} if integrator == "implicit" else {}))))
+            s = case["time"] - 0.2
+            w = np.sqrt(30 - 0.1**2)
+            q = np.exp(-0.1 * s) * (0.12 * np.cos(w * s) + (0.6 + 0.1 * 0.12) / w * np.sin(w * s))
+            np.testing.assert_allclose(case["hinges/h/q"][:, 1], np.where(s < 0, 0.6 * case["time"], q), atol=2e-5)
+            self.assertLess(error, 1e-5, integrator)
+
+    def test_the_energy_balance_holds_across_lock_and_release(self):
+        curve = table("function", "tab", "table", x=[-3.0, 0.0, 3.0], y=[-60.0, 0.0, 90.0])
+        for law in ({"preload": 5.0}, {"spring_table": ["tab"]}, {"stiffness": 30.0, "null_position": 0.5}):
+            for action in ("lock", "release"):
+                case, error, messages = self.run_case(toml(
+                    table("body", "b", mass=1.0),
+                    table("hinge", "h", "prismatic", child="b", axis=[1.0, 0.0, 0.0], motion=["f"], **law),
+                    RAMP, curve, table("event", "r", time=0.2, action=action, hinge="h"),
+                    section("simulation", duration=0.6, output_step=0.02)))
+                self.assertLess(error, 1e-6, (law, action))
+                q, rate = case["hinges/h/q"].ravel()[-1], case["hinges/h/qdot"].ravel()[-1]
+                self.assertIn("up to a release", messages)
+                if action == "lock":
+                    np.testing.assert_allclose([q, rate], [0.12, 0], atol=1e-9)
+                elif "preload" in law:
+                    np.testing.assert_allclose(rate, 0.6 + 5 * 0.4, atol=1e-6)
+                    np.testing.assert_allclose(case["energy/strain"].ravel(), -5 * case["hinges/h/q"].ravel(), atol=1e-9)
+
+    def test_a_motor_inertia_acts_and_is_not_warned_of(self):
+        _, _, messages = self.run_case(toml(
+            table("body", "b", mass=1.0, inertia=[1.0, 1.0, 1.0]),
+            table("hinge", "h", "revolute", child="b", motion=["f"], rotor_inertia=0.5), RAMP, END))
+        self.assertNotIn("system.ignored-spring", messages)
+
+
+class FixedSteps(ProgramTest):
+    def test_a_longer_run_begins_as_the_shorter_one(self):
+        for integrator in ("rk4", "implicit"):
+            found = []
+            for duration in (0.7, 1.0):
+                self.write("case.toml", toml(
+                    table("body", "b", mass=1.0, cg=[0.5, 0.0, 0.0], inertia=[0.1, 0.1, 0.1]),
+                    table("hinge", "h", "revolute", child="b", axis=[0.0, 1.0, 0.0], position=0.5),
+                    table("function", "f", "expression", expression="sin(5*t)"),
+                    table("force", "F", body="b", moment=[0.0, 1.0, 0.0], function="f"),
+                    section("simulation", duration=duration, output_step=0.1, integrator=integrator, step=0.02,
+                            gravity=[0.0, 0.0, -9.81], energy_error_limit=1.0)))
+                self.bough("run", "case.toml", "-o", "case.h5")
+                found.append(self.read_arrays("case.h5", "hinges/h/q")[0][:7])
+            np.testing.assert_array_equal(*found)
+
+
+class OrbitalFrame(ProgramTest):
+    def test_rates_follow_the_orbit_plane_that_j2_turns(self):
+        h = 1.0
+        self.write("case.toml", toml(
+            table("body", "s", mass=10.0, inertia=[3.0, 4.0, 5.0]),
+            table("hinge", "f", "free", child="s", position=[1.0, 0.0, 0.0, 0.0, 6.0e6, 2.5e6, 2.0e6],
+                  rate=[0.0, 0.0, 0.0, -2500.0, 4300.0, 5335.0]),
+            table("force", "earth", "gravity_central", mu=3.986004418e14, j2=1.08263e-3, radius=6378137.0),
+            table("sensor", "w", "angular_velocity", body="s", relative_to="lvlh:s"),
+            table("sensor", "q", "dcm", body="s", relative_to="lvlh:s"),
+            section("simulation", duration=300.0, output_step=h, integrator="rk", relative_tolerance=1e-12)))
+        self.bough("run", "case.toml", "-o", "case.h5")
+        w, R = self.read_arrays("case.h5", "sensors/w", "sensors/q")
+        R = R.reshape(-1, 3, 3)
+        c = np.array([1 / 280, -4 / 105, 1 / 5, -4 / 5, 0, 4 / 5, -1 / 5, 4 / 105, -1 / 280]) / h
+        rate = sum(c[i] * R[i:len(R) - 8 + i] for i in range(9))
+        W = np.einsum("nij,nkj->nik", rate, R[4:-4])
+        from_attitude = np.stack([W[:, 2, 1], W[:, 0, 2], W[:, 1, 0]], 1)
+        np.testing.assert_allclose(w[4:-4], from_attitude, atol=1e-11)
+
+
+if __name__ == "__main__":
+    unittest.main()
