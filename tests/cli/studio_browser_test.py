@@ -1,6 +1,7 @@
 """bough studio in headless Chromium by mouse and keys: from a deck to a body, a system, a run, poles and a page; the
 files written give the same numbers by the command line. Skipped, with a message, where chromium is not installed."""
 import os
+import re
 import shutil
 import tomllib
 import unittest
@@ -197,6 +198,46 @@ class Flow(PageTest):
         page.show(".function-curves")
         self.wait("document.querySelector('.function-curves canvas.curves').width > 50")
         self.keep("studio-functions")
+        self.assertEqual([e for e in page.list_errors() if "favicon" not in e], [])
+
+    def test_large_deck(self):
+        """A large mesh turns with fewer faces of the same shape, which the view names; at rest it has all."""
+        n = 81  # grids along an edge of a square of side 1
+        lines = ["SOL 103", "CEND", "BEGIN BULK", "PSHELL,1,1,.01,1", "MAT1,1,7.+10,,.3,2700."]
+        lines += [f"GRID,{1 + i + n * j},,{i / (n - 1):.5f},{j / (n - 1):.5f},0." for j in range(n) for i in range(n)]
+        lines += [f"CQUAD4,{1 + i + n * j},1,{1 + i + n * j},{2 + i + n * j},{2 + i + n * (j + 1)},{1 + i + n * (j + 1)}"
+                  for j in range(n - 1) for i in range(n - 1)]
+        self.write("large.bdf", "\n".join([*lines, "ENDDATA", ""]))
+        page = self.open_studio("large.bdf")
+        self.wait("studio.view?.stage")
+        whole = page.run(COLORS)
+        box = page.show("canvas.scene")
+        x, y = box["x"] + 100, box["y"] + 100
+        page.mouse("mousePressed", x, y, button="left", buttons=1, clickCount=1)
+        page.mouse("mouseMoved", x + 40, y + 10, button="left", buttons=1)
+        self.wait("!document.querySelector('.thinned').hidden")
+        kept, every = (int(word) for word in re.findall(r"\d+", page.run("document.querySelector('.thinned').textContent")))
+        self.assertEqual(every, 2 * (n - 1)**2)
+        self.assertLess(kept, 5100)
+        self.assertGreater(page.run(COLORS), 3)
+        page.mouse("mouseReleased", x + 40, y + 10, button="left", clickCount=1)
+        self.wait("document.querySelector('.thinned').hidden")
+        self.assertGreater(page.run(COLORS), whole / 3)
+        # Faces, of which faces each is, and areas: flat and of a bent plate, whose area is that of its arc.
+        flat, bent = page.run("""(async () => { const { make_coarse_mesh } = await import("./coarse_mesh.js");
+          const { xyz, triangles } = studio.view.stage.scene.drawing, arc = xyz.slice();
+          for (let k = 0; k < xyz.length; k += 3) [arc[k], arc[k + 2]] = [Math.sin(3 * xyz[k]) / 3, Math.cos(3 * xyz[k]) / 3];
+          return [xyz, arc].map((p) => { const coarse = make_coarse_mesh(p, triangles, 3000);
+            return { points: Array.from(p), triangles: Array.from(coarse.triangles), sources: Array.from(coarse.sources) }; }); })()""")
+        for mesh, tolerance in ((flat, 1e-6), (bent, 0.01)):
+            p, t = np.reshape(mesh["points"], (-1, 3)), np.reshape(mesh["triangles"], (-1, 3))
+            self.assertLess(len(t), 3001)
+            self.assertGreater(len(t), 1000)
+            self.assertEqual(len(mesh["sources"]), len(t))
+            area = np.linalg.norm(np.cross(p[t[:, 1]] - p[t[:, 0]], p[t[:, 2]] - p[t[:, 0]]), axis=1).sum() / 2
+            self.assertAlmostEqual(area, 1, delta=tolerance)
+            np.testing.assert_allclose(p[np.unique(t)].max(axis=0), p.max(axis=0), atol=2e-2)
+            np.testing.assert_allclose(p[np.unique(t)].min(axis=0), p.min(axis=0), atol=2e-2)
         self.assertEqual([e for e in page.list_errors() if "favicon" not in e], [])
 
     def test_changed_outside(self):
