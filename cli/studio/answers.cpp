@@ -196,6 +196,16 @@ json answer_check(const json& request) {
   return out;
 }
 
+/// Keys of one table of a text with their values as the text has them: "hinge.2", "simulation".
+json answer_table(const json& request) {
+  const auto text = get_text(request, "text"), path = get_text(request, "path");
+  auto values = json::object();
+  for (const auto& item : toml_files::list_items(text))
+    if (item.path() == path)
+      for (const auto& key : item.keys) values[key] = toml_files::get_value_text(text, path + "." + key);
+  return {{"values", values}};
+}
+
 json answer_schema(const json& request) {
   auto kinds = json::array();
   for (const auto& kind : toml_files::describe_kinds(get_text(request, "kind") == "body")) {
@@ -308,6 +318,7 @@ json answer(const json& request) {
   if (what == "start") return answer_start(request);
   if (what == "edit") return answer_edit(request);
   if (what == "check") return answer_check(request);
+  if (what == "table") return answer_table(request);
   if (what == "schema") return answer_schema(request);
   if (what == "preview") return answer_preview(request);
   if (what == "diagram") return answer_diagram(request);

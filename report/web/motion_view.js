@@ -162,6 +162,7 @@ export class MotionView {
     if (is_on === this.is_playing) return;
     this.is_playing = is_on;
     this.play_button.textContent = is_on ? "⏸ pause" : "▶ play";
+    this.viewer.set_played(is_on && !this.recorder);  // a film has all faces
     if (!is_on) return this.recorder?.stop();
     if (this.time >= this.last) this.time = this.first;
     let before = performance.now();

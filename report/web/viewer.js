@@ -1,3 +1,4 @@
+import { make_coarse_mesh } from "./coarse_mesh.js";
 import { el, get_css, make_button, make_file_name, on_theme, save_blob } from "./page_parts.js";
 
 // 4 x 4 matrices, columns first, as WebGL takes them.
@@ -58,10 +59,10 @@ const project = (view, rect, p) => {
   return w > 0 ? [(rect.width * (1 + x / w)) / 2, (rect.height * (1 - y / w)) / 2] : null;
 };
 
-// Outlines of larger meshes wait until the view rests: lines take most of the time where no graphics card draws.
-export const kMaxTurningEdges = 5000;
-// Larger meshes are turned with a pixel in four, and at most one picture per frame of the browser.
-const kMaxTurningTriangles = 5000;
+// While a scene of more faces moves (it turns, or it is played), a pixel in four is drawn, with about this number of faces
+// and no longer lists of edges: without a graphics card, and with one.
+const kMaxMoving = { software: 5000, hardware: 500000 };
+const kSoftware = /swiftshader|llvmpipe|softpipe|software|basic render/i;
 
 // A stage on which things are drawn: { points, size, triangles, edges, color, by_level, line_color }; marks stand before
 // all things. With by_level a point's colour is its size over `reach`; with elements and levels (Drawing) each element
@@ -72,11 +73,19 @@ export class Viewer {
     this.canvas = el("canvas", { class: "scene", tabindex: "0", role: "img", "aria-label": "three-dimensional view" });
     this.canvas.style.height = typeof height === "number" ? height + "px" : height;
     this.tip = el("div", { class: "tip", hidden: true, role: "status" });
-    this.element = el("div", { class: "viewer" }, this.canvas, this.tip);
-    const gl = this.canvas.getContext("webgl2", { alpha: false, antialias: true, preserveDrawingBuffer: true });
+    this.thinned = el("div", { class: "thinned", hidden: true });
+    this.element = el("div", { class: "viewer" }, this.canvas, this.tip, this.thinned);
+    const gl = this.canvas.getContext("webgl2", { antialias: false, preserveDrawingBuffer: true });
     if (!gl) throw new Error("WebGL 2 is not there");
     this.gl = gl;
     this.program = this.make_program();
+    const info = gl.getExtension("WEBGL_debug_renderer_info");
+    this.is_software = Boolean(info && kSoftware.test(gl.getParameter(info.UNMASKED_RENDERER_WEBGL)));
+    this.max_moving = this.is_software ? kMaxMoving.software : kMaxMoving.hardware;
+    this.smooth = null;  // framebuffer of several samples per pixel, and its buffers
+    this.coarse = new WeakMap();  // coarse meshes by the faces of the whole ones
+    this.is_turning = false;  // the pointer turns or moves it
+    this.is_played = false;  // what it shows moves
     this.buffers = { place: gl.createBuffer(), size: gl.createBuffer(), index: gl.createBuffer() };
     this.name = "";
     this.on_pick = null;  // called with what was clicked, and null for nothing
@@ -109,7 +118,8 @@ export class Viewer {
     gl.bindAttribLocation(program, 1, "size");
     gl.linkProgram(program);
     if (!gl.getProgramParameter(program, gl.LINK_STATUS)) throw new Error(gl.getProgramInfoLog(program));
-    this.at = (name) => gl.getUniformLocation(program, name);
+    const places = Object.fromEntries(["view", "reach", "lift", "color", "by_level", "lit", "eye"].map((name) => [name, gl.getUniformLocation(program, name)]));
+    this.at = (name) => places[name];
     return program;
   }
 
@@ -169,8 +179,34 @@ export class Viewer {
     return multiply(lens, look);
   }
 
+  count_faces() {
+    return this.things.reduce((sum, thing) => sum + (thing.triangles?.length ?? 0) / 3, 0);
+  }
   is_large() {
-    return this.things.reduce((sum, thing) => sum + (thing.triangles?.length ?? 0) / 3, 0) > kMaxTurningTriangles;
+    return this.count_faces() > this.max_moving;
+  }
+
+  /** Plays or rests: large scenes are drawn with less while they move. @param {boolean} is_on */
+  set_played(is_on) {
+    if (this.is_played === is_on) return;
+    this.is_played = is_on;
+    if (!is_on) requestAnimationFrame(() => this.draw());
+  }
+
+  // Things with fewer faces and edges, and a note of it.
+  thin() {
+    const whole = this.count_faces();
+    let count = 0;
+    const things = this.things.map((thing) => {
+      const edges = thing.edges?.length > 2 * this.max_moving ? undefined : thing.edges;
+      if (!(thing.triangles?.length > 0)) return { ...thing, edges };
+      if (!this.coarse.has(thing.triangles)) this.coarse.set(thing.triangles, make_coarse_mesh(thing.points, thing.triangles, Math.max(100, (this.max_moving * thing.triangles.length) / (3 * whole))));
+      const { triangles, sources } = this.coarse.get(thing.triangles), { elements } = thing;
+      count += sources.length;
+      return { ...thing, edges, triangles, ...(thing.levels ? { edges: new Uint32Array(), elements: { of_triangle: sources.map((t) => elements.of_triangle[t]), of_edge: new Uint32Array() } } : {}) };
+    });
+    this.thinned.textContent = `while it moves: ${count} of ${whole} faces`;
+    return things;
   }
 
   // After a movement of the pointer: there are more of them than pictures that a large mesh can be drawn in.
@@ -183,25 +219,51 @@ export class Viewer {
   }
 
   draw() {
-    const gl = this.gl, scale = (devicePixelRatio || 1) * (this.is_turning && this.is_large() ? 0.5 : 1);
+    const gl = this.gl, is_moving = this.is_turning || this.is_played, is_thinned = is_moving && this.is_large();
+    const scale = (devicePixelRatio || 1) * (is_thinned ? 0.5 : 1);
     const width = Math.round(this.canvas.clientWidth * scale), height = Math.round(this.canvas.clientHeight * scale);
     if (width < 10 || height < 10) return;
     if (this.canvas.width !== width || this.canvas.height !== height) [this.canvas.width, this.canvas.height] = [width, height];
     if (this.is_fitted_late) return this.fit(this.home);
+    // Samples cost two thirds of a picture where no graphics card draws it.
+    const is_smooth = !(is_moving && this.is_software);
+    if (is_smooth) this.bind_smooth(width, height);
     gl.viewport(0, 0, width, height);
     gl.clearColor(...to_rgba(get_css("--stage")));
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
     gl.enable(gl.DEPTH_TEST);
     gl.enable(gl.BLEND);
-    gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
+    gl.blendFuncSeparate(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA, gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
     gl.useProgram(this.program);
     gl.uniformMatrix4fv(this.at("view"), false, this.make_view());
     gl.uniform3fv(this.at("eye"), this.eye);
     gl.uniform1f(this.at("reach"), this.reach);
-    for (const thing of this.things) this.draw_thing(thing);
+    for (const thing of is_thinned ? this.thin() : this.things) this.draw_thing(thing);
+    this.thinned.hidden = !is_thinned;
     gl.clear(gl.DEPTH_BUFFER_BIT);  // no body hides what comes now
     for (const thing of this.marks) this.draw_thing(thing);
+    if (is_smooth) {
+      gl.bindFramebuffer(gl.DRAW_FRAMEBUFFER, null);
+      gl.blitFramebuffer(0, 0, width, height, 0, 0, width, height, gl.COLOR_BUFFER_BIT, gl.NEAREST);
+      gl.bindFramebuffer(gl.READ_FRAMEBUFFER, null);
+    }
     this.update_tip();
+  }
+
+  // Draws into four samples per pixel from now on.
+  bind_smooth(width, height) {
+    const gl = this.gl;
+    this.smooth ??= { frame: gl.createFramebuffer(), color: gl.createRenderbuffer(), depth: gl.createRenderbuffer(), width: 0, height: 0 };
+    const { frame, color, depth } = this.smooth;
+    gl.bindFramebuffer(gl.FRAMEBUFFER, frame);
+    if (this.smooth.width === width && this.smooth.height === height) return;
+    const samples = Math.min(4, gl.getParameter(gl.MAX_SAMPLES));
+    for (const [buffer, format, at] of [[color, gl.RGBA8, gl.COLOR_ATTACHMENT0], [depth, gl.DEPTH_COMPONENT24, gl.DEPTH_ATTACHMENT]]) {
+      gl.bindRenderbuffer(gl.RENDERBUFFER, buffer);
+      gl.renderbufferStorageMultisample(gl.RENDERBUFFER, samples, format, width, height);
+      gl.framebufferRenderbuffer(gl.FRAMEBUFFER, at, gl.RENDERBUFFER, buffer);
+    }
+    [this.smooth.width, this.smooth.height] = [width, height];
   }
 
   draw_thing(thing) {
@@ -222,8 +284,7 @@ export class Viewer {
     const color = to_rgba(thing.color, thing.alpha ?? 1);
     const has_faces = thing.triangles?.length > 0;
     if (has_faces) draw(gl.TRIANGLES, thing.triangles, color, thing.by_level, true, 0);
-    const waits = this.is_turning && has_faces && thing.edges?.length > 2 * kMaxTurningEdges;
-    if (thing.edges?.length > 0 && !waits)
+    if (thing.edges?.length > 0)
       draw(gl.LINES, thing.edges, has_faces ? to_rgba(get_css("--edge"), (thing.alpha ?? 1) * 0.6) : color, !has_faces && thing.by_level, false, thing.lift ?? 1e-4);
     if (thing.ghosts?.length > 0) draw(gl.LINES, thing.ghosts, to_rgba(get_css("--ghost"), 0.6), false, false, 0);
     if (thing.dots) draw(gl.POINTS, null, color, thing.by_level, false, 2e-4);
@@ -277,7 +338,7 @@ export class Viewer {
 
   listen() {
     let last = null;
-    let start = null;
+    let start = null, wheel = 0;
     const rest = () => {
       last = start = null;
       if (this.is_turning) requestAnimationFrame(() => this.draw());
@@ -328,6 +389,11 @@ export class Viewer {
     this.canvas.addEventListener("wheel", (event) => {
       event.preventDefault();
       this.distance *= Math.exp(0.001 * event.deltaY);
+      if (!start) {
+        this.is_turning = true;
+        clearTimeout(wheel);
+        wheel = setTimeout(() => !start && rest(), 200);
+      }
       this.draw_moved();
     }, { passive: false });
   }

@@ -141,8 +141,9 @@ class Browser:
             self.call("Input.dispatchKeyEvent", type="keyUp", key=key, **code)
 
     def press(self, key, modifiers=0):
-        self.call("Input.dispatchKeyEvent", type="rawKeyDown", key=key, code=key, modifiers=modifiers)
-        self.call("Input.dispatchKeyEvent", type="keyUp", key=key, code=key, modifiers=modifiers)
+        more = {"windowsVirtualKeyCode": 8} if key == "Backspace" else {}  # with it the browser edits a text
+        self.call("Input.dispatchKeyEvent", type="rawKeyDown", key=key, code=key, modifiers=modifiers, **more)
+        self.call("Input.dispatchKeyEvent", type="keyUp", key=key, code=key, modifiers=modifiers, **more)
 
     def list_errors(self):
         """Exceptions of the script, and errors of the console and the log (breaches of the policy among them)."""

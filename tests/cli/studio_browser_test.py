@@ -1,7 +1,9 @@
 """bough studio in headless Chromium by mouse and keys: from a deck to a body, a system, a run, poles and a page; the
 files written give the same numbers by the command line. Skipped, with a message, where chromium is not installed."""
 import os
+import re
 import shutil
+import tomllib
 import unittest
 
 import h5py
@@ -47,9 +49,7 @@ class Flow(PageTest):
 
         grid = page.run("studio.view.stage.scene.drawing.ids[0]")
         x, y = page.run(PROJECT % grid)
-        page.mouse("mouseMoved", x, y)
-        page.mouse("mousePressed", x, y, button="left", buttons=1, clickCount=1)
-        page.mouse("mouseReleased", x, y, button="left", clickCount=1)
+        self.click_at(x, y)
         self.wait(f"document.querySelector('.side .picked').textContent.startsWith('grid {grid} (')")
         self.assertIn(str(grid), page.run("document.querySelector('.chosen').textContent"))
         self.click_text("Check")
@@ -77,12 +77,32 @@ class Flow(PageTest):
         self.open(stem + "-run.toml")
         self.wait("document.querySelector('.text-pane').dataset.checked === '0'")
         self.wait("document.querySelector('.scene-host').dataset.samples")
-        # The free body is put on a hinge along its edge, at the grid that was clicked.
-        page.click("input.command")
-        page.type(f"set base.type=revolute base.child_node={grid} base.axis=[1.0,0.0,0.0]\n")
+        # The free body is put on a hinge along its edge, at the node that is clicked; another node gets a sensor.
+        end = page.run("Math.max(...studio.view.viewer.things.find((t) => t.ids).ids)")
+        page.click(".add-form summary")
+        self.wait("document.querySelector('.add-form [name=name]')")
+        self.choose("table of the form", "hinge base")
+        self.wait("document.querySelector('.add-form .main').textContent === 'Change' && document.querySelector('.add-form [name=type]').value === 'free'")
+        self.choose_field("type", "revolute")
+        self.click_node(grid)
+        self.click_text("x", "document.querySelector('.add-form .along')")
+        self.keep("studio-hinge")
+        self.click_text("Change")
         self.wait("studio.view.pane.text.includes('revolute')")
-        # A key is changed by keys: the text has the change, the file has it after the difference was shown.
-        page.type("set simulation.duration=0.2\n")
+        self.assertEqual({"name": "base", "type": "revolute", "parent": "ground", "child": stem, "child_node": grid, "axis": [1.0, 0.0, 0.0]},
+                         tomllib.loads(page.run("studio.view.pane.text"))["hinge"][0])
+        self.wait("document.querySelector('.text-pane').dataset.checked === '0'")
+        self.choose("table of the form", "sensor")
+        self.choose_field("type", "position")
+        self.click_node(end)
+        self.click_text("Add")
+        self.wait("studio.view.pane.text.includes('sensor1')")
+        # A value by keys: the text has the change, the file has it after the difference was shown.
+        self.choose("table of the form", "simulation")
+        self.wait("document.querySelector('.add-form [name=duration]')")
+        page.run("document.querySelector('.add-form [name=duration]').select()")
+        page.type("0.2")
+        self.click_text("Change")
         self.wait("studio.view.pane.text.includes('duration = 0.2')")
         self.wait("document.querySelector('.text-pane').dataset.checked === '0'")
         page.click("button.run")
@@ -101,9 +121,10 @@ class Flow(PageTest):
         self.assertIn("Content-Security-Policy", self.read(stem + "-run.html"))
         page.click("button.linearize")
         self.wait("document.querySelector('.result').dataset.ready === 'linearize'")
-        page.show(".result .live")
-        self.wait("document.querySelector('.result .chart canvas')")
+        page.show(".result .live[data-view=poles]")
+        self.wait("studio.view.poles && studio.view.poles.chart.frame")
         self.keep("studio-poles")
+        poles = page.run("[studio.view.poles.poles.real, studio.view.poles.poles.imag]")
         self.assertEqual([e for e in page.list_errors() if "favicon" not in e], [])
         self.assertTrue(all(url.startswith((self.address, "blob:", "data:")) or url.endswith("favicon.ico") for url in page.list_requests()))
 
@@ -117,8 +138,13 @@ class Flow(PageTest):
         with h5py.File(self.path("shell.h5")) as a, h5py.File(self.path(stem + ".h5")) as b:
             np.testing.assert_array_equal(a["/modes/frequency_hz"][:], b["/modes/frequency_hz"][:])
         with h5py.File(self.path("shell-run.h5")) as a, h5py.File(self.path(stem + "-run.h5")) as b:
-            np.testing.assert_array_equal(a["/hinges/base/q"][:], b["/hinges/base/q"][:])
-            self.assertGreater(np.abs(a["/hinges/base/q"][:]).max(), 1e-3)
+            for path in ("/hinges/base/q", "/sensors/sensor1"):
+                np.testing.assert_array_equal(a[path][:], b[path][:])
+                self.assertGreater(np.ptp(a[path][:], axis=0).max(), 1e-3)
+        self.bough("linearize", stem + "-run.toml", "-o", "shell-linear.h5")
+        with h5py.File(self.path("shell-linear.h5")) as f:
+            found = np.array([f["/poles/real"][:], f["/poles/imag"][:]])
+        np.testing.assert_allclose(poles, found, rtol=1e-12, atol=1e-11 * np.abs(found).max())
 
     def test_poles_and_blocks(self):
         """A pole that is clicked moves the system, poles follow a gain that is dragged, a block leads to its line."""
@@ -131,9 +157,7 @@ class Flow(PageTest):
         self.wait("studio.view.poles && studio.view.poles.chart.frame")
         x, y = page.run("""(() => { const { chart, poles } = studio.view.poles, b = chart.overlay.getBoundingClientRect();
           return [b.x + chart.map_x(poles.x[0]), b.y + chart.map_y(poles.y[0])]; })()""")
-        page.mouse("mouseMoved", x, y)
-        page.mouse("mousePressed", x, y, button="left", buttons=1, clickCount=1)
-        page.mouse("mouseReleased", x, y, button="left", clickCount=1)
+        self.click_at(x, y)
         self.wait("document.querySelector('.scene-host').dataset.pole === '0'")
         self.assertTrue(page.run("studio.view.motion.is_playing"))
         self.assertIn("Hz", page.run("document.querySelector('.work-column .picked').textContent"))
@@ -174,6 +198,46 @@ class Flow(PageTest):
         page.show(".function-curves")
         self.wait("document.querySelector('.function-curves canvas.curves').width > 50")
         self.keep("studio-functions")
+        self.assertEqual([e for e in page.list_errors() if "favicon" not in e], [])
+
+    def test_large_deck(self):
+        """A large mesh turns with fewer faces of the same shape, which the view names; at rest it has all."""
+        n = 81  # grids along an edge of a square of side 1
+        lines = ["SOL 103", "CEND", "BEGIN BULK", "PSHELL,1,1,.01,1", "MAT1,1,7.+10,,.3,2700."]
+        lines += [f"GRID,{1 + i + n * j},,{i / (n - 1):.5f},{j / (n - 1):.5f},0." for j in range(n) for i in range(n)]
+        lines += [f"CQUAD4,{1 + i + n * j},1,{1 + i + n * j},{2 + i + n * j},{2 + i + n * (j + 1)},{1 + i + n * (j + 1)}"
+                  for j in range(n - 1) for i in range(n - 1)]
+        self.write("large.bdf", "\n".join([*lines, "ENDDATA", ""]))
+        page = self.open_studio("large.bdf")
+        self.wait("studio.view?.stage")
+        whole = page.run(COLORS)
+        box = page.show("canvas.scene")
+        x, y = box["x"] + 100, box["y"] + 100
+        page.mouse("mousePressed", x, y, button="left", buttons=1, clickCount=1)
+        page.mouse("mouseMoved", x + 40, y + 10, button="left", buttons=1)
+        self.wait("!document.querySelector('.thinned').hidden")
+        kept, every = (int(word) for word in re.findall(r"\d+", page.run("document.querySelector('.thinned').textContent")))
+        self.assertEqual(every, 2 * (n - 1)**2)
+        self.assertLess(kept, 5100)
+        self.assertGreater(page.run(COLORS), 3)
+        page.mouse("mouseReleased", x + 40, y + 10, button="left", clickCount=1)
+        self.wait("document.querySelector('.thinned').hidden")
+        self.assertGreater(page.run(COLORS), whole / 3)
+        # Faces, of which faces each is, and areas: flat and of a bent plate, whose area is that of its arc.
+        flat, bent = page.run("""(async () => { const { make_coarse_mesh } = await import("./coarse_mesh.js");
+          const { xyz, triangles } = studio.view.stage.scene.drawing, arc = xyz.slice();
+          for (let k = 0; k < xyz.length; k += 3) [arc[k], arc[k + 2]] = [Math.sin(3 * xyz[k]) / 3, Math.cos(3 * xyz[k]) / 3];
+          return [xyz, arc].map((p) => { const coarse = make_coarse_mesh(p, triangles, 3000);
+            return { points: Array.from(p), triangles: Array.from(coarse.triangles), sources: Array.from(coarse.sources) }; }); })()""")
+        for mesh, tolerance in ((flat, 1e-6), (bent, 0.01)):
+            p, t = np.reshape(mesh["points"], (-1, 3)), np.reshape(mesh["triangles"], (-1, 3))
+            self.assertLess(len(t), 3001)
+            self.assertGreater(len(t), 1000)
+            self.assertEqual(len(mesh["sources"]), len(t))
+            area = np.linalg.norm(np.cross(p[t[:, 1]] - p[t[:, 0]], p[t[:, 2]] - p[t[:, 0]]), axis=1).sum() / 2
+            self.assertAlmostEqual(area, 1, delta=tolerance)
+            np.testing.assert_allclose(p[np.unique(t)].max(axis=0), p.max(axis=0), atol=2e-2)
+            np.testing.assert_allclose(p[np.unique(t)].min(axis=0), p.min(axis=0), atol=2e-2)
         self.assertEqual([e for e in page.list_errors() if "favicon" not in e], [])
 
     def test_changed_outside(self):

@@ -1,5 +1,6 @@
 """The system view of the studio by mouse and keys: axes of hinges are turned, connections are made and deleted. What is
 written is what the commands of `bough edit` write, and what the command line then reads."""
+import json
 import math
 import tomllib
 import unittest
@@ -116,6 +117,66 @@ class Axes(Edits):
         self.wait_for_check()
         self.click_text("± reverse")
         self.wait("studio.view.pane.text.includes('axis = [-1.0, 0.0, 0.0]')")
+        self.assertEqual([e for e in page.list_errors() if "favicon" not in e], [])
+
+
+class Forms(Edits):
+    def select_table(self, text):
+        self.choose("table of the form", text)
+        self.wait(f"document.querySelector('.add-form [name=name]').value === {text.split()[-1]!r}")
+
+    def fill(self, name, value):
+        self.browser.run(f"document.querySelector('.add-form [name={name}]').select()")
+        self.browser.type(value)
+
+    def apply(self):
+        before = self.get_text()
+        self.browser.click(".add-form .main")
+        self.wait(f"studio.view.pane.text !== {json.dumps(before)}")
+        self.wait_for_check()
+        return tomllib.loads(self.get_text())
+
+    def test_tables(self):
+        """Tables are changed, renamed, added and deleted; what is not changed keeps its text."""
+        text = ARM.replace("mass = 1.0", "mass = 1.0  # with its load")
+        page = self.show("arm.toml", text)
+        page.click(".add-form summary")
+        self.wait("document.querySelector('.add-form [name=mass]')")
+        self.select_table("body hand")
+        self.assertEqual(page.run("document.querySelector('.add-form [name=mass]').value"), "1.0")
+        self.fill("mass", "1.5")
+        self.apply()
+        self.assertEqual(self.get_text(), text.replace("mass = 1.0  #", "mass = 1.5  #"))
+        # A name is changed where it is used, an empty value has no key.
+        self.fill("name", "tool")
+        self.assertEqual(self.apply()["hinge"][1]["child"], "tool")
+        self.select_table("hinge wrist")
+        self.assertTrue(page.run("document.querySelector('.ends [value=parent]').checked"))
+        self.assertEqual(page.run("document.querySelector('.add-form [name=parent_rotation_deg]').value"), "[0.0, 0.0, 90.0]")
+        page.run("document.querySelector('.add-form [name=parent_rotation_deg]').select()")
+        page.press("Backspace")
+        self.choose_field("type", "prismatic")
+        page.click(".along button:nth-child(2)")
+        hinge = self.apply()["hinge"][1]
+        self.assertEqual((hinge["type"], hinge["axis"], hinge["parent"]), ("prismatic", [0.0, 1.0, 0.0], "arm"))
+        self.assertNotIn("parent_rotation_deg", hinge)
+        self.keep("studio-form")
+        self.click_text("Delete", "document.querySelector('.add-form')")
+        self.wait("!studio.view.pane.text.includes('wrist')")
+        # A new one in its place has a name that is free; both bodies are chosen by keys.
+        self.wait("document.querySelector('.add-form .main').textContent === 'Add'")
+        self.choose("table of the form", "hinge")
+        self.wait("document.querySelector('.add-form [name=name]').value === 'hinge1'")
+        self.choose_field("parent", "arm")
+        self.choose_field("child", "tool")
+        added = self.apply()["hinge"][1]
+        self.assertEqual(added, {"name": "hinge1", "type": "revolute", "parent": "arm", "child": "tool"})
+        self.wait("document.querySelector('.add-form [name=name]').value === 'hinge2'")
+        self.save()
+        self.bough("check", "arm.toml")
+        for _ in range(5):
+            self.click_text("Undo")
+        self.assertEqual(self.get_text(), text)
         self.assertEqual([e for e in page.list_errors() if "favicon" not in e], [])
 
 

@@ -46,3 +46,23 @@ class PageTest(StudioTest, BrowserTest):
         self.wait(f"document.querySelector('button[data-file={json.dumps(name)}]')")
         self.browser.click(f"button[data-file={json.dumps(name)}]")
         self.wait(f"document.querySelector('main.work').dataset.file === {json.dumps(name)}")
+
+    def click_at(self, x, y):
+        self.browser.mouse("mouseMoved", x, y)
+        self.browser.mouse("mousePressed", x, y, button="left", buttons=1, clickCount=1)
+        self.browser.mouse("mouseReleased", x, y, button="left", clickCount=1)
+
+    def choose_field(self, name, text):
+        """An option of a list in the form of tables, by keys."""
+        field = f"document.querySelector('.add-form select[name={name}]')"
+        self.browser.run(f"{field}.focus()")
+        self.browser.type(text)
+        self.wait(f"{field}.value === {json.dumps(text)}")
+
+    def click_node(self, node):
+        """Clicks a node of a body in the scene of a system; its number must come into the form of tables."""
+        self.browser.show("canvas.scene")
+        self.click_at(*self.browser.run(f"""(() => {{ const {{ viewer }} = studio.view, t = viewer.things.find((t) => t.ids?.includes({node}));
+          const k = t.ids.indexOf({node}), [x, y] = viewer.find_place(t.points.subarray(3 * k, 3 * k + 3)), b = viewer.canvas.getBoundingClientRect();
+          return [b.x + x, b.y + y]; }})()"""))
+        self.wait(f"[...document.querySelectorAll('.add-form input')].some((i) => i.value === '{node}')")

@@ -3,7 +3,7 @@ import { make_body_form } from "./body_form.js";
 import { DeckScene } from "./deck_scene.js";
 import { el, get_css, get_style, make_button, make_check, make_select } from "./page_parts.js";
 import { make_message_list, show_lines } from "./parts.js";
-import { Viewer, kMaxTurningEdges } from "./viewer.js";
+import { Viewer } from "./viewer.js";
 
 /** The mesh of a deck in a viewer: picking, groups, symbols. `on_pick(grid)` is called for each grid that is clicked. */
 export class DeckStage {
@@ -182,7 +182,7 @@ export class DeckView {
       this.list_groups();
       this.stage.draw();
     };
-    return el("section", {}, el("h3", {}, "Show"), el("div", { class: "tools" }, choose, make_button("all", "Show all groups", all(true)), make_button("none", "Hide all groups", all(false))), this.groups, el("div", { class: "tools" }, ...boxes), el("p", { class: "note" }, [...scene.thinned, ...(scene.groups.some((g) => g.edges.length > 2 * kMaxTurningEdges) ? ["edges wait until the view rests"] : [])].join("; ")));
+    return el("section", {}, el("h3", {}, "Show"), el("div", { class: "tools" }, choose, make_button("all", "Show all groups", all(true)), make_button("none", "Hide all groups", all(false))), this.groups, el("div", { class: "tools" }, ...boxes), el("p", { class: "note" }, scene.thinned.join("; ")));
   }
 
   list_groups() {
