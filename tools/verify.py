@@ -28,6 +28,7 @@ import verify_plates
 import verify_random
 import verify_response
 import verify_rotor
+import verify_shock
 
 ROOT = spinup_numbers.ROOT
 PROGRAM = os.path.abspath(sys.argv[1])
@@ -275,7 +276,7 @@ verify_buckling()
 for verify in [verify_rotating, verify_spinup, verify_hub, verify_two_link, verify_free_flyer, verify_plate, verify_blade]:
     with tempfile.TemporaryDirectory() as scratch:
         verify(scratch)
-for cases in [verify_response, verify_random, verify_rotor, verify_nonlinear]:
+for cases in [verify_response, verify_random, verify_shock, verify_rotor, verify_nonlinear]:
     with tempfile.TemporaryDirectory() as scratch:
         cases.verify(bough, scratch, add)
 with tempfile.TemporaryDirectory() as scratch:
