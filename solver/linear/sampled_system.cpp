@@ -48,7 +48,15 @@ std::vector<double> list_instants(const std::vector<SampleTimes>& samples, doubl
 }
 
 SampledSystem::SampledSystem(Plant& plant, const OperatingPoint& point)
-    : plant_(plant), point_(point), n_(plant.num_dofs()), nz_(plant.num_states()) {}
+    : plant_(plant), point_(point), n_(plant.num_dofs()), nz_(plant.num_states()) {
+  if (plant.sampled_rows().empty()) return;
+  // Samples that the start leaves on their way have arrived in all periods that follow.
+  const OperatingPoint start = plant.make_initial_point();
+  if (point.t != start.t || point.memory != start.memory) return;
+  point_.memory(plant.sampled_rows()) = plant.get_initial_state().memory(plant.sampled_rows());
+  point_.memory = plant.sample_all(point_);
+  plant.fill_queues(point_.memory);
+}
 
 std::vector<std::string> SampledSystem::list_names() const {
   std::vector<std::string> names;
