@@ -36,8 +36,8 @@ using records::Superelement;
 constexpr double kTolerance = 1e-5;
 /// Boundary dofs up to which geometric stiffness is condensed: N matrices N x N, 27 MB.
 constexpr Index kMaxStiffenedDofs = 150;
-/// Elements times motions up to which forces and stresses of a section are recovered: some 16 numbers each, 0.6 GB.
-constexpr Index kMaxElementRows = 5'000'000;
+/// Elements times motions up to which forces and stresses of a section are recovered: some 16 numbers each, 128 MB.
+constexpr Index kMaxElementRows = 1'000'000;
 
 bool has_elements(const Deck& deck) {
   return !(deck.beams.empty() && deck.shells.empty() && deck.solids.empty() && deck.crod.empty() &&

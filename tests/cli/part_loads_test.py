@@ -91,6 +91,7 @@ class PartLoads(ProgramTest):
         tables, text = self.compare(make_whole(loads, more=support),
                                     make_parts(GRAVITY, loads + "SPC1,1,23,3\n", GRAVITY + "SPC1,1,2,4\n"))
         length = sum(np.linalg.norm(np.subtract(PLACES[k + 1], PLACES[k])) for k in range(1, 5))
+        self.assertIn("[fe.part-mass]", text)
         seen, mass = map(float, re.search(r"superelement 1 is supported inside.*count (\S+) of its mass (\S+);", text).groups())
         self.assertAlmostEqual(mass, 2.7 * length, delta=1e-4)
         self.assertLess(seen, .9 * mass)
@@ -229,6 +230,19 @@ class PartLoads(ProgramTest):
             for k in bars:
                 np.testing.assert_allclose(np.delete(found[k], 4), bending[k - 1], atol=1e-7 * np.abs(total).max())
                 self.assertAlmostEqual(found[k][4], axial[k - 1] / 1e-3, delta=1e-7 * np.abs(total).max())
+
+    def test_too_many_elements_to_recover(self):
+        grids = "".join(f"GRID,{k},,{.1 * k:.1f},0.,0.\n" for k in range(1, 71))
+        springs = "".join(f"CELAS2,{100 + k},1.+5,{1 + k % 69},{1 + k % 6},{2 + k % 69},{1 + k % 6}\n" for k in range(2400))
+        shared = SHARED.format(density="")
+        self.write("d.bdf", HEAD.format(sol=101).replace(MASSES, "") + "FORCE,3,70,0,1.,1.,2.,3.\n" + shared + grids
+                   + "CELAS2,91,1.+5,1,1,70,1\nBEGIN SUPER=1\n" + shared + grids + "GRID,99,,0.,1.,0.\nCBAR,99,1,99,1,1.,0.,0.\n"
+                   + springs + "".join(f"CBAR,{k},1,{k},{k + 1},0.,1.,0.\n" for k in range(1, 70)) + "ENDDATA\n")
+        result = self.bough("static", "d.bdf", "-o", "d.h5")
+        self.assertIn("[fe.part-recovery]", result.stderr)
+        with h5py.File(self.path("d.h5")) as f:
+            self.assertIn("MUG1_1", f["subcases/1/elements"])
+            self.assertNotIn("MEF1_1", f["subcases/1/elements"])
 
     def find_eigenvalues(self, deck, *options):
         self.write("d.bdf", deck)
