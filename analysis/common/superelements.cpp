@@ -7,8 +7,10 @@
 #include <optional>
 #include <set>
 
+#include "analysis/listing/recovery_rows.hpp"
 #include "fe/linear/petsc.hpp"
 #include "fe/loads/loads.hpp"
+#include "fe/loads/second_order.hpp"
 #include "fe/matrices/assembly.hpp"
 #include "fe/matrices/system.hpp"
 #include "fe/model/coordinates.hpp"
@@ -25,6 +27,7 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::Vector3d;
+using Eigen::VectorXd;
 using records::Deck;
 using records::DeckSection;
 using records::Superelement;
@@ -33,10 +36,14 @@ using records::Superelement;
 constexpr double kTolerance = 1e-5;
 /// Boundary dofs up to which geometric stiffness is condensed: N matrices N x N, 27 MB.
 constexpr Index kMaxStiffenedDofs = 150;
+/// Elements times motions up to which forces and stresses of a section are recovered: some 16 numbers each, 128 MB.
+constexpr Index kMaxElementRows = 1'000'000;
 
 bool has_elements(const Deck& deck) {
   return !(deck.beams.empty() && deck.shells.empty() && deck.solids.empty() && deck.crod.empty() &&
-           deck.conrod.empty() && deck.springs.empty() && deck.cbush.empty() && deck.conm2.empty());
+           deck.conrod.empty() && deck.ctube.empty() && deck.shear_panels.empty() && deck.springs.empty() &&
+           deck.cbush.empty() && deck.cbush1d.empty() && deck.conm1.empty() && deck.conm2.empty() &&
+           deck.scalar_masses.empty());
 }
 
 /// Grid ids of a deck by place.
@@ -82,7 +89,12 @@ class PartReducer {
     const Places main(deck_, diagnostics_);
     std::map<int, Places> own;
     for (const auto* part : parts) own.emplace(part->id, Places(*part->deck, diagnostics_));
-    for (const auto* part : parts) reduce(*part, main, own);
+    std::vector<std::map<int, int>> joined;
+    for (const auto* part : parts) joined.push_back(find_boundary(*part, main, own));
+    for (std::size_t k = 0; k < parts.size(); ++k) reduce(*parts[k], joined[k], list_neighbors(parts, joined, k));
+    // The grids that sections and main bulk data share, for what needs them all.
+    for (std::size_t k = 0; k < parts.size(); ++k)
+      deck_.super.seconct.push_back({parts[k]->id, 0, 0, {joined[k].begin(), joined[k].end()}, parts[k]->at});
   }
 
  private:
@@ -102,6 +114,29 @@ class PartReducer {
     for (const auto& bulk : deck_.super.sebulk)
       if (bulk.id == id && bulk.tolerance > 0) return bulk.tolerance;
     return kTolerance;
+  }
+
+  /// The main bulk data (id -1) and the other sections with their grids that section k shares: its shells continue
+  /// there.
+  records::SuperelementCards list_neighbors(const std::vector<const DeckSection*>& parts,
+                                            const std::vector<std::map<int, int>>& joined, std::size_t k) const {
+    records::SuperelementCards cards;
+    std::map<int, int> own;  // by grid of the main bulk data
+    for (const auto& [id, grid] : joined[k]) own[grid] = id;
+    const auto add = [&](int id, const std::shared_ptr<const Deck>& deck, const std::map<int, int>& grids) {
+      records::Seconct shared{id, 0, 0, {}, parts[k]->at};
+      for (const auto& [other, grid] : grids)
+        if (const auto found = own.find(grid); found != own.end()) shared.points.emplace_back(other, found->second);
+      if (shared.points.empty() || deck->shells.empty()) return;
+      cards.sections.push_back({id, deck, parts[k]->at});
+      cards.seconct.push_back(std::move(shared));
+    };
+    std::map<int, int> identity;
+    for (const auto& [id, grid] : joined[k]) identity[grid] = grid;
+    add(-1, std::shared_ptr<const Deck>(std::shared_ptr<const Deck>(), &deck_), identity);
+    for (std::size_t i = 0; i < parts.size(); ++i)
+      if (i != k) add(parts[i]->id, parts[i]->deck, joined[i]);
+    return cards;
   }
 
   /// Grids of the section and the grids of the main bulk data that they join.
@@ -165,8 +200,7 @@ class PartReducer {
     return searched;
   }
 
-  void reduce(const DeckSection& section, const Places& main, const std::map<int, Places>& own) {
-    const auto joined = find_boundary(section, main, own);
+  void reduce(const DeckSection& section, const std::map<int, int>& joined, records::SuperelementCards neighbors) {
     if (joined.empty())
       return error("fe.part-boundary", section.at,
                    fmt::format("superelement {} joins no grid of the main bulk data", section.id),
@@ -178,6 +212,7 @@ class PartReducer {
     Deck part = *section.deck;
     // The last of a PARAM counts: that of the section.
     part.params.insert(part.params.begin(), deck_.params.begin(), deck_.params.end());
+    part.super = std::move(neighbors);
     Superelement s;
     s.id = section.id;
     s.at = section.at;
@@ -258,6 +293,7 @@ class PartReducer {
     add_generalized(nq, s);
     MatrixXd Psi(constraint_modes.rows(), nb + nq);
     Psi << constraint_modes, modes.Phi;
+    report_supported_mass(model, fixed, Psi, section);
     const auto symmetrize = [](const MatrixXd& A) { return MatrixXd(0.5 * (A + A.transpose())); };
     const MatrixXd force = fe::calc_stiffness_times(model, Psi);
     s.K = symmetrize(Psi.transpose() * force);
@@ -272,25 +308,15 @@ class PartReducer {
     };
     condense_to(s.B, fe::calc_damping_times(model, Psi));
     condense_to(s.K4, fe::calc_structural_damping_times(model, 0, Psi));
-    if (Psi.cols() <= kMaxStiffenedDofs) {
-      // The forces that hold each of the modes.
-      fe::AppliedLoads loads{MatrixXd::Zero(Psi.rows(), Psi.cols()), MatrixXd::Zero(12, Psi.cols()), {}, {}};
-      for (Index i = 0; i < nb; ++i) {
-        const auto& [id, component] = fixed.partition().boundary[static_cast<std::size_t>(i)];
-        const fe::Node& node = model.node(model.find_node(id));
-        const int c = (component - 1) % 3, half = component > 3 ? 3 : 0;
-        loads.F.middleRows(node.first_gdof + half, 3) += node.R_basic_cd.col(c) * s.K.row(i);
-      }
-      loads.F.rightCols(nq) = force.rightCols(nq);
-      s.K_G = stiffening::calc_generalized_geometric_stiffness(model, loads, Psi, Psi);
-    }
     // Loads: their forces on the exterior dofs, and what they do with these held.
     const auto sets = list_load_sets(part);
     MatrixXd F(Psi.rows(), static_cast<Index>(sets.size()));
+    std::vector<fe::AppliedLoad> applied;
     for (const int set : sets) {
       const auto column = static_cast<int>(s.load_columns.size());
       s.load_columns[set] = column;
-      F.col(column) = fe::calc_applied_load(model, part, set, diagnostics_).F;
+      applied.push_back(fe::calc_applied_load(model, part, set, diagnostics_));
+      F.col(column) = applied.back().F;
     }
     MatrixXd held(Psi.rows(), 0);
     if (F.cols() > 0) {
@@ -298,13 +324,100 @@ class PartReducer {
       held = fixed.solve(F);
       if (nq > 0) held -= modes.Phi * modes.lambda.cwiseInverse().asDiagonal() * (modes.Phi.transpose() * F);
     }
+    if (Psi.cols() <= kMaxStiffenedDofs) set_geometric_stiffness(model, fixed, {Psi, held, force}, applied, s);
     add_displacements(model, Psi, held, s);
+    add_element_results(model, part, {Psi, held, force}, section, s);
     add_reactions(model, force, fe::calc_stiffness_times(model, held) - F, s);
     diagnostics_.note("fe.static-reduction", deck_.locate(section.at),
                       fmt::format("superelement {} is condensed to {} boundary degrees of freedom and {} component "
                                   "modes of its {} degrees of freedom",
                                   section.id, nb, nq, model.num_fdofs()),
                       "its further frequencies with the boundary held should be above those of interest");
+  }
+
+  /// Mass that supports in the section keep from the rigid-body motion of its boundary: mass properties and effective
+  /// masses of the assembly lack it.
+  void report_supported_mass(const fe::Model& model, const modal::bases::FixedInterface& fixed, const MatrixXd& Psi,
+                             const DeckSection& section) {
+    const MatrixXd Phi_R = model.calc_rigid_modes().leftCols(3);
+    const auto& boundary = fixed.partition().boundary;
+    MatrixXd moved = MatrixXd::Zero(Phi_R.rows(), 3);
+    for (Index i = 0; i < static_cast<Index>(boundary.size()); ++i) {
+      const auto& [id, component] = boundary[static_cast<std::size_t>(i)];
+      const fe::Node& node = model.node(model.find_node(id));
+      const int c = (component - 1) % 3, half = component > 3 ? 3 : 0;
+      moved += Psi.col(i) * (node.R_basic_cd.col(c).transpose() * Phi_R.middleRows(node.first_gdof + half, 3));
+    }
+    const auto calc_mass = [&](const MatrixXd& X) {
+      return X.cwiseProduct(fe::calc_mass_times(model, model.mass_kind(), X)).sum() / 3;
+    };
+    const double mass = calc_mass(Phi_R), seen = calc_mass(moved);
+    constexpr double kLost = 1e-6;
+    if (mass > 0 && std::abs(mass - seen) > kLost * mass)
+      diagnostics_.warning("fe.part-mass", deck_.locate(section.at),
+                           fmt::format("superelement {} is supported inside: mass properties and effective masses of "
+                                       "the assembly count {:.6g} of its mass {:.6g}",
+                                       section.id, seen, mass),
+                           "put its supports on boundary grids, in the main bulk data, if these numbers are needed");
+  }
+
+  /// Motions of a section: Ψ; of its loads with the exterior dofs held; K Ψ. num_gdofs x their number.
+  struct Motions {
+    const MatrixXd &Psi, &held, &force;
+  };
+
+  /// K_G of each motion, and of the stress of each load with the exterior dofs held: K_G(σ) condensed by Ψ.
+  static void set_geometric_stiffness(const fe::Model& model, const modal::bases::FixedInterface& fixed,
+                                      const Motions& motions, const std::vector<fe::AppliedLoad>& applied,
+                                      Superelement& s) {
+    const auto& boundary = fixed.partition().boundary;
+    const auto nb = static_cast<Index>(boundary.size()), n = motions.Psi.cols(), nq = n - nb;
+    const auto m = static_cast<Index>(applied.size());
+    // The forces that hold each of the modes, and those that act with the exterior dofs held.
+    fe::AppliedLoads loads{MatrixXd::Zero(motions.Psi.rows(), n + m), MatrixXd::Zero(12, n + m), {}, {}};
+    loads.arms.resize(static_cast<std::size_t>(n));
+    loads.followers.resize(static_cast<std::size_t>(n));
+    for (Index j = 0; j < m; ++j) {
+      const auto& load = applied[static_cast<std::size_t>(j)];
+      loads.F.col(n + j) = load.F;
+      loads.A_I.col(n + j) = load.A_I;
+      loads.arms.push_back(load.arms);
+      loads.followers.push_back(load.followers);
+    }
+    for (Index i = 0; i < nb; ++i) {
+      const auto& [id, component] = boundary[static_cast<std::size_t>(i)];
+      const fe::Node& node = model.node(model.find_node(id));
+      const int c = (component - 1) % 3, half = component > 3 ? 3 : 0;
+      loads.F.middleRows(node.first_gdof + half, 3).leftCols(n) += node.R_basic_cd.col(c) * s.K.row(i);
+      if (m > 0) loads.F.middleRows(node.first_gdof + half, 3).rightCols(m) -= node.R_basic_cd.col(c) * s.P.row(i);
+    }
+    loads.F.middleCols(nb, nq) = motions.force.rightCols(nq);
+    if (m > 0 && nq > 0)
+      loads.F.rightCols(m) -= motions.force.rightCols(nq) *
+                              s.K.bottomRightCorner(nq, nq).diagonal().cwiseInverse().asDiagonal() * s.P.bottomRows(nq);
+    MatrixXd U(motions.Psi.rows(), n + m);
+    U << motions.Psi, motions.held;
+    s.K_G = stiffening::calc_generalized_geometric_stiffness(model, loads, U, motions.Psi);
+  }
+
+  /// Forces (MEF1) and stresses (MES1) of all elements of the section.
+  void add_element_results(const fe::Model& model, const Deck& part, const Motions& motions, const DeckSection& section,
+                           Superelement& s) {
+    const auto n = motions.Psi.cols(), m = motions.held.cols();
+    if (static_cast<Index>(model.elements().size()) * (n + m) > kMaxElementRows)
+      return diagnostics_.note(
+          "fe.part-recovery", deck_.locate(section.at),
+          fmt::format("superelement {} has too many elements to recover their forces and stresses", section.id),
+          "divide it into several sections, or take its displacements MUG1");
+    MatrixXd U(motions.Psi.rows(), n + m);
+    U << motions.Psi, motions.held;
+    std::vector<int> loads(static_cast<std::size_t>(n + m), 0);
+    for (const auto& [set, column] : s.load_columns) loads[static_cast<std::size_t>(n + column)] = set;
+    const auto all = [](int) { return true; };
+    for (auto& table : make_recovery_rows(model, part, U, loads, all, all)) {
+      if (m > 0) s.recovery.push_back({table.name + "O", table.items, table.rows.rightCols(m)});
+      s.recovery.push_back({table.name, std::move(table.items), table.rows.leftCols(n)});
+    }
   }
 
   /// Diagonal of K before condensation at the dofs of the boundary.
@@ -400,8 +513,14 @@ class PartReducer {
 
   /// Components of `values` (num_gdofs x n, basic) at `nodes`, in their displacement axes.
   static MatrixXd list_rows(const std::vector<const fe::Node*>& nodes, const MatrixXd& values) {
-    MatrixXd rows(6 * static_cast<Index>(nodes.size()), values.cols());
+    Index size = 0;
+    for (const auto* node : nodes) size += node->num_dofs;
+    MatrixXd rows(size, values.cols());
     for (Index first = 0; const auto* node : nodes) {
+      if (node->num_dofs == 1) {
+        rows.row(first++) = values.row(node->first_gdof);
+        continue;
+      }
       for (const Index half : {0, 3})
         rows.middleRows(first + half, 3) = node->R_basic_cd.transpose() * values.middleRows(node->first_gdof + half, 3);
       first += 6;
@@ -413,15 +532,18 @@ class PartReducer {
                          const MatrixXd& of_loads, Superelement& s) {
     std::vector<records::RecoveryItem> items;
     items.reserve(nodes.size());
-    for (const auto* node : nodes) items.push_back({1, node->id, 6, static_cast<int>(6 * items.size())});
+    int row = 0;
+    for (const auto* node : nodes) {
+      items.push_back({node->num_dofs == 1 ? 2 : 1, node->id, node->num_dofs, row});
+      row += node->num_dofs;
+    }
     s.recovery.push_back({name, items, list_rows(nodes, values)});
     if (of_loads.cols() > 0) s.recovery.push_back({name + "O", items, list_rows(nodes, of_loads)});
   }
 
   static void add_displacements(const fe::Model& model, const MatrixXd& Psi, const MatrixXd& held, Superelement& s) {
     std::vector<const fe::Node*> nodes;
-    for (const auto& node : model.nodes())
-      if (node.num_dofs == 6) nodes.push_back(&node);
+    for (const auto& node : model.nodes()) nodes.push_back(&node);
     add_tables("MUG1", nodes, Psi, held, s);
   }
 

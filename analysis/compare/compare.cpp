@@ -34,6 +34,11 @@ Loaded load(const std::string& file, Diagnostics& diagnostics) {
                    "give files that bough reduce or bough modes wrote");
 }
 
+bool is_response_file(const std::string& file) {
+  demand_body_file(file);
+  return read_file_format(file) == "bough-frequency";
+}
+
 records::FlexBody load_body(const std::string& file, Diagnostics& diagnostics) {
   auto loaded = load(file, diagnostics);
   if (!loaded.body)
@@ -125,6 +130,8 @@ CompareAnswer compare_files(const CompareRequest& request, Events& events) {
   Diagnostics diagnostics;
   CompareAnswer answer = [&]() -> CompareAnswer {
     if (request.refinement) return compare_meshes(request, diagnostics);
+    if (!request.test.empty() && is_response_file(request.files[0]))
+      return compare_responses(request.files[0], request.test, events);
     if (!request.test.empty())
       return compare_with_test({request.files[0], request.test, request.deck, request.tam}, events);
     if (request.sensors > 0) return place_sensors(request.files[0], request.sensors, events);

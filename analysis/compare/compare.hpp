@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "analysis/common/events.hpp"
+#include "analysis/compare/frf_report.hpp"
 #include "analysis/compare/test_report.hpp"
 #include "formats/records/comparison.hpp"
 #include "modal/compare/bodies.hpp"
@@ -18,7 +19,7 @@ struct CompareRequest {
   std::vector<std::string> files;  ///< one body; two bodies or modes files; three bodies for `refinement`
   std::string mass;                ///< matrices file of the first deck: the MAC weighted with its mass matrix too
   bool refinement = false;         ///< three bodies of refined meshes, coarse to fine: observed orders
-  std::string test;                ///< universal file with the shapes of a test of the one model
+  std::string test;                ///< universal file with the shapes, or functions, of a test of the one model
   std::string deck;                ///< of the model, for `tam` guyan and irs
   std::string tam = "serep";       ///< test-analysis model: serep, guyan, irs
   int sensors = 0;                 ///< places for this many sensors on the one model; 0: none
@@ -59,14 +60,14 @@ struct RefinementReport {
   std::vector<modal::Convergence> rows;
 };
 
-using CompareAnswer = std::variant<SingleReport, PairReport, RefinementReport, TestReport, SensorReport>;
+using CompareAnswer = std::variant<SingleReport, PairReport, RefinementReport, TestReport, SensorReport, FrfReport>;
 
 /// Number of files that the request takes, as a phrase, if it has another number; else empty.
 std::string find_wrong_number(const CompareRequest& request);
 
 /// Throws InputError "cli.bad-option", "cli.not-comparable", "cli.not-a-body", "cli.no-exact-integrals",
 /// "cli.no-common-nodes", "cli.no-mass-matrix", "cli.mass-without-shape", "cli.not-refined", those of compare_with_test
-/// and place_sensors, and what the readers throw.
+/// place_sensors and compare_responses, and what the readers throw.
 CompareAnswer compare_files(const CompareRequest& request, Events& events);
 /// Numbers of the answer for an HDF5 file, with the hashes of the files compared.
 records::Comparison make_comparison(const CompareRequest& request, const CompareAnswer& answer);

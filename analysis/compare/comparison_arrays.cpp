@@ -107,6 +107,20 @@ void add_arrays(const SensorReport& r, Comparison& file) {
   file.arrays.push_back({"/mac", r.mac, "of the modes with themselves at these dofs", "1"});
 }
 
+void add_arrays(const FrfReport& r, Comparison& file) {
+  MatrixXd values(static_cast<Index>(r.pairs.size()), 5);
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < r.pairs.size(); ++i) {
+    const auto& p = r.pairs[i];
+    values.row(static_cast<Index>(i)) << p.frac, p.level_db, p.peak_hz, p.test_peak_hz, p.num_points;
+    names.push_back(p.name);
+  }
+  file.arrays.push_back(
+      {"/functions/values", values, "FRAC, level of the curve over the function in dB, Hz of both peaks, points", ""});
+  file.arrays.push_back({"/functions/frac", Eigen::VectorXd::Constant(1, r.frac), "FRAC of all functions", "1"});
+  file.words.emplace_back("/functions/curve", names);
+}
+
 }  // namespace
 
 records::Comparison make_comparison(const CompareRequest& request, const CompareAnswer& answer) {

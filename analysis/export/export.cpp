@@ -80,7 +80,9 @@ std::string make_universal(const ExportRequest& request, Diagnostics& diagnostic
   if (format == "bough-flexbody") return exports::make_uff(read_body(request.file, diagnostics));
   if (format == "bough-results") return exports::make_uff(read_columns(request));
   if (is_response(format)) return exports::make_uff(hdf5::read_response(request.file));
-  refuse_export(request.file, "uff", "a flexible body, or what bough modes, run, frequency or transient wrote");
+  if (format == "bough-response") return exports::make_uff(hdf5::read_model_response(request.file).response);
+  refuse_export(request.file, "uff",
+                "a flexible body, or what bough modes, run, frequency, transient or response wrote");
 }
 
 /// The mode shapes of a modes file or a flexible body.

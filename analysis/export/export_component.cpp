@@ -12,12 +12,11 @@
 #include "analysis/export/export_matrices.hpp"
 #include "analysis/export/op4_matrices.hpp"
 #include "analysis/listing/listing.hpp"
-#include "analysis/listing/stress_columns.hpp"
+#include "analysis/listing/recovery_rows.hpp"
 #include "analysis/reduce/point_files.hpp"
 #include "fe/matrices/system.hpp"
 #include "fe/model/sets.hpp"
 #include "fe/statics/build_model.hpp"
-#include "fe/statics/element_recovery.hpp"
 #include "formats/nastran/superelement_writer.hpp"
 #include "modal/bases/component.hpp"
 
@@ -143,59 +142,12 @@ records::RecoveryTable make_displacement_rows(const fe::Model& model, const moda
   return table;
 }
 
-/// One column after the other as listed tables of Nastran, gathered as rows by element.
-class TableRows {
- public:
-  explicit TableRows(std::string name) { table_.name = std::move(name); }
-  void add(Index column, Index num_columns, const records::ListedElements& block) {
-    for (std::size_t k = 0; k < block.id.size(); ++k) {
-      const auto [place, is_new] = first_.try_emplace({block.type, block.id[k]}, rows_);
-      if (is_new) {
-        table_.items.push_back({block.type, block.id[k], static_cast<int>(block.real.cols()), static_cast<int>(rows_)});
-        rows_ += block.real.cols();
-      }
-      if (table_.rows.rows() < rows_)
-        table_.rows.conservativeResizeLike(MatrixXd::Zero(std::max(rows_, 2 * table_.rows.rows()), num_columns));
-      for (Index r = 0; r < block.real.cols(); ++r)
-        table_.rows(place->second + r, column) = block.real(static_cast<Index>(k), r);
-    }
-  }
-  records::RecoveryTable take() {
-    table_.rows.conservativeResize(rows_, table_.rows.cols());
-    return std::move(table_);
-  }
-
- private:
-  records::RecoveryTable table_;
-  std::map<std::pair<int, int>, Index> first_;
-  Index rows_ = 0;
-};
-
 void add_element_rows(const fe::Model& model, const records::Deck& deck, const records::DynamicSelection& selection,
                       const modal::bases::Component& component, std::vector<records::RecoveryTable>& tables) {
   const Request forces(selection, "FORCE"), stresses(selection, "STRESS");
   if (!forces.any() && !stresses.any()) return;
-  const auto n = component.shapes.cols();
-  std::vector<Eigen::VectorXd> columns;
-  for (Index c = 0; c < n; ++c) columns.emplace_back(component.shapes.col(c));
-  std::vector<fe::RecoveryCase> cases;
-  for (const auto& column : columns) cases.push_back({&column, 0, nullptr, nullptr});
-  const auto results = fe::recover_elements(model, deck, cases, fe::RecoveredFields{});
-  const auto elements = index_elements(model);
-  const auto limits = list_stress_limits(deck);
-  TableRows force_rows("MEF1"), stress_rows("MES1");
-  for (Index c = 0; c < n; ++c) {
-    const auto& result = results[static_cast<std::size_t>(c)];
-    for (const auto& block : result.forces)
-      if (const auto listed = make_listed_forces(model, elements, block, {}, forces)) force_rows.add(c, n, *listed);
-    for (const auto& block : result.stresses)
-      if (auto listed = make_listed_stresses(model, elements, deck, block, result.forces, limits, stresses)) {
-        keep_linear_columns(*listed);
-        if (listed->point.empty()) stress_rows.add(c, n, *listed);
-      }
-  }
-  for (auto* rows : {&force_rows, &stress_rows})
-    if (auto table = rows->take(); !table.items.empty()) tables.push_back(std::move(table));
+  for (auto& table : make_recovery_rows(model, deck, component.shapes, {}, forces, stresses))
+    tables.push_back(std::move(table));
 }
 
 void copy_but_sets(const Diagnostics& from, Diagnostics& to) {

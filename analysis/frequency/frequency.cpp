@@ -119,8 +119,21 @@ DeckResponseAnswer solve_deck_response(const DeckResponseRequest& request, Event
     add_new(own, diagnostics);
   }
   if (response.subcases.empty()) answer.failures.throw_all(diagnostics);
-  with_prior_messages(diagnostics,
-                      [&] { response.random = random->calc(response.subcases, solver.sources(), diagnostics); });
+  with_prior_messages(diagnostics, [&] {
+    if (request.notching.empty()) {
+      response.random = random->calc(response.subcases, solver.sources(), diagnostics);
+      return;
+    }
+    answer.notches = make_notches(response.subcases);
+    notch_magnitudes(request.notching, response.subcases, answer.notches);
+    // The integral over the band by modes is that of the full input: notched ones have their output frequencies.
+    if (request.notching.has_densities()) {
+      Diagnostics of_full;
+      notch_densities(request.notching, random->calc(response.subcases, {}, of_full), response.subcases,
+                      answer.notches);
+    }
+    response.random = random->calc(response.subcases, {}, diagnostics);
+  });
   response.source = calc_sources(deck.files);
   if (request.has_listing) {
     Diagnostics of_model;  // reported by the solver

@@ -7,6 +7,7 @@
 #include "analysis/common/events.hpp"
 #include "analysis/common/model_choice.hpp"
 #include "analysis/common/subcase_failures.hpp"
+#include "analysis/frequency/notching.hpp"
 #include "analysis/modes/eigen_choices.hpp"
 #include "formats/records/deck_response.hpp"
 #include "formats/records/listing.hpp"
@@ -22,12 +23,14 @@ struct DeckResponseRequest {
   bool no_residuals = false;                 ///< modes without residual vectors of the loads
   bool has_listing = false;                  ///< print file of the output requests
   std::vector<int> grids;                    ///< curves of these in addition to those of the case control
+  NotchRequest notching;                     ///< of frequency responses
 };
 
 struct DeckResponseAnswer {
   records::DeckResponse response;
   SubcaseFailures failures;
   std::optional<records::Listing> listing;
+  std::vector<Notch> notches;  ///< one per subcase if the request has notching; the response is that of notched inputs
 };
 
 /// Solves every subcase with a dynamic load, or the requested one, and the random responses of RANDPS. Collective.

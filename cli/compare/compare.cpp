@@ -65,8 +65,8 @@ void add_compare(CLI::App& app, Action& action) {
   verb->add_flag("--refinement", o->request.refinement,
                  "Three bodies of refined meshes, coarse to fine: observed orders");
   auto* test = verb->add_option("--test", o->request.test,
-                                "Universal file (dataset 55) with the shapes of a test of the one model: MAC, "
-                                "cross-orthogonality, COMAC");
+                                "Universal file of a test of the one model: its shapes (dataset 55) for MAC, "
+                                "cross-orthogonality, COMAC; its functions (58) for FRAC against a frequency response");
   verb->add_option("--tam", o->request.tam, "Test-analysis model: serep (from the modes), guyan or irs (from --deck)")
       ->check(CLI::IsMember({"serep", "guyan", "irs"}))
       ->capture_default_str()
@@ -80,7 +80,8 @@ void add_compare(CLI::App& app, Action& action) {
   verb->footer(
       "Example:\n  bough compare boom.h5\n  bough compare boom.h5 boom-modes.h5 --mass boom-matrices.h5\n"
       "  bough compare --refinement boom10.h5 boom20.h5 boom40.h5\n"
-      "  bough compare boom-modes.h5 --test survey.unv --tam guyan --deck boom.bdf");
+      "  bough compare boom-modes.h5 --test survey.unv --tam guyan --deck boom.bdf\n"
+      "  bough compare boom-frequency.h5 --test functions.unv");
   verb->callback([&action, o] { action = [o] { return run_compare(*o); }; });
 }
 

@@ -25,6 +25,10 @@ nlohmann::json make_json(const analysis::RefinementReport& report);
 std::string format_report(const analysis::TestReport& report);
 /// The numbers of these tables as JSON.
 nlohmann::json make_json(const analysis::TestReport& report);
+/// Table of computed responses against measured functions: FRAC, levels, peaks.
+std::string format_report(const analysis::FrfReport& report);
+/// The numbers of the table as JSON.
+nlohmann::json make_json(const analysis::FrfReport& report);
 /// Table of the places of sensors, in the order in which effective independence keeps them.
 std::string format_report(const analysis::SensorReport& report);
 /// The places of sensors as JSON.

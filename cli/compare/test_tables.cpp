@@ -13,6 +13,7 @@ namespace bough::cli {
 
 namespace {
 
+using analysis::FrfReport;
 using analysis::SensorReport;
 using analysis::TestReport;
 using Eigen::Index;
@@ -101,6 +102,37 @@ nlohmann::json make_json(const TestReport& r) {
                       {"pairs", pairs}};
   if (r.model_hz.size() > 0) json["model_hz"] = to_json_list(r.model_hz);
   return json;
+}
+
+std::string format_report(const FrfReport& r) {
+  std::string text = fmt::format("A  {}: subcase {}\ntest  {}: {} functions, {} without a curve\n", r.file_a, r.subcase,
+                                 r.file_b, r.pairs.size() + static_cast<std::size_t>(r.num_unmatched), r.num_unmatched);
+  Table table{{"curve", "FRAC", "level, dB", "peak Hz", "test peak Hz", "points"}, {}};
+  for (const auto& p : r.pairs)
+    table.rows.push_back({p.name, fmt::format("{:.4f}", p.frac), fmt::format("{:+.2f}", p.level_db),
+                          fmt::format("{:.6g}", p.peak_hz), fmt::format("{:.6g}", p.test_peak_hz),
+                          std::to_string(p.num_points)});
+  return text + "\n" + table.to_text() + fmt::format("FRAC of all functions: {:.4f}\n", r.frac);
+}
+
+nlohmann::json make_json(const FrfReport& r) {
+  auto functions = nlohmann::json::array();
+  for (const auto& p : r.pairs)
+    functions.push_back({{"curve", p.name},
+                         {"test", p.test},
+                         {"reference", p.reference},
+                         {"reference_direction", p.reference_direction},
+                         {"frac", p.frac},
+                         {"level_db", p.level_db},
+                         {"peak_hz", p.peak_hz},
+                         {"test_peak_hz", p.test_peak_hz},
+                         {"num_points", p.num_points}});
+  return {{"a", r.file_a},
+          {"test", r.file_b},
+          {"subcase", r.subcase},
+          {"frac", r.frac},
+          {"unmatched", r.num_unmatched},
+          {"functions", functions}};
 }
 
 std::string format_report(const SensorReport& r) {

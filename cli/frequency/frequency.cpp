@@ -16,6 +16,7 @@
 #include "cli/common/model_options.hpp"
 #include "cli/common/options.hpp"
 #include "cli/common/usage_text.hpp"
+#include "cli/frequency/notch_tables.hpp"
 #include "cli/frequency/random_tables.hpp"
 #include "cli/frequency/response_tables.hpp"
 #include "cli/verbs.hpp"
@@ -29,18 +30,24 @@ namespace {
 struct DeckResponseOptions : CommonOptions {
   analysis::DeckResponseRequest request;
   bool full = false;
-  std::string csv, punch;
+  std::string csv, punch, notch_csv;
+  std::vector<std::string> limits, densities, bands;
   ListingOptions listing;
 };
 
 int run_deck_response(const DeckResponseOptions& options) {
   Console console(options.quiet, options.verbosity);
   auto request = options.request;
+  for (const auto& text : options.bands) request.notching.bands.push_back(analysis::read_notch_band(text));
+  for (const auto& text : options.limits) request.notching.limits.push_back(analysis::read_notch_limit(text, false));
+  for (const auto& text : options.densities) request.notching.limits.push_back(analysis::read_notch_limit(text, true));
   console.set_subject(request.deck);
   analysis::do_once([&] {
     analysis::demand_deck(request.deck);
-    check_outputs(options, {options.output, options.csv, options.punch, options.listing.f06, options.listing.op2},
-                  {request.deck});
+    check_outputs(
+        options,
+        {options.output, options.csv, options.punch, options.notch_csv, options.listing.f06, options.listing.op2},
+        {request.deck});
   });
   console.set_rank(linear::initialize_petsc().rank);
   request.has_listing = !options.listing.empty();
@@ -53,6 +60,7 @@ int run_deck_response(const DeckResponseOptions& options) {
     if (!options.output.empty()) hdf5::write_response(response, options.output);
     if (!options.csv.empty()) analysis::write_text_file(options.csv, exports::make_response_csv(response));
     if (!options.punch.empty()) analysis::write_text_file(options.punch, exports::make_punch_text(response));
+    if (!options.notch_csv.empty()) analysis::write_text_file(options.notch_csv, make_notch_csv(answer.notches));
     if (answer.listing) write_listings(options.listing, *answer.listing);
   });
   if (options.json) {
@@ -60,6 +68,7 @@ int run_deck_response(const DeckResponseOptions& options) {
     for (const auto& subcase : response.subcases)
       json["subcases"].push_back(to_json(subcase, request.is_transient, options.full));
     for (const auto& result : response.random) json["random"].push_back(to_json(result, options.full));
+    for (const auto& notch : answer.notches) json["notches"].push_back(to_json(notch));
     if (!answer.failures.is_empty()) json["failed"] = to_json(answer.failures);
     console.print_data(json.dump(2) + "\n");
   } else {
@@ -68,7 +77,9 @@ int run_deck_response(const DeckResponseOptions& options) {
                     format_response(subcase, request.is_transient, options.full ? 1u << 30 : 20));
     for (const auto& result : response.random)
       console.print("\n" + format_random(result, options.full ? 1u << 30 : 20));
-    for (const auto& path : {options.output, options.csv, options.punch, options.listing.f06, options.listing.op2})
+    for (const auto& notch : answer.notches) console.print("\n" + format_notch(notch));
+    for (const auto& path :
+         {options.output, options.csv, options.punch, options.notch_csv, options.listing.f06, options.listing.op2})
       if (!path.empty()) console.print("written: " + path + "\n");
   }
   analysis::do_once([] { flush_data(); });
@@ -97,6 +108,20 @@ void add_response_verb(CLI::App& app, Action& action, bool is_over_time, const c
   verb->add_flag("--full", o->full, "Every curve in the table, their samples in --json");
   verb->add_option("--csv", o->csv, "Write the curves to this file of comma-separated values");
   verb->add_option("--punch", o->punch, "Write the curves to this Nastran punch file");
+  if (!is_over_time) {
+    verb->add_option("--limit", o->limits,
+                     "Notch the input: NAME=VALUE or NAME=VALUE@MIN:MAX (Hz), the largest magnitude of an output, as "
+                     "acceleration:12:3=80; may be repeated")
+        ->allow_extra_args(false);
+    verb->add_option("--psd-limit", o->densities,
+                     "Notch the input of the random response: NAME=VALUE[@MIN:MAX], the largest spectral density of an "
+                     "output; may be repeated")
+        ->allow_extra_args(false);
+    verb->add_option("--notch", o->bands,
+                     "Notch the input by hand: MIN:MAX=FACTOR (Hz), factor of its amplitude; may be repeated")
+        ->allow_extra_args(false);
+    verb->add_option("--notch-csv", o->notch_csv, "Write the factor of the input over frequency to this file");
+  }
   add_listing_options(*verb, o->listing);
   add_model_options(*verb, o->request.model);
   add_common_options(*verb, *o, kOutput | kJson, "Write the curves to this HDF5 file");

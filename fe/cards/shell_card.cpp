@@ -5,6 +5,8 @@
 #include <numbers>
 #include <numeric>
 #include <set>
+#include <utility>
+#include <vector>
 
 #include "formats/records/params.hpp"
 
@@ -131,9 +133,19 @@ std::unordered_map<int, Vector3d> calc_surface_normals(Maker& maker, const std::
       Vector3d& total = sum.try_emplace(node, Vector3d::Zero()).first->second;
       total += total.dot(shell.normal) < 0 ? Vector3d(-shell.normal) : shell.normal;
     }
+  std::vector<std::pair<int, Vector3d>> shared;
+  for (const auto& [g, n] : list_neighbor_normals(maker.deck())) {
+    const auto found = sum.find(maker.nodes().find_node(g));
+    if (found == sum.end()) continue;
+    found->second += found->second.dot(n) < 0 ? Vector3d(-n) : n;
+    shared.emplace_back(found->first, n);
+  }
+  const auto check = [&](int node, const Vector3d& normal) {
+    if (std::abs(sum[node].normalized().dot(normal)) < std::cos(limit * kDegree)) broken.insert(node);
+  };
   for (const auto& shell : shells)
-    for (int node : shell.nodes)
-      if (std::abs(sum[node].normalized().dot(shell.normal)) < std::cos(limit * kDegree)) broken.insert(node);
+    for (int node : shell.nodes) check(node, shell.normal);
+  for (const auto& [node, normal] : shared) check(node, normal);
   for (int node : broken) sum.erase(node);
   for (auto& [node, total] : sum) total.normalize();
   return sum;

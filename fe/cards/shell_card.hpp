@@ -2,6 +2,8 @@
 /// \file What every shell card needs before it becomes an element: grids, property, material angle, surface normals.
 /// Internal.
 #include <unordered_map>
+#include <utility>
+#include <vector>
 
 #include "fe/cards/shell_sections.hpp"
 
@@ -30,8 +32,13 @@ std::optional<double> calc_material_angle(Maker& maker, const ResolvedShell& she
 /// The same at the centre of the corners, from side 1-2.
 std::optional<double> calc_material_angle(Maker& maker, const ResolvedShell& shell);
 
+/// Unit normals (basic) of the flat shells of sections (BEGIN SUPER) at the grids, ids of the deck, to which SECONCT
+/// joins them. In fe/model, which resolves coordinate systems.
+std::vector<std::pair<int, Vector3d>> list_neighbor_normals(const records::Deck& deck);
+
 /// Normals of the surface at every node where all shells agree within PARAM,SNORM degrees (default 20): the sum of the
-/// unit normals, each turned to the side of the first.
+/// unit normals, each turned to the side of the first, with those of shells of other sections (BEGIN SUPER) at shared
+/// grids.
 std::unordered_map<int, Vector3d> calc_surface_normals(Maker& maker, const std::vector<ResolvedShell>& shells);
 
 }  // namespace bough::fe

@@ -20,6 +20,8 @@ class Superelement final : public Element, public OffsetMass, public Damping, pu
     /// Forces of its exterior dofs: rows of K u, and K_G of a unit of each; empty: K_G is not known.
     MatrixXd force;
     std::vector<MatrixXd> K_G;
+    /// K_G of the stress of each load with the exterior dofs held, by column of P; empty: not known.
+    std::vector<MatrixXd> K_G_of_loads;
     MatrixXd P;                       ///< loads, a column each
     std::map<int, int> load_columns;  ///< of P, by load of the component
     bool is_part = false;             ///< loads of the component are sets of LOAD of the case control
@@ -58,10 +60,17 @@ class Superelement final : public Element, public OffsetMass, public Damping, pu
     return column == m_.load_columns.end() ? VectorXd() : VectorXd(m_.P.col(column->second));
   }
 
+  /// Geometric stiffness (N x N, basic) of the stress of a load with the exterior dofs held; empty: not known, or no
+  /// such load.
+  MatrixXd get_load_stiffness(int load) const {
+    const auto column = m_.load_columns.find(load);
+    return column == m_.load_columns.end() || m_.K_G_of_loads.empty()
+               ? MatrixXd()
+               : m_.K_G_of_loads[static_cast<std::size_t>(column->second)];
+  }
+
   /// Returns true if LOAD of the case control selects its loads; else SELOAD does.
   bool is_part() const { return m_.is_part; }
-  /// Returns true if the component has any load.
-  bool has_loads() const { return !m_.load_columns.empty(); }
   /// Returns true if get_load() of this load is not empty.
   bool has_load(int load) const { return m_.load_columns.contains(load); }
 

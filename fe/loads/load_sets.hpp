@@ -33,8 +33,8 @@ bool add_beam_loads(const LoadTarget& target);          ///< PLOAD1
 bool add_superelement_loads(const LoadTarget& target);  ///< SELOAD
 
 /// Adds the loads that sections with elements have in set `set`, which LOAD of the case control selects: it is a set of
-/// each section by itself. \return whether a section has such a set.
-bool add_part_loads(const Model& model, int set, VectorXd& F);
+/// each section by itself, with the geometric stiffness of their stress. \return whether a section has such a set.
+bool add_part_loads(const Model& model, int set, AppliedLoad& load);
 
 /// Superelements on whose mass GRAV, RFORCE and ACCEL of the main bulk data do not act: sections with elements, which
 /// have these cards themselves, and external ones unless PARAM,CMSALOAD,YES requests it.

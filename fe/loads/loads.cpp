@@ -149,7 +149,7 @@ AppliedLoad calc_applied_load(const Model& model, const records::Deck& deck, int
   }
   const auto sets = list_plain_sets(deck, set);
   std::vector<PlainLoadSet> missing;
-  const bool has_part_loads = add_part_loads(model, set, load.F);
+  const bool has_part_loads = add_part_loads(model, set, load);
   bool is_accelerated = false;
   for (const auto& plain : sets) {
     if (plain.enforced_only) continue;

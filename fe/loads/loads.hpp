@@ -16,7 +16,8 @@ struct AppliedLoad {
   Eigen::VectorXd F;                  ///< num_gdofs, basic: everything
   Vector12d A_I = Vector12d::Zero();  ///< of the accelerated frame whose inertial load is in F
   std::vector<ArmLoad> arms;          ///< on the ends of offset beams
-  /// Pressures that turn with their faces (PARAM,FOLLOWK): their stiffness, one load.
+  /// Stiffness of the load in addition to that of internal forces of the solution: of pressures that turn with their
+  /// faces (PARAM,FOLLOWK), of the stress inside superelements with their exterior dofs held.
   std::vector<QuadraticForm> followers;
 };
 

@@ -28,6 +28,15 @@ double calc_rigid_energy(const Superelement& superelement, const MatrixXd& Phi_R
   return largest;
 }
 
+/// K_G of one load on the dofs of a superelement.
+QuadraticForm make_form(const Superelement& superelement, const MatrixXd& K_G) {
+  const auto n = static_cast<int>(K_G.rows());
+  QuadraticForm form{superelement.gdofs(), MatrixXd::Identity(n, n), MatrixXd(n * (n + 1) / 2, 1)};
+  for (int j = 0; j < n; ++j)
+    for (int i = j; i < n; ++i) form.weights(find_weight(n, i, j), 0) = K_G(i, j);
+  return form;
+}
+
 }  // namespace
 
 bool add_superelement_loads(const LoadTarget& t) {
@@ -52,14 +61,16 @@ bool add_superelement_loads(const LoadTarget& t) {
   return is_found;
 }
 
-bool add_part_loads(const Model& model, int set, VectorXd& F) {
+bool add_part_loads(const Model& model, int set, AppliedLoad& load) {
   bool is_found = false;
   for (const auto& element : model.elements()) {
     const auto* superelement = dynamic_cast<const Superelement*>(element.get());
     if (!superelement || !superelement->is_part() || !superelement->has_load(set)) continue;
     is_found = true;
-    const VectorXd load = superelement->get_load(set);
-    for (Eigen::Index i = 0; i < load.size(); ++i) F[superelement->gdofs()[static_cast<std::size_t>(i)]] += load[i];
+    const VectorXd F = superelement->get_load(set);
+    for (Eigen::Index i = 0; i < F.size(); ++i) load.F[superelement->gdofs()[static_cast<std::size_t>(i)]] += F[i];
+    if (const MatrixXd K_G = superelement->get_load_stiffness(set); !K_G.isZero(0))
+      load.followers.push_back(make_form(*superelement, K_G));
   }
   return is_found;
 }

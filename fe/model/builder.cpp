@@ -186,6 +186,18 @@ void ModelBuilder::fix(const records::Spc& spc) {
                          "model the enforced displacement as a load");
 }
 
+template <class Card>
+bool ModelBuilder::is_set_of_section(int sid, std::vector<Card> records::Deck::*cards,
+                                     std::vector<records::SetUnion> records::Deck::*unions) const {
+  const auto has = [&](const records::Deck& deck) {
+    const auto is_of = [sid](const auto& card) { return card.sid == sid; };
+    return std::any_of((deck.*cards).begin(), (deck.*cards).end(), is_of) ||
+           std::any_of((deck.*unions).begin(), (deck.*unions).end(), is_of);
+  };
+  return !has(deck_) && std::any_of(deck_.super.sections.begin(), deck_.super.sections.end(),
+                                    [&](const auto& section) { return has(*section.deck); });
+}
+
 void ModelBuilder::collect_fixed() {
   for (const auto& grid : deck_.grids) {
     const int index = model_.find_node(grid.id);
@@ -209,7 +221,7 @@ void ModelBuilder::collect_fixed() {
                       "the deck has no case control; its only SPC set " + std::to_string(sid) + " is used",
                       "select the set with SPC = in case control");
   }
-  if (sid == 0) return;
+  if (sid == 0 || is_set_of_section(sid, &records::Deck::spc, &records::Deck::spcadd)) return;
   const auto sets = expand_set(sid, deck_.spcadd, {plain.begin(), plain.end()}, "SPC", deck_, diagnostics_);
   for (const auto& spc : deck_.spc)
     if (std::binary_search(sets.begin(), sets.end(), spc.sid)) fix(spc);
@@ -270,6 +282,7 @@ void ModelBuilder::collect_equations() {
   for (const auto& mpc : deck_.mpc) plain.insert(mpc.sid);
   for (const auto& united : deck_.mpcadd) known.insert(united.sid);
   known.insert(plain.begin(), plain.end());
+  if (is_set_of_section(model_.subcase_.mpc, &records::Deck::mpc, &records::Deck::mpcadd)) return;
   // Other codes run such a deck: the selection is often left over in the case control when the cards are gone.
   if (!known.contains(model_.subcase_.mpc))
     return diagnostics_.warning(

@@ -23,6 +23,10 @@ class ModelBuilder {
   void make_elements(const ElementFactory& factory);
   /// Masks of permanent and set SPC over the l-set.
   void collect_fixed();
+  /// Returns true for a set that sections (BEGIN SUPER) have and the main bulk data do not.
+  template <class Card>
+  bool is_set_of_section(int sid, std::vector<Card> records::Deck::*cards,
+                         std::vector<records::SetUnion> records::Deck::*unions) const;
   void hold_spcd();  ///< what SPCD cards move is fixed, with fe.spcd-not-fixed where no SPC does it
   void fix(const records::Spc& spc);
   /// RBE1, RBE2, RBE3, RROD, RBAR, MPC.

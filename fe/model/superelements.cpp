@@ -21,6 +21,21 @@ std::string show_distance(double value) {
   return text;
 }
 
+constexpr int kQuad = 33, kTria = 74;  // CQUAD4, CTRIA3
+
+/// Returns true for the eight linear stresses of a plate: distance, xx, yy, xy of the bottom, then of the top.
+bool is_plate(const records::RecoveryItem& item) {
+  return (item.type == kQuad || item.type == kTria) && item.num_rows == 8;
+}
+
+/// Rows of an item that depend on the motion: not the distances of plates.
+std::vector<Index> list_rows(const std::string& table, const records::RecoveryItem& item) {
+  std::vector<Index> rows;
+  for (int k = 0; k < item.num_rows; ++k)
+    if (!(table.starts_with("MES") && is_plate(item) && k % 4 == 0)) rows.push_back(item.first_row + k);
+  return rows;
+}
+
 /// Components of a row of Nastran's linear results: named where the order of the item codes is known.
 std::vector<std::string> name_components(const std::string& table, const records::RecoveryItem& item) {
   const auto is = [&](const char* letters) { return table.starts_with(letters); };
@@ -33,6 +48,13 @@ std::vector<std::string> name_components(const std::string& table, const records
     return {"moment1_a", "moment2_a", "moment1_b", "moment2_b", "shear1", "shear2", "axial", "torque"};
   if (is("MEF") && (item.type == kRod || item.type == kConrod || item.type == kTube) && item.num_rows == 2)
     return {"axial", "torque"};
+  constexpr int kBush = 102, kCelas1 = 11, kCelas4 = 14;
+  if (is("MEF") && is_plate(item))
+    return {"membrane_xx", "membrane_yy", "membrane_xy", "moment_xx", "moment_yy", "moment_xy", "shear_xz", "shear_yz"};
+  if (is("MEF") && item.type == kBush && item.num_rows == 6)
+    return {"force_x", "force_y", "force_z", "moment_x", "moment_y", "moment_z"};
+  if (is("MEF") && item.type >= kCelas1 && item.type <= kCelas4 && item.num_rows == 1) return {"force"};
+  if (is("MES") && is_plate(item)) return {"xx@bottom", "yy@bottom", "xy@bottom", "xx@top", "yy@top", "xy@top"};
   if (is("MES") && item.type == kBar && item.num_rows == 9)
     return {"stress1_a", "stress2_a", "stress3_a", "stress4_a", "stress_axial",
             "stress1_b", "stress2_b", "stress3_b", "stress4_b"};
@@ -63,7 +85,7 @@ class SuperelementMaker {
     if (!connect()) return;
     const MatrixXd P = record_.P.size() == 0 ? MatrixXd() : MatrixXd(C_.transpose() * record_.P);
     Superelement::Matrices matrices{
-        turn(record_.K),      turn(record_.M) / wtmass, turn(record_.B), turn(record_.K4), {}, {}, P,
+        turn(record_.K),      turn(record_.M) / wtmass, turn(record_.B), turn(record_.K4), {}, {}, {}, P,
         record_.load_columns, is_part(deck_, record_)};
     if (!record_.K_G.empty()) {
       matrices.force = record_.K * C_;
@@ -74,6 +96,8 @@ class SuperelementMaker {
         for (Index i = 0; i < motion.rows(); ++i) K_G += motion(i, j) * record_.K_G[static_cast<std::size_t>(i)];
         matrices.K_G.push_back(turn(K_G));
       }
+      for (auto i = static_cast<std::size_t>(motion.cols()); i < record_.K_G.size(); ++i)
+        matrices.K_G_of_loads.push_back(turn(record_.K_G[i]));
     }
     list.add(std::make_unique<Superelement>(record_.id, nodes_joined_, gdofs_, std::move(matrices)));
     for (const auto& table : record_.recovery) {
@@ -84,13 +108,13 @@ class SuperelementMaker {
         const bool is_motion = table.name.starts_with("MUG") || table.name.starts_with("MQG");
         const std::string card =
             table.name + "_" + std::to_string(record_.id) + (is_motion && item.type == kScalarPoint ? "_scalar" : "");
+        const auto rows = list_rows(table.name, item);
         InteriorValues interior;
         if (of_loads)
-          interior = {record_.id, is_part(deck_, record_), record_.load_columns,
-                      of_loads->rows.middleRows(item.first_row, item.num_rows)};
-        list.add(std::make_unique<RecoveredItem>(
-            item.id, card, nodes_joined_, gdofs_, name_components(table.name, item),
-            MatrixXd(table.rows.middleRows(item.first_row, item.num_rows) * C_), std::move(interior)));
+          interior = {record_.id, is_part(deck_, record_), record_.load_columns, of_loads->rows(rows, Eigen::all)};
+        list.add(std::make_unique<RecoveredItem>(item.id, card, nodes_joined_, gdofs_,
+                                                 name_components(table.name, item),
+                                                 MatrixXd(table.rows(rows, Eigen::all) * C_), std::move(interior)));
       }
     }
   }

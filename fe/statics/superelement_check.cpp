@@ -165,16 +165,13 @@ SuperelementCheck check_superelement(const records::Deck& deck, const records::S
 void report_unstiffened(const Model& model, const records::Deck& deck, Diagnostics& diagnostics) {
   for (const auto& element : model.elements()) {
     const auto* superelement = dynamic_cast<const Superelement*>(element.get());
-    const bool has_interior_loads = superelement && superelement->is_part() && superelement->has_loads();
-    if (!superelement || (element->stress_state() && !has_interior_loads)) continue;
+    if (!superelement || element->stress_state()) continue;
     const auto record = std::find_if(deck.superelements.begin(), deck.superelements.end(),
                                      [&](const auto& one) { return one.id == element->id(); });
     diagnostics.warning(
         "fe.superelement-stiffening", record == deck.superelements.end() ? deck.locate({}) : deck.locate(record->at),
         "superelement " + std::to_string(element->id()) +
-            (element->stress_state()
-                 ? " has loads on its interior, whose stress with the boundary held has no geometric stiffness"
-                 : " has no geometric stiffness: its stress changes neither buckling loads nor frequencies"),
+            " has no geometric stiffness: its stress changes neither buckling loads nor frequencies",
         "give its elements in a section (BEGIN SUPER) with at most 150 boundary dofs, or in the main bulk data");
   }
 }

@@ -167,7 +167,10 @@ struct UffFunction {
   int load_case = 0;
   int node = 0, direction = 0;  ///< 1 to 6: along and about x, y, z; 0: none, a scalar
   std::pair<int, const char*> ordinate{0, "NONE"};
+  bool is_transfer = false;  ///< over frequency: a frequency response function, else a spectrum
 };
+
+constexpr int kTimeResponse = 1, kTransfer = 4, kSpectrum = 12;
 
 /// The format's code of a quantity, and its name.
 std::pair<int, const char*> find_ordinate(const std::string& quantity) {
@@ -184,11 +187,12 @@ void put_function(UffText& out, int number, const UffFunction& f) {
   // The mean step, with the digits that would be written.
   const double step = n > 1 ? round_to_five((f.x(n - 1) - f.x(0)) / static_cast<double>(n - 1)) : 0;
   const bool even = is_even(f.x, step);
+  const int type = f.is_over_time ? kTimeResponse : f.is_transfer ? kTransfer : kSpectrum;
   out.begin(58);
   out.put_id(f.name);
   for (int i = 0; i < 4; ++i) out.put_id("");
-  out.print("%5d%10d%5d%10d %-10s%10d%4d %-10s%10d%4d\n", f.is_over_time ? 1 : 12, number, 0, f.load_case, "NONE",
-            f.node, f.direction, "NONE", 0, 0);
+  out.print("%5d%10d%5d%10d %-10s%10d%4d %-10s%10d%4d\n", type, number, 0, f.load_case, "NONE", f.node, f.direction,
+            "NONE", 0, 0);
   out.print("%10d%10d%10d%13.5E%13.5E%13.5E\n", is_complex ? 6 : 4, static_cast<int>(n), even ? 1 : 0,
             even ? f.x(0) : 0.0, even ? step : 0.0, 0.0);
   const std::pair<int, const char*> abscissa{f.is_over_time ? 17 : 18, f.is_over_time ? "Time" : "Frequency"};
@@ -273,6 +277,26 @@ std::string make_uff(const records::DeckResponse& response) {
       put_function(out, ++number,
                    {curve.name, subcase.x, curve.real, curve.imag, response.is_over_time, std::max(subcase.id, 0),
                     is_of_grid ? curve.id : 0, is_of_grid ? std::atoi(curve.component.c_str()) : 0, ordinate});
+    }
+  return out.take();
+}
+
+std::string make_uff(const records::FrequencyResponse& response) {
+  UffText out;
+  int number = 0;
+  const auto n = static_cast<Eigen::Index>(response.value.size());
+  for (int y = 0; y < response.outputs.size(); ++y)
+    for (int u = 0; u < response.inputs.size(); ++u) {
+      UffFunction f{response.outputs.name[static_cast<std::size_t>(y)] + " / " +
+                        response.inputs.name[static_cast<std::size_t>(u)],
+                    response.frequency_hz, Eigen::VectorXd(n), Eigen::VectorXd(n), false};
+      f.is_transfer = true;
+      for (Eigen::Index i = 0; i < n; ++i) {
+        const auto value = response.value[static_cast<std::size_t>(i)](y, u);
+        f.real(i) = value.real();
+        f.imag(i) = value.imag();
+      }
+      put_function(out, ++number, f);
     }
   return out.take();
 }

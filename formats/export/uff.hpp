@@ -7,6 +7,7 @@
 #include "formats/export/csv.hpp"
 #include "formats/records/deck_response.hpp"
 #include "formats/records/flex_body.hpp"
+#include "formats/records/frequency_response.hpp"
 #include "formats/records/modes.hpp"
 
 namespace bough::exports {
@@ -20,6 +21,9 @@ std::string make_uff(const std::vector<CsvColumn>& columns);
 
 /// Curves of a deck's response as functions (58): over frequency complex spectra, over time real.
 std::string make_uff(const records::DeckResponse& response);
+
+/// Frequency response functions (58, type 4) of a linear model: output by output, the function of each input.
+std::string make_uff(const records::FrequencyResponse& response);
 
 /// A mesh that moves: 15 and 82 of where it is at first, then 55 for each time, transient, of three translations of
 /// each grid from there (grids x 3 for an index into `time`).

@@ -57,13 +57,14 @@ MatrixXd make_dense(const Matrix& matrix) {
 
 class Joiner {
  public:
-  Joiner(Deck& deck, Diagnostics& diagnostics) : deck_(deck), diagnostics_(diagnostics) {}
+  Joiner(Deck& deck, Diagnostics& diagnostics)
+      : deck_(deck), diagnostics_(diagnostics), had_errors_(diagnostics.num_errors() > 0) {}
 
   void join() {
     std::set<int> external;
     for (const auto& part : deck_.superelements) external.insert(part.id);
     for (const auto& bulk : deck_.super.sebulk) {
-      if (bulk.type == "PRIMARY" && external.count(bulk.id) > 0) continue;
+      if (bulk.type == "PRIMARY" && (external.count(bulk.id) > 0 || is_uncondensed(bulk.id))) continue;
       if (!external.insert(bulk.id).second) {
         error("matrices.superelement-half", bulk.at, name(bulk.id) + " has two SEBULK", "remove one of them");
         continue;
@@ -78,7 +79,7 @@ class Joiner {
       join(bulk);
     }
     for (const auto& section : deck_.super.sections) {
-      if (!external.insert(section.id).second) continue;
+      if (!external.insert(section.id).second || is_uncondensed(section.id)) continue;
       if (section.deck->super.extrn.empty() && has_elements(*section.deck))
         error("matrices.superelement-type", section.at,
               "BEGIN SUPER=" + std::to_string(section.id) +
@@ -103,9 +104,18 @@ class Joiner {
   }
 
  private:
+  /// Returns true for a section with elements that was not condensed because the deck has errors.
+  bool is_uncondensed(int id) const {
+    const auto is_of = [&](const auto& one) {
+      return one.id == id && one.deck->super.extrn.empty() && has_elements(*one.deck);
+    };
+    return had_errors_ && std::any_of(deck_.super.sections.begin(), deck_.super.sections.end(), is_of);
+  }
   static bool has_elements(const Deck& deck) {
     return !(deck.beams.empty() && deck.shells.empty() && deck.solids.empty() && deck.crod.empty() &&
-             deck.conrod.empty() && deck.springs.empty() && deck.cbush.empty() && deck.conm2.empty());
+             deck.conrod.empty() && deck.ctube.empty() && deck.shear_panels.empty() && deck.springs.empty() &&
+             deck.cbush.empty() && deck.cbush1d.empty() && deck.conm1.empty() && deck.conm2.empty() &&
+             deck.scalar_masses.empty());
   }
   static std::string name(int id) { return "external superelement " + std::to_string(id); }
   void error(std::string_view id, const records::CardLocation& at, std::string what, std::string advice) {
@@ -335,6 +345,7 @@ class Joiner {
 
   Deck& deck_;
   Diagnostics& diagnostics_;
+  bool had_errors_;
 };
 
 }  // namespace

@@ -118,7 +118,8 @@ struct Superelement {
   double tolerance = 0;         ///< of coincident points
   bool checks_places = false;   ///< joined points are to be at one place
   Eigen::MatrixXd K, M, B, K4;  ///< empty: zero
-  /// Geometric stiffness of a unit motion of each exterior dof, num_dofs() matrices; empty: not known.
+  /// Geometric stiffness of a unit motion of each exterior dof, num_dofs() matrices, then of the stress of each load
+  /// with the exterior dofs held, by column of P; empty: not known.
   std::vector<Eigen::MatrixXd> K_G;
   Eigen::MatrixXd P;                ///< loads on the exterior dofs, a column each
   std::map<int, int> load_columns;  ///< 0-based column of P, by load

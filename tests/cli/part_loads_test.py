@@ -1,9 +1,13 @@
 """BEGIN SUPER with elements: loads and gravity, forces of supports, SEBNDRY and component modes of the sections."""
 import json
+import re
 import unittest
 
 import h5py
 import numpy as np
+
+from scipy.linalg import eigh
+from scipy.sparse import csr_matrix
 
 from parts_test import MASSES, PLACES, SHARED, list_bars, list_grids
 from support import ProgramTest
@@ -84,8 +88,13 @@ class PartLoads(ProgramTest):
         support = "SPC1,1,23,3\nSPC1,1,2,8\n"
         self.write("w.bdf", make_whole(loads, more=support))
         self.bough("static", "w.bdf", "-o", "w.h5")
-        tables, _ = self.compare(make_whole(loads, more=support),
-                                 make_parts(GRAVITY, loads + "SPC1,1,23,3\n", GRAVITY + "SPC1,1,2,4\n"))
+        tables, text = self.compare(make_whole(loads, more=support),
+                                    make_parts(GRAVITY, loads + "SPC1,1,23,3\n", GRAVITY + "SPC1,1,2,4\n"))
+        length = sum(np.linalg.norm(np.subtract(PLACES[k + 1], PLACES[k])) for k in range(1, 5))
+        self.assertIn("[fe.part-mass]", text)
+        seen, mass = map(float, re.search(r"superelement 1 is supported inside.*count (\S+) of its mass (\S+);", text).groups())
+        self.assertAlmostEqual(mass, 2.7 * length, delta=1e-4)
+        self.assertLess(seen, .9 * mass)
         with h5py.File(self.path("w.h5")) as f:
             reactions = {(int(g), int(c)): x for (g, c), x in zip(f["dof_map"][:], f["subcases/1/reaction"][:])}
         scale = max(map(abs, reactions.values()))
@@ -118,6 +127,122 @@ class PartLoads(ProgramTest):
         self.bough("export", "c.bdf", "--to", "extseout", "-o", "c")
         self.write("d.bdf", deck)
         self.fails(1, "static", "d.bdf", error="fe.superelement-gravity", says=["superelement 50", "CMSALOAD"])
+
+    def condense(self, path, *names, with_modes=False):
+        """Matrices of the whole deck by Guyan's T: the interior grids of both sections follow statically. With modes: by
+        all modes of the interior with mass (bars have no torsional inertia) too."""
+        with h5py.File(self.path(path)) as f:
+            K, M, *others = (csr_matrix((f[f"/{m}/data"], f[f"/{m}/indices"], f[f"/{m}/indptr"]), shape=f[f"/{m}/shape"]).toarray()
+                             for m in ("K", "M", *names))
+        inside = [6 * (k - 1) + c for k in (2, 3, 4, 6, 7, 8) for c in range(6)]
+        kept = [i for i in range(6, 78) if i not in inside]
+        T = np.zeros((78, len(kept)))
+        T[kept] = np.eye(len(kept))
+        T[inside] = -np.linalg.solve(K[np.ix_(inside, inside)], K[np.ix_(inside, kept)])
+        if with_modes:
+            theta, shapes = eigh(M[np.ix_(inside, inside)], K[np.ix_(inside, inside)])
+            Phi = np.zeros((78, np.sum(theta > 1e-12 * theta[-1])))
+            Phi[inside] = shapes[:, theta > 1e-12 * theta[-1]]
+            T = np.hstack([T, Phi])
+        return [T.T @ A @ T for A in (K, M, *others)]
+
+    def test_stiffness_of_stress_of_loads_in_sections(self):
+        """Buckling: K_G of the whole deck's stress, loads inside of sections among them, condensed by T."""
+        control = ("SOL 105\nCEND\nSPC = 1\nSUBCASE 1\nLOAD = 3\nSUBCASE 2\nMETHOD = 1\nBEGIN BULK\nPARAM,COUPMASS,1\n"
+                   "EIGRL,1,,,3\nSPC1,1,123456,1\n" + MASSES)
+        gravity = "GRAV,3,,9810.,.2,-.5,-1.\n"
+        whole = gravity + "FORCE,3,3,0,9000.,-1.,.2,3.\nMOMENT,3,8,0,4000.,1.,0.,2.\nPLOAD1,3,6,FY,FR,0.,5000.,1.,9000.\n"
+        first = gravity + "FORCE,3,3,0,9000.,-1.,.2,3.\n"
+        second = gravity + "MOMENT,3,4,0,4000.,1.,0.,2.\nPLOAD1,3,6,FY,FR,0.,5000.,1.,9000.\n"
+        modes = "EIGRL,1,,,{0}\nSPOINT,901,THRU,960\nQSET1,0,901,THRU,960\n"
+
+        def solve(text):
+            self.write("d.bdf", control + text.split(MASSES, 1)[1])
+            result = self.bough("modes", "d.bdf", "--buckling", "--json")
+            self.assertNotIn("superelement-stiffening", result.stderr)
+            return np.array(json.loads(result.stdout)["load_factor"])
+
+        self.write("w.bdf", control + make_whole(whole).split(MASSES, 1)[1])
+        self.bough("matrices", "w.bdf", "--load", 3, "-o", "k.h5")
+        K, _, K_G = self.condense("k.h5", "KG/LOAD_3")
+        exact = -1 / eigh(K_G, K, eigvals_only=True)
+        exact = exact[np.argsort(abs(exact))][:3]
+        np.testing.assert_allclose(solve(make_parts(gravity, first, second)), exact, rtol=1e-8)
+        # Without the interior's share: another answer.
+        without = solve(make_parts(gravity, "FORCE,3,3,0,0.,1.,0.,0.\n", "FORCE,3,3,0,0.,1.,0.,0.\n"))
+        self.assertGreater(abs(without[0] / exact[0] - 1), 1e-3)
+        # With component modes the interior buckles too: five dofs of three grids have mass, at the bend of section 2 six.
+        K, _, K_G = self.condense("k.h5", "KG/LOAD_3", with_modes=True)
+        many = -1 / eigh(K_G, K, eigvals_only=True)
+        many = many[np.argsort(abs(many))][:3]
+        self.assertGreater(abs(many[0] / exact[0] - 1), 1e-3)
+        found = solve(make_parts(gravity, first + modes.format(15), second + modes.format(16)))
+        np.testing.assert_allclose(found, many, rtol=1e-7)
+
+    def test_preload_of_loads_in_sections(self):
+        """Modes with STATSUB: stiffness of the sections' stress, dense."""
+        loads = "GRAV,3,,98.,.2,-.5,-1.\nFORCE,3,3,0,900.,-1.,.2,3.\n"
+        light = "GRAV,3,,98.,.2,-.5,-1.\n"
+        control = HEAD.format(sol=103).replace("METHOD = 1\n", "").replace(
+            "LOAD = 3\n", "LOAD = 3\nSUBCASE 2\nMETHOD = 1\nSTATSUB = 1\n")
+
+        def solve(text):
+            self.write("d.bdf", control + text.split(MASSES, 1)[1])
+            modes = json.loads(self.bough("modes", "d.bdf", "--json").stdout)
+            return modes.get("subcases", [modes])[-1]["eigenvalue"]
+
+        self.write("w.bdf", HEAD.format(sol=101) + make_whole(loads).split(MASSES, 1)[1])
+        self.bough("matrices", "w.bdf", "--load", 3, "-o", "k.h5")
+        K, M, K_G = self.condense("k.h5", "KG/LOAD_3")
+        exact = 1 / eigh(M, K + K_G, eigvals_only=True)[::-1][:6]
+        np.testing.assert_allclose(solve(make_parts(light, loads, light)), exact, rtol=1e-8)
+        self.assertGreater(abs(1 / eigh(M, K, eigvals_only=True)[-1] / exact[0] - 1), 1e-5)
+
+    def test_forces_and_stresses_in_sections(self):
+        """Recovered element forces and stresses are those of the whole deck, loads along a beam among them."""
+        whole = GRAVITY + "FORCE,3,3,0,7.,1.,2.,3.\nPLOAD1,3,6,FY,FR,0.,5.,1.,9.\n"
+        first, second = GRAVITY + "FORCE,3,3,0,7.,1.,2.,3.\n", GRAVITY + "PLOAD1,3,6,FY,FR,0.,5.,1.,9.\n"
+        recovery = DENSE.replace("3.-6\n", "3.-6\n,.01,.02,-.01,.03,.0,-.02,.02,.0\n")
+        self.solve(make_whole(whole).replace(DENSE, recovery), "w")
+        self.solve(make_parts(GRAVITY, first, second).replace(DENSE, recovery))
+
+        def read(name, kind, values, table):
+            with h5py.File(self.path(name + ".h5")) as f:
+                part = f["subcases/1"][kind][table]
+                return list(part.attrs["components"]), dict(zip(map(int, part["id"][:]), part[values][:]))
+
+        names, force = read("w", "elements", "force", "CBAR")
+        axial, vy, vz, torque, my_a, mz_a, my_b, mz_b = (
+            np.array([force[k][names.index(c)] for k in range(1, 9)])
+            for c in ("axial", "shear_y", "shear_z", "torque", "moment_y_a", "moment_z_a", "moment_y_b", "moment_z_b"))
+        exact = np.array([mz_a, -my_a, mz_b, -my_b, vy, vz, axial, torque]).T
+        names, stress = read("w", "stresses", "stress", "CBAR")
+        total = np.array([[stress[k][names.index(f"xx@{point}")] for point in
+                           ("C_a", "D_a", "E_a", "F_a", "C_b", "D_b", "E_b", "F_b")] for k in range(1, 9)])
+        bending = total - axial[:, None] / 1e-3
+        for section, bars in ((1, range(1, 5)), (2, range(5, 9))):
+            names, found = read("d", "elements", "force", f"MEF1_{section}")
+            self.assertEqual(names, ["moment1_a", "moment2_a", "moment1_b", "moment2_b", "shear1", "shear2", "axial", "torque"])
+            self.assertEqual(sorted(found), list(bars))
+            for k in bars:
+                np.testing.assert_allclose(found[k], exact[k - 1], atol=1e-8 * np.abs(exact).max())
+            names, found = read("d", "elements", "force", f"MES1_{section}")
+            for k in bars:
+                np.testing.assert_allclose(np.delete(found[k], 4), bending[k - 1], atol=1e-7 * np.abs(total).max())
+                self.assertAlmostEqual(found[k][4], axial[k - 1] / 1e-3, delta=1e-7 * np.abs(total).max())
+
+    def test_too_many_elements_to_recover(self):
+        grids = "".join(f"GRID,{k},,{.1 * k:.1f},0.,0.\n" for k in range(1, 71))
+        springs = "".join(f"CELAS2,{100 + k},1.+5,{1 + k % 69},{1 + k % 6},{2 + k % 69},{1 + k % 6}\n" for k in range(2400))
+        shared = SHARED.format(density="")
+        self.write("d.bdf", HEAD.format(sol=101).replace(MASSES, "") + "FORCE,3,70,0,1.,1.,2.,3.\n" + shared + grids
+                   + "CELAS2,91,1.+5,1,1,70,1\nBEGIN SUPER=1\n" + shared + grids + "GRID,99,,0.,1.,0.\nCBAR,99,1,99,1,1.,0.,0.\n"
+                   + springs + "".join(f"CBAR,{k},1,{k},{k + 1},0.,1.,0.\n" for k in range(1, 70)) + "ENDDATA\n")
+        result = self.bough("static", "d.bdf", "-o", "d.h5")
+        self.assertIn("[fe.part-recovery]", result.stderr)
+        with h5py.File(self.path("d.h5")) as f:
+            self.assertIn("MUG1_1", f["subcases/1/elements"])
+            self.assertNotIn("MEF1_1", f["subcases/1/elements"])
 
     def find_eigenvalues(self, deck, *options):
         self.write("d.bdf", deck)

@@ -180,6 +180,52 @@ class Parts(ProgramTest):
         self.write("d.bdf", make_parts())
         self.fails(1, "export", "d.bdf", "--to", "bdf", "-o", "e.bdf", error="deck.not-written", says=["BEGIN SUPER = 1"])
 
+    def test_sets_of_sections_alone(self):
+        """MPC and SPC sets that only a section has are no empty selections; no message of PRIMARY follows another error."""
+        deck = make_parts(first_part="MPC,6,3,3,1.,4,3,-1.\n", more="SEBULK,1,PRIMARY\n").replace(
+            "SPC = 1\n", "SPC = 1\nMPC = 6\n")
+        self.write("d.bdf", deck)
+        self.assertNotIn("fe.empty-mpc-set", self.bough("static", "d.bdf").stderr)
+        self.write("d.bdf", deck.replace("MPC = 6", "MPC = 7"))
+        self.assertIn("fe.empty-mpc-set", self.bough("static", "d.bdf").stderr)
+        held = deck.replace("SPC1,1,123456,1\n", "").replace("BEGIN SUPER=1", "BEGIN SUPER=1\nSPC1,1,123456,2\n")
+        self.write("d.bdf", held)
+        self.assertNotIn("fe.missing-set", self.bough("static", "d.bdf").stderr)
+        self.write("d.bdf", deck.replace("EIGRL,1,,,6", "EIGRL,1,,,x"))
+        result = self.fails(1, "static", "d.bdf", error="deck.bad-integer")
+        self.assertNotIn("PRIMARY", result.stderr)
+        self.assertNotIn("superelement", result.stderr)
+
+    def test_normals_at_a_cut(self):
+        """A vault of CQUAD4 in three sections: shells of all of them make the normals (PARAM,SNORM) at the cut."""
+        grid = lambda i, j: 100 * i + j
+        places = {grid(i, j): (np.sin(.2 * i), .3 * j, np.cos(.2 * i)) for i in range(1, 8) for j in range(1, 4)}
+        shared = "PSHELL,1,1,.02,1,,1\nMAT1,1,7.+10,,.3,2700.\n"
+
+        def write_grids(columns):
+            return "".join(f"GRID,{grid(i, j)},,{x:.12f},{y:.12f},{z:.12f}\n".replace("0.000000000000", "0.")
+                           for i in columns for j in range(1, 4) for x, y, z in [places[grid(i, j)]])
+
+        def write_shells(columns):
+            return "".join(f"CQUAD4,{grid(i, j)},1,{grid(i, j)},{grid(i + 1, j)},{grid(i + 1, j + 1)},{grid(i, j + 1)}\n"
+                           for i in columns for j in (1, 2))
+
+        head = ("SOL 101\nCEND\nSPC = 1\nSUBCASE 1\nLOAD = 3\nBEGIN BULK\nSPC1,1,123456,101,102,103\n"
+                "FORCE,3,702,0,10.,1.,2.,3.\nMOMENT,3,702,0,1.,1.,2.,0.\n" + shared)
+        whole = head + write_grids(range(1, 8)) + write_shells(range(1, 7)) + "ENDDATA\n"
+        parts = (head + write_grids([1, 2, 3, 5, 7]) + write_shells([1, 2]) + "BEGIN SUPER=1\n" + shared
+                 + write_grids([3, 4, 5]) + write_shells([3, 4]) + "BEGIN SUPER=2\n" + shared + write_grids([5, 6, 7])
+                 + write_shells([5, 6]) + "ENDDATA\n")
+        exact, _ = self.solve_static(whole)
+        found, tables = self.solve_static(parts)
+        u = np.array([exact[g] for g in found])
+        for columns in (slice(0, 3), slice(3, 6)):
+            scale = np.abs(u[:, columns]).max()
+            for g, values in found.items():
+                self.assertLess(np.abs(values[columns] - exact[g][columns]).max(), 1e-8 * scale, g)
+            for g, values in tables["MUG1_1"].items():
+                self.assertLess(np.abs(values[columns] - exact[g][columns]).max(), 1e-8 * scale, g)
+
     def test_a_part_with_supports(self):
         """A support inside of a part, by the set of the subcase."""
         whole = make_whole().replace("SPC1,1,123456,1\n", "SPC1,1,123456,1\nSPC1,1,13,3\n")

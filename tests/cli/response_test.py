@@ -4,6 +4,7 @@ import math
 import os
 import shutil
 import subprocess
+import sys
 import unittest
 
 import h5py
@@ -12,7 +13,11 @@ import scipy.linalg
 import scipy.optimize
 
 from linear_test import HUB, PENDULUM, LinearTest
+from support import SOURCE
 from toml_text import section, table, toml
+
+sys.path.insert(0, os.path.join(SOURCE, "tests/oracle"))
+import uff_reader  # noqa: E402
 
 AXIS = toml(
     section("parameters", kp=8.0, kd=1.6),
@@ -48,6 +53,12 @@ class Response(LinearTest):
         r = self.read("r.h5")
         w = 2 * math.pi * r["frequency_hz"]
         H = r["real"] + 1j * r["imag"]
+        self.bough("export", "r.h5", "--to", "uff", "-o", "r.unv")
+        functions = [part for part in uff_reader.read(self.path("r.unv")) if part["dataset"] == 58]
+        self.assertEqual(len(functions), H.shape[1] * H.shape[2])
+        for k, part in enumerate(functions):
+            np.testing.assert_allclose(part["values"], H[:, k // H.shape[2], k % H.shape[2]], rtol=1e-11, atol=1e-300)
+            self.assertEqual(part["function"], 4)
         A, B, C, D = (model[k] for k in "ABCD")
         eye = np.eye(len(A))
         for k in range(0, len(w), 17):

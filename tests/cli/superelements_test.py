@@ -164,6 +164,15 @@ class Written(ProgramTest):
         # GE 0.02 of the material is K4.
         np.testing.assert_allclose(own["K4XX1"][:nb, :nb], .02 * Psi.T @ K @ Psi, atol=1e-9 * scale)
 
+    def test_stress_rows(self):
+        """STRESS: axial stress of the bars is force over area; without points C to F they have no bending stress."""
+        own = self.read_op4()
+        self.assertEqual((own["MES1"].shape[0], own["MEF1"].shape[0]), (18, 16))  # bars 21 and 33
+        small = 1e-9 * np.abs(own["MES1"]).max()
+        for bar in (0, 1):
+            np.testing.assert_allclose(own["MES1"][9 * bar + 4], own["MEF1"][8 * bar + 6] / 2e-3, rtol=1e-9, atol=small)
+            np.testing.assert_allclose(np.delete(own["MES1"][9 * bar:9 * bar + 9], 4, 0), 0, atol=small)
+
     def test_check_of_the_component(self):
         data = json.loads(self.bough("check", "assembly.bdf", "--json").stdout)
         one = data["superelements"][0]

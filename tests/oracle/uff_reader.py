@@ -43,17 +43,17 @@ def read_58(lines):
     kind, number = (int(v) for v in fields(lines[5], 5, 10))
     ordinate, count, even = (int(v) for v in fields(lines[6], 10, 10, 10))
     start, step = (float(v) for v in fields(lines[6][30:], 13, 13))
-    assert (kind, ordinate) in [(1, 4), (12, 6)]  # over time real, a spectrum complex
+    assert (kind, ordinate) in [(1, 4), (4, 6), (12, 6)]  # over time real, transfer functions and spectra complex
     node, direction = (int(v) for v in fields(lines[5][41:], 10, 4))
     abscissa, quantity = (int(fields(line, 10)[0]) for line in lines[7:9])
-    assert abscissa == {1: 17, 12: 18}[kind] and len(fields(lines[7][25:], 1, 20, 1, 20)[1]) > 0
+    assert abscissa == {1: 17, 4: 18, 12: 18}[kind] and len(fields(lines[7][25:], 1, 20, 1, 20)[1]) > 0
     parts = 2 if ordinate == 6 else 1
     widths = [20] * 4 if even else [13, 20, 20] if parts == 2 else [13, 20, 13, 20]
     values = np.array([float(v) for line in lines[11:] for v in fields(line.rstrip("\n"), *widths) if v])
     rows = values.reshape(count, parts if even else parts + 1)
     x, numbers = (start + step * np.arange(count), rows) if even else (rows[:, 0], rows[:, 1:])
     numbers = numbers[:, 0] if parts == 1 else numbers[:, 0] + 1j * numbers[:, 1]
-    return dict(name=lines[0].strip(), number=number, time=x, values=numbers, node=node, direction=direction,
+    return dict(name=lines[0].strip(), function=kind, number=number, time=x, values=numbers, node=node, direction=direction,
                 quantity=quantity)
 
 
