@@ -56,6 +56,21 @@ void check_steps(const CampaignSpec& spec, const std::vector<std::string>& verbs
   }
 }
 
+void warn_of_unused(const CampaignSpec& spec, Diagnostics& diagnostics) {
+  for (const auto& p : spec.parameters) {
+    const bool is_column = p.at.file == spec.table;  // of a table of cases: it may say what a case is
+    const auto names_it = [&](const std::string& word) { return word.find("{" + p.name + "}") != std::string::npos; };
+    if (!p.file.empty() || is_column || std::any_of(spec.steps.begin(), spec.steps.end(), [&](const auto& step) {
+          return std::any_of(step.words.begin(), step.words.end(), names_it);
+        }))
+      continue;
+    diagnostics.warning(
+        "batch.unused-parameter", p.at,
+        "parameter '" + p.name + "' changes no file and no step names it: the cases do not depend on it",
+        "put {" + p.name + "} into a step, or give file with card or key");
+  }
+}
+
 void check_places(const CampaignSpec& spec, Diagnostics& diagnostics) {
   for (const auto& step : spec.steps)
     for (const auto* option : {"-o", "--output", "--vtu", "--fi"}) {

@@ -16,6 +16,9 @@ bool is_input_word(const std::vector<std::string>& words, std::size_t i);
 
 /// Reports "batch.bad-step": no verb, or {NAME} that is no parameter.
 void check_steps(const toml_files::CampaignSpec& spec, const std::vector<std::string>& verbs, Diagnostics& diagnostics);
+/// Warns ("batch.unused-parameter") of parameters on which no case depends: they change no file and no step names them.
+/// Columns of the table of a list are left out: they may describe a case.
+void warn_of_unused(const toml_files::CampaignSpec& spec, Diagnostics& diagnostics);
 
 /// Reports "cli.output-outside": an output of a step that does not lie in the folder of its case.
 void check_places(const toml_files::CampaignSpec& spec, Diagnostics& diagnostics);

@@ -15,6 +15,7 @@
 #include <set>
 #include <thread>
 
+#include "analysis/campaign/batch_steps.hpp"
 #include "analysis/campaign/worker.hpp"
 #include "analysis/campaign/worker_pool.hpp"
 #include "analysis/common/choices.hpp"
@@ -261,7 +262,12 @@ CampaignAnswer run_campaign(const CampaignRequest& request, const BatchPlan& pla
   CampaignAnswer answer;
   answer.folder = folder.string();
   std::optional<Folder> state;  // of the first rank
-  do_once([&] { state.emplace(folder, plan, shard, request.restart); });
+  do_once([&] {
+    Diagnostics unused;
+    warn_of_unused(plan.get_spec(), unused);
+    for (const auto& item : unused.items()) events.add_message(item);
+    state.emplace(folder, plan, shard, request.restart);
+  });
 
   std::vector<int> selected, open;
   const auto get_case = [&](int number) { return folder / plan.get_folder(number); };

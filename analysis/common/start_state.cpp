@@ -68,13 +68,38 @@ void report_time(const records::SystemSpec& spec, const hdf5::ResultsFile& resul
       spec.controllers.empty() && spec.actuators.empty() && !has_memory ? ""
       : !is_run    ? "controllers, actuators and lags start from the states in which they rest there"
       : has_memory ? "controllers, actuators and lag, delay and random walk of sensors start from no state of their "
-                     "own; bough run --resume continues with their states"
-                   : "controllers and actuators start as the system file says, from no state of their own");
+                     "own, but for momentum of wheels and gimbal angles; bough run --resume continues with their states"
+                   : "controllers and lags of actuators start as the system file says; momentum of wheels and gimbal "
+                     "angles are those of the file");
   if (reached > t + 1e-12 * std::max(std::abs(reached), std::abs(results.time[0])))
     diagnostics.warning(
         "cli.start-earlier", {path},
         fmt::format("its last sample is of t = {:g}, its run came to t = {:g}: the start is the former", t, reached),
         "take samples up to the end of that run (output_until, output_every), or resume it");
+}
+
+/// Momentum of wheels and gimbal angles of gyroscopes, which belong to the motion of the system as its rates do.
+void set_rotors(records::SystemSpec& spec, Starter& starter) {
+  struct Rotor {
+    const char *type, *key;
+    std::size_t column, size, num_outputs;  ///< of the channel /actuators/NAME
+  };
+  constexpr Rotor rotors[] = {
+      {"wheel", "momentum", 1, 1, 3}, {"cmg", "angle", 1, 1, 2}, {"double_gimbal_cmg", "angle", 2, 2, 4}};
+  for (auto& actuator : spec.actuators) {
+    const std::string channel = "/actuators/" + actuator.name;
+    const auto* rotor =
+        std::find_if(std::begin(rotors), std::end(rotors), [&](const Rotor& one) { return actuator.type == one.type; });
+    if (rotor == std::end(rotors) || !starter.has(channel)) continue;
+    const auto row = starter.read(channel, rotor->num_outputs);
+    if (row.empty()) continue;
+    const auto first = row.begin() + static_cast<std::ptrdiff_t>(rotor->column);
+    std::vector<double> start(first, first + static_cast<std::ptrdiff_t>(rotor->size));
+    // Past its limit by rounding after the event at which the wheel reached it.
+    const double limit = actuator.settings.get("momentum_limit", 0);
+    if (actuator.type == "wheel" && limit > 0) start[0] = std::clamp(start[0], -limit, limit);
+    actuator.settings.numbers[rotor->key] = start;
+  }
 }
 
 }  // namespace
@@ -106,6 +131,7 @@ void set_start_state(records::SystemSpec& spec, const std::string& path, Diagnos
     // Below zero by rounding where a run passed the event at which it was empty.
     if (!mass.empty()) tank.mass = std::max(0.0, mass.front());
   }
+  set_rotors(spec, starter);
   for (auto& hinge : spec.hinges) {
     if (hinge.type == records::HingeType::Fixed || !hinge.motion.empty()) continue;
     hinge.position = starter.read("/hinges/" + hinge.name + "/q", 0);

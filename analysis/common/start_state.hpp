@@ -10,8 +10,9 @@
 namespace bough::analysis {
 
 /// Puts the last sample of a results file (of run or equilibrium) into the records: position and rate of every hinge
-/// that moves freely, eta and eta_dot of every flexible body. Reports "cli.start-mismatch" for what the file lacks or
-/// has in another size, "cli.start-earlier" (warning) where the run went on after its last sample.
+/// that moves freely, eta and eta_dot of every flexible body, mass of tanks, momentum of wheels and gimbal angles.
+/// Reports "cli.start-mismatch" for what the file lacks or has in another size, "cli.start-earlier" (warning) where the
+/// run went on after its last sample.
 void set_start_state(records::SystemSpec& spec, const std::string& path, Diagnostics& diagnostics);
 
 /// Initial control state for simulate (SimulateOptions::resume) from a file of `equilibrium`: the states of controllers

@@ -108,7 +108,7 @@ solver::OperatingPoint find_point(const LinearizeRequest& request, const LoadedS
 
 void check_sweep(const LinearizeRequest& request) {
   if (!request.sweep.empty()) parse_sweep(request.sweep);
-  for (const auto& text : request.uncertain) parse_uncertain(text);
+  parse_uncertain(request.uncertain);
 }
 
 records::LinearModel linearize(const LinearizeRequest& request, const LoadedSystem& loaded, Diagnostics& diagnostics) {

@@ -156,17 +156,21 @@ UncertainRange parse_uncertain(const std::string& text) {
   return range;
 }
 
-records::LinearModel linearize_uncertain(const LinearizeRequest& request, const LoadOptions& load,
-                                         Diagnostics& diagnostics) {
+std::vector<UncertainRange> parse_uncertain(const std::vector<std::string>& texts) {
   std::vector<UncertainRange> ranges;
-  for (const auto& text : request.uncertain) {
+  for (const auto& text : texts) {
     auto range = parse_uncertain(text);
     for (const auto& other : ranges)
       if (other.name == range.name)
         throw InputError("cli.bad-uncertain", {}, "--uncertain names " + range.name + " twice", "name it once");
     ranges.push_back(std::move(range));
   }
-  const Corners corners(request, load, std::move(ranges), diagnostics);
+  return ranges;
+}
+
+records::LinearModel linearize_uncertain(const LinearizeRequest& request, const LoadOptions& load,
+                                         Diagnostics& diagnostics) {
+  const Corners corners(request, load, parse_uncertain(request.uncertain), diagnostics);
   std::vector<double> middle, high;
   for (const auto& range : corners.ranges()) {
     middle.push_back(get_middle(range));

@@ -16,8 +16,10 @@ struct UncertainRange {
   int mode = 0;            ///< of a factor, from 1
 };
 
-/// \throws InputError "cli.bad-uncertain" for a text that is no range, a name given twice, or a factor that is negative
+/// \throws InputError "cli.bad-uncertain" for a text that is no range, or a factor that is negative
 UncertainRange parse_uncertain(const std::string& text);
+/// \throws InputError "cli.bad-uncertain" as of one text, or for a name given twice
+std::vector<UncertainRange> parse_uncertain(const std::vector<std::string>& texts);
 
 /// The model with all parameters of request.uncertain in the middle of their ranges, and inputs and outputs through
 /// which they act (statespace::make_uncertain_model). The middle of a frequency is that of its square.

@@ -74,6 +74,10 @@ class Reader {
     return spec_.method == CampaignMethod::LatinHypercube || spec_.method == CampaignMethod::MonteCarlo;
   }
 
+  std::string get_method() const {
+    return spec_.method == CampaignMethod::MonteCarlo ? "monte-carlo" : is_random() ? "latin-hypercube" : "list";
+  }
+
   void wrong(const SourceLocation& at, const std::string& what, const std::string& advice) {
     diagnostics_.error("batch.bad-parameter", at, what, advice);
   }
@@ -127,6 +131,13 @@ class Reader {
     if (!is_deck)
       for (const char* key : {"id", "occurrence", "field"})
         if (table.has(key)) wrong(table.locate(key), who + " has " + key + " without card", "add card or remove it");
+    if (table.has("number") && (!p.low || spec_.method != CampaignMethod::Grid))
+      wrong(table.locate("number"),
+            who + " has number " + (p.low ? "with method = \"" + get_method() + "\"" : "without range"),
+            p.low && is_random() ? "remove it; samples of [campaign] is the number of cases"
+                                 : "remove it; number divides the range of a grid");
+    if (table.has("spacing") && !p.low && !table.has("mean"))
+      wrong(table.locate("spacing"), who + " has spacing without range", "add range = [low, high], or remove it");
     if (p.low && *p.low > *p.high) wrong(table.locate("range"), who + " has a range from high to low", "swap the two");
     if (p.low && p.is_log && *p.low <= 0)
       wrong(table.locate("range"), who + " has logarithmic spacing down to zero or less", "give positive ends");

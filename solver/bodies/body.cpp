@@ -1,6 +1,8 @@
 #include "solver/bodies/body.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "base/diagnostic.hpp"
 #include "solver/bodies/kernels.hpp"
@@ -14,6 +16,28 @@ namespace bough::solver {
 namespace {
 using Amplitudes = AffineField::Amplitudes;
 
+/// Modal mass about mean axes, M - Γᵀ M6⁻¹ Γ with Γ = [Γ0; Γ1] [6 x n]: the kinetic energy of a free body at given
+/// modal rates when its frame takes the rigid motion that minimizes that energy. Equal for every frame of a free body.
+/// Source: docs/theory/bases.md, Frames.
+MatrixXd calc_mean_axis_mass(const MatrixXd& M, const Matrix6d& M6, const records::MassIntegrals& integrals) {
+  const Eigen::Index n = M.rows();
+  Matrix6Xd G(6, n);
+  G << integrals.gamma0.leftCols(n), integrals.gamma1.leftCols(n);
+  // Rows by the root of their inertia; mass on a line has no inertia about it, and no G there.
+  const double largest = M6.diagonal().tail<3>().maxCoeff();
+  Vector6d scale;
+  for (int i = 0; i < 6; ++i) {
+    const double inertia = M6(i, i);
+    scale[i] = inertia > (i < 3 ? 0 : 1e-14 * largest) ? 1 / std::sqrt(inertia) : 0;
+  }
+  Eigen::CompleteOrthogonalDecomposition<Matrix6d> factor;
+  factor.setThreshold(1e-12);
+  factor.compute(scale.asDiagonal() * M6 * scale.asDiagonal());
+  const Matrix6Xd H = scale.asDiagonal() * G;
+  const MatrixXd mean = M - H.transpose() * factor.solve(H);
+  return 0.5 * (mean + mean.transpose());
+}
+
 // D = Σ 2ζ_i ω_i (M φ_i)(M φ_i)ᵀ over the motions K φ = ω² M φ, by rising ω. Damping belongs to them, not to
 // coordinates.
 MatrixXd make_damping(const MatrixXd& M, const MatrixXd& K, const std::vector<double>& ratios) {
@@ -25,8 +49,9 @@ MatrixXd make_damping(const MatrixXd& M, const MatrixXd& K, const std::vector<do
     const MatrixXd rest = A - MatrixXd(A.diagonal().asDiagonal());
     return (rest.cwiseAbs().array() <= 1e-9 * (root * root.transpose()).array()).all();
   };
-  const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd> motions(K, M);
-  if ((is_nearly_diagonal(M) && is_nearly_diagonal(K)) || motions.info() != Eigen::Success) {
+  const bool is_definite = Eigen::LLT<MatrixXd>(M).info() == Eigen::Success;
+  const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd> motions(K, is_definite ? M : MatrixXd::Identity(n, n));
+  if ((is_nearly_diagonal(M) && is_nearly_diagonal(K)) || !is_definite || motions.info() != Eigen::Success) {
     for (Eigen::Index j = 0; j < n; ++j) D(j, j) = 2 * ratio(j) * std::sqrt(std::max(0.0, K(j, j) * M(j, j)));
     return D;
   }
@@ -34,6 +59,37 @@ MatrixXd make_damping(const MatrixXd& M, const MatrixXd& K, const std::vector<do
   for (Eigen::Index i = 0; i < n; ++i)
     D += 2 * ratio(i) * std::sqrt(std::max(0.0, motions.eigenvalues()[i])) * A.col(i) * A.col(i).transpose();
   return D;
+}
+
+/// Largest difference between the eigenvalues of the file and those of K and M, relative: of the pencil, or of each
+/// coordinate alone, K_jj / M_jj, where the coordinates of the file are no modes. Infinite if M is not definite.
+double calc_eigenvalue_error(const records::FlexBody& flex, const MatrixXd& M) {
+  const MatrixXd& K = flex.modal_stiffness;
+  const auto compare = [](const VectorXd& found, const VectorXd& expected) {
+    const double floor = 1e-9 * expected.cwiseAbs().maxCoeff();
+    return ((found - expected).array().abs() / expected.array().abs().max(floor)).maxCoeff();
+  };
+  if (flex.eigenvalue.size() != M.rows() || !(flex.eigenvalue.cwiseAbs().maxCoeff() > 0) ||
+      Eigen::LLT<MatrixXd>(M).info() != Eigen::Success)
+    return std::numeric_limits<double>::infinity();
+  VectorXd sorted = flex.eigenvalue;
+  std::sort(sorted.begin(), sorted.end());
+  const VectorXd of_pencil =
+      Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd>(K, M, Eigen::EigenvaluesOnly).eigenvalues();
+  return std::min(compare(of_pencil, sorted), compare(K.diagonal().cwiseQuotient(M.diagonal()), flex.eigenvalue));
+}
+
+/// Modal mass [n x n] to which damping ratios belong, that of the body as its file damps it: of a body whose rigid
+/// motions were removed about mean axes, whatever its frame is; of a body on supports as it stands. A frame that nodes
+/// carry is known by the eigenvalues, which are those of the free body.
+MatrixXd calc_damped_mass(const records::FlexBody& flex, const Matrix6d& M6, Eigen::Index n) {
+  constexpr double kEqual = 1e-5;  // files of five digits
+  const MatrixXd& M = flex.modal_mass;
+  if (n == 0 || !(flex.mass > 0)) return M.topLeftCorner(n, n);
+  const MatrixXd mean = calc_mean_axis_mass(M, M6, flex.integrals());
+  const bool is_free =
+      flex.is_free_free || (calc_eigenvalue_error(flex, M) > kEqual && calc_eigenvalue_error(flex, mean) <= kEqual);
+  return (is_free ? mean : M).topLeftCorner(n, n);
 }
 
 }  // namespace
@@ -70,7 +126,7 @@ Body Body::make_flexible(const records::FlexBody& flex, int num_modes, bool stif
         body.K_ -= a * flex.kg_inertial[i].topLeftCorner(n, n);
   body.D_ = MatrixXd::Zero(n, n);
   if (!damping_ratios.empty()) {
-    body.D_ = make_damping(body.M_, body.K_, damping_ratios);
+    body.D_ = make_damping(calc_damped_mass(flex, body.M6_, n), body.K_, damping_ratios);
   } else if (flex.modal_damping.size() > 0) {
     body.D_ = flex.modal_damping.topLeftCorner(n, n);
   }

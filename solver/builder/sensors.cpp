@@ -270,6 +270,7 @@ class Resolver {
   }
 
   void resolve_orbit(const SensorRecord& r, Sensor& e) {
+    if (!system_.is_valid(e.relative_to)) return;  // reported; no gravity_central attracts it
     int count = 0;
     for (const CentralGravity* source : system_.gravity.central) {
       if (!source->attracts(e.relative_to)) continue;

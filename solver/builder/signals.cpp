@@ -316,11 +316,29 @@ class Builder {
   std::vector<const records::ControllerRecord*> records_;  ///< by place; nullptr: no controller
 };
 
+/// Magnetometers and torque rods in no magnetic field, which read and do nothing.
+void warn_of_no_field(const records::SystemSpec& spec, Diagnostics& diagnostics) {
+  for (const auto& force : spec.force_elements)
+    if (!force.dipole.isZero(0)) return;
+  const auto warn = [&](const SourceLocation& at, const std::string& label, const std::string& effect) {
+    diagnostics.warning(
+        "system.no-magnetic-field", at,
+        label + " is in no magnetic field, since no [[force]] of type gravity_central has a dipole: " + effect,
+        "give dipole of the planet");
+  };
+  for (const auto& sensor : spec.sensors)
+    if (sensor.type == records::SensorType::Magnetometer)
+      warn(sensor.at, "sensor '" + sensor.name + "'", "it reads zero");
+  for (const auto& actuator : spec.actuators)
+    if (actuator.type == "torque_rod") warn(actuator.at, "actuator '" + actuator.name + "'", "it gives no moment");
+}
+
 }  // namespace
 
 void build_signals(const records::SystemSpec& spec, const FlexMap& flex, const FunctionMap& functions,
                    const SignalUses& uses, System& system, Diagnostics& diagnostics) {
   Builder(spec, system, functions, diagnostics).build(uses, flex);
+  warn_of_no_field(spec, diagnostics);
 }
 
 }  // namespace bough::solver

@@ -87,6 +87,8 @@ class Cases(BatchTest):
                 (E.replace("MAT1", "GRID").replace("id = 1\n", "") + "values = [1.0]\n", "batch.ambiguous-card", "give id"),
                 (E, "batch.bad-parameter", "has no values"),
                 (E + "range = [1.0, 2.0]\n", "batch.bad-parameter", "without number"),
+                (E + "values = [1.0]\nnumber = 5\n", "batch.bad-parameter", "number without range"),
+                (E + 'values = [1.0]\nspacing = "log"\n', "batch.bad-parameter", "spacing without range"),
                 (E.replace("beam.bdf", "bean.bdf") + "values = [1.0]\n", "batch.no-file", "is no file"),
                 (toml(table("parameter", "x", values=[1]), table("parameter", "x", values=[1])),
                  "toml.duplicate-name", "already given"),
@@ -96,6 +98,21 @@ class Cases(BatchTest):
                 result = self.fails(1, "batch", "study.toml", "--dry-run", says=[words], error=error)
                 found = re.search(r"study\.toml:(\d+): error", result.stderr)
                 self.assertGreaterEqual(int(found.group(1)), line)
+
+    def test_what_no_case_uses_is_told(self):
+        for method in ("monte-carlo", "latin-hypercube"):
+            self.campaign(E + "range = [1.0, 2.0]\nnumber = 5\n", f'method = "{method}"\nsamples = 3\nsteps = ["modes beam.bdf"]')
+            self.fails(1, "batch", "study.toml", says=["study.toml:12", f'number with method = "{method}"', "samples"],
+                       error="batch.bad-parameter")
+        self.campaign(toml(table("parameter", "n", values=[2, 3]), table("parameter", "q", values=[1.0])),
+                      'steps = ["modes beam.bdf -n {n}"]')
+        said = self.bough("batch", "study.toml").stderr
+        self.assertRegex(said, r"study\.toml:\d+: warning: parameter 'q' .*batch\.unused-parameter")
+        self.assertNotIn("'n'", said)
+        # A column of a table may say what a case is.
+        self.write("cases.csv", "n,label\n2,soft\n3,stiff\n")
+        self.campaign("", 'method = "list"\ntable = "cases.csv"\nsteps = ["modes beam.bdf -n {n}"]', "list.toml")
+        self.assertNotIn("unused-parameter", self.bough("batch", "list.toml").stderr)
 
     def test_bad_steps_keys_and_tables(self):
         self.campaign(E + "values = [1.0]\n", 'steps = ["mode beam.bdf"]')

@@ -150,6 +150,8 @@ class SpaceEnvironment(ProgramTest):
                             (panel + "specular = 0.8\ndiffuse = 0.4\n", "sum above one"),
                             (table("force", "d", "drag", body="sat", area=1.0, coefficient=2.0, density=1.0,
                                    scale_height=1.0), "no planet"),
+                            (panel + "sun_size = 0.1\n", "missing key 'planet'"),
+                            (table("force", "moon", "gravity_central", mu=4.9e12, bodies=[]), "'bodies' is empty"),
                             (table("sensor", "s", "euler", body="sat", relative_to="lvlh:sot"), "lvlh:sot")):
             self.write("bad.toml", SYSTEM.format(**base, more=more))
             self.assertIn(error, self.bough("check", "bad.toml", code=1).stderr)
@@ -158,6 +160,12 @@ class SpaceEnvironment(ProgramTest):
         attitude = table("sensor", "s", "euler", body="sat", relative_to="lvlh:sat")
         self.write("radial.toml", SYSTEM.format(**{**base, "speed": "0.0"}, more=attitude))
         self.fails(3, "run", "radial.toml", "-o", "r.h5", says=["along the radius"], error="run.no-orbit")
+        # Without a dipole there is no field.
+        magnetic = toml(table("sensor", "field", "magnetometer", body="sat"), table("function", "m", "constant", value=1.0),
+                        table("actuator", "rod", "torque_rod", body="sat", axis=[1.0, 0.0, 0.0], input="m"))
+        for dipole, count in (("0.0, 0.0, 0.0", 2), ("0.0, 0.0, 1.0", 0)):
+            self.write("field.toml", SYSTEM.format(**{**base, "dipole": dipole}, more=magnetic))
+            self.assertEqual(self.bough("check", "field.toml").stderr.count("system.no-magnetic-field"), count)
         moon = table("force", "moon", "gravity_central", mu=4.9e12, centre=[0.0, 4e8, 0.0])
         self.write("two.toml", SYSTEM.format(**base, more=moon + attitude))
         self.fails(1, "run", "two.toml", "-o", "t.h5", says=["2 [[force]]s of type gravity_central"], error="sensor.no-orbit")

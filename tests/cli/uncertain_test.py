@@ -95,6 +95,8 @@ class Uncertain(ProgramTest):
         for bad in ["gain", "gain=4", "gain=6:4", "=1:2", "gain=a:b", "a:eta1:color=1:2", "a:eta0:stiffness=1:2",
                     "a:eta1:damping=-1:2"]:
             self.fails(2, "linearize", "sliders.toml", "--uncertain", bad, error="cli.bad-uncertain")
+        self.fails(2, "linearize", "sliders.toml", "--uncertain", "gain=4:6", "--uncertain", "gain=3:6", says=["names gain twice"],
+                   error="cli.bad-uncertain")
         self.fails(1, "linearize", "sliders.toml", "--uncertain", "other=1:2", error="toml.unknown-parameter")
         self.fails(1, "linearize", "sliders.toml", "--uncertain", "bb:eta1:stiffness=1:2", error="linear.no-mode")
         self.fails(1, "linearize", "sliders.toml", "--uncertain", "a:eta1:stiffness=1:2", error="linear.no-mode")

@@ -160,6 +160,11 @@ void read_typed(const Fields& table, const std::string& type, records::SystemSpe
   const std::string because = "in force '" + e.name + "' of type " + type;
   for (const auto& key : keys.needed) demand(table, key, because, diagnostics);
   if (keys.type == ElementType::Spring && table.has("stiffness")) demand(table, "free_length", because, diagnostics);
+  if (keys.type == ElementType::SolarPressure && table.has("sun_size"))
+    demand(table, "planet", because + ", whose sun_size is that of its shadow", diagnostics);
+  if (keys.type == ElementType::CentralGravity && table.has("bodies") && table.get_strings("bodies").empty())
+    diagnostics.error("toml.bad-value", table.locate("bodies"), "'bodies' is empty " + because,
+                      "name the bodies that it attracts; without the key it attracts all");
   for (const auto& key : table.get_keys()) {
     const auto is_in = [&](const auto& list) { return std::find(list.begin(), list.end(), key) != list.end(); };
     const bool is_known = is_in(keys.needed) || is_in(keys.other) || key == "name" || key == "type";
