@@ -37,7 +37,72 @@ DUAL_SPIN = toml(
     section("simulation", duration=1.0))
 
 
+def write_boom(axis, num, length, tip):
+    """Deck of a straight boom along an axis (0: x, 1: y) from grid 1 on, with a mass at its end."""
+    grids = [f"GRID,{k + 1},,{','.join(repr(k * length / num if i == axis else 0.0) for i in range(3))}" for k in range(num + 1)]
+    up = "0.,1.,0." if axis == 0 else "0.,0.,1."
+    return "\n".join(["SOL 103", "CEND", "SPC = 1", "METHOD = 1", "BEGIN BULK", "PARAM,COUPMASS,1", "EIGRL,1,,,12",
+                      "SPC1,1,123456,1", "MAT1,1,7.+10,,0.3,1500.", "PBAR,1,1,4.-4,2.-8,5.-8,1.-8", *grids,
+                      *(f"CBAR,{k + 1},1,{k + 1},{k + 2},{up}" for k in range(num)), f"CONM2,900,{num + 1},,2.0", tip, "ENDDATA\n"])
+
+
 class FlightCases(ProgramTest):
+    def test_damping_ratios_are_those_of_the_free_motions_in_every_frame(self):
+        """The poles of a free body do not depend on the frame: each has the ratio of [[body]] damping."""
+        self.write("boom.bdf", write_boom(1, 6, 4.0, ",0.02,,0.03,,,0.04"))
+        system = toml(table("body", "boom", file="boom.h5", damping="RATIOS"),
+                      table("hinge", "flight", "free", child="boom", child_node=1), section("simulation", duration=1.0))
+        free = None
+        for frame in ({"frame": "mean"}, {"frame": "free"}, {"frame": "node", "frame_nodes": [1]},
+                      {"frame": "mass-centre", "frame_nodes": [4]}, {"frame": "mass-centre"}):
+            self.write("boom.toml", toml(section("body", name="boom", deck="boom.bdf", interface=[1, 7], **frame),
+                                         section("body.modes", number=4), section("body.output", file="boom.h5")))
+            self.bough("reduce", "boom.toml")
+            for ratios in ([0.05] * 4, [0.01, 0.02, 0.03, 0.04]):
+                self.write("free.toml", system.replace('"RATIOS"', repr(ratios)))
+                self.bough("linearize", "free.toml", "-o", "free.h5")
+                real, imag = self.read_arrays("free.h5", "poles/real", "poles/imag")
+                poles = (real + 1j * imag).ravel()
+                poles = sorted(poles[poles.imag > 1], key=abs)
+                free = [abs(pole) for pole in poles] if free is None else free
+                np.testing.assert_allclose([abs(pole) for pole in poles], free, rtol=1e-6, err_msg=repr(frame))
+                np.testing.assert_allclose([-pole.real / abs(pole) for pole in poles], ratios, rtol=1e-6, err_msg=repr(frame))
+
+    def test_a_wrong_body_has_its_own_error_alone(self):
+        """An LVLH frame of a body with too few eta: no gravity_central is missing."""
+        self.write("boom.bdf", write_boom(1, 6, 4.0, ",0.02,,0.03,,,0.04"))
+        self.bough("reduce", "boom.bdf", "-n", 4, "--interface", "1,7", "-o", "boom.h5")
+        self.write("orbit.toml", toml(
+            table("body", "hub", mass=100.0, inertia=[20.0, 25.0, 30.0]),
+            table("body", "boom", file="boom.h5", eta=[0.2, 0.1]),
+            table("hinge", "flight", "free", child="hub", position=[1.0, 0.0, 0.0, 0.0, 7e6, 0.0, 0.0]),
+            table("hinge", "root", "fixed", parent="hub", child="boom", child_node=1),
+            table("force", "earth", "gravity_central", mu=3.986e14),
+            table("sensor", "v", "velocity", body="hub", relative_to="lvlh:boom"), section("simulation", duration=1.0)))
+        self.assertNotIn("no-orbit", self.fails(1, "check", "orbit.toml", error="system.bad-count").stderr)
+
+    def test_wheels_and_gimbals_go_on_from_a_run(self):
+        """A mission in two parts: momentum of the system, stored momentum included, is that of the run in one."""
+        mission = toml(
+            table("body", "ship", mass=10.0, inertia=[1.0, 1.5, 2.0]), table("hinge", "flight", "free", child="ship"),
+            table("function", "torque", "constant", value=0.1), table("function", "rate", "constant", value=0.05),
+            table("actuator", "wheel", "wheel", body="ship", axis=[0.0, 0.0, 1.0], inertia=0.01, input="torque"),
+            table("actuator", "full", "wheel", body="ship", axis=[0.0, 1.0, 0.0], inertia=0.01, momentum_limit=0.2, input="torque"),
+            table("actuator", "gyro", "cmg", body="ship", gimbal_axis=[1.0, 0.0, 0.0], spin_axis=[0.0, 1.0, 0.0], momentum=2.0,
+                  input="rate"),
+            table("actuator", "double", "double_gimbal_cmg", body="ship", gimbal_axis=[0.0, 0.0, 1.0],
+                  inner_axis=[1.0, 0.0, 0.0], spin_axis=[0.0, 1.0, 0.0], momentum=1.0, angle=[0.1, -0.2], input="rates"),
+            table("controller", "rates", "expression", inputs=["rate"], expression=["u1", "0.2 - u1"]),
+            section("simulation", duration="DURATION", output_step=1.0, integrator="rk", relative_tolerance=1e-11,
+                    absolute_tolerance=1e-12))
+        for name, times in (("whole", "8.0"), ("first", "5.0"), ("second", "3.0\nstart = 5.0")):
+            self.write(name + ".toml", mission.replace('"DURATION"', times))
+            self.bough("run", name + ".toml", "-o", name + ".h5", *(["--start-from", "first.h5"] if name == "second" else []))
+        paths = ["momentum/angular", "bodies/ship/angular_velocity", *(f"actuators/{a}" for a in ("wheel", "full", "gyro", "double"))]
+        for path, whole, second in zip(paths, self.read_arrays("whole.h5", *paths), self.read_arrays("second.h5", *paths)):
+            # The first sample is before the event of the wheel that starts at its limit.
+            np.testing.assert_allclose(second[1:], whole[6:], atol=1e-8, err_msg=path)
+
     def test_two_panels_of_basilisk(self):
         self.write("panels.toml", make_panels(2.5, output_step=0.5))
         self.bough("run", "panels.toml", "-o", "panels.h5")
