@@ -6,6 +6,7 @@
 #include <cmath>
 #include <complex>
 #include <numbers>
+#include <numeric>
 
 #include "formats/records/unit_names.hpp"
 #include "report/label.hpp"
@@ -59,14 +60,33 @@ Curve make_closed_loop_contour(double decibel, double shift) {
 
 }  // namespace
 
+double calc_response_floor(const VectorXd& frequency_hz, const VectorXd& largest) {
+  const Index n = largest.size();
+  if (n == 0) return 0;
+  // Steps of the logarithmic axis at each frequency; without an axis each counts alike.
+  VectorXd width = VectorXd::Ones(n);
+  if (n > 1 && frequency_hz[0] > 0)
+    for (Index k = 0; k < n; ++k)
+      width[k] = std::log(frequency_hz[std::min(k + 1, n - 1)] / frequency_hz[std::max<Index>(k - 1, 0)]) / 2;
+  std::vector<Index> order(static_cast<std::size_t>(n));
+  std::iota(order.begin(), order.end(), Index{0});
+  std::sort(order.begin(), order.end(), [&](Index a, Index b) { return largest[a] > largest[b]; });
+  const double total = width.sum();
+  double covered = 0;
+  for (const Index k : order)
+    if ((covered += width[k]) >= kPeakShare * total) return kResponseFloor * largest[k];
+  return kResponseFloor * largest[order.back()];
+}
+
 std::vector<BodePair> make_bode_pairs(const records::FrequencyResponse& response, std::size_t max_pairs) {
   std::vector<BodePair> pairs;
   if (response.value.empty()) return pairs;
   const auto& first = response.value.front();
   const auto count = static_cast<Index>(response.value.size());
-  double largest = 0;
-  for (const auto& h : response.value)
-    if (h.size() > 0) largest = std::max(largest, h.cwiseAbs().maxCoeff());
+  VectorXd largest = VectorXd::Zero(count);
+  for (Index k = 0; k < count; ++k)
+    if (const auto& h = response.value[static_cast<std::size_t>(k)]; h.size() > 0) largest[k] = h.cwiseAbs().maxCoeff();
+  const double floor = calc_response_floor(response.frequency_hz, largest);
   for (Index j = 0; j < first.cols(); ++j)
     for (Index i = 0; i < first.rows() && pairs.size() < max_pairs; ++i) {
       BodePair pair{i, j,
@@ -76,7 +96,7 @@ std::vector<BodePair> make_bode_pairs(const records::FrequencyResponse& response
       double last = kNaN;
       for (Index k = 0; k < count; ++k) {
         const std::complex<double> h = response.value[static_cast<std::size_t>(k)](i, j);
-        const bool is_drawn = std::abs(h) > kResponseFloor * largest;
+        const bool is_drawn = std::abs(h) > floor;
         pair.decibel[k] = is_drawn ? 20 * std::log10(std::abs(h)) : kNaN;
         pair.degrees[k] = kNaN;
         if (!is_drawn) continue;
@@ -143,7 +163,7 @@ Plot make_sigma_plot(const records::FrequencyResponse& response, const std::stri
   Plot plot{"", label_frequency(response.units.time), "singular value [dB]", {}};
   plot.has_log_x = true;
   const auto& values = response.singular_values;
-  const double floor = values.size() > 0 ? kResponseFloor * values.maxCoeff() : 0;
+  const double floor = values.size() > 0 ? calc_response_floor(response.frequency_hz, values.rowwise().maxCoeff()) : 0;
   for (Index s = 0; s < values.cols(); ++s) {
     const VectorXd decibel = values.col(s).unaryExpr([&](double v) { return v > floor ? 20 * std::log10(v) : kNaN; });
     if (decibel.array().isFinite().any())

@@ -8,7 +8,7 @@
 
 namespace bough::report {
 
-/// One entry of the transfer matrix. NaN where |H| is below kResponseFloor of the largest entry: round-off.
+/// One entry of the transfer matrix. NaN where |H| is below calc_response_floor(): round-off.
 struct BodePair {
   Eigen::Index output = 0, input = 0;
   std::string name;         ///< "gyro:z / wheel_z"
@@ -17,6 +17,13 @@ struct BodePair {
 };
 
 constexpr double kResponseFloor = 1e-12;
+/// Part of the logarithmic axis that peaks of undamped poles may take: they reach any height.
+constexpr double kPeakShare = 0.01;
+
+/// Computes the magnitude below which nothing is drawn: kResponseFloor times the largest one outside narrow peaks.
+/// \param frequency_hz  increasing; Hz or the cycles per unit of time
+/// \param largest       the largest magnitude at each frequency
+double calc_response_floor(const Eigen::VectorXd& frequency_hz, const Eigen::VectorXd& largest);
 
 /// Entries column by column, at most `max_pairs`.
 std::vector<BodePair> make_bode_pairs(const records::FrequencyResponse& response, std::size_t max_pairs);

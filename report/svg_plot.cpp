@@ -230,13 +230,24 @@ std::string draw_stroke(const std::string& path, const Style& style) {
   return svg + "/>\n";
 }
 
-/// Entries in rows between title and frame; returns the height they take.
+/// Returns true if a curve, or its line between two points, is in the range of y.
+bool is_in_view(const Curve& curve, double y_min, double y_max) {
+  double before = std::nan("");
+  for (const double y : curve.y) {
+    if (y >= y_min && y <= y_max) return true;
+    if (!curve.markers_only && ((before < y_min && y > y_max) || (before > y_max && y < y_min))) return true;
+    before = y;
+  }
+  return false;
+}
+
+/// Entries in rows between title and frame, of the curves in view; returns the height they take.
 double draw_legend(const Plot& plot, double top, std::string& svg) {
   double x = kLeft, y = top;
   bool any = false;
   for (std::size_t i = 0; i < plot.curves.size(); ++i) {
     const std::string& label = plot.curves[i].label;
-    if (label.empty()) continue;
+    if (label.empty() || (plot.y_max > plot.y_min && !is_in_view(plot.curves[i], plot.y_min, plot.y_max))) continue;
     const double width = 36 + kCharacter * static_cast<double>(count_characters(label)) + 22;
     if (any && x + width > kWidth - kRight) {
       x = kLeft;

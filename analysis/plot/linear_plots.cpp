@@ -2,11 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <limits>
 #include <map>
 #include <numbers>
+#include <numeric>
 
 #include "analysis/common/body_files.hpp"
 #include "analysis/common/inputs.hpp"
@@ -30,8 +32,30 @@ using report::Plot;
 
 bool is_of_sweeps(const std::string& kind) { return kind == "campbell" || kind == "locus"; }
 
-void add_response(const records::LinearModel& model, const std::string& kind, const std::string& prefix,
-                  std::vector<Plot>& plots) {
+/// More curves than this cannot be told apart: the pairs with the largest peaks are drawn, unless some are chosen.
+constexpr std::size_t kMaxPairs = 8;
+
+/// Keeps the pairs with the largest peaks, in their order.
+void keep_largest(std::vector<report::BodePair>& pairs, std::size_t max_pairs) {
+  const auto calc_peak = [](const report::BodePair& pair) {
+    return pair.decibel.unaryExpr([](double v) { return std::isfinite(v) ? v : -HUGE_VAL; }).maxCoeff();
+  };
+  std::vector<double> peaks;
+  for (const auto& pair : pairs) peaks.push_back(pair.decibel.size() > 0 ? calc_peak(pair) : -HUGE_VAL);
+  std::vector<std::size_t> order(pairs.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(), [&](auto a, auto b) { return peaks[a] > peaks[b]; });
+  order.resize(std::min(order.size(), max_pairs));
+  std::sort(order.begin(), order.end());
+  std::vector<report::BodePair> kept;
+  for (const auto k : order) kept.push_back(std::move(pairs[k]));
+  pairs = std::move(kept);
+}
+
+/// \param is_chosen  some inputs or outputs are requested: all of their pairs are drawn
+/// \return what of the model is drawn, for the title; empty: all
+std::string add_response(const records::LinearModel& model, const std::string& kind, const std::string& prefix,
+                         bool is_chosen, std::vector<Plot>& plots) {
   const bool is_loop = records::is_cut_loop(model);
   statespace::FrequencyRange range;
   if (is_loop) range = statespace::widen_for_loop(model, range);
@@ -40,9 +64,11 @@ void add_response(const records::LinearModel& model, const std::string& kind, co
     auto plot = report::make_sigma_plot(response, prefix);
     plot.curves.insert(plot.curves.begin(), plots[0].curves.begin(), plots[0].curves.end());
     plots[0] = std::move(plot);
-    return;
+    return {};
   }
-  const auto pairs = report::make_bode_pairs(response, std::numeric_limits<std::size_t>::max());
+  auto pairs = report::make_bode_pairs(response, std::numeric_limits<std::size_t>::max());
+  const auto num_pairs = pairs.size();
+  if (!is_chosen) keep_largest(pairs, kMaxPairs);
   for (const auto& pair : pairs) {
     if (kind == "nichols")
       plots[0].curves.push_back({prefix + pair.name, pair.degrees, pair.decibel});
@@ -51,6 +77,7 @@ void add_response(const records::LinearModel& model, const std::string& kind, co
   }
   if (is_loop && kind == "bode" && pairs.size() == 1)
     report::add_margins(statespace::calc_margins(model, response), pairs.front(), response, plots);
+  return pairs.size() < num_pairs ? fmt::format(", {} of {} pairs", pairs.size(), num_pairs) : "";
 }
 
 /// The branch of `among` whose conjugate b is wherever the two are complex; -1: none. They may part on the real axis.
@@ -99,18 +126,23 @@ bool is_spin_rate(const records::LinearSweep& sweep) {
   return false;
 }
 
-/// Lines of once, twice, ... the rate of rotation, as far as they are among the curves.
-void add_per_rev(const records::LinearSweep& sweep, Plot& plot) {
+/// Lines of once, twice, ... the rate of rotation: `num_lines`, or 0 for those among the curves.
+void add_per_rev(const records::LinearSweep& sweep, int num_lines, Plot& plot) {
   const double first = sweep.value[0], last = sweep.value[sweep.value.size() - 1];
   double top = 0;
   for (const auto& curve : plot.curves) top = std::max(top, curve.y.maxCoeff());
   const double rate = std::max(std::abs(first), std::abs(last)) / (2 * std::numbers::pi);
-  for (int n = 1; n <= 8 && rate > 0 && n * std::abs(last) / (2 * std::numbers::pi) <= 3 * top; ++n)
+  const auto is_drawn = [&](int n) {
+    return num_lines > 0 ? n <= num_lines : n <= 8 && n * std::abs(last) / (2 * std::numbers::pi) <= 3 * top;
+  };
+  for (int n = 1; rate > 0 && is_drawn(n); ++n)
     plot.guides.push_back({fmt::format("{}/rev", n), Eigen::Vector2d(first, last),
                            Eigen::Vector2d(std::abs(first), std::abs(last)) * n / (2 * std::numbers::pi)});
 }
 
-void add_sweep(const records::LinearSweep& sweep, const std::string& kind, const std::string& prefix, Plot& plot) {
+void add_sweep(const records::LinearSweep& sweep, const LinearPlotChoice& choice, const std::string& prefix,
+               Plot& plot) {
+  const auto& kind = choice.kind;
   if (kind == "campbell") plot.x_label = sweep.parameter;
   const double largest = sweep.frequency_hz.size() > 0 ? sweep.frequency_hz.maxCoeff() : 0;
   std::map<std::string, int> count_of;
@@ -150,7 +182,7 @@ void add_sweep(const records::LinearSweep& sweep, const std::string& kind, const
             1e-9 * largest;
     if (!is_drawn && !stands_at_zero(b)) draw(b, style >= 0 ? "" : make_name(b), style);
   }
-  if (kind == "campbell" && is_spin_rate(sweep)) add_per_rev(sweep, plot);
+  if (kind == "campbell" && (choice.per_rev > 0 || is_spin_rate(sweep))) add_per_rev(sweep, choice.per_rev, plot);
   if (kind != "locus") return;
   // A locus starts at the poles of the first value and shows the zeros there.
   std::vector<Index> shown;
@@ -192,11 +224,14 @@ const std::vector<std::string>& list_plot_kinds() {
 std::vector<Plot> make_linear_plots(const std::vector<std::string>& files, const LinearPlotChoice& choice) {
   const auto& kind = choice.kind;
   std::vector<Plot> plots(1);
-  if (kind == "bode") plots = report::make_bode_axes(read_time_unit(files));
+  // Curves of all kinds but nichols are over, or in, a unit of time that the files share.
+  const auto time = kind == "nichols" ? "" : read_time_unit(files);
+  std::string drawn;
+  if (kind == "bode") plots = report::make_bode_axes(time);
   if (kind == "nichols") plots[0] = report::make_nichols_axes();
-  if (kind == "campbell") plots[0].y_label = report::label_frequency(read_time_unit(files));
+  if (kind == "campbell") plots[0].y_label = report::label_frequency(time);
   if (kind == "locus") {
-    const auto time = read_time_unit(files), unit = time.empty() ? "1/T" : "1/" + time;
+    const auto unit = time.empty() ? "1/T" : "1/" + time;
     plots[0].x_label = report::make_label("real part", unit);
     plots[0].y_label = report::make_label("imaginary part", unit);
   }
@@ -211,7 +246,7 @@ std::vector<Plot> make_linear_plots(const std::vector<std::string>& files, const
                        is_of_sweeps(kind) ? "give what bough linearize --sweep or --each wrote"
                                           : "give a linear model of bough linearize");
     if (is_of_sweeps(kind)) {
-      add_sweep(hdf5::read_sweep(file), kind, prefix, plots[0]);
+      add_sweep(hdf5::read_sweep(file), choice, prefix, plots[0]);
       continue;
     }
     auto all = hdf5::read_linear_model(file);
@@ -223,7 +258,7 @@ std::vector<Plot> make_linear_plots(const std::vector<std::string>& files, const
     if (model.inputs.size() == 0 || model.outputs.size() == 0)
       throw InputError("linear.no-channels", {file}, "the model has no input or no output",
                        "name some with --inputs and --outputs of bough linearize");
-    add_response(model, kind, prefix, plots);
+    drawn += add_response(model, kind, prefix, !choice.inputs.empty() || !choice.outputs.empty(), plots);
   }
   if (kind == "poles") {
     std::vector<std::pair<std::string, const records::LinearModel*>> named;
@@ -235,7 +270,8 @@ std::vector<Plot> make_linear_plots(const std::vector<std::string>& files, const
       {"sigma", "Singular values"},     {"poles", "Poles (x) and zeros (o)"},
       {"campbell", "Campbell diagram"}, {"locus", "Root locus"}};
   plots[0].title = kTitles.at(kind) +
-                   (files.size() == 1 ? ": " + std::filesystem::path(files.front()).stem().string() : std::string());
+                   (files.size() == 1 ? ": " + std::filesystem::path(files.front()).stem().string() : std::string()) +
+                   drawn;
   return plots;
 }
 

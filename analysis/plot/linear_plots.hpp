@@ -13,6 +13,8 @@ const std::vector<std::string>& list_plot_kinds();
 struct LinearPlotChoice {
   std::string kind;
   std::vector<std::string> inputs, outputs;  ///< empty: all
+  int per_rev =
+      0;  ///< "campbell": lines of 1 to per_rev times the parameter, a rate in rad/T; 0: if it is found to be one
 };
 
 /// Reads the files, which go into one picture of several stacked plots. Throws InputError "cli.plot-kind" where a file

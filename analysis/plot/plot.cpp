@@ -119,7 +119,12 @@ void check_curves(const CurveChoice& c) {
 
 void check_choices(const PlotRequest& request) {
   demand_files(request.files);
-  if (!request.linear.kind.empty()) demand_word("--kind", request.linear.kind, list_plot_kinds());
+  const auto& linear = request.linear;
+  if (!linear.kind.empty()) demand_word("--kind", linear.kind, list_plot_kinds());
+  if (linear.per_rev != 0) demand_range("--per-rev", static_cast<long>(linear.per_rev), 1L, 100L);
+  if (linear.per_rev != 0 && linear.kind != "campbell")
+    throw InputError("cli.plot-option", {}, "--per-rev of --kind " + linear.kind + " is not drawn",
+                     "leave it out, or give --kind campbell");
   check_curves(request.curves);
   if (request.has_limits && !(request.y_min < request.y_max))
     throw InputError("cli.bad-range", {},

@@ -113,6 +113,11 @@ void add_plot(CLI::App& app, Action& action) {
   verb->add_option("--outputs", o->request.linear.outputs, "With --kind: only these outputs")
       ->delimiter(',')
       ->needs("--kind");
+  verb->add_option("--per-rev", o->request.linear.per_rev,
+                   "--kind campbell: lines of 1 to N times the parameter, a rate of rotation in rad per unit of time "
+                   "(default: if a speed of the system is the parameter)")
+      ->check(CLI::Range(1, 100))
+      ->needs("--kind");
   auto& c = o->request.curves;
   verb->add_option("--x", c.x, "Against this channel instead of the time; of outcomes.h5 a point a case")
       ->excludes("--kind");

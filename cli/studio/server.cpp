@@ -233,9 +233,13 @@ StudioServer::StudioServer(ServerOptions options) : parts_(std::make_unique<Part
   });
   p.server.set_pre_routing_handler([&p](const httplib::Request& request, httplib::Response& response) {
     Parts::add_headers(response);
-    if (!p.is_refused(request)) return httplib::Server::HandlerResponse::Unhandled;
-    response.status = 403;
-    response.set_content("refused: open the address that bough studio printed\n", "text/plain");
+    const bool is_refused = p.is_refused(request);
+    // The library limits no body in chunks, and the page sends none.
+    const bool is_chunked = request.has_header("Transfer-Encoding");
+    if (!is_refused && !is_chunked) return httplib::Server::HandlerResponse::Unhandled;
+    response.status = is_refused ? 403 : 413;
+    response.set_content(is_refused ? "refused: open the address that bough studio printed\n" : "a body in chunks\n",
+                         "text/plain");
     response.set_header("Connection", "close");  // the body of the request is not read
     return httplib::Server::HandlerResponse::Handled;
   });

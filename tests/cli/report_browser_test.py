@@ -2,6 +2,7 @@
 mouse. Pictures are kept in BOUGH_ARTEFACTS. Skipped, with a message, where chromium is not installed."""
 import base64
 import os
+import re
 import shutil
 import unittest
 
@@ -522,6 +523,8 @@ class Page(BrowserTest):
         pdf = base64.b64decode(b.call("Page.printToPDF")["data"])
         self.assertTrue(pdf.startswith(b"%PDF"))
         self.assertGreater(len(pdf), 20000)
+        # The moving picture is on the first page, below the numbers; on a page without them there were eight pages.
+        self.assertLess(len(re.findall(rb"/Type\s*/Page\b(?!s)", pdf)), 8)
         with open(os.path.join(self.artefacts, "print.pdf"), "wb") as out:
             out.write(pdf)
         self.check_sound()

@@ -2,6 +2,7 @@
 import json
 import math
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -146,6 +147,34 @@ class Response(LinearTest):
         self.fails(1, "plot", "closed.h5", "--kind", "campbell", error="cli.plot-kind")
         self.fails(1, "plot", "closed.h5", error="cli.nothing-to-plot")
 
+    def test_many_pairs_and_a_peak_without_end(self):
+        """The pairs with the largest peaks are drawn of many; next to a pole without damping nothing is lost."""
+        blocks = [section("simulation", duration=1.0)]
+        for k in range(4):
+            blocks += [table("body", f"b{k}", mass=1.0, inertia=[1.0, 1.0, 1.0]),
+                       table("hinge", f"h{k}", "prismatic", child=f"b{k}", axis=[1.0, 0.0, 0.0], stiffness=[1.0 + k]),
+                       table("actuator", f"a{k}", "hinge", hinge=f"h{k}"), table("sensor", f"s{k}", "hinge_angle", hinge=f"h{k}")]
+        self.write("four.toml", toml(*blocks))
+        self.bough("linearize", "four.toml", "-o", "four.h5")
+        self.bough("plot", "four.h5", "--kind", "bode", "-o", "four.svg")
+        with open(self.path("four.svg")) as f:
+            text = f.read()
+        self.assertIn("Bode diagram: four, 8 of 16 pairs", text)
+        self.assertEqual({f"s{k} / a{k}" for k in range(4)} - set(re.findall(r">(s\d / a\d)<", text)), set())
+        self.bough("plot", "four.h5", "--kind", "bode", "--inputs", "a0,a1", "--outputs", "s0,s1,s2,s3", "-o", "two.svg")
+        with open(self.path("two.svg")) as f:
+            self.assertNotIn(" pairs", f.read())
+        self.bough("plot", "four.h5", "--kind", "sigma", "--csv", "sigma.csv")
+        with open(self.path("sigma.csv")) as f:
+            rows = [line.strip().split(",") for line in f][1:]
+        x, y = np.array([[float(v) for v in row[1:]] for row in rows if row[0] == "σ1"]).T
+        # 1 / |k - ω²| of the largest, over the whole axis, though it is 1e12 and more at ω = 1.
+        exact = np.max([1 / np.abs(1 + k - (2 * np.pi * x)**2) for k in range(4)], axis=0)
+        far = np.abs(y) < 100
+        np.testing.assert_allclose(y[far], 20 * np.log10(exact[far]), atol=1e-3)
+        self.bough("response", "four.h5", "-o", "response.h5")
+        self.assertAlmostEqual(x[-1], self.read("response.h5")["frequency_hz"][-1], delta=1e-6 * x[-1])
+
 
 class Sweep(LinearTest):
     def read(self, name="sweep.h5"):
@@ -191,6 +220,21 @@ class Sweep(LinearTest):
         for rate in range(1, 7):
             self.assertAlmostEqual(omega[rate, k]**2, omega[rate, chord]**2 + rate**2, delta=2e-3 * omega[rate, k]**2)
         self.bough("plot", "sweep.h5", "--kind", "campbell", "-o", "campbell.svg")
+        with open(self.path("campbell.svg")) as f:
+            whole = f.read()
+        # The motion of the hinge is given: no speed of the system tells that the parameter is a rate.
+        self.assertNotIn("/rev", whole)
+        self.bough("plot", "sweep.h5", "--kind", "campbell", "--per-rev", 3, "--y-min", 0, "--y-max", 1.3, "-o", "near.svg")
+        with open(self.path("near.svg")) as f:
+            near = f.read()
+        self.assertEqual(re.findall(r">(\d)/rev<", near), ["1", "2", "3"])
+        # The legend names what is in view: motions below 1.3 cycles per unit of time.
+        names = re.findall(r">(beam:eta\d+[^<]*)<", whole)
+        below = [n for n in names if f">{n}<" in near]
+        self.assertGreater(len(below), 0)
+        self.assertLess(len(below), len(names))
+        self.assertEqual(len(below), len(np.unique(np.round(omega[0][(omega[0] > 1e-3) & (omega.min(axis=0) < 2 * math.pi * 1.3)], 6))))
+        self.fails(1, "plot", "sweep.h5", "--kind", "locus", "--per-rev", 3, error="cli.plot-option")
 
     def test_nutation(self):
         # A wheel in a light gimbal on springs: J_t² q'' ± Ω J_a cross terms.

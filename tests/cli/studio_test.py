@@ -1,5 +1,6 @@
 """bough studio without a browser: what it refuses, files that change outside, and the numbers of what it runs."""
 import hashlib
+import http.client
 import os
 import re
 import resource
@@ -140,6 +141,24 @@ class Refusals(StudioTest):
         except OSError:  # the program closed the connection first
             status = 413
         self.assertEqual(status, 413)
+        self.ask("list")
+
+    def test_upload_in_chunks(self):
+        """A body without a length is refused before it is read: 100 MB leave no trace in memory."""
+        def read_peak():
+            with open(f"/proc/{self.studio.pid}/status", encoding="utf-8") as f:
+                return int(re.search(r"VmHWM:\s+(\d+)", f.read())[1]) / 1000
+        before = read_peak()
+        connection = http.client.HTTPConnection(self.origin.split("/")[2], timeout=HANG)
+        self.addCleanup(connection.close)
+        try:
+            connection.request("POST", self.address.removeprefix(self.origin) + "api/ask", encode_chunked=True,
+                               body=(b" " * 1_000_000 for _ in range(100)),
+                               headers={"Origin": self.origin, "Content-Type": "application/json", "Transfer-Encoding": "chunked"})
+            self.assertEqual(connection.getresponse().status, 413)
+        except OSError:  # the program closed the connection first
+            pass
+        self.assertLess(read_peak() - before, 60)  # MB
         self.ask("list")
 
     def test_names_with_script(self):

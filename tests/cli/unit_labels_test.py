@@ -210,7 +210,8 @@ class LinearModels(ProgramTest):
         self.write("hours.toml", '[units]\ntime = "h"\n' + self.SLIDER)
         self.bough("linearize", "hours.toml", "-o", "hours.h5")
         self.assertIn("frequency [1/h]", self.draw("hours.h5", "--kind", "bode"))
-        self.fails(1, "plot", "hours.h5", "quick.h5", "--kind", "bode", "-o", "both.svg", error="cli.plot-units")
+        for kind in ("bode", "sigma", "poles"):
+            self.fails(1, "plot", "hours.h5", "quick.h5", "--kind", kind, "-o", "both.svg", error="cli.plot-units")
 
 
 if __name__ == "__main__":
