@@ -17,7 +17,7 @@ namespace {
 using Amplitudes = AffineField::Amplitudes;
 
 /// Modal mass about mean axes, M - Γᵀ M6⁻¹ Γ with Γ = [Γ0; Γ1] [6 x n]: the kinetic energy of a free body at given
-/// modal rates when its frame takes the rigid motion that minimizes that energy. Equal for every frame of a free body.
+/// modal rates when its frame takes the rigid-body motion that minimizes it. Equal for every frame of a free body.
 /// Source: docs/theory/bases.md, Frames.
 MatrixXd calc_mean_axis_mass(const MatrixXd& M, const Matrix6d& M6, const records::MassIntegrals& integrals) {
   const Eigen::Index n = M.rows();
@@ -79,9 +79,9 @@ double calc_eigenvalue_error(const records::FlexBody& flex, const MatrixXd& M) {
   return std::min(compare(of_pencil, sorted), compare(K.diagonal().cwiseQuotient(M.diagonal()), flex.eigenvalue));
 }
 
-/// Modal mass [n x n] to which damping ratios belong, that of the body as its file damps it: of a body whose rigid
-/// motions were removed about mean axes, whatever its frame is; of a body on supports as it stands. A frame that nodes
-/// carry is known by the eigenvalues, which are those of the free body.
+/// Modal mass [n x n] to which damping ratios belong, that of the body as its file damps it: of a body whose rigid-body
+/// motions were removed about mean axes, whatever its frame is; of a body on supports its own. A frame that nodes carry
+/// is known by the eigenvalues, which are those of the free body.
 MatrixXd calc_damped_mass(const records::FlexBody& flex, const Matrix6d& M6, Eigen::Index n) {
   constexpr double kEqual = 1e-5;  // files of five digits
   const MatrixXd& M = flex.modal_mass;

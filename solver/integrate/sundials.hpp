@@ -68,6 +68,7 @@ inline int call_ode(sunrealtype t, N_Vector y, N_Vector y_dot, void* user) {
 #if SUNDIALS_VERSION_MAJOR >= 7
 inline int silence_messages(void*) { return 0; }
 #else
+/// Handler of SUNDIALS 6 and older.
 inline int silence_messages(void* cvode) {
   return CVodeSetErrHandlerFn(
       cvode, [](int, const char*, const char*, char*, void*) {}, nullptr);

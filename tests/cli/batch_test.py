@@ -106,9 +106,9 @@ class Cases(BatchTest):
                        error="batch.bad-parameter")
         self.campaign(toml(table("parameter", "n", values=[2, 3]), table("parameter", "q", values=[1.0])),
                       'steps = ["modes beam.bdf -n {n}"]')
-        said = self.bough("batch", "study.toml").stderr
-        self.assertRegex(said, r"study\.toml:\d+: warning: parameter 'q' .*batch\.unused-parameter")
-        self.assertNotIn("'n'", said)
+        messages = self.bough("batch", "study.toml").stderr
+        self.assertRegex(messages, r"study\.toml:\d+: warning: parameter 'q' .*\[batch.unused-parameter\]")
+        self.assertNotIn("'n'", messages)
         # A column of a table may say what a case is.
         self.write("cases.csv", "n,label\n2,soft\n3,stiff\n")
         self.campaign("", 'method = "list"\ntable = "cases.csv"\nsteps = ["modes beam.bdf -n {n}"]', "list.toml")

@@ -26,8 +26,8 @@ LAG = toml(
 
 SWITCHED = toml(
     make_body(), ANGLE, RELAY,
-    table("controller", "law", "expression", inputs=["rl", "a"], expression="-u1*3*u2"),
-    table("actuator", "m", "hinge", hinge="h", input="law"), END)
+    table("controller", "gain", "expression", inputs=["rl", "a"], expression="-u1*3*u2"),
+    table("actuator", "m", "hinge", hinge="h", input="gain"), END)
 
 SAMPLED = toml(
     make_body(),
@@ -156,7 +156,7 @@ class Starts(ProgramTest):
 
 
 class PrescribedMotions(ProgramTest):
-    """What acts along a coordinate before and after a motion that prescribes it ends."""
+    """Forces along a coordinate before and after a motion that prescribes it ends."""
     def run_case(self, text):
         self.write("case.toml", text)
         messages = self.bough("run", "case.toml", "-o", "case.h5").stderr
