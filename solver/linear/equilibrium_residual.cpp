@@ -1,6 +1,13 @@
 #include "solver/linear/equilibrium_residual.hpp"
 
 namespace bough::solver {
+namespace {
+
+/// Entries of the Jacobian of M u̇ below this part of the sum of its absolute terms are roundoff: u̇ comes from a
+/// factorization, and with stiff modes its terms cancel in the rows of hinges.
+constexpr double kCancelled = 1e-11;
+
+}  // namespace
 
 EquilibriumResidual::EquilibriumResidual(Plant& plant, const OperatingPoint& start)
     : plant_(&plant), point_(start), used_up_(plant.find_used_up()) {
@@ -42,6 +49,10 @@ void EquilibriumResidual::linearize() {
     jacobian_.col(j) = rate_jacobian_.col(j) = slope.head(n);
     rate_jacobian_.col(j).head(num_dofs) = slope.tail(num_dofs);
   }
+  // A row that is all roundoff would be scaled up to an equation like the others.
+  const MatrixXd terms = plant_->calc_mass(point_).cwiseAbs() * rate_jacobian_.topRows(num_dofs).cwiseAbs();
+  auto of_dofs = jacobian_.topRows(num_dofs);
+  of_dofs = (of_dofs.array().abs() > kCancelled * terms.array()).select(of_dofs, 0.0).eval();
 }
 
 void EquilibriumResidual::evaluate() {
