@@ -180,9 +180,12 @@ std::string draw_guides(const Plot& plot, const Frame& f) {
       x = f.left + (ax + to * (bx - ax)) * f.width;
       y = f.top + (1 - ay - to * (by - ay)) * f.height;
     }
-    if (is_inside)
-      svg += "<text x=\"" + number(std::max(x, f.left) + 4) + "\" y=\"" + number(std::max(y, f.top) + 12) +
-             "\" font-size=\"11\" fill=\"#777777\">" + escape_xml(guide.label) + "</text>\n";
+    if (!is_inside) continue;
+    // At the right edge before the point and above it, else the picture would cut the label.
+    const bool is_at_edge = x + 4 + kCharacter * static_cast<double>(count_characters(guide.label)) > f.left + f.width;
+    svg += "<text x=\"" + number(is_at_edge ? x - 4 : std::max(x, f.left) + 4) + "\" y=\"" +
+           number(std::max(is_at_edge ? y - 5 : y + 12, f.top + 12)) + "\" font-size=\"11\"" +
+           (is_at_edge ? " text-anchor=\"end\"" : "") + " fill=\"#777777\">" + escape_xml(guide.label) + "</text>\n";
   }
   return svg;
 }
