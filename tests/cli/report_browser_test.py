@@ -53,6 +53,10 @@ ARMS = toml(
     section("simulation", duration=2.0, output_step=0.005, gravity=[0.0, 0.0, -9.81]))
 
 
+SCROLL_THROUGH = """(async () => { for (let k = 0; k * 700 < document.body.scrollHeight && k < 60; ++k) {
+  scrollTo(0, 700 * k); await new Promise((r) => setTimeout(r, 100)); } scrollTo(0, 0); })()"""
+
+
 @unittest.skipUnless(find_chromium(), "chromium is not installed (apt install chromium); the page is not tried in a browser")
 class Page(BrowserTest):
     @classmethod
@@ -87,8 +91,7 @@ class Page(BrowserTest):
         for width in (500, 360):
             self.browser.renew(width, 800)
             self.browser.open(self.path("page.html"))
-            self.browser.run("""(async () => { for (let k = 0; k * 700 < document.body.scrollHeight && k < 60; ++k) {
-              scrollTo(0, 700 * k); await new Promise((r) => setTimeout(r, 100)); } })()""")
+            self.browser.run(SCROLL_THROUGH)
             self.assertLessEqual(self.browser.run("document.documentElement.scrollWidth"), width)
             self.assertEqual(self.browser.list_errors(), [])
         self.browser.screenshot(os.path.join(self.artefacts, "narrow.png"))
@@ -99,6 +102,7 @@ class Page(BrowserTest):
             if theme == "dark":
                 self.browser.click("header button")
                 self.assertEqual(self.browser.run("document.documentElement.dataset.theme"), "dark")
+            self.browser.run(SCROLL_THROUGH)  # parts are laid out when they come into view
             self.browser.run(WAIT_FRAMES)
             heights.append(self.browser.run("document.documentElement.scrollHeight"))
             self.assertLessEqual(self.browser.run("document.documentElement.scrollWidth"), 1000)
