@@ -11,7 +11,7 @@ import sys
 import yaml
 
 # Commands of the images that the steps install or bring.
-PROGRAMS = {"apt-get", "git", "cd", "export", "rm", "python3", "clang-format", "set", "echo"}
+PROGRAMS = {"ls", "apt-get", "git", "cd", "export", "rm", "python3", "clang-format", "set", "echo"}
 
 
 def read(source, path):
@@ -88,7 +88,10 @@ def check_container(source):
         word, _, rest = line.strip().partition(" ")
         where = f"Containerfile, {word}"
         if word == "RUN":
-            wrong += check_script(source, rest, where)
+            rest, bound = re.sub(r"--mount=\S+", "", rest), re.search(r"--mount=\S*from=(\w+)", rest)
+            if bound and bound.group(1) not in stages:
+                wrong.append(f"{where}: error: no stage {bound.group(1)}")
+            wrong += check_script(source, re.sub(r"[{}]", " ", rest), where)
         elif word == "FROM" and " AS " in rest:
             stages.add(rest.split(" AS ")[1])
         elif word == "COPY":
@@ -98,7 +101,7 @@ def check_container(source):
         elif word in ("ENTRYPOINT", "CMD"):
             if not isinstance(yaml.safe_load(rest), list):
                 wrong.append(f"{where}: error: expected a list of words")
-        elif word and word[0] != "#" and word not in ("ENV", "WORKDIR", "FROM"):
+        elif word and word[0] != "#" and word not in ("ARG", "ENV", "WORKDIR", "FROM"):
             wrong.append(f"{where}: error: no such instruction here")
     # Options of ./dev package are looked up where it reads them.
     for option in re.findall(r"\./dev package (--[\w-]+)", read(source, "Containerfile")):
