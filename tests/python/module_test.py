@@ -344,7 +344,7 @@ class Runs(InFolder):
     def test_states_of_controllers_out_of_an_equilibrium(self):
         law = 'type = "pid"\ninputs = "angle"\nkp = 40.0\nki = 10.0\nkd = 3.0\nfilter = 0.02\nsetpoint = 0.2'
         self.write("p.toml", PENDULUM.format(law=law))
-        bough.equilibrium("p.toml", "rest.h5")
+        bough.call("equilibrium", "p.toml", "-o", "rest.h5")
         system = bough.System("p.toml", start_from="rest.h5")
         rest = bough.read_results("rest.h5")["angle"][0, 0]
         np.testing.assert_allclose(system.run()["angle"], rest, rtol=0, atol=1e-7)
