@@ -5,7 +5,7 @@ namespace {
 
 /// Entries of the Jacobian of M u̇ below this part of the sum of its absolute terms are roundoff: u̇ comes from a
 /// factorization, and with stiff modes its terms cancel in the rows of hinges.
-constexpr double kCancelled = 1e-11;
+constexpr double kCancelled = 1e-12;
 
 }  // namespace
 
