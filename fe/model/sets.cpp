@@ -5,6 +5,13 @@
 #include "formats/records/selection.hpp"
 
 namespace bough::fe {
+namespace {
+
+std::string describe_duplicate(const std::string& what, int id) {
+  return what + "ADD " + std::to_string(id) + " has the id of " + what + " cards, which are left out";
+}
+
+}  // namespace
 
 records::Subcase select_subcase(const records::Deck& deck, int id, Diagnostics& diagnostics) {
   const auto& all = deck.subcases;
@@ -53,8 +60,7 @@ std::vector<int> expand_set(int sid, const std::vector<records::SetUnion>& union
     const bool exists = is_plain || first;
     // The union counts alone (Quick Reference Guide, SPCADD).
     if (is_plain && first)
-      diagnostics.warning("fe.duplicate-set", deck.locate(first->at),
-                          what + "ADD " + std::to_string(id) + " has the id of " + what + " cards, which are left out",
+      diagnostics.warning("fe.duplicate-set", deck.locate(first->at), describe_duplicate(what, id),
                           "give these cards another id and name it, or remove them");
     // Nastran runs such a deck: the selection is often left over when the cards are gone.
     if (!exists)
