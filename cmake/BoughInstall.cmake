@@ -1,4 +1,4 @@
-# What is installed, in the components that ./dev package makes Debian packages of: bough (the program), libbough1 and
+# Components of the installation of which ./dev package makes Debian packages: bough (the program), libbough1 and
 # libbough-dev (libbough.so, embed/CMakeLists.txt), bough-dev (static libraries), python3-bough (python/CMakeLists.txt),
 # bough-doc.
 include(CMakePackageConfigHelpers)

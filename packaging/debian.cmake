@@ -50,7 +50,8 @@ describe(python3-bough python3-bough python "flexible multibody simulation from 
 describe(bough-doc bough-doc doc "flexible multibody simulation from finite-element models (manual)"
   "This package has the manual as web pages that can be searched.")
 
-# Of the library with a soname: who is linked to it depends on its package, and ldconfig runs by a trigger (cpack would
+# Triggers of the library with a soname:
+# who is linked to it depends on its package, and ldconfig runs by a trigger (cpack would
 # write scripts in its place, for the modules of other packages too).
 file(WRITE ${CMAKE_BINARY_DIR}/packaging-libbough1/shlibs "libbough 1 libbough1 (>= ${PROJECT_VERSION})\n")
 file(WRITE ${CMAKE_BINARY_DIR}/packaging-libbough1/triggers "activate-noawait ldconfig\n")

@@ -24,7 +24,7 @@ import types
 import yaml
 
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
-# What the CMake files look for: its name in (conda-forge, Spack, Homebrew); None: no package of its own.
+# Packages that the CMake files look for: the name in (conda-forge, Spack, Homebrew); None: no package of its own.
 SOLVER = {
     "Eigen3": ("eigen", "eigen", "eigen"), "Threads": None, "muparser": ("muparser",) * 3,
     "nlohmann_json": ("nlohmann_json", "nlohmann-json", "nlohmann-json"), "fmt": ("fmt",) * 3,
