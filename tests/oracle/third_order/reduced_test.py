@@ -43,6 +43,20 @@ class TestReduced(ProgramTest):
         axes = np.concatenate([axes_along(self.X, nodes[i:i + 1], np.array(v[i])) for i in range(2 * NUM)])
         return nodes, axes
 
+    def calc_mass(self, nodes):
+        """Lumped mass of each grid."""
+        mass = np.zeros(len(self.X))
+        for a, b in nodes:
+            mass[[a, b]] += RHO * A * np.linalg.norm(self.X[b] - self.X[a]) / 2
+        return mass
+
+    def calc_mode_loads(self, structure, phi, nodes):
+        """W = M Φ Λ as the program has it: K Φ would hold what the eigensolver leaves of stiff shapes, by their stiffness."""
+        M_phi = np.zeros_like(phi)
+        for k in range(3):
+            M_phi[k::6] = self.calc_mass(nodes)[:, None] * phi[k::6]
+        return M_phi * (np.diag(phi.T @ structure.K @ phi) / np.diag(phi.T @ M_phi))
+
     def read_tables(self):
         with h5py.File(self.path("frame.h5")) as f:
             self.assertEqual(f.attrs["format_version"], "1.3")
@@ -52,9 +66,9 @@ class TestReduced(ProgramTest):
             K = f["modal/stiffness"][:]
         return phi, third, names, K
 
-    def check_tables(self, structure, phi, third, names, C=None):
+    def check_tables(self, structure, phi, third, names, nodes, C=None):
         n = phi.shape[1]
-        m = Manifold(structure, phi, order=4, C=C)
+        m = Manifold(structure, phi, order=4, W=self.calc_mode_loads(structure, phi, nodes), C=C)
         s = np.diag(phi.T @ structure.K @ phi)**-.5        # size of amplitudes
         for k, table in zip((3, 4, 5, 6), m.energy((3, 4, 5, 6))):
             scale = np.prod(s**exponents(n, k), 1)
@@ -79,22 +93,20 @@ class TestReduced(ProgramTest):
         phi, third, names, K = self.read_tables()
         np.testing.assert_allclose(np.diag(phi.T @ structure.K @ phi), np.diag(K), rtol=1e-7)
         self.assertEqual(third["large"].tolist(), [1, 2, 3])
-        self.check_tables(structure, phi, third, names)
+        self.check_tables(structure, phi, third, names, nodes)
 
     def test_free_frame_in_its_mean_axes(self):
         nodes, axes = self.make('frame = "free"\n[body.stiffening]\norder = 3')
         beams = make_beams(self.X, nodes, axes, E * A, G * J, E * I2, E * I1, (I1 + I2) / A)
         structure = Structure(self.X, [Elements(**beams)])
         phi, third, names, K = self.read_tables()
-        mass = np.zeros(len(self.X))
-        for a, b in nodes:
-            mass[[a, b]] += RHO * A * np.linalg.norm(self.X[b] - self.X[a]) / 2
+        mass = self.calc_mass(nodes)
         C = np.zeros((6 * len(self.X), 6))
         for k in range(3):
             C[k::6, k] = mass
             C.reshape(-1, 6, 6)[:, :3, 3 + k] = mass[:, None] * np.cross(np.eye(3)[k], self.X)
         np.testing.assert_allclose(C.T @ phi, 0, atol=1e-9)
-        self.check_tables(structure, phi, third, names, C)
+        self.check_tables(structure, phi, third, names, nodes, C)
 
     def test_small_modes(self):
         """Two large modes of four: the manifold of these alone, and u₂ of other pairs that cancels their cubic energy."""
@@ -104,7 +116,9 @@ class TestReduced(ProgramTest):
         phi, third, _, _ = self.read_tables()
         s = np.diag(phi.T @ structure.K @ phi)**-.5
         self.assertEqual(third["large"].tolist(), [1, 3])
-        all_modes, two = Manifold(structure, phi * s, order=2), Manifold(structure, phi[:, [0, 2]] * s[[0, 2]], order=4)
+        W = self.calc_mode_loads(structure, phi, nodes) * s
+        all_modes = Manifold(structure, phi * s, order=2, W=W)
+        two = Manifold(structure, phi[:, [0, 2]] * s[[0, 2]], order=4, W=W[:, [0, 2]])
         pairs, u = exponents(4, 2), all_modes.u[2].c.copy()
         force = all_modes.residual[2].c @ (phi * s)         # gradient of V₃
         for i, e in enumerate(pairs):
