@@ -1,14 +1,6 @@
 #include "solver/linear/equilibrium_residual.hpp"
 
 namespace bough::solver {
-namespace {
-
-/// Entries of the Jacobian of M u̇ below this part of the sum of its absolute terms are roundoff: u̇ comes from a
-/// factorization, and with stiff modes its terms cancel in the rows of hinges.
-constexpr double kCancelled = 1e-12;
-
-}  // namespace
-
 EquilibriumResidual::EquilibriumResidual(Plant& plant, const OperatingPoint& start)
     : plant_(&plant), point_(start), used_up_(plant.find_used_up()) {
   for (int i = 0; i < plant.num_dofs(); ++i) {
@@ -49,10 +41,6 @@ void EquilibriumResidual::linearize() {
     jacobian_.col(j) = rate_jacobian_.col(j) = slope.head(n);
     rate_jacobian_.col(j).head(num_dofs) = slope.tail(num_dofs);
   }
-  // A row that is all roundoff would be scaled up to an equation like the others.
-  const MatrixXd terms = plant_->calc_mass(point_).cwiseAbs() * rate_jacobian_.topRows(num_dofs).cwiseAbs();
-  auto of_dofs = jacobian_.topRows(num_dofs);
-  of_dofs = (of_dofs.array().abs() > kCancelled * terms.array()).select(of_dofs, 0.0).eval();
 }
 
 void EquilibriumResidual::evaluate() {
@@ -63,7 +51,7 @@ void EquilibriumResidual::evaluate() {
   rates_.segment(n, plant_->num_states()) = rates.segment(n, plant_->num_states());
   for (const int i : used_up_) rates_[n + i] = 0;
   residual_ = rates_;
-  residual_.head(n) = plant_->multiply_mass(point_, rates_.head(n));
+  residual_.head(n) = plant_->calc_imbalance();
   rates_.tail(size() - n - plant_->num_states()) = plant_->calc_sample_rates(point_);
   residual_.tail(size() - n) = rates_.tail(size() - n);
 }

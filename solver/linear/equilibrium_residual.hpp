@@ -25,7 +25,8 @@ class EquilibriumResidual {
   std::string name(int row) const;
   /// Rows that may be displaced; m of n.
   const std::vector<int>& free() const { return free_; }
-  /// M times u̇ minus that of a steady spin (Plant::calc_mass), ż, change of the memory per sample time; n.
+  /// Forces that are not in balance in a steady spin (Plant::calc_imbalance), ż, change of the memory per sample time;
+  /// n.
   const VectorXd& residual() const { return residual_; }
   /// Rates of change: u̇ in place of M u̇, else as the residual; n.
   const VectorXd& rates() const { return rates_; }

@@ -232,7 +232,7 @@ MatrixXd Plant::calc_turning(const OperatingPoint& point) const {
     turning.block<3, 3>(row, row) = -skew(u.segment<3>(row));
   }
   if (!has_loops()) return turning(rows_, rows_);
-  return turning(rows_, Eigen::all) * calc_follow(point);
+  return turning(rows_, Eigen::all) * calc_follow();
 }
 
 MatrixXd Plant::calc_mass(const OperatingPoint& point) {
@@ -242,14 +242,8 @@ MatrixXd Plant::calc_mass(const OperatingPoint& point) {
   VectorXd force;
   calc_dense_equations(system_.tree, data_->tree, mass, force);
   if (!has_loops()) return mass(rows_, rows_);
-  const MatrixXd follow = calc_follow(point);
+  const MatrixXd follow = calc_follow();
   return follow.transpose() * mass * follow;
-}
-
-VectorXd Plant::multiply_mass(const OperatingPoint& point, const VectorXd& x) {
-  if (!has_loops()) return solver::multiply_mass(system_.tree, data_->tree, expand(x))(rows_);
-  const MatrixXd follow = calc_follow(point);
-  return follow.transpose() * solver::multiply_mass(system_.tree, data_->tree, follow * x);
 }
 
 VectorXd Plant::get_for_file(const VectorXd& q) const {

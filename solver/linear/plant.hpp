@@ -99,8 +99,6 @@ class Plant {
   MatrixXd calc_turning(const OperatingPoint& point) const;
   /// The mass matrix of the dofs; where loops are closed what follows moves along. num_dofs².
   MatrixXd calc_mass(const OperatingPoint& point);
-  /// M x at the point of the last evaluate(). num_dofs.
-  VectorXd multiply_mass(const OperatingPoint& point, const VectorXd& x);
   /// Quaternions as the files have them: w, x, y, z.
   VectorXd get_for_file(const VectorXd& q) const;
 
@@ -136,10 +134,15 @@ class Plant {
                            std::vector<LawKink>* kinks = nullptr);
   /// [u̇; ż; y] with every function of time at its value, and `value` more of one input. May throw ComputationError.
   VectorXd evaluate(const OperatingPoint& point, const PlantInput* input = nullptr, double value = 0);
-  /// u̇ of the last evaluate minus that of a steady spin: on a hinge to ground with free translations normal to ω,
-  /// p̈ - ω × (ṗ - v_c), with v_c the velocity of the centre of mass of all that it carries. Zero at rest and in a
-  /// steady spin, also about a drifting centre of mass that is not at the origin. num_dofs.
+  /// Acceleration of a steady spin at the point of the last evaluate: on a hinge to ground with free translations
+  /// normal to ω, p̈ = ω × (ṗ - v_c), with v_c the velocity of the centre of mass of all that it carries. Zero at rest
+  /// and where nothing spins about an axis off its centre of mass. num_dofs.
+  VectorXd calc_spin() const;
+  /// u̇ (of the last evaluate) minus calc_spin(). num_dofs.
   VectorXd calc_unsteadiness(const VectorXd& u_dot) const;
+  /// Forces that the last evaluate leaves unbalanced in a steady spin, M times calc_unsteadiness: from forces and
+  /// inertia loads, not from u̇, whose roundoff is that of a factorization. num_dofs.
+  VectorXd calc_imbalance() const;
   /// Round-off of calc_unsteadiness where bodies spin. num_dofs.
   VectorXd calc_spin_rounding(const OperatingPoint& point) const;
   /// Rows of the memory of sampled blocks that change at samples: outputs that are held, and samples in queues.
@@ -204,7 +207,7 @@ class Plant {
   bool has_loops() const { return !grip_.empty(); }
   void choose_independent(double t, const VectorXd& q);
   void add_dofs();
-  MatrixXd calc_follow(const OperatingPoint& point) const;
+  MatrixXd calc_follow() const;
   void close_positions(VectorXd& q) const;
   void close_rates(Eigen::Ref<MatrixXd> rates) const;
 

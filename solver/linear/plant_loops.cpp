@@ -56,15 +56,14 @@ void Plant::close_positions(VectorXd& q) const {
   if (!found.is_closed) fail_dead(system_.loops, found);
 }
 
-/// Dependent rates: the rates of all coordinates (num_u rows), a column for the unit rate of each dof. The rows of the
-/// loops depend on positions alone: one factor serves all columns.
-MatrixXd Plant::calc_follow(const OperatingPoint& point) const {
-  const VectorXd none = VectorXd::Zero(num_dofs());
-  MatrixXd rates(system_.num_u(), 1 + num_dofs());
+/// Dependent rates at the positions of the tree: the rates of all coordinates (num_u rows), a column for the unit rate
+/// of each dof. The rows of the loops depend on positions alone: one factor serves all columns.
+MatrixXd Plant::calc_follow() const {
+  const TreeData& tree = data_->tree;
+  MatrixXd rates = MatrixXd::Zero(system_.num_u(), 1 + num_dofs());
   for (int j = 0; j < num_dofs(); ++j) rates.col(1 + j) = expand(VectorXd::Unit(num_dofs(), j));
-  rates.col(0).setZero();
-  calc_kinematics(system_, *data_, point.t, point.q, expand(none));
-  rates.colwise() += data_->tree.u;  // those of prescribed motions
+  for (int row = 0; row < system_.num_u(); ++row)
+    if (tree.mode[static_cast<size_t>(row)] != HingeMode::Free) rates.row(row).setConstant(tree.given_u[row]);
   if (has_loops()) close_rates(rates);
   return rates.rightCols(num_dofs()).colwise() - VectorXd(rates.col(0));
 }

@@ -8,6 +8,8 @@ namespace {
 
 constexpr double kAligned = 1e-9;  // of unit vectors
 constexpr double kRounding = 1e-12;
+/// Forces below this part of the sum of their terms are roundoff.
+constexpr double kCancelled = 1e-13;
 
 /// Free translations of a hinge on ground that a turn about ω maps onto each other. In Hp, as ω, v and the rest.
 struct FloatingBase {
@@ -33,10 +35,10 @@ FloatingBase find_base(const TreeBody& tb, const TreeData& data, int body) {
 
 }  // namespace
 
-VectorXd Plant::calc_unsteadiness(const VectorXd& u_dot) const {
+VectorXd Plant::calc_spin() const {
   const Tree& tree = system_.tree;
   const TreeData& data = data_->tree;
-  VectorXd all = expand(u_dot.head(num_dofs()));
+  VectorXd all = VectorXd::Zero(system_.num_u());
   std::vector<int> root(static_cast<size_t>(tree.size()));
   for (int b = 0; b < tree.size(); ++b)
     root[static_cast<size_t>(b)] = tree[b].parent < 0 ? b : root[static_cast<size_t>(tree[b].parent)];
@@ -60,13 +62,33 @@ VectorXd Plant::calc_unsteadiness(const VectorXd& u_dot) const {
     if (!(mass > 0)) continue;
     const Vector3d v_centre = tb.on_parent.R_KM.transpose() * momentum / mass;
     const VectorXd spin = to_rates * base.w.cross(base.v - v_centre);
-    for (size_t i = 0; i < base.rates.size(); ++i) {
-      double& value = all[tb.u_offset + base.rates[i]];
-      const double taken = spin[static_cast<Eigen::Index>(i)], rest = value - taken;
-      value = std::abs(rest) > kRounding * (std::abs(value) + std::abs(taken)) ? rest : 0;
-    }
+    for (size_t i = 0; i < base.rates.size(); ++i)
+      all[tb.u_offset + base.rates[i]] = spin[static_cast<Eigen::Index>(i)];
   }
   return restrict(all);
+}
+
+VectorXd Plant::calc_unsteadiness(const VectorXd& u_dot) const {
+  const auto value = u_dot.head(num_dofs()).array();
+  const Eigen::ArrayXd spin = calc_spin().array(), rest = value - spin;
+  return (rest.abs() > kRounding * (value.abs() + spin.abs())).select(rest, 0.0).matrix();
+}
+
+VectorXd Plant::calc_imbalance() const {
+  const TreeData& tree = data_->tree;
+  const VectorXd spin = calc_spin();
+  const auto clear = [](const Imbalance& found) -> VectorXd {
+    return (found.force.array().abs() > kCancelled * found.terms.array()).select(found.force, 0.0);
+  };
+  if (!has_loops()) return restrict(clear(solver::calc_imbalance(system_.tree, tree, expand(spin))));
+  // Rates that follow do no work on the loads of the loops. Accelerations that follow are those of the last evaluate.
+  const MatrixXd follow = calc_follow();
+  const VectorXd u_dot = tree.motion.u_dot, alone = follow *restrict(u_dot);
+  const Eigen::ArrayXd terms = VectorXd(u_dot.cwiseAbs() + follow.cwiseAbs()* restrict(u_dot).cwiseAbs()).array();
+  const Eigen::ArrayXd bias = (u_dot - alone).array();
+  const VectorXd steady = follow * spin + (bias.abs() > kRounding * terms).select(bias, 0.0).matrix();
+  const Imbalance all = solver::calc_imbalance(system_.tree, tree, steady);
+  return clear({follow.transpose() * all.force, follow.cwiseAbs().transpose() * all.terms});
 }
 
 VectorXd Plant::calc_spin_rounding(const OperatingPoint& point) const {

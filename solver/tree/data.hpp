@@ -156,9 +156,14 @@ void run_response(const Tree& tree, const TreeData& data, Sweep& s);
 /// rotations and displacements. No load, no mass. After Stage::Position.
 void run_rates(const Tree& tree, const TreeData& data, const ConstVectorRef& u, Sweep& s);
 
-/// M x over the rows of u, without columns and rows of coordinates that are not free. O(bodies n²). After
-/// Stage::Position. Allocates.
-VectorXd multiply_mass(const Tree& tree, const TreeData& data, const ConstVectorRef& x);
+/// Forces minus inertia along the free rows of u, zero in the others.
+struct Imbalance {
+  VectorXd force;  ///< num_u: f - h - M u̇
+  VectorXd terms;  ///< num_u: sum of the absolute values of its terms, whose roundoff is that of `force`
+};
+/// Imbalance at accelerations u̇ (num_u; rows that are not free have the given ones). Loads of closed loops are not among
+/// the forces. No factorization. O(bodies n²). After forces were added. Allocates.
+Imbalance calc_imbalance(const Tree& tree, const TreeData& data, const ConstVectorRef& u_dot);
 
 /// The impulse across the hinge of body b along its coordinate i, of the last solve_jump or run_response.
 double calc_jump_impulse(const Tree& tree, const TreeData& data, int b, int i);

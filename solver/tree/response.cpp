@@ -93,51 +93,6 @@ void run_rates(const Tree& tree, const TreeData& data, const ConstVectorRef& u, 
   }
 }
 
-VectorXd multiply_mass(const Tree& tree, const TreeData& data, const ConstVectorRef& x) {
-  Sweep s = data.response;
-  run_rates(tree, data, x, s);
-  for (int b = 0; b < tree.size(); ++b) {
-    const TreeBody& tb = tree[b];
-    const BodyInertia& M = data[b].inertia;
-    const int n = tb.num_modes();
-    const Vector6d A = s.A.col(b);
-    s.beta.segment<6>(tb.v_offset) = M.M6 * A;
-    if (n == 0) continue;
-    const auto rates = s.u_dot.segment(tb.eta_dot_offset(), n);
-    s.beta.segment<6>(tb.v_offset) += M.M_top * rates;
-    s.beta.segment(tb.v_offset + 6, n) =
-        M.M_top.transpose() * A + M.M_modal.topLeftCorner(n, n).selfadjointView<Eigen::Lower>() * rates;
-    if (data.added_K != 0)
-      s.beta.segment(tb.v_offset + 6, n) += data.added_K * (tb.body.K() * rates) + data.added_D * (tb.body.D() * rates);
-  }
-  // Tip to base: momenta on the coordinates, then on the parent.
-  VectorXd product = VectorXd::Zero(tree.num_u);
-  for (int b = tree.size() - 1; b >= 0; --b) {
-    const TreeBody& tb = tree[b];
-    const BodyData& d = data[b];
-    const int n = tb.num_modes();
-    const Vector6d p = s.beta.segment<6>(tb.v_offset);
-    for (int i = 0; i < d.num_free; ++i) {
-      const int row = tb.u_offset + d.free[i];
-      product[row] = d.H.col(i).dot(p) + data.added[row] * s.u_dot[row];
-    }
-    if (n > 0) {
-      product.segment(tb.eta_dot_offset(), n) = s.beta.segment(tb.v_offset + 6, n);
-      if (tb.on_child.moves) product.segment(tb.eta_dot_offset(), n) -= d.Jc.transpose() * p;
-    }
-    if (tb.parent < 0) continue;
-    const TreeBody& parent = tree[tb.parent];
-    if (tb.on_parent.moves) {
-      s.beta.segment(parent.v_offset, 6 + parent.num_modes()) += d.X.transpose() * p;
-    } else {
-      const Vector3d f = d.R_PB * p.head<3>();
-      s.beta.segment<3>(parent.v_offset) += f;
-      s.beta.segment<3>(parent.v_offset + 3) += d.r_PoBo.cross(f) + d.R_PB * p.tail<3>();
-    }
-  }
-  return product;
-}
-
 void solve_response(const Tree& tree, TreeData& data, int marker, const Vector6d& wrench,
                     const std::vector<int>& bodies, Eigen::Ref<VectorXd> du) {
   BOUGH_DEMAND(du.size() == tree.num_u);

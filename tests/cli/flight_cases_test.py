@@ -217,6 +217,34 @@ class FlightCases(ProgramTest):
         np.testing.assert_allclose(tilt.ravel(), found.y[1] - math.pi, atol=1e-9)
         self.assertLess(abs(tilt[-1]).max(), 0.02)
 
+    def test_spin_of_a_hub_with_stiff_modes(self):
+        """A floating hub, its centre of mass off its origin, and a boom of 12 or 40 modes up to 4e6 times as stiff as the first:
+        the spin that `equilibrium` finds goes on in a run, the deflection as it was."""
+        n, length = 20, 10.0
+        deck = "SOL 103\nCEND\nSPC = 1\nBEGIN BULK\nMAT1,1,7.+10,,.3,2700.\nPBAR,7,1,3.-4,4.-9,9.-9,5.-9\nSPC1,1,123456,1\n"
+        deck += "".join(f"GRID,{i + 1},,{i * length / n},0.,0.\n" for i in range(n + 1))
+        deck += "".join(f"CBAR,{i + 1},7,{i + 1},{i + 2},0.,1.,0.\n" for i in range(n))
+        self.write("boom.bdf", deck + "ENDDATA\n")
+        for modes in (12, 40):
+            self.bough("reduce", "boom.bdf", "--modes", modes, "--interface", n + 1, "-o", "boom.h5", "-q")
+            for rate in (0.2, 0.8, 2.5):
+                self.write("spin.toml", toml(
+                    table("body", "hub", mass=100.0, cg=[0.13, -0.07, 0.0], inertia=[20.0, 30.0, 40.0]),
+                    table("body", "boom", file="boom.h5"),
+                    table("hinge", "base", "free", child="hub", rate=[0.0, 0.0, rate, 0.0, 0.0, 0.0]),
+                    table("hinge", "root", "fixed", parent="hub", child="boom", parent_position=[0.5, 0.3, 0.0],
+                          parent_rotation_deg=[0.0, 0.0, 20.0]),
+                    table("sensor", "tip", "deflection", body="boom", node=n + 1),
+                    section("simulation", duration=2 * math.pi / rate / 8, output_step=2 * math.pi / rate / 80,
+                            relative_tolerance=1e-10, absolute_tolerance=1e-13)))
+                printed = self.bough("equilibrium", "spin.toml", "-o", "rest.h5").stdout
+                self.assertLessEqual(int(printed.split(" iterations")[0].split()[-1]), 6, printed)
+                self.bough("run", "spin.toml", "--start-from", "rest.h5", "-o", "spin.h5", "-q")
+                tip, = self.read_arrays("spin.h5", "sensors/tip")
+                off = np.abs(tip - tip[0]).max() / np.abs(tip[0]).max()
+                print(f"{modes} modes, {rate} rad/s: {np.linalg.norm(tip[0]):.3e} m, changes by {off:.1e}")
+                self.assertLess(off, 1e-6)
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -97,23 +97,27 @@ TEST_P(ResponseTest, LockedCoordinatesAreTheDenseEquationsWithoutTheirRows) {
   }
 }
 
-TEST_P(ResponseTest, ProductsWithTheMassMatrixAreThoseOfTheDenseEquations) {
+TEST_P(ResponseTest, ImbalancesOfAnyAccelerationsAreThoseOfTheDenseEquations) {
   auto data = system_.make_data();
   Random random(GetParam());
   for (const bool is_locked : {false, true}) {
     const DiscreteState discrete = lock_some();
     if (is_locked) set_modes(system_, *data, discrete);
-    calc_u_dot(system_, *data, 0.3, q_, u_);
+    const VectorXd balanced = calc_u_dot(system_, *data, 0.3, q_, u_);
     MatrixXd mass;
-    VectorXd force, x = random.vector_n(tree().num_u);
+    VectorXd force, u_dot = random.vector_n(tree().num_u);
     calc_dense_equations(tree(), data->tree, mass, force);
-    const VectorXd product = multiply_mass(tree(), data->tree, x);
+    const VectorXd imbalance = calc_imbalance(tree(), data->tree, u_dot).force;
+    const VectorXd none = calc_imbalance(tree(), data->tree, balanced).force;
     const auto is_free = [&](int row) { return data->tree.mode[static_cast<size_t>(row)] == HingeMode::Free; };
     for (int row = 0; row < tree().num_u; ++row)
-      if (!is_free(row)) x[row] = 0;
-    const VectorXd expected = mass * x;
-    for (int row = 0; row < tree().num_u; ++row)
-      EXPECT_NEAR(product[row], is_free(row) ? expected[row] : 0, 1e-12 * (1 + expected.norm())) << row;
+      if (!is_free(row)) u_dot[row] = 0;
+    const VectorXd expected = force - mass * u_dot;
+    const double size = 1 + force.norm() + (mass * u_dot).norm();
+    for (int row = 0; row < tree().num_u; ++row) {
+      EXPECT_NEAR(imbalance[row], is_free(row) ? expected[row] : 0, 1e-12 * size) << row;
+      EXPECT_NEAR(none[row], 0, 1e-10 * size) << row;
+    }
   }
 }
 
