@@ -1,7 +1,6 @@
 // Forces and stresses of the elements that the body file names, per mode and per unit load.
 #include <cctype>
 #include <charconv>
-#include <functional>
 #include <map>
 #include <optional>
 #include <string_view>
@@ -57,29 +56,6 @@ std::optional<ElementChoice> read_choice(const std::string& word) {
   return w;
 }
 
-/// Forces and stresses of an element for columns U_g, in the rows of a block: the forces that static solutions print,
-/// then the stresses. `add` (may be empty): internal forces and stresses in addition to those of the displacements.
-MatrixXd calc_rows(const fe::Element& element, const MatrixXd& U_g,
-                   const std::function<void(MatrixXd& forces, MatrixXd& stresses)>& add) {
-  const fe::PrintedForces& printed_forces = *element.printed_forces();
-  const fe::StressRecovery* recovery = element.stress_recovery();
-  const auto count = static_cast<Eigen::Index>(printed_forces.printed_force_names().size());
-  MatrixXd forces = fe::calc_internal_forces(element, U_g), printed(count, U_g.cols());
-  MatrixXd more = MatrixXd::Zero(recovery ? recovery->calc_stresses(forces).rows() : 0, U_g.cols());
-  if (add) add(forces, more);
-  for (Eigen::Index c = 0; c < U_g.cols(); ++c) {
-    // Internal forces begin with those that are printed; springs have the latter alone.
-    if (element.stress_state())
-      printed.col(c) = forces.col(c).head(count);
-    else
-      printed.col(c) = printed_forces.calc_printed_forces(Eigen::VectorXd(U_g(element.gdofs(), c)));
-  }
-  MatrixXd rows(count + more.rows(), U_g.cols());
-  rows.topRows(count) = printed;
-  if (recovery) rows.bottomRows(more.rows()) = recovery->calc_stresses(forces) + more;
-  return rows;
-}
-
 /// Indices of elements by card and names of the rows.
 using Groups = std::map<std::pair<std::string, std::vector<std::string>>, std::vector<int>>;
 
@@ -122,17 +98,45 @@ Groups choose_recovered(const BodyRequest& request, const fe::Model& model) {
 
 }  // namespace
 
+MatrixXd calc_recovery_rows(const fe::Element& element, const MatrixXd& d, const MatrixXd& forces,
+                            const MatrixXd& more) {
+  const fe::PrintedForces& printed_forces = *element.printed_forces();
+  const fe::StressRecovery* recovery = element.stress_recovery();
+  const auto count = static_cast<Eigen::Index>(printed_forces.printed_force_names().size());
+  MatrixXd stresses(0, d.cols());
+  if (recovery) stresses = recovery->calc_stresses(forces);
+  if (more.size() > 0) stresses += more;
+  MatrixXd rows(count + stresses.rows(), d.cols());
+  for (Eigen::Index c = 0; c < d.cols(); ++c) {
+    // Internal forces begin with those that are printed; springs have the latter alone.
+    if (element.stress_state())
+      rows.col(c).head(count) = forces.col(c).head(count);
+    else
+      rows.col(c).head(count) = printed_forces.calc_printed_forces(Eigen::VectorXd(d.col(c)));
+  }
+  rows.bottomRows(stresses.rows()) = stresses;
+  return rows;
+}
+
+RecoveredElements start_recovery(const BodyRequest& request, const fe::Model& model, records::FlexBody& body) {
+  if (request.spec.recover.empty()) return {};
+  RecoveredElements recovered;
+  std::map<std::string, int> count;
+  for (const auto& [key, members] : choose_recovered(request, model)) {
+    auto& block = body.recovery.emplace_back();
+    const int number = ++count[key.first];
+    block.name = number == 1 ? key.first : key.first + "-" + std::to_string(number);
+    block.components = key.second;
+    for (const int e : members) block.id.push_back(model.elements()[static_cast<std::size_t>(e)]->id());
+    recovered.push_back(members);
+  }
+  return recovered;
+}
+
 /// U - Φ K⁻¹ ΦᵀF is the deflection of each load that the modes lack (docs/theory/recovery.md).
-void set_recovery(const BodyRequest& request, const fe::Model& model, const MatrixXd& Phi,
-                  const std::vector<LoadPattern>& patterns, const SolvedLoads& solved, records::FlexBody& body) {
-  if (request.spec.recover.empty()) return;
-  if (request.spec.stiffening_order > 2)
-    request.warning("reduce.linear-recovery",
-                    "[body.stiffening] order = 3 and recover are given: forces and stresses of elements stay linear in "
-                    "the modes, without those of the displacements beyond, as the membrane stress of a bent plate",
-                    "cut the deck into several bodies by bough split DECK --parts N where they matter");
-  request.report("element recovery");
-  const auto groups = choose_recovered(request, model);
+void set_recovery(const fe::Model& model, const records::Deck& deck, const MatrixXd& Phi,
+                  const std::vector<LoadPattern>& patterns, const SolvedLoads& solved,
+                  const RecoveredElements& recovered, records::FlexBody& body) {
   const MatrixXd &F = solved.columns.F, &U = solved.U;
   const auto& inertial = solved.inertial;
   const auto n = Phi.cols(), num_inertial = solved.num_inertial();
@@ -146,42 +150,40 @@ void set_recovery(const BodyRequest& request, const fe::Model& model, const Matr
   for (std::size_t e = 0; e < patterns.size(); ++e)
     if (patterns[e].load_set > 0) {
       Diagnostics repeated;  // of make_load_patterns()
-      end_loads[e] = fe::calc_beam_end_loads(model, request.deck, patterns[e].load_set, repeated);
+      end_loads[e] = fe::calc_beam_end_loads(model, deck, patterns[e].load_set, repeated);
     }
   MatrixXd all(U.rows(), n + F.cols());
   all.leftCols(n) = Phi;
   all.rightCols(F.cols()) = residual;
   const auto own_elements = fe::get_own_elements(model);
-  std::map<std::string, int> count;
-  for (const auto& [key, members] : groups) {
-    auto& block = body.recovery.emplace_back();
-    const int number = ++count[key.first];
-    block.name = number == 1 ? key.first : key.first + "-" + std::to_string(number);
-    block.components = key.second;
-    const auto c = static_cast<Eigen::Index>(key.second.size());
+  for (std::size_t b = 0; b < recovered.size(); ++b) {
+    auto& block = body.recovery[b];
+    const auto& members = recovered[b];
+    const auto c = static_cast<Eigen::Index>(block.components.size());
     MatrixXd rows = MatrixXd::Zero(c * static_cast<Eigen::Index>(members.size()), all.cols() + 1);
     for (std::size_t k = 0; k < members.size(); ++k) {
       const int e = members[k];
       const fe::Element& element = *model.elements()[static_cast<std::size_t>(e)];
-      block.id.push_back(element.id());
       if (!own_elements.contains(e)) continue;
       auto mine = rows.middleRows(c * static_cast<Eigen::Index>(k), c);
-      mine.leftCols(all.cols()) = calc_rows(element, all, [&](MatrixXd& forces, MatrixXd& stresses) {
-        for (std::size_t l = 0; l < patterns.size(); ++l) {
-          const auto column = n + num_inertial + static_cast<Eigen::Index>(l);
-          if (const auto* part = patterns[l].initial.find(element)) {
-            forces.col(column) += part->force;
-            if (part->stress.size() > 0) stresses.col(column) += part->stress;
-          }
-          if (const auto own = end_loads[l].find(e); own != end_loads[l].end())
-            element.as_beam()->add_load_forces(own->second, forces.col(column));
+      const MatrixXd d = all(element.gdofs(), Eigen::all);
+      MatrixXd forces = fe::calc_internal_forces(element, all);
+      MatrixXd stresses = MatrixXd::Zero(
+          element.stress_recovery() ? element.stress_recovery()->calc_stresses(forces).rows() : 0, all.cols());
+      for (std::size_t l = 0; l < patterns.size(); ++l) {
+        const auto column = n + num_inertial + static_cast<Eigen::Index>(l);
+        if (const auto* part = patterns[l].initial.find(element)) {
+          forces.col(column) += part->force;
+          if (part->stress.size() > 0) stresses.col(column) += part->stress;
         }
-      });
+        if (const auto own = end_loads[l].find(e); own != end_loads[l].end())
+          element.as_beam()->add_load_forces(own->second, forces.col(column));
+      }
+      mine.leftCols(all.cols()) = calc_recovery_rows(element, d, forces, stresses);
       const auto* prestress = model.prestress();
       if (prestress && prestress->force[static_cast<std::size_t>(e)].size() > 0)
-        mine.rightCols(1) = calc_rows(element, MatrixXd::Zero(U.rows(), 1), [&](MatrixXd& forces, MatrixXd&) {
-          forces.col(0) = prestress->force[static_cast<std::size_t>(e)];
-        });
+        mine.rightCols(1) = calc_recovery_rows(element, MatrixXd::Zero(element.num_dofs(), 1),
+                                               prestress->force[static_cast<std::size_t>(e)]);
     }
     linear::sum_over_ranks(rows);
     block.matrix = rows.leftCols(n);

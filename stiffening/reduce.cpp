@@ -40,13 +40,17 @@ ReducedBody reduce_body(const BodyRequest& request) {
   if (!inertial.M) inertial = calc_body_inertial_loads(model);
   set_integrals(request, model, basis.Phi, inertial, body);
   set_loads(request, model, basis.Phi, patterns, body);
-  set_third_order(request, model, basis, patterns, support, inertial, body);
+  const RecoveredElements recovered = start_recovery(request, model, body);
+  set_third_order(request, model, basis, patterns, support, inertial, recovered, body);
   set_next_order(request, model, basis, support, inertial, body);
   inertial.M = {};
 
   request.report("static solutions");
   const SolvedLoads solved = solve_loads(request, patterns, inertial.F_I, support);
-  set_recovery(request, model, basis.Phi, patterns, solved, body);
+  if (!recovered.empty()) {
+    request.report("element recovery");
+    set_recovery(model, request.deck, basis.Phi, patterns, solved, recovered, body);
+  }
   request.report("geometric stiffness");
   if (request.given)
     set_given_stiffness(request, basis.Phi, body);

@@ -161,10 +161,15 @@ bool has_series(const BodyRequest& request, const fe::Model& model);
 /// order").
 void set_next_order(const BodyRequest& request, const fe::Model& model, const ModalBasis& basis,
                     const StaticSupport& support, const InertialLoads& inertial, records::FlexBody& body);
-/// Third order, if it is requested; after set_loads. Throws reduce.bad-order.
+/// Indices of the elements in the model, of each block of FlexBody::recovery.
+using RecoveredElements = std::vector<std::vector<int>>;
+/// Starts the blocks of the elements that the spec recovers, without rows. Throws reduce.bad-recover,
+/// reduce.unknown-element.
+RecoveredElements start_recovery(const BodyRequest& request, const fe::Model& model, records::FlexBody& body);
+/// Third order, if it is requested, with RecoveryBlock::beyond; after set_loads. Throws reduce.bad-order.
 void set_third_order(const BodyRequest& request, const fe::Model& model, const ModalBasis& basis,
                      const std::vector<LoadPattern>& patterns, const StaticSupport& support,
-                     const InertialLoads& inertial, records::FlexBody& body);
+                     const InertialLoads& inertial, const RecoveredElements& recovered, records::FlexBody& body);
 /// Degree 2 of order 2 for loads that the modes do not follow, in pairs with residual vectors
 /// (docs/theory/third-order.md, "Lost twist"); after set_geometric_stiffness.
 void set_lost_loads(const ModalBasis& basis, records::FlexBody& body);
@@ -177,9 +182,14 @@ SolvedLoads solve_loads(const BodyRequest& request, const std::vector<LoadPatter
 /// initial stress.
 void set_geometric_stiffness(const fe::Model& model, const MatrixXd& Phi, const std::vector<LoadPattern>& patterns,
                              const SolvedLoads& solved, records::FlexBody& body);
-/// Forces and stresses of elements. Throws reduce.bad-recover, reduce.unknown-element.
-void set_recovery(const BodyRequest& request, const fe::Model& model, const MatrixXd& Phi,
-                  const std::vector<LoadPattern>& patterns, const SolvedLoads& solved, records::FlexBody& body);
+/// Sets the rows of the blocks that start_recovery() made: forces and stresses of elements.
+void set_recovery(const fe::Model& model, const records::Deck& deck, const MatrixXd& Phi,
+                  const std::vector<LoadPattern>& patterns, const SolvedLoads& solved,
+                  const RecoveredElements& recovered, records::FlexBody& body);
+/// Rows of an element in a block: the forces that static solutions print, then stresses. d: N x columns, deformations;
+/// forces: internal forces [s x columns]; `more`: stresses in addition to those of the forces, or none (0 rows).
+MatrixXd calc_recovery_rows(const fe::Element& element, const MatrixXd& d, const MatrixXd& forces,
+                            const MatrixXd& more = {});
 /// K_G0 of the preload and its inertial load factors. Throws reduce.bad-preload.
 void set_preload(const BodyRequest& request, const fe::Model& model, const MatrixXd& Phi, records::FlexBody& body);
 /// Sets the strain energy matrices of all elements, if they are requested.

@@ -365,6 +365,17 @@ StaticManifold::Curves StaticManifold::make_curves(int degree, const Lattice& la
   return make_curves(degree == 2 ? lattice.points() : spread(lattice.points(), large_, Phi_.cols()));
 }
 
+MatrixXd StaticManifold::calc_recovery(int degree, const Lattice& lattice, const fe::Element& element) const {
+  const auto local = fe::CorotationalElement(element, model_.nodes())
+                         .calc_local(calc_element_curve(make_curves(degree, lattice), element));
+  const auto take = [&](const MatrixXd& series) {
+    MatrixXd values(series.rows(), lattice.size());
+    for (Index p = 0; p < values.cols(); ++p) values.col(p) = series.col(kSeriesTop * p + degree - 1);
+    return values;
+  };
+  return lattice.fit(calc_recovery_rows(element, take(local.d), take(local.internal)));
+}
+
 MatrixXd StaticManifold::calc_arm_work(int degree, const Lattice& lattice,
                                        const std::vector<std::vector<fe::ArmLoad>>& loads) const {
   const Curves curves = make_curves(degree, lattice);

@@ -75,6 +75,8 @@ class StaticManifold {
   };
   /// psi: num_gdofs x fields; strain: 9 x fields, E of fields that move arms s by E s in addition.
   CarriedWork calc_carried_work(int degree, const Lattice& lattice, const MatrixXd& psi, const MatrixXd& strain) const;
+  /// Degree `degree` of the recovered rows of an element (calc_recovery_rows): rows x monomials.
+  MatrixXd calc_recovery(int degree, const Lattice& lattice, const fe::Element& element) const;
 
  private:
   /// Points, and the monomials of each field there.

@@ -9,6 +9,7 @@
 #include "fe/linear/products.hpp"
 #include "fe/loads/arm_strains.hpp"
 #include "fe/loads/inertial_loads.hpp"
+#include "fe/model/element_loop.hpp"
 #include "modal/integrals.hpp"
 #include "stiffening/large_modes.hpp"
 #include "stiffening/static_manifold.hpp"
@@ -242,11 +243,25 @@ MatrixXd choose_fields(const fe::Model& model, const StaticManifold& manifold, c
   return fields(Eigen::all, used);
 }
 
+/// Degree `degree` of the rows of a block: rows x monomials.
+MatrixXd calc_block(const StaticManifold& manifold, const fe::Model& model, int degree, const Lattice& lattice,
+                    const std::vector<int>& elements, const records::RecoveryBlock& block) {
+  const auto own = fe::get_own_elements(model);
+  const auto c = static_cast<Eigen::Index>(block.components.size());
+  MatrixXd rows = MatrixXd::Zero(block.num_rows(), lattice.size());
+  for (std::size_t k = 0; k < elements.size(); ++k)
+    if (own.contains(elements[k]))
+      rows.middleRows(c * static_cast<Eigen::Index>(k), c) =
+          manifold.calc_recovery(degree, lattice, *model.elements()[static_cast<std::size_t>(elements[k])]);
+  linear::sum_over_ranks(rows);
+  return rows;
+}
+
 }  // namespace
 
 void set_third_order(const BodyRequest& request, const fe::Model& model, const ModalBasis& basis,
                      const std::vector<LoadPattern>& patterns, const StaticSupport& support,
-                     const InertialLoads& inertial, FlexBody& body) {
+                     const InertialLoads& inertial, const RecoveredElements& recovered, FlexBody& body) {
   if (request.spec.stiffening_order < 3) return;
   const int n = static_cast<int>(basis.Phi.cols());
   const auto is_static = [&](int mode) { return basis.kind[static_cast<std::size_t>(mode)] != ModeKind::Normal; };
@@ -345,6 +360,9 @@ void set_third_order(const BodyRequest& request, const fe::Model& model, const M
       if (lacks_rotation(model, node)) rows.bottomRows<3>().setZero();
       third.node[i][at] = unscaled(std::move(rows));
     }
+    for (std::size_t b = 0; b < recovered.size(); ++b)
+      body.recovery[b].beyond[at] =
+          unscaled(calc_block(manifold, model, k, get_lattice(k), recovered[b], body.recovery[b])).transpose();
   }
   MatrixXd both(model.num_gdofs(), n + psi.cols());
   both << basis.Phi, psi;

@@ -117,37 +117,36 @@ void CorotationalElement::set_local_strains(const Element& element) {
   E_ = F_ * solve_in_range(K_, F_.transpose());
 }
 
-namespace {
-
 /// Frame and nodes along one curve.
-struct Motion {
+struct CorotationalElement::Motion {
   SeriesMatrix R, H;                   ///< the frame, and Rᵀ B
   std::vector<SeriesVector> y, turn;   ///< places and rotation vectors of the nodes, seen from the frame
   std::vector<SeriesVector> rotation;  ///< rotation vectors in basic
 };
 
+namespace {
+
 /// The rotation R nearest to the nodes: Rᵀ B symmetric. Newton with the matrix of order 0 finds an order a step.
-void find_frame(const SeriesMatrix& B, const Matrix3d& inverse, Motion& motion) {
-  motion.R = make_zero_matrix();
-  motion.R[0].setIdentity();
+SeriesMatrix find_frame(const SeriesMatrix& B, const Matrix3d& inverse) {
+  SeriesMatrix R = make_zero_matrix();
+  R[0].setIdentity();
   for (int step = 0; step < kSeriesTop; ++step) {
-    SeriesVector turn = calc_skew_axis(multiply(transpose(motion.R), B));
+    SeriesVector turn = calc_skew_axis(multiply(transpose(R), B));
     turn[0].setZero();
     for (auto& v : turn) v = inverse * v;
-    motion.R = multiply(motion.R, calc_exponential(turn));
+    R = multiply(R, calc_exponential(turn));
   }
-  motion.H = multiply(transpose(motion.R), B);
+  return R;
 }
 
 }  // namespace
 
-MatrixXd CorotationalElement::calc_forces(const Eigen::Ref<const MatrixXd>& u) const {
-  BOUGH_DEMAND(u.rows() == num_dofs() && u.cols() % kSeriesTop == 0);
-  if (!follows_nodes_) return K_ * u;
+std::vector<CorotationalElement::Motion> CorotationalElement::calc_motions(const Eigen::Ref<const MatrixXd>& u,
+                                                                           MatrixXd& d) const {
   const std::size_t num_nodes = translations_.size();
   const Eigen::Index num_curves = u.cols() / kSeriesTop;
   std::vector<Motion> motions(static_cast<std::size_t>(num_curves));
-  MatrixXd d(u.rows(), u.cols());
+  d.resize(u.rows(), u.cols());
   for (Eigen::Index curve = 0; curve < num_curves; ++curve) {
     Motion& motion = motions[static_cast<std::size_t>(curve)];
     const auto u_c = u.middleCols<kSeriesTop>(curve * kSeriesTop);
@@ -170,7 +169,8 @@ MatrixXd CorotationalElement::calc_forces(const Eigen::Ref<const MatrixXd>& u) c
       R_nodes[k] = calc_exponential(motion.rotation[k]);
       for (std::size_t i = 0; i < mean.size(); ++i) B[i] += rotation_weight_ * R_nodes[k][i];
     }
-    find_frame(B, frame_inverse_, motion);
+    motion.R = find_frame(B, frame_inverse_);
+    motion.H = multiply(transpose(motion.R), B);
     const SeriesMatrix Rt = transpose(motion.R);
     motion.y.resize(num_nodes);
     motion.turn.resize(num_nodes);
@@ -183,23 +183,49 @@ MatrixXd CorotationalElement::calc_forces(const Eigen::Ref<const MatrixXd>& u) c
       put_vector(motion.turn[k], rotations_[k], d_c);
     }
   }
+  return motions;
+}
+
+MatrixXd CorotationalElement::calc_second_strains(const MatrixXd& d, std::vector<MatrixXd>& Pd) const {
+  MatrixXd w = MatrixXd::Zero(static_cast<Eigen::Index>(P_.size()), d.cols());
+  Pd.resize(P_.size());
+  for (std::size_t m = 0; m < P_.size(); ++m) {
+    Pd[m].noalias() = P_[m] * d;
+    for (Eigen::Index c = 0; c < d.cols(); c += kSeriesTop)
+      for (int i = 1; i < kSeriesTop; ++i)
+        for (int j = 1; i + j <= kSeriesTop; ++j)
+          w(static_cast<Eigen::Index>(m), c + i + j - 1) += d.col(c + i - 1).dot(Pd[m].col(c + j - 1));
+  }
+  return w;
+}
+
+LocalSeries CorotationalElement::calc_local(const Eigen::Ref<const MatrixXd>& u) const {
+  BOUGH_DEMAND(u.rows() == num_dofs() && u.cols() % kSeriesTop == 0);
+  LocalSeries local;
+  local.d = u;
+  if (!follows_nodes_) return local;
+  calc_motions(u, local.d);
+  std::vector<MatrixXd> Pd;
+  local.internal = F_ * local.d;
+  if (!P_.empty()) local.internal += 0.5 * (E_ * calc_second_strains(local.d, Pd));
+  return local;
+}
+
+MatrixXd CorotationalElement::calc_forces(const Eigen::Ref<const MatrixXd>& u) const {
+  BOUGH_DEMAND(u.rows() == num_dofs() && u.cols() % kSeriesTop == 0);
+  if (!follows_nodes_) return K_ * u;
+  const std::size_t num_nodes = translations_.size();
+  const Eigen::Index num_curves = u.cols() / kSeriesTop;
+  MatrixXd d;
+  const std::vector<Motion> motions = calc_motions(u, d);
 
   // ∂V/∂d = K d + ½ Fᵀw + Σ_m (F d + ½ E w)_m P_m d
   MatrixXd g = K_ * d;
   if (!P_.empty()) {
-    const auto s = static_cast<Eigen::Index>(P_.size());
     std::vector<MatrixXd> Pd;
-    MatrixXd w = MatrixXd::Zero(s, d.cols());
-    for (Eigen::Index m = 0; m < s; ++m) {
-      Pd.push_back(P_[static_cast<std::size_t>(m)] * d);
-      for (Eigen::Index c = 0; c < d.cols(); c += kSeriesTop)
-        for (int i = 1; i < kSeriesTop; ++i)
-          for (int j = 1; i + j <= kSeriesTop; ++j)
-            w(m, c + i + j - 1) += d.col(c + i - 1).dot(Pd.back().col(c + j - 1));
-    }
-    const MatrixXd h = F_ * d + 0.5 * (E_ * w);
+    const MatrixXd w = calc_second_strains(d, Pd), h = F_ * d + 0.5 * (E_ * w);
     g += 0.5 * (F_.transpose() * w);
-    for (Eigen::Index m = 0; m < s; ++m)
+    for (Eigen::Index m = 0; m < w.rows(); ++m)
       for (Eigen::Index c = 0; c < d.cols(); c += kSeriesTop)
         for (int i = 1; i < kSeriesTop; ++i)
           for (int j = 1; i + j <= kSeriesTop; ++j)

@@ -31,6 +31,12 @@ Matrix3d calc_inverse_tangent_slope(const Vector3d& theta, const Vector3d& g);
 /// Returns true if the stiffness of the element turns with its grids (CorotationalElement::follows_nodes); O(N²).
 bool follows_nodes(const Element& element, const std::vector<Node>& nodes);
 
+/// An element along curves, coefficients 1 to 5 of each side by side, as CorotationalElement::calc_forces has them.
+struct LocalSeries {
+  MatrixXd d;         ///< N x 5 m: deformations seen from the frame
+  MatrixXd internal;  ///< s x 5 m: internal forces of the stress state, second-order strains included
+};
+
 class CorotationalElement {
  public:
   /// `nodes`: those that element.nodes() and gdofs() index. Both are read here only. Computes K⁺ and K_G of every unit
@@ -45,6 +51,9 @@ class CorotationalElement {
   /// Coefficients 1 to 5 of ∂V/∂u along u(ε) = Σ ε^k u_k: conjugate to translations and rotation vectors in basic.
   /// u, result: N x 5 m for m curves, the five orders of each side by side.
   MatrixXd calc_forces(const Eigen::Ref<const MatrixXd>& u) const;
+  /// Deformations and internal forces along the curves u (N x 5 m); d = u and no internal forces if it does not follow
+  /// nodes.
+  LocalSeries calc_local(const Eigen::Ref<const MatrixXd>& u) const;
 
   /// Forces and stiffness of a finite motion. u: N, displacements in basic, rows of rotations unread; `rotations`: of
   /// grids(), identity where it has none; `heat`: the loads of temperatures turn with the frame, their internal forces
@@ -74,6 +83,11 @@ class CorotationalElement {
   bool is_free_of_rigid_motion() const;
   void set_frame();
   void set_local_strains(const Element& element);
+  struct Motion;
+  /// Frames and nodes along the curves, and d as LocalSeries has it.
+  std::vector<Motion> calc_motions(const Eigen::Ref<const MatrixXd>& u, MatrixXd& d) const;
+  /// w_m = dᵀP_m d: s x 5 m; Pd: P_m d of each.
+  MatrixXd calc_second_strains(const MatrixXd& d, std::vector<MatrixXd>& Pd) const;
   void calc_local_forces(const ThermalState* heat, FiniteForces& result) const;
 
   bool follows_nodes_ = false;

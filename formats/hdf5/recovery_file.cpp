@@ -4,7 +4,10 @@ namespace bough::hdf5 {
 namespace {
 
 using Eigen::MatrixXd;
+using records::ThirdOrder;
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+std::string name_degree(const std::string& path, int degree) { return path + "_" + std::to_string(degree); }
 
 /// Rows of elements x components as three dimensions.
 void write_rows(FileWriter& file, const std::string& path, const records::RecoveryBlock& block, const MatrixXd& rows,
@@ -34,6 +37,13 @@ void write_recovery(FileWriter& file, const records::FlexBody& body) {
     file.write_strings(path + "/component", block.components,
                        {"what the rows of each element are: forces, then stresses as stress_xx@point", "1"});
     write_rows(file, path + "/matrix", block, block.matrix, {"per modal coordinate: element, component, mode", "F/E"});
+    for (int k = ThirdOrder::kMinField; k <= ThirdOrder::kMaxField && block.has_beyond(); ++k)
+      write_rows(file, name_degree(path + "/matrix", k), block,
+                 block.beyond[static_cast<std::size_t>(k - ThirdOrder::kMinField)],
+                 {"per product of " + std::to_string(k) +
+                      " modal coordinates, of the large ones from degree 3 on: element, component, monomial, in "
+                      "ascending lexical order of their exponents",
+                  "F/E^" + std::to_string(k)});
     write_rows(file, path + "/inertial", block, block.inertial,
                {"what the modes leave out of the static answer to each inertial load: element, component, load",
                 "F per L/T^2, 1/T^2"});
@@ -54,6 +64,12 @@ void read_recovery(FileReader& file, records::FlexBody& body) {
     block.id = file.read_integers(path + "/id", -1);
     block.components = file.read_strings(path + "/component", -1);
     block.matrix = read_rows(file, path + "/matrix", block, n);
+    for (int k = ThirdOrder::kMinField; k <= ThirdOrder::kMaxField; ++k) {
+      const std::string beyond = name_degree(path + "/matrix", k);
+      if (body.third_order.empty() || !file.has(beyond)) continue;
+      block.beyond[static_cast<std::size_t>(k - ThirdOrder::kMinField)] = read_rows(
+          file, beyond, block, records::count_monomials(body.third_order.num_variables(k, static_cast<int>(n)), k));
+    }
     block.inertial = read_rows(file, path + "/inertial", block, records::kNumInertialLoads);
     block.external = read_rows(file, path + "/external", block, ne);
     block.offset = read_rows(file, path + "/offset", block, 1);

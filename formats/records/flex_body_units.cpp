@@ -114,6 +114,9 @@ void scale_recovery(FlexBody& body, const UnitChange& c) {
     for (Eigen::Index row = 0; row < block.num_rows(); ++row) {
       const double unit = calc_component_unit(block.components[static_cast<std::size_t>(row % num)], c);
       if (block.matrix.size() > 0) block.matrix.row(row) *= unit / c.calc_modal();
+      for (int k = ThirdOrder::kMinField; k <= ThirdOrder::kMaxField && block.has_beyond(); ++k)
+        block.beyond[static_cast<std::size_t>(k - ThirdOrder::kMinField)].row(row) *=
+            unit / std::pow(c.calc_modal(), k);
       for (int k = 0; k < block.inertial.cols(); ++k) block.inertial(row, k) *= unit / calc_inertial_unit(k, c);
       for (Eigen::Index k = 0; k < block.external.cols(); ++k)
         block.external(row, k) *= unit / calc_locator_unit(body.locators[static_cast<std::size_t>(k)].direction, c);

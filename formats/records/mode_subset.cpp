@@ -83,6 +83,7 @@ FlexBody keep_modes(const FlexBody& body, const std::vector<int>& kept) {
   }
   // Residual static responses grow by the share of the modes that are left out here.
   for (auto& block : small.recovery) {
+    if (small.third_order.empty()) block.beyond = {};
     const MatrixXd all = block.matrix;
     cut.cols(block.matrix);
     const auto gap = [&](const MatrixXd& loads) -> MatrixXd {  // n x k: generalized loads

@@ -76,7 +76,7 @@ void build_recoveries(const records::SystemSpec& spec, const FlexMap& flex, Syst
     const bool is_cut = system.num_modes(b) < found->second.num_modes();
     const records::FlexBody cut = is_cut ? records::keep_modes(found->second, kept) : records::FlexBody{};
     const records::FlexBody& body = is_cut ? cut : found->second;
-    auto recovery = std::make_unique<Recovery>(body, b);
+    auto recovery = std::make_unique<Recovery>(body, b, system.tree[b].body.third_order() != nullptr);
     for (const auto& element : recovery->elements())
       if (r.recover_all) recovery->record(element.id);
     for (const int id : r.recover) {

@@ -12,7 +12,7 @@ struct Recovery::Loaded {
   std::array<int, 6> locator{-1, -1, -1, -1, -1, -1};  ///< column of external_, -1: none
 };
 
-Recovery::Recovery(const records::FlexBody& flex, int body) : body_(body) {
+Recovery::Recovery(const records::FlexBody& flex, int body, bool is_third_order) : body_(body) {
   Eigen::Index rows = 0;
   for (const auto& block : flex.recovery) rows += block.num_rows();
   matrix_.resize(rows, flex.num_modes());
@@ -32,9 +32,36 @@ Recovery::Recovery(const records::FlexBody& flex, int body) : body_(body) {
       first += elements_.back().size();
     }
   }
+  if (is_third_order &&
+      std::any_of(flex.recovery.begin(), flex.recovery.end(), [](const auto& block) { return block.has_beyond(); }))
+    add_products(flex);
 }
 
 Recovery::~Recovery() = default;
+
+void Recovery::add_products(const records::FlexBody& flex) {
+  using records::ThirdOrder;
+  const int n = flex.num_modes();
+  for (int k = ThirdOrder::kMinField; k <= ThirdOrder::kMaxField; ++k) {
+    const auto exponents = records::list_exponents(flex.third_order.num_variables(k, n), k);
+    for (Eigen::Index i = 0; i < exponents.rows(); ++i) {
+      Product product;
+      int factors = 0;
+      for (int j = 0; j < exponents.cols(); ++j)
+        for (int e = 0; e < exponents(i, j); ++e)
+          product.modes[static_cast<size_t>(factors++)] = k == 2 ? j : flex.third_order.large[static_cast<size_t>(j)];
+      product.rows = VectorXd::Zero(matrix_.rows());
+      Eigen::Index first = 0;
+      for (const auto& block : flex.recovery) {
+        const auto count = block.num_rows();
+        if (block.has_beyond())
+          product.rows.segment(first, count) = block.beyond[static_cast<size_t>(k - ThirdOrder::kMinField)].col(i);
+        first += count;
+      }
+      products_.push_back(std::move(product));
+    }
+  }
+}
 
 const Recovery::Element* Recovery::find(int id) const {
   const auto found = std::find_if(elements_.begin(), elements_.end(), [&](const auto& e) { return e.id == id; });
@@ -78,6 +105,12 @@ void Recovery::calc(const Motion& motion, int first, int count, double* out) con
   Eigen::Map<VectorXd> rows(out, count);
   rows = offset_.segment(first, count);
   rows.noalias() += matrix_.middleRows(first, count) * data.q.segment(tree[body_].eta_offset(), matrix_.cols());
+  for (const auto& product : products_) {
+    double value = 1;
+    for (const int mode : product.modes)
+      if (mode >= 0) value *= data.q[tree[body_].eta_offset() + mode];
+    rows += value * product.rows.segment(first, count);
+  }
   rows.noalias() += inertial_.middleRows(first, count) * A_I;
   for (const auto& loaded : loaded_) {
     const Vector6d load = calc_node_load(loaded.source, body_, motion);

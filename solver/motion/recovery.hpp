@@ -1,9 +1,9 @@
 #pragma once
 /// \file Forces and stresses of elements of a flexible body in motion (docs/theory/recovery.md).
 ///
-/// Rows = offset + matrix η + inertial (A_I - A_I of the preload) + Σ external f: A_I as the body's origin moves, less
-/// gravity; f of hinges, constraints, [[force]]s without a type and load patterns at the body's locators. The
-/// meaning of the rows is in the body's file; here they have names.
+/// Rows = offset + matrix η + beyond (products of η, of a body of third order) + inertial (A_I - A_I of the preload) +
+/// Σ external f: A_I: motion of the origin of the body minus gravity; f of hinges, constraints, [[force]]s without a
+/// type and load patterns at the body's locators. The meaning of the rows is in the body's file; here they have names.
 #include <array>
 
 #include "formats/records/flex_body.hpp"
@@ -26,8 +26,9 @@ class Recovery {
     int size() const { return static_cast<int>(components.size()); }
   };
 
-  /// Copies the recovery matrices of all blocks; `body`: tree index.
-  Recovery(const records::FlexBody& flex, int body);
+  /// Copies the recovery matrices of all blocks; `body`: tree index. `is_third_order`: its displacements are, so are
+  /// the rows.
+  Recovery(const records::FlexBody& flex, int body, bool is_third_order);
   ~Recovery();
 
   /// All elements in the order of the rows.
@@ -44,14 +45,21 @@ class Recovery {
 
  private:
   struct Loaded;
+  void add_products(const records::FlexBody& flex);
   struct Pattern {
     const AppliedForce* force = nullptr;
     VectorXd rows;
   };
   int body_;
   std::vector<Element> elements_;
+  /// Degree 2 to 4: the modes of each product, and rows x products.
+  struct Product {
+    std::array<int, 4> modes{-1, -1, -1, -1};  ///< -1: none
+    VectorXd rows;
+  };
   MatrixXd matrix_, inertial_;  ///< rows x n, rows x 12
-  MatrixXd external_;           ///< rows x locators
+  std::vector<Product> products_;
+  MatrixXd external_;  ///< rows x locators
   VectorXd offset_;
   Eigen::Matrix<double, 12, 1> preload_ = Eigen::Matrix<double, 12, 1>::Zero();
   std::vector<Loaded> loaded_;

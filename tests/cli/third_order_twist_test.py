@@ -58,15 +58,6 @@ class ThirdOrderTwist(ProgramTest):
                   f"{ {n: f'{100 * e:.3f} %' for n, e in off.items()} }, order 2 {100 * second:.3f} %")
             self.assertLess(max(off.values()), 3e-3)
 
-    def test_recovery_stays_linear(self):
-        """Forces of elements are linear in the modes: said where the body is of third order."""
-        self.reduce(4, 3)
-        for order, expected in ((2, False), (3, True)):
-            with open(self.path("w.toml"), "w", encoding="utf-8") as f:
-                f.write(f'[body]\nname = "w"\ndeck = "rod.bdf"\nframe = "fixed"\n'
-                        f"[body.modes]\nnumber = 3\n[body.stiffening]\norder = {order}\n[body.output]\nrecover = \"ALL\"\n")
-            self.assertEqual("[reduce.linear-recovery]" in self.bough("reduce", "w.toml").stderr, expected)
-
 
 if __name__ == "__main__":
     unittest.main()

@@ -138,6 +138,11 @@ void visit_recovery(Archive& archive, Body& body, long n) {
     archive.texts(path + "/component", block.components, -1);
     const long rows = count(block.id) * count(block.components);
     archive.array(path + "/matrix", block.matrix, {rows, n});
+    const auto& third = body.third_order;
+    for (int k = records::ThirdOrder::kMinField; k <= records::ThirdOrder::kMaxField && !third.empty(); ++k)
+      archive.array(path + "/matrix_" + std::to_string(k),
+                    block.beyond[static_cast<std::size_t>(k - records::ThirdOrder::kMinField)],
+                    {rows, records::count_monomials(third.num_variables(k, static_cast<int>(n)), k)}, kOptional);
     archive.array(path + "/inertial", block.inertial, {rows, records::kNumInertialLoads});
     archive.array(path + "/external", block.external, {rows, count(body.locators)});
     archive.array(path + "/offset", block.offset, {rows});

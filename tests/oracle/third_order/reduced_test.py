@@ -51,7 +51,7 @@ class TestReduced(ProgramTest):
         return mass
 
     def calc_mode_loads(self, structure, phi, nodes):
-        """W = M Φ Λ as the program has it: K Φ would hold what the eigensolver leaves of stiff shapes, by their stiffness."""
+        """W = M Φ Λ as the program has it: K Φ multiplies the error of the eigensolver by the stiffness of stiff shapes."""
         M_phi = np.zeros_like(phi)
         for k in range(3):
             M_phi[k::6] = self.calc_mass(nodes)[:, None] * phi[k::6]
