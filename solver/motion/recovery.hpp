@@ -2,7 +2,7 @@
 /// \file Forces and stresses of elements of a flexible body in motion (docs/theory/recovery.md).
 ///
 /// Rows = offset + matrix η + beyond (products of η, of a body of third order) + inertial (A_I - A_I of the preload) +
-/// Σ external f: A_I: motion of the origin of the body minus gravity; f of hinges, constraints, [[force]]s without a
+/// Σ external f: A_I is the motion of the body's origin minus gravity; f of hinges, constraints, [[force]]s without a
 /// type and load patterns at the body's locators. The meaning of the rows is in the body's file; here they have names.
 #include <array>
 

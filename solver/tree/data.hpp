@@ -161,8 +161,8 @@ struct Imbalance {
   VectorXd force;  ///< num_u: f - h - M u̇
   VectorXd terms;  ///< num_u: sum of the absolute values of its terms, whose roundoff is that of `force`
 };
-/// Imbalance at accelerations u̇ (num_u; rows that are not free have the given ones). Loads of closed loops are not among
-/// the forces. No factorization. O(bodies n²). After forces were added. Allocates.
+/// Imbalance at accelerations u̇ (num_u; rows that are not free have the given ones), without loads of closed loops and
+/// without a factorization. O(bodies n²). After forces were added. Allocates.
 Imbalance calc_imbalance(const Tree& tree, const TreeData& data, const ConstVectorRef& u_dot);
 
 /// The impulse across the hinge of body b along its coordinate i, of the last solve_jump or run_response.
