@@ -22,6 +22,9 @@ using fe::SeriesVector;
 
 /// Negligible inertia about an axis, relative to the largest.
 constexpr double kNoInertia = 1e-8;
+/// Most modes for which the quartic energy of pairs of small modes is computed.
+constexpr Index kMaxPaired = 24;
+constexpr Index kPointsAtOnce = 256;
 
 std::vector<int> list_gdofs(const fe::Node& node) {
   std::vector<int> gdofs(static_cast<std::size_t>(node.num_dofs));
@@ -234,10 +237,40 @@ MatrixXd StaticManifold::calc_arm_gauge(const Curves& curves, int order) const {
   return work + calc_carried_work(curves, order, psi_, MatrixXd::Zero(9, psi_.cols())).on_fields;
 }
 
-MatrixXd StaticManifold::calc_gradient(const MatrixXd& points, int degree) const {
+MatrixXd StaticManifold::calc_all_gradient(const MatrixXd& points, int degree) const {
   const Curves curves = make_curves(points);
-  const MatrixXd gradient = Phi_.transpose() * calc_forces(curves, degree) - calc_arm_gauge(curves, degree);
-  return gradient(large_, Eigen::all);
+  return Phi_.transpose() * calc_forces(curves, degree) - calc_arm_gauge(curves, degree);
+}
+
+MatrixXd StaticManifold::calc_gradient(const MatrixXd& points, int degree) const {
+  return calc_all_gradient(points, degree)(large_, Eigen::all);
+}
+
+MatrixXd StaticManifold::calc_quartic_pairs() const {
+  const Index n = Phi_.cols();
+  const auto is_large = [&](Index j) { return std::binary_search(large_.begin(), large_.end(), static_cast<int>(j)); };
+  std::vector<std::pair<Index, Index>> pairs;
+  for (Index i = 0; i < n; ++i)
+    for (Index j = 0; j < i; ++j)
+      if (n <= kMaxPaired || is_large(i) || is_large(j)) pairs.emplace_back(i, j);
+  MatrixXd points = MatrixXd::Zero(n + 2 * std::ssize(pairs), n);
+  points.topRows(n).setIdentity();
+  for (std::size_t k = 0; k < pairs.size(); ++k) {
+    auto both = points.middleRows<2>(n + 2 * static_cast<Index>(k));
+    both.col(pairs[k].first).setOnes();
+    both.col(pairs[k].second) << 1, -1;
+  }
+  VectorXd V(points.rows());
+  for (Index first = 0; first < points.rows(); first += kPointsAtOnce) {  // bounds the memory
+    const MatrixXd some = points.middleRows(first, std::min(kPointsAtOnce, points.rows() - first));
+    V.segment(first, some.rows()) = some.cwiseProduct(calc_all_gradient(some, 3).transpose()).rowwise().sum() / 4;
+  }
+  MatrixXd Q = MatrixXd(V.head(n).asDiagonal());
+  for (std::size_t k = 0; k < pairs.size(); ++k) {
+    const auto [i, j] = pairs[k];
+    Q(i, j) = Q(j, i) = V.segment<2>(n + 2 * static_cast<Index>(k)).mean() - V[i] - V[j];
+  }
+  return Q;
 }
 
 MatrixXd StaticManifold::begin(const Lattice& lattice) {
@@ -256,17 +289,24 @@ void StaticManifold::select_large(const std::vector<int>& large, const MatrixXd&
   multipliers_.push_back(K_factor_.solve(gradient));
   if (small_.empty()) return;
   K_small_.compute(K_(small_, small_));
-  // The stiffest small mode of three takes what cancels V₃: ζ_t K_t c = -V₃, c = -K_t⁻¹ ∂V₃/∂ζ_t / (its power in V₃).
+  // One small mode of three takes what cancels V₃: ζ_t K_t c = -V₃, c = -K_t⁻¹ ∂V₃/∂ζ_t / (its power in V₃).
   MatrixXd part = -K_small_.solve(gradient(small_, Eigen::all));
+  const MatrixXd Q = calc_quartic_pairs();
   const Eigen::MatrixXi exponents = records::list_exponents(n, 2);
-  for (Index i = 0; i < part.cols(); ++i)
-    for (std::size_t t = 0; t < small_.size(); ++t) {
-      const bool is_stiffest = std::none_of(small_.begin(), small_.end(), [&](int s) {
-        return exponents(i, s) > 0 &&
-               std::make_pair(eigenvalue_[s], s) > std::make_pair(eigenvalue_[small_[t]], small_[t]);
-      });
-      part(static_cast<Index>(t), i) *= is_stiffest ? 1.0 / (1 + exponents(i, small_[t])) : 0;
+  for (Index i = 0; i < part.cols(); ++i) {
+    std::vector<int> pair;
+    for (int j = 0; j < n; ++j) pair.insert(pair.end(), static_cast<std::size_t>(exponents(i, j)), j);
+    for (std::size_t k = 0; k < small_.size(); ++k) {
+      const int t = small_[k];
+      bool is_follower = true;
+      for (int side = 0; side < 2; ++side) {
+        const int s = pair[static_cast<std::size_t>(side)], other = pair[static_cast<std::size_t>(1 - side)];
+        if (s == t || std::binary_search(large.begin(), large.end(), s)) continue;
+        is_follower = is_follower && Q(s, other) >= Q(t, other);
+      }
+      part(static_cast<Index>(k), i) *= is_follower ? 1.0 / (1 + exponents(i, t)) : 0;
     }
+  }
   fields_[0] += Phi_(Eigen::all, small_) * part;
   multipliers_[0](small_, Eigen::all).setZero();
 }

@@ -90,6 +90,11 @@ class StaticManifold {
     MatrixXd u;       ///< dofs along the curves, N x 5 points
     MatrixXd motion;  ///< H of every point, 3 points x N
   };
+  /// Gradient by all amplitudes, n x points.
+  MatrixXd calc_all_gradient(const MatrixXd& points, int degree) const;
+  /// Coefficients of a_i² a_j² in V, on the diagonal of a_i⁴, with u₂ held along all modes: n x n. Of more than
+  /// kMaxPaired modes those of two small ones are zero.
+  MatrixXd calc_quartic_pairs() const;
   /// The fields of the next degree, held along all modes; gradient: n x monomials.
   MatrixXd solve_field(int degree, const Lattice& lattice, MatrixXd& gradient) const;
   Curves make_curves(const MatrixXd& points) const;
