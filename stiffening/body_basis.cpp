@@ -43,8 +43,9 @@ std::vector<int> choose_columns(const BodyRequest& request, Eigen::Index availab
     if (s <= available)
       columns.push_back(s - 1);
     else
-      request.error("reduce.bad-select", "mode " + std::to_string(s) + " in select, " + source + " gives " +
-                                             std::to_string(available) + " elastic modes in the range");
+      request.error_at("modes/select", "reduce.bad-select",
+                       "mode " + std::to_string(s) + " in select, " + source + " gives " + std::to_string(available) +
+                           " elastic modes in the range");
   }
   request.diagnostics.throw_if_errors();
   for (int j = 0; j < available && request.spec.select.empty(); ++j) columns.push_back(j);
@@ -55,14 +56,14 @@ void check_rigid(const BodyRequest& request, const fe::Model& model, const modal
   const int num_rigid = request.is_free() ? 6 : 0, num_found = basis.num_rigid + basis.num_massless;
   const std::string preload = model.prestress() ? model.prestress()->name : "";
   if (num_found < num_rigid)
-    request.error("reduce.grounded",
-                  "a free body must have 6 rigid-body motions, this model has " + std::to_string(num_found) +
-                      (preload.empty() ? "" : " under its preload, " + preload),
-                  preload.empty()
-                      ? "remove springs and bushes to ground, and CELASi between grids that lie apart (they hold "
-                        "rotations); write matrices of K2GG with more digits; or use frame = \"fixed\""
-                      : "a free body may be preloaded by temperatures; loads do not turn with it: use frame = "
-                        "\"fixed\"");
+    request.error_at("frame", "reduce.grounded",
+                     "a free body must have 6 rigid-body motions, this model has " + std::to_string(num_found) +
+                         (preload.empty() ? "" : " under its preload, " + preload),
+                     preload.empty()
+                         ? "remove springs and bushes to ground, and CELASi between grids that lie apart (they hold "
+                           "rotations); write matrices of K2GG with more digits; or use frame = \"fixed\""
+                         : "a free body may be preloaded by temperatures; loads do not turn with it: use frame = "
+                           "\"fixed\"");
   if (num_found > num_rigid)
     add_mechanism_error(request, model, std::to_string(num_found - num_rigid) + " motion(s) have no strain");
   request.diagnostics.throw_if_errors();
@@ -124,8 +125,8 @@ ModalBasis calc_body_basis(const BodyRequest& request, const BodyModel& body_mod
       static_cast<int>(columns.size()) > spec.num_modes)
     columns.resize(static_cast<std::size_t>(spec.num_modes));
   if (columns.empty())
-    request.warning("reduce.rigid", "no elastic mode is in the range: the body is rigid",
-                    "raise max_frequency or the number of modes");
+    request.warning_at("modes", "reduce.rigid", "no elastic mode is in the range: the body is rigid",
+                       "raise max_frequency or the number of modes");
   basis = modal::bases::select_columns(basis, columns);
   if (augmented.model) remove_augmentation(request, model, basis);
   auto damping = calc_body_damping(request, model, basis);

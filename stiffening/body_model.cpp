@@ -140,13 +140,13 @@ BodyModel build_body_model(const BodyRequest& request) {
 
 void add_mechanism_error(const BodyRequest& request, const fe::Model& model, const std::string& message) {
   if (const auto loose = fe::describe_loose_parts(model); !loose.what.empty())
-    request.error("reduce.mechanism", loose.what, loose.advice);
+    request.error_at("frame", "reduce.mechanism", loose.what, loose.advice);
   else if (request.is_free())
-    request.error("reduce.mechanism", "besides the six rigid-body motions of a free body, " + message,
-                  "tie the loose parts or constrain the free dofs");
+    request.error_at("frame", "reduce.mechanism", "besides the six rigid-body motions of a free body, " + message,
+                     "tie the loose parts or constrain the free dofs");
   else
-    request.error("reduce.mechanism", "the constraints do not hold the fixed body: " + message,
-                  "complete the SPC set and select it in the case control, or use frame = \"free\" (--free)");
+    request.error_at("frame", "reduce.mechanism", "the constraints do not hold the fixed body: " + message,
+                     "complete the SPC set and select it in the case control, or use frame = \"free\" (--free)");
 }
 
 StaticSupport make_static_support(const BodyRequest& request, const fe::System& system) {

@@ -23,8 +23,8 @@ void check_choice(const BodyRequest& request, const std::string& id, const std::
                   const std::vector<std::string>& choices) {
   if (std::find(choices.begin(), choices.end(), word) != choices.end()) return;
   const auto near = find_nearest(word, choices);
-  request.error(id, key + " is \"" + word + "\", expected one of " + join(choices),
-                near.empty() ? "choose one of them" : "did you mean \"" + near + "\"?");
+  request.error_at(key, id, key + " is \"" + word + "\", expected one of " + join(choices),
+                   near.empty() ? "choose one of them" : "did you mean \"" + near + "\"?");
 }
 
 void check_basis_spec(const BodyRequest& request) {
@@ -32,24 +32,27 @@ void check_basis_spec(const BodyRequest& request) {
   const bool has_given_modes = request.given && has_modes(*request.given);
   if (!has_given_modes && spec.num_modes <= 0 && !spec.max_frequency_hz && spec.select.empty() &&
       spec.basis == BodyBasis::Normal && spec.residual.empty())
-    request.error("reduce.no-modes", "the body asks for no modes", "give [body.modes] number, max_frequency or select");
+    request.error_at("modes", "reduce.no-modes", "the body asks for no modes",
+                     "give [body.modes] number, max_frequency or select");
   if (spec.basis != BodyBasis::Normal && spec.interface_nodes.empty())
-    request.error("reduce.bad-basis", "the basis needs interface nodes", "name them in interface");
+    request.error_at("modes/basis", "reduce.bad-basis", "the basis needs interface nodes", "name them in interface");
   const bool is_craig_bampton = spec.basis == BodyBasis::CraigBampton;
   if (!spec.orthogonalize && !is_craig_bampton && spec.augments.empty())
-    request.error("reduce.bad-basis", "orthogonalize = false has a meaning for craig-bampton and augmented modes only",
-                  "remove it, or set basis = \"craig-bampton\"");
+    request.error_at("modes/basis", "reduce.bad-basis",
+                     "orthogonalize = false has a meaning for craig-bampton and augmented modes only",
+                     "remove it, or set basis = \"craig-bampton\"");
   if (!spec.orthogonalize && is_craig_bampton && spec.frame != BodyFrame::Fixed && spec.frame != BodyFrame::Node)
-    request.error("reduce.bad-basis",
-                  "orthogonalize = false keeps the rigid-body motions of the interface, which this frame removes",
-                  "use frame = \"fixed\", or \"node\" with one of the interface nodes");
+    request.error_at("modes/basis", "reduce.bad-basis",
+                     "orthogonalize = false keeps the rigid-body motions of the interface, which this frame removes",
+                     "use frame = \"fixed\", or \"node\" with one of the interface nodes");
   std::set<std::string> names{"inertial", "interface"};
   for (const auto& load : spec.loads) names.insert(load.name);
   names.erase("");
   for (const auto& name : spec.residual)
     if (!names.count(name))
-      request.error("reduce.unknown-load", "residual names '" + name + "', no load of the body is called so",
-                    "the body has " + join({names.begin(), names.end()}));
+      request.error_at("modes/residual", "reduce.unknown-load",
+                       "residual names '" + name + "', no load of the body is called so",
+                       "the body has " + join({names.begin(), names.end()}));
   if (!spec.augments.empty() && has_given_modes)
     request.diagnostics.error("reduce.bad-augment", spec.augments.front().at,
                               "masses are to augment the modes, but the modes are given",
@@ -59,29 +62,31 @@ void check_basis_spec(const BodyRequest& request) {
 void check_select(const BodyRequest& request) {
   const auto& select = request.spec.select;
   for (const int s : select)
-    if (s < 1) request.error("reduce.bad-select", "mode " + std::to_string(s) + " in select, modes count from 1");
+    if (s < 1)
+      request.error_at("modes/select", "reduce.bad-select",
+                       "mode " + std::to_string(s) + " in select, modes count from 1");
   if (std::set<int>(select.begin(), select.end()).size() != select.size())
-    request.error("reduce.bad-select", "a mode occurs twice in select", "name each mode once");
+    request.error_at("modes/select", "reduce.bad-select", "a mode occurs twice in select", "name each mode once");
 }
 
 void check_support(const BodyRequest& request) {
   const BodySpec& spec = request.spec;
   if (spec.support.size() > 1)
-    request.error("reduce.bad-support",
-                  std::to_string(spec.support.size()) + " support nodes, expected one that carries all six dofs",
-                  "give one node, or none to have three well-spread ones chosen");
+    request.error_at("support", "reduce.bad-support",
+                     std::to_string(spec.support.size()) + " support nodes, expected one that carries all six dofs",
+                     "give one node, or none to have three well-spread ones chosen");
   if (!spec.support.empty() && !request.is_free())
-    request.warning("reduce.support-unused", "support is given but the frame is fixed",
-                    "the deck's SPC set supports a fixed body");
+    request.warning_at("support", "reduce.support-unused", "support is given but the frame is fixed",
+                       "the deck's SPC set supports a fixed body");
   if (!spec.support.empty() && spec.frame == BodyFrame::Node)
-    request.warning("reduce.support-unused", "support is given but a node carries the frame",
-                    "that node supports the body");
+    request.warning_at("support", "reduce.support-unused", "support is given but a node carries the frame",
+                       "that node supports the body");
 }
 
 void check_damping(const BodyRequest& request) {
   const BodySpec& spec = request.spec;
   const auto add_error = [&](const std::string& message, const std::string& advice) {
-    request.error("reduce.bad-damping", message, advice);
+    request.error_at("damping", "reduce.bad-damping", message, advice);
   };
   const auto& ratios = spec.damping_ratios;
   if (spec.damping_ratio < 0 || std::any_of(ratios.begin(), ratios.end(), [](double z) { return z < 0; }) ||
@@ -123,7 +128,8 @@ void check_nodes(const BodyRequest& request) {
   const auto check = [&](int id, const std::string& key, const SourceLocation& at) {
     if (grids.count(id)) return;
     const bool is_scalar = std::find(scalars.begin(), scalars.end(), id) != scalars.end();
-    request.diagnostics.error("reduce.unknown-node", at.file.empty() ? request.where() : at,
+    request.diagnostics.error("reduce.unknown-node",
+                              at.file.empty() ? request.where(key == "output" ? "output/nodes" : key) : at,
                               key + " names node " + std::to_string(id) +
                                   (is_scalar ? ", which is a scalar point" : ", the deck has no such grid"),
                               "name a GRID of the deck");

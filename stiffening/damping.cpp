@@ -33,7 +33,7 @@ MatrixXd calc_body_damping(const BodyRequest& request, const fe::Model& model, c
   const auto spec = make_damping_spec(request.spec);
   const auto n = static_cast<std::size_t>(basis.lambda.size());
   const auto fail = [&](const std::string& message, const std::string& advice) {
-    request.error("reduce.bad-damping", message, advice);
+    request.error_at("damping", "reduce.bad-damping", message, advice);
     request.diagnostics.throw_if_errors();
   };
   if (!spec.ratios.empty() && spec.ratios.size() != n)

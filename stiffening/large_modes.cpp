@@ -36,31 +36,32 @@ std::vector<int> find_named_large_modes(const BodyRequest& request, int num_mode
   std::vector<int> large;
   for (const int mode : spec.large_modes) {
     if (mode < 1 || mode > num_modes)
-      request.error("reduce.bad-order",
-                    "mode " + std::to_string(mode) + " in [body.stiffening] large does not exist: the body has " +
-                        std::to_string(num_modes) + " modes",
-                    "name modes from 1 to " + std::to_string(num_modes));
+      request.error_at("stiffening/large", "reduce.bad-order",
+                       "mode " + std::to_string(mode) + " in [body.stiffening] large does not exist: the body has " +
+                           std::to_string(num_modes) + " modes",
+                       "name modes from 1 to " + std::to_string(num_modes));
     large.push_back(mode - 1);
   }
   if (spec.num_large > num_modes)
-    request.error("reduce.bad-order",
-                  "[body.stiffening] large = " + std::to_string(spec.num_large) + ", but the body has " +
-                      std::to_string(num_modes) + " modes",
-                  "give at most " + std::to_string(num_modes));
+    request.error_at("stiffening/large", "reduce.bad-order",
+                     "[body.stiffening] large = " + std::to_string(spec.num_large) + ", but the body has " +
+                         std::to_string(num_modes) + " modes",
+                     "give at most " + std::to_string(num_modes));
   for (int j = 0; j < std::min(spec.num_large, num_modes); ++j) large.push_back(j);
   std::sort(large.begin(), large.end());
   if (std::adjacent_find(large.begin(), large.end()) != large.end())
-    request.error("reduce.bad-order", "a mode occurs twice in [body.stiffening] large", "name each mode once");
+    request.error_at("stiffening/large", "reduce.bad-order", "a mode occurs twice in [body.stiffening] large",
+                     "name each mode once");
   if (large.size() > records::kMaxLargeModes)
-    request.error("reduce.bad-order",
-                  "[body.stiffening] large has " + std::to_string(large.size()) + " modes, at most " +
-                      std::to_string(records::kMaxLargeModes) + " are possible",
-                  "the tables grow with the sixth power: keep the modes that deflect most");
+    request.error_at("stiffening/large", "reduce.bad-order",
+                     "[body.stiffening] large has " + std::to_string(large.size()) + " modes, at most " +
+                         std::to_string(records::kMaxLargeModes) + " are possible",
+                     "the tables grow with the sixth power: keep the modes that deflect most");
   if (num_modes > records::kMaxThirdOrderModes)
-    request.error("reduce.bad-order",
-                  "a body of third order has at most " + std::to_string(records::kMaxThirdOrderModes) +
-                      " modes, this one has " + std::to_string(num_modes),
-                  "keep fewer modes, or set order = 2");
+    request.error_at("stiffening/large", "reduce.bad-order",
+                     "a body of third order has at most " + std::to_string(records::kMaxThirdOrderModes) +
+                         " modes, this one has " + std::to_string(num_modes),
+                     "keep fewer modes, or set order = 2");
   request.diagnostics.throw_if_errors();
   return large;
 }

@@ -68,9 +68,9 @@ Groups choose_recovered(const BodyRequest& request, const fe::Model& model) {
   for (const auto& word : request.spec.recover) {
     const auto choice = read_choice(word);
     if (!choice) {
-      request.error("reduce.bad-recover",
-                    "recover names \"" + word + "\", which is no element, range, property or card",
-                    "write \"ALL\", 17, \"17-25\", \"property:3\" or \"card:CBAR\"");
+      request.error_at("output/recover", "reduce.bad-recover",
+                       "recover names \"" + word + "\", which is no element, range, property or card",
+                       "write \"ALL\", 17, \"17-25\", \"property:3\" or \"card:CBAR\"");
       continue;
     }
     bool is_there = false;
@@ -86,14 +86,31 @@ Groups choose_recovered(const BodyRequest& request, const fe::Model& model) {
       groups[{elements[e]->card(), std::move(names)}].push_back(static_cast<int>(e));
     }
     if (!is_there)
-      request.error("reduce.unknown-element", "recover names \"" + word + "\", but the deck has no such element",
-                    "correct it");
+      request.error_at("output/recover", "reduce.unknown-element",
+                       "recover names \"" + word + "\", but the deck has no such element", "correct it");
   }
   request.diagnostics.throw_if_errors();
   if (groups.empty())
-    request.warning("reduce.nothing-to-recover", "the elements that recover names have neither forces nor stresses",
-                    "name bars, beams, rods, shells, solids, springs or bushes");
+    request.warning_at("output/recover", "reduce.nothing-to-recover",
+                       "the elements that recover names have neither forces nor stresses",
+                       "name bars, beams, rods, shells, solids, springs or bushes");
   return groups;
+}
+
+/// Adds to each load the accelerations of the rigid body that balance it, so that its answer does not depend on the
+/// support of the static solutions: a load whose value is unknown in motion then lacks its own answer alone, not that
+/// of its reaction. Loads of a motion balance in sum.
+void balance_loads(const fe::Model& model, const std::vector<int>& inertial, MatrixXd& F, MatrixXd& U) {
+  std::vector<Eigen::Index> rigid;
+  for (int k = 0; k < 6; ++k)
+    if (const auto at = std::find(inertial.begin(), inertial.end(), k); at != inertial.end())
+      rigid.push_back(at - inertial.begin());
+  if (rigid.size() < 6) return;
+  const MatrixXd resultants = model.calc_rigid_modes().transpose() * F;
+  const MatrixXd accelerations =
+      MatrixXd(resultants(Eigen::all, rigid)).completeOrthogonalDecomposition().solve(resultants);
+  F -= MatrixXd(F(Eigen::all, rigid)) * accelerations;
+  U -= MatrixXd(U(Eigen::all, rigid)) * accelerations;
 }
 
 }  // namespace
@@ -134,23 +151,25 @@ RecoveredElements start_recovery(const BodyRequest& request, const fe::Model& mo
 }
 
 /// U - Φ K⁻¹ ΦᵀF is the deflection of each load that the modes lack (docs/theory/recovery.md).
-void set_recovery(const fe::Model& model, const records::Deck& deck, const MatrixXd& Phi,
+void set_recovery(const BodyRequest& request, const fe::Model& model, const MatrixXd& Phi,
                   const std::vector<LoadPattern>& patterns, const SolvedLoads& solved,
                   const RecoveredElements& recovered, records::FlexBody& body) {
-  const MatrixXd &F = solved.columns.F, &U = solved.U;
+  MatrixXd F = solved.columns.F, U = solved.U;
+  if (request.spec.frame == records::BodyFrame::Free || request.spec.frame == records::BodyFrame::MeanAxes)
+    balance_loads(model, solved.inertial, F, U);
   const auto& inertial = solved.inertial;
   const auto n = Phi.cols(), num_inertial = solved.num_inertial();
   const auto num_loads = F.cols() - num_inertial;
   body.inertial_load = MatrixXd::Zero(n, records::kNumInertialLoads);
   for (Eigen::Index i = 0; i < num_inertial; ++i)
-    body.inertial_load.col(inertial[static_cast<std::size_t>(i)]) = Phi.transpose() * F.col(i);
+    body.inertial_load.col(inertial[static_cast<std::size_t>(i)]) = Phi.transpose() * solved.columns.F.col(i);
   MatrixXd residual = U;
   if (n > 0) residual -= Phi * body.modal_stiffness.ldlt().solve(Phi.transpose() * F);
   std::vector<std::unordered_map<int, Eigen::VectorXd>> end_loads(patterns.size());
   for (std::size_t e = 0; e < patterns.size(); ++e)
     if (patterns[e].load_set > 0) {
       Diagnostics repeated;  // of make_load_patterns()
-      end_loads[e] = fe::calc_beam_end_loads(model, deck, patterns[e].load_set, repeated);
+      end_loads[e] = fe::calc_beam_end_loads(model, request.deck, patterns[e].load_set, repeated);
     }
   MatrixXd all(U.rows(), n + F.cols());
   all.leftCols(n) = Phi;

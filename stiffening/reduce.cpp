@@ -49,7 +49,7 @@ ReducedBody reduce_body(const BodyRequest& request) {
   const SolvedLoads solved = solve_loads(request, patterns, inertial.F_I, support);
   if (!recovered.empty()) {
     request.report("element recovery");
-    set_recovery(model, request.deck, basis.Phi, patterns, solved, recovered, body);
+    set_recovery(request, model, basis.Phi, patterns, solved, recovered, body);
   }
   request.report("geometric stiffness");
   if (request.given)

@@ -30,9 +30,21 @@ struct BodyRequest {
   void report(const std::string& stage) const {
     if (options.progress) options.progress(stage);
   }
+  /// Place of a key of the body file (BodySpec::locate), or where().
+  SourceLocation where(const std::string& key) const { return spec.file.empty() ? where() : spec.locate(key); }
+  /// Adds an error at the place of a key.
+  void error_at(const std::string& key, std::string_view id, const std::string& message,
+                const std::string& advice = {}) const {
+    diagnostics.error(id, where(key), message, advice);
+  }
   /// Adds an error at where().
   void error(std::string_view id, const std::string& message, const std::string& advice = {}) const {
     diagnostics.error(id, where(), message, advice);
+  }
+  /// Adds a warning at the place of a key.
+  void warning_at(const std::string& key, std::string_view id, const std::string& message,
+                  const std::string& advice) const {
+    diagnostics.warning(id, where(key), message, advice);
   }
   /// Adds a warning at where().
   void warning(std::string_view id, const std::string& message, const std::string& advice) const {
@@ -183,7 +195,7 @@ SolvedLoads solve_loads(const BodyRequest& request, const std::vector<LoadPatter
 void set_geometric_stiffness(const fe::Model& model, const MatrixXd& Phi, const std::vector<LoadPattern>& patterns,
                              const SolvedLoads& solved, records::FlexBody& body);
 /// Sets the rows of the blocks that start_recovery() made: forces and stresses of elements.
-void set_recovery(const fe::Model& model, const records::Deck& deck, const MatrixXd& Phi,
+void set_recovery(const BodyRequest& request, const fe::Model& model, const MatrixXd& Phi,
                   const std::vector<LoadPattern>& patterns, const SolvedLoads& solved,
                   const RecoveredElements& recovered, records::FlexBody& body);
 /// Rows of an element in a block: the forces that static solutions print, then stresses. d: N x columns, deformations;

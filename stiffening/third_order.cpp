@@ -2,6 +2,7 @@
 // (docs/theory/third-order.md). Code below works in scaled amplitudes, 1/ω of a mode each.
 #include <algorithm>
 #include <cstdio>
+#include <set>
 
 #include "fe/corotational/corotational_element.hpp"
 #include "fe/elements/carried.hpp"
@@ -131,7 +132,8 @@ void append_orthonormal(const FieldMass& M, const MatrixXd& X, double no_mass, M
 /// Adds an error for each part of the body that has no power series.
 void add_series_errors(const BodyRequest& request, const fe::Model& model) {
   const auto error = [&](const std::string& what, const std::string& advice) {
-    request.error("reduce.bad-order", "[body.stiffening] order = 3 is given, but " + what, advice);
+    request.error_at("stiffening/order", "reduce.bad-order", "[body.stiffening] order = 3 is given, but " + what,
+                     advice);
   };
   const std::string second = "set order = 2";
   if (request.given)
@@ -151,7 +153,7 @@ void add_series_errors(const BodyRequest& request, const fe::Model& model) {
   if (!joined.empty()) {
     const auto [card, at] = find_tie(request.deck, arms.others());
     request.diagnostics.error(
-        "reduce.bad-order", card.empty() ? request.where() : request.deck.locate(at),
+        "reduce.bad-order", card.empty() ? request.where("stiffening/order") : request.deck.locate(at),
         "[body.stiffening] order = 3 is given, but " + (card.empty() ? "equations join " : card + " joins ") +
             join_names(joined) + " to others otherwise than as parts of a rigid body",
         "join all of their translations, or rotations, to one grid by RBE2 or RBAR, or " + second);
@@ -267,9 +269,9 @@ void set_third_order(const BodyRequest& request, const fe::Model& model, const M
   const auto is_static = [&](int mode) { return basis.kind[static_cast<std::size_t>(mode)] != ModeKind::Normal; };
   auto large = find_named_large_modes(request, n);
   if (const auto found = std::find_if(large.begin(), large.end(), is_static); found != large.end()) {
-    request.error("reduce.bad-order",
-                  "[body.stiffening] large selects mode " + std::to_string(*found + 1) + ", a residual vector",
-                  "select normal modes alone: residual vectors follow them");
+    request.error_at("stiffening/large", "reduce.bad-order",
+                     "[body.stiffening] large selects mode " + std::to_string(*found + 1) + ", a residual vector",
+                     "select normal modes alone: residual vectors follow them");
     request.diagnostics.throw_if_errors();
   }
   const int max_large = large.empty() ? std::min(n, kDefaultLargeModes) : static_cast<int>(large.size());
@@ -280,9 +282,9 @@ void set_third_order(const BodyRequest& request, const fe::Model& model, const M
   request.report("third order of at most " + std::to_string(max_large) + " modes, " + need);
   StaticManifold manifold(request, model, basis, support, inertial.M);
   if (!manifold.has_frame()) {
-    request.error("reduce.bad-order",
-                  "[body.stiffening] order = 3 is given, but the free body has no inertia about an axis",
-                  "use frame = \"node\", give it that inertia, or set order = 2");
+    request.error_at("stiffening/order", "reduce.bad-order",
+                     "[body.stiffening] order = 3 is given, but the free body has no inertia about an axis",
+                     "use frame = \"node\", give it that inertia, or set order = 2");
     request.diagnostics.throw_if_errors();
   }
 
@@ -380,11 +382,17 @@ void set_lost_loads(const ModalBasis& basis, FlexBody& body) {
   const auto n = static_cast<int>(basis.Phi.cols());
   if (third.empty()) return;
   const Eigen::MatrixXi exponents = records::list_exponents(n, 2);
+  const auto is_named = [&](const std::string& name) {
+    const auto& lost = basis.massless_loads;
+    return std::find(lost.begin(), lost.end(), name) != lost.end();
+  };
+  // A unit load may have a locator of the interface and some of [[body.load]]s.
+  std::set<std::pair<int, int>> lost_units;
+  for (const auto& [name, node, direction] : body.locators)
+    if (node != 0 && (is_named(name) || is_named(get_unit_name(node, direction)))) lost_units.emplace(node, direction);
   for (std::size_t e = 0; e < body.locators.size(); ++e) {
     const auto& [name, node, direction] = body.locators[e];
-    const std::string unit = node != 0 ? get_unit_name(node, direction) : name;
-    const auto& lost = basis.massless_loads;
-    if (std::find(lost.begin(), lost.end(), unit) == lost.end() || (node != 0 && direction <= 3)) continue;
+    if (node == 0 ? !is_named(name) : direction <= 3 || !lost_units.contains({node, direction})) continue;
     const auto at = std::find(body.interface_nodes.begin(), body.interface_nodes.end(), node);
     for (Eigen::Index i = 0; i < exponents.rows(); ++i) {
       std::vector<int> pair;

@@ -145,6 +145,9 @@ ConvertAnswer convert_file(const ConvertRequest& request, const CheckPath& check
   } else if (is_hdf5(request.file) || is_flat(request.file)) {
     answer.kind = ConvertedKind::FlexBody;
     convert_body(request, change, check, answer);
+  } else if (is_flx(request.file)) {
+    throw InputError("cli.wrong-file", {request.file}, "a .FLX file is not converted",
+                     "convert the flexible body (.h5) that it was written from, and write it again by bough flx");
   } else {
     convert_deck(request, change, check, answer);
   }

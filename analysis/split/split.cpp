@@ -320,7 +320,8 @@ void warn_of_error(const Reduction& reduction, const Structure& structure, const
                   "allowed {:.0e}{}",
                   error, kMaxSplitError, has_rigid ? "; cuts along several grids join these by a rigid element" : ""),
       has_rigid ? "cut where the section is stiff, or try the other --interface"
-                : "raise max_frequency of the body files, refine the mesh, or use PARAM,COUPMASS,1");
+                : "raise max_frequency of the body files, refine the mesh, or give the grids of the cuts inertia about "
+                  "all axes by small CONM2 cards, or by PARAM,COUPMASS,1 in a deck without it");
 }
 
 void warn_of_damping(const Structure& structure, const WholeModes& whole, Diagnostics& diagnostics) {

@@ -1,5 +1,6 @@
 #pragma once
 /// \file A body file (TOML: [body] [body.modes] [body.preload] [[body.load]] [body.damping] [body.output]) as a record.
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -55,6 +56,8 @@ struct PreloadSpec {
 
 struct BodySpec {
   std::string file;  ///< the TOML file, empty when made from the command line
+  /// Places of the keys in the file by their paths below [body]: "frame", "modes", "modes/select".
+  std::map<std::string, SourceLocation> places;
   std::string name;
   std::string deck;  ///< path, relative to the TOML file's folder when read from one
   int subcase = 0;   ///< 0: the first
@@ -100,6 +103,13 @@ struct BodySpec {
   std::vector<std::string> ignore_cards;
 
   std::optional<MatricesSpec> matrices;  ///< instead of the deck's elements
+
+  /// Place of a key; of its table, or of the file, where it is absent.
+  SourceLocation locate(const std::string& key) const {
+    for (const std::string& name : {key, key.substr(0, key.find('/'))})
+      if (const auto found = places.find(name); found != places.end()) return found->second;
+    return {file, 0, 0};
+  }
 };
 
 }  // namespace bough::records

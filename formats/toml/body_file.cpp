@@ -142,6 +142,13 @@ void read_origin(const Fields& body, records::BodySpec& spec, Diagnostics& diagn
                       "origin is '" + v->text + "', expected three numbers, a node id or \"mass-centre\"");
 }
 
+void set_places(const Fields& table, const std::string& path, records::BodySpec& spec) {
+  for (const auto& entry : table.entries()) {
+    spec.places[path + entry.key] = table.locate(entry.key);
+    if (entry.value.is_table()) set_places(table.get_table(entry.key), path + entry.key + "/", spec);
+  }
+}
+
 void read_more_damping(const Fields& damping, records::BodySpec& spec) {
   if (const Value* table = damping.find("table")) {
     for (const Value& row : table->items)
@@ -176,6 +183,7 @@ records::BodySpec read_body_spec_text(const std::string& text, const std::string
   check_schema(root, get_body_schema(), path, diagnostics);
 
   const Fields body = Fields(root, path).get_table("body");
+  set_places(body, "", spec);
   spec.name = body.get_string("name", get_stem(path));
   spec.deck = resolve_path(path, body.get_string("deck"));
   spec.subcase = body.get_int("subcase", 0);

@@ -175,6 +175,8 @@ class Convert(ProgramTest):
             self.fails(1, "convert", "mm.bdf", "--units", units, "-o", "no.bdf", error="cli.bad-units")
         self.fails(1, "convert", "mm.bdf", "-o", "no.bdf", error="cli.bad-units")
         self.fails(1, "convert", "mm.bdf", "--units", "m-kg:mm-kg", "-o", "mm.bdf", error="cli.output-is-input")
+        self.write("body.FLX", "")
+        self.fails(1, "convert", "body.FLX", "--units", "m-kg:mm-kg", "-o", "no.FLX", says=[".FLX"], error="cli.wrong-file")
         self.write("s.toml", "x = 1")
         self.fails(1, "convert", "s.toml", "--units", "m-kg:mm-kg", "-o", "no.toml", error="toml.unknown-key")
 

@@ -183,6 +183,32 @@ class Recovery(ProgramTest):
                     np.testing.assert_allclose(rows[:, names.index(name)], -reaction[:, axis],
                                                atol=1e-8 * np.abs(reaction).max())
 
+    def test_floating_body_under_a_load_of_unknown_value(self):
+        """A free rod pulled at its end by an actuator, whose force is not known to the recovery: its residual vector has the
+        axial forces, as a [[force]] gives them. Inertial loads answered on a support had the reaction as well."""
+        deck = "SOL 103\nCEND\nBEGIN BULK\nMAT1,1,7.+10,,.3,2700.\nPBAR,1,1,1.-3,1.-7,1.-7,2.-7\n"
+        deck += "".join(f"GRID,{i + 1},,{float(i)},0.,0.\n" for i in range(11))
+        deck += "".join(f"CBAR,{i},1,{i},{i + 1},0.,0.,1.\n" for i in range(1, 11)) + "CONM2,99,6,,1.-3,,,,,\n,.1,,.1,,,.1\nENDDATA\n"
+        self.write("rod.bdf", deck)
+        expected = .05 + .1 * np.arange(10)
+        pulls = {"actuator": table("function", "one", "constant", value=1.0)
+                 + table("actuator", "pull", "force", body="boom", node=11, axis=[1.0, 0.0, 0.0], input="one"),
+                 "force": table("force", "pull", body="boom", node=11, force=[1.0, 0.0, 0.0])}
+        for frame in ("free", "mean", "node"):
+            nodes = {"frame_nodes": [1]} if frame == "node" else {}
+            self.write("rod.toml", toml(
+                section("body", name="boom", deck="rod.bdf", frame=frame, interface=[1, 11], **nodes),
+                section("body.modes", number=6, residual=["inertial", "interface"]), section("body.output", recover="all")))
+            self.bough("reduce", "rod.toml", "-o", "boom.h5", "-q")
+            for kind, pull in pulls.items():
+                self.write("s.toml", toml(
+                    table("body", "boom", file="boom.h5", recover=True, damping=0.5), table("hinge", "h", "free", child="boom"), pull,
+                    section("simulation", duration=0.5, output_step=0.05)))
+                self.bough("run", "s.toml", "-o", "r.h5", "-q")
+                with h5py.File(self.path("r.h5")) as f:
+                    found = np.array([f[f"bodies/boom/recovery/CBAR/{e}"][-1][0] for e in range(1, 11)])
+                np.testing.assert_allclose(found, expected, atol=1e-4, err_msg=f"{frame} {kind}")
+
     def test_select_keeps_what_the_loads_do(self):
         self.reduce(6)
         static = self.read_static(make_deck())

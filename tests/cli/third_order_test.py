@@ -198,6 +198,8 @@ class ThirdOrder(ProgramTest):
         for keys, says in (("order = 3\nlarge = 9", ["large = 9", "3 modes"]), ("order = 3\nlarge = [1, 7]", ["mode 7"]),
                            ("order = 3\nlarge = [1, 1]", ["twice"])):
             self.reduce(keys, code=1, says=says, error="reduce.bad-order")
+            line = 1 + self.read("boom.toml").split("\n").index(keys.split("\n")[1])
+            self.reduce(keys, code=1, says=[f"boom.toml:{line}: error"], error="reduce.bad-order")
         self.reduce(replace=[("[body.modes]", '[body.modes]\nbasis = "craig-bampton"')], code=1, says=["static shapes"],
                     error="reduce.bad-order")
         self.reduce("order = 3\nlarge = 4", replace=[("[body.modes]", '[body.modes]\nresidual = ["interface"]')], code=1,
