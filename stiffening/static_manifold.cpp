@@ -25,6 +25,7 @@ constexpr double kNoInertia = 1e-8;
 /// Most modes for which the quartic energy of pairs of small modes is computed.
 constexpr Index kMaxPaired = 24;
 constexpr Index kPointsAtOnce = 256;
+constexpr int kMinElementsOfThread = 50;
 
 std::vector<int> list_gdofs(const fe::Node& node) {
   std::vector<int> gdofs(static_cast<std::size_t>(node.num_dofs));
@@ -340,13 +341,13 @@ MatrixXd StaticManifold::solve_field(int degree, const Lattice& lattice, MatrixX
 MatrixXd StaticManifold::calc_forces(const Curves& curves, int order) const {
   const Index m = curves.points.rows();
   MatrixXd result = MatrixXd::Zero(model_.num_gdofs(), m);
-  const auto add = [&](const std::vector<int>& gdofs, const MatrixXd& f) {
+  const auto add = [&](const std::vector<int>& gdofs, const MatrixXd& f, MatrixXd& sum) {
     MatrixXd f_k(f.rows(), m);
     for (Index p = 0; p < m; ++p) f_k.col(p) = f.col(kSeriesTop * p + order - 1);
-    result(gdofs, Eigen::all) += f_k;
+    sum(gdofs, Eigen::all) += f_k;
   };
   /// Forces at the end of an arm go to its parent, with the moment of where they act.
-  const auto move_to_parent = [&](const fe::RigidArm& arm, const NodeRows& rows, MatrixXd& f) {
+  const auto move_to_parent = [&](const fe::RigidArm& arm, const NodeRows& rows, MatrixXd& f, MatrixXd& sum) {
     const MatrixXd parent = calc_node_curve(curves, arm.parent);
     MatrixXd moved = MatrixXd::Zero(6, f.cols());
     for (Index c = 0; c < f.cols(); c += kSeriesTop) {
@@ -360,25 +361,30 @@ MatrixXd StaticManifold::calc_forces(const Curves& curves, int order) const {
     }
     if (arm.rotates && rows.rotations >= 0) f.middleRows<3>(rows.rotations).setZero();
     if (arm.translates && rows.translations >= 0) f.middleRows<3>(rows.translations).setZero();
-    add(list_gdofs(model_.nodes()[static_cast<std::size_t>(arm.parent)]), moved);
+    add(list_gdofs(model_.nodes()[static_cast<std::size_t>(arm.parent)]), moved, sum);
   };
-  const auto add_element = [&](const fe::Element& element, MatrixXd f) {
+  const auto add_element = [&](const fe::Element& element, MatrixXd f, MatrixXd& sum) {
     if (!arms_.list().empty())
       for (const NodeRows& rows : find_rows(element, model_.nodes()))
-        if (const fe::RigidArm* arm = arms_.find(rows.node)) move_to_parent(*arm, rows, f);
-    add(element.gdofs(), f);
+        if (const fe::RigidArm* arm = arms_.find(rows.node)) move_to_parent(*arm, rows, f, sum);
+    add(element.gdofs(), f, sum);
   };
-  fe::visit_elements(model_, fe::get_own_elements(model_), [&](int, const fe::Element& element) {
-    if (element.num_dofs() == 0 || !has_stiffness(element)) return;
-    const fe::CorotationalElement corotational(element, model_.nodes());
-    add_element(element, corotational.calc_forces(calc_element_curve(curves, element)));
-  });
+  MatrixXd second;  // of the second thread
+  fe::visit_elements_by_halves(model_, fe::get_own_elements(model_), kMinElementsOfThread,
+                               [&](std::size_t half, int, const fe::Element& element) {
+                                 if (element.num_dofs() == 0 || !has_stiffness(element)) return;
+                                 if (half == 1 && second.size() == 0) second.setZero(result.rows(), result.cols());
+                                 const fe::CorotationalElement corotational(element, model_.nodes());
+                                 add_element(element, corotational.calc_forces(calc_element_curve(curves, element)),
+                                             half == 0 ? result : second);
+                               });
+  if (second.size() > 0) result += second;
   // Loads on turned arms have moments that they lack at the undeformed state.
   const MatrixXd lambda = calc_multipliers(curves);
   visit_carried(curves, [&](const fe::Element& element, const Carried& carried) {
     const MatrixXd along = carried.motion * (psi_(element.gdofs(), Eigen::all) * lambda);
     MatrixXd f = MatrixXd::Zero(element.num_dofs(), along.cols());
-    if (!carried.mass.fields.empty()) return add_element(element, -calc_chord_forces(carried, along, order));
+    if (!carried.mass.fields.empty()) return add_element(element, -calc_chord_forces(carried, along, order), result);
     for (const auto& turn : carried.mass.turns)
       for (const auto& part : turn.parts) {
         Eigen::Matrix3Xd force = Eigen::Matrix3Xd::Zero(3, along.cols());
@@ -387,7 +393,7 @@ MatrixXd StaticManifold::calc_forces(const Curves& curves, int order) const {
         f -= turn.Theta.transpose() *
              calc_turned_moment(turn.Theta * carried.u, part.arm, part.B.transpose() * force, order);
       }
-    add_element(element, f);
+    add_element(element, f, result);
   });
   if (linear::initialize_petsc().rank == 0)
     for (const fe::RigidArm& arm : arms_.list()) {
@@ -395,7 +401,7 @@ MatrixXd StaticManifold::calc_forces(const Curves& curves, int order) const {
       const MatrixXd force = W_.middleRows<3>(model_.nodes()[static_cast<std::size_t>(arm.node)].first_gdof) * lambda;
       const int turn = model_.nodes()[static_cast<std::size_t>(arm.parent)].first_gdof + 3;
       add({turn, turn + 1, turn + 2},
-          -calc_turned_moment(calc_node_curve(curves, arm.parent).bottomRows<3>(), arm.arm, force, order));
+          -calc_turned_moment(calc_node_curve(curves, arm.parent).bottomRows<3>(), arm.arm, force, order), result);
     }
   linear::sum_over_ranks(result);
   return result;

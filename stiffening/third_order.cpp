@@ -311,8 +311,11 @@ void set_third_order(const BodyRequest& request, const fe::Model& model, const M
     const Lattice& next = lattices[static_cast<std::size_t>(k - 2)];
     work.push_back(gradient * calc_monomials(own.exponents(), next.points()).transpose());
   }
-  // Degree 6: u₅ is not needed.
-  work.push_back(manifold.calc_gradient(spread(lattices[3].points(), large, n), 5));
+  {  // degree 6: u₅ is not needed
+    const Lattice &own = lattices[2], &next = lattices[3];
+    const MatrixXd gradient = own.fit(manifold.calc_gradient(spread(own.points(), large, n), 5));
+    work.push_back(gradient * calc_monomials(own.exponents(), next.points()).transpose());
+  }
   for (int k = ThirdOrder::kMinEnergy; k <= ThirdOrder::kMaxEnergy; ++k) {
     const auto at = static_cast<std::size_t>(k - ThirdOrder::kMinEnergy);
     MatrixXd c = fit_energy(lattices[at], work[at], k).transpose();

@@ -126,17 +126,22 @@ struct CorotationalElement::Motion {
 
 namespace {
 
-/// The rotation R nearest to the nodes: Rᵀ B symmetric. Newton with the matrix of order 0 finds an order a step.
-SeriesMatrix find_frame(const SeriesMatrix& B, const Matrix3d& inverse) {
-  SeriesMatrix R = make_zero_matrix();
+/// Rotation R nearest to the nodes and H = RᵀB, which is symmetric: B = R H and RᵀR = 1 order by order, R_k the
+/// symmetric part that the orders below leave, and a skew one by the spin that makes H_k symmetric.
+void find_frame(const SeriesMatrix& B, const Matrix3d& inverse, SeriesMatrix& R, SeriesMatrix& H) {
   R[0].setIdentity();
-  for (int step = 0; step < kSeriesTop; ++step) {
-    SeriesVector turn = calc_skew_axis(multiply(transpose(R), B));
-    turn[0].setZero();
-    for (auto& v : turn) v = inverse * v;
-    R = multiply(R, calc_exponential(turn));
+  H[0] = B[0];
+  for (std::size_t k = 1; k < B.size(); ++k) {
+    Matrix3d even = Matrix3d::Zero(), rest = B[k];
+    for (std::size_t i = 1; i < k; ++i) {
+      even.noalias() -= 0.5 * (R[i].transpose() * R[k - i]);
+      rest.noalias() -= R[i] * H[k - i];
+    }
+    const Vector3d spin = inverse * calc_axis(Matrix3d(rest - even * H[0]));
+    R[k] = even + skew(spin);
+    rest.noalias() -= R[k] * H[0];
+    H[k] = 0.5 * (rest + rest.transpose());
   }
-  return R;
 }
 
 }  // namespace
@@ -169,8 +174,7 @@ std::vector<CorotationalElement::Motion> CorotationalElement::calc_motions(const
       R_nodes[k] = calc_exponential(motion.rotation[k]);
       for (std::size_t i = 0; i < mean.size(); ++i) B[i] += rotation_weight_ * R_nodes[k][i];
     }
-    motion.R = find_frame(B, frame_inverse_);
-    motion.H = multiply(transpose(motion.R), B);
+    find_frame(B, frame_inverse_, motion.R, motion.H);
     const SeriesMatrix Rt = transpose(motion.R);
     motion.y.resize(num_nodes);
     motion.turn.resize(num_nodes);

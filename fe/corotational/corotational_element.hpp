@@ -20,6 +20,8 @@ struct FiniteForces {
   MatrixXd H;           ///< N x N: ∂g/∂d
 };
 
+/// Vector of A - Aᵀ: A_32 - A_23 and so on.
+Vector3d calc_axis(const Matrix3d& A);
 /// Inverse of a symmetric matrix without directions whose eigenvalue is 1e-12 of the largest (rods: no twist).
 Matrix3d invert_symmetric(const Matrix3d& A);
 /// T⁻¹(θ) of calc_rotation_tangent, and θ of exp(θ̃) = R, |θ| ≤ π.

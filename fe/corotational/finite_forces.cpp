@@ -7,6 +7,8 @@
 
 namespace bough::fe {
 
+Vector3d calc_axis(const Matrix3d& A) { return {A(2, 1) - A(1, 2), A(0, 2) - A(2, 0), A(1, 0) - A(0, 1)}; }
+
 namespace {
 
 using Eigen::Index;
@@ -28,8 +30,6 @@ std::pair<double, double> calc_inverse_coefficient(double square) {
   }
   return {b, derivative};
 }
-
-Vector3d calc_axis(const Matrix3d& A) { return {A(2, 1) - A(1, 2), A(0, 2) - A(2, 0), A(1, 0) - A(0, 1)}; }
 
 Matrix3d subtract_from_trace(const Matrix3d& A) { return A.trace() * Matrix3d::Identity() - A; }
 
