@@ -31,18 +31,6 @@ DynamicLoad::Excitation read_excitation(Card& card, int i) {
   return DynamicLoad::Excitation::Force;
 }
 
-/// An id stands once, as in Nastran.
-template <class Record>
-void add_unique(Card& card, std::vector<Record>& all, Record record, int Record::*id) {
-  if (!card.is_ok()) return;
-  if (std::any_of(all.begin(), all.end(), [&](const auto& other) { return other.*id == record.*id; })) {
-    card.fail("deck.duplicate-id", 0, "id " + std::to_string(record.*id) + " is used twice",
-              "give one of them another id");
-    return;
-  }
-  all.push_back(std::move(record));
-}
-
 DynamicLoad read_head(Card& card, DynamicLoad::Kind kind) {
   DynamicLoad load;
   load.kind = kind;
@@ -659,6 +647,8 @@ int records::DynamicSelection::*find_selection_of(std::string_view card) {
   if (card == "TABDMP1") return &DynamicSelection::sdamping;
   if (card == "EIGC") return &DynamicSelection::cmethod;
   if (card == "TF") return &DynamicSelection::tfl;
+  if (card == "RGYRO") return &DynamicSelection::rgyro;
+  if (card == "ROTORD") return &DynamicSelection::rmethod;
   return nullptr;
 }
 
