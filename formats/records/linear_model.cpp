@@ -23,6 +23,7 @@ std::complex<double> calc_z(const LinearSweep& sweep, Eigen::Index k, Eigen::Ind
 }
 
 bool is_gone(const LinearSweep& sweep, Eigen::Index b) {
+  if (sweep.models.empty()) return false;
   for (Eigen::Index k = 0; k < sweep.value.size(); ++k)
     if (sweep.models[static_cast<std::size_t>(k)].sample_time == 0 || calc_z(sweep, k, b) != 0.0) return false;
   return true;
