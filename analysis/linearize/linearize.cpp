@@ -17,6 +17,18 @@ namespace bough::analysis {
 
 namespace {
 
+/// Unit vector of the axis; zero without. \throws InputError "cli.bad-axis"
+Eigen::Vector3d get_spin_axis(const LinearizeRequest& request) {
+  const auto& given = request.spin_axis;
+  if (given.empty()) return Eigen::Vector3d::Zero();
+  const Eigen::Vector3d axis =
+      given.size() == 3 ? Eigen::Vector3d(given[0], given[1], given[2]) : Eigen::Vector3d::Zero();
+  if (!(axis.norm() > 0))
+    throw InputError("cli.bad-axis", {}, "the axis of --spin-axis is zero",
+                     "give the direction of the spin, --spin-axis 1 0 0");
+  return axis.normalized();
+}
+
 /// Warns of bodies that leave the range of their modes at the point, once each: a run to there may have said so.
 void warn_of_deflections(const LinearizeRequest& request, const solver::System& system,
                          const solver::OperatingPoint& point, Diagnostics& diagnostics) {
@@ -59,7 +71,7 @@ records::LinearSweep sweep_parameter(const LinearizeRequest& request, Diagnostic
     keep_new(found, diagnostics);
     return model;
   };
-  return make_sweep(range.name, range.values, linearize, request.file, diagnostics);
+  return make_sweep(range.name, range.values, linearize, request.file, diagnostics, get_spin_axis(request));
 }
 
 /// At every N-th sample of the run.
@@ -80,7 +92,7 @@ records::LinearSweep sweep_run(const LinearizeRequest& request, const LoadedSyst
     keep_new(found, diagnostics);
     return model;
   };
-  return make_sweep("time", times, linearize, request.file, diagnostics);
+  return make_sweep("time", times, linearize, request.file, diagnostics, get_spin_axis(request));
 }
 
 /// Loads the system, with the first value of a sweep: a parameter without a value has one from it.
@@ -107,6 +119,10 @@ solver::OperatingPoint find_point(const LinearizeRequest& request, const LoadedS
 }
 
 void check_sweep(const LinearizeRequest& request) {
+  if (!request.spin_axis.empty() && request.sweep.empty() && request.each == 0)
+    throw InputError("cli.bad-axis", {}, "--spin-axis is given without --sweep and --each",
+                     "give a sweep over the rate of the rotation, or leave it out");
+  get_spin_axis(request);
   if (!request.sweep.empty()) parse_sweep(request.sweep);
   parse_uncertain(request.uncertain);
 }

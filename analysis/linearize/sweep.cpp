@@ -20,7 +20,7 @@ constexpr double kRecognized = 0.6;
 
 /// Returns true if a branch is at z = 0 at one of the values k - 1 and k of a sampled sweep.
 bool is_gone_near(const LinearSweep& sweep, Index k, Index b) {
-  return sweep.models.front().sample_time > 0 &&
+  return !sweep.models.empty() && sweep.models.front().sample_time > 0 &&
          (records::calc_z(sweep, k, b) == 0.0 || records::calc_z(sweep, k - 1, b) == 0.0);
 }
 
@@ -33,6 +33,8 @@ bool is_repeated(const LinearSweep& sweep, Index k, Index b) {
   }
   return false;
 }
+
+}  // namespace
 
 void warn_jumps(const LinearSweep& sweep, const std::string& file, Diagnostics& diagnostics) {
   for (Index k = 1; k < sweep.value.size(); ++k) {
@@ -50,8 +52,6 @@ void warn_jumps(const LinearSweep& sweep, const std::string& file, Diagnostics& 
     }
   }
 }
-
-}  // namespace
 
 SweepRange parse_sweep(const std::string& text) {
   const auto fail = [&] {
@@ -85,7 +85,7 @@ SweepRange parse_sweep(const std::string& text) {
 
 LinearSweep make_sweep(const std::string& name, const std::vector<double>& values,
                        const std::function<records::LinearModel(double)>& linearize, const std::string& file,
-                       Diagnostics& diagnostics) {
+                       Diagnostics& diagnostics, const Eigen::Vector3d& spin_axis) {
   LinearSweep sweep;
   sweep.parameter = name;
   sweep.value = Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Index>(values.size()));
@@ -99,7 +99,7 @@ LinearSweep make_sweep(const std::string& name, const std::vector<double>& value
           fmt::format("the model at {} = {:g} has other states or inputs than the first", name, value),
           "sweep where the system stays the same");
   }
-  statespace::track_poles(sweep);
+  statespace::track_poles(sweep, spin_axis);
   warn_jumps(sweep, file, diagnostics);
   return sweep;
 }

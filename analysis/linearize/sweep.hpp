@@ -22,6 +22,9 @@ SweepRange parse_sweep(const std::string& text);
 /// states or inputs than the first; reports "linear.sweep-jump" (warning) where a motion is not recognized in the next.
 records::LinearSweep make_sweep(const std::string& name, const std::vector<double>& values,
                                 const std::function<records::LinearModel(double)>& linearize, const std::string& file,
-                                Diagnostics& diagnostics);
+                                Diagnostics& diagnostics, const Eigen::Vector3d& spin_axis = Eigen::Vector3d::Zero());
+
+/// Reports "linear.sweep-jump" (warning) at each value at which a motion is not recognized.
+void warn_jumps(const records::LinearSweep& sweep, const std::string& file, Diagnostics& diagnostics);
 
 }  // namespace bough::analysis

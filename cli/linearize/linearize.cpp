@@ -104,6 +104,11 @@ void add_linearize(CLI::App& app, Action& action) {
           "NAME=FROM:TO:N, a model for each of N values of a parameter, their poles followed; with :log evenly "
           "by ratio")
       ->excludes(each);
+  verb->add_option("--spin-axis", o->request.spin_axis,
+                   "Of --sweep and --each: X Y Z, axis of the spin in the frame of the position sensors: whirl of each "
+                   "mode, forward or backward")
+      ->expected(3)
+      ->check(make_finite());
   auto* uncertain = verb->add_option("--uncertain", o->request.uncertain,
                                      "NAME=LOW:HIGH, a parameter, or BODY:eta1:frequency, stiffness or damping as a "
                                      "factor: the model with inputs w and "

@@ -46,6 +46,7 @@ nlohmann::json make_json(const LinearSweep& sweep) {
                         {"damping", to_rows(sweep.damping)},
                         {"correlation", to_rows(sweep.correlation)},
                         {"mode", sweep.mode}}}};
+  if (sweep.whirl.size() > 0) json["poles"]["whirl"] = to_rows(sweep.whirl);
   if (sweep.models.front().sample_time > 0)
     for (const auto& model : sweep.models) json["sample_time"].push_back(model.sample_time);
   return json;
@@ -63,6 +64,8 @@ std::string format_sweep(const LinearSweep& sweep) {
                         last.sample_time != first.sample_time ? fmt::format(" to {:g}", last.sample_time) : "");
   const auto unit = records::name_frequency_unit(first.units.time);
   Table table{{"branch", "from " + unit, "to " + unit, "damping from", "to", "largest real", "mode"}, {}};
+  const bool has_whirl = sweep.whirl.size() > 0;
+  if (has_whirl) table.headings.emplace_back("whirl");
   const Index end = sweep.value.size() - 1;
   for (Index b = 0; b < sweep.real.cols(); ++b) {
     if (!is_shown(sweep, b)) continue;
@@ -72,6 +75,8 @@ std::string format_sweep(const LinearSweep& sweep) {
                           fmt::format("{:.6g}", sweep.frequency_hz(end, b)), fmt::format("{:.4g}", sweep.damping(0, b)),
                           fmt::format("{:.4g}", sweep.damping(end, b)),
                           fmt::format("{:.3g} at {:g}", max_real, sweep.value[worst]), name_branch(sweep, b)});
+    if (has_whirl)
+      table.rows.back().emplace_back(sweep.imag(end, b) > 0 ? records::name_whirl(sweep.whirl(end, b)) : "-");
   }
   return text + table.to_text() + format_gone(sweep);
 }

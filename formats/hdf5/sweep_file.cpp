@@ -131,9 +131,24 @@ void write_sweep(const records::LinearSweep& sweep, const std::string& path) {
   file.write_matrix("/poles/frequency_hz", sweep.frequency_hz, {"|pole| / 2 pi", "1/T"});
   file.write_matrix("/poles/damping", sweep.damping, {"-real / |pole|; 0 for a pole at 0", "1"});
   file.write_matrix("/poles/correlation", sweep.correlation, {"with the motion at the point before", "1"});
-  file.attach_scale("/parameter/value", {"/A", "/B", "/C", "/D", "/operating_point/time", "/operating_point/q",
-                                         "/operating_point/u", "/operating_point/residual", "/poles/real",
-                                         "/poles/imag", "/poles/frequency_hz", "/poles/damping", "/poles/correlation"});
+  std::vector<std::string> over_parameter{"/A",
+                                          "/B",
+                                          "/C",
+                                          "/D",
+                                          "/operating_point/time",
+                                          "/operating_point/q",
+                                          "/operating_point/u",
+                                          "/operating_point/residual",
+                                          "/poles/real",
+                                          "/poles/imag",
+                                          "/poles/frequency_hz",
+                                          "/poles/damping",
+                                          "/poles/correlation"};
+  if (sweep.whirl.size() > 0) {
+    file.write_matrix("/poles/whirl", sweep.whirl, {"1: forward circle, -1: backward circle, 0: line", "1"});
+    over_parameter.emplace_back("/poles/whirl");
+  }
+  file.attach_scale("/parameter/value", over_parameter);
   std::vector<std::string> start, end;
   if (!sweep.mode.empty()) start = sweep.mode.front(), end = sweep.mode.back();
   file.write_strings("/poles/mode_first", start,
@@ -166,6 +181,7 @@ records::LinearSweep read_sweep(const std::string& path) {
   sweep.frequency_hz = file.read_matrix("/poles/frequency_hz", np, nx);
   sweep.damping = file.read_matrix("/poles/damping", np, nx);
   sweep.correlation = file.read_matrix("/poles/correlation", np, nx);
+  if (file.has("/poles/whirl")) sweep.whirl = file.read_matrix("/poles/whirl", np, nx);
   const auto start = file.read_strings("/poles/mode_first", nx), end = file.read_strings("/poles/mode_last", nx);
   if (file.has("/sample_time")) {
     const auto sample_time = file.read_vector("/sample_time", np);
