@@ -188,6 +188,7 @@ PAGES = {
     "docs/tutorials/flx-batch.md": Page(output=True),
     "docs/tutorials/rotor-blade.md": Page(output=True),
     "docs/tutorials/mast-in-parts.md": Page(output=True),
+    "docs/tutorials/rotor.md": Page(output=True),
     "docs/python.md": boom({"arm.toml": ARM}, python=f"import sys\nsys.path.insert(0, {READER!r})",
                            stands_for={"spinup.toml": "short.toml", "spinup.h5": "run.h5"}),
     "docs/report.md": Page(),
@@ -221,7 +222,7 @@ PAGES = {
         left_out=("--refinement", "--test", "--sensors")),  # compare_test.py: three meshes; correlation_test.py
     **{f"data/examples/{name}/README.md": example(name) for name in (
         "ex02-hub", "ex03-two-link", "ex07-four-bar", "ex08-satellite", "ex09-stage-separation", "ex10-robot-arm",
-        "ex11-rotor-blade", "ex12-launcher", "ex13-observatory")},
+        "ex11-rotor-blade", "ex12-launcher", "ex13-observatory", "ex14-rotor")},
 }
 for page_name, page_needs in PAGES.items():
     add_page(page_name, page_needs)
