@@ -117,7 +117,6 @@ const UnsupportedCommand* find_unsupported_command(std::string_view word) {
       UnsupportedCommand{"K42GG", "DMIG", "structural damping given as a matrix"},
       UnsupportedCommand{"RMETHOD", "ROTORD",
                          "rotors: gyroscopic terms of the response, which RGYRO selects by RSPINR"},
-      UnsupportedCommand{"RGYRO", "RGYRO", "rotors: gyroscopic terms of the response"},
       UnsupportedCommand{"GUST", "GUST", "aerodynamic loads of a gust"},
       UnsupportedCommand{"MODESELECT", "MODESELECT", "the modes that take part in the response", Response, 6},
       UnsupportedCommand{"MODSEL", "MODSEL", "the modes that take part in the response", Response, 6},
