@@ -1,6 +1,7 @@
 """Rotors of decks (ROTORG, RSPINR, RGYRO, ROTORD, UNBALNC): book, closed forms, dense NumPy matrices of another formulation."""
 import json
 import math
+import re
 import unittest
 
 import h5py
@@ -101,6 +102,24 @@ class Rotors(ProgramTest):
             y, z = shapes[0::4, j], shapes[1::4, j]
             i = np.argmax(np.abs(y)**2 + np.abs(z)**2)
             self.assertAlmostEqual(mode["whirl"], -2 * (np.conj(y[i]) * z[i]).imag / (abs(y[i])**2 + abs(z[i])**2), places=6)
+
+    def test_skew_axes(self):
+        """A rotor along a skew axis, everything in coordinate systems: poles, whirl and response of the one along x."""
+        bearings, turned = BOOK["5.9.2"][0], lambda deck: re.sub(r"(?m)^(GRID,\d+),,(.*)$", r"\1,9,\2,9", re.sub(
+            r"(?m)^(CONM2,\d+,\d+),,", r"\1,9,", deck)).replace("BEGIN BULK", "BEGIN BULK\nCORD2R,9,,.1,.2,.3,.5,-.7,1.1\n,.9,.4,.2")
+        deck = make_friswell_deck(6, bearings, DISCS, ["RGYRO = 5"], ["RGYRO,5,ASYNC,1,RPM,,,4000."])
+        self.near(self.poles(turned(deck)), solve(*make_friswell(6, bearings, DISCS).matrices(4000 * RPM)))
+        whirl = [m["whirl"] for m in self.result["modes"]]
+        self.poles(deck)
+        np.testing.assert_allclose(whirl, [m["whirl"] for m in self.result["modes"]], atol=1e-6)
+        driven = make_friswell_deck(6, BOOK["5.9.5"][0], DISCS, ["RGYRO = 5", "DLOAD = 3", "FREQUENCY = 4", "DISPLACEMENT = ALL"],
+                                    ["RGYRO,5,SYNC,1,RPM", "UNBALNC,3,3.-3,5,0.,1.,0.", ",.2,,.04", "FREQ,4,20.,45."], 108)
+        found = []
+        for one in (driven, turned(driven)):
+            self.write("d.bdf", one)
+            self.bough("frequency", "d.bdf", "-o", "d.h5")
+            found.append(self.curves("d.h5", 3))
+        np.testing.assert_allclose(found[1], found[0], rtol=1e-7)
 
     def test_crossed_bearings(self):
         """Bearings that couple y and z by K2PP: 5.9.4 as printed, in Hz at rest; skew coupling makes forward whirl unstable."""
