@@ -81,6 +81,8 @@ void change_hinge(const UnitTable& t, const SignalUnits& units) {
   visit_inner(t, "friction", [&](const UnitTable& friction) {
     for (const char* key : {"coulomb", "static"}) friction.scale(key, effort);
     for (const char* key : {"stribeck_velocity", "smoothing"}) friction.scale(key, rate);
+    for (const char* key : {"pin_radius", "friction_arm", "bending_arm", "reaction_arm"})
+      friction.scale(key, units.change().length);
   });
 }
 

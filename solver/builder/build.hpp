@@ -76,7 +76,8 @@ std::unique_ptr<const ForceElement> build_element(const records::ForceElementRec
 /// Force laws along the coordinates of a body's hinge, and the inertia of its motors; the tree is finished.
 void build_hinge_laws(const records::HingeRecord& record, const ElementContext& context, TreeBody& tb,
                       std::vector<std::unique_ptr<const ForceElement>>& elements,
-                      std::vector<JointContact>& joint_contacts, Diagnostics& diagnostics);
+                      std::vector<JointContact>& joint_contacts, std::vector<LoadFriction>& load_frictions,
+                      Diagnostics& diagnostics);
 
 /// Reports "system.beyond-stop" for a coordinate that starts beyond a rigid stop; within calc_slack it is moved to the
 /// stop.

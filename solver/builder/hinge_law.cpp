@@ -16,7 +16,8 @@ class LawBuilder {
   LawBuilder(const records::HingeRecord& record, const ElementContext& context, TreeBody& tb, Diagnostics& diagnostics)
       : r_(record), context_(context), tb_(tb), diagnostics_(diagnostics), user_("hinge " + quote(record.name)) {}
 
-  void build(std::vector<std::unique_ptr<const ForceElement>>& elements, std::vector<JointContact>& joint_contacts) {
+  void build(std::vector<std::unique_ptr<const ForceElement>>& elements, std::vector<JointContact>& joint_contacts,
+             std::vector<LoadFriction>& load_frictions) {
     const auto& law = r_.law;
     bool is_given = law.has_stops || law.has_friction;
     for (const auto* list : {&law.preload, &law.rotor_inertia}) is_given = is_given || !list->empty();
@@ -34,7 +35,7 @@ class LawBuilder {
     int ignored = 0;
     for (int i = 0; i < tb_.num_hinge_u(); ++i) {
       if (tb_.mode[static_cast<size_t>(i)] == HingeMode::Prescribed) ++ignored;
-      add(i, elements, joint_contacts);
+      add(i, elements, joint_contacts, load_frictions);
     }
     const bool has_forces = law.has_stops || law.has_friction || !law.preload.empty() || !law.spring_table.empty() ||
                             !law.damper_table.empty();
@@ -82,6 +83,12 @@ class LawBuilder {
     check_positive(law.static_friction, "static friction");
     check_positive(law.stribeck_velocity, "stribeck_velocity");
     check_positive(law.smoothing, "smoothing");
+    check_positive(law.mu, "mu of friction");
+    check_positive(law.mu_static, "mu_static of friction");
+    check_positive(law.pin_radius, "pin_radius of friction");
+    check_positive(law.friction_arm, "friction_arm");
+    check_positive(law.bending_arm, "bending_arm of friction");
+    check_positive(law.reaction_arm, "reaction_arm of friction");
     check_positive(law.rotor_inertia, "rotor_inertia");
     check_count(law.gear_ratio, "gear_ratio");
   }
@@ -115,8 +122,62 @@ class LawBuilder {
       refuse("has stops with a restitution and a spring", "give stops a stiffness and damping, or a restitution");
   }
 
-  void add(int i, std::vector<std::unique_ptr<const ForceElement>>& elements,
-           std::vector<JointContact>& joint_contacts) {
+  // Column of the coordinate: [v; w] at unit rate.
+  Vector6d calc_column(int i) const {
+    VectorXd q(tb_.num_hinge_q());
+    tb_.hinge->set_neutral(q.data());
+    HingeMotion motion;
+    tb_.hinge->calc_position(q.data(), motion);
+    return motion.H.col(i);
+  }
+
+  // Friction by bearing load; nothing without mu.
+  std::optional<LoadFriction> make_load_friction(int i, const HingeLaw::Law& law, const std::string& which) {
+    const auto& r = r_.law;
+    LoadFriction f;
+    f.dynamic = at(r.mu, i);
+    f.at_rest = at(r.mu_static, i, f.dynamic);
+    const double pin = at(r.pin_radius, i), arm = at(r.friction_arm, i), bending = at(r.bending_arm, i),
+                 reaction = at(r.reaction_arm, i);
+    if (f.dynamic == 0 && f.at_rest == 0) {
+      if (pin > 0 || arm > 0 || bending > 0 || reaction > 0)
+        refuse("has arms of friction without mu", "give mu, or coulomb alone");
+      return std::nullopt;
+    }
+    const Vector6d column = calc_column(i);
+    const bool angle = column.head<3>().isZero(0), has_thread = !angle && !column.tail<3>().isZero(0);
+    if (has_thread || r_.type == records::HingeType::Cylindrical || r_.type == records::HingeType::Planar) {
+      refuse("has friction by mu, which needs one bearing per coordinate",
+             "give coulomb, or use a revolute and a prismatic hinge in a row");
+      return std::nullopt;
+    }
+    if (angle && !(pin > 0) && !(arm > 0))
+      refuse("has mu for the angle of coordinate " + which + " without an arm", "give pin_radius or friction_arm");
+    if (angle && bending > 0 && !(pin > 0))
+      refuse("has a bending_arm without a pin_radius", "give the pin_radius on which the bearing force acts");
+    if (angle ? reaction > 0 : pin > 0 || arm > 0)
+      refuse(
+          angle ? "has a reaction_arm, which is for travels" : "has a pin_radius or friction_arm, which are for angles",
+          "remove it, or give a list with 0 for this coordinate");
+    if (f.at_rest < f.dynamic) refuse("has mu_static below mu", "give mu_static at least as much");
+    if (f.at_rest > f.dynamic && !(law.stribeck_velocity > 0) && !law.is_dry)
+      refuse("has mu_static without stribeck_velocity", "give the rate over which it falls to mu");
+    f.name = "coordinate " + which + " of hinge " + quote(tb_.hinge_name);
+    f.at = r_.at;
+    f.coordinate = i;
+    f.u_row = tb_.u_offset + i;
+    f.stribeck_velocity = law.stribeck_velocity;
+    f.smoothing = law.smoothing;
+    f.is_dry = law.is_dry;
+    f.radial = angle ? pin : 1;
+    f.axial = angle ? arm : 0;
+    f.bending = bending > 0 ? f.radial / bending : 0;
+    f.torsion = reaction > 0 ? 1 / reaction : 0;
+    return f;
+  }
+
+  void add(int i, std::vector<std::unique_ptr<const ForceElement>>& elements, std::vector<JointContact>& joint_contacts,
+           std::vector<LoadFriction>& load_frictions) {
     const auto& r = r_.law;
     HingeLaw::Law law;
     law.preload = at(r.preload, i);
@@ -137,7 +198,9 @@ class LawBuilder {
     const bool is_rigid = has_stop && !r.stop_restitution.empty();
     if (has_stop) check_stops(law, at(r.stop_restitution, i), is_rigid, which);
     const bool has_friction = law.coulomb > 0 || law.static_friction > 0;
-    law.is_dry = has_friction && !(law.smoothing > 0);
+    const bool has_mu = at(r.mu, i) > 0 || at(r.mu_static, i) > 0;
+    law.is_dry = (has_friction || has_mu) && !(law.smoothing > 0);
+    std::optional<LoadFriction> by_load = make_load_friction(i, law, which);
     if (law.static_friction < law.coulomb)
       refuse("has static friction below coulomb friction", "give static at least as much");
     if (law.static_friction > law.coulomb && !(law.stribeck_velocity > 0) && !law.is_dry)
@@ -145,11 +208,14 @@ class LawBuilder {
     if (is_rigid || law.is_dry)
       joint_contacts.push_back({"coordinate " + which + " of hinge " + quote(tb_.hinge_name), tb_.q_offset + i,
                                 tb_.u_offset + i, is_rigid ? law.lower : -free, is_rigid ? law.upper : free,
-                                at(r.stop_restitution, i), law.is_dry ? law.static_friction : 0});
+                                at(r.stop_restitution, i), law.is_dry ? law.static_friction : 0,
+                                law.is_dry && by_load.has_value()});
     if (!(law.stribeck_velocity > 0)) {
       if (law.is_dry) law.static_friction = law.coulomb;  // as soon as it slides
       law.stribeck_velocity = 1;
+      if (by_load) by_load->stribeck_velocity = 0;
     }
+    if (by_load) load_frictions.push_back(*by_load);
     if (is_rigid) {
       law.lower = -free;
       law.upper = free;
@@ -172,8 +238,9 @@ class LawBuilder {
 
 void build_hinge_laws(const records::HingeRecord& record, const ElementContext& context, TreeBody& tb,
                       std::vector<std::unique_ptr<const ForceElement>>& elements,
-                      std::vector<JointContact>& joint_contacts, Diagnostics& diagnostics) {
-  LawBuilder(record, context, tb, diagnostics).build(elements, joint_contacts);
+                      std::vector<JointContact>& joint_contacts, std::vector<LoadFriction>& load_frictions,
+                      Diagnostics& diagnostics) {
+  LawBuilder(record, context, tb, diagnostics).build(elements, joint_contacts, load_frictions);
 }
 
 void check_stops(System& system, Diagnostics& diagnostics) {

@@ -100,8 +100,9 @@ double calc_gap(const Loops& loops, const LoopData& data, int constraint);
 double calc_largest_position_error(const Loops& loops, const LoopData& data, int* which = nullptr);
 
 /// After solve: u̇ with the constraints, by their multipliers and a second solve. Does nothing where none is closed. No
-/// allocation.
-void close_loops(const Loops& loops, const Tree& tree, TreeData& tree_data, LoopData& data, Eigen::Ref<VectorXd> u_dot);
+/// allocation. `is_factored`: state and factors are those of the last call, only loads have changed.
+void close_loops(const Loops& loops, const Tree& tree, TreeData& tree_data, LoopData& data, Eigen::Ref<VectorXd> u_dot,
+                 bool is_factored = false);
 /// Projects q and u onto G(q) = 0, G u = 0 at t in the metric of M: the corrections are in the range of M⁻¹Gᵀ. Leaves
 /// tree_data at (t, q, u), factored. No allocation.
 void project(const Loops& loops, const Tree& tree, double t, Eigen::Ref<VectorXd> q, Eigen::Ref<VectorXd> u,

@@ -63,6 +63,7 @@ std::unique_ptr<SystemData> System::make_data() const {
   data->loops = make_loop_data(loops, tree);
   if (!initial_constraints.empty()) set_constraint_states(loops, tree, initial_constraints, data->loops);
   data->elements.resize(elements.size());
+  data->friction = make_load_friction_data(load_frictions.size());
   data->tangent = VectorXd::Zero(tree.num_u);
   data->signals = signals.make_data();
   return data;
@@ -214,8 +215,11 @@ void add_node_wrench(const System& system, SystemData& data, int body, int node_
 }
 
 void calc_accelerations(const System& system, SystemData& data, double, Eigen::Ref<VectorXd> u_dot) {
+  const bool has_friction = !system.load_frictions.empty() && !data.friction.is_frozen;
+  if (has_friction) remove_load_friction(data.tree);
   factor_and_solve(system.tree, data.tree, u_dot);
   close_loops(system.loops, system.tree, data.tree, data.loops, u_dot);
+  if (has_friction) add_load_friction(system, data, u_dot);
 }
 
 void calc_accelerations_dense(const System& system, SystemData& data, double, Eigen::Ref<VectorXd> u_dot) {
