@@ -88,7 +88,7 @@ void change_hinge(const UnitTable& t, const SignalUnits& units) {
 
 void change_constraint(const UnitTable& t, const SignalUnits& units) {
   change_frames(t, units.change().length);
-  t.scale("length", units.change().length);
+  for (const char* key : {"length", "radius", "crown"}) t.scale(key, units.change().length);
   const auto* terms = t.table["terms"].as_array();
   double first = 0;
   for (std::size_t i = 0; terms != nullptr && i < terms->size(); ++i) {

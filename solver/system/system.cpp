@@ -233,6 +233,11 @@ void project(const System& system, SystemData& data, double t, Eigen::Ref<Vector
 
 void remove_normal(const System& system, SystemData& data, Eigen::Ref<VectorXd> dq, Eigen::Ref<VectorXd> du) {
   if (data.loops.blocks.empty()) return;
+  if (has_rate_rows(system.loops, data.loops)) {
+    // Projection moves q along the rates that are left free: what it does not undo stays in the error.
+    remove_normal(system.loops, system.tree, data.tree, data.loops, du);
+    return;
+  }
   // q's in the tangent: N⁺ by columns of N, which are orthogonal to each other.
   VectorXd& tangent = data.tangent;
   for (const TreeBody& tb : system.tree.bodies) {
