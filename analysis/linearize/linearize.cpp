@@ -48,10 +48,10 @@ void keep_new(const Diagnostics& found, Diagnostics& diagnostics) {
 }
 
 records::LinearSweep sweep_parameter(const LinearizeRequest& request, Diagnostics& diagnostics) {
-  const auto range = parse_sweep(request.sweep);
-  const auto linearize = [&](double value) {
+  const auto ranges = parse_sweeps(request.sweep);
+  const auto linearize = [&](const std::vector<double>& values) {
     auto set = request.set;
-    set.push_back(fmt::format("{}={:.17g}", range.name, value));
+    for (std::size_t i = 0; i < ranges.size(); ++i) set.push_back(fmt::format("{}={:.17g}", ranges[i].name, values[i]));
     Diagnostics found;
     const auto loaded = load_system(request.file, found, request.start_from, set);
     auto plant = make_plant(loaded, request.open);
@@ -59,7 +59,7 @@ records::LinearSweep sweep_parameter(const LinearizeRequest& request, Diagnostic
     keep_new(found, diagnostics);
     return model;
   };
-  return make_sweep(range.name, range.values, linearize, request.file, diagnostics);
+  return make_sweep(ranges, linearize, request.file, diagnostics);
 }
 
 /// At every N-th sample of the run.
@@ -72,15 +72,15 @@ records::LinearSweep sweep_run(const LinearizeRequest& request, const LoadedSyst
   for (long i = 0; i < samples.num_outputs(); i += request.each) times.push_back(samples.calc_output(i));
   auto plant = make_plant(loaded, request.open);
   std::optional<records::Checkpoint> last;
-  const auto linearize = [&](double t) {
+  const auto linearize = [&](const std::vector<double>& values) {
     Diagnostics found;
-    auto point = run_to(loaded, plant, t, found, &last);
+    auto point = run_to(loaded, plant, values.front(), found, &last);
     if (request.equilibrium) point = find_rest(plant, std::move(point), request.file);
     auto model = linearize_at(request, loaded, plant, std::move(point), false, found);
     keep_new(found, diagnostics);
     return model;
   };
-  return make_sweep("time", times, linearize, request.file, diagnostics);
+  return make_sweep({{"time", times}}, linearize, request.file, diagnostics);
 }
 
 /// Loads the system, with the first value of a sweep: a parameter without a value has one from it.
@@ -88,10 +88,8 @@ LoadedSystem load(const LinearizeRequest& request, Diagnostics& diagnostics) {
   demand_file(request.file);
   if (has_suffix(request.file, ".toml")) demand_kind(request.file, toml_files::detect_kind(request.file), "system");
   auto set = request.set;
-  if (!request.sweep.empty()) {
-    const auto range = parse_sweep(request.sweep);
+  for (const auto& range : parse_sweeps(request.sweep))
     set.push_back(fmt::format("{}={:.17g}", range.name, range.values.front()));
-  }
   for (const auto& text : request.uncertain)
     if (const auto range = parse_uncertain(text); range.body.empty())
       set.push_back(fmt::format("{}={:.17g}", range.name, range.low));
@@ -107,7 +105,7 @@ solver::OperatingPoint find_point(const LinearizeRequest& request, const LoadedS
 }
 
 void check_sweep(const LinearizeRequest& request) {
-  if (!request.sweep.empty()) parse_sweep(request.sweep);
+  parse_sweeps(request.sweep);
   parse_uncertain(request.uncertain);
 }
 

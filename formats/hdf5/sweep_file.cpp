@@ -97,6 +97,17 @@ void write_sweep(const records::LinearSweep& sweep, const std::string& path) {
   write_unit_labels(file, sweep.models.front().units);
   file.write_strings("/parameter/name", {sweep.parameter}, {"of the system file, or time", "1"});
   file.write_vector("/parameter/value", sweep.value, {"one a point", "as the parameter's"});
+  if (!sweep.grid_name.empty()) {
+    const auto axes = sweep.grid_name.size();
+    MatrixXd points(sweep.value.size(), static_cast<Index>(axes));
+    for (Index k = 0; k < points.rows(); ++k)
+      for (std::size_t i = 0; i < axes; ++i) points(k, static_cast<Index>(i)) = records::get_grid_value(sweep, k, i);
+    file.write_strings("/grid/name", sweep.grid_name, {"parameters of the system file, the last one fastest", "1"});
+    for (std::size_t i = 0; i < axes; ++i)
+      file.write_vector("/grid/axis" + std::to_string(i + 1), sweep.grid_value[i],
+                        {"values of parameter " + std::to_string(i + 1), "as the parameter's"});
+    file.write_matrix("/grid/points", points, {"point, parameter", "as the parameters'"});
+  }
   const auto& first = sweep.models.front();
   write_signals(file, "/states", first.states, "states: displacements of the DOFs, then their rates");
   write_signals(file, "/inputs", first.inputs, "inputs");
@@ -150,6 +161,15 @@ records::LinearSweep read_sweep(const std::string& path) {
   sweep.parameter = names.empty() ? "" : names.front();
   sweep.value = file.read_vector("/parameter/value", -1);
   const long np = sweep.value.size();
+  if (file.has("/grid")) {
+    sweep.grid_name = file.read_strings("/grid/name", -1);
+    long count = 1;
+    for (std::size_t i = 0; i < sweep.grid_name.size(); ++i) {
+      sweep.grid_value.push_back(file.read_vector("/grid/axis" + std::to_string(i + 1), -1));
+      count *= std::max<long>(1, sweep.grid_value.back().size());
+    }
+    if (count != np) sweep.grid_name.clear(), sweep.grid_value.clear();
+  }
   LinearModel first;
   first.units = read_unit_labels(file);
   first.states = read_signals(file, "/states");

@@ -6,9 +6,11 @@ namespace bough::records {
 
 struct LinearSweep {
   std::vector<std::pair<std::string, std::string>> source;  ///< (file name, SHA-256)
-  std::string parameter;                                    ///< its name, or "time"
-  Eigen::VectorXd value;                                    ///< np
-  std::vector<LinearModel> models;                          ///< np, all with the same states, inputs and outputs
+  std::string parameter;                                    ///< its name, "time", or "point" of a grid
+  Eigen::VectorXd value;                                    ///< np; of a grid 1 to np
+  std::vector<std::string> grid_name;                       ///< parameters of a grid, two or more; empty: no grid
+  std::vector<Eigen::VectorXd> grid_value;  ///< of each; the last one changes fastest from model to model
+  std::vector<LinearModel> models;          ///< np, all with the same states, inputs and outputs
   /// np x nx, column b the same motion all along: poles of each model in that order.
   Eigen::MatrixXd real, imag, frequency_hz, damping;
   Eigen::MatrixXd correlation;                 ///< np x nx, with the motion at the value before; 1 in the first row
@@ -17,6 +19,10 @@ struct LinearSweep {
 
 /// z = exp(λ sample_time) of branch b at value k of a sampled sweep; 0 where it is gone.
 std::complex<double> calc_z(const LinearSweep& sweep, Eigen::Index k, Eigen::Index b);
+/// Value of parameter `axis` of a grid at point k.
+double get_grid_value(const LinearSweep& sweep, Eigen::Index k, std::size_t axis);
+/// "rate = 4", of a grid "rate = 4, fill = 0.5".
+std::string describe_point(const LinearSweep& sweep, Eigen::Index k);
 /// Returns true for branches of a sampled sweep at z = 0 all along: their λ is the logarithm of round-off.
 bool is_gone(const LinearSweep& sweep, Eigen::Index b);
 
