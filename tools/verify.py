@@ -23,6 +23,7 @@ sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "../
 import demo_report
 import served
 import spinup_numbers
+import verify_flight
 import verify_nonlinear
 import verify_plates
 import verify_random
@@ -276,7 +277,7 @@ verify_buckling()
 for verify in [verify_rotating, verify_spinup, verify_hub, verify_two_link, verify_free_flyer, verify_plate, verify_blade]:
     with tempfile.TemporaryDirectory() as scratch:
         verify(scratch)
-for cases in [verify_response, verify_random, verify_shock, verify_rotor, verify_nonlinear]:
+for cases in [verify_response, verify_random, verify_shock, verify_rotor, verify_nonlinear, verify_flight]:
     with tempfile.TemporaryDirectory() as scratch:
         cases.verify(bough, scratch, add)
 with tempfile.TemporaryDirectory() as scratch:
