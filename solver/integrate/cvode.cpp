@@ -142,8 +142,6 @@ class CvodeStepper final : public Integrator {
     check(CVodeSetMaxErrTestFails(cvode_, detail::kMaxRejections));
     if (options_.step > 0) check(CVodeSetMaxStep(cvode_, options_.step));
     if (stiff_) {
-      // Orders above 2 are unstable for lightly damped modes; where these limit the step, a lower order is taken.
-      check(CVodeSetStabLimDet(cvode_, 1));
       matrix_ = SUNDenseMatrix(ode_.size(), ode_.size(), context_);
       linear_ = SUNLinSol_Dense(y_, matrix_, context_);
       check(CVodeSetLinearSolver(cvode_, linear_, matrix_));
