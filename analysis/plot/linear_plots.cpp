@@ -260,6 +260,7 @@ std::vector<Plot> make_linear_plots(const std::vector<std::string>& files, const
                        "name some with --inputs and --outputs of bough linearize");
     drawn += add_response(model, kind, prefix, !choice.inputs.empty() || !choice.outputs.empty(), plots);
   }
+  if (kind == "nichols") report::add_nichols_grid(plots[0]);
   if (kind == "poles") {
     std::vector<std::pair<std::string, const records::LinearModel*>> named;
     for (const auto& [name, model] : models) named.emplace_back(name, &model);
