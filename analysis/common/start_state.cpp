@@ -133,7 +133,10 @@ void set_start_state(records::SystemSpec& spec, const std::string& path, Diagnos
   }
   set_rotors(spec, starter);
   for (auto& hinge : spec.hinges) {
-    if (hinge.type == records::HingeType::Fixed || !hinge.motion.empty()) continue;
+    // A hinge that is prescribed in part has free coordinates, and those of functions are not read.
+    const auto is_free = [](const std::string& function) { return function.empty(); };
+    const bool is_prescribed = !hinge.motion.empty() && std::none_of(hinge.motion.begin(), hinge.motion.end(), is_free);
+    if (hinge.type == records::HingeType::Fixed || is_prescribed) continue;
     hinge.position = starter.read("/hinges/" + hinge.name + "/q", 0);
     hinge.rate = starter.read("/hinges/" + hinge.name + "/qdot", 0);
   }

@@ -155,6 +155,40 @@ class Starts(ProgramTest):
         self.assertEqual(names[:5], ["h:rx", "h:ry", "h:rz", "h:z", "h:x"])
 
 
+CYLINDER = toml(
+    table("body", "b", mass=2.0, inertia=[0.1, 0.1, 0.1]),
+    table("hinge", "h", "cylindrical", child="b", motion=["f", ""], rate=[1.0, 3.0], damping=[0.0, 1.0]),
+    table("function", "f", "expression", expression="t", rate="1", acceleration="0"))
+
+
+class Missions(ProgramTest):
+    """A mission in two parts is that of one run: --start-from takes over the motion."""
+    def fly(self, text, first=1.0, second=1.0, start=None, other=None, name="b", **more):
+        """Runs `text` to `first`, then `other` (`text`) from there; and `text` in one run, as a reference."""
+        def write(name, text, **times):
+            self.write(name, toml(text, section("simulation", integrator="rk", relative_tolerance=1e-11,
+                                                absolute_tolerance=1e-12, output_step=0.1, **{**more, **times})))
+        write("a.toml", text, duration=first)
+        write("b.toml", text if other is None else other, start=first if start is None else start, duration=second)
+        write("whole.toml", text, duration=first + second)
+        self.bough("run", "a.toml", "-o", "a.h5")
+        self.bough("run", "whole.toml", "-o", "whole.h5")
+        return self.bough("run", "b.toml", "--start-from", "a.h5", "-o", "b.h5").stderr
+
+    def compare(self, *channels, atol=1e-9):
+        for channel in channels:
+            part, whole = (self.read_arrays(name, channel)[0] for name in ("b.h5", "whole.h5"))
+            np.testing.assert_allclose(part, whole[-len(part):], atol=atol, err_msg=channel)
+
+    def test_free_coordinates_of_a_hinge_prescribed_in_part(self):
+        self.fly(CYLINDER)
+        self.compare("hinges/h/q", "hinges/h/qdot")
+        s = 1 - np.exp(-0.5)  # m q'' = -q'
+        np.testing.assert_allclose(self.read_arrays("b.h5", "hinges/h/q")[0][0], [1.0, 6 * s], atol=1e-8)
+        self.bough("linearize", "b.toml", "--start-from", "a.h5", "-o", "l.h5")
+        np.testing.assert_allclose(self.read_arrays("l.h5", "operating_point/q")[0], [1.0, 6 * s], atol=1e-8)
+
+
 class PrescribedMotions(ProgramTest):
     """Forces along a coordinate before and after a motion that prescribes it ends."""
     def run_case(self, text):
