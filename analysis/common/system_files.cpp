@@ -62,10 +62,11 @@ LoadedSystem load_system(const std::string& path, Diagnostics& diagnostics, Load
     refuse_treetops_input(path);
   }
   const std::string start_from = options.start_from;
+  StartPoint start;
   if (!start_from.empty())
     options.set_start = [&](records::SystemSpec& spec, Diagnostics& found) {
       demand_file(start_from);
-      set_start_state(spec, start_from, found);
+      start = set_start_state(spec, start_from, found);
     };
   const embed::FileReaders readers{read_moving_body,
                                    [](records::SystemSpec& spec, Diagnostics& found) {
@@ -75,6 +76,7 @@ LoadedSystem load_system(const std::string& path, Diagnostics& diagnostics, Load
                                    advise_body, cosim::load_fmu};
   auto loaded = embed::load_system(path, readers, std::move(options), diagnostics);
   loaded.start_from = start_from;
+  finish_start(start, start_from, loaded.system, diagnostics);
   return loaded;
 }
 

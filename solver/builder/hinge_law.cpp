@@ -11,6 +11,28 @@ namespace bough::solver {
 
 namespace {
 
+double get(const std::vector<double>& values, int i, double otherwise = 0) {
+  return static_cast<size_t>(i) < values.size() ? values[static_cast<size_t>(i)] : otherwise;
+}
+
+constexpr double kNoStop = std::numeric_limits<double>::infinity();
+
+bool has_stop(const records::HingeLawRecord& law, int i) {
+  return std::isfinite(get(law.stop_lower, i, -kNoStop)) || std::isfinite(get(law.stop_upper, i, kNoStop));
+}
+
+bool has_rigid_stop(const records::HingeLawRecord& law, int i) {
+  return has_stop(law, i) && !law.stop_restitution.empty();
+}
+
+bool has_friction(const records::HingeLawRecord& law, int i) {
+  return get(law.coulomb, i) > 0 || get(law.static_friction, i, get(law.coulomb, i)) > 0;
+}
+
+bool has_dry_friction(const records::HingeLawRecord& law, int i) {
+  return has_friction(law, i) && !(get(law.smoothing, i) > 0);
+}
+
 class LawBuilder {
  public:
   LawBuilder(const records::HingeRecord& record, const ElementContext& context, TreeBody& tb, Diagnostics& diagnostics)
@@ -86,16 +108,12 @@ class LawBuilder {
     check_count(law.gear_ratio, "gear_ratio");
   }
 
-  double at(const std::vector<double>& values, int i, double otherwise = 0) const {
-    return values.empty() ? otherwise : values[static_cast<size_t>(i)];
-  }
-
   void set_rotor() {
     if (r_.law.rotor_inertia.empty()) return;
     tb_.rotor = VectorXd::Zero(tb_.num_hinge_u());
     for (int i = 0; i < tb_.num_hinge_u(); ++i) {
-      const double ratio = at(r_.law.gear_ratio, i, 1);
-      tb_.rotor[i] = at(r_.law.rotor_inertia, i) * ratio * ratio;
+      const double ratio = get(r_.law.gear_ratio, i, 1);
+      tb_.rotor[i] = get(r_.law.rotor_inertia, i) * ratio * ratio;
     }
   }
 
@@ -119,42 +137,40 @@ class LawBuilder {
            std::vector<JointContact>& joint_contacts) {
     const auto& r = r_.law;
     HingeLaw::Law law;
-    law.preload = at(r.preload, i);
+    law.preload = get(r.preload, i);
     law.null_position = tb_.null_position[i];
     law.spring = find_table(r.spring_table, i);
     law.damper = find_table(r.damper_table, i);
-    const double free = std::numeric_limits<double>::infinity();
-    law.lower = at(r.stop_lower, i, -free);
-    law.upper = at(r.stop_upper, i, free);
-    law.stop_stiffness = at(r.stop_stiffness, i);
-    law.stop_damping = at(r.stop_damping, i);
-    law.coulomb = at(r.coulomb, i);
-    law.static_friction = at(r.static_friction, i, law.coulomb);
-    law.stribeck_velocity = at(r.stribeck_velocity, i);
-    law.smoothing = at(r.smoothing, i);
+    law.lower = get(r.stop_lower, i, -kNoStop);
+    law.upper = get(r.stop_upper, i, kNoStop);
+    law.stop_stiffness = get(r.stop_stiffness, i);
+    law.stop_damping = get(r.stop_damping, i);
+    law.coulomb = get(r.coulomb, i);
+    law.static_friction = get(r.static_friction, i, law.coulomb);
+    law.stribeck_velocity = get(r.stribeck_velocity, i);
+    law.smoothing = get(r.smoothing, i);
     const std::string which = std::to_string(i + 1);
-    const bool has_stop = std::isfinite(law.lower) || std::isfinite(law.upper);
-    const bool is_rigid = has_stop && !r.stop_restitution.empty();
-    if (has_stop) check_stops(law, at(r.stop_restitution, i), is_rigid, which);
-    const bool has_friction = law.coulomb > 0 || law.static_friction > 0;
-    law.is_dry = has_friction && !(law.smoothing > 0);
+    const bool is_rigid = has_rigid_stop(r, i);
+    if (has_stop(r, i)) check_stops(law, get(r.stop_restitution, i), is_rigid, which);
+    law.is_dry = has_dry_friction(r, i);
     if (law.static_friction < law.coulomb)
       refuse("has static friction below coulomb friction", "give static at least as much");
     if (law.static_friction > law.coulomb && !(law.stribeck_velocity > 0) && !law.is_dry)
       refuse("has static friction without stribeck_velocity", "give the rate over which it falls to coulomb's");
-    if (is_rigid || law.is_dry)
+    if (has_joint_contact(r, i))
       joint_contacts.push_back({"coordinate " + which + " of hinge " + quote(tb_.hinge_name), tb_.q_offset + i,
-                                tb_.u_offset + i, is_rigid ? law.lower : -free, is_rigid ? law.upper : free,
-                                at(r.stop_restitution, i), law.is_dry ? law.static_friction : 0});
+                                tb_.u_offset + i, is_rigid ? law.lower : -kNoStop, is_rigid ? law.upper : kNoStop,
+                                get(r.stop_restitution, i), law.is_dry ? law.static_friction : 0});
     if (!(law.stribeck_velocity > 0)) {
       if (law.is_dry) law.static_friction = law.coulomb;  // as soon as it slides
       law.stribeck_velocity = 1;
     }
     if (is_rigid) {
-      law.lower = -free;
-      law.upper = free;
+      law.lower = -kNoStop;
+      law.upper = kNoStop;
     }
-    const bool acts = law.preload != 0 || law.spring || law.damper || (has_stop && !is_rigid) || has_friction;
+    const bool acts =
+        law.preload != 0 || law.spring || law.damper || (has_stop(r, i) && !is_rigid) || has_friction(r, i);
     if (acts) {
       elements.push_back(
           std::make_unique<HingeLaw>(tb_.hinge_name + ":" + which, tb_.q_offset + i, tb_.u_offset + i, std::move(law)));
@@ -169,6 +185,10 @@ class LawBuilder {
 };
 
 }  // namespace
+
+bool has_joint_contact(const records::HingeLawRecord& law, int i) {
+  return has_rigid_stop(law, i) || has_dry_friction(law, i);
+}
 
 void build_hinge_laws(const records::HingeRecord& record, const ElementContext& context, TreeBody& tb,
                       std::vector<std::unique_ptr<const ForceElement>>& elements,

@@ -353,6 +353,17 @@ class Runs(InFolder):
             simulation.advance_to(t)
             self.assertAlmostEqual(simulation.output("angle"), rest, delta=1e-7)
 
+    def test_what_an_event_locked_is_a_start(self):
+        text = PENDULUM.format(law=EXPRESSION) + '\n[[event]]\nname = "latch"\ntime = 0.2\naction = "lock"\nhinge = "pivot"\n'
+        bough.System.from_text(text).run("first.h5")
+        rest = bough.read_results("first.h5")["angle"][-1]
+        system = bough.System.from_text(text.replace("time = 0.2", "time = 1e6"), start_from="first.h5")
+        np.testing.assert_allclose(system.run()["angle"], rest, rtol=0, atol=1e-12)
+        self.assertEqual(system.linearize(open=True).A.shape, (0, 0))
+        simulation = bough.Simulation(system)
+        simulation.advance_to(0.3)
+        self.assertAlmostEqual(simulation.output("angle"), rest, delta=1e-12)
+
     def test_messages_name_the_text(self):
         text = PENDULUM.format(law=EXPRESSION).replace("mass = 2.0", 'mass = "heavy"')
         for given, file in (({}, "<text>"), ({"name": "arm"}, "arm"), ({"folder": "models"}, "models/<text>")):
