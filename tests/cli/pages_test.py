@@ -169,6 +169,14 @@ ARM = toml(
     table("input", "torque"),
     table("actuator", "motor", "hinge", hinge="axis", input="torque"),
     section("simulation", duration=1.0))
+FLYER = toml(
+    section("parameters", gain=1.0, mass=800.0, seed=1),
+    table("body", "hub", mass="$mass", inertia=[100.0, 100.0, 200.0]),
+    table("hinge", "axis", "revolute", child="hub", position=0.1),
+    table("sensor", "angle", "hinge_angle", hinge="axis", sample_time=0.1, noise_density=1e-4, seed="$seed"),
+    table("controller", "p", "gain", inputs=["angle"], gain="$gain"),
+    table("actuator", "drive", "hinge", hinge="axis", input="p", scale=-1.0),
+    section("simulation", duration=1.0))
 SAME = {name: "boom.h5" for name in ("A.h5", "B.h5", "C.h5", "BODY.h5")}
 
 
@@ -214,8 +222,8 @@ PAGES = {
     "docs/formats/mbdyn.md": boom(stands_for=SAME),
     "docs/formats/flat.md": boom(stands_for=SAME),
     "docs/formats/campaign-toml.md": Page(
-        ("ex08-satellite", "ex01-spinup"), ("reduce wing.toml -q",), {"study.toml": DENSITY, **TIP},
-        stands_for={"samples = 20": "samples = 2", "[1, 1000]": "[1, 2]", "number = 1000": "number = 2"}),
+        ("ex08-satellite", "ex01-spinup"), ("reduce wing.toml -q",), {"study.toml": DENSITY, "flyer.toml": FLYER, **TIP},
+        stands_for={"samples = 20": "samples = 2", "samples = 1000": "samples = 2", "[1, 1000]": "[1, 2]", "number = 1000": "number = 2"}),
     "docs/formats/comparison.md": boom(
         before=("matrices boom.bdf -o MATRICES.h5 -q",), stands_for={**SAME, "DECK": "boom.bdf", "N": "3"},
         left_out=("--refinement", "--test", "--sensors")),  # compare_test.py: three meshes; correlation_test.py
