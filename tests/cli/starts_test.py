@@ -299,6 +299,35 @@ class Missions(ProgramTest):
         self.assertIn("not known at its last sample, t = 0.4: event stop came at t = 0.5", messages)
 
 
+class Closing(ProgramTest):
+    def test_a_joint_of_two_angles_closes_at_the_nearest_ones(self):
+        """The offset from the joint at that moment stays; the axes are those of the joint, as the page has it."""
+        from scipy.optimize import least_squares
+        from scipy.spatial.transform import Rotation
+        turn = lambda q: Rotation.from_euler("XY", q)
+        for joint in ({"type": "universal", "axis": [1.0, 0.0, 0.0], "axis2": [0.0, 1.0, 0.0]},
+                      {"type": "general", "rotations": "xy"}):
+            kind = joint.pop("type")
+            self.write("u.toml", toml(
+                table("body", "a", mass=2.0, inertia=[0.2, 0.3, 0.4]), table("body", "b", mass=1.0, inertia=[0.2, 0.3, 0.25]),
+                table("hinge", "ha", "free", child="a"),
+                table("hinge", "hb", "free", child="b", position=[1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
+                      rate=[0.6, 0.3, 0.8, 0.0, 0.0, 0.0]),
+                table("constraint", "k", kind, parent="a", child="b", active=False, **joint),
+                table("event", "e", time=1.0, action="close", constraint="k"),
+                section("simulation", duration=2.0, output_step=0.01, integrator="rk", relative_tolerance=1e-11,
+                        absolute_tolerance=1e-12)))
+            self.bough("run", "u.toml", "-o", "u.h5")
+            a, b = (Rotation.from_quat(q[:, [1, 2, 3, 0]])
+                    for q in self.read_arrays("u.h5", "bodies/a/quaternion", "bodies/b/quaternion"))
+            relative = a.inv() * b
+            nearest = least_squares(lambda q: (turn(q).inv() * relative[100]).as_rotvec(), [0.5, 0.3], xtol=1e-15, ftol=1e-15).x
+            offset = turn(nearest).inv() * relative[100]
+            self.assertGreater(offset.magnitude(), 0.1)
+            axes = (relative[101:] * offset.inv()).as_matrix()
+            np.testing.assert_allclose(axes[:, 0, 1], 0, atol=1e-7, err_msg=kind)
+
+
 class PrescribedMotions(ProgramTest):
     """Forces along a coordinate before and after a motion that prescribes it ends."""
     def run_case(self, text):
