@@ -131,6 +131,13 @@ class Slips(ProgramTest):
         self.write_slip("kp = 3.0\n")
         self.fails(1, "run", "slip.toml", "-o", "s.h5", error="control.bad-value", says=["neither kp nor ki nor kd"])
 
+    def test_a_name_that_is_a_component_of_another_signal(self):
+        for name in ("v:z", "v:2"):
+            self.write_slip(more=table("sensor", name, "hinge_rate", hinge="h"))
+            self.fails(1, "run", "slip.toml", "-o", "s.h5", error="control.ambiguous-name", says=[f"/sensors/{name}"])
+        self.write_slip(more=table("sensor", "v:speed", "hinge_rate", hinge="h"))
+        self.bough("run", "slip.toml", "-o", "s.h5")
+
 
 class Kinks(ProgramTest):
     def test_the_balance_of_a_small_energy_under_a_force_with_corners(self):
