@@ -138,6 +138,12 @@ class Slips(ProgramTest):
         self.write_slip(more=table("sensor", "v:speed", "hinge_rate", hinge="h"))
         self.bough("run", "slip.toml", "-o", "s.h5")
 
+    def test_samples_without_number(self):
+        self.write_slip("kp = 3.0\n", "kp = 3.0\nsample_time = 1e-9\n")
+        self.fails(1, "run", "slip.toml", "-o", "s.h5", error="run.many-samples", says=["controller 'pd'", "1e+09 samples"])
+        self.write_slip("kp = 3.0\n", "kp = 3.0\nsample_time = 5e-8\n")
+        self.assertIn("[run.many-samples]", self.bough("check", "slip.toml").stderr)
+
 
 class Kinks(ProgramTest):
     def test_the_balance_of_a_small_energy_under_a_force_with_corners(self):
