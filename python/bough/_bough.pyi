@@ -197,7 +197,7 @@ class LinearModel:
     def uncertainty(self) -> list[tuple[str, float, float, int]]:
         """(name, value at delta -1, value at delta 1, number of inputs w and outputs z), which come first."""
     def close(self, delta: Sequence[float]) -> LinearModel:
-        """The model with w = delta z closed, one value in [-1, 1] a parameter."""
+        """The model with w = delta z closed, one value in [-1, 1] per parameter; UserWarning outside."""
     @property
     def time(self) -> float: ...
     @property
