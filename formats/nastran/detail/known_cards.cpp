@@ -219,20 +219,14 @@ std::optional<ResponseEffect> find_response_effect(std::string_view name) {
 }
 
 const char* get_effect_name(CardEffect effect) {
-  switch (effect) {
-    case CardEffect::Stiffness:
-      return "stiffness";
-    case CardEffect::Mass:
-      return "mass";
-    case CardEffect::Constraint:
-      return "a constraint";
-    case CardEffect::Load:
-      return "a load";
-    case CardEffect::Damping:
-      return "damping, which real modes do not have";
-    case CardEffect::None:
-      break;
-  }
+  static constexpr std::pair<CardEffect, const char*> names[] = {
+      {CardEffect::Stiffness, "stiffness"},
+      {CardEffect::Mass, "mass"},
+      {CardEffect::Constraint, "a constraint"},
+      {CardEffect::Load, "a load"},
+      {CardEffect::Damping, "damping, which real modes do not have"}};
+  for (const auto& [one, name] : names)
+    if (one == effect) return name;
   return "nothing Bough computes with";
 }
 
