@@ -13,16 +13,14 @@ using records::ConstraintRecord;
 using records::ConstraintType;
 
 records::HingeRecord make_hinge_record(const ConstraintRecord& r) {
-  records::HingeRecord h;
-  h.name = r.name;
-  h.type = r.hinge;
-  h.axis = r.axis;
-  h.axis2 = r.axis2;
-  h.rotations = r.rotations;
-  h.translations = r.translations;
-  h.pitch = r.pitch;
-  h.at = r.at;
-  return h;
+  return {.name = r.name,
+          .type = r.hinge,
+          .axis = r.axis,
+          .axis2 = r.axis2,
+          .pitch = r.pitch,
+          .rotations = r.rotations,
+          .translations = r.translations,
+          .at = r.at};
 }
 
 std::unique_ptr<const Closure> build_closure(const ConstraintRecord& r, Diagnostics& diagnostics) {
