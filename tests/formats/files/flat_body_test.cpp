@@ -152,28 +152,34 @@ TEST(FlatBody, WrongFilesAreRefusedWithAReason) {
   const auto expect = [&](const std::string& from, const std::string& to, const std::string& error) {
     EXPECT_THAT(parse_errors(change(bytes, from, to)), HasSubstr(error)) << to;
   };
-  expect("bough-flat 1", "bough-flat 2", "the file has version \"2\", expected 1; use a newer Bough");
-  expect("bough-flat 1", "bough-flat 2", "[flat.version]");
-  expect("bough-flat 1", "bough-flat one", "[flat.version]");
-  expect("/modal/mass float64 2 3 3", "/modal/mass float64 2 3000000 3000000", "more than the bytes that follow");
-  expect("/modal/mass float64 2 3 3", "/modal/mass float64 4 2147483647 2147483647 2147483647 2147483647",
-         "[flat.damaged]");
-  expect("/modal/mass float64 2 3 3", "/modal/mass float64 2 3 99999999999999999999", "[flat.damaged]");
-  expect("/modal/mass float64 2 3 3", "/modal/mass float64 2 -3 -3", "[flat.damaged]");
-  expect("/modal/mass float64 2 3 3", "/modal/mass float64 99 3 3", "[flat.damaged]");
-  expect("/modal/mass float64 2 3 3", "/modal/mass complex 2 3 3", "[flat.damaged]");
-  expect("/modal/mass float64 2 3 3", "/modal/mass float64 1 9",
-         "/modal/mass has the type float64 and the shape 9, expected float64 and 3 x 3");
-  expect("/modal/mass float64 2 3 3", "/modal/mass float64 1 9", "[flat.shape]");
-  expect("/modal/mass float64 2 3 3", "/modal/mass text 1 72", "[flat.shape]");
-  expect("/modal/mass float64 2 3 3", "/modal/other float64 2 3 3", "/modal/mass is missing");
-  expect("/modal/mass float64 2 3 3", "/modal/other float64 2 3 3", "[flat.missing]");
-  expect("/modal/mass float64 2 3 3", "/modal/stiffness float64 2 3 3", "is there twice");
-  expect("/modes/eigenvalue float64 1 3", "/modes/eigenvalue float64 3 3 0 2147483647", "[flat.damaged]");
-  expect("/modes/eigenvalue float64 1 3", "/modes/other float64 1 3", "/modes/eigenvalue is missing");
-  expect("exact", "exakt", "the method 'exakt', expected lumped, consistent or exact");
-  expect("exact", "exakt", "[flat.value]");
-  expect("/source/file/length int32 1 2\n\x08", "/source/file/length int32 1 2\n\x09", "[flat.shape]");
+  struct Changed {
+    std::string from, to, error;
+  };
+  for (const auto& [from, to, error] : std::vector<Changed>{
+           {"bough-flat 1", "bough-flat 2", "the file has version \"2\", expected 1; use a newer Bough"},
+           {"bough-flat 1", "bough-flat 2", "[flat.version]"},
+           {"bough-flat 1", "bough-flat one", "[flat.version]"},
+           {"/modal/mass float64 2 3 3", "/modal/mass float64 2 3000000 3000000", "more than the bytes that follow"},
+           {"/modal/mass float64 2 3 3", "/modal/mass float64 4 2147483647 2147483647 2147483647 2147483647",
+            "[flat.damaged]"},
+           {"/modal/mass float64 2 3 3", "/modal/mass float64 2 3 99999999999999999999", "[flat.damaged]"},
+           {"/modal/mass float64 2 3 3", "/modal/mass float64 2 -3 -3", "[flat.damaged]"},
+           {"/modal/mass float64 2 3 3", "/modal/mass float64 99 3 3", "[flat.damaged]"},
+           {"/modal/mass float64 2 3 3", "/modal/mass complex 2 3 3", "[flat.damaged]"},
+           {"/modal/mass float64 2 3 3", "/modal/mass float64 1 9",
+            "/modal/mass has the type float64 and the shape 9, expected float64 and 3 x 3"},
+           {"/modal/mass float64 2 3 3", "/modal/mass float64 1 9", "[flat.shape]"},
+           {"/modal/mass float64 2 3 3", "/modal/mass text 1 72", "[flat.shape]"},
+           {"/modal/mass float64 2 3 3", "/modal/other float64 2 3 3", "/modal/mass is missing"},
+           {"/modal/mass float64 2 3 3", "/modal/other float64 2 3 3", "[flat.missing]"},
+           {"/modal/mass float64 2 3 3", "/modal/stiffness float64 2 3 3", "is there twice"},
+           {"/modes/eigenvalue float64 1 3", "/modes/eigenvalue float64 3 3 0 2147483647", "[flat.damaged]"},
+           {"/modes/eigenvalue float64 1 3", "/modes/other float64 1 3", "/modes/eigenvalue is missing"},
+           {"exact", "exakt", "the method 'exakt', expected lumped, consistent or exact"},
+           {"exact", "exakt", "[flat.value]"},
+           {"/source/file/length int32 1 2\n\x08", "/source/file/length int32 1 2\n\x09", "[flat.shape]"},
+       })
+    expect(from, to, error);
 
   auto body = make_full_body(1);
   body.modal_damping(1, 1) = std::numeric_limits<double>::quiet_NaN();

@@ -6,6 +6,7 @@
 
 #include "formats/toml/specs.hpp"
 #include "temp_folder.hpp"
+#include "tests/support/toml_lines.hpp"
 
 namespace bough::toml_files {
 namespace {
@@ -50,60 +51,20 @@ std::string find_errors(const std::string& text) {
 
 TEST(ForceTable, EveryTypeArrives) {
   std::string ids;
-  const auto spec = read(R"(
-[[force]]
-name = "strut"
-type = "spring"
-body = "lid"
-node = 3
-position = [1, 2, 3]
-to_position = [4, 5, 6]
-stiffness = 7
-free_length = 8
-damping = 9
-preload = -1
-tension_only = true
-damper_table = "law"
-function = "law"
-[[force]]
-name = "mount"
-type = "bushing"
-body = "lid"
-stiffness = [1, 2, 3, 4, 5, 6]
+  const auto spec = read(test::toml_lines(R"(
+[[force]]; name = "strut"; type = "spring"; body = "lid"; node = 3; position = [1, 2, 3]
+to_position = [4, 5, 6]; stiffness = 7; free_length = 8; damping = 9; preload = -1; tension_only = true
+damper_table = "law"; function = "law"
+[[force]]; name = "mount"; type = "bushing"; body = "lid"; stiffness = [1, 2, 3, 4, 5, 6]
 damping = [[1, 1, 0, 0, 0, 0], [1, 2, 0, 0, 0, 0], [0, 0, 3, 0, 0, 0],
-           [0, 0, 0, 4, 0, 0], [0, 0, 0, 0, 5, 0], [0, 0, 0, 0, 0, 6]]
-rotation_deg = [0, 0, 90]
-[[force]]
-name = "pad"
-type = "contact"
-body = "lid"
-shape = "sphere"
-stiffness = 1e6
-radius = 0.1
-to_radius = 0.2
-exponent = 1
-damping = 0.3
-friction = 0.4
-slip_velocity = 0.001
-[[force]]
-name = "earth"
-type = "gravity_central"
-mu = 4e14
-centre = [1, 0, 0]
-j2 = 1e-3
-radius = 6.4e6
-axis = [0, 1, 0]
-bodies = "lid"
-[[force]]
-name = "air"
-type = "drag"
-body = "lid"
-area = 2
-coefficient = 1.2
-density = 1.3
-wind = [3, 0, 0]
-normal = [0, 1, 0]
-)",
+           [0, 0, 0, 4, 0, 0], [0, 0, 0, 0, 5, 0], [0, 0, 0, 0, 0, 6]]; rotation_deg = [0, 0, 90]
+[[force]]; name = "pad"; type = "contact"; body = "lid"; shape = "sphere"; stiffness = 1e6; radius = 0.1
+to_radius = 0.2; exponent = 1; damping = 0.3; friction = 0.4; slip_velocity = 0.001
+[[force]]; name = "earth"; type = "gravity_central"; mu = 4e14; centre = [1, 0, 0]; j2 = 1e-3; radius = 6.4e6
+axis = [0, 1, 0]; bodies = "lid"
+[[force]]; name = "air"; type = "drag"; body = "lid"; area = 2; coefficient = 1.2; density = 1.3
+wind = [3, 0, 0]; normal = [0, 1, 0]
+)"),
                          ids);
   EXPECT_EQ(ids, "");
   EXPECT_TRUE(spec.forces.empty());
@@ -145,17 +106,19 @@ normal = [0, 1, 0]
 
 TEST(ForceTable, KeysOfAnotherTypeAndMissingOnesAreErrors) {
   const std::string spring = "[[force]]\nname = \"a\"\ntype = \"spring\"\nbody = \"lid\"\n";
-  EXPECT_EQ(find_errors(spring + "stiffness = 1\nfree_length = 1\n"), "");
-  EXPECT_EQ(find_errors(spring + "stiffness = 1\n"), "toml.missing-key ");
-  EXPECT_EQ(find_errors(spring + "radius = 1\n"), "toml.conflicting-keys ");
-  EXPECT_EQ(find_errors(spring + "frame = \"node\"\n"), "toml.conflicting-keys ");
-  EXPECT_EQ(find_errors(spring + "force = [1, 0, 0]\n"), "toml.conflicting-keys ");
-  EXPECT_EQ(find_errors(spring + "damping = [1, 2]\n"), "toml.wrong-type ");
-  EXPECT_EQ(find_errors(spring + "to_body = \"lidd\"\n"), "toml.unknown-name ");
-  EXPECT_EQ(find_errors(spring + "spring_table = \"lax\"\n"), "toml.unknown-name ");
-  EXPECT_EQ(find_errors(spring + "tension_only = true\ncompression_only = true\n"), "toml.conflicting-keys ");
-  EXPECT_EQ(find_errors(spring + "[[force]]\nname = \"a\"\nbody = \"lid\"\nforce = [1, 0, 0]\n"),
-            "toml.duplicate-name ");
+  for (const auto& [keys, ids] : std::vector<std::pair<std::string, std::string>>{
+           {"stiffness = 1\nfree_length = 1\n", ""},
+           {"stiffness = 1\n", "toml.missing-key "},
+           {"radius = 1\n", "toml.conflicting-keys "},
+           {"frame = \"node\"\n", "toml.conflicting-keys "},
+           {"force = [1, 0, 0]\n", "toml.conflicting-keys "},
+           {"damping = [1, 2]\n", "toml.wrong-type "},
+           {"to_body = \"lidd\"\n", "toml.unknown-name "},
+           {"spring_table = \"lax\"\n", "toml.unknown-name "},
+           {"tension_only = true\ncompression_only = true\n", "toml.conflicting-keys "},
+           {"[[force]]\nname = \"a\"\nbody = \"lid\"\nforce = [1, 0, 0]\n", "toml.duplicate-name "},
+       })
+    EXPECT_EQ(find_errors(spring + keys), ids) << keys;
   EXPECT_EQ(find_errors("[[force]]\nname = \"a\"\nforce = [1, 0, 0]\n"), "toml.missing-key ");
   EXPECT_EQ(find_errors("[[force]]\nname = \"a\"\nbody = \"lid\"\nforce = [1, 0, 0]\nstiffness = 1\n"),
             "toml.conflicting-keys ");

@@ -121,22 +121,25 @@ TEST(ResultsFile, KilledRunKeepsWhatItHad) {
   EXPECT_EQ(read_checkpoint(path).state, VectorXd::Constant(4, 2.5));
 }
 
+/// 100 samples with a checkpoint at the 61st, an event before it and one after it.
+void write_killed_run(const std::string& path) {
+  auto sink = make_results_writer(path, {10, kAtOnce});
+  sink->begin(make_header());
+  for (int k = 0; k < 100; ++k) {
+    sink->write_sample(make_sample(k));
+    if (k == 60) {
+      sink->write_event({5.5, "before"});
+      sink->write_checkpoint({6.0, VectorXd::Constant(3, 6)});
+    }
+    if (k == 70) sink->write_event({7.0, "after the checkpoint"});
+  }
+  sink->end(false, "killed");
+}
+
 TEST(ResultsFile, ResumeCutsBackToTheCheckpointAndGoesOn) {
   const TempFolder folder;
   const std::string path = folder.at("r.h5");
-  {
-    auto sink = make_results_writer(path, {10, kAtOnce});
-    sink->begin(make_header());
-    for (int k = 0; k < 100; ++k) {
-      sink->write_sample(make_sample(k));
-      if (k == 60) {
-        sink->write_event({5.5, "before"});
-        sink->write_checkpoint({6.0, VectorXd::Constant(3, 6)});
-      }
-      if (k == 70) sink->write_event({7.0, "after the checkpoint"});
-    }
-    sink->end(false, "killed");
-  }
+  write_killed_run(path);
   const auto checkpoint = read_checkpoint(path);
   auto sink = make_results_appender(path, checkpoint.time, {10, kAtOnce});
   sink->begin(make_header());
@@ -157,15 +160,7 @@ TEST(ResultsFile, ResumeCutsBackToTheCheckpointAndGoesOn) {
 TEST(ResultsFile, AContinuationIsSeenOnceItHasAsManySamples) {
   const TempFolder folder;
   const std::string path = folder.at("r.h5");
-  {
-    auto sink = make_results_writer(path, {10, kAtOnce});
-    sink->begin(make_header());
-    for (int k = 0; k < 100; ++k) {
-      sink->write_sample(make_sample(k));
-      if (k == 60) sink->write_checkpoint({6.0, VectorXd::Constant(3, 6)});
-    }
-    sink->end(false, "killed");
-  }
+  write_killed_run(path);
   auto sink = make_results_appender(path, 6.0, {10, kAtOnce});
   sink->begin(make_header());
   for (int k = 61; k < 99; ++k) sink->write_sample(make_sample(k));

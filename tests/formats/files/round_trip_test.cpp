@@ -14,6 +14,7 @@
 #include "formats/toml/specs.hpp"
 #include "random_body.hpp"
 #include "temp_folder.hpp"
+#include "tests/support/draws.hpp"
 
 namespace bough::hdf5 {
 namespace {
@@ -23,11 +24,9 @@ using Eigen::VectorXd;
 using records::LinearModel;
 using test::TempFolder;
 
-class Drawn {
+class Drawn : public test::Draws<std::mt19937> {
  public:
-  explicit Drawn(unsigned seed) : random_(seed) {}
-
-  int draw(int low, int high) { return std::uniform_int_distribution<int>(low, high)(random_); }
+  using Draws::Draws;
 
   /// Draws a value of any magnitude.
   double draw_value() {
@@ -88,9 +87,6 @@ class Drawn {
     if (draw(0, 1) == 1) m.hankel = {draw_vector(nx), draw_matrix(nx, nx), draw_matrix(nx, nx), draw(0, 3)};
     return m;
   }
-
- private:
-  std::mt19937 random_;
 };
 
 /// Writes what `read` made of the first file, and compares both files.
@@ -150,6 +146,15 @@ TEST(FileRoundTrips, OutcomesOfCampaigns) {
   }
 }
 
+void expect_same_modes(const records::ModesResult& modes) {
+  expect_same_bytes([&](const std::string& path) { write_modes(modes, path); },
+                    [&](const std::string& path) {
+                      const auto found = read_modes(path);
+                      EXPECT_TRUE(test::are_identical(found, modes));
+                      return [found](const std::string& other) { write_modes(found, other); };
+                    });
+}
+
 TEST(FileRoundTrips, BodiesAndModes) {
   for (unsigned seed = 1; seed <= 20; ++seed) {
     SCOPED_TRACE(seed);
@@ -163,24 +168,14 @@ TEST(FileRoundTrips, BodiesAndModes) {
                         return [found](const std::string& other) { write_flex_body(found, other); };
                       });
     const auto modes = test::make_random_modes(seed, n + 1, p);
-    expect_same_bytes([&](const std::string& path) { write_modes(modes, path); },
-                      [&](const std::string& path) {
-                        const auto found = read_modes(path);
-                        EXPECT_TRUE(test::are_identical(found, modes));
-                        return [found](const std::string& other) { write_modes(found, other); };
-                      });
+    expect_same_modes(modes);
   }
 }
 
 /// More shapes than are written at a time, the last time fewer.
 TEST(FileRoundTrips, ManyModes) {
   const auto modes = test::make_random_modes(1, 300, 700);
-  expect_same_bytes([&](const std::string& path) { write_modes(modes, path); },
-                    [&](const std::string& path) {
-                      const auto found = read_modes(path);
-                      EXPECT_TRUE(test::are_identical(found, modes));
-                      return [found](const std::string& other) { write_modes(found, other); };
-                    });
+  expect_same_modes(modes);
 }
 
 TEST(FileRoundTrips, KeysOfTomlFiles) {

@@ -31,14 +31,21 @@ int find_first_changed_line(const std::string& a, const std::string& b) {
   return 1 + static_cast<int>(std::count(a.begin(), at, '\n'));
 }
 
+/// Content of a file without faults, which has its own path and this name.
+template <class Read>
+auto read_clean(const std::string& path, const std::string& name, const Read& read) {
+  Diagnostics diagnostics;
+  auto spec = read(path, diagnostics);
+  EXPECT_TRUE(diagnostics.items().empty()) << join(diagnostics);
+  EXPECT_EQ(spec.name, name);
+  EXPECT_EQ(spec.file, path);
+  return spec;
+}
+
 TEST(SystemFile, EveryKeyOfAGoodFileArrives) {
   const TempFolder folder;
   const std::string path = folder.write("crane.toml", test::kGoodSystem);
-  Diagnostics diagnostics;
-  const auto spec = read_system_spec(path, diagnostics);
-  ASSERT_TRUE(diagnostics.items().empty()) << join(diagnostics);
-  EXPECT_EQ(spec.name, "crane");
-  EXPECT_EQ(spec.file, path);
+  const auto spec = read_clean(path, "crane", [](const auto& p, Diagnostics& d) { return read_system_spec(p, d); });
   EXPECT_EQ(spec.text, test::kGoodSystem);
 
   ASSERT_EQ(spec.bodies.size(), 2u);
@@ -235,11 +242,7 @@ TEST(BodyFile, EveryKeyOfAGoodFileArrives) {
   using records::InertialLoad;
   const TempFolder folder;
   const std::string path = folder.write("boom.toml", test::kGoodBody);
-  Diagnostics diagnostics;
-  const auto spec = read_body_spec(path, diagnostics);
-  ASSERT_TRUE(diagnostics.items().empty()) << join(diagnostics);
-  EXPECT_EQ(spec.name, "boom");
-  EXPECT_EQ(spec.file, path);
+  const auto spec = read_clean(path, "boom", [](const auto& p, Diagnostics& d) { return read_body_spec(p, d); });
   EXPECT_EQ(spec.deck, folder.at("decks/boom.bdf"));
   EXPECT_EQ(spec.subcase, 2);
   EXPECT_EQ(spec.frame, records::BodyFrame::Free);
