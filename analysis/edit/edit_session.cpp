@@ -1,4 +1,4 @@
-#include "cli/edit/edit_session.hpp"
+#include "analysis/edit/edit_session.hpp"
 
 #include <algorithm>
 #include <cctype>
@@ -6,19 +6,21 @@
 #include <fstream>
 #include <iterator>
 
+#include "analysis/common/inputs.hpp"
 #include "analysis/common/system_files.hpp"
 #include "analysis/common/text_file.hpp"
+#include "analysis/edit/command_words.hpp"
+#include "analysis/edit/edit_commands.hpp"
+#include "analysis/edit/old_commands.hpp"
+#include "analysis/edit/text_diff.hpp"
 #include "base/diagnostic.hpp"
 #include "base/file_roles.hpp"
-#include "cli/common/old_commands.hpp"
-#include "cli/common/options.hpp"
-#include "cli/edit/command_words.hpp"
-#include "cli/edit/edit_commands.hpp"
-#include "cli/edit/text_diff.hpp"
-#include "cli/verbs.hpp"
+#include "base/text_table.hpp"
+#include "base/words.hpp"
 #include "formats/toml/key_editor.hpp"
+#include "formats/toml/specs.hpp"
 
-namespace bough::cli {
+namespace bough::analysis {
 
 using toml_files::KeyValues;
 using toml_files::KindHelp;
@@ -46,9 +48,9 @@ std::string get_item_path(const std::string& path, const std::vector<toml_files:
 
 }  // namespace
 
-EditSession::EditSession(EditText text, const Console& console, Ask ask, std::string output)
+EditSession::EditSession(EditText text, EditHost& host, Ask ask, std::string output)
     : text_(std::move(text)),
-      console_(console),
+      host_(host),
       ask_(std::move(ask)),
       target_(output.empty() ? text_.get_file() : std::move(output)) {}
 
@@ -88,25 +90,40 @@ bool EditSession::execute(const std::string& line) {
   if (command == "redo") text_.redo();
   if (command == "check") check();
   if (command == "run" || command == "reduce" || command == "plot") run_verb(command, words);
-  if (command == "diff") console_.print_data(make_diff(text_.get_saved(), text_.get_text(), text_.get_file()));
+  if (command == "diff") host_.print_data(make_diff(text_.get_saved(), text_.get_text(), text_.get_file()));
   if (command == "save") save(words);
   if (command == "help") help(words);
   if (command == "complete") {
     const auto at = line.find("complete") + 8;
-    for (const auto& word : complete(at < line.size() ? line.substr(at + 1) : "")) console_.print_data(word + "\n");
+    for (const auto& word : complete(at < line.size() ? line.substr(at + 1) : "")) host_.print_data(word + "\n");
   }
   return true;
+}
+
+bool EditSession::execute(const std::string& line, const std::string& script, int number) {
+  const auto place = [&](std::vector<Diagnostic> items) {
+    for (auto& item : items)
+      if (item.where.file.empty()) item.where = {script, number, 0};
+    return items;
+  };
+  try {
+    return execute(line);
+  } catch (const ComputationError& failure) {
+    throw ComputationError(place(failure.items()));
+  } catch (const Failure& failure) {
+    throw InputError(place(failure.items()));
+  }
 }
 
 void EditSession::list(const Words& words) {
   if (words.size() > 2) throw_usage("list");
   const auto* kind = words.size() > 1 ? &text_.find_kind(words[1]) : nullptr;
-  Table table{{"kind", "name", "type", "line"}, {}};
+  TextTable table{{"kind", "name", "type", "line"}, {}};
   for (const auto& item : toml_files::list_items(text_.get_text()))
     if (kind == nullptr || kind->kind == item.kind)
       table.rows.push_back({item.kind, item.name.empty() && item.number > 0 ? std::to_string(item.number) : item.name,
                             item.type, std::to_string(item.line)});
-  if (!table.rows.empty()) console_.print_data(table.to_text());
+  if (!table.rows.empty()) host_.print_data(table.to_text());
 }
 
 EditTarget EditSession::find_item(const Words& words, std::size_t first, std::size_t num_after) const {
@@ -119,7 +136,7 @@ EditTarget EditSession::find_item(const Words& words, std::size_t first, std::si
 
 void EditSession::show(const Words& words) {
   if (words.size() == 1) {
-    console_.print_data(text_.get_text());
+    host_.print_data(text_.get_text());
     return;
   }
   if (words.size() == 2 && words[1].find('.') != std::string::npos) {
@@ -127,14 +144,14 @@ void EditSession::show(const Words& words) {
       const auto target = text_.find_target(words[1], true);
       const auto value = toml_files::get_value_text(text_.get_text(), target.path());
       if (!value.empty()) {
-        console_.print_data(value + "\n");
+        host_.print_data(value + "\n");
         return;
       }
     } catch (const InputError&) {
       // then it is an item
     }
   }
-  console_.print_data(toml_files::get_item_text(text_.get_text(), find_item(words, 1, 0).item.path()));
+  host_.print_data(toml_files::get_item_text(text_.get_text(), find_item(words, 1, 0).item.path()));
 }
 
 void EditSession::add(const Words& words) {
@@ -238,7 +255,7 @@ void EditSession::remove(const Words& given) {
     if (!left.empty()) deleted += "deleted: " + gone.item.kind + " " + gone.item.name + "\n";
   }
   text_.change(text, true);
-  console_.print(deleted);
+  host_.print(deleted);
 }
 
 void EditSession::rename(const Words& words) {
@@ -266,17 +283,16 @@ void EditSession::check() const {
   toml_files::check_text(text_.get_text(), text_.get_file(), diagnostics);
   diagnostics.throw_if_errors();
   if (text_.is_body_file()) {
-    console_.print("the keys are sound; 'save' and 'reduce' try the deck\n");
+    host_.print("the keys are sound; 'save' and 'reduce' try the deck\n");
     return;
   }
-  analysis::LoadOptions options;
+  LoadOptions options;
   options.text = text_.get_text();
-  const auto loaded = analysis::load_system(text_.get_file(), diagnostics, options);
+  const auto loaded = load_system(text_.get_file(), diagnostics, options);
   diagnostics.throw_if_errors();
-  console_.print(diagnostics);
-  console_.print("sound: " + count(loaded.spec.bodies.size(), "body") + ", " +
-                 count(loaded.spec.hinges.size(), "hinge") + ", " +
-                 count(static_cast<std::size_t>(loaded.system.num_dofs()), "generalized speed") + "\n");
+  host_.print(diagnostics);
+  host_.print("sound: " + count(loaded.spec.bodies.size(), "body") + ", " + count(loaded.spec.hinges.size(), "hinge") +
+              ", " + count(static_cast<std::size_t>(loaded.system.num_dofs()), "generalized speed") + "\n");
 }
 
 void EditSession::run_verb(const std::string& verb, const Words& words) const {
@@ -285,9 +301,8 @@ void EditSession::run_verb(const std::string& verb, const Words& words) const {
   Words call{verb};
   if (verb != "plot") call.push_back(is_saved_ ? target_ : text_.get_file());
   for (std::size_t i = 1; i < words.size(); ++i) call.push_back(strip_quotes(words[i]));
-  const int code = run_command(call);
-  if (code != kSuccess)
-    throw InputError("cli.edit-command", {}, verb + " ended with exit code " + std::to_string(code));
+  const int code = host_.run_command(call);
+  if (code != 0) throw InputError("cli.edit-command", {}, verb + " ended with exit code " + std::to_string(code));
 }
 
 void EditSession::save(const Words& given) {
@@ -306,39 +321,39 @@ void EditSession::save(const Words& given) {
     throw InputError("cli.output-exists", {path}, "the file exists", "choose another name, or save NAME --force");
   }
   if (path == text_.get_file() || path == target_) FileRoles::allow_both(path);
-  check_output({}, path);
+  host_.check_output(path);
   Diagnostics diagnostics;
   toml_files::check_text(text_.get_text(), path, diagnostics);
-  console_.print(diagnostics);
-  analysis::write_text_file(path, text_.get_text());
+  host_.print(diagnostics);
+  write_text_file(path, text_.get_text());
   if (path == target_) {
     text_.set_saved();
     is_saved_ = true;
   }
-  console_.print("written: " + path + "\n");
+  host_.print("written: " + path + "\n");
 }
 
 void EditSession::help(const Words& words) const {
   if (words.size() > 2) throw_usage("help");
   if (words.size() == 1) {
     for (const auto& command : get_edit_commands())
-      console_.print_data(command.usage + "\n    " + command.description + "\n");
+      host_.print_data(command.usage + "\n    " + command.description + "\n");
     std::string kinds;
     for (const auto& kind : text_.get_kinds()) kinds += (kinds.empty() ? "" : ", ") + kind.kind;
-    console_.print_data("Kinds: " + kinds + "\n");
+    host_.print_data("Kinds: " + kinds + "\n");
     return;
   }
   const auto& word = words[1];
   bool found = false;
   for (const auto& command : get_edit_commands()) {
     if (command.name != word) continue;
-    console_.print_data(command.usage + "\n    " + command.description + "\n");
+    host_.print_data(command.usage + "\n    " + command.description + "\n");
     found = true;
   }
   for (const auto& kind : text_.get_kinds()) {
-    if (kind.kind == word) console_.print_data(toml_files::format_help(kind));
+    if (kind.kind == word) host_.print_data(toml_files::format_help(kind));
     const auto* key = kind.find(word.starts_with(kind.kind + ".") ? word.substr(kind.kind.size() + 1) : word);
-    if (key != nullptr) console_.print_data(kind.kind + "\n" + toml_files::format_help(*key));
+    if (key != nullptr) host_.print_data(kind.kind + "\n" + toml_files::format_help(*key));
     found = found || kind.kind == word || key != nullptr;
   }
   if (!found)
@@ -357,7 +372,23 @@ void EditSession::finish() const {
   if (!text_.is_changed()) return;
   Diagnostics diagnostics;
   diagnostics.warning("cli.edit-unsaved", {text_.get_file()}, "the changes were not saved", "end with 'save'");
-  console_.print(diagnostics);
+  host_.print(diagnostics);
 }
 
-}  // namespace bough::cli
+EditText read_edit_text(const std::string& file, EditHost& host) {
+  if (!has_suffix(file, ".toml"))
+    throw InputError("cli.wrong-file", {file}, "edit takes body and system files in TOML", "name a .toml file");
+  std::error_code failed;
+  if (!std::filesystem::exists(file, failed)) {
+    host.check_output(file);
+    return {file, "", false};
+  }
+  FileRoles::allow_both(file);
+  demand_file(file);
+  const auto kind = toml_files::detect_kind(file);
+  if (kind != "body") demand_kind(file, kind, "system");
+  std::ifstream in(file, std::ios::binary);
+  return {file, std::string(std::istreambuf_iterator<char>(in), {}), kind == "body"};
+}
+
+}  // namespace bough::analysis

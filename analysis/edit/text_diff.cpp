@@ -1,4 +1,4 @@
-#include "cli/edit/text_diff.hpp"
+#include "analysis/edit/text_diff.hpp"
 
 #include <fmt/format.h>
 
@@ -6,7 +6,7 @@
 #include <sstream>
 #include <vector>
 
-namespace bough::cli {
+namespace bough::analysis {
 
 namespace {
 
@@ -84,4 +84,4 @@ std::string make_diff(const std::string& before, const std::string& after, const
   return text;
 }
 
-}  // namespace bough::cli
+}  // namespace bough::analysis

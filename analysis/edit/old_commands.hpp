@@ -3,9 +3,9 @@
 #include <string>
 #include <string_view>
 
-namespace bough::cli {
+namespace bough::analysis {
 
 /// The command line or the word of `bough edit` that replaces `word`, in any case, as advice; empty for other words.
 std::string find_successor(std::string_view word);
 
-}  // namespace bough::cli
+}  // namespace bough::analysis

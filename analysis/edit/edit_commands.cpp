@@ -1,10 +1,10 @@
-#include "cli/edit/edit_commands.hpp"
+#include "analysis/edit/edit_commands.hpp"
 
 #include <algorithm>
 
 #include "base/diagnostic.hpp"
 
-namespace bough::cli {
+namespace bough::analysis {
 
 const std::vector<EditCommand>& get_edit_commands() {
   static const std::vector<EditCommand> commands{
@@ -38,4 +38,4 @@ const EditCommand& get_edit_command(const std::string& name) {
   return *at;
 }
 
-}  // namespace bough::cli
+}  // namespace bough::analysis

@@ -2,18 +2,18 @@
 #include <algorithm>
 
 #include "analysis/common/system_files.hpp"
+#include "analysis/edit/command_words.hpp"
+#include "analysis/edit/edit_session.hpp"
 #include "base/diagnostic.hpp"
-#include "cli/edit/command_words.hpp"
-#include "cli/edit/edit_session.hpp"
 #include "formats/toml/key_editor.hpp"
 
-namespace bough::cli {
+namespace bough::analysis {
 
 using toml_files::KeyValues;
 using toml_files::KindHelp;
 
 void EditSession::ask_for_key(const KindHelp& kind, const toml_files::KeyHelp& key, KeyValues& given) const {
-  console_.print(toml_files::format_help(key));
+  host_.print(toml_files::format_help(key));
   const auto answer = ask_("  " + key.name + (key.is_required ? "" : " (empty: none)") + " = ");
   if (!answer) throw InputError("cli.edit-command", {}, "add was left", "it changed nothing");
   if (!answer->empty()) given.emplace_back(key.name, text_.make_value(&kind, key.name, *answer));
@@ -24,9 +24,9 @@ std::vector<Diagnostic> EditSession::list_errors(const std::string& text) const 
   try {
     toml_files::check_text(text, text_.get_file(), diagnostics);
     if (diagnostics.num_errors() == 0 && !text_.is_body_file()) {
-      analysis::LoadOptions options;
+      LoadOptions options;
       options.text = text;
-      analysis::load_system(text_.get_file(), diagnostics, options);
+      load_system(text_.get_file(), diagnostics, options);
     }
   } catch (const Failure& failure) {
     return failure.items();
@@ -80,11 +80,11 @@ KeyValues EditSession::ask_for_keys(const KindHelp& kind, KeyValues given) const
       return std::any_of(kind.keys.begin(), kind.keys.end(),
                          [&](const auto& k) { return is_wanted(k) && has(k.name); });
     };
-    if (!is_met()) console_.print("  it needs " + expected + "\n");
+    if (!is_met()) host_.print("  it needs " + expected + "\n");
     for (const auto& key : kind.keys)
       if (is_wanted(key) && !is_met()) ask(key);
   }
   return ask_for_missing(kind, std::move(given));
 }
 
-}  // namespace bough::cli
+}  // namespace bough::analysis

@@ -1,8 +1,8 @@
-#include "cli/edit/command_words.hpp"
+#include "analysis/edit/command_words.hpp"
 
 #include "base/diagnostic.hpp"
 
-namespace bough::cli {
+namespace bough::analysis {
 
 std::vector<std::string> split_words(const std::string& line) {
   std::vector<std::string> raw;
@@ -66,4 +66,4 @@ std::string strip_quotes(const std::string& word) {
   return is_quoted ? word.substr(1, word.size() - 2) : word;
 }
 
-}  // namespace bough::cli
+}  // namespace bough::analysis

@@ -1,14 +1,30 @@
 #pragma once
-/// \file The commands of `bough edit`.
+/// \file The commands of `bough edit`, at a terminal, from a script or from Python.
 #include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "cli/common/console.hpp"
-#include "cli/edit/edit_text.hpp"
+#include "analysis/edit/edit_text.hpp"
+#include "base/diagnostic.hpp"
 
-namespace bough::cli {
+namespace bough::analysis {
+
+/// Receives the output of the commands of a session, and does the work that is the caller's.
+class EditHost {
+ public:
+  virtual ~EditHost() = default;
+  /// Takes a requested result: of list, show, diff and help.
+  virtual void print_data(const std::string& text) = 0;
+  /// Takes a remark for a reader.
+  virtual void print(const std::string& text) = 0;
+  /// Takes warnings and notes.
+  virtual void print(const Diagnostics& diagnostics) = 0;
+  /// Throws if `path` cannot be an output; the folder of a new file may be read-only, for example.
+  virtual void check_output(const std::string& path) = 0;
+  /// Runs `run`, `reduce` or `plot` with its words and returns the exit code.
+  virtual int run_command(const std::vector<std::string>& words) = 0;
+};
 
 class EditSession {
  public:
@@ -16,13 +32,15 @@ class EditSession {
   using Ask = std::function<std::optional<std::string>(const std::string& prompt)>;
 
   /// `output`: where `save` writes; empty: the file itself.
-  EditSession(EditText text, const Console& console, Ask ask, std::string output);
+  EditSession(EditText text, EditHost& host, Ask ask, std::string output);
 
   /// Returns the text with all changes, saved or not.
   const std::string& get_text() const { return text_.get_text(); }
 
   /// Does one line; false when the session is to end. Throws InputError and ComputationError.
   bool execute(const std::string& line);
+  /// Does line `number` of a script; failures without a file get the location `script`:`number`.
+  bool execute(const std::string& line, const std::string& script, int number);
   /// Reports unsaved changes at the end of the input.
   void finish() const;
   /// Completions of the last word of the line.
@@ -59,10 +77,15 @@ class EditSession {
   std::vector<toml_files::NameUse> find_uses_of(const EditTarget& target, const std::string& text) const;
 
   EditText text_;
-  const Console& console_;
+  EditHost& host_;
   Ask ask_;
   std::string target_;
   bool is_saved_ = false;
 };
 
-}  // namespace bough::cli
+/// Text of a body or system file for a session; empty for a system file that does not exist yet. A session may write
+/// the file that it reads. Throws InputError "cli.wrong-file", what the readers throw and what host.check_output()
+/// throws.
+EditText read_edit_text(const std::string& file, EditHost& host);
+
+}  // namespace bough::analysis

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-namespace bough::cli {
+namespace bough::analysis {
 
 /// Split at blanks outside "...", '...', [...] and {...}; `#` begins a comment. A '=' with blanks around it joins its
 /// two sides: `axis = [0, 0, 1]` is one word. Throws InputError "cli.edit-command" where a bracket or quote stays open.
@@ -17,4 +17,4 @@ std::optional<std::pair<std::string, std::string>> split_assignment(const std::s
 /// A word without the quotes around it.
 std::string strip_quotes(const std::string& word);
 
-}  // namespace bough::cli
+}  // namespace bough::analysis

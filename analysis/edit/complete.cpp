@@ -1,9 +1,9 @@
 #include <algorithm>
 
-#include "cli/edit/body_nodes.hpp"
-#include "cli/edit/edit_session.hpp"
+#include "analysis/edit/body_nodes.hpp"
+#include "analysis/edit/edit_session.hpp"
 
-namespace bough::cli {
+namespace bough::analysis {
 
 using toml_files::KindHelp;
 
@@ -123,4 +123,4 @@ std::vector<std::string> EditSession::complete(const std::string& line) const {
   return offered;
 }
 
-}  // namespace bough::cli
+}  // namespace bough::analysis

@@ -1,4 +1,4 @@
-#include "cli/edit/body_nodes.hpp"
+#include "analysis/edit/body_nodes.hpp"
 
 #include <filesystem>
 #include <regex>
@@ -7,7 +7,7 @@
 #include "base/diagnostic.hpp"
 #include "formats/toml/system_editor.hpp"
 
-namespace bough::cli {
+namespace bough::analysis {
 
 std::vector<std::string> list_body_nodes(const std::string& text, const std::string& system_file,
                                          const std::string& body) {
@@ -22,8 +22,7 @@ std::vector<std::string> list_body_nodes(const std::string& text, const std::str
     file = file.substr(1, file.size() - 2);
     try {
       Diagnostics quiet;
-      const auto flexible =
-          analysis::read_body((std::filesystem::path(system_file).parent_path() / file).string(), quiet);
+      const auto flexible = read_body((std::filesystem::path(system_file).parent_path() / file).string(), quiet);
       for (const int node : flexible.node_id) ids.push_back(std::to_string(node));
     } catch (const Failure&) {  // not reduced yet, or damaged: `check` says so
       if (ids.size() == 1) return {};
@@ -33,4 +32,4 @@ std::vector<std::string> list_body_nodes(const std::string& text, const std::str
   return {};
 }
 
-}  // namespace bough::cli
+}  // namespace bough::analysis

@@ -2,7 +2,7 @@
 #include <string>
 #include <vector>
 
-namespace bough::cli {
+namespace bough::analysis {
 
 struct EditCommand {
   std::string name, usage, description;
@@ -13,4 +13,4 @@ const std::vector<EditCommand>& get_edit_commands();
 /// Returns a command of the list. \pre The name is in it.
 const EditCommand& get_edit_command(const std::string& name);
 
-}  // namespace bough::cli
+}  // namespace bough::analysis

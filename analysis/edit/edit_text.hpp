@@ -6,7 +6,7 @@
 #include "formats/toml/schema_help.hpp"
 #include "formats/toml/system_editor.hpp"
 
-namespace bough::cli {
+namespace bough::analysis {
 
 /// An item and the text after its name in a path: "boom.modes.2" is the body boom and modes.2.
 struct EditTarget {
@@ -63,4 +63,4 @@ class EditText {
   std::vector<std::string> before_, after_;
 };
 
-}  // namespace bough::cli
+}  // namespace bough::analysis

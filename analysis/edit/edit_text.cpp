@@ -1,13 +1,13 @@
-#include "cli/edit/edit_text.hpp"
+#include "analysis/edit/edit_text.hpp"
 
 #include <algorithm>
 #include <map>
 
+#include "analysis/edit/command_words.hpp"
 #include "base/diagnostic.hpp"
-#include "cli/edit/command_words.hpp"
 #include "formats/toml/key_editor.hpp"
 
-namespace bough::cli {
+namespace bough::analysis {
 
 using toml_files::KindHelp;
 using toml_files::TableItem;
@@ -191,4 +191,4 @@ std::string EditText::make_value(const KindHelp* kind, const std::string& key, c
   return toml_files::quote_text(text);
 }
 
-}  // namespace bough::cli
+}  // namespace bough::analysis

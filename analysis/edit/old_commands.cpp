@@ -1,10 +1,10 @@
-#include "cli/common/old_commands.hpp"
+#include "analysis/edit/old_commands.hpp"
 
 #include <algorithm>
 #include <cctype>
 #include <map>
 
-namespace bough::cli {
+namespace bough::analysis {
 
 std::string find_successor(std::string_view word) {
   static const std::map<std::string, std::string, std::less<>> successors{
@@ -25,4 +25,4 @@ std::string find_successor(std::string_view word) {
   return found == successors.end() ? "" : found->second;
 }
 
-}  // namespace bough::cli
+}  // namespace bough::analysis
