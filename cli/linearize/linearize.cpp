@@ -75,7 +75,7 @@ int run_linearize(const LinearizeVerbOptions& o) {
 
 void add_linearize(CLI::App& app, Action& action) {
   auto o = std::make_shared<LinearizeVerbOptions>();
-  auto* verb = add_verb(app, "linearize", "A B C D, poles and zeros of a multibody system about a state");
+  auto* verb = add_verb(app, action, o, run_linearize, "linearize", &o->request.file);
   verb->add_option("file", o->request.file, "System file (.toml)")->required();
   verb->add_option("--at", o->request.at, "Run to this time and linearize there (default: the initial state)")
       ->check(make_finite());
@@ -115,15 +115,6 @@ void add_linearize(CLI::App& app, Action& action) {
       ->excludes("--sweep");
   add_set_option(*verb, o->request.set);
   add_common_options(*verb, *o, kOutput | kJson, "Write the model to this HDF5 file");
-  verb->footer(
-      "Example:\n  bough linearize arm.toml -o arm-linear.h5 --mat arm.mat\n"
-      "  bough linearize arm.toml --inputs shoulder,elbow --outputs tip:y --at 2.5 --json\n"
-      "  bough linearize rotor.toml --equilibrium --sweep rate=0:6:25 -o campbell.h5\n"
-      "  bough linearize arm.toml --uncertain gain=4:6 --uncertain boom:eta1:frequency=0.95:1.05 --mat arm.mat\n"
-      "  bough linearize arm.toml --break motor -o loop.h5 && bough response loop.h5");
-  verb->callback([&action, o] {
-    action = [o] { return analysis::with_file(o->request.file, [&] { return run_linearize(*o); }); };
-  });
 }
 
 }  // namespace bough::cli
