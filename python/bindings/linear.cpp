@@ -86,13 +86,8 @@ void bind_linear(py::module_& m) {
                                if (!l.has_zeros) return py::none();
                                return make_complex(l.zeros_real, l.zeros_imag);
                              })
-      .def(
-          "save",
-          [](const LinearModel& l, const std::filesystem::path& path) {
-            demand_no_source(path, l.source);
-            hdf5::write_linear_model(l, path);
-          },
-          py::arg("path"), OneAtATime(), "Write the linear-model HDF5 file.")
+      .def("save", make_save<LinearModel>(&hdf5::write_linear_model), py::arg("path"), OneAtATime(),
+           "Write the linear-model HDF5 file.")
       .def("__repr__", [](const LinearModel& l) {
         return "<LinearModel: " + std::to_string(l.A.rows()) + " states, " + std::to_string(l.B.cols()) + " inputs, " +
                std::to_string(l.C.rows()) + " outputs>";
