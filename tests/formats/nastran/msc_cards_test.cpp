@@ -2,7 +2,7 @@
 #include <filesystem>
 
 #include "deck_text.hpp"
-#include "tests/formats/files/temp_folder.hpp"
+#include "tests/support/temp_folder.hpp"
 
 namespace bough::nastran {
 namespace {

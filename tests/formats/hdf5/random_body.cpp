@@ -1,4 +1,4 @@
-#include "random_body.hpp"
+#include "tests/formats/hdf5/random_body.hpp"
 
 #include <cmath>
 #include <random>

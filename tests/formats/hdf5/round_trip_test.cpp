@@ -12,9 +12,9 @@
 #include "formats/hdf5/table_file.hpp"
 #include "formats/toml/key_editor.hpp"
 #include "formats/toml/specs.hpp"
-#include "random_body.hpp"
-#include "temp_folder.hpp"
+#include "tests/formats/hdf5/random_body.hpp"
 #include "tests/support/draws.hpp"
+#include "tests/support/temp_folder.hpp"
 
 namespace bough::hdf5 {
 namespace {

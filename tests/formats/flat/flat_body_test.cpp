@@ -9,8 +9,8 @@
 
 #include "base/diagnostic.hpp"
 #include "formats/flat/detail/seal.hpp"
-#include "random_body.hpp"
-#include "temp_folder.hpp"
+#include "tests/formats/hdf5/random_body.hpp"
+#include "tests/support/temp_folder.hpp"
 
 namespace bough::flat {
 namespace {

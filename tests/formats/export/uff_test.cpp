@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/formats/files/temp_folder.hpp"
 #include "tests/support/paths.hpp"
+#include "tests/support/temp_folder.hpp"
 
 namespace bough {
 namespace {

@@ -7,10 +7,10 @@
 
 #include "base/diagnostic.hpp"
 #include "formats/hdf5/files.hpp"
-#include "full_disk.hpp"
-#include "random_body.hpp"
-#include "temp_folder.hpp"
+#include "tests/formats/hdf5/full_disk.hpp"
+#include "tests/formats/hdf5/random_body.hpp"
 #include "tests/support/paths.hpp"
+#include "tests/support/temp_folder.hpp"
 
 namespace bough::hdf5 {
 namespace {
@@ -159,8 +159,8 @@ TEST(FlexBodyFile, SameBodyGivesSameBytes) {
 TEST(FlexBodyFile, H5pySeesTheContract) {
   const TempFolder folder;
   write_flex_body(test::make_random_body(7, 4, 3, true), folder.at("body.h5"));
-  EXPECT_EQ(
-      test::run_python(BOUGH_SOURCE_DIR "/tests/formats/files/check_flexbody.py " + folder.at("body.h5") + " 4 3"), 0);
+  EXPECT_EQ(test::run_python(BOUGH_SOURCE_DIR "/tests/formats/hdf5/check_flexbody.py " + folder.at("body.h5") + " 4 3"),
+            0);
 }
 
 TEST(FlexBodyFile, TruncatedAnywhereIsAnInputError) {

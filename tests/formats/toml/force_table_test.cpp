@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "formats/toml/specs.hpp"
-#include "temp_folder.hpp"
+#include "tests/support/temp_folder.hpp"
 #include "tests/support/toml_lines.hpp"
 
 namespace bough::toml_files {

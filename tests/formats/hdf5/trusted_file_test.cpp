@@ -7,7 +7,7 @@
 
 #include "base/isolated.hpp"
 #include "formats/hdf5/table_file.hpp"
-#include "tests/formats/files/temp_folder.hpp"
+#include "tests/support/temp_folder.hpp"
 
 namespace bough::hdf5 {
 namespace {

@@ -5,9 +5,9 @@
 #include <gtest/gtest.h>
 
 #include "formats/toml/specs.hpp"
-#include "temp_folder.hpp"
+#include "tests/formats/toml/toml_cases.hpp"
 #include "tests/support/paths.hpp"
-#include "toml_cases.hpp"
+#include "tests/support/temp_folder.hpp"
 
 namespace bough::toml_files {
 namespace {
@@ -331,7 +331,7 @@ TEST(Schema, AnotherValidatorAgrees) {
     folder.write(std::string("body/") + (bad.by_schema ? "bad/" : "good/") + std::to_string(++number) + ".toml",
                  test::make_document(test::kGoodBody, bad));
   }
-  EXPECT_EQ(test::run_python(BOUGH_SOURCE_DIR "/tests/formats/files/check_schema.py " BOUGH_SOURCE_DIR "/data/schema "
+  EXPECT_EQ(test::run_python(BOUGH_SOURCE_DIR "/tests/formats/toml/check_schema.py " BOUGH_SOURCE_DIR "/data/schema "
                                               "--cases " +
                              folder.get_path()),
             0);

@@ -12,9 +12,9 @@
 
 #include "base/diagnostic.hpp"
 #include "formats/hdf5/files.hpp"
-#include "full_disk.hpp"
-#include "temp_folder.hpp"
+#include "tests/formats/hdf5/full_disk.hpp"
 #include "tests/support/paths.hpp"
+#include "tests/support/temp_folder.hpp"
 
 namespace bough::hdf5 {
 namespace {
@@ -87,7 +87,7 @@ TEST(ResultsFile, H5pySeesTheContractWhileTheRunGoesOn) {
   auto sink = make_results_writer(folder.at("r.h5"), {10, kAtOnce});
   sink->begin(make_header());
   for (int k = 0; k < 25; ++k) sink->write_sample(make_sample(k));
-  const std::string script = BOUGH_SOURCE_DIR "/tests/formats/files/check_results.py " + folder.at("r.h5");
+  const std::string script = BOUGH_SOURCE_DIR "/tests/formats/hdf5/check_results.py " + folder.at("r.h5");
   EXPECT_EQ(test::run_python(script + " 20 0 running"), 0);
   expect_samples(read_results(folder.at("r.h5")), 20);
   sink->write_checkpoint({2.4, VectorXd::LinSpaced(5, 0, 1)});

@@ -12,8 +12,8 @@
 #include "formats/hdf5/detail/handle.hpp"
 #include "formats/hdf5/files.hpp"
 #include "formats/hdf5/table_file.hpp"
-#include "full_disk.hpp"
-#include "temp_folder.hpp"
+#include "tests/formats/hdf5/full_disk.hpp"
+#include "tests/support/temp_folder.hpp"
 
 namespace bough::hdf5 {
 namespace {

@@ -9,7 +9,7 @@
 #include "formats/export/csv.hpp"
 #include "report/axis.hpp"
 #include "report/svg_plot.hpp"
-#include "temp_folder.hpp"
+#include "tests/support/temp_folder.hpp"
 
 namespace bough::report {
 namespace {

@@ -1,4 +1,4 @@
-#include "full_disk.hpp"
+#include "tests/formats/hdf5/full_disk.hpp"
 
 #include <array>
 #include <atomic>

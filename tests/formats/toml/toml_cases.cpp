@@ -1,4 +1,4 @@
-#include "toml_cases.hpp"
+#include "tests/formats/toml/toml_cases.hpp"
 
 #include <gtest/gtest.h>
 
