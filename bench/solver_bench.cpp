@@ -13,22 +13,28 @@ namespace {
 using namespace bough::solver;
 using namespace bough;
 
+/// A rod of 1 m and 1 kg along x, with node 1 at its end.
+records::BodyRecord make_rod(const std::string& name) {
+  records::BodyRecord body;
+  body.name = name;
+  body.mass = 1;
+  body.cg = {0.5, 0, 0};
+  body.inertia = Vector3d(1e-3, 1.0 / 12, 1.0 / 12).asDiagonal();
+  body.nodes = {{1, {1, 0, 0}}};
+  return body;
+}
+
 /// n links of 1 m and 1 kg on revolute joints, axes z and y in turn, under gravity.
 records::SystemSpec make_chain(int n) {
   records::SystemSpec spec;
   spec.simulation.gravity = {0, -9.81, 0};
   for (int i = 0; i < n; ++i) {
-    records::BodyRecord body;
-    body.name = "link" + std::to_string(i);
-    body.mass = 1;
-    body.cg = {0.5, 0, 0};
-    body.inertia = Vector3d(1e-3, 1.0 / 12, 1.0 / 12).asDiagonal();
-    body.nodes = {{1, {1, 0, 0}}};
-    spec.bodies.push_back(body);
+    const std::string name = "link" + std::to_string(i);
+    spec.bodies.push_back(make_rod(name));
     records::HingeRecord hinge;
     hinge.name = "joint" + std::to_string(i);
     hinge.type = records::HingeType::Revolute;
-    hinge.child = body.name;
+    hinge.child = name;
     hinge.axis = i % 2 == 0 ? Vector3d::UnitZ() : Vector3d::UnitY();
     hinge.position = {0.1};
     if (i > 0) {
@@ -117,13 +123,7 @@ void BM_NFourBar(benchmark::State& state) {
   records::SystemSpec spec;
   spec.simulation.gravity = {0, -9.81, 0};
   const auto add = [&](const std::string& name, const std::string& parent, int node, double x, double angle) {
-    records::BodyRecord body;
-    body.name = name;
-    body.mass = 1;
-    body.cg = {0.5, 0, 0};
-    body.inertia = Vector3d(1e-3, 1.0 / 12, 1.0 / 12).asDiagonal();
-    body.nodes = {{1, {1, 0, 0}}};
-    spec.bodies.push_back(body);
+    spec.bodies.push_back(make_rod(name));
     records::HingeRecord hinge;
     hinge.name = hinge.child = name;
     hinge.type = records::HingeType::Revolute;

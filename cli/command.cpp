@@ -5,12 +5,12 @@
 #include <iterator>
 #include <string_view>
 
+#include "analysis/edit/old_commands.hpp"
 #include "base/diagnostic.hpp"
 #include "base/file_roles.hpp"
 #include "cli/common/console.hpp"
 #include "cli/common/help_files.hpp"
 #include "cli/common/memory_limit.hpp"
-#include "cli/common/old_commands.hpp"
 #include "cli/common/usage_text.hpp"
 #include "cli/common/versions.hpp"
 #include "cli/verbs.hpp"
@@ -49,7 +49,7 @@ bool check_verb(const CLI::App& app, int argc, const char* const* argv, const cl
     if (!word.empty() && word[0] == '-') continue;
     const auto verbs = get_names(app);
     if (std::find(verbs.begin(), verbs.end(), word) != verbs.end()) return true;
-    const auto successor = cli::find_successor(word), nearest = find_nearest(word, verbs);
+    const auto successor = analysis::find_successor(word), nearest = find_nearest(word, verbs);
     console.print_error("cli.unknown-verb", "unknown verb \"" + word + "\"",
                         !successor.empty() ? successor
                         : nearest.empty()  ? "bough --help lists the verbs"

@@ -43,19 +43,31 @@ void add_level(double level, const VectorXd& frequency, Plot& plot) {
 }
 
 /// Contour |L/(1+L)| = M: L = M e^(jφ) / (1 - M e^(jφ)), φ over a turn about a phase of -180 degrees, plus `shift`
-/// degrees. The label is in the middle.
+/// degrees. It is closed about -1 for M > 1, otherwise a wave from one multiple of 360 degrees to the next.
 Curve make_closed_loop_contour(double decibel, double shift) {
   constexpr int kPoints = 362;
   const double size = std::pow(10, decibel / 20);
-  Curve contour{shift == 0 ? fmt::format("{:g} dB", decibel) : "", VectorXd(kPoints), VectorXd(kPoints)};
+  Curve contour{"", VectorXd(kPoints), VectorXd(kPoints)};
   for (int i = 0; i < kPoints; ++i) {
-    const auto t = std::polar(size, 2 * std::numbers::pi * ((i + 0.5) / kPoints - (size > 1 ? 0.5 : 0)));
+    const double share = static_cast<double>(i) / (kPoints - 1);
+    const auto t = std::polar(size, 2 * std::numbers::pi * (share - (size > 1 ? 0.5 : 0)));
     const auto loop = t / (1.0 - t);
-    const double degrees = std::arg(loop) * 180 / std::numbers::pi;
-    contour.x[i] = shift + (degrees > 0 ? degrees - 360 : degrees);
+    double degrees = std::arg(loop) * 180 / std::numbers::pi;
+    if (degrees > 0) degrees -= 360;
+    if (size < 1 && (i == 0 || i == kPoints - 1)) degrees = i == 0 ? -360 : 0;  // L is real there
+    contour.x[i] = shift + degrees;
     contour.y[i] = 20 * std::log10(std::abs(loop));
   }
   return contour;
+}
+
+/// "−30.8", "13000".
+std::string format_short(double value) {
+  const double size = std::abs(value);
+  const int digits = size >= 1000 && size < 1e6 ? static_cast<int>(std::floor(std::log10(size))) + 1 : 3;
+  auto text = fmt::format("{:.{}g}", value, digits);
+  if (text.front() == '-') text.replace(0, 1, "\u2212");
+  return text;
 }
 
 }  // namespace
@@ -122,10 +134,38 @@ std::vector<Plot> make_bode_axes(const std::string& time_unit) {
 Plot make_nichols_axes() {
   Plot plot{"", "open-loop phase [degrees]", "open-loop magnitude [dB]", {}};
   plot.x_step = 45;
-  for (const double decibel : {12.0, 6.0, 3.0, 1.0, -1.0, -3.0, -6.0, -12.0, -20.0})
-    for (const double shift : {0.0, -360.0, 360.0}) plot.guides.push_back(make_closed_loop_contour(decibel, shift));
-  plot.curves.push_back({"-1", VectorXd::Constant(1, -180), VectorXd::Zero(1), true, 6, Mark::Cross});
   return plot;
+}
+
+void add_nichols_grid(Plot& plot) {
+  double low = -180, high = -180;
+  bool has_any = false;
+  for (const auto& curve : plot.curves)
+    for (const double x : curve.x) {
+      if (!std::isfinite(x)) continue;
+      low = has_any ? std::min(low, x) : x;
+      high = has_any ? std::max(high, x) : x;
+      has_any = true;
+    }
+  // The point -1 next to the middle of the curves always, others within a quarter of a turn of them.
+  const double middle = 360 * std::round(((low + high) / 2 + 180) / 360);
+  std::vector<double> shifts;
+  for (double shift = 360 * std::floor(low / 360); shift < high + 360; shift += 360) shifts.push_back(shift);
+  if (std::find(shifts.begin(), shifts.end(), middle) == shifts.end()) shifts.push_back(middle);
+  std::vector<double> points;
+  for (const double shift : shifts)
+    if (shift == middle || (shift - 180 > low - 90 && shift - 180 < high + 90)) points.push_back(shift - 180);
+  for (const double decibel : {12.0, 6.0, 3.0, 1.0, -1.0, -3.0, -6.0, -12.0, -20.0})
+    for (const double shift : shifts) {
+      plot.guides.push_back(make_closed_loop_contour(decibel, shift));
+      if (shift == middle)
+        plot.guides.back().label = (decibel < 0 ? "\u2212" : "") + fmt::format("{:g} dB", std::abs(decibel));
+    }
+  const auto count = static_cast<Index>(points.size());
+  plot.curves.push_back(
+      {"\u22121", Eigen::Map<VectorXd>(points.data(), count), VectorXd::Zero(count), true, 6, Mark::Cross});
+  // Room above the point.
+  plot.curves.push_back({"", VectorXd::Constant(1, middle - 180), VectorXd::Constant(1, 6), true, -1, Mark::None});
 }
 
 void add_bode_curve(const BodePair& pair, const VectorXd& frequency_hz, const std::string& label,
@@ -146,16 +186,18 @@ void add_margins(const records::Margins& margins, const BodePair& pair, const re
         c.frequency_hz > frequency_hz[frequency_hz.size() - 1])
       continue;
     add_margin(c.frequency_hz, -margin, 0,
-               fmt::format("gain margin {:.3g} dB at {:.3g} {}", margin, c.frequency_hz, unit), kGainStyle, plots[0]);
+               fmt::format("gain margin {} dB at {} {}", format_short(margin), format_short(c.frequency_hz), unit),
+               kGainStyle, plots[0]);
   }
   for (const auto& c : margins.phase) {
     const double phase = interpolate(frequency_hz, pair.degrees, c.frequency_hz);
     if (!std::isfinite(phase)) continue;
     const double margin = c.margin * 180 / std::numbers::pi, limit = phase - margin;
     add_level(limit, frequency_hz, plots[1]);
-    add_margin(c.frequency_hz, phase, limit,
-               fmt::format("phase margin {:.3g} degrees at {:.3g} {}", margin, c.frequency_hz, unit), kPhaseStyle,
-               plots[1]);
+    add_margin(
+        c.frequency_hz, phase, limit,
+        fmt::format("phase margin {} degrees at {} {}", format_short(margin), format_short(c.frequency_hz), unit),
+        kPhaseStyle, plots[1]);
   }
 }
 

@@ -30,8 +30,11 @@ std::vector<BodePair> make_bode_pairs(const records::FrequencyResponse& response
 
 /// Magnitude and phase over frequency, without curves. \param time_unit  label of the unit of time, empty: none
 std::vector<Plot> make_bode_axes(const std::string& time_unit);
-/// Phase against magnitude, without curves; with contours of constant |L/(1+L)| and the point -1.
+/// Phase against magnitude, without curves.
 Plot make_nichols_axes();
+/// Adds contours of constant |L/(1+L)|, and the point -1 at each odd multiple of 180 degrees, over the phases of the
+/// curves.
+void add_nichols_grid(Plot& plot);
 /// Adds one curve to each diagram of make_bode_axes.
 void add_bode_curve(const BodePair& pair, const Eigen::VectorXd& frequency_hz, const std::string& label,
                     std::vector<Plot>& plots);

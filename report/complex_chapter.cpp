@@ -37,18 +37,22 @@ Drawing make_complex_drawing(const records::ComplexModesResult& modes) {
 }
 
 std::string make_pole_table(const records::ComplexModesResult& r) {
-  HtmlTable table("", {{"mode"},
-                       {"real part [1/T]"},
-                       {"imaginary part [1/T]"},
-                       {"frequency [Hz]"},
-                       {"damping g"},
-                       {"damping ratio %"},
-                       {"residual"}});
-  for (Eigen::Index j = 0; j < r.eigenvalue.size(); ++j)
-    table.add_row({std::to_string(j + 1), format_value(r.eigenvalue[j].real(), 8),
-                   format_value(r.eigenvalue[j].imag(), 8), format_value(r.frequency_hz[j], 7),
-                   format_value(r.damping[j]), format_value(100 * r.damping_ratio[j], 5),
-                   format_value(r.residual[j], 2)});
+  std::vector<HtmlTable::Column> columns{{"mode"},           {"real part [1/T]"}, {"imaginary part [1/T]"},
+                                         {"frequency [Hz]"}, {"damping g"},       {"damping ratio %"},
+                                         {"residual"}};
+  if (r.whirl.size() > 0) columns.push_back({"whirl", true});
+  HtmlTable table("", std::move(columns));
+  for (Eigen::Index j = 0; j < r.eigenvalue.size(); ++j) {
+    std::vector<std::string> row{std::to_string(j + 1),
+                                 format_value(r.eigenvalue[j].real(), 8),
+                                 format_value(r.eigenvalue[j].imag(), 8),
+                                 format_value(r.frequency_hz[j], 7),
+                                 format_value(r.damping[j]),
+                                 format_value(100 * r.damping_ratio[j], 5),
+                                 format_value(r.residual[j], 2)};
+    if (r.whirl.size() > 0) row.push_back(r.eigenvalue[j].imag() > 0 ? records::name_whirl(r.whirl[j]) : "");
+    table.add_row(row);
+  }
   return table.to_html();
 }
 

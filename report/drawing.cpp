@@ -55,6 +55,7 @@ class DrawingBuilder {
     point_of_grid_.assign(mesh.grid_id.size(), -1);
     add_cells();
     add_faces();
+    add_corners();
     // Nodes that no element draws are points all the same: markers, interface nodes of rigid elements.
     const std::set<int> drawn(drawing.id.begin(), drawing.id.end());
     for (std::size_t i = 0; i < node_id.size(); ++i)
@@ -143,6 +144,27 @@ class DrawingBuilder {
   void add_triangle(int a, int b, int c, std::uint32_t element) {
     for (const int g : {a, b, c}) drawing.triangles.push_back(use_grid(g));
     drawing.elements.of_triangle.push_back(element);
+  }
+
+  /// Pairs for averages: also elements within a solid that touch its surface in a point alone.
+  void add_corners() {
+    std::uint32_t element = 0;
+    for (const auto& block : mesh_.blocks) {
+      const auto local = list_faces(block.type);
+      const bool is_line = block.type.starts_with("line");
+      std::set<int> corners;
+      for (const auto& f : local) corners.insert(f.begin(), f.end());
+      for (Eigen::Index e = 0; e < block.connectivity.rows(); ++e) {
+        for (const int k : corners) {
+          const int grid = k < block.connectivity.cols() ? block.connectivity(e, k) : -1;
+          if (grid < 0 || grid >= static_cast<int>(point_of_grid_.size())) continue;
+          if (const int point = point_of_grid_[static_cast<std::size_t>(grid)]; point >= 0)
+            drawing.elements.at_point.insert(drawing.elements.at_point.end(),
+                                             {static_cast<std::uint32_t>(point), element});
+        }
+        if (is_line || !local.empty()) ++element;
+      }
+    }
   }
 
   void add_edge(int a, int b, std::uint32_t element) {
@@ -296,6 +318,37 @@ Drawing make_box(double mass, const Eigen::Vector3d& cg, const Eigen::Matrix3d& 
   return box;
 }
 
+namespace {
+
+/// Elements of several fields are the same: each list is packed once, and `of` of a field is its number.
+void add_fields(const Drawing& drawing, nlohmann::json& json) {
+  std::map<std::vector<std::uint32_t>, std::size_t> lists;
+  auto fields = nlohmann::json::array();
+  for (const auto& field : drawing.fields) {
+    const auto [list, unused] = lists.try_emplace(field.element, lists.size());
+    auto values = nlohmann::json::array();
+    for (const auto& column : field.values) {
+      auto packed = pack_column(column);
+      values.push_back({{"low", packed.low}, {"step", packed.step}, {"data", std::move(packed.data)}});
+    }
+    fields.push_back({{"name", field.name},
+                      {"group", field.group},
+                      {"unit", field.unit},
+                      {"average", field.has_average},
+                      {"of", list->second},
+                      {"count", field.element.size()},
+                      {"values", values}});
+  }
+  std::vector<std::string> packed(lists.size());
+  for (const auto& [list, number] : lists) packed[number] = pack_indices(list);
+  json["fields"] = {{"lists", packed}, {"list", fields}};
+  json["id"] = pack_indices(std::vector<std::uint32_t>(drawing.elements.id.begin(), drawing.elements.id.end()));
+  json["property"] = pack_indices(drawing.property);
+  json["at_point"] = pack_indices(drawing.elements.at_point);
+}
+
+}  // namespace
+
 std::string to_json_text(const Drawing& drawing) {
   const auto flatten = [](const Eigen::MatrixXd& rows) {
     const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> r = rows;
@@ -309,7 +362,7 @@ std::string to_json_text(const Drawing& drawing) {
     const double largest = shape.size() > 0 ? shape.cwiseAbs().maxCoeff() : 0;
     json["shapes"].push_back({{"largest", largest}, {"data", pack_shorts(flatten(shape), largest)}});
   }
-  if (!drawing.energy.empty() || drawing.energy_matrix.size() > 0) {
+  if (!drawing.energy.empty() || drawing.energy_matrix.size() > 0 || !drawing.fields.empty()) {
     std::vector<std::uint32_t> kind;
     for (const auto k : drawing.elements.kind) kind.push_back(static_cast<std::uint32_t>(k));
     json["elements"] = {{"of_triangle", pack_indices(drawing.elements.of_triangle)},
@@ -322,6 +375,7 @@ std::string to_json_text(const Drawing& drawing) {
       json["elements"]["energy"].push_back({{"largest", largest}, {"data", pack_shorts(share, largest)}});
     }
   }
+  if (!drawing.fields.empty()) add_fields(drawing, json["elements"]);
   if (drawing.energy_matrix.size() > 0) {
     const Eigen::VectorXd largest = drawing.energy_matrix.cwiseAbs().rowwise().maxCoeff();
     Eigen::MatrixXd rows = drawing.energy_matrix;

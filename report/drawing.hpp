@@ -15,7 +15,17 @@ struct DrawnElements {
   std::vector<int> id;
   std::vector<Kind> kind;
   std::vector<std::uint32_t> of_triangle, of_edge;  ///< index into id of each; kNone for an outline
+  /// Surfaces and solids at each drawn point: pairs (point, index into id), for averages at nodes.
+  std::vector<std::uint32_t> at_point;
   static constexpr std::uint32_t kNone = 0xFFFFFFFF;
+};
+
+/// A number of each element and shape: a stress of the subcases, a failure index. Coloured by web/modes_view.js.
+struct ElementField {
+  std::string name, group, unit;        ///< "von Mises stress, top", "stress", "F/L^2"
+  bool has_average = false;             ///< true if axes are common to neighbours, so that means at nodes make sense
+  std::vector<std::uint32_t> element;   ///< index into DrawnElements::id of each value
+  std::vector<Eigen::VectorXd> values;  ///< [shape] in the order of `element`; NaN where the file has no number
 };
 
 struct Drawing {
@@ -27,6 +37,8 @@ struct Drawing {
   int num_dropped = 0;                          ///< modes whose shapes would make the page too large
   DrawnElements elements;
   std::vector<Eigen::VectorXd> energy;  ///< [shape] share of each element; empty where it is not known
+  std::vector<ElementField> fields;
+  std::vector<std::uint32_t> property;  ///< PID of each element, with fields; 0 without one
   Eigen::VectorXd measure;              ///< of each element, with energy: length, area or volume; 0 without extent
   /// Strain energy matrices of a body that moves in all its modes: ½ Σ a_i a_j k_ij of each element, a_i =
   /// coefficient i times weight[i]; element x n(n+1)/2 (records::ElementStrainEnergy). Empty if unknown or too large.

@@ -99,6 +99,17 @@ json make_arrows(const std::vector<SceneArrow>& arrows, long stride) {
 
 }  // namespace
 
+namespace {
+
+/// Names of the components of /bodies/NAME/eta and eta_dot; null if the body was not found.
+const std::vector<std::string>* find_mode_names(const History& history, const std::string& path) {
+  for (const auto& body : history.scene.bodies)
+    if (path == "/bodies/" + body.name + "/eta" || path == "/bodies/" + body.name + "/eta_dot") return &body.mode_names;
+  return nullptr;
+}
+
+}  // namespace
+
 Strides choose_strides(const History& history) {
   double first = 0, others = 0;
   for (const auto& channel : history.channels)
@@ -123,6 +134,8 @@ std::string make_data(const History& history, const Strides& strides) {
     const long stride = is_of_the_others(channel.path) ? strides.others : strides.first;
     const auto names =
         records::get_component_names(channel.path, static_cast<int>(channel.values.cols()), channel.description);
+    const auto* modes = find_mode_names(history, channel.path);
+    const bool is_labelled = modes && std::ssize(*modes) == channel.values.cols();
     json columns = json::array();
     for (Eigen::Index c = 0; c < channel.values.cols(); ++c) {
       const auto packed = pack_column(take_every(channel.values.col(c), stride));
@@ -132,6 +145,7 @@ std::string make_data(const History& history, const Strides& strides) {
                          {"low", packed.low},
                          {"step", packed.step},
                          {"data", packed.data}});
+      if (is_labelled) columns.back()["label"] = (*modes)[static_cast<std::size_t>(c)];
     }
     channels.push_back({{"path", channel.path},
                         {"description", channel.description},

@@ -231,6 +231,22 @@ std::string draw_heat_map(const std::string& title, const Eigen::MatrixXd& value
   return html;
 }
 
+namespace {
+
+std::string make_nodes(const ModalModel& m) {
+  HtmlTable table("Undeformed, in the body frame", {{"node"}, {"x [L]"}, {"y [L]"}, {"z [L]"}, {"", true}});
+  for (const auto& node : m.nodes)
+    table.add_row({std::to_string(node.id), format_value(node.position.x()), format_value(node.position.y()),
+                   format_value(node.position.z()), node.is_interface ? "interface" : ""});
+  std::string loads;
+  for (const auto& name : m.loads) loads += (loads.empty() ? "" : ", ") + name;
+  return (loads.empty() ? "" : make_text("Load patterns: " + loads + ".")) +
+         fmt::format("<details><summary>Output nodes ({})</summary>\n", m.nodes.size()) + table.to_html(200) +
+         "</details>\n";
+}
+
+}  // namespace
+
 Chapter make_chapter(const ModalModel& m) {
   Chapter chapter{m.kind, m.file, m.facts, m.checks, {}, {}, {}};
   if (!m.drawing.shapes.empty()) {
@@ -249,7 +265,7 @@ Chapter make_chapter(const ModalModel& m) {
                         "note");
     chapter.add_panel("shapes", "Mode shapes", html);
   }
-  chapter.add_panel("mass", "Mass properties", make_mass_panel(m));
+  chapter.add_panel("mass", "Mass properties", make_mass_panel(m) + (m.nodes.empty() ? "" : make_nodes(m)));
   if (m.frequency_hz.size() > 0)
     chapter.add_panel("table", m.is_buckling ? "Load factors" : "Modes and effective mass", make_mode_table(m));
   if (m.integrals.norm[0].size() + m.integrals.norm[1].size() + m.integrals.norm[2].size() > 0)

@@ -26,6 +26,13 @@ struct SpinCurves {
   bool has_stiffness = true;
 };
 
+/// An output node of a flexible body.
+struct BodyNode {
+  int id = 0;
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< undeformed, body frame
+  bool is_interface = false;
+};
+
 struct ModalModel {
   std::string kind, file, name;  ///< kind: "flexible body", "modes", "buckling"
   std::vector<std::pair<std::string, std::string>> facts;
@@ -41,6 +48,8 @@ struct ModalModel {
   Eigen::MatrixXd mac;             ///< of the modes among themselves, or empty
   IntegralsTable integrals;
   std::vector<SpinCurves> spin;
+  std::vector<BodyNode> nodes;     ///< of a flexible body
+  std::vector<std::string> loads;  ///< names of the load patterns that have a geometric stiffness
   std::vector<Check> checks;
   Drawing drawing;
   bool is_buckling = false;

@@ -73,6 +73,7 @@ std::string sum_up(const Chapter& chapter) {
     list += (list.empty() ? "" : "; ") + check.what + (check.value.empty() ? "" : ": " + check.value);
   }
   if (judged == 0) return "";
+  if (worse == 0 && judged == 1) return "The only check passed.";
   if (worse == 0) return "All " + std::to_string(judged) + " checks passed.";
   return std::to_string(worse) + " of " + std::to_string(judged) + " checks to look at: " + list + ".";
 }

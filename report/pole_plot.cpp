@@ -105,6 +105,7 @@ void add_s_grid(Plot& plot) {
     left = std::max(left, -curve.x.minCoeff());
     up = std::max(up, curve.y.cwiseAbs().maxCoeff());
   }
+  plot.has_zero_x = true;
   if (left <= 0 || up <= 0) return;
   double last = 0;
   for (const double zeta : kDampings) {

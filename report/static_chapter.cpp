@@ -9,6 +9,7 @@
 #include <numeric>
 
 #include "report/drawing.hpp"
+#include "report/element_fields.hpp"
 #include "report/html.hpp"
 #include "report/shape_plot.hpp"
 
@@ -203,7 +204,8 @@ Chapter make_chapter(const StaticResult& result, const std::string& file,
   }
   chapter.checks.push_back({"largest epsilon: work of the residual over the work of the loads", format_value(worst, 2),
                             worst < kMaxEpsilon ? Verdict::Good : Verdict::Warning, "below 1e-6"});
-  const Drawing drawing = draw_subcases(result);
+  Drawing drawing = draw_subcases(result);
+  const int num_left_out = add_fields(result, drawing);
   if (!drawing.shapes.empty()) {
     std::vector<std::string> titles;
     for (const auto& s : result.subcases) titles.push_back(name_subcase(s));
@@ -212,7 +214,13 @@ Chapter make_chapter(const StaticResult& result, const std::string& file,
       html += make_text(fmt::format("To keep the page small it has the shapes of the first {} of {} subcases.",
                                     drawing.shapes.size(), result.subcases.size()),
                         "note");
-    chapter.add_panel("shapes", "Deformed shapes", html);
+    if (num_left_out > 0)
+      html +=
+          make_text(fmt::format("To keep the page small it has the colours of {} of {} columns of stresses, strains "
+                                "and margins; bough export writes all for ParaView.",
+                                drawing.fields.size(), drawing.fields.size() + static_cast<std::size_t>(num_left_out)),
+                    "note");
+    chapter.add_panel("shapes", drawing.fields.empty() ? "Deformed shapes" : "Deformed shapes and stresses", html);
     auto names = nlohmann::json::array();
     for (const auto& s : result.subcases) names.push_back(name_subcase(s));
     chapter.data = nlohmann::json{{"names", names}, {"drawing", nlohmann::json::parse(to_json_text(drawing))}}.dump(

@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "base/diagnostic.hpp"
 #include "base/xml_text.hpp"
@@ -20,7 +21,8 @@ constexpr std::array<const char*, 7> kColors{"#0072B2", "#D55E00", "#009E73", "#
                                              "#56B4E9", "#E69F00", "#000000"};
 constexpr std::array<const char*, 3> kDashes{"", "8 4", "2 3"};
 constexpr double kWidth = 900, kLeft = 84, kRight = 26, kPlotHeight = 400, kBottom = 62;
-constexpr double kCharacter = 7.2;  // mean width of a character of the legend
+constexpr double kEqualHeight = 600;  // of plots with one scale for both axes, as the z plane
+constexpr double kCharacter = 7.2;    // mean width of a character of the legend
 
 std::string number(double x) {
   char buffer[40];
@@ -144,6 +146,11 @@ std::string draw_axes(const Plot& plot, const Frame& f) {
     svg += "<path d=\"M" + number(f.left) + " " + number(f.map_y(0)) + "H" + number(f.left + f.width) +
            "\" stroke=\"#888888\" stroke-width=\"1\"/>\n";
   }
+  // The boundary of stability of poles.
+  if (plot.has_zero_x && f.x.min < 0 && f.x.max > 0) {
+    svg += "<path d=\"M" + number(f.map_x(0)) + " " + number(f.top) + "V" + number(f.top + f.height) +
+           "\" stroke=\"#888888\" stroke-width=\"1\"/>\n";
+  }
   svg += "<g font-size=\"13\" fill=\"#333333\">\n";
   for (std::size_t i = 0; i < f.x.ticks.size(); ++i) {
     svg += "<text x=\"" + number(f.map_x(f.x.ticks[i])) + "\" y=\"" + number(f.top + f.height + 19) +
@@ -161,46 +168,106 @@ std::string draw_axes(const Plot& plot, const Frame& f) {
   return svg;
 }
 
-/// Guides and their labels: next to the last point of each inside the frame.
-std::string draw_guides(const Plot& plot, const Frame& f) {
+/// Boxes of texts inside the frame: one that would cover another moves or is left out.
+class TextPlacer {
+ public:
+  explicit TextPlacer(const Frame& frame) : frame_(frame) {}
+  struct Box {
+    double left, top, right, bottom;
+  };
+  /// A line of text; `x` is its left end, `y` its base line.
+  static Box make_box(const std::string& text, double x, double y, double font_size) {
+    const double width = kCharacter * font_size / 13 * static_cast<double>(count_characters(text));
+    return {x - 2, y - font_size, x + width + 2, y + 0.3 * font_size};
+  }
+  /// A mark that no text covers.
+  void reserve(double x, double y, double radius) {
+    boxes_.push_back({x - radius, y - radius, x + radius, y + radius});
+  }
+  /// Takes the place unless the frame cuts it or a text is there.
+  bool take(const Box& box) {
+    if (box.left < frame_.left || box.right > frame_.left + frame_.width || box.top < frame_.top ||
+        box.bottom > frame_.top + frame_.height)
+      return false;
+    for (const auto& b : boxes_)
+      if (box.left < b.right && b.left < box.right && box.top < b.bottom && b.top < box.bottom) return false;
+    boxes_.push_back(box);
+    return true;
+  }
+
+ private:
+  const Frame& frame_;
+  std::vector<Box> boxes_;
+};
+
+struct PlacedText {
+  double x = 0, y = 0;
+  bool is_end = false;  ///< x is the right end of the text
+};
+
+/// Room next to a point, on either side of it, above or below, up to `lines` lines away.
+std::optional<PlacedText> place_text(const std::string& text, double x, double y, double font_size, double gap,
+                                     TextPlacer& placer, int lines = 1) {
+  const auto size = TextPlacer::make_box(text, 0, 0, font_size);
+  const double width = size.right - size.left - 4;
+  for (int k = 0; k < 2 * lines; ++k)
+    for (const bool is_end : {false, true}) {
+      const double more = 1.1 * font_size * (k / 2);
+      const double dy = k % 2 == 0 ? gap + 0.65 * font_size + more : -gap - more;
+      const PlacedText at{is_end ? x - gap : x + gap, y + dy, is_end};
+      if (placer.take(TextPlacer::make_box(text, is_end ? at.x - width : at.x, at.y, font_size))) return at;
+    }
+  return std::nullopt;
+}
+
+std::string write_text(const std::string& text, const PlacedText& at, double font_size, const char* color) {
+  return "<text x=\"" + number(at.x) + "\" y=\"" + number(at.y) + "\" font-size=\"" + number(font_size) + "\"" +
+         (at.is_end ? " text-anchor=\"end\"" : "") + " fill=\"" + color + "\">" + escape_xml(text) + "</text>\n";
+}
+
+/// Guides and their labels: next to the last point of each inside the frame, or where else on it there is room.
+std::string draw_guides(const Plot& plot, const Frame& f, TextPlacer& placer) {
   std::string svg;
   for (const auto& guide : plot.guides) {
     svg += "<path d=\"" + draw_line(guide, f) + "\" fill=\"none\" stroke=\"#b0b0b0\" stroke-width=\"1\"/>\n";
     if (guide.label.empty() || guide.x.size() < 2) continue;
     const auto unit_x = [&](double v) { return (v - f.x.min) / (f.x.max - f.x.min); };
     const auto unit_y = [&](double v) { return (v - f.y.min) / (f.y.max - f.y.min); };
-    double x = 0, y = 0;
-    bool is_inside = false;
-    for (Eigen::Index i = 0; i + 1 < guide.x.size() && (i == 0 || guide.x.size() == 2 || i < guide.x.size() / 2); ++i) {
+    std::vector<std::pair<double, double>> points;
+    std::size_t best = 0;
+    for (Eigen::Index i = 0; i + 1 < guide.x.size(); ++i) {
       const double ax = unit_x(guide.x[i]), ay = unit_y(guide.y[i]);
       const double bx = unit_x(guide.x[i + 1]), by = unit_y(guide.y[i + 1]);
       double from = 0, to = 1;
       if (!std::isfinite(ax + ay + bx + by) || !clip_segment(ax, ay, bx, by, from, to)) continue;
-      is_inside = true;
-      x = f.left + (ax + to * (bx - ax)) * f.width;
-      y = f.top + (1 - ay - to * (by - ay)) * f.height;
+      if (i == 0 || guide.x.size() == 2 || i < guide.x.size() / 2) best = points.size();
+      // A ray has room along its way too.
+      for (const double share : {1.0, 0.6, 0.7, 0.8, 0.9}) {
+        const double s = guide.x.size() == 2 ? from + share * (to - from) : to;
+        points.emplace_back(f.left + (ax + s * (bx - ax)) * f.width, f.top + (1 - ay - s * (by - ay)) * f.height);
+        if (guide.x.size() > 2) break;
+      }
     }
-    if (!is_inside) continue;
-    // At the right edge before the point and above it, else the picture would cut the label.
-    const bool is_at_edge = x + 4 + kCharacter * static_cast<double>(count_characters(guide.label)) > f.left + f.width;
-    svg += "<text x=\"" + number(is_at_edge ? x - 4 : std::max(x, f.left) + 4) + "\" y=\"" +
-           number(std::max(is_at_edge ? y - 5 : y + 12, f.top + 12)) + "\" font-size=\"11\"" +
-           (is_at_edge ? " text-anchor=\"end\"" : "") + " fill=\"#777777\">" + escape_xml(guide.label) + "</text>\n";
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      // From the best one backward, then from the far end.
+      const auto& [x, y] = points[(best + points.size() - k) % points.size()];
+      const auto at = place_text(guide.label, x, y, 11, 4, placer);
+      if (!at) continue;
+      svg += write_text(guide.label, *at, 11, "#777777");
+      break;
+    }
   }
   return svg;
 }
 
-std::string draw_notes(const Plot& plot, const Frame& f) {
+std::string draw_notes(const Plot& plot, const Frame& f, TextPlacer& placer) {
   std::string svg;
-  for (const auto& note : plot.notes)
-    if (note.x >= f.x.min && note.x <= f.x.max && note.y >= f.y.min && note.y <= f.y.max) {
-      const double x = f.map_x(note.x);
-      // To the left of what lies at the right end.
-      const bool is_right = x + kCharacter * static_cast<double>(count_characters(note.text)) > f.left + f.width - 12;
-      svg += "<text x=\"" + number(is_right ? x - 9 : x + 9) + "\" y=\"" + number(f.map_y(note.y) - 8) +
-             "\" font-size=\"13\" fill=\"#111111\"" + (is_right ? " text-anchor=\"end\"" : "") + ">" +
-             escape_xml(note.text) + "</text>\n";
-    }
+  for (const auto& note : plot.notes) {
+    if (note.x < f.x.min || note.x > f.x.max || note.y < f.y.min || note.y > f.y.max) continue;
+    const double x = f.map_x(note.x), y = f.map_y(note.y);
+    const auto at = place_text(note.text, x, y, 13, 8, placer, 4);
+    svg += write_text(note.text, at.value_or(PlacedText{x + 9, y - 8}), 13, "#111111");
+  }
   return svg;
 }
 
@@ -309,7 +376,8 @@ std::string draw_svg(const Plot& given) {
   std::string legend;
   const double title_bottom = plot.title.empty() ? 20 : 44;
   const double legend_height = draw_legend(plot, title_bottom + 14, legend);
-  Frame f{kLeft, title_bottom + legend_height + 8, kWidth - kLeft - kRight, kPlotHeight, {}, {}};
+  const double plot_height = plot.is_equal ? kEqualHeight : kPlotHeight;
+  Frame f{kLeft, title_bottom + legend_height + 8, kWidth - kLeft - kRight, plot_height, {}, {}};
   f.x = plot.has_log_x ? make_log_axis(x.min, x.max) : make_axis(x.min, x.max, 9, false, plot.x_step);
   f.y = plot.has_log_y ? (is_given ? make_log_axis(plot.y_min, plot.y_max)
                                    : make_log_axis(y.min - 0.03 * (y.max - y.min), y.max + 0.03 * (y.max - y.min)))
@@ -331,7 +399,13 @@ std::string draw_svg(const Plot& given) {
     svg += "<text x=\"" + number(f.left) + "\" y=\"32\" font-size=\"18\" font-weight=\"bold\" fill=\"#111111\">" +
            escape_xml(plot.title) + "</text>\n";
   }
-  svg += legend + draw_axes(plot, f) + draw_guides(plot, f);
+  // Notes are of points, guides have room elsewhere.
+  TextPlacer placer(f);
+  for (const auto& curve : plot.curves)
+    for (Eigen::Index k = 0; curve.markers_only && curve.mark != Mark::None && k < curve.x.size(); ++k)
+      placer.reserve(f.map_x(curve.x[k]), f.map_y(curve.y[k]), 5);
+  const std::string notes = draw_notes(plot, f, placer);
+  svg += legend + draw_axes(plot, f) + draw_guides(plot, f, placer);
   for (std::size_t i = 0; i < plot.curves.size(); ++i) {
     const Curve curve = thin_out(plot.curves[i]);
     const Style style = get_style(plot, i);
@@ -345,7 +419,7 @@ std::string draw_svg(const Plot& given) {
       if (is_inside) svg += draw_marker(curve.mark, f.map_x(curve.x[k]), f.map_y(curve.y[k]), style.color);
     }
   }
-  svg += draw_notes(plot, f);
+  svg += notes;
   svg += "<rect x=\"" + number(f.left) + "\" y=\"" + number(f.top) + "\" width=\"" + number(f.width) + "\" height=\"" +
          number(f.height) + "\" fill=\"none\" stroke=\"#333333\" stroke-width=\"1.2\"/>\n</svg>\n";
   return svg;

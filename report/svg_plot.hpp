@@ -33,6 +33,7 @@ struct Plot {
   bool has_log_x = false;       ///< decades; values that are not positive are left out
   bool has_log_y = false;
   bool is_equal = false;          ///< one scale for both axes
+  bool has_zero_x = false;        ///< a line at x = 0, the boundary of stability of poles
   double x_step = 0, y_step = 0;  ///< ticks at multiples of it, doubled for wide ranges: 45 for degrees; 0: round ones
   std::vector<Curve> guides;  ///< thin lines under the curves, labelled where they leave the frame; not in the range
   std::vector<Note> notes;

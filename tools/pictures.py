@@ -45,7 +45,8 @@ def keep(name, source, folder, colors=96, width=None):
     print(f"{name}.png: {image.width} x {image.height}, {colors} colours, {os.path.getsize(target) // 1000} kB")
 
 
-SATELLITE, STAGES, BLADE = ("docs/tutorials/" + name + ".md" for name in ("satellite", "stage-separation", "rotor-blade"))
+SATELLITE, STAGES, BLADE, ROTOR = (
+    "docs/tutorials/" + name + ".md" for name in ("satellite", "stage-separation", "rotor-blade", "rotor"))
 REPORT = "docs/report.md"
 MODE = "[...document.querySelectorAll('[data-view=modes] button')].find(b => b.textContent === '▶').click()"
 ENERGY = """; (() => { const s = document.querySelector('[aria-label="colour by"]'); s.value = 2;
@@ -80,6 +81,8 @@ SHOTS = {
     "separation": Shot(STAGES, "-o separation.svg"),
     "campbell": Shot(BLADE, "-o campbell.svg"),
     "blade-tip": Shot(BLADE, "-o tip.svg"),
+    "rotor-campbell": Shot(ROTOR, "-o campbell.svg"),
+    "rotor-unbalance": Shot(ROTOR, "-o unbalance.svg"),
     "modes": Shot(REPORT, "-o plate.html", "[data-view=modes]", MODE),
     "modes-energy": Shot(REPORT, "-o modes.html", "[data-view=modes]", MODE + ENERGY),
     # At 6.77 s, where the boom is bent most, seen along the axis of rotation.

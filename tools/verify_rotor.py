@@ -1,13 +1,17 @@
 """Rotors of Friswell, Penny, Garvey & Lees, Dynamics of Rotating Machines (2010), 5.9: whirl frequencies at 0 and 4000 rpm.
 
+Decks with ROTORG and RGYRO (SOL 107, six elements as in the book), and systems:
 The shaft (CBEAM) on its bearings (CELAS2, CDAMP2) is a flexible body at rest; the discs turn on revolute hinges. The
 gyroscopic moments of the discs act, that of the thin shaft is left out: 0.08 % of a frequency at most.
 """
+import json
 import math
 import os
 
 import h5py
 import numpy as np
+
+import rotors
 
 NUM_ELEMENTS, DENSITY, E, G = 24, 7810.0, 2.11e11, 8.12e10
 LENGTH, DIAMETER, WIDTH = 1.5, 0.05, 0.07
@@ -74,6 +78,7 @@ def write_system(folder, discs, rate):
 
 
 def verify(bough, folder, add):
+    verify_decks(bough, folder, add)
     for case, (bearings, discs, *printed) in CASES.items():
         write_shaft(folder, bearings, discs)
         bough(folder, "reduce", "shaft.toml")
@@ -88,3 +93,24 @@ def verify(bough, folder, add):
                     # A mesh of six elements gives the book's 648.55 rad/s at 0 rpm with damped bearings, 24 give 649.47.
                     add(f"rotor, {case}", f"whirl {k + 1} at {rpm} rpm [rad/s]", found[k], target,
                         3e-3 if "damped" in case else 1e-3, BOOK.format(case.split(",")[0]))
+
+
+def verify_decks(bough, folder, add):
+    """The rotors as decks; 5.9.4, whose bearings couple both planes, is printed in Hz at rest."""
+    cases = {case: ([(place, [[k_y, 0], [0, k_z]], [[c, 0], [0, c]]) for place, k_y, k_z, c in bearings], discs, *printed)
+             for case, (bearings, discs, *printed) in CASES.items()}
+    coupled = [(place, [[1e6, 5e5], [5e5, 1e6]], [[0, 0], [0, 0]]) for place in (0, 1.5)]
+    cases["5.9.4, coupled bearings"] = (coupled, CASES["5.9.1, equal bearings"][1],
+                                        [2 * math.pi * f for f in (11.66, 14.80, 33.97, 49.19, 97.97, 126.61)], [])
+    for case, (bearings, discs, *printed) in cases.items():
+        for rpm, targets in zip((0, 4000), printed):
+            deck = rotors.make_friswell_deck(6, bearings, discs, ["RGYRO = 5", "K2PP = KBRG"] if "coupled" in case else ["RGYRO = 5"],
+                                             [f"RGYRO,5,ASYNC,1,RPM,,,{rpm}."])
+            with open(os.path.join(folder, "rotor.bdf"), "w") as f:
+                f.write(deck)
+            found = [m["eigenvalue"]["imag"] for m in json.loads(bough(folder, "modes", "rotor.bdf", "--json"))["modes"]]
+            found = [value for value in found if value > 0]
+            for k, target in enumerate(targets):
+                if target:
+                    add(f"rotor deck, {case}", f"whirl {k + 1} at {rpm} rpm [rad/s]", found[k], target,
+                        5e-4 if "damped" in case or "coupled" in case else 1.5e-4, BOOK.format(case.split(",")[0]))

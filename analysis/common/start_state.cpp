@@ -6,6 +6,8 @@
 
 #include "analysis/common/channels.hpp"
 #include "formats/hdf5/files.hpp"
+#include "formats/toml/specs.hpp"
+#include "solver/loops/loops.hpp"
 
 namespace bough::analysis {
 namespace {
@@ -47,8 +49,9 @@ class Starter {
 bool is_of_run(const records::Checkpoint& checkpoint) { return checkpoint.find("energy") != nullptr; }
 
 /// Says which state it is; warns where the run went on past it.
+/// \param modes  what its events left, in words; empty: nothing.
 void report_time(const records::SystemSpec& spec, const hdf5::ResultsFile& results, const std::string& path,
-                 Diagnostics& diagnostics) {
+                 const std::string& modes, Diagnostics& diagnostics) {
   if (results.time.size() == 0) return;  // missing channels are reported one by one
   const double t = results.time[results.time.size() - 1];
   double reached = t;
@@ -64,7 +67,8 @@ void report_time(const records::SystemSpec& spec, const hdf5::ResultsFile& resul
     return sensor.chain.has("lag") || sensor.chain.has("delay") || sensor.chain.has("random_walk");
   });
   diagnostics.note(
-      "cli.start-state", {path}, fmt::format("the start is its state at t = {:g}", t),
+      "cli.start-state", {path},
+      fmt::format("the start is its state at t = {:g}{}", t, modes.empty() ? "" : "; its events left " + modes),
       spec.controllers.empty() && spec.actuators.empty() && !has_memory ? ""
       : !is_run    ? "controllers, actuators and lags start from the states in which they rest there"
       : has_memory ? "controllers, actuators and lag, delay and random walk of sensors start from no state of their "
@@ -104,25 +108,35 @@ void set_rotors(records::SystemSpec& spec, Starter& starter) {
 
 }  // namespace
 
-void set_start_state(records::SystemSpec& spec, const std::string& path, Diagnostics& diagnostics) {
+StartPoint set_start_state(records::SystemSpec& spec, const std::string& path, Diagnostics& diagnostics) {
   const auto results = hdf5::read_results(path);
   warn_incomplete(path, diagnostics);
-  report_time(spec, results, path, diagnostics);
   Starter starter(results, path, spec.simulation.at, diagnostics);
-  for (auto& body : spec.bodies) {
+  for (const auto& body : spec.bodies) {
     const auto carries = [&](const records::HingeRecord& hinge) { return hinge.child == body.name; };
     const bool floats = std::none_of(spec.hinges.begin(), spec.hinges.end(), carries);
-    if (floats && starter.has("/hinges/" + body.name + "/q")) {
-      records::HingeRecord hinge;
-      hinge.name = hinge.child = body.name;
-      hinge.type = records::HingeType::Free;
-      hinge.at = body.at;
-      spec.hinges.push_back(hinge);
-    }
+    if (!floats || !starter.has("/hinges/" + body.name + "/q")) continue;
+    records::HingeRecord hinge;
+    hinge.name = hinge.child = body.name;
+    hinge.type = records::HingeType::Free;
+    hinge.at = body.at;
+    spec.hinges.push_back(hinge);
+  }
+  Diagnostics ignored;  // the text was run: its errors were reported then
+  const auto before = toml_files::read_system_spec_text(results.system_text, path, ignored);
+  auto modes = set_start_modes(spec, before, results, path, diagnostics);
+  report_time(spec, results, path, modes.text, diagnostics);
+  const auto read_rate = [&](const std::string& channel, std::size_t expected,
+                             const std::map<std::string, std::vector<double>>& after, const std::string& name) {
+    auto rate = starter.read(channel, expected);
+    const auto found = after.find(name);
+    return found != after.end() && found->second.size() == rate.size() ? found->second : rate;
+  };
+  for (auto& body : spec.bodies) {
     if (body.file.empty() || body.num_modes == 0) continue;
     const auto expected = static_cast<std::size_t>(std::max(0, body.num_modes));
     body.eta = starter.read("/bodies/" + body.name + "/eta", expected);
-    body.eta_dot = starter.read("/bodies/" + body.name + "/eta_dot", expected);
+    body.eta_dot = read_rate("/bodies/" + body.name + "/eta_dot", expected, modes.eta_dot, body.name);
   }
   for (auto& tank : spec.tanks) {
     const std::string channel = "/tanks/" + tank.name + "/mass";
@@ -132,11 +146,80 @@ void set_start_state(records::SystemSpec& spec, const std::string& path, Diagnos
     if (!mass.empty()) tank.mass = std::max(0.0, mass.front());
   }
   set_rotors(spec, starter);
+  StartPoint start;
+  start.closed = std::move(modes.closed);
+  if (results.time.size() > 0) start.time = results.time[results.time.size() - 1];
   for (auto& hinge : spec.hinges) {
-    if (hinge.type == records::HingeType::Fixed || !hinge.motion.empty()) continue;
-    hinge.position = starter.read("/hinges/" + hinge.name + "/q", 0);
-    hinge.rate = starter.read("/hinges/" + hinge.name + "/qdot", 0);
+    if (hinge.type == records::HingeType::Fixed) continue;
+    const auto is_free = [](const std::string& function) { return function.empty(); };
+    const bool is_prescribed = !hinge.motion.empty() && std::none_of(hinge.motion.begin(), hinge.motion.end(), is_free);
+    const std::string channel = "/hinges/" + hinge.name;
+    if (!is_prescribed) {
+      hinge.position = starter.read(channel + "/q", 0);
+      hinge.rate = read_rate(channel + "/qdot", 0, modes.hinge_rates, hinge.name);
+    }
+    if (!hinge.motion.empty() && starter.has(channel + "/q")) start.q[hinge.name] = starter.read(channel + "/q", 0);
   }
+  return start;
+}
+
+namespace {
+
+void close_constraints(const StartPoint& start, const std::string& path, solver::System& system,
+                       Diagnostics& diagnostics) {
+  if (start.closed.empty()) return;
+  Eigen::VectorXd q(system.num_q()), u(system.num_u());
+  system.calc_initial_state(q, u);
+  const auto data = system.make_data();
+  solver::calc_kinematics(system, *data, system.start, q, u);
+  auto states = solver::get_constraint_states(data->loops);
+  for (const auto& [name, state] : start.closed) {
+    const int i = system.find_constraint(name);
+    auto& closed = states[static_cast<std::size_t>(i)];
+    closed = solver::find_as_closed(system.loops, system.tree, data->tree, i);  // its q is near
+    closed.R = state.R;
+    closed.p = state.p;
+    closed.gap = state.gap;
+  }
+  system.initial_constraints = states;
+  solver::set_constraint_states(system.loops, system.tree, states, data->loops);
+  solver::calc_closure_positions(system.loops, system.tree, data->tree, data->loops);
+  constexpr double kClosed = 1e-6;  // a run projects onto the constraints from there
+  for (const auto& one : start.closed)
+    if (solver::calc_gap(system.loops, data->loops, system.find_constraint(one.name)) > kClosed)
+      diagnostics.warning("cli.start-modes", {path},
+                          "its events closed constraint '" + one.name + "', which is off in the start of this system",
+                          "start from a file of this system, or leave its loops as they are there");
+}
+
+void warn_of_jumps(const StartPoint& start, const std::string& path, const solver::System& system,
+                   Diagnostics& diagnostics) {
+  constexpr double kSame = 1e-9;  // of the larger value; the samples are those of the functions
+  Eigen::VectorXd q(system.num_q()), u(system.num_u());
+  system.calc_initial_state(q, u);
+  for (const auto& tb : system.tree.bodies) {
+    const auto found = start.q.find(tb.hinge_name);
+    if (found == start.q.end()) continue;
+    for (int i = 0; i < std::min<int>(tb.num_hinge_u(), static_cast<int>(found->second.size())); ++i) {
+      if (tb.mode[static_cast<std::size_t>(i)] != solver::HingeMode::Prescribed) continue;
+      const double before = found->second[static_cast<std::size_t>(i)], after = q[tb.q_offset + i];
+      if (std::abs(before - after) <= kSame * std::max({1e-3, std::abs(before), std::abs(after)})) continue;
+      diagnostics.warning(
+          "cli.start-motion", {path},
+          fmt::format("coordinate {} of hinge '{}' starts at {:g} by its prescribed motion, and its state "
+                      "at t = {:g} is {:g}",
+                      i + 1, tb.hinge_name, after, start.time, before),
+          start.time == system.start ? "change the function, or the start would differ from that state"
+                                     : fmt::format("set start = {:g} in [simulation]", start.time));
+    }
+  }
+}
+
+}  // namespace
+
+void finish_start(const StartPoint& start, const std::string& path, solver::System& system, Diagnostics& diagnostics) {
+  close_constraints(start, path, system, diagnostics);
+  warn_of_jumps(start, path, system, diagnostics);
 }
 
 std::optional<records::Checkpoint> find_start_control(const std::string& path, const solver::System& system,

@@ -1,12 +1,16 @@
 #include "analysis/common/system_files.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 
 #include "analysis/common/body_files.hpp"
 #include "analysis/common/control_files.hpp"
 #include "analysis/common/inputs.hpp"
 #include "analysis/common/start_state.hpp"
+#include "analysis/convert/unit_system.hpp"
 #include "cosim/fmu_controller.hpp"
 
 namespace bough::analysis {
@@ -48,6 +52,21 @@ std::vector<std::string> collect_sources(const std::string& path, const LoadedSy
   return files;
 }
 
+namespace {
+
+void warn_of_units(const records::SystemSpec& spec, Diagnostics& diagnostics) {
+  const double force = calc_unit_force(spec.units);
+  if (std::abs(force - 1) < 1e-6) return;
+  const auto& u = spec.units;
+  diagnostics.warning("system.inconsistent-units", {spec.file},
+                      fmt::format("[units]: a mass in {}, a length in {} and a time in {} make forces of {:g} {}, "
+                                  "and the label is {}",
+                                  u.mass, u.length, u.time, force, u.force, u.force),
+                      "give all numbers in one set, as m, kg, s, N or mm, tonne, s, N; labels convert nothing");
+}
+
+}  // namespace
+
 LoadedSystem load_system(const std::string& path, Diagnostics& diagnostics, const std::string& start_from,
                          const std::vector<std::string>& set) {
   LoadOptions options;
@@ -62,10 +81,11 @@ LoadedSystem load_system(const std::string& path, Diagnostics& diagnostics, Load
     refuse_treetops_input(path);
   }
   const std::string start_from = options.start_from;
+  StartPoint start;
   if (!start_from.empty())
     options.set_start = [&](records::SystemSpec& spec, Diagnostics& found) {
       demand_file(start_from);
-      set_start_state(spec, start_from, found);
+      start = set_start_state(spec, start_from, found);
     };
   const embed::FileReaders readers{read_moving_body,
                                    [](records::SystemSpec& spec, Diagnostics& found) {
@@ -75,6 +95,8 @@ LoadedSystem load_system(const std::string& path, Diagnostics& diagnostics, Load
                                    advise_body, cosim::load_fmu};
   auto loaded = embed::load_system(path, readers, std::move(options), diagnostics);
   loaded.start_from = start_from;
+  warn_of_units(loaded.spec, diagnostics);
+  finish_start(start, start_from, loaded.system, diagnostics);
   return loaded;
 }
 

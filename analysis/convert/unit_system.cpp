@@ -77,6 +77,13 @@ UnitNames name_units(const std::string& text) {
           choose(kForces, factors.mass * factors.length / (factors.time * factors.time))};
 }
 
+double calc_unit_force(const records::UnitLabels& labels) {
+  const auto mass = kMasses.find(labels.mass), length = kLengths.find(labels.length), time = kTimes.find(labels.time),
+             force = kForces.find(labels.force);
+  if (mass == kMasses.end() || length == kLengths.end() || time == kTimes.end() || force == kForces.end()) return 1;
+  return mass->second * length->second / (time->second * time->second) / force->second;
+}
+
 std::pair<std::string, std::string> split_units(const std::string& text) {
   const auto colon = text.find(':');
   if (colon == std::string::npos || text.find(':', colon + 1) != std::string::npos)

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "formats/nastran/unit_conversion.hpp"
+#include "formats/records/unit_labels.hpp"
 
 namespace bough::analysis {
 
@@ -18,6 +19,10 @@ struct UnitNames {
 };
 /// Throws InputError "cli.bad-units".
 UnitNames name_units(const std::string& text);
+
+/// Force of a consistent set in the unit of the label, F = M L / T^2: 0.001 of mm, kg, s and N.
+/// \return 1 also if a label is empty or of no known unit.
+double calc_unit_force(const records::UnitLabels& labels);
 
 /// "mm-N-tonne:m-kg-s" -> its two halves.
 std::pair<std::string, std::string> split_units(const std::string& text);

@@ -79,6 +79,11 @@ std::string make_linear_csv(const LinearModel& model) {
 
 std::string make_sweep_csv(const LinearSweep& sweep) {
   std::vector<exports::CsvColumn> columns{{sweep.parameter, sweep.value}};
+  for (std::size_t i = 0; i < sweep.grid_name.size(); ++i) {
+    Eigen::VectorXd values(sweep.value.size());
+    for (Eigen::Index k = 0; k < values.size(); ++k) values[k] = records::get_grid_value(sweep, k, i);
+    columns.push_back({sweep.grid_name[i], values});
+  }
   for (Eigen::Index b = 0; b < sweep.real.cols(); ++b) {
     const std::string name = std::to_string(b + 1) + " " + sweep.mode.front()[static_cast<std::size_t>(b)];
     columns.push_back({name + ":real", sweep.real.col(b)});

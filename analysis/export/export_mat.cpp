@@ -8,6 +8,7 @@
 #include "formats/hdf5/files.hpp"
 #include "formats/hdf5/linear_file.hpp"
 #include "formats/hdf5/sparse_file.hpp"
+#include "formats/hdf5/sweep_file.hpp"
 #include "formats/matrices/mat_file.hpp"
 #include "formats/records/mode_kind.hpp"
 
@@ -214,6 +215,8 @@ void export_mat(const std::string& file, const std::string& output, Diagnostics&
     const auto model = hdf5::read_linear_model(file);
     variables = make_linear_fields(model);
     for (auto& field : make_second_order_fields(model)) variables.push_back(std::move(field));
+  } else if (format == "bough-sweep") {
+    variables = make_sweep_fields(hdf5::read_sweep(file));
   } else {
     refuse_export(file, "mat", "a flexible body, or what bough modes, matrices, run or linearize wrote");
   }

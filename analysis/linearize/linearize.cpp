@@ -17,6 +17,18 @@ namespace bough::analysis {
 
 namespace {
 
+/// Unit vector of the axis; zero without. \throws InputError "cli.bad-axis"
+Eigen::Vector3d get_spin_axis(const LinearizeRequest& request) {
+  const auto& given = request.spin_axis;
+  if (given.empty()) return Eigen::Vector3d::Zero();
+  const Eigen::Vector3d axis =
+      given.size() == 3 ? Eigen::Vector3d(given[0], given[1], given[2]) : Eigen::Vector3d::Zero();
+  if (!(axis.norm() > 0))
+    throw InputError("cli.bad-axis", {}, "the axis of --spin-axis is zero",
+                     "give the direction of the spin, --spin-axis 1 0 0");
+  return axis.normalized();
+}
+
 /// Warns of bodies that leave the range of their modes at the point, once each: a run to there may have said so.
 void warn_of_deflections(const LinearizeRequest& request, const solver::System& system,
                          const solver::OperatingPoint& point, Diagnostics& diagnostics) {
@@ -48,10 +60,10 @@ void keep_new(const Diagnostics& found, Diagnostics& diagnostics) {
 }
 
 records::LinearSweep sweep_parameter(const LinearizeRequest& request, Diagnostics& diagnostics) {
-  const auto range = parse_sweep(request.sweep);
-  const auto linearize = [&](double value) {
+  const auto ranges = parse_sweeps(request.sweep);
+  const auto linearize = [&](const std::vector<double>& values) {
     auto set = request.set;
-    set.push_back(fmt::format("{}={:.17g}", range.name, value));
+    for (std::size_t i = 0; i < ranges.size(); ++i) set.push_back(fmt::format("{}={:.17g}", ranges[i].name, values[i]));
     Diagnostics found;
     const auto loaded = load_system(request.file, found, request.start_from, set);
     auto plant = make_plant(loaded, request.open);
@@ -59,7 +71,7 @@ records::LinearSweep sweep_parameter(const LinearizeRequest& request, Diagnostic
     keep_new(found, diagnostics);
     return model;
   };
-  return make_sweep(range.name, range.values, linearize, request.file, diagnostics);
+  return make_sweep(ranges, linearize, request.file, diagnostics, get_spin_axis(request));
 }
 
 /// At every N-th sample of the run.
@@ -72,15 +84,15 @@ records::LinearSweep sweep_run(const LinearizeRequest& request, const LoadedSyst
   for (long i = 0; i < samples.num_outputs(); i += request.each) times.push_back(samples.calc_output(i));
   auto plant = make_plant(loaded, request.open);
   std::optional<records::Checkpoint> last;
-  const auto linearize = [&](double t) {
+  const auto linearize = [&](const std::vector<double>& values) {
     Diagnostics found;
-    auto point = run_to(loaded, plant, t, found, &last);
+    auto point = run_to(loaded, plant, values.front(), found, &last);
     if (request.equilibrium) point = find_rest(plant, std::move(point), request.file);
     auto model = linearize_at(request, loaded, plant, std::move(point), false, found);
     keep_new(found, diagnostics);
     return model;
   };
-  return make_sweep("time", times, linearize, request.file, diagnostics);
+  return make_sweep({{"time", times}}, linearize, request.file, diagnostics, get_spin_axis(request));
 }
 
 /// Loads the system, with the first value of a sweep: a parameter without a value has one from it.
@@ -88,10 +100,8 @@ LoadedSystem load(const LinearizeRequest& request, Diagnostics& diagnostics) {
   demand_file(request.file);
   if (has_suffix(request.file, ".toml")) demand_kind(request.file, toml_files::detect_kind(request.file), "system");
   auto set = request.set;
-  if (!request.sweep.empty()) {
-    const auto range = parse_sweep(request.sweep);
+  for (const auto& range : parse_sweeps(request.sweep))
     set.push_back(fmt::format("{}={:.17g}", range.name, range.values.front()));
-  }
   for (const auto& text : request.uncertain)
     if (const auto range = parse_uncertain(text); range.body.empty())
       set.push_back(fmt::format("{}={:.17g}", range.name, range.low));
@@ -107,7 +117,11 @@ solver::OperatingPoint find_point(const LinearizeRequest& request, const LoadedS
 }
 
 void check_sweep(const LinearizeRequest& request) {
-  if (!request.sweep.empty()) parse_sweep(request.sweep);
+  if (!request.spin_axis.empty() && request.sweep.empty() && request.each == 0)
+    throw InputError("cli.bad-axis", {}, "--spin-axis is given without --sweep and --each",
+                     "give a sweep over the rate of the rotation, or leave it out");
+  get_spin_axis(request);
+  parse_sweeps(request.sweep);
   parse_uncertain(request.uncertain);
 }
 

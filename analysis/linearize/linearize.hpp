@@ -21,10 +21,11 @@ struct LinearizeRequest {
   bool equilibrium = false;      ///< at rest or in steady spin near that state
   bool open = false;             ///< without the controllers
   std::vector<std::string> inputs, outputs;
-  std::string cut;    ///< actuator, sensor or controller at which one loop is opened; empty: none
-  int each = 0;       ///< sweep over every each-th sample of the run; 0: none
+  std::string cut;                     ///< actuator, sensor or controller at which one loop is opened; empty: none
+  int each = 0;                        ///< sweep over every each-th sample of the run; 0: none
   std::vector<std::string> uncertain;  ///< "NAME=LOW:HIGH": with inputs and outputs of these parameters (uncertain.hpp)
-  std::string sweep;  ///< sweep over "NAME=FROM:TO:N[:log]" of [parameters]; empty: none
+  std::vector<double> spin_axis;   ///< of a sweep, in the frame of position outputs: directions of whirl; empty: none
+  std::vector<std::string> sweep;  ///< sweep over "NAME=FROM:TO:N[:log]" of [parameters], or a grid of several
 };
 
 /// Called with the files that were read, before the work.

@@ -9,6 +9,7 @@
 
 #include "analysis/common/inputs.hpp"
 #include "analysis/listing/listing.hpp"
+#include "analysis/modes/rotor_speeds.hpp"
 #include "fe/statics/build_model.hpp"
 #include "modal/complex/complex_modes.hpp"
 
@@ -81,6 +82,16 @@ void add_to_listing(const fe::Model& model, const records::DynamicSubcase& subca
   all.push_back(std::move(modes));
 }
 
+/// Synchronous modes in a range of speeds [1/T].
+void add_critical_speeds(double low, double high, records::ComplexModesResult& result) {
+  for (Eigen::Index j = 0; j < result.eigenvalue.size(); ++j) {
+    const double speed = result.eigenvalue(j).imag();
+    if (speed > 0 && speed >= low && speed <= high)
+      result.rotors->critical.push_back(
+          {static_cast<int>(j), speed, result.frequency_hz(j), result.whirl.size() > 0 ? result.whirl(j) : 0});
+  }
+}
+
 }  // namespace
 
 void refuse_complex_option(bool is_given, const char* option) {
@@ -124,7 +135,17 @@ ModesAnswer solve_complex_modes(const ModesRequest& request, const std::vector<i
       subcase = {control, selection == deck.selections.end() ? records::DynamicSelection{} : selection->second};
       model_options.prestress = calc_prestress(deck, model_options, own);
       events.show_progress(fmt::format("subcase {}", id));
-      result = modal::complex_modes::solve_complex_modes(deck, model_options, subcase, solver, own);
+      const modal::complex_modes::ComplexModesSolver modes(deck, model_options, subcase, solver, own);
+      std::optional<double> speed;
+      const auto* rotors = modes.rotor_case();
+      if (rotors != nullptr && !rotors->is_synchronous)
+        speed = rotors->shapes_at >= 0 ? rotors->shapes_at : rotors->speeds.back();
+      result = modes.solve(speed, own);
+      result.speed = speed.value_or(-1);
+      if (rotors != nullptr) {
+        result.rotors = calc_rotor_speeds(modes, request.deck, events, own);
+        if (rotors->is_synchronous) add_critical_speeds(rotors->low, rotors->high, result);
+      }
     } catch (const Failure& failure) {
       events.show_progress("");
       answer.failures.add(id, failure);

@@ -14,6 +14,7 @@
 #include "analysis/common/inputs.hpp"
 #include "analysis/export/export_matrices.hpp"
 #include "analysis/linearize/choose_channels.hpp"
+#include "formats/hdf5/complex_modes_file.hpp"
 #include "formats/hdf5/files.hpp"
 #include "formats/hdf5/linear_file.hpp"
 #include "formats/hdf5/sweep_file.hpp"
@@ -102,7 +103,7 @@ struct Locus {
 
 Locus make_locus(const records::LinearSweep& sweep) {
   Locus locus{sweep.real, sweep.imag};
-  if (sweep.models.front().sample_time == 0) return locus;
+  if (sweep.models.empty() || sweep.models.front().sample_time == 0) return locus;
   for (Index k = 0; k < sweep.real.rows(); ++k)
     for (Index b = 0; b < sweep.real.cols(); ++b) {
       const auto z = records::calc_z(sweep, k, b);
@@ -114,8 +115,9 @@ Locus make_locus(const records::LinearSweep& sweep) {
 
 /// Returns true if the parameter is the rate of a rotation: a speed of the operating points equals it at each value.
 bool is_spin_rate(const records::LinearSweep& sweep) {
+  if (sweep.models.empty()) return sweep.whirl.size() > 0;
   const double tolerance = 1e-6 * sweep.value.cwiseAbs().maxCoeff();
-  if (tolerance == 0 || sweep.models.empty()) return false;
+  if (tolerance == 0) return false;
   const auto& first = sweep.models.front();
   for (Index i = 0; i < first.u.size(); ++i) {
     bool is_equal = first.u_names.dims[static_cast<std::size_t>(i)] == "1/T";
@@ -130,7 +132,9 @@ bool is_spin_rate(const records::LinearSweep& sweep) {
 void add_per_rev(const records::LinearSweep& sweep, int num_lines, Plot& plot) {
   const double first = sweep.value[0], last = sweep.value[sweep.value.size() - 1];
   double top = 0;
-  for (const auto& curve : plot.curves) top = std::max(top, curve.y.maxCoeff());
+  for (const auto& curve : plot.curves)
+    for (const double y : curve.y)
+      if (y > top) top = y;  // not NaN
   const double rate = std::max(std::abs(first), std::abs(last)) / (2 * std::numbers::pi);
   const auto is_drawn = [&](int n) {
     return num_lines > 0 ? n <= num_lines : n <= 8 && n * std::abs(last) / (2 * std::numbers::pi) <= 3 * top;
@@ -140,10 +144,32 @@ void add_per_rev(const records::LinearSweep& sweep, int num_lines, Plot& plot) {
                            Eigen::Vector2d(std::abs(first), std::abs(last)) * n / (2 * std::numbers::pi)});
 }
 
+/// A curve of each direction of whirl that a branch has: forward solid, backward dashed, along a line dotted.
+void add_whirl(const records::LinearSweep& sweep, Index b, const std::string& name, int color, Plot& plot) {
+  static const char* const kWords[] = {"forward", "backward", "line"};
+  const Index np = sweep.value.size();
+  const auto find_direction = [&](Index k) {
+    const std::string word = records::name_whirl(sweep.whirl(k, b));
+    return word == kWords[0] ? 0 : word == kWords[1] ? 1 : 2;
+  };
+  for (int direction = 0; direction < 3; ++direction) {
+    // The first value takes the direction of the next: rotors at rest have none.
+    VectorXd y = VectorXd::Constant(np, std::nan(""));
+    bool is_drawn = false;
+    for (Index k = np > 1 ? 1 : 0; k < np; ++k) {
+      if (find_direction(k) != direction) continue;
+      for (Index i = std::max<Index>(k - 1, 0); i <= k; ++i) y[i] = sweep.frequency_hz(i, b);
+      is_drawn = true;
+    }
+    const int style = color % static_cast<int>(report::kNumColors) + direction * static_cast<int>(report::kNumColors);
+    if (is_drawn) plot.curves.push_back({name + " " + kWords[direction], sweep.value, y, false, style});
+  }
+}
+
 void add_sweep(const records::LinearSweep& sweep, const LinearPlotChoice& choice, const std::string& prefix,
                Plot& plot) {
   const auto& kind = choice.kind;
-  if (kind == "campbell") plot.x_label = sweep.parameter;
+  if (kind == "campbell") plot.x_label = sweep.models.empty() ? sweep.parameter + " [rad/T]" : sweep.parameter;
   const double largest = sweep.frequency_hz.size() > 0 ? sweep.frequency_hz.maxCoeff() : 0;
   std::map<std::string, int> count_of;
   const auto make_name = [&](Index b) {
@@ -167,14 +193,20 @@ void add_sweep(const records::LinearSweep& sweep, const LinearPlotChoice& choice
   std::vector<Index> upper, lower;
   for (Index b = 0; b < sweep.real.cols(); ++b) (sweep.imag.col(b).sum() < 0 ? lower : upper).push_back(b);
   std::vector<int> curve_of(upper.size(), -1);
+  int num_whirls = 0;
   for (std::size_t k = 0; k < upper.size(); ++k) {
     if (stands_at_zero(upper[k])) continue;
+    if (kind == "campbell" && sweep.whirl.size() > 0) {
+      add_whirl(sweep, upper[k], make_name(upper[k]), num_whirls++, plot);
+      continue;
+    }
     curve_of[k] = static_cast<int>(plot.curves.size());
     draw(upper[k], make_name(upper[k]), -1);
   }
   for (const Index b : lower) {
     // A pair has one color, one name and one frequency.
     const int partner = find_conjugate(sweep, b, upper);
+    if (partner >= 0 && kind == "campbell" && sweep.whirl.size() > 0) continue;
     const int style = partner < 0 ? -1 : curve_of[static_cast<std::size_t>(partner)];
     const bool is_drawn =
         style >= 0 && kind == "campbell" &&
@@ -241,10 +273,20 @@ std::vector<Plot> make_linear_plots(const std::vector<std::string>& files, const
     const std::string prefix = files.size() > 1 ? std::filesystem::path(file).stem().string() + " " : "";
     const auto format = read_file_format(file);
     const std::string expected = is_of_sweeps(kind) ? "bough-sweep" : "bough-linear";
+    if (kind == "campbell" && format == "bough-complex-modes") {
+      const auto modes = hdf5::read_complex_modes(file);
+      if (!modes.rotors || modes.rotors->sweep.value.size() < 2)
+        throw InputError("cli.plot-kind", {file}, "the complex modes are of one speed, or have no rotors",
+                         "give RSPEED on RGYRO, or ROTORD, more speeds than one");
+      add_sweep(modes.rotors->sweep, choice, prefix, plots[0]);
+      continue;
+    }
     if (format != expected)
       throw InputError("cli.plot-kind", {file}, fmt::format("--kind {} draws no file of format \"{}\"", kind, format),
-                       is_of_sweeps(kind) ? "give what bough linearize --sweep or --each wrote"
-                                          : "give a linear model of bough linearize");
+                       kind == "campbell"
+                           ? "give what bough linearize --sweep or --each, or bough modes of rotors, wrote"
+                       : is_of_sweeps(kind) ? "give what bough linearize --sweep or --each wrote"
+                                            : "give a linear model of bough linearize");
     if (is_of_sweeps(kind)) {
       add_sweep(hdf5::read_sweep(file), choice, prefix, plots[0]);
       continue;
@@ -260,6 +302,7 @@ std::vector<Plot> make_linear_plots(const std::vector<std::string>& files, const
                        "name some with --inputs and --outputs of bough linearize");
     drawn += add_response(model, kind, prefix, !choice.inputs.empty() || !choice.outputs.empty(), plots);
   }
+  if (kind == "nichols") report::add_nichols_grid(plots[0]);
   if (kind == "poles") {
     std::vector<std::pair<std::string, const records::LinearModel*>> named;
     for (const auto& [name, model] : models) named.emplace_back(name, &model);

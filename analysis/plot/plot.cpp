@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -66,7 +67,8 @@ std::string make_curves_csv(const std::vector<report::Plot>& plots) {
       const auto& curve = plots[p].curves[c];
       const auto name = exports::write_csv_field(name_curve(plots, p, c));
       for (Eigen::Index i = 0; i < curve.x.size(); ++i)
-        text += fmt::format("{},{:.17g},{:.17g}\n", name, curve.x[i], curve.y[i]);
+        if (!std::isnan(curve.y[i]))  // not drawn
+          text += fmt::format("{},{:.17g},{:.17g}\n", name, curve.x[i], curve.y[i]);
     }
   return text;
 }

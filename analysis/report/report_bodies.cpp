@@ -137,6 +137,13 @@ report::Chapter make_body_chapter(const std::string& file, Diagnostics& diagnost
   for (const auto kind : body.kind) m.mode_kind.push_back(records::get_name(kind));
   m.effective_mass = body.effective_mass;
   m.mac = calc_own_mac(modal::ModalModel::from(body));
+  for (int k = 0; k < body.num_nodes(); ++k) {
+    const int id = body.node_id[static_cast<std::size_t>(k)];
+    const auto& interface = body.interface_nodes;
+    m.nodes.push_back({id, body.node_xyz.row(k), std::find(interface.begin(), interface.end(), id) != interface.end()});
+  }
+  for (const auto& locator : body.locators)
+    if (locator.direction == 0) m.loads.push_back(locator.name);
   check_matrices(body, m);
   add_integrals(body, m);
   add_spin(body, m);

@@ -12,11 +12,9 @@
 #include "analysis/export/export_matrices.hpp"
 #include "base/file_roles.hpp"
 #include "formats/hdf5/comparison_file.hpp"
-#include "formats/hdf5/complex_modes_file.hpp"
 #include "formats/hdf5/files.hpp"
 #include "formats/hdf5/sweep_file.hpp"
 #include "formats/hdf5/table_file.hpp"
-#include "report/complex_chapter.hpp"
 #include "report/html.hpp"
 #include "report/linear_chapter.hpp"
 #include "report/static_chapter.hpp"
@@ -129,8 +127,7 @@ report::Chapter make_chapter(const std::string& file, const ReportRequest& reque
   if (format == "bough-results") return make_results_chapter(file, request, diagnostics);
   if (format == "bough-flexbody") return make_body_chapter(file, diagnostics);
   if (format == "bough-modes") return make_modes_chapter(file);
-  if (format == "bough-complex-modes")
-    return report::make_chapter(hdf5::read_complex_modes(file), file, list_facts(file));
+  if (format == "bough-complex-modes") return make_complex_chapter(file);
   if (format == "bough-frequency" || format == "bough-transient") return make_response_chapter(file);
   if (format == "bough-linear") return make_linear_chapter(file);
   if (format == "bough-response") return make_model_response_chapter(file);

@@ -29,6 +29,8 @@ report::Chapter make_response_chapter(const std::string& file);
 report::Chapter make_linear_chapter(const std::string& file);
 /// Chapter of what `response` wrote: Bode diagrams, singular values, peak gain, margins.
 report::Chapter make_model_response_chapter(const std::string& file);
+/// Chapter of the complex modes of a deck, with the Campbell diagram of its rotors.
+report::Chapter make_complex_chapter(const std::string& file);
 /// Chapter of `linearize --sweep` or `--each`: Campbell diagram, root locus, instabilities.
 report::Chapter make_sweep_chapter(const std::string& file);
 /// Chapter of a run: histories of the requested channels, energy, events, the moving system. Throws InputError for an

@@ -4,9 +4,11 @@
 
 #include "analysis/plot/linear_plots.hpp"
 #include "analysis/report/report_files.hpp"
+#include "formats/hdf5/complex_modes_file.hpp"
 #include "formats/hdf5/linear_file.hpp"
 #include "formats/hdf5/sweep_file.hpp"
 #include "formats/records/unit_names.hpp"
+#include "report/complex_chapter.hpp"
 #include "report/html.hpp"
 #include "report/label.hpp"
 #include "report/linear_chapter.hpp"
@@ -87,6 +89,32 @@ std::string list_ranges(const Eigen::VectorXd& value, const std::vector<bool>& h
 }
 
 }  // namespace
+
+report::Chapter make_complex_chapter(const std::string& file) {
+  const auto modes = hdf5::read_complex_modes(file);
+  auto chapter = report::make_chapter(modes, file, list_facts(file));
+  if (!modes.rotors) return chapter;
+  const auto& rotors = *modes.rotors;
+  if (rotors.sweep.value.size() > 1) {
+    auto plots = make_linear_plots({file}, {"campbell", {}, {}});
+    plots.front().title = "Campbell diagram";
+    chapter.add_panel("campbell", "Campbell diagram", report::make_figure(plots.front()));
+  }
+  for (const bool is_critical : {true, false}) {
+    const auto& points = is_critical ? rotors.critical : rotors.thresholds;
+    if (points.empty()) continue;
+    report::HtmlTable table("", {{is_critical && rotors.is_synchronous ? "mode" : "branch"},
+                                 {"speed [rad/T]"},
+                                 {report::label_frequency("")},
+                                 {"whirl", true}});
+    for (const auto& point : points)
+      table.add_row({std::to_string(point.branch + 1), report::format_value(point.speed, 7),
+                     report::format_value(point.frequency_hz, 7), records::name_whirl(point.whirl)});
+    chapter.add_panel(is_critical ? "critical-speeds" : "thresholds",
+                      is_critical ? "Critical speeds" : "Unstable above this speed", table.to_html());
+  }
+  return chapter;
+}
 
 report::Chapter make_sweep_chapter(const std::string& file) {
   const auto sweep = hdf5::read_sweep(file);

@@ -1,11 +1,15 @@
 #include "analysis/report/report_scene.hpp"
 
+#include <fmt/format.h>
+
 #include <map>
 
 #include "analysis/common/body_files.hpp"
 #include "analysis/common/run_bodies.hpp"
 #include "analysis/report/scene_arrows.hpp"
+#include "formats/records/mode_kind.hpp"
 #include "formats/toml/specs.hpp"
+#include "report/html.hpp"
 
 namespace bough::analysis {
 
@@ -44,10 +48,23 @@ std::string name_type(HingeType type) {
   }
 }
 
+/// "mode 3, 12.41 Hz", "mode 7, constraint".
+std::vector<std::string> name_modes(const records::FlexBody& body) {
+  std::vector<std::string> names;
+  for (Eigen::Index j = 0; j < body.frequency_hz.size(); ++j) {
+    const auto kind = body.kind.at(static_cast<std::size_t>(j));
+    names.push_back(fmt::format("mode {}, {}", j + 1,
+                                kind == records::ModeKind::Normal
+                                    ? report::format_value(body.frequency_hz[j], 4) + " Hz"
+                                    : records::get_name(kind)));
+  }
+  return names;
+}
+
 report::SceneBody read_scene_body(const records::SystemSpec& spec, const records::BodyRecord& body,
                                   const std::string& file, const hdf5::RunInputs& inputs, const ReportRequest& request,
                                   std::vector<std::string>& missing) {
-  report::SceneBody drawn{body.name, {}, 0};
+  report::SceneBody drawn{body.name, {}, {}, 0};
   if (body.file.empty()) {
     drawn.drawing = report::make_box(body.mass, body.cg, body.inertia, list_rigid_points(spec, body));
     return drawn;
@@ -64,6 +81,7 @@ report::SceneBody read_scene_body(const records::SystemSpec& spec, const records
   drawn.drawing = report::make_drawing(flex);
   if (!report::add_energy_matrices(flex, drawn.drawing))
     missing.push_back("body " + body.name + ": the strain energy of its elements in all modes is too large for a page");
+  drawn.mode_names = name_modes(flex);
   drawn.size = calc_size(flex.node_xyz);
   return drawn;
 }

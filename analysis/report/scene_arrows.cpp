@@ -210,7 +210,8 @@ void add_arrows(const records::SystemSpec& spec, const ScenePlaces& places, repo
   for (const auto& hinge : spec.hinges)
     if (hinge.type != HingeType::Free) arrows.add_reaction("hinges", hinge);
   for (const auto& constraint : spec.constraints)
-    if (constraint.type != records::ConstraintType::Coupler) arrows.add_reaction("constraints", constraint);
+    if (constraint.type != records::ConstraintType::Coupler && constraint.type != records::ConstraintType::RateCoupler)
+      arrows.add_reaction("constraints", constraint);
   arrows.finish();
 }
 

@@ -231,7 +231,7 @@ int run_batch(const BatchOptions& o) {
 
 void add_batch(CLI::App& app, Action& action) {
   auto o = std::make_shared<BatchOptions>();
-  auto* verb = add_verb(app, "batch", "One job over a grid, a list or a sample of parameters; resumable");
+  auto* verb = add_verb(app, "batch");
   verb->add_option("campaign", o->request.campaign, "Campaign file (.toml)")->required();
   verb->add_option("-j,--jobs", o->request.jobs, "Worker processes (default: one a core)")->check(make_positive());
   verb->add_option("-o,--output", o->output, "Folder of the cases and the table (default: the campaign's name, here)");
@@ -248,12 +248,6 @@ void add_batch(CLI::App& app, Action& action) {
   verb->add_flag("--dry-run", o->dry_run, "Check the campaign and list its cases");
   verb->add_option("--worker", o->worker_fd, "Socket of a worker process")->group("");
   add_common_options(*verb, *o, kJson);
-  verb->footer(
-      "Example:\n  bough batch study.toml --dry-run\n  bough batch study.toml -j 8 -o study\n"
-      "  bough batch study.toml --shard 3/10 -o /scratch/study\n"
-      "  bough batch study.toml --merge part-1 part-2 part-3 -o study\n"
-      "  mpirun -n 4 bough batch study.toml -o study\n"
-      "Finished cases are skipped: the same command goes on after Ctrl-C or a kill. Exit code 3 when a case failed.");
   verb->callback([&action, o, merge] {
     o->merges = merge->count() > 0;
     std::erase(o->request.merged, "");  // what stands for no folder

@@ -95,7 +95,7 @@ int run_check(const CheckOptions& options) {
 
 void add_check(CLI::App& app, Action& action) {
   auto o = std::make_shared<CheckOptions>();
-  auto* verb = add_verb(app, "check", "Read a deck, body, system or HDF5 file; print its content and every error");
+  auto* verb = add_verb(app, action, o, run_check, "check");
   verb->add_option("file", o->request.file, "Nastran deck, body.toml, system.toml, .h5 or .FLX")->required();
   verb->add_option("--gpwg", o->request.weight_grid,
                    "Weights about this grid (0: the origin) as the grid point weight generator of Nastran prints them "
@@ -109,8 +109,6 @@ void add_check(CLI::App& app, Action& action) {
   add_model_options(*verb, o->request.model);
   add_set_option(*verb, o->request.set);
   add_common_options(*verb, *o, kOutput | kJson, "Write the report to this file instead of stdout");
-  verb->footer("Example:\n  bough check boom.bdf\n  bough check spinup.toml --json");
-  verb->callback([&action, o] { action = [o] { return run_check(*o); }; });
 }
 
 }  // namespace bough::cli

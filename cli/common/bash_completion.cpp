@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 
 #include "cli/common/help_files.hpp"
+#include "cli/common/usage_text.hpp"
 
 namespace bough::cli {
 
@@ -55,16 +56,6 @@ std::string list_options(const CLI::App& app) {
   return out;
 }
 
-/// "csv vtu" of an option whose type reads "TEXT:{csv,vtu}"; empty for any other.
-std::string list_values(const CLI::Option& option) {
-  const auto type = option.get_type_name();
-  const auto open = type.find('{'), close = type.find('}');
-  if (open == std::string::npos || close == std::string::npos) return {};
-  auto words = type.substr(open + 1, close - open - 1);
-  std::replace(words.begin(), words.end(), ',', ' ');
-  return words;
-}
-
 }  // namespace
 
 std::string make_bash_completion(const CLI::App& app) {
@@ -74,7 +65,7 @@ std::string make_bash_completion(const CLI::App& app) {
     names += verb->get_name() + " ";
     options += fmt::format("    {}) options=\"{}\" ;;\n", verb->get_name(), list_options(*verb));
     for (const auto* option : verb->get_options()) {
-      const auto words = list_values(*option);
+      const auto words = list_choices(*option);
       if (words.empty()) continue;
       for (const auto& name : list_names(*option)) {
         values += fmt::format("    \"{} {}\") values=\"{}\" ;;\n", verb->get_name(), name, words);

@@ -21,11 +21,6 @@
 namespace bough::cli {
 
 namespace {
-std::size_t display_width(const std::string& text) {
-  return static_cast<std::size_t>(
-      std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
-}
-
 /// "5,990"
 std::string group_digits(std::size_t number) {
   auto text = std::to_string(number);
@@ -72,37 +67,18 @@ std::string show_source_line(const SourceLocation& where) {
 }
 }  // namespace
 
-std::string Table::to_text() const {
-  std::vector<std::size_t> width(headings.size());
-  for (std::size_t c = 0; c < headings.size(); ++c) {
-    width[c] = display_width(headings[c]);
-    for (const auto& row : rows)
-      if (c < row.size()) width[c] = std::max(width[c], display_width(row[c]));
-  }
-  std::string text;
-  auto add_row = [&](const std::vector<std::string>& row) {
-    for (std::size_t c = 0; c < row.size(); ++c) {
-      text += std::string(width[c] - display_width(row[c]) + (c == 0 ? 0 : 2), ' ') + row[c];
-    }
-    text += '\n';
-  };
-  add_row(headings);
-  for (const auto& row : rows) add_row(row);
-  return text;
-}
-
 std::string wrap(const std::string& text, std::size_t indent, std::size_t width) {
   std::istringstream words(text);
   std::string out, word;
   std::size_t column = indent;
   while (words >> word) {
-    if (column > indent && column + 1 + display_width(word) > width) {
+    if (column > indent && column + 1 + calc_display_width(word) > width) {
       out += "\n" + std::string(indent, ' ');
       column = indent;
     }
     if (column > indent) out += ' ';
     out += word;
-    column += display_width(word) + (column > indent ? 1 : 0);
+    column += calc_display_width(word) + (column > indent ? 1 : 0);
   }
   return out;
 }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/diagnostic.hpp"
+#include "base/text_table.hpp"
 #include "base/words.hpp"
 
 namespace bough::cli {
@@ -12,13 +13,7 @@ namespace bough::cli {
 /// Exit codes of the contract.
 enum ExitCode { kSuccess = 0, kInputError = 1, kUsageError = 2, kComputationFailed = 3 };
 
-/// A table of text cells with right-aligned columns; the first row of each column is its heading.
-struct Table {
-  std::vector<std::string> headings;
-  std::vector<std::vector<std::string>> rows;
-  /// Formats headings and rows as lines with two blanks between columns, whose widths count characters on the screen.
-  std::string to_text() const;
-};
+using Table = TextTable;
 
 /// Words of `text` on lines of at most `width` columns; lines after the first begin with `indent` blanks.
 std::string wrap(const std::string& text, std::size_t indent, std::size_t width);

@@ -8,18 +8,33 @@
 #include <filesystem>
 #include <system_error>
 
+#include "analysis/common/failures.hpp"
 #include "analysis/common/output_folder.hpp"
 #include "analysis/common/text_file.hpp"
 #include "base/file_roles.hpp"
 #include "base/part_file.hpp"
+#include "cli/common/command_help.hpp"
 #include "cli/common/console.hpp"
 
 namespace bough::cli {
 
 namespace fs = std::filesystem;
 
-CLI::App* add_verb(CLI::App& app, const std::string& name, const std::string& what) {
-  return app.add_subcommand(name, what);
+CLI::App* add_verb(CLI::App& app, const std::string& name) {
+  const auto& help = get_command_help(name);
+  auto* verb = app.add_subcommand(name, help.summary);
+  verb->footer(help.footer);
+  return verb;
+}
+
+CLI::App* add_verb(CLI::App& app, Action& action, const Action& run, const std::string& name,
+                   const std::string* subject) {
+  auto* verb = add_verb(app, name);
+  verb->callback([&action, run, subject] {
+    action = run;
+    if (subject != nullptr) action = [run, subject] { return analysis::with_file(*subject, run); };
+  });
+  return verb;
 }
 
 void add_common_options(CLI::App& verb, CommonOptions& options, unsigned offers, const std::string& output_help) {

@@ -1,6 +1,8 @@
 #pragma once
 /// \file Options that several verbs share, declared once.
+#include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "cli/verbs.hpp"
@@ -17,8 +19,20 @@ struct CommonOptions {
   bool no_clobber = false;
 };
 
-/// A verb of the program. One unit makes them all: half of CLI11 comes with it, 100 kB of code a unit.
-CLI::App* add_verb(CLI::App& app, const std::string& name, const std::string& what);
+/// Adds a command with its texts (command_help.hpp). One unit makes them all: half of CLI11 comes with it, 100 kB of
+/// code a unit.
+CLI::App* add_verb(CLI::App& app, const std::string& name);
+/// Adds a command that sets `action` to `run` when the command line names it. \param subject  the file that failures
+/// without a file concern, read when the command runs; nullptr: none.
+CLI::App* add_verb(CLI::App& app, Action& action, const Action& run, const std::string& name,
+                   const std::string* subject);
+/// Adds a command that runs run(*options).
+template <class Options, class Run>
+CLI::App* add_verb(CLI::App& app, Action& action, const std::shared_ptr<Options>& options, const Run& run,
+                   const std::string& name, const std::string* subject = nullptr) {
+  return add_verb(
+      app, action, [options, run] { return run(*options); }, name, subject);
+}
 
 enum Offers : unsigned { kOutput = 1, kJson = 2 };
 

@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 
 #include "cli/common/help_files.hpp"
+#include "cli/common/usage_text.hpp"
 
 namespace bough::cli {
 
@@ -14,16 +15,6 @@ std::string shorten(const std::string& text) {
   for (const char c : text) out += c == '\n' ? ' ' : c;
   if (const auto stop = out.find(". "); stop != std::string::npos) out.resize(stop);
   return out;
-}
-
-/// "csv vtu" of an option whose type reads "TEXT:{csv,vtu}"; empty for any other.
-std::string find_words(const CLI::Option& option) {
-  const auto type = option.get_type_name();
-  const auto open = type.find('{'), close = type.find('}');
-  if (open == std::string::npos || close == std::string::npos) return {};
-  auto words = type.substr(open + 1, close - open - 1);
-  std::replace(words.begin(), words.end(), ',', ' ');
-  return words;
 }
 
 /// Options of an app that are for users, positionals left out.
@@ -54,7 +45,7 @@ std::string write_zsh_options(const CLI::App& app) {
   for (const auto* option : list_named(app)) {
     std::string argument;
     if (option->get_type_size() != 0 && option->get_expected_max() > 0) {
-      const auto words = find_words(*option);
+      const auto words = list_choices(*option);
       const char* const sign = option->get_expected_min() == 0 ? "::" : ":";
       argument = sign + std::string("value:") + (words.empty() ? "_files" : "(" + words + ")");
     }
@@ -81,7 +72,7 @@ std::string write_fish_options(const CLI::App& app, const std::string& condition
     out += "complete -c bough -n " + quote_fish(condition);
     for (const auto& name : option->get_snames()) out += " -s " + name;
     for (const auto& name : option->get_lnames()) out += " -l " + name;
-    const auto words = find_words(*option);
+    const auto words = list_choices(*option);
     if (!words.empty()) {
       out += " -x -a " + quote_fish(words);
     } else if (option->get_type_size() != 0 && option->get_expected_min() > 0) {

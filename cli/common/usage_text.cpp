@@ -1,6 +1,7 @@
 #include "cli/common/usage_text.hpp"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 
@@ -81,6 +82,15 @@ std::pair<std::string, std::string> describe_parse_error(const CLI::App& app, co
 }
 
 std::shared_ptr<CLI::Formatter> make_formatter() { return std::make_shared<NarrowFormatter>(); }
+
+std::string list_choices(const CLI::Option& option) {
+  const auto type = option.get_type_name();
+  const auto open = type.find('{'), close = type.find('}');
+  if (open == std::string::npos || close == std::string::npos) return {};
+  auto words = type.substr(open + 1, close - open - 1);
+  std::replace(words.begin(), words.end(), ',', ' ');
+  return words;
+}
 
 CLI::Validator make_positive() { return make_bound("POSITIVE", "a number above 0", false); }
 CLI::Validator make_not_negative() { return make_bound("NONNEGATIVE", "0 or a number above it", true); }

@@ -7,6 +7,7 @@
 namespace CLI {
 class App;
 class Formatter;
+class Option;
 class ParseError;
 class Validator;
 }  // namespace CLI
@@ -18,6 +19,9 @@ std::pair<std::string, std::string> describe_parse_error(const CLI::App& app, co
 
 /// Help in lines of eighty columns; the indented examples of a footer stay as they are.
 std::shared_ptr<CLI::Formatter> make_formatter();
+
+/// "csv vtu" of an option whose type reads "TEXT:{csv,vtu}"; empty for any other.
+std::string list_choices(const CLI::Option& option);
 
 /// Above 0; at least 0. CLI11's own name the largest double in their message.
 CLI::Validator make_positive();

@@ -55,8 +55,7 @@ int run_compare(const CompareOptions& o) {
 
 void add_compare(CLI::App& app, Action& action) {
   auto o = std::make_shared<CompareOptions>();
-  auto* verb = add_verb(app, "compare",
-                        "Two bodies or modes files side by side; modes against a test; the integrals of one body");
+  auto* verb = add_verb(app, action, o, run_compare, "compare");
   verb->add_option("files", o->request.files,
                    "Two flexible bodies or modes files; or one body: its integrals by method; or three with "
                    "--refinement")
@@ -77,12 +76,6 @@ void add_compare(CLI::App& app, Action& action) {
       ->check(CLI::PositiveNumber)
       ->excludes(test);
   add_common_options(*verb, *o, kOutput | kJson, "HDF5 file with the numbers");
-  verb->footer(
-      "Example:\n  bough compare boom.h5\n  bough compare boom.h5 boom-modes.h5 --mass boom-matrices.h5\n"
-      "  bough compare --refinement boom10.h5 boom20.h5 boom40.h5\n"
-      "  bough compare boom-modes.h5 --test survey.unv --tam guyan --deck boom.bdf\n"
-      "  bough compare boom-frequency.h5 --test functions.unv");
-  verb->callback([&action, o] { action = [o] { return run_compare(*o); }; });
 }
 
 }  // namespace bough::cli

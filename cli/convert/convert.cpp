@@ -50,8 +50,7 @@ int run_convert(const ConvertOptions& o) {
 
 void add_convert(CLI::App& app, Action& action) {
   auto o = std::make_shared<ConvertOptions>();
-  auto* verb = add_verb(app, "convert",
-                        "A deck, system, body or flexible-body file in other units; comments and order are kept");
+  auto* verb = add_verb(app, action, o, run_convert, "convert");
   verb->add_option("file", o->request.file, "Nastran deck with its INCLUDE files, system or body file, flexible body")
       ->required();
   auto* units = verb->add_option("--units", o->request.units, "FROM:TO, as mm-N-tonne:m-kg-s")->type_name("FROM:TO");
@@ -63,12 +62,6 @@ void add_convert(CLI::App& app, Action& action) {
   verb->add_flag("--radians", o->request.to_radians, "System file: keys in degrees (_deg) become radians");
   add_common_options(*verb, *o, kOutput, "The file to write");
   verb->get_option("--output")->required();
-  verb->footer(
-      "Units: m mm cm um km in ft, kg g mg t tonne lbm slug slinch, N mN kN MN lbf kgf, s ms min h; of mass, length, "
-      "force and time three give the fourth.\n"
-      "Example:\n  bough convert wing.bdf --units mm-N-tonne:m-kg-s -o wing-si.bdf\n"
-      "  bough convert spinup.toml --units m-kg-s:mm-N-tonne --radians -o mm/spinup.toml");
-  verb->callback([&action, o] { action = [o] { return run_convert(*o); }; });
 }
 
 }  // namespace bough::cli

@@ -88,17 +88,10 @@ int run_equilibrium(const EquilibriumOptions& o) {
 
 void add_equilibrium(CLI::App& app, Action& action) {
   auto o = std::make_shared<EquilibriumOptions>();
-  auto* verb = add_verb(app, "equilibrium", "A state of rest, or of steady spin, of a multibody system");
+  auto* verb = add_verb(app, action, o, run_equilibrium, "equilibrium", &o->request.file);
   verb->add_option("file", o->request.file, "System file (.toml); hinge rates given there are kept")->required();
   add_set_option(*verb, o->request.set);
   add_common_options(*verb, *o, kOutput | kJson, "Write the state to this HDF5 file, for --start-from");
-  verb->footer(
-      "Example:\n  bough equilibrium arm.toml -o rest.h5\n"
-      "  bough linearize arm.toml --start-from rest.h5 -o arm-linear.h5\n"
-      "Hinge rates of the system file are kept: other than zero they give a steady spin.");
-  verb->callback([&action, o] {
-    action = [o] { return analysis::with_file(o->request.file, [&] { return run_equilibrium(*o); }); };
-  });
 }
 
 }  // namespace bough::cli

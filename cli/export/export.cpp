@@ -155,7 +155,7 @@ std::string list_inputs() {
 
 void add_export(CLI::App& app, Action& action) {
   auto o = std::make_shared<ExportOptions>();
-  auto* verb = add_verb(app, "export", "Bodies, modes, matrices, results or a deck in the format of another program");
+  auto* verb = add_verb(app, action, o, run_export, "export");
   verb->add_option("file", o->request.file, list_inputs())->required();
   std::string formats = "Format: ";
   std::vector<std::string> words;
@@ -190,19 +190,6 @@ void add_export(CLI::App& app, Action& action) {
   add_common_options(*verb, *o, kOutput,
                      "Write to this file instead of stdout; fmu: again with a signal, another output of the FMU");
   verb->get_option("--output")->multi_option_policy(CLI::MultiOptionPolicy::Join);
-  verb->footer(
-      "Example:\n  bough export spinup.h5 --to csv -o spinup.csv\n"
-      "  bough export spinup.h5 --to csv --channel tip_deflection:y --channel /bodies/boom/eta\n"
-      "  bough export spinup.h5 --to csv --channel events\n"
-      "  bough export boom-modes.h5 --to vtu -o boom.vtu\n  bough export boom-modes.h5 --to csv --channel modes\n"
-      "  bough export spinup.h5 --to pvd --every 10 -o spinup.pvd\n  bough export spinup.h5 --to gltf -o spinup.glb\n"
-      "  bough export spinup.h5 --to uff --moving --every 10 -o spinup.uff\n"
-      "  bough export boom.h5 --to mat -o boom.mat\n"
-      "  bough export boom-modes.h5 --to uff -o boom.uff\n  bough export boom.h5 --to sid -o boom.SID_FEM\n"
-      "  bough export boom.h5 --to mbdyn -o boom.fem\n  bough export boom.h5 --to flat -o boom.flat\n  bough export "
-      "spinup.toml --to fmu --fmi 2 --channel tip_deflection:y -o spinup.fmu\n  bough export boom.bdf --to bdf -o "
-      "plain.bdf\n  bough export panel.bdf --to extseout -o panel");
-  verb->callback([&action, o] { action = [o] { return run_export(*o); }; });
 }
 
 }  // namespace bough::cli

@@ -89,7 +89,7 @@ int run_flx(const FlxVerbOptions& o) {
 
 void add_flx(CLI::App& app, Action& action) {
   auto o = std::make_shared<FlxVerbOptions>();
-  auto* verb = add_verb(app, "flx", "Flexible bodies become a .FLX file for TREETOPS, or such a file is read");
+  auto* verb = add_verb(app, "flx");
   verb->add_option("body", o->request.bodies, "Flexible-body files that bough reduce wrote; several go into one .FLX");
   verb->add_option("--read", o->read,
                    "Print this .FLX file block by block, of FILE.FLX:2 the body with the id 2; with -o write it again");
@@ -116,12 +116,6 @@ void add_flx(CLI::App& app, Action& action) {
       ->capture_default_str();
   add_flx_options(*verb, *o);
   add_common_options(*verb, *o, kOutput | kJson, ".FLX file to write (default: the body file's name with .FLX, here)");
-  verb->footer(
-      "Example:\n  bough flx boom.h5 --special-nodes -o boom.FLX\n  bough flx boom.h5 --layout site.layout -o "
-      "boom.FLX\n"
-      "  bough flx left.h5 right.h5 --stiffening -o panels.FLX\n"
-      "  bough flx boom.h5 --special-nodes --int boom.int.txt -o boom.FLX\n"
-      "  bough flx --read boom.FLX --json");
   verb->callback([&action, o, verb] {
     o->digits_given = verb->count("--digits") > 0;
     action = [o] { return run_flx(*o); };

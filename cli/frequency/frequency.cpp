@@ -32,7 +32,7 @@ struct DeckResponseOptions : CommonOptions {
   bool full = false;
   std::string csv, punch, notch_csv;
   std::vector<std::string> limits, densities, bands;
-  ListingOptions listing;
+  analysis::ListingFiles listing;
 };
 
 int run_deck_response(const DeckResponseOptions& options) {
@@ -61,7 +61,7 @@ int run_deck_response(const DeckResponseOptions& options) {
     if (!options.csv.empty()) analysis::write_text_file(options.csv, exports::make_response_csv(response));
     if (!options.punch.empty()) analysis::write_text_file(options.punch, exports::make_punch_text(response));
     if (!options.notch_csv.empty()) analysis::write_text_file(options.notch_csv, make_notch_csv(answer.notches));
-    if (answer.listing) write_listings(options.listing, *answer.listing);
+    if (answer.listing) analysis::write_listings(options.listing, *answer.listing);
   });
   if (options.json) {
     nlohmann::json json{{"subcases", nlohmann::json::array()}};
@@ -86,11 +86,10 @@ int run_deck_response(const DeckResponseOptions& options) {
   return answer.failures.get_exit_code();
 }
 
-void add_response_verb(CLI::App& app, Action& action, bool is_over_time, const char* name, const char* what,
-                       const std::string& footer) {
+void add_response_verb(CLI::App& app, Action& action, bool is_over_time, const char* name) {
   auto o = std::make_shared<DeckResponseOptions>();
   o->request.is_transient = is_over_time;
-  auto* verb = add_verb(app, name, what);
+  auto* verb = add_verb(app, action, o, run_deck_response, name, &o->request.deck);
   verb->add_option("deck", o->request.deck, "Nastran deck")->required();
   verb->add_option("--grid", o->request.grids,
                    "Displacement, velocity and acceleration of this grid too; may be repeated")
@@ -125,26 +124,12 @@ void add_response_verb(CLI::App& app, Action& action, bool is_over_time, const c
   add_listing_options(*verb, o->listing);
   add_model_options(*verb, o->request.model);
   add_common_options(*verb, *o, kOutput | kJson, "Write the curves to this HDF5 file");
-  verb->footer(footer);
-  verb->callback([&action, o] {
-    action = [o] { return analysis::with_file(o->request.deck, [&] { return run_deck_response(*o); }); };
-  });
 }
 
 }  // namespace
 
-void add_frequency(CLI::App& app, Action& action) {
-  add_response_verb(app, action, false, "frequency",
-                    "Frequency response of a deck, by modes with residual vectors (SOL 111) or directly (SOL 108)",
-                    "Example:\n  bough frequency bracket.bdf -o bracket.h5 --csv bracket.csv\n"
-                    "  bough frequency bracket.bdf --grid 12 --max-hz 500 --punch bracket.pch");
-}
+void add_frequency(CLI::App& app, Action& action) { add_response_verb(app, action, false, "frequency"); }
 
-void add_transient(CLI::App& app, Action& action) {
-  add_response_verb(app, action, true, "transient",
-                    "Transient response of a deck, by modes with residual vectors (SOL 112) or directly (SOL 109)",
-                    "Example:\n  bough transient bracket.bdf -o bracket.h5 --csv bracket.csv\n"
-                    "  bough transient bracket.bdf --grid 12 --json --full");
-}
+void add_transient(CLI::App& app, Action& action) { add_response_verb(app, action, true, "transient"); }
 
 }  // namespace bough::cli

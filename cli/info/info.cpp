@@ -66,11 +66,9 @@ int run_info(const InfoOptions& o) {
 
 void add_info(CLI::App& app, Action& action) {
   auto o = std::make_shared<InfoOptions>();
-  auto* verb = add_verb(app, "info", "What an HDF5 file of Bough, a .FLX or a flat body file holds");
+  auto* verb = add_verb(app, action, o, run_info, "info");
   verb->add_option("file", o->file, "HDF5 file, .FLX or flat body file")->required();
   add_common_options(*verb, *o, kOutput | kJson, "Write the list to this file instead of stdout");
-  verb->footer("Example:\n  bough info boom.h5");
-  verb->callback([&action, o] { action = [o] { return run_info(*o); }; });
 }
 
 }  // namespace bough::cli

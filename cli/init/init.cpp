@@ -146,8 +146,7 @@ int run_init(const InitOptions& o) {
 
 void add_init(CLI::App& app, Action& action) {
   auto o = std::make_shared<InitOptions>();
-  auto* verb =
-      add_verb(app, "init", "A ready example to start from, or the files for a deck: spinup, hub, two-link, ...");
+  auto* verb = add_verb(app, action, o, run_init, "init");
   std::string names;
   for (const auto& known : get_templates()) names += std::string(names.empty() ? "" : ", ") + known.name;
   verb->add_option("template", o->name, names + "; or a Nastran deck. Default: lists them");
@@ -158,9 +157,6 @@ void add_init(CLI::App& app, Action& action) {
   verb->add_flag("--force", o->force, "Overwrite files that are there already");
   verb->add_flag("-q,--quiet", o->quiet, "Print errors only");
   verb->add_flag("-v,--verbose")->description("Accepted as by every verb; init has nothing more to tell");
-  verb->footer(
-      "Example:\n  bough init\n  bough init spinup\n  bough init hub -o my-hub\n  bough init arm.bdf --hinge 1");
-  verb->callback([&action, o] { action = [o] { return run_init(*o); }; });
 }
 
 }  // namespace bough::cli

@@ -65,7 +65,7 @@ int run_integrals(const IntegralsOptions& o) {
 
 void add_integrals(CLI::App& app, Action& action) {
   auto o = std::make_shared<IntegralsOptions>();
-  auto* verb = add_verb(app, "integrals", "Mass integrals of given matrices and modes (NASA-CR-202063 4.2.3)");
+  auto* verb = add_verb(app, action, o, run_integrals, "integrals", &o->request.matrices);
   verb->add_option("model", o->request.model, "Model information file: sizes, dof map, nodes, options")->required();
   verb->add_option("matrices", o->request.matrices, "Matrices file: mass, stiffness, damping, mode shapes")->required();
   verb->add_option("--fi", o->fi, "Write the twelve inertial loads, ndof x 12, too: text, a row per dof");
@@ -74,12 +74,6 @@ void add_integrals(CLI::App& app, Action& action) {
       ->capture_default_str();
   add_flx_options(*verb, *o);
   add_common_options(*verb, *o, kOutput | kJson, ".FLX file to write (default: the model file's name with .FLX, here)");
-  verb->footer(
-      "Example:\n  bough integrals test.inp test.mat -o test.FLX\n"
-      "  bough integrals test.inp test.mat --fi test.fi --digits 17 -o test.FLX");
-  verb->callback([&action, o] {
-    action = [o] { return analysis::with_file(o->request.matrices, [&] { return run_integrals(*o); }); };
-  });
 }
 
 }  // namespace bough::cli

@@ -54,8 +54,9 @@ int run_linearize(const LinearizeVerbOptions& o) {
     else
       console.print(format_sweep(sweep));
     if (!o.output.empty()) hdf5::write_sweep(sweep, o.output);
+    if (!o.mat.empty()) analysis::write_sweep_mat(sweep, o.mat);
     if (!o.csv.empty()) analysis::write_text_file(o.csv, analysis::make_sweep_csv(sweep));
-    print_written(o, console, {o.output, o.csv});
+    print_written(o, console, {o.output, o.mat, o.csv});
     return kSuccess;
   }
   const auto model = analysis::linearize(request, check, events);
@@ -75,7 +76,7 @@ int run_linearize(const LinearizeVerbOptions& o) {
 
 void add_linearize(CLI::App& app, Action& action) {
   auto o = std::make_shared<LinearizeVerbOptions>();
-  auto* verb = add_verb(app, "linearize", "A B C D, poles and zeros of a multibody system about a state");
+  auto* verb = add_verb(app, action, o, run_linearize, "linearize", &o->request.file);
   verb->add_option("file", o->request.file, "System file (.toml)")->required();
   verb->add_option("--at", o->request.at, "Run to this time and linearize there (default: the initial state)")
       ->check(make_finite());
@@ -102,28 +103,22 @@ void add_linearize(CLI::App& app, Action& action) {
   verb->add_option(
           "--sweep", o->request.sweep,
           "NAME=FROM:TO:N, a model for each of N values of a parameter, their poles followed; with :log evenly "
-          "by ratio")
+          "by ratio; given for several parameters, a model for each point of their grid (LPV)")
       ->excludes(each);
+  verb->add_option("--spin-axis", o->request.spin_axis,
+                   "Of --sweep and --each: X Y Z, axis of the spin in the frame of the position sensors: whirl of each "
+                   "mode, forward or backward")
+      ->expected(3)
+      ->check(make_finite());
   auto* uncertain = verb->add_option("--uncertain", o->request.uncertain,
                                      "NAME=LOW:HIGH, a parameter, or BODY:eta1:frequency, stiffness or damping as a "
                                      "factor: the model with inputs w and "
                                      "outputs z for w = delta z, delta in [-1, 1]; may be repeated");
   uncertain->excludes(each)->excludes("--sweep");
   verb->add_option("--csv", o->csv, "Write [A B; C D] with names, or the poles of a sweep, to this CSV file");
-  verb->add_option("--mat", o->mat, "Write A B C D and the names to this MATLAB file")
-      ->excludes(each)
-      ->excludes("--sweep");
+  verb->add_option("--mat", o->mat, "Write A B C D and the names, of a sweep arrays of them, to this MATLAB file");
   add_set_option(*verb, o->request.set);
   add_common_options(*verb, *o, kOutput | kJson, "Write the model to this HDF5 file");
-  verb->footer(
-      "Example:\n  bough linearize arm.toml -o arm-linear.h5 --mat arm.mat\n"
-      "  bough linearize arm.toml --inputs shoulder,elbow --outputs tip:y --at 2.5 --json\n"
-      "  bough linearize rotor.toml --equilibrium --sweep rate=0:6:25 -o campbell.h5\n"
-      "  bough linearize arm.toml --uncertain gain=4:6 --uncertain boom:eta1:frequency=0.95:1.05 --mat arm.mat\n"
-      "  bough linearize arm.toml --break motor -o loop.h5 && bough response loop.h5");
-  verb->callback([&action, o] {
-    action = [o] { return analysis::with_file(o->request.file, [&] { return run_linearize(*o); }); };
-  });
 }
 
 }  // namespace bough::cli

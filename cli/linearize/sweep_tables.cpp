@@ -46,6 +46,10 @@ nlohmann::json make_json(const LinearSweep& sweep) {
                         {"damping", to_rows(sweep.damping)},
                         {"correlation", to_rows(sweep.correlation)},
                         {"mode", sweep.mode}}}};
+  if (sweep.whirl.size() > 0) json["poles"]["whirl"] = to_rows(sweep.whirl);
+  for (std::size_t i = 0; i < sweep.grid_name.size(); ++i)
+    json["grid"].push_back({{"name", sweep.grid_name[i]},
+                            {"value", std::vector<double>(sweep.grid_value[i].begin(), sweep.grid_value[i].end())}});
   if (sweep.models.front().sample_time > 0)
     for (const auto& model : sweep.models) json["sample_time"].push_back(model.sample_time);
   return json;
@@ -53,16 +57,24 @@ nlohmann::json make_json(const LinearSweep& sweep) {
 
 std::string format_sweep(const LinearSweep& sweep) {
   const auto &first = sweep.models.front(), &last = sweep.models.back();
-  std::string text =
-      fmt::format("{} of {} from {:g} to {:g}: {} states, {} inputs, {} outputs\n\n",
-                  count(sweep.models.size(), "model"), sweep.parameter, sweep.value[0],
-                  sweep.value[sweep.value.size() - 1], first.states.size(), first.inputs.size(), last.outputs.size());
+  std::string over;
+  for (std::size_t i = 0; i < sweep.grid_name.size(); ++i) {
+    const auto& values = sweep.grid_value[i];
+    over += fmt::format("{}{} from {:g} to {:g} ({})", i > 0 ? ", " : "", sweep.grid_name[i], values[0],
+                        values[values.size() - 1], count(static_cast<std::size_t>(values.size()), "value"));
+  }
+  if (over.empty())
+    over = fmt::format("{} from {:g} to {:g}", sweep.parameter, sweep.value[0], sweep.value[sweep.value.size() - 1]);
+  std::string text = fmt::format("{} of {}: {} states, {} inputs, {} outputs\n\n", count(sweep.models.size(), "model"),
+                                 over, first.states.size(), first.inputs.size(), last.outputs.size());
   if (first.sample_time > 0)
     text += fmt::format("from sample to sample, every {:g}{}: of a pole z there is ln z over that time\n\n",
                         first.sample_time,
                         last.sample_time != first.sample_time ? fmt::format(" to {:g}", last.sample_time) : "");
   const auto unit = records::name_frequency_unit(first.units.time);
   Table table{{"branch", "from " + unit, "to " + unit, "damping from", "to", "largest real", "mode"}, {}};
+  const bool has_whirl = sweep.whirl.size() > 0;
+  if (has_whirl) table.headings.emplace_back("whirl");
   const Index end = sweep.value.size() - 1;
   for (Index b = 0; b < sweep.real.cols(); ++b) {
     if (!is_shown(sweep, b)) continue;
@@ -71,7 +83,12 @@ std::string format_sweep(const LinearSweep& sweep) {
     table.rows.push_back({std::to_string(b + 1), fmt::format("{:.6g}", sweep.frequency_hz(0, b)),
                           fmt::format("{:.6g}", sweep.frequency_hz(end, b)), fmt::format("{:.4g}", sweep.damping(0, b)),
                           fmt::format("{:.4g}", sweep.damping(end, b)),
-                          fmt::format("{:.3g} at {:g}", max_real, sweep.value[worst]), name_branch(sweep, b)});
+                          sweep.grid_name.empty()
+                              ? fmt::format("{:.3g} at {:g}", max_real, sweep.value[worst])
+                              : fmt::format("{:.3g} at {}", max_real, records::describe_point(sweep, worst)),
+                          name_branch(sweep, b)});
+    if (has_whirl)
+      table.rows.back().emplace_back(sweep.imag(end, b) > 0 ? records::name_whirl(sweep.whirl(end, b)) : "-");
   }
   return text + table.to_text() + format_gone(sweep);
 }

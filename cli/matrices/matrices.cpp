@@ -122,8 +122,7 @@ int run_matrices(const MatricesOptions& options) {
 
 void add_matrices(CLI::App& app, Action& action) {
   auto o = std::make_shared<MatricesOptions>();
-  auto* verb =
-      add_verb(app, "matrices", "Stiffness, mass, damping and geometric stiffness of a deck before constraints");
+  auto* verb = add_verb(app, action, o, run_matrices, "matrices", &o->request.deck);
   verb->add_option("deck", o->request.deck, "Nastran deck")->required();
   verb->add_option("--to", o->format, "h5 (HDF5), mtx (Matrix Market) or op4 (Nastran OUTPUT4, formatted)")
       ->check(CLI::IsMember({"h5", "mtx", "op4"}))
@@ -136,11 +135,6 @@ void add_matrices(CLI::App& app, Action& action) {
   add_model_options(*verb, o->request.model);
   add_common_options(*verb, *o, kOutput | kJson, "File to write; mtx puts the name of each matrix before its ending");
   verb->get_option("--output")->required();
-  verb->footer(
-      "Example:\n  bough matrices column.bdf -o column.h5\n  bough matrices column.bdf --to mtx -o column.mtx");
-  verb->callback([&action, o] {
-    action = [o] { return analysis::with_file(o->request.deck, [&] { return run_matrices(*o); }); };
-  });
 }
 
 }  // namespace bough::cli

@@ -33,7 +33,7 @@ namespace {
 struct ModesOptions : CommonOptions {
   analysis::ModesRequest request;
   std::string vtu, compare;
-  ListingOptions listing;
+  analysis::ListingFiles listing;
 };
 
 /// "boom.h5" is "boom-subcase-2.h5" for a subcase after the first.
@@ -105,9 +105,8 @@ class ModesOutput final : public analysis::ModesReceiver {
       console_.print(text_);
     analysis::do_once([&] {
       for (const auto& [path, picture] : pictures_) analysis::write_text_file(path, picture);
-      if (answer.listing) write_listings(options_.listing, *answer.listing);
-      if (is_complex_ && !options_.listing.f06.empty())
-        analysis::write_text_file(options_.listing.f06, listing::make_complex_f06(answer.complex_listing));
+      if (answer.listing) analysis::write_listings(options_.listing, *answer.listing);
+      if (is_complex_) analysis::write_complex_listing(options_.listing, answer.complex_listing);
     });
     for (const auto& path : {options_.listing.f06, options_.listing.op2})
       if (!path.empty()) written_ += "written: " + path + "\n";
@@ -183,9 +182,7 @@ int run_modes(const ModesOptions& options) {
 
 void add_modes(CLI::App& app, Action& action) {
   auto o = std::make_shared<ModesOptions>();
-  auto* verb =
-      add_verb(app, "modes",
-               "Normal modes (SOL 103), complex modes (SOL 107, 110) or buckling load factors (SOL 105) of a deck");
+  auto* verb = add_verb(app, action, o, run_modes, "modes", &o->request.deck);
   verb->add_option("deck", o->request.deck, "Nastran deck")->required();
   verb->add_option("-n,--number,--modes", o->request.eigen.number,
                    "Number of modes (default: the deck's EIGRL or EIGC, else 10)")
@@ -215,12 +212,6 @@ void add_modes(CLI::App& app, Action& action) {
   verb->get_option("--op2")->excludes(buckling);
   add_model_options(*verb, o->request.model);
   add_common_options(*verb, *o, kOutput | kJson, "Write the modes to this HDF5 file");
-  verb->footer(
-      "Example:\n  bough modes boom.bdf --number 6 -o boom-modes.h5 --vtu boom.vtu\n"
-      "  bough modes column.bdf --buckling\n  bough modes boom.bdf --ese --compare boom.h5\n"
-      "  mpirun -n 2 bough modes boom.bdf");
-  verb->callback(
-      [&action, o] { action = [o] { return analysis::with_file(o->request.deck, [&] { return run_modes(*o); }); }; });
 }
 
 }  // namespace bough::cli

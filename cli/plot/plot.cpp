@@ -95,7 +95,7 @@ int run_plot(const PlotOptions& o) {
 
 void add_plot(CLI::App& app, Action& action) {
   auto o = std::make_shared<PlotOptions>();
-  auto* verb = add_verb(app, "plot", "Curves of results against time, or a linear model, as a picture");
+  auto* verb = add_verb(app, action, o, run_plot, "plot");
   verb->add_option("files", o->request.files, "HDF5 files: results, or with --kind linear models or sweeps")
       ->required();
   verb->add_option("--sensor,--channel", o->request.sensors,
@@ -182,15 +182,6 @@ void add_plot(CLI::App& app, Action& action) {
   low->needs(high)->each([o](const std::string&) { o->request.has_limits = true; });
   high->needs(low);
   add_common_options(*verb, *o, kOutput, "Picture: .svg, .png or .pdf (default: the sensor's name with .svg, here)");
-  verb->footer(
-      "Example:\n  bough plot spinup.h5 --sensor tip_deflection:y -o tip.svg\n"
-      "  bough plot spinup.h5 spinup-no-kg.h5 --sensor tip_deflection:y --y-min -1.2 --y-max 0.2 -o tip.svg\n"
-      "  bough plot spinup.h5 --sensor /bodies/boom/eta:1 --psd --term\n"
-      "  bough plot a.h5 b.h5 --sensor tip:y --difference --window 0,10 -o difference.svg\n"
-      "  bough plot outcomes.h5 --sensor tip_max --x density -o scatter.svg\n"
-      "  bough plot arm-linear.h5 --kind bode --outputs tip:y -o bode.svg\n"
-      "  bough plot campbell.h5 --kind campbell -o campbell.svg");
-  verb->callback([&action, o] { action = [o] { return run_plot(*o); }; });
 }
 
 }  // namespace bough::cli

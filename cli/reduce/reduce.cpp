@@ -161,7 +161,7 @@ int run_reduce(const ReduceVerbOptions& o) {
 
 void add_reduce(CLI::App& app, Action& action) {
   auto o = std::make_shared<ReduceVerbOptions>();
-  auto* verb = add_verb(app, "reduce", "A deck becomes a flexible body: modes, mass integrals, geometric stiffness");
+  auto* verb = add_verb(app, "reduce");
   verb->add_option("file", o->request.file, "Body file (.toml) or Nastran deck; may be missing with --matrices");
   verb->add_option("-n,--modes,--number", o->request.num_modes, "Number of elastic modes")->check(make_positive());
   verb->add_option("--max-hz", o->request.max_hz, "Highest frequency wanted")->check(make_positive());
@@ -213,10 +213,6 @@ void add_reduce(CLI::App& app, Action& action) {
   verb->add_flag_callback(
       "--full", [o] { o->request.full = true; }, "Write the modes and inertial loads of every dof too");
   add_common_options(*verb, *o, kOutput | kJson, "Flexible-body HDF5 file (default: the body file's, else NAME.h5)");
-  verb->footer(
-      "Example:\n  bough reduce boom.toml\n  bough reduce boom.bdf --modes 3 --interface 41 -o boom.h5\n"
-      "  bough reduce boom.bdf --modes 3 --interface 41 --recover 1,20-25 -o boom.h5\n"
-      "  bough reduce boom.bdf --matrices boom.op4 --modes 3\n  mpirun -n 2 bough reduce boom.toml");
   verb->callback([&action, o] {
     if (o->request.file.empty() && o->request.matrices.empty()) throw CLI::RequiredError("file");
     action = [o] { return analysis::with_file(o->request.file, [&] { return run_reduce(*o); }); };

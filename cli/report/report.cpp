@@ -40,7 +40,7 @@ int run_report(const ReportOptions& o) {
 
 void add_report(CLI::App& app, Action& action) {
   auto o = std::make_shared<ReportOptions>();
-  auto* verb = add_verb(app, "report", "One HTML page of results, bodies, modes, linear models, for any browser");
+  auto* verb = add_verb(app, action, o, run_report, "report");
   verb->add_option("files", o->request.files,
                    "Results, flexible bodies, modes, static solutions, responses, linear models, sweeps, comparisons, "
                    "outcomes.h5 of "
@@ -52,11 +52,6 @@ void add_report(CLI::App& app, Action& action) {
       ->allow_extra_args(false);
   verb->add_option("--title", o->request.title, "Title of the page (default: the name of the first file)");
   add_common_options(*verb, *o, kOutput, "The page (default: the first file's name with .html, here)");
-  verb->footer(
-      "The page loads nothing from anywhere. Bodies of a run are drawn from the files that it names, or from those "
-      "given "
-      "here.\nExample:\n  bough report spinup.h5 boom.h5 -o spinup.html");
-  verb->callback([&action, o] { action = [o] { return run_report(*o); }; });
 }
 
 }  // namespace bough::cli

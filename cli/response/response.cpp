@@ -232,8 +232,7 @@ int run_response(const ResponseOptions& o) {
 
 void add_response(CLI::App& app, Action& action) {
   auto o = std::make_shared<ResponseOptions>();
-  auto* verb =
-      add_verb(app, "response", "Frequency response, largest gain, margins and random response of a linear model");
+  auto* verb = add_verb(app, action, o, run_response, "response", &o->request.file);
   verb->add_option("file", o->request.file, "Linear model (.h5) of bough linearize")->required();
   verb->add_option("--inputs", o->request.inputs, "Only these inputs (default: all)")->delimiter(',');
   verb->add_option("--outputs", o->request.outputs, "Only these outputs (default: all)")->delimiter(',');
@@ -259,15 +258,6 @@ void add_response(CLI::App& app, Action& action) {
       ->excludes("--psd")
       ->excludes("--loop")
       ->excludes("--inputs");
-  verb->footer(
-      "Example:\n  bough linearize arm.toml --break motor -o loop.h5 && bough response loop.h5\n"
-      "  bough response arm-linear.h5 --outputs tip:y --csv tip.csv\n"
-      "  bough response arm-linear.h5 --psd motor=1e-4 --psd wind.csv -o random.h5\n"
-      "  bough response satellite-linear.h5 --outputs sight --budget jitter.toml -o budget.h5 --csv budget.csv\n"
-      "bough plot arm-linear.h5 --kind bode draws it.");
-  verb->callback([&action, o] {
-    action = [o] { return analysis::with_file(o->request.file, [&] { return run_response(*o); }); };
-  });
 }
 
 }  // namespace bough::cli

@@ -135,7 +135,7 @@ int run_run(const RunOptions& o) {
 
 void add_run(CLI::App& app, Action& action) {
   auto o = std::make_shared<RunOptions>();
-  auto* verb = add_verb(app, "run", "Time history of a multibody system");
+  auto* verb = add_verb(app, action, o, run_run, "run");
   verb->add_option("file", o->request.file, "System file (.toml)")->required();
   verb->add_flag("--resume", o->request.resume, "Continue the results file from its last checkpoint");
   verb->add_option("--start-from", o->request.start_from,
@@ -143,13 +143,6 @@ void add_run(CLI::App& app, Action& action) {
       ->excludes("--resume");
   add_set_option(*verb, o->request.set);
   add_common_options(*verb, *o, kOutput | kJson, "Results HDF5 file (default: the system file's name with .h5, here)");
-  verb->footer(
-      "Example:\n  bough run spinup.toml -o spinup.h5\n  bough run spinup.toml -o spinup.h5 --resume\n"
-      "SIGINT (Ctrl-C), SIGTERM and SIGHUP write a checkpoint and end the file cleanly, exit code 3; a second Ctrl-C "
-      "ends the program at once. --resume "
-      "takes the system file of the run with another duration, other samples or limits; it refuses other changes. A "
-      "worst relative energy error above energy_error_limit ends with exit code 3 too, the results are written.");
-  verb->callback([&action, o] { action = [o] { return run_run(*o); }; });
 }
 
 }  // namespace bough::cli

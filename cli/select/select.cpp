@@ -51,7 +51,7 @@ int run_select(const SelectOptions& o) {
 
 void add_select(CLI::App& app, Action& action) {
   auto o = std::make_shared<SelectOptions>();
-  auto* verb = add_verb(app, "select", "Ranks the modes of a body by component cost and picks those to keep");
+  auto* verb = add_verb(app, action, o, run_select, "select", &o->request.body);
   verb->add_option("body", o->request.body, "Flexible-body HDF5 file, or .FLX (panels.FLX:2: its body 2)")->required();
   verb->add_option("system", o->request.systems,
                    "System files (.toml) with their forces, actuators, sensors, in closed loop; of several the worst "
@@ -91,12 +91,6 @@ void add_select(CLI::App& app, Action& action) {
                    "Write the largest singular value over frequency before and after: .svg, or CSV");
   add_set_option(*verb, o->request.set);
   add_common_options(*verb, *o, kOutput | kJson, "Write the body with the modes kept to this HDF5 file");
-  verb->footer(
-      "Example:\n  bough select panel.h5 --number 12 -o small.h5\n"
-      "  bough select panel.h5 satellite.toml --tolerance 0.001 -o small.h5\n"
-      "  bough select panel.h5 slew.toml hold.toml --weight gyro=10 --keep 1,2 --response loss.svg");
-  verb->callback(
-      [&action, o] { action = [o] { return analysis::with_file(o->request.body, [&] { return run_select(*o); }); }; });
 }
 
 }  // namespace bough::cli

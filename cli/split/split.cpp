@@ -121,7 +121,7 @@ int run_split(SplitOptions o) {
 void add_split(CLI::App& app, Action& action) {
   auto o = std::make_shared<SplitOptions>();
   auto& choice = o->request.choice;
-  auto* verb = add_verb(app, "split", "Cuts a deck into several bodies with a system file that joins them");
+  auto* verb = add_verb(app, action, o, run_split, "split", &o->request.deck);
   verb->add_option("deck", o->request.deck, "Nastran deck")->required();
   verb->add_option("--parts", choice.num_parts, "Number of parts of equal length, cut at grids")
       ->check(make_positive());
@@ -152,12 +152,6 @@ void add_split(CLI::App& app, Action& action) {
                    "Leave out this card, command or parameter though it changes the answer; may be repeated")
       ->allow_extra_args(false);
   add_common_options(*verb, *o, kOutput | kJson, "Folder to write into (default: here)");
-  verb->footer(
-      "Example:\n  bough split mast.bdf --parts 8\n  bough split mast.bdf --plane x=2.5 --plane x=5\n"
-      "  bough split wing.bdf --elements property:3 --elements 1-200 -o wing-parts\n"
-      "  bough split frame.bdf --grids 11,21");
-  verb->callback(
-      [&action, o] { action = [o] { return analysis::with_file(o->request.deck, [&] { return run_split(*o); }); }; });
 }
 
 }  // namespace bough::cli

@@ -23,7 +23,7 @@ struct StaticOptions : CommonOptions {
   analysis::StaticRequest request;
   std::string vtu;
   bool full = false, in_cd = false, has_extremes = false;
-  ListingOptions listing;
+  analysis::ListingFiles listing;
 };
 
 StaticOutputOptions make_output_options(const StaticOptions& options, bool is_root) {
@@ -70,7 +70,7 @@ int run_static(const StaticOptions& options) {
     console.print(output.get_text());
   }
   if (!picture.empty()) analysis::write_text_file(options.vtu, picture);
-  if (answer.listing) analysis::do_once([&] { write_listings(options.listing, *answer.listing); });
+  if (answer.listing) analysis::do_once([&] { analysis::write_listings(options.listing, *answer.listing); });
   for (const auto& path : {options.output, options.vtu, options.listing.f06, options.listing.op2})
     if (!path.empty() && !options.json) console.print("written: " + path + "\n");
   // A rank that ends with an error ends the others: the first one must be through.
@@ -82,7 +82,7 @@ int run_static(const StaticOptions& options) {
 
 void add_static(CLI::App& app, Action& action) {
   auto o = std::make_shared<StaticOptions>();
-  auto* verb = add_verb(app, "static", "Static solution (SOL 101, 106) of every subcase with a load");
+  auto* verb = add_verb(app, action, o, run_static, "static", &o->request.deck);
   verb->add_option("deck", o->request.deck, "Nastran deck")->required();
   verb->add_flag("--full", o->full, "Every grid and element instead of the largest values");
   verb->add_flag("--extremes,--maxmin", o->has_extremes,
@@ -103,9 +103,6 @@ void add_static(CLI::App& app, Action& action) {
   add_listing_options(*verb, o->listing);
   add_model_options(*verb, o->request.model);
   add_common_options(*verb, *o, kOutput | kJson, "Write displacements, reactions and forces to this HDF5 file");
-  verb->footer("Example:\n  bough static frame.bdf -o frame-static.h5\n  bough static frame.bdf --subcase 2 --full");
-  verb->callback(
-      [&action, o] { action = [o] { return analysis::with_file(o->request.deck, [&] { return run_static(*o); }); }; });
 }
 
 }  // namespace bough::cli

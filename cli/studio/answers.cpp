@@ -12,15 +12,15 @@
 #include "analysis/common/inputs.hpp"
 #include "analysis/common/spec_functions.hpp"
 #include "analysis/common/system_files.hpp"
+#include "analysis/edit/command_words.hpp"
+#include "analysis/edit/edit_session.hpp"
+#include "analysis/edit/text_diff.hpp"
 #include "analysis/init/init_deck.hpp"
 #include "analysis/picture/deck_picture.hpp"
 #include "analysis/report/preview.hpp"
 #include "analysis/report/report_files.hpp"
 #include "base/file_roles.hpp"
 #include "cli/common/console.hpp"
-#include "cli/edit/command_words.hpp"
-#include "cli/edit/edit_session.hpp"
-#include "cli/edit/text_diff.hpp"
 #include "cli/init/schema_line.hpp"
 #include "cli/studio/deck_answer.hpp"
 #include "cli/studio/folder.hpp"
@@ -142,14 +142,25 @@ json answer_start(const json& request) {
   return {{"files", files}, {"messages", make_messages(diagnostics.items())}};
 }
 
+/// Prints nothing; the commands that the editor of the page offers write and run nothing.
+class QuietHost final : public analysis::EditHost {
+ public:
+  void print_data(const std::string&) override {}
+  void print(const std::string&) override {}
+  void print(const Diagnostics&) override {}
+  void check_output(const std::string&) override {}
+  int run_command(const std::vector<std::string>&) override { return 0; }
+};
+
 /// Commands of `bough edit` on a text that is not saved.
 json answer_edit(const json& request) {
   static const std::vector<std::string> kAllowed{"add", "set", "unset", "delete", "rename", "copy", "change"};
   const auto text = get_text(request, "text");
-  const Console console(true, 0);
-  EditSession session(EditText(get_file(request), text, get_text(request, "kind") == "body"), console, {}, {});
+  QuietHost host;
+  analysis::EditSession session(analysis::EditText(get_file(request), text, get_text(request, "kind") == "body"), host,
+                                {}, {});
   for (const auto& line : request.at("commands")) {
-    const auto words = split_words(line.get<std::string>());
+    const auto words = analysis::split_words(line.get<std::string>());
     if (!words.empty() && std::find(kAllowed.begin(), kAllowed.end(), words[0]) == kAllowed.end())
       throw InputError("cli.edit-command", {}, "'" + words[0] + "' is no command here",
                        "the commands are add, set, unset, delete, rename and copy");
@@ -307,7 +318,7 @@ json answer(const json& request) {
   if (what == "read") return answer_read(request);
   if (what == "save") return answer_save(request);
   if (what == "diff")
-    return {{"diff", make_diff(get_text(request, "before"), get_text(request, "after"), get_file(request))}};
+    return {{"diff", analysis::make_diff(get_text(request, "before"), get_text(request, "after"), get_file(request))}};
   if (what == "deck") {
     Diagnostics diagnostics;
     auto out = make_deck_answer(get_file(request), diagnostics);

@@ -87,17 +87,12 @@ int run_studio(const StudioOptions& o) {
 
 void add_studio(CLI::App& app, Action& action) {
   auto o = std::make_shared<StudioOptions>();
-  auto* verb = add_verb(app, "studio", "An interactive page of the files in this folder: deck, body, system, run");
+  auto* verb = add_verb(app, action, o, run_studio, "studio");
   verb->add_option("files", o->files, "Decks, body.toml, system.toml, results and other .h5 files to open at first");
   verb->add_option("--port", o->port, "Port of 127.0.0.1 (default: a free one)")->check(CLI::Range(1, 65535));
   verb->add_flag("--no-open", o->no_open, "Print the address and open no browser");
   verb->add_flag("--answer", o->answers, "Answer one request from standard input")->group("");
   add_common_options(*verb, *o, 0);
-  verb->footer(
-      "The page is served on 127.0.0.1 alone, under an address with a random token. It reads and writes files in the "
-      "folder where it was started and below.\nExample:\n  bough studio\n  bough studio wing.bdf --no-open --port "
-      "8080");
-  verb->callback([&action, o] { action = [o] { return run_studio(*o); }; });
 }
 
 }  // namespace bough::cli

@@ -109,6 +109,25 @@ void Beam::add_consistent_mass(double scale, Eigen::Ref<MatrixXd> M) const {
   add_at_grids(line.M, scale, M);
 }
 
+void Beam::add_gyroscopic(MassKind kind, const Vector3d& axis, double scale, Eigen::Ref<MatrixXd> G) const {
+  const bool is_consistent = kind == MassKind::Consistent;
+  const Matrix3d skew_axis = skew(geometry_.R_basic_element.transpose() * axis);
+  Matrix12d local = Matrix12d::Zero();
+  double end[2] = {0, 0};
+  for (const auto& point : is_consistent ? field_->calc_points(4, 7) : field_->calc_points(2, 3)) {
+    const double t = point.x / geometry_.length;
+    const double polar = point.weight * calc_section_mass(*property_, property_->calc_section(t), is_consistent)(3, 3);
+    end[0] += (1 - t) * polar;
+    end[1] += t * polar;
+    if (!is_consistent) continue;
+    Matrix6x12d D;
+    field_->calc_shape(point.x, &D, nullptr);
+    local -= polar * D.bottomRows<3>().transpose() * (skew_axis * D.bottomRows<3>());
+  }
+  if (is_consistent) return add_at_grids(local, scale, G);
+  for (int k = 0; k < 2; ++k) G.block<3, 3>(6 * k + 3, 6 * k + 3) -= scale * end[k] * skew(axis);
+}
+
 void Beam::calc_internal_forces(const Eigen::Ref<const VectorXd>& u, Eigen::Ref<VectorXd> force) const {
   calc_internal_forces_of(u, force);
 }

@@ -49,6 +49,10 @@ class Beam final : public Element, public StressState, public StressRecovery, pu
   /// CBAR torsional inertia in both, and consistent axial terms.
   void add_mass(MassKind kind, double scale, Eigen::Ref<MatrixXd> M) const override;
 
+  /// G += scale G_e, 12 x 12, per unit of spin about a unit axis in basic along the beam: -∫ D_θᵀ ρI_p ẽ D_θ dx for the
+  /// consistent mass, at the ends for the lumped one; ρI_p the polar inertia that the mass matrix has. Skew-symmetric.
+  void add_gyroscopic(MassKind kind, const Vector3d& axis, double scale, Eigen::Ref<MatrixXd> G) const;
+
   const OffsetMass* offset_mass(MassKind kind) const override;
   bool add_carried(MassKind kind, const Eigen::Ref<const Matrix3Xd>& x, CarriedMass& carried) const override;
 

@@ -9,6 +9,7 @@
 #include "base/diagnostic.hpp"
 #include "base/file_roles.hpp"
 #include "formats/flx/detail/layout_words.hpp"
+#include "formats/flx/list_directed.hpp"
 
 namespace bough::flx {
 
@@ -304,16 +305,6 @@ class LayoutParser {
 
 Layout parse_layout(const std::string& text, const std::string& file) { return LayoutParser(text, file).parse(); }
 
-Layout read_layout(const std::string& path) {
-  std::error_code failed;
-  std::ifstream in;
-  if (std::filesystem::is_regular_file(path, failed)) in.open(path, std::ios::binary);
-  note_input(path);
-  std::ostringstream text;
-  text << in.rdbuf();
-  if (!in.is_open() || text.fail())
-    throw InputError("flx.cannot-read", {path}, "the file cannot be read or is empty", "check its path and contents");
-  return parse_layout(text.str(), path);
-}
+Layout read_layout(const std::string& path) { return parse_layout(read_text_file(path), path); }
 
 }  // namespace bough::flx

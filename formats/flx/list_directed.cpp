@@ -71,7 +71,7 @@ const char* name_kind(double) { return "a number"; }
 ListReader::ListReader(std::string text, std::string file, Diagnostics& diagnostics)
     : text_(std::move(text)), file_(std::move(file)), diagnostics_(diagnostics) {}
 
-ListReader ListReader::open(const std::string& path, Diagnostics& diagnostics) {
+std::string read_text_file(const std::string& path) {
   std::error_code failed;
   std::ifstream in;
   if (std::filesystem::is_regular_file(path, failed)) in.open(path, std::ios::binary);
@@ -80,7 +80,11 @@ ListReader ListReader::open(const std::string& path, Diagnostics& diagnostics) {
   text << in.rdbuf();
   if (!in.is_open() || text.fail())
     throw InputError("flx.cannot-read", {path}, "the file cannot be read or is empty", "check its path and contents");
-  return {text.str(), path, diagnostics};
+  return text.str();
+}
+
+ListReader ListReader::open(const std::string& path, Diagnostics& diagnostics) {
+  return {read_text_file(path), path, diagnostics};
 }
 
 bool ListReader::is_comment(std::size_t begin, std::size_t end) const {

@@ -8,6 +8,9 @@
 
 namespace bough::flx {
 
+/// Content of a text file. Throws InputError "flx.cannot-read".
+std::string read_text_file(const std::string& path);
+
 /// Reads records of a text as list-directed input does. Each read starts at a new line and takes further lines until it
 /// has its values; what is left of the last line is passed over. Values are separated by blanks, commas or line ends;
 /// `3*0.5` repeats, `3*` and `,,` are null values, `/` ends the read with nulls. A null leaves the variable at zero, as

@@ -24,6 +24,98 @@ void write_parts(FileWriter& file, const std::string& name, const std::vector<Ma
   }
 }
 
+constexpr const char* kPoints[] = {"/critical", "/thresholds"};
+
+void write_rotors(FileWriter& file, const records::RotorSpeeds& r) {
+  std::vector<int> id, grids, elements;
+  Eigen::VectorXd mass(static_cast<Eigen::Index>(r.rotors.size())), inertia = mass;
+  for (const auto& rotor : r.rotors) {
+    mass[static_cast<Eigen::Index>(id.size())] = rotor.mass;
+    inertia[static_cast<Eigen::Index>(id.size())] = rotor.polar_inertia;
+    id.push_back(rotor.id);
+    grids.push_back(rotor.num_grids);
+    elements.push_back(rotor.num_elements);
+  }
+  file.write_integers("/rotors/id", id, {"ids of the rotors", "1"});
+  file.write_integers("/rotors/num_grids", grids, {"grids on the axis of each", "1"});
+  file.write_integers("/rotors/num_elements", elements, {"elements of each", "1"});
+  file.write_vector("/rotors/mass", mass, {"mass of each", "M"});
+  file.write_vector("/rotors/polar_inertia", inertia, {"moment of inertia of each about its axis", "M L^2"});
+  file.write_attribute("/rotors", "reference", r.reference);
+  file.write_attribute("/rotors", "synchronous", r.is_synchronous ? 1 : 0);
+  if (const auto& s = r.sweep; s.value.size() > 0) {
+    file.write_vector("/campbell/speed", s.value, {"speed of the reference rotor, radians per unit of time", "1/T"});
+    file.write_matrix("/campbell/real", s.real, {"speed, branch: a column is one motion all along", "1/T"});
+    file.write_matrix("/campbell/imag", s.imag, {"speed, branch", "1/T"});
+    file.write_matrix("/campbell/frequency_hz", s.frequency_hz, {"imaginary part / 2 pi", "1/T"});
+    file.write_matrix("/campbell/damping", s.damping, {"-real / |eigenvalue|", "1"});
+    file.write_matrix("/campbell/correlation", s.correlation, {"with the motion at the speed before", "1"});
+    file.write_matrix("/campbell/whirl", s.whirl, {"1: forward circle, -1: backward circle, 0: line", "1"});
+    file.attach_scale("/campbell/speed", {"/campbell/real", "/campbell/imag", "/campbell/frequency_hz",
+                                          "/campbell/damping", "/campbell/correlation", "/campbell/whirl"});
+  }
+  for (const bool is_critical : {true, false}) {
+    const auto& points = is_critical ? r.critical : r.thresholds;
+    const std::string group = kPoints[is_critical ? 0 : 1];
+    std::vector<int> branch;
+    Eigen::MatrixXd values(static_cast<Eigen::Index>(points.size()), 3);
+    for (const auto& point : points) {
+      values.row(static_cast<Eigen::Index>(branch.size())) << point.speed, point.frequency_hz, point.whirl;
+      branch.push_back(point.branch);
+    }
+    file.write_integers(group + "/branch", branch,
+                        {is_critical ? "column of /campbell, or mode of synchronous analyses, from 0"
+                                     : "column of /campbell that is unstable above, from 0",
+                         "1"});
+    file.write_vector(group + "/speed", values.col(0), {"of the reference rotor, radians per unit of time", "1/T"});
+    file.write_vector(group + "/frequency_hz", values.col(1), {"of the motion there", "1/T"});
+    file.write_vector(group + "/whirl", values.col(2), {"as /campbell/whirl", "1"});
+  }
+}
+
+records::RotorSpeeds read_rotors(FileReader& file) {
+  records::RotorSpeeds r;
+  const auto id = file.read_integers("/rotors/id", -1);
+  const auto n = static_cast<long>(id.size());
+  const auto grids = file.read_integers("/rotors/num_grids", n),
+             elements = file.read_integers("/rotors/num_elements", n);
+  const auto mass = file.read_vector("/rotors/mass", n), inertia = file.read_vector("/rotors/polar_inertia", n);
+  r.reference = file.read_integer_attribute("/rotors", "reference", 0);
+  r.is_synchronous = file.read_integer_attribute("/rotors", "synchronous", 0) != 0;
+  file.throw_if_errors();
+  for (std::size_t k = 0; k < id.size(); ++k)
+    r.rotors.push_back(
+        {id[k], grids[k], elements[k], mass[static_cast<Eigen::Index>(k)], inertia[static_cast<Eigen::Index>(k)]});
+  if (file.has("/campbell/speed")) {
+    auto& s = r.sweep;
+    s.parameter = "rotor speed";
+    s.value = file.read_vector("/campbell/speed", -1);
+    s.real = file.read_matrix("/campbell/real", s.value.size(), -1);
+    const long branches = s.real.cols();
+    s.imag = file.read_matrix("/campbell/imag", s.value.size(), branches);
+    s.frequency_hz = file.read_matrix("/campbell/frequency_hz", s.value.size(), branches);
+    s.damping = file.read_matrix("/campbell/damping", s.value.size(), branches);
+    s.correlation = file.read_matrix("/campbell/correlation", s.value.size(), branches);
+    s.whirl = file.read_matrix("/campbell/whirl", s.value.size(), branches);
+    std::vector<std::string> names;
+    for (long b = 0; b < branches; ++b) names.push_back("mode " + std::to_string(b + 1));
+    s.mode.assign(static_cast<std::size_t>(s.value.size()), names);
+  }
+  for (const bool is_critical : {true, false}) {
+    const std::string group = kPoints[is_critical ? 0 : 1];
+    const auto branch = file.read_integers(group + "/branch", -1);
+    const auto count = static_cast<long>(branch.size());
+    const auto speed = file.read_vector(group + "/speed", count), hz = file.read_vector(group + "/frequency_hz", count),
+               whirl = file.read_vector(group + "/whirl", count);
+    file.throw_if_errors();
+    for (std::size_t k = 0; k < branch.size(); ++k) {
+      const auto i = static_cast<Eigen::Index>(k);
+      (is_critical ? r.critical : r.thresholds).push_back({branch[k], speed[i], hz[i], whirl[i]});
+    }
+  }
+  return r;
+}
+
 void write_point_parts(FileWriter& file, const std::string& name, const MatrixXcd& shapes, const std::string& what) {
   file.write_matrix("/points/" + name + "_real", shapes.real(), {what + ", real part: point, mode", "1"});
   file.write_matrix("/points/" + name + "_imag", shapes.imag(), {what + ", imaginary part", "1"});
@@ -46,6 +138,12 @@ void write_complex_modes(const records::ComplexModesResult& r, const std::string
   file.write_vector("/modes/damping_ratio", r.damping_ratio, {"share of critical damping, -Re / abs", "1"});
   file.write_vector("/modes/residual", r.residual,
                     {"|(lambda^2 M + lambda B + K) phi| over the sum of the norms of the three terms", "1"});
+  if (r.whirl.size() > 0)
+    file.write_vector("/modes/whirl", r.whirl, {"1: forward circle, -1: backward circle, 0: line", "1"});
+  if (r.rotors) {
+    file.write_number("/modes/speed", r.speed, {"of the reference rotor; below 0: that of each mode", "1/T"});
+    write_rotors(file, *r.rotors);
+  }
   file.write_attribute("/modes", "method", r.is_by_modes ? "modal" : "direct");
   file.write_attribute("/modes", "norm", r.norm);
   write_parts(file, "phi", r.phi, n, "complex mode shapes");
@@ -78,6 +176,11 @@ records::ComplexModesResult read_complex_modes(const std::string& path) {
   r.damping = file.read_vector("/modes/damping", n);
   r.damping_ratio = file.read_vector("/modes/damping_ratio", n);
   r.residual = file.read_vector("/modes/residual", n);
+  if (file.has("/modes/whirl")) r.whirl = file.read_vector("/modes/whirl", n);
+  if (file.has("/rotors/id")) {
+    r.speed = file.read_number("/modes/speed");
+    r.rotors = read_rotors(file);
+  }
   r.biorthogonality = file.read_number("/modes/biorthogonality");
   r.is_by_modes = file.read_attribute("/modes", "method") == "modal";
   r.norm = file.read_attribute("/modes", "norm");

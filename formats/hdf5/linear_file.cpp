@@ -8,6 +8,18 @@
 namespace bough::hdf5 {
 namespace {
 
+/// One member of all records.
+template <class Record, class Member>
+std::vector<Member> collect(const std::vector<Record>& records, Member Record::*member) {
+  std::vector<Member> values;
+  for (const auto& record : records) values.push_back(record.*member);
+  return values;
+}
+
+Eigen::VectorXd to_vector(const std::vector<double>& values) {
+  return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
+}
+
 constexpr const char* kFormat = "bough-linear";
 using records::LinearModel;
 
@@ -27,14 +39,10 @@ void write_poles(FileWriter& file, const LinearModel& model) {
 }
 
 void write_aliased(FileWriter& file, const std::vector<records::AliasedMode>& aliased) {
-  std::vector<std::string> mode;
-  Eigen::VectorXd frequency(static_cast<long>(aliased.size())), appears_at(frequency.size());
-  for (std::size_t i = 0; i < aliased.size(); ++i) {
-    mode.push_back(aliased[i].mode);
-    frequency[static_cast<long>(i)] = aliased[i].frequency_hz;
-    appears_at[static_cast<long>(i)] = aliased[i].appears_at_hz;
-  }
-  file.write_strings("/aliased/mode", mode,
+  using records::AliasedMode;
+  const auto frequency = to_vector(collect(aliased, &AliasedMode::frequency_hz));
+  const auto appears_at = to_vector(collect(aliased, &AliasedMode::appears_at_hz));
+  file.write_strings("/aliased/mode", collect(aliased, &AliasedMode::mode),
                      {"coordinate that takes part most in a mode above the Nyquist frequency", "1"});
   file.write_vector("/aliased/frequency_hz", frequency, {"of the continuous motion, |Im| / 2 pi", "1/T"});
   file.write_vector("/aliased/appears_at_hz", appears_at, {"of its pole ln z / sample_time", "1/T"});
@@ -61,20 +69,15 @@ void write_hankel(FileWriter& file, const records::Hankel& hankel) {
 }
 
 void write_uncertainty(FileWriter& file, const std::vector<records::UncertainParameter>& parameters) {
-  std::vector<std::string> name;
-  std::vector<int> size;
-  Eigen::VectorXd low(static_cast<long>(parameters.size())), high(low.size());
-  for (std::size_t i = 0; i < parameters.size(); ++i) {
-    name.push_back(parameters[i].name);
-    size.push_back(parameters[i].size);
-    low[static_cast<long>(i)] = parameters[i].low;
-    high[static_cast<long>(i)] = parameters[i].high;
-  }
-  file.write_strings("/uncertainty/name", name,
+  using records::UncertainParameter;
+  const auto low = to_vector(collect(parameters, &UncertainParameter::low));
+  const auto high = to_vector(collect(parameters, &UncertainParameter::high));
+  file.write_strings("/uncertainty/name", collect(parameters, &UncertainParameter::name),
                      {"parameters whose inputs w and outputs z come first: w = delta z", "1"});
   file.write_vector("/uncertainty/low", low, {"value at delta = -1", "as the names' dims say"});
   file.write_vector("/uncertainty/high", high, {"value at delta = 1", "as the names' dims say"});
-  file.write_integers("/uncertainty/size", size, {"number of inputs, and of outputs, of the parameter", "1"});
+  file.write_integers("/uncertainty/size", collect(parameters, &UncertainParameter::size),
+                      {"number of inputs, and of outputs, of the parameter", "1"});
 }
 
 void write_second_order(FileWriter& file, const LinearModel& model) {

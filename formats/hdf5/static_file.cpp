@@ -5,6 +5,15 @@
 namespace bough::hdf5 {
 namespace {
 
+/// Writes ids and properties of the elements of a card; returns its group.
+template <class Block>
+std::string write_ids(FileWriter& file, const std::string& path, const Block& block) {
+  const std::string group = path + block.card;
+  file.write_integers(group + "/id", block.id, {"element ids", "1"});
+  file.write_integers(group + "/property", block.property, {"property ids; 0: none", "1"});
+  return group;
+}
+
 void write_grid_forces(FileWriter& file, const std::string& path, const std::vector<records::GridForce>& forces) {
   if (forces.empty()) return;
   std::vector<int> grids, elements;
@@ -69,26 +78,20 @@ void write_subcase(FileWriter& file, const records::StaticSubcase& subcase) {
     }
   }
   for (const auto& block : subcase.elements) {
-    const std::string group = path + "/elements/" + block.card;
-    file.write_integers(group + "/id", block.id, {"element ids", "1"});
-    file.write_integers(group + "/property", block.property, {"property ids; 0: none", "1"});
+    const auto group = write_ids(file, path + "/elements/", block);
     file.write_matrix(group + "/force", block.force,
                       {"a row per element: the forces that `components` names", "F, F L"});
     file.write_vector(group + "/strain_energy", block.strain_energy, {"strain energy of each element", "F L"});
     file.write_attribute(group, "components", block.components);
   }
   for (const auto& block : subcase.stresses) {
-    const std::string group = path + "/stresses/" + block.card;
-    file.write_integers(group + "/id", block.id, {"element ids", "1"});
-    file.write_integers(group + "/property", block.property, {"property ids; 0: none", "1"});
+    const auto group = write_ids(file, path + "/stresses/", block);
     file.write_matrix(group + "/stress", block.stress,
                       {"a row per element: what `components` names, as component@point", "F/L^2, 1"});
     file.write_attribute(group, "components", block.components);
   }
   for (const auto& block : subcase.strains) {
-    const std::string group = path + "/strains/" + block.card;
-    file.write_integers(group + "/id", block.id, {"element ids", "1"});
-    file.write_integers(group + "/property", block.property, {"property ids; 0: none", "1"});
+    const auto group = write_ids(file, path + "/strains/", block);
     file.write_matrix(group + "/strain", block.stress,
                       {"a row per element: what `components` names, as component@point; shears are angles", "1, 1/L"});
     if (block.corner.cols() > 0)

@@ -21,37 +21,37 @@ std::vector<std::string> read_components(FileReader& file, const std::string& gr
   return words;
 }
 
-std::vector<ElementForces> read_forces(FileReader& file, const std::string& path) {
-  std::vector<ElementForces> blocks;
+/// Blocks of elements by card, whose numbers read_values(block, group, number of elements) reads.
+template <class Block, class ReadValues>
+std::vector<Block> read_blocks(FileReader& file, const std::string& path, const ReadValues& read_values) {
+  std::vector<Block> blocks;
   for (const auto& card : file.get_children(path)) {
     const auto group = path + "/" + card;
-    ElementForces block;
+    Block block;
     block.card = card;
     block.id = file.read_integers(group + "/id", -1);
     const auto count = static_cast<long>(block.id.size());
     block.property = file.read_integers(group + "/property", count);
-    block.force = file.read_matrix(group + "/force", count, -1);
-    block.strain_energy = file.read_vector(group + "/strain_energy", count);
-    block.components = read_components(file, group, block.force.cols());
+    const auto num_columns = read_values(block, group, count);
+    block.components = read_components(file, group, num_columns);
     blocks.push_back(std::move(block));
   }
   return blocks;
 }
 
+std::vector<ElementForces> read_forces(FileReader& file, const std::string& path) {
+  return read_blocks<ElementForces>(file, path, [&](ElementForces& block, const std::string& group, long count) {
+    block.force = file.read_matrix(group + "/force", count, -1);
+    block.strain_energy = file.read_vector(group + "/strain_energy", count);
+    return block.force.cols();
+  });
+}
+
 std::vector<ElementStresses> read_stresses(FileReader& file, const std::string& path, const std::string& quantity) {
-  std::vector<ElementStresses> blocks;
-  for (const auto& card : file.get_children(path)) {
-    const auto group = path + "/" + card;
-    ElementStresses block;
-    block.card = card;
-    block.id = file.read_integers(group + "/id", -1);
-    const auto count = static_cast<long>(block.id.size());
-    block.property = file.read_integers(group + "/property", count);
+  return read_blocks<ElementStresses>(file, path, [&](ElementStresses& block, const std::string& group, long count) {
     block.stress = to_matrix(file.read_array(group + "/" + quantity, {count, -1}, true));
-    block.components = read_components(file, group, block.stress.cols());
-    blocks.push_back(std::move(block));
-  }
-  return blocks;
+    return block.stress.cols();
+  });
 }
 
 void read_support(FileReader& file, const std::string& path, records::StaticSubcase& s) {

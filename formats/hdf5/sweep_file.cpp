@@ -97,6 +97,17 @@ void write_sweep(const records::LinearSweep& sweep, const std::string& path) {
   write_unit_labels(file, sweep.models.front().units);
   file.write_strings("/parameter/name", {sweep.parameter}, {"of the system file, or time", "1"});
   file.write_vector("/parameter/value", sweep.value, {"one a point", "as the parameter's"});
+  if (!sweep.grid_name.empty()) {
+    const auto axes = sweep.grid_name.size();
+    MatrixXd points(sweep.value.size(), static_cast<Index>(axes));
+    for (Index k = 0; k < points.rows(); ++k)
+      for (std::size_t i = 0; i < axes; ++i) points(k, static_cast<Index>(i)) = records::get_grid_value(sweep, k, i);
+    file.write_strings("/grid/name", sweep.grid_name, {"parameters of the system file, the last one fastest", "1"});
+    for (std::size_t i = 0; i < axes; ++i)
+      file.write_vector("/grid/axis" + std::to_string(i + 1), sweep.grid_value[i],
+                        {"values of parameter " + std::to_string(i + 1), "as the parameter's"});
+    file.write_matrix("/grid/points", points, {"point, parameter", "as the parameters'"});
+  }
   const auto& first = sweep.models.front();
   write_signals(file, "/states", first.states, "states: displacements of the DOFs, then their rates");
   write_signals(file, "/inputs", first.inputs, "inputs");
@@ -131,9 +142,24 @@ void write_sweep(const records::LinearSweep& sweep, const std::string& path) {
   file.write_matrix("/poles/frequency_hz", sweep.frequency_hz, {"|pole| / 2 pi", "1/T"});
   file.write_matrix("/poles/damping", sweep.damping, {"-real / |pole|; 0 for a pole at 0", "1"});
   file.write_matrix("/poles/correlation", sweep.correlation, {"with the motion at the point before", "1"});
-  file.attach_scale("/parameter/value", {"/A", "/B", "/C", "/D", "/operating_point/time", "/operating_point/q",
-                                         "/operating_point/u", "/operating_point/residual", "/poles/real",
-                                         "/poles/imag", "/poles/frequency_hz", "/poles/damping", "/poles/correlation"});
+  std::vector<std::string> over_parameter{"/A",
+                                          "/B",
+                                          "/C",
+                                          "/D",
+                                          "/operating_point/time",
+                                          "/operating_point/q",
+                                          "/operating_point/u",
+                                          "/operating_point/residual",
+                                          "/poles/real",
+                                          "/poles/imag",
+                                          "/poles/frequency_hz",
+                                          "/poles/damping",
+                                          "/poles/correlation"};
+  if (sweep.whirl.size() > 0) {
+    file.write_matrix("/poles/whirl", sweep.whirl, {"1: forward circle, -1: backward circle, 0: line", "1"});
+    over_parameter.emplace_back("/poles/whirl");
+  }
+  file.attach_scale("/parameter/value", over_parameter);
   std::vector<std::string> start, end;
   if (!sweep.mode.empty()) start = sweep.mode.front(), end = sweep.mode.back();
   file.write_strings("/poles/mode_first", start,
@@ -150,6 +176,15 @@ records::LinearSweep read_sweep(const std::string& path) {
   sweep.parameter = names.empty() ? "" : names.front();
   sweep.value = file.read_vector("/parameter/value", -1);
   const long np = sweep.value.size();
+  if (file.has("/grid")) {
+    sweep.grid_name = file.read_strings("/grid/name", -1);
+    long count = 1;
+    for (std::size_t i = 0; i < sweep.grid_name.size(); ++i) {
+      sweep.grid_value.push_back(file.read_vector("/grid/axis" + std::to_string(i + 1), -1));
+      count *= std::max<long>(1, sweep.grid_value.back().size());
+    }
+    if (count != np) sweep.grid_name.clear(), sweep.grid_value.clear();
+  }
   LinearModel first;
   first.units = read_unit_labels(file);
   first.states = read_signals(file, "/states");
@@ -166,6 +201,7 @@ records::LinearSweep read_sweep(const std::string& path) {
   sweep.frequency_hz = file.read_matrix("/poles/frequency_hz", np, nx);
   sweep.damping = file.read_matrix("/poles/damping", np, nx);
   sweep.correlation = file.read_matrix("/poles/correlation", np, nx);
+  if (file.has("/poles/whirl")) sweep.whirl = file.read_matrix("/poles/whirl", np, nx);
   const auto start = file.read_strings("/poles/mode_first", nx), end = file.read_strings("/poles/mode_last", nx);
   if (file.has("/sample_time")) {
     const auto sample_time = file.read_vector("/sample_time", np);

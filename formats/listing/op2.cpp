@@ -240,13 +240,20 @@ void add_complex_stresses(const records::ListedElements& block, std::size_t k, W
   }
 }
 
-/// Stresses: by element, layer or corner (docs/formats/op2.md).
-void add_stresses(const ListedStep& step, const records::ListedElements& block, Op2Writer& file) {
+/// Identification of a table of elements; `code`: of the real table.
+Words make_element_ident(const ListedStep& step, const records::ListedElements& block, int code) {
   const bool is_complex = block.imag.size() > 0;
-  Words ident = make_ident(make_head(step, is_complex ? 1005 : 5)), data;
+  Words ident = make_ident(make_head(step, is_complex ? 1000 + code : code));
   set_step(step, ident);
   ident.set(2, block.type);
   ident.set(8, !is_complex ? 1 : block.is_phase ? 3 : 2);
+  return ident;
+}
+
+/// Stresses: by element, layer or corner (docs/formats/op2.md).
+void add_stresses(const ListedStep& step, const records::ListedElements& block, Op2Writer& file) {
+  const bool is_complex = block.imag.size() > 0;
+  Words ident = make_element_ident(step, block, 5), data;
   ident.set(10, is_layered(block.type) ? 0 : 1);  // largest shear, or von Mises
   int count = 0;
   for (std::size_t k = 0; k < block.id.size(); ++k) {
@@ -271,11 +278,7 @@ void add_stresses(const ListedStep& step, const records::ListedElements& block, 
 }
 
 void add_forces(const ListedStep& step, const records::ListedElements& block, Op2Writer& file) {
-  const bool is_complex = block.imag.size() > 0;
-  Words ident = make_ident(make_head(step, is_complex ? 1004 : 4)), data;
-  set_step(step, ident);
-  ident.set(2, block.type);
-  ident.set(8, !is_complex ? 1 : block.is_phase ? 3 : 2);
+  Words ident = make_element_ident(step, block, 4), data;
   for (std::size_t k = 0; k < block.id.size(); ++k) {
     data.add(10 * block.id[k] + kDevice);
     if (block.type == kBeam)

@@ -1,5 +1,7 @@
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <iterator>
 #include <memory>
 
 #include <matio.h>
@@ -14,6 +16,22 @@ namespace bough::matrices::detail {
 namespace {
 
 using Variable = std::unique_ptr<matvar_t, decltype(&Mat_VarFree)>;
+
+template <class T>
+double get_item(const void* data, std::size_t i) {
+  return static_cast<double>(static_cast<const T*>(data)[i]);
+}
+
+/// Types of numbers with the function that reads one of an array.
+struct Item {
+  matio_types type;
+  double (*get)(const void* data, std::size_t i);
+};
+constexpr Item kItems[] = {{MAT_T_DOUBLE, get_item<double>},     {MAT_T_SINGLE, get_item<float>},
+                           {MAT_T_INT8, get_item<mat_int8_t>},   {MAT_T_UINT8, get_item<mat_uint8_t>},
+                           {MAT_T_INT16, get_item<mat_int16_t>}, {MAT_T_UINT16, get_item<mat_uint16_t>},
+                           {MAT_T_INT32, get_item<mat_int32_t>}, {MAT_T_UINT32, get_item<mat_uint32_t>},
+                           {MAT_T_INT64, get_item<mat_int64_t>}, {MAT_T_UINT64, get_item<mat_uint64_t>}};
 
 class MatReader {
  public:
@@ -80,41 +98,11 @@ class MatReader {
   }
 
   double get(matio_types type, const void* data, std::size_t i) const {
-    double value = 0;
-    switch (type) {
-      case MAT_T_DOUBLE:
-        value = static_cast<const double*>(data)[i];
-        break;
-      case MAT_T_SINGLE:
-        value = static_cast<const float*>(data)[i];
-        break;
-      case MAT_T_INT8:
-        value = static_cast<const mat_int8_t*>(data)[i];
-        break;
-      case MAT_T_UINT8:
-        value = static_cast<const mat_uint8_t*>(data)[i];
-        break;
-      case MAT_T_INT16:
-        value = static_cast<const mat_int16_t*>(data)[i];
-        break;
-      case MAT_T_UINT16:
-        value = static_cast<const mat_uint16_t*>(data)[i];
-        break;
-      case MAT_T_INT32:
-        value = static_cast<const mat_int32_t*>(data)[i];
-        break;
-      case MAT_T_UINT32:
-        value = static_cast<const mat_uint32_t*>(data)[i];
-        break;
-      case MAT_T_INT64:
-        value = static_cast<double>(static_cast<const mat_int64_t*>(data)[i]);
-        break;
-      case MAT_T_UINT64:
-        value = static_cast<double>(static_cast<const mat_uint64_t*>(data)[i]);
-        break;
-      default:
-        fail("a variable holds values of an unknown type", "the file is damaged: write it again");
-    }
+    const auto at =
+        std::find_if(std::begin(kItems), std::end(kItems), [&](const Item& item) { return item.type == type; });
+    if (at == std::end(kItems))
+      fail("a variable holds values of an unknown type", "the file is damaged: write it again");
+    const double value = at->get(data, i);
     if (!std::isfinite(value)) fail("a variable holds a value that is not a finite number");
     return value;
   }

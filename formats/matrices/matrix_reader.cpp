@@ -96,29 +96,38 @@ std::vector<Matrix> read_hdf5(const std::string& path) {
 
 }  // namespace detail
 
-std::string_view get_format_name(Format format) {
-  switch (format) {
-    case Format::Op4Text:
-      return "Nastran OUTPUT4, formatted";
-    case Format::Op4Binary:
-      return "Nastran OUTPUT4, binary";
-    case Format::Dmig:
-      return "Nastran DMIG";
-    case Format::MatrixMarket:
-      return "Matrix Market";
-    case Format::Hdf5:
-      return "HDF5, compressed rows";
-    case Format::Mat:
-      return "MATLAB";
-    case Format::HarwellBoeing:
-      return "Harwell-Boeing";
-    case Format::AbaqusLabels:
-      return "Abaqus matrix input";
-    case Format::Triplets:
-      return "row column value";
-  }
-  return "";
+namespace {
+
+struct FormatRow {
+  Format format;
+  std::string_view name;
+  std::vector<Matrix> (*read)(const std::string& path, Diagnostics& diagnostics);
+};
+
+/// A reader without messages as one that takes them.
+template <std::vector<Matrix> (*read)(const std::string&)>
+std::vector<Matrix> read_by(const std::string& path, Diagnostics&) {
+  return read(path);
 }
+
+const FormatRow& get_row(Format format) {
+  static const FormatRow rows[] = {{Format::Op4Text, "Nastran OUTPUT4, formatted", read_by<read_op4_text>},
+                                   {Format::Op4Binary, "Nastran OUTPUT4, binary", read_by<read_op4_binary>},
+                                   {Format::Dmig, "Nastran DMIG", read_dmig},
+                                   {Format::MatrixMarket, "Matrix Market", read_by<read_matrix_market>},
+                                   {Format::Hdf5, "HDF5, compressed rows", read_by<read_hdf5>},
+                                   {Format::Mat, "MATLAB", read_by<read_mat>},
+                                   {Format::HarwellBoeing, "Harwell-Boeing", read_by<read_harwell_boeing>},
+                                   {Format::AbaqusLabels, "Abaqus matrix input", read_by<read_abaqus_labels>},
+                                   {Format::Triplets, "row column value", read_by<read_triplet_lines>}};
+  const auto at = std::find_if(std::begin(rows), std::end(rows), [&](const auto& row) { return row.format == format; });
+  BOUGH_DEMAND(at != std::end(rows));
+  return *at;
+}
+
+}  // namespace
+
+std::string_view get_format_name(Format format) { return get_row(format).name; }
 
 Format detect_format(const std::string& path) {
   std::error_code ignored;
@@ -143,27 +152,7 @@ Format detect_format(const std::string& path) {
 }
 
 std::vector<Matrix> read_matrices(const std::string& path, Diagnostics& diagnostics) {
-  switch (detect_format(path)) {
-    case Format::Op4Text:
-      return read_op4_text(path);
-    case Format::Op4Binary:
-      return read_op4_binary(path);
-    case Format::Dmig:
-      return read_dmig(path, diagnostics);
-    case Format::MatrixMarket:
-      return read_matrix_market(path);
-    case Format::Hdf5:
-      return read_hdf5(path);
-    case Format::Mat:
-      return read_mat(path);
-    case Format::HarwellBoeing:
-      return read_harwell_boeing(path);
-    case Format::AbaqusLabels:
-      return read_abaqus_labels(path);
-    case Format::Triplets:
-      return read_triplet_lines(path);
-  }
-  return {};
+  return get_row(detect_format(path)).read(path, diagnostics);
 }
 
 Matrix read_matrix(const std::string& path, const std::string& name, Diagnostics& diagnostics) {

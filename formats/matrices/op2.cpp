@@ -63,16 +63,8 @@ class Op2Reader {
   };
 
   void find_layout() {
-    const auto head = read_bytes(in_.get_path(), 4);
-    if (head.size() < 4) in_.fail("matrices.truncated", 0, "the file ends within a record");
-    for (const bool is_swapped : {false, true}) {
-      in_.set_layout(is_swapped, false);
-      const auto length = in_.get<std::int32_t>(head, 0);
-      if (length != 4 && length != 8) continue;
-      in_.set_layout(is_swapped, length == 8);
-      return;
-    }
-    in_.fail("matrices.op2", 0, "the first record has neither 4 nor 8 bytes in either byte order");
+    if (!in_.find_layout(read_bytes(in_.get_path(), 4), 4, 8))
+      in_.fail("matrices.op2", 0, "the first record has neither 4 nor 8 bytes in either byte order");
   }
 
   long read_key() {

@@ -22,16 +22,8 @@ class BinaryReader {
  private:
   /// The first record is a header: four words and a name of two, 24 bytes, or 48 with words of 8 bytes.
   void find_layout() {
-    for (const bool is_swapped : {false, true}) {
-      in_.set_layout(is_swapped, false);
-      const auto first = read_bytes(in_.get_path(), 4);
-      if (first.size() < 4) in_.fail("matrices.truncated", 0, "the file ends within a record");
-      const auto length = in_.get<std::int32_t>(first, 0);
-      if (length != 24 && length != 48) continue;
-      in_.set_layout(is_swapped, length == 48);
-      return;
-    }
-    in_.fail("matrices.op4-header", 0, "the first record has neither 24 nor 48 bytes in either byte order");
+    if (!in_.find_layout(read_bytes(in_.get_path(), 4), 24, 48))
+      in_.fail("matrices.op4-header", 0, "the first record has neither 24 nor 48 bytes in either byte order");
   }
 
   Matrix read_matrix() {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "formats/matrices/detail/input.hpp"
+#include "formats/matrices/detail/uff_input.hpp"
 
 namespace bough::matrices {
 namespace {
@@ -31,37 +31,19 @@ double read_real_column(const TextInput& in, std::size_t at, std::size_t width, 
 
 class FunctionReader {
  public:
-  explicit FunctionReader(const std::string& path) : in_(path, read_bytes(path)) {}
+  explicit FunctionReader(const std::string& path) : in_(path) {}
 
   std::vector<TestFunction> read() {
-    while (in_.next_line()) {
-      if (trim(in_.get_line()) != "-1") continue;
-      in_.demand_line("the number of a dataset");
-      const auto words = split(in_.get_line());
-      if (!words.empty() && words.front() == "58b")
-        in_.fail("matrices.uff", "dataset 58b is binary", "export the functions as text (dataset 58)");
-      const auto number = words.empty() ? std::nullopt : parse_integer(words.front());
-      if (!number) in_.fail_line("the number of a dataset");
-      if (*number == 58)
+    in_.read_datasets([&](long number) {
+      if (number == 58)
         read_function();
       else
-        skip();
-    }
+        in_.skip_dataset();
+    });
     return std::move(functions_);
   }
 
  private:
-  bool next() {
-    in_.demand_line("the end of the dataset, -1");
-    return trim(in_.get_line()) != "-1";
-  }
-  void demand(const char* expected) {
-    if (!next()) in_.fail_line(expected);
-  }
-  void skip() {
-    while (next()) continue;
-  }
-
   /// Columns of the lines of values: uneven ones repeat the abscissa of 13 columns.
   std::vector<double> read_values(std::size_t count, bool is_even, bool is_complex, bool is_double) {
     std::vector<std::size_t> widths;
@@ -75,7 +57,7 @@ class FunctionReader {
       widths = {13, 20, 13, 20};
     std::vector<double> values;
     while (values.size() < count) {
-      demand("the values of the function");
+      in_.demand_of_dataset("the values of the function");
       std::size_t at = 0;
       for (const auto width : widths) {
         if (values.size() == count) break;
@@ -92,11 +74,11 @@ class FunctionReader {
     TestFunction f;
     f.line = in_.get_line_number();
     for (int i = 0; i < 5; ++i) {
-      demand("five lines of identification");
+      in_.demand_of_dataset("five lines of identification");
       if (i == 0) f.name = std::string(trim(in_.get_line()));
     }
     // 2(I5,I10), 2(1X,10A1,I10,I4)
-    demand("the type of the function");
+    in_.demand_of_dataset("the type of the function");
     const char* expected = "type, number, response and reference of the function";
     const long type = read_column(in_, 0, 5, expected);
     f.load_case = static_cast<int>(read_column(in_, 20, 10, expected));
@@ -105,21 +87,21 @@ class FunctionReader {
     f.reference = static_cast<int>(read_column(in_, 66, 10, expected));
     f.reference_direction = static_cast<int>(read_column(in_, 76, 4, expected));
     // 3I10, 3E13.5
-    demand("the form of the data");
+    in_.demand_of_dataset("the form of the data");
     expected = "data type, number of values, spacing";
     const long data = read_column(in_, 0, 10, expected), count = read_column(in_, 10, 10, expected);
     const bool is_even = read_column(in_, 20, 10, expected) == 1;
     const double first = is_even ? read_real_column(in_, 30, 13, "the first frequency") : 0;
     const double step = is_even ? read_real_column(in_, 43, 13, "the step of frequency") : 0;
-    demand("the abscissa");
+    in_.demand_of_dataset("the abscissa");
     const long abscissa = read_column(in_, 0, 10, "the type of the abscissa");
-    demand("the ordinate");
+    in_.demand_of_dataset("the ordinate");
     f.quantity = static_cast<int>(read_column(in_, 0, 10, "the type of the ordinate"));
-    demand("the denominator of the ordinate");
-    demand("the third axis");
+    in_.demand_of_dataset("the denominator of the ordinate");
+    in_.demand_of_dataset("the third axis");
     const bool is_complex = data == 5 || data == 6;
     const bool is_response = (type == kFrequencyResponse || type == kSpectrum) && abscissa == kFrequency && is_complex;
-    if (!is_response) return skip();
+    if (!is_response) return in_.skip_dataset();
     if (count < 1 || static_cast<std::size_t>(count) > in_.count_most(1))
       in_.fail("matrices.uff",
                "the function of line " + std::to_string(f.line) + " has " + std::to_string(count) + " values",
@@ -141,10 +123,10 @@ class FunctionReader {
                  "export the function again");
     }
     functions_.push_back(std::move(f));
-    skip();
+    in_.skip_dataset();
   }
 
-  TextInput in_;
+  UffInput in_;
   std::vector<TestFunction> functions_;
 };
 

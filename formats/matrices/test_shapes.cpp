@@ -6,7 +6,7 @@
 #include <map>
 #include <numbers>
 
-#include "formats/matrices/detail/input.hpp"
+#include "formats/matrices/detail/uff_input.hpp"
 
 namespace bough::matrices {
 namespace {
@@ -35,17 +35,10 @@ struct Shape {
 
 class UffReader {
  public:
-  explicit UffReader(const std::string& path) : in_(path, read_bytes(path)) {}
+  explicit UffReader(const std::string& path) : in_(path) {}
 
   TestShapes read() {
-    while (in_.next_line()) {
-      if (trim(in_.get_line()) != "-1") continue;
-      in_.demand_line("the number of a dataset");
-      const auto words = split(in_.get_line());
-      const auto number = words.empty() ? std::nullopt : parse_integer(words.front());
-      if (!number) in_.fail_line("the number of a dataset");
-      read_dataset(*number);
-    }
+    in_.read_datasets([&](long number) { read_dataset(number); });
     if (shapes_.empty())
       in_.fail("matrices.uff", "no mode shape (dataset 55 of normal or complex modes) in the file",
                "export the shapes of the test as dataset 55");
@@ -53,39 +46,30 @@ class UffReader {
   }
 
  private:
-  /// False at the end of the dataset.
-  bool next() {
-    in_.demand_line("the end of the dataset, -1");
-    return trim(in_.get_line()) != "-1";
-  }
-  void demand(const char* expected) {
-    if (!next()) in_.fail_line(expected);
-  }
-
-  std::vector<long> read_integers(std::size_t width, std::size_t min_count, const char* expected) {
-    std::vector<long> values;
+  /// Numbers in columns of the present line, up to a blank one; parse(word) gives none for a word that is no number.
+  template <class Parse>
+  auto read_columns(std::size_t width, const char* expected, const Parse& parse) {
+    std::vector<typename decltype(parse(std::string_view()))::value_type> values;
     const auto line = in_.get_line();
     for (std::size_t at = 0; at < line.size(); at += width) {
       const auto word = trim(line.substr(at, width));
       if (word.empty()) break;
-      const auto value = parse_integer(word);
+      const auto value = parse(word);
       if (!value) in_.fail_line(expected);
       values.push_back(*value);
     }
+    return values;
+  }
+  std::vector<long> read_integers(std::size_t width, std::size_t min_count, const char* expected) {
+    auto values = read_columns(width, expected, [](std::string_view word) { return parse_integer(word); });
     if (values.size() < min_count) in_.fail_line(expected);
     return values;
   }
   std::vector<double> read_reals(std::size_t width, const char* expected) {
-    std::vector<double> values;
-    const auto line = in_.get_line();
-    for (std::size_t at = 0; at < line.size(); at += width) {
-      const auto word = trim(line.substr(at, width));
-      if (word.empty()) break;
+    return read_columns(width, expected, [](std::string_view word) {
       const auto value = parse_real(word);
-      if (!value || !std::isfinite(*value)) in_.fail_line(expected);
-      values.push_back(*value);
-    }
-    return values;
+      return value && std::isfinite(*value) ? value : std::nullopt;
+    });
   }
 
   void read_dataset(long number) {
@@ -94,11 +78,11 @@ class UffReader {
     if (number == 55) return read_shape();
     if (number == 18) return read_systems_18();
     if (number == 2420) return read_systems_2420();
-    while (next()) continue;
+    in_.skip_dataset();
   }
 
   void read_nodes_15() {
-    while (next()) {
+    while (in_.next_of_dataset()) {
       const auto line = std::string(in_.get_line());
       const auto id = parse_integer(line.substr(0, 10));
       const auto rest = line.size() > 40 ? line.substr(40) : std::string();
@@ -108,25 +92,25 @@ class UffReader {
     }
   }
   void read_nodes_2411() {
-    while (next()) {
+    while (in_.next_of_dataset()) {
       const auto head = read_integers(10, 1, "a node of dataset 2411");
-      demand("the coordinates of the node");
+      in_.demand_of_dataset("the coordinates of the node");
       places_[static_cast<int>(head[0])] = {read_place(std::string(in_.get_line()), 25), head.size() > 1 ? head[1] : 0,
                                             head.size() > 2 ? head[2] : 0};
     }
   }
   /// Number, type and reference; name; origin, a point on the x axis, a point of the xz plane.
   void read_systems_18() {
-    while (next()) {
+    while (in_.next_of_dataset()) {
       const auto head = read_integers(10, 3, "a coordinate system of dataset 18");
       LocalSystem system;
       system.type = static_cast<int>(head[1]);
       system.reference = static_cast<int>(head[2]);
       system.line = in_.get_line_number();
-      demand("the name of the coordinate system");
+      in_.demand_of_dataset("the name of the coordinate system");
       std::vector<double> values;
       while (values.size() < 9) {
-        demand("nine coordinates of three points");
+        in_.demand_of_dataset("nine coordinates of three points");
         const auto more = read_reals(13, "nine coordinates of three points");
         if (more.empty()) in_.fail_line("nine coordinates of three points");
         values.insert(values.end(), more.begin(), more.end());
@@ -144,16 +128,16 @@ class UffReader {
   }
   /// Part and its name; then number, type and colour, name, three rows with the axes, one with the origin.
   void read_systems_2420() {
-    demand("the part of the coordinate systems");
-    demand("the name of the part");
-    while (next()) {
+    in_.demand_of_dataset("the part of the coordinate systems");
+    in_.demand_of_dataset("the name of the part");
+    while (in_.next_of_dataset()) {
       const auto head = read_integers(10, 2, "a coordinate system of dataset 2420");
       LocalSystem system;
       system.type = static_cast<int>(head[1]);
       system.line = in_.get_line_number();
-      demand("the name of the coordinate system");
+      in_.demand_of_dataset("the name of the coordinate system");
       for (int row = 0; row < 4; ++row) {
-        demand("four rows of a transformation matrix");
+        in_.demand_of_dataset("four rows of a transformation matrix");
         const Eigen::Vector3d values = read_place(std::string(in_.get_line()), 25);
         if (row < 3)
           system.R.col(row) = values;
@@ -235,14 +219,14 @@ class UffReader {
   }
   void read_shape() {
     const int first_line = in_.get_line_number();
-    for (int i = 0; i < 5; ++i) demand("five lines of identification");
-    demand("six integers");
+    for (int i = 0; i < 5; ++i) in_.demand_of_dataset("five lines of identification");
+    in_.demand_of_dataset("six integers");
     const auto kind =
         read_integers(10, 6, "six integers: model, analysis, characteristic, quantity, data type, number");
     const long analysis = kind[1], data_type = kind[4], count = kind[5];
     const bool is_mode = analysis == 2 || analysis == 3 || analysis == 7;
     if (!is_mode) {
-      while (next()) continue;
+      in_.skip_dataset();
       return;
     }
     const bool is_complex = data_type == 5 || data_type == 6;
@@ -251,8 +235,8 @@ class UffReader {
                "shapes of data type " + std::to_string(data_type) + " with " + std::to_string(count) +
                    " values a node are not read",
                "export three translations or six components, real (2) or complex (5)");
-    demand("the integers of the mode");
-    demand("the reals of the mode");
+    in_.demand_of_dataset("the integers of the mode");
+    in_.demand_of_dataset("the reals of the mode");
     const auto reals = read_reals(13, "the reals of the mode");
     if (reals.empty()) in_.fail_line("the frequency of the mode");
     Shape shape;
@@ -265,11 +249,11 @@ class UffReader {
       shape.damping = std::abs(pole) > 0 ? -pole.real() / std::abs(pole) : 0;
     }
     const auto num_reals = static_cast<std::size_t>(is_complex ? 2 * count : count);
-    while (next()) {
+    while (in_.next_of_dataset()) {
       const auto id = read_integers(10, 1, "the number of a node")[0];
       std::vector<double> values;
       while (values.size() < num_reals) {
-        demand("the values of the node");
+        in_.demand_of_dataset("the values of the node");
         const auto more = read_reals(13, "values of a node in columns of 13");
         if (more.empty()) in_.fail_line("the values of the node");
         values.insert(values.end(), more.begin(), more.end());
@@ -343,7 +327,7 @@ class UffReader {
     return test;
   }
 
-  TextInput in_;
+  UffInput in_;
   std::map<int, NodePlace> places_;
   std::map<long, LocalSystem> systems_;
   std::vector<Shape> shapes_;

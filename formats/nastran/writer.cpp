@@ -23,22 +23,21 @@ void write_selection(const records::Subcase& subcase, std::string& out) {
   const auto add = [&](const char* word, const std::string& value) {
     if (!value.empty()) out += std::string(word) + " = " + value + "\n";
   };
-  const auto add_set = [&](const char* word, int set) {
-    if (set != 0) add(word, std::to_string(set));
-  };
   add("TITLE", subcase.title);
   add("SUBTITLE", subcase.subtitle);
   add("LABEL", subcase.label);
-  add_set("SPC", subcase.spc);
-  add_set("MPC", subcase.mpc);
-  add_set("LOAD", subcase.load);
-  add_set("TEMPERATURE(LOAD)", subcase.temperature);
-  add_set("TEMPERATURE(INITIAL)", subcase.initial_temperature);
-  add_set("METHOD", subcase.method);
-  add_set("STATSUB", subcase.statsub);
-  add_set("STATSUB(PRELOAD)", subcase.preload);
-  add_set("SUPORT1", subcase.suport1);
-  add_set("NSM", subcase.nsm);
+  const std::pair<const char*, int> sets[] = {{"SPC", subcase.spc},
+                                              {"MPC", subcase.mpc},
+                                              {"LOAD", subcase.load},
+                                              {"TEMPERATURE(LOAD)", subcase.temperature},
+                                              {"TEMPERATURE(INITIAL)", subcase.initial_temperature},
+                                              {"METHOD", subcase.method},
+                                              {"STATSUB", subcase.statsub},
+                                              {"STATSUB(PRELOAD)", subcase.preload},
+                                              {"SUPORT1", subcase.suport1},
+                                              {"NSM", subcase.nsm}};
+  for (const auto& [word, set] : sets)
+    if (set != 0) add(word, std::to_string(set));
   add("K2GG", join_matrices(subcase.k2gg));
   add("M2GG", join_matrices(subcase.m2gg));
   add("B2GG", join_matrices(subcase.b2gg));

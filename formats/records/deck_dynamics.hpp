@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "formats/records/deck.hpp"
+#include "formats/records/deck_rotors.hpp"
 
 namespace bough::records {
 
@@ -193,6 +194,7 @@ struct DynamicCards {
   std::vector<TransferFunction> transfer_functions;
   /// EPOINT: dofs of complex modes. Normal modes have none, and loads there act on nothing.
   std::set<int> extra_points;
+  RotorCards rotors;
 };
 
 /// SET of the case control: ids, or numbers such as frequencies.
@@ -228,10 +230,11 @@ struct OutputRequest {
 /// Response requests of a subcase.
 struct DynamicSelection {
   int dload = 0, loadset = 0, frequency = 0, tstep = 0, ic = 0, sdamping = 0;
-  int cmethod = 0, tfl = 0;  ///< of complex modes
-  int ofreq = 0;             ///< a SET; 0: all
-  int random = 0;            ///< set of RANDPS and RANDT1
-  int rcross = 0;            ///< set of RCROSS
+  int cmethod = 0, tfl = 0;    ///< of complex modes
+  int ofreq = 0;               ///< a SET; 0: all
+  int random = 0;              ///< set of RANDPS and RANDT1
+  int rcross = 0;              ///< set of RCROSS
+  int rgyro = 0, rmethod = 0;  ///< RGYRO and ROTORD cards
   /// (scale, DMIG name) of K2PP, M2PP, B2PP. In a response they are in k2gg, m2gg and b2gg of the subcase too.
   std::vector<std::pair<double, std::string>> k2pp, m2pp, b2pp;
   std::optional<bool> resvec;  ///< RESVEC = YES, NO

@@ -62,6 +62,8 @@ struct HingeLawRecord {
   std::vector<double> stop_lower, stop_upper, stop_stiffness, stop_damping;
   std::vector<double> stop_restitution;  ///< of rigid stops, which have no stiffness; empty: springs
   std::vector<double> coulomb, static_friction, stribeck_velocity, smoothing;
+  /// Friction by bearing load: coefficients, and the lengths that turn reactions into it; 0: without effect.
+  std::vector<double> mu, mu_static, pin_radius, friction_arm, bending_arm, reaction_arm;
   std::vector<double> rotor_inertia, gear_ratio;
   bool has_stops = false, has_friction = false;
 };

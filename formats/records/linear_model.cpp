@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numbers>
+#include <sstream>
 
 namespace bough::records {
 
@@ -22,7 +23,21 @@ std::complex<double> calc_z(const LinearSweep& sweep, Eigen::Index k, Eigen::Ind
   return calc_z(sweep.real(k, b), sweep.imag(k, b), sweep.models[static_cast<std::size_t>(k)].sample_time);
 }
 
+double get_grid_value(const LinearSweep& sweep, Eigen::Index k, std::size_t axis) {
+  for (std::size_t i = sweep.grid_value.size() - 1; i > axis; --i) k /= sweep.grid_value[i].size();
+  return sweep.grid_value[axis][k % sweep.grid_value[axis].size()];
+}
+
+std::string describe_point(const LinearSweep& sweep, Eigen::Index k) {
+  std::ostringstream text;
+  if (sweep.grid_name.empty()) text << sweep.parameter << " = " << sweep.value[k];
+  for (std::size_t i = 0; i < sweep.grid_name.size(); ++i)
+    text << (i > 0 ? ", " : "") << sweep.grid_name[i] << " = " << get_grid_value(sweep, k, i);
+  return text.str();
+}
+
 bool is_gone(const LinearSweep& sweep, Eigen::Index b) {
+  if (sweep.models.empty()) return false;
   for (Eigen::Index k = 0; k < sweep.value.size(); ++k)
     if (sweep.models[static_cast<std::size_t>(k)].sample_time == 0 || calc_z(sweep, k, b) != 0.0) return false;
   return true;

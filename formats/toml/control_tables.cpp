@@ -68,11 +68,18 @@ records::Settings read_settings(const Fields& table, const std::string& path, co
   return settings;
 }
 
-records::ControllerRecord read_controller(const Fields& table, const std::string& path, Diagnostics& diagnostics) {
-  records::ControllerRecord r;
+/// A record with its place, name and type.
+template <class Record>
+Record read_head(const Fields& table) {
+  Record r;
   r.at = table.locate();
   r.name = table.get_string("name");
   r.type = table.get_string("type");
+  return r;
+}
+
+records::ControllerRecord read_controller(const Fields& table, const std::string& path, Diagnostics& diagnostics) {
+  auto r = read_head<records::ControllerRecord>(table);
   r.inputs = table.get_strings("inputs");
   r.reference = table.get_string("reference");
   r.rate = table.get_string("rate");
@@ -84,10 +91,7 @@ records::ControllerRecord read_controller(const Fields& table, const std::string
 }
 
 records::ActuatorRecord read_actuator(const Fields& table, const std::string& path, Diagnostics& diagnostics) {
-  records::ActuatorRecord r;
-  r.at = table.locate();
-  r.name = table.get_string("name");
-  r.type = table.get_string("type");
+  auto r = read_head<records::ActuatorRecord>(table);
   r.input = table.get_string("input");
   r.body = table.get_string("body");
   r.hinge = table.get_string("hinge");

@@ -81,12 +81,14 @@ void change_hinge(const UnitTable& t, const SignalUnits& units) {
   visit_inner(t, "friction", [&](const UnitTable& friction) {
     for (const char* key : {"coulomb", "static"}) friction.scale(key, effort);
     for (const char* key : {"stribeck_velocity", "smoothing"}) friction.scale(key, rate);
+    for (const char* key : {"pin_radius", "friction_arm", "bending_arm", "reaction_arm"})
+      friction.scale(key, units.change().length);
   });
 }
 
 void change_constraint(const UnitTable& t, const SignalUnits& units) {
   change_frames(t, units.change().length);
-  t.scale("length", units.change().length);
+  for (const char* key : {"length", "radius", "crown"}) t.scale(key, units.change().length);
   const auto* terms = t.table["terms"].as_array();
   double first = 0;
   for (std::size_t i = 0; terms != nullptr && i < terms->size(); ++i) {

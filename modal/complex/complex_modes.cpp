@@ -8,6 +8,7 @@
 #include "fe/statics/build_model.hpp"
 #include "modal/complex/complex_solver.hpp"
 #include "modal/complex/physical_input.hpp"
+#include "modal/complex/rotor_case.hpp"
 #include "modal/response/accuracy.hpp"
 #include "modal/response/deck_response.hpp"
 #include "modal/response/direct_model.hpp"
@@ -20,16 +21,25 @@ constexpr int kDefaultModes = 10;
 constexpr int kReferenceModes = 8;      ///< real modes from which the shift and the scale of time are chosen
 constexpr Index kMaxComplete = 2000;    ///< unknowns up to which every eigenvalue is computed on request
 constexpr double kRigidBody = 1e-5;     ///< of the first elastic frequency
+constexpr double kNoOrbit = 1e-12;      ///< square of the share of the largest component
+constexpr double kRepeated = 1e-7;      ///< relative difference of eigenvalues
 constexpr Index kMaxInputVectors = 60;  ///< dofs of direct input with residual vectors
 
-/// The pencil with the way back to the dofs of the model.
+/// The matrices with the way back to the dofs of the model.
 struct Problem {
-  QuadraticPencil pencil;
+  PencilBuilder builder{0};
   Eigen::SparseMatrix<double> T_g;  ///< u_g = T_g x of the first unknowns (107)
   MatrixXd Phi;                     ///< the same, dense (110)
   Index num_coordinates = 0;        ///< unknowns before the extra points
   VectorXd lambda;                  ///< of real modes, ascending
   int num_rigid = 0, num_massless = 0;
+
+  /// Adds Nᵀ A N of matrices on the g-set, u_g = N x.
+  void add(PencilBuilder& to, const ComplexSparse& K, const ComplexSparse& B, const ComplexSparse& M) const {
+    if (Phi.size() == 0) return to.add_projected(T_g, K, B, M);
+    const MatrixXcd N = Phi.cast<Complex>();
+    to.add_dense(N.transpose() * (K * N), N.transpose() * (B * N), N.transpose() * (M * N));
+  }
 
   MatrixXcd recover(const MatrixXcd& X) const {
     const MatrixXcd q = X.topRows(num_coordinates);
@@ -88,13 +98,13 @@ Problem make_direct_problem(const fe::System& system, const records::DynamicDeck
   const auto direct = response::make_direct_model(system, deck, subcase, make_no_excitation(model), damping);
   problem.num_coordinates = model.num_fdofs();
   problem.T_g = model.T();
-  PencilBuilder builder(problem.num_coordinates + static_cast<Index>(input.extra_points.size()));
+  auto& builder = problem.builder;
+  builder = PencilBuilder(problem.num_coordinates + static_cast<Index>(input.extra_points.size()));
   if (!input.is_empty()) builder.add_projected(input.calc_transform(problem.T_g), input.K, input.B, input.M);
   builder.add_stiffness(direct.K, 1);
   if (direct.S) builder.add_stiffness(direct.S, Complex(0, 1));
   if (direct.B) builder.add_damping(direct.B, 1);
   builder.add_mass(direct.M, 1);
-  problem.pencil = builder.build();
   return problem;
 }
 
@@ -130,13 +140,13 @@ Problem make_modal_problem(const fe::System& system, const records::DynamicDeck&
   K.diagonal() += reduced.lambda;
   VectorXd mass = VectorXd::Ones(problem.num_coordinates);
   mass.tail(reduced.num_massless).setZero();
-  PencilBuilder builder(problem.num_coordinates + static_cast<Index>(input.extra_points.size()));
+  auto& builder = problem.builder;
+  builder = PencilBuilder(problem.num_coordinates + static_cast<Index>(input.extra_points.size()));
   builder.add_dense(K, reduced.D.cast<Complex>(), MatrixXd(mass.asDiagonal()).cast<Complex>());
   if (!input.is_empty()) {
     const Eigen::SparseMatrix<double> Phi = problem.Phi.sparseView(0, 0);
     builder.add_projected(input.calc_transform(Phi), input.K, input.B, input.M);
   }
-  problem.pencil = builder.build();
   return problem;
 }
 
@@ -144,7 +154,7 @@ Problem make_modal_problem(const fe::System& system, const records::DynamicDeck&
 struct Reference {
   double first = 1, last = 1;
 };
-Reference choose_reference(const Problem& problem) {
+Reference choose_reference(const Problem& problem, const QuadraticPencil& p) {
   Reference reference;
   const Index elastic = problem.lambda.size() - problem.num_rigid;
   const auto omega = [](double lambda) { return std::sqrt(std::abs(lambda)); };
@@ -154,7 +164,6 @@ Reference choose_reference(const Problem& problem) {
     return reference;
   }
   // Without modes: from the magnitude of the matrices.
-  const auto& p = problem.pencil;
   const double k = p.K.norm(), b = p.B.norm(), m = p.M.norm();
   const double scale = k > 0 && m > 0 ? std::sqrt(k / m) : k > 0 && b > 0 ? k / b : b > 0 && m > 0 ? b / m : 1;
   return {scale, scale};
@@ -204,19 +213,19 @@ void append(ComplexPairs& all, const ComplexPairs& more) {
   all.residual = all.residual(order).eval();
 }
 
-ComplexPairs solve(const Problem& problem, const records::ComplexMethod& method, const ComplexModesOptions& options,
-                   const std::function<std::string(Index)>& name_unknown) {
-  if (problem.pencil.size() == 0)
+ComplexPairs solve(const Problem& problem, const QuadraticPencil& pencil, const records::ComplexMethod& method,
+                   const ComplexModesOptions& options, const std::function<std::string(Index)>& name_unknown) {
+  if (pencil.size() == 0)
     throw ComputationError("modal.no-dofs", {}, "the model has no free dof", "check its SPC sets and rigid elements");
-  const auto reference = choose_reference(problem);
+  const auto reference = choose_reference(problem, pencil);
   SolverOptions solver;
   solver.scale = reference.last;
   solver.zero = problem.num_rigid > 0 ? kRigidBody * reference.first : 0;
   const auto defaults = list_shifts(problem, reference);
   if (method.shifts.empty()) {
     solver.shifts = defaults;
-    solver.num_modes = count_wanted(method, options, problem.pencil.size());
-    return solve_pencil(problem.pencil, solver, name_unknown);
+    solver.num_modes = count_wanted(method, options, pencil.size());
+    return solve_pencil(pencil, solver, name_unknown);
   }
   std::optional<ComplexPairs> all;
   for (const auto& shift : method.shifts) {
@@ -226,8 +235,8 @@ ComplexPairs solve(const Problem& problem, const records::ComplexMethod& method,
     solver.shifts.insert(solver.shifts.end(), defaults.begin(), defaults.end());
     solver.num_modes = options.num_modes > 0 ? options.num_modes
                        : shift.num_modes > 0 ? shift.num_modes
-                                             : count_wanted(method, options, problem.pencil.size());
-    const auto pairs = solve_pencil(problem.pencil, solver, name_unknown);
+                                             : count_wanted(method, options, pencil.size());
+    const auto pairs = solve_pencil(pencil, solver, name_unknown);
     if (all)
       append(*all, pairs);
     else
@@ -324,6 +333,39 @@ void fill_values(const ComplexPairs& pairs, records::ComplexModesResult& result)
   result.is_complete = pairs.is_dense;
 }
 
+/// Largest orbit across the axis of each mode, of translations (first = 0) or of rotations (first = 3) of the grids of
+/// the rotors: its size |u_x|² + |u_y|² and its whirl, (|forward|² - |backward|²) over the sum, from u_x ∓ i u_y.
+void find_orbits(const fe::Model& model, const std::vector<fe::Rotor>& rotors, const MatrixXcd& Phi, int first,
+                 VectorXd& largest, VectorXd& whirl) {
+  largest = whirl = VectorXd::Zero(Phi.cols());
+  for (const auto& rotor : rotors) {
+    const Eigen::Vector3d x = rotor.axis.unitOrthogonal(), y = rotor.axis.cross(x);
+    for (const int node : rotor.nodes) {
+      const auto u = Phi.middleRows(model.node(node).first_gdof + first, 3);
+      const Eigen::RowVectorXcd u_x = x.transpose().cast<Complex>() * u, u_y = y.transpose().cast<Complex>() * u;
+      for (Index j = 0; j < Phi.cols(); ++j) {
+        const double size = std::norm(u_x(j)) + std::norm(u_y(j));
+        if (!(size > largest(j))) continue;
+        largest(j) = size;
+        whirl(j) = -2 * (std::conj(u_x(j)) * u_y(j)).imag() / size;
+      }
+    }
+  }
+}
+
+/// Whirl of each mode; empty without rotors. Rotations count where translations are round-off, and 0 is of modes
+/// without both: axial motion and torsion.
+VectorXd calc_whirl(const fe::Model& model, const std::vector<fe::Rotor>& rotors, const MatrixXcd& Phi) {
+  if (rotors.empty()) return {};
+  const VectorXd all = Phi.cwiseAbs2().colwise().maxCoeff();
+  VectorXd largest, whirl, tilt, of_tilt;
+  find_orbits(model, rotors, Phi, 0, largest, whirl);
+  find_orbits(model, rotors, Phi, 3, tilt, of_tilt);
+  for (Index j = 0; j < Phi.cols(); ++j)
+    if (!(largest(j) > kNoOrbit * all(j))) whirl(j) = tilt(j) > kNoOrbit * all(j) ? of_tilt(j) : 0;
+  return whirl;
+}
+
 void report_accuracy(const records::DynamicDeck& deck, const ComplexPairs& pairs, int num_wanted,
                      Diagnostics& diagnostics) {
   const auto found = std::count_if(pairs.lambda.begin(), pairs.lambda.end(), [](Complex l) { return l.imag() > 0; });
@@ -336,30 +378,22 @@ void report_accuracy(const records::DynamicDeck& deck, const ComplexPairs& pairs
 
 }  // namespace
 
-records::ComplexModesResult solve_complex_modes(const records::DynamicDeck& deck, const fe::ModelOptions& model_options,
-                                                const records::DynamicSubcase& subcase,
-                                                const ComplexModesOptions& options, Diagnostics& diagnostics) {
-  const auto& method = find_method(deck, subcase, options);
-  const auto model = fe::build_model(deck, model_options, diagnostics);
-  diagnostics.throw_if_errors();
-  // K2PP is no part of the structure here: neither G nor ALPHA2 acts on it.
-  auto without_input = subcase;
-  auto& d = without_input.dynamics;
-  for (auto* list : {&d.k2pp, &d.m2pp, &d.b2pp}) list->clear();
-  response::ResponseOptions damping_options;
-  damping_options.is_direct = !options.is_by_modes;
-  const auto damping = response::choose_damping(deck, without_input, damping_options, model, diagnostics);
-  const auto input = collect_physical_input(model, deck, subcase, diagnostics);
-  diagnostics.throw_if_errors();
-  if (!options.is_by_modes && d.sdamping != 0)
-    diagnostics.warning("modal.no-modes", deck.locate(subcase.find_command("SDAMPING")),
-                        "SDAMPING damps modes: the direct solution leaves it out, as in Nastran",
-                        "damp by PARAM,G, GE or dampers, or solve by modes (SOL 110)");
-  const fe::System system(model);
-  const auto problem = options.is_by_modes
-                           ? make_modal_problem(system, deck, without_input, damping, input, options, diagnostics)
-                           : make_direct_problem(system, deck, without_input, damping, input);
-  const auto name_unknown = [&](Index i) -> std::string {
+struct ComplexModesSolver::Prepared {
+  Prepared(const records::DynamicDeck& d, const records::DynamicSubcase& s, const ComplexModesOptions& o, fe::Model&& m)
+      : deck(d), subcase(s), options(o), model(std::move(m)), system(model) {}
+
+  const records::DynamicDeck& deck;
+  const records::DynamicSubcase subcase;
+  const ComplexModesOptions options;
+  const fe::Model model;
+  const fe::System system;
+  records::ComplexMethod method;
+  PhysicalInput input;
+  Problem problem;
+  std::optional<rotors::RotorCase> rotor_case;
+  std::optional<rotors::RotorTerms> rotor_terms;
+
+  std::string name_unknown(Index i) const {
     if (i >= problem.num_coordinates) {
       const auto k = static_cast<std::size_t>(i - problem.num_coordinates);
       return k < input.extra_points.size() ? "extra point " + std::to_string(input.extra_points[k]) : "a constraint";
@@ -368,25 +402,128 @@ records::ComplexModesResult solve_complex_modes(const records::DynamicDeck& deck
     const auto [node, component] = model.describe_fdof(static_cast<int>(i));
     return component == 0 ? "scalar point " + std::to_string(node)
                           : "grid " + std::to_string(node) + " component " + std::to_string(component);
-  };
-  ComplexPairs pairs;
-  try {
-    pairs = solve(problem, method, options, name_unknown);
-  } catch (const ComputationError& failure) {
-    auto items = failure.items();
-    for (auto& item : items)
-      if (item.where.file.empty()) item.where = deck.locate(method.at);
-    throw ComputationError(std::move(items));
   }
-  if (method.shifts.empty())
-    report_accuracy(deck, pairs, count_wanted(method, options, problem.pencil.size()), diagnostics);
+
+  /// Rotors at a speed of the reference rotor, or at the speed ω of the motion (λ = iω).
+  QuadraticPencil make_pencil(std::optional<double> speed) const {
+    if (!rotor_terms) return problem.builder.build();
+    PencilBuilder builder = problem.builder;
+    const Index n = model.num_gdofs();
+    // The structural damping of rotors acts by its viscous equivalent only.
+    const auto without = ComplexSparse(rotor_terms->model_structural().cast<Complex>() * Complex(0, -1));
+    const auto complex = [](const fe::SparseColumns& A, Complex factor) {
+      return ComplexSparse(A.cast<Complex>() * factor);
+    };
+    if (speed) {
+      problem.add(builder, complex(rotor_terms->calc_circulation(*speed), 1) + without,
+                  complex(rotor_terms->calc_damping(*speed), 1), ComplexSparse(n, n));
+      return builder.build();
+    }
+    const auto terms = rotor_terms->calc_synchronous();
+    problem.add(builder, complex(terms.circulation, 1) + without,
+                complex(terms.damping, 1) + complex(terms.circulation_rate, Complex(0, -1)),
+                complex(terms.gyroscopic_rate, Complex(0, -1)));
+    return builder.build();
+  }
+
+  ComplexPairs find_pairs(const QuadraticPencil& pencil, const records::ComplexMethod& by,
+                          const ComplexModesOptions& with) const {
+    try {
+      return complex_modes::solve(problem, pencil, by, with, [this](Index i) { return name_unknown(i); });
+    } catch (const ComputationError& failure) {
+      auto items = failure.items();
+      for (auto& item : items)
+        if (item.where.file.empty()) item.where = deck.locate(method.at);
+      throw ComputationError(std::move(items));
+    }
+  }
+};
+
+ComplexModesSolver::ComplexModesSolver(const records::DynamicDeck& deck, const fe::ModelOptions& model_options,
+                                       const records::DynamicSubcase& subcase, const ComplexModesOptions& options,
+                                       Diagnostics& diagnostics) {
+  const auto& method = find_method(deck, subcase, options);
+  auto model = fe::build_model(deck, model_options, diagnostics);
+  diagnostics.throw_if_errors();
+  prepared_ = std::make_unique<Prepared>(deck, subcase, options, std::move(model));
+  auto& p = *prepared_;
+  p.method = method;
+  // K2PP is no part of the structure here: neither G nor ALPHA2 acts on it.
+  auto without_input = subcase;
+  auto& d = without_input.dynamics;
+  for (auto* list : {&d.k2pp, &d.m2pp, &d.b2pp}) list->clear();
+  response::ResponseOptions damping_options;
+  damping_options.is_direct = !options.is_by_modes;
+  const auto damping = response::choose_damping(deck, without_input, damping_options, p.model, diagnostics);
+  p.input = collect_physical_input(p.model, deck, subcase, diagnostics);
+  p.rotor_case = rotors::choose_rotors(p.model, deck, subcase, rotors::RotorUse::Eigenvalues, diagnostics);
+  diagnostics.throw_if_errors();
+  if (p.rotor_case) p.rotor_terms.emplace(p.model, *p.rotor_case, damping.g, diagnostics);
+  if (!options.is_by_modes && d.sdamping != 0)
+    diagnostics.warning("modal.no-modes", deck.locate(subcase.find_command("SDAMPING")),
+                        "SDAMPING damps modes: the direct solution leaves it out, as in Nastran",
+                        "damp by PARAM,G, GE or dampers, or solve by modes (SOL 110)");
+  p.problem = options.is_by_modes
+                  ? make_modal_problem(p.system, deck, without_input, damping, p.input, options, diagnostics)
+                  : make_direct_problem(p.system, deck, without_input, damping, p.input);
+}
+ComplexModesSolver::~ComplexModesSolver() = default;
+
+const rotors::RotorCase* ComplexModesSolver::rotor_case() const {
+  return prepared_->rotor_case ? &*prepared_->rotor_case : nullptr;
+}
+const std::vector<fe::Rotor>& ComplexModesSolver::rotors() const {
+  static const std::vector<fe::Rotor> none;
+  return prepared_->rotor_terms ? prepared_->rotor_terms->rotors() : none;
+}
+
+SpeedModes ComplexModesSolver::solve_at(double speed, int num_modes, std::optional<Complex> shift) const {
+  const auto& p = *prepared_;
+  const auto pencil = p.make_pencil(speed);
+  auto method = p.method;
+  auto options = p.options;
+  if (shift) method.shifts = {{shift->real(), shift->imag(), num_modes}};
+  if (num_modes > 0) options.num_modes = num_modes < pencil.size() / 2 ? num_modes : static_cast<int>(pencil.size());
+  const auto pairs = p.find_pairs(pencil, method, options);
+  std::vector<Index> kept;
+  for (Index j = 0; j < pairs.lambda.size(); ++j)
+    if (pairs.lambda(j).imag() > 0) kept.push_back(j);
+  const auto n = pencil.size(), m = static_cast<Index>(kept.size());
+  SpeedModes modes;
+  modes.lambda = pairs.lambda(kept);
+  const MatrixXcd X = pairs.X(Eigen::all, kept), Y = pairs.Y(Eigen::all, kept);
+  modes.right.resize(2 * n, m);
+  modes.right << X, X * modes.lambda.asDiagonal();
+  const MatrixXcd MY = pencil.M.transpose() * Y, BY = pencil.B.transpose() * Y;
+  modes.left.resize(m, 2 * n);
+  modes.left << (MY * modes.lambda.asDiagonal() + BY).transpose(), MY.transpose();
+  // Vectors of repeated eigenvalues are any basis of their space: the left ones become dual to the right ones.
+  for (Index j = 0, next = 0; j < m; j = next) {
+    for (next = j + 1;
+         next < m && std::abs(modes.lambda(next) - modes.lambda(j)) < kRepeated * std::abs(modes.lambda(j));)
+      ++next;
+    auto rows = modes.left.middleRows(j, next - j);
+    const Eigen::FullPivLU<MatrixXcd> products(rows * modes.right.middleCols(j, next - j));
+    if (products.isInvertible()) rows = products.solve(rows).eval();
+  }
+  modes.whirl = calc_whirl(p.model, rotors(), p.problem.recover(X));
+  return modes;
+}
+
+records::ComplexModesResult ComplexModesSolver::solve(std::optional<double> speed, Diagnostics& diagnostics) const {
+  const auto& [deck, subcase, options, model, system, method, input, problem, rotor_case, rotor_terms] = *prepared_;
+  const auto pencil = prepared_->make_pencil(speed);
+  const auto pairs = prepared_->find_pairs(pencil, method, options);
+  if (method.shifts.empty()) report_accuracy(deck, pairs, count_wanted(method, options, pencil.size()), diagnostics);
   records::ComplexModesResult result;
   result.subcase = model.subcase().id;
   result.is_by_modes = options.is_by_modes;
   result.method = method.method;
   result.norm = method.norm;
-  result.num_unknowns = static_cast<int>(problem.pencil.size());
+  result.num_unknowns = static_cast<int>(pencil.size());
   fill_values(pairs, result);
+  MatrixXcd Phi = problem.recover(pairs.X);
+  result.whirl = calc_whirl(model, rotors(), Phi);
   if (!options.has_shapes) return result;
   std::vector<const fe::Node*> grids;
   for (const auto& node : model.nodes()) {
@@ -402,11 +539,11 @@ records::ComplexModesResult solve_complex_modes(const records::DynamicDeck& deck
     result.node_xyz.row(static_cast<Index>(k)) = grids[k]->x.transpose();
   }
   const auto num_extra = static_cast<Index>(input.extra_points.size());
-  MatrixXcd Phi = problem.recover(pairs.X), extra = pairs.X.middleRows(problem.num_coordinates, num_extra);
+  MatrixXcd extra = pairs.X.middleRows(problem.num_coordinates, num_extra);
   normalize(model, deck, method, Phi, extra, true, diagnostics);
   result.phi = list_shapes(model, Phi);
   result.point_phi = list_points(model, Phi, extra);
-  if (!problem.pencil.is_symmetric) {
+  if (!pencil.is_symmetric) {
     Phi = problem.recover(pairs.Y);
     extra = pairs.Y.middleRows(problem.num_coordinates, num_extra);
     normalize(model, deck, method, Phi, extra, false, diagnostics);

@@ -308,10 +308,13 @@ ComplexPairs choose_pairs(const ScaledPencil& scaled, const RitzPairs& ritz, Com
     if (distances.size() > static_cast<std::size_t>(options.num_modes)) {
       const double farthest = distances[static_cast<std::size_t>(options.num_modes) - 1] * (1 + 1e-12);
       std::erase_if(items, [&](const Item& item) { return std::abs(item.lambda - sigma) > farthest; });
-      // A multiple eigenvalue at the end is cut to the number.
-      int count = 0;
-      std::erase_if(items,
-                    [&](const Item& item) { return is_oscillatory(item.lambda) && ++count > options.num_modes; });
+      // A multiple eigenvalue at that distance is cut to the number.
+      auto surplus =
+          std::count_if(items.begin(), items.end(), [](const Item& item) { return is_oscillatory(item.lambda); }) -
+          options.num_modes;
+      std::erase_if(items, [&](const Item& item) {
+        return is_oscillatory(item.lambda) && std::abs(item.lambda - sigma) > farthest * (1 - 1e-9) && surplus-- > 0;
+      });
     }
   }
   const auto m = static_cast<Index>(items.size());

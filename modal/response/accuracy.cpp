@@ -45,7 +45,7 @@ BasisError calc_basis_error(const fe::Model& model, const ResponseModel& respons
   return error;
 }
 
-double calc_solution_error(const ResponseModel& response, const Spectrum& spectrum) {
+double calc_solution_error(const ResponseModel& response, const Spectrum& spectrum, const AddedCoordinates& added) {
   const auto n = response.lambda.size();
   VectorXd mass = VectorXd::Ones(n);
   mass.tail(response.num_massless).setZero();
@@ -55,7 +55,12 @@ double calc_solution_error(const ResponseModel& response, const Spectrum& spectr
     const VectorXd inertia = omega * omega * mass;
     const Eigen::VectorXcd q = spectrum.q.col(i), force = response.P * spectrum.a.col(i);
     const Eigen::VectorXcd damped = 1i * (omega * (response.D * q) + response.S * q);
-    const Eigen::VectorXcd rest = (response.lambda - inertia).cwiseProduct(q) + damped - force;
+    Eigen::VectorXcd rest = (response.lambda - inertia).cwiseProduct(q) + damped - force;
+    if (added) {
+      const auto [of_modes, of_supports] = added(spectrum.hz(i));
+      rest += of_modes * q;
+      if (spectrum.d.rows() > 0) rest += of_supports * spectrum.d.col(i);
+    }
     const VectorXd scale =
         response.lambda.cwiseAbs().cwiseMax(inertia).cwiseMax(detail::kTiny).cwiseSqrt().cwiseInverse();
     const double size = scale.cwiseProduct(force).norm(), off = scale.cwiseProduct(rest).norm();

@@ -22,7 +22,7 @@ struct BasisError {
 BasisError calc_basis_error(const fe::Model& model, const ResponseModel& response);
 
 /// |(Λ - ω² m + iωD + iS) q - P a| / |P a| of the worst frequency, each row over √max(|λ|, ω² m).
-double calc_solution_error(const ResponseModel& response, const Spectrum& spectrum);
+double calc_solution_error(const ResponseModel& response, const Spectrum& spectrum, const AddedCoordinates& added = {});
 
 /// The worst residual of the equations A x = b that a direct solution solves: |D⁻¹ᐟ²(A x - b)| over |D⁻¹ᐟ²A x| and what
 /// the entries of A alone could bring about, as linear::calc_residuals has it. Over frequency of each, over time of the

@@ -1,6 +1,7 @@
 #pragma once
 /// \file The coordinates of a driven model over frequency and over time.
 #include <functional>
+#include <utility>
 #include <vector>
 
 #include "modal/response/frequency_list.hpp"
@@ -35,10 +36,14 @@ class BoundedFrequencies {
   std::vector<Diagnostic> left_out_;
 };
 
-/// (Λ - ω² + iωD + iS) q = P a. Leaves frequencies of undamped modes out, and 0 Hz where the model is free or its
-/// supports move by a velocity or an acceleration (BoundedFrequencies): Spectrum::hz are those that are left.
+/// Additions Φᵀ Z Φ (n x n) and Φᵀ Z Ψ (n x k) to the matrices of q and of d at a frequency; empty: none.
+using AddedCoordinates = std::function<std::pair<MatrixXcd, MatrixXcd>(double hz)>;
+
+/// (Λ - ω² + iωD + iS + Φᵀ Z Φ) q = P a - Φᵀ Z Ψ d. Leaves frequencies of undamped modes out, and 0 Hz where the model
+/// is free or its supports move by a velocity or an acceleration (BoundedFrequencies): Spectrum::hz are those that are
+/// left.
 Spectrum calc_spectrum(const ResponseModel& model, const Excitation& excitation, const VectorXd& hz,
-                       Diagnostics& diagnostics);
+                       Diagnostics& diagnostics, const AddedCoordinates& added = {});
 
 /// A column per time that is shown.
 struct History {

@@ -13,6 +13,7 @@
 #include "modal/response/accuracy.hpp"
 #include "modal/response/load_steps.hpp"
 #include "modal/response/residual_modes.hpp"
+#include "modal/response/rotor_response.hpp"
 #include "modal/tolerances.hpp"
 
 namespace bough::modal::response {
@@ -177,6 +178,50 @@ DampingChoice choose_damping(const records::DynamicDeck& deck, const records::Dy
 
 namespace {
 
+/// Rotors of RGYRO; nullptr without.
+std::shared_ptr<const RotorResponse> make_rotors(const fe::Model& model, const records::DynamicDeck& deck,
+                                                 const records::DynamicSubcase& subcase, const ResponseOptions& options,
+                                                 double g, const std::vector<OutputChoice>& outputs,
+                                                 Diagnostics& diagnostics) {
+  const auto rotor_case = rotors::choose_rotors(model, deck, subcase, rotors::RotorUse::Frequency, diagnostics);
+  if (!rotor_case) return nullptr;
+  const auto at = deck.locate(subcase.find_command("RGYRO"));
+  if (options.is_over_time)
+    diagnostics.error("modal.rotor-unsupported", at, "RGYRO is not supported over time",
+                      "compute the frequency response, the complex modes, or the run of a system with the rotor");
+  if (options.with_random && !options.is_direct)
+    diagnostics.error("modal.rotor-unsupported", at,
+                      "RANDOM by modes is not supported with rotors: its modal integrals have no gyroscopic terms",
+                      "solve directly (SOL 108, --direct)");
+  diagnostics.throw_if_errors();
+  const auto is_fixed = [&](int grid) {
+    const auto& node = model.node(model.find_node(grid));
+    return std::any_of(model.fixed_dofs().begin(), model.fixed_dofs().end(),
+                       [&](int dof) { return dof >= node.first_gdof && dof < node.first_gdof + 6; });
+  };
+  for (const auto& output : outputs)
+    for (const auto& axis : rotor_case->axes)
+      for (const int grid : axis.grids)
+        if (output.quantity == "spc_force" && !diagnostics.has("modal.rotor-reaction") && is_fixed(grid) &&
+            std::find(output.ids.begin(), output.ids.end(), grid) != output.ids.end())
+          diagnostics.warning("modal.rotor-reaction", at,
+                              "the SPC force at grid " + std::to_string(grid) + " of rotor " + std::to_string(axis.id) +
+                                  " has no gyroscopic and no circulatory part",
+                              "support the rotor by springs to other grids, and fix those");
+  return std::make_shared<RotorResponse>(model, *rotor_case, g, diagnostics);
+}
+
+/// Φᵀ Z Φ and Φᵀ Z Ψ.
+AddedCoordinates project_rotors(const std::shared_ptr<const RotorResponse>& rotors, const ResponseModel& response) {
+  if (!rotors) return {};
+  return [&rotors, &response](double hz) {
+    const auto Z = rotors->calc_stiffness(hz);
+    const MatrixXcd Phi = response.Phi.cast<std::complex<double>>(), Psi = response.Psi.cast<std::complex<double>>();
+    const MatrixXcd ZPhi = Z * Phi, ZPsi = Z * Psi;
+    return std::pair<MatrixXcd, MatrixXcd>(Phi.transpose() * ZPhi, Phi.transpose() * ZPsi);
+  };
+}
+
 /// What a solution without modes has no use for.
 void report_modal(const records::DynamicDeck& deck, const records::DynamicSubcase& subcase, bool is_over_time,
                   Diagnostics& diagnostics) {
@@ -236,6 +281,7 @@ struct DeckResponseSolver::Task {
   VectorXd hz;    ///< over frequency
   VectorXd natural;
   std::vector<OutputChoice> outputs;
+  std::shared_ptr<const RotorResponse> rotors;  ///< nullptr without
 };
 
 DeckResponseSolver::DeckResponseSolver(const records::DynamicDeck& deck, fe::ModelOptions model_options,
@@ -280,6 +326,7 @@ records::ResponseSubcase DeckResponseSolver::solve(const records::DynamicSubcase
   own.throw_if_errors();
   task.outputs = choose_outputs(model, deck_, subcase, task.excitation, options_.grids, options_.with_listing, own);
   own.throw_if_errors();
+  task.rotors = make_rotors(model, deck_, subcase, options_, task.damping.g, task.outputs, own);
   records::ResponseSubcase result;
   result.id = std::max(subcase.id, 1);  // what stands above all subcases is the first, as in Nastran
   result.title = subcase.title;
@@ -297,7 +344,7 @@ records::ResponseSubcase DeckResponseSolver::solve(const records::DynamicSubcase
 void DeckResponseSolver::solve_by_modes(const Task& task, const records::DynamicSubcase& subcase,
                                         records::ResponseSubcase& result, Diagnostics& diagnostics) {
   const auto& model = prepared_->model;
-  const auto& [_, start, damping, grid, hz, natural, outputs] = task;
+  const auto& [_, start, damping, grid, hz, natural, outputs, rotors] = task;
   Excitation excitation = task.excitation;
   excitation.residual = collect_unit_loads(model, deck_, diagnostics).F;
   diagnostics.throw_if_errors();
@@ -329,8 +376,9 @@ void DeckResponseSolver::solve_by_modes(const Task& task, const records::Dynamic
       diagnostics.warning("modal.response-range", deck_.locate(subcase.find_command("FREQUENCY")), text,
                           "take more modes: beyond them there are residual vectors only");
     }
-    const auto spectrum = calc_spectrum(response, excitation, hz, diagnostics);
-    result.solution_error = calc_solution_error(response, spectrum);
+    const auto of_rotors = project_rotors(rotors, response);
+    const auto spectrum = calc_spectrum(response, excitation, hz, diagnostics, of_rotors);
+    result.solution_error = calc_solution_error(response, spectrum, of_rotors);
     recover(model, response, excitation, damping, outputs, spectrum, result);
     if (options_.with_random)
       sources_[result.id] =
@@ -344,7 +392,7 @@ void DeckResponseSolver::solve_by_modes(const Task& task, const records::Dynamic
 void DeckResponseSolver::solve_directly(const Task& task, const records::DynamicSubcase& subcase,
                                         records::ResponseSubcase& result, Diagnostics& diagnostics) const {
   const auto& model = prepared_->model;
-  const auto& [excitation, start, damping, grid, hz, natural, outputs] = task;
+  const auto& [excitation, start, damping, grid, hz, natural, outputs, rotors] = task;
   const auto direct = make_direct_model(prepared_->system, deck_, subcase, excitation, damping);
   const auto take = [&, &e = excitation, &d = damping, &o = outputs](const auto& motion) {
     recover(model, e, d, o, motion, result);
@@ -353,7 +401,9 @@ void DeckResponseSolver::solve_directly(const Task& task, const records::Dynamic
     result.solution_error = solve_history(model, direct, excitation, start,
                                           refine_times(deck_, excitation, grid, kMostFactored, diagnostics), take);
   else
-    result.solution_error = solve_spectrum(model, direct, excitation, hz, take, diagnostics);
+    result.solution_error =
+        solve_spectrum(model, direct, excitation, hz, take, diagnostics,
+                       rotors ? [&r = *rotors](double f) { return r.calc_stiffness(f); } : AddedStiffness());
   report_residual(result.solution_error, deck_.locate({}), diagnostics);
 }
 

@@ -2,6 +2,7 @@
 /// \file A driven model in all its free dofs: solved directly, without modes (docs/theory/response.md).
 #include <functional>
 
+#include "fe/linear/complex_lu.hpp"
 #include "fe/linear/factor.hpp"
 #include "fe/matrices/system.hpp"
 #include "modal/response/frequency_list.hpp"
@@ -36,12 +37,16 @@ struct MotionBlock {
   Values u, u_dot, u_ddot, p;
 };
 
-/// One factorization of K + iS + iωB - ω²M for each frequency; `take` gets the solutions some at a time. Leaves out
+/// Unsymmetric addition to the dynamic stiffness at a frequency [1/T, cycles], num_gdofs x num_gdofs.
+using AddedStiffness = std::function<linear::ComplexSparse(double hz)>;
+
+/// One factorization of K + iS + iωB - ω²M, and of `added` if it is not empty, for each frequency; `take` gets the
+/// solutions some at a time. Leaves out
 /// (BoundedFrequencies) where the matrix is singular to working precision, and 0 Hz where supports move by a velocity
 /// or an acceleration. Returns the largest residual (ResidualRecord).
 double solve_spectrum(const fe::Model& model, const DirectModel& direct, const Excitation& excitation,
                       const VectorXd& hz, const std::function<void(const MotionBlock<MatrixXcd>&)>& take,
-                      Diagnostics& diagnostics);
+                      Diagnostics& diagnostics, const AddedStiffness& added = {});
 
 /// Radau IIA of three stages (Hairer & Wanner, "Solving ordinary differential equations II", 2nd ed., IV.5): of order
 /// 5, without bound of the step, and what has no mass or is far too quick for the step follows its loads at once. Loads

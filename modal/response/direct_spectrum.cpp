@@ -5,6 +5,7 @@
 #include "fe/linear/complex_factor.hpp"
 #include "fe/linear/null_space.hpp"
 #include "fe/linear/symmetric_matrix.hpp"
+#include "modal/complex/quadratic_pencil.hpp"
 #include "modal/response/accuracy.hpp"
 #include "modal/response/coordinates.hpp"
 #include "modal/response/direct_model.hpp"
@@ -22,7 +23,17 @@ constexpr Index kHeldFrequencies = 32;
 
 class DirectSpectrum {
  public:
-  DirectSpectrum(const DirectModel& direct, Index n) : direct_(direct), n_(n), probe_(make_probe(n)) {}
+  DirectSpectrum(const fe::Model& model, const DirectModel& direct, const AddedStiffness& added)
+      : direct_(direct), n_(model.num_fdofs()), probe_(make_probe(n_)), added_(added) {
+    if (!added_) return;
+    T_ = model.T();
+    complex_modes::PencilBuilder builder(n_);
+    builder.add_stiffness(direct.K, 1);
+    if (direct.S) builder.add_stiffness(direct.S, 1i);
+    if (direct.B) builder.add_damping(direct.B, 1);
+    builder.add_mass(direct.M, 1);
+    pencil_ = builder.build();
+  }
 
   /// The f-set's motion for loads p and motions d of the supports.
   VectorXcd solve(double hz, const VectorXcd& p, const VectorXcd& d) {
@@ -36,14 +47,20 @@ class DirectSpectrum {
     MatrixXcd sides(n_, 2);
     sides.col(0) = m.F * p - (m.K_X - omega * omega * m.M_X) * d - 1i * ((omega * m.B_X + m.S_X) * d);
     sides.col(1) = D.cwiseSqrt().cwiseProduct(probe_).cast<std::complex<double>>();
-    const linear::ComplexFactor factor(A, imaginary);
-    if (factor.is_singular()) throw_unbounded(hz, kWhy);
-    const MatrixXcd x = factor.solve(sides);
+    linear::ComplexSparse Z;  // on the f-set
+    if (added_) {
+      const linear::ComplexSparse Z_g = added_(hz);
+      const linear::ComplexSparse T = T_.cast<std::complex<double>>();
+      Z = linear::ComplexSparse(T.transpose()) * linear::ComplexSparse(Z_g * T);
+      if (d.size() > 0) sides.col(0) -= T_.transpose().cast<std::complex<double>>() * (Z_g * (m.X * d)).eval();
+    }
+    const MatrixXcd x = added_ ? solve_unsymmetric(hz, Z, sides) : solve_symmetric(hz, A, imaginary, sides);
     // Along a motion that next to nothing resists, the answer to any load is round-off.
     const double energy = std::abs(x.col(1).dot(sides.col(1))), size = D.dot(x.col(1).cwiseAbs2());
     if (!(energy > linear::kMechanismEnergy * size)) throw_unbounded(hz, kWhy);
     VectorXcd A_x = multiply(A, x.col(0));
     if (imaginary) A_x += 1i * multiply(imaginary, x.col(0));
+    if (added_) A_x += Z * x.col(0);
     residual_.add(D, x.col(0), A_x, sides.col(0));
     return x.col(0);
   }
@@ -59,6 +76,25 @@ class DirectSpectrum {
     return y.col(0) + 1i * y.col(1);
   }
 
+  static MatrixXcd solve_symmetric(double hz, const linear::SymmetricMatrix& A,
+                                   const linear::SymmetricMatrix& imaginary, const MatrixXcd& sides) {
+    const linear::ComplexFactor factor(A, imaginary);
+    if (factor.is_singular()) throw_unbounded(hz, kWhy);
+    return factor.solve(sides);
+  }
+
+  /// LU of all unknowns of the pencil; those after the f-set belong to matrices of low rank.
+  MatrixXcd solve_unsymmetric(double hz, linear::ComplexSparse& Z, const MatrixXcd& sides) const {
+    linear::ComplexSparse Q = pencil_.calc_matrix(2i * std::numbers::pi * hz), padded = Z;
+    padded.conservativeResize(Q.rows(), Q.cols());
+    Q += padded;
+    const linear::ComplexLu factor(Q, false);
+    if (factor.is_singular()) throw_unbounded(hz, kWhy);
+    MatrixXcd all = MatrixXcd::Zero(Q.rows(), sides.cols());
+    all.topRows(n_) = sides;
+    return factor.solve(all).topRows(n_);
+  }
+
   linear::SymmetricMatrix make_imaginary(double omega) const {
     const auto& m = direct_;
     if (!m.B || omega == 0) return m.S ? m.S : linear::SymmetricMatrix();
@@ -68,6 +104,9 @@ class DirectSpectrum {
   const DirectModel& direct_;
   Index n_;
   VectorXd probe_;
+  const AddedStiffness& added_;
+  Eigen::SparseMatrix<double> T_;
+  complex_modes::QuadraticPencil pencil_;
   ResidualRecord residual_{false};
 };
 
@@ -83,9 +122,9 @@ VectorXd make_probe(Index n) {
 
 double solve_spectrum(const fe::Model& model, const DirectModel& direct, const Excitation& excitation,
                       const VectorXd& hz, const std::function<void(const MotionBlock<MatrixXcd>&)>& take,
-                      Diagnostics& diagnostics) {
+                      Diagnostics& diagnostics, const AddedStiffness& added) {
   const Index n = model.num_fdofs();
-  DirectSpectrum solver(direct, n);
+  DirectSpectrum solver(model, direct, added);
   BoundedFrequencies bounded;
   for (Index first = 0; first < hz.size(); first += kHeldFrequencies) {
     const VectorXd held = hz.segment(first, std::min(kHeldFrequencies, hz.size() - first));

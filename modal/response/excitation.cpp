@@ -4,9 +4,11 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <optional>
 
 #include "fe/loads/loads.hpp"
 #include "fe/statics/static_case.hpp"
+#include "modal/complex/rotor_case.hpp"
 
 namespace bough::modal::response {
 namespace {
@@ -57,7 +59,8 @@ class Collector {
       result_.D.resize(static_cast<Eigen::Index>(model_.fixed_dofs().size()), 0);
       return std::move(result_);
     }
-    if (!has_set(d.loads, set) && !has_set(d.sums, set)) {
+    const auto& unbalances = d.rotors.unbalances;
+    if (!has_set(d.loads, set) && !has_set(d.sums, set) && !has_set(unbalances, set)) {
       diagnostics_.error("modal.no-dynamic-load", deck_.locate(subcase_.find_command("DLOAD")),
                          set == 0
                              ? "subcase " + std::to_string(subcase_.id) + " selects no DLOAD"
@@ -76,6 +79,8 @@ class Collector {
       if (load.sid == set) add(load, 1);
     for (const auto& sum : d.sums)
       if (sum.sid == set) add(sum);
+    for (const auto& unbalance : unbalances)
+      if (unbalance.sid == set) add(unbalance, 1);
     Excitation& e = result_;
     e.F = join(forces_, model_.num_gdofs());
     e.D = join(motions_, static_cast<Eigen::Index>(model_.fixed_dofs().size()));
@@ -94,14 +99,88 @@ class Collector {
       const auto id = sid;
       const auto& loads = deck_.dynamics.loads;
       const auto load = std::find_if(loads.begin(), loads.end(), [id](const auto& l) { return l.sid == id; });
-      if (load != loads.end())
-        add(*load, sum.s * scale);
-      else
+      bool is_found = load != loads.end();
+      if (is_found) add(*load, sum.s * scale);
+      for (const auto& unbalance : deck_.dynamics.rotors.unbalances) {
+        if (unbalance.sid != id) continue;
+        add(unbalance, sum.s * scale);
+        is_found = true;
+      }
+      if (!is_found)
         diagnostics_.error("modal.missing-load", deck_.locate(sum.at),
                            "DLOAD " + std::to_string(sum.sid) + " names set " + std::to_string(sid) +
-                               ", which no RLOAD or TLOAD card of the deck has",
+                               ", which no RLOAD, TLOAD or UNBALNC card of the deck has",
                            "add the card or correct the id");
     }
+  }
+
+  /// The force m r ω² (x - i y) e^{iθ}: it turns in the direction of positive spin with e^{iωt}.
+  void add(const records::Unbalance& u, double scale) {
+    const auto wrong = [&](const char* id, const std::string& what, const char* advice) {
+      diagnostics_.error(id, deck_.locate(u.at), "UNBALNC " + std::to_string(u.sid) + what, advice);
+    };
+    if (over_time_)
+      return wrong("modal.rotor-unsupported", " is a load over frequency, found in a response over time",
+                   "use bough frequency");
+    const auto axis = find_axis(u.grid);
+    if (!axis) {
+      if (!diagnostics_.has("modal.missing-rotor") && !diagnostics_.has("modal.rotor-line"))
+        wrong("modal.unbalance-grid",
+              " acts at grid " + std::to_string(u.grid) + ", which is on no rotor that RGYRO selects",
+              "name a grid of ROTORG, and select RGYRO in the case control");
+      return;
+    }
+    const auto& node = model_.node(model_.find_node(u.grid));
+    fe::Vector3d x = node.R_basic_cd * fe::Vector3d(u.x[0], u.x[1], u.x[2]);
+    x -= axis->dot(x) * *axis;
+    if (!(x.norm() > 1e-9 * fe::Vector3d(u.x[0], u.x[1], u.x[2]).norm()))
+      return wrong("modal.unbalance-grid", ": X1 X2 X3 is along the axis of the rotor",
+                   "give the direction of angle 0 across the axis");
+    x.normalize();
+    const fe::Vector3d y = axis->cross(x);
+    ExcitationTerm term;
+    term.unbalance = &u;
+    const auto get = [&](int id) -> const records::DynamicTable* {
+      if (id == 0) return nullptr;
+      const auto* table = find_table(deck_, id);
+      if (!table)
+        wrong("modal.missing-table",
+              " names table " + std::to_string(id) + ", which no TABLED1 to TABLED4 card of the deck has",
+              "add the table or correct the id");
+      return table;
+    };
+    term.table_a = get(u.mass_table);
+    term.table_b = get(u.radius_table);
+    term.table_c = get(u.offset_table);
+    term.scale = scale * model_.wtmass();
+    for (const bool is_moment : {false, true}) {
+      if (is_moment && u.offset == 0 && u.offset_table == 0) continue;
+      for (const bool is_second : {false, true}) {
+        const fe::Vector3d force = is_second ? y : x;
+        VectorXd pattern = VectorXd::Zero(model_.num_gdofs());
+        pattern.segment<3>(node.first_gdof + (is_moment ? 3 : 0)) =
+            is_moment ? fe::Vector3d(axis->cross(force)) : force;
+        term.is_moment = is_moment;
+        term.phase_deg = u.angle_deg - (is_second ? 90 : 0);
+        term.column = static_cast<int>(forces_.size());
+        forces_.push_back(pattern);
+        result_.forces.push_back(term);
+      }
+    }
+  }
+
+  /// Axis of the rotor with the grid; errors of the rotors are reported where they are made.
+  std::optional<fe::Vector3d> find_axis(int grid) {
+    if (!rotors_) {
+      Diagnostics unreported;
+      rotors_ = rotors::choose_rotors(model_, deck_, subcase_, rotors::RotorUse::Frequency, unreported);
+      if (!rotors_) rotors_.emplace();
+      if (unreported.num_errors() > 0)
+        for (const auto& item : unreported.items()) diagnostics_.add(item);
+    }
+    for (const auto& axis : rotors_->axes)
+      if (std::find(axis.grids.begin(), axis.grids.end(), grid) != axis.grids.end()) return axis.axis;
+    return std::nullopt;
   }
 
   const records::DynamicTable* get_table(const DynamicLoad& load, int id) {
@@ -271,6 +350,7 @@ class Collector {
   bool over_time_;
   Diagnostics& diagnostics_;
   std::vector<VectorXd> forces_, motions_;
+  std::optional<rotors::RotorCase> rotors_;
   Excitation result_;
 };
 
@@ -323,6 +403,15 @@ Excitation calc_excitation(const fe::Model& model, const records::DynamicDeck& d
 
 std::complex<double> calc_amplitude(const ExcitationTerm& term, double hz) {
   using std::numbers::pi;
+  if (const auto* u = term.unbalance) {
+    if (hz < u->from_hz || hz > u->to_hz) return 0;
+    const double omega = 2 * pi * hz, mass = term.table_a ? evaluate(*term.table_a, hz) : u->mass,
+                 radius = term.table_b ? evaluate(*term.table_b, hz) : u->radius,
+                 arm = !term.is_moment ? 1
+                       : term.table_c  ? evaluate(*term.table_c, hz)
+                                       : u->offset;
+    return std::polar(term.scale * mass * radius * omega * omega * arm, term.phase_deg * pi / 180);
+  }
   const auto& card = *term.card;
   const double a = term.table_a ? evaluate(*term.table_a, hz) : card.a;
   const double b = term.table_b ? evaluate(*term.table_b, hz) : card.b;

@@ -16,6 +16,10 @@ using Eigen::VectorXd;
 struct ExcitationTerm {
   const records::DynamicLoad* card = nullptr;
   const records::DynamicTable *table_a = nullptr, *table_b = nullptr;
+  /// UNBALNC: mass times radius times ω², `table_b` the radius; with `offset` times that [L], or `table_c`. card: none.
+  const records::Unbalance* unbalance = nullptr;
+  const records::DynamicTable* table_c = nullptr;
+  bool is_moment = false;
   double scale = 1;  ///< S Si of DLOAD
   double delay = 0, phase_deg = 0;
   int column = 0;  ///< of F or of D

@@ -19,7 +19,9 @@ std::string describe(const ResponseModel& model, Eigen::Index j) {
   return text;
 }
 
-VectorXcd solve_coordinates(const ResponseModel& model, double hz, const VectorXcd& force) {
+/// \param Z_added  addition to the matrix; may be empty
+VectorXcd solve_coordinates(const ResponseModel& model, double hz, const VectorXcd& force, const MatrixXcd& Z_added) {
+  const bool is_coupled = model.is_coupled || Z_added.size() > 0;
   const auto n = model.lambda.size();
   const double omega = 2 * std::numbers::pi * hz;
   VectorXd inertia = VectorXd::Constant(n, omega * omega);
@@ -28,11 +30,12 @@ VectorXcd solve_coordinates(const ResponseModel& model, double hz, const VectorX
   const VectorXcd diagonal = real.cast<std::complex<double>>() +
                              1i * (omega * model.D.diagonal() + model.S.diagonal()).cast<std::complex<double>>();
   for (Eigen::Index j = 0; j < n; ++j)
-    if (!model.is_coupled && std::abs(diagonal(j)) <= detail::kResonance * std::max(model.lambda(j), inertia(j)))
+    if (!is_coupled && std::abs(diagonal(j)) <= detail::kResonance * std::max(model.lambda(j), inertia(j)))
       throw_unbounded(hz, describe(model, j));
-  if (!model.is_coupled) return force.cwiseQuotient(diagonal);
+  if (!is_coupled) return force.cwiseQuotient(diagonal);
   MatrixXcd Z = 1i * (omega * model.D + model.S).cast<std::complex<double>>();
   Z.diagonal() = diagonal;
+  if (Z_added.size() > 0) Z += Z_added;
   // Residual vectors lie many orders above the modes: rows and columns of one size.
   const VectorXd scale = model.lambda.cwiseAbs().cwiseMax(inertia).cwiseMax(detail::kTiny).cwiseSqrt().cwiseInverse();
   const Eigen::PartialPivLU<MatrixXcd> lu(scale.asDiagonal() * Z * scale.asDiagonal());
@@ -95,7 +98,7 @@ VectorXcd calc_amplitudes(const Excitation& excitation, double hz, VectorXcd& d)
 }
 
 Spectrum calc_spectrum(const ResponseModel& model, const Excitation& excitation, const VectorXd& hz,
-                       Diagnostics& diagnostics) {
+                       Diagnostics& diagnostics, const AddedCoordinates& added) {
   const auto n = model.lambda.size();
   Spectrum s;
   s.q.resize(n, hz.size());
@@ -108,7 +111,14 @@ Spectrum calc_spectrum(const ResponseModel& model, const Excitation& excitation,
       VectorXcd d;
       s.a.col(i) = calc_amplitudes(excitation, hz(i), d);
       s.d.col(i) = d;
-      s.q.col(i) = solve_coordinates(model, hz(i), model.P * s.a.col(i));
+      VectorXcd force = model.P * s.a.col(i);
+      MatrixXcd Z;
+      if (added) {
+        auto [of_modes, of_supports] = added(hz(i));
+        Z = std::move(of_modes);
+        if (d.size() > 0) force -= of_supports * d;
+      }
+      s.q.col(i) = solve_coordinates(model, hz(i), force, Z);
     };
     if (bounded.take(solve)) kept.push_back(i);
   }

@@ -1,5 +1,6 @@
 // Commands as functions: reduce, modes, static, select. Those that take files of Bough are in commands.cpp.
 #include "analysis/common/body_files.hpp"
+#include "analysis/listing/listing_files.hpp"
 #include "analysis/modes/modes.hpp"
 #include "analysis/reduce/reduce_body.hpp"
 #include "analysis/select/selection.hpp"
@@ -83,8 +84,10 @@ class FirstModes final : public analysis::ModesReceiver {
 
 py::tuple modes(const std::string& deck, std::optional<int> number, std::optional<double> min_hz,
                 std::optional<double> max_hz, bool buckling, bool no_check, const std::string& solver, bool energies,
-                int meffmass, int subcase, bool free, const std::string& mass, Strings ignore,
-                const py::object& progress) {
+                int meffmass, int subcase, bool free, const std::string& mass, Strings ignore, const std::string& f06,
+                const std::string& op2, const py::object& progress) {
+  const analysis::ListingFiles listing{f06, op2};
+  if (buckling && !listing.empty()) throw py::value_error("f06 and op2 list normal modes, not load factors");
   if (number && *number < 1)
     throw py::value_error("number is a number of modes above 0, not " + std::to_string(*number));
   analysis::ModesRequest request;
@@ -93,10 +96,13 @@ py::tuple modes(const std::string& deck, std::optional<int> number, std::optiona
   request.eigen = {number.value_or(0), min_hz, max_hz, buckling, no_check, solver};
   request.energies = energies;
   request.about_grid = meffmass;
+  request.has_listing = !listing.empty();
   FirstModes found(deck);
   auto messages = run_request(deck, progress, [&](PythonEvents& events) {
+    announce_outputs({f06, op2});
     const auto answer = analysis::solve_modes(request, found, events);
     if (!answer.failures.is_empty()) answer.failures.throw_all(events.get_messages());
+    if (answer.listing) analysis::write_listings(listing, *answer.listing);
   });
   return py::make_tuple(std::move(*found.result), std::move(messages));
 }
@@ -127,7 +133,8 @@ class StaticRecord final : public analysis::StaticReceiver {
 /// The bytes of the HDF5 file, and the messages.
 py::tuple solve_static(const std::string& deck, int subcase, bool free, const std::string& mass, Strings ignore,
                        Strings grid_forces, bool linear, bool nonlinear, int increments, bool strains, bool extremes,
-                       const py::object& progress) {
+                       const std::string& f06, const std::string& op2, const py::object& progress) {
+  const analysis::ListingFiles listing{f06, op2};
   analysis::StaticRequest request;
   request.deck = deck;
   request.model = make_model_choice(subcase, free, mass, std::move(ignore));
@@ -136,13 +143,16 @@ py::tuple solve_static(const std::string& deck, int subcase, bool free, const st
   request.is_nonlinear = nonlinear;
   request.num_increments = increments;
   request.has_strains = strains;
+  request.has_listing = !listing.empty();
   std::string image;
   auto messages = run_request(deck, progress, [&](PythonEvents& events) {
+    announce_outputs({f06, op2});
     StaticRecord record(extremes);
     auto answer = analysis::solve_static(request, record, events);
     if (!answer.failures.is_empty()) answer.failures.throw_all(events.get_messages());
     record.result.source = std::move(answer.source);
     image = hdf5::make_static_image(record.result);
+    if (answer.listing) analysis::write_listings(listing, *answer.listing);
   });
   return py::make_tuple(py::bytes(image), std::move(messages));
 }
@@ -154,13 +164,9 @@ py::dict make_ranking(const records::FlexBody& body, const analysis::Selection& 
     const auto k = static_cast<std::size_t>(i);
     const auto& mode = s.ranking.modes[k];
     py::dict one;
-    one["mode"] = i + 1;
-    one["frequency_hz"] = body.frequency_hz[i];
-    one["cost"] = mode.cost;
-    one["share"] = s.ranking.total > 0 ? mode.cost / s.ranking.total : 0;
-    one["closed_form"] = mode.closed_form;
-    one["kept"] = static_cast<bool>(s.choices[k].kept);
-    one["reason"] = s.choices[k].reason;
+    put(one, "mode"_a = i + 1, "frequency_hz"_a = body.frequency_hz[i], "cost"_a = mode.cost,
+        "share"_a = s.ranking.total > 0 ? mode.cost / s.ranking.total : 0, "closed_form"_a = mode.closed_form,
+        "kept"_a = static_cast<bool>(s.choices[k].kept), "reason"_a = s.choices[k].reason);
     if (s.modal_hankel.size() > 0) one["hankel"] = s.modal_hankel[i];
     if (body.effective_mass.rows() == body.num_modes()) {
       const Eigen::VectorXd row = body.effective_mass.row(i);
@@ -170,23 +176,14 @@ py::dict make_ranking(const records::FlexBody& body, const analysis::Selection& 
   }
   for (const auto& loss : s.losses) {
     py::dict one;
-    one["name"] = loss.name;
-    one["total_cost"] = loss.total;
-    one["lost_share"] = loss.lost;
-    one["peak_gain"] = loss.peak;
-    one["peak_error"] = loss.error;
-    one["peak_error_hz"] = loss.error_hz;
-    one["balanced_bound"] = loss.balanced_bound;
-    one["steady_error"] = loss.steady_error;
+    put(one, "name"_a = loss.name, "total_cost"_a = loss.total, "lost_share"_a = loss.lost, "peak_gain"_a = loss.peak,
+        "peak_error"_a = loss.error, "peak_error_hz"_a = loss.error_hz, "balanced_bound"_a = loss.balanced_bound,
+        "steady_error"_a = loss.steady_error);
     losses.append(one);
   }
   py::dict ranking;
-  ranking["modes"] = modes;
-  ranking["total_cost"] = s.ranking.total;
-  ranking["other_cost"] = s.ranking.other;
-  ranking["dropped_share"] = s.dropped;
-  ranking["lost_share"] = s.lost;
-  ranking["configurations"] = losses;
+  put(ranking, "modes"_a = modes, "total_cost"_a = s.ranking.total, "other_cost"_a = s.ranking.other,
+      "dropped_share"_a = s.dropped, "lost_share"_a = s.lost, "configurations"_a = losses);
   if (s.static_error >= 0) ranking["static_error"] = s.static_error;
   return ranking;
 }
@@ -246,11 +243,13 @@ void bind_analyses(py::module_& m) {
   m.def("modes", &modes, py::arg("deck"), py::arg("number") = none, py::kw_only(), py::arg("min_hz") = none,
         py::arg("max_hz") = none, py::arg("buckling") = false, py::arg("no_check") = false, py::arg("solver") = "",
         py::arg("energies") = false, py::arg("meffmass") = 0, py::arg("subcase") = 0, py::arg("free") = false,
-        py::arg("mass") = "deck", py::arg("ignore") = Strings(), py::arg("progress") = none);
+        py::arg("mass") = "deck", py::arg("ignore") = Strings(), py::arg("f06") = "", py::arg("op2") = "",
+        py::arg("progress") = none);
   m.def("static", &solve_static, py::arg("deck"), py::kw_only(), py::arg("subcase") = 0, py::arg("free") = false,
         py::arg("mass") = "deck", py::arg("ignore") = Strings(), py::arg("grid_forces") = Strings(),
         py::arg("linear") = false, py::arg("nonlinear") = false, py::arg("increments") = 10, py::arg("strains") = false,
-        py::arg("extremes") = false, py::arg("progress") = none, "The bytes of the file of bough static.");
+        py::arg("extremes") = false, py::arg("f06") = "", py::arg("op2") = "", py::arg("progress") = none,
+        "The bytes of the file of bough static.");
   m.def("select", &select, py::arg("file"), py::arg("body"), py::kw_only(), py::arg("systems") = Strings(),
         py::arg("inputs") = Strings(), py::arg("outputs") = Strings(), py::arg("weight") = Strings(),
         py::arg("spectrum") = "", py::arg("number") = 0, py::arg("tolerance") = none, py::arg("below") = 0.0,

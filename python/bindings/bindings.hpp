@@ -1,5 +1,6 @@
 #pragma once
 /// \file The parts of the module, and what they share.
+#include <filesystem>
 #include <string>
 #include <utility>
 #include <vector>
@@ -72,6 +73,15 @@ py::array give(Matrix&& matrix) {
 /// Throws InputError "cli.output-is-input" if the file is one of the inputs in `source`: names, and SHA-256 of their
 /// content, without which a file of this name is another one.
 void demand_no_source(const std::string& path, const std::vector<std::pair<std::string, std::string>>& source);
+
+/// save(path) of a record with its sources, none of which it overwrites.
+template <class Record>
+auto make_save(void (*write)(const Record&, const std::string&)) {
+  return [write](const Record& record, const std::filesystem::path& path) {
+    demand_no_source(path, record.source);
+    write(record, path);
+  };
+}
 
 /// Warnings and notes as a list; warnings go to Python's warnings too.
 std::vector<Diagnostic> tell(const Diagnostics& diagnostics);

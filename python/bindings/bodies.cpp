@@ -96,13 +96,8 @@ void bind_flex_body(py::module_& m) {
       .def_property_readonly("num_modes", &FlexBody::num_modes)
       .def_property_readonly("num_nodes", &FlexBody::num_nodes)
       .def("copy", [](const FlexBody& b) { return FlexBody(b); })
-      .def(
-          "save",
-          [](const FlexBody& b, const std::filesystem::path& path) {
-            demand_no_source(path, b.source);
-            hdf5::write_flex_body(b, path);
-          },
-          py::arg("path"), OneAtATime(), "Write the flexible-body HDF5 file.")
+      .def("save", make_save<FlexBody>(&hdf5::write_flex_body), py::arg("path"), OneAtATime(),
+           "Write the flexible-body HDF5 file.")
       .def("__repr__", [](const FlexBody& b) {
         return "<FlexBody '" + b.name + "': " + std::to_string(b.num_modes()) + " modes, " +
                std::to_string(b.num_nodes()) + " nodes>";

@@ -1,5 +1,5 @@
-// Commands as functions whose records are dicts: check, compare, info, export, plot, report, flx, integrals, convert,
-// run, batch, response, equilibrium.
+// Commands as functions whose records are dicts: check, compare, edit, info, export, plot, report, flx, integrals,
+// convert, run, batch, response, equilibrium.
 #include <atomic>
 
 #include "analysis/campaign/campaign.hpp"
@@ -8,6 +8,7 @@
 #include "analysis/common/text_file.hpp"
 #include "analysis/compare/compare.hpp"
 #include "analysis/convert/convert.hpp"
+#include "analysis/edit/edit_session.hpp"
 #include "analysis/equilibrium/equilibrium.hpp"
 #include "analysis/export/export.hpp"
 #include "analysis/flx/flx.hpp"
@@ -34,9 +35,7 @@ py::array copy(const Eigen::MatrixBase<Matrix>& values) {
 
 py::dict make_mass(const records::MassProperties& p) {
   py::dict mass;
-  mass["mass"] = p.mass;
-  mass["cg"] = copy(p.cg);
-  mass["inertia"] = copy(p.inertia);
+  put(mass, "mass"_a = p.mass, "cg"_a = copy(p.cg), "inertia"_a = copy(p.inertia));
   return mass;
 }
 
@@ -44,9 +43,7 @@ py::list make_events(const std::vector<records::EventRecord>& events) {
   py::list list;
   for (const auto& event : events) {
     py::dict one;
-    one["time"] = event.time;
-    one["what"] = event.what;
-    one["source"] = event.source;
+    put(one, "time"_a = event.time, "what"_a = event.what, "source"_a = event.source);
     list.append(one);
   }
   return list;
@@ -64,23 +61,17 @@ void describe(const analysis::DeckCheck& check, py::dict& d) {
   d["cards"] = cards;
   d["skipped"] = skipped;
   if (!check.model) return;
-  d["num_nodes"] = check.model->nodes().size();
-  d["num_elements"] = check.model->elements().size();
-  d["num_dofs"] = check.model->num_gdofs();
-  d["num_free_dofs"] = check.model->num_fdofs();
-  d["mass_properties"] = make_mass(check.mass);
-  d["ground_check"] = copy(check.ground.g);
-  d["ground_check_n"] = copy(check.ground.n);
-  d["ground_check_f"] = copy(check.ground.f);
+  put(d, "num_nodes"_a = check.model->nodes().size(), "num_elements"_a = check.model->elements().size(),
+      "num_dofs"_a = check.model->num_gdofs(), "num_free_dofs"_a = check.model->num_fdofs(),
+      "mass_properties"_a = make_mass(check.mass), "ground_check"_a = copy(check.ground.g),
+      "ground_check_n"_a = copy(check.ground.n), "ground_check_f"_a = copy(check.ground.f));
   py::list autospc, subcases;
   for (const auto& entry : check.model->autospc()) autospc.append(py::make_tuple(entry.node, entry.component));
   for (const auto& row : check.subcases) {
     py::dict one;
-    one["id"] = row.subcase.id;
-    one["load_set"] = row.subcase.load;
-    one["resultant"] = row.is_resolved ? py::object(copy(row.resultant)) : py::none();
-    one["num_enforced"] = row.num_enforced;
-    one["num_heated"] = row.num_heated;
+    put(one, "id"_a = row.subcase.id, "load_set"_a = row.subcase.load,
+        "resultant"_a = row.is_resolved ? py::object(copy(row.resultant)) : py::none(),
+        "num_enforced"_a = row.num_enforced, "num_heated"_a = row.num_heated);
     subcases.append(one);
   }
   d["autospc"] = autospc;
@@ -88,9 +79,7 @@ void describe(const analysis::DeckCheck& check, py::dict& d) {
 }
 void describe(const analysis::BodyCheck& check, py::dict& d) {
   if (check.deck) describe(*check.deck, d);
-  d["kind"] = "body";
-  d["name"] = check.spec.name;
-  d["deck"] = check.spec.deck;
+  put(d, "kind"_a = "body", "name"_a = check.spec.name, "deck"_a = check.spec.deck);
 }
 void describe(const analysis::SystemCheck& check, py::dict& d) {
   d["kind"] = "system";
@@ -98,24 +87,18 @@ void describe(const analysis::SystemCheck& check, py::dict& d) {
   py::list bodies;
   for (int b = 0; b < system.num_bodies(); ++b) {
     py::dict one;
-    one["name"] = system.body_name(b);
-    one["hinge"] = system.hinge_name(b);
-    one["num_hinge_dofs"] = system.num_hinge_u(b);
-    one["num_modes"] = system.num_modes(b);
+    put(one, "name"_a = system.body_name(b), "hinge"_a = system.hinge_name(b),
+        "num_hinge_dofs"_a = system.num_hinge_u(b), "num_modes"_a = system.num_modes(b));
     bodies.append(one);
   }
   d["bodies"] = bodies;
   d["num_speeds"] = system.num_dofs();
 }
 void describe(const analysis::FlexBodyCheck& check, py::dict& d) {
-  d["kind"] = "bough-flexbody";
-  d["name"] = check.name;
-  d["mass"] = check.mass;
-  d["frequency_hz"] = copy(check.frequency_hz);
-  d["num_nodes"] = check.num_nodes;
-  d["num_interface_nodes"] = check.num_interface_nodes;
-  d["num_locators"] = check.num_locators;
-  d["kg_asymmetry"] = check.kg_asymmetry;
+  put(d, "kind"_a = "bough-flexbody", "name"_a = check.name, "mass"_a = check.mass,
+      "frequency_hz"_a = copy(check.frequency_hz), "num_nodes"_a = check.num_nodes,
+      "num_interface_nodes"_a = check.num_interface_nodes, "num_locators"_a = check.num_locators,
+      "kg_asymmetry"_a = check.kg_asymmetry);
 }
 void describe(const analysis::FlxCheck& check, py::dict& d) {
   d["kind"] = "flx";
@@ -129,28 +112,19 @@ void describe(const analysis::FlxCheck& check, py::dict& d) {
   d["bodies"] = bodies;
 }
 void describe(const analysis::ResultsCheck& check, py::dict& d) {
-  d["kind"] = "bough-results";
-  d["num_samples"] = check.num_samples;
-  d["start"] = check.start;
-  d["end"] = check.end;
-  d["num_channels"] = check.num_channels;
-  d["completed"] = check.completed;
-  d["reason"] = check.reason;
+  put(d, "kind"_a = "bough-results", "num_samples"_a = check.num_samples, "start"_a = check.start, "end"_a = check.end,
+      "num_channels"_a = check.num_channels, "completed"_a = check.completed, "reason"_a = check.reason);
 }
 void describe(const analysis::ModesCheck& check, py::dict& d) {
-  d["kind"] = "bough-modes";
-  d["num_modes"] = check.num_modes;
-  d["num_rigid_modes"] = check.num_rigid_modes;
-  d["num_grids"] = check.num_grids;
+  put(d, "kind"_a = "bough-modes", "num_modes"_a = check.num_modes, "num_rigid_modes"_a = check.num_rigid_modes,
+      "num_grids"_a = check.num_grids);
 }
 void describe(const analysis::StaticCheck& check, py::dict& d) {
   d["kind"] = "bough-static";
   py::list subcases;
   for (const auto& subcase : check.subcases) {
     py::dict one;
-    one["id"] = subcase.id;
-    one["load_set"] = subcase.load_set;
-    one["elements"] = subcase.elements;
+    put(one, "id"_a = subcase.id, "load_set"_a = subcase.load_set, "elements"_a = subcase.elements);
     subcases.append(one);
   }
   d["subcases"] = subcases;
@@ -160,12 +134,8 @@ void describe(const analysis::MatricesCheck& check, py::dict& d) {
   d["names"] = check.names;
 }
 void describe(const analysis::LinearCheck& check, py::dict& d) {
-  d["kind"] = "bough-linear";
-  d["num_states"] = check.num_states;
-  d["num_inputs"] = check.num_inputs;
-  d["num_outputs"] = check.num_outputs;
-  d["time"] = check.time;
-  d["error"] = check.error;
+  put(d, "kind"_a = "bough-linear", "num_states"_a = check.num_states, "num_inputs"_a = check.num_inputs,
+      "num_outputs"_a = check.num_outputs, "time"_a = check.time, "error"_a = check.error);
 }
 ///@}
 
@@ -194,8 +164,12 @@ py::tuple check(const std::string& file, Strings set, int subcase, bool free, co
 }
 
 /// Arrays and lists of words by path, as in the file of `compare -o`.
-py::tuple compare(Strings files, const std::string& mass, bool refinement, const py::object& progress) {
-  analysis::CompareRequest request{std::move(files), mass, refinement};
+py::tuple compare(Strings files, const std::string& mass, bool refinement, const std::string& test,
+                  const std::string& deck, const std::string& tam, int sensors, const py::object& progress) {
+  if (test.empty() && (tam != "serep" || !deck.empty())) throw py::value_error("tam and deck go with test");
+  if (tam != "serep" && deck.empty()) throw py::value_error("tam " + tam + " needs the deck of the model: deck=");
+  if (!test.empty() && sensors > 0) throw py::value_error("test and sensors are two comparisons: leave out one");
+  analysis::CompareRequest request{std::move(files), mass, refinement, test, deck, tam, sensors};
   records::Comparison comparison;
   auto messages = run_request(request.files.empty() ? "" : request.files.front(), progress, [&](PythonEvents& events) {
     comparison = analysis::make_comparison(request, analysis::compare_files(request, events));
@@ -212,6 +186,43 @@ py::tuple compare(Strings files, const std::string& mass, bool refinement, const
   return py::make_tuple(d, std::move(messages));
 }
 
+/// Keeps what the commands print; the commands of the program that a session offers are functions in Python.
+class PythonEdit final : public analysis::EditHost {
+ public:
+  void print_data(const std::string& text) override { printed += text; }
+  void print(const std::string&) override {}
+  void print(const Diagnostics& diagnostics) override {
+    for (const auto& item : diagnostics.items()) messages.add(item);
+  }
+  void check_output(const std::string& path) override { announce_output(path); }
+  int run_command(const Strings& words) override {
+    throw InputError("cli.edit-command", {}, "'" + words.front() + "' is a command of the program",
+                     "call bough." + words.front() + " with the saved file");
+  }
+
+  std::string printed;
+  Diagnostics messages;
+};
+
+/// Text after the commands, text that they printed, whether the text has changed, and the messages.
+py::tuple edit(const std::string& file, const Strings& commands, const std::string& output) {
+  PythonEdit host;
+  std::string text;
+  bool is_changed = false;
+  run_exclusive(file, [&] {
+    if (!output.empty()) announce_output(output);
+    auto start = analysis::read_edit_text(file, host);
+    const auto before = start.get_text();
+    analysis::EditSession session(std::move(start), host, {}, output);
+    for (std::size_t i = 0; i < commands.size(); ++i)
+      if (!session.execute(commands[i], "<commands>", static_cast<int>(i) + 1)) break;
+    if (!output.empty()) session.execute("save");
+    text = session.get_text();
+    is_changed = text != before;
+  });
+  return py::make_tuple(text, host.printed, is_changed, tell(host.messages));
+}
+
 py::dict info(const std::string& file) {
   analysis::InfoAnswer answer;
   run_exclusive(file, [&] { answer = analysis::list_contents(file); });
@@ -220,16 +231,11 @@ py::dict info(const std::string& file) {
   py::list objects;
   for (const auto& object : answer.info.objects) {
     py::dict one;
-    one["path"] = object.path;
-    one["shape"] = object.shape;
-    one["type"] = object.type;
-    one["description"] = object.description;
-    one["dims"] = object.dims;
+    put(one, "path"_a = object.path, "shape"_a = object.shape, "type"_a = object.type,
+        "description"_a = object.description, "dims"_a = object.dims);
     objects.append(one);
   }
-  d["attributes"] = attributes;
-  d["objects"] = objects;
-  d["events"] = make_events(answer.events);
+  put(d, "attributes"_a = attributes, "objects"_a = objects, "events"_a = make_events(answer.events));
   return d;
 }
 
@@ -295,16 +301,11 @@ py::tuple plot(Strings files, Strings sensors, Strings labels, Strings points, c
     py::list curves;
     for (const auto& curve : one.curves) {
       py::dict c;
-      c["label"] = curve.label;
-      c["x"] = copy(curve.x);
-      c["y"] = copy(curve.y);
+      put(c, "label"_a = curve.label, "x"_a = copy(curve.x), "y"_a = copy(curve.y));
       curves.append(c);
     }
     py::dict p;
-    p["title"] = one.title;
-    p["x_label"] = one.x_label;
-    p["y_label"] = one.y_label;
-    p["curves"] = curves;
+    put(p, "title"_a = one.title, "x_label"_a = one.x_label, "y_label"_a = one.y_label, "curves"_a = curves);
     plots.append(p);
   }
   return py::make_tuple(plots, svg, answer.csv, std::move(messages));
@@ -324,18 +325,10 @@ py::tuple make_report(Strings files, const std::string& output, Strings channels
 
 py::dict make_flx_dict(const flx::FlxFile& file) {
   py::dict d;
-  d["body_id"] = file.body_id;
-  d["name"] = file.name;
-  d["method"] = file.method;
-  d["mass"] = file.mass;
-  d["modes"] = file.modes;
-  d["M"] = copy(file.M);
-  d["K"] = copy(file.K);
-  d["D"] = copy(file.D);
-  d["alpha"] = copy(file.alpha);
-  d["integrals"] = file.integrals;
-  d["node_id"] = file.node_id;
-  d["node_xyz"] = copy(file.node_xyz);
+  put(d, "body_id"_a = file.body_id, "name"_a = file.name, "method"_a = file.method, "mass"_a = file.mass,
+      "modes"_a = file.modes, "M"_a = copy(file.M), "K"_a = copy(file.K), "D"_a = copy(file.D),
+      "alpha"_a = copy(file.alpha), "integrals"_a = file.integrals, "node_id"_a = file.node_id,
+      "node_xyz"_a = copy(file.node_xyz));
   py::list gains;
   for (const auto& gain : file.gains) gains.append(copy(gain));
   d["gains"] = gains;
@@ -440,19 +433,13 @@ py::tuple run(const std::string& file, const std::string& output, const std::str
   events.rethrow();
   if (!answer.errors.empty()) throw ComputationError(answer.errors);
   py::dict d;
-  d["output"] = answer.output;
-  d["was_complete"] = answer.was_complete;
-  d["reason"] = answer.outcome.reason;
+  put(d, "output"_a = answer.output, "was_complete"_a = answer.was_complete, "reason"_a = answer.outcome.reason);
   if (!answer.was_complete) {
-    d["completed"] = answer.outcome.completed;
-    d["time"] = answer.outcome.time;
-    d["steps"] = answer.outcome.last.num_steps;
-    d["rejected"] = answer.outcome.last.num_rejected;
-    d["evaluations"] = answer.outcome.last.num_evaluations;
-    d["energy_error"] = answer.outcome.energy_error;
-    d["resumed_from"] = answer.resumed ? py::cast(*answer.resumed) : py::none();
-    d["seconds"] = answer.seconds;
-    d["events"] = make_events(answer.events);
+    put(d, "completed"_a = answer.outcome.completed, "time"_a = answer.outcome.time,
+        "steps"_a = answer.outcome.last.num_steps, "rejected"_a = answer.outcome.last.num_rejected,
+        "evaluations"_a = answer.outcome.last.num_evaluations, "energy_error"_a = answer.outcome.energy_error,
+        "resumed_from"_a = answer.resumed ? py::cast(*answer.resumed) : py::none(), "seconds"_a = answer.seconds,
+        "events"_a = make_events(answer.events));
   }
   return py::make_tuple(d, tell(events.get_messages()));
 }
@@ -503,45 +490,28 @@ py::tuple batch(const std::string& campaign, const std::string& output, int jobs
   py::list failed;
   for (const auto& one : answer.failed) {
     py::dict f;
-    f["case"] = one.number;
-    f["exit_code"] = one.exit_code;
-    f["error"] = one.error;
+    put(f, "case"_a = one.number, "exit_code"_a = one.exit_code, "error"_a = one.error);
     failed.append(f);
   }
   py::dict statistics, d;
   for (const auto& s : answer.statistics) {
     py::dict one;
-    one["count"] = s.count;
-    one["mean"] = s.mean;
-    one["deviation"] = s.deviation;
-    one["min"] = s.min;
-    one["p5"] = s.p5;
-    one["median"] = s.median;
-    one["p95"] = s.p95;
-    one["max"] = s.max;
+    put(one, "count"_a = s.count, "mean"_a = s.mean, "deviation"_a = s.deviation, "min"_a = s.min, "p5"_a = s.p5,
+        "median"_a = s.median, "p95"_a = s.p95, "max"_a = s.max);
     statistics[py::str(s.name)] = one;
   }
-  d["folder"] = answer.folder;
-  d["cases"] = answer.num_selected;
-  d["done_before"] = answer.num_before;
-  d["done"] = answer.num_done;
-  d["failed"] = failed;
-  d["completed"] = answer.completed;
-  d["seconds"] = answer.seconds;
-  d["statistics"] = statistics;
+  put(d, "folder"_a = answer.folder, "cases"_a = answer.num_selected, "done_before"_a = answer.num_before,
+      "done"_a = answer.num_done, "failed"_a = failed, "completed"_a = answer.completed, "seconds"_a = answer.seconds,
+      "statistics"_a = statistics);
   return py::make_tuple(d, tell(events.get_messages()));
 }
 
 py::dict make_random(const records::RandomOutputs& random) {
   py::dict d;
-  d["outputs"] = random.outputs.name;
-  d["frequency_hz"] = copy(random.frequency_hz);
-  d["psd"] = copy(random.psd);
-  d["rms"] = copy(random.rms);
-  d["crossing_hz"] = copy(random.crossing_hz);
-  d["cumulative_rms"] = copy(random.cumulative_rms);
-  d["band_rms"] = copy(random.band_rms);
-  d["band_crossing_hz"] = copy(random.band_crossing_hz);
+  put(d, "outputs"_a = random.outputs.name, "frequency_hz"_a = copy(random.frequency_hz), "psd"_a = copy(random.psd),
+      "rms"_a = copy(random.rms), "crossing_hz"_a = copy(random.crossing_hz),
+      "cumulative_rms"_a = copy(random.cumulative_rms), "band_rms"_a = copy(random.band_rms),
+      "band_crossing_hz"_a = copy(random.band_crossing_hz));
   const bool has_total = random.total_rms.size() > 0;
   d["total_rms"] = has_total ? py::object(copy(random.total_rms)) : py::none();
   d["total_crossing_hz"] = has_total ? py::object(copy(random.total_crossing_hz)) : py::none();
@@ -565,23 +535,18 @@ py::tuple response(const std::string& file, Strings inputs, Strings outputs, dou
   py::dict d;
   py::list value;
   for (auto& one : answer.response.value) value.append(give(std::move(one)));
-  d["inputs"] = answer.response.inputs.name;
-  d["outputs"] = answer.response.outputs.name;
-  d["frequency_hz"] = give(std::move(answer.response.frequency_hz));
-  d["value"] = value;
-  d["singular_values"] = give(std::move(answer.response.singular_values));
-  d["peak_gain"] = answer.peak.value;
-  d["peak_hz"] = answer.peak.frequency_hz;
+  put(d, "inputs"_a = answer.response.inputs.name, "outputs"_a = answer.response.outputs.name,
+      "frequency_hz"_a = give(std::move(answer.response.frequency_hz)), "value"_a = value,
+      "singular_values"_a = give(std::move(answer.response.singular_values)), "peak_gain"_a = answer.peak.value,
+      "peak_hz"_a = answer.peak.frequency_hz);
   if (answer.margins) {
     const auto list = [](const std::vector<records::Crossing>& crossings) {
       py::list rows;
       for (const auto& c : crossings) rows.append(py::make_tuple(c.frequency_hz, c.margin));
       return rows;
     };
-    d["gain_margins"] = list(answer.margins->gain);
-    d["phase_margins"] = list(answer.margins->phase);
-    d["distance"] = answer.margins->distance;
-    d["is_stable"] = answer.margins->is_stable;
+    put(d, "gain_margins"_a = list(answer.margins->gain), "phase_margins"_a = list(answer.margins->phase),
+        "distance"_a = answer.margins->distance, "is_stable"_a = answer.margins->is_stable);
   }
   if (answer.random) d["random"] = make_random(*answer.random);
   return py::make_tuple(d, std::move(messages));
@@ -598,11 +563,8 @@ py::tuple budget(const std::string& file, const std::string& sources, Strings ou
   py::list tables, curves;
   for (auto& table : found.tables) {
     py::dict one, over_speed;
-    one["weighting"] = table.weighting;
-    one["exposure"] = table.exposure;
-    one["rms"] = give(std::move(table.rms));
-    one["speed"] = give(std::move(table.speed));
-    one["total"] = give(std::move(table.total));
+    put(one, "weighting"_a = table.weighting, "exposure"_a = table.exposure, "rms"_a = give(std::move(table.rms)),
+        "speed"_a = give(std::move(table.speed)), "total"_a = give(std::move(table.total)));
     for (std::size_t s = 0; s < found.sources.size(); ++s)
       if (found.speed[s].size() > 0) over_speed[py::str(found.sources[s])] = give(std::move(table.over_speed[s]));
     one["over_speed"] = over_speed;
@@ -616,13 +578,8 @@ py::tuple budget(const std::string& file, const std::string& sources, Strings ou
     curves.append(one);
     if (found.speed[s].size() > 0) speeds[py::str(found.sources[s])] = give(std::move(found.speed[s]));
   }
-  d["outputs"] = found.outputs.name;
-  d["sources"] = found.sources;
-  d["from_hz"] = found.from_hz;
-  d["to_hz"] = found.to_hz;
-  d["tables"] = tables;
-  d["curves"] = curves;
-  d["speeds"] = speeds;
+  put(d, "outputs"_a = found.outputs.name, "sources"_a = found.sources, "from_hz"_a = found.from_hz,
+      "to_hz"_a = found.to_hz, "tables"_a = tables, "curves"_a = curves, "speeds"_a = speeds);
   return py::make_tuple(d, std::move(messages));
 }
 
@@ -636,12 +593,8 @@ py::tuple equilibrium(const std::string& file, Strings set) {
   for (auto& [name, q] : answer.hinges) hinges[py::str(name)] = give(std::move(q));
   py::list unstable;
   for (const auto& growth : answer.found.unstable) unstable.append(py::make_tuple(growth.mode, growth.rate));
-  d["q"] = give(std::move(answer.q));
-  d["hinges"] = hinges;
-  d["residual"] = answer.found.residual;
-  d["iterations"] = answer.found.num_iterations;
-  d["neutral"] = answer.found.neutral;
-  d["unstable"] = unstable;
+  put(d, "q"_a = give(std::move(answer.q)), "hinges"_a = hinges, "residual"_a = answer.found.residual,
+      "iterations"_a = answer.found.num_iterations, "neutral"_a = answer.found.neutral, "unstable"_a = unstable);
   return py::make_tuple(d, std::move(messages));
 }
 
@@ -653,7 +606,9 @@ void bind_commands(py::module_& m) {
   m.def("check", &check, py::arg("file"), py::kw_only(), py::arg("set") = no_words, py::arg("subcase") = 0,
         py::arg("free") = false, py::arg("mass") = "deck", py::arg("ignore") = no_words);
   m.def("compare", &compare, py::arg("files"), py::kw_only(), py::arg("mass") = "", py::arg("refinement") = false,
+        py::arg("test") = "", py::arg("deck") = "", py::arg("tam") = "serep", py::arg("sensors") = 0,
         py::arg("progress") = none);
+  m.def("edit", &edit, py::arg("file"), py::arg("commands"), py::arg("output") = "");
   m.def("info", &info, py::arg("file"));
   m.def("export", &export_file, py::arg("file"), py::arg("to"), py::arg("output") = "", py::kw_only(),
         py::arg("channels") = no_words, py::arg("ascii") = false, py::arg("moving") = false,

@@ -1,6 +1,7 @@
 // Commands on decks as functions: matrices, frequency, transient, split, init.
 #include "analysis/frequency/frequency.hpp"
 #include "analysis/init/init_deck.hpp"
+#include "analysis/listing/listing_files.hpp"
 #include "analysis/matrices/matrices.hpp"
 #include "analysis/split/split.hpp"
 #include "formats/hdf5/files.hpp"
@@ -27,7 +28,9 @@ py::tuple matrices(const std::string& deck, std::vector<int> loads, bool no_kg, 
 /// The bytes of the HDF5 file, and the messages.
 py::tuple solve_response(const std::string& deck, bool is_over_time, std::vector<int> grids, bool direct, bool modal,
                          int number, std::optional<double> max_hz, bool no_residuals, int subcase, bool free,
-                         const std::string& mass, Strings ignore, const py::object& progress) {
+                         const std::string& mass, Strings ignore, const std::string& f06, const std::string& op2,
+                         const py::object& progress) {
+  const analysis::ListingFiles listing{f06, op2};
   if (direct && (modal || number > 0 || max_hz || no_residuals))
     throw py::value_error("direct is without modes: leave out modal, number, max_hz and no_residuals");
   if (number < 0) throw py::value_error("number is a number of modes above 0, not " + std::to_string(number));
@@ -42,11 +45,14 @@ py::tuple solve_response(const std::string& deck, bool is_over_time, std::vector
   request.is_modal = modal;
   request.no_residuals = no_residuals;
   request.grids = std::move(grids);
+  request.has_listing = !listing.empty();
   std::string image;
   auto messages = run_request(deck, progress, [&](PythonEvents& events) {
+    announce_outputs({f06, op2});
     const auto answer = analysis::solve_deck_response(request, events);
     if (!answer.failures.is_empty()) answer.failures.throw_all(events.get_messages());
     image = hdf5::make_response_image(answer.response);
+    if (answer.listing) analysis::write_listings(listing, *answer.listing);
   });
   return py::make_tuple(py::bytes(image), std::move(messages));
 }
@@ -74,22 +80,15 @@ py::tuple split(const std::string& deck, int parts, const std::string& along, St
   py::list made, frequencies;
   for (auto& part : answer.parts) {
     py::dict one;
-    one["name"] = part.name;
-    one["parent"] = part.parent;
-    one["node"] = part.node;
-    one["elements"] = part.num_elements;
-    one["grids"] = part.num_grids;
-    one["mass"] = part.mass;
-    one["body"] = check ? py::cast(std::move(part.body)) : py::none();
+    put(one, "name"_a = part.name, "parent"_a = part.parent, "node"_a = part.node, "elements"_a = part.num_elements,
+        "grids"_a = part.num_grids, "mass"_a = part.mass,
+        "body"_a = check ? py::cast(std::move(part.body)) : py::none());
     made.append(one);
   }
   for (const auto& frequency : answer.frequencies)
     frequencies.append(py::make_tuple(frequency.whole_hz, frequency.parts_hz));
   py::dict d;
-  d["mass"] = answer.mass;
-  d["parts"] = made;
-  d["frequencies"] = frequencies;
-  d["files"] = list_texts(answer.files);
+  put(d, "mass"_a = answer.mass, "parts"_a = made, "frequencies"_a = frequencies, "files"_a = list_texts(answer.files));
   return py::make_tuple(d, std::move(messages));
 }
 
@@ -114,7 +113,8 @@ void bind_decks(py::module_& m) {
   m.def("solve_response", &solve_response, py::arg("deck"), py::arg("is_over_time"), py::kw_only(),
         py::arg("grids") = std::vector<int>(), py::arg("direct") = false, py::arg("modal") = false,
         py::arg("number") = 0, py::arg("max_hz") = none, py::arg("no_residuals") = false, py::arg("subcase") = 0,
-        py::arg("free") = false, py::arg("mass") = "deck", py::arg("ignore") = Strings(), py::arg("progress") = none,
+        py::arg("free") = false, py::arg("mass") = "deck", py::arg("ignore") = Strings(), py::arg("f06") = "",
+        py::arg("op2") = "", py::arg("progress") = none,
         "The bytes of the file of bough frequency or bough transient.");
   m.def("split", &split, py::arg("deck"), py::kw_only(), py::arg("parts") = 0, py::arg("along") = "path",
         py::arg("planes") = Strings(), py::arg("elements") = Strings(), py::arg("grids") = std::vector<int>(),

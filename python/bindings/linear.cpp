@@ -1,6 +1,8 @@
 // Linear models: arrays that go straight into python-control and scipy.signal.
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <sstream>
 
 #include <pybind11/stl/filesystem.h>
 
@@ -66,10 +68,19 @@ void bind_linear(py::module_& m) {
             for (const double value : delta)
               if (!std::isfinite(value))
                 throw py::value_error("expected finite values, found " + std::to_string(value));
+            const auto is_outside = [](double value) { return std::abs(value) > 1 + 1e-12; };
+            if (const auto found = std::find_if(delta.begin(), delta.end(), is_outside); found != delta.end()) {
+              const auto& one = l.uncertainty[static_cast<std::size_t>(found - delta.begin())];
+              std::ostringstream text;
+              text << "delta of " << one.name << " is " << *found
+                   << ", outside [-1, 1]: the model extrapolates beyond the range " << one.low << " to " << one.high;
+              if (PyErr_WarnEx(PyExc_UserWarning, text.str().c_str(), 1) != 0) throw py::error_already_set();
+            }
             return statespace::close_uncertainty(
                 l, Eigen::Map<const Eigen::VectorXd>(delta.data(), static_cast<Eigen::Index>(delta.size())));
           },
-          py::arg("delta"), "The model with w = delta z closed, one value in [-1, 1] a parameter.")
+          py::arg("delta"),
+          "The model with w = delta z closed, one value in [-1, 1] per parameter; UserWarning outside.")
       .def_readonly("time", &LinearModel::time)
       .def_property_readonly("q", show(&LinearModel::q))
       .def_property_readonly("u", show(&LinearModel::u))
@@ -86,13 +97,8 @@ void bind_linear(py::module_& m) {
                                if (!l.has_zeros) return py::none();
                                return make_complex(l.zeros_real, l.zeros_imag);
                              })
-      .def(
-          "save",
-          [](const LinearModel& l, const std::filesystem::path& path) {
-            demand_no_source(path, l.source);
-            hdf5::write_linear_model(l, path);
-          },
-          py::arg("path"), OneAtATime(), "Write the linear-model HDF5 file.")
+      .def("save", make_save<LinearModel>(&hdf5::write_linear_model), py::arg("path"), OneAtATime(),
+           "Write the linear-model HDF5 file.")
       .def("__repr__", [](const LinearModel& l) {
         return "<LinearModel: " + std::to_string(l.A.rows()) + " states, " + std::to_string(l.B.cols()) + " inputs, " +
                std::to_string(l.C.rows()) + " outputs>";

@@ -12,6 +12,13 @@
 namespace bough::python {
 
 using Strings = std::vector<std::string>;
+using namespace py::literals;
+
+/// Sets entries of a dict: put(d, "mass"_a = 2.0, "names"_a = names).
+template <class... Entries>
+void put(py::dict& dict, Entries&&... entries) {
+  dict.attr("update")(std::forward<Entries>(entries)...);
+}
 
 /// Keeps messages for Python's warnings; progress(stage) of Python is called with the interpreter's lock.
 template <class Base>
@@ -61,6 +68,17 @@ inline void announce_output(const std::string& output) {
   if (output.empty()) return;
   analysis::check_place(output);
   note_output(output);
+}
+
+/// announce_output for each path that is not empty; throws InputError "cli.same-output" if two are one file.
+inline void announce_outputs(const Strings& outputs) {
+  for (std::size_t i = 0; i < outputs.size(); ++i) {
+    announce_output(outputs[i]);
+    for (std::size_t k = 0; k < i; ++k)
+      if (!outputs[k].empty() && analysis::is_same_output(outputs[k], outputs[i]))
+        throw InputError("cli.same-output", {outputs[i]}, "two outputs of this call would be this one file",
+                         "give each a separate name");
+  }
 }
 
 /// Writes the text unless `output` is empty.

@@ -341,11 +341,16 @@ void bind_systems(py::module_& m) {
       .def_readonly("what", &records::EventRecord::what)
       .def("__repr__", [](const records::EventRecord& e) { return std::to_string(e.time) + ": " + e.what; });
 
-  py::class_<Results>(m, "Results", "Samples of a run: results[\"/sensors/tip\"] or results[\"tip\"], nt x components.")
+  py::class_<Results>(
+      m, "Results",
+      "Samples of a run: results[\"/sensors/tip\"] or results[\"tip\"]: nt of one component, nt x components of "
+      "several.")
       .def("__getitem__",
            [](py::object self, const std::string& name) {
              const auto& results = self.cast<const Results&>();
-             return view(results.channels.at(results.find(name)), self);
+             const auto& channel = results.channels.at(results.find(name));
+             py::object values = view(channel, self);
+             return channel.cols() == 1 ? values.attr("reshape")(-1) : values;
            })
       .def("__contains__",
            [](const Results& r, const std::string& name) {

@@ -42,7 +42,7 @@ except ImportError as _missing:  # bough.reader does without
 
 __all__ = ["ComputationError", "Event", "Failure", "FlexBody", "InputError", "LinearModel", "Locator", "MassIntegrals",
            "Message", "Modes", "Results", "Simulation", "System", "Warning", "batch", "call", "check", "compare",
-           "convert", "equilibrium", "export", "flx", "frequency", "info", "init", "integrals", "matrices", "modes",
+           "convert", "edit", "equilibrium", "export", "flx", "frequency", "info", "init", "integrals", "matrices", "modes",
            "plot", "read_flex_body", "read_flx", "read_linear_model", "read_modes", "read_results", "reader", "reduce",
            "report", "response", "run", "select", "split", "static", "transient", "verbs"]
 
@@ -103,27 +103,29 @@ def reduce(file="", **options):
 
 
 def modes(deck, number=None, *, min_hz=None, max_hz=None, buckling=False, no_check=False, solver="", energies=False,
-          meffmass=0, subcase=0, free=False, mass="deck", ignore=(), progress=None):
+          meffmass=0, subcase=0, free=False, mass="deck", ignore=(), f06="", op2="", progress=None):
     """Normal modes (or with buckling=True load factors) of a deck as Modes; options as of `bough modes`.
 
-    Of several subcases those of the first, or of `subcase`. progress(stage) is called on the way.
+    Of several subcases those of the first, or of `subcase`. f06, op2: files of the deck's output requests, in Nastran's
+    order, of all subcases. progress(stage) is called on the way.
     """
     found, _ = _bough.modes(_os.fspath(deck), number, min_hz=min_hz, max_hz=max_hz, buckling=buckling,
                             no_check=no_check, solver=solver, energies=energies, meffmass=meffmass, subcase=subcase,
-                            free=free, mass=mass, ignore=_list(ignore), progress=progress)
+                            free=free, mass=mass, ignore=_list(ignore), f06=_os.fspath(f06), op2=_os.fspath(op2),
+                            progress=progress)
     return found
 
 
 def static(deck, *, subcase=0, free=False, mass="deck", ignore=(), grid_forces=(), linear=False, nonlinear=False,
-           increments=10, strains=False, extremes=False, progress=None):
+           increments=10, strains=False, extremes=False, f06="", op2="", progress=None):
     """Static solutions of a deck, as reader.File in memory: displacements, reactions, element forces by path.
 
-    Options as of `bough static`; grid_forces="all" or ids.
+    Options as of `bough static`; grid_forces="all" or ids; f06, op2: files of the deck's output requests.
     """
     image, _ = _bough.static(_os.fspath(deck), subcase=subcase, free=free, mass=mass, ignore=_list(ignore),
                              grid_forces=[str(word) for word in _list(grid_forces)], linear=linear,
-                             nonlinear=nonlinear, increments=increments, strains=strains,
-                             extremes=extremes, progress=progress)
+                             nonlinear=nonlinear, increments=increments, strains=strains, extremes=extremes,
+                             f06=_os.fspath(f06), op2=_os.fspath(op2), progress=progress)
     return _read_image(deck, image)
 
 
@@ -148,7 +150,7 @@ def frequency(deck, **options):
     """Frequency and random response of a deck (SOL 108, 111) as reader.File in memory: curves by path.
 
     Options as of `bough frequency`: grids=[41, ...], direct, modal, number, max_hz, no_residuals, subcase, free, mass,
-    ignore. found["subcases/1/displacement/real"] has a row per frequency and a column per row of its "dofs".
+    ignore; f06, op2: files of the deck's output requests. found["subcases/1/displacement/real"] has a row per frequency and a column per row of its "dofs".
     """
     return _solve_response(deck, False, options)
 
@@ -165,6 +167,9 @@ def _solve_response(deck, is_over_time, options):
     for name in ("grids", "ignore"):
         if name in options:
             options[name] = _list(options[name])
+    for name in ("f06", "op2"):
+        if name in options:
+            options[name] = _os.fspath(options[name])
     image, _ = _bough.solve_response(_os.fspath(deck), is_over_time, **options)
     return _read_image(deck, image)
 
@@ -232,13 +237,29 @@ def check(file, *, parameters=None, subcase=0, free=False, mass="deck", ignore=(
             "warnings": severities.count("warning")}
 
 
-def compare(*files, mass="", refinement=False, progress=None):
+def compare(*files, mass="", refinement=False, test="", deck="", tam="serep", sensors=0, progress=None):
     """Two bodies or modes files, the integrals of one body, or with refinement=True three bodies of finer meshes.
 
-    Arrays and lists of names by path, as in the file of `bough compare -o`: found["mac"].
+    test: a universal file; then the modes of the one file against its shapes at the measured DOFs, by the test-analysis
+    model tam "serep", "guyan" or "irs" (the last two of `deck`), or its frequency response against measured functions.
+    sensors: places for this number of sensors on the one model. Arrays and lists of names by path, as in the file of
+    `bough compare -o`: found["mac"], found["cross_orthogonality"], found["functions/frac"], found["dofs"].
     """
-    found, _ = _bough.compare(_paths(files), mass=_os.fspath(mass), refinement=refinement, progress=progress)
+    found, _ = _bough.compare(_paths(files), mass=_os.fspath(mass), refinement=refinement, test=_os.fspath(test),
+                              deck=_os.fspath(deck), tam=tam, sensors=sensors, progress=progress)
     return found
+
+
+def edit(file, commands, output=""):
+    """A system or body file after the commands of `bough edit`: {"text", "printed", "changed"}.
+
+    commands: a list of lines, or one text: ["set simulation.duration=5", "rename boom mast", "list"]. The first wrong
+    line raises InputError, and nothing is written. "printed" is what list, show, diff and help print. The text is
+    written where `output` is given, which may be the file itself, or where a line is "save".
+    """
+    lines = commands.split("\n") if isinstance(commands, str) else [str(line) for line in commands]
+    text, printed, changed, _ = _bough.edit(_os.fspath(file), lines, _os.fspath(output))
+    return {"text": text, "printed": printed, "changed": changed}
 
 
 def info(file):
@@ -368,6 +389,11 @@ def _place(bodies):
     return {_os.fspath(file): body for file, body in (bodies or {}).items()}
 
 
+def _read_own(name, text):
+    """A property of the compiled object, to read only."""
+    return property(lambda self: getattr(self._own, name), doc=text)
+
+
 class System:
     """A multibody system, of a system file or of its text.
 
@@ -391,15 +417,8 @@ class System:
                                     _place(bodies), _make_settings(parameters), _os.fspath(start_from), text)
         return system
 
-    @property
-    def bodies(self):
-        """Names of the bodies."""
-        return self._own.bodies
-
-    @property
-    def messages(self):
-        """Notes and warnings of reading it."""
-        return self._own.messages
+    bodies = _read_own("bodies", "Names of the bodies.")
+    messages = _read_own("messages", "Notes and warnings of reading it.")
 
     def run(self, output=None, progress=None):
         """The time history as Results, also written to the HDF5 file `output`.
@@ -438,30 +457,12 @@ class Simulation:
             raise TypeError(f"expected a bough.System, got {type(system).__name__}; pass bough.System(FILE)")
         self._own = system._own.start(integrator, step, relative_tolerance, absolute_tolerance, duration)
 
-    @property
-    def inputs(self):
-        """Names of the [[input]]s, in order."""
-        return self._own.inputs
-
-    @property
-    def output_names(self):
-        """Names of the components of all channels: sensors (tip:x), controllers, actuators, inputs, hinges, others."""
-        return self._own.output_names
-
-    @property
-    def time(self):
-        """Time reached."""
-        return self._own.time
-
-    @property
-    def reason(self):
-        """Why the run has ended; empty while it goes on."""
-        return self._own.reason
-
-    @property
-    def messages(self):
-        """Warnings and notes of its start."""
-        return self._own.messages
+    inputs = _read_own("inputs", "Names of the [[input]]s, in order.")
+    output_names = _read_own("output_names", "Names of the components of all channels: sensors (tip:x), controllers, "
+                             "actuators, inputs, hinges, others.")
+    time = _read_own("time", "Time reached.")
+    reason = _read_own("reason", "Why the run has ended; empty while it goes on.")
+    messages = _read_own("messages", "Warnings and notes of its start.")
 
     def set(self, name, value):
         """The value of an input, by name or index, from the present time on; of hold = "linear" at the next time."""

@@ -289,37 +289,64 @@ export class Chart {
     g.restore();
   }
 
-  // Thin lines behind the curves, each with its label where it leaves the frame, and counts next to points.
+  /**
+   * Writes a text next to a point, on either side, above or below, where the frame does not cut it and no other text of
+   * `boxes` is; up to `lines` lines away. Returns false without room.
+   * @param {CanvasRenderingContext2D} g  @param {number[][]} boxes  @param {string} text  @param {number[]} at
+   */
+  place_text(g, boxes, text, [x, y], gap, size, lines = 1) {
+    const { left, top, width, height } = this.frame, long = g.measureText(text).width;
+    const steps = Array.from({ length: lines }, (_, k) => 1.1 * size * k).flatMap((more) => [gap + 0.65 * size + more, -gap - more]);
+    for (const dy of steps)
+      for (const dx of [gap, -gap - long]) {
+        const box = [x + dx - 2, y + dy - size, x + dx + long + 2, y + dy + 0.3 * size];
+        if (box[0] < left || box[1] < top || box[2] > left + width || box[3] > top + height) continue;
+        if (boxes.some((b) => box[0] < b[2] && b[0] < box[2] && box[1] < b[3] && b[1] < box[3])) continue;
+        boxes.push(box);
+        g.fillText(text, x + dx, y + dy);
+        return true;
+      }
+    return false;
+  }
+
+  // Thin lines behind the curves, each with its label where it leaves the frame or where else it has room, and counts
+  // next to points.
   draw_guides(g) {
     const { left, top, width, height } = this.frame;
+    // No text covers a mark.
+    const boxes = this.series.flatMap((s, k) => (s.points && !this.hidden.has(k) && s.x.length < 500 ? Array.from(s.x, (x, i) => [this.map_x(this.to_x(x)), this.map_y(this.to_y(s.y[i]))]) : []))
+      .map(([x, y]) => [x - 5, y - 5, x + 5, y + 5]);
     g.save();
     g.lineWidth = 1;
-    g.font = "11px " + get_css("--font");
     g.textAlign = "left";
-    for (const guide of this.guides) {
-      g.strokeStyle = get_css("--line");
-      g.fillStyle = get_css("--text");
-      g.beginPath();
-      let last = null;
-      for (let i = 0; i < guide.x.length; ++i) {
-        const x = this.map_x(this.to_x(guide.x[i])), y = this.map_y(this.to_y(guide.y[i]));
-        i === 0 ? g.moveTo(x, y) : g.lineTo(x, y);
-        if (2 * i <= guide.x.length && x >= left && x < left + width && y >= top && y < top + height) last = [x, y];
-        // A ray leaves the frame at the first side that it meets.
-        if (guide.x.length === 2 && i === 1) {
-          const from = [this.map_x(this.to_x(guide.x[0])), this.map_y(this.to_y(guide.y[0]))], to = [x, y];
-          const share = Math.min(to[0] < left ? (from[0] - left) / (from[0] - to[0]) : 1, to[1] < top ? (from[1] - top) / (from[1] - to[1]) : 1);
-          last = share > 0 ? [from[0] + share * (to[0] - from[0]), from[1] + share * (to[1] - from[1])] : null;
-        }
-      }
-      g.stroke();
-      if (guide.label && last) g.fillText(guide.label, Math.max(last[0], left) + 4, Math.max(last[1], top) + 12);
-    }
     g.font = "12px " + get_css("--font");
     g.fillStyle = get_css("--text");
     for (const note of this.notes) {
-      const x = this.map_x(note.x), y = this.map_y(note.y) - 8, size = g.measureText(note.text).width;
-      g.fillText(note.text, x + 9 + size > left + width ? x - 9 - size : x + 9, y);
+      const at = [this.map_x(note.x), this.map_y(note.y)];
+      if (!this.place_text(g, boxes, note.text, at, 8, 12, 4)) g.fillText(note.text, at[0] + 9, at[1] - 8);
+    }
+    g.font = "11px " + get_css("--font");
+    g.strokeStyle = get_css("--line");
+    g.fillStyle = get_css("--soft");
+    const is_inside = (p) => p[0] >= left && p[0] <= left + width && p[1] >= top && p[1] <= top + height;
+    for (const guide of this.guides) {
+      const points = Array.from(guide.x, (x, i) => [this.map_x(this.to_x(x)), this.map_y(this.to_y(guide.y[i]))]);
+      g.beginPath();
+      points.forEach(([x, y], i) => (i === 0 ? g.moveTo(x, y) : g.lineTo(x, y)));
+      g.stroke();
+      if (!guide.label) continue;
+      let places = points.filter(is_inside), best = points.filter((p, i) => 2 * i <= points.length && is_inside(p)).length - 1;
+      // A ray leaves the frame at the first side that it meets.
+      if (points.length === 2) {
+        const [from, to] = points;
+        const share = Math.min(to[0] < left ? (from[0] - left) / (from[0] - to[0]) : 1, to[1] < top ? (from[1] - top) / (from[1] - to[1]) : 1);
+        places = share > 0 ? [1, 0.9, 0.8, 0.7, 0.6].map((s) => [0, 1].map((c) => from[c] + s * share * (to[c] - from[c]))) : [];
+        best = 0;
+      }
+      for (let k = 0; k < places.length; ++k) {
+        const at = places[points.length === 2 ? k : (Math.max(0, best) + places.length - k) % places.length];
+        if (this.place_text(g, boxes, guide.label, at, 4, 11)) break;
+      }
     }
     g.restore();
   }

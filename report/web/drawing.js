@@ -1,5 +1,5 @@
 import { format_number } from "./numbers.js";
-import { unpack_floats, unpack_indices, unpack_shorts } from "./unpack.js";
+import { unpack_column, unpack_floats, unpack_indices, unpack_shorts } from "./unpack.js";
 
 // A body as report/drawing.hpp writes it, and its points when its modes move.
 export class Drawing {
@@ -18,7 +18,51 @@ export class Drawing {
       const { of_triangle, of_edge, kind, measure, energy } = json.elements;
       this.elements = { of_triangle: unpack_indices(of_triangle), of_edge: unpack_indices(of_edge), kind: unpack_indices(kind), measure: unpack_floats(measure), energy };
       this.matrix = json.elements.matrix;
+      const { fields } = json.elements;
+      if (fields) Object.assign(this.elements, { id: unpack_indices(json.elements.id), property: unpack_indices(json.elements.property), at_point: unpack_indices(json.elements.at_point) });
+      this.lists = fields?.lists.map(unpack_indices) ?? [];
+      // Columns of stresses, strains and margins, those of a group one after the other.
+      const groups = [...new Set(fields?.list.map((f) => f.group))];
+      this.fields = groups.flatMap((group) => fields.list.filter((f) => f.group === group));
     }
+  }
+
+  /**
+   * A field in shape j: the number of each element, NaN for those without one, and the elements with the least and the
+   * largest. Elements that are not drawn count.
+   */
+  get_field(field, j) {
+    const list = this.lists[field.of], packed = unpack_column(field.values[j], field.count);
+    const values = new Float64Array(this.elements.id.length).fill(NaN);
+    let least = -1, most = -1;
+    list.forEach((element, k) => {
+      values[element] = packed[k];
+      if (!Number.isFinite(packed[k])) return;
+      if (least < 0 || packed[k] < values[least]) least = element;
+      if (most < 0 || packed[k] > values[most]) most = element;
+    });
+    return { values, least, most, low: least < 0 ? 0 : values[least], high: most < 0 ? 0 : values[most] };
+  }
+
+  /**
+   * Means at the corners of the triangles: over the elements at the point with the kind and property of the triangle's own
+   * element. Returns three numbers a triangle, and the mean by "point element" (of what a click names).
+   */
+  average(values) {
+    const { at_point, of_triangle, property, kind } = this.elements, sums = new Map();
+    const get_key = (point, element) => `${point} ${property[element]} ${kind[element]}`;
+    for (let i = 0; i < at_point.length; i += 2) {
+      const value = values[at_point[i + 1]];
+      if (!Number.isFinite(value)) continue;
+      const key = get_key(at_point[i], at_point[i + 1]), sum = sums.get(key);
+      if (sum) [sum[0], sum[1]] = [sum[0] + value, sum[1] + 1];
+      else sums.set(key, [value, 1]);
+    }
+    const find = (point, element) => {
+      const sum = Number.isFinite(values[element]) ? sums.get(get_key(point, element)) : undefined;
+      return sum ? sum[0] / sum[1] : NaN;
+    };
+    return { corners: Float64Array.from(this.triangles, (point, i) => find(point, of_triangle[Math.floor(i / 3)])), find };
   }
 
   // Strain energy of each element for these coefficients of the shapes, and with `is_density` over its extent.

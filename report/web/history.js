@@ -7,6 +7,10 @@ import { thin_time, unpack_column, unpack_time } from "./unpack.js";
 const with_unit = (what, unit) => (unit && unit !== "1" ? `${what} [${unit}]`.trimStart() : what);
 const label_time = (run) => with_unit("time", run.data.time_unit);
 
+const kXyz = ["x", "y", "z"];
+// Coordinates and rates of a free hinge (docs/formats/system-toml.md).
+const kFreeHinge = { q: ["quaternion w", ...kXyz.map((c) => "quaternion " + c), ...kXyz.map((c) => "position " + c)], qdot: [...kXyz.map((c) => "angular velocity " + c), ...kXyz.map((c) => "velocity " + c)] };
+
 // The channels of one run, unpacked when they are first asked for.
 export class Run {
   constructor(data) {
@@ -17,6 +21,12 @@ export class Run {
     this.times = new Map();
     this.columns = new Map();
     this.by_path = new Map(data.channels.map((c) => [c.path, c]));
+    // The scene has all hinges but free ones.
+    const drawn = new Set(data.hinges?.map((h) => h.name));
+    for (const channel of data.channels) {
+      const [, name, what] = /^\/hinges\/(.+)\/(q|qdot)$/.exec(channel.path) ?? [], labels = kFreeHinge[what];
+      if (data.hinges && name && !drawn.has(name) && labels?.length === channel.columns.length) channel.columns.forEach((column, i) => (column.label = labels[i]));
+    }
   }
   get_time(channel) {
     if (!this.times.has(channel.stride)) this.times.set(channel.stride, thin_time(this.time, channel.stride));
@@ -59,6 +69,8 @@ export class RunSet {
 }
 
 const short_name = (path) => path.replace(/^\/sensors\//, "").replace(/^\//, "");
+// Of a modal coordinate the mode and its frequency.
+const label_column = (channel, i) => channel.columns[i].label ?? channel.columns[i].name;
 const name_column = (channel, i) => short_name(channel.path) + (channel.columns[i].name ? ":" + channel.columns[i].name : "");
 
 // A chart of whole channels that goes with the run's others. Components that are noise are left out.
@@ -122,7 +134,7 @@ export class HistoryView {
           this.rebuild();
         });
         this.boxes.set(channel.path + ":" + i, box);
-        row.append(el("label", {}, box, column.name));
+        row.append(el("label", { title: column.label }, box, column.name));
       });
       groups.get(name).append(row);
     }
@@ -169,7 +181,7 @@ export class HistoryView {
       const title = same ? short_name(members[0][0].path) : "";
       const unit = units.size === 1 ? [...units][0] : "";
       const name = (c, i) => {
-        const own = same ? c.columns[i].name || short_name(c.path) : name_column(c, i);
+        const own = same ? label_column(c, i) || short_name(c.path) : name_column(c, i);
         return units.size === 1 ? own : with_unit(own, c.columns[i].unit);
       };
       const series = members.flatMap(([c, i]) => this.run.list_series(c, i, name(c, i)));

@@ -33,8 +33,19 @@ export function make_slider(text, { min, max, step, value }, action) {
   return Object.assign(el("label", { class: "slider" }, text + " ", slider, " ", shown), { slider, update });
 }
 
+// Options are names, or [group, name] with the names of a group one after the other.
 export function make_select(text, options, action) {
-  const list = el("select", { "aria-label": text }, ...options.map((name, i) => el("option", { value: i }, name)));
+  const list = el("select", { "aria-label": text });
+  let group = "", host = list;
+  options.forEach((entry, i) => {
+    const [of, name] = Array.isArray(entry) ? entry : ["", entry];
+    if (of !== group) {
+      group = of;
+      host = of ? el("optgroup", { label: of }) : list;
+      if (of) list.append(host);
+    }
+    host.append(el("option", { value: i }, name));
+  });
   list.addEventListener("change", () => action(Number(list.value)));
   return Object.assign(el("label", {}, text + " ", list), { list });
 }

@@ -43,7 +43,7 @@ export function add_arrow(mesh, from, vector, heads, size) {
   add_rings(mesh, from, vector.map((v) => v / length), rings);
 }
 
-export const to_thing = (mesh, color) => ({ points: new Float32Array(mesh.points), triangles: new Uint32Array(mesh.triangles), edges: new Uint32Array(0), color });
+export const to_thing = (mesh, color) => ({ points: new Float32Array(mesh.points), triangles: new Uint32Array(mesh.triangles), edges: new Uint32Array(0), color, is_symbol: true });
 const make_lines = (points, color) => ({ points: new Float32Array(points.flat()), edges: Uint32Array.from(points, (_, i) => i), color });
 
 // Sensors, and arrows of forces and moments, that go with the bodies.

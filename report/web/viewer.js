@@ -1,4 +1,5 @@
 import { make_coarse_mesh } from "./coarse_mesh.js";
+import { find_distance_to_segment, find_front, is_hidden } from "./picking.js";
 import { el, get_css, make_button, make_file_name, on_theme, save_blob } from "./page_parts.js";
 
 // 4 x 4 matrices, columns first, as WebGL takes them.
@@ -18,7 +19,7 @@ in float size;
 out float level;
 out vec3 at;
 void main() {
-  level = reach > 0.0 ? clamp(size / reach, 0.0, 1.0) : 0.0;
+  level = size < -0.5 ? -1.0 : reach > 0.0 ? clamp(size / reach, 0.0, 1.0) : 0.0;
   at = place;
   gl_Position = view * vec4(place, 1.0);
   gl_Position.z -= lift * gl_Position.w;
@@ -40,7 +41,7 @@ vec3 viridis(float t) {
   return mix(c[i], c[i + 1], s - float(i));
 }
 void main() {
-  vec3 base = mix(color.rgb, viridis(level), by_level);
+  vec3 base = level < -0.5 ? color.rgb : mix(color.rgb, viridis(level), by_level);
   if (lit > 0.5) {
     vec3 n = normalize(cross(dFdx(at), dFdy(at)));
     base *= 0.45 + 0.55 * abs(dot(n, normalize(eye - at)));
@@ -64,9 +65,12 @@ const project = (view, rect, p) => {
 const kMaxMoving = { software: 5000, hardware: 500000 };
 const kSoftware = /swiftshader|llvmpipe|softpipe|software|basic render/i;
 
+const kMaxPick = 14;  // pixels between a click and what it names
+
 // A stage on which things are drawn: { points, size, triangles, edges, color, by_level, line_color }; marks stand before
 // all things. With by_level a point's colour is its size over `reach`; with elements and levels (Drawing) each element
-// has one colour. Dragging turns, the right button or shift moves, the wheel comes nearer, a double click shows all.
+// has one colour, -1: `color`; with corner_levels each corner of a triangle. Dragging turns, the right button or shift
+// moves, the wheel comes nearer, a double click shows all.
 export class Viewer {
   /** @param {number | string} height  in pixels, or as CSS has it */
   constructor(height = 420) {
@@ -203,7 +207,7 @@ export class Viewer {
       if (!this.coarse.has(thing.triangles)) this.coarse.set(thing.triangles, make_coarse_mesh(thing.points, thing.triangles, Math.max(100, (this.max_moving * thing.triangles.length) / (3 * whole))));
       const { triangles, sources } = this.coarse.get(thing.triangles), { elements } = thing;
       count += sources.length;
-      return { ...thing, edges, triangles, ...(thing.levels ? { edges: new Uint32Array(), elements: { of_triangle: sources.map((t) => elements.of_triangle[t]), of_edge: new Uint32Array() } } : {}) };
+      return { ...thing, edges, triangles, corner_levels: undefined, ...(thing.levels ? { edges: new Uint32Array(), elements: { of_triangle: sources.map((t) => elements.of_triangle[t]), of_edge: new Uint32Array() } } : {}) };
     });
     this.thinned.textContent = `while it moves: ${count} of ${whole} faces`;
     return things;
@@ -306,15 +310,15 @@ export class Viewer {
 
   // Corners of neighbours are drawn apart, each in the colour of its element; outlines as ever.
   draw_elements(thing) {
-    const gl = this.gl, { points, triangles, edges, elements, levels } = thing;
-    const spread = (indices, of, corners, is_kept) => {
+    const gl = this.gl, { points, triangles, edges, elements, levels, corner_levels } = thing;
+    const spread = (indices, of, corners, is_kept, at_corner) => {
       const place = [], size = [];
       for (let i = 0; i < of.length; ++i) {
         if (!is_kept(of[i])) continue;
         for (let c = 0; c < corners; ++c) {
           const p = 3 * indices[corners * i + c];
           place.push(points[p], points[p + 1], points[p + 2]);
-          size.push(levels[of[i]]);
+          size.push(at_corner ? at_corner[corners * i + c] : levels[of[i]]);
         }
       }
       this.fill(new Float32Array(place), new Float32Array(size));
@@ -324,7 +328,7 @@ export class Viewer {
     gl.uniform4fv(this.at("color"), to_rgba(thing.color));
     gl.uniform1f(this.at("by_level"), 1);
     for (const [kind, indices, of, corners, lit, lift] of [[gl.TRIANGLES, triangles, elements.of_triangle, 3, 1, 0], [gl.LINES, edges, elements.of_edge, 2, 0, 2e-4]]) {
-      const count = spread(indices, of, corners, (element) => element !== 0xffffffff);
+      const count = spread(indices, of, corners, (element) => element !== 0xffffffff, corners === 3 ? corner_levels : undefined);
       gl.uniform1f(this.at("lit"), lit);
       gl.uniform1f(this.at("lift"), lift);
       if (count > 0) gl.drawArrays(kind, 0, count);
@@ -426,30 +430,52 @@ export class Viewer {
     return { eye: this.target.map((t, i) => t + this.distance * back[i]), direction: way.map((v) => v / length) };
   }
 
-  // A click names the nearest node: things with `ids` and `describe(index)`.
+  // A click names the nearest node that no face hides: things with `ids` and `describe(index)`; of things with
+  // `describe_element(element)` the element too.
   pick(event) {
-    const rect = this.canvas.getBoundingClientRect(), view = this.make_view();
-    let best = 14, found = null;
+    const rect = this.canvas.getBoundingClientRect(), view = this.make_view(), ray = this.make_ray(event);
+    const click = [event.clientX - rect.left, event.clientY - rect.top], near = [];
     for (const thing of this.things) {
       if (!thing.describe) continue;
       const p = thing.points;
       for (let k = 0; k < thing.ids.length; ++k) {
         const at = project(view, rect, p.subarray(3 * k, 3 * k + 3));
-        if (!at) continue;
-        const distance = Math.hypot(at[0] - (event.clientX - rect.left), at[1] - (event.clientY - rect.top));
-        if (distance < best) [best, found] = [distance, { thing, k, at }];
+        const distance = at ? Math.hypot(at[0] - click[0], at[1] - click[1]) : Infinity;
+        if (distance < kMaxPick) near.push({ thing, k, at, distance });
       }
     }
-    this.picked = found && [found.thing.describe, found.k];
+    near.sort((a, b) => a.distance - b.distance);
+    const found = near.slice(0, 40).find(({ thing, k }) => !is_hidden(this.things, ray.eye, thing, k, 1e-4 * this.extent)) ?? null;
+    const element = this.find_element(ray, click, view, rect);
+    const texts = [...(element ? [() => element.thing.describe_element(element.element)] : []), ...(found ? [() => found.thing.describe(found.k)] : [])];
+    this.picked = texts.length > 0 ? () => texts.map((text) => text()).join("\n") : null;
     this.on_pick?.(found && { thing: found.thing, index: found.k, id: found.thing.ids[found.k] });
-    this.place_tip(found?.at, rect);
+    this.place_tip(found?.at ?? (element && click), rect);
+  }
+
+  // The element at a place: its face that is met first, else a line near by.
+  find_element(ray, click, view, rect) {
+    if (!this.things.some((t) => t.describe_element)) return null;
+    const front = find_front(this.things, ray);
+    if (front) return front.thing.describe_element ? { thing: front.thing, element: front.thing.elements.of_triangle[front.triangle] } : null;
+    let best = kMaxPick, found = null;
+    for (const thing of this.things) {
+      if (!thing.describe_element) continue;
+      thing.elements.of_edge.forEach((element, i) => {
+        if (element === 0xffffffff) return;
+        const [a, b] = [0, 1].map((c) => 3 * thing.edges[2 * i + c]).map((p) => project(view, rect, thing.points.subarray(p, p + 3)));
+        const distance = a && b ? find_distance_to_segment(click, a, b) : Infinity;
+        if (distance < best) [best, found] = [distance, { thing, element }];
+      });
+    }
+    return found;
   }
 
   // Labels the node with this id as a click on it does, without calling on_pick; no label if no thing has the id.
   name_node(id) {
     const thing = this.things.find((t) => t.describe && t.ids.includes(id)), k = thing ? thing.ids.indexOf(id) : -1;
     const rect = this.canvas.getBoundingClientRect();
-    this.picked = thing ? [thing.describe, k] : null;
+    this.picked = thing ? () => thing.describe(k) : null;
     this.place_tip(thing && project(this.make_view(), rect, thing.points.subarray(3 * k, 3 * k + 3)), rect);
   }
 
@@ -463,7 +489,7 @@ export class Viewer {
 
   // The value at the picked node, which goes with the time.
   update_tip() {
-    if (this.picked) this.tip.textContent = this.picked[0](this.picked[1]);
+    if (this.picked) this.tip.textContent = this.picked();
   }
 
   // Frees the memory of the graphics card; a browser has few such contexts.

@@ -1,7 +1,7 @@
 # Writes web_text.cpp: the modules of this folder joined to one script, the style, and the SHA-256 of both.
 # cmake -DWEB=folder -DOUTPUT=web_text.cpp -P web_text.cmake
 # Each module may import from those before it in this list; joined, they share one scope.
-set(modules unpack page_parts numbers chart spectrum history drawing coarse_mesh viewer modes_view scene_marks motion_view linear_view spin_view chapter_views main)
+set(modules unpack page_parts numbers chart spectrum history drawing coarse_mesh picking viewer modes_view scene_marks motion_view linear_view spin_view chapter_views main)
 set(script "\n")
 foreach(module ${modules})
   file(READ ${WEB}/${module}.js text)

@@ -36,7 +36,7 @@ void collect_grips(const records::SystemSpec& spec, const TreeOrder& order, cons
 }
 
 std::string describe_wrench(const ConstraintRecord& record, const Vector6d& w) {
-  if (record.type == ConstraintType::Coupler) return "its force";
+  if (record.type == ConstraintType::Coupler || record.type == ConstraintType::RateCoupler) return "its force";
   std::ostringstream text;
   const auto describe = [&](const char* kind, const Vector3d& v) {
     if (v.norm() < 1e-6) return;

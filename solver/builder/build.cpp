@@ -296,7 +296,9 @@ System draft_system(const records::SystemSpec& spec, const FlexMap& flex, Diagno
   for (size_t b = 0; b < tree.bodies.size(); ++b) {
     if (order.hinge[b] < 0 || !system.body_is_valid[b]) continue;
     build_hinge_laws(spec.hinges[static_cast<size_t>(order.hinge[b])], context, tree.bodies[b], system.elements,
-                     system.joint_contacts, diagnostics);
+                     system.joint_contacts, system.load_frictions, diagnostics);
+    for (LoadFriction& f : system.load_frictions)
+      if (f.body < 0) f.body = static_cast<int>(b);
   }
   build_recoveries(spec, flex, system, diagnostics);
   collect_left_out(spec, flex, system);

@@ -73,10 +73,13 @@ std::unique_ptr<const Curve> find_curve(const ElementContext& context, const std
 /// One [[force]] with a type; its markers go into the finished tree. Reports and returns nullptr on errors.
 std::unique_ptr<const ForceElement> build_element(const records::ForceElementRecord& record,
                                                   const ElementContext& context, Tree& tree, Diagnostics& diagnostics);
+/// Returns true if coordinate i, from 0, has dry friction or rigid stops, and so a JointContact.
+bool has_joint_contact(const records::HingeLawRecord& law, int i);
 /// Force laws along the coordinates of a body's hinge, and the inertia of its motors; the tree is finished.
 void build_hinge_laws(const records::HingeRecord& record, const ElementContext& context, TreeBody& tb,
                       std::vector<std::unique_ptr<const ForceElement>>& elements,
-                      std::vector<JointContact>& joint_contacts, Diagnostics& diagnostics);
+                      std::vector<JointContact>& joint_contacts, std::vector<LoadFriction>& load_frictions,
+                      Diagnostics& diagnostics);
 
 /// Reports "system.beyond-stop" for a coordinate that starts beyond a rigid stop; within calc_slack it is moved to the
 /// stop.

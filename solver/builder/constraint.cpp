@@ -13,16 +13,14 @@ using records::ConstraintRecord;
 using records::ConstraintType;
 
 records::HingeRecord make_hinge_record(const ConstraintRecord& r) {
-  records::HingeRecord h;
-  h.name = r.name;
-  h.type = r.hinge;
-  h.axis = r.axis;
-  h.axis2 = r.axis2;
-  h.rotations = r.rotations;
-  h.translations = r.translations;
-  h.pitch = r.pitch;
-  h.at = r.at;
-  return h;
+  return {.name = r.name,
+          .type = r.hinge,
+          .axis = r.axis,
+          .axis2 = r.axis2,
+          .pitch = r.pitch,
+          .rotations = r.rotations,
+          .translations = r.translations,
+          .at = r.at};
 }
 
 std::unique_ptr<const Closure> build_closure(const ConstraintRecord& r, Diagnostics& diagnostics) {
@@ -52,6 +50,18 @@ std::unique_ptr<const Closure> build_closure(const ConstraintRecord& r, Diagnost
     return nullptr;
   }
   const Vector3d axis = r.axis.normalized();
+  if (r.type == ConstraintType::KnifeEdge) return make_knife_edge_closure(axis);
+  if (r.type == ConstraintType::Rolling) {
+    if (!(r.axis2.allFinite() && r.axis2.norm() > 0)) {
+      diagnostics.error("system.zero-axis", r.at, "constraint " + quote(r.name) + " has no direction in axis2");
+      return nullptr;
+    }
+    if (std::isfinite(r.radius + r.crown) && r.radius >= 0 && r.crown >= 0 && r.radius + r.crown > 0)
+      return make_rolling_closure(axis, r.axis2.normalized(), r.radius, r.crown);
+    diagnostics.error("system.bad-constraint", r.at, "constraint " + quote(r.name) + " rolls on no radius",
+                      "give radius > 0 for a disc, crown > 0 for a sphere, both for a tyre");
+    return nullptr;
+  }
   return r.type == ConstraintType::PointOnLine ? make_line_closure(axis) : make_plane_closure(axis);
 }
 
@@ -66,7 +76,7 @@ class Builder {
     c.name = r.name;
     c.at = r.at;
     c.active = r.active;
-    if (r.type == ConstraintType::Coupler) {
+    if (r.type == ConstraintType::Coupler || r.type == ConstraintType::RateCoupler) {
       build_coupler(r, c);
     } else {
       for (const Matrix3d* R : {&r.parent_rotation, &r.child_rotation}) {
@@ -116,7 +126,8 @@ class Builder {
     m.body = found->second;
     if (!system_.body_is_valid[static_cast<size_t>(m.body)]) return std::nullopt;
     const Body& body = system_.tree[m.body].body;
-    const bool is_ball = r.type != ConstraintType::Hinge || r.hinge == records::HingeType::Spherical;
+    const bool is_ball = r.type != ConstraintType::Rolling &&
+                         (r.type != ConstraintType::Hinge || r.hinge == records::HingeType::Spherical);
     // The frame of what acts along a line lies at the child's point: the parent's node feels a moment.
     const bool is_point = is_ball && p.isZero(0) &&
                           (r.type == ConstraintType::Hinge || r.type == ConstraintType::Distance || name == r.child);
@@ -128,6 +139,7 @@ class Builder {
 
   void build_coupler(const ConstraintRecord& r, Constraint& c) {
     c.offset = r.offset;
+    c.is_rate = r.type == ConstraintType::RateCoupler;
     const std::string user = "constraint " + quote(r.name);
     if (r.terms.empty()) diagnostics_.error("system.bad-constraint", r.at, user + " couples nothing", "give its terms");
     std::vector<std::string> names;
@@ -141,7 +153,7 @@ class Builder {
         continue;
       }
       const TreeBody& tb = system_.tree[static_cast<int>(at - names.begin())];
-      if (!tb.hinge->has_independent_coordinates()) {
+      if (!tb.hinge->has_independent_coordinates() && !c.is_rate) {
         diagnostics_.error(
             "system.bad-constraint", r.at,
             user + " couples an orientation of hinge " + quote(term.hinge) + ", which is no plain coordinate",
@@ -154,7 +166,8 @@ class Builder {
         diagnostics_.error("system.bad-constraint", r.at,
                            user + " couples hinge " + quote(term.hinge) + " with a ratio that is zero or no number");
       } else {
-        c.terms.push_back({tb.q_offset + term.coordinate - 1, tb.u_offset + term.coordinate - 1, term.ratio});
+        c.terms.push_back(
+            {c.is_rate ? 0 : tb.q_offset + term.coordinate - 1, tb.u_offset + term.coordinate - 1, term.ratio});
       }
     }
   }

@@ -101,17 +101,19 @@ void build_locks(const records::HingeRecord& r, TreeBody& tb, Diagnostics& diagn
                       "lock all three or none, or use a universal or revolute hinge");
     return;
   }
+  std::string moving;
   for (int i = 0; i < nu; ++i) {
     if (!*(first + i)) continue;
     const auto at = static_cast<size_t>(i);
-    if (tb.mode[at] == HingeMode::Prescribed || tb.initial_u[i] != 0) {
-      diagnostics.error("system.locked-motion", r.at,
-                        "hinge " + quote(r.name) + ": coordinate " + std::to_string(i + 1) +
-                            " is locked and has a motion or an initial rate",
-                        "remove one of them");
-    }
+    if (tb.mode[at] == HingeMode::Prescribed || tb.initial_u[i] != 0)
+      moving += (moving.empty() ? "" : ", ") + std::to_string(i + 1);
     tb.mode[at] = HingeMode::Locked;
   }
+  if (moving.empty()) return;
+  diagnostics.error(
+      "system.locked-motion", r.at,
+      "hinge " + quote(r.name) + ": coordinate " + moving + " is locked and has a motion or an initial rate",
+      "remove one of them; an [[event]] with action = \"lock\" stops a coordinate that moves");
 }
 }  // namespace
 

@@ -11,12 +11,39 @@ namespace bough::solver {
 
 namespace {
 
+double get(const std::vector<double>& values, int i, double otherwise = 0) {
+  return static_cast<size_t>(i) < values.size() ? values[static_cast<size_t>(i)] : otherwise;
+}
+
+constexpr double kNoStop = std::numeric_limits<double>::infinity();
+
+bool has_stop(const records::HingeLawRecord& law, int i) {
+  return std::isfinite(get(law.stop_lower, i, -kNoStop)) || std::isfinite(get(law.stop_upper, i, kNoStop));
+}
+
+bool has_rigid_stop(const records::HingeLawRecord& law, int i) {
+  return has_stop(law, i) && !law.stop_restitution.empty();
+}
+
+bool has_friction(const records::HingeLawRecord& law, int i) {
+  return get(law.coulomb, i) > 0 || get(law.static_friction, i, get(law.coulomb, i)) > 0;
+}
+
+bool has_load_friction(const records::HingeLawRecord& law, int i) {
+  return get(law.mu, i) > 0 || get(law.mu_static, i) > 0;
+}
+
+bool has_dry_friction(const records::HingeLawRecord& law, int i) {
+  return (has_friction(law, i) || has_load_friction(law, i)) && !(get(law.smoothing, i) > 0);
+}
+
 class LawBuilder {
  public:
   LawBuilder(const records::HingeRecord& record, const ElementContext& context, TreeBody& tb, Diagnostics& diagnostics)
       : r_(record), context_(context), tb_(tb), diagnostics_(diagnostics), user_("hinge " + quote(record.name)) {}
 
-  void build(std::vector<std::unique_ptr<const ForceElement>>& elements, std::vector<JointContact>& joint_contacts) {
+  void build(std::vector<std::unique_ptr<const ForceElement>>& elements, std::vector<JointContact>& joint_contacts,
+             std::vector<LoadFriction>& load_frictions) {
     const auto& law = r_.law;
     bool is_given = law.has_stops || law.has_friction;
     for (const auto* list : {&law.preload, &law.rotor_inertia}) is_given = is_given || !list->empty();
@@ -34,7 +61,7 @@ class LawBuilder {
     int ignored = 0;
     for (int i = 0; i < tb_.num_hinge_u(); ++i) {
       if (tb_.mode[static_cast<size_t>(i)] == HingeMode::Prescribed) ++ignored;
-      add(i, elements, joint_contacts);
+      add(i, elements, joint_contacts, load_frictions);
     }
     const bool has_forces = law.has_stops || law.has_friction || !law.preload.empty() || !law.spring_table.empty() ||
                             !law.damper_table.empty();
@@ -82,20 +109,22 @@ class LawBuilder {
     check_positive(law.static_friction, "static friction");
     check_positive(law.stribeck_velocity, "stribeck_velocity");
     check_positive(law.smoothing, "smoothing");
+    check_positive(law.mu, "mu of friction");
+    check_positive(law.mu_static, "mu_static of friction");
+    check_positive(law.pin_radius, "pin_radius of friction");
+    check_positive(law.friction_arm, "friction_arm");
+    check_positive(law.bending_arm, "bending_arm of friction");
+    check_positive(law.reaction_arm, "reaction_arm of friction");
     check_positive(law.rotor_inertia, "rotor_inertia");
     check_count(law.gear_ratio, "gear_ratio");
-  }
-
-  double at(const std::vector<double>& values, int i, double otherwise = 0) const {
-    return values.empty() ? otherwise : values[static_cast<size_t>(i)];
   }
 
   void set_rotor() {
     if (r_.law.rotor_inertia.empty()) return;
     tb_.rotor = VectorXd::Zero(tb_.num_hinge_u());
     for (int i = 0; i < tb_.num_hinge_u(); ++i) {
-      const double ratio = at(r_.law.gear_ratio, i, 1);
-      tb_.rotor[i] = at(r_.law.rotor_inertia, i) * ratio * ratio;
+      const double ratio = get(r_.law.gear_ratio, i, 1);
+      tb_.rotor[i] = get(r_.law.rotor_inertia, i) * ratio * ratio;
     }
   }
 
@@ -115,46 +144,102 @@ class LawBuilder {
       refuse("has stops with a restitution and a spring", "give stops a stiffness and damping, or a restitution");
   }
 
-  void add(int i, std::vector<std::unique_ptr<const ForceElement>>& elements,
-           std::vector<JointContact>& joint_contacts) {
+  // Column of the coordinate: [v; w] at unit rate.
+  Vector6d calc_column(int i) const {
+    VectorXd q(tb_.num_hinge_q());
+    tb_.hinge->set_neutral(q.data());
+    HingeMotion motion;
+    tb_.hinge->calc_position(q.data(), motion);
+    return motion.H.col(i);
+  }
+
+  // Friction by bearing load; nothing without mu.
+  std::optional<LoadFriction> make_load_friction(int i, const HingeLaw::Law& law, const std::string& which) {
+    const auto& r = r_.law;
+    LoadFriction f;
+    f.dynamic = get(r.mu, i);
+    f.at_rest = get(r.mu_static, i, f.dynamic);
+    const double pin = get(r.pin_radius, i), arm = get(r.friction_arm, i), bending = get(r.bending_arm, i),
+                 reaction = get(r.reaction_arm, i);
+    if (f.dynamic == 0 && f.at_rest == 0) {
+      if (pin > 0 || arm > 0 || bending > 0 || reaction > 0)
+        refuse("has arms of friction without mu", "give mu, or coulomb alone");
+      return std::nullopt;
+    }
+    const Vector6d column = calc_column(i);
+    const bool angle = column.head<3>().isZero(0), has_thread = !angle && !column.tail<3>().isZero(0);
+    if (has_thread || r_.type == records::HingeType::Cylindrical || r_.type == records::HingeType::Planar) {
+      refuse("has friction by mu, which needs one bearing per coordinate",
+             "give coulomb, or use a revolute and a prismatic hinge in a row");
+      return std::nullopt;
+    }
+    if (angle && !(pin > 0) && !(arm > 0))
+      refuse("has mu for the angle of coordinate " + which + " without an arm", "give pin_radius or friction_arm");
+    if (angle && bending > 0 && !(pin > 0))
+      refuse("has a bending_arm without a pin_radius", "give the pin_radius on which the bearing force acts");
+    if (angle ? reaction > 0 : pin > 0 || arm > 0)
+      refuse(
+          angle ? "has a reaction_arm, which is for travels" : "has a pin_radius or friction_arm, which are for angles",
+          "remove it, or give a list with 0 for this coordinate");
+    if (f.at_rest < f.dynamic) refuse("has mu_static below mu", "give mu_static at least as much");
+    if (f.at_rest > f.dynamic && !(law.stribeck_velocity > 0) && !law.is_dry)
+      refuse("has mu_static without stribeck_velocity", "give the rate over which it falls to mu");
+    f.name = "coordinate " + which + " of hinge " + quote(tb_.hinge_name);
+    f.at = r_.at;
+    f.coordinate = i;
+    f.u_row = tb_.u_offset + i;
+    f.stribeck_velocity = law.stribeck_velocity;
+    f.smoothing = law.smoothing;
+    f.is_dry = law.is_dry;
+    f.radial = angle ? pin : 1;
+    f.axial = angle ? arm : 0;
+    f.bending = bending > 0 ? f.radial / bending : 0;
+    f.torsion = reaction > 0 ? 1 / reaction : 0;
+    return f;
+  }
+
+  void add(int i, std::vector<std::unique_ptr<const ForceElement>>& elements, std::vector<JointContact>& joint_contacts,
+           std::vector<LoadFriction>& load_frictions) {
     const auto& r = r_.law;
     HingeLaw::Law law;
-    law.preload = at(r.preload, i);
+    law.preload = get(r.preload, i);
     law.null_position = tb_.null_position[i];
     law.spring = find_table(r.spring_table, i);
     law.damper = find_table(r.damper_table, i);
-    const double free = std::numeric_limits<double>::infinity();
-    law.lower = at(r.stop_lower, i, -free);
-    law.upper = at(r.stop_upper, i, free);
-    law.stop_stiffness = at(r.stop_stiffness, i);
-    law.stop_damping = at(r.stop_damping, i);
-    law.coulomb = at(r.coulomb, i);
-    law.static_friction = at(r.static_friction, i, law.coulomb);
-    law.stribeck_velocity = at(r.stribeck_velocity, i);
-    law.smoothing = at(r.smoothing, i);
+    law.lower = get(r.stop_lower, i, -kNoStop);
+    law.upper = get(r.stop_upper, i, kNoStop);
+    law.stop_stiffness = get(r.stop_stiffness, i);
+    law.stop_damping = get(r.stop_damping, i);
+    law.coulomb = get(r.coulomb, i);
+    law.static_friction = get(r.static_friction, i, law.coulomb);
+    law.stribeck_velocity = get(r.stribeck_velocity, i);
+    law.smoothing = get(r.smoothing, i);
     const std::string which = std::to_string(i + 1);
-    const bool has_stop = std::isfinite(law.lower) || std::isfinite(law.upper);
-    const bool is_rigid = has_stop && !r.stop_restitution.empty();
-    if (has_stop) check_stops(law, at(r.stop_restitution, i), is_rigid, which);
-    const bool has_friction = law.coulomb > 0 || law.static_friction > 0;
-    law.is_dry = has_friction && !(law.smoothing > 0);
+    const bool is_rigid = has_rigid_stop(r, i);
+    if (has_stop(r, i)) check_stops(law, get(r.stop_restitution, i), is_rigid, which);
+    law.is_dry = has_dry_friction(r, i);
+    std::optional<LoadFriction> by_load = make_load_friction(i, law, which);
     if (law.static_friction < law.coulomb)
       refuse("has static friction below coulomb friction", "give static at least as much");
     if (law.static_friction > law.coulomb && !(law.stribeck_velocity > 0) && !law.is_dry)
       refuse("has static friction without stribeck_velocity", "give the rate over which it falls to coulomb's");
-    if (is_rigid || law.is_dry)
+    if (has_joint_contact(r, i))
       joint_contacts.push_back({"coordinate " + which + " of hinge " + quote(tb_.hinge_name), tb_.q_offset + i,
-                                tb_.u_offset + i, is_rigid ? law.lower : -free, is_rigid ? law.upper : free,
-                                at(r.stop_restitution, i), law.is_dry ? law.static_friction : 0});
+                                tb_.u_offset + i, is_rigid ? law.lower : -kNoStop, is_rigid ? law.upper : kNoStop,
+                                get(r.stop_restitution, i), law.is_dry ? law.static_friction : 0,
+                                law.is_dry && by_load.has_value()});
     if (!(law.stribeck_velocity > 0)) {
       if (law.is_dry) law.static_friction = law.coulomb;  // as soon as it slides
       law.stribeck_velocity = 1;
+      if (by_load) by_load->stribeck_velocity = 0;
     }
+    if (by_load) load_frictions.push_back(*by_load);
     if (is_rigid) {
-      law.lower = -free;
-      law.upper = free;
+      law.lower = -kNoStop;
+      law.upper = kNoStop;
     }
-    const bool acts = law.preload != 0 || law.spring || law.damper || (has_stop && !is_rigid) || has_friction;
+    const bool acts =
+        law.preload != 0 || law.spring || law.damper || (has_stop(r, i) && !is_rigid) || has_friction(r, i);
     if (acts) {
       elements.push_back(
           std::make_unique<HingeLaw>(tb_.hinge_name + ":" + which, tb_.q_offset + i, tb_.u_offset + i, std::move(law)));
@@ -170,10 +255,15 @@ class LawBuilder {
 
 }  // namespace
 
+bool has_joint_contact(const records::HingeLawRecord& law, int i) {
+  return has_rigid_stop(law, i) || has_dry_friction(law, i);
+}
+
 void build_hinge_laws(const records::HingeRecord& record, const ElementContext& context, TreeBody& tb,
                       std::vector<std::unique_ptr<const ForceElement>>& elements,
-                      std::vector<JointContact>& joint_contacts, Diagnostics& diagnostics) {
-  LawBuilder(record, context, tb, diagnostics).build(elements, joint_contacts);
+                      std::vector<JointContact>& joint_contacts, std::vector<LoadFriction>& load_frictions,
+                      Diagnostics& diagnostics) {
+  LawBuilder(record, context, tb, diagnostics).build(elements, joint_contacts, load_frictions);
 }
 
 void check_stops(System& system, Diagnostics& diagnostics) {

@@ -48,6 +48,7 @@ class Builder {
     if (system_.signals_are_valid) {
       const bool is_whole = lay_out();
       if (is_whole && diagnostics_.num_errors() == errors) system_.signals.arrange(diagnostics_);
+      if (is_whole && diagnostics_.num_errors() == errors) check_names();
       if (is_whole && diagnostics_.num_errors() == errors) check_units();
       system_.signals_are_valid = is_whole;
     }
@@ -61,7 +62,7 @@ class Builder {
     for (size_t i = 0; i < sensors.size(); ++i) {
       const Sensor& entry = sensors[i];
       sources_.list.push_back({entry.name, get_folder(BlockKind::Sensor) + entry.name, entry.size,
-                               add(make_sensor_block(entry, spec_.sensors[i], diagnostics_), {})});
+                               add(make_sensor_block(entry, spec_.sensors[i], diagnostics_), {}), spec_.sensors[i].at});
     }
   }
 
@@ -72,17 +73,18 @@ class Builder {
                              "input '" + r.name + "': dims \"" + r.dims + "\" is no dimension that can be read",
                              "write powers of M, L, T and F, as \"F L\" or \"L/T^2\"");
       sources_.list.push_back(
-          {r.name, get_folder(BlockKind::Input) + r.name, 1, add(std::make_unique<InputBlock>(r), {})});
+          {r.name, get_folder(BlockKind::Input) + r.name, 1, add(std::make_unique<InputBlock>(r), {}), r.at});
     }
   }
 
   void declare() {
     for (const auto& r : spec_.controllers)
-      sources_.list.push_back({r.name, get_folder(BlockKind::Controller) + r.name, find_outputs(r), -1});
+      sources_.list.push_back({r.name, get_folder(BlockKind::Controller) + r.name, find_outputs(r), -1, r.at});
     for (const auto& r : spec_.actuators)
-      sources_.list.push_back({r.name, get_folder(BlockKind::Actuator) + r.name, find_actuator_outputs(r.type), -1});
+      sources_.list.push_back(
+          {r.name, get_folder(BlockKind::Actuator) + r.name, find_actuator_outputs(r.type), -1, r.at});
     for (const auto& r : spec_.functions)
-      sources_.list.push_back({r.name, get_folder(BlockKind::Function) + r.name, 1, -1});
+      sources_.list.push_back({r.name, get_folder(BlockKind::Function) + r.name, 1, -1, r.at});
   }
 
   int add(std::unique_ptr<const Block> block, std::vector<Wire> wires) {
@@ -300,6 +302,23 @@ class Builder {
         "control.unknown-signal", wire.at,
         to.block->label + " names component '" + wire.text + "' of '" + source.name + "', which does not exist",
         list.empty() ? "it is a scalar: leave the component out" : "its components are " + list);
+  }
+
+  /// Reports a name that is also that of a component of another source: "v:z" next to a vector "v".
+  void check_names() {
+    for (const Source& source : sources_.list) {
+      const auto colon = source.name.rfind(':');
+      if (colon == std::string::npos) continue;
+      for (const Source& other : sources_.list) {
+        if (other.name != source.name.substr(0, colon) || other.place < 0) continue;
+        const Block& block = *system_.signals.places[static_cast<size_t>(other.place)].block;
+        const records::SignalName name{other.path, source.name.substr(colon + 1)};
+        if (records::find_component(name, block.sizes.outputs, block.description) < 0) continue;
+        diagnostics_.error("control.ambiguous-name", source.at,
+                           source.path + " has the name of a component of " + other.path + ", '" + source.name + "'",
+                           "give it a name without a colon");
+      }
+    }
   }
 
   void check_units() {

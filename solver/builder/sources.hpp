@@ -11,6 +11,7 @@ struct Source {
   std::string name, path;
   int size = 0;  ///< 0: not known yet
   int place = -1;
+  SourceLocation at{};  ///< of its table
 };
 
 /// One component of a source, or all of it.

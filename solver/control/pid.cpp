@@ -85,6 +85,8 @@ std::unique_ptr<Block> make_pid(SettingsReader& keys, const ControllerWiring& wi
                "name single components, as tip:x");
   p.setpoint = keys.get("setpoint", 0);
   keys.demand(!(p.has_reference && keys.has("setpoint")), "has a reference and a setpoint", "keep one of them");
+  keys.demand(keys.has("kp") || keys.has("ki") || keys.has("kd"), "has neither kp nor ki nor kd: its output is zero",
+              "give a gain");
   p.kp = keys.get_vector("kp", n, 0);
   p.ki = keys.get_vector("ki", n, 0);
   p.kd = keys.get_vector("kd", n, 0);

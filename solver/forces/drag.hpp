@@ -46,6 +46,12 @@ class DragElement final : public ForceElement {
     return result;
   }
   std::vector<ForceChannel> channels() const override { return {{"force", 3, "drag, in the inertial frame", "F"}}; }
+  std::string describe_outside(const Tree& tree, const TreeData& data) const override {
+    if (law_.scale_height == 0) return {};
+    const double height = (calc_marker_in_world(data, tree, marker_).p - law_.centre_W).norm() - law_.radius;
+    if (height >= 0) return {};
+    return "force '" + name() + "' is below the ground of its planet, where its density has no meaning";
+  }
 
  private:
   int marker_;

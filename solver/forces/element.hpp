@@ -71,6 +71,8 @@ class ForceElement {
   virtual bool is_along_hinge() const { return false; }
   /// The function of time in it, or nullptr.
   virtual const TimeFunction* function() const { return nullptr; }
+  /// Message without time if the state is outside of the element's validity; empty within it.
+  virtual std::string describe_outside(const Tree&, const TreeData&) const { return {}; }
   /// Further channels of the results; none by default.
   virtual std::vector<ForceChannel> channels() const { return {}; }
   /// Adds -∂force/∂q and -∂force/∂u of the coordinates that it acts along, where they are not negative (num_u).

@@ -11,6 +11,9 @@ struct JointContact {
   double lower = -std::numeric_limits<double>::infinity(), upper = std::numeric_limits<double>::infinity();
   double restitution = 0;      ///< of its stops: speed after over speed before
   double static_friction = 0;  ///< that holds it at rest; 0: none
+  bool is_loaded = false;      ///< friction by bearing load adds to it: TreeData::friction_limit
+  /// Returns true if dry friction may hold the coordinate.
+  bool has_friction() const { return static_friction > 0 || is_loaded; }
 };
 
 }  // namespace bough::solver

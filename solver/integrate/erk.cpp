@@ -12,6 +12,9 @@ namespace bough::solver {
 namespace {
 
 constexpr double kSafety = 0.9, kMaxGrowth = 6, kMinGrowth = 0.2;
+/// Weight of the error before in the next step (PI control: Hairer & Wanner II, IV.2). Where stability limits the step,
+/// as of fast modes that have died out, every fifth step is rejected without it.
+constexpr double kMemory = 0.04, kMinErrorBefore = 1e-4;
 constexpr double kAfterFailure = 0.25;  // of the step, where a stage could not be evaluated
 /// A step that would end this near its target, relative to its size, ends there: many equal steps add up their
 /// rounding.
@@ -35,6 +38,7 @@ class ErkStepper final : public Integrator {
     y_ = last_y_ = y;
     t_ = last_ = t;
     h_ = 0;
+    error_before_ = kMinErrorBefore;
     has_first_ = false;
     set_stop(t_stop, left);
   }
@@ -65,7 +69,9 @@ class ErkStepper final : public Integrator {
       const bool is_evaluated = calc_step(t_, t_end, h, true);
       const double error = is_evaluated ? calc_error() : 0;
       if (is_evaluated && error <= 1) {
-        const double growth = kSafety * std::pow(std::max(error, 1e-16), -1.0 / table_.q);
+        const double growth = kSafety * std::pow(std::max(error, 1e-16), 0.75 * kMemory - 1.0 / table_.q) *
+                              std::pow(error_before_, kMemory);
+        error_before_ = std::max(error, kMinErrorBefore);
         const double next = h * std::clamp(growth, kMinGrowth, may_grow ? kMaxGrowth : 1.0);
         h_ = is_cut ? std::max(next, h_) : next;  // what was cut short does not say that the next must be
         return accept(t_end, h);
@@ -207,7 +213,7 @@ class ErkStepper final : public Integrator {
   ButcherTable table_;
   Eigen::MatrixXd k_;  // a stage per column
   VectorXd y_, last_y_, trial_, other_, stage_, next_first_;
-  double t_ = 0, last_ = 0, t_stop_ = 0, h_ = 0, smallest_ = 0;
+  double t_ = 0, last_ = 0, t_stop_ = 0, h_ = 0, smallest_ = 0, error_before_ = kMinErrorBefore;
   bool is_fsal_ = true, has_first_ = false, has_moved_ = false;
   int worst_ = -1;
   StepStatistics statistics_;

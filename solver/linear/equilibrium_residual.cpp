@@ -48,11 +48,11 @@ void EquilibriumResidual::evaluate() {
   const VectorXd rates = plant_->evaluate(point_);
   rates_.resize(size());
   rates_.head(n) = plant_->calc_unsteadiness(rates);
-  rates_.segment(n, plant_->num_states()) = rates.segment(n, plant_->num_states());
+  rates_.segment(n, plant_->num_signal_states()) = rates.segment(n, plant_->num_signal_states());
   for (const int i : used_up_) rates_[n + i] = 0;
   residual_ = rates_;
   residual_.head(n) = plant_->calc_imbalance();
-  rates_.tail(size() - n - plant_->num_states()) = plant_->calc_sample_rates(point_);
+  rates_.tail(size() - n - plant_->num_signal_states()) = plant_->calc_sample_rates(point_);
   residual_.tail(size() - n) = rates_.tail(size() - n);
 }
 
@@ -90,14 +90,14 @@ MatrixXd EquilibriumResidual::calc_conserved() const {
 }
 
 std::string EquilibriumResidual::name(int row) const {
-  const int n = plant_->num_dofs(), nz = plant_->num_states();
+  const int n = plant_->num_dofs(), nz = plant_->num_signal_states();
   return row < n        ? plant_->dof_name(row)
          : row < n + nz ? plant_->state_name(row - n)
                         : plant_->steady_name(row - n - nz);
 }
 
 EquilibriumResidual EquilibriumResidual::move(const VectorXd& steps) const {
-  const int n = plant_->num_dofs(), nz = plant_->num_states();
+  const int n = plant_->num_dofs(), nz = plant_->num_signal_states();
   VectorXd delta = VectorXd::Zero(size());
   for (size_t j = 0; j < free_.size(); ++j)
     delta[free_[j]] = steps[static_cast<Eigen::Index>(j)] * step(static_cast<int>(j));

@@ -19,7 +19,7 @@ class EquilibriumResidual {
   const OperatingPoint& point() const { return point_; }
   /// Rows: the dofs, then the states, then the steady rows of the memory.
   int size() const {
-    return plant_->num_dofs() + plant_->num_states() + static_cast<int>(plant_->steady_rows().size());
+    return plant_->num_dofs() + plant_->num_signal_states() + static_cast<int>(plant_->steady_rows().size());
   }
   /// Name of a row, for messages.
   std::string name(int row) const;

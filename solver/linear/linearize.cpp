@@ -292,7 +292,7 @@ LinearModel linearize(Plant& plant, const OperatingPoint& point, const Linearize
   const int nz = plant.num_states(), nx = 2 * n + nz;
   for (int i = 0; i < nz; ++i) {
     model.states.name.push_back(plant.state_name(i));
-    model.states.dims.push_back("by the controller");
+    model.states.dims.push_back(plant.state_dims(i));
   }
   const PlantInput* const cut = options.cut.empty() ? nullptr : &plant.inputs()[static_cast<size_t>(inputs.front())];
   const bool is_held = cut != nullptr && plant.find_hold(*cut).period > 0;
@@ -319,9 +319,14 @@ LinearModel linearize(Plant& plant, const OperatingPoint& point, const Linearize
   Uncertainty uncertainty;
   const Jacobian jacobian = calc_jacobian(plant, point, 1);
   model.A = MatrixXd::Zero(nx, nx);
-  model.A.topLeftCorner(n, n) = plant.calc_turning(point);
   model.A.block(0, n, n, n).setIdentity();
   model.A.bottomRows(n + nz) = jacobian.value.topRows(n + nz);
+  const MatrixXd turning = plant.calc_turning(point);
+  const int paths = plant.num_paths();
+  model.A.topLeftCorner(n, n) = turning.topLeftCorner(n, n);
+  model.A.topRightCorner(n, paths) = turning.topRightCorner(n, paths);
+  model.A.bottomLeftCorner(paths, n) += turning.bottomLeftCorner(paths, n);
+  model.A.bottomRightCorner(paths, paths) += turning.bottomRightCorner(paths, paths);
   model.C = take_rows(jacobian.value, n + nz, outputs);
   if (options.check) model.mass = plant.calc_mass(point);
 

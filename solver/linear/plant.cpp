@@ -58,7 +58,7 @@ Plant::Plant(const System& system, bool is_open)
 std::vector<int> Plant::find_used_up() {
   std::vector<int> used_up;
   VectorXd& z = data_->signals.z;
-  for (int i = 0; i < num_states(); ++i) {
+  for (int i = 0; i < num_signal_states(); ++i) {
     const int row = state_row(i);
     const auto draws = [row](const Tank& tank) {
       return std::find(tank.used_rows.begin(), tank.used_rows.end(), row) != tank.used_rows.end();
@@ -90,6 +90,9 @@ void Plant::set_modes(const DiscreteState& discrete, double t, const VectorXd& q
   dofs_.clear();
   rows_.clear();
   grip_.clear();
+  position_grip_.clear();
+  paths_.clear();
+  path_rows_.clear();
   inputs_.clear();
   outputs_ = {};
   add_dofs();
@@ -159,7 +162,29 @@ OperatingPoint Plant::get_initial_state() const {
   return point;
 }
 
-std::string Plant::state_name(int i) const { return system_.signals.name_state(state_row(i)); }
+std::string Plant::state_name(int i) const {
+  if (i >= num_signal_states()) return paths_[as_index(i - num_signal_states())].name;
+  return system_.signals.name_state(state_row(i));
+}
+
+std::string Plant::state_dims(int i) const {
+  return i < num_signal_states() ? "by the controller" : paths_[as_index(i - num_signal_states())].dims;
+}
+
+double Plant::state_step(const OperatingPoint& point, int i) const {
+  if (i >= num_signal_states()) return paths_[as_index(i - num_signal_states())].step;
+  return 0.1 * std::max(1.0, std::abs(point.z[state_row(i)]));
+}
+
+void Plant::move_state(OperatingPoint& point, int i, double h) const {
+  if (i < num_signal_states()) {
+    point.z[state_row(i)] += h;
+    return;
+  }
+  point.q = displace_tree(
+      point.q, expand_positions(VectorXd::Zero(num_dofs()), h * VectorXd::Unit(num_paths(), i - num_signal_states())));
+  close_positions(point.q);
+}
 
 std::vector<std::string> Plant::list_sampled() const {
   std::vector<std::string> names;
@@ -196,15 +221,21 @@ VectorXd Plant::expand(const VectorXd& free) const {
 }
 
 VectorXd Plant::displace(const VectorXd& q, const VectorXd& delta) const {
-  VectorXd moved = displace_tree(q, delta);
+  BOUGH_DEMAND(delta.size() == num_dofs());
+  VectorXd moved = displace_tree(q, expand(delta));
   if (has_loops()) close_positions(moved);
   return moved;
 }
 
-VectorXd Plant::displace_tree(const VectorXd& q, const VectorXd& delta) const {
-  BOUGH_DEMAND(q.size() == system_.num_q() && delta.size() == num_dofs());
+VectorXd Plant::expand_positions(const VectorXd& delta, const VectorXd& paths) const {
+  VectorXd step = expand(delta);
+  step(path_rows_) = paths;
+  return step;
+}
+
+VectorXd Plant::displace_tree(const VectorXd& q, const VectorXd& step) const {
+  BOUGH_DEMAND(q.size() == system_.num_q() && step.size() == system_.num_u());
   VectorXd moved = q;
-  const VectorXd step = expand(delta);
   for (int b = 0; b < system_.num_bodies(); ++b) {
     int q_row = system_.q_offset(b), u_row = system_.u_offset(b), left = system_.num_hinge_rates(b);
     if (left > 0 && has_quaternion(system_, b)) {
@@ -232,7 +263,9 @@ MatrixXd Plant::calc_turning(const OperatingPoint& point) const {
     turning.block<3, 3>(row, row) = -skew(u.segment<3>(row));
   }
   if (!has_loops()) return turning(rows_, rows_);
-  return turning(rows_, Eigen::all) * calc_follow();
+  std::vector<int> rows = rows_;
+  rows.insert(rows.end(), path_rows_.begin(), path_rows_.end());
+  return turning(rows, Eigen::all) * (num_paths() > 0 ? calc_position_follow(point) : calc_follow());
 }
 
 MatrixXd Plant::calc_mass(const OperatingPoint& point) {

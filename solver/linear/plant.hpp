@@ -58,12 +58,22 @@ class Plant {
   /// A displacement that is large but not absurd: 0.1 rad, 5 % of the size of the bodies.
   double step(int i) const { return dofs_[static_cast<size_t>(i)].step; }
 
-  /// Number of states of controllers and actuators.
-  int num_states() const { return static_cast<int>(state_rows_.size()); }
-  /// "controller 'pid' (state 1)".
+  /// Number of states in addition to displacements and rates: signal states, then path coordinates.
+  int num_states() const { return num_signal_states() + num_paths(); }
+  /// Number of states of controllers, actuators and sensors.
+  int num_signal_states() const { return static_cast<int>(state_rows_.size()); }
+  /// Number of displacements whose rates follow (nonholonomic constraints): where a rolling body is.
+  int num_paths() const { return static_cast<int>(paths_.size()); }
+  /// "controller 'pid' (state 1)"; of a path coordinate as dof_name().
   std::string state_name(int i) const;
-  /// The row of z.
+  /// Dimensions of a state.
+  std::string state_dims(int i) const;
+  /// The row of z of a signal state.
   int state_row(int i) const { return state_rows_[static_cast<size_t>(i)]; }
+  /// A difference of state i that is large but not absurd.
+  double state_step(const OperatingPoint& point, int i) const;
+  /// Adds h to state i.
+  void move_state(OperatingPoint& point, int i, double h) const;
   /// States that are the propellant that a thruster has used, from a tank or from none: they rise as time does.
   std::vector<int> find_used_up();
   /// Sampled controllers and sensors, which stand still in a linear model.
@@ -95,7 +105,8 @@ class Plant {
   VectorXd restrict(const VectorXd& u) const { return u(rows_); }
   /// All speeds at a point, those that loops give too. Throws ComputationError "linear.dead-point".
   VectorXd calc_speeds(const OperatingPoint& point) const;
-  /// ∂δ̇/∂δ about a motion: zero but for orientations that turn. num_dofs².
+  /// ∂δ̇/∂δ about a motion, at fixed rates: zero but for orientations that turn. Displacements of dofs, then path
+  /// coordinates: (num_dofs + num_paths)².
   MatrixXd calc_turning(const OperatingPoint& point) const;
   /// The mass matrix of the dofs; where loops are closed what follows moves along. num_dofs².
   MatrixXd calc_mass(const OperatingPoint& point);
@@ -132,7 +143,8 @@ class Plant {
   /// only. Difference::kink holds the effect of laws that have two slopes there; `kinks` gains them.
   Difference differentiate(const std::function<VectorXd(double)>& f, double step,
                            std::vector<LawKink>* kinks = nullptr);
-  /// [u̇; ż; y] with every function of time at its value, and `value` more of one input. May throw ComputationError.
+  /// [u̇; rates of states; y] with every function of time at its value, and `value` more of one input. May throw
+  /// ComputationError.
   VectorXd evaluate(const OperatingPoint& point, const PlantInput* input = nullptr, double value = 0);
   /// Acceleration of a steady spin at the point of the last evaluate: on a hinge to ground with free translations
   /// normal to ω, p̈ = ω × (ṗ - v_c), with v_c the velocity of the centre of mass of all that it carries. Zero at rest
@@ -202,12 +214,14 @@ class Plant {
   /// compute() and all signals. \return the motion there.
   Motion gather_signals(const OperatingPoint& point);
   void initialize_lags(OperatingPoint& point);
-  VectorXd displace_tree(const VectorXd& q, const VectorXd& delta) const;
+  VectorXd displace_tree(const VectorXd& q, const VectorXd& step) const;
   // Loops (plant_loops.cpp)
   bool has_loops() const { return !grip_.empty(); }
   void choose_independent(double t, const VectorXd& q);
   void add_dofs();
   MatrixXd calc_follow() const;
+  MatrixXd calc_position_follow(const OperatingPoint& point) const;
+  VectorXd expand_positions(const VectorXd& delta, const VectorXd& paths) const;
   void close_positions(VectorXd& q) const;
   void close_rates(Eigen::Ref<MatrixXd> rates) const;
 
@@ -229,8 +243,11 @@ class Plant {
   std::vector<int> steady_rows_;
   std::vector<std::string> steady_names_;
   std::vector<double> steady_period_;
-  std::vector<AssemblyPriority> grip_;  ///< by row of u, where loops are closed: what follows is Loose
-  double t_ = 0;                        ///< of the last point
+  std::vector<AssemblyPriority> grip_;           ///< by row of u, where loops are closed: rates that follow are Free
+  std::vector<AssemblyPriority> position_grip_;  ///< likewise of positions
+  std::vector<Dof> paths_;                       ///< displacements that are free, with rates that follow
+  std::vector<int> path_rows_;                   ///< of u
+  double t_ = 0;                                 ///< of the last point
 };
 
 }  // namespace bough::solver

@@ -37,11 +37,31 @@ void Plant::choose_independent(double t, const VectorXd& q) {
   std::vector<bool> follows(dofs_.size(), false);
   for (Eigen::Index k = 0; k < factor.rank(); ++k)
     follows[static_cast<size_t>(factor.colsPermutation().indices()[k])] = true;
+  position_grip_ = grip_;
+  std::vector<bool> is_bound = follows;  // positions that follow: of all, or some where rates alone are held
+  if (has_rate_rows(system_.loops, data_->loops)) {
+    std::vector<int> columns;
+    for (size_t j = 0; j < dofs_.size(); ++j)
+      if (follows[j]) columns.push_back(static_cast<int>(j));
+    is_bound.assign(dofs_.size(), false);
+    const MatrixXd positions = own(list_position_rows(system_.loops, data_->loops), columns);
+    if (positions.size() > 0) {
+      Eigen::ColPivHouseholderQR<MatrixXd> bound;
+      bound.setThreshold(kDependent);
+      bound.compute(positions);
+      for (Eigen::Index k = 0; k < bound.rank(); ++k)
+        is_bound[static_cast<size_t>(columns[static_cast<size_t>(bound.colsPermutation().indices()[k])])] = true;
+    }
+  }
   std::vector<Dof> kept_dofs;
   std::vector<int> rows;
   for (size_t j = 0; j < dofs_.size(); ++j) {
+    if (is_bound[j]) position_grip_[static_cast<size_t>(rows_[j])] = AssemblyPriority::Free;
     if (follows[j]) {
       grip_[static_cast<size_t>(rows_[j])] = AssemblyPriority::Free;
+      if (is_bound[j]) continue;
+      paths_.push_back(dofs_[j]);
+      path_rows_.push_back(rows_[j]);
       continue;
     }
     kept_dofs.push_back(dofs_[j]);
@@ -52,7 +72,8 @@ void Plant::choose_independent(double t, const VectorXd& q) {
 }
 
 void Plant::close_positions(VectorXd& q) const {
-  const Assembly found = assemble_positions(system_.loops, system_.tree, t_, grip_, q, data_->tree, data_->loops);
+  const Assembly found =
+      assemble_positions(system_.loops, system_.tree, t_, position_grip_, q, data_->tree, data_->loops);
   if (!found.is_closed) fail_dead(system_.loops, found);
 }
 
@@ -66,6 +87,26 @@ MatrixXd Plant::calc_follow() const {
     if (tree.mode[static_cast<size_t>(row)] != HingeMode::Free) rates.row(row).setConstant(tree.given_u[row]);
   if (has_loops()) close_rates(rates);
   return rates.rightCols(num_dofs()).colwise() - VectorXd(rates.col(0));
+}
+
+/// Small displacements of all coordinates (num_u rows), a column for each dof and path coordinate. After
+/// calc_kinematics.
+MatrixXd Plant::calc_position_follow(const OperatingPoint& point) const {
+  calc_kinematics(system_, *data_, point.t, point.q, calc_speeds(point));
+  const int n = num_dofs(), m = num_paths();
+  MatrixXd follow(system_.num_u(), n + m);
+  for (int j = 0; j < n; ++j) follow.col(j) = expand_positions(VectorXd::Unit(n, j), VectorXd::Zero(m));
+  for (int j = 0; j < m; ++j) follow.col(n + j) = expand_positions(VectorXd::Zero(n), VectorXd::Unit(m, j));
+  calc_closure_positions(system_.loops, system_.tree, data_->tree, data_->loops);
+  const std::vector<int> rows = list_position_rows(system_.loops, data_->loops);
+  if (rows.empty()) return follow;
+  const MatrixXd G = calc_dense_rows(system_.loops, system_.tree, data_->tree, data_->loops)(rows, Eigen::all);
+  std::vector<int> bound;
+  for (int row = 0; row < system_.num_u(); ++row)
+    if (position_grip_[static_cast<size_t>(row)] == AssemblyPriority::Free) bound.push_back(row);
+  follow(bound, Eigen::all) =
+      -MatrixXd(G(Eigen::all, bound)).completeOrthogonalDecomposition().solve(MatrixXd(G * follow));
+  return follow;
 }
 
 void Plant::close_rates(Eigen::Ref<MatrixXd> rates) const {

@@ -107,7 +107,8 @@ VectorXd Plant::evaluate(const OperatingPoint& point, const PlantInput* input, d
   VectorXd z_dot(system_.num_z());
   calc_z_dot(system_, *data_, z_dot);
   calc_signals(system_, *data_);
-  out.segment(n, nz) = z_dot(state_rows_);
+  out.segment(n, num_signal_states()) = z_dot(state_rows_);
+  out.segment(n + num_signal_states(), num_paths()) = data_->tree.u(path_rows_);
   const SignalData& s = data_->signals;
   int at = n + nz;
   for (const auto& p : signals.places) {

@@ -94,7 +94,7 @@ OperatingPoint displace_by_column(const Plant& plant, const OperatingPoint& poin
   else if (j < 2 * n)
     moved.u[j - n] += h;
   else if (j < nx)
-    moved.z[plant.state_row(j - 2 * n)] += h;
+    plant.move_state(moved, j - 2 * n, h);
   else
     moved.memory[plant.sampled_rows()[static_cast<size_t>(j - nx)]] += h;
   return moved;
@@ -105,7 +105,7 @@ double choose_step(const Plant& plant, const OperatingPoint& point, int j) {
   if (j < n) return plant.step(j);
   // The equations are quadratic in u: any step that is not lost in roundoff gives the same.
   if (j < 2 * n) return plant.step(j - n) * std::max(1.0, point.u.cwiseAbs().maxCoeff());
-  if (j < nx) return 0.1 * std::max(1.0, std::abs(point.z[plant.state_row(j - 2 * n)]));
+  if (j < nx) return plant.state_step(point, j - 2 * n);
   return 0.1 * std::max(1.0, std::abs(point.memory[plant.sampled_rows()[static_cast<size_t>(j - nx)]]));
 }
 

@@ -97,8 +97,9 @@ class Positions {
   bool solve(const VectorXd& size, const VectorXd& weight, VectorXd& q) {
     double gap = calc(q);
     for (int i = 0; i < kMaxSteps && gap > 1e-15; ++i) {
-      const MatrixXd G = calc_dense_rows(loops_, tree_, tree_data_, data_);
-      const VectorXd step = solve_least(G, weight, -get_gaps(loops_, data_));
+      const std::vector<int> rows = list_position_rows(loops_, data_);
+      const MatrixXd G = calc_dense_rows(loops_, tree_, tree_data_, data_)(rows, Eigen::all);
+      const VectorXd step = solve_least(G, weight, -get_gaps(loops_, data_)(rows));
       double largest = 0;  // in step sizes
       for (Eigen::Index r = 0; r < size.size(); ++r)
         largest = std::max(largest, size[r] > 0 ? std::abs(step[r]) / size[r] : 0);

@@ -140,7 +140,86 @@ class PointClosure final : public Closure {
   Matrix3d directions_;
 };
 
+/// With n the normal of the plane, e the axis of the disc, m the unit vector of n - (n·e) e, the point of contact is at
+/// ρ = -R m - c n from the centre, and each row is d·(v + w × ρ), d = n and two tangents. The row of n is d/dt of the
+/// height n·p - (R m·n + c).
+class RollingClosure final : public Closure {
+ public:
+  RollingClosure(const Vector3d& normal, const Vector3d& axis, double radius, double crown)
+      : Closure(3, 0, 2), axis_(axis), radius_(radius), crown_(crown) {
+    directions_.col(0) = normal;
+    directions_.col(1) = normal.unitOrthogonal();
+    directions_.col(2) = normal.cross(Vector3d(directions_.col(1)));
+  }
+  void calc_position(const Matrix3d& R, const Vector3d& p, double*, ClosureMotion& motion) const override {
+    const Contact c = calc_contact(R);
+    const Vector3d rho = -radius_ * c.m - crown_ * directions_.col(0);
+    for (int i = 0; i < 3; ++i) {
+      const Vector3d d = directions_.col(i);
+      motion.W.col(i) << d, rho.cross(d);
+    }
+    motion.gap.setZero();
+    motion.gap[0] = directions_.col(0).dot(p + rho);
+  }
+  void calc_velocity(const Matrix3d& R, const Vector3d&, const Vector6d& V, const double*,
+                     ClosureMotion& motion) const override {
+    const Contact c = calc_contact(R);
+    const Vector3d n = directions_.col(0), w = V.tail<3>(), e_dot = w.cross(c.e);
+    const Vector3d t_dot = -n.dot(e_dot) * c.e - n.dot(c.e) * e_dot;
+    const Vector3d rho_dot = -radius_ / c.size * (t_dot - c.m.dot(t_dot) * c.m);
+    for (int i = 0; i < 3; ++i) motion.bias[i] = -directions_.col(i).dot(w.cross(rho_dot));
+  }
+
+ private:
+  struct Contact {
+    Vector3d e, m;
+    double size = 1;  ///< sine of the angle between plane and disc
+  };
+  // A disc that lies flat touches everywhere: any point of the rim stands for it.
+  Contact calc_contact(const Matrix3d& R) const {
+    const Vector3d n = directions_.col(0);
+    Contact c;
+    c.e = R * axis_;
+    const Vector3d t = n - n.dot(c.e) * c.e;
+    c.size = t.norm();
+    if (c.size < kFlat) return {c.e, c.e.unitOrthogonal(), kFlat};
+    c.m = t / c.size;
+    return c;
+  }
+  static constexpr double kFlat = 1e-12;
+
+  Matrix3d directions_;
+  Vector3d axis_;
+  double radius_, crown_;
+};
+
+class KnifeEdgeClosure final : public Closure {
+ public:
+  explicit KnifeEdgeClosure(const Vector3d& axis) : Closure(1, 0, 1), axis_(axis) {}
+  void calc_position(const Matrix3d& R, const Vector3d&, double*, ClosureMotion& m) const override {
+    m.W.col(0) << R * axis_, Vector3d::Zero();
+    m.gap.setZero();
+  }
+  void calc_velocity(const Matrix3d&, const Vector3d&, const Vector6d& V, const double*,
+                     ClosureMotion& m) const override {
+    const Vector3d v = V.head<3>(), w = V.tail<3>();
+    m.bias[0] = -w.cross(Vector3d(m.W.col(0).head<3>())).dot(v);
+  }
+
+ private:
+  Vector3d axis_;
+};
+
 }  // namespace
+
+std::unique_ptr<const Closure> make_rolling_closure(const Vector3d& normal, const Vector3d& axis, double radius,
+                                                    double crown) {
+  return std::make_unique<RollingClosure>(normal, axis, radius, crown);
+}
+
+std::unique_ptr<const Closure> make_knife_edge_closure(const Vector3d& axis) {
+  return std::make_unique<KnifeEdgeClosure>(axis);
+}
 
 std::unique_ptr<const Closure> make_hinge_closure(std::unique_ptr<const Hinge> hinge) {
   return std::make_unique<HingeClosure>(std::move(hinge));

@@ -161,6 +161,7 @@ ConstraintState find_as_closed(const Loops& loops, const Tree& tree, const TreeD
   ConstraintState state;
   state.q = VectorXd::Zero(c.num_q());
   if (!c.closure) {
+    if (c.is_rate) return state;
     state.gap[0] = -c.offset;
     for (const CouplerTerm& term : c.terms) state.gap[0] += term.ratio * tree_data.q[term.q_row];
     return state;
@@ -174,7 +175,7 @@ ConstraintState find_as_closed(const Loops& loops, const Tree& tree, const TreeD
     state.R = X.R.transpose() * own.hinge.R_HpHc;
     state.p = X.R.transpose() * (own.hinge.p_HpHc - X.p);
   } else {
-    state.gap.head(c.num_rows()) = own.gap.head(c.num_rows());
+    state.gap.head(c.num_position_rows()) = own.gap.head(c.num_position_rows());
   }
   return state;
 }
@@ -191,6 +192,7 @@ void calc_closure_positions(const Loops& loops, const Tree& tree, const TreeData
         if (!c.closure->is_hinge()) d.own.gap.head<2>() -= d.state.gap;
       } else {
         d.coupled = -c.offset - d.state.gap[0];
+        if (c.is_rate) continue;
         for (const CouplerTerm& term : c.terms) d.coupled += term.ratio * tree_data.q[term.q_row];
       }
     }
@@ -218,6 +220,7 @@ double calc_gap(const Loops& loops, const LoopData& data, int i) {
     for (const CouplerTerm& term : c.terms) size = std::max(size, std::abs(term.ratio));
     return size > 0 ? std::abs(d.coupled) / size : 0;
   }
+  if (!c.closure->is_hinge()) return d.own.gap.head(c.num_rows()).norm() / loops.length;
   const Vector6d gap = d.own.W.leftCols(c.num_rows()) * d.own.gap.head(c.num_rows());
   return std::max(gap.head<3>().norm() / loops.length, gap.tail<3>().norm());
 }
@@ -239,6 +242,26 @@ double calc_largest_position_error(const Loops& loops, const LoopData& data, int
 Vector6d calc_constraint_wrench(const Loops& loops, const LoopData& data, int i) {
   if (!loops[i].closure || !data[i].state.is_closed) return Vector6d::Zero();
   return data[i].own.W.leftCols(loops[i].num_rows()) * data[i].lambda.head(loops[i].num_rows());
+}
+
+std::vector<int> list_position_rows(const Loops& loops, const LoopData& data) {
+  std::vector<int> rows;
+  int at = 0;
+  for (const LoopBlock& block : data.blocks) {
+    for (const int i : block.constraints) {
+      for (int k = 0; k < loops[i].num_position_rows(); ++k) rows.push_back(at + k);
+      at += loops[i].num_rows();
+    }
+  }
+  return rows;
+}
+
+bool has_rate_rows(const Loops& loops, const LoopData& data) {
+  for (const LoopBlock& block : data.blocks) {
+    for (const int i : block.constraints)
+      if (loops[i].num_position_rows() < loops[i].num_rows()) return true;
+  }
+  return false;
 }
 
 VectorXd get_gaps(const Loops& loops, const LoopData& data) {

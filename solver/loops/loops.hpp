@@ -23,8 +23,9 @@ struct Constraint {
   SourceLocation at;
   std::unique_ptr<const Closure> closure;  ///< nullptr: a coupler
   int parent_marker = 0, child_marker = 0;
-  std::vector<CouplerTerm> terms;  ///< Σ ratio q = offset
+  std::vector<CouplerTerm> terms;  ///< Σ ratio q = offset; is_rate: Σ ratio u = 0
   double offset = 0;
+  bool is_rate = false;     ///< a coupler of rates alone
   bool active = true;       ///< at the start
   double coupled_size = 0;  ///< coupler: sum of squared ratios, of angles over the square of Loops::length
   double mobility = 0;      ///< [1/M] acceleration of all bodies on its path by a unit force
@@ -33,6 +34,8 @@ struct Constraint {
 
   /// Number of rows: those of the closure, 1 for a coupler.
   int num_rows() const { return closure ? closure->num_rows() : 1; }
+  /// Number of rows, the first ones, that hold a position; the others hold rates alone (nonholonomic).
+  int num_position_rows() const { return closure ? closure->num_position_rows() : is_rate ? 0 : 1; }
   /// Coordinates of the closing hinge; 0 without one.
   int num_q() const { return closure ? closure->num_q() : 0; }
 };
@@ -100,8 +103,9 @@ double calc_gap(const Loops& loops, const LoopData& data, int constraint);
 double calc_largest_position_error(const Loops& loops, const LoopData& data, int* which = nullptr);
 
 /// After solve: u̇ with the constraints, by their multipliers and a second solve. Does nothing where none is closed. No
-/// allocation.
-void close_loops(const Loops& loops, const Tree& tree, TreeData& tree_data, LoopData& data, Eigen::Ref<VectorXd> u_dot);
+/// allocation. `is_factored`: state and factors are those of the last call, only loads have changed.
+void close_loops(const Loops& loops, const Tree& tree, TreeData& tree_data, LoopData& data, Eigen::Ref<VectorXd> u_dot,
+                 bool is_factored = false);
 /// Projects q and u onto G(q) = 0, G u = 0 at t in the metric of M: the corrections are in the range of M⁻¹Gᵀ. Leaves
 /// tree_data at (t, q, u), factored. No allocation.
 void project(const Loops& loops, const Tree& tree, double t, Eigen::Ref<VectorXd> q, Eigen::Ref<VectorXd> u,
@@ -125,6 +129,10 @@ MatrixXd calc_dense_rows(const Loops& loops, const Tree& tree, const TreeData& t
 /// The second route: [M Gᵀ; G 0] by assembly. After close_loops, whose u̇ gives γ.
 void calc_dense_accelerations(const Loops& loops, const Tree& tree, const TreeData& tree_data, const LoopData& data,
                               Eigen::Ref<VectorXd> u_dot);
+/// Rows, in the same order, that hold a position.
+std::vector<int> list_position_rows(const Loops& loops, const LoopData& data);
+/// Returns true if a closed constraint has rows that hold rates alone.
+bool has_rate_rows(const Loops& loops, const LoopData& data);
 /// The gaps of the rows, in the same order. After calc_closure_positions.
 VectorXd get_gaps(const Loops& loops, const LoopData& data);
 

@@ -115,14 +115,16 @@ void add_multipliers(const Loops& loops, const Tree& tree, const TreeData& tree_
   }
 }
 
-void close_loops(const Loops& loops, const Tree& tree, TreeData& tree_data, LoopData& data,
-                 Eigen::Ref<VectorXd> u_dot) {
+void close_loops(const Loops& loops, const Tree& tree, TreeData& tree_data, LoopData& data, Eigen::Ref<VectorXd> u_dot,
+                 bool is_factored) {
   if (data.blocks.empty()) return;
   tree_data.demand(Stage::Acceleration);
-  calc_closure_positions(loops, tree, tree_data, data);
-  calc_closure_velocities(loops, tree, tree_data, data);
+  if (!is_factored) {
+    calc_closure_positions(loops, tree, tree_data, data);
+    calc_closure_velocities(loops, tree, tree_data, data);
+  }
   for (LoopBlock& block : data.blocks) {
-    factor_block(loops, tree, tree_data, data, block);
+    if (!is_factored) factor_block(loops, tree, tree_data, data, block);
     for (size_t j = 0; j < block.constraints.size(); ++j) {
       const int i = block.constraints[j];
       const ConstraintData& d = data[i];

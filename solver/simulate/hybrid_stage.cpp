@@ -46,21 +46,25 @@ void HybridSystem::calc_stage(double t, const Eigen::Ref<const VectorXd>& y, dou
   const Tree& tree = system_.tree;
   TreeData& d = data_->tree;
   Power power;
-  const bool needs_derivative = has_motion_ || num_z_ > 0;
-  if (needs_derivative) {  // what drives motions, and ż, follow from the true accelerations
+  const bool has_friction = !system_.load_frictions.empty();
+  const bool needs_derivative = has_motion_ || num_z_ > 0 || has_friction;
+  if (needs_derivative) {  // what drives motions, ż and bearing loads follow from the true accelerations
     calc_derivative(t, y, k);
     power = calc_powers(system_, *data_);
   }
   ++num_evaluations_;
+  data_->friction.is_frozen = has_friction;
   const StateLayout layout = system_.layout();
   auto u_dot = get_u(layout, k);
   calc_motion(system_, *data_, t, get_q(layout, y), get_u(layout, y), get_z(layout, y), u_dot, [&] {
     if (is_first) calc_tangent();
     add_stage_forces(gh, is_first);
+    if (has_friction) apply_load_friction(system_, *data_, data_->friction.load);
     d.added += gh * c_ + gh * gh * k_;
     d.added_D = gh;
     d.added_K = gh * gh;
   });
+  data_->friction.is_frozen = false;
   for (const TreeBody& tb : tree.bodies)
     d.applied.segment(tb.v_offset + 6, tb.num_modes()) -= extra_.segment(tb.eta_dot_offset(), tb.num_modes());
   if (!needs_derivative) power = calc_powers(system_, *data_);

@@ -19,6 +19,7 @@ HybridSystem::HybridSystem(const System& system)
 
 void HybridSystem::calc_derivative(double t, const Eigen::Ref<const VectorXd>& y, Eigen::Ref<VectorXd> y_dot) {
   ++num_evaluations_;
+  data_->friction.is_frozen = false;
   solver::calc_derivative(system_, *data_, t, y, y_dot);
 }
 

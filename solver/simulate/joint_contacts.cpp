@@ -35,8 +35,9 @@ void JointContacts::calc_event_functions(const SystemData& data, VectorXd& event
     const double q = data.tree.q[w.contact.q_row], rate = data.tree.u[w.contact.u_row];
     if (mode == HingeMode::Locked && w.rests) {
       const double force = data.tree.calc_constraint_force(w.contact.u_row);
-      if (std::isfinite(w.high())) own[0] = force - w.high();
-      if (std::isfinite(w.low())) own[1] = w.low() - force;
+      const double high = w.high(data.tree), low = w.low(data.tree);
+      if (std::isfinite(high)) own[0] = force - high;
+      if (std::isfinite(low)) own[1] = low - force;
     } else if (mode == HingeMode::Free) {
       // Past the stop and moving on: a coordinate that has just rebounded may still be past it by round-off.
       if (std::isfinite(w.contact.lower)) own[0] = std::min(w.contact.lower - q, -rate * shortest_);
@@ -159,11 +160,11 @@ void JointContacts::find_rest(HybridSystem& ode, double t, double shortest, Vect
     before[i] = w.rests && mode == HingeMode::Locked;
     if (mode == HingeMode::Prescribed || (mode == HingeMode::Locked && !w.rests)) continue;
     const double rate = y[u + w.contact.u_row];
-    slide[i] = w.contact.static_friction > 0 ? sign(rate) : 0;
-    const bool is_held = w.contact.static_friction > 0 || w.stop != 0;
+    slide[i] = w.contact.has_friction() ? sign(rate) : 0;
+    const bool is_held = w.contact.has_friction() || w.stop != 0;
     const bool is_slow = std::abs(rate) <= calc_slowest(w, u, shortest);
     // A coordinate that slides and has not reversed continues to slide.
-    const bool turns = w.contact.static_friction == 0 || w.slide == 0 || w.slide * rate <= 0;
+    const bool turns = !w.contact.has_friction() || w.slide == 0 || w.slide * rate <= 0;
     if (is_held && is_slow && turns) rests[i] = true;  // what is left of its rate goes by the impulse of locking it
   }
   for (size_t left = joint_contacts_.size() + 1; left > 0; --left) {
@@ -179,14 +180,15 @@ void JointContacts::find_rest(HybridSystem& ode, double t, double shortest, Vect
     for (size_t i = 0; i < joint_contacts_.size(); ++i) {
       if (!rests[i]) continue;
       const double force = ode.data().tree.calc_constraint_force(joint_contacts_[i].contact.u_row);
-      const double excess = std::max(force - joint_contacts_[i].high(), joint_contacts_[i].low() - force);
+      const double excess =
+          std::max(force - joint_contacts_[i].high(ode.data().tree), joint_contacts_[i].low(ode.data().tree) - force);
       if (!(excess > max_excess)) continue;
       max_excess = excess;
       released = i;
     }
     if (released == joint_contacts_.size()) break;
     rests[released] = false;
-    if (joint_contacts_[released].contact.static_friction > 0)
+    if (joint_contacts_[released].contact.has_friction())
       slide[released] = ode.data().tree.calc_constraint_force(joint_contacts_[released].contact.u_row) > 0 ? -1 : 1;
   }
   for (size_t i = 0; i < joint_contacts_.size(); ++i) {
@@ -206,7 +208,7 @@ std::vector<std::string> JointContacts::settle(HybridSystem& ode, double t, doub
   find_stops(ode, shortest, y);
   if (strike_stops(ode, t, shortest, y, what)) {
     for (Watched& w : joint_contacts_) {
-      w.slide = w.contact.static_friction > 0 ? sign(y[ode.num_q() + w.contact.u_row]) : 0;
+      w.slide = w.contact.has_friction() ? sign(y[ode.num_q() + w.contact.u_row]) : 0;
       ode.data().tree.slide[w.contact.u_row] = w.slide;
     }
     ode.calc_derivative(t, y, y_dot_);

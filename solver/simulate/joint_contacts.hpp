@@ -54,9 +54,14 @@ class JointContacts {
     double hardest = 0;   ///< the fastest that it came at its stops
     double farthest = 0;  ///< from zero, where it was looked at
     /// Lower limit of the constraint force of a sticking contact; -infinity at the upper stop.
-    double low() const { return stop > 0 ? -kFree : -contact.static_friction; }
+    double low(const TreeData& data) const { return stop > 0 ? -kFree : -calc_limit(data); }
     /// Upper limit of the constraint force of a sticking contact; infinity at the lower stop.
-    double high() const { return stop < 0 ? kFree : contact.static_friction; }
+    double high(const TreeData& data) const { return stop < 0 ? kFree : calc_limit(data); }
+
+   private:
+    double calc_limit(const TreeData& data) const {
+      return contact.static_friction + (contact.is_loaded ? data.friction_limit[contact.u_row] : 0);
+    }
   };
   static constexpr int kMemory = 4;  ///< numbers of each joint contact in a checkpoint
   static constexpr double kFree = std::numeric_limits<double>::infinity();

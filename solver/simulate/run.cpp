@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <sstream>
 
 #include "solver/simulate/channel_units.hpp"
@@ -140,6 +141,8 @@ Run::Run(const System& system, const records::SystemSpec& spec, RunSetup setup, 
     const TreeBody& tb = system.tree[b];
     if (tb.hinge->has_independent_coordinates() && tb.num_hinge_u() > 2) gimbals_.push_back(b);
   }
+  inside_.resize(system.elements.size());
+  std::iota(inside_.begin(), inside_.end(), size_t{0});
   progress_.start = time_events_.start();
   progress_.end = time_events_.end();
 }
@@ -407,9 +410,26 @@ void Run::take_step(const TimeEvent& stop) {
                                              " times what deflects the body by its own size");
   }
   watch_axes(integrator_->time());
+  watch_elements(integrator_->time());
   const double taken = integrator_->time() - before;
   num_tiny_ = taken < 1e-11 * (progress_.end - progress_.start) ? num_tiny_ + 1 : 0;
   if (num_tiny_ > 1000) fail_stalled(before, "1000 steps in a row were shorter than " + short_text(taken));
+}
+
+void Run::watch_elements(double t) {
+  const System& system = ode_.system();
+  for (size_t i = 0; i < inside_.size(); ++i) {
+    const auto& element = system.elements[inside_[i]];
+    const std::string outside = element->describe_outside(system.tree, ode_.data().tree);
+    if (outside.empty()) continue;
+    const auto is_own = [&](const records::ForceElementRecord& record) { return record.name == element->name(); };
+    const auto record = std::find_if(spec_.force_elements.begin(), spec_.force_elements.end(), is_own);
+    inside_.erase(inside_.begin() + static_cast<std::ptrdiff_t>(i--));
+    sink_.write_event({t, outside});
+    diagnostics_.warning("run.below-ground", record != spec_.force_elements.end() ? record->at : spec_.simulation.at,
+                         outside + ", from t = " + short_text(t) + " on",
+                         "end the run at the ground by an event, or check the radius of the planet and the start");
+  }
 }
 
 void Run::watch_axes(double t) {

@@ -120,6 +120,7 @@ class Run {
   void take_step(const TimeEvent& stop);
   /// Warns once of each hinge whose axes nearly fall together.
   void watch_axes(double t);
+  void watch_elements(double t);
   /// Takes y_ over the jumps of given rates at stop_, after calc_state at its time; logs them once.
   void cross_jump();
   /// Starts the integrator afresh at (t, y_), towards stop_.
@@ -356,6 +357,7 @@ class Run {
     bool is_told = false;
   };
   std::map<std::string, Switching> switching_;  ///< by label
+  std::vector<std::size_t> inside_;             ///< force elements of which no warning was given
   std::vector<int> gimbals_;                    ///< bodies on three angles or more, of which no warning was given
   JointContacts joint_contacts_;
   double settled_ = -std::numeric_limits<double>::infinity();

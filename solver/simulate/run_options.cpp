@@ -43,6 +43,28 @@ void hint_at_fast_modes(const System& system, const RunSetup& setup, const Sourc
       "integrator = \"auto\" or \"bdf\" damps such modes out, \"implicit\" at a fixed step; or keep fewer modes");
 }
 
+/// Samples of a run are counted before it starts: each ends a step.
+void check_samples(const System& system, const RunPlan& plan, Diagnostics& diagnostics) {
+  constexpr double kMaxSamples = 1e8, kMaxWithoutWarning = 1e7;
+  const BlockSlot* finest = nullptr;
+  for (const BlockSlot& p : system.signals.places) {
+    if (!p.is_sampled()) continue;
+    if (!finest || p.block->sizes.sample_time < finest->block->sizes.sample_time) finest = &p;
+  }
+  if (!finest) return;
+  const double count = (plan.end - plan.start) / finest->block->sizes.sample_time;
+  if (!(count > kMaxWithoutWarning)) return;
+  std::ostringstream what;
+  what << finest->block->label << " has a sample_time of " << finest->block->sizes.sample_time << ", which makes "
+       << count << " samples in the run";
+  if (count > kMaxSamples)
+    diagnostics.error("run.many-samples", finest->block->at, what.str() + ", more than 1e8",
+                      "give a longer sample_time or a shorter duration");
+  else
+    diagnostics.warning("run.many-samples", finest->block->at, what.str(),
+                        "each ends a step of the integrator; a longer sample_time is faster");
+}
+
 }  // namespace
 
 RunSetup prepare_run(const System& system, const records::SystemSpec& spec, Diagnostics& diagnostics) {
@@ -56,6 +78,7 @@ RunSetup prepare_run(const System& system, const records::SystemSpec& spec, Diag
   if (is_valid && diagnostics.num_errors() == 0)
     setup.spins_reported =
         warn_of_unstiffened_bodies(system, setup.plan.start, setup.plan.end, spec.simulation.at, diagnostics);
+  if (is_valid && diagnostics.num_errors() == 0) check_samples(system, setup.plan, diagnostics);
   setup.integrator = spec.simulation.integrator;
   if (setup.integrator == "adams" && system.num_constraints() > 0) {
     diagnostics.note("run.integrator-chosen", spec.simulation.at,

@@ -52,21 +52,8 @@ Shares calc_shares(double x, bool is_averaged) {
 }  // namespace
 
 std::string_view get_word(ExposurePart part) {
-  switch (part) {
-    case ExposurePart::Total:
-      return "total";
-    case ExposurePart::Mean:
-      return "mean";
-    case ExposurePart::Jitter:
-      return "jitter";
-    case ExposurePart::Smear:
-      return "smear";
-    case ExposurePart::Residual:
-      return "residual";
-    case ExposurePart::Drift:
-      break;
-  }
-  return "drift";
+  constexpr std::array<std::string_view, 6> words{"total", "mean", "jitter", "smear", "residual", "drift"};
+  return words[static_cast<std::size_t>(part)];
 }
 
 double calc_exposure_weight(ExposurePart part, double hz, double exposure, double interval, bool is_averaged) {

@@ -29,12 +29,13 @@ EigenSystem calc_eigen_system(const MatrixXd& A) {
 }
 
 std::vector<int> follow(const EigenSystem& before, const EigenSystem& next, Eigen::VectorXd& correlation) {
-  const Index n = before.value.size();
-  BOUGH_DEMAND(next.value.size() == n);
+  const Index n = before.value.size(), m = next.value.size();
   Eigen::MatrixXd both = (before.left * next.right).cwiseProduct((next.left * before.right).transpose()).cwiseAbs();
+  correlation.setZero(n);
+  if (n == 0 || m == 0) return std::vector<int>(static_cast<std::size_t>(n), -1);
   const double size = std::max(1e-300, std::max(before.value.cwiseAbs().maxCoeff(), next.value.cwiseAbs().maxCoeff()));
   for (Index i = 0; i < n; ++i) {
-    for (Index j = 0; j < n; ++j) {
+    for (Index j = 0; j < m; ++j) {
       // A vector of displacements and rates is another one at another frequency: the shape is what counts.
       const double a = std::abs(before.value[i]), b = std::abs(next.value[j]);
       if (std::max(a, b) > 1e-9 * size) both(i, j) *= 4 * a * b / ((a + b) * (a + b));
@@ -47,12 +48,11 @@ std::vector<int> follow(const EigenSystem& before, const EigenSystem& next, Eige
   };
   std::vector<Pair> pairs;
   for (int i = 0; i < n; ++i)
-    for (int j = 0; j < n; ++j)
+    for (int j = 0; j < m; ++j)
       pairs.push_back({both(i, j) - 1e-2 * std::abs(before.value[i] - next.value[j]) / size, i, j});
   std::stable_sort(pairs.begin(), pairs.end(), [](const Pair& a, const Pair& b) { return a.score > b.score; });
   std::vector<int> order(static_cast<std::size_t>(n), -1);
-  std::vector<bool> is_taken(static_cast<std::size_t>(n), false);
-  correlation.setZero(n);
+  std::vector<bool> is_taken(static_cast<std::size_t>(m), false);
   for (const auto& pair : pairs) {
     if (order[static_cast<std::size_t>(pair.from)] >= 0 || is_taken[static_cast<std::size_t>(pair.to)]) continue;
     order[static_cast<std::size_t>(pair.from)] = pair.to;
@@ -62,12 +62,56 @@ std::vector<int> follow(const EigenSystem& before, const EigenSystem& next, Eige
   return order;
 }
 
-void track_poles(records::LinearSweep& sweep) {
+namespace {
+
+/// First rows of C of outputs with components x, y, z that are lengths.
+std::vector<Index> list_positions(const records::LinearModel& model) {
+  std::vector<Index> rows;
+  const auto& names = model.outputs.name;
+  for (std::size_t i = 0; i + 2 < names.size(); ++i) {
+    const auto colon = names[i].rfind(':');
+    const std::string name = names[i].substr(0, colon);
+    if (colon == std::string::npos || names[i] != name + ":x" || names[i + 1] != name + ":y" ||
+        names[i + 2] != name + ":z" || model.outputs.dims[i] != "L")
+      continue;
+    rows.push_back(static_cast<Index>(i));
+  }
+  return rows;
+}
+
+/// Twice the area of the orbit, positive in the direction of the spin, over the sum of the squares of its half axes.
+double calc_whirl(const MatrixXd& C, const std::vector<Index>& rows, const Eigen::Vector3d& axis,
+                  const Eigen::VectorXcd& shape) {
+  const Eigen::Vector3d x = axis.unitOrthogonal(), y = axis.cross(x);
+  double largest = 0, whirl = 0;
+  for (const Index row : rows) {
+    const Eigen::Vector3cd u = C.middleRows(row, 3) * shape;
+    const std::complex<double> u_x = x.dot(u.real()) + std::complex<double>(0, x.dot(u.imag())),
+                               u_y = y.dot(u.real()) + std::complex<double>(0, y.dot(u.imag()));
+    const double size = std::norm(u_x) + std::norm(u_y);
+    if (!(size > largest)) continue;
+    largest = size;
+    whirl = -2 * (std::conj(u_x) * u_y).imag() / size;
+  }
+  return whirl;
+}
+
+}  // namespace
+
+void track_poles(records::LinearSweep& sweep, const Eigen::Vector3d& spin_axis) {
   const auto np = static_cast<Index>(sweep.models.size());
   if (np == 0) return;
   const Index nx = sweep.models.front().A.rows();
   for (auto* m : {&sweep.real, &sweep.imag, &sweep.frequency_hz, &sweep.damping}) m->setZero(np, nx);
   sweep.correlation.setOnes(np, nx);
+  std::vector<Index> positions;
+  if (!spin_axis.isZero(0)) {
+    positions = list_positions(sweep.models.front());
+    if (positions.empty())
+      throw InputError("linear.no-orbit", {}, "no output of the model is a position with components x, y, z",
+                       "add a sensor of the position of a node of the rotor, or leave the axis of the spin out");
+    sweep.whirl.setZero(np, nx);
+  }
   sweep.mode.assign(static_cast<std::size_t>(np), std::vector<std::string>(static_cast<std::size_t>(nx)));
   EigenSystem before;
   std::vector<int> order(static_cast<std::size_t>(nx));
@@ -92,6 +136,10 @@ void track_poles(records::LinearSweep& sweep) {
     }
     EigenSystem sorted{here.value(order), here.right(Eigen::all, order), here.left(order, Eigen::all)};
     before = std::move(sorted);
+    for (Index b = 0; b < nx && !positions.empty(); ++b)
+      if (std::abs(before.value[b].imag()) > 0)
+        sweep.whirl(k, b) =
+            (before.value[b].imag() > 0 ? 1 : -1) * calc_whirl(model.C, positions, spin_axis, before.right.col(b));
     std::vector<bool> is_used(static_cast<std::size_t>(nx), false);
     for (Index b = 0; b < nx; ++b) {
       // The poles of the model come block by block: exact zeros; the nearest is the one meant.

@@ -1,6 +1,7 @@
 #include "solver/statespace/uncertainty.hpp"
 
 #include <algorithm>
+#include <sstream>
 
 #include "base/diagnostic.hpp"
 #include "solver/statespace/poles.hpp"
@@ -66,17 +67,35 @@ MatrixXd make_rows(const LinearModel& m, const MatrixXd& Ca) {
   return R;
 }
 
-[[noreturn]] void refuse(const std::string& what, const SourceLocation& at) {
-  throw InputError("linear.not-affine", at, what,
-                   "linearize at the initial state and not at an equilibrium that moves with the parameter, take the "
-                   "square or the inverse as the parameter, or use bough linearize --sweep");
+/// \param models  all that were compared: where one of them accelerates, M A_u has -(∂M/∂q) u̇, u̇ = M⁻¹ f.
+[[noreturn]] void refuse(const std::string& what, const std::vector<const LinearModel*>& models,
+                         const SourceLocation& at) {
+  constexpr double kAtRest = 1e-9;  // of |A| times one; equilibria are found to much less
+  double largest = 0;
+  for (const auto* m : models)
+    if (m->residual > kAtRest * m->A.cwiseAbs().maxCoeff()) largest = std::max(largest, m->residual);
+  const bool at_rest = models.front()->residual <= kAtRest * models.front()->A.cwiseAbs().maxCoeff();
+  if (largest == 0)
+    throw InputError("linear.not-affine", at, what,
+                     "linearize at a state that does not move with the parameter, take the square or the inverse as "
+                     "the parameter, or use bough linearize --sweep");
+  std::ostringstream text;
+  text.precision(3);
+  text << what << "; the operating point "
+       << (at_rest ? "is at rest in the middle of the ranges only: " : "is not at rest: ") << "it accelerates by "
+       << largest << ", and what follows from that acceleration is not affine in a mass or a load";
+  throw InputError("linear.not-affine", at, text.str(),
+                   at_rest
+                       ? "use bough linearize --sweep: the state of rest moves with the parameter"
+                       : "give --equilibrium, which is exact if the state of rest does not move with the parameter, "
+                         "or use bough linearize --sweep");
 }
 
 void demand_same(const LinearModel& nominal, const LinearModel& other, const std::string& name,
                  const SourceLocation& at) {
   if (other.states.name != nominal.states.name || other.inputs.name != nominal.inputs.name ||
       other.outputs.name != nominal.outputs.name || other.mass.rows() != nominal.mass.rows())
-    refuse("the model has other states, inputs or outputs at an end of the range of " + name, at);
+    refuse("the model has other states, inputs or outputs at an end of the range of " + name, {&nominal}, at);
 }
 
 /// Columns U and rows V with U V = change, by the singular values of its scaled rows.
@@ -123,7 +142,8 @@ LinearModel make_uncertain_model(const LinearModel& nominal, const std::vector<P
   Index num_w = 0;
   for (const auto& end : ends) {
     const MatrixXd low = make_rows(end.at_low, Ca), high = make_rows(end.at_high, Ca);
-    if (!is_zero(low + high - 2 * R0)) refuse("the equations are not affine in " + end.name, at);
+    if (!is_zero(low + high - 2 * R0))
+      refuse("the equations are not affine in " + end.name, {&nominal, &end.at_low, &end.at_high}, at);
     const MatrixXd change = 0.5 * (high - low);
     all += change;
     factors.push_back(factor(change, row_size, tolerance));
@@ -137,7 +157,7 @@ LinearModel make_uncertain_model(const LinearModel& nominal, const std::vector<P
     num_w += rank;
   }
   if (!is_zero(make_rows(together, Ca) - R0 - all))
-    refuse("the parameters multiply each other: their effects do not add up", at);
+    refuse("the parameters multiply each other: their effects do not add up", {&nominal, &together}, at);
 
   MatrixXd U(R0.rows(), num_w), V(num_w, R0.cols());
   Index first = 0;

@@ -125,6 +125,11 @@ Power calc_powers(const System& system, const SystemData& data) {
     lost += result.dissipated;
     if (static_cast<const HingeLaw&>(*system.elements[i]).is_prescribed(data.tree)) power -= result.power;
   }
+  if (!system.load_frictions.empty()) {
+    const double by_load = -data.tree.load_friction.dot(u);
+    dissipated += by_load;
+    lost += by_load;
+  }
   power += system.signals.calc_power(get_motion(system, data), data.signals);
   power += calc_outflow_power(system, data);
   return {power - lost, dissipated};

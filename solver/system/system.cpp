@@ -63,6 +63,7 @@ std::unique_ptr<SystemData> System::make_data() const {
   data->loops = make_loop_data(loops, tree);
   if (!initial_constraints.empty()) set_constraint_states(loops, tree, initial_constraints, data->loops);
   data->elements.resize(elements.size());
+  data->friction = make_load_friction_data(load_frictions.size());
   data->tangent = VectorXd::Zero(tree.num_u);
   data->signals = signals.make_data();
   return data;
@@ -214,8 +215,11 @@ void add_node_wrench(const System& system, SystemData& data, int body, int node_
 }
 
 void calc_accelerations(const System& system, SystemData& data, double, Eigen::Ref<VectorXd> u_dot) {
+  const bool has_friction = !system.load_frictions.empty() && !data.friction.is_frozen;
+  if (has_friction) remove_load_friction(data.tree);
   factor_and_solve(system.tree, data.tree, u_dot);
   close_loops(system.loops, system.tree, data.tree, data.loops, u_dot);
+  if (has_friction) add_load_friction(system, data, u_dot);
 }
 
 void calc_accelerations_dense(const System& system, SystemData& data, double, Eigen::Ref<VectorXd> u_dot) {
@@ -229,6 +233,11 @@ void project(const System& system, SystemData& data, double t, Eigen::Ref<Vector
 
 void remove_normal(const System& system, SystemData& data, Eigen::Ref<VectorXd> dq, Eigen::Ref<VectorXd> du) {
   if (data.loops.blocks.empty()) return;
+  if (has_rate_rows(system.loops, data.loops)) {
+    // Projection moves q along the rates that are left free: what it does not undo stays in the error.
+    remove_normal(system.loops, system.tree, data.tree, data.loops, du);
+    return;
+  }
   // q's in the tangent: N⁺ by columns of N, which are orthogonal to each other.
   VectorXd& tangent = data.tangent;
   for (const TreeBody& tb : system.tree.bodies) {

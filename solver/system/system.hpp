@@ -24,6 +24,7 @@
 #include "solver/signals/graph.hpp"
 #include "solver/state/motion.hpp"
 #include "solver/state/state.hpp"
+#include "solver/system/load_friction.hpp"
 #include "solver/tree/data.hpp"
 
 namespace bough::solver {
@@ -45,6 +46,7 @@ struct System {
   std::vector<ConstraintState> initial_constraints;  ///< likewise
   std::vector<std::unique_ptr<const ForceElement>> elements;
   std::vector<JointContact> joint_contacts;
+  std::vector<LoadFriction> load_frictions;
   SignalGraph signals;
   bool signals_are_valid = true;  ///< sensors, controllers and actuators have no errors
   GravityField gravity;
@@ -114,6 +116,7 @@ struct SystemData {
   LoopData loops;
   std::vector<ForceResult> elements;  ///< of add_forces; zero before it
   SignalData signals;
+  LoadFrictionData friction;
   VectorXd tangent;                          ///< num_u, scratch
   Vector6d momentum_out = Vector6d::Zero();  ///< of the last set_z
 };

@@ -20,8 +20,8 @@ TreeData make_tree_data(const Tree& tree) {
   TreeData data;
   data.functions = FunctionCopies(tree.functions);
   data.q = VectorXd::Zero(tree.num_q);
-  data.u = data.given_u = data.given_udot = data.hinge_force = data.transmitted = data.slide =
-      VectorXd::Zero(tree.num_u);
+  data.u = data.given_u = data.given_udot = data.hinge_force = data.transmitted = data.slide = data.load_friction =
+      data.friction_limit = VectorXd::Zero(tree.num_u);
   data.h = data.applied = VectorXd::Zero(tree.num_v);
   clear_added(tree, data);
   data.motion = make_sweep(tree);

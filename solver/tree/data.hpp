@@ -75,6 +75,8 @@ struct TreeData {
   VectorXd h, applied;   ///< num_v: [f; t about Bo; modal] per body, in B, gravity left out
   VectorXd slide;        ///< num_u: which way a coordinate with dry friction slides, 1 or -1; 0: it has none, or rests
   VectorXd hinge_force;  ///< num_u: load along the coordinate: springs, dampers, elements and actuators of the hinge
+  VectorXd load_friction;   ///< num_u: part of hinge_force, friction by bearing load
+  VectorXd friction_limit;  ///< num_u: static friction by bearing load, of the last accelerations
   VectorXd transmitted;  ///< num_u: after solve, where not free: hinge wrench along the coordinate, motor inertia added
   Vector3d gravity = Vector3d::Zero();  ///< set by add_forces
   VectorXd

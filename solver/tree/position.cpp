@@ -115,6 +115,7 @@ void start_velocity(const Tree& tree, const ConstVectorRef& u, TreeData& data) {
   data.momentum_out.setZero();
   for (TankData& tank : data.tanks) tank.flow = 0;
   data.hinge_force.setZero();
+  data.load_friction.setZero();
   data.transmitted.setZero();
   data.done &= static_cast<unsigned>(Stage::Position) | static_cast<unsigned>(Stage::Factor);
   data.done |= static_cast<unsigned>(Stage::Velocity);

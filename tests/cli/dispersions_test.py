@@ -8,21 +8,12 @@ import numpy as np
 import scipy.stats
 
 from support import ProgramTest
+from toml_text import section, table, toml
 
-SLIDE = """[[body]]
-name = "bob"
-mass = 2.0
-[[hinge]]
-name = "slide"
-type = "prismatic"
-child = "bob"
-axis = [1.0, 0.0, 0.0]
-stiffness = [50.0]
-position = [0.1]
-[simulation]
-duration = 0.01
-output_step = 0.01
-"""
+SLIDE = toml(
+    table("body", "bob", mass=2.0),
+    table("hinge", "slide", "prismatic", child="bob", axis=[1.0, 0.0, 0.0], stiffness=[50.0], position=[0.1]),
+    section("simulation", duration=0.01, output_step=0.01))
 HEAD = """[campaign]
 method = "METHOD"
 samples = SAMPLES

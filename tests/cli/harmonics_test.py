@@ -7,66 +7,24 @@ import h5py
 import numpy as np
 
 from support import ProgramTest
+from toml_text import section, table, toml
 
-SYSTEM = """[[body]]
-name = "bob"
-mass = 4.0
 
-[[body]]
-name = "cart"
-mass = 1.0
+def make_system(wheel, cooler, duration):
+    """A mass that is pushed by the function `cooler`, and a cart on a rail with the motion `wheel`."""
+    return toml(
+        table("body", "bob", mass=4.0), table("body", "cart", mass=1.0),
+        table("hinge", "slide", "prismatic", child="bob", axis=[1.0, 0.0, 0.0]),
+        table("hinge", "rail", "prismatic", child="cart", axis=[1.0, 0.0, 0.0], motion=["wheel"]),
+        table("function", "wheel", **wheel), table("function", "cooler", **cooler),
+        table("force", "push", body="bob", force=[1.0, 0.0, 0.0], function="cooler"),
+        *(table("sensor", name, "acceleration", body=name) for name in ("bob", "cart")),
+        section("simulation", duration=duration, output_step=0.01, integrator="rk"))
 
-[[hinge]]
-name = "slide"
-type = "prismatic"
-child = "bob"
-axis = [1.0, 0.0, 0.0]
 
-[[hinge]]
-name = "rail"
-type = "prismatic"
-child = "cart"
-axis = [1.0, 0.0, 0.0]
-motion = ["wheel"]
-
-[[function]]
-name = "wheel"
-type = "harmonics"
-omega = 20.0
-omega_rate = 6.0
-x = [1.0, 2.5]
-y = [1e-3, 4e-4]
-phase_deg = -90.0
-
-[[function]]
-name = "cooler"
-type = "harmonics"
-omega = 30.0
-power = 0
-x = [1.0, 3.0]
-y = [2.0, 0.5]
-
-[[force]]
-name = "push"
-body = "bob"
-force = [1.0, 0.0, 0.0]
-function = "cooler"
-
-[[sensor]]
-name = "bob"
-type = "acceleration"
-body = "bob"
-
-[[sensor]]
-name = "cart"
-type = "acceleration"
-body = "cart"
-
-[simulation]
-duration = 2.0
-output_step = 0.01
-integrator = "rk"
-"""
+SYSTEM = make_system(
+    {"kind": "harmonics", "omega": 20.0, "omega_rate": 6.0, "x": [1.0, 2.5], "y": [1e-3, 4e-4], "phase_deg": -90.0},
+    {"kind": "harmonics", "omega": 30.0, "power": 0, "x": [1.0, 3.0], "y": [2.0, 0.5]}, 2.0)
 
 
 class Harmonics(ProgramTest):
@@ -105,26 +63,9 @@ class Harmonics(ProgramTest):
             self.assertIn("rotor.toml:", done.stderr)
 
 
-RANDOM = SYSTEM.replace("""type = "harmonics"
-omega = 30.0
-power = 0
-x = [1.0, 3.0]
-y = [2.0, 0.5]
-""", """type = "random"
-x = [0.5, 2.0, 6.0, 9.0]
-y = [0.4, 3.0, 0.0, 1.0]
-components = 24
-""").replace("""type = "harmonics"
-omega = 20.0
-omega_rate = 6.0
-x = [1.0, 2.5]
-y = [1e-3, 4e-4]
-phase_deg = -90.0
-""", """type = "random"
-components = 50
-x = [0.5, 9.0]
-y = [1e-4, 1e-5]
-""").replace("duration = 2.0", "duration = 400.0")
+RANDOM = make_system(
+    {"kind": "random", "components": 50, "x": [0.5, 9.0], "y": [1e-4, 1e-5]},
+    {"kind": "random", "x": [0.5, 2.0, 6.0, 9.0], "y": [0.4, 3.0, 0.0, 1.0], "components": 24}, 400.0)
 
 
 class Random(ProgramTest):

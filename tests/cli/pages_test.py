@@ -169,6 +169,20 @@ ARM = toml(
     table("input", "torque"),
     table("actuator", "motor", "hinge", hinge="axis", input="torque"),
     section("simulation", duration=1.0))
+FLYER = toml(
+    section("parameters", gain=1.0, mass=800.0, seed=1),
+    table("body", "hub", mass="$mass", inertia=[100.0, 100.0, 200.0]),
+    table("hinge", "axis", "revolute", child="hub", position=0.1),
+    table("sensor", "angle", "hinge_angle", hinge="axis", sample_time=0.1, noise_density=1e-4, seed="$seed"),
+    table("controller", "p", "gain", inputs=["angle"], gain="$gain"),
+    table("actuator", "drive", "hinge", hinge="axis", input="p", scale=-1.0),
+    section("simulation", duration=1.0))
+LAUNCHER = toml(
+    section("parameters", speed=100.0, fill=0.5),
+    table("body", "stage", mass="$fill", inertia=[1.0, 1.0, 2.0]),
+    table("hinge", "pitch", "revolute", child="stage", stiffness=["$speed"]),
+    table("sensor", "angle", "hinge_angle", hinge="pitch"),
+    section("simulation", duration=1.0))
 SAME = {name: "boom.h5" for name in ("A.h5", "B.h5", "C.h5", "BODY.h5")}
 
 
@@ -188,6 +202,7 @@ PAGES = {
     "docs/tutorials/flx-batch.md": Page(output=True),
     "docs/tutorials/rotor-blade.md": Page(output=True),
     "docs/tutorials/mast-in-parts.md": Page(output=True),
+    "docs/tutorials/rotor.md": Page(output=True),
     "docs/python.md": boom({"arm.toml": ARM}, python=f"import sys\nsys.path.insert(0, {READER!r})",
                            stands_for={"spinup.toml": "short.toml", "spinup.h5": "run.h5"}),
     "docs/report.md": Page(),
@@ -214,14 +229,15 @@ PAGES = {
     "docs/formats/mbdyn.md": boom(stands_for=SAME),
     "docs/formats/flat.md": boom(stands_for=SAME),
     "docs/formats/campaign-toml.md": Page(
-        ("ex08-satellite", "ex01-spinup"), ("reduce wing.toml -q",), {"study.toml": DENSITY, **TIP},
-        stands_for={"samples = 20": "samples = 2", "[1, 1000]": "[1, 2]", "number = 1000": "number = 2"}),
+        ("ex08-satellite", "ex01-spinup"), ("reduce wing.toml -q",), {"study.toml": DENSITY, "flyer.toml": FLYER, **TIP},
+        stands_for={"samples = 20": "samples = 2", "samples = 1000": "samples = 2", "[1, 1000]": "[1, 2]", "number = 1000": "number = 2"}),
+    "docs/formats/linear.md": Page(files={"launcher.toml": LAUNCHER}),
     "docs/formats/comparison.md": boom(
         before=("matrices boom.bdf -o MATRICES.h5 -q",), stands_for={**SAME, "DECK": "boom.bdf", "N": "3"},
         left_out=("--refinement", "--test", "--sensors")),  # compare_test.py: three meshes; correlation_test.py
     **{f"data/examples/{name}/README.md": example(name) for name in (
         "ex02-hub", "ex03-two-link", "ex07-four-bar", "ex08-satellite", "ex09-stage-separation", "ex10-robot-arm",
-        "ex11-rotor-blade", "ex12-launcher", "ex13-observatory")},
+        "ex11-rotor-blade", "ex12-launcher", "ex13-observatory", "ex14-rotor", "ex15-bicycle")},
 }
 for page_name, page_needs in PAGES.items():
     add_page(page_name, page_needs)

@@ -11,83 +11,24 @@ import scipy.integrate
 
 from linear_test import LinearTest
 from support import SOURCE
+from toml_text import section, table, toml
 
 # A bench on springs: a planar sled with forces, a universal joint with moments.
-BENCH = """[[body]]
-name = "sled"
-mass = 40.0
-inertia = [3.0, 4.0, 5.0]
-
-[[body]]
-name = "head"
-mass = 1.0
-inertia = [2.0, 3.0, 4.0]
-
-[[hinge]]
-name = "plane"
-type = "planar"
-child = "sled"
-axis = [0.0, 0.0, 1.0]
-stiffness = [3e6, 5e6, 4e5]
-damping = [200.0, 300.0, 20.0]
-
-[[hinge]]
-name = "joint"
-type = "universal"
-child = "head"
-axis = [1.0, 0.0, 0.0]
-axis2 = [0.0, 1.0, 0.0]
-stiffness = [2e5, 4e5]
-damping = [12.0, 9.0]
-
-[[function]]
-name = "nothing"
-type = "constant"
-value = 0.0
-
-[[force]]
-name = "fx"
-body = "sled"
-force = [1.0, 0.0, 0.0]
-function = "nothing"
-
-[[force]]
-name = "fy"
-body = "sled"
-force = [0.0, 1.0, 0.0]
-function = "nothing"
-
-[[force]]
-name = "mx"
-body = "head"
-moment = [1.0, 0.0, 0.0]
-function = "nothing"
-
-[[force]]
-name = "my"
-body = "head"
-moment = [0.0, 1.0, 0.0]
-function = "nothing"
-
-[[sensor]]
-name = "plane"
-type = "hinge_angle"
-hinge = "plane"
-
-[[sensor]]
-name = "joint"
-type = "hinge_angle"
-hinge = "joint"
-
-[[controller]]
-name = "sight"
-type = "gain"
-inputs = ["plane", "joint"]
-gain = [[0.3, 0.0, 0.5, 0.0, 2.0], [0.0, -0.2, 0.0, 1.5, 0.1]]
-
-[simulation]
-duration = 1.0
-"""
+BENCH = toml(
+    table("body", "sled", mass=40.0, inertia=[3.0, 4.0, 5.0]), table("body", "head", mass=1.0, inertia=[2.0, 3.0, 4.0]),
+    table("hinge", "plane", "planar", child="sled", axis=[0.0, 0.0, 1.0], stiffness=[3e6, 5e6, 4e5],
+          damping=[200.0, 300.0, 20.0]),
+    table("hinge", "joint", "universal", child="head", axis=[1.0, 0.0, 0.0], axis2=[0.0, 1.0, 0.0],
+          stiffness=[2e5, 4e5], damping=[12.0, 9.0]),
+    table("function", "nothing", "constant", value=0.0),
+    *(table("force", name, body=body, **{quantity: axis}, function="nothing")
+      for name, body, quantity, axis in (("fx", "sled", "force", [1.0, 0.0, 0.0]), ("fy", "sled", "force", [0.0, 1.0, 0.0]),
+                                         ("mx", "head", "moment", [1.0, 0.0, 0.0]),
+                                         ("my", "head", "moment", [0.0, 1.0, 0.0]))),
+    *(table("sensor", name, "hinge_angle", hinge=name) for name in ("plane", "joint")),
+    table("controller", "sight", "gain", inputs=["plane", "joint"],
+          gain=[[0.3, 0.0, 0.5, 0.0, 2.0], [0.0, -0.2, 0.0, 1.5, 0.1]]),
+    section("simulation", duration=1.0))
 OUTPUTS = ["sight:1", "sight:2"]
 LEGENDRE = np.polynomial.legendre.leggauss(60)
 WHEEL = """[[source]]

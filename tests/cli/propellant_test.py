@@ -33,177 +33,51 @@ SLOSH = toml(
     table("hinge", "lateral", "{hinge}", child="vehicle"),
     section("simulation", duration=1.0, gravity=[0.0, 0.0, -9.81]))
 
-ORIGIN = """[[body]]
-name = "b"
-mass = 1.0
-cg = [0.0, {y}, 0.0]
-inertia = [1.0, 1.0, 1.0]
-nodes = [{{id = 1, position = [0.0, {y}, -2.0]}}]
-[[tank]]
-name = "t"
-body = "b"
-type = "table"
-masses = [0.0, 100.0]
-cg = [[0.0, {y}, 0.0], [0.0, {y}, 0.0]]
-inertia = [[0.0, 0.0, 0.0], [100.0, 100.0, 100.0]]
-mass = 99.0
-[[hinge]]
-name = "f"
-type = "free"
-child = "b"
-position = [1, 0, 0, 0, 0.0, {place}, 0.0]
-rate = [0.0, 0.5, 0.0, 0.0, 0.0, 0.0]
-[[actuator]]
-name = "e"
-type = "engine"
-body = "b"
-node = 1
-axis = [0.0, 0.0, 1.0]
-input = "thrust"
-exhaust_velocity = 1000.0
-tank = "t"
-[[function]]
-name = "thrust"
-type = "constant"
-value = 1000.0
-[simulation]
-duration = 50.0
-output_step = 1.0
-integrator = "rk"
-relative_tolerance = 1e-12
-absolute_tolerance = 1e-12
-"""
 
-HOVER = """[[body]]
-name = "b"
-mass = 100.0
-inertia = [30.0, 30.0, 20.0]
-nodes = [{{id = 1, position = [0.0, 0.0, -1.0]}}]
-[[tank]]
-name = "t"
-body = "b"
-type = "cylinder"
-mass = 50.0
-radius = 0.3
-height = 1.0
-density = 800.0
-[[hinge]]
-name = "f"
-type = "prismatic"
-child = "b"
-axis = [0, 0, 1.0]
-[[sensor]]
-name = "z"
-type = "hinge_angle"
-hinge = "f"
-coordinate = 1
-[[sensor]]
-name = "v"
-type = "hinge_rate"
-hinge = "f"
-coordinate = 1
-[[controller]]
-name = "pid"
-type = "pid"
-inputs = ["z"]
-rate = "v"
-kp = 3000.0
-ki = 800.0
-kd = 2500.0
-[[actuator]]
-name = "e"
-type = "engine"
-body = "b"
-node = 1
-axis = [0, 0, 1.0]
-input = "pid"
-lag = 0.1
-bias = 1000.0
-{more}
-[simulation]
-duration = 5.0
-gravity = [0, 0, -9.81]
-integrator = "rk"
-"""
+def burn(body, tank, hinge, engine, thrust, simulation, place=(0.0, 0.0, -1.0)):
+    """One body "b" with its tank "t" on a hinge "f", and an engine at node 1 that draws from the tank."""
+    return toml(table("body", "b", **body, nodes=[{"id": 1, "position": place}]),
+                table("tank", "t", body="b", **tank), table("hinge", "f", child="b", **hinge),
+                table("actuator", "e", "engine", body="b", node=1, axis=[0.0, 0.0, 1.0], input="thrust", **engine, tank="t"),
+                table("function", "thrust", **thrust), section("simulation", **simulation, integrator="rk"))
 
-EMPTY = """[[body]]
-name = "b"
-mass = 10.0
-inertia = [1.0, 1.0, 1.0]
-nodes = [{{id = 1, position = [0.0, 0.1, -1.0]}}]
-[[tank]]
-name = "t"
-body = "b"
-type = "sphere"
-mass = 0.11
-radius = 0.3
-density = 1000.0
-[[hinge]]
-name = "f"
-type = "free"
-child = "b"
-[[actuator]]
-name = "e"
-type = "engine"
-body = "b"
-node = 1
-axis = [0.0, 0.0, 1.0]
-input = "throttle"
-exhaust_velocity = 20.0
-tank = "t"
-[[function]]
-name = "throttle"
-type = "sine"
-amplitude = 3.0
-omega = 0.9
-offset = 4.0
-[simulation]
-start = {start}
-duration = 3.0
-integrator = "rk"
-"""
 
-COAST = """[[body]]
-name = "b"
-mass = 500.0
-inertia = [200.0, 220.0, 150.0]
-nodes = [{id = 1, position = [0.0, 0.0, -1.5]}]
-[[tank]]
-name = "t"
-body = "b"
-type = "cylinder"
-mass = 300.0
-position = [0.0, 0.0, 0.3]
-radius = 0.5
-slosh_damping = 0.01
-slosh_acceleration = 2.5
-height = 1.5
-density = 700.0
-slosh = true
-[[hinge]]
-name = "f"
-type = "free"
-child = "b"
-rate = [0.1, 0.05, 0.5, 0, 0, 0]
-[[actuator]]
-name = "e"
-type = "engine"
-body = "b"
-node = 1
-axis = [0.0, 0.0, 1.0]
-input = "th"
-exhaust_velocity = 3000.0
-tank = "t"
-[[function]]
-name = "th"
-type = "pulse"
-value = 2000.0
-at = 0.0
-width = 5.0
-[simulation]
-duration = 200.0
-integrator = "rk"
-"""
+def make_origin(aside):
+    return burn({"mass": 1.0, "cg": [0.0, -aside, 0.0], "inertia": [1.0, 1.0, 1.0]},
+                {"kind": "table", "masses": [0.0, 100.0], "cg": [[0.0, -aside, 0.0], [0.0, -aside, 0.0]],
+                 "inertia": [[0.0, 0.0, 0.0], [100.0, 100.0, 100.0]], "mass": 99.0},
+                {"kind": "free", "position": [1, 0, 0, 0, 0.0, aside, 0.0], "rate": [0.0, 0.5, 0.0, 0.0, 0.0, 0.0]},
+                {"exhaust_velocity": 1000.0}, {"kind": "constant", "value": 1000.0},
+                {"duration": 50.0, "output_step": 1.0, "relative_tolerance": 1e-12, "absolute_tolerance": 1e-12},
+                [0.0, -aside, -2.0])
+
+
+def make_empty(start):
+    return burn({"mass": 10.0, "inertia": [1.0, 1.0, 1.0]},
+                {"kind": "sphere", "mass": 0.11, "radius": 0.3, "density": 1000.0}, {"kind": "free"},
+                {"exhaust_velocity": 20.0}, {"kind": "sine", "amplitude": 3.0, "omega": 0.9, "offset": 4.0},
+                {"start": start, "duration": 3.0}, [0.0, 0.1, -1.0])
+
+
+COAST = burn({"mass": 500.0, "inertia": [200.0, 220.0, 150.0]},
+             {"kind": "cylinder", "mass": 300.0, "position": [0.0, 0.0, 0.3], "radius": 0.5, "slosh_damping": 0.01,
+              "slosh_acceleration": 2.5, "height": 1.5, "density": 700.0, "slosh": True},
+             {"kind": "free", "rate": [0.1, 0.05, 0.5, 0, 0, 0]}, {"exhaust_velocity": 3000.0},
+             {"kind": "pulse", "value": 2000.0, "at": 0.0, "width": 5.0}, {"duration": 200.0}, [0.0, 0.0, -1.5])
+
+
+def make_hover(more=""):
+    """A body that an engine holds up, by a controller of its height."""
+    return toml(
+        table("body", "b", mass=100.0, inertia=[30.0, 30.0, 20.0], nodes=[{"id": 1, "position": [0.0, 0.0, -1.0]}]),
+        table("tank", "t", "cylinder", body="b", mass=50.0, radius=0.3, height=1.0, density=800.0),
+        table("hinge", "f", "prismatic", child="b", axis=[0, 0, 1.0]),
+        table("sensor", "z", "hinge_angle", hinge="f", coordinate=1),
+        table("sensor", "v", "hinge_rate", hinge="f", coordinate=1),
+        table("controller", "pid", "pid", inputs=["z"], rate="v", kp=3000.0, ki=800.0, kd=2500.0),
+        table("actuator", "e", "engine", body="b", node=1, axis=[0, 0, 1.0], input="pid", lag=0.1, bias=1000.0),
+        more + "\n",
+        section("simulation", duration=5.0, gravity=[0, 0, -9.81], integrator="rk"))
 
 
 class Propellant(ProgramTest):
@@ -255,7 +129,7 @@ class Propellant(ProgramTest):
     def test_damping_is_the_same_whatever_the_origin_is(self):
         """ω0 (m/m0)^(l²/k² - 1): k 1, l 2, and a body frame that is 0, 1 and 3 aside of the line from tank to nozzle."""
         for aside in (0.0, 1.0, -3.0):
-            self.write("origin.toml", ORIGIN.format(y=-aside, place=aside))
+            self.write("origin.toml", make_origin(aside))
             self.bough("run", "origin.toml", "-o", "o.h5", "-q")
             rate, mass, linear, out = self.read_arrays("o.h5", "/bodies/b/angular_velocity", "/system_mass/mass",
                                                    "/momentum/angular", "/momentum/out_angular")
@@ -272,7 +146,7 @@ class Propellant(ProgramTest):
 
     def test_control_starts_from_an_equilibrium_beside_a_tank(self):
         """The integral of the controller carries the weight: the start is at rest and stays there."""
-        self.write("hover.toml", HOVER.format(more=""))
+        self.write("hover.toml", make_hover())
         self.bough("equilibrium", "hover.toml", "-o", "e.h5", "-q")
         self.bough("run", "hover.toml", "--start-from", "e.h5", "-o", "r.h5", "-q")
         height, thrust = self.read_arrays("r.h5", "/hinges/f/q", "/actuators/e")
@@ -280,11 +154,11 @@ class Propellant(ProgramTest):
         np.testing.assert_allclose(thrust[:, 0], 150 * 9.81, rtol=1e-9)
 
     def test_a_tank_that_ran_empty_is_a_start(self):
-        self.write("first.toml", EMPTY.format(start=0.0))
+        self.write("first.toml", make_empty(0.0))
         self.bough("run", "first.toml", "-o", "first.h5", "-q")
         mass, velocity = self.read_arrays("first.h5", "/tanks/t/mass", "/bodies/b/velocity")
         self.assertEqual(mass[-1, 0] if mass.ndim > 1 else mass[-1], 0)
-        self.write("second.toml", EMPTY.format(start=3.0))
+        self.write("second.toml", make_empty(3.0))
         self.bough("run", "second.toml", "--start-from", "first.h5", "-o", "second.h5", "-q")
         mass, thrust, after = self.read_arrays("second.h5", "/tanks/t/mass", "/actuators/e", "/bodies/b/velocity")
         self.assertEqual(np.abs(mass).max(), 0)
@@ -295,13 +169,13 @@ class Propellant(ProgramTest):
     def test_equilibrium_holds_what_a_burning_engine_has_used(self):
         """Thrust is the weight, of a pid; a spring takes the rest of a constant one; with and without tank."""
         for more in ("exhaust_velocity = 2000.0", 'exhaust_velocity = 2000.0\ntank = "t"'):
-            self.write("hover.toml", HOVER.format(more=more))
+            self.write("hover.toml", make_hover(more))
             self.bough("equilibrium", "hover.toml", "-o", "e.h5", "-q")
             thrust, height = self.read_arrays("e.h5", "/actuators/e", "/hinges/f/q")
             self.assertAlmostEqual(thrust[-1, 0], 150 * 9.81, delta=1e-6)
             self.assertAlmostEqual(height.flat[-1], 0, delta=1e-9)
             self.bough("linearize", "hover.toml", "--equilibrium", "-o", "l.h5", "-q")
-            stand = HOVER.format(more=more)
+            stand = make_hover(more)
             stand = stand[:stand.index("[[controller]]")] + stand[stand.index("[[actuator]]"):]
             self.write("stand.toml", stand.replace('input = "pid"\n', "").replace("bias = 1000.0", "bias = 1500.0")
                        .replace('child = "b"\n', 'child = "b"\nstiffness = 1e4\ndamping = 100.0\n'))

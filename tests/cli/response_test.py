@@ -7,12 +7,14 @@ import shutil
 import subprocess
 import sys
 import unittest
+import xml.etree.ElementTree as ElementTree
 
 import h5py
 import numpy as np
 import scipy.linalg
 import scipy.optimize
 
+from curves_test import SVG, read_ticks, scale
 from linear_test import HUB, PENDULUM, LinearTest
 from support import SOURCE
 from toml_text import section, table, toml
@@ -146,6 +148,46 @@ class Response(LinearTest):
         self.assertTrue(os.path.exists(self.path("closed-bode.svg")))
         self.fails(1, "plot", "closed.h5", "--kind", "campbell", error="cli.plot-kind")
         self.fails(1, "plot", "closed.h5", error="cli.nothing-to-plot")
+
+    def test_labels_of_pictures(self):
+        """No text of a Nichols diagram or of poles covers another or a mark; -1 is marked next to the curve, whose phase may be
+        beyond a turn; contours close."""
+        self.write("axis.toml", AXIS)
+        self.bough("linearize", "axis.toml", "--outputs", "angle", "-o", "closed.h5")
+        for sign, expected in ((1, -180), (-1, 180)):
+            with h5py.File(self.path("closed.h5"), "r+") as f:
+                f["C"][:] = sign * np.abs(f["C"][:])
+            self.bough("plot", "closed.h5", "--kind", "nichols", "-o", "nichols.svg")
+            svg = ElementTree.parse(self.path("nichols.svg")).getroot()
+            frame, x_ticks, y_ticks = read_ticks(svg)
+            marks = [path.get("d") for path in svg.findall(f"{SVG}path") if "m0 -9l-9 9" in path.get("d")]
+            places = [[float(v) + 4.5 for v in re.findall(r"[\d.]+", mark)[:2]] for mark in marks]
+            inside = [(x, y) for x, y in places if y > frame[1]]      # the legend contains one too
+            self.assertIn(expected, [round(float(scale(x, x_ticks, False))) for x, _ in inside])
+            for _, y in inside:
+                self.assertAlmostEqual(float(scale(y, y_ticks, False)), 0, delta=0.2)
+            self.check_texts(svg, frame, inside)
+            labels = {t.text for t in svg.iter(f"{SVG}text") if (t.text or "").endswith(" dB")}
+            self.assertLessEqual({"3 dB", "1 dB", "\u22121 dB", "\u221220 dB"}, labels)
+        self.bough("plot", "closed.h5", "--kind", "poles", "-o", "poles.svg")
+        svg = ElementTree.parse(self.path("poles.svg")).getroot()
+        self.check_texts(svg, read_ticks(svg)[0], [])
+
+    def check_texts(self, svg, frame, marks):
+        """Texts inside the frame, by the mean width of a letter: apart from each other, from marks, and not cut."""
+        boxes = [(x - 4.5, y - 4.5, x + 4.5, y + 4.5) for x, y in marks]
+        for text in svg.iter(f"{SVG}text"):
+            if text.get("x") is None or text.get("font-size") not in ("11", "13"):
+                continue
+            x, y, size = float(text.get("x")), float(text.get("y")), float(text.get("font-size"))
+            width = 0.5 * size * len(text.text)
+            left = x - width if text.get("text-anchor") == "end" else x
+            if frame[0] < left < frame[0] + frame[2] and frame[1] < y < frame[1] + frame[3]:
+                self.assertLess(left + width, frame[0] + frame[2])
+                boxes.append((left, y - 0.7 * size, left + width, y))
+        for i, a in enumerate(boxes):
+            for b in boxes[:i]:
+                self.assertFalse(a[0] < b[2] and b[0] < a[2] and a[1] < b[3] and b[1] < a[3], (a, b))
 
     def test_many_pairs_and_a_peak_without_end(self):
         """The pairs with the largest peaks are drawn of many; next to a pole without damping nothing is lost."""

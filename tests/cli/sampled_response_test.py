@@ -11,52 +11,19 @@ import scipy.signal
 
 from linear_test import LinearTest
 from response_test import AXIS
+from toml_text import section, table, toml
 
-POINTING = """[[body]]
-name = "hub"
-mass = 1.0
-inertia = [2.0, 2.0, 3.0]
-[[body]]
-name = "dish"
-mass = 0.5
-inertia = [0.1, 0.1, 0.2]
-[[hinge]]
-name = "gimbal"
-type = "revolute"
-child = "hub"
-[[hinge]]
-name = "mount"
-type = "revolute"
-parent = "hub"
-child = "dish"
-stiffness = {spring}
-damping = 0.05
-[[sensor]]
-name = "angle"
-type = "hinge_angle"
-hinge = "gimbal"
-coordinate = 1
-[[sensor]]
-name = "rate"
-type = "hinge_rate"
-hinge = "gimbal"
-coordinate = 1
-[[controller]]
-name = "pid"
-type = "pid"
-inputs = ["angle"]
-rate = "rate"
-kp = {kp}
-kd = {kd}
-ki = {ki}
-{sampled}[[actuator]]
-name = "motor"
-type = "hinge"
-hinge = "gimbal"
-input = "pid"
-[simulation]
-duration = 1.0
-"""
+
+def make_pointing(kp, kd, ki, spring, sampled=""):
+    """A hub that a motor turns, and a dish on a spring."""
+    return toml(
+        table("body", "hub", mass=1.0, inertia=[2.0, 2.0, 3.0]), table("body", "dish", mass=0.5, inertia=[0.1, 0.1, 0.2]),
+        table("hinge", "gimbal", "revolute", child="hub"),
+        table("hinge", "mount", "revolute", parent="hub", child="dish", stiffness=spring, damping=0.05),
+        table("sensor", "angle", "hinge_angle", hinge="gimbal", coordinate=1),
+        table("sensor", "rate", "hinge_rate", hinge="gimbal", coordinate=1),
+        table("controller", "pid", "pid", inputs=["angle"], rate="rate", kp=kp, kd=kd, ki=ki), sampled,
+        table("actuator", "motor", "hinge", hinge="gimbal", input="pid"), section("simulation", duration=1.0))
 
 
 class SampledLoop(LinearTest):
@@ -116,11 +83,12 @@ class SampledLoop(LinearTest):
     def test_an_integrator_has_no_largest_gain(self):
         """Rounding where the loop is cut does not hide that the pole at 0 comes through."""
         for lag in (0.005, 0.01, 0.05):
-            self.write("axis.toml", '[[body]]\nname = "arm"\nmass = 1.0\ninertia = [1.0, 0.7, 1.0]\n[[hinge]]\nname = "pivot"\n'
-                       'type = "revolute"\nchild = "arm"\naxis = [0.0, 1.0, 0.0]\ndamping = 0.3\nstiffness = 1.0\n'
-                       '[[sensor]]\nname = "angle"\ntype = "hinge_angle"\nhinge = "pivot"\n[[controller]]\nname = "law"\n'
-                       'type = "pid"\ninputs = ["angle"]\nkp = 40.0\nki = 15.0\nkd = 6.0\nfilter = 0.01\n[[actuator]]\n'
-                       f'name = "motor"\ntype = "hinge"\nhinge = "pivot"\ninput = "law"\nlag = {lag}\n[simulation]\nduration = 1.0\n')
+            self.write("axis.toml", toml(
+                table("body", "arm", mass=1.0, inertia=[1.0, 0.7, 1.0]),
+                table("hinge", "pivot", "revolute", child="arm", axis=[0.0, 1.0, 0.0], damping=0.3, stiffness=1.0),
+                table("sensor", "angle", "hinge_angle", hinge="pivot"),
+                table("controller", "law", "pid", inputs=["angle"], kp=40.0, ki=15.0, kd=6.0, filter=0.01),
+                table("actuator", "motor", "hinge", hinge="pivot", input="law", lag=lag), section("simulation", duration=1.0)))
             self.bough("linearize", "axis.toml", "--break", "motor", "-o", "loop.h5")
             self.assertIn("largest gain: infinite", self.bough("response", "loop.h5").stdout)
         self.assertIn("[linear.open-controller]",
@@ -197,15 +165,15 @@ class LiftedLoop(LinearTest):
 
     def test_a_slow_integral_has_its_margin_downwards(self):
         """Rigid: 3.2 s³ + k (3 s² + s + 1e-4) is at the edge by Routh where 3 k = 3.2e-4; a stiff mode lies far above."""
-        self.write("pointing.toml", POINTING.format(kp=1.0, kd=3.0, ki=1e-4, spring=4e5, sampled=""))
+        self.write("pointing.toml", make_pointing(kp=1.0, kd=3.0, ki=1e-4, spring=4e5))
         (gain,) = self.margins("motor", "pointing.toml")["gain"]
         self.assertAlmostEqual(gain["factor"], 3.2e-4 / 3, delta=1e-8)
 
     def test_margins_of_a_sampled_integral_are_the_same_at_both_cuts(self):
         """The twin is the closed loop with every gain of the controller multiplied, whose multipliers are found without a cut."""
         def write(factor):
-            self.write("pointing.toml", POINTING.format(kp=4 * factor, kd=6 * factor, ki=factor, spring=40.0,
-                                                        sampled="sample_time = 0.2\ndelay = 0.13\n"))
+            self.write("pointing.toml", make_pointing(kp=4 * factor, kd=6 * factor, ki=factor, spring=40.0,
+                                                       sampled="sample_time = 0.2\ndelay = 0.13\n"))
         write(1.0)
         at_motor, at_pid = ([c["factor"] for c in self.margins(cut, "pointing.toml")["gain"]] for cut in ("motor", "pid"))
         down, up = max(f for f in at_pid if f < 1), min(f for f in at_pid if f > 1)

@@ -113,6 +113,38 @@ class Rest(ProgramTest):
         self.assertIn("no way leads from", self.bough("response", "l.h5").stdout)
 
 
+class Slips(ProgramTest):
+    """Slips in tables of signals that would pass silently: each is named."""
+    def write_slip(self, old="", new="", more=""):
+        text = toml(
+            table("body", "b", mass=1.0, inertia=[1.0, 1.0, 1.0]),
+            table("hinge", "h", "revolute", child="b", position=0.1),
+            table("sensor", "a", "hinge_angle", hinge="h"),
+            table("sensor", "v", "velocity", body="b"), more,
+            table("controller", "pd", "pid", inputs=["a"], kp=3.0),
+            table("actuator", "m", "hinge", hinge="h", input="pd"),
+            section("simulation", duration=1.0))
+        self.assertIn(old, text)
+        self.write("slip.toml", text.replace(old, new) if old else text)
+
+    def test_a_pid_without_gains(self):
+        self.write_slip("kp = 3.0\n")
+        self.fails(1, "run", "slip.toml", "-o", "s.h5", error="control.bad-value", says=["neither kp nor ki nor kd"])
+
+    def test_a_name_that_is_a_component_of_another_signal(self):
+        for name in ("v:z", "v:2"):
+            self.write_slip(more=table("sensor", name, "hinge_rate", hinge="h"))
+            self.fails(1, "run", "slip.toml", "-o", "s.h5", error="control.ambiguous-name", says=[f"/sensors/{name}"])
+        self.write_slip(more=table("sensor", "v:speed", "hinge_rate", hinge="h"))
+        self.bough("run", "slip.toml", "-o", "s.h5")
+
+    def test_samples_without_number(self):
+        self.write_slip("kp = 3.0\n", "kp = 3.0\nsample_time = 1e-9\n")
+        self.fails(1, "run", "slip.toml", "-o", "s.h5", error="run.many-samples", says=["controller 'pd'", "1e+09 samples"])
+        self.write_slip("kp = 3.0\n", "kp = 3.0\nsample_time = 5e-8\n")
+        self.assertIn("[run.many-samples]", self.bough("check", "slip.toml").stderr)
+
+
 class Kinks(ProgramTest):
     def test_the_balance_of_a_small_energy_under_a_force_with_corners(self):
         """A free mass under a triangle wave, all defaults: the motion is right, and so is its balance."""

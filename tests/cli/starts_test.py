@@ -155,6 +155,179 @@ class Starts(ProgramTest):
         self.assertEqual(names[:5], ["h:rx", "h:ry", "h:rz", "h:z", "h:x"])
 
 
+CYLINDER = toml(
+    table("body", "b", mass=2.0, inertia=[0.1, 0.1, 0.1]),
+    table("hinge", "h", "cylindrical", child="b", motion=["f", ""], rate=[1.0, 3.0], damping=[0.0, 1.0]),
+    table("function", "f", "expression", expression="t", rate="1", acceleration="0"))
+ARM = (table("body", "arm", mass=2.0, cg=[0.5, 0.0, 0.0], inertia=[0.1, 0.2, 0.2]) +
+       table("hinge", "h", "revolute", child="arm", axis=[0.0, 1.0, 0.0]))
+DOWN = {"gravity": [0.0, 0.0, -9.81]}
+RISE = table("function", "f", "expression", expression="0.5*t^2", rate="t", acceleration="1")
+
+
+class Missions(ProgramTest):
+    """A mission in two parts is that of one run: --start-from takes over what events have changed."""
+    def fly(self, text, first=1.0, second=1.0, start=None, other=None, name="b", **more):
+        """Runs `text` to `first`, then `other` (`text`) from there; and `text` in one run, as a reference."""
+        def write(name, text, **times):
+            self.write(name, toml(text, section("simulation", integrator="rk", relative_tolerance=1e-11,
+                                                absolute_tolerance=1e-12, output_step=0.1, **{**more, **times})))
+        write("a.toml", text, duration=first)
+        write("b.toml", text if other is None else other, start=first if start is None else start, duration=second)
+        write("whole.toml", text, duration=first + second)
+        self.bough("run", "a.toml", "-o", "a.h5")
+        self.bough("run", "whole.toml", "-o", "whole.h5")
+        return self.bough("run", "b.toml", "--start-from", "a.h5", "-o", "b.h5").stderr
+
+    def compare(self, *channels, atol=1e-9):
+        for channel in channels:
+            part, whole = (self.read_arrays(name, channel)[0] for name in ("b.h5", "whole.h5"))
+            np.testing.assert_allclose(part, whole[-len(part):], atol=atol, err_msg=channel)
+
+    def test_free_coordinates_of_a_hinge_prescribed_in_part(self):
+        self.fly(CYLINDER)
+        self.compare("hinges/h/q", "hinges/h/qdot")
+        s = 1 - np.exp(-0.5)  # m q'' = -q'
+        np.testing.assert_allclose(self.read_arrays("b.h5", "hinges/h/q")[0][0], [1.0, 6 * s], atol=1e-8)
+        self.bough("linearize", "b.toml", "--start-from", "a.h5", "-o", "l.h5")
+        np.testing.assert_allclose(self.read_arrays("l.h5", "operating_point/q")[0], [1.0, 6 * s], atol=1e-8)
+
+    def test_a_latch_stays_locked(self):
+        latch = table("event", "latch", signal="/hinges/h/q", value=1.0, action="lock", hinge="h")
+        messages = self.fly(ARM + latch, 2.0, 2.0, **DOWN)
+        self.assertIn("hinge 'h' locked", messages)
+        np.testing.assert_allclose(self.read_arrays("b.h5", "hinges/h/q")[0], 1.0, atol=1e-9)
+        for arguments in (("whole.toml", "--at", 2.0), ("b.toml", "--start-from", "a.h5")):
+            self.bough("linearize", *arguments, "-o", "l.h5")
+            self.assertEqual(self.read_arrays("l.h5", "A")[0].shape, (0, 0), arguments)
+
+    def test_a_third_part_starts_from_the_second(self):
+        latch = table("event", "latch", signal="/hinges/h/q", value=1.0, action="lock", hinge="h")
+        self.fly(ARM + latch, 2.0, 2.0, **DOWN)
+        self.write("c.toml", self.read("b.toml").replace("start = 2.0", "start = 4.0"))
+        self.bough("run", "c.toml", "--start-from", "b.h5", "-o", "c.h5")
+        np.testing.assert_allclose(self.read_arrays("c.h5", "hinges/h/q")[0], 1.0, atol=1e-9)
+
+    def test_docked_bodies_stay_docked(self):
+        text = (table("body", "chaser", mass=2.0, inertia=[0.1, 0.2, 0.2]) +
+                table("body", "target", mass=5.0, inertia=[0.1, 0.2, 0.2]) +
+                table("hinge", "hc", "free", child="chaser", rate=[0.0, 0.0, 0.2, 0.1, 0.0, 0.0]) +
+                table("hinge", "ht", "free", child="target", position=[1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0]))
+        for constraint in (dict(type="fixed"), dict(type="distance", length=0.5), dict(type="universal", axis=[1.0, 0.0, 0.0],
+                           axis2=[0.0, 1.0, 0.0]), dict(type="point_on_line", axis=[0.0, 1.0, 0.0])):
+            kind = constraint.pop("type")
+            dock = table("constraint", "dock", kind, parent="target", child="chaser", active=False, **constraint)
+            messages = self.fly(text + dock + table("event", "d", time=0.5, action="close", constraint="dock"))
+            self.assertIn("constraint 'dock' closed", messages)
+            self.compare("hinges/hc/q", "hinges/ht/q", "constraints/dock/reaction_force", atol=1e-8)
+
+    def test_what_was_released_and_broken_stays_so(self):
+        text = (table("body", "stage", mass=20.0, inertia=[1.0, 1.0, 1.0]) +
+                table("body", "pay", mass=2.0, inertia=[0.1, 0.1, 0.1]) +
+                table("body", "other", mass=1.0, inertia=[0.1, 0.1, 0.1]) +
+                table("hinge", "hs", "free", child="stage", rate=[0.0, 0.0, 0.3, 1.0, 0.0, 0.0]) +
+                table("hinge", "sep", "free", parent="stage", child="pay", parent_position=[1.0, 0.0, 0.0], locked=True) +
+                table("hinge", "ho", "free", child="other", position=[1.0, 0.0, 0.0, 0.0, 0.0, 2.0, 0.0],
+                      rate=[0.0, 0.0, 0.3, 0.4, 0.0, 0.0]))
+        clamp = table("constraint", "clamp", "fixed", parent="stage", child="other", parent_position=[0.0, 2.0, 0.0])
+        push = table("force", "push", "spring", body="stage", to_body="pay", position=[0.9, 0.0, 0.0],
+                     to_position=[0.1, 0.0, 0.0], stiffness=100.0, free_length=0.4)
+        events = (table("event", "e1", time=0.5, action="release", hinge="sep") +
+                  table("event", "e2", time=0.7, action="break", constraint="clamp"))
+        messages = self.fly(text + clamp + push + events)
+        for words in ("hinge 'sep' released", "constraint 'clamp' open"):
+            self.assertIn(words, messages)
+        self.compare("hinges/hs/q", "hinges/sep/q", "hinges/ho/q", "hinges/ho/qdot")
+        # Without the constraint there is no place for the mode.
+        messages = self.fly(text + clamp + push + events, other=text + push)
+        self.assertIn("cli.start-modes", messages)
+        self.assertIn("constraint 'clamp' open, but this system has no such constraint", messages)
+        self.compare("hinges/ho/q", "hinges/sep/q")
+
+    def test_a_motion_that_was_released_does_not_take_over_again(self):
+        driven = ARM.replace('child = "arm"', 'child = "arm"\nmotion = "f"') + RISE
+        event = table("event", "r", time=0.5, action="release", hinge="h")
+        self.fly(driven + event, **DOWN)
+        self.compare("hinges/h/q", "hinges/h/qdot")
+
+    def test_a_prescribed_motion_from_another_time_is_warned_of(self):
+        driven = ARM.replace('child = "arm"', 'child = "arm"\nmotion = "f"') + RISE
+        messages = self.fly(driven, start=0.0, **DOWN)
+        self.assertIn("cli.start-motion", messages)
+        self.assertIn("set start = 1", messages)
+        self.assertNotIn("cli.start-motion", self.fly(driven, **DOWN))
+
+    def test_contacts_stick_and_slip_as_in_one_run(self):
+        """A block that friction stops in the first part, and that a growing force moves in the second."""
+        block = (table("body", "b", mass=1.0) +
+                 table("hinge", "h", "prismatic", child="b", axis=[1.0, 0.0, 0.0], rate=1.0,
+                       friction={"coulomb": 2.0, "static": 3.0}, stops={"lower": -1.0, "upper": 0.2, "restitution": 0.0}) +
+                 table("function", "g", "expression", expression="-4*(t-0.5)") +
+                 table("force", "F", body="b", force=[1.0, 0.0, 0.0], function="g"))
+        messages = self.fly(block)
+        self.assertNotIn("locked", messages)
+        self.compare("hinges/h/q", "hinges/h/qdot", atol=1e-8)
+        self.assertLess(self.read_arrays("b.h5", "hinges/h/q")[0].ravel()[-1], 0.15)
+
+    def test_a_contact_that_sticks_is_not_taken_for_a_lock(self):
+        block = (table("body", "b", mass=1.0) +
+                 table("hinge", "h", "prismatic", child="b", axis=[1.0, 0.0, 0.0], locked=True,
+                       friction={"coulomb": 2.0, "static": 3.0}) +
+                 table("function", "g", "expression", expression="2*t") +
+                 table("force", "F", body="b", force=[1.0, 0.0, 0.0], function="g") +
+                 table("event", "r", time=0.5, action="release", hinge="h"))
+        messages = self.fly(block, 1.0, 2.0)
+        self.assertIn("hinge 'h' released", messages)
+        self.compare("hinges/h/q", atol=1e-8)
+        self.assertGreater(self.read_arrays("b.h5", "hinges/h/q")[0].ravel()[-1], 0.05)
+
+    def test_an_event_at_the_end_of_the_first_part(self):
+        two = ARM + (table("body", "tip", mass=1.0, cg=[0.3, 0.0, 0.0], inertia=[0.1, 0.1, 0.1]) +
+                     table("hinge", "k", "revolute", parent="arm", child="tip", axis=[0.0, 1.0, 0.0],
+                           parent_position=[1.0, 0.0, 0.0]))
+        for action in ("lock", "release"):
+            text = two.replace('name = "k"', 'name = "k"\nlocked = true') if action == "release" else two
+            self.fly(text + table("event", "e", time=1.0, action=action, hinge="k"), **DOWN)
+            for channel in ("hinges/h/q", "hinges/k/q"):
+                part, whole = (self.read_arrays(name, channel)[0] for name in ("b.h5", "whole.h5"))
+                np.testing.assert_allclose(part[1:], whole[-len(part) + 1:], atol=1e-9, err_msg=action)
+
+    def test_modes_that_came_after_the_last_sample(self):
+        messages = self.fly(ARM + table("event", "stop", time=0.5, action="lock", hinge="h"), start=0.4, output_until=0.4,
+                            **DOWN)
+        self.assertIn("cli.start-earlier", messages)
+        self.assertIn("not known at its last sample, t = 0.4: event stop came at t = 0.5", messages)
+
+
+class Closing(ProgramTest):
+    def test_a_joint_of_two_angles_closes_at_the_nearest_ones(self):
+        """The offset from the joint at that moment stays; the axes are those of the joint, as the page has it."""
+        from scipy.optimize import least_squares
+        from scipy.spatial.transform import Rotation
+        turn = lambda q: Rotation.from_euler("XY", q)
+        for joint in ({"type": "universal", "axis": [1.0, 0.0, 0.0], "axis2": [0.0, 1.0, 0.0]},
+                      {"type": "general", "rotations": "xy"}):
+            kind = joint.pop("type")
+            self.write("u.toml", toml(
+                table("body", "a", mass=2.0, inertia=[0.2, 0.3, 0.4]), table("body", "b", mass=1.0, inertia=[0.2, 0.3, 0.25]),
+                table("hinge", "ha", "free", child="a"),
+                table("hinge", "hb", "free", child="b", position=[1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
+                      rate=[0.6, 0.3, 0.8, 0.0, 0.0, 0.0]),
+                table("constraint", "k", kind, parent="a", child="b", active=False, **joint),
+                table("event", "e", time=1.0, action="close", constraint="k"),
+                section("simulation", duration=2.0, output_step=0.01, integrator="rk", relative_tolerance=1e-11,
+                        absolute_tolerance=1e-12)))
+            self.bough("run", "u.toml", "-o", "u.h5")
+            a, b = (Rotation.from_quat(q[:, [1, 2, 3, 0]])
+                    for q in self.read_arrays("u.h5", "bodies/a/quaternion", "bodies/b/quaternion"))
+            relative = a.inv() * b
+            nearest = least_squares(lambda q: (turn(q).inv() * relative[100]).as_rotvec(), [0.5, 0.3], xtol=1e-15, ftol=1e-15).x
+            offset = turn(nearest).inv() * relative[100]
+            self.assertGreater(offset.magnitude(), 0.1)
+            axes = (relative[101:] * offset.inv()).as_matrix()
+            np.testing.assert_allclose(axes[:, 0, 1], 0, atol=1e-7, err_msg=kind)
+
+
 class PrescribedMotions(ProgramTest):
     """Forces along a coordinate before and after a motion that prescribes it ends."""
     def run_case(self, text):

@@ -53,6 +53,57 @@ class Edits(PageTest):
         return diff
 
 
+class Bodies(Edits):
+    """A rigid body is added to a boom: the boom moves from the ground to it."""
+
+    def get_field(self, name):
+        return self.browser.run(f"document.querySelector('.add-form [name={name}]')?.value")
+
+    def put(self, **values):
+        for name, value in values.items():
+            self.browser.run(f"document.querySelector('.add-form [name={name}]').value = {json.dumps(value)}")
+
+    def pick_table(self, text):
+        self.browser.run(f"""(() => {{ const s = document.querySelector('[aria-label="table of the form"]');
+          [...s.options].find((o) => o.textContent === '{text}').selected = true; s.dispatchEvent(new Event('change')); }})()""")
+
+    def test_a_new_body_and_its_hinge(self):
+        self.copy_example("ex01-spinup")
+        self.bough("reduce", "boom.toml")
+        with h5py.File(self.path("boom.h5")) as f:
+            node = int(f["nodes/id"][-1])
+        page = self.show("sat.toml", toml(table("body", "boom", file="boom.h5"), table("hinge", "base", "revolute", child="boom", axis=[0.0, 0.0, 1.0]),
+                                          section("simulation", duration=0.1, output_step=0.01)))
+        page.click(".add-form summary")
+        self.wait("document.querySelector('.add-form [name=inertia]')")
+        self.assertIn("Ixx", page.run("document.querySelector('.add-form [name=inertia]').placeholder"))
+        self.put(name="bus", mass="200.0", inertia="[30.0, 30.0, 30.0]")
+        self.click_text("Add")
+        # The hinge of the new body is next.
+        self.wait("document.querySelector('.add-form [name=child]')?.value === 'bus'")
+        self.assertEqual((self.get_field("parent"), self.get_field("type")), ("boom", "revolute"))
+        self.wait_for_check()
+        self.pick_table("hinge base")
+        self.wait("document.querySelector('.add-form .main').textContent === 'Change' && document.querySelector('.add-form [name=name]').value === 'base'")
+        self.put(child="bus")
+        self.click_text("Change")
+        self.wait("/child = .bus/.test(studio.view.pane.text)")
+        # Not drawn: the boom alone has no inertia about its axis.
+        self.wait("!studio.view.pane.is_checking && studio.view.pane.waiting === studio.view.pane.text")
+        # Now the boom has none, and the click on its node is no other end.
+        self.pick_table("hinge")
+        self.wait("document.querySelector('.add-form [name=child]')?.value === 'boom' && document.querySelector('.add-form .main').textContent === 'Add'")
+        self.assertEqual(self.get_field("parent"), "bus")
+        self.click_node(node)
+        self.assertEqual([self.get_field(name) for name in ("parent", "parent_node", "child", "child_node")], ["bus", "", "boom", str(node)])
+        self.put(name="root", type="fixed")
+        self.click_text("Add")
+        self.wait("studio.view.pane.text.includes('root')")
+        self.assertEqual(tomllib.loads(self.get_text())["hinge"], [{"name": "base", "type": "revolute", "child": "bus", "axis": [0.0, 0.0, 1.0]},
+                         {"name": "root", "type": "fixed", "parent": "bus", "child": "boom", "child_node": node}])
+        self.assertEqual(page.list_errors(), [])
+
+
 class Axes(Edits):
     def get_axis(self, text, name):
         return next(h for h in tomllib.loads(text)["hinge"] if h["name"] == name)["axis"]

@@ -109,6 +109,22 @@ class Uncertain(ProgramTest):
         self.write("sampled.toml", SYSTEM.replace('type = "pid"\n', 'type = "pid"\nsample_time = 0.1\n'))
         self.fails(1, "linearize", "sampled.toml", "--break", "motor", "--uncertain", "k=80:120", error="linear.sampled-uncertain")
 
+    def test_a_mass_under_gravity_is_taken_at_rest(self):
+        """Where the point accelerates M A_u is no affine function of a mass; an arm that hangs is at rest with any."""
+        self.write("arm.toml", toml(
+            section("parameters", mp=1.0),
+            table("body", "a", mass=2.0, cg=[0.5, 0.0, 0.0], inertia=[0.1, 0.2, 0.2]),
+            table("body", "b", mass="$mp", cg=[0.5, 0.0, 0.0], inertia=[0.1, 0.2, 0.2]),
+            table("hinge", "s", "revolute", child="a", axis=[0.0, 1.0, 0.0], position=0.3),
+            table("hinge", "e", "revolute", parent="a", parent_position=[1.0, 0.0, 0.0], child="b", axis=[0.0, 1.0, 0.0],
+                  position=0.6),
+            section("simulation", duration=1.0, gravity=[0.0, 0.0, -9.81])))
+        self.fails(1, "linearize", "arm.toml", "--uncertain", "mp=0.5:1.5", error="linear.not-affine",
+                   says=["is not at rest", "give --equilibrium"])
+        self.bough("linearize", "arm.toml", "--equilibrium", "--uncertain", "mp=0.5:1.5", "-o", "lft.h5")
+        for delta, mass in ((-1, 0.5), (0.4, 1.2)):
+            self.check("lft.h5", mass, [delta], "arm.toml", "--equilibrium", "--set", f"mp={mass}", tolerance=1e-8)
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -189,6 +189,13 @@ class LinearModels(ProgramTest):
         with h5py.File(self.path("response.h5")) as f:
             self.assertEqual(f.attrs["time_unit"], "ms")
 
+    def test_labels_of_no_consistent_set_are_warned_of(self):
+        for mass, found in (("tonne", False), ("kg", True)):
+            self.write("set.toml", f'[units]\nlength = "mm"\nmass = "{mass}"\ntime = "s"\nforce = "N"\n' + self.SLIDER)
+            messages = self.bough("run", "set.toml", "-o", "set.h5").stderr
+            self.assertEqual("system.inconsistent-units" in messages, found, mass)
+            self.assertEqual("forces of 0.001 N" in messages, found, mass)
+
     def test_axes_and_pages(self):
         for name in ("plain", "quick"):
             self.bough("linearize", name + ".toml", "-o", name + ".h5")

@@ -7,42 +7,21 @@
 #include <utility>
 
 #include "embed/bough.hpp"
+#include "tests/support/toml_lines.hpp"
 
 namespace {
 
 /// A mass of 2 on a slide, pushed by an input: x'' = u / 2.
-const std::string kSlide = R"([parameters]
-mass = 2.0
-[[body]]
-name = "bob"
-mass = "$mass"
-inertia = [1.0, 1.0, 1.0]
-[[hinge]]
-name = "slide"
-type = "prismatic"
-child = "bob"
-axis = [1.0, 0.0, 0.0]
-[[sensor]]
-name = "x"
-type = "position"
-body = "bob"
-[[input]]
-name = "push"
-dims = "F"
-start = 1.0
+const std::string kSlide = bough::test::toml_lines(R"([parameters]; mass = 2.0
+[[body]]; name = "bob"; mass = "$mass"; inertia = [1.0, 1.0, 1.0]
+[[hinge]]; name = "slide"; type = "prismatic"; child = "bob"; axis = [1.0, 0.0, 0.0]
+[[sensor]]; name = "x"; type = "position"; body = "bob"
+[[input]]; name = "push"; dims = "F"; start = 1.0
 HOLD
-[[actuator]]
-name = "motor"
-type = "hinge"
-hinge = "slide"
-input = "push"
+[[actuator]]; name = "motor"; type = "hinge"; hinge = "slide"; input = "push"
 EVENT
-[simulation]
-duration = 10.0
-output_step = 0.1
-integrator = "rk4"
-step = 0.01
-)";
+[simulation]; duration = 10.0; output_step = 0.1; integrator = "rk4"; step = 0.01
+)");
 
 std::string make_slide(const std::string& hold = "", const std::string& event = "") {
   std::string text = kSlide;
@@ -161,47 +140,16 @@ TEST(Host, StatesGoOnBitForBit) {
 }
 
 /// A mass that falls onto a stop and rebounds, with events of its height.
-const std::string kBounce = R"([[body]]
-name = "ball"
-mass = 2.0
-[[hinge]]
-name = "drop"
-type = "prismatic"
-child = "ball"
-axis = [0.0, 0.0, 1.0]
-position = 1.0
+const std::string kBounce = bough::test::toml_lines(R"([[body]]; name = "ball"; mass = 2.0
+[[hinge]]; name = "drop"; type = "prismatic"; child = "ball"; axis = [0.0, 0.0, 1.0]; position = 1.0
 stops = {lower = 0.0, restitution = 0.7}
-[[sensor]]
-name = "z"
-type = "hinge_angle"
-hinge = "drop"
-[[sensor]]
-name = "v"
-type = "hinge_rate"
-hinge = "drop"
-[[controller]]
-name = "thruster"
-type = "relay"
-inputs = "z"
-value = 3.0
-on = 0.3
-off = 0.2
-[[actuator]]
-name = "motor"
-type = "hinge"
-hinge = "drop"
-input = "thruster"
-[[event]]
-name = "low"
-signal = "z"
-value = 0.25
-[simulation]
-duration = 3.0
-output_step = 0.01
-integrator = "rk4"
-step = 0.001
-gravity = [0.0, 0.0, -9.81]
-)";
+[[sensor]]; name = "z"; type = "hinge_angle"; hinge = "drop"
+[[sensor]]; name = "v"; type = "hinge_rate"; hinge = "drop"
+[[controller]]; name = "thruster"; type = "relay"; inputs = "z"; value = 3.0; on = 0.3; off = 0.2
+[[actuator]]; name = "motor"; type = "hinge"; hinge = "drop"; input = "thruster"
+[[event]]; name = "low"; signal = "z"; value = 0.25
+[simulation]; duration = 3.0; output_step = 0.01; integrator = "rk4"; step = 0.001; gravity = [0.0, 0.0, -9.81]
+)");
 
 TEST(Host, SlicesLocateImpactsAndSwitchesAsOneRun) {
   const auto model = bough::Model::load_text(kBounce);
@@ -287,29 +235,14 @@ TEST(Host, InputsHoldBeforeTheTimeAtWhichTheyWereSet) {
 }
 
 /// x'' = -4 x from x = 1.
-const std::string kSpring = R"([[body]]
-name = "bob"
-mass = 1.0
-inertia = [1.0, 1.0, 1.0]
-[[hinge]]
-name = "slide"
-type = "prismatic"
-child = "bob"
-axis = [1.0, 0.0, 0.0]
-stiffness = [4.0]
+const std::string kSpring = bough::test::toml_lines(R"([[body]]; name = "bob"; mass = 1.0; inertia = [1.0, 1.0, 1.0]
+[[hinge]]; name = "slide"; type = "prismatic"; child = "bob"; axis = [1.0, 0.0, 0.0]; stiffness = [4.0]
 position = [1.0]
-[[sensor]]
-name = "x"
-type = "position"
-body = "bob"
+[[sensor]]; name = "x"; type = "position"; body = "bob"
 EVENT
-[simulation]
-duration = 10.0
-output_step = 0.1
-step = 0.001
-relative_tolerance = 1e-11
+[simulation]; duration = 10.0; output_step = 0.1; step = 0.001; relative_tolerance = 1e-11
 absolute_tolerance = 1e-12
-)";
+)");
 
 std::string make_spring(const std::string& event = "") {
   std::string text = kSpring;

@@ -4,21 +4,11 @@
 #include <cmath>
 #include <numbers>
 
-#include "fe/statics/build_model.hpp"
-#include "modal/eigen.hpp"
-#include "tests/support/beam_decks.hpp"
+#include "tests/support/modal.hpp"
 
 namespace bough {
 namespace {
 
-using Eigen::Matrix3d;
-using Eigen::MatrixXd;
-using Eigen::Vector3d;
-using Eigen::VectorXd;
-using modal::EigenOptions;
-using modal::EigenPairs;
-using test::DeckMaker;
-using test::Section;
 constexpr double kPi = std::numbers::pi;
 
 EigenPairs solve(const records::Deck& deck, int num_modes, Diagnostics& diagnostics) {

@@ -11,18 +11,14 @@
 #include "fe/linear/fixed_number.hpp"
 #include "fe/linear/ordering.hpp"
 #include "fe/linear/symmetric_matrix.hpp"
-#include "fe/statics/build_model.hpp"
 #include "modal/eps_types.hpp"
 #include "modal/extraction.hpp"
 #include "modal/pencil.hpp"
-#include "tests/support/beam_decks.hpp"
+#include "tests/support/modal.hpp"
 
 namespace bough {
 namespace {
 
-using Eigen::MatrixXd;
-using Eigen::Vector3d;
-using Eigen::VectorXd;
 using modal::detail::BlockLanczosProblem;
 using modal::detail::EigenProblem;
 using modal::detail::solve_block_lanczos;

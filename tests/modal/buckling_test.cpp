@@ -7,20 +7,12 @@
 #include <vector>
 
 #include "fe/loads/loads.hpp"
-#include "fe/statics/build_model.hpp"
 #include "fe/statics/statics.hpp"
-#include "modal/eigen.hpp"
-#include "tests/support/beam_decks.hpp"
+#include "tests/support/modal.hpp"
 
 namespace bough {
 namespace {
 
-using Eigen::MatrixXd;
-using Eigen::Vector3d;
-using modal::EigenOptions;
-using modal::EigenPairs;
-using test::DeckMaker;
-using test::Section;
 constexpr double kPi = std::numbers::pi;
 
 EigenPairs solve(const records::Deck& deck, int num_modes, Diagnostics& diagnostics, std::optional<double> low = {},
@@ -108,16 +100,22 @@ TEST(Buckling, LoadThatOnlyStiffensHasNoPositiveFactor) {
   EXPECT_EQ(solve(maker.deck, 3, diagnostics, std::nullopt, 0.0).lambda.size(), 3);
 }
 
+/// A narrow strip of length 1 along x, in 40 elements.
+constexpr Section kStrip = {70e9, 27e9, 2700, 1e-4, 1e-6, 1e-10, 4e-10};
+DeckMaker make_strip() {
+  DeckMaker maker;
+  maker.add_section(1, kStrip);
+  maker.add_line(1, 1, Vector3d::Zero(), Vector3d::UnitX(), 40, Vector3d::UnitY());
+  return maker;
+}
+
 // Timoshenko & Gere, Theory of Elastic Stability, 6.3: narrow strip, cantilever under an end load.
 TEST(Buckling, LateralTorsionalCantilever) {
-  const Section strip = {70e9, 27e9, 2700, 1e-4, 1e-6, 1e-10, 4e-10};
-  DeckMaker maker;
-  maker.add_section(1, strip);
-  maker.add_line(1, 1, Vector3d::Zero(), Vector3d::UnitX(), 40, Vector3d::UnitY());
+  auto maker = make_strip();
   maker.fix(1, 123456);
   maker.add_load(10, 41, {0, -1, 0});
   const auto pairs = solve(maker.deck, 2);
-  const double expected = 4.0126 * std::sqrt(strip.E * strip.I2 * strip.G * strip.J);
+  const double expected = 4.0126 * std::sqrt(kStrip.E * kStrip.I2 * kStrip.G * kStrip.J);
   EXPECT_NEAR(std::abs(pairs.lambda(0)) / expected, 1, 2e-3);
   EXPECT_NEAR(pairs.lambda(0) / pairs.lambda(1), -1, 1e-6);  // up or down alike
   EXPECT_EQ(pairs.inertia_count, 2);
@@ -141,16 +139,13 @@ TEST(Buckling, LateralTorsionalCantilever) {
 // Equal end moments on simply supported ends that cannot twist: π √(EI GJ) / L. The moment is bending of the strong
 // axis; the end moments keep their directions.
 TEST(Buckling, LateralTorsionalPureBending) {
-  const Section strip = {70e9, 27e9, 2700, 1e-4, 1e-6, 1e-10, 4e-10};
-  DeckMaker maker;
-  maker.add_section(1, strip);
-  maker.add_line(1, 1, Vector3d::Zero(), Vector3d::UnitX(), 40, Vector3d::UnitY());
+  auto maker = make_strip();
   maker.fix(1, 1234);
   maker.fix(41, 234);
   maker.add_load(10, 1, {0, 0, 1}, true);
   maker.add_load(10, 41, {0, 0, -1}, true);
   const auto pairs = solve(maker.deck, 2);
-  const double expected = kPi * std::sqrt(strip.E * strip.I2 * strip.G * strip.J);
+  const double expected = kPi * std::sqrt(kStrip.E * kStrip.I2 * kStrip.G * kStrip.J);
   EXPECT_NEAR(std::abs(pairs.lambda(0)) / expected, 1, 2e-3);
 }
 

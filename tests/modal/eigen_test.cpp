@@ -11,20 +11,11 @@
 #include <cmath>
 #include <numbers>
 
-#include "fe/statics/build_model.hpp"
-#include "tests/support/beam_decks.hpp"
+#include "tests/support/modal.hpp"
 
 namespace bough {
 namespace {
 
-using Eigen::Matrix3d;
-using Eigen::MatrixXd;
-using Eigen::Vector3d;
-using Eigen::VectorXd;
-using modal::EigenOptions;
-using modal::EigenPairs;
-using test::DeckMaker;
-using test::Section;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 

@@ -8,24 +8,17 @@
 
 #include "fe/linear/fixed_number.hpp"
 #include "fe/loads/loads.hpp"
-#include "fe/statics/build_model.hpp"
 #include "fe/statics/statics.hpp"
 #include "formats/nastran/reader.hpp"
 #include "modal/bases/fixed_interface.hpp"
-#include "modal/eigen.hpp"
 #include "modal/eps_types.hpp"
 #include "modal/extraction.hpp"
-#include "tests/support/beam_decks.hpp"
+#include "tests/support/modal.hpp"
 
 namespace bough {
 namespace {
 
-using Eigen::MatrixXd;
-using Eigen::Vector3d;
-using Eigen::VectorXd;
 using linear::check_petsc;
-using modal::EigenOptions;
-using modal::EigenPairs;
 using modal::detail::kBlockLanczos;
 using modal::detail::kLowRank;
 

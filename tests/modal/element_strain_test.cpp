@@ -3,16 +3,12 @@
 
 #include <cmath>
 
-#include "fe/statics/build_model.hpp"
 #include "formats/nastran/reader.hpp"
-#include "modal/eigen.hpp"
 #include "modal/element_strain.hpp"
+#include "tests/support/modal.hpp"
 
 namespace bough {
 namespace {
-
-using Eigen::MatrixXd;
-using Eigen::VectorXd;
 
 modal::EigenPairs solve_deck(const std::string& bulk, int number, Diagnostics& diagnostics) {
   const auto deck =

@@ -6,24 +6,15 @@
 #include <random>
 
 #include "base/rotation.hpp"
-#include "fe/statics/build_model.hpp"
 #include "formats/nastran/reader.hpp"
-#include "modal/eigen.hpp"
-#include "tests/support/beam_decks.hpp"
+#include "tests/support/modal.hpp"
 
 namespace bough {
 namespace {
 
-using Eigen::Matrix3d;
-using Eigen::MatrixXd;
-using Eigen::Vector3d;
-using Eigen::VectorXd;
-using fe::MassKind;
 using modal::calc_exact_integrals;
 using modal::calc_momentum_integrals;
 using records::MassIntegrals;
-using test::DeckMaker;
-using test::Section;
 
 const Section kSection = {70e9, 27e9, 2700, 1e-4, 1e-9, 3e-9, 2e-9};
 
@@ -44,17 +35,6 @@ MatrixXd make_random(Eigen::Index rows, Eigen::Index columns) {
   return MatrixXd::NullaryExpr(rows, columns, [&] { return uniform(generator); });
 }
 
-double calc_difference(const MassIntegrals& a, const MassIntegrals& b) {
-  double largest = std::max((a.gamma0 - b.gamma0).cwiseAbs().maxCoeff(), (a.gamma1 - b.gamma1).cwiseAbs().maxCoeff());
-  for (std::size_t j = 0; j < a.gamma2.size(); ++j) {
-    largest = std::max(largest, (a.gamma2[j] - b.gamma2[j]).cwiseAbs().maxCoeff());
-    largest = std::max(largest, (a.gamma3[j] - b.gamma3[j]).cwiseAbs().maxCoeff());
-    for (std::size_t k = 0; k < a.gamma2.size(); ++k)
-      largest = std::max(largest, (a.gamma4[j][k] - b.gamma4[j][k]).cwiseAbs().maxCoeff());
-  }
-  return largest;
-}
-
 // The lumped mass of bars is one mass per grid: both sets are Σ m (...) to roundoff, and equal the sum written out.
 TEST(Integrals, LumpedIdentitiesAreExact) {
   Diagnostics diagnostics;
@@ -63,7 +43,7 @@ TEST(Integrals, LumpedIdentitiesAreExact) {
   const Vector3d S(0.5, -0.7, 0.2);
   const auto momentum = calc_momentum_integrals(model, MassKind::Lumped, Phi, S);
   const auto exact = calc_exact_integrals(model, MassKind::Lumped, Phi, S);
-  EXPECT_LT(calc_difference(momentum, exact), 1e-12);
+  EXPECT_LT(test::calc_difference(momentum, exact), 1e-12);
 
   MassIntegrals sum = momentum;
   sum.gamma0.setZero();
@@ -91,7 +71,7 @@ TEST(Integrals, LumpedIdentitiesAreExact) {
       }
     }
   }
-  EXPECT_LT(calc_difference(momentum, sum), 1e-12);
+  EXPECT_LT(test::calc_difference(momentum, sum), 1e-12);
 }
 
 /// ∫ |ω×(x + u) + u̇|² dm over a bar with grids at x_A, x_B: cubics across it, straight along it, and Nastran's mean of
@@ -182,12 +162,13 @@ TEST(Integrals, ExactSetIsThatOfTheTurnedVectors) {
       return fe::calc_mass_times(model, MassKind::Lumped, X);
     };
     const auto of_vectors = calc_exact_integrals(modal::NodalDofs::from_model(model), mass_times, Phi, S);
-    EXPECT_LT(calc_difference(calc_exact_integrals(model, MassKind::Lumped, Phi, S), of_vectors), 1e-12) << number;
+    EXPECT_LT(test::calc_difference(calc_exact_integrals(model, MassKind::Lumped, Phi, S), of_vectors), 1e-12)
+        << number;
     const auto momentum = calc_momentum_integrals(model, MassKind::Lumped, Phi, S);
     if (number++ > 0)
-      EXPECT_GT(calc_difference(momentum, of_vectors), 1e-3) << more;
+      EXPECT_GT(test::calc_difference(momentum, of_vectors), 1e-3) << more;
     else
-      EXPECT_LT(calc_difference(momentum, of_vectors), 1e-12);
+      EXPECT_LT(test::calc_difference(momentum, of_vectors), 1e-12);
   }
 }
 

@@ -11,24 +11,16 @@
 #include <utility>
 
 #include "fe/matrices/assembly.hpp"
-#include "fe/statics/build_model.hpp"
 #include "formats/nastran/reader.hpp"
 #include "modal/bases/fixed_interface.hpp"
-#include "modal/eigen.hpp"
 #include "modal/eps_types.hpp"
 #include "modal/extraction.hpp"
 #include "modal/pencil.hpp"
 #include "modal/pencil_solver.hpp"
-#include "tests/support/beam_decks.hpp"
+#include "tests/support/modal.hpp"
 
 namespace bough {
 namespace {
-
-using Eigen::MatrixXd;
-using Eigen::Vector3d;
-using Eigen::VectorXd;
-using modal::EigenOptions;
-using modal::EigenPairs;
 
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
 

@@ -8,15 +8,12 @@
 #include <numeric>
 #include <random>
 
-#include "fe/statics/build_model.hpp"
-#include "tests/support/beam_decks.hpp"
+#include "tests/support/modal.hpp"
 
 namespace bough {
 namespace {
 
-using Eigen::MatrixXd;
 using Eigen::MatrixXi;
-using Eigen::Vector3d;
 using modal::MatrixModel;
 using modal::NodalDofs;
 
@@ -64,17 +61,6 @@ Given make_given() {
   return {std::move(model), Phi, std::move(fe_model)};
 }
 
-double calc_difference(const records::MassIntegrals& a, const records::MassIntegrals& b) {
-  double largest = std::max((a.gamma0 - b.gamma0).cwiseAbs().maxCoeff(), (a.gamma1 - b.gamma1).cwiseAbs().maxCoeff());
-  for (std::size_t j = 0; j < a.gamma2.size(); ++j) {
-    largest = std::max(largest, (a.gamma2[j] - b.gamma2[j]).cwiseAbs().maxCoeff());
-    largest = std::max(largest, (a.gamma3[j] - b.gamma3[j]).cwiseAbs().maxCoeff());
-    for (std::size_t k = 0; k < a.gamma2.size(); ++k)
-      largest = std::max(largest, (a.gamma4[j][k] - b.gamma4[j][k]).cwiseAbs().maxCoeff());
-  }
-  return largest;
-}
-
 TEST(MatrixBody, ShuffledDofsGiveTheIntegralsOfTheModel) {
   const auto given = make_given();
   const Vector3d S(0.4, -0.2, 0.9);
@@ -83,13 +69,13 @@ TEST(MatrixBody, ShuffledDofsGiveTheIntegralsOfTheModel) {
   Diagnostics diagnostics;
   const auto body = calc_matrix_body(model, {1, 4}, diagnostics);
   const auto kind = fe::MassKind::Consistent;
-  EXPECT_LT(
-      calc_difference(body.consistent, modal::calc_momentum_integrals(given.fe_model, kind, given.Phi_of_model, S)),
-      1e-13);
+  EXPECT_LT(test::calc_difference(body.consistent,
+                                  modal::calc_momentum_integrals(given.fe_model, kind, given.Phi_of_model, S)),
+            1e-13);
   // A matrix does not tell where the mass between grids is: "exact" is by e×φ at the grids, and the body says so.
   const auto mass_times = [&](const MatrixXd& X) { return fe::calc_mass_times(given.fe_model, kind, X); };
-  EXPECT_LT(calc_difference(body.exact, modal::calc_exact_integrals(NodalDofs::from_model(given.fe_model), mass_times,
-                                                                    given.Phi_of_model, S)),
+  EXPECT_LT(test::calc_difference(body.exact, modal::calc_exact_integrals(NodalDofs::from_model(given.fe_model),
+                                                                          mass_times, given.Phi_of_model, S)),
             1e-13);
   EXPECT_EQ(body.masses, "nodal momenta");
   EXPECT_EQ(body.phi[1], given.Phi_of_model.middleRows(18, 6));
@@ -120,8 +106,8 @@ TEST(MatrixBody, AMissingDofCountsAsZero) {
   cut.dofs.row = cut.dofs.row.unaryExpr([&](int r) { return r == row ? -1 : r == last ? row : r; });
   Diagnostics diagnostics;
   const auto a = calc_matrix_body(cut, {3}, diagnostics), b = calc_matrix_body(zeroed, {3}, diagnostics);
-  EXPECT_LT(calc_difference(a.consistent, b.consistent), 1e-14);
-  EXPECT_LT(calc_difference(a.exact, b.exact), 1e-14);
+  EXPECT_LT(test::calc_difference(a.consistent, b.consistent), 1e-14);
+  EXPECT_LT(test::calc_difference(a.exact, b.exact), 1e-14);
   EXPECT_TRUE(a.phi[0].row(1).isZero(0));
   EXPECT_EQ(a.phi[0], b.phi[0]);
 }

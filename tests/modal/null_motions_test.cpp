@@ -4,20 +4,15 @@
 #include <algorithm>
 #include <cmath>
 
-#include "fe/statics/build_model.hpp"
 #include "formats/nastran/reader.hpp"
-#include "modal/eigen.hpp"
 #include "modal/extraction.hpp"
 #include "modal/mode_range.hpp"
 #include "modal/null_motions.hpp"
+#include "tests/support/modal.hpp"
 
 namespace bough {
 namespace {
 
-using Eigen::MatrixXd;
-using Eigen::VectorXd;
-using modal::EigenOptions;
-using modal::EigenPairs;
 using modal::detail::ModeRange;
 
 fe::Model build(const std::string& text) {

@@ -5,19 +5,13 @@
 #include <cmath>
 
 #include "fe/linear/residual.hpp"
-#include "fe/statics/build_model.hpp"
 #include "formats/nastran/reader.hpp"
-#include "modal/eigen.hpp"
 #include "modal/normalize.hpp"
 #include "modal/roots.hpp"
+#include "tests/support/modal.hpp"
 
 namespace bough {
 namespace {
-
-using Eigen::MatrixXd;
-using Eigen::VectorXd;
-using modal::EigenOptions;
-using modal::EigenPairs;
 
 fe::Model build(const std::string& text, Diagnostics& diagnostics) {
   const auto deck = nastran::read_deck_text(text, "deck.bdf", {}, diagnostics);

@@ -6,18 +6,14 @@
 #include "fe/linear/residual.hpp"
 #include "fe/linear/symmetric_matrix.hpp"
 #include "fe/matrices/wide_part.hpp"
-#include "fe/statics/build_model.hpp"
 #include "fe/statics/preload.hpp"
 #include "fe/statics/static_case.hpp"
 #include "formats/nastran/reader.hpp"
 #include "modal/bases/fixed_interface.hpp"
-#include "modal/eigen.hpp"
+#include "tests/support/modal.hpp"
 
 namespace bough {
 namespace {
-
-using Eigen::MatrixXd;
-using Eigen::VectorXd;
 
 struct Plate {
   int n = 6;  ///< elements along an edge

@@ -6,18 +6,10 @@
 #include <cmath>
 #include <numbers>
 
-#include "fe/statics/build_model.hpp"
-#include "modal/eigen.hpp"
-#include "tests/support/beam_decks.hpp"
+#include "tests/support/modal.hpp"
 
 namespace bough {
 namespace {
-
-using Eigen::MatrixXd;
-using Eigen::Vector3d;
-using modal::EigenOptions;
-using modal::EigenPairs;
-using test::DeckMaker;
 
 double to_hz(double lambda) { return std::sqrt(lambda) / (2 * std::numbers::pi); }
 

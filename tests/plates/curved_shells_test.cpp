@@ -49,6 +49,10 @@ void fix_edges(DeckText& text, const CurvedMesh& m, const char* edges, const cha
   }
 }
 
+void fix_edges(DeckText& text, const CurvedMesh& m, std::initializer_list<std::pair<const char*, const char*>> all) {
+  for (const auto& [edges, components] : all) fix_edges(text, m, edges, components);
+}
+
 std::string show(double value) {
   char text[40];
   std::snprintf(text, sizeof text, "%.15E", value);
@@ -175,9 +179,7 @@ TEST(CurvedShells, ScordelisLoRoof) {
       DeckText text;
       add_mesh(text, mesh);
       text.add_plate(4.32e8, 0.0, 36.7347, 0.25);
-      fix_edges(text, mesh, "E", "23");
-      fix_edges(text, mesh, "W", "156");
-      fix_edges(text, mesh, "S", "246");
+      fix_edges(text, mesh, {{"E", "23"}, {"W", "156"}, {"S", "246"}});
       text.add("PARAM", "COUPMASS", 1);
       text.add("GRAV", 10, 0, "9.8", "0.", "0.", "-1.");
       const VectorXd w = -solve(text, mesh.get_id(0, 2 * n), 3);
@@ -197,10 +199,7 @@ TEST(CurvedShells, PinchedCylinder) {
       DeckText text;
       add_mesh(text, mesh);
       text.add_plate(3e6, 0.3, 0, 3);
-      fix_edges(text, mesh, "E", "234");
-      fix_edges(text, mesh, "W", "156");
-      fix_edges(text, mesh, "S", "246");
-      fix_edges(text, mesh, "N", "345");
+      fix_edges(text, mesh, {{"E", "234"}, {"W", "156"}, {"S", "246"}, {"N", "345"}});
       text.add("FORCE", 10, 1, 0, "1.", "0.", "0.", "-.25");
       const VectorXd w = -solve(text, 1, 3);
       const std::string what = std::string(tri ? "CTRIA6" : "CQUAD8") + " pinched " + std::to_string(n);

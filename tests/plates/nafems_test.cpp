@@ -1,5 +1,6 @@
 /// NAFEMS selected natural-frequency benchmarks (R0015): E = 200 GPa, ν = 0.3, ρ = 8000. Where the printed targets and
 /// exact thin-plate theory differ, the theory is the oracle and the printed values are shown beside.
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -22,38 +23,43 @@ PlateMesh make_square(int n) {
   return {n, n, false, [](double a, double b) { return Vector3d(10 * a, 10 * b, 0); }};
 }
 
+/// Frequencies calc(n) of meshes from coarse to fine, the finest within `tolerance`.
+template <class Calc>
+void expect_converged(const std::string& name, const std::array<int, 3>& meshes, const std::vector<double>& exact,
+                      double tolerance, const Calc& calc) {
+  VectorXd hz;
+  for (const int n : meshes) {
+    hz = calc(n);
+    report(name + " " + std::to_string(n), hz, exact);
+  }
+  expect_close(name, hz, exact, tolerance);
+}
+
 TEST(Nafems, FV12FreeThinSquarePlate) {
   const std::vector<double> exact = {1.6216, 2.3595, 2.9224, 4.1902, 4.1902, 7.3560, 7.3560, 7.668};
-  for (int n : {10, 20, 40}) {
-    const VectorXd hz = calc_elastic_hz(make_plate(make_square(n), 0.05, "126"), 8, 3);
-    report("FV12 " + std::to_string(n), hz, exact);
-    if (n == 40) expect_close("FV12", hz, exact, 0.005);
-  }
+  expect_converged("FV12", {10, 20, 40}, exact, 0.005,
+                   [](int n) { return calc_elastic_hz(make_plate(make_square(n), 0.05, "126"), 8, 3); });
 }
 
 TEST(Nafems, FV13SimplySupportedThinSquarePlate) {
   const std::vector<double> exact = {2.37672, 5.94181, 5.94181, 9.50689, 11.88361, 11.88361, 15.44870, 15.44870};
-  for (int n : {8, 16, 32}) {
+  expect_converged("FV13", {8, 16, 32}, exact, 0.005, [](int n) {
     const auto mesh = make_square(n);
     auto text = make_plate(mesh, 0.05, "126");
     text.fix_edges(mesh, "WE", "34");
     text.fix_edges(mesh, "SN", "35");
-    const VectorXd hz = calc_elastic_hz(text, 8);
-    report("FV13 " + std::to_string(n), hz, exact);
-    if (n == 32) expect_close("FV13", hz, exact, 0.005);
-  }
+    return calc_elastic_hz(text, 8);
+  });
 }
 
 TEST(Nafems, FV16CantileveredThinSquarePlate) {
   const std::vector<double> exact = {0.41793, 1.02422, 2.56276, 3.27490, 3.72718, 6.52422};
-  for (int n : {8, 16, 32}) {
+  expect_converged("FV16", {8, 16, 32}, exact, 0.005, [](int n) {
     const auto mesh = make_square(n);
     auto text = make_plate(mesh, 0.05, "126");
     text.fix_edges(mesh, "W", "345");
-    const VectorXd hz = calc_elastic_hz(text, 6);
-    report("FV16 " + std::to_string(n), hz, exact);
-    if (n == 32) expect_close("FV16", hz, exact, 0.005);
-  }
+    return calc_elastic_hz(text, 6);
+  });
 }
 
 /// Sides 10, angle 45 degrees, clamped; the consistent mass has the rotary inertia that the thick plate needs.
@@ -71,12 +77,7 @@ VectorXd calc_rhombic(int n, double t) {
 /// targets 7.938, 12.835, 17.941, 19.133, 24.009, 27.922 lie 0.4 to 1.3 % above it, as a coarse mesh would.
 TEST(Nafems, FV15ClampedThinRhombicPlate) {
   const std::vector<double> exact = {7.9038, 12.8227, 17.8577, 18.9320, 23.6927, 27.6322};
-  std::vector<VectorXd> ladder;
-  for (int n : {16, 32, 64}) {
-    ladder.push_back(calc_rhombic(n, 0.05));
-    report("FV15 " + std::to_string(n), ladder.back(), exact);
-  }
-  expect_close("FV15", ladder.back(), exact, 0.005);
+  expect_converged("FV15", {16, 32, 64}, exact, 0.005, [](int n) { return calc_rhombic(n, 0.05); });
 }
 
 /// The oracle is the Ritz series of the same plate theory (shear factor 5/6, rotary inertia). The printed targets
@@ -84,26 +85,20 @@ TEST(Nafems, FV15ClampedThinRhombicPlate) {
 /// the solid of the same shape has 134.7, 204.2, 270.3, 284.4, 340.7, 383.9.
 TEST(Nafems, FV22ClampedThickRhombicPlate) {
   const std::vector<double> exact = {133.403, 201.912, 266.919, 280.794, 336.118, 378.328};
-  for (int n : {10, 20, 40}) {
-    const VectorXd hz = calc_rhombic(n, 1.0);
-    report("FV22 " + std::to_string(n), hz, exact);
-    if (n == 40) expect_close("FV22", hz, exact, 0.01);
-  }
+  expect_converged("FV22", {10, 20, 40}, exact, 0.01, [](int n) { return calc_rhombic(n, 1.0); });
 }
 
 /// 10 long, 5 wide at the root and 1 at the tip, in plane. The Ritz series agrees with the printed targets 44.623,
 /// 130.03, 162.70, 246.05, 379.90, 391.44 to 5e-4.
 TEST(Nafems, FV32CantileveredTaperedMembrane) {
   const std::vector<double> exact = {44.617, 130.011, 162.689, 245.988, 379.719, 391.406};
-  for (int r : {1, 2, 4}) {
+  expect_converged("FV32", {1, 2, 4}, exact, 0.005, [](int r) {
     const PlateMesh mesh{16 * r, 8 * r, false,
                          [](double a, double b) { return Vector3d(10 * a, (5 - 4 * a) * (b - 0.5), 0); }};
     auto text = make_plate(mesh, 0.05, "345");
     text.fix_edges(mesh, "W", "126");
-    const VectorXd hz = calc_elastic_hz(text, 6);
-    report("FV32 x" + std::to_string(r), hz, exact);
-    if (r == 4) expect_close("FV32", hz, exact, 0.005);
-  }
+    return calc_elastic_hz(text, 6);
+  });
 }
 
 /// n x n x m bricks of 10 x 10 x 1, w = 0 along the lower edges; with midside nodes when quadratic.

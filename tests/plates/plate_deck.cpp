@@ -84,28 +84,22 @@ VectorXd calc_elastic_hz(const DeckText& text, int num_elastic, int num_rigid) {
   return pairs.lambda.tail(pairs.lambda.size() - pairs.num_rigid).cwiseSqrt() / (2 * std::numbers::pi);
 }
 
+PlateStatics::PlateStatics(const DeckText& text)
+    : deck(read_plate_deck(text)),
+      model(fe::build_model(deck, {}, diagnostics)),
+      load(calc_applied_load(model, deck, 10, diagnostics)),
+      u(fe::StaticSolver(model, fe::assemble_stiffness(model, fe::DofSet::Free)).solve(load.F)) {}
+
 VectorXd calc_load_factors(const DeckText& text, int num) {
-  const auto deck = read_plate_deck(text);
-  Diagnostics diagnostics;
-  const auto model = fe::build_model(deck, {}, diagnostics);
-  const auto K = fe::assemble_stiffness(model, fe::DofSet::Free);
-  const fe::StaticSolver solver(model, K);
-  const auto load = calc_applied_load(model, deck, 10, diagnostics);
-  const MatrixXd u = solver.solve(load.F);
+  PlateStatics plate(text);
   modal::EigenOptions options;
   options.num_modes = num;
-  return calc_buckling_modes(model, load, u.col(0), options, diagnostics).lambda;
+  return calc_buckling_modes(plate.model, plate.load, plate.u.col(0), options, plate.diagnostics).lambda;
 }
 
 double calc_compliance(const DeckText& text) {
-  const auto deck = read_plate_deck(text);
-  Diagnostics diagnostics;
-  const auto model = fe::build_model(deck, {}, diagnostics);
-  const auto K = fe::assemble_stiffness(model, fe::DofSet::Free);
-  const fe::StaticSolver solver(model, K);
-  const VectorXd f = calc_load(model, deck, 10, diagnostics);
-  const MatrixXd u = solver.solve(f);
-  return f.dot(u.col(0));
+  const PlateStatics plate(text);
+  return plate.load.F.col(0).dot(plate.u.col(0));
 }
 
 void report(const std::string& what, const VectorXd& computed, const std::vector<double>& target) {

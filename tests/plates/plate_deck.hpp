@@ -9,6 +9,7 @@
 
 #include <Eigen/Dense>
 
+#include "fe/loads/loads.hpp"
 #include "fe/statics/statics.hpp"
 #include "formats/nastran/reader.hpp"
 #include "modal/eigen.hpp"
@@ -74,6 +75,16 @@ struct Solved {
 records::Deck read_plate_deck(const DeckText& text);
 /// Modes of the bulk data (its only SPC set), elastic ones only in hz.
 VectorXd calc_elastic_hz(const DeckText& text, int num_elastic, int num_rigid = 0);
+/// The displacements under set 10.
+struct PlateStatics {
+  explicit PlateStatics(const DeckText& text);
+
+  Diagnostics diagnostics;
+  records::Deck deck;
+  fe::Model model;
+  fe::AppliedLoad load;
+  MatrixXd u;
+};
 /// Load factors of set 10.
 VectorXd calc_load_factors(const DeckText& text, int num);
 /// The work of set 10 on its own displacement (the tip displacement for a unit load).

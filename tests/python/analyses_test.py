@@ -50,6 +50,32 @@ class Analyses(InExample):
         self.assertNotIn("subcases/1/displacement", one)
         np.testing.assert_array_equal(one["subcases/2/displacement"], found["subcases/2/displacement"])
 
+    def assert_same_listings(self, deck, write, *words):
+        """f06 and op2 of a function are the files of the command, but for the time of day."""
+        write(f06="p.f06", op2="p.op2")
+        subprocess.run([PROGRAM, *words, deck, "--f06", "c.f06", "--op2", "c.op2", "-q"], check=True)
+        for suffix in ("f06", "op2"):
+            with open(f"p.{suffix}", "rb") as found, open(f"c.{suffix}", "rb") as expected:
+                self.assertEqual(found.read(), expected.read(), suffix)
+        with self.assertRaises(bough.InputError) as caught:
+            write(f06="same", op2="same")
+        self.assertEqual([message.id for message in caught.exception.messages], ["cli.same-output"])
+        with self.assertRaises(bough.InputError) as caught:
+            write(f06=deck)
+        self.assertEqual([message.id for message in caught.exception.messages], ["cli.output-is-input"])
+
+    def test_listings_are_those_of_the_command(self):
+        with open("boom.bdf", encoding="utf-8") as f:
+            text = f.read()
+        bulk = text[text.index("BEGIN BULK"):].replace("ENDDATA", "FORCE,7,11,,1.,0.,1.,0.\nENDDATA")
+        self.write("s.bdf", "SOL 101\nCEND\nSPC = 1\nLOAD = 7\nDISP = ALL\nFORCE = ALL\n" + bulk)
+        self.assert_same_listings("s.bdf", lambda **files: bough.static("s.bdf", **files), "static")
+        self.write("m.bdf", "SOL 103\nCEND\nSPC = 1\nMETHOD = 10\nDISP = ALL\n" +
+                   bulk.replace("ENDDATA", "EIGRL,10,,,4\nENDDATA"))
+        self.assert_same_listings("m.bdf", lambda **files: bough.modes("m.bdf", **files), "modes")
+        with self.assertRaisesRegex(ValueError, "not load factors"):
+            bough.modes("m.bdf", buckling=True, f06="b.f06")
+
     def test_every_choice_of_reduce(self):
         options = {"interface": [11], "loads": ["tip=6:2", "9:13"], "recover": "17-25", "strain_energy": True,
                    "full": True, "name": "rod", "damping": 0.02, "origin": [0.5, 0.0, 0.0], "solver": "lapack"}

@@ -87,17 +87,45 @@ class Commands(InExample):
         with self.assertRaisesRegex(bough.InputError, "cli.unknown-channel"):
             bough.export("run.h5", "csv", channels="tap")
 
-    def test_compare(self):
-        bough.reduce("boom.toml").save("a.h5")
-        bough.reduce("boom.toml", modes=4).save("b.h5")
-        found = bough.compare("a.h5", "b.h5")
-        self.command("compare", "a.h5", "b.h5", "-o", "c.h5")
+    def assert_same_comparison(self, found, *words):
+        """The arrays are those of the file that `bough compare` with these words writes."""
+        self.command("compare", *words, "-o", "c.h5")
         expected = bough.reader.read("c.h5")
         self.assertEqual(sorted(found), sorted(expected))
         for name in found:
             if isinstance(found[name], np.ndarray):
                 np.testing.assert_array_equal(np.ravel(found[name]), np.ravel(expected[name]), err_msg=name)
+
+    def test_compare(self):
+        bough.reduce("boom.toml").save("a.h5")
+        bough.reduce("boom.toml", modes=4).save("b.h5")
+        found = bough.compare("a.h5", "b.h5")
+        self.assert_same_comparison(found, "a.h5", "b.h5")
         np.testing.assert_allclose(np.diag(found["mac"]), 1, atol=1e-9)
+
+    def test_compare_with_a_test(self):
+        self.command("modes", "boom.bdf", "-n", "4", "-o", "m.h5")
+        bough.export("m.h5", "uff", "t.unv")
+        found = bough.compare("m.h5", test="t.unv")
+        self.assert_same_comparison(found, "m.h5", "--test", "t.unv")
+        np.testing.assert_allclose(np.diag(found["mac"]), 1, atol=1e-6)
+        self.assertEqual(found["test_analysis_model"], ["serep"])
+        for tam in ("guyan", "irs"):
+            found = bough.compare("m.h5", test="t.unv", tam=tam, deck="boom.bdf")
+            self.assert_same_comparison(found, "m.h5", "--test", "t.unv", "--tam", tam, "--deck", "boom.bdf")
+            self.assertEqual(found["test_analysis_model"], [tam])
+        for words in ({"tam": "irs"}, {"deck": "boom.bdf"}, {"test": "t.unv", "tam": "guyan"},
+                      {"test": "t.unv", "sensors": 3}):
+            with self.subTest(words), self.assertRaises(ValueError):
+                bough.compare("m.h5", **words)
+
+    def test_places_of_sensors(self):
+        self.command("modes", "boom.bdf", "-n", "4", "-o", "m.h5")
+        found = bough.compare("m.h5", sensors=5)
+        self.assert_same_comparison(found, "m.h5", "--sensors", "5")
+        self.assertEqual(found["dofs"].shape, (5, 2))
+        with self.assertRaisesRegex(bough.InputError, "cli.bad-range"):
+            bough.compare("m.h5", sensors=-1)
 
     def test_plot_and_report(self):
         self.make_files()

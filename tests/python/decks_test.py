@@ -62,6 +62,11 @@ class Decks(InFolder):
         self.run_command("frequency", "shaken.bdf", "--grid", "11", "-o", "f.h5")
         self.assert_same_file(found, "f.h5")
         self.assertEqual(found["subcases/1/displacement/real"].shape[0], 21)
+        bough.frequency("shaken.bdf", grids=11, f06="p.f06", op2="p.op2")
+        self.run_command("frequency", "shaken.bdf", "--grid", "11", "--f06", "c.f06", "--op2", "c.op2")
+        for suffix in ("f06", "op2"):
+            with open(f"p.{suffix}", "rb") as own, open(f"c.{suffix}", "rb") as expected:
+                self.assertEqual(own.read(), expected.read(), suffix)
         direct = bough.frequency("shaken.bdf", direct=True)
         self.assertEqual(direct.attributes["subcases/1"]["method"], "direct")
         with self.assertRaisesRegex(ValueError, "leave out modal"):

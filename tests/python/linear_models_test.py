@@ -1,5 +1,6 @@
 """Linear models in Python: into SciPy, and with uncertain parameters."""
 import unittest
+import warnings
 
 import numpy as np
 
@@ -47,6 +48,13 @@ class LinearModels(InFolder):
                 self.assertLess(np.abs(model.close(delta).poles - pole).min(), 1e-9)
         with self.assertRaisesRegex(ValueError, "expected 2 values, found 1"):
             model.close([0.5])
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            model.close([1.0, -1.0])
+            self.assertEqual(caught, [])
+            model.close([0.0, 3.0])
+        self.assertIn("delta of c is 3, outside [-1, 1]", str(caught[0].message))
+        self.assertIn("beyond the range 0 to 4", str(caught[0].message))
         with self.assertRaises(bough.InputError):
             system.linearize(uncertain={"other": (1, 2)})
 

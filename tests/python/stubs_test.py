@@ -70,6 +70,13 @@ def get_type(annotation):
     return re.sub(r"Annotated\[(list\[\w+\]).*\]$", r"\1", text)
 
 
+def get_read_only(node):
+    """The T of a property `name: _Read[T]` of a stub; None for others."""
+    annotation = node.annotation if isinstance(node, ast.AnnAssign) else None
+    is_read_only = isinstance(annotation, ast.Subscript) and annotation.value.id == "_Read"
+    return annotation.slice if is_read_only else None
+
+
 VAGUE = {"object", "list", "tuple", "numpy.ndarray", "array", "iterator", "Iterator"}
 
 
@@ -101,22 +108,21 @@ class Stubs(unittest.TestCase):
 
     def compare_member(self, member, stub):
         if isinstance(member, property):
-            if isinstance(stub, ast.AnnAssign):
-                self.assertIsNotNone(member.fset)
-                return
-            self.assertEqual([d.id for d in stub.decorator_list], ["property"])
-            self.compare_result(parse_doc(member.fget.__doc__), stub)
+            read_only = get_read_only(stub)
+            self.assertEqual(member.fset is None, read_only is not None)
+            if read_only:
+                self.compare_type(parse_doc(member.fget.__doc__), read_only)
             return
         said = parse_doc(member.__doc__)
         if not any(arg.arg.startswith("arg") for arg in said.args.args):  # without a name there
             self.assertEqual(describe_stub(said, 1), describe_stub(stub, 1))
         else:
             self.assertEqual(len(describe_stub(said, 1)), len(describe_stub(stub, 1)))
-        self.compare_result(said, stub)
+        self.compare_type(said, stub.returns)
 
-    def compare_result(self, said, stub):
+    def compare_type(self, said, annotation):
         if get_type(said.returns) not in VAGUE:
-            self.assertEqual(get_type(said.returns), get_type(stub.returns))
+            self.assertEqual(get_type(said.returns), get_type(annotation))
 
     def test_compiled_functions(self):
         for name, node in collect(read_stub("_bough.pyi").body).items():
@@ -124,7 +130,7 @@ class Stubs(unittest.TestCase):
                 with self.subTest(name):
                     said = parse_doc(getattr(_bough, name).__doc__)
                     self.assertEqual(describe_stub(said), describe_stub(node))
-                    self.compare_result(said, node)
+                    self.compare_type(said, node.returns)
 
     def test_python_functions(self):
         compiled = collect(read_stub("_bough.pyi").body)
@@ -144,17 +150,18 @@ class Stubs(unittest.TestCase):
         methods = {name: member for name, member in vars(own).items()
                    if inspect.isfunction(member) or isinstance(member, (property, classmethod))}
         public = {name for name in methods if not name.startswith("_")}
-        self.assertEqual(public, {name for name, d in declared.items()
-                                  if isinstance(d, ast.FunctionDef) and not name.startswith("_")})
+        self.assertEqual(public, {name for name, d in declared.items() if not name.startswith("_") and
+                                  (isinstance(d, ast.FunctionDef) or get_read_only(d))})
         for name, member in methods.items():
             if name not in declared:
                 continue
             with self.subTest(name):
-                decorators = [d.id for d in declared[name].decorator_list]
-                self.assertEqual("property" in decorators, isinstance(member, property))
-                self.assertEqual("classmethod" in decorators, isinstance(member, classmethod))
+                decorators = [d.id for d in getattr(declared[name], "decorator_list", [])]
+                is_read_only = get_read_only(declared[name]) is not None or "property" in decorators
+                self.assertEqual(isinstance(member, property), is_read_only)
                 if isinstance(member, property):
                     continue
+                self.assertEqual("classmethod" in decorators, isinstance(member, classmethod))
                 function = member.__func__ if isinstance(member, classmethod) else member
                 self.assertEqual(describe_function(function), describe_stub(declared[name]))
 

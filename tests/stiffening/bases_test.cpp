@@ -5,27 +5,19 @@
 #include <numbers>
 
 #include "stiffening/reduce.hpp"
-#include "tests/support/beam_decks.hpp"
+#include "tests/support/modal.hpp"
 
 namespace bough {
 namespace {
 
-using Eigen::MatrixXd;
-using Eigen::Vector3d;
-using Eigen::VectorXd;
 using records::BodyBasis;
 using records::BodyFrame;
 using records::BodySpec;
 using records::FlexBody;
 using records::ModeKind;
 
-const test::Section kSection = {70e9, 27e9, 2700, 1e-4, 1e-9, 3e-9, 2e-9};
-
 test::DeckMaker make_frame() {
-  test::DeckMaker maker;
-  maker.add_section(1, kSection, true);
-  maker.add_line(1, 1, {0.3, 0.1, -0.2}, {1.3, 0.4, 0}, 8, Vector3d::UnitY());
-  maker.add_line(1, 101, {0.8, 0.25, -0.1}, {1.0, 1.0, 0.5}, 5, Vector3d::UnitX(), 5);
+  auto maker = test::make_space_frame();
   maker.add_mass(900, 106, 0.2);
   maker.add_load(30, 106, {0, 2, 1});
   maker.fix(1, 123456);
@@ -128,12 +120,7 @@ TEST(Bases, FrameOnANodeIsTheClampedBody) {
 TEST(Bases, FrameOnANodeThatHangsOnOthers) {
   auto maker = make_frame();
   maker.add_grid(500, {1.3, 0.5, 0});
-  records::Rbe2 element;
-  element.id = 700;
-  element.gn = 9;
-  element.cm = 63;
-  element.gm = {500};
-  maker.deck.rbe2.push_back(element);
+  test::add_rbe2(maker, 9, 500);
   auto spec = make_spec(BodyFrame::Node);
   spec.frame_nodes = {500};
   spec.interface_nodes = {106};
@@ -253,7 +240,7 @@ TEST(Bases, Warnings) {
 // A straight line of bars has no inertia about itself: its twist under a moment at the end is no mode.
 TEST(Bases, FlexibilityWithoutMassIsTold) {
   test::DeckMaker line;
-  line.add_section(1, kSection, false);
+  line.add_section(1, test::kFrameSection, false);
   line.add_line(1, 1, {0, 0, 0}, {1, 0, 0}, 8, Vector3d::UnitY());
   line.fix(1, 123456);
   for (const bool is_bent : {false, true}) {

@@ -7,12 +7,10 @@
 
 #include "stiffening/reduce.hpp"
 #include "tests/stiffening/all_kinds.hpp"
+#include "tests/support/modal.hpp"
 
 namespace bough {
 namespace {
-
-using Eigen::MatrixXd;
-using Eigen::VectorXd;
 
 // A strip along x in the plane of rotation, spun about z, clamped at x = kRoot.
 constexpr double kRoot = 0.5, kLength = 1.6, kChord = 0.1, kThick = 0.004, kRho = 2700;

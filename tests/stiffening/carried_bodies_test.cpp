@@ -7,22 +7,15 @@
 
 #include "base/rotation.hpp"
 #include "fe/loads/loads.hpp"
-#include "fe/statics/build_model.hpp"
 #include "fe/statics/static_case.hpp"
 #include "formats/nastran/reader.hpp"
 #include "modal/integrals.hpp"
 #include "stiffening/reduce.hpp"
 #include "tests/stiffening/all_kinds.hpp"
+#include "tests/support/modal.hpp"
 
 namespace bough {
 namespace {
-
-using Eigen::Matrix3d;
-using Eigen::MatrixXd;
-using Eigen::Vector3d;
-using Eigen::VectorXd;
-using fe::MassKind;
-using records::InertialLoad;
 
 constexpr int kWz2 = static_cast<int>(InertialLoad::wz2);
 

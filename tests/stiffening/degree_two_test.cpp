@@ -1,16 +1,13 @@
 /// Degree 2 of the work of loads at third order against K_G2: equation (7) of docs/theory/third-order.md.
 #include <gtest/gtest.h>
 
-#include "fe/statics/build_model.hpp"
 #include "fe/statics/statics.hpp"
 #include "stiffening/reduce.hpp"
 #include "tests/stiffening/all_kinds.hpp"
+#include "tests/support/modal.hpp"
 
 namespace bough {
 namespace {
-
-using Eigen::MatrixXd;
-using Eigen::VectorXd;
 
 struct Case {
   const char* name;

@@ -5,25 +5,15 @@
 
 #include "base/rotation.hpp"
 #include "fe/loads/second_order.hpp"
-#include "fe/statics/build_model.hpp"
 #include "stiffening/reduce.hpp"
-#include "tests/support/beam_decks.hpp"
+#include "tests/support/modal.hpp"
 #include "tests/support/threads.hpp"
 
 namespace bough {
 namespace {
 
-using Eigen::Matrix3d;
-using Eigen::MatrixXd;
-using Eigen::Vector3d;
-using Eigen::VectorXd;
-
 using fe::DofSet;
-using fe::MassKind;
-using records::InertialLoad;
 using stiffening::calc_generalized_geometric_stiffness;
-using test::DeckMaker;
-using test::Section;
 
 /// A frame in space without any support.
 DeckMaker make_free_frame() {

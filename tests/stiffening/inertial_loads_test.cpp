@@ -2,20 +2,12 @@
 #include <gtest/gtest.h>
 
 #include "base/rotation.hpp"
-#include "fe/statics/build_model.hpp"
 #include "stiffening/reduce.hpp"
-#include "tests/support/beam_decks.hpp"
+#include "tests/support/modal.hpp"
 
 namespace bough {
 namespace {
 
-using Eigen::Matrix3d;
-using Eigen::MatrixXd;
-using Eigen::Vector3d;
-using Eigen::VectorXd;
-
-using fe::MassKind;
-using test::DeckMaker;
 using Vector12d = Eigen::Matrix<double, 12, 1>;
 
 DeckMaker make_frame() {

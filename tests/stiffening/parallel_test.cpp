@@ -3,13 +3,10 @@
 #include <gtest/gtest.h>
 
 #include "stiffening/reduce.hpp"
-#include "tests/support/beam_decks.hpp"
+#include "tests/support/modal.hpp"
 
 namespace bough {
 namespace {
-
-using Eigen::MatrixXd;
-using Eigen::Vector3d;
 
 /// PETSc's world is this process alone while this lives.
 class Alone {

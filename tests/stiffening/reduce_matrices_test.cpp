@@ -12,15 +12,13 @@
 
 #include "fe/loads/loads.hpp"
 #include "fe/matrices/assembly.hpp"
-#include "fe/statics/build_model.hpp"
 #include "fe/statics/static_case.hpp"
 #include "formats/nastran/reader.hpp"
+#include "tests/support/modal.hpp"
 
 namespace bough {
 namespace {
 
-using Eigen::MatrixXd;
-using Eigen::VectorXd;
 using SparseRows = Eigen::SparseMatrix<double, Eigen::RowMajor>;
 using stiffening::GivenGeometric;
 using stiffening::GivenMatrices;
@@ -503,6 +501,16 @@ TEST(ReduceMatrices, DofsThatTheMatrixLacks) {
   expect_near(body.full_phi, expected.full_phi, 1e-9, "phi of the link");
 }
 
+/// The id of the error of a reduction that fails for its input.
+std::string fail_to_reduce(const records::Deck& deck, const records::BodySpec& spec, const GivenMatrices& given) {
+  try {
+    reduce_given(deck, spec, given);
+  } catch (const InputError& error) {
+    return error.items().front().id;
+  }
+  return "no error";
+}
+
 TEST(ReduceMatrices, ClampedGridsStandInForConstraints) {
   const auto deck = read(kDeck);
   Exported own(deck);
@@ -513,16 +521,7 @@ TEST(ReduceMatrices, ClampedGridsStandInForConstraints) {
   own.given.clamped = {1};
   expect_same_body(reduce_given(loose, spec, own.given), expected);
   own.given.clamped = {77};
-  EXPECT_THROW(
-      {
-        try {
-          reduce_given(loose, spec, own.given);
-        } catch (const InputError& error) {
-          EXPECT_EQ(error.items().front().id, "reduce.unknown-node");
-          throw;
-        }
-      },
-      InputError);
+  EXPECT_EQ(fail_to_reduce(loose, spec, own.given), "reduce.unknown-node");
 }
 
 TEST(ReduceMatrices, FreeBodyAndGivenModes) {
@@ -581,16 +580,7 @@ TEST(ReduceMatrices, FreeBodyAndGivenModes) {
   given.modes.Phi.values = MatrixXd(VectorXd::Unit(Phi.rows(), scalar)).sparseView();
   given.modes.eigenvalue.resize(0);
   given.M.values.coeffRef(scalar, scalar) = 0;
-  EXPECT_THROW(
-      {
-        try {
-          reduce_given(deck, spec, given);
-        } catch (const InputError& error) {
-          EXPECT_EQ(error.items().front().id, "reduce.no-modal-mass");
-          throw;
-        }
-      },
-      InputError);
+  EXPECT_EQ(fail_to_reduce(deck, spec, given), "reduce.no-modal-mass");
 }
 
 TEST(ReduceMatrices, ModesAreComparedInBasicAxes) {

@@ -7,15 +7,13 @@
 #include <cmath>
 #include <numbers>
 
-#include "tests/support/beam_decks.hpp"
+#include "tests/support/modal.hpp"
 
 namespace bough {
 namespace {
 
-using Eigen::Vector3d;
 using records::BodyFrame;
 using records::BodySpec;
-using records::InertialLoad;
 using stiffening::MatrixXd;
 
 BodySpec make_spec(int num_modes) {

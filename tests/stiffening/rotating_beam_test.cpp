@@ -5,17 +5,10 @@
 #include <cmath>
 
 #include "stiffening/reduce.hpp"
-#include "tests/support/beam_decks.hpp"
+#include "tests/support/modal.hpp"
 
 namespace bough {
 namespace {
-
-using Eigen::Matrix3d;
-using Eigen::MatrixXd;
-using Eigen::Vector3d;
-using Eigen::VectorXd;
-
-using records::InertialLoad;
 
 /// Unit beam: γ and η are rad/s themselves. Slender enough for Euler-Bernoulli; axial and torsional modes far above.
 class RotatingBeam : public ::testing::Test {

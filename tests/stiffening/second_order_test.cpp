@@ -8,19 +8,13 @@
 #include "fe/linear/factor.hpp"
 #include "fe/loads/loads.hpp"
 #include "fe/loads/second_order.hpp"
-#include "fe/statics/build_model.hpp"
 #include "fe/statics/statics.hpp"
 #include "stiffening/reduce.hpp"
 #include "tests/stiffening/all_kinds.hpp"
+#include "tests/support/modal.hpp"
 
 namespace bough {
 namespace {
-
-using Eigen::Matrix3d;
-using Eigen::MatrixXd;
-using Eigen::Vector3d;
-using Eigen::VectorXd;
-using fe::MassKind;
 
 /// Loads of all kinds on a free model, balanced by a force and a moment at grid 5.
 struct BalancedLoad {
@@ -82,18 +76,17 @@ VectorXd turn_load(const fe::Model& model, const BalancedLoad& load, const Vecto
   return turned;
 }
 
-fe::Model build(const records::Deck& deck, MassKind kind) {
+fe::Model make_model_of_all_kinds(MassKind kind) {
   Diagnostics diagnostics;
-  fe::ModelOptions options;
-  options.mass_kind = kind;
-  return fe::build_model(deck, options, diagnostics);
+  return test::build_model(test::read_deck(test::make_all_kinds(), diagnostics), kind);
 }
 
 // Carried masses alone: what their second order adds to turned nodal loads makes the load of turned pieces.
 TEST(SecondOrder, CarriedMassesTurnWithTheBody) {
   for (const auto kind : {MassKind::Lumped, MassKind::Consistent}) {
     Diagnostics diagnostics;
-    const auto model = build(test::read_deck(test::make_all_masses(kind == MassKind::Lumped), diagnostics), kind);
+    const auto model =
+        test::build_model(test::read_deck(test::make_all_masses(kind == MassKind::Lumped), diagnostics), kind);
     BalancedLoad load;
     std::srand(2);
     load.load.A_I = fe::calc_load_factors(
@@ -127,7 +120,7 @@ TEST(SecondOrder, TurnsTheLoadWithTheBody) {
     const auto deck = test::read_deck(test::make_all_kinds(kind == MassKind::Lumped, false) +
                                           "PLOAD1,9,1,FYE,FR,.1,30.,.8,50.\nPLOAD1,9,3,FX,FR,.4,-70.\n",
                                       diagnostics);
-    const auto model = build(deck, kind);
+    const auto model = test::build_model(deck, kind);
     const auto along_beams = calc_applied_load(model, deck, 9, diagnostics);
     ASSERT_EQ(along_beams.arms.size(), 4u);
     const auto load = make_load(model, kind == MassKind::Consistent, along_beams);
@@ -151,9 +144,7 @@ TEST(SecondOrder, TurnsTheLoadWithTheBody) {
 
 TEST(SecondOrder, DoesNotFeelTheSupport) {
   for (const auto kind : {MassKind::Lumped, MassKind::Consistent}) {
-    Diagnostics diagnostics;
-    const auto deck = test::read_deck(test::make_all_kinds(), diagnostics);
-    const auto model = build(deck, kind);
+    const auto model = make_model_of_all_kinds(kind);
     const auto load = make_load(model, true);
     const auto K = fe::assemble_stiffness(model, fe::DofSet::Free);
     std::srand(5);
@@ -173,9 +164,7 @@ TEST(SecondOrder, DoesNotFeelTheSupport) {
 // assembled matrix, of elements, carried masses, loads on arms and links.
 TEST(SecondOrder, RowsAndProductsGiveTheSameProjection) {
   for (const auto kind : {MassKind::Lumped, MassKind::Consistent}) {
-    Diagnostics diagnostics;
-    const auto deck = test::read_deck(test::make_all_kinds(), diagnostics);
-    const auto model = build(deck, kind);
+    const auto model = make_model_of_all_kinds(kind);
     const auto load = make_load(model, true);
     std::srand(7);
     const MatrixXd Phi = model.T() * MatrixXd::Random(model.num_fdofs(), 50);

@@ -6,12 +6,10 @@
 
 #include "stiffening/reduce.hpp"
 #include "tests/stiffening/all_kinds.hpp"
+#include "tests/support/modal.hpp"
 
 namespace bough {
 namespace {
-
-using Eigen::MatrixXd;
-using records::InertialLoad;
 
 constexpr int kWz2 = static_cast<int>(InertialLoad::wz2);
 

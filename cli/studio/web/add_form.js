@@ -13,6 +13,8 @@ const kCommon = {
   function: ["name", "type"],
   simulation: ["duration", "output_step", "gravity"],
 };
+// Examples of values that no type alone tells.
+const kExamples = { "body.inertia": "[Ixx, Iyy, Izz] about cg", "body.cg": "[x, y, z]" };
 const kAxes = { x: "[1.0, 0.0, 0.0]", y: "[0.0, 1.0, 0.0]", z: "[0.0, 0.0, 1.0]" };
 
 /**
@@ -20,6 +22,8 @@ const kAxes = { x: "[1.0, 0.0, 0.0]", y: "[0.0, 1.0, 0.0]", z: "[0.0, 0.0, 1.0]"
  * @typedef {{kind: string, description: string, list: boolean, keys: Key[]}} Kind
  * @typedef {{path: string, kind: string, name: string, type: string, line: number}} Item  a table of the text
  */
+
+const escape_words = (text) => text.replace(/[.*+?^${}()|[\]\\]/g, "\\$&");
 
 /** Value of a key as a form shows it: a plain string of TOML without its quotes. @param {string} text */
 const to_shown = (text) => /^"([^"\\]*)"$|^'([^']*)'$/.exec(text)?.slice(1).find((part) => part !== undefined) ?? text;
@@ -40,7 +44,8 @@ export function make_add_form(studio, view) {
   let item = null;
   /** @type {Map<string, string>} what its fields showed first */
   let before = new Map();
-  let was_added = false, shown_text = "";
+  let was_added = false, shown_text = "", next = "";
+  let is_end_chosen = false;
   let end = "parent";  // which end of a hinge a click in the scene fills in
   const list_names = (kind) => items.filter((i) => i.kind === kind && i.name).map((i) => i.name);
   const get_value = (name) => fields.get(name)?.value ?? "";
@@ -56,11 +61,29 @@ export function make_add_form(studio, view) {
     const choices = get_choices(kind, key), title = key.description, name = key.name;
     const field = /** @type {HTMLInputElement | HTMLSelectElement} */ (choices.length > 0
       ? el("select", { name, title, required: key.required }, el("option", { value: "" }, key.required ? "choose …" : key.default ? `default: ${key.default}` : "none"), ...[...new Set([...choices, ...(value ? [value] : [])])].map((c) => el("option", { value: c }, c)))
-      : el("input", { type: "text", name, placeholder: key.default || key.type, title, required: key.required }));
+      : el("input", { type: "text", name, placeholder: kExamples[`${kind.kind}.${name}`] ?? (key.default || key.type), title, required: key.required }));
     field.value = value;
     fields.set(name, field);
     const along = name.startsWith("axis") ? [el("span", { class: "along" }, ...Object.entries(kAxes).map(([axis, text]) => make_button(axis, `Along ${axis}`, () => (field.value = text))))] : [];
     host.append(el("label", {}, name + " ", field), ...along);
+  };
+  // A new hinge holds the first body that no hinge has as its child: on the parent of the last hinge, else on the first
+  // other body, or the ground.
+  const set_hinge = (values) => {
+    const bodies = list_names("body"), child = bodies.find((name) => !new RegExp(`^\\s*child\\s*=\\s*["']${escape_words(name)}["']`, "m").test(view.pane.text));
+    const others = bodies.filter((name) => name !== child), parents = [...view.pane.text.matchAll(/^\s*parent\s*=\s*["'](.*?)["']/gm)].map((m) => m[1]);
+    values.set("type", "revolute").set("parent", child && others.length > 0 ? (parents.filter((name) => others.includes(name)).pop() ?? others[0]) : "ground");
+    return child ? values.set("child", child) : values;
+  };
+  // Names that were added after the form was shown.
+  const refresh_choices = () => {
+    const kind = all.find((k) => k.kind === (item ? item.kind : tables.selectedOptions[0]?.dataset.kind));
+    for (const [name, field] of fields) {
+      const key = kind?.keys.find((k) => k.name === name);
+      if (!kind || !key || field.tagName !== "SELECT") continue;
+      const there = new Set([.../** @type {HTMLSelectElement} */ (field).options].map((o) => o.value));
+      field.append(...get_choices(kind, key).filter((c) => !there.has(c)).map((c) => el("option", { value: c }, c)));
+    }
   };
   const make_name = (kind) => {
     let k = 1;
@@ -106,7 +129,7 @@ export function make_add_form(studio, view) {
     if (!kind) return host.replaceChildren();
     if (!item) {
       const values = new Map(kind.keys.some((k) => k.name === "name") ? [["name", make_name(kind.kind)]] : []);
-      return show_fields(kind, kind.kind === "hinge" ? values.set("parent", "ground").set("type", "revolute") : values);
+      return show_fields(kind, kind.kind === "hinge" ? set_hinge(values) : values);
     }
     const { path } = item, { values } = await ask("table", { text: view.pane.text, path });
     const shown = new Map(Object.entries(values).map(([name, text]) => /** @type {[string, string]} */ ([name, to_shown(text)])));
@@ -118,6 +141,8 @@ export function make_add_form(studio, view) {
     if (!item) {
       const words = now.filter(([, v]) => v !== "").map(([key, v]) => `${key}=${to_word(v)}`);
       was_added = true;
+      // The next thing that a body needs is its hinge.
+      next = kind?.kind === "body" && list_names("body").length > 0 ? "hinge" : "";
       await view.pane.edit([`add ${kind?.kind} ${words.join(" ")}`]);
       return;
     }
@@ -140,9 +165,9 @@ export function make_add_form(studio, view) {
 
   const add_button = Object.assign(make_button("Add", "Writes the table into the text; Undo takes it back", apply), { className: "main add" });
   const delete_button = Object.assign(make_button("Delete", "Takes the table out of the text", remove), { className: "delete", hidden: true });
-  const radios = ["parent", "child"].map((name) => el("input", { type: "radio", name: "end-of-hinge", value: name, onchange: () => (end = name) }));
+  const radios = ["parent", "child"].map((name) => el("input", { type: "radio", name: "end-of-hinge", value: name, onchange: () => ([end, is_end_chosen] = [name, true]) }));
   const set_end = (name) => {
-    end = name;
+    [end, is_end_chosen] = [name, false];
     for (const radio of radios) radio.checked = radio.value === name;
   };
   const ends = el("span", { class: "ends", hidden: true, role: "radiogroup", "aria-label": "end that a click fills in" }, "a click is the ", ...radios.map((radio) => el("label", {}, radio, ` ${radio.value} `)));
@@ -176,6 +201,9 @@ export function make_add_form(studio, view) {
       put("node", node);
       return;
     }
+    // A body that is at one end already gets its node there, unless the end was chosen.
+    const at = is_end_chosen ? undefined : ["child", "parent"].find((name) => get_value(name) === body);
+    if (at) return put(`${at}_node`, node);
     put(end, body);
     put(`${end}_node`, node);
     set_end(end === "parent" || get_value("parent") === "ground" ? "child" : "parent");
@@ -185,6 +213,10 @@ export function make_add_form(studio, view) {
     if (all.length === 0 || view.pane.text === shown_text) return;
     shown_text = view.pane.text;
     fill_list();
+    const wanted = was_added && next ? [...tables.options].find((o) => o.dataset.kind === next) : null;
+    if (wanted) wanted.selected = true;
+    next = "";
+    refresh_choices();
     if (item || was_added) show(Boolean(item));
     was_added = false;
   };

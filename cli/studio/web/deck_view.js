@@ -2,7 +2,7 @@ import { ask, run_job } from "./api.js";
 import { make_body_form } from "./body_form.js";
 import { DeckScene } from "./deck_scene.js";
 import { el, get_css, get_style, make_button, make_check, make_select } from "./page_parts.js";
-import { make_message_list, show_lines } from "./parts.js";
+import { make_message_list, make_progress, show_lines } from "./parts.js";
 import { Viewer } from "./viewer.js";
 
 /** The mesh of a deck in a viewer: picking, groups, symbols. `on_pick(grid)` is called for each grid that is clicked. */
@@ -79,7 +79,7 @@ export class DeckView {
     });
     this.stage.chosen = this.chosen;
     this.stage_host.replaceChildren(this.stage.viewer.make_view_buttons(), this.stage.element, el("p", { class: "note hint" }, "Drag turns, shift moves, the wheel comes nearer; a click names a grid. Arrow keys, + and − do the same."));
-    this.side.replaceChildren(this.make_find(), this.form.element, this.make_messages(), this.make_show(), this.make_cards());
+    this.side.replaceChildren(this.make_find(), this.form.element, this.make_messages(), this.make_solve(), this.make_show(), this.make_cards());
     this.messages.show(this.all, "Reading found nothing. “Check” builds the model too.");
     this.list_groups();
     this.stage.draw();
@@ -156,6 +156,28 @@ export class DeckView {
       }
     }));
     return el("section", {}, el("h3", {}, "Messages ", button), this.messages.element);
+  }
+
+  /** Solutions of the case control, shown when they are there: stresses of a static one as colours. */
+  make_solve() {
+    const stem = this.file.replace(/\.[^./]+$/, ""), progress = make_progress();
+    const solve = (text, title, verb, options, ending) => {
+      const button = make_button(text, title, () => this.studio.attempt(async () => {
+        button.disabled = true;
+        try {
+          const output = stem + ending, done = await run_job({ verb, files: [this.file], options: [...options, ["-o", output]] }, progress.update);
+          progress.finish(done);
+          this.messages.show(done.messages);
+          await this.studio.refresh();
+          if (done.code === 0) await this.studio.open(output);
+        } finally {
+          button.disabled = false;
+        }
+      }));
+      return button;
+    };
+    return el("section", {}, el("h3", {}, "Solve"), el("div", { class: "tools" }, solve("Static", "bough static: displacements, stresses, failure indices of each subcase", "static", [], "-static.h5"),
+      solve("Modes", "bough modes: normal modes with the strain energy of their elements", "modes", [["--ese"]], "-modes.h5")), progress.element);
   }
 
   /** To the grid or element that a message names, else to its line. */

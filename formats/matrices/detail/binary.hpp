@@ -19,6 +19,19 @@ class BinaryInput {
     is_swapped_ = is_swapped;
     word_ = is_64_bit ? 8 : 4;
   }
+  /// Finds byte order and word size by the length of the first record, with words of 4 and of 8 bytes; false if it has
+  /// neither. `head`: the first four bytes of the file. Throws "matrices.truncated".
+  bool find_layout(std::string_view head, std::int32_t length_4, std::int32_t length_8) {
+    if (head.size() < 4) fail("matrices.truncated", 0, "the file ends within a record");
+    for (const bool is_swapped : {false, true}) {
+      set_layout(is_swapped, false);
+      const auto length = get<std::int32_t>(head, 0);
+      if (length != length_4 && length != length_8) continue;
+      set_layout(is_swapped, length == length_8);
+      return true;
+    }
+    return false;
+  }
   /// Returns true if integers and reals have 8 bytes.
   bool is_64_bit() const { return word_ == 8; }
   /// [bytes] of an integer, 4 or 8.

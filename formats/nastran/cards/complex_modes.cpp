@@ -46,11 +46,7 @@ void parse_eigc(Card& card, DynamicCards& r) {
   if (has_ends && m.shifts.empty() && card.is_ok())
     card.fail("deck.missing-field", 8, "METHOD " + m.method + " has no line with ALPHAA and OMEGAA",
               "add the line of the search region, or use METHOD LAN or HESS");
-  if (!card.is_ok()) return;
-  if (std::any_of(r.complex_methods.begin(), r.complex_methods.end(), [&](const auto& o) { return o.sid == m.sid; }))
-    return card.fail("deck.duplicate-id", 0, "id " + std::to_string(m.sid) + " is used twice",
-                     "give one of them another id");
-  r.complex_methods.push_back(std::move(m));
+  add_unique(card, r.complex_methods, std::move(m), &ComplexMethod::sid);
 }
 
 TransferFunction::Term read_term(Card& card, int i, const char* g, const char* c, const char* const names[3]) {

@@ -19,11 +19,7 @@ void parse_rbe2(Card& card, Reading& r) {
   for (int count = 0; count < 2 && last > 4 && is_real(card, last - 1); ++count)
     alpha = card.read_real(--last, "ALPHA TREF");
   note_expansion(card, r, alpha);
-  e.gm = read_ids(card, 3, last, "GM");
-  if (e.gm.empty() && card.is_ok())
-    card.fail("deck.missing-field", 3, "GM is blank, expected a dependent grid at least");
-  e.at = card.get_location();
-  if (r.claim_rigid(e.id, card)) r.deck.rbe2.push_back(std::move(e));
+  add_rbe2(card, r, std::move(e), 3, last, "GM", "GM");
 }
 
 /// EID, blank, REFGRID, REFC, then groups WT C G1 G2 ..., then UM with pairs G C, then ALPHA with a value.
@@ -109,9 +105,7 @@ void parse_rbe1(Card& card, Reading& r) {
 
 void parse_rrod(Card& card, Reading& r) {
   records::Rrod e;
-  e.id = card.read_id(0, "EID");
-  e.ga = card.read_id(1, "GA");
-  e.gb = card.read_id(2, "GB");
+  card.read_ids(0, {{"EID", e.id}, {"GA", e.ga}, {"GB", e.gb}});
   e.cma = card.read_component(3, "CMA");
   e.cmb = card.read_component(4, "CMB");
   note_expansion(card, r, card.read_real(5, "ALPHA", 0.0));
@@ -128,9 +122,7 @@ void parse_rrod(Card& card, Reading& r) {
 void parse_rbar(Card& card, Reading& r) {
   constexpr unsigned all = 63;
   records::Rbar e;
-  e.id = card.read_id(0, "EID");
-  e.ga = card.read_id(1, "GA");
-  e.gb = card.read_id(2, "GB");
+  card.read_ids(0, {{"EID", e.id}, {"GA", e.ga}, {"GB", e.gb}});
   e.cna = card.read_components(3, "CNA", 0);
   e.cnb = card.read_components(4, "CNB", 0);
   e.cma = card.read_components(5, "CMA", 0);
@@ -153,19 +145,7 @@ void parse_rbar(Card& card, Reading& r) {
   if (r.claim_rigid(e.id, card)) r.deck.rbar.push_back(e);
 }
 
-void parse_spc(Card& card, Reading& r) {
-  const int sid = card.read_id(0, "SID");
-  for (const int i : {1, 4}) {
-    if (i > 1 && card.is_blank(i, i + 3)) break;
-    records::Spc spc;
-    spc.sid = sid;
-    spc.g = card.read_id(i, "G");
-    spc.c = card.read_components(i + 1, "C", 0);
-    spc.d = card.read_real(i + 2, "D", 0.0);
-    spc.at = card.get_location();
-    if (card.is_ok()) r.deck.spc.push_back(spc);
-  }
-}
+void parse_spc(Card& card, Reading& r) { parse_motions(card, r.deck.spc); }
 
 void parse_spc1(Card& card, Reading& r) {
   const int sid = card.read_id(0, "SID");
@@ -366,34 +346,40 @@ void convert_mpc(UnitConverter& u) {
 
 }  // namespace
 
+void add_rbe2(Card& card, Reading& r, records::Rbe2&& e, int first, int last, const char* what,
+              const char* first_name) {
+  e.gm = read_ids(card, first, last, what);
+  if (e.gm.empty() && card.is_ok())
+    card.fail("deck.missing-field", first, std::string(first_name) + " is blank, expected a dependent grid at least");
+  e.at = card.get_location();
+  if (r.claim_rigid(e.id, card)) r.deck.rbe2.push_back(std::move(e));
+}
+
 void add_constraint_parsers(ParserTable& table) {
-  table["RBE1"] = {parse_rbe1, ""};
-  table["RBE2"] = {parse_rbe2, ""};
-  table["RBE3"] = {parse_rbe3, ""};
-  table["RROD"] = {parse_rrod, ""};
-  table["RBAR"] = {parse_rbar, ""};
+  add_plain_cards(table, {{"RBE1", parse_rbe1},
+                          {"RBE2", parse_rbe2},
+                          {"RBE3", parse_rbe3},
+                          {"RROD", parse_rrod},
+                          {"RBAR", parse_rbar},
+                          {"SPC1", parse_spc1},
+                          {"SPCADD", parse_spcadd},
+                          {"MPCADD", parse_mpcadd}});
   table["SPC"] = {parse_spc, nullptr, "SID G1 C1 D1 G2 C2 D2"};
-  table["SPC1"] = {parse_spc1, ""};
-  table["SPCADD"] = {parse_spcadd, ""};
   table["MPC"] = {parse_mpc, nullptr};
-  table["MPCADD"] = {parse_mpcadd, ""};
   // The names of NASTRAN-95, with the same fields.
-  table["CRBE1"] = table["CRIGD3"] = {parse_rbe1, ""};
-  table["CRBE2"] = {parse_rbe2, ""};
-  table["CRBE3"] = {parse_rbe3, ""};
-  table["CRROD"] = {parse_rrod, ""};
-  table["CRBAR"] = {parse_rbar, ""};
+  add_plain_cards(table, {{"CRBE1", parse_rbe1},
+                          {"CRIGD3", parse_rbe1},
+                          {"CRBE2", parse_rbe2},
+                          {"CRBE3", parse_rbe3},
+                          {"CRROD", parse_rrod},
+                          {"CRBAR", parse_rbar}});
   table["SPC"].convert = convert_spc;
   table["MPC"].convert = convert_mpc;
-  write_by(table, write_rbe2, {"RBE2"});
-  write_by(table, write_rbe1s, {"RBE1"});
-  write_by(table, write_rbe3s, {"RBE3"});
-  write_by(table, write_rbar, {"RBAR"});
-  write_by(table, write_rrod, {"RROD"});
+  write_by(
+      table,
+      {{"RBE2", write_rbe2}, {"RBE1", write_rbe1s}, {"RBE3", write_rbe3s}, {"RBAR", write_rbar}, {"RROD", write_rrod}});
   write_by(table, write_spc, {"SPC", "SPC1"});
-  write_by(table, write_spcadd, {"SPCADD"});
-  write_by(table, write_mpcs, {"MPC"});
-  write_by(table, write_mpcadd, {"MPCADD"});
+  write_by(table, {{"SPCADD", write_spcadd}, {"MPC", write_mpcs}, {"MPCADD", write_mpcadd}});
   write_as(table, "RBE1", {"CRBE1", "CRIGD3"});
   write_as(table, "RBE2", {"CRBE2"});
   write_as(table, "RBE3", {"CRBE3"});

@@ -54,6 +54,18 @@ void read_failure(Card& card, records::Pcomp& p) {
   p.failure.clear();
 }
 
+/// Adds a laminate: its mirrored half by LAM, Z0 (blank: half the thickness). \param advice  for one without plies.
+void add_laminate(Card& card, Reading& r, records::Pcomp& p, const std::string& lam, const std::optional<double>& z0,
+                  const char* advice) {
+  if (p.plies.empty()) card.fail("deck.missing-field", 8, "the laminate has no ply", advice);
+  check_core(p, card);
+  if (lam == "SYM" || lam == "SYMMEM") p.plies.insert(p.plies.end(), p.plies.rbegin(), p.plies.rend());
+  double total = 0;
+  for (const auto& ply : p.plies) total += ply.t;
+  p.z0 = z0.value_or(-0.5 * total);
+  if (r.claim(IdSpace::ShellProperty, p.id, card)) r.deck.pcomp.push_back(p);
+}
+
 /// Fields 1..7 of PCOMP and PCOMPG, then plies; `stride` fields a ply, material first after `skip`.
 void parse_laminate(Card& card, Reading& r, int skip, int stride) {
   records::Pcomp p;
@@ -78,13 +90,7 @@ void parse_laminate(Card& card, Reading& r, int skip, int stride) {
     if (skip > 0) card.use(i);  // GPLYID
     p.plies.push_back(ply);
   }
-  if (p.plies.empty()) card.fail("deck.missing-field", 8, "the laminate has no ply", "give MID1, T1, THETA1");
-  check_core(p, card);
-  if (lam == "SYM" || lam == "SYMMEM") p.plies.insert(p.plies.end(), p.plies.rbegin(), p.plies.rend());
-  double total = 0;
-  for (const auto& ply : p.plies) total += ply.t;
-  p.z0 = z0.value_or(-0.5 * total);
-  if (r.claim(IdSpace::ShellProperty, p.id, card)) r.deck.pcomp.push_back(p);
+  add_laminate(card, r, p, lam, z0, "give MID1, T1, THETA1");
 }
 void parse_pcomp(Card& card, Reading& r) { parse_laminate(card, r, 0, 4); }
 void parse_pcompg(Card& card, Reading& r) { parse_laminate(card, r, 1, 8); }
@@ -112,13 +118,7 @@ void parse_equal_plies(Card& card, Reading& r) {
     ply.theta_deg = card.read_real(i + stride - 1, "THi", ply.theta_deg);
     p.plies.push_back(ply);
   }
-  if (p.plies.empty()) card.fail("deck.missing-field", 8, "the laminate has no ply", "give its angles");
-  check_core(p, card);
-  if (lam == "SYM" || lam == "SYMMEM") p.plies.insert(p.plies.end(), p.plies.rbegin(), p.plies.rend());
-  double total = 0;
-  for (const auto& each : p.plies) total += each.t;
-  p.z0 = z0.value_or(-0.5 * total);
-  if (r.claim(IdSpace::ShellProperty, p.id, card)) r.deck.pcomp.push_back(p);
+  add_laminate(card, r, p, lam, z0, "give its angles");
 }
 
 /// IN and ISOP, as words or as numbers (Quick Reference Guide, PSOLID).

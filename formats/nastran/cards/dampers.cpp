@@ -54,47 +54,34 @@ void parse_cdamp3(Card& card, Reading& r) { parse_on_points(card, r, true); }
 void parse_cdamp4(Card& card, Reading& r) { parse_on_points(card, r, false); }
 
 void parse_pdamp(Card& card, Reading& r) {
-  for (int first = 0; first < 8; first += 2) {
-    if (first > 0 && card.is_blank(first, first + 2)) continue;
-    records::Pdamp p;
-    p.id = card.read_id(first, "PID");
-    p.b = card.read_real(first + 1, "B", 0.0);
-    p.at = card.get_location();
-    if (r.claim(IdSpace::DampProperty, p.id, card, first, 2)) r.deck.pdamp.push_back(p);
-  }
+  read_values(card, "B", [&](int id, double b, int first) {
+    if (r.claim(IdSpace::DampProperty, id, card, first, 2)) r.deck.pdamp.push_back({id, b, card.get_location()});
+  });
 }
 
 /// EID PID G1 G2, one or two on a card.
 void parse_cvisc(Card& card, Reading& r) {
-  for (const int first : {0, 4}) {
-    if (first > 0 && card.is_blank(first, first + 4)) break;
+  read_entries(card, 4, {0, 4}, [&](int first) {
     records::Cvisc e;
-    e.id = card.read_id(first, "EID");
-    e.pid = card.read_id(first + 1, "PID", e.id);
-    e.ga = card.read_id(first + 2, "G1");
-    e.gb = card.read_id(first + 3, "G2");
+    card.read_ids(first, {{"EID", e.id}, {"PID", e.pid, &e.id}, {"G1", e.ga}, {"G2", e.gb}});
     e.at = card.get_location();
     if (r.claim(IdSpace::Visc, e.id, card, first, 4)) r.deck.cvisc.push_back(e);
-  }
+  });
 }
 
 void parse_pvisc(Card& card, Reading& r) {
-  for (const int first : {0, 4}) {
-    if (first > 0 && card.is_blank(first, first + 3)) break;
+  read_entries(card, 3, {0, 4}, [&](int first) {
     records::Pvisc p;
     p.id = card.read_id(first, "PID");
-    p.ce = card.read_real(first + 1, "CE", 0.0);
-    p.cr = card.read_real(first + 2, "CR", 0.0);
+    card.read_reals(first + 1, {{"CE", p.ce, 0.0}, {"CR", p.cr, 0.0}});
     p.at = card.get_location();
     if (r.claim(IdSpace::ViscProperty, p.id, card, first, 3)) r.deck.pvisc.push_back(p);
-  }
+  });
 }
 
 void parse_cbush1d(Card& card, Reading& r) {
   records::Cbush1d e;
-  e.id = card.read_id(0, "EID");
-  e.pid = card.read_id(1, "PID", e.id);
-  e.ga = card.read_id(2, "GA");
+  card.read_ids(0, {{"EID", e.id}, {"PID", e.pid, &e.id}, {"GA", e.ga}});
   e.gb = card.read_reference(3, "GB");
   if (!card.is_blank(4)) e.cid = card.read_reference(4, "CID");
   e.at = card.get_location();
@@ -108,9 +95,7 @@ void parse_cbush1d(Card& card, Reading& r) {
 void parse_pbush1d(Card& card, Reading& r) {
   records::Pbush1d p;
   p.id = card.read_id(0, "PID");
-  p.k = card.read_real(1, "K", 0.0);
-  p.c = card.read_real(2, "C", 0.0);
-  p.m = card.read_real(3, "M", 0.0);
+  card.read_reals(1, {{"K", p.k, 0.0}, {"C", p.c, 0.0}, {"M", p.m, 0.0}});
   card.use(4, 6);                // SA, SE
   card.use(8, card.get_size());  // the lines below
   p.at = card.get_location();
@@ -195,9 +180,7 @@ void add_damper_parsers(ParserTable& table) {
   table["CDAMP2"].convert = convert_cdamp2;
   table["PDAMP"].convert = convert_pdamp;
   table["PBUSH1D"].convert = convert_pbush1d;
-  write_by(table, write_pdamp, {"PDAMP"});
-  write_by(table, write_pvisc, {"PVISC"});
-  write_by(table, write_pbush1d, {"PBUSH1D"});
+  write_by(table, {{"PDAMP", write_pdamp}, {"PVISC", write_pvisc}, {"PBUSH1D", write_pbush1d}});
   write_by(table, write_dampers, {"CDAMP1", "CDAMP2", "CDAMP3", "CDAMP4"});
   write_by(table, write_cvisc, {"CVISC"});
   write_by(table, write_cbush1d, {"CBUSH1D"});

@@ -92,18 +92,18 @@ void write_cset(const records::Deck& deck, CardSink& sink) { write_lists("CSET1"
 }  // namespace
 
 void add_dof_set_parsers(ParserTable& table) {
-  table["SUPORT"] = {parse_suport, ""};
-  table["SUPORT1"] = {parse_suport1, ""};
-  table["ASET"] = {parse_aset, ""};
-  table["ASET1"] = {parse_aset1, ""};
-  table["OMIT"] = {parse_omit, ""};
-  table["OMIT1"] = {parse_omit1, ""};
-  table["QSET"] = {parse_qset, ""};
-  table["QSET1"] = {parse_qset1, ""};
-  table["BSET"] = {parse_bset, ""};
-  table["BSET1"] = {parse_bset1, ""};
-  table["CSET"] = {parse_cset, ""};
-  table["CSET1"] = {parse_cset1, ""};
+  add_plain_cards(table, {{"SUPORT", parse_suport},
+                          {"SUPORT1", parse_suport1},
+                          {"ASET", parse_aset},
+                          {"ASET1", parse_aset1},
+                          {"OMIT", parse_omit},
+                          {"OMIT1", parse_omit1},
+                          {"QSET", parse_qset},
+                          {"QSET1", parse_qset1},
+                          {"BSET", parse_bset},
+                          {"BSET1", parse_bset1},
+                          {"CSET", parse_cset},
+                          {"CSET1", parse_cset1}});
   write_by(table, write_suport, {"SUPORT"});
   write_by(table, write_suport1, {"SUPORT1"});
   write_by(table, write_aset, {"ASET", "ASET1"});

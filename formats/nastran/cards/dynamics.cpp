@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "formats/nastran/detail/dynamic_cards.hpp"
+#include "formats/nastran/detail/parsers.hpp"
 #include "formats/nastran/detail/text.hpp"
 #include "formats/nastran/detail/unit_converter.hpp"
 
@@ -29,18 +30,6 @@ DynamicLoad::Excitation read_excitation(Card& card, int i) {
       return static_cast<DynamicLoad::Excitation>(kind);
   if (!word.empty()) card.read_word(i, "TYPE", "LOAD", words);
   return DynamicLoad::Excitation::Force;
-}
-
-/// An id stands once, as in Nastran.
-template <class Record>
-void add_unique(Card& card, std::vector<Record>& all, Record record, int Record::*id) {
-  if (!card.is_ok()) return;
-  if (std::any_of(all.begin(), all.end(), [&](const auto& other) { return other.*id == record.*id; })) {
-    card.fail("deck.duplicate-id", 0, "id " + std::to_string(record.*id) + " is used twice",
-              "give one of them another id");
-    return;
-  }
-  all.push_back(std::move(record));
 }
 
 DynamicLoad read_head(Card& card, DynamicLoad::Kind kind) {
@@ -124,12 +113,7 @@ void parse_dload(Card& card, DynamicCards& r) {
   records::DynamicLoadSum sum;
   sum.sid = card.read_id(0, "SID");
   sum.s = card.read_real(1, "S");
-  for (int i = 2; i < card.get_size(); i += 2) {
-    if (card.is_blank(i, i + 2)) continue;
-    const double scale = card.read_real(i, "Si");
-    sum.terms.emplace_back(scale, card.read_id(i + 1, "Li"));
-  }
-  if (sum.terms.empty() && card.is_ok()) card.fail("deck.missing-field", 2, "S1 L1 are blank, expected a set at least");
+  sum.terms = read_load_terms(card);
   sum.at = card.get_location();
   add_unique(card, r.sums, std::move(sum), &std::remove_reference_t<decltype(sum)>::sid);
 }
@@ -137,8 +121,7 @@ void parse_dload(Card& card, DynamicCards& r) {
 /// SID P1 C1 A1 P2 C2 A2.
 void parse_values(Card& card, std::vector<records::DofValue>& values, const char* what) {
   const int sid = card.read_id(0, "SID");
-  for (const int i : {1, 4}) {
-    if (i > 1 && card.is_blank(i, i + 3)) break;
+  read_entries(card, 3, {1, 4}, [&](int i) {
     records::DofValue v;
     v.sid = sid;
     v.g = card.read_id(i, "P");
@@ -146,7 +129,7 @@ void parse_values(Card& card, std::vector<records::DofValue>& values, const char
     v.value = card.read_real(i + 2, what, 0.0);
     v.at = card.get_location();
     if (card.is_ok()) values.push_back(v);
-  }
+  });
 }
 void parse_darea(Card& card, DynamicCards& r) { parse_values(card, r.areas, "A"); }
 void parse_delay(Card& card, DynamicCards& r) { parse_values(card, r.delays, "T"); }
@@ -154,8 +137,7 @@ void parse_dphase(Card& card, DynamicCards& r) { parse_values(card, r.phases, "T
 
 void parse_lseq(Card& card, DynamicCards& r) {
   records::StaticExcitation s;
-  s.sid = card.read_id(0, "SID");
-  s.excite = card.read_id(1, "EXCITEID");
+  card.read_ids(0, {{"SID", s.sid}, {"EXCITEID", s.excite}});
   s.load = card.read_reference(2, "LID");
   s.temperature = card.read_reference(3, "TID");
   s.at = card.get_location();
@@ -164,11 +146,9 @@ void parse_lseq(Card& card, DynamicCards& r) {
 
 void parse_tic(Card& card, DynamicCards& r) {
   records::InitialMotion m;
-  m.sid = card.read_id(0, "SID");
-  m.g = card.read_id(1, "G");
+  card.read_ids(0, {{"SID", m.sid}, {"G", m.g}});
   m.c = card.read_component(2, "C");
-  m.u0 = card.read_real(3, "U0", 0.0);
-  m.v0 = card.read_real(4, "V0", 0.0);
+  card.read_reals(3, {{"U0", m.u0, 0.0}, {"V0", m.v0, 0.0}});
   m.at = card.get_location();
   if (card.is_ok()) r.initial.push_back(m);
 }
@@ -210,15 +190,26 @@ void refuse_jumps_at_ends(Card& card, const std::vector<std::pair<double, double
               "more before or behind the jump says how");
 }
 
+template <class Record>
+Record read_kind_head(Card& card, int Record::*id, const char* what, int kind) {
+  Record record;
+  record.*id = card.read_id(0, what);
+  record.kind = kind;
+  record.at = card.get_location();
+  return record;
+}
 records::DynamicTable read_table_head(Card& card, int kind) {
-  records::DynamicTable t;
-  t.id = card.read_id(0, "TID");
-  t.kind = kind;
-  t.at = card.get_location();
-  return t;
+  return read_kind_head(card, &records::DynamicTable::id, "TID", kind);
 }
 void add_table(Card& card, DynamicCards& r, records::DynamicTable table) {
   add_unique(card, r.tables, std::move(table), &std::remove_reference_t<decltype(table)>::id);
+}
+
+/// Adds a table with the pairs of its card from the second line on.
+void add_table_of_points(Card& card, DynamicCards& r, records::DynamicTable table) {
+  table.points = read_points(card, 8);
+  refuse_jumps_at_ends(card, table.points);
+  add_table(card, r, std::move(table));
 }
 
 /// XAXIS YAXIS and how the table goes on beyond its ends, pairs from the second line on.
@@ -245,25 +236,17 @@ void parse_tabled1(Card& card, DynamicCards& r) {
 void parse_tabled2(Card& card, DynamicCards& r) {
   auto t = read_table_head(card, 2);
   t.x1 = card.read_real(1, "X1", 0.0);
-  t.points = read_points(card, 8);
-  refuse_jumps_at_ends(card, t.points);
-  add_table(card, r, std::move(t));
+  add_table_of_points(card, r, std::move(t));
 }
 void parse_tabled3(Card& card, DynamicCards& r) {
   auto t = read_table_head(card, 3);
-  t.x1 = card.read_real(1, "X1", 0.0);
-  t.x2 = card.read_real(2, "X2");
+  card.read_reals(1, {{"X1", t.x1, 0.0}, {"X2", t.x2}});
   if (card.is_ok()) card.demand(t.x2 != 0, 2, "X2", "another number than 0");
-  t.points = read_points(card, 8);
-  refuse_jumps_at_ends(card, t.points);
-  add_table(card, r, std::move(t));
+  add_table_of_points(card, r, std::move(t));
 }
 void parse_tabled4(Card& card, DynamicCards& r) {
   auto t = read_table_head(card, 4);
-  t.x1 = card.read_real(1, "X1", 0.0);
-  t.x2 = card.read_real(2, "X2");
-  t.x3 = card.read_real(3, "X3");
-  t.x4 = card.read_real(4, "X4");
+  card.read_reals(1, {{"X1", t.x1, 0.0}, {"X2", t.x2}, {"X3", t.x3}, {"X4", t.x4}});
   if (card.is_ok()) card.demand(t.x2 != 0, 2, "X2", "another number than 0");
   if (card.is_ok()) card.demand(t.x4 > t.x3, 4, "X4", "a number above X3");
   for (int i = 8; i < card.get_size() && card.is_ok(); ++i) {
@@ -290,11 +273,7 @@ void parse_tabdmp1(Card& card, DynamicCards& r) {
 }
 
 records::FrequencyList read_list_head(Card& card, int kind) {
-  records::FrequencyList list;
-  list.sid = card.read_id(0, "SID");
-  list.kind = kind;
-  list.at = card.get_location();
-  return list;
+  return read_kind_head(card, &records::FrequencyList::sid, "SID", kind);
 }
 void add_list(Card& card, DynamicCards& r, records::FrequencyList list) {
   if (card.is_ok()) r.frequencies.push_back(std::move(list));
@@ -391,11 +370,8 @@ void parse_tstep(Card& card, DynamicCards& r) {
 /// SID J K X Y TID.
 void parse_randps(Card& card, DynamicCards& r) {
   records::SpectralTerm t;
-  t.sid = card.read_id(0, "SID");
-  t.j = card.read_id(1, "J");
-  t.k = card.read_id(2, "K");
-  t.x = card.read_real(3, "X", 0.0);
-  t.y = card.read_real(4, "Y", 0.0);
+  card.read_ids(0, {{"SID", t.sid}, {"J", t.j}, {"K", t.k}});
+  card.read_reals(3, {{"X", t.x, 0.0}, {"Y", t.y, 0.0}});
   t.table = card.read_reference(5, "TID");
   t.at = card.get_location();
   if (card.is_ok())
@@ -410,10 +386,8 @@ void parse_randps(Card& card, DynamicCards& r) {
 /// SID N T0 TMAX.
 void parse_randt1(Card& card, DynamicCards& r) {
   records::TimeLags lags;
-  lags.sid = card.read_id(0, "SID");
-  lags.count = card.read_id(1, "N");
-  lags.first = card.read_real(2, "T0", 0.0);
-  lags.last = card.read_real(3, "TMAX");
+  card.read_ids(0, {{"SID", lags.sid}, {"N", lags.count}});
+  card.read_reals(2, {{"T0", lags.first, 0.0}, {"TMAX", lags.last}});
   lags.at = card.get_location();
   if (card.is_ok()) card.demand(lags.count <= 100'000, 1, "N", "1 to 100000");
   if (card.is_ok()) card.demand(lags.first >= 0, 2, "T0", "zero or above");
@@ -659,6 +633,8 @@ int records::DynamicSelection::*find_selection_of(std::string_view card) {
   if (card == "TABDMP1") return &DynamicSelection::sdamping;
   if (card == "EIGC") return &DynamicSelection::cmethod;
   if (card == "TF") return &DynamicSelection::tfl;
+  if (card == "RGYRO") return &DynamicSelection::rgyro;
+  if (card == "ROTORD") return &DynamicSelection::rmethod;
   return nullptr;
 }
 

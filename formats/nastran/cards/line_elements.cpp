@@ -99,16 +99,12 @@ void parse_beamor(Card& card, Reading& r) { parse_defaults(card, r.beam_defaults
 /// EID PID G1 G2: CROD and CTUBE, one or two on a card (NASTRAN-95 User's Manual 2.4).
 template <class Element, IdSpace space>
 void parse_two_grids(Card& card, Reading& r, std::vector<Element>& elements) {
-  for (const int first : {0, 4}) {
-    if (first > 0 && card.is_blank(first, first + 4)) break;
+  read_entries(card, 4, {0, 4}, [&](int first) {
     Element e;
-    e.id = card.read_id(first, "EID");
-    e.pid = card.read_id(first + 1, "PID", e.id);
-    e.ga = card.read_id(first + 2, "G1");
-    e.gb = card.read_id(first + 3, "G2");
+    card.read_ids(first, {{"EID", e.id}, {"PID", e.pid, &e.id}, {"G1", e.ga}, {"G2", e.gb}});
     e.at = card.get_location();
     if (r.claim(space, e.id, card, first, 4)) elements.push_back(e);
-  }
+  });
 }
 
 void parse_crod(Card& card, Reading& r) { parse_two_grids<records::Crod, IdSpace::Rod>(card, r, r.deck.crod); }
@@ -116,14 +112,8 @@ void parse_ctube(Card& card, Reading& r) { parse_two_grids<records::Ctube, IdSpa
 
 void parse_conrod(Card& card, Reading& r) {
   records::Conrod e;
-  e.id = card.read_id(0, "EID");
-  e.ga = card.read_id(1, "G1");
-  e.gb = card.read_id(2, "G2");
-  e.mid = card.read_id(3, "MID");
-  e.A = card.read_real(4, "A", 0.0);
-  e.J = card.read_real(5, "J", 0.0);
-  e.c = card.read_real(6, "C", 0.0);
-  e.nsm = card.read_real(7, "NSM", 0.0);
+  card.read_ids(0, {{"EID", e.id}, {"G1", e.ga}, {"G2", e.gb}, {"MID", e.mid}});
+  card.read_reals(4, {{"A", e.A, 0.0}, {"J", e.J, 0.0}, {"C", e.c, 0.0}, {"NSM", e.nsm, 0.0}});
   e.at = card.get_location();
   card.demand(e.A >= 0, 4, "A", "an area that is not negative");
   card.demand(e.J >= 0, 5, "J", "a value that is not negative");
@@ -132,15 +122,12 @@ void parse_conrod(Card& card, Reading& r) {
 
 /// Two per card: EID G1 G2.
 void parse_plotel(Card& card, Reading& r) {
-  for (const int first : {0, 4}) {
-    if (first > 0 && card.is_blank(first, first + 3)) break;
+  read_entries(card, 3, {0, 4}, [&](int first) {
     records::Plotel e;
-    e.id = card.read_id(first, "EID");
-    e.ga = card.read_id(first + 1, "G1");
-    e.gb = card.read_id(first + 2, "G2");
+    card.read_ids(first, {{"EID", e.id}, {"G1", e.ga}, {"G2", e.gb}});
     e.at = card.get_location();
     if (r.claim(IdSpace::Plotel, e.id, card, first, 3)) r.deck.plotel.push_back(e);
-  }
+  });
 }
 
 void write_beam(const records::BeamElement& e, CardSink& sink) {
@@ -201,10 +188,8 @@ void add_line_element_parsers(ParserTable& table) {
   write_by(table, write_beams, {"CBAR", "CBEAM"});
   write_as(table, "CBAR", {"BAROR"});
   write_as(table, "CBEAM", {"BEAMOR"});
-  write_by(table, write_crods, {"CROD"});
-  write_by(table, write_conrods, {"CONROD"});
-  write_by(table, write_ctubes, {"CTUBE"});
-  write_by(table, write_plotels, {"PLOTEL"});
+  write_by(table,
+           {{"CROD", write_crods}, {"CONROD", write_conrods}, {"CTUBE", write_ctubes}, {"PLOTEL", write_plotels}});
 }
 
 }  // namespace bough::nastran::detail

@@ -25,11 +25,7 @@ void parse_pbar(Card& card, Reading& r) {
   records::Pbar p;
   p.id = card.read_id(0, "PID");
   p.mid = card.read_id(1, "MID");
-  p.A = card.read_real(2, "A", 0.0);
-  p.I1 = card.read_real(3, "I1", 0.0);
-  p.I2 = card.read_real(4, "I2", 0.0);
-  p.J = card.read_real(5, "J", 0.0);
-  p.nsm = card.read_real(6, "NSM", 0.0);
+  card.read_reals(2, {{"A", p.A, 0.0}, {"I1", p.I1, 0.0}, {"I2", p.I2, 0.0}, {"J", p.J, 0.0}, {"NSM", p.nsm, 0.0}});
   for (auto& point : p.recovery) point.setZero();
   read_recovery(card, 8, p.recovery);
   p.k1 = read_shear_factor(card, 16, "K1");
@@ -235,10 +231,7 @@ void parse_prod(Card& card, Reading& r) {
   records::Prod p;
   p.id = card.read_id(0, "PID");
   p.mid = card.read_id(1, "MID");
-  p.A = card.read_real(2, "A", 0.0);
-  p.J = card.read_real(3, "J", 0.0);
-  p.c = card.read_real(4, "C", 0.0);
-  p.nsm = card.read_real(5, "NSM", 0.0);
+  card.read_reals(2, {{"A", p.A, 0.0}, {"J", p.J, 0.0}, {"C", p.c, 0.0}, {"NSM", p.nsm, 0.0}});
   p.at = card.get_location();
   card.demand(p.A >= 0, 2, "A", "an area that is not negative");
   card.demand(p.J >= 0, 3, "J", "a value that is not negative");
@@ -250,9 +243,7 @@ void parse_ptube(Card& card, Reading& r) {
   records::Ptube p;
   p.id = card.read_id(0, "PID");
   p.mid = card.read_id(1, "MID");
-  p.od = card.read_real(2, "OD");
-  p.t = card.read_real(3, "T", 0.0);
-  p.nsm = card.read_real(4, "NSM", 0.0);
+  card.read_reals(2, {{"OD", p.od}, {"T", p.t, 0.0}, {"NSM", p.nsm, 0.0}});
   p.od2 = card.read_optional_real(5, "OD2");
   p.at = card.get_location();
   card.demand(card.is_blank(2) || p.od > 0, 2, "OD", "a positive diameter");
@@ -263,13 +254,6 @@ void parse_ptube(Card& card, Reading& r) {
 }
 
 using Recovery = std::array<Eigen::Vector2d, 4>;
-
-void add_optional(CardFields& card, const std::optional<double>& value) {
-  if (value)
-    card.add(*value);
-  else
-    card.add_blank();
-}
 
 bool is_zero(const Recovery& points) {
   return std::all_of(points.begin(), points.end(), [](const auto& p) { return p.isZero(0.0); });
@@ -297,8 +281,8 @@ void write_pbeam(const records::Pbeam& p, CardSink& sink) {
     add_section(card, s);
     if (!has_none && !is_as_a) add_recovery(card, s.recovery);
   }
-  add_optional(card, p.k1);
-  add_optional(card, p.k2);
+  card.add(p.k1);
+  card.add(p.k2);
   const std::array<double, 14> rest{p.s1,   p.s2,   p.nsi_a, p.nsi_b, p.cw_a, p.cw_b, p.m1_a,
                                     p.m2_a, p.m1_b, p.m2_b,  p.n1_a,  p.n2_a, p.n1_b, p.n2_b};
   if (std::any_of(rest.begin(), rest.end(), [](double x) { return x != 0; }))
@@ -313,8 +297,8 @@ void write_pbars(const records::Deck& deck, CardSink& sink) {
     const bool more = p.k1 || p.k2 || p.I12 != 0;
     if (more || !is_zero(p.recovery)) add_recovery(card, p.recovery);
     if (more) {
-      add_optional(card, p.k1);
-      add_optional(card, p.k2);
+      card.add(p.k1);
+      card.add(p.k2);
       card.add(p.I12);
     }
     sink.put(card);
@@ -357,7 +341,7 @@ void write_ptubes(const records::Deck& deck, CardSink& sink) {
   for (const auto& p : deck.ptube) {
     CardFields card("PTUBE");
     card.add(p.id).add(p.mid).add(p.od).add(p.t).add(p.nsm);
-    add_optional(card, p.od2);
+    card.add(p.od2);
     sink.put(card);
   }
 }
@@ -417,12 +401,12 @@ void add_line_property_parsers(ParserTable& table) {
   table["PTUBE"] = {parse_ptube, ". . L L N L", "PID MID OD T NSM OD2"};
   table["PBEAM"].convert = convert_pbeam;
   table["PBARL"].convert = table["PBEAML"].convert = convert_section;
-  write_by(table, write_pbars, {"PBAR"});
-  write_by(table, write_pbarls, {"PBARL"});
-  write_by(table, write_pbeams, {"PBEAM"});
-  write_by(table, write_pbeamls, {"PBEAML"});
-  write_by(table, write_prods, {"PROD"});
-  write_by(table, write_ptubes, {"PTUBE"});
+  write_by(table, {{"PBAR", write_pbars},
+                   {"PBARL", write_pbarls},
+                   {"PBEAM", write_pbeams},
+                   {"PBEAML", write_pbeamls},
+                   {"PROD", write_prods},
+                   {"PTUBE", write_ptubes}});
 }
 
 }  // namespace bough::nastran::detail

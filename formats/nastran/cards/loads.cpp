@@ -42,15 +42,7 @@ void parse_load(Card& card, Reading& r) {
   records::LoadCombination load;
   load.sid = card.read_id(0, "SID");
   load.s = card.read_real(1, "S");
-  for (int i = 2; i < card.get_size(); i += 2) {
-    if (card.is_blank(i, i + 2)) continue;
-    const double scale = card.read_real(i, "Si");
-    load.terms.emplace_back(scale, card.read_id(i + 1, "Li"));
-    if (load.terms.back().second == load.sid && card.is_ok())
-      card.fail("deck.field-range", i + 1, "set " + std::to_string(load.sid) + " contains itself");
-  }
-  if (load.terms.empty() && card.is_ok())
-    card.fail("deck.missing-field", 2, "S1 L1 are blank, expected a set at least");
+  load.terms = read_load_terms(card, load.sid);
   load.at = card.get_location();
   if (r.claim(IdSpace::Load, load.sid, card)) r.deck.loads.push_back(std::move(load));
 }
@@ -79,6 +71,19 @@ void write_load_sets(const records::Deck& deck, CardSink& sink) {
 }
 
 }  // namespace
+
+std::vector<std::pair<double, int>> read_load_terms(Card& card, int sum) {
+  std::vector<std::pair<double, int>> terms;
+  for (int i = 2; i < card.get_size(); i += 2) {
+    if (card.is_blank(i, i + 2)) continue;
+    const double scale = card.read_real(i, "Si");
+    terms.emplace_back(scale, card.read_id(i + 1, "Li"));
+    if (terms.back().second == sum && card.is_ok())
+      card.fail("deck.field-range", i + 1, "set " + std::to_string(sum) + " contains itself");
+  }
+  if (terms.empty() && card.is_ok()) card.fail("deck.missing-field", 2, "S1 L1 are blank, expected a set at least");
+  return terms;
+}
 
 void add_load_parsers(ParserTable& table) {
   table["FORCE"] = {parse_force, ". . . F", "SID G CID F N1 N2 N3"};

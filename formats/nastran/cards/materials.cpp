@@ -64,15 +64,9 @@ void parse_mat2(Card& card, Reading& r) {
 void parse_mat8(Card& card, Reading& r) {
   records::Mat8 mat;
   mat.id = card.read_id(0, "MID");
-  mat.E1 = card.read_real(1, "E1");
-  mat.E2 = card.read_real(2, "E2");
-  mat.nu12 = card.read_real(3, "NU12", 0.0);
-  mat.G12 = card.read_real(4, "G12", 0.0);
-  mat.G1z = card.read_real(5, "G1Z", 0.0);
-  mat.G2z = card.read_real(6, "G2Z", 0.0);
-  mat.rho = card.read_real(7, "RHO", 0.0);
-  mat.a1 = card.read_real(8, "A1", 0.0);
-  mat.a2 = card.read_real(9, "A2", 0.0);
+  card.read_reals(1, {{"E1", mat.E1}, {"E2", mat.E2}, {"NU12", mat.nu12, 0.0}, {"G12", mat.G12, 0.0}});
+  card.read_reals(5, {{"G1Z", mat.G1z, 0.0}, {"G2Z", mat.G2z, 0.0}, {"RHO", mat.rho, 0.0}});
+  card.read_reals(8, {{"A1", mat.a1, 0.0}, {"A2", mat.a2, 0.0}});
   mat.tref = card.read_optional_real(10, "TREF");
   mat.ge = card.read_real(16, "GE", 0.0);
   auto& s = mat.strength;
@@ -162,12 +156,16 @@ void write_mat1(const records::Deck& deck, CardSink& sink) {
   }
 }
 
+/// The upper triangle by rows.
+void add_upper(CardFields& card, const Eigen::MatrixXd& G) {
+  for (int i = 0; i < G.rows(); ++i)
+    for (int j = i; j < G.rows(); ++j) card.add(G(i, j));
+}
+
 void write_mat2(const records::Deck& deck, CardSink& sink) {
   for (const auto& mat : deck.mat2) {
     CardFields card("MAT2");
-    card.add(mat.id);
-    for (int i = 0; i < 3; ++i)
-      for (int j = i; j < 3; ++j) card.add(mat.G(i, j));
+    add_upper(card.add(mat.id), mat.G);
     sink.put(add_tref(card.add(mat.rho).add(mat.alpha), mat.tref).add(mat.ge));
   }
 }
@@ -191,9 +189,7 @@ void write_mat8(const records::Deck& deck, CardSink& sink) {
 void write_mat9(const records::Deck& deck, CardSink& sink) {
   for (const auto& mat : deck.mat9) {
     CardFields card("MAT9");
-    card.add(mat.id);
-    for (int i = 0; i < 6; ++i)
-      for (int j = i; j < 6; ++j) card.add(mat.G(i, j));
+    add_upper(card.add(mat.id), mat.G);
     card.add(mat.rho);
     for (int i = 0; i < 6; ++i) card.add(mat.alpha[i]);
     sink.put(add_tref(card, mat.tref).add(mat.ge));
@@ -220,10 +216,7 @@ void add_material_parsers(ParserTable& table) {
   table["MAT6"] = {parse_mat9, ". P P P P P P P P P P P P P P P P P P P P P R . . . . . . . ."};  // NASTRAN-95
   table["MAT11"] = {parse_mat11, ". P P P . . . P P P R . . . . ."};
   table["MAT8"].convert = convert_mat8;
-  write_by(table, write_mat1, {"MAT1"});
-  write_by(table, write_mat2, {"MAT2"});
-  write_by(table, write_mat8, {"MAT8"});
-  write_by(table, write_mat9, {"MAT9"});
+  write_by(table, {{"MAT1", write_mat1}, {"MAT2", write_mat2}, {"MAT8", write_mat8}, {"MAT9", write_mat9}});
   write_as(table, "MAT9", {"MAT6", "MAT11"});
 }
 

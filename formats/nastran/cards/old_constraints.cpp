@@ -9,11 +9,7 @@ void parse_crigd1(Card& card, Reading& r) {
   e.id = card.read_id(0, "EID");
   e.gn = card.read_id(1, "IG");
   e.cm = 0b111111;
-  e.gm = read_ids(card, 2, card.get_size(), "G");
-  if (e.gm.empty() && card.is_ok())
-    card.fail("deck.missing-field", 2, "G1 is blank, expected a dependent grid at least");
-  e.at = card.get_location();
-  if (r.claim_rigid(e.id, card)) r.deck.rbe2.push_back(std::move(e));
+  add_rbe2(card, r, std::move(e), 2, card.get_size(), "G", "G1");
 }
 
 /// CRIGD2: EID IG, pairs of a grid and its dependent components. It becomes an RBE1.
@@ -32,17 +28,14 @@ void parse_crigd2(Card& card, Reading& r) {
 
 /// CRIGDR: EID IG G C, one or two on a card: a rigid rod whose translation C at G depends.
 void parse_crigdr(Card& card, Reading& r) {
-  for (const int first : {0, 4}) {
-    if (first > 0 && card.is_blank(first, first + 4)) break;
+  read_entries(card, 4, {0, 4}, [&](int first) {
     records::Rrod e;
-    e.id = card.read_id(first, "EID");
-    e.ga = card.read_id(first + 1, "IG");
-    e.gb = card.read_id(first + 2, "G");
+    card.read_ids(first, {{"EID", e.id}, {"IG", e.ga}, {"G", e.gb}});
     e.cmb = card.read_component(first + 3, "C");
     card.demand(e.cmb >= 1 && e.cmb <= 3, first + 3, "C", "a translation 1, 2 or 3");
     e.at = card.get_location();
     if (r.claim_rigid(e.id, card, first, 4)) r.deck.rrod.push_back(e);
-  }
+  });
 }
 
 }  // namespace

@@ -35,36 +35,36 @@ void parse_cihex1(Card& card, Reading& r) {
   add_solid(card, r, std::move(e), "CHEXA", "PIHEX");
 }
 
+/// EID PID, then the corners and the grids of edges at these places.
+records::SolidElement read_isoparametric(Card& card, std::initializer_list<int> corners,
+                                         std::initializer_list<int> midsides, const char* what) {
+  records::SolidElement e;
+  card.read_ids(0, {{"EID", e.id}, {"PID", e.pid}});
+  for (const int i : corners) e.corners.push_back(card.read_id(1 + i, what));
+  for (const int i : midsides) e.midsides.push_back(card.read_id(1 + i, what));
+  return e;
+}
+
 /// CIHEX2: corners and midsides by turns round the bottom (G1 to G8), the edges between (G9 to G12), the top by turns.
 void parse_cihex2(Card& card, Reading& r) {
-  constexpr std::array corners{1, 3, 5, 7, 13, 15, 17, 19};
-  constexpr std::array midsides{2, 4, 6, 8, 9, 10, 11, 12, 14, 16, 18, 20};
-  records::SolidElement e;
-  e.id = card.read_id(0, "EID");
-  e.pid = card.read_id(1, "PID");
-  for (const int i : corners) e.corners.push_back(card.read_id(1 + i, "G1 to G20"));
-  for (const int i : midsides) e.midsides.push_back(card.read_id(1 + i, "G1 to G20"));
+  auto e =
+      read_isoparametric(card, {1, 3, 5, 7, 13, 15, 17, 19}, {2, 4, 6, 8, 9, 10, 11, 12, 14, 16, 18, 20}, "G1 to G20");
   add_solid(card, r, std::move(e), "CHEXA", "PIHEX");
 }
 
 /// CIHEX3: round the bottom (G1 to G12, corners G1 G4 G7 G10), a third up (G13 to G16), two thirds up (G17 to G20),
 /// round the top (G21 to G32), as in NASTRAN-95's ihexsd.f. Thirds by edge of CHEXA, from its first corner.
 void parse_cihex3(Card& card, Reading& r) {
-  constexpr std::array corners{1, 4, 7, 10, 21, 24, 27, 30};
-  constexpr std::array thirds{2, 3, 5, 6, 8, 9, 11, 12, 13, 17, 14, 18, 15, 19, 16, 20, 22, 23, 25, 26, 28, 29, 31, 32};
-  records::SolidElement e;
-  e.id = card.read_id(0, "EID");
-  e.pid = card.read_id(1, "PID");
-  for (const int i : corners) e.corners.push_back(card.read_id(1 + i, "G1 to G32"));
-  for (const int i : thirds) e.midsides.push_back(card.read_id(1 + i, "G1 to G32"));
+  auto e = read_isoparametric(
+      card, {1, 4, 7, 10, 21, 24, 27, 30},
+      {2, 3, 5, 6, 8, 9, 11, 12, 13, 17, 14, 18, 15, 19, 16, 20, 22, 23, 25, 26, 28, 29, 31, 32}, "G1 to G32");
   add_solid(card, r, std::move(e), "CIHEX3", "PIHEX");
 }
 
 /// PID MID CID NIP AR ALPHA BETA. NIP stays zero where it is blank: what that means is the element's.
 void parse_pihex(Card& card, Reading& r) {
   records::Psolid p;
-  p.id = card.read_id(0, "PID");
-  p.mid = card.read_id(1, "MID");
+  card.read_ids(0, {{"PID", p.id}, {"MID", p.mid}});
   p.cordm = card.read_reference(2, "CID");
   p.points = card.read_int(3, "NIP", 0);
   card.demand(p.points == 0 || (p.points >= 2 && p.points <= 4), 3, "NIP", "2, 3 or 4");
@@ -76,10 +76,7 @@ void parse_pihex(Card& card, Reading& r) {
 /// EID PID GA GB X1 X2 X3 1: the vector points to the centre.
 void parse_celbow(Card& card, Reading& r) {
   records::Cbend e;
-  e.id = card.read_id(0, "EID");
-  e.pid = card.read_id(1, "PID", e.id);
-  e.ga = card.read_id(2, "GA");
-  e.gb = card.read_id(3, "GB");
+  card.read_ids(0, {{"EID", e.id}, {"PID", e.pid, &e.id}, {"GA", e.ga}, {"GB", e.gb}});
   e.v = card.read_vector(4, "X1 X2 X3");
   e.geom = 1;
   card.use(7);

@@ -14,6 +14,14 @@ void write_by(ParserTable& table, CardWriter write, std::initializer_list<const 
   }
 }
 
+void write_by(ParserTable& table, std::initializer_list<std::pair<const char*, CardWriter>> cards) {
+  for (const auto& [card, write] : cards) write_by(table, write, {card});
+}
+
+void add_plain_cards(ParserTable& table, std::initializer_list<std::pair<const char*, CardParser>> cards) {
+  for (const auto& [name, parser] : cards) table[name] = {parser, ""};
+}
+
 void write_as(ParserTable& table, const char* card, std::initializer_list<const char*> others) {
   for (const char* other : others) table.at(other).written_as = card;
 }

@@ -14,14 +14,17 @@ void read_ends(Card& card, int i, Element& e) {
     card.fail("deck.missing-field", i, "G1 and G2 are both blank, expected one at least");
 }
 
-void parse_celas1(Card& card, Reading& r) {
-  records::ScalarSpring e;
-  e.id = card.read_id(0, "EID");
-  e.pid = card.read_id(1, "PID", e.id);
+/// EID PID G1 C1 G2 C2.
+template <class Element>
+void parse_by_property(Card& card, Reading& r, IdSpace space, std::vector<Element>& elements) {
+  Element e;
+  card.read_ids(0, {{"EID", e.id}, {"PID", e.pid, &e.id}});
   read_ends(card, 2, e);
   e.at = card.get_location();
-  if (r.claim(IdSpace::Spring, e.id, card)) r.deck.springs.push_back(e);
+  if (r.claim(space, e.id, card)) elements.push_back(e);
 }
+void parse_celas1(Card& card, Reading& r) { parse_by_property(card, r, IdSpace::Spring, r.deck.springs); }
+void parse_cmass1(Card& card, Reading& r) { parse_by_property(card, r, IdSpace::ScalarMass, r.deck.scalar_masses); }
 
 void parse_celas2(Card& card, Reading& r) {
   records::ScalarSpring e;
@@ -32,15 +35,6 @@ void parse_celas2(Card& card, Reading& r) {
   e.s = card.read_real(7, "S", 0.0);
   e.at = card.get_location();
   if (r.claim(IdSpace::Spring, e.id, card)) r.deck.springs.push_back(e);
-}
-
-void parse_cmass1(Card& card, Reading& r) {
-  records::ScalarMass e;
-  e.id = card.read_id(0, "EID");
-  e.pid = card.read_id(1, "PID", e.id);
-  read_ends(card, 2, e);
-  e.at = card.get_location();
-  if (r.claim(IdSpace::ScalarMass, e.id, card)) r.deck.scalar_masses.push_back(e);
 }
 
 void parse_cmass2(Card& card, Reading& r) {
@@ -91,9 +85,7 @@ void parse_cmass4(Card& card, Reading& r) {
 
 void parse_cbush(Card& card, Reading& r) {
   records::Cbush e;
-  e.id = card.read_id(0, "EID");
-  e.pid = card.read_id(1, "PID", e.id);
-  e.ga = card.read_id(2, "GA");
+  card.read_ids(0, {{"EID", e.id}, {"PID", e.pid, &e.id}, {"GA", e.ga}});
   e.gb = card.read_reference(3, "GB");
   if (!card.is_blank(4, 7)) {
     if (card.is_integer(4) && card.is_blank(5, 7))

@@ -6,16 +6,13 @@ namespace bough::nastran::detail {
 namespace {
 
 void parse_pelas(Card& card, Reading& r) {
-  for (const int first : {0, 4}) {
-    if (first > 0 && card.is_blank(first, first + 4)) break;
+  read_entries(card, 4, {0, 4}, [&](int first) {
     records::Pelas p;
     p.id = card.read_id(first, "PID");
-    p.k = card.read_real(first + 1, "K", 0.0);
-    p.ge = card.read_real(first + 2, "GE", 0.0);
-    p.s = card.read_real(first + 3, "S", 0.0);
+    card.read_reals(first + 1, {{"K", p.k, 0.0}, {"GE", p.ge, 0.0}, {"S", p.s, 0.0}});
     p.at = card.get_location();
     if (r.claim(IdSpace::ElasProperty, p.id, card, first, 4)) r.deck.pelas.push_back(p);
-  }
+  });
 }
 
 void read_six(Card& card, int first, const char* what, std::array<double, 6>& values) {
@@ -48,14 +45,9 @@ void parse_pbush(Card& card, Reading& r) {
 }
 
 void parse_pmass(Card& card, Reading& r) {
-  for (int first = 0; first < 8; first += 2) {
-    if (first > 0 && card.is_blank(first, first + 2)) continue;
-    records::Pmass p;
-    p.id = card.read_id(first, "PID");
-    p.m = card.read_real(first + 1, "M", 0.0);
-    p.at = card.get_location();
-    if (r.claim(IdSpace::MassProperty, p.id, card, first, 2)) r.deck.pmass.push_back(p);
-  }
+  read_values(card, "M", [&](int id, double m, int first) {
+    if (r.claim(IdSpace::MassProperty, id, card, first, 2)) r.deck.pmass.push_back({id, m, card.get_location()});
+  });
 }
 
 void write_pelas(const records::Deck& deck, CardSink& sink) {
@@ -126,9 +118,7 @@ void add_point_property_parsers(ParserTable& table) {
   table["PELAS"].convert = convert_pelas;
   table["PBUSH"].convert = convert_pbush;
   table["PMASS"].convert = convert_pmass;
-  write_by(table, write_pelas, {"PELAS"});
-  write_by(table, write_pbushes, {"PBUSH"});
-  write_by(table, write_pmass, {"PMASS"});
+  write_by(table, {{"PELAS", write_pelas}, {"PBUSH", write_pbushes}, {"PMASS", write_pmass}});
 }
 
 }  // namespace bough::nastran::detail

@@ -160,19 +160,7 @@ void parse_rforce(Card& card, Reading& r) {
 }
 
 /// SID G1 C1 D1 G2 C2 D2.
-void parse_spcd(Card& card, Reading& r) {
-  const int sid = card.read_id(0, "SID");
-  for (const int i : {1, 4}) {
-    if (i > 1 && card.is_blank(i, i + 3)) break;
-    records::Spcd load;
-    load.sid = sid;
-    load.g = card.read_id(i, "G");
-    load.c = card.read_components(i + 1, "C", 0);
-    load.d = card.read_real(i + 2, "D", 0.0);
-    load.at = card.get_location();
-    if (card.is_ok()) r.deck.load_cards.spcd.push_back(load);
-  }
-}
+void parse_spcd(Card& card, Reading& r) { parse_motions(card, r.deck.load_cards.spcd); }
 
 /// SID S1 F1 S2 F2 S3 F3.
 void parse_sload(Card& card, Reading& r) {
@@ -187,13 +175,6 @@ void parse_sload(Card& card, Reading& r) {
 
 using records::ElementPressure;
 
-void add_optional(CardFields& card, const std::optional<double>& value) {
-  if (value)
-    card.add(*value);
-  else
-    card.add_blank();
-}
-
 void write_beam_load(const records::BeamLoad& load, CardSink& sink) {
   std::string type{load.is_moment ? 'M' : 'F', static_cast<char>('X' + load.axis)};
   if (load.in_element_axes) type += 'E';
@@ -201,7 +182,7 @@ void write_beam_load(const records::BeamLoad& load, CardSink& sink) {
   if (load.is_projected) scale += "PR";
   CardFields card("PLOAD1");
   card.add(load.sid).add(load.element).add_word(type).add_word(scale).add(load.x1).add(load.p1);
-  add_optional(card, load.x2);
+  card.add(load.x2);
   sink.put(card.add(load.p2));
 }
 
@@ -322,13 +303,9 @@ void add_pressure_parsers(ParserTable& table) {
   table["SPCD"].convert = convert_spcd;
   table["SLOAD"].convert = convert_sload;
   write_by(table, write_directed, {"FORCE1", "FORCE2", "MOMENT1", "MOMENT2"});
-  write_by(table, write_beam_loads, {"PLOAD1"});
-  write_by(table, write_grid_pressures, {"PLOAD"});
-  write_by(table, write_element_pressures, {"PLOAD4"});
+  write_by(table, {{"PLOAD1", write_beam_loads}, {"PLOAD", write_grid_pressures}, {"PLOAD4", write_element_pressures}});
   write_as(table, "PLOAD4", {"PLOAD2", "PLOAD3"});
-  write_by(table, write_rotations, {"RFORCE"});
-  write_by(table, write_spcd, {"SPCD"});
-  write_by(table, write_scalar_loads, {"SLOAD"});
+  write_by(table, {{"RFORCE", write_rotations}, {"SPCD", write_spcd}, {"SLOAD", write_scalar_loads}});
 }
 
 }  // namespace bough::nastran::detail

@@ -64,23 +64,18 @@ void read_midsides(Card& card, int first, ShellElement& e) {
   if (!any) e.midsides.clear();
 }
 
+/// CQUAD8, CTRIA6: THETA in field `axes`, TFLAG in field `flag`.
+void parse_quadratic(Card& card, Reading& r, int corners, int axes, int flag) {
+  auto e = read_corners(card, corners);
+  read_midsides(card, 2 + corners, e);
+  read_axes(card, axes, e);
+  read_thickness(card, 10, flag, e);
+  add_shell(card, r, std::move(e));
+}
 /// G1..G6, G7 G8 T1..T4 THETA ZOFFS, TFLAG.
-void parse_quad8(Card& card, Reading& r) {
-  auto e = read_corners(card, 4);
-  read_midsides(card, 6, e);
-  read_axes(card, 14, e);
-  read_thickness(card, 10, 16, e);
-  add_shell(card, r, std::move(e));
-}
-
+void parse_quad8(Card& card, Reading& r) { parse_quadratic(card, r, 4, 14, 16); }
 /// G1..G6, THETA ZOFFS T1..T3 TFLAG.
-void parse_triangle6(Card& card, Reading& r) {
-  auto e = read_corners(card, 3);
-  read_midsides(card, 5, e);
-  read_axes(card, 8, e);
-  read_thickness(card, 10, 13, e);
-  add_shell(card, r, std::move(e));
-}
+void parse_triangle6(Card& card, Reading& r) { parse_quadratic(card, r, 3, 8, 13); }
 
 void parse_cshear(Card& card, Reading& r) {
   records::ShearPanel e;

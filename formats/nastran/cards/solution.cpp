@@ -129,20 +129,13 @@ void parse_param(Card& card, Reading& r) {
   r.deck.params.push_back(std::move(p));
 }
 
-void add_optional(CardFields& card, const std::optional<double>& value) {
-  if (value)
-    card.add(*value);
-  else
-    card.add_blank();
-}
-
 void write_eigen_methods(const records::Deck& deck, CardSink& sink) {
   for (const auto& m : deck.eigen_methods) {
     CardFields card(m.is_eigrl ? "EIGRL" : "EIGR");
     card.add(m.sid);
     if (!m.is_eigrl) card.add_word(m.method);
-    add_optional(card, m.f1);
-    add_optional(card, m.f2);
+    card.add(m.f1);
+    card.add(m.f2);
     if (m.is_eigrl) {
       sink.put(card.add_id(m.num_modes).add_blank(3).add_word(m.norm));
       continue;

@@ -95,14 +95,14 @@ void write_rspline(const records::Deck& deck, CardSink& sink) {
 }  // namespace
 
 void add_special_constraint_parsers(ParserTable& table) {
-  table["RBAR1"] = {parse_one_follower, ""};
-  table["RJOINT"] = {parse_one_follower, ""};
-  table["RTRPLT"] = {parse_rtrplt, ""};
-  table["RTRPLT1"] = {parse_rtrplt1, ""};
-  table["RSPLINE"] = {parse_rspline, ""};
-  // The names of NASTRAN-95, with the same fields.
-  table["CRTRPLT"] = {parse_rtrplt, ""};
-  table["CRSPLINE"] = {parse_rspline, ""};
+  // CRTRPLT and CRSPLINE: the names of NASTRAN-95, with the same fields.
+  add_plain_cards(table, {{"RBAR1", parse_one_follower},
+                          {"RJOINT", parse_one_follower},
+                          {"RTRPLT", parse_rtrplt},
+                          {"RTRPLT1", parse_rtrplt1},
+                          {"RSPLINE", parse_rspline},
+                          {"CRTRPLT", parse_rtrplt},
+                          {"CRSPLINE", parse_rspline}});
   write_by(table, write_rspline, {"RSPLINE"});
   write_as(table, "RSPLINE", {"CRSPLINE"});
   write_as(table, "RBE2", {"RBAR1", "RJOINT"});

@@ -10,14 +10,8 @@ void parse_pbcomp(Card& card, Reading& r) {
   records::Pbcomp p;
   p.id = card.read_id(0, "PID");
   p.mid = card.read_id(1, "MID");
-  p.A = card.read_real(2, "A", 0.0);
-  p.I1 = card.read_real(3, "I1", 0.0);
-  p.I2 = card.read_real(4, "I2", 0.0);
-  p.I12 = card.read_real(5, "I12", 0.0);
-  p.J = card.read_real(6, "J", 0.0);
-  p.nsm = card.read_real(7, "NSM", 0.0);
-  p.k1 = card.read_real(8, "K1", 1.0);
-  p.k2 = card.read_real(9, "K2", 1.0);
+  card.read_reals(2, {{"A", p.A, 0.0}, {"I1", p.I1, 0.0}, {"I2", p.I2, 0.0}, {"I12", p.I12, 0.0}});
+  card.read_reals(6, {{"J", p.J, 0.0}, {"NSM", p.nsm, 0.0}, {"K1", p.k1, 1.0}, {"K2", p.k2, 1.0}});
   p.m = card.read_point(10, "M1 M2");
   p.n = card.read_point(12, "N1 N2");
   p.section = card.read_int(14, "SECTION", 0);
@@ -86,13 +80,16 @@ void parse_genel(Card& card, Reading& r) {
   if (r.claim(IdSpace::General, e.id, card)) r.deck.special.genel.push_back(std::move(e));
 }
 
+/// EID PID GA GB: PID blank is EID.
+template <class Element>
+void read_two_ends(Card& card, Element& e) {
+  card.read_ids(0, {{"EID", e.id}, {"PID", e.pid, &e.id}, {"GA", e.ga}, {"GB", e.gb}});
+}
+
 /// EID PID GA GB X1 X2 X3 CID; X1 alone is a grid.
 void parse_cgap(Card& card, Reading& r) {
   records::Cgap e;
-  e.id = card.read_id(0, "EID");
-  e.pid = card.read_id(1, "PID", e.id);
-  e.ga = card.read_id(2, "GA");
-  e.gb = card.read_id(3, "GB");
+  read_two_ends(card, e);
   if (card.is_integer(4) && card.is_blank(5, 7))
     e.g0 = card.read_id(4, "G0");
   else if (!card.is_blank(4, 7))
@@ -106,9 +103,7 @@ void parse_cgap(Card& card, Reading& r) {
 void parse_pgap(Card& card, Reading& r) {
   records::Pgap p;
   p.id = card.read_id(0, "PID");
-  p.u0 = card.read_real(1, "U0", 0.0);
-  p.f0 = card.read_real(2, "F0", 0.0);
-  p.ka = card.read_real(3, "KA", 0.0);
+  card.read_reals(1, {{"U0", p.u0, 0.0}, {"F0", p.f0, 0.0}, {"KA", p.ka, 0.0}});
   p.kb = card.read_real(4, "KB", 1e-14 * p.ka);
   p.kt = card.read_real(5, "KT", card.read_real(6, "MU1", 0.0) * p.ka);
   card.use(6, card.get_size());  // friction, adaptive gaps
@@ -121,10 +116,7 @@ void parse_pgap(Card& card, Reading& r) {
 /// EID PID GA GB X1 X2 X3 GEOM; X1 alone is a grid.
 void parse_cbend(Card& card, Reading& r) {
   records::Cbend e;
-  e.id = card.read_id(0, "EID");
-  e.pid = card.read_id(1, "PID", e.id);
-  e.ga = card.read_id(2, "GA");
-  e.gb = card.read_id(3, "GB");
+  read_two_ends(card, e);
   if (card.is_integer(4) && card.is_blank(5, 7))
     e.g0 = card.read_id(4, "G0");
   else
@@ -148,20 +140,14 @@ void parse_pbend(Card& card, Reading& r) {
     p.t = card.read_real(4, "T");
     p.pressure = card.read_real(5, "P", 0.0);
   } else {
-    p.A = card.read_real(2, "A");
-    p.I1 = card.read_real(3, "I1");
-    p.I2 = card.read_real(4, "I2");
-    p.J = card.read_real(5, "J", 0.0);
-    p.k1 = card.read_real(16, "K1", 0.0);
-    p.k2 = card.read_real(17, "K2", 0.0);
+    card.read_reals(2, {{"A", p.A}, {"I1", p.I1}, {"I2", p.I2}, {"J", p.J, 0.0}});
+    card.read_reals(16, {{"K1", p.k1, 0.0}, {"K2", p.k2, 0.0}});
     p.delta_n = card.read_optional_real(21, "DELTAN");
   }
   p.rb = card.read_real(6, "RB", 0.0);
   p.theta_b_deg = card.read_real(7, "THETAB", 0.0);
   const int last = p.is_pipe ? 10 : 18;
-  p.nsm = card.read_real(last, "NSM", 0.0);
-  p.rc = card.read_real(last + 1, "RC", 0.0);
-  p.zc = card.read_real(last + 2, "ZC", 0.0);
+  card.read_reals(last, {{"NSM", p.nsm, 0.0}, {"RC", p.rc, 0.0}, {"ZC", p.zc, 0.0}});
   card.use(8, 16);  // C to F; of a pipe SACL, ALPHA and further
   p.at = card.get_location();
   if (r.claim(IdSpace::BendProperty, p.id, card)) r.deck.special.pbend.push_back(p);
@@ -360,12 +346,12 @@ void add_special_element_parsers(ParserTable& table) {
   table["GENEL"].convert = convert_genel;
   table["PCOMPS"].convert = convert_pcomps;
   table["PBEND"].convert = convert_pbend;
-  write_by(table, write_pbcomps, {"PBCOMP"});
-  write_by(table, write_genels, {"GENEL"});
-  write_by(table, write_cbends, {"CBEND"});
-  write_by(table, write_pbends, {"PBEND"});
-  write_by(table, write_cgaps, {"CGAP"});
-  write_by(table, write_pgaps, {"PGAP"});
+  write_by(table, {{"PBCOMP", write_pbcomps},
+                   {"GENEL", write_genels},
+                   {"CBEND", write_cbends},
+                   {"PBEND", write_pbends},
+                   {"CGAP", write_cgaps},
+                   {"PGAP", write_pgaps}});
   write_as(table, "PSOLID", {"PCOMPS"});
 }
 

@@ -91,10 +91,7 @@ void add_temperature_parsers(ParserTable& table) {
   table["TEMPD"] = {parse_tempd, ""};
   table["TEMPRB"] = {parse_temprb, ". . . . 1/L 1/L 1/L 1/L"};
   table["TEMPP1"] = {parse_tempp1, ". . . 1/L"};
-  write_by(table, write_temp, {"TEMP"});
-  write_by(table, write_tempd, {"TEMPD"});
-  write_by(table, write_temprb, {"TEMPRB"});
-  write_by(table, write_tempp1, {"TEMPP1"});
+  write_by(table, {{"TEMP", write_temp}, {"TEMPD", write_tempd}, {"TEMPRB", write_temprb}, {"TEMPP1", write_tempp1}});
 }
 
 }  // namespace bough::nastran::detail

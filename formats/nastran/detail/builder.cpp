@@ -219,10 +219,13 @@ class Builder {
     finish_relative(replicator_.resolve(text_));
   }
 
+  bool reads_rotors() const { return is_complex_ || is_response_; }
+
   bool is_read(const std::string& name) const {
     return ignored_.count(name) == 0 &&
            (get_card_parsers().count(name) > 0 || (dynamics_ && get_dynamic_parsers().count(name) > 0) ||
-            (is_complex_ && get_complex_parsers().count(name) > 0));
+            (is_complex_ && get_complex_parsers().count(name) > 0) ||
+            (reads_rotors() && get_rotor_parsers().count(name) > 0));
   }
 
   /// Lines that are no cards and change nothing here: a deletion, which belongs to a restart, and a second BEGIN BULK.
@@ -372,6 +375,9 @@ class Builder {
         found->second.dynamic = parser->second.parse;
       const auto& of_complex_modes = get_complex_parsers();
       if (const auto parser = of_complex_modes.find(text_.name); is_complex_ && parser != of_complex_modes.end())
+        found->second.dynamic = parser->second.parse;
+      const auto& of_rotors = get_rotor_parsers();
+      if (const auto parser = of_rotors.find(text_.name); reads_rotors() && parser != of_rotors.end())
         found->second.dynamic = parser->second.parse;
     }
     return found->second;

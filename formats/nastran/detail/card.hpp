@@ -3,6 +3,7 @@
 /// counting of the manuals); every line of a card has eight of them whatever its format.
 #include <algorithm>
 #include <cstdint>
+#include <initializer_list>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -97,6 +98,27 @@ class Card {
   /// Bit mask of components 1 to 6, `fallback` if the field is blank.
   unsigned read_components(int i, const char* what, unsigned fallback);
   int read_component(int i, const char* what);  ///< one component 0..6, blank = 0
+
+  /// An id in a list of fields: its name and member; required, or `*blank` if the field is blank.
+  struct IdField {
+    const char* what;
+    int& value;
+    const int* blank = nullptr;
+  };
+  /// A real number in a list of fields: its name and member; required, or `blank` if the field is blank.
+  struct RealField {
+    const char* what;
+    double& value;
+    std::optional<double> blank = {};
+  };
+  /// Reads the fields first, first + 1, ... into their members.
+  void read_ids(int first, std::initializer_list<IdField> fields) {
+    for (const auto& f : fields) f.value = f.blank ? read_id(first++, f.what, *f.blank) : read_id(first++, f.what);
+  }
+  /// Reads the fields first, first + 1, ... into their members.
+  void read_reals(int first, std::initializer_list<RealField> fields) {
+    for (const auto& f : fields) f.value = f.blank ? read_real(first++, f.what, *f.blank) : read_real(first++, f.what);
+  }
   /// A word of `choices` (upper case), `fallback` when blank.
   std::string read_word(int i, const char* what, std::string_view fallback, const std::vector<std::string>& choices);
   /// Text of the field in upper case; marks it as read.
@@ -122,6 +144,14 @@ class Card {
   std::uint64_t used_ = 0;  ///< bit i: field i
   bool ok_ = true;
 };
+
+/// Calls read(first) for the entries of `width` fields that a card has room for: of the first, and of each further one
+/// that is not blank.
+template <class Read>
+void read_entries(const Card& card, int width, std::initializer_list<int> starts, const Read& read) {
+  for (const int first : starts)
+    if (first == *starts.begin() || !card.is_blank(first, first + width)) read(first);
+}
 
 /// A list of ids with THRU, BY, EXCEPT.
 struct IdRange {

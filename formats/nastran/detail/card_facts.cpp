@@ -13,7 +13,8 @@ const CardFacts* find_card_facts(std::string_view name) {
     const auto row = table.find(name);
     return row == table.end() ? nullptr : &row->second;
   };
-  for (const CardFacts* facts : {find(get_card_parsers()), find(get_dynamic_parsers()), find(get_complex_parsers())})
+  for (const CardFacts* facts :
+       {find(get_card_parsers()), find(get_dynamic_parsers()), find(get_complex_parsers()), find(get_rotor_parsers())})
     if (facts != nullptr) return facts;
   return nullptr;
 }
@@ -40,6 +41,7 @@ const Words& get_words(std::string_view card) {
     add(get_card_parsers());
     add(get_dynamic_parsers());
     add(get_complex_parsers());
+    add(get_rotor_parsers());
     return made;
   }();
   static const Words none;

@@ -88,6 +88,8 @@ CardFields& CardFields::add_blank(int count) {
   fields_.resize(fields_.size() + static_cast<std::size_t>(count));
   return *this;
 }
+CardFields& CardFields::add(const std::optional<double>& value) { return value ? add(*value) : add_blank(); }
+
 CardFields& CardFields::add_id(int id) { return id == 0 ? add_blank() : add(id); }
 CardFields& CardFields::add_components(unsigned mask) {
   if (mask == 0) return add_blank();

@@ -1,5 +1,6 @@
 #pragma once
 /// \file One card on its way to text: fields in order, then lines of 8 or 16 columns or between commas.
+#include <optional>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -27,6 +28,8 @@ class CardFields {
   CardFields& add(int value);
   /// Adds a real, written with as many digits as the columns of its field hold.
   CardFields& add(double value);
+  /// Adds a real; blank without one.
+  CardFields& add(const std::optional<double>& value);
   /// Adds three reals.
   CardFields& add(const Eigen::Vector3d& v);
   /// Adds a word, unchanged.

@@ -127,11 +127,10 @@ class CaseControl {
     if (options_.is_complex && is_command(c.word, "CMETHOD", 4))
       return read_set(c, "CMETHOD", current_selection().cmethod);
     if (options_.is_complex && c.word == "TFL") return read_set(c, "TFL", current_selection().tfl);
+    if ((is_response() || options_.is_complex) && read_rotor_selection(c)) return;
     if (const auto* acts = find_unsupported_command(c.word)) {
       if (acts->scope == CommandScope::StaticLoad) return read_unread_load(c, *acts);
-      const bool is_rotor = c.word.substr(0, 4) == "RGYR" || c.word.substr(0, 4) == "RMET";
-      if (acts->scope == CommandScope::Model || is_response() || (options_.is_complex && is_rotor))
-        return refuse(*acts);
+      if (acts->scope == CommandScope::Model || is_response()) return refuse(*acts);
       return note(c.word);
     }
     if (!is_response() && (is_command(c.word, "RANDOM", 4) || is_command(c.word, "RCROSS", 4))) return note(c.word);
@@ -164,6 +163,22 @@ class CaseControl {
       return true;
     }
     return false;
+  }
+
+  /// RGYRO = n or NO; RMETHOD = n of complex modes.
+  bool read_rotor_selection(const Command& c) {
+    const bool is_rgyro = is_command(c.word, "RGYRO", 4);
+    if (!is_rgyro && !(options_.is_complex && is_command(c.word, "RMETHOD", 4))) return false;
+    const char* name = is_rgyro ? "RGYRO" : "RMETHOD";
+    auto& set = is_rgyro ? current_selection().rgyro : current_selection().rmethod;
+    if (asked_to_ignore_.count(name) > 0)
+      diagnostics_.warning("deck.unsupported-command", deck_.locate(at_),
+                           std::string(name) + " selects rotors: gyroscopic terms", "ignored as asked");
+    else if (make_upper(c.value) == "NO")
+      set = 0;
+    else
+      read_set(c, name, set);
+    return true;
   }
 
   bool is_response() const { return dynamics_ && options_.is_response; }

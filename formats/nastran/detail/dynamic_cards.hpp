@@ -1,7 +1,11 @@
 #pragma once
 /// \file Cards of loads over frequency and time, read for responses alone: elsewhere they are named as not read.
+#include <algorithm>
+#include <string>
 #include <string_view>
 #include <unordered_map>
+#include <utility>
+#include <vector>
 
 #include "formats/nastran/detail/card.hpp"
 #include "formats/nastran/detail/card_facts.hpp"
@@ -34,8 +38,21 @@ const DynamicParserTable& get_dynamic_parsers();
 /// EIGC, TF, EPOINT: cards of complex modes alone.
 const DynamicParserTable& get_complex_parsers();
 
+/// ROTORG, RSPINR, RGYRO, RSPEED, DDVAL, ROTORD, UNBALNC: cards of complex modes and of responses.
+const DynamicParserTable& get_rotor_parsers();
+
 /// The member of the case control that alone selects the sets of such cards; nullptr for other cards. What is wrong
 /// with a set that no subcase selects is a warning.
 int records::DynamicSelection::*find_selection_of(std::string_view card);
+
+/// Appends the record of a card without errors. Reports deck.duplicate-id if another one has its id.
+template <class Record>
+void add_unique(Card& card, std::vector<Record>& all, Record record, int Record::*id) {
+  if (!card.is_ok()) return;
+  if (std::any_of(all.begin(), all.end(), [&](const auto& other) { return other.*id == record.*id; }))
+    return card.fail("deck.duplicate-id", 0, "id " + std::to_string(record.*id) + " is used twice",
+                     "give one of them another id");
+  all.push_back(std::move(record));
+}
 
 }  // namespace bough::nastran::detail

@@ -83,7 +83,8 @@ constexpr std::string_view neutral_cards =
     "CYSUP GROUP PARTN CONNECT RESTART FTGDEF FTGEVNT FTGLOAD FTGPARM FTGSEQ PFTG MATFTG TABLFTG "
     // Dynamics and eigenvalue control.
     "DAMPING DAMPGBL EIGB EIGC EIGP EIGR EIGRL FREQ FREQ1 FREQ2 FREQ3 FREQ4 FREQ5 FREQV RANDPS RANDT1 RCPARM "
-    "RCROSS RGYRO RSPINR RSPINT ROTORG ROTORB ROTORSE ROTORAX ROTHYBD ROTPARM UNBALNC PBEAR TF TSTEP TSTEP1 TSTEPNL "
+    "RCROSS RGYRO RSPEED RSPINR RSPINT ROTORG ROTORB ROTORSE ROTORAX ROTHYBD ROTPARM UNBALNC PBEAR TF TSTEP TSTEP1 "
+    "TSTEPNL "
     "NLFREQ NLFREQ1 NLHARM TRMCPL TEMPS TSTART "
     // Aeroelasticity.
     "AECOMP AECOMPL AEDW AEFACT AEFORCE AEGRID AELINK AELIST AELISTC AEPARM AEPRESS AEQUAD4 AERO AEROS AESCALE AESTAT "
@@ -213,26 +214,18 @@ std::optional<ResponseEffect> find_response_effect(std::string_view name) {
   if (name == "TF") return ResponseEffect{"TFL", true, ""};
   if (name.substr(0, 5) == "NOLIN") return ResponseEffect{"NONLINEAR", true, ""};
   if (name == "GUST") return ResponseEffect{"GUST", true, ""};
-  if (name == "RGYRO") return ResponseEffect{"RGYRO", true, ""};
-  if (name == "ROTORD") return ResponseEffect{"RMETHOD", true, ""};
   return std::nullopt;
 }
 
 const char* get_effect_name(CardEffect effect) {
-  switch (effect) {
-    case CardEffect::Stiffness:
-      return "stiffness";
-    case CardEffect::Mass:
-      return "mass";
-    case CardEffect::Constraint:
-      return "a constraint";
-    case CardEffect::Load:
-      return "a load";
-    case CardEffect::Damping:
-      return "damping, which real modes do not have";
-    case CardEffect::None:
-      break;
-  }
+  static constexpr std::pair<CardEffect, const char*> names[] = {
+      {CardEffect::Stiffness, "stiffness"},
+      {CardEffect::Mass, "mass"},
+      {CardEffect::Constraint, "a constraint"},
+      {CardEffect::Load, "a load"},
+      {CardEffect::Damping, "damping, which real modes do not have"}};
+  for (const auto& [one, name] : names)
+    if (one == effect) return name;
   return "nothing Bough computes with";
 }
 

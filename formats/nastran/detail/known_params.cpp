@@ -81,6 +81,8 @@ const std::vector<Rule>& get_response_rules() {
       {"RESVEC", "YES or NO", is_answer},
       {"RMSINT", "LINEAR or LOGLOG", [](const std::string& v) { return v == "LINEAR" || v == "LOGLOG"; }},
       {"W3", "a number", is_real},
+      {"WR3", "a number", is_real},
+      {"WR4", "a number", is_real},
       {"W4", "a number", is_real}};
   return rules;
 }

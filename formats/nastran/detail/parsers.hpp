@@ -7,6 +7,37 @@
 
 namespace bough::nastran::detail {
 
+/// Adds cards whose fields have no dimensions to convert.
+void add_plain_cards(ParserTable& table, std::initializer_list<std::pair<const char*, CardParser>> cards);
+
+/// Reads SID G1 C1 D1 G2 C2 D2: one or two displacements (SPC, SPCD).
+template <class Motion>
+void parse_motions(Card& card, std::vector<Motion>& motions) {
+  const int sid = card.read_id(0, "SID");
+  read_entries(card, 3, {1, 4}, [&](int i) {
+    Motion motion;
+    motion.sid = sid;
+    motion.g = card.read_id(i, "G");
+    motion.c = card.read_components(i + 1, "C", 0);
+    motion.d = card.read_real(i + 2, "D", 0.0);
+    motion.at = card.get_location();
+    if (card.is_ok()) motions.push_back(motion);
+  });
+}
+/// Reads up to four pairs PID value (PMASS, PDAMP) and calls add(id, value, first field).
+template <class Add>
+void read_values(Card& card, const char* what, const Add& add) {
+  read_entries(card, 2, {0, 2, 4, 6}, [&](int first) {
+    const int id = card.read_id(first, "PID");
+    add(id, card.read_real(first + 1, what, 0.0), first);
+  });
+}
+/// Reads the dependent grids of an RBE2, fields first .. last-1, and adds it. Adds deck.missing-field, deck.bad-list.
+void add_rbe2(Card& card, Reading& r, records::Rbe2&& e, int first, int last, const char* what, const char* first_name);
+/// Reads the terms (scale, set) of a LOAD or DLOAD from the third field on. `sum`: a set that must not be among them.
+/// Adds deck.missing-field, deck.field-range.
+std::vector<std::pair<double, int>> read_load_terms(Card& card, int sum = 0);
+
 void add_grid_parsers(ParserTable& table);                ///< GRID, GRDSET, CORD1x, CORD2x, SPOINT
 void add_material_parsers(ParserTable& table);            ///< MAT1, MAT2, MAT8, MAT9, MAT11
 void add_line_property_parsers(ParserTable& table);       ///< PBAR, PBARL, PBEAM, PBEAML, PROD, PTUBE

@@ -195,6 +195,8 @@ using ParserTable = std::unordered_map<std::string_view, CardRow>;
 const ParserTable& get_card_parsers();
 /// Sets the writer of these cards, which writes them after all that were set before.
 void write_by(ParserTable& table, CardWriter write, std::initializer_list<const char*> cards);
+/// Sets the writers of cards with one each, in this order.
+void write_by(ParserTable& table, std::initializer_list<std::pair<const char*, CardWriter>> cards);
 /// Cards that the reader turns into others, which are written in their place.
 void write_as(ParserTable& table, const char* card, std::initializer_list<const char*> others);
 /// The three that give defaults are parsed before all others.

@@ -3,6 +3,8 @@
 #include <charconv>
 #include <cmath>
 
+#include "formats/toml/detail/source_text.hpp"
+
 namespace bough::toml_files {
 
 using Kind = Setting::Kind;
@@ -13,16 +15,7 @@ std::string trim(const std::string& text) {
 }
 
 std::vector<std::string> split_cells(const std::string& line) {
-  std::vector<std::string> cells(1);
-  bool quoted = false;
-  for (const char c : line) {
-    if (c == '"')
-      quoted = !quoted;
-    else if (c == ',' && !quoted)
-      cells.emplace_back();
-    else
-      cells.back() += c;
-  }
+  auto cells = split_unquoted(line, ',');
   for (auto& cell : cells) cell = trim(cell);
   return cells;
 }

@@ -32,7 +32,12 @@ Keys get_keys(ConstraintType type, const std::string& name) {
       return {{"child", "length"}, ends};
     case ConstraintType::PointOnLine:
     case ConstraintType::PointOnPlane:
+    case ConstraintType::KnifeEdge:
       return {{"child"}, with({"axis"})};
+    case ConstraintType::Rolling:
+      return {{"child"}, with({"axis", "axis2", "radius", "crown"})};
+    case ConstraintType::RateCoupler:
+      return {{"terms"}, {}};
     case ConstraintType::Hinge:
       break;
   }
@@ -46,11 +51,26 @@ Keys get_keys(ConstraintType type, const std::string& name) {
 
 void check_keys(const Fields& table, const std::string& name, const std::string& type, const Keys& keys,
                 Diagnostics& diagnostics) {
-  static const std::vector<std::string> all = {
-      "parent",         "child",           "parent_node",    "child_node",          "parent_position",
-      "child_position", "parent_rotation", "child_rotation", "parent_rotation_deg", "child_rotation_deg",
-      "axis",           "axis2",           "rotations",      "translations",        "pitch",
-      "length",         "terms",           "offset"};
+  static const std::vector<std::string> all = {"parent",
+                                               "child",
+                                               "parent_node",
+                                               "child_node",
+                                               "parent_position",
+                                               "child_position",
+                                               "parent_rotation",
+                                               "child_rotation",
+                                               "parent_rotation_deg",
+                                               "child_rotation_deg",
+                                               "axis",
+                                               "axis2",
+                                               "rotations",
+                                               "translations",
+                                               "pitch",
+                                               "length",
+                                               "terms",
+                                               "offset",
+                                               "radius",
+                                               "crown"};
   const std::string where = "in constraint '" + name + "' of type " + type;
   for (const auto& key : keys.needed) {
     if (!table.has(key))
@@ -72,7 +92,10 @@ records::ConstraintRecord read_constraint(const Fields& table, Diagnostics& diag
   static const std::map<std::string, ConstraintType> others{{"distance", ConstraintType::Distance},
                                                             {"point_on_line", ConstraintType::PointOnLine},
                                                             {"point_on_plane", ConstraintType::PointOnPlane},
-                                                            {"coupler", ConstraintType::Coupler}};
+                                                            {"coupler", ConstraintType::Coupler},
+                                                            {"rolling", ConstraintType::Rolling},
+                                                            {"knife_edge", ConstraintType::KnifeEdge},
+                                                            {"rate_coupler", ConstraintType::RateCoupler}};
   // The ends and axes are written as those of a hinge are.
   const records::HingeRecord hinge = read_hinge(table, diagnostics);
   records::ConstraintRecord c;
@@ -96,6 +119,8 @@ records::ConstraintRecord read_constraint(const Fields& table, Diagnostics& diag
   c.translations = hinge.translations;
   c.pitch = hinge.pitch;
   c.length = table.get_number("length", 0);
+  c.radius = table.get_number("radius", 0);
+  c.crown = table.get_number("crown", 0);
   c.offset = table.get_number("offset", 0);
   c.active = table.get_bool("active", true);
   for (const Fields& term : table.get_tables("terms"))

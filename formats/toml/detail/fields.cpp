@@ -7,6 +7,7 @@
 #include <fstream>
 #include <limits>
 #include <numbers>
+#include <optional>
 #include <sstream>
 
 namespace bough::toml_files {
@@ -55,37 +56,34 @@ Eigen::Vector3d Fields::get_vector(const std::string& key, const Eigen::Vector3d
   return x.size() == 3 ? Eigen::Vector3d(x[0], x[1], x[2]) : otherwise;
 }
 
+namespace {
+
+/// Values of a key that is a value or a list: take(value) is nothing for values of another type, which are left out.
+template <class Take>
+auto collect(const Value* value, const Take& take) {
+  std::vector<typename decltype(take(*value))::value_type> found;
+  if (!value) return found;
+  if (const auto one = take(*value)) found.push_back(*one);
+  for (const Value& item : value->items)
+    if (const auto one = take(item)) found.push_back(*one);
+  return found;
+}
+
+}  // namespace
+
 std::vector<double> Fields::get_numbers(const std::string& key) const {
-  std::vector<double> numbers;
-  const Value* v = table_.find(key);
-  if (!v) return numbers;
-  if (v->is_number()) numbers.push_back(v->number);
-  for (const Value& item : v->items) {
-    if (item.is_number()) numbers.push_back(item.number);
-  }
-  return numbers;
+  return collect(table_.find(key),
+                 [](const Value& v) { return v.is_number() ? std::optional(v.number) : std::nullopt; });
 }
 
 std::vector<int> Fields::get_ints(const std::string& key) const {
-  std::vector<int> numbers;
-  const Value* v = table_.find(key);
-  if (!v) return numbers;
-  if (v->kind == Value::Kind::Integer) numbers.push_back(to_int(v->integer));
-  for (const Value& item : v->items) {
-    if (item.kind == Value::Kind::Integer) numbers.push_back(to_int(item.integer));
-  }
-  return numbers;
+  return collect(table_.find(key), [](const Value& v) {
+    return v.kind == Value::Kind::Integer ? std::optional(to_int(v.integer)) : std::nullopt;
+  });
 }
 
 std::vector<std::string> Fields::get_strings(const std::string& key) const {
-  std::vector<std::string> words;
-  const Value* v = table_.find(key);
-  if (!v) return words;
-  if (v->is_string()) words.push_back(v->text);
-  for (const Value& item : v->items) {
-    if (item.is_string()) words.push_back(item.text);
-  }
-  return words;
+  return collect(table_.find(key), [](const Value& v) { return v.is_string() ? std::optional(v.text) : std::nullopt; });
 }
 
 std::vector<Fields> Fields::get_tables(const std::string& key) const {

@@ -123,29 +123,28 @@ void read_element(const Fields& table, const Keys& keys, ForceElementRecord& e, 
   if (table.get_bool("compression_only", false)) e.sense = records::SpringSense::Compression;
   e.shape = table.get_string("shape") == "sphere" ? records::ContactShape::Sphere : records::ContactShape::Plane;
   e.radius = e.equator = table.get_number("radius", 0);
-  e.to_radius = table.get_number("to_radius", 0);
-  e.normal = table.get_vector("normal", e.normal);
   e.exponent = table.get_number("exponent", e.exponent);
-  e.friction = table.get_number("friction", 0);
-  e.slip_velocity = table.get_number("slip_velocity", 0);
-  e.mu = table.get_number("mu", 0);
-  e.j2 = table.get_number("j2", 0);
-  e.centre = table.get_vector("centre", e.centre);
-  e.axis = table.get_vector("axis", e.axis);
+  using Element = std::decay_t<decltype(e)>;
+  static constexpr std::pair<const char*, double Element::*> numbers[] = {{"to_radius", &Element::to_radius},
+                                                                          {"friction", &Element::friction},
+                                                                          {"slip_velocity", &Element::slip_velocity},
+                                                                          {"mu", &Element::mu},
+                                                                          {"j2", &Element::j2},
+                                                                          {"area", &Element::area},
+                                                                          {"coefficient", &Element::coefficient},
+                                                                          {"density", &Element::density},
+                                                                          {"scale_height", &Element::scale_height},
+                                                                          {"altitude", &Element::altitude},
+                                                                          {"pressure", &Element::pressure},
+                                                                          {"specular", &Element::specular},
+                                                                          {"diffuse", &Element::diffuse}};
+  for (const auto& [key, member] : numbers) e.*member = table.get_number(key, 0);
+  static constexpr std::pair<const char*, Eigen::Vector3d Element::*> vectors[] = {
+      {"normal", &Element::normal}, {"centre", &Element::centre}, {"axis", &Element::axis}, {"wind", &Element::wind},
+      {"spin", &Element::spin},     {"dipole", &Element::dipole}, {"sun", &Element::sun}};
+  for (const auto& [key, member] : vectors) e.*member = table.get_vector(key, e.*member);
   e.bodies = table.get_strings("bodies");
-  e.area = table.get_number("area", 0);
-  e.coefficient = table.get_number("coefficient", 0);
-  e.density = table.get_number("density", 0);
-  e.wind = table.get_vector("wind", e.wind);
   e.planet = table.get_string("planet");
-  e.scale_height = table.get_number("scale_height", 0);
-  e.altitude = table.get_number("altitude", 0);
-  e.spin = table.get_vector("spin", e.spin);
-  e.dipole = table.get_vector("dipole", e.dipole);
-  e.pressure = table.get_number("pressure", 0);
-  e.specular = table.get_number("specular", 0);
-  e.diffuse = table.get_number("diffuse", 0);
-  e.sun = table.get_vector("sun", e.sun);
   e.sun_size = table.get_number("sun_size", kSunSize);
   e.is_one_sided = table.get_bool("one_sided", false);
 }

@@ -143,6 +143,10 @@ void read_law(const Fields& table, HingeReader& reader, records::HingeLawRecord&
     diagnostics.error("toml.missing-key", table.locate("stops"),
                       "missing key 'stiffness' in the stops of hinge '" + table.get_string("name") + "'",
                       "add it, or restitution for rigid stops");
+  if (law.has_friction && !friction.has("coulomb") && !friction.has("mu"))
+    diagnostics.error("toml.missing-key", table.locate("friction"),
+                      "missing key 'coulomb' in the friction of hinge '" + table.get_string("name") + "'",
+                      "add it, or mu for friction by the load of the joint");
   law.stop_lower = reader.read_list(stops, "lower", true, true);
   law.stop_upper = reader.read_list(stops, "upper", true, true);
   law.stop_stiffness = reader.read_list(stops, "stiffness", false, true);
@@ -152,6 +156,12 @@ void read_law(const Fields& table, HingeReader& reader, records::HingeLawRecord&
   law.static_friction = reader.read_list(friction, "static", false, true);
   law.stribeck_velocity = reader.read_list(friction, "stribeck_velocity", false, true);
   law.smoothing = reader.read_list(friction, "smoothing", false, true);
+  law.mu = reader.read_list(friction, "mu", false, true);
+  law.mu_static = reader.read_list(friction, "mu_static", false, true);
+  law.pin_radius = reader.read_list(friction, "pin_radius", false, true);
+  law.friction_arm = reader.read_list(friction, "friction_arm", false, true);
+  law.bending_arm = reader.read_list(friction, "bending_arm", false, true);
+  law.reaction_arm = reader.read_list(friction, "reaction_arm", false, true);
 }
 
 }  // namespace

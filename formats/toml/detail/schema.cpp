@@ -274,26 +274,19 @@ class Checker {
 };
 
 /// Parsed once: the workers of a campaign read a file of the same kind for every case.
+template <const char* (*get_text)()>
+const json& get_parsed_once() {
+  static const json parsed = json::parse(get_text());
+  return parsed;
+}
+
 const json& get_parsed(const char* schema_text) {
-  if (schema_text == get_body_schema()) {
-    static const json body = json::parse(get_body_schema());
-    return body;
-  }
-  if (schema_text == get_system_schema()) {
-    static const json system = json::parse(get_system_schema());
-    return system;
-  }
-  if (schema_text == get_psd_schema()) {
-    static const json psd = json::parse(get_psd_schema());
-    return psd;
-  }
-  if (schema_text == get_budget_schema()) {
-    static const json budget = json::parse(get_budget_schema());
-    return budget;
-  }
+  if (schema_text == get_body_schema()) return get_parsed_once<get_body_schema>();
+  if (schema_text == get_system_schema()) return get_parsed_once<get_system_schema>();
+  if (schema_text == get_psd_schema()) return get_parsed_once<get_psd_schema>();
+  if (schema_text == get_budget_schema()) return get_parsed_once<get_budget_schema>();
   BOUGH_DEMAND(schema_text == get_campaign_schema());
-  static const json campaign = json::parse(get_campaign_schema());
-  return campaign;
+  return get_parsed_once<get_campaign_schema>();
 }
 
 }  // namespace

@@ -15,20 +15,22 @@ bool is_number(const std::string& s) {
 
 }  // namespace
 
-// "a.\"b.c\".2" -> a, b.c, 2
-std::vector<std::string> split_path(const std::string& path) {
+std::vector<std::string> split_unquoted(const std::string& text, char separator) {
   std::vector<std::string> parts(1);
   bool quoted = false;
-  for (const char c : path) {
+  for (const char c : text) {
     if (c == '"')
       quoted = !quoted;
-    else if (c == '.' && !quoted)
+    else if (c == separator && !quoted)
       parts.emplace_back();
     else
       parts.back() += c;
   }
   return parts;
 }
+
+// "a.\"b.c\".2" -> a, b.c, 2
+std::vector<std::string> split_path(const std::string& path) { return split_unquoted(path, '.'); }
 
 std::string quote_key(const std::string& key) {
   const bool is_bare = !key.empty() && std::all_of(key.begin(), key.end(), [](unsigned char c) {

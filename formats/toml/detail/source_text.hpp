@@ -7,6 +7,8 @@
 
 namespace bough::toml_files {
 
+/// Parts between separators outside of quotes, which are left out.
+std::vector<std::string> split_unquoted(const std::string& text, char separator);
 /// "a.\"b.c\".2" -> a, b.c, 2
 std::vector<std::string> split_path(const std::string& path);
 /// A key as TOML writes it: bare, or in quotes.

@@ -12,6 +12,7 @@
 #include "base/diagnostic.hpp"
 #include "formats/flx/flx_file.hpp"
 #include "formats/flx/fragment.hpp"
+#include "tests/support/members.hpp"
 
 namespace bough::flx {
 namespace {
@@ -111,40 +112,23 @@ TEST_F(FlxBodyTest, SeventeenDigitsGiveTheBodyBack) {
     const auto text = make_text(body, 17);
     EXPECT_THAT(text, testing::StartsWith("FLX 1.1 "));
     const auto back = make_flex_body(read_flx(write(text)), lacking_);
-    EXPECT_EQ(back.name, body.name);
-    EXPECT_EQ(back.mass, body.mass);
-    EXPECT_EQ(back.cg, body.cg);
-    EXPECT_EQ(back.inertia, body.inertia);
-    EXPECT_EQ(back.is_free_free, body.is_free_free);
-    EXPECT_EQ(back.modal_mass, body.modal_mass);
-    EXPECT_EQ(back.modal_stiffness, body.modal_stiffness);
-    EXPECT_EQ(back.modal_damping, body.modal_damping);
-    EXPECT_EQ(back.eigenvalue, body.eigenvalue);
-    EXPECT_EQ(back.frequency_hz, body.frequency_hz);
-    EXPECT_EQ(back.kind, body.kind);
+    using records::FlexBody;
+    using records::MassIntegrals;
+    test::expect_same_members(back, body, &FlexBody::name, &FlexBody::mass, &FlexBody::cg, &FlexBody::inertia,
+                              &FlexBody::is_free_free, &FlexBody::modal_mass, &FlexBody::modal_stiffness,
+                              &FlexBody::modal_damping, &FlexBody::eigenvalue, &FlexBody::frequency_hz, &FlexBody::kind,
+                              &FlexBody::node_id, &FlexBody::node_xyz, &FlexBody::phi, &FlexBody::interface_nodes,
+                              &FlexBody::kg_inertial, &FlexBody::kg_external, &FlexBody::external_load,
+                              &FlexBody::load_resultant, &FlexBody::load_moment, &FlexBody::preload,
+                              &FlexBody::kg_preload, &FlexBody::preload_A_I);
     EXPECT_EQ(back.integrals_method, "exact");
-    EXPECT_EQ(back.exact.gamma0, body.exact.gamma0);
-    EXPECT_EQ(back.exact.gamma1, body.exact.gamma1);
-    EXPECT_EQ(back.exact.gamma2, body.exact.gamma2);
-    EXPECT_EQ(back.exact.gamma3, body.exact.gamma3);
-    EXPECT_EQ(back.exact.gamma4, body.exact.gamma4);
-    EXPECT_EQ(back.node_id, body.node_id);
-    EXPECT_EQ(back.node_xyz, body.node_xyz);
-    EXPECT_EQ(back.phi, body.phi);
-    EXPECT_EQ(back.interface_nodes, body.interface_nodes);
-    EXPECT_EQ(back.kg_inertial, body.kg_inertial);
+    test::expect_same_members(back.exact, body.exact, &MassIntegrals::gamma0, &MassIntegrals::gamma1,
+                              &MassIntegrals::gamma2, &MassIntegrals::gamma3, &MassIntegrals::gamma4);
     EXPECT_EQ(back.kg_inertial_computed[0], n > 0);  // of no modes there is nothing to write
     ASSERT_EQ(back.locators.size(), 2U);
     EXPECT_EQ(back.locators[1].name, "thrust of both");
     EXPECT_EQ(back.locators[0].node, 5);
     EXPECT_EQ(back.locators[0].direction, 1);
-    EXPECT_EQ(back.kg_external, body.kg_external);
-    EXPECT_EQ(back.external_load, body.external_load);
-    EXPECT_EQ(back.load_resultant, body.load_resultant);
-    EXPECT_EQ(back.load_moment, body.load_moment);
-    EXPECT_EQ(back.preload, body.preload);
-    EXPECT_EQ(back.kg_preload, body.kg_preload);
-    EXPECT_EQ(back.preload_A_I, body.preload_A_I);
   }
 }
 
@@ -251,13 +235,16 @@ TEST_F(FlxBodyTest, NamesOfFiles) {
     const auto parsed = parse_flx_name(name);
     return parsed ? parsed->path + " " + std::to_string(parsed->body_id) : "no";
   };
-  EXPECT_EQ(show("a/boom.FLX"), "a/boom.FLX 0");
-  EXPECT_EQ(show("boom.flx:12"), "boom.flx 12");
-  EXPECT_EQ(show("boom.h5"), "no");
-  EXPECT_EQ(show("boom.FLX:"), "no");
-  EXPECT_EQ(show("boom.FLX:0"), "no");
-  EXPECT_EQ(show("boom.FLX:1x"), "no");
-  EXPECT_EQ(show(".FLX"), "no");
+  for (const auto& [name, expected] : std::vector<std::pair<std::string, std::string>>{
+           {"a/boom.FLX", "a/boom.FLX 0"},
+           {"boom.flx:12", "boom.flx 12"},
+           {"boom.h5", "no"},
+           {"boom.FLX:", "no"},
+           {"boom.FLX:0", "no"},
+           {"boom.FLX:1x", "no"},
+           {".FLX", "no"},
+       })
+    EXPECT_EQ(show(name), expected) << name;
   // The content of a file goes before its name.
   const auto put = [](const std::string& name, const std::string& text) {
     const auto path = (std::filesystem::temp_directory_path() / name).string();

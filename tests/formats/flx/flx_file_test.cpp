@@ -12,6 +12,7 @@
 #include <sstream>
 
 #include "base/diagnostic.hpp"
+#include "tests/support/members.hpp"
 #include "tests/support/paths.hpp"
 
 namespace bough::flx {
@@ -115,22 +116,13 @@ TEST_F(FlxFileTest, SeventeenDigitsKeepEveryBit) {
   options.has_special_nodes = true;
   const auto file = make_flx(make_body(5), options);
   const auto back = read_flx(write(write_flx(file, make_native_layout(17))));
-  EXPECT_EQ(back.name, file.name);
+  using records::MassIntegrals;
+  test::expect_same_members(back, file, &FlxFile::name, &FlxFile::mass, &FlxFile::M, &FlxFile::K, &FlxFile::D,
+                            &FlxFile::alpha, &FlxFile::node_id, &FlxFile::node_xyz, &FlxFile::gains,
+                            &FlxFile::special_id, &FlxFile::special_gains);
   EXPECT_EQ(back.method, "consistent");
-  EXPECT_EQ(back.mass, file.mass);
-  EXPECT_EQ(back.M, file.M);
-  EXPECT_EQ(back.K, file.K);
-  EXPECT_EQ(back.D, file.D);
-  EXPECT_EQ(back.alpha, file.alpha);
-  EXPECT_EQ(back.integrals.gamma1, file.integrals.gamma1);
-  EXPECT_EQ(back.integrals.gamma2, file.integrals.gamma2);
-  EXPECT_EQ(back.integrals.gamma3, file.integrals.gamma3);
-  EXPECT_EQ(back.integrals.gamma4, file.integrals.gamma4);
-  EXPECT_EQ(back.node_id, file.node_id);
-  EXPECT_EQ(back.node_xyz, file.node_xyz);
-  EXPECT_EQ(back.gains, file.gains);
-  EXPECT_EQ(back.special_id, file.special_id);
-  EXPECT_EQ(back.special_gains, file.special_gains);
+  test::expect_same_members(back.integrals, file.integrals, &MassIntegrals::gamma1, &MassIntegrals::gamma2,
+                            &MassIntegrals::gamma3, &MassIntegrals::gamma4);
 }
 
 TEST_F(FlxFileTest, ModoptLeavesOutTheHigherOrders) {
@@ -203,17 +195,19 @@ std::string write_by(const std::string& layout) {
 }
 
 TEST_F(FlxFileTest, LayoutChoosesOrderFormatAndColumns) {
-  EXPECT_EQ(write_by("number 3F6.1\nblock mass\n"), "   1.0   2.0\n   3.0   4.0\n");
-  EXPECT_EQ(write_by("number F6.1\nblock mass order=k,j record=none\n"), "   1.0   3.0   2.0   4.0\n");
-  EXPECT_EQ(write_by("number 3F6.1\nblock mass record=none\n"), "   1.0   2.0   3.0\n   4.0\n");
-  EXPECT_EQ(write_by("block mass triangle=upper number=%g\n"), "1 2\n4\n");
-  EXPECT_EQ(write_by("block mass triangle=lower number=%g separator=\",\" record=none\n"), "1,3,4\n");
-  EXPECT_EQ(write_by("block gamma0 number=%g label=\"G {mode}:\"\n"), "G 3: 1 2 3\nG 8: 4 5 6\n");
-  EXPECT_EQ(write_by("block gamma0 a=2 number=%g record=none heading=\"y only\"\n"), "y only\n2 5\n");
-  EXPECT_EQ(write_by("block modes integer=I5 record=none\n"), "    3    8\n");
-  EXPECT_EQ(write_by("block node_id nodes=all integer=%d record=none\n"), "12 5 13 14 15\n");
-  EXPECT_EQ(write_by("block phi nodes=special j=1 a=1 number=%g order=i label=\"{node}\" record=i\n"),
-            "13 0\n14 1\n15 0\n");
+  for (const auto& [layout, expected] : std::vector<std::pair<std::string, std::string>>{
+           {"number 3F6.1\nblock mass\n", "   1.0   2.0\n   3.0   4.0\n"},
+           {"number F6.1\nblock mass order=k,j record=none\n", "   1.0   3.0   2.0   4.0\n"},
+           {"number 3F6.1\nblock mass record=none\n", "   1.0   2.0   3.0\n   4.0\n"},
+           {"block mass triangle=upper number=%g\n", "1 2\n4\n"},
+           {"block mass triangle=lower number=%g separator=\",\" record=none\n", "1,3,4\n"},
+           {"block gamma0 number=%g label=\"G {mode}:\"\n", "G 3: 1 2 3\nG 8: 4 5 6\n"},
+           {"block gamma0 a=2 number=%g record=none heading=\"y only\"\n", "y only\n2 5\n"},
+           {"block modes integer=I5 record=none\n", "    3    8\n"},
+           {"block node_id nodes=all integer=%d record=none\n", "12 5 13 14 15\n"},
+           {"block phi nodes=special j=1 a=1 number=%g order=i label=\"{node}\" record=i\n", "13 0\n14 1\n15 0\n"},
+       })
+    EXPECT_EQ(write_by(layout), expected) << layout;
   EXPECT_EQ(write_by("number %g\nblock gains nodes=output per_line=4 label=\"{i} {j} {d}:\" continue=\"    \"\n")
                 .substr(0, 40),
             "1 1 1: 0.5 0.5 0.5 0.5\n     0.5 0.5\n1 2 ");

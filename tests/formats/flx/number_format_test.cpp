@@ -18,32 +18,45 @@ std::string print(const std::string& format, double value) {
   return parsed->print(value).value_or("too wide");
 }
 
+struct Printed {
+  const char* format;
+  double value;
+  const char* text;
+};
+void expect_prints(const std::vector<Printed>& cases) {
+  for (const auto& [format, value, text] : cases) EXPECT_EQ(print(format, value), text) << format;
+}
+
 TEST(NumberFormat, Fortran) {
-  EXPECT_EQ(print("E16.8", 1234.5), "  0.12345000E+04");
-  EXPECT_EQ(print("5E16.8", -0.001), " -0.10000000E-02");
-  EXPECT_EQ(print("E16.8", 0), "  0.00000000E+00");
-  EXPECT_EQ(print("1PE16.8", 1234.5), "  1.23450000E+03");
-  EXPECT_EQ(print("1P5E16.8", 1234.5), "  1.23450000E+03");
-  EXPECT_EQ(print("1P,5E16.8", 1234.5), "  1.23450000E+03");
-  EXPECT_EQ(print("es12.3", 9.9996), "   1.000E+01");
-  EXPECT_EQ(print("D24.16", 0.1), "  0.1000000000000000D+00");
-  EXPECT_EQ(print("1PD10.2", -2e-120), " -2.00-120");
-  EXPECT_EQ(print("E10.2", 1e100), "  0.10+101");
-  EXPECT_EQ(print("F8.3", -1.5), "  -1.500");
-  EXPECT_EQ(print("E14.8", 1), "0.10000000E+01");
-  EXPECT_EQ(print("E13.8", 1), ".10000000E+01");
-  EXPECT_EQ(print("E13.8", -1), "too wide");
-  EXPECT_EQ(print("F5.1", 12345), "too wide");
-  EXPECT_EQ(print("E16.8", -0.0), "  0.00000000E+00");
+  expect_prints({
+      {"E16.8", 1234.5, "  0.12345000E+04"},
+      {"5E16.8", -0.001, " -0.10000000E-02"},
+      {"E16.8", 0, "  0.00000000E+00"},
+      {"1PE16.8", 1234.5, "  1.23450000E+03"},
+      {"1P5E16.8", 1234.5, "  1.23450000E+03"},
+      {"1P,5E16.8", 1234.5, "  1.23450000E+03"},
+      {"es12.3", 9.9996, "   1.000E+01"},
+      {"D24.16", 0.1, "  0.1000000000000000D+00"},
+      {"1PD10.2", -2e-120, " -2.00-120"},
+      {"E10.2", 1e100, "  0.10+101"},
+      {"F8.3", -1.5, "  -1.500"},
+      {"E14.8", 1, "0.10000000E+01"},
+      {"E13.8", 1, ".10000000E+01"},
+      {"E13.8", -1, "too wide"},
+      {"F5.1", 12345, "too wide"},
+      {"E16.8", -0.0, "  0.00000000E+00"},
+  });
 }
 
 TEST(NumberFormat, C) {
-  EXPECT_EQ(print("%16.8E", 1234.5), "  1.23450000E+03");
-  EXPECT_EQ(print("%-12.3e", 1), "1.000e+00   ");
-  EXPECT_EQ(print("%+.3f", 1), "+1.000");
-  EXPECT_EQ(print("%g", 0.1), "0.1");
-  EXPECT_EQ(print("%.17g", 0.1), "0.10000000000000001");
-  EXPECT_EQ(print("%8.3E", 1), "too wide");
+  expect_prints({
+      {"%16.8E", 1234.5, "  1.23450000E+03"},
+      {"%-12.3e", 1, "1.000e+00   "},
+      {"%+.3f", 1, "+1.000"},
+      {"%g", 0.1, "0.1"},
+      {"%.17g", 0.1, "0.10000000000000001"},
+      {"%8.3E", 1, "too wide"},
+  });
 }
 
 /// Digit for digit, from the least number to the greatest, halves that are rounded to even among them.

@@ -7,8 +7,9 @@
 #include <gtest/gtest.h>
 
 #include "formats/matrices/matrix_reader.hpp"
-#include "tests/formats/files/temp_folder.hpp"
+#include "tests/support/members.hpp"
 #include "tests/support/paths.hpp"
+#include "tests/support/temp_folder.hpp"
 
 namespace bough::test {
 
@@ -56,13 +57,10 @@ inline matrices::Matrix make_random(const std::string& name, int rows, int colum
 }
 
 inline void expect_same(const matrices::Matrix& found, const matrices::Matrix& expected) {
-  EXPECT_EQ(found.values.num_rows, expected.values.num_rows);
-  EXPECT_EQ(found.values.num_cols, expected.values.num_cols);
-  EXPECT_EQ(found.values.indptr, expected.values.indptr);
-  EXPECT_EQ(found.values.indices, expected.values.indices);
-  EXPECT_EQ(found.values.data, expected.values.data);
-  EXPECT_EQ(found.is_complex, expected.is_complex);
-  EXPECT_EQ(found.imaginary, expected.imaginary);
+  using Values = records::SparseMatrix;
+  expect_same_members(found.values, expected.values, &Values::num_rows, &Values::num_cols, &Values::indptr,
+                      &Values::indices, &Values::data);
+  expect_same_members(found, expected, &matrices::Matrix::is_complex, &matrices::Matrix::imaginary);
 }
 
 /// Output of a program of tests/oracle.

@@ -49,14 +49,17 @@ TEST_F(Readers, MatrixMarketOfEveryKind) {
 
 TEST_F(Readers, MatrixMarketFaults) {
   const std::string banner = "%%MatrixMarket matrix ";
-  EXPECT_EQ(error_of(banner + "coordinate pattern general\n1 1 1\n1 1\n"), "matrices.market");
-  EXPECT_EQ(error_of(banner + "coordinate real symmetric\n2 3 0\n"), "matrices.market");
-  EXPECT_EQ(error_of(banner + "coordinate real general\n1 1 1\n1 1 1\n1 1 1\n"), "matrices.market");
-  EXPECT_EQ(error_of(banner + "coordinate real general\n2 2 2\n1 1 1.0\n"), "matrices.truncated");
-  EXPECT_EQ(error_of(banner + "coordinate real general\n2 2 1\n3 1 1.0\n"), "matrices.index");
-  EXPECT_EQ(error_of(banner + "coordinate real general\n2 2 1\n1 1 one\n"), "matrices.bad-number");
-  EXPECT_EQ(error_of(banner + "coordinate real general\n2000000000 2 1\n1 1 1\n"), "matrices.size");
-  EXPECT_EQ(error_of(banner + "coordinate real general\n2 2 99999999999\n"), "matrices.truncated");
+  for (const auto& [rest, id] : std::vector<std::pair<std::string, std::string>>{
+           {"coordinate pattern general\n1 1 1\n1 1\n", "matrices.market"},
+           {"coordinate real symmetric\n2 3 0\n", "matrices.market"},
+           {"coordinate real general\n1 1 1\n1 1 1\n1 1 1\n", "matrices.market"},
+           {"coordinate real general\n2 2 2\n1 1 1.0\n", "matrices.truncated"},
+           {"coordinate real general\n2 2 1\n3 1 1.0\n", "matrices.index"},
+           {"coordinate real general\n2 2 1\n1 1 one\n", "matrices.bad-number"},
+           {"coordinate real general\n2000000000 2 1\n1 1 1\n", "matrices.size"},
+           {"coordinate real general\n2 2 99999999999\n", "matrices.truncated"},
+       })
+    EXPECT_EQ(error_of(banner + rest), id) << rest;
 }
 
 TEST_F(Readers, MatrixMarketOfSciPyAndForSciPy) {

@@ -9,6 +9,7 @@
 #include "formats/matrices/matrix_market.hpp"
 #include "formats/matrices/op4.hpp"
 #include "tests/formats/matrices/matrix_cases.hpp"
+#include "tests/support/draws.hpp"
 
 namespace bough {
 namespace {
@@ -17,11 +18,9 @@ using matrices::Matrix;
 using test::TempFolder;
 
 /// Numbers of every size that a double has: by its bits, and the ends of its range.
-class AnyNumber {
+class AnyNumber : public test::Draws<std::mt19937_64> {
  public:
-  explicit AnyNumber(unsigned seed) : random_(seed) {}
-
-  int draw(int low, int high) { return std::uniform_int_distribution<int>(low, high)(random_); }
+  using Draws::Draws;
 
   double draw_value() {
     using Limits = std::numeric_limits<double>;
@@ -66,9 +65,6 @@ class AnyNumber {
         if (full(i, j) != 0) entries.push_back({i, j, full(i, j)});
     return test::make_matrix("", n, n, entries).values;
   }
-
- private:
-  std::mt19937_64 random_;
 };
 
 TEST(RoundTrips, Op4) {

@@ -26,6 +26,7 @@ std::map<std::string, const CardFacts*> list_cards() {
   add(get_card_parsers());
   add(get_dynamic_parsers());
   add(get_complex_parsers());
+  add(get_rotor_parsers());
   return cards;
 }
 

@@ -11,9 +11,9 @@ namespace fs = std::filesystem;
 
 TEST(Control, ExecutiveJunkAndSolution) {
   const auto solution = [](const std::string& head) { return read_clean(head + "CEND\nBEGIN BULK\nENDDATA\n").sol; };
-  EXPECT_EQ(solution("INIT MASTER(S)\nNASTRAN SYSTEM(442)=-1,SYSTEM(319)=1\nID a,b\nSOL 103\nTIME 10\n"), "103");
-  EXPECT_EQ(solution("ASSIGN OUTPUT2='x.op2',UNIT=12\nsol semodes $ modes\n"), "SEMODES");
-  EXPECT_EQ(solution("APP DISP\nSOL 3,0\n"), "3");
+  EXPECT_EQ(values(solution("INIT MASTER(S)\nNASTRAN SYSTEM(442)=-1,SYSTEM(319)=1\nID a,b\nSOL 103\nTIME 10\n"),
+                   solution("ASSIGN OUTPUT2='x.op2',UNIT=12\nsol semodes $ modes\n"), solution("APP DISP\nSOL 3,0\n")),
+            values("103", "SEMODES", "3"));
   EXPECT_EQ(solution("DIAG 8\n"), "");
 }
 
@@ -25,21 +25,10 @@ TEST(Control, ValuesAboveTheFirstSubcaseAreInherited) {
       "BEGIN BULK\nENDDATA\n");
   ASSERT_EQ(deck.subcases.size(), 2u);
   const auto &a = deck.subcases[0], &b = deck.subcases[1];
-  EXPECT_EQ(a.id, 1);
-  EXPECT_EQ(a.title, "Column, pinned");
-  EXPECT_EQ(a.subtitle, "base");
-  EXPECT_EQ(a.label, "push");
-  EXPECT_EQ(a.spc, 3);
-  EXPECT_EQ(a.mpc, 7);
-  EXPECT_EQ(a.load, 4);
-  EXPECT_EQ(a.method, 0);
-  EXPECT_EQ(b.id, 2);
-  EXPECT_EQ(b.spc, 9);
-  EXPECT_EQ(b.load, 0);
-  EXPECT_EQ(b.method, 5);
-  EXPECT_EQ(b.statsub, 1);
-  EXPECT_EQ(b.subtitle, "buckling");
-  EXPECT_EQ(b.title, "Column, pinned");
+  EXPECT_EQ(values(a.id, a.title, a.subtitle, a.label, a.spc, a.mpc, a.load, a.method),
+            values(1, "Column, pinned", "base", "push", 3, 7, 4, 0));
+  EXPECT_EQ(values(b.id, b.spc, b.load, b.method, b.statsub, b.subtitle, b.title),
+            values(2, 9, 0, 5, 1, "buckling", "Column, pinned"));
 }
 
 TEST(Control, WithoutSubcaseThereIsOne) {
@@ -65,11 +54,8 @@ TEST(Control, PartsWithSymmetryAreSubcasesAndTheirCombinationIsNone) {
       "CEND\nSYM 1\nSPC = 11\nLOAD = 12\nSYM 2\nSPC = 21\nLOAD = 22\nSYMCOM 3\nSYMSEQ 1.0, -1.0\nLOAD = 7\n"
       "BEGIN BULK\n");
   ASSERT_EQ(r.deck.subcases.size(), 2u);
-  EXPECT_EQ(r.deck.subcases[0].id, 1);
-  EXPECT_EQ(r.deck.subcases[0].spc, 11);
-  EXPECT_EQ(r.deck.subcases[0].load, 12);
-  EXPECT_EQ(r.deck.subcases[1].spc, 21);
-  EXPECT_EQ(r.deck.subcases[1].load, 22);
+  EXPECT_EQ(values(r.deck.subcases[0].id, r.deck.subcases[0].spc, r.deck.subcases[0].load), values(1, 11, 12));
+  EXPECT_EQ(values(r.deck.subcases[1].spc, r.deck.subcases[1].load), values(21, 22));
   ASSERT_EQ(r.count("deck.case-control-ignored"), 1);
   EXPECT_NE(r.find("deck.case-control-ignored")->what.find("SYMCOM"), std::string::npos);
 }
@@ -81,13 +67,13 @@ TEST(Control, AutospcStandsAboveTheParam) {
     EXPECT_EQ(r.count("deck.case-control-ignored"), 0) << r.get_messages();
     return r.deck;
   };
-  EXPECT_EQ(find("SPC = 1").find_param("AUTOSPC")->value, "NO");
-  EXPECT_EQ(find("AUTOSPC = YES").find_param("AUTOSPC")->value, "YES");
-  EXPECT_EQ(find("AUTOSPC").find_param("AUTOSPC")->value, "YES");
+  EXPECT_EQ(values(find("SPC = 1").find_param("AUTOSPC")->value, find("AUTOSPC = YES").find_param("AUTOSPC")->value,
+                   find("AUTOSPC").find_param("AUTOSPC")->value),
+            values("NO", "YES", "YES"));
   const auto deck = find("AUTOSPC(NOPRINT, SID=100, EPS=1.E-6, SINGLE) = YES");
-  EXPECT_EQ(deck.find_param("AUTOSPC")->value, "YES");
-  EXPECT_EQ(deck.find_param("EPZERO")->value, "1.E-6");
-  EXPECT_EQ(read("CEND\nAUTOSPC = PERHAPS\nBEGIN BULK\n").count("deck.case-control-value"), 1);
+  EXPECT_EQ(values(deck.find_param("AUTOSPC")->value, deck.find_param("EPZERO")->value,
+                   read("CEND\nAUTOSPC = PERHAPS\nBEGIN BULK\n").count("deck.case-control-value")),
+            values("YES", "1.E-6", 1));
 }
 
 TEST(Control, WhatIsNotRecognizedIsOneNote) {
@@ -101,9 +87,9 @@ TEST(Control, WhatIsNotRecognizedIsOneNote) {
 TEST(Control, MisspelledAndUnusedCommands) {
   const auto r = read("SOL 103\nCEND\nRESVEC = YES\nMETOD = 3\nMODTRAK = 4\nMPCC = 2\nBEGIN BULK\n");
   ASSERT_EQ(r.count("deck.unknown-case-control"), 2) << r.get_messages();
-  EXPECT_EQ(r.find("deck.unknown-case-control")->where.line, 4);
-  EXPECT_EQ(r.find("deck.unknown-case-control")->advice, "did you mean METHOD");
-  EXPECT_EQ(r.find("deck.case-control-ignored")->what, "case control not used: RESVEC (line 3), MODTRAK (line 5)");
+  EXPECT_EQ(values(r.find("deck.unknown-case-control")->where.line, r.find("deck.unknown-case-control")->advice,
+                   r.find("deck.case-control-ignored")->what),
+            values(4, "did you mean METHOD", "case control not used: RESVEC (line 3), MODTRAK (line 5)"));
 }
 
 TEST(Control, PreloadAndScaledLoad) {
@@ -115,12 +101,10 @@ TEST(Control, PreloadAndScaledLoad) {
     EXPECT_EQ(deck.subcases[1].preload_at.line, deck.subcases[1].preload == 0 ? 0 : 6);
     return std::pair(deck.subcases[1].preload, deck.subcases[1].statsub);
   };
-  EXPECT_EQ(find("103", "STATSUB"), std::pair(1, 1));
-  EXPECT_EQ(find("103", "STATSUB(PRELOAD)"), std::pair(1, 0));
-  EXPECT_EQ(find("105", "STATSUB(PRELOAD)"), std::pair(1, 0));
-  EXPECT_EQ(find("105", "STATSUB"), std::pair(0, 1));
-  EXPECT_EQ(find("105", "STATSUB(BUCKLING)"), std::pair(0, 1));
-  EXPECT_EQ(find("SEBUCKL", "STATSUB"), std::pair(0, 1));
+  EXPECT_EQ(values(find("103", "STATSUB"), find("103", "STATSUB(PRELOAD)"), find("105", "STATSUB(PRELOAD)")),
+            values(std::pair(1, 1), std::pair(1, 0), std::pair(1, 0)));
+  EXPECT_EQ(values(find("105", "STATSUB"), find("105", "STATSUB(BUCKLING)"), find("SEBUCKL", "STATSUB")),
+            values(std::pair(0, 1), std::pair(0, 1), std::pair(0, 1)));
 }
 
 TEST(Params, WhatIsNotUsedIsOneNoteAndWhatNobodyKnowsAWarning) {
@@ -147,11 +131,12 @@ TEST(Control, WordsInBracketsAreThoseOfTheCommand) {
   const auto r =
       read("SOL 103\nCEND\nSTATSUB(PRELOD) = 1\nTEMP(LAOD) = 2\nMETHOD(FLIUD) = 3\nTEMPERATURE(XYZ) = 4\nBEGIN BULK\n");
   ASSERT_EQ(r.count("deck.case-control-value"), 4) << r.get_messages();
-  EXPECT_EQ(r.find("deck.case-control-value")->where.line, 3);
-  EXPECT_EQ(r.find("deck.case-control-value")->advice, "did you mean PRELOAD");
-  EXPECT_EQ(read_clean("CEND\nSTATSUB(PREL) = 1\nBEGIN BULK\n").subcases[0].preload, 1);
-  EXPECT_EQ(read_clean("CEND\nTEMP(BOTH) = 5\nMETHOD(STRUC) = 6\nBEGIN BULK\n").subcases[0].temperature, 5);
-  EXPECT_EQ(read_clean("CEND\nMETHOD(FLUID) = 6\nBEGIN BULK\n").subcases[0].method, 0);
+  EXPECT_EQ(values(r.find("deck.case-control-value")->where.line, r.find("deck.case-control-value")->advice,
+                   read_clean("CEND\nSTATSUB(PREL) = 1\nBEGIN BULK\n").subcases[0].preload),
+            values(3, "did you mean PRELOAD", 1));
+  EXPECT_EQ(values(read_clean("CEND\nTEMP(BOTH) = 5\nMETHOD(STRUC) = 6\nBEGIN BULK\n").subcases[0].temperature,
+                   read_clean("CEND\nMETHOD(FLUID) = 6\nBEGIN BULK\n").subcases[0].method),
+            values(5, 0));
 }
 
 TEST(Control, ALoadThatIsNotReadIsAWarning) {
@@ -174,9 +159,7 @@ TEST(Control, OtherKindsOfText) {
 TEST(Control, FragmentsAndDecksWithoutExecutive) {
   EXPECT_EQ(read_clean("GRID,1\nGRID,2\n").grids.size(), 2u);
   const auto deck = read_clean("SOL 103\nSPC = 4\nBEGIN BULK\nGRID,1\n");
-  EXPECT_EQ(deck.sol, "103");
-  EXPECT_EQ(deck.subcases[0].spc, 4);
-  EXPECT_EQ(read_clean("").grids.size(), 0u);
+  EXPECT_EQ(values(deck.sol, deck.subcases[0].spc, read_clean("").grids.size()), values("103", 4, 0u));
 }
 
 TEST(Control, TextAfterEnddataIsIgnored) {
@@ -222,9 +205,9 @@ TEST_F(Include, NestedRelativeSplitOverLines) {
   EXPECT_EQ(r.deck.subcases[0].spc, 8);
   ASSERT_EQ(r.deck.files.size(), 4u);
   ASSERT_EQ(r.diagnostics.num_errors(), 1);
-  EXPECT_EQ(fs::path(r.diagnostics.items()[0].where.file).filename(), "b.bdf");
-  EXPECT_EQ(r.diagnostics.items()[0].where.line, 2);
-  EXPECT_EQ(r.deck.locate(r.deck.grids[3].at).line, 7);
+  EXPECT_EQ(values(fs::path(r.diagnostics.items()[0].where.file).filename(), r.diagnostics.items()[0].where.line,
+                   r.deck.locate(r.deck.grids[3].at).line),
+            values("b.bdf", 2, 7));
 }
 
 TEST_F(Include, CircleIsAnErrorThatNamesTheChain) {
@@ -236,9 +219,7 @@ TEST_F(Include, CircleIsAnErrorThatNamesTheChain) {
   const auto* d = r.find("deck.include-cycle");
   ASSERT_NE(d, nullptr);
   EXPECT_NE(d->what.find("a.bdf -> b.bdf -> a.bdf"), std::string::npos) << d->what;
-  EXPECT_EQ(fs::path(d->where.file).filename(), "b.bdf");
-  EXPECT_EQ(d->where.line, 2);
-  EXPECT_EQ(r.deck.grids.size(), 4u);
+  EXPECT_EQ(values(fs::path(d->where.file).filename(), d->where.line, r.deck.grids.size()), values("b.bdf", 2, 4u));
 }
 
 TEST_F(Include, MissingFilesAreAllReported) {

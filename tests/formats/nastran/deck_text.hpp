@@ -4,6 +4,8 @@
 
 #include <string>
 #include <string_view>
+#include <tuple>
+#include <type_traits>
 
 #include "formats/nastran/reader.hpp"
 
@@ -36,6 +38,12 @@ inline Read read(std::string_view text, const ReadOptions& options = {}) {
   Read r;
   r.deck = read_deck_text(text, "deck.bdf", options, r.diagnostics);
   return r;
+}
+
+/// Fields of a card, to compare several by one EXPECT_EQ: values(p.id, p.k), values(2, 5.0).
+template <class... Fields>
+auto values(const Fields&... fields) {
+  return std::tuple<std::decay_t<const Fields&>...>(fields...);
 }
 
 /// Reads a deck that must be without fault.

@@ -208,12 +208,15 @@ TEST(Lists, ThruByExcept) {
       ids += std::to_string(spc.g) + (spc.skip_if_missing ? "t " : " ");
     return ids;
   };
-  EXPECT_EQ(list("SPC1,1,123,5,3,99\n"), "5 3 99 ");
-  EXPECT_EQ(list("SPC1,1,123,10,THRU,13\n"), "10t 11t 12t ");
-  EXPECT_EQ(list("SPC1,1,123,10,thru,999999999\n"), "10t 11t 12t ");
-  EXPECT_EQ(list("SPC1,1,123,1,THRU,9,BY,4\n"), "1t 5t 9t ");
-  EXPECT_EQ(list("SPC1,1,123,1,THRU,5,EXCEPT,2,4\n,12\n"), "12 1t 3t 5t ");
-  EXPECT_EQ(list("SPC1,1,123,1,,3\n,THRU,4\n"), "1 3t 4t ");
+  for (const auto& [card, ids] : std::vector<std::pair<std::string, std::string>>{
+           {"SPC1,1,123,5,3,99\n", "5 3 99 "},
+           {"SPC1,1,123,10,THRU,13\n", "10t 11t 12t "},
+           {"SPC1,1,123,10,thru,999999999\n", "10t 11t 12t "},
+           {"SPC1,1,123,1,THRU,9,BY,4\n", "1t 5t 9t "},
+           {"SPC1,1,123,1,THRU,5,EXCEPT,2,4\n,12\n", "12 1t 3t 5t "},
+           {"SPC1,1,123,1,,3\n,THRU,4\n", "1 3t 4t "},
+       })
+    EXPECT_EQ(list(card), ids) << card;
 }
 
 TEST(Lists, WrongLists) {

@@ -48,32 +48,26 @@ TEST(LoadCards, Pressures) {
   ASSERT_EQ(p.size(), 2u + 3u + 1u + 1u + 3u);
   EXPECT_EQ(p[4].element, 13);
   EXPECT_TRUE(p[4].skip_if_missing && !p[0].skip_if_missing);
-  EXPECT_EQ(p[5].p, (std::array<double, 4>{3, 3, 5, 3}));
-  EXPECT_EQ(p[6].g1, 31);
-  EXPECT_EQ(p[6].g34, 33);
-  EXPECT_EQ(p[6].cid, 9);
-  EXPECT_EQ(*p[6].n, Vector3d(0, 0, 2));
-  EXPECT_EQ(p[9].element, 3);
+  EXPECT_EQ(values(p[5].p, p[6].g1, p[6].g34), values((std::array<double, 4>{3, 3, 5, 3}), 31, 33));
+  EXPECT_EQ(values(p[6].cid, *p[6].n, p[9].element), values(9, Vector3d(0, 0, 2), 3));
 }
 
 TEST(LoadCards, Rotation) {
   const auto r = read("RFORCE,1,2,3,.5,0.,0.,2.,2\n,7.\n");
   ASSERT_EQ(r.diagnostics.num_errors(), 0) << r.get_messages();
   const auto& f = r.deck.load_cards.rotations.at(0);
-  EXPECT_EQ(f.g, 2);
-  EXPECT_EQ(f.cid, 3);
-  EXPECT_EQ(f.a, 0.5);
-  EXPECT_EQ(f.r, Vector3d(0, 0, 2));
-  EXPECT_EQ(f.racc, 7);
+  EXPECT_EQ(values(f.g, f.cid, f.a, f.r, f.racc), values(2, 3, 0.5, Vector3d(0, 0, 2), 7));
 }
 
 TEST(LoadCards, WhatIsWrongIsSaid) {
-  EXPECT_EQ(read("PLOAD1,1,9,FQ,LE,0.,1.\n").count("deck.bad-word"), 1);
-  EXPECT_EQ(read("PLOAD1,1,9,FX,,0.,1.\n").count("deck.missing-field"), 1);
-  EXPECT_EQ(read("PLOAD1,1,9,FX,LE,2.,1.,1.,1.\n").count("deck.field-range"), 1);
-  EXPECT_EQ(read("PLOAD2,1,2.\n").count("deck.missing-field"), 1);
-  EXPECT_EQ(read("PLOAD2,1,2.,9,THRU,3\n").count("deck.bad-list"), 1);
-  EXPECT_EQ(read("PLOAD4,1,2,3.\n,,,,,LINE\n").count("deck.bad-word"), 1);
+  EXPECT_EQ(values(read("PLOAD1,1,9,FQ,LE,0.,1.\n").count("deck.bad-word"),
+                   read("PLOAD1,1,9,FX,,0.,1.\n").count("deck.missing-field"),
+                   read("PLOAD1,1,9,FX,LE,2.,1.,1.,1.\n").count("deck.field-range")),
+            values(1, 1, 1));
+  EXPECT_EQ(
+      values(read("PLOAD2,1,2.\n").count("deck.missing-field"), read("PLOAD2,1,2.,9,THRU,3\n").count("deck.bad-list"),
+             read("PLOAD4,1,2,3.\n,,,,,LINE\n").count("deck.bad-word")),
+      values(1, 1, 1));
   EXPECT_EQ(read("RFORCE,1,,,2.\n").count("deck.field-range"), 1);
 }
 

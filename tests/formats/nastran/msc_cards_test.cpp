@@ -2,7 +2,7 @@
 #include <filesystem>
 
 #include "deck_text.hpp"
-#include "tests/formats/files/temp_folder.hpp"
+#include "tests/support/temp_folder.hpp"
 
 namespace bough::nastran {
 namespace {
@@ -42,11 +42,9 @@ TEST(MscCards, Mat11IsTheMat9OfItsLaw) {
   stress = G * strain;
   EXPECT_LT((stress - Eigen::Matrix<double, 6, 1>::Unit(1)).norm(), 1e-14);
   // Shear xy, yz, zx: G12, G23, G13.
-  EXPECT_EQ(G(3, 3), 4);
-  EXPECT_EQ(G(4, 4), 6);
-  EXPECT_EQ(G(5, 5), 5);
-  EXPECT_EQ(deck.mat9[0].rho, .7);
-  EXPECT_EQ(read("MAT11,3,10.,20.,30.,9.,.2,.3,4.,+\n+,5.,6.\n").count("deck.field-range"), 1);
+  EXPECT_EQ(values(G(3, 3), G(4, 4), G(5, 5)), values(4, 6, 5));
+  EXPECT_EQ(values(deck.mat9[0].rho, read("MAT11,3,10.,20.,30.,9.,.2,.3,4.,+\n+,5.,6.\n").count("deck.field-range")),
+            values(.7, 1));
 }
 
 TEST(MscCards, RigidElementsMayEndWithAlphaAndTref) {
@@ -81,21 +79,17 @@ TEST(MscCards, PsolidSchemes) {
 TEST(MscCards, RbarWithoutSixComponents) {
   const auto deck = read_clean("RBAR,1,1,2\nRBAR,2,1,2,123\nRBAR,3,1,2,,123\n");
   ASSERT_EQ(deck.rbar.size(), 3u);
-  EXPECT_EQ(deck.rbar[0].cna, 63u);
-  EXPECT_EQ(deck.rbar[0].cmb, 63u);
-  EXPECT_EQ(deck.rbar[1].cna, 7u);
-  EXPECT_EQ(deck.rbar[1].cmb, 0u);
-  EXPECT_EQ(deck.rbar[2].cnb, 7u);
+  EXPECT_EQ(values(deck.rbar[0].cna, deck.rbar[0].cmb, deck.rbar[1].cna), values(63u, 63u, 7u));
+  EXPECT_EQ(values(deck.rbar[1].cmb, deck.rbar[2].cnb), values(0u, 7u));
 }
 
 TEST(MscCards, PcompsOfOneMaterialIsThePsolid) {
   const auto deck = read_clean("PCOMPS,2,5,13,,,20.,,,+\n+,1,7,5.,0.,,YES,ABS,,+\n+,2,7,4.\n");
   ASSERT_EQ(deck.psolid.size(), 1u);
-  EXPECT_EQ(deck.psolid[0].id, 2);
-  EXPECT_EQ(deck.psolid[0].mid, 7);
-  EXPECT_EQ(deck.psolid[0].cordm, 5);
-  EXPECT_EQ(read("PCOMPS,2,5,13,,,,,,+\n+,1,7,5.,0.,,,,,+\n+,2,8,4.\n").count("deck.field-range"), 1);
-  EXPECT_EQ(read("PCOMPS,2,5,13,,,,,,+\n+,1,7,5.,45.\n").count("deck.field-range"), 1);
+  EXPECT_EQ(values(deck.psolid[0].id, deck.psolid[0].mid, deck.psolid[0].cordm), values(2, 7, 5));
+  EXPECT_EQ(values(read("PCOMPS,2,5,13,,,,,,+\n+,1,7,5.,0.,,,,,+\n+,2,8,4.\n").count("deck.field-range"),
+                   read("PCOMPS,2,5,13,,,,,,+\n+,1,7,5.,45.\n").count("deck.field-range")),
+            values(1, 1));
 }
 
 class Moved : public testing::Test {

@@ -25,20 +25,14 @@ TEST(OldElements, PropertiesOfEachCardHaveIdsOfTheirOwn) {
       "CQUAD4,3,5,1,2,3,4\nPSHELL,5,1,.01\n");
   const auto& deck = r.deck;
   ASSERT_EQ(deck.shells.size(), 3u);
-  EXPECT_EQ(deck.shells[0].card, "CQUAD4");
-  EXPECT_EQ(deck.shells[0].theta_deg, 30.0);
-  EXPECT_EQ(deck.shells[1].card, "CTRIA3");
+  EXPECT_EQ(values(deck.shells[0].card, deck.shells[0].theta_deg, deck.shells[1].card),
+            values("CQUAD4", 30.0, "CTRIA3"));
   EXPECT_EQ(deck.shells[2].pid, 5);
   // A homogeneous plate: all three parts of one material, shear thickness T.
   const auto& quad = find(deck, deck.shells[0].pid);
-  EXPECT_EQ(quad.mid1, 1);
-  EXPECT_EQ(quad.mid2, 1);
-  EXPECT_EQ(quad.mid3, 1);
-  EXPECT_EQ(quad.t, .02);
+  EXPECT_EQ(values(quad.mid1, quad.mid2, quad.mid3, quad.t), values(1, 1, 1, .02));
   EXPECT_NEAR(quad.bending_ratio, 1, 1e-14);
-  EXPECT_EQ(quad.shear_ratio, 1.0);
-  EXPECT_EQ(quad.nsm, .5);
-  EXPECT_EQ(find(deck, deck.shells[1].pid).mid1, 9);
+  EXPECT_EQ(values(quad.shear_ratio, quad.nsm, find(deck, deck.shells[1].pid).mid1), values(1.0, .5, 9));
   EXPECT_EQ(find(deck, 5).t, .01);
   ASSERT_EQ(r.count("deck.old-element"), 1);
   EXPECT_NE(r.find("deck.old-element")->what.find("1 CQUAD2 as CQUAD4, 1 CTRIA2 as CTRIA3"), std::string::npos);
@@ -47,9 +41,7 @@ TEST(OldElements, PropertiesOfEachCardHaveIdsOfTheirOwn) {
 TEST(OldElements, ThreeMaterials) {
   const auto r = read_old("CQUAD1,1,1,1,2,3,4\nPQUAD1,1,1,.1,9,2.-4,1,.05,.7\n+,.1,-.1\n");
   const auto& p = find(r.deck, r.deck.shells.at(0).pid);
-  EXPECT_EQ(p.mid1, 1);
-  EXPECT_EQ(p.mid2, 9);
-  EXPECT_EQ(p.mid3, 1);
+  EXPECT_EQ(values(p.mid1, p.mid2, p.mid3), values(1, 9, 1));
   EXPECT_NEAR(p.bending_ratio, 12 * 2e-4 / 1e-3, 1e-12);
   EXPECT_NEAR(p.shear_ratio, .5, 1e-14);
   EXPECT_EQ(p.nsm, .7);
@@ -70,9 +62,7 @@ TEST(OldElements, PlatesWithoutMembraneHaveNoMass) {
     EXPECT_EQ(p.nsm, .7);
     ASSERT_NE(p.mid2, 1);
     const auto& copy = deck.mat1.back();
-    EXPECT_EQ(copy.id, p.mid2);
-    EXPECT_EQ(copy.rho, 0.0);
-    EXPECT_EQ(copy.E, 7e10);
+    EXPECT_EQ(values(copy.id, copy.rho, copy.E), values(p.mid2, 0.0, 7e10));
   }
 }
 
@@ -90,14 +80,12 @@ TEST(OldElements, Membranes) {
     EXPECT_EQ(p.mid1, 1);
     EXPECT_EQ(p.mid2, 0);
   }
-  EXPECT_EQ(deck.shells[4].card, "CQUAD8");
-  EXPECT_EQ(deck.shells[4].midsides, (std::vector<int>{5, 6, 7, 8}));
-  EXPECT_EQ(deck.shells[4].theta_deg, 15.0);
+  EXPECT_EQ(values(deck.shells[4].card, deck.shells[4].midsides, deck.shells[4].theta_deg),
+            values("CQUAD8", (std::vector<int>{5, 6, 7, 8}), 15.0));
   // Corners and midsides by turns; a thickness that is blank is that of the first corner.
-  EXPECT_EQ(deck.shells[5].card, "CTRIA6");
-  EXPECT_EQ(deck.shells[5].grids, (std::vector<int>{1, 3, 5}));
-  EXPECT_EQ(deck.shells[5].midsides, (std::vector<int>{2, 4, 6}));
-  EXPECT_EQ(deck.shells[5].t, (std::vector<double>{.6, .7, .6}));
+  EXPECT_EQ(
+      values(deck.shells[5].card, deck.shells[5].grids, deck.shells[5].midsides, deck.shells[5].t),
+      values("CTRIA6", (std::vector<int>{1, 3, 5}), (std::vector<int>{2, 4, 6}), (std::vector<double>{.6, .7, .6})));
 }
 
 TEST(OldElements, HigherOrderShell) {
@@ -122,9 +110,7 @@ TEST(OldElements, SolidsNameMaterials) {
       if (p.id == deck.solids[i].pid) return p.mid;
     return -1;
   };
-  EXPECT_EQ(find_mid(0), 1);
-  EXPECT_EQ(find_mid(1), 9);
-  EXPECT_EQ(find_mid(2), 1);
+  EXPECT_EQ(values(find_mid(0), find_mid(1), find_mid(2)), values(1, 9, 1));
   EXPECT_EQ(deck.solids[2].card, "CPENTA");
   EXPECT_EQ(find_mid(3), 9);  // no PSOLID 9: a material, as the old program has it
   EXPECT_EQ(find_mid(4), 1);  // PSOLID 3
@@ -136,9 +122,9 @@ TEST(OldElements, IsoparametricHexahedra) {
       read_old("CIHEX2,110,7,3,8,12,13,14,9,5,4,16,19,20,17,23,27,31,32,33,28,25,24\nPIHEX,7,1,0,3\n").deck;
   const auto& e = deck.solids.at(0);
   // The example of the manual: G1 G3 G5 G7 and G13 G15 G17 G19 are corners.
-  EXPECT_EQ(e.corners, (std::vector<int>{3, 12, 14, 5, 23, 31, 33, 25}));
-  EXPECT_EQ(e.midsides, (std::vector<int>{8, 13, 9, 4, 16, 19, 20, 17, 27, 32, 28, 24}));
-  EXPECT_EQ(deck.psolid.at(0).mid, 1);
+  EXPECT_EQ(values(e.corners, e.midsides, deck.psolid.at(0).mid),
+            values((std::vector<int>{3, 12, 14, 5, 23, 31, 33, 25}),
+                   (std::vector<int>{8, 13, 9, 4, 16, 19, 20, 17, 27, 32, 28, 24}), 1));
   std::string cubic = "CIHEX3,1,7";
   for (int g = 1; g <= 32; ++g) cubic += "," + std::to_string(g);
   const auto third = read_old((cubic + "\nPIHEX,7,1\n").c_str()).deck;
@@ -197,10 +183,7 @@ TEST(OldElements, Elbow) {
   const auto& p = deck.special.pbend.at(0);
   EXPECT_EQ(p.A, 16.0);
   EXPECT_NEAR(p.I1, 211 / 5.76, 1e-12);  // KELBOW divides by KZ and KY
-  EXPECT_EQ(p.J, 422.0);
-  EXPECT_EQ(p.k1, .5);
-  EXPECT_EQ(p.rb, 15.0);
-  EXPECT_EQ(p.theta_b_deg, 90.0);
+  EXPECT_EQ(values(p.J, p.k1, p.rb, p.theta_b_deg), values(422.0, .5, 15.0, 90.0));
 }
 
 // One note a deck that is heated, and none for a zero.
@@ -230,11 +213,8 @@ TEST(OldElements, RigidOnesUnderTheirOldNames) {
           .deck;
   EXPECT_EQ(deck.rbe2.size(), 1u);
   ASSERT_EQ(deck.rbe1.size(), 3u);
-  EXPECT_EQ(deck.rbe1[0].dependent.size(), 1u);
-  EXPECT_EQ(deck.rbar.size(), 1u);
-  EXPECT_EQ(deck.rrod.at(0).cma, 2);
-  EXPECT_EQ(deck.rbe3.size(), 1u);
-  EXPECT_EQ(deck.special.rspline.size(), 1u);
+  EXPECT_EQ(values(deck.rbe1[0].dependent.size(), deck.rbar.size(), deck.rrod.at(0).cma), values(1u, 1u, 2));
+  EXPECT_EQ(values(deck.rbe3.size(), deck.special.rspline.size()), values(1u, 1u));
 }
 
 TEST(OldElements, MissingPropertiesAreNamed) {

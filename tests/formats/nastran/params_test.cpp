@@ -55,13 +55,11 @@ TEST(CaseControl, EveryCommandHasItsPlace) {
       "BEGIN BULK\nGRID,1\n");
   ASSERT_EQ(r.deck.subcases.size(), 2u);
   const auto &one = r.deck.subcases[0], &two = r.deck.subcases[1];
-  EXPECT_EQ(one.find_command("SPC").line, 3);
-  EXPECT_EQ(one.find_command("LOAD").line, 5);
-  EXPECT_EQ(one.find_command("TEMPERATURE").line, 6);
-  EXPECT_EQ(one.find_command("METHOD").line, 0);
-  EXPECT_EQ(two.find_command("SPC").line, 8);
-  EXPECT_EQ(two.find_command("METHOD").line, 9);
-  EXPECT_EQ(two.find_command("STATSUB").line, 10);
+  EXPECT_EQ(values(one.find_command("SPC").line, one.find_command("LOAD").line, one.find_command("TEMPERATURE").line,
+                   one.find_command("METHOD").line),
+            values(3, 5, 6, 0));
+  EXPECT_EQ(values(two.find_command("SPC").line, two.find_command("METHOD").line, two.find_command("STATSUB").line),
+            values(8, 9, 10));
 }
 
 TEST(CaseControl, LoadsIsASlipAndLoadsetIsNot) {

@@ -39,9 +39,10 @@ TEST(SecondEntities, AreTaken) {
 }
 
 TEST(SecondEntities, AreCheckedLikeTheFirst) {
-  EXPECT_EQ(read("CROD,1,1,1,2,1,1,2,3\n").count("deck.duplicate-id"), 1);
-  EXPECT_EQ(read("CROD,1,1,1,2,2,1,x,3\n").count("deck.bad-integer"), 1);
-  EXPECT_EQ(read("CELAS4,1,1.,1,2,3,5.\n").count("deck.missing-field"), 1);
+  EXPECT_EQ(values(read("CROD,1,1,1,2,1,1,2,3\n").count("deck.duplicate-id"),
+                   read("CROD,1,1,1,2,2,1,x,3\n").count("deck.bad-integer"),
+                   read("CELAS4,1,1.,1,2,3,5.\n").count("deck.missing-field")),
+            values(1, 1, 1));
 }
 
 TEST(Leftovers, AreNamedWithTheirFieldAndCount) {
@@ -81,9 +82,7 @@ TEST(Replication, CountsFromZeroOnABlankField) {
   // The increment is an integer, so the field becomes one: CD = 1, not 1.0.
   const auto deck = read_clean("GRID,1,,0.,0.,0.\n=,*(1),=,*(1.),=,=,*(1)\n=(1)\n");
   ASSERT_EQ(deck.grids.size(), 3u);
-  EXPECT_EQ(deck.grids[1].cd, 1);
-  EXPECT_EQ(deck.grids[2].cd, 2);
-  EXPECT_EQ(deck.grids[2].x.x(), 2.0);
+  EXPECT_EQ(values(deck.grids[1].cd, deck.grids[2].cd, deck.grids[2].x.x()), values(1, 2, 2.0));
 }
 
 }  // namespace

@@ -23,9 +23,7 @@ TEST(Superelements, CardsOfAnAssembly) {
   EXPECT_EQ(r.diagnostics.num_warnings(), 0) << r.get_messages();
   const auto& super = r.deck.super;
   ASSERT_EQ(super.sebulk.size(), 1u);
-  EXPECT_EQ(super.sebulk[0].id, 101);
-  EXPECT_EQ(super.sebulk[0].type, "EXTOP4");
-  EXPECT_EQ(super.sebulk[0].unit, 101);
+  EXPECT_EQ(values(super.sebulk[0].id, super.sebulk[0].type, super.sebulk[0].unit), values(101, "EXTOP4", 101));
   EXPECT_FALSE(super.sebulk[0].is_auto);
   ASSERT_EQ(super.input4.count(101), 1u);
   EXPECT_EQ(super.input4.at(101).path, "parts/panel.op4");
@@ -43,17 +41,14 @@ TEST(Superelements, ASectionIsADeckOfItsOwn) {
   EXPECT_EQ(deck.super.sections[0].id, 101);
   const auto& section = *deck.super.sections[0].deck;
   ASSERT_EQ(section.super.extrn.size(), 5u);
-  EXPECT_EQ(section.super.extrn[1].c, 63u);
-  EXPECT_EQ(section.super.extrn[4].id, 203);
-  EXPECT_EQ(section.super.extrn[4].c, 0u);
+  EXPECT_EQ(values(section.super.extrn[1].c, section.super.extrn[4].id, section.super.extrn[4].c),
+            values(63u, 203, 0u));
   EXPECT_EQ(section.grids.size(), 2u);
   ASSERT_EQ(section.super.rows.size(), 1u);
   const auto& rows = section.super.rows[0];
   EXPECT_EQ(rows.name, "TUG1");
   ASSERT_EQ(rows.items.size(), 2u);
-  EXPECT_EQ(rows.items[1].type, 2);
-  EXPECT_EQ(rows.items[1].id, 202);
-  EXPECT_EQ(rows.items[1].first_row, 6);
+  EXPECT_EQ(values(rows.items[1].type, rows.items[1].id, rows.items[1].first_row), values(2, 202, 6));
 }
 
 TEST(Superelements, SubcasesOfSuperelementsAreNotTheModels) {

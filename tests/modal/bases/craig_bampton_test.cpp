@@ -4,33 +4,23 @@
 #include <cmath>
 #include <random>
 
-#include "fe/statics/build_model.hpp"
 #include "fe/statics/statics.hpp"
 #include "modal/bases/basis.hpp"
-#include "tests/support/beam_decks.hpp"
+#include "tests/support/modal.hpp"
 
 namespace bough {
 namespace {
 
-using Eigen::MatrixXd;
-using Eigen::Vector3d;
-using Eigen::VectorXd;
 using fe::Model;
 using modal::bases::Basis;
 using modal::bases::BasisKind;
 using modal::bases::BasisOptions;
 using modal::bases::FixedInterface;
 using records::ModeKind;
-using test::DeckMaker;
-
-const test::Section kSection = {70e9, 27e9, 2700, 1e-4, 1e-9, 3e-9, 2e-9};
 
 /// A bent frame in space, grids 1..9 and 102..106 (from grid 5 on), a mass at 106; clamped at grid 1 where `fixed`.
 DeckMaker make_frame(bool fixed) {
-  DeckMaker maker;
-  maker.add_section(1, kSection, true);
-  maker.add_line(1, 1, {0.3, 0.1, -0.2}, {1.3, 0.4, 0}, 8, Vector3d::UnitY());
-  maker.add_line(1, 101, {0.8, 0.25, -0.1}, {1.0, 1.0, 0.5}, 5, Vector3d::UnitX(), 5);
+  auto maker = test::make_space_frame();
   maker.add_mass(900, 106, 0.2);
   if (fixed) maker.fix(1, 123456);
   return maker;
@@ -123,7 +113,7 @@ TEST(CraigBampton, BoundaryCarriesTheRigidBody) {
 }
 
 TEST(CraigBampton, FixedInterfaceModesAreThoseOfTheHeldModel) {
-  auto maker = test::make_cantilever(kSection, 1, 40);  // more dofs than are solved densely
+  auto maker = test::make_cantilever(test::kFrameSection, 1, 40);  // more dofs than are solved densely
   const auto model = build(maker.deck);
   Diagnostics diagnostics;
   const fe::System system(model);
@@ -187,7 +177,7 @@ TEST(CraigBampton, TwoComponentsAgreeWithTheWholeModel) {
   const Vector3d a(0, 0, 0), m(0.7, 0.1, 0.2), b(1.2, 0.9, 0.4);
   const auto build_part = [&](bool first, bool second) {
     DeckMaker maker;
-    maker.add_section(1, kSection, true);
+    maker.add_section(1, test::kFrameSection, true);
     if (first) maker.add_line(1, 1, a, m, 10, Vector3d::UnitY());
     if (second) maker.add_line(1, 11, m, b, 10, Vector3d::UnitX(), first ? 11 : 0);
     if (first) maker.fix(1, 123456);
@@ -229,12 +219,7 @@ TEST(CraigBampton, InterfaceThroughRigidElements) {
       element.groups.push_back({1.0, 7u, {9, 106, 7}});
       maker.deck.rbe3.push_back(element);
     } else {
-      records::Rbe2 element;
-      element.id = 700;
-      element.gn = 9;
-      element.cm = 63;
-      element.gm = {500};
-      maker.deck.rbe2.push_back(element);
+      test::add_rbe2(maker, 9, 500);
     }
     const auto model = build(maker.deck);
     BasisOptions options;
@@ -327,7 +312,7 @@ TEST(CraigBampton, RawCoordinatesInTheFrameOfAnInterfaceNode) {
 
 // The roll of a straight line of bars without torsional inertia is no coordinate of motion.
 TEST(CraigBampton, MasslessConstraintModesAreLeftOut) {
-  const auto model = build(test::make_cantilever(kSection, 1, 6).deck);
+  const auto model = build(test::make_cantilever(test::kFrameSection, 1, 6).deck);
   BasisOptions options;
   options.kind = BasisKind::CraigBampton;
   options.interface_nodes = {7};
@@ -346,7 +331,7 @@ TEST(CraigBampton, MasslessConstraintModesAreLeftOut) {
 TEST(CraigBampton, MasslessDirectionsFollow) {
   for (const bool is_skew : {false, true}) {
     DeckMaker maker;
-    maker.add_section(1, kSection, false);
+    maker.add_section(1, test::kFrameSection, false);
     if (is_skew)
       maker.add_line(1, 1, {0, 0, 0}, {1. / 3, 2. / 3, 2. / 3}, 24, {2, 1, -2});
     else

@@ -6,31 +6,21 @@
 #include <cmath>
 #include <numbers>
 
-#include "fe/statics/build_model.hpp"
 #include "modal/bases/damping.hpp"
 #include "modal/bases/ritz.hpp"
-#include "tests/support/beam_decks.hpp"
+#include "tests/support/modal.hpp"
 
 namespace bough {
 namespace {
 
-using Eigen::MatrixXd;
-using Eigen::Vector3d;
-using Eigen::VectorXd;
 using modal::bases::DampingSpec;
 using modal::bases::DampingTable;
 using modal::bases::FrameKind;
 using modal::bases::FrameSpec;
 
-const test::Section kSection = {70e9, 27e9, 2700, 1e-4, 1e-9, 3e-9, 2e-9};
-
 fe::Model make_model() {
-  test::DeckMaker maker;
-  maker.add_section(1, kSection, true);
-  maker.add_line(1, 1, {0.3, 0.1, -0.2}, {1.3, 0.4, 0}, 8, Vector3d::UnitY());
-  maker.add_line(1, 101, {0.8, 0.25, -0.1}, {1.0, 1.0, 0.5}, 5, Vector3d::UnitX(), 5);
   Diagnostics diagnostics;
-  return fe::build_model(maker.deck, {}, diagnostics);
+  return fe::build_model(test::make_space_frame().deck, {}, diagnostics);
 }
 
 MatrixXd calc_free_modes(const fe::Model& model, int count) {

@@ -6,17 +6,7 @@
 namespace bough::solver::testing {
 namespace {
 
-struct OfThisMachine {
-  static constexpr auto multiply = solver::multiply;
-  static constexpr auto multiply_transposed = solver::multiply_transposed;
-  static constexpr auto add_product = solver::add_product;
-  static constexpr auto contract = solver::contract;
-  static constexpr auto add_scaled = solver::add_scaled;
-  static constexpr auto add_square = solver::add_square;
-  static constexpr auto factor_trapezoid = solver::factor_trapezoid;
-  static constexpr auto solve_lower = solver::solve_lower;
-  static constexpr auto solve_lower_transposed = solver::solve_lower_transposed;
-};
+BOUGH_KERNELS_OF(solver, OfThisMachine);
 
 TEST(Kernels, AreEigensProductsAndFactors) { compare_kernels_with_eigen<OfThisMachine>(); }
 

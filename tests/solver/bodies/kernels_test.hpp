@@ -8,6 +8,20 @@
 
 namespace bough::solver::testing {
 
+/// The kernels of a namespace as static members of a class.
+#define BOUGH_KERNELS_OF(room, Name)                                             \
+  struct Name {                                                                  \
+    static constexpr auto multiply = room::multiply;                             \
+    static constexpr auto multiply_transposed = room::multiply_transposed;       \
+    static constexpr auto add_product = room::add_product;                       \
+    static constexpr auto contract = room::contract;                             \
+    static constexpr auto add_scaled = room::add_scaled;                         \
+    static constexpr auto add_square = room::add_square;                         \
+    static constexpr auto factor_trapezoid = room::factor_trapezoid;             \
+    static constexpr auto solve_lower = room::solve_lower;                       \
+    static constexpr auto solve_lower_transposed = room::solve_lower_transposed; \
+  }
+
 /// K: has the kernels as static members.
 template <class K>
 void compare_kernels_with_eigen() {

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "solver/bodies/marker.hpp"
-#include "tests/solver/support/models.hpp"
+#include "tests/solver/bodies/marker_rates.hpp"
 
 namespace bough::solver::testing {
 namespace {
@@ -188,19 +188,7 @@ TEST_P(ThirdOrderTest, MarkersAndWrenchesFollowTheRates) {
   for (const int id : {101, 104}) {
     const Marker marker{0, body.find_node(id), random.vector(), random.rotation(), true};
     const VectorXd eta_dot = random.vector_n(kNumModes), eta_ddot = random.vector_n(kNumModes);
-    const auto at = [&](double t) {
-      MarkerMotion m = make_marker_motion(body, marker);
-      const VectorXd eta = eta_ + t * eta_dot + 0.5 * t * t * eta_ddot;
-      calc_marker_position(body, marker, eta, m);
-      calc_marker_velocity(body, marker, eta, eta_dot + t * eta_ddot, m);
-      return m;
-    };
-    const double h = 1e-4;
-    const MarkerMotion m = at(0), plus = at(h), minus = at(-h);
-    EXPECT_LT((m.v - (plus.r - minus.r) / (2 * h)).norm(), 1e-6);
-    EXPECT_LT((skew(m.w) - (plus.R - minus.R) / (2 * h) * m.R.transpose()).norm(), 1e-6);
-    EXPECT_LT((m.J.topRows<3>() * eta_ddot + m.gamma_v - (plus.v - minus.v) / (2 * h)).norm(), 1e-6);
-    EXPECT_LT((m.J.bottomRows<3>() * eta_ddot + m.gamma_w - (plus.w - minus.w) / (2 * h)).norm(), 1e-6);
+    const MarkerMotion m = expect_marker_rates(body, marker, eta_, eta_dot, eta_ddot, 1e-6);
     const Vector3d f = random.vector(), t = random.vector();
     NodeInBody k;
     const Node& node = body.nodes()[static_cast<size_t>(marker.node)];

@@ -17,11 +17,7 @@ records::SystemSpec make_flyer(const std::string& type) {
   spec.hinges = {make_hinge_record("axis", records::HingeType::Free, "ground", "rotor")};
   spec.hinges[0].rate = {0.3, -0.2, 0.5, 0, 0, 0};
   spec.sensors.clear();
-  records::FunctionRecord f;
-  f.name = "law";
-  f.type = "sine";
-  f.values = {{"amplitude", 0.4}, {"omega", 2}};
-  spec.functions = {f};
+  spec.functions = {make_function("law", "sine", {{"amplitude", 0.4}, {"omega", 2}})};
   spec.actuators[0].type = type;
   spec.actuators[0].hinge.clear();
   spec.actuators[0].body = "rotor";

@@ -43,17 +43,10 @@ TEST(Library, LawsInCAndFortranGiveTheHistoryOfOurOwnBlocks) {
 TEST(Library, AnExceptionEndsTheRunByName) {
   auto spec = make_library(BOUGH_LAW_CPP);
   spec.hinges[0].rate = {30};
-  const System system = build(spec);
-  MemorySink sink;
-  Diagnostics diagnostics;
-  try {
-    simulate(system, spec, sink, {}, diagnostics);
-    ADD_FAILURE() << "no failure";
-  } catch (const Failure& failure) {
-    EXPECT_EQ(failure.items()[0].id, "control.library-failed");
-    EXPECT_THAT(failure.items()[0].what, HasSubstr("controller 'law': bough_controller_outputs at t = "));
-    EXPECT_THAT(failure.items()[0].what, HasSubstr("beyond this law"));
-  }
+  const Diagnostic failure = run_to_failure(spec)[0];
+  EXPECT_EQ(failure.id, "control.library-failed");
+  EXPECT_THAT(failure.what, HasSubstr("controller 'law': bough_controller_outputs at t = "));
+  EXPECT_THAT(failure.what, HasSubstr("beyond this law"));
 }
 
 TEST(Library, AFailureOfCloseIsOneOfTheRun) {

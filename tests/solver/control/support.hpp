@@ -11,17 +11,6 @@
 
 namespace bough::solver::testing {
 
-inline records::SensorRecord make_sensor(const std::string& name, records::SensorType type, const std::string& body,
-                                         const std::string& hinge = "") {
-  records::SensorRecord s;
-  s.name = name;
-  s.type = type;
-  s.body = body;
-  s.hinge = hinge;
-  s.at = {"system.toml", 30, 1};
-  return s;
-}
-
 inline records::ControllerRecord make_law(const std::string& name, const std::string& type,
                                           const std::vector<std::string>& inputs,
                                           const std::map<std::string, std::vector<double>>& numbers = {}) {
@@ -45,21 +34,13 @@ inline records::ActuatorRecord make_drive(const std::string& name, const std::st
 }
 
 inline records::FunctionRecord make_step(const std::string& name, double value, double at) {
-  records::FunctionRecord f;
-  f.name = name;
-  f.type = "step";
-  f.values = {{"value", value}, {"at", at}};
-  return f;
+  return make_function(name, "step", {{"value", value}, {"at", at}});
 }
 
 /// A rotor of inertia 2 about z on a hinge, with sensors angle and rate and a drive with the input "law".
 inline records::SystemSpec make_axis() {
   records::SystemSpec spec;
-  records::BodyRecord b;
-  b.name = "rotor";
-  b.mass = 1;
-  b.inertia = Vector3d(1, 1, 2).asDiagonal();
-  spec.bodies = {b};
+  spec.bodies = {make_body_record("rotor", 1, {1, 1, 2})};
   spec.hinges = {make_hinge_record("axis", records::HingeType::Revolute, "ground", "rotor")};
   spec.hinges[0].axis = {0, 0, 1};
   spec.sensors = {make_sensor("angle", records::SensorType::HingeAngle, "", "axis"),

@@ -14,12 +14,9 @@ records::ConnectRecord make_wire(const std::string& from, const std::string& to,
   return {from, to, gain, {"system.toml", line, 1}};
 }
 
-records::UserEventRecord make_event(double time, EventAction action, const std::string& target, int choice = 0) {
-  records::UserEventRecord e;
-  e.name = target + std::to_string(time);
+records::UserEventRecord make_timed_event(double time, EventAction action, const std::string& target, int choice = 0) {
+  auto e = make_event(target + std::to_string(time), action, target);
   e.time = time;
-  e.action = action;
-  e.target = target;
   e.choice = choice;
   return e;
 }
@@ -115,11 +112,7 @@ TEST(ForceOfASignal, IsTheActuatorOfTheSameSignal) {
   spec.hinges[0].type = records::HingeType::Free;
   spec.bodies[0].cg = {0.2, 0.1, -0.3};
   spec.sensors.clear();
-  records::FunctionRecord f;
-  f.name = "law";
-  f.type = "sine";
-  f.values = {{"amplitude", 0.4}, {"omega", 2}};
-  spec.functions = {f};
+  spec.functions = {make_function("law", "sine", {{"amplitude", 0.4}, {"omega", 2}})};
   spec.actuators[0] = {};
   spec.actuators[0].name = "drive";
   spec.actuators[0].type = "force";
@@ -128,12 +121,8 @@ TEST(ForceOfASignal, IsTheActuatorOfTheSameSignal) {
   spec.actuators[0].settings.numbers["axis"] = {0, 3, 4};
   const RunResult actuator = run(spec);
   spec.actuators.clear();
-  records::ForceRecord force;
-  force.name = "push";
-  force.body = "rotor";
-  force.direction = {0, 0.6, 0.8};
-  force.signal = "law";
-  spec.forces = {force};
+  spec.forces = {make_force("push", "rotor", {0, 0.6, 0.8})};
+  spec.forces[0].signal = "law";
   const RunResult signal = run(spec);
   EXPECT_LT(signal.outcome.energy_error, 1e-9);
   EXPECT_LT((signal.sink.get("/bodies/rotor/position") - actuator.sink.get("/bodies/rotor/position")).norm(), 1e-9);
@@ -153,7 +142,7 @@ TEST(ForceOfASignal, IsTheActuatorOfTheSameSignal) {
 // kp angle + kd rate about 0.5, in parts: with it, without it (the rotor coasts), with it again.
 TEST(Event, EnablesAndDisablesAController) {
   auto spec = make_servo();
-  spec.events = {make_event(1, EventAction::Disable, "law"), make_event(2, EventAction::Enable, "law")};
+  spec.events = {make_timed_event(1, EventAction::Disable, "law"), make_timed_event(2, EventAction::Enable, "law")};
   const RunResult r = run(spec);
   const VectorXd t = r.sink.time(), angle = r.sink.get("/sensors/angle").col(0),
                  drive = r.sink.get("/actuators/drive").col(0);
@@ -174,7 +163,7 @@ TEST(Event, EnablesAndDisablesAController) {
   // One that starts at rest is the same from the time at which it is enabled.
   auto late = make_servo();
   late.controllers[0].active = false;
-  late.events = {make_event(1.5, EventAction::Enable, "law")};
+  late.events = {make_timed_event(1.5, EventAction::Enable, "law")};
   const RunResult s = run(late);
   EXPECT_NEAR(get_last(s.sink, "/sensors/angle"), propagate(A, Eigen::Vector2d(0, 1.5), Eigen::Vector2d(0, 0), 3.5)[0],
               1e-9);
@@ -184,7 +173,8 @@ TEST(Event, DisablesASampledController) {
   auto spec = make_servo();
   spec.controllers[0].rate.clear();
   spec.controllers[0].settings.numbers = {{"kp", {6}}, {"kd", {4}}, {"sample_time", {0.1}}, {"delay", {0.05}}};
-  spec.events = {make_event(1.02, EventAction::Disable, "law"), make_event(2.02, EventAction::Enable, "law")};
+  spec.events = {make_timed_event(1.02, EventAction::Disable, "law"),
+                 make_timed_event(2.02, EventAction::Enable, "law")};
   const RunResult r = run(spec);
   const VectorXd t = r.sink.time(), drive = r.sink.get("/actuators/drive").col(0);
   for (int i = 0; i < t.size(); ++i) {
@@ -200,7 +190,8 @@ TEST(Event, SwitchesAFunction) {
   auto spec = make_axis();
   spec.functions = {make_step("first", 1, 0), make_step("second", -3, 0)};
   spec.controllers = {make_law("law", "switch", {"first", "second"})};
-  spec.events = {make_event(2, EventAction::Switch, "law", 2), make_event(4, EventAction::Switch, "law", 1)};
+  spec.events = {make_timed_event(2, EventAction::Switch, "law", 2),
+                 make_timed_event(4, EventAction::Switch, "law", 1)};
   const RunResult r = run(spec);
   // Inertia 2: rates 1, then 1 - 3, then -2 + 0.5.
   EXPECT_NEAR(r.sink.get("/sensors/rate")(40, 0), 1, 1e-9);
@@ -219,12 +210,12 @@ std::string run_and_fail(const records::SystemSpec& spec) {
 
 TEST(Event, NamesWhatItCannotSwitch) {
   auto spec = make_servo();
-  spec.events = {make_event(1, EventAction::Switch, "law", 1)};
+  spec.events = {make_timed_event(1, EventAction::Switch, "law", 1)};
   EXPECT_THAT(run_and_fail(spec), HasSubstr("run.bad-event event 'law1.000000' switches controller 'law'"));
   spec.controllers.push_back(make_law("pick", "switch", {"angle", "rate"}));
-  spec.events = {make_event(1, EventAction::Switch, "pick", 3)};
+  spec.events = {make_timed_event(1, EventAction::Switch, "pick", 3)};
   EXPECT_THAT(run_and_fail(spec), HasSubstr("input 3 of controller 'pick', which has 2"));
-  spec.events = {make_event(1, EventAction::Disable, "lew")};
+  spec.events = {make_timed_event(1, EventAction::Disable, "lew")};
   EXPECT_THAT(run_and_fail(spec), HasSubstr("run.unknown-target"));
 }
 

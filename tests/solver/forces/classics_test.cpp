@@ -235,6 +235,31 @@ TEST(ForceClassics, DragOfAFallingBodyEndsAtItsSpeed) {
   EXPECT_NEAR(get_last(run_kept(spec), "/hinges/h/qdot"), -9.81 * 3, 1e-9);
 }
 
+TEST(ForceClassics, DragBelowTheGroundIsAWarningAndAnEvent) {
+  auto spec = make_spec(HingeType::Prismatic);
+  spec.simulation.gravity = {0, 0, -9.81};
+  spec.hinges[0].position = {1.2};
+  auto planet = make_element(ElementType::CentralGravity, "");
+  planet.name = "planet";
+  planet.mu = 1e-12;
+  planet.equator = 1;
+  auto e = make_element(ElementType::Drag, "ball");
+  e.area = 1e-6;
+  e.coefficient = e.density = e.scale_height = 1;
+  e.planet = "planet";
+  spec.force_elements = {planet, e};
+  spec.simulation.output_step = 0.01;
+  const auto has_warning = [](const RunResult& r) { return r.diagnostics.has("run.below-ground"); };
+  spec.simulation.duration = 0.2;  // the ground is reached at 0.2019
+  EXPECT_FALSE(has_warning(run(spec)));
+  spec.simulation.duration = 0.3;
+  const RunResult r = run(spec);
+  EXPECT_TRUE(r.outcome.completed);
+  EXPECT_TRUE(has_warning(r));
+  ASSERT_EQ(r.sink.events().size(), 1U);
+  EXPECT_NEAR(r.sink.events()[0].time, 0.2019, 0.011);
+}
+
 TEST(ForceClassics, BushingOfOneBodyIsItsFrequencies) {
   // Diagonal bushing at the mass centre: small motions at √(k/m), √(k/J).
   auto spec = make_spec(HingeType::Free, 2);

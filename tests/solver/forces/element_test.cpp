@@ -7,7 +7,7 @@
 #include <functional>
 
 #include "solver/functions/curve.hpp"
-#include "tests/solver/support/models.hpp"
+#include "tests/solver/support/records.hpp"
 
 namespace bough::solver::testing {
 namespace {
@@ -41,7 +41,7 @@ struct Pair {
   }
 };
 
-ForceElementRecord make_spring(const Pair& pair) {
+ForceElementRecord make_pair_spring(const Pair& pair) {
   ForceElementRecord e = pair.make(ElementType::Spring);
   e.stiffness = 11;
   e.damping = 0.7;
@@ -58,7 +58,7 @@ ForceElementRecord make_bushing(const Pair& pair, Random& random) {
   return e;
 }
 
-ForceElementRecord make_contact(const Pair& pair, records::ContactShape shape) {
+ForceElementRecord make_pair_contact(const Pair& pair, records::ContactShape shape) {
   ForceElementRecord e = pair.make(ElementType::Contact);
   e.shape = shape;
   e.stiffness = 40;
@@ -73,11 +73,12 @@ ForceElementRecord make_contact(const Pair& pair, records::ContactShape shape) {
 
 std::vector<ForceElementRecord> make_all(const Pair& pair) {
   Random random(9);
-  auto one_way = make_spring(pair);
+  auto one_way = make_pair_spring(pair);
   one_way.sense = records::SpringSense::Tension;
   one_way.preload = 0.5;
-  return {make_spring(pair), one_way, make_bushing(pair, random), make_contact(pair, records::ContactShape::Plane),
-          make_contact(pair, records::ContactShape::Sphere)};
+  return {make_pair_spring(pair), one_way, make_bushing(pair, random),
+          make_pair_contact(pair, records::ContactShape::Plane),
+          make_pair_contact(pair, records::ContactShape::Sphere)};
 }
 
 TEST(ForceElements, ActionsBetweenTwoBodiesCancel) {
@@ -156,14 +157,25 @@ TEST(ForceElements, PowerIsWhatTheirEnergyLosesAndWhatTheyTurnIntoHeat) {
   }
 }
 
-TEST(ForceElements, CentralGravityIsThatOfThePointsToSecondMoments) {
+/// The first body of the pair alone.
+Pair make_single() {
   Pair pair;
   pair.spec.bodies.resize(1);
   pair.spec.hinges.resize(1);
+  return pair;
+}
+
+ForceElementRecord make_earth(double mu) {
   ForceElementRecord field;
   field.name = "earth";
   field.type = ElementType::CentralGravity;
-  field.mu = 1;
+  field.mu = mu;
+  return field;
+}
+
+TEST(ForceElements, CentralGravityIsThatOfThePointsToSecondMoments) {
+  Pair pair = make_single();
+  auto field = make_earth(1);
   const auto calc_error = [&](double distance) {
     field.centre = distance * Vector3d(0.6, -0.64, 0.48);
     pair.spec.force_elements = {field};
@@ -229,10 +241,7 @@ TEST(ForceElements, CentralGravityIsTheGradientOfTheEnergyOfThePointsToSecondOrd
     pair.spec.bodies.resize(1);
     pair.spec.bodies[0].stiffening = stiffening;
     pair.spec.hinges.resize(1);
-    ForceElementRecord field;
-    field.name = "earth";
-    field.type = ElementType::CentralGravity;
-    field.mu = 20;
+    auto field = make_earth(20);
     field.centre = {3, -4, 2};
     pair.spec.force_elements = {field};
     const System system = build(pair.spec, pair.flex);
@@ -282,13 +291,8 @@ TEST(ForceElements, CentralGravityIsTheGradientOfTheEnergyOfThePointsToSecondOrd
 }
 
 TEST(ForceElements, CentralGravityDoesNotDependOnTheOriginOfTheBody) {
-  Pair pair;
-  pair.spec.bodies.resize(1);
-  pair.spec.hinges.resize(1);
-  ForceElementRecord field;
-  field.name = "earth";
-  field.type = ElementType::CentralGravity;
-  field.mu = 20;
+  Pair pair = make_single();
+  auto field = make_earth(20);
   field.centre = {3, -4, 2};
   field.j2 = 0.1;
   field.equator = 2;

@@ -96,12 +96,8 @@ TEST(HingeLaw, CoulombFrictionBrings) {
 TEST(HingeLaw, ABeltDragsAMassByStickAndSlip) {
   // Stick until k x = F_s, slip about F_c/k until the speeds agree again: the period of the piecewise linear motion.
   auto spec = make_spec(HingeType::Prismatic, 1);
-  spec.bodies.push_back(spec.bodies[0]);
-  spec.bodies[1].name = "mass";
-  spec.hinges.push_back(spec.hinges[0]);
-  spec.hinges[1].name = "on_belt";
+  add_copy(spec, "mass", "on_belt");
   spec.hinges[1].parent = "body";
-  spec.hinges[1].child = "mass";
   for (auto& hinge : spec.hinges) hinge.axis = {1, 0, 0};
   const double k = 100, belt = 0.1, Fs = 4, Fc = 2, w = 10;
   records::FunctionRecord motion = make_table({0, 100}, {0, 100 * belt});
@@ -114,14 +110,7 @@ TEST(HingeLaw, ABeltDragsAMassByStickAndSlip) {
   law.static_friction = {Fs};
   law.stribeck_velocity = {2e-4};
   law.smoothing = {2e-6};
-  records::ForceElementRecord spring;
-  spring.name = "spring";
-  spring.type = records::ElementType::Spring;
-  spring.from.body = "mass";
-  spring.to.position = {-1, 0, 0};
-  spring.stiffness = k;
-  spring.free_length = 1;
-  spec.force_elements = {spring};
+  spec.force_elements = {make_spring("spring", "mass", {-1, 0, 0}, k, 1)};
   spec.simulation.duration = 4;
   spec.simulation.output_step = 1e-3;
   spec.simulation.integrator = "bdf";
@@ -274,15 +263,7 @@ TEST(ForceElements, ABushingEndsAtHalfATurn) {
   e.stiffness6.diagonal().setConstant(1e-3);
   spec.force_elements = {e};
   spec.hinges[0].rate = {4};
-  MemorySink sink;
-  Diagnostics diagnostics;
-  const System system = build(spec);
-  try {
-    simulate(system, spec, sink, {}, diagnostics);
-    FAIL();
-  } catch (const ComputationError& error) {
-    EXPECT_EQ(error.items().at(0).id, "solver.bushing-past-half-turn");
-  }
+  EXPECT_EQ(run_to_failure<ComputationError>(spec).at(0).id, "solver.bushing-past-half-turn");
 }
 
 }  // namespace

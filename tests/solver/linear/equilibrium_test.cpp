@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/solver/support/models.hpp"
+#include "tests/solver/support/records.hpp"
 
 namespace bough::solver::testing {
 namespace {
@@ -11,11 +11,7 @@ namespace {
 using records::HingeType;
 
 records::BodyRecord make_point(const std::string& name, double mass, const Vector3d& cg) {
-  records::BodyRecord body;
-  body.name = name;
-  body.mass = mass;
-  body.cg = cg;
-  return body;
+  return make_body_record(name, mass, Vector3d::Zero(), cg);
 }
 
 Equilibrium find(const records::SystemSpec& spec, const std::map<std::string, records::FlexBody>& flex = {}) {
@@ -120,13 +116,31 @@ TEST(Equilibrium, IndifferentFreedomsStay) {
   EXPECT_NEAR(found.point.q[1], 0, 1e-10);
 }
 
-TEST(Equilibrium, APendulumReleasedLevelIsFoundHanging) {
-  // The torque has no slope there: Newton's method has no direction.
+/// A pendulum that is released level.
+records::SystemSpec make_level_arm() {
   records::SystemSpec spec;
   spec.simulation.gravity = {0, 0, -9.81};
   spec.bodies = {make_point("arm", 2, {0.5, 0, 0})};
   spec.hinges = {make_hinge_record("pivot", HingeType::Revolute, "ground", "arm")};
   spec.hinges[0].axis = Vector3d::UnitY();
+  return spec;
+}
+
+/// The error of a search without a result.
+Diagnostic fail_to_find(const records::SystemSpec& spec) {
+  try {
+    find(spec);
+  } catch (const ComputationError& error) {
+    EXPECT_EQ(error.items()[0].id, "equilibrium.not-converged");
+    return error.items()[0];
+  }
+  ADD_FAILURE() << "no failure";
+  return {};
+}
+
+TEST(Equilibrium, APendulumReleasedLevelIsFoundHanging) {
+  // The torque has no slope there: Newton's method has no direction.
+  auto spec = make_level_arm();
   const auto found = find(spec);
   EXPECT_NEAR(found.point.q[0], M_PI / 2, 1e-9);
   EXPECT_TRUE(found.unstable.empty());
@@ -176,29 +190,15 @@ TEST(Equilibrium, AChainOfBallJointsHangsFromSprings) {
 }
 
 TEST(Equilibrium, AnAngleThatSpinsIsNotChosen) {
-  records::SystemSpec spec;
-  spec.simulation.gravity = {0, 0, -9.81};
-  spec.bodies = {make_point("arm", 2, {0.5, 0, 0})};
-  spec.hinges = {make_hinge_record("pivot", HingeType::Revolute, "ground", "arm")};
-  spec.hinges[0].axis = Vector3d::UnitY();
+  auto spec = make_level_arm();
   spec.hinges[0].rate = {1};
-  try {
-    find(spec);
-    FAIL();
-  } catch (const ComputationError& error) {
-    EXPECT_EQ(error.items()[0].id, "equilibrium.not-converged");
-    EXPECT_NE(error.items()[0].advice.find("prescribe its motion"), std::string::npos);
-  }
+  EXPECT_NE(fail_to_find(spec).advice.find("prescribe its motion"), std::string::npos);
   spec.simulation.gravity.setZero();
   EXPECT_EQ(find(spec).spinning.size(), 1U);
   // Nothing to find where all is given.
   spec.hinges[0].rate.clear();
   spec.hinges[0].motion = {"f"};
-  records::FunctionRecord f;
-  f.name = "f";
-  f.type = "constant";
-  f.values = {{"value", 0.3}};
-  spec.functions = {f};
+  spec.functions = {make_function("f", "constant", {{"value", 0.3}})};
   const auto given = find(spec);
   EXPECT_EQ(given.residual, 0);
   EXPECT_TRUE(given.unstable.empty());
@@ -246,14 +246,9 @@ TEST(Equilibrium, NoneForAFallingBody) {
   spec.simulation.gravity = {0, 0, -9.81};
   spec.bodies = {make_point("stone", 2, {0, 0, 0})};
   spec.bodies[0].inertia = Matrix3d::Identity();
-  try {
-    find(spec);
-    FAIL();
-  } catch (const ComputationError& error) {
-    EXPECT_EQ(error.items()[0].id, "equilibrium.not-converged");
-    EXPECT_NE(error.items()[0].what.find("9.81"), std::string::npos);
-    EXPECT_NE(error.items()[0].what.find("stone:z"), std::string::npos);
-  }
+  const Diagnostic failure = fail_to_find(spec);
+  EXPECT_NE(failure.what.find("9.81"), std::string::npos);
+  EXPECT_NE(failure.what.find("stone:z"), std::string::npos);
 }
 
 }  // namespace

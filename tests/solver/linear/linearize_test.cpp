@@ -3,7 +3,7 @@
 
 #include "solver/linear/linearize.hpp"
 #include "solver/state/difference.hpp"
-#include "tests/solver/support/models.hpp"
+#include "tests/solver/support/records.hpp"
 
 namespace bough::solver::testing {
 namespace {
@@ -25,24 +25,10 @@ records::LinearModel linearize_initial(const records::SystemSpec& spec, const Li
   return linearize(plant, plant.make_initial_point(), options, {}, diagnostics);
 }
 
-records::SensorRecord make_sensor(const std::string& name, records::SensorType type, const std::string& body,
-                                  const std::string& hinge = "") {
-  records::SensorRecord sensor;
-  sensor.name = name;
-  sensor.type = type;
-  sensor.body = body;
-  sensor.hinge = hinge;
-  return sensor;
-}
-
 records::SystemSpec make_pendulum() {
   records::SystemSpec spec;
   spec.simulation.gravity = {0, -9.81, 0};
-  records::BodyRecord bob;
-  bob.name = "bob";
-  bob.mass = 2;
-  bob.cg = {0, -0.7, 0};
-  spec.bodies = {bob};
+  spec.bodies = {make_body_record("bob", 2, Vector3d::Zero(), {0, -0.7, 0})};
   spec.hinges = {make_hinge_record("pin", HingeType::Revolute, "ground", "bob")};
   spec.hinges[0].damping = {0.05};
   spec.sensors = {make_sensor("angle", records::SensorType::HingeAngle, "", "pin")};
@@ -181,11 +167,7 @@ TEST(Linearize, NutationOfASpinningFreeBody) {
   // About the spin axis z: body-fixed rates turn at (I3 - I1)/I1 · Ω for I1 = I2, whatever the attitude.
   records::SystemSpec spec;
   spec.simulation.gravity.setZero();
-  records::BodyRecord top;
-  top.name = "top";
-  top.mass = 4;
-  top.inertia = Vector3d(2, 2, 3).asDiagonal();
-  spec.bodies = {top};
+  spec.bodies = {make_body_record("top", 4, {2, 2, 3})};
   spec.hinges = {make_hinge_record("float", HingeType::Free, "ground", "top")};
   spec.hinges[0].position = {std::cos(0.3), std::sin(0.3), 0, 0, 1, 2, 3};
   spec.hinges[0].rate = {0, 0, 5, 0, 0, 0};

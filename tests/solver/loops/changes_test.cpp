@@ -11,24 +11,12 @@ namespace bough::solver::testing {
 namespace {
 
 using records::ConstraintRecord;
-using records::ConstraintType;
 using records::EventAction;
-using records::HingeType;
-using ::testing::HasSubstr;
 
 std::string list_events(const MemorySink& sink) {
   std::string text;
   for (const auto& e : sink.events()) text += e.what + "\n";
   return text;
-}
-
-records::UserEventRecord make_event(const std::string& name, EventAction action, const std::string& target) {
-  records::UserEventRecord e;
-  e.name = name;
-  e.action = action;
-  e.target = target;
-  e.at = {"system.toml", 30, 1};
-  return e;
 }
 
 double spread(const MatrixXd& values) {  // over time, to the size
@@ -143,10 +131,7 @@ TEST(Capture, IsTheInelasticImpact) {
   spec.events = {make_event("contact", EventAction::Close, "dock")};
   spec.events[0].signal = "gap:x";
   spec.events[0].value = 1.2;
-  spec.simulation.duration = 2;
-  spec.simulation.output_step = 0.02;
-  spec.simulation.relative_tolerance = spec.simulation.absolute_tolerance = 1e-12;
-  const RunResult r = run(spec);
+  const RunResult r = run_closely(spec, 2, 0.02, 1e-12);
   EXPECT_LT(spread(r.sink.get("/momentum/linear")), 1e-10);
   EXPECT_LT(spread(r.sink.get("/momentum/angular")), 1e-10);
   // Afterwards one rigid body: its angular velocity is that of its momentum and inertia.
@@ -172,13 +157,7 @@ TEST(Capture, IsTheInelasticImpact) {
 TEST(Lock, KeepsTheMomentumOfTheRest) {
   records::SystemSpec spec;
   for (const std::string name : {"upper", "lower"}) {
-    records::BodyRecord rod;
-    rod.name = name;
-    rod.mass = 1;
-    rod.cg = {0.5, 0, 0};
-    rod.inertia = Vector3d(0.01, 1.0 / 12, 1.0 / 12).asDiagonal();
-    rod.nodes = {{1, {1, 0, 0}}};
-    spec.bodies.push_back(rod);
+    spec.bodies.push_back(make_rod_record(name, 1, 1, 0.01));
     spec.hinges.push_back(make_hinge_record(name, HingeType::Revolute, name == "upper" ? "ground" : "upper", name));
   }
   spec.hinges[1].parent_node = 1;
@@ -189,10 +168,7 @@ TEST(Lock, KeepsTheMomentumOfTheRest) {
   spec.events[0].value = 0.3;
   spec.events[0].direction = records::EventDirection::Rising;  // it falls back through it when it is free again
   spec.events[1].time = 1.5;
-  spec.simulation.duration = 2;
-  spec.simulation.output_step = 0.01;
-  spec.simulation.relative_tolerance = spec.simulation.absolute_tolerance = 1e-11;
-  const RunResult r = run(spec);
+  const RunResult r = run_closely(spec, 2, 0.01, 1e-11);
   EXPECT_LT(spread(r.sink.get("/momentum/angular")), 1e-9);
   const MatrixXd q = r.sink.get("/hinges/lower/q"), rate = r.sink.get("/hinges/lower/qdot");
   EXPECT_NEAR(q(140, 0), 0.3, 1e-10);
@@ -205,19 +181,10 @@ TEST(Lock, KeepsTheMomentumOfTheRest) {
 // A ball swings on a rod that breaks below: a parabola from there.
 TEST(Break, LetsGo) {
   records::SystemSpec spec;
-  records::BodyRecord ball;
-  ball.name = "ball";
-  ball.mass = 2;
-  ball.inertia = Vector3d(1, 1, 1).asDiagonal();
-  spec.bodies = {ball};
+  spec.bodies = {make_body_record("ball", 2, {1, 1, 1})};
   spec.hinges = {make_hinge_record("free", HingeType::Free, "ground", "ball")};
   spec.hinges[0].position = {1, 0, 0, 0, 1, 0, 0};
-  ConstraintRecord rod;
-  rod.name = "rod";
-  rod.type = ConstraintType::Distance;
-  rod.child = "ball";
-  rod.length = 1;
-  spec.constraints = {rod};
+  spec.constraints = {make_distance("rod", "ball", 1)};
   spec.sensors.push_back({});
   spec.sensors[0].name = "place";
   spec.sensors[0].body = "ball";
@@ -238,15 +205,18 @@ TEST(Break, LetsGo) {
   EXPECT_THAT(list_events(r.sink), HasSubstr("constraint 'rod' is broken"));
 }
 
+/// A mass of 2 on a slide, for a second.
+records::SystemSpec make_slide() {
+  records::SystemSpec spec;
+  spec.bodies = {make_body_record("body", 2, {1, 1, 1})};
+  spec.hinges = {make_hinge_record("slide", HingeType::Prismatic, "ground", "body")};
+  spec.simulation.duration = 1;
+  return spec;
+}
+
 // Held, the hinge takes the weight: that releases it; free, it takes nothing: that locks it. No end.
 TEST(EventActions, ACycleOfEventsIsAnError) {
-  records::SystemSpec spec;
-  records::BodyRecord b;
-  b.name = "body";
-  b.mass = 2;
-  b.inertia = Vector3d(1, 1, 1).asDiagonal();
-  spec.bodies = {b};
-  spec.hinges = {make_hinge_record("slide", HingeType::Prismatic, "ground", "body")};
+  auto spec = make_slide();
   spec.events = {make_event("hold", EventAction::Lock, "slide"), make_event("grip", EventAction::Lock, "slide"),
                  make_event("let go", EventAction::Release, "slide")};
   spec.events[0].time = 0.3;
@@ -257,24 +227,11 @@ TEST(EventActions, ACycleOfEventsIsAnError) {
         i == 1 ? records::EventDirection::Falling : records::EventDirection::Rising;
   }
   spec.simulation.gravity = {0, 0, -9.81};
-  spec.simulation.duration = 1;
-  try {
-    run(spec);
-    FAIL();
-  } catch (const ComputationError& e) {
-    EXPECT_EQ(e.items().front().id, "run.event-cycle");
-  }
+  EXPECT_EQ(run_to_failure<ComputationError>(spec).front().id, "run.event-cycle");
 }
 
 TEST(EventActions, NamesThatAreNone) {
-  records::SystemSpec spec;
-  records::BodyRecord b;
-  b.name = "body";
-  b.mass = 2;
-  b.inertia = Vector3d(1, 1, 1).asDiagonal();
-  spec.bodies = {b};
-  spec.hinges = {make_hinge_record("slide", HingeType::Prismatic, "ground", "body")};
-  spec.simulation.duration = 1;
+  const auto spec = make_slide();
   const auto report = [&](EventAction action, const std::string& target, std::vector<int> coordinates = {}) {
     auto s = spec;
     s.events = {make_event("e", action, target)};

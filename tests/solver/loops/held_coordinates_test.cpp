@@ -29,31 +29,23 @@ void set_integrator(records::SystemSpec& spec, const std::string& integrator) {
   s.absolute_tolerance = s.relative_tolerance;
 }
 
+void set_run(records::SystemSpec& spec, const std::string& integrator, double duration, double output_step) {
+  spec.simulation.duration = duration;
+  spec.simulation.output_step = output_step;
+  set_integrator(spec, integrator);
+}
+
 records::BodyRecord make_wheel(const std::string& name, double inertia, double mass = 1) {
-  records::BodyRecord wheel;
-  wheel.name = name;
-  wheel.mass = mass;
-  wheel.inertia = Vector3d::Constant(inertia).asDiagonal();
-  return wheel;
+  return make_body_record(name, mass, Vector3d::Constant(inertia));
 }
 
 void add_sine(records::SystemSpec& spec, const std::string& name, double amplitude, double omega) {
-  records::FunctionRecord f;
-  f.name = name;
-  f.type = "sine";
-  f.values = {{"amplitude", amplitude}, {"omega", omega}};
-  spec.functions.push_back(f);
+  spec.functions.push_back(make_function(name, "sine", {{"amplitude", amplitude}, {"omega", omega}}));
 }
 
 void add_load(records::SystemSpec& spec, records::ForceKind kind, const std::string& body, const Vector3d& direction,
               const std::string& function) {
-  records::ForceRecord force;
-  force.name = "load " + body;
-  force.kind = kind;
-  force.body = body;
-  force.direction = direction;
-  force.function = function;
-  spec.forces.push_back(force);
+  spec.forces.push_back(make_force("load " + body, body, direction, function, kind));
 }
 
 /// A parallelogram of cranks of length 1 (inertia 0.35 about their pins) and a bar of mass 2: together 2.7 about either
@@ -114,9 +106,7 @@ TEST(HeldCoordinate, AGearedMotorOvercomesItsFriction) {
     teeth.terms = {{"motor", 1, 1.0}, {"wheel", 1, 10.0}};
     spec.constraints = {teeth};
     add_load(spec, records::ForceKind::Moment, "motor", {0, 0, 0.2}, "");
-    spec.simulation.duration = 2;
-    spec.simulation.output_step = 0.1;
-    set_integrator(spec, integrator);
+    set_run(spec, integrator, 2, 0.1);
     const MemorySink steady = run(spec).sink;
     EXPECT_NEAR(get_last(steady, "/hinges/motor/q"), 0.5 * 0.15 / 0.02 * 4, 1e-7) << integrator;
     // It swings, sticks and slips as the one wheel does.
@@ -151,9 +141,7 @@ TEST(HeldCoordinate, ABoxOnARailIsIndependentOfLinkages) {
     add_friction(rail, 0.5);
     spec.hinges = {rail};
     add_load(spec, records::ForceKind::Force, "box", {1, 0, 0}, "drive");
-    spec.simulation.duration = 6;
-    spec.simulation.output_step = 0.05;
-    set_integrator(spec, integrator);
+    set_run(spec, integrator, 6, 0.05);
     const MemorySink alone = run(spec).sink;
     const double slip = 0.5 * std::asin(0.5 / 3);
     EXPECT_NEAR(find_events(alone, "slips").at(0), slip, 1e-8) << integrator;
@@ -185,9 +173,7 @@ TEST(HeldCoordinate, ABoxLeavesItsStopBesideALinkage) {
     spec.hinges = {rail};
     add_load(spec, records::ForceKind::Force, "box", {1, 0, 0}, "drive");
     add_parallelogram(spec, "1", {0, 5, 0}, "drive");
-    spec.simulation.duration = 2;
-    spec.simulation.output_step = 0.05;
-    set_integrator(spec, integrator);
+    set_run(spec, integrator, 2, 0.05);
     const MemorySink sink = run(spec).sink;
     EXPECT_NEAR(find_events(sink, "leaves its stop").at(0), std::numbers::pi / 2, 1e-8) << integrator;
     // 2 v' = 3 sin 2s, s from the start.

@@ -93,21 +93,9 @@ TEST(Iftomm, A03AndrewsSqueezer) {
     c.parent_node = c.child_node = 1;
     spec.constraints.push_back(c);
   }
-  records::ForceElementRecord spring;
-  spring.name = "spring";
-  spring.type = records::ElementType::Spring;
-  spring.from.body = "k3";
-  spring.from.node = 2;
-  spring.to.position = C;
-  spring.stiffness = 4530;
-  spring.free_length = 0.07785;
-  spec.force_elements = {spring};
-  records::ForceRecord motor;
-  motor.name = "motor";
-  motor.kind = records::ForceKind::Moment;
-  motor.body = "k1";
-  motor.direction = {0, 0, 0.033};
-  spec.forces = {motor};
+  spec.force_elements = {make_spring("spring", "k3", C, 4530, 0.07785)};
+  spec.force_elements[0].from.node = 2;
+  spec.forces = {make_force("motor", "k1", {0, 0, 0.033}, "", records::ForceKind::Moment)};
   spec.simulation.duration = 0.03;
   spec.simulation.output_step = 1e-3;
   spec.simulation.integrator = "rk";

@@ -12,18 +12,6 @@ namespace {
 
 using records::ConstraintRecord;
 using records::ConstraintType;
-using records::HingeType;
-using ::testing::HasSubstr;
-
-records::BodyRecord make_rod(const std::string& name, double length, double mass) {
-  records::BodyRecord rod;
-  rod.name = name;
-  rod.mass = mass;
-  rod.cg = {length / 2, 0, 0};
-  rod.inertia = Vector3d(1e-3 * mass, mass * length * length / 12, mass * length * length / 12).asDiagonal();
-  rod.nodes = {{1, {length, 0, 0}}};
-  return rod;
-}
 
 records::HingeRecord make_pin(const std::string& name, const std::string& parent, const std::string& child,
                               int parent_node, const Vector3d& at = Vector3d::Zero()) {
@@ -59,7 +47,8 @@ constexpr double kCrank = 0.4, kCoupler = 1.1, kRocker = 0.9, kBase = 1.0;
 /// Crank and rocker on ground, the coupler on the crank; the rocker's pin is the constraint.
 records::SystemSpec make_four_bar(HingeType state = HingeType::Revolute) {
   records::SystemSpec spec;
-  spec.bodies = {make_rod("crank", kCrank, 1), make_rod("coupler", kCoupler, 2), make_rod("rocker", kRocker, 1.5)};
+  spec.bodies = {make_rod_record("crank", kCrank, 1), make_rod_record("coupler", kCoupler, 2),
+                 make_rod_record("rocker", kRocker, 1.5)};
   spec.hinges = {make_pin("crank", "ground", "crank", 0), make_pin("coupler", "crank", "coupler", 1),
                  make_pin("rocker", "ground", "rocker", 0, {kBase, 0, 0})};
   spec.hinges[0].position = {0.7};
@@ -190,7 +179,7 @@ TEST(FourBar, PassesOnTheSameForceAtWhicheverPinItIsCut) {
 
 TEST(SliderCrank, PistonIsWhereTheRodPutsIt) {
   records::SystemSpec spec;
-  spec.bodies = {make_rod("crank", 0.3, 1), make_rod("rod", 0.8, 1), make_rod("piston", 0.1, 2)};
+  spec.bodies = {make_rod_record("crank", 0.3, 1), make_rod_record("rod", 0.8, 1), make_rod_record("piston", 0.1, 2)};
   spec.hinges = {make_pin("crank", "ground", "crank", 0), make_pin("rod", "crank", "rod", 1),
                  make_hinge_record("slide", HingeType::Prismatic, "ground", "piston")};
   spec.hinges[2].axis = {1, 0, 0};
@@ -198,10 +187,7 @@ TEST(SliderCrank, PistonIsWhereTheRodPutsIt) {
   spec.hinges[0].rate = {10};
   spec.constraints = {make_closing(HingeType::Spherical, "rod", 1, "piston", 0)};
   spec.simulation.gravity = {0, -9.81, 0};
-  spec.simulation.duration = 2;
-  spec.simulation.output_step = 0.01;
-  spec.simulation.relative_tolerance = spec.simulation.absolute_tolerance = 1e-12;
-  const RunResult r = run(spec);
+  const RunResult r = run_closely(spec, 2, 0.01, 1e-12);
   const MatrixXd crank = r.sink.get("/hinges/crank/q"), slide = r.sink.get("/hinges/slide/q");
   for (int k = 0; k < r.sink.num_samples(); ++k) {
     const double s = 0.3 * std::sin(crank(k, 0));
@@ -218,12 +204,12 @@ TEST(NFourBar, KeepsItsEnergyThroughTheFlatPosition) {
   records::SystemSpec spec;
   for (int k = 0; k <= N; ++k) {
     const std::string id = std::to_string(k);
-    spec.bodies.push_back(make_rod("rocker" + id, 1, 1));
+    spec.bodies.push_back(make_rod_record("rocker" + id, 1, 1));
     spec.hinges.push_back(make_pin("rocker" + id, "ground", "rocker" + id, 0, {static_cast<double>(k), 0, 0}));
     spec.hinges.back().position = {std::acos(-1.0) / 2};
     spec.hinges.back().rate = {-1};
     if (k == N) continue;
-    spec.bodies.push_back(make_rod("coupler" + id, 1, 1));
+    spec.bodies.push_back(make_rod_record("coupler" + id, 1, 1));
     spec.hinges.push_back(make_pin("coupler" + id, "rocker" + id, "coupler" + id, 1));
     spec.hinges.back().position = {-std::acos(-1.0) / 2};
     spec.hinges.back().rate = {1};
@@ -307,10 +293,7 @@ TEST(FlexibleLoop, KeepsItsEnergy) {
   spec.hinges[0].rate = {2};
   spec.constraints = {make_closing(HingeType::Spherical, "coupler", 104, "rocker", 102)};
   spec.simulation.gravity = {0, -9.81, 0};
-  spec.simulation.duration = 1;
-  spec.simulation.output_step = 0.02;
-  spec.simulation.relative_tolerance = spec.simulation.absolute_tolerance = 1e-12;
-  const RunResult r = run(spec, flex);
+  const RunResult r = run_closely(spec, 1, 0.02, 1e-12, flex);
   EXPECT_LT(energy_spread(r.sink), 1e-9);
   EXPECT_GT(r.sink.get("/bodies/coupler/eta").cwiseAbs().maxCoeff(), 1e-3);
 }
@@ -319,19 +302,10 @@ TEST(FlexibleLoop, KeepsItsEnergy) {
 TEST(Coupler, GearsShareTheTorque) {
   records::SystemSpec spec;
   for (const std::string name : {"small", "large"}) {
-    records::BodyRecord wheel;
-    wheel.name = name;
-    wheel.mass = 1;
-    wheel.inertia = Vector3d(1, 1, name == "small" ? 0.5 : 3).asDiagonal();
-    spec.bodies.push_back(wheel);
+    spec.bodies.push_back(make_body_record(name, 1, {1, 1, name == "small" ? 0.5 : 3}));
     spec.hinges.push_back(make_pin(name, "ground", name, 0));
   }
-  records::ForceRecord torque;
-  torque.name = "torque";
-  torque.kind = records::ForceKind::Moment;
-  torque.body = "small";
-  torque.direction = {0, 0, 2};
-  spec.forces = {torque};
+  spec.forces = {make_force("torque", "small", {0, 0, 2}, "", records::ForceKind::Moment)};
   ConstraintRecord gear;
   gear.name = "gear";
   gear.type = ConstraintType::Coupler;
@@ -345,11 +319,7 @@ TEST(Coupler, GearsShareTheTorque) {
   EXPECT_NEAR(r.sink.get("/hinges/large/q")(last, 0), -acceleration / 6, 1e-8);
   EXPECT_NEAR(r.sink.get("/constraints/gear/force")(last, 0), 0.5 * acceleration - 2, 1e-8);
   // Driven: the motor of the small wheel feels the large one, and its work is the energy.
-  records::FunctionRecord f;
-  f.name = "f";
-  f.type = "sine";
-  f.values = {{"amplitude", 0.5}, {"omega", 2}};
-  spec.functions = {f};
+  spec.functions = {make_function("f", "sine", {{"amplitude", 0.5}, {"omega", 2}})};
   spec.forces.clear();
   spec.hinges[0].motion = {"f"};
   const RunResult driven = run(spec);
@@ -360,19 +330,10 @@ TEST(Coupler, GearsShareTheTorque) {
 // A point mass on a rod of given length is a spherical pendulum.
 TEST(Distance, IsAPendulum) {
   records::SystemSpec spec;
-  records::BodyRecord ball;
-  ball.name = "ball";
-  ball.mass = 2;
-  ball.inertia = Vector3d(1, 1, 1).asDiagonal();
-  spec.bodies = {ball};
+  spec.bodies = {make_body_record("ball", 2, {1, 1, 1})};
   spec.hinges = {make_hinge_record("free", HingeType::Free, "ground", "ball")};
   spec.hinges[0].position = {1, 0, 0, 0, 0.6, 0, -0.8};
-  ConstraintRecord rod;
-  rod.name = "rod";
-  rod.type = ConstraintType::Distance;
-  rod.child = "ball";
-  rod.length = 1;
-  spec.constraints = {rod};
+  spec.constraints = {make_distance("rod", "ball", 1)};
   spec.simulation.gravity = {0, 0, -9.81};
   spec.simulation.duration = 2;
   spec.simulation.relative_tolerance = spec.simulation.absolute_tolerance = 1e-11;
@@ -452,7 +413,7 @@ TEST(Assembly, ErrorsOfConstraints) {
 // A loop elsewhere that needs given values to give way does not touch one that does not.
 TEST(FourBar, KeepsItsGivenCrankWhateverElseIsAssembled) {
   auto spec = make_four_bar();
-  auto ball = make_rod("ball", 0.1, 1);
+  auto ball = make_rod_record("ball", 0.1, 1);
   spec.bodies.push_back(ball);
   auto free = make_hinge_record("fly", HingeType::Free, "ground", "ball");
   free.position = {1, 0, 0, 0, 5, 1, 0};

@@ -4,7 +4,7 @@
 
 #include "solver/system/derivative.hpp"
 #include "tests/solver/support/malloc_count.hpp"
-#include "tests/solver/support/models.hpp"
+#include "tests/solver/support/records.hpp"
 
 namespace bough::solver::testing {
 namespace {
@@ -20,37 +20,6 @@ struct Looped {
   VectorXd q, u;
 };
 
-ConstraintRecord make_constraint(Random& random, int i, int num_bodies) {
-  static const HingeType hinges[] = {HingeType::Fixed,       HingeType::Revolute, HingeType::Prismatic,
-                                     HingeType::Universal,   HingeType::Planar,   HingeType::Spherical,
-                                     HingeType::Cylindrical, HingeType::Screw,    HingeType::General};
-  ConstraintRecord c;
-  c.name = "c" + std::to_string(i);
-  const int kind = random.integer(0, 4);
-  c.type = kind == 0   ? ConstraintType::Distance
-           : kind == 1 ? ConstraintType::PointOnLine
-           : kind == 2 ? ConstraintType::PointOnPlane
-                       : ConstraintType::Hinge;
-  c.hinge = hinges[random.integer(0, 8)];
-  c.rotations = random.integer(0, 1) ? "xz" : "q";
-  c.translations = random.integer(0, 1) ? "y" : "xz";
-  c.pitch = 0.3;
-  c.length = 1.5;
-  const int child = random.integer(1, num_bodies - 1);
-  c.child = "b" + std::to_string(child);
-  c.parent = random.integer(0, 3) == 0 ? "ground" : "b" + std::to_string(random.integer(0, child - 1));
-  if (c.parent != "ground") c.parent_node = random.integer(0, 1) * 101;
-  c.child_node = random.integer(0, 1) * 102;
-  c.parent_position = random.vector(0.5);
-  c.child_position = random.vector(0.5);
-  c.parent_rotation = random.rotation();
-  c.child_rotation = random.rotation();
-  c.axis = random.vector();
-  c.axis2 = random.vector();
-  c.active = false;
-  return c;
-}
-
 /// Closed where the bodies happen to be, with rates that allow it.
 Looped make_looped(unsigned seed) {
   Random random(seed + 500);
@@ -58,7 +27,8 @@ Looped make_looped(unsigned seed) {
   RandomTreeOptions options;
   options.prescribed = seed % 3 == 0;
   RandomTree tree = make_random_tree(seed, options);
-  for (int i = 0; i < (options.prescribed ? 1 : 3); ++i) tree.spec.constraints.push_back(make_constraint(random, i, 8));
+  for (int i = 0; i < (options.prescribed ? 1 : 3); ++i)
+    tree.spec.constraints.push_back(make_random_constraint(random, i, random.integer(0, 4), 8));
   if (options.prescribed) tree.spec.constraints[0].type = ConstraintType::Distance;
   // A gear between two plain coordinates.
   ConstraintRecord gear;
@@ -175,33 +145,15 @@ TEST_P(RandomLoops, RatesStayClosedAlongTheMotion) {
 TEST_P(RandomLoops, ReactionsCloseNewtonAndEulerOfEveryBody) {
   Looped s = make_looped(GetParam());
   const System& system = s.system;
-  const double t = 0.3, h = 4e-3;
+  const double t = 0.3;
   const VectorXd u_dot = calc_u_dot(system, *s.data, t, s.q, s.u);
   const SystemData& data = *s.data;
-  auto other = system.make_data();
-  const auto calc_momenta = [&](double dt) {
-    calc_kinematics(system, *other, t + dt, advance_q(system, *other, t, dt, s.q, s.u, u_dot), s.u + dt * u_dot);
-    Matrix6Xd momenta(6, system.num_bodies());
-    for (int b = 0; b < system.num_bodies(); ++b) {
-      Vector3d p, l;
-      calc_body_momentum(system, *other, b, p, l);
-      momenta.col(b) << p, l;
-    }
-    return momenta;
-  };
-  Matrix6Xd rate = Matrix6Xd::Zero(6, system.num_bodies());
-  const double weight[] = {4.0 / 5, -1.0 / 5, 4.0 / 105, -1.0 / 280};
-  for (int k = 1; k <= 4; ++k) rate += weight[k - 1] / h * (calc_momenta(k * h) - calc_momenta(-k * h));
+  const Matrix6Xd rate = calc_momentum_rates(system, t, s.q, s.u, u_dot);
   Matrix6Xd loads = Matrix6Xd::Zero(6, system.num_bodies());
   for (int b = 0; b < system.num_bodies(); ++b) {
     const TreeBody& tb = system.tree[b];
     const BodyState& own = data.tree[b].state;
-    const Vector3d S = tb.is_flexible() ? data.tree[b].inertia.S : tb.body.first_moment();
-    const Vector3d f = own.R_WB * data.tree.applied.segment<3>(tb.v_offset);
-    const Vector3d m = own.R_WB * data.tree.applied.segment<3>(tb.v_offset + 3);
-    loads.col(b).head<3>() += f + tb.body.mass() * data.tree.gravity;
-    loads.col(b).tail<3>() +=
-        m + own.p_WBo.cross(f) + (tb.body.mass() * own.p_WBo + own.R_WB * S).cross(data.tree.gravity);
+    loads.col(b) += calc_applied_loads(system, data, b);
     const HingeReaction r = get_hinge_reaction(system, data, b);
     const MarkerMotion& c = data.tree.markers[static_cast<size_t>(tb.child_marker)];
     const Matrix3d R_WHp = data.tree[tb.parent].state.R_WB * data.tree.markers[static_cast<size_t>(tb.parent_marker)].R;

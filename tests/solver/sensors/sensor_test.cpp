@@ -6,7 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "tests/solver/support/models.hpp"
+#include "tests/solver/support/records.hpp"
 
 namespace bough::solver::testing {
 namespace {
@@ -24,24 +24,18 @@ VectorXd measure_all(const std::vector<Sensor>& sensors, const Motion& motion) {
 using records::HingeType;
 using records::SensorType;
 
-records::SensorRecord make_sensor(const std::string& name, SensorType type, const std::string& body, int node,
-                                  const std::string& frame, const std::string& relative_to = "") {
-  records::SensorRecord s;
-  s.name = name;
-  s.type = type;
-  s.body = body;
+records::SensorRecord make_node_sensor(const std::string& name, SensorType type, const std::string& body, int node,
+                                       const std::string& frame, const std::string& relative_to = "") {
+  auto s = make_sensor(name, type, body);
   s.node = node;
   s.frame = frame;
   s.relative_to = relative_to;
-  s.at = {"system.toml", 3, 1};
+  s.at.line = 3;
   return s;
 }
 
 records::SensorRecord make_hinge_sensor(SensorType type, const std::string& hinge, int coordinate) {
-  records::SensorRecord s;
-  s.name = "h";
-  s.type = type;
-  s.hinge = hinge;
+  auto s = make_sensor("h", type, "", hinge);
   s.coordinate = coordinate;
   return s;
 }
@@ -111,11 +105,12 @@ TEST(Sensors, InertialMotionOfANode) {
   const double t = 0.9;
   const Angles x(t);
   const double c = x.a + x.b, cd = x.ad + x.bd, cdd = x.add + x.bdd;
-  const VectorXd out = Carousel().calc(t, {make_sensor("p", SensorType::Position, "arm", 5, "inertial"),
-                                           make_sensor("v", SensorType::Velocity, "arm", 5, "inertial"),
-                                           make_sensor("a", SensorType::Acceleration, "arm", 5, "inertial"),
-                                           make_sensor("w", SensorType::AngularVelocity, "arm", 5, "inertial"),
-                                           make_sensor("d", SensorType::AngularAcceleration, "arm", 5, "inertial")});
+  const VectorXd out =
+      Carousel().calc(t, {make_node_sensor("p", SensorType::Position, "arm", 5, "inertial"),
+                          make_node_sensor("v", SensorType::Velocity, "arm", 5, "inertial"),
+                          make_node_sensor("a", SensorType::Acceleration, "arm", 5, "inertial"),
+                          make_node_sensor("w", SensorType::AngularVelocity, "arm", 5, "inertial"),
+                          make_node_sensor("d", SensorType::AngularAcceleration, "arm", 5, "inertial")});
   EXPECT_LT((out.segment<3>(0) - (2 * radial(x.a) + radial(c))).norm(), 1e-14);
   EXPECT_LT((out.segment<3>(3) - (2 * x.ad * tangent(x.a) + cd * tangent(c))).norm(), 1e-14);
   const Vector3d a = 2 * (x.add * tangent(x.a) - x.ad * x.ad * radial(x.a)) + cdd * tangent(c) - cd * cd * radial(c);
@@ -130,7 +125,7 @@ TEST(Sensors, SeenFromTheTable) {
   std::vector<records::SensorRecord> sensors;
   for (SensorType type : {SensorType::Position, SensorType::Velocity, SensorType::Acceleration,
                           SensorType::AngularVelocity, SensorType::AngularAcceleration})
-    sensors.push_back(make_sensor("s", type, "arm", 5, "table", "table"));
+    sensors.push_back(make_node_sensor("s", type, "arm", 5, "table", "table"));
   const VectorXd out = Carousel().calc(t, sensors);
   // An observer on the table sees the arm turn about (2, 0, 0) by β alone.
   EXPECT_LT((out.segment<3>(0) - (Vector3d(2, 0, 0) + radial(x.b))).norm(), 1e-14);
@@ -143,10 +138,10 @@ TEST(Sensors, SeenFromTheTable) {
 TEST(Sensors, FramesOnlyTurnTheComponents) {
   const double t = 0.4;
   const Angles x(t);
-  const VectorXd out = Carousel().calc(t, {make_sensor("w", SensorType::Velocity, "arm", 5, "inertial"),
-                                           make_sensor("b", SensorType::Velocity, "arm", 5, "body"),
-                                           make_sensor("n", SensorType::Velocity, "arm", 5, "table"),
-                                           make_sensor("r", SensorType::Velocity, "arm", 5, "inertial", "table")});
+  const VectorXd out = Carousel().calc(t, {make_node_sensor("w", SensorType::Velocity, "arm", 5, "inertial"),
+                                           make_node_sensor("b", SensorType::Velocity, "arm", 5, "body"),
+                                           make_node_sensor("n", SensorType::Velocity, "arm", 5, "table"),
+                                           make_node_sensor("r", SensorType::Velocity, "arm", 5, "inertial", "table")});
   const auto turn = [](double angle) -> Matrix3d {
     return Eigen::AngleAxisd(-angle, Vector3d::UnitZ()).toRotationMatrix();
   };
@@ -219,7 +214,7 @@ TEST(Sensors, AnAccelerometerInFreeFallReadsTheTideAlone) {
     spec.hinges.back().position = {1, 0, 0, 0, distance, 20, 30};
     spec.hinges.back().rate = {0, 0, spin, 0, 10, 0};
     for (const int node : {0, 1})
-      spec.sensors.push_back(make_sensor(name + std::to_string(node), SensorType::Accelerometer, name, node, ""));
+      spec.sensors.push_back(make_node_sensor(name + std::to_string(node), SensorType::Accelerometer, name, node, ""));
   }
   spec.simulation.gravity = {0.1, 0.2, -9.81};
   records::ForceElementRecord earth;
@@ -249,11 +244,11 @@ TEST(Sensors, RatesOnFlexibleTrees) {
   for (const auto& b : tree.spec.bodies)
     if (!b.file.empty()) flexible = b.name;
   ASSERT_FALSE(flexible.empty());
-  tree.spec.sensors = {make_sensor("p", SensorType::Position, flexible, 103, a, a),
-                       make_sensor("v", SensorType::Velocity, flexible, 103, a, a),
-                       make_sensor("a", SensorType::Acceleration, flexible, 103, a, a),
-                       make_sensor("d", SensorType::Deflection, flexible, 103, ""),
-                       make_sensor("dw", SensorType::Deflection, flexible, 103, "inertial")};
+  tree.spec.sensors = {make_node_sensor("p", SensorType::Position, flexible, 103, a, a),
+                       make_node_sensor("v", SensorType::Velocity, flexible, 103, a, a),
+                       make_node_sensor("a", SensorType::Acceleration, flexible, 103, a, a),
+                       make_node_sensor("d", SensorType::Deflection, flexible, 103, ""),
+                       make_node_sensor("dw", SensorType::Deflection, flexible, 103, "inertial")};
   const System system = build(tree.spec, tree.flex);
   Diagnostics diagnostics;
   const auto sensors = build_sensors(system, tree.spec, diagnostics);
@@ -287,7 +282,7 @@ TEST(Sensors, FixedObserverKeepsHisAxes) {
   std::vector<records::SensorRecord> sensors;
   for (SensorType type : {SensorType::Position, SensorType::Velocity, SensorType::Acceleration,
                           SensorType::AngularVelocity, SensorType::AngularAcceleration}) {
-    sensors.push_back(make_sensor("s", type, "arm", 5, "inertial", "table"));
+    sensors.push_back(make_node_sensor("s", type, "arm", 5, "inertial", "table"));
     sensors.back().from_turning = false;
   }
   const VectorXd out = Carousel().calc(t, sensors);
@@ -308,8 +303,8 @@ TEST(Sensors, BodiesThatFailedAreNotTheSensorsFault) {
   const System system = draft_system(carousel.spec, {}, of_build);
   EXPECT_EQ(of_build.num_errors(), 1);
   EXPECT_FALSE(system.is_valid(1));
-  carousel.spec.sensors = {make_sensor("s1", SensorType::Position, "arm", 9, "inertial"),
-                           make_sensor("s2", SensorType::Position, "table", 7, "arm")};
+  carousel.spec.sensors = {make_node_sensor("s1", SensorType::Position, "arm", 9, "inertial"),
+                           make_node_sensor("s2", SensorType::Position, "table", 7, "arm")};
   build_sensors(system, carousel.spec, diagnostics);
   ASSERT_EQ(diagnostics.num_errors(), 1);
   EXPECT_THAT(format(diagnostics.items()[0]), ::testing::HasSubstr("sensor 's2' is on node 7"));
@@ -318,10 +313,10 @@ TEST(Sensors, BodiesThatFailedAreNotTheSensorsFault) {
 TEST(Sensors, FaultsAreReported) {
   Carousel carousel;
   const System system = build(carousel.spec);
-  carousel.spec.sensors = {make_sensor("s1", SensorType::Position, "arn", 0, "inertial"),
-                           make_sensor("s2", SensorType::Position, "arm", 9, "inertial"),
-                           make_sensor("s3", SensorType::Position, "arm", 5, "tabel"),
-                           make_sensor("s4", SensorType::Position, "arm", 5, "body", "nobody"),
+  carousel.spec.sensors = {make_node_sensor("s1", SensorType::Position, "arn", 0, "inertial"),
+                           make_node_sensor("s2", SensorType::Position, "arm", 9, "inertial"),
+                           make_node_sensor("s3", SensorType::Position, "arm", 5, "tabel"),
+                           make_node_sensor("s4", SensorType::Position, "arm", 5, "body", "nobody"),
                            make_hinge_sensor(SensorType::HingeAngle, "hc", 0),
                            make_hinge_sensor(SensorType::HingeRate, "hb", 2)};
   Diagnostics diagnostics;

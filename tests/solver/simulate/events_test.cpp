@@ -12,32 +12,14 @@ namespace {
 
 using records::EventAction;
 using records::EventDirection;
-using records::HingeType;
-using ::testing::HasSubstr;
 
 /// 2 ẍ = -18 x on a slide along z: x = cos(3t) / 2.
 records::SystemSpec make_oscillator() {
-  auto spec = make_one_body(HingeType::Prismatic);
-  spec.hinges[0].stiffness = {18};
-  spec.hinges[0].position = {0.5};
-  records::SensorRecord s;
-  s.name = "place";
-  s.body = "body";
-  spec.sensors = {s};
+  auto spec = make_spring_mass();
+  spec.sensors = {make_sensor("place", records::SensorType::Position, "body")};
   spec.simulation.duration = 3;
   spec.simulation.relative_tolerance = spec.simulation.absolute_tolerance = 1e-10;
   return spec;
-}
-
-records::UserEventRecord make_trigger(const std::string& name, const std::string& signal, double value,
-                                      EventDirection direction = EventDirection::Both) {
-  records::UserEventRecord t;
-  t.name = name;
-  t.signal = signal;
-  t.value = value;
-  t.direction = direction;
-  t.at = {"system.toml", 30, 1};
-  return t;
 }
 
 TEST(Locate, FindsTheFarSideOfARoot) {
@@ -151,17 +133,8 @@ TEST(Events, AtATime) {
 TEST(Events, CrossingsByAJump) {
   auto spec = make_oscillator();
   spec.hinges[0].stiffness.clear();
-  records::FunctionRecord f;
-  f.name = "f";
-  f.type = "step";
-  f.values = {{"value", 4}, {"at", 1.05}};
-  spec.functions = {f};
-  records::ForceRecord force;
-  force.name = "push";
-  force.body = "body";
-  force.direction = {0, 0, 1};
-  force.function = "f";
-  spec.forces = {force};
+  spec.functions = {make_function("f", "step", {{"value", 4}, {"at", 1.05}})};
+  spec.forces = {make_force("push", "body", {0, 0, 1}, "f")};
   spec.sensors[0].type = records::SensorType::Acceleration;
   spec.events = {make_trigger("kick", "place:z", 1)};
   const RunResult r = run(spec);

@@ -7,6 +7,7 @@
 
 #include "solver/builder/build_system.hpp"
 #include "solver/linear/linearize.hpp"
+#include "solver/system/derivative.hpp"
 #include "tests/solver/support/runs.hpp"
 
 namespace bough::solver::testing {
@@ -22,6 +23,16 @@ records::SystemSpec make_slider(double mass = 2) {
   spec.simulation.output_step = 0.01;
   spec.simulation.integrator = "rk";
   spec.simulation.relative_tolerance = spec.simulation.absolute_tolerance = 1e-12;
+  return spec;
+}
+
+/// A rod of mass 1.5 that turns on a slider of mass 2.
+records::SystemSpec make_slider_with_rod() {
+  auto spec = make_slider(2);
+  spec.bodies.push_back(make_body_record("rod", 1.5, {0.1, 0.1, 0.1}, {0, 0.7, 0}));
+  auto pin = make_hinge_record("pin", HingeType::Revolute, "body", "rod");
+  pin.axis = {0, 0, 1};
+  spec.hinges.push_back(pin);
   return spec;
 }
 
@@ -113,12 +124,8 @@ TEST(DryFriction, AnOscillatorLosesTheSameEachHalfSwing) {
 TEST(DryFriction, ABeltDragsAMassByStickAndSlip) {
   auto spec = make_slider(1);
   const double k = 100, belt = 0.1, Fs = 4, Fc = 2, w = 10;
-  spec.bodies.push_back(spec.bodies[0]);
-  spec.bodies[1].name = "mass";
-  spec.hinges.push_back(spec.hinges[0]);
-  spec.hinges[1].name = "on_belt";
+  add_copy(spec, "mass", "on_belt");
   spec.hinges[1].parent = "body";
-  spec.hinges[1].child = "mass";
   records::FunctionRecord motion;
   motion.name = "belt";
   motion.type = "table";
@@ -127,14 +134,7 @@ TEST(DryFriction, ABeltDragsAMassByStickAndSlip) {
   spec.functions = {motion};
   spec.hinges[0].motion = {"belt"};
   add_friction(spec.hinges[1], Fc, Fs);
-  records::ForceElementRecord spring;
-  spring.name = "spring";
-  spring.type = records::ElementType::Spring;
-  spring.from.body = "mass";
-  spring.to.position = {-10, 0, 0};
-  spring.stiffness = k;
-  spring.free_length = 10;
-  spec.force_elements = {spring};
+  spec.force_elements = {make_spring("spring", "mass", {-10, 0, 0}, k, 10)};
   spec.simulation.duration = 4;
   for (const std::string integrator : {"rk", "rk4"}) {
     spec.simulation.integrator = integrator;
@@ -192,17 +192,8 @@ TEST(RigidStop, ABallIsLiftedOff) {
   spec.simulation.gravity = {-10, 0, 0};
   spec.hinges[0].position = {0.0};
   add_stop(spec.hinges[0], 0, 0.5);
-  records::FunctionRecord f;
-  f.name = "lift";
-  f.type = "ramp";
-  f.values = {{"value", 20}, {"from", 0}, {"to", 1}};
-  spec.functions = {f};
-  records::ForceRecord force;
-  force.name = "lift";
-  force.body = "body";
-  force.direction = {1, 0, 0};
-  force.function = "lift";
-  spec.forces = {force};
+  spec.functions = {make_function("lift", "ramp", {{"value", 20}, {"from", 0}, {"to", 1}})};
+  spec.forces = {make_force("lift", "body", {1, 0, 0}, "lift")};
   const MemorySink sink = run(spec).sink;
   EXPECT_NEAR(find_event(sink, "leaves its stop"), 0.5, 1e-9);
   EXPECT_NEAR(get_last(sink, "/hinges/hinge/q"), 20 * std::pow(0.5, 3) / 6, 1e-9);
@@ -211,16 +202,7 @@ TEST(RigidStop, ABallIsLiftedOff) {
 // A rod on a slide strikes a stop of the slide: the impulse goes along that coordinate alone, the momentum of the free
 // angle holds. M = [m + M, m c cos; ., J + m c²].
 TEST(RigidStop, TheRestOfTheSystemFollows) {
-  auto spec = make_slider(2);
-  records::BodyRecord rod;
-  rod.name = "rod";
-  rod.mass = 1.5;
-  rod.cg = {0, 0.7, 0};
-  rod.inertia = Vector3d(0.1, 0.1, 0.1).asDiagonal();
-  spec.bodies.push_back(rod);
-  auto pin = make_hinge_record("pin", HingeType::Revolute, "body", "rod");
-  pin.axis = {0, 0, 1};
-  spec.hinges.push_back(pin);
+  auto spec = make_slider_with_rod();
   spec.hinges[0].rate = {-2};
   spec.hinges[0].position = {0.5};
   spec.hinges[1].rate = {0};
@@ -243,15 +225,8 @@ TEST(RigidStop, TheRestOfTheSystemFollows) {
 TEST(RigidStop, ALoopIsThrownBackWhole) {
   records::SystemSpec spec;
   for (const std::string name : {"a", "b", "bar"}) {
-    records::BodyRecord rod;
-    rod.name = name;
-    rod.mass = 1;
-    rod.cg = {0.5, 0, 0};
-    rod.inertia = Vector3d(1e-3, 1.0 / 12, 1.0 / 12).asDiagonal();
-    rod.nodes = {{1, {1, 0, 0}}};
-    spec.bodies.push_back(rod);
-    auto hinge = make_hinge_record(name, HingeType::Revolute, "ground", name);
-    spec.hinges.push_back(hinge);
+    spec.bodies.push_back(make_rod_record(name));
+    spec.hinges.push_back(make_hinge_record(name, HingeType::Revolute, "ground", name));
   }
   spec.hinges[1].parent_position = {1, 0, 0};
   spec.hinges[2].parent = "a";
@@ -353,17 +328,8 @@ TEST(RigidStop, AReleaseBeyondItIsAnError) {
 // A coordinate that sticks with a last rate takes along the momentum of other coordinates: a pendulum swings on a slide
 // while its bounces die out, and no energy is lost without being booked.
 TEST(RigidStop, TheLastBouncesKeepTheEnergy) {
-  auto spec = make_slider(2);
-  records::BodyRecord rod;
-  rod.name = "rod";
-  rod.mass = 1.5;
-  rod.cg = {0, 0.7, 0};
-  rod.inertia = Vector3d(0.1, 0.1, 0.1).asDiagonal();
-  spec.bodies.push_back(rod);
-  auto pin = make_hinge_record("pin", HingeType::Revolute, "body", "rod");
-  pin.axis = {0, 0, 1};
-  pin.rate = {1.5};
-  spec.hinges.push_back(pin);
+  auto spec = make_slider_with_rod();
+  spec.hinges[1].rate = {1.5};
   spec.hinges[0].position = {0.2};
   spec.simulation.gravity = {-9.81, 0, 0};
   add_stop(spec.hinges[0], 0, 0.4);

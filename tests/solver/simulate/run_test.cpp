@@ -17,12 +17,8 @@ using records::HingeType;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 
-records::FunctionRecord make_function(const std::string& type, std::map<std::string, double> values) {
-  records::FunctionRecord f;
-  f.name = "f";
-  f.type = type;
-  f.values = std::move(values);
-  return f;
+records::FunctionRecord make_f(const std::string& type, std::map<std::string, double> values) {
+  return make_function("f", type, values);
 }
 
 void push(records::SystemSpec& spec, const records::FunctionRecord& function) {
@@ -53,7 +49,7 @@ std::string run_and_fail(const records::SystemSpec& spec, const char* id) {
 // A slide whose rate jumps carries a body at rest to 10 and back: impulses that the work holds.
 TEST(Energy, ImpulsesOfPrescribedRatesAreWork) {
   auto spec = make_one_body(HingeType::Prismatic);
-  spec.functions = {make_function("ramp", {{"value", 5}, {"from", 0.25}, {"to", 0.75}})};
+  spec.functions = {make_f("ramp", {{"value", 5}, {"from", 0.25}, {"to", 0.75}})};
   spec.hinges[0].motion = {"f"};
   spec.simulation.integrator = "rk";
   const RunResult r = run(spec);
@@ -65,9 +61,7 @@ TEST(Energy, ImpulsesOfPrescribedRatesAreWork) {
 
 // Steps that are too long lose a part of the energy.
 TEST(Energy, TheWorstErrorOfTheRunIsJudged) {
-  auto spec = make_one_body(HingeType::Prismatic);
-  spec.hinges[0].stiffness = {18};
-  spec.hinges[0].position = {0.5};
+  auto spec = make_spring_mass();
   spec.simulation.duration = 20;
   spec.simulation.integrator = "rk4";
   spec.simulation.output_step = spec.simulation.step = 0.25;
@@ -90,9 +84,7 @@ TEST(Energy, TheWorstErrorOfTheRunIsJudged) {
 
 // Loose tolerances are worth a warning, tight ones no word; nor is a body at rest, whatever rounding says of it.
 TEST(Energy, DriftIsAWarning) {
-  auto spec = make_one_body(HingeType::Prismatic);
-  spec.hinges[0].stiffness = {18};
-  spec.hinges[0].position = {0.5};
+  auto spec = make_spring_mass();
   spec.simulation.duration = 20;
   spec.simulation.relative_tolerance = spec.simulation.absolute_tolerance = 1e-5;
   EXPECT_TRUE(run(spec).diagnostics.has("run.energy-drift"));
@@ -106,9 +98,7 @@ TEST(Energy, DriftIsAWarning) {
 
 // Where the inertial origin lies does not enter the error.
 TEST(Energy, HeightAboveTheOriginHidesNoError) {
-  auto spec = make_one_body(HingeType::Prismatic);
-  spec.hinges[0].stiffness = {18};
-  spec.hinges[0].position = {0.5};
+  auto spec = make_spring_mass();
   spec.simulation.duration = 20;
   spec.simulation.output_step = 10;  // rk ends its steps on the outputs: close ones would hide the tolerance
   spec.simulation.gravity = {0, -9.81, 0};
@@ -209,7 +199,7 @@ TEST(Divergence, PositionsHaveNoLimit) {
   rotor.hinges[0].rate = {314};
   EXPECT_TRUE(run(rotor).outcome.completed);
   auto thrust = make_one_body(HingeType::Free);  // from rest, by a force
-  push(thrust, make_function("step", {{"value", 1e9}, {"at", 0.5}}));
+  push(thrust, make_f("step", {{"value", 1e9}, {"at", 0.5}}));
   EXPECT_TRUE(run(thrust).outcome.completed);
 }
 
@@ -259,7 +249,7 @@ TEST(Divergence, SizeIsThatOfTheBody) {
 TEST(Divergence, TheFirstQuantityThatIsNotFiniteIsNamed) {
   for (const std::string integrator : {"adams", "bdf", "rk", "rk4"}) {
     auto spec = make_one_body(HingeType::Free);
-    push(spec, make_function("ramp", {{"value", 1e308}, {"from", 0}, {"to", 1}}));
+    push(spec, make_f("ramp", {{"value", 1e308}, {"from", 0}, {"to", 1}}));
     spec.forces[0].direction = {1e300, 0, 0};
     spec.simulation.integrator = integrator;
     spec.simulation.step = integrator == "rk4" ? 0.01 : 0;
@@ -281,7 +271,7 @@ TEST(Divergence, FailuresOfTheEquationsSayWhen) {
 TEST(Samples, NextToAJump) {
   for (const std::string integrator : {"adams", "bdf", "rk", "rk4"}) {
     auto spec = make_one_body(HingeType::Free);
-    push(spec, make_function("step", {{"value", 2}, {"at", 0.3}}));
+    push(spec, make_f("step", {{"value", 2}, {"at", 0.3}}));
     spec.simulation.integrator = integrator;
     spec.simulation.step = integrator == "rk4" ? 0.05 : 0;
     const RunResult r = run(spec);
@@ -313,9 +303,7 @@ TEST(Samples, QuaternionsAreContinuous) {
 }
 
 TEST(Samples, WindowAndDecimationLeaveTheMotion) {
-  auto spec = make_one_body(HingeType::Prismatic);
-  spec.hinges[0].stiffness = {18};
-  spec.hinges[0].position = {0.5};
+  auto spec = make_spring_mass();
   spec.simulation.output_step = 0.05;
   spec.simulation.integrator = "rk";
   const RunResult all = run(spec);
@@ -341,7 +329,7 @@ TEST(Samples, WindowAndDecimationLeaveTheMotion) {
 // The checkpoint at a jump holds the rates before or behind it: either way the impulse comes once.
 TEST(Resume, AtAJumpIsTheUnbrokenRun) {
   auto spec = make_one_body(HingeType::Prismatic);
-  spec.functions = {make_function("ramp", {{"value", 0.5}, {"from", 0.3}, {"to", 0.7}})};
+  spec.functions = {make_f("ramp", {{"value", 0.5}, {"from", 0.3}, {"to", 0.7}})};
   spec.hinges[0].motion = {"f"};
   spec.hinges[0].axis = Vector3d::UnitX();
   auto bob = spec.bodies[0];
@@ -483,7 +471,7 @@ TEST(Advice, SpinWithoutStiffening) {
   // A prescribed spin is seen before the run, which then says it once.
   spec.hinges[0].rate = {0};
   spec.hinges[0].motion = {"f"};
-  spec.functions = {make_function("ramp", {{"value", 0.6 * first * 0.006}, {"from", 0.002}, {"to", 0.008}})};
+  spec.functions = {make_f("ramp", {{"value", 0.6 * first * 0.006}, {"from", 0.002}, {"to", 0.008}})};
   Diagnostics ahead;
   check_run(build(spec, flex), spec, ahead);
   ASSERT_TRUE(ahead.has("run.unstiffened-spin"));

@@ -29,14 +29,6 @@ records::SystemSpec make_fly_by(double x, double speed) {
   return spec;
 }
 
-records::UserEventRecord make_trigger(const std::string& name, const std::string& signal, double value) {
-  records::UserEventRecord r;
-  r.name = name;
-  r.signal = signal;
-  r.value = value;
-  return r;
-}
-
 TEST(Scan, AnEventWithinALongStepStopsTheRun) {
   for (const auto& integrator : kAdaptive) {
     auto spec = make_fly_by(-500, 100);
@@ -96,21 +88,12 @@ TEST(Scan, BallsWithinALongStepMeet) {
     auto spec = make_one_body(HingeType::Prismatic);
     spec.hinges[0].axis = {1, 0, 0};
     spec.hinges[0].rate = {100};
-    spec.bodies.push_back(spec.bodies[0]);
-    spec.bodies[1].name = "other";
-    spec.hinges.push_back(spec.hinges[0]);
-    spec.hinges[1].name = "far";
-    spec.hinges[1].child = "other";
+    add_copy(spec, "other", "far");
     spec.hinges[1].rate = {0};
     spec.hinges[1].position = {4};
-    records::ForceElementRecord touch;
-    touch.name = "touch";
-    touch.type = records::ElementType::Contact;
-    touch.shape = records::ContactShape::Sphere;
-    touch.from.body = "body";
+    auto touch = make_contact("touch", records::ContactShape::Sphere, "body", 1e6);
     touch.to.body = "other";
     touch.radius = touch.to_radius = 0.1;
-    touch.stiffness = 1e6;
     spec.force_elements = {touch};
     spec.simulation.duration = 10;
     spec.simulation.output_step = 0.01;
@@ -169,13 +152,8 @@ CountedRun run_counted(const std::string& integrator) {
   spec.bodies[0].mass = 1;
   spec.hinges[0].axis = {0, 0, 1};
   spec.hinges[0].position = {1};
-  records::ForceElementRecord floor;
-  floor.name = "floor";
-  floor.type = records::ElementType::Contact;
-  floor.shape = records::ContactShape::Plane;
-  floor.from.body = "body";
+  auto floor = make_contact("floor", records::ContactShape::Plane, "body", 1e4);
   floor.normal = {0, 0, 1};
-  floor.stiffness = 1e4;
   floor.damping = 0.2;
   spec.force_elements = {floor};
   auto z = make_sensor("z", records::SensorType::HingeAngle, "", "hinge");

@@ -295,4 +295,36 @@ VectorXd advance_q(const System& system, SystemData& data, double t, double dt, 
   return q;
 }
 
+Matrix6Xd calc_momentum_rates(const System& system, double t, const VectorXd& q, const VectorXd& u,
+                              const VectorXd& u_dot) {
+  const double h = 4e-3;
+  const auto other = system.make_data();
+  const auto calc_momenta = [&](double dt) {
+    calc_kinematics(system, *other, t + dt, advance_q(system, *other, t, dt, q, u, u_dot), u + dt * u_dot);
+    Matrix6Xd momenta(6, system.num_bodies());
+    for (int b = 0; b < system.num_bodies(); ++b) {
+      Vector3d p, l;
+      calc_body_momentum(system, *other, b, p, l);
+      momenta.col(b) << p, l;
+    }
+    return momenta;
+  };
+  Matrix6Xd rate = Matrix6Xd::Zero(6, system.num_bodies());
+  const double weight[] = {4.0 / 5, -1.0 / 5, 4.0 / 105, -1.0 / 280};
+  for (int k = 1; k <= 4; ++k) rate += weight[k - 1] / h * (calc_momenta(k * h) - calc_momenta(-k * h));
+  return rate;
+}
+
+Vector6d calc_applied_loads(const System& system, const SystemData& data, int b) {
+  const TreeBody& tb = system.tree[b];
+  const BodyState& s = data.tree[b].state;
+  const Vector3d S = tb.is_flexible() ? data.tree[b].inertia.S : tb.body.first_moment();
+  const Vector3d f = s.R_WB * data.tree.applied.segment<3>(tb.v_offset);
+  const Vector3d m = s.R_WB * data.tree.applied.segment<3>(tb.v_offset + 3);
+  Vector6d loads;
+  loads << f + tb.body.mass() * data.tree.gravity,
+      m + s.p_WBo.cross(f) + (tb.body.mass() * s.p_WBo + s.R_WB * S).cross(data.tree.gravity);
+  return loads;
+}
+
 }  // namespace bough::solver::testing

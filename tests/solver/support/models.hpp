@@ -82,4 +82,12 @@ void step_rk4(const System& system, SystemData& data, double t, double step, Vec
 VectorXd advance_q(const System& system, SystemData& data, double t, double dt, const VectorXd& q0, const VectorXd& u0,
                    const VectorXd& u_dot0);
 
+/// Rates of the momenta (linear, angular about the inertial origin, in W) of each body along the trajectory through
+/// (q, u) with u_dot, by differences of order 8.
+Matrix6Xd calc_momentum_rates(const System& system, double t, const VectorXd& q, const VectorXd& u,
+                              const VectorXd& u_dot);
+/// Applied forces and gravity on body b: resultant and moment about the inertial origin, in W. \pre `data` is that of
+/// calc_u_dot.
+Vector6d calc_applied_loads(const System& system, const SystemData& data, int b);
+
 }  // namespace bough::solver::testing

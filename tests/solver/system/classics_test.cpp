@@ -7,7 +7,7 @@
 
 #include "solver/simulate/memory_sink.hpp"
 #include "solver/simulate/simulate.hpp"
-#include "tests/solver/support/models.hpp"
+#include "tests/solver/support/records.hpp"
 
 namespace bough::solver::testing {
 namespace {
@@ -24,15 +24,6 @@ records::BodyRecord make_rod(const std::string& name, double length, double mass
   return r;
 }
 
-records::FunctionRecord make_function(const std::string& name, const std::string& type,
-                                      std::map<std::string, double> values) {
-  records::FunctionRecord f;
-  f.name = name;
-  f.type = type;
-  f.values = std::move(values);
-  return f;
-}
-
 TEST(Classics, Pendulum) {
   records::SystemSpec spec;
   spec.simulation.gravity = {0, -9.81, 0};
@@ -45,20 +36,21 @@ TEST(Classics, Pendulum) {
   EXPECT_NEAR(u_dot[0], -1.5 * 9.81 / 2 * std::cos(angle), 1e-13);  // -m g L/2 cos θ / (m L²/3)
 }
 
-TEST(Classics, DoublePendulumOfPointMasses) {
-  const double l1 = 1.2, l2 = 0.7, m1 = 2, m2 = 1.5, g = 9.81, th1 = 0.5, th2 = 1.1, w1 = 0.8, w2 = -1.4;
+/// Point masses of 2 and 1.5 that hang 1.2 and 0.7 below their pins.
+records::SystemSpec make_double_pendulum() {
   records::SystemSpec spec;
-  spec.simulation.gravity = {0, -g, 0};
-  for (const auto& [name, m, l] : {std::tuple{"a", m1, l1}, std::tuple{"b", m2, l2}}) {
-    records::BodyRecord body;
-    body.name = name;
-    body.mass = m;
-    body.cg = {0, -l, 0};
-    spec.bodies.push_back(body);
-  }
+  spec.simulation.gravity = {0, -9.81, 0};
+  spec.bodies = {make_body_record("a", 2, Vector3d::Zero(), {0, -1.2, 0}),
+                 make_body_record("b", 1.5, Vector3d::Zero(), {0, -0.7, 0})};
   spec.hinges = {make_hinge_record("p", HingeType::Revolute, "ground", "a"),
                  make_hinge_record("r", HingeType::Revolute, "a", "b")};
-  spec.hinges[1].parent_position = {0, -l1, 0};
+  spec.hinges[1].parent_position = {0, -1.2, 0};
+  return spec;
+}
+
+TEST(Classics, DoublePendulumOfPointMasses) {
+  const double l1 = 1.2, l2 = 0.7, m1 = 2, m2 = 1.5, g = 9.81, th1 = 0.5, th2 = 1.1, w1 = 0.8, w2 = -1.4;
+  const auto spec = make_double_pendulum();
   const System system = build(spec);
   auto data = system.make_data();
   const VectorXd u_dot = calc_u_dot(system, *data, 0, Eigen::Vector2d(th1, th2 - th1), Eigen::Vector2d(w1, w2 - w1));
@@ -78,18 +70,7 @@ TEST(Classics, DoublePendulumSwingsTo1em10) {
   using Real = long double;
   using State = Eigen::Matrix<Real, 4, 1>;  // angles, rates
   const Real l1 = 1.2L, l2 = 0.7L, m1 = 2, m2 = 1.5L, g = 9.81L;
-  records::SystemSpec spec;
-  spec.simulation.gravity = {0, -9.81, 0};
-  for (const auto& [name, m, l] : {std::tuple{"a", 2.0, 1.2}, std::tuple{"b", 1.5, 0.7}}) {
-    records::BodyRecord body;
-    body.name = name;
-    body.mass = m;
-    body.cg = {0, -l, 0};
-    spec.bodies.push_back(body);
-  }
-  spec.hinges = {make_hinge_record("p", HingeType::Revolute, "ground", "a"),
-                 make_hinge_record("r", HingeType::Revolute, "a", "b")};
-  spec.hinges[1].parent_position = {0, -1.2, 0};
+  auto spec = make_double_pendulum();
   spec.hinges[0].position = {1.1};
   spec.hinges[1].position = {0.5};
   spec.simulation.duration = 5;
@@ -124,11 +105,7 @@ TEST(Classics, DoublePendulumSwingsTo1em10) {
 
 TEST(Classics, TorqueFreeSymmetricTopPrecesses) {
   records::SystemSpec spec;
-  records::BodyRecord top;
-  top.name = "top";
-  top.mass = 1;
-  top.inertia = Vector3d(2, 2, 3).asDiagonal();
-  spec.bodies = {top};
+  spec.bodies = {make_body_record("top", 1, {2, 2, 3})};
   const System system = build(spec);
   auto data = system.make_data();
   VectorXd q(7), u(6);

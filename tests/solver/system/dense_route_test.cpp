@@ -7,7 +7,7 @@
 
 #include "solver/system/derivative.hpp"
 #include "tests/solver/support/dense_route.hpp"
-#include "tests/solver/support/models.hpp"
+#include "tests/solver/support/records.hpp"
 
 namespace bough::solver::testing {
 namespace {
@@ -344,44 +344,15 @@ std::string add_samples(Random& random, records::SystemSpec& spec) {
   return "digital";
 }
 
-ConstraintRecord make_constraint(Random& random, int i, int kind, int num_bodies) {
-  static const HingeType hinges[] = {HingeType::Fixed,       HingeType::Revolute, HingeType::Prismatic,
-                                     HingeType::Universal,   HingeType::Planar,   HingeType::Spherical,
-                                     HingeType::Cylindrical, HingeType::Screw,    HingeType::General};
-  ConstraintRecord c;
-  c.name = "c" + std::to_string(i);
-  c.type = kind == 0   ? ConstraintType::Distance
-           : kind == 1 ? ConstraintType::PointOnLine
-           : kind == 2 ? ConstraintType::PointOnPlane
-                       : ConstraintType::Hinge;
-  c.hinge = hinges[random.integer(0, 8)];
-  c.rotations = random.integer(0, 1) ? "xz" : "q";
-  c.translations = random.integer(0, 1) ? "y" : "xz";
-  c.pitch = 0.3;
-  c.length = 1.5;
-  const int child = random.integer(1, num_bodies - 1);
-  c.child = "b" + std::to_string(child);
-  c.parent = random.integer(0, 3) == 0 ? "ground" : "b" + std::to_string(random.integer(0, child - 1));
-  if (c.parent != "ground") c.parent_node = random.integer(0, 1) * 101;
-  c.child_node = random.integer(0, 1) * 102;
-  c.parent_position = random.vector(0.5);
-  c.child_position = random.vector(0.5);
-  c.parent_rotation = random.rotation();
-  c.child_rotation = random.rotation();
-  c.axis = random.vector();
-  c.axis2 = random.vector();
-  c.active = false;
-  return c;
-}
-
 void add_constraints(Random& random, records::SystemSpec& spec, bool is_driven) {
   // Driven coordinates may contradict other constraints: one distance can always be kept.
   if (is_driven) {
-    spec.constraints.push_back(make_constraint(random, 0, 0, static_cast<int>(spec.bodies.size())));
+    spec.constraints.push_back(make_random_constraint(random, 0, 0, static_cast<int>(spec.bodies.size())));
     return;
   }
   for (int i = 0; i < 2; ++i)
-    spec.constraints.push_back(make_constraint(random, i, random.integer(0, 5), static_cast<int>(spec.bodies.size())));
+    spec.constraints.push_back(
+        make_random_constraint(random, i, random.integer(0, 5), static_cast<int>(spec.bodies.size())));
   ConstraintRecord gear;
   gear.name = "gear";
   gear.type = ConstraintType::Coupler;

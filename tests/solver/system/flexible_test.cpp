@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "solver/builder/build_system.hpp"
-#include "tests/solver/support/models.hpp"
+#include "tests/solver/support/records.hpp"
 
 namespace bough::solver::testing {
 namespace {
@@ -81,15 +81,24 @@ TEST(FlexibleSystem, PrescribedSpinStiffensAndSoftensAsInTheLinearTheory) {
   }
 }
 
+/// Random η, at rest, with η̈ and M η̈.
+struct AtRest {
+  VectorXd eta, eta_ddot, inertia_force;
+};
+AtRest calc_at_rest(const System& system, SystemData& data) {
+  AtRest x;
+  x.eta = Random(2).vector_n(3, 0.2);
+  x.eta_ddot = calc_u_dot(system, data, 0, x.eta, VectorXd::Zero(3));
+  x.inertia_force = calc_mass(system, data) * x.eta_ddot;
+  return x;
+}
+
 TEST(FlexibleSystem, GravityLoadsAndStiffensAFixedBody) {
   Model m = make_model(3, true);
   m.spec.simulation.gravity = {2, -9, 4};
   const System system = m.make();
   auto data = system.make_data();
-  Random random(2);
-  const VectorXd eta = random.vector_n(3, 0.2);
-  const VectorXd eta_ddot = calc_u_dot(system, *data, 0, eta, VectorXd::Zero(3));
-  const VectorXd actual = calc_mass(system, *data) * eta_ddot;
+  const auto [eta, eta_ddot, actual] = calc_at_rest(system, *data);
   VectorXd expected = m.flex.lumped.gamma0.transpose() * m.spec.simulation.gravity - m.flex.modal_stiffness * eta;
   for (int a = 0; a < 3; ++a) {
     expected += m.spec.simulation.gravity[a] * m.flex.kg_inertial[static_cast<size_t>(a)] * eta;
@@ -106,18 +115,12 @@ TEST(FlexibleSystem, GravityLoadsAndStiffensAFixedBody) {
 
 TEST(FlexibleSystem, NodeForceStiffensThroughItsLocators) {
   Model m = make_model(3, true);
-  records::ForceRecord force;
-  force.name = "push";
-  force.body = "f";
+  auto force = make_force("push", "f", {3, -2, 5});
   force.node = 104;
-  force.direction = {3, -2, 5};
   m.spec.forces = {force};
   const System system = m.make();
   auto data = system.make_data();
-  Random random(2);
-  const VectorXd eta = random.vector_n(3, 0.2);
-  const VectorXd eta_ddot = calc_u_dot(system, *data, 0, eta, VectorXd::Zero(3));
-  const VectorXd actual = calc_mass(system, *data) * eta_ddot;
+  const auto [eta, eta_ddot, actual] = calc_at_rest(system, *data);
   VectorXd expected = m.points.phi[3].transpose() * force.direction - m.flex.modal_stiffness * eta;
   for (int a = 0; a < 3; ++a) expected -= force.direction[a] * m.flex.kg_external[static_cast<size_t>(9 + a)] * eta;
   EXPECT_LT((actual - expected).norm(), 1e-12);

@@ -3,45 +3,35 @@
 
 #include "solver/simulate/memory_sink.hpp"
 #include "solver/simulate/simulate.hpp"
-#include "tests/solver/support/models.hpp"
+#include "tests/solver/support/records.hpp"
 
 namespace bough::solver::testing {
 namespace {
 
 using records::HingeType;
 
-records::FunctionRecord make_function(const std::string& name, const std::string& type,
-                                      const std::map<std::string, double>& values) {
-  records::FunctionRecord f;
-  f.name = name;
-  f.type = type;
-  f.values = values;
-  return f;
+/// A slide of given motion, whose rate jumps from 0 to 10 at t = 1, with a pendulum of mass 1 and length 1 on it.
+/// \param J  inertia of the pendulum about its centre of mass.
+records::SystemSpec make_cart_with_pendulum(double J) {
+  records::SystemSpec spec;
+  spec.bodies = {make_body_record("cart", 1, {1, 1, 1}), make_body_record("bob", 1, {J, J, J}, {0, -1, 0})};
+  spec.functions = {make_function("go", "ramp", {{"value", 10}, {"from", 1}, {"to", 2}})};
+  spec.hinges = {make_hinge_record("slide", HingeType::Prismatic, "ground", "cart"),
+                 make_hinge_record("pin", HingeType::Revolute, "cart", "bob")};
+  spec.hinges[0].axis = {1, 0, 0};
+  spec.hinges[0].motion = {"go"};
+  spec.simulation.output_step = 0.25;
+  spec.simulation.relative_tolerance = 1e-11;
+  spec.simulation.absolute_tolerance = 1e-14;
+  return spec;
 }
 
 // A slide that starts at 10 carries a pendulum of length 1 (mass 1, inertia J about its centre) that hangs: the pin
 // gives it the impulse p with p = m (10 + ω), J ω = -p, so ω = -10 m / (m + J).
 TEST(Jump, OfASlideSwingsThePendulumOnIt) {
   const double J = 0.001, expected = -10 / (1 + J);
-  records::SystemSpec spec;
-  records::BodyRecord cart, bob;
-  cart.name = "cart";
-  cart.mass = 1;
-  cart.inertia = Matrix3d::Identity();
-  bob.name = "bob";
-  bob.mass = 1;
-  bob.cg = {0, -1, 0};
-  bob.inertia = J * Matrix3d::Identity();
-  spec.bodies = {cart, bob};
-  spec.functions = {make_function("go", "ramp", {{"value", 10}, {"from", 1}, {"to", 2}})};
-  spec.hinges = {make_hinge_record("slide", HingeType::Prismatic, "ground", "cart"),
-                 make_hinge_record("pin", HingeType::Revolute, "cart", "bob")};
-  spec.hinges[0].axis = {1, 0, 0};
-  spec.hinges[0].motion = {"go"};
+  auto spec = make_cart_with_pendulum(J);
   spec.simulation.duration = 1.5;
-  spec.simulation.output_step = 0.25;
-  spec.simulation.relative_tolerance = 1e-11;
-  spec.simulation.absolute_tolerance = 1e-14;
   for (const char* integrator : {"adams", "rk", "rk4"}) {
     spec.simulation.integrator = integrator;
     spec.simulation.step = std::string(integrator) == "rk4" ? 0.01 : 0;
@@ -67,24 +57,8 @@ TEST(Jump, OfASlideSwingsThePendulumOnIt) {
 
 // The last sample of a run that ends where the rate jumps is that after the jump, and its work is booked.
 TEST(Jump, AtTheEndOfTheRun) {
-  records::SystemSpec spec;
-  records::BodyRecord cart, bob;
-  cart.name = "cart";
-  cart.mass = bob.mass = 1;
-  cart.inertia = Matrix3d::Identity();
-  bob.name = "bob";
-  bob.cg = {0, -1, 0};
-  bob.inertia = 0.1 * Matrix3d::Identity();
-  spec.bodies = {cart, bob};
-  spec.functions = {make_function("go", "ramp", {{"value", 10}, {"from", 1}, {"to", 2}})};
-  spec.hinges = {make_hinge_record("slide", HingeType::Prismatic, "ground", "cart"),
-                 make_hinge_record("pin", HingeType::Revolute, "cart", "bob")};
-  spec.hinges[0].axis = {1, 0, 0};
-  spec.hinges[0].motion = {"go"};
+  auto spec = make_cart_with_pendulum(0.1);
   spec.simulation.gravity = {0, -9.81, 0};
-  spec.simulation.output_step = 0.25;
-  spec.simulation.relative_tolerance = 1e-11;
-  spec.simulation.absolute_tolerance = 1e-14;
   for (const double duration : {2.0, 2.5}) {
     spec.simulation.duration = duration;
     const System system = build(spec);

@@ -6,7 +6,15 @@
 namespace bough::solver::testing {
 namespace {
 
-class ReactionTest : public ::testing::TestWithParam<unsigned> {};
+class ReactionTest : public ::testing::TestWithParam<unsigned> {
+ protected:
+  void SetUp() override { make_random_state(system_, GetParam() + 1000, q_, u_); }
+
+  const RandomTree tree_ = make_random_tree(GetParam(), {});
+  const System system_ = build(tree_.spec, tree_.flex);
+  std::unique_ptr<SystemData> data_ = system_.make_data();
+  VectorXd q_, u_;
+};
 
 // Wrench about the inertial origin, in W, that the parent puts on body b.
 Vector6d calc_world_reaction(const System& system, const SystemData& data, int b) {
@@ -24,39 +32,13 @@ Vector6d calc_world_reaction(const System& system, const SystemData& data, int b
 }
 
 TEST_P(ReactionTest, ClosesNewtonAndEulerOfEveryBody) {
-  const RandomTree tree = make_random_tree(GetParam(), {});
-  const System system = build(tree.spec, tree.flex);
-  VectorXd q, u;
-  make_random_state(system, GetParam() + 1000, q, u);
-  auto data = system.make_data();
-  const double t = 0.3, h = 4e-3;
-  const VectorXd u_dot = calc_u_dot(system, *data, t, q, u);
-  // Rates of the momenta of each body along the motion, by differences of order 8.
-  const auto calc_momenta = [&](double dt) {
-    auto other = system.make_data();
-    calc_kinematics(system, *other, t + dt, advance_q(system, *other, t, dt, q, u, u_dot), u + dt * u_dot);
-    Matrix6Xd momenta(6, system.num_bodies());
-    for (int b = 0; b < system.num_bodies(); ++b) {
-      Vector3d p, l;
-      calc_body_momentum(system, *other, b, p, l);
-      momenta.col(b) << p, l;
-    }
-    return momenta;
-  };
-  Matrix6Xd rate = Matrix6Xd::Zero(6, system.num_bodies());
-  const double weight[] = {4.0 / 5, -1.0 / 5, 4.0 / 105, -1.0 / 280};
-  for (int k = 1; k <= 4; ++k) rate += weight[k - 1] / h * (calc_momenta(k * h) - calc_momenta(-k * h));
-
-  Matrix6Xd loads = Matrix6Xd::Zero(6, system.num_bodies());
-  for (int b = 0; b < system.num_bodies(); ++b) {
-    const TreeBody& tb = system.tree[b];
-    const BodyState& s = data->tree[b].state;
-    const Vector3d S = tb.is_flexible() ? data->tree[b].inertia.S : tb.body.first_moment();
-    const Vector3d f = s.R_WB * data->tree.applied.segment<3>(tb.v_offset);
-    const Vector3d m = s.R_WB * data->tree.applied.segment<3>(tb.v_offset + 3);
-    loads.col(b).head<3>() += f + tb.body.mass() * data->tree.gravity;
-    loads.col(b).tail<3>() += m + s.p_WBo.cross(f) + (tb.body.mass() * s.p_WBo + s.R_WB * S).cross(data->tree.gravity);
-    const Vector6d reaction = calc_world_reaction(system, *data, b);
+  const VectorXd u_dot = calc_u_dot(system_, *data_, 0.3, q_, u_);
+  const Matrix6Xd rate = calc_momentum_rates(system_, 0.3, q_, u_, u_dot);
+  Matrix6Xd loads = Matrix6Xd::Zero(6, system_.num_bodies());
+  for (int b = 0; b < system_.num_bodies(); ++b) {
+    const TreeBody& tb = system_.tree[b];
+    loads.col(b) += calc_applied_loads(system_, *data_, b);
+    const Vector6d reaction = calc_world_reaction(system_, *data_, b);
     loads.col(b) += reaction;
     if (tb.parent >= 0) loads.col(tb.parent) -= reaction;
   }
@@ -65,19 +47,14 @@ TEST_P(ReactionTest, ClosesNewtonAndEulerOfEveryBody) {
 }
 
 TEST_P(ReactionTest, AlongFreeCoordinatesIsTheHingeForce) {
-  const RandomTree tree = make_random_tree(GetParam(), {});
-  const System system = build(tree.spec, tree.flex);
-  VectorXd q, u;
-  make_random_state(system, GetParam() + 1000, q, u);
-  auto data = system.make_data();
-  calc_u_dot(system, *data, 0.3, q, u);
-  for (int b = 0; b < system.num_bodies(); ++b) {
-    const TreeBody& tb = system.tree[b];
-    const HingeReaction r = get_hinge_reaction(system, *data, b);
+  calc_u_dot(system_, *data_, 0.3, q_, u_);
+  for (int b = 0; b < system_.num_bodies(); ++b) {
+    const TreeBody& tb = system_.tree[b];
+    const HingeReaction r = get_hinge_reaction(system_, *data_, b);
     Vector6d wrench;
     wrench << r.force, r.moment;
     for (int i = 0; i < tb.num_hinge_u(); ++i)
-      EXPECT_NEAR(data->tree[b].hinge.H.col(i).dot(wrench), data->tree.get_hinge_force(tb.u_offset + i),
+      EXPECT_NEAR(data_->tree[b].hinge.H.col(i).dot(wrench), data_->tree.get_hinge_force(tb.u_offset + i),
                   1e-11 * (1 + wrench.norm()));
   }
 }

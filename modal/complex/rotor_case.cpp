@@ -1,0 +1,378 @@
+#include "modal/complex/rotor_case.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <map>
+
+#include "formats/records/params.hpp"
+
+namespace bough::modal::rotors {
+namespace {
+
+using fe::RotorAxis;
+using fe::RotorDamping;
+using fe::Vector3d;
+using records::CardLocation;
+
+/// Largest distance of a grid from the axis, over the length of the rotor.
+constexpr double kMaxDistance = 1e-4;
+
+template <class Record, class Id>
+const Record* find(const std::vector<Record>& all, Id Record::*member, int id) {
+  const auto found = std::find_if(all.begin(), all.end(), [&](const auto& r) { return r.*member == id; });
+  return found == all.end() ? nullptr : &*found;
+}
+
+class Chooser {
+ public:
+  Chooser(const fe::Model& model, const records::DynamicDeck& deck, const records::DynamicSubcase& subcase,
+          RotorUse use, Diagnostics& diagnostics)
+      : model_(model),
+        deck_(deck),
+        cards_(deck.dynamics.rotors),
+        subcase_(subcase),
+        use_(use),
+        diagnostics_(diagnostics),
+        g_(records::get_real_param(deck, "G", 0, diagnostics)) {}
+
+  std::optional<RotorCase> choose() {
+    const auto& d = subcase_.dynamics;
+    if (d.rgyro == 0 && d.rmethod == 0) return std::nullopt;
+    if (d.rgyro != 0 && d.rmethod != 0)
+      fail("modal.rotor-speeds", subcase_.find_command("RMETHOD"), "the subcase has RGYRO and RMETHOD",
+           "leave one of them out");
+    else if (d.rgyro != 0)
+      choose_rgyro(d.rgyro);
+    else
+      choose_rotord(d.rmethod);
+    check_shared();
+    return case_;
+  }
+
+ private:
+  void fail(const char* id, const CardLocation& at, const std::string& what, const std::string& advice) {
+    diagnostics_.error(id, deck_.locate(at), what, advice);
+  }
+
+  void choose_rgyro(int sid) {
+    const auto* analysis = find(cards_.analyses, &records::RotorAnalysis::sid, sid);
+    if (analysis == nullptr)
+      return fail("modal.missing-rotor", subcase_.find_command("RGYRO"),
+                  "RGYRO = " + std::to_string(sid) + " names no RGYRO card of the deck",
+                  "add the card or correct the id");
+    case_.is_synchronous = analysis->is_synchronous;
+    case_.reference = analysis->reference;
+    case_.low = analysis->low * analysis->unit;
+    case_.high = analysis->high * analysis->unit;
+    if (!find(cards_.lines, &records::RotorLine::id, analysis->reference))
+      fail("modal.missing-rotor", analysis->at,
+           "RGYRO " + std::to_string(sid) + ": REFROTR " + std::to_string(analysis->reference) +
+               " names no ROTORG card of the deck",
+           "add the grids of the rotor by ROTORG, or correct the id");
+    if (!case_.is_synchronous) choose_speeds(*analysis);
+    for (const auto& spin : cards_.spins)
+      if (!find(cards_.lines, &records::RotorLine::id, spin.rotor))
+        fail("modal.missing-rotor", spin.at, "RSPINR of rotor " + std::to_string(spin.rotor) + " has no ROTORG card",
+             "add the grids of the rotor by ROTORG, or correct the id");
+    std::vector<int> ids;
+    for (const auto& line : cards_.lines)
+      if (std::find(ids.begin(), ids.end(), line.id) == ids.end()) ids.push_back(line.id);
+    for (const int id : ids) add_rotor(id, *analysis);
+  }
+
+  void choose_speeds(const records::RotorAnalysis& analysis) {
+    if (analysis.speeds == 0) {
+      case_.speeds = {analysis.speed * analysis.unit};
+      return;
+    }
+    const auto* list = find(cards_.speeds, &records::SpeedList::sid, analysis.speeds);
+    if (list == nullptr)
+      return fail("modal.missing-rotor", analysis.at,
+                  "RGYRO " + std::to_string(analysis.sid) + ": SPEED " + std::to_string(analysis.speeds) +
+                      " names no RSPEED card of the deck",
+                  "add the card, or write a speed with a decimal point");
+    for (int i = 0; i <= list->count; ++i) case_.speeds.push_back((list->first + i * list->step) * analysis.unit);
+  }
+
+  void add_rotor(int id, const records::RotorAnalysis& analysis) {
+    const auto* line = find(cards_.lines, &records::RotorLine::id, id);
+    const auto* spin = find(cards_.spins, &records::RotorSpin::rotor, id);
+    if (spin == nullptr)
+      return fail("modal.missing-rotor", line->at, "rotor " + std::to_string(id) + " has ROTORG and no RSPINR card",
+                  "add RSPINR with two of its grids: from GRIDA to GRIDB is the direction of positive spin");
+    const int a = model_.find_node(spin->grid_a), b = model_.find_node(spin->grid_b);
+    const auto grids = list_grids(id);
+    for (const int grid : {spin->grid_a, spin->grid_b})
+      if (std::find(grids.begin(), grids.end(), grid) == grids.end())
+        return fail("modal.rotor-line", spin->at,
+                    "RSPINR of rotor " + std::to_string(id) + " names grid " + std::to_string(grid) +
+                        ", which ROTORG does not list",
+                    "name two grids of the rotor");
+    const Vector3d from = model_.node(a).x, along = model_.node(b).x - from;
+    if (!(along.norm() > 0))
+      return fail("modal.rotor-line", spin->at,
+                  "RSPINR of rotor " + std::to_string(id) + ": grids " + std::to_string(spin->grid_a) + " and " +
+                      std::to_string(spin->grid_b) + " are at one point",
+                  "name two grids that are apart");
+    add_axis({id, grids, along.normalized(), deck_.locate(line->at)}, from);
+    RotorDamping damping;
+    damping.alpha1 = spin->alpha1;
+    damping.alpha2 = spin->alpha2;
+    const auto choose = [&](double own, const char* param) {
+      return own > 0 ? own : records::get_real_param(deck_, param, 0, diagnostics_);
+    };
+    add_structural(damping, spin->gr, choose(spin->wr3, "WR3"), choose(spin->wr4, "WR4"), id, spin->at,
+                   {"GR", "WR3R", "WR4R"});
+    case_.damping.push_back(damping);
+    if (spin->table != 0 && find(cards_.values, &records::ValueList::id, spin->table) == nullptr)
+      fail("modal.missing-rotor", spin->at,
+           "RSPINR of rotor " + std::to_string(id) + ": SPTID " + std::to_string(spin->table) +
+               " names no DDVAL card of the deck",
+           "add the card, or write a rate with a decimal point");
+    add_relation(*spin, analysis);
+  }
+
+  struct Names {
+    const char *g, *w3, *w4;
+  };
+  /// Structural damping that becomes viscous, or that acts at each frequency of a response.
+  void add_structural(RotorDamping& damping, double g, double w3, double w4, int id, const CardLocation& at,
+                      const Names& names) {
+    damping.g = g;
+    if (w3 > 0) damping.viscous_g = g / w3;
+    if (w4 > 0) damping.viscous_ge = 1 / w4;
+    if (use_ == RotorUse::Frequency) return;
+    const auto& grids = case_.axes.back().grids;
+    const bool has_ge = std::any_of(model_.elements().begin(), model_.elements().end(), [&](const auto& element) {
+      return element->structural_damping() != 0 &&
+             std::all_of(element->nodes().begin(), element->nodes().end(), [&](int node) {
+               return std::find(grids.begin(), grids.end(), model_.node(node).id) != grids.end();
+             });
+    });
+    const bool lacks_w3 = g != 0 && w3 <= 0, lacks_w4 = has_ge && w4 <= 0;
+    if (!lacks_w3 && !lacks_w4) return;
+    const std::string without = lacks_w3 ? names.w3 : names.w4;
+    diagnostics_.warning("modal.rotor-damping", deck_.locate(at),
+                         std::string(lacks_w3 ? names.g : "GE of the elements") + " of rotor " + std::to_string(id) +
+                             " does not act on complex eigenvalues without " + without + ", as in Nastran",
+                         "give " + without + ", the circular frequency at which it becomes viscous");
+  }
+
+  void add_relation(const records::RotorSpin& spin, const records::RotorAnalysis& analysis) {
+    if (spin.rotor == analysis.reference) return case_.relations.emplace_back(1.0), void();
+    const auto* reference = find(cards_.spins, &records::RotorSpin::rotor, analysis.reference);
+    if (reference == nullptr) return case_.relations.emplace_back(1.0), void();  // reported
+    const auto own = list_rates(spin), of_reference = list_rates(*reference);
+    const auto is_ascending = [](const std::vector<double>& v) {
+      return std::adjacent_find(v.begin(), v.end(), [](double x, double y) { return !(x < y); }) == v.end();
+    };
+    const bool is_wrong = own.size() != of_reference.size() || own.empty() || !is_ascending(of_reference) ||
+                          (own.size() == 1 && of_reference[0] == 0);
+    if (is_wrong) {
+      fail("modal.rotor-speeds", spin.at,
+           "rotor " + std::to_string(spin.rotor) + " has " + std::to_string(own.size()) +
+               " spin rates, reference rotor " + std::to_string(analysis.reference) + " has " +
+               std::to_string(of_reference.size()),
+           "give both as many DDVAL, ascending ones of the reference rotor, or a number each, not 0 of the reference");
+      case_.relations.emplace_back(1.0);
+    } else if (own.size() == 1) {
+      case_.relations.emplace_back(own[0] / of_reference[0]);
+    } else {
+      case_.relations.emplace_back(of_reference, own);
+    }
+    if (case_.is_synchronous && !case_.relations.back().find_line())
+      fail("modal.rotor-speeds", spin.at,
+           "the spin rates of rotor " + std::to_string(spin.rotor) + " and of reference rotor " +
+               std::to_string(analysis.reference) + " are on no line, as synchronous analyses demand",
+           "give rates in proportion, or use ASYNC");
+  }
+
+  /// [1/T]
+  std::vector<double> list_rates(const records::RotorSpin& spin) {
+    if (spin.table == 0) return {spin.rate * spin.unit};
+    const auto* list = find(cards_.values, &records::ValueList::id, spin.table);
+    if (list == nullptr) return {spin.unit};  // reported with the rotor
+    auto rates = list->values;
+    for (double& rate : rates) rate *= spin.unit;
+    return rates;
+  }
+
+  void choose_rotord(int sid) {
+    const auto* card = find(cards_.sweeps, &records::RotorSweepCard::sid, sid);
+    if (card == nullptr)
+      return fail("modal.missing-rotor", subcase_.find_command("RMETHOD"),
+                  "RMETHOD = " + std::to_string(sid) + " names no ROTORD card of the deck",
+                  "add the card or correct the id");
+    for (int i = 0; i < card->count; ++i) case_.speeds.push_back(card->first + i * card->step);
+    if (card->shapes_at > 0) case_.shapes_at = card->shapes_at;
+    for (const auto& rotor : card->rotors) {
+      const auto* line = find(cards_.lines, &records::RotorLine::id, rotor.line);
+      if (line == nullptr) {
+        fail("modal.missing-rotor", rotor.at,
+             "ROTORD " + std::to_string(sid) + ": RSET " + std::to_string(rotor.line) +
+                 " names no ROTORG card of the deck",
+             "add the grids of the rotor by ROTORG, or correct the id");
+        continue;
+      }
+      const auto grids = list_grids(rotor.line);
+      if (grids.empty()) continue;
+      const Vector3d from = model_.node(model_.find_node(grids.front())).x;
+      const Vector3d axis = model_.calc_axes(rotor.cid, from, deck_.locate(rotor.at), diagnostics_).col(2);
+      add_axis({rotor.line, grids, axis, deck_.locate(line->at)}, from);
+      RotorDamping damping;
+      add_structural(damping, g_, rotor.w3, rotor.w4, rotor.line, rotor.at, {"PARAM,G", "W3", "W4"});
+      case_.damping.push_back(damping);
+      case_.relations.emplace_back(rotor.speed);
+    }
+  }
+
+  /// Grids of the ROTORG cards of a rotor, without repetition.
+  std::vector<int> list_grids(int id) {
+    std::vector<int> grids;
+    const auto add = [&](int grid) {
+      if (std::find(grids.begin(), grids.end(), grid) == grids.end()) grids.push_back(grid);
+    };
+    const CardLocation* at = nullptr;
+    for (const auto& line : cards_.lines) {
+      if (line.id != id) continue;
+      at = &line.at;
+      for (const auto& range : line.grids) {
+        if (range.is_thru) {
+          for (const auto& node : model_.nodes())
+            if (node.num_dofs == 6 && node.id >= range.first && node.id <= range.last &&
+                (node.id - range.first) % range.step == 0)
+              add(node.id);
+          continue;
+        }
+        const int index = model_.find_node(range.first);
+        if (index >= 0 && model_.node(index).num_dofs == 6)
+          add(range.first);
+        else if (!model_.is_refused(range.first))
+          fail("modal.rotor-line", line.at,
+               "ROTORG " + std::to_string(id) + " names grid " + std::to_string(range.first) +
+                   ", which the deck does not define",
+               "add the GRID or correct the id");
+      }
+    }
+    if (grids.size() < 2 && at != nullptr)
+      fail("modal.rotor-line", *at, "ROTORG " + std::to_string(id) + " has fewer than two grids of the deck",
+           "list the grids along the axis of the rotor");
+    return grids;
+  }
+
+  void add_axis(RotorAxis axis, const Vector3d& from) {
+    double length = 0, farthest = 0;
+    int grid = 0;
+    for (const int id : axis.grids) {
+      const Vector3d r = model_.node(model_.find_node(id)).x - from;
+      length = std::max(length, std::abs(r.dot(axis.axis)));
+      const double distance = (r - axis.axis * r.dot(axis.axis)).norm();
+      if (distance > farthest) farthest = distance, grid = id;
+    }
+    if (farthest > kMaxDistance * length) {
+      char text[64];
+      std::snprintf(text, sizeof text, "%.6g", farthest);
+      diagnostics_.error(
+          "modal.rotor-line", axis.at,
+          "grid " + std::to_string(grid) + " of rotor " + std::to_string(axis.id) + " is " + text + " from the axis",
+          "list grids on one line; give the mass of discs to grids on it by CONM2");
+    }
+    case_.axes.push_back(std::move(axis));
+  }
+
+  void check_shared() {
+    std::map<int, int> owner;
+    for (const auto& axis : case_.axes)
+      for (const int grid : axis.grids)
+        if (const auto [found, is_new] = owner.emplace(grid, axis.id); !is_new && found->second != axis.id) {
+          diagnostics_.error("modal.rotor-shared", axis.at,
+                             "grid " + std::to_string(grid) + " is on rotors " + std::to_string(found->second) +
+                                 " and " + std::to_string(axis.id),
+                             "give each rotor separate grids, joined by bearings (CBUSH, CELAS2)");
+          break;
+        }
+  }
+
+  const fe::Model& model_;
+  const records::DynamicDeck& deck_;
+  const records::RotorCards& cards_;
+  const records::DynamicSubcase& subcase_;
+  RotorUse use_;
+  Diagnostics& diagnostics_;
+  double g_;
+  RotorCase case_;
+};
+
+}  // namespace
+
+double SpeedRelation::evaluate(double reference) const {
+  if (reference_.empty()) return factor_ * reference;
+  auto i =
+      static_cast<std::size_t>(std::upper_bound(reference_.begin(), reference_.end(), reference) - reference_.begin());
+  i = std::clamp<std::size_t>(i, 1, reference_.size() - 1);
+  const double slope = (own_[i] - own_[i - 1]) / (reference_[i] - reference_[i - 1]);
+  return own_[i - 1] + slope * (reference - reference_[i - 1]);
+}
+
+std::optional<std::pair<double, double>> SpeedRelation::find_line() const {
+  if (reference_.empty()) return std::pair(0.0, factor_);
+  const double slope = (own_.back() - own_.front()) / (reference_.back() - reference_.front());
+  const double offset = own_.front() - slope * reference_.front();
+  const double size = std::abs(own_.front()) + std::abs(own_.back());
+  for (std::size_t i = 0; i < own_.size(); ++i)
+    if (std::abs(offset + slope * reference_[i] - own_[i]) > 1e-6 * size) return std::nullopt;
+  return std::pair(offset, slope);
+}
+
+std::optional<RotorCase> choose_rotors(const fe::Model& model, const records::DynamicDeck& deck,
+                                       const records::DynamicSubcase& subcase, RotorUse use, Diagnostics& diagnostics) {
+  return Chooser(model, deck, subcase, use, diagnostics).choose();
+}
+
+RotorTerms::RotorTerms(const fe::Model& model, const RotorCase& rotor_case, double g, Diagnostics& diagnostics)
+    : case_(rotor_case),
+      num_gdofs_(model.num_gdofs()),
+      rotors_(fe::find_rotors(model, rotor_case.axes, diagnostics)),
+      model_structural_(num_gdofs_, num_gdofs_) {
+  diagnostics.throw_if_errors();
+  for (std::size_t j = 0; j < rotors_.size(); ++j) {
+    matrices_.push_back(fe::assemble_rotor(model, rotors_[j], case_.damping[j]));
+    model_structural_ += fe::assemble_rotor_structural(model, rotors_[j], g);
+  }
+}
+
+fe::SparseColumns RotorTerms::sum(const std::function<double(std::size_t)>& factor,
+                                  fe::SparseColumns fe::RotorMatrices::*member) const {
+  fe::SparseColumns total(num_gdofs_, num_gdofs_);
+  for (std::size_t j = 0; j < matrices_.size(); ++j)
+    if (const double f = factor(j); f != 0) total += f * matrices_[j].*member;
+  return total;
+}
+
+fe::SparseColumns RotorTerms::calc_damping(double reference) const {
+  return sum([&](std::size_t j) { return case_.relations[j].evaluate(reference); }, &fe::RotorMatrices::gyroscopic) +
+         sum([](std::size_t) { return 1.0; }, &fe::RotorMatrices::damping);
+}
+fe::SparseColumns RotorTerms::calc_circulation(double reference) const {
+  return sum([&](std::size_t j) { return case_.relations[j].evaluate(reference); }, &fe::RotorMatrices::circulation);
+}
+
+RotorTerms::Synchronous RotorTerms::calc_synchronous() const {
+  const auto offset = [&](std::size_t j) { return case_.relations[j].find_line().value_or(std::pair(0.0, 1.0)).first; };
+  const auto rate = [&](std::size_t j) { return case_.relations[j].find_line().value_or(std::pair(0.0, 1.0)).second; };
+  return {
+      sum(offset, &fe::RotorMatrices::gyroscopic) + sum([](std::size_t) { return 1.0; }, &fe::RotorMatrices::damping),
+      sum(offset, &fe::RotorMatrices::circulation), sum(rate, &fe::RotorMatrices::gyroscopic),
+      sum(rate, &fe::RotorMatrices::circulation)};
+}
+
+fe::SparseColumns RotorTerms::calc_structural() const {
+  return sum([](std::size_t) { return 1.0; }, &fe::RotorMatrices::structural);
+}
+fe::SparseColumns RotorTerms::calc_structural_circulation(double reference, double omega) const {
+  return sum([&](std::size_t j) { return omega > 0 ? case_.relations[j].evaluate(reference) / omega : 0.0; },
+             &fe::RotorMatrices::structural_circulation);
+}
+
+}  // namespace bough::modal::rotors
