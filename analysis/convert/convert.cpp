@@ -94,6 +94,10 @@ void convert_toml(const ConvertRequest& request, const records::UnitChange& chan
   toml_files::check_text(text, request.file, diagnostics);
   diagnostics.throw_if_errors();
   FileFacts files(request.file);
+  if (!answer.from.empty()) {
+    Diagnostics quiet;
+    demand_labels(answer.from, toml_files::read_system_spec(request.file, quiet).units, {request.file});
+  }
   const toml_files::BodyFacts facts{
       [&](const std::string& body, const std::string& locator) { return files.find_direction(body, locator); },
       [&](const std::string& body, int element) { return files.find_components(body, element); }};

@@ -84,6 +84,29 @@ double calc_unit_force(const records::UnitLabels& labels) {
   return mass->second * length->second / (time->second * time->second) / force->second;
 }
 
+std::string name_labelled_set(const records::UnitLabels& labels) {
+  if (!kLengths.contains(labels.length) || !kMasses.contains(labels.mass) || !kTimes.contains(labels.time)) return {};
+  return std::abs(calc_unit_force(labels) - 1) < 1e-9 ? labels.length + "-" + labels.mass + "-" + labels.time
+                                                      : std::string{};
+}
+
+void demand_labels(const std::string& text, const records::UnitLabels& labels, const SourceLocation& at) {
+  const auto factors = parse_units(text);
+  const auto demand = [&](const std::map<std::string, double>& units, const char* key, const std::string& label,
+                          double size) {
+    const auto found = units.find(label);
+    if (found == units.end() || std::abs(found->second / size - 1) < 1e-9) return;
+    throw InputError(
+        "cli.bad-units", at,
+        "the units " + text + " are not those of the file: its [units] has " + key + " = \"" + label + "\"",
+        "give the units of the file, or correct its [units]");
+  };
+  demand(kLengths, "length", labels.length, factors.length);
+  demand(kMasses, "mass", labels.mass, factors.mass);
+  demand(kTimes, "time", labels.time, factors.time);
+  demand(kForces, "force", labels.force, factors.mass * factors.length / (factors.time * factors.time));
+}
+
 std::pair<std::string, std::string> split_units(const std::string& text) {
   const auto colon = text.find(':');
   if (colon == std::string::npos || text.find(':', colon + 1) != std::string::npos)

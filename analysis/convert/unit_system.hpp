@@ -24,6 +24,13 @@ UnitNames name_units(const std::string& text);
 /// \return 1 also if a label is empty or of no known unit.
 double calc_unit_force(const records::UnitLabels& labels);
 
+/// Name of the set of the labels of a system file, "m-kg-s"; empty if one is missing or of no known unit, or if the
+/// force is not that of the others.
+std::string name_labelled_set(const records::UnitLabels& labels);
+
+/// Throws InputError "cli.bad-units" where a label of the file at `at` is a unit of another size than that of the set.
+void demand_labels(const std::string& text, const records::UnitLabels& labels, const SourceLocation& at);
+
 /// "mm-N-tonne:m-kg-s" -> its two halves.
 std::pair<std::string, std::string> split_units(const std::string& text);
 

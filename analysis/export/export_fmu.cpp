@@ -364,7 +364,8 @@ FmuSummary export_fmu(const std::string& file, const std::string& output, const 
     set_dependencies(graph.find_of_event_function(static_cast<int>(i), static_cast<int>(d.event_indicators.size())),
                      d.event_indicators[i]);
 
-  set_units(model, options.units, d);
+  if (!options.units.empty()) demand_labels(options.units, spec.units, {file});
+  set_units(model, options.units.empty() ? name_labelled_set(spec.units) : options.units, d);
   const std::string folder = options.version == 2 ? "binaries/linux64/" : "binaries/x86_64-linux/";
   std::vector<fmu::ArchiveEntry> entries{
       {"modelDescription.xml", options.version == 2 ? format_fmi2(d) : format_fmi3(d)},

@@ -177,6 +177,11 @@ class Convert(ProgramTest):
         self.fails(1, "convert", "mm.bdf", "--units", "m-kg:mm-kg", "-o", "mm.bdf", error="cli.output-is-input")
         self.write("body.FLX", "")
         self.fails(1, "convert", "body.FLX", "--units", "m-kg:mm-kg", "-o", "no.FLX", says=[".FLX"], error="cli.wrong-file")
+        self.write("si.toml", '[units]\nlength = "m"\nmass = "kg"\n[[body]]\nname = "b"\nmass = 1.0\ninertia = [1.0, 1.0, 1.0]\n'
+                   '[[hinge]]\nname = "h"\ntype = "free"\nchild = "b"\n[simulation]\nduration = 1.0\n')
+        self.bough("convert", "si.toml", "--units", "m-kg-s:mm-N-tonne", "-o", "mm.toml")
+        self.fails(1, "convert", "si.toml", "--units", "mm-N-tonne:m-kg-s", "-o", "no.toml", says=["si.toml", 'length = "m"'],
+                   error="cli.bad-units")
         self.write("s.toml", "x = 1")
         self.fails(1, "convert", "s.toml", "--units", "m-kg:mm-kg", "-o", "no.toml", error="toml.unknown-key")
 

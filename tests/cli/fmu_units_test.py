@@ -36,6 +36,10 @@ class FmuUnitsTest(FmuCase):
                 self.assertEqual({k: v for k, v in got.items() if k != "factor"}, {"kg": 1, "m": 2, "s": -2})
                 self.assertAlmostEqual(got.get("factor", 1) / factor, 1, delta=1e-12)
                 self.assertEqual({k: v for k, v in fmu.units[f"rad/{s}"].items() if k != "factor"}, {"rad": 1, "s": -1})
+        self.write("labelled.toml", '[units]\nlength = "mm"\nmass = "tonne"\ntime = "s"\n' + self.read("chain.toml"))
+        self.assertEqual(self.export("labelled.toml", 3).unit_of["tip:x"], "mm")
+        self.fails(1, "export", "labelled.toml", "--to", "fmu", "--units", "m-kg-s", "-o", "a.fmu",
+                   says=["labelled.toml", 'length = "mm"'], error="cli.bad-units")
         self.fails(1, "export", "chain.toml", "--to", "fmu", "--units", "m-kg-parsec", "-o", "a.fmu", error="cli.bad-units")
 
 
