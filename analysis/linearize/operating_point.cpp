@@ -59,9 +59,10 @@ solver::OperatingPoint run_to(const LoadedSystem& loaded, solver::Plant& plant, 
   if (!options.resume) options.resume = find_start_control(loaded.start_from, loaded.system, s.start, diagnostics);
   Diagnostics of_run;
   const auto keep = [&] {
-    // Events past the operating point are none that the user expects.
+    // Events past the operating point are none that the user expects; there are no samples for the hint.
     for (const auto& item : of_run.items())
-      if (item.id != "run.event-never" || item.severity == Severity::Error) diagnostics.add(item);
+      if ((item.id != "run.event-never" && item.id != "run.fast-modes") || item.severity == Severity::Error)
+        diagnostics.add(item);
   };
   try {
     solver::simulate(loaded.system, spec, sink, options, of_run);

@@ -28,6 +28,8 @@ constexpr double kOtherStep = 0.7;
 constexpr double kInaccurate = 1e-4;
 /// Steps of displacement within the time of the slowest motion: a system that moves less than that is at rest.
 constexpr double kAtRest = 1e-6;
+/// Way in steps of the plant that shows whether A changes along a motion.
+constexpr double kFarWay = 7;
 /// Kinks that a message lists.
 constexpr std::size_t kMaxKinks = 5;
 
@@ -202,15 +204,21 @@ void check_constancy(Plant& plant, const OperatingPoint& point, const Jacobian& 
   // Speeds at rest are round-off: a motion counts only if it moves the system within the slowest time constant.
   const auto poles = statespace::calc_poles(A, states);
   double slowest = 0;
+  bool drifts = false;
   for (int i = poles.size() - 1; i >= 0; --i) {
     const double size = std::hypot(poles.real[i], poles.imag[i]);
-    if (size > 1e-6 * std::hypot(poles.real[poles.size() - 1], poles.imag[poles.size() - 1])) slowest = size;
+    if (size > 1e-6 * std::hypot(poles.real[poles.size() - 1], poles.imag[poles.size() - 1]))
+      slowest = size;
+    else
+      drifts = true;
   }
   if (travel < kAtRest * slowest) return;
+  // A motion that dies out or turns back within the slowest time constant goes no farther.
+  const double way = drifts ? kFarWay : std::min(kFarWay, travel / slowest);
   OperatingPoint later = point;
   VectorXd delta = VectorXd::Zero(n);
   for (int i = 0; i < n; ++i) {
-    if (!plant.is_mode(i)) delta[i] = 7 * point.u[i] / travel;
+    if (!plant.is_mode(i)) delta[i] = way * point.u[i] / travel;
   }
   MatrixXd there;
   try {
@@ -221,7 +229,7 @@ void check_constancy(Plant& plant, const OperatingPoint& point, const Jacobian& 
   }
   const VectorXd scale = calc_row_scales(here.value, get_row_dims(plant)).head(n);
   const double change = calc_relative(there.topRows(n) - here.value.topRows(n), scale);
-  if (change < 1e-5) return;
+  if (change < (way < kFarWay ? 1e-3 : 1e-5)) return;
   diagnostics.warning("linear.time-varying", at,
                       "A changes along the motion, by " + brief_text(100 * change) + " % while " +
                           plant.dof_name(fastest) + " moves by " + brief_text(delta[fastest]) +
