@@ -20,20 +20,36 @@ const std::map<std::string, int>& list_types() {
   return types;
 }
 
-/// Mean over the quadrature points of "Nx@1", "Nx@2", ...
-double calc_mean(const records::ElementForces& forces, Index row, const std::string& component) {
-  double sum = 0;
-  int count = 0;
-  for (std::size_t c = 0; c < forces.components.size(); ++c)
-    if (forces.components[c].substr(0, forces.components[c].find('@')) == component) {
-      sum += forces.force(row, static_cast<Index>(c));
-      ++count;
-    }
-  return count > 0 ? sum / count : 0;
+/// Area of each of the four quadrature points of a quadrilateral, in the order of its corners x.
+VectorXd calc_point_areas(const std::array<Eigen::Vector3d, 4>& x) {
+  const Eigen::Vector3d normal = (x[2] - x[0]).cross(x[3] - x[1]).normalized();
+  const double g = 1 / std::sqrt(3.0);
+  VectorXd areas(4);
+  for (int q = 0; q < 4; ++q) {
+    const double r = q == 0 || q == 3 ? -g : g, s = q < 2 ? -g : g;
+    const Eigen::Vector3d by_r = (1 - s) * (x[1] - x[0]) + (1 + s) * (x[2] - x[3]),
+                          by_s = (1 - r) * (x[3] - x[0]) + (1 + r) * (x[2] - x[1]);
+    areas[q] = normal.dot(by_r.cross(by_s)) / 16;
+  }
+  return areas;
 }
 
-VectorXd make_shell_row(const records::ElementForces& forces, Index row, double angle) {
-  const auto mean = [&](const char* name) { return calc_mean(forces, row, name); };
+/// Mean over the element of "Nx@1", "Nx@2", ..., as that of the stresses. areas: of the points; empty: alike.
+double calc_mean(const records::ElementForces& forces, Index row, const std::string& component, const VectorXd& areas) {
+  double sum = 0, whole = 0;
+  Index point = 0;
+  for (std::size_t c = 0; c < forces.components.size(); ++c)
+    if (forces.components[c].substr(0, forces.components[c].find('@')) == component) {
+      const double area = point < areas.size() ? areas[point] : 1;
+      sum += area * forces.force(row, static_cast<Index>(c));
+      whole += area;
+      ++point;
+    }
+  return whole > 0 ? sum / whole : 0;
+}
+
+VectorXd make_shell_row(const records::ElementForces& forces, Index row, double angle, const VectorXd& areas = {}) {
+  const auto mean = [&](const char* name) { return calc_mean(forces, row, name, areas); };
   const Eigen::Vector3d N = turn_plane({mean("Nx"), mean("Ny"), mean("Nxy")}, angle);
   const Eigen::Vector3d M = turn_plane({mean("Mx"), mean("My"), mean("Mxy")}, angle);
   const double Qx = mean("Qx"), Qy = mean("Qy"), c = std::cos(angle), s = std::sin(angle);
@@ -108,9 +124,9 @@ std::optional<records::ListedElements> make_listed_forces(const fe::Model& model
       values = make_shell_row(forces, row, 0);
     } else if (block.card == "CQUAD4") {
       const auto& nodes = elements.at({block.card, id})->shape().nodes;
-      values = make_shell_row(forces, row,
-                              calc_quad_angle({model.node(nodes[0]).x, model.node(nodes[1]).x, model.node(nodes[2]).x,
-                                               model.node(nodes[3]).x}));
+      const std::array corners{model.node(nodes[0]).x, model.node(nodes[1]).x, model.node(nodes[2]).x,
+                               model.node(nodes[3]).x};
+      values = make_shell_row(forces, row, calc_quad_angle(corners), calc_point_areas(corners));
     }
     if (block.id.empty()) block.real.resize(static_cast<Index>(rows.size()), values.size());
     block.real.row(static_cast<Index>(block.id.size())) = values.transpose();

@@ -132,6 +132,14 @@ class Stresses(ProgramTest):
         lines = self.table("STRESSESINQUADRILATERALELEMENTS(QUAD4)")
         np.testing.assert_allclose(lines[0][1:4], found[33, 1][1:4], rtol=1e-5, atol=1)
 
+    def test_forces_and_stresses_of_a_trapezoid_are_means_of_one_kind(self):
+        """N = t sigma of an element whose quadrature points have unlike areas: 13 % apart before."""
+        found = self.solve("GRID,1,,0.,0.,0.\nGRID,2,,1.,0.,0.\nGRID,3,,1.,.6,0.\nGRID,4,,0.,1.,0.\nCQUAD4,10,3,1,2,3,4\n"
+                           "PSHELL,3,5,.01\nMAT1,5,7.+10,,0.\nSPC1,1,3456,1,THRU,4\nSPC1,1,12,1,4\nSPC1,1,2,2\n"
+                           "FORCE,2,2,,3.+5,1.,0.,0.\nFORCE,2,3,,5.+5,-.3,1.,0.\n", "STRESS = ALL\nFORCE = ALL\n")
+        forces = self.table("FORCESINQUADRILATERALELEMENTS(QUAD4)")[0]
+        np.testing.assert_allclose(forces[:3], .01 * np.array(found[33, 10][1:4]), rtol=1e-5)
+
     def test_plies(self):
         """Two plies of one material under tension: each has F / t along x, seen from its own axes."""
         bulk = ("PCOMP,1\n,1,.002,0.,YES,1,.002,90.,YES\n" + "".join(
