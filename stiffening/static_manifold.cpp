@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <tuple>
 
 #include "fe/corotational/chord_series.hpp"
 #include "fe/corotational/corotational_element.hpp"
@@ -22,8 +23,6 @@ using fe::SeriesVector;
 
 /// Negligible inertia about an axis, relative to the largest.
 constexpr double kNoInertia = 1e-8;
-/// Most modes for which the quartic energy of pairs of small modes is computed.
-constexpr Index kMaxPaired = 24;
 constexpr Index kPointsAtOnce = 256;
 constexpr int kMinElementsOfThread = 50;
 
@@ -249,11 +248,9 @@ MatrixXd StaticManifold::calc_gradient(const MatrixXd& points, int degree) const
 
 MatrixXd StaticManifold::calc_quartic_pairs() const {
   const Index n = Phi_.cols();
-  const auto is_large = [&](Index j) { return std::binary_search(large_.begin(), large_.end(), static_cast<int>(j)); };
   std::vector<std::pair<Index, Index>> pairs;
   for (Index i = 0; i < n; ++i)
-    for (Index j = 0; j < i; ++j)
-      if (n <= kMaxPaired || is_large(i) || is_large(j)) pairs.emplace_back(i, j);
+    for (Index j = 0; j < i; ++j) pairs.emplace_back(i, j);
   MatrixXd points = MatrixXd::Zero(n + 2 * std::ssize(pairs), n);
   points.topRows(n).setIdentity();
   for (std::size_t k = 0; k < pairs.size(); ++k) {
@@ -303,7 +300,8 @@ void StaticManifold::select_large(const std::vector<int>& large, const MatrixXd&
       for (int side = 0; side < 2; ++side) {
         const int s = pair[static_cast<std::size_t>(side)], other = pair[static_cast<std::size_t>(1 - side)];
         if (s == t || std::binary_search(large.begin(), large.end(), s)) continue;
-        is_follower = is_follower && Q(s, other) >= Q(t, other);
+        is_follower = is_follower &&
+                      std::make_tuple(Q(s, other), eigenvalue_[t], t) > std::make_tuple(Q(t, other), eigenvalue_[s], s);
       }
       part(static_cast<Index>(k), i) *= is_follower ? 1.0 / (1 + exponents(i, t)) : 0;
     }

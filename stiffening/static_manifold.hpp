@@ -92,8 +92,8 @@ class StaticManifold {
   };
   /// Gradient by all amplitudes, n x points.
   MatrixXd calc_all_gradient(const MatrixXd& points, int degree) const;
-  /// Coefficients of a_i² a_j² in V, on the diagonal of a_i⁴, with u₂ held along all modes: n x n. Of more than
-  /// kMaxPaired modes those of two small ones are zero.
+  /// Coefficients of a_i² a_j² in V, on the diagonal of a_i⁴, with u₂ held along all modes: n x n. Costs n² points over
+  /// all elements.
   MatrixXd calc_quartic_pairs() const;
   /// The fields of the next degree, held along all modes; gradient: n x monomials.
   MatrixXd solve_field(int degree, const Lattice& lattice, MatrixXd& gradient) const;

@@ -69,7 +69,7 @@ export class RunSet {
 }
 
 const short_name = (path) => path.replace(/^\/sensors\//, "").replace(/^\//, "");
-// Of a modal coordinate the mode and its frequency.
+// Legend of a modal coordinate: the mode and its frequency.
 const label_column = (channel, i) => channel.columns[i].label ?? channel.columns[i].name;
 const name_column = (channel, i) => short_name(channel.path) + (channel.columns[i].name ? ":" + channel.columns[i].name : "");
 

@@ -1,4 +1,4 @@
-// What a ray from the eye meets.
+// Nodes and faces that a ray from the eye meets.
 
 /**
  * Faces of things that a ray meets before `end`: calls `take(thing, triangle, distance)` for each until it returns true.
