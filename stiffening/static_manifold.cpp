@@ -23,7 +23,6 @@ using fe::SeriesVector;
 
 /// Negligible inertia about an axis, relative to the largest.
 constexpr double kNoInertia = 1e-8;
-constexpr Index kPointsAtOnce = 256;
 constexpr int kMinElementsOfThread = 50;
 
 std::vector<int> list_gdofs(const fe::Node& node) {
@@ -53,24 +52,25 @@ std::vector<NodeRows> find_rows(const fe::Element& element, const std::vector<fe
   return rows;
 }
 
-/// One order of (R - 1) arm - θ × arm at each point. theta: 3 x 5 points.
-Eigen::Matrix3Xd calc_turned_arm(const MatrixXd& theta, const Vector3d& arm, int order) {
-  Eigen::Matrix3Xd moved(3, theta.cols() / kSeriesTop);
+/// One order of (R - 1) arm - θ × arm at each point. theta: 3 x top points.
+Eigen::Matrix3Xd calc_turned_arm(const MatrixXd& theta, int top, const Vector3d& arm, int order) {
+  Eigen::Matrix3Xd moved(3, theta.cols() / top);
   const auto at = static_cast<std::size_t>(order);
   for (Index p = 0; p < moved.cols(); ++p) {
-    const SeriesVector angle = fe::get_vector(theta.middleCols<kSeriesTop>(kSeriesTop * p), 0);
+    const SeriesVector angle = fe::get_vector(theta.middleCols(top * p, top), 0);
     moved.col(p) = fe::calc_arm_motion(angle, arm)[at] - angle[at].cross(arm);
   }
   return moved;
 }
 
-/// Order `order` of Tᵀ(R arm × force) - arm × force in its place of the five, the others zero: 3 x 5 points.
-Eigen::Matrix3Xd calc_turned_moment(const MatrixXd& theta, const Vector3d& arm, const MatrixXd& force, int order) {
+/// Order `order` of Tᵀ(R arm × force) - arm × force in its place, the others zero: 3 x top points.
+Eigen::Matrix3Xd calc_turned_moment(const MatrixXd& theta, int top, const Vector3d& arm, const MatrixXd& force,
+                                    int order) {
   Eigen::Matrix3Xd moment = Eigen::Matrix3Xd::Zero(3, theta.cols());
   const auto at = static_cast<std::size_t>(order);
-  for (Index c = 0; c < theta.cols(); c += kSeriesTop) {
-    const SeriesVector f = fe::get_vector(force.middleCols<kSeriesTop>(c), 0);
-    const SeriesVector angle = fe::get_vector(theta.middleCols<kSeriesTop>(c), 0);
+  for (Index c = 0; c < theta.cols(); c += top) {
+    const SeriesVector f = fe::get_vector(force.middleCols(c, top), 0);
+    const SeriesVector angle = fe::get_vector(theta.middleCols(c, top), 0);
     moment.col(c + order - 1) = fe::calc_arm_moment(angle, arm, f)[at] - arm.cross(f[at]);
   }
   return moment;
@@ -170,25 +170,31 @@ MatrixXd StaticManifold::solve(const MatrixXd& R) const {
   return u;
 }
 
-StaticManifold::Curves StaticManifold::make_curves(const MatrixXd& points) const {
-  Curves curves{points, {}};
+StaticManifold::Curves StaticManifold::make_curves(const MatrixXd& points, int top) const {
+  Curves curves{top, points.transpose(), {}, {}};
   const int N = static_cast<int>(large_.size()), n = static_cast<int>(points.cols());
-  for (int degree = 2; degree < 2 + static_cast<int>(fields_.size()); ++degree)
-    curves.monomials.push_back(degree == 2
-                                   ? calc_monomials(records::list_exponents(n, 2), points)
-                                   : calc_monomials(records::list_exponents(N, degree), points(Eigen::all, large_)));
+  for (int degree = 2; degree < 2 + static_cast<int>(fields_.size()) && degree <= top; ++degree) {
+    const MatrixXd values = degree == 2
+                                ? calc_monomials(records::list_exponents(n, 2), points)
+                                : calc_monomials(records::list_exponents(N, degree), points(Eigen::all, large_));
+    auto& used = curves.used.emplace_back();
+    for (int i = 0; i < static_cast<int>(values.cols()); ++i)
+      if (!values.col(i).isZero(0)) used.push_back(i);
+    curves.monomials.emplace_back(values(Eigen::all, used).transpose());
+  }
   return curves;
 }
 
 MatrixXd StaticManifold::calc_curve(const Curves& curves, const std::vector<int>& gdofs) const {
-  const Index m = curves.points.rows();
-  MatrixXd u = MatrixXd::Zero(static_cast<Index>(gdofs.size()), kSeriesTop * m);
-  const auto set_order = [&](int k, const MatrixXd& u_k) {
-    for (Index p = 0; p < m; ++p) u.col(kSeriesTop * p + k - 1) = u_k.col(p);
+  const Index m = curves.size(), N = static_cast<Index>(gdofs.size());
+  MatrixXd u = MatrixXd::Zero(N, curves.top * m), u_k(N, m);
+  const auto set_order = [&](int k, const MatrixXd& shapes, const MatrixXd& values) {
+    linear::multiply_dense(false, shapes, values, 0, u_k);
+    for (Index p = 0; p < m; ++p) u.col(curves.top * p + k - 1) = u_k.col(p);
   };
-  set_order(1, Phi_(gdofs, Eigen::all) * curves.points.transpose());
-  for (std::size_t k = 0; k < fields_.size(); ++k)
-    set_order(static_cast<int>(k) + 2, fields_[k](gdofs, Eigen::all) * curves.monomials[k].transpose());
+  set_order(1, Phi_(gdofs, Eigen::all), curves.amplitudes);
+  for (std::size_t k = 0; k < curves.monomials.size(); ++k)
+    set_order(static_cast<int>(k) + 2, fields_[k](gdofs, curves.used[k]), curves.monomials[k]);
   return u;
 }
 
@@ -203,70 +209,67 @@ MatrixXd StaticManifold::calc_element_curve(const Curves& curves, const fe::Elem
     const fe::RigidArm* arm = arms_.find(rows.node);
     if (!arm) continue;
     const MatrixXd parent = calc_node_curve(curves, arm->parent);
-    for (Index c = 0; c < u.cols(); c += kSeriesTop) {
-      const auto of_parent = parent.middleCols<kSeriesTop>(c);
-      if (arm->rotates && rows.rotations >= 0) u.block<3, kSeriesTop>(rows.rotations, c) = of_parent.bottomRows<3>();
+    for (Index c = 0; c < u.cols(); c += curves.top) {
+      const auto of_parent = parent.middleCols(c, curves.top);
+      if (arm->rotates && rows.rotations >= 0) u.block(rows.rotations, c, 3, curves.top) = of_parent.bottomRows<3>();
       if (!arm->translates || rows.translations < 0) continue;
       SeriesVector moved = fe::calc_arm_motion(fe::get_vector(of_parent, 3), arm->arm);
       const SeriesVector foot = fe::get_vector(of_parent, 0);
       for (std::size_t k = 0; k < moved.size(); ++k) moved[k] += foot[k];
-      fe::put_vector(moved, rows.translations, u.middleCols<kSeriesTop>(c));
+      fe::put_vector(moved, rows.translations, u.middleCols(c, curves.top));
     }
   }
   return u;
 }
 
 MatrixXd StaticManifold::calc_multipliers(const Curves& curves) const {
-  const Index m = curves.points.rows();
-  MatrixXd lambda = MatrixXd::Zero(Phi_.cols(), kSeriesTop * m);
-  for (Index p = 0; p < m; ++p) lambda.col(kSeriesTop * p) = curves.points.row(p).transpose();
-  for (std::size_t k = 0; k < multipliers_.size(); ++k) {
-    const MatrixXd lambda_k = multipliers_[k] * curves.monomials[k].transpose();
-    for (Index p = 0; p < m; ++p) lambda.col(kSeriesTop * p + static_cast<Index>(k) + 1) = lambda_k.col(p);
+  const Index m = curves.size();
+  MatrixXd lambda = MatrixXd::Zero(Phi_.cols(), curves.top * m);
+  for (Index p = 0; p < m; ++p) lambda.col(curves.top * p) = curves.amplitudes.col(p);
+  for (std::size_t k = 0; k < std::min(multipliers_.size(), curves.monomials.size()); ++k) {
+    const MatrixXd lambda_k = multipliers_[k](Eigen::all, curves.used[k]) * curves.monomials[k];
+    for (Index p = 0; p < m; ++p) lambda.col(curves.top * p + static_cast<Index>(k) + 1) = lambda_k.col(p);
   }
   return lambda;
 }
 
 MatrixXd StaticManifold::calc_arm_gauge(const Curves& curves, int order) const {
-  MatrixXd work = MatrixXd::Zero(Phi_.cols(), curves.points.rows());
+  MatrixXd work = MatrixXd::Zero(Phi_.cols(), curves.size());
   for (const fe::RigidArm& arm : arms_.list()) {
     if (!arm.translates || arm.arm.isZero(0)) continue;
-    const auto moved = calc_turned_arm(calc_node_curve(curves, arm.parent).bottomRows<3>(), arm.arm, order);
+    const auto moved = calc_turned_arm(calc_node_curve(curves, arm.parent).bottomRows<3>(), curves.top, arm.arm, order);
     work += W_.middleRows<3>(model_.nodes()[static_cast<std::size_t>(arm.node)].first_gdof).transpose() * moved;
   }
   return work + calc_carried_work(curves, order, psi_, MatrixXd::Zero(9, psi_.cols())).on_fields;
 }
 
 MatrixXd StaticManifold::calc_all_gradient(const MatrixXd& points, int degree) const {
-  const Curves curves = make_curves(points);
-  return Phi_.transpose() * calc_forces(curves, degree) - calc_arm_gauge(curves, degree);
+  const Curves curves = make_curves(points, degree);
+  return calc_forces(curves, degree, Rows::Modes) - calc_arm_gauge(curves, degree);
 }
 
 MatrixXd StaticManifold::calc_gradient(const MatrixXd& points, int degree) const {
   return calc_all_gradient(points, degree)(large_, Eigen::all);
 }
 
+/// The gradient at e_i has the coefficients of a_i³ a_j, so V at e_i + e_j gives that of a_i² a_j².
 MatrixXd StaticManifold::calc_quartic_pairs() const {
   const Index n = Phi_.cols();
+  const auto is_large = [&](Index j) { return std::binary_search(large_.begin(), large_.end(), static_cast<int>(j)); };
   std::vector<std::pair<Index, Index>> pairs;
   for (Index i = 0; i < n; ++i)
-    for (Index j = 0; j < i; ++j) pairs.emplace_back(i, j);
-  MatrixXd points = MatrixXd::Zero(n + 2 * std::ssize(pairs), n);
+    for (Index j = 0; j < i; ++j)
+      if (!is_large(i) || !is_large(j)) pairs.emplace_back(i, j);
+  MatrixXd points = MatrixXd::Zero(n + std::ssize(pairs), n);
   points.topRows(n).setIdentity();
-  for (std::size_t k = 0; k < pairs.size(); ++k) {
-    auto both = points.middleRows<2>(n + 2 * static_cast<Index>(k));
-    both.col(pairs[k].first).setOnes();
-    both.col(pairs[k].second) << 1, -1;
-  }
-  VectorXd V(points.rows());
-  for (Index first = 0; first < points.rows(); first += kPointsAtOnce) {  // bounds the memory
-    const MatrixXd some = points.middleRows(first, std::min(kPointsAtOnce, points.rows() - first));
-    V.segment(first, some.rows()) = some.cwiseProduct(calc_all_gradient(some, 3).transpose()).rowwise().sum() / 4;
-  }
-  MatrixXd Q = MatrixXd(V.head(n).asDiagonal());
+  for (std::size_t k = 0; k < pairs.size(); ++k)
+    points(n + static_cast<Index>(k), pairs[k].first) = points(n + static_cast<Index>(k), pairs[k].second) = 1;
+  const MatrixXd gradient = calc_all_gradient(points, 3);
+  MatrixXd Q = MatrixXd(gradient.diagonal().asDiagonal()) / 4;
   for (std::size_t k = 0; k < pairs.size(); ++k) {
     const auto [i, j] = pairs[k];
-    Q(i, j) = Q(j, i) = V.segment<2>(n + 2 * static_cast<Index>(k)).mean() - V[i] - V[j];
+    const Index p = n + static_cast<Index>(k);
+    Q(i, j) = Q(j, i) = (gradient(i, p) + gradient(j, p)) / 4 - Q(i, i) - Q(j, j) - gradient(j, i) - gradient(i, j);
   }
   return Q;
 }
@@ -325,37 +328,43 @@ MatrixXd StaticManifold::advance(int degree, const Lattice& lattice) {
 
 MatrixXd StaticManifold::solve_field(int degree, const Lattice& lattice, MatrixXd& gradient) const {
   const Curves curves = make_curves(degree, lattice);
-  const MatrixXd R = lattice.fit(calc_forces(curves, degree)), gauge = lattice.fit(calc_arm_gauge(curves, degree));
+  const MatrixXd R = lattice.fit(calc_forces(curves, degree, Rows::Dofs)),
+                 gauge = lattice.fit(calc_arm_gauge(curves, degree));
   gradient = linear::calc_inner_products(Phi_, R) - gauge;
   MatrixXd u = solve(R) - Phi_ * K_factor_.solve(gauge);
   for (const fe::RigidArm& arm : arms_.list()) {
     if (!arm.translates || arm.arm.isZero(0)) continue;
-    const auto moved = calc_turned_arm(calc_node_curve(curves, arm.parent).bottomRows<3>(), arm.arm, degree);
+    const auto moved =
+        calc_turned_arm(calc_node_curve(curves, arm.parent).bottomRows<3>(), curves.top, arm.arm, degree);
     u.middleRows<3>(model_.nodes()[static_cast<std::size_t>(arm.node)].first_gdof) += lattice.fit(moved);
   }
   return u;
 }
 
-MatrixXd StaticManifold::calc_forces(const Curves& curves, int order) const {
-  const Index m = curves.points.rows();
-  MatrixXd result = MatrixXd::Zero(model_.num_gdofs(), m);
+MatrixXd StaticManifold::calc_forces(const Curves& curves, int order, Rows rows_of_result) const {
+  const Index m = curves.size();
+  const bool on_modes = rows_of_result == Rows::Modes;
+  MatrixXd result = MatrixXd::Zero(on_modes ? Phi_.cols() : model_.num_gdofs(), m);
   const auto add = [&](const std::vector<int>& gdofs, const MatrixXd& f, MatrixXd& sum) {
     MatrixXd f_k(f.rows(), m);
-    for (Index p = 0; p < m; ++p) f_k.col(p) = f.col(kSeriesTop * p + order - 1);
-    sum(gdofs, Eigen::all) += f_k;
+    for (Index p = 0; p < m; ++p) f_k.col(p) = f.col(curves.top * p + order - 1);
+    if (on_modes)
+      linear::multiply_dense(true, Phi_(gdofs, Eigen::all), f_k, 1, sum);
+    else
+      sum(gdofs, Eigen::all) += f_k;
   };
   /// Forces at the end of an arm go to its parent, with the moment of where they act.
   const auto move_to_parent = [&](const fe::RigidArm& arm, const NodeRows& rows, MatrixXd& f, MatrixXd& sum) {
     const MatrixXd parent = calc_node_curve(curves, arm.parent);
     MatrixXd moved = MatrixXd::Zero(6, f.cols());
-    for (Index c = 0; c < f.cols(); c += kSeriesTop) {
-      if (arm.rotates && rows.rotations >= 0)
-        moved.block<3, kSeriesTop>(3, c) += f.block<3, kSeriesTop>(rows.rotations, c);
+    const int top = curves.top;
+    for (Index c = 0; c < f.cols(); c += top) {
+      if (arm.rotates && rows.rotations >= 0) moved.block(3, c, 3, top) += f.block(rows.rotations, c, 3, top);
       if (!arm.translates || rows.translations < 0) continue;
-      moved.block<3, kSeriesTop>(0, c) = f.block<3, kSeriesTop>(rows.translations, c);
-      const SeriesVector moment = fe::calc_arm_moment(fe::get_vector(parent.middleCols<kSeriesTop>(c), 3), arm.arm,
-                                                      fe::get_vector(f.middleCols<kSeriesTop>(c), rows.translations));
-      for (int k = 1; k <= kSeriesTop; ++k) moved.block<3, 1>(3, c + k - 1) += moment[static_cast<std::size_t>(k)];
+      moved.block(0, c, 3, top) = f.block(rows.translations, c, 3, top);
+      const SeriesVector moment = fe::calc_arm_moment(fe::get_vector(parent.middleCols(c, top), 3), arm.arm,
+                                                      fe::get_vector(f.middleCols(c, top), rows.translations));
+      for (int k = 1; k <= top; ++k) moved.block<3, 1>(3, c + k - 1) += moment[static_cast<std::size_t>(k)];
     }
     if (arm.rotates && rows.rotations >= 0) f.middleRows<3>(rows.rotations).setZero();
     if (arm.translates && rows.translations >= 0) f.middleRows<3>(rows.translations).setZero();
@@ -373,7 +382,8 @@ MatrixXd StaticManifold::calc_forces(const Curves& curves, int order) const {
                                  if (element.num_dofs() == 0 || !has_stiffness(element)) return;
                                  if (half == 1 && second.size() == 0) second.setZero(result.rows(), result.cols());
                                  const fe::CorotationalElement corotational(element, model_.nodes());
-                                 add_element(element, corotational.calc_forces(calc_element_curve(curves, element)),
+                                 add_element(element,
+                                             corotational.calc_forces(calc_element_curve(curves, element), curves.top),
                                              half == 0 ? result : second);
                                });
   if (second.size() > 0) result += second;
@@ -389,7 +399,7 @@ MatrixXd StaticManifold::calc_forces(const Curves& curves, int order) const {
         for (Index r = 0; r < carried.mass.mu.rows(); ++r)
           force += carried.mass.mu(r, part.point) * along.middleRows<3>(3 * r);
         f -= turn.Theta.transpose() *
-             calc_turned_moment(turn.Theta * carried.u, part.arm, part.B.transpose() * force, order);
+             calc_turned_moment(turn.Theta * carried.u, carried.top, part.arm, part.B.transpose() * force, order);
       }
     add_element(element, f, result);
   });
@@ -399,19 +409,21 @@ MatrixXd StaticManifold::calc_forces(const Curves& curves, int order) const {
       const MatrixXd force = W_.middleRows<3>(model_.nodes()[static_cast<std::size_t>(arm.node)].first_gdof) * lambda;
       const int turn = model_.nodes()[static_cast<std::size_t>(arm.parent)].first_gdof + 3;
       add({turn, turn + 1, turn + 2},
-          -calc_turned_moment(calc_node_curve(curves, arm.parent).bottomRows<3>(), arm.arm, force, order), result);
+          -calc_turned_moment(calc_node_curve(curves, arm.parent).bottomRows<3>(), curves.top, arm.arm, force, order),
+          result);
     }
   linear::sum_over_ranks(result);
   return result;
 }
 
 StaticManifold::Curves StaticManifold::make_curves(int degree, const Lattice& lattice) const {
-  return make_curves(degree == 2 ? lattice.points() : spread(lattice.points(), large_, Phi_.cols()));
+  return make_curves(degree == 2 ? lattice.points() : spread(lattice.points(), large_, Phi_.cols()), degree);
 }
 
 MatrixXd StaticManifold::calc_recovery(int degree, const Lattice& lattice, const fe::Element& element) const {
-  const auto local = fe::CorotationalElement(element, model_.nodes())
-                         .calc_local(calc_element_curve(make_curves(degree, lattice), element));
+  Curves curves = make_curves(degree, lattice);
+  curves.top = kSeriesTop;
+  const auto local = fe::CorotationalElement(element, model_.nodes()).calc_local(calc_element_curve(curves, element));
   const auto take = [&](const MatrixXd& series) {
     MatrixXd values(series.rows(), lattice.size());
     for (Index p = 0; p < values.cols(); ++p) values.col(p) = series.col(kSeriesTop * p + degree - 1);
@@ -428,7 +440,7 @@ MatrixXd StaticManifold::calc_arm_work(int degree, const Lattice& lattice,
     for (const auto& load : loads[e]) {
       const int g = load.first_rotation;
       work.row(static_cast<Index>(e)) +=
-          load.force.transpose() * calc_turned_arm(calc_curve(curves, {g, g + 1, g + 2}), load.arm, degree);
+          load.force.transpose() * calc_turned_arm(calc_curve(curves, {g, g + 1, g + 2}), curves.top, load.arm, degree);
     }
   return lattice.fit(work);
 }
@@ -437,16 +449,17 @@ MatrixXd StaticManifold::calc_chord_forces(const Carried& carried, const MatrixX
   const auto& moved = carried.mass.fields.front().moved;
   const Index num = carried.mass.mu.rows();
   MatrixXd result = MatrixXd::Zero(carried.u.rows(), carried.u.cols());
-  for (Index c = 0; c < carried.u.cols(); c += kSeriesTop) {
+  const int top = carried.top;
+  for (Index c = 0; c < carried.u.cols(); c += top) {
     std::vector<SeriesVector> forces;
     VectorXd linear = VectorXd::Zero(carried.u.rows());
     for (const auto& point : moved) {
-      MatrixXd force = MatrixXd::Zero(3, kSeriesTop);
-      for (Index r = 0; r < num; ++r) force += carried.mass.mu(r, point.point) * along.block<3, kSeriesTop>(3 * r, c);
+      MatrixXd force = MatrixXd::Zero(3, top);
+      for (Index r = 0; r < num; ++r) force += carried.mass.mu(r, point.point) * along.block(3 * r, c, 3, top);
       linear += carried.motion.middleRows<3>(3 * point.point).transpose() * force.col(order - 1);
       forces.push_back(fe::get_vector(force, 0));
     }
-    const fe::ChordSeries chord(carried.mass, carried.u.middleCols<kSeriesTop>(c));
+    const fe::ChordSeries chord(carried.mass, carried.u.middleCols(c, top));
     result.col(c + order - 1) = chord.calc_forces(forces).col(order - 1) - linear;
   }
   return result;
@@ -454,9 +467,9 @@ MatrixXd StaticManifold::calc_chord_forces(const Carried& carried, const MatrixX
 
 MatrixXd StaticManifold::calc_chord_motion(const Carried& carried, int order) {
   const auto& points = carried.mass.fields.front().moved;
-  MatrixXd moved = MatrixXd::Zero(carried.motion.rows(), carried.u.cols() / kSeriesTop);
+  MatrixXd moved = MatrixXd::Zero(carried.motion.rows(), carried.u.cols() / carried.top);
   for (Index c = 0; c < moved.cols(); ++c) {
-    const auto u = carried.u.middleCols<kSeriesTop>(kSeriesTop * c);
+    const auto u = carried.u.middleCols(carried.top * c, carried.top);
     const fe::ChordSeries chord(carried.mass, u);
     for (std::size_t p = 0; p < points.size(); ++p) {
       const Index row = 3 * points[p].point;
@@ -471,7 +484,7 @@ template <class Visit>
 void StaticManifold::visit_carried(const Curves& curves, const Visit& visit) const {
   fe::visit_elements(model_, fe::get_own_elements(model_), [&](int, const fe::Element& element) {
     if (!element.offset_mass(model_.mass_kind())) return;
-    Carried carried{fe::CarriedMass(element.num_dofs()), {}, {}};
+    Carried carried{fe::CarriedMass(element.num_dofs()), curves.top, {}, {}};
     if (!fe::calc_carried(model_, element, model_.mass_kind(), carried.mass)) return;
     // Places between two ends alone move linearly, off as h²: so are their elements' bows.
     const auto has_arms = [&](const fe::CarriedField& field) {
@@ -497,7 +510,7 @@ StaticManifold::CarriedWork StaticManifold::calc_carried_work(int degree, const 
 
 StaticManifold::CarriedWork StaticManifold::calc_carried_work(const Curves& curves, int order, const MatrixXd& psi,
                                                               const MatrixXd& strain) const {
-  const Index m = curves.points.rows();
+  const Index m = curves.size();
   CarriedWork work{MatrixXd::Zero(psi.cols(), m), MatrixXd::Zero(records::kNumInertialLoads, m)};
   const fe::AccelerationFields units(MatrixXd::Identity(records::kNumInertialLoads, records::kNumInertialLoads));
   visit_carried(curves, [&](const fe::Element& element, const Carried& carried) {
@@ -507,7 +520,7 @@ StaticManifold::CarriedWork StaticManifold::calc_carried_work(const Curves& curv
     for (const auto& turn : carried.mass.fields.empty() ? carried.mass.turns : std::vector<fe::CarriedTurn>())
       for (const auto& part : turn.parts)
         moved.middleRows<3>(3 * static_cast<Index>(part.point)) +=
-            part.B * calc_turned_arm(turn.Theta * carried.u, part.arm, order);
+            part.B * calc_turned_arm(turn.Theta * carried.u, carried.top, part.arm, order);
     MatrixXd along = carried.motion * psi(element.gdofs(), Eigen::all);
     for (Index s = 0; s < num; ++s) {
       const auto& point = carried.mass.points[static_cast<std::size_t>(s)];

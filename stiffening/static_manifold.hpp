@@ -1,6 +1,7 @@
 #pragma once
 /// \file Displacements of a body beyond its modes: the static manifold of given amplitudes, degree by degree
 /// (docs/theory/third-order.md). Amplitudes are scaled: 1/ω of a mode each.
+#include "fe/corotational/series.hpp"
 #include "fe/elements/carried.hpp"
 #include "fe/model/rigid_arms.hpp"
 #include "stiffening/stages.hpp"
@@ -79,33 +80,38 @@ class StaticManifold {
   MatrixXd calc_recovery(int degree, const Lattice& lattice, const fe::Element& element) const;
 
  private:
-  /// Points, and the monomials of each field there.
+  /// Amplitudes of points, and the monomials of each field there that are not zero at all of them.
   struct Curves {
-    MatrixXd points;
-    std::vector<MatrixXd> monomials;
+    int top = fe::kSeriesTop;            ///< orders of the series along each, side by side
+    MatrixXd amplitudes;                 ///< n x points
+    std::vector<MatrixXd> monomials;     ///< of a field each, used x points
+    std::vector<std::vector<int>> used;  ///< their indices
+    /// Number of points.
+    Eigen::Index size() const { return amplitudes.cols(); }
   };
   /// Carried points of an element along the curves.
   struct Carried {
     fe::CarriedMass mass;
-    MatrixXd u;       ///< dofs along the curves, N x 5 points
+    int top;
+    MatrixXd u;       ///< dofs along the curves, N x top points
     MatrixXd motion;  ///< H of every point, 3 points x N
   };
   /// Gradient by all amplitudes, n x points.
   MatrixXd calc_all_gradient(const MatrixXd& points, int degree) const;
-  /// Coefficients of a_i² a_j² in V, on the diagonal of a_i⁴, with u₂ held along all modes: n x n. Costs n² points over
-  /// all elements.
+  /// Coefficients of a_i² a_j² in V, on the diagonal of a_i⁴, with u₂ held along all modes: n x n; zero for two large
+  /// modes. Costs n²/2 points over all elements.
   MatrixXd calc_quartic_pairs() const;
   /// The fields of the next degree, held along all modes; gradient: n x monomials.
   MatrixXd solve_field(int degree, const Lattice& lattice, MatrixXd& gradient) const;
-  Curves make_curves(const MatrixXd& points) const;
+  Curves make_curves(const MatrixXd& points, int top) const;
   Curves make_curves(int degree, const Lattice& lattice) const;
-  /// u of these dofs along the curves, the five orders of a point side by side: gdofs x 5 points.
+  /// u of these dofs along the curves, the orders of a point side by side: gdofs x top points.
   MatrixXd calc_curve(const Curves& curves, const std::vector<int>& gdofs) const;
-  /// The six dofs of a grid along the curves, 6 x 5 points.
+  /// The six dofs of a grid along the curves, 6 x top points.
   MatrixXd calc_node_curve(const Curves& curves, int node) const;
   /// Dofs of an element along the curves; ends of rigid arms are where their parents take them.
   MatrixXd calc_element_curve(const Curves& curves, const fe::Element& element) const;
-  /// Multipliers λ of the amplitudes along the curves, n x 5 points.
+  /// Multipliers λ of the amplitudes along the curves, n x top points.
   MatrixXd calc_multipliers(const Curves& curves) const;
 
   void set_rigid_motions(const BodyRequest& request, const linear::SymmetricMatrix& M);
@@ -113,13 +119,15 @@ class StaticManifold {
   /// Displacements -G R of the forces R that each monomial has, num_gdofs x monomials, without a part along the modes.
   MatrixXd solve(const MatrixXd& R) const;
   /// Order `order` of the elements' forces along u_1 .. of the fields there are, less what the loads W λ have more on
-  /// turned arms, at each point: num_gdofs x points, none at the ends of rigid arms.
-  MatrixXd calc_forces(const Curves& curves, int order) const;
+  /// turned arms, at each point: num_gdofs x points, none at the ends of rigid arms; or their work on the modes,
+  /// n x points.
+  enum class Rows { Dofs, Modes };
+  MatrixXd calc_forces(const Curves& curves, int order, Rows rows) const;
   /// Work of the loads W on what arms move beyond the linear motion: n x points.
   MatrixXd calc_arm_gauge(const Curves& curves, int order) const;
-  /// Points between the ends of a consistent beam. Forces (N x 5 points, this order alone) of the loads `along` (3
-  /// points of the element x 5 points) beyond those on the linear motion; motion of this order beyond H u, 3 points of
-  /// the element x points.
+  /// Points between the ends of a consistent beam. Forces (N x top points, this order alone) of the loads `along` (3
+  /// points of the element x top points) beyond those on the linear motion; motion of this order beyond H u, 3 points
+  /// of the element x points.
   static MatrixXd calc_chord_forces(const Carried& carried, const MatrixXd& along, int order);
   static MatrixXd calc_chord_motion(const Carried& carried, int order);
   template <class Visit>

@@ -290,10 +290,14 @@ void set_third_order(const BodyRequest& request, const fe::Model& model, const M
 
   // Degree 2 is of all modes: stiffening by loads concerns the small ones as well.
   const Lattice pairs(n, 2);
+  const auto report_points = [&](const std::string& stage, const Lattice& lattice) {
+    request.report("third order: " + stage + ", " + std::to_string(lattice.size()) + " points");
+  };
+  report_points("degree 2", pairs);
   const MatrixXd on_modes = manifold.begin(pairs);  // n x pairs
   if (large.empty()) large = find_default_large_modes(model, manifold.Phi(), on_modes, basis.kind);
-  manifold.select_large(large, on_modes);
   request.report("third order: large modes " + list_modes(large));
+  manifold.select_large(large, on_modes);
   const int N = static_cast<int>(large.size());
   ThirdOrder third;
   third.large = large;
@@ -307,12 +311,14 @@ void set_third_order(const BodyRequest& request, const fe::Model& model, const M
   }
   for (int k = 3; k <= ThirdOrder::kMaxField; ++k) {
     const Lattice& own = lattices[static_cast<std::size_t>(k - 3)];
+    report_points("degree " + std::to_string(k), own);
     const MatrixXd gradient = manifold.advance(k, own);
     const Lattice& next = lattices[static_cast<std::size_t>(k - 2)];
     work.push_back(gradient * calc_monomials(own.exponents(), next.points()).transpose());
   }
   {  // degree 6: u₅ is not needed
     const Lattice &own = lattices[2], &next = lattices[3];
+    report_points("energy of degree 6", own);
     const MatrixXd gradient = own.fit(manifold.calc_gradient(spread(own.points(), large, n), 5));
     work.push_back(gradient * calc_monomials(own.exponents(), next.points()).transpose());
   }

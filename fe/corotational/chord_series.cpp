@@ -87,7 +87,7 @@ MatrixXd ChordSeries::calc_forces(const std::vector<SeriesVector>& forces) const
     add_seen(moved.motion, g);
     if (at.is_place) continue;
     const SeriesVector arm = turn_constant(calc_exponential(seen.tau), at.x);
-    SeriesVector on_tau = multiply(transpose(calc_tangent(seen.tau)), cross(arm, g));
+    SeriesVector on_tau = apply_tangent_transpose(seen.tau, cross(arm, g));
     for (std::size_t k = 0; k < on_tau.size(); ++k) on_tau[k] -= at.x.cross(g[k]);
     add_seen(moved.turn, on_tau);
   }
@@ -95,13 +95,13 @@ MatrixXd ChordSeries::calc_forces(const std::vector<SeriesVector>& forces) const
   SeriesVector on_a = scale(-1, on_b);
   add(total, on_a);
   add(scale(-1, cross(c_, on_b)), moment);
-  add(scale(0.5, multiply(transpose(calc_tangent(scale(0.5, rho_))), multiply(transpose(R_a_), moment))), on_rho);
-  const SeriesVector spin_b = multiply(R_a_, multiply(transpose(calc_inverse_tangent(rho_)), on_rho));
+  add(scale(0.5, apply_tangent_transpose(scale(0.5, rho_), multiply(transpose(R_a_), moment))), on_rho);
+  const SeriesVector spin_b = multiply(R_a_, apply_inverse_tangent_transpose(rho_, on_rho));
   SeriesVector spin_a = scale(-1, spin_b);
   add(moment, spin_a);
   const auto add_arm = [](const SeriesVector& theta, const Vector3d& arm, const SeriesVector& force,
                           const SeriesVector& spin) {
-    SeriesVector result = multiply(transpose(calc_tangent(theta)), spin);
+    SeriesVector result = apply_tangent_transpose(theta, spin);
     add(calc_arm_moment(theta, arm, force), result);
     return result;
   };

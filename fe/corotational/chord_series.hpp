@@ -13,7 +13,8 @@ namespace bough::fe {
 
 class ChordSeries {
  public:
-  /// u: 12 x 5, orders 1 to 5 of [u_A θ_A u_B θ_B] of the grids. `carried`: with one field; both outlive the object.
+  /// u: 12 x k, orders 1 to k, at most 5, of [u_A θ_A u_B θ_B] of the grids. `carried`: with one field; both outlive
+  /// the object.
   ChordSeries(const CarriedMass& carried, const Eigen::Ref<const MatrixXd>& u);
 
   /// Motion of moved point p of the field.

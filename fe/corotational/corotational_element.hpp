@@ -3,6 +3,9 @@
 ///
 /// Element-independent: the linear K_e in a frame that follows the nodes, and the second-order strains inside the
 /// element from its K_G. Theory: docs/theory/third-order.md (1) to (3).
+#include <vector>
+
+#include "fe/corotational/series.hpp"
 #include "fe/elements/element.hpp"
 #include "fe/elements/thermal_loads.hpp"
 
@@ -50,9 +53,9 @@ class CorotationalElement {
   /// Number N of dofs.
   int num_dofs() const { return static_cast<int>(K_.rows()); }
 
-  /// Coefficients 1 to 5 of ∂V/∂u along u(ε) = Σ ε^k u_k: conjugate to translations and rotation vectors in basic.
-  /// u, result: N x 5 m for m curves, the five orders of each side by side.
-  MatrixXd calc_forces(const Eigen::Ref<const MatrixXd>& u) const;
+  /// Coefficients 1 to `top` (2 to 5) of ∂V/∂u along u(ε) = Σ ε^k u_k: conjugate to translations and rotation vectors
+  /// in basic. u, result: N x top m for m curves, the orders of each side by side.
+  MatrixXd calc_forces(const Eigen::Ref<const MatrixXd>& u, int top = kSeriesTop) const;
   /// Deformations and internal forces along the curves u (N x 5 m); d = u and no internal forces if it does not follow
   /// nodes.
   LocalSeries calc_local(const Eigen::Ref<const MatrixXd>& u) const;
@@ -85,11 +88,22 @@ class CorotationalElement {
   bool is_free_of_rigid_motion() const;
   void set_frame();
   void set_local_strains(const Element& element);
+  template <int Top>
   struct Motion;
-  /// Frames and nodes along the curves, and d as LocalSeries has it.
-  std::vector<Motion> calc_motions(const Eigen::Ref<const MatrixXd>& u, MatrixXd& d) const;
-  /// w_m = dᵀP_m d: s x 5 m; Pd: P_m d of each.
-  MatrixXd calc_second_strains(const MatrixXd& d, std::vector<MatrixXd>& Pd) const;
+  /// Frames and nodes along the curves, N x Top m, and d as LocalSeries has it.
+  template <int Top>
+  void calc_motions(const Eigen::Ref<const MatrixXd>& u, std::vector<Motion<Top>>& motions, MatrixXd& d) const;
+  /// Internal forces that are independent, and what goes with them: F has as many rows as the element has strains, at
+  /// most N - 6 (CQUAD4: 18 of 36).
+  struct SecondStrains {
+    MatrixXd F, E;  ///< r x N, r x r
+    MatrixXd P;     ///< N x N r: side by side
+  };
+  SecondStrains reduce_second_strains() const;
+  template <int Top>
+  void calc_local_gradient(const SecondStrains& second, const MatrixXd& d, MatrixXd& g) const;
+  template <int Top>
+  void calc_series(const SecondStrains& second, const Eigen::Ref<const MatrixXd>& u, Eigen::Ref<MatrixXd> f) const;
   void calc_local_forces(const ThermalState* heat, FiniteForces& result) const;
 
   bool follows_nodes_ = false;

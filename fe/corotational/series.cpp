@@ -4,78 +4,83 @@
 
 namespace bough::fe {
 
-SeriesVector make_zero_vector() {
-  SeriesVector zero;
-  zero.fill(Vector3d::Zero());
-  return zero;
+template <std::size_t M>
+VectorSeries<M> rotate(const MatrixSeries<M>& A, const VectorSeries<M>& b) {
+  VectorSeries<M> product = b;
+  for (std::size_t k = 1; k < M; ++k)
+    for (std::size_t i = 1; i <= k; ++i) product[k].noalias() += A[i] * b[k - i];
+  return product;
 }
 
-SeriesMatrix make_zero_matrix() {
-  SeriesMatrix zero;
-  zero.fill(Matrix3d::Zero());
-  return zero;
+template <std::size_t M>
+VectorSeries<M> rotate_back(const MatrixSeries<M>& A, const VectorSeries<M>& b) {
+  VectorSeries<M> product = b;
+  for (std::size_t k = 1; k < M; ++k)
+    for (std::size_t i = 1; i <= k; ++i) product[k].noalias() += A[i].transpose() * b[k - i];
+  return product;
 }
 
-SeriesMatrix transpose(const SeriesMatrix& A) {
-  SeriesMatrix T;
-  for (std::size_t k = 0; k < A.size(); ++k) T[k] = A[k].transpose();
-  return T;
+template <std::size_t M>
+MatrixSeries<M> rotate_back(const MatrixSeries<M>& A, const MatrixSeries<M>& B) {
+  MatrixSeries<M> product;
+  product[0].setIdentity();
+  for (std::size_t k = 1; k < M; ++k) {
+    product[k] = A[k].transpose() + B[k];
+    for (std::size_t i = 1; i < k; ++i) product[k].noalias() += A[i].transpose() * B[k - i];
+  }
+  return product;
 }
 
-SeriesVector multiply(const SeriesMatrix& A, const SeriesVector& b) { return multiply<Vector3d>(A, b); }
-SeriesMatrix multiply(const SeriesMatrix& A, const SeriesMatrix& B) { return multiply<Matrix3d>(A, B); }
-
-SeriesVector cross(const SeriesVector& a, const SeriesVector& b) {
-  SeriesVector c = make_zero_vector();
-  for (std::size_t k = 0; k < c.size(); ++k)
+template <std::size_t M>
+VectorSeries<M> cross(const VectorSeries<M>& a, const VectorSeries<M>& b) {
+  VectorSeries<M> c = make_zero_vector<M>();
+  for (std::size_t k = 0; k < M; ++k)
     for (std::size_t i = 0; i <= k; ++i) c[k] += a[i].cross(b[k - i]);
   return c;
 }
 
-SeriesVector get_vector(const Eigen::Ref<const Eigen::MatrixXd>& u, Eigen::Index row) {
-  SeriesVector v = make_zero_vector();
-  for (int k = 1; k <= kSeriesTop; ++k) v[static_cast<std::size_t>(k)] = u.block<3, 1>(row, k - 1);
-  return v;
-}
-
-void put_vector(const SeriesVector& v, Eigen::Index row, Eigen::Ref<Eigen::MatrixXd> u) {
-  for (int k = 1; k <= kSeriesTop; ++k) u.block<3, 1>(row, k - 1) = v[static_cast<std::size_t>(k)];
-}
-
-SeriesVector solve(const SeriesMatrix& A, const Matrix3d& inverse_0, const SeriesVector& b) {
-  SeriesVector x;
-  for (std::size_t k = 0; k < x.size(); ++k) {
+template <std::size_t M>
+VectorSeries<M> solve(const MatrixSeries<M>& A, const Matrix3d& inverse_0, const VectorSeries<M>& b) {
+  VectorSeries<M> x;
+  for (std::size_t k = 0; k < M; ++k) {
     Vector3d right = b[k];
-    for (std::size_t i = 1; i <= k; ++i) right -= A[i] * x[k - i];
+    for (std::size_t i = 1; i <= k; ++i) right.noalias() -= A[i] * x[k - i];
     x[k] = inverse_0 * right;
   }
   return x;
 }
 
-SeriesVector calc_skew_axis(const SeriesMatrix& A) {
-  SeriesVector axis;
-  for (std::size_t k = 0; k < A.size(); ++k)
-    axis[k] = Vector3d(A[k](2, 1) - A[k](1, 2), A[k](0, 2) - A[k](2, 0), A[k](1, 0) - A[k](0, 1));
-  return axis;
-}
-
-SeriesMatrix subtract_from_trace(const SeriesMatrix& A) {
-  SeriesMatrix B;
-  for (std::size_t k = 0; k < A.size(); ++k) B[k] = A[k].trace() * Matrix3d::Identity() - A[k];
+template <std::size_t M>
+MatrixSeries<M> subtract_from_trace(const MatrixSeries<M>& A) {
+  MatrixSeries<M> B;
+  for (std::size_t k = 0; k < M; ++k) B[k] = A[k].trace() * Matrix3d::Identity() - A[k];
   return B;
 }
 
 namespace {
 
+template <std::size_t M>
+using Numbers = std::array<double, M>;
+
+/// v·v, from order 2 on as v_0 = 0.
+template <std::size_t M>
+Numbers<M> calc_square(const VectorSeries<M>& v) {
+  Numbers<M> square{};
+  for (std::size_t k = 2; k < M; ++k)
+    for (std::size_t i = 1; i < k; ++i) square[k] += v[i].dot(v[k - i]);
+  return square;
+}
+
 /// c0 + c1 v² + c2 v⁴. With v_0 = 0 the next power is of order 6.
-Series<double> calc_even_function(const std::array<double, 3>& c, const SeriesVector& v) {
-  static_assert(kSeriesTop < 6);
-  Series<double> square{}, result{};
-  for (std::size_t k = 0; k < square.size(); ++k)
-    for (std::size_t i = 0; i <= k; ++i) square[k] += v[i].dot(v[k - i]);
-  const auto fourth = multiply<double>(square, square);
+template <std::size_t M>
+Numbers<M> calc_even_function(const std::array<double, 3>& c, const Numbers<M>& square) {
+  static_assert(M <= 6);
+  Numbers<M> result{};
   result[0] = c[0];
-  for (std::size_t k = 0; k < result.size(); ++k) result[k] += c[1] * square[k] + c[2] * fourth[k];
+  for (std::size_t k = 2; k < M; ++k) {
+    result[k] = c[1] * square[k];
+    for (std::size_t i = 2; i + 2 <= k; ++i) result[k] += c[2] * square[i] * square[k - i];
+  }
   return result;
 }
 
@@ -84,35 +89,73 @@ constexpr std::array kSinc{1.0, -1.0 / 6, 1.0 / 120}, kVersine{1.0 / 2, -1.0 / 2
     kThird{1.0 / 6, -1.0 / 120, 1.0 / 5040}, kInverse{1.0 / 12, 1.0 / 720, 1.0 / 30240},
     kArcsine{1.0, 1.0 / 6, 3.0 / 40};
 
-/// 1 + a θ̃ + b θ̃².
-SeriesMatrix combine(const Series<double>& a, const Series<double>& b, const SeriesVector& theta) {
-  SeriesMatrix S;
-  for (std::size_t k = 0; k < S.size(); ++k) S[k] = skew(theta[k]);
-  SeriesMatrix sum = multiply<Matrix3d>(a, S);
-  const SeriesMatrix second = multiply<Matrix3d>(b, multiply(S, S));
-  for (std::size_t k = 0; k < S.size(); ++k) sum[k] += second[k];
-  sum[0] += Matrix3d::Identity();
-  return sum;
+/// a v, v_0 = 0.
+template <std::size_t M>
+VectorSeries<M> scale(const Numbers<M>& a, const VectorSeries<M>& v) {
+  VectorSeries<M> product = make_zero_vector<M>();
+  for (std::size_t k = 1; k < M; ++k)
+    for (std::size_t i = 0; i < k; ++i) product[k] += a[i] * v[k - i];
+  return product;
+}
+
+/// θ × v, θ_0 = 0.
+template <std::size_t M>
+VectorSeries<M> turn(const VectorSeries<M>& theta, const VectorSeries<M>& v) {
+  VectorSeries<M> c = make_zero_vector<M>();
+  for (std::size_t k = 1; k < M; ++k)
+    for (std::size_t i = 1; i <= k; ++i) c[k] += theta[i].cross(v[k - i]);
+  return c;
+}
+
+/// v + θ × (a v) + b θ × (θ × v).
+template <std::size_t M>
+VectorSeries<M> apply(const Numbers<M>& a, const Numbers<M>& b, const VectorSeries<M>& theta,
+                      const VectorSeries<M>& v) {
+  const VectorSeries<M> once = turn(theta, v), twice = scale(b, turn(theta, once)), first = scale(a, once);
+  VectorSeries<M> result = v;
+  for (std::size_t k = 1; k < M; ++k) result[k] += first[k] + twice[k];
+  return result;
 }
 
 }  // namespace
 
-SeriesMatrix calc_exponential(const SeriesVector& theta) {
-  return combine(calc_even_function(kSinc, theta), calc_even_function(kVersine, theta), theta);
+/// 1 + a θ̃ + b (θ θᵀ - θ² 1).
+template <std::size_t M>
+MatrixSeries<M> calc_exponential(const VectorSeries<M>& theta) {
+  const Numbers<M> square = calc_square(theta), b = calc_even_function(kVersine, square);
+  const VectorSeries<M> a_theta = scale(calc_even_function(kSinc, square), theta);
+  MatrixSeries<M> second = make_zero_matrix<M>(), R;
+  for (std::size_t k = 2; k < M; ++k) {
+    for (std::size_t i = 1; i < k; ++i) second[k].noalias() += theta[i] * theta[k - i].transpose();
+    second[k].diagonal().array() -= square[k];
+  }
+  R[0].setIdentity();
+  for (std::size_t k = 1; k < M; ++k) {
+    R[k] = skew(a_theta[k]);
+    for (std::size_t i = 0; i + 2 <= k; ++i) R[k] += b[i] * second[k - i];
+  }
+  return R;
 }
 
-SeriesVector calc_logarithm(const SeriesMatrix& R) {
-  SeriesVector axis = calc_skew_axis(R);
-  for (auto& v : axis) v *= 0.5;
-  return multiply<Vector3d>(calc_even_function(kArcsine, axis), axis);
+template <std::size_t M>
+VectorSeries<M> calc_logarithm(const MatrixSeries<M>& R) {
+  VectorSeries<M> axis;
+  for (std::size_t k = 0; k < M; ++k)
+    axis[k] = 0.5 * Vector3d(R[k](2, 1) - R[k](1, 2), R[k](0, 2) - R[k](2, 0), R[k](1, 0) - R[k](0, 1));
+  return scale(calc_even_function(kArcsine, calc_square(axis)), axis);
 }
 
-SeriesMatrix calc_tangent(const SeriesVector& theta) {
-  return combine(calc_even_function(kVersine, theta), calc_even_function(kThird, theta), theta);
+template <std::size_t M>
+VectorSeries<M> apply_tangent_transpose(const VectorSeries<M>& theta, const VectorSeries<M>& v) {
+  const Numbers<M> square = calc_square(theta);
+  Numbers<M> a = calc_even_function(kVersine, square);
+  for (double& value : a) value = -value;
+  return apply(a, calc_even_function(kThird, square), theta, v);
 }
 
-SeriesMatrix calc_inverse_tangent(const SeriesVector& theta) {
-  return combine({-0.5}, calc_even_function(kInverse, theta), theta);
+template <std::size_t M>
+VectorSeries<M> apply_inverse_tangent_transpose(const VectorSeries<M>& theta, const VectorSeries<M>& v) {
+  return apply({0.5}, calc_even_function(kInverse, calc_square(theta)), theta, v);
 }
 
 SeriesVector calc_arm_motion(const SeriesVector& theta, const Vector3d& arm) {
@@ -127,7 +170,25 @@ SeriesVector calc_arm_moment(const SeriesVector& theta, const Vector3d& arm, con
   const SeriesMatrix R = calc_exponential(theta);
   SeriesVector turned;
   for (std::size_t k = 0; k < turned.size(); ++k) turned[k] = R[k] * arm;
-  return multiply(transpose(calc_tangent(theta)), cross(turned, force));
+  return apply_tangent_transpose(theta, cross(turned, force));
 }
+
+#define BOUGH_SERIES(M)                                                                                      \
+  template VectorSeries<M> rotate<M>(const MatrixSeries<M>&, const VectorSeries<M>&);                        \
+  template VectorSeries<M> rotate_back<M>(const MatrixSeries<M>&, const VectorSeries<M>&);                   \
+  template MatrixSeries<M> rotate_back<M>(const MatrixSeries<M>&, const MatrixSeries<M>&);                   \
+  template VectorSeries<M> cross<M>(const VectorSeries<M>&, const VectorSeries<M>&);                         \
+  template VectorSeries<M> solve<M>(const MatrixSeries<M>&, const Eigen::Matrix3d&, const VectorSeries<M>&); \
+  template MatrixSeries<M> subtract_from_trace<M>(const MatrixSeries<M>&);                                   \
+  template MatrixSeries<M> calc_exponential<M>(const VectorSeries<M>&);                                      \
+  template VectorSeries<M> calc_logarithm<M>(const MatrixSeries<M>&);                                        \
+  template VectorSeries<M> apply_tangent_transpose<M>(const VectorSeries<M>&, const VectorSeries<M>&);       \
+  template VectorSeries<M> apply_inverse_tangent_transpose<M>(const VectorSeries<M>&, const VectorSeries<M>&);
+
+BOUGH_SERIES(3)
+BOUGH_SERIES(4)
+BOUGH_SERIES(5)
+BOUGH_SERIES(6)
+#undef BOUGH_SERIES
 
 }  // namespace bough::fe

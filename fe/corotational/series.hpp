@@ -1,8 +1,8 @@
 #pragma once
 /// \file Truncated power series in one variable ε, and rotations along them (docs/theory/third-order.md).
 ///
-/// A series is an array of its coefficients, orders 0 to 5, exact to the last order kept. Rotation vectors begin at
-/// order 1: they are those of a motion away from the undeformed state.
+/// A series is an array of its coefficients, orders 0 to 5 or fewer, exact to the last order kept. Rotation vectors
+/// begin at order 1: they are those of a motion away from the undeformed state.
 #include <array>
 
 #include <Eigen/Dense>
@@ -11,53 +11,101 @@ namespace bough::fe {
 
 constexpr int kSeriesTop = 5;  ///< highest order kept
 
-template <typename T>
-using Series = std::array<T, kSeriesTop + 1>;
+/// M coefficients, of orders 0 to M - 1; series.cpp has M = 3 to 6.
+template <std::size_t M>
+using VectorSeries = std::array<Eigen::Vector3d, M>;
+template <std::size_t M>
+using MatrixSeries = std::array<Eigen::Matrix3d, M>;
+/// Series to the highest order.
+using SeriesVector = VectorSeries<kSeriesTop + 1>;
+using SeriesMatrix = MatrixSeries<kSeriesTop + 1>;
 
 /// Σ_i a_i b_(k-i).
-template <typename R, typename A, typename B>
-Series<R> multiply(const Series<A>& a, const Series<B>& b) {
-  Series<R> product;
-  for (int k = 0; k <= kSeriesTop; ++k) {
-    R sum = a[0] * b[static_cast<std::size_t>(k)];
-    for (int i = 1; i <= k; ++i) sum += a[static_cast<std::size_t>(i)] * b[static_cast<std::size_t>(k - i)];
-    product[static_cast<std::size_t>(k)] = sum;
+template <typename R, typename A, typename B, std::size_t M>
+std::array<R, M> multiply(const std::array<A, M>& a, const std::array<B, M>& b) {
+  std::array<R, M> product;
+  for (std::size_t k = 0; k < M; ++k) {
+    R sum = a[0] * b[k];
+    for (std::size_t i = 1; i <= k; ++i) sum += a[i] * b[k - i];
+    product[k] = sum;
   }
   return product;
 }
 
-using SeriesVector = Series<Eigen::Vector3d>;
-using SeriesMatrix = Series<Eigen::Matrix3d>;
-
-/// The series with six coefficients 0.
-SeriesVector make_zero_vector();
-/// The series with six coefficients 0.
-SeriesMatrix make_zero_matrix();
+/// The vector series with all coefficients 0.
+template <std::size_t M = kSeriesTop + 1>
+VectorSeries<M> make_zero_vector() {
+  VectorSeries<M> zero;
+  zero.fill(Eigen::Vector3d::Zero());
+  return zero;
+}
+/// The matrix series with all coefficients 0.
+template <std::size_t M = kSeriesTop + 1>
+MatrixSeries<M> make_zero_matrix() {
+  MatrixSeries<M> zero;
+  zero.fill(Eigen::Matrix3d::Zero());
+  return zero;
+}
 /// Aᵀ, coefficient by coefficient.
-SeriesMatrix transpose(const SeriesMatrix& A);
-/// A b, truncated after order 5.
-SeriesVector multiply(const SeriesMatrix& A, const SeriesVector& b);
-/// A B, truncated after order 5.
-SeriesMatrix multiply(const SeriesMatrix& A, const SeriesMatrix& B);
-/// a × b, truncated after order 5.
-SeriesVector cross(const SeriesVector& a, const SeriesVector& b);
-/// Orders 1 to 5 at rows [row, row + 3) of a curve of N dofs, N x 5, and back.
-SeriesVector get_vector(const Eigen::Ref<const Eigen::MatrixXd>& u, Eigen::Index row);
-void put_vector(const SeriesVector& v, Eigen::Index row, Eigen::Ref<Eigen::MatrixXd> u);
+template <std::size_t M>
+MatrixSeries<M> transpose(const MatrixSeries<M>& A) {
+  MatrixSeries<M> T;
+  for (std::size_t k = 0; k < M; ++k) T[k] = A[k].transpose();
+  return T;
+}
+/// A b, truncated after the last order.
+template <std::size_t M>
+VectorSeries<M> multiply(const MatrixSeries<M>& A, const VectorSeries<M>& b) {
+  return multiply<Eigen::Vector3d>(A, b);
+}
+/// A B, truncated after the last order.
+template <std::size_t M>
+MatrixSeries<M> multiply(const MatrixSeries<M>& A, const MatrixSeries<M>& B) {
+  return multiply<Eigen::Matrix3d>(A, B);
+}
+/// A b of A_0 = 1.
+template <std::size_t M>
+VectorSeries<M> rotate(const MatrixSeries<M>& A, const VectorSeries<M>& b);
+/// Aᵀb of A_0 = 1.
+template <std::size_t M>
+VectorSeries<M> rotate_back(const MatrixSeries<M>& A, const VectorSeries<M>& b);
+/// AᵀB of A_0 = B_0 = 1.
+template <std::size_t M>
+MatrixSeries<M> rotate_back(const MatrixSeries<M>& A, const MatrixSeries<M>& B);
+/// a × b, truncated after the last order.
+template <std::size_t M>
+VectorSeries<M> cross(const VectorSeries<M>& a, const VectorSeries<M>& b);
+/// Orders 1 to u.cols() at rows [row, row + 3) of a curve of N dofs, zero above.
+template <std::size_t M = kSeriesTop + 1>
+VectorSeries<M> get_vector(const Eigen::Ref<const Eigen::MatrixXd>& u, Eigen::Index row) {
+  VectorSeries<M> v = make_zero_vector<M>();
+  for (Eigen::Index k = 1; k <= u.cols(); ++k) v[static_cast<std::size_t>(k)] = u.block<3, 1>(row, k - 1);
+  return v;
+}
+/// Writes orders 1 to u.cols() to rows [row, row + 3) of a curve.
+template <std::size_t M>
+void put_vector(const VectorSeries<M>& v, Eigen::Index row, Eigen::Ref<Eigen::MatrixXd> u) {
+  for (Eigen::Index k = 1; k <= u.cols(); ++k) u.block<3, 1>(row, k - 1) = v[static_cast<std::size_t>(k)];
+}
 /// x of A x = b, given A_0⁻¹.
-SeriesVector solve(const SeriesMatrix& A, const Eigen::Matrix3d& inverse_0, const SeriesVector& b);
-/// ax(A - Aᵀ): the vector of A_32 - A_23 and so on.
-SeriesVector calc_skew_axis(const SeriesMatrix& A);
+template <std::size_t M>
+VectorSeries<M> solve(const MatrixSeries<M>& A, const Eigen::Matrix3d& inverse_0, const VectorSeries<M>& b);
 /// tr(A) 1 - A.
-SeriesMatrix subtract_from_trace(const SeriesMatrix& A);
+template <std::size_t M>
+MatrixSeries<M> subtract_from_trace(const MatrixSeries<M>& A);
 
 /// R = exp(θ̃). θ_0 = 0, here and below.
-SeriesMatrix calc_exponential(const SeriesVector& theta);
+template <std::size_t M>
+MatrixSeries<M> calc_exponential(const VectorSeries<M>& theta);
 /// θ of R = exp(θ̃), R_0 = 1.
-SeriesVector calc_logarithm(const SeriesMatrix& R);
-/// T(θ) of the spin δφ = T δθ of R = exp(θ̃), in fixed axes (base/rotation.hpp), and its inverse.
-SeriesMatrix calc_tangent(const SeriesVector& theta);
-SeriesMatrix calc_inverse_tangent(const SeriesVector& theta);
+template <std::size_t M>
+VectorSeries<M> calc_logarithm(const MatrixSeries<M>& R);
+/// Tᵀ(θ) v, T of the spin δφ = T δθ of R = exp(θ̃), in fixed axes (base/rotation.hpp).
+template <std::size_t M>
+VectorSeries<M> apply_tangent_transpose(const VectorSeries<M>& theta, const VectorSeries<M>& v);
+/// T⁻ᵀ(θ) v of the same T.
+template <std::size_t M>
+VectorSeries<M> apply_inverse_tangent_transpose(const VectorSeries<M>& theta, const VectorSeries<M>& v);
 
 /// (R - 1) arm: what the end of an arm moves more than its foot, which turns by R = exp(θ̃).
 SeriesVector calc_arm_motion(const SeriesVector& theta, const Eigen::Vector3d& arm);

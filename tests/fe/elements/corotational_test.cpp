@@ -142,6 +142,26 @@ TEST(Corotational, ForcesAreThoseOfTheEnergyAtFiniteDisplacements) {
   }
 }
 
+/// Series that end earlier have the orders below, for curves in any block.
+TEST(Corotational, ForcesOfFewerOrdersAreTheSame) {
+  const SmallModel m = make_mixed_model();
+  const auto nodes = list_nodes(m);
+  constexpr int num_curves = 19;
+  for (const auto& element : m.elements) {
+    const CorotationalElement e(*element, nodes);
+    const MatrixXd u =
+        0.2 * make_random(7, e.num_dofs() * kSeriesTop * num_curves).reshaped(e.num_dofs(), kSeriesTop * num_curves);
+    const MatrixXd f = e.calc_forces(u);
+    for (int top = 2; top < kSeriesTop; ++top) {
+      std::vector<int> kept;
+      for (int c = 0; c < num_curves; ++c)
+        for (int k = 0; k < top; ++k) kept.push_back(kSeriesTop * c + k);
+      EXPECT_LT((e.calc_forces(u(Eigen::all, kept), top) - f(Eigen::all, kept)).norm(), 1e-13 * f.norm())
+          << element->card() << " to order " << top;
+    }
+  }
+}
+
 /// V⁗(a, b, c, ·) d = V⁗(d, b, c, ·) a: the forces are a gradient in every direction, not along their curve alone.
 TEST(Corotational, FourthDerivativeIsSymmetric) {
   const SmallModel m = make_mixed_model();
