@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "analysis/check/check_responses.hpp"
 #include "analysis/check/check_solutions.hpp"
 #include "analysis/check/check_subcases.hpp"
 #include "analysis/check/try_reduction.hpp"
@@ -93,8 +94,21 @@ CheckAnswer check_deck(const CheckRequest& request, CheckEvents& events) {
   events.set_rank(linear::initialize_petsc().rank);
   CheckAnswer answer;
   DeckCheck check;
-  check.deck = read_deck_once(request.file, request.model.ignore_cards, answer.messages);
-  check_model(request, make_model_options(request.model), check, answer.messages);
+  const auto model_options = make_model_options(request.model);
+  Diagnostics of_statics;
+  check.deck = read_deck_once(request.file, request.model.ignore_cards, of_statics);
+  const bool is_response = find_response_solution(check.deck.sol) != nullptr;
+  const bool is_complex = asks_complex_modes(check.deck, request.model.ignore_cards);
+  if (is_response || is_complex) {
+    const auto deck =
+        read_dynamic_deck_once(request.file, {request.model.ignore_cards, is_response, is_complex}, answer.messages);
+    check.deck = deck;
+    check_model(request, model_options, check, answer.messages);
+    if (check.model) check.responses = check_responses(deck, *check.model, model_options, answer.messages);
+  } else {
+    for (const auto& item : of_statics.items()) answer.messages.add(item);
+    check_model(request, model_options, check, answer.messages);
+  }
   answer.content = std::move(check);
   return answer;
 }

@@ -35,6 +35,16 @@ struct SubcaseCheck {
   bool is_resolved = false;  ///< its sets exist: the members above are known
 };
 
+/// A subcase of a response over frequency or time, by the SOL of the deck.
+struct ResponseCheck {
+  int subcase = 0;
+  bool is_over_time = false;
+  bool follows_modes = false;          ///< FREQ3 to FREQ5: the frequencies are known with the modes
+  Eigen::Index num_steps = 0;          ///< frequencies or times
+  double first = 0, last = 0;          ///< [Hz] or [T]
+  int num_loads = 0, num_motions = 0;  ///< terms of its DLOAD: forces, and motions of supports
+};
+
 struct DeckCheck {
   records::Deck deck;
   std::optional<fe::Model> model;  ///< none if the cards have errors; the members below are set with it
@@ -43,6 +53,7 @@ struct DeckCheck {
   std::vector<fe::SuperelementCheck> superelements;  ///< in the order of deck.superelements
   std::optional<fe::GridPointWeight> weight;
   std::vector<SubcaseCheck> subcases;
+  std::vector<ResponseCheck> responses;
 };
 
 struct BodyCheck {

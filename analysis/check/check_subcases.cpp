@@ -3,12 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <optional>
 #include <set>
 
+#include "analysis/check/subcase_models.hpp"
 #include "analysis/common/subcase_failures.hpp"
-#include "fe/statics/build_model.hpp"
 #include "fe/statics/static_case.hpp"
 
 namespace bough::analysis {
@@ -28,22 +26,14 @@ std::vector<SubcaseCheck> check_subcases(const records::Deck& deck, const fe::Mo
     if (s.load != 0 || s.temperature != 0 || s.deform != 0 || enforces(deck, s.spc)) rows.push_back({s});
   if (rows.empty()) return rows;
   SubcaseFailures failures(rows.size(), deck.subcases.size());
-  const auto get_held = [](const records::Subcase& s) { return std::array<int, 3>{s.spc, s.mpc, s.suport1}; };
-  std::optional<fe::Model> own;
-  const fe::Model* current = &model;
+  SubcaseModels models(deck, model, options);
   for (auto& row : rows) {
     Diagnostics found;
     try {
-      if (get_held(row.subcase) != get_held(current->subcase())) {
-        auto own_options = options;
-        own_options.subcase = row.subcase.id;
-        Diagnostics of_model;
-        own.emplace(fe::build_model(deck, own_options, of_model));
-        current = &*own;
-      }
-      const auto load = fe::calc_static_load(*current, deck, row.subcase, found);
+      const auto& held = models.get(row.subcase);
+      const auto load = fe::calc_static_load(held, deck, row.subcase, found);
       found.throw_if_errors();
-      row.resultant = fe::calc_resultant(*current, load.F);
+      row.resultant = fe::calc_resultant(held, load.F);
       row.num_enforced = static_cast<int>((load.d.array() != 0).count());
       row.num_heated = static_cast<int>(load.initial.of.size());
       row.is_resolved = true;
@@ -53,7 +43,6 @@ std::vector<SubcaseCheck> check_subcases(const records::Deck& deck, const fe::Mo
                             "look at the factors of LOAD, at zero loads, and at grids that the loads miss");
       add_new(found, diagnostics);
     } catch (const Failure& failure) {
-      current = own ? &*own : &model;
       failures.add(row.subcase.id, failure);
     }
   }

@@ -12,6 +12,7 @@
 #include "base/file_roles.hpp"
 #include "fe/statics/build_model.hpp"
 #include "formats/hdf5/files.hpp"
+#include "formats/nastran/dynamic_reader.hpp"
 #include "formats/nastran/reader.hpp"
 #include "formats/toml/specs.hpp"
 
@@ -80,6 +81,15 @@ records::Deck read_deck_once(const std::string& path, const std::vector<std::str
   auto deck = is_one_of_many() ? nastran::read_packed_deck(share([&] { return nastran::pack_deck(path); }),
                                                            {ignore_cards}, diagnostics)
                                : nastran::read_deck(path, {ignore_cards}, diagnostics);
+  join_superelements(deck, diagnostics);
+  return deck;
+}
+
+records::DynamicDeck read_dynamic_deck_once(const std::string& path, const nastran::ReadOptions& options,
+                                            Diagnostics& diagnostics) {
+  auto deck = is_one_of_many() ? nastran::read_packed_dynamic_deck(share([&] { return nastran::pack_deck(path); }),
+                                                                   options, diagnostics)
+                               : nastran::read_dynamic_deck(path, options, diagnostics);
   join_superelements(deck, diagnostics);
   return deck;
 }

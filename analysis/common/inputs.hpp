@@ -5,8 +5,10 @@
 #include <vector>
 
 #include "fe/model/model.hpp"
+#include "formats/nastran/reader.hpp"
 #include "formats/records/body_spec.hpp"
 #include "formats/records/deck.hpp"
+#include "formats/records/deck_dynamics.hpp"
 
 namespace bough::analysis {
 
@@ -16,6 +18,9 @@ bool has_suffix(const std::string& path, const std::string& suffix);
 /// Reads a deck on the first rank and hands it to the others. Collective.
 records::Deck read_deck_once(const std::string& path, const std::vector<std::string>& ignore_cards,
                              Diagnostics& diagnostics);
+/// Reads a deck like read_deck_once, with the cards of responses and complex modes (nastran/dynamic_reader.hpp).
+records::DynamicDeck read_dynamic_deck_once(const std::string& path, const nastran::ReadOptions& options,
+                                            Diagnostics& diagnostics);
 /// Reads a body file on the first rank and hands it to the others. Collective.
 records::BodySpec read_body_spec_once(const std::string& path, Diagnostics& diagnostics);
 /// Reads a deck, throws InputError with all its errors; warnings stay in `diagnostics`. Collective.

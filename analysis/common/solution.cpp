@@ -127,6 +127,21 @@ bool choose_static_solution(const records::Deck& deck, bool is_linear, bool is_n
   return false;
 }
 
+const ResponseSolution* find_response_solution(const std::string& sol) {
+  static const ResponseSolution direct_frequency{false, true}, modal_frequency{false, false};
+  static const ResponseSolution direct_transient{true, true}, modal_transient{true, false};
+  static const std::map<std::string, const ResponseSolution*> all{
+      {"8", &direct_frequency},      {"26", &direct_frequency},      {"108", &direct_frequency},
+      {"DFREQ", &direct_frequency},  {"SEDFREQ", &direct_frequency}, {"DIRECT", &direct_frequency},
+      {"9", &direct_transient},      {"27", &direct_transient},      {"109", &direct_transient},
+      {"DTRAN", &direct_transient},  {"SEDTRAN", &direct_transient}, {"11", &modal_frequency},
+      {"30", &modal_frequency},      {"111", &modal_frequency},      {"MFREQ", &modal_frequency},
+      {"SEMFREQ", &modal_frequency}, {"12", &modal_transient},       {"31", &modal_transient},
+      {"112", &modal_transient},     {"MTRAN", &modal_transient},    {"SEMTRAN", &modal_transient}};
+  const auto found = all.find(sol);
+  return found == all.end() ? nullptr : found->second;
+}
+
 bool asks_complex_modes(const records::Deck& deck, const std::vector<std::string>& ignored) {
   const auto* other = find_other_solution(deck.sol);
   return other && other->has_complex_modes && std::none_of(ignored.begin(), ignored.end(), [](const std::string& name) {

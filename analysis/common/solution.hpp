@@ -19,6 +19,14 @@ bool choose_static_solution(const records::Deck& deck, bool is_linear, bool is_n
 /// SOL 106 and its like: a subcase starts where the one before it ended.
 bool is_nonlinear_sequence(const records::Deck& deck);
 
+/// Domain and method of a SOL of frequency or transient response.
+struct ResponseSolution {
+  bool is_over_time;
+  bool is_direct;  ///< without modes
+};
+/// nullptr for another SOL; by number and by name of the MSC, NX and COSMIC sequences.
+const ResponseSolution* find_response_solution(const std::string& sol);
+
 /// Returns true for SOL 107, 110 and their kin unless CMETHOD (or EIGC) is among the names of --ignore.
 bool asks_complex_modes(const records::Deck& deck, const std::vector<std::string>& ignored);
 

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <memory>
 
 #include "analysis/common/failures.hpp"
@@ -45,8 +44,8 @@ void demand_grids(const DeckResponseRequest& request, const records::DynamicDeck
 
 /// SOL 108 and 109 solve without modes, unless the request has a number of modes.
 bool choose_direct(const DeckResponseRequest& request, const records::DynamicDeck& deck, Diagnostics& diagnostics) {
-  static const std::array direct{"108", "109", "26", "27", "SEDFREQ", "SEDTRAN", "DFREQ", "DTRAN", "DIRECT"};
-  const bool is_direct_sol = std::find(direct.begin(), direct.end(), deck.sol) != direct.end();
+  const auto* solution = find_response_solution(deck.sol);
+  const bool is_direct_sol = solution && solution->is_direct;
   const bool needs_modes = request.is_modal || request.eigen.number > 0 || request.eigen.max_hz || request.no_residuals;
   if (request.is_direct || (is_direct_sol && !needs_modes)) return true;
   if (is_direct_sol)

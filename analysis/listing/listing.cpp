@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "analysis/common/inputs.hpp"
 #include "analysis/common/ranks.hpp"
 #include "analysis/common/superelements.hpp"
 #include "analysis/listing/element_columns.hpp"
@@ -60,11 +61,7 @@ void note_requests(const records::Deck& deck, const records::CaseRequests& reque
 
 records::DynamicDeck read_loads_deck_or_throw(const std::string& path, const fe::ModelOptions& options,
                                               bool is_response, Diagnostics& diagnostics, bool is_complex) {
-  const nastran::ReadOptions read{options.ignore_cards, is_response, is_complex};
-  auto deck = is_one_of_many() ? nastran::read_packed_dynamic_deck(share([&] { return nastran::pack_deck(path); }),
-                                                                   read, diagnostics)
-                               : nastran::read_dynamic_deck(path, read, diagnostics);
-  join_superelements(deck, diagnostics);
+  auto deck = read_dynamic_deck_once(path, {options.ignore_cards, is_response, is_complex}, diagnostics);
   if (diagnostics.num_errors() > 0) fe::build_model(deck, options, diagnostics);
   diagnostics.throw_if_errors();
   return deck;

@@ -11,6 +11,7 @@
 #include "cli/check/check_tables.hpp"
 #include "cli/common/console.hpp"
 #include "cli/common/model_options.hpp"
+#include "cli/common/number_checks.hpp"
 #include "cli/common/options.hpp"
 #include "formats/toml/specs.hpp"
 
@@ -100,7 +101,7 @@ void add_check(CLI::App& app, Action& action) {
   verb->add_option("--gpwg", o->request.weight_grid,
                    "Weights about this grid (0: the origin) as the grid point weight generator of Nastran prints them "
                    "(default: PARAM,GRDPNT)")
-      ->check(CLI::NonNegativeNumber)
+      ->check(is_not_negative())
       ->type_name("GRID");
   verb->add_option("--diagram", o->diagram,
                    "System file: draw its sensors, controllers, actuators, functions and bodies to FILE.dot, or by "

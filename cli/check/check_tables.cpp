@@ -56,6 +56,28 @@ void add_subcases(const std::vector<analysis::SubcaseCheck>& rows, std::string& 
   text += "\n" + format_rows(rows);
 }
 
+void add_responses(const std::vector<analysis::ResponseCheck>& rows, std::string& text, nlohmann::json& json) {
+  if (rows.empty()) return;
+  const bool is_over_time = rows.front().is_over_time;
+  Table table{{"subcase", is_over_time ? "times" : "frequencies", "from", "to", "loads", "motions"}, {}};
+  json["responses"] = nlohmann::json::array();
+  for (const auto& row : rows) {
+    nlohmann::json one{{"id", row.subcase}, {"num_loads", row.num_loads}, {"num_motions", row.num_motions}};
+    if (!row.follows_modes) {
+      one[is_over_time ? "num_times" : "num_frequencies"] = row.num_steps;
+      one["range"] = {row.first, row.last};
+    }
+    json["responses"].push_back(std::move(one));
+    if (table.rows.size() == kMaxRows) continue;
+    table.rows.push_back({std::to_string(row.subcase), row.follows_modes ? "by modes" : std::to_string(row.num_steps),
+                          row.follows_modes ? "-" : fmt::format("{:.6g}", row.first),
+                          row.follows_modes ? "-" : fmt::format("{:.6g}", row.last), std::to_string(row.num_loads),
+                          std::to_string(row.num_motions)});
+  }
+  text += fmt::format("\nresponses over {}\n", is_over_time ? "time" : "frequency, Hz") + table.to_text();
+  if (rows.size() > kMaxRows) text += fmt::format("... and {} more\n", count(rows.size() - kMaxRows, "subcase"));
+}
+
 void add_superelements(const analysis::DeckCheck& deck, std::string& text, nlohmann::json& json) {
   if (deck.superelements.empty()) return;
   json["superelements"] = nlohmann::json::array();
@@ -106,6 +128,7 @@ void add_model(const analysis::DeckCheck& check, std::string& text, nlohmann::js
     json["weight"] = to_json(*check.weight);
   }
   add_subcases(check.subcases, text, json);
+  add_responses(check.responses, text, json);
   json["num_nodes"] = model.nodes().size();
   json["num_elements"] = model.elements().size();
   json["num_dofs"] = model.num_gdofs();

@@ -7,6 +7,7 @@
 
 #include "analysis/common/body_files.hpp"
 #include "cli/common/console_events.hpp"
+#include "cli/common/number_checks.hpp"
 #include "cli/common/options.hpp"
 #include "cli/compare/compare_report.hpp"
 #include "formats/hdf5/comparison_file.hpp"
@@ -73,7 +74,7 @@ void add_compare(CLI::App& app, Action& action) {
   verb->add_option("--deck", o->request.deck, "Nastran deck of the model, for --tam guyan and irs")->needs(test);
   verb->add_option("--sensors", o->request.sensors,
                    "Places for this many sensors on the one model, by effective independence of its modes")
-      ->check(CLI::PositiveNumber)
+      ->check(is_positive())
       ->excludes(test);
   add_common_options(*verb, *o, kOutput | kJson, "HDF5 file with the numbers");
 }

@@ -13,6 +13,7 @@
 #include "analysis/common/inputs.hpp"
 #include "analysis/common/text_file.hpp"
 #include "cli/common/console_events.hpp"
+#include "cli/common/number_checks.hpp"
 #include "cli/common/options.hpp"
 #include "cli/common/usage_text.hpp"
 
@@ -108,27 +109,25 @@ void add_body_export_options(CLI::App& verb, analysis::BodyExportOptions& o) {
                   "sid: columns of Ge by mode (3 for each) or by component (one for each mode)")
       ->check(CLI::IsMember({"mode", "component"}))
       ->capture_default_str();
-  verb.add_option("--digits", o.digits, "sid: significant digits")->check(CLI::Range(6, 17))->capture_default_str();
+  verb.add_option("--digits", o.digits, "sid: significant digits")->check(is_within(6, 17))->capture_default_str();
 }
 
 void add_component_options(CLI::App& verb, analysis::ComponentExportOptions& options) {
   verb.add_option("--id", options.id, "extseout: id of the superelement (default: EXTID of the deck, else 1)")
-      ->check(CLI::PositiveNumber);
+      ->check(is_positive());
   verb.add_option("--unit", options.unit,
                   "extseout: unit of the .op4 file in the assembly deck (default: MATOP4 of the deck, else the id)")
-      ->check(CLI::PositiveNumber);
+      ->check(is_positive());
   verb.add_option("--vendor", options.vendor, "extseout: names and order of the matrices, nx or msc")
       ->check(CLI::IsMember({"nx", "msc"}))
       ->capture_default_str();
   verb.add_option("--first-point", options.first_point,
                   "extseout of a body: id of its first generalized coordinate (default: 1001 above its nodes)")
-      ->check(CLI::PositiveNumber);
+      ->check(is_positive());
 }
 
 void add_moving_options(CLI::App& verb, analysis::MovingOptions& o) {
-  verb.add_option("--every", o.every, "pvd, gltf: one in so many samples")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
+  verb.add_option("--every", o.every, "pvd, gltf: one in so many samples")->check(is_positive())->capture_default_str();
   verb.add_option("--window", o.window, "pvd, gltf: only samples from T0 to T1, as T0,T1")->delimiter(',')->expected(2);
   verb.add_option("--scale", o.scale, "pvd, gltf: the deformation that many times as large")
       ->check(make_finite())

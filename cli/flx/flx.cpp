@@ -10,6 +10,7 @@
 #include "analysis/common/inputs.hpp"
 #include "analysis/common/text_file.hpp"
 #include "cli/common/console.hpp"
+#include "cli/common/number_checks.hpp"
 #include "cli/common/options.hpp"
 #include "cli/common/usage_text.hpp"
 #include "cli/flx/flx_output.hpp"
@@ -99,7 +100,7 @@ void add_flx(CLI::App& app, Action& action) {
                    "Mass integrals: lumped, consistent or exact (default: the body's choice)")
       ->check(CLI::IsMember({"lumped", "consistent", "exact"}));
   verb->add_option("--modopt", o->request.modopt, "0 all integrals, 1 zero and first order, 2 zero order only")
-      ->check(CLI::Range(0, 2))
+      ->check(is_within(0, 2))
       ->capture_default_str();
   verb->add_option("--body-id", o->request.body_ids,
                    "Number of the body in the multibody model; of several the first, or one each: 3,7 (default: 1)")

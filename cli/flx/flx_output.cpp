@@ -1,4 +1,5 @@
 #include "cli/flx/flx_output.hpp"
+#include "cli/common/number_checks.hpp"
 
 #include <fmt/format.h>
 
@@ -36,7 +37,7 @@ json to_gains(const std::vector<Eigen::MatrixXd>& gains) {
 
 void add_flx_options(CLI::App& verb, FlxOptions& options) {
   auto* digits = verb.add_option("--digits", options.digits, "Significant digits of each number, 2 to 17")
-                     ->check(CLI::Range(2, 17))
+                     ->check(is_within(2, 17))
                      ->capture_default_str();
   verb.add_option("--layout", options.layout, "Write by this template instead of Bough's own layout")->excludes(digits);
 }

@@ -7,6 +7,7 @@
 #include "analysis/common/text_file.hpp"
 #include "analysis/init/init_deck.hpp"
 #include "cli/common/console.hpp"
+#include "cli/common/number_checks.hpp"
 #include "cli/common/options.hpp"
 #include "cli/init/schema_line.hpp"
 #include "cli/init/templates.hpp"
@@ -152,7 +153,7 @@ void add_init(CLI::App& app, Action& action) {
   verb->add_option("template", o->name, names + "; or a Nastran deck. Default: lists them");
   verb->add_option("-o,--output", o->output, "Folder to write into (default: the template's name; for a deck, here)");
   verb->add_option("--hinge", o->hinge, "Of a deck: the grid on a revolute hinge to ground; chooses the basis for it")
-      ->check(CLI::PositiveNumber);
+      ->check(is_positive());
   verb->add_flag("--list", o->lists, "List the templates, as without a name");
   verb->add_flag("--force", o->force, "Overwrite files that are there already");
   verb->add_flag("-q,--quiet", o->quiet, "Print errors only");

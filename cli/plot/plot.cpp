@@ -11,6 +11,7 @@
 #include "analysis/common/inputs.hpp"
 #include "analysis/common/text_file.hpp"
 #include "cli/common/console_events.hpp"
+#include "cli/common/number_checks.hpp"
 #include "cli/common/options.hpp"
 #include "cli/common/usage_text.hpp"
 #include "report/shock_spectrum.hpp"
@@ -116,7 +117,7 @@ void add_plot(CLI::App& app, Action& action) {
   verb->add_option("--per-rev", o->request.linear.per_rev,
                    "--kind campbell: lines of 1 to N times the parameter, a rate of rotation in rad per unit of time "
                    "(default: if a speed of the system is the parameter)")
-      ->check(CLI::Range(1, 100))
+      ->check(is_within(1, 100))
       ->needs("--kind");
   auto& c = o->request.curves;
   verb->add_option("--x", c.x, "Against this channel instead of the time; of outcomes.h5 a point a case")
@@ -151,12 +152,12 @@ void add_plot(CLI::App& app, Action& action) {
       ->expected(2, 3)
       ->needs(srs);
   verb->add_option("--q", c.quality, "Q = 1/(2 damping ratio) of --srs")
-      ->check(CLI::Range(0.51, 1e9))
+      ->check(is_within(0.51, 1e9))
       ->check(make_finite())
       ->needs(srs)
       ->capture_default_str();
   verb->add_option("--segment", c.segment, "--psd: samples of a segment")
-      ->check(CLI::Range(2, 1 << 30))
+      ->check(is_within(2, 1 << 30))
       ->needs(psd)
       ->capture_default_str();
   verb->add_flag("--difference", c.difference, "Each further file less the first one")

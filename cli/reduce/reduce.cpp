@@ -17,6 +17,7 @@
 #include "analysis/reduce/reduce_body.hpp"
 #include "cli/common/console_events.hpp"
 #include "cli/common/deck_tables.hpp"
+#include "cli/common/number_checks.hpp"
 #include "cli/common/options.hpp"
 #include "cli/common/solver_option.hpp"
 #include "cli/common/usage_text.hpp"
@@ -208,7 +209,7 @@ void add_reduce(CLI::App& app, Action& action) {
                    "Also write the twelve inertial loads F_I to this file, as FORCE and MOMENT cards for another FE "
                    "program");
   verb->add_option("--loads-set", o->loads_set, "First of the twelve load sets of --loads-deck")
-      ->check(CLI::Range(1, 99999988))
+      ->check(is_within(1, 99999988))
       ->capture_default_str();
   verb->add_flag_callback(
       "--full", [o] { o->request.full = true; }, "Write the modes and inertial loads of every dof too");

@@ -16,6 +16,7 @@
 #include "analysis/response/input_spectrum.hpp"
 #include "analysis/response/response.hpp"
 #include "cli/common/console_events.hpp"
+#include "cli/common/number_checks.hpp"
 #include "cli/common/options.hpp"
 #include "cli/common/usage_text.hpp"
 #include "cli/linearize/linear_model_files.hpp"
@@ -241,7 +242,7 @@ void add_response(CLI::App& app, Action& action) {
   verb->add_option("--to", o->request.range.to_hz, "Highest frequency (default: a decade above the poles)")
       ->check(make_positive());
   verb->add_option("--points", o->request.range.points, "Frequencies at least; resonances and notches get more")
-      ->check(CLI::Range(1, 100000))
+      ->check(is_within(1, 100000))
       ->capture_default_str();
   verb->add_flag("--loop", o->request.is_loop,
                  "Margins of the one input and output as a loop with negative feedback (always of linearize --break)");

@@ -7,6 +7,7 @@
 #include "analysis/select/selection.hpp"
 #include "analysis/select/weighing.hpp"
 #include "cli/common/console_events.hpp"
+#include "cli/common/number_checks.hpp"
 #include "cli/common/options.hpp"
 #include "cli/common/usage_text.hpp"
 #include "cli/select/selection_tables.hpp"
@@ -73,7 +74,7 @@ void add_select(CLI::App& app, Action& action) {
   verb->add_option("-n,--number", o->request.number, "Keep so many modes")->check(make_positive());
   verb->add_option("--tolerance", o->request.tolerance,
                    "Drop modes without which the outputs lose at most this part of their mean square (default: 0.01)")
-      ->check(CLI::Range(0.0, 1.0))
+      ->check(is_within(0.0, 1.0))
       ->check(make_finite());
   verb->add_option("--below", o->request.below_hz, "Drop modes above this frequency")->check(make_positive());
   verb->add_option("--keep", o->request.pinned, "Modes that stay, by their numbers")->delimiter(',');
@@ -86,7 +87,7 @@ void add_select(CLI::App& app, Action& action) {
   verb->add_flag("--open", o->request.open, "With a system: without its controllers");
   verb->add_option("--stiffening", o->inertial_load,
                    "Also list K_G1 over K of each mode for this inertial load, 1 to 12 (1: ax ... 7: wx^2 ...)")
-      ->check(CLI::Range(1, 12));
+      ->check(is_within(1, 12));
   verb->add_option("--response", o->response,
                    "Write the largest singular value over frequency before and after: .svg, or CSV");
   add_set_option(*verb, o->request.set);

@@ -11,6 +11,7 @@
 #include "cli/common/console_events.hpp"
 #include "cli/common/deck_tables.hpp"
 #include "cli/common/model_options.hpp"
+#include "cli/common/number_checks.hpp"
 #include "cli/common/options.hpp"
 #include "cli/static/static_output.hpp"
 #include "fe/linear/petsc.hpp"
@@ -95,7 +96,7 @@ void add_static(CLI::App& app, Action& action) {
   verb->add_flag("--nonlinear", o->request.is_nonlinear,
                  "Large displacements and rotations, elastic materials; the way of SOL 106 with PARAM,LGDISP,1");
   verb->add_option("--increments", o->request.num_increments, "Load steps of each nonlinear subcase (default: 10)")
-      ->check(CLI::Range(1, 100000));
+      ->check(is_within(1, 100000));
   verb->add_option("--vtu", o->vtu, "Write the displacements of every subcase to this file for ParaView");
   verb->add_option("--grid-forces", o->request.grid_forces,
                    "List every force on these grids, or on all: elements, loads, SPC")

@@ -17,6 +17,7 @@
 #include "base/diagnostic.hpp"
 #include "cli/common/console.hpp"
 #include "cli/common/interrupt.hpp"
+#include "cli/common/number_checks.hpp"
 #include "cli/common/options.hpp"
 #include "cli/studio/answers.hpp"
 #include "cli/studio/server.hpp"
@@ -89,7 +90,7 @@ void add_studio(CLI::App& app, Action& action) {
   auto o = std::make_shared<StudioOptions>();
   auto* verb = add_verb(app, action, o, run_studio, "studio");
   verb->add_option("files", o->files, "Decks, body.toml, system.toml, results and other .h5 files to open at first");
-  verb->add_option("--port", o->port, "Port of 127.0.0.1 (default: a free one)")->check(CLI::Range(1, 65535));
+  verb->add_option("--port", o->port, "Port of 127.0.0.1 (default: a free one)")->check(is_within(1, 65535));
   verb->add_flag("--no-open", o->no_open, "Print the address and open no browser");
   verb->add_flag("--answer", o->answers, "Answer one request from standard input")->group("");
   add_common_options(*verb, *o, 0);

@@ -57,23 +57,6 @@ response::Excitation make_no_excitation(const fe::Model& model) {
   return none;
 }
 
-const records::ComplexMethod& find_method(const records::DynamicDeck& deck, const records::DynamicSubcase& subcase,
-                                          const ComplexModesOptions& options) {
-  static const records::ComplexMethod lanczos{0, "LAN", "MAX", 0, 0, 0, {}, {}};
-  const int set = subcase.dynamics.cmethod;
-  const auto& all = deck.dynamics.complex_methods;
-  const auto found = std::find_if(all.begin(), all.end(), [set](const auto& m) { return m.sid == set; });
-  if (set != 0 && found == all.end())
-    throw InputError("modal.missing-complex-method", deck.locate(subcase.find_command("CMETHOD")),
-                     "CMETHOD = " + std::to_string(set) + " names no EIGC card of the deck",
-                     "add the card, for instance EIGC," + std::to_string(set) + ",LAN,,,,,10, or correct the id");
-  if (set != 0) return *found;
-  if (options.num_modes > 0) return lanczos;
-  throw InputError("modal.no-complex-method", deck.locate({}),
-                   "SOL " + deck.sol + " asks for complex eigenvalues, found no CMETHOD in the case control",
-                   "write CMETHOD = n with a card EIGC,n,LAN,,,,,10, or give --number");
-}
-
 /// Real modes for the choice of the shift; none where the matrices have none.
 void find_reference(const fe::System& system, Problem& problem) {
   Diagnostics unreported;
@@ -378,6 +361,23 @@ void report_accuracy(const records::DynamicDeck& deck, const ComplexPairs& pairs
 
 }  // namespace
 
+const records::ComplexMethod& choose_method(const records::DynamicDeck& deck, const records::DynamicSubcase& subcase,
+                                            int num_modes) {
+  static const records::ComplexMethod lanczos{0, "LAN", "MAX", 0, 0, 0, {}, {}};
+  const int set = subcase.dynamics.cmethod;
+  const auto& all = deck.dynamics.complex_methods;
+  const auto found = std::find_if(all.begin(), all.end(), [set](const auto& m) { return m.sid == set; });
+  if (set != 0 && found == all.end())
+    throw InputError("modal.missing-complex-method", deck.locate(subcase.find_command("CMETHOD")),
+                     "CMETHOD = " + std::to_string(set) + " names no EIGC card of the deck",
+                     "add the card, for instance EIGC," + std::to_string(set) + ",LAN,,,,,10, or correct the id");
+  if (set != 0) return *found;
+  if (num_modes > 0) return lanczos;
+  throw InputError("modal.no-complex-method", deck.locate({}),
+                   "SOL " + deck.sol + " asks for complex eigenvalues, found no CMETHOD in the case control",
+                   "write CMETHOD = n with a card EIGC,n,LAN,,,,,10, or give --number");
+}
+
 struct ComplexModesSolver::Prepared {
   Prepared(const records::DynamicDeck& d, const records::DynamicSubcase& s, const ComplexModesOptions& o, fe::Model&& m)
       : deck(d), subcase(s), options(o), model(std::move(m)), system(model) {}
@@ -442,7 +442,7 @@ struct ComplexModesSolver::Prepared {
 ComplexModesSolver::ComplexModesSolver(const records::DynamicDeck& deck, const fe::ModelOptions& model_options,
                                        const records::DynamicSubcase& subcase, const ComplexModesOptions& options,
                                        Diagnostics& diagnostics) {
-  const auto& method = find_method(deck, subcase, options);
+  const auto& method = choose_method(deck, subcase, options.num_modes);
   auto model = fe::build_model(deck, model_options, diagnostics);
   diagnostics.throw_if_errors();
   prepared_ = std::make_unique<Prepared>(deck, subcase, options, std::move(model));

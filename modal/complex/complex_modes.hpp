@@ -26,6 +26,11 @@ struct SpeedModes {
   Eigen::VectorXd whirl;         ///< as ComplexModesResult::whirl
 };
 
+/// EIGC of CMETHOD of the subcase; without CMETHOD the Lanczos method where `num_modes` is given. Throws InputError
+/// modal.missing-complex-method, modal.no-complex-method.
+const records::ComplexMethod& choose_method(const records::DynamicDeck& deck, const records::DynamicSubcase& subcase,
+                                            int num_modes);
+
 /// Complex modes of a subcase with its SPC, MPC, damping, K2PP, B2PP, M2PP, TFL and rotors.
 class ComplexModesSolver {
  public:

@@ -66,6 +66,14 @@ class Usage(ProgramTest):
                 self.fails(2, "export", "x.h5", "--to", *call, "-o", "y", says=[call[1], "--to " + call[0]],
                            error="cli.usage")
 
+    def test_numbers_out_of_their_range(self):
+        for call, text in [(("export", "x.h5", "--to", "pvd", "--every", "0"), "expected a number above 0, found 0"),
+                           (("flx", "x.h5", "--digits", "40"), "expected a number from 2 to 17, found 40"),
+                           (("check", "x.bdf", "--gpwg", "-1"), "expected 0 or a number above it, found -1"),
+                           (("studio", "--port", "http"), "expected a number from 1 to 65535, found http")]:
+            with self.subTest(call):
+                self.fails(2, *call, says=[call[-2] + ": " + text], error="cli.usage")
+
     def test_version_names_the_libraries(self):
         text = self.bough("--version").stdout
         for library in ["bough", "PETSc", "SLEPc", "HDF5", "SUNDIALS", "Eigen"]:
