@@ -22,8 +22,9 @@ namespace {
 constexpr const char* kMark = ".bough-part-";
 /// Longest name of a file; the end of a longer part's name gives way.
 constexpr std::size_t kMaxLetters = 255;
-/// Offset far after the end of any file.
-constexpr off_t kLockedByte = off_t{1} << 62;
+/// Offsets far after the end of any file: locked while a file grows under its own name, and while a part is open. A
+/// complete file is never seen locked, though its part is until it is closed.
+constexpr off_t kGrowingByte = off_t{1} << 62, kPartByte = kGrowingByte + 1;
 
 /// Names of the parts that are open: a signal handler can reach nothing but static storage.
 std::array<std::atomic<char*>, 64>& get_parts() {
@@ -46,13 +47,19 @@ void drop_part(int slot) {
   if (slot >= 0) std::free(get_parts()[static_cast<std::size_t>(slot)].exchange(nullptr));
 }
 
-struct flock make_lock() {
+struct flock make_lock(off_t byte) {
   struct flock lock {};
   lock.l_type = F_WRLCK;
   lock.l_whence = SEEK_SET;
-  lock.l_start = kLockedByte;
+  lock.l_start = byte;
   lock.l_len = 1;
   return lock;
+}
+
+LockState lock_byte(int descriptor, off_t byte) {
+  auto lock = make_lock(byte);
+  if (::fcntl(descriptor, F_OFD_SETLK, &lock) == 0) return LockState::Held;
+  return errno == EAGAIN || errno == EACCES ? LockState::Busy : LockState::Unsupported;
 }
 
 /// Parts whose process is gone hold no lock. Only files of this user, with only digits after the mark.
@@ -66,7 +73,7 @@ void remove_stale(const fs::path& folder, const std::string& stem) {
     if (found < 0) continue;
     struct stat state {};
     const bool is_own = ::fstat(found, &state) == 0 && S_ISREG(state.st_mode) && state.st_uid == ::geteuid();
-    if (is_own && lock_file(found) == LockState::Held) ::unlink(entry.path().c_str());
+    if (is_own && lock_byte(found, kPartByte) == LockState::Held) ::unlink(entry.path().c_str());
     ::close(found);
   }
 }
@@ -117,7 +124,7 @@ PartFile::PartFile(const std::string& path) {
     slot_ = add_part(name_);
     descriptor_ = ::open(name_.c_str(), O_CREAT | O_EXCL | O_NOFOLLOW | O_RDWR | O_CLOEXEC, 0666);
     error_ = std::error_code(descriptor_ < 0 ? errno : 0, std::generic_category());
-    if (!error_ && lock_file(descriptor_) != LockState::Busy && is_same_file(name_, descriptor_)) return;
+    if (!error_ && lock_byte(descriptor_, kPartByte) != LockState::Busy && is_same_file(name_, descriptor_)) return;
     // Another part of this process, or of one with its number on another machine.
     const bool is_taken = !error_ || error_ == std::errc::file_exists;
     if (!error_) error_ = std::make_error_code(std::errc::file_exists);
@@ -157,13 +164,19 @@ void PartFile::start_sync() {
 }
 
 bool PartFile::commit() {
-  if (!publish()) return false;
+  if (!replace_target()) return false;
   ::close(descriptor_);
   descriptor_ = -1;
   return true;
 }
 
 bool PartFile::publish() {
+  if (error_) return false;
+  lock_file(descriptor_);
+  return replace_target();
+}
+
+bool PartFile::replace_target() {
   if (error_) return false;
   // A run writes the file of that name; after the replacement it would write a file without a name.
   if (is_file_locked(target_)) {
@@ -208,16 +221,12 @@ void remove_parts() noexcept {
     if (const char* name = part.load()) ::unlink(name);
 }
 
-LockState lock_file(int descriptor) {
-  auto lock = make_lock();
-  if (::fcntl(descriptor, F_OFD_SETLK, &lock) == 0) return LockState::Held;
-  return errno == EAGAIN || errno == EACCES ? LockState::Busy : LockState::Unsupported;
-}
+LockState lock_file(int descriptor) { return lock_byte(descriptor, kGrowingByte); }
 
 bool is_file_locked(const std::string& path) {
   const int descriptor = ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
   if (descriptor < 0) return false;
-  auto lock = make_lock();
+  auto lock = make_lock(kGrowingByte);
   const bool is_locked = ::fcntl(descriptor, F_OFD_GETLK, &lock) == 0 && lock.l_type != F_UNLCK;
   ::close(descriptor);
   return is_locked;

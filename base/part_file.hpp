@@ -35,13 +35,14 @@ class PartFile {
   /// Syncs the bytes, renames the file and syncs its folder: the file appears now, with the permissions of the old one,
   /// and survives a power cut. False, with error(), and then the old one is untouched.
   bool commit();
-  /// Renames as commit() does, but the file stays open and locked.
+  /// Renames as commit() does, but the file stays open and locked as by lock_file.
   bool publish();
   /// Closes and removes.
   void abandon();
 
  private:
   bool fail();
+  bool replace_target();
   std::string name_, target_;
   int descriptor_ = -1, slot_ = -1;
   bool is_published_ = false;

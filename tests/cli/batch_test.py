@@ -279,6 +279,15 @@ class Runs(BatchTest):
         self.assertEqual([s.wait() for s in shards], [0] * 4)
         self.assertEqual([int(r["case"]) for r in self.table()], list(range(1, 9)))
 
+    def test_a_shard_between_rename_and_close_hinders_no_other(self):
+        self.campaign(E + "range = [6e10, 7e10]\nnumber = 4\n" + HZ)
+        process, (sleeping,) = self.start_held("batch", "study.toml", "-j", "1", "--shard", "1/2", call="rename",
+                                               path="campaign.json", stderr=subprocess.DEVNULL)
+        self.assertTrue(os.path.exists(self.path("study/campaign.json")))
+        self.bough("batch", "study.toml", "-j", "1", "--shard", "2/2")
+        os.kill(sleeping, signal.SIGTERM)
+        process.wait(timeout=HANG)
+
     @unittest.skipUnless(shutil.which("mpirun"), "no mpirun")
     def test_ranks_divide_the_cases(self):
         self.campaign(E + "values = [6e10, 6.5e10, 7e10, -1.0, 8e10]\n" + HZ)
