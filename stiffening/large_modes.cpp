@@ -15,14 +15,14 @@ constexpr double kSoft = 0.05;
 /// Another mode is small if bending of the large ones moves it by more than this number of its ways under the load.
 constexpr double kFollows = 2;
 
+}  // namespace
+
 double calc_model_size(const fe::Model& model) {
   Eigen::AlignedBox3d box;
   for (const auto& node : model.nodes())
     if (node.num_dofs == 6) box.extend(node.x);
   return box.isEmpty() ? 0 : box.diagonal().norm();
 }
-
-}  // namespace
 
 VectorXd calc_largest_ways(const fe::Model& model, const MatrixXd& Phi) {
   VectorXd ways = VectorXd::Zero(Phi.cols());

@@ -12,6 +12,7 @@
 #include "fe/linear/products.hpp"
 #include "fe/loads/inertial_loads.hpp"
 #include "fe/model/element_loop.hpp"
+#include "stiffening/large_modes.hpp"
 
 namespace bough::stiffening {
 namespace {
@@ -23,6 +24,10 @@ using fe::SeriesVector;
 
 /// Negligible inertia about an axis, relative to the largest.
 constexpr double kNoInertia = 1e-8;
+/// Reciprocal of the relative difference below which two compliances are alike.
+constexpr double kComplianceSteps = 1e4;
+/// Length that makes a displacement of a rotation, in sizes of the model.
+constexpr double kTurnedShare = 0.1;
 constexpr int kMinElementsOfThread = 50;
 
 std::vector<int> list_gdofs(const fe::Node& node) {
@@ -243,35 +248,30 @@ MatrixXd StaticManifold::calc_arm_gauge(const Curves& curves, int order) const {
   return work + calc_carried_work(curves, order, psi_, MatrixXd::Zero(9, psi_.cols())).on_fields;
 }
 
-MatrixXd StaticManifold::calc_all_gradient(const MatrixXd& points, int degree) const {
-  const Curves curves = make_curves(points, degree);
-  return calc_forces(curves, degree, Rows::Modes) - calc_arm_gauge(curves, degree);
-}
-
 MatrixXd StaticManifold::calc_gradient(const MatrixXd& points, int degree) const {
-  return calc_all_gradient(points, degree)(large_, Eigen::all);
+  const Curves curves = make_curves(points, degree);
+  return (calc_forces(curves, degree, Rows::Modes) - calc_arm_gauge(curves, degree))(large_, Eigen::all);
 }
 
-/// The gradient at e_i has the coefficients of a_i³ a_j, so V at e_i + e_j gives that of a_i² a_j².
-MatrixXd StaticManifold::calc_quartic_pairs() const {
+std::vector<int> StaticManifold::rank_by_compliance() const {
   const Index n = Phi_.cols();
-  const auto is_large = [&](Index j) { return std::binary_search(large_.begin(), large_.end(), static_cast<int>(j)); };
-  std::vector<std::pair<Index, Index>> pairs;
-  for (Index i = 0; i < n; ++i)
-    for (Index j = 0; j < i; ++j)
-      if (!is_large(i) || !is_large(j)) pairs.emplace_back(i, j);
-  MatrixXd points = MatrixXd::Zero(n + std::ssize(pairs), n);
-  points.topRows(n).setIdentity();
-  for (std::size_t k = 0; k < pairs.size(); ++k)
-    points(n + static_cast<Index>(k), pairs[k].first) = points(n + static_cast<Index>(k), pairs[k].second) = 1;
-  const MatrixXd gradient = calc_all_gradient(points, 3);
-  MatrixXd Q = MatrixXd(gradient.diagonal().asDiagonal()) / 4;
-  for (std::size_t k = 0; k < pairs.size(); ++k) {
-    const auto [i, j] = pairs[k];
-    const Index p = n + static_cast<Index>(k);
-    Q(i, j) = Q(j, i) = (gradient(i, p) + gradient(j, p)) / 4 - Q(i, i) - Q(j, j) - gradient(j, i) - gradient(i, j);
+  const double size = calc_model_size(model_);
+  VectorXd largest = VectorXd::Zero(n);
+  for (const auto& node : model_.nodes()) {
+    if (node.num_dofs != 6) continue;
+    const MatrixXd turned = kTurnedShare * size * Phi_.middleRows<3>(node.first_gdof + 3);
+    largest = largest.cwiseMax(
+        (Phi_.middleRows<3>(node.first_gdof).colwise().squaredNorm() + turned.colwise().squaredNorm()).transpose());
   }
-  return Q;
+  // Steps, not differences, which are no order; modes of equal bending stiffnesses differ by round-off.
+  const VectorXd steps = (kComplianceSteps * largest.cwiseMax(1e-300).array().log()).round();
+  std::vector<int> order(static_cast<std::size_t>(n)), rank(order.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::sort(order.begin(), order.end(), [&](int a, int b) {
+    return std::make_tuple(-steps[a], eigenvalue_[a], a) < std::make_tuple(-steps[b], eigenvalue_[b], b);
+  });
+  for (std::size_t k = 0; k < order.size(); ++k) rank[static_cast<std::size_t>(order[k])] = static_cast<int>(k);
+  return rank;
 }
 
 MatrixXd StaticManifold::begin(const Lattice& lattice) {
@@ -292,23 +292,16 @@ void StaticManifold::select_large(const std::vector<int>& large, const MatrixXd&
   K_small_.compute(K_(small_, small_));
   // One small mode of three takes what cancels V₃: ζ_t K_t c = -V₃, c = -K_t⁻¹ ∂V₃/∂ζ_t / (its power in V₃).
   MatrixXd part = -K_small_.solve(gradient(small_, Eigen::all));
-  const MatrixXd Q = calc_quartic_pairs();
+  const std::vector<int> rank = rank_by_compliance();
   const Eigen::MatrixXi exponents = records::list_exponents(n, 2);
-  for (Index i = 0; i < part.cols(); ++i) {
-    std::vector<int> pair;
-    for (int j = 0; j < n; ++j) pair.insert(pair.end(), static_cast<std::size_t>(exponents(i, j)), j);
+  for (Index i = 0; i < part.cols(); ++i)
     for (std::size_t k = 0; k < small_.size(); ++k) {
       const int t = small_[k];
-      bool is_follower = true;
-      for (int side = 0; side < 2; ++side) {
-        const int s = pair[static_cast<std::size_t>(side)], other = pair[static_cast<std::size_t>(1 - side)];
-        if (s == t || std::binary_search(large.begin(), large.end(), s)) continue;
-        is_follower = is_follower &&
-                      std::make_tuple(Q(s, other), eigenvalue_[t], t) > std::make_tuple(Q(t, other), eigenvalue_[s], s);
-      }
+      const bool is_follower = std::all_of(small_.begin(), small_.end(), [&](int s) {
+        return exponents(i, s) == 0 || rank[static_cast<std::size_t>(s)] <= rank[static_cast<std::size_t>(t)];
+      });
       part(static_cast<Index>(k), i) *= is_follower ? 1.0 / (1 + exponents(i, t)) : 0;
     }
-  }
   fields_[0] += Phi_(Eigen::all, small_) * part;
   multipliers_[0](small_, Eigen::all).setZero();
 }

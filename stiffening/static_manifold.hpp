@@ -96,11 +96,9 @@ class StaticManifold {
     MatrixXd u;       ///< dofs along the curves, N x top points
     MatrixXd motion;  ///< H of every point, 3 points x N
   };
-  /// Gradient by all amplitudes, n x points.
-  MatrixXd calc_all_gradient(const MatrixXd& points, int degree) const;
-  /// Coefficients of a_i² a_j² in V, on the diagonal of a_i⁴, with u₂ held along all modes: n x n; zero for two large
-  /// modes. Costs n²/2 points over all elements.
-  MatrixXd calc_quartic_pairs() const;
+  /// Place of each mode from the most compliant: by the largest displacement that a mode of unit strain energy has at a
+  /// grid, rotations times a tenth of the size of the model. Equal ones are in the order of their eigenvalues.
+  std::vector<int> rank_by_compliance() const;
   /// The fields of the next degree, held along all modes; gradient: n x monomials.
   MatrixXd solve_field(int degree, const Lattice& lattice, MatrixXd& gradient) const;
   Curves make_curves(const MatrixXd& points, int top) const;

@@ -97,11 +97,11 @@ class ThirdOrderModes(ProgramTest):
         self.assertLess(off[3, 8][1:].max(), 1e-3)
         self.assertGreater(off[2, 8][0], .5)
 
-    def make_rod(self, frame, modes, residual, order, load=""):
+    def make_rod(self, frame, modes, residual, order, load="", mass="CONM2,99,25,,.5"):
         """A beam of 2 m and 24 bars with its mass along the bars, no torsional mass, a mass at its end."""
         num, EI, GJ = 24, np.array([120., 60.]), 40.
         lines = ["SOL 103", "CEND", "SPC = 1" if frame == "fixed" else "", "BEGIN BULK", "PARAM,COUPMASS,1", f"MAT1,1,{E!r},{G!r},,{RHO!r}",
-                 f"PBAR,1,1,3.-4,{EI[0] / E!r},{EI[1] / E!r},{GJ / G!r}", "CONM2,99,25,,.5", "SPC1,1,123456,1"]
+                 f"PBAR,1,1,3.-4,{EI[0] / E!r},{EI[1] / E!r},{GJ / G!r}", mass, "SPC1,1,123456,1"]
         lines += [f"GRID,{i + 1},,{LENGTH * i / num!r},0.,0." for i in range(num + 1)]
         lines += [f"CBAR,{i},1,{i},{i + 1},0.,1.,0." for i in range(1, num + 1)]
         self.write("mast.bdf", "\n".join(line for line in lines if line) + "\nENDDATA\n")
@@ -130,6 +130,17 @@ class ThirdOrderModes(ProgramTest):
             off = np.linalg.norm(self.rest_of_rod("force", force) - exact) / np.linalg.norm(exact)
             print(f"frame {frame}, {modes} modes: off by {100 * off:.3f} % of {np.linalg.norm(exact) / LENGTH:.3f} lengths")
             self.assertLess(off, 1e-3)
+
+    def test_bending_residuals_follow_before_twist(self):
+        """A moment that bends and twists; the twist is more compliant than residual vectors of bending, which follow. 14 and 40 %
+        off before, when twist did."""
+        moment = np.array([3., 0., 8.])
+        for modes in (8, 14):
+            rods = self.make_rod("fixed", modes, "interface", 3, mass="CONM2,99,25,,.5\n,.001,,.001,,,.001")
+            exact = rods.run(np.r_[np.zeros(3), moment], [np.zeros(3)])[0][-1] - [LENGTH, 0, 0]
+            off = np.linalg.norm(self.rest_of_rod("moment", moment.tolist()) - exact) / np.linalg.norm(exact)
+            print(f"{modes} modes: off by {100 * off:.3f} % of {np.linalg.norm(exact) / LENGTH:.3f} lengths")
+            self.assertLess(off, 3e-3)
 
     def test_lost_twist_of_loads_by_name(self):
         """A moment at the end, its twist lost: residual vectors of a [[body.load]] as those of the interface, at the same

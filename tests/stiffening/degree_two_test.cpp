@@ -101,7 +101,8 @@ TEST_P(DegreeTwo, IsK_G2AndTheStressOfTheModes) {
   const Eigen::MatrixXi triples = records::list_exponents(static_cast<int>(n), 3);
   const MatrixXd C = body.modal_stiffness.ldlt().solve(Phi.transpose() * F);  // amplitudes of the load
   const VectorXd unit = body.modal_stiffness.diagonal().cwiseSqrt().cwiseInverse();
-  double worst = 0, of_modes = 0, whole = 0;
+  double of_modes = 0, whole = 0;
+  VectorXd sizes(ne), errors(ne);
   for (Eigen::Index e = 0; e < ne; ++e) {
     const MatrixXd& K_G2 = body.kg_external[static_cast<std::size_t>(e)];
     double size = 0, error = 0, second = 0;
@@ -123,10 +124,13 @@ TEST_P(DegreeTwo, IsK_G2AndTheStressOfTheModes) {
       second = std::max(second, scale * std::abs(modes));
       error = std::max(error, scale * std::abs(third.load[0](i, e) - first - modes - shift));
     }
-    worst = std::max(worst, error / std::max(size, second));
+    sizes[e] = std::max(size, second);
+    errors[e] = error;
     of_modes = std::max(of_modes, second);
     whole = std::max(whole, size);
   }
+  // Out of its plane the strip's loads have no work of degree 2: round-off is measured by the other loads.
+  const double worst = errors.cwiseQuotient(sizes.cwiseMax(1e-6 * sizes.maxCoeff())).maxCoeff();
   std::printf("%s: off by %.1e, stress of the modes %.1e of K_G2\n", GetParam().name, worst, of_modes / whole);
   EXPECT_LT(worst, 1e-9);
   EXPECT_GT(of_modes / whole, GetParam().smallest_ratio);
