@@ -69,7 +69,7 @@ std::vector<ModalRangeMonitor::Crossing> ModalRangeMonitor::find_deflections(con
                                                                              std::optional<double> t) {
   std::vector<Crossing> found;
   for (Watched& w : watched_) {
-    if (w.deflection_reported || !(w.size > 0)) continue;
+    if (w.reported == Range::Left || !(w.size > 0)) continue;
     const Body& body = get_body(system_, w.body).body;
     const auto eta = q.segment(system_.eta_offset(w.body), system_.num_modes(w.body));
     double largest = 0;
@@ -87,12 +87,18 @@ std::vector<ModalRangeMonitor::Crossing> ModalRangeMonitor::find_deflections(con
     // Clamped plates stretch at a way of their thickness.
     if (!is_far && !body.soft_energy()) continue;
     const auto report = [&](const std::string& limit, const std::string& advice) {
-      w.deflection_reported = true;
+      w.reported = largest > w.size ? Range::Left : Range::Passed;
       found.push_back({w.body, "run.linear-limit",
                        "body '" + system_.body_name(w.body) + "' deflects by " + short_text(largest) + " at node " +
                            std::to_string(where->id) + (t ? " at t = " + short_text(*t) : " at rest") + limit,
                        advice + "cut its deck into several bodies with bough split DECK --parts N"});
     };
+    if (largest > w.size) {
+      report(", more than its size " + short_text(w.size),
+             "the series of its displacements and energy mean nothing there, nor do the results from then on; ");
+      continue;
+    }
+    if (w.reported == Range::Passed) continue;
     if (!body.third_order() && !body.stiffened()) {
       if (largest > kLinearLimit * w.size)
         report(", more than " + short_text(100 * kLinearLimit) + " % of its size " + short_text(w.size),
@@ -145,14 +151,14 @@ VectorXd ModalRangeMonitor::calc_modal_limit() const {
 
 void ModalRangeMonitor::get_memory(Eigen::Ref<VectorXd> memory) const {
   for (size_t i = 0; i < watched_.size(); ++i) {
-    memory[static_cast<Eigen::Index>(2 * i)] = watched_[i].deflection_reported;
+    memory[static_cast<Eigen::Index>(2 * i)] = static_cast<double>(watched_[i].reported);
     memory[static_cast<Eigen::Index>(2 * i + 1)] = watched_[i].spin_reported;
   }
 }
 
 void ModalRangeMonitor::set_memory(const VectorXd& memory) {
   for (size_t i = 0; i < watched_.size(); ++i) {
-    watched_[i].deflection_reported = memory[static_cast<Eigen::Index>(2 * i)] != 0;
+    watched_[i].reported = static_cast<Range>(static_cast<int>(memory[static_cast<Eigen::Index>(2 * i)]));
     watched_[i].spin_reported = memory[static_cast<Eigen::Index>(2 * i + 1)] != 0;
   }
 }

@@ -58,10 +58,13 @@ class ModalRangeMonitor {
   void set_memory(const VectorXd& memory);
 
  private:
+  /// Deflections reported: none, beyond the limit of the modes, beyond the size of the body.
+  enum class Range { Kept, Passed, Left };
   struct Watched {
     int body = 0;
     double size = 0, frequency = 0;  ///< frequency: 0 where stiffening is on
-    bool deflection_reported = false, spin_reported = false;
+    Range reported = Range::Kept;
+    bool spin_reported = false;
   };
   const System& system_;
   std::vector<Watched> watched_;
