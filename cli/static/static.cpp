@@ -96,6 +96,8 @@ void add_static(CLI::App& app, Action& action) {
                  "Large displacements and rotations, elastic materials; the way of SOL 106 with PARAM,LGDISP,1");
   verb->add_option("--increments", o->request.num_increments, "Load steps of each nonlinear subcase (default: 10)")
       ->check(CLI::Range(1, 100000));
+  verb->add_flag("--arc-length", o->request.has_arc_length,
+                 "Nonlinear subcases follow their path through limit points (snap-through)");
   verb->add_option("--vtu", o->vtu, "Write the displacements of every subcase to this file for ParaView");
   verb->add_option("--grid-forces", o->request.grid_forces,
                    "List every force on these grids, or on all: elements, loads, SPC")
