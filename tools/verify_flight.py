@@ -150,15 +150,23 @@ def verify_classics(b):
         section("simulation", duration=0.2, output_step=0.1, gravity=[0.0, 0.0, -9.81], **ACCURATE)), "bodies/top/quaternion")
     for i, exact in enumerate((-0.70827915, 0.43878109, 0.5457284, 0.08939975)):
         b.add("heavy top, 0.2 s", f"Euler parameter {i}", q[-1, i], exact, 1e-6, "Exudyn heavyTop.py (5 digits), by scipy")
-    for height, exact in ((2.0, 4.247253), (0.5, 3.621633)):
-        poles = b.linearize(toml(
-            table("body", "stage", mass=100.0, inertia=[10.0, 10.0, 10.0]),
-            table("tank", "tank", "cylinder", body="stage", mass=1000 * math.pi * height, radius=1.0, height=2.5, density=1000.0,
-                  slosh=True),
-            table("hinge", "clamp", "fixed", child="stage"),
-            section("simulation", duration=1.0, gravity=[0.0, 0.0, -9.81])))
-        b.add(f"slosh, upright cylinder, h/R {height:g}", "first mode [rad/s]", poles.imag.max(), exact, 1e-6,
+    # Share of the pendulum by the frequency of the tank free to slide, ω² (M + m) / (M + m - m1); length at 2 g.
+    for height, exact, share, length in ((2.0, 4.247253, 0.226967, 0.543817), (0.5, 3.621633, 0.660108, 0.747929)):
+        stage, liquid, case = 100.0, 1000 * math.pi * height, f"slosh, upright cylinder, h/R {height:g}"
+
+        def find_frequency(hinge, g):
+            return b.linearize(toml(
+                table("body", "stage", mass=stage, inertia=[10.0, 10.0, 10.0]),
+                table("tank", "tank", "cylinder", body="stage", mass=liquid, radius=1.0, height=2.5, density=1000.0, slosh=True),
+                table("hinge", "stand", child="stage", **hinge),
+                section("simulation", duration=1.0, gravity=[0.0, 0.0, -g]))).imag.max()
+
+        clamped = find_frequency({"type": "fixed"}, 9.81)
+        sliding = find_frequency({"type": "prismatic", "axis": [1.0, 0.0, 0.0]}, 9.81)
+        b.add(case, "first mode [rad/s]", clamped, exact, 1e-6, "NASA SP-106")
+        b.add(case, "sloshing share of the mass", (stage + liquid) / liquid * (1 - (clamped / sliding)**2), share, 2e-6,
               "NASA SP-106")
+        b.add(case, "pendulum [m]", 2 * 9.81 / find_frequency({"type": "fixed"}, 2 * 9.81)**2, length, 2e-6, "NASA SP-106")
     # Furuta pendulum of Cazzolato & Prime with a rigid arm: gains by Riccati's equation of both models.
     J, m, L, l, J2, g, b1, b2 = 0.02, 0.1, 0.3, 0.2, 1.5e-3, 9.81, 2e-3, 1e-3
     b.linearize(toml(
