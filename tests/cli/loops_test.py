@@ -89,7 +89,7 @@ class LoopsTest(ProgramTest):
             self.write("closed.toml", text.format(kind, 1.0, more))
             for verb in ("check", "equilibrium", "linearize"):
                 self.bough(verb, "closed.toml")
-            for integrator in ("adams", "bdf", "rk", "rk4"):
+            for integrator in ("adams", "bdf", "rk", "radau", "rk4"):
                 step = 'step = 0.01\n' if integrator == "rk4" else ""
                 self.write("moves.toml", text.format(kind, 1.0, more) + f'integrator = "{integrator}"\n{step}')
                 self.bough("run", "moves.toml")
