@@ -5,15 +5,12 @@ import h5py
 import numpy as np
 
 from support import ProgramTest
+from four_bar import write_bars
 from toml_text import section, table, toml
 
 FOUR_BAR = toml(
-    table("body", "crank", mass=1.0, cg=[0.2, 0.0, 0.0], inertia=[0.001, 0.014, 0.014],
-          nodes=[{"id": 1, "position": [0.4, 0.0, 0.0]}]),
-    table("body", "coupler", mass=2.0, cg=[0.55, 0.0, 0.0], inertia=[0.002, 0.2, 0.2],
-          nodes=[{"id": 1, "position": [1.1, 0.0, 0.0]}]),
-    table("body", "rocker", mass=1.5, cg=[0.45, 0.0, 0.0], inertia=[0.002, 0.1, 0.1],
-          nodes=[{"id": 1, "position": [0.9, 0.0, 0.0]}]),
+    write_bars(("crank", 1.0, 0.4, [0.001, 0.014, 0.014]), ("coupler", 2.0, 1.1, [0.002, 0.2, 0.2]),
+               ("rocker", 1.5, 0.9, [0.002, 0.1, 0.1])),
     table("hinge", "crank", "revolute", child="crank", position_deg=40.0, rate=3.0),
     table("hinge", "elbow", "revolute", parent="crank", parent_node=1, child="coupler"),
     table("hinge", "rocker", "revolute", child="rocker", parent_position=[1.0, 0.0, 0.0], position_deg=90.0,
