@@ -1,5 +1,6 @@
 #include "formats/hdf5/complex_modes_file.hpp"
 
+#include "formats/hdf5/detail/columns.hpp"
 #include "formats/hdf5/detail/reader.hpp"
 #include "formats/hdf5/detail/writer.hpp"
 
@@ -27,20 +28,13 @@ void write_parts(FileWriter& file, const std::string& name, const std::vector<Ma
 constexpr const char* kPoints[] = {"/critical", "/thresholds"};
 
 void write_rotors(FileWriter& file, const records::RotorSpeeds& r) {
-  std::vector<int> id, grids, elements;
-  Eigen::VectorXd mass(static_cast<Eigen::Index>(r.rotors.size())), inertia = mass;
-  for (const auto& rotor : r.rotors) {
-    mass[static_cast<Eigen::Index>(id.size())] = rotor.mass;
-    inertia[static_cast<Eigen::Index>(id.size())] = rotor.polar_inertia;
-    id.push_back(rotor.id);
-    grids.push_back(rotor.num_grids);
-    elements.push_back(rotor.num_elements);
-  }
-  file.write_integers("/rotors/id", id, {"ids of the rotors", "1"});
-  file.write_integers("/rotors/num_grids", grids, {"grids on the axis of each", "1"});
-  file.write_integers("/rotors/num_elements", elements, {"elements of each", "1"});
-  file.write_vector("/rotors/mass", mass, {"mass of each", "M"});
-  file.write_vector("/rotors/polar_inertia", inertia, {"moment of inertia of each about its axis", "M L^2"});
+  using Rotor = std::decay_t<decltype(r.rotors.front())>;
+  file.write_integers("/rotors/id", collect(r.rotors, &Rotor::id), {"ids of the rotors", "1"});
+  file.write_integers("/rotors/num_grids", collect(r.rotors, &Rotor::num_grids), {"grids on the axis of each", "1"});
+  file.write_integers("/rotors/num_elements", collect(r.rotors, &Rotor::num_elements), {"elements of each", "1"});
+  file.write_vector("/rotors/mass", to_vector(collect(r.rotors, &Rotor::mass)), {"mass of each", "M"});
+  file.write_vector("/rotors/polar_inertia", to_vector(collect(r.rotors, &Rotor::polar_inertia)),
+                    {"moment of inertia of each about its axis", "M L^2"});
   file.write_attribute("/rotors", "reference", r.reference);
   file.write_attribute("/rotors", "synchronous", r.is_synchronous ? 1 : 0);
   if (const auto& s = r.sweep; s.value.size() > 0) {
