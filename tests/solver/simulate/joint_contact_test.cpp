@@ -8,6 +8,7 @@
 #include "solver/builder/build_system.hpp"
 #include "solver/linear/linearize.hpp"
 #include "solver/system/derivative.hpp"
+#include "tests/solver/support/motions.hpp"
 #include "tests/solver/support/runs.hpp"
 
 namespace bough::solver::testing {
@@ -126,12 +127,7 @@ TEST(DryFriction, ABeltDragsAMassByStickAndSlip) {
   const double k = 100, belt = 0.1, Fs = 4, Fc = 2, w = 10;
   add_copy(spec, "mass", "on_belt");
   spec.hinges[1].parent = "body";
-  records::FunctionRecord motion;
-  motion.name = "belt";
-  motion.type = "table";
-  motion.x = {0, 100};
-  motion.y = {0, 100 * belt};
-  spec.functions = {motion};
+  spec.functions = {make_ramp("belt", belt)};
   spec.hinges[0].motion = {"belt"};
   add_friction(spec.hinges[1], Fc, Fs);
   spec.force_elements = {make_spring("spring", "mass", {-10, 0, 0}, k, 10)};
