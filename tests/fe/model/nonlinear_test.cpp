@@ -8,24 +8,18 @@
 #include <gtest/gtest.h>
 
 #include "base/rotation.hpp"
-#include "fe/linear/petsc.hpp"
 #include "fe/statics/case_solver.hpp"
 #include "formats/nastran/reader.hpp"
+#include "tests/fe/model/one_process.hpp"
 
 namespace bough::fe {
 namespace {
 
 using std::numbers::pi;
 
-/// On one process: cli.nonlinear-ranks refuses more.
-class LargeDisplacements : public ::testing::Test {
- protected:
-  void SetUp() override {
-    if (linear::initialize_petsc().size > 1) GTEST_SKIP() << "one process alone";
-  }
-};
+using test::kHead;
 
-constexpr const char* kHead = "SOL 106\nCEND\nSPC = 1\nLOAD = 1\nBEGIN BULK\n";
+class LargeDisplacements : public test::OneProcess {};
 
 /// The solution of all subcases of a deck, nonlinear or not.
 std::vector<records::StaticSubcase> solve(const std::string& text, bool is_nonlinear = true, int increments = 10) {
