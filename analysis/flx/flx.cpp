@@ -30,12 +30,11 @@ std::vector<flx::FlxFile> make_flx_files(const FlxRequest& request) {
   demand_range("--digits", request.digits, 2, 17);
   demand_range("--modopt", request.modopt, 0, 2);
   if (!request.integrals.empty()) demand_word("--integrals", request.integrals, {"lumped", "consistent", "exact"});
-  flx::MakeOptions options;
-  options.modopt = request.modopt;
-  options.method = request.integrals;
-  options.has_special_nodes = request.special_nodes;
-  options.has_stiffening = request.stiffening;
-  options.digits = request.digits;
+  flx::MakeOptions options{.modopt = request.modopt,
+                           .method = request.integrals,
+                           .has_special_nodes = request.special_nodes,
+                           .has_stiffening = request.stiffening,
+                           .digits = request.digits};
   std::vector<flx::FlxFile> files;
   for (std::size_t b = 0; b < ids.size(); ++b) {
     const auto& name = request.bodies[b];

@@ -170,6 +170,15 @@ std::pair<double, double> to_polar(double real, double imag) {
   return {std::hypot(real, imag), std::atan2(imag, real) * 180 / std::numbers::pi};
 }
 
+CurvePeak find_peak(const NamedCurve& curve, const Eigen::VectorXd& x) {
+  CurvePeak peak{&curve, -1, 0, 0};
+  for (Eigen::Index i = 0; i < x.size(); ++i) {
+    const auto [size, phase] = to_polar(curve.real(i), curve.imag.size() > 0 ? curve.imag(i) : 0);
+    if (size > peak.size) peak = {&curve, size, x(i), phase};
+  }
+  return peak;
+}
+
 std::vector<NamedCurve> list_curves(const ResponseSubcase& s) {
   std::vector<NamedCurve> all;
   const auto add = [&](const auto& curves, const std::string& quantity, int id, const std::string& component,

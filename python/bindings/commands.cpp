@@ -244,15 +244,14 @@ py::tuple export_file(const std::string& file, const std::string& to, const std:
                       bool ascii, bool moving, const std::string& fields, Strings ignore, int every,
                       std::vector<double> window, double scale, const std::string& follow, Strings bodies, Strings set,
                       const std::string& units, int fmi, int id) {
-  analysis::ExportRequest request;
-  request.file = file;
-  request.output = output;
-  request.format = to;
-  request.channels = channels;
-  request.is_ascii = ascii;
-  request.is_moving = moving;
-  request.fields = fields;
-  request.ignore_cards = std::move(ignore);
+  analysis::ExportRequest request{.file = file,
+                                  .output = output,
+                                  .format = to,
+                                  .channels = channels,
+                                  .is_ascii = ascii,
+                                  .is_moving = moving,
+                                  .fields = fields,
+                                  .ignore_cards = std::move(ignore)};
   request.moving = {every, std::move(window), scale, follow, std::move(bodies)};
   request.fmu = {fmi, std::move(channels), std::move(set), units};
   request.component.id = id;
