@@ -1,6 +1,6 @@
 import { Box, Drawing } from "./drawing.js";
 import { find_index, format_number } from "./numbers.js";
-import { el, get_style, make_button, make_check, make_color_bar, make_select, make_slider, save_blob } from "./page_parts.js";
+import { el, get_style, make_button, make_check, make_color_bar, make_select, make_slider, make_swatch, save_blob } from "./page_parts.js";
 import { SceneMarks, to_rotation, turn } from "./scene_marks.js";
 import { Viewer, make_triad } from "./viewer.js";
 
@@ -38,15 +38,12 @@ export class MotionView {
       make_check("frames", true, (on) => { this.has_frames = on; this.draw(); }),
       make_select("colour by", ["body", "displacement", ...(moving.some((b) => b.drawing.matrix) ? ["strain energy", "strain energy density"] : [])], (i) => { this.color_by = i; this.set_colors(); }), this.viewer.make_view_buttons());
     if (globalThis.MediaRecorder) tools.append(make_button("WebM", "Play once from the start and save it as a film", () => this.film()));
-    const names = el("p", { class: "note legend" }, ...moving.map((b) => {
-      const mark = el("span", { class: "swatch" });
-      mark.style.background = get_style(b.index).color;
-      return el("span", { class: "entry" }, mark, " " + b.name);
-    }));
+    const names = el("p", { class: "note legend" }, ...moving.map((b) => el("span", { class: "entry" }, make_swatch(b.index), " " + b.name)));
     this.color_note = el("p", { class: "note" });
     this.bar = make_color_bar();
     this.bar.element.hidden = true;
     this.viewer.name = "motion";
+    this.viewer.repaint = () => this.draw();
     const help = el("p", { class: "note" }, "Black (white in the dark): hinges and their axes. Frames: orange x, green y, blue z. A click in a chart takes this view there; a click in this view names a node.");
     this.element = el("div", { class: "motion" }, tools, this.viewer.element, el("div", { class: "tools" }, this.scrubber, this.clock), this.bar.element, this.color_note, names, this.marks.legend, this.marks.now, help);
     run.link.on("pick", (time) => { this.play(false); this.set_time(time); });

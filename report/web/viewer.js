@@ -96,6 +96,7 @@ export class Viewer {
     this.on_key = null;  // returns true for a key that it has handled
     this.on_grab = null;  // what takes a drag that begins here: { move(event), end() }, or null
     this.can_grab = null;  // returns true where on_grab takes one
+    this.repaint = () => this.draw();  // after a change of the theme: the owner of the things gives them their new colours
     this.things = [];
     this.marks = [];
     this.reach = 0;
@@ -105,7 +106,7 @@ export class Viewer {
     this.yaw = -1.0;
     this.pitch = 0.45;
     this.listen();
-    on_theme(() => this.draw());
+    on_theme(() => this.repaint());
     new ResizeObserver(() => requestAnimationFrame(() => this.draw())).observe(this.canvas);
   }
 

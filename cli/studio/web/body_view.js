@@ -1,6 +1,7 @@
 import { ask, find_job, follow_job, run_job } from "./api.js";
 import { make_chapter } from "./chapter_panel.js";
 import { DeckStage } from "./deck_view.js";
+import { make_compare } from "./file_views.js";
 import { el, make_button, make_check } from "./page_parts.js";
 import { make_progress, show_history } from "./parts.js";
 import { TextPane } from "./text_view.js";
@@ -14,6 +15,7 @@ export class BodyView {
     this.file = file;
     this.stage_host = el("div", { class: "stage-host" });
     this.result = el("div", { class: "result" });
+    this.comparison = el("div", { class: "comparison" });
     this.progress = make_progress();
     this.picks = true;
     this.picked = el("output", { class: "picked", "aria-live": "polite" });
@@ -82,9 +84,20 @@ export class BodyView {
       const { chapter } = await ask("chapter", { file: this.output });
       this.shown?.dispose();
       this.shown = make_chapter(chapter);
-      this.result.replaceChildren(el("h2", {}, this.output), this.shown.element);
+      const compare = make_compare(this.studio, this.output, this.progress, (output) => this.show_comparison(output));
+      this.result.replaceChildren(el("h2", {}, this.output), el("div", { class: "tools" }, compare), this.comparison, this.shown.element);
       this.result.dataset.ready = "true";
     });
+  }
+
+  /** MAC and frequencies against another body, above the modes. */
+  async show_comparison(output) {
+    const { chapter } = await ask("chapter", { file: output });
+    this.compared?.dispose();
+    this.compared = make_chapter(chapter);
+    this.comparison.replaceChildren(el("h3", {}, chapter.title || output, " ", make_button("✕", "Close the comparison", () => this.comparison.replaceChildren())), this.compared.element);
+    this.comparison.dataset.file = output;
+    this.comparison.scrollIntoView({ block: "start" });
   }
 
   async notice() {
@@ -100,6 +113,7 @@ export class BodyView {
   dispose() {
     this.stage?.dispose();
     this.shown?.dispose();
+    this.compared?.dispose();
   }
 }
 
