@@ -472,9 +472,9 @@ export class Viewer {
     return found;
   }
 
-  // Labels the node with this id as a click on it does, without calling on_pick; no label if no thing has the id.
-  name_node(id) {
-    const thing = this.things.find((t) => t.describe && t.ids.includes(id)), k = thing ? thing.ids.indexOf(id) : -1;
+  // Labels the node with this id (of this body) as a click on it does, without calling on_pick; no label if there is none.
+  name_node(id, body = undefined) {
+    const thing = this.things.find((t) => t.describe && (body === undefined || t.body === body) && t.ids.includes(id)), k = thing ? thing.ids.indexOf(id) : -1;
     const rect = this.canvas.getBoundingClientRect();
     this.picked = thing ? () => thing.describe(k) : null;
     this.place_tip(thing && project(this.make_view(), rect, thing.points.subarray(3 * k, 3 * k + 3)), rect);

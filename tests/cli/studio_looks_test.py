@@ -83,6 +83,16 @@ class Looks(PageTest):
         self.open("plate.h5")
         self.wait("document.querySelector('.chapter .modes')")
         self.check_contrast("modes")
+        # Bars of effective mass: widths of 560 for all of the mass, and of the inertia about the origin.
+        bars = page.run("[...document.querySelectorAll('.effective-mass rect.share')].map((r) => [r.y.baseVal.value, r.width.baseVal.value, r.textContent])")
+        with h5py.File(self.path("plate.h5")) as f:
+            whole = np.concatenate([np.repeat(f["/rigid/mass"][:], 3), np.diag(f["/rigid/inertia"][:])])
+            share = f["/effective_mass"][:] / whole
+        found = np.zeros((4, 6))
+        for y, width, text in bars:
+            found[int(text.split()[1].rstrip(",")) - 1, round((y - 34) / 22)] = width / 560
+        np.testing.assert_allclose(found, np.where(share > 1e-4, share, 0), atol=2e-5)
+        self.assertGreater(np.count_nonzero(found), 5)
         self.assertEqual([e for e in page.list_errors() if "favicon" not in e], [])
 
     def test_systems(self):

@@ -10,6 +10,8 @@ export class DeckStage {
   constructor(answer, on_pick, height = "100%") {
     this.scene = new DeckScene(answer);
     this.chosen = new Set();
+    /** More grids and their colours. @type {[number[], string][]} */
+    this.marked = [];
     this.picked = 0;
     this.viewer = new Viewer(height);
     this.viewer.name = "deck";
@@ -27,6 +29,7 @@ export class DeckStage {
   draw() {
     const { things, marks } = this.scene.make_things();
     if (this.chosen.size > 0) marks.push(this.scene.make_marks(this.chosen, "#d55e00"));
+    for (const [grids, color] of this.marked) if (grids.length > 0) marks.push(this.scene.make_marks(grids, color));
     if (this.picked) marks.push(this.scene.make_marks([this.picked], get_css("--mark")));
     this.viewer.things = things;
     this.viewer.marks = marks;

@@ -19,7 +19,7 @@ export class TextPane {
     this.messages = make_message_list((m) => m.line > 0 && this.editor.go(m.line));
     this.state = el("span", { class: "badge", role: "status" });
     this.outside = el("div", { class: "banner", hidden: true, role: "alert" });
-    const command = el("input", { type: "text", class: "command", placeholder: "command of bough edit: set simulation.duration=5", "aria-label": "command of bough edit" });
+    const command = el("input", { type: "text", class: "command", placeholder: `command of bough edit: set ${kind === "body" ? "body.modes.number=12" : "simulation.duration=5"}`, "aria-label": "command of bough edit" });
     command.addEventListener("keydown", (event) => {
       if (event.key !== "Enter" || !command.value.trim()) return;
       studio.attempt(async () => {
