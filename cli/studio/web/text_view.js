@@ -48,8 +48,17 @@ export class TextPane {
     return this.text !== this.saved;
   }
 
-  /** Commands of `bough edit`, as one step of undo. @param {string[]} commands */
-  async edit(commands) {
+  /**
+   * Commands of `bough edit`, as one step of undo. Of several calls each begins with the text of the one before.
+   * @param {string[]} commands
+   */
+  edit(commands) {
+    const done = (this.edits ?? Promise.resolve()).then(() => this.apply(commands));
+    this.edits = done.catch(() => {});
+    return done;
+  }
+
+  async apply(commands) {
     this.editor.keep();
     const { text } = await ask("edit", { file: this.file, text: this.text, kind: this.kind, commands });
     this.editor.change(text);
