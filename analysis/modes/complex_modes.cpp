@@ -4,12 +4,12 @@
 
 #include <algorithm>
 #include <array>
-#include <numbers>
 #include <optional>
 
 #include "analysis/common/inputs.hpp"
 #include "analysis/listing/listing.hpp"
 #include "analysis/modes/rotor_speeds.hpp"
+#include "base/phase.hpp"
 #include "fe/statics/build_model.hpp"
 #include "modal/complex/complex_modes.hpp"
 
@@ -64,9 +64,8 @@ std::optional<records::ListedVector> list_shape(const fe::Model& model, const re
     vector.is_scalar.push_back(rows[k].is_scalar);
     for (Eigen::Index c = 0; c < 6; ++c) {
       const auto z = rows[k].values(c);
-      const double degrees = std::arg(z) * 180 / std::numbers::pi;
       vector.real(row, c) = vector.is_phase ? std::abs(z) : z.real();
-      vector.imag(row, c) = !vector.is_phase ? z.imag() : degrees < 0 ? degrees + 360 : degrees;
+      vector.imag(row, c) = vector.is_phase ? calc_phase_degrees(z, kListedPhase) : z.imag();
     }
   }
   return vector;

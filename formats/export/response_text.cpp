@@ -7,6 +7,7 @@
 #include <sstream>
 #include <tuple>
 
+#include "base/phase.hpp"
 #include "formats/export/random_text.hpp"
 
 namespace bough::exports {
@@ -75,9 +76,8 @@ void add_block(const ResponseSubcase& s, const Block& block, const Eigen::Matrix
       values.push_back(!is_over_time && block.is_phase ? to_polar(real(i, c), imag(i, c)).first : real(i, c));
     while (block.kind != ' ' && values.size() % 3 != 0) values.push_back(0);
     for (Eigen::Index c = 0; c < imag.cols(); ++c) {
-      double phase = to_polar(real(i, c), imag(i, c)).second;
-      if (phase < 0) phase += 360;
-      values.push_back(block.is_phase ? phase : imag(i, c));
+      const std::complex<double> z(real(i, c), imag(i, c));
+      values.push_back(block.is_phase ? calc_phase_degrees(z, kListedPhase) : z.imag());
     }
     while (block.kind != ' ' && values.size() % 3 != 0) values.push_back(0);
     add_values(text, values, lines);
