@@ -81,11 +81,11 @@ void add_to_listing(const fe::Model& model, const records::DynamicSubcase& subca
   all.push_back(std::move(modes));
 }
 
-/// Synchronous modes in a range of speeds [1/T].
+/// Synchronous modes in a range of speeds [1/T] that resonate.
 void add_critical_speeds(double low, double high, records::ComplexModesResult& result) {
   for (Eigen::Index j = 0; j < result.eigenvalue.size(); ++j) {
     const double speed = result.eigenvalue(j).imag();
-    if (speed > 0 && speed >= low && speed <= high)
+    if (is_resonant(result.eigenvalue(j)) && speed >= low && speed <= high)
       result.rotors->critical.push_back(
           {static_cast<int>(j), speed, result.frequency_hz(j), result.whirl.size() > 0 ? result.whirl(j) : 0});
   }

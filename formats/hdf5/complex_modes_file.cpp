@@ -65,11 +65,15 @@ void write_rotors(FileWriter& file, const records::RotorSpeeds& r) {
     }
     file.write_integers(group + "/branch", branch,
                         {is_critical ? "column of /campbell, or mode of synchronous analyses, from 0"
-                                     : "column of /campbell that is unstable above, from 0",
+                                     : "column of /campbell that becomes unstable or stable, from 0",
                          "1"});
     file.write_vector(group + "/speed", values.col(0), {"of the reference rotor, radians per unit of time", "1/T"});
     file.write_vector(group + "/frequency_hz", values.col(1), {"of the motion there", "1/T"});
     file.write_vector(group + "/whirl", values.col(2), {"as /campbell/whirl", "1"});
+    if (is_critical) continue;
+    std::vector<int> onset;
+    for (const auto& point : points) onset.push_back(point.is_onset ? 1 : 0);
+    file.write_integers(group + "/onset", onset, {"1: unstable above the speed, 0: below it", "1"});
   }
 }
 
@@ -107,10 +111,12 @@ records::RotorSpeeds read_rotors(FileReader& file) {
     const auto count = static_cast<long>(branch.size());
     const auto speed = file.read_vector(group + "/speed", count), hz = file.read_vector(group + "/frequency_hz", count),
                whirl = file.read_vector(group + "/whirl", count);
+    std::vector<int> onset(static_cast<std::size_t>(count), 1);
+    if (!is_critical && file.has(group + "/onset")) onset = file.read_integers(group + "/onset", count);
     file.throw_if_errors();
     for (std::size_t k = 0; k < branch.size(); ++k) {
       const auto i = static_cast<Eigen::Index>(k);
-      (is_critical ? r.critical : r.thresholds).push_back({branch[k], speed[i], hz[i], whirl[i]});
+      (is_critical ? r.critical : r.thresholds).push_back({branch[k], speed[i], hz[i], whirl[i], onset[k] != 0});
     }
   }
   return r;
