@@ -121,8 +121,8 @@ std::string name_column(const RandomCurves& curves, Index column) {
   if (curves.card.empty())
     return curves.quantity + ":" + std::to_string(curves.dofs[at].first) + ":" + std::to_string(curves.dofs[at].second);
   const auto num = curves.components.size();
-  return curves.card + (curves.quantity == "stress" ? ":stress:" : ":") + std::to_string(curves.ids[at / num]) + ":" +
-         curves.components[at % num];
+  return curves.card + (curves.quantity == "stress" ? ":stress:" : ":") +
+         std::to_string(curves.ids[at / num]) + ":" + curves.components[at % num];
 }
 
 /// Where the output frequencies are too few for the RMS.
@@ -331,15 +331,19 @@ std::vector<records::RandomResponse> RandomAnalysis::calc(const std::vector<reco
   std::vector<records::RandomResponse> results;
   for (const auto& [input, at] : inputs_) {
     Responses chosen;
+    std::string missing;
     for (const int id : input->subcases()) {
       const auto found = std::find_if(responses.begin(), responses.end(), [id](const auto& s) { return s.id == id; });
-      if (found != responses.end()) chosen.push_back(&*found);
+      if (found != responses.end())
+        chosen.push_back(&*found);
+      else
+        missing += (missing.empty() ? "" : ", ") + std::to_string(id);
     }
-    if (chosen.size() < input->subcases().size()) {
+    if (!missing.empty()) {
       diagnostics.warning("modal.random-subcase", at,
                           "RANDOM = " + std::to_string(input->set()) +
-                              " is left out: RANDPS relates subcases of which one is not solved",
-                          "solve all subcases of RANDPS");
+                              " is left out: RANDPS relates subcases without a response: " + missing,
+                          "correct what fails in these subcases, or solve them too");
       continue;
     }
     results.push_back(calc_set(*input, chosen, sources, at, diagnostics));
