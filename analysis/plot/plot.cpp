@@ -170,6 +170,9 @@ PlotAnswer choose_plots(const PlotRequest& request, Diagnostics& diagnostics) {
                     {{"--spectrum", c.spectrum}, {"--srs", !c.srs.empty()}});
     auto plots = c.psd && !is_over_time ? make_density_plots(request.files, request.sensors, c.window)
                                         : make_response_plots(request.files, request.sensors, c.window, c.log_y);
+    for (const auto& sensor : request.sensors)
+      if (!c.srs.empty() && !sensor.starts_with("acceleration"))
+        warn_of_shock_input(request.files.front(), sensor, "a " + sensor.substr(0, sensor.find(':')), diagnostics);
     plots = shape_plots(std::move(plots), c, is_over_time, diagnostics);
     return {std::move(plots), {}, request.sensors.front()};
   }
