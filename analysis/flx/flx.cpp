@@ -25,7 +25,7 @@ std::vector<int> choose_body_ids(const FlxRequest& request) {
   return ids;
 }
 
-std::vector<flx::FlxFile> make_flx_files(const FlxRequest& request) {
+std::vector<flx::FlxFile> make_flx_files(const FlxRequest& request, Diagnostics& diagnostics) {
   const auto ids = choose_body_ids(request);
   demand_range("--digits", request.digits, 2, 17);
   demand_range("--modopt", request.modopt, 0, 2);
@@ -41,7 +41,9 @@ std::vector<flx::FlxFile> make_flx_files(const FlxRequest& request) {
     const auto& name = request.bodies[b];
     options.body_id = ids[b];
     with_file(name, [&] {
-      files.push_back(flx::make_flx(is_flat(name) ? flat::read_flex_body(name) : hdf5::read_flex_body(name), options));
+      const auto body = is_flat(name) ? flat::read_flex_body(name) : hdf5::read_flex_body(name);
+      warn_of_third_order(body, name, "a .FLX file", diagnostics);
+      files.push_back(flx::make_flx(body, options));
       return 0;
     });
   }

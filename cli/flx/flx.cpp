@@ -74,7 +74,9 @@ int run_flx(const FlxVerbOptions& o) {
   const auto layout = choose_layout(o, o.digits);
   auto request = o.request;
   request.digits = o.digits;
-  const auto files = analysis::make_flx_files(request);
+  Diagnostics diagnostics;
+  const auto files = analysis::make_flx_files(request, diagnostics);
+  console.print(diagnostics);
   std::string text;
   for (const auto& file : files) text += flx::write_flx(file, layout);
   analysis::write_text_file(output, text);

@@ -342,9 +342,11 @@ py::tuple make_flx(Strings bodies, const std::string& output, std::vector<int> b
                                special_nodes,     stiffening};
   std::vector<flx::FlxFile> files;
   std::string text;
-  run_exclusive(request.bodies.empty() ? "" : request.bodies.front(), [&] {
+  run_request(request.bodies.empty() ? "" : request.bodies.front(), py::none(), [&](PythonEvents& events) {
     announce_output(output);
-    files = analysis::make_flx_files(request);
+    Diagnostics diagnostics;
+    files = analysis::make_flx_files(request, diagnostics);
+    analysis::add_messages(diagnostics, events);
     for (const auto& file : files) text += flx::write_flx(file, flx::make_native_layout(digits));
     write_output(output, text);
   });
