@@ -9,6 +9,7 @@
 
 #include "base/phase.hpp"
 #include "formats/export/random_text.hpp"
+#include "formats/records/group_names.hpp"
 
 namespace bough::exports {
 namespace {
@@ -191,8 +192,8 @@ std::vector<NamedCurve> list_curves(const ResponseSubcase& s) {
   for (const auto& curves : s.elements)
     for (std::size_t e = 0; e < curves.ids.size(); ++e)
       for (std::size_t c = 0; c < curves.components.size(); ++c)
-        add(curves, curves.card + (curves.is_stress ? ":stress" : ""), curves.ids[e], curves.components[c],
-            static_cast<Eigen::Index>(e * curves.components.size() + c));
+        add(curves, records::get_card_of_group(curves.card) + (curves.is_stress ? ":stress" : ""), curves.ids[e],
+            curves.components[c], static_cast<Eigen::Index>(e * curves.components.size() + c));
   return all;
 }
 
@@ -259,7 +260,8 @@ std::string make_punch_text(const records::DeckResponse& response) {
       const auto count = static_cast<Eigen::Index>(curves.components.size());
       for (std::size_t e = 0; e < curves.ids.size(); ++e) {
         const auto at = static_cast<Eigen::Index>(e) * count;
-        const std::string title = (curves.is_stress ? "ELEMENT STRESSES OF " : "ELEMENT FORCES OF ") + curves.card;
+        const std::string title = (curves.is_stress ? "ELEMENT STRESSES OF " : "ELEMENT FORCES OF ") +
+                                  records::get_card_of_group(curves.card);
         add_block(s, {title.c_str(), curves.is_phase, "ELEMENT ID", curves.ids[e], ' '},
                   curves.real.middleCols(at, count),
                   curves.imag.size() > 0 ? Eigen::MatrixXd(curves.imag.middleCols(at, count)) : curves.imag, lines);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "formats/records/group_names.hpp"
 #include "modal/response/random/modal_integral.hpp"
 #include "modal/response/random/number_text.hpp"
 
@@ -88,7 +89,7 @@ std::vector<CurveSet> list_sets(const Responses& responses, const SourceLocation
     if (find_others(responses, &records::ResponseSubcase::elements, 1, is_same, set))
       sets.push_back(std::move(set));
     else
-      report((first.is_stress ? "stress of " : "force of ") + first.card);
+      report((first.is_stress ? "stress of " : "force of ") + records::get_card_of_group(first.card));
   }
   return sets;
 }
@@ -121,7 +122,7 @@ std::string name_column(const RandomCurves& curves, Index column) {
   if (curves.card.empty())
     return curves.quantity + ":" + std::to_string(curves.dofs[at].first) + ":" + std::to_string(curves.dofs[at].second);
   const auto num = curves.components.size();
-  return curves.card + (curves.quantity == "stress" ? ":stress:" : ":") +
+  return records::get_card_of_group(curves.card) + (curves.quantity == "stress" ? ":stress:" : ":") +
          std::to_string(curves.ids[at / num]) + ":" + curves.components[at % num];
 }
 
@@ -210,7 +211,7 @@ Eigen::VectorXcd find_element_values(const records::ResponseSubcase& response,
     if (curves.is_stress != (output.quantity == "stress")) continue;
     const auto id = std::find(curves.ids.begin(), curves.ids.end(), output.id);
     if (id == curves.ids.end()) continue;
-    const auto* item = find_item(curves.card, curves.is_stress, output.component);
+    const auto* item = find_item(records::get_card_of_group(curves.card), curves.is_stress, output.component);
     if (!item) continue;
     const auto name = std::find(curves.components.begin(), curves.components.end(), item->name);
     if (name == curves.components.end()) continue;
