@@ -31,6 +31,16 @@ bool is_forced(const System& system, SystemData& data, int row, double accelerat
   return std::abs(acceleration) > kForced * std::max(mobility.closed, kMinMobility * mobility.open) * limit;
 }
 
+// Returns true if sticking joints of its loops hold a free coordinate with friction: neither its friction nor the
+// motion changes its rate, which is round-off.
+bool is_held_by_loop(const System& system, SystemData& data, int row, double acceleration, double limit) {
+  constexpr double kNoMobility = 1e-12;
+  if (data.loops.blocks.empty()) return false;
+  const Mobility mobility = calc_mobility(system, data, row);
+  return mobility.closed <= kNoMobility * mobility.open &&
+         std::abs(acceleration) <= kForced * kMinMobility * mobility.open * limit;
+}
+
 // Derivatives of a trial state of the stick test. The reactions of a coordinate that cannot stick may be so large that
 // the friction of another one has no value: the trial then has no friction by bearing load, and keeps the limits of the
 // last state. \return false in that case.
@@ -185,6 +195,15 @@ void JointContacts::find_rest(HybridSystem& ode, double t, double shortest, Vect
   rests.assign(joint_contacts_.size(), false);
   before.assign(joint_contacts_.size(), false);
   slide.assign(joint_contacts_.size(), 0);
+  std::vector<double> slowest(joint_contacts_.size(), 0);
+  // Sticking joints that can hold their forces: coordinates that these keep still need no lock.
+  const auto can_hold = [&](const Watched& w) {
+    const TreeData& data = ode.data().tree;
+    if (!w.rests || data.mode[static_cast<size_t>(w.contact.u_row)] != HingeMode::Locked) return true;
+    const double force = data.calc_constraint_force(w.contact.u_row);
+    return force <= w.high(data) && force >= w.low(data);
+  };
+  const bool holds = std::all_of(joint_contacts_.begin(), joint_contacts_.end(), can_hold);
   for (size_t i = 0; i < joint_contacts_.size(); ++i) {
     const Watched& w = joint_contacts_[i];
     const HingeMode mode = ode.data().tree.mode[static_cast<size_t>(w.contact.u_row)];
@@ -193,10 +212,16 @@ void JointContacts::find_rest(HybridSystem& ode, double t, double shortest, Vect
     const double rate = y[u + w.contact.u_row], acceleration = y_dot_[u + w.contact.u_row];
     slide[i] = w.contact.has_friction() ? sign(rate) : 0;
     const bool is_held = w.contact.has_friction() || w.stop != 0;
-    const bool is_slow = std::abs(rate) <= calc_slowest(w, u, shortest);
+    slowest[i] = calc_slowest(w, u, shortest);
+    const bool is_slow = std::abs(rate) <= slowest[i];
     // A coordinate that slides and has not reversed continues to slide.
     const bool turns = !w.contact.has_friction() || w.slide == 0 || w.slide * rate <= 0;
     if (!is_held || !is_slow || !turns) continue;
+    if (mode == HingeMode::Free && w.slide == 0 && holds &&
+        is_held_by_loop(system_, ode.data(), w.contact.u_row, acceleration, w.high(ode.data().tree))) {
+      slide[i] = 0;
+      continue;
+    }
     if (w.stop == 0 && mode == HingeMode::Free &&
         is_forced(system_, ode.data(), w.contact.u_row, acceleration, w.high(ode.data().tree))) {
       if (slide[i] == 0) slide[i] = sign(acceleration);
@@ -231,8 +256,14 @@ void JointContacts::find_rest(HybridSystem& ode, double t, double shortest, Vect
     if (joint_contacts_[released].contact.has_friction())
       slide[released] = ode.data().tree.calc_constraint_force(joint_contacts_[released].contact.u_row) > 0 ? -1 : 1;
   }
+  const bool any_rests = std::find(rests.begin(), rests.end(), true) != rests.end();
   for (size_t i = 0; i < joint_contacts_.size(); ++i) {
-    const Watched& w = joint_contacts_[i];
+    Watched& w = joint_contacts_[i];
+    const int row = w.contact.u_row;
+    // The sign of round-off is no reversal: the coordinate is tested again when a joint of its loop slips.
+    if (any_rests && w.slide != 0 && std::abs(y[u + row]) <= slowest[i] &&
+        is_held_by_loop(system_, ode.data(), row, y_dot_[u + row], w.high(ode.data().tree)))
+      w.slide = 0;
     if (rests[i] && !before[i])
       what.push_back(w.contact.name + (w.stop != 0 ? " comes to rest at its stop" : " sticks"));
     if (!rests[i] && before[i]) what.push_back(w.contact.name + (w.stop != 0 ? " leaves its stop" : " slips"));

@@ -116,6 +116,15 @@ class LoopFrictionTest(ProgramTest):
         for hinge in ("h1", "h2", "h3"):
             self.assertLess(abs(dry[f"hinges/{hinge}/qdot"].ravel()[-1]), 1e-20)
 
+    def test_joints_that_others_hold(self):
+        """The rates of joints in a loop that stands are round-off, and their sign is no event."""
+        mu = {"mu": 0.3, "pin_radius": 0.03}
+        for frictions, angle in ((({"coulomb": 2.5}, None, {"mu": 0.3, "pin_radius": 0.05}), -0.74),
+                                 ((mu, {"coulomb": 1.0}, {"mu": 0.2, "pin_radius": 0.03}), -2.10)):
+            dry = self.expect_smooth_limit(make_four_bar(frictions, 3.0, 9.81, angle=angle), 10.0, [1e-4])
+            self.assertEqual(len(dry["lines"]), 1, dry["lines"])
+            self.assertIn("sticks", dry["lines"][0])
+
     def test_joints_that_hold_together(self):
         """Virtual power: the torque at h1 moves the loop from F1 + F3 abs(dq3/dq1) on, with either sign."""
         first, third = 1.0, 2.0
