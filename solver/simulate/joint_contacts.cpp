@@ -21,6 +21,16 @@ constexpr double kMinMobility = 1e-14;  // in a loop, relative to the open tree:
 
 int sign(double x) { return x > 0 ? 1 : x < 0 ? -1 : 0; }
 
+// Force by which a sticking contact may exceed its limit by round-off: a bearing without load has a limit of zero.
+template <class Contacts>
+double calc_force_noise(const Contacts& contacts, const TreeData& data) {
+  constexpr double kNoise = 1e-13;  // of the largest friction
+  double largest = 0;
+  for (const auto& w : contacts)
+    if (const double high = w.high(data); std::isfinite(high)) largest = std::max(largest, high);
+  return kNoise * largest;
+}
+
 // Returns true if the loops force the rate of a free coordinate through zero, so that its friction cannot hold it.
 // One coordinate can stick if |a| <= 2 A F, with A its mobility and F the limit of its friction. Coordinates that stick
 // together hold each other, hence the wide margin; A is of the order of (rate / rate of the loop)², which is round-off
@@ -69,6 +79,7 @@ JointContacts::JointContacts(const System& system) : system_(system) {
 
 void JointContacts::calc_event_functions(const SystemData& data, VectorXd& event_functions) const {
   event_functions.setConstant(-1);
+  const double noise = calc_force_noise(joint_contacts_, data.tree);
   for (size_t i = 0; i < joint_contacts_.size(); ++i) {
     const Watched& w = joint_contacts_[i];
     auto own = event_functions.segment<kNumEventFunctions>(kNumEventFunctions * static_cast<Eigen::Index>(i));
@@ -77,8 +88,8 @@ void JointContacts::calc_event_functions(const SystemData& data, VectorXd& event
     if (mode == HingeMode::Locked && w.rests) {
       const double force = data.tree.calc_constraint_force(w.contact.u_row);
       const double high = w.high(data.tree), low = w.low(data.tree);
-      if (std::isfinite(high)) own[0] = force - high;
-      if (std::isfinite(low)) own[1] = low - force;
+      if (std::isfinite(high)) own[0] = force - high - noise;
+      if (std::isfinite(low)) own[1] = low - force - noise;
     } else if (mode == HingeMode::Free) {
       // Past the stop and moving on: a coordinate that has just rebounded may still be past it by round-off.
       if (std::isfinite(w.contact.lower)) own[0] = std::min(w.contact.lower - q, -rate * shortest_);
@@ -201,7 +212,8 @@ void JointContacts::find_rest(HybridSystem& ode, double t, double shortest, Vect
     const TreeData& data = ode.data().tree;
     if (!w.rests || data.mode[static_cast<size_t>(w.contact.u_row)] != HingeMode::Locked) return true;
     const double force = data.calc_constraint_force(w.contact.u_row);
-    return force <= w.high(data) && force >= w.low(data);
+    const double noise = calc_force_noise(joint_contacts_, data);
+    return force <= w.high(data) + noise && force >= w.low(data) - noise;
   };
   const bool holds = std::all_of(joint_contacts_.begin(), joint_contacts_.end(), can_hold);
   for (size_t i = 0; i < joint_contacts_.size(); ++i) {
@@ -237,7 +249,7 @@ void JointContacts::find_rest(HybridSystem& ode, double t, double shortest, Vect
       ode.data().tree.slide[joint_contacts_[i].contact.u_row] = joint_contacts_[i].slide;
     }
     const bool has_value = calc_trial(ode, t, y, y_dot_);
-    double max_excess = 0;
+    double max_excess = calc_force_noise(joint_contacts_, ode.data().tree);
     size_t released = joint_contacts_.size();
     for (size_t i = 0; i < joint_contacts_.size(); ++i) {
       if (!rests[i]) continue;
