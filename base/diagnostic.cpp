@@ -11,17 +11,8 @@
 namespace bough {
 
 namespace {
-const char* name_of(Severity s) {
-  switch (s) {
-    case Severity::Note:
-      return "note";
-    case Severity::Warning:
-      return "warning";
-    case Severity::Error:
-      break;
-  }
-  return "error";
-}
+/// In the order of Severity.
+constexpr std::array kSeverityNames{"note", "warning", "error"};
 
 /// Names come from files: what would end a message or move the cursor is written as "\\x00".
 std::string make_visible(const std::string& text) {
@@ -51,7 +42,7 @@ std::string format(const Diagnostic& d) {
     if (d.where.column > 0) text += ":" + std::to_string(d.where.column);
     text += ": ";
   }
-  text += name_of(d.severity);
+  text += kSeverityNames[static_cast<std::size_t>(d.severity)];
   text += ": " + d.what;
   if (!d.advice.empty()) text += "; " + d.advice;
   if (!d.id.empty()) text += " [" + d.id + "]";

@@ -9,6 +9,7 @@
 #include <limits>
 #include <sstream>
 #include <stdexcept>
+#include <type_traits>
 
 #include "embed/fmi2_types.h"
 #include "embed/fmi3_types.h"
@@ -345,59 +346,37 @@ class Slave3 final : public SlaveBase {
     for (std::size_t i = 0; i < n; ++i) values[i] = x[i] != 0;
     check(function(own_, &v.reference, 1, values.get(), n), "fmi3SetBoolean");
   }
+  /// Calls use(T{}, name) for the C type T of a value and the end of the names of the functions that get and set it.
+  template <class Use>
+  static void visit_type(fmu::ValueType type, const Use& use) {
+    using enum fmu::ValueType;
+    if (type == Float32) return use(float{}, "Float32");
+    if (type == Int8) return use(std::int8_t{}, "Int8");
+    if (type == UInt8) return use(std::uint8_t{}, "UInt8");
+    if (type == Int16) return use(std::int16_t{}, "Int16");
+    if (type == UInt16) return use(std::uint16_t{}, "UInt16");
+    if (type == Int32) return use(std::int32_t{}, "Int32");
+    if (type == UInt32) return use(std::uint32_t{}, "UInt32");
+    if (type == Int64) return use(std::int64_t{}, "Int64");
+    if (type == UInt64) return use(std::uint64_t{}, "UInt64");
+    if (type == Boolean) return use(bool{}, "Boolean");
+    use(double{}, "Float64");
+  }
   void set_one(const fmu::ForeignVariable& v, const double* x) override {
-    using fmu::ValueType;
-    switch (v.type) {
-      case ValueType::Float32:
-        return set_values("fmi3SetFloat32", v, std::vector<float>(x, x + v.size));
-      case ValueType::Int8:
-        return set_values("fmi3SetInt8", v, convert<std::int8_t>(x, v));
-      case ValueType::UInt8:
-        return set_values("fmi3SetUInt8", v, convert<std::uint8_t>(x, v));
-      case ValueType::Int16:
-        return set_values("fmi3SetInt16", v, convert<std::int16_t>(x, v));
-      case ValueType::UInt16:
-        return set_values("fmi3SetUInt16", v, convert<std::uint16_t>(x, v));
-      case ValueType::Int32:
-        return set_values("fmi3SetInt32", v, convert<std::int32_t>(x, v));
-      case ValueType::UInt32:
-        return set_values("fmi3SetUInt32", v, convert<std::uint32_t>(x, v));
-      case ValueType::Int64:
-        return set_values("fmi3SetInt64", v, convert<std::int64_t>(x, v));
-      case ValueType::UInt64:
-        return set_values("fmi3SetUInt64", v, convert<std::uint64_t>(x, v));
-      case ValueType::Boolean:
-        return set_boolean(v, x);
-      default:
-        return set_values("fmi3SetFloat64", v, std::vector<double>(x, x + v.size));
-    }
+    visit_type(v.type, [&](auto kind, const std::string& type) {
+      using T = decltype(kind);
+      if constexpr (std::is_same_v<T, bool>)
+        set_boolean(v, x);
+      else if constexpr (std::is_integral_v<T>)
+        set_values(("fmi3Set" + type).c_str(), v, convert<T>(x, v));
+      else
+        set_values(("fmi3Set" + type).c_str(), v, std::vector<T>(x, x + v.size));
+    });
   }
   void get_one(const fmu::ForeignVariable& v, double* y) override {
-    using fmu::ValueType;
-    switch (v.type) {
-      case ValueType::Float32:
-        return get_values<float>("fmi3GetFloat32", v, y);
-      case ValueType::Int8:
-        return get_values<std::int8_t>("fmi3GetInt8", v, y);
-      case ValueType::UInt8:
-        return get_values<std::uint8_t>("fmi3GetUInt8", v, y);
-      case ValueType::Int16:
-        return get_values<std::int16_t>("fmi3GetInt16", v, y);
-      case ValueType::UInt16:
-        return get_values<std::uint16_t>("fmi3GetUInt16", v, y);
-      case ValueType::Int32:
-        return get_values<std::int32_t>("fmi3GetInt32", v, y);
-      case ValueType::UInt32:
-        return get_values<std::uint32_t>("fmi3GetUInt32", v, y);
-      case ValueType::Int64:
-        return get_values<std::int64_t>("fmi3GetInt64", v, y);
-      case ValueType::UInt64:
-        return get_values<std::uint64_t>("fmi3GetUInt64", v, y);
-      case ValueType::Boolean:
-        return get_values<bool>("fmi3GetBoolean", v, y);
-      default:
-        return get_values<double>("fmi3GetFloat64", v, y);
-    }
+    visit_type(v.type, [&](auto kind, const std::string& type) {
+      get_values<decltype(kind)>(("fmi3Get" + type).c_str(), v, y);
+    });
   }
 
   fmi3Instance (*instantiate_)(fmi3String, fmi3String, fmi3String, fmi3Boolean, fmi3Boolean, fmi3Boolean, fmi3Boolean,

@@ -58,7 +58,7 @@ typedef struct bough_message {
 /** For bough_start. Start from bough_default_options(); zero or null: as the system file says. */
 typedef struct bough_options {
   size_t size;            /* sizeof(bough_options) */
-  const char *integrator; /* "rk4", "implicit", "rk", "adams", "bdf" */
+  const char *integrator; /* "rk4", "implicit", "rk", "radau", "adams", "bdf" */
   double step;            /* of rk4 and implicit; the largest one of the others */
   double relative_tolerance, absolute_tolerance;
   double duration; /* how long it may go on at most */

@@ -47,6 +47,16 @@ fmi2Status reject(fmi2Component component, const char* function, const char* why
   return run(component, kAny, function, [&](Component& c) { return c.fail(std::string(function) + ": " + why); });
 }
 
+/// *value becomes that of `get`, a function of the component, if the kind of status is the right one.
+template <class Value, class Get>
+fmi2Status get_status(fmi2Component component, const char* function, Value* value, bool is_kind, const Get& get) {
+  return run(component, kAny, function, [&](Component& c) {
+    if (!value || !is_kind) return c.discard(std::string(function) + ": no status of this kind");
+    *value = get(c);
+    return Status::Ok;
+  });
+}
+
 /// Variables of other types than Real do not exist.
 fmi2Status reject_type(fmi2Component component, const char* function, std::size_t n) noexcept {
   return run(component, kAny, function, [&](Component& c) {
@@ -333,36 +343,23 @@ fmi2Status fmi2CancelStep(fmi2Component c) {
   return reject(c, "fmi2CancelStep", "no step is pending: the FMU does not run asynchronously");
 }
 fmi2Status fmi2GetStatus(fmi2Component component, const fmi2StatusKind kind, fmi2Status* value) {
-  return run(component, kAny, "fmi2GetStatus", [&](Component& c) {
-    if (!value || kind != fmi2DoStepStatus) return c.discard("fmi2GetStatus: no status of this kind");
-    *value = c.is_terminated ? fmi2Discard : fmi2OK;
-    return Status::Ok;
-  });
+  return get_status(component, "fmi2GetStatus", value, kind == fmi2DoStepStatus,
+                    [](Component& c) { return c.is_terminated ? fmi2Discard : fmi2OK; });
 }
 fmi2Status fmi2GetRealStatus(fmi2Component component, const fmi2StatusKind kind, fmi2Real* value) {
-  return run(component, kAny, "fmi2GetRealStatus", [&](Component& c) {
-    if (!value || kind != fmi2LastSuccessfulTime) return c.discard("fmi2GetRealStatus: no status of this kind");
-    *value = c.time();
-    return Status::Ok;
-  });
+  return get_status(component, "fmi2GetRealStatus", value, kind == fmi2LastSuccessfulTime,
+                    [](Component& c) { return c.time(); });
 }
 fmi2Status fmi2GetIntegerStatus(fmi2Component component, const fmi2StatusKind, fmi2Integer*) {
   return run(component, kAny, "fmi2GetIntegerStatus",
              [](Component& c) { return c.discard("fmi2GetIntegerStatus: no status of this kind"); });
 }
 fmi2Status fmi2GetBooleanStatus(fmi2Component component, const fmi2StatusKind kind, fmi2Boolean* value) {
-  return run(component, kAny, "fmi2GetBooleanStatus", [&](Component& c) {
-    if (!value || kind != fmi2Terminated) return c.discard("fmi2GetBooleanStatus: no status of this kind");
-    *value = c.is_terminated ? 1 : 0;
-    return Status::Ok;
-  });
+  return get_status(component, "fmi2GetBooleanStatus", value, kind == fmi2Terminated,
+                    [](Component& c) { return c.is_terminated ? 1 : 0; });
 }
 fmi2Status fmi2GetStringStatus(fmi2Component component, const fmi2StatusKind kind, fmi2String* value) {
-  return run(component, kAny, "fmi2GetStringStatus", [&](Component& c) {
-    if (!value || kind != fmi2PendingStatus) return c.discard("fmi2GetStringStatus: no status of this kind");
-    *value = "";
-    return Status::Ok;
-  });
+  return get_status(component, "fmi2GetStringStatus", value, kind == fmi2PendingStatus, [](Component&) { return ""; });
 }
 
 }  // extern "C"

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <cstring>
 #include <limits>
 
 #include "base/version.hpp"
+#include "embed/byte_stream.hpp"
 #include "embed/files.hpp"
 #include "embed/fmi_variables.hpp"
 #include "embed/state_bytes.hpp"
@@ -30,52 +30,21 @@ std::vector<double> get_starts(const embed::Model& model, int kind) {
   return values;
 }
 
-class Bytes {
- public:
-  void write(const void* from, std::size_t size) {
-    const auto* bytes = static_cast<const std::byte*>(from);
-    all.insert(all.end(), bytes, bytes + size);
-  }
-  void write(double value) { write(&value, sizeof value); }
-  void write(std::uint64_t value) { write(&value, sizeof value); }
-  template <class T>
-  void write(const std::vector<T>& values) {
-    write(std::uint64_t{values.size()});
-    write(values.data(), values.size() * sizeof(T));
-  }
-  std::vector<std::byte> all;
-};
+[[noreturn]] void fail_state(const char* what) {
+  throw InputError("fmu.state", {}, what, "deserialize the bytes that an instance of the same FMU serialized");
+}
 
-class BytesReader {
- public:
-  explicit BytesReader(std::span<const std::byte> bytes) : bytes_(bytes) {}
-  void read(void* to, std::size_t size) {
-    if (size > bytes_.size() - at_) fail("the state ends early");
-    if (size > 0) std::memcpy(to, bytes_.data() + at_, size);
-    at_ += size;
-  }
-  template <class T>
-  T read() {
-    T value{};
-    read(&value, sizeof value);
-    return value;
-  }
-  template <class T>
-  void read(std::vector<T>& values) {
-    const auto size = read<std::uint64_t>();
-    if (size > (bytes_.size() - at_) / sizeof(T)) fail("the state is damaged");
-    values.resize(size);
-    read(values.data(), size * sizeof(T));
-  }
-  std::size_t at() const { return at_; }
-  [[noreturn]] static void fail(const char* what) {
-    throw InputError("fmu.state", {}, what, "deserialize the bytes that an instance of the same FMU serialized");
-  }
+template <class T>
+void write_list(embed::ByteWriter& bytes, const std::vector<T>& values) {
+  bytes.write(std::uint64_t{values.size()});
+  bytes.write(values.data(), values.size() * sizeof(T));
+}
 
- private:
-  std::span<const std::byte> bytes_;
-  std::size_t at_ = 0;
-};
+template <class T>
+void read_list(embed::ByteReader& reader, std::vector<T>& values) {
+  values.resize(reader.read_count(reader.num_left() / sizeof(T)));
+  reader.read(values.data(), values.size() * sizeof(T));
+}
 
 }  // namespace
 
@@ -256,6 +225,14 @@ Status Instance::get_values(std::span<const std::uint32_t> references, double* v
       values[i] = from[index];
       return Status::Ok;
     };
+    const auto take_from = [&](std::vector<double>& all, std::size_t size, auto get) {
+      auto status = Status::Ok;
+      if (all.empty()) {
+        all.resize(size);
+        status = (this->*get)(all.data(), size);
+      }
+      return status == Status::Ok ? take(all) : status;
+    };
     auto status = Status::Ok;
     if (kind == VariableKind::Input || kind == VariableKind::Parameter) {
       status = take(kind == VariableKind::Input ? inputs_ : parameters_);
@@ -273,25 +250,13 @@ Status Instance::get_values(std::span<const std::uint32_t> references, double* v
         status = check(bough_get_outputs(simulation_.get(), static_cast<int>(index), 1, values + i), simulation_.get());
         break;
       case VariableKind::State:
-        if (x.empty()) {
-          x.resize(num_states());
-          status = get_states(x.data(), x.size());
-        }
-        if (status == Status::Ok) status = take(x);
+        status = take_from(x, num_states(), &Instance::get_states);
         break;
       case VariableKind::Derivative:
-        if (x_dot.empty()) {
-          x_dot.resize(num_states());
-          status = get_derivatives(x_dot.data(), x_dot.size());
-        }
-        if (status == Status::Ok) status = take(x_dot);
+        status = take_from(x_dot, num_states(), &Instance::get_derivatives);
         break;
       case VariableKind::EventIndicator:
-        if (g.empty()) {
-          g.resize(num_event_functions());
-          status = get_event_functions(g.data(), g.size());
-        }
-        if (status == Status::Ok) status = take(g);
+        status = take_from(g, num_event_functions(), &Instance::get_event_functions);
         break;
       default:
         status = take({});
@@ -616,33 +581,34 @@ Status Instance::set_state(const SavedState& saved) {
 }
 
 std::vector<std::byte> Instance::serialize(const SavedState& s) const {
-  Bytes bytes;
+  embed::ByteWriter bytes;
   bytes.write(kMagic);
   bytes.write(token_.data(), token_.size());
   bytes.write(std::uint64_t{s.phase});
   for (const double value : {s.tolerance, s.start, s.stop, s.duration, s.output_step}) bytes.write(value);
-  for (const auto* values : {&s.parameters, &s.inputs, &s.built_parameters, &s.built_inputs}) bytes.write(*values);
-  bytes.write(s.bytes);
+  for (const auto* values : {&s.parameters, &s.inputs, &s.built_parameters, &s.built_inputs})
+    write_list(bytes, *values);
+  write_list(bytes, s.bytes);
   bytes.write(embed::calc_hash(bytes.all));
   return std::move(bytes.all);
 }
 
 std::unique_ptr<SavedState> Instance::deserialize(std::span<const std::byte> bytes) const {
-  BytesReader reader(bytes);
-  if (reader.read<std::uint64_t>() != kMagic) BytesReader::fail("these bytes are no serialized FMU state");
+  embed::ByteReader reader(bytes, fail_state);
+  if (reader.read<std::uint64_t>() != kMagic) fail_state("these bytes are no serialized FMU state");
   std::string token(token_.size(), '\0');
   reader.read(token.data(), token.size());
-  if (token != token_) BytesReader::fail("the serialized state is of another FMU");
+  if (token != token_) fail_state("the serialized state is of another FMU");
   auto s = std::make_unique<SavedState>();
   const auto phase = reader.read<std::uint64_t>();
   for (double* value : {&s->tolerance, &s->start, &s->stop, &s->duration, &s->output_step})
     *value = reader.read<double>();
-  for (auto* values : {&s->parameters, &s->inputs, &s->built_parameters, &s->built_inputs}) reader.read(*values);
-  reader.read(s->bytes);
+  for (auto* values : {&s->parameters, &s->inputs, &s->built_parameters, &s->built_inputs}) read_list(reader, *values);
+  read_list(reader, s->bytes);
   const std::size_t end = reader.at();
   if (reader.read<std::uint64_t>() != embed::calc_hash(bytes.first(end)) || phase > kTerminated || phase == 0 ||
       (phase & (phase - 1)) != 0)
-    BytesReader::fail("the state is damaged");
+    fail_state("the state is damaged");
   s->phase = static_cast<Phase>(phase);
   return s;
 }

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "base/non_copyable.hpp"
 #include "embed/handles.hpp"
 
 namespace bough::fmi {
@@ -52,13 +53,11 @@ struct SavedState {
   std::vector<std::byte> bytes;                                              ///< of bough_save; empty: not started
 };
 
-class Instance {
+class Instance : private NonCopyable {
  public:
   /// Checks the token and loads resources/system.toml. \throws InputError, "fmu.token" among them.
   explicit Instance(InstanceOptions options);
   ~Instance();
-  Instance(const Instance&) = delete;
-  Instance& operator=(const Instance&) = delete;
 
   /// Returns the options of the constructor, with the logging of the last set_logging().
   const InstanceOptions& options() const { return options_; }

@@ -73,8 +73,9 @@ Chapter make_chapter(const records::ComplexModesResult& r, const std::string& fi
     if (r.eigenvalue[j].real() > kUnstable * std::abs(r.eigenvalue[j])) ++num_unstable;
     if (r.eigenvalue[j].imag() > 0 && (min_mode < 0 || r.damping_ratio[j] < r.damping_ratio[min_mode])) min_mode = j;
   }
-  chapter.checks.push_back({"unstable modes", std::to_string(num_unstable),
-                            num_unstable > 0 ? Verdict::Warning : Verdict::Good, "real part above 0"});
+  if (!r.rotors || !r.rotors->is_synchronous)
+    chapter.checks.push_back({"unstable modes", std::to_string(num_unstable),
+                              num_unstable > 0 ? Verdict::Warning : Verdict::Good, "real part above 0"});
   if (n > 0) {
     const double worst = r.residual.maxCoeff();
     chapter.checks.push_back({"largest residual", format_value(worst, 2),

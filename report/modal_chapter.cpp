@@ -8,6 +8,7 @@
 #include <Eigen/Eigenvalues>
 
 #include "base/xml_text.hpp"
+#include "report/effective_mass_plot.hpp"
 #include "report/html.hpp"
 #include "report/pack.hpp"
 #include "report/shape_plot.hpp"
@@ -267,7 +268,8 @@ Chapter make_chapter(const ModalModel& m) {
   }
   chapter.add_panel("mass", "Mass properties", make_mass_panel(m) + (m.nodes.empty() ? "" : make_nodes(m)));
   if (m.frequency_hz.size() > 0)
-    chapter.add_panel("table", m.is_buckling ? "Load factors" : "Modes and effective mass", make_mode_table(m));
+    chapter.add_panel("table", m.is_buckling ? "Load factors" : "Modes and effective mass",
+                      (m.is_buckling ? "" : draw_effective_mass(m)) + make_mode_table(m));
   if (m.integrals.norm[0].size() + m.integrals.norm[1].size() + m.integrals.norm[2].size() > 0)
     chapter.add_panel("integrals", "Mass integrals by three methods", make_integrals(m));
   if (!m.spin.empty()) chapter.add_panel("spin", "Frequency against spin rate", make_spin(m));

@@ -1,6 +1,7 @@
 #include "report/page.hpp"
 
 #include <algorithm>
+#include <array>
 
 #include "base/xml_text.hpp"
 #include "report/html.hpp"
@@ -8,21 +9,12 @@
 
 namespace bough::report {
 
-namespace {
-
 const char* get_word(Verdict verdict) {
-  switch (verdict) {
-    case Verdict::Good:
-      return "ok";
-    case Verdict::Warning:
-      return "look";
-    case Verdict::Bad:
-      return "bad";
-    case Verdict::None:
-      break;
-  }
-  return "told";
+  constexpr std::array kWords{"ok", "look", "bad", "told"};
+  return kWords[static_cast<std::size_t>(verdict)];
 }
+
+namespace {
 
 std::string make_badge(Verdict verdict) {
   const std::string word = get_word(verdict);

@@ -10,6 +10,8 @@
 namespace bough::report {
 
 enum class Verdict { Good, Warning, Bad, None };
+/// The word of a verdict, by which pages and studio choose its colour.
+const char* get_word(Verdict verdict);
 
 /// One line of the health table.
 struct Check {

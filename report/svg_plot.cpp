@@ -191,13 +191,23 @@ class TextPlacer {
       return false;
     for (const auto& b : boxes_)
       if (box.left < b.right && b.left < box.right && box.top < b.bottom && b.top < box.bottom) return false;
+    const auto unit_x = [&](double x) { return (x - box.left) / (box.right - box.left); };
+    const auto unit_y = [&](double y) { return (y - box.top) / (box.bottom - box.top); };
+    for (const auto& [ax, ay, bx, by] : line_) {
+      double from = 0, to = 1;
+      if (clip_segment(unit_x(ax), unit_y(ay), unit_x(bx), unit_y(by), from, to)) return false;
+    }
     boxes_.push_back(box);
     return true;
   }
 
+  /// Segments (x, y of both ends) that no text crosses from now on.
+  void set_line(std::vector<std::array<double, 4>> line) { line_ = std::move(line); }
+
  private:
   const Frame& frame_;
   std::vector<Box> boxes_;
+  std::vector<std::array<double, 4>> line_;
 };
 
 struct PlacedText {
@@ -225,21 +235,41 @@ std::string write_text(const std::string& text, const PlacedText& at, double fon
          (at.is_end ? " text-anchor=\"end\"" : "") + " fill=\"" + color + "\">" + escape_xml(text) + "</text>\n";
 }
 
+/// Segments of the lines of the curves, in pixels; empty if there are more than `max_segments`.
+std::vector<std::array<double, 4>> list_segments(const std::vector<Curve>& curves, const Frame& f,
+                                                 std::size_t max_segments) {
+  std::vector<std::array<double, 4>> segments;
+  for (const auto& curve : curves) {
+    if (curve.markers_only) continue;
+    for (Eigen::Index i = 0; i + 1 < curve.x.size() && segments.size() <= max_segments; ++i) {
+      const std::array<double, 4> ends{f.map_x(curve.x[i]), f.map_y(curve.y[i]), f.map_x(curve.x[i + 1]),
+                                       f.map_y(curve.y[i + 1])};
+      if (std::all_of(ends.begin(), ends.end(), [](double v) { return std::isfinite(v); })) segments.push_back(ends);
+    }
+  }
+  if (segments.size() > max_segments) segments.clear();
+  return segments;
+}
+
 /// Guides and their labels: next to the last point of each inside the frame, or where else on it there is room.
 std::string draw_guides(const Plot& plot, const Frame& f, TextPlacer& placer) {
   std::string svg;
+  constexpr std::size_t kMaxSegments = 20000;  // each is tested against each place
+  const auto curves = list_segments(plot.curves, f, kMaxSegments);
   for (const auto& guide : plot.guides) {
     svg += "<path d=\"" + draw_line(guide, f) + "\" fill=\"none\" stroke=\"#b0b0b0\" stroke-width=\"1\"/>\n";
     if (guide.label.empty() || guide.x.size() < 2) continue;
     const auto unit_x = [&](double v) { return (v - f.x.min) / (f.x.max - f.x.min); };
     const auto unit_y = [&](double v) { return (v - f.y.min) / (f.y.max - f.y.min); };
     std::vector<std::pair<double, double>> points;
+    std::vector<std::array<double, 4>> line;
     std::size_t best = 0;
     for (Eigen::Index i = 0; i + 1 < guide.x.size(); ++i) {
       const double ax = unit_x(guide.x[i]), ay = unit_y(guide.y[i]);
       const double bx = unit_x(guide.x[i + 1]), by = unit_y(guide.y[i + 1]);
       double from = 0, to = 1;
       if (!std::isfinite(ax + ay + bx + by) || !clip_segment(ax, ay, bx, by, from, to)) continue;
+      line.push_back({f.map_x(guide.x[i]), f.map_y(guide.y[i]), f.map_x(guide.x[i + 1]), f.map_y(guide.y[i + 1])});
       if (i == 0 || guide.x.size() == 2 || i < guide.x.size() / 2) best = points.size();
       // A ray has room along its way too.
       for (const double share : {1.0, 0.6, 0.7, 0.8, 0.9}) {
@@ -248,14 +278,19 @@ std::string draw_guides(const Plot& plot, const Frame& f, TextPlacer& placer) {
         if (guide.x.size() > 2) break;
       }
     }
-    for (std::size_t k = 0; k < points.size(); ++k) {
-      // From the best one backward, then from the far end.
-      const auto& [x, y] = points[(best + points.size() - k) % points.size()];
+    // From the best one backward, then from the far end; next to all lines, else to its own one, else anywhere.
+    for (std::size_t k = 0; k < 3 * points.size(); ++k) {
+      if (k == 0) line.insert(line.end(), curves.begin(), curves.end());
+      if (k == points.size()) line.resize(line.size() - curves.size());
+      if (k == 2 * points.size()) line.clear();
+      if (k % points.size() == 0) placer.set_line(line);
+      const auto& [x, y] = points[(best + 3 * points.size() - k) % points.size()];
       const auto at = place_text(guide.label, x, y, 11, 4, placer);
       if (!at) continue;
       svg += write_text(guide.label, *at, 11, "#777777");
       break;
     }
+    placer.set_line({});
   }
   return svg;
 }

@@ -1,7 +1,6 @@
 // Forces and stresses of the elements that the body file names, per mode and per unit load.
 #include <cctype>
 #include <charconv>
-#include <map>
 #include <optional>
 #include <string_view>
 #include <unordered_set>
@@ -10,6 +9,7 @@
 #include "fe/elements/beam.hpp"
 #include "fe/loads/load_sets.hpp"
 #include "fe/model/element_loop.hpp"
+#include "fe/statics/element_groups.hpp"
 #include "fe/statics/element_results.hpp"
 #include "stiffening/stages.hpp"
 
@@ -56,12 +56,16 @@ std::optional<ElementChoice> read_choice(const std::string& word) {
   return w;
 }
 
-/// Indices of elements by card and names of the rows.
-using Groups = std::map<std::pair<std::string, std::vector<std::string>>, std::vector<int>>;
+/// Components of the forces, then those of the stresses; empty without either.
+std::vector<std::string> list_components(const fe::Element& element) {
+  auto names = fe::list_force_components(element);
+  if (const auto* recovery = element.stress_recovery())
+    for (auto& name : fe::list_stress_names(recovery->stress_points())) names.push_back(std::move(name));
+  return names;
+}
 
 /// The elements that spec.recover names. Reports reduce.bad-recover, reduce.unknown-element, reduce.nothing-to-recover.
-Groups choose_recovered(const BodyRequest& request, const fe::Model& model) {
-  Groups groups;
+std::vector<fe::ElementGroup> choose_recovered(const BodyRequest& request, const fe::Model& model) {
   const auto properties = fe::list_element_properties(request.deck);
   std::unordered_set<int> chosen;
   const auto& elements = model.elements();
@@ -78,18 +82,16 @@ Groups choose_recovered(const BodyRequest& request, const fe::Model& model) {
       const auto property = properties.find(elements[e]->id());
       if (!choice->names(*elements[e], property == properties.end() ? 0 : property->second)) continue;
       is_there = true;
-      std::vector<std::string> names;
-      if (const auto* printed = elements[e]->printed_forces()) names = printed->printed_force_names();
-      if (const auto* recovery = elements[e]->stress_recovery())
-        for (auto& name : fe::list_stress_names(recovery->stress_points())) names.push_back(std::move(name));
-      if (names.empty() || !chosen.insert(static_cast<int>(e)).second) continue;
-      groups[{elements[e]->card(), std::move(names)}].push_back(static_cast<int>(e));
+      chosen.insert(static_cast<int>(e));
     }
     if (!is_there)
       request.error_at("output/recover", "reduce.unknown-element",
                        "recover names \"" + word + "\", but the deck has no such element", "correct it");
   }
   request.diagnostics.throw_if_errors();
+  auto groups = fe::group_elements(model, [&](const fe::Element& element, int e) {
+    return chosen.count(e) > 0 ? list_components(element) : std::vector<std::string>{};
+  });
   if (groups.empty())
     request.warning_at("output/recover", "reduce.nothing-to-recover",
                        "the elements that recover names have neither forces nor stresses",
@@ -138,12 +140,10 @@ MatrixXd calc_recovery_rows(const fe::Element& element, const MatrixXd& d, const
 RecoveredElements start_recovery(const BodyRequest& request, const fe::Model& model, records::FlexBody& body) {
   if (request.spec.recover.empty()) return {};
   RecoveredElements recovered;
-  std::map<std::string, int> count;
-  for (const auto& [key, members] : choose_recovered(request, model)) {
+  for (const auto& [name, components, members] : choose_recovered(request, model)) {
     auto& block = body.recovery.emplace_back();
-    const int number = ++count[key.first];
-    block.name = number == 1 ? key.first : key.first + "-" + std::to_string(number);
-    block.components = key.second;
+    block.name = name;
+    block.components = components;
     for (const int e : members) block.id.push_back(model.elements()[static_cast<std::size_t>(e)]->id());
     recovered.push_back(members);
   }

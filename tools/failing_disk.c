@@ -49,20 +49,16 @@ ssize_t write(int fd, const void* b, size_t n) {
   if (j == 2) { next(fd, b, n / 2); DIE(); }
   return next(fd, b, n);
 }
-ssize_t pwrite(int fd, const void* b, size_t n, off_t o) {
-  NEXT(pwrite);
-  const int j = judge(fd);
-  if (j == 1) return -1;
-  if (j == 2) { next(fd, b, n / 2, o); DIE(); }
-  return next(fd, b, n, o);
-}
-ssize_t pwrite64(int fd, const void* b, size_t n, off64_t o) {
-  NEXT(pwrite64);
-  const int j = judge(fd);
-  if (j == 1) return -1;
-  if (j == 2) { next(fd, b, n / 2, o); DIE(); }
-  return next(fd, b, n, o);
-}
+#define WRITE_AT(name, offset)                              \
+  ssize_t name(int fd, const void* b, size_t n, offset o) { \
+    NEXT(name);                                             \
+    const int j = judge(fd);                                \
+    if (j == 1) return -1;                                  \
+    if (j == 2) { next(fd, b, n / 2, o); DIE(); }           \
+    return next(fd, b, n, o);                               \
+  }
+WRITE_AT(pwrite, off_t)
+WRITE_AT(pwrite64, off64_t)
 ssize_t writev(int fd, const struct iovec* v, int n) {
   NEXT(writev);
   const int j = judge(fd);

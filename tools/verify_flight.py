@@ -10,6 +10,7 @@ import scipy.linalg
 from scipy.optimize import brentq
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "../tests/support"))
+from spacecraft import write_panels
 from toml_text import section, table, toml
 
 ACCURATE = dict(integrator="rk", relative_tolerance=1e-11, absolute_tolerance=1e-12)
@@ -86,14 +87,7 @@ def verify_satellites(b):
 
     # Modified Rodrigues parameters after 2.5 s, printed to 16 digits.
     q, = b.run(toml(
-        table("body", "hub", mass=750.0, cg=[0.0, 0.0, 1.0], inertia=[900.0, 800.0, 600.0]),
-        table("body", "panel1", mass=100.0, cg=[1.5, 0.0, 0.0], inertia=[100.0, 50.0, 50.0]),
-        table("body", "panel2", mass=100.0, cg=[-1.5, 0.0, 0.0], inertia=[100.0, 50.0, 50.0]),
-        table("hinge", "flight", "free", child="hub", rate=[0.1, -0.1, 0.1, 0.0, 0.0, 0.0]),
-        table("hinge", "root1", "revolute", parent="hub", child="panel1", parent_position=[0.5, 0.0, 1.0],
-              axis=[0.0, -1.0, 0.0], position=[math.radians(5)], stiffness=[100.0]),
-        table("hinge", "root2", "revolute", parent="hub", child="panel2", parent_position=[-0.5, 0.0, 1.0],
-              axis=[0.0, 1.0, 0.0], stiffness=[100.0]),
+        write_panels(),
         section("simulation", duration=2.5, output_step=0.5, **ACCURATE)), "bodies/hub/quaternion")
     for i, exact in enumerate((0.06170318243240492, -0.07089090074412899, 0.06409500412692531)):
         b.add("hub with two panels, 2.5 s", f"Rodrigues parameter {i + 1}", q[-1, i + 1] / (1 + q[-1, 0]), exact, 1e-8,
@@ -150,15 +144,23 @@ def verify_classics(b):
         section("simulation", duration=0.2, output_step=0.1, gravity=[0.0, 0.0, -9.81], **ACCURATE)), "bodies/top/quaternion")
     for i, exact in enumerate((-0.70827915, 0.43878109, 0.5457284, 0.08939975)):
         b.add("heavy top, 0.2 s", f"Euler parameter {i}", q[-1, i], exact, 1e-6, "Exudyn heavyTop.py (5 digits), by scipy")
-    for height, exact in ((2.0, 4.247253), (0.5, 3.621633)):
-        poles = b.linearize(toml(
-            table("body", "stage", mass=100.0, inertia=[10.0, 10.0, 10.0]),
-            table("tank", "tank", "cylinder", body="stage", mass=1000 * math.pi * height, radius=1.0, height=2.5, density=1000.0,
-                  slosh=True),
-            table("hinge", "clamp", "fixed", child="stage"),
-            section("simulation", duration=1.0, gravity=[0.0, 0.0, -9.81])))
-        b.add(f"slosh, upright cylinder, h/R {height:g}", "first mode [rad/s]", poles.imag.max(), exact, 1e-6,
+    # Share of the pendulum by the frequency of the tank free to slide, ω² (M + m) / (M + m - m1); length at 2 g.
+    for height, exact, share, length in ((2.0, 4.247253, 0.226967, 0.543817), (0.5, 3.621633, 0.660108, 0.747929)):
+        stage, liquid, case = 100.0, 1000 * math.pi * height, f"slosh, upright cylinder, h/R {height:g}"
+
+        def find_frequency(hinge, g):
+            return b.linearize(toml(
+                table("body", "stage", mass=stage, inertia=[10.0, 10.0, 10.0]),
+                table("tank", "tank", "cylinder", body="stage", mass=liquid, radius=1.0, height=2.5, density=1000.0, slosh=True),
+                table("hinge", "stand", child="stage", **hinge),
+                section("simulation", duration=1.0, gravity=[0.0, 0.0, -g]))).imag.max()
+
+        clamped = find_frequency({"type": "fixed"}, 9.81)
+        sliding = find_frequency({"type": "prismatic", "axis": [1.0, 0.0, 0.0]}, 9.81)
+        b.add(case, "first mode [rad/s]", clamped, exact, 1e-6, "NASA SP-106")
+        b.add(case, "sloshing share of the mass", (stage + liquid) / liquid * (1 - (clamped / sliding)**2), share, 2e-6,
               "NASA SP-106")
+        b.add(case, "pendulum [m]", 2 * 9.81 / find_frequency({"type": "fixed"}, 2 * 9.81)**2, length, 2e-6, "NASA SP-106")
     # Furuta pendulum of Cazzolato & Prime with a rigid arm: gains by Riccati's equation of both models.
     J, m, L, l, J2, g, b1, b2 = 0.02, 0.1, 0.3, 0.2, 1.5e-3, 9.81, 2e-3, 1e-3
     b.linearize(toml(

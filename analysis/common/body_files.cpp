@@ -84,4 +84,12 @@ records::FlexBody read_moving_body(const std::string& name, Diagnostics& diagnos
   return std::move(body);
 }
 
+void warn_of_third_order(const records::FlexBody& body, const std::string& file, const std::string& format,
+                         Diagnostics& diagnostics) {
+  if (body.third_order.empty()) return;
+  diagnostics.warning("export.third-order", {file},
+                      format + " contains no third order: the body written there has second order",
+                      "keep the HDF5 or the flat file where deflections are large");
+}
+
 }  // namespace bough::analysis

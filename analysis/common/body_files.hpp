@@ -36,4 +36,9 @@ records::FlexBody read_body(const std::string& name, Diagnostics& diagnostics);
 records::FlexBody read_moving_body(const std::string& name, Diagnostics& diagnostics,
                                    const std::optional<RigidPart>& given = {});
 
+/// Adds export.third-order (warning) if the body has third order, which a format does not contain. \param format  "a
+/// .FLX file".
+void warn_of_third_order(const records::FlexBody& body, const std::string& file, const std::string& format,
+                         Diagnostics& diagnostics);
+
 }  // namespace bough::analysis

@@ -19,6 +19,7 @@ std::string make_body_text(const std::string& file, const std::string& format, c
   if (read_file_format(file) != "bough-flexbody") refuse_export(file, format, "a flexible body, from bough reduce");
   const auto body = read_moving_body(file, diagnostics);
   if (format == "flat") return flat::format_flex_body(body);
+  warn_of_third_order(body, file, format == "sid" ? "Standard Input Data" : "a .fem file", diagnostics);
   if (format == "mbdyn") return mbdyn::make_fem(body, {file}, diagnostics);
   sid::Layout layout;
   layout.is_full_inertia = o.inertia == "3x3";

@@ -150,9 +150,14 @@ void add_element_rows(const fe::Model& model, const records::Deck& deck, const r
     tables.push_back(std::move(table));
 }
 
-void copy_but_sets(const Diagnostics& from, Diagnostics& to) {
-  for (const auto& item : from.items())
-    if (item.id != "deck.unused-card" || item.what.find("SET") != 1) to.add(item);
+/// Messages of reading without those on BSET, CSET, QSET and EXTSEOUT, which a component uses.
+void copy_but_used(const Diagnostics& from, Diagnostics& to) {
+  for (const auto& item : from.items()) {
+    const bool is_set = item.id == "deck.unused-card" && item.what.find("SET") == 1,
+               is_command =
+                   item.id == "deck.case-control-ignored" && item.what.find(": EXTSEOUT (") != std::string::npos;
+    if (!is_set && !is_command) to.add(item);
+  }
 }
 
 WrittenComponent make_component(const std::string& file, const ComponentExportOptions& options,
@@ -161,7 +166,7 @@ WrittenComponent make_component(const std::string& file, const ComponentExportOp
   model_options.ignore_cards = ignore_cards;
   Diagnostics reading;
   auto deck = read_deck_or_throw(file, model_options, reading);
-  copy_but_sets(reading, diagnostics);
+  copy_but_used(reading, diagnostics);
   const auto requests = read_requests_once(file, diagnostics);
   const auto* selection = find_selection(requests, deck.subcases.front().id);
 

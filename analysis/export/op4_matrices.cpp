@@ -1,23 +1,35 @@
 #include "analysis/export/op4_matrices.hpp"
 
 #include <algorithm>
+#include <cmath>
+
+#include <Eigen/Sparse>
 
 #include "analysis/export/export_matrices.hpp"
 
 namespace bough::analysis {
 namespace {
 
-/// Compressed rows of a symmetric matrix hold (j, i) for every (i, j).
-bool is_symmetric(const records::SparseMatrix& a) {
-  if (a.num_rows != a.num_cols) return false;
-  const auto find = [&](int row, int column) {
-    const auto begin = a.indices.begin() + a.indptr[to_size(row)], end = a.indices.begin() + a.indptr[to_size(row) + 1];
-    const auto at = std::lower_bound(begin, end, column);
-    return at == end || *at != column ? 0.0 : a.data[to_size(at - a.indices.begin())];
-  };
-  for (int r = 0; r < a.num_rows; ++r)
-    for (int k = a.indptr[to_size(r)]; k < a.indptr[to_size(r) + 1]; ++k)
-      if (a.data[to_size(k)] != find(a.indices[to_size(k)], r)) return false;
+using Rows = Eigen::SparseMatrix<double, Eigen::RowMajor, int>;
+
+/// Difference of a(i, j) and a(j, i) that is round-off of a rotation to displacement axes, over the geometric mean of
+/// the largest entries of both rows.
+constexpr double kSymmetryRoundoff = 1e-12;
+
+Rows to_rows(const records::SparseMatrix& a) {
+  return Eigen::Map<const Rows>(a.num_rows, a.num_cols, static_cast<int>(a.data.size()), a.indptr.data(),
+                                a.indices.data(), a.data.data());
+}
+
+/// Returns true if a square matrix is symmetric but for round-off.
+bool is_symmetric(const Rows& a) {
+  Eigen::VectorXd scale = Eigen::VectorXd::Zero(a.rows());
+  for (int r = 0; r < a.rows(); ++r)
+    for (Rows::InnerIterator entry(a, r); entry; ++entry) scale(r) = std::max(scale(r), std::abs(entry.value()));
+  const Rows difference = a - Rows(a.transpose());
+  for (int r = 0; r < difference.rows(); ++r)
+    for (Rows::InnerIterator entry(difference, r); entry; ++entry)
+      if (std::abs(entry.value()) > kSymmetryRoundoff * std::sqrt(scale(r) * scale(entry.col()))) return false;
   return true;
 }
 
@@ -43,10 +55,10 @@ void Op4Matrices::put(const std::string& name, const Eigen::MatrixXd& dense) {
 void Op4Matrices::put(const std::string& name, const records::SparseMatrix& a) {
   matrices::Matrix matrix;
   matrix.name = name;
-  matrix.form = a.num_rows != a.num_cols ? matrices::kRectangular
-                : is_symmetric(a)        ? matrices::kSymmetric
-                                         : matrices::kSquare;
   matrix.values = a;
+  matrix.form = a.num_rows != a.num_cols   ? matrices::kRectangular
+                : is_symmetric(to_rows(a)) ? matrices::kSymmetric
+                                           : matrices::kSquare;
   matrices::write_op4(out_, matrix, options_);
 }
 

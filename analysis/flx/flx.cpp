@@ -25,23 +25,24 @@ std::vector<int> choose_body_ids(const FlxRequest& request) {
   return ids;
 }
 
-std::vector<flx::FlxFile> make_flx_files(const FlxRequest& request) {
+std::vector<flx::FlxFile> make_flx_files(const FlxRequest& request, Diagnostics& diagnostics) {
   const auto ids = choose_body_ids(request);
   demand_range("--digits", request.digits, 2, 17);
   demand_range("--modopt", request.modopt, 0, 2);
   if (!request.integrals.empty()) demand_word("--integrals", request.integrals, {"lumped", "consistent", "exact"});
-  flx::MakeOptions options;
-  options.modopt = request.modopt;
-  options.method = request.integrals;
-  options.has_special_nodes = request.special_nodes;
-  options.has_stiffening = request.stiffening;
-  options.digits = request.digits;
+  flx::MakeOptions options{.modopt = request.modopt,
+                           .method = request.integrals,
+                           .has_special_nodes = request.special_nodes,
+                           .has_stiffening = request.stiffening,
+                           .digits = request.digits};
   std::vector<flx::FlxFile> files;
   for (std::size_t b = 0; b < ids.size(); ++b) {
     const auto& name = request.bodies[b];
     options.body_id = ids[b];
     with_file(name, [&] {
-      files.push_back(flx::make_flx(is_flat(name) ? flat::read_flex_body(name) : hdf5::read_flex_body(name), options));
+      const auto body = is_flat(name) ? flat::read_flex_body(name) : hdf5::read_flex_body(name);
+      warn_of_third_order(body, name, "a .FLX file", diagnostics);
+      files.push_back(flx::make_flx(body, options));
       return 0;
     });
   }

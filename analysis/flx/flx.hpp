@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "base/diagnostic.hpp"
 #include "formats/flx/flx_file.hpp"
 
 namespace bough::analysis {
@@ -21,8 +22,8 @@ struct FlxRequest {
 std::vector<int> choose_body_ids(const FlxRequest& request);
 
 /// Reads the bodies and makes their blocks. Throws what choose_body_ids(), the readers and flx::make_flx() throw, with
-/// the name of the body's file.
-std::vector<flx::FlxFile> make_flx_files(const FlxRequest& request);
+/// the name of the body's file. Adds export.third-order (warning).
+std::vector<flx::FlxFile> make_flx_files(const FlxRequest& request, Diagnostics& diagnostics);
 
 /// Reads a .FLX file; of "panels.FLX:2" the body with the id 2.
 std::vector<flx::FlxFile> read_flx_files(const std::string& name);

@@ -121,8 +121,15 @@ void check_sweep(const LinearizeRequest& request) {
     throw InputError("cli.bad-axis", {}, "--spin-axis is given without --sweep and --each",
                      "give a sweep over the rate of the rotation, or leave it out");
   get_spin_axis(request);
-  parse_sweeps(request.sweep);
-  parse_uncertain(request.uncertain);
+  std::vector<std::pair<std::string, std::string>> ranged;  // parameter, option
+  for (const auto& range : parse_sweeps(request.sweep)) ranged.emplace_back(range.name, "--sweep");
+  for (const auto& range : parse_uncertain(request.uncertain)) ranged.emplace_back(range.name, "--uncertain");
+  for (const auto& [name, option] : ranged)
+    for (const auto& text : request.set)
+      if (text.substr(0, text.find('=')) == name)
+        throw InputError("cli.set-and-range", {},
+                         fmt::format("--set {} and {} {} give one parameter", text, option, name),
+                         "leave one of both out: the range gives the parameter its values");
 }
 
 records::LinearModel linearize(const LinearizeRequest& request, const LoadedSystem& loaded, Diagnostics& diagnostics) {

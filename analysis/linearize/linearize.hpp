@@ -32,6 +32,7 @@ struct LinearizeRequest {
 using CheckFiles = std::function<void(const std::vector<std::string>& files)>;
 
 /// Throws InputError "cli.bad-sweep" or "cli.bad-uncertain" unless sweep and ranges of the request can be parsed.
+/// "cli.set-and-range" if `set` gives one of their parameters.
 void check_sweep(const LinearizeRequest& request);
 
 /// The state to linearize about: start or time of the run, or the rest near it. Throws what these throw.

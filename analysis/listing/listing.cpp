@@ -161,6 +161,12 @@ void ListingMaker::add_vector(const fe::Model& model, const std::string& command
   if (!vector.id.empty()) step.vectors.push_back(std::move(vector));
 }
 
+void ListingMaker::note_unlisted(const std::string& what, Diagnostics& diagnostics) {
+  if (left_out_.insert(what).second)
+    diagnostics.note("cli.unlisted-elements", deck_.locate({}), "the listing has no " + what,
+                     "bough static --full and its HDF5 file have them");
+}
+
 void ListingMaker::add_elements(const fe::Model& model, const ElementIndex& elements,
                                 const std::vector<records::ElementForces>& forces, const BeamLoads& loads,
                                 ListedStep& step, Diagnostics& diagnostics) {
@@ -168,15 +174,11 @@ void ListingMaker::add_elements(const fe::Model& model, const ElementIndex& elem
   if (!choice) return;
   for (const auto& of_card : forces) {
     auto block = make_listed_forces(model, elements, of_card, loads, [&](int id) { return choice->contains(id); });
-    if (!block) {
-      if (left_out_.insert("forces of " + of_card.card).second)
-        diagnostics.note("cli.unlisted-elements", deck_.locate({}),
-                         fmt::format("the listing has no forces of {}", of_card.card),
-                         "bough static --full and its HDF5 file have them");
-      continue;
-    }
-    block->is_printed = choice->is_printed;
-    if (!block->id.empty()) step.forces.push_back(std::move(*block));
+    if (block)
+      block->is_printed = choice->is_printed;
+    else
+      note_unlisted("forces of " + of_card.card, diagnostics);
+    if (block && !block->id.empty()) step.forces.push_back(std::move(*block));
   }
 }
 
@@ -208,15 +210,11 @@ void ListingMaker::add_stresses(const fe::Model& model, const ElementIndex& elem
   for (const auto& of_card : stresses) {
     auto block = make_listed_stresses(model, elements, deck_, of_card, forces, limits_,
                                       [&](int id) { return choice->contains(id); });
-    if (!block) {
-      if (left_out_.insert("stresses of " + of_card.card).second)
-        diagnostics.note("cli.unlisted-elements", deck_.locate({}),
-                         fmt::format("the listing has no stresses of {}", of_card.card),
-                         "bough static --full and its HDF5 file have them");
-      continue;
-    }
-    block->is_printed = choice->is_printed;
-    if (!block->id.empty()) step.stresses.push_back(std::move(*block));
+    if (block)
+      block->is_printed = choice->is_printed;
+    else
+      note_unlisted("stresses of " + of_card.card, diagnostics);
+    if (block && !block->id.empty()) step.stresses.push_back(std::move(*block));
   }
 }
 
@@ -278,11 +276,7 @@ void ListingMaker::add_modes(const fe::Model& model, const modal::EigenPairs& pa
   const int subcase = model.subcase().id;
   const Eigen::MatrixXd M_Phi = fe::calc_mass_times(model, model.mass_kind(), pairs.Phi);
   const auto step = make_step(subcase);
-  records::ListedRoots roots;
-  roots.subcase = step.subcase;
-  roots.title = step.title;
-  roots.subtitle = step.subtitle;
-  roots.label = step.label;
+  records::ListedRoots roots{step};
   roots.eigenvalue = pairs.lambda;
   roots.num_residual = num_residual;
   roots.mass = pairs.Phi.cwiseProduct(M_Phi).colwise().sum();

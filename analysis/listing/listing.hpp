@@ -61,6 +61,8 @@ class ListingMaker {
   records::ListedStep make_step(int subcase) const;
   void add_vector(const fe::Model& model, const std::string& command, records::ListedKind kind,
                   const Eigen::Ref<const Eigen::VectorXd>& u_g, records::ListedStep& step) const;
+  /// Notes once what a block would have listed.
+  void note_unlisted(const std::string& what, Diagnostics& diagnostics);
   void add_elements(const fe::Model& model, const ElementIndex& elements,
                     const std::vector<records::ElementForces>& forces, const BeamLoads& loads,
                     records::ListedStep& step, Diagnostics& diagnostics);

@@ -4,11 +4,11 @@
 #include <cmath>
 #include <complex>
 #include <map>
-#include <numbers>
 #include <set>
 
 #include "analysis/listing/element_columns.hpp"
 #include "analysis/listing/stress_columns.hpp"
+#include "base/phase.hpp"
 #include "fe/cards/element_properties.hpp"
 
 namespace bough::analysis {
@@ -49,9 +49,8 @@ records::ListedVector make_vector(const records::ResponseCurves& curves, Index s
     for (const Index i : of_point) {
       const int c = std::max(curves.dofs[static_cast<std::size_t>(i)].second - 1, 0);
       const std::complex<double> z(curves.real(sample, i), is_complex ? curves.imag(sample, i) : 0.0);
-      const double degrees = std::arg(z) * 180 / std::numbers::pi;
       vector.real(row, c) = vector.is_phase ? std::abs(z) : z.real();
-      if (is_complex) vector.imag(row, c) = !vector.is_phase ? z.imag() : degrees < 0 ? degrees + 360 : degrees;
+      if (is_complex) vector.imag(row, c) = vector.is_phase ? calc_phase_degrees(z, kListedPhase) : z.imag();
     }
   }
   return vector;
@@ -80,9 +79,8 @@ void set_complex(const records::ListedElements& imag, bool is_phase, records::Li
   for (Index c = 0; c < block.real.cols() && is_phase; ++c)
     for (Index r = 0; r < block.real.rows() && !is_distance(block, c); ++r) {
       const std::complex<double> z(block.real(r, c), block.imag(r, c));
-      const double degrees = std::arg(z) * 180 / std::numbers::pi;
       block.real(r, c) = std::abs(z);
-      block.imag(r, c) = degrees < 0 ? degrees + 360 : degrees;
+      block.imag(r, c) = calc_phase_degrees(z, kListedPhase);
     }
 }
 

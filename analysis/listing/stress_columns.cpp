@@ -12,6 +12,7 @@
 #include "analysis/listing/element_columns.hpp"
 #include "fe/cards/element_properties.hpp"
 #include "fe/elements/solid.hpp"
+#include "formats/records/group_names.hpp"
 
 namespace bough::analysis {
 namespace {
@@ -27,7 +28,7 @@ int find_stress_type(const std::string& card, fe::StressKind kind) {
   static const std::map<std::string, int> types{{"CROD", 1},    {"CBEAM", 2},  {"CTUBE", 3},   {"CONROD", 10},
                                                 {"CQUAD4", 33}, {"CBAR", 34},  {"CTETRA", 39}, {"CHEXA", 67},
                                                 {"CPENTA", 68}, {"CTRIA3", 74}};
-  const std::string plain = card.substr(0, card.find('-'));
+  const std::string plain = records::get_card_of_group(card);
   if (kind == fe::StressKind::Ply) return plain == "CQUAD4" ? 95 : plain == "CTRIA3" ? 97 : 0;
   const auto found = types.find(plain);
   return found == types.end() ? 0 : found->second;
@@ -172,7 +173,7 @@ std::unordered_map<int, VectorXd> index_forces(const std::vector<records::Elemen
   std::unordered_map<int, VectorXd> index;
   if (cards.count(card) == 0) return index;
   for (const auto& block : forces) {
-    if (block.card.substr(0, block.card.find('-')) != card) continue;
+    if (records::get_card_of_group(block.card) != card) continue;
     for (std::size_t k = 0; k < block.id.size(); ++k)
       index[block.id[k]] = block.force.row(static_cast<Index>(k)).transpose();
   }
@@ -220,7 +221,7 @@ std::optional<records::ListedElements> make_listed_stresses(const fe::Model& mod
                                                             const std::map<int, StressLimits>& limits,
                                                             const std::function<bool(int)>& is_wanted) {
   records::ListedElements block;
-  block.card = stresses.card.substr(0, stresses.card.find('-'));
+  block.card = records::get_card_of_group(stresses.card);
   if (stresses.id.empty()) return std::nullopt;
   const auto kind = elements.at({block.card, stresses.id.front()})->stress_recovery()->stress_points().front().kind;
   block.type = find_stress_type(block.card, kind);

@@ -4,12 +4,12 @@
 
 #include <algorithm>
 #include <array>
-#include <numbers>
 #include <optional>
 
 #include "analysis/common/inputs.hpp"
 #include "analysis/listing/listing.hpp"
 #include "analysis/modes/rotor_speeds.hpp"
+#include "base/phase.hpp"
 #include "fe/statics/build_model.hpp"
 #include "modal/complex/complex_modes.hpp"
 
@@ -64,9 +64,8 @@ std::optional<records::ListedVector> list_shape(const fe::Model& model, const re
     vector.is_scalar.push_back(rows[k].is_scalar);
     for (Eigen::Index c = 0; c < 6; ++c) {
       const auto z = rows[k].values(c);
-      const double degrees = std::arg(z) * 180 / std::numbers::pi;
       vector.real(row, c) = vector.is_phase ? std::abs(z) : z.real();
-      vector.imag(row, c) = !vector.is_phase ? z.imag() : degrees < 0 ? degrees + 360 : degrees;
+      vector.imag(row, c) = vector.is_phase ? calc_phase_degrees(z, kListedPhase) : z.imag();
     }
   }
   return vector;
@@ -82,11 +81,11 @@ void add_to_listing(const fe::Model& model, const records::DynamicSubcase& subca
   all.push_back(std::move(modes));
 }
 
-/// Synchronous modes in a range of speeds [1/T].
+/// Synchronous modes in a range of speeds [1/T] that resonate.
 void add_critical_speeds(double low, double high, records::ComplexModesResult& result) {
   for (Eigen::Index j = 0; j < result.eigenvalue.size(); ++j) {
     const double speed = result.eigenvalue(j).imag();
-    if (speed > 0 && speed >= low && speed <= high)
+    if (is_resonant(result.eigenvalue(j)) && speed >= low && speed <= high)
       result.rotors->critical.push_back(
           {static_cast<int>(j), speed, result.frequency_hz(j), result.whirl.size() > 0 ? result.whirl(j) : 0});
   }

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <functional>
 #include <numbers>
+#include <optional>
 
 #include "analysis/linearize/sweep.hpp"
 #include "solver/statespace/track.hpp"
@@ -39,12 +40,18 @@ struct Bracket {
   std::complex<double> lambda_low, lambda_high;
 };
 
-/// Root of f(Ω, λ(Ω)) for the mode that is followed into the bracket: regula falsi, by the Illinois rule.
-RotorSpeeds::Point find_root(const ComplexModesSolver& solver, const Bracket& bracket,
-                             const std::function<double(double, std::complex<double>)>& f) {
+struct Root {
+  RotorSpeeds::Point point;
+  std::complex<double> lambda;
+};
+
+/// Root of f(Ω, λ(Ω)) for the mode that is followed into the bracket: regula falsi, by the Illinois rule. None if no
+/// mode at the first estimate is that of the bracket.
+std::optional<Root> find_root(const ComplexModesSolver& solver, const Bracket& bracket,
+                              const std::function<double(double, std::complex<double>)>& f) {
   double a = bracket.low, b = bracket.high;
   double f_a = f(a, bracket.lambda_low), f_b = f(b, bracket.lambda_high);
-  RotorSpeeds::Point point;
+  std::optional<Root> root;
   int side = 0;
   for (int step = 0; step < kMaxSteps; ++step) {
     const double speed = (a * f_b - b * f_a) / (f_b - f_a);
@@ -56,9 +63,11 @@ RotorSpeeds::Point find_root(const ComplexModesSolver& solver, const Bracket& br
     if (match.front() < 0) break;
     const auto lambda = modes.lambda[match.front()];
     const double value = f(speed, lambda);
-    point.speed = speed;
-    point.frequency_hz = lambda.imag() / (2 * std::numbers::pi);
-    point.whirl = modes.whirl[match.front()];
+    root.emplace();
+    root->point.speed = speed;
+    root->point.frequency_hz = lambda.imag() / (2 * std::numbers::pi);
+    root->point.whirl = modes.whirl[match.front()];
+    root->lambda = lambda;
     if (std::abs(value) <= kSpeedTolerance * std::abs(lambda) || std::abs(b - a) <= kSpeedTolerance * std::abs(b))
       break;
     if ((value > 0) == (f_b > 0)) {
@@ -71,7 +80,7 @@ RotorSpeeds::Point find_root(const ComplexModesSolver& solver, const Bracket& br
       side = 1;
     }
   }
-  return point;
+  return root;
 }
 
 class Sweep {
@@ -154,16 +163,23 @@ class Sweep {
       take(branch, modes, order[i], correlation[static_cast<Index>(i)]);
       const auto before = branch[branch.size() - 2].lambda, lambda = branch.back().lambda;
       const Bracket bracket{low, high, select(before_, static_cast<Index>(i)), before, lambda};
-      const auto add = [&](std::vector<RotorSpeeds::Point>& to, const auto& f) {
-        auto point = find_root(solver_, bracket, f);
-        point.branch = alive_[i];
-        if (point.speed > 0) to.push_back(point);
+      const auto find = [&](const auto& f) {
+        auto root = find_root(solver_, bracket, f);
+        if (root) root->point.branch = alive_[i];
+        return root;
       };
-      const auto excess = [](double speed, std::complex<double> l) { return l.imag() - speed; };
-      if (excess(low, before) > 0 && excess(high, lambda) <= 0) add(critical_, excess);
+      const auto excess = [](double speed, std::complex<double> l) { return l.imag() - std::abs(speed); };
+      const double excess_low = excess(low, before), excess_high = excess(high, lambda);
+      if ((excess_low > 0 && excess_high <= 0) || (excess_low < 0 && excess_high >= 0))
+        if (const auto root = find(excess); root && is_resonant(root->lambda)) critical_.push_back(root->point);
       const double noise = kDampingRoundoff * std::abs(lambda);
-      if (before.real() < -noise && lambda.real() > noise)
-        add(thresholds_, [](double, std::complex<double> l) { return l.real(); });
+      const bool is_onset = before.real() < -noise && lambda.real() > noise,
+                 is_end = before.real() > noise && lambda.real() < -noise;
+      if (is_onset || is_end)
+        if (auto root = find([](double, std::complex<double> l) { return l.real(); })) {
+          root->point.is_onset = is_onset;
+          thresholds_.push_back(root->point);
+        }
       alive.push_back(alive_[i]);
       columns.push_back(order[i]);
     }
@@ -181,6 +197,8 @@ class Sweep {
 };
 
 }  // namespace
+
+bool is_resonant(std::complex<double> lambda) { return std::abs(lambda.real()) < std::abs(lambda.imag()); }
 
 RotorSpeeds calc_rotor_speeds(const ComplexModesSolver& solver, const std::string& file, Events& events,
                               Diagnostics& diagnostics) {

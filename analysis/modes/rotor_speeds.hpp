@@ -1,5 +1,6 @@
 #pragma once
 /// \file Modes of a deck over the speed of its rotors: Campbell diagram, critical speeds, onset of instability.
+#include <complex>
 #include <string>
 
 #include "analysis/common/events.hpp"
@@ -7,6 +8,10 @@
 #include "modal/complex/complex_modes.hpp"
 
 namespace bough::analysis {
+
+/// Returns true if a mode oscillates so that an unbalance that passes its frequency excites it most there: |ζ| < 1/√2.
+/// An eigenvalue of more damping is no critical speed.
+bool is_resonant(std::complex<double> lambda);
 
 /// Solves at every speed of the rotors and follows the modes; critical speeds and thresholds are solved for, not
 /// interpolated. Of synchronous analyses the rotors alone. Reports linear.sweep-jump and modal.rotor-lost (warnings).

@@ -138,6 +138,14 @@ void take_shock_spectrum(report::Curve& curve, const CurveChoice& choice, Diagno
   if (choice.srs != "absolute-acceleration" && choice.srs != "static-acceleration") curve.unit.clear();
 }
 
+/// Dimensions of a column of choose_columns(); empty: not in the file.
+std::string find_dims(const hdf5::ResultsFile& results, const std::string& column) {
+  std::string path = "/" + column;
+  if (results.channels.count(path) == 0) path = path.substr(0, path.rfind(':'));
+  const auto found = results.dims.find(path);
+  return found == results.dims.end() ? std::string() : found->second;
+}
+
 /// Values of "name" or "name:2" in the table of a campaign.
 VectorXd find_outcome(const hdf5::OutcomeTable& table, const std::string& file, const std::string& name) {
   std::vector<std::string> known;
@@ -159,6 +167,15 @@ VectorXd find_outcome(const hdf5::OutcomeTable& table, const std::string& file, 
 
 }  // namespace
 
+void warn_of_shock_input(const std::string& file, const std::string& curve, const std::string& is,
+                         Diagnostics& diagnostics) {
+  diagnostics.warning("cli.shock-input", {file},
+                      fmt::format("{} is {}, found no acceleration: --srs takes its values as the acceleration of a "
+                                  "base",
+                                  curve, is),
+                      "give the acceleration of the same point");
+}
+
 report::Plot make_history_plot(const std::vector<std::string>& files, const std::vector<std::string>& sensors,
                                const CurveChoice& choice, Diagnostics& diagnostics) {
   report::Plot plot;
@@ -177,6 +194,9 @@ report::Plot make_history_plot(const std::vector<std::string>& files, const std:
     bool is_interpolated = false;
     for (const auto& sensor : sensors) {
       for (auto& column : choose_columns(results, file, sensor)) {
+        if (const auto dims = find_dims(results, column.name);
+            !choice.srs.empty() && !dims.empty() && dims.find("/T^2") == std::string::npos)
+          warn_of_shock_input(file, column.name, "of dimensions " + dims, diagnostics);
         const bool one_curve_a_file = sensors.size() == 1 && sensor.find(':') != std::string::npos;
         std::string label = files.size() > 1 ? fs::path(file).stem().string() : "";
         if (files.size() == 1 || !one_curve_a_file) label += (label.empty() ? "" : " ") + column.name;

@@ -30,6 +30,11 @@ report::Plot make_history_plot(const std::vector<std::string>& files, const std:
 report::Plot make_campaign_plot(const std::vector<std::string>& files, const std::vector<std::string>& names,
                                 const CurveChoice& choice, Diagnostics& diagnostics);
 
+/// Adds cli.shock-input (warning): a shock response spectrum of a curve that is no acceleration. \param is  "of
+/// dimensions L".
+void warn_of_shock_input(const std::string& file, const std::string& curve, const std::string& is,
+                         Diagnostics& diagnostics);
+
 /// Takes spectra, shock response spectra too, sets logarithmic axes, and with `subplots` gives each curve a separate
 /// plot. Throws InputError "cli.uneven-samples" where a spectrum is asked of samples that are not evenly spaced; the
 /// note "cli.short-segment" where there are fewer of them than a segment wants.

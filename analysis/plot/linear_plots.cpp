@@ -166,6 +166,15 @@ void add_whirl(const records::LinearSweep& sweep, Index b, const std::string& na
   }
 }
 
+/// The y axis from 0 to above the highest curve: slopes of lines per revolution are read against zero.
+void start_at_zero(Plot& plot) {
+  double highest = 0;
+  for (const auto& curve : plot.curves)
+    for (const double y : curve.y)
+      if (std::isfinite(y)) highest = std::max(highest, y);
+  if (highest > 0) plot.y_min = 0, plot.y_max = 1.05 * highest;
+}
+
 void add_sweep(const records::LinearSweep& sweep, const LinearPlotChoice& choice, const std::string& prefix,
                Plot& plot) {
   const auto& kind = choice.kind;
@@ -312,9 +321,9 @@ std::vector<Plot> make_linear_plots(const std::vector<std::string>& files, const
       {"bode", "Bode diagram"},         {"nichols", "Nichols diagram"},
       {"sigma", "Singular values"},     {"poles", "Poles (x) and zeros (o)"},
       {"campbell", "Campbell diagram"}, {"locus", "Root locus"}};
-  plots[0].title = kTitles.at(kind) +
-                   (files.size() == 1 ? ": " + std::filesystem::path(files.front()).stem().string() : std::string()) +
-                   drawn;
+  const auto stem = std::filesystem::path(files.front()).stem().string();
+  plots[0].title = kTitles.at(kind) + (files.size() == 1 && stem != kind ? ": " + stem : std::string()) + drawn;
+  if (kind == "campbell") start_at_zero(plots[0]);
   return plots;
 }
 

@@ -151,6 +151,10 @@ void demand_unused(const std::string& file, const std::string& kind,
                      "leave it out, or give results of a run");
 }
 
+std::string make_title(const std::string& content, const std::vector<std::string>& files) {
+  return content + (files.size() == 1 ? ": " + fs::path(files.front()).stem().string() : "");
+}
+
 PlotAnswer choose_plots(const PlotRequest& request, Diagnostics& diagnostics) {
   check_choices(request);
   if (!request.linear.kind.empty())
@@ -170,6 +174,13 @@ PlotAnswer choose_plots(const PlotRequest& request, Diagnostics& diagnostics) {
                     {{"--spectrum", c.spectrum}, {"--srs", !c.srs.empty()}});
     auto plots = c.psd && !is_over_time ? make_density_plots(request.files, request.sensors, c.window)
                                         : make_response_plots(request.files, request.sensors, c.window, c.log_y);
+    plots.front().title = make_title(is_over_time ? "Transient response"
+                                     : c.psd      ? "Spectral density"
+                                                  : "Frequency response",
+                                     request.files);
+    for (const auto& sensor : request.sensors)
+      if (!c.srs.empty() && !sensor.starts_with("acceleration"))
+        warn_of_shock_input(request.files.front(), sensor, "a " + sensor.substr(0, sensor.find(':')), diagnostics);
     plots = shape_plots(std::move(plots), c, is_over_time, diagnostics);
     return {std::move(plots), {}, request.sensors.front()};
   }
@@ -184,6 +195,7 @@ PlotAnswer choose_plots(const PlotRequest& request, Diagnostics& diagnostics) {
                        "a response of a linear model has no curves over time",
                        "add --psd for its spectral densities, or draw the model by --kind bode");
     auto plots = make_density_plots(request.files, request.sensors, c.window);
+    plots.front().title = make_title("Spectral density", request.files);
     return {shape_plots(std::move(plots), c, false, diagnostics), {}, request.sensors.front()};
   }
   const bool is_campaign = read_file_format(request.files.front()) == "bough-outcomes";

@@ -124,7 +124,11 @@ std::vector<report::Plot> make_response_plots(const std::vector<std::string>& fi
     for (auto& plot : plots) plot.x_label = is_over_time ? "time" : "frequency [Hz]";
     plots[0].y_label = is_over_time ? "" : has_decades ? "magnitude" : "magnitude [dB]";
     plots[0].has_log_y = has_decades;
-    if (!is_over_time) plots[1].y_label = "phase [degrees]", plots[0].x_label.clear();
+    if (!is_over_time) {
+      plots[1].y_label = "phase [degrees]";
+      plots[1].y_step = 45;
+      plots[0].x_label.clear();
+    }
     for (const auto& subcase : response.subcases) {
       const auto curves = exports::list_curves(subcase);
       const auto& x = subcase.x;

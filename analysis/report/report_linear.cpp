@@ -103,15 +103,20 @@ report::Chapter make_complex_chapter(const std::string& file) {
   for (const bool is_critical : {true, false}) {
     const auto& points = is_critical ? rotors.critical : rotors.thresholds;
     if (points.empty()) continue;
-    report::HtmlTable table("", {{is_critical && rotors.is_synchronous ? "mode" : "branch"},
-                                 {"speed [rad/T]"},
-                                 {report::label_frequency("")},
-                                 {"whirl", true}});
-    for (const auto& point : points)
-      table.add_row({std::to_string(point.branch + 1), report::format_value(point.speed, 7),
-                     report::format_value(point.frequency_hz, 7), records::name_whirl(point.whirl)});
+    std::vector<report::HtmlTable::Column> columns{{is_critical && rotors.is_synchronous ? "mode" : "branch"},
+                                                   {"speed [rad/T]"},
+                                                   {report::label_frequency("")},
+                                                   {"whirl", true}};
+    if (!is_critical) columns.push_back({"above this speed", true});
+    report::HtmlTable table("", std::move(columns));
+    for (const auto& point : points) {
+      std::vector<std::string> row{std::to_string(point.branch + 1), report::format_value(point.speed, 7),
+                                   report::format_value(point.frequency_hz, 7), records::name_whirl(point.whirl)};
+      if (!is_critical) row.emplace_back(point.is_onset ? "unstable" : "stable");
+      table.add_row(row);
+    }
     chapter.add_panel(is_critical ? "critical-speeds" : "thresholds",
-                      is_critical ? "Critical speeds" : "Unstable above this speed", table.to_html());
+                      is_critical ? "Critical speeds" : "Thresholds of instability", table.to_html());
   }
   return chapter;
 }

@@ -18,22 +18,10 @@ namespace {
 constexpr std::size_t kMaxCurves = 6;             // of a picture
 constexpr Eigen::Index kMaxPicturePoints = 4000;  // of a curve
 
-struct Largest {
-  const exports::NamedCurve* curve = nullptr;
-  double size = 0, at = 0, phase_deg = 0;
-};
-
-Largest find_largest(const exports::NamedCurve& curve, const Eigen::VectorXd& x) {
-  Largest found{&curve, -1, 0, 0};
-  for (Eigen::Index i = 0; i < x.size(); ++i) {
-    const auto [size, phase] = exports::to_polar(curve.real[i], curve.imag.size() > 0 ? curve.imag[i] : 0);
-    if (size > found.size) found = {&curve, size, x[i], phase};
-  }
-  return found;
-}
+using exports::CurvePeak;
 
 /// Magnitude above phase, in decades; over time the curves.
-std::string make_pictures(const std::vector<Largest>& of, const Eigen::VectorXd& x, const std::string& quantity,
+std::string make_pictures(const std::vector<CurvePeak>& of, const Eigen::VectorXd& x, const std::string& quantity,
                           bool is_over_time) {
   report::Plot upper, lower;
   upper.title = quantity;
@@ -61,8 +49,8 @@ void add_subcase(const records::ResponseSubcase& s, bool is_over_time, const std
   const auto curves = exports::list_curves(s);
   for (std::size_t first = 0, last = 0; first < curves.size(); first = last) {
     while (last < curves.size() && curves[last].quantity == curves[first].quantity) ++last;
-    std::vector<Largest> group;
-    for (auto i = first; i < last; ++i) group.push_back(find_largest(curves[i], s.x));
+    std::vector<CurvePeak> group;
+    for (auto i = first; i < last; ++i) group.push_back(exports::find_peak(curves[i], s.x));
     std::stable_sort(group.begin(), group.end(), [](const auto& a, const auto& b) { return a.size > b.size; });
     std::erase_if(group, [](const auto& one) { return one.size <= 0; });
     const auto& quantity = curves[first].quantity;

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <map>
 
 #include "analysis/common/body_files.hpp"
@@ -22,30 +23,10 @@ using records::SensorType;
 double calc_size(const Eigen::MatrixXd& xyz) { return xyz.rows() > 0 ? xyz.rowwise().norm().maxCoeff() : 0; }
 
 std::string name_type(HingeType type) {
-  switch (type) {
-    case HingeType::Fixed:
-      return "fixed";
-    case HingeType::Revolute:
-      return "revolute";
-    case HingeType::Prismatic:
-      return "prismatic";
-    case HingeType::Universal:
-      return "universal";
-    case HingeType::Cylindrical:
-      return "cylindrical";
-    case HingeType::Planar:
-      return "planar";
-    case HingeType::Spherical:
-      return "spherical";
-    case HingeType::Free:
-      return "free";
-    case HingeType::Screw:
-      return "screw";
-    case HingeType::General:
-      return "general";
-    default:
-      return "";
-  }
+  // In the order of HingeType.
+  constexpr std::array kNames{"fixed",  "revolute",  "prismatic", "universal", "cylindrical",
+                              "planar", "spherical", "free",      "screw",     "general"};
+  return kNames[static_cast<std::size_t>(type)];
 }
 
 /// "mode 3, 12.41 Hz", "mode 7, constraint".

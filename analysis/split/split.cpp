@@ -39,6 +39,7 @@ constexpr int kMaxRigidRounds = 3;       ///< with cuts along several grids
 constexpr double kTwistInertia = 1e-5;   ///< of what a line of bars carries
 constexpr double kRotaryInertia = 1e-7;  ///< of what a grid of lumped mass carries, about each axis
 constexpr double kDiscInertia = 0.6;     ///< of a disc about its diameter over that about its axis
+constexpr double kGrounding = 1e-6;      ///< force of a spring in rigid-body motion, over |K| |motion|
 constexpr double kParallel = 1e-9;       ///< sine of the angle, and relative inertia that is round-off
 
 double calc_hz(double lambda) { return std::sqrt(std::max(lambda, 0.0)) / (2 * std::numbers::pi); }
@@ -308,20 +309,44 @@ bool is_expected(const Diagnostic& item, const Reduction& reduction) {
   return is_massless && reduction.calc_error() <= kMaxSplitError;
 }
 
+/// Returns "CELAS2 801 between grids 14 and 19" of the first spring that strains in rigid-body motion; empty: none.
+std::string find_grounding_spring(const fe::Model& model) {
+  const Eigen::MatrixXd Phi_R = model.calc_rigid_modes();
+  for (const auto& element : model.elements()) {
+    const auto& nodes = element->nodes();
+    if (nodes.size() != 2 || nodes[0] == nodes[1] || !element->card().starts_with("CELAS")) continue;
+    Eigen::MatrixXd K = Eigen::MatrixXd::Zero(element->num_dofs(), element->num_dofs());
+    element->add_stiffness(1, K);
+    const Eigen::MatrixXd motion = Phi_R(element->gdofs(), Eigen::all);
+    if ((K * motion).norm() > kGrounding * K.norm() * motion.norm())
+      return fmt::format("{} {} between grids {} and {}", element->card(), element->id(), model.node(nodes[0]).id,
+                         model.node(nodes[1]).id);
+  }
+  return {};
+}
+
 void warn_of_error(const Reduction& reduction, const Structure& structure, const Assembly& assembly,
-                   Diagnostics& diagnostics) {
+                   const fe::Model& model, Diagnostics& diagnostics) {
   const double error = reduction.calc_error();
   if (!(error > kMaxSplitError)) return;
   const bool has_rigid =
       std::any_of(assembly.joints.begin(), assembly.joints.end(), [](const auto& joint) { return joint.is_new; });
+  const auto spring = find_grounding_spring(model);
+  const std::string cause =
+      !spring.empty() ? "; " + spring + " strains in rigid-body motion: a part that moves is held against the ground"
+      : has_rigid     ? "; cuts along several grids join these by a rigid element"
+                      : "";
   diagnostics.warning(
       "split.inaccurate", structure.locate({}),
       fmt::format("frequencies of the assembled parts differ by up to {:.2g} from those of the deck, "
                   "allowed {:.0e}{}",
-                  error, kMaxSplitError, has_rigid ? "; cuts along several grids join these by a rigid element" : ""),
-      has_rigid ? "cut where the section is stiff, or try the other --interface"
-                : "raise max_frequency of the body files, refine the mesh, or give the grids of the cuts inertia about "
-                  "all axes by small CONM2 cards, or by PARAM,COUPMASS,1 in a deck without it");
+                  error, kMaxSplitError, cause),
+      !spring.empty()
+          ? "give the spring grids at one place with equal displacement axes, or replace it by a CBUSH or CROD"
+      : has_rigid
+          ? "cut where the section is stiff, or try the other --interface"
+          : "raise max_frequency of the body files, refine the mesh, or give the grids of the cuts inertia about "
+            "all axes by small CONM2 cards, or by PARAM,COUPMASS,1 in a deck without it");
 }
 
 void warn_of_damping(const Structure& structure, const WholeModes& whole, Diagnostics& diagnostics) {
@@ -393,7 +418,7 @@ SplitAnswer split_deck(const SplitRequest& request, Events& events) {
     for (const auto& item : reduction.diagnostics.items())
       if (!is_expected(item, reduction)) diagnostics.add_new(item);
     answer.frequencies = reduction.frequencies;
-    warn_of_error(reduction, structure, assembly, diagnostics);
+    warn_of_error(reduction, structure, assembly, model, diagnostics);
     warn_of_damping(structure, whole, diagnostics);
 
     parts.front().deck.unused = deck.unused;  // reported once by the writer

@@ -6,6 +6,7 @@
 #include "fe/elements/stress_recovery.hpp"
 #include "fe/matrices/assembly.hpp"
 #include "fe/statics/static_case.hpp"
+#include "formats/records/group_names.hpp"
 
 namespace bough::analysis {
 namespace {
@@ -51,7 +52,7 @@ void derive_results(const fe::Model& model, bool of_strain, std::vector<records:
   for (const auto& element : model.elements()) elements[element->id()].push_back(element.get());
   for (auto& block : blocks)
     for (std::size_t k = 0; k < block.id.size(); ++k) {
-      const std::string card = block.card.substr(0, block.card.find('-'));
+      const std::string card = records::get_card_of_group(block.card);
       const auto& named = elements.at(block.id[k]);
       const auto element = std::find_if(named.begin(), named.end(), [&](const auto* e) { return e->card() == card; });
       BOUGH_DEMAND(element != named.end());

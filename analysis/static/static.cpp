@@ -112,7 +112,12 @@ StaticAnswer solve_static(const StaticRequest& request, StaticReceiver& receiver
     subcases.back().id = request.model.subcase;
   }
   fe::CaseSolver solver(deck, make_model_options(request.model));
-  if (is_nonlinear) solver.ask_nonlinear({request.num_increments}, is_nonlinear_sequence(deck));
+  if (is_nonlinear) {
+    fe::NonlinearOptions options;
+    options.num_increments = request.num_increments;
+    options.has_arc_length = request.has_arc_length;
+    solver.ask_nonlinear(options, is_nonlinear_sequence(deck));
+  }
   StaticAnswer answer{SubcaseFailures(subcases.size(), deck.subcases.size()), {}, {}};
   std::optional<ListingMaker> listing;
   const auto requests = read_requests_once(request.deck, diagnostics);

@@ -20,9 +20,10 @@ struct StaticRequest {
   bool is_linear = false;                ///< the linear solution of a nonlinear SOL
   /// Large displacements and rotations; also without it where a nonlinear SOL has PARAM,LGDISP,1 or 2.
   bool is_nonlinear = false;
-  int num_increments = 10;   ///< of each subcase of these
-  bool has_strains = false;  ///< strains of elements too
-  bool has_listing = false;  ///< print file of the output requests
+  int num_increments = 10;      ///< of each subcase of these
+  bool has_strains = false;     ///< strains of elements too
+  bool has_listing = false;     ///< print file of the output requests
+  bool has_arc_length = false;  ///< nonlinear subcases pass limit points
 };
 
 /// Takes the subcases in the order of the deck, those of one model together, combinations last.

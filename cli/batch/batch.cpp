@@ -4,7 +4,6 @@
 #include <chrono>
 #include <csignal>
 #include <filesystem>
-#include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 
@@ -44,9 +43,7 @@ class ConsoleCampaign final : public analysis::CampaignEvents {
   explicit ConsoleCampaign(Console& console) : console_(console) {}
 
   void add_message(const Diagnostic& message) override { console_.print(message); }
-  void show_progress(const std::string& stage) override {
-    stage.empty() ? console_.end_progress() : console_.show_progress(stage);
-  }
+  void show_progress(const std::string& stage) override { console_.show_stage(stage); }
   void start() override {
     signals_.emplace(on_signal);
     shown_ = Clock::now() - std::chrono::seconds(1);
@@ -230,8 +227,7 @@ int run_batch(const BatchOptions& o) {
 }  // namespace
 
 void add_batch(CLI::App& app, Action& action) {
-  auto o = std::make_shared<BatchOptions>();
-  auto* verb = add_verb(app, "batch");
+  auto [verb, o] = add_verb<BatchOptions>(app, "batch");
   verb->add_option("campaign", o->request.campaign, "Campaign file (.toml)")->required();
   verb->add_option("-j,--jobs", o->request.jobs, "Worker processes (default: one a core)")->check(make_positive());
   verb->add_option("-o,--output", o->output, "Folder of the cases and the table (default: the campaign's name, here)");
@@ -248,7 +244,7 @@ void add_batch(CLI::App& app, Action& action) {
   verb->add_flag("--dry-run", o->dry_run, "Check the campaign and list its cases");
   verb->add_option("--worker", o->worker_fd, "Socket of a worker process")->group("");
   add_common_options(*verb, *o, kJson);
-  verb->callback([&action, o, merge] {
+  verb->callback([&action, o = o, merge = merge] {
     o->merges = merge->count() > 0;
     std::erase(o->request.merged, "");  // what stands for no folder
     action = [o] { return run_batch(*o); };

@@ -1,7 +1,6 @@
 #include "analysis/check/check.hpp"
 
 #include <CLI/CLI.hpp>
-#include <memory>
 #include <nlohmann/json.hpp>
 
 #include "analysis/check/diagram.hpp"
@@ -95,8 +94,7 @@ int run_check(const CheckOptions& options) {
 }  // namespace
 
 void add_check(CLI::App& app, Action& action) {
-  auto o = std::make_shared<CheckOptions>();
-  auto* verb = add_verb(app, action, o, run_check, "check");
+  auto [verb, o] = add_verb(app, action, run_check, "check");
   verb->add_option("file", o->request.file, "Nastran deck, body.toml, system.toml, .h5 or .FLX")->required();
   verb->add_option("--gpwg", o->request.weight_grid,
                    "Weights about this grid (0: the origin) as the grid point weight generator of Nastran prints them "

@@ -7,6 +7,7 @@
 
 #include "cli/common/console.hpp"
 #include "cli/common/deck_tables.hpp"
+#include "cli/common/json_rows.hpp"
 
 namespace bough::cli {
 
@@ -93,13 +94,10 @@ void add_superelements(const analysis::DeckCheck& deck, std::string& text, nlohm
                         check.mass.cg.y(), check.mass.cg.z());
     text += fmt::format("  coupling K_bq {:.1e}\n", check.coupling);
     if (check.held_hz.size() > 0) text += fmt::format("  boundary held, Hz: {}\n", list_frequencies(check.held_hz));
-    nlohmann::json one{{"id", check.id},
-                       {"num_grids", check.num_grids},
-                       {"num_points", check.num_points},
-                       {"rigid_force", check.rigid_force},
-                       {"rigid_moment", check.rigid_moment},
-                       {"coupling", check.coupling},
-                       {"mass_properties", to_json(check.mass)}};
+    using Check = std::decay_t<decltype(check)>;
+    nlohmann::json one{{"mass_properties", to_json(check.mass)}};
+    put_members(one, check, "id", &Check::id, "num_grids", &Check::num_grids, "num_points", &Check::num_points,
+                "rigid_force", &Check::rigid_force, "rigid_moment", &Check::rigid_moment, "coupling", &Check::coupling);
     one["rigid_energy"] = std::vector<double>(check.rigid_energy.begin(), check.rigid_energy.end());
     one["held_hz"] = std::vector<double>(check.held_hz.begin(), check.held_hz.end());
     std::vector<std::string> tables;

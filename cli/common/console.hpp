@@ -56,6 +56,8 @@ class Console {
   void show_progress(const std::string& text);
   /// Ends the progress line, so that the next output begins on a new one.
   void end_progress();
+  /// Shows the stage of a request as progress; an empty one ends the line.
+  void show_stage(const std::string& stage) { stage.empty() ? end_progress() : show_progress(stage); }
   /// Returns true if show_progress() prints: on the printing rank, not quiet, on a terminal or with -v.
   bool shows_progress() const { return is_root_ && !quiet_ && (stderr_is_terminal_ || verbosity_ > 0); }
 

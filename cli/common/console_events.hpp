@@ -10,9 +10,7 @@ class ConsoleEvents final : public analysis::Events {
  public:
   explicit ConsoleEvents(Console& console) : console_(console) {}
   void add_message(const Diagnostic& message) override { messages_.add(message); }
-  void show_progress(const std::string& stage) override {
-    stage.empty() ? console_.end_progress() : console_.show_progress(stage);
-  }
+  void show_progress(const std::string& stage) override { console_.show_stage(stage); }
   /// Messages so far, not printed yet.
   const Diagnostics& get_messages() const { return messages_; }
 

@@ -9,12 +9,15 @@
 #include <system_error>
 
 #include "analysis/common/failures.hpp"
+#include "analysis/common/inputs.hpp"
 #include "analysis/common/output_folder.hpp"
+#include "analysis/common/ranks.hpp"
 #include "analysis/common/text_file.hpp"
 #include "base/file_roles.hpp"
 #include "base/part_file.hpp"
 #include "cli/common/command_help.hpp"
 #include "cli/common/console.hpp"
+#include "fe/linear/petsc.hpp"
 
 namespace bough::cli {
 
@@ -100,6 +103,23 @@ void check_output(const CommonOptions& options, const std::string& path, const s
                            "the folder " + folder + " cannot be written: " + std::generic_category().message(errno),
                            "choose another with -o, or change its permissions");
   }
+}
+
+int print_written_files(const CommonOptions& options, const Console& console, const std::vector<std::string>& files) {
+  for (const auto& file : files)
+    if (!file.empty() && !options.json) console.print("written: " + file + "\n");
+  return kSuccess;
+}
+
+void open_deck(Console& console, const CommonOptions& options, const std::string& deck,
+               const std::vector<std::string>& outputs, std::vector<std::string> inputs) {
+  console.set_subject(deck);
+  inputs.insert(inputs.begin(), deck);
+  analysis::do_once([&] {
+    analysis::demand_deck(deck);
+    check_outputs(options, outputs, inputs);
+  });
+  console.set_rank(linear::initialize_petsc().rank);
 }
 
 void write_report(const CommonOptions& options, const Console& console, const std::string& text) {

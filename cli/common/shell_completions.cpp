@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "base/quoted_text.hpp"
 #include "cli/common/help_files.hpp"
 #include "cli/common/usage_text.hpp"
 
@@ -57,14 +58,7 @@ std::string write_zsh_options(const CLI::App& app) {
   return out;
 }
 
-std::string quote_fish(const std::string& text) {
-  std::string out = "'";
-  for (const char c : text) {
-    if (c == '\'' || c == '\\') out += '\\';
-    out += c;
-  }
-  return out + "'";
-}
+std::string quote_fish(const std::string& text) { return quote_with('\'', text); }
 
 std::string write_fish_options(const CLI::App& app, const std::string& condition) {
   std::string out;

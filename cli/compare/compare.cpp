@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <memory>
 
 #include "analysis/common/body_files.hpp"
 #include "cli/common/console_events.hpp"
@@ -16,9 +15,7 @@ namespace bough::cli {
 
 namespace {
 
-struct CompareOptions : CommonOptions {
-  analysis::CompareRequest request;
-};
+using CompareOptions = RequestOptions<analysis::CompareRequest>;
 
 template <class Report>
 void print_report(const Report& report, const CompareOptions& o, const Console& console) {
@@ -55,8 +52,7 @@ int run_compare(const CompareOptions& o) {
 }  // namespace
 
 void add_compare(CLI::App& app, Action& action) {
-  auto o = std::make_shared<CompareOptions>();
-  auto* verb = add_verb(app, action, o, run_compare, "compare");
+  auto [verb, o] = add_verb(app, action, run_compare, "compare");
   verb->add_option("files", o->request.files,
                    "Two flexible bodies or modes files; or one body: its integrals by method; or three with "
                    "--refinement")

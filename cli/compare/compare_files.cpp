@@ -1,4 +1,5 @@
 #include "cli/common/deck_tables.hpp"
+#include "cli/common/json_rows.hpp"
 #include "cli/compare/compare_report.hpp"
 
 namespace bough::cli {
@@ -86,13 +87,9 @@ nlohmann::json make_json(const PairReport& r) {
 }
 
 nlohmann::json make_json(const RefinementReport& r) {
-  auto rows = nlohmann::json::array();
-  for (const auto& row : r.rows)
-    rows.push_back({{"mode", row.mode},
-                    {"quantity", row.quantity},
-                    {"value", row.value},
-                    {"order", row.order},
-                    {"extrapolated", row.extrapolated}});
+  using Row = modal::Convergence;
+  const auto rows = make_rows(r.rows, "mode", &Row::mode, "quantity", &Row::quantity, "value", &Row::value, "order",
+                              &Row::order, "extrapolated", &Row::extrapolated);
   return {{"files", r.files}, {"element_size", r.element_size}, {"rows", rows}};
 }
 

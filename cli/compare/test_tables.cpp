@@ -7,6 +7,7 @@
 
 #include "cli/common/console.hpp"
 #include "cli/common/deck_tables.hpp"
+#include "cli/common/json_rows.hpp"
 #include "cli/compare/compare_report.hpp"
 
 namespace bough::cli {
@@ -116,17 +117,11 @@ std::string format_report(const FrfReport& r) {
 }
 
 nlohmann::json make_json(const FrfReport& r) {
-  auto functions = nlohmann::json::array();
-  for (const auto& p : r.pairs)
-    functions.push_back({{"curve", p.name},
-                         {"test", p.test},
-                         {"reference", p.reference},
-                         {"reference_direction", p.reference_direction},
-                         {"frac", p.frac},
-                         {"level_db", p.level_db},
-                         {"peak_hz", p.peak_hz},
-                         {"test_peak_hz", p.test_peak_hz},
-                         {"num_points", p.num_points}});
+  using Pair = analysis::FrfPair;
+  const auto functions =
+      make_rows(r.pairs, "curve", &Pair::name, "test", &Pair::test, "reference", &Pair::reference,
+                "reference_direction", &Pair::reference_direction, "frac", &Pair::frac, "level_db", &Pair::level_db,
+                "peak_hz", &Pair::peak_hz, "test_peak_hz", &Pair::test_peak_hz, "num_points", &Pair::num_points);
   return {{"a", r.file_a},
           {"test", r.file_b},
           {"subcase", r.subcase},

@@ -1,7 +1,6 @@
 #include "analysis/convert/convert.hpp"
 
 #include <CLI/CLI.hpp>
-#include <memory>
 
 #include "analysis/common/text_file.hpp"
 #include "cli/common/console_events.hpp"
@@ -13,9 +12,7 @@ namespace bough::cli {
 
 namespace {
 
-struct ConvertOptions : CommonOptions {
-  analysis::ConvertRequest request;
-};
+using ConvertOptions = RequestOptions<analysis::ConvertRequest>;
 
 int run_convert(const ConvertOptions& o) {
   Console console(o.quiet, o.verbosity);
@@ -49,8 +46,7 @@ int run_convert(const ConvertOptions& o) {
 }  // namespace
 
 void add_convert(CLI::App& app, Action& action) {
-  auto o = std::make_shared<ConvertOptions>();
-  auto* verb = add_verb(app, action, o, run_convert, "convert");
+  auto [verb, o] = add_verb(app, action, run_convert, "convert");
   verb->add_option("file", o->request.file, "Nastran deck with its INCLUDE files, system or body file, flexible body")
       ->required();
   auto* units = verb->add_option("--units", o->request.units, "FROM:TO, as mm-N-tonne:m-kg-s")->type_name("FROM:TO");

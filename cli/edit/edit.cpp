@@ -2,7 +2,6 @@
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
-#include <memory>
 
 #include "analysis/edit/edit_session.hpp"
 #include "cli/common/console.hpp"
@@ -71,8 +70,7 @@ int run_edit(const EditOptions& o) {
 }  // namespace
 
 void add_edit(CLI::App& app, Action& action) {
-  auto o = std::make_shared<EditOptions>();
-  auto* verb = add_verb(app, action, o, run_edit, "edit");
+  auto [verb, o] = add_verb(app, action, run_edit, "edit");
   verb->add_option("file", o->file, "system.toml or body.toml; a new system file where there is none")->required();
   add_common_options(*verb, *o, kOutput, "Where save writes (default: the file itself)");
 }

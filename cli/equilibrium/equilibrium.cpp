@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <memory>
 #include <nlohmann/json.hpp>
 
 #include "analysis/common/failures.hpp"
@@ -16,9 +15,7 @@ namespace bough::cli {
 
 namespace {
 
-struct EquilibriumOptions : CommonOptions {
-  analysis::EquilibriumRequest request;
-};
+using EquilibriumOptions = RequestOptions<analysis::EquilibriumRequest>;
 
 /// A results file of one sample: plot, export and --start-from take it as any other.
 void write_equilibrium(const analysis::EquilibriumAnswer& answer, const std::string& path) {
@@ -77,18 +74,15 @@ int run_equilibrium(const EquilibriumOptions& o) {
     if (!found.kept.empty()) text += "as they start, nothing changes them: " + join(found.kept) + "\n";
     console.print(text);
   }
-  if (!o.output.empty()) {
+  if (!o.output.empty())
     analysis::write_whole(o.output, [&](const std::string& part) { write_equilibrium(answer, part); });
-    if (!o.json) console.print("written: " + o.output + "\n");
-  }
-  return kSuccess;
+  return print_written_files(o, console, {o.output});
 }
 
 }  // namespace
 
 void add_equilibrium(CLI::App& app, Action& action) {
-  auto o = std::make_shared<EquilibriumOptions>();
-  auto* verb = add_verb(app, action, o, run_equilibrium, "equilibrium", &o->request.file);
+  auto [verb, o] = add_verb(app, action, run_equilibrium, "equilibrium", &analysis::EquilibriumRequest::file);
   verb->add_option("file", o->request.file, "System file (.toml); hinge rates given there are kept")->required();
   add_set_option(*verb, o->request.set);
   add_common_options(*verb, *o, kOutput | kJson, "Write the state to this HDF5 file, for --start-from");

@@ -5,7 +5,6 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <memory>
 #include <sstream>
 #include <utility>
 
@@ -21,9 +20,7 @@ namespace bough::cli {
 
 namespace {
 
-struct ExportOptions : CommonOptions {
-  analysis::ExportRequest request;
-};
+using ExportOptions = RequestOptions<analysis::ExportRequest>;
 
 /// -o, --output given several times, a line each: of an FMU what is no .fmu is an output of it, as --channel.
 bool take_outputs(ExportOptions& o) {
@@ -66,7 +63,8 @@ void print_written(const ExportOptions& o, const analysis::ExportAnswer& answer,
   console.print((fmu ? describe(*fmu, o.request.fmu.version) : "") + "written: " + o.output + frames + "\n");
 }
 
-int run_export(ExportOptions o) {
+int run_export(const ExportOptions& given) {
+  auto o = given;
   Console console(o.quiet, o.verbosity);
   if (!console.is_root()) return kSuccess;
   if (!take_outputs(o)) {
@@ -153,8 +151,7 @@ std::string list_inputs() {
 }  // namespace
 
 void add_export(CLI::App& app, Action& action) {
-  auto o = std::make_shared<ExportOptions>();
-  auto* verb = add_verb(app, action, o, run_export, "export");
+  auto [verb, o] = add_verb(app, action, run_export, "export");
   verb->add_option("file", o->request.file, list_inputs())->required();
   std::string formats = "Format: ";
   std::vector<std::string> words;

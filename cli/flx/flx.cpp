@@ -4,7 +4,6 @@
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
-#include <memory>
 
 #include "analysis/common/body_files.hpp"
 #include "analysis/common/inputs.hpp"
@@ -74,7 +73,9 @@ int run_flx(const FlxVerbOptions& o) {
   const auto layout = choose_layout(o, o.digits);
   auto request = o.request;
   request.digits = o.digits;
-  const auto files = analysis::make_flx_files(request);
+  Diagnostics diagnostics;
+  const auto files = analysis::make_flx_files(request, diagnostics);
+  console.print(diagnostics);
   std::string text;
   for (const auto& file : files) text += flx::write_flx(file, layout);
   analysis::write_text_file(output, text);
@@ -89,8 +90,7 @@ int run_flx(const FlxVerbOptions& o) {
 }  // namespace
 
 void add_flx(CLI::App& app, Action& action) {
-  auto o = std::make_shared<FlxVerbOptions>();
-  auto* verb = add_verb(app, "flx");
+  auto [verb, o] = add_verb<FlxVerbOptions>(app, "flx");
   verb->add_option("body", o->request.bodies, "Flexible-body files that bough reduce wrote; several go into one .FLX");
   verb->add_option("--read", o->read,
                    "Print this .FLX file block by block, of FILE.FLX:2 the body with the id 2; with -o write it again");
@@ -117,7 +117,7 @@ void add_flx(CLI::App& app, Action& action) {
       ->capture_default_str();
   add_flx_options(*verb, *o);
   add_common_options(*verb, *o, kOutput | kJson, ".FLX file to write (default: the body file's name with .FLX, here)");
-  verb->callback([&action, o, verb] {
+  verb->callback([&action, o = o, verb = verb] {
     o->digits_given = verb->count("--digits") > 0;
     action = [o] { return run_flx(*o); };
   });

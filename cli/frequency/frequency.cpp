@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <memory>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -41,15 +40,9 @@ int run_deck_response(const DeckResponseOptions& options) {
   for (const auto& text : options.bands) request.notching.bands.push_back(analysis::read_notch_band(text));
   for (const auto& text : options.limits) request.notching.limits.push_back(analysis::read_notch_limit(text, false));
   for (const auto& text : options.densities) request.notching.limits.push_back(analysis::read_notch_limit(text, true));
-  console.set_subject(request.deck);
-  analysis::do_once([&] {
-    analysis::demand_deck(request.deck);
-    check_outputs(
-        options,
-        {options.output, options.csv, options.punch, options.notch_csv, options.listing.f06, options.listing.op2},
-        {request.deck});
-  });
-  console.set_rank(linear::initialize_petsc().rank);
+  const std::vector<std::string> outputs{options.output,    options.csv,         options.punch,
+                                         options.notch_csv, options.listing.f06, options.listing.op2};
+  open_deck(console, options, request.deck, outputs);
   request.has_listing = !options.listing.empty();
   ConsoleEvents events(console);
   const auto answer = analysis::solve_deck_response(request, events);
@@ -78,18 +71,15 @@ int run_deck_response(const DeckResponseOptions& options) {
     for (const auto& result : response.random)
       console.print("\n" + format_random(result, options.full ? 1u << 30 : 20));
     for (const auto& notch : answer.notches) console.print("\n" + format_notch(notch));
-    for (const auto& path :
-         {options.output, options.csv, options.punch, options.notch_csv, options.listing.f06, options.listing.op2})
-      if (!path.empty()) console.print("written: " + path + "\n");
+    print_written_files(options, console, outputs);
   }
   analysis::do_once([] { flush_data(); });
   return answer.failures.get_exit_code();
 }
 
 void add_response_verb(CLI::App& app, Action& action, bool is_over_time, const char* name) {
-  auto o = std::make_shared<DeckResponseOptions>();
+  auto [verb, o] = add_verb(app, action, run_deck_response, name, &analysis::DeckResponseRequest::deck);
   o->request.is_transient = is_over_time;
-  auto* verb = add_verb(app, action, o, run_deck_response, name, &o->request.deck);
   verb->add_option("deck", o->request.deck, "Nastran deck")->required();
   verb->add_option("--grid", o->request.grids,
                    "Displacement, velocity and acceleration of this grid too; may be repeated")

@@ -14,26 +14,15 @@
 namespace bough::cli {
 namespace {
 
-struct Peak {
-  const exports::NamedCurve* curve = nullptr;
-  double size = 0, at = 0, phase_deg = 0;
-};
-
-Peak find_peak(const exports::NamedCurve& curve, const Eigen::VectorXd& x) {
-  Peak peak{&curve, -1, 0, 0};
-  for (Eigen::Index i = 0; i < x.size(); ++i) {
-    const auto [size, phase] = exports::to_polar(curve.real(i), curve.imag.size() > 0 ? curve.imag(i) : 0);
-    if (!(size > peak.size)) continue;
-    peak = {&curve, size, x(i), phase};
-  }
-  // Over time the sign of the largest value counts.
-  if (curve.imag.size() == 0 && peak.phase_deg != 0) peak.size = -peak.size;
-  return peak;
-}
+using Peak = exports::CurvePeak;
 
 std::vector<Peak> list_peaks(const std::vector<exports::NamedCurve>& curves, const Eigen::VectorXd& x) {
   std::vector<Peak> peaks;
-  for (const auto& curve : curves) peaks.push_back(find_peak(curve, x));
+  for (const auto& curve : curves) {
+    auto& peak = peaks.emplace_back(exports::find_peak(curve, x));
+    // Over time the sign of the largest value counts.
+    if (curve.imag.size() == 0 && peak.phase_deg != 0) peak.size = -peak.size;
+  }
   return peaks;
 }
 

@@ -1,7 +1,6 @@
 #include "analysis/info/info.hpp"
 
 #include <CLI/CLI.hpp>
-#include <memory>
 #include <nlohmann/json.hpp>
 
 #include "analysis/common/body_files.hpp"
@@ -65,8 +64,7 @@ int run_info(const InfoOptions& o) {
 }  // namespace
 
 void add_info(CLI::App& app, Action& action) {
-  auto o = std::make_shared<InfoOptions>();
-  auto* verb = add_verb(app, action, o, run_info, "info");
+  auto [verb, o] = add_verb(app, action, run_info, "info");
   verb->add_option("file", o->file, "HDF5 file, .FLX or flat body file")->required();
   add_common_options(*verb, *o, kOutput | kJson, "Write the list to this file instead of stdout");
 }

@@ -1,7 +1,6 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
-#include <memory>
 
 #include "analysis/common/output_folder.hpp"
 #include "analysis/common/text_file.hpp"
@@ -146,8 +145,7 @@ int run_init(const InitOptions& o) {
 }  // namespace
 
 void add_init(CLI::App& app, Action& action) {
-  auto o = std::make_shared<InitOptions>();
-  auto* verb = add_verb(app, action, o, run_init, "init");
+  auto [verb, o] = add_verb(app, action, run_init, "init");
   std::string names;
   for (const auto& known : get_templates()) names += std::string(names.empty() ? "" : ", ") + known.name;
   verb->add_option("template", o->name, names + "; or a Nastran deck. Default: lists them");

@@ -4,7 +4,6 @@
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
-#include <memory>
 
 #include "analysis/common/failures.hpp"
 #include "analysis/common/inputs.hpp"
@@ -64,8 +63,7 @@ int run_integrals(const IntegralsOptions& o) {
 }  // namespace
 
 void add_integrals(CLI::App& app, Action& action) {
-  auto o = std::make_shared<IntegralsOptions>();
-  auto* verb = add_verb(app, action, o, run_integrals, "integrals", &o->request.matrices);
+  auto [verb, o] = add_verb(app, action, run_integrals, "integrals", &analysis::IntegralsRequest::matrices);
   verb->add_option("model", o->request.model, "Model information file: sizes, dof map, nodes, options")->required();
   verb->add_option("matrices", o->request.matrices, "Matrices file: mass, stiffness, damping, mode shapes")->required();
   verb->add_option("--fi", o->fi, "Write the twelve inertial loads, ndof x 12, too: text, a row per dof");

@@ -1,5 +1,4 @@
 #include <CLI/CLI.hpp>
-#include <memory>
 
 #include "analysis/common/failures.hpp"
 #include "analysis/common/inputs.hpp"
@@ -26,9 +25,27 @@ struct LinearizeVerbOptions : CommonOptions {
   std::string mat, csv;
 };
 
-void print_written(const LinearizeVerbOptions& o, const Console& console, const std::vector<std::string>& files) {
-  for (const auto& file : files)
-    if (!file.empty() && !o.json) console.print("written: " + file + "\n");
+/// Functions that turn a result into text and into its files.
+template <class Result>
+struct ResultWriters {
+  std::string (*format)(const Result&);
+  void (*write)(const Result&, const std::string&);
+  void (*write_mat)(const Result&, const std::string&);
+  std::string (*make_csv)(const Result&);
+};
+
+/// Prints the result and writes the files that the command line names.
+template <class Result>
+void write_result(const LinearizeVerbOptions& o, const Console& console, const Result& result,
+                  const ResultWriters<Result>& writers) {
+  if (o.json)
+    console.print_data(make_json(result).dump(2) + "\n");
+  else
+    console.print(writers.format(result));
+  if (!o.output.empty()) writers.write(result, o.output);
+  if (!o.mat.empty()) writers.write_mat(result, o.mat);
+  if (!o.csv.empty()) analysis::write_text_file(o.csv, writers.make_csv(result));
+  print_written_files(o, console, {o.output, o.mat, o.csv});
 }
 
 int run_linearize(const LinearizeVerbOptions& o) {
@@ -49,34 +66,22 @@ int run_linearize(const LinearizeVerbOptions& o) {
   if (request.each > 0 || !request.sweep.empty()) {
     const auto sweep = analysis::sweep_linear_models(request, check, events);
     console.print(events.get_messages());
-    if (o.json)
-      console.print_data(make_json(sweep).dump(2) + "\n");
-    else
-      console.print(format_sweep(sweep));
-    if (!o.output.empty()) hdf5::write_sweep(sweep, o.output);
-    if (!o.mat.empty()) analysis::write_sweep_mat(sweep, o.mat);
-    if (!o.csv.empty()) analysis::write_text_file(o.csv, analysis::make_sweep_csv(sweep));
-    print_written(o, console, {o.output, o.mat, o.csv});
+    write_result<records::LinearSweep>(
+        o, console, sweep, {format_sweep, hdf5::write_sweep, analysis::write_sweep_mat, analysis::make_sweep_csv});
     return kSuccess;
   }
   const auto model = analysis::linearize(request, check, events);
   console.print(events.get_messages());
-  if (o.json)
-    console.print_data(make_json(model).dump(2) + "\n");
-  else
-    console.print(format_linear_model(model));
-  if (!o.output.empty()) hdf5::write_linear_model(model, o.output);
-  if (!o.mat.empty()) analysis::write_linear_mat(model, o.mat);
-  if (!o.csv.empty()) analysis::write_text_file(o.csv, analysis::make_linear_csv(model));
-  print_written(o, console, {o.output, o.mat, o.csv});
+  write_result<records::LinearModel>(
+      o, console, model,
+      {format_linear_model, hdf5::write_linear_model, analysis::write_linear_mat, analysis::make_linear_csv});
   return kSuccess;
 }
 
 }  // namespace
 
 void add_linearize(CLI::App& app, Action& action) {
-  auto o = std::make_shared<LinearizeVerbOptions>();
-  auto* verb = add_verb(app, action, o, run_linearize, "linearize", &o->request.file);
+  auto [verb, o] = add_verb(app, action, run_linearize, "linearize", &analysis::LinearizeRequest::file);
   verb->add_option("file", o->request.file, "System file (.toml)")->required();
   verb->add_option("--at", o->request.at, "Run to this time and linearize there (default: the initial state)")
       ->check(make_finite());

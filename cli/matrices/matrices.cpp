@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <memory>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -113,7 +112,7 @@ int run_matrices(const MatricesOptions& options) {
     console.print_data(json.dump(2) + "\n");
   } else {
     console.print(table.to_text());
-    for (const auto& file : files) console.print("written: " + file + "\n");
+    print_written_files(options, console, files);
   }
   return kSuccess;
 }
@@ -121,8 +120,7 @@ int run_matrices(const MatricesOptions& options) {
 }  // namespace
 
 void add_matrices(CLI::App& app, Action& action) {
-  auto o = std::make_shared<MatricesOptions>();
-  auto* verb = add_verb(app, action, o, run_matrices, "matrices", &o->request.deck);
+  auto [verb, o] = add_verb(app, action, run_matrices, "matrices", &analysis::MatricesRequest::deck);
   verb->add_option("deck", o->request.deck, "Nastran deck")->required();
   verb->add_option("--to", o->format, "h5 (HDF5), mtx (Matrix Market) or op4 (Nastran OUTPUT4, formatted)")
       ->check(CLI::IsMember({"h5", "mtx", "op4"}))

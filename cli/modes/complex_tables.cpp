@@ -11,12 +11,13 @@
 namespace bough::cli {
 
 using records::ComplexModesResult;
+using records::RotorSpeeds;
 
 namespace {
 
 constexpr double kRpm = 30 / std::numbers::pi;
 
-std::string format_rotors(const records::RotorSpeeds& rotors) {
+std::string format_rotors(const RotorSpeeds& rotors) {
   Table table{{"rotor", "grids", "elements", "mass", "polar inertia"}, {}};
   for (const auto& rotor : rotors.rotors)
     table.rows.push_back({std::to_string(rotor.id), std::to_string(rotor.num_grids), std::to_string(rotor.num_elements),
@@ -25,7 +26,7 @@ std::string format_rotors(const records::RotorSpeeds& rotors) {
 }
 
 /// Modes over the speed; critical speeds; onset of instability.
-std::string format_speeds(const records::RotorSpeeds& rotors) {
+std::string format_speeds(const RotorSpeeds& rotors) {
   const auto& sweep = rotors.sweep;
   std::string text;
   if (const auto end = sweep.value.size() - 1; end > 0) {
@@ -43,7 +44,7 @@ std::string format_speeds(const records::RotorSpeeds& rotors) {
                         sweep.value[end] * kRpm) +
             table.to_text();
   }
-  const auto list = [&](const char* title, const std::vector<records::RotorSpeeds::Point>& points, const char* number) {
+  const auto list = [&](const char* title, const std::vector<RotorSpeeds::Point>& points, const char* number) {
     if (points.empty()) return;
     Table table{{number, "rad/T", "rpm", "Hz", "whirl"}, {}};
     for (const auto& point : points)
@@ -54,11 +55,17 @@ std::string format_speeds(const records::RotorSpeeds& rotors) {
   };
   list("critical speeds: the rotor turns as fast as it whirls", rotors.critical,
        rotors.is_synchronous ? "mode" : "branch");
-  list("stability: unstable above this speed", rotors.thresholds, "branch");
+  for (const bool is_onset : {true, false}) {
+    std::vector<RotorSpeeds::Point> points;
+    std::copy_if(rotors.thresholds.begin(), rotors.thresholds.end(), std::back_inserter(points),
+                 [&](const auto& point) { return point.is_onset == is_onset; });
+    list(is_onset ? "stability: unstable above this speed" : "stability: stable again above this speed", points,
+         "branch");
+  }
   return text;
 }
 
-nlohmann::json make_json(const records::RotorSpeeds& rotors) {
+nlohmann::json make_json(const RotorSpeeds& rotors) {
   nlohmann::json json{{"reference", rotors.reference}, {"synchronous", rotors.is_synchronous}};
   for (const auto& rotor : rotors.rotors)
     json["rotors"].push_back({{"id", rotor.id},
@@ -80,7 +87,7 @@ nlohmann::json make_json(const records::RotorSpeeds& rotors) {
                         {"damping", to_rows(sweep.damping)},
                         {"whirl", to_rows(sweep.whirl)},
                         {"correlation", to_rows(sweep.correlation)}};
-  const auto to_points = [](const std::vector<records::RotorSpeeds::Point>& points) {
+  const auto to_points = [](const std::vector<RotorSpeeds::Point>& points) {
     auto list = nlohmann::json::array();
     for (const auto& p : points)
       list.push_back({{"branch", p.branch + 1},
@@ -92,6 +99,8 @@ nlohmann::json make_json(const records::RotorSpeeds& rotors) {
   };
   json["critical_speeds"] = to_points(rotors.critical);
   json["thresholds"] = to_points(rotors.thresholds);
+  for (std::size_t k = 0; k < rotors.thresholds.size(); ++k)
+    json["thresholds"][k]["onset"] = rotors.thresholds[k].is_onset;
   return json;
 }
 
@@ -113,7 +122,8 @@ std::string format_complex_modes(const ComplexModesResult& r) {
   if (r.rotors)
     text +=
         format_rotors(*r.rotors) +
-        (r.rotors->is_synchronous ? std::string("rotors at the frequency of each mode (synchronous)\n\n")
+        (r.rotors->is_synchronous ? std::string("rotors at the frequency of each mode (synchronous): real parts "
+                                                "are no measure of stability\n\n")
                                   : fmt::format("rotors at {:.8g} rpm ({:.8g} rad/T)\n\n", r.speed * kRpm, r.speed));
   text += "complex eigenvalues, imaginary part not below 0\n" + table.to_text() + "\n";
   const auto count_if = [&](const auto& is_one) {
@@ -121,7 +131,8 @@ std::string format_complex_modes(const ComplexModesResult& r) {
   };
   // An undamped mode is unstable by round-off alone.
   const auto unstable = count_if([](std::complex<double> l) { return l.real() > 1e-9 * std::abs(l); });
-  if (unstable > 0) text += fmt::format("unstable: {} of {} (real part above 0)\n", unstable, r.eigenvalue.size());
+  if (unstable > 0 && !(r.rotors && r.rotors->is_synchronous))
+    text += fmt::format("unstable: {} of {} (real part above 0)\n", unstable, r.eigenvalue.size());
   text += fmt::format("method: {}, {} unknowns{}\n",
                       r.is_by_modes ? "on real modes (SOL 110)" : "on the full matrices (SOL 107)", r.num_unknowns,
                       r.left.empty() ? "" : ", unsymmetric");
@@ -157,7 +168,7 @@ nlohmann::json make_json(const ComplexModesResult& r) {
                       {"modes", modes}};
   if (!r.rotors) return json;
   json["rotors"] = make_json(*r.rotors);
-  if (r.speed >= 0) json["speed"] = r.speed;
+  if (!r.rotors->is_synchronous) json["speed"] = r.speed;
   return json;
 }
 

@@ -4,7 +4,6 @@
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
-#include <memory>
 #include <nlohmann/json.hpp>
 
 #include "analysis/common/failures.hpp"
@@ -159,14 +158,9 @@ class ModesOutput final : public analysis::ModesReceiver {
 int run_modes(const ModesOptions& options) {
   Console console(options.quiet, options.verbosity);
   auto request = options.request;
-  console.set_subject(request.deck);
-  analysis::do_once([&] {
-    analysis::demand_deck(request.deck);
-    check_outputs(options, {options.output, options.vtu, options.listing.f06, options.listing.op2},
-                  {request.deck, options.compare});
-    if (!options.compare.empty()) analysis::demand_file(options.compare);
-  });
-  console.set_rank(linear::initialize_petsc().rank);
+  open_deck(console, options, request.deck, {options.output, options.vtu, options.listing.f06, options.listing.op2},
+            {options.compare});
+  if (!options.compare.empty()) analysis::do_once([&] { analysis::demand_file(options.compare); });
   request.has_shapes = !options.output.empty() || !options.vtu.empty() || !options.compare.empty();
   request.has_listing = !options.listing.empty();
   ModesOutput output(options, console);
@@ -181,8 +175,7 @@ int run_modes(const ModesOptions& options) {
 }  // namespace
 
 void add_modes(CLI::App& app, Action& action) {
-  auto o = std::make_shared<ModesOptions>();
-  auto* verb = add_verb(app, action, o, run_modes, "modes", &o->request.deck);
+  auto [verb, o] = add_verb(app, action, run_modes, "modes", &analysis::ModesRequest::deck);
   verb->add_option("deck", o->request.deck, "Nastran deck")->required();
   verb->add_option("-n,--number,--modes", o->request.eigen.number,
                    "Number of modes (default: the deck's EIGRL or EIGC, else 10)")

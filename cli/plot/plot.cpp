@@ -6,7 +6,6 @@
 #include <CLI/CLI.hpp>
 #include <cstdlib>
 #include <filesystem>
-#include <memory>
 
 #include "analysis/common/inputs.hpp"
 #include "analysis/common/text_file.hpp"
@@ -19,8 +18,6 @@
 
 namespace bough::cli {
 
-namespace fs = std::filesystem;
-
 namespace {
 
 struct PlotOptions : CommonOptions {
@@ -31,7 +28,7 @@ struct PlotOptions : CommonOptions {
 
 /// The file to write: as given, or `otherwise` with .svg.
 std::string choose_picture(const PlotOptions& o, std::string otherwise) {
-  if (const auto ending = fs::path(o.output).extension().string();
+  if (const auto ending = std::filesystem::path(o.output).extension().string();
       !ending.empty() && !analysis::has_suffix(o.output, ".svg") && !analysis::has_suffix(o.output, ".png") &&
       !analysis::has_suffix(o.output, ".pdf"))
     throw InputError("cli.picture-format", {o.output}, "no picture format " + ending, "choose .svg, .png or .pdf");
@@ -80,7 +77,7 @@ int run_plot(const PlotOptions& o) {
   }
   if (!o.csv.empty()) {
     analysis::write_text_file(o.csv, answer.csv);
-    console.print("written: " + o.csv + "\n");
+    print_written_files(o, console, {o.csv});
   }
   if (!has_picture) {
     if (!o.term) console.print(events.get_messages());
@@ -88,15 +85,13 @@ int run_plot(const PlotOptions& o) {
   }
   analysis::write_picture(output, plots.size() == 1 ? report::draw_svg(plots.front()) : report::draw_svg(plots));
   if (!o.term) console.print(events.get_messages());
-  console.print("written: " + output + "\n");
-  return kSuccess;
+  return print_written_files(o, console, {output});
 }
 
 }  // namespace
 
 void add_plot(CLI::App& app, Action& action) {
-  auto o = std::make_shared<PlotOptions>();
-  auto* verb = add_verb(app, action, o, run_plot, "plot");
+  auto [verb, o] = add_verb(app, action, run_plot, "plot");
   verb->add_option("files", o->request.files, "HDF5 files: results, or with --kind linear models or sweeps")
       ->required();
   verb->add_option("--sensor,--channel", o->request.sensors,
@@ -180,7 +175,7 @@ void add_plot(CLI::App& app, Action& action) {
   auto* low = verb->add_option("--y-min", o->request.y_min, "Lower end of the y axis; curves are clipped")
                   ->check(make_finite());
   auto* high = verb->add_option("--y-max", o->request.y_max, "Upper end of the y axis")->check(make_finite());
-  low->needs(high)->each([o](const std::string&) { o->request.has_limits = true; });
+  low->needs(high)->each([o = o](const std::string&) { o->request.has_limits = true; });
   high->needs(low);
   add_common_options(*verb, *o, kOutput, "Picture: .svg, .png or .pdf (default: the sensor's name with .svg, here)");
 }

@@ -5,7 +5,6 @@
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <filesystem>
-#include <memory>
 #include <nlohmann/json.hpp>
 
 #include "analysis/common/failures.hpp"
@@ -161,8 +160,7 @@ int run_reduce(const ReduceVerbOptions& o) {
 }  // namespace
 
 void add_reduce(CLI::App& app, Action& action) {
-  auto o = std::make_shared<ReduceVerbOptions>();
-  auto* verb = add_verb(app, "reduce");
+  auto [verb, o] = add_verb<ReduceVerbOptions>(app, "reduce");
   verb->add_option("file", o->request.file, "Body file (.toml) or Nastran deck; may be missing with --matrices");
   verb->add_option("-n,--modes,--number", o->request.num_modes, "Number of elastic modes")->check(make_positive());
   verb->add_option("--max-hz", o->request.max_hz, "Highest frequency wanted")->check(make_positive());
@@ -212,9 +210,9 @@ void add_reduce(CLI::App& app, Action& action) {
       ->check(is_within(1, 99999988))
       ->capture_default_str();
   verb->add_flag_callback(
-      "--full", [o] { o->request.full = true; }, "Write the modes and inertial loads of every dof too");
+      "--full", [o = o] { o->request.full = true; }, "Write the modes and inertial loads of every dof too");
   add_common_options(*verb, *o, kOutput | kJson, "Flexible-body HDF5 file (default: the body file's, else NAME.h5)");
-  verb->callback([&action, o] {
+  verb->callback([&action, o = o] {
     if (o->request.file.empty() && o->request.matrices.empty()) throw CLI::RequiredError("file");
     action = [o] { return analysis::with_file(o->request.file, [&] { return run_reduce(*o); }); };
   });

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <memory>
 
 #include "analysis/common/body_files.hpp"
 #include "analysis/common/text_file.hpp"
@@ -14,11 +13,7 @@ namespace bough::cli {
 
 namespace {
 
-struct ReportOptions : CommonOptions {
-  analysis::ReportRequest request;
-};
-
-int run_report(const ReportOptions& o) {
+int run_report(const RequestOptions<analysis::ReportRequest>& o) {
   Console console(o.quiet, o.verbosity);
   if (!console.is_root()) return kSuccess;
   std::vector<std::string> paths;
@@ -39,8 +34,7 @@ int run_report(const ReportOptions& o) {
 }  // namespace
 
 void add_report(CLI::App& app, Action& action) {
-  auto o = std::make_shared<ReportOptions>();
-  auto* verb = add_verb(app, action, o, run_report, "report");
+  auto [verb, o] = add_verb(app, action, run_report, "report");
   verb->add_option("files", o->request.files,
                    "Results, flexible bodies, modes, static solutions, responses, linear models, sweeps, comparisons, "
                    "outcomes.h5 of "

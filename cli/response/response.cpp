@@ -3,7 +3,6 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
-#include <memory>
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <sstream>
@@ -194,9 +193,7 @@ int run_budget(const ResponseOptions& o, Console& console) {
     console.print(format_budget(budget));
   if (!o.output.empty()) hdf5::write_budget(budget, o.output);
   if (!o.csv.empty()) analysis::write_text_file(o.csv, analysis::make_budget_csv(budget));
-  for (const auto& path : {o.output, o.csv})
-    if (!path.empty() && !o.json) console.print("written: " + path + "\n");
-  return kSuccess;
+  return print_written_files(o, console, {o.output, o.csv});
 }
 
 int run_response(const ResponseOptions& o) {
@@ -224,16 +221,13 @@ int run_response(const ResponseOptions& o) {
   if (!o.csv.empty())
     analysis::write_text_file(o.csv,
                               outputs ? analysis::make_random_csv(*outputs) : analysis::make_response_csv(response));
-  for (const auto& path : {o.output, o.csv})
-    if (!path.empty() && !o.json) console.print("written: " + path + "\n");
-  return kSuccess;
+  return print_written_files(o, console, {o.output, o.csv});
 }
 
 }  // namespace
 
 void add_response(CLI::App& app, Action& action) {
-  auto o = std::make_shared<ResponseOptions>();
-  auto* verb = add_verb(app, action, o, run_response, "response", &o->request.file);
+  auto [verb, o] = add_verb(app, action, run_response, "response", &analysis::ResponseRequest::file);
   verb->add_option("file", o->request.file, "Linear model (.h5) of bough linearize")->required();
   verb->add_option("--inputs", o->request.inputs, "Only these inputs (default: all)")->delimiter(',');
   verb->add_option("--outputs", o->request.outputs, "Only these outputs (default: all)")->delimiter(',');

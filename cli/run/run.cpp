@@ -6,7 +6,6 @@
 #include <atomic>
 #include <chrono>
 #include <csignal>
-#include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 
@@ -20,9 +19,7 @@ namespace bough::cli {
 
 namespace {
 
-struct RunOptions : CommonOptions {
-  analysis::RunRequest request;
-};
+using RunOptions = RequestOptions<analysis::RunRequest>;
 
 /// Set by SIGINT, SIGTERM and SIGHUP; a handler can reach nothing but static storage.
 std::atomic<bool>& get_stop_flag() {
@@ -40,9 +37,7 @@ class ConsoleRun final : public analysis::RunEvents {
     console_.end_progress();
     console_.print_unless_quiet(message);
   }
-  void show_progress(const std::string& stage) override {
-    stage.empty() ? console_.end_progress() : console_.show_progress(stage);
-  }
+  void show_progress(const std::string& stage) override { console_.show_stage(stage); }
   void check_output(const std::string& path, bool resumes) override {
     resumes ? analysis::check_place(path) : cli::check_output(options_, path);
   }
@@ -134,8 +129,7 @@ int run_run(const RunOptions& o) {
 }  // namespace
 
 void add_run(CLI::App& app, Action& action) {
-  auto o = std::make_shared<RunOptions>();
-  auto* verb = add_verb(app, action, o, run_run, "run");
+  auto [verb, o] = add_verb(app, action, run_run, "run");
   verb->add_option("file", o->request.file, "System file (.toml)")->required();
   verb->add_flag("--resume", o->request.resume, "Continue the results file from its last checkpoint");
   verb->add_option("--start-from", o->request.start_from,

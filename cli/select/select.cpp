@@ -1,5 +1,4 @@
 #include <CLI/CLI.hpp>
-#include <memory>
 #include <utility>
 
 #include "analysis/common/body_files.hpp"
@@ -41,18 +40,14 @@ int run_select(const SelectOptions& o) {
   else
     console.print(format(body, selection, o.inertial_load));
   if (!o.response.empty()) write_response(selection, o.response);
-  if (!o.response.empty() && !o.json) console.print("written: " + o.response + "\n");
-  if (o.output.empty()) return kSuccess;
-  hdf5::write_flex_body(analysis::keep_selected(request, body, selection, sources), o.output);
-  if (!o.json) console.print("written: " + o.output + "\n");
-  return kSuccess;
+  if (!o.output.empty()) hdf5::write_flex_body(analysis::keep_selected(request, body, selection, sources), o.output);
+  return print_written_files(o, console, {o.response, o.output});
 }
 
 }  // namespace
 
 void add_select(CLI::App& app, Action& action) {
-  auto o = std::make_shared<SelectOptions>();
-  auto* verb = add_verb(app, action, o, run_select, "select", &o->request.body);
+  auto [verb, o] = add_verb(app, action, run_select, "select", &analysis::SelectRequest::body);
   verb->add_option("body", o->request.body, "Flexible-body HDF5 file, or .FLX (panels.FLX:2: its body 2)")->required();
   verb->add_option("system", o->request.systems,
                    "System files (.toml) with their forces, actuators, sensors, in closed loop; of several the worst "

@@ -9,6 +9,7 @@
 #include "analysis/common/inputs.hpp"
 #include "analysis/common/text_file.hpp"
 #include "cli/common/console.hpp"
+#include "cli/common/json_rows.hpp"
 #include "formats/export/csv.hpp"
 #include "report/svg_plot.hpp"
 
@@ -33,16 +34,10 @@ nlohmann::json make_json(const records::FlexBody& body, const analysis::Selectio
     }
     modes.push_back(std::move(one));
   }
-  auto losses = nlohmann::json::array();
-  for (const auto& loss : s.losses)
-    losses.push_back({{"name", loss.name},
-                      {"total_cost", loss.total},
-                      {"lost_share", loss.lost},
-                      {"peak_gain", loss.peak},
-                      {"peak_error", loss.error},
-                      {"peak_error_hz", loss.error_hz},
-                      {"balanced_bound", loss.balanced_bound},
-                      {"steady_error", loss.steady_error}});
+  using Loss = analysis::Loss;
+  const auto losses = make_rows(s.losses, "name", &Loss::name, "total_cost", &Loss::total, "lost_share", &Loss::lost,
+                                "peak_gain", &Loss::peak, "peak_error", &Loss::error, "peak_error_hz", &Loss::error_hz,
+                                "balanced_bound", &Loss::balanced_bound, "steady_error", &Loss::steady_error);
   nlohmann::json json{{"modes", modes},
                       {"total_cost", s.ranking.total},
                       {"other_cost", s.ranking.other},

@@ -3,7 +3,6 @@
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <filesystem>
-#include <memory>
 #include <nlohmann/json.hpp>
 
 #include "analysis/common/failures.hpp"
@@ -87,7 +86,8 @@ void make_output_folder(const fs::path& folder) {
                            "choose another with -o");
 }
 
-int run_split(SplitOptions o) {
+int run_split(const SplitOptions& given) {
+  auto o = given;
   Console console(o.quiet, o.verbosity);
   ConsoleEvents events(console);
   auto& request = o.request;
@@ -119,9 +119,8 @@ int run_split(SplitOptions o) {
 }  // namespace
 
 void add_split(CLI::App& app, Action& action) {
-  auto o = std::make_shared<SplitOptions>();
+  auto [verb, o] = add_verb(app, action, run_split, "split", &analysis::SplitRequest::deck);
   auto& choice = o->request.choice;
-  auto* verb = add_verb(app, action, o, run_split, "split", &o->request.deck);
   verb->add_option("deck", o->request.deck, "Nastran deck")->required();
   verb->add_option("--parts", choice.num_parts, "Number of parts of equal length, cut at grids")
       ->check(make_positive());

@@ -1,5 +1,4 @@
 #include <CLI/CLI.hpp>
-#include <memory>
 #include <nlohmann/json.hpp>
 
 #include "analysis/common/failures.hpp"
@@ -42,12 +41,7 @@ StaticOutputOptions make_output_options(const StaticOptions& options, bool is_ro
 int run_static(const StaticOptions& options) {
   Console console(options.quiet, options.verbosity);
   auto request = options.request;
-  console.set_subject(request.deck);
-  analysis::do_once([&] {
-    analysis::demand_deck(request.deck);
-    check_outputs(options, {options.output, options.vtu, options.listing.f06, options.listing.op2}, {request.deck});
-  });
-  console.set_rank(linear::initialize_petsc().rank);
+  open_deck(console, options, request.deck, {options.output, options.vtu, options.listing.f06, options.listing.op2});
   request.has_listing = !options.listing.empty();
   StaticOutput output(make_output_options(options, console.is_root()));
   ConsoleEvents events(console);
@@ -72,8 +66,7 @@ int run_static(const StaticOptions& options) {
   }
   if (!picture.empty()) analysis::write_text_file(options.vtu, picture);
   if (answer.listing) analysis::do_once([&] { analysis::write_listings(options.listing, *answer.listing); });
-  for (const auto& path : {options.output, options.vtu, options.listing.f06, options.listing.op2})
-    if (!path.empty() && !options.json) console.print("written: " + path + "\n");
+  print_written_files(options, console, {options.output, options.vtu, options.listing.f06, options.listing.op2});
   // A rank that ends with an error ends the others: the first one must be through.
   analysis::do_once([] { flush_data(); });
   return answer.failures.get_exit_code();
@@ -82,8 +75,7 @@ int run_static(const StaticOptions& options) {
 }  // namespace
 
 void add_static(CLI::App& app, Action& action) {
-  auto o = std::make_shared<StaticOptions>();
-  auto* verb = add_verb(app, action, o, run_static, "static", &o->request.deck);
+  auto [verb, o] = add_verb(app, action, run_static, "static", &analysis::StaticRequest::deck);
   verb->add_option("deck", o->request.deck, "Nastran deck")->required();
   verb->add_flag("--full", o->full, "Every grid and element instead of the largest values");
   verb->add_flag("--extremes,--maxmin", o->has_extremes,
@@ -97,6 +89,8 @@ void add_static(CLI::App& app, Action& action) {
                  "Large displacements and rotations, elastic materials; the way of SOL 106 with PARAM,LGDISP,1");
   verb->add_option("--increments", o->request.num_increments, "Load steps of each nonlinear subcase (default: 10)")
       ->check(is_within(1, 100000));
+  verb->add_flag("--arc-length", o->request.has_arc_length,
+                 "Nonlinear subcases follow their path through limit points (snap-through)");
   verb->add_option("--vtu", o->vtu, "Write the displacements of every subcase to this file for ParaView");
   verb->add_option("--grid-forces", o->request.grid_forces,
                    "List every force on these grids, or on all: elements, loads, SPC")

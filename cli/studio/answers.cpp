@@ -21,6 +21,7 @@
 #include "analysis/report/report_files.hpp"
 #include "base/file_roles.hpp"
 #include "cli/common/console.hpp"
+#include "cli/common/json_rows.hpp"
 #include "cli/init/schema_line.hpp"
 #include "cli/studio/deck_answer.hpp"
 #include "cli/studio/folder.hpp"
@@ -67,28 +68,19 @@ std::string get_file(const json& request) {
   return name;
 }
 
-const char* name_verdict(report::Verdict verdict) {
-  switch (verdict) {
-    case report::Verdict::Good:
-      return "ok";
-    case report::Verdict::Warning:
-      return "look";
-    case report::Verdict::Bad:
-      return "bad";
-    case report::Verdict::None:
-      break;
-  }
-  return "told";
-}
-
 json to_json(const report::Chapter& chapter) {
-  json out{
-      {"kind", chapter.kind},        {"title", chapter.title},       {"verdict", name_verdict(chapter.get_verdict())},
-      {"facts", chapter.facts},      {"settings", chapter.settings}, {"checks", json::array()},
-      {"highlights", json::array()}, {"panels", json::array()},      {"data", chapter.data}};
+  json out{{"kind", chapter.kind},
+           {"title", chapter.title},
+           {"verdict", report::get_word(chapter.get_verdict())},
+           {"facts", chapter.facts},
+           {"settings", chapter.settings},
+           {"checks", json::array()},
+           {"highlights", json::array()},
+           {"panels", json::array()},
+           {"data", chapter.data}};
   for (const auto& c : chapter.checks)
     out["checks"].push_back(
-        {{"what", c.what}, {"value", c.value}, {"verdict", name_verdict(c.verdict)}, {"note", c.note}});
+        {{"what", c.what}, {"value", c.value}, {"verdict", report::get_word(c.verdict)}, {"note", c.note}});
   for (const auto& h : chapter.highlights)
     out["highlights"].push_back({{"name", h.name}, {"value", h.value}, {"note", h.note}});
   for (const auto& p : chapter.panels) out["panels"].push_back({{"id", p.id}, {"title", p.title}, {"html", p.html}});
@@ -220,15 +212,10 @@ json answer_table(const json& request) {
 json answer_schema(const json& request) {
   auto kinds = json::array();
   for (const auto& kind : toml_files::describe_kinds(get_text(request, "kind") == "body")) {
-    auto keys = json::array();
-    for (const auto& key : kind.keys)
-      keys.push_back({{"name", key.name},
-                      {"type", key.type},
-                      {"choices", key.choices},
-                      {"range", key.range},
-                      {"default", key.default_value},
-                      {"description", key.description},
-                      {"required", key.is_required}});
+    using Key = toml_files::KeyHelp;
+    const auto keys =
+        make_rows(kind.keys, "name", &Key::name, "type", &Key::type, "choices", &Key::choices, "range", &Key::range,
+                  "default", &Key::default_value, "description", &Key::description, "required", &Key::is_required);
     kinds.push_back({{"kind", kind.kind}, {"description", kind.description}, {"list", kind.is_list}, {"keys", keys}});
   }
   return {{"kinds", kinds}};

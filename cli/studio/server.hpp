@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "base/non_copyable.hpp"
+
 namespace bough::cli {
 
 struct ServerOptions {
@@ -13,13 +15,11 @@ struct ServerOptions {
   int port = 0;                    ///< 0: a free one
 };
 
-class StudioServer {
+class StudioServer : private NonCopyable {
  public:
   /// Binds 127.0.0.1. \throws InputError "studio.no-port".
   explicit StudioServer(ServerOptions options);
   ~StudioServer();
-  StudioServer(const StudioServer&) = delete;
-  StudioServer& operator=(const StudioServer&) = delete;
 
   /// http://127.0.0.1:PORT/TOKEN/
   std::string get_address() const;

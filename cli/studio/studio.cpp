@@ -8,7 +8,6 @@
 #include <chrono>
 #include <cstdlib>
 #include <filesystem>
-#include <memory>
 #include <thread>
 
 #include "analysis/common/body_files.hpp"
@@ -87,8 +86,7 @@ int run_studio(const StudioOptions& o) {
 }  // namespace
 
 void add_studio(CLI::App& app, Action& action) {
-  auto o = std::make_shared<StudioOptions>();
-  auto* verb = add_verb(app, action, o, run_studio, "studio");
+  auto [verb, o] = add_verb(app, action, run_studio, "studio");
   verb->add_option("files", o->files, "Decks, body.toml, system.toml, results and other .h5 files to open at first");
   verb->add_option("--port", o->port, "Port of 127.0.0.1 (default: a free one)")->check(is_within(1, 65535));
   verb->add_flag("--no-open", o->no_open, "Print the address and open no browser");

@@ -56,8 +56,10 @@ roots = z[:-1][value[:-1] * value[1:] < 0]
 hinged = roots**2 * np.sqrt(E * I / (RHO * A * LENGTH**4))
 print("poles on the spring [rad/s]", rates, "closed form", hinged)
 
-figure, axes = plt.subplots()
+plt.rcParams.update({"axes.prop_cycle": plt.cycler(color=["#0072B2", "#D55E00"]), "axes.grid": True, "grid.alpha": 0.4})
+figure, axes = plt.subplots(layout="tight")
 axes.plot(poles.real, poles.imag, "x")
-axes.set(xlabel="real [1/s]", ylabel="imaginary [rad/s]", xlim=(-1, 1))    # undamped
+axes.set(xlabel="real [1/s]", ylabel="imaginary [rad/s]", xlim=(-1, 1),    # undamped
+         title="Poles of the beam on its spring")
 figure.savefig("poles.png")
 assert np.abs(rates / hinged[0] - 1).min() < 2e-3

@@ -43,9 +43,13 @@ assert np.allclose(by_hand, in_file, rtol=0, atol=1e-6 * np.abs(in_file).max())
 # %%
 closed_form = 1.1933
 assert abs(in_file[0, 0] - closed_form) < 1e-3
-figure, axes = plt.subplots()
+plt.rcParams.update({"axes.prop_cycle": plt.cycler(color=["#0072B2", "#D55E00"]), "axes.grid": True, "grid.alpha": 0.4})
+figure, axes = plt.subplots(layout="tight")
 rates = np.linspace(0, 6, 61)
 flap = [np.sqrt(np.linalg.eigvalsh(body.modal_stiffness + r**2 * in_file)) for r in rates]
-axes.plot(rates, np.array(flap)[:, :2], rates, rates, "k:")
-axes.set(xlabel="spin [rad/s]", ylabel="flap frequencies [rad/s]")
+axes.plot(rates, np.array(flap)[:, :2], label=["flap 1", "flap 2"])
+axes.plot(rates, rates, "k:", label="1 per revolution")
+axes.set(xlabel="spin [rad/s]", ylabel="frequency [rad/s]",
+         title="Flap of the boom over its spin", xlim=(0, 6), ylim=(0, None))
+axes.legend()
 figure.savefig("southwell.png")

@@ -25,11 +25,12 @@ assert poles.real.max() < 1e-9
 # %%
 results = system.run()
 angle = results["tracker"][:, 0]
-figure, axes = plt.subplots(2)
+plt.rcParams.update({"axes.prop_cycle": plt.cycler(color=["#0072B2", "#D55E00"]), "axes.grid": True, "grid.alpha": 0.4})
+figure, axes = plt.subplots(2, layout="tight")
 axes[0].plot(results.time, angle)
-axes[0].set(xlabel="time [s]", ylabel="tracker [rad]")
+axes[0].set(xlabel="time [s]", ylabel="tracker [rad]", title="Attitude about z")
 axes[1].plot(poles.real, poles.imag, "x")
-axes[1].set(xlabel="real [1/s]", ylabel="imaginary [rad/s]", ylim=(-30, 30))
+axes[1].set(xlabel="real [1/s]", ylabel="imaginary [rad/s]", ylim=(-30, 30), title="Poles")
 figure.savefig("satellite.png")
 
 # %% [markdown]

@@ -18,10 +18,12 @@ results = {}
 for name in ("spinup", "spinup-no-kg"):
     results[name] = bough.System(f"spinup/{name}.toml", bodies={"boom.h5": body}).run()
 
-figure, axes = plt.subplots()
+plt.rcParams.update({"axes.prop_cycle": plt.cycler(color=["#0072B2", "#D55E00"]), "axes.grid": True, "grid.alpha": 0.4})
+figure, axes = plt.subplots(layout="tight")
 for name, run in results.items():
-    axes.plot(run.time, run["tip_deflection"][:, 1], label=name)
-axes.set(xlabel="time [s]", ylabel="deflection of the tip [m]", ylim=(-1.2, 0.2))
+    axes.plot(run.time, run["tip_deflection"][:, 1], label={"spinup": "with K_G", "spinup-no-kg": "without K_G"}[name])
+axes.set(xlabel="time [s]", ylabel="deflection of the tip [m]", xlim=(0, 20), ylim=(-1.2, 0.2),
+         title="Spin-up of a boom to 4 rad/s")
 axes.legend()
 figure.savefig("spinup.png")
 

@@ -6,6 +6,7 @@
 
 #include <cholmod.h>
 
+#include "fe/linear/cholmod_view.hpp"
 #include "fe/linear/dissection.hpp"
 #include "fe/linear/memory_need.hpp"
 
@@ -32,17 +33,8 @@ struct Triangle {
     });
   }
   cholmod_sparse as_sparse() {
-    cholmod_sparse matrix{};
-    matrix.nrow = matrix.ncol = start.size() - 1;
-    matrix.nzmax = row.size();
-    matrix.p = start.data();
-    matrix.i = row.data();
-    matrix.x = value.data();
-    matrix.stype = -1;
-    matrix.itype = CHOLMOD_INT;
-    matrix.xtype = CHOLMOD_REAL;
-    matrix.dtype = CHOLMOD_DOUBLE;
-    matrix.sorted = matrix.packed = 1;
+    cholmod_sparse matrix = view_lower(start, row, value.data());
+    matrix.sorted = 1;
     return matrix;
   }
 };

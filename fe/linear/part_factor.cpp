@@ -13,26 +13,10 @@ namespace bough::linear {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-cholmod_sparse PartFactor::as_sparse() {
-  cholmod_sparse matrix{};
-  matrix.nrow = matrix.ncol = start_.size() - 1;
-  matrix.nzmax = row_.size();
-  matrix.p = start_.data();
-  matrix.i = row_.data();
-  matrix.x = value_.data();
-  matrix.stype = -1;  // CHOLMOD factors the lower triangle where it is, the upper one transposed
-  matrix.itype = CHOLMOD_INT;
-  matrix.xtype = CHOLMOD_REAL;
-  matrix.dtype = CHOLMOD_DOUBLE;
-  matrix.packed = 1;
-  return matrix;
-}
-
 void PartFactor::take(const MatrixRows& A, const std::vector<PetscInt>& rows, std::size_t num_own,
                       const VectorXd& delta, double share) {
-  const PetscInt last = *std::max_element(rows.begin(), rows.end());
-  std::vector<int> place(static_cast<std::size_t>(last) + 1, -1);
-  for (std::size_t i = 0; i < rows.size(); ++i) place[static_cast<std::size_t>(rows[i])] = static_cast<int>(i);
+  const std::vector<int> place = number_rows(rows);
+  const auto last = static_cast<PetscInt>(place.size()) - 1;
   start_.assign(1, 0);
   row_.clear();
   value_.clear();
@@ -72,7 +56,7 @@ bool PartFactor::analyse(const MatrixRows& A, PetscInt size, std::vector<PetscIn
     }
   take(A, rows, rows_.size(), delta(between_), 1.0 / num_parts);
   num_between_ = static_cast<Eigen::Index>(between.size());
-  cholmod_sparse matrix = as_sparse();
+  cholmod_sparse matrix = view_lower(start_, row_, value_.data());
   factor_ = cholmod_analyze(&matrix, &common_);
   check_cholmod(common_.status);
   if (!factor_ || !factor_->is_super) return false;
@@ -83,7 +67,7 @@ bool PartFactor::analyse(const MatrixRows& A, PetscInt size, std::vector<PetscIn
 }
 
 bool PartFactor::factor() {
-  cholmod_sparse matrix = as_sparse();
+  cholmod_sparse matrix = view_lower(start_, row_, value_.data());
   cholmod_factorize(&matrix, factor_, &common_);
   check_cholmod(common_.status);
   start_ = std::vector<int>();  // {} would keep the memory

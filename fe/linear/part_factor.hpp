@@ -4,12 +4,8 @@
 /// Internal to linear.
 #include <vector>
 
-// First: the BLAS header needs PETSc's own names.
-#include "fe/linear/petsc.hpp"
-
-#include <cholmod.h>
-
 #include "fe/linear/cholmod_factor.hpp"
+#include "fe/linear/cholmod_view.hpp"
 #include "fe/linear/dissection.hpp"
 #include "fe/linear/supernodes.hpp"
 
@@ -20,12 +16,7 @@ namespace bough::linear {
 class PartFactor {
  public:
   PartFactor() {
-    cholmod_start(&common_);
-    common_.print = 0;
-    common_.nmethods = 1;
-    common_.method[0].ordering = CHOLMOD_NATURAL;
-    common_.postorder = 0;  // the rows between stay last
-    common_.supernodal = CHOLMOD_SUPERNODAL;
+    start_in_order(common_);
     common_.final_ll = 1;
     common_.quick_return_if_not_posdef = 1;
   }
@@ -55,7 +46,6 @@ class PartFactor {
   /// The lower triangle of `rows`, of which the first are the part's own.
   void take(const MatrixRows& A, const std::vector<PetscInt>& rows, std::size_t num_own, const Eigen::VectorXd& delta,
             double share);
-  cholmod_sparse as_sparse();
   /// Keeps the columns of the part alone, packed, and those of the rows between as L_ss_.
   void pack();
 

@@ -37,9 +37,8 @@ ComputationError make_no_memory_for_count() {
 }
 
 bool PartFronts::take(const RowSum& sum, const std::vector<PetscInt>& rows) {
-  const PetscInt last = *std::max_element(rows.begin(), rows.end());
-  std::vector<int> place(static_cast<std::size_t>(last) + 1, -1);
-  for (std::size_t i = 0; i < rows.size(); ++i) place[static_cast<std::size_t>(rows[i])] = static_cast<int>(i);
+  const std::vector<int> place = number_rows(rows);
+  const auto last = static_cast<PetscInt>(place.size()) - 1;
   start_.assign(1, 0);
   row_of_entry_.clear();
   value_.clear();
@@ -63,20 +62,6 @@ bool PartFronts::take(const RowSum& sum, const std::vector<PetscInt>& rows) {
   return is_closed;
 }
 
-cholmod_sparse PartFronts::as_sparse() {
-  cholmod_sparse matrix{};
-  matrix.nrow = matrix.ncol = start_.size() - 1;
-  matrix.nzmax = row_of_entry_.size();
-  matrix.p = start_.data();
-  matrix.i = row_of_entry_.data();
-  matrix.stype = -1;
-  matrix.itype = CHOLMOD_INT;
-  matrix.xtype = CHOLMOD_PATTERN;
-  matrix.dtype = CHOLMOD_DOUBLE;
-  matrix.packed = 1;
-  return matrix;
-}
-
 bool PartFronts::analyse(const RowSum& sum, const std::vector<PetscInt>& own, const std::vector<PetscInt>& between) {
   num_own_ = own.size();
   std::vector<PetscInt> rows;
@@ -84,7 +69,7 @@ bool PartFronts::analyse(const RowSum& sum, const std::vector<PetscInt>& own, co
   for (const int i : calc_postorder({&sum.A, &sum.B}, sum.size, own)) rows.push_back(own[static_cast<std::size_t>(i)]);
   rows.insert(rows.end(), between.begin(), between.end());
   if (!take(sum, rows)) return false;
-  cholmod_sparse matrix = as_sparse();
+  cholmod_sparse matrix = view_lower(start_, row_of_entry_, nullptr);
   factor_ = cholmod_analyze(&matrix, &common_);
   check();
   if (!factor_ || !factor_->is_super) return false;

@@ -14,6 +14,7 @@
 #include <cholmod.h>
 
 #include "base/diagnostic.hpp"
+#include "fe/linear/cholmod_view.hpp"
 #include "fe/linear/dissection.hpp"
 
 namespace bough::linear {
@@ -76,14 +77,7 @@ class FrontElimination {
 /// The rows of one part and those between, which come last and are not eliminated.
 class PartFronts {
  public:
-  PartFronts() {
-    cholmod_start(&common_);
-    common_.print = 0;
-    common_.nmethods = 1;
-    common_.method[0].ordering = CHOLMOD_NATURAL;
-    common_.postorder = 0;
-    common_.supernodal = CHOLMOD_SUPERNODAL;
-  }
+  PartFronts() { start_in_order(common_); }
   PartFronts(const PartFronts&) = delete;
   PartFronts& operator=(const PartFronts&) = delete;
   ~PartFronts() {
@@ -102,7 +96,6 @@ class PartFronts {
   static double square(double x) { return x * x; }
   /// The lower triangle of `rows`. False where the part's own couple to others.
   bool take(const RowSum& sum, const std::vector<PetscInt>& rows);
-  cholmod_sparse as_sparse();
   /// Eliminates the first `num` of the front's rows; -1 as above.
   int eliminate(int num, int num_rows, const int* rows);
   int get_num_columns(int k) const { return std::min(super_[k + 1], static_cast<int>(num_own_)) - super_[k]; }

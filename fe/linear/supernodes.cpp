@@ -179,20 +179,30 @@ std::ptrdiff_t pack_supernodes(const Supernodes& L, const int* value_at, double*
   return to - value;
 }
 
-void solve_lower(const Supernodes& L, Eigen::MatrixXd& Z) {
+namespace {
+
+/// few() for kFewSides right-hand sides, many() for kManySides, which are the rows of Z.
+template <class Few, class Many>
+void solve_by_width(const Eigen::MatrixXd& Z, const Few& few, const Many& many) {
   BOUGH_DEMAND(Z.rows() == kFewSides || Z.rows() == kManySides);
   if (Z.rows() == kFewSides)
-    solve_forward<kFewSides>(L, get_forward_4(), Z.data());
+    few();
   else
-    solve_forward<kManySides>(L, get_forward_8(), Z.data());
+    many();
+}
+
+}  // namespace
+
+void solve_lower(const Supernodes& L, Eigen::MatrixXd& Z) {
+  solve_by_width(
+      Z, [&] { solve_forward<kFewSides>(L, get_forward_4(), Z.data()); },
+      [&] { solve_forward<kManySides>(L, get_forward_8(), Z.data()); });
 }
 
 void solve_lower_transposed(const Supernodes& L, Eigen::MatrixXd& Z) {
-  BOUGH_DEMAND(Z.rows() == kFewSides || Z.rows() == kManySides);
-  if (Z.rows() == kFewSides)
-    solve_backward<kFewSides>(L, get_backward_4(), Z.data());
-  else
-    solve_backward<kManySides>(L, get_backward_8(), Z.data());
+  solve_by_width(
+      Z, [&] { solve_backward<kFewSides>(L, get_backward_4(), Z.data()); },
+      [&] { solve_backward<kManySides>(L, get_backward_8(), Z.data()); });
 }
 
 }  // namespace bough::linear

@@ -32,7 +32,7 @@ struct ElementResults {
 
 /// Elements of one card with the same results.
 struct RecoveryGroup {
-  std::string card;  ///< "CTETRA" and "CTETRA-24" where elements of one card differ in their number of points
+  std::string card;  ///< with the number of the group: ElementGroup::name
   std::vector<std::string> names;
   std::vector<int> elements, id, property;  ///< elements: indices into Model::elements()
 };

@@ -3,11 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <optional>
 
 #include "base/rotation.hpp"
-#include "fe/linear/factor.hpp"
 #include "fe/model/element_loop.hpp"
+#include "fe/statics/nonlinear_tangent.hpp"
 #include "fe/statics/reactions.hpp"
 
 namespace bough::fe {
@@ -17,14 +16,6 @@ namespace {
 using Eigen::Index;
 using Triplets = std::vector<Eigen::Triplet<double>>;
 
-constexpr int kMaxHalvings = 10;
-/// Work of the last correction relative to the strain energy: the correction before it is applied as well, so that the
-/// error left is of the order of its square.
-constexpr double kWorkTolerance = 1e-20;
-/// Limit of that ratio where round-off of stiff parts keeps the corrections from falling.
-constexpr double kStagnation = 1e-10;
-/// Largest angle between a node and its element's frame: far beyond what a linear element can say.
-constexpr double kMaxTurn = 1.5;
 /// Work of the load of a step, relative to what the tangent stiffness at its start gives. On a path that softens
 /// towards a limit point (a parabola) it is 2 at most; a jump to another branch is far above where the step is small.
 constexpr double kMaxSoftening = 2.5;
@@ -40,37 +31,6 @@ bool is_stiff(const Element& element) {
   element.add_stiffness(1, K);
   return !K.isZero(0);
 }
-
-/// Factor of a tangent stiffness; it is stable where the determinant (of the symmetric one: every pivot) is positive.
-class TangentFactor {
- public:
-  TangentFactor(const Eigen::SparseMatrix<double, Eigen::RowMajor>& K, bool is_symmetric) {
-    if (!is_symmetric) {
-      lu_.compute(Eigen::SparseMatrix<double>(K));
-      is_made_ = is_lu_ = lu_.info() == Eigen::Success;
-      is_stable_ = is_made_ && lu_.signDeterminant() > 0;
-      return;
-    }
-    const linear::SymmetricMatrix matrix(K);
-    symmetric_ = linear::SymmetricFactor::try_definite(matrix);
-    is_made_ = is_stable_ = symmetric_.has_value();
-    if (is_made_) return;
-    try {
-      symmetric_.emplace(matrix, false);
-      is_made_ = !symmetric_->is_singular();
-    } catch (const ComputationError&) {  // a step that is too long
-    }
-  }
-
-  bool is_made() const { return is_made_; }
-  bool is_stable() const { return is_stable_; }
-  VectorXd solve(const VectorXd& r) const { return is_lu_ ? VectorXd(lu_.solve(r)) : VectorXd(symmetric_->solve(r)); }
-
- private:
-  std::optional<linear::SymmetricFactor> symmetric_;
-  Eigen::SparseLU<Eigen::SparseMatrix<double>> lu_;
-  bool is_made_ = false, is_stable_ = false, is_lu_ = false;
-};
 
 /// Mass of an element on the six dofs of one grid, and its arm; 0 where it is on the grid.
 double find_offset_mass(const Element& element, MassKind kind, Vector3d& arm) {
@@ -93,12 +53,6 @@ std::string list_ids(const std::vector<int>& ids) {
 }
 
 }  // namespace
-
-/// Forces and stiffness at a state, on the g-set without the grids at rigid arms, which are those of their parents.
-struct NonlinearStatics::Tangent {
-  Eigen::SparseMatrix<double, Eigen::RowMajor> K;
-  VectorXd residual;  ///< f - F, at the grids where they act
-};
 
 NonlinearStatics::NonlinearStatics(const Model& model, const records::Deck& deck) : model_(model), arms_(model) {
   Diagnostics diagnostics;
@@ -522,6 +476,10 @@ void NonlinearStatics::go_to(const StaticLoad& to, const FollowerLoads& moving, 
   last_rate_ = 0;
   is_symmetric_ = start.moving.empty() && load.moving.empty() && !has_fixed_moments(start) && !has_fixed_moments(load);
   set_loads(start, load, 0);
+  if (options.has_arc_length && model_.T().cols() > 0) {
+    follow_arc(load, options, diagnostics);
+    return report_turned_ties(diagnostics);
+  }
   while (reached < 1) {
     const DeformedState before = state_;
     const double next = reached + step > 1 - 1e-12 ? 1 : reached + step;
@@ -546,8 +504,8 @@ void NonlinearStatics::go_to(const StaticLoad& to, const FollowerLoads& moving, 
       std::snprintf(share, sizeof share, "%.4g", 100 * reached);
       throw ComputationError("fe.no-equilibrium", {},
                              "no stable static equilibrium is found beyond " + std::string(share) + " % of the load",
-                             "look for buckling or a snap-through there: lower the load, enforce displacements, or "
-                             "give more --increments");
+                             "look for buckling or a snap-through there: lower the load, give --arc-length to pass "
+                             "it, enforce displacements, or give more --increments");
     }
   }
   report_turned_ties(diagnostics);

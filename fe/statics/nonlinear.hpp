@@ -16,6 +16,8 @@ namespace bough::fe {
 struct NonlinearOptions {
   int num_increments = 10;  ///< equal steps of a load; a step that finds no equilibrium is halved, ten times at most
   int max_iterations = 25;  ///< of Newton's method in a step
+  /// Follows the path through limit points, unstable states included, to where the load is reached first.
+  bool has_arc_length = false;
 };
 
 /// Places of all nodes. Start: undeformed.
@@ -42,7 +44,8 @@ class NonlinearStatics {
   /// positive definite, or of positive determinant where moments about fixed axes make it unsymmetric. Throws
   /// ComputationError fe.no-equilibrium with the share of the load that was reached; the state is that of the last
   /// equilibrium then.
-  /// `moving`: the part of `to` that follows the grids.
+  /// `moving`: the part of `to` that follows the grids. With has_arc_length the states between are unstable where the
+  /// load falls; fe.limit-point and fe.unstable-equilibrium report them.
   void go_to(const StaticLoad& to, const FollowerLoads& moving, const NonlinearOptions& options,
              Diagnostics& diagnostics);
 
@@ -76,6 +79,8 @@ class NonlinearStatics {
   bool find_equilibrium(const VectorXd& F, const VectorXd& dF, const VectorXd& enforced, double share,
                         int max_iterations);
   VectorXd make_displacement() const;
+  struct Arc;
+  void follow_arc(const PathLoad& to, const NonlinearOptions& options, Diagnostics& diagnostics);
 
   const Model& model_;
   RigidArms arms_;

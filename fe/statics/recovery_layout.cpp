@@ -1,9 +1,9 @@
-#include <map>
 #include <utility>
 
 #include "fe/cards/element_properties.hpp"
 #include "fe/elements/stress_recovery.hpp"
 #include "fe/elements/stress_state.hpp"
+#include "fe/statics/element_groups.hpp"
 #include "fe/statics/element_recovery.hpp"
 
 namespace bough::fe {
@@ -30,48 +30,25 @@ void fill_ids(const Model& model, const std::unordered_map<int, int>& properties
   }
 }
 
-/// Elements of one card may differ in their number of points: "CTETRA" and "CTETRA-24".
-Groups group_by_forces(const Model& model) {
-  std::map<std::pair<std::string, int>, std::vector<int>> found;
-  const auto& elements = model.elements();
-  for (std::size_t e = 0; e < elements.size(); ++e)
-    if (const PrintedForces* forces = elements[e]->printed_forces())
-      found[{elements[e]->card(), static_cast<int>(forces->printed_force_names().size())}].push_back(
-          static_cast<int>(e));
-  Groups groups;
-  for (auto& [key, members] : found) {
-    const bool is_more = !groups.empty() && groups.back().card == key.first;
-    auto names = elements[static_cast<std::size_t>(members.front())]->printed_forces()->printed_force_names();
-    groups.push_back({is_more ? key.first + "-" + std::to_string(key.second) : key.first,
-                      std::move(names),
-                      std::move(members),
-                      {},
-                      {}});
-  }
-  return groups;
-}
-
 std::vector<StressPoint> list_points(const Element& element, bool of_strain) {
   const StressRecovery* recovery = element.stress_recovery();
   if (!recovery) return {};
   return of_strain ? recovery->strain_points() : recovery->stress_points();
 }
 
-Groups group_by_points(const Model& model, bool of_strain) {
-  std::map<std::pair<std::string, std::vector<std::string>>, std::vector<int>> found;
-  const auto& elements = model.elements();
-  for (std::size_t e = 0; e < elements.size(); ++e)
-    if (const auto points = list_points(*elements[e], of_strain); !points.empty())
-      found[{elements[e]->card(), of_strain ? list_strain_result_names(points) : list_result_names(points)}].push_back(
-          static_cast<int>(e));
+Groups lay_out_groups(std::vector<ElementGroup> found) {
   Groups groups;
-  std::map<std::string, int> count;
-  for (auto& [key, members] : found) {
-    const int number = ++count[key.first];
-    groups.push_back(
-        {number == 1 ? key.first : key.first + "-" + std::to_string(number), key.second, std::move(members), {}, {}});
-  }
+  for (auto& group : found)
+    groups.push_back({std::move(group.name), std::move(group.components), std::move(group.elements), {}, {}});
   return groups;
+}
+
+Groups group_by_points(const Model& model, bool of_strain) {
+  return lay_out_groups(group_elements(model, [of_strain](const Element& element, int) {
+    const auto points = list_points(element, of_strain);
+    if (points.empty()) return std::vector<std::string>{};
+    return of_strain ? list_strain_result_names(points) : list_result_names(points);
+  }));
 }
 
 }  // namespace
@@ -83,7 +60,9 @@ RecoveryLayout::RecoveryLayout(const Model& model, const records::Deck& deck, co
     auto places = list_places(groups, model.elements().size());
     return Table{true, std::move(groups), std::move(places)};
   };
-  if (fields.forces) forces = lay_out(group_by_forces(model));
+  if (fields.forces)
+    forces = lay_out(lay_out_groups(
+        group_elements(model, [](const Element& element, int) { return list_force_components(element); })));
   if (fields.stresses) stresses = lay_out(group_by_points(model, false));
   if (fields.strains) strains = lay_out(group_by_points(model, true));
 }

@@ -2,6 +2,8 @@
 
 #include <charconv>
 
+#include "formats/records/group_names.hpp"
+
 namespace bough::exports {
 
 std::vector<RandomOutput> list_random_outputs(const records::RandomResponse& response) {
@@ -18,7 +20,7 @@ std::vector<RandomOutput> list_random_outputs(const records::RandomResponse& res
         output.id = curves.dofs[at].first;
         output.component = std::to_string(curves.dofs[at].second);
       } else {
-        output.quantity = curves.card + (curves.quantity == "stress" ? ":stress" : "");
+        output.quantity = records::get_card_of_group(curves.card) + (curves.quantity == "stress" ? ":stress" : "");
         output.id = curves.ids[at / num];
         output.component = curves.components[at % num];
       }

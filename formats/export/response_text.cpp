@@ -7,7 +7,9 @@
 #include <sstream>
 #include <tuple>
 
+#include "base/phase.hpp"
 #include "formats/export/random_text.hpp"
+#include "formats/records/group_names.hpp"
 
 namespace bough::exports {
 namespace {
@@ -75,9 +77,8 @@ void add_block(const ResponseSubcase& s, const Block& block, const Eigen::Matrix
       values.push_back(!is_over_time && block.is_phase ? to_polar(real(i, c), imag(i, c)).first : real(i, c));
     while (block.kind != ' ' && values.size() % 3 != 0) values.push_back(0);
     for (Eigen::Index c = 0; c < imag.cols(); ++c) {
-      double phase = to_polar(real(i, c), imag(i, c)).second;
-      if (phase < 0) phase += 360;
-      values.push_back(block.is_phase ? phase : imag(i, c));
+      const std::complex<double> z(real(i, c), imag(i, c));
+      values.push_back(block.is_phase ? calc_phase_degrees(z, kListedPhase) : z.imag());
     }
     while (block.kind != ' ' && values.size() % 3 != 0) values.push_back(0);
     add_values(text, values, lines);
@@ -170,6 +171,15 @@ std::pair<double, double> to_polar(double real, double imag) {
   return {std::hypot(real, imag), std::atan2(imag, real) * 180 / std::numbers::pi};
 }
 
+CurvePeak find_peak(const NamedCurve& curve, const Eigen::VectorXd& x) {
+  CurvePeak peak{&curve, -1, 0, 0};
+  for (Eigen::Index i = 0; i < x.size(); ++i) {
+    const auto [size, phase] = to_polar(curve.real(i), curve.imag.size() > 0 ? curve.imag(i) : 0);
+    if (size > peak.size) peak = {&curve, size, x(i), phase};
+  }
+  return peak;
+}
+
 std::vector<NamedCurve> list_curves(const ResponseSubcase& s) {
   std::vector<NamedCurve> all;
   const auto add = [&](const auto& curves, const std::string& quantity, int id, const std::string& component,
@@ -191,8 +201,8 @@ std::vector<NamedCurve> list_curves(const ResponseSubcase& s) {
   for (const auto& curves : s.elements)
     for (std::size_t e = 0; e < curves.ids.size(); ++e)
       for (std::size_t c = 0; c < curves.components.size(); ++c)
-        add(curves, curves.card + (curves.is_stress ? ":stress" : ""), curves.ids[e], curves.components[c],
-            static_cast<Eigen::Index>(e * curves.components.size() + c));
+        add(curves, records::get_card_of_group(curves.card) + (curves.is_stress ? ":stress" : ""), curves.ids[e],
+            curves.components[c], static_cast<Eigen::Index>(e * curves.components.size() + c));
   return all;
 }
 
@@ -259,7 +269,8 @@ std::string make_punch_text(const records::DeckResponse& response) {
       const auto count = static_cast<Eigen::Index>(curves.components.size());
       for (std::size_t e = 0; e < curves.ids.size(); ++e) {
         const auto at = static_cast<Eigen::Index>(e) * count;
-        const std::string title = (curves.is_stress ? "ELEMENT STRESSES OF " : "ELEMENT FORCES OF ") + curves.card;
+        const std::string title = (curves.is_stress ? "ELEMENT STRESSES OF " : "ELEMENT FORCES OF ") +
+                                  records::get_card_of_group(curves.card);
         add_block(s, {title.c_str(), curves.is_phase, "ELEMENT ID", curves.ids[e], ' '},
                   curves.real.middleCols(at, count),
                   curves.imag.size() > 0 ? Eigen::MatrixXd(curves.imag.middleCols(at, count)) : curves.imag, lines);

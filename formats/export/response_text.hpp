@@ -32,6 +32,14 @@ std::vector<CsvColumn> make_response_columns(const records::ResponseSubcase& sub
 /// Magnitude and phase in degrees.
 std::pair<double, double> to_polar(double real, double imag);
 
+/// Largest magnitude of a curve, which must outlive it, its frequency or time, and its phase in degrees.
+struct CurvePeak {
+  const NamedCurve* curve = nullptr;
+  double size = 0, at = 0, phase_deg = 0;
+};
+/// \param x  frequencies or times, one per value; empty: size is -1
+CurvePeak find_peak(const NamedCurve& curve, const Eigen::VectorXd& x);
+
 /// Nastran's punch file, by point and by element (SORT2), 80 columns: what the deck asks to be punched, and
 /// everything where it asks for nothing to be.
 std::string make_punch_text(const records::DeckResponse& response);

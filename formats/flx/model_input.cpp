@@ -166,6 +166,26 @@ class ModelInputReader {
     return false;
   }
 
+  /// A list of numbers in ascending order: its item, what it numbers, and the numbers there are.
+  struct Listed {
+    Item item;
+    const char *noun, *range;
+    int max;
+  };
+  struct ListErrors {
+    const char *range_id, *range_advice, *order_id, *order_advice;
+  };
+  void check_ascending(const Listed& list, int entry, int number, int last, const ListErrors& errors) {
+    if (number < 1 || number > list.max)
+      error(errors.range_id, list.item,
+            fmt::format("entry {} is {} {}, {} 1 to {}", entry, list.noun, number, list.range, list.max),
+            errors.range_advice);
+    else if (number <= last)
+      error(errors.order_id, list.item,
+            fmt::format("entry {} is {} {} after {} {}", entry, list.noun, number, list.noun, last),
+            errors.order_advice);
+  }
+
   bool read_modes() {
     int count = 0, flag = 0;
     if (!read_count(NumModes, model_.num_modes_given, "flx.too-many-modes", "the modes given are", count)) return false;
@@ -179,14 +199,9 @@ class ModelInputReader {
         if (!in_.read(fmt::format("{}, entry {} of {}", name(Selection), i, count), one)) return false;
         mode = one[0];
       }
-      if (mode < 1 || mode > model_.num_modes_given) {
-        error("flx.bad-selection", Selection,
-              fmt::format("entry {} is mode {}, the modes given are 1 to {}", i, mode, model_.num_modes_given),
-              "choose among the modes that the first line counts");
-      } else if (mode <= last) {
-        error("flx.bad-selection", Selection, fmt::format("entry {} is mode {} after mode {}", i, mode, last),
-              "list each mode once, in ascending order");
-      }
+      check_ascending({Selection, "mode", "the modes given are", model_.num_modes_given}, i, mode, last,
+                      {"flx.bad-selection", "choose among the modes that the first line counts", "flx.bad-selection",
+                       "list each mode once, in ascending order"});
       last = mode;
       model_.modes.push_back(mode);
     }
@@ -200,14 +215,9 @@ class ModelInputReader {
       std::vector<int> one(1);
       if (!in_.read(fmt::format("{}, entry {} of {}", name(Nodes), i, count), one)) return false;
       const int node = one[0];
-      if (node < 1 || node > model_.num_nodes) {
-        error("flx.unknown-node", Nodes,
-              fmt::format("entry {} is node {}, the model has 1 to {}", i, node, model_.num_nodes),
-              "number the nodes in the order of their coordinates");
-      } else if (node <= last) {
-        error("flx.node-order", Nodes, fmt::format("entry {} is node {} after node {}", i, node, last),
-              "list each node once, in ascending order");
-      }
+      check_ascending({Nodes, "node", "the model has", model_.num_nodes}, i, node, last,
+                      {"flx.unknown-node", "number the nodes in the order of their coordinates", "flx.node-order",
+                       "list each node once, in ascending order"});
       last = node;
       model_.nodes.push_back(node);
     }

@@ -77,6 +77,14 @@ constexpr const char* kLogCategories =
     "    <Category name=\"logStatusError\" description=\"calls that return Error\"/>\n"
     "  </LogCategories>\n";
 
+/// The start tag up to the attributes that FMI 2 and 3 do not share.
+std::string begin_description(const ModelDescription& m, const char* version, const char* token_name) {
+  return "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<fmiModelDescription" + attribute("fmiVersion", version) +
+         attribute("modelName", m.model_name) + attribute(token_name, m.token) +
+         optional_attribute("description", m.description) + attribute("generationTool", m.tool) +
+         attribute("variableNamingConvention", "flat");
+}
+
 }  // namespace
 
 std::string make_identifier(const std::string& text) {
@@ -90,10 +98,7 @@ std::string format_fmi2(const ModelDescription& m) {
   const std::string common = attribute("modelIdentifier", m.identifier) + attribute("canGetAndSetFMUstate", "true") +
                              attribute("canSerializeFMUstate", "true") +
                              attribute("providesDirectionalDerivative", "true");
-  std::string text = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<fmiModelDescription" +
-                     attribute("fmiVersion", "2.0") + attribute("modelName", m.model_name) +
-                     attribute("guid", m.token) + optional_attribute("description", m.description) +
-                     attribute("generationTool", m.tool) + attribute("variableNamingConvention", "flat") +
+  std::string text = begin_description(m, "2.0", "guid") +
                      attribute("numberOfEventIndicators", std::to_string(m.event_indicators.size())) + ">\n" +
                      "  <ModelExchange" + common + "/>\n  <CoSimulation" + common +
                      attribute("canHandleVariableCommunicationStepSize", "true") + "/>\n" + make_units(m) +
@@ -153,12 +158,9 @@ std::string format_fmi3(const ModelDescription& m) {
   const std::string common = attribute("modelIdentifier", m.identifier) + attribute("canGetAndSetFMUState", "true") +
                              attribute("canSerializeFMUState", "true") +
                              attribute("providesDirectionalDerivatives", "true");
-  std::string text = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<fmiModelDescription" +
-                     attribute("fmiVersion", "3.0") + attribute("modelName", m.model_name) +
-                     attribute("instantiationToken", m.token) + optional_attribute("description", m.description) +
-                     attribute("generationTool", m.tool) + attribute("variableNamingConvention", "flat") +
-                     ">\n  <ModelExchange" + common + attribute("needsCompletedIntegratorStep", "true") +
-                     "/>\n  <CoSimulation" + common + attribute("canHandleVariableCommunicationStepSize", "true") +
+  std::string text = begin_description(m, "3.0", "instantiationToken") + ">\n  <ModelExchange" + common +
+                     attribute("needsCompletedIntegratorStep", "true") + "/>\n  <CoSimulation" + common +
+                     attribute("canHandleVariableCommunicationStepSize", "true") +
                      attribute("mightReturnEarlyFromDoStep", "true") + attribute("hasEventMode", "true") + "/>\n" +
                      make_units(m) + kLogCategories + make_experiment(m) + "  <ModelVariables>\n";
   Names names;

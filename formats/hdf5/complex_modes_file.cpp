@@ -1,5 +1,6 @@
 #include "formats/hdf5/complex_modes_file.hpp"
 
+#include "formats/hdf5/detail/columns.hpp"
 #include "formats/hdf5/detail/reader.hpp"
 #include "formats/hdf5/detail/writer.hpp"
 
@@ -27,20 +28,13 @@ void write_parts(FileWriter& file, const std::string& name, const std::vector<Ma
 constexpr const char* kPoints[] = {"/critical", "/thresholds"};
 
 void write_rotors(FileWriter& file, const records::RotorSpeeds& r) {
-  std::vector<int> id, grids, elements;
-  Eigen::VectorXd mass(static_cast<Eigen::Index>(r.rotors.size())), inertia = mass;
-  for (const auto& rotor : r.rotors) {
-    mass[static_cast<Eigen::Index>(id.size())] = rotor.mass;
-    inertia[static_cast<Eigen::Index>(id.size())] = rotor.polar_inertia;
-    id.push_back(rotor.id);
-    grids.push_back(rotor.num_grids);
-    elements.push_back(rotor.num_elements);
-  }
-  file.write_integers("/rotors/id", id, {"ids of the rotors", "1"});
-  file.write_integers("/rotors/num_grids", grids, {"grids on the axis of each", "1"});
-  file.write_integers("/rotors/num_elements", elements, {"elements of each", "1"});
-  file.write_vector("/rotors/mass", mass, {"mass of each", "M"});
-  file.write_vector("/rotors/polar_inertia", inertia, {"moment of inertia of each about its axis", "M L^2"});
+  using Rotor = std::decay_t<decltype(r.rotors.front())>;
+  file.write_integers("/rotors/id", collect(r.rotors, &Rotor::id), {"ids of the rotors", "1"});
+  file.write_integers("/rotors/num_grids", collect(r.rotors, &Rotor::num_grids), {"grids on the axis of each", "1"});
+  file.write_integers("/rotors/num_elements", collect(r.rotors, &Rotor::num_elements), {"elements of each", "1"});
+  file.write_vector("/rotors/mass", to_vector(collect(r.rotors, &Rotor::mass)), {"mass of each", "M"});
+  file.write_vector("/rotors/polar_inertia", to_vector(collect(r.rotors, &Rotor::polar_inertia)),
+                    {"moment of inertia of each about its axis", "M L^2"});
   file.write_attribute("/rotors", "reference", r.reference);
   file.write_attribute("/rotors", "synchronous", r.is_synchronous ? 1 : 0);
   if (const auto& s = r.sweep; s.value.size() > 0) {
@@ -65,11 +59,15 @@ void write_rotors(FileWriter& file, const records::RotorSpeeds& r) {
     }
     file.write_integers(group + "/branch", branch,
                         {is_critical ? "column of /campbell, or mode of synchronous analyses, from 0"
-                                     : "column of /campbell that is unstable above, from 0",
+                                     : "column of /campbell that becomes unstable or stable, from 0",
                          "1"});
     file.write_vector(group + "/speed", values.col(0), {"of the reference rotor, radians per unit of time", "1/T"});
     file.write_vector(group + "/frequency_hz", values.col(1), {"of the motion there", "1/T"});
     file.write_vector(group + "/whirl", values.col(2), {"as /campbell/whirl", "1"});
+    if (is_critical) continue;
+    std::vector<int> onset;
+    for (const auto& point : points) onset.push_back(point.is_onset ? 1 : 0);
+    file.write_integers(group + "/onset", onset, {"1: unstable above the speed, 0: below it", "1"});
   }
 }
 
@@ -107,10 +105,12 @@ records::RotorSpeeds read_rotors(FileReader& file) {
     const auto count = static_cast<long>(branch.size());
     const auto speed = file.read_vector(group + "/speed", count), hz = file.read_vector(group + "/frequency_hz", count),
                whirl = file.read_vector(group + "/whirl", count);
+    std::vector<int> onset(static_cast<std::size_t>(count), 1);
+    if (!is_critical && file.has(group + "/onset")) onset = file.read_integers(group + "/onset", count);
     file.throw_if_errors();
     for (std::size_t k = 0; k < branch.size(); ++k) {
       const auto i = static_cast<Eigen::Index>(k);
-      (is_critical ? r.critical : r.thresholds).push_back({branch[k], speed[i], hz[i], whirl[i]});
+      (is_critical ? r.critical : r.thresholds).push_back({branch[k], speed[i], hz[i], whirl[i], onset[k] != 0});
     }
   }
   return r;

@@ -1,5 +1,6 @@
 #include "formats/hdf5/linear_file.hpp"
 
+#include "formats/hdf5/detail/columns.hpp"
 #include "formats/hdf5/detail/reader.hpp"
 #include "formats/hdf5/detail/signals.hpp"
 #include "formats/hdf5/detail/unit_attributes.hpp"
@@ -7,18 +8,6 @@
 
 namespace bough::hdf5 {
 namespace {
-
-/// One member of all records.
-template <class Record, class Member>
-std::vector<Member> collect(const std::vector<Record>& records, Member Record::*member) {
-  std::vector<Member> values;
-  for (const auto& record : records) values.push_back(record.*member);
-  return values;
-}
-
-Eigen::VectorXd to_vector(const std::vector<double>& values) {
-  return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
-}
 
 constexpr const char* kFormat = "bough-linear";
 using records::LinearModel;
@@ -40,12 +29,12 @@ void write_poles(FileWriter& file, const LinearModel& model) {
 
 void write_aliased(FileWriter& file, const std::vector<records::AliasedMode>& aliased) {
   using records::AliasedMode;
-  const auto frequency = to_vector(collect(aliased, &AliasedMode::frequency_hz));
-  const auto appears_at = to_vector(collect(aliased, &AliasedMode::appears_at_hz));
   file.write_strings("/aliased/mode", collect(aliased, &AliasedMode::mode),
                      {"coordinate that takes part most in a mode above the Nyquist frequency", "1"});
-  file.write_vector("/aliased/frequency_hz", frequency, {"of the continuous motion, |Im| / 2 pi", "1/T"});
-  file.write_vector("/aliased/appears_at_hz", appears_at, {"of its pole ln z / sample_time", "1/T"});
+  file.write_vector("/aliased/frequency_hz", to_vector(collect(aliased, &AliasedMode::frequency_hz)),
+                    {"of the continuous motion, |Im| / 2 pi", "1/T"});
+  file.write_vector("/aliased/appears_at_hz", to_vector(collect(aliased, &AliasedMode::appears_at_hz)),
+                    {"of its pole ln z / sample_time", "1/T"});
 }
 
 void write_multipliers(FileWriter& file, const records::Multipliers& m) {

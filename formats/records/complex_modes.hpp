@@ -13,19 +13,20 @@ struct RotorSpeeds {
     int id = 0, num_grids = 0, num_elements = 0;
     double mass = 0, polar_inertia = 0;  ///< [M], [M L²] about the axis
   };
-  /// A speed at which Im λ is the speed, or Re λ changes its sign.
+  /// A speed at which Im λ is the magnitude of the speed, or Re λ changes its sign.
   struct Point {
     int branch = 0;           ///< column of the sweep
     double speed = 0;         ///< [1/T] of the reference rotor
     double frequency_hz = 0;  ///< [1/T] Im λ / 2π
     double whirl = 0;
+    bool is_onset = true;  ///< of thresholds: the mode is unstable above the speed; false: below it
   };
   int reference = 0;            ///< rotor id; 0: the speeds of ROTORD
   bool is_synchronous = false;  ///< rotors turn at the frequency of each mode
   std::vector<Rotor> rotors;
   LinearSweep sweep;              ///< without models; columns with Im λ > 0; empty for synchronous analyses
   std::vector<Point> critical;    ///< ascending speed
-  std::vector<Point> thresholds;  ///< ascending speed; a mode is unstable above
+  std::vector<Point> thresholds;  ///< ascending speed; a mode becomes unstable or stable
 };
 
 struct ComplexModesResult {

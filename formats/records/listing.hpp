@@ -59,11 +59,15 @@ struct ListedGridForce {
 };
 
 /// Everything of one subcase, mode, frequency or time.
-struct ListedStep {
-  enum class Kind { Static, Mode, Frequency, Time };
-  Kind kind = Kind::Static;
+/// The subcase of a block and its three lines of text.
+struct ListedHeading {
   int subcase = 0;  ///< 1 for a deck without SUBCASE
   std::string title, subtitle, label;
+};
+
+struct ListedStep : ListedHeading {
+  enum class Kind { Static, Mode, Frequency, Time };
+  Kind kind = Kind::Static;
   int load_set = 0;
   int mode = 0;
   double eigenvalue = 0, cycles = 0;
@@ -74,9 +78,7 @@ struct ListedStep {
   std::vector<ListedGridForce> grid_forces;  ///< by grid in ascending order
 };
 
-struct ListedRoots {
-  int subcase = 0;
-  std::string title, subtitle, label;
+struct ListedRoots : ListedHeading {
   Eigen::VectorXd eigenvalue, mass, stiffness;
   int num_residual = 0;  ///< the last ones: residual vectors
 };

@@ -135,12 +135,8 @@ records::DisturbanceSource read_source(const Fields& table, const std::string& p
 
 records::BudgetSpec read_budget(const std::string& path, Diagnostics& diagnostics) {
   records::BudgetSpec spec;
-  std::string text;
   Value root;
-  if (!read_text(path, text, diagnostics) || !parse_toml(text, path, root, diagnostics)) return spec;
-  const int errors = diagnostics.num_errors();
-  check_schema(root, get_budget_schema(), path, diagnostics);
-  if (diagnostics.num_errors() > errors) return spec;
+  if (!read_checked(path, get_budget_schema(), root, diagnostics)) return spec;
   const Fields fields(root, path);
   spec.exposures = fields.get_numbers("exposure");
   spec.interval = fields.get_number("interval", 0);

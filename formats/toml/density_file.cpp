@@ -75,14 +75,18 @@ records::InputDensity read_density(const Fields& table, const std::string& path,
   return term;
 }
 
+bool read_checked(const std::string& path, const char* schema_text, Value& root, Diagnostics& diagnostics) {
+  std::string text;
+  if (!read_text(path, text, diagnostics) || !parse_toml(text, path, root, diagnostics)) return false;
+  const int errors = diagnostics.num_errors();
+  check_schema(root, schema_text, path, diagnostics);
+  return diagnostics.num_errors() == errors;
+}
+
 std::vector<records::InputDensity> read_input_densities(const std::string& path, Diagnostics& diagnostics) {
   std::vector<records::InputDensity> terms;
-  std::string text;
   Value root;
-  if (!read_text(path, text, diagnostics) || !parse_toml(text, path, root, diagnostics)) return terms;
-  const int errors = diagnostics.num_errors();
-  check_schema(root, get_psd_schema(), path, diagnostics);
-  if (diagnostics.num_errors() > errors) return terms;
+  if (!read_checked(path, get_psd_schema(), root, diagnostics)) return terms;
   for (const Fields& table : Fields(root, path).get_tables("psd"))
     terms.push_back(read_density(table, path, diagnostics));
   return terms;

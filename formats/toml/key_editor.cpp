@@ -5,6 +5,7 @@
 
 #include <toml++/toml.h>
 
+#include "base/quoted_text.hpp"
 #include "formats/toml/detail/parameters.hpp"
 #include "formats/toml/detail/schema.hpp"
 #include "formats/toml/detail/source_text.hpp"
@@ -58,14 +59,7 @@ void collect_files(const std::string& text, const toml::table& table, const std:
 
 }  // namespace
 
-std::string quote_text(const std::string& text) {
-  std::string quoted = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') quoted += '\\';
-    quoted += c;
-  }
-  return quoted + '"';
-}
+std::string quote_text(const std::string& text) { return quote_with('"', text); }
 
 void check_text(const std::string& text, const std::string& file, Diagnostics& diagnostics) {
   Value root;

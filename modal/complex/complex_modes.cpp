@@ -316,12 +316,17 @@ void fill_values(const ComplexPairs& pairs, records::ComplexModesResult& result)
   result.is_complete = pairs.is_dense;
 }
 
+/// Spin rate of a rotor [1/T], at the speed of a mode.
+using SpinRate = std::function<double(std::size_t rotor, Index mode)>;
+
 /// Largest orbit across the axis of each mode, of translations (first = 0) or of rotations (first = 3) of the grids of
 /// the rotors: its size |u_x|² + |u_y|² and its whirl, (|forward|² - |backward|²) over the sum, from u_x ∓ i u_y.
-void find_orbits(const fe::Model& model, const std::vector<fe::Rotor>& rotors, const MatrixXcd& Phi, int first,
-                 VectorXd& largest, VectorXd& whirl) {
+/// Forward is the direction of the spin, against the axis at a negative rate, and along it at rest.
+void find_orbits(const fe::Model& model, const std::vector<fe::Rotor>& rotors, const SpinRate& rate,
+                 const MatrixXcd& Phi, int first, VectorXd& largest, VectorXd& whirl) {
   largest = whirl = VectorXd::Zero(Phi.cols());
-  for (const auto& rotor : rotors) {
+  for (std::size_t k = 0; k < rotors.size(); ++k) {
+    const auto& rotor = rotors[k];
     const Eigen::Vector3d x = rotor.axis.unitOrthogonal(), y = rotor.axis.cross(x);
     for (const int node : rotor.nodes) {
       const auto u = Phi.middleRows(model.node(node).first_gdof + first, 3);
@@ -330,7 +335,7 @@ void find_orbits(const fe::Model& model, const std::vector<fe::Rotor>& rotors, c
         const double size = std::norm(u_x(j)) + std::norm(u_y(j));
         if (!(size > largest(j))) continue;
         largest(j) = size;
-        whirl(j) = -2 * (std::conj(u_x(j)) * u_y(j)).imag() / size;
+        whirl(j) = (rate(k, j) < 0 ? 2 : -2) * (std::conj(u_x(j)) * u_y(j)).imag() / size;
       }
     }
   }
@@ -338,12 +343,13 @@ void find_orbits(const fe::Model& model, const std::vector<fe::Rotor>& rotors, c
 
 /// Whirl of each mode; empty without rotors. Rotations count where translations are round-off, and 0 is of modes
 /// without both: axial motion and torsion.
-VectorXd calc_whirl(const fe::Model& model, const std::vector<fe::Rotor>& rotors, const MatrixXcd& Phi) {
+VectorXd calc_whirl(const fe::Model& model, const std::vector<fe::Rotor>& rotors, const SpinRate& rate,
+                    const MatrixXcd& Phi) {
   if (rotors.empty()) return {};
   const VectorXd all = Phi.cwiseAbs2().colwise().maxCoeff();
   VectorXd largest, whirl, tilt, of_tilt;
-  find_orbits(model, rotors, Phi, 0, largest, whirl);
-  find_orbits(model, rotors, Phi, 3, tilt, of_tilt);
+  find_orbits(model, rotors, rate, Phi, 0, largest, whirl);
+  find_orbits(model, rotors, rate, Phi, 3, tilt, of_tilt);
   for (Index j = 0; j < Phi.cols(); ++j)
     if (!(largest(j) > kNoOrbit * all(j))) whirl(j) = tilt(j) > kNoOrbit * all(j) ? of_tilt(j) : 0;
   return whirl;
@@ -426,6 +432,15 @@ struct ComplexModesSolver::Prepared {
     return builder.build();
   }
 
+  /// Whirl of modes at a speed of the reference rotor, or at the speed Im λ; empty without rotors.
+  VectorXd calc_whirl(std::optional<double> speed, const Eigen::VectorXcd& lambda, const MatrixXcd& Phi) const {
+    if (!rotor_terms) return {};
+    const auto rate = [&](std::size_t rotor, Index j) {
+      return rotor_case->relations[rotor].evaluate(speed.value_or(lambda(j).imag()));
+    };
+    return complex_modes::calc_whirl(model, rotor_terms->rotors(), rate, Phi);
+  }
+
   ComplexPairs find_pairs(const QuadraticPencil& pencil, const records::ComplexMethod& by,
                           const ComplexModesOptions& with) const {
     try {
@@ -506,7 +521,7 @@ SpeedModes ComplexModesSolver::solve_at(double speed, int num_modes, std::option
     const Eigen::FullPivLU<MatrixXcd> products(rows * modes.right.middleCols(j, next - j));
     if (products.isInvertible()) rows = products.solve(rows).eval();
   }
-  modes.whirl = calc_whirl(p.model, rotors(), p.problem.recover(X));
+  modes.whirl = p.calc_whirl(speed, modes.lambda, p.problem.recover(X));
   return modes;
 }
 
@@ -523,7 +538,7 @@ records::ComplexModesResult ComplexModesSolver::solve(std::optional<double> spee
   result.num_unknowns = static_cast<int>(pencil.size());
   fill_values(pairs, result);
   MatrixXcd Phi = problem.recover(pairs.X);
-  result.whirl = calc_whirl(model, rotors(), Phi);
+  result.whirl = prepared_->calc_whirl(speed, pairs.lambda, Phi);
   if (!options.has_shapes) return result;
   std::vector<const fe::Node*> grids;
   for (const auto& node : model.nodes()) {

@@ -5,6 +5,7 @@
 #include <functional>
 #include <map>
 
+#include "formats/records/element_cards.hpp"
 #include "formats/records/params.hpp"
 
 namespace bough::modal::rotors {
@@ -47,6 +48,7 @@ class Chooser {
     else
       choose_rotord(d.rmethod);
     check_shared();
+    warn_of_tied();
     return case_;
   }
 
@@ -293,6 +295,52 @@ class Chooser {
           break;
         }
   }
+
+  /// Mass at grids that a rigid element ties to a rotor: it turns with the rotor, without gyroscopic matrix.
+  void warn_of_tied() {
+    std::map<int, int> rotor_of;
+    for (const auto& axis : case_.axes)
+      for (const int grid : axis.grids) rotor_of.emplace(grid, axis.id);
+    struct Tie {
+      int rotor = 0;
+      std::string by;
+    };
+    std::map<int, Tie> tied;
+    records::visit_elements(deck_, {records::ElementRole::Rigid}, [&](const records::ElementView& view) {
+      if (!view.has_moments) return;
+      const auto on = std::find_if(view.grids.begin(), view.grids.end(), [&](int g) { return rotor_of.contains(g); });
+      if (on == view.grids.end()) return;
+      for (const int grid : view.grids)
+        if (!rotor_of.contains(grid)) tied.emplace(grid, Tie{rotor_of.at(*on), name_record(view.card, view.id)});
+    });
+    if (tied.empty()) return;
+    std::map<int, std::pair<std::string, int>> found;  // by rotor: the first, and how many
+    for (const auto& element : model_.elements()) {
+      const auto& nodes = element->nodes();
+      const auto at = std::find_if(nodes.begin(), nodes.end(), [&](int n) { return tied.contains(model_.node(n).id); });
+      if (at == nodes.end()) continue;
+      fe::MatrixXd M = fe::MatrixXd::Zero(element->num_dofs(), element->num_dofs());
+      element->add_mass(model_.mass_kind(), 1, M);
+      if (M.isZero(0)) continue;
+      const int grid = model_.node(*at).id;
+      const auto& [rotor, by] = tied.at(grid);
+      auto& [text, count] = found[rotor];
+      if (++count == 1)
+        text = name_record(element->card(), element->id()) + " at grid " + std::to_string(grid) + ", which " + by +
+               " ties to rotor " + std::to_string(rotor);
+    }
+    for (const auto& axis : case_.axes) {
+      const auto entry = found.find(axis.id);
+      if (entry == found.end()) continue;
+      const auto& [text, count] = entry->second;
+      diagnostics_.warning("modal.rotor-tied", axis.at,
+                           text + ", is not on the rotor: it has no gyroscopic moment" +
+                               (count > 1 ? ", nor have " + std::to_string(count - 1) + " more elements" : ""),
+                           "give its mass and inertia by CONM2 at a grid of ROTORG");
+    }
+  }
+
+  static std::string name_record(const std::string& card, int id) { return card + " " + std::to_string(id); }
 
   const fe::Model& model_;
   const records::DynamicDeck& deck_;

@@ -4,11 +4,11 @@
 #include <array>
 #include <cmath>
 #include <functional>
-#include <map>
 #include <numbers>
 #include <set>
 
 #include "fe/matrices/assembly.hpp"
+#include "fe/statics/element_groups.hpp"
 #include "fe/statics/element_results.hpp"
 
 namespace bough::modal::response {
@@ -59,7 +59,7 @@ MatrixXd pick_held(const fe::Model& model, const MatrixXd& Y, const std::vector<
 
 /// What the chosen elements of one card give, all components of one after the other.
 struct ElementGroup {
-  std::string card;
+  std::string name;  ///< of fe::ElementGroup
   std::vector<std::string> components;
   std::vector<const fe::Element*> elements;
   bool of_stress = false;
@@ -113,33 +113,24 @@ std::vector<std::string> list_stress_components(const fe::Element& element, bool
   return names;
 }
 
-std::vector<std::string> list_force_components(const fe::Element& element) {
-  const auto* forces = element.printed_forces();
-  return forces ? forces->printed_force_names() : std::vector<std::string>{};
-}
-
-/// By card in alphabetical order; elements of one card with other components are another group: "CTETRA-24".
 std::vector<ElementGroup> list_groups(const fe::Model& model, const std::vector<int>& chosen, bool of_stress,
                                       bool is_over_time) {
   const std::set<int> wanted(chosen.begin(), chosen.end());
-  std::map<std::pair<std::string, std::vector<std::string>>, ElementGroup> groups;
-  for (const auto& element : model.elements()) {
-    if (wanted.count(element->id()) == 0) continue;
-    const auto names = of_stress ? list_stress_components(*element, is_over_time) : list_force_components(*element);
-    if (names.empty()) continue;
-    groups[{element->card(), names}].elements.push_back(element.get());
-  }
-  std::vector<ElementGroup> result;
-  std::string last;
-  for (auto& [key, group] : groups) {
-    group.card = key.first == last ? key.first + "-" + std::to_string(key.second.size()) : key.first;
-    group.components = key.second;
+  const auto found = fe::group_elements(model, [&](const fe::Element& element, int) {
+    if (wanted.count(element.id()) == 0) return std::vector<std::string>{};
+    // Groups of static results in both domains.
+    return of_stress ? list_stress_components(element, true) : fe::list_force_components(element);
+  });
+  std::vector<ElementGroup> groups;
+  for (const auto& [name, components, members] : found) {
+    auto& group = groups.emplace_back();
+    group.name = name;
+    for (const int e : members) group.elements.push_back(model.elements()[static_cast<std::size_t>(e)].get());
+    group.components = of_stress ? list_stress_components(*group.elements.front(), is_over_time) : components;
     group.of_stress = of_stress;
     group.is_derived = of_stress && is_over_time;
-    last = key.first;
-    result.push_back(std::move(group));
   }
-  return result;
+  return groups;
 }
 
 using LinearMap = std::function<MatrixXd(const MatrixXd&)>;
@@ -202,7 +193,7 @@ class Recovery {
  private:
   static records::ElementCurves begin_curves(const ElementGroup& group, const OutputChoice& output) {
     records::ElementCurves curves;
-    curves.card = group.card;
+    curves.card = group.name;
     curves.components = group.components;
     for (const auto* element : group.elements) curves.ids.push_back(element->id());
     curves.is_phase = output.is_phase;

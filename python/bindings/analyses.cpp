@@ -132,8 +132,8 @@ class StaticRecord final : public analysis::StaticReceiver {
 
 /// The bytes of the HDF5 file, and the messages.
 py::tuple solve_static(const std::string& deck, int subcase, bool free, const std::string& mass, Strings ignore,
-                       Strings grid_forces, bool linear, bool nonlinear, int increments, bool strains, bool extremes,
-                       const std::string& f06, const std::string& op2, const py::object& progress) {
+                       Strings grid_forces, bool linear, bool nonlinear, int increments, bool arc_length, bool strains,
+                       bool extremes, const std::string& f06, const std::string& op2, const py::object& progress) {
   const analysis::ListingFiles listing{f06, op2};
   analysis::StaticRequest request;
   request.deck = deck;
@@ -142,6 +142,7 @@ py::tuple solve_static(const std::string& deck, int subcase, bool free, const st
   request.is_linear = linear;
   request.is_nonlinear = nonlinear;
   request.num_increments = increments;
+  request.has_arc_length = arc_length;
   request.has_strains = strains;
   request.has_listing = !listing.empty();
   std::string image;
@@ -247,9 +248,9 @@ void bind_analyses(py::module_& m) {
         py::arg("progress") = none);
   m.def("static", &solve_static, py::arg("deck"), py::kw_only(), py::arg("subcase") = 0, py::arg("free") = false,
         py::arg("mass") = "deck", py::arg("ignore") = Strings(), py::arg("grid_forces") = Strings(),
-        py::arg("linear") = false, py::arg("nonlinear") = false, py::arg("increments") = 10, py::arg("strains") = false,
-        py::arg("extremes") = false, py::arg("f06") = "", py::arg("op2") = "", py::arg("progress") = none,
-        "The bytes of the file of bough static.");
+        py::arg("linear") = false, py::arg("nonlinear") = false, py::arg("increments") = 10,
+        py::arg("arc_length") = false, py::arg("strains") = false, py::arg("extremes") = false, py::arg("f06") = "",
+        py::arg("op2") = "", py::arg("progress") = none, "The bytes of the file of bough static.");
   m.def("select", &select, py::arg("file"), py::arg("body"), py::kw_only(), py::arg("systems") = Strings(),
         py::arg("inputs") = Strings(), py::arg("outputs") = Strings(), py::arg("weight") = Strings(),
         py::arg("spectrum") = "", py::arg("number") = 0, py::arg("tolerance") = none, py::arg("below") = 0.0,

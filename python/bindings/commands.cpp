@@ -244,15 +244,14 @@ py::tuple export_file(const std::string& file, const std::string& to, const std:
                       bool ascii, bool moving, const std::string& fields, Strings ignore, int every,
                       std::vector<double> window, double scale, const std::string& follow, Strings bodies, Strings set,
                       const std::string& units, int fmi, int id) {
-  analysis::ExportRequest request;
-  request.file = file;
-  request.output = output;
-  request.format = to;
-  request.channels = channels;
-  request.is_ascii = ascii;
-  request.is_moving = moving;
-  request.fields = fields;
-  request.ignore_cards = std::move(ignore);
+  analysis::ExportRequest request{.file = file,
+                                  .output = output,
+                                  .format = to,
+                                  .channels = channels,
+                                  .is_ascii = ascii,
+                                  .is_moving = moving,
+                                  .fields = fields,
+                                  .ignore_cards = std::move(ignore)};
   request.moving = {every, std::move(window), scale, follow, std::move(bodies)};
   request.fmu = {fmi, std::move(channels), std::move(set), units};
   request.component.id = id;
@@ -342,9 +341,11 @@ py::tuple make_flx(Strings bodies, const std::string& output, std::vector<int> b
                                special_nodes,     stiffening};
   std::vector<flx::FlxFile> files;
   std::string text;
-  run_exclusive(request.bodies.empty() ? "" : request.bodies.front(), [&] {
+  run_request(request.bodies.empty() ? "" : request.bodies.front(), py::none(), [&](PythonEvents& events) {
     announce_output(output);
-    files = analysis::make_flx_files(request);
+    Diagnostics diagnostics;
+    files = analysis::make_flx_files(request, diagnostics);
+    analysis::add_messages(diagnostics, events);
     for (const auto& file : files) text += flx::write_flx(file, flx::make_native_layout(digits));
     write_output(output, text);
   });

@@ -117,15 +117,15 @@ def modes(deck, number=None, *, min_hz=None, max_hz=None, buckling=False, no_che
 
 
 def static(deck, *, subcase=0, free=False, mass="deck", ignore=(), grid_forces=(), linear=False, nonlinear=False,
-           increments=10, strains=False, extremes=False, f06="", op2="", progress=None):
+           increments=10, arc_length=False, strains=False, extremes=False, f06="", op2="", progress=None):
     """Static solutions of a deck, as reader.File in memory: displacements, reactions, element forces by path.
 
     Options as of `bough static`; grid_forces="all" or ids; f06, op2: files of the deck's output requests.
     """
     image, _ = _bough.static(_os.fspath(deck), subcase=subcase, free=free, mass=mass, ignore=_list(ignore),
                              grid_forces=[str(word) for word in _list(grid_forces)], linear=linear,
-                             nonlinear=nonlinear, increments=increments, strains=strains, extremes=extremes,
-                             f06=_os.fspath(f06), op2=_os.fspath(op2), progress=progress)
+                             nonlinear=nonlinear, increments=increments, arc_length=arc_length, strains=strains,
+                             extremes=extremes, f06=_os.fspath(f06), op2=_os.fspath(op2), progress=progress)
     return _read_image(deck, image)
 
 

@@ -4,8 +4,8 @@ import { find_index, format_number, label_frequency } from "./numbers.js";
 import { calc_spectrum } from "./spectrum.js";
 import { thin_time, unpack_column, unpack_time } from "./unpack.js";
 
-const with_unit = (what, unit) => (unit && unit !== "1" ? `${what} [${unit}]`.trimStart() : what);
-const label_time = (run) => with_unit("time", run.data.time_unit);
+export const with_unit = (what, unit) => (unit && unit !== "1" ? `${what} [${unit}]`.trimStart() : what);
+export const label_time = (run) => with_unit("time", run.data.time_unit);
 
 const kXyz = ["x", "y", "z"];
 // Coordinates and rates of a free hinge (docs/formats/system-toml.md).

@@ -45,6 +45,7 @@ export class ModesView {
       step(by)();
       return true;
     };
+    this.viewer.repaint = () => this.draw();
     this.viewer.fit(this.box);
     this.show(0);
   }

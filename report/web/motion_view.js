@@ -1,20 +1,36 @@
+import { Chart } from "./chart.js";
 import { Box, Drawing } from "./drawing.js";
+import { label_time, with_unit } from "./history.js";
 import { find_index, format_number } from "./numbers.js";
-import { el, get_style, make_button, make_check, make_color_bar, make_select, make_slider, save_blob } from "./page_parts.js";
+import { el, get_css, get_style, make_button, make_check, make_color_bar, make_select, make_slider, make_swatch, save_blob } from "./page_parts.js";
 import { SceneMarks, to_rotation, turn } from "./scene_marks.js";
 import { Viewer, make_triad } from "./viewer.js";
 
-// The moving system of a run. A viewer that is given keeps its place on the page.
+const find_channels = (run, name) => Object.fromEntries(["position", "quaternion", "eta"].map((key) => [key, run.by_path.get(`/bodies/${name}/${key}`)]));
+
+// Points of a body in the world, deformed.
+function move_points(body, { p, R, eta }, scale) {
+  const d = body.drawing;
+  d.deform(eta, scale);
+  body.world ??= new Float32Array(d.points.length);
+  for (let i = 0; i < d.points.length; i += 3)
+    for (let r = 0; r < 3; ++r) body.world[i + r] = p[r] + R[r][0] * d.points[i] + R[r][1] * d.points[i + 1] + R[r][2] * d.points[i + 2];
+}
+
+// The moving system of a run. A viewer that is given keeps its place on the page; an earlier run is drawn as outlines.
 export class MotionView {
-  constructor(run, viewer = null) {
+  constructor(run, viewer = null, earlier = null) {
     this.run = run;
     this.bodies = run.data.bodies
-      .map((b) => ({ name: b.name, drawing: new Drawing(b.drawing), position: run.by_path.get(`/bodies/${b.name}/position`), quaternion: run.by_path.get(`/bodies/${b.name}/quaternion`), eta: run.by_path.get(`/bodies/${b.name}/eta`) }))
+      .map((b) => ({ name: b.name, drawing: new Drawing(b.drawing), ...find_channels(run, b.name) }))
       .map((b, index) => ({ ...b, index, is_drawn: Boolean(b.position && b.quaternion) }));
     const moving = this.bodies.filter((b) => b.is_drawn);
     this.first = run.time[0];
     this.last = run.time[run.time.length - 1];
     this.time = this.first;
+    this.earlier = earlier;
+    this.ghosts = (earlier?.data.bodies ?? []).map((b) => ({ name: b.name, drawing: new Drawing(b.drawing), ...find_channels(earlier, b.name) })).filter((b) => b.position && b.quaternion);
+    this.has_ghosts = true;
     this.scale = 1;
     this.follow = -1;
     this.has_frames = true;
@@ -35,20 +51,27 @@ export class MotionView {
       make_slider("deformation ×", { min: 0, max: 3, step: 0.05, value: 0 }, (v) => { this.scale = 10 ** v; this.draw(); return format_number(10 ** v, 3); }),
       make_select("follow", ["nothing", ...moving.map((b) => b.name)], (i) => { this.follow = i === 0 ? -1 : moving[i - 1].index; this.anchor(); }),
       ...this.marks.make_tools(),
+      ...(this.ghosts.length > 0 ? [make_check("run before", true, (on) => { this.has_ghosts = on; this.draw(); })] : []),
       make_check("frames", true, (on) => { this.has_frames = on; this.draw(); }),
       make_select("colour by", ["body", "displacement", ...(moving.some((b) => b.drawing.matrix) ? ["strain energy", "strain energy density"] : [])], (i) => { this.color_by = i; this.set_colors(); }), this.viewer.make_view_buttons());
     if (globalThis.MediaRecorder) tools.append(make_button("WebM", "Play once from the start and save it as a film", () => this.film()));
-    const names = el("p", { class: "note legend" }, ...moving.map((b) => {
-      const mark = el("span", { class: "swatch" });
-      mark.style.background = get_style(b.index).color;
-      return el("span", { class: "entry" }, mark, " " + b.name);
-    }));
+    const names = el("p", { class: "note legend" }, ...moving.map((b) => el("span", { class: "entry" }, make_swatch(b.index), " " + b.name)));
     this.color_note = el("p", { class: "note" });
     this.bar = make_color_bar();
     this.bar.element.hidden = true;
     this.viewer.name = "motion";
+    this.viewer.repaint = () => this.draw();
+    /** Called with the node that was clicked, or null. @type {((found: any) => void) | null} */
+    this.on_pick = null;
+    this.pins = new Map();  // "body node" -> [body, node] of a chart
+    this.pin_button = Object.assign(make_button("", "Its displacement, linear in the modes as the scene is, in a chart that goes with the other curves", () => this.picked && this.pin(this.picked.body, this.picked.node)), { className: "pin", hidden: true });
+    this.viewer.on_pick = (found) => {
+      this.offer_pin(found?.thing.body ? { body: found.thing.body, node: found.id } : null);
+      this.on_pick?.(found);
+    };
+    this.pin_host = el("div", { class: "pins" });
     const help = el("p", { class: "note" }, "Black (white in the dark): hinges and their axes. Frames: orange x, green y, blue z. A click in a chart takes this view there; a click in this view names a node.");
-    this.element = el("div", { class: "motion" }, tools, this.viewer.element, el("div", { class: "tools" }, this.scrubber, this.clock), this.bar.element, this.color_note, names, this.marks.legend, this.marks.now, help);
+    this.element = el("div", { class: "motion" }, tools, this.viewer.element, el("div", { class: "tools" }, this.scrubber, this.clock, this.pin_button), this.pin_host, this.bar.element, this.color_note, names, this.marks.legend, this.marks.now, help);
     run.link.on("pick", (time) => { this.play(false); this.set_time(time); });
     this.reach = this.find_reach();
     const box = this.find_box();
@@ -58,18 +81,66 @@ export class MotionView {
   }
 
   // A channel of several columns between its samples.
-  sample(channel, time) {
-    const x = this.run.get_time(channel);
+  sample(channel, time, run = this.run) {
+    const x = run.get_time(channel);
     const i = Math.min(Math.max(1, find_index(x, time)), x.length - 1);
     const share = x.length > 1 ? Math.min(1, Math.max(0, (time - x[i - 1]) / (x[i] - x[i - 1]))) : 0;
     return channel.columns.map((_, c) => {
-      const y = this.run.get_values(channel, c);
+      const y = run.get_values(channel, c);
       return x.length > 1 ? y[i - 1] + share * (y[i] - y[i - 1]) : y[0];
     });
   }
 
-  place(body, time) {
-    return { p: this.sample(body.position, time), R: to_rotation(this.sample(body.quaternion, time)), eta: body.eta ? this.sample(body.eta, time) : [] };
+  place(body, time, run = this.run) {
+    return { p: this.sample(body.position, time, run), R: to_rotation(this.sample(body.quaternion, time, run)), eta: body.eta ? this.sample(body.eta, time, run) : [] };
+  }
+
+  offer_pin(picked) {
+    this.picked = picked;
+    this.pin_button.hidden = !picked;
+    if (picked) this.pin_button.textContent = `pin node ${picked.node} of ${picked.body}`;
+  }
+
+  // Takes over the clicked node and the charts of another run in the same viewer.
+  take_over({ picked, pins }) {
+    for (const [name, node] of pins.values()) this.pin(name, node);
+    this.viewer.name_node(picked?.node, picked?.body);
+    if (this.viewer.picked) this.offer_pin(picked);
+  }
+
+  // Displacement of a node since the start of its run, in the world: times, and three columns.
+  calc_displacement(body, node, run) {
+    const { drawing, position, quaternion, eta } = body, k = drawing.ids.indexOf(node), time = run.get_time(position);
+    const columns = [0, 1, 2].map(() => new Float64Array(time.length));
+    const shapes = eta ? eta.columns.slice(0, drawing.shapes.length).map((_, j) => drawing.get_shape(j).subarray(3 * k, 3 * k + 3)) : [];
+    time.forEach((t, i) => {
+      const { p, R, eta: q } = this.place({ position, quaternion, eta }, t, run);
+      const r = [0, 1, 2].map((c) => drawing.xyz[3 * k + c] + shapes.reduce((sum, shape, j) => sum + q[j] * shape[c], 0));
+      turn(R, r).forEach((v, c) => (columns[c][i] = p[c] + v));
+    });
+    for (const column of columns) column.forEach((v, i) => i > 0 && (column[i] = v - column[0]));
+    for (const column of columns) column[0] = 0;
+    return { time, columns };
+  }
+
+  // A chart of the displacement of a node, of the earlier run too (dashed).
+  pin(name, node) {
+    const key = `${name} ${node}`, body = this.bodies.find((b) => b.name === name && b.is_drawn);
+    if (this.pins.has(key) || !body || !body.drawing.ids.includes(node)) return;
+    const list = (of, run, suffix, style) => {
+      const { time, columns } = this.calc_displacement(of, node, run);
+      return columns.map((y, c) => ({ name: "xyz"[c] + suffix, x: time, y, style: c + style }));
+    };
+    const ghost = this.ghosts.find((b) => b.name === name && b.drawing.ids.includes(node));
+    const series = [...list(body, this.run, "", 0), ...(ghost ? list(ghost, this.earlier, ", run before", 7) : [])];
+    const chart = new Chart({ title: `displacement of node ${node} of ${name}`, series, marks: this.run.marks, link: this.run.link, x_label: label_time(this.run), y_label: with_unit("displacement", body.position.columns[0].unit || body.position.unit), height: 220 });
+    const element = el("div", { class: "pinned", "data-node": key }, make_button("✕ unpin", "Take the chart away", () => {
+      this.pins.delete(key);
+      this.run.link.charts.splice(this.run.link.charts.indexOf(chart), 1);
+      element.remove();
+    }), chart.element);
+    this.pins.set(key, [name, node]);
+    this.pin_host.append(element);
   }
 
   // Positions of the bodies now; null where it is not drawn.
@@ -196,6 +267,16 @@ export class MotionView {
     this.play(true);
   }
 
+  // The bodies of the earlier run at this time, or at its end.
+  make_ghosts() {
+    if (!this.has_ghosts) return [];
+    return this.ghosts.map((body) => {
+      move_points(body, this.place(body, this.time, this.earlier), this.scale);
+      const { edges, triangles } = body.drawing;
+      return { points: body.world, edges, color: get_css("--ghost"), dots: triangles.length === 0 };
+    });
+  }
+
   draw() {
     if (!this.viewer?.home || !this.clock) return;
     const size = this.viewer.extent, things = [], boxes = [];
@@ -204,10 +285,7 @@ export class MotionView {
     this.bodies.forEach((body, k) => {
       if (!body.is_drawn) return;
       const { p, R, eta } = places[k], d = body.drawing;
-      d.deform(eta, this.scale);
-      body.world ??= new Float32Array(d.points.length);
-      for (let i = 0; i < d.points.length; i += 3)
-        for (let r = 0; r < 3; ++r) body.world[i + r] = p[r] + R[r][0] * d.points[i] + R[r][1] * d.points[i + 1] + R[r][2] * d.points[i + 2];
+      move_points(body, places[k], this.scale);
       // Boxes of rigid bodies are seen through, after what they may hold.
       const is_box = d.packed.length === 0 && d.triangles.length > 0;
       const colors = this.most && d.matrix && eta.length > 0 ? { elements: d.elements, levels: this.get_levels(d, eta) } : {};
@@ -222,7 +300,7 @@ export class MotionView {
       else this.viewer.target = [...p];
       this.before = p;
     }
-    this.viewer.things = [...things, ...boxes];
+    this.viewer.things = [...things, ...boxes, ...this.make_ghosts()];
     this.viewer.reach = this.reach * this.scale;
     this.viewer.draw();
   }

@@ -86,6 +86,14 @@ const repainters = [];
 // What is to be drawn again when the theme changes.
 export const on_theme = (draw) => repainters.push(draw);
 
+// A square in the colour of a curve or body, of a legend.
+export function make_swatch(index) {
+  const swatch = el("span", { class: "swatch" }), paint = () => (swatch.style.background = get_style(index).color);
+  paint();
+  on_theme(paint);
+  return swatch;
+}
+
 // "light", "dark", or undefined: as the reader's system has it.
 export function set_theme(theme) {
   if (theme) document.documentElement.dataset.theme = theme;

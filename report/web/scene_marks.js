@@ -14,6 +14,7 @@ export function to_rotation([w, x, y, z]) {
 export const turn = (R, v) => R.map((row) => row[0] * v[0] + row[1] * v[1] + row[2] * v[2]);
 const kGround = { p: [0, 0, 0], R: [[1, 0, 0], [0, 1, 0], [0, 0, 1]] };
 const kSides = 10;
+const kNoise = 1e-15;  // forces and moments below it are rounding errors in any units
 const kLongest = 0.22;  // of the scene: the longest arrow of a kind at scale 1
 
 // A body of revolution about the way from p along the unit vector u: [distance, radius] by rings.
@@ -88,7 +89,7 @@ export class SceneMarks {
         if (value > most.value) Object.assign(most, { value, name: arrow.name, time: time[i] });
       }
     }
-    return most;
+    return most.value > kNoise ? most : { value: 0, name: "", time: 0 };
   }
 
   // In the world, with the deformation that is drawn; null where the body is not.

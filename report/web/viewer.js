@@ -96,6 +96,7 @@ export class Viewer {
     this.on_key = null;  // returns true for a key that it has handled
     this.on_grab = null;  // what takes a drag that begins here: { move(event), end() }, or null
     this.can_grab = null;  // returns true where on_grab takes one
+    this.repaint = () => this.draw();  // after a change of the theme: the owner of the things gives them their new colours
     this.things = [];
     this.marks = [];
     this.reach = 0;
@@ -105,7 +106,7 @@ export class Viewer {
     this.yaw = -1.0;
     this.pitch = 0.45;
     this.listen();
-    on_theme(() => this.draw());
+    on_theme(() => this.repaint());
     new ResizeObserver(() => requestAnimationFrame(() => this.draw())).observe(this.canvas);
   }
 
@@ -471,9 +472,9 @@ export class Viewer {
     return found;
   }
 
-  // Labels the node with this id as a click on it does, without calling on_pick; no label if no thing has the id.
-  name_node(id) {
-    const thing = this.things.find((t) => t.describe && t.ids.includes(id)), k = thing ? thing.ids.indexOf(id) : -1;
+  // Labels the node with this id (of this body) as a click on it does, without calling on_pick; no label if there is none.
+  name_node(id, body = undefined) {
+    const thing = this.things.find((t) => t.describe && (body === undefined || t.body === body) && t.ids.includes(id)), k = thing ? thing.ids.indexOf(id) : -1;
     const rect = this.canvas.getBoundingClientRect();
     this.picked = thing ? () => thing.describe(k) : null;
     this.place_tip(thing && project(this.make_view(), rect, thing.points.subarray(3 * k, 3 * k + 3)), rect);

@@ -176,25 +176,29 @@ std::unique_ptr<Rotor> make_double_gimbal(SettingsReader& keys) {
   return cmg;
 }
 
+std::unique_ptr<Wheel> make_wheel(SettingsReader& keys) {
+  auto wheel = std::make_unique<Wheel>();
+  wheel->axis = read_axis(keys);
+  wheel->inertia = keys.get_positive("inertia");
+  if (keys.has("momentum_limit")) wheel->limit = keys.get_positive("momentum_limit");
+  wheel->initial = keys.get("momentum", 0);
+  wheel->viscous = keys.get_size("viscous", 0);
+  wheel->coulomb = keys.get_size("coulomb", 0);
+  if (wheel->coulomb > 0) wheel->width = keys.get_positive("stick_rate");
+  keys.demand(std::abs(wheel->initial) <= wheel->limit, "starts beyond its momentum_limit", "give less momentum");
+  wheel->sizes.memory = 1;
+  wheel->sizes.event_functions = 3;
+  wheel->dims = "F L, F L T, 1/T";
+  return wheel;
+}
+
 }  // namespace
 
 std::unique_ptr<Actuator> make_rotor(const records::ActuatorRecord& r, SettingsReader& keys,
                                      const ActuatorPlace& place) {
   std::unique_ptr<Rotor> made;
   if (r.type == "wheel") {
-    auto wheel = std::make_unique<Wheel>();
-    wheel->axis = read_axis(keys);
-    wheel->inertia = keys.get_positive("inertia");
-    if (keys.has("momentum_limit")) wheel->limit = keys.get_positive("momentum_limit");
-    wheel->initial = keys.get("momentum", 0);
-    wheel->viscous = keys.get_size("viscous", 0);
-    wheel->coulomb = keys.get_size("coulomb", 0);
-    if (wheel->coulomb > 0) wheel->width = keys.get_positive("stick_rate");
-    keys.demand(std::abs(wheel->initial) <= wheel->limit, "starts beyond its momentum_limit", "give less momentum");
-    wheel->sizes.memory = 1;
-    wheel->sizes.event_functions = 3;
-    wheel->dims = "F L, F L T, 1/T";
-    made = std::move(wheel);
+    made = make_wheel(keys);
   } else if (r.type == "double_gimbal_cmg") {
     made = make_double_gimbal(keys);
     made->marker = place.marker;

@@ -1,5 +1,6 @@
 // Initial state that closes the loops, and its messages.
 #include <algorithm>
+#include <cmath>
 #include <sstream>
 
 #include "solver/builder/build.hpp"
@@ -107,6 +108,13 @@ void note_moved(const Tree& tree, const VectorXd& q0, const VectorXd& u0, const 
                      "coordinates with a 'position' or 'rate' of their own move last, unless guess = true");
 }
 
+/// Rates that were zero and became round-off of the largest are zero: an equilibrium distinguishes rest from a spin.
+void clear_rounding(const VectorXd& before, VectorXd& u) {
+  const double rounding = 1e-14 * u.lpNorm<Eigen::Infinity>();
+  for (Eigen::Index i = 0; i < u.size(); ++i)
+    if (before[i] == 0 && std::abs(u[i]) <= rounding) u[i] = 0;
+}
+
 // The hinges that a loop runs through: 'b' (locked), 'c'.
 std::string describe_hinges(const Constraint& c, const Tree& tree, const std::vector<AssemblyPriority>& grips) {
   const auto climb = [&](int marker) {
@@ -170,6 +178,7 @@ void assemble(const records::SystemSpec& spec, const TreeOrder& order, System& s
   if (!closed.is_closed) return report_open(closed, system.loops, tree, positions, "the positions", diagnostics);
   const Assembly moving = assemble_rates(system.loops, tree, rates, u, data, loop_data);
   if (!moving.is_closed) return report_open(moving, system.loops, tree, rates, "the rates", diagnostics);
+  clear_rounding(u0, u);
   note_redundancies(spec, find_redundancies(system.loops, tree, positions, data, loop_data), system.loops, diagnostics);
   note_moved(tree, q0, u0, q, u, system.loops[loop_data.blocks[0].constraints[0]].at, diagnostics);
   system.initial_q = q;

@@ -1,6 +1,7 @@
 // [[constraint]] to Loops.
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "solver/builder/build.hpp"
 #include "solver/text/names.hpp"
@@ -170,6 +171,16 @@ class Builder {
             {c.is_rate ? 0 : tb.q_offset + term.coordinate - 1, tb.u_offset + term.coordinate - 1, term.ratio});
       }
     }
+    std::map<int, std::pair<double, double>> sums;  // by row of u: of the ratios, and of their sizes
+    for (const CouplerTerm& term : c.terms) {
+      sums[term.u_row].first += term.ratio;
+      sums[term.u_row].second += std::abs(term.ratio);
+    }
+    const auto cancels = [](const auto& sum) { return std::abs(sum.second.first) <= 1e-12 * sum.second.second; };
+    if (!sums.empty() && std::all_of(sums.begin(), sums.end(), cancels))
+      diagnostics_.error("system.bad-constraint", r.at,
+                         user + " couples nothing: the ratios of its terms cancel in every coordinate",
+                         "give each coordinate one term, with a ratio other than zero");
   }
 
   const records::SystemSpec& spec_;

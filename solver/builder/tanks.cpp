@@ -1,6 +1,7 @@
 // [[tank]] of a system file: propellant of a rigid body.
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 
 #include "solver/builder/build.hpp"
 #include "solver/text/names.hpp"
@@ -25,9 +26,12 @@ class TankBuilder {
     auto shape = r_.type == records::TankType::Table ? make_table() : make_solid();
     if (!shape || diagnostics_.num_errors() != errors) return nullptr;
     if (!(r_.mass >= 0) || !std::isfinite(r_.mass)) refuse("has a mass below zero", "give the propellant at the start");
-    if (r_.mass > shape->capacity() * (1 + 1e-9))
-      refuse("has a mass of " + std::to_string(r_.mass) + ", and holds " + std::to_string(shape->capacity()),
+    if (r_.mass > shape->capacity() * (1 + 1e-9)) {
+      std::ostringstream what;
+      what << "has a mass of " << r_.mass << ", and holds " << shape->capacity();
+      refuse(what.str(),
              r_.type == records::TankType::Table ? "extend the table" : "enlarge it, or correct mass or density");
+    }
     if (diagnostics_.num_errors() != errors) return nullptr;
     return shape;
   }
@@ -119,12 +123,24 @@ void build_tanks(const records::SystemSpec& spec, const TreeOrder& order, const 
       tank.exit = tb.body.nodes()[static_cast<size_t>(node)].p;
       tank.exit_radius = r.exit_radius;
       if (r.exit_axis.norm() > 0) tank.exit_axis = r.exit_axis.normalized();
-      if (!tank.function->has_derivatives() || !(tank.initial >= 0) ||
-          tank.initial > tank.shape->capacity() * (1 + 1e-9)) {
-        diagnostics.error("system.bad-tank", r.at,
-                          user + " has the function " + quote(r.function) +
-                              ", which starts below zero or above the capacity, or has no known rate",
-                          "give a function with a rate from at most " + std::to_string(tank.shape->capacity()));
+      std::ostringstream what;
+      what << user << " has the function " << quote(r.function);
+      const auto refuse = [&](const std::string& advice) {
+        diagnostics.error("system.bad-tank", r.at, what.str(), advice);
+      };
+      if (!tank.function->has_derivatives()) {
+        what << ", of which the rate, the flow, is not known";
+        refuse("give the expression its rate and acceleration, or use a cubic table");
+        continue;
+      }
+      if (!(tank.initial >= 0)) {
+        what << " and is emptier than empty at the start: its mass is " << tank.initial;
+        refuse("start the function at a mass of at least 0");
+        continue;
+      }
+      if (tank.initial > tank.shape->capacity() * (1 + 1e-9)) {
+        what << " and a mass of " << tank.initial << " at the start, and holds " << tank.shape->capacity();
+        refuse("start the function at a mass that the tank holds");
         continue;
       }
     }

@@ -3,9 +3,9 @@
 // away and is no error; near a change point it is all there is.
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "solver/integrate/dormand_prince.hpp"
+#include "solver/integrate/step_size.hpp"
 #include "solver/integrate/sundials.hpp"
 
 namespace bough::solver {
@@ -58,7 +58,11 @@ class ErkStepper final : public Integrator {
       k_.col(0) = next_first_;
     else if (ode_.calc(t_, y_.data(), k_.col(0).data()) != 0)
       fail("the derivative cannot be evaluated");
-    if (h_ == 0) h_ = std::min(guess_first_step(), t_stop_ - t_);
+    if (h_ == 0) {
+      h_ = detail::guess_first_step(ode_, options_, table_.q, t_, last_y_, k_.col(0), smallest_, t_stop_ - t_, stage_,
+                                    next_first_);
+      h_ = std::min(h_, t_stop_ - t_);
+    }
     if (options_.step > 0) h_ = std::min(h_, options_.step);
     double h = h_;
     bool may_grow = true;
@@ -83,7 +87,7 @@ class ErkStepper final : public Integrator {
       h_ = h;
       if (rejected + 1 >= detail::kMaxRejections || h < smallest_ || t_ + h == t_) {
         h_ = 0;
-        fail("steps of " + short_number(h) + " err by " + short_number(error) + " tolerances");
+        fail(detail::describe_rejection(h, error));
       }
     }
   }
@@ -155,7 +159,7 @@ class ErkStepper final : public Integrator {
   double calc_error() {
     double sum = 0, max_value = -1;
     for (Eigen::Index i = 0; i < trial_.size(); ++i) {
-      const double e = (trial_[i] - other_[i]) / calc_weight(i);
+      const double e = (trial_[i] - other_[i]) / detail::calc_error_weight(options_, last_y_, i);
       sum += e * e;
       if (std::abs(e) > max_value) {
         max_value = std::abs(e);
@@ -163,9 +167,6 @@ class ErkStepper final : public Integrator {
       }
     }
     return std::sqrt(sum / static_cast<double>(std::max<Eigen::Index>(1, trial_.size())));
-  }
-  double calc_weight(Eigen::Index i) const {
-    return std::max(options_.relative_tolerance * std::abs(last_y_[i]) + options_.absolute_tolerance[i], 1e-300);
   }
 
   void accept(double t_end, double h) {
@@ -176,30 +177,6 @@ class ErkStepper final : public Integrator {
     t_ = t_end;
     statistics_.step = h;
     ++statistics_.num_steps;
-  }
-
-  /// Hairer, Nørsett and Wanner, "Solving Ordinary Differential Equations I", II.4: by the size of the first and second
-  /// derivatives.
-  double guess_first_step() {
-    const auto norm = [&](const auto& v) {
-      double sum = 0;
-      for (Eigen::Index i = 0; i < v.size(); ++i) sum += std::pow(v[i] / calc_weight(i), 2);
-      return std::sqrt(sum / static_cast<double>(std::max<Eigen::Index>(1, v.size())));
-    };
-    const double d0 = norm(last_y_), d1 = norm(k_.col(0));
-    double h = d0 < 1e-5 || d1 < 1e-5 ? 1e-6 : 0.01 * d0 / d1;
-    h = std::clamp(h, smallest_, std::max(smallest_, t_stop_ - t_));
-    stage_ = last_y_ + h * k_.col(0);
-    if (ode_.calc(t_ + h, stage_.data(), next_first_.data()) != 0) return h;
-    const double d2 = norm(next_first_ - k_.col(0)) / h, max_value = std::max(d1, d2);
-    const double other = max_value <= 1e-15 ? std::max(1e-6, 1e-3 * h) : std::pow(0.01 / max_value, 1.0 / table_.q);
-    return std::max(smallest_, std::min(100 * h, other));
-  }
-
-  static std::string short_number(double x) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.3g", x);
-    return text;
   }
 
   [[noreturn]] void fail(const std::string& detail) {

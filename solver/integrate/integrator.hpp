@@ -61,7 +61,8 @@ class Integrator {
   virtual void set_memory(const Eigen::Vector4d&) {}
 };
 
-/// integrator: "adams", "bdf", "rk", "rk4", "implicit". BOUGH_DEMAND on another name. The Ode must outlive the stepper.
+/// integrator: "adams", "bdf", "rk", "radau", "rk4", "implicit". BOUGH_DEMAND on another name. The Ode must outlive the
+/// stepper.
 std::unique_ptr<Integrator> make_integrator(const std::string& integrator, Ode& ode, const StepperOptions& options);
 
 /// SUNDIALS CVODE: variable order and step; Adams-Moulton (to order 12) by fixed-point iteration, or BDF (to order 5)
@@ -69,6 +70,9 @@ std::unique_ptr<Integrator> make_integrator(const std::string& integrator, Ode& 
 std::unique_ptr<Integrator> make_cvode_stepper(Ode& ode, const StepperOptions& options, bool stiff);
 /// Explicit embedded pair: Dormand and Prince's 5(4) or 8(7); the error is judged after the projection.
 std::unique_ptr<Integrator> make_erk_stepper(Ode& ode, const StepperOptions& options);
+/// Radau IIA of order 9, implicit, L-stable, of variable step: fast modes do not limit its steps once they have died
+/// out. States within a step are of its collocation polynomial.
+std::unique_ptr<Integrator> make_radau_stepper(Ode& ode, const StepperOptions& options);
 /// The classical Runge-Kutta method of order 4, at fixed step (fixed_step.hpp).
 std::unique_ptr<Integrator> make_rk4_stepper(Ode& ode, const StepperOptions& options);
 /// Linearly implicit of order 2 (ROS2), at fixed step: what Ode::calc_stage takes for stiff does not limit the step.

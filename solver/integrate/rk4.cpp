@@ -36,6 +36,7 @@ std::unique_ptr<Integrator> make_rk4_stepper(Ode& ode, const StepperOptions& opt
 std::unique_ptr<Integrator> make_integrator(const std::string& integrator, Ode& ode, const StepperOptions& options) {
   if (integrator == "adams" || integrator == "bdf") return make_cvode_stepper(ode, options, integrator == "bdf");
   if (integrator == "rk") return make_erk_stepper(ode, options);
+  if (integrator == "radau") return make_radau_stepper(ode, options);
   if (integrator == "implicit") return make_implicit_stepper(ode, options);
   BOUGH_DEMAND(integrator == "rk4");
   return make_rk4_stepper(ode, options);

@@ -40,34 +40,61 @@ std::string brief_text(double value) {
   return text.str();
 }
 
-/// Dimensions of [u̇; ż; y]; those of a state are its own.
+/// Dimensions of [u̇; ż; y]; a signal state shares its dimensions with no other.
 std::vector<std::string> get_row_dims(const Plant& plant) {
   std::vector<std::string> dims;
   for (int i = 0; i < plant.num_dofs(); ++i) dims.push_back("u_dot " + plant.dof_dims(i));
-  for (int i = 0; i < plant.num_states(); ++i) dims.push_back(plant.state_name(i));
+  for (int i = 0; i < plant.num_states(); ++i)
+    dims.push_back(i < plant.num_signal_states() ? plant.state_name(i) : "path_dot " + plant.state_dims(i));
   dims.insert(dims.end(), plant.outputs().dims.begin(), plant.outputs().dims.end());
   return dims;
 }
 
-/// Clears the rows of an output that is a difference of large and equal terms: all rows with its dimensions are below
-/// their errors, and negligible to the others. Columns are weighted by their steps.
-void clear_rounding(const Plant& plant, const VectorXd& step, Jacobian& jacobian) {
+/// Largest value, error and kink of some rows, columns weighted by their steps.
+struct RowGroup {
+  double value = 0, error = 0, kink = 0;
+
+  /// All rows are below their errors, and these are negligible to `max_value` of all rows; or all are known to less
+  /// than three digits, and are round-off of the accelerations or of the largest row.
+  bool is_rounding(double max_value, double acceleration) const {
+    const double unknown = std::max(error, kink);
+    return (value <= error && error <= 1e-9 * max_value) ||
+           (value <= 1e3 * unknown && std::max(value, unknown) <= 1e-11 * std::max(max_value, acceleration));
+  }
+};
+
+/// Clears the rows of an output that is a difference of large and equal terms: all rows with its dimensions are
+/// round-off, or it is a component that is round-off of the other components of its vector. Columns are weighted by
+/// their steps.
+/// \param base  [u̇; ż; y] at the operating point
+void clear_rounding(const Plant& plant, const VectorXd& base, const VectorXd& step, Jacobian& jacobian) {
+  constexpr double kNoComponent = 1e-14;
   const int n = plant.num_dofs() + plant.num_states();
   const auto calc_size = [&step](const MatrixXd& rows) -> VectorXd {
     return (rows * step.asDiagonal()).cwiseAbs().rowwise().maxCoeff();
   };
   if (step.size() == 0 || jacobian.value.rows() == 0) return;
-  const VectorXd value = calc_size(jacobian.value), error = calc_size(jacobian.error);
+  const VectorXd value = calc_size(jacobian.value), error = calc_size(jacobian.error), kink = calc_size(jacobian.kink);
+  const double acceleration = plant.num_dofs() > 0 ? base.head(plant.num_dofs()).cwiseAbs().maxCoeff() : 0;
   const auto dims = get_row_dims(plant);
-  std::map<std::string, std::pair<double, double>> largest;
+  std::map<std::string, RowGroup> by_dims;
+  std::map<std::pair<std::string, std::string>, double> by_vector;
+  const auto get_vector = [&](Eigen::Index i) {
+    const std::string& name = plant.outputs().name[static_cast<size_t>(i - n)];
+    return std::pair(name.substr(0, name.rfind(':')), dims[static_cast<size_t>(i)]);
+  };
   for (Eigen::Index i = n; i < value.size(); ++i) {
-    auto& [max_value, least_known] = largest[dims[static_cast<size_t>(i)]];
-    max_value = std::max(max_value, value[i]);
-    least_known = std::max(least_known, error[i]);
+    RowGroup& group = by_dims[dims[static_cast<size_t>(i)]];
+    group.value = std::max(group.value, value[i]);
+    group.error = std::max(group.error, error[i]);
+    group.kink = std::max(group.kink, kink[i]);
+    double& vector = by_vector[get_vector(i)];
+    vector = std::max(vector, value[i]);
   }
   for (Eigen::Index i = n; i < value.size(); ++i) {
-    const auto& [max_value, least_known] = largest[dims[static_cast<size_t>(i)]];
-    if (max_value > least_known || least_known > 1e-9 * value.maxCoeff()) continue;
+    if (!by_dims[dims[static_cast<size_t>(i)]].is_rounding(value.maxCoeff(), acceleration) &&
+        std::max({value[i], error[i], kink[i]}) > kNoComponent * by_vector[get_vector(i)])
+      continue;
     jacobian.value.row(i).setZero();
     jacobian.error.row(i).setZero();
     jacobian.kink.row(i).setZero();
@@ -84,7 +111,7 @@ Jacobian calc_jacobian(Plant& plant, const OperatingPoint& point, double step_fa
   for (int j = 0; j < nx; ++j) steps[j] = choose_step(plant, point, j);
   if (nx == 0)
     for (MatrixXd* m : {&jacobian.value, &jacobian.error, &jacobian.kink}) m->setZero(rows, 0);
-  clear_rounding(plant, steps, jacobian);
+  clear_rounding(plant, plant.evaluate(point), steps, jacobian);
   return jacobian;
 }
 
@@ -113,8 +140,13 @@ VectorXd calc_input_column(Plant& plant, const OperatingPoint& point, const Plan
     const double own = change.size() > 0 ? change.cwiseAbs().maxCoeff() / kMinStep : 0;
     // A tenth of what acts already: a newton more would be lost in the roundoff of an engine's thrust.
     const double step = own > 0 ? std::max(kMinStep, 0.1 * large / own) : kMinStep;
-    const Jacobian column = differentiate_column(
+    Jacobian column = differentiate_column(
         plant, [&](double h) { return plant.evaluate(point, &input, h); }, step);
+    clear_rounding(plant, base, VectorXd::Constant(1, step), column);
+    Eigen::Index worst = 0;
+    if (column.kinks.empty() && column.kink.size() > 0 && column.kink.col(0).cwiseAbs().maxCoeff(&worst) > 0)
+      column.kinks.push_back({"input '" + input.name + "'", 0, column.value(worst, 0) - column.kink(worst, 0),
+                              column.value(worst, 0) + column.kink(worst, 0)});
     uncertainty.add(column, calc_row_scales(column.value, get_row_dims(plant)));
     return column.value;
   }
@@ -189,9 +221,20 @@ void note_unsteady(Plant& plant, const VectorXd& u_dot, const MatrixXd& A_lower,
   }
 }
 
+/// Name of the first state below `num_rows`, or output, that depends on a state; empty: none does.
+std::string find_reader(const LinearModel& model, int state, int num_rows) {
+  for (int i = 0; i < num_rows; ++i)
+    if (std::abs(model.A(i, state)) > 1e-9 * model.A.row(i).cwiseAbs().maxCoeff())
+      return model.states.name[static_cast<size_t>(i)];
+  for (Eigen::Index i = 0; i < model.C.rows(); ++i)
+    if (std::abs(model.C(i, state)) > 1e-9 * model.C.row(i).cwiseAbs().maxCoeff())
+      return model.outputs.name[static_cast<size_t>(i)];
+  return "";
+}
+
 /// A motion under way may change its own linear model.
-void check_constancy(Plant& plant, const OperatingPoint& point, const Jacobian& here, const MatrixXd& A,
-                     const std::vector<std::string>& states, const SourceLocation& at, Diagnostics& diagnostics) {
+void check_constancy(Plant& plant, const OperatingPoint& point, const Jacobian& here, const LinearModel& model,
+                     const SourceLocation& at, Diagnostics& diagnostics) {
   const int n = plant.num_dofs();
   int fastest = -1;
   double travel = 0;  // in steps
@@ -202,7 +245,7 @@ void check_constancy(Plant& plant, const OperatingPoint& point, const Jacobian& 
   }
   if (fastest < 0) return;
   // Speeds at rest are round-off: a motion counts only if it moves the system within the slowest time constant.
-  const auto poles = statespace::calc_poles(A, states);
+  const auto poles = statespace::calc_poles(model.A, model.states.name);
   double slowest = 0;
   bool drifts = false;
   for (int i = poles.size() - 1; i >= 0; --i) {
@@ -227,14 +270,29 @@ void check_constancy(Plant& plant, const OperatingPoint& point, const Jacobian& 
   } catch (const ComputationError&) {
     return;  // a loop does not reach as far
   }
-  const VectorXd scale = calc_row_scales(here.value, get_row_dims(plant)).head(n);
-  const double change = calc_relative(there.topRows(n) - here.value.topRows(n), scale);
-  if (change < (way < kFarWay ? 1e-3 : 1e-5)) return;
-  diagnostics.warning("linear.time-varying", at,
-                      "A changes along the motion, by " + brief_text(100 * change) + " % while " +
-                          plant.dof_name(fastest) + " moves by " + brief_text(delta[fastest]) +
-                          ": the model holds at this instant only",
-                      "its poles are not those of the motion; linearize at several times");
+  const VectorXd scale = calc_row_scales(here.value, get_row_dims(plant));
+  const MatrixXd moved = there - here.value;
+  const double allowed = way < kFarWay ? 1e-3 : 1e-5;
+  const auto warn = [&](const std::string& what, double change, const std::string& advice) {
+    diagnostics.warning("linear.time-varying", at,
+                        what + " along the motion, by " + brief_text(100 * change) + " % while " +
+                            plant.dof_name(fastest) + " moves by " + brief_text(delta[fastest]) +
+                            ": the model holds at this instant only",
+                        advice);
+  };
+  const double change = calc_relative(moved.topRows(n), scale.head(n));
+  if (change >= allowed)
+    return warn("A changes", change, "its poles are not those of the motion; linearize at several times");
+  const int first = n + plant.num_signal_states();  // of the path rows; their columns are n further
+  for (int i = 0; i < plant.num_paths(); ++i) {
+    const double path_change = calc_relative(moved.row(first + i), scale.segment(first + i, 1));
+    if (path_change < allowed) continue;
+    const std::string reader = find_reader(model, n + first + i, 2 * n + plant.num_signal_states());
+    if (reader.empty()) continue;
+    return warn("the row of path coordinate " + plant.state_name(plant.num_signal_states() + i) + " in A, on which " +
+                    reader + " depends, changes",
+                path_change, "linearize at several times, or leave out what depends on it");
+  }
 }
 
 /// Names the laws with two slopes at the operating point, or what else makes the derivatives uncertain.
@@ -368,7 +426,7 @@ LinearModel linearize(Plant& plant, const OperatingPoint& point, const Linearize
   if (options.check) {
     const Jacobian other = calc_jacobian(plant, point, kOtherStep);
     model.difference = calc_relative(take_rows(other.value - jacobian.value, 0, rows), scale);
-    check_constancy(plant, point, jacobian, model.A, model.states.name, at, diagnostics);
+    check_constancy(plant, point, jacobian, model, at, diagnostics);
   }
   if (options.check && options.cut.empty() && !plant.is_open())
     model.multipliers = calc_multipliers(plant, point, model.A, at, diagnostics, uncertainty);

@@ -13,10 +13,10 @@ constexpr double kMaxSteps = 1e11;
 
 bool check_simulation(const records::SimulationRecord& s, Diagnostics& diagnostics) {
   const int errors = diagnostics.num_errors();
-  const std::vector<std::string> known = {"adams", "bdf", "rk", "rk4", "implicit", "auto"};
+  const std::vector<std::string> known = {"adams", "bdf", "rk", "radau", "rk4", "implicit", "auto"};
   if (std::find(known.begin(), known.end(), s.integrator) == known.end()) {
     diagnostics.error("run.unknown-integrator", s.at, "the integrator '" + s.integrator + "' is unknown",
-                      suggest_name(s.integrator, known, "use adams, bdf, rk, rk4, implicit or auto"));
+                      suggest_name(s.integrator, known, "use adams, bdf, rk, radau, rk4, implicit or auto"));
   }
   const auto demand = [&](bool condition, const std::string& what, const std::string& advice) {
     if (!condition) diagnostics.error("run.bad-simulation", s.at, what, advice);

@@ -22,6 +22,12 @@ void report(const records::UserEventRecord& r, const char* id, const std::string
   diagnostics.error(id, r.at, "event '" + r.name + "' " + what, advice);
 }
 
+/// Returns true if the file has a record of this name: one that is not in the system has an error already.
+template <class Record>
+bool has_record(const std::vector<Record>& records, const std::string& name) {
+  return std::any_of(records.begin(), records.end(), [&](const Record& record) { return record.name == name; });
+}
+
 /// Rows of u of the coordinates an event names: all of an orientation, or none of it.
 std::vector<int> find_rows(const System& system, int body, const records::UserEventRecord& r,
                            Diagnostics& diagnostics) {
@@ -88,7 +94,7 @@ EventActions EventActions::build(const System& system, const records::SystemSpec
       const int body = system.find_hinge(r.target);
       if (body >= 0 && is_valid)
         change.rows = find_rows(system, body, r, diagnostics);
-      else if (body < 0 && is_valid)
+      else if (body < 0 && is_valid && !has_record(spec.hinges, r.target))
         report(r, "run.unknown-target", "names hinge '" + r.target + "', which does not exist",
                find_near(r.target, system.num_bodies(), [&](int i) { return system.hinge_name(i); }), diagnostics);
       change.text = "hinge '" + r.target + "'";
@@ -97,7 +103,7 @@ EventActions EventActions::build(const System& system, const records::SystemSpec
       change.text += r.action == EventAction::Lock ? " is locked" : " is released";
     } else if (is_constraint) {
       change.constraint = system.find_constraint(r.target);
-      if (change.constraint < 0 && is_valid)
+      if (change.constraint < 0 && is_valid && !has_record(spec.constraints, r.target))
         report(r, "run.unknown-target", "names constraint '" + r.target + "', which does not exist",
                find_near(r.target, system.num_constraints(), [&](int i) { return system.constraint_name(i); }),
                diagnostics);

@@ -5,6 +5,8 @@
 
 #include "solver/forces/stop_tolerance.hpp"
 #include "solver/simulate/run.hpp"
+#include "solver/system/derivative.hpp"
+#include "solver/system/mobility.hpp"
 #include "solver/system/system.hpp"
 
 namespace bough::solver {
@@ -13,8 +15,57 @@ namespace {
 constexpr int kMaxImpactRounds = 200;
 constexpr double kImpactNoise = 1e-9;  // of the hardest blow of a moment: what is slower stays together
 constexpr double kTouch = 1e-11;       // of where a stop is, or how far it was: what is no farther from it touches it
+// Acceleration of a coordinate relative to what its friction can change, above which the loops force its rate.
+constexpr double kForced = 1e6;
+constexpr double kMinMobility = 1e-14;  // in a loop, relative to the open tree: round-off of the loop's factor
 
 int sign(double x) { return x > 0 ? 1 : x < 0 ? -1 : 0; }
+
+// Force by which a sticking contact may exceed its limit by round-off: a bearing without load has a limit of zero.
+template <class Contacts>
+double calc_force_noise(const Contacts& contacts, const TreeData& data) {
+  constexpr double kNoise = 1e-13;  // of the largest friction
+  double largest = 0;
+  for (const auto& w : contacts)
+    if (const double high = w.high(data); std::isfinite(high)) largest = std::max(largest, high);
+  return kNoise * largest;
+}
+
+// Returns true if the loops force the rate of a free coordinate through zero, so that its friction cannot hold it.
+// One coordinate can stick if |a| <= 2 A F, with A its mobility and F the limit of its friction. Coordinates that stick
+// together hold each other, hence the wide margin; A is of the order of (rate / rate of the loop)², which is round-off
+// at a zero of the rate that the loop's motion forces. A lock there would stop the whole loop.
+bool is_forced(const System& system, SystemData& data, int row, double acceleration, double limit) {
+  if (data.loops.blocks.empty() || acceleration == 0) return false;
+  const Mobility mobility = calc_mobility(system, data, row);
+  return std::abs(acceleration) > kForced * std::max(mobility.closed, kMinMobility * mobility.open) * limit;
+}
+
+// Returns true if sticking joints of its loops hold a free coordinate with friction: neither its friction nor the
+// motion changes its rate, which is round-off.
+bool is_held_by_loop(const System& system, SystemData& data, int row, double acceleration, double limit) {
+  constexpr double kNoMobility = 1e-12;
+  if (data.loops.blocks.empty()) return false;
+  const Mobility mobility = calc_mobility(system, data, row);
+  return mobility.closed <= kNoMobility * mobility.open &&
+         std::abs(acceleration) <= kForced * kMinMobility * mobility.open * limit;
+}
+
+// Derivatives of a trial state of the stick test. The reactions of a coordinate that cannot stick may be so large that
+// the friction of another one has no value: the trial then has no friction by bearing load, and keeps the limits of the
+// last state. \return false in that case.
+bool calc_trial(HybridSystem& ode, double t, const VectorXd& y, VectorXd& y_dot) {
+  try {
+    ode.calc_derivative(t, y, y_dot);
+    return true;
+  } catch (const ComputationError& error) {
+    if (error.items().front().id != "solver.friction-jams") throw;
+  }
+  ode.data().friction.is_frozen = true;
+  calc_derivative(ode.system(), ode.data(), t, y, y_dot);
+  ode.data().friction.is_frozen = false;
+  return false;
+}
 
 }  // namespace
 
@@ -28,6 +79,7 @@ JointContacts::JointContacts(const System& system) : system_(system) {
 
 void JointContacts::calc_event_functions(const SystemData& data, VectorXd& event_functions) const {
   event_functions.setConstant(-1);
+  const double noise = calc_force_noise(joint_contacts_, data.tree);
   for (size_t i = 0; i < joint_contacts_.size(); ++i) {
     const Watched& w = joint_contacts_[i];
     auto own = event_functions.segment<kNumEventFunctions>(kNumEventFunctions * static_cast<Eigen::Index>(i));
@@ -36,8 +88,8 @@ void JointContacts::calc_event_functions(const SystemData& data, VectorXd& event
     if (mode == HingeMode::Locked && w.rests) {
       const double force = data.tree.calc_constraint_force(w.contact.u_row);
       const double high = w.high(data.tree), low = w.low(data.tree);
-      if (std::isfinite(high)) own[0] = force - high;
-      if (std::isfinite(low)) own[1] = low - force;
+      if (std::isfinite(high)) own[0] = force - high - noise;
+      if (std::isfinite(low)) own[1] = low - force - noise;
     } else if (mode == HingeMode::Free) {
       // Past the stop and moving on: a coordinate that has just rebounded may still be past it by round-off.
       if (std::isfinite(w.contact.lower)) own[0] = std::min(w.contact.lower - q, -rate * shortest_);
@@ -154,18 +206,40 @@ void JointContacts::find_rest(HybridSystem& ode, double t, double shortest, Vect
   rests.assign(joint_contacts_.size(), false);
   before.assign(joint_contacts_.size(), false);
   slide.assign(joint_contacts_.size(), 0);
+  std::vector<double> slowest(joint_contacts_.size(), 0);
+  // Sticking joints that can hold their forces: coordinates that these keep still need no lock.
+  const auto can_hold = [&](const Watched& w) {
+    const TreeData& data = ode.data().tree;
+    if (!w.rests || data.mode[static_cast<size_t>(w.contact.u_row)] != HingeMode::Locked) return true;
+    const double force = data.calc_constraint_force(w.contact.u_row);
+    const double noise = calc_force_noise(joint_contacts_, data);
+    return force <= w.high(data) + noise && force >= w.low(data) - noise;
+  };
+  const bool holds = std::all_of(joint_contacts_.begin(), joint_contacts_.end(), can_hold);
   for (size_t i = 0; i < joint_contacts_.size(); ++i) {
     const Watched& w = joint_contacts_[i];
     const HingeMode mode = ode.data().tree.mode[static_cast<size_t>(w.contact.u_row)];
     before[i] = w.rests && mode == HingeMode::Locked;
     if (mode == HingeMode::Prescribed || (mode == HingeMode::Locked && !w.rests)) continue;
-    const double rate = y[u + w.contact.u_row];
+    const double rate = y[u + w.contact.u_row], acceleration = y_dot_[u + w.contact.u_row];
     slide[i] = w.contact.has_friction() ? sign(rate) : 0;
     const bool is_held = w.contact.has_friction() || w.stop != 0;
-    const bool is_slow = std::abs(rate) <= calc_slowest(w, u, shortest);
+    slowest[i] = calc_slowest(w, u, shortest);
+    const bool is_slow = std::abs(rate) <= slowest[i];
     // A coordinate that slides and has not reversed continues to slide.
     const bool turns = !w.contact.has_friction() || w.slide == 0 || w.slide * rate <= 0;
-    if (is_held && is_slow && turns) rests[i] = true;  // what is left of its rate goes by the impulse of locking it
+    if (!is_held || !is_slow || !turns) continue;
+    if (mode == HingeMode::Free && w.slide == 0 && holds &&
+        is_held_by_loop(system_, ode.data(), w.contact.u_row, acceleration, w.high(ode.data().tree))) {
+      slide[i] = 0;
+      continue;
+    }
+    if (w.stop == 0 && mode == HingeMode::Free &&
+        is_forced(system_, ode.data(), w.contact.u_row, acceleration, w.high(ode.data().tree))) {
+      if (slide[i] == 0) slide[i] = sign(acceleration);
+      continue;
+    }
+    rests[i] = true;  // what is left of its rate goes by the impulse of locking it
   }
   for (size_t left = joint_contacts_.size() + 1; left > 0; --left) {
     lock(ode, t, rests, y);
@@ -174,8 +248,8 @@ void JointContacts::find_rest(HybridSystem& ode, double t, double shortest, Vect
       joint_contacts_[i].slide = rests[i] ? 0 : slide[i];
       ode.data().tree.slide[joint_contacts_[i].contact.u_row] = joint_contacts_[i].slide;
     }
-    ode.calc_derivative(t, y, y_dot_);
-    double max_excess = 0;
+    const bool has_value = calc_trial(ode, t, y, y_dot_);
+    double max_excess = calc_force_noise(joint_contacts_, ode.data().tree);
     size_t released = joint_contacts_.size();
     for (size_t i = 0; i < joint_contacts_.size(); ++i) {
       if (!rests[i]) continue;
@@ -186,13 +260,22 @@ void JointContacts::find_rest(HybridSystem& ode, double t, double shortest, Vect
       max_excess = excess;
       released = i;
     }
-    if (released == joint_contacts_.size()) break;
+    if (released == joint_contacts_.size()) {
+      if (!has_value) ode.calc_derivative(t, y, y_dot_);  // fails: this is no trial
+      break;
+    }
     rests[released] = false;
     if (joint_contacts_[released].contact.has_friction())
       slide[released] = ode.data().tree.calc_constraint_force(joint_contacts_[released].contact.u_row) > 0 ? -1 : 1;
   }
+  const bool any_rests = std::find(rests.begin(), rests.end(), true) != rests.end();
   for (size_t i = 0; i < joint_contacts_.size(); ++i) {
-    const Watched& w = joint_contacts_[i];
+    Watched& w = joint_contacts_[i];
+    const int row = w.contact.u_row;
+    // The sign of round-off is no reversal: the coordinate is tested again when a joint of its loop slips.
+    if (any_rests && w.slide != 0 && std::abs(y[u + row]) <= slowest[i] &&
+        is_held_by_loop(system_, ode.data(), row, y_dot_[u + row], w.high(ode.data().tree)))
+      w.slide = 0;
     if (rests[i] && !before[i])
       what.push_back(w.contact.name + (w.stop != 0 ? " comes to rest at its stop" : " sticks"));
     if (!rests[i] && before[i]) what.push_back(w.contact.name + (w.stop != 0 ? " leaves its stop" : " slips"));

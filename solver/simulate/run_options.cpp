@@ -4,6 +4,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "solver/forces/central_gravity.hpp"
 #include "solver/simulate/stiffening_advice.hpp"
 #include "solver/system/system.hpp"
 
@@ -38,9 +39,9 @@ void hint_at_fast_modes(const System& system, const RunSetup& setup, const Sourc
   std::ostringstream what;
   what << "integrator " << setup.integrator << " follows the fastest mode of body '" << system.body_name(where) << "', "
        << fastest << " rad per unit of time, " << turned << " rad between samples";
-  diagnostics.note(
-      "run.fast-modes", at, what.str(),
-      "integrator = \"auto\" or \"bdf\" damps such modes out, \"implicit\" at a fixed step; or keep fewer modes");
+  diagnostics.note("run.fast-modes", at, what.str(),
+                   "integrator = \"auto\", \"bdf\" or \"radau\" damps such modes out, \"implicit\" at a fixed step; or "
+                   "keep fewer modes");
 }
 
 /// Samples of a run are counted before it starts: each ends a step.
@@ -127,9 +128,12 @@ std::string choose_integrator(const System& system, const records::SimulationRec
   std::ostringstream why;
   std::string choice = "adams";
   if (fastest * output_step > kFastMode) {
-    choice = "bdf";
+    const auto is_central = [](const auto& e) { return dynamic_cast<const CentralGravity*>(e.get()) != nullptr; };
+    const bool is_orbit = std::any_of(system.elements.begin(), system.elements.end(), is_central);
+    choice = is_orbit ? "radau" : "bdf";
     why << "the fastest mode swings at " << fastest << " rad per unit of time, " << fastest * output_step
-        << " rad between samples, which explicit steps would have to follow; bdf damps it out";
+        << " rad between samples, which explicit steps would have to follow; " << choice << " damps it out"
+        << (is_orbit ? ", at an order for long orbits" : "");
   } else if (system.num_constraints() > 0) {
     choice = "rk";
     why << "it projects onto constraints, and steps can follow the fastest mode, " << fastest

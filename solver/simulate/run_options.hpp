@@ -24,8 +24,8 @@ struct RunSetup {
 RunSetup prepare_run(const System& system, const records::SystemSpec& spec, Diagnostics& diagnostics);
 
 /// For integrator = "auto": "bdf" where the fastest mode or spring swings more than `kFastMode` radians between
-/// samples, so that steps that follow it serve nothing; else "rk" for tolerances below 1e-10, else "adams". A note says
-/// which and why.
+/// samples, so that steps that follow it serve nothing ("radau" with gravity_central: errors of an orbit add up); else
+/// "rk" for tolerances below 1e-10, else "adams". A note gives the choice and the reason.
 std::string choose_integrator(const System& system, const records::SimulationRecord& simulation, double output_step,
                               Diagnostics& diagnostics);
 inline constexpr double kFastMode = 300;

@@ -79,13 +79,32 @@ std::vector<Index> list_positions(const records::LinearModel& model) {
   return rows;
 }
 
-/// Twice the area of the orbit, positive in the direction of the spin, over the sum of the squares of its half axes.
-double calc_whirl(const MatrixXd& C, const std::vector<Index>& rows, const Eigen::Vector3d& axis,
+/// Square of an orbit that is round-off, over that of the largest displacement that the coordinates of a shape can
+/// give.
+constexpr double kNoOrbit = 1e-12;
+
+/// Largest square of a coordinate of the shape, times that of a displacement by a unit of a coordinate. Rates are left
+/// out.
+double calc_scale(const records::LinearModel& model, const std::vector<Index>& rows, const Eigen::VectorXcd& shape) {
+  double coordinate = 0, displacement = 0;
+  for (Index k = 0; k < shape.size(); ++k) {
+    if (const auto i = static_cast<std::size_t>(k);
+        i < model.states.dims.size() && model.states.dims[i].ends_with("/T"))
+      continue;
+    coordinate = std::max(coordinate, std::norm(shape[k]));
+    for (const Index row : rows) displacement = std::max(displacement, model.C.col(k).segment<3>(row).squaredNorm());
+  }
+  return coordinate * displacement;
+}
+
+/// Twice the area of the orbit, positive in the direction of the spin, over the sum of the squares of its half axes; 0
+/// if every orbit is round-off: axial motion and torsion.
+double calc_whirl(const records::LinearModel& model, const std::vector<Index>& rows, const Eigen::Vector3d& axis,
                   const Eigen::VectorXcd& shape) {
   const Eigen::Vector3d x = axis.unitOrthogonal(), y = axis.cross(x);
   double largest = 0, whirl = 0;
   for (const Index row : rows) {
-    const Eigen::Vector3cd u = C.middleRows(row, 3) * shape;
+    const Eigen::Vector3cd u = model.C.middleRows(row, 3) * shape;
     const std::complex<double> u_x = x.dot(u.real()) + std::complex<double>(0, x.dot(u.imag())),
                                u_y = y.dot(u.real()) + std::complex<double>(0, y.dot(u.imag()));
     const double size = std::norm(u_x) + std::norm(u_y);
@@ -93,7 +112,7 @@ double calc_whirl(const MatrixXd& C, const std::vector<Index>& rows, const Eigen
     largest = size;
     whirl = -2 * (std::conj(u_x) * u_y).imag() / size;
   }
-  return whirl;
+  return largest > kNoOrbit * calc_scale(model, rows, shape) ? whirl : 0;
 }
 
 }  // namespace
@@ -139,7 +158,7 @@ void track_poles(records::LinearSweep& sweep, const Eigen::Vector3d& spin_axis) 
     for (Index b = 0; b < nx && !positions.empty(); ++b)
       if (std::abs(before.value[b].imag()) > 0)
         sweep.whirl(k, b) =
-            (before.value[b].imag() > 0 ? 1 : -1) * calc_whirl(model.C, positions, spin_axis, before.right.col(b));
+            (before.value[b].imag() > 0 ? 1 : -1) * calc_whirl(model, positions, spin_axis, before.right.col(b));
     std::vector<bool> is_used(static_cast<std::size_t>(nx), false);
     for (Index b = 0; b < nx; ++b) {
       // The poles of the model come block by block: exact zeros; the nearest is the one meant.

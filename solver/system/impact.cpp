@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "solver/system/mobility.hpp"
 #include "solver/system/system.hpp"
 
 namespace bough::solver {
@@ -22,22 +23,31 @@ VectorXd solve_active(const MatrixXd& A, const VectorXd& target, const std::vect
   return p;
 }
 
+// Factors the tree and its loops at the kinematics of `system_data`.
+void factor_mass(const System& system, SystemData& system_data) {
+  TreeData& data = system_data.tree;
+  calc_factor(system.tree, data);
+  if (system_data.loops.blocks.empty()) return;
+  calc_closure_positions(system.loops, system.tree, data, system_data.loops);
+  factor_loops(system.loops, system.tree, data, system_data.loops);
+}
+
+// Rates of the tree by a unit impulse along `row`; loops open.
+VectorXd calc_tree_response(const System& system, TreeData& data, int row) {
+  Sweep& s = start_response(data);
+  s.tau[row] = 1;
+  run_response(system.tree, data, s);
+  return s.u_dot;
+}
+
 // M⁻¹ of a unit impulse along each row, loops closed: num_u x blows.
 MatrixXd calc_responses(const System& system, SystemData& system_data, const std::vector<Impact>& blows) {
   TreeData& data = system_data.tree;
   MatrixXd D(system.tree.num_u, static_cast<Eigen::Index>(blows.size()));
-  calc_factor(system.tree, data);
-  const bool has_loops = !system_data.loops.blocks.empty();
-  if (has_loops) {
-    calc_closure_positions(system.loops, system.tree, data, system_data.loops);
-    factor_loops(system.loops, system.tree, data, system_data.loops);
-  }
+  factor_mass(system, system_data);
   for (size_t j = 0; j < blows.size(); ++j) {
-    Sweep& s = start_response(data);
-    s.tau[blows[j].row] = 1;
-    run_response(system.tree, data, s);
-    VectorXd du = s.u_dot;
-    if (has_loops) remove_normal(system.loops, system.tree, data, system_data.loops, du);
+    VectorXd du = calc_tree_response(system, data, blows[j].row);
+    if (!system_data.loops.blocks.empty()) remove_normal(system.loops, system.tree, data, system_data.loops, du);
     D.col(static_cast<Eigen::Index>(j)) = du;
   }
   for (int row = 0; row < system.tree.num_u; ++row) {
@@ -71,6 +81,15 @@ VectorXd solve_impact_lcp(const MatrixXd& A, const VectorXd& v, const VectorXd& 
   int hardest = 0;
   v.minCoeff(&hardest);
   return solve_active(A, target, {hardest}).cwiseMax(0);
+}
+
+Mobility calc_mobility(const System& system, SystemData& system_data, int row) {
+  factor_mass(system, system_data);
+  VectorXd du = calc_tree_response(system, system_data.tree, row);
+  const double open = du[row];
+  if (!system_data.loops.blocks.empty())
+    remove_normal(system.loops, system.tree, system_data.tree, system_data.loops, du);
+  return {open, du[row]};
 }
 
 void strike(const System& system, SystemData& system_data, double t, const Eigen::Ref<const VectorXd>& q,

@@ -8,6 +8,7 @@
 
 #include "solver/bodies/kernels.hpp"
 #include "solver/tree/gimbal_lock.hpp"
+#include "solver/tree/hinge_sizes.hpp"
 
 namespace bough::solver {
 
@@ -76,24 +77,8 @@ void factor_rigid(const TreeBody& tb, BodyData& d, const double* added, double t
 }
 
 void factor_rigid(const TreeBody& tb, BodyData& d, const double* added, double t, Matrix6d& passed) {
-  switch (d.num_free) {
-    case 0:
-      return factor_rigid<0>(tb, d, added, t, passed);
-    case 1:
-      return factor_rigid<1>(tb, d, added, t, passed);
-    case 2:
-      return factor_rigid<2>(tb, d, added, t, passed);
-    case 3:
-      return factor_rigid<3>(tb, d, added, t, passed);
-    case 4:
-      return factor_rigid<4>(tb, d, added, t, passed);
-    case 5:
-      return factor_rigid<5>(tb, d, added, t, passed);
-    case 6:
-      return factor_rigid<6>(tb, d, added, t, passed);
-    default:
-      BOUGH_DEMAND(false);
-  }
+  BOUGH_DEMAND(d.num_free <= 6);
+  with_size(d.num_free, [&](auto size) { factor_rigid<size>(tb, d, added, t, passed); });
 }
 
 // [D; W_top]; of D the lower triangle counts.

@@ -1,5 +1,6 @@
 // M⁻¹ times something: the sweeps of solve.cpp without h, gravity and bias.
 #include "solver/tree/data.hpp"
+#include "solver/tree/hinge_sizes.hpp"
 
 namespace bough::solver {
 
@@ -80,9 +81,7 @@ void run_rates(const Tree& tree, const TreeData& data, const ConstVectorRef& u, 
     const Vector6d A_P = tb.parent < 0 ? s.ground : Vector6d(s.A.col(tb.parent));
     Vector6d A;
     if (tb.on_parent.moves) {
-      const TreeBody& parent = tree[tb.parent];
-      A.noalias() = d.X.leftCols<6>() * A_P;
-      A.noalias() += d.X.rightCols(parent.num_modes()) * s.u_dot.segment(parent.eta_dot_offset(), parent.num_modes());
+      A = carry_by_modes(tree, tb, d, A_P, s.u_dot);
     } else {
       const Vector3d w = A_P.tail<3>();
       A << d.R_PB.transpose() * (A_P.head<3>() + w.cross(d.r_PoBo)), d.R_PB.transpose() * w;

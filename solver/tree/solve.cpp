@@ -3,6 +3,7 @@
 // and base to tip u̇ = D⁻¹e - G X [A'_P; η̈_P]. A flexible body stops halfway at z = L⁻¹e.
 #include "solver/bodies/kernels.hpp"
 #include "solver/tree/data.hpp"
+#include "solver/tree/hinge_sizes.hpp"
 
 namespace bough::solver {
 
@@ -28,22 +29,7 @@ void solve_rigid(const BodyData& d, const double* tau, const Vector6d& beta, dou
 }
 
 void solve_rigid(const BodyData& d, const double* tau, const Vector6d& beta, double* z, Vector6d& passed) {
-  switch (d.num_free) {
-    case 0:
-      return solve_rigid<0>(d, tau, beta, z, passed);
-    case 1:
-      return solve_rigid<1>(d, tau, beta, z, passed);
-    case 2:
-      return solve_rigid<2>(d, tau, beta, z, passed);
-    case 3:
-      return solve_rigid<3>(d, tau, beta, z, passed);
-    case 4:
-      return solve_rigid<4>(d, tau, beta, z, passed);
-    case 5:
-      return solve_rigid<5>(d, tau, beta, z, passed);
-    default:
-      return solve_rigid<6>(d, tau, beta, z, passed);
-  }
+  with_size(d.num_free, [&](auto size) { solve_rigid<size>(d, tau, beta, z, passed); });
 }
 
 void solve_flexible(const TreeBody& tb, const BodyData& d, const double* tau, const ConstVectorRef& beta,
@@ -93,9 +79,7 @@ void solve_to_tip(const Tree& tree, int b, const TreeData& data, Sweep& s) {
   const Vector6d A_P = tb.parent < 0 ? s.ground : Vector6d(s.A.col(tb.parent));
   Vector6d A;
   if (tb.on_parent.moves) {
-    const TreeBody& parent = tree[tb.parent];
-    A.noalias() = d.X.leftCols<6>() * A_P;
-    A.noalias() += d.X.rightCols(parent.num_modes()) * s.u_dot.segment(parent.eta_dot_offset(), parent.num_modes());
+    A = carry_by_modes(tree, tb, d, A_P, s.u_dot);
   } else {
     const Matrix3d R_BP = d.R_PB.transpose();
     const Vector3d alpha = A_P.tail<3>();

@@ -97,10 +97,7 @@ TEST(TwoLinkModes, TenClampedModesRunAndConverge) {
       EXPECT_NEAR(tip[0], kChainTip[0], 5e-4);
       EXPECT_NEAR(tip[1], kChainTip[1], 5e-4);
     }
-    const VectorXd balance = calc_energy_balance(sink);
-    const double drift = (balance.array() - balance[0]).abs().maxCoeff() / sink.get("/energy/kinetic").maxCoeff();
-    record("drift_" + name, drift);
-    EXPECT_LT(drift, 1e-8);
+    EXPECT_LT(record_energy_drift(sink, "drift_" + name), 1e-8);
   }
 }
 
@@ -126,10 +123,7 @@ TEST(TwoLinkModes, ExampleRunsForAQuarterOfAMinute) {
   example.spec.simulation.output_step = 0.1;
   solver::MemorySink sink;
   ASSERT_TRUE(example.run(sink).completed);
-  const VectorXd balance = calc_energy_balance(sink);
-  const double drift = (balance.array() - balance[0]).abs().maxCoeff() / sink.get("/energy/kinetic").maxCoeff();
-  record("energy_drift_15_s", drift);
-  EXPECT_LT(drift, 2.5e-10);
+  EXPECT_LT(record_energy_drift(sink, "energy_drift_15_s"), 2.5e-10);
 }
 
 }  // namespace

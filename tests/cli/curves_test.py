@@ -146,7 +146,7 @@ class Plot(ProgramTest):
         np.testing.assert_allclose(np.log10(curve[:, 1]), np.log10(wanted), atol=0.03)
 
     # Half sine of 100 for 11 ms, 10 us apart, as the acceleration of a base; the mass on it is soft.
-    SHOCK = ("SOL 109\nCEND\nSPC = 1\nDLOAD = 9\nTSTEP = 3\nACCELERATION = ALL\nBEGIN BULK\nGRID,1,,0.,0.,0.,,23456\nGRID,2,,0.,0.,0.,,23456\n"
+    SHOCK = ("SOL 109\nCEND\nSPC = 1\nDLOAD = 9\nTSTEP = 3\nACCELERATION = ALL\nDISPLACEMENT = ALL\nBEGIN BULK\nGRID,1,,0.,0.,0.,,23456\nGRID,2,,0.,0.,0.,,23456\n"
              "CONM2,1,2,,1.\nCELAS2,1,1.,1,1,2,1\nSPC1,1,1,1\nTLOAD1,9,10,,ACCE,7\nSPCD,10,1,1,1.\nTSTEP,3,1110,1.-5\nTABLED1,7\n{table},ENDT\nENDDATA\n")
 
     def test_shock_spectrum(self):
@@ -186,6 +186,15 @@ class Plot(ProgramTest):
         self.assertIn("cli.coarse-shock", self.bough("plot", "s.h5", "--sensor", "acceleration:1:1", "--srs", "pseudo-velocity",
                                                      "--srs-range", "100,30000", "-o", "s.svg").stderr)
         self.fails(1, "plot", "s.h5", "--sensor", "acceleration:1:1", "--srs", "pseudo-velocity", "--srs-range", "100,50", error="cli.bad-range")
+        # A curve that is no acceleration: a warning, for a response and for a run.
+        plot = lambda file, name: self.bough("plot", file, "--sensor", name, "--srs", "pseudo-velocity", "-o", "s.svg").stderr
+        self.assertNotIn("cli.shock-input", plot("s.h5", "acceleration:1:1"))
+        self.assertIn("displacement:2:1 is a displacement, found no acceleration", plot("s.h5", "displacement:2:1"))
+        self.write("run.toml", SYSTEM.replace("{damping}", "0.5").replace("{step}", "0.01").replace(
+            "[simulation]", '[[sensor]]\nname = "shake"\ntype = "acceleration"\nbody = "bob"\n[simulation]'))
+        self.bough("run", "run.toml", "-o", "run.h5")
+        self.assertIn("sensors/place:x is of dimensions L, found no acceleration", plot("run.h5", "place:x"))
+        self.assertNotIn("cli.shock-input", plot("run.h5", "shake:x"))
 
     def test_spectrum(self):
         a = self.results["a"]

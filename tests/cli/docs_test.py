@@ -9,6 +9,7 @@ import unittest
 
 import h5py
 
+from page_blocks import list_commands
 from support import PROGRAM, SOURCE, ProgramTest, served
 
 
@@ -26,7 +27,7 @@ class Pages(ProgramTest):
     def do(self, text, skip=()):
         """Runs every line that begins with four blanks and bough or cd, in order; gives what all of them printed."""
         folder, printed = self.folder, ""
-        for line in re.findall(r"(?m)^    ((?:bough|cd) .*)$", text):
+        for line in list_commands(text):
             for command in line.split("&&"):
                 words = shlex.split(command)
                 if words[0] == "cd":

@@ -81,6 +81,12 @@ class EditAtTerminal(ProgramTest):
         with open(self.path("p.toml")) as f:
             return f.read()
 
+    def save(self, text):
+        """Saves, finds the text in the file, and leaves."""
+        self.terminal.send("save\r")
+        self.assertIn(text, self.read())
+        self.finish()
+
     def finish(self):
         os.write(self.terminal.master, b"quit\r")
         self.terminal.read_until(None)
@@ -94,9 +100,7 @@ class EditAtTerminal(ProgramTest):
         self.assertIn("[[sensor]]", t.send("show mid\r"))
         self.assertIn('type = "deflection"', t.said)
         self.assertIn('body = "bob"', t.said)
-        t.send("save\r")
-        self.assertIn('[[sensor]]\nname = "mid"\ntype = "deflection"\nbody = "bob"\nnode = 0\n', self.read())
-        self.finish()
+        self.save('[[sensor]]\nname = "mid"\ntype = "deflection"\nbody = "bob"\nnode = 0\n')
 
     def test_history(self):
         t = self.terminal
@@ -106,9 +110,8 @@ class EditAtTerminal(ProgramTest):
         self.assertIn("7.5", t.send("show bob.mass\r"))
         t.send("undo\r")
         self.assertIn("5.0", t.send("show bob.mass\r"))
-        t.send("redo\rsave\r")
-        self.assertIn("mass = 7.5", self.read())
-        self.finish()
+        t.send("redo\r")
+        self.save("mass = 7.5")
 
     def test_ctrl_c_leaves_the_line_not_the_session(self):
         t = self.terminal
@@ -123,9 +126,7 @@ class EditAtTerminal(ProgramTest):
         self.assertIn("not saved", said)
         t.send("\x03")
         self.assertIn("5.0", t.send("show bob.mass\r"))
-        t.send("save\r")
-        self.assertIn("mass = 5.0", self.read())
-        self.finish()
+        self.save("mass = 5.0")
 
     def test_add_asks_for_what_the_type_needs(self):
         t = self.terminal

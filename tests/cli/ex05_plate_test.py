@@ -42,6 +42,31 @@ class Plate(ProgramTest):
         with open(self.path("plate.svg")) as f:
             self.assertIn("<svg", f.read(200))
 
+    def test_stresses_around_a_hole(self):
+        """Principal stresses up to a radius from the hole: Kirsch, VDI-Z 42 (1898) 797, at the middles of elements."""
+        self.copy_example("ex05-plate")
+        self.bough("static", "hole.bdf", "-o", "hole.h5")
+        with open(self.path("hole.bdf")) as f:
+            cards = [line.strip().split(",") for line in f]
+        grids = {int(c[1]): (float(c[3]), float(c[4])) for c in cards if c[0] == "GRID"}
+        middles = {int(c[1]): np.mean([grids[int(g)] for g in c[3:7]], axis=0) for c in cards if c[0] == "CQUAD4"}
+        with h5py.File(self.path("hole.h5")) as f:
+            group = next(iter(f["subcases"].values()))["stresses/CQUAD4"]
+            names = [n.decode() if isinstance(n, bytes) else n for n in group.attrs["components"]]
+            found = {i: row for i, row in zip(group["id"][:], group["stress"][:, [names.index(c) for c in ("major@top", "minor@top")]])}
+        worst = 0
+        for element, (x, y) in middles.items():
+            r, angle = np.hypot(x, y) / 0.5, np.arctan2(y, x)
+            if r > 2:
+                continue
+            radial = 500 * ((1 - r**-2) + (1 - 4 * r**-2 + 3 * r**-4) * np.cos(2 * angle))
+            hoop = 500 * ((1 + r**-2) - (1 + 3 * r**-4) * np.cos(2 * angle))
+            shear = -500 * (1 + 2 * r**-2 - 3 * r**-4) * np.sin(2 * angle)
+            exact = np.linalg.eigvalsh([[radial, shear], [shear, hoop]])[::-1]
+            worst = max(worst, np.abs(found[element] - exact).max() / 3000)
+        self.assertLess(worst, 0.03)    # of the largest; the finite width gives 1 %, the mean over an element the rest
+        self.assertAlmostEqual(max(row[0] for row in found.values()), 2892, delta=1)
+
 
 if __name__ == "__main__":
     unittest.main()

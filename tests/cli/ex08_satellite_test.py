@@ -21,10 +21,7 @@ def fit_poles(values, period, order):
 
 
 class Satellite(ProgramTest):
-    def setUp(self):
-        super().setUp()
-        self.copy_example("ex08-satellite")
-        self.bough("reduce", "wing.toml")
+    EXAMPLE = "ex08-satellite", "wing.toml"
 
     def test_poles_are_those_of_the_history(self):
         self.bough("linearize", "pointing.toml", "-o", "poles.h5")

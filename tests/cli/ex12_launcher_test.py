@@ -47,10 +47,7 @@ def calc_poles(time, upper):
 
 
 class Launcher(ProgramTest):
-    def setUp(self):
-        super().setUp()
-        self.copy_example("ex12-launcher")
-        self.bough("reduce", "upper.toml")
+    EXAMPLE = "ex12-launcher", "upper.toml"
 
     def test_impulse_mass_and_slosh_of_the_ascent(self):
         self.bough("run", "ascent.toml", "-o", "ascent.h5")

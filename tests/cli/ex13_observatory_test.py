@@ -12,10 +12,10 @@ INPUTS = "fx,fy,mx,my,cooler,noise_x,noise_y"
 
 
 class Observatory(ProgramTest):
+    EXAMPLE = "ex13-observatory", "telescope.toml"
+
     def setUp(self):
         super().setUp()
-        self.copy_example("ex13-observatory")
-        self.bough("reduce", "telescope.toml")
         self.bough("linearize", "observatory.toml", "--inputs", INPUTS, "--outputs", "sight", "-o", "linear.h5")
         self.A, self.B, self.C, self.D, states, inputs, imag = self.read_arrays(
             "linear.h5", "A", "B", "C", "D", "states/name", "inputs/name", "poles/imag")

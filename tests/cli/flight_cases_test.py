@@ -7,20 +7,14 @@ import scipy.integrate
 import scipy.linalg
 
 from support import ProgramTest
+from spacecraft import write_panels
 from toml_text import section, table, toml
 
 
 def make_panels(duration, more="", **simulation):
-    """Hub and two panels of Basilisk's test_hingedRigidBodyStateEffector.py (AVS Laboratory, University of Colorado)."""
+    """write_panels() of spacecraft.py, run."""
     return toml(
-        table("body", "hub", mass=750.0, cg=[0.0, 0.0, 1.0], inertia=[900.0, 800.0, 600.0]),
-        table("body", "panel1", mass=100.0, cg=[1.5, 0.0, 0.0], inertia=[100.0, 50.0, 50.0]),
-        table("body", "panel2", mass=100.0, cg=[-1.5, 0.0, 0.0], inertia=[100.0, 50.0, 50.0]),
-        table("hinge", "flight", "free", child="hub", rate=[0.1, -0.1, 0.1, 0.0, 0.0, 0.0]),
-        table("hinge", "root1", "revolute", parent="hub", child="panel1", parent_position=[0.5, 0.0, 1.0],
-              axis=[0.0, -1.0, 0.0], position=[math.radians(5)], stiffness=[100.0]),
-        table("hinge", "root2", "revolute", parent="hub", child="panel2", parent_position=[-0.5, 0.0, 1.0],
-              axis=[0.0, 1.0, 0.0], stiffness=[100.0]),
+        write_panels(),
         table("sensor", "attitude", "quaternion", body="hub"),
         more,
         section("simulation", duration=duration, integrator="rk", relative_tolerance=1e-12, absolute_tolerance=1e-13,

@@ -12,6 +12,7 @@ import numpy as np
 from fmu_sources import LIBRARY, compile_library, make_fmu
 from host import Model
 from support import HANG, PROGRAM, SLOWER, SOURCE, ProgramTest
+from four_bar import write_bars
 from toml_text import Bare, section, table, toml
 
 ON = table("function", "on", "constant", value=1.0)
@@ -38,12 +39,8 @@ sample_time = 0.01
 def write_four_bar(rest, controller, duration, integrator):
     """The system: `rest` are further tables, `controller` drives the crank."""
     return toml(
-        table("body", "crank", mass=0.5, cg=[0.15, 0.0, 0.0], inertia=[0.0001, 0.004, 0.004],
-              nodes=[{"id": 1, "position": [0.3, 0.0, 0.0]}]),
-        table("body", "coupler", mass=0.6, cg=[0.5, 0.0, 0.0], inertia=[0.0001, 0.05, 0.05],
-              nodes=[{"id": 1, "position": [1.0, 0.0, 0.0]}]),
-        table("body", "rocker", mass=0.8, cg=[0.4, 0.0, 0.0], inertia=[0.0001, 0.043, 0.043],
-              nodes=[{"id": 1, "position": [0.8, 0.0, 0.0]}]),
+        write_bars(("crank", 0.5, 0.3, [0.0001, 0.004, 0.004]), ("coupler", 0.6, 1.0, [0.0001, 0.05, 0.05]),
+                   ("rocker", 0.8, 0.8, [0.0001, 0.043, 0.043])),
         table("hinge", "axis", "revolute", child="crank", position_deg=60.0, rate=1.0),
         table("hinge", "pin", "revolute", parent="crank", parent_node=1, child="coupler"),
         table("hinge", "pivot", "revolute", parent_position=[1.0, 0.0, 0.0], child="rocker", position_deg=90.0, guess=True),

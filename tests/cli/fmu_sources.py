@@ -72,6 +72,19 @@ static int advance(State *s, double t, double h, int no_past) {
 }
 """
 
+# Functions of the state, whose names differ between FMI 2 and 3.
+SAVED = r"""
+int FMIGetSTATE(void *i, void **to) { if (!*to) *to = malloc(sizeof(State)); return memcpy(*to, i, sizeof(State)), 0; }
+int FMISetSTATE(void *i, void *from) { return memcpy(i, from, sizeof(State)), 0; }
+int FMIFreeSTATE(void *i, void **s) { return free(*s), *s = 0, 0; }
+int FMISerializedSTATESize(void *i, void *s, size_t *n) { return *n = sizeof(State), 0; }
+int FMISerializeSTATE(void *i, void *s, char *to, size_t n) { return memcpy(to, s, n), 0; }
+int FMIDESERIALIZESTATE(void *i, const char *from, size_t n, void **s) {
+  if (!*s) *s = malloc(sizeof(State));
+  return memcpy(*s, from, n), 0;
+}
+"""
+
 FMI2 = COMMON + r"""
 typedef struct { State s; void (*log)(void *, const char *, int, const char *, const char *, ...); void *env; } Slave;
 typedef struct { void (*log)(void *, const char *, int, const char *, const char *, ...); void *a, *f, *s, *env; } Callbacks;
@@ -108,16 +121,8 @@ int fmi2GetInteger(void *i, const unsigned *vr, size_t n, int *x) { return *x = 
 int fmi2SetBoolean(void *i, const unsigned *vr, size_t n, const int *x) { return ((State *)i)->enable = *x, 0; }
 int fmi2GetBoolean(void *i, const unsigned *vr, size_t n, int *x) { return *x = ((State *)i)->enable, 0; }
 int fmi2SetString(void *i, const unsigned *vr, size_t n, const char *const *x) { return *vr == 8 && !strcmp(*x, "a = b") ? 0 : 3; }
-int fmi2GetFMUstate(void *i, void **to) { if (!*to) *to = malloc(sizeof(State)); return memcpy(*to, i, sizeof(State)), 0; }
-int fmi2SetFMUstate(void *i, void *from) { return memcpy(i, from, sizeof(State)), 0; }
-int fmi2FreeFMUstate(void *i, void **s) { return free(*s), *s = 0, 0; }
-int fmi2SerializedFMUstateSize(void *i, void *s, size_t *n) { return *n = sizeof(State), 0; }
-int fmi2SerializeFMUstate(void *i, void *s, char *to, size_t n) { return memcpy(to, s, n), 0; }
-int fmi2DeSerializeFMUstate(void *i, const char *from, size_t n, void **s) {
-  if (!*s) *s = malloc(sizeof(State));
-  return memcpy(*s, from, n), 0;
-}
 """
+FMI2 += SAVED.replace("FMI", "fmi2").replace("STATE", "FMUstate").replace("DESERIALIZE", "DeSerialize")
 
 FMI3 = COMMON + r"""
 #include <stdbool.h>
@@ -159,16 +164,8 @@ int fmi3SetUInt8(void *i, const uint32_t *vr, size_t n, const uint8_t *x, size_t
 int fmi3GetInt64(void *i, const uint32_t *vr, size_t n, int64_t *x, size_t m) { return *x = ((State *)i)->count, 0; }
 int fmi3SetBoolean(void *i, const uint32_t *vr, size_t n, const bool *x, size_t m) { return ((State *)i)->enable = *x, 0; }
 int fmi3SetString(void *i, const uint32_t *vr, size_t n, const char *const *x, size_t m) { return *vr == 8 && m == 1 && !strcmp(*x, "a = b") ? 0 : 3; }
-int fmi3GetFMUState(void *i, void **to) { if (!*to) *to = malloc(sizeof(State)); return memcpy(*to, i, sizeof(State)), 0; }
-int fmi3SetFMUState(void *i, void *from) { return memcpy(i, from, sizeof(State)), 0; }
-int fmi3FreeFMUState(void *i, void **s) { return free(*s), *s = 0, 0; }
-int fmi3SerializedFMUStateSize(void *i, void *s, size_t *n) { return *n = sizeof(State), 0; }
-int fmi3SerializeFMUState(void *i, void *s, uint8_t *to, size_t n) { return memcpy(to, s, n), 0; }
-int fmi3DeserializeFMUState(void *i, const uint8_t *from, size_t n, void **s) {
-  if (!*s) *s = malloc(sizeof(State));
-  return memcpy(*s, from, n), 0;
-}
 """
+FMI3 += SAVED.replace("FMI", "fmi3").replace("STATE", "FMUState").replace("DESERIALIZE", "Deserialize")
 
 XML2 = """<?xml version="1.0" encoding="UTF-8"?>
 <fmiModelDescription fmiVersion="2.0" modelName="law" guid="{{token}}">

@@ -128,16 +128,17 @@ class Random(ProgramTest):
         self.assertGreater(q.std(), 0)
 
     def test_wrong_functions_are_named(self):
-        for old, new, message in (("y = [0.4, 3.0, 0.0, 1.0]", "y = [0.4, 3.0, -1.0, 1.0]", "a negative density"),
-                                  ("y = [0.4, 3.0, 0.0, 1.0]", 'y = [0.4, 3.0, 0.0, 1.0]\ninterpolation = "log"', "not positive"),
-                                  ("y = [0.4, 3.0, 0.0, 1.0]", "y = [0.4, 3.0]", "y has 2 entries, expected 4"),
-                                  ("x = [0.5, 2.0, 6.0, 9.0]", "x = [0.5, 2.0, 1.0, 9.0]", "is not sorted"),
-                                  ("components = 50", "components = 0", "whole number 1 to 100000"),
-                                  ("components = 50", "seed = -1", "seed"),
-                                  ("components = 50", 'interpolation = "cubic"', "use linear or log")):
-            self.write("random.toml", RANDOM.replace(old, new))
-            done = self.bough("run", "random.toml", code=1)
-            self.assertIn(message, done.stderr)
+        wrong = {
+            "y = [0.4, 3.0, 0.0, 1.0]": {"y = [0.4, 3.0, -1.0, 1.0]": "a negative density",
+                                         'y = [0.4, 3.0, 0.0, 1.0]\ninterpolation = "log"': "not positive",
+                                         "y = [0.4, 3.0]": "y has 2 entries, expected 4"},
+            "x = [0.5, 2.0, 6.0, 9.0]": {"x = [0.5, 2.0, 1.0, 9.0]": "is not sorted"},
+            "components = 50": {"components = 0": "whole number 1 to 100000", "seed = -1": "seed",
+                                'interpolation = "cubic"': "use linear or log"}}
+        for old, messages in wrong.items():
+            for new, message in messages.items():
+                self.write("random.toml", RANDOM.replace(old, new))
+                self.assertIn(message, self.bough("run", "random.toml", code=1).stderr)
 
 
 if __name__ == "__main__":

@@ -20,17 +20,20 @@ class Lagged(ProgramTest):
         self.bough("run", "run.toml", "-o", "run.h5", code=code)
         return h5py.File(self.path("run.h5"))
 
+    def read_sensor(self, name, changes, sensor, column):
+        """A component of a sensor in run_one()."""
+        with self.run_one(name, changes) as f:
+            return f[f"sensors/{sensor}"][:, column]
+
     def lag(self, step, duration):
         return [("[simulation]", f'[simulation]\nstiffening = "lagged"\nstep = {step}'),
                 ('integrator = "adams"', 'integrator = "rk4"'), duration]
 
     def test_spinup_converges_with_the_lag(self):
         """The error of the tip is of the first order in the step; consistent stiffening has none of it."""
-        self.copy_example("ex01-spinup")
-        self.bough("reduce", "boom.toml")
+        self.reduce_example("ex01-spinup", "boom.toml")
         until = ("duration = 20.0", "duration = 8.0")
-        with self.run_one("spinup", [until]) as f:
-            consistent = f["sensors/tip_deflection"][:, 1]
+        consistent = self.read_sensor("spinup", [until], "tip_deflection", 1)
         tips = {}
         for step in (0.01, 0.005, 0.0025):
             with self.run_one("spinup", self.lag(step, until)) as f:
@@ -45,8 +48,7 @@ class Lagged(ProgramTest):
         self.assertGreater(recorded[-1, 8], 1)
 
     def test_what_it_does_not_measure_is_told(self):
-        self.copy_example("ex02-hub")
-        self.bough("reduce", "boom.toml")
+        self.reduce_example("ex02-hub", "boom.toml")
         text = open(self.path("hub-2.18.toml")).read()
         text = text.replace("[simulation]", '[simulation]\nstiffening = "lagged"\nstiffening_step = 0.01')
         self.write("jet.toml", text + table("actuator", "jet", "force", body="hub", axis=[1.0, 0.0, 0.0]))
@@ -56,11 +58,9 @@ class Lagged(ProgramTest):
 
     def test_pattern_is_fed_back(self):
         """Section 4.1.4.3: the plate's swing under 0.165 lb/in; without K_G2 of the load it would be 13 times as stiff."""
-        self.copy_example("ex05-plate")
-        self.bough("reduce", "plate.toml")
+        self.reduce_example("ex05-plate", "plate.toml")
         until = ("duration = 40.0", "duration = 6.0")
-        with self.run_one("plate-0.165", [until]) as f:
-            consistent = f["sensors/deflection"][:, 2]
+        consistent = self.read_sensor("plate-0.165", [until], "deflection", 2)
         with self.run_one("plate-0.165", self.lag(0.01, until)) as f:
             lagged = f["sensors/deflection"][:, 2]
             self.assertAlmostEqual(f["stiffening/plate"][-1, 18], 0.165, places=12)
@@ -69,8 +69,7 @@ class Lagged(ProgramTest):
 
     def test_loads_of_a_hinge_are_its_reaction(self):
         """FCONI of the upper link is what the lower one pulls it with, to the order of the lag."""
-        self.copy_example("ex03-two-link")
-        self.bough("reduce", "link.toml")
+        self.reduce_example("ex03-two-link", "link.toml")
         off = []
         for step in (0.001, 0.0005, 0.00025):
             changes = [*self.lag(step, ("duration = 3.0", "duration = 0.5")), ('file = "link.h5"', 'file = "link.h5"\nmodes = 2')]
@@ -85,8 +84,7 @@ class Lagged(ProgramTest):
     def test_force_and_moment_are_newtons_and_eulers(self):
         """Load of a rigid body on a turned and shifted clamp at the tip: m (a - g) and J α + ω × J ω + r × m (a - g), about
         the node and in the link's frame."""
-        self.copy_example("ex03-two-link")
-        self.bough("reduce", "link.toml")
+        self.reduce_example("ex03-two-link", "link.toml")
         sensors = ""
         for body, node, types in (("load", 0, ("acceleration", "angular_velocity", "angular_acceleration", "position")),
                                   ("upper", 11, ("position",))):
@@ -128,8 +126,7 @@ class Lagged(ProgramTest):
             self.assertLess(abs(coarse / fine - 2), 0.2, off)
 
     def test_hinges_that_it_feeds_back_are_told(self):
-        self.copy_example("ex03-two-link")
-        self.bough("reduce", "link.toml")
+        self.reduce_example("ex03-two-link", "link.toml")
         text = open(self.path("two-link.toml")).read()
         self.write("lagged.toml", text.replace("[simulation]", '[simulation]\nstiffening = "lagged"\nstiffening_step = 0.01'))
         self.assertIn("[system.lagged-hinges]", self.bough("check", "lagged.toml").stderr)

@@ -1,19 +1,18 @@
 """Closed loops from the files: a four-bar, stage separation, what is refused."""
+import math
 import unittest
 
 import h5py
 import numpy as np
+from scipy.optimize import brentq
 
 from support import ProgramTest
+from four_bar import write_bars
 from toml_text import section, table, toml
 
 FOUR_BAR = toml(
-    table("body", "crank", mass=1.0, cg=[0.2, 0.0, 0.0], inertia=[0.001, 0.014, 0.014],
-          nodes=[{"id": 1, "position": [0.4, 0.0, 0.0]}]),
-    table("body", "coupler", mass=2.0, cg=[0.55, 0.0, 0.0], inertia=[0.002, 0.2, 0.2],
-          nodes=[{"id": 1, "position": [1.1, 0.0, 0.0]}]),
-    table("body", "rocker", mass=1.5, cg=[0.45, 0.0, 0.0], inertia=[0.002, 0.1, 0.1],
-          nodes=[{"id": 1, "position": [0.9, 0.0, 0.0]}]),
+    write_bars(("crank", 1.0, 0.4, [0.001, 0.014, 0.014]), ("coupler", 2.0, 1.1, [0.002, 0.2, 0.2]),
+               ("rocker", 1.5, 0.9, [0.002, 0.1, 0.1])),
     table("hinge", "crank", "revolute", child="crank", position_deg=40.0, rate=3.0),
     table("hinge", "elbow", "revolute", parent="crank", parent_node=1, child="coupler"),
     table("hinge", "rocker", "revolute", child="rocker", parent_position=[1.0, 0.0, 0.0], position_deg=90.0,
@@ -31,7 +30,44 @@ STAGE = toml(
     section("simulation", duration=1.0, relative_tolerance=1e-10))
 
 
+def make_turning_disc(turn, radius, lean, spin):
+    """A thin disc of radius 0.4 that rolls in a frame which turns about the vertical; its heading is that of the frame."""
+    r, m = 0.4, 1.7
+    return toml(
+        table("body", "frame", mass=1.0, inertia=[1.0, 1.0, 1.0]),
+        table("body", "disc", mass=m, inertia=[m * r * r / 2, m * r * r / 4, m * r * r / 4]),
+        table("function", "turn", "ramp", value=100 * turn, **{"from": 0.0, "to": 100.0}),
+        table("hinge", "axis", "revolute", child="frame", motion="turn"),
+        table("hinge", "ride", "general", parent="frame", child="disc", rotations="yx", translations="xz",
+              position=[-lean, 0.0, radius, r * math.cos(lean)], rate=[0.0, spin, 0.0, 0.0]),
+        table("constraint", "road", "rolling", child="disc", axis=[0.0, 0.0, 1.0], axis2=[1.0, 0.0, 0.0], radius=r),
+        section("simulation", duration=100.0, start=1.0, gravity=[0.0, 0.0, -9.81]))
+
+
 class LoopsTest(ProgramTest):
+    def test_a_steady_turn_is_at_rest_in_a_turning_frame(self):
+        """Lean of a disc in a steady turn (docs/theory/rolling.md, closed forms), from a lean and a spin that are off."""
+        r, turn, radius = 0.4, 1.0, 2.1
+        lean = brentq(lambda a: turn**2 * (1.5 * r * radius + r * r / 4 * math.sin(a)) - 9.81 * r * math.tan(a), 0.0, 1.0)
+        for start in (0.25, lean + 0.08):
+            self.write("disc.toml", make_turning_disc(turn, radius, start, -5.0))
+            self.bough("equilibrium", "disc.toml", "-o", "disc.h5")
+            found, = self.read_arrays("disc.h5", "/hinges/ride/q")
+            self.assertAlmostEqual(-found[-1, 0], lean, delta=1e-9)
+            self.assertAlmostEqual(found[-1, 2], radius, delta=1e-12)
+
+    def test_a_conical_pendulum_is_at_rest_on_a_shaft(self):
+        turn, length = 6.0, 0.5
+        self.write("cone.toml", toml(
+            table("body", "shaft", mass=1.0, inertia=[1.0, 1.0, 1.0]),
+            table("body", "bob", mass=2.0, cg=[0.0, 0.0, -length]),
+            table("hinge", "turn", "revolute", child="shaft", rate=turn),
+            table("hinge", "swing", "revolute", parent="shaft", child="bob", axis=[0.0, 1.0, 0.0], position=0.5),
+            section("simulation", duration=1.0, gravity=[0.0, 0.0, -9.81])))
+        self.bough("equilibrium", "cone.toml", "-o", "cone.h5")
+        found, = self.read_arrays("cone.h5", "/hinges/swing/q")
+        self.assertAlmostEqual(found.flat[-1], math.acos(9.81 / turn**2 / length), delta=1e-9)
+
     def test_four_bar(self):
         self.write("bar.toml", FOUR_BAR)
         done = self.bough("run", "bar.toml", "-o", "bar.h5")
@@ -89,7 +125,7 @@ class LoopsTest(ProgramTest):
             self.write("closed.toml", text.format(kind, 1.0, more))
             for verb in ("check", "equilibrium", "linearize"):
                 self.bough(verb, "closed.toml")
-            for integrator in ("adams", "bdf", "rk", "rk4"):
+            for integrator in ("adams", "bdf", "rk", "radau", "rk4"):
                 step = 'step = 0.01\n' if integrator == "rk4" else ""
                 self.write("moves.toml", text.format(kind, 1.0, more) + f'integrator = "{integrator}"\n{step}')
                 self.bough("run", "moves.toml")

@@ -47,6 +47,23 @@ class Nonlinear(ProgramTest):
         reached = float(text.split("beyond ")[1].split()[0])
         self.assertLess(abs(reached - 100 * 29609 / 40000), 0.5)
 
+    def test_arc_length(self):
+        """A roof of two rods under twice its limit load snaps through; a column stays on its straight path."""
+        roof = ("SOL 106\nCEND\nSPC = 1\nLOAD = 1\nBEGIN BULK\nMAT1,1,1.+6,,0.\nPROD,1,1,1.\nGRID,1,,-1.,0.,0.\nGRID,2,,1.,0.,0.\n"
+                "GRID,3,,0.,0.,.1\nCROD,1,1,1,3\nCROD,2,1,2,3\nSPC1,1,123456,1,2\nSPC1,1,2456,3\nFORCE,1,3,,1500.,0.,0.,-1.\n"
+                "PARAM,LGDISP,1\nENDDATA\n")
+        self.write("a.bdf", roof)
+        self.fails(3, "static", "a.bdf", says=["--arc-length"], error="fe.no-equilibrium")
+        result = self.bough("static", "a.bdf", "--arc-length", "-o", "a.h5")
+        self.assertIn("[fe.limit-point]", result.stderr)
+        with h5py.File(self.path("a.h5")) as f:
+            y = .1 + f["/subcases/0/displacement"][14]
+        length, now = np.hypot(1, .1), np.hypot(1, y)
+        self.assertLess(y, -.1)
+        np.testing.assert_allclose(2e6 * (length - now) / length * y / now, 1500, rtol=1e-6)
+        self.write("b.bdf", DECK.replace("24000.,0.,0.,1.", "40000.,-1.,0.,0."))
+        self.assertIn("[fe.unstable-equilibrium]", self.bough("static", "b.bdf", "--arc-length").stderr)
+
     def test_refusals(self):
         self.write("a.bdf", DECK.replace("PARAM,LGDISP,1\n", ""))
         self.fails(1, "static", "a.bdf", says=["--nonlinear", "--linear"], error="cli.nonlinear-static")

@@ -108,7 +108,8 @@ class PartLoads(ProgramTest):
         """PARAM,CMSALOAD,YES: -M Φ_r a of the component's matrix moves the boundary as its elements do."""
         self.write("c.bdf", "SOL 103\nCEND\nEXTSEOUT(ASMBULK,EXTBULK,EXTID=50,MATOP4=51)\nBEGIN BULK\n" + PART
                    + "BSET1,123456,5,9\n" + list_grids(range(5, 10)) + list_bars(5, 9) + "ENDDATA\n")
-        self.bough("export", "c.bdf", "--to", "extseout", "-o", "c")
+        self.assertNotIn("EXTSEOUT", self.bough("export", "c.bdf", "--to", "extseout", "-o", "c").stderr)
+        self.assertIn("case control not used: EXTSEOUT (line 3)", self.bough("modes", "c.bdf", "-n", 1).stderr)
         for card in (GRAVITY, "ACCEL,3,,1.,2.,-3.,Z\n,0.,1.,9.,1.\n"):
             exact, _, _ = self.solve(make_whole(card), "w")
             deck = ("ASSIGN INPUTT4='c.op4',UNIT=51\n" + HEAD.format(sol=101) + "PARAM,CMSALOAD,YES\n" + DENSE + card

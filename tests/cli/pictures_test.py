@@ -19,6 +19,9 @@ if HAS_PILLOW:
     sys.path.insert(0, os.path.join(SOURCE, "tools"))
     import pictures
 
+NOTEBOOKS = ["notebook-monte-carlo", "notebook-kg-by-hand"]
+MODULE = os.path.join(os.path.dirname(os.path.dirname(PROGRAM)), "python/bough")
+HAS_NOTEBOOKS = os.path.isdir(MODULE) and importlib.util.find_spec("matplotlib") is not None
 PATCH, MAX_DIFFERENCE = 6, 4.0    # of 255, mean over the picture
 
 
@@ -43,6 +46,10 @@ class Pictures(ProgramTest):
     def take(self, names):
         for name in names:
             self.pages.take(name, self.folder)
+        self.compare(names)
+
+    def compare(self, names):
+        for name in names:
             stored = os.path.join(SOURCE, "docs/pictures", name + ".png")
             a, b = Image.open(self.path(name + ".png")), Image.open(stored)
             # The height of a terminal and of a page depends on the font.
@@ -52,8 +59,7 @@ class Pictures(ProgramTest):
             self.assertLess(np.abs(a[:rows, :columns] - b[:rows, :columns]).mean(), MAX_DIFFERENCE, name)
 
     def test_every_picture_has_a_printed_command(self):
-        # Pictures of the studio show its page in a browser, after the clicks that docs/studio.md describes.
-        known = {"edit", "notebook-monte-carlo", "notebook-kg-by-hand", "studio-deck", "studio-run"}
+        known = {"edit", *NOTEBOOKS, *pictures.STUDIO}
         for name, shot in pictures.SHOTS.items():
             _, command = shot.find_command()
             self.assertTrue(command.startswith("bough "))
@@ -84,6 +90,25 @@ class Pictures(ProgramTest):
     @unittest.skipUnless(find_chromium(), "chromium is not installed: pictures of pages are not compared")
     def test_pages_and_terminals(self):
         self.take([name for name, shot in pictures.SHOTS.items() if not shot.part.endswith(".svg")])
+
+
+    @unittest.skipUnless(find_chromium(), "chromium is not installed: pictures of pages are not compared")
+    def test_studio_and_edit(self):
+        """A session that follows docs/studio.md, and the one that docs/edit.md prints."""
+        self.pages.take_studio(self.folder)
+        self.pages.take_edit(self.folder)
+        self.compare([*pictures.STUDIO, "edit"])
+
+    @unittest.skipUnless(HAS_NOTEBOOKS, "no Python module or matplotlib here: figures of notebooks are not compared")
+    def test_notebooks(self):
+        self.pages.take_notebooks(self.folder)
+        self.compare(NOTEBOOKS)
+
+    def test_every_svg_is_made_by_a_command(self):
+        stored = {os.path.basename(path)[:-4] for path in glob.glob(os.path.join(SOURCE, "docs/*.svg"))}
+        self.assertEqual(stored, set(pictures.FIGURES))
+        for name, shot in pictures.FIGURES.items():
+            self.assertIn(f"docs/{name}.svg", read(shot.page))
 
 
 if __name__ == "__main__":

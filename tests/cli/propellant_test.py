@@ -239,6 +239,17 @@ class Propellant(ProgramTest):
         np.testing.assert_allclose(w_mm, w, atol=1e-9)
         np.testing.assert_allclose(1e3 * m_mm, m, rtol=1e-9)
 
+    def test_a_function_that_no_tank_follows_is_named(self):
+        """Emptier than empty at the start, fuller than full, without a rate: three messages, not one for all."""
+        parts = (ROCKET[:ROCKET.index("[[function]]")], ROCKET[ROCKET.index("[[hinge]]"):])
+        tank = parts[0].replace('mass = "$fill"', 'function = "left"')
+        for function, message in (
+                ({"type": "constant", "value": -5.0}, "is emptier than empty at the start: its mass is -5;"),
+                ({"type": "constant", "value": 80.0}, "a mass of 80 at the start, and holds 12.5664;"),
+                ({"type": "expression", "expression": "8 - t"}, "of which the rate, the flow, is not known;")):
+            self.write("bad.toml", tank + table("function", "left", **function) + parts[1])
+            self.assertIn(message, self.bough("check", "bad.toml", code=1).stderr)
+
     def test_what_cannot_be_is_named_with_its_line(self):
         for old, new, error in (
                 ("fill = 8.0", "fill = 80.0", "system.bad-tank"),

@@ -302,6 +302,14 @@ class Split(ProgramTest):
         self.assertIn("[split.pieces]", messages)
         self.assertEqual([p["elements"] for p in by_property["parts"]], [25, 15])
 
+    def test_spring_between_grids_apart(self):
+        """A CELAS2 between grids that lie apart holds the rotation of a part that moves: it is named as the cause."""
+        deck = make_boom(16, 3.2).replace("ENDDATA", "CELAS2,801,50000.,6,2,9,2\nENDDATA")
+        _, messages = self.split(deck, "--grids", 3)
+        self.assertIn("[split.inaccurate]", messages)
+        self.assertIn("CELAS2 801 between grids 6 and 9 strains in rigid-body motion", messages)
+        self.assertNotIn("max_frequency", messages)
+
     def test_bad_cuts_are_named(self):
         self.write("deck.bdf", make_boom(n=8))
         bad = [(("--grids", "9"), "split.nothing-separated", "deck.bdf:"), (("--grids", "77"), "split.unknown-grid", "77"),

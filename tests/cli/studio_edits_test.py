@@ -171,6 +171,16 @@ class Axes(Edits):
         self.assertEqual([e for e in page.list_errors() if "favicon" not in e], [])
 
 
+class Texts(Edits):
+    def test_commands_wait_for_each_other(self):
+        """The answer to the first command comes last: neither change is lost."""
+        page = self.show("arm.toml", ARM)
+        page.run("""(async () => { const send = fetch; let count = 0;
+          window.fetch = (u, o) => (o.body.includes('"what":"edit"') && count++ === 0 ? new Promise((r) => setTimeout(r, 1000)).then(() => send(u, o)) : send(u, o));
+          await Promise.all([studio.view.pane.edit(["set hand.mass=1.5"]), studio.view.pane.edit(["set arm.mass=2.5"])]); window.fetch = send; })()""")
+        self.assertEqual([b["mass"] for b in tomllib.loads(self.get_text())["body"]], [2.5, 1.5])
+
+
 class Forms(Edits):
     def select_table(self, text):
         self.choose("table of the form", text)

@@ -1,8 +1,12 @@
 """The page of the studio after a failed run, a change outside, and with files of odd names."""
+import json
 import os
+import tomllib
 import unittest
 
-from browser import Browser
+import h5py
+
+from browser import WAIT_FRAMES, Browser
 from studio_browser_test import PROJECT, make_plate
 from studio_control_test import SYSTEM
 from studio_page import PageTest
@@ -69,6 +73,45 @@ class Decks(PageTest):
             page.mouse("mouseReleased", x + 60, y, button="left", clickCount=1)
             self.wait(f"Math.abs({size}[0] - 1) < 0.01")
             self.end_studio()
+
+    def test_clicks_in_a_body(self):
+        """A click sets an interface node, an output node or unit loads; another one takes it out."""
+        self.write("plate.bdf", make_plate())
+        self.write("plate.toml", '[body]\nname = "plate"\ndeck = "plate.bdf"\nframe = "free"\n\n[body.modes]\nnumber = 4\n')
+        page = self.open_studio("plate.toml")
+        self.wait("studio.view?.stage && document.querySelector('.text-pane').dataset.checked === '0'")
+
+        def click(grid, target=None):
+            if target:
+                self.choose("a click sets", target)
+            before = page.run("studio.view.pane.text")
+            page.run(WAIT_FRAMES)
+            self.click_at(*page.run(PROJECT % grid))
+            self.wait(f"document.querySelector('.work-column .picked').textContent.startsWith('grid {grid} ')")
+            if target != "nothing":
+                self.wait(f"studio.view.pane.text !== {json.dumps(before)}")
+            self.wait("!studio.view.pane.is_checking && studio.view.pane.waiting === studio.view.pane.text")
+            return tomllib.loads(page.run("studio.view.pane.text"))["body"]
+
+        page.show("canvas.scene")
+        self.assertEqual(click(21)["interface"], [21])
+        self.assertEqual(click(23, "an output node")["output"]["nodes"], [23])
+        self.wait("studio.view.outputs.length === 1")
+        self.assertEqual(click(25)["output"]["nodes"], [23, 25])
+        self.wait("studio.view.outputs.length === 2 && studio.view.stage.viewer.marks.length >= 2")
+        self.assertEqual(click(45, "a load")["load"], [{"name": "load_45", "node": 45}])
+        self.wait("studio.view.loads.length === 1")
+        self.assertNotIn("load", click(45))
+        body = click(21, "nothing")
+        self.assertEqual((body["interface"], body["output"]["nodes"]), ([21], [23, 25]))
+        page.click("button.save")
+        self.wait("document.querySelector('dialog pre.diff')")
+        self.click_text("Save", "document.querySelector('dialog')")
+        self.wait("!studio.view.is_changed()")
+        self.bough("reduce", "plate.toml")
+        with h5py.File(self.path("plate.h5")) as f:
+            self.assertEqual(f["/nodes/interface"][:].tolist(), [21])
+            self.assertEqual(sorted(f["/nodes/id"][:].tolist()), [21, 23, 25])
 
     def test_commands_of_a_name_that_begins_with_a_dash(self):
         self.show_plate("-dash.bdf")

@@ -42,9 +42,13 @@ def launch_ranks(*arguments):
 
 
 class ProgramTest(unittest.TestCase):
+    EXAMPLE = None  # (example, body): setUp copies this example and reduces a body of it
+
     def setUp(self):
         self.folder = tempfile.mkdtemp(prefix="bough-test-")
         self.addCleanup(shutil.rmtree, self.folder)
+        if self.EXAMPLE:
+            self.reduce_example(*self.EXAMPLE)
 
     def path(self, name):
         return os.path.join(self.folder, name)
@@ -68,6 +72,11 @@ class ProgramTest(unittest.TestCase):
         source = os.path.join(SOURCE, "data/examples", example)
         for name in os.listdir(source):
             shutil.copy(os.path.join(source, name), self.folder)
+
+    def reduce_example(self, example, body):
+        """Copies the example and makes one of its bodies."""
+        self.copy_example(example)
+        self.bough("reduce", body)
 
     def bough(self, *arguments, code=0, launcher=(), env=None):
         """Runs and checks the exit code; returns the finished process with stdout and stderr as text."""

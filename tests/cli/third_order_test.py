@@ -167,6 +167,16 @@ class ThirdOrder(ProgramTest):
         with h5py.File(self.path("two.h5")) as f:
             self.assertNotIn("third_order", f)
 
+    def test_formats_without_third_order(self):
+        """SID, MBDyn and .FLX are written of second order, with a warning; the flat file has it all."""
+        self.reduce()
+        for words in (["export", "boom.h5", "--to", "sid", "-o", "b.SID_FEM"], ["export", "boom.h5", "--to", "mbdyn", "-o", "b.fem"],
+                      ["flx", "boom.h5", "-o", "b.FLX"]):
+            self.assertIn("[export.third-order]", self.bough(*words).stderr, words)
+        self.assertNotIn("third-order", self.bough("export", "boom.h5", "--to", "flat", "-o", "b.flat").stderr)
+        self.reduce("order = 2", name="two.h5")
+        self.assertNotIn("third-order", self.bough("flx", "two.h5", "-o", "b.FLX").stderr)
+
     def test_flat_bodies_and_units(self):
         self.reduce()
         _, tip = self.spin(6., "spin.h5", 3.)

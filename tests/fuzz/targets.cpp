@@ -47,6 +47,12 @@ bool survive(const Read& read) {
   }
 }
 
+template <class Read>
+void survive_messages(const Read& read) {
+  Diagnostics found;
+  survive([&] { read(found); });
+}
+
 std::string read_text(const std::string& path) {
   std::ifstream in(path, std::ios::binary);
   std::ostringstream text;
@@ -175,10 +181,6 @@ void read_hdf5(const std::string& path) {
     if (i == stranger || format == kHdf5Readers[i].format) survive([&] { kHdf5Readers[i].read(path); });
 }
 
-void read_op4_text(const std::string& path) {
-  survive([&] { matrices::read_op4_text(path); });
-}
-
 // Millions of empty rows are legal, and slow under the sanitizers: they are left out.
 bool claims_much(const std::string& path) {
   const std::string head = read_text(path).substr(0, 12);
@@ -200,23 +202,6 @@ void read_op4_binary(const std::string& path) {
   survive([&] { matrices::read_op4_binary(path); });
 }
 
-// Every other format of matrices is found by its content.
-void read_matrices(const std::string& path) {
-  survive([&] {
-    Diagnostics diagnostics;
-    matrices::read_matrices(path, diagnostics);
-  });
-}
-
-// OP2 and punch.
-void read_mode_tables(const std::string& path) {
-  survive([&] { matrices::read_mode_tables(path); });
-}
-
-void read_flx(const std::string& path) {
-  survive([&] { flx::read_flx(path); });
-}
-
 // With the right checksum: the arrays before it are what is of interest.
 void read_flat(const std::string& path) {
   survive([&] { flat::read_flex_body(path); });
@@ -224,21 +209,6 @@ void read_flat(const std::string& path) {
   bytes.resize(bytes.size() - std::min(bytes.size(), flat::detail::kSealSize));
   bytes += flat::detail::make_seal(bytes);
   survive([&] { flat::parse_flex_body(bytes, path); });
-}
-
-void read_layout(const std::string& path) {
-  survive([&] { flx::parse_layout(read_text(path), path); });
-}
-
-void read_sid(const std::string& path) {
-  survive([&] { sid::read_sid(path); });
-}
-
-void read_model_input(const std::string& path) {
-  survive([&] {
-    Diagnostics diagnostics;
-    flx::read_model_input(path, diagnostics);
-  });
 }
 
 // The matrices of a model of two dofs and one mode.
@@ -267,15 +237,19 @@ const std::vector<Target>& get_targets() {
       {"system", read_system},
       {"campaign", read_campaign},
       {"hdf5", read_hdf5},
-      {"op4-text", read_op4_text},
+      {"op4-text", [](const std::string& path) { survive([&] { matrices::read_op4_text(path); }); }},
       {"op4-binary", read_op4_binary},
-      {"matrices", read_matrices},
-      {"mode-tables", read_mode_tables},
+      // Every other format of matrices is found by its content.
+      {"matrices",
+       [](const std::string& path) { survive_messages([&](auto& found) { matrices::read_matrices(path, found); }); }},
+      // OP2 and punch.
+      {"mode-tables", [](const std::string& path) { survive([&] { matrices::read_mode_tables(path); }); }},
       {"flat", read_flat},
-      {"flx", read_flx},
-      {"layout", read_layout},
-      {"sid", read_sid},
-      {"model-input", read_model_input},
+      {"flx", [](const std::string& path) { survive([&] { flx::read_flx(path); }); }},
+      {"layout", [](const std::string& path) { survive([&] { flx::parse_layout(read_text(path), path); }); }},
+      {"sid", [](const std::string& path) { survive([&] { sid::read_sid(path); }); }},
+      {"model-input",
+       [](const std::string& path) { survive_messages([&](auto& found) { flx::read_model_input(path, found); }); }},
       {"model-matrices", read_model_matrices},
   };
   return targets;

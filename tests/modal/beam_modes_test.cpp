@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "tests/modal/solve_modes.hpp"
 #include "tests/support/modal.hpp"
 
 namespace bough {
@@ -12,10 +13,7 @@ namespace {
 constexpr double kPi = std::numbers::pi;
 
 EigenPairs solve(const records::Deck& deck, int num_modes, Diagnostics& diagnostics) {
-  const auto model = fe::build_model(deck, {}, diagnostics);
-  EigenOptions options;
-  options.num_modes = num_modes;
-  return calc_normal_modes(model, options, diagnostics);
+  return test::solve_modes(fe::build_model(deck, {}, diagnostics), num_modes, diagnostics);
 }
 
 EigenPairs solve(const records::Deck& deck, int num_modes) {

@@ -55,12 +55,19 @@ class Decks(InFolder):
         with self.assertRaisesRegex(ValueError, "no_kg leaves out"):
             bough.matrices("boom.bdf", loads=7, no_kg=True)
 
+    def write_driven(self, name, control):
+        """The boom with dynamic loads, and modal damping for the control that selects them."""
+        self.write(name, control + "SDAMPING = 9\nMETHOD = 10\nDISP = ALL\n" + self.bulk.replace("ENDDATA", DRIVEN))
+
+    def assert_same_as_command(self, found, *command):
+        """The command line writes what Python returned."""
+        self.run_command(*command, "-o", "c.h5")
+        self.assert_same_file(found, "c.h5")
+
     def test_frequency_and_transient(self):
-        control = "SOL 111\nCEND\nSPC = 1\nDLOAD = 5\nFREQ = 8\nSDAMPING = 9\nMETHOD = 10\nDISP = ALL\n"
-        self.write("shaken.bdf", control + self.bulk.replace("ENDDATA", DRIVEN))
+        self.write_driven("shaken.bdf", "SOL 111\nCEND\nSPC = 1\nDLOAD = 5\nFREQ = 8\n")
         found = bough.frequency("shaken.bdf", grids=11)
-        self.run_command("frequency", "shaken.bdf", "--grid", "11", "-o", "f.h5")
-        self.assert_same_file(found, "f.h5")
+        self.assert_same_as_command(found, "frequency", "shaken.bdf", "--grid", "11")
         self.assertEqual(found["subcases/1/displacement/real"].shape[0], 21)
         bough.frequency("shaken.bdf", grids=11, f06="p.f06", op2="p.op2")
         self.run_command("frequency", "shaken.bdf", "--grid", "11", "--f06", "c.f06", "--op2", "c.op2")
@@ -74,11 +81,9 @@ class Decks(InFolder):
         with self.assertRaises(TypeError):
             bough.frequency("shaken.bdf", nmber=3)
 
-        control = "SOL 112\nCEND\nSPC = 1\nDLOAD = 15\nTSTEP = 16\nSDAMPING = 9\nMETHOD = 10\nDISP = ALL\n"
-        self.write("struck.bdf", control + self.bulk.replace("ENDDATA", DRIVEN))
+        self.write_driven("struck.bdf", "SOL 112\nCEND\nSPC = 1\nDLOAD = 15\nTSTEP = 16\n")
         found = bough.transient("struck.bdf", number=3)
-        self.run_command("transient", "struck.bdf", "-n", "3", "-o", "t.h5")
-        self.assert_same_file(found, "t.h5")
+        self.assert_same_as_command(found, "transient", "struck.bdf", "-n", "3")
         self.assertEqual(found["subcases/1/displacement/value"].shape[0], 51)
 
     def test_split(self):

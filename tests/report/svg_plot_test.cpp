@@ -152,6 +152,29 @@ TEST(SvgPlot, ClippedLineMeetsTheFrameWhereItShould) {
   EXPECT_NEAR(last.second, top, 0.02);
 }
 
+TEST(SvgPlot, LabelsOfGuidesAreCrossedByNoLine) {
+  for (const double slope : {0.3, 0.9, 1.2, 3.0}) {
+    Plot plot;
+    plot.curves = {{"", VectorXd::LinSpaced(11, 0, 1), VectorXd::LinSpaced(11, 0, 1.1 * slope)}};
+    plot.guides = {{"1/rev", VectorXd::LinSpaced(2, 0, 1), VectorXd::LinSpaced(2, 0, slope)}};
+    plot.y_min = 0;
+    plot.y_max = 1.5;
+    const std::string svg = draw_svg(plot);
+    std::smatch found;
+    ASSERT_TRUE(std::regex_search(
+        svg, found,
+        std::regex(
+            "<text x=\"([\\d.]+)\" y=\"([\\d.]+)\" font-size=\"11\"( text-anchor=\"end\")? fill=\"#777777\">1/rev")));
+    const double left = 84, width = 790, top = 28, height = 400, text_width = 30;
+    const double end = std::stod(found[1]), y = std::stod(found[2]);
+    for (double x = found[3].matched ? end - text_width : end; x <= (found[3].matched ? end : end + text_width); x += 1)
+      for (const double rise : {slope, 1.1 * slope}) {
+        const double at = top + height * (1 - rise * (x - left) / width / plot.y_max);
+        EXPECT_FALSE(at > y - 11 && at < y + 3 && at > top) << slope << " " << x;
+      }
+  }
+}
+
 TEST(SvgPlot, NanBreaksTheLineAndEmptyPlotsAreDrawn) {
   Plot plot = make_figure();
   plot.curves[0].y[1000] = std::numeric_limits<double>::quiet_NaN();

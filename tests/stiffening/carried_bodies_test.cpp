@@ -11,6 +11,7 @@
 #include "formats/nastran/reader.hpp"
 #include "modal/integrals.hpp"
 #include "stiffening/reduce.hpp"
+#include "tests/fe/model/text_model.hpp"
 #include "tests/stiffening/all_kinds.hpp"
 #include "tests/support/modal.hpp"
 
@@ -78,18 +79,15 @@ TEST(CarriedBodies, InertiaChangesAsTheArmTurns) {
 
 // m = 1 at (1, 1, 0) on a grid at (1, 0, 0): the pull of ω = z is (1, 1, 0), its moment about the grid -1.
 TEST(CarriedBodies, SpinTurnsTheGridOfAnOffsetMass) {
-  Diagnostics diagnostics;
-  const auto deck = test::read_deck(
+  fe::test::TextModel m(
       "SOL 101\nCEND\nSPC = 1\nLOAD = 4\nBEGIN BULK\nGRID,1,,0.,0.,0.\nGRID,2,,1.,0.,0.\nCBAR,1,1,1,2,0.,1.,0.\n"
       "PBAR,1,1,1.-4,1.-8,1.-8,2.-8\nMAT1,1,70.+9,,.3,0.\nCONM2,9,2,,1.,0.,1.,0.\nSPC1,1,123456,1\n"
-      "RFORCE,4,0,0,.159154943091895,0.,0.,1.\n",
-      diagnostics);
-  const auto model = fe::build_model(deck, {}, diagnostics);
-  const VectorXd f = fe::calc_inertial_loads(model, model.mass_kind()).col(kWz2).segment<6>(6);
+      "RFORCE,4,0,0,.159154943091895,0.,0.,1.\n");
+  const VectorXd f = fe::calc_inertial_loads(m.model, m.model.mass_kind()).col(kWz2).segment<6>(6);
   VectorXd expected(6);
   expected << 1, 1, 0, 0, 0, -1;
   EXPECT_LT((f - expected).norm(), 1e-14);
-  EXPECT_LT((calc_load(model, deck, 4, diagnostics).segment<6>(6) - expected).norm(), 1e-12);
+  EXPECT_LT((calc_load(m.model, m.deck, 4, m.diagnostics).segment<6>(6) - expected).norm(), 1e-12);
 }
 
 // Twice the mass along y: no body has it. Its nodal momenta are taken, and both the deck and the body say so.

@@ -165,6 +165,11 @@ void expect_same_body(const records::FlexBody& a, const records::FlexBody& b) {
   expect_same_integrals(a.exact, b.exact, "exact");
 }
 
+records::FlexBody reduce_deck(const records::Deck& deck, const records::BodySpec& spec) {
+  Diagnostics diagnostics;
+  return stiffening::reduce(deck, spec, {}, diagnostics).body;
+}
+
 TEST(ReduceMatrices, OwnMatricesGiveTheBodyOfTheDeck) {
   const auto deck = read(kDeck);
   Exported own(deck);
@@ -173,7 +178,7 @@ TEST(ReduceMatrices, OwnMatricesGiveTheBodyOfTheDeck) {
   spec.interface_moments = false;  // of the loads here none is a moment
   spec.damping_ratio = 0.02;
   Diagnostics diagnostics;
-  const auto expected = stiffening::reduce(deck, spec, {}, diagnostics).body;
+  const auto expected = reduce_deck(deck, spec);
   EXPECT_GT(expected.modal_damping.cwiseAbs().maxCoeff(), 0);
 
   // Every K_G, each with its load: the twelve inertial ones, a unit load on the link's end, a load set, a column.
@@ -416,8 +421,7 @@ TEST(ReduceMatrices, DisplacementAxesAndTheOrderOfPoints) {
   const auto deck = read(kDeck);
   Exported own(deck);
   const auto spec = make_spec(5);
-  Diagnostics diagnostics;
-  const auto expected = stiffening::reduce(deck, spec, {}, diagnostics).body;
+  const auto expected = reduce_deck(deck, spec);
 
   // To the axes of each grid, as Nastran has them, without a list of dofs: the g-set by id.
   MatrixXd R = MatrixXd::Zero(own.model.num_gdofs(), own.model.num_gdofs());
@@ -515,8 +519,7 @@ TEST(ReduceMatrices, ClampedGridsStandInForConstraints) {
   const auto deck = read(kDeck);
   Exported own(deck);
   const auto spec = make_spec(4);
-  Diagnostics diagnostics;
-  const auto expected = stiffening::reduce(deck, spec, {}, diagnostics).body;
+  const auto expected = reduce_deck(deck, spec);
   const auto loose = read(replace(replace(kDeck, "SPC = 1\n", ""), "SPC1,1,123456,1\n", ""));
   own.given.clamped = {1};
   expect_same_body(reduce_given(loose, spec, own.given), expected);
@@ -529,8 +532,7 @@ TEST(ReduceMatrices, FreeBodyAndGivenModes) {
   Exported own(deck);
   auto spec = make_spec(4);
   spec.frame = records::BodyFrame::Free;
-  Diagnostics diagnostics;
-  const auto expected = stiffening::reduce(deck, spec, {}, diagnostics).body;
+  const auto expected = reduce_deck(deck, spec);
   expect_same_body(reduce_given(deck, spec, own.given), expected);
 
   // Modes with the rigid ones among them, not normalized, and eigenvalues beside them.

@@ -6,7 +6,6 @@ import { add_arrow, to_thing } from "./scene_marks.js";
 import { unpack_indices } from "./unpack.js";
 import { make_triad } from "./viewer.js";
 
-const kMasses = "#8a5a00", kSupports = "#b3261e", kSpiders = "#7b3fa0";
 /** More symbols of a kind are thinned: each is drawn in every frame. */
 const kMaxSymbols = 2000;
 
@@ -109,7 +108,7 @@ export class DeckScene {
     const heaviest = Math.max(...answer.masses.map((m) => m.mass), 0);
     const ball = make_ball();
     if (show.masses && answer.masses.length > 0)
-      things.push(this.make_symbols(answer.masses.map((m) => [...m.place, size * (0.006 + 0.012 * Math.cbrt(heaviest > 0 ? Math.max(0, m.mass) / heaviest : 0))]), ball, kMasses));
+      things.push(this.make_symbols(answer.masses.map((m) => [...m.place, size * (0.006 + 0.012 * Math.cbrt(heaviest > 0 ? Math.max(0, m.mass) / heaviest : 0))]), ball, get_css("--sensor")));
     if (show.spiders) {
       const lines = [];
       for (const s of answer.spiders) {
@@ -119,11 +118,11 @@ export class DeckScene {
           if (a !== undefined && b !== undefined) lines.push(a, b);
         }
       }
-      if (lines.length > 0) things.push({ points, edges: Uint32Array.from(lines), color: kSpiders, lift: 4e-4 });
+      if (lines.length > 0) things.push({ points, edges: Uint32Array.from(lines), color: get_css("--reaction"), lift: 4e-4 });
     }
     if (show.supports && answer.supports.length > 0) {
       const seen = new Map(answer.supports.map((s) => [s.grid, s]));
-      things.push(this.make_symbols(this.list_places([...seen.values()], () => 0.009 * size), kCone, kSupports));
+      things.push(this.make_symbols(this.list_places([...seen.values()], () => 0.009 * size), kCone, get_css("--applied")));
     }
     if (show.loads && answer.loads.length > 0) {
       for (const is_moment of [false, true]) {

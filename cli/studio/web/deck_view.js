@@ -1,7 +1,7 @@
 import { ask, run_job } from "./api.js";
 import { make_body_form } from "./body_form.js";
 import { DeckScene } from "./deck_scene.js";
-import { el, get_css, get_style, make_button, make_check, make_select } from "./page_parts.js";
+import { el, get_css, make_button, make_check, make_select, make_swatch } from "./page_parts.js";
 import { make_message_list, make_progress, show_lines } from "./parts.js";
 import { Viewer } from "./viewer.js";
 
@@ -10,6 +10,8 @@ export class DeckStage {
   constructor(answer, on_pick, height = "100%") {
     this.scene = new DeckScene(answer);
     this.chosen = new Set();
+    /** More grids and their colours. @type {[number[], string][]} */
+    this.marked = [];
     this.picked = 0;
     this.viewer = new Viewer(height);
     this.viewer.name = "deck";
@@ -18,6 +20,7 @@ export class DeckStage {
       on_pick(this.picked);
       this.draw();
     };
+    this.viewer.repaint = () => this.draw();
     this.element = this.viewer.element;
     this.viewer.face(this.scene.box);
     this.draw();
@@ -26,6 +29,7 @@ export class DeckStage {
   draw() {
     const { things, marks } = this.scene.make_things();
     if (this.chosen.size > 0) marks.push(this.scene.make_marks(this.chosen, "#d55e00"));
+    for (const [grids, color] of this.marked) if (grids.length > 0) marks.push(this.scene.make_marks(grids, color));
     if (this.picked) marks.push(this.scene.make_marks([this.picked], get_css("--mark")));
     this.viewer.things = things;
     this.viewer.marks = marks;
@@ -210,15 +214,13 @@ export class DeckView {
   list_groups() {
     const { scene } = this.stage;
     this.groups.replaceChildren(...scene.groups.map((g) => {
-      const swatch = el("span", { class: "swatch" });
-      swatch.style.background = get_style(g.style).color;
       const card = this.answer.properties.find((p) => p.id === g.property && !p.card.startsWith("MAT"));
       const box = make_check(g.name, !scene.hidden.has(g.name), (on) => {
         if (on) scene.hidden.delete(g.name);
         else scene.hidden.add(g.name);
         this.stage.draw();
       });
-      return el("div", { class: "group" }, swatch, box, card ? el("span", { class: "note" }, ` ${card.card} ${card.values}`) : "");
+      return el("div", { class: "group" }, make_swatch(g.style), box, card ? el("span", { class: "note" }, ` ${card.card} ${card.values}`) : "");
     }));
   }
 

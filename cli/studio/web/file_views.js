@@ -4,6 +4,7 @@ import { make_chapter } from "./chapter_panel.js";
 import { el, make_button } from "./page_parts.js";
 import { make_message_list, make_progress, show_history } from "./parts.js";
 
+const kComparable = ["bough-flexbody", "bough-modes"];
 const stem = (file) => file.replace(/\.[^./]+$/, "");
 
 /** Buttons of what may be done with a file of this kind. */
@@ -25,22 +26,30 @@ export async function open_chapter(studio, file, kind) {
   const shown = make_chapter(chapter), progress = make_progress();
   const list = make_message_list(() => {});
   list.show(messages);
-  const compare = kind === "bough-flexbody" || kind === "bough-modes" ? make_compare(studio, file, kind, progress) : "";
+  const compare = kComparable.includes(kind) ? make_compare(studio, file, progress, (output) => studio.open(output)) : "";
   const element = el("div", { class: "page" }, el("div", { class: "tools actions" }, ...make_actions(studio, file, kind, progress), compare), progress.element, messages.length > 0 ? list.element : "", shown.element);
   return { element, dispose: shown.dispose };
 }
 
-/** MAC and frequencies against another body or modes file. */
-function make_compare(studio, file, kind, progress) {
-  const others = studio.files.filter((f) => f.name !== file && (f.kind === "bough-flexbody" || f.kind === "bough-modes"));
-  if (others.length === 0) return "";
-  const list = el("select", { "aria-label": "compare with" }, el("option", { value: "" }, "compare with …"), ...others.map((f) => el("option", { value: f.name }, f.name)));
+/**
+ * MAC and frequencies against another body or modes file.
+ * @param {(output: string) => Promise<any>} show  called with the file that was written
+ */
+export function make_compare(studio, file, progress, show) {
+  const list = el("select", { "aria-label": "compare with", title: "bough compare: MAC, differences of the frequencies" });
+  const fill = () => {
+    const others = studio.files.filter((f) => f.name !== file && kComparable.includes(f.kind)).map((f) => f.name), chosen = list.value;
+    list.replaceChildren(...["", ...others].map((name) => el("option", { value: name }, name || (others.length > 0 ? "compare with …" : "compare with … (no other body here)"))));
+    list.value = others.includes(chosen) ? chosen : "";
+  };
+  fill();
+  list.addEventListener("focus", fill);  // files that came since
   list.addEventListener("change", () => list.value && studio.attempt(async () => {
     const output = stem(file) + "-comparison.h5";
     const done = await run_job({ verb: "compare", files: [file, list.value], options: [["-o", output]] }, progress.update);
     progress.finish(done);
     await studio.refresh();
-    if (done.code === 0) await studio.open(output);
+    if (done.code === 0) await show(output);
   }));
   return list;
 }

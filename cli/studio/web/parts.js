@@ -119,7 +119,7 @@ export function make_progress() {
     stop.hidden = true;
     bar.value = 100;
     line.textContent = (code === 0 ? "done: " : `ended with code ${code}: `) + words;
-    fold.open = code !== 0;
+    fold.open = code !== 0 && !output.textContent.includes("stopped on request");
   };
   return { element, update, finish };
 }

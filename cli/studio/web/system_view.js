@@ -14,6 +14,7 @@ import { TextPane } from "./text_view.js";
 import { Viewer } from "./viewer.js";
 
 const stem = (file) => file.replace(/\.[^./]+$/, "");
+const kMaxEarlier = 3;
 const kLiveEvery = 1500;  // ms
 
 /** A system file: text and scene side by side; run, equilibrium, poles. */
@@ -29,21 +30,31 @@ export class SystemView {
     this.picked = el("output", { class: "picked", "aria-live": "polite" });
     this.parameters = el("div", { class: "tools parameters" });
     this.set = new Map();
-    this.is_following = false;  // a command of this file is followed
+    /** Runs of this file that were shown, the last one first. @type {any[]} */
+    this.earlier = [];
     this.add_form = make_add_form(studio, this);
     this.diagrams = new DiagramPanels(studio, this);
     this.hinge_axes = new HingeAxes(this);
     this.pane = new TextPane(studio, file, "system", read, { on_check: (answer) => this.update(answer) });
     const button = (text, title, action, name) => Object.assign(make_button(text, title, action), { className: name });
-    const actions = el("div", { class: "tools actions" }, button("Run", "bough run: time history", () => this.run(), "main run"),
+    this.actions = el("div", { class: "tools actions" }, button("Run", "bough run: time history", () => this.run(), "main run"),
       button("Resume", "bough run --resume: go on where the results file ends, after Stop or a longer duration", () => this.run([["--resume"]]), "resume"),
       button("Equilibrium", "bough equilibrium: rest or steady spin", () => this.solve("equilibrium", "-equilibrium.h5"), "equilibrium"),
       button("Linearize", "bough linearize: poles about the initial state", () => this.solve("linearize", "-linear.h5"), "linearize"),
       button("… at equilibrium", "bough linearize --equilibrium", () => this.solve("linearize", "-linear.h5", [["--equilibrium"]]), "linearize-rest"),
       button("Save as page", "bough report of the run and its bodies: one HTML file", () => this.report(), "save-page"),
       button("Copy commands …", "The lines that do the same in a shell", () => show_history(), "copy"));
-    this.element = el("div", { class: "split reverse" }, el("div", { class: "side wide" }, this.add_form.element, this.pane.element), el("div", { class: "work-column" }, actions, this.parameters, this.progress.element, this.picked, this.hinge_axes.element, this.scene, this.diagrams.element, this.result));
+    this.element = el("div", { class: "split reverse" }, el("div", { class: "side wide" }, this.add_form.element, this.pane.element), el("div", { class: "work-column" }, this.actions, this.parameters, this.progress.element, this.picked, this.hinge_axes.element, this.scene, this.diagrams.element, this.result));
     this.join().then((found) => !found && studio.has(this.output) && this.show_results());
+  }
+
+  /** True while a command of this file is followed: another one would wait for it. */
+  get is_following() {
+    return this.is_busy ?? false;
+  }
+  set is_following(is_on) {
+    this.is_busy = is_on;
+    for (const name of ["run", "resume", "equilibrium", "linearize", "linearize-rest"]) this.actions.querySelector(`button.${name}`).disabled = is_on;
   }
 
   /** Name of the results: that of the system file, unless a body or another kind of file has it. */
@@ -65,7 +76,7 @@ export class SystemView {
       const { chapter } = await ask("preview", { file: this.file, text });
       if (text !== this.pane.text) return;  // another text is checked by now
       this.text_drawn = text;
-      this.bodies = answer.bodies;
+      this.bodies = (answer.bodies ?? []).map((path) => this.studio.to_name(path));
       const run = new ReportChapter(chapter.data).run, list_bodies = (r) => r?.data.bodies.map((b) => b.name).join("\n");
       this.show_scene(run, false, list_bodies(run) === list_bodies(this.motion?.run));
     } catch (error) {
@@ -74,16 +85,18 @@ export class SystemView {
   }
 
   /** Draws a run in the same viewer, its end while it grows; the camera stays if `is_kept` and there is one. */
-  show_scene(run, at_end, is_kept = at_end) {
+  show_scene(run, at_end, is_kept = at_end, earlier = null) {
     const { yaw, pitch, distance, target, home } = this.viewer;
-    this.motion?.play(false);
-    this.motion = new MotionView(run, this.viewer);
+    const before = this.motion;
+    before?.play(false);
+    this.motion = new MotionView(run, this.viewer, earlier);
     if (home && is_kept) Object.assign(this.viewer, { yaw, pitch, distance, target });
     if (at_end) this.motion.set_time(this.motion.last);
     this.hinge_axes.attach(this.motion);
-    this.viewer.on_pick = (found) => this.pick(found);
+    this.motion.on_pick = (found) => this.pick(found);
     this.scene.replaceChildren(this.motion.element);
     this.viewer.draw();  // on the page: before, the canvas has no size
+    if (before) this.motion.take_over(before);
     this.scene.dataset.samples = String(run.time.length);
     delete this.scene.dataset.pole;
   }
@@ -190,18 +203,20 @@ export class SystemView {
       this.poles = null;
       this.shown = make_chapter(chapter, ["system", "motion"]);
       const run = this.shown.data.run;
-      this.show_scene(run, false);
+      this.show_scene(run, false, false, is_old ? null : this.earlier[0]);
       const note = is_old ? [el("p", { class: "banner", role: "alert" }, "The last run wrote no results. These are the results of a run before.")] : [];
       this.result.replaceChildren(el("h2", {}, this.output), ...note, ...(is_old ? [] : this.make_ghosts(run)), this.shown.element);
       this.result.dataset.ready = is_old ? "old" : "true";
-      this.earlier = run;
+      this.earlier = [run, ...this.earlier].slice(0, kMaxEarlier);
     });
   }
 
+  /** Curves of this run and of those before, in the same charts. */
   make_ghosts(run) {
-    if (!this.earlier) return [];
-    const both = new HistoryView(new RunSet([{ name: "this run", run }, { name: "run before", run: this.earlier }]));
-    return [el("details", { class: "panel" }, el("summary", {}, "This run and the run before"), both.element)];
+    if (this.earlier.length === 0) return [];
+    const name = (k) => (k === 0 ? "run before" : `${k + 1} runs before`);
+    const all = new HistoryView(new RunSet([{ name: "this run", run }, ...this.earlier.map((r, k) => ({ name: name(k), run: r }))]));
+    return [el("details", { class: "panel earlier" }, el("summary", {}, `This run and the ${this.earlier.length > 1 ? `${this.earlier.length} runs` : "run"} before`), all.element)];
   }
 
   solve(verb, ending, options = []) {

@@ -19,7 +19,7 @@ export class TextPane {
     this.messages = make_message_list((m) => m.line > 0 && this.editor.go(m.line));
     this.state = el("span", { class: "badge", role: "status" });
     this.outside = el("div", { class: "banner", hidden: true, role: "alert" });
-    const command = el("input", { type: "text", class: "command", placeholder: "command of bough edit: set simulation.duration=5", "aria-label": "command of bough edit" });
+    const command = el("input", { type: "text", class: "command", placeholder: `command of bough edit: set ${kind === "body" ? "body.modes.number=12" : "simulation.duration=5"}`, "aria-label": "command of bough edit" });
     command.addEventListener("keydown", (event) => {
       if (event.key !== "Enter" || !command.value.trim()) return;
       studio.attempt(async () => {
@@ -48,8 +48,17 @@ export class TextPane {
     return this.text !== this.saved;
   }
 
-  /** Commands of `bough edit`, as one step of undo. @param {string[]} commands */
-  async edit(commands) {
+  /**
+   * Commands of `bough edit`, as one step of undo. Of several calls each begins with the text of the one before.
+   * @param {string[]} commands
+   */
+  edit(commands) {
+    const done = (this.edits ?? Promise.resolve()).then(() => this.apply(commands));
+    this.edits = done.catch(() => {});
+    return done;
+  }
+
+  async apply(commands) {
     this.editor.keep();
     const { text } = await ask("edit", { file: this.file, text: this.text, kind: this.kind, commands });
     this.editor.change(text);

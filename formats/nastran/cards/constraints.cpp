@@ -2,6 +2,7 @@
 
 #include "formats/nastran/detail/parsers.hpp"
 #include "formats/nastran/detail/rigid_expansion.hpp"
+#include "formats/nastran/detail/shared_fields.hpp"
 
 namespace bough::nastran::detail {
 namespace {
@@ -149,16 +150,12 @@ void parse_spc(Card& card, Reading& r) { parse_motions(card, r.deck.spc); }
 
 void parse_spc1(Card& card, Reading& r) {
   const int sid = card.read_id(0, "SID");
-  const unsigned c = card.read_components(1, "C", 0);
-  const auto list = read_id_list(card, 2, card.get_size(), "G");
-  if (list.empty() && card.is_ok()) card.fail("deck.missing-field", 2, "G is blank, expected a grid at least");
-  if (!card.is_ok()) return;
-  for (const auto& range : list) {
+  read_components_of_ids(card, 1, "G", [&](unsigned c, const auto& range) {
     if (range.is_thru)
       r.spc_ranges.push_back({sid, c, range, card.get_location()});
     else
       r.deck.spc.push_back({sid, range.first, c, 0.0, false, card.get_location()});
-  }
+  });
 }
 
 void parse_union(Card& card, Reading& r, IdSpace space, std::vector<records::SetUnion>& unions) {
@@ -367,12 +364,13 @@ void add_constraint_parsers(ParserTable& table) {
   table["SPC"] = {parse_spc, nullptr, "SID G1 C1 D1 G2 C2 D2"};
   table["MPC"] = {parse_mpc, nullptr};
   // The names of NASTRAN-95, with the same fields.
-  add_plain_cards(table, {{"CRBE1", parse_rbe1},
-                          {"CRIGD3", parse_rbe1},
-                          {"CRBE2", parse_rbe2},
-                          {"CRBE3", parse_rbe3},
-                          {"CRROD", parse_rrod},
-                          {"CRBAR", parse_rbar}});
+  for (const auto& [other, card] : std::initializer_list<std::pair<const char*, const char*>>{{"CRBE1", "RBE1"},
+                                                                                              {"CRIGD3", "RBE1"},
+                                                                                              {"CRBE2", "RBE2"},
+                                                                                              {"CRBE3", "RBE3"},
+                                                                                              {"CRROD", "RROD"},
+                                                                                              {"CRBAR", "RBAR"}})
+    table[other] = table[card];
   table["SPC"].convert = convert_spc;
   table["MPC"].convert = convert_mpc;
   write_by(

@@ -1,8 +1,10 @@
 #include "formats/nastran/detail/parsers.hpp"
+#include "formats/nastran/detail/shared_fields.hpp"
 
 namespace bough::nastran::detail {
 namespace {
 
+using records::Deck;
 using records::GridComponents;
 
 /// Pairs ID C from field `first` of the only line on; C is blank or 0 for a scalar point.
@@ -25,31 +27,16 @@ void parse_suport1(Card& card, Reading& r) {
   const int sid = card.read_id(0, "SID");
   read_pairs(card, 1, r.deck.suport1[sid]);
 }
-void parse_aset(Card& card, Reading& r) { read_pairs(card, 0, r.deck.aset); }
-void parse_omit(Card& card, Reading& r) { read_pairs(card, 0, r.deck.omit); }
-
-void parse_qset(Card& card, Reading& r) { read_pairs(card, 0, r.deck.qset); }
-void parse_bset(Card& card, Reading& r) { read_pairs(card, 0, r.deck.bset); }
-void parse_cset(Card& card, Reading& r) { read_pairs(card, 0, r.deck.cset); }
 
 /// C ID1 ID2 ... or C ID1 THRU ID2, of which only the points that exist are meant.
 void read_list(Card& card, Reading& r, std::vector<GridComponents>& terms) {
-  const unsigned c = card.read_components(0, "C", 0);
-  const auto list = read_id_list(card, 1, card.get_size(), "ID");
-  if (list.empty() && card.is_ok()) card.fail("deck.missing-field", 1, "ID is blank, expected a grid at least");
-  if (!card.is_ok()) return;
-  for (const auto& range : list) {
+  read_components_of_ids(card, 0, "ID", [&](unsigned c, const auto& range) {
     if (range.is_thru)
       r.set_ranges.push_back({&terms, c, range, card.get_location()});
     else
       terms.push_back({range.first, c, card.get_location()});
-  }
+  });
 }
-void parse_aset1(Card& card, Reading& r) { read_list(card, r, r.deck.aset); }
-void parse_omit1(Card& card, Reading& r) { read_list(card, r, r.deck.omit); }
-void parse_qset1(Card& card, Reading& r) { read_list(card, r, r.deck.qset); }
-void parse_bset1(Card& card, Reading& r) { read_list(card, r, r.deck.bset); }
-void parse_cset1(Card& card, Reading& r) { read_list(card, r, r.deck.cset); }
 
 /// One card for each run of ids with the same components: C ID1 ID2 ...
 void write_lists(const char* name, const std::vector<records::GridComponents>& terms, CardSink& sink) {
@@ -82,35 +69,38 @@ void write_suport1(const records::Deck& deck, CardSink& sink) {
     write_pairs(head.add(sid), 3, terms, sink);
   }
 }
+void write_aset(const Deck& deck, CardSink& sink) { write_lists("ASET1", deck.aset, sink); }
+void write_omit(const Deck& deck, CardSink& sink) { write_lists("OMIT1", deck.omit, sink); }
+void write_qset(const Deck& deck, CardSink& sink) { write_lists("QSET1", deck.qset, sink); }
+void write_bset(const Deck& deck, CardSink& sink) { write_lists("BSET1", deck.bset, sink); }
+void write_cset(const Deck& deck, CardSink& sink) { write_lists("CSET1", deck.cset, sink); }
 
-void write_aset(const records::Deck& deck, CardSink& sink) { write_lists("ASET1", deck.aset, sink); }
-void write_omit(const records::Deck& deck, CardSink& sink) { write_lists("OMIT1", deck.omit, sink); }
-void write_qset(const records::Deck& deck, CardSink& sink) { write_lists("QSET1", deck.qset, sink); }
-void write_bset(const records::Deck& deck, CardSink& sink) { write_lists("BSET1", deck.bset, sink); }
-void write_cset(const records::Deck& deck, CardSink& sink) { write_lists("CSET1", deck.cset, sink); }
+template <auto set>
+void parse_pairs(Card& card, Reading& r) {
+  read_pairs(card, 0, r.deck.*set);
+}
+template <auto set>
+void parse_list(Card& card, Reading& r) {
+  read_list(card, r, r.deck.*set);
+}
+/// The card of pairs and the card of lists of one set; both are written as lists.
+template <auto set>
+void add_set(ParserTable& table, const char* pairs, const char* list, CardWriter write) {
+  add_plain_cards(table, {{pairs, parse_pairs<set>}, {list, parse_list<set>}});
+  write_by(table, write, {pairs, list});
+}
 
 }  // namespace
 
 void add_dof_set_parsers(ParserTable& table) {
-  add_plain_cards(table, {{"SUPORT", parse_suport},
-                          {"SUPORT1", parse_suport1},
-                          {"ASET", parse_aset},
-                          {"ASET1", parse_aset1},
-                          {"OMIT", parse_omit},
-                          {"OMIT1", parse_omit1},
-                          {"QSET", parse_qset},
-                          {"QSET1", parse_qset1},
-                          {"BSET", parse_bset},
-                          {"BSET1", parse_bset1},
-                          {"CSET", parse_cset},
-                          {"CSET1", parse_cset1}});
+  add_plain_cards(table, {{"SUPORT", parse_suport}, {"SUPORT1", parse_suport1}});
   write_by(table, write_suport, {"SUPORT"});
   write_by(table, write_suport1, {"SUPORT1"});
-  write_by(table, write_aset, {"ASET", "ASET1"});
-  write_by(table, write_omit, {"OMIT", "OMIT1"});
-  write_by(table, write_qset, {"QSET", "QSET1"});
-  write_by(table, write_bset, {"BSET", "BSET1"});
-  write_by(table, write_cset, {"CSET", "CSET1"});
+  add_set<&Deck::aset>(table, "ASET", "ASET1", write_aset);
+  add_set<&Deck::omit>(table, "OMIT", "OMIT1", write_omit);
+  add_set<&Deck::qset>(table, "QSET", "QSET1", write_qset);
+  add_set<&Deck::bset>(table, "BSET", "BSET1", write_bset);
+  add_set<&Deck::cset>(table, "CSET", "CSET1", write_cset);
 }
 
 }  // namespace bough::nastran::detail

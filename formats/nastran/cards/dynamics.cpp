@@ -46,13 +46,19 @@ void add_load(Card& card, DynamicCards& r, DynamicLoad load) {
   add_unique(card, r.loads, load, &std::remove_reference_t<decltype(load)>::sid);
 }
 
+/// The fields of RLOAD1 and RLOAD2, whose two functions of frequency have the names `a` and `b`.
+DynamicLoad read_frequency_load(Card& card, DynamicLoad::Kind kind, const char* a, const char* b) {
+  auto load = read_head(card, kind);
+  read_set_or_number(card, 3, "DPHASE", load.phase_set, load.phase_deg);
+  read_set_or_number(card, 4, a, load.table_a, load.a);
+  read_set_or_number(card, 5, b, load.table_b, load.b);
+  load.excitation = read_excitation(card, 6);
+  return load;
+}
+
 /// SID EXCITEID DELAY DPHASE TC TD TYPE.
 void parse_rload1(Card& card, DynamicCards& r) {
-  auto load = read_head(card, DynamicLoad::Kind::Rload1);
-  read_set_or_number(card, 3, "DPHASE", load.phase_set, load.phase_deg);
-  read_set_or_number(card, 4, "TC", load.table_a, load.a);
-  read_set_or_number(card, 5, "TD", load.table_b, load.b);
-  load.excitation = read_excitation(card, 6);
+  const auto load = read_frequency_load(card, DynamicLoad::Kind::Rload1, "TC", "TD");
   if (card.is_ok() && card.is_blank(4, 6))
     card.fail("deck.missing-field", 4, "TC and TD are blank, expected a table or a number at least");
   add_load(card, r, load);
@@ -60,11 +66,7 @@ void parse_rload1(Card& card, DynamicCards& r) {
 
 /// SID EXCITEID DELAY DPHASE TB TP TYPE.
 void parse_rload2(Card& card, DynamicCards& r) {
-  auto load = read_head(card, DynamicLoad::Kind::Rload2);
-  read_set_or_number(card, 3, "DPHASE", load.phase_set, load.phase_deg);
-  read_set_or_number(card, 4, "TB", load.table_a, load.a);
-  read_set_or_number(card, 5, "TP", load.table_b, load.b);
-  load.excitation = read_excitation(card, 6);
+  const auto load = read_frequency_load(card, DynamicLoad::Kind::Rload2, "TB", "TP");
   card.demand(!card.is_blank(4), 4, "TB", "a table or a number");
   add_load(card, r, load);
 }
@@ -97,12 +99,12 @@ void parse_tload1(Card& card, DynamicCards& r) {
 void parse_tload2(Card& card, DynamicCards& r) {
   auto load = read_head(card, DynamicLoad::Kind::Tload2);
   load.excitation = read_excitation(card, 3);
-  load.t1 = card.read_real(4, "T1", 0.0);
-  load.t2 = card.read_real(5, "T2");
-  load.frequency_hz = card.read_real(6, "F", 0.0);
-  load.phase_deg = card.read_real(7, "P", 0.0);
-  load.growth = card.read_real(8, "C", 0.0);
-  load.power = card.read_real(9, "B", 0.0);
+  card.read_reals(4, {{"T1", load.t1, 0.0},
+                      {"T2", load.t2, {}},
+                      {"F", load.frequency_hz, 0.0},
+                      {"P", load.phase_deg, 0.0},
+                      {"C", load.growth, 0.0},
+                      {"B", load.power, 0.0}});
   if (card.is_ok()) card.demand(load.t2 > load.t1, 5, "T2", "a time after T1");
   if (card.is_ok()) card.demand(load.power >= 0, 9, "B", "zero or above");
   refuse_start(card, 10, load.excitation);

@@ -1,4 +1,5 @@
 #include "formats/nastran/detail/parsers.hpp"
+#include "formats/nastran/detail/shared_fields.hpp"
 
 namespace bough::nastran::detail {
 namespace {
@@ -113,10 +114,7 @@ void parse_ctube(Card& card, Reading& r) { parse_two_grids<records::Ctube, IdSpa
 void parse_conrod(Card& card, Reading& r) {
   records::Conrod e;
   card.read_ids(0, {{"EID", e.id}, {"G1", e.ga}, {"G2", e.gb}, {"MID", e.mid}});
-  card.read_reals(4, {{"A", e.A, 0.0}, {"J", e.J, 0.0}, {"C", e.c, 0.0}, {"NSM", e.nsm, 0.0}});
-  e.at = card.get_location();
-  card.demand(e.A >= 0, 4, "A", "an area that is not negative");
-  card.demand(e.J >= 0, 5, "J", "a value that is not negative");
+  read_rod_section(card, 4, e);
   if (r.claim(IdSpace::Conrod, e.id, card)) r.deck.conrod.push_back(e);
 }
 

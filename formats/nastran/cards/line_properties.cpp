@@ -3,6 +3,7 @@
 
 #include "formats/nastran/detail/parsers.hpp"
 #include "formats/nastran/detail/sections.hpp"
+#include "formats/nastran/detail/shared_fields.hpp"
 
 namespace bough::nastran::detail {
 namespace {
@@ -231,10 +232,7 @@ void parse_prod(Card& card, Reading& r) {
   records::Prod p;
   p.id = card.read_id(0, "PID");
   p.mid = card.read_id(1, "MID");
-  card.read_reals(2, {{"A", p.A, 0.0}, {"J", p.J, 0.0}, {"C", p.c, 0.0}, {"NSM", p.nsm, 0.0}});
-  p.at = card.get_location();
-  card.demand(p.A >= 0, 2, "A", "an area that is not negative");
-  card.demand(p.J >= 0, 3, "J", "a value that is not negative");
+  read_rod_section(card, 2, p);
   if (r.claim(IdSpace::RodProperty, p.id, card)) r.deck.prod.push_back(p);
 }
 

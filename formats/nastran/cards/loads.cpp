@@ -1,4 +1,5 @@
 #include "formats/nastran/detail/parsers.hpp"
+#include "formats/nastran/detail/shared_fields.hpp"
 
 namespace bough::nastran::detail {
 namespace {
@@ -25,10 +26,7 @@ void parse_moment(Card& card, Reading& r) { parse_point_load(card, r, true); }
 
 void parse_grav(Card& card, Reading& r) {
   records::Gravity g;
-  g.sid = card.read_id(0, "SID");
-  g.cid = card.read_reference(1, "CID");
-  g.a = card.read_real(2, "A", 0.0);
-  g.n = card.read_vector(3, "N1 N2 N3");
+  read_acceleration(card, g);
   if (card.read_int(6, "MB", 0) == -1 && g.cid > 0)
     card.fail("deck.field-range", 6,
               "MB = -1: coordinate system " + std::to_string(g.cid) + " of the main bulk data is not read in a section",

@@ -20,10 +20,7 @@ void parse_mat1(Card& card, Reading& r) {
   mat.rho = card.read_real(4, "RHO", 0.0);
   mat.alpha = card.read_real(5, "A", 0.0);
   mat.tref = card.read_optional_real(6, "TREF");
-  mat.ge = card.read_real(7, "GE", 0.0);
-  mat.st = card.read_real(8, "ST", 0.0);
-  mat.sc = card.read_real(9, "SC", 0.0);
-  mat.ss = card.read_real(10, "SS", 0.0);
+  card.read_reals(7, {{"GE", mat.ge, 0.0}, {"ST", mat.st, 0.0}, {"SC", mat.sc, 0.0}, {"SS", mat.ss, 0.0}});
   card.use(11);  // MCSID
   mat.at = card.get_location();
   card.demand(!E || *E >= 0, 1, "E", "a modulus that is not negative");

@@ -2,6 +2,7 @@
 #include <set>
 
 #include "formats/nastran/detail/parsers.hpp"
+#include "formats/nastran/detail/shared_fields.hpp"
 
 namespace bough::nastran::detail {
 namespace {
@@ -59,10 +60,7 @@ void parse_nsmadd(Card& card, Reading& r) {
 /// SID CID A N1 N2 N3, from the second line on the grids.
 void parse_accel1(Card& card, Reading& r) {
   records::GridAcceleration a;
-  a.sid = card.read_id(0, "SID");
-  a.cid = card.read_reference(1, "CID");
-  a.a = card.read_real(2, "A", 0.0);
-  a.n = card.read_vector(3, "N1 N2 N3");
+  read_acceleration(card, a);
   a.at = card.get_location();
   a.is_all = card.is_word(8, "ALL");
   if (a.is_all) card.use(8);

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "formats/nastran/detail/parsers.hpp"
+#include "formats/nastran/detail/shared_fields.hpp"
 
 namespace bough::nastran::detail {
 namespace {
@@ -11,12 +12,7 @@ using records::Pshell;
 using records::ShellElement;
 
 void add_shell(Card& card, Reading& r, ShellElement&& e, const char* today, const char* property) {
-  e.card = today;
-  e.at = card.get_location();
-  if (!r.claim(IdSpace::Shell, e.id, card)) return;
-  r.old_elements.shells.push_back({r.deck.shells.size(), property});
-  r.old_elements.count(card, today);
-  r.deck.shells.push_back(std::move(e));
+  add_old_element(card, r, std::move(e), today, property, IdSpace::Shell, r.deck.shells, r.old_elements.shells);
 }
 
 ShellElement read_head(Card& card) {

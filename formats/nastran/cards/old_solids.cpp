@@ -3,17 +3,13 @@
 #include <string>
 
 #include "formats/nastran/detail/parsers.hpp"
+#include "formats/nastran/detail/shared_fields.hpp"
 
 namespace bough::nastran::detail {
 namespace {
 
 void add_solid(Card& card, Reading& r, records::SolidElement&& e, const char* today, const char* property) {
-  e.card = today;
-  e.at = card.get_location();
-  if (!r.claim(IdSpace::Solid, e.id, card)) return;
-  r.old_elements.solids.push_back({r.deck.solids.size(), property});
-  r.old_elements.count(card, today);
-  r.deck.solids.push_back(std::move(e));
+  add_old_element(card, r, std::move(e), today, property, IdSpace::Solid, r.deck.solids, r.old_elements.solids);
 }
 
 /// EID MID G1...: tetrahedra that share the grids of a hexahedron or a wedge.

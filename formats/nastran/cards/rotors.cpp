@@ -89,8 +89,7 @@ void parse_rgyro(Card& card, DynamicCards& r) {
 void parse_rspeed(Card& card, DynamicCards& r) {
   records::SpeedList list;
   list.sid = card.read_id(0, "SID");
-  list.first = card.read_real(1, "S1");
-  list.step = card.read_real(2, "DS");
+  card.read_reals(1, {{"S1", list.first, {}}, {"DS", list.step, {}}});
   list.count = card.read_id(3, "NDS", 1);
   card.use(8, 16);
   list.at = card.get_location();
@@ -131,8 +130,7 @@ void parse_ddval(Card& card, DynamicCards& r) {
 void parse_rotord(Card& card, DynamicCards& r) {
   records::RotorSweepCard s;
   s.sid = card.read_id(0, "SID");
-  s.first = card.read_real(1, "RSTART");
-  s.step = card.read_real(2, "RSTEP");
+  card.read_reals(1, {{"RSTART", s.first, {}}, {"RSTEP", s.step, {}}});
   s.count = card.read_id(3, "NUMSTEP");
   if (card.read_word(4, "REFSYS", "ROT", {"FIX", "ROT"}) == "ROT")
     card.demand(false, 4, "REFSYS", "FIX: rotors are solved in the fixed reference system");

@@ -17,6 +17,20 @@ namespace {
 
 using records::Subcase;
 
+/// A command whose value is the id of a set, and nothing else.
+struct PlainCommand {
+  const char* word;
+  int Subcase::*set;
+};
+constexpr PlainCommand kPlainCommands[] = {
+    {"SPC", &Subcase::spc}, {"MPC", &Subcase::mpc}, {"LOAD", &Subcase::load}, {"NSM", &Subcase::nsm}};
+
+const PlainCommand* find_plain(std::string_view word) {
+  const auto* found = std::find_if(std::begin(kPlainCommands), std::end(kPlainCommands),
+                                   [&](const auto& command) { return word == command.word; });
+  return found == std::end(kPlainCommands) ? nullptr : found;
+}
+
 class CaseControl {
  public:
   CaseControl(const Source& source, records::Deck& deck, Diagnostics& diagnostics, const ControlOptions& options)
@@ -80,12 +94,8 @@ class CaseControl {
       current().subtitle = c.value;
     else if (is_command(c.word, "LABEL", 4))
       current().label = c.value;
-    else if (c.word == "SPC")
-      read_set(c, "SPC", current().spc);
-    else if (c.word == "MPC")
-      read_set(c, "MPC", current().mpc);
-    else if (c.word == "LOAD")
-      read_set(c, "LOAD", current().load);
+    else if (const auto* plain = find_plain(c.word))
+      read_set(c, plain->word, current().*plain->set);
     else if (is_command(c.word, "TEMPERATURE", 4))
       read_temperature(c);
     else if (is_command(c.word, "METHOD", 4)) {
@@ -95,8 +105,6 @@ class CaseControl {
       read_statsub(c);
     } else if (is_command(c.word, "SUPORT1", 4))
       read_set(c, "SUPORT1", current().suport1);
-    else if (c.word == "NSM")
-      read_set(c, "NSM", current().nsm);
     else if (c.word == "K2GG")
       read_matrices(c, "K2GG", current().k2gg);
     else if (c.word == "M2GG")

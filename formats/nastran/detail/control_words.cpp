@@ -80,8 +80,16 @@ void IgnoredCommands::add(const std::string& word, const records::CardLocation& 
 
 void IgnoredCommands::report(const records::Deck& deck, Diagnostics& diagnostics) const {
   if (words_.empty()) return;
+  // EXTSEOUT in a separate note, which an export of the superelement leaves out: it uses the command.
+  IgnoredCommands external, others;
+  for (const auto& word : words_) (word.first.substr(0, 4) == "EXTS" ? external : others).words_.push_back(word);
+  if (!external.words_.empty() && !others.words_.empty()) {
+    others.report(deck, diagnostics);
+    external.report(deck, diagnostics);
+    return;
+  }
   std::string words, options, responses;
-  bool has_others = words_.size() > most_words, asks_complex = false;
+  bool has_others = words_.size() > most_words, asks_complex = false, has_rotors = false;
   const auto num_shown = std::min(words_.size(), most_words);
   for (std::size_t i = 0; i < num_shown; ++i) {
     words += (i == 0 ? "" : ", ") + words_[i].first + " (line " + std::to_string(words_[i].second.line) + ")";
@@ -91,6 +99,8 @@ void IgnoredCommands::report(const records::Deck& deck, Diagnostics& diagnostics
       responses += (responses.empty() ? "" : ", ") + std::string(acts->name);
     else if (words_[i].first.substr(0, 4) == "CMET")
       asks_complex = true;
+    else if (words_[i].first.substr(0, 4) == "RGYR")
+      has_rotors = true;
     else if (option.empty())
       has_others = true;
     if (!option.empty() && options.find(option) == std::string::npos)
@@ -102,6 +112,7 @@ void IgnoredCommands::report(const records::Deck& deck, Diagnostics& diagnostics
   if (!options.empty()) advice.push_back("options of the command line give results: " + options);
   if (!responses.empty()) advice.push_back(responses + " would change a response, where it is an error");
   if (asks_complex) advice.push_back("CMETHOD asks for complex modes, and modes are real here: without damping");
+  if (has_rotors) advice.push_back("RGYRO spins rotors in SOL 107, 108, 110 and 111: they are at rest here");
   if (has_others || advice.empty()) advice.push_back((advice.empty() ? "" : "of the others: ") + nothing);
   std::string text;
   for (const auto& part : advice) text += (text.empty() ? "" : "; ") + part;

@@ -26,18 +26,26 @@ void read_cells(std::string text, records::Deck& deck) {
 
 }  // namespace
 
-void read_system_cells(const Source& source, records::Deck& deck) {
+void visit_statements(const Source& source, std::string_view word,
+                      const std::function<void(const std::string& text, const records::CardLocation& at)>& use) {
   for (std::size_t i = 0; i < source.lines.size(); ++i) {
     const auto text = trim(source.lines[i].text);
-    const auto word = find_first_word(text);
-    if (is_word(word, "CEND") || is_word(word, "BEGIN")) return;
-    if (!is_word(word, "NASTRAN")) continue;
-    std::string statement(text.substr(word.size()));
+    const auto first = find_first_word(text);
+    if (is_word(first, "CEND") || is_word(first, "BEGIN")) return;
+    if (!is_word(first, word)) continue;
+    const auto at = source.lines[i].at;
+    std::string statement(trim(text.substr(first.size())));
     while (!statement.empty() && statement.back() == ',' && i + 1 < source.lines.size())
-      statement += source.lines[++i].text;
-    std::replace(statement.begin(), statement.end(), '\t', ' ');
-    read_cells(std::move(statement), deck);
+      statement += trim(source.lines[++i].text);
+    use(statement, at);
   }
+}
+
+void read_system_cells(const Source& source, records::Deck& deck) {
+  visit_statements(source, "NASTRAN", [&](std::string text, const auto&) {
+    std::replace(text.begin(), text.end(), '\t', ' ');
+    read_cells(std::move(text), deck);
+  });
 }
 
 }  // namespace bough::nastran::detail

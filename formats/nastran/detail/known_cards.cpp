@@ -188,6 +188,9 @@ const char* find_loss(std::string_view name) {
   if (name == "USET") return "the set that it names is unknown to all that would refer to it";
   if (name == "EPOINT") return "extra points belong to complex modes and responses: nothing here depends on them";
   if (name == "RVDOF") return "no residual vectors are added to the modes";
+  if (name == "ROTORG" || name == "ROTORD" || name == "RSPINR" || name == "RSPEED" || name == "RGYRO" ||
+      name == "UNBALNC")
+    return "rotors spin in SOL 107, 108, 110 and 111 alone: they are left out here";
   if (name == "SPCOFF") return "AUTOSPC holds its dofs too when they have no stiffness";
   if (name == "SENQSET") return "sections have the component modes of QSET1 and SPOINT in their own bulk data alone";
   if (name == "SEEXCLD") return "its grids join by their places all the same; name the others by SEBNDRY";

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "formats/nastran/detail/builder.hpp"
+#include "formats/nastran/detail/executive.hpp"
 #include "formats/nastran/detail/text.hpp"
 
 namespace bough::nastran::detail {
@@ -95,22 +96,13 @@ void read_sections(const BulkSections& bulk, const ReadOptions& options, records
 }
 
 void read_assigned_files(const Source& source, records::Deck& deck) {
-  for (std::size_t i = 0; i < source.lines.size(); ++i) {
-    const auto text = trim(source.lines[i].text);
-    const auto word = find_first_word(text);
-    if (is_word(word, "CEND") || is_word(word, "BEGIN")) return;
-    if (!is_word(word, "ASSIGN")) continue;
-    const auto at = source.lines[i].at;
-    std::string statement(trim(text.substr(word.size())));
-    while (!statement.empty() && statement.back() == ',' && i + 1 < source.lines.size())
-      statement += trim(source.lines[++i].text);
-    const auto equals = statement.find('=');
-    if (equals == std::string::npos || !is_word(trim(std::string_view(statement).substr(0, equals)), "INPUTT4"))
-      continue;
+  visit_statements(source, "ASSIGN", [&](const std::string& text, const auto& at) {
+    const auto equals = text.find('=');
+    if (equals == std::string::npos || !is_word(trim(std::string_view(text).substr(0, equals)), "INPUTT4")) return;
     std::string_view rest;
-    const auto name = take_name(std::string_view(statement).substr(equals + 1), rest);
+    const auto name = take_name(std::string_view(text).substr(equals + 1), rest);
     if (const auto unit = find_unit(rest)) deck.super.input4[*unit] = {name, at};
-  }
+  });
 }
 
 }  // namespace bough::nastran::detail

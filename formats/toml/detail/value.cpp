@@ -1,6 +1,7 @@
 #include "formats/toml/detail/value.hpp"
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -16,6 +17,10 @@ namespace {
 Value convert(const toml::node& node) {
   Value v;
   v.line = static_cast<int>(node.source().begin.line);
+  const auto set = [&](Value::Kind kind, auto& member, const auto& value) {
+    v.kind = kind;
+    member = value.get();
+  };
   if (const auto* table = node.as_table()) {
     v.kind = Value::Kind::Table;
     for (const auto& [key, child] : *table) {
@@ -28,18 +33,14 @@ Value convert(const toml::node& node) {
     v.kind = Value::Kind::Array;
     for (const auto& child : *array) v.items.push_back(convert(child));
   } else if (const auto* text = node.as_string()) {
-    v.kind = Value::Kind::String;
-    v.text = text->get();
+    set(Value::Kind::String, v.text, *text);
   } else if (const auto* integer = node.as_integer()) {
-    v.kind = Value::Kind::Integer;
-    v.integer = integer->get();
+    set(Value::Kind::Integer, v.integer, *integer);
     v.number = static_cast<double>(v.integer);
   } else if (const auto* number = node.as_floating_point()) {
-    v.kind = Value::Kind::Float;
-    v.number = number->get();
+    set(Value::Kind::Float, v.number, *number);
   } else if (const auto* boolean = node.as_boolean()) {
-    v.kind = Value::Kind::Boolean;
-    v.boolean = boolean->get();
+    set(Value::Kind::Boolean, v.boolean, *boolean);
   } else {
     v.kind = Value::Kind::DateTime;
   }
@@ -64,23 +65,10 @@ const Value* Value::find(const std::string& key) const {
 }
 
 const char* describe_kind(Value::Kind kind) {
-  switch (kind) {
-    case Value::Kind::String:
-      return "a string";
-    case Value::Kind::Integer:
-      return "an integer";
-    case Value::Kind::Float:
-      return "a number";
-    case Value::Kind::Boolean:
-      return "true or false";
-    case Value::Kind::DateTime:
-      return "a date or time";
-    case Value::Kind::Array:
-      return "an array";
-    case Value::Kind::Table:
-      break;
-  }
-  return "a table";
+  // In the order of Value::Kind.
+  constexpr std::array kWords{"a string",       "an integer", "a number", "true or false",
+                              "a date or time", "an array",   "a table"};
+  return kWords[static_cast<std::size_t>(kind)];
 }
 
 bool read_text(const std::string& path, std::string& text, Diagnostics& diagnostics) {

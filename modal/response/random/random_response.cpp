@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "formats/records/group_names.hpp"
 #include "modal/response/random/modal_integral.hpp"
 #include "modal/response/random/number_text.hpp"
 
@@ -88,7 +89,7 @@ std::vector<CurveSet> list_sets(const Responses& responses, const SourceLocation
     if (find_others(responses, &records::ResponseSubcase::elements, 1, is_same, set))
       sets.push_back(std::move(set));
     else
-      report((first.is_stress ? "stress of " : "force of ") + first.card);
+      report((first.is_stress ? "stress of " : "force of ") + records::get_card_of_group(first.card));
   }
   return sets;
 }
@@ -121,8 +122,8 @@ std::string name_column(const RandomCurves& curves, Index column) {
   if (curves.card.empty())
     return curves.quantity + ":" + std::to_string(curves.dofs[at].first) + ":" + std::to_string(curves.dofs[at].second);
   const auto num = curves.components.size();
-  return curves.card + (curves.quantity == "stress" ? ":stress:" : ":") + std::to_string(curves.ids[at / num]) + ":" +
-         curves.components[at % num];
+  return records::get_card_of_group(curves.card) + (curves.quantity == "stress" ? ":stress:" : ":") +
+         std::to_string(curves.ids[at / num]) + ":" + curves.components[at % num];
 }
 
 /// Where the output frequencies are too few for the RMS.
@@ -210,7 +211,7 @@ Eigen::VectorXcd find_element_values(const records::ResponseSubcase& response,
     if (curves.is_stress != (output.quantity == "stress")) continue;
     const auto id = std::find(curves.ids.begin(), curves.ids.end(), output.id);
     if (id == curves.ids.end()) continue;
-    const auto* item = find_item(curves.card, curves.is_stress, output.component);
+    const auto* item = find_item(records::get_card_of_group(curves.card), curves.is_stress, output.component);
     if (!item) continue;
     const auto name = std::find(curves.components.begin(), curves.components.end(), item->name);
     if (name == curves.components.end()) continue;
@@ -331,15 +332,19 @@ std::vector<records::RandomResponse> RandomAnalysis::calc(const std::vector<reco
   std::vector<records::RandomResponse> results;
   for (const auto& [input, at] : inputs_) {
     Responses chosen;
+    std::string missing;
     for (const int id : input->subcases()) {
       const auto found = std::find_if(responses.begin(), responses.end(), [id](const auto& s) { return s.id == id; });
-      if (found != responses.end()) chosen.push_back(&*found);
+      if (found != responses.end())
+        chosen.push_back(&*found);
+      else
+        missing += (missing.empty() ? "" : ", ") + std::to_string(id);
     }
-    if (chosen.size() < input->subcases().size()) {
+    if (!missing.empty()) {
       diagnostics.warning("modal.random-subcase", at,
                           "RANDOM = " + std::to_string(input->set()) +
-                              " is left out: RANDPS relates subcases of which one is not solved",
-                          "solve all subcases of RANDPS");
+                              " is left out: RANDPS relates subcases without a response: " + missing,
+                          "correct what fails in these subcases, or solve them too");
       continue;
     }
     results.push_back(calc_set(*input, chosen, sources, at, diagnostics));

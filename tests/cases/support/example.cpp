@@ -84,4 +84,11 @@ VectorXd calc_energy_balance(const solver::MemorySink& sink) {
          sink.get("/energy/work");
 }
 
+double record_energy_drift(const solver::MemorySink& sink, const std::string& name) {
+  const VectorXd balance = calc_energy_balance(sink);
+  const double drift = (balance.array() - balance[0]).abs().maxCoeff() / sink.get("/energy/kinetic").maxCoeff();
+  record(name, drift);
+  return drift;
+}
+
 }  // namespace bough::test

@@ -38,5 +38,7 @@ int find_sample(const VectorXd& time, double t);
 double calc_amplitude(const VectorXd& time, const VectorXd& v, double t_from);
 /// kinetic + strain + potential - work.
 VectorXd calc_energy_balance(const solver::MemorySink& sink);
+/// Largest change of the energy balance, relative to the largest kinetic energy; recorded under the name.
+double record_energy_drift(const solver::MemorySink& sink, const std::string& name);
 
 }  // namespace bough::test

@@ -17,23 +17,7 @@ struct Case {
 
 void PrintTo(const Case& test, std::ostream* out) { *out << test.name; }
 
-const Vector3d kA(0.3, -1.2, 0.7), kB(1.9, 0.4, -0.6);
-
-void add_grids(SmallModel& m) {
-  m.nodes.add_grid(1, kA, make_rotation(11));
-  m.nodes.add_grid(2, kB, make_rotation(12));
-  m.nodes.add_system(7, Vector3d(1, 2, 3), make_rotation(13));
-  records::Mat1 material;
-  material.id = 1, material.E = 3, material.G = 1.1, material.rho = 0.8;
-  m.deck.mat1.push_back(material);
-}
-
-BeamElement make_beam(bool is_cbeam) {
-  BeamElement e;
-  e.id = 5, e.pid = 9, e.ga = 1, e.gb = 2, e.is_cbeam = is_cbeam;
-  e.v = Vector3d(0.2, 1, -0.3);
-  return e;
-}
+void add_conrod(SmallModel& m) { m.deck.conrod.push_back({5, 1, 2, 1, 0.4, 0.02, 0, 0.1, {}}); }
 
 void add_pbar(SmallModel& m, double I12, bool shear) {
   records::Pbar p;
@@ -90,10 +74,9 @@ std::vector<Case> make_cases() {
        [=](SmallModel& m) { add_pbeam(m), m.deck.beams.push_back(offsets(make_beam(true))); }},
       {"beam_library", 6, true,
        [](SmallModel& m) {
-         records::Pbeaml p;
+         auto& p = m.deck.pbeaml.emplace_back();
          p.id = 9, p.mid = 1, p.shape = "L";
          p.stations = {{0, {0.6, 0.8, 0.1, 0.12}, 0.1}, {1, {0.4, 0.5, 0.1, 0.12}, 0.1}};
-         m.deck.pbeaml.push_back(p);
          m.deck.beams.push_back(make_beam(true));
        }},
       {"rod", 2, true,
@@ -101,10 +84,7 @@ std::vector<Case> make_cases() {
          m.deck.prod.push_back({9, 1, 0.4, 0.02, 0, 0.1, {}});
          m.deck.crod.push_back({5, 9, 1, 2, {}});
        }},
-      {"conrod", 2, true,
-       [](SmallModel& m) {
-         m.deck.conrod.push_back({5, 1, 2, 1, 0.4, 0.02, 0, 0.1, {}});
-       }},
+      {"conrod", 2, true, [](SmallModel& m) { add_conrod(m); }},
       {"tube_tapered", 2, true,
        [](SmallModel& m) {
          m.deck.ptube.push_back({9, 1, 0.5, 0.1, 0.2, 0.3, {}});
@@ -130,7 +110,8 @@ std::vector<Case> make_cases() {
 
 SmallModel make_model(const Case& c) {
   SmallModel m;
-  add_grids(m);
+  add_two_grids(m);
+  add_line_material(m);
   c.fill(m);
   m.make();
   return m;
@@ -181,8 +162,8 @@ TEST(BeamMass, RigidBodyIsExact) {
     if (c.name != "beam_tapered_offset" && c.name != "bar_shear_offset" && c.name != "bar_pinned") continue;
     const SmallModel m = make_model(c);
     const bool is_cbeam = c.name == "beam_tapered_offset";
-    const Vector3d a = kA + make_rotation(11) * Vector3d(0.2, 0.3, -0.1),
-                   b = kB + make_rotation(12) * Vector3d(-0.3, 0.1, 0.25);
+    const Vector3d a = kPointA + make_rotation(11) * Vector3d(0.2, 0.3, -0.1),
+                   b = kPointB + make_rotation(12) * Vector3d(-0.3, 0.1, 0.25);
     const Vector3d ex = (b - a).normalized(), ez = ex.cross(make_rotation(11) * Vector3d(0.2, 1, -0.3)).normalized();
     Matrix3d R;
     R << ex, ez.cross(ex), ez;

@@ -14,6 +14,13 @@ records::Pbar make_section(double A, double I1, double I2, double J) {
   return section;
 }
 
+ChainOptions make_options(int num_elements, double length, double E, double G, const records::Pbar& section) {
+  ChainOptions options;
+  options.num_elements = num_elements, options.length = length, options.E = E, options.G = G;
+  options.section = section;
+  return options;
+}
+
 const std::vector<int> kClampedFirst{0, 1, 2, 3, 4, 5};
 
 /// The cantilever of report 4.1.4.1 with 40 CBAR.
@@ -49,12 +56,7 @@ TEST(BeamBuckling, EulerLoads) {
                              {"pinned", {0, 1, 2, 3}, {1, 2}, 1},
                              {"clamped-clamped", {0, 1, 2, 3, 4, 5}, {1, 2, 3, 4, 5}, 4},
                              {"clamped-pinned", {0, 1, 2, 3, 4, 5}, {1, 2}, clamped_pinned}};
-  ChainOptions options;
-  options.num_elements = 20;
-  options.length = 3;
-  options.E = 7e10;
-  options.G = 2.7e10;
-  options.section = make_section(1e-3, 2e-8, 5e-8, 1e-8);
+  ChainOptions options = make_options(20, 3, 7e10, 2.7e10, make_section(1e-3, 2e-8, 5e-8, 1e-8));
   const SmallModel model = make_bar_chain(options);
   const MatrixXd K = model.calc_stiffness();
   const int n = static_cast<int>(K.rows());
@@ -122,12 +124,7 @@ TEST(BeamBuckling, LateralUniformMoment) {
 /// Shaft clamped at both ends, one free to twist and to move axially: T = 2 x 4.4934 EI / L, tan x = x (Greenhill's
 /// problem with clamped ends; Ziegler, Principles of Structural Stability, art. 3.4).
 TEST(BeamBuckling, TorqueClampedShaft) {
-  ChainOptions options;
-  options.num_elements = 40;
-  options.length = 1.5;
-  options.E = 2e11;
-  options.G = 8e10;
-  options.section = make_section(1e-4, 8e-10, 8e-10, 1.6e-9);
+  ChainOptions options = make_options(40, 1.5, 2e11, 8e10, make_section(1e-4, 8e-10, 8e-10, 1.6e-9));
   const SmallModel model = make_bar_chain(options);
   const MatrixXd K = model.calc_stiffness();
   const int n = static_cast<int>(K.rows());
@@ -211,10 +208,7 @@ TEST(BeamBuckling, FlexuralTorsional) {
 /// Closed form of the uniform Timoshenko beam (Przemieniecki 1968, eq. 5.116).
 TEST(BeamStiffness, UniformClosedForm) {
   const double E = 5, G = 2, A = 0.3, I1 = 0.02, I2 = 0.05, J = 0.04, L = 1.7, k1 = 0.7, k2 = 0.4;
-  ChainOptions options;
-  options.num_elements = 1;
-  options.length = L, options.E = E, options.G = G;
-  options.section = make_section(A, I1, I2, J);
+  ChainOptions options = make_options(1, L, E, G, make_section(A, I1, I2, J));
   options.section.k1 = k1, options.section.k2 = k2;
   const MatrixXd K = make_bar_chain(options).calc_stiffness();
   MatrixXd expected = MatrixXd::Zero(12, 12);
@@ -240,10 +234,7 @@ TEST(BeamStiffness, UniformClosedForm) {
 
 /// Unsymmetric cantilever: deflection F L³/3E [I]⁻¹, I12 turning the load out of its plane.
 TEST(BeamStiffness, UnsymmetricBending) {
-  ChainOptions options;
-  options.num_elements = 3;
-  options.length = 2, options.E = 5, options.G = 2;
-  options.section = make_section(0.3, 0.02, 0.05, 0.04);
+  ChainOptions options = make_options(3, 2, 5, 2, make_section(0.3, 0.02, 0.05, 0.04));
   options.section.I12 = 0.015;
   const SmallModel model = make_bar_chain(options);
   VectorXd f = VectorXd::Zero(24);
@@ -295,10 +286,8 @@ TEST(BeamStiffness, ExtraStationsOnALineChangeNothing) {
 
 /// Patch: two elements with their middle grid condensed are one element.
 TEST(BeamStiffness, TwoElementsAreOne) {
-  ChainOptions options;
-  options.num_elements = 1;
-  options.length = 2, options.E = 5, options.G = 2, options.R = make_rotation(9);
-  options.section = make_section(0.3, 0.02, 0.05, 0.04);
+  ChainOptions options = make_options(1, 2, 5, 2, make_section(0.3, 0.02, 0.05, 0.04));
+  options.R = make_rotation(9);
   options.section.k1 = 0.5, options.section.k2 = 0.6;
   const MatrixXd one = make_bar_chain(options).calc_stiffness();
   options.num_elements = 2;
@@ -311,10 +300,7 @@ TEST(BeamStiffness, TwoElementsAreOne) {
 
 /// Released moments: 3 EI / L³ for a hinge at B, EA alone with both ends hinged; a release of nothing left is harmless.
 TEST(BeamStiffness, PinFlags) {
-  ChainOptions options;
-  options.num_elements = 1;
-  options.length = 2, options.E = 5, options.G = 2;
-  options.section = make_section(0.3, 0.02, 0.05, 0.04);
+  ChainOptions options = make_options(1, 2, 5, 2, make_section(0.3, 0.02, 0.05, 0.04));
   SmallModel model = make_bar_chain(options);
   model.deck.beams[0].pin_b = 1u << 5;
   model.make();
@@ -343,10 +329,8 @@ TEST(BeamStiffness, PinFlags) {
 
 /// Internal forces of a tip-loaded cantilever; N, V, T, and the moments at both ends, with their signs.
 TEST(BeamForces, TipLoads) {
-  ChainOptions options;
-  options.num_elements = 1;
-  options.length = 2, options.E = 5, options.G = 2, options.R = make_rotation(6);
-  options.section = make_section(0.3, 0.02, 0.05, 0.04);
+  ChainOptions options = make_options(1, 2, 5, 2, make_section(0.3, 0.02, 0.05, 0.04));
+  options.R = make_rotation(6);
   const SmallModel model = make_bar_chain(options);
   const Vector3d load(3, -4, 5), moment(0.6, 0.7, -0.8);
   VectorXd f = VectorXd::Zero(12);
@@ -432,13 +416,17 @@ TEST(BeamMass, LumpedNastranForm) {
   EXPECT_LT((make_cbeam_chain(p, 1, 2).calc_mass(MassKind::Lumped) - expected).norm(), 1e-11);
 }
 
+/// Beams along x with rho = 3, a section of A = 0.5.
+ChainOptions make_heavy_options(int num_elements, double length) {
+  ChainOptions options;
+  options.num_elements = num_elements, options.length = length, options.rho = 3;
+  options.section = make_section(0.5, 0.02, 0.05, 0.04);
+  return options;
+}
+
 /// Nastran's coupled CBAR: cubic bending without rotary inertia, axial 5/12 and 1/12, no torsion.
 TEST(BeamMass, ConsistentNastranBar) {
-  ChainOptions options;
-  options.num_elements = 1;
-  options.length = 2, options.rho = 3;
-  options.section = make_section(0.5, 0.02, 0.05, 0.04);
-  const MatrixXd M = make_bar_chain(options).calc_mass(MassKind::Consistent);
+  const MatrixXd M = make_bar_chain(make_heavy_options(1, 2)).calc_mass(MassKind::Consistent);
   const double m = 3, L = 2;
   EXPECT_NEAR(M(0, 0), m * 5 / 12, 1e-14);
   EXPECT_NEAR(M(0, 6), m / 12, 1e-14);
@@ -452,10 +440,7 @@ TEST(BeamMass, ConsistentNastranBar) {
 
 /// Two equal beams take theirs from the field that they share; one alone, and skew ones, from the same formula.
 TEST(BeamMass, OfASharedFieldIsThatOfItsOwn) {
-  ChainOptions options;
-  options.num_elements = 2;
-  options.length = 2.6, options.rho = 3;
-  options.section = make_section(0.5, 0.02, 0.05, 0.04);
+  ChainOptions options = make_heavy_options(2, 2.6);
   const MatrixXd chain = make_bar_chain(options).calc_mass(MassKind::Consistent);
   options.R = make_rotation(3);
   const MatrixXd skew_chain = make_bar_chain(options).calc_mass(MassKind::Consistent);

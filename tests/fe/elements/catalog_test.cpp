@@ -2,6 +2,8 @@
 /// offsets.
 #include "small_model.hpp"
 
+#include <functional>
+
 #include "fe/elements/beam.hpp"
 #include "fe/elements/bush.hpp"
 
@@ -30,7 +32,10 @@ Diagnostics diagnose(SmallModel& m) {
   return diagnostics;
 }
 
-void expect_error(SmallModel& m, const std::string& id, int line) {
+/// The sound deck after `change` has one error.
+void expect_error(const std::string& id, int line, const std::function<void(records::Deck&)>& change) {
+  SmallModel m = make_sound();
+  change(m.deck);
   const Diagnostics d = diagnose(m);
   ASSERT_TRUE(d.has(id)) << id << (d.items().empty() ? "" : format(d.items().front()));
   EXPECT_EQ(d.num_errors(), 1);
@@ -45,105 +50,74 @@ TEST(Catalog, SoundDeckHasNoDiagnostics) {
 }
 
 TEST(Catalog, MissingGrid) {
-  SmallModel m = make_sound();
-  m.deck.beams[0].gb = 77;
-  expect_error(m, "fe.missing-grid", 12);
-  SmallModel scalar = make_sound();
-  scalar.deck.beams[0].gb = 90;
-  expect_error(scalar, "fe.missing-grid", 12);
-  SmallModel orientation = make_sound();
-  orientation.deck.beams[0].g0 = 77;
-  expect_error(orientation, "fe.missing-grid", 12);
+  expect_error("fe.missing-grid", 12, [](records::Deck& deck) { deck.beams[0].gb = 77; });
+  expect_error("fe.missing-grid", 12, [](records::Deck& deck) { deck.beams[0].gb = 90; });
+  expect_error("fe.missing-grid", 12, [](records::Deck& deck) { deck.beams[0].g0 = 77; });
 }
 
 TEST(Catalog, MissingProperty) {
-  SmallModel m = make_sound();
-  m.deck.beams[0].pid = 5;
-  expect_error(m, "fe.missing-property", 12);
-  SmallModel kind = make_sound();
-  kind.deck.beams[0].is_cbeam = true;
-  expect_error(kind, "fe.missing-property", 12);
-  SmallModel rod = make_sound();
-  rod.deck.crod.push_back({3, 8, 1, 2, {0, 20}});
-  expect_error(rod, "fe.missing-property", 20);
-  SmallModel tube = make_sound();
-  tube.deck.ctube.push_back({3, 8, 1, 2, {0, 21}});
-  expect_error(tube, "fe.missing-property", 21);
+  expect_error("fe.missing-property", 12, [](records::Deck& deck) { deck.beams[0].pid = 5; });
+  expect_error("fe.missing-property", 12, [](records::Deck& deck) { deck.beams[0].is_cbeam = true; });
+  expect_error("fe.missing-property", 20, [](records::Deck& deck) { deck.crod.push_back({3, 8, 1, 2, {0, 20}}); });
+  expect_error("fe.missing-property", 21, [](records::Deck& deck) { deck.ctube.push_back({3, 8, 1, 2, {0, 21}}); });
 }
 
 TEST(Catalog, Material) {
-  SmallModel missing = make_sound();
-  missing.deck.pbar[0].mid = 4;
-  expect_error(missing, "fe.missing-material", 11);
-  SmallModel bad = make_sound();
-  bad.deck.mat1[0].E = 0;
-  expect_error(bad, "fe.bad-material", 10);
+  expect_error("fe.missing-material", 11, [](records::Deck& deck) { deck.pbar[0].mid = 4; });
+  expect_error("fe.bad-material", 10, [](records::Deck& deck) { deck.mat1[0].E = 0; });
 }
 
 TEST(Catalog, BadProperty) {
-  SmallModel m = make_sound();
-  m.deck.pbar[0].A = -1;
-  expect_error(m, "fe.bad-property", 11);
-  SmallModel unsymmetric = make_sound();
-  unsymmetric.deck.pbar[0].I12 = 2;
-  expect_error(unsymmetric, "fe.bad-property", 11);
-  SmallModel tube = make_sound();
-  tube.deck.ptube.push_back({3, 1, 0.1, 0.2, 0, {}, {0, 22}});
-  tube.deck.ctube.push_back({3, 3, 1, 2, {0, 21}});
-  expect_error(tube, "fe.bad-property", 22);
+  expect_error("fe.bad-property", 11, [](records::Deck& deck) { deck.pbar[0].A = -1; });
+  expect_error("fe.bad-property", 11, [](records::Deck& deck) { deck.pbar[0].I12 = 2; });
+  expect_error("fe.bad-property", 22, [](records::Deck& deck) {
+    deck.ptube.push_back({3, 1, 0.1, 0.2, 0, {}, {0, 22}});
+    deck.ctube.push_back({3, 3, 1, 2, {0, 21}});
+  });
 }
 
 TEST(Catalog, BadSection) {
-  SmallModel m = make_sound();
-  m.deck.pbarl.push_back({2, 1, "BOX", {1, 1, 0.6, 0.1}, 0, {0, 30}});
-  m.deck.beams[0].pid = 2;
-  expect_error(m, "fe.bad-section", 30);
+  expect_error("fe.bad-section", 30, [](records::Deck& deck) {
+    deck.pbarl.push_back({2, 1, "BOX", {1, 1, 0.6, 0.1}, 0, {0, 30}});
+    deck.beams[0].pid = 2;
+  });
 }
 
 TEST(Catalog, ZeroLength) {
-  SmallModel m = make_sound();
-  m.deck.beams[0].gb = 1;
-  expect_error(m, "fe.zero-length", 12);
-  m.deck.beams[0].wb = Vector3d(0, 2, 0);  // the two ends are one rigid grid all the same
-  expect_error(m, "fe.zero-length", 12);
-  SmallModel offset = make_sound();
-  offset.deck.beams[0].wa = Vector3d(2, 0, 0);
-  expect_error(offset, "fe.zero-length", 12);
-  SmallModel rod = make_sound();
-  rod.deck.conrod.push_back({4, 2, 2, 1, 1, 0, 0, 0, {0, 25}});
-  expect_error(rod, "fe.zero-length", 25);
+  expect_error("fe.zero-length", 12, [](records::Deck& deck) { deck.beams[0].gb = 1; });
+  // The two ends are one rigid grid all the same.
+  expect_error("fe.zero-length", 12,
+               [](records::Deck& deck) { deck.beams[0].gb = 1, deck.beams[0].wb = Vector3d(0, 2, 0); });
+  expect_error("fe.zero-length", 12, [](records::Deck& deck) { deck.beams[0].wa = Vector3d(2, 0, 0); });
+  expect_error("fe.zero-length", 25, [](records::Deck& deck) {
+    deck.conrod.push_back({4, 2, 2, 1, 1, 0, 0, 0, {0, 25}});
+  });
 }
 
 TEST(Catalog, BadOrientation) {
-  SmallModel m = make_sound();
-  m.deck.beams[0].v = Vector3d(-3, 0, 0);
-  expect_error(m, "fe.bad-orientation", 12);
-  SmallModel zero = make_sound();
-  zero.deck.beams[0].v.setZero();
-  expect_error(zero, "fe.bad-orientation", 12);
-  SmallModel bush = make_sound();
-  bush.deck.pbush.push_back({1, {1, 1, 0, 0, 0, 0}, {}, {}, 0, {}});
-  records::Cbush e;
-  e.id = 2, e.pid = 1, e.ga = 1, e.gb = 2, e.at = {0, 40};
-  bush.deck.cbush.push_back(e);
-  expect_error(bush, "fe.bad-orientation", 40);
+  expect_error("fe.bad-orientation", 12, [](records::Deck& deck) { deck.beams[0].v = Vector3d(-3, 0, 0); });
+  expect_error("fe.bad-orientation", 12, [](records::Deck& deck) { deck.beams[0].v.setZero(); });
+  expect_error("fe.bad-orientation", 40, [](records::Deck& deck) {
+    deck.pbush.push_back({1, {1, 1, 0, 0, 0, 0}, {}, {}, 0, {}});
+    records::Cbush e;
+    e.id = 2, e.pid = 1, e.ga = 1, e.gb = 2, e.at = {0, 40};
+    deck.cbush.push_back(e);
+  });
 }
 
 TEST(Catalog, BadOfftAndComponents) {
-  SmallModel m = make_sound();
-  m.deck.beams[0].offt = "GXG";
-  expect_error(m, "fe.bad-offt", 12);
-  SmallModel spring = make_sound();
-  spring.deck.springs.push_back({3, 0, 1, 0, 0, 1, 7, 0, 0, {0, 50}});
-  expect_error(spring, "fe.bad-component", 50);
+  expect_error("fe.bad-offt", 12, [](records::Deck& deck) { deck.beams[0].offt = "GXG"; });
+  expect_error("fe.bad-component", 50, [](records::Deck& deck) {
+    deck.springs.push_back({3, 0, 1, 0, 0, 1, 7, 0, 0, {0, 50}});
+  });
 }
 
 TEST(Catalog, NegativeMass) {
-  SmallModel m = make_sound();
-  records::Conm2 e;
-  e.id = 2, e.g = 1, e.m = -1, e.at = {0, 60};
-  m.deck.conm2.push_back(e);
-  expect_error(m, "fe.negative-mass", 60);
+  expect_error("fe.negative-mass", 60, [](records::Deck& deck) {
+    records::Conm2 e;
+    e.id = 2, e.g = 1, e.m = -1, e.at = {0, 60};
+    deck.conm2.push_back(e);
+  });
 }
 
 TEST(Catalog, Warnings) {

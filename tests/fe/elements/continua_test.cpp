@@ -11,13 +11,8 @@ namespace {
 const Matrix3d kR = make_rotation(31);
 const Vector3d kOrigin(3, -2, 1);
 
-void add_isotropic(SmallModel& m, double t) {
-  records::Mat1 material;
-  material.id = 1, material.E = 3, material.nu = 0.3, material.G = 3 / 2.6, material.rho = 0.8;
-  m.deck.mat1.push_back(material);
-  records::Pshell p;
-  p.id = 1, p.mid1 = p.mid2 = p.mid3 = 1, p.t = t, p.nsm = 0.1;
-  m.deck.pshell.push_back(p);
+void add_shell_and_solid(SmallModel& m, double t) {
+  add_isotropic(m, t);
   m.deck.psolid.push_back({1, 1, 0, {}});
 }
 
@@ -52,7 +47,7 @@ const std::vector<Vector3d> kWarped = {{0, 0, 0.03}, {1.2, 0.1, -0.02}, {1.1, 0.
 Case make_shell_case(const char* name, std::vector<Vector3d> x, double t, double z_offset, bool drilling = false) {
   const int n = static_cast<int>(x.size());
   return {name, 6 * n - 6, [=](SmallModel& m) {
-            add_isotropic(m, t);
+            add_shell_and_solid(m, t);
             add_grids(m, x);
             std::vector<int> grids;
             for (int i = 1; i <= n; ++i) grids.push_back(i);
@@ -91,7 +86,7 @@ void add_solid(SmallModel& m, const char* card, int midsides) {
       x.push_back(p);
     }
   }
-  add_isotropic(m, 1);
+  add_shell_and_solid(m, 1);
   add_grids(m, x);
   m.deck.solids.push_back(e);
 }
@@ -110,7 +105,7 @@ std::vector<Case> make_shell_cases() {
           make_shell_case("triar_thin_offset", tri, 1e-2, -0.05, true),
           {"laminate", 18,
            [](SmallModel& m) {
-             add_isotropic(m, 0.1);
+             add_shell_and_solid(m, 0.1);
              add_grids(m, kFlat);
              m.deck.mat8.push_back({5, 4, 0.4, 0.3, 0.2, 0.2, 0.1, 1.5, {}});
              records::Pcomp p;
@@ -121,7 +116,7 @@ std::vector<Case> make_shell_cases() {
            }},
           {"folded_pair", 30, [](SmallModel& m) {
              // Ten degrees between the two: the nodes of the fold get one normal.
-             add_isotropic(m, 0.05);
+             add_shell_and_solid(m, 0.05);
              add_grids(m, {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {1.98, 0, 0.17}, {1.98, 1, 0.17}});
              add_shell(m, {1, 2, 3, 4});
              add_shell(m, {2, 5, 6, 3});
@@ -232,7 +227,7 @@ TEST(SolidPatch, ConstantStrain) {
 /// The patch of Macneal and Harder (1985): 0.24 x 0.12, five distorted quadrilaterals about four inner grids.
 SmallModel make_patch(bool triangles, double t, double shear_ratio = 5.0 / 6, bool drilling = false) {
   SmallModel m;
-  add_isotropic(m, t);
+  add_shell_and_solid(m, t);
   m.deck.pshell[0].shear_ratio = shear_ratio;
   add_grids(m, {{0, 0, 0},
                 {0.24, 0, 0},
@@ -307,7 +302,7 @@ TEST(ShellPatch, DrillingRotationsDoNotUseK6rot) {
       MatrixXd K[2];
       for (int i = 0; i < 2; ++i) {
         SmallModel m;
-        add_isotropic(m, 0.1);
+        add_shell_and_solid(m, 0.1);
         add_grids(m, kFlat);
         add_shell(m, triangles ? std::vector<int>{1, 2, 3} : std::vector<int>{1, 2, 3, 4}, 0, drilling);
         m.deck.params.push_back({"K6ROT", i ? "1.E6" : "0.", {}});

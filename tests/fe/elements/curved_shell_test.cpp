@@ -23,13 +23,8 @@ void PrintTo(const Case& test, std::ostream* out) { *out << test.name; }
 
 const std::vector<Vector3d> kCorners = {{0, 0, 0}, {1.2, 0.1, 0}, {1.1, 0.9, 0}, {-0.1, 1.1, 0}};
 
-void add_isotropic(SmallModel& m, double t) {
-  records::Mat1 material;
-  material.id = 1, material.E = 3, material.nu = 0.3, material.G = 3 / 2.6, material.rho = 0.8;
-  m.deck.mat1.push_back(material);
-  records::Pshell p;
-  p.id = 1, p.mid1 = p.mid2 = p.mid3 = 1, p.t = t, p.nsm = 0.1;
-  m.deck.pshell.push_back(p);
+void add_shell_and_laminate(SmallModel& m, double t) {
+  add_isotropic(m, t);
   m.deck.mat8.push_back({5, 4, 0.4, 0.3, 0.2, 0.2, 0.1, 1.5, {}});
   records::Pcomp c;
   c.id = 2, c.z0 = -0.02, c.plies = {{5, 0.03, 0}, {5, 0.02, 35}, {1, 0.01, 0}};
@@ -44,7 +39,7 @@ int add_grid(SmallModel& m, const Vector3d& local) {
 SmallModel make_model(const Case& c, const char* k6rot = "100.") {
   SmallModel m;
   m.deck.params.push_back({"K6ROT", k6rot, {}});
-  add_isotropic(m, c.t);
+  add_shell_and_laminate(m, c.t);
   const auto place = [&](Vector3d p) {
     p.z() += c.bow * (p.x() * (1 - p.x()) + 0.6 * p.y() * (1 - p.y()) + 0.3 * p.x() * p.y());
     return p;
@@ -161,7 +156,7 @@ INSTANTIATE_TEST_SUITE_P(, CurvedShells, testing::ValuesIn(make_cases()),
 /// The patch of MacNeal and Harder (1985) with midside grids, some left out.
 SmallModel make_patch(bool triangles, double t, bool some_absent) {
   SmallModel m;
-  add_isotropic(m, t);
+  add_shell_and_laminate(m, t);
   const std::vector<Vector3d> x = {{0, 0, 0},       {0.24, 0, 0},    {0.24, 0.12, 0}, {0, 0.12, 0},
                                    {0.04, 0.02, 0}, {0.18, 0.03, 0}, {0.16, 0.08, 0}, {0.08, 0.08, 0}};
   std::map<std::pair<int, int>, int> middle;

@@ -8,13 +8,9 @@
 namespace bough::fe::test {
 namespace {
 
-const Vector3d kA(0.3, -1.2, 0.7), kB(1.9, 0.4, -0.6);
-
 SmallModel make_two_grids() {
   SmallModel m;
-  m.nodes.add_grid(1, kA, make_rotation(11));
-  m.nodes.add_grid(2, kB, make_rotation(12));
-  m.nodes.add_system(7, Vector3d(1, 2, 3), make_rotation(13));
+  add_two_grids(m);
   return m;
 }
 
@@ -48,7 +44,7 @@ TEST(Dampers, ViscousActsAlongAndAboutItsLine) {
   expect_sound(m, 2);
   EXPECT_EQ(m.calc_stiffness().norm(), 0);
   EXPECT_EQ(m.calc_mass(MassKind::Lumped).norm(), 0);
-  const Vector3d a = (kB - kA).normalized();
+  const Vector3d a = (kPointB - kPointA).normalized();
   VectorXd rate = VectorXd::Zero(12);
   rate.segment<3>(6) = Vector3d(0.2, -0.4, 1.1);  // power is ce (extension rate)^2 + cr (twist rate)^2
   rate.segment<3>(9) = Vector3d(-0.7, 0.3, 0.6);
@@ -97,7 +93,7 @@ TEST(Dampers, Bush1dIsASpringADamperAndAMass) {
             1e-14);
   // K_G is the change of the force k (l - L) along the present line: against differences of the exact force.
   VectorXd u = VectorXd::Zero(12);
-  const Vector3d line = kB - kA;
+  const Vector3d line = kPointB - kPointA;
   u.segment<3>(6) = 1e-6 * line;  // a small pull, along the line
   const MatrixXd K_T = m.calc_stiffness() + m.calc_geometric_stiffness(u);
   const auto calc_force = [&](const Vector3d& d) {
@@ -146,7 +142,7 @@ TEST(Dampers, ScalarDampersActInTheDisplacementAxes) {
 
 TEST(Dampers, WrongOnesAreReportedTogether) {
   SmallModel m = make_two_grids();
-  m.nodes.add_grid(4, kA);
+  m.nodes.add_grid(4, kPointA);
   m.deck.pvisc.push_back({9, 3.0, 0.5, {}});
   m.deck.pbush1d.push_back({9, 4.0, 2.0, 0.6, {}});
   m.deck.cvisc.push_back({5, 9, 1, 4, {}});

@@ -9,24 +9,11 @@
 namespace bough::fe::test {
 namespace {
 
-const Vector3d kA(0.3, -1.2, 0.7), kB(1.9, 0.4, -0.6);
-
 SmallModel make_grids() {
   SmallModel m;
-  m.nodes.add_grid(1, kA, make_rotation(11));
-  m.nodes.add_grid(2, kB, make_rotation(12));
-  m.nodes.add_system(7, Vector3d(1, 2, 3), make_rotation(13));
-  records::Mat1 material;
-  material.id = 1, material.E = 3, material.G = 1.1, material.rho = 0.8;
-  m.deck.mat1.push_back(material);
+  add_two_grids(m);
+  add_line_material(m);
   return m;
-}
-
-records::BeamElement make_beam(bool is_cbeam) {
-  records::BeamElement e;
-  e.id = 5, e.pid = 9, e.ga = 1, e.gb = 2, e.is_cbeam = is_cbeam;
-  e.v = Vector3d(0.2, 1, -0.3);
-  return e;
 }
 
 SmallModel make_bar() {
@@ -143,7 +130,7 @@ TEST(Cgap, IsASpringOfItsStateAtTheStart) {
     EXPECT_EQ(m.elements[0]->card(), "CGAP");
     const MatrixXd K = m.calc_stiffness(), rigid = m.nodes.calc_rigid_modes();
     EXPECT_LT((K * rigid).norm(), 1e-11 * K.norm());
-    const Vector3d ex = (kB - kA).normalized(), ey = ex.unitOrthogonal();
+    const Vector3d ex = (kPointB - kPointA).normalized(), ey = ex.unitOrthogonal();
     const Matrix3d K_bb = K.block<3, 3>(6, 6);
     return Eigen::Vector3d(ex.dot(K_bb * ex), ey.dot(K_bb * ey), ex.dot(K_bb * ey));
   };
@@ -154,7 +141,7 @@ TEST(Cgap, IsASpringOfItsStateAtTheStart) {
 
 TEST(Cgap, CoincidentGridsNeedCid) {
   SmallModel m = make_grids();
-  m.nodes.add_grid(3, kA);
+  m.nodes.add_grid(3, kPointA);
   m.deck.special.pgap.push_back({9, 0, 0, 100, 0.5, 7, {}});
   records::Cgap gap;
   gap.id = 5, gap.pid = 9, gap.ga = 1, gap.gb = 3;
@@ -254,7 +241,7 @@ TEST(Pbcomp, OfSeveralMaterialsWeighsItsLumps) {
   EXPECT_NEAR(s.m[1], -0.2 * 0.05 / mass, 1e-15);
   const MatrixXd rigid = m.nodes.calc_rigid_modes();
   const MatrixXd M = rigid.transpose() * m.calc_mass(MassKind::Consistent) * rigid;
-  EXPECT_NEAR(M(0, 0), mass * (kB - kA).norm(), 1e-13);
+  EXPECT_NEAR(M(0, 0), mass * (kPointB - kPointA).norm(), 1e-13);
   EXPECT_LT((m.calc_stiffness() * rigid).norm(), 1e-12 * m.calc_stiffness().norm());
 }
 

@@ -145,36 +145,28 @@ TEST(SolidAxes, LawInTurnedMaterialSystem) {
 }
 
 /// Errors of a deck by id.
-int count(const SmallModel& m, const char* id) {
-  Diagnostics diagnostics;
-  make_elements(m.deck, m.nodes, diagnostics);
-  int n = 0;
-  for (const auto& d : diagnostics.items()) n += d.id == id ? 1 : 0;
-  return n;
-}
-
 TEST(ContinuaErrors, AreReported) {
   SmallModel good = make_square(0, 0);
   {
     auto& e = good.deck.shells[0];
     e.grids = {1, 3, 2, 4};  // crossed
-    EXPECT_EQ(count(good, "fe.bad-facet"), 1);
+    EXPECT_EQ(count_messages(good, "fe.bad-facet"), 1);
     e.grids = {1, 2, 2, 4};
-    EXPECT_EQ(count(good, "fe.bad-facet"), 1);
+    EXPECT_EQ(count_messages(good, "fe.bad-facet"), 1);
     e.grids = {1, 2, 3, 9};
-    EXPECT_EQ(count(good, "fe.missing-grid"), 1);
+    EXPECT_EQ(count_messages(good, "fe.missing-grid"), 1);
     e.grids = {1, 2, 3, 4};
     e.pid = 44;
-    EXPECT_EQ(count(good, "fe.missing-property"), 1);
+    EXPECT_EQ(count_messages(good, "fe.missing-property"), 1);
     e.pid = 1;
     good.deck.pshell[0].t.reset();
-    EXPECT_EQ(count(good, "fe.bad-property"), 1);
+    EXPECT_EQ(count_messages(good, "fe.bad-property"), 1);
     good.deck.pshell[0].t = 0.1;
     good.deck.pshell[0].mid2 = 12;
-    EXPECT_EQ(count(good, "fe.missing-material"), 1);
+    EXPECT_EQ(count_messages(good, "fe.missing-material"), 1);
     good.deck.pshell[0].mid2 = 5;
     good.deck.mat8[0].nu12 = 9;
-    EXPECT_EQ(count(good, "fe.bad-material"), 1);
+    EXPECT_EQ(count_messages(good, "fe.bad-material"), 1);
   }
   SmallModel solid;
   for (int k = 0; k < 4; ++k) solid.nodes.add_grid(k + 1, k == 0 ? Vector3d::Zero() : Vector3d(Vector3d::Unit(k - 1)));
@@ -185,11 +177,11 @@ TEST(ContinuaErrors, AreReported) {
   records::SolidElement e;
   e.id = 1, e.pid = 1, e.card = "CTETRA", e.corners = {1, 2, 3, 4};
   solid.deck.solids.push_back(e);
-  EXPECT_EQ(count(solid, "fe.bad-material"), 1);
+  EXPECT_EQ(count_messages(solid, "fe.bad-material"), 1);
   solid.deck.mat1[0].nu = 0.3;
-  EXPECT_EQ(count(solid, "fe.bad-material"), 0);
+  EXPECT_EQ(count_messages(solid, "fe.bad-material"), 0);
   solid.deck.solids[0].corners = {1, 2, 3, 2};
-  EXPECT_EQ(count(solid, "fe.bad-solid"), 1);
+  EXPECT_EQ(count_messages(solid, "fe.bad-solid"), 1);
 }
 
 }  // namespace

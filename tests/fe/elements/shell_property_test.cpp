@@ -210,24 +210,16 @@ TEST(ShellProperty, SnormSharesNormalsWithinItsAngle) {
   EXPECT_GT(calc_distance(make("20.", {0, 1}), alone), 1e-3);
 }
 
-int count(const SmallModel& m, const char* id) {
-  Diagnostics diagnostics;
-  make_elements(m.deck, m.nodes, diagnostics);
-  int n = 0;
-  for (const auto& d : diagnostics.items()) n += d.id == id ? 1 : 0;
-  return n;
-}
-
 TEST(ShellProperty, ErrorsAreReported) {
   SmallModel m = make_quad();
   m.nodes.add_system(7, Vector3d::Zero(), Eigen::AngleAxisd(std::acos(-1.0) / 2, Vector3d::UnitY()).toRotationMatrix());
   m.deck.shells[0].mcid = 7;  // its x-axis is along -z: no matter for an isotropic shell
-  EXPECT_EQ(count(m, "fe.bad-material-axes"), 0);
+  EXPECT_EQ(count_messages(m, "fe.bad-material-axes"), 0);
   m.deck.shells[0].mcid.reset();
   m.deck.pshell[0].mid2 = -1;
-  EXPECT_EQ(count(m, "fe.bad-property"), 0);
+  EXPECT_EQ(count_messages(m, "fe.bad-property"), 0);
   m.deck.mat1[0].nu = 0.5;
-  EXPECT_EQ(count(m, "fe.bad-property"), 1);
+  EXPECT_EQ(count_messages(m, "fe.bad-property"), 1);
 }
 
 /// A MAT1 has no axes; a MAT8 has. CQUAD8 asks at every point but speaks once, with its field.
@@ -251,7 +243,7 @@ TEST(ShellProperty, MaterialAxesThatAreNone) {
     ply.id = 8, ply.E1 = 3, ply.E2 = 1, ply.G12 = 0.5;
     m.deck.mat8.push_back(ply);
     m.deck.pshell[0].mid1 = m.deck.pshell[0].mid2 = 8;
-    EXPECT_EQ(count(m, "fe.bad-material-axes"), 1) << curved;
+    EXPECT_EQ(count_messages(m, "fe.bad-material-axes"), 1) << curved;
     m.deck.shells[0].mcid = 99;
     Diagnostics d;
     make_elements(m.deck, m.nodes, d);

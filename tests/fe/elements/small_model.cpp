@@ -137,6 +137,42 @@ MatrixXd SmallModel::calc_geometric_stiffness(const VectorXd& u) const {
   return K_G;
 }
 
+void add_two_grids(SmallModel& m) {
+  m.nodes.add_grid(1, kPointA, make_rotation(11));
+  m.nodes.add_grid(2, kPointB, make_rotation(12));
+  m.nodes.add_system(7, Vector3d(1, 2, 3), make_rotation(13));
+}
+
+void add_line_material(SmallModel& m) {
+  records::Mat1 material;
+  material.id = 1, material.E = 3, material.G = 1.1, material.rho = 0.8;
+  m.deck.mat1.push_back(material);
+}
+
+records::BeamElement make_beam(bool is_cbeam) {
+  records::BeamElement e;
+  e.id = 5, e.pid = 9, e.ga = 1, e.gb = 2, e.is_cbeam = is_cbeam;
+  e.v = Vector3d(0.2, 1, -0.3);
+  return e;
+}
+
+void add_isotropic(SmallModel& m, double t) {
+  records::Mat1 material;
+  material.id = 1, material.E = 3, material.nu = 0.3, material.G = 3 / 2.6, material.rho = 0.8;
+  m.deck.mat1.push_back(material);
+  records::Pshell p;
+  p.id = 1, p.mid1 = p.mid2 = p.mid3 = 1, p.t = t, p.nsm = 0.1;
+  m.deck.pshell.push_back(p);
+}
+
+int count_messages(const SmallModel& m, const char* id) {
+  Diagnostics diagnostics;
+  make_elements(m.deck, m.nodes, diagnostics);
+  int n = 0;
+  for (const auto& d : diagnostics.items()) n += d.id == id ? 1 : 0;
+  return n;
+}
+
 std::vector<int> list_free(int n, const std::vector<int>& fixed) {
   const std::set<int> out(fixed.begin(), fixed.end());
   std::vector<int> free;

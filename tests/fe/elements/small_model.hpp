@@ -51,6 +51,19 @@ struct SmallModel {
   MatrixXd calc_geometric_stiffness(const VectorXd& u) const;
 };
 
+/// Basic position of grids 1 and 2 of add_two_grids().
+inline const Vector3d kPointA(0.3, -1.2, 0.7), kPointB(1.9, 0.4, -0.6);
+/// Grids 1 at kPointA and 2 at kPointB, each with its own displacement axes, and the system 7 for elements.
+void add_two_grids(SmallModel& m);
+/// MAT1 1 for lines between the two grids: E = 3, G = 1.1, rho = 0.8, which no NU ties.
+void add_line_material(SmallModel& m);
+/// CBAR or CBEAM 5 of property 9 between the two grids.
+records::BeamElement make_beam(bool is_cbeam);
+/// MAT1 1 with E = 3, nu = 0.3, rho = 0.8 and PSHELL 1 of it: thickness t, NSM 0.1.
+void add_isotropic(SmallModel& m, double t);
+/// Number of messages with this id when the elements of a copy of the deck are made.
+int count_messages(const SmallModel& m, const char* id);
+
 /// Dofs left when those of `fixed` are removed from 0..n-1.
 std::vector<int> list_free(int n, const std::vector<int>& fixed);
 MatrixXd pick(const MatrixXd& A, const std::vector<int>& rows);

@@ -8,6 +8,7 @@
 
 #include "fe/linear/factor.hpp"
 #include "fe/linear/ordering.hpp"
+#include "tests/fe/linear/paired_rows.hpp"
 #include "tests/support/threads.hpp"
 
 namespace bough::linear {
@@ -41,13 +42,7 @@ SymmetricMatrix make_strip(double stiffness, double inertia, double across = 0) 
         if (y + 1 < kWide) connect(row, row_of(x, y + 1, d), 0.7 * stiffness);
         if (x + 1 < kLong && across != 0) connect(row, row_of(x + 1, y, 1 - d), across);
       }
-  check_petsc(MatAssemblyBegin(A.get(), MAT_FINAL_ASSEMBLY));
-  check_petsc(MatAssemblyEnd(A.get(), MAT_FINAL_ASSEMBLY));
-  std::vector<int> start;
-  for (int i = 0; i <= kRows; i += 2) start.push_back(i);
-  const SymmetricMatrix result(std::move(A));
-  result.row_order().groups = std::make_shared<const std::vector<int>>(std::move(start));
-  return result;
+  return assemble_in_pairs(std::move(A), kRows);
 }
 
 MatrixXd to_dense(const SymmetricMatrix& A) { return multiply(A, MatrixXd::Identity(kRows, kRows)); }

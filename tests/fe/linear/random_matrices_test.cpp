@@ -93,8 +93,8 @@ TEST_P(RandomMatrices, HaveAsManyEigenvaluesBelowAnyNumber) {
   const test::Threads threads(GetParam());
   for (unsigned seed = 1; seed <= 6; ++seed) {
     std::mt19937 random(seed);
-    const int n = 30 + static_cast<int>(random() % 250);
-    const Sparse K = make_springs(n, random);
+    const Sparse K = make_springs(30 + static_cast<int>(random() % 250), random);
+    const auto n = static_cast<int>(K.rows());
     const VectorXd mass = make_random(n, 1, random).cwiseAbs() + VectorXd::Constant(n, 0.1);
     Sparse M(n, n);
     M = Sparse(mass.asDiagonal());

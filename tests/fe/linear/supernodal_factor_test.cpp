@@ -10,6 +10,7 @@
 #include "fe/linear/factor.hpp"
 #include "fe/linear/ordering.hpp"
 #include "fe/linear/symmetric_matrix.hpp"
+#include "tests/fe/linear/paired_rows.hpp"
 #include "tests/support/threads.hpp"
 
 namespace bough::linear {
@@ -39,13 +40,7 @@ SymmetricMatrix make_grid(int num_x, int num_y, double shift = 0, bool is_apart 
                 MatSetValue(A.get(), row, row + 2 * (dy * num_x + dx), dx * dy == 0 ? -1 : -0.25, INSERT_VALUES));
           }
       }
-  check_petsc(MatAssemblyBegin(A.get(), MAT_FINAL_ASSEMBLY));
-  check_petsc(MatAssemblyEnd(A.get(), MAT_FINAL_ASSEMBLY));
-  std::vector<int> start;
-  for (int i = 0; i <= n; i += 2) start.push_back(i);
-  const SymmetricMatrix result(std::move(A));
-  result.row_order().groups = std::make_shared<const std::vector<int>>(std::move(start));
-  return result;
+  return assemble_in_pairs(std::move(A), n);
 }
 
 class SupernodalFactorOn : public ::testing::TestWithParam<int> {

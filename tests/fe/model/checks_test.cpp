@@ -6,8 +6,7 @@
 #include "fe/matrices/checks.hpp"
 #include "fe/matrices/connected_parts.hpp"
 #include "fe/matrices/grid_point_weight.hpp"
-#include "fe/statics/build_model.hpp"
-#include "formats/nastran/reader.hpp"
+#include "text_model.hpp"
 
 namespace bough::fe {
 namespace {
@@ -39,14 +38,11 @@ TEST(ElementQuality, KnownShapes) {
 
 /// Quadratic shells and shear panels are judged by their corners.
 TEST(Checks, QualityOfCurvedShellsAndShearPanels) {
-  Diagnostics d;
-  const auto deck = nastran::read_deck_text(
+  const test::TextModel m(
       "GRID,1,,0.,0.,0.\nGRID,2,,4.,0.,0.\nGRID,3,,4.,2.,0.\nGRID,4,,0.,2.,0.\nGRID,5,,2.,0.,0.\nGRID,6,,4.,1.,0.\n"
       "GRID,7,,2.,2.,0.\nGRID,8,,0.,1.,0.\nCQUAD8,1,1,1,2,3,4,5,6\n,7,8\nCTRIA6,2,1,1,2,3,5,6\nCSHEAR,3,2,1,2,3,4\n"
-      "PSHELL,1,1,.1,1,,1\nPSHEAR,2,1,.1\nMAT1,1,7.+10,,.3\n",
-      "deck.bdf", {}, d);
-  const Model model = build_model(deck, {}, d);
-  const auto worst = find_worst_quality(model);
+      "PSHELL,1,1,.1,1,,1\nPSHEAR,2,1,.1\nMAT1,1,7.+10,,.3\n");
+  const auto worst = find_worst_quality(m.model);
   ASSERT_EQ(worst.size(), 3u);
   EXPECT_EQ(worst[0].card, "CQUAD8");
   EXPECT_NEAR(worst[0].worst.aspect, 2, 1e-15);
@@ -56,15 +52,13 @@ TEST(Checks, QualityOfCurvedShellsAndShearPanels) {
 }
 
 TEST(Checks, GridsAndGrounds) {
-  Diagnostics d;
-  const auto deck = nastran::read_deck_text(
+  const test::TextModel m(
       "SPC = 1\nBEGIN BULK\nGRID,1,,0.,0.,0.\nGRID,2,,1.,0.,0.\nGRID,3,,1.,0.,0.\nGRID,4,,1.,1.,0.\nGRID,5,,9.,1.,0.\n"
       "GRID,6,,0.,5.,0.\nCBAR,1,1,1,2,6\nPBAR,1,1,1.-3,1.-8,1.-8,1.-8\nMAT1,1,7.+10,,.3\nRBE2,7,2,123456,4\n"
-      "CELAS2,8,1.+3,2,1,3,1\nSPC1,1,123456,1\n",
-      "deck.bdf", {}, d);
-  const Model model = build_model(deck, {}, d);
+      "CELAS2,8,1.+3,2,1,3,1\nSPC1,1,123456,1\n");
+  const Model& model = m.model;
   EXPECT_EQ(find_coincident_grids(model, choose_coincidence(model)), (std::vector<std::array<int, 2>>{{2, 3}}));
-  EXPECT_EQ(find_unused_grids(model, deck), std::vector<int>{5});
+  EXPECT_EQ(find_unused_grids(model, m.deck), std::vector<int>{5});
   EXPECT_LT(calc_ground_check(model, GroundSet::Global).maxCoeff(), 1e-12);
   EXPECT_LT(calc_ground_check(model, GroundSet::Independent).maxCoeff(), 1e-12);
   // Moving all but the clamp along x stretches the bar.
@@ -72,14 +66,12 @@ TEST(Checks, GridsAndGrounds) {
 }
 
 TEST(Checks, GridsOfRbe1AndRsplineAreUsed) {
-  Diagnostics d;
-  const auto deck = nastran::read_deck_text(
+  const test::TextModel m(
       "GRID,1,,0.,0.,0.\nGRID,2,,1.,0.,0.\nGRID,3,,2.,0.,0.\nGRID,4,,0.,1.,0.\nGRID,5,,9.,1.,0.\nCBAR,1,1,1,3,0.,1.,0."
       "\n"
-      "PBAR,1,1,1.,1.,1.,1.\nMAT1,1,1.+7,,.3\nRSPLINE,7,.1,1,2,123456,3\nRBE1,8,1,123456,,,,,,+\n+,UM,4,123\n",
-      "deck.bdf", {}, d);
-  EXPECT_EQ(d.num_errors(), 0);
-  EXPECT_EQ(find_unused_grids(build_model(deck, {}, d), deck), std::vector<int>{5});
+      "PBAR,1,1,1.,1.,1.,1.\nMAT1,1,1.+7,,.3\nRSPLINE,7,.1,1,2,123456,3\nRBE1,8,1,123456,,,,,,+\n+,UM,4,123\n");
+  EXPECT_EQ(m.diagnostics.num_errors(), 0);
+  EXPECT_EQ(find_unused_grids(m.model, m.deck), std::vector<int>{5});
 }
 
 TEST(GridPointWeight, MassesThatActInOneDirectionEach) {
@@ -124,14 +116,11 @@ TEST(GridPointWeight, OneBodyHasItsTensor) {
 }
 
 TEST(Checks, AnMpcThatGroundsIsFoundOnTheNSet) {
-  Diagnostics d;
-  const auto deck = nastran::read_deck_text(
+  const test::TextModel m(
       "MPC = 3\nBEGIN BULK\nGRID,1,,0.,0.,0.\nGRID,2,,1.,0.,0.\nGRID,3,,2.,0.,0.\nCBAR,1,1,1,2,0.,1.,0.\n"
-      "CBAR,2,1,2,3,0.,1.,0.\nPBAR,1,1,1.-3,1.-8,1.-8,1.-8\nMAT1,1,7.+10,,.3\nMPC,3,2,2,1.,1,2,-.5\n",
-      "deck.bdf", {}, d);
-  const Model model = build_model(deck, {}, d);
-  EXPECT_LT(calc_ground_check(model, GroundSet::Global).maxCoeff(), 1e-12);
-  EXPECT_GT(calc_ground_check(model, GroundSet::Independent)[1], 1e-3);
+      "CBAR,2,1,2,3,0.,1.,0.\nPBAR,1,1,1.-3,1.-8,1.-8,1.-8\nMAT1,1,7.+10,,.3\nMPC,3,2,2,1.,1,2,-.5\n");
+  EXPECT_LT(calc_ground_check(m.model, GroundSet::Global).maxCoeff(), 1e-12);
+  EXPECT_GT(calc_ground_check(m.model, GroundSet::Independent)[1], 1e-3);
 }
 
 /// Bars 1-2-3 and 4-5-6 along x, grid 4 on grid 3, grid 1 clamped.

@@ -14,14 +14,7 @@ using namespace test;
 using records::CoordKind;
 
 records::CoordSystem make_system(int id, CoordKind kind, int rid, Vector3d a, Vector3d b, Vector3d c) {
-  records::CoordSystem s;
-  s.id = id;
-  s.kind = kind;
-  s.rid = rid;
-  s.a = a;
-  s.b = b;
-  s.c = c;
-  return s;
+  return {.id = id, .kind = kind, .rid = rid, .a = a, .b = b, .c = c, .at = {}};
 }
 
 records::CoordSystem make_by_grids(int id, CoordKind kind, int g1, int g2, int g3) {

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "fe/elements/damping.hpp"
-#include "fe/matrices/assembly.hpp"
+#include "model_matrices.hpp"
 #include "text_model.hpp"
 
 namespace bough::fe {
@@ -14,6 +14,9 @@ namespace {
 
 using test::build;
 using test::count;
+using test::get_mass;
+using test::get_stiffness;
+using test::rotate_to_displacement_axes;
 
 const std::string kGrids =
     "CORD2R,3,,1.,2.,3.,2.,3.,5.\n,4.,1.,0.\nCORD2C,4,,0.,0.,-1.,0.,1.,1.\n,3.,0.,0.\nPARAM,WTMASS,.0025\n"
@@ -24,22 +27,6 @@ const std::string kGrids =
 const std::string kBars =
     "CBAR,1,5,1,2,0.,1.,1.\nCBAR,2,5,2,3,0.,0.,1.\nCBAR,3,5,3,4,1.,0.,0.\nPBAR,5,6,.01,2.-4,1.-4,1.5-4\n"
     "MAT1,6,7.+7,,.3,2700.\n";
-
-MatrixXd get_stiffness(const Model& model) {
-  return calc_stiffness_times(model, MatrixXd::Identity(model.num_gdofs(), model.num_gdofs()));
-}
-MatrixXd get_mass(const Model& model) {
-  return calc_mass_times(model, model.mass_kind(), MatrixXd::Identity(model.num_gdofs(), model.num_gdofs()));
-}
-
-/// The model's matrix of basic axes in displacement axes.
-MatrixXd turn(const Model& model, const MatrixXd& A) {
-  MatrixXd R = MatrixXd::Identity(A.rows(), A.rows());
-  for (const Node& node : model.nodes())
-    for (int part = 0; part < node.num_dofs - 1; part += 3)
-      R.block<3, 3>(node.first_gdof + part, node.first_gdof + part) = node.R_basic_cd;
-  return R.transpose() * A * R;
-}
 
 /// A symmetric DMIG in free field with all digits, its terms now above, now below the diagonal.
 std::string write_dmig(const Model& model, const std::string& name, const MatrixXd& A, int form = 6) {
@@ -74,8 +61,9 @@ TEST(DirectMatrices, ABarsOwnMatricesAreTheBars) {
   const MatrixXd K = get_stiffness(bars) - get_stiffness(ends), M = get_mass(bars) - get_mass(ends);
   const auto direct =
       build("SOL 103\nCEND\nSPC = 1\nK2GG = 4.*KA, 2.*KB\nM2GG = MA\nBEGIN BULK\nPARAM,CK2,.5\nPARAM,CM2,2.\n" +
-            kGrids + write_dmig(bars, "KA", turn(bars, K) / 4) + write_dmig(bars, "KB", turn(bars, K) / 2, 1) +
-            write_dmig(bars, "MA", turn(bars, M) / 2));
+            kGrids + write_dmig(bars, "KA", rotate_to_displacement_axes(bars, K) / 4) +
+            write_dmig(bars, "KB", rotate_to_displacement_axes(bars, K) / 2, 1) +
+            write_dmig(bars, "MA", rotate_to_displacement_axes(bars, M) / 2));
   EXPECT_LT((get_stiffness(direct) - get_stiffness(bars)).norm(), 1e-13 * K.norm());
   EXPECT_LT((get_mass(direct) - get_mass(bars)).norm(), 1e-13 * M.norm());
   const VectorXd f = calc_inverse_eigenvalues(bars), g = calc_inverse_eigenvalues(direct);

@@ -12,24 +12,12 @@ namespace {
 using namespace test;
 
 records::PointLoad make_load(int sid, int grid, int cid, double f, Vector3d n, bool is_moment) {
-  records::PointLoad load;
-  load.sid = sid;
-  load.g = grid;
-  load.cid = cid;
-  load.f = f;
-  load.n = n;
-  load.is_moment = is_moment;
-  return load;
+  return {sid, grid, cid, f, n, is_moment, {}};
 }
 
 records::Deck make_loaded() {
   auto deck = make_deck({{0, 2, 0}, {3, 0, 0}, {1, 1, 1}});
-  records::CoordSystem cylinder;
-  cylinder.id = 5;
-  cylinder.kind = records::CoordKind::Cylindrical;
-  cylinder.b = {0, 0, 1};
-  cylinder.c = {1, 0, 0};
-  deck.coord_systems.push_back(cylinder);
+  deck.coord_systems.push_back(make_cylinder(5));
   records::Gravity gravity;
   gravity.sid = 3;
   gravity.a = 9.81;

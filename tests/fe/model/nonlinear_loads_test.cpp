@@ -9,9 +9,9 @@
 #include <gtest/gtest.h>
 
 #include "base/rotation.hpp"
-#include "fe/linear/petsc.hpp"
 #include "fe/statics/case_solver.hpp"
 #include "formats/nastran/reader.hpp"
+#include "tests/fe/model/one_process.hpp"
 #include "tests/fe/model/text_model.hpp"
 
 namespace bough::fe {
@@ -19,14 +19,9 @@ namespace {
 
 using std::numbers::pi;
 
-class LargeDisplacementLoads : public ::testing::Test {
- protected:
-  void SetUp() override {
-    if (linear::initialize_petsc().size > 1) GTEST_SKIP() << "one process alone";
-  }
-};
+using test::kHead;
 
-constexpr const char* kHead = "SOL 106\nCEND\nSPC = 1\nLOAD = 1\nBEGIN BULK\n";
+class LargeDisplacementLoads : public test::OneProcess {};
 
 struct Answer {
   records::StaticSubcase result;

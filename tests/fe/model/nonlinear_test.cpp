@@ -8,41 +8,50 @@
 #include <gtest/gtest.h>
 
 #include "base/rotation.hpp"
-#include "fe/linear/petsc.hpp"
 #include "fe/statics/case_solver.hpp"
 #include "formats/nastran/reader.hpp"
+#include "tests/fe/model/one_process.hpp"
 
 namespace bough::fe {
 namespace {
 
 using std::numbers::pi;
 
-/// On one process: cli.nonlinear-ranks refuses more.
-class LargeDisplacements : public ::testing::Test {
- protected:
-  void SetUp() override {
-    if (linear::initialize_petsc().size > 1) GTEST_SKIP() << "one process alone";
-  }
-};
+using test::kHead;
 
-constexpr const char* kHead = "SOL 106\nCEND\nSPC = 1\nLOAD = 1\nBEGIN BULK\n";
+class LargeDisplacements : public test::OneProcess {};
 
-/// The solution of all subcases of a deck, nonlinear or not.
-std::vector<records::StaticSubcase> solve(const std::string& text, bool is_nonlinear = true, int increments = 10) {
+/// The solution of all subcases of a deck; `messages`: warnings.
+std::vector<records::StaticSubcase> solve(const std::string& text, const NonlinearOptions* options,
+                                          Diagnostics* messages = nullptr) {
   Diagnostics diagnostics;
   const auto deck = nastran::read_deck_text(text, "deck.bdf", {}, diagnostics);
   diagnostics.throw_if_errors();
   CaseSolver solver(deck, {});
-  if (is_nonlinear) solver.ask_nonlinear({increments}, true);
+  if (options) solver.ask_nonlinear(*options, true);
   const auto subcases = choose_static_subcases(deck, 0);
   std::vector<records::StaticSubcase> results;
   for (std::size_t next = 0; next < subcases.size();)
-    for (auto& one : solver.solve_next(std::span(subcases).subspan(next))) {
-      if (one.failure) std::rethrow_exception(one.failure);
-      results.push_back(std::move(*one.result));
+    for (auto& [result, failure, warnings] : solver.solve_next(std::span(subcases).subspan(next))) {
+      if (failure) std::rethrow_exception(failure);
+      if (messages)
+        for (const auto& item : warnings.items()) messages->add(item);
+      results.push_back(std::move(*result));
       ++next;
     }
   return results;
+}
+
+std::vector<records::StaticSubcase> solve(const std::string& text, bool is_nonlinear = true, int increments = 10) {
+  NonlinearOptions options;
+  options.num_increments = increments;
+  return solve(text, is_nonlinear ? &options : nullptr);
+}
+
+std::vector<records::StaticSubcase> follow_arc(const std::string& text, Diagnostics& messages) {
+  NonlinearOptions options;
+  options.has_arc_length = true;
+  return solve(text, &options, &messages);
 }
 
 /// Translations of the grid of row `node` (all grids have six dofs).
@@ -169,6 +178,13 @@ TEST_F(LargeDisplacements, EnforcedDisplacementsAreReached) {
   EXPECT_NEAR(moved[0].reaction[6 * 8 + 2], 40000, 1);
 }
 
+std::string write_roof(double EA, double height, double force) {
+  return fmt::format(
+      "{}MAT1,1,{:.9g},,0.\nPROD,1,1,1.\nGRID,1,,-1.,0.,0.\nGRID,2,,1.,0.,0.\nGRID,3,,0.,0.,{:.9g}\n"
+      "CROD,1,1,1,3\nCROD,2,1,2,3\nSPC1,1,123456,1,2\nSPC1,1,2456,3\nFORCE,1,3,,{:.9g},0.,0.,-1.\nENDDATA\n",
+      kHead, EA, height, force);
+}
+
 /// Two rods as a flat roof (von Mises): no equilibrium near by above the limit load, which a closed form gives.
 TEST_F(LargeDisplacements, LimitPointIsNamed) {
   const double EA = 1e6, height = 0.1;
@@ -178,12 +194,7 @@ TEST_F(LargeDisplacements, LimitPointIsNamed) {
     const double now = std::hypot(1.0, y);
     limit = std::max(limit, 2 * EA * (length - now) / length * y / now);
   }
-  const auto write = [&](double force) {
-    return fmt::format(
-        "{}MAT1,1,{:.9g},,0.\nPROD,1,1,1.\nGRID,1,,-1.,0.,0.\nGRID,2,,1.,0.,0.\nGRID,3,,0.,0.,{:.9g}\n"
-        "CROD,1,1,1,3\nCROD,2,1,2,3\nSPC1,1,123456,1,2\nSPC1,1,2456,3\nFORCE,1,3,,{:.9g},0.,0.,-1.\nENDDATA\n",
-        kHead, EA, height, force);
-  };
+  const auto write = [&](double force) { return write_roof(EA, height, force); };
   EXPECT_NEAR(solve(write(0.99 * limit))[0].reaction[2] * 2, 0.99 * limit, 1e-6 * limit);
   for (const double more : {1.01, 2.0}) {
     try {
@@ -197,6 +208,75 @@ TEST_F(LargeDisplacements, LimitPointIsNamed) {
       EXPECT_GT(reached, 99 / more);
     }
   }
+}
+
+/// A roof of two rods beyond its limit load: snapped through, as the closed form has it.
+TEST_F(LargeDisplacements, ArcLengthPassesLimitPoints) {
+  const double EA = 1e6, height = 0.1, length = std::hypot(1.0, height);
+  const auto calc_load = [&](double y) {
+    return 2 * EA * (length - std::hypot(1.0, y)) / length * y / std::hypot(1.0, y);
+  };
+  double limit = 0;
+  for (double y = height; y > 0; y -= 1e-5) limit = std::max(limit, calc_load(y));
+  for (const double more : {1.01, 2.0, 10.0}) {
+    Diagnostics messages;
+    const auto result = follow_arc(write_roof(EA, height, more * limit), messages);
+    double low = -1, high = -height;  // the load falls as y rises
+    while (high - low > 1e-14) (calc_load((low + high) / 2) > more * limit ? low : high) = (low + high) / 2;
+    EXPECT_NEAR(get_place(result[0], 2)[2], low - height, 1e-7);  // the held rotations turn the rods' frames a little
+    ASSERT_EQ(messages.items().size(), 1u);
+    EXPECT_EQ(messages.items()[0].id, "fe.limit-point");
+    const std::string text = messages.items()[0].what;
+    EXPECT_NE(text.find("passes 2 limit"), std::string::npos) << text;
+    const double reached = std::stod(text.substr(text.find("near ") + 5));
+    EXPECT_LE(reached, 100.001 / more);
+    EXPECT_GT(reached, 80 / more);
+  }
+}
+
+/// Lee's frame (Lee, Manuel and Rossow 1968), legs of L = 120, EI = 1440: limit load 18.55 EI/L², then a snap back.
+TEST_F(LargeDisplacements, ArcLengthPassesTheSnapBackOfLeesFrame) {
+  std::string text = fmt::format("{}MAT1,1,720.,,.3\nPBAR,1,1,6.,4.5,2.,4.\n", kHead);
+  const int n = 10;
+  for (int k = 0; k <= 2 * n; ++k)
+    text += fmt::format("GRID,{},,{:.9g},{:.9g},0.\n", k + 1, k <= n ? 0 : 12. * (k - n), k <= n ? 12. * k : 120.);
+  for (int k = 1; k <= 2 * n; ++k) text += fmt::format("CBAR,{},1,{},{},0.,0.,1.\n", k, k, k + 1);
+  text += fmt::format("SPC1,1,12345,1,{}\nSPC1,1,345,2,THRU,{}\n", 2 * n + 1, 2 * n);
+  const auto load = [&](double force) {
+    return text + fmt::format("FORCE,1,{},,{},0.,-1.,0.\nENDDATA\n", n + 3, force);
+  };
+  EXPECT_NO_THROW(solve(load(1.84)));
+  EXPECT_THROW(solve(load(1.87)), ComputationError);
+  Diagnostics messages;
+  const auto result = follow_arc(load(2), messages);
+  ASSERT_FALSE(messages.items().empty());
+  EXPECT_EQ(messages.items()[0].id, "fe.limit-point");
+  EXPECT_EQ(messages.items().size(), 1u);  // stable again
+  EXPECT_NEAR(result[0].reaction_resultant[1], 2, 1e-6);
+  EXPECT_LT(get_place(result[0], n + 2)[1], -80);
+}
+
+/// Where the path has no limit point arc length ends where load steps do: dead, following and enforced loads.
+TEST_F(LargeDisplacements, ArcLengthEndsWhereLoadStepsDo) {
+  const auto line = make_line(8, 1);
+  const std::string loads[] = {"FORCE,1,9,,40000.,0.,.2,1.\n", "FORCE1,1,9,30000.,8,9\nMOMENT,1,9,,5000.,0.,1.,0.\n",
+                               "SPCD,1,9,3,.5\nSPC1,1,3,9\n"};
+  for (const auto& load : loads) {
+    const auto text = write_bars(line, load);
+    Diagnostics messages;
+    const auto arc = follow_arc(text, messages), steps = solve(text);
+    EXPECT_LT((arc[0].displacement - steps[0].displacement).norm(), 1e-8) << load;
+    EXPECT_LT((arc[0].reaction - steps[0].reaction).norm(), 1e-6 * steps[0].reaction.norm()) << load;
+    EXPECT_TRUE(messages.items().empty()) << load;
+  }
+}
+
+/// A column past Euler's load: the straight branch is unstable, which a warning reports.
+TEST_F(LargeDisplacements, UnstableEquilibriumIsNamed) {
+  Diagnostics messages;
+  follow_arc(write_bars(make_line(8, 1), "FORCE,1,9,,40000.,-1.,0.,0.\n"), messages);
+  ASSERT_EQ(messages.items().size(), 1u);
+  EXPECT_EQ(messages.items()[0].id, "fe.unstable-equilibrium");
 }
 
 /// Subcases of SOL 106 go on from each other, so that the last is reached as by itself.

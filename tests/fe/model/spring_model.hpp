@@ -95,6 +95,14 @@ inline std::vector<Vector3d> make_points() {
   return {{0, 0, 0}, {1, 0.2, 0}, {2, -0.1, 0.3}, {2.5, 1, 0.5}, {3.1, 1.5, -0.4}, {1.2, 2, 1}};
 }
 
+/// Cylindrical system about basic z from basic x.
+inline records::CoordSystem make_cylinder(int id) {
+  records::CoordSystem system;
+  system.id = id, system.kind = records::CoordKind::Cylindrical;
+  system.b = {0, 0, 1}, system.c = {1, 0, 0};
+  return system;
+}
+
 inline records::Spc make_spc(int sid, int grid, unsigned mask) {
   records::Spc spc;
   spc.sid = sid;

@@ -195,12 +195,7 @@ TEST(Petsc, error_codes_become_failures) {
 TEST(StaticsMpi, determinate_supports_give_the_same_strain_for_a_balanced_load) {
   auto deck = make_deck(make_points());
   deck.grids[3].cd = 1;
-  records::CoordSystem cylinder;
-  cylinder.id = 1;
-  cylinder.kind = records::CoordKind::Cylindrical;
-  cylinder.b = {0, 0, 1};
-  cylinder.c = {1, 0, 0};
-  deck.coord_systems.push_back(cylinder);
+  deck.coord_systems.push_back(make_cylinder(1));
   Diagnostics d;
   const Model model = build_model(deck, {}, make_links(kLinks), d);
   const linear::SymmetricMatrix K = assemble_stiffness(model, DofSet::Free);

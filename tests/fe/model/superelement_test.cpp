@@ -3,12 +3,16 @@
 #include <gtest/gtest.h>
 
 #include "fe/elements/superelement.hpp"
-#include "fe/matrices/assembly.hpp"
 #include "fe/statics/superelement_check.hpp"
+#include "model_matrices.hpp"
 #include "text_model.hpp"
 
 namespace bough::fe {
 namespace {
+
+using test::get_mass;
+using test::get_stiffness;
+using test::rotate_to_displacement_axes;
 
 const std::string kSystems = "CORD2R,3,,1.,2.,3.,2.,3.,5.\n,4.,1.,0.\nCORD2C,4,,0.,0.,-1.,0.,1.,1.\n,3.,0.,0.\n";
 const std::string kBars =
@@ -17,20 +21,6 @@ const std::string kBars =
 const std::string kSection = kSystems + "GRID,1,,0.,0.,0.,3\nGRID,2,,1.,.2,.1,4\nGRID,3,,1.3,1.4,-.2\n";
 // Places of kSection in other displacement systems, with other ids.
 const std::string kMain = kSystems + "GRID,11,,0.,0.,0.,4\nGRID,12,,1.,.2,.1\nGRID,13,,1.3,1.4,-.2,3\n";
-
-MatrixXd get_stiffness(const Model& model) {
-  return calc_stiffness_times(model, MatrixXd::Identity(model.num_gdofs(), model.num_gdofs()));
-}
-MatrixXd get_mass(const Model& model) {
-  return calc_mass_times(model, model.mass_kind(), MatrixXd::Identity(model.num_gdofs(), model.num_gdofs()));
-}
-MatrixXd turn(const Model& model, const MatrixXd& A) {
-  MatrixXd R = MatrixXd::Identity(A.rows(), A.rows());
-  for (const Node& node : model.nodes())
-    for (int part = 0; part < 6; part += 3)
-      R.block<3, 3>(node.first_gdof + part, node.first_gdof + part) = node.R_basic_cd;
-  return R.transpose() * A * R;
-}
 
 class SuperelementTest : public testing::Test {
  protected:
@@ -45,8 +35,8 @@ class SuperelementTest : public testing::Test {
     s.points = {{1, 63}, {2, 63}, {3, 63}};
     s.joined = {{1, 11}, {2, 12}, {3, 13}};
     s.checks_places = true;
-    s.K = turn(bars_, get_stiffness(bars_));
-    s.M = turn(bars_, get_mass(bars_));
+    s.K = rotate_to_displacement_axes(bars_, get_stiffness(bars_));
+    s.M = rotate_to_displacement_axes(bars_, get_mass(bars_));
     s.K4 = .03 * s.K;
     deck.superelements.push_back(std::move(s));
     deck.super.is_joined = true;

@@ -3,25 +3,14 @@
 
 #include <cmath>
 
-#include "fe/statics/build_model.hpp"
 #include "fe/statics/static_case.hpp"
-#include "formats/nastran/reader.hpp"
+#include "text_model.hpp"
 
 namespace bough::fe {
 namespace {
 
-struct Heated {
-  Diagnostics diagnostics;
-  records::Deck deck;
-  std::unique_ptr<Model> model;
-
-  explicit Heated(const std::string& text) : deck(nastran::read_deck_text(text, "deck.bdf", {}, diagnostics)) {
-    diagnostics.throw_if_errors();
-    ModelOptions options;
-    options.autospc = false;
-    options.uses_enforced = true;
-    model = std::make_unique<Model>(build_model(deck, options, diagnostics));
-  }
+struct Heated : test::LoadedModel {
+  using LoadedModel::LoadedModel;
   StaticLoad make_load() { return calc_static_load(*model, deck, -1, diagnostics); }
   records::StaticSubcase solve() {
     const auto load = make_load();

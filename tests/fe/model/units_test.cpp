@@ -1,8 +1,7 @@
 /// \file The same structure in any units of length: translations and rotations scale by a length each, so whether it is
 /// held cannot change (K(L) = S K(1) S, S diagonal).
+#include <fmt/format.h>
 #include <gtest/gtest.h>
-
-#include <cstdio>
 
 #include "fe/linear/row_kinds.hpp"
 #include "fe/statics/build_model.hpp"
@@ -12,11 +11,7 @@
 namespace bough::fe {
 namespace {
 
-std::string show(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.7e", value);
-  return text;
-}
+std::string show(double value) { return fmt::format("{:.7e}", value); }
 
 std::string write_grid(int id, double x, double y, double z) {
   return "GRID," + std::to_string(id) + ",," + show(x) + "," + show(y) + "," + show(z) + "\n";

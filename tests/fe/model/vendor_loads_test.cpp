@@ -13,18 +13,8 @@
 namespace bough::fe::test {
 namespace {
 
-struct Case {
-  Diagnostics diagnostics;
-  records::Deck deck;
-  std::unique_ptr<Model> model;
-
-  explicit Case(const std::string& text) : deck(nastran::read_deck_text(text, "deck.bdf", {}, diagnostics)) {
-    diagnostics.throw_if_errors();
-    ModelOptions options;
-    options.autospc = false;
-    options.uses_enforced = true;
-    model = std::make_unique<Model>(build_model(deck, options, diagnostics));
-  }
+struct Case : LoadedModel {
+  using LoadedModel::LoadedModel;
   records::StaticSubcase solve() {
     const auto load = calc_static_load(*model, deck, -1, diagnostics);
     diagnostics.throw_if_errors();

@@ -4,15 +4,15 @@
 #include <string>
 #include <vector>
 
+#include "base/non_copyable.hpp"
+
 namespace bough::test {
 
 /// While it lives, writes that end past `limit` bytes fail with ENOSPC.
-class FullDisk {
+class FullDisk : private NonCopyable {
  public:
   explicit FullDisk(long limit);
   ~FullDisk();
-  FullDisk(const FullDisk&) = delete;
-  FullDisk& operator=(const FullDisk&) = delete;
 };
 
 /// One call that changed, or synced, a file or folder.

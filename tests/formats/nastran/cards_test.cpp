@@ -78,13 +78,14 @@ TEST(Cards, PbeamConstant) {
 
 TEST(Cards, PbeamStations) {
   // End B at first, one station with its own points, one with those of A and blank values, one without points.
-  const auto deck = read_clean(
-      "PBEAM,1,5,2.,3.,4.,,6.\n,1.,2.,3.,4.,5.,6.,7.,8.\n"
-      "+,YES,1.,4.,,8.\n+,.1,.2,.3,.4,.5,.6,.7,.8\n"
-      "+,NO,.75,9.\n"
-      "+,YESA,.25\n"
-      "+,.5,.6\n");
-  const auto& s = deck.pbeam[0].stations;
+  const auto p = read_list(&records::Deck::pbeam, 1,
+                           "PBEAM,1,5,2.,3.,4.,,6.\n,1.,2.,3.,4.,5.,6.,7.,8.\n"
+                           "+,YES,1.,4.,,8.\n+,.1,.2,.3,.4,.5,.6,.7,.8\n"
+                           "+,NO,.75,9.\n"
+                           "+,YESA,.25\n"
+                           "+,.5,.6\n")
+                     .front();
+  const auto& s = p.stations;
   ASSERT_EQ(s.size(), 4u);
   EXPECT_EQ(values(s[1].x_over_L, s[2].x_over_L, s[3].A), values(0.25, 0.75, 4.0));
   EXPECT_EQ(s[3].I1, 3.0) << "blank at end B is the value of end A";
@@ -92,9 +93,8 @@ TEST(Cards, PbeamStations) {
   EXPECT_EQ(s[3].J, 6.0);
   EXPECT_EQ(s[1].A, 2.5) << "blank between is interpolated";
   EXPECT_EQ(values(s[1].I2, s[2].A, s[2].I2, s[1].recovery[0]), values(5.0, 9.0, 7.0, Vector2d(1, 2)));
-  EXPECT_EQ(values(s[2].recovery[0], s[3].recovery[3], deck.pbeam[0].k1),
-            values(Vector2d(0, 0), Vector2d(.7, .8), 0.5));
-  EXPECT_EQ(deck.pbeam[0].k2, 0.6);
+  EXPECT_EQ(values(s[2].recovery[0], s[3].recovery[3], p.k1), values(Vector2d(0, 0), Vector2d(.7, .8), 0.5));
+  EXPECT_EQ(p.k2, 0.6);
 }
 
 TEST(Cards, PbeamlStations) {
@@ -149,12 +149,11 @@ TEST(Cards, OtherProperties) {
 }
 
 TEST(Cards, BarsAndTheirDefaults) {
-  const auto deck = read_clean(
+  const auto e = read_list(
+      &records::Deck::beams, 6,
       "CBAR,1,9,1,2,0.,1.,0.,boe\n,45,6,1.,2.,3.,4.,5.,6.\nCBAR,2,,1,2,77\nCBAR,3,,1,2\n"
       "CBAR,4,,1,2,0,1,0\n"
       "BAROR,,8,,,0.,0.,2.,GOO\nCBEAM,5,,1,2,0.,1.,0.\n,,,,,,,,\n,101,102\nCBEAM,6,4,1,2\nBEAMOR,,,,,33,,,BGG\n");
-  const auto& e = deck.beams;
-  ASSERT_EQ(e.size(), 6u);
   EXPECT_EQ(values(e[0].pid, e[0].v, e[0].offt, e[0].pin_a, e[0].pin_b, e[0].wa, e[0].wb),
             values(9, Vector3d(0, 1, 0), "BOO", 0b011000u, 0b100000u, Vector3d(1, 2, 3), Vector3d(4, 5, 6)));
   EXPECT_EQ(values(e[1].pid, e[1].g0, e[1].offt), values(8, 77, "GOO"));
@@ -242,12 +241,10 @@ TEST(Cards, Loads) {
 }
 
 TEST(Cards, EigenvalueMethods) {
-  const auto deck = read_clean(
-      "EIGRL,1,.1,3.2,10,0,,,MAX\nEIGRL,2\nEIGRL,3,,50.\n"
-      "EIGRL   4\n        V1=0.5  V2 = 2.5 ND=7,NORM=MAX NUMS=2\n"
-      "EIGR,10,GIV,.0,.1,,6,,,+ER\n+ER,POINT,12,3\nEIGR,11,INV,1.,2.,4\n,MAX\n");
-  const auto& m = deck.eigen_methods;
-  ASSERT_EQ(m.size(), 6u);
+  const auto m = read_list(&records::Deck::eigen_methods, 6,
+                           "EIGRL,1,.1,3.2,10,0,,,MAX\nEIGRL,2\nEIGRL,3,,50.\n"
+                           "EIGRL   4\n        V1=0.5  V2 = 2.5 ND=7,NORM=MAX NUMS=2\n"
+                           "EIGR,10,GIV,.0,.1,,6,,,+ER\n+ER,POINT,12,3\nEIGR,11,INV,1.,2.,4\n,MAX\n");
   EXPECT_EQ(values(m[0].f1, m[0].f2, m[0].num_modes, m[0].norm), values(0.1, 3.2, 10, "MAX"));
   EXPECT_EQ(m[1].num_modes, 1) << "without range and count: the lowest";
   EXPECT_EQ(values(m[1].norm, m[2].num_modes, m[3].f1), values("MASS", 0, 0.5));

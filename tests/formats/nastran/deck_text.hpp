@@ -6,6 +6,7 @@
 #include <string_view>
 #include <tuple>
 #include <type_traits>
+#include <vector>
 
 #include "formats/nastran/reader.hpp"
 
@@ -51,6 +52,21 @@ inline records::Deck read_clean(std::string_view text) {
   const auto r = read(text);
   EXPECT_EQ(r.diagnostics.items().size(), 0u) << r.get_messages();
   return r.deck;
+}
+
+/// `count` messages with this id, the first with these words in its text or its advice.
+inline void expect_messages(const Read& r, std::string_view id, int count, std::string_view words) {
+  ASSERT_EQ(r.count(id), count) << r.get_messages();
+  EXPECT_NE(format(*r.find(id)).find(words), std::string::npos) << r.get_messages();
+}
+
+/// Reads one list of such a deck. \return `size` records; those that the deck lacks are empty, and the test fails.
+template <class Record>
+std::vector<Record> read_list(std::vector<Record> records::Deck::*list, std::size_t size, std::string_view text) {
+  auto found = read_clean(text).*list;
+  EXPECT_EQ(found.size(), size);
+  found.resize(size);
+  return found;
 }
 
 }  // namespace bough::nastran

@@ -90,12 +90,12 @@ TEST_F(FieldEditor, ATextTooLongMakesTheLineFree) {
 TEST_F(FieldEditor, LargeFieldOverTwoLines) {
   const std::string before =
       "MAT1*                  1          7.E+10                              .3\n*                  2700.\n";
-  EXPECT_EQ(edit(before, at("MAT1", "1", "E"), "6.8765432123+10"),
+  const auto set = [&](const char* field, const char* value) { return edit(before, at("MAT1", "1", field), value); };
+  EXPECT_EQ(set("E", "6.8765432123+10"),
             "MAT1*                  1 6.8765432123+10                              .3\n*                  2700.\n");
-  EXPECT_EQ(edit(before, at("MAT1", "1", "RHO"), "2712.5"),
+  EXPECT_EQ(set("RHO", "2712.5"),
             "MAT1*                  1          7.E+10                              .3\n*                 2712.5\n");
-  EXPECT_EQ(edit(before, at("MAT1", "1", "E"), "6.87654321234567891+10"),
-            "MAT1*,1,6.87654321234567891+10,,.3\n*                  2700.\n");
+  EXPECT_EQ(set("E", "6.87654321234567891+10"), "MAT1*,1,6.87654321234567891+10,,.3\n*                  2700.\n");
 }
 
 TEST_F(FieldEditor, FreeField) {

@@ -8,27 +8,26 @@ namespace bough::nastran {
 namespace {
 
 TEST(QuadraticShells, FieldsInTheirPlaces) {
-  const auto d = read_clean(
-      "CQUAD8,1,7,11,12,13,14,15,16\n,17,18,.1,.2,.3,.4,30.,.05\n,1\n"
-      "CQUAD8,2,7,11,12,13,14,,16\n,,,,,,,5\n"
-      "CTRIA6,3,7,11,12,13,14,15,16\n,-10.,.05,.1,.2,.3,1\n"
-      "CTRIA6,4,,11,12,13\n");
-  ASSERT_EQ(d.shells.size(), 4u);
-  const auto& quad = d.shells[0];
+  const auto shells = read_list(&records::Deck::shells, 4,
+                                "CQUAD8,1,7,11,12,13,14,15,16\n,17,18,.1,.2,.3,.4,30.,.05\n,1\n"
+                                "CQUAD8,2,7,11,12,13,14,,16\n,,,,,,,5\n"
+                                "CTRIA6,3,7,11,12,13,14,15,16\n,-10.,.05,.1,.2,.3,1\n"
+                                "CTRIA6,4,,11,12,13\n");
+  const auto& quad = shells[0];
   EXPECT_EQ(values(quad.card, quad.grids, quad.midsides, quad.t, quad.theta_deg, quad.z_offset),
             values("CQUAD8", (std::vector<int>{11, 12, 13, 14}), (std::vector<int>{15, 16, 17, 18}),
                    (std::vector<double>{.1, .2, .3, .4}), 30, .05));
   EXPECT_TRUE(quad.relative_thickness);
-  EXPECT_EQ(d.shells[1].midsides, (std::vector<int>{0, 16, 0, 0}));
-  EXPECT_EQ(d.shells[1].mcid, 5);
-  EXPECT_TRUE(d.shells[1].t.empty());
-  const auto& triangle = d.shells[2];
+  EXPECT_EQ(shells[1].midsides, (std::vector<int>{0, 16, 0, 0}));
+  EXPECT_EQ(shells[1].mcid, 5);
+  EXPECT_TRUE(shells[1].t.empty());
+  const auto& triangle = shells[2];
   EXPECT_EQ(values(triangle.grids, triangle.midsides, triangle.theta_deg, triangle.z_offset, triangle.t),
             values((std::vector<int>{11, 12, 13}), (std::vector<int>{14, 15, 16}), -10, .05,
                    (std::vector<double>{.1, .2, .3})));
   EXPECT_TRUE(triangle.relative_thickness);
-  EXPECT_EQ(d.shells[3].pid, 4);
-  EXPECT_TRUE(d.shells[3].midsides.empty());
+  EXPECT_EQ(shells[3].pid, 4);
+  EXPECT_TRUE(shells[3].midsides.empty());
 }
 
 TEST(ShellCards, ABlankCornerIsTheProperty) {
@@ -67,17 +66,16 @@ TEST(MoreElements, DampersShearPanelsLines) {
 }
 
 TEST(MoreElements, Rbe1) {
-  const auto d = read_clean(
-      "RBE1,1,11,123,12,23,13,3\n,UM,14,123456,15,4,16,5\n,,17,6,1.-6\n"
-      "RBE1,2,11,1,12,2,13,3\n,,14,4,15,5,16,6\n,UM,17,123\n");
-  ASSERT_EQ(d.rbe1.size(), 2u);
-  const auto& e = d.rbe1[0];
+  const auto rbe1 = read_list(&records::Deck::rbe1, 2,
+                              "RBE1,1,11,123,12,23,13,3\n,UM,14,123456,15,4,16,5\n,,17,6,1.-6\n"
+                              "RBE1,2,11,1,12,2,13,3\n,,14,4,15,5,16,6\n,UM,17,123\n");
+  const auto& e = rbe1[0];
   ASSERT_EQ(e.independent.size(), 3u);
   EXPECT_EQ(e.independent[1].g, 12);
   EXPECT_EQ(e.independent[1].c, 0b110u);
   ASSERT_EQ(e.dependent.size(), 4u);
   EXPECT_EQ(values(e.dependent[0].c, e.dependent[3].g, e.dependent[3].c), values(63u, 17, 32u));
-  EXPECT_EQ(d.rbe1[1].independent.size(), 6u);
+  EXPECT_EQ(rbe1[1].independent.size(), 6u);
 }
 
 TEST(DofSets, PairsListsAndRanges) {
@@ -94,14 +92,14 @@ TEST(DofSets, PairsListsAndRanges) {
 }
 
 TEST(DirectMatrices, TermsOfTheirForms) {
-  const auto d = read_clean(
-      "DMIG,K1,1,1,,2,3,4.5,9.,\n,3,0,5.5\n"  // before its header; the imaginary part means nothing
-      "DMIG,K1,0,6,1,0\nDMIG*   C1                             0               1               4\n"
-      "*                                      1\n"
-      "DMIG*   C1                             1               2\n"
-      "*                      3               4   2.00000000D+0          60.0D0\n");
-  ASSERT_EQ(d.direct_matrices.size(), 2u);
-  const auto& k = d.direct_matrices[0];
+  const auto matrices =
+      read_list(&records::Deck::direct_matrices, 2,
+                "DMIG,K1,1,1,,2,3,4.5,9.,\n,3,0,5.5\n"  // before its header; the imaginary part means nothing
+                "DMIG,K1,0,6,1,0\nDMIG*   C1                             0               1               4\n"
+                "*                                      1\n"
+                "DMIG*   C1                             1               2\n"
+                "*                      3               4   2.00000000D+0          60.0D0\n");
+  const auto& k = matrices[0];
   EXPECT_EQ(k.form, 6);
   EXPECT_FALSE(k.is_complex);
   ASSERT_EQ(k.entries.size(), 2u);
@@ -109,7 +107,7 @@ TEST(DirectMatrices, TermsOfTheirForms) {
                    k.entries[0].imaginary),
             values(1, 1, 2, 3, 4.5, 0));
   EXPECT_EQ(k.entries[1].ci, 0);
-  const auto& c = d.direct_matrices[1];
+  const auto& c = matrices[1];
   EXPECT_TRUE(c.is_complex);
   EXPECT_NEAR(c.entries.at(0).value, 1, 1e-15);
   EXPECT_NEAR(c.entries.at(0).imaginary, std::sqrt(3.0), 1e-15);

@@ -220,8 +220,7 @@ TEST(OldElements, RigidOnesUnderTheirOldNames) {
 TEST(OldElements, MissingPropertiesAreNamed) {
   // A PSHELL of the same id is not the PQUAD2 that is missing.
   const auto r = read("CQUAD2,1,5,1,2,3,4\nPSHELL,5,1,.1\nCIHEX1,2,5,1,2,3,4,5,6,7,8\nPSOLID,5,1\n");
-  ASSERT_EQ(r.count("deck.old-property"), 2) << r.get_messages();
-  EXPECT_NE(r.find("deck.old-property")->what.find("element 1 refers to PQUAD2 5"), std::string::npos);
+  expect_messages(r, "deck.old-property", 2, "element 1 refers to PQUAD2 5");
   EXPECT_EQ(read("PQUAD2,5,1,.1\nPQUAD2,5,1,.2\n").count("deck.duplicate-id"), 1);
 }
 

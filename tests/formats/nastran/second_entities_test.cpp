@@ -23,11 +23,9 @@ TEST(SecondEntities, AreTaken) {
   EXPECT_EQ(deck.crod[1].gb, 3);
   EXPECT_EQ(deck.ctube.size(), 2u);
   ASSERT_EQ(deck.springs.size(), 4u);
-  EXPECT_EQ(deck.springs[3].k, 200.0);
-  EXPECT_EQ(deck.springs[3].g2, 2);
+  EXPECT_EQ(values(deck.springs[3].k, deck.springs[3].g2), values(200.0, 2));
   ASSERT_EQ(deck.scalar_masses.size(), 4u);
-  EXPECT_EQ(deck.scalar_masses[3].m, 2.5);
-  EXPECT_EQ(deck.scalar_masses[3].g1, 3);
+  EXPECT_EQ(values(deck.scalar_masses[3].m, deck.scalar_masses[3].g1), values(2.5, 3));
   ASSERT_EQ(deck.dampers.size(), 4u);
   EXPECT_EQ(deck.dampers[3].b, 2.5);
   EXPECT_EQ(deck.cvisc.size(), 2u);

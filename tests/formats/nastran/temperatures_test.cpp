@@ -5,11 +5,11 @@ namespace bough::nastran {
 namespace {
 
 TEST(Temperatures, Cards) {
-  const auto deck = read_clean(
-      "TEMP,5,1,20.,2,30.\nTEMPD,5,10.,6,11.\n"
-      "TEMPRB,5,12,21.,23.,2.,3.,-4.,-5.,+A\n+A,1.,1.,1.,1.,1.,1.,1.,1.,+B\n+B,14,THRU,16\n"
-      "TEMPP1,5,101,40.,.5,1.,2.,,,+C\n+C,103,105\n");
-  const auto& t = deck.temperatures;
+  const auto t = read_clean(
+                     "TEMP,5,1,20.,2,30.\nTEMPD,5,10.,6,11.\n"
+                     "TEMPRB,5,12,21.,23.,2.,3.,-4.,-5.,+A\n+A,1.,1.,1.,1.,1.,1.,1.,1.,+B\n+B,14,THRU,16\n"
+                     "TEMPP1,5,101,40.,.5,1.,2.,,,+C\n+C,103,105\n")
+                     .temperatures;
   ASSERT_EQ(t.grids.size(), 2u);
   EXPECT_EQ(t.grids[1].g, 2);
   EXPECT_EQ(t.grids[1].t, 30);

@@ -6,6 +6,7 @@
 #include "solver/linear/equilibrium.hpp"
 #include "solver/linear/linearize.hpp"
 #include "tests/solver/support/models.hpp"
+#include "tests/solver/support/motions.hpp"
 
 namespace bough::solver::testing {
 namespace {
@@ -57,8 +58,7 @@ TEST(ClosedLoops, SwingAtTheirFrequency) {
   const System system = build(make_parallelogram(0));
   Plant plant(system);
   EXPECT_EQ(plant.num_dofs(), 1);
-  Diagnostics diagnostics;
-  const auto model = linearize(plant, plant.make_initial_point(), {}, {}, diagnostics);
+  const auto model = linearize_start(plant);
   ASSERT_EQ(model.poles.size(), 2);
   EXPECT_NEAR(model.poles.real.cwiseAbs().maxCoeff(), 0, 1e-8);
   EXPECT_NEAR(model.poles.imag.maxCoeff(), calc_omega(), 1e-8);
@@ -85,8 +85,7 @@ TEST(ClosedLoops, AreExactInMotion) {
   spec.hinges[0].damping = {0.4};
   const System system = build(spec);
   Plant plant(system);
-  Diagnostics diagnostics;
-  const auto model = linearize(plant, plant.make_initial_point(), {}, {}, diagnostics);
+  const auto model = linearize_start(plant);
   // φ̈ = -ω² sin φ - c/I φ̇
   const double inertia = kCoupler * kLength * kLength + 2 * kRod * kLength * kLength / 3;
   EXPECT_NEAR(model.A(1, 0), -std::pow(calc_omega(), 2) * std::cos(0.7), 1e-7);

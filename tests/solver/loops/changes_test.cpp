@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "solver/builder/build_system.hpp"
+#include "tests/solver/support/motions.hpp"
 #include "tests/solver/support/runs.hpp"
 
 namespace bough::solver::testing {
@@ -121,13 +122,9 @@ TEST(Capture, IsTheInelasticImpact) {
   gap.relative_to = "chaser";
   gap.from_turning = false;
   spec.sensors = {gap};
-  ConstraintRecord dock;
-  dock.name = "dock";
-  dock.hinge = HingeType::Fixed;
-  dock.parent = "chaser";
-  dock.child = "target";
-  dock.active = false;
-  spec.constraints = {dock};
+  spec.constraints = {make_constraint("dock", records::ConstraintType::Hinge, "chaser", "target")};
+  spec.constraints[0].hinge = HingeType::Fixed;
+  spec.constraints[0].active = false;
   spec.events = {make_event("contact", EventAction::Close, "dock")};
   spec.events[0].signal = "gap:x";
   spec.events[0].value = 1.2;

@@ -11,7 +11,7 @@ namespace {
 
 using records::HingeType;
 
-const std::vector<std::string> kIntegrators = {"rk", "bdf", "rk4"};
+const std::vector<std::string> kIntegrators = {"rk", "radau", "bdf", "rk4"};
 
 std::vector<double> find_events(const MemorySink& sink, const std::string& part) {
   std::vector<double> times;

@@ -7,6 +7,7 @@
 #include "solver/builder/build_system.hpp"
 #include "solver/linear/linearize.hpp"
 #include "solver/statespace/poles.hpp"
+#include "tests/solver/support/motions.hpp"
 #include "tests/solver/support/runs.hpp"
 
 namespace bough::solver::testing {
@@ -95,12 +96,7 @@ TEST(Rolling, ABallCirclesOnATurntable) {
   records::SystemSpec spec = make_one_body(HingeType::Revolute);
   spec.bodies[0].name = "table";
   spec.hinges[0].child = "table";
-  records::FunctionRecord turn;
-  turn.name = "turn";
-  turn.type = "table";
-  turn.x = {0, 100};
-  turn.y = {0, 100 * rate};
-  spec.functions = {turn};
+  spec.functions = {make_ramp("turn", rate)};
   spec.hinges[0].motion = {"turn"};
   records::BodyRecord ball;
   ball.name = "ball";
@@ -114,13 +110,8 @@ TEST(Rolling, ABallCirclesOnATurntable) {
   h.stiffness = h.damping = {};
   h.position = {1, 0, 0, 0, 0.5, 0, r};
   h.rate = {};
-  records::ConstraintRecord c;
-  c.name = "contact";
-  c.type = ConstraintType::Rolling;
-  c.parent = "table";
-  c.child = "ball";
-  c.crown = r;
-  spec.constraints = {c};
+  spec.constraints = {make_constraint("contact", ConstraintType::Rolling, "table", "ball")};
+  spec.constraints[0].crown = r;
   spec.simulation.gravity = {0, 0, -kG};
   spec.simulation.duration = 3;
   spec.simulation.integrator = "rk";
@@ -222,12 +213,8 @@ TEST(RollingLinear, AnUprightDiscHasItsPoles) {
 records::SystemSpec make_bicycle(double speed) {
   records::SystemSpec spec;
   const auto add_body = [&](const char* name, double mass, const Vector3d& cg, const Matrix3d& inertia) {
-    records::BodyRecord b;
-    b.name = name;
-    b.mass = mass;
-    b.cg = cg;
-    b.inertia = inertia;
-    spec.bodies.push_back(b);
+    spec.bodies.push_back(make_body_record(name, mass, Vector3d::Zero(), cg));
+    spec.bodies.back().inertia = inertia;
   };
   const auto add_hinge = [&](const char* name, HingeType type, const char* parent, const char* child) -> auto& {
     auto h = make_hinge_record(name, type, parent, child);
@@ -277,8 +264,7 @@ TEST(RollingLinear, AWhippleBicycleHasTheBenchmarkEigenvalues) {
   const System system = build(make_bicycle(5));
   Plant plant(system);
   EXPECT_EQ(plant.num_dofs(), 3);
-  Diagnostics diagnostics;
-  const auto model = linearize(plant, plant.make_initial_point(), {}, {}, diagnostics);
+  const auto model = linearize_start(plant);
   const std::vector<std::complex<double>> benchmark{{-14.078389692798, 0},
                                                     {-0.775341882195845, 4.464867713788},
                                                     {-0.775341882195845, -4.464867713788},

@@ -41,7 +41,7 @@ TEST(Allocation, NoneInARunUnderWay) {
   tree.spec.simulation.duration = 1;
   tree.spec.simulation.output_step = 0.004;  // 250 samples: two checkpoints on the way
   const System system = build(tree.spec, tree.flex);
-  for (const std::string integrator : {"rk4", "implicit", "adams", "bdf", "rk"}) {
+  for (const std::string integrator : {"rk4", "implicit", "adams", "bdf", "rk", "radau"}) {
     tree.spec.simulation.integrator = integrator;
     tree.spec.simulation.step = integrator == "rk4" || integrator == "implicit" ? 0.002 : 0;
     SummingSink sink;

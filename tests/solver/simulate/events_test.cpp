@@ -42,7 +42,7 @@ TEST(Locate, FindsTheFarSideOfARoot) {
 }
 
 TEST(Events, AreLocatedByEveryIntegrator) {
-  for (const std::string integrator : {"adams", "bdf", "rk", "rk4"}) {
+  for (const std::string integrator : {"adams", "bdf", "rk", "radau", "rk4"}) {
     auto spec = make_oscillator();
     spec.simulation.integrator = integrator;
     spec.simulation.step = integrator == "rk4" ? 0.005 : 0;
@@ -72,7 +72,7 @@ TEST(Events, AreLocatedByEveryIntegrator) {
 
 // A line in the log leaves the motion as it is, to the last bit.
 TEST(Events, LogsDoNotTouchTheMotion) {
-  for (const std::string integrator : {"adams", "bdf", "rk", "rk4"}) {
+  for (const std::string integrator : {"adams", "bdf", "rk", "radau", "rk4"}) {
     auto spec = make_oscillator();
     spec.simulation.integrator = integrator;
     spec.simulation.step = integrator == "rk4" ? 0.02 : 0;
@@ -85,7 +85,7 @@ TEST(Events, LogsDoNotTouchTheMotion) {
 }
 
 TEST(Events, StopEndsTheRunThere) {
-  for (const std::string integrator : {"adams", "bdf", "rk", "rk4"}) {
+  for (const std::string integrator : {"adams", "bdf", "rk", "radau", "rk4"}) {
     auto spec = make_oscillator();
     spec.simulation.integrator = integrator;
     spec.simulation.step = integrator == "rk4" ? 0.005 : 0;

@@ -8,6 +8,7 @@
 #include "solver/builder/build_system.hpp"
 #include "solver/linear/linearize.hpp"
 #include "solver/system/derivative.hpp"
+#include "tests/solver/support/motions.hpp"
 #include "tests/solver/support/runs.hpp"
 
 namespace bough::solver::testing {
@@ -62,7 +63,7 @@ double find_event(const MemorySink& sink, const std::string& part) {
 
 // v = v0 - μg t until it stops at v0/μg, and it stays there: by every method.
 TEST(DryFriction, ABlockStopsAndStays) {
-  for (const std::string integrator : {"rk", "adams", "bdf", "rk4", "implicit"}) {
+  for (const std::string integrator : {"rk", "radau", "adams", "bdf", "rk4", "implicit"}) {
     auto spec = make_slider();
     const double v0 = 1.3, force = 5.3, a = force / 2;
     spec.hinges[0].rate = {v0};
@@ -126,12 +127,7 @@ TEST(DryFriction, ABeltDragsAMassByStickAndSlip) {
   const double k = 100, belt = 0.1, Fs = 4, Fc = 2, w = 10;
   add_copy(spec, "mass", "on_belt");
   spec.hinges[1].parent = "body";
-  records::FunctionRecord motion;
-  motion.name = "belt";
-  motion.type = "table";
-  motion.x = {0, 100};
-  motion.y = {0, 100 * belt};
-  spec.functions = {motion};
+  spec.functions = {make_ramp("belt", belt)};
   spec.hinges[0].motion = {"belt"};
   add_friction(spec.hinges[1], Fc, Fs);
   spec.force_elements = {make_spring("spring", "mass", {-10, 0, 0}, k, 10)};
@@ -154,7 +150,7 @@ TEST(DryFriction, ABeltDragsAMassByStickAndSlip) {
 
 // Drops from h: times between impacts 2 e^n sqrt(2h/g), all of them over at sqrt(2h/g) (1 + e)/(1 - e): then rest.
 TEST(RigidStop, ABallBouncesAndComesToRest) {
-  for (const std::string integrator : {"rk", "bdf", "rk4", "implicit"}) {
+  for (const std::string integrator : {"rk", "radau", "bdf", "rk4", "implicit"}) {
     auto spec = make_slider(3);
     const double h = 0.4, g = 9.81, e = 0.6, first = std::sqrt(2 * h / g);
     spec.simulation.gravity = {-g, 0, 0};

@@ -13,7 +13,7 @@ namespace {
 
 using records::HingeType;
 
-const std::vector<std::string> kAdaptive = {"adams", "bdf", "rk"};
+const std::vector<std::string> kAdaptive = {"adams", "bdf", "rk", "radau"};
 
 /// A body that flies along x at `speed` from `x`, 0.5 beside the origin, with its distance from there as "range": free
 /// motion, of which adaptive methods make a few steps.
@@ -182,7 +182,7 @@ CountedRun run_counted(const std::string& integrator) {
 }
 
 TEST(Scan, ReportsTheEvaluationsThatItMakes) {
-  for (const std::string integrator : {"adams", "bdf", "rk", "rk4", "implicit"}) {
+  for (const std::string integrator : {"adams", "bdf", "rk", "radau", "rk4", "implicit"}) {
     const CountedRun r = run_counted(integrator);
     EXPECT_EQ(r.calls, r.outcome.last.num_evaluations) << integrator;
   }

@@ -35,7 +35,7 @@ VectorXd calc_energy_balance(const MemorySink& sink) {
 }
 
 TEST(Simulate, OscillatorWithEveryIntegrator) {
-  for (const std::string integrator : {"adams", "bdf", "rk", "rk4"}) {
+  for (const std::string integrator : {"adams", "bdf", "rk", "radau", "rk4"}) {
     auto spec = make_oscillator();
     spec.simulation.integrator = integrator;
     spec.simulation.relative_tolerance = 1e-9;
@@ -139,7 +139,7 @@ TEST(Simulate, DampingIsLostWork) {
 
 // A pulse between two output times: the velocity it leaves is F width / m to rounding, since steps end on both jumps.
 TEST(Simulate, PulseIsHitByEveryIntegrator) {
-  for (const std::string integrator : {"adams", "bdf", "rk", "rk4"}) {
+  for (const std::string integrator : {"adams", "bdf", "rk", "radau", "rk4"}) {
     auto spec = make_body(HingeType::Free);
     spec.functions = {make_function("pulse", "pulse", {{"value", 7}, {"at", 1.03}, {"width", 0.005}})};
     spec.forces = {make_force("push", "body", {1, 0, 0}, "pulse")};
@@ -207,7 +207,7 @@ TEST(Simulate, ForeignCheckpointIsRefused) {
 TEST(Simulate, DivergenceKeepsTheSamplesAndNamesTheBody) {
   auto spec = make_oscillator(-40);  // a negative damper
   spec.simulation.divergence_limit = 1e3;
-  for (const std::string integrator : {"adams", "bdf", "rk", "rk4"}) {
+  for (const std::string integrator : {"adams", "bdf", "rk", "radau", "rk4"}) {
     spec.simulation.integrator = integrator;
     spec.simulation.step = integrator == "rk4" ? 0.01 : 0;
     MemorySink sink;

@@ -10,7 +10,7 @@
 #include <fstream>
 
 #include "solver/bodies/body.hpp"
-#include "tests/formats/exports/point_masses.hpp"
+#include "tests/formats/sid/point_masses.hpp"
 #include "tests/support/paths.hpp"
 
 namespace bough::test {

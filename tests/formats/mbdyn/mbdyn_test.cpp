@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "formats/mbdyn/fem_file.hpp"
-#include "tests/formats/exports/point_masses.hpp"
+#include "tests/formats/sid/point_masses.hpp"
 
 namespace bough::test {
 namespace {

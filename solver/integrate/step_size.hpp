@@ -1,0 +1,28 @@
+#pragma once
+/// \file Norm of the local error and the first step of adaptive one-step methods.
+#include <string>
+
+#include "solver/integrate/integrator.hpp"
+
+namespace bough::solver::detail {
+
+/// Weight of row i of y in the norm of the error: relative_tolerance |y_i| + absolute_tolerance_i, at least 1e-300.
+double calc_error_weight(const StepperOptions& options, const VectorXd& y, Eigen::Index i);
+
+/// Root mean square of v_i over the weights at y, in tolerances. v: size of y.
+double calc_error_norm(const StepperOptions& options, const VectorXd& y, const VectorXd& v);
+
+/// Length [T] of the first step of a method of order q, by the size of the first and second derivatives.
+/// Source: Hairer, Nørsett and Wanner, "Solving Ordinary Differential Equations I", II.4.
+/// \param y_dot  derivative at (t, y).
+/// \param min_step, max_step  [T] bounds of the result.
+/// \param[out] stage, stage_dot  scratch, of the size of y.
+/// \note One evaluation.
+double guess_first_step(GuardedOde& ode, const StepperOptions& options, int order, double t, const VectorXd& y,
+                        const Eigen::Ref<const VectorXd>& y_dot, double min_step, double max_step, VectorXd& stage,
+                        VectorXd& stage_dot);
+
+/// "steps of 1e-09 err by 3.2 tolerances", for a StepFailure.
+std::string describe_rejection(double step, double error);
+
+}  // namespace bough::solver::detail
