@@ -202,11 +202,11 @@ void JointContacts::fail_endless(const std::vector<std::string>& what) const {
 void JointContacts::find_rest(HybridSystem& ode, double t, double shortest, VectorXd& y,
                               std::vector<std::string>& what) {
   const int u = ode.num_q();
-  auto& [rests, before, slide] = scratch_;
+  auto& [rests, before, slide, slowest] = scratch_;
   rests.assign(joint_contacts_.size(), false);
   before.assign(joint_contacts_.size(), false);
   slide.assign(joint_contacts_.size(), 0);
-  std::vector<double> slowest(joint_contacts_.size(), 0);
+  slowest.assign(joint_contacts_.size(), 0);
   // Sticking joints that can hold their forces: coordinates that these keep still need no lock.
   const auto can_hold = [&](const Watched& w) {
     const TreeData& data = ode.data().tree;

@@ -80,6 +80,7 @@ class JointContacts {
   struct Scratch {
     std::vector<bool> rests, before;
     std::vector<int> slide;
+    std::vector<double> slowest;
   };
   std::vector<Watched> joint_contacts_;
   Scratch scratch_;
