@@ -70,12 +70,15 @@ class CheckResponses(ProgramTest):
         found = self.bough("check", self.deck(103, FREQUENCY), "--json")
         self.assertNotIn("responses", json.loads(found.stdout))
 
+    def test_a_deck_without_loads_is_one_for_its_modes(self):
+        found = self.bough("check", self.deck(111, FREQUENCY.replace("DLOAD = 3\n", "")))
+        self.assertRegex(found.stderr, r"warning: .*\[modal.no-dynamic-load\]")
+
     def test_what_the_command_refuses(self):
         for sol, verb, case, error in [
                 (111, "frequency", FREQUENCY.replace("FREQ = 2", "FREQ = 99"), "modal.no-frequencies"),
                 (111, "frequency", FREQUENCY.replace("FREQ = 2\n", ""), "modal.no-frequencies"),
                 (111, "frequency", FREQUENCY.replace("DLOAD = 3", "DLOAD = 99"), "modal.no-dynamic-load"),
-                (111, "frequency", FREQUENCY.replace("DLOAD = 3\n", ""), "modal.no-dynamic-load"),
                 (111, "frequency", FREQUENCY.replace("SDAMPING = 4", "SDAMPING = 99"), "modal.missing-table"),
                 (111, "frequency", FREQUENCY + "\nRANDOM = 99", "modal.missing-random"),
                 (112, "transient", TRANSIENT.replace("TSTEP = 7", "TSTEP = 99"), "modal.no-time-steps"),
