@@ -213,7 +213,7 @@ def modes(deck: str, number: int | None = None, *, min_hz: float | None = None, 
           op2: str = "", progress: Callable[[str], object] | None = None) -> tuple[Modes, list[Message]]: ...
 def static(deck: str, *, subcase: int = 0, free: bool = False, mass: str = "deck", ignore: Sequence[str] = [],
            grid_forces: Sequence[str] = [], linear: bool = False, nonlinear: bool = False, increments: int = 10,
-           strains: bool = False, extremes: bool = False, f06: str = "", op2: str = "",
+           arc_length: bool = False, strains: bool = False, extremes: bool = False, f06: str = "", op2: str = "",
            progress: Callable[[str], object] | None = None) -> tuple[bytes, list[Message]]: ...
 def matrices(deck: str, *, loads: Sequence[int] = [], no_kg: bool = False, subcase: int = 0, free: bool = False,
              mass: str = "deck", ignore: Sequence[str] = [],
