@@ -307,6 +307,7 @@ class Page(BrowserTest):
         b.click(".modes .play")
         self.assertTrue(b.wait_for(f"({HASH % '.scene'}) !== {second}"))
         b.click(".modes .play")
+        b.run(WAIT_FRAMES)
         # A body file has no energies of its elements; a modes file may.
         self.assertEqual(b.run(COLORINGS), ["displacement", "nothing"])
         coloured = b.run(HASH % ".scene")

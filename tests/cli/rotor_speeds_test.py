@@ -6,9 +6,9 @@ import unittest
 import numpy as np
 from scipy.optimize import brentq
 
+from support import ProgramTest
 from rotors import RPM, make_friswell_deck, springs
 from rotors_test import DISCS, EQUAL, MASS, STIFF, make_jeffcott
-from support import ProgramTest
 from toml_text import section, table, toml
 
 OMEGA = math.sqrt(STIFF / MASS)

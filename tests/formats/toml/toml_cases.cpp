@@ -169,7 +169,7 @@ std::vector<BadDocument> get_bad_systems() {
       {"toml.wrong-length", "inertia = [1.0, 2.0, 3.0, 0.1, 0.2, 0.3]", "inertia = [1.0, 2.0, 3.0, 0.1]",
        "neither three moments nor six components", false},
       {"toml.bad-value", "type = \"universal\"", "type = \"univrsal\"", "did you mean 'universal'?"},
-      {"toml.bad-value", "integrator = \"bdf\"", "integrator = \"bfd\"", "expected one of adams, bdf, rk, rk4"},
+      {"toml.bad-value", "integrator = \"bdf\"", "integrator = \"bfd\"", "expected one of adams, bdf, rk, radau, rk4"},
       {"toml.bad-value", "inertia = [1.0, 2.0, 3.0, 0.1, 0.2, 0.3]", "inertia = [0.1, 0.1, 5.0, 0.0, 0.0, 0.0]",
        "more than twice the sum of the others", false},
       {"toml.bad-value", "inertia = [1.0, 2.0, 3.0, 0.1, 0.2, 0.3]",
