@@ -59,13 +59,10 @@ class RotorSpeeds(ProgramTest):
         np.testing.assert_allclose([p["speed"] / 2 / math.pi for p in result["thresholds"]], expected, rtol=1e-6)
         self.assertEqual([p["onset"] for p in result["thresholds"]], [True, False])
         np.testing.assert_array_equal(self.read_arrays("d.h5", "thresholds/onset")[0], [1, 0])
-        text = self.bough("modes", "d.bdf").stdout
-        self.assertIn("unstable above this speed", text)
-        self.assertIn("stable again above this speed", text)
-        self.bough("report", "d.h5", "-o", "d.html")
-        page = self.read("d.html")
-        self.assertIn("Thresholds of instability", page)
-        self.assertIn("above this speed", page)
+        for text, *phrases in [(self.bough("modes", "d.bdf").stdout, "unstable above this speed", "stable again above this speed"),
+                               (self.read_page("d.h5"), "Thresholds of instability", "above this speed")]:
+            for phrase in phrases:
+                self.assertIn(phrase, text)
 
     def test_overdamped(self):
         """Synchronous, M λ² + (c_e + 2 c_i) λ + k = 0 backward: a critical speed below ζ = 1/√2 alone; no count of instability."""

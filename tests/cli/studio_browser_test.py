@@ -148,9 +148,7 @@ class Flow(PageTest):
 
     def test_poles_and_blocks(self):
         """A pole that is clicked moves the system, poles follow a gain that is dragged, a block leads to its line."""
-        self.write("sliders.toml", SYSTEM)
-        page = self.open_studio("sliders.toml")
-        self.wait("document.querySelector('.scene-host').dataset.samples")
+        page = self.open_system(SYSTEM)
         page.click("button.linearize")
         self.wait("document.querySelector('.result').dataset.ready === 'linearize'")
         page.show(".result .live[data-view=poles]")

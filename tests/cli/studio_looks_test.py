@@ -96,9 +96,7 @@ class Looks(PageTest):
         self.assertEqual([e for e in page.list_errors() if "favicon" not in e], [])
 
     def test_systems(self):
-        self.write("sliders.toml", SYSTEM)
-        page = self.open_studio("sliders.toml")
-        self.wait("document.querySelector('.scene-host').dataset.samples")
+        page = self.open_system(SYSTEM)
         page.click(".add-form summary")
         self.wait("document.querySelector('.add-form [name=inertia]')")
         page.click("details.block-diagram summary")

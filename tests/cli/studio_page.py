@@ -19,6 +19,13 @@ class PageTest(StudioTest, BrowserTest):
         self.browser.visit(self.address)
         return self.browser
 
+    def open_system(self, text):
+        """The browser at the studio of sliders.toml with this text, its scene drawn."""
+        self.write("sliders.toml", text)
+        page = self.open_studio("sliders.toml")
+        self.wait("document.querySelector('.scene-host').dataset.samples")
+        return page
+
     def keep(self, name):
         folder = os.environ.get("BOUGH_ARTEFACTS")
         if folder:

@@ -53,6 +53,18 @@ class ProgramTest(unittest.TestCase):
     def path(self, name):
         return os.path.join(self.folder, name)
 
+    def read_rest(self, system, sensor):
+        """A sensor of a system file in its state of rest or steady motion."""
+        import h5py  # a tenth of a second that most tests do without
+        self.bough("equilibrium", system, "-o", "rest.h5", "-q")
+        with h5py.File(self.path("rest.h5")) as f:
+            return f["sensors"][sensor][-1]
+
+    def read_page(self, *files):
+        """Text of the page of these files."""
+        self.bough("report", *files, "-o", "page.html")
+        return self.read("page.html")
+
     def read(self, name):
         with open(self.path(name)) as f:
             return f.read()

@@ -66,9 +66,7 @@ class ThirdOrderModes(ProgramTest):
 
     def find_rest(self):
         self.write_system(self.FORCE)
-        self.bough("equilibrium", "mast-system.toml", "-o", "rest.h5", "-q")
-        with h5py.File(self.path("rest.h5")) as f:
-            return f["sensors/end"][-1]
+        return self.read_rest("mast-system.toml", "end")
 
     def test_forces_at_the_foot(self):
         """Moments of the element at the foot, and the torque in its middle, about its axis: those of the dead force at the end
@@ -116,9 +114,7 @@ class ThirdOrderModes(ProgramTest):
                    f'child = "mast"\nchild_node = 1\n[[force]]\nname = "pull"\nbody = "mast"\nnode = 25\n{key} = {load}\n'
                    'frame = "inertial"\n[[sensor]]\nname = "end"\ntype = "position"\nbody = "mast"\nnode = 25\n'
                    "[simulation]\nduration = 1.0\n")
-        self.bough("equilibrium", "rod.toml", "-o", "rest.h5", "-q")
-        with h5py.File(self.path("rest.h5")) as f:
-            return f["sensors/end"][-1] - [LENGTH, 0, 0]
+        return self.read_rest("rod.toml", "end") - [LENGTH, 0, 0]
 
     def test_bending_residuals_do_not_follow_a_stretch(self):
         """Frames at a node and residual vectors: some of bending are above a stretch of the beam. 74 % off before, at a way of

@@ -31,9 +31,7 @@ class ThirdOrderSpin(ProgramTest):
                    f'parent = "ground"\nchild = "blade"\naxis = [0.0, 0.0, 1.0]\nrate = [{spin}]\n[[force]]\nname = "twist"\n'
                    f'body = "blade"\nnode = {node}\nmoment = [{moment!r}, 0.0, 0.0]\n[[sensor]]\nname = "twist"\ntype = "rotation"\n'
                    f'body = "blade"\nnode = {node}\n[simulation]\nduration = 1.0\noutput_step = 0.1\n')
-        self.bough("equilibrium", "spin.toml", "-o", "rest.h5", "-q")
-        with h5py.File(self.path("rest.h5")) as f:
-            return f["sensors/twist"][-1][0]
+        return self.read_rest("spin.toml", "twist")[0]
 
     MASSES = {
         "inertia": ["CONM2,9,3,,.02", f",{E_CHORD + E_THICK},,{E_THICK + .01},,,{E_CHORD + .01}"],

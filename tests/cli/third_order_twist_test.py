@@ -3,7 +3,6 @@ import os
 import sys
 import unittest
 
-import h5py
 import numpy as np
 from scipy.optimize import fsolve
 
@@ -41,9 +40,7 @@ class ThirdOrderTwist(ProgramTest):
                    f'child = "rod"\n[[force]]\nname = "pull"\nbody = "rod"\nnode = {TIP}\nforce = {list(force)}\n[[force]]\n'
                    f'name = "turn"\nbody = "rod"\nnode = {TIP}\nmoment = {list(moment)}\n[[sensor]]\nname = "tip"\n'
                    f'type = "deflection"\nbody = "rod"\nnode = {TIP}\nframe = "body"\n[simulation]\nduration = 1.0\n')
-        self.bough("equilibrium", "system.toml", "-o", "rest.h5", "-q")
-        with h5py.File(self.path("rest.h5")) as f:
-            return f["sensors/tip"][-1]
+        return self.read_rest("system.toml", "tip")
 
     def test_torque_that_is_lost(self):
         for force, moment in (((0., 3., 5.), (4., 0., 0.)), ((0., -4., 3.), (-6., .5, 0.))):
