@@ -126,6 +126,9 @@ class ThirdOrderModes(ProgramTest):
             off = np.linalg.norm(self.rest_of_rod("force", force) - exact) / np.linalg.norm(exact)
             print(f"frame {frame}, {modes} modes: off by {100 * off:.3f} % of {np.linalg.norm(exact) / LENGTH:.3f} lengths")
             self.assertLess(off, 1e-3)
+        self.assertNotIn("held-frame", self.bough("reduce", "mast.toml", "-o", "mast.h5").stderr)
+        self.make_rod("node", 6, "interface", 3)
+        self.assertRegex(self.bough("reduce", "mast.toml", "-o", "mast.h5").stderr, r"interface node 1 at its frame.*\[reduce.held-frame\]")
 
     def test_bending_residuals_follow_before_twist(self):
         """A moment that bends and twists; the twist is more compliant than residual vectors of bending, which follow. 14 and 40 %
