@@ -98,15 +98,7 @@ class ErkStepper final : public Integrator {
 
   /// The last step again, but to t only.
   void calc_state(double t, Eigen::Ref<VectorXd> y) override {
-    if (t == t_) {
-      y = y_;
-      return;
-    }
-    BOUGH_DEMAND(t >= last_ && t < t_);
-    if (t == last_) {
-      y = last_y_;
-      return;
-    }
+    if (detail::copy_end_state(t, {last_, last_y_, t_, y_}, y)) return;
     ode_.begin_step();
     if (!calc_step(last_, t, t - last_, false)) fail("the derivative cannot be evaluated");
     y = trial_;

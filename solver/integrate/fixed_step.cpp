@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/diagnostic.hpp"
+#include "solver/integrate/step_size.hpp"
 
 namespace bough::solver {
 
@@ -40,15 +41,7 @@ void FixedStepIntegrator::step(double t_target) {
 }
 
 void FixedStepIntegrator::calc_state(double t, Eigen::Ref<VectorXd> y) {
-  if (t == t_) {
-    y = y_;
-    return;
-  }
-  BOUGH_DEMAND(t >= last_ && t < t_);
-  if (t == last_) {
-    y = last_y_;
-    return;
-  }
+  if (detail::copy_end_state(t, {last_, last_y_, t_, y_}, y)) return;
   between_ = last_y_;
   calc_step(last_, t - last_, t, between_);
   y = between_;

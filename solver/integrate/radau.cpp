@@ -102,15 +102,7 @@ class RadauStepper final : public Integrator {
   Eigen::Map<const VectorXd> state() const override { return {y_.data(), y_.size()}; }
 
   void calc_state(double t, Eigen::Ref<VectorXd> y) override {
-    if (t == t_) {
-      y = y_;
-      return;
-    }
-    BOUGH_DEMAND(t >= last_ && t < t_);
-    if (t == last_) {
-      y = last_y_;
-      return;
-    }
+    if (detail::copy_end_state(t, {last_, last_y_, t_, y_}, y)) return;
     y = last_y_;
     const auto weights = calc_polynomial_weights((t - last_) / last_h_);
     for (int i = 0; i < kStages; ++i) y += weights[static_cast<size_t>(i)] * last_Z_.col(i);

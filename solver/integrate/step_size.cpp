@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "base/diagnostic.hpp"
+
 namespace bough::solver::detail {
 
 double calc_error_weight(const StepperOptions& options, const VectorXd& y, Eigen::Index i) {
@@ -29,6 +31,16 @@ double guess_first_step(GuardedOde& ode, const StepperOptions& options, int orde
   const double d2 = calc_error_norm(options, y, stage_dot) / h, largest = std::max(d1, d2);
   const double other = largest <= 1e-15 ? std::max(1e-6, 1e-3 * h) : std::pow(0.01 / largest, 1.0 / order);
   return std::max(min_step, std::min(100 * h, other));
+}
+
+bool copy_end_state(double t, const LastStep& step, Eigen::Ref<VectorXd> y) {
+  if (t == step.to) {
+    y = step.y_to;
+    return true;
+  }
+  BOUGH_DEMAND(t >= step.from && t < step.to);
+  if (t == step.from) y = step.y_from;
+  return t == step.from;
 }
 
 std::string describe_rejection(double step, double error) {

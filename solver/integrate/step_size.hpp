@@ -1,5 +1,5 @@
 #pragma once
-/// \file Norm of the local error and the first step of adaptive one-step methods.
+/// \file Norm of the local error, first step and end states of one-step methods.
 #include <string>
 
 #include "solver/integrate/integrator.hpp"
@@ -21,6 +21,17 @@ double calc_error_norm(const StepperOptions& options, const VectorXd& y, const V
 double guess_first_step(GuardedOde& ode, const StepperOptions& options, int order, double t, const VectorXd& y,
                         const Eigen::Ref<const VectorXd>& y_dot, double min_step, double max_step, VectorXd& stage,
                         VectorXd& stage_dot);
+
+/// Ends of the last step of a method, times [T] and states.
+struct LastStep {
+  double from;
+  const VectorXd& y_from;
+  double to;
+  const VectorXd& y_to;
+};
+/// Copies the state at an end of the last step to y. \return false between the ends, where y is untouched.
+/// \pre from <= t <= to.
+bool copy_end_state(double t, const LastStep& step, Eigen::Ref<VectorXd> y);
 
 /// "steps of 1e-09 err by 3.2 tolerances", for a StepFailure.
 std::string describe_rejection(double step, double error);
