@@ -138,7 +138,7 @@ struct SimulationRecord {
   double output_until = std::numeric_limits<double>::infinity();  ///< nor those after it
   int output_every = 1;                                           ///< interval of the samples written, in samples
   std::vector<std::string> record;   ///< groups of channels: "bodies", "hinges/root", ...; empty = all
-  std::string integrator = "adams";  ///< adams, bdf (CVODE), rk (Dormand and Prince), rk4, implicit (fixed step), auto
+  std::string integrator = "adams";  ///< adams, bdf (CVODE), rk, radau, rk4, implicit (fixed step), auto
   double step = 0;                   ///< rk4, implicit; also the largest step of the others when > 0
   int rk_order = 8;                  ///< rk: 5 or 8
   double relative_tolerance = 1e-8, absolute_tolerance = 1e-10;

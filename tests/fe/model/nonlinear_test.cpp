@@ -256,7 +256,7 @@ TEST_F(LargeDisplacements, ArcLengthPassesTheSnapBackOfLeesFrame) {
   EXPECT_LT(get_place(result[0], n + 2)[1], -80);
 }
 
-/// Where the path has no limit point arc length ends where load steps do: dead, following and enforced loads.
+/// Arc length ends where load steps do on a path without limit points: dead, following and enforced loads.
 TEST_F(LargeDisplacements, ArcLengthEndsWhereLoadStepsDo) {
   const auto line = make_line(8, 1);
   const std::string loads[] = {"FORCE,1,9,,40000.,0.,.2,1.\n", "FORCE1,1,9,30000.,8,9\nMOMENT,1,9,,5000.,0.,1.,0.\n",
