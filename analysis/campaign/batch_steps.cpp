@@ -41,8 +41,8 @@ void check_steps(const CampaignSpec& spec, const std::vector<std::string>& verbs
     if (std::find(verbs.begin(), verbs.end(), verb) == verbs.end() || verb == "batch") {
       const auto nearest = find_nearest(verb, verbs);
       diagnostics.error(
-          "batch.bad-step", step.at, "'" + verb + "' is no verb for a step",
-          nearest.empty() || verb == "batch" ? "bough --help lists the verbs" : "did you mean " + nearest);
+          "batch.bad-step", step.at, "'" + verb + "' is no command for a step",
+          nearest.empty() || verb == "batch" ? "bough --help lists the commands" : "did you mean " + nearest);
     }
     for (const auto& word : step.words)
       for (auto open = word.find('{'); open != std::string::npos; open = word.find('{', open + 1)) {

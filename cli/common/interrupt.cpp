@@ -35,7 +35,7 @@ volatile std::sig_atomic_t g_is_told = 0;
 /// Time in s that a user library has to return after the first signal.
 constexpr unsigned kPatience = 5;
 
-/// The verb did not come to a point where it looks whether it is to end: where it is, if that is a user library.
+/// The command did not come to a point where it looks whether it is to end: where it is, if that is a user library.
 [[noreturn]] void end_where_it_is(const char* why) {
   remove_parts();
   char text[1200];

@@ -59,7 +59,7 @@ struct CampaignCollect {
 };
 
 struct CampaignStep {
-  std::vector<std::string> words;  ///< verb and arguments
+  std::vector<std::string> words;  ///< command and arguments
   SourceLocation at;
 };
 

@@ -1,4 +1,4 @@
-"""Free bodies in balance (SUPORT, PARAM,INREL) in every verb, and what subcases start from."""
+"""Free bodies in balance (SUPORT, PARAM,INREL) in every command, and what subcases start from."""
 import json
 import os
 import sys
