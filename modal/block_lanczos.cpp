@@ -65,7 +65,7 @@ class BlockLanczos {
   MatrixXd B_before_;          ///< B times the block before
   bool is_recurrent_ = false;  ///< A⁻¹B of the last block has nothing but roundoff of blocks before these two
   int size_ = 0, last_width_ = 0;
-  double scale_ = 0;  ///< the largest ‖A⁻¹B v‖ so far: what is small is small beside it
+  double scale_ = 0;  ///< the largest ‖A⁻¹B v‖ so far: what is small is small next to it
   VectorXd theta_, error_;
   MatrixXd S_;
   int num_solves_ = 0;

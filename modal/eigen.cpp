@@ -26,7 +26,7 @@ Answer solve_twice(NormalModes& modes, const EigenOptions& options) {
 }
 
 /// The plan of every solution: first from K shifted by a little M, the rigid-body motions of the whole known; where
-/// that leaves a doubt, every motion without strain known before, of parts too, with supports in K in place of the
+/// that leaves a doubt, every zero-energy motion known before, of parts too, with supports in K in place of the
 /// shift. The second answer counts where it is sound and better.
 Answer find_answer(const fe::System& system, const EigenOptions& options) {
   std::optional<Answer> answer;

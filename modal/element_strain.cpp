@@ -23,7 +23,7 @@ using Eigen::Index;
 
 constexpr int kMostDofs = 24;        // of an element taken apart
 constexpr double kRoundoff = 1e-13;  // of uᵀK_e u, over its parts
-constexpr double kNoMotion = 1e-13;  // scaled principal stiffness of an element's rigid motions
+constexpr double kNoMotion = 1e-13;  // scaled principal stiffness of an element's rigid-body motions
 constexpr double kNoStrain = 1e-22;  // energy over its parts: what vectors of sixteen digits leave of zero
 constexpr double kSoft = 1e-9;       // below this share of their parts, energies of K are looked at
 constexpr double kSame = 1e-6;       // relative, of eigenvalues
@@ -259,7 +259,7 @@ std::string find_stiffest(const fe::Model& model) {
   return stiffest;
 }
 
-/// Blocks of given matrices are no structures of their own: their energies are no strain.
+/// Blocks of given matrices are no separate structures: their energies are no strain.
 bool has_given_blocks(const fe::Model& model) { return model.has_card("DMIG"); }
 
 }  // namespace

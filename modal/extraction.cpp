@@ -265,7 +265,7 @@ class EpsRun {
                                                                : 4);
       settings.deflation = std::move(deflation_);
       settings.num_guard = problem_.num_guard;
-      // The vectors are the most of the memory beside the factor: for few modes a restart costs next to nothing.
+      // The vectors are the most of the memory next to the factor: for few modes a restart has negligible cost.
       settings.max_subspace = 11 * wanted_ / 5 + std::clamp(wanted_, 24, 60);
       settings.positive_only = problem_.spectrum == Spectrum::LargestPositive;
       if (is_near(problem_)) settings.release = problem_.release;
@@ -400,10 +400,11 @@ Extraction extract(const EigenProblem& problem) {
     if (problem.restore) problem.restore();
     type = type == EPSKRYLOVSCHUR ? kBlockLanczos : EPSKRYLOVSCHUR;
   }
-  throw ComputationError("modal.no-convergence", {},
-                         "the eigenvalue solver found no " + std::to_string(wanted) + " modes: it did not converge",
-                         "ask for fewer modes; look for parts that nothing holds, and for very soft beside very stiff "
-                         "ones");
+  throw ComputationError(
+      "modal.no-convergence", {},
+      "the eigenvalue solver found no " + std::to_string(wanted) + " modes: it did not converge",
+      "ask for fewer modes; look for parts that nothing holds, and for very soft parts next to very stiff "
+      "ones");
 }
 
 }  // namespace bough::modal::detail

@@ -1,5 +1,5 @@
 #pragma once
-/// \file One way to the normal modes of a model: its motions without strain, the roots besides them, what they are
+/// \file One way to the normal modes of a model: its zero-energy motions, the roots besides them, what they are
 /// worth.
 #include <limits>
 #include <optional>
@@ -100,7 +100,7 @@ class NormalModes {
   std::optional<PencilSolver> solver_;
   ModeRange range_;
   double shift_ = 0;  ///< K + shift M is definite
-  Roots found_;       ///< besides the rigid motions, ascending
+  Roots found_;       ///< besides the rigid-body motions, ascending
   int num_zero_ = 0;  ///< mechanisms among them, first: no strain either
   double worst_roundoff_ = 0;
   double overlap_ = 0;  ///< how far the vectors found were from M-orthonormal

@@ -57,8 +57,8 @@ std::optional<MatrixXd> find_null_space(const Pencil& pencil, const VectorXd& D,
 void append(MatrixXd& A, const MatrixXd& B) { A = join(A, B); }
 
 /// Makes the D-orthonormal motions Y orthogonal under D and M, normal under M, by descending mass. In rounds: a motion
-/// with little mass per D among such with much keeps its digits. Those that have none in roundoff, beside their parts
-/// or beside the others, go to `massless`: as modes their zero would be vague by 1e-3 of what the others have.
+/// with little mass per D among such with much keeps its digits. Those that have none in roundoff, next to their parts
+/// or next to the others, go to `massless`: as modes their zero would be vague by 1e-3 of what the others have.
 MatrixXd split_by_mass(const Pencil& pencil, const VectorXd& D, MatrixXd Y, MatrixXd& massless) {
   MatrixXd heavy(Y.rows(), 0);
   const double nothing = kDofMassShare * (pencil.M_diagonal.array() / D.array()).maxCoeff();  // of a single dof

@@ -175,7 +175,7 @@ MatrixXd find_forceless(const Pencil& pencil, const MatrixXd& Y, double floor) {
 
 namespace {
 
-/// D times the rigid motions about a point, D the diagonal of K, and of these Y, those without strain.
+/// D times the rigid-body motions about a point, D the diagonal of K, and of these Y, those without strain.
 struct Strainless {
   MatrixXd DB, Y;
 };

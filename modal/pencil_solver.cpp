@@ -20,7 +20,7 @@ PencilSolver::PencilSolver(const PencilProblem& problem, int request) : problem_
 }
 
 /// Of fewer roots than were asked for some may be what roundoff made of a root with more copies than a Krylov space
-/// sees; those whose residual is large are looked for once more, beside the good ones.
+/// sees; those whose residual is large are computed again, with the others as known vectors.
 void PencilSolver::drop_rough(Extraction& result) const {
   const VectorXd K_diagonal = linear::get_diagonal(problem_.K).cwiseAbs(),
                  M_diagonal = linear::get_diagonal(problem_.M);

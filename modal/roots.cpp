@@ -151,7 +151,7 @@ void report_count(const RootSearchResult& result, int num_known, const std::stri
       found + " were found, each with its own residual, but the inertia of the factor " +
           (result.doubtful < 0 ? std::string("cannot be counted")
                                : "counts " + std::to_string(num_known + result.doubtful)) +
-          ": its pivots are roundoff (stiffness over many orders, or motions without strain and mass), and one "
+          ": its pivots are roundoff (stiffness over many orders, or zero-energy motions and mass), and one "
           "between may be missing",
       "replace the stiffest parts by rigid elements");
 }

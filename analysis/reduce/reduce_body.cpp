@@ -91,7 +91,7 @@ records::ExternalLoadSpec parse_load(const std::string& text) {
     return {"cli.bad-load",
             {},
             "cannot read --load \"" + text + "\"",
-            "write NODE:DIRECTIONS such as 41:2 or 41:123, set:ID or temperature:ID; NAME= may stand before"};
+            "write NODE:DIRECTIONS such as 41:2 or 41:123, set:ID or temperature:ID; NAME= may come before"};
   };
   records::ExternalLoadSpec load;
   std::string rest = text;

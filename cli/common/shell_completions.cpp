@@ -10,7 +10,7 @@ namespace bough::cli {
 
 namespace {
 
-/// The first sentence of what an option does, on one line: what fits beside a name in a list.
+/// The first sentence of what an option does, on one line: what fits next to a name in a list.
 std::string shorten(const std::string& text) {
   std::string out;
   for (const char c : text) out += c == '\n' ? ' ' : c;

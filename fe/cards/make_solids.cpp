@@ -162,7 +162,7 @@ void make_solids(Maker& maker) {
     for (int n : nodes)
       for (int c = 0; c < 3; ++c) gdofs.push_back(maker.nodes().node(n).first_gdof + c);
     Matrix6d C = material->C;
-    // Only what differs from element to element is made anew.
+    // Only what differs from element to element is made again.
     auto& expansion = expansions[property->id];
     if (!expansion) expansion = share_expansion(material->expansion);
     auto own = expansion;

@@ -204,7 +204,7 @@ void ShellSections::stack_smeared(const records::Pcomp& p, std::vector<LaminateL
   }
 }
 
-/// Of LAM = SMEAR as of a PSHELL; of SMCORE its three layers, which have no limits of their own.
+/// Of LAM = SMEAR as of a PSHELL; of SMCORE its three layers, which have no separate limits.
 void ShellSections::set_stress(const records::Pcomp& p, const std::vector<LaminateLayer>& layers, double z0,
                                ShellSection& section) const {
   static const std::map<std::string, FailureTheory> theories{{"HILL", FailureTheory::Hill},

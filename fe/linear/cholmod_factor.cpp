@@ -60,7 +60,7 @@ class CholmodSolver final : public FactorSolver {
     Triangle triangle(A.sparse());
     cholmod_sparse matrix = triangle.as_sparse();
     if (const auto order = find_elimination_order(A)) {
-      common_->nmethods = 1;  // the order given; by itself CHOLMOD would try its own beside it
+      common_->nmethods = 1;  // the order given; by itself CHOLMOD would try its own next to it
       factor_ = cholmod_analyze_p(&matrix, const_cast<int*>(order->data()), nullptr, 0, common_.get());
     } else {
       factor_ = cholmod_analyze(&matrix, common_.get());

@@ -152,7 +152,7 @@ void copy_rows(const Rows& rows, int row, int entry, linear::Csr& csr) {
   std::copy(rows.values.begin(), rows.values.end(), csr.values.get() + entry);
 }
 
-/// `first` and the rows behind it, from row number `begin` on.
+/// `first` and the rows after it, from row number `begin` on.
 linear::Csr join(Rows first, Rows second, int begin) {
   const int num_first = static_cast<int>(first.start.size()) - 1, entries = first.start.back();
   const size_t num_rows = first.start.size() + second.start.size() - 2;

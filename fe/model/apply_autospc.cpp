@@ -42,7 +42,7 @@ void ModelBuilder::apply_autospc(const Elimination& first) {
                                                   [](const AutospcEntry& entry) { return entry.is_skew; });
   std::vector<double> mass(model_.autospc_.size(), 0);
   if (asks_mass) mass = calc_masses(model_, first.fdof_ldof, model_.autospc_);
-  std::set<int> massive;  // nodes; rotations have next to no mass, and rigid motions are told by their components
+  std::set<int> massive;  // nodes; rotations have negligible mass, and rigid-body motions are told by their components
   for (size_t e = 0; e < mass.size(); ++e)
     if (mass[e] > 0 && !only_null && model_.autospc_[e].component <= 3) massive.insert(model_.autospc_[e].node);
   int num_massive = 0, num_skew = 0;
@@ -77,7 +77,7 @@ void ModelBuilder::apply_autospc(const Elimination& first) {
     oblique.push_back(ldof);
   }
   model_.T_oblique_ = take_columns(model_.T_, first.fdof_ldof, oblique);
-  if (!oblique.empty())  // what hangs on these dofs follows too
+  if (!oblique.empty())  // what is attached to these dofs follows too
     equations_ = resolve_chains(
         model_.num_gdofs_, std::move(equations_), [this](int l) { return model_.name_dof(l); }, diagnostics_);
   set_transform();

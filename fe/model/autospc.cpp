@@ -57,7 +57,7 @@ struct Places {
   const std::vector<int>&gdof_node, &fdof_block, &fdof_slot;
 };
 
-/// Sums blocks of what is added, each in a transform of its own.
+/// Sums blocks of what is added, each in a separate transform.
 class BlockSum {
  public:
   BlockSum(const Model& model, const Places& places) : model_(model), places_(places) {

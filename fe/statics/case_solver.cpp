@@ -17,7 +17,7 @@ namespace {
 constexpr std::size_t kMostHeated = 16;
 
 /// Of `left` subcases in as few groups as there must be, each a little smaller than the one before it: what the caller
-/// does with the last has no other beside it.
+/// does with the last has no other in addition.
 std::size_t choose_group(std::size_t left) {
   const std::size_t num = (left + CaseSolver::kMostTogether - 1) / CaseSolver::kMostTogether,
                     even = (left + num - 1) / num;

@@ -22,7 +22,7 @@ class CaseSolver {
   /// The forces on these grids are listed one by one; empty: on all.
   void ask_grid_forces(std::vector<int> grids) { grids_ = std::move(grids); }
 
-  /// Strains of elements beside their stresses.
+  /// Strains of elements next to their stresses.
   void ask_strains() { has_strains_ = true; }
 
   /// Large displacements and rotations (nonlinear.hpp). `continues`: a subcase starts where the one before it ended, as

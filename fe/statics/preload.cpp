@@ -35,7 +35,7 @@ std::vector<const records::Subcase*> list_chain(const records::Deck& deck, int i
     if (!subcase)
       return fail("the preload is that of " + name + ", which the deck does not have", "correct the subcase id");
     if (std::find(chain.begin(), chain.end(), subcase) != chain.end())
-      return fail(name + " is its own preload", "let STATSUB name a static subcase that has no STATSUB of its own");
+      return fail(name + " is its own preload", "let STATSUB name a static subcase that has no STATSUB");
     const bool enforces =
         subcase->spc != 0 && std::any_of(deck.spc.begin(), deck.spc.end(), [](const auto& s) { return s.d != 0; });
     if (subcase->load == 0 && subcase->temperature == 0 && !enforces)

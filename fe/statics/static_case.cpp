@@ -54,7 +54,7 @@ void turn_to_basic(const Model& model, VectorXd& values) {
 }
 
 /// Grids that no multipoint constraint or rigid element is at: each of their dofs has a column of T or T_fixed to
-/// itself. What the residual leaves there beside the reactions is rounding.
+/// itself. The rest of the residual there, apart from the reactions, is round-off.
 std::vector<bool> find_untied(const Model& model) {
   const auto& nodes = model.nodes();
   std::vector<int> columns_of(nodes.size(), 0);

@@ -73,8 +73,8 @@ std::vector<Matrix> read_triplet_lines(const std::string& path) {
     matrix.row_dofs = matrix.column_dofs = read_dof_list(dof_path);
     if (matrix.row_dofs.rows() < size)
       throw InputError("matrices.dof", {dof_path},
-                       "the file names " + std::to_string(matrix.row_dofs.rows()) + " dofs, the matrix beside it has " +
-                           std::to_string(size) + " rows",
+                       "the file names " + std::to_string(matrix.row_dofs.rows()) +
+                           " dofs, the matrix next to it has " + std::to_string(size) + " rows",
                        "give the files of one run");
     size = static_cast<int>(matrix.row_dofs.rows());
   }

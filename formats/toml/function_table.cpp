@@ -44,7 +44,7 @@ void read_table(const Fields& fields, const std::string& path, records::Function
                 Diagnostics& diagnostics) {
   const std::string name = "function '" + function.name + "'";
   if (!fields.has("file")) {
-    refuse_keys(fields, {"time_column", "column"}, "in " + name + ", whose points stand in this file", diagnostics);
+    refuse_keys(fields, {"time_column", "column"}, "in " + name + ", whose points are in this file", diagnostics);
     for (const char* key : {"x", "y"}) {
       if (fields.has(key)) continue;
       diagnostics.error("toml.missing-key", function.at, "missing key '" + std::string(key) + "' in " + name,

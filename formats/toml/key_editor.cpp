@@ -27,7 +27,7 @@ std::string add_key(std::string& text, const toml::table& table, bool is_root, c
     text.insert(open + 1, table.empty() ? " " + line + " " : " " + line + ",");
     return {};
   }
-  if (text[at] != '[') return "its table is made by dotted keys; give the table a heading of its own";
+  if (text[at] != '[') return "its table is made by dotted keys; give the table a separate heading";
   const auto end = text.find('\n', at);
   if (end == std::string::npos)
     text += "\n" + line + "\n";

@@ -57,7 +57,7 @@ void accumulate(linear::SymmetricMatrix& sum, double factor, const linear::Symme
   if (factor != 0 && A) sum = linear::add(sum, factor, A);
 }
 
-/// Along a motion that next to nothing resists, neither stiffness nor damping nor mass, the answer to any load is
+/// Along a motion with negligible stiffness, damping and mass, the answer to any load is
 /// round-off.
 void demand_held(const linear::SymmetricFactor& factor, const VectorXd& D) {
   const VectorXd size = D.cwiseMax(detail::kIdleDof * D.maxCoeff()).cwiseSqrt();

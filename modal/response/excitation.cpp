@@ -74,7 +74,7 @@ class Collector {
                            "DLOAD " + std::to_string(set) + " has the id of a load card, " +
                                describe_load(*std::find_if(d.loads.begin(), d.loads.end(),
                                                            [set](const auto& l) { return l.sid == set; })),
-                           "give the DLOAD card an id of its own");
+                           "give the DLOAD card a different id");
     for (const auto& load : d.loads)
       if (load.sid == set) add(load, 1);
     for (const auto& sum : d.sums)

@@ -41,7 +41,7 @@ void recover(const fe::Model& model, const ResponseModel& response, const Excita
 void recover(const fe::Model& model, const ResponseModel& response, const Excitation& excitation,
              const DampingChoice& damping, const std::vector<OutputChoice>& outputs, const History& history,
              records::ResponseSubcase& result);
-/// Solved directly: the samples of `motion` behind those that `result` has.
+/// Solved directly: the samples of `motion` after those that `result` has.
 void recover(const fe::Model& model, const Excitation& excitation, const DampingChoice& damping,
              const std::vector<OutputChoice>& outputs, const MotionBlock<MatrixXcd>& motion,
              records::ResponseSubcase& result);

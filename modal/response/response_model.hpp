@@ -36,9 +36,9 @@ struct DampingChoice {
 /// d: motions of the supports (columns of Excitation::D), Ψ: what follows them statically. Loads a, m + 3 k of them:
 /// forces of F, then of M Ψ (amplitude -d̈), B Ψ (-ḋ), K_s Ψ (-i d).
 struct ResponseModel {
-  MatrixXd Phi;  ///< rigid motions, normal modes, residual vectors; then what has no mass, of unit stiffness
+  MatrixXd Phi;  ///< rigid-body motions, normal modes, residual vectors; then what has no mass, of unit stiffness
   VectorXd lambda;
-  int num_rigid = 0, num_normal = 0;  ///< what is behind num_normal are residual vectors
+  int num_rigid = 0, num_normal = 0;  ///< what is after num_normal are residual vectors
   int num_massless = 0;               ///< the last ones
   MatrixXd Psi;
   MatrixXd P;               ///< n x (m + 3k)

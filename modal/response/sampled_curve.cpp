@@ -30,7 +30,7 @@ VectorXd solve_spline(const VectorXd& h, const VectorXd& change) {
     upper(i) = h(i + 1);
     x(i) = 6 * change(i);
   }
-  // M at an end: on the line of the two beside it, M0 = M1 + share (M1 - M2).
+  // M at an end: on the line of the two next to it, M0 = M1 + share (M1 - M2).
   const auto calc_share = [](double end, double next) { return end > kMostUneven * next ? 0 : end / next; };
   const double first = calc_share(h(0), h(1)), last = calc_share(h(n - 2), h(n - 3));
   diagonal(0) += h(0) * (1 + first);

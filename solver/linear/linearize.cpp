@@ -183,7 +183,7 @@ records::Signals name_values(const std::string& name, const std::string& dims, E
   return signals;
 }
 
-/// d behind the cut is u in place of what comes back, c = C x + D d: d = u, y = -c. What comes back at once would be
+/// d after the cut is u in place of what comes back, c = C x + D d: d = u, y = -c. What comes back at once would be
 /// an algebraic loop when closed, which no system has: the diagonal of D is rounding. Below it a lifted loop has what
 /// earlier values of the same period bring back: C and D by forward substitution.
 void open_cut(LinearModel& model, const std::string& name) {
@@ -336,7 +336,7 @@ void warn_of_uncertain(const records::Poles& poles, const SourceLocation& at, Di
                       std::to_string(number) + (number == 1 ? " pole is" : " poles are") +
                           " known to less than four digits, worst of all number " + std::to_string(worst + 1) + " (" +
                           poles.mode[static_cast<std::size_t>(worst)] + "), to " + brief_text(100 * max_value) + " %",
-                      "they are soft beside the stiffest, or nearly multiple: lock or leave out what is stiffest");
+                      "they are soft next to the stiffest, or nearly multiple: lock or leave out what is stiffest");
 }
 
 }  // namespace

@@ -163,7 +163,7 @@ std::vector<std::pair<double, double>> read_points(Card& card, int first) {
     card.use(i, i + 2);
     if (card.is_word(i, "ENDT") || card.is_word(i + 1, "ENDT")) {
       if (!card.is_word(i, "ENDT"))
-        card.fail("deck.missing-field", i + 1, "ENDT stands in place of y, expected the end after a pair x y");
+        card.fail("deck.missing-field", i + 1, "ENDT is in place of y, expected the end after a pair x y");
       card.use(i, card.get_size());
       has_end = true;
       break;

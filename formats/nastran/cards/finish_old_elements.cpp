@@ -63,7 +63,7 @@ class Finisher {
     }
   }
 
-  /// A plate without a membrane has no mass of its own there, but takes that of its bending material here: so it gets a
+  /// A plate without a membrane has no separate mass there, but takes that of its bending material here: so it gets a
   /// copy of the material without density.
   int copy_without_mass(int mid) {
     if (const auto known = massless_.find(mid); known != massless_.end()) return known->second;

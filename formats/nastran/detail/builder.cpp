@@ -173,7 +173,7 @@ class Builder {
     const bool is_relative = Replicator::is_relative(text_);
     if (excess.data != nullptr && (is_relative || is_read(text_.name)))
       diagnostics_.error("deck.too-many-fields", deck_.locate(excess.data->at),
-                         text_.name + ": the free-field line has data behind a continuation mark",
+                         text_.name + ": the free-field line has data after a continuation mark",
                          "continue on another line that begins with a comma");
     else if (excess.number != nullptr && (is_relative || is_read(text_.name)))
       diagnostics_.warning("deck.too-many-fields", deck_.locate(excess.number->at),

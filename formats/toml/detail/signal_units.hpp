@@ -24,7 +24,7 @@ class SignalUnits {
   /// All arguments must outlive this; `facts` are those of the files of the bodies.
   SignalUnits(const toml::table& root, const records::UnitChange& change, const BodyFacts& facts);
 
-  /// Units of a hinge's coordinates as they stand in lists of positions and of rates, and of the efforts along them.
+  /// Units of a hinge's coordinates as they are in lists of positions and of rates, and of the efforts along them.
   std::vector<double> list_positions(const std::string& hinge) const;
   std::vector<double> list_rates(const std::string& hinge) const;
   std::vector<double> list_efforts(const std::string& hinge) const;
