@@ -167,7 +167,7 @@ class FmuLaw {
   std::vector<double> last_in_, last_inputs_, last_out_;
 };
 
-/// Reads and checks what a [[controller]] says of its FMU.
+/// Reads and checks the keys of a [[controller]] of type fmu.
 class Reader {
  public:
   explicit Reader(records::ControllerRecord& record) : record_(record) {}

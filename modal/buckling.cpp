@@ -206,7 +206,7 @@ EigenPairs BucklingModes::solve() {
   }
   auto pairs = make_pairs(std::move(roots), wanted);
   if (pairs.lambda.size() == 0)
-    diagnostics_.warning("modal.empty-range", {}, "no load factor lies in the range asked for",
+    diagnostics_.warning("modal.empty-range", {}, "no load factor is in the requested range",
                          "widen V1 and V2 of the card; a load that only stiffens has negative load factors alone");
   return pairs;
 }

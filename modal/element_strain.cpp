@@ -24,7 +24,7 @@ using Eigen::Index;
 constexpr int kMostDofs = 24;        // of an element taken apart
 constexpr double kRoundoff = 1e-13;  // of uᵀK_e u, over its parts
 constexpr double kNoMotion = 1e-13;  // scaled principal stiffness of an element's rigid-body motions
-constexpr double kNoStrain = 1e-22;  // energy over its parts: what vectors of sixteen digits leave of zero
+constexpr double kNoStrain = 1e-22;  // energy over its parts: the square of the round-off of doubles
 constexpr double kSoft = 1e-9;       // below this share of their parts, energies of K are looked at
 constexpr double kSame = 1e-6;       // relative, of eigenvalues
 constexpr double kShift = 1e-13;     // of diag K, which makes K definite

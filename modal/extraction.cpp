@@ -59,7 +59,7 @@ std::string choose_solver(const SolverFacts& facts) {
   return EPSKRYLOVSCHUR;
 }
 
-/// The factored matrix and what applies its factor; its members point at each other, so it stays where it is made.
+/// The factored matrix and the objects that apply its factor. Members point at each other: not movable.
 struct Factored {
   FactoredOperator op;
   bool is_definite = false, is_singular = false;
@@ -155,7 +155,7 @@ void purify(const EigenProblem& problem, const FactoredOperator& op, Extraction&
   }
 }
 
-/// Leaves out what is roundoff, and what has the wrong sign.
+/// Removes eigenpairs that are round-off or have the wrong sign.
 void drop_roundoff(const EigenProblem& problem, Extraction& result) {
   const VectorXd theta = is_near(problem) ? VectorXd((result.values.array() - problem.shift).inverse()) : result.values;
   const double largest = theta.size() > 0 ? theta.cwiseAbs().maxCoeff() : 0;
@@ -287,7 +287,7 @@ class EpsRun {
     check_petsc(EPSSetTolerances(
         eps(), is_preconditioned_ ? std::max(problem_.tolerance, kPreconditionedTolerance) : problem_.tolerance,
         has_subspace ? kMaxRestarts : PETSC_DEFAULT));
-    if (is_dense) {  // takes no deflation space: the operator has none of it
+    if (is_dense) {  // needs no deflation space: the operator projects it out
       op_.deflation = &deflation_;
       return;
     }
@@ -361,7 +361,7 @@ std::string find_requested(const EigenProblem& problem) {
 
 [[noreturn]] void throw_unsuited(const std::string& type, const std::string& why) {
   throw ComputationError("modal.unsuited-solver", {}, "SLEPc's eigensolver " + type + " found no modes: " + why,
-                         "choose another, or none: then the one that suits the model is taken");
+                         "choose another, or leave --solver out: then Bough chooses one for the model");
 }
 
 }  // namespace

@@ -80,7 +80,7 @@ bool moves_alike(const NodalDofs& dofs, const MassTimes& mass_times) {
         if (!(std::abs(M_X(dofs.row(k, a), c) - (a == c ? momentum : 0)) <= kSame * std::abs(momentum))) return false;
     M_X(dofs.row.row(k), Eigen::all).setZero();
   }
-  return M_X.isZero(0);  // nor does it couple to what is no node's
+  return M_X.isZero(0);  // no coupling of the node to scalar or modal DOFs
 }
 
 /// Adds what carried masses have: gram as calc_carried_gram gives it.

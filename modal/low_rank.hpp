@@ -24,7 +24,7 @@ struct LowRankProblem {
   BlockApply solve;             ///< (A - σM)⁻¹X, A = K but for springs that `known` alone moves
   double shift = 0;             ///< σ
   MatrixXd known;               ///< M-orthonormal eigenvectors, kept out
-  bool projects_known = false;  ///< A has such springs: what they hold of `known` is taken out of each solution
+  bool projects_known = false;  ///< A has such springs: the components along `known` are projected out of each solution
   int num_wanted = 1;
 };
 

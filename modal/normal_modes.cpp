@@ -50,7 +50,7 @@ void warn_of_fewer(int found, int asked, bool is_range, Diagnostics& said) {
 }
 
 EigenPairs NormalModes::answer_nothing(Diagnostics& said) {
-  said.warning("modal.empty-range", {}, "no mode lies in the frequency range asked for",
+  said.warning("modal.empty-range", {}, "no mode is in the requested frequency range",
                "widen the range of EIGRL or of --min-hz and --max-hz");
   found_ = {VectorXd(0), MatrixXd(pencil_.size(), 0)};
   num_zero_ = 0;
@@ -72,7 +72,7 @@ void NormalModes::hold_massless(Diagnostics& said) {
       "use a consistent mass or give the model inertia about that axis");
 }
 
-/// A guess, -1 where the factor has none: the roots decide (fit_range).
+/// Estimate by the inertia, -1 if the factor fails; the computed eigenvalues decide (fit_range).
 int NormalModes::count_below(double lambda) const {
   return lambda > 0 ? count_roots_below(pencil_.K, pencil_.M, lambda) : 0;
 }
@@ -106,7 +106,7 @@ void NormalModes::make_solver(const std::string& eps_type) {
     problem.release = [this] { is_away_ = fe::drop_stiffness(pencil_.K); };
     problem.restore = [this] {
       if (!std::exchange(is_away_, false)) return;
-      linear::release_freed_memory();  // of the factor, and of what assembly takes
+      linear::release_freed_memory();  // of the factor and of the assembly
       fe::restore_stiffness(pencil_.model, pencil_.K);
       linear::release_freed_memory();
     };
@@ -157,7 +157,7 @@ void NormalModes::find_first() {
   if (pencil_.model.prestress()) find_negative();
 }
 
-/// A shift that makes K + shift M definite, shift_ or larger; 0: none of those tried does.
+/// Finds a shift >= shift_ for which K + shift M is positive definite; 0 if none of the trials is.
 double NormalModes::find_definite_shift() const {
   const auto is_above = [&](double shift) { return count_roots_below(pencil_.K, pencil_.M, -shift) == 0; };
   double shift = shift_;

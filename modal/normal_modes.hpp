@@ -1,6 +1,5 @@
 #pragma once
-/// \file One way to the normal modes of a model: its zero-energy motions, the roots besides them, what they are
-/// worth.
+/// \file Computes the normal modes of a model by one method: zero-energy modes, elastic modes, and their accuracy.
 #include <limits>
 #include <optional>
 #include <utility>
@@ -14,7 +13,7 @@
 
 namespace bough::modal::detail {
 
-/// What one way to the modes came to.
+/// The modes computed by one method, with their residuals.
 struct Answer {
   EigenPairs pairs;
   bool is_sound = false;

@@ -96,8 +96,8 @@ std::vector<int> choose_dofs(const VectorXd& D, const MatrixXd& X) {
   return dofs;
 }
 
-/// The motions in the span of Z that are M-orthogonal to R, which is in it: as those of split_by_mass, and where two
-/// have the same mass, turned by the weights of repeated roots.
+/// The motions in the span of Z that are M-orthogonal to its subspace R, ordered as by split_by_mass; motions of equal
+/// mass have the canonical basis of repeated eigenvalues.
 MatrixXd complement(const Pencil& pencil, const VectorXd& D, const MatrixXd& R, const MatrixXd& Z) {
   const Index left = Z.cols() - R.cols();
   if (left <= 0) return MatrixXd(Z.rows(), 0);
@@ -140,7 +140,7 @@ RigidMotions find_null_motions(const Pencil& pencil) {
     const MatrixXd at_held = result.massless(result.held, Eigen::all);
     result.modes -= result.massless * at_held.partialPivLu().solve(MatrixXd(result.modes(result.held, Eigen::all)));
   }
-  // Parts of the massless motions have come and gone: what is left of them shows in M.
+  // Components along massless motions were added and subtracted: their round-off shows in M.
   orthonormalize(pencil, result.modes);
   result.supports = choose_dofs(D, result.modes);
   return result;

@@ -217,7 +217,7 @@ RigidMotions find_global_motions(const Pencil& pencil) {
   RigidMotions result;
   result.modes.resize(model.num_fdofs(), 0);
   result.massless.resize(model.num_fdofs(), 0);
-  // What supports hold needs no centre of mass.
+  // A supported model needs no centre of mass.
   if (!model.fixed_dofs().empty() && find_strainless(pencil, calc_mean_position(model)).Y.cols() == 0) return result;
   const auto properties = fe::calc_mass_properties(model, model.mass_kind(), Vector3d::Zero());
   const Vector3d centre = properties.mass > 0 ? properties.cg : calc_mean_position(model);

@@ -58,8 +58,8 @@ MatrixXd find_forceless(const Pencil& pencil, const MatrixXd& Y, double floor = 
 /// and every row of K Φ_R c zero in roundoff on the f-set, and the dofs with mass that nothing stiffens at all. A
 /// motion that a support prevents shows as strain where it was cut off.
 RigidMotions find_rigid_motions(const Pencil& pencil);
-/// Makes zero-energy motions, ascending, orthonormal in M by products of themselves: those of the six motions that
-/// they are sums of cancel where a turn about an oblique axis has negligible inertia.
+/// Orthonormalizes zero-energy motions (ascending) in M by products of the motions themselves. Products of the six
+/// rigid-body motions would cancel if a rotation about an oblique axis has negligible inertia.
 void orthonormalize(const Pencil& pencil, MatrixXd& modes);
 
 /// An estimate from above of the lowest eigenvalue with strain: Rayleigh-Ritz on the polynomials of degree 0..2 (the

@@ -93,7 +93,7 @@ std::shared_ptr<const fe::Prestress> calc_prestress(const BodyRequest& request, 
   }
   const fe::Preload preload{spec.load_set, spec.temperature_set, spec.spin, describe_preload(spec), spec.at};
   auto prestress = fe::calc_prestress(deck, options, fe::make_elements, preload, diagnostics);
-  diagnostics.note("fe.preload", spec.at, "the stiffness holds that of the stress of " + prestress->name,
+  diagnostics.note("fe.preload", spec.at, "the stiffness contains the geometric stiffness of " + prestress->name,
                    "displacements and forces count from the loaded state");
   return prestress;
 }

@@ -53,7 +53,7 @@ bool is_exact(const SparseRows& K, const VectorXd& D, const MatrixXd& R) {
   return true;
 }
 
-/// Six rows that determine R best; translations first, since a rotation may be soft where it is held alone.
+/// Chooses six well-conditioned rows of R; translations first, since a constrained rotation may be a soft support.
 std::vector<Index> choose_support(const MatrixXd& R, const VectorXd& rotation_rows, double size) {
   constexpr double kRotationWeight = 0.01;
   const VectorXd weight = (1 + rotation_rows.array() * (kRotationWeight * size - 1)).matrix();

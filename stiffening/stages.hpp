@@ -90,7 +90,7 @@ struct ModalBasis {
   VectorXd eigenvalue;
   MatrixXd mass, stiffness, damping;  ///< n x n
   std::vector<records::ModeKind> kind;
-  modal::bases::ModesCheck check;           ///< of the normal modes; none found: none were solved for
+  modal::bases::ModesCheck check;           ///< of the normal modes; empty if none were computed
   std::vector<std::string> massless_loads;  ///< names of residual loads whose flexibility is lost in part
 };
 

@@ -58,7 +58,7 @@ void check_steps(const CampaignSpec& spec, const std::vector<std::string>& verbs
 
 void warn_of_unused(const CampaignSpec& spec, Diagnostics& diagnostics) {
   for (const auto& p : spec.parameters) {
-    const bool is_column = p.at.file == spec.table;  // of a table of cases: it may say what a case is
+    const bool is_column = p.at.file == spec.table;  // a column of the table of cases may be a description
     const auto names_it = [&](const std::string& word) { return word.find("{" + p.name + "}") != std::string::npos; };
     if (!p.file.empty() || is_column || std::any_of(spec.steps.begin(), spec.steps.end(), [&](const auto& step) {
           return std::any_of(step.words.begin(), step.words.end(), names_it);

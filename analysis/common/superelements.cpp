@@ -298,7 +298,7 @@ class PartReducer {
     const MatrixXd force = fe::calc_stiffness_times(model, Psi);
     s.K = symmetrize(Psi.transpose() * force);
     s.K.topLeftCorner(nb, nb) = remove_roundoff(s.K.topLeftCorner(nb, nb), calc_boundary_stiffness(model, fixed));
-    // Constraint modes and what moves with the boundary held share no strain energy.
+    // Constraint modes and fixed-interface modes have no common strain energy.
     s.K.topRightCorner(nb, nq).setZero();
     s.K.bottomLeftCorner(nq, nb).setZero();
     s.K.bottomRightCorner(nq, nq) = modes.lambda.asDiagonal();
@@ -373,7 +373,7 @@ class PartReducer {
     const auto& boundary = fixed.partition().boundary;
     const auto nb = static_cast<Index>(boundary.size()), n = motions.Psi.cols(), nq = n - nb;
     const auto m = static_cast<Index>(applied.size());
-    // The forces that hold each of the modes, and those that act with the exterior dofs held.
+    // Reactions in each mode, and the loads with fixed exterior DOFs.
     fe::AppliedLoads loads{MatrixXd::Zero(motions.Psi.rows(), n + m), MatrixXd::Zero(12, n + m), {}, {}};
     loads.arms.resize(static_cast<std::size_t>(n));
     loads.followers.resize(static_cast<std::size_t>(n));

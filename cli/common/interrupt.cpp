@@ -83,7 +83,7 @@ SignalScope::SignalScope(void (*handler)(int)) {
 SignalScope::~SignalScope() {
   ::alarm(0);
   for (std::size_t i = 0; i < kSignals.size(); ++i) {
-    // The program is about to end by itself; a signal more does not make it say that nothing was written.
+    // The program is ending: a further signal must not report that nothing was written.
     if (before_[i].sa_handler == end_on_signal) continue;
     ::sigaction(kSignals[i], &before_[i], nullptr);
   }

@@ -41,7 +41,8 @@ struct SolidQuality {
 /// Integrates the Jacobian determinant over the points of quadrature; both numbers are 0 for an element without volume.
 SolidQuality calc_quality(const SolidGeometry& geometry);
 
-/// The mirror image in natural coordinates: the same body counted the other way round. `nodes` goes with geometry.x.
+/// Reverses the node order of a left-handed solid by a mirror image in natural coordinates; reorders geometry.x and
+/// `nodes`.
 void turn_round(SolidGeometry& geometry, std::vector<int>& nodes);
 
 /// Thermal expansion in basic axes, Voigt as the law.

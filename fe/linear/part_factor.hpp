@@ -55,7 +55,7 @@ class PartFactor {
   std::vector<double> value_;
   std::vector<PetscInt> rows_;  ///< of A, in the order of L; those of the part alone
   Eigen::Index num_between_ = 0;
-  std::vector<int> between_;  ///< what those that come last in L are of the rows between
+  std::vector<int> between_;  ///< for each of the last rows of L its index among the separator rows
   Supernodes supernodes_;     ///< (L_pp; L_sp), in the memory of factor_
   Eigen::MatrixXd L_ss_;      ///< lower
   Eigen::MatrixXd Z_;         ///< right-hand sides x rows of L

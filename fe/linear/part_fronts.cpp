@@ -33,7 +33,7 @@ ComputationError make_no_memory_for_count() {
   return {"fe.out-of-memory",
           {},
           "a factor for the count of the modes does not fit the memory",
-          "leave the count out (--no-check)"};
+          "omit the count (--no-check)"};
 }
 
 bool PartFronts::take(const RowSum& sum, const std::vector<PetscInt>& rows) {
@@ -85,7 +85,7 @@ bool PartFronts::analyse(const RowSum& sum, const std::vector<PetscInt>& own, co
     for (int j = super_[k]; j < super_[k + 1]; ++j) front_of[static_cast<std::size_t>(j)] = k;
   while (num_fronts_ < static_cast<int>(factor_->nsuper) && super_[num_fronts_] < static_cast<int>(num_own_))
     ++num_fronts_;
-  // Children come just before their parents: what they leave is on top of the stack.
+  // Children precede their parents, so their contribution blocks are on top of the stack.
   num_children_.assign(static_cast<std::size_t>(num_fronts_), 0);
   std::vector<double> left;
   double stack = 0;

@@ -87,9 +87,10 @@ class PartFronts {
 
   /// False where CHOLMOD has no supernodes in this order, or the part couples to a row that is not its own.
   bool analyse(const RowSum& sum, const std::vector<PetscInt>& own, const std::vector<PetscInt>& between);
-  /// Numbers that count() keeps at the same time.
+  /// Largest number of doubles that count() stores at one time.
   double num_numbers() const { return most_stack_ + square(most_rows_) + square(most_columns_) * 2; }
-  /// Of the part's own rows, and what they leave on those between, lower triangle; -1 where a pivot is too small.
+  /// Negative pivots of the interior rows, and their Schur complement on the separator rows (lower triangle); -1 if a
+  /// pivot is too small.
   int count(Eigen::MatrixXd& schur);
 
  private:

@@ -1,5 +1,5 @@
 #pragma once
-/// \file What `check` looks at in a model besides its matrices: grids, shapes of elements, hidden grounds.
+/// \file Checks of a model by `check` besides its matrices: grids, shapes of elements, springs to ground.
 #include <array>
 #include <string>
 #include <vector>

@@ -51,8 +51,8 @@ void ModelBuilder::apply_autospc(const Elimination& first) {
     auto& entry = model_.autospc_[e];
     // Mass without stiffness moves at zero frequency in normal modes.
     if (only_null && !options_.uses_enforced && mass[e] > 0) continue;
-    // Where the block carries mass or its weight, the oblique direction is held and the others stay what they are; else
-    // the component alone, which strains nothing either and is what Nastran prints.
+    // If the block has mass, the oblique direction is constrained and the others stay free; otherwise only the
+    // component, which strains nothing either and agrees with Nastran's table.
     if (entry.component > 3 || massive.count(entry.node) == 0) entry.terms.clear();
     num_skew += entry.is_skew ? 1 : 0;
     num_massive += entry.terms.empty() ? 0 : 1;
@@ -84,8 +84,8 @@ void ModelBuilder::apply_autospc(const Elimination& first) {
   if (only_null) {
     diagnostics_.warning("fe.null-dofs", deck_.locate(param->at),
                          "PARAM,AUTOSPC,NO leaves " + std::to_string(model_.autospc_.size()) +
-                             " dofs that nothing stiffens, the first at grid " +
-                             std::to_string(model_.autospc_[0].node) + "; they are held all the same",
+                             " dofs without stiffness, the first at grid " + std::to_string(model_.autospc_[0].node) +
+                             "; they are constrained nevertheless",
                          "there is no solution with them; hold or remove them");
     return;
   }

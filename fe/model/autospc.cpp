@@ -142,8 +142,9 @@ bool is_stiff(Matrix3d K, const std::array<char, 3>& is_free, double scale, doub
   return K(0, 0) > 0 && minor > 0 && 4 * determinant > trace * trace * std::max(2 * limit, 1e-6 * scale);
 }
 
-/// Makes the entries of a block oblique where a held component has stiffness of its own: of the directions N without
-/// stiffness (columns, rows `slots`) the held components follow the free ones by Nᵀ u = 0. `limit`: what is none.
+/// Makes the entries of a block oblique if a constrained component has stiffness: for the directions N without
+/// stiffness (columns, rows `slots`) the constrained components follow the free ones by Nᵀ u = 0. `limit`: largest
+/// stiffness that is negligible.
 void set_oblique(const Matrix3d& K, const std::vector<int>& slots, double limit, bool is_rotation,
                  std::vector<AutospcEntry>& entries, std::size_t first) {
   const auto slot_of = [&](const AutospcEntry& e) { return e.component - 1 - (is_rotation ? 3 : 0); };

@@ -32,7 +32,7 @@ class CaseSolver {
     continues_ = continues;
   }
 
-  /// The result of a subcase, or what is wrong with it alone.
+  /// The result of a subcase, or the error of this subcase.
   struct Solved {
     std::optional<records::StaticSubcase> result;
     std::exception_ptr failure;

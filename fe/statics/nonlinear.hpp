@@ -86,7 +86,7 @@ class NonlinearStatics {
   RigidArms arms_;
   std::vector<int> node_of_;                                      ///< node of each g-dof
   std::vector<char> is_stiff_;                                    ///< of each element
-  std::vector<std::unique_ptr<const CorotationalElement>> kept_;  ///< where there is room; else made again each time
+  std::vector<std::unique_ptr<const CorotationalElement>> kept_;  ///< stored if there is memory; otherwise recomputed
   std::vector<ArmLoad> offset_masses_;                            ///< force: of a unit acceleration, its size the mass
   std::vector<int> tied_;              ///< nodes that equations join otherwise than as rigid bodies: RBE3, MPC
   std::vector<int> turned_by_vector_;  ///< of these: rotation vectors are their unknowns

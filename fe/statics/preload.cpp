@@ -129,7 +129,7 @@ std::shared_ptr<const Prestress> calc_subcase_prestress(const records::Deck& dec
     options.prestress = calc_prestress(deck, options, elements, preload, diagnostics);
   }
   if (options.prestress)
-    diagnostics.note("fe.preload", at, "the stiffness holds that of the stress of " + options.prestress->name,
+    diagnostics.note("fe.preload", at, "the stiffness contains the geometric stiffness of " + options.prestress->name,
                      "displacements and forces count from the loaded state");
   return options.prestress;
 }

@@ -18,8 +18,8 @@ std::shared_ptr<const Prestress> calc_prestress(const records::Deck& deck, const
                                                 const ElementFactory& elements, const Preload& preload,
                                                 Diagnostics& diagnostics);
 
-/// The stress of subcase `id`, held as it says, with that of its own STATSUB(PRELOAD), and so on; `at`: what asks for
-/// it. Throws InputError fe.preload-subcase where a subcase is not there, loads nothing or names itself.
+/// Computes the stress of subcase `id` with its constraints, and those of its chain of STATSUB(PRELOAD); `at`: the
+/// command that requests it. Throws InputError fe.preload-subcase if a subcase is missing, has no load or names itself.
 std::shared_ptr<const Prestress> calc_subcase_prestress(const records::Deck& deck, ModelOptions options,
                                                         const ElementFactory& elements, int id,
                                                         const SourceLocation& at, Diagnostics& diagnostics);

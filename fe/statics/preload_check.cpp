@@ -55,8 +55,8 @@ int count_tipping(const Model& model, const linear::SymmetricMatrix& K) {
   return count;
 }
 
-/// Takes out what carries the rigid-body motions of a free model: where those need no force, the sign of the rest
-/// stays.
+/// Constrains the support of a free model. If rigid-body motions need no force, the signs of the other pivots are
+/// unchanged.
 linear::SymmetricMatrix hold_support(const Model& model, const linear::SymmetricMatrix& A, linear::RowKinds& kinds) {
   std::vector<int> held, kept;
   try {

@@ -18,8 +18,8 @@ constexpr std::pair<const char*, const char*> kUnreadLoads[] = {{"DEFORM", "enfo
                                                                 {"BOLTLD", "preloads of bolts"},
                                                                 {"CLOAD", "combinations of loads of superelements"}};
 
-/// Forces (in CD axes) that hold the oblique directions of AUTOSPC, as those of the dofs that it holds: along the
-/// direction, as large as what of the residual acts where nothing else holds.
+/// Reactions (in CD axes) of the oblique directions of AUTOSPC: along the direction, equal to the residual on its
+/// components that are not constrained otherwise.
 void add_oblique_reactions(const Model& model, const VectorXd& residual, VectorXd& reaction) {
   if (model.T_oblique().cols() == 0) return;
   const VectorXd held = model.T_oblique().transpose() * residual;

@@ -35,7 +35,7 @@ void append(std::vector<double>& data, const Matrix& m) {
   }
 }
 
-/// Left out where the record does not know them (older files, other formats).
+/// Not written if the record has none (older files, other formats).
 void write_resultants(FileWriter& file, const FlexBody& body) {
   const auto ne = body.locators.size();
   if (ne > 0 && body.load_resultant.size() == 0) return;

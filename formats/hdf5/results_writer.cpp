@@ -424,7 +424,7 @@ void ResultsWriter::continue_file(const records::ResultsHeader& header) {
   long keep = 0;
   while (keep < total && time[static_cast<std::size_t>(keep)] <= from + tolerance) ++keep;
   const double last_step = total > 1 ? time.back() - time[time.size() - 2] : 0;
-  // Where samples are written of a part of the run only, their count tells what belongs to the checkpoint.
+  // If only a part of the run is written, the number of samples determines those before the checkpoint.
   const bool is_counted = checkpoint.time == from && checkpoint.num_samples >= 0;
   if (is_counted ? checkpoint.num_samples > total
                  : keep == 0 || (keep == total && time.back() + 1.5 * last_step < from - tolerance)) {

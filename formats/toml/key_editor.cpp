@@ -14,7 +14,7 @@ namespace bough::toml_files {
 
 namespace {
 
-/// Where a new key of this table can be written, and what has to stand around it.
+/// Inserts a new key into the text of a table, with the necessary line breaks or commas.
 std::string add_key(std::string& text, const toml::table& table, bool is_root, const std::string& line) {
   if (is_root) {
     text.insert(0, line + "\n");

@@ -89,7 +89,7 @@ struct Document {
     return pieces;
   }
 
-  /// Where the last value that stands under the table's own heading ends; `otherwise` when there is none.
+  /// End of the last value under the heading of the table; `otherwise` if there is none.
   std::size_t find_last_end(const toml::table& table, std::size_t otherwise) const {
     auto last = otherwise;
     for (const auto& [key, child] : table) {
@@ -123,7 +123,7 @@ std::string join_key(const std::vector<std::string>& parts, std::size_t first) {
   return key;
 }
 
-/// A heading "[a.b]" stands for `a` too where that has none of its own; then it has fewer parts than the heading.
+/// Returns false if table `a` has no heading and is defined by "[a.b]" only, whose path is longer than that of `a`.
 bool has_own_heading(const Document& document, const toml::node& node, const std::vector<std::string>& parts) {
   const auto at = document.get_begin(node);
   auto begin = document.text.find_first_not_of('[', at);

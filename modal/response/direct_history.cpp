@@ -168,7 +168,7 @@ class DirectMotion {
     const auto key = std::llround(std::log(h) * 1e9);
     const auto found = factors_.find(key);
     if (found != factors_.end()) return found->second;
-    // Steps of a table's corners come once; what is held is bounded.
+    // Step sizes at kinks of a table occur once; the number of stored factors is bounded.
     if (factors_.size() >= 4) factors_.clear();
     return factors_.emplace(std::piecewise_construct, std::tuple(key), std::forward_as_tuple(m_, radau_, h))
         .first->second;

@@ -27,7 +27,7 @@ DirectModel make_direct_model(const fe::System& system, const records::DynamicDe
                               const records::DynamicSubcase& subcase, const Excitation& excitation,
                               const DampingChoice& damping);
 
-/// A load that leaves no motion out: shows what a matrix does not hold. Of a fixed seed.
+/// Random load with a component along every motion, to detect a singular matrix. Fixed seed.
 VectorXd make_probe(Eigen::Index n);
 
 /// Motion on the g-set (basic), a column per sample, and the amplitudes p of the forces.

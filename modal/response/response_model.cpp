@@ -130,7 +130,7 @@ class Maker {
   }
 
  private:
-  /// Static solutions in the a-set: what ASET leaves out only follows it.
+  /// Static solutions in the a-set; omitted DOFs follow it.
   MatrixXd solve_within(const MatrixXd& F) const {
     MatrixXd U = solve_(F);
     if (model_.omitted()) U -= model_.omitted()(F);

@@ -61,7 +61,7 @@ SampledCurve make_curve(const VectorXd& t, const VectorXd& before, const VectorX
   const VectorXd s = (before.tail(n - 1) - after.head(n - 1)).cwiseQuotient(h);
   const double size = std::max(before.cwiseAbs().maxCoeff(), after.cwiseAbs().maxCoeff());
   const double epsilon = std::numeric_limits<double>::epsilon();
-  // Changes of slope at the inner nodes, those of roundoff left out; what jumps has none.
+  // Changes of slope at the inner nodes, zero if round-off; none at jumps.
   VectorXd change = VectorXd::Zero(n), second = VectorXd::Zero(n);
   std::vector<bool> is_end(static_cast<std::size_t>(n), false);
   is_end.front() = is_end.back() = true;

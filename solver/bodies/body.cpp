@@ -119,7 +119,7 @@ Body Body::make_flexible(const records::FlexBody& flex, int num_modes, bool stif
   body.M6_ << flex.mass * Matrix3d::Identity(), -skew(body.S0_), skew(body.S0_), unpack_tensor(body.J0_);
   body.M_ = flex.modal_mass.topLeftCorner(n, n);
   body.K_ = flex.modal_stiffness.topLeftCorner(n, n);
-  // Stiffening by the motion comes with the motion: what of it the preload put into the stiffness goes out.
+  // The solver adds the stiffening by the motion: the part of it in the preloaded stiffness is subtracted.
   if (stiffening)
     for (std::size_t i = 0; i < flex.kg_inertial.size() && flex.preload_A_I.size() > 0; ++i)
       if (const double a = flex.preload_A_I(static_cast<Eigen::Index>(i)); a != 0)

@@ -193,7 +193,7 @@ void open_cut(LinearModel& model, const std::string& name) {
   const auto divide = [&back](const MatrixXd& m) -> MatrixXd { return m.array().colwise() / back.array(); };
   const MatrixXd B = unit.solve<Eigen::OnTheRight>(model.B).array().rowwise() / back.transpose().array();
   const MatrixXd C = unit.solve(divide(model.C)), D = unit.solve(divide(model.D));
-  // The return is subtracted from the rows that it drives; entries that came from the loop alone leave round-off.
+  // The returned signal is subtracted from the rows that it drives; entries of the loop alone leave round-off.
   const MatrixXd taken = B * model.C, sum = model.A.cwiseAbs() + taken.cwiseAbs();
   model.A -= taken;
   model.A = (model.A.array().abs() > 1e-13 * sum.array()).select(model.A, 0.0);
@@ -431,7 +431,7 @@ LinearModel linearize(Plant& plant, const OperatingPoint& point, const Linearize
   if (options.check && options.cut.empty() && !plant.is_open())
     model.multipliers = calc_multipliers(plant, point, model.A, at, diagnostics, uncertainty);
   if (!options.cut.empty() && model.B.isZero(0) && model.D.isZero(0) && plant.list_sampled().empty())
-    diagnostics.warning("linear.nothing-cut", at, "nothing reads '" + options.cut + "': the loop cut there is 0",
+    diagnostics.warning("linear.nothing-cut", at, "nothing reads '" + options.cut + "': the open loop there is 0",
                         "cut it where the motion depends on it, at an actuator or at what a controller reads");
   if (is_held) {
     const auto loop = calc_sampled_loop(plant, point, *cut, model.A, model.B.col(0), at, uncertainty);

@@ -239,7 +239,7 @@ void JointContacts::find_rest(HybridSystem& ode, double t, double shortest, Vect
       if (slide[i] == 0) slide[i] = sign(acceleration);
       continue;
     }
-    rests[i] = true;  // what is left of its rate goes by the impulse of locking it
+    rests[i] = true;  // the impulse of locking it removes the rest of its rate
   }
   for (size_t left = joint_contacts_.size() + 1; left > 0; --left) {
     lock(ode, t, rests, y);

@@ -52,7 +52,7 @@ class JointContacts {
     int stop = 0;         ///< -1, 1: at the lower, upper stop
     int slide = 0;        ///< with friction and moving: which way
     double hardest = 0;   ///< the fastest that it came at its stops
-    double farthest = 0;  ///< from zero, where it was looked at
+    double farthest = 0;  ///< largest abs(q) of the coordinate at event checks
     /// Lower limit of the constraint force of a sticking contact; -infinity at the upper stop.
     double low(const TreeData& data) const { return stop > 0 ? -kFree : -calc_limit(data); }
     /// Upper limit of the constraint force of a sticking contact; infinity at the lower stop.

@@ -44,9 +44,9 @@ ModeRanking rank_modes(const records::FlexBody& body, const std::vector<NodeDire
 Eigen::VectorXd calc_modal_hankel(const records::FlexBody& body, const std::vector<NodeDirection>& inputs,
                                   const std::vector<NodeDirection>& outputs, double otherwise_damping);
 
-/// The number of each mode's group: those of one frequency (to `closeness` of it) that share their cost. How the solver
-/// of a deck turns such modes among each other is chance, and so is which of them costs what. One with less than a
-/// thousandth of the group's largest cost stands by itself: the others move without it.
+/// Assigns a group number to each mode: modes of one frequency (to a relative `closeness`) share their cost, because
+/// they are an arbitrary basis of their space and their single costs are arbitrary too. A mode with less than 1/1000 of
+/// the group's largest cost is a separate group.
 std::vector<int> group_modes(const records::FlexBody& body, const ModeRanking& ranking, double closeness = 1e-3);
 /// Each mode's cost, of a group the mean of its costs.
 std::vector<double> calc_modified_costs(const ModeRanking& ranking, const std::vector<int>& groups);

@@ -23,7 +23,7 @@ struct ArrayAttributes {
 class FileWriter {
  public:
   FileWriter(const std::string& path, const std::string& format, const std::string& version);
-  /// Writes to memory: get_image() takes the place of commit().
+  /// Writes to memory; call get_image() instead of commit().
   FileWriter(const std::string& format, const std::string& version);
   ~FileWriter() = default;
   FileWriter(const FileWriter&) = delete;

@@ -302,7 +302,7 @@ void parse_freq1(Card& card, DynamicCards& r) {
   if (card.is_ok()) card.demand(list.count > 0 && list.count <= 1'000'000, 3, "NDF", "1 to 1000000");
   add_list(card, r, std::move(list));
 }
-/// SID F1 F2, and what each of FREQ2 to FREQ4 has besides.
+/// SID F1 F2, and the further fields of FREQ2 to FREQ4.
 records::FrequencyList read_range(Card& card, int kind, bool starts_above_zero) {
   auto list = read_list_head(card, kind);
   list.f1 = kind == 4 ? card.read_real(1, "F1", 0.0) : card.read_real(1, "F1");

@@ -234,7 +234,7 @@ class Builder {
     if (!text_.name.empty() && text_.name.front() == '/') {
       diagnostics_.warning("deck.delete-line", where(),
                            "'" + text_.name + "' deletes cards of an earlier run: not done",
-                           "a deck is read as it stands; take the cards out that should not count");
+                           "a deck is read as it stands; remove the cards that should not be used");
       return true;
     }
     if (text_.name.substr(0, 5) != "BEGIN") return false;
@@ -303,7 +303,7 @@ class Builder {
                                [&](const auto& selection) { return selection.second.*member == *set; });
   }
 
-  /// Nastran looks at selected sets alone: what is wrong with others is a warning, and they are not read.
+  /// Nastran uses selected sets only: errors in other sets are warnings, and these sets are not read.
   void parse_unselected(const NameEntry& entry) {
     Diagnostics own;
     Card card(text_, deck_.files, own);

@@ -243,7 +243,7 @@ class CaseControl {
     options_.combination_diagnostics->error("deck.combination", deck_.locate(at_), what, advice);
   }
 
-  /// SUBCOM n, SYMCOM n, REPCASE n: what follows is of them alone.
+  /// SUBCOM n, SYMCOM n, REPCASE n: the commands that follow belong to them.
   void begin_combination(const Command& c) {
     end_combination();
     in_plot_section_ = skipping_ = false;
