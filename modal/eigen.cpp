@@ -18,7 +18,7 @@ namespace {
 using detail::Answer;
 using detail::NormalModes;
 
-/// Solves by Krylov-Schur or what suits (choose_solver), and by blocks where Krylov-Schur has missed some.
+/// Solves by the chosen EPS type (choose_solver), and again by block Lanczos if Krylov-Schur has missed modes.
 Answer solve_twice(NormalModes& modes, const EigenOptions& options) {
   Answer answer = modes.solve(options.solver);
   if (!answer.is_sound && modes.has_second_solver()) answer = modes.solve(detail::kBlockLanczos);

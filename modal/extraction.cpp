@@ -212,7 +212,7 @@ class EpsRun {
     }
     PetscBool is_low_rank = PETSC_FALSE;
     check_petsc(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(eps()), kLowRank, &is_low_rank));
-    if (!is_low_rank) {  // else each is in the range of (A - σB)⁻¹B as it comes
+    if (!is_low_rank) {  // of low rank, each vector is in the range of (A - σB)⁻¹B already
       drop_roundoff(problem_, result);
       if (is_near(problem_)) purify(problem_, op_, result);
     }

@@ -64,8 +64,8 @@ class NormalModes {
   RootSearchResult search();
   bool fit_range(int cut);
   bool has_every_root();
-  /// The modes, by the EPS type that suits or by the one that is named; `is_sound` false where it missed some or left
-  /// a residual.
+  /// Computes the modes by the named EPS type, or the one chosen for the problem; `is_sound` is false if modes are
+  /// missing or a residual is large.
   EigenPairs find_pairs(const std::string& eps_type, bool& is_sound, Diagnostics& said);
   EigenPairs make_pairs(int cut, int count, Diagnostics& said);
   /// M-orthonormal values and vectors of whole clusters, the first `num_known` and `num_zero` without strain; those of

@@ -18,7 +18,7 @@ namespace {
 
 using Eigen::Index;
 
-/// diag K; where nothing stiffens a dof what is in keeping with its mass.
+/// diag K; for a DOF without stiffness a value in proportion to its mass.
 VectorXd calc_scale(const Pencil& pencil) {
   const VectorXd &D = pencil.K_diagonal, &M = pencil.M_diagonal;
   VectorXd scale = linear::fill_diagonal(D, pencil.kinds);

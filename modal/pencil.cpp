@@ -234,7 +234,7 @@ RigidMotions find_global_motions(const Pencil& pencil) {
   const auto num_massless = (mass.array() <= kMasslessShare * std::max(mass.maxCoeff(), 0.0)).count();
   const MatrixXd Y_mass = Y.rightCols(Y.cols() - num_massless);
 
-  // The projections of the six motions on the free ones, in order: a basis that no roundoff can turn.
+  // The projections of the six motions on the free ones, in order: this basis does not depend on round-off.
   const MatrixXd P = Y_mass * (Y_mass.transpose() * DB);
   const MatrixXd MP = pencil.calc_M_times(P);
   MatrixXd coefficients(6, 0);

@@ -14,7 +14,7 @@ namespace bough::modal::detail {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Eigenvalues found, in the order of what is sought (see add), and their vectors.
+/// Computed eigenvalues in the order of the request (see add), and their eigenvectors.
 struct Roots {
   VectorXd value;
   MatrixXd X;  ///< n x value.size()
@@ -49,7 +49,7 @@ struct RootSearch {
 struct RootSearchResult {
   int cut = 0;                 ///< the roots before it are complete: a gap follows, or nothing
   int count = -1;              ///< of the inertia below that gap, at least `cut`; -1: not made, or not to be trusted
-  int doubtful = -1;           ///< the inertia's own number where it is below `cut` or above what exists
+  int doubtful = -1;           ///< the inertia count if it is below `cut` or above the number of eigenvalues
   bool is_missing = false;     ///< the inertia counts roots that the solver does not find
   std::string no_memory = {};  ///< reason if memory was short for the factor of the inertia count
 };

@@ -308,7 +308,7 @@ class PartReducer {
     };
     condense_to(s.B, fe::calc_damping_times(model, Psi));
     condense_to(s.K4, fe::calc_structural_damping_times(model, 0, Psi));
-    // Loads: their forces on the exterior dofs, and what they do with these held.
+    // Loads: their forces on the exterior DOFs, and the displacements with fixed exterior DOFs.
     const auto sets = list_load_sets(part);
     MatrixXd F(Psi.rows(), static_cast<Index>(sets.size()));
     std::vector<fe::AppliedLoad> applied;
@@ -335,8 +335,8 @@ class PartReducer {
                       "its further frequencies with the boundary held should be above those of interest");
   }
 
-  /// Mass that supports in the section keep from the rigid-body motion of its boundary: mass properties and effective
-  /// masses of the assembly lack it.
+  /// Reports mass that does not follow the rigid-body motion of the boundary, because the section has supports: mass
+  /// properties and effective masses of the assembly do not contain it.
   void report_supported_mass(const fe::Model& model, const modal::bases::FixedInterface& fixed, const MatrixXd& Psi,
                              const DeckSection& section) {
     const MatrixXd Phi_R = model.calc_rigid_modes().leftCols(3);
@@ -527,7 +527,7 @@ class PartReducer {
     }
     return rows;
   }
-  /// A table and, with loads, that of what they do with the exterior dofs held.
+  /// Adds a table and, with loads, that of the displacements with fixed exterior DOFs.
   static void add_tables(const std::string& name, const std::vector<const fe::Node*>& nodes, const MatrixXd& values,
                          const MatrixXd& of_loads, Superelement& s) {
     std::vector<records::RecoveryItem> items;

@@ -75,7 +75,7 @@ class Solid final : public Element, public StressState, public StressRecovery, p
   /// each natural coordinate through those of the quadrature points, by least squares where they are more; the mean
   /// where they are fewer than the corners.
   MatrixXd calc_corner_stresses(const Eigen::Ref<const VectorXd>& force) const;
-  /// C⁻¹ of those stresses. Where C is singular: the least strains that have them.
+  /// Strains C⁻¹ σ; if C is singular, those of minimum norm.
   MatrixXd calc_strains(const Eigen::Ref<const MatrixXd>& forces) const override;
   /// Number of corners: 8, 6 or 4.
   int num_corners() const { return get_num_corners(geometry_.kind); }

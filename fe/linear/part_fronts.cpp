@@ -9,8 +9,8 @@ extern "C" void dsytrs2_(const char* uplo, const PetscBLASInt* n, const PetscBLA
 namespace bough::linear {
 namespace {
 
-/// What a front may add to a diagonal entry, over what the matrices have there. LLᵀ of a definite matrix takes off no
-/// more than is there; a hundred times costs two digits of sixteen.
+/// Largest growth of a diagonal entry in a front, relative to its value in the matrices. LLᵀ of a definite matrix
+/// subtracts at most that value; a factor of 100 costs two digits of sixteen.
 constexpr double kMostGrowth = 100;
 
 /// Of LDLᵀ as LAPACK's sytrf leaves it.

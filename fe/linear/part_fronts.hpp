@@ -74,7 +74,7 @@ class FrontElimination {
   std::vector<PetscBLASInt> pivot_order_;
 };
 
-/// The rows of one part and those between, which come last and are not eliminated.
+/// The rows of one subdomain, and the separator rows, which come last and are not eliminated.
 class PartFronts {
  public:
   PartFronts() { start_in_order(common_); }

@@ -5,7 +5,7 @@
 
 namespace bough::linear {
 
-/// OMP_NUM_THREADS, or two where the machine has them; one of each rank of several, and where ulimit -v limits memory.
+/// OMP_NUM_THREADS, or two if the machine has them; one if there are several ranks, or under ulimit -v.
 int get_num_threads();
 
 /// Both at once, the second in a separate thread; OpenMP starts none beside them. What either throws is thrown here.

@@ -21,7 +21,7 @@ constexpr double kNothing = 1e-14;  ///< below this share of the terms that it i
 
 struct NodeBlocks {
   std::vector<Matrix3d> K;    ///< 2k and 2k+1: node k's translations and rotations
-  std::vector<double> noise;  ///< what round-off of the elements that reach the block can leave in it
+  std::vector<double> noise;  ///< bound of the round-off of the elements in the block
 };
 
 /// Sizes of the terms that sum to the diagonal of K_e: one size for the translations, since directions are sums of

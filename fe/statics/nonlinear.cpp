@@ -19,8 +19,8 @@ using Triplets = std::vector<Eigen::Triplet<double>>;
 /// Work of the load of a step, relative to what the tangent stiffness at its start gives. On a path that softens
 /// towards a limit point (a parabola) it is 2 at most; a jump to another branch is far above where the step is small.
 constexpr double kMaxSoftening = 2.5;
-/// Growth of that work, relative to the square of the step, from one step to the next: where a step ends at a limit
-/// point itself the stiffness there says nothing of what comes next.
+/// Largest growth of that work, relative to the square of the step, from one step to the next: at a limit point the
+/// stiffness does not predict the next step.
 constexpr double kMaxRateGrowth = 10;
 constexpr int kMinElementsOfThread = 50;
 /// Numbers of the matrices of elements that are kept: 2 GB.

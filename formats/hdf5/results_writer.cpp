@@ -165,7 +165,7 @@ class ResultsWriter final : public records::ResultSink {
     file_.write(0, page.data(), page.size());
   }
 
-  /// Rows of the buffer to their places; they count from the next commit on.
+  /// Writes the buffered rows to the file; they become valid with the next commit.
   void flush_rows() {
     const std::uint64_t rows = groups_.chunk_rows;
     for (auto row = std::max(buffer_first_, num_flushed_); row < num_rows_;) {

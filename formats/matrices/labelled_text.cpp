@@ -21,7 +21,7 @@ bool is_skipped(std::string_view line, bool& is_unsymmetric) {
   return true;
 }
 
-/// One triangle stands for both, unless the file says that the matrix is not symmetric.
+/// Completes a matrix stored by one triangle, unless the file declares it unsymmetric.
 void complete(Triplets& entries, bool is_unsymmetric, Matrix& matrix) {
   matrix.form = is_unsymmetric ? kSquare : kSymmetric;
   if (!is_unsymmetric && entries.is_triangular()) entries.mirror(Triangle::Mirror);

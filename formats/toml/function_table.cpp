@@ -96,7 +96,7 @@ records::FunctionRecord read_function(const Fields& fields, const std::string& p
   function.x = fields.get_numbers("x");
   function.y = fields.get_numbers("y");
   read_values(fields, path, function, diagnostics);
-  // Texts and lists by type; numbers are checked where the function is made.
+  // Types with text or list keys; numbers are checked when the function is made.
   static const std::map<std::string, std::vector<std::string>> owners = {
       {"x", {"table", "expression", "harmonics", "random"}},
       {"y", {"table", "harmonics", "random"}},

@@ -1,5 +1,5 @@
 #pragma once
-/// \file What holds a response: its coordinates against the model, its solution against the equation.
+/// \file Checks of a response: its coordinates against the model, its solution against the equation.
 #include "base/diagnostic.hpp"
 #include "modal/response/coordinates.hpp"
 

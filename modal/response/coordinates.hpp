@@ -26,7 +26,8 @@ Eigen::VectorXcd calc_amplitudes(const Excitation& excitation, double hz, Eigen:
 /// Keeps the frequencies at which the response has a bound: of a list over an undamped mode the others count.
 class BoundedFrequencies {
  public:
-  /// Whether solve() went through; false where it threw modal.unbounded-response, which is kept. Others go on.
+  /// Calls solve(); returns false if it throws modal.unbounded-response, which is stored. Other exceptions pass
+  /// through.
   bool take(const std::function<void()>& solve);
   /// Issues a warning for each omitted frequency; throws the first one as an error if no frequency is left.
   void report(Diagnostics& diagnostics) const;

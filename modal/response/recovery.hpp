@@ -16,9 +16,9 @@ struct OutputChoice {
   bool is_for_listing = false;  ///< forces that no one asked for
 };
 
-/// What the subcase asks for, `with_listing` also what its listing needs. Reports modal.missing-set. `extra_grids`:
-/// displacement, velocity and acceleration of these besides; with no request at all the displacements of the grids that
-/// are loaded or moved (note modal.default-output).
+/// The outputs that the subcase requests, `with_listing` also those of its listing. Reports modal.missing-set.
+/// `extra_grids`: grids with displacement, velocity and acceleration in addition; without any request the displacements
+/// of the loaded or moved grids (note modal.default-output).
 std::vector<OutputChoice> choose_outputs(const fe::Model& model, const records::DynamicDeck& deck,
                                          const records::DynamicSubcase& subcase, const Excitation& excitation,
                                          const std::vector<int>& extra_grids, bool with_listing,

@@ -267,7 +267,7 @@ class RadauStepper final : public Integrator {
     }
     error_norm_ = detail::calc_error_norm(options_, y_, error_);
     if (error_norm_ <= 1 || (!was_rejected && last_h_ > 0)) return true;
-    // A second filter for what is stiff: the first evaluates the estimate at the state that the step starts from.
+    // Second filter of the error estimate for stiff components: f at the start state plus the first estimate.
     stage_ = y_ + error_;
     if (ode_.calc(t_, stage_.data(), real_delta_.data()) != 0) return true;
     stage_.noalias() = Z_ * table_.error;

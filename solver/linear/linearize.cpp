@@ -183,9 +183,9 @@ records::Signals name_values(const std::string& name, const std::string& dims, E
   return signals;
 }
 
-/// d after the cut is u in place of what comes back, c = C x + D d: d = u, y = -c. What comes back at once would be
-/// an algebraic loop when closed, which no system has: the diagonal of D is rounding. Below it a lifted loop has what
-/// earlier values of the same period bring back: C and D by forward substitution.
+/// Opens the loop: the inserted signal d = u replaces the returned signal c = C x + D d, and y = -c. Direct feedthrough
+/// would be an algebraic loop, which no system has: the diagonal of D is round-off. Below the diagonal a lifted loop
+/// contains the returned earlier values of the same period: C and D by forward substitution.
 void open_cut(LinearModel& model, const std::string& name) {
   const VectorXd back = 1 + model.D.diagonal().array();
   const MatrixXd below = back.cwiseInverse().asDiagonal() * model.D;

@@ -256,7 +256,7 @@ class Run {
   double calc_seen_time() const;
   /// The host may have put any state: the energy balance is judged from here on.
   void restart_balance();
-  /// Goes on by its own integrator from where that of the host has come.
+  /// Continues with the integrator of the run from the state of the host's integrator.
   void take_over();
   /// Switches, crossings and contacts at time_ after a jump. Returns false if an event has ended the run.
   bool settle_jump();

@@ -141,7 +141,7 @@ class Loci {
   Index find_alias(double omega, const Eigen::VectorXcd& vector) const {
     Index best = 0;
     double max_value = -1;
-    for (Index i = 0; i < num_values_; ++i) {  // 0, -1, 1, -2, 2, ...: of equal shares the slowest
+    for (Index i = 0; i < num_values_; ++i) {  // 0, -1, 1, -2, 2, ...: for equal shares the lowest frequency
       const Index m = i % 2 == 1 ? -(i + 1) / 2 : i / 2;
       const double step = calc_frequency(omega, m) * period() / static_cast<double>(num_values_);
       Complex share = 0;

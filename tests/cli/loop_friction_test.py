@@ -104,7 +104,7 @@ class LoopFrictionTest(ProgramTest):
             self.assertGreater(dry["hinges/main/q"].ravel()[-1], 2 * math.pi)
 
     def test_four_bars(self):
-        """Near a reversal of the whole loop the lock of a joint that hardly moves takes reactions without a value."""
+        """Near a reversal of the loop, a locked joint with negligible motion has undetermined reactions."""
         mu, dry = {"mu": 0.3, "pin_radius": 0.03}, {"coulomb": 0.3}
         for frictions in ((mu, mu, mu), (mu, None, dry), (None, mu, dry)):
             self.expect_smooth_limit(make_four_bar(frictions, -6.0, 9.81), 1.0)

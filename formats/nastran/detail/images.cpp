@@ -118,8 +118,8 @@ class Grouper {
     return after == ends.end() ? -1 : *after;
   }
 
-  /// Tags first, over the whole deck, those that are equal to the letter before those that differ by marks; then what
-  /// only follows an untagged card.
+  /// Joins continuations: first by tags over the whole deck, equal tags before those that differ by marks only; then
+  /// continuations that follow an untagged card.
   void join_fragments() {
     Tails tails, bare_tails;
     for (int i = 0; i < static_cast<int>(result_.images.size()); ++i) {

@@ -1,4 +1,4 @@
-"""One seed: its structure, sound or spoiled, through the commands; what is wrong with the answers."""
+"""One seed: its structure, valid or with a fault, through the commands; faults of the results."""
 import os
 import random
 
