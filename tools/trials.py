@@ -341,7 +341,7 @@ class Trials:
         process = self.start(*arguments, "-o", output, "--resume")
         said = process.communicate(timeout=600)[1]
         if process.returncode == 1 and "checkpoint" in said:
-            return "no checkpoint, told"
+            return "no checkpoint, reported"
         if process.returncode:
             return f"!resume: exit {process.returncode}: {said[-300:]}"
         if self.get_parts():

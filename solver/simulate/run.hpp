@@ -231,7 +231,7 @@ class Run {
   // Controllers (run_control.cpp)
   /// Samples that are due at t and switches that are open there, once; y_ is the state.
   void take_samples(double t);
-  /// At the start: lags that are to start at rest.
+  /// Initializes at the start the lags with `initial = "steady"`.
   void initialize_lags(double t);
   /// Switches every block with a positive event function at (t, y_) until there is none.
   void iterate_switches(double t);
