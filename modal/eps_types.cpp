@@ -21,7 +21,7 @@ using linear::check_petsc;
 class OwnSolver {
  public:
   virtual ~OwnSolver() = default;
-  /// Fills values (λ) and vectors; the number that converged. `is_done`: all that were wanted, or all that exist.
+  /// Computes values (λ) and vectors; returns the number that converged. `is_done`: all requested or all existing ones.
   virtual int run(EPS eps, const FactoredOperator& op, bool& is_done) = 0;
 
   VectorXd values;

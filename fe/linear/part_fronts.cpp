@@ -100,7 +100,7 @@ bool PartFronts::analyse(const RowSum& sum, const std::vector<PetscInt>& own, co
     }
     if (num_left == 0) continue;
     const int next = row_[row_at_[k] + num];
-    if (next >= static_cast<int>(num_own_)) continue;  // goes to the rows between
+    if (next >= static_cast<int>(num_own_)) continue;  // goes to the separator rows
     const int above = front_of[static_cast<std::size_t>(next)];
     ++num_children_[static_cast<std::size_t>(above)];
     left.push_back(0.5 * num_left * (num_left + 1.0));

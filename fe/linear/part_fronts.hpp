@@ -95,7 +95,7 @@ class PartFronts {
 
  private:
   static double square(double x) { return x * x; }
-  /// The lower triangle of `rows`. False where the part's own couple to others.
+  /// Extracts the lower triangle of `rows`; returns false if interior rows couple to other rows.
   bool take(const RowSum& sum, const std::vector<PetscInt>& rows);
   /// Eliminates the first `num` of the front's rows; -1 as above.
   int eliminate(int num, int num_rows, const int* rows);

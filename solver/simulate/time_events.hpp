@@ -53,7 +53,7 @@ class TimeEvents {
   long next_index() const { return index_; }
   /// Goes on to the next output sample.
   void take_output();
-  /// Passes over the samples up to t, and t itself.
+  /// Skips the samples up to and including t.
   void skip_outputs(double t);
   /// The first stop past t; the end is one.
   TimeEvent find_next(double t) const;
