@@ -87,7 +87,7 @@ class SoftModes {
   SoftModes(const fe::System& system, const Pencil& pencil, MatrixXd X)
       : pencil_(pencil), factor_(shift(system), false, linear::FactorMethod::Pivoting), X_(std::move(X)) {}
 
-  /// False where nothing came of it.
+  /// False if nothing came of it.
   bool improve() {
     if (factor_.is_singular()) return false;
     double before = std::numeric_limits<double>::infinity();

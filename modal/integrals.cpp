@@ -24,7 +24,7 @@ MassIntegrals make_empty(int num_modes) {
   return g;
 }
 
-/// Rows of one component (0..5) at every node: p x m, zero where the dof is missing.
+/// Rows of one component (0..5) at every node: p x m, zero if the dof is missing.
 MatrixXd take_component(const NodalDofs& dofs, const MatrixXd& X, int component) {
   MatrixXd part(dofs.num_nodes(), X.cols());
   for (Eigen::Index j = 0; j < X.cols(); ++j)

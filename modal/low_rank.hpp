@@ -11,7 +11,7 @@
 namespace bough::modal::detail {
 
 /// C, n x r, with M = C Cᵀ where the rank r of M (positive semi-definite, its diagonal given) is max_rank at most;
-/// nothing where it is higher or M is indefinite. Cholesky of the matrix scaled to a unit diagonal, pivots from the
+/// nothing if it is higher or M is indefinite. Cholesky of the matrix scaled to a unit diagonal, pivots from the
 /// largest decade down; what is left below 3e-12 is roundoff of masses that dependent dofs shared out (Higham, Accuracy
 /// and Stability of Numerical Algorithms, 2nd ed., 10.3). Touches no more than max_rank columns.
 std::optional<Eigen::SparseMatrix<double>> factor_low_rank(const linear::SymmetricMatrix& M,

@@ -175,7 +175,7 @@ void NormalModes::find_negative() {
 }
 
 /// A spring may leave single roots so far below zero that Lanczos sees nothing of them from near the others: `missing`
-/// more by a shift below all, then back. False where there is no such shift.
+/// more by a shift below all, then back. False if there is no such shift.
 bool NormalModes::add_far_below(int missing) {
   const double near = shift_, far = shift_ > 0 ? find_definite_shift() : 0;
   if (!(far > near)) return false;

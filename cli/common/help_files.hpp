@@ -11,7 +11,7 @@ namespace bough::cli {
 /// The manual page bough(1), in the man macros of roff.
 std::string make_man_page(const CLI::App& app);
 
-/// The page bough-COMMAND(1) of one command; empty where there is no such command.
+/// The page bough-COMMAND(1) of one command; empty if there is no such command.
 std::string make_verb_man_page(const CLI::App& app, const std::string& verb);
 
 /// The completion script for bash: commands, the options of each command, the values of options with a fixed list of

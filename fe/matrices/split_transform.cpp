@@ -26,7 +26,7 @@ struct RowBasis {
   Triplets coefficients;  ///< row of T, basis row
 };
 
-/// Nothing where there are more than `most` directions.
+/// Nothing if there are more than `most` directions.
 std::optional<RowBasis> find_row_basis(const SparseRows& T, const std::vector<int>& wide, std::size_t most) {
   RowBasis basis;
   VectorXd rest = VectorXd::Zero(T.cols());

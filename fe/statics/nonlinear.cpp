@@ -32,7 +32,7 @@ bool is_stiff(const Element& element) {
   return !K.isZero(0);
 }
 
-/// Mass of an element on the six dofs of one grid, and its arm; 0 where it is on the grid.
+/// Mass of an element on the six dofs of one grid, and its arm; 0 if it is on the grid.
 double find_offset_mass(const Element& element, MassKind kind, Vector3d& arm) {
   if (element.num_dofs() != 6 || !element.offset_mass(kind)) return 0;
   MatrixXd M = MatrixXd::Zero(6, 6);
@@ -413,7 +413,7 @@ Eigen::SparseMatrix<double, Eigen::RowMajor> NonlinearStatics::reduce(
 }
 
 /// Newton's method from the state; F: dead forces, dF: change of all forces; `enforced`: steps of the fixed dofs;
-/// `share`: of the load. False where it does not come to an end, or ends on another branch of the path.
+/// `share`: of the load. False if it does not come to an end, or ends on another branch of the path.
 bool NonlinearStatics::find_equilibrium(const VectorXd& F, const VectorXd& dF, const VectorXd& enforced, double share,
                                         int max_iterations) {
   const auto& T = model_.T();

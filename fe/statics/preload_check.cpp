@@ -28,7 +28,7 @@ bool has_negative(const linear::SymmetricMatrix& A, const linear::RowKinds& kind
   return linear::count_negative_eigenvalues(lifted).value_or(0) > 0;
 }
 
-/// Negative directions of the stress among the rigid-body motions of a model that nothing holds; 0 where it is held. A
+/// Negative directions of the stress among the rigid-body motions of a model that nothing holds; 0 if it is held. A
 /// motion on which the stress does no work, but whose forces strain the body, is one of second order.
 int count_tipping(const Model& model, const linear::SymmetricMatrix& K) {
   for (const int dof : model.fixed_dofs()) {

@@ -241,7 +241,7 @@ class DirectMotion {
     return quick_->solve(F);
   }
   double delta() const { return kJumpShare * calc_step_before(grid_, 1); }
-  /// M⁻¹ F, nothing where there is no mass.
+  /// M⁻¹ F, nothing if there is no mass.
   MatrixXd divide_by_mass(const MatrixXd& F) { return solve_quick(times(m_.M, solve_quick(F))); }
 
   /// What changes at step i at once; `column`: where it is shown, or -1. Shown is the mean of before and after, at the

@@ -16,7 +16,7 @@ using Eigen::MatrixXcd;
 ///   M q̈ + B q̇ + (K + i S) q = Tᵀ (F p - M X d̈ - B X ḋ - (K + i S) X d).
 /// Over time S is in B, at the rates W3 and W4.
 struct DirectModel {
-  linear::SymmetricMatrix K, M, B, S;  ///< B, S: empty where nothing damps
+  linear::SymmetricMatrix K, M, B, S;  ///< B, S: empty if nothing damps
   VectorXd K_diagonal, M_diagonal;     ///< |K_ii|, M_ii
   MatrixXd X;                          ///< num_gdofs x k
   MatrixXd F, K_X, M_X, B_X, S_X;      ///< Tᵀ of the patterns, num_fdofs x m or k

@@ -22,7 +22,7 @@ struct DampingChoice {
   double g = 0;                   ///< PARAM,G
   double w3 = 0, w4 = 0;          ///< over time: where g and GE become viscous; 0: they do not act
   double alpha1 = 0, alpha2 = 0;  ///< B += α1 M + α2 K
-  /// K2PP X, which neither g nor α2 acts on; empty where there is none.
+  /// K2PP X, which neither g nor α2 acts on; empty if there is none.
   std::function<MatrixXd(const MatrixXd&)> times_direct;
   bool is_over_time = false;
   bool is_stiffness = false;                     ///< PARAM,KDAMP,-1: the curve is structural damping

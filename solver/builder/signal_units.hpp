@@ -7,7 +7,7 @@
 
 namespace bough::solver {
 
-/// "F L, 1/T" of `outputs` components: one each; nothing where they are not known ("by the controller").
+/// "F L, 1/T" of `outputs` components: one each; nothing if they are not known ("by the controller").
 std::vector<std::string> split_dims(const std::string& dims, int outputs);
 /// Returns true if both are the same quantity, as "F L" and "M L^2/T^2", or if one is not known (empty).
 bool are_alike_dims(const std::string& a, const std::string& b);

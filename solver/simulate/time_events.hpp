@@ -57,7 +57,7 @@ class TimeEvents {
   void skip_outputs(double t);
   /// The first stop past t; the end is one.
   TimeEvent find_next(double t) const;
-  /// The stop at t, an instant of samples too; none where there is none.
+  /// The stop at t, an instant of samples too; none if there is none.
   std::optional<TimeEvent> find_at(double t) const;
   /// Returns true if the integrator is reset at t.
   bool is_restart(double t) const;

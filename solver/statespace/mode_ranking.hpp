@@ -19,7 +19,7 @@ struct NodeDirection {
 
 struct ModeCost {
   double cost = 0;         ///< V_i: of the mode's displacement and rate together
-  double closed_form = 0;  ///< of the mode alone, lightly damped; 0 where it has no damping or stiffness
+  double closed_form = 0;  ///< of the mode alone, lightly damped; 0 if it has no damping or stiffness
 };
 
 struct ModeRanking {
@@ -40,7 +40,7 @@ ModeRanking rank_modes(const records::FlexBody& body, const std::vector<NodeDire
                        const Spectrum* spectrum = nullptr);
 
 /// The Hankel singular value of each mode alone, lightly damped (two states have it each):
-/// |b| sqrt(|c_d|² + ω² |c_r|²) / (4 ζ ω²). 0 where it has no damping or stiffness.
+/// |b| sqrt(|c_d|² + ω² |c_r|²) / (4 ζ ω²). 0 if it has no damping or stiffness.
 Eigen::VectorXd calc_modal_hankel(const records::FlexBody& body, const std::vector<NodeDirection>& inputs,
                                   const std::vector<NodeDirection>& outputs, double otherwise_damping);
 
