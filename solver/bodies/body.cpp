@@ -44,6 +44,7 @@ MatrixXd make_damping(const MatrixXd& M, const MatrixXd& K, const std::vector<do
   const Eigen::Index n = M.rows();
   const auto ratio = [&](Eigen::Index j) { return ratios.size() == 1 ? ratios[0] : ratios[static_cast<size_t>(j)]; };
   MatrixXd D = MatrixXd::Zero(n, n);
+  if (n == 0) return D;
   const auto is_nearly_diagonal = [](const MatrixXd& A) {
     const VectorXd root = A.diagonal().cwiseAbs().cwiseSqrt();
     const MatrixXd rest = A - MatrixXd(A.diagonal().asDiagonal());
