@@ -164,7 +164,7 @@ std::vector<SystemBody> list_system_bodies(const SelectRequest& o, Diagnostics& 
     std::vector<SystemBody> of_system;
     for (const auto& record : loaded.spec.bodies)
       if (auto body = take_used_modes(loaded, record))
-        of_system.push_back({record.name, resolve_beside(system, record.file), std::move(*body)});
+        of_system.push_back({record.name, embed::shorten_path(resolve_beside(system, record.file)), std::move(*body)});
     if (of_system.empty())
       throw InputError("select.no-modes", {system}, "no body of the system has modes",
                        "name a system with flexible bodies, or a body file first");

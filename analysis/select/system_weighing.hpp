@@ -12,7 +12,7 @@ std::vector<Weighing> weigh_in_systems(const SelectRequest& o, Diagnostics& diag
 
 /// A flexible body of a system whose modes are ranked with those of other bodies.
 struct SystemBody {
-  std::string name, file;  ///< the file as the first system names it
+  std::string name, file;  ///< path relative to the working directory
   records::FlexBody body;  ///< with the modes that the system uses
 };
 

@@ -155,7 +155,7 @@ class SelectBodies(LinearTest):
         self.make_beams(case)
         self.write_system("twins.toml", case, files="aa")
         data = self.select("twins.toml", case, "--number", 1, "-o", "small")
-        self.assertEqual([body["modes"] for body in data["bodies"]], [4, 4])
+        self.assertEqual([(body["file"], body["modes"]) for body in data["bodies"]], [("a.h5", 4), ("a.h5", 4)])
         self.assertEqual(sum(len(body["kept"]) for body in data["bodies"]), 1)
         poles = self.linearize("small/twins.toml", "--outputs", "angle")["poles/real"]
         self.assertEqual(len(poles), 4)  # the hub and one mode: the other body is rigid, with a damping ratio
