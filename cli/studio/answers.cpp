@@ -290,13 +290,21 @@ json answer_diagram(const json& request) {
     edges.back()["key"] = edge.key;
     edges.back()["table"] = name_table(items, edge.line);
   }
-  for (const auto& curve : analysis::list_function_curves(spec))
+  for (const auto& curve : analysis::list_function_curves(spec)) {
     functions.push_back({{"name", curve.name},
                          {"type", curve.type},
                          {"of_time", curve.is_of_time},
                          {"line", find_line("function", curve.name)},
                          {"x", std::vector<double>(curve.x.begin(), curve.x.end())},
                          {"y", std::vector<double>(curve.y.begin(), curve.y.end())}});
+    const auto path = name_table(items, find_line("function", curve.name));
+    if (curve.type != "table" || path.empty()) continue;
+    // The points as the text has them: their curve is edited by the page.
+    functions.back()["points"] = {{"path", path},
+                                  {"x", toml_files::get_value_text(text, path + ".x")},
+                                  {"y", toml_files::get_value_text(text, path + ".y")},
+                                  {"interpolation", toml_files::get_value_text(text, path + ".interpolation")}};
+  }
   return {{"nodes", nodes}, {"edges", edges}, {"functions", functions}};
 }
 

@@ -1,5 +1,5 @@
-"""Ends of hinges are dragged in the studio by the mouse; keys do the same. The text gets the numbers at once, Undo takes
-each step back, and the command line reads the file."""
+"""Ends of hinges and points of functions are dragged in the studio by the mouse; keys do the same. The text gets the
+numbers at once, Undo takes each step back, and the command line reads the file."""
 import json
 import math
 import tomllib
@@ -11,10 +11,11 @@ import numpy as np
 from studio_edits_test import ARM, Edits
 from toml_text import section, table, toml
 
-# On the screen: a place of the world, the handle of an axis at this share of its length.
+# On the screen: a place of the world, the handle of an axis at this share of its length, a point of a function.
 WORLD = """((p) => { const { viewer } = studio.view, [x, y] = viewer.find_place(p), b = viewer.canvas.getBoundingClientRect(); return [b.x + x, b.y + y]; })(%s)"""
 HANDLE = """((axis, share) => { const h = studio.view.hinge_places, now = h.locate(), { viewer } = studio.view, b = viewer.canvas.getBoundingClientRect();
   const [x, y] = viewer.find_place(now.at.map((v, i) => v + (axis < 0 ? 0 : share * h.get_length() * now.axes[axis][i]))); return [b.x + x, b.y + y]; })(%s, %s)"""
+POINT = """((name, x, y) => { const { chart } = studio.view.diagrams.editors.get(name), b = chart.overlay.getBoundingClientRect(); return [b.x + chart.map_x(x), b.y + chart.map_y(y)]; })(%s, %s, %s)"""
 
 NODES = toml(
     table("body", "arm", mass=2.0, cg=[0.5, 0.0, 0.0], inertia=[0.1, 1.0, 1.0],
@@ -26,6 +27,14 @@ NODES = toml(
     table("hinge", "loose", "free", child="ball", position=[1.0, 0.0, 0.0, 0.0, 0.5, 1.0, 0.25]),
     section("simulation", duration=1.0, output_step=0.1),
     name="nodes")
+
+CURVES = toml(
+    table("body", "a", mass=2.0, inertia=[1.0, 1.0, 1.0]),
+    table("hinge", "first", "prismatic", child="a", axis=[1.0, 0.0, 0.0]),
+    table("function", "thrust", "table", x=[0.0, 1.0, 3.0, 4.0], y=[0.0, 2.0, -1.0, 0.0]),
+    table("actuator", "motor", "hinge", hinge="first", input="thrust"),
+    section("simulation", duration=4.0, output_step=0.01),
+    name="curves")
 
 
 class Places(Edits):
@@ -160,6 +169,105 @@ class Places(Edits):
         self.wait("document.querySelector('.hinge-places output').textContent.includes('parent_position is made of parameters')")
         self.assertEqual(self.get_text(), text)
         np.testing.assert_allclose(self.get_place("hand"), [math.cos(0.6), math.sin(0.6), 0], atol=1e-6)
+
+
+class Curves(Edits):
+    def open_curves(self, text=CURVES):
+        page = self.show("curves.toml", text)
+        page.click("details.functions summary")
+        self.wait("studio.view.diagrams.editors.get('thrust')?.chart.frame")
+        page.show(".curve-editor canvas.overlay")
+        return page
+
+    def get_points(self):
+        function = tomllib.loads(self.get_text())["function"][0]
+        return list(zip(function["x"], function["y"]))
+
+    def settle(self):
+        """The curve is that of the text."""
+        self.wait("studio.view.diagrams.drawn === studio.view.pane.text && [...studio.view.diagrams.editors.values()].every((e) => e.pending === 0 && e.chart.frame)")
+        self.wait_for_check()
+        self.browser.show(".curve-editor canvas.overlay")
+
+    def get_pixel(self):
+        return self.browser.run("(({ range: r, frame: f }) => [(r.x1 - r.x0) / f.width, (r.y1 - r.y0) / f.height])(studio.view.diagrams.editors.get('thrust').chart)")
+
+    def double_click(self, x, y):
+        for count in (1, 2):
+            self.browser.mouse("mousePressed", x, y, button="left", buttons=1, clickCount=count)
+            self.browser.mouse("mouseReleased", x, y, button="left", clickCount=count)
+
+    def test_points_by_mouse(self):
+        page = self.open_curves()
+        dx, dy = self.get_pixel()
+        page.drag(page.run(POINT % ("'thrust'", 1, 2)), page.run(POINT % ("'thrust'", 1.5, 1.0)))
+        self.wait("studio.view.pane.text !== studio.view.pane.saved")
+        points = self.get_points()
+        np.testing.assert_allclose(points[1], (1.5, 1.0), atol=(1.5 * max(dx, dy)))
+        self.assertEqual([points[k] for k in (0, 2, 3)], [(0.0, 0.0), (3.0, -1.0), (4.0, 0.0)])
+        self.settle()
+        # A point does not pass its neighbour; straight up its x stays.
+        page.drag(page.run(POINT % ("'thrust'", 3, -1)), page.run(POINT % ("'thrust'", 3, 1)))
+        self.wait("!studio.view.pane.text.includes('-1.0')")
+        self.assertEqual(self.get_points()[2][0], 3.0)
+        self.settle()
+        self.keep("studio-curve")
+        # A double click adds, Delete removes.
+        self.double_click(*page.run(POINT % ("'thrust'", 2.25, 0.25)))
+        self.wait("document.querySelector('.curve-editor').dataset.points === '5'")
+        self.settle()
+        added = self.get_points()
+        self.assertEqual(len(added), 5)
+        np.testing.assert_allclose(added[2], (2.25, 0.25), atol=2 * max(self.get_pixel()))
+        page.show(".curve-editor canvas.overlay")
+        self.click_at(*page.run(POINT % ("'thrust'", added[2][0], added[2][1])))
+        self.wait("document.querySelector('.curve-editor').dataset.chosen === '2'")
+        page.press("Delete")
+        self.wait("document.querySelector('.curve-editor').dataset.points === '4'")
+        self.settle()
+        self.assertEqual(self.get_points(), added[:2] + added[3:])
+        # The motor of the run has this thrust: speed is impulse over mass.
+        self.save()
+        self.bough("run", "curves.toml", "-o", "curves.h5")
+        x, y = np.transpose(self.get_points())
+        with h5py.File(self.path("curves.h5")) as f:
+            self.assertAlmostEqual(f["/hinges/first/qdot"][-1].item(), np.sum((y[1:] + y[:-1]) / 2 * np.diff(x)) / 2, delta=1e-6)
+        for _ in range(4):
+            self.click_text("Undo")
+        self.assertEqual(self.get_text(), CURVES)
+        self.settle()
+        self.assertEqual(page.run("document.querySelector('.curve-editor').dataset.points"), "4")
+        self.assertEqual([e for e in page.list_errors() if "favicon" not in e], [])
+
+    def test_points_by_keys(self):
+        """Keys that come faster than the program answers: no step is lost."""
+        page = self.open_curves()
+        page.run("document.querySelector('.curve-editor canvas.overlay').focus()")
+        page.type("nn")
+        self.wait("document.querySelector('.curve-editor').dataset.chosen === '1'")
+        step = 0.01 * page.run("(({ y1, y0 }) => y1 - y0)(studio.view.diagrams.editors.get('thrust').chart.range)")
+        for _ in range(3):
+            page.press("ArrowDown")
+        self.settle()
+        self.assertAlmostEqual(self.get_points()[1][1], 2 - 3 * step, delta=step)
+        self.assertLess(self.get_points()[1][1], 2 - 2 * step)
+        self.assertTrue(page.run("document.activeElement.matches('.curve-editor canvas.overlay')"))
+        # The numbers of the chosen point, and limits of x.
+        page.run("document.querySelector('[aria-label=\"x of the point of thrust\"]').select()")
+        page.type("0.75\n")
+        self.settle()
+        self.assertEqual(self.get_points()[1][0], 0.75)
+        page.run("document.querySelector('[aria-label=\"x of the point of thrust\"]').select()")
+        page.type("3.5\n")
+        self.wait("document.querySelector('.curve-editor output').textContent.includes('x stays between 0 and 3')")
+        self.assertEqual(self.get_points()[1][0], 0.75)
+        self.assertEqual([e for e in page.list_errors() if "favicon" not in e], [])
+
+    def test_tables_of_parameters_are_not_dragged(self):
+        page = self.show("curves.toml", CURVES.replace('name = "curves"\n', 'name = "curves"\n[parameters]\npeak = 2.0\n').replace("y = [0.0, 2.0", 'y = [0.0, "$peak"'))
+        page.click("details.functions summary")
+        self.wait("document.querySelector('.function-curves').dataset.count === '1'")
+        self.assertEqual(page.run("document.querySelectorAll('.curve-editor').length"), 0)
 
 
 if __name__ == "__main__":
