@@ -136,7 +136,7 @@ class Places(Edits):
         hinge = self.get_hinge("wrist")
         self.assertEqual((hinge["parent_node"], hinge["parent_position"]), (8, [0.0, 0.0, 0.0]))
         np.testing.assert_allclose(self.get_place("hand"), turn([0.6, 0.3, 0.0]), atol=1e-6)
-        # By keys: a node, then numbers from it.
+        # Keys: a node, then numbers from it.
         page.run("document.querySelector('[aria-label=\"place node\"]').select()")
         page.type("7\n")
         self.wait("studio.view.pane.text.includes('parent_node = 7')")
@@ -159,7 +159,7 @@ class Places(Edits):
         self.assertEqual([e for e in page.list_errors() if "favicon" not in e], [])
 
     def test_parameters_stay(self):
-        """A place that is made of parameters is left alone, and the page tells why."""
+        """A place that is made of parameters is left alone, with a message."""
         text = ARM.replace('name = "arm"\n', 'name = "arm"\n[parameters]\nlength = 1.0\n', 1).replace("parent_position = [1.0, 0.0, 0.0]", 'parent_position = ["$length", 0.0, 0.0]')
         page = self.show("arm.toml", text)
         self.choose_by_letter("move", "hand at wrist")
