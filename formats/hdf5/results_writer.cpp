@@ -109,9 +109,8 @@ class ResultsWriter final : public records::ResultSink {
 
   void end(bool completed, const std::string& reason) override {
     BOUGH_DEMAND(file_.is_open());
-    state_.completed = completed;
+    completed_ = completed;
     reason_ = reason;
-    state_.wall_time = wall_time_before_ + std::chrono::duration<double>(Clock::now() - began_).count();
     // A continuation that ends before the place that the killed run had reached is given up: the old file has more.
     if (!file_.is_published() && !completed && num_rows_ < num_safe_rows_) return file_.close();
     commit();
@@ -308,6 +307,10 @@ class ResultsWriter final : public records::ResultSink {
       announce(2 * (used_ - last_used_));
     file_.sync();
     state_.num_samples = static_cast<std::int64_t>(num_rows_);
+    if (reason_) {  // on no page before: a file that a kill leaves here is not complete
+      state_.completed = completed_;
+      state_.wall_time = wall_time_before_ + std::chrono::duration<double>(Clock::now() - began_).count();
+    }
     write_first_page();
     num_committed_ = num_rows_;
     num_since_look_ = 0;
@@ -352,6 +355,7 @@ class ResultsWriter final : public records::ResultSink {
   std::size_t next_slot_ = 0;
   std::optional<double> energy_error_;
   std::optional<std::string> reason_;  ///< at the end
+  bool completed_ = false;             ///< the same
   double wall_time_before_ = 0;
   bool has_committed_ = false;
   Address used_ = 0, announced_ = 0, last_used_ = 0;
