@@ -24,8 +24,7 @@ struct WeightedMean {
   std::vector<MeanMember> members;
 };
 
-/// The mean of an RBE3 along a curve: x̄ = Σ w x_k / Σ w, and its rotation R of best fit. Members with a rotation weight
-/// are 6-dof grids.
+/// The mean of an RBE3 along a curve: x̄ = Σ w x_k / Σ w, and its rotation R of best fit.
 class MeanSeries {
  public:
   /// u: of each member 6 x k, orders 1 to k, at most 5, of its translations and rotation vector.
