@@ -4,7 +4,8 @@
 /// A sticking coordinate is locked. Static friction limits its constraint force in both directions; a stop limits it to
 /// compression. Event functions, positive when the contact changes its mode:
 ///     sticking   excess of the constraint force over its limit
-///     free       penetration of a stop; sliding rate after a change of sign
+///     free       penetration of a stop; sliding rate after a change of sign, or that of a coordinate that its loops
+///     held
 #include <string>
 #include <vector>
 
