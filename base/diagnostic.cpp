@@ -58,7 +58,7 @@ void Diagnostics::add_new(const Diagnostic& d) {
 void Diagnostics::add(Diagnostic d) {
   if (d.severity == Severity::Error) ++num_errors_;
   if (d.severity == Severity::Warning) ++num_warnings_;
-  // A wrong card that is repeated three million times would take gigabytes to say so.
+  // A wrong card that is repeated three million times would give gigabytes of messages.
   constexpr std::size_t kMaxItems = 200'000;
   const auto is_same = [&](const Diagnostic& other) { return other.id == d.id && other.severity == d.severity; };
   if (items_.size() >= kMaxItems && std::any_of(items_.end() - 16, items_.end(), is_same)) return;

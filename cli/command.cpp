@@ -42,7 +42,7 @@ std::vector<std::string> get_names(const CLI::App& app) {
   return names;
 }
 
-/// The first argument that is no option must be a verb; anything else is answered with the nearest one.
+/// Rejects a first argument that is neither an option nor a command; the message names the nearest command.
 bool check_verb(const CLI::App& app, int argc, const char* const* argv, const cli::Console& console) {
   for (int i = 1; i < argc; ++i) {
     const std::string word = argv[i];
@@ -50,9 +50,9 @@ bool check_verb(const CLI::App& app, int argc, const char* const* argv, const cl
     const auto verbs = get_names(app);
     if (std::find(verbs.begin(), verbs.end(), word) != verbs.end()) return true;
     const auto successor = analysis::find_successor(word), nearest = find_nearest(word, verbs);
-    console.print_error("cli.unknown-verb", "unknown verb \"" + word + "\"",
+    console.print_error("cli.unknown-verb", "unknown command \"" + word + "\"",
                         !successor.empty() ? successor
-                        : nearest.empty()  ? "bough --help lists the verbs"
+                        : nearest.empty()  ? "bough --help lists the commands"
                                            : "did you mean \"" + nearest + "\"");
     return false;
   }
@@ -75,18 +75,17 @@ int run(int argc, const char* const* argv) {
   app.formatter(cli::make_formatter());
   app.set_help_flag("-h,--help", "Print this help and exit");
   app.footer(
-      "bough VERB --help, or bough help VERB, explains a verb. Exit codes: 0 success, 1 the input is wrong, 2 usage, 3 "
-      "the computation "
-      "failed.\n"
+      "bough COMMAND --help, or bough help COMMAND, explains a command. Exit codes: 0 success, 1 the input is wrong, 2 "
+      "usage, 3 the computation failed.\n"
       "Example:\n  bough init spinup && cd spinup && bough reduce boom.toml && bough run spinup.toml -o spinup.h5");
   bool show_version = false;
   std::string man_page, shell;
   app.add_flag("--version", show_version, "Print the versions of Bough and of its libraries");
   auto* const show_man_page = app.add_option("--man-page", man_page,
                                              "Print the manual page, as installed: bough --man-page | man -l -; "
-                                             "--man-page=VERB: that of a verb")
+                                             "--man-page=COMMAND: that of a command")
                                   ->expected(0, 1)
-                                  ->type_name("[=VERB]");
+                                  ->type_name("[=COMMAND]");
   app.add_flag_callback(
       "--bash-completion", [&] { shell = "bash"; }, "Print the completion for bash: . <(bough --bash-completion)");
   app.add_flag_callback(
@@ -111,7 +110,8 @@ int run(int argc, const char* const* argv) {
     return cli::kUsageError;
   }
   if (!man_page.empty() && cli::make_verb_man_page(app, man_page).empty()) {
-    console.print_error("cli.usage", "no verb '" + man_page + "' has a manual page", "see bough --help for the verbs");
+    console.print_error("cli.usage", "no command '" + man_page + "' has a manual page",
+                        "see bough --help for the commands");
     return cli::kUsageError;
   }
   if (show_version || show_man_page->count() > 0 || !shell.empty()) {
@@ -131,7 +131,7 @@ int run(int argc, const char* const* argv) {
     return static_cast<int>(count);
   };
   if (!action) {
-    console.print_error("cli.usage", "no verb given", "see bough --help");
+    console.print_error("cli.usage", "no command given", "see bough --help");
     return cli::kUsageError;
   }
   try {
@@ -161,7 +161,7 @@ int run_command(const std::vector<std::string>& given) {
   for (auto& word : words)  // -.5, as decks have it, would be an option
     if (word.size() > 2 && word.compare(0, 2, "-.") == 0 && word[2] >= '0' && word[2] <= '9') word.insert(1, "0");
   if (!words.empty() && words[0] == "version") words[0] = "--version";
-  if (!words.empty() && words[0] == "help") {  // bough help [VERB]
+  if (!words.empty() && words[0] == "help") {  // bough help [COMMAND]
     words.erase(words.begin());
     words.insert(words.begin() + (words.empty() ? 0 : 1), "--help");
   }

@@ -136,7 +136,7 @@ class FmuLaw {
     return make_memory(num_steps + 1, begin, first_.size());
   }
 
-  /// size: 0 where it is to be found, with room for a state that grows.
+  /// size: 0 if it is to be found, with room for a state that grows.
   std::vector<double> make_memory(double num_steps, double begin, std::size_t size) {
     std::vector<double> d{num_steps, begin};
     slave_->get_outputs(all_outputs_.data());
@@ -167,7 +167,7 @@ class FmuLaw {
   std::vector<double> last_in_, last_inputs_, last_out_;
 };
 
-/// Reads and checks what a [[controller]] says of its FMU.
+/// Reads and checks the keys of a [[controller]] of type fmu.
 class Reader {
  public:
   explicit Reader(records::ControllerRecord& record) : record_(record) {}

@@ -108,7 +108,7 @@ class SlaveBase : public Slave {
     message_.clear();
     throw std::runtime_error(what);
   }
-  /// Sets the string parameters; the function is looked up only where there are some.
+  /// Sets the string parameters; the function is looked up only if there are any.
   template <class Function, class... More>
   void set_texts(const char* name, More... more) {
     for (const auto& [v, text] : variables_.texts) {

@@ -55,7 +55,7 @@ Diagnostic make_error(const char* id, std::string what, std::string advice) {
   return {bough::Severity::Error, id, {}, std::move(what), std::move(advice)};
 }
 
-/// Runs `action`; what it throws becomes a status and the items to tell.
+/// Runs `action`; converts its exceptions to a status and messages.
 template <class Action>
 bough_status call(const Action& action, std::vector<Diagnostic>& told) noexcept {
   try {

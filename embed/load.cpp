@@ -35,12 +35,12 @@ void give_rigid_part(records::FlexBody& body, bool has_rigid, const std::optiona
                      const std::string& path) {
   if (!has_rigid && !given)
     throw InputError("flx.no-inertia", {path},
-                     "the file does not say the mass centre and the inertia of body \"" + body.name + "\"",
+                     "the file contains no centre of mass and no inertia of body \"" + body.name + "\"",
                      "give cg and inertia in the [[body]] of the system, or write the file with bough flx from a body "
                      "that has them");
   if (has_rigid && given)
     throw InputError("flx.two-inertias", {path},
-                     "the file says the mass centre and the inertia of body \"" + body.name + "\" itself",
+                     "the file contains the centre of mass and the inertia of body \"" + body.name + "\" itself",
                      "take cg and inertia out of the [[body]]");
   if (!given) return;
   body.cg = given->cg;

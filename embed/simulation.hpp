@@ -41,7 +41,7 @@ class Simulation {
   const Diagnostics& diagnostics() const { return diagnostics_; }
   /// Returns the specification with the options of the host.
   const records::SystemSpec& spec() const { return spec_; }
-  /// Hash of all that must be the same where a state is restored.
+  /// Hash of the data that must be equal when a state is restored.
   std::uint64_t fingerprint() const { return fingerprint_; }
 
   /// Returns true if the run goes on at t; false if an event or its duration has ended it, at time() <= t.

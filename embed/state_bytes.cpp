@@ -12,7 +12,8 @@ constexpr std::uint64_t kMagic = 0x31545347554f4221u;
 constexpr std::uint64_t kMaxName = 256;
 
 [[noreturn]] void fail(const std::string& what) {
-  throw InputError("embed.bad-state", {}, what, "restore what a simulation of the same model and options has saved");
+  throw InputError("embed.bad-state", {}, what,
+                   "restore a state that a simulation of the same model and options has saved");
 }
 
 void write_section(ByteWriter& w, const std::string& name, const Eigen::VectorXd& values) {

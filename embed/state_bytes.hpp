@@ -11,7 +11,7 @@ namespace bough::embed {
 /// 64-bit FNV-1a, from a hash so far on.
 std::uint64_t calc_hash(std::span<const std::byte> bytes, std::uint64_t hash = 14695981039346656037u);
 
-/// `fingerprint`: of what must be the same where the state is restored.
+/// `fingerprint`: hash of the system and options, which must be equal when the state is restored.
 std::vector<std::byte> encode_state(const records::Checkpoint& state, std::uint64_t fingerprint);
 /// \param size  fewest bytes that a saved state takes. Bytes after the state are skipped.
 /// Throws InputError "embed.bad-state".

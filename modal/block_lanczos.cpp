@@ -65,7 +65,7 @@ class BlockLanczos {
   MatrixXd B_before_;          ///< B times the block before
   bool is_recurrent_ = false;  ///< A⁻¹B of the last block has nothing but roundoff of blocks before these two
   int size_ = 0, last_width_ = 0;
-  double scale_ = 0;  ///< the largest ‖A⁻¹B v‖ so far: what is small is small beside it
+  double scale_ = 0;  ///< the largest ‖A⁻¹B v‖ so far: what is small is small next to it
   VectorXd theta_, error_;
   MatrixXd S_;
   int num_solves_ = 0;
@@ -128,7 +128,8 @@ void BlockLanczos::orthonormalize(MatrixXd& W, MatrixXd& C, MatrixXd& R) {
   const double near = is_recurrent_ ? relieve(W, B_W, C) : 0;
   const double most = is_recurrent_ ? 20 : 2;  // that a pass may take off
   for (int pass = 0; pass < 5 && W.cols() > 0; ++pass) {
-    VectorXd squares = VectorXd::Zero(W.cols());  // of W as it was given: of what is taken off, and what is left
+    VectorXd squares =
+        VectorXd::Zero(W.cols());  // squared norms of the given W: the projected-out part plus the remainder
     if (has_known) {
       const MatrixXd D = linear::calc_inner_products(problem_.deflate, B_W);
       subtract(problem_.deflate, D, W);

@@ -43,7 +43,7 @@ struct BlockLanczosResult {
 /// Block Lanczos with full orthogonalization in the B inner product and thick restart (Golub & Underwood 1977; Grimes,
 /// Lewis & Simon, SIAM J. Matrix Anal. Appl. 15 (1994) 228; Wu & Simon, ibid. 22 (2000) 602). A Ritz pair counts as
 /// converged when its residual ‖A⁻¹B x - θx‖_B is below tolerance θ, or below the roundoff of the largest θ where that
-/// is no more than a thousand times as much. Costs O(n m²) beside the solves, m the subspace.
+/// is no more than a thousand times as much. Costs O(n m²) in addition to the solves, m the subspace.
 BlockLanczosResult solve_block_lanczos(BlockLanczosProblem problem);
 
 }  // namespace bough::modal::detail

@@ -182,10 +182,11 @@ EigenPairs BucklingModes::make_pairs(Roots roots, int number) {
 EigenPairs BucklingModes::solve() {
   const auto rigid = detail::find_rigid_motions(pencil_);
   if (rigid.modes.cols() + rigid.massless.cols() > 0)
-    throw ComputationError("modal.buckling-free", {},
-                           "buckling needs a supported model: " +
-                               std::to_string(rigid.modes.cols() + rigid.massless.cols()) + " rigid motion(s) are free",
-                           "add SPC cards and select them with SPC in the case control");
+    throw ComputationError(
+        "modal.buckling-free", {},
+        "buckling needs a supported model: " + std::to_string(rigid.modes.cols() + rigid.massless.cols()) +
+            " rigid-body motion(s) are free",
+        "add SPC cards and select them with SPC in the case control");
   Roots roots = make_none(pencil_);
   int wanted = options_.num_modes;
   if (wanted > 0 && (options_.min_hz || options_.max_hz)) {
@@ -205,7 +206,7 @@ EigenPairs BucklingModes::solve() {
   }
   auto pairs = make_pairs(std::move(roots), wanted);
   if (pairs.lambda.size() == 0)
-    diagnostics_.warning("modal.empty-range", {}, "no load factor lies in the range asked for",
+    diagnostics_.warning("modal.empty-range", {}, "no load factor is in the requested range",
                          "widen V1 and V2 of the card; a load that only stiffens has negative load factors alone");
   return pairs;
 }

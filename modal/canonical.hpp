@@ -1,5 +1,5 @@
 #pragma once
-/// \file What makes eigenvectors the same on any number of ranks: a canonical basis of each repeated root, and signs.
+/// \file Canonical eigenvectors, equal for any number of ranks: a basis for each repeated eigenvalue, and signs.
 #include <functional>
 #include <vector>
 

@@ -18,7 +18,7 @@ namespace {
 using detail::Answer;
 using detail::NormalModes;
 
-/// Solves by Krylov-Schur or what suits (choose_solver), and by blocks where Krylov-Schur has missed some.
+/// Solves by the chosen EPS type (choose_solver), and again by block Lanczos if Krylov-Schur has missed modes.
 Answer solve_twice(NormalModes& modes, const EigenOptions& options) {
   Answer answer = modes.solve(options.solver);
   if (!answer.is_sound && modes.has_second_solver()) answer = modes.solve(detail::kBlockLanczos);
@@ -26,7 +26,7 @@ Answer solve_twice(NormalModes& modes, const EigenOptions& options) {
 }
 
 /// The plan of every solution: first from K shifted by a little M, the rigid-body motions of the whole known; where
-/// that leaves a doubt, every motion without strain known before, of parts too, with supports in K in place of the
+/// that leaves a doubt, every zero-energy motion known before, of parts too, with supports in K in place of the
 /// shift. The second answer counts where it is sound and better.
 Answer find_answer(const fe::System& system, const EigenOptions& options) {
   std::optional<Answer> answer;
@@ -46,7 +46,7 @@ Answer find_answer(const fe::System& system, const EigenOptions& options) {
       const bool is_better = !answer || !answer->is_sound || other.worst() < answer->worst();
       if (is_better && other.is_sound && other.worst_roundoff < detail::kVagueRoundoff) answer = std::move(other);
     }
-  } catch (const ComputationError&) {  // what was said first is nearer to the model
+  } catch (const ComputationError&) {  // keep the first diagnostics: they are closer to the model
   }
   if (!answer) throw *refusal;
   return std::move(*answer);
@@ -55,8 +55,8 @@ Answer find_answer(const fe::System& system, const EigenOptions& options) {
 /// All modes of a model up to this many dofs are found, however many were asked for.
 constexpr int most_whole = 1000;
 
-/// Modes whose digits the sums in K have lost, from the strain of the elements. Soft modes that nobody asked for mix
-/// with those asked for, where K cannot tell them apart: more are found as long as that helps.
+/// Recomputes ill-conditioned modes from the strain of the elements. Soft modes that are not requested may mix with
+/// requested ones if K does not separate them: further modes are computed as long as this reduces the error.
 detail::Restored find_soft(const fe::System& system, const EigenOptions& options, EigenPairs& pairs) {
   constexpr int most = 400;
   const auto number = static_cast<int>(pairs.lambda.size());
@@ -79,7 +79,7 @@ detail::Restored find_soft(const fe::System& system, const EigenOptions& options
         pairs.solvers = others.solvers;
       }
     } catch (const ComputationError&) {
-      break;  // the first stand, with what is said of them
+      break;  // keep the modes of the first pass, with their diagnostics
     }
     if (wider.num_modes == system.model.num_fdofs()) break;
   }

@@ -23,8 +23,8 @@ using Eigen::Index;
 
 constexpr int kMostDofs = 24;        // of an element taken apart
 constexpr double kRoundoff = 1e-13;  // of uᵀK_e u, over its parts
-constexpr double kNoMotion = 1e-13;  // scaled principal stiffness of an element's rigid motions
-constexpr double kNoStrain = 1e-22;  // energy over its parts: what vectors of sixteen digits leave of zero
+constexpr double kNoMotion = 1e-13;  // scaled principal stiffness of an element's rigid-body motions
+constexpr double kNoStrain = 1e-22;  // energy over its parts: the square of the round-off of doubles
 constexpr double kSoft = 1e-9;       // below this share of their parts, energies of K are looked at
 constexpr double kSame = 1e-6;       // relative, of eigenvalues
 constexpr double kShift = 1e-13;     // of diag K, which makes K definite
@@ -87,7 +87,7 @@ class SoftModes {
   SoftModes(const fe::System& system, const Pencil& pencil, MatrixXd X)
       : pencil_(pencil), factor_(shift(system), false, linear::FactorMethod::Pivoting), X_(std::move(X)) {}
 
-  /// False where nothing came of it.
+  /// False if nothing came of it.
   bool improve() {
     if (factor_.is_singular()) return false;
     double before = std::numeric_limits<double>::infinity();
@@ -259,7 +259,7 @@ std::string find_stiffest(const fe::Model& model) {
   return stiffest;
 }
 
-/// Blocks of given matrices are no structures of their own: their energies are no strain.
+/// Blocks of given matrices are no separate structures: their energies are no strain.
 bool has_given_blocks(const fe::Model& model) { return model.has_card("DMIG"); }
 
 }  // namespace

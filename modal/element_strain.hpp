@@ -12,7 +12,7 @@ struct ElementStrain {
   MatrixXd forces;  ///< Σ K_e u_e, num_gdofs x m
   MatrixXd energy;  ///< Σ u_eᵀ K_e u_e, m x m
   VectorXd parts;   ///< Σ diag(K_e) u_e², m: what the energies are a difference of
-  VectorXd whole;   ///< the share of it by strained elements that are not taken apart, m
+  VectorXd whole;   ///< part of it by elements that are not decomposed, m
 };
 
 /// Of displacements X_g, num_gdofs x m; replicated. `is_fine`: elements of up to 24 dofs are taken apart into their

@@ -21,7 +21,7 @@ using linear::check_petsc;
 class OwnSolver {
  public:
   virtual ~OwnSolver() = default;
-  /// Fills values (λ) and vectors; the number that converged. `is_done`: all that were wanted, or all that exist.
+  /// Computes values (λ) and vectors; returns the number that converged. `is_done`: all requested or all existing ones.
   virtual int run(EPS eps, const FactoredOperator& op, bool& is_done) = 0;
 
   VectorXd values;
@@ -107,7 +107,7 @@ PetscErrorCode set_up(EPS eps) {
                                EPS_FEATURE_CONVERGENCE | EPS_FEATURE_STOPPING | EPS_FEATURE_TWOSIDED);
   if (eps->max_it == PETSC_DEFAULT) eps->max_it = 100;
   if (!eps->which) eps->which = EPS_TARGET_MAGNITUDE;
-  // Vectors are in one matrix of ours: the basis of EPS is made where one is asked for.
+  // The vectors are in a separate matrix: the basis of EPS is allocated only if it is requested.
   const PetscErrorCode code = run_guarded(get(eps).failure, [&] {
     if (eps->ncv < eps->nev) eps->ncv = eps->nev;
     if (!eps->eigr) allocate_values(eps, eps->ncv);

@@ -59,7 +59,7 @@ std::string choose_solver(const SolverFacts& facts) {
   return EPSKRYLOVSCHUR;
 }
 
-/// The factored matrix and what applies its factor; its members point at each other, so it stays where it is made.
+/// The factored matrix and the objects that apply its factor. Members point at each other: not movable.
 struct Factored {
   FactoredOperator op;
   bool is_definite = false, is_singular = false;
@@ -155,7 +155,7 @@ void purify(const EigenProblem& problem, const FactoredOperator& op, Extraction&
   }
 }
 
-/// Leaves out what is roundoff, and what has the wrong sign.
+/// Removes eigenpairs that are round-off or have the wrong sign.
 void drop_roundoff(const EigenProblem& problem, Extraction& result) {
   const VectorXd theta = is_near(problem) ? VectorXd((result.values.array() - problem.shift).inverse()) : result.values;
   const double largest = theta.size() > 0 ? theta.cwiseAbs().maxCoeff() : 0;
@@ -212,7 +212,7 @@ class EpsRun {
     }
     PetscBool is_low_rank = PETSC_FALSE;
     check_petsc(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(eps()), kLowRank, &is_low_rank));
-    if (!is_low_rank) {  // else each is in the range of (A - σB)⁻¹B as it comes
+    if (!is_low_rank) {  // of low rank, each vector is in the range of (A - σB)⁻¹B already
       drop_roundoff(problem_, result);
       if (is_near(problem_)) purify(problem_, op_, result);
     }
@@ -265,7 +265,7 @@ class EpsRun {
                                                                : 4);
       settings.deflation = std::move(deflation_);
       settings.num_guard = problem_.num_guard;
-      // The vectors are the most of the memory beside the factor: for few modes a restart costs next to nothing.
+      // The vectors are the most of the memory next to the factor: for few modes a restart has negligible cost.
       settings.max_subspace = 11 * wanted_ / 5 + std::clamp(wanted_, 24, 60);
       settings.positive_only = problem_.spectrum == Spectrum::LargestPositive;
       if (is_near(problem_)) settings.release = problem_.release;
@@ -287,7 +287,7 @@ class EpsRun {
     check_petsc(EPSSetTolerances(
         eps(), is_preconditioned_ ? std::max(problem_.tolerance, kPreconditionedTolerance) : problem_.tolerance,
         has_subspace ? kMaxRestarts : PETSC_DEFAULT));
-    if (is_dense) {  // takes no deflation space: the operator has none of it
+    if (is_dense) {  // needs no deflation space: the operator projects it out
       op_.deflation = &deflation_;
       return;
     }
@@ -361,7 +361,7 @@ std::string find_requested(const EigenProblem& problem) {
 
 [[noreturn]] void throw_unsuited(const std::string& type, const std::string& why) {
   throw ComputationError("modal.unsuited-solver", {}, "SLEPc's eigensolver " + type + " found no modes: " + why,
-                         "choose another, or none: then the one that suits the model is taken");
+                         "choose another, or leave --solver out: then Bough chooses one for the model");
 }
 
 }  // namespace
@@ -400,10 +400,11 @@ Extraction extract(const EigenProblem& problem) {
     if (problem.restore) problem.restore();
     type = type == EPSKRYLOVSCHUR ? kBlockLanczos : EPSKRYLOVSCHUR;
   }
-  throw ComputationError("modal.no-convergence", {},
-                         "the eigenvalue solver found no " + std::to_string(wanted) + " modes: it did not converge",
-                         "ask for fewer modes; look for parts that nothing holds, and for very soft beside very stiff "
-                         "ones");
+  throw ComputationError(
+      "modal.no-convergence", {},
+      "the eigenvalue solver found no " + std::to_string(wanted) + " modes: it did not converge",
+      "ask for fewer modes; look for parts that nothing holds, and for very soft parts next to very stiff "
+      "ones");
 }
 
 }  // namespace bough::modal::detail

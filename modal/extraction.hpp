@@ -42,7 +42,7 @@ struct EigenProblem {
   MatrixXd deflate;      ///< n x k known eigenvectors, kept out; k may be 0
   double tolerance = 1e-12;
   const linear::SymmetricFactor* factor = nullptr;  ///< of A - shift B or of B, whichever is factored; null: made here
-  FactoredHandle* kept = nullptr;                   ///< keeps the factor made here for the next call; null: nobody asks
+  FactoredHandle* kept = nullptr;                   ///< receives the factor for the next call; null: not requested
   bool definite_only = false;                       ///< an indefinite matrix to factor counts as singular
   double min_energy = 0;        ///< below this relative energy of its softest motion it does too (calc_softest_energy)
   linear::RowKinds kinds = {};  ///< of the rows, where min_energy is set

@@ -24,7 +24,7 @@ MassIntegrals make_empty(int num_modes) {
   return g;
 }
 
-/// Rows of one component (0..5) at every node: p x m, zero where the dof is missing.
+/// Rows of one component (0..5) at every node: p x m, zero if the dof is missing.
 MatrixXd take_component(const NodalDofs& dofs, const MatrixXd& X, int component) {
   MatrixXd part(dofs.num_nodes(), X.cols());
   for (Eigen::Index j = 0; j < X.cols(); ++j)
@@ -80,7 +80,7 @@ bool moves_alike(const NodalDofs& dofs, const MassTimes& mass_times) {
         if (!(std::abs(M_X(dofs.row(k, a), c) - (a == c ? momentum : 0)) <= kSame * std::abs(momentum))) return false;
     M_X(dofs.row.row(k), Eigen::all).setZero();
   }
-  return M_X.isZero(0);  // nor does it couple to what is no node's
+  return M_X.isZero(0);  // no coupling of the node to scalar or modal DOFs
 }
 
 /// Adds what carried masses have: gram as calc_carried_gram gives it.

@@ -23,8 +23,8 @@ MassIntegrals calc_momentum_integrals(const fe::Model& model, fe::MassKind kind,
 MassIntegrals calc_exact_integrals(const fe::Model& model, fe::MassKind kind, const MatrixXd& Phi,
                                    const Vector3d& reference = Vector3d::Zero());
 
-/// The integrals that the momentum formulas stand for, where they hold: of a lumped mass, whose pieces are bodies on
-/// single grids, those of the pieces; else the formulas with M of the given kind.
+/// Computes the set of integrals with the name `kind`: for a lumped mass, whose pieces are bodies on single grids, the
+/// sum over the pieces; otherwise the momentum formulas with M of that kind.
 MassIntegrals calc_named_integrals(const fe::Model& model, fe::MassKind kind, const MatrixXd& Phi);
 
 /// X -> M X for a mass matrix known only by its products, ndof x m.

@@ -171,7 +171,7 @@ Roots solve_stage(const LowRankProblem& problem, const MatrixXd& known, int numb
 }  // namespace
 
 Roots solve_low_rank(const LowRankProblem& problem) {
-  // In stages: beside values a million times as large roundoff is all that G has of the small ones.
+  // In stages: next to values a million times as large roundoff is all that G has of the small ones.
   Roots all{VectorXd(0), MatrixXd(problem.C->rows(), 0)};
   MatrixXd known = problem.known;
   const auto wanted = std::min<Eigen::Index>(problem.num_wanted, problem.C->cols() - known.cols());

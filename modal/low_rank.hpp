@@ -11,7 +11,7 @@
 namespace bough::modal::detail {
 
 /// C, n x r, with M = C Cᵀ where the rank r of M (positive semi-definite, its diagonal given) is max_rank at most;
-/// nothing where it is higher or M is indefinite. Cholesky of the matrix scaled to a unit diagonal, pivots from the
+/// nothing if it is higher or M is indefinite. Cholesky of the matrix scaled to a unit diagonal, pivots from the
 /// largest decade down; what is left below 3e-12 is roundoff of masses that dependent dofs shared out (Higham, Accuracy
 /// and Stability of Numerical Algorithms, 2nd ed., 10.3). Touches no more than max_rank columns.
 std::optional<Eigen::SparseMatrix<double>> factor_low_rank(const linear::SymmetricMatrix& M,
@@ -24,7 +24,7 @@ struct LowRankProblem {
   BlockApply solve;             ///< (A - σM)⁻¹X, A = K but for springs that `known` alone moves
   double shift = 0;             ///< σ
   MatrixXd known;               ///< M-orthonormal eigenvectors, kept out
-  bool projects_known = false;  ///< A has such springs: what they hold of `known` is taken out of each solution
+  bool projects_known = false;  ///< A has such springs: the components along `known` are projected out of each solution
   int num_wanted = 1;
 };
 

@@ -15,7 +15,7 @@ struct MatrixModel {
   MatrixXd Phi;    ///< num_dofs x n: the modes that are kept
   NodalDofs dofs;
   Vector3d reference = Vector3d::Zero();  ///< Bo: integrals and nodes are about it
-  double mass = 0;                        ///< of the whole body: M may lack what its supports carry
+  double mass = 0;                        ///< of the whole body: M may not contain the mass at its supports
   double zeta = 0;
 };
 

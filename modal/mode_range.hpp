@@ -13,7 +13,7 @@ double calc_lower(const EigenOptions& options);
 double calc_upper(const EigenOptions& options);
 
 /// Positions wanted, [first, last). The inertia of the factor guesses them, the roots found decide: the inertia is off
-/// where parts move without strain and with next to no mass.
+/// where parts move without strain and with negligible mass.
 struct ModeRange {
   int first = 0, last = 0;
 

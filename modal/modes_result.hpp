@@ -6,7 +6,7 @@
 
 namespace bough::modal {
 
-/// What else of normal modes is asked for.
+/// Additional requested results of normal modes.
 struct ModesExtras {
   const records::Deck* energies_of = nullptr;  ///< energies of the elements, whose properties this deck names
   int about_grid = 0;  ///< effective masses about this grid; InputError modal.unknown-grid where the model has it not

@@ -50,7 +50,7 @@ void warn_of_fewer(int found, int asked, bool is_range, Diagnostics& said) {
 }
 
 EigenPairs NormalModes::answer_nothing(Diagnostics& said) {
-  said.warning("modal.empty-range", {}, "no mode lies in the frequency range asked for",
+  said.warning("modal.empty-range", {}, "no mode is in the requested frequency range",
                "widen the range of EIGRL or of --min-hz and --max-hz");
   found_ = {VectorXd(0), MatrixXd(pencil_.size(), 0)};
   num_zero_ = 0;
@@ -66,12 +66,13 @@ void NormalModes::hold_massless(Diagnostics& said) {
   has_own_stiffness_ = false;
   std::string where;
   for (const int f : rigid_.held) where += (where.empty() ? "" : ", ") + describe(pencil_.model, f);
-  said.warning("modal.massless-motion", {},
-               std::to_string(rigid_.held.size()) + " rigid motion(s) have neither strain nor mass; held at " + where,
-               "use a consistent mass or give the model inertia about that axis");
+  said.warning(
+      "modal.massless-motion", {},
+      std::to_string(rigid_.held.size()) + " rigid-body motion(s) have neither strain nor mass; held at " + where,
+      "use a consistent mass or give the model inertia about that axis");
 }
 
-/// A guess, -1 where the factor has none: the roots decide (fit_range).
+/// Estimate by the inertia, -1 if the factor fails; the computed eigenvalues decide (fit_range).
 int NormalModes::count_below(double lambda) const {
   return lambda > 0 ? count_roots_below(pencil_.K, pencil_.M, lambda) : 0;
 }
@@ -105,7 +106,7 @@ void NormalModes::make_solver(const std::string& eps_type) {
     problem.release = [this] { is_away_ = fe::drop_stiffness(pencil_.K); };
     problem.restore = [this] {
       if (!std::exchange(is_away_, false)) return;
-      linear::release_freed_memory();  // of the factor, and of what assembly takes
+      linear::release_freed_memory();  // of the factor and of the assembly
       fe::restore_stiffness(pencil_.model, pencil_.K);
       linear::release_freed_memory();
     };
@@ -123,7 +124,7 @@ bool NormalModes::add_roots(Roots& roots, int number, int guard, bool definite_o
 }
 
 /// K itself is factored where supports hold the model: no shift to choose, and no second factor because it was too
-/// high. A mechanism, or a mode too soft to tell from one, shows as a first vector with next to no strain.
+/// high. A mechanism, or a mode too soft to tell from one, shows as a first vector with negligible strain.
 void NormalModes::find_first() {
   constexpr int guard = 2;  // those above show the gap
   const int request = std::max(0, range_.last - num_rigid()) + guard;
@@ -143,7 +144,7 @@ void NormalModes::find_first() {
     found_ = none;
     add_roots(found_, request, guard);
     // A shift far above the first eigenvalue with strain costs digits, and the vectors where it is out of all
-    // proportion; one far below it lets the motions without strain into them: move it by what the strain energies say.
+    // proportion; one far below it lets the zero-energy motions into them: move it by what the strain energies say.
     const VectorXd energy = found_.X.cwiseProduct(pencil_.calc_K_times(found_.X)).colwise().sum();
     double lowest = 0;
     for (int i = 0; i < found_.size(); ++i)
@@ -156,7 +157,7 @@ void NormalModes::find_first() {
   if (pencil_.model.prestress()) find_negative();
 }
 
-/// A shift that makes K + shift M definite, shift_ or larger; 0: none of those tried does.
+/// Finds a shift >= shift_ for which K + shift M is positive definite; 0 if none of the trials is.
 double NormalModes::find_definite_shift() const {
   const auto is_above = [&](double shift) { return count_roots_below(pencil_.K, pencil_.M, -shift) == 0; };
   double shift = shift_;
@@ -174,7 +175,7 @@ void NormalModes::find_negative() {
 }
 
 /// A spring may leave single roots so far below zero that Lanczos sees nothing of them from near the others: `missing`
-/// more by a shift below all, then back. False where there is no such shift.
+/// more by a shift below all, then back. False if there is no such shift.
 bool NormalModes::add_far_below(int missing) {
   const double near = shift_, far = shift_ > 0 ? find_definite_shift() : 0;
   if (!(far > near)) return false;
@@ -243,7 +244,7 @@ VectorXd NormalModes::calc_residuals(const VectorXd& lambda, const MatrixXd& X) 
     const auto num = std::min(kColumnsAtOnce, X.cols() - c);
     const auto some = X.middleCols(c, num);
     MatrixXd KX = pencil_.calc_K_times(some);
-    for (const auto& [f, stiffness] : springs_) KX.row(f) -= stiffness * some.row(f);  // rigid motions move them
+    for (const auto& [f, stiffness] : springs_) KX.row(f) -= stiffness * some.row(f);  // rigid-body motions move them
     residual.segment(c, num) =
         linear::calc_pair_residuals(pencil_.K_diagonal, pencil_.M_diagonal, lambda.segment(c, num), some, KX,
                                     pencil_.calc_M_times(some), pencil_.kinds);
@@ -256,7 +257,7 @@ EigenPairs NormalModes::finish_pairs(Found found, int count, Diagnostics& said) 
   auto& [lambda, X, k, num_zero, first, size] = found;
   const auto cut = static_cast<int>(lambda.size());
   if (cut > k) {
-    // Purification and separate Krylov runs leave the vectors orthogonal to nine digits or so: once more.
+    // Purification and separate Krylov runs leave the vectors orthogonal to nine digits or so: again.
     const MatrixXd& R = rigid_.modes;
     MatrixXd Y = k > 0 ? MatrixXd(X.rightCols(cut - k)) : std::move(X);
     if (R.cols() > 0) Y -= R * pencil_.dot(pencil_.calc_M_times(R), Y);

@@ -1,6 +1,5 @@
 #pragma once
-/// \file One way to the normal modes of a model: its motions without strain, the roots besides them, what they are
-/// worth.
+/// \file Computes the normal modes of a model by one method: zero-energy modes, elastic modes, and their accuracy.
 #include <limits>
 #include <optional>
 #include <utility>
@@ -14,7 +13,7 @@
 
 namespace bough::modal::detail {
 
-/// What one way to the modes came to.
+/// The modes computed by one method, with their residuals.
 struct Answer {
   EigenPairs pairs;
   bool is_sound = false;
@@ -65,8 +64,8 @@ class NormalModes {
   RootSearchResult search();
   bool fit_range(int cut);
   bool has_every_root();
-  /// The modes, by the EPS type that suits or by the one that is named; `is_sound` false where it missed some or left
-  /// a residual.
+  /// Computes the modes by the named EPS type, or the one chosen for the problem; `is_sound` is false if modes are
+  /// missing or a residual is large.
   EigenPairs find_pairs(const std::string& eps_type, bool& is_sound, Diagnostics& said);
   EigenPairs make_pairs(int cut, int count, Diagnostics& said);
   /// M-orthonormal values and vectors of whole clusters, the first `num_known` and `num_zero` without strain; those of
@@ -100,7 +99,7 @@ class NormalModes {
   std::optional<PencilSolver> solver_;
   ModeRange range_;
   double shift_ = 0;  ///< K + shift M is definite
-  Roots found_;       ///< besides the rigid motions, ascending
+  Roots found_;       ///< besides the rigid-body motions, ascending
   int num_zero_ = 0;  ///< mechanisms among them, first: no strain either
   double worst_roundoff_ = 0;
   double overlap_ = 0;  ///< how far the vectors found were from M-orthonormal

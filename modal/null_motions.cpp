@@ -18,7 +18,7 @@ namespace {
 
 using Eigen::Index;
 
-/// diag K; where nothing stiffens a dof what is in keeping with its mass.
+/// diag K; for a DOF without stiffness a value in proportion to its mass.
 VectorXd calc_scale(const Pencil& pencil) {
   const VectorXd &D = pencil.K_diagonal, &M = pencil.M_diagonal;
   VectorXd scale = linear::fill_diagonal(D, pencil.kinds);
@@ -57,8 +57,8 @@ std::optional<MatrixXd> find_null_space(const Pencil& pencil, const VectorXd& D,
 void append(MatrixXd& A, const MatrixXd& B) { A = join(A, B); }
 
 /// Makes the D-orthonormal motions Y orthogonal under D and M, normal under M, by descending mass. In rounds: a motion
-/// with little mass per D among such with much keeps its digits. Those that have none in roundoff, beside their parts
-/// or beside the others, go to `massless`: as modes their zero would be vague by 1e-3 of what the others have.
+/// with little mass per D among such with much keeps its digits. Those that have none in roundoff, next to their parts
+/// or next to the others, go to `massless`: as modes their zero would be vague by 1e-3 of what the others have.
 MatrixXd split_by_mass(const Pencil& pencil, const VectorXd& D, MatrixXd Y, MatrixXd& massless) {
   MatrixXd heavy(Y.rows(), 0);
   const double nothing = kDofMassShare * (pencil.M_diagonal.array() / D.array()).maxCoeff();  // of a single dof
@@ -96,8 +96,8 @@ std::vector<int> choose_dofs(const VectorXd& D, const MatrixXd& X) {
   return dofs;
 }
 
-/// The motions in the span of Z that are M-orthogonal to R, which is in it: as those of split_by_mass, and where two
-/// have the same mass, turned by the weights of repeated roots.
+/// The motions in the span of Z that are M-orthogonal to its subspace R, ordered as by split_by_mass; motions of equal
+/// mass have the canonical basis of repeated eigenvalues.
 MatrixXd complement(const Pencil& pencil, const VectorXd& D, const MatrixXd& R, const MatrixXd& Z) {
   const Index left = Z.cols() - R.cols();
   if (left <= 0) return MatrixXd(Z.rows(), 0);
@@ -140,7 +140,7 @@ RigidMotions find_null_motions(const Pencil& pencil) {
     const MatrixXd at_held = result.massless(result.held, Eigen::all);
     result.modes -= result.massless * at_held.partialPivLu().solve(MatrixXd(result.modes(result.held, Eigen::all)));
   }
-  // Parts of the massless motions have come and gone: what is left of them shows in M.
+  // Components along massless motions were added and subtracted: their round-off shows in M.
   orthonormalize(pencil, result.modes);
   result.supports = choose_dofs(D, result.modes);
   return result;

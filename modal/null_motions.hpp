@@ -1,5 +1,5 @@
 #pragma once
-/// \file Every motion without strain, of the whole and of its parts: by inverse iteration, for where the modes found
+/// \file Every zero-energy motion, of the whole and of its parts: by inverse iteration, for where the modes found
 /// from a shifted K are not sound.
 #include "modal/pencil.hpp"
 

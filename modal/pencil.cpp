@@ -175,7 +175,7 @@ MatrixXd find_forceless(const Pencil& pencil, const MatrixXd& Y, double floor) {
 
 namespace {
 
-/// D times the rigid motions about a point, D the diagonal of K, and of these Y, those without strain.
+/// D times the rigid-body motions about a point, D the diagonal of K, and of these Y, those without strain.
 struct Strainless {
   MatrixXd DB, Y;
 };
@@ -217,7 +217,7 @@ RigidMotions find_global_motions(const Pencil& pencil) {
   RigidMotions result;
   result.modes.resize(model.num_fdofs(), 0);
   result.massless.resize(model.num_fdofs(), 0);
-  // What supports hold needs no centre of mass.
+  // A supported model needs no centre of mass.
   if (!model.fixed_dofs().empty() && find_strainless(pencil, calc_mean_position(model)).Y.cols() == 0) return result;
   const auto properties = fe::calc_mass_properties(model, model.mass_kind(), Vector3d::Zero());
   const Vector3d centre = properties.mass > 0 ? properties.cg : calc_mean_position(model);
@@ -234,7 +234,7 @@ RigidMotions find_global_motions(const Pencil& pencil) {
   const auto num_massless = (mass.array() <= kMasslessShare * std::max(mass.maxCoeff(), 0.0)).count();
   const MatrixXd Y_mass = Y.rightCols(Y.cols() - num_massless);
 
-  // The projections of the six motions on the free ones, in order: a basis that no roundoff can turn.
+  // The projections of the six motions on the free ones, in order: this basis does not depend on round-off.
   const MatrixXd P = Y_mass * (Y_mass.transpose() * DB);
   const MatrixXd MP = pencil.calc_M_times(P);
   MatrixXd coefficients(6, 0);

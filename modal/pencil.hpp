@@ -1,5 +1,5 @@
 #pragma once
-/// \file K and M of a model on the f-set, their products with vectors, and the motions without strain.
+/// \file K and M of a model on the f-set, their products with vectors, and the zero-energy motions.
 #include <string>
 #include <vector>
 
@@ -35,11 +35,11 @@ struct Pencil {
   MatrixXd calc_M_times(const Block& X) const { return linear::multiply(M, X); }
   MatrixXd dot(const Block& X, const Block& Y) const { return linear::calc_inner_products(X, Y); }  ///< XᵀY
   MatrixXd calc_mass_gram(const MatrixXd& X) const;  ///< XᵀMX; M X of some columns at a time
-  /// φᵀKφ / Σ K_ii φ_i²: about 1e-16 for a motion without strain, whatever the units and the mesh.
+  /// φᵀKφ / Σ K_ii φ_i²: about 1e-16 for a zero-energy motion, whatever the units and the mesh.
   double calc_relative_energy(const VectorXd& x, double energy) const;
 };
 
-/// The rigid motions of the model that its constraints and springs leave free.
+/// The rigid-body motions of the model that its constraints and springs leave free.
 struct RigidMotions {
   MatrixXd modes;     ///< num_fdofs x k, orthonormal under M, in order: translations of the cg, rotations, loose dofs
   MatrixXd massless;  ///< num_fdofs x l: no strain and no mass; K - σM is singular along them for every σ
@@ -58,8 +58,8 @@ MatrixXd find_forceless(const Pencil& pencil, const MatrixXd& Y, double floor = 
 /// and every row of K Φ_R c zero in roundoff on the f-set, and the dofs with mass that nothing stiffens at all. A
 /// motion that a support prevents shows as strain where it was cut off.
 RigidMotions find_rigid_motions(const Pencil& pencil);
-/// Makes motions without strain, ascending, orthonormal in M by products of themselves: those of the six motions that
-/// they are sums of cancel where a turn about an oblique axis has next to no inertia.
+/// Orthonormalizes zero-energy motions (ascending) in M by products of the motions themselves. Products of the six
+/// rigid-body motions would cancel if a rotation about an oblique axis has negligible inertia.
 void orthonormalize(const Pencil& pencil, MatrixXd& modes);
 
 /// An estimate from above of the lowest eigenvalue with strain: Rayleigh-Ritz on the polynomials of degree 0..2 (the

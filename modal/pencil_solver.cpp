@@ -19,8 +19,8 @@ PencilSolver::PencilSolver(const PencilProblem& problem, int request) : problem_
   if (C_) num_available_ = std::max(0, static_cast<int>(C_->cols()) - k);
 }
 
-/// Of fewer roots than were asked for some may be what roundoff made of a root with more copies than a Krylov space
-/// sees; those whose residual is large are looked for once more, beside the good ones.
+/// If fewer eigenvalues than requested were found, some may be round-off copies of a repeated eigenvalue, which a
+/// Krylov space contains once; those with a large residual are computed again, with the others as known vectors.
 void PencilSolver::drop_rough(Extraction& result) const {
   const VectorXd K_diagonal = linear::get_diagonal(problem_.K).cwiseAbs(),
                  M_diagonal = linear::get_diagonal(problem_.M);

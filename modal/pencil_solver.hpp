@@ -14,10 +14,10 @@ namespace bough::modal::detail {
 struct PencilProblem {
   linear::SymmetricMatrix K, M;
   VectorXd M_diagonal;
-  linear::RowKinds kinds;                           ///< of the rows
-  MatrixXd rigid;                                   ///< n x k, M-orthonormal motions without strain, known; kept out
-  linear::SymmetricMatrix supported;                ///< K with a spring for each rigid motion, statically determinate
-  bool is_complete = false;                         ///< every motion without strain is in `rigid`: no look for another
+  linear::RowKinds kinds;             ///< of the rows
+  MatrixXd rigid;                     ///< n x k, M-orthonormal zero-energy motions, known; kept out
+  linear::SymmetricMatrix supported;  ///< K with a spring for each rigid-body motion, statically determinate
+  bool is_complete = false;           ///< every zero-energy motion is in `rigid`: no look for another
   const linear::SymmetricFactor* factor = nullptr;  ///< of K, where the caller has it
   double tolerance = 1e-12;
   std::string solver = {};  ///< EPS type that is asked for (EigenProblem)
@@ -31,7 +31,7 @@ class PencilSolver {
   /// found (factor_low_rank).
   PencilSolver(const PencilProblem& problem, int request);
 
-  /// No more roots than this exist beside the rigid motions; exact where the rank of M is known.
+  /// Upper bound of the number of elastic eigenvalues; exact if the rank of M is known.
   int num_available() const { return num_available_; }
   /// Returns true if M = C Cᵀ has been found, so that its rank is known.
   bool knows_rank() const { return C_.has_value(); }
@@ -40,10 +40,11 @@ class PencilSolver {
 
   /// Adds the next `number` roots above those in `roots`, the last `num_guard` of them rough; all that exist where
   /// there are fewer. K + shift M is factored. False where that is singular, or with `definite_only` not definite.
-  /// With `supported` that is factored instead, and shift is 0: M x of what is orthogonal to the rigid motions is in
-  /// balance, so the springs see no force, and what they hold of the rigid motions is taken out of the solution.
+  /// With `supported` that is factored instead, and shift is 0: M x of what is orthogonal to the rigid-body motions is
+  /// in balance, so the springs see no force, and what they hold of the rigid-body motions is taken out of the
+  /// solution.
   ///
-  /// With M = C Cᵀ of low rank all of them are found anew each time, `roots` with them.
+  /// With M = C Cᵀ of low rank all of them are found again each time, `roots` with them.
   bool solve(double shift, int number, int num_guard, bool definite_only, Roots& roots);
 
  private:

@@ -42,7 +42,7 @@ double get_key(const RootSearch& search, const Roots& roots, int i) {
   return search.by_magnitude ? std::abs(roots.value(i)) : roots.value(i);
 }
 
-/// First position at or after `wanted` where the list has a gap: what lies below it can be counted. -1: none yet.
+/// First position at or after `wanted` with a gap in the list, where an inertia count is possible. -1: none yet.
 int find_cut(const RootSearch& search, const Roots& roots) {
   for (int c = std::max(search.wanted, 0); c < roots.size(); ++c) {
     const double tolerance = c > 0 ? search.closeness(roots, c - 1) : kCloseness, below = get_key(search, roots, c - 1);
@@ -117,7 +117,7 @@ RootSearchResult search_roots(const RootSearch& search, Roots& roots) {
       if (num_stuck < kStuck) search.solve(roots, std::min(missing, kMaxMissing) + kMaxMissingColumns - kMaxMissing);
       if (roots.size() > kept) continue;
       result.is_missing = cut >= 0;
-      if (cut < 0 && search.counts && kept > 0) {  // the solver has no more to give: there are no more
+      if (cut < 0 && search.counts && kept > 0) {  // the solver finds no further eigenvalues
         count = count_if_memory(kept);
         result.is_missing = count > kept && count <= search.num_available;
       }
@@ -151,7 +151,7 @@ void report_count(const RootSearchResult& result, int num_known, const std::stri
       found + " were found, each with its own residual, but the inertia of the factor " +
           (result.doubtful < 0 ? std::string("cannot be counted")
                                : "counts " + std::to_string(num_known + result.doubtful)) +
-          ": its pivots are roundoff (stiffness over many orders, or motions without strain and mass), and one "
+          ": its pivots are roundoff (stiffness over many orders, or zero-energy motions and mass), and one "
           "between may be missing",
       "replace the stiffest parts by rigid elements");
 }

@@ -14,7 +14,7 @@ namespace bough::modal::detail {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Eigenvalues found, in the order of what is sought (see add), and their vectors.
+/// Computed eigenvalues in the order of the request (see add), and their eigenvectors.
 struct Roots {
   VectorXd value;
   MatrixXd X;  ///< n x value.size()
@@ -30,7 +30,7 @@ struct Roots {
 /// block of as many columns finds in a few solutions.
 constexpr int kMaxMissing = 46, kMaxMissingColumns = kMaxMissing + 2;
 
-/// What is asked of one kind of eigenproblem. Positions count the roots alone, without known motions.
+/// A request for eigenvalues of one kind of problem. Positions count the eigenvalues without the known motions.
 struct RootSearch {
   int wanted = 0;
   int num_available = 0;      ///< no more roots than this exist
@@ -38,28 +38,28 @@ struct RootSearch {
   bool counts = true;         ///< Sylvester: no root missed below the highest
   double lowest = 0;          ///< no root is below it
   double shift = 0;           ///< distances are relative to value + shift
-  /// Adds up to `number` more roots, orthogonal to those known; adds none when there are no more.
+  /// Appends up to `number` further eigenpairs, orthogonal to the known ones; none if there are no more.
   std::function<void(Roots& roots, int number)> solve;
   /// Relative distance to the next root within which root i and the next may be copies.
   std::function<double(const Roots& roots, int i)> closeness;
   std::function<double(const Roots& roots, int i)> roundoff;  ///< relative error of root i by roundoff
-  std::function<int(double mu)> count;                        ///< roots below mu; -1 where the factor cannot say
+  std::function<int(double mu)> count;                        ///< eigenvalues below mu; -1 if the factor fails
 };
 
 struct RootSearchResult {
   int cut = 0;                 ///< the roots before it are complete: a gap follows, or nothing
   int count = -1;              ///< of the inertia below that gap, at least `cut`; -1: not made, or not to be trusted
-  int doubtful = -1;           ///< the inertia's own number where it is below `cut` or above what exists
+  int doubtful = -1;           ///< the inertia count if it is below `cut` or above the number of eigenvalues
   bool is_missing = false;     ///< the inertia counts roots that the solver does not find
-  std::string no_memory = {};  ///< why there was none for the second factor that counts
+  std::string no_memory = {};  ///< reason if memory was short for the factor of the inertia count
 };
 
 /// Repeats solve, gap, count until the first `wanted` roots are complete or the solver has no more. An inertia below
 /// what was found is tried again further into the gap; roots with vectors of their own prove it wrong, not the roots.
 RootSearchResult search_roots(const RootSearch& search, Roots& roots);
 
-/// Throws ComputationError("modal.missed-modes") where roots are missing; warns "modal.uncertain-count" where the count
-/// was asked for and is not to be trusted, "modal.not-counted" where memory was short. `name`: "modes", "load factors";
+/// Throws ComputationError("modal.missed-modes") if eigenvalues are missing; warns "modal.uncertain-count" if the
+/// requested count is unreliable, "modal.not-counted" if memory was short. `name`: "modes", "load factors";
 /// `num_known`: motions counted beside them.
 void report_count(const RootSearchResult& result, int num_known, const std::string& name, bool counts,
                   Diagnostics& diagnostics);

@@ -99,7 +99,7 @@ EigenPairs solve_buckling(const records::Deck& deck, const BucklingCases& cases,
   const auto& b = cases.buckling;
   const bool is_same = ((b.spc == 0 && b.mpc == 0) || (b.spc == cases.statics.spc && b.mpc == cases.statics.mpc)) &&
                        model.subcase().initial_temperature == cases.statics.initial_temperature;
-  // The load to scale acts on the preloaded structure, unless its subcase names a preload of its own.
+  // The load to scale acts on the preloaded structure, unless its subcase names a separate preload.
   const int preload = cases.statics.preload;
   const bool is_own = preload != 0 && preload != get_preloaded(deck, cases).preload;
   if (is_own) model_options.prestress = fe::calc_subcase_prestress(deck, model_options, cases.statics, diagnostics);

@@ -8,8 +8,8 @@ namespace bough::modal {
 /// Returns true for SOL 105, 5, SEBUCKL and BUCKLING.
 bool is_buckling_solution(const records::Deck& deck);
 
-/// The subcases that SOL 103 solves one after the other, each with its METHOD, SPC and MPC; those that select the same
-/// as an earlier one are left out. One id (0: the first subcase) where SOL or the case control asks for nothing else.
+/// Lists the subcases that SOL 103 solves, each with its METHOD, SPC and MPC, without those that select the same as an
+/// earlier one. Otherwise one id (0: the first subcase).
 std::vector<int> list_mode_subcases(const records::Deck& deck);
 
 /// The static subcase carries LOAD or TEMPERATURE(LOAD), the buckling one METHOD and perhaps STATSUB.

@@ -2,20 +2,20 @@
 /// \file Thresholds that decide in eigensolutions: what each is relative to, and what goes wrong on either side.
 ///
 /// Internal to modal. Relative energy is |xᵀKx| / Σ K_ii x_i² (Pencil::calc_relative_energy), free of units: about
-/// 1e-16 for a rigid motion. Roundoff is 2.2e-16 (kEpsilon).
+/// 1e-16 for a rigid-body motion. Roundoff is 2.2e-16 (kEpsilon).
 namespace bough::modal::detail {
 
 inline constexpr double kEpsilon = 2.2e-16;
 inline constexpr double kTiny = 1e-300;  ///< in place of zero below a fraction
 
-// ---- Motions without strain
+// ---- Zero-energy motions
 
-/// Relative energy of a motion without strain. Above: roundoff of sums over a few hundred entries passes for strain,
-/// and rigid motions are searched for again. Below: modes of a beam of 1000 bars (1e-12) pass for rigid ones.
+/// Relative energy of a zero-energy motion. Above: roundoff of sums over a few hundred entries passes for strain,
+/// and rigid-body motions are searched for again. Below: modes of a beam of 1000 bars (1e-12) pass for rigid ones.
 inline constexpr double kStrainlessEnergy = 1e-13;
 /// Relative energy from which on a vector has strain for sure; between the two the forces decide.
 inline constexpr double kStrainedEnergy = 1e-12;
-/// Relative energy of the softest rigid motion from which on supports hold the body: one pass suffices.
+/// Relative energy of the softest rigid-body motion from which on supports hold the body: one pass suffices.
 inline constexpr double kHeldEnergy = 1e-6;
 /// Relative energy of a zero where no root follows that it could be compared with.
 inline constexpr double kZeroEnergy = 1e-14;
@@ -34,7 +34,8 @@ inline constexpr double kShiftedMechanismEnergy = 3e-16;
 /// Of the largest generalized mass, or of the sum of parts: a motion with less has none. Above: a light part loses its
 /// mode of 0 Hz. Below: roundoff of masses that cancel becomes a mode with a value of anything.
 inline constexpr double kMasslessShare = 1e-13;
-/// The same of the mass that dofs without stiffness share (RBE3, MPC), before and after rigid motions are taken out.
+/// The same of the mass that dofs without stiffness share (RBE3, MPC), before and after rigid-body motions are taken
+/// out.
 inline constexpr double kLooseMassShare = 1e-12, kLooseRestShare = 1e-10;
 /// Of a basic motion's own mass, what the motions before it leave: less is none of its own.
 inline constexpr double kOwnMassShare = 1e-8;
@@ -49,7 +50,7 @@ inline constexpr double kDependentMotions = 1e-10, kDependentPolynomials = 1e-9;
 
 /// Of the first eigenvalue as it is estimated.
 inline constexpr double kShiftOfEstimate = 0.01;
-/// Shift over the first eigenvalue with strain. Above: the vectors lose digits. Below: motions without strain get into
+/// Shift over the first eigenvalue with strain. Above: the vectors lose digits. Below: zero-energy motions get into
 /// them. Outside it becomes kShiftOfFirst of it.
 inline constexpr double kMinShift = 1e-5, kMaxShift = 10, kShiftOfFirst = 0.1;
 
@@ -60,7 +61,7 @@ inline constexpr double kMinShift = 1e-5, kMaxShift = 10, kShiftOfFirst = 0.1;
 inline constexpr double kCloseness = 1e-8, kMaxCloseness = 1e-4;
 /// Roundoff of an eigenvalue over kEpsilon / relative energy: bound, and what is seen.
 inline constexpr double kRoundoffBound = 20, kRoundoffSeen = 0.02;
-/// Gap behind the last mode that the count can look into.
+/// Gap after the last mode that the count can look into.
 inline constexpr double kGap = 1e-6;
 /// The count is made so far above the last mode, and 20 times as far where it falls short.
 inline constexpr double kCountStep = 1e-3;
@@ -144,7 +145,7 @@ inline constexpr double kDependentEquation = 1e-10;
 inline constexpr double kEqualPivot = 1e-6;
 /// Sine of the angle of three nodes that span no frame.
 inline constexpr double kCollinear = 1e-6;
-/// Singular values of the frame's conditions on rigid motions, over the largest.
+/// Singular values of the frame's conditions on rigid-body motions, over the largest.
 inline constexpr double kUndeterminedMotion = 1e-12;
 /// Off-diagonal generalized mass or stiffness over the root of the diagonal's product. Above: coupling is dropped.
 /// Below: the digits of mode shapes from a file pass for coupling. Also of a generalized mass from 1.

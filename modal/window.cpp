@@ -22,8 +22,8 @@ double find_middle(double below, double above) {
 
 }  // namespace
 
-/// The end of the range, drawn in to where a little more roots lie below than are asked for; without an end, or with
-/// one far above the last root, what a few counts and bisection find. `count` tells how many there are.
+/// Upper end of the range, reduced to a value with few more eigenvalues below it than requested; without an end, or
+/// with one far above the last eigenvalue, by a few inertia counts and bisection. `count`: inertia count.
 std::optional<NormalModes::Edge> NormalModes::find_upper_edge(const Edge& lower) const {
   Edge edge{options_.max_hz ? calc_upper(options_) : 1.02 * lower.mu};
   double below = lower.mu;
@@ -49,7 +49,8 @@ std::optional<NormalModes::Edge> NormalModes::find_upper_edge(const Edge& lower)
   return edge;
 }
 
-/// The roots between two edges, as many as their counts say; false where others are found. Many are divided.
+/// Adds the eigenvalues between two edges; returns false if their number differs from the inertia counts. A large
+/// number is divided into several windows.
 bool NormalModes::add_window(const Edge& lower, const Edge& upper, Roots& roots, std::vector<SolverUse>& uses) const {
   const int inside = upper.count - lower.count;
   const double middle = find_middle(lower.mu, upper.mu);

@@ -11,6 +11,7 @@
 
 #include "formats/records/unit_names.hpp"
 #include "report/bode_plot.hpp"
+#include "report/budget_plot.hpp"
 #include "report/html.hpp"
 #include "report/label.hpp"
 #include "report/pack.hpp"
@@ -362,6 +363,14 @@ Chapter make_chapter(const records::PointingBudget& budget, const std::string& f
   for (const auto& table : budget.tables) tables += make_budget_table(budget, table).to_html(200);
   chapter.add_panel("budget", "Budget", tables);
   const Eigen::Index num_outputs = budget.outputs.size();
+  std::string shares;
+  for (Eigen::Index i = 0; i < std::min(kMaxBudgetOutputs, num_outputs); ++i) {
+    if (!budget.tables.empty()) shares += draw_budget_waterfall(budget, budget.tables.front(), i);
+    if (budget.tables.size() > 1) shares += draw_budget_shares(budget, i);
+  }
+  if (num_outputs > kMaxBudgetOutputs && !shares.empty())
+    shares += make_text(fmt::format("The first {} of {} outputs are drawn.", kMaxBudgetOutputs, num_outputs), "note");
+  if (!shares.empty()) chapter.add_panel("sources", "Budget by source", shares);
   for (Eigen::Index i = 0; i < std::min(kMaxBudgetOutputs, num_outputs); ++i) {
     const Plot plot = make_waterfall(budget, i);
     if (!plot.curves.empty()) waterfall += make_figure(plot);

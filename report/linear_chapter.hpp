@@ -23,8 +23,8 @@ struct LinearFindings {
 Chapter make_chapter(const records::LinearModel& model, const LinearFindings& findings, const std::string& file,
                      const std::vector<std::pair<std::string, std::string>>& facts);
 
-/// Composes the budget: a table for each weighting; RMS up to each frequency by source and over the speeds of wheels,
-/// of at most 6 outputs.
+/// Composes the budget: a table for each weighting; waterfall over sources; RMS up to each frequency by source and over
+/// the speeds of wheels, of at most 6 outputs.
 Chapter make_chapter(const records::PointingBudget& budget, const std::string& file,
                      const std::vector<std::pair<std::string, std::string>>& facts);
 

@@ -171,12 +171,17 @@ Chapter make_chapter(const CampaignTable& table) {
 
 Chapter make_chapter(const std::vector<SelectedMode>& modes, double total_cost, const std::string& file) {
   Chapter chapter{"selection", file, {{"total cost", format_value(total_cost)}}, {}, {}, {}, {}};
-  HtmlTable table("Modes by component cost",
-                  {{"mode"}, {"frequency [Hz]"}, {"cost"}, {"share %"}, {"kept", true}, {"reason", true}});
+  const bool is_system = !modes.empty() && !modes.front().body.empty();
+  std::vector<HtmlTable::Column> columns{{"mode"},    {"frequency [Hz]"}, {"cost"},
+                                         {"share %"}, {"kept", true},     {"reason", true}};
+  if (is_system) columns.insert(columns.begin(), {"body", true});
+  HtmlTable table("Modes by component cost", columns);
   double dropped = 0;
   for (const auto& m : modes) {
-    table.add_row({std::to_string(m.mode), format_value(m.frequency_hz), format_value(m.cost), format_percent(m.share),
-                   m.kept ? "yes" : "no", m.reason});
+    std::vector<std::string> row{std::to_string(m.mode),  format_value(m.frequency_hz), format_value(m.cost),
+                                 format_percent(m.share), m.kept ? "yes" : "no",        m.reason};
+    if (is_system) row.insert(row.begin(), m.body);
+    table.add_row(row);
     if (!m.kept) dropped += m.share;
   }
   chapter.checks.push_back({"cost of the modes that go", format_percent(dropped) + " %", Verdict::None, ""});

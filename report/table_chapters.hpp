@@ -36,6 +36,7 @@ struct SelectedMode {
   double frequency_hz = 0, cost = 0, share = 0;
   bool kept = true;
   std::string reason;
+  std::string body;  ///< empty: of a body without a system
 };
 /// Composes the table of modes, with the sum of the shares of the modes that are not kept.
 Chapter make_chapter(const std::vector<SelectedMode>& modes, double total_cost, const std::string& file);

@@ -79,6 +79,7 @@ std::shared_ptr<const fe::Prestress> calc_prestress(const BodyRequest& request, 
   const Deck& deck = request.deck;
   Diagnostics& diagnostics = request.diagnostics;
   if (request.given) return nullptr;
+  if (request.prestress) return request.prestress;
   if (!request.spec.preload) {
     for (const auto& subcase : deck.subcases)
       if (subcase.id == options.subcase && subcase.id != 0)
@@ -93,7 +94,7 @@ std::shared_ptr<const fe::Prestress> calc_prestress(const BodyRequest& request, 
   }
   const fe::Preload preload{spec.load_set, spec.temperature_set, spec.spin, describe_preload(spec), spec.at};
   auto prestress = fe::calc_prestress(deck, options, fe::make_elements, preload, diagnostics);
-  diagnostics.note("fe.preload", spec.at, "the stiffness holds that of the stress of " + prestress->name,
+  diagnostics.note("fe.preload", spec.at, "the stiffness contains the geometric stiffness of " + prestress->name,
                    "displacements and forces count from the loaded state");
   return prestress;
 }
@@ -116,6 +117,24 @@ bool is_on_dependent_node(const BodySpec& spec, const fe::Model& model) {
 }
 
 }  // namespace
+
+fe::DeformedPreload calc_nonlinear_preload(const BodyRequest& request) {
+  const auto& spec = *request.spec.preload;
+  const fe::ModelOptions options = make_model_options(request);
+  auto result = spec.subcase != 0
+                    ? fe::calc_nonlinear_preload(request.deck, options, spec.subcase, spec.at, request.diagnostics)
+                    : fe::calc_nonlinear_preload(
+                          request.deck, options,
+                          fe::Preload{spec.load_set, spec.temperature_set, spec.spin, describe_preload(spec), spec.at},
+                          request.diagnostics);
+  char moved[32];
+  std::snprintf(moved, sizeof moved, "%.4g", result.max_displacement);
+  request.diagnostics.note(
+      "fe.preload", spec.at,
+      "the body has the shape and the stress of " + result.prestress->name + ", largest displacement " + moved,
+      "displacements and forces count from the loaded state");
+  return result;
+}
 
 /// A second model where the first one has to exist before: its mass gives the centre of mass that is the origin (the
 /// elements contain positions), and AUTOSPC and the a-set depend on the stiffness of the preload.

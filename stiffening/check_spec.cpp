@@ -113,6 +113,15 @@ void check_preload(const BodyRequest& request) {
   if (preload.subcase == 0 && preload.load_set == 0 && preload.temperature_set == 0 && preload.spin.isZero(0))
     request.diagnostics.error("reduce.bad-preload", preload.at, "the preload names nothing that loads the body",
                               "give subcase, load_set, temperature_set or a spin that is not zero");
+  const std::string nonlinear = "nonlinear = true is given, but ";
+  if (preload.is_nonlinear && !preload.spin.isZero(0))
+    request.diagnostics.error("reduce.bad-preload", preload.at,
+                              nonlinear + "a spin loads the places of the undeformed structure",
+                              "leave the spin to the solver, or leave nonlinear = true out");
+  if (preload.is_nonlinear && request.is_free())
+    request.diagnostics.error("reduce.bad-preload", preload.at,
+                              nonlinear + "nothing holds the free body while it deforms",
+                              "set frame = \"fixed\" and hold the deck by SPC, or leave nonlinear = true out");
   if (request.given)
     request.diagnostics.error("reduce.bad-preload", preload.at,
                               "a preload is given with the matrices of another program, which do not contain their "

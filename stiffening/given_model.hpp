@@ -33,7 +33,7 @@ fe::ElementList make_given_elements(const GivenModel& given, const records::Deck
 MatrixXd calc_given_modes(const GivenModel& given, const fe::System& system, Diagnostics& diagnostics);
 /// A load pattern for each K_G that came with its load.
 void add_given_patterns(const GivenModel& given, std::vector<LoadPattern>& patterns);
-/// K_G1 and K_G2 from the given matrices; zero where none is given. Reports reduce.no-stiffening.
+/// K_G1 and K_G2 from the given matrices; zero if none is given. Reports reduce.no-stiffening.
 void set_given_stiffness(const BodyRequest& request, const MatrixXd& Phi, records::FlexBody& body);
 /// Warns of translations that the file of K lacks and that are zero in Phi without a constraint: reduce.missing-dofs.
 void report_missing_rows(const BodyRequest& request, const MatrixXd& Phi);

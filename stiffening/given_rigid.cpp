@@ -53,7 +53,7 @@ bool is_exact(const SparseRows& K, const VectorXd& D, const MatrixXd& R) {
   return true;
 }
 
-/// Six rows that determine R best; translations first, since a rotation may be soft where it is held alone.
+/// Chooses six well-conditioned rows of R; translations first, since a constrained rotation may be a soft support.
 std::vector<Index> choose_support(const MatrixXd& R, const VectorXd& rotation_rows, double size) {
   constexpr double kRotationWeight = 0.01;
   const VectorXd weight = (1 + rotation_rows.array() * (kRotationWeight * size - 1)).matrix();
@@ -113,7 +113,7 @@ VectorXd calc_ritz_values(const SparseRows& M, const MatrixXd& R, const MatrixXd
     const MatrixXd W = range.eigenvectors().rightCols(rank) * b.tail(rank).cwiseSqrt().cwiseInverse().asDiagonal();
     const Eigen::SelfAdjointEigenSolver<MatrixXd> ritz(W.transpose() * linear::symmetrize(A) * W);
     X.leftCols(rank) = Y * (s.asDiagonal() * (W * ritz.eigenvectors()));
-    // Free of those kept: K_oo⁻¹ would bring a mechanism to the top of any vector that has a part of it, and leave one.
+    // Orthogonal to the accepted ones: K_oo⁻¹ amplifies a mechanism in any vector, so only one would be found.
     const MatrixXd M_kept = M * X.leftCols(rank);
     for (Index c = rank; c < m; ++c) {
       fill(c, step);

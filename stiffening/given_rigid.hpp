@@ -11,7 +11,7 @@ struct RigidMotionCheck {
   bool is_exact = false;  ///< K R = 0 to round-off in every row: nothing to do
   bool is_free =
       false;           ///< the six are rigid, though not exactly: |ρ| below kMaxRigidQuotient of the first elastic one
-  double elastic = 0;  ///< first elastic eigenvalue [1/T²], by inertia relief; 0: not known, nor what follows
+  double elastic = 0;  ///< first elastic eigenvalue [1/T²], by inertia relief; 0: unknown, as are the following members
   double worst = 0;    ///< largest |ρ| [1/T²]
   int num_rigid = 0;
   int num_mechanisms = 0;  ///< other motions, orthogonal to R, with quotients below kMaxRigidQuotient; 4 are looked for

@@ -127,7 +127,7 @@ MatrixXd calc_recovery_rows(const fe::Element& element, const MatrixXd& d, const
   if (more.size() > 0) stresses += more;
   MatrixXd rows(count + stresses.rows(), d.cols());
   for (Eigen::Index c = 0; c < d.cols(); ++c) {
-    // Internal forces begin with those that are printed; springs have the latter alone.
+    // The printed forces are the first internal forces; springs have no others.
     if (element.stress_state())
       rows.col(c).head(count) = forces.col(c).head(count);
     else

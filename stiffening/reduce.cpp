@@ -67,7 +67,13 @@ ReducedBody reduce_body(const BodyRequest& request) {
 
 ReducedBody reduce(const records::Deck& deck, const records::BodySpec& spec, const ReduceOptions& options,
                    Diagnostics& diagnostics) {
-  return reduce_body({deck, spec, options, nullptr, diagnostics});
+  const BodyRequest request{deck, spec, options, nullptr, diagnostics};
+  if (!spec.preload || !spec.preload->is_nonlinear) return reduce_body(request);
+  check_spec(request);
+  request.report("preload under large displacements");
+  linear::initialize_petsc();
+  const fe::DeformedPreload preload = calc_nonlinear_preload(request);
+  return reduce_body({preload.deck, spec, options, nullptr, diagnostics, preload.prestress});
 }
 
 ReducedBody reduce_matrices(const records::Deck& deck, const records::BodySpec& spec, const GivenMatrices& matrices,

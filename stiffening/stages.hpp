@@ -2,6 +2,7 @@
 /// \file The stages of reduce(), in the order in which reduce.cpp calls them. Internal.
 #include "fe/loads/loads.hpp"
 #include "fe/loads/temperatures.hpp"
+#include "fe/statics/preload.hpp"
 #include "formats/records/deck.hpp"
 #include "modal/bases/basis.hpp"
 #include "stiffening/reduce.hpp"
@@ -17,6 +18,7 @@ struct BodyRequest {
   const ReduceOptions& options;
   const GivenModel* given;  ///< matrices of another program in place of the deck's elements; nullptr: none
   Diagnostics& diagnostics;
+  std::shared_ptr<const fe::Prestress> prestress = nullptr;  ///< of the shape that the deck has; nullptr: none
 
   /// The body file, or the deck when there is none.
   SourceLocation where() const { return spec.file.empty() ? deck.locate({0, 0}) : SourceLocation{spec.file, 0, 0}; }
@@ -56,6 +58,9 @@ struct BodyRequest {
   }
 };
 
+/// The deformed shape and the stress of [body.preload] with nonlinear = true. The body is made of its deck.
+fe::DeformedPreload calc_nonlinear_preload(const BodyRequest& request);
+
 /// The model of a body, with its positions from Bo and the stiffness of its preload; const after.
 struct BodyModel {
   fe::ModelOptions options;  ///< of `model`
@@ -90,7 +95,7 @@ struct ModalBasis {
   VectorXd eigenvalue;
   MatrixXd mass, stiffness, damping;  ///< n x n
   std::vector<records::ModeKind> kind;
-  modal::bases::ModesCheck check;           ///< of the normal modes; none found: none were solved for
+  modal::bases::ModesCheck check;           ///< of the normal modes; empty if none were computed
   std::vector<std::string> massless_loads;  ///< names of residual loads whose flexibility is lost in part
 };
 

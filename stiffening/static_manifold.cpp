@@ -6,6 +6,7 @@
 
 #include "fe/corotational/chord_series.hpp"
 #include "fe/corotational/corotational_element.hpp"
+#include "fe/corotational/mean_series.hpp"
 #include "fe/corotational/series.hpp"
 #include "fe/elements/carried.hpp"
 #include "fe/linear/blas.hpp"
@@ -68,15 +69,15 @@ Eigen::Matrix3Xd calc_turned_arm(const MatrixXd& theta, int top, const Vector3d&
   return moved;
 }
 
-/// Order `order` of Tᵀ(R arm × force) - arm × force in its place, the others zero: 3 x top points.
-Eigen::Matrix3Xd calc_turned_moment(const MatrixXd& theta, int top, const Vector3d& arm, const MatrixXd& force,
-                                    int order) {
-  Eigen::Matrix3Xd moment = Eigen::Matrix3Xd::Zero(3, theta.cols());
-  const auto at = static_cast<std::size_t>(order);
+/// Tᵀ(R arm × force) - arm × force: 3 x top points.
+Eigen::Matrix3Xd calc_turned_moment(const MatrixXd& theta, int top, const Vector3d& arm, const MatrixXd& force) {
+  Eigen::Matrix3Xd moment(3, theta.cols());
   for (Index c = 0; c < theta.cols(); c += top) {
     const SeriesVector f = fe::get_vector(force.middleCols(c, top), 0);
     const SeriesVector angle = fe::get_vector(theta.middleCols(c, top), 0);
-    moment.col(c + order - 1) = fe::calc_arm_moment(angle, arm, f)[at] - arm.cross(f[at]);
+    SeriesVector turned = fe::calc_arm_moment(angle, arm, f);
+    for (std::size_t k = 0; k < turned.size(); ++k) turned[k] -= arm.cross(f[k]);
+    fe::put_vector(turned, 0, moment.middleCols(c, top));
   }
   return moment;
 }
@@ -122,7 +123,15 @@ VectorXd fit_energy(const Lattice& lattice, const MatrixXd& forces, int degree) 
 
 StaticManifold::StaticManifold(const BodyRequest& request, const fe::Model& model, const ModalBasis& basis,
                                const StaticSupport& support, const linear::SymmetricMatrix& M)
-    : model_(model), support_(support), arms_(model), eigenvalue_(basis.eigenvalue) {
+    : model_(model),
+      support_(support),
+      arms_(model),
+      means_(request.deck, model, arms_),
+      eigenvalue_(basis.eigenvalue) {
+  for (const fe::RigidArm& arm : arms_.list())
+    if (arm.translates && !arm.arm.isZero(0)) followers_.push_back(arm.node);
+  for (const fe::MeanTie& tie : means_.list()) followers_.push_back(tie.node);
+  std::sort(followers_.begin(), followers_.end());
   const Index n = basis.Phi.cols();
   scale_.resize(n);
   for (Index j = 0; j < n; ++j) scale_[j] = 1 / std::sqrt(basis.stiffness(j, j));  // a shape of unit strain energy
@@ -203,26 +212,103 @@ MatrixXd StaticManifold::calc_curve(const Curves& curves, const std::vector<int>
   return u;
 }
 
+StaticManifold::Follower StaticManifold::find_follower(int node) const {
+  Follower follower{arms_.find(node), means_.find(node)};
+  if (const auto* arm = follower.arm)
+    std::tie(follower.translates, follower.rotates) = std::tie(arm->translates, arm->rotates);
+  if (const auto* tie = follower.mean)
+    std::tie(follower.translates, follower.rotates) = std::tie(tie->translates, tie->rotates);
+  return follower;
+}
+
 MatrixXd StaticManifold::calc_node_curve(const Curves& curves, int node) const {
-  return calc_curve(curves, list_gdofs(model_.nodes()[static_cast<std::size_t>(node)]));
+  const Follower follower = find_follower(node);
+  MatrixXd u(6, curves.top * curves.size());
+  if (!follower.translates || !follower.rotates)
+    u = calc_curve(curves, list_gdofs(model_.nodes()[static_cast<std::size_t>(node)]));
+  if (!follower.arm && !follower.mean) return u;
+  MatrixXd moved(6, u.cols());
+  if (follower.arm) {
+    const MatrixXd parent = calc_node_curve(curves, follower.arm->parent);
+    moved.bottomRows<3>() = parent.bottomRows<3>();
+    for (Index c = 0; c < u.cols(); c += curves.top) {
+      const auto of_parent = parent.middleCols(c, curves.top);
+      fe::put_vector(fe::calc_arm_motion(fe::get_vector(of_parent, 3), follower.arm->arm), 0,
+                     moved.middleCols(c, curves.top));
+    }
+    moved.topRows<3>() += parent.topRows<3>();
+  } else {
+    moved = calc_mean_curve(curves, *follower.mean);
+  }
+  if (follower.translates) u.topRows<3>() = moved.topRows<3>();
+  if (follower.rotates) u.bottomRows<3>() = moved.bottomRows<3>();
+  return u;
+}
+
+MatrixXd StaticManifold::calc_mean_curve(const Curves& curves, const fe::MeanTie& tie) const {
+  const auto& mean = means_.get_mean(tie);
+  std::vector<MatrixXd> u, at(mean.members.size());
+  for (const auto& member : mean.members) u.push_back(calc_node_curve(curves, member.node));
+  MatrixXd moved(6, curves.top * curves.size());
+  for (Index c = 0; c < moved.cols(); c += curves.top) {
+    for (std::size_t i = 0; i < u.size(); ++i) at[i] = u[i].middleCols(c, curves.top);
+    moved.middleCols(c, curves.top) = fe::MeanSeries(mean, at).calc_motion(tie.arm).leftCols(curves.top);
+  }
+  return moved;
+}
+
+MatrixXd StaticManifold::calc_follower_motion(const Curves& curves, int node, int order) const {
+  BOUGH_DEMAND(order == static_cast<int>(fields_.size()) + 2);
+  const MatrixXd u = calc_node_curve(curves, node);
+  MatrixXd moved(6, curves.size());
+  for (Index p = 0; p < moved.cols(); ++p) moved.col(p) = u.col(curves.top * p + order - 1);
+  return moved;
+}
+
+void StaticManifold::carry_forces(const Curves& curves, int node, MatrixXd f, const AddForces& add) const {
+  const Follower follower = find_follower(node);
+  const auto take = [&](bool translations, bool rotations) {  // what goes on to other grids
+    MatrixXd taken = MatrixXd::Zero(6, f.cols());
+    if (translations) taken.topRows<3>().swap(f.topRows<3>());
+    if (rotations) taken.bottomRows<3>().swap(f.bottomRows<3>());
+    return taken;
+  };
+  const int top = curves.top;
+  const MatrixXd taken = take(follower.translates, follower.rotates);
+  if (follower.arm) {
+    const MatrixXd parent = calc_node_curve(curves, follower.arm->parent);
+    MatrixXd moved = taken;
+    for (Index c = 0; c < f.cols() && follower.translates; c += top) {
+      const SeriesVector moment = fe::calc_arm_moment(fe::get_vector(parent.middleCols(c, top), 3), follower.arm->arm,
+                                                      fe::get_vector(taken.middleCols(c, top), 0));
+      for (int k = 1; k <= top; ++k) moved.block<3, 1>(3, c + k - 1) += moment[static_cast<std::size_t>(k)];
+    }
+    carry_forces(curves, follower.arm->parent, std::move(moved), add);
+  }
+  if (follower.mean) {
+    const auto& mean = means_.get_mean(*follower.mean);
+    std::vector<MatrixXd> u, at(mean.members.size()), on_members(mean.members.size(), MatrixXd::Zero(6, f.cols()));
+    for (const auto& member : mean.members) u.push_back(calc_node_curve(curves, member.node));
+    for (Index c = 0; c < f.cols(); c += top) {
+      for (std::size_t i = 0; i < u.size(); ++i) at[i] = u[i].middleCols(c, top);
+      const auto forces = fe::MeanSeries(mean, at).calc_forces(follower.mean->arm, taken.middleCols(c, top));
+      for (std::size_t i = 0; i < forces.size(); ++i) on_members[i].middleCols(c, top) = forces[i].leftCols(top);
+    }
+    for (std::size_t i = 0; i < on_members.size(); ++i)
+      carry_forces(curves, mean.members[i].node, std::move(on_members[i]), add);
+  }
+  if (!(follower.translates && follower.rotates)) add(list_gdofs(model_.nodes()[static_cast<std::size_t>(node)]), f);
 }
 
 MatrixXd StaticManifold::calc_element_curve(const Curves& curves, const fe::Element& element) const {
   MatrixXd u = calc_curve(curves, element.gdofs());
-  if (arms_.list().empty()) return u;
+  if (arms_.list().empty() && means_.list().empty()) return u;
   for (const NodeRows& rows : find_rows(element, model_.nodes())) {
-    const fe::RigidArm* arm = arms_.find(rows.node);
-    if (!arm) continue;
-    const MatrixXd parent = calc_node_curve(curves, arm->parent);
-    for (Index c = 0; c < u.cols(); c += curves.top) {
-      const auto of_parent = parent.middleCols(c, curves.top);
-      if (arm->rotates && rows.rotations >= 0) u.block(rows.rotations, c, 3, curves.top) = of_parent.bottomRows<3>();
-      if (!arm->translates || rows.translations < 0) continue;
-      SeriesVector moved = fe::calc_arm_motion(fe::get_vector(of_parent, 3), arm->arm);
-      const SeriesVector foot = fe::get_vector(of_parent, 0);
-      for (std::size_t k = 0; k < moved.size(); ++k) moved[k] += foot[k];
-      fe::put_vector(moved, rows.translations, u.middleCols(c, curves.top));
-    }
+    const Follower follower = find_follower(rows.node);
+    if (!follower.arm && !follower.mean) continue;
+    const MatrixXd moved = calc_node_curve(curves, rows.node);
+    if (rows.translations >= 0) u.middleRows<3>(rows.translations) = moved.topRows<3>();
+    if (rows.rotations >= 0) u.middleRows<3>(rows.rotations) = moved.bottomRows<3>();
   }
   return u;
 }
@@ -240,11 +326,9 @@ MatrixXd StaticManifold::calc_multipliers(const Curves& curves) const {
 
 MatrixXd StaticManifold::calc_arm_gauge(const Curves& curves, int order) const {
   MatrixXd work = MatrixXd::Zero(Phi_.cols(), curves.size());
-  for (const fe::RigidArm& arm : arms_.list()) {
-    if (!arm.translates || arm.arm.isZero(0)) continue;
-    const auto moved = calc_turned_arm(calc_node_curve(curves, arm.parent).bottomRows<3>(), curves.top, arm.arm, order);
-    work += W_.middleRows<3>(model_.nodes()[static_cast<std::size_t>(arm.node)].first_gdof).transpose() * moved;
-  }
+  for (const int node : followers_)
+    work += W_.middleRows<6>(model_.nodes()[static_cast<std::size_t>(node)].first_gdof).transpose() *
+            calc_follower_motion(curves, node, order);
   return work + calc_carried_work(curves, order, psi_, MatrixXd::Zero(9, psi_.cols())).on_fields;
 }
 
@@ -325,12 +409,9 @@ MatrixXd StaticManifold::solve_field(int degree, const Lattice& lattice, MatrixX
                  gauge = lattice.fit(calc_arm_gauge(curves, degree));
   gradient = linear::calc_inner_products(Phi_, R) - gauge;
   MatrixXd u = solve(R) - Phi_ * K_factor_.solve(gauge);
-  for (const fe::RigidArm& arm : arms_.list()) {
-    if (!arm.translates || arm.arm.isZero(0)) continue;
-    const auto moved =
-        calc_turned_arm(calc_node_curve(curves, arm.parent).bottomRows<3>(), curves.top, arm.arm, degree);
-    u.middleRows<3>(model_.nodes()[static_cast<std::size_t>(arm.node)].first_gdof) += lattice.fit(moved);
-  }
+  for (const int node : followers_)
+    u.middleRows<6>(model_.nodes()[static_cast<std::size_t>(node)].first_gdof) +=
+        lattice.fit(calc_follower_motion(curves, node, degree));
   return u;
 }
 
@@ -346,27 +427,17 @@ MatrixXd StaticManifold::calc_forces(const Curves& curves, int order, Rows rows_
     else
       sum(gdofs, Eigen::all) += f_k;
   };
-  /// Forces at the end of an arm go to its parent, with the moment of where they act.
-  const auto move_to_parent = [&](const fe::RigidArm& arm, const NodeRows& rows, MatrixXd& f, MatrixXd& sum) {
-    const MatrixXd parent = calc_node_curve(curves, arm.parent);
-    MatrixXd moved = MatrixXd::Zero(6, f.cols());
-    const int top = curves.top;
-    for (Index c = 0; c < f.cols(); c += top) {
-      if (arm.rotates && rows.rotations >= 0) moved.block(3, c, 3, top) += f.block(rows.rotations, c, 3, top);
-      if (!arm.translates || rows.translations < 0) continue;
-      moved.block(0, c, 3, top) = f.block(rows.translations, c, 3, top);
-      const SeriesVector moment = fe::calc_arm_moment(fe::get_vector(parent.middleCols(c, top), 3), arm.arm,
-                                                      fe::get_vector(f.middleCols(c, top), rows.translations));
-      for (int k = 1; k <= top; ++k) moved.block<3, 1>(3, c + k - 1) += moment[static_cast<std::size_t>(k)];
-    }
-    if (arm.rotates && rows.rotations >= 0) f.middleRows<3>(rows.rotations).setZero();
-    if (arm.translates && rows.translations >= 0) f.middleRows<3>(rows.translations).setZero();
-    add(list_gdofs(model_.nodes()[static_cast<std::size_t>(arm.parent)]), moved, sum);
-  };
   const auto add_element = [&](const fe::Element& element, MatrixXd f, MatrixXd& sum) {
-    if (!arms_.list().empty())
-      for (const NodeRows& rows : find_rows(element, model_.nodes()))
-        if (const fe::RigidArm* arm = arms_.find(rows.node)) move_to_parent(*arm, rows, f, sum);
+    if (arms_.list().empty() && means_.list().empty()) return add(element.gdofs(), f, sum);
+    for (const NodeRows& rows : find_rows(element, model_.nodes())) {
+      const Follower follower = find_follower(rows.node);
+      MatrixXd moved = MatrixXd::Zero(6, f.cols());
+      if (follower.translates && rows.translations >= 0) moved.topRows<3>().swap(f.middleRows<3>(rows.translations));
+      if (follower.rotates && rows.rotations >= 0) moved.bottomRows<3>().swap(f.middleRows<3>(rows.rotations));
+      if (follower.translates || follower.rotates)
+        carry_forces(curves, rows.node, std::move(moved),
+                     [&](const std::vector<int>& gdofs, const MatrixXd& forces) { add(gdofs, forces, sum); });
+    }
     add(element.gdofs(), f, sum);
   };
   MatrixXd second;  // of the second thread
@@ -385,25 +456,24 @@ MatrixXd StaticManifold::calc_forces(const Curves& curves, int order, Rows rows_
   visit_carried(curves, [&](const fe::Element& element, const Carried& carried) {
     const MatrixXd along = carried.motion * (psi_(element.gdofs(), Eigen::all) * lambda);
     MatrixXd f = MatrixXd::Zero(element.num_dofs(), along.cols());
-    if (!carried.mass.fields.empty()) return add_element(element, -calc_chord_forces(carried, along, order), result);
+    if (!carried.mass.fields.empty()) return add_element(element, -calc_chord_forces(carried, along), result);
     for (const auto& turn : carried.mass.turns)
       for (const auto& part : turn.parts) {
         Eigen::Matrix3Xd force = Eigen::Matrix3Xd::Zero(3, along.cols());
         for (Index r = 0; r < carried.mass.mu.rows(); ++r)
           force += carried.mass.mu(r, part.point) * along.middleRows<3>(3 * r);
         f -= turn.Theta.transpose() *
-             calc_turned_moment(turn.Theta * carried.u, carried.top, part.arm, part.B.transpose() * force, order);
+             calc_turned_moment(turn.Theta * carried.u, carried.top, part.arm, part.B.transpose() * force);
       }
     add_element(element, f, result);
   });
   if (linear::initialize_petsc().rank == 0)
-    for (const fe::RigidArm& arm : arms_.list()) {
-      if (!arm.translates || arm.arm.isZero(0)) continue;
-      const MatrixXd force = W_.middleRows<3>(model_.nodes()[static_cast<std::size_t>(arm.node)].first_gdof) * lambda;
-      const int turn = model_.nodes()[static_cast<std::size_t>(arm.parent)].first_gdof + 3;
-      add({turn, turn + 1, turn + 2},
-          -calc_turned_moment(calc_node_curve(curves, arm.parent).bottomRows<3>(), curves.top, arm.arm, force, order),
-          result);
+    for (const int node : followers_) {
+      const int first = model_.nodes()[static_cast<std::size_t>(node)].first_gdof;
+      MatrixXd load = -W_.middleRows<6>(first) * lambda;
+      for (Index p = 0; p < m; ++p) load.col(curves.top * p + order - 1).setZero();  // it acts linearly on this order
+      carry_forces(curves, node, std::move(load),
+                   [&](const std::vector<int>& gdofs, const MatrixXd& f) { add(gdofs, f, result); });
     }
   linear::sum_over_ranks(result);
   return result;
@@ -438,22 +508,22 @@ MatrixXd StaticManifold::calc_arm_work(int degree, const Lattice& lattice,
   return lattice.fit(work);
 }
 
-MatrixXd StaticManifold::calc_chord_forces(const Carried& carried, const MatrixXd& along, int order) {
+MatrixXd StaticManifold::calc_chord_forces(const Carried& carried, const MatrixXd& along) {
   const auto& moved = carried.mass.fields.front().moved;
   const Index num = carried.mass.mu.rows();
-  MatrixXd result = MatrixXd::Zero(carried.u.rows(), carried.u.cols());
+  MatrixXd result(carried.u.rows(), carried.u.cols());
   const int top = carried.top;
   for (Index c = 0; c < carried.u.cols(); c += top) {
     std::vector<SeriesVector> forces;
-    VectorXd linear = VectorXd::Zero(carried.u.rows());
+    MatrixXd linear = MatrixXd::Zero(carried.u.rows(), top);
     for (const auto& point : moved) {
       MatrixXd force = MatrixXd::Zero(3, top);
       for (Index r = 0; r < num; ++r) force += carried.mass.mu(r, point.point) * along.block(3 * r, c, 3, top);
-      linear += carried.motion.middleRows<3>(3 * point.point).transpose() * force.col(order - 1);
+      linear += carried.motion.middleRows<3>(3 * point.point).transpose() * force;
       forces.push_back(fe::get_vector(force, 0));
     }
     const fe::ChordSeries chord(carried.mass, carried.u.middleCols(c, top));
-    result.col(c + order - 1) = chord.calc_forces(forces).col(order - 1) - linear;
+    result.middleCols(c, top) = chord.calc_forces(forces).leftCols(top) - linear;
   }
   return result;
 }

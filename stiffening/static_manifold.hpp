@@ -1,9 +1,11 @@
 #pragma once
 /// \file Displacements of a body beyond its modes: the static manifold of given amplitudes, degree by degree
 /// (docs/theory/third-order.md). Amplitudes are scaled: 1/ω of a mode each.
+#include <functional>
+
 #include "fe/corotational/series.hpp"
 #include "fe/elements/carried.hpp"
-#include "fe/model/rigid_arms.hpp"
+#include "fe/model/mean_ties.hpp"
 #include "stiffening/stages.hpp"
 
 namespace bough::stiffening {
@@ -105,9 +107,23 @@ class StaticManifold {
   Curves make_curves(int degree, const Lattice& lattice) const;
   /// u of these dofs along the curves, the orders of a point side by side: gdofs x top points.
   MatrixXd calc_curve(const Curves& curves, const std::vector<int>& gdofs) const;
-  /// The six dofs of a grid along the curves, 6 x top points.
+  /// A grid that follows others at any rotation: the end of a rigid arm, or what goes with the mean of an RBE3.
+  struct Follower {
+    const fe::RigidArm* arm = nullptr;
+    const fe::MeanTie* mean = nullptr;
+    bool translates = false, rotates = false;
+  };
+  Follower find_follower(int node) const;
+  /// The six dofs of a grid along the curves, 6 x top points. Followers are where their grids take them.
   MatrixXd calc_node_curve(const Curves& curves, int node) const;
-  /// Dofs of an element along the curves; ends of rigid arms are where their parents take them.
+  MatrixXd calc_mean_curve(const Curves& curves, const fe::MeanTie& tie) const;
+  /// Order `order`, of which there is no field yet, of the motion of a follower: beyond that by the equations, 6 x
+  /// points.
+  MatrixXd calc_follower_motion(const Curves& curves, int node, int order) const;
+  /// Adds forces on a grid (6 x top points) by `add` to the grids that do not follow others.
+  using AddForces = std::function<void(const std::vector<int>& gdofs, const MatrixXd& f)>;
+  void carry_forces(const Curves& curves, int node, MatrixXd f, const AddForces& add) const;
+  /// Dofs of an element along the curves; followers are where their grids take them.
   MatrixXd calc_element_curve(const Curves& curves, const fe::Element& element) const;
   /// Multipliers λ of the amplitudes along the curves, n x top points.
   MatrixXd calc_multipliers(const Curves& curves) const;
@@ -117,16 +133,16 @@ class StaticManifold {
   /// Displacements -G R of the forces R that each monomial has, num_gdofs x monomials, without a part along the modes.
   MatrixXd solve(const MatrixXd& R) const;
   /// Order `order` of the elements' forces along u_1 .. of the fields there are, less what the loads W λ have more on
-  /// turned arms, at each point: num_gdofs x points, none at the ends of rigid arms; or their work on the modes,
+  /// turned arms, at each point: num_gdofs x points, none at followers; or their work on the modes,
   /// n x points.
   enum class Rows { Dofs, Modes };
   MatrixXd calc_forces(const Curves& curves, int order, Rows rows) const;
-  /// Work of the loads W on what arms move beyond the linear motion: n x points.
+  /// Work of the loads W on what followers move beyond the linear motion: n x points.
   MatrixXd calc_arm_gauge(const Curves& curves, int order) const;
-  /// Points between the ends of a consistent beam. Forces (N x top points, this order alone) of the loads `along` (3
-  /// points of the element x top points) beyond those on the linear motion; motion of this order beyond H u, 3 points
-  /// of the element x points.
-  static MatrixXd calc_chord_forces(const Carried& carried, const MatrixXd& along, int order);
+  /// Points between the ends of a consistent beam. Forces (N x top points) of the loads `along` (3 points of the
+  /// element x top points) beyond those on the linear motion; motion of this order beyond H u, 3 points of the element
+  /// x points.
+  static MatrixXd calc_chord_forces(const Carried& carried, const MatrixXd& along);
   static MatrixXd calc_chord_motion(const Carried& carried, int order);
   template <class Visit>
   void visit_carried(const Curves& curves, const Visit& visit) const;
@@ -137,6 +153,8 @@ class StaticManifold {
   std::vector<int> large_, small_;
   bool has_frame_ = true;
   fe::RigidArms arms_;
+  fe::MeanTies means_;
+  std::vector<int> followers_;  ///< nodes that move beyond the equations, ascending
   VectorXd eigenvalue_, scale_;
   MatrixXd Phi_, Phi_R_, C_, CR_inverse_;
   /// Loads W = M ψ of normal modes whose work on u is ηᵀK, ψ = Φ Λ without rigid-body motion; at the ends of arms too.

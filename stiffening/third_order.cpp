@@ -146,17 +146,18 @@ void add_series_errors(const BodyRequest& request, const fe::Model& model) {
           "use basis = \"normal\", with residual vectors if need be, or " + second);
   if (request.given) return;
   std::vector<std::string> joined;
-  const fe::RigidArms arms(model);
-  for (const int id : arms.others()) {
+  const fe::MeanTies ties(request.deck, model, fe::RigidArms(model));
+  for (const int id : ties.others()) {
     if (joined.size() < 6) add_unfit(joined, std::to_string(id));
   }
   if (!joined.empty()) {
-    const auto [card, at] = find_tie(request.deck, arms.others());
+    const auto [card, at] = find_tie(request.deck, ties.others());
     request.diagnostics.error(
         "reduce.bad-order", card.empty() ? request.where("stiffening/order") : request.deck.locate(at),
         "[body.stiffening] order = 3 is given, but " + (card.empty() ? "equations join " : card + " joins ") +
-            join_names(joined) + " to others otherwise than as parts of a rigid body",
-        "join all of their translations, or rotations, to one grid by RBE2 or RBAR, or " + second);
+            join_names(joined) + " to others otherwise than as parts of a rigid body or with the mean of an RBE3",
+        "join all of their translations, or rotations, to one grid by RBE2 or RBAR, or to whole grids by RBE3, or " +
+            second);
   }
   std::vector<std::string> elements, masses;
   for (const auto& element : model.elements()) {

@@ -20,9 +20,9 @@ from robustness_page import read_table, write_table
 
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 CORPUS = os.path.join(ROOT, "tests", "fuzz", "corpus")
-# Memory that is freed is kept for later use in small measure only: the process stays small, and is forked for each HDF5
-# file. Stacks of allocations, which cost more than the reader itself, are for what is found: run it again without. So
-# are names in the stacks of HDF5, which often breaks in the process that looks at a file.
+# Little freed memory is kept, so that the process, which is forked for each HDF5 file, stays small. Stacks of
+# allocations cost more than the reader itself: run again without these options to analyse a failure. The same holds for
+# names in the stacks of HDF5, which often fails in the process that checks a file.
 SANITIZER = ("detect_leaks=0:allocator_may_return_null=1:malloc_context_size=1:quarantine_size_mb=1:"
              "thread_local_quarantine_size_kb=16:detect_stack_use_after_return=0")
 # Longest input, and seconds that one may take: HDF5 files are looked through in a process of their own.

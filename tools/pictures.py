@@ -135,6 +135,7 @@ def choose_grids(page):
         page.wait(f"document.querySelector('.side .picked').textContent.startsWith('grid {grid} (')")
     page.click_text("Check")
     page.wait("document.querySelector('.side .messages').textContent.includes('free DOFs')")
+    page.browser.run("studio.show_jobs()")  # the check has ended
 
 
 def run_system(page):

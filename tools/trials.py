@@ -1,4 +1,4 @@
-"""Ends verbs at random moments, in their n-th write, on disks that fail, and looks at what is left.
+"""Ends commands at random moments, in their n-th write, on disks that fail, and looks at what is left.
 
     /usr/bin/python3 tools/trials.py build/bin/bough [--times 20] [--disks 20] [--seed 1] [--verbs modes,run] [--jobs 2]
                                      [--keep FOLDER] [--write]
@@ -41,7 +41,7 @@ with open(os.path.join(os.path.dirname(os.path.abspath(__file__)), "failing_disk
 # Nobody in particular: who may not write where root may.
 ORDINARY_USER = 65534
 WAYS = ("n-th write", "disk full", "disk error", "memory", "read-only")
-# What each verb is called with, and what it writes.
+# What each command is called with, and what it writes.
 CALLS = {
     "modes": (["modes", "plate.bdf"], "out.h5"),
     "reduce": (["reduce", "plate.toml"], "out.h5"),
@@ -109,8 +109,8 @@ class Trials:
         self.program = os.path.abspath(program)
         self.keep, self.random = keep, random.Random(seed)
         self.folder = tempfile.mkdtemp(prefix="trials-")
-        self.outcomes = collections.Counter()  # of the verb and way that are tried now
-        self.unbroken = {}                     # by verb: see measure, measure_batch
+        self.outcomes = collections.Counter()  # of the command and way that are tried now
+        self.unbroken = {}                     # by command: see measure, measure_batch
         self.preload = os.path.join(self.folder, "preload.so")
         source = os.path.join(self.folder, "preload.c")
         with open(source, "w", encoding="ascii") as out:
@@ -341,7 +341,7 @@ class Trials:
         process = self.start(*arguments, "-o", output, "--resume")
         said = process.communicate(timeout=600)[1]
         if process.returncode == 1 and "checkpoint" in said:
-            return "no checkpoint, told"
+            return "no checkpoint, reported"
         if process.returncode:
             return f"!resume: exit {process.returncode}: {said[-300:]}"
         if self.get_parts():

@@ -25,6 +25,7 @@ import served
 import spinup_numbers
 import verify_flight
 import verify_nonlinear
+import verify_orbit
 import verify_plates
 import verify_random
 import verify_response
@@ -277,7 +278,7 @@ verify_buckling()
 for verify in [verify_rotating, verify_spinup, verify_hub, verify_two_link, verify_free_flyer, verify_plate, verify_blade]:
     with tempfile.TemporaryDirectory() as scratch:
         verify(scratch)
-for cases in [verify_response, verify_random, verify_shock, verify_rotor, verify_nonlinear, verify_flight]:
+for cases in [verify_response, verify_random, verify_shock, verify_rotor, verify_nonlinear, verify_flight, verify_orbit]:
     with tempfile.TemporaryDirectory() as scratch:
         cases.verify(bough, scratch, add)
 with tempfile.TemporaryDirectory() as scratch:

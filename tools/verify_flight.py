@@ -295,7 +295,33 @@ def verify_friction(b):
     b.add("pendulum on a pin with friction", "angle after 2 s [rad]", q[-1].item(), theta, 1e-6, "mu r |reaction|, by scipy")
 
 
+def verify_gyroscope(b):
+    """Reaction of a control moment gyroscope on a base that turns about x: -δ' g x h - ω x h, in the axes of the base."""
+    rate, h, t = 0.3, 1.5, 2.5
+    moment, q = b.run(toml(
+        table("body", "ship", mass=10.0, inertia=[3.0, 4.0, 5.0]),
+        table("function", "spin", "ramp", value=10 * rate, **{"from": 0.0, "to": 10.0}),
+        table("function", "gimbal", "sine", amplitude=0.4, omega=2.0),
+        table("hinge", "axis", "revolute", child="ship", axis=[1.0, 0.0, 0.0], motion="spin"),
+        table("actuator", "gyro", "cmg", body="ship", input="gimbal", gimbal_axis=[0.0, 0.0, 1.0],
+              spin_axis=[0.0, 1.0, 0.0], momentum=h, angle=0.2),
+        section("simulation", duration=2.0, start=0.5, output_step=0.1, **ACCURATE)),
+        "hinges/axis/reaction_moment", "hinges/axis/q")
+    turn = q[-1].item()
+    _, y, z = moment[-1]  # in the axes of the ground
+    along = math.cos(turn) * z - math.sin(turn) * y
+    across = math.cos(turn) * y + math.sin(turn) * z
+    delta, command = 0.2 + 0.2 * (math.cos(1.0) - math.cos(2 * t)), 0.4 * math.sin(2 * t)
+    source = "momentum of the rotor: d/dt h"
+    b.add("gyroscope on a base that turns", "moment about x [N m]", moment[-1, 0],
+          -command * h * math.cos(delta), 1e-9, source)
+    b.add("gyroscope on a base that turns", "moment about y [N m]", across, -command * h * math.sin(delta), 1e-9, source)
+    b.add("gyroscope on a base that turns", "torque of the gimbal's drive [N m]", along, rate * h * math.cos(delta), 1e-9,
+          "g . (omega x h)")
+
+
 def verify(bough, folder, add):
     bench = Bench(bough, folder, add)
-    for case in (verify_satellites, verify_wings, verify_classics, verify_exposures, verify_rolling, verify_friction):
+    for case in (verify_satellites, verify_wings, verify_classics, verify_exposures, verify_rolling, verify_friction,
+                 verify_gyroscope):
         case(bench)

@@ -32,7 +32,7 @@ class BatchPlan {
 
   /// Writes the case's files into its folder, which is there.
   void write_files(const BatchCase& one, const std::filesystem::path& folder) const;
-  /// The words of a step, verb first.
+  /// The words of a step, command first.
   std::vector<std::string> make_words(const BatchCase& one, std::size_t step) const;
 
  private:

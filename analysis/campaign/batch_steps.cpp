@@ -41,8 +41,8 @@ void check_steps(const CampaignSpec& spec, const std::vector<std::string>& verbs
     if (std::find(verbs.begin(), verbs.end(), verb) == verbs.end() || verb == "batch") {
       const auto nearest = find_nearest(verb, verbs);
       diagnostics.error(
-          "batch.bad-step", step.at, "'" + verb + "' is no verb for a step",
-          nearest.empty() || verb == "batch" ? "bough --help lists the verbs" : "did you mean " + nearest);
+          "batch.bad-step", step.at, "'" + verb + "' is no command for a step",
+          nearest.empty() || verb == "batch" ? "bough --help lists the commands" : "did you mean " + nearest);
     }
     for (const auto& word : step.words)
       for (auto open = word.find('{'); open != std::string::npos; open = word.find('{', open + 1)) {
@@ -58,7 +58,7 @@ void check_steps(const CampaignSpec& spec, const std::vector<std::string>& verbs
 
 void warn_of_unused(const CampaignSpec& spec, Diagnostics& diagnostics) {
   for (const auto& p : spec.parameters) {
-    const bool is_column = p.at.file == spec.table;  // of a table of cases: it may say what a case is
+    const bool is_column = p.at.file == spec.table;  // a column of the table of cases may be a description
     const auto names_it = [&](const std::string& word) { return word.find("{" + p.name + "}") != std::string::npos; };
     if (!p.file.empty() || is_column || std::any_of(spec.steps.begin(), spec.steps.end(), [&](const auto& step) {
           return std::any_of(step.words.begin(), step.words.end(), names_it);

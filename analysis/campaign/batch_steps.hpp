@@ -14,7 +14,7 @@ std::string make_absolute(const std::string& folder, const std::string& path);
 /// A word that may be an input file: no option, and not the value of one.
 bool is_input_word(const std::vector<std::string>& words, std::size_t i);
 
-/// Reports "batch.bad-step": no verb, or {NAME} that is no parameter.
+/// Reports "batch.bad-step": no command, or {NAME} that is no parameter.
 void check_steps(const toml_files::CampaignSpec& spec, const std::vector<std::string>& verbs, Diagnostics& diagnostics);
 /// Warns ("batch.unused-parameter") of parameters on which no case depends: they change no file and no step names them.
 /// Columns of the table of a list are left out: they may describe a case.

@@ -200,7 +200,7 @@ std::string format_numbers(const std::vector<int>& numbers) {
   return text;
 }
 
-/// Empty when every case is there; else what lacks, by shards where whole ones do.
+/// Lists the missing cases, or shards if all cases of a shard are missing; empty if none is missing.
 std::string describe_missing(const BatchPlan& plan, const std::vector<int>& missing,
                              const std::vector<fs::path>& folders) {
   std::map<int, int> of_shard;

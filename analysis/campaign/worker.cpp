@@ -47,7 +47,7 @@ class Redirection {
   int fd_, saved_;
 };
 
-/// The first line that is an error; the last one when none says so.
+/// The first line with an error; the last line if there is none.
 std::string find_error(const std::string& path) {
   std::ifstream in(path);
   std::string line, last;

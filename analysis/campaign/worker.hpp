@@ -1,5 +1,5 @@
 #pragma once
-/// \file A process that takes case after case: MPI and PETSc start once, the verbs run in it.
+/// \file A process that takes case after case: MPI and PETSc start once, the commands run in it.
 #include <functional>
 
 #include "analysis/campaign/batch_outcome.hpp"

@@ -1,5 +1,5 @@
 #pragma once
-/// \file Worker processes, what each of them is doing, and what becomes of it.
+/// \file Worker processes, the case of each, and its outcome.
 #include <chrono>
 #include <functional>
 #include <string>

@@ -125,14 +125,14 @@ void check_support(const CheckRequest& request, bool is_free, const DeckCheck& c
   if (is_free && calc_largest(check.ground.n) > 1e-8)
     diagnostics.error(
         "reduce.grounded", {request.file},
-        fmt::format("a free body must have 6 rigid motions, this model strains in them: {:.1e} of what "
+        fmt::format("a free body must have 6 rigid-body motions, this model strains in them: {:.1e} of what "
                     "its stiffness allows",
                     calc_largest(check.ground.n)),
         "remove springs and bushes to ground, and CELASi between grids that lie apart (they hold rotations), "
         "or use frame = \"fixed\"");
   if (!is_free && check.model->num_fdofs() > 0 && calc_largest(check.ground.f) < 1e-12)
     diagnostics.error("reduce.mechanism", {request.file},
-                      "the constraints do not hold the fixed body: no rigid motion of it strains it",
+                      "the constraints do not hold the fixed body: no rigid-body motion of it strains it",
                       "complete the SPC set and select it in the case control, or use frame = \"free\" (--free)");
 }
 

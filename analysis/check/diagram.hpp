@@ -7,7 +7,7 @@
 
 namespace bough::analysis {
 
-/// Functions, sensors, controllers, actuators, forces, events and bodies, and what goes from one to another.
+/// Functions, sensors, controllers, actuators, forces, events and bodies, and their connections.
 struct Diagram {
   struct Node {
     std::string kind;   ///< function, sensor, input, controller, actuator, force, body, event or ground

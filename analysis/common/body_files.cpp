@@ -43,7 +43,7 @@ namespace {
 
 void add_note(const flx::FlxFile& file, const std::string& path, std::vector<std::string> lacking,
               Diagnostics& diagnostics) {
-  if (!file.has_rigid) lacking.insert(lacking.begin(), "mass centre and inertia");
+  if (!file.has_rigid) lacking.insert(lacking.begin(), "centre of mass and inertia");
   std::string what =
       fmt::format("the file does not hold {}; its values have {} digits", fmt::join(lacking, ", "), file.digits);
   if (!file.special_id.empty()) what += "; its special nodes are passed over: a run stiffens without them";

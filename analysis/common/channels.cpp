@@ -37,7 +37,7 @@ void warn_incomplete(const std::string& file, Diagnostics& diagnostics) {
   try {
     state = hdf5::read_run_state(file);
   } catch (const Failure&) {
-    return;  // who reads the rest says what is wrong
+    return;  // the parser of the rest reports the error
   }
   if (state.completed) return;
   const std::string why = state.reason.empty() || state.reason == "running" ? "" : " (" + state.reason + ")";

@@ -51,7 +51,7 @@ int get_launch_rank() {
 bool is_one_of_many() {
   for (const char* name : {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE"})
     if (const char* value = std::getenv(name)) return std::atoi(value) > 1;
-  // srun --mpi=pmix says no more than this; a job without srun has no rank.
+  // The only variable of srun --mpi=pmix; a job without srun has no rank.
   const char* tasks = std::getenv("SLURM_STEP_NUM_TASKS");
   return std::getenv("PMIX_RANK") != nullptr && tasks != nullptr && std::atoi(tasks) > 1;
 }

@@ -74,7 +74,7 @@ HingeMode get_first_mode(const EarlierHinge& hinge, int i) {
   return is_given(hinge.record->motion, i) ? HingeMode::Prescribed : HingeMode::Free;
 }
 
-/// Returns true if both hold the same bodies in the same way, but for whether they start closed.
+/// Returns true if both constrain the same bodies alike; their initial state (closed or open) may differ.
 bool is_same(const ConstraintRecord& a, const ConstraintRecord& b) {
   const auto is_same_term = [](const ConstraintRecord::Term& x, const ConstraintRecord::Term& y) {
     return x.hinge == y.hinge && x.coordinate == y.coordinate && x.ratio == y.ratio;

@@ -45,11 +45,11 @@ class Starter {
   Diagnostics& diagnostics_;
 };
 
-/// A run writes how its energy stands; equilibrium has none.
+/// Returns true for a checkpoint of a run: it contains the energy balance; one of equilibrium does not.
 bool is_of_run(const records::Checkpoint& checkpoint) { return checkpoint.find("energy") != nullptr; }
 
-/// Says which state it is; warns where the run went on past it.
-/// \param modes  what its events left, in words; empty: nothing.
+/// Reports the time of the state; warns if the run continued after it.
+/// \param modes  changes by its events, as text; empty: none.
 void report_time(const records::SystemSpec& spec, const hdf5::ResultsFile& results, const std::string& path,
                  const std::string& modes, Diagnostics& diagnostics) {
   if (results.time.size() == 0) return;  // missing channels are reported one by one
@@ -236,7 +236,7 @@ std::optional<records::Checkpoint> find_start_control(const std::string& path, c
   const auto* control = found.find("control");
   const Eigen::VectorXd initial = system.signals.make_data().memory;
   const Eigen::Index held = initial.size();
-  // An equilibrium has no book of what left: it starts at zero.
+  // An equilibrium has no momentum of expelled mass: it starts at zero.
   const int own = nz - system.num_momentum_out();
   if (found.state.size() != nq + nu + own + 2 || (control ? control->size() - 1 : 0) != held) {
     diagnostics.note("cli.start-state", {path}, "it has other controllers or actuators than this system",

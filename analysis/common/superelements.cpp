@@ -298,7 +298,7 @@ class PartReducer {
     const MatrixXd force = fe::calc_stiffness_times(model, Psi);
     s.K = symmetrize(Psi.transpose() * force);
     s.K.topLeftCorner(nb, nb) = remove_roundoff(s.K.topLeftCorner(nb, nb), calc_boundary_stiffness(model, fixed));
-    // Constraint modes and what moves with the boundary held share no strain energy.
+    // Constraint modes and fixed-interface modes have no common strain energy.
     s.K.topRightCorner(nb, nq).setZero();
     s.K.bottomLeftCorner(nq, nb).setZero();
     s.K.bottomRightCorner(nq, nq) = modes.lambda.asDiagonal();
@@ -308,7 +308,7 @@ class PartReducer {
     };
     condense_to(s.B, fe::calc_damping_times(model, Psi));
     condense_to(s.K4, fe::calc_structural_damping_times(model, 0, Psi));
-    // Loads: their forces on the exterior dofs, and what they do with these held.
+    // Loads: their forces on the exterior DOFs, and the displacements with fixed exterior DOFs.
     const auto sets = list_load_sets(part);
     MatrixXd F(Psi.rows(), static_cast<Index>(sets.size()));
     std::vector<fe::AppliedLoad> applied;
@@ -335,8 +335,8 @@ class PartReducer {
                       "its further frequencies with the boundary held should be above those of interest");
   }
 
-  /// Mass that supports in the section keep from the rigid-body motion of its boundary: mass properties and effective
-  /// masses of the assembly lack it.
+  /// Reports mass that does not follow the rigid-body motion of the boundary, because the section has supports: mass
+  /// properties and effective masses of the assembly do not contain it.
   void report_supported_mass(const fe::Model& model, const modal::bases::FixedInterface& fixed, const MatrixXd& Psi,
                              const DeckSection& section) {
     const MatrixXd Phi_R = model.calc_rigid_modes().leftCols(3);
@@ -373,7 +373,7 @@ class PartReducer {
     const auto& boundary = fixed.partition().boundary;
     const auto nb = static_cast<Index>(boundary.size()), n = motions.Psi.cols(), nq = n - nb;
     const auto m = static_cast<Index>(applied.size());
-    // The forces that hold each of the modes, and those that act with the exterior dofs held.
+    // Reactions in each mode, and the loads with fixed exterior DOFs.
     fe::AppliedLoads loads{MatrixXd::Zero(motions.Psi.rows(), n + m), MatrixXd::Zero(12, n + m), {}, {}};
     loads.arms.resize(static_cast<std::size_t>(n));
     loads.followers.resize(static_cast<std::size_t>(n));
@@ -527,7 +527,7 @@ class PartReducer {
     }
     return rows;
   }
-  /// A table and, with loads, that of what they do with the exterior dofs held.
+  /// Adds a table and, with loads, that of the displacements with fixed exterior DOFs.
   static void add_tables(const std::string& name, const std::vector<const fe::Node*>& nodes, const MatrixXd& values,
                          const MatrixXd& of_loads, Superelement& s) {
     std::vector<records::RecoveryItem> items;

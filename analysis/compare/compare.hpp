@@ -25,7 +25,7 @@ struct CompareRequest {
   int sensors = 0;                 ///< places for this many sensors on the one model; 0: none
 };
 
-/// One body by itself: its integrals by the three methods and what its modes capture.
+/// Report on one body: its integrals by three methods and its cumulative effective mass.
 struct SingleReport {
   std::string name;              ///< of the body
   Eigen::VectorXd frequency_hz;  ///< [num_modes]

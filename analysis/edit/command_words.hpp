@@ -11,7 +11,7 @@ namespace bough::analysis {
 /// two sides: `axis = [0, 0, 1]` is one word. Throws InputError "cli.edit-command" where a bracket or quote stays open.
 std::vector<std::string> split_words(const std::string& line);
 
-/// "key=value" at the first '=' outside quotes; nothing where there is none.
+/// "key=value" at the first '=' outside quotes; nothing if there is none.
 std::optional<std::pair<std::string, std::string>> split_assignment(const std::string& word);
 
 /// A word without the quotes around it.

@@ -1,5 +1,5 @@
 #pragma once
-/// \file The text that `bough edit` changes, with what was before (undo) and what the schema says about it.
+/// \file The text of `bough edit`, its earlier versions (undo) and its errors by the schema.
 #include <string>
 #include <vector>
 

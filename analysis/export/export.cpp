@@ -59,8 +59,14 @@ std::string make_csv(const ExportRequest& request, Diagnostics& diagnostics) {
       return text.str();
     }
   }
-  if (request.channels == std::vector<std::string>{"events"} || request.channels == std::vector<std::string>{"/events"})
+  if (std::any_of(request.channels.begin(), request.channels.end(),
+                  [](const auto& name) { return name == "events" || name == "/events"; })) {
+    if (request.channels.size() > 1)
+      throw InputError("cli.unknown-channel", {request.file},
+                       "events have other times than samples and are no column next to a channel",
+                       "export them alone: --channel events");
     return make_events_csv(hdf5::read_results(request.file).events);
+  }
   const auto format = request.channels.empty() ? read_file_format(request.file) : "";
   if (format == "bough-linear") return make_linear_csv(hdf5::read_linear_model(request.file));
   if (format == "bough-sweep") return make_sweep_csv(hdf5::read_sweep(request.file));

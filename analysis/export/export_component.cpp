@@ -289,7 +289,7 @@ WrittenComponent make_component_of_body(const std::string& file, const Component
 
 // ---------------------------------------------------------------------------------------------- files
 
-/// Matrices in the vendor's names and order; 1 x 1 zero where there is none.
+/// Matrices in the vendor's names and order; 1 x 1 zero if there is none.
 std::string make_matrices(const WrittenComponent& c, const std::string& vendor) {
   matrices::Op4Options options;
   options.is_text = false;

@@ -9,7 +9,7 @@ namespace bough::analysis {
 
 /// A, B, C, D and names.
 matrices::MatFields make_linear_fields(const records::LinearModel& model);
-/// mass, damping, stiffness, input_force, state_force of the same of second order; none where it has no mass matrix.
+/// mass, damping, stiffness, input_force, state_force of the same of second order; none if it has no mass matrix.
 matrices::MatFields make_second_order_fields(const records::LinearModel& model);
 /// Writes A, B, C, D, names and the fields of make_second_order_fields() to a MATLAB file.
 void write_linear_mat(const records::LinearModel& model, const std::string& path);

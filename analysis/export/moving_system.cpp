@@ -87,7 +87,7 @@ MovingSystem read_moving_system(const std::string& file, const MovingOptions& o,
   }
   if (system.bodies.empty())
     throw InputError("cli.no-motion", {file}, "the file holds no body that can be drawn",
-                     "give a results file with the channels of /bodies, beside the files of its bodies");
+                     "give a results file with the channels of /bodies, next to the files of its bodies");
   if (o.follow.empty()) return system;
   const auto leader = std::find_if(system.bodies.begin(), system.bodies.end(),
                                    [&](const MovingBody& body) { return body.name == o.follow; });

@@ -21,7 +21,7 @@ std::vector<int> choose_body_ids(const FlxRequest& request) {
     throw InputError("cli.body-ids", {}, fmt::format("{} body ids for {} bodies", ids.size(), request.bodies.size()),
                      "give the first one, or one a body: --body-id 3,7");
   if (std::set<int>(ids.begin(), ids.end()).size() != ids.size())
-    throw InputError("cli.body-ids", {}, "one body id is given twice", "give each body an id of its own");
+    throw InputError("cli.body-ids", {}, "one body id is given twice", "give each body a different id");
   return ids;
 }
 

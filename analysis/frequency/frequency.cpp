@@ -19,7 +19,8 @@
 namespace bough::analysis {
 namespace {
 
-/// The deck's EIGRL with the request; where neither says how many modes, those up to twice the highest frequency.
+/// Options of the modes by the request and the deck's EIGRL; without a number, the modes up to twice the highest
+/// frequency.
 modal::EigenOptions choose_eigen(const DeckResponseRequest& request, const records::DynamicDeck& deck,
                                  const records::DynamicSubcase& subcase, Diagnostics& diagnostics) {
   auto eigen = choose_eigen_options(request.eigen, deck, subcase.method, diagnostics);

@@ -35,7 +35,7 @@ hdf5::FileInfo read_flx_info(const std::string& name) {
     add("nodes", std::to_string(file.node_id.size()), "output nodes");
     add("gains", std::to_string(file.gains.size()) + " x 6 x " + n, "translations and rotations of the modes there");
     add("special_nodes", std::to_string(file.special_id.size()), "for the controller of geometric stiffness");
-    if (file.has_rigid) add("cg", "3", "mass centre from the body origin");
+    if (file.has_rigid) add("cg", "3", "centre of mass from the body origin");
     if (file.has_rigid) add("inertia", "3 x 3", "about the body origin");
     if (!file.has_stiffening) continue;
     add("kg_inertial", "12 x " + n + " x " + n, "K_G1");

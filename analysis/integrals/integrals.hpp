@@ -24,8 +24,8 @@ struct IntegralsAnswer {
   std::optional<Eigen::MatrixXd> inertial_loads;
 };
 
-/// Warnings: those of the readers, flx.generalized-dofs, flx.missing-dofs. Throws what flx::read_model_input(),
-/// flx::read_model_matrices() and modal::calc_matrix_body() report.
+/// Warnings: those of the readers, flx.generalized-dofs, flx.missing-dofs. Throws the errors of
+/// flx::read_model_input(), flx::read_model_matrices() and modal::calc_matrix_body().
 IntegralsAnswer calc_integrals(const IntegralsRequest& request, Events& events);
 
 }  // namespace bough::analysis

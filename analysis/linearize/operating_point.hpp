@@ -14,9 +14,10 @@ solver::Plant make_plant(const LoadedSystem& loaded, bool is_open = false);
 /// The initial state; with --start-from a file of equilibrium the states of controllers and actuators are its own.
 solver::OperatingPoint make_start(const LoadedSystem& loaded, solver::Plant& plant, Diagnostics& diagnostics);
 
-/// The state at time t, by the run's own integrator; the plant gets the modes that hinges and constraints have then.
-/// `last`: where the run has come, goes on from there and holds where it has come then. InputError("linear.bad-time")
-/// before the start; "linear.changed-system" with `last` where an event has changed the system before t.
+/// Computes the state at time t by the integrator of the run; the plant gets the present modes (free, locked, closed)
+/// of hinges and constraints. `last`: state from which to continue, replaced by the one at t.
+/// InputError("linear.bad-time") before the start; "linear.changed-system" with `last` if an event has changed the
+/// system before t.
 solver::OperatingPoint run_to(const LoadedSystem& loaded, solver::Plant& plant, double t, Diagnostics& diagnostics,
                               std::optional<records::Checkpoint>* last = nullptr);
 

@@ -67,7 +67,7 @@ void warn_jumps(const LinearSweep& sweep, const std::string& file, Diagnostics& 
 SweepRange parse_sweep(const std::string& text) {
   const auto fail = [&] {
     return InputError("cli.bad-sweep", {}, "--sweep " + text + " is not NAME=FROM:TO:N",
-                      "write --sweep rate=0:6:25, or with :log behind it for even ratios");
+                      "write --sweep rate=0:6:25, or with :log after it for even ratios");
   };
   const auto sign = text.find('=');
   if (sign == std::string::npos || sign == 0) throw fail();

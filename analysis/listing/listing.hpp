@@ -46,7 +46,7 @@ class ListingMaker {
 
   /// Returns the listing of all steps added so far.
   const records::Listing& get() const { return listing_; }
-  /// Grid of MEFFMASS(GRID = ...) of a subcase; 0: the origin; none where it is not asked for.
+  /// Grid of MEFFMASS(GRID = ...) of a subcase; 0: the origin; no value if it is not requested.
   std::optional<int> find_effective_mass_grid(int subcase) const;
 
  private:

@@ -85,7 +85,7 @@ class GeometricStiffness {
     with_prior_messages(diagnostics,
                         [&] { model_options.prestress = calc_prestress(deck_, model_options, diagnostics); });
     solver_.reset();
-    Diagnostics own;  // what the other model said too is not said again
+    Diagnostics own;  // diagnostics of this model; those that the other model has too are dropped
     model_ = &own_.emplace(fe::build_model(deck_, model_options, own));
     add_new(own, diagnostics);
   }

@@ -96,7 +96,7 @@ void add_critical_speeds(double low, double high, records::ComplexModesResult& r
 void refuse_complex_option(bool is_given, const char* option) {
   if (is_given)
     throw InputError("cli.complex-option", {},
-                     std::string(option) + " is given with a deck that asks for complex eigenvalues",
+                     std::string(option) + " is given with a deck that requests complex eigenvalues",
                      "leave the option out, or --ignore CMETHOD for the real modes");
 }
 

@@ -78,6 +78,7 @@ class PictureBuilder {
     add_spiders();
     add_symbols();
     add_properties();
+    add_line_sections();
     picture.part = sets_.number(picture.num_parts);
   }
 
@@ -201,6 +202,19 @@ class PictureBuilder {
     for (const auto& card : deck_.coord_systems)
       if (const auto* system = systems_.find(card.id); system != nullptr && system->is_resolved)
         picture.systems.push_back({card.id, system->origin, system->R_basic});
+  }
+
+  void add_line_sections() {
+    std::unordered_map<int, fe::BeamEnd> ends;
+    picture.line_sections = make_line_sections(deck_, [&](int id) -> const fe::BeamEnd* {
+      const int row = find(id);
+      if (row < 0) return nullptr;
+      const auto [at, is_new] = ends.try_emplace(id);
+      const auto& grid = deck_.grids[static_cast<std::size_t>(row)];
+      if (is_new)
+        at->second = {get_place(row), systems_.calc_axes(grid.cd, get_place(row), deck_.locate(grid.at), diagnostics_)};
+      return &at->second;
+    });
   }
 
   template <class Cards, class Describe>

@@ -6,6 +6,7 @@
 
 #include <Eigen/Dense>
 
+#include "analysis/picture/line_sections.hpp"
 #include "formats/records/deck.hpp"
 #include "formats/records/flex_body.hpp"
 
@@ -66,6 +67,7 @@ struct DeckPicture {
   std::vector<Load> loads;
   std::vector<System> systems;
   std::vector<Property> properties;
+  LineSections line_sections;
 };
 
 /// Messages about coordinate systems are added to `diagnostics`; nothing is thrown. O(elements log elements).

@@ -153,7 +153,7 @@ void add_whirl(const records::LinearSweep& sweep, Index b, const std::string& na
     return word == kWords[0] ? 0 : word == kWords[1] ? 1 : 2;
   };
   for (int direction = 0; direction < 3; ++direction) {
-    // The first value takes the direction of the next: rotors at rest have none.
+    // The first value gets the whirl direction of the next: rotors at rest have none.
     VectorXd y = VectorXd::Constant(np, std::nan(""));
     bool is_drawn = false;
     for (Index k = np > 1 ? 1 : 0; k < np; ++k) {

@@ -162,7 +162,7 @@ PlotAnswer choose_plots(const PlotRequest& request, Diagnostics& diagnostics) {
             {},
             fs::path(request.files.front()).stem().string() + "-" + request.linear.kind};
   if (request.sensors.empty())
-    throw InputError("cli.nothing-to-plot", {}, "neither --sensor nor --kind says what to draw",
+    throw InputError("cli.nothing-to-plot", {}, "neither --sensor nor --kind is given",
                      "give --sensor NAME of results, or --kind bode of a linear model");
   if (is_deck_response(request.files)) {
     const auto& c = request.curves;

@@ -139,7 +139,7 @@ records::Deck read_points(const records::BodySpec& spec, Diagnostics& diagnostic
   const auto K = matrices.stiffness.empty() ? matrices.file : matrices.stiffness.file;
   demand_file(K);
   if (!is_hdf5(K))
-    throw InputError("cli.no-grids", {K}, "nothing tells where the grids are",
+    throw InputError("cli.no-grids", {K}, "the positions of the grids are missing",
                      "give a deck with GRID cards, or grids, a table of id, x, y, z");
   return read_grids(K);
 }

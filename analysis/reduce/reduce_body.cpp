@@ -25,7 +25,7 @@ namespace fs = std::filesystem;
 namespace {
 
 /// RESVEC of the deck, as `modes` has it: loads of the subcase, unit forces of USETi and RVDOFi. Only for a deck on the
-/// command line, a body file says itself what is in the body. Empty where the deck does not ask for them.
+/// command line, a body file says itself what is in the body. Empty if the deck does not ask for them.
 std::optional<records::DynamicDeck> read_residuals(const records::BodySpec& spec, const fe::ModelOptions& model_options,
                                                    const records::Deck& deck, records::DynamicSelection& selection,
                                                    Diagnostics& diagnostics) {
@@ -91,7 +91,7 @@ records::ExternalLoadSpec parse_load(const std::string& text) {
     return {"cli.bad-load",
             {},
             "cannot read --load \"" + text + "\"",
-            "write NODE:DIRECTIONS such as 41:2 or 41:123, set:ID or temperature:ID; NAME= may stand before"};
+            "write NODE:DIRECTIONS such as 41:2 or 41:123, set:ID or temperature:ID; NAME= may come before"};
   };
   records::ExternalLoadSpec load;
   std::string rest = text;

@@ -44,9 +44,9 @@ struct Reduced {
 /// stiffening::reduce throw.
 Reduced reduce_body(const records::BodySpec& spec, const stiffening::ReduceOptions& options, Diagnostics& diagnostics);
 
-/// Reads the files of a request and reduces the body. `check_spec` is called before the work, to refuse what is to be
-/// made of it. Collective.
-/// \throws InputError "cli.no-modes", "cli.bad-load"; what reading and stiffening::reduce throw.
+/// Reads the files of a request and reduces the body. `check_spec` is called before the computation and may reject the
+/// request. Collective.
+/// \throws InputError "cli.no-modes", "cli.bad-load"; exceptions of reading and of stiffening::reduce.
 Reduced reduce_body(const ReduceRequest& request, const std::function<void(const records::BodySpec&)>& check_spec,
                     Events& events);
 

@@ -39,7 +39,8 @@ report::Chapter make_selection_chapter(const std::string& file) {
   try {
     for (const auto& m : json.at("modes"))
       modes.push_back({m.at("mode").get<int>(), m.at("frequency_hz").get<double>(), m.at("cost").get<double>(),
-                       m.at("share").get<double>(), m.at("kept").get<bool>(), m.at("reason").get<std::string>()});
+                       m.at("share").get<double>(), m.at("kept").get<bool>(), m.at("reason").get<std::string>(),
+                       m.value("body", std::string())});
     return report::make_chapter(modes, json.at("total_cost").get<double>(), file);
   } catch (const nlohmann::json::exception& error) {
     throw fail(std::string("not the list of modes that select prints: ") + error.what());

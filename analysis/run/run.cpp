@@ -37,7 +37,7 @@ void demand_other_file(const std::string& output, const LoadedSystem& loaded, co
 class MessageFeed {
  public:
   MessageFeed(Events& events, const Diagnostics& diagnostics) : events_(events), diagnostics_(diagnostics) {}
-  /// Errors are left to the failure that carries them.
+  /// Passes new warnings; errors are reported with the failure that contains them.
   void pass_new() {
     for (; passed_ < diagnostics_.items().size(); ++passed_)
       if (diagnostics_.items()[passed_].severity != Severity::Error) events_.add_message(diagnostics_.items()[passed_]);

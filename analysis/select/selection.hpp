@@ -4,23 +4,9 @@
 #include <vector>
 
 #include "analysis/common/events.hpp"
-#include "analysis/select/weighing.hpp"
+#include "analysis/select/loss.hpp"
 
 namespace bough::analysis {
-
-/// Cost of the truncation in one configuration.
-struct Loss {
-  std::string name;
-  double total = 0;           ///< V
-  double other = 0;           ///< of it by the rest of the system
-  double lost = 0;            ///< mean square of the difference of the outputs, to V
-  double peak = 0;            ///< peak gain of the full model, of its stable part
-  double error = 0;           ///< largest gain of the difference: its H-infinity norm
-  double error_hz = 0;        ///< where
-  double balanced_bound = 0;  ///< 2 Σ of the Hankel singular values that a balanced model of as many states loses
-  double steady_error = 0;    ///< of the gain at frequency 0 of the stable part, relative
-  Eigen::VectorXd frequency_hz, before, after, difference;  ///< largest singular values
-};
 
 struct Selection {
   statespace::ModeRanking ranking;  ///< of the worst configuration for each mode
@@ -33,12 +19,30 @@ struct Selection {
   std::vector<Loss> losses;
 };
 
+/// Modes of one body, or of several, in the order of their ranking.
+struct RankedModes {
+  std::string file;  ///< of the body or the first system, for messages
+  std::vector<statespace::ModeTraits> traits;
+  std::vector<std::string> names;  ///< words of --keep: "3", of a system "boom:3"
+};
+
+/// Chooses the modes to keep and measures the loss without the others in every configuration. Warnings:
+/// select.always-kept, select.most-is-lost. Throws InputError "select.unknown-mode".
+Selection choose_and_measure(const SelectRequest& request, const RankedModes& modes,
+                             const std::vector<Weighing>& weighings, Events& events, Diagnostics& diagnostics);
+
+/// Adds select.third-order (warning) if the body, of which modes are dropped, has third order.
+void warn_of_lost_order(const records::FlexBody& body, const std::string& file, Diagnostics& diagnostics);
+
+/// Throws InputError "cli.bad-value" for numbers out of their range.
+void demand_select_numbers(const SelectRequest& request);
+
 /// Files that the selection reads, those of the body and of the systems first. Throws InputError "cli.no-file",
 /// "cli.wrong-file".
 std::vector<std::string> list_select_inputs(const SelectRequest& request);
 
 /// Ranks the modes of `body`, which `request.body` names, chooses those to keep and computes the loss without the
-/// others. Warnings: select.always-kept, select.most-is-lost. `diagnostics`: messages from reading the body.
+/// others. Warnings: those of choose_and_measure(). `diagnostics`: messages from reading the body.
 /// \throws InputError "select.no-signals", "select.unknown-mode" and those of the weighings.
 Selection select_modes(const SelectRequest& request, const records::FlexBody& body, Events& events,
                        Diagnostics diagnostics = {});

@@ -1,5 +1,7 @@
 #include "analysis/select/system_plant.hpp"
 
+#include <algorithm>
+
 #include "analysis/common/body_files.hpp"
 #include "analysis/linearize/operating_point.hpp"
 #include "formats/records/mode_subset.hpp"
@@ -10,8 +12,7 @@ namespace bough::analysis {
 
 namespace {
 
-/// Keeps the values of the retained modes, of one value per mode.
-void keep_values(std::vector<double>& values, const std::vector<int>& kept) {
+void keep_some(std::vector<double>& values, const std::vector<int>& kept) {
   if (values.size() <= 1) return;
   std::vector<double> some;
   for (const int mode : kept) some.push_back(values[static_cast<std::size_t>(mode)]);
@@ -20,17 +21,27 @@ void keep_values(std::vector<double>& values, const std::vector<int>& kept) {
 
 }  // namespace
 
-SystemPlant::SystemPlant(const std::string& system, const std::string& body, OperatingChoice choice,
-                         Diagnostics& diagnostics)
-    : file_(system), choice_(std::move(choice)), loaded_(load_system(system, diagnostics, {}, choice_.set)) {
+void keep_values(records::BodyRecord& body, const std::vector<int>& kept) {
+  for (auto* values : {&body.eta, &body.eta_dot, &body.damping_ratios}) keep_some(*values, kept);
+  body.num_modes = static_cast<int>(kept.size());
+}
+
+SystemPlant::SystemPlant(const std::string& system, OperatingChoice choice, Diagnostics& diagnostics)
+    : file_(system), choice_(std::move(choice)), loaded_(load_system(system, diagnostics, {}, choice_.set)) {}
+
+std::vector<std::vector<BodyMode>> SystemPlant::list_uses(const std::string& body_file) const {
+  std::vector<std::vector<BodyMode>> uses;
   for (const auto& record : loaded_.spec.bodies) {
-    if (loaded_.flex_path.count(record.file) == 0 || !is_same_body(resolve_beside(system, record.file), body)) continue;
-    users_.push_back(record.name);
-    key_ = record.file;
+    const auto found = loaded_.flex.find(record.file);
+    if (found == loaded_.flex.end() || !is_same_body(resolve_beside(file_, record.file), body_file)) continue;
+    uses.resize(static_cast<std::size_t>(found->second.num_modes()));
+    const int num_used = record.num_modes < 0 ? found->second.num_modes() : record.num_modes;
+    for (int mode = 0; mode < num_used; ++mode) uses[static_cast<std::size_t>(mode)].push_back({record.name, mode});
   }
-  if (users_.empty())
-    throw InputError("select.body-not-in-system", {system}, "no body of the system has the file " + body,
+  if (uses.empty())
+    throw InputError("select.body-not-in-system", {file_}, "no body of the system has the file " + body_file,
                      "name the body file that the system uses");
+  return uses;
 }
 
 records::LinearModel SystemPlant::linearize(const LoadedSystem& loaded, Diagnostics& diagnostics) const {
@@ -48,20 +59,22 @@ records::LinearModel SystemPlant::linearize(const LoadedSystem& loaded, Diagnost
 
 records::LinearModel SystemPlant::linearize(Diagnostics& diagnostics) const { return linearize(loaded_, diagnostics); }
 
-records::LinearModel SystemPlant::linearize_with(const std::vector<int>& kept) const {
+records::LinearModel SystemPlant::linearize_with(const std::vector<BodyMode>& all,
+                                                 const std::vector<BodyMode>& kept) const {
   auto spec = loaded_.spec;
   auto flex = loaded_.flex;
-  const int num_modes = flex.at(key_).num_modes();
   for (auto& body : spec.bodies) {
-    if (body.file != key_) continue;
-    const int num_used = body.num_modes < 0 ? num_modes : body.num_modes;
-    std::vector<int> used;
-    for (const int mode : kept)
-      if (mode < num_used) used.push_back(mode);
-    for (auto* values : {&body.eta, &body.eta_dot, &body.damping_ratios}) keep_values(*values, used);
-    body.num_modes = static_cast<int>(used.size());
+    const auto is_of_body = [&](const BodyMode& one) { return one.body == body.name; };
+    if (std::none_of(all.begin(), all.end(), is_of_body)) continue;
+    std::vector<int> modes;
+    for (const auto& one : kept)
+      if (is_of_body(one)) modes.push_back(one.mode);
+    std::sort(modes.begin(), modes.end());
+    const auto& whole = loaded_.flex.at(body.file);
+    body.file += '|' + body.name;  // bodies of one file keep different modes
+    flex[body.file] = records::keep_modes(whole, modes.empty() ? std::vector<int>{0} : modes);
+    keep_values(body, modes);
   }
-  flex[key_] = records::keep_modes(flex.at(key_), kept);
   Diagnostics ignored;
   auto system = solver::build_system(spec, flex, ignored);
   return linearize({std::move(spec), std::move(flex), loaded_.flex_path, std::move(system), {}}, ignored);

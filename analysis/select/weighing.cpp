@@ -1,17 +1,10 @@
 #include "analysis/select/weighing.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <charconv>
-#include <cmath>
-#include <fstream>
-#include <numbers>
-#include <sstream>
 
-#include "analysis/common/inputs.hpp"
 #include "analysis/common/spectrum_file.hpp"
-#include "analysis/select/system_plant.hpp"
+#include "analysis/select/weights.hpp"
 #include "formats/records/mode_subset.hpp"
 
 namespace bough::analysis {
@@ -50,123 +43,9 @@ std::vector<NodeDirection> read_place(const records::FlexBody& body, const std::
                                : "write NODE, or NODE:x, y, z, rx, ry or rz");
 }
 
-struct Weight {
-  std::string name;
-  double value = 1;
-};
-
-std::vector<Weight> read_weights(const std::vector<std::string>& words, const std::string& file) {
-  std::vector<Weight> weights;
-  for (const auto& word : words) {
-    const auto sign = word.rfind('=');
-    const std::string text = sign == std::string::npos ? "" : word.substr(sign + 1);
-    char* end = nullptr;
-    const double value = std::strtod(text.c_str(), &end);
-    if (text.empty() || *end != '\0' || !std::isfinite(value))
-      throw InputError("select.bad-weight", {file}, "--weight " + word + " is not NAME=NUMBER",
-                       "write --weight tip:y=10");
-    weights.push_back({word.substr(0, sign), value});
-  }
-  return weights;
-}
-
-[[noreturn]] void fail_weight(const std::string& name, const std::string& file, const std::vector<std::string>& known) {
-  const auto near = find_nearest(name, known);
-  throw InputError("select.bad-weight", {file}, "--weight: there is no input or output '" + name + "'",
-                   near.empty() ? "name one of --inputs and --outputs" : "did you mean '" + near + "'?");
-}
-
 std::string name_place(const NodeDirection& place) {
   return std::to_string(place.node) + ":" +
          (place.is_rate ? kRates : kDirections)[static_cast<std::size_t>(place.direction - 1)];
-}
-
-void scale_by_weights(const SelectRequest& o, const std::string& file, records::LinearModel& model) {
-  for (const auto& weight : read_weights(o.weights, file)) {
-    bool is_known = false;
-    const auto is_meant = [&](const std::string& name) {
-      return name == weight.name || name.starts_with(weight.name + ":");
-    };
-    for (int i = 0; i < model.outputs.size(); ++i)
-      if (is_meant(model.outputs.name[static_cast<std::size_t>(i)])) {
-        model.C.row(i) *= weight.value;
-        model.D.row(i) *= weight.value;
-        is_known = true;
-      }
-    for (int i = 0; i < model.inputs.size(); ++i)
-      if (is_meant(model.inputs.name[static_cast<std::size_t>(i)])) {
-        model.B.col(i) *= weight.value;
-        model.D.col(i) *= weight.value;
-        is_known = true;
-      }
-    if (!is_known) {
-      auto known = model.outputs.name;
-      known.insert(known.end(), model.inputs.name.begin(), model.inputs.name.end());
-      fail_weight(weight.name, file, known);
-    }
-  }
-}
-
-/// Share of the modes in the mean square below which it is rounding.
-constexpr double kSeen = 1e-12;
-
-/// The modes of `file` in the linear model of a whole system; those of several bodies from one file add up.
-Weighing weigh_in_system(const SelectRequest& o, const std::string& file, std::optional<double> at,
-                         const records::FlexBody& body, Diagnostics& diagnostics) {
-  const auto plant = std::make_shared<SystemPlant>(
-      file, o.body, OperatingChoice{at, o.equilibrium, o.open, o.inputs, o.outputs, o.set}, diagnostics);
-  auto model = plant->linearize(diagnostics);
-  if (model.inputs.size() == 0 || model.outputs.size() == 0) {
-    throw InputError("select.no-signals", {file}, "the system has no [[force]] or no [[sensor]] to weigh modes by",
-                     "add them, or name hinges with --inputs");
-  }
-  if (!model.D.isZero(0))
-    diagnostics.note("select.feedthrough", {file},
-                     "an output follows an input at once: only what the states bring to it is counted");
-  for (int k = 0; k < model.poles.size(); ++k) {
-    const double size = std::hypot(model.poles.real[k], model.poles.imag[k]);
-    if (size <= 1e-6 * model.poles.frequency_hz.maxCoeff() * 2 * std::numbers::pi ||
-        model.poles.real[k] < -1e-11 * size)
-      continue;
-    throw ComputationError(
-        "select.unstable", {file},
-        fmt::format("the pole {:.3g} ± {:.4g} i of {} does not decay: the outputs grow without limit "
-                    "and no mode can be ranked",
-                    model.poles.real[k], std::abs(model.poles.imag[k]), model.poles.mode[static_cast<std::size_t>(k)]),
-        "give it damping, or choose a stable state");
-  }
-  scale_by_weights(o, file, model);
-  Weighing w;
-  w.name = file + (at ? fmt::format(" at t = {:g}", *at) : "");
-  w.full = {model.A, model.B, model.C};
-  if (!o.spectrum.empty()) w.spectrum = read_spectrum(o.spectrum, model.inputs.name, "select.bad-spectrum");
-  w.reduce = [plant, o, file](const std::vector<int>& kept) {
-    auto reduced = plant->linearize_with(kept);
-    scale_by_weights(o, file, reduced);
-    return StateSpace{reduced.A, reduced.B, reduced.C};
-  };
-  const auto cost = w.spectrum ? statespace::calc_component_cost(w.full, *w.spectrum)
-                               : statespace::calc_component_cost(model.A, model.B, model.C);
-  w.ranking.total = w.ranking.other = cost.total;
-  w.ranking.modes.resize(static_cast<std::size_t>(body.num_modes()));
-  for (int i = 0; i < model.states.size(); ++i) {
-    for (const auto& user : plant->users()) {
-      for (int mode = 0; mode < body.num_modes(); ++mode) {
-        const auto name = user + ":eta" + std::to_string(mode + 1);
-        const auto& state = model.states.name[static_cast<std::size_t>(i)];
-        if (state != name && state != name + "_dot") continue;
-        w.ranking.modes[static_cast<std::size_t>(mode)].cost += cost.state[i];
-        w.ranking.other -= cost.state[i];
-      }
-    }
-  }
-  double seen = 0;
-  for (const auto& mode : w.ranking.modes) seen += std::abs(mode.cost);
-  if (!(seen > kSeen * w.ranking.total))
-    diagnostics.warning("select.unseen", {file},
-                        "no output sees the modes of the body at once: their costs are rounding, and so is their order",
-                        "add outputs that move with the modes, as a deflection; what the outputs lose still holds");
-  return w;
 }
 
 }  // namespace
@@ -231,16 +110,6 @@ Weighing weigh_alone(const SelectRequest& o, const records::FlexBody& body, cons
     return statespace::make_state_space(records::keep_modes(body, kept), inputs, outputs, damping);
   };
   return w;
-}
-
-std::vector<Weighing> weigh_in_systems(const SelectRequest& o, const records::FlexBody& body,
-                                       Diagnostics& diagnostics) {
-  std::vector<Weighing> all;
-  for (const auto& file : o.systems) {
-    if (o.at.empty()) all.push_back(weigh_in_system(o, file, {}, body, diagnostics));
-    for (const double at : o.at) all.push_back(weigh_in_system(o, file, at, body, diagnostics));
-  }
-  return all;
 }
 
 }  // namespace bough::analysis

@@ -1,5 +1,5 @@
 #pragma once
-/// \file Models by which modes are ranked: a body alone or a system in one or several configurations.
+/// \file Models by which modes are ranked, and the model of a body alone.
 #include <functional>
 #include <memory>
 #include <optional>
@@ -13,17 +13,18 @@
 namespace bough::analysis {
 
 struct SelectRequest {
-  std::string body;                  ///< file, for messages
+  std::string body;                  ///< file, for messages; empty: all flexible bodies of the systems
   std::vector<std::string> systems;  ///< files; none: the body alone
   std::vector<std::string> set;      ///< "name=value" of [parameters]
   std::vector<std::string> inputs, outputs, weights;
-  std::string spectrum;     ///< file of the spectrum of the inputs; empty: white noise
-  std::vector<int> pinned;  ///< modes that are kept, from 1
-  int number = 0;           ///< of modes kept; 0: by tolerance or frequency
+  std::string spectrum;             ///< file of the spectrum of the inputs; empty: white noise
+  std::vector<std::string> pinned;  ///< modes that are kept, from 1: "3"; of all bodies of a system "boom:3"
+  int number = 0;                   ///< of modes kept; 0: by tolerance or frequency
   std::optional<double> tolerance;
   double below_hz = 0, damping = 0.01;
   std::vector<double> at;
   bool equilibrium = false, open = false;
+  bool exchange = false;  ///< retained and dropped modes are exchanged as long as the outputs lose less
 };
 
 /// One configuration: full model and costs; how the modes kept do instead.
@@ -51,8 +52,5 @@ std::vector<statespace::NodeDirection> choose_places(const records::FlexBody& bo
 Weighing weigh_alone(const SelectRequest& o, const records::FlexBody& body,
                      const std::vector<statespace::NodeDirection>& inputs,
                      const std::vector<statespace::NodeDirection>& outputs);
-
-/// Every system file at every time asked for.
-std::vector<Weighing> weigh_in_systems(const SelectRequest& o, const records::FlexBody& body, Diagnostics& diagnostics);
 
 }  // namespace bough::analysis

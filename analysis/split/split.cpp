@@ -34,13 +34,14 @@ using Matrix6d = Eigen::Matrix<double, 6, 6>;
 
 /// Highest frequency of the modes of a part, with the cuts held, over that of the highest mode compared.
 constexpr double kFirstRange = 3;
-constexpr int kMaxRounds = 5;            ///< each doubles the range
-constexpr int kMaxRigidRounds = 3;       ///< with cuts along several grids
-constexpr double kTwistInertia = 1e-5;   ///< of what a line of bars carries
-constexpr double kRotaryInertia = 1e-7;  ///< of what a grid of lumped mass carries, about each axis
-constexpr double kDiscInertia = 0.6;     ///< of a disc about its diameter over that about its axis
-constexpr double kGrounding = 1e-6;      ///< force of a spring in rigid-body motion, over |K| |motion|
-constexpr double kParallel = 1e-9;       ///< sine of the angle, and relative inertia that is round-off
+constexpr int kMaxRounds = 5;           ///< each doubles the range
+constexpr int kMaxRigidRounds = 3;      ///< with cuts along several grids
+constexpr double kTwistInertia = 1e-5;  ///< relative to the torsional inertia that a line of bars carries
+constexpr double kRotaryInertia =
+    1e-7;                             ///< relative to the inertia that a grid of lumped mass carries, about each axis
+constexpr double kDiscInertia = 0.6;  ///< of a disc about its diameter over that about its axis
+constexpr double kGrounding = 1e-6;   ///< force of a spring in rigid-body motion, over |K| |motion|
+constexpr double kParallel = 1e-9;    ///< sine of the angle, and relative inertia that is round-off
 
 double calc_hz(double lambda) { return std::sqrt(std::max(lambda, 0.0)) / (2 * std::numbers::pi); }
 

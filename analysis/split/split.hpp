@@ -34,7 +34,7 @@ struct SplitRequest {
 struct SplitPart {
   std::string name;
   std::string parent;  ///< name, or "ground"
-  int node = 0;        ///< grid at which the parent carries the part; 0: held as the deck is
+  int node = 0;        ///< grid at which the parent carries the part; 0: constrained as in the deck
   int num_elements = 0, num_grids = 0;
   double mass = 0;
   records::FlexBody body;  ///< reduced, with is_checked

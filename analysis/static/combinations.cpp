@@ -87,7 +87,7 @@ StaticSubcase combine(const fe::Model& model, const records::Deck& deck, const r
       throw InputError("cli.combination-missing", deck.locate(combination.at),
                        combination.command + " " + std::to_string(sum.id) + " needs subcase " + std::to_string(id) +
                            ", of which there is no result",
-                       "give it a load, mend what went wrong with it, or run without --subcase");
+                       "give it a load, correct its error, or run without --subcase");
     for (const auto member : {&StaticSubcase::displacement, &StaticSubcase::load, &StaticSubcase::reaction,
                               &StaticSubcase::mpc_force, &StaticSubcase::inertia})
       add_scaled(factor, (*part).*member, sum.*member);

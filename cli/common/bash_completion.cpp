@@ -9,7 +9,7 @@ namespace bough::cli {
 
 namespace {
 
-/// The words that follow the verb's name are found anew at each key press; an empty list leaves the file names to bash.
+/// The words after the command's name are searched at each key press; for an empty list bash completes file names.
 constexpr auto kScript = R"(# Completion of bough for bash, written by bough --bash-completion.
 _bough() {{
   local word="${{COMP_WORDS[COMP_CWORD]}}" before="${{COMP_WORDS[COMP_CWORD - 1]}}" verb="" options="" values="" i

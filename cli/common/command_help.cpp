@@ -88,7 +88,8 @@ const CommandHelp& get_command_help(const std::string& command) {
        {"Ranks the modes of a body by component cost and picks those to keep",
         "Example:\n  bough select panel.h5 --number 12 -o small.h5\n"
         "  bough select panel.h5 satellite.toml --tolerance 0.001 -o small.h5\n"
-        "  bough select panel.h5 slew.toml hold.toml --weight gyro=10 --keep 1,2 --response loss.svg"}},
+        "  bough select panel.h5 slew.toml hold.toml --weight gyro=10 --keep 1,2 --response loss.svg\n"
+        "  bough select slew.toml --number 12 --exchange -o small"}},
       {"export",
        {"Bodies, modes, matrices, results or a deck in the format of another program",
         "Example:\n  bough export spinup.h5 --to csv -o spinup.csv\n"

@@ -166,7 +166,7 @@ void flush_data() {
 
 std::vector<Diagnostic> shorten(const std::vector<Diagnostic>& items, std::size_t max_shown) {
   struct Kind {
-    std::size_t count = 0, line = 0;  ///< how many there are; where the line about the rest stands
+    std::size_t count = 0, line = 0;  ///< number of messages; line of the summary of the others
   };
   std::map<std::tuple<std::string, Severity, std::string>, Kind> kinds;
   std::vector<Diagnostic> shown;

@@ -25,7 +25,7 @@ std::string format_rows(const Eigen::Ref<const Eigen::MatrixXd>& m) {
   return text;
 }
 
-/// Where each direction has a mass of its own: three masses with their centres from the reference, as in the weight
+/// Where each direction has a separate mass: three masses with their centres from the reference, as in the weight
 /// table of Nastran.
 std::string format_masses(const fe::GridPointWeight& w) {
   std::string text = w.S.isIdentity(0) ? "" : "  principal axes of the mass (columns)\n" + format_rows(w.S);

@@ -11,11 +11,11 @@ namespace bough::cli {
 /// The manual page bough(1), in the man macros of roff.
 std::string make_man_page(const CLI::App& app);
 
-/// The page bough-VERB(1) of one verb; empty where there is no such verb.
+/// The page bough-COMMAND(1) of one command; empty if there is no such command.
 std::string make_verb_man_page(const CLI::App& app, const std::string& verb);
 
-/// The completion script for bash: verbs, the options of each verb, the values of options that take a few words; else
-/// file names.
+/// The completion script for bash: commands, the options of each command, the values of options with a fixed list of
+/// words; else file names.
 std::string make_bash_completion(const CLI::App& app);
 
 /// Completion scripts for zsh and fish, with a line about each command and option.

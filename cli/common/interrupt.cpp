@@ -35,7 +35,7 @@ volatile std::sig_atomic_t g_is_told = 0;
 /// Time in s that a user library has to return after the first signal.
 constexpr unsigned kPatience = 5;
 
-/// The verb did not come to a point where it looks whether it is to end: where it is, if that is a user library.
+/// Ends a command that has not reached a check for signals; the message names the user library in which it is.
 [[noreturn]] void end_where_it_is(const char* why) {
   remove_parts();
   char text[1200];
@@ -55,7 +55,7 @@ constexpr unsigned kPatience = 5;
   leave_at_once(kComputationFailed);
 }
 
-/// One signal is enough where no second one comes (a time limit, a service manager).
+/// Ends the program after one signal if no second one follows (a time limit, a service manager).
 void on_patience_over(int) {
   if (ForeignCall::find_current()) end_where_it_is("told to end 5 s ago and still");
 }
@@ -83,7 +83,7 @@ SignalScope::SignalScope(void (*handler)(int)) {
 SignalScope::~SignalScope() {
   ::alarm(0);
   for (std::size_t i = 0; i < kSignals.size(); ++i) {
-    // The program is about to end by itself; a signal more does not make it say that nothing was written.
+    // The program is ending: a further signal must not report that nothing was written.
     if (before_[i].sa_handler == end_on_signal) continue;
     ::sigaction(kSignals[i], &before_[i], nullptr);
   }

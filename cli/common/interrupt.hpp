@@ -6,8 +6,8 @@
 namespace bough::cli {
 
 /// SIGINT, SIGTERM and SIGHUP end the program with exit code 3 and leave no half-written file; a signal that was
-/// ignored from the start stays so. In force before main() begins. Verbs that can stop in good order (run, batch) take
-/// the signals over (SignalScope).
+/// ignored from the start stays so. In force before main() begins. Commands that can stop in good order (run, batch)
+/// replace these handlers (SignalScope).
 void end_cleanly_on_signals();
 
 /// Makes only the first of several ranks report a signal. Before main() the environment is not available yet.
@@ -16,9 +16,9 @@ void leave_word_to_first_rank();
 /// Silences further messages after a failure: the signal by which mpirun ends the other ranks is not reported.
 void end_in_silence();
 
-/// For such verbs: SIGINT, SIGTERM and SIGHUP call `handler` while the object lives; a hangup that was ignored (nohup)
-/// stays so. A SIGINT after any of the three ends the process at once, exit code 3. One object at a time. Handlers of a
-/// host program are put back at the end.
+/// For such commands: SIGINT, SIGTERM and SIGHUP call `handler` while the object exists; a hangup that was ignored
+/// (nohup) stays ignored. A SIGINT after any of the three ends the process at once, exit code 3. One object at a time.
+/// The destructor restores the handlers of a host program.
 class SignalScope {
  public:
   explicit SignalScope(void (*handler)(int));

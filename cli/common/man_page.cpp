@@ -81,7 +81,7 @@ std::string make_man_page(const CLI::App& app) {
   const auto verbs = app.get_subcommands(nullptr);
   for (const auto* verb : verbs) out += (verb == verbs.front() ? "" : ".br\n") + format_synopsis(*verb);
   out += ".SH DESCRIPTION\n" + format_footer(app.get_footer()) + ".SH OPTIONS\n" + format_options(app);
-  out += ".SH VERBS\n";
+  out += ".SH COMMANDS\n";
   for (const auto* verb : verbs) {
     out += ".SS bough " + verb->get_name() + "\n" + escape(verb->get_description()) + "\n" + format_options(*verb);
     out += format_footer(verb->get_footer());

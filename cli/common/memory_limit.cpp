@@ -39,7 +39,7 @@ void end_without_memory(int) {
 }
 
 void catch_crashes() {
-  static std::array<char, 1 << 16> room;  // a handler's stack where the other one is what ran out
+  static std::array<char, 1 << 16> room;  // stack of the handler, since the normal stack may be exhausted
   stack_t stack{};
   stack.ss_sp = room.data();
   stack.ss_size = room.size();

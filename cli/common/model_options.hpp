@@ -1,5 +1,5 @@
 #pragma once
-/// \file Options of the verbs that make a finite-element model of a deck, and of those that list its results.
+/// \file Options of the commands that make a finite-element model of a deck, and of those that list its results.
 #include "analysis/common/model_choice.hpp"
 #include "analysis/listing/listing_files.hpp"
 

@@ -66,7 +66,7 @@ void check_outputs(const CommonOptions& options, const std::vector<std::string>&
     for (std::size_t k = 0; k < i; ++k)
       if (!paths[k].empty() && analysis::is_same_output(paths[k], paths[i]))
         throw InputError("cli.same-output", {paths[i]}, "two outputs of this call would be this one file",
-                         "give each a name of its own");
+                         "give each a different name");
   }
 }
 

@@ -10,7 +10,7 @@ namespace bough::cli {
 
 namespace {
 
-/// The first sentence of what an option does, on one line: what fits beside a name in a list.
+/// The first sentence of what an option does, on one line: what fits next to a name in a list.
 std::string shorten(const std::string& text) {
   std::string out;
   for (const char c : text) out += c == '\n' ? ' ' : c;
@@ -103,7 +103,7 @@ std::string make_zsh_completion(const CLI::App& app) {
   std::string verbs;
   std::string options = fmt::format(
       "    '')\n      if [[ $words[CURRENT] = -* ]]; then\n        _arguments {}\n      else\n"
-      "        _describe -t verbs verb verbs\n      fi ;;\n",
+      "        _describe -t commands command verbs\n      fi ;;\n",
       write_zsh_options(app));
   for (const auto* verb : app.get_subcommands(nullptr)) {
     verbs += fmt::format("    '{}:{}'\n", verb->get_name(), quote_zsh(shorten(verb->get_description())));

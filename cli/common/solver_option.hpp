@@ -1,5 +1,5 @@
 #pragma once
-/// \file The eigensolver of verbs that compute modes: how it is chosen and how it is named.
+/// \file The eigensolver of commands that compute modes: how it is chosen and how it is named.
 #include <CLI/CLI.hpp>
 #include <nlohmann/json_fwd.hpp>
 #include <string>

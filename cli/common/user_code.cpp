@@ -74,7 +74,7 @@ void on_crash(int signal, siginfo_t* info, void*) {
   if (const auto* call = find_own_call())
     report_and_leave(*call, " crashed: ", kCrashes[i].text, "correct the library; a debugger shows the place",
                      "control.library-crashed");
-  // Not a library's: what was in force before. A fault comes again by itself, a signal that was sent does not.
+  // Not caused by a library: restore the previous handler. A fault recurs; a sent signal must be raised again.
   ::sigaction(signal, &g_before[i], nullptr);
   if (info == nullptr || info->si_code <= 0) ::raise(signal);
 }

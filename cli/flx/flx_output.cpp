@@ -125,7 +125,7 @@ std::string format_flx_json(const std::vector<flx::FlxFile>& files) {
 }
 
 std::string format_flx_text(const flx::FlxFile& file) {
-  // The layout language does the printing: what Bough's own lines hold, under full names.
+  // The layout language prints the data of Bough's extension lines under full names.
   static constexpr const char* kText = R"(number %14.6E
 integer %8d
 text "body id: {body_id}\nname: {name}\nmodal integral option: {modopt}\nintegrals: {method}\nmass: {mass:%.9g}"

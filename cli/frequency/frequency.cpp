@@ -1,4 +1,4 @@
-/// The verbs `frequency` and `transient`.
+/// The commands `frequency` and `transient`.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>

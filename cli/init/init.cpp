@@ -48,13 +48,13 @@ Files make_files(const InitOptions& o, Diagnostics& diagnostics) {
   if (!is_deck(o.name)) {
     const auto& chosen = find_template(o.name);
     made.folder = chosen.name;
-    made.advice = "README.md there tells what it is and how to run it\n";
+    made.advice = "README.md in that folder explains the example and how to run it\n";
     for (const auto& file : chosen.files) made.files.push_back({file.name, file.text});
     return made;
   }
   made.folder = ".";
   made.files = analysis::make_start_files(o.name, o.output, o.hinge, diagnostics);
-  made.advice = "reduce the first, then run the second\n";
+  made.advice = "bough reduce takes the first file; then bough run takes the second\n";
   return made;
 }
 
@@ -78,7 +78,7 @@ int list_templates(const Console& console) {
     name.resize(width + 2, ' ');
     console.print_data(name + describe(known) + "\n");
   }
-  console.print("bough init NAME copies one; bough init DECK.bdf begins from a deck\n");
+  console.print("bough init NAME copies an example; bough init DECK.bdf writes a body and a system file for a deck\n");
   return kSuccess;
 }
 
@@ -155,7 +155,7 @@ void add_init(CLI::App& app, Action& action) {
   verb->add_flag("--list", o->lists, "List the templates, as without a name");
   verb->add_flag("--force", o->force, "Overwrite files that are there already");
   verb->add_flag("-q,--quiet", o->quiet, "Print errors only");
-  verb->add_flag("-v,--verbose")->description("Accepted as by every verb; init has nothing more to tell");
+  verb->add_flag("-v,--verbose")->description("Accepted as by every command; init has no further messages");
 }
 
 }  // namespace bough::cli

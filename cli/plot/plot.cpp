@@ -155,10 +155,10 @@ void add_plot(CLI::App& app, Action& action) {
       ->check(is_within(2, 1 << 30))
       ->needs(psd)
       ->capture_default_str();
-  verb->add_flag("--difference", c.difference, "Each further file less the first one")
+  verb->add_flag("--difference", c.difference, "Each further file minus the first one")
       ->excludes("--x")
       ->excludes("--kind");
-  verb->add_flag("--subplots", c.subplots, "Each curve in a plot of its own, one above the other")->excludes("--kind");
+  verb->add_flag("--subplots", c.subplots, "Each curve in a separate plot, one above the other")->excludes("--kind");
   verb->add_flag("--log-x", c.log_x, "Decades below")->excludes("--kind");
   verb->add_flag("--log-y", c.log_y,
                  "Decades upward; --psd has them; of a deck's response over frequency instead of dB")

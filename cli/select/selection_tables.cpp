@@ -15,10 +15,31 @@
 
 namespace bough::cli {
 
-nlohmann::json make_json(const records::FlexBody& body, const analysis::Selection& s) {
-  auto modes = nlohmann::json::array();
-  for (int i = 0; i < body.num_modes(); ++i) {
-    const auto k = static_cast<std::size_t>(i);
+namespace {
+
+bool has_effective_mass(const records::FlexBody& body) { return body.effective_mass.rows() == body.num_modes(); }
+
+/// A mode of one of the bodies.
+struct Row {
+  const RankedBody* of = nullptr;
+  int mode = 0;  ///< from 0
+};
+
+std::vector<Row> list_rows(const std::vector<RankedBody>& bodies) {
+  std::vector<Row> rows;
+  for (const auto& one : bodies)
+    for (int mode = 0; mode < one.body->num_modes(); ++mode) rows.push_back({&one, mode});
+  return rows;
+}
+
+}  // namespace
+
+nlohmann::json make_json(const std::vector<RankedBody>& bodies, const analysis::Selection& s) {
+  auto modes = nlohmann::json::array(), of_bodies = nlohmann::json::array();
+  const auto rows = list_rows(bodies);
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    const auto& body = *rows[k].of->body;
+    const int i = rows[k].mode;
     const auto& mode = s.ranking.modes[k];
     nlohmann::json one{{"mode", i + 1},
                        {"frequency_hz", body.frequency_hz[i]},
@@ -27,12 +48,19 @@ nlohmann::json make_json(const records::FlexBody& body, const analysis::Selectio
                        {"closed_form", mode.closed_form},
                        {"kept", s.choices[k].kept},
                        {"reason", s.choices[k].reason}};
+    if (!rows[k].of->name.empty()) one["body"] = rows[k].of->name;
     if (s.modal_hankel.size() > 0) one["hankel"] = s.modal_hankel[i];
-    if (body.effective_mass.rows() == body.num_modes()) {
+    if (has_effective_mass(body)) {
       const Eigen::VectorXd row = body.effective_mass.row(i);
       one["effective_mass"] = std::vector<double>(row.begin(), row.end());
     }
     modes.push_back(std::move(one));
+  }
+  for (const auto& one : bodies) {
+    auto kept = nlohmann::json::array();
+    for (std::size_t k = 0; k < rows.size(); ++k)
+      if (rows[k].of == &one && s.choices[k].kept) kept.push_back(rows[k].mode + 1);
+    of_bodies.push_back({{"name", one.name}, {"file", one.file}, {"modes", one.body->num_modes()}, {"kept", kept}});
   }
   using Loss = analysis::Loss;
   const auto losses = make_rows(s.losses, "name", &Loss::name, "total_cost", &Loss::total, "lost_share", &Loss::lost,
@@ -45,22 +73,30 @@ nlohmann::json make_json(const records::FlexBody& body, const analysis::Selectio
                       {"lost_share", s.lost},
                       {"configurations", losses}};
   if (s.static_error >= 0) json["static_error"] = s.static_error;
+  if (bodies.size() != 1 || !bodies.front().name.empty()) json["bodies"] = std::move(of_bodies);
   return json;
 }
 
-std::string format(const records::FlexBody& body, const analysis::Selection& s, int inertial_load) {
+std::string format(const std::vector<RankedBody>& bodies, const analysis::Selection& s, int inertial_load) {
   Table table{{"mode", "frequency Hz", "cost", "share %"}, {}};
-  const bool has_hankel = s.modal_hankel.size() > 0, has_mass = body.effective_mass.rows() == body.num_modes();
+  const auto rows = list_rows(bodies);
+  const bool is_system = !bodies.front().name.empty();
+  const bool has_hankel = s.modal_hankel.size() > 0;
+  const bool has_mass =
+      std::all_of(bodies.begin(), bodies.end(), [](const auto& one) { return has_effective_mass(*one.body); });
+  if (is_system) table.headings.insert(table.headings.begin(), "body");
   if (has_hankel) table.headings.push_back("Hankel");
   if (has_mass) table.headings.push_back("eff. mass %");
   if (inertial_load > 0) table.headings.push_back("K_G");
   for (const char* heading : {"kept", "reason"}) table.headings.push_back(heading);
-  for (int i = 0; i < body.num_modes(); ++i) {
-    const auto k = static_cast<std::size_t>(i);
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    const auto& body = *rows[k].of->body;
+    const int i = rows[k].mode;
     const double cost = s.ranking.modes[k].cost;
     std::vector<std::string> row{std::to_string(i + 1), fmt::format("{:.6g}", body.frequency_hz[i]),
                                  fmt::format("{:.4g}", cost),
                                  fmt::format("{:.3g}", s.ranking.total > 0 ? 100 * cost / s.ranking.total : 0)};
+    if (is_system) row.insert(row.begin(), rows[k].of->name);
     if (has_hankel) row.push_back(fmt::format("{:.3g}", s.modal_hankel[i]));
     if (has_mass)
       row.push_back(fmt::format("{:.3g}", 100 * body.effective_mass.row(i).head<3>().maxCoeff() / body.mass));
@@ -74,6 +110,17 @@ std::string format(const records::FlexBody& body, const analysis::Selection& s, 
     table.rows.push_back(std::move(row));
   }
   auto text = table.to_text();
+  if (is_system) {
+    text += '\n';
+    for (const auto& one : bodies) {
+      std::string kept;
+      int num_kept = 0;
+      for (std::size_t k = 0; k < rows.size(); ++k)
+        if (rows[k].of == &one && s.choices[k].kept)
+          kept += (num_kept++ == 0 ? ": " : ", ") + std::to_string(rows[k].mode + 1);
+      text += fmt::format("{} keeps {} of {}{}\n", one.name, num_kept, count(one.body->num_modes(), "mode"), kept);
+    }
+  }
   if (s.losses.size() == 1) {
     text += fmt::format("\ntotal cost {:.6g}", s.ranking.total);
     if (s.ranking.other != 0) text += fmt::format(", of it {:.4g} by the rest of the system", s.ranking.other);
@@ -81,7 +128,7 @@ std::string format(const records::FlexBody& body, const analysis::Selection& s, 
     text += fmt::format("\nshares are the largest of {}", count(s.losses.size(), "configuration"));
   }
   text += fmt::format("\n{} kept, {} dropped with {:.3g} % of the cost", count(s.kept.size(), "mode"),
-                      static_cast<std::size_t>(body.num_modes()) - s.kept.size(), 100 * s.dropped);
+                      rows.size() - s.kept.size(), 100 * s.dropped);
   text += fmt::format("; the outputs lose {:.3g} % (mean square)", 100 * s.lost);
   if (s.static_error >= 0) text += fmt::format(", static response off by {:.3g} %", 100 * s.static_error);
   text += "\n";

@@ -10,6 +10,7 @@
 #include "analysis/split/split.hpp"
 #include "cli/common/console_events.hpp"
 #include "cli/common/options.hpp"
+#include "cli/common/output_folder.hpp"
 #include "cli/common/usage_text.hpp"
 #include "cli/verbs.hpp"
 #include "formats/hdf5/files.hpp"
@@ -77,15 +78,6 @@ nlohmann::json make_split_json(const analysis::SplitAnswer& answer, const std::v
       {"mass", answer.mass}, {"parts_mass", mass}, {"parts", parts}, {"frequencies", frequencies}, {"files", files}};
 }
 
-/// The folder of the output, made if it is missing.
-void make_output_folder(const fs::path& folder) {
-  std::error_code failed;
-  fs::create_directories(folder, failed);
-  if (failed)
-    throw ComputationError("cli.write", {folder.string()}, "the folder could not be made: " + failed.message(),
-                           "choose another with -o");
-}
-
 int run_split(const SplitOptions& given) {
   auto o = given;
   Console console(o.quiet, o.verbosity);
@@ -100,7 +92,7 @@ int run_split(const SplitOptions& given) {
   std::vector<std::string> files;
   for (const auto& file : answer.files) files.push_back((folder / file.name).string());
   for (const auto& name : list_body_files(request, answer)) files.push_back((folder / name).string());
-  make_output_folder(folder);
+  make_output_folder(folder.string());
   check_outputs(o, files, {request.deck});
   for (std::size_t i = 0; i < answer.files.size(); ++i) analysis::write_text_file(files[i], answer.files[i].text);
   for (const auto& part : answer.parts)

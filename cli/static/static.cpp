@@ -81,7 +81,7 @@ void add_static(CLI::App& app, Action& action) {
   verb->add_flag("--extremes,--maxmin", o->has_extremes,
                  "The least and the largest of each component over the subcases");
   verb->add_flag("--strains", o->request.has_strains,
-                 "Strains of elements beside their stresses, as STRAIN of the deck");
+                 "Strains of elements next to their stresses, as STRAIN of the deck");
   verb->add_flag("--cd", o->in_cd, "Print vectors in the displacement (CD) axes of each grid, not in basic");
   verb->add_flag("--linear", o->request.is_linear,
                  "Solve the cards linearly though SOL is nonlinear (106, 129, 400, ...)");

@@ -113,7 +113,7 @@ std::string format_extremes(const std::string& title, const std::vector<int>& id
   for (const auto& [name, columns] : groups) {
     Extreme min_extreme, max_extreme;
     for (const auto column : columns) {
-      // Where they are is asked of few columns: the passes for it are slower than those for the numbers.
+      // Positions are searched in few columns only: this is slower than the search for the extreme values.
       const auto all = values.col(column);
       const double min = all.minCoeff(), max = all.maxCoeff();
       Eigen::Index at = 0;

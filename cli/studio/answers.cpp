@@ -161,6 +161,36 @@ json answer_edit(const json& request) {
   return {{"text", session.get_text()}};
 }
 
+/// Ends of the hinges and nodes of the rigid bodies, with the values of parameters: for dragging them in the scene.
+json make_tree(const std::string& text, const std::string& name) {
+  Diagnostics unused;  // the text was read without errors
+  const auto spec = toml_files::read_system_spec_text(text, name, unused);
+  const auto items = toml_files::list_items(text);
+  const auto to_list = [](const Eigen::Vector3d& v) { return json{v.x(), v.y(), v.z()}; };
+  json hinges = json::array(), nodes = json::object();
+  for (const auto& hinge : spec.hinges) {
+    const auto item = std::find_if(items.begin(), items.end(),
+                                   [&](const auto& i) { return i.kind == "hinge" && i.name == hinge.name; });
+    if (item == items.end()) continue;
+    auto axes = json::array();  // of the hinge frame in the parent, by columns
+    for (Eigen::Index k = 0; k < 3; ++k) axes.push_back(to_list(hinge.parent_rotation.col(k)));
+    hinges.push_back({{"name", hinge.name},
+                      {"path", item->path()},
+                      {"free", hinge.type == records::HingeType::Free},
+                      {"parent", hinge.parent},
+                      {"child", hinge.child},
+                      {"parent_node", hinge.parent_node},
+                      {"child_node", hinge.child_node},
+                      {"parent_position", to_list(hinge.parent_position)},
+                      {"child_position", to_list(hinge.child_position)},
+                      {"axes", axes},
+                      {"position", hinge.position}});
+  }
+  for (const auto& body : spec.bodies)
+    for (const auto& node : body.nodes) nodes[body.name].push_back({{"id", node.id}, {"position", to_list(node.p)}});
+  return {{"hinges", hinges}, {"nodes", nodes}};
+}
+
 /// All messages that `bough edit` has for a text: of the schema, then of what a run or reduce would refuse at once.
 json answer_check(const json& request) {
   const auto name = get_file(request), text = get_text(request, "text");
@@ -181,6 +211,7 @@ json answer_check(const json& request) {
       auto bodies = json::array();
       for (const auto& [written, path] : loaded.flex_path) bodies.push_back(path);
       out["bodies"] = bodies;
+      out["tree"] = make_tree(text, name);
     }
   } catch (const Failure& failure) {
     for (const auto& item : failure.items()) diagnostics.add_new(item);
@@ -259,13 +290,21 @@ json answer_diagram(const json& request) {
     edges.back()["key"] = edge.key;
     edges.back()["table"] = name_table(items, edge.line);
   }
-  for (const auto& curve : analysis::list_function_curves(spec))
+  for (const auto& curve : analysis::list_function_curves(spec)) {
     functions.push_back({{"name", curve.name},
                          {"type", curve.type},
                          {"of_time", curve.is_of_time},
                          {"line", find_line("function", curve.name)},
                          {"x", std::vector<double>(curve.x.begin(), curve.x.end())},
                          {"y", std::vector<double>(curve.y.begin(), curve.y.end())}});
+    const auto path = name_table(items, find_line("function", curve.name));
+    if (curve.type != "table" || path.empty()) continue;
+    // The points as the text has them: their curve is edited by the page.
+    functions.back()["points"] = {{"path", path},
+                                  {"x", toml_files::get_value_text(text, path + ".x")},
+                                  {"y", toml_files::get_value_text(text, path + ".y")},
+                                  {"interpolation", toml_files::get_value_text(text, path + ".interpolation")}};
+  }
   return {{"nodes", nodes}, {"edges", edges}, {"functions", functions}};
 }
 

@@ -89,6 +89,44 @@ void add_symbols(const analysis::DeckPicture& picture, json& out) {
         {{"id", p.id}, {"card", p.card}, {"values", p.values}, {"file", p.at.file}, {"line", p.at.line}});
 }
 
+/// Sections of line elements: shapes by property, columns of the elements that have them, released ends.
+json make_line_sections(const analysis::LineSections& found) {
+  auto shapes = json::array(), pins = json::array();
+  for (const auto& section : found.sections) {
+    auto stations = json::array();
+    for (const auto& station : section.stations) {
+      auto faces = json::array();
+      for (const auto& face : station.faces) {
+        auto corners = json::array();
+        for (const auto& corner : face) corners.push_back({corner.x(), corner.y()});
+        faces.push_back(corners);
+      }
+      stations.push_back({{"x", station.x_over_L}, {"faces", faces}});
+    }
+    shapes.push_back({{"card", section.card},
+                      {"id", section.id},
+                      {"text", section.text},
+                      {"equivalent", section.is_equivalent},
+                      {"stations", stations}});
+  }
+  Indices element, shape;
+  Eigen::VectorXd frame(12 * static_cast<Eigen::Index>(found.lines.size()));
+  for (std::size_t k = 0; k < found.lines.size(); ++k) {
+    const auto& line = found.lines[k];
+    element.push_back(static_cast<std::uint32_t>(line.element));
+    shape.push_back(static_cast<std::uint32_t>(line.section));
+    frame.segment<12>(12 * static_cast<Eigen::Index>(k)) << line.a, line.b, line.y, line.z;
+  }
+  for (const auto& pin : found.pins)
+    pins.push_back({{"element", pin.element}, {"components", pin.components}, {"place", make_vector(pin.place)}});
+  return {{"shapes", shapes},
+          {"element", report::pack_indices(element)},
+          {"shape", report::pack_indices(shape)},
+          {"frame", report::pack_floats(frame)},
+          {"pins", pins},
+          {"without", found.num_without}};
+}
+
 }  // namespace
 
 json make_deck_answer(const std::string& file, Diagnostics& diagnostics) {
@@ -99,6 +137,7 @@ json make_deck_answer(const std::string& file, Diagnostics& diagnostics) {
   json out{{"drawing", json::parse(report::to_json_text(drawing))},
            {"elements", make_elements(picture, drawing)},
            {"grids", make_grids(picture)},
+           {"line_sections", make_line_sections(picture.line_sections)},
            {"num_parts", picture.num_parts},
            {"files", deck.files},
            {"sol", deck.sol},

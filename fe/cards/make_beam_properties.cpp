@@ -26,7 +26,7 @@ void simplify(BeamProperty* property) {
     stations.resize(1);
 }
 
-/// C to F as the deck has them; none where all are zero.
+/// Sets the stress points C to F of the deck; none if all are zero.
 void set_points(const std::array<Eigen::Vector2d, 4>& a, const std::array<Eigen::Vector2d, 4>& b,
                 BeamProperty& property) {
   const auto is_zero = [](const Eigen::Vector2d& p) { return p.isZero(0); };

@@ -48,7 +48,7 @@ std::optional<std::vector<Component>> find_components(Maker& maker, const std::v
   return found;
 }
 
-/// What a rigid motion about the origin does to each component (m x 6); scalar points do not move.
+/// What a rigid-body motion about the origin does to each component (m x 6); scalar points do not move.
 MatrixXd calc_rigid_rows(const Maker& maker, const std::vector<Component>& components) {
   MatrixXd rows = MatrixXd::Zero(static_cast<Eigen::Index>(components.size()), 6);
   for (std::size_t i = 0; i < components.size(); ++i) {
@@ -74,7 +74,7 @@ std::optional<MatrixXd> calc_rigid_s(Maker& maker, const std::vector<Component>&
   maker.error(
       "fe.rigid-independent", at,
       who + " has no S and its UD list has " + std::to_string(P_d.rows()) + " components that do not hold a body",
-      "give S, or components in UD that fix its rigid motions");
+      "give S, or components in UD that fix its rigid-body motions");
   return std::nullopt;
 }
 

@@ -102,7 +102,7 @@ SolidScheme choose_scheme(Maker& maker, const records::Psolid& property, const r
   return {};
 }
 
-/// Elements that count their grids the other way round, as one note.
+/// Left-handed elements, reported in one note.
 struct LeftHanded {
   int count = 0;
   std::string first;
@@ -162,7 +162,7 @@ void make_solids(Maker& maker) {
     for (int n : nodes)
       for (int c = 0; c < 3; ++c) gdofs.push_back(maker.nodes().node(n).first_gdof + c);
     Matrix6d C = material->C;
-    // Only what differs from element to element is made anew.
+    // Parts that elements share are computed once.
     auto& expansion = expansions[property->id];
     if (!expansion) expansion = share_expansion(material->expansion);
     auto own = expansion;
@@ -187,12 +187,12 @@ void make_solids(Maker& maker) {
   }
   if (turned.count > 0) {
     const std::string more = turned.count > 1 ? " and " + std::to_string(turned.count - 1) + " solids more" : "";
-    maker.diagnostics().note(
-        "fe.left-handed", deck.locate(turned.at),
-        turned.first + more +
-            (more.empty() ? " counts its grids left-handed and is" : " count their grids left-handed and are") +
-            " taken the other way round",
-        {});
+    maker.diagnostics().note("fe.left-handed", deck.locate(turned.at),
+                             turned.first + more +
+                                 (more.empty() ? " is numbered left-handed; its node order is"
+                                               : " are numbered left-handed; their node order is") +
+                                 " reversed",
+                             {});
   }
 }
 

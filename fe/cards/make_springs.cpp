@@ -153,7 +153,7 @@ void make_bush(Maker& maker, const char* name, const records::Pbush* property, c
 }
 
 /// A gap of a linear analysis stays as it is at the start (Quick Reference Guide, CGAP): closed with KA along its axis
-/// and KT across it, open with KB. Both act half-way between the grids, so that rigid motions stay free.
+/// and KT across it, open with KB. Both act half-way between the grids, so that rigid-body motions stay free.
 void make_gap(Maker& maker, const records::Pgap* property, const records::Cgap& card) {
   if (!property) maker.report_missing_property(card.pid, "PGAP", "CGAP " + std::to_string(card.id), card.at);
   records::Pbush springs;

@@ -19,7 +19,7 @@ Vector3d calc_normal(const std::vector<Vector3d>& x) {
   return x.size() == 4 ? (x[2] - x[0]).cross(x[3] - x[1]) : (x[1] - x[0]).cross(x[2] - x[0]);
 }
 
-/// Empty when the corners make a proper convex facet, else what is wrong.
+/// Empty if the corners form a convex facet, otherwise the error.
 std::string check_facet(const std::vector<Vector3d>& x) {
   const Vector3d normal = calc_normal(x);
   const double scale = (x[2] - x[0]).squaredNorm();

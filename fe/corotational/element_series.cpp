@@ -1,6 +1,5 @@
 // Forces and deformations of an element along curves (docs/theory/third-order.md, "Along a curve"). Series end at the
 // order that the caller requests: the products of a force of order k are k² of those of order 1.
-#include "base/rotation.hpp"
 #include "fe/corotational/corotational_element.hpp"
 #include "fe/corotational/series.hpp"
 #include "fe/linear/blas.hpp"
@@ -14,25 +13,6 @@ namespace {
 constexpr Index kCurvesAtOnce = 16;  ///< their products with P stay in the cache
 /// Rank of the internal forces: rows scaled to unit length by the size of the dofs.
 constexpr double kRankTolerance = 1e-13;
-
-/// Rotation R nearest to the nodes and H = RᵀB, which is symmetric: B = R H and RᵀR = 1 order by order, R_k the
-/// symmetric part that the orders below leave, and a skew one by the spin that makes H_k symmetric.
-template <std::size_t M>
-void find_frame(const MatrixSeries<M>& B, const Matrix3d& inverse, MatrixSeries<M>& R, MatrixSeries<M>& H) {
-  R[0].setIdentity();
-  H[0] = B[0];
-  for (std::size_t k = 1; k < M; ++k) {
-    Matrix3d even = Matrix3d::Zero(), rest = B[k];
-    for (std::size_t i = 1; i < k; ++i) {
-      even.noalias() -= 0.5 * (R[i].transpose() * R[k - i]);
-      rest.noalias() -= R[i] * H[k - i];
-    }
-    const Vector3d spin = inverse * calc_axis(Matrix3d(rest - even * H[0]));
-    R[k] = even + skew(spin);
-    rest.noalias() -= R[k] * H[0];
-    H[k] = 0.5 * (rest + rest.transpose());
-  }
-}
 
 template <std::size_t M>
 void add(double factor, const VectorSeries<M>& v, VectorSeries<M>& sum) {
@@ -81,7 +61,7 @@ void CorotationalElement::calc_motions(const Eigen::Ref<const MatrixXd>& u, std:
       motion.turned[k] = calc_exponential(motion.rotation[k]);
       for (std::size_t i = 0; i < kSize; ++i) B[i] += rotation_weight_ * motion.turned[k][i];
     }
-    find_frame(B, frame_inverse_, motion.R, motion.H);
+    find_nearest_rotation(B, frame_inverse_, motion.R, motion.H);
     motion.y.resize(num_nodes);
     motion.turn.resize(num_nodes);
     auto d_c = d.middleCols<Top>(curve * Top);

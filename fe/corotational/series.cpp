@@ -158,6 +158,25 @@ VectorSeries<M> apply_inverse_tangent_transpose(const VectorSeries<M>& theta, co
   return apply({0.5}, calc_even_function(kInverse, calc_square(theta)), theta, v);
 }
 
+template <std::size_t M>
+void find_nearest_rotation(const MatrixSeries<M>& B, const Matrix3d& inverse, MatrixSeries<M>& R, MatrixSeries<M>& H) {
+  R[0].setIdentity();
+  H[0] = B[0];
+  for (std::size_t k = 1; k < M; ++k) {
+    Matrix3d even = Matrix3d::Zero(), rest = B[k];
+    for (std::size_t i = 1; i < k; ++i) {
+      even.noalias() -= 0.5 * (R[i].transpose() * R[k - i]);
+      rest.noalias() -= R[i] * H[k - i];
+    }
+    const Matrix3d odd = rest - even * H[0];
+    const Vector3d axis(odd(2, 1) - odd(1, 2), odd(0, 2) - odd(2, 0), odd(1, 0) - odd(0, 1));
+    const Vector3d spin = inverse * axis;
+    R[k] = even + skew(spin);
+    rest.noalias() -= R[k] * H[0];
+    H[k] = 0.5 * (rest + rest.transpose());
+  }
+}
+
 SeriesVector calc_arm_motion(const SeriesVector& theta, const Vector3d& arm) {
   const SeriesMatrix R = calc_exponential(theta);
   SeriesVector motion;
@@ -173,17 +192,19 @@ SeriesVector calc_arm_moment(const SeriesVector& theta, const Vector3d& arm, con
   return apply_tangent_transpose(theta, cross(turned, force));
 }
 
-#define BOUGH_SERIES(M)                                                                                      \
-  template VectorSeries<M> rotate<M>(const MatrixSeries<M>&, const VectorSeries<M>&);                        \
-  template VectorSeries<M> rotate_back<M>(const MatrixSeries<M>&, const VectorSeries<M>&);                   \
-  template MatrixSeries<M> rotate_back<M>(const MatrixSeries<M>&, const MatrixSeries<M>&);                   \
-  template VectorSeries<M> cross<M>(const VectorSeries<M>&, const VectorSeries<M>&);                         \
-  template VectorSeries<M> solve<M>(const MatrixSeries<M>&, const Eigen::Matrix3d&, const VectorSeries<M>&); \
-  template MatrixSeries<M> subtract_from_trace<M>(const MatrixSeries<M>&);                                   \
-  template MatrixSeries<M> calc_exponential<M>(const VectorSeries<M>&);                                      \
-  template VectorSeries<M> calc_logarithm<M>(const MatrixSeries<M>&);                                        \
-  template VectorSeries<M> apply_tangent_transpose<M>(const VectorSeries<M>&, const VectorSeries<M>&);       \
-  template VectorSeries<M> apply_inverse_tangent_transpose<M>(const VectorSeries<M>&, const VectorSeries<M>&);
+#define BOUGH_SERIES(M)                                                                                        \
+  template VectorSeries<M> rotate<M>(const MatrixSeries<M>&, const VectorSeries<M>&);                          \
+  template VectorSeries<M> rotate_back<M>(const MatrixSeries<M>&, const VectorSeries<M>&);                     \
+  template MatrixSeries<M> rotate_back<M>(const MatrixSeries<M>&, const MatrixSeries<M>&);                     \
+  template VectorSeries<M> cross<M>(const VectorSeries<M>&, const VectorSeries<M>&);                           \
+  template VectorSeries<M> solve<M>(const MatrixSeries<M>&, const Eigen::Matrix3d&, const VectorSeries<M>&);   \
+  template MatrixSeries<M> subtract_from_trace<M>(const MatrixSeries<M>&);                                     \
+  template MatrixSeries<M> calc_exponential<M>(const VectorSeries<M>&);                                        \
+  template VectorSeries<M> calc_logarithm<M>(const MatrixSeries<M>&);                                          \
+  template VectorSeries<M> apply_tangent_transpose<M>(const VectorSeries<M>&, const VectorSeries<M>&);         \
+  template VectorSeries<M> apply_inverse_tangent_transpose<M>(const VectorSeries<M>&, const VectorSeries<M>&); \
+  template void find_nearest_rotation<M>(const MatrixSeries<M>&, const Eigen::Matrix3d&, MatrixSeries<M>&,     \
+                                         MatrixSeries<M>&);
 
 BOUGH_SERIES(3)
 BOUGH_SERIES(4)

@@ -107,6 +107,13 @@ VectorSeries<M> apply_tangent_transpose(const VectorSeries<M>& theta, const Vect
 template <std::size_t M>
 VectorSeries<M> apply_inverse_tangent_transpose(const VectorSeries<M>& theta, const VectorSeries<M>& v);
 
+/// Rotation R nearest to grids of B = Σ w x Xᵀ + .. and H = RᵀB, which is symmetric: B = R H and RᵀR = 1 order by
+/// order, R_k the symmetric part that the orders below leave, and a skew one by the spin that makes H_k symmetric.
+/// `inverse`: of tr(B_0) 1 - B_0.
+template <std::size_t M>
+void find_nearest_rotation(const MatrixSeries<M>& B, const Eigen::Matrix3d& inverse, MatrixSeries<M>& R,
+                           MatrixSeries<M>& H);
+
 /// (R - 1) arm: what the end of an arm moves more than its foot, which turns by R = exp(θ̃).
 SeriesVector calc_arm_motion(const SeriesVector& theta, const Eigen::Vector3d& arm);
 /// Moment at the foot, conjugate to θ, of a force on the end of the arm: Tᵀ(R arm × force).

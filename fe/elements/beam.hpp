@@ -35,8 +35,8 @@ struct BeamLineLoad {
 
 class Beam final : public Element, public StressState, public StressRecovery, public ThermalLoads, public OffsetMass {
  public:
-  /// nodes: two; gdofs: twelve. The property must give E > 0 and a positive length is the caller's check. field: of
-  /// this property and length, where other beams have the same; made here when left out.
+  /// \param nodes  two. \param gdofs  twelve. \pre E > 0, length > 0. \param field  of this property and length, shared
+  /// with other beams; computed if null.
   Beam(int id, std::string card, std::vector<int> nodes, std::vector<int> gdofs,
        std::shared_ptr<const BeamProperty> property, const BeamGeometry& geometry,
        std::shared_ptr<const BeamField> field = nullptr);

@@ -20,7 +20,7 @@ ThermalState CurvedShell::calc_thermal(const ElementTemperature& given) const {
     full += p.area * (p.membrane.transpose() * N.back() + p.bending.transpose() * M.back());
     state.energy += p.area * e.calc_energy(t, T.gradient_z);
   }
-  // The bubbles move at once; what is left works on the nodes.
+  // The bubbles are condensed; the rest loads the nodes.
   const MatrixXd K = calc_full_stiffness(o), bubble_map = calc_bubble_map(K);
   state.load += calc_map().transpose() * (full.head(6 * n) + bubble_map.transpose() * full.tail(m));
   VectorXd u = VectorXd::Zero(6 * n + m);

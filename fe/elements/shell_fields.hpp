@@ -79,7 +79,7 @@ struct Membrane {
   bool has_modes = false;
   std::array<Eigen::Matrix<double, 3, 4>, N> mode;
   Eigen::Matrix4d mode_stiffness;
-  /// Stiffness beside that of the strains: weight (row·dofs)²: drilling.
+  /// Stiffness in addition to that of the strains: weight (row·dofs)²: drilling.
   int num_springs = 0;
   std::array<Row<N>, N> spring;
   std::array<double, N> spring_weight;

@@ -9,7 +9,7 @@ namespace bough::fe {
 using namespace shell;
 
 /// ∫ Bᵀ (N, M) with the inner modes of the membrane inside B; they move at once by what their own strains do, which is
-/// nothing where the temperature is uniform, since they have no mean.
+/// nothing if the temperature is uniform, since they have no mean.
 template <int N>
 void Shell::add_thermal_of(const ElementTemperature& T, ThermalState& state) const {
   const ShellExpansion& e = *section_.expansion;

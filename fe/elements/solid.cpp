@@ -32,7 +32,7 @@ Eigen::Matrix<double, 6, Eigen::Dynamic> calc_strain_disp(const Eigen::Ref<const
   return b;
 }
 
-/// Where a corner stands in the middle of its element, in natural coordinates.
+/// Where a corner is in the middle of its element, in natural coordinates.
 Vector3d calc_centre(SolidKind kind) {
   return kind == SolidKind::Penta ? Vector3d(1.0 / 3, 1.0 / 3, 0) : Vector3d(Vector3d::Zero());
 }

@@ -41,7 +41,8 @@ struct SolidQuality {
 /// Integrates the Jacobian determinant over the points of quadrature; both numbers are 0 for an element without volume.
 SolidQuality calc_quality(const SolidGeometry& geometry);
 
-/// The mirror image in natural coordinates: the same body counted the other way round. `nodes` goes with geometry.x.
+/// Reverses the node order of a left-handed solid by a mirror image in natural coordinates; reorders geometry.x and
+/// `nodes`.
 void turn_round(SolidGeometry& geometry, std::vector<int>& nodes);
 
 /// Thermal expansion in basic axes, Voigt as the law.
@@ -74,7 +75,7 @@ class Solid final : public Element, public StressState, public StressRecovery, p
   /// each natural coordinate through those of the quadrature points, by least squares where they are more; the mean
   /// where they are fewer than the corners.
   MatrixXd calc_corner_stresses(const Eigen::Ref<const VectorXd>& force) const;
-  /// C⁻¹ of those stresses. Where C is singular: the least strains that have them.
+  /// Strains C⁻¹ σ; if C is singular, those of minimum norm.
   MatrixXd calc_strains(const Eigen::Ref<const MatrixXd>& forces) const override;
   /// Number of corners: 8, 6 or 4.
   int num_corners() const { return get_num_corners(geometry_.kind); }

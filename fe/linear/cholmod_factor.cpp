@@ -44,7 +44,7 @@ class CholmodSolver final : public FactorSolver {
   CholmodSolver() {
     cholmod_start(common_.get());
     common_->print = 0;
-    // Without both a small matrix gets an LDLᵀ that takes negative pivots as they come.
+    // Without both settings a small matrix gets an LDLᵀ, which accepts negative pivots.
     common_->final_asis = 0;
     common_->final_ll = 1;
   }
@@ -60,14 +60,14 @@ class CholmodSolver final : public FactorSolver {
     Triangle triangle(A.sparse());
     cholmod_sparse matrix = triangle.as_sparse();
     if (const auto order = find_elimination_order(A)) {
-      common_->nmethods = 1;  // the order given; by itself CHOLMOD would try its own beside it
+      common_->nmethods = 1;  // the order given; by itself CHOLMOD would try its own next to it
       factor_ = cholmod_analyze_p(&matrix, const_cast<int*>(order->data()), nullptr, 0, common_.get());
     } else {
       factor_ = cholmod_analyze(&matrix, common_.get());
     }
     check_cholmod(common_->status);
     if (!factor_) return false;
-    // A megabyte is there: to ask the system takes as long as such a factor.
+    // A megabyte is available: the request to the system takes as long as such a factor.
     constexpr double kFewEntries = 1e5;
     num_entries_ = common_->lnz;
     if (num_entries_ >= kFewEntries) require_memory(static_cast<double>(matrix.nrow), num_entries_, calc_free_memory());

@@ -82,7 +82,7 @@ Eigen::SparseMatrix<double> double_rows(const Eigen::SparseMatrix<double>& U) {
   return both;
 }
 
-/// diag(W, -W) of what is real, [0 -W; -W 0] of what is imaginary.
+/// diag(W, -W) for a real part, [0 -W; -W 0] for an imaginary part.
 LowRankPart double_part(const LowRankPart& part, bool is_imaginary) {
   const Index r = part.rank();
   LowRankPart both;

@@ -33,8 +33,8 @@ void visit_rows(Mat A, const Use& use) {
 std::vector<int> calc_postorder(const std::vector<const MatrixRows*>& matrices, PetscInt size,
                                 const std::vector<PetscInt>& rows);
 
-/// One part where there is one thread, or where two would be uneven or have much between them; empty where A has no row
-/// groups or less than `least` rows.
+/// Partitions A into one or two subdomains: one if there is one thread, or if two would be unbalanced or have a large
+/// separator. Empty if A has no row groups or less than `least` rows.
 std::optional<TwoParts> find_parts(const SymmetricMatrix& A, PetscInt least);
 
 /// work(p) of all parts, one or two, at once.

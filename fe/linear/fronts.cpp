@@ -14,7 +14,7 @@ namespace {
 
 using Eigen::MatrixXd;
 
-/// The rows between (ascending) of the sum, lower triangle.
+/// Separator rows (ascending) of the sum, lower triangle.
 void add_between(const RowSum& sum, const std::vector<PetscInt>& between, MatrixXd& S) {
   const auto place_of = [&](PetscInt row) -> Eigen::Index {
     const auto at = std::lower_bound(between.begin(), between.end(), row);

@@ -24,7 +24,7 @@ using Eigen::MatrixXd;
 constexpr PetscInt kFewRows = 160;
 
 /// Negative eigenvalues of A + factor B by LDLᵀ with pivots of one or two rows wherever they are (Bunch & Kaufman), -1
-/// where one is zero; empty where the matrices are of another kind or have more rows.
+/// where one is zero; empty if the matrices are of another kind or have more rows.
 std::optional<int> count_dense(const SymmetricMatrix& A, double factor, const SymmetricMatrix& B) {
   if (initialize_petsc().size > 1 || A.low_rank() || B.low_rank()) return std::nullopt;
   const PetscInt size = A.num_rows();

@@ -6,7 +6,7 @@
 
 namespace bough::linear {
 
-/// Eigenvalues of A x = λ B x below mu: the negative ones of A - μB; B positive semidefinite. Empty where a pivot is
+/// Eigenvalues of A x = λ B x below mu: the negative ones of A - μB; B positive semidefinite. Empty if a pivot is
 /// zero, so that it has no sign. Throws ComputationError "fe.out-of-memory". Collective.
 std::optional<int> count_eigenvalues_below(const SymmetricMatrix& A, const SymmetricMatrix& B, double mu);
 

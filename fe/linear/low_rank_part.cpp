@@ -42,7 +42,7 @@ LowRankPart make_form_part(const SparseColumns& X, const MatrixXd& K) {
   if (K.isZero(0)) return {SparseColumns(X.rows(), 0), MatrixXd(0, 0), MatrixXd(0, 0), 0};
   const VectorXd size = K.diagonal().cwiseAbs().cwiseSqrt();
   const double largest = size.size() ? size.maxCoeff() : 0;
-  // Rotations and translations, each in its own unit; what has no diagonal of its own is of the largest.
+  // Rotations and translations, each in its own unit; what has no separate diagonal is of the largest.
   const VectorXd unit = size.unaryExpr([&](double s) { return s > 1e-8 * largest ? s : largest > 0 ? largest : 1; });
   const VectorXd inverse = unit.cwiseInverse();
   const Eigen::SelfAdjointEigenSolver<MatrixXd> parts(inverse.asDiagonal() * K * inverse.asDiagonal());

@@ -20,7 +20,7 @@ namespace {
 
 constexpr double kUnknown = std::numeric_limits<double>::infinity();
 
-/// The number behind `key` in a file of such lines; nothing where there is none ("max" of a control group).
+/// The number behind `key` in a file of such lines; nothing if there is none ("max" of a control group).
 double read_number(const std::string& path, const std::string& key, double otherwise) {
   std::ifstream file(path);
   for (std::string line; std::getline(file, line);) {

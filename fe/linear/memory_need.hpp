@@ -1,5 +1,5 @@
 #pragma once
-/// \file Whether what is to be computed fits the memory, told before it begins.
+/// \file Check of the available memory before a computation.
 #include <string>
 
 namespace bough::linear {
@@ -19,7 +19,7 @@ double calc_factor_bytes(double num_entries);
 /// `free_bytes`.
 void require_memory(double num_equations, double num_entries, double free_bytes);
 
-/// Gives the pages between what is still used back to the system, before what takes the most: the C library keeps them.
+/// Returns free pages, which the C library keeps, to the system before the step with the largest memory.
 void release_freed_memory();
 
 }  // namespace bough::linear

@@ -9,11 +9,11 @@
 
 namespace bough::linear {
 
-/// Gives `to`, a matrix of the same rows, what is known of `from`.
+/// Copies row groups and ordering of `from` to `to`, a matrix with the same rows.
 void copy_row_order(const SymmetricMatrix& from, const SymmetricMatrix& to);
 
-/// Gives `part`, the rows and columns `kept` (ascending) of `whole`, what is left of its groups, and of its order where
-/// nearly all rows are left.
+/// Copies the row groups of `whole` to `part`, its rows and columns `kept` (ascending), and its ordering if nearly all
+/// rows are kept.
 void take_row_order(const SymmetricMatrix& whole, const std::vector<int>& kept, const SymmetricMatrix& part);
 
 /// Nested dissection (METIS; Karypis & Kumar, SIAM J. Sci. Comput. 20 (1998) 359) of the graph of row groups, some

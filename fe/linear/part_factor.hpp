@@ -1,5 +1,5 @@
 #pragma once
-/// \file One part of a positive definite matrix, with the rows between the parts.
+/// \file One subdomain of a positive definite matrix, with the separator rows.
 ///
 /// Internal to linear.
 #include <vector>
@@ -11,7 +11,7 @@
 
 namespace bough::linear {
 
-/// Of one part with the rows between it and others: its LLᵀ by CHOLMOD, and the trailing block of that as a dense
+/// Of one subdomain with the separator rows: its LLᵀ by CHOLMOD, and the trailing block of that as a dense
 /// matrix (substructures: Przemieniecki, AIAA J. 1 (1963) 138).
 class PartFactor {
  public:
@@ -37,16 +37,16 @@ class PartFactor {
   bool factor();
   /// L_ss L_ssᵀ = D_p - K_sp K_pp⁻¹ K_ps, once after factor(): L_ss is not kept, since no solution needs it.
   Eigen::MatrixXd take_schur();
-  /// K_pp z = B_p as far as L goes; `carried`, kFewSides or kManySides x rows between, becomes K_sp K_pp⁻¹ B_p.
+  /// K_pp z = B_p as far as L goes; `carried`, kFewSides or kManySides x separator rows, becomes K_sp K_pp⁻¹ B_p.
   void forward(const Eigen::Ref<const Eigen::MatrixXd>& B, Eigen::MatrixXd& carried);
-  /// Then X_p, with the solution of the rows between.
+  /// Then X_p, from the solution of the separator rows.
   void backward(const Eigen::MatrixXd& X_s, Eigen::Ref<Eigen::MatrixXd> X);
 
  private:
-  /// The lower triangle of `rows`, of which the first are the part's own.
+  /// The lower triangle of `rows`, of which the first are the interior rows.
   void take(const MatrixRows& A, const std::vector<PetscInt>& rows, std::size_t num_own, const Eigen::VectorXd& delta,
             double share);
-  /// Keeps the columns of the part alone, packed, and those of the rows between as L_ss_.
+  /// Stores the columns of the interior rows, packed, and those of the separator rows as L_ss_.
   void pack();
 
   cholmod_common common_{};
@@ -55,7 +55,7 @@ class PartFactor {
   std::vector<double> value_;
   std::vector<PetscInt> rows_;  ///< of A, in the order of L; those of the part alone
   Eigen::Index num_between_ = 0;
-  std::vector<int> between_;  ///< what those that come last in L are of the rows between
+  std::vector<int> between_;  ///< for each of the last rows of L its index among the separator rows
   Supernodes supernodes_;     ///< (L_pp; L_sp), in the memory of factor_
   Eigen::MatrixXd L_ss_;      ///< lower
   Eigen::MatrixXd Z_;         ///< right-hand sides x rows of L

@@ -9,8 +9,8 @@ extern "C" void dsytrs2_(const char* uplo, const PetscBLASInt* n, const PetscBLA
 namespace bough::linear {
 namespace {
 
-/// What a front may add to a diagonal entry, over what the matrices have there. LLᵀ of a definite matrix takes off no
-/// more than is there; a hundred times costs two digits of sixteen.
+/// Largest growth of a diagonal entry in a front, relative to its value in the matrices. LLᵀ of a definite matrix
+/// subtracts at most that value; a factor of 100 costs two digits of sixteen.
 constexpr double kMostGrowth = 100;
 
 /// Of LDLᵀ as LAPACK's sytrf leaves it.
@@ -33,7 +33,7 @@ ComputationError make_no_memory_for_count() {
   return {"fe.out-of-memory",
           {},
           "a factor for the count of the modes does not fit the memory",
-          "leave the count out (--no-check)"};
+          "omit the count (--no-check)"};
 }
 
 bool PartFronts::take(const RowSum& sum, const std::vector<PetscInt>& rows) {
@@ -85,7 +85,7 @@ bool PartFronts::analyse(const RowSum& sum, const std::vector<PetscInt>& own, co
     for (int j = super_[k]; j < super_[k + 1]; ++j) front_of[static_cast<std::size_t>(j)] = k;
   while (num_fronts_ < static_cast<int>(factor_->nsuper) && super_[num_fronts_] < static_cast<int>(num_own_))
     ++num_fronts_;
-  // Children come just before their parents: what they leave is on top of the stack.
+  // Children precede their parents, so their contribution blocks are on top of the stack.
   num_children_.assign(static_cast<std::size_t>(num_fronts_), 0);
   std::vector<double> left;
   double stack = 0;
@@ -100,7 +100,7 @@ bool PartFronts::analyse(const RowSum& sum, const std::vector<PetscInt>& own, co
     }
     if (num_left == 0) continue;
     const int next = row_[row_at_[k] + num];
-    if (next >= static_cast<int>(num_own_)) continue;  // goes to the rows between
+    if (next >= static_cast<int>(num_own_)) continue;  // goes to the separator rows
     const int above = front_of[static_cast<std::size_t>(next)];
     ++num_children_[static_cast<std::size_t>(above)];
     left.push_back(0.5 * num_left * (num_left + 1.0));

@@ -74,7 +74,7 @@ class FrontElimination {
   std::vector<PetscBLASInt> pivot_order_;
 };
 
-/// The rows of one part and those between, which come last and are not eliminated.
+/// The rows of one subdomain, and the separator rows, which come last and are not eliminated.
 class PartFronts {
  public:
   PartFronts() { start_in_order(common_); }
@@ -87,14 +87,15 @@ class PartFronts {
 
   /// False where CHOLMOD has no supernodes in this order, or the part couples to a row that is not its own.
   bool analyse(const RowSum& sum, const std::vector<PetscInt>& own, const std::vector<PetscInt>& between);
-  /// Numbers that count() keeps at the same time.
+  /// Largest number of doubles that count() stores at one time.
   double num_numbers() const { return most_stack_ + square(most_rows_) + square(most_columns_) * 2; }
-  /// Of the part's own rows, and what they leave on those between, lower triangle; -1 where a pivot is too small.
+  /// Negative pivots of the interior rows, and their Schur complement on the separator rows (lower triangle); -1 if a
+  /// pivot is too small.
   int count(Eigen::MatrixXd& schur);
 
  private:
   static double square(double x) { return x * x; }
-  /// The lower triangle of `rows`. False where the part's own couple to others.
+  /// Extracts the lower triangle of `rows`; returns false if interior rows couple to other rows.
   bool take(const RowSum& sum, const std::vector<PetscInt>& rows);
   /// Eliminates the first `num` of the front's rows; -1 as above.
   int eliminate(int num, int num_rows, const int* rows);

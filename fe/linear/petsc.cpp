@@ -82,7 +82,7 @@ void choose_transport() {
   if (is_launched) return;
   setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);
   setenv("OMPI_MCA_btl", "self", 0);
-  // Nor a folder of its own in /tmp, which processes that start at the same time fight over.
+  // Nor a separate folder in /tmp, which processes that start at the same time fight over.
   setenv("OMPI_MCA_orte_create_session_dirs", "0", 0);
 }
 
@@ -100,7 +100,7 @@ void use_bundled_mpi() {
   setenv("PMIX_PKGDATADIR", (folder / "share/pmix").c_str(), 1);
 }
 
-/// Open MPI puts a handler of its own in the place of ours for a moment: a signal that comes then would be lost, and
+/// Open MPI puts a separate handler in the place of ours for a moment: a signal that comes then would be lost, and
 /// waits instead.
 PetscErrorCode initialize_undisturbed() {
   sigset_t held, before;

@@ -17,7 +17,7 @@ std::size_t get_kind(const RowKinds& kinds, Eigen::Index row) {
   return kinds.empty() ? 0 : static_cast<std::size_t>(kinds[static_cast<std::size_t>(row)]);
 }
 
-/// The largest entry of each kind, zero where there is none.
+/// The largest entry of each kind, zero if there is none.
 std::array<double, num_kinds> find_largest(const VectorXd& D, const RowKinds& kinds) {
   BOUGH_DEMAND(kinds.empty() || static_cast<Eigen::Index>(kinds.size()) == D.size());
   std::array<double, num_kinds> largest{};

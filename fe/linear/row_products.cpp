@@ -54,7 +54,7 @@ SubtractRows get_subtract() { return has_wide() ? subtract_wide : subtract_narro
 SubtractRows get_subtract() { return subtract_narrow; }
 #endif
 
-/// Columns from `first` on side by side, the last again where there are none.
+/// Packs the columns from `first` on next to each other, with the last one repeated as padding.
 void pack(const Matrix& X, Index first, MatrixXd& packed) {
   const double* x[kAtOnce];
   for (Index c = 0; c < kAtOnce; ++c) x[c] = X.data() + std::min(first + c, X.cols() - 1) * X.outerStride();

@@ -27,7 +27,7 @@ class SupernodalSolver final : public FactorSolver {
 
   std::vector<std::unique_ptr<PartFactor>> part;
   std::vector<PetscInt> between;
-  MatrixXd L;  ///< of the Schur complement of the rows between
+  MatrixXd L;  ///< of the Schur complement of the separator rows
 };
 
 MatrixXd SupernodalSolver::solve(const Eigen::Ref<const MatrixXd>& B) const {
@@ -78,7 +78,7 @@ SupernodalFactor make_supernodal_factor(const SymmetricMatrix& A, PetscInt least
   if (!are_all()) return result;
   double num_entries = 0;
   for (const auto& part : parts->part) num_entries += part->num_entries();
-  // Each part has its block of the rows between twice more while it is taken out.
+  // While it is extracted, each subdomain has two more copies of its separator block.
   if (num > 1) num_entries += 2.0 * static_cast<double>(num) * std::pow(static_cast<double>(parts->between.size()), 2);
   release_freed_memory();
   require_memory(static_cast<double>(A.num_rows()), num_entries, calc_free_memory());

@@ -11,7 +11,7 @@ namespace bough::linear {
 constexpr PetscInt kLeastSupernodalRows = 20000;
 
 struct SupernodalFactor {
-  FactorSolverHandle solver;  ///< null where another factor is to be made
+  FactorSolverHandle solver;  ///< null if another type of factor is required
   bool is_definite = true;    ///< false: A is not positive definite, however it is factored
   int num_parts = 0;
 };

@@ -165,7 +165,7 @@ std::ptrdiff_t pack_supernodes(const Supernodes& L, const int* value_at, double*
     const Index num = std::min(L.super[k + 1], L.size) - L.super[k], ld = L.row_at[k + 1] - L.row_at[k];
     for (Index j = 0; j < num; j += 4) {
       const Index width = std::min<Index>(4, num - j);
-      // A copy: what is packed may reach into what is read, and never beyond.
+      // A copy: the packed data may overlap the data still to be read, but not pass it.
       const double* from = value + value_at[k] + j * ld;
       columns.assign(from, from + width * ld);
       for (Index i = 0; i < width; ++i) {

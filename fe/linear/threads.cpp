@@ -25,7 +25,7 @@ class OneThread {
   int before_ = set_openmp_levels(0);
 };
 
-/// OpenBLAS takes 128 MB of addresses for a second thread, and where ulimit -v leaves none tries for ever.
+/// Returns true under ulimit -v: OpenBLAS needs 128 MB of addresses for a second thread, and retries without end.
 bool has_limited_memory() {
   rlimit limit{};
   return getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY;

@@ -5,10 +5,10 @@
 
 namespace bough::linear {
 
-/// OMP_NUM_THREADS, or two where the machine has them; one of each rank of several, and where ulimit -v limits memory.
+/// OMP_NUM_THREADS, or two if the machine has them; one if there are several ranks, or under ulimit -v.
 int get_num_threads();
 
-/// Both at once, the second in a thread of its own; OpenMP starts none beside them. What either throws is thrown here.
+/// Both at once, the second in a separate thread; OpenMP starts none beside them. What either throws is thrown here.
 void do_both(const std::function<void()>& first, const std::function<void()>& second);
 /// The same of one alone, in this thread.
 void do_alone(const std::function<void()>& work);

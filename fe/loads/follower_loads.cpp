@@ -13,7 +13,7 @@ Vector3d get_present_place(const NodeTable& nodes, int node, const VectorXd& u) 
   return nodes.node(node).x + u.segment<3>(nodes.node(node).first_gdof);
 }
 
-/// A face at its present place, as calc_face_load takes it.
+/// A face in its deformed position, as input of calc_face_load.
 struct PresentFace {
   std::vector<Vector3d> corners, midside;
 

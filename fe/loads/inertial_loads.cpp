@@ -128,7 +128,8 @@ namespace {
 /// Fewer are done before a thread has started.
 constexpr int kMinElementsOfThread = 1000;
 
-/// Change of the loads of a spin where mass hangs on rotations: the grids' own accelerations are not those of the mass.
+/// Change of the loads of a spin where mass is attached to rotations: the grids' own accelerations are not those of the
+/// mass.
 struct SpinLoads {
   const Model& model;
   MassKind kind;

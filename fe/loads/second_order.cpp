@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <iterator>
 #include <map>
+#include <numeric>
 
 #include "fe/model/element_loop.hpp"
 
@@ -114,18 +115,39 @@ void add_carried_masses(const Model& model, const MatrixXd& A_I, GridForms& grid
   std::move(carried.forms.begin(), carried.forms.end(), std::back_inserter(forms));
 }
 
+using NodesByDof = std::map<int, const Node*>;  ///< by first g-dof
+
+NodesByDof find_nodes(const Model& model, const std::vector<int>& ldofs) {
+  NodesByDof nodes;
+  std::size_t k = 0;
+  for (int ldof : ldofs) {
+    while (k + 1 < model.nodes().size() && model.nodes()[k + 1].first_gdof <= ldof) ++k;
+    nodes[model.nodes()[k].first_gdof] = &model.nodes()[k];
+  }
+  return nodes;
+}
+
+/// Forces on dofs in displacement axes. R: in basic, g-dof g at row[g].
+MatrixXd take_displacement_axes(const NodesByDof& nodes, const std::vector<int>& row, const std::vector<int>& ldofs,
+                                const Eigen::Ref<const MatrixXd>& R) {
+  MatrixXd result(ldofs.size(), R.cols());
+  for (std::size_t i = 0; i < ldofs.size(); ++i) {
+    const Node& node = *std::prev(nodes.upper_bound(ldofs[i]))->second;
+    const int c = ldofs[i] - node.first_gdof, first = row[static_cast<std::size_t>(node.first_gdof + 3 * (c / 3))];
+    const auto k = static_cast<Eigen::Index>(i);
+    if (node.num_dofs == 6)
+      result.row(k) = node.R_basic_cd.col(c % 3).transpose() * R.middleRows<3>(first);
+    else
+      result.row(k) = R.row(first);
+  }
+  return result;
+}
+
 /// F - K u of the dofs that the links need, in the displacement axes. K is that of the elements without K_G0 of a
 /// preload, as their internal forces are: what a link passes on is what an offset of the element would.
 MatrixXd calc_residual(const Model& model, const std::vector<int>& ldofs, const MatrixXd& F,
                        const Eigen::Ref<const MatrixXd>& U) {
-  std::map<int, const Node*> nodes;  // by first g-dof
-  {
-    std::size_t k = 0;
-    for (int ldof : ldofs) {
-      while (k + 1 < model.nodes().size() && model.nodes()[k + 1].first_gdof <= ldof) ++k;
-      nodes[model.nodes()[k].first_gdof] = &model.nodes()[k];
-    }
-  }
+  const NodesByDof nodes = find_nodes(model, ldofs);
   std::vector<int> row(static_cast<std::size_t>(model.num_gdofs()), -1), gdofs;
   for (const auto& [first, node] : nodes)
     for (int c = 0; c < node->num_dofs; ++c) {
@@ -146,28 +168,21 @@ MatrixXd calc_residual(const Model& model, const std::vector<int>& ldofs, const 
     element->add_stiffness(1, K);
     subtract(own, K);
   }
-  MatrixXd result(ldofs.size(), F.cols());
-  for (std::size_t i = 0; i < ldofs.size(); ++i) {
-    const Node& node = *std::prev(nodes.upper_bound(ldofs[i]))->second;
-    const int c = ldofs[i] - node.first_gdof, first = row[static_cast<std::size_t>(node.first_gdof + 3 * (c / 3))];
-    const auto k = static_cast<Eigen::Index>(i);
-    if (node.num_dofs == 6)
-      result.row(k) = node.R_basic_cd.col(c % 3).transpose() * R.middleRows<3>(first);
-    else
-      result.row(k) = R.row(first);
-  }
-  return result;
+  return take_displacement_axes(nodes, row, ldofs, R);
 }
 
 }  // namespace
 
 AppliedLoads make_loads(const AppliedLoad& load) { return {load.F, load.A_I, {load.arms}, {load.followers}}; }
 
-std::vector<QuadraticForm> calc_second_order(const Model& model, const AppliedLoads& loads,
-                                             const Eigen::Ref<const MatrixXd>& U) {
-  BOUGH_DEMAND(loads.F.cols() == U.cols() && loads.A_I.cols() == U.cols() && loads.A_I.rows() == 12);
+namespace {
+
+/// Forms that do not depend on displacements: carried masses, loads on arms and loads that follow.
+std::vector<QuadraticForm> calc_forms_of_loads(const Model& model, const AppliedLoads& loads) {
+  BOUGH_DEMAND(loads.A_I.cols() == loads.F.cols() && loads.A_I.rows() == 12);
+  const Eigen::Index num = loads.F.cols();
   std::vector<QuadraticForm> forms;
-  GridForms grids(model, U.cols());
+  GridForms grids(model, num);
   if (!loads.A_I.isZero(0)) add_carried_masses(model, loads.A_I, grids, forms);
   for (std::size_t c = 0; c < loads.arms.size(); ++c)
     for (const auto& arm : loads.arms[c])
@@ -177,12 +192,33 @@ std::vector<QuadraticForm> calc_second_order(const Model& model, const AppliedLo
   });
   for (std::size_t c = 0; c < loads.followers.size(); ++c)
     for (const auto& follower : loads.followers[c]) {
-      forms.push_back({follower.gdofs, follower.L, MatrixXd::Zero(follower.weights.rows(), U.cols())});
+      forms.push_back({follower.gdofs, follower.L, MatrixXd::Zero(follower.weights.rows(), num)});
       forms.back().weights.col(static_cast<Eigen::Index>(c)) = follower.weights.col(0);
     }
+  return forms;
+}
+
+}  // namespace
+
+std::vector<QuadraticForm> calc_second_order(const Model& model, const AppliedLoads& loads,
+                                             const Eigen::Ref<const MatrixXd>& U) {
+  BOUGH_DEMAND(loads.F.cols() == U.cols());
+  auto forms = calc_forms_of_loads(model, loads);
   if (!model.links().empty())
     for (auto& form : model.links().calc_forms(calc_residual(model, model.links().dependents(), loads.F, U)))
       forms.push_back(std::move(form));
+  return forms;
+}
+
+std::vector<QuadraticForm> calc_second_order_of_forces(const Model& model, const AppliedLoads& loads,
+                                                       const Eigen::Ref<const MatrixXd>& forces) {
+  auto forms = calc_forms_of_loads(model, loads);
+  if (model.links().empty()) return forms;
+  const auto& ldofs = model.links().dependents();
+  std::vector<int> row(static_cast<std::size_t>(model.num_gdofs()));
+  std::iota(row.begin(), row.end(), 0);
+  for (auto& form : model.links().calc_forms(take_displacement_axes(find_nodes(model, ldofs), row, ldofs, forces)))
+    forms.push_back(std::move(form));
   return forms;
 }
 

@@ -24,6 +24,10 @@ AppliedLoads make_loads(const AppliedLoad& load);
 std::vector<QuadraticForm> calc_second_order(const Model& model, const AppliedLoads& loads,
                                              const Eigen::Ref<const MatrixXd>& U);
 
+/// calc_second_order() with the forces that links carry, F - f of the internal forces f at the grids: num_gdofs x m.
+std::vector<QuadraticForm> calc_second_order_of_forces(const Model& model, const AppliedLoads& loads,
+                                                       const Eigen::Ref<const MatrixXd>& forces);
+
 /// K_G of a load with its static displacements u (num_gdofs) and the forces of heated elements
 /// (fe/loads/temperatures.hpp), f-set or g-set: of internal forces, carried masses, loads on arms and links.
 linear::SymmetricMatrix assemble_geometric_stiffness(const Model& model, DofSet set, const AppliedLoad& load,

@@ -132,8 +132,7 @@ class SurfaceLoads {
   }
 
  private:
-  /// The faces of a solid that counts its grids left-handed have their normals inside: such a face is gone round the
-  /// other way, from the same first corner.
+  /// Reverses a face of a left-handed solid, whose normal points inward; the first corner stays first.
   void turn_outward(const records::SolidElement& solid, Face& face) const {
     const auto sum = [&](const std::vector<int>& grids) {
       Vector3d x = Vector3d::Zero();

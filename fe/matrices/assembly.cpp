@@ -152,7 +152,7 @@ void copy_rows(const Rows& rows, int row, int entry, linear::Csr& csr) {
   std::copy(rows.values.begin(), rows.values.end(), csr.values.get() + entry);
 }
 
-/// `first` and the rows behind it, from row number `begin` on.
+/// `first` and the rows after it, from row number `begin` on.
 linear::Csr join(Rows first, Rows second, int begin) {
   const int num_first = static_cast<int>(first.start.size()) - 1, entries = first.start.back();
   const size_t num_rows = first.start.size() + second.start.size() - 2;
@@ -280,7 +280,7 @@ int find_cut(const Parts& parts, int first, int last) {
   return -1;
 }
 
-/// Two threads take a half each as two ranks would, where few elements touch both.
+/// Two threads assemble one half each, like two ranks, if few elements belong to both halves.
 linear::Csr sum_rows(const Elements& elements, const SparseRows& T, const AddElementMatrix& add,
                      const std::vector<QuadraticForm>& forms, const Parts& parts, int first, int last) {
   const int cut = linear::get_num_threads() > 1 && last - first > 2 * kRowsOfThread ? find_cut(parts, first, last) : -1;

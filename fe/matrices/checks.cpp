@@ -17,7 +17,7 @@ using Vector6d = Eigen::Matrix<double, 6, 1>;
 
 Vector6d calc_ground_check(const Model& model, GroundSet set) {
   if (set == GroundSet::Global) return calc_ground_check(model);
-  // Rigid motion of the independent dofs in their CD axes; T makes the dependent ones follow.
+  // Rigid-body motion of the independent dofs in their CD axes; T makes the dependent ones follow.
   Vector3d centre = Vector3d::Zero();
   for (const Node& node : model.nodes()) centre += node.x / static_cast<double>(model.nodes().size());
   MatrixXd motion = model.calc_rigid_modes(centre);

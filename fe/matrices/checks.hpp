@@ -1,5 +1,5 @@
 #pragma once
-/// \file What `check` looks at in a model besides its matrices: grids, shapes of elements, hidden grounds.
+/// \file Checks of a model by `check` besides its matrices: grids, shapes of elements, springs to ground.
 #include <array>
 #include <string>
 #include <vector>
@@ -11,7 +11,7 @@ namespace bough::fe {
 /// Sets of Nastran's GROUNDCHECK: g before any constraint, n after MPC and rigid elements, f after SPC too.
 enum class GroundSet { Global, Independent, Free };
 
-/// Strain energy of the six rigid motions of the independent dofs of a set, each divided by the largest that the
+/// Strain energy of the six rigid-body motions of the independent dofs of a set, each divided by the largest that the
 /// diagonal of K would allow: about 1e-16 without a ground. The f-set of a supported structure does strain: its
 /// supports do not move.
 Eigen::Matrix<double, 6, 1> calc_ground_check(const Model& model, GroundSet set);

@@ -1,5 +1,5 @@
 #pragma once
-/// \file What the factor of a large stiffness matrix will take, before the matrix is made.
+/// \file Memory estimate of the factor of a large stiffness matrix, before the matrix is assembled.
 #include "fe/model/model.hpp"
 
 namespace bough::fe {

@@ -19,14 +19,14 @@ SparseRows make_rows(Eigen::Index rows, Eigen::Index columns, const Triplets& en
   return A;
 }
 
-/// An orthonormal basis of the rows `wide` of T, and their coefficients in it. A link that hangs on the reference of an
-/// RBE3 has as many wide rows as dofs, but no new direction.
+/// An orthonormal basis of the rows `wide` of T, and their coefficients in it. A link that is attached to the reference
+/// of an RBE3 has as many wide rows as dofs, but no new direction.
 struct RowBasis {
   std::vector<VectorXd> rows;
   Triplets coefficients;  ///< row of T, basis row
 };
 
-/// Nothing where there are more than `most` directions.
+/// Nothing if there are more than `most` directions.
 std::optional<RowBasis> find_row_basis(const SparseRows& T, const std::vector<int>& wide, std::size_t most) {
   RowBasis basis;
   VectorXd rest = VectorXd::Zero(T.cols());
@@ -72,7 +72,7 @@ std::vector<int> find_parts(const Model& model, const SparseRows& T) {
   return parent;
 }
 
-/// What a rigid motion, a column of six with rotations times the size of the model, does to the f-dofs.
+/// What a rigid-body motion, a column of six with rotations times the size of the model, does to the f-dofs.
 struct Motions {
   MatrixXd rows;  ///< num_fdofs x 6
   VectorXd unit;  ///< 1 for displacements, the size for rotations
@@ -100,7 +100,7 @@ Motions calc_motions(const Model& model) {
   return motions;
 }
 
-/// Up to six of `columns` that tell every rigid motion the others do, best conditioned.
+/// Up to six of `columns` that tell every rigid-body motion the others do, best conditioned.
 std::vector<int> choose_columns(const std::vector<int>& columns, const Motions& motions) {
   Eigen::ColPivHouseholderQR<MatrixXd> qr;
   qr.setThreshold(1e-8);
@@ -111,7 +111,7 @@ std::vector<int> choose_columns(const std::vector<int>& columns, const Motions& 
   return chosen;
 }
 
-/// Rows of few entries that move with the rigid motions of each part as those of G do. Rows that start in the same
+/// Rows of few entries that move with the rigid-body motions of each part as those of G do. Rows that start in the same
 /// column, as those of one RBE3 mostly do, share the dofs.
 SparseRows find_near_rows(const Model& model, const SparseRows& T, const SparseRows& G) {
   const auto part_of = find_parts(model, T);

@@ -4,7 +4,7 @@
 
 namespace bough::fe {
 
-/// Columns that products of many vectors take at a time: their memory counts beside that of the vectors.
+/// Columns that products of many vectors take at a time: their memory counts next to that of the vectors.
 constexpr Eigen::Index kColumnsAtOnce = 128;
 
 /// T X, num_gdofs x k.

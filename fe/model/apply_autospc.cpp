@@ -42,7 +42,7 @@ void ModelBuilder::apply_autospc(const Elimination& first) {
                                                   [](const AutospcEntry& entry) { return entry.is_skew; });
   std::vector<double> mass(model_.autospc_.size(), 0);
   if (asks_mass) mass = calc_masses(model_, first.fdof_ldof, model_.autospc_);
-  std::set<int> massive;  // nodes; rotations have next to no mass, and rigid motions are told by their components
+  std::set<int> massive;  // nodes; rotations have negligible mass, and rigid-body motions are told by their components
   for (size_t e = 0; e < mass.size(); ++e)
     if (mass[e] > 0 && !only_null && model_.autospc_[e].component <= 3) massive.insert(model_.autospc_[e].node);
   int num_massive = 0, num_skew = 0;
@@ -51,8 +51,8 @@ void ModelBuilder::apply_autospc(const Elimination& first) {
     auto& entry = model_.autospc_[e];
     // Mass without stiffness moves at zero frequency in normal modes.
     if (only_null && !options_.uses_enforced && mass[e] > 0) continue;
-    // Where the block carries mass or its weight, the oblique direction is held and the others stay what they are; else
-    // the component alone, which strains nothing either and is what Nastran prints.
+    // If the block has mass, the oblique direction is constrained and the others stay free; otherwise only the
+    // component, which strains nothing either and agrees with Nastran's table.
     if (entry.component > 3 || massive.count(entry.node) == 0) entry.terms.clear();
     num_skew += entry.is_skew ? 1 : 0;
     num_massive += entry.terms.empty() ? 0 : 1;
@@ -77,15 +77,15 @@ void ModelBuilder::apply_autospc(const Elimination& first) {
     oblique.push_back(ldof);
   }
   model_.T_oblique_ = take_columns(model_.T_, first.fdof_ldof, oblique);
-  if (!oblique.empty())  // what hangs on these dofs follows too
+  if (!oblique.empty())  // what is attached to these dofs follows too
     equations_ = resolve_chains(
         model_.num_gdofs_, std::move(equations_), [this](int l) { return model_.name_dof(l); }, diagnostics_);
   set_transform();
   if (only_null) {
     diagnostics_.warning("fe.null-dofs", deck_.locate(param->at),
                          "PARAM,AUTOSPC,NO leaves " + std::to_string(model_.autospc_.size()) +
-                             " dofs that nothing stiffens, the first at grid " +
-                             std::to_string(model_.autospc_[0].node) + "; they are held all the same",
+                             " dofs without stiffness, the first at grid " + std::to_string(model_.autospc_[0].node) +
+                             "; they are constrained nevertheless",
                          "there is no solution with them; hold or remove them");
     return;
   }

@@ -21,7 +21,7 @@ constexpr double kNothing = 1e-14;  ///< below this share of the terms that it i
 
 struct NodeBlocks {
   std::vector<Matrix3d> K;    ///< 2k and 2k+1: node k's translations and rotations
-  std::vector<double> noise;  ///< what round-off of the elements that reach the block can leave in it
+  std::vector<double> noise;  ///< bound of the round-off of the elements in the block
 };
 
 /// Sizes of the terms that sum to the diagonal of K_e: one size for the translations, since directions are sums of
@@ -57,7 +57,7 @@ struct Places {
   const std::vector<int>&gdof_node, &fdof_block, &fdof_slot;
 };
 
-/// Sums blocks of what is added, each in a transform of its own.
+/// Sums blocks of what is added, each in a separate transform.
 class BlockSum {
  public:
   BlockSum(const Model& model, const Places& places) : model_(model), places_(places) {
@@ -142,8 +142,9 @@ bool is_stiff(Matrix3d K, const std::array<char, 3>& is_free, double scale, doub
   return K(0, 0) > 0 && minor > 0 && 4 * determinant > trace * trace * std::max(2 * limit, 1e-6 * scale);
 }
 
-/// Makes the entries of a block oblique where a held component has stiffness of its own: of the directions N without
-/// stiffness (columns, rows `slots`) the held components follow the free ones by Nᵀ u = 0. `limit`: what is none.
+/// Makes the entries of a block oblique if a constrained component has stiffness: for the directions N without
+/// stiffness (columns, rows `slots`) the constrained components follow the free ones by Nᵀ u = 0. `limit`: largest
+/// stiffness that is negligible.
 void set_oblique(const Matrix3d& K, const std::vector<int>& slots, double limit, bool is_rotation,
                  std::vector<AutospcEntry>& entries, std::size_t first) {
   const auto slot_of = [&](const AutospcEntry& e) { return e.component - 1 - (is_rotation ? 3 : 0); };

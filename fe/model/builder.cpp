@@ -242,7 +242,7 @@ void ModelBuilder::hold_spcd() {
   diagnostics_.warning("fe.spcd-not-fixed", deck_.locate(first->at),
                        "SPCD moves " + model_.name_dof(model_.fixed_by_spcd_.front()) +
                            (num > 1 ? " (and " + std::to_string(num - 1) + " dofs more)" : "") +
-                           ", which no SPC of the subcase fixes; it is held as if one did",
+                           ", which no SPC of the subcase fixes; it is constrained as if one did",
                        "fix it with the SPC set of the subcase");
 }
 

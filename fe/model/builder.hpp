@@ -27,7 +27,7 @@ class ModelBuilder {
   template <class Card>
   bool is_set_of_section(int sid, std::vector<Card> records::Deck::*cards,
                          std::vector<records::SetUnion> records::Deck::*unions) const;
-  void hold_spcd();  ///< what SPCD cards move is fixed, with fe.spcd-not-fixed where no SPC does it
+  void hold_spcd();  ///< fixes the components of SPCD cards; reports fe.spcd-not-fixed if no SPC fixes them
   void fix(const records::Spc& spc);
   /// RBE1, RBE2, RBE3, RROD, RBAR, MPC.
   void collect_equations();

@@ -80,7 +80,7 @@ std::vector<std::vector<int>> find_groups(const std::vector<ConstraintEquation>&
   return groups;
 }
 
-/// The terms of an equation with those equations put in that are resolved; those of `group` (ascending) are left out.
+/// Adds the terms of an equation, with resolved equations substituted; equations of `group` (ascending) are skipped.
 void add_resolved(const ConstraintEquation& equation, const std::vector<int>& equation_of,
                   const std::vector<ConstraintEquation>& equations, const std::vector<int>& group,
                   std::vector<Term>& terms) {

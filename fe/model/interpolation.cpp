@@ -7,6 +7,7 @@
 #include <Eigen/QR>
 
 #include "base/rotation.hpp"
+#include "fe/model/mean_ties.hpp"
 #include "fe/model/rigid.hpp"
 
 namespace bough::fe {
@@ -62,6 +63,7 @@ struct MeanGrids {
     const Node* node = nullptr;
     double translation = 0, rotation = 0;  ///< weights
     int num_translations = 0, num_rotations = 0;
+    bool is_alike = true;  ///< one weight for all translations, one for all rotations
   };
   std::vector<Grid> grids;
   Vector3d centre = Vector3d::Zero();
@@ -76,17 +78,53 @@ MeanGrids collect_grids(const std::vector<Sample>& samples) {
     const auto [found, is_new] = at.try_emplace(s.node, mean.grids.size());
     if (is_new) mean.grids.push_back({s.node});
     auto& grid = mean.grids[found->second];
-    (s.is_rotation ? grid.rotation : grid.translation) += s.weight / 3;
-    ++(s.is_rotation ? grid.num_rotations : grid.num_translations);
+    double& weight = s.is_rotation ? grid.rotation : grid.translation;
+    int& num = s.is_rotation ? grid.num_rotations : grid.num_translations;
+    grid.is_alike = grid.is_alike && std::abs(3 * weight - num * s.weight) <= 1e-12 * std::abs(num * s.weight);
+    weight += s.weight / 3;
+    ++num;
     if (s.is_rotation) continue;
     mean.centre += s.weight * s.node->x;
     total += s.weight;
   }
   if (total > 0) mean.centre /= total;
   for (const auto& grid : mean.grids)
-    mean.is_whole =
-        mean.is_whole && grid.num_translations == 3 && grid.num_rotations % 3 == 0 && grid.num_rotations < 6;
+    mean.is_whole = mean.is_whole && grid.is_alike && grid.num_translations == 3 && grid.num_rotations % 3 == 0 &&
+                    grid.num_rotations < 6;
   return mean;
+}
+
+/// Components that an RBE3 joins, and the mean length of its arms (1 if it is zero).
+struct RigidSamples {
+  const Node* reference = nullptr;
+  std::vector<Sample> samples;
+  double arm = 1;
+  bool has_all_grids = false;  ///< false: a grid is missing
+};
+
+RigidSamples collect_samples(const records::Rbe3& record, const NodeTable& nodes, const SourceLocation& at,
+                             Diagnostics& diagnostics) {
+  const std::string card = "RBE3 " + std::to_string(record.id);
+  RigidSamples joined;
+  joined.reference = find_rigid_grid(record.ref_grid, card, nodes, at, diagnostics);
+  joined.has_all_grids = joined.reference != nullptr;
+  double arm_sum = 0;
+  int num_grids = 0;
+  for (const auto& group : record.groups)
+    for (int id : group.grids) {
+      const Node* node = find_rigid_grid(id, card, nodes, at, diagnostics);
+      joined.has_all_grids = joined.has_all_grids && node;
+      if (!joined.has_all_grids) continue;
+      const Matrix6d map = calc_rigid_map(*node, joined.reference->x);
+      arm_sum += (node->x - joined.reference->x).norm();
+      ++num_grids;
+      for (int c = 0; c < 6; ++c)
+        if (group.c >> c & 1u) joined.samples.push_back({node, node->first_gdof + c, map.row(c), group.weight, c > 2});
+    }
+  if (arm_sum > 0) joined.arm = arm_sum / num_grids;
+  for (auto& s : joined.samples)
+    if (s.is_rotation) s.weight *= joined.arm * joined.arm;
+  return joined;
 }
 
 /// The reference goes with the mean: x = x̄ + R s, R the rotation of best fit, Σ w (R s_i)×(x_i - x̄) = 0. To second
@@ -171,29 +209,13 @@ Link make_mean_link(const Node& reference, unsigned components, const Matrix6d& 
 void add_rbe3(const records::Rbe3& record, const NodeTable& nodes, const SourceLocation& at, Diagnostics& diagnostics,
               std::vector<ConstraintEquation>& equations, std::vector<Link>& links) {
   const std::string card = "RBE3 " + std::to_string(record.id);
-  const Node* reference = find_rigid_grid(record.ref_grid, card, nodes, at, diagnostics);
-  bool is_good = reference != nullptr;
-  std::vector<Sample> samples;
-  double arm_sum = 0;
-  int num_grids = 0;
-  for (const auto& group : record.groups)
-    for (int id : group.grids) {
-      const Node* node = find_rigid_grid(id, card, nodes, at, diagnostics);
-      is_good = is_good && node;
-      if (!is_good) continue;
-      const Matrix6d map = calc_rigid_map(*node, reference->x);
-      arm_sum += (node->x - reference->x).norm();
-      ++num_grids;
-      for (int c = 0; c < 6; ++c)
-        if (group.c >> c & 1u) samples.push_back({node, node->first_gdof + c, map.row(c), group.weight, c > 2});
-    }
-  if (!is_good) return;
-  const double arm = arm_sum > 0 ? arm_sum / num_grids : 1;
+  const RigidSamples joined = collect_samples(record, nodes, at, diagnostics);
+  if (!joined.has_all_grids) return;
+  const Node* reference = joined.reference;
+  const auto& samples = joined.samples;
+  const double arm = joined.arm;
   Matrix6d A = Matrix6d::Zero();
-  for (auto& s : samples) {
-    if (s.is_rotation) s.weight *= arm * arm;
-    A += s.weight * s.row.transpose() * s.row;
-  }
+  for (const auto& s : samples) A += s.weight * s.row.transpose() * s.row;
   // Judged with rotations in units of arm.
   Eigen::Matrix<double, 6, 1> unit;
   unit << 1, 1, 1, 1 / arm, 1 / arm, 1 / arm;
@@ -255,6 +277,27 @@ void add_rbe3(const records::Rbe3& record, const NodeTable& nodes, const SourceL
                           " dependent components, expected " + std::to_string(num) +
                           " of the components it joins that hold a rigid body",
                       "correct UM or leave it out");
+}
+
+std::vector<WeightedMean> list_weighted_means(const records::Deck& deck, const Model& model) {
+  std::vector<WeightedMean> means;
+  Diagnostics of_cards;  // reported when the model was built
+  for (const auto& record : deck.rbe3) {
+    const bool rotates = record.ref_c == 0x3F;
+    if (!record.um.empty() || (!rotates && record.ref_c != 0x7)) continue;
+    const RigidSamples joined = collect_samples(record, model, deck.locate(record.at), of_cards);
+    if (!joined.has_all_grids) continue;
+    const MeanGrids mean = collect_grids(joined.samples);
+    if (!mean.is_whole) continue;
+    auto& added = means.emplace_back();
+    added.reference = model.find_node(record.ref_grid);
+    added.rotates = rotates;
+    added.centre = mean.centre;
+    for (const auto& grid : mean.grids)
+      added.members.push_back(
+          {model.find_node(grid.node->id), grid.node->x - mean.centre, grid.translation, grid.rotation});
+  }
+  return means;
 }
 
 void add_rrod(const records::Rrod& record, const NodeTable& nodes, const SourceLocation& at, Diagnostics& diagnostics,

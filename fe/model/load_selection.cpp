@@ -52,7 +52,7 @@ std::vector<PlainLoadSet> list_plain_sets(const records::Deck& deck, int set) {
   const auto* card = find_combination(deck, set);
   if (!card) return {{set, 1.0, {}, false, false}};
   std::vector<PlainLoadSet> sets;
-  // SPCD cards have the id that the case control selects, beside the LOAD card (Quick Reference Guide, LOAD).
+  // SPCD cards have the id that the case control selects, next to the LOAD card (Quick Reference Guide, LOAD).
   if (has_enforced(deck, set)) sets.push_back({set, 1.0, card->at, true, false});
   std::vector<int> open;
   add_plain_sets(deck, *card, 1, open, sets);

@@ -12,7 +12,7 @@ struct PlainLoadSet {
   int sid = 0;
   double scale = 1;
   records::CardLocation at;    ///< of the LOAD card that names it; empty: the case control selects the set itself
-  bool enforced_only = false;  ///< its SPCD cards alone: those with the id of a LOAD card
+  bool enforced_only = false;  ///< use only its SPCD cards, whose id is that of a LOAD card
   bool is_circle = false;      ///< a LOAD card that names itself through its terms
 };
 

@@ -229,7 +229,7 @@ void add_rbar(const records::Rbar& record, const NodeTable& nodes, const SourceL
   num = std::popcount(record.cna) + std::popcount(record.cnb);
   diagnostics.error("fe.rigid-independent", at,
                     card + " has " + std::to_string(num) + " independent components" +
-                        (num == 6 ? " that do not fix its rigid motion or are dependent too" : ", expected 6"),
+                        (num == 6 ? " that do not fix its rigid-body motion or are dependent too" : ", expected 6"),
                     "choose CNA and CNB so that together they hold a rigid body");
 }
 
@@ -260,7 +260,7 @@ void add_rbe1(const records::Rbe1& record, const NodeTable& nodes, const SourceL
   if (!add_body(independent, dependent, card, at, num, equations, links))
     diagnostics.error("fe.rigid-independent", at,
                       card + " has " + std::to_string(num) + " independent components" +
-                          (num == 6 ? " that do not fix its rigid motion" : ", expected 6"),
+                          (num == 6 ? " that do not fix its rigid-body motion" : ", expected 6"),
                       "choose GN and CN so that together they hold a rigid body");
 }
 

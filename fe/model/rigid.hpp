@@ -11,17 +11,17 @@ namespace bough::fe {
 const Node* find_rigid_grid(int id, const std::string& card, const NodeTable& nodes, const SourceLocation& at,
                             Diagnostics& diagnostics);
 
-/// Rows: the six dofs of `node` in its CD axes for a rigid motion [v; w] (basic) of the point `reference`:
+/// Rows: the six dofs of `node` in its CD axes for a rigid-body motion [v; w] (basic) of the point `reference`:
 /// u = v + w × (x - reference), θ = w. 6 x 6.
 Eigen::Matrix<double, 6, 6> calc_rigid_map(const Node& node, const Vector3d& reference);
 
-/// The dependent components of every grid GM follow the rigid motion of GN; components are in each grid's CD axes.
+/// The dependent components of every grid GM follow the rigid-body motion of GN; components are in each grid's CD axes.
 void add_rbe2(const records::Rbe2& card, const NodeTable& nodes, const SourceLocation& at, Diagnostics& diagnostics,
               std::vector<ConstraintEquation>& equations, std::vector<Link>& links);
 
-/// Six independent components on the two grids span the rigid motion: u_m = D P⁻¹ u_n with P, D the rows of the rigid
-/// map of the independent and dependent components. Blank CNA and CNB: all six of GA; fewer than six on one grid alone:
-/// all six of that, with fe.rbar-completed. Blank CMA and CMB: everything that is not independent is dependent.
+/// Six independent components on the two grids span the rigid-body motion: u_m = D P⁻¹ u_n with P, D the rows of the
+/// rigid map of the independent and dependent components. Blank CNA and CNB: all six of GA; fewer than six on one grid
+/// alone: all six of that, with fe.rbar-completed. Blank CMA and CMB: everything that is not independent is dependent.
 /// Reports fe.rigid-independent when there are not six or P is singular.
 void add_rbar(const records::Rbar& card, const NodeTable& nodes, const SourceLocation& at, Diagnostics& diagnostics,
               std::vector<ConstraintEquation>& equations, std::vector<Link>& links);
@@ -31,10 +31,10 @@ void add_rbar(const records::Rbar& card, const NodeTable& nodes, const SourceLoc
 void add_rbe1(const records::Rbe1& card, const NodeTable& nodes, const SourceLocation& at, Diagnostics& diagnostics,
               std::vector<ConstraintEquation>& equations, std::vector<Link>& links);
 
-/// The reference grid's components follow the rigid motion that fits the connected components best in the least squares
-/// of their weights (rotations scaled by the square of the mean arm, as MSC Nastran does): u_ref = R Σ A⁻¹ S_iᵀ W_i
-/// u_i, A = Σ S_iᵀ W_i S_i. UM turns the equations to other dependent components. Reports fe.rbe3-mechanism when the
-/// connected components do not hold a rigid body, fe.rigid-independent when UM cannot be solved for.
+/// The reference grid's components follow the rigid-body motion that fits the connected components best in the least
+/// squares of their weights (rotations scaled by the square of the mean arm, as MSC Nastran does): u_ref = R Σ A⁻¹ S_iᵀ
+/// W_i u_i, A = Σ S_iᵀ W_i S_i. UM turns the equations to other dependent components. Reports fe.rbe3-mechanism when
+/// the connected components do not hold a rigid body, fe.rigid-independent when UM cannot be solved for.
 void add_rbe3(const records::Rbe3& card, const NodeTable& nodes, const SourceLocation& at, Diagnostics& diagnostics,
               std::vector<ConstraintEquation>& equations, std::vector<Link>& links);
 

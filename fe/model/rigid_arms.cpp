@@ -1,24 +1,21 @@
 #include "fe/model/rigid_arms.hpp"
 
 #include <algorithm>
-#include <map>
 #include <set>
 
 #include "base/rotation.hpp"
+#include "fe/model/tie_rows.hpp"
 
 namespace bough::fe {
 namespace {
 
-using Eigen::Vector3d;
-
 /// Allowed error of the coefficients of an equation, relative to 1 and the length of the arm.
 constexpr double kEquationTolerance = 1e-9;
 
-/// Coefficients of three motions by the f-dofs that they depend on.
-using Rows = std::map<int, Vector3d>;
+}  // namespace
 
-Rows get_rows(const Model& model, int first_gdof) {
-  Rows rows;
+TieRows get_tie_rows(const Model& model, int first_gdof) {
+  TieRows rows;
   for (int a = 0; a < 3; ++a)
     for (SparseRows::InnerIterator it(model.T(), first_gdof + a); it; ++it) {
       if (it.value() == 0) continue;
@@ -27,12 +24,11 @@ Rows get_rows(const Model& model, int first_gdof) {
   return rows;
 }
 
-/// Returns true if `rows` are those of translations u + θ × arm of the parent, or of its rotations (arm = 0, u = 0).
-bool is_rigid(const Rows& rows, const Rows& u, const Rows& theta, const Vector3d& arm) {
+bool are_rigid(const TieRows& rows, const TieRows& u, const TieRows& theta, const Vector3d& arm) {
   std::set<int> columns;
   for (const auto* some : {&rows, &u, &theta})
     for (const auto& [column, value] : *some) columns.insert(column);
-  const auto get = [](const Rows& some, int column) {
+  const auto get = [](const TieRows& some, int column) {
     const auto found = some.find(column);
     return found == some.end() ? Vector3d(Vector3d::Zero()) : found->second;
   };
@@ -43,13 +39,11 @@ bool is_rigid(const Rows& rows, const Rows& u, const Rows& theta, const Vector3d
   });
 }
 
-}  // namespace
-
 RigidArms::RigidArms(const Model& model) {
   std::vector<int> owner(static_cast<std::size_t>(model.num_fdofs()));
   for (int q = 0; q < model.num_fdofs(); ++q)
     owner[static_cast<std::size_t>(q)] = model.find_node(model.describe_fdof(q).first);
-  const auto list_others = [&](const Rows& rows, int node) {
+  const auto list_others = [&](const TieRows& rows, int node) {
     std::set<int> nodes;
     for (const auto& [column, value] : rows)
       if (owner[static_cast<std::size_t>(column)] != node) nodes.insert(owner[static_cast<std::size_t>(column)]);
@@ -67,7 +61,7 @@ RigidArms::RigidArms(const Model& model) {
         is_known = !is_joined;
         break;
       }
-      const Rows rows = get_rows(model, node.first_gdof + 3 * part);
+      const TieRows rows = get_tie_rows(model, node.first_gdof + 3 * part);
       const auto parents = list_others(rows, arm.node);
       if (parents.empty()) continue;
       const int parent = *parents.begin();
@@ -77,8 +71,8 @@ RigidArms::RigidArms(const Model& model) {
       if (!is_known) break;
       arm.parent = parent;
       arm.arm = node.x - other.x;
-      const Rows u = get_rows(model, other.first_gdof), theta = get_rows(model, other.first_gdof + 3);
-      is_known = part == 0 ? is_rigid(rows, u, theta, arm.arm) : is_rigid(rows, theta, Rows(), arm.arm);
+      const TieRows u = get_tie_rows(model, other.first_gdof), theta = get_tie_rows(model, other.first_gdof + 3);
+      is_known = part == 0 ? are_rigid(rows, u, theta, arm.arm) : are_rigid(rows, theta, TieRows(), arm.arm);
       (part == 0 ? arm.translates : arm.rotates) = true;
     }
     if (is_joined && !is_known) others_.push_back(node.id);

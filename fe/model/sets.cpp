@@ -58,7 +58,7 @@ std::vector<int> expand_set(int sid, const std::vector<records::SetUnion>& union
     }
     if (is_plain && !first) result.push_back(id);
     const bool exists = is_plain || first;
-    // The union counts alone (Quick Reference Guide, SPCADD).
+    // Only the union is used (Quick Reference Guide, SPCADD).
     if (is_plain && first)
       diagnostics.warning("fe.duplicate-set", deck.locate(first->at), describe_duplicate(what, id),
                           "give these cards another id and name it, or remove them");

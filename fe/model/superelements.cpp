@@ -182,7 +182,7 @@ class SuperelementMaker {
     return -1;
   }
 
-  /// Distance of points that are the same: TOL of SEBULK, or what six digits of a punched coordinate leave.
+  /// Distance below which points coincide: TOL of SEBULK, or the round-off of six punched digits.
   double calc_tolerance(const Vector3d& x) const { return std::max(record_.tolerance, 1e-6 * x.norm()); }
 
   /// Nodes, rows of the g-set and the map C from the joined nodes' dofs (basic) to the exterior dofs.

@@ -69,7 +69,7 @@ std::vector<int> find_suport(const Model& model, const records::Deck& deck, Diag
 
 void report_suport(const Model& model, const records::Deck& deck, Diagnostics& diagnostics) {
   if (deck.suport.empty() && model.subcase().suport1 == 0) return;
-  Diagnostics found;                      // its warnings come again where the dofs are held
+  Diagnostics found;                      // not used: the warnings are issued again when the DOFs are constrained
   std::vector<std::array<int, 3>> named;  // f-dofs may be numbered by rank
   for (const int fdof : find_suport(model, deck, found)) {
     const auto [grid, component] = model.describe_fdof(fdof);

@@ -45,7 +45,7 @@ Eigen::Vector3d rotate_strain(const Eigen::Vector3d& strain, double angle) {
 
 namespace {
 
-/// Where the stack bends about in one direction, from its bottom.
+/// Position of the neutral axis of bending in one direction, from the bottom of the laminate.
 double find_neutral(const std::vector<LaminateLayer>& layers, int direction) {
   double EA = 0, ES = 0, z = 0;
   for (const auto& l : layers) {

@@ -1,6 +1,9 @@
 #include "fe/sections/section_library.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <map>
+#include <numbers>
 
 #include "base/diagnostic.hpp"
 #include "fe/sections/section_shapes.hpp"
@@ -70,6 +73,10 @@ const std::map<std::string, Shape>& get_shapes() {
   return shapes;
 }
 
+constexpr double kRoundTolerance = 0.01;  // of I1 = I2 and J = I1 + I2, which decks give to a few digits
+
+bool is_near(double a, double b) { return std::abs(a - b) <= kRoundTolerance * std::max(std::abs(a), std::abs(b)); }
+
 }  // namespace
 
 std::vector<std::string> list_section_shapes() {
@@ -101,6 +108,34 @@ std::optional<LibrarySection> calc_library_section(const std::string& shape, con
     return std::nullopt;
   }
   return it->second.calc(dims);
+}
+
+std::optional<EquivalentSection> find_equivalent_section(double A, double I1, double I2, double I12, double J) {
+  using enum EquivalentSection::Kind;
+  if (!(A > 0) || !std::isfinite(A)) return std::nullopt;
+  const EquivalentSection circle{Circle, 2 * std::sqrt(A / std::numbers::pi), 0, 0};
+  const double mean = (I1 + I2) / 2, radius = std::hypot((I1 - I2) / 2, I12);
+  if (!(mean - radius > 0) || !std::isfinite(mean)) return circle;
+  if (radius <= kRoundTolerance * mean && is_near(J, 2 * mean)) {
+    // A = pi (R^2 - r^2), I = A (R^2 + r^2) / 4
+    const double sum = 4 * mean / A, difference = A / std::numbers::pi;
+    const double inner = sum - difference;
+    if (inner > -kRoundTolerance * sum)
+      return EquivalentSection{Ring, 2 * std::sqrt((sum + difference) / 2),
+                               inner > 2 * kRoundTolerance * sum ? 2 * std::sqrt(inner / 2) : 0, 0};
+  }
+  // The I of bending along the axis at `angle` from y is largest there: I(angle) = mean + radius.
+  const double angle = radius > 0 ? 0.5 * std::atan2(2 * I12, I1 - I2) : 0;
+  return EquivalentSection{Rectangle, std::sqrt(12 * (mean + radius) / A), std::sqrt(12 * (mean - radius) / A), angle};
+}
+
+std::vector<SectionFace> list_faces(const EquivalentSection& section) {
+  if (section.kind != EquivalentSection::Kind::Rectangle)
+    return section_shapes::make_round_faces(section.d1 / 2, section.d2 / 2);
+  const Eigen::Rotation2Dd turn(section.angle);
+  const double a = section.d1 / 2, b = section.d2 / 2;
+  return {{turn * Eigen::Vector2d(a, -b), turn * Eigen::Vector2d(a, b), turn * Eigen::Vector2d(-a, b),
+           turn * Eigen::Vector2d(-a, -b)}};
 }
 
 }  // namespace bough::fe

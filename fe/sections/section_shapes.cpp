@@ -69,6 +69,11 @@ Vector2d turn(double x, double y) { return {y, -x}; }
 
 std::vector<Vector2d> list_round(double radius) { return {{radius, 0}, {0, radius}, {-radius, 0}, {0, -radius}}; }
 
+SectionFace make_face(const Rectangle& r, double cx = 0, double cy = 0) {
+  const double x0 = r.x0 - cx, x1 = r.x1 - cx, y0 = r.y0 - cy, y1 = r.y1 - cy;
+  return {turn(x0, y0), turn(x1, y0), turn(x1, y1), turn(x0, y1)};
+}
+
 LibrarySection calc_from_outline(const Outline& outline) {
   LibrarySection s;
   double sx = 0, sy = 0;
@@ -87,6 +92,7 @@ LibrarySection calc_from_outline(const Outline& outline) {
     s.I12 -= area * x * y;  // z points to the left in the figures
   }
   if (std::abs(s.I12) < 1e-14 * (s.I1 + s.I2)) s.I12 = 0;
+  for (const Rectangle& r : outline.rectangles) s.faces.push_back(make_face(r, cx, cy));
   for (const Vector2d& p : list_hull(outline.rectangles)) s.points.push_back(turn(p.x() - cx, p.y() - cy));
   std::vector<Wall> walls;
   for (const Wall& w : outline.walls) walls.push_back({{w.a[1], -w.a[0]}, {w.b[1], -w.b[0]}, w.t});
@@ -103,6 +109,21 @@ LibrarySection calc_from_outline(const Outline& outline) {
 
 }  // namespace
 
+std::vector<SectionFace> make_round_faces(double outer, double inner) {
+  const auto get_corner = [](double radius, int k) -> Vector2d {
+    return {radius * std::cos(2 * kPi * k / kRoundSides), radius * std::sin(2 * kPi * k / kRoundSides)};
+  };
+  std::vector<SectionFace> faces(inner > 0 ? kRoundSides : 1);
+  for (int k = 0; k < kRoundSides; ++k) {
+    if (inner > 0)
+      faces[static_cast<std::size_t>(k)] = {get_corner(outer, k), get_corner(outer, k + 1), get_corner(inner, k + 1),
+                                            get_corner(inner, k)};
+    else
+      faces.front().push_back(get_corner(outer, k));
+  }
+  return faces;
+}
+
 LibrarySection calc_rod(const Dims& d) {
   LibrarySection s;
   s.A = kPi * d[0] * d[0];
@@ -110,6 +131,7 @@ LibrarySection calc_rod(const Dims& d) {
   s.J = 2 * s.I1;
   s.k1 = s.k2 = 0.9;
   s.points = list_round(d[0]);
+  s.faces = make_round_faces(d[0], 0);
   return s;
 }
 
@@ -120,6 +142,7 @@ LibrarySection calc_annulus(double outer, double inner) {
   s.J = 2 * s.I1;
   s.k1 = s.k2 = inner > 0 ? 0.5 : 0.9;
   s.points = list_round(outer);
+  s.faces = make_round_faces(outer, inner);
   return s;
 }
 
@@ -132,6 +155,7 @@ LibrarySection calc_bar(const Dims& d) {
   s.k1 = s.k2 = 5.0 / 6;
   const double x = d[0] / 2, y = d[1] / 2;
   s.points = {turn(x, y), turn(-x, y), turn(-x, -y), turn(x, -y)};
+  s.faces = {s.points};
   return s;
 }
 
@@ -146,6 +170,7 @@ LibrarySection calc_hexa(const Dims& d) {
   s.k1 = s.k2 = 5.0 / 6;
   const double a = w / 2, b = d[1] / 2, y = h / 2;
   s.points = {turn(a, y), turn(-a, y), turn(-b, 0), turn(-a, -y), turn(a, -y), turn(b, 0)};
+  s.faces = {s.points};
   return s;
 }
 

@@ -10,6 +10,9 @@ namespace bough::fe::section_shapes {
 
 using Dims = std::vector<double>;
 
+/// Circle, or with inner > 0 the ring between two radii, as polygons with their corners on the circles.
+std::vector<SectionFace> make_round_faces(double outer, double inner);
+
 /// Solid circle of radius d0; shear factors 0.9.
 LibrarySection calc_rod(const Dims& d);
 /// Circular ring between two radii; shear factors 0.5, those of a thin wall, or 0.9 for inner = 0.

@@ -57,7 +57,7 @@ Eigen::Index count_derived(const StressPoint& point, bool of_strain) {
 }
 
 void calc_derived(const StressPoint& point, const Eigen::Ref<const VectorXd>& given, bool of_strain, double* out) {
-  Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 6, 1> s = given;  // no memory of its own: it is called often
+  Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 6, 1> s = given;  // no separate memory: it is called often
   if (of_strain) s = halve_shears(point.kind, given);
   if (point.kind == StressKind::Plane) {
     const double mean = 0.5 * (s[0] + s[1]), radius = std::hypot(0.5 * (s[0] - s[1]), s[2]);

@@ -131,6 +131,14 @@ void NonlinearStatics::follow_arc(const PathLoad& to, const NonlinearOptions& op
     }
     const VectorXd along = -factor.solve(point.slope);
     const double rate = std::sqrt(arc.calc_product(along, along));
+    if (share == 0 && point.slope.isZero(0)) {  // nothing to follow: the state stays
+      share = 1;
+      VectorXd rest = VectorXd::Zero(along.size());
+      int num_last = 0;
+      if (!arc.correct(rest, share, true, options.max_iterations, num_last)) fail();
+      ++num_steps_;
+      break;
+    }
     if (!(rate > 0) || !std::isfinite(rate)) fail();
     if (full == 0) full = length = rate / options.num_increments;
     const bool goes_back = previous.size() > 0 && arc.calc_product(previous, along) < 0;
@@ -168,6 +176,9 @@ void NonlinearStatics::follow_arc(const PathLoad& to, const NonlinearOptions& op
     F_ = arc.F_start + share * arc.dF;
     d_ = start.d + share * dd;
   }
+  // Without the round-off of the sums of steps, so that an equal load is no change.
+  F_ = calc_dead_forces(to);
+  d_ = to.d;
   load_ = to;
   const auto end = arc.evaluate(1);
   if (num_limits > 0)

@@ -17,7 +17,7 @@ namespace {
 constexpr std::size_t kMostHeated = 16;
 
 /// Of `left` subcases in as few groups as there must be, each a little smaller than the one before it: what the caller
-/// does with the last has no other beside it.
+/// does with the last has no other in addition.
 std::size_t choose_group(std::size_t left) {
   const std::size_t num = (left + CaseSolver::kMostTogether - 1) / CaseSolver::kMostTogether,
                     even = (left + num - 1) / num;
@@ -38,20 +38,6 @@ void take(records::StaticSubcase&& from, records::StaticSubcase& to) {
   from.spc_set = to.spc_set;
   from.mpc_set = to.mpc_set;
   to = std::move(from);
-}
-
-/// Throws fe.nonlinear-load at the first card that acts on the undeformed structure alone.
-void demand_nonlinear_loads(const records::Deck& deck, int load_set) {
-  const auto demand = [&](const auto& cards, int sid, const std::string& what) {
-    const auto found = std::find_if(cards.begin(), cards.end(), [sid](const auto& card) { return card.sid == sid; });
-    if (found != cards.end())
-      throw InputError("fe.nonlinear-load", deck.locate(found->at), what + " in large displacements",
-                       "give forces on the grids, or --linear");
-  };
-  for_each_plain_set(deck, load_set, [&](int sid, double, const records::CardLocation&) {
-    demand(deck.load_cards.beams, sid, "PLOAD1 loads beams between their grids, which is not done");
-    demand(deck.load_cards.rotations, sid, "RFORCE loads the places of the undeformed structure, which is not done");
-  });
 }
 
 }  // namespace
@@ -158,12 +144,8 @@ void CaseSolver::solve_nonlinear(const StaticLoad& load, Solved& solved) {
     if (!suport_.fdofs.empty())
       throw InputError("fe.nonlinear-model", deck_.locate({}), "SUPORT and inertia relief hold a linear model",
                        "hold the structure by SPC, or give --linear");
-    demand_nonlinear_loads(deck_, result.load_set);
     if (!path_ || !continues_) path_ = std::make_unique<NonlinearStatics>(*model_, deck_);
-    const auto* param = deck_.find_param("LGDISP");
-    const bool has_followers = !param || param->value != "2";  // 2: large displacements without follower forces (QRG)
-    const auto moving = has_followers ? find_follower_loads(*model_, deck_, result.load_set) : FollowerLoads();
-    path_->go_to(load, moving, *nonlinear_, diagnostics);
+    path_->go_to_load_set(load, result.load_set, *nonlinear_, diagnostics);
     take(path_->make_result(), result);
   } catch (const Failure&) {
     failure = std::current_exception();

@@ -11,8 +11,8 @@
 
 namespace bough::fe {
 
-/// The subcases with a load, temperatures, or with displacements that their SPC set enforces; the one asked for in any
-/// case (0: all; none where the deck has not the one asked for). Throws InputError cli.no-static-load.
+/// The subcases with a load, temperatures, or displacements enforced by their SPC set; the requested one in any case
+/// (0: all; empty if the deck does not contain it). Throws InputError cli.no-static-load.
 std::vector<records::Subcase> choose_static_subcases(const records::Deck& deck, int asked);
 
 /// Solves subcases one after the other; model and factor are kept while the constraints stay the same.
@@ -22,17 +22,17 @@ class CaseSolver {
   /// The forces on these grids are listed one by one; empty: on all.
   void ask_grid_forces(std::vector<int> grids) { grids_ = std::move(grids); }
 
-  /// Strains of elements beside their stresses.
+  /// Strains of elements next to their stresses.
   void ask_strains() { has_strains_ = true; }
 
-  /// Large displacements and rotations (nonlinear.hpp). `continues`: a subcase starts where the one before it ended, as
-  /// in SOL 106, while both are held alike; else undeformed.
+  /// Large displacements and rotations (nonlinear.hpp). `continues`: a subcase starts from the end of the previous one,
+  /// as in SOL 106, if both have the same constraints; otherwise undeformed.
   void ask_nonlinear(const NonlinearOptions& options, bool continues) {
     nonlinear_ = options;
     continues_ = continues;
   }
 
-  /// The result of a subcase, or what is wrong with it alone.
+  /// The result of a subcase, or the error of this subcase.
   struct Solved {
     std::optional<records::StaticSubcase> result;
     std::exception_ptr failure;
@@ -48,8 +48,8 @@ class CaseSolver {
  private:
   void prepare(const records::Subcase& subcase, Diagnostics& diagnostics);
   bool is_prepared_for(const records::Subcase& subcase) const;
-  /// Without the fields of elements. Those with a result are solved together where nothing is wrong with any.
-  /// Strain energies of this rank's elements, elements x those that are solved; empty where each was solved alone.
+  /// Solves without the fields of elements. Subcases are solved together if none has an error.
+  /// \return strain energies of this rank's elements, elements x solved subcases; empty if each was solved separately.
   MatrixXd solve_displacements(std::span<const StaticLoad> loads, std::span<Solved> solved) const;
   void solve_nonlinear(const StaticLoad& load, Solved& solved);
   void add_element_results(std::span<const StaticLoad> loads, const MatrixXd& energy, std::span<Solved> solved);

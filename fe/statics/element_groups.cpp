@@ -3,6 +3,8 @@
 #include <map>
 #include <utility>
 
+#include "fe/elements/stress_state.hpp"
+
 namespace bough::fe {
 
 std::vector<ElementGroup> group_elements(

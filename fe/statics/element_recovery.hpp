@@ -8,6 +8,7 @@ namespace bough::fe {
 struct DeformedElements {
   std::vector<VectorXd> displacements;
   std::vector<VectorXd> internal_forces;  ///< empty without a stress state
+  std::vector<VectorXd> forces;           ///< on the grids, in basic; empty without stiffness
 };
 
 /// Displacements with the loads and temperatures of their case. The pointers outlive the call.

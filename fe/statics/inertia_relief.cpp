@@ -96,13 +96,13 @@ Suport calc_suport(const Model& model, const StaticSolver& solver, std::vector<i
         "SUPORT must hold a free body in a statically determinate way; look for SPC, grounded "
         "springs or too many dofs";
     if (relief == InertiaRelief::Free)
-      throw InputError(
-          "fe.suport-strained", where,
-          "PARAM,INREL,-2 is for a free body, this one is held: a rigid motion, at " + name_suport(grid, component) +
-              ", strains it with energy " + show_number(suport.strain_energy[j]) + " for a unit",
-          model.subcase().spc != 0
-              ? "take out SPC = " + std::to_string(model.subcase().spc) + " and grounded springs, or leave out INREL"
-              : "look for grounded springs, or leave out INREL");
+      throw InputError("fe.suport-strained", where,
+                       "PARAM,INREL,-2 is for a free body, this one is held: a rigid-body motion, at " +
+                           name_suport(grid, component) + ", strains it with energy " +
+                           show_number(suport.strain_energy[j]) + " for a unit",
+                       model.subcase().spc != 0 ? "take out SPC = " + std::to_string(model.subcase().spc) +
+                                                      " and grounded springs, or leave out INREL"
+                                                : "look for grounded springs, or leave out INREL");
     if (relief != InertiaRelief::None) throw InputError("fe.suport-strained", where, what, advice);
     diagnostics.warning("fe.suport-strained", {}, what, advice);
     break;
@@ -124,10 +124,10 @@ Suport calc_suport(const Model& model, const StaticSolver& solver, std::vector<i
   solver_of_mass.eigenvectors().col(0).cwiseAbs().maxCoeff(&j);
   const auto [grid, component] = model.describe_fdof(suport.fdofs[static_cast<std::size_t>(j)]);
   diagnostics.note("fe.inertia-massless", where,
-                   "a rigid motion of the model has no mass, that of " + name_suport(grid, component),
+                   "a rigid-body motion of the model has no mass, that of " + name_suport(grid, component),
                    "it stays at rest, as long as the load does not drive it");
   suport.refusal = InputError("fe.inertia-massless", where,
-                              "the load drives a rigid motion of the model that has no mass, that of " +
+                              "the load drives a rigid-body motion of the model that has no mass, that of " +
                                   name_suport(grid, component) + ": nothing balances it",
                               "give the model mass and inertia in all directions, e.g. by density or CONM2")
                        .items();

@@ -6,6 +6,7 @@
 
 #include "base/rotation.hpp"
 #include "fe/model/element_loop.hpp"
+#include "fe/model/load_selection.hpp"
 #include "fe/statics/nonlinear_tangent.hpp"
 #include "fe/statics/reactions.hpp"
 
@@ -19,8 +20,8 @@ using Triplets = std::vector<Eigen::Triplet<double>>;
 /// Work of the load of a step, relative to what the tangent stiffness at its start gives. On a path that softens
 /// towards a limit point (a parabola) it is 2 at most; a jump to another branch is far above where the step is small.
 constexpr double kMaxSoftening = 2.5;
-/// Growth of that work, relative to the square of the step, from one step to the next: where a step ends at a limit
-/// point itself the stiffness there says nothing of what comes next.
+/// Largest growth of that work, relative to the square of the step, from one step to the next: at a limit point the
+/// stiffness does not predict the next step.
 constexpr double kMaxRateGrowth = 10;
 constexpr int kMinElementsOfThread = 50;
 /// Numbers of the matrices of elements that are kept: 2 GB.
@@ -32,7 +33,7 @@ bool is_stiff(const Element& element) {
   return !K.isZero(0);
 }
 
-/// Mass of an element on the six dofs of one grid, and its arm; 0 where it is on the grid.
+/// Mass of an element on the six dofs of one grid, and its arm; 0 if it is on the grid.
 double find_offset_mass(const Element& element, MassKind kind, Vector3d& arm) {
   if (element.num_dofs() != 6 || !element.offset_mass(kind)) return 0;
   MatrixXd M = MatrixXd::Zero(6, 6);
@@ -52,9 +53,24 @@ std::string list_ids(const std::vector<int>& ids) {
   return ids.size() > kMaxListed ? text + ", ... (" + std::to_string(ids.size()) + ")" : text;
 }
 
+/// Throws fe.nonlinear-load at the first card that acts on the undeformed structure alone.
+void demand_nonlinear_loads(const records::Deck& deck, int load_set) {
+  const auto demand = [&](const auto& cards, int sid, const std::string& what) {
+    const auto found = std::find_if(cards.begin(), cards.end(), [sid](const auto& card) { return card.sid == sid; });
+    if (found != cards.end())
+      throw InputError("fe.nonlinear-load", deck.locate(found->at), what + " in large displacements",
+                       "give forces on the grids, or --linear");
+  };
+  for_each_plain_set(deck, load_set, [&](int sid, double, const records::CardLocation&) {
+    demand(deck.load_cards.beams, sid, "PLOAD1 loads beams between their grids, which is not done");
+    demand(deck.load_cards.rotations, sid, "RFORCE loads the places of the undeformed structure, which is not done");
+  });
+}
+
 }  // namespace
 
-NonlinearStatics::NonlinearStatics(const Model& model, const records::Deck& deck) : model_(model), arms_(model) {
+NonlinearStatics::NonlinearStatics(const Model& model, const records::Deck& deck)
+    : model_(model), deck_(deck), arms_(model) {
   Diagnostics diagnostics;
   const auto at = deck.locate({});
   if (model.omitted() || model.prestress())
@@ -95,6 +111,7 @@ NonlinearStatics::NonlinearStatics(const Model& model, const records::Deck& deck
   load_.d = d_;
   deformed_.displacements.resize(model.elements().size());
   deformed_.internal_forces.resize(model.elements().size());
+  deformed_.forces.resize(model.elements().size());
   find_offset_masses();
   find_linear_ties();
   energies_ = VectorXd::Zero(static_cast<Index>(model.elements().size()));
@@ -257,6 +274,7 @@ NonlinearStatics::Tangent NonlinearStatics::evaluate(const VectorXd& F) {
       max_turn = std::max(max_turn, forces.max_turn);
       owner.deformed_.displacements[static_cast<std::size_t>(e)] = forces.d;
       owner.deformed_.internal_forces[static_cast<std::size_t>(e)] = forces.internal;
+      owner.deformed_.forces[static_cast<std::size_t>(e)] = forces.f;
       owner.energies_[e] = forces.energy;
       f(element.gdofs()) += forces.f;
       add_stiffness(element.gdofs(), std::move(forces.K));
@@ -413,7 +431,7 @@ Eigen::SparseMatrix<double, Eigen::RowMajor> NonlinearStatics::reduce(
 }
 
 /// Newton's method from the state; F: dead forces, dF: change of all forces; `enforced`: steps of the fixed dofs;
-/// `share`: of the load. False where it does not come to an end, or ends on another branch of the path.
+/// `share`: of the load. False if it does not come to an end, or ends on another branch of the path.
 bool NonlinearStatics::find_equilibrium(const VectorXd& F, const VectorXd& dF, const VectorXd& enforced, double share,
                                         int max_iterations) {
   const auto& T = model_.T();
@@ -509,6 +527,14 @@ void NonlinearStatics::go_to(const StaticLoad& to, const FollowerLoads& moving, 
     }
   }
   report_turned_ties(diagnostics);
+}
+
+void NonlinearStatics::go_to_load_set(const StaticLoad& to, int set, const NonlinearOptions& options,
+                                      Diagnostics& diagnostics) {
+  demand_nonlinear_loads(deck_, set);
+  const auto* param = deck_.find_param("LGDISP");
+  const bool has_followers = !param || param->value != "2";  // 2: large displacements without follower forces (QRG)
+  go_to(to, has_followers ? find_follower_loads(model_, deck_, set) : FollowerLoads(), options, diagnostics);
 }
 
 /// Equations of RBE3, MPC and single components are those of small rotations.

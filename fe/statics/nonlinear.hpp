@@ -31,7 +31,7 @@ struct DeformedState {
 class NonlinearStatics {
  public:
   /// Throws InputError with all that cannot move far: fe.nonlinear-element, fe.nonlinear-link, fe.nonlinear-model.
-  /// `model` outlives this.
+  /// `model` and `deck` outlive this.
   NonlinearStatics(const Model& model, const records::Deck& deck);
 
   /// State of the last equilibrium: displacements with rotation vectors [num_gdofs] and the rotation of each node.
@@ -48,6 +48,10 @@ class NonlinearStatics {
   /// load falls; fe.limit-point and fe.unstable-equilibrium report them.
   void go_to(const StaticLoad& to, const FollowerLoads& moving, const NonlinearOptions& options,
              Diagnostics& diagnostics);
+
+  /// go_to() for a load of load set `set`: its pressures and forces by grids follow, unless PARAM,LGDISP is 2. Throws
+  /// fe.nonlinear-load for PLOAD1 and RFORCE.
+  void go_to_load_set(const StaticLoad& to, int set, const NonlinearOptions& options, Diagnostics& diagnostics);
 
   /// Result of the last state. `displacement` has rotation vectors. Moments of resultants are of deformed places.
   records::StaticSubcase make_result() const;
@@ -83,10 +87,11 @@ class NonlinearStatics {
   void follow_arc(const PathLoad& to, const NonlinearOptions& options, Diagnostics& diagnostics);
 
   const Model& model_;
+  const records::Deck& deck_;
   RigidArms arms_;
   std::vector<int> node_of_;                                      ///< node of each g-dof
   std::vector<char> is_stiff_;                                    ///< of each element
-  std::vector<std::unique_ptr<const CorotationalElement>> kept_;  ///< where there is room; else made again each time
+  std::vector<std::unique_ptr<const CorotationalElement>> kept_;  ///< stored if there is memory; otherwise recomputed
   std::vector<ArmLoad> offset_masses_;                            ///< force: of a unit acceleration, its size the mass
   std::vector<int> tied_;              ///< nodes that equations join otherwise than as rigid bodies: RBE3, MPC
   std::vector<int> turned_by_vector_;  ///< of these: rotation vectors are their unknowns

@@ -28,7 +28,7 @@ bool has_negative(const linear::SymmetricMatrix& A, const linear::RowKinds& kind
   return linear::count_negative_eigenvalues(lifted).value_or(0) > 0;
 }
 
-/// Negative directions of the stress among the rigid motions of a model that nothing holds; 0 where it is held. A
+/// Negative directions of the stress among the rigid-body motions of a model that nothing holds; 0 if it is held. A
 /// motion on which the stress does no work, but whose forces strain the body, is one of second order.
 int count_tipping(const Model& model, const linear::SymmetricMatrix& K) {
   for (const int dof : model.fixed_dofs()) {
@@ -55,7 +55,8 @@ int count_tipping(const Model& model, const linear::SymmetricMatrix& K) {
   return count;
 }
 
-/// Takes out what carries the rigid motions of a free model: where those need no force, the sign of the rest stays.
+/// Constrains the support of a free model. If rigid-body motions need no force, the signs of the other pivots are
+/// unchanged.
 linear::SymmetricMatrix hold_support(const Model& model, const linear::SymmetricMatrix& A, linear::RowKinds& kinds) {
   std::vector<int> held, kept;
   try {
@@ -89,7 +90,7 @@ std::shared_ptr<const CheckedStiffness> check_preload(const Model& model, bool i
     diagnostics.warning("fe.preload-tips", model.prestress()->at,
                         "the loads of the preload, " + model.prestress()->name +
                             ", keep their direction and tip the free body over: " + std::to_string(negative) +
-                            " of its rigid motions have negative stiffness, however small the load",
+                            " of its rigid-body motions have negative stiffness, however small the load",
                         "the structure itself does not buckle; modes prints these motions with negative eigenvalues");
     return checked;
   }

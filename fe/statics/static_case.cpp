@@ -18,8 +18,8 @@ constexpr std::pair<const char*, const char*> kUnreadLoads[] = {{"DEFORM", "enfo
                                                                 {"BOLTLD", "preloads of bolts"},
                                                                 {"CLOAD", "combinations of loads of superelements"}};
 
-/// Forces (in CD axes) that hold the oblique directions of AUTOSPC, as those of the dofs that it holds: along the
-/// direction, as large as what of the residual acts where nothing else holds.
+/// Reactions (in CD axes) of the oblique directions of AUTOSPC: along the direction, equal to the residual on its
+/// components that are not constrained otherwise.
 void add_oblique_reactions(const Model& model, const VectorXd& residual, VectorXd& reaction) {
   if (model.T_oblique().cols() == 0) return;
   const VectorXd held = model.T_oblique().transpose() * residual;
@@ -54,7 +54,7 @@ void turn_to_basic(const Model& model, VectorXd& values) {
 }
 
 /// Grids that no multipoint constraint or rigid element is at: each of their dofs has a column of T or T_fixed to
-/// itself. What the residual leaves there beside the reactions is rounding.
+/// itself. The rest of the residual there, apart from the reactions, is round-off.
 std::vector<bool> find_untied(const Model& model) {
   const auto& nodes = model.nodes();
   std::vector<int> columns_of(nodes.size(), 0);

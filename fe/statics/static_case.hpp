@@ -26,8 +26,8 @@ std::vector<std::string> list_lost_loads(const Model& model, const VectorXd& F);
 
 /// u = T q + T_fixed d with Tᵀ(K u - F) = 0. With R = K u - F: reactions of the fixed dofs T_fixedᵀ R; the rest of R is
 /// the force of MPC and rigid elements. epsilon = |qᵀTᵀR| / |qᵀTᵀ(F - K T_fixed d)| (Nastran's residual work).
-/// `suport`: dofs that the solver holds beside the fixed ones, their forces count as reactions; with inertia relief the
-/// load is F - M Φ a (calc_acceleration), and with INREL -2 ΦᵀM u = 0.
+/// `suport`: dofs that the solver fixes in addition to the SPCs; their forces count as reactions; with inertia relief
+/// the load is F - M Φ a (calc_acceleration), and with INREL -2 ΦᵀM u = 0.
 records::StaticSubcase solve_static_case(const Model& model, const StaticSolver& solver, const StaticLoad& load,
                                          const Suport& suport = {}, Diagnostics* diagnostics = nullptr);
 

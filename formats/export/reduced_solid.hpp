@@ -17,8 +17,8 @@ struct ReducedSolid {
   Eigen::MatrixXd K, M, C;  ///< (6m + other modes)^2
 };
 
-/// The frames are the interface nodes, and the body frame itself where no interface node carries it. Rigid motion q_r
-/// and modal coordinates η give u = [Φ_R Φ]_b [q_r; η] at the frames; solved for q_r and the amplitudes of the
+/// The frames are the interface nodes, and the body frame itself where no interface node carries it. Rigid-body motion
+/// q_r and modal coordinates η give u = [Φ_R Φ]_b [q_r; η] at the frames; solved for q_r and the amplitudes of the
 /// constraint modes, the matrices diag(0, K) and [M_rr Γᵀ; Γ M] (docs/theory/flexible-body.md §4) follow the change of
 /// coordinates. Nothing, and why, for a body without constraint modes or with frames that they do not move one to one.
 std::optional<ReducedSolid> calc_reduced_solid(const records::FlexBody& body, std::string& why);

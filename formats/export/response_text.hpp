@@ -40,8 +40,8 @@ struct CurvePeak {
 /// \param x  frequencies or times, one per value; empty: size is -1
 CurvePeak find_peak(const NamedCurve& curve, const Eigen::VectorXd& x);
 
-/// Nastran's punch file, by point and by element (SORT2), 80 columns: what the deck asks to be punched, and
-/// everything where it asks for nothing to be.
+/// Nastran's punch file, by point and by element (SORT2), 80 columns: the results with PUNCH in the deck, or all
+/// results if there are none.
 std::string make_punch_text(const records::DeckResponse& response);
 
 }  // namespace bough::exports

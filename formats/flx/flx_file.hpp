@@ -76,10 +76,10 @@ struct FlxName {
 /// problem.FLN); otherwise, unless it is HDF5, the name decides: .FLX in any case.
 std::optional<FlxName> parse_flx_name(const std::string& name);
 
-/// The record that the solver and the other verbs take. What the file cannot say is empty (mesh, F_I, other sets of
-/// integrals) or follows from what it says: eigenvalue j is K_jj / M_jj, the effective masses are Γ0² and Γ1² over M_jj
-/// about Bo. Integrals that modopt leaves out are zero. Without `has_rigid` cg and inertia are zero: the caller knows
-/// them, as TREETOPS takes them from its .INT. `lacking`: each thing that is not there, in words.
+/// Makes the record of a flexible body. Data that a .FLX cannot contain are empty (mesh, F_I, other sets of integrals)
+/// or computed: eigenvalue j is K_jj / M_jj, the effective masses are Γ0² and Γ1² over M_jj about Bo. Integrals that
+/// modopt omits are zero. Without `has_rigid` cg and inertia are zero: the caller must set them, as TREETOPS does from
+/// its .INT. `lacking`: receives the missing data, as text.
 records::FlexBody make_flex_body(const FlxFile& file, std::vector<std::string>& lacking);
 
 }  // namespace bough::flx

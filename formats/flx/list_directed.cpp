@@ -183,7 +183,7 @@ bool ListReader::read_values(const std::string& item, std::vector<Number>& value
 bool ListReader::read(const std::string& item, std::vector<double>& values) { return read_values(item, values); }
 bool ListReader::read(const std::string& item, std::vector<int>& values) { return read_values(item, values); }
 
-/// Fortran passes over what is left of the line. Words are remarks; numbers tell of a wrong count.
+/// Warns of numbers in the rest of a line, which Fortran skips: the count may be wrong. Words are comments.
 void ListReader::warn_of_leftovers(const std::string& item, bool has_leftover) {
   skip_blanks();
   if (position_ < line_end_ && text_[position_] == ',') ++position_;

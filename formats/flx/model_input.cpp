@@ -55,7 +55,7 @@ class ModelInputReader {
       : diagnostics_(diagnostics), in_(ListReader::open(path, diagnostics)) {}
 
   ModelInput read() {
-    // Every step gives false where nothing after it can be found.
+    // Every step gives false if nothing after it can be found.
     if (read_sizes() && read_dof_map() && read_geometry() && read_body() && read_damping() && read_modes() &&
         read_nodes() && read_special_nodes())
       in_.check_end();

@@ -24,7 +24,7 @@ std::vector<FlxFile> read_flx_bodies(const std::string& path) {
     const bool is_remark = words.empty() || words[0][0] == '!';
     if (is_remark && !bodies.empty()) continue;
     if (!bodies.empty() && words[0] != "FLX")
-      throw InputError("flx.bad-line", {path, number}, "the line behind END begins no further body",
+      throw InputError("flx.bad-line", {path, number}, "the line after END begins no further body",
                        "begin it with FLX, or take it out");
     const int at = number;
     bodies.push_back(detail::FlxReader(path, in, number).read(words));
@@ -32,8 +32,8 @@ std::vector<FlxFile> read_flx_bodies(const std::string& path) {
     if (!is_new)
       diagnostics.error(
           "flx.same-body", {path, at},
-          "body " + std::to_string(found->first) + " stands in line " + std::to_string(found->second) + " already",
-          "give each body of the file an id of its own");
+          "body " + std::to_string(found->first) + " is in line " + std::to_string(found->second) + " already",
+          "give each body of the file a different id");
   }
   if (bodies.empty()) detail::FlxReader(path, in, number = 1).read({});
   diagnostics.throw_if_errors();
@@ -50,10 +50,10 @@ FlxFile read_flx(const std::string& path, int body_id) {
   }
   if (body_id == 0)
     throw InputError("flx.which-body", {path}, "the file holds the bodies" + ids + ", found no choice",
-                     "name one of them behind a colon, as in " + std::filesystem::path(path).filename().string() + ":" +
+                     "name one of them after a colon, as in " + std::filesystem::path(path).filename().string() + ":" +
                          ids.substr(1, ids.find(' ', 1) - 1));
   throw InputError("flx.no-body", {path}, "the file has no body " + std::to_string(body_id) + ", it holds" + ids,
-                   "correct the number behind the colon");
+                   "correct the number after the colon");
 }
 
 namespace {

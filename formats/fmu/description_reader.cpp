@@ -51,7 +51,7 @@ void set_size(const pugi::xml_node& node, ForeignVariable& v) {
   v.size = static_cast<int>(size);
 }
 
-/// Sets the start values; one number is that of every element. They stay empty where a word is no number.
+/// Sets the start values; one number is that of every element. They stay empty if a word is no number.
 void set_start(const pugi::xml_node& node, ForeignVariable& v) {
   std::istringstream words(node.attribute("start").value());
   for (std::string word; words >> word;) {

@@ -35,7 +35,7 @@ void append(std::vector<double>& data, const Matrix& m) {
   }
 }
 
-/// Left out where the record does not know them (older files, other formats).
+/// Not written if the record has none (older files, other formats).
 void write_resultants(FileWriter& file, const FlexBody& body) {
   const auto ne = body.locators.size();
   if (ne > 0 && body.load_resultant.size() == 0) return;
@@ -213,7 +213,7 @@ void write_flex_body(const FlexBody& body, const BodyAccuracy& accuracy, const s
                                    "are mass-normalized); units are those of the model"));
 
   file.write_number("/rigid/mass", body.mass, {"mass", "M"});
-  file.write_vector("/rigid/cg", body.cg, {"mass centre from the body origin, body axes", "L"});
+  file.write_vector("/rigid/cg", body.cg, {"centre of mass from the body origin, body axes", "L"});
   file.write_matrix("/rigid/inertia", body.inertia, {"inertia tensor about the body origin, body axes", "M L^2"});
   file.write_integers("/nodes/id", body.node_id, {"ids of the output nodes", "1"});
   file.write_matrix("/nodes/xyz", body.node_id.empty() ? MatrixXd::Zero(0, 3) : body.node_xyz,

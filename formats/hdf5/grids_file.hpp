@@ -13,7 +13,7 @@ struct GridsFile {
   Eigen::MatrixXd xyz;  ///< g x 3
 };
 
-/// Empty where the file has no /grids. Throws InputError "hdf5.cannot-open", "hdf5.truncated", "hdf5.shape",
+/// Empty if the file has no /grids. Throws InputError "hdf5.cannot-open", "hdf5.truncated", "hdf5.shape",
 /// "hdf5.nan".
 std::optional<GridsFile> read_grids(const std::string& path);
 /// The root attribute `format`; empty without.

@@ -14,7 +14,7 @@ namespace bough::hdf5 {
 namespace {
 
 constexpr char kBetween = '\x1f', kEnd = '\x1e';
-/// Seconds of computing that a file may take, and those it may take more for each of its bytes.
+/// Limit of the processor time for a file: a constant, plus seconds per byte.
 constexpr double kSeconds = 5, kSecondsPerByte = 1e-6;
 
 /// Identity of a version of a file: device, inode, size and time of change.

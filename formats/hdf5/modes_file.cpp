@@ -47,7 +47,7 @@ void write_modes(const ModesResult& modes, const std::string& path) {
   file.write_attribute("/", "subcase", modes.subcase);
   const auto& rigid = modes.mass_properties;
   file.write_number("/rigid/mass", rigid.mass, {"mass, mean of the three directions", "M"});
-  file.write_vector("/rigid/cg", rigid.cg, {"mass centre, basic system", "L"});
+  file.write_vector("/rigid/cg", rigid.cg, {"centre of mass, basic system", "L"});
   file.write_matrix("/rigid/inertia", rigid.inertia, {"inertia tensor about the reference point, basic axes", "M L^2"});
   file.write_vector("/rigid/reference", rigid.reference, {"reference point, basic system", "L"});
   file.write_matrix("/rigid/mass_matrix", rigid.rigid_mass,

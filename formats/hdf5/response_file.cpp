@@ -79,7 +79,7 @@ void write_subcase(FileWriter& file, const records::ResponseSubcase& s, bool is_
   file.write_number(path + "/accuracy/basis", s.basis_error,
                     {"of the orthogonality of the coordinates to M and K", "1"});
   file.write_vector(path + "/modes/frequency_hz", s.mode_hz,
-                    {"of each coordinate: rigid motions (0), normal modes, residual vectors", "1/T"});
+                    {"of each coordinate: rigid-body motions (0), normal modes, residual vectors", "1/T"});
   file.write_vector(path + "/modes/damping_ratio", s.damping_ratio, {"its share of the critical damping", "1"});
   if (!s.damped_motion.empty()) file.write_attribute(path + "/modes", "damped_motion", s.damped_motion);
   std::vector<int> residual;

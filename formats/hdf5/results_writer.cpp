@@ -109,9 +109,8 @@ class ResultsWriter final : public records::ResultSink {
 
   void end(bool completed, const std::string& reason) override {
     BOUGH_DEMAND(file_.is_open());
-    state_.completed = completed;
+    completed_ = completed;
     reason_ = reason;
-    state_.wall_time = wall_time_before_ + std::chrono::duration<double>(Clock::now() - began_).count();
     // A continuation that ends before the place that the killed run had reached is given up: the old file has more.
     if (!file_.is_published() && !completed && num_rows_ < num_safe_rows_) return file_.close();
     commit();
@@ -165,7 +164,7 @@ class ResultsWriter final : public records::ResultSink {
     file_.write(0, page.data(), page.size());
   }
 
-  /// Rows of the buffer to their places; they count from the next commit on.
+  /// Writes the buffered rows to the file; they become valid with the next commit.
   void flush_rows() {
     const std::uint64_t rows = groups_.chunk_rows;
     for (auto row = std::max(buffer_first_, num_flushed_); row < num_rows_;) {
@@ -308,6 +307,10 @@ class ResultsWriter final : public records::ResultSink {
       announce(2 * (used_ - last_used_));
     file_.sync();
     state_.num_samples = static_cast<std::int64_t>(num_rows_);
+    if (reason_) {  // on no page before: a file that a kill leaves here is not complete
+      state_.completed = completed_;
+      state_.wall_time = wall_time_before_ + std::chrono::duration<double>(Clock::now() - began_).count();
+    }
     write_first_page();
     num_committed_ = num_rows_;
     num_since_look_ = 0;
@@ -352,6 +355,7 @@ class ResultsWriter final : public records::ResultSink {
   std::size_t next_slot_ = 0;
   std::optional<double> energy_error_;
   std::optional<std::string> reason_;  ///< at the end
+  bool completed_ = false;             ///< the same
   double wall_time_before_ = 0;
   bool has_committed_ = false;
   Address used_ = 0, announced_ = 0, last_used_ = 0;
@@ -424,7 +428,7 @@ void ResultsWriter::continue_file(const records::ResultsHeader& header) {
   long keep = 0;
   while (keep < total && time[static_cast<std::size_t>(keep)] <= from + tolerance) ++keep;
   const double last_step = total > 1 ? time.back() - time[time.size() - 2] : 0;
-  // Where samples are written of a part of the run only, their count tells what belongs to the checkpoint.
+  // If only a part of the run is written, the number of samples determines those before the checkpoint.
   const bool is_counted = checkpoint.time == from && checkpoint.num_samples >= 0;
   if (is_counted ? checkpoint.num_samples > total
                  : keep == 0 || (keep == total && time.back() + 1.5 * last_step < from - tolerance)) {

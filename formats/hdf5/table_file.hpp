@@ -7,7 +7,7 @@
 
 namespace bough::hdf5 {
 
-/// A column: numbers (NaN where a case has none) or, when `words` is not empty, text.
+/// A column: numbers (NaN if a case has none) or, when `words` is not empty, text.
 struct OutcomeColumn {
   std::string path;  ///< "/parameters/E"
   std::string description;

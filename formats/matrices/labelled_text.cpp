@@ -21,7 +21,7 @@ bool is_skipped(std::string_view line, bool& is_unsymmetric) {
   return true;
 }
 
-/// One triangle stands for both, unless the file says that the matrix is not symmetric.
+/// Completes a matrix stored by one triangle, unless the file declares it unsymmetric.
 void complete(Triplets& entries, bool is_unsymmetric, Matrix& matrix) {
   matrix.form = is_unsymmetric ? kSquare : kSymmetric;
   if (!is_unsymmetric && entries.is_triangular()) entries.mirror(Triangle::Mirror);
@@ -73,8 +73,8 @@ std::vector<Matrix> read_triplet_lines(const std::string& path) {
     matrix.row_dofs = matrix.column_dofs = read_dof_list(dof_path);
     if (matrix.row_dofs.rows() < size)
       throw InputError("matrices.dof", {dof_path},
-                       "the file names " + std::to_string(matrix.row_dofs.rows()) + " dofs, the matrix beside it has " +
-                           std::to_string(size) + " rows",
+                       "the file names " + std::to_string(matrix.row_dofs.rows()) +
+                           " dofs, the matrix next to it has " + std::to_string(size) + " rows",
                        "give the files of one run");
     size = static_cast<int>(matrix.row_dofs.rows());
   }

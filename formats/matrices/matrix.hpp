@@ -11,7 +11,7 @@ namespace bough::matrices {
 inline constexpr int kSquare = 1, kRectangular = 2, kDiagonal = 3, kSymmetric = 6;
 
 struct Matrix {
-  std::string name;  ///< as in the file, in its letters; empty where the format has no names
+  std::string name;  ///< as in the file, in its letters; empty if the format has no names
   int form = kSquare;
   records::SparseMatrix values;  ///< real parts; symmetric matrices are whole, whatever the file stores
   bool is_complex = false;

@@ -104,7 +104,7 @@ struct FormatRow {
   std::vector<Matrix> (*read)(const std::string& path, Diagnostics& diagnostics);
 };
 
-/// A reader without messages as one that takes them.
+/// Adapts a reader without diagnostics to the type of those with diagnostics.
 template <std::vector<Matrix> (*read)(const std::string&)>
 std::vector<Matrix> read_by(const std::string& path, Diagnostics&) {
   return read(path);

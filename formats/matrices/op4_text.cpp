@@ -121,7 +121,7 @@ class TextReader {
       const auto used = format_.width * std::min(format_.per_line, static_cast<std::size_t>(num_reals - i));
       if (line.size() > used && !trim(line.substr(used)).empty())
         in_.fail("matrices.op4-format",
-                 "found " + quote(line.substr(used)) + " behind column " + std::to_string(used) +
+                 "found " + quote(line.substr(used)) + " after column " + std::to_string(used) +
                      ", where the numbers of this line end",
                  "the format of the header is not that of the numbers: write the file again");
       for (std::size_t k = 0; k < format_.per_line && i < num_reals; ++k, ++i) {

@@ -162,7 +162,7 @@ class FemMaker {
       if (!is_used[e]) dropped += (dropped.empty() ? "\"" : ", \"") + body_.locators[e].name + "\"";
     if (!dropped.empty())
       diagnostics_.warning("export.dropped-loads", where_,
-                           "MBDyn knows unit loads at interface nodes only, left out: " + dropped,
+                           "MBDyn supports unit loads at interface nodes only; omitted: " + dropped,
                            "make their nodes interface nodes; a load pattern has no place in the file");
     return found;
   }

@@ -5,10 +5,10 @@
 #include <set>
 
 #include "formats/nastran/detail/card.hpp"
+#include "formats/nastran/detail/card_facts.hpp"
 #include "formats/nastran/detail/card_text.hpp"
 #include "formats/nastran/detail/changed_files.hpp"
 #include "formats/nastran/detail/control.hpp"
-#include "formats/nastran/detail/card_facts.hpp"
 #include "formats/nastran/detail/field_text.hpp"
 #include "formats/nastran/detail/images.hpp"
 #include "formats/nastran/detail/lines.hpp"
@@ -96,7 +96,7 @@ DeckEditor::DeckEditor(const std::string& path, Diagnostics& diagnostics) : cont
   c.source = detail::read_source(path, diagnostics);
   records::Deck control;
   control.files = c.source.files;
-  Diagnostics ignored;  // the verb that reads the deck reports them
+  Diagnostics ignored;  // the command that reads the deck reports them
   const auto first = detail::read_control(c.source, control, ignored);
   c.images = detail::make_card_images(c.source, first, ignored);
 }

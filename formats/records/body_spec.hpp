@@ -51,6 +51,7 @@ struct AugmentSpec {
 struct PreloadSpec {
   int subcase = 0, load_set = 0, temperature_set = 0;
   Vector3d spin = Vector3d::Zero();  ///< angular velocity about Bo, body axes
+  bool is_nonlinear = false;         ///< large displacements: the body starts from the deformed shape
   SourceLocation at;
 };
 

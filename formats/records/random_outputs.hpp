@@ -14,8 +14,8 @@ struct RandomOutputs {
   Eigen::MatrixXd cumulative_rms;    ///< nf x ny, from the first frequency to each
   /// RMS and N0 by integration between the first and the last frequency.
   Eigen::VectorXd band_rms, band_crossing_hz;
-  /// RMS and N0 of white inputs from 0 to infinity by Lyapunov's equation; infinite where the integral has no bound.
-  /// Empty where there is none.
+  /// RMS and N0 of white inputs from 0 to infinity by Lyapunov's equation; infinite if the integral diverges. Empty if
+  /// not computed.
   Eigen::VectorXd total_rms, total_crossing_hz;
   std::string no_total;  ///< why there is none
 };

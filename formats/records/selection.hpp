@@ -5,7 +5,7 @@
 namespace bough::records {
 
 /// Where the case control selects set `set` by `command` (SPC, MPC, LOAD, TEMPERATURE, METHOD, SUPORT1, NSM): the
-/// first place, for messages; line 0 where none does.
+/// first place, for messages; line 0 if none does.
 CardLocation find_selection(const Deck& deck, const std::string& command, int set);
 
 }  // namespace bough::records

@@ -110,6 +110,7 @@ void read_preload(const Fields& table, records::BodySpec& spec, Diagnostics& dia
   preload.load_set = table.get_int("load_set", 0);
   preload.temperature_set = table.get_int("temperature_set", 0);
   preload.spin = table.get_vector("spin", Eigen::Vector3d::Zero());
+  preload.is_nonlinear = table.get_bool("nonlinear", false);
   for (const std::string other : {"load_set", "temperature_set"})
     if (table.has("subcase") && table.has(other))
       diagnostics.error("toml.conflicting-keys", table.locate(other),

@@ -46,7 +46,7 @@ struct CampaignCorrelation {
 enum class CampaignMethod { Grid, List, LatinHypercube, MonteCarlo };
 enum class CollectTake { All, First, Last, Min, Max, AbsMax, Mean };
 
-/// A number, or some, of what each case made.
+/// One or several numbers of the results of each case.
 struct CampaignCollect {
   std::string name;
   SourceLocation at;
@@ -59,7 +59,7 @@ struct CampaignCollect {
 };
 
 struct CampaignStep {
-  std::vector<std::string> words;  ///< verb and arguments
+  std::vector<std::string> words;  ///< command and arguments
   SourceLocation at;
 };
 

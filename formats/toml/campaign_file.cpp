@@ -90,7 +90,7 @@ class Reader {
       CampaignStep step{split_words(item.text), {spec_.file, item.line}};
       if (!step.words.empty() && step.words[0] == "bough") step.words.erase(step.words.begin());
       if (step.words.empty())
-        diagnostics_.error("batch.bad-step", step.at, "the step is empty", "write a verb and its arguments");
+        diagnostics_.error("batch.bad-step", step.at, "the step is empty", "write a command and its arguments");
       else
         spec_.steps.push_back(std::move(step));
     }

@@ -44,7 +44,7 @@ void read_table(const Fields& fields, const std::string& path, records::Function
                 Diagnostics& diagnostics) {
   const std::string name = "function '" + function.name + "'";
   if (!fields.has("file")) {
-    refuse_keys(fields, {"time_column", "column"}, "in " + name + ", whose points stand in this file", diagnostics);
+    refuse_keys(fields, {"time_column", "column"}, "in " + name + ", whose points are in this file", diagnostics);
     for (const char* key : {"x", "y"}) {
       if (fields.has(key)) continue;
       diagnostics.error("toml.missing-key", function.at, "missing key '" + std::string(key) + "' in " + name,
@@ -96,7 +96,7 @@ records::FunctionRecord read_function(const Fields& fields, const std::string& p
   function.x = fields.get_numbers("x");
   function.y = fields.get_numbers("y");
   read_values(fields, path, function, diagnostics);
-  // Texts and lists by type; numbers are checked where the function is made.
+  // Types with text or list keys; numbers are checked when the function is made.
   static const std::map<std::string, std::vector<std::string>> owners = {
       {"x", {"table", "expression", "harmonics", "random"}},
       {"y", {"table", "harmonics", "random"}},

@@ -14,7 +14,7 @@ namespace bough::toml_files {
 
 namespace {
 
-/// Where a new key of this table can be written, and what has to stand around it.
+/// Inserts a new key into the text of a table, with the necessary line breaks or commas.
 std::string add_key(std::string& text, const toml::table& table, bool is_root, const std::string& line) {
   if (is_root) {
     text.insert(0, line + "\n");
@@ -27,7 +27,7 @@ std::string add_key(std::string& text, const toml::table& table, bool is_root, c
     text.insert(open + 1, table.empty() ? " " + line + " " : " " + line + ",");
     return {};
   }
-  if (text[at] != '[') return "its table is made by dotted keys; give the table a heading of its own";
+  if (text[at] != '[') return "its table is made by dotted keys; give the table a separate heading";
   const auto end = text.find('\n', at);
   if (end == std::string::npos)
     text += "\n" + line + "\n";

@@ -28,7 +28,7 @@ class Inserter {
     }
     const std::string near = find_nearest(name, names_);
     diagnostics_.error("toml.unknown-parameter", {file_, line},
-                       "\"" + v.text + "\" stands for a parameter that [parameters] does not have",
+                       "\"" + v.text + "\" names a parameter that [parameters] does not contain",
                        near.empty() ? "add " + name + " = NUMBER to [parameters]" : "did you mean \"$" + near + "\"?");
   }
 

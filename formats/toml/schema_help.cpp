@@ -19,7 +19,7 @@ std::string join_words(const std::vector<std::string>& words, const std::string&
   return text;
 }
 
-/// The schema with what its $ref says, its own words first.
+/// Merges a schema with its $ref; keywords of the schema take precedence.
 json resolve_reference(const json& schema, const json& root) {
   if (!schema.contains("$ref")) return schema;
   auto whole = root.at(json::json_pointer(schema["$ref"].get<std::string>().substr(1)));

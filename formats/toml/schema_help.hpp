@@ -22,7 +22,7 @@ struct KindHelp {
   bool is_list = false;  ///< [[kind]]
   bool is_open = false;  ///< takes keys of any name (parameters)
   std::vector<KeyHelp> keys;
-  /// "one of file, mass": what the schema wants besides the required keys.
+  /// "one of file, mass": conditions of the schema in addition to the required keys.
   std::vector<std::string> expected;
 
   /// Returns the help of a key; nullptr if the table has no such key.

@@ -89,7 +89,7 @@ struct Document {
     return pieces;
   }
 
-  /// Where the last value that stands under the table's own heading ends; `otherwise` when there is none.
+  /// End of the last value under the heading of the table; `otherwise` if there is none.
   std::size_t find_last_end(const toml::table& table, std::size_t otherwise) const {
     auto last = otherwise;
     for (const auto& [key, child] : table) {
@@ -123,7 +123,7 @@ std::string join_key(const std::vector<std::string>& parts, std::size_t first) {
   return key;
 }
 
-/// A heading "[a.b]" stands for `a` too where that has none of its own; then it has fewer parts than the heading.
+/// Returns false if table `a` has no heading and is defined by "[a.b]" only, whose path is longer than that of `a`.
 bool has_own_heading(const Document& document, const toml::node& node, const std::vector<std::string>& parts) {
   const auto at = document.get_begin(node);
   auto begin = document.text.find_first_not_of('[', at);
@@ -282,7 +282,7 @@ std::string set_value(std::string& text, const std::string& path, const std::str
     return {};
   }
   const std::vector<std::string> above(parts.begin(), parts.begin() + static_cast<std::ptrdiff_t>(host));
-  if (!has_own_heading(document, table, above)) return "the table has no heading of its own; give it one";
+  if (!has_own_heading(document, table, above)) return "the table has no separate heading; give it one";
   const auto at = document.find_line_end(document.find_last_end(table, document.get_begin(table)));
   text.insert(at, (text[at - 1] == '\n' ? "" : line_break) + line + line_break);
   return {};
@@ -318,8 +318,7 @@ std::string remove_path(std::string& text, const std::string& path) {
     return {};
   }
   for (std::size_t i = 1; i + 1 < chain.size(); ++i)
-    if (chain[i]->is_table() && chain[i]->as_table()->is_inline())
-      return "it stands in dotted keys within {}; set these";
+    if (chain[i]->is_table() && chain[i]->as_table()->is_inline()) return "it is in dotted keys within {}; set these";
   begin = document.find_line_begin(begin);
   text.erase(begin, document.find_line_end(value.end) - begin);
   return {};

@@ -22,7 +22,7 @@ struct TableItem {
   std::string path() const { return number > 0 ? kind + "." + std::to_string(number) : kind; }
 };
 
-/// A text value that names an item: where it stands and what it says.
+/// A text value that names an item: its position in the text and the name.
 struct NameUse {
   std::string path;  ///< "hinge.2.child"
   std::string text;

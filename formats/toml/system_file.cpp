@@ -201,7 +201,7 @@ records::SystemSpec read_system_spec_text(const std::string& text, const std::st
   if (!parse_toml(spec.text, path, root, diagnostics)) return spec;
   const int num_errors = diagnostics.num_errors();
   insert_parameters(root, path, diagnostics);
-  if (diagnostics.num_errors() > num_errors) return spec;  // what they stand for is not there to be checked
+  if (diagnostics.num_errors() > num_errors) return spec;  // without their numbers the rest cannot be checked
   check_schema(root, get_system_schema(), path, diagnostics);
 
   const Fields fields(root, path);

@@ -92,7 +92,7 @@ Basis calc_free_interface_basis(const fe::System& system, const BasisOptions& op
   if (num_pairs > 0) basis.check = {num_pairs, pairs.inertia_count, pairs.residual.maxCoeff(), pairs.solvers};
   auto kept = pairs.lambda.size() - pairs.num_rigid;
   if (options.num_modes == 0 && !options.max_hz) kept = 0;
-  // A massless rigid motion takes none of the modes asked for: what came in its place is cut again.
+  // A massless rigid-body motion is none of the requested modes: the modes computed in excess are dropped.
   if (options.num_modes > 0) kept = std::min<Eigen::Index>(kept, options.num_modes);
   basis.Phi = pairs.Phi.middleCols(pairs.num_rigid, kept);
   basis.lambda = pairs.lambda.segment(pairs.num_rigid, kept);
@@ -119,8 +119,8 @@ Basis calc_free_interface_basis(const fe::System& system, const BasisOptions& op
   mark_largest(residual.share.topRows(num_attachments).colwise().sum(), num_attachments - num_unused,
                ModeKind::Attachment, kinds);
   basis.kind.insert(basis.kind.end(), kinds.begin(), kinds.end());
-  // The eigenvectors end where Krylov's tolerance does: what strain energy they share with the new vectors is taken
-  // out.
+  // The eigenvectors are exact to the tolerance of Krylov-Schur only: their strain energy with the new vectors is
+  // projected out.
   if (!kinds.empty()) {
     const auto pairs_all = calc_ritz_pairs(calc_gram_M(model, basis.Phi), calc_gram_K(model, basis.Phi));
     basis.Phi = basis.Phi * pairs_all.N;
@@ -181,7 +181,7 @@ std::string describe_directions(const fe::Model& model, const Basis& basis, cons
 /// K^N = M^ND of the component, twice: the second time nearly diagonal, for the digits of the lowest values.
 void orthogonalize(const fe::Model& model, const MatrixXd& rigid, Eigen::Index num_constraint, Basis& basis,
                    Diagnostics& diagnostics) {
-  constexpr double kRigid = 1e-9;  // what is left of a vector that is a rigid motion
+  constexpr double kRigid = 1e-9;  // relative remainder of a vector that is a rigid-body motion
   MatrixXd& Phi = basis.Phi;
   MatrixXd K = basis.K;
   if (rigid.cols() > 0) {
@@ -344,7 +344,7 @@ void move_to_frame(const fe::Model& model, const FrameSpec& frame, Basis& basis)
         columns.push_back(j);
     if (basis.lambda.size() - static_cast<Eigen::Index>(columns.size()) != 6)
       throw InputError("modal.raw-frame", {},
-                       "Craig-Bampton coordinates that are kept hold the rigid motions of a free body",
+                       "Craig-Bampton coordinates that are kept hold the rigid-body motions of a free body",
                        "put the frame on an interface node, fix it by constraints, or orthogonalize");
     basis = select_columns(basis, columns);
   }

@@ -17,7 +17,7 @@ struct BasisOptions {
   int num_modes = 0;  ///< normal modes, without the rigid ones; 0: all below max_hz
   std::optional<double> max_hz;
   std::vector<int> interface_nodes;  ///< grids; all their dofs that no constraint holds
-  bool is_free = false;              ///< the six rigid motions of the model are removed
+  bool is_free = false;              ///< the six rigid-body motions of the model are removed
   bool orthogonalize = true;         ///< Craig-Bampton: K^N = M^ND, else the coordinates stay q = [u_b, η_i]
   MatrixXd residual_loads;           ///< num_gdofs x m, in basic
   const linear::SymmetricFactor* factor = nullptr;  ///< LLᵀ of K of the system, where the caller has it
@@ -25,11 +25,11 @@ struct BasisOptions {
 };
 
 struct Basis {
-  MatrixXd Phi;     ///< num_gdofs x n in basic; free: M-orthogonal to the rigid motions unless orthogonalize is off
+  MatrixXd Phi;  ///< num_gdofs x n in basic; free: M-orthogonal to the rigid-body motions unless orthogonalize is off
   VectorXd lambda;  ///< n, φᵀKφ / φᵀMφ
   MatrixXd M, K;    ///< n x n: ΦᵀMΦ and ΦᵀKΦ
   std::vector<records::ModeKind> kind;
-  int num_rigid = 0, num_massless = 0;                 ///< rigid motions of the model with and without mass
+  int num_rigid = 0, num_massless = 0;                 ///< rigid-body motions of the model with and without mass
   std::vector<std::pair<int, int>> boundary;           ///< Craig-Bampton: node, component of each constraint mode
   bool is_raw = false;                                 ///< Craig-Bampton coordinates kept as they are
   ModesCheck check;                                    ///< of the normal modes, free or with the interface held
@@ -49,9 +49,9 @@ Basis calc_basis(const fe::System& system, const BasisOptions& options, const St
 /// Columns of the basis, in this order.
 Basis select_columns(const Basis& basis, const std::vector<int>& columns);
 
-/// The basis of a free body seen from a frame: the rigid motion that the conditions demand is taken out of each vector
-/// and M is computed anew; K, lambda stay. Raw Craig-Bampton coordinates are only possible in the frame of an interface
-/// node, whose own six constraint modes go. Throws InputError("modal.raw-frame") for another.
+/// The basis of a free body seen from a frame: the rigid-body motion that the conditions demand is taken out of each
+/// vector and M is computed again; K, lambda stay. Raw Craig-Bampton coordinates are only possible in the frame of an
+/// interface node, whose own six constraint modes go. Throws InputError("modal.raw-frame") for another.
 void move_to_frame(const fe::Model& model, const FrameSpec& frame, Basis& basis);
 
 }  // namespace bough::modal::bases

@@ -59,7 +59,7 @@ Component calc_component(const fe::System& system, const ComponentOptions& optio
   component.lambda.resize(nq);
   component.lambda << modes.lambda, residual.modes.lambda;
   const MatrixXd& X = component.shapes;
-  // Constraint modes and what moves with the boundary held share no strain energy.
+  // Constraint modes and fixed-interface modes have no common strain energy.
   component.K = MatrixXd::Zero(nb + nq, nb + nq);
   component.K.topLeftCorner(nb, nb) = calc_gram(Psi, fe::calc_stiffness_times(model, Psi));
   component.K.bottomRightCorner(nq, nq) = component.lambda.asDiagonal();

@@ -23,7 +23,7 @@ struct Component {
 };
 
 /// K_bq is zero and K_qq diagonal by construction. K4 is of GE: PARAM,G of the assembly acts on all of K. K4 and B are
-/// empty where nothing damps.
+/// empty if nothing damps.
 /// Throws as FixedInterface; InputError "modal.held-boundary" for a dof of a boundary grid that a constraint holds or
 /// that follows others.
 Component calc_component(const fe::System& system, const ComponentOptions& options, Diagnostics& diagnostics);

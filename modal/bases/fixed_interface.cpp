@@ -98,7 +98,7 @@ MatrixXd FixedInterface::solve(const MatrixXd& F_g) const {
   return U;
 }
 
-/// Orthonormal once more, and one basis of each repeated root.
+/// Orthonormal again, and one basis of each repeated root.
 void FixedInterface::Impl::make_canonical(VectorXd& lambda, MatrixXd& X) const {
   const MatrixXd G = linear::calc_inner_products(X, linear::multiply(M_ii, X));
   detail::orthonormalize_ascending(G, X);

@@ -18,7 +18,7 @@ const fe::Node& get_node(const fe::Model& model, int id) {
   return model.node(index);
 }
 
-/// Every rotation of the node must be one that the model knows: grids of solids turn as nothing tells.
+/// Rejects a node without rotations: the rotation of a grid of solids is undefined.
 void check_rotations(const fe::Model& model, const fe::Node& node) {
   for (int c = 3; c < 6; ++c) {
     if (model.T().row(node.first_gdof + c).norm() > 0) continue;

@@ -15,7 +15,7 @@ enum class FrameKind {
   MeanAxes,    ///< Γ0 = Γ1 = 0: no momentum of the deformation seen from the frame (Buckens, Tisserand)
   Node,        ///< rides on a node: its translation and rotation are zero
   ThreeNodes,  ///< 3-2-1: the first node at rest, the second on its line, the third in its plane
-  MassCentre   ///< Γ0 = 0: its place in the body is the mass centre's; turns with a node, with three, or as mean axes
+  MassCentre  ///< Γ0 = 0: its place in the body is the centre of mass's; turns with a node, with three, or as mean axes
 };
 
 struct FrameSpec {

@@ -98,7 +98,7 @@ Partition make_partition(const fe::Model& model, const std::vector<int>& nodes, 
       diagnostics.warning("modal.dependent-interface", {},
                           "interface node " + std::to_string(candidate.node) + " component " +
                               std::to_string(candidate.component) + " follows from the other interface dofs",
-                          "leave the node out of the interface, or the nodes that it hangs on");
+                          "leave the node out of the interface, or the nodes that it is attached to");
     }
   }
   std::vector<int> rows;

@@ -54,7 +54,7 @@ RitzPairs calc_ritz_pairs(const MatrixXd& M, const MatrixXd& K) {
                d.tail(n).cwiseMax(0).cwiseSqrt().cwiseInverse().asDiagonal();
   pairs.massless = find_stiff(scale.asDiagonal() * gram.eigenvectors().leftCols(dropped), K);
   if (n == 0) return pairs;
-  // What has no mass follows without force. Left out instead, it would be held.
+  // Massless motions follow statically, without force. If they were omitted they would be constrained.
   if (pairs.massless.cols() > 0) W -= pairs.massless * (pairs.massless.transpose() * K * W).eval();
   const MatrixXd K_w = linear::symmetrize(W.transpose() * K * W);
   if (Eigen::LLT<MatrixXd>(K_w).info() == Eigen::Success) {

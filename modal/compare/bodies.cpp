@@ -41,7 +41,7 @@ struct Choice {
   }
 };
 
-/// About a point from where every place is p + d.
+/// Shifts the integrals to a new origin, from which every position p is p + d.
 void shift(MassIntegrals& set, const Vector3d& d) {
   for (std::size_t j = 0; j < set.gamma3.size(); ++j) {
     const Vector3d g0 = set.gamma0.col(static_cast<Index>(j));

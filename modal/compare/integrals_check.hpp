@@ -31,7 +31,7 @@ MatrixXd calc_integral_differences(const records::MassIntegrals& a, const record
 MatrixXd calc_integral_scale(const records::FlexBody& body);
 
 /// Captured by the first j modes, with their modal mass M: Γ0 M⁻¹ Γ0ᵀ -> m 1, Γ1 M⁻¹ Γ1ᵀ -> J, Γ1 M⁻¹ Γ0ᵀ -> m c̃ on a
-/// complete basis of a clamped body, less the mass at its supports.
+/// complete basis of a clamped body, minus the mass at its supports.
 struct Captured {
   MatrixXd fraction;  ///< n x 6, cumulative: diagonals of the first two over m, m, m, Jxx, Jyy, Jzz; NaN where J is 0
   Eigen::Matrix<double, 6, 6> total = Eigen::Matrix<double, 6, 6>::Zero();  ///< with all modes, translations first

@@ -36,7 +36,7 @@ struct ModalModel {
   int num_modes() const { return static_cast<int>(frequency_hz.size()); }
 };
 
-/// Pairs of places in node_id of a and b. offset: what is to be added to a place of a to get that of b.
+/// Pairs of indices into node_id of a and b. offset: position in b minus position in a.
 struct NodeMatch {
   std::vector<std::pair<int, int>> pairs;
   int by_id = 0, by_place = 0;

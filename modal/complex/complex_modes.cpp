@@ -57,7 +57,7 @@ response::Excitation make_no_excitation(const fe::Model& model) {
   return none;
 }
 
-/// Real modes for the choice of the shift; none where the matrices have none.
+/// Real modes for the choice of the shift; none if the real problem has none.
 void find_reference(const fe::System& system, Problem& problem) {
   Diagnostics unreported;
   EigenOptions few;
@@ -380,7 +380,7 @@ const records::ComplexMethod& choose_method(const records::DynamicDeck& deck, co
   if (set != 0) return *found;
   if (num_modes > 0) return lanczos;
   throw InputError("modal.no-complex-method", deck.locate({}),
-                   "SOL " + deck.sol + " asks for complex eigenvalues, found no CMETHOD in the case control",
+                   "SOL " + deck.sol + " requests complex eigenvalues, found no CMETHOD in the case control",
                    "write CMETHOD = n with a card EIGC,n,LAN,,,,,10, or give --number");
 }
 

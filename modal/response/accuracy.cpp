@@ -93,7 +93,8 @@ void report_residual(double residual, const SourceLocation& at, Diagnostics& dia
   std::snprintf(text, sizeof text, "the response fulfils its equation to %.1e, expected below %.0e", residual,
                 kAccuracyWarning);
   const char* advice =
-      "look for very soft beside very stiff parts, for a mode that next to nothing damps, and for steps far below what "
+      "look for very soft parts next to very stiff ones, for a mode with almost no damping, and for steps far below "
+      "what "
       "moves";
   if (residual <= kAccuracyError) return diagnostics.warning("modal.response-accuracy", at, text, advice);
   throw ComputationError("modal.response-accuracy", at, text, advice);
@@ -108,7 +109,7 @@ void report_accuracy(const BasisError& basis_error, double solution_error, const
                 "the modes fulfil their orthogonality to %.1e and the response its equation to %.1e, expected below "
                 "%.0e",
                 basis_error.worst, solution_error, kAccuracyWarning);
-  const char* advice = "look for very soft beside very stiff parts, and for a mode that next to nothing damps";
+  const char* advice = "look for very soft parts next to very stiff ones, and for a mode with almost no damping";
   if (solution_error <= kAccuracyError && basis_error.beyond_roundoff <= kAccuracyError &&
       std::isfinite(basis_error.worst))
     return diagnostics.warning("modal.response-accuracy", at, text, advice);

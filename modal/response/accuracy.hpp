@@ -1,5 +1,5 @@
 #pragma once
-/// \file What holds a response: its coordinates against the model, its solution against the equation.
+/// \file Checks of a response: its coordinates against the model, its solution against the equation.
 #include "base/diagnostic.hpp"
 #include "modal/response/coordinates.hpp"
 
@@ -26,7 +26,7 @@ double calc_solution_error(const ResponseModel& response, const Spectrum& spectr
 
 /// The worst residual of the equations A x = b that a direct solution solves: |D⁻¹ᐟ²(A x - b)| over |D⁻¹ᐟ²A x| and what
 /// the entries of A alone could bring about, as linear::calc_residuals has it. Over frequency of each, over time of the
-/// largest forces that were there: what is at rest has no residual of its own.
+/// largest forces that were there: what is at rest has no separate residual.
 class ResidualRecord {
  public:
   explicit ResidualRecord(bool is_over_time) : is_over_time_(is_over_time) {}

@@ -26,9 +26,10 @@ Eigen::VectorXcd calc_amplitudes(const Excitation& excitation, double hz, Eigen:
 /// Keeps the frequencies at which the response has a bound: of a list over an undamped mode the others count.
 class BoundedFrequencies {
  public:
-  /// Whether solve() went through; false where it threw modal.unbounded-response, which is kept. Others go on.
+  /// Calls solve(); returns false if it throws modal.unbounded-response, which is stored. Other exceptions pass
+  /// through.
   bool take(const std::function<void()>& solve);
-  /// A warning for each that is left out; throws the first where no frequency is left.
+  /// Issues a warning for each omitted frequency; throws the first one as an error if no frequency is left.
   void report(Diagnostics& diagnostics) const;
 
  private:
@@ -51,7 +52,7 @@ struct History {
   MatrixXd q, q_dot, q_ddot;  ///< n x nt
   MatrixXd d, d_dot, d_ddot;  ///< k x nt
   MatrixXd a;                 ///< (m + 3k) x nt
-  double step_error = 0;      ///< what one step and two halves of it differ by, relative to what a step does
+  double step_error = 0;      ///< difference of one step and two half steps, relative to the change in a step
 };
 /// Exact for loads that are parabolas and motions that are lines between the steps, of order 4 in the step for others:
 /// x' = A x + b f by the exponential of A and of the three integrals with it (Van Loan, IEEE Trans. Autom. Control 23

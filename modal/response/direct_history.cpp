@@ -57,7 +57,7 @@ void accumulate(linear::SymmetricMatrix& sum, double factor, const linear::Symme
   if (factor != 0 && A) sum = linear::add(sum, factor, A);
 }
 
-/// Along a motion that next to nothing resists, neither stiffness nor damping nor mass, the answer to any load is
+/// Along a motion with negligible stiffness, damping and mass, the answer to any load is
 /// round-off.
 void demand_held(const linear::SymmetricFactor& factor, const VectorXd& D) {
   const VectorXd size = D.cwiseMax(detail::kIdleDof * D.maxCoeff()).cwiseSqrt();
@@ -168,7 +168,7 @@ class DirectMotion {
     const auto key = std::llround(std::log(h) * 1e9);
     const auto found = factors_.find(key);
     if (found != factors_.end()) return found->second;
-    // Steps of a table's corners come once; what is held is bounded.
+    // Step sizes at kinks of a table occur once; the number of stored factors is bounded.
     if (factors_.size() >= 4) factors_.clear();
     return factors_.emplace(std::piecewise_construct, std::tuple(key), std::forward_as_tuple(m_, radau_, h))
         .first->second;
@@ -241,7 +241,7 @@ class DirectMotion {
     return quick_->solve(F);
   }
   double delta() const { return kJumpShare * calc_step_before(grid_, 1); }
-  /// M⁻¹ F, nothing where there is no mass.
+  /// M⁻¹ F, nothing if there is no mass.
   MatrixXd divide_by_mass(const MatrixXd& F) { return solve_quick(times(m_.M, solve_quick(F))); }
 
   /// What changes at step i at once; `column`: where it is shown, or -1. Shown is the mean of before and after, at the

@@ -16,7 +16,7 @@ using Eigen::MatrixXcd;
 ///   M q̈ + B q̇ + (K + i S) q = Tᵀ (F p - M X d̈ - B X ḋ - (K + i S) X d).
 /// Over time S is in B, at the rates W3 and W4.
 struct DirectModel {
-  linear::SymmetricMatrix K, M, B, S;  ///< B, S: empty where nothing damps
+  linear::SymmetricMatrix K, M, B, S;  ///< B, S: empty if nothing damps
   VectorXd K_diagonal, M_diagonal;     ///< |K_ii|, M_ii
   MatrixXd X;                          ///< num_gdofs x k
   MatrixXd F, K_X, M_X, B_X, S_X;      ///< Tᵀ of the patterns, num_fdofs x m or k
@@ -27,7 +27,7 @@ DirectModel make_direct_model(const fe::System& system, const records::DynamicDe
                               const records::DynamicSubcase& subcase, const Excitation& excitation,
                               const DampingChoice& damping);
 
-/// A load that leaves no motion out: shows what a matrix does not hold. Of a fixed seed.
+/// Random load with a component along every motion, to detect a singular matrix. Fixed seed.
 VectorXd make_probe(Eigen::Index n);
 
 /// Motion on the g-set (basic), a column per sample, and the amplitudes p of the forces.

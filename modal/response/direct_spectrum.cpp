@@ -55,7 +55,7 @@ class DirectSpectrum {
       if (d.size() > 0) sides.col(0) -= T_.transpose().cast<std::complex<double>>() * (Z_g * (m.X * d)).eval();
     }
     const MatrixXcd x = added_ ? solve_unsymmetric(hz, Z, sides) : solve_symmetric(hz, A, imaginary, sides);
-    // Along a motion that next to nothing resists, the answer to any load is round-off.
+    // Along a motion with almost no resistance, the answer to any load is round-off.
     const double energy = std::abs(x.col(1).dot(sides.col(1))), size = D.dot(x.col(1).cwiseAbs2());
     if (!(energy > linear::kMechanismEnergy * size)) throw_unbounded(hz, kWhy);
     VectorXcd A_x = multiply(A, x.col(0));

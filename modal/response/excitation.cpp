@@ -5,6 +5,7 @@
 #include <map>
 #include <numbers>
 #include <optional>
+#include <tuple>
 
 #include "fe/loads/loads.hpp"
 #include "fe/statics/static_case.hpp"
@@ -15,6 +16,9 @@ namespace {
 
 using records::DynamicLoad;
 using Kind = DynamicLoad::Kind;
+
+/// Round-off of the ratio of two spin rates.
+constexpr double kRateNoise = 1e-9;
 
 const char* get_name(const DynamicLoad& load) {
   static constexpr const char* names[] = {"RLOAD1", "RLOAD2", "TLOAD1", "TLOAD2"};
@@ -74,7 +78,7 @@ class Collector {
                            "DLOAD " + std::to_string(set) + " has the id of a load card, " +
                                describe_load(*std::find_if(d.loads.begin(), d.loads.end(),
                                                            [set](const auto& l) { return l.sid == set; })),
-                           "give the DLOAD card an id of its own");
+                           "give the DLOAD card a different id");
     for (const auto& load : d.loads)
       if (load.sid == set) add(load, 1);
     for (const auto& sum : d.sums)
@@ -114,7 +118,7 @@ class Collector {
     }
   }
 
-  /// The force m r ω² (x - i y) e^{iθ}: it turns in the direction of positive spin with e^{iωt}.
+  /// The force m r ω² (x - i s y) e^{iθ}: it turns with e^{iωt} in the direction of the spin, s the sign of its rate.
   void add(const records::Unbalance& u, double scale) {
     const auto wrong = [&](const char* id, const std::string& what, const char* advice) {
       diagnostics_.error(id, deck_.locate(u.at), "UNBALNC " + std::to_string(u.sid) + what, advice);
@@ -122,24 +126,33 @@ class Collector {
     if (over_time_)
       return wrong("modal.rotor-unsupported", " is a load over frequency, found in a response over time",
                    "use bough frequency");
-    const auto axis = find_axis(u.grid);
-    if (!axis) {
+    const auto found = find_rotor(u.grid);
+    if (!found) {
       if (!diagnostics_.has("modal.missing-rotor") && !diagnostics_.has("modal.rotor-line"))
         wrong("modal.unbalance-grid",
               " acts at grid " + std::to_string(u.grid) + ", which is on no rotor that RGYRO selects",
               "name a grid of ROTORG, and select RGYRO in the case control");
       return;
     }
+    const fe::RotorAxis& rotor = rotors_->axes[*found];
+    const fe::Vector3d& axis = rotor.axis;
     const auto& node = model_.node(model_.find_node(u.grid));
     fe::Vector3d x = node.R_basic_cd * fe::Vector3d(u.x[0], u.x[1], u.x[2]);
-    x -= axis->dot(x) * *axis;
+    x -= axis.dot(x) * axis;
     if (!(x.norm() > 1e-9 * fe::Vector3d(u.x[0], u.x[1], u.x[2]).norm()))
       return wrong("modal.unbalance-grid", ": X1 X2 X3 is along the axis of the rotor",
                    "give the direction of angle 0 across the axis");
     x.normalize();
-    const fe::Vector3d y = axis->cross(x);
+    const fe::Vector3d y = axis.cross(x);
     ExcitationTerm term;
     term.unbalance = &u;
+    set_spin(term, rotors_->relations[*found]);
+    if (rotors_->is_synchronous && std::abs(term.spin_offset) + std::abs(std::abs(term.spin_slope) - 1) > kRateNoise)
+      diagnostics_.warning("modal.unbalance-rate", deck_.locate(u.at),
+                           "UNBALNC " + std::to_string(u.sid) + " acts at the frequency of the response, while rotor " +
+                               std::to_string(rotor.id) + " turns at another rate than reference rotor " +
+                               std::to_string(rotors_->reference) + ", which has that frequency",
+                           "make rotor " + std::to_string(rotor.id) + " the reference (REFROTR of RGYRO)");
     const auto get = [&](int id) -> const records::DynamicTable* {
       if (id == 0) return nullptr;
       const auto* table = find_table(deck_, id);
@@ -158,10 +171,10 @@ class Collector {
       for (const bool is_second : {false, true}) {
         const fe::Vector3d force = is_second ? y : x;
         VectorXd pattern = VectorXd::Zero(model_.num_gdofs());
-        pattern.segment<3>(node.first_gdof + (is_moment ? 3 : 0)) =
-            is_moment ? fe::Vector3d(axis->cross(force)) : force;
+        pattern.segment<3>(node.first_gdof + (is_moment ? 3 : 0)) = is_moment ? fe::Vector3d(axis.cross(force)) : force;
         term.is_moment = is_moment;
-        term.phase_deg = u.angle_deg - (is_second ? 90 : 0);
+        term.phase_deg = u.angle_deg;
+        term.is_second = is_second;
         term.column = static_cast<int>(forces_.size());
         forces_.push_back(pattern);
         result_.forces.push_back(term);
@@ -169,8 +182,16 @@ class Collector {
     }
   }
 
-  /// Axis of the rotor with the grid; errors of the rotors are reported where they are made.
-  std::optional<fe::Vector3d> find_axis(int grid) {
+  /// Spin rate over the frequency: of synchronous analyses along a line, else that at the speed of RGYRO.
+  void set_spin(ExcitationTerm& term, const rotors::SpeedRelation& relation) const {
+    if (!rotors_->is_synchronous)
+      term.spin_offset = relation.evaluate(rotors_->speeds.empty() ? 0 : rotors_->speeds.front());
+    else if (const auto line = relation.find_line())
+      std::tie(term.spin_offset, term.spin_slope) = *line;
+  }
+
+  /// Index of the rotor with the grid; errors of the rotors are reported where they are made.
+  std::optional<std::size_t> find_rotor(int grid) {
     if (!rotors_) {
       Diagnostics unreported;
       rotors_ = rotors::choose_rotors(model_, deck_, subcase_, rotors::RotorUse::Frequency, unreported);
@@ -178,8 +199,8 @@ class Collector {
       if (unreported.num_errors() > 0)
         for (const auto& item : unreported.items()) diagnostics_.add(item);
     }
-    for (const auto& axis : rotors_->axes)
-      if (std::find(axis.grids.begin(), axis.grids.end(), grid) != axis.grids.end()) return axis.axis;
+    for (std::size_t i = 0; i < rotors_->axes.size(); ++i)
+      if (const auto& on = rotors_->axes[i].grids; std::find(on.begin(), on.end(), grid) != on.end()) return i;
     return std::nullopt;
   }
 
@@ -410,7 +431,8 @@ std::complex<double> calc_amplitude(const ExcitationTerm& term, double hz) {
                  arm = !term.is_moment ? 1
                        : term.table_c  ? evaluate(*term.table_c, hz)
                                        : u->offset;
-    return std::polar(term.scale * mass * radius * omega * omega * arm, term.phase_deg * pi / 180);
+    const double spin = term.spin_offset + term.spin_slope * omega, delay = !term.is_second ? 0 : spin < 0 ? -90 : 90;
+    return std::polar(term.scale * mass * radius * omega * omega * arm, (term.phase_deg - delay) * pi / 180);
   }
   const auto& card = *term.card;
   const double a = term.table_a ? evaluate(*term.table_a, hz) : card.a;

@@ -20,6 +20,10 @@ struct ExcitationTerm {
   const records::Unbalance* unbalance = nullptr;
   const records::DynamicTable* table_c = nullptr;
   bool is_moment = false;
+  /// Spin rate [1/T] of the rotor of an unbalance at ω: spin_offset + spin_slope ω. `is_second`: the term is along y,
+  /// by a quarter turn after that along x at a positive rate, before it at a negative one.
+  double spin_offset = 0, spin_slope = 0;
+  bool is_second = false;
   double scale = 1;  ///< S Si of DLOAD
   double delay = 0, phase_deg = 0;
   int column = 0;  ///< of F or of D
@@ -34,7 +38,8 @@ struct Excitation {
 
 /// Of DLOAD of the subcase, over time or over frequency. Reports modal.no-dynamic-load, modal.missing-load,
 /// modal.wrong-load, modal.missing-table, modal.unsupported-load, fe.missing-grid, fe.bad-component,
-/// fe.spcd-not-fixed, fe.load-autospc (warning) and what is wrong with static loads.
+/// fe.spcd-not-fixed, fe.load-autospc, modal.unbalance-rate (warnings) and what is wrong with static
+/// loads.
 Excitation calc_excitation(const fe::Model& model, const records::DynamicDeck& deck,
                            const records::DynamicSubcase& subcase, bool is_over_time, Diagnostics& diagnostics);
 

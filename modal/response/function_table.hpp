@@ -15,7 +15,7 @@ double evaluate(const records::DynamicTable& table, double x, Side side = Side::
 /// ζ at a frequency of G = 2 ζ, CRIT = ζ, Q = 1/(2 ζ); beyond its ends along the line of its last two points.
 double calc_damping_ratio(const records::DampingCurve& curve, double hz);
 
-/// The card with this id; nullptr where there is none.
+/// The card with this id; nullptr if there is none.
 const records::DynamicTable* find_table(const records::DynamicDeck& deck, int id);
 
 }  // namespace bough::modal::response

@@ -31,7 +31,7 @@ Step make_step(const VectorXd& lambda, const MatrixXd& D, double h) {
   A.block(2 * n, 3 * n, n, n).setIdentity();
   A.block(3 * n, 4 * n, n, n).setIdentity();
   const MatrixXd e = A.exp();
-  // The parabola through both ends and the middle: 4 s (1 - s) beside the line.
+  // The parabola through both ends and the middle: the line plus a multiple of 4 s (1 - s).
   return {e.topLeftCorner(2 * n, 2 * n), h * e.block(0, 2 * n, 2 * n, n), h * e.block(0, 3 * n, 2 * n, n),
           h * (4 * e.block(0, 3 * n, 2 * n, n) - 8 * e.block(0, 4 * n, 2 * n, n))};
 }

@@ -149,7 +149,7 @@ class Refiner {
                          "give a smooth motion a point for each step, or take TYPE ACCE");
   }
 
-  /// Corners that the steps miss are added until none is: beside a new step others come to light.
+  /// Corners that the steps miss are added until none is: a new step may reveal others near it.
   void add_corners(int most) {
     const TimeGrid given = grid_;
     for (const auto& term : excitation_.forces)

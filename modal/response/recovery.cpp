@@ -46,7 +46,7 @@ MatrixXd pick_rows(const fe::Model& model, const std::vector<int>& gdofs, Matrix
   return U(gdofs, Eigen::all);
 }
 
-/// Forces Y (g-set) on the supports at rows (CD axes); 0 where nothing holds.
+/// Forces Y (g-set) at the supports, by row (CD axes); 0 at unconstrained components.
 MatrixXd pick_held(const fe::Model& model, const MatrixXd& Y, const std::vector<int>& gdofs) {
   const auto& fixed = model.fixed_dofs();
   const MatrixXd held = model.T_fixed().transpose() * Y;
@@ -147,7 +147,7 @@ void store(const MatrixXd& values, MatrixXd& real, MatrixXd&) { real = values.tr
 MatrixXcd times_i(const MatrixXcd& values) { return 1i * values; }
 MatrixXd times_i(const MatrixXd& values) { return MatrixXd::Zero(values.rows(), values.cols()); }
 
-/// Rows of `more` below those of `all`; the first time all of it.
+/// Appends the rows of `more` to `all`; copies `more` if `all` is empty.
 void append_rows(const MatrixXd& more, MatrixXd& all) {
   if (all.size() == 0) {
     all = more;

@@ -16,9 +16,9 @@ struct OutputChoice {
   bool is_for_listing = false;  ///< forces that no one asked for
 };
 
-/// What the subcase asks for, `with_listing` also what its listing needs. Reports modal.missing-set. `extra_grids`:
-/// displacement, velocity and acceleration of these besides; with no request at all the displacements of the grids that
-/// are loaded or moved (note modal.default-output).
+/// The outputs that the subcase requests, `with_listing` also those of its listing. Reports modal.missing-set.
+/// `extra_grids`: grids with displacement, velocity and acceleration in addition; without any request the displacements
+/// of the loaded or moved grids (note modal.default-output).
 std::vector<OutputChoice> choose_outputs(const fe::Model& model, const records::DynamicDeck& deck,
                                          const records::DynamicSubcase& subcase, const Excitation& excitation,
                                          const std::vector<int>& extra_grids, bool with_listing,
@@ -41,7 +41,7 @@ void recover(const fe::Model& model, const ResponseModel& response, const Excita
 void recover(const fe::Model& model, const ResponseModel& response, const Excitation& excitation,
              const DampingChoice& damping, const std::vector<OutputChoice>& outputs, const History& history,
              records::ResponseSubcase& result);
-/// Solved directly: the samples of `motion` behind those that `result` has.
+/// Solved directly: the samples of `motion` after those that `result` has.
 void recover(const fe::Model& model, const Excitation& excitation, const DampingChoice& damping,
              const std::vector<OutputChoice>& outputs, const MotionBlock<MatrixXcd>& motion,
              records::ResponseSubcase& result);

@@ -130,7 +130,7 @@ class Maker {
   }
 
  private:
-  /// Static solutions in the a-set: what ASET leaves out only follows it.
+  /// Static solutions in the a-set; omitted DOFs follow it.
   MatrixXd solve_within(const MatrixXd& F) const {
     MatrixXd U = solve_(F);
     if (model_.omitted()) U -= model_.omitted()(F);
@@ -174,7 +174,7 @@ class Maker {
     MatrixXd kept = elastic();
     VectorXd lambda = modes_.lambda.tail(num_elastic());
     if (with_residuals) {
-      // B Ψ lies in the loads of the dampers; K_s Ψ is next to nothing.
+      // B Ψ lies in the loads of the dampers; K_s Ψ is negligible.
       const auto k = r.Psi.cols(), m = loads.cols() - 3 * k;
       MatrixXd F = take_nonzero(
           join_columns(join_columns(loads.leftCols(m + k), calc_inner_loads(kept)), calc_start_loads(model_, start)));
@@ -205,7 +205,7 @@ class Maker {
   }
 
   /// What the shapes leave out of the static solutions where that does more than 1e-10 of the work of the load: there
-  /// is next to no mass in it, or a residual vector would have it. Orthonormal in K.
+  /// is negligible mass in it, or a residual vector would have it. Orthonormal in K.
   void add_massless(const MatrixXd& loads, ResponseModel& r) const {
     const MatrixXd Phi_r = rigid(), F = bases::equilibrate(model_, Phi_r, loads);
     MatrixXd rest = solve_within(F);

@@ -22,7 +22,7 @@ struct DampingChoice {
   double g = 0;                   ///< PARAM,G
   double w3 = 0, w4 = 0;          ///< over time: where g and GE become viscous; 0: they do not act
   double alpha1 = 0, alpha2 = 0;  ///< B += α1 M + α2 K
-  /// K2PP X, which neither g nor α2 acts on; empty where there is none.
+  /// K2PP X, which neither g nor α2 acts on; empty if there is none.
   std::function<MatrixXd(const MatrixXd&)> times_direct;
   bool is_over_time = false;
   bool is_stiffness = false;                     ///< PARAM,KDAMP,-1: the curve is structural damping
@@ -36,9 +36,9 @@ struct DampingChoice {
 /// d: motions of the supports (columns of Excitation::D), Ψ: what follows them statically. Loads a, m + 3 k of them:
 /// forces of F, then of M Ψ (amplitude -d̈), B Ψ (-ḋ), K_s Ψ (-i d).
 struct ResponseModel {
-  MatrixXd Phi;  ///< rigid motions, normal modes, residual vectors; then what has no mass, of unit stiffness
+  MatrixXd Phi;  ///< rigid-body motions, normal modes, residual vectors; then what has no mass, of unit stiffness
   VectorXd lambda;
-  int num_rigid = 0, num_normal = 0;  ///< what is behind num_normal are residual vectors
+  int num_rigid = 0, num_normal = 0;  ///< what is after num_normal are residual vectors
   int num_massless = 0;               ///< the last ones
   MatrixXd Psi;
   MatrixXd P;               ///< n x (m + 3k)

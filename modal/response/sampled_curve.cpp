@@ -30,7 +30,7 @@ VectorXd solve_spline(const VectorXd& h, const VectorXd& change) {
     upper(i) = h(i + 1);
     x(i) = 6 * change(i);
   }
-  // M at an end: on the line of the two beside it, M0 = M1 + share (M1 - M2).
+  // M at an end: on the line of the two next to it, M0 = M1 + share (M1 - M2).
   const auto calc_share = [](double end, double next) { return end > kMostUneven * next ? 0 : end / next; };
   const double first = calc_share(h(0), h(1)), last = calc_share(h(n - 2), h(n - 3));
   diagonal(0) += h(0) * (1 + first);
@@ -61,7 +61,7 @@ SampledCurve make_curve(const VectorXd& t, const VectorXd& before, const VectorX
   const VectorXd s = (before.tail(n - 1) - after.head(n - 1)).cwiseQuotient(h);
   const double size = std::max(before.cwiseAbs().maxCoeff(), after.cwiseAbs().maxCoeff());
   const double epsilon = std::numeric_limits<double>::epsilon();
-  // Changes of slope at the inner nodes, those of roundoff left out; what jumps has none.
+  // Changes of slope at the inner nodes, zero if round-off; none at jumps.
   VectorXd change = VectorXd::Zero(n), second = VectorXd::Zero(n);
   std::vector<bool> is_end(static_cast<std::size_t>(n), false);
   is_end.front() = is_end.back() = true;

@@ -12,7 +12,7 @@ struct SampledCurve {
 
 /// Through samples y(t), jumps where `before` and `after` differ: cubic splines between jumps and corners (ends not a
 /// knot), so that slope and curvature are continuous and the curvature a line over each step (de Boor 1978, ch. IV).
-/// A corner: the second difference there is more than eight times those beside it, as where a ramp begins; where a
+/// A corner: the second difference there is more than eight times those next to it, as where a ramp begins; where a
 /// smooth motion is sampled it is not. On lines between corners the curvature is 0.
 SampledCurve make_curve(const Eigen::VectorXd& t, const Eigen::VectorXd& before, const Eigen::VectorXd& after);
 

@@ -49,7 +49,7 @@ VectorXcd solve_coordinates(const ResponseModel& model, double hz, const VectorX
 
 void throw_unbounded(double hz, const std::string& why) {
   char text[64];
-  std::snprintf(text, sizeof text, "the response at %.8g Hz has no bound: ", hz);
+  std::snprintf(text, sizeof text, "the response at %.8g Hz is unbounded: ", hz);
   throw ComputationError("modal.unbounded-response", {}, text + why,
                          "give damping (SDAMPING, PARAM,G, GE, dampers), or leave this frequency out");
 }

@@ -22,7 +22,7 @@ Sides sample_forces(const Excitation& excitation, const TimeGrid& grid);
 /// The forces p (m) between two steps.
 VectorXd sample_forces_within(const Excitation& excitation, double t);
 
-/// Length of the step that ends at i, or that starts there; beyond the ends of the grid that beside it.
+/// Length of the step that ends at i, or that starts there; beyond the ends of the grid that next to it.
 double calc_step_before(const TimeGrid& grid, Eigen::Index i);
 double calc_step_after(const TimeGrid& grid, Eigen::Index i);
 

@@ -3,7 +3,7 @@
 #include "analysis/listing/listing_files.hpp"
 #include "analysis/modes/modes.hpp"
 #include "analysis/reduce/reduce_body.hpp"
-#include "analysis/select/selection.hpp"
+#include "analysis/select/system_selection.hpp"
 #include "analysis/static/case_extremes.hpp"
 #include "analysis/static/static.hpp"
 #include "formats/hdf5/files.hpp"
@@ -158,16 +158,16 @@ py::tuple solve_static(const std::string& deck, int subcase, bool free, const st
   return py::make_tuple(py::bytes(image), std::move(messages));
 }
 
-/// Members as of `bough select --json`.
-py::dict make_ranking(const records::FlexBody& body, const analysis::Selection& s) {
-  py::list modes, losses;
+/// Appends the modes of a body to a ranking; `name`: of a body of a system.
+void add_modes(const records::FlexBody& body, const std::string& name, const analysis::Selection& s, py::list& modes) {
   for (int i = 0; i < body.num_modes(); ++i) {
-    const auto k = static_cast<std::size_t>(i);
+    const auto k = modes.size();
     const auto& mode = s.ranking.modes[k];
     py::dict one;
     put(one, "mode"_a = i + 1, "frequency_hz"_a = body.frequency_hz[i], "cost"_a = mode.cost,
         "share"_a = s.ranking.total > 0 ? mode.cost / s.ranking.total : 0, "closed_form"_a = mode.closed_form,
         "kept"_a = static_cast<bool>(s.choices[k].kept), "reason"_a = s.choices[k].reason);
+    if (!name.empty()) one["body"] = name;
     if (s.modal_hankel.size() > 0) one["hankel"] = s.modal_hankel[i];
     if (body.effective_mass.rows() == body.num_modes()) {
       const Eigen::VectorXd row = body.effective_mass.row(i);
@@ -175,6 +175,11 @@ py::dict make_ranking(const records::FlexBody& body, const analysis::Selection& 
     }
     modes.append(one);
   }
+}
+
+/// Members as of `bough select --json`.
+py::dict make_ranking(py::list modes, const analysis::Selection& s) {
+  py::list losses;
   for (const auto& loss : s.losses) {
     py::dict one;
     put(one, "name"_a = loss.name, "total_cost"_a = loss.total, "lost_share"_a = loss.lost, "peak_gain"_a = loss.peak,
@@ -189,11 +194,37 @@ py::dict make_ranking(const records::FlexBody& body, const analysis::Selection& 
   return ranking;
 }
 
-/// The smaller body, the ranking, the messages. `body`: instead of the file.
+/// The smaller bodies by name, the ranking, the messages.
+py::tuple select_system(const analysis::SelectRequest& request, const py::object& progress) {
+  analysis::SystemSelection answer;
+  analysis::SelectedFiles files;
+  auto messages = run_request(request.systems.front(), progress, [&](PythonEvents& events) {
+    analysis::list_select_inputs(request);
+    answer = analysis::select_system_modes(request, events);
+    files = analysis::make_selected_files(request, answer, ".");
+  });
+  py::dict small;
+  py::list modes, bodies;
+  for (std::size_t i = 0; i < answer.bodies.size(); ++i) {
+    const auto& one = answer.bodies[i];
+    add_modes(one.body, one.name, answer.selection, modes);
+    auto kept = answer.list_kept(i);
+    for (int& mode : kept) ++mode;
+    py::dict about;
+    put(about, "name"_a = one.name, "file"_a = one.file, "modes"_a = one.body.num_modes(), "kept"_a = kept);
+    bodies.append(about);
+    small[py::str(one.name)] = std::move(files.bodies[i].body);
+  }
+  auto ranking = make_ranking(std::move(modes), answer.selection);
+  ranking["bodies"] = bodies;
+  return py::make_tuple(std::move(small), std::move(ranking), std::move(messages));
+}
+
+/// The smaller body, the ranking, the messages. `body`: instead of the file; without both the bodies of the systems.
 py::tuple select(const std::string& file, const records::FlexBody* body, Strings systems, Strings inputs,
                  Strings outputs, Strings weight, const std::string& spectrum, int number,
-                 std::optional<double> tolerance, double below, std::vector<int> keep, double damping,
-                 std::vector<double> at, bool equilibrium, bool open, Strings set, const py::object& progress) {
+                 std::optional<double> tolerance, double below, Strings keep, double damping, std::vector<double> at,
+                 bool equilibrium, bool open, bool exchange, Strings set, const py::object& progress) {
   analysis::SelectRequest request;
   request.body = file;
   request.systems = std::move(systems);
@@ -210,6 +241,8 @@ py::tuple select(const std::string& file, const records::FlexBody* body, Strings
   request.at = std::move(at);
   request.equilibrium = equilibrium;
   request.open = open;
+  request.exchange = exchange;
+  if (body == nullptr && file.empty()) return select_system(request, progress);
   records::FlexBody small;
   records::FlexBody of_file;
   analysis::Selection selection;
@@ -227,7 +260,9 @@ py::tuple select(const std::string& file, const records::FlexBody* body, Strings
     selection = analysis::select_modes(request, whole, events);
     small = analysis::keep_selected(request, whole, selection, files);
   });
-  auto ranking = make_ranking(body == nullptr ? of_file : *body, selection);
+  py::list modes;
+  add_modes(body == nullptr ? of_file : *body, "", selection, modes);
+  auto ranking = make_ranking(std::move(modes), selection);
   return py::make_tuple(std::move(small), std::move(ranking), std::move(messages));
 }
 
@@ -254,8 +289,9 @@ void bind_analyses(py::module_& m) {
   m.def("select", &select, py::arg("file"), py::arg("body"), py::kw_only(), py::arg("systems") = Strings(),
         py::arg("inputs") = Strings(), py::arg("outputs") = Strings(), py::arg("weight") = Strings(),
         py::arg("spectrum") = "", py::arg("number") = 0, py::arg("tolerance") = none, py::arg("below") = 0.0,
-        py::arg("keep") = std::vector<int>(), py::arg("damping") = 0.01, py::arg("at") = std::vector<double>(),
-        py::arg("equilibrium") = false, py::arg("open") = false, py::arg("set") = Strings(), py::arg("progress") = none,
+        py::arg("keep") = Strings(), py::arg("damping") = 0.01, py::arg("at") = std::vector<double>(),
+        py::arg("equilibrium") = false, py::arg("open") = false, py::arg("exchange") = false,
+        py::arg("set") = Strings(), py::arg("progress") = none,
         "The body with the modes kept, and what bough select --json prints.");
 }
 

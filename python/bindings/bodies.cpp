@@ -137,7 +137,7 @@ void bind_bodies(py::module_& m) {
   m.def(
       "read_flex_body",
       [](const std::filesystem::path& path) {
-        Diagnostics notes;  // of what a .FLX leaves out: docs/formats/flx.md
+        Diagnostics notes;  // of data that a .FLX does not contain: docs/formats/flx.md
         return analysis::read_body(path, notes);
       },
       py::arg("path"), OneAtATime());

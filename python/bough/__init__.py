@@ -198,8 +198,12 @@ def init(deck, folder="", *, hinge=0):
 
 
 def select(body, system=None, *, inputs=(), outputs=(), weight=(), spectrum="", number=0, tolerance=None, below=0.0,
-           keep=(), damping=0.01, at=(), equilibrium=False, open=False, set=(), parameters=None, progress=None):
+           keep=(), damping=0.01, at=(), equilibrium=False, open=False, exchange=False, set=(), parameters=None,
+           progress=None):
     """(FlexBody with the modes that count, ranking as a dict); options as of `bough select`.
+
+    With a system file as `body` the modes of all its flexible bodies are ranked together, and a dict of the smaller
+    bodies by name is the first of the two.
 
     parameters: {"kp": 4.0}, numbers of [parameters] of the systems; set: the same as words, "kp=4.0".
     body: FlexBody or file; with a system (a file, or a list of them) the file that the system names.
@@ -207,12 +211,14 @@ def select(body, system=None, *, inputs=(), outputs=(), weight=(), spectrum="", 
     is_file = isinstance(body, (str, _os.PathLike))
     if not is_file and system:
         raise ValueError("a body of a system is selected by its file: save() it where the system has it")
+    file, systems = _os.fspath(body) if is_file else body.name, [_os.fspath(file) for file in _list(system)]
+    if is_file and file.lower().endswith(".toml"):
+        file, systems = "", [file, *systems]
     small, ranking, _ = _bough.select(
-        _os.fspath(body) if is_file else body.name, None if is_file else body,
-        systems=[_os.fspath(file) for file in _list(system)], inputs=[str(word) for word in _list(inputs)],
+        file, None if is_file else body, systems=systems, inputs=[str(word) for word in _list(inputs)],
         outputs=[str(word) for word in _list(outputs)], weight=_list(weight), spectrum=_os.fspath(spectrum),
-        number=number, tolerance=tolerance, below=below, keep=_list(keep), damping=damping, at=_list(at),
-        equilibrium=equilibrium, open=open, set=_list(set) + _make_settings(parameters), progress=progress)
+        number=number, tolerance=tolerance, below=below, keep=[str(mode) for mode in _list(keep)], damping=damping,
+        at=_list(at), equilibrium=equilibrium, open=open, exchange=exchange, set=_list(set) + _make_settings(parameters), progress=progress)
     return small, ranking
 
 

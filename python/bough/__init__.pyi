@@ -72,10 +72,10 @@ def init(deck: _Path, folder: _Path = "", *, hinge: int = 0) -> dict[str, str]: 
 def select(body: FlexBody | _Path, system: _Path | Sequence[_Path] | None = None, *,
            inputs: str | int | Sequence[str | int] = (), outputs: str | int | Sequence[str | int] = (),
            weight: str | Sequence[str] = (), spectrum: _Path = "", number: int = 0, tolerance: float | None = None,
-           below: float = 0.0, keep: int | Sequence[int] = (), damping: float = 0.01,
-           at: float | Sequence[float] = (), equilibrium: bool = False, open: bool = False,
+           below: float = 0.0, keep: int | str | Sequence[int | str] = (), damping: float = 0.01,
+           at: float | Sequence[float] = (), equilibrium: bool = False, open: bool = False, exchange: bool = False,
            set: str | Sequence[str] = (), parameters: Mapping[str, float] | None = None,
-           progress: Callable[[str], object] | None = None) -> tuple[FlexBody, dict[str, Any]]: ...
+           progress: Callable[[str], object] | None = None) -> tuple[Any, dict[str, Any]]: ...
 def check(file: _Path, *, parameters: Mapping[str, float] | None = None, subcase: int = 0, free: bool = False,
           mass: str = "deck", ignore: str | Sequence[str] = ()) -> dict[str, Any]: ...
 def compare(*files: _Path, mass: _Path = "", refinement: bool = False, test: _Path = "", deck: _Path = "",

@@ -229,9 +229,10 @@ def split(deck: str, *, parts: int = 0, along: str = "path", planes: Sequence[st
 def init(deck: str, *, folder: str = "", hinge: int = 0) -> tuple[dict[str, str], list[Message]]: ...
 def select(file: str, body: FlexBody | None, *, systems: Sequence[str] = [], inputs: Sequence[str] = [],
            outputs: Sequence[str] = [], weight: Sequence[str] = [], spectrum: str = "", number: int = 0,
-           tolerance: float | None = None, below: float = 0.0, keep: Sequence[int] = [], damping: float = 0.01,
-           at: Sequence[float] = [], equilibrium: bool = False, open: bool = False, set: Sequence[str] = [],
-           progress: Callable[[str], object] | None = None) -> tuple[FlexBody, dict[str, Any], list[Message]]: ...
+           tolerance: float | None = None, below: float = 0.0, keep: Sequence[str] = [], damping: float = 0.01,
+           at: Sequence[float] = [], equilibrium: bool = False, open: bool = False, exchange: bool = False,
+           set: Sequence[str] = [],
+           progress: Callable[[str], object] | None = None) -> tuple[Any, dict[str, Any], list[Message]]: ...
 def check(file: str, *, set: Sequence[str] = [], subcase: int = 0, free: bool = False, mass: str = "deck",
           ignore: Sequence[str] = []) -> tuple[dict[str, Any], list[Message]]: ...
 def compare(files: Sequence[str], *, mass: str = "", refinement: bool = False, test: str = "", deck: str = "",

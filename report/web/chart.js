@@ -48,7 +48,8 @@ function stroke_mark(g, kind, x, y, size) {
 
 // Curves and points on a canvas. options: series [{ name, x, y, points, tip(i) }] (x ascending for curves), x_label,
 // y_label, x_log, y_log, marks [{ x, label }], guides [{ label, x, y }], y_step (ticks at its multiples), notes [{ x, y, text }], link, equal (one scale for both axes), height,
-// on_point(series, i): a point was clicked.
+// on_point(series, i): a point was clicked; on_grab(at, event): what takes a drag that begins there, { move(at, event), end() },
+// or null; on_double(at), on_key(event): return true for what they have handled.
 export class Chart {
   constructor(options) {
     this.series = options.series ?? [];
@@ -64,6 +65,9 @@ export class Chart {
     this.y_label = options.y_label;
     this.y_step = options.y_step;
     this.on_point = options.on_point;
+    this.on_grab = options.on_grab;
+    this.on_double = options.on_double;
+    this.on_key = options.on_key;
     this.link = options.link ?? new Link();
     this.link.charts.push(this);
     this.hidden = new Set();
@@ -477,15 +481,17 @@ export class Chart {
       const box = this.overlay.getBoundingClientRect();
       return { x: event.clientX - box.left, y: event.clientY - box.top };
     };
-    let start = null;
+    let start = null, grabbed = null;
     this.overlay.addEventListener("pointerdown", (event) => {
       if (event.button !== 0 || !this.frame) return;
-      start = place(event);
+      grabbed = this.on_grab?.(place(event), event) ?? null;
+      if (!grabbed) start = place(event);
       this.overlay.setPointerCapture(event.pointerId);
     });
     this.overlay.addEventListener("pointermove", (event) => {
       const at = place(event);
       if (!this.frame) return;
+      if (grabbed) return grabbed.move(at, event);
       if (start && Math.abs(at.x - start.x) > 4) return this.draw_box(start, at);
       const x = this.unmap_x(at.x);
       this.link.set_cursor(this.x_log ? 10 ** x : x, this);
@@ -494,6 +500,8 @@ export class Chart {
     this.overlay.addEventListener("pointerup", (event) => {
       const at = place(event), from = start;
       start = null;
+      grabbed?.end();
+      grabbed = null;
       if (!from) return;
       if (Math.abs(at.x - from.x) < 5) {
         const x = this.unmap_x(at.x), point = this.find_point(at);
@@ -507,14 +515,17 @@ export class Chart {
     });
     this.overlay.addEventListener("pointercancel", () => {
       start = null;
+      grabbed?.end();
+      grabbed = null;
       this.draw_cursor(null);
     });
     this.overlay.addEventListener("pointerleave", () => {
       this.tip.hidden = true;
       if (!start) this.link.set_cursor(null, this);
     });
-    this.overlay.addEventListener("dblclick", () => this.reset());
+    this.overlay.addEventListener("dblclick", (event) => this.on_double?.(place(event)) || this.reset());
     this.overlay.addEventListener("keydown", (event) => {
+      if (this.on_key?.(event)) return event.preventDefault();
       const act = { "+": () => this.zoom(0.5), "-": () => this.zoom(2), 0: () => this.reset(), ArrowLeft: () => this.shift(-0.2), ArrowRight: () => this.shift(0.2) }[event.key];
       if (!act) return;
       event.preventDefault();

@@ -39,6 +39,8 @@ export class MotionView {
     this.is_looping = false;  // starts again at the end
     /** More things before all others, of places of bodies and the size of the scene. @type {((places: any[], size: number) => any[]) | null} */
     this.make_overlay = null;
+    /** Ways in the world by index of the body, for bodies that are drawn elsewhere. @type {Map<number, number[]>} */
+    this.shifts = new Map();
     this.marks = new SceneMarks(this);
     this.viewer = viewer ?? new Viewer("clamp(320px, calc(100vh - 27rem), 900px)");
     this.scrubber = el("input", { type: "range", class: "scrub", min: 0, max: 1000, step: 1, value: 0, "aria-label": "time" });
@@ -145,7 +147,11 @@ export class MotionView {
 
   // Positions of the bodies now; null where it is not drawn.
   get_places() {
-    return this.bodies.map((b) => (b.is_drawn ? this.place(b, this.time) : null));
+    return this.bodies.map((b) => {
+      if (!b.is_drawn) return null;
+      const at = this.place(b, this.time), shift = this.shifts.get(b.index);
+      return shift ? { ...at, p: at.p.map((v, i) => v + shift[i]) } : at;
+    });
   }
 
   *list_times(count) {

@@ -43,7 +43,7 @@ export function find_front(things, { eye, direction }) {
 export function is_hidden(things, eye, thing, k, tolerance) {
   const way = eye.map((e, i) => thing.points[3 * k + i] - e), length = Math.hypot(...way);
   let is_covered = false;
-  meet_faces(things, eye, way.map((w) => w / length), length - tolerance, (other, t) => {
+  meet_faces(things.filter((t) => !t.is_detail), eye, way.map((w) => w / length), length - tolerance, (other, t) => {
     const { triangles } = other;
     is_covered = other.points !== thing.points || (triangles[3 * t] !== k && triangles[3 * t + 1] !== k && triangles[3 * t + 2] !== k);
     return is_covered;

@@ -69,7 +69,8 @@ const kMaxPick = 14;  // pixels between a click and what it names
 
 // A stage on which things are drawn: { points, size, triangles, edges, color, by_level, line_color }; marks stand before
 // all things. With by_level a point's colour is its size over `reach`; with elements and levels (Drawing) each element
-// has one colour, -1: `color`; with corner_levels each corner of a triangle. Dragging turns, the right button or shift
+// has one colour, -1: `color`; with corner_levels each corner of a triangle. A thing with is_detail hides no node and is
+// left out while a large scene moves. Dragging turns, the right button or shift
 // moves, the wheel comes nearer, a double click shows all.
 export class Viewer {
   /** @param {number | string} height  in pixels, or as CSS has it */
@@ -92,7 +93,8 @@ export class Viewer {
     this.is_played = false;  // what it shows moves
     this.buffers = { place: gl.createBuffer(), size: gl.createBuffer(), index: gl.createBuffer() };
     this.name = "";
-    this.on_pick = null;  // called with what was clicked, and null for nothing
+    this.on_pick = null;  // called with the node that was clicked and with the element, null for none
+    this.on_menu = null;  // called with the element under a right click that is no drag, or null, and its place
     this.on_key = null;  // returns true for a key that it has handled
     this.on_grab = null;  // what takes a drag that begins here: { move(event), end() }, or null
     this.can_grab = null;  // returns true where on_grab takes one
@@ -202,7 +204,7 @@ export class Viewer {
   thin() {
     const whole = this.count_faces();
     let count = 0;
-    const things = this.things.map((thing) => {
+    const things = this.things.filter((thing) => !thing.is_detail).map((thing) => {
       const edges = thing.edges?.length > 2 * this.max_moving ? undefined : thing.edges;
       if (!(thing.triangles?.length > 0)) return { ...thing, edges };
       if (!this.coarse.has(thing.triangles)) this.coarse.set(thing.triangles, make_coarse_mesh(thing.points, thing.triangles, Math.max(100, (this.max_moving * thing.triangles.length) / (3 * whole))));
@@ -380,7 +382,9 @@ export class Viewer {
         grabbed = null;
         return;
       }
-      if (start && event.button === 0 && Math.hypot(event.clientX - start.clientX, event.clientY - start.clientY) < 4) this.pick(event);
+      const is_click = start && Math.hypot(event.clientX - start.clientX, event.clientY - start.clientY) < 4;
+      if (is_click && event.button === 0) this.pick(event);
+      if (is_click && event.button === 2) this.open_menu(event);
       rest();
     });
     this.canvas.addEventListener("pointercancel", () => {
@@ -450,8 +454,13 @@ export class Viewer {
     const element = this.find_element(ray, click, view, rect);
     const texts = [...(element ? [() => element.thing.describe_element(element.element)] : []), ...(found ? [() => found.thing.describe(found.k)] : [])];
     this.picked = texts.length > 0 ? () => texts.map((text) => text()).join("\n") : null;
-    this.on_pick?.(found && { thing: found.thing, index: found.k, id: found.thing.ids[found.k] });
+    this.on_pick?.(found && { thing: found.thing, index: found.k, id: found.thing.ids[found.k] }, element);
     this.place_tip(found?.at ?? (element && click), rect);
+  }
+
+  open_menu(event) {
+    const rect = this.canvas.getBoundingClientRect(), click = [event.clientX - rect.left, event.clientY - rect.top];
+    this.on_menu?.(this.find_element(this.make_ray(event), click, this.make_view(), rect), click);
   }
 
   // The element at a place: its face that is met first, else a line near by.

@@ -12,7 +12,7 @@ class HingeActuator : public Actuator {
 
   void calc_outputs(const BlockInput& in, double* y) const override { y[0] = calc_command(in); }
   void add_load(const BlockInput&, const double* y, TreeData& data) const override { data.hinge_force[row] += y[0]; }
-  /// Where the coordinate is given, what drives it has the power of the whole force.
+  /// For a prescribed coordinate the prescribed motion has the power of the total force.
   double calc_power(const BlockInput& in, const double* y) const override {
     const TreeData& tree = in.motion->data;
     return tree.mode[static_cast<size_t>(row)] == HingeMode::Free ? y[0] * tree.u[row] : 0;

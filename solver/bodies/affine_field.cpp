@@ -15,7 +15,7 @@ constexpr double kSameSpan = 1e-26;  // of the largest eigenvalue of CCᵀ: 1e-1
 // f_b = scale_b (p - c)·a_b for b > 0.
 struct Basis {
   Amplitudes A0 = Amplitudes::Zero();
-  Matrix3d axes = Matrix3d::Zero();    // a_b / √e_b; zero where there is no mass
+  Matrix3d axes = Matrix3d::Zero();    // a_b / √e_b; zero if there is no mass
   Matrix3d damped = Matrix3d::Zero();  // the same, less for a thin body's thin sides
   double scale = 0;                    // 1/√m
 };

@@ -44,6 +44,7 @@ MatrixXd make_damping(const MatrixXd& M, const MatrixXd& K, const std::vector<do
   const Eigen::Index n = M.rows();
   const auto ratio = [&](Eigen::Index j) { return ratios.size() == 1 ? ratios[0] : ratios[static_cast<size_t>(j)]; };
   MatrixXd D = MatrixXd::Zero(n, n);
+  if (n == 0) return D;
   const auto is_nearly_diagonal = [](const MatrixXd& A) {
     const VectorXd root = A.diagonal().cwiseAbs().cwiseSqrt();
     const MatrixXd rest = A - MatrixXd(A.diagonal().asDiagonal());
@@ -119,7 +120,7 @@ Body Body::make_flexible(const records::FlexBody& flex, int num_modes, bool stif
   body.M6_ << flex.mass * Matrix3d::Identity(), -skew(body.S0_), skew(body.S0_), unpack_tensor(body.J0_);
   body.M_ = flex.modal_mass.topLeftCorner(n, n);
   body.K_ = flex.modal_stiffness.topLeftCorner(n, n);
-  // Stiffening by the motion comes with the motion: what of it the preload put into the stiffness goes out.
+  // The solver adds the stiffening by the motion: the part of it in the preloaded stiffness is subtracted.
   if (stiffening)
     for (std::size_t i = 0; i < flex.kg_inertial.size() && flex.preload_A_I.size() > 0; ++i)
       if (const double a = flex.preload_A_I(static_cast<Eigen::Index>(i)); a != 0)

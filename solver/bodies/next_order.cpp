@@ -106,7 +106,7 @@ double calc_next_order(const Body& body, const Node& node, const ConstVectorRef&
     for (int k = 3; k <= 6; ++k)
       ratio = std::max(ratio, calc_root(std::abs(energies[static_cast<std::size_t>(k - 3)]) / (0.5 * twice), k - 2));
   }
-  // Small modes lack V_4: of what they carry the error is that of order 2.
+  // Small modes have no V_4: the error of their part of the load is that of order 2.
   const double small = twice > 0 ? body.third_order()->calc_twice_small_energy(body.K(), eta) / twice : 0;
   return std::max(std::pow(ratio, 4), size > 0 ? small * first * first / (size * size) : 0);
 }

@@ -11,7 +11,8 @@ struct RowBasis {
   Eigen::MatrixXd E;     ///< r x rows of T
 };
 
-/// A row below 1e-15 of `size` counts as zero; one that others give to 1e-14 of itself is left to them.
+/// Chooses a basis of the rows of T. A row below 1e-15 of `size` is zero; a row that others represent to a relative
+/// 1e-14 is dependent.
 RowBasis find_row_basis(const Eigen::MatrixXd& T, double size);
 
 }  // namespace bough::solver

@@ -71,7 +71,7 @@ void note_redundancies(const records::SystemSpec& spec, const std::vector<Redund
                          std::to_string(c.num_rows()) +
                          " directions twice: what the hinges and constraints before it " + "take as well is " + list +
                          " (at the child's frame, axes of the parent's)",
-                     "reactions there are the smallest that fit; a type with fewer rows leaves them out");
+                     "reactions there are those of least norm; use a type with fewer rows");
   }
 }
 

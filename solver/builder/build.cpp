@@ -48,8 +48,8 @@ class FunctionBuilder {
       if (const auto seen = std::find(path_.begin(), path_.end(), name); seen != path_.end()) {
         std::string loop;
         for (auto it = seen; it != path_.end(); ++it) loop += *it + " of ";
-        diagnostics_.error("function.loop", record.at, "functions are made of themselves: " + loop + name,
-                           "take one of them out of the other");
+        diagnostics_.error("function.loop", record.at, "functions depend on themselves: " + loop + name,
+                           "remove one of them from the other");
         made_.emplace(name, nullptr);
       } else {
         add(*found->second);

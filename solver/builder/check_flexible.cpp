@@ -47,8 +47,8 @@ void check_hinge(const TreeBody& tb, const records::BodyRecord& record, Diagnost
                    "reduce the body with frame = \"mean\" and the hinge's node in 'interface', or keep fewer modes");
 }
 
-// The Gram matrix of e_a × φ_j and φ_j, less what the affine functions hold of it, has no negative eigenvalue where one
-// mass distribution gave them all.
+// The Gram matrix of e_a × φ_j and φ_j, minus its projection on the affine functions, has no negative eigenvalue if one
+// mass distribution gives all integrals.
 bool is_gram(const records::FlexBody& flex, const AffineField& field, int n) {
   const auto& integrals = flex.integrals();
   const Eigen::Index size = 4 * static_cast<Eigen::Index>(n);

@@ -23,6 +23,7 @@ MatrixXd calc_flexibility(const MatrixXd& motions, const VectorXd& stiffness, co
 /// upper half gives is what is left out (1/N) or more.
 double calc_missed(const Body& body, const MatrixXd& M, const MatrixXd& G) {
   const int n = body.num_modes();
+  if (n == 0) return 0;
   if (Eigen::LLT<MatrixXd>(M).info() != Eigen::Success) return 0;
   const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd> own(0.5 * (body.K() + body.K().transpose()), M);
   if (own.info() != Eigen::Success || !(own.eigenvalues()[0] > 0)) return 0;

@@ -34,7 +34,7 @@ class Collector {
                          "controller '" + name + "' has no input " + std::to_string(gap - uses.inputs.begin() + 1) +
                              ", and one after it",
                          "connect it, or count its inputs from 1");
-      // Said once: what is left has no gaps.
+      // Each gap is reported once; the remaining list has no gaps.
       std::erase_if(uses_.controllers[name].inputs, [](const auto& u) { return u.text.empty(); });
     }
     return std::move(uses_);

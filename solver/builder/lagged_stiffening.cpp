@@ -39,7 +39,7 @@ std::vector<std::unique_ptr<Block>> make_lagged_stiffening(const records::System
   if (!all.empty() && !others.empty())
     diagnostics.warning(
         "system.lagged-loads", simulation.at,
-        "lagged stiffening knows the loads of hinges and of forces without a type only, not of: " + others,
+        "lagged stiffening uses the loads of hinges and of forces without a type only, not of: " + others,
         "take stiffening = \"consistent\", which sees them all");
   if (!with_hinges.empty())
     diagnostics.warning("system.lagged-hinges", simulation.at,

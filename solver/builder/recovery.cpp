@@ -28,8 +28,8 @@ std::vector<std::string> list_unknown_loads(const records::SystemSpec& spec, con
   return names;
 }
 
-/// Constraints hold a node in the directions in which its modes give way; where none of these is the static answer to a
-/// force there, the force of the constraint itself is that of a body too stiff.
+/// Reports nodes at constraints without a static shape: the flexibility of the normal modes alone is too small there,
+/// so the reaction is that of a body that is too stiff.
 void report_held_nodes(const records::SystemSpec& spec, const records::BodyRecord& r, const records::FlexBody& body,
                        Diagnostics& diagnostics) {
   const bool has_static =

@@ -61,7 +61,7 @@ class Check {
   }
   void warn(const BlockSlot& p, const std::string& what) {
     diagnostics_.warning("control.units", p.block->at, p.block->label + " " + what,
-                         "look at the wiring; a gain on the way makes another quantity of it");
+                         "check the connections; a gain changes the quantity");
   }
   void compare(const BlockSlot& p, size_t a, size_t b, const char* verb) {
     if (!are_alike_dims(get(p, a), get(p, b))) warn(p, verb + describe(p, a) + " and " + describe(p, b));

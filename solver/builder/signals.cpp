@@ -241,7 +241,7 @@ class Builder {
     return source.place = add(std::move(block), {});
   }
 
-  /// False where a function that is named has failed, which has been said.
+  /// Returns false if a named function is invalid, which has been reported.
   bool lay_out() {
     SignalGraph& g = system_.signals;
     for (size_t i = 0; i < wires_.size(); ++i) {  // grows by functions, which have no wires

@@ -69,9 +69,9 @@ TreeOrder order_tree(const records::SystemSpec& spec, Diagnostics& diagnostics) 
       const auto& first = spec.hinges[static_cast<size_t>(found->second)];
       diagnostics.error("system.loop", hinge.at,
                         "hinge " + quote(hinge.name) + " closes a loop: body " + quote(hinge.child) +
-                            " already hangs on hinge " + quote(first.name) + " (" + first.parent + " - " + hinge.child +
-                            " - " + hinge.parent + ")",
-                        "a body hangs on one hinge: write one of the two as a [[constraint]]");
+                            " is already attached to hinge " + quote(first.name) + " (" + first.parent + " - " +
+                            hinge.child + " - " + hinge.parent + ")",
+                        "a body is attached to one hinge: write one of the two as a [[constraint]]");
     }
   }
   std::set<std::string> placed = {"ground"};
@@ -93,7 +93,7 @@ TreeOrder order_tree(const records::SystemSpec& spec, Diagnostics& diagnostics) 
     if (placed.count(body.name)) continue;
     const auto& hinge = spec.hinges[static_cast<size_t>(inboard.at(body.name))];
     diagnostics.error("system.loop", hinge.at,
-                      "body " + quote(body.name) + " hangs on a loop: " + describe_cycle(spec, inboard, body.name),
+                      "body " + quote(body.name) + " is part of a loop: " + describe_cycle(spec, inboard, body.name),
                       "one of them needs a hinge to ground, or none; what closes the loop is a [[constraint]]");
     break;
   }

@@ -94,7 +94,7 @@ class Library final : public UserBlock {
  private:
   std::string describe_mending() const {
     if (f_.is_opaque) return "correct the FMU or its inputs";
-    return "mend the " + (f_.language.empty() ? "library" : f_.language + " law");
+    return "correct the " + (f_.language.empty() ? "library" : f_.language + " law");
   }
   /// law(in, y), or its tangent by u, z and d.
   template <class Law>
@@ -266,9 +266,9 @@ std::unique_ptr<Block> make_library(SettingsReader& keys, const ControllerWiring
     if (f.is_opaque)
       return refuse("that cannot be used: " + std::string(error.what()), "correct the FMU, or its keys here");
     if (!f.language.empty()) return refuse("of no use: " + std::string(error.what()), "see bough.System");
-    return refuse(std::string("whose bough_controller_open threw: ") + error.what(), "mend the library");
+    return refuse(std::string("whose bough_controller_open threw: ") + error.what(), "correct the library");
   } catch (...) {
-    return refuse("whose bough_controller_open threw an exception", "mend the library");
+    return refuse("whose bough_controller_open threw an exception", "correct the library");
   }
   if (result != 0) return refuse("whose bough_controller_open returned " + std::to_string(result), "0 is success");
   made->note_open();

@@ -39,7 +39,7 @@ std::unique_ptr<Block> make_switch(SettingsReader& keys, const ControllerWiring&
 std::unique_ptr<Block> make_expression(SettingsReader& keys, const ControllerWiring& wiring);
 /// Controller of a shared library of the user (bough_controller.h); null after reporting.
 std::unique_ptr<Block> make_library(SettingsReader& keys, const ControllerWiring& wiring);
-/// Functions that a host lends for the FMU; "control.no-fmu" where none does.
+/// Uses the functions of the host for FMUs; "control.no-fmu" if there are none.
 std::unique_ptr<Block> make_fmu(SettingsReader& keys, const ControllerWiring& wiring);
 
 }  // namespace bough::solver

@@ -11,7 +11,7 @@ class UserBlock : public Block {
  public:
   /// Closes it, once; nothing else may be called after it. Throws ComputationError "control.library-failed".
   virtual void close() const = 0;
-  /// Returns true if it cannot go on from a memory that another run has left.
+  /// Returns true if it cannot continue from the discrete state of another run.
   virtual bool is_forward_only() const { return false; }
 };
 

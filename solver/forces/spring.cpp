@@ -30,7 +30,7 @@ std::array<T, 2> SpringElement::calc_tension(const std::array<T, 2>& at, double&
 
   const double sign = law_.sense == SpringSense::Compression ? -1 : 1;
   if (law_.sense != SpringSense::Both) {
-    // One-sided springs are linear: what they store counts from where they go slack.
+    // One-sided springs are linear: their energy is zero at the slack length.
     elastic = sign * std::max(T(0.0), sign * elastic);
     if constexpr (kHasEnergy)
       stored = law_.stiffness > 0 ? 0.5 * elastic * elastic / law_.stiffness : elastic * stretch;

@@ -18,7 +18,7 @@ class Combination : public TimeFunction {
   }
 
  protected:
-  /// Copies of the functions that threads cannot share take their places; false: there are none.
+  /// Replaces functions that threads cannot share by copies; returns false if there are none.
   bool copy_parts() {
     for (const TimeFunction*& f : of) {
       auto copy = f->clone();

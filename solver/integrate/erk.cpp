@@ -77,7 +77,7 @@ class ErkStepper final : public Integrator {
                               std::pow(error_before_, kMemory);
         error_before_ = std::max(error, kMinErrorBefore);
         const double next = h * std::clamp(growth, kMinGrowth, may_grow ? kMaxGrowth : 1.0);
-        h_ = is_cut ? std::max(next, h_) : next;  // what was cut short does not say that the next must be
+        h_ = is_cut ? std::max(next, h_) : next;  // a shortened step does not limit the next one
         return accept(t_end, h);
       }
       may_grow = false;
@@ -162,7 +162,7 @@ class ErkStepper final : public Integrator {
   }
 
   void accept(double t_end, double h) {
-    // The last stage serves as the next first one where the projection has left its state alone.
+    // The last stage is the first one of the next step, unless the projection has changed the state.
     has_first_ = is_fsal_ && !has_moved_;
     if (has_first_) next_first_ = k_.col(table_.stages - 1);
     y_ = trial_;

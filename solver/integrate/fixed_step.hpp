@@ -25,7 +25,7 @@ class FixedStepIntegrator : public Integrator {
  protected:
   /// y from t to t_end = t + h.
   virtual void calc_step(double t, double h, double t_end, VectorXd& y) = 0;
-  /// Throws what was thrown, or StepFailure, where `flag` of an evaluation is not zero.
+  /// If `flag` of an evaluation is not zero, rethrows its exception, or throws StepFailure.
   void check(int flag);
 
   GuardedOde ode_;

@@ -53,7 +53,7 @@ class Integrator {
   virtual StepStatistics statistics() const = 0;
   /// Returns true if a step depends on those before it: a jump of anything but the state then needs a restart.
   virtual bool has_history() const { return true; }
-  /// The absolute tolerance of the last `count` states from the next step on. Nothing where the step is fixed.
+  /// The absolute tolerance of the last `count` states from the next step on. Nothing if the step is fixed.
   virtual void set_last_tolerances(int /*count*/, double /*tolerance*/) {}
   /// Where in its own division of time it is, for a checkpoint; set after restart. Empty where steps depend on nothing
   /// but the history.

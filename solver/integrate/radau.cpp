@@ -222,6 +222,14 @@ class RadauStepper final : public Integrator {
     }
   }
 
+  /// Takes the increments of states without a rate, at the start and at every stage, as the exact zero that they are:
+  /// the factors with exchanged rows, and those of a Jacobian from before a coordinate was locked, leave round-off
+  /// there, by which a locked coordinate would drift and meet events.
+  void hold_constant_rows() {
+    for (Eigen::Index i = 0; i < y_.size(); ++i)
+      if (y_dot_[i] == 0 && F_.row(i).isZero(0)) delta_.row(i) = -Z_.row(i);
+  }
+
   /// Z_ of a step from t_ to t_end.
   Iteration iterate(double t_end, double h) {
     if (needs_jacobian_ && !calc_jacobian()) return Iteration::NotEvaluated;
@@ -231,6 +239,7 @@ class RadauStepper final : public Integrator {
     for (num_iterations_ = 1; num_iterations_ <= kMaxIterations; ++num_iterations_) {
       if (!calc_stages(t_end, h)) return Iteration::NotEvaluated;
       solve(h);
+      hold_constant_rows();
       double sum = 0;
       for (int i = 0; i < kStages; ++i) {
         stage_ = delta_.col(i);
@@ -267,7 +276,7 @@ class RadauStepper final : public Integrator {
     }
     error_norm_ = detail::calc_error_norm(options_, y_, error_);
     if (error_norm_ <= 1 || (!was_rejected && last_h_ > 0)) return true;
-    // A second filter for what is stiff: the first evaluates the estimate at the state that the step starts from.
+    // Second filter of the error estimate for stiff components: f at the start state plus the first estimate.
     stage_ = y_ + error_;
     if (ode_.calc(t_, stage_.data(), real_delta_.data()) != 0) return true;
     stage_.noalias() = Z_ * table_.error;

@@ -196,7 +196,7 @@ Newton run_newton(const EquilibriumResidual& start) {
   const bool spins = std::find(free.begin(), free.end(), worst) == free.end();
   throw ComputationError(
       "equilibrium.not-converged", at, what.str(),
-      spins ? "it has a rate of its own in the system file, which its loads and dampers change: prescribe its motion, "
+      spins ? "its rate is given in the system file, which its loads and dampers change: prescribe its motion, "
               "take them away, or give it the rate 0"
       : worst >= newton.at().plant().num_dofs()
           ? "a controller comes to rest only where what it measures can: an integral wants something that it can move"

@@ -9,7 +9,7 @@ struct Equilibrium {
   OperatingPoint point;
   double residual = 0;  ///< |[u̇; ż]|
   int num_iterations = 0;
-  std::vector<std::string> neutral;   ///< dofs that may stand anywhere: they stay where they were
+  std::vector<std::string> neutral;   ///< DOFs without effect on the equilibrium: they keep their values
   std::vector<std::string> kept;      ///< states that nothing restores: they are what they start from
   std::vector<std::string> spinning;  ///< dofs with a given rate
   struct Growth {

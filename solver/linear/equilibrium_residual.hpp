@@ -57,7 +57,7 @@ class EquilibriumResidual {
   Plant* plant_;
   OperatingPoint point_;
   std::vector<int> free_;
-  std::vector<int> used_up_;  ///< states whose rate counts as zero: they are held, as time is
+  std::vector<int> used_up_;  ///< states whose rate is set to zero: they are constant, like time
   VectorXd residual_, rates_, travel_;
   MatrixXd jacobian_, rate_jacobian_;
 };

@@ -183,9 +183,9 @@ records::Signals name_values(const std::string& name, const std::string& dims, E
   return signals;
 }
 
-/// d behind the cut is u in place of what comes back, c = C x + D d: d = u, y = -c. What comes back at once would be
-/// an algebraic loop when closed, which no system has: the diagonal of D is rounding. Below it a lifted loop has what
-/// earlier values of the same period bring back: C and D by forward substitution.
+/// Opens the loop: the inserted signal d = u replaces the returned signal c = C x + D d, and y = -c. Direct feedthrough
+/// would be an algebraic loop, which no system has: the diagonal of D is round-off. Below the diagonal a lifted loop
+/// contains the returned earlier values of the same period: C and D by forward substitution.
 void open_cut(LinearModel& model, const std::string& name) {
   const VectorXd back = 1 + model.D.diagonal().array();
   const MatrixXd below = back.cwiseInverse().asDiagonal() * model.D;
@@ -193,7 +193,7 @@ void open_cut(LinearModel& model, const std::string& name) {
   const auto divide = [&back](const MatrixXd& m) -> MatrixXd { return m.array().colwise() / back.array(); };
   const MatrixXd B = unit.solve<Eigen::OnTheRight>(model.B).array().rowwise() / back.transpose().array();
   const MatrixXd C = unit.solve(divide(model.C)), D = unit.solve(divide(model.D));
-  // The return is subtracted from the rows that it drives; entries that came from the loop alone leave round-off.
+  // The returned signal is subtracted from the rows that it drives; entries of the loop alone leave round-off.
   const MatrixXd taken = B * model.C, sum = model.A.cwiseAbs() + taken.cwiseAbs();
   model.A -= taken;
   model.A = (model.A.array().abs() > 1e-13 * sum.array()).select(model.A, 0.0);
@@ -336,7 +336,7 @@ void warn_of_uncertain(const records::Poles& poles, const SourceLocation& at, Di
                       std::to_string(number) + (number == 1 ? " pole is" : " poles are") +
                           " known to less than four digits, worst of all number " + std::to_string(worst + 1) + " (" +
                           poles.mode[static_cast<std::size_t>(worst)] + "), to " + brief_text(100 * max_value) + " %",
-                      "they are soft beside the stiffest, or nearly multiple: lock or leave out what is stiffest");
+                      "they are soft next to the stiffest, or nearly multiple: lock or leave out what is stiffest");
 }
 
 }  // namespace
@@ -431,7 +431,7 @@ LinearModel linearize(Plant& plant, const OperatingPoint& point, const Linearize
   if (options.check && options.cut.empty() && !plant.is_open())
     model.multipliers = calc_multipliers(plant, point, model.A, at, diagnostics, uncertainty);
   if (!options.cut.empty() && model.B.isZero(0) && model.D.isZero(0) && plant.list_sampled().empty())
-    diagnostics.warning("linear.nothing-cut", at, "nothing reads '" + options.cut + "': the loop cut there is 0",
+    diagnostics.warning("linear.nothing-cut", at, "nothing reads '" + options.cut + "': the open loop there is 0",
                         "cut it where the motion depends on it, at an actuator or at what a controller reads");
   if (is_held) {
     const auto loop = calc_sampled_loop(plant, point, *cut, model.A, model.B.col(0), at, uncertainty);

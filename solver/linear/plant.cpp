@@ -65,7 +65,7 @@ std::vector<int> Plant::find_used_up() {
     };
     z.setZero();
     z[row] = 1;
-    // Without a tank: what counts as used by a body.
+    // Without a tank: consumption per body.
     const VectorXd used = system_.signals.calc_consumption(get_motion(system_, *data_), data_->signals);
     if (!used.isZero(0) || std::any_of(system_.tree.tanks.begin(), system_.tree.tanks.end(), draws))
       used_up.push_back(i);

@@ -99,7 +99,7 @@ class Plant {
   void hold_commands(const OperatingPoint& point);
   /// q ⊕ δ; delta: num_dofs. Throws ComputationError "linear.dead-point" where the loops cannot follow.
   VectorXd displace(const VectorXd& q, const VectorXd& delta) const;
-  /// num_u of the system, of one value for each dof: zero where a motion is prescribed or loops are closed; and back.
+  /// num_u of the system, of one value for each dof: zero if a motion is prescribed or loops are closed; and back.
   VectorXd expand(const VectorXd& free) const;
   /// Rows of the dofs, out of the num_u of the system.
   VectorXd restrict(const VectorXd& u) const { return u(rows_); }

@@ -38,7 +38,7 @@ void Plant::choose_independent(double t, const VectorXd& q) {
   for (Eigen::Index k = 0; k < factor.rank(); ++k)
     follows[static_cast<size_t>(factor.colsPermutation().indices()[k])] = true;
   position_grip_ = grip_;
-  std::vector<bool> is_bound = follows;  // positions that follow: of all, or some where rates alone are held
+  std::vector<bool> is_bound = follows;  // dependent positions: all, or some if constraints act on rates only
   if (has_rate_rows(system_.loops, data_->loops)) {
     std::vector<int> columns;
     for (size_t j = 0; j < dofs_.size(); ++j)

@@ -1,4 +1,4 @@
-// A plant's inputs and outputs, and what of it changes at samples.
+// Inputs and outputs of a plant, and its state changes at samples.
 #include <algorithm>
 #include <functional>
 #include <limits>
@@ -185,7 +185,8 @@ Plant::Cut Plant::find_cut(const std::string& name) const {
   return cut;
 }
 
-/// Behind a sampled block stands what it samples, which drives_motion leaves out.
+/// For each block: true if its output influences the motion, also through sampled blocks (drives_motion excludes
+/// these).
 std::vector<bool> Plant::find_in_loop() const {
   const auto& places = system_.signals.places;
   std::vector<size_t> block_of;

@@ -25,7 +25,7 @@ VectorXd calc_input_effect(Plant& plant, SampledSystem& departures, const PlantI
       kInputStep);
 }
 
-/// The sample k + shift of each queue takes the place of k.
+/// Permutation that moves sample k + shift of each queue to position k.
 MatrixXd calc_renumbering(const Plant& plant, int nx, int size, double period) {
   MatrixXd R = MatrixXd::Identity(size, size);
   for (const auto& queue : plant.list_queues()) {

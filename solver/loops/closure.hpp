@@ -31,7 +31,7 @@ class Closure {
   int num_rows() const { return num_rows_; }
   /// Number of rows that hold a position.
   int num_position_rows() const { return num_rows_ - num_rate_rows_; }
-  /// Coordinates of the closing hinge; 0 where it is none.
+  /// Number of coordinates of the closing hinge; 0 if the constraint is not a hinge.
   int num_q() const { return num_q_; }
 
   /// W and gap. q: num_q, in: near, out: those of the closing hinge that come nearest to X. No allocation.

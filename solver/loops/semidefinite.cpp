@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kNoCoupling = 1e-13;
 
-struct Elimination {  // of the elimination: what is left of a group of blocks
+struct Elimination {  // one step: the eliminated blocks, and the remaining blocks that they couple
   std::vector<int> own;
   std::set<int> others;
 };
@@ -43,7 +43,7 @@ std::vector<Elimination> eliminate_symbolically(const std::vector<int>& sizes, s
     position[static_cast<size_t>(i)] = static_cast<int>(nodes.size());
     nodes.push_back({{i}, others});
   }
-  // A node joins the next one that it meets where it leaves it nothing new.
+  // A node is merged with its parent if the parent's rows contain all of its rows.
   for (size_t a = 0; a < nodes.size(); ++a) {
     if (nodes[a].others.empty()) continue;
     int next = n;

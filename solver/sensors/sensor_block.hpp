@@ -1,5 +1,5 @@
 #pragma once
-/// \file A sensor in the signal graph: what it measures, then what becomes of it on the way out.
+/// \file A sensor in the signal graph: the measurement and its processing.
 ///
 ///     measurement -> lag -> misalignment -> scale -> + bias + random walk + noise -> range -> quantization -> hold,
 ///     delay

@@ -5,8 +5,8 @@
 
 namespace bough::solver {
 
-/// Its memory is one straight line: from `value` at `from` to `next` at `until`, held before and after. A value that is
-/// held has both alike.
+/// Its discrete state is a line from `value` at `from` to `next` at `until`, constant before and after. For a held
+/// value both are equal.
 class InputBlock final : public Block {
  public:
   enum Row { kFrom, kValue, kUntil, kNext, kNumRows };

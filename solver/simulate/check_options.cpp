@@ -38,7 +38,7 @@ bool check_simulation(const records::SimulationRecord& s, Diagnostics& diagnosti
   demand(!is_fixed || s.step > 0, s.integrator + " has no step", "give step = SECONDS in [simulation]");
   demand(!(good && good_step && s.step > 0 && s.duration / s.step > kMaxSteps), "step asks for more than 1e11 steps",
          is_fixed ? "give a longer step" : "give a longer largest step, or leave it out");
-  // Time has to advance in steps much shorter than what is asked for.
+  // Steps much shorter than the output step must still change t.
   const double interval = s.output_step > 0 ? s.output_step : s.duration / 1000;
   const double finest =
       std::numeric_limits<double>::epsilon() * std::max(std::abs(s.start), std::abs(s.start + s.duration));

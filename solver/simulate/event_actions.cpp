@@ -44,7 +44,7 @@ std::vector<int> find_rows(const System& system, int body, const records::UserEv
   }
   if (num == 0)
     report(r, "run.bad-event", "names hinge '" + r.target + "', which has no coordinates",
-           "a body that is to come loose hangs on a free hinge that starts locked", diagnostics);
+           "connect a body that an event releases by a free hinge that starts locked", diagnostics);
   if (!tb.hinge->has_independent_coordinates() && (named[0] != named[1] || named[0] != named[2]))
     report(r, "run.bad-event", "names some of the three rates of the orientation of hinge '" + r.target + "'",
            "name all three or none", diagnostics);

@@ -64,7 +64,7 @@ void Run::fail_non_finite(double t, double tried) {
     what = ode_.name_first_non_finite(tried, y);
     if (what.empty()) what = ode_.name_first_non_finite(t, y);
   } catch (const Failure&) {
-    // The equations fail at the state itself: the trial state says no more.
+    // The equations fail at the accepted state: the trial state adds nothing.
   }
   if (what.empty()) {
     int row = 0;

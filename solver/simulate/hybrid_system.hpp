@@ -28,7 +28,8 @@ class HybridSystem final : public Ode {
   bool has_projection() const override { return system_.num_constraints() > 0; }
   void project(double t, Eigen::Ref<VectorXd> y) override;
   void project_error(Eigen::Ref<VectorXd> error) override;
-  /// Stops that are met at (t, y), all at once; what is free follows. Books what they take as dissipated.
+  /// Applies the impacts of all stops reached at (t, y) together; free coordinates follow. The energy loss is
+  /// dissipated.
   void strike(double t, std::vector<Impact>& blows, Eigen::Ref<VectorXd> y);
   /// A takes the stiffness and damping of each body's modes, of hinge springs, dampers, stops and friction for linear
   /// and nothing else: (M + γh D + γ²h² K) u̇ by the order-n recursion, in which K and D are blocks of one body.

@@ -17,6 +17,8 @@ constexpr double kImpactNoise = 1e-9;  // of the hardest blow of a moment: what 
 constexpr double kTouch = 1e-11;       // of where a stop is, or how far it was: what is no farther from it touches it
 // Acceleration of a coordinate relative to what its friction can change, above which the loops force its rate.
 constexpr double kForced = 1e6;
+// Travel of a coordinate in the shortest bounce, 1e-9 of the run: a coordinate that its loops hold stands still below.
+constexpr double kHeldTravel = 1e-15;
 constexpr double kMinMobility = 1e-14;  // in a loop, relative to the open tree: round-off of the loop's factor
 
 int sign(double x) { return x > 0 ? 1 : x < 0 ? -1 : 0; }
@@ -41,8 +43,8 @@ bool is_forced(const System& system, SystemData& data, int row, double accelerat
   return std::abs(acceleration) > kForced * std::max(mobility.closed, kMinMobility * mobility.open) * limit;
 }
 
-// Returns true if sticking joints of its loops hold a free coordinate with friction: neither its friction nor the
-// motion changes its rate, which is round-off.
+// Returns true if its loops, by joints that stick, are locked or prescribed, hold a free coordinate with friction:
+// neither its friction nor the motion changes its rate, which is round-off.
 bool is_held_by_loop(const System& system, SystemData& data, int row, double acceleration, double limit) {
   constexpr double kNoMobility = 1e-12;
   if (data.loops.blocks.empty()) return false;
@@ -94,7 +96,10 @@ void JointContacts::calc_event_functions(const SystemData& data, VectorXd& event
       // Past the stop and moving on: a coordinate that has just rebounded may still be past it by round-off.
       if (std::isfinite(w.contact.lower)) own[0] = std::min(w.contact.lower - q, -rate * shortest_);
       if (std::isfinite(w.contact.upper)) own[1] = std::min(q - w.contact.upper, rate * shortest_);
-      if (w.slide != 0) own[2] = -w.slide * rate;
+      if (w.slide != 0)
+        own[2] = -w.slide * rate;
+      else if (w.contact.has_friction() && shortest_ > 0)  // held by its loops so far
+        own[2] = std::abs(rate) - kHeldTravel / shortest_;
     }
   }
 }
@@ -216,6 +221,9 @@ void JointContacts::find_rest(HybridSystem& ode, double t, double shortest, Vect
     return force <= w.high(data) + noise && force >= w.low(data) - noise;
   };
   const bool holds = std::all_of(joint_contacts_.begin(), joint_contacts_.end(), can_hold);
+  const bool none_rests = std::none_of(joint_contacts_.begin(), joint_contacts_.end(), [&](const Watched& w) {
+    return w.rests && ode.data().tree.mode[static_cast<size_t>(w.contact.u_row)] == HingeMode::Locked;
+  });
   for (size_t i = 0; i < joint_contacts_.size(); ++i) {
     const Watched& w = joint_contacts_[i];
     const HingeMode mode = ode.data().tree.mode[static_cast<size_t>(w.contact.u_row)];
@@ -225,6 +233,13 @@ void JointContacts::find_rest(HybridSystem& ode, double t, double shortest, Vect
     slide[i] = w.contact.has_friction() ? sign(rate) : 0;
     const bool is_held = w.contact.has_friction() || w.stop != 0;
     slowest[i] = calc_slowest(w, u, shortest);
+    // Locks and prescribed motions, and no friction, hold the loop: the friction is zero, not that of a round-off rate.
+    if (none_rests && mode == HingeMode::Free && w.contact.has_friction() && w.stop == 0 &&
+        std::abs(rate) * shortest <= kHeldTravel &&
+        is_held_by_loop(system_, ode.data(), w.contact.u_row, acceleration, w.high(ode.data().tree))) {
+      slide[i] = 0;
+      continue;
+    }
     const bool is_slow = std::abs(rate) <= slowest[i];
     // A coordinate that slides and has not reversed continues to slide.
     const bool turns = !w.contact.has_friction() || w.slide == 0 || w.slide * rate <= 0;
@@ -239,7 +254,7 @@ void JointContacts::find_rest(HybridSystem& ode, double t, double shortest, Vect
       if (slide[i] == 0) slide[i] = sign(acceleration);
       continue;
     }
-    rests[i] = true;  // what is left of its rate goes by the impulse of locking it
+    rests[i] = true;  // the impulse of locking it removes the rest of its rate
   }
   for (size_t left = joint_contacts_.size() + 1; left > 0; --left) {
     lock(ode, t, rests, y);

@@ -4,7 +4,8 @@
 /// A sticking coordinate is locked. Static friction limits its constraint force in both directions; a stop limits it to
 /// compression. Event functions, positive when the contact changes its mode:
 ///     sticking   excess of the constraint force over its limit
-///     free       penetration of a stop; sliding rate after a change of sign
+///     free       penetration of a stop; sliding rate after a change of sign, or that of a coordinate that its loops
+///     held
 #include <string>
 #include <vector>
 
@@ -52,7 +53,7 @@ class JointContacts {
     int stop = 0;         ///< -1, 1: at the lower, upper stop
     int slide = 0;        ///< with friction and moving: which way
     double hardest = 0;   ///< the fastest that it came at its stops
-    double farthest = 0;  ///< from zero, where it was looked at
+    double farthest = 0;  ///< largest abs(q) of the coordinate at event checks
     /// Lower limit of the constraint force of a sticking contact; -infinity at the upper stop.
     double low(const TreeData& data) const { return stop > 0 ? -kFree : -calc_limit(data); }
     /// Upper limit of the constraint force of a sticking contact; infinity at the lower stop.

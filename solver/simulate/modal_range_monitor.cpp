@@ -95,14 +95,14 @@ std::vector<ModalRangeMonitor::Crossing> ModalRangeMonitor::find_deflections(con
     };
     if (largest > w.size) {
       report(", more than its size " + short_text(w.size),
-             "the series of its displacements and energy mean nothing there, nor do the results from then on; ");
+             "the series of its displacements and energy are invalid there, and so are the results from then on; ");
       continue;
     }
     if (w.reported == Range::Passed) continue;
     if (!body.third_order() && !body.stiffened()) {
       if (largest > kLinearLimit * w.size)
         report(", more than " + short_text(100 * kLinearLimit) + " % of its size " + short_text(w.size),
-               "linear modes lose their meaning there; ");
+               "linear modes are invalid there; ");
       continue;
     }
     const double next =
@@ -121,12 +121,12 @@ std::vector<ModalRangeMonitor::Crossing> ModalRangeMonitor::find_spins(double t,
     const double spin = get_body_state(data, w.body).w_B.norm();
     if (!w.spin_reported && w.frequency > 0 && spin > kSpinLimit * w.frequency) {
       w.spin_reported = true;
-      found.push_back({w.body, spin_id,
-                       "body '" + system_.body_name(w.body) + "' has no stiffening and turns at " + short_text(spin) +
-                           " at t = " + short_text(t) + ", more than half of its first frequency " +
-                           short_text(w.frequency) +
-                           " (radians per unit of time): without it its modes soften where the body stiffens",
-                       "set stiffening = true for this body"});
+      found.push_back(
+          {w.body, spin_id,
+           "body '" + system_.body_name(w.body) + "' has no stiffening and turns at " + short_text(spin) +
+               " at t = " + short_text(t) + ", more than half of its first frequency " + short_text(w.frequency) +
+               " (radians per unit of time): without stiffening its modes soften, while the spin stiffens the body",
+           "set stiffening = true for this body"});
     }
   }
   return found;

@@ -453,7 +453,7 @@ bool Run::write_output(double t, bool is_at_state) {
   const bool saves = time_events_.next_index() % kCheckpointEvery == 0;
   write_outputs_at(t);
   if (saves) save(t);
-  if (!is_stop_asked() || t >= stop_.time) return true;  // what comes at the stop comes before the halt
+  if (!is_stop_asked() || t >= stop_.time) return true;  // events at the stop time are handled before the halt
   outcome_ = halt(t);
   return false;
 }
@@ -479,10 +479,9 @@ void Run::observe(double t) {
   const Loops& loops = ode_.system().loops;
   int open = -1;
   if (const double gap = calc_largest_position_error(loops, ode_.data().loops, &open); gap > kOpen)
-    finish_failed(
-        t, "run.open-constraint",
-        "constraint '" + loops[open].name + "' stands open by " + short_text(gap) + " at t = " + short_text(t),
-        "look whether driven or locked hinges leave it no way to close, or drive against each other");
+    finish_failed(t, "run.open-constraint",
+                  "constraint '" + loops[open].name + "' is open by " + short_text(gap) + " at t = " + short_text(t),
+                  "look whether driven or locked hinges leave it no way to close, or drive against each other");
   monitor_.add(t, e, work, calc_flow());
   monitor_.add_energy_input(e, work, dissipated);
   // Energy that a jump of a prescribed motion adds is no divergence.

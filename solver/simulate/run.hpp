@@ -26,7 +26,7 @@ class Run {
 
   /// The start: loops closed, controllers sampled, the first sample, events of its time.
   void begin();
-  /// Goes on to t, or to the end where that comes first; what is due at t has come then. Slices change nothing.
+  /// Continues to t, or to an earlier end; events at t have been handled then. The result does not depend on slices.
   void advance_to(double t);
   /// Reached; of an end, its own.
   double time() const { return time_; }
@@ -78,8 +78,8 @@ class Run {
   VectorXd differentiate(const VectorXd& dx, const std::vector<std::pair<int, double>>& dmemory);
   /// Returns true if constraints have drifted apart, so that update_discrete() is called for.
   bool needs_projection();
-  /// Event mode at (t, x): what is due, what has crossed, and what follows, until nothing changes. Whether x has
-  /// jumped.
+  /// Event iteration at (t, x): handles time events, crossings and their consequences until nothing changes. Returns
+  /// true if x has jumped.
   bool update_discrete();
   /// The next time event; the end is one.
   double next_event_time();
@@ -200,7 +200,7 @@ class Run {
   bool find_first(VectorXd EventValues::*rows, const Before& get_before, const TimeEvent& stop, double& to);
   /// Finds the first change between the last look and `to`, into look_.
   void look_ahead(const TimeEvent& stop, double to);
-  /// Logs what look_ holds up to `until`.
+  /// Logs the crossings found by the last event search, up to `until`.
   void accept_look(double until);
   /// Values of the event functions at (t, y_), from which the next look starts.
   void refresh_events(double t);
@@ -231,13 +231,13 @@ class Run {
   // Controllers (run_control.cpp)
   /// Samples that are due at t and switches that are open there, once; y_ is the state.
   void take_samples(double t);
-  /// At the start: lags that are to start at rest.
+  /// Initializes at the start the lags with `initial = "steady"`.
   void initialize_lags(double t);
   /// Switches every block with a positive event function at (t, y_) until there is none.
   void iterate_switches(double t);
   /// Counts a switch of a block; warns once ("control.sliding") where it switches without rest.
   void count_switch(const std::string& label, double t);
-  /// At the event at which a tank is empty: what its thruster has used is no more than what could leave.
+  /// Handles the event of an empty tank: limits the consumption of its thruster to the available propellant.
   void end_at_reserve(const Block& block);
   // Dry friction and rigid stops (run_joint_contacts.cpp)
   /// Updates the contacts that stick, slide and strike at (t, y_).
@@ -256,7 +256,7 @@ class Run {
   double calc_seen_time() const;
   /// The host may have put any state: the energy balance is judged from here on.
   void restart_balance();
-  /// Goes on by its own integrator from where that of the host has come.
+  /// Continues with the integrator of the run from the state of the host's integrator.
   void take_over();
   /// Switches, crossings and contacts at time_ after a jump. Returns false if an event has ended the run.
   bool settle_jump();

@@ -127,7 +127,7 @@ void Run::restore_state(const records::Checkpoint& saved) {
   Taker taker(*pieces);
   for_each_kept([&](auto& kept) { taker.take(kept); });
   time_events_.skip_outputs(time_);
-  // The end is no stop where a longer run goes on from the state.
+  // The end of the run is not a time event if a longer run continues from the state.
   if (std::isfinite(next_event_.time) && !time_events_.find_at(next_event_.time)) find_next_stop();
   if (ended_by_ >= 0) {
     const Occurrence end{time_, static_cast<size_t>(ended_by_)};

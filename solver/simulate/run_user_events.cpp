@@ -22,7 +22,7 @@ bool is_same(const DiscreteState& a, const DiscreteState& b) {
 std::optional<Occurrence> Run::find_occurrence(const TimeEvent& stop, double to) {
   look_.logs.clear();
   if (!setup_.triggers.has_signals()) return {};
-  // Signs of what has come: those of later crossings remain, and all do until the step stands.
+  // Signs after the handled crossings; those of later crossings do not change, and none before the step is accepted.
   VectorXd& signs = setup_.triggers.signs;
   std::vector<size_t> crossed;
   signs_ = signs;

@@ -53,11 +53,11 @@ class TimeEvents {
   long next_index() const { return index_; }
   /// Goes on to the next output sample.
   void take_output();
-  /// Passes over the samples up to t, and t itself.
+  /// Skips the samples up to and including t.
   void skip_outputs(double t);
   /// The first stop past t; the end is one.
   TimeEvent find_next(double t) const;
-  /// The stop at t, an instant of samples too; none where there is none.
+  /// The stop at t, an instant of samples too; none if there is none.
   std::optional<TimeEvent> find_at(double t) const;
   /// Returns true if the integrator is reset at t.
   bool is_restart(double t) const;

@@ -181,7 +181,7 @@ std::optional<Run::Change> Run::scan_step(const TimeEvent& stop, double t_pause)
     found.time = to;
     if (looks) found = look_.change;
     const double stands = found.firing ? found.firing->time : found.time;
-    // A pause at what comes next by rounding is one there.
+    // A pause that differs from the next event time by round-off is a pause at that time.
     if (t_pause < stands - time_events_.resolution()) {
       accept_look(t_pause);
       has_located_ = true;

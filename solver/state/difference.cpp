@@ -194,7 +194,7 @@ Difference differentiate(const std::function<VectorXd(double)>& f, double step) 
   if (ladder.is_empty()) {
     if (ladder.why()) std::rethrow_exception(ladder.why());
     throw ComputationError("linear.no-derivative", {}, "the accelerations next to the operating point are not finite",
-                           "look at the state there; bough run shows what becomes of it");
+                           "check the state there; bough run shows the motion from it");
   }
   Difference found = ladder.best();
   const Eigen::Index size = found.value.size();

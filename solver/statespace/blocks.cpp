@@ -6,7 +6,7 @@
 namespace bough::statespace {
 namespace {
 
-/// Without recursion: `path` holds the rows entered and how far each has looked.
+/// Tarjan's algorithm without recursion: `path` contains the open rows, each with its next neighbour.
 class Tarjan {
  public:
   explicit Tarjan(const Eigen::MatrixXd& a)

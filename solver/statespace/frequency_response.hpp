@@ -23,7 +23,7 @@ class TransferMatrix {
   Eigen::MatrixXd H_, B_, C_, D_, back_;
 };
 
-/// Where G is taken at that frequency: iω, of a sampled model exp(iωT).
+/// Argument of G at a frequency: iω, for a sampled model exp(iωT).
 std::complex<double> calc_argument(const records::LinearModel& model, double omega);
 
 struct FrequencyRange {

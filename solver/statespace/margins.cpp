@@ -34,6 +34,8 @@ constexpr double kUndamped = 1e-12, kBesidePole = 1e-7;
 /// L is smooth where it changes by less than kRough over kBesideCorner of the frequency; a zero turns its phase by more
 /// than kTurned from a decade below it to one above.
 constexpr double kBesideCorner = 1e-7, kRough = 1e-3, kTurned = 0.2;
+/// Lag of a crossing at -1, rad, that is round-off.
+constexpr double kNoLag = 1e-9;
 /// Eigenvalues of a lifted L below that share of its norm, times their condition number, are rounding.
 constexpr double kRounding = 1e-12;
 
@@ -141,7 +143,7 @@ class Loci {
   Index find_alias(double omega, const Eigen::VectorXcd& vector) const {
     Index best = 0;
     double max_value = -1;
-    for (Index i = 0; i < num_values_; ++i) {  // 0, -1, 1, -2, 2, ...: of equal shares the slowest
+    for (Index i = 0; i < num_values_; ++i) {  // 0, -1, 1, -2, 2, ...: for equal shares the lowest frequency
       const Index m = i % 2 == 1 ? -(i + 1) / 2 : i / 2;
       const double step = calc_frequency(omega, m) * period() / static_cast<double>(num_values_);
       Complex share = 0;
@@ -222,6 +224,12 @@ std::vector<double> find_level(const StateSpace& s, const MatrixXd& D, double ga
   return omegas;
 }
 
+/// Phase lag of a value of size 1 after -1, in [0, 2π): zero at -1 itself, whatever the sign of its round-off.
+double calc_lag(Complex value) {
+  const double lag = std::arg(value) + std::numbers::pi;
+  return kTwoPi - lag < kNoLag ? 0 : lag;
+}
+
 /// A crossing of a branch, at the value it has there.
 void add_crossing(const Loci& loci, double omega, Complex value, bool is_phase, records::Margins& m) {
   double at = loci.calc_frequency(omega, loci.find_alias(omega, value));
@@ -229,7 +237,7 @@ void add_crossing(const Loci& loci, double omega, Complex value, bool is_phase, 
   auto& list = is_phase ? m.phase : m.gain;
   records::Crossing crossing{at / kTwoPi, -1 / value.real(), 0};
   if (is_phase) {
-    const double lag = std::arg(value) + std::numbers::pi;  // in (0, 2π]
+    const double lag = calc_lag(value);
     crossing = {at / kTwoPi, lag > std::numbers::pi ? lag - kTwoPi : lag, lag / at};
   }
   const auto is_same = [&](const records::Crossing& c) {
@@ -365,7 +373,7 @@ void find_margins(const records::LinearModel& loop, const std::vector<LocusPoint
     const Complex here = get(k), next = get(k + 1);
     if ((std::abs(here) > 1) != (std::abs(next) > 1)) {
       const double omega = bisect([&](double w) { return std::abs(L(w)) - 1; }, a, b);
-      double lag = std::arg(L(omega)) + std::numbers::pi;  // in (0, 2π]
+      const double lag = calc_lag(L(omega));
       m.phase.push_back({omega / kTwoPi, lag > std::numbers::pi ? lag - kTwoPi : lag, lag / omega});
     }
     if (k + 2 == count && loop.sample_time > 0 && b * loop.sample_time > std::numbers::pi * (1 - 1e-9)) {

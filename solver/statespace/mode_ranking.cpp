@@ -121,16 +121,24 @@ Eigen::VectorXd calc_modal_hankel(const records::FlexBody& body, const std::vect
   return values;
 }
 
-std::vector<int> group_modes(const records::FlexBody& body, const ModeRanking& ranking, double closeness) {
-  const int n = body.num_modes();
+void add_traits(const records::FlexBody& body, int number, std::vector<ModeTraits>& traits) {
+  const double min_eigenvalue = 1e-12 * (body.num_modes() > 0 ? body.eigenvalue.cwiseAbs().maxCoeff() : 0);
+  for (int i = 0; i < body.num_modes(); ++i)
+    traits.push_back(
+        {body.kind[static_cast<std::size_t>(i)], body.eigenvalue[i] <= min_eigenvalue, body.frequency_hz[i], number});
+}
+
+std::vector<int> group_modes(const std::vector<ModeTraits>& traits, const ModeRanking& ranking, double closeness) {
+  const int n = static_cast<int>(traits.size());
   std::vector<int> groups(static_cast<std::size_t>(n));
-  const auto is_normal = [&](int i) { return body.kind[static_cast<std::size_t>(i)] == records::ModeKind::Normal; };
+  const auto at = [&](int i) -> const ModeTraits& { return traits[static_cast<std::size_t>(i)]; };
+  const auto is_normal = [&](int i) { return at(i).kind == records::ModeKind::Normal; };
   const auto cost = [&](int i) { return std::abs(ranking.modes[static_cast<std::size_t>(i)].cost); };
   for (int first = 0, last = 0; first < n; first = last) {
     double largest = cost(first);
     for (last = first + 1;
-         last < n && is_normal(last) && is_normal(last - 1) &&
-         std::abs(body.frequency_hz[last] - body.frequency_hz[last - 1]) <= closeness * body.frequency_hz[last];
+         last < n && is_normal(last) && is_normal(last - 1) && at(last).body == at(last - 1).body &&
+         std::abs(at(last).frequency_hz - at(last - 1).frequency_hz) <= closeness * at(last).frequency_hz;
          ++last)
       largest = std::max(largest, cost(last));
     int group = -1;
@@ -173,24 +181,45 @@ ModeRanking combine_worst(const std::vector<ModeRanking>& rankings) {
 
 namespace {
 
+/// Makes costs equal that differ by rounding, as those of equal bodies do: their order is then that of the modes.
+std::vector<double> equalize(std::vector<double> costs) {
+  constexpr double kCloseness = 1e-7;
+  std::vector<std::size_t> order(costs.size());
+  std::iota(order.begin(), order.end(), 0U);
+  for (double& cost : costs) cost = std::abs(cost);
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return costs[a] < costs[b]; });
+  double before = 0, first = 0;
+  for (const std::size_t i : order) {
+    const double cost = costs[i];
+    if (cost - before > kCloseness * cost) first = cost;
+    costs[i] = first;
+    before = cost;
+  }
+  return costs;
+}
+
 /// The cheapest first; of equal ones (of one frequency) by their own.
-void sort_by_cost(const ModeRanking& ranking, const std::vector<double>& costs, std::vector<int>& modes) {
+void sort_by_cost(const ModeRanking& ranking, const std::vector<double>& modified, std::vector<int>& modes) {
+  std::vector<double> single;
+  for (const auto& mode : ranking.modes) single.push_back(mode.cost);
+  const auto costs = equalize(modified);
+  single = equalize(std::move(single));
   const auto key = [&](int i) {
     const auto k = static_cast<std::size_t>(i);
-    return std::pair(std::abs(costs[k]), std::abs(ranking.modes[k].cost));
+    return std::pair(costs[k], single[k]);
   };
   std::stable_sort(modes.begin(), modes.end(), [&](int a, int b) { return key(a) < key(b); });
 }
 
 }  // namespace
 
-std::vector<Choice> choose_modes(const records::FlexBody& body, const ModeRanking& ranking,
+std::vector<Choice> choose_modes(const std::vector<ModeTraits>& traits, const ModeRanking& ranking,
                                  const SelectionRules& rules) {
-  const int n = body.num_modes();
+  const int n = static_cast<int>(traits.size());
   BOUGH_DEMAND(static_cast<int>(ranking.modes.size()) == n);
   std::vector<Choice> choices(static_cast<std::size_t>(n));
   const auto at = [&](int i) -> Choice& { return choices[static_cast<std::size_t>(i)]; };
-  const auto groups = group_modes(body, ranking);
+  const auto groups = group_modes(traits, ranking);
   const auto costs = calc_modified_costs(ranking, groups);
   const auto size = [&](int i) { return std::abs(costs[static_cast<std::size_t>(i)]); };
   const auto is_pinned = [&](int i) {
@@ -199,19 +228,19 @@ std::vector<Choice> choose_modes(const records::FlexBody& body, const ModeRankin
   std::vector<int> open;  // to be decided by cost
   int num_kept = 0;
   for (int i = 0; i < n; ++i) {
-    const auto kind = body.kind[static_cast<std::size_t>(i)];
+    const auto& [kind, is_rigid, frequency_hz, body] = traits[static_cast<std::size_t>(i)];
     if (kind != records::ModeKind::Normal) {
       at(i).reason = kind == records::ModeKind::Constraint   ? "constraint shape"
                      : kind == records::ModeKind::Attachment ? "attachment shape"
                                                              : "residual shape";
       ++num_kept;
-    } else if (body.eigenvalue[i] <= 1e-12 * body.eigenvalue.cwiseAbs().maxCoeff()) {
+    } else if (is_rigid) {
       at(i).reason = "rigid";
       ++num_kept;
     } else if (is_pinned(i)) {
       at(i).reason = "pinned";
       ++num_kept;
-    } else if (rules.below_hz > 0 && body.frequency_hz[i] > rules.below_hz) {
+    } else if (rules.below_hz > 0 && frequency_hz > rules.below_hz) {
       at(i) = {false, "above the frequency"};
     } else if (!rules.by_cost) {
       at(i).reason = "below the frequency";
@@ -237,28 +266,28 @@ std::vector<Choice> choose_modes(const records::FlexBody& body, const ModeRankin
     if (too_many || is_small) {
       dropped += size(i);
       at(i) = {false, too_many ? "beyond the number" : "within the tolerance: " + percent(dropped / sum) + " gone",
-               !too_many};
+               !too_many, true};
       --left;
     } else {
-      at(i).reason = "cost";
+      at(i) = {true, "cost", false, true};
     }
   }
   return choices;
 }
 
-void keep_dearest(const records::FlexBody& body, const ModeRanking& ranking, std::size_t num_dropped,
+void keep_dearest(const std::vector<ModeTraits>& traits, const ModeRanking& ranking, std::size_t num_dropped,
                   std::vector<Choice>& choices) {
   std::vector<int> gone;
   for (std::size_t i = 0; i < choices.size(); ++i)
     if (choices[i].within_tolerance) gone.push_back(static_cast<int>(i));
-  const auto groups = group_modes(body, ranking);
+  const auto groups = group_modes(traits, ranking);
   sort_by_cost(ranking, calc_modified_costs(ranking, groups), gone);
   std::vector<int> back;  // groups
   for (std::size_t k = num_dropped; k < gone.size(); ++k) back.push_back(groups[static_cast<std::size_t>(gone[k])]);
   for (const int i : gone) {
     const int group = groups[static_cast<std::size_t>(i)];
     if (std::find(back.begin(), back.end(), group) != back.end())
-      choices[static_cast<std::size_t>(i)] = {true, "cost, with others"};
+      choices[static_cast<std::size_t>(i)] = {true, "cost, with others", false, true};
   }
 }
 

@@ -19,7 +19,7 @@ struct NodeDirection {
 
 struct ModeCost {
   double cost = 0;         ///< V_i: of the mode's displacement and rate together
-  double closed_form = 0;  ///< of the mode alone, lightly damped; 0 where it has no damping or stiffness
+  double closed_form = 0;  ///< of the mode alone, lightly damped; 0 if it has no damping or stiffness
 };
 
 struct ModeRanking {
@@ -40,14 +40,26 @@ ModeRanking rank_modes(const records::FlexBody& body, const std::vector<NodeDire
                        const Spectrum* spectrum = nullptr);
 
 /// The Hankel singular value of each mode alone, lightly damped (two states have it each):
-/// |b| sqrt(|c_d|² + ω² |c_r|²) / (4 ζ ω²). 0 where it has no damping or stiffness.
+/// |b| sqrt(|c_d|² + ω² |c_r|²) / (4 ζ ω²). 0 if it has no damping or stiffness.
 Eigen::VectorXd calc_modal_hankel(const records::FlexBody& body, const std::vector<NodeDirection>& inputs,
                                   const std::vector<NodeDirection>& outputs, double otherwise_damping);
 
-/// The number of each mode's group: those of one frequency (to `closeness` of it) that share their cost. How the solver
-/// of a deck turns such modes among each other is chance, and so is which of them costs what. One with less than a
-/// thousandth of the group's largest cost stands by itself: the others move without it.
-std::vector<int> group_modes(const records::FlexBody& body, const ModeRanking& ranking, double closeness = 1e-3);
+/// Properties of a mode on which its choice depends, apart from its cost.
+struct ModeTraits {
+  records::ModeKind kind = records::ModeKind::Normal;
+  bool is_rigid = false;  ///< eigenvalue below 1e-12 of the largest of its body
+  double frequency_hz = 0;
+  int body = 0;  ///< modes of different bodies are never of one group
+};
+
+/// Appends the modes of a body. \param number  of the body, from 0.
+void add_traits(const records::FlexBody& body, int number, std::vector<ModeTraits>& traits);
+
+/// Returns the number of each mode's group. Modes of one body and one frequency (to `closeness` of it) that share their
+/// cost are a group: solvers of decks rotate such modes among each other by chance, and their single costs with them. A
+/// mode with less than a thousandth of the group's largest cost is a group alone: the others move without it.
+std::vector<int> group_modes(const std::vector<ModeTraits>& traits, const ModeRanking& ranking,
+                             double closeness = 1e-3);
 /// Each mode's cost, of a group the mean of its costs.
 std::vector<double> calc_modified_costs(const ModeRanking& ranking, const std::vector<int>& groups);
 
@@ -66,18 +78,19 @@ struct Choice {
   bool kept = true;
   std::string reason;
   bool within_tolerance = false;  ///< it went, by that rule
+  bool by_cost = false;           ///< its cost has decided, no other rule
 };
 
 /// Modes to truncate, the lowest cost first, as far as the rules allow; of a rule by tolerance the caller may retain
 /// some (`keep_dearest`). Modes that are not normal (constraint, attachment, residual), those at zero frequency and
 /// those that are pinned are always retained. Modes of one frequency are ranked by their mean cost, and truncated
-/// together by the tolerance or not at all.
-std::vector<Choice> choose_modes(const records::FlexBody& body, const ModeRanking& ranking,
+/// together by the tolerance or not at all. Costs that differ by less than 1e-7 are equal: then the first mode goes.
+std::vector<Choice> choose_modes(const std::vector<ModeTraits>& traits, const ModeRanking& ranking,
                                  const SelectionRules& rules);
 
 /// Takes back all but the `num_dropped` cheapest of those that went within the tolerance, and with one of one frequency
 /// the others.
-void keep_dearest(const records::FlexBody& body, const ModeRanking& ranking, std::size_t num_dropped,
+void keep_dearest(const std::vector<ModeTraits>& traits, const ModeRanking& ranking, std::size_t num_dropped,
                   std::vector<Choice>& choices);
 
 /// ‖C (K⁻¹ - K_r⁻¹) Bᵀ‖ / ‖C K⁻¹ Bᵀ‖: what the static response loses with the modes that go.

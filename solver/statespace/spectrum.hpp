@@ -1,5 +1,5 @@
 #pragma once
-/// \file Component cost where the inputs have spectra in place of white noise.
+/// \file Component cost for inputs with spectra in place of white noise.
 #include "solver/statespace/cost.hpp"
 
 namespace bough::statespace {

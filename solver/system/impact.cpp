@@ -10,7 +10,7 @@ namespace bough::solver {
 namespace {
 
 constexpr double kRounding = 1e-12;  // of the rates before
-constexpr double kTwice = 1e-10;     // of the largest pivot: what is less is held by others already
+constexpr double kTwice = 1e-10;     // relative to the largest pivot: smaller pivots are redundant
 constexpr int kMaxExchanges = 2000;
 
 VectorXd solve_active(const MatrixXd& A, const VectorXd& target, const std::vector<int>& active) {
@@ -77,7 +77,7 @@ VectorXd solve_impact_lcp(const MatrixXd& A, const VectorXd& v, const VectorXd& 
     if (wrong == n) return p.cwiseMax(0);
     is_active[static_cast<size_t>(wrong)] = !is_active[static_cast<size_t>(wrong)];
   }
-  // Not reached where A is definite: the hardest blow alone.
+  // Not reached if A is positive definite: apply the largest impact only.
   int hardest = 0;
   v.minCoeff(&hardest);
   return solve_active(A, target, {hardest}).cwiseMax(0);

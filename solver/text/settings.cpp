@@ -76,7 +76,7 @@ MatrixXd SettingsReader::get_matrix(const std::string& key, int rows, int column
           "give it row by row");
     return MatrixXd::Zero(std::max(0, rows), std::max(0, columns));
   }
-  if (!m.allFinite()) error("control.bad-value", "has a " + key + " with numbers that are not finite", "mend it");
+  if (!m.allFinite()) error("control.bad-value", "has a " + key + " with numbers that are not finite", "correct it");
   return m;
 }
 

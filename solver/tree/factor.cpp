@@ -31,9 +31,9 @@ double calc_size(const BodyData& d, const ConstVectorRef& column) {
   }
   what << "the articulated mass matrix of body '" << tb.name << "' is not positive definite at t = " << t << ": ";
   if (pivot < d.num_free) {
-    what << "next to nothing moves along coordinate " << d.free[pivot] + 1 << " of its hinge '" << tb.hinge_name << "'";
+    what << "almost no mass moves along coordinate " << d.free[pivot] + 1 << " of its hinge '" << tb.hinge_name << "'";
   } else {
-    what << "next to nothing moves with its modal coordinate " << pivot - d.num_free + 1;
+    what << "almost no mass moves with its modal coordinate " << pivot - d.num_free + 1;
   }
   throw ComputationError("solver.indefinite-mass", tb.hinge_at, what.str(),
                          pivot < d.num_free

@@ -15,7 +15,7 @@ struct NearestAxes {
 NearestAxes find_nearest_axes(const TreeBody& tb, const BodyData& d);
 
 /// "gimbal lock: the axes of coordinates 1 and 3 of hinge 'h' have come within 0.01 degrees of each other, by its
-/// coordinate 2"; empty where they are farther apart than `sine`.
+/// coordinate 2"; empty if they are farther apart than `sine`.
 std::string describe_gimbal_lock(const TreeBody& tb, const BodyData& d, double sine);
 /// The first hinge of the tree in gimbal lock, with its message; `lock.empty()`: none.
 struct GimbalLock {

@@ -19,7 +19,7 @@ SYSTEM = toml(
 
 class CheckRefuses(ProgramTest):
     def both(self, verb, file, error):
-        """The verb fails with `error`, and check says so too."""
+        """The command fails with `error`, and check says so too."""
         ids = [re.findall(r"error: .*\[([a-z]+\.[a-z0-9-]+)\]", run.stderr)
                for run in (self.run_any(verb, file, "-o", "out.h5"), self.run_any("check", file))]
         self.assertIn(error, ids[0])

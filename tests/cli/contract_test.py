@@ -14,7 +14,8 @@ from support import BEAM, PROGRAM, SOURCE, VERBS, ProgramTest
 from decks import grids
 from toml_text import section, table, toml
 
-# A strip of four plates on a clamped bar, with an MPC, a rigid element and a scalar point: every kind of row of the g-set.
+# A strip of four plates on a clamped bar, with an MPC, a rigid element and a scalar point: every kind of row of the
+# g-set.
 PANEL = """SOL 103
 CEND
 SPC = 1
@@ -121,7 +122,7 @@ class Decks(ProgramTest):
     def test_a_range_without_an_inside_is_an_error(self):
         self.write("beam.bdf", BEAM)
         self.fails(1, "modes", "beam.bdf", "--min-hz", 20, "--max-hz", 10, says=["from 20 to 10"], error="cli.bad-range")
-        # A range goes before the one root of an EIGRL that says neither a number nor an end; not before its number.
+        # --max-hz overrides the single mode of an EIGRL without ND and V2, but not a given ND.
         for card, number in (("EIGRL,1", 6), ("EIGRL,1,,,1", 1), ("EIGRL,1,,1.", 6)):
             self.write("ranged.bdf", BEAM.replace("EIGRL,1,,,3", card))
             found = json.loads(self.bough("modes", "ranged.bdf", "--max-hz", 1e9, "--json").stdout)["frequency_hz"]

@@ -286,7 +286,7 @@ class Choices(refusals.Refusals):
         for way in ("--direct", "--modal"):
             self.write("d.bdf", free.format(f".1,.2,{pole!r},.7"))
             text = self.bough("frequency", "d.bdf", way, "-o", "r.h5").stderr
-            self.assertRegex(text, r"warning: the response at 0.4774648\d* Hz has no bound.*left out")
+            self.assertRegex(text, r"warning: the response at 0.4774648\d* Hz is unbounded.*left out")
             with h5py.File(self.path("r.h5")) as f:
                 group = f["subcases"][list(f["subcases"])[0]]
                 hz = group["frequency_hz"][:]

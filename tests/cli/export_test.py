@@ -256,6 +256,8 @@ class Export(ProgramTest):
         self.bough("run", "short.toml", "-o", "r.h5", "-q")
         self.bough("export", "r.h5", "--to", "mat", "-o", "r.mat")
         self.bough("export", "r.h5", "--to", "uff", "--channel", "tip_deflection", "-o", "r.uff")
+        self.fails(1, "export", "r.h5", "--to", "csv", "--channel", "events", "--channel", "time", says=["alone"],
+                   error="cli.unknown-channel")
         m, u = load(self.path("r.mat")), uff_reader.read(self.path("r.uff"))
         with h5py.File(self.path("r.h5")) as f:
             np.testing.assert_array_equal(m["time"].ravel(), f["time"][:])

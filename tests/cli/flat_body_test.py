@@ -1,4 +1,4 @@
-"""A flat file as a body of the other verbs: the same numbers as the HDF5 file or .FLX it was made from; damaged ones."""
+"""Flat files as bodies of all commands: numbers equal to those of their HDF5 file or .FLX; damaged files."""
 import json
 import os
 import struct

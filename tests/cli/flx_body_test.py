@@ -1,4 +1,4 @@
-"""A .FLX as a body of the other verbs: equal to the HDF5 file it was made from; several bodies in one; what it lacks."""
+""".FLX files as bodies of all commands: equal to their HDF5 file; several bodies in one file; missing data."""
 import json
 import os
 import re

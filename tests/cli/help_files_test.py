@@ -1,4 +1,4 @@
-"""The manual page and the completion for bash say what --help says: every verb, option and example."""
+"""The manual page and the completion for bash say what --help says: every command, option and example."""
 import os
 import re
 import shutil
@@ -39,8 +39,8 @@ class HelpFiles(ProgramTest):
     def test_man_page_has_every_verb_option_and_example(self):
         page = re.sub(r"\\f[BIR]", "", self.bough("--man-page").stdout).replace(r"\-", "-").replace(r"\&", "")
         page = page.replace(r"\e", "\\")
-        sections = {"": page.split("\n.SH OPTIONS\n")[1].split("\n.SH VERBS\n")[0]}
-        for part in page.split("\n.SH VERBS\n")[1].split(".SS bough ")[1:]:
+        sections = {"": page.split("\n.SH OPTIONS\n")[1].split("\n.SH COMMANDS\n")[0]}
+        for part in page.split("\n.SH COMMANDS\n")[1].split(".SS bough ")[1:]:
             sections[part.split("\n")[0]] = part
         self.assertEqual(list(sections), ["", *VERBS])
         for verb, text in self.get_helps().items():

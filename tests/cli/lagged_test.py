@@ -68,7 +68,7 @@ class Lagged(ProgramTest):
         self.assertLess(np.abs(lagged - consistent).max(), 2e-3 * np.abs(consistent).max())
 
     def test_loads_of_a_hinge_are_its_reaction(self):
-        """FCONI of the upper link is what the lower one pulls it with, to the order of the lag."""
+        """FCONI of the upper link equals the hinge force of the lower one, to the order of the lag."""
         self.reduce_example("ex03-two-link", "link.toml")
         off = []
         for step in (0.001, 0.0005, 0.00025):

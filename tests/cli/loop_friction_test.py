@@ -104,7 +104,7 @@ class LoopFrictionTest(ProgramTest):
             self.assertGreater(dry["hinges/main/q"].ravel()[-1], 2 * math.pi)
 
     def test_four_bars(self):
-        """Near a reversal of the whole loop the lock of a joint that hardly moves takes reactions without a value."""
+        """Near a reversal of the loop, a locked joint with negligible motion has undetermined reactions."""
         mu, dry = {"mu": 0.3, "pin_radius": 0.03}, {"coulomb": 0.3}
         for frictions in ((mu, mu, mu), (mu, None, dry), (None, mu, dry)):
             self.expect_smooth_limit(make_four_bar(frictions, -6.0, 9.81), 1.0)
@@ -141,6 +141,30 @@ class LoopFrictionTest(ProgramTest):
         self.assertLess(abs(moves[0] - slip), 0.0101)
         slips = [t for t, line in zip(found["events/time"], found["lines"]) if "slips" in line]
         self.assertAlmostEqual(slips[-1], slip, delta=1e-8)
+
+    def test_a_loop_that_an_event_locks(self):
+        """A lock of h2 holds the loop: the friction of h1 and h3 is zero, not of the sign of round-off, until the release."""
+        for first in ({"coulomb": 0.3}, {"mu": 0.3, "pin_radius": 0.03, "coulomb": 0.1}):
+            text = make_four_bar((first, None, {"coulomb": 0.2}), 3.0, 9.81, duration=1.2)
+            text += toml(table("event", "hold", time=0.305, action="lock", hinge="h2"),
+                         table("event", "free", time=0.805, action="release", hinge="h2"))
+            for integrator in ("rk", "radau"):
+                found = self.run_case(text.replace('"rk"', f'"{integrator}"'))
+                held = (found["time"] > 0.306) & (found["time"] < 0.804)
+                for hinge in ("h1", "h3"):
+                    self.assertLess(np.abs(found[f"hinges/{hinge}/qdot"].ravel()[held]).max(), 1e-13)
+                    np.testing.assert_array_equal(found[f"hinges/{hinge}/force"].ravel()[held], 0, f"{hinge} {integrator}")
+                    self.assertGreater(np.abs(found[f"hinges/{hinge}/force"].ravel()[-1]), 0.09)
+                self.assertFalse([line for line in found["lines"] if "slips" in line], found["lines"])
+
+    def test_a_loop_that_a_motion_holds(self):
+        """A crank that rests and sets out slowly: the friction of the guide is zero at rest, and full from then on."""
+        text = make_slider_crank({"coulomb": 2.0}, True, rate=0.0).replace("0.3 + 0.0 * t", "0.3 + max(t - 1, 0)^4")
+        text = text.replace("0.0 + 0 * t", "4 * max(t - 1, 0)^3").replace("0 * t", "12 * max(t - 1, 0)^2")
+        found = self.run_case(text)
+        force, time = found["hinges/guide/force"].ravel(), found["time"]
+        np.testing.assert_array_equal(force[time < 0.99], 0)
+        np.testing.assert_allclose(np.abs(force[(time > 1.02) & (time < 1.8)]), 2.0)
 
 
 if __name__ == "__main__":

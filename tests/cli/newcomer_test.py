@@ -119,7 +119,7 @@ class Slips(ProgramTest):
     def test_commands_of_treetops(self):
         for word, says in (("treeset", "bough edit"), ("TREEPLOT", "bough plot"), ("modify", "set NAME.key=value"),
                            ("PRINT", "show NAME"), ("stop", "quit"), ("CONVRT", "bough convert")):
-            self.fails(2, word, "x", says=["unknown verb", says], error="cli.unknown-verb")
+            self.fails(2, word, "x", says=["unknown command", says], error="cli.unknown-verb")
         self.write("yaw.toml", TURNING)
         for word, says in (("MODIFY hub", "set NAME.key=value"), ("PRINT", "show NAME"), ("STOP", "quit"),
                            ("CONVRT", "bough convert"), ("treeset", "bough edit")):

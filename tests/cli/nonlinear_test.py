@@ -64,6 +64,24 @@ class Nonlinear(ProgramTest):
         self.write("b.bdf", DECK.replace("24000.,0.,0.,1.", "40000.,-1.,0.,0."))
         self.assertIn("[fe.unstable-equilibrium]", self.bough("static", "b.bdf", "--arc-length").stderr)
 
+    def test_arc_length_without_a_change_of_load(self):
+        """A load of zero, and a second subcase of an equal load: the state stays, as without the option."""
+        two = DECK.replace("LOAD = 1\n", "SUBCASE 1\nLOAD = 1\nSUBCASE 2\nLOAD = 1\n")
+        for name, deck, options in (("same", two, []),
+                                    ("zero", DECK.replace("24000.,0.,0.,1.", "0.,0.,0.,1."), []),
+                                    ("linear", DECK.replace("24000.,0.,0.,1.", "0.,0.,0.,1.").replace("SOL 106", "SOL 101"), ["--nonlinear"])):
+            self.assertNotEqual(deck, DECK)
+            self.write("a.bdf", deck)
+            found = []
+            for arc in ([], ["--arc-length"]):
+                self.bough("static", "a.bdf", *options, *arc, "-o", "a.h5")
+                with h5py.File(self.path("a.h5")) as f:
+                    found.append([f[f"/subcases/{i}/displacement"][:] for i in f["/subcases"]])
+            with self.subTest(name):
+                np.testing.assert_allclose(found[1], found[0], rtol=1e-9, atol=1e-12)
+                if name == "same":
+                    np.testing.assert_allclose(found[1][1], found[1][0], rtol=1e-12, atol=1e-15)
+
     def test_refusals(self):
         self.write("a.bdf", DECK.replace("PARAM,LGDISP,1\n", ""))
         self.fails(1, "static", "a.bdf", says=["--nonlinear", "--linear"], error="cli.nonlinear-static")

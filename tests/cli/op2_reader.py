@@ -55,7 +55,7 @@ class Op2:
                 break
             assert n == 2
             self.read_table(self.record().decode().strip())
-        assert self.at == len(self.bytes), "something stands behind the end"
+        assert self.at == len(self.bytes), "something follows the end"
 
     def read_table(self, name):
         assert name not in self.tables, name

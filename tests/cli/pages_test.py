@@ -207,7 +207,8 @@ PAGES = {
                            stands_for={"spinup.toml": "short.toml", "spinup.h5": "run.h5"}),
     "docs/report.md": Page(),
     "docs/developer/tour.md": Page(),
-    "docs/command-line.md": boom({**TIP, "density.toml": DENSITY}, ("batch density.toml -q",), left_out=("VERB", "--srs"), stands_for={  # curves_test.py
+    "docs/command-line.md": boom({**TIP, "density.toml": DENSITY}, ("batch density.toml -q",),
+                                 left_out=("COMMAND", "--srs"), stands_for={  # curves_test.py
         "a.h5": "run.h5", "b.h5": "run.h5", "outcomes.h5": "density/outcomes.h5"}),
     "docs/other-fe-codes.md": boom(
         {"wing.bdf": read("data/examples/ex08-satellite/wing.bdf")},

@@ -3,6 +3,7 @@ import csv
 import json
 import math
 import os
+import re
 import unittest
 
 import h5py
@@ -274,6 +275,34 @@ class Pointing(LinearTest):
         for words in ("pointing budget", "sight:1, RMS up to each frequency", "jitter RMS, exposure 0.1",
                       "wheel, jitter RMS over its speed", "root of the sum of squares"):
             self.assertIn(words, page)
+
+    def test_waterfall_over_sources(self):
+        """Bars of the page against the mean squares of the table: widths, positions, numbers."""
+        found = self.budget("exposure = [0.2]\n" + COOLER + NOISE + WHEEL.replace("SPEEDS", "speed_rpm = [900.0, 1500.0]"),
+                            "-o", "budget.h5")
+        page = self.read_page("budget.h5")
+        tables = found["tables"]
+        names = [row["source"] for row in tables[0]["rows"]]
+        squares = np.array([[row["rms"] for row in table["rows"]] for table in tables])**2
+        shares = squares / squares.sum(axis=1, keepdims=True)
+        rect = re.compile(r'<rect class="part" x="([\d.]+)" y="[\d.]+" width="([\d.]+)".*?<title>(.*?): RMS (.*?), ')
+        for output in range(2):
+            figures = [re.findall(f'<figure class="budget-{kind}">(.*?)</figure>', page, re.DOTALL)[output]
+                       for kind in ("waterfall", "shares")]
+            bars = [(float(x) - 190, float(width), name, float(rms)) for x, width, name, rms in rect.findall(figures[0])]
+            order = [i for i in np.argsort(-shares[0, :, output]) if shares[0, i, output] > 1e-4]
+            self.assertEqual([bar[2] for bar in bars], 2 * [names[i] for i in order])  # each alone, then all
+            start = 0
+            for i, (x, width, _, rms) in zip(order, bars):
+                self.assertAlmostEqual(x, start, delta=0.1)
+                self.assertAlmostEqual(width, 430 * shares[0, i, output], delta=0.02)
+                self.assertAlmostEqual(rms / math.sqrt(squares[0, i, output]), 1, delta=1e-4)
+                start += width
+            self.assertAlmostEqual(start, 430, delta=0.2)
+            for row, bars in enumerate(figures[1].split("text-anchor=\"end\"")[1:]):
+                for _, width, name, _ in rect.findall(bars):
+                    self.assertAlmostEqual(float(width), 430 * shares[row, names.index(name), output], delta=0.02)
+            self.assertEqual(figures[1].count("RMS "), len(tables) + len(rect.findall(figures[1])))
 
     def test_text_names_the_worst_speed(self):
         self.write("budget.toml", WHEEL.replace("SPEEDS", "speed_rpm = [1000.0, 2000.0]"))

@@ -247,7 +247,8 @@ class Preload(ProgramTest):
                 self.assertEqual(np.count_nonzero(np.abs(f["preload/inertial"][:]) > 1e-9), 1)
                 share = np.diag(f["stiffening/kg_preload"][:]) / np.diag(f["modal/stiffness"][:])
                 self.assertTrue(0.5 < share[0] < 1)
-                # At the rate of the preload the stiffness is that of the file, at rest that of the blade at rest.
+                # At the spin rate of the preload the stiffness is that of the file; at rest it is that of the unloaded
+                # blade.
                 K0, kg = f["modal/stiffness"][:], f["stiffening/kg_inertial"][8]
                 at_rest = eigh(K0 - 144 * kg, f["modal/mass"][:], eigvals_only=True)
                 self.assertAlmostEqual(math.sqrt(at_rest[0]) / 3.51602, 1, delta=2e-2)

@@ -1,4 +1,4 @@
-"""Free bodies in balance (SUPORT, PARAM,INREL) in every verb, and what subcases start from."""
+"""Free bodies in balance (SUPORT, PARAM,INREL) in every command, and what subcases start from."""
 import json
 import os
 import sys
@@ -60,7 +60,7 @@ class TestRelief(ProgramTest):
             np.testing.assert_allclose(found[found != 0], np.repeat(expected[expected != 0], 2)[:6], rtol=1e-6)
             self.assertEqual("[fe.preload-tips]" in result.stderr, force > 0)
             if force > 0:
-                self.assertIn("2 of its rigid motions have negative stiffness", result.stderr)
+                self.assertIn("2 of its rigid-body motions have negative stiffness", result.stderr)
                 self.bough("matrices", "t.bdf", "--subcase", "2", "-o", f"k{force}.h5")
         # However small the thrust is.
         self.write("t.bdf", write_line(CASES, SUPORT + ["FORCE,2,1,,1.-3,1.,0.,0."]))
@@ -90,7 +90,7 @@ class TestRelief(ProgramTest):
     def test_a_line_without_roll_inertia_is_balanced_where_nothing_rolls_it(self):
         self.write("s.bdf", write_line(["SUBCASE 1", "LOAD = 2"], SUPORT + ["FORCE,2,1,,100.,1.,0.,0."], roll=False))
         said = self.bough("static", "s.bdf", "-o", "s.h5").stderr
-        self.assertRegex(said, r"note: a rigid motion of the model has no mass, that of grid 6 component 4")
+        self.assertRegex(said, r"note: a rigid-body motion of the model has no mass, that of grid 6 component 4")
         with h5py.File(self.path("s.h5")) as f:
             case = f["subcases"][list(f["subcases"])[0]]
             self.assertLess(abs(case["load"][0] + case["inertia"][0::6].sum()), 1e-9 * 100)

@@ -245,6 +245,34 @@ class Rotors(ProgramTest):
             expected = .1 * mass * omega**2 / (STIFF * (1 + 1j * g) - MASS * omega**2 + 1j * omega * external) * np.exp(1j * math.radians(30))
             np.testing.assert_allclose(self.curves("d.h5", 3)[0], expected, rtol=2e-8, atol=1e-18)
 
+    def test_unbalance_against_the_axis(self):
+        """An unbalance turns with its rotor: a negative rate, by SPEED or by the ratio to the reference, turns it back."""
+        external, internal = 20.0, 25.0
+        hz = np.array([2., 6., 10., 14.])
+        omega = 2 * math.pi * hz
+        other = ["ROTORG,8,16,17", "GRID,16,,0.,1.,0.", "GRID,17,,1.,1.,0.", "CONM2,60,16,,1.", ",.02,,.01,,,.01", "CELAS2,61,5.,16,5",
+                 "CELAS2,62,5.,16,6", "SPC1,1,1234,16", "SPC1,1,123456,17", "RSPINR,8,16,17,FREQ,1."]
+        ways = {"ASYNC": ["RSPINR,7,1,5,FREQ,1.", "RGYRO,5,ASYNC,7,FREQ,,,-5."], "SYNC": ["RSPINR,7,1,5,FREQ,-1.", "RGYRO,5,SYNC,8,FREQ"],
+                "reversed": ["RSPINR,7,5,1,FREQ,1.", "RGYRO,5,SYNC,8,FREQ"], "DDVAL": ["RSPINR,7,1,5,FREQ,61", "DDVAL,61,3.,-17.",
+                "RGYRO,5,SYNC,8,FREQ"]}
+        for way, cards in ways.items():
+            for sol in (108, 111):
+                rotor = [cards[0], f",0.,0.,{internal / STIFF:.12e}", *cards[1:], *other]
+                if way == "DDVAL":  # 3 - ω/2π: forward below 3 Hz, backward above
+                    rotor = [card.replace("FREQ,1.", "FREQ,62") for card in rotor] + ["DDVAL,62,0.,20."]
+                self.write("d.bdf", make_jeffcott(sol, ["RGYRO = 5", "DLOAD = 3", "FREQUENCY = 4", "DISPLACEMENT = ALL"],
+                                                  [*rotor, "FREQ,4,2.,6.,10.,14.", "UNBALNC,3,.02,3,0.,2.,0.", ",.1,30."], external))
+                stderr = self.bough("frequency", "d.bdf", "-o", "d.h5").stderr
+                self.assertEqual("modal.unbalance-rate" in stderr, way == "DDVAL", stderr)
+                speed = {"ASYNC": 2 * math.pi * 5, "DDVAL": abs(2 * math.pi * 3 - omega)}.get(way, omega)
+                expected = 2e-3 * omega**2 / (STIFF - MASS * omega**2 + 1j * omega * external + 1j * (omega - speed) * internal)
+                expected = expected * np.exp(1j * math.radians(30))
+                with self.subTest(way, sol=sol):
+                    y, z = self.curves("d.h5", 3)
+                    np.testing.assert_allclose(y, expected, rtol=2e-8)
+                    forward = np.where(hz < 3, 1, -1) if way == "DDVAL" else -1
+                    np.testing.assert_allclose(z, -1j * forward * expected, rtol=2e-8)
+
     def curves(self, file, grid):
         """Displacement y and z of a grid over frequency."""
         with h5py.File(self.path(file)) as f:

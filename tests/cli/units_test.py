@@ -1,4 +1,4 @@
-"""One structure in units of length from a nanometre to a hundred thousand kilometres: every verb takes it alike."""
+"""One structure in units of length from a nanometre to a hundred thousand kilometres: every command takes it alike."""
 import json
 import unittest
 

@@ -1,4 +1,4 @@
-"""Exit codes, help, versions, messages: what every verb owes."""
+"""Exit codes, help, versions, messages: what every command owes."""
 import json
 import os
 import re

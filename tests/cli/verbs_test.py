@@ -1,4 +1,4 @@
-"""Each verb does its work on a small model."""
+"""Each command does its work on a small model."""
 import csv
 import io
 import json

@@ -96,7 +96,7 @@ TEST(ElementStrain, StiffBarAtTheTip) {
   }
 }
 
-// A free chain keeps its zero beside a soft mode that the sums have lost.
+// A free chain keeps its 0 Hz mode next to a soft mode whose stiffness is round-off in K.
 TEST(ElementStrain, ZerosStayZeros) {
   Diagnostics d;
   const auto pairs = solve_deck(

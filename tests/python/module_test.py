@@ -264,7 +264,7 @@ class Controllers(InFolder):
             self.run_with(law)
         message = raised.exception.messages[0]
         self.assertIn("outputs of its Python law at t = 0 raised ValueError: sorry", message.what)
-        self.assertEqual(message.advice, "mend the Python law")
+        self.assertEqual(message.advice, "correct the Python law")
         with self.assertRaisesRegex(bough.ComputationError, "gave None, expected 1 number; is a return missing"):
             self.run_with(lambda t, u: None)
 
@@ -456,7 +456,7 @@ class Threads(InFolder):
             self.assertEqual(files, [f"bad{k}.bdf"])
 
     def test_runs_go_on_in_parallel(self):
-        """Each waits within its controller until all are there, those too that write a file."""
+        """Each run waits in its controller until all runs have reached it, runs that write a file too."""
         for name in (None, "r{}.h5"):
             together = threading.Barrier(self.COUNT, timeout=600)
 

@@ -138,10 +138,16 @@ TEST_P(DegreeTwo, IsK_G2AndTheStressOfTheModes) {
 
 INSTANTIATE_TEST_SUITE_P(
     Bodies, DegreeTwo,
-    ::testing::Values(Case{"frame", make_frame(), 18, 1e-2},
-                      Case{"rigid links", make_frame("30") + "GRID,30,,1.,.05,.02\nRBE2,40,11,123456,30\n", 18, 1e-2},
-                      Case{"mass", make_frame() + "CONM2,50,18,,.2\n", 18, 1e-2},
-                      Case{"braces", make_braced_frame(), 18, 1e-2}, Case{"strip", make_strip(), 82, 1e-6}),
+    ::testing::Values(
+        Case{"frame", make_frame(), 18, 1e-2},
+        Case{"rigid links", make_frame("30") + "GRID,30,,1.,.05,.02\nRBE2,40,11,123456,30\n", 18, 1e-2},
+        Case{"mean of grids",
+             make_frame() +
+                 "GRID,30,,1.2,.9,.1\nGRID,31,,.7,.3,.4\nRBE3,40,,31,123456,1.,123,4,2.\n,123456,9,.7,123,15\n"
+                 "MAT1,2,7.+10,,.3,0.\nPBAR,2,2,1.-4,8.-10,2.-9,1.5-9\nCBAR,41,2,31,30,0.,1.,0.\n",
+             30, 1e-2},
+        Case{"mass", make_frame() + "CONM2,50,18,,.2\n", 18, 1e-2}, Case{"braces", make_braced_frame(), 18, 1e-2},
+        Case{"strip", make_strip(), 82, 1e-6}),
     [](const auto& info) {
       std::string name = info.param.name;
       std::replace(name.begin(), name.end(), ' ', '_');

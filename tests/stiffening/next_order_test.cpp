@@ -80,8 +80,11 @@ TEST(NextOrder, NoneWithoutSeries) {
   records::BodySpec spec;
   spec.num_modes = 2;
   spec.interface_nodes = {7};
-  const std::string rbe3 = "GRID,90,,.5,.1,0.\nRBE3,91,,90,123456,1.,123456,6,7\n,8\nCONM2,92,90,,.1\n";
-  EXPECT_TRUE(reduce(make_beam(12, rbe3), spec).next_order.empty());
+  const auto make_rbe3 = [](const std::string& dependent) {
+    return "GRID,90,,.5,.1,0.\nRBE3,91,,90," + dependent + ",1.,123456,6,7\n,8\nCONM2,92,90,,.1\n";
+  };
+  EXPECT_TRUE(reduce(make_beam(12, make_rbe3("12345")), spec).next_order.empty());
+  EXPECT_FALSE(reduce(make_beam(12, make_rbe3("123456")), spec).next_order.empty());
   spec.basis = records::BodyBasis::CraigBampton;
   EXPECT_TRUE(reduce(make_beam(12), spec).next_order.empty());
 }

@@ -488,7 +488,7 @@ TEST(ReduceMatrices, DofsThatTheMatrixLacks) {
   // What the clamped grid carried is gone from the mass.
   EXPECT_LT(body.mass, expected.mass * (1 - 1e-3));
 
-  // The same without any SPC card: rows that are missing are held all the same, and are named.
+  // Without any SPC card: missing rows are constrained nevertheless, and reported.
   const auto loose = read(replace(replace(kDeck, "SPC = 1\n", ""), "SPC1,1,123456,1\n", ""));
   Diagnostics warned;
   body = reduce_given(loose, spec, given, &warned);

@@ -1,5 +1,6 @@
 // A deck as things for the viewer.
 import { Box, Drawing } from "./drawing.js";
+import { LineSections } from "./line_sections.js";
 import { format_number } from "./numbers.js";
 import { get_css, get_style } from "./page_parts.js";
 import { add_arrow, to_thing } from "./scene_marks.js";
@@ -23,10 +24,17 @@ export class DeckScene {
     this.box.add_points(this.drawing.xyz);
     for (const m of answer.masses) this.box.add(...m.place);
     this.size = this.box.get_diagonal();
+    this.sections = new LineSections(answer.line_sections, this.list_line_rows());
     this.hidden = new Set();
-    this.show = { masses: true, spiders: true, supports: true, loads: true, systems: false, edges: true };
+    this.show = { sections: true, pins: true, masses: true, spiders: true, supports: true, loads: true, systems: false, edges: true };
     this.thinned = [];
     this.set_coloring("property");
+  }
+
+  /** Rows of the elements that are drawn as lines, by id. */
+  list_line_rows() {
+    const { id, of_edge } = this.elements;
+    return new Map(Array.from(of_edge).filter((row) => row !== 0xffffffff).map((row) => [id[row], row]));
   }
 
   get_place(grid) {
@@ -39,6 +47,17 @@ export class DeckScene {
     return property[element] > 0 ? `${cards[card[element]]} of property ${property[element]}` : cards[card[element]];
   }
 
+  /** The group of an element, null for none. */
+  find_group(row) {
+    return this.groups.find((g) => g.faces_of.includes(row) || g.lines_of.includes(row)) ?? null;
+  }
+
+  /** "CBAR 12, property 3, PBARL 3: I 0.3 0.2 …" */
+  describe_element(row) {
+    const { id, property, card, cards } = this.elements, section = this.sections.describe(row);
+    return `${cards[card[row]]} ${id[row]}${property[row] > 0 ? `, property ${property[row]}` : ""}${section ? `, ${section}` : ""}`;
+  }
+
   /** Groups of elements: by property, card or connected part. */
   set_coloring(by) {
     this.coloring = by;
@@ -48,7 +67,7 @@ export class DeckScene {
       const part = this.grids.part[this.row_of_grid.get(drawing.ids[point])] ?? 0;
       const name = by === "part" ? `part ${part}` : by === "card" ? cards[card[element]] : this.name_group(element);
       const order = by === "part" ? part : by === "card" ? card[element] : property[element];
-      if (!groups.has(name)) groups.set(name, { name, order, property: by === "property" ? property[element] : 0, triangles: [], edges: [], lines: [] });
+      if (!groups.has(name)) groups.set(name, { name, order, property: by === "property" ? property[element] : 0, triangles: [], edges: [], lines: [], faces_of: [], lines_of: [] });
       return groups.get(name);
     };
     // Outlines belong to the group of a triangle at their first point.
@@ -56,17 +75,22 @@ export class DeckScene {
     of_triangle.forEach((element, t) => {
       const corners = drawing.triangles.subarray(3 * t, 3 * t + 3), group = find(element, corners[0]);
       group.triangles.push(...corners);
+      group.faces_of.push(element);
       for (const c of corners) group_of_point.set(c, group);
     });
     of_edge.forEach((element, k) => {
       const [a, b] = drawing.edges.subarray(2 * k, 2 * k + 2);
-      if (element !== 0xffffffff) find(element, a).lines.push(a, b);
-      else (group_of_point.get(a) ?? group_of_point.get(b))?.edges.push(a, b);
+      if (element !== 0xffffffff) {
+        const group = find(element, a);
+        group.lines.push(a, b);
+        group.lines_of.push(element);
+      } else (group_of_point.get(a) ?? group_of_point.get(b))?.edges.push(a, b);
     });
     this.groups = [...groups.values()].sort((a, b) => a.order - b.order || a.name.localeCompare(b.name));
     this.groups.forEach((g, k) => {
       for (const key of ["triangles", "edges", "lines"]) g[key] = Uint32Array.from(g[key]);
       g.style = k;
+      g.solids = this.sections.make_solids(new Set(g.lines_of));
     });
   }
 
@@ -96,12 +120,14 @@ export class DeckScene {
     const marks = [];
     things.push(...make_triad([0, 0, 0], [[1, 0, 0], [0, 1, 0], [0, 0, 1]], 0.1 * size));
     let has_pick = false;
+    const describe_element = (row) => this.describe_element(row);
     for (const g of this.groups) {
       if (this.hidden.has(g.name)) continue;
       const { color } = get_style(g.style);
-      if (g.triangles.length > 0) things.push({ points, triangles: g.triangles, edges: show.edges ? g.edges : undefined, color, ...(has_pick ? {} : pick) });
+      if (g.triangles.length > 0) things.push({ points, triangles: g.triangles, edges: show.edges ? g.edges : undefined, color, elements: { of_triangle: g.faces_of, of_edge: [] }, describe_element, ...(has_pick ? {} : pick) });
       has_pick = true;
-      if (g.lines.length > 0) things.push({ points, edges: g.lines, color, lift: 3e-4 });
+      if (g.lines.length > 0) things.push({ points, edges: g.lines, color, lift: 3e-4, elements: { of_triangle: [], of_edge: g.lines_of }, describe_element });
+      if (show.sections && g.solids.triangles.length > 0) things.push({ ...g.solids, edges: show.edges ? g.solids.edges : undefined, color, describe_element, is_detail: true });
     }
     // Grids can be picked even if all elements are hidden or none is there.
     things.push({ points, edges: new Uint32Array(0), color: get_css("--body"), dots: this.groups.length === 0, ...pick });
@@ -135,8 +161,12 @@ export class DeckScene {
         if (mesh.points.length > 0) marks.push(to_thing(mesh, get_css("--applied")));
       }
     }
+    if (show.pins && this.sections.pins.length > 0)
+      marks.push(this.make_symbols(this.sections.pins.map((p) => [...p.place, 0.006 * size]), ball, get_css("--hinge")));
     if (show.systems) for (const s of answer.systems.slice(0, 200)) things.push(...make_triad(s.origin, s.axes, 0.05 * size));
-    this.thinned = Object.entries({ masses: answer.masses, supports: answer.supports, loads: answer.loads }).filter(([, list]) => list.length > kMaxSymbols).map(([name, list]) => `${name}: one of ${Math.ceil(list.length / kMaxSymbols)} is drawn`);
+    this.thinned = Object.entries({ masses: answer.masses, supports: answer.supports, loads: answer.loads, "pin flags": this.sections.pins }).filter(([, list]) => list.length > kMaxSymbols).map(([name, list]) => `${name}: one of ${Math.ceil(list.length / kMaxSymbols)} is drawn`);
+    if (this.sections.every > 1) this.thinned.push(`sections: one of ${this.sections.every} elements has its section`);
+    if (this.sections.without > 0) this.thinned.push(`${this.sections.without} bars, beams and rods have no section to draw`);
     return { things, marks };
   }
 

@@ -2,11 +2,12 @@ import { ask, run_job } from "./api.js";
 import { make_body_form } from "./body_form.js";
 import { DeckScene } from "./deck_scene.js";
 import { el, get_css, make_button, make_check, make_select, make_swatch } from "./page_parts.js";
-import { make_message_list, make_progress, show_lines } from "./parts.js";
+import { make_menu, make_message_list, make_progress, show_lines } from "./parts.js";
 import { Viewer } from "./viewer.js";
 
 /** The mesh of a deck in a viewer: picking, groups, symbols. `on_pick(grid)` is called for each grid that is clicked. */
 export class DeckStage {
+  /** @param {any} answer  @param {(grid: number, row: number) => void} on_pick  0: no grid; -1: no element */
   constructor(answer, on_pick, height = "100%") {
     this.scene = new DeckScene(answer);
     this.chosen = new Set();
@@ -15,9 +16,9 @@ export class DeckStage {
     this.picked = 0;
     this.viewer = new Viewer(height);
     this.viewer.name = "deck";
-    this.viewer.on_pick = (found) => {
+    this.viewer.on_pick = (found, element) => {
       this.picked = found ? found.id : 0;
-      on_pick(this.picked);
+      on_pick(this.picked, element ? element.element : -1);
       this.draw();
     };
     this.viewer.repaint = () => this.draw();
@@ -51,7 +52,7 @@ export class DeckStage {
   }
 }
 
-const kSymbols = [["masses", "masses"], ["spiders", "rigid elements"], ["supports", "SPC"], ["loads", "loads"], ["systems", "coordinate systems"], ["edges", "edges"]];
+const kSymbols = [["sections", "bar sections"], ["pins", "pin flags"], ["masses", "masses"], ["spiders", "rigid elements"], ["supports", "SPC"], ["loads", "loads"], ["systems", "coordinate systems"], ["edges", "edges"]];
 
 export class DeckView {
   constructor(studio, file, answer) {
@@ -77,12 +78,15 @@ export class DeckView {
   /** Mesh, messages and lists of the answer. */
   fill() {
     this.times = this.get_times();
-    this.stage = new DeckStage(this.answer, (grid) => {
-      this.pick(grid);
+    this.stage = new DeckStage(this.answer, (grid, row) => {
+      this.pick(grid, row);
       if (grid) this.form.take(grid);
     });
+    this.menu = make_menu(this.stage.element);
+    this.stage.viewer.on_menu = (found, place) => this.open_menu(found ? found.element : -1, place);
+    this.stage.viewer.on_key = (event) => this.key(event);
     this.stage.chosen = this.chosen;
-    this.stage_host.replaceChildren(this.stage.viewer.make_view_buttons(), this.stage.element, el("p", { class: "note hint" }, "Drag turns, shift moves, the wheel comes nearer; a click names a grid. Arrow keys, + and − do the same."));
+    this.stage_host.replaceChildren(this.stage.viewer.make_view_buttons(), this.stage.element, el("p", { class: "note hint" }, "Drag turns, shift moves, the wheel comes nearer; a click names a grid and an element, a right click hides and shows. Arrow keys, + and − do the same; h hides the group of the element that was clicked, a shows all."));
     this.side.replaceChildren(this.make_find(), this.form.element, this.make_messages(), this.make_solve(), this.make_show(), this.make_cards());
     this.messages.show(this.all, "Reading found nothing. “Check” builds the model too.");
     this.list_groups();
@@ -112,15 +116,58 @@ export class DeckView {
     });
   }
 
-  /** Names the grid; 0 for none. */
-  pick(grid) {
-    if (!grid) {
+  /** Names the grid, 0 for none, and the element in this row, -1 for none. */
+  pick(grid, row = -1) {
+    this.row = row;
+    if (!grid && row < 0) {
       this.picked.textContent = "Click a grid.";
       return;
     }
+    this.picked.replaceChildren(...(grid ? this.name_grid(grid) : []), ...(grid && row >= 0 ? [el("br")] : []), ...(row >= 0 ? this.name_element(row) : []));
+  }
+
+  name_grid(grid) {
     const { scene } = this.stage, k = scene.point_of_grid.get(grid), row = scene.row_of_grid.get(grid);
     const parts = this.answer.num_parts > 1 ? `, part ${scene.grids.part[row]} of ${this.answer.num_parts}` : "";
-    this.picked.replaceChildren(el("strong", {}, `grid ${grid}`), ` ${scene.describe_place(k)}${parts} `, make_button("card", "Show the card in the deck", () => this.show_card(scene.grids.file[row], scene.grids.line[row])));
+    return [el("strong", {}, `grid ${grid}`), ` ${scene.describe_place(k)}${parts} `, make_button("card", "Show the card in the deck", () => this.show_card(scene.grids.file[row], scene.grids.line[row]))];
+  }
+
+  name_element(row) {
+    const { scene } = this.stage, { elements } = scene, group = scene.find_group(row);
+    return [el("strong", {}, `${elements.cards[elements.card[row]]} ${elements.id[row]}`), ` ${scene.describe_element(row).split(", ").slice(1).join(", ")} `, make_button("card", "Show the card in the deck", () => this.show_card(elements.file[row], elements.line[row])),
+      ...(group ? [" ", make_button("hide", `Hide ${group.name} (h)`, () => this.show_groups([group.name], false)), " ", make_button("only", `Show ${group.name} only`, () => this.show_only(group.name))] : [])];
+  }
+
+  /** What a right click, or the menu key after a click, offers. @param {number} row  -1: no element is there */
+  open_menu(row, place) {
+    const { scene } = this.stage, group = row >= 0 ? scene.find_group(row) : null;
+    const entries = group ? [[`Hide ${group.name}`, () => this.show_groups([group.name], false)], [`Show ${group.name} only`, () => this.show_only(group.name)]] : [];
+    this.menu.open(place, row >= 0 ? scene.describe_element(row) : "no element", [...entries, ["Show all", () => this.show_only("")]]);
+  }
+
+  key(event) {
+    const act = { h: () => this.row >= 0 && this.show_groups([this.stage.scene.find_group(this.row).name], false), a: () => this.show_only("") }[event.key];
+    const { clientWidth, clientHeight } = this.stage.viewer.canvas;
+    if (event.key === "ContextMenu" || (event.key === "F10" && event.shiftKey)) this.open_menu(this.row ?? -1, [clientWidth / 2, clientHeight / 2]);
+    else if (act && !event.ctrlKey && !event.metaKey) act();
+    else return false;
+    event.preventDefault();
+    return true;
+  }
+
+  /** @param {string[]} names  of groups */
+  show_groups(names, is_on) {
+    const { hidden } = this.stage.scene;
+    for (const name of names) is_on ? hidden.delete(name) : hidden.add(name);
+    this.list_groups();
+    this.stage.draw();
+  }
+  /** @param {string} name  of the group that is left; "": all are shown */
+  show_only(name) {
+    const { scene } = this.stage;
+    scene.hidden = new Set(name ? scene.groups.map((g) => g.name).filter((other) => other !== name) : []);
+    this.list_groups();
+    this.stage.draw();
   }
 
   show_card(file, line) {
@@ -141,7 +188,7 @@ export class DeckView {
       const t = elements.of_triangle.indexOf(row), e = elements.of_edge.indexOf(row);
       const point = t >= 0 ? drawing.triangles[3 * t] : e >= 0 ? drawing.edges[2 * e] : -1;
       if (point >= 0) this.stage.go(drawing.ids[point]);
-      this.picked.replaceChildren(el("strong", {}, `${elements.cards[elements.card[row]]} ${id}`), ` property ${elements.property[row]} `, make_button("card", "Show the card in the deck", () => this.show_card(elements.file[row], elements.line[row])));
+      this.pick(0, row);
     };
     field.addEventListener("change", find);
     return el("section", {}, el("div", { class: "tools" }, field, make_button("Find", "Show this grid or element", find)), this.picked);
@@ -203,11 +250,7 @@ export class DeckView {
       scene.show[key] = on;
       this.stage.draw();
     }));
-    const all = (on) => () => {
-      scene.hidden = new Set(on ? [] : scene.groups.map((g) => g.name));
-      this.list_groups();
-      this.stage.draw();
-    };
+    const all = (on) => () => this.show_groups(scene.groups.map((g) => g.name), on);
     return el("section", {}, el("h3", {}, "Show"), el("div", { class: "tools" }, choose, make_button("all", "Show all groups", all(true)), make_button("none", "Hide all groups", all(false))), this.groups, el("div", { class: "tools" }, ...boxes), el("p", { class: "note" }, scene.thinned.join("; ")));
   }
 
@@ -220,7 +263,9 @@ export class DeckView {
         else scene.hidden.add(g.name);
         this.stage.draw();
       });
-      return el("div", { class: "group" }, make_swatch(g.style), box, card ? el("span", { class: "note" }, ` ${card.card} ${card.values}`) : "");
+      const only = make_button("only", `Show ${g.name} only`, () => this.show_only(g.name));
+      const shape = scene.sections.shapes.find((s) => s.equivalent && card && s.card === card.card && s.id === card.id);
+      return el("div", { class: "group" }, make_swatch(g.style), box, " ", only, card ? el("span", { class: "note" }, ` ${card.card} ${card.values}${shape ? `, ${scene.sections.describe_shape(shape)}` : ""}`) : "");
     }));
   }
 

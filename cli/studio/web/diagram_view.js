@@ -2,6 +2,7 @@
 import { ask } from "./api.js";
 import { Chart } from "./chart.js";
 import { Connections, is_editable } from "./connections.js";
+import { CurveEditor, is_plain } from "./curve_editor.js";
 import { lay_out } from "./diagram_layout.js";
 import { el, make_button } from "./page_parts.js";
 
@@ -69,6 +70,8 @@ export class DiagramPanels {
     this.diagram = el("div", { class: "diagram-host", tabindex: "0" });
     this.connections = new Connections(studio, view, this.diagram);
     this.curves = el("div", { class: "function-curves" });
+    /** By name of the function. @type {Map<string, CurveEditor>} */
+    this.editors = new Map();
     const fold = (name, title, host) => {
       const details = el("details", { class: `panel ${name}` }, el("summary", {}, title), host);
       details.addEventListener("toggle", () => details.open && this.update());
@@ -83,18 +86,24 @@ export class DiagramPanels {
     const text = this.view.pane.text;
     if (text === this.drawn || !this.folds.some((f) => f.open)) return;
     const answer = await ask("diagram", { file: this.view.file, text }).catch(() => null);
-    if (!answer || text !== this.view.pane.text) return;
+    if (!answer || text !== this.view.pane.text || [...this.editors.values()].some((e) => e.pending > 0)) return;
     this.drawn = text;
     const go = (line) => this.view.pane.editor.go(line);
     this.diagram.replaceChildren(answer.nodes.length > 0 ? draw_diagram(answer) : el("p", { class: "note" }, "The system has no blocks."));
     this.connections.attach(answer, go);
     this.diagram.dataset.blocks = String(answer.nodes.length);
     this.curves.replaceChildren(...answer.functions.map((f) => this.draw_function(f, go)));
+    for (const editor of this.editors.values()) editor.settle();
     if (answer.functions.length === 0) this.curves.append(el("p", { class: "note" }, "The file has no [[function]]; one is added by the form on the left."));
     this.curves.dataset.count = String(answer.functions.length);
   }
 
-  draw_function({ name, type, of_time, line, x, y }, go) {
+  draw_function({ name, type, of_time, line, x, y, points }, go) {
+    if (points && is_plain(points)) {
+      const editor = new CurveEditor(this.view, { name, type, line, x, y, points }, this.editors.get(name));
+      this.editors.set(name, editor);
+      return el("div", {}, make_button(`${name}: line ${line}`, "Go to the function in the text", () => go(line)), editor.element);
+    }
     const chart = new Chart({ title: "", series: [{ name: `${name} (${type})`, x: Float64Array.from(x), y: Float64Array.from(y, (v) => v ?? NaN) }], x_label: of_time ? "time" : "argument", y_label: name, height: 170 });
     return el("div", {}, make_button(`${name}: line ${line}`, "Go to the function in the text", () => go(line)), chart.element);
   }

@@ -7,12 +7,12 @@ const kGrab = 18;  // pixels around the tip
 const kSnap = Math.cos((4 * Math.PI) / 180);  // of an axis of the hinge frame
 const kShare = 0.24;  // length of the arrow over the size of the scene
 
-const transpose = (R) => R[0].map((_, i) => R.map((row) => row[i]));
-const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+export const transpose = (R) => R[0].map((_, i) => R.map((row) => row[i]));
+export const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 const unit = (v) => v.map((x) => x / Math.hypot(...v));
 const round = (v) => Number(v.toFixed(4));
 /** Numbers of a TOML file, which are no integers. */
-const to_toml = (v) => `[${v.map((x) => (Number.isInteger(x) ? x.toFixed(1) : String(x))).join(", ")}]`;
+export const to_toml = (v) => `[${v.map((x) => (Number.isInteger(x) ? x.toFixed(1) : String(x))).join(", ")}]`;
 
 export class HingeAxes {
   /** @param {any} view  the SystemView */
@@ -52,9 +52,6 @@ export class HingeAxes {
     this.picker.list.selectedIndex = names.indexOf(this.name) + 1;
     this.element.hidden = names.length === 0;
     this.dragged = null;
-    motion.make_overlay = (places, size) => this.make_things(places, size);
-    motion.viewer.on_grab = (event) => this.grab(event);
-    motion.viewer.can_grab = (event) => this.is_at_tip(event);
     this.show_numbers();
     if (this.name) motion.draw();
   }
@@ -87,7 +84,7 @@ export class HingeAxes {
     return [to_thing(mesh, get_css("--link"))];
   }
 
-  is_at_tip(event) {
+  can_grab(event) {
     const now = this.name && this.locate();
     if (!now) return false;
     const tip = now.at.map((v, i) => v + this.get_length() * now.axis[i]);
@@ -97,7 +94,7 @@ export class HingeAxes {
 
   /** Takes the tip: it follows the pointer on a sphere about the hinge, near an axis of the hinge frame it is that. */
   grab(event) {
-    if (!this.is_at_tip(event)) return null;
+    if (!this.can_grab(event)) return null;
     const { at, axis, frame } = this.locate(), length = this.get_length();
     const show = (v) => this.show_numbers(v);
     return {

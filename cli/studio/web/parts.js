@@ -40,6 +40,43 @@ export function ask_user(title, content, buttons) {
   });
 }
 
+/** A menu over a view: opened at a place with its entries; Escape, Tab or a click elsewhere closes it. @param {HTMLElement} host */
+export function make_menu(host) {
+  const element = el("div", { class: "menu", role: "menu", hidden: true });
+  let before = null;
+  const close = (is_back = true) => {
+    if (element.hidden) return;
+    element.hidden = true;
+    if (is_back) before?.focus();
+  };
+  element.addEventListener("keydown", (event) => {
+    const buttons = [...element.querySelectorAll("button")], now = buttons.indexOf(/** @type {any} */ (document.activeElement));
+    const by = { ArrowDown: 1, ArrowUp: -1 }[event.key];
+    if (by) buttons[(now + by + buttons.length) % buttons.length].focus();
+    else if (event.key === "Escape" || event.key === "Tab") close();
+    else return;
+    event.preventDefault();
+    event.stopPropagation();
+  });
+  element.addEventListener("focusout", (event) => !element.contains(/** @type {any} */ (event.relatedTarget)) && close(false));
+  host.append(element);
+  return {
+    element,
+    /** @param {number[]} place  in the host  @param {string} title  @param {any[][]} entries  [text, action] */
+    open(place, title, entries) {
+      before = document.activeElement;
+      element.replaceChildren(el("p", { class: "note" }, title), ...entries.map(([text, action]) => el("button", { type: "button", role: "menuitem", onclick: () => {
+        close();
+        action();
+      } }, text)));
+      element.hidden = false;
+      element.style.left = Math.max(0, Math.min(place[0], host.clientWidth - element.offsetWidth)) + "px";
+      element.style.top = Math.max(0, Math.min(place[1], host.clientHeight - element.offsetHeight)) + "px";
+      element.querySelector("button")?.focus();
+    },
+  };
+}
+
 /** The lines of a diff with their colours. */
 export function make_diff_view(diff) {
   return el("pre", { class: "diff", tabindex: "0" }, ...(diff || "no difference\n").split("\n").slice(0, 2000).map((line) =>

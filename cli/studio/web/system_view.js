@@ -5,6 +5,7 @@ import { ReportChapter } from "./chapter_views.js";
 import { Chart } from "./chart.js";
 import { DiagramPanels } from "./diagram_view.js";
 import { HingeAxes } from "./hinge_axes.js";
+import { HingePlaces } from "./hinge_places.js";
 import { HistoryView, RunSet } from "./history.js";
 import { MotionView } from "./motion_view.js";
 import { el, make_button } from "./page_parts.js";
@@ -35,6 +36,7 @@ export class SystemView {
     this.add_form = make_add_form(studio, this);
     this.diagrams = new DiagramPanels(studio, this);
     this.hinge_axes = new HingeAxes(this);
+    this.hinge_places = new HingePlaces(this);
     this.pane = new TextPane(studio, file, "system", read, { on_check: (answer) => this.update(answer) });
     const button = (text, title, action, name) => Object.assign(make_button(text, title, action), { className: name });
     this.actions = el("div", { class: "tools actions" }, button("Run", "bough run: time history", () => this.run(), "main run"),
@@ -44,7 +46,7 @@ export class SystemView {
       button("… at equilibrium", "bough linearize --equilibrium", () => this.solve("linearize", "-linear.h5", [["--equilibrium"]]), "linearize-rest"),
       button("Save as page", "bough report of the run and its bodies: one HTML file", () => this.report(), "save-page"),
       button("Copy commands …", "The lines that do the same in a shell", () => show_history(), "copy"));
-    this.element = el("div", { class: "split reverse" }, el("div", { class: "side wide" }, this.add_form.element, this.pane.element), el("div", { class: "work-column" }, this.actions, this.parameters, this.progress.element, this.picked, this.hinge_axes.element, this.scene, this.diagrams.element, this.result));
+    this.element = el("div", { class: "split reverse" }, el("div", { class: "side wide" }, this.add_form.element, this.pane.element), el("div", { class: "work-column" }, this.actions, this.parameters, this.progress.element, this.picked, this.hinge_axes.element, this.hinge_places.element, this.scene, this.diagrams.element, this.result));
     this.join().then((found) => !found && studio.has(this.output) && this.show_results());
   }
 
@@ -69,6 +71,7 @@ export class SystemView {
     if (!has_errors) for (const name of [...this.set.keys()]) if (!names.has(name)) this.set.delete(name);
     this.show_parameters(answer.parameters);
     this.add_form.update(answer);
+    if (answer.tree) this.hinge_places.update(answer.tree);
     this.diagrams.update();
     if (this.is_running || has_errors || this.text_drawn === this.pane.text) return;
     const text = this.pane.text;
@@ -92,13 +95,22 @@ export class SystemView {
     this.motion = new MotionView(run, this.viewer, earlier);
     if (home && is_kept) Object.assign(this.viewer, { yaw, pitch, distance, target });
     if (at_end) this.motion.set_time(this.motion.last);
-    this.hinge_axes.attach(this.motion);
+    this.attach_tools();
     this.motion.on_pick = (found) => this.pick(found);
     this.scene.replaceChildren(this.motion.element);
     this.viewer.draw();  // on the page: before, the canvas has no size
     if (before) this.motion.take_over(before);
     this.scene.dataset.samples = String(run.time.length);
     delete this.scene.dataset.pole;
+  }
+
+  /** Tools with handles in the scene; the first one that has a handle under the pointer takes a drag. */
+  attach_tools() {
+    const tools = [this.hinge_axes, this.hinge_places];
+    this.motion.make_overlay = (places, size) => tools.flatMap((tool) => tool.make_things(places, size));
+    this.viewer.on_grab = (event) => tools.find((tool) => tool.can_grab(event))?.grab(event) ?? null;
+    this.viewer.can_grab = (event) => tools.some((tool) => tool.can_grab(event));
+    for (const tool of tools) tool.attach(this.motion);
   }
 
   pick(found) {

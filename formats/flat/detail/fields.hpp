@@ -26,7 +26,7 @@ long count(const Container& items) {
   return static_cast<long>(items.size());
 }
 
-/// Visits one member of the items of a list as an array of its own. \param size  -1: this array gives the number of
+/// Visits one member of the items of a list as a separate array. \param size  -1: this array gives the number of
 /// items.
 template <class Archive, class Items, class GetMember>
 void visit_column(Archive& archive, const std::string& name, Items& items, long size, GetMember get_member,

@@ -71,7 +71,7 @@ class FlxReader {
   bool is_sized_ = false, ended_ = false, has_frame_ = false;
 };
 
-/// Whole and finite or not is for the caller; false where the word is no number of this kind.
+/// Whole and finite or not is for the caller; false if the word is no number of this kind.
 bool parse_value(const std::string& word, double& value);
 bool parse_value(const std::string& word, int& value);
 /// Returns the words between blanks.

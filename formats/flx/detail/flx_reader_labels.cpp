@@ -1,4 +1,4 @@
-// The labels of lines with values, what else the extension says, and whether all of it is there.
+// Labels of lines with values, further lines of the extension, and the check for completeness.
 #include <algorithm>
 #include <limits>
 
@@ -130,7 +130,7 @@ bool FlxReader::read_extension(const std::string& label, const std::string& line
   }
   const bool is_rigid = label == "!+CG" || label == "!+INERTIA" || label == "!+GAMMA0";
   if (is_rigid) file_.has_rigid = true;
-  // The others need the count of locators, which says that they are there.
+  // The other labels need the count of locators, which precedes them.
   return (is_rigid || file_.has_stiffening) && read_values(labels_.at(label));
 }
 

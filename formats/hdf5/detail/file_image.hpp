@@ -69,7 +69,7 @@ class GroupTree {
   void add_object(const std::string& path, Address header);
   /// Adds an attribute to this group.
   void add_attribute(Message attribute) { attributes_.push_back(std::move(attribute)); }
-  /// Headers of this group's members, from the leaves up; those placed already stay.
+  /// Places the headers of this group's members, from the leaves up; placed headers do not move.
   void place_members(FileImage& image);
   /// After place_members.
   Address place(FileImage& image);

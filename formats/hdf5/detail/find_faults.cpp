@@ -117,7 +117,7 @@ class Walker {
       return report_unreadable("group " + path);
     for (const auto& link : links) {
       const std::string child = (level == 0 ? "/" : path + "/") + link.name;
-      if (link.type == H5L_TYPE_SOFT) continue;  // what it leads to has its own place
+      if (link.type == H5L_TYPE_SOFT) continue;  // its target is visited by its own path
       if (link.type != H5L_TYPE_HARD) {
         report_outside(child + " is a link to another file");
         continue;

@@ -93,7 +93,7 @@ bool flush_file(hid_t file);
 /// closed.
 void abandon_writes(hid_t file);
 
-/// "/a/b/c" -> every proper parent and then whether the object itself is there.
+/// Returns true if "/a/b/c" and all its parents exist.
 bool exists(hid_t file, const std::string& path);
 
 /// Address of an open object in its file: two names of one object have one address.

@@ -40,7 +40,7 @@ class FileReader {
   bool has(const std::string& path) const { return exists(file_.get(), path); }
 
   /// These report "hdf5.missing", "hdf5.shape" (found against expected), "hdf5.type", "hdf5.damaged" and, unless
-  /// told, "hdf5.nan", and then return zeros of the expected shape (0 where it is open).
+  /// told, "hdf5.nan", and then return zeros of the expected shape (0 if it is open).
   /// If given, only the first `most_rows` of a longer array are read.
   NumberArray read_array(const std::string& path, const Shape& shape, bool may_be_nan = false, long most_rows = -1);
   /// Vector of `size` numbers; -1: any.
@@ -61,7 +61,7 @@ class FileReader {
 
   /// Text of an attribute; empty if the object or the attribute is missing.
   std::string read_attribute(const std::string& object, const std::string& name);
-  /// A list of texts; empty where it is missing or of another kind.
+  /// A list of texts; empty if it is missing or of another kind.
   std::vector<std::string> read_attribute_words(const std::string& object, const std::string& name);
   /// Integer of an attribute; `otherwise` if it is missing or of another kind.
   int read_integer_attribute(const std::string& object, const std::string& name, int otherwise);

@@ -11,7 +11,7 @@ namespace bough::hdf5 {
 std::vector<records::EventRecord> read_events(FileReader& file);
 /// A number; `otherwise` where it is absent or of another shape.
 double read_real_attribute(hid_t object, const char* name, double otherwise);
-/// NaN where it is absent.
+/// NaN if it is absent.
 double read_energy_error(FileReader& file);
 
 }  // namespace bough::hdf5

@@ -56,7 +56,7 @@ const TextHeaps::Sizes& TextHeaps::get_heap(double address) {
   return heap->second;
 }
 
-/// Nothing where there is no sound heap.
+/// Nothing if there is no sound heap.
 TextHeaps::Sizes TextHeaps::read_heap(double address) const {
   struct stat state {};
   if (descriptor_ < 0 || ::fstat(descriptor_, &state) != 0) return {};

@@ -23,7 +23,7 @@ struct ArrayAttributes {
 class FileWriter {
  public:
   FileWriter(const std::string& path, const std::string& format, const std::string& version);
-  /// Writes to memory: get_image() takes the place of commit().
+  /// Writes to memory; call get_image() instead of commit().
   FileWriter(const std::string& format, const std::string& version);
   ~FileWriter() = default;
   FileWriter(const FileWriter&) = delete;
@@ -98,7 +98,7 @@ class FileWriter {
   QuietErrors quiet_;
   std::string path_;
   std::optional<PartFile> part_;  ///< none: in memory
-  // Made once: most of the time of a small dataset goes to what describes it.
+  // Created once: these objects take most of the time of a small dataset.
   Handle string_type_, scalar_, creation_, group_creation_, link_creation_;
   Handle file_;
   std::map<std::string, Handle> groups_;  ///< open, by path

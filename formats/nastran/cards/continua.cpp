@@ -234,7 +234,7 @@ void write_cubic(const records::SolidElement& e, CardSink& sink) {
   sink.put(card);
 }
 
-/// Properties that cubic bricks alone have stand as PIHEX, which those want.
+/// Properties that only cubic bricks use; they are written as PIHEX.
 std::set<int> find_cubic_properties(const records::Deck& deck) {
   std::set<int> cubic;
   for (const auto& e : deck.solids)

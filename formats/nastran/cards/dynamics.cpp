@@ -163,7 +163,7 @@ std::vector<std::pair<double, double>> read_points(Card& card, int first) {
     card.use(i, i + 2);
     if (card.is_word(i, "ENDT") || card.is_word(i + 1, "ENDT")) {
       if (!card.is_word(i, "ENDT"))
-        card.fail("deck.missing-field", i + 1, "ENDT stands in place of y, expected the end after a pair x y");
+        card.fail("deck.missing-field", i + 1, "ENDT is in place of y, expected the end after a pair x y");
       card.use(i, card.get_size());
       has_end = true;
       break;
@@ -302,7 +302,7 @@ void parse_freq1(Card& card, DynamicCards& r) {
   if (card.is_ok()) card.demand(list.count > 0 && list.count <= 1'000'000, 3, "NDF", "1 to 1000000");
   add_list(card, r, std::move(list));
 }
-/// SID F1 F2, and what each of FREQ2 to FREQ4 has besides.
+/// SID F1 F2, and the further fields of FREQ2 to FREQ4.
 records::FrequencyList read_range(Card& card, int kind, bool starts_above_zero) {
   auto list = read_list_head(card, kind);
   list.f1 = kind == 4 ? card.read_real(1, "F1", 0.0) : card.read_real(1, "F1");

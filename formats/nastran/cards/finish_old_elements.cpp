@@ -63,7 +63,7 @@ class Finisher {
     }
   }
 
-  /// A plate without a membrane has no mass of its own there, but takes that of its bending material here: so it gets a
+  /// A plate without a membrane has no separate mass there, but takes that of its bending material here: so it gets a
   /// copy of the material without density.
   int copy_without_mass(int mid) {
     if (const auto known = massless_.find(mid); known != massless_.end()) return known->second;
@@ -126,8 +126,8 @@ class Finisher {
   }
 
   void make_solids() {
-    // Cubic bricks get properties of their own: written, they want a PIHEX where the others want a PSOLID. So do those
-    // of 8 and of 20 grids where NIP makes a difference.
+    // Cubic bricks get separate properties, since they are written with a PIHEX in place of a PSOLID. So do bricks of 8
+    // and 20 grids if NIP differs.
     std::map<std::tuple<bool, int, int>, int> ids;
     for (const auto& use : old_.solids) {
       auto& e = deck_.solids[use.index];

@@ -137,7 +137,7 @@ void add_moduli(const records::Mat1& mat, CardFields& card) {
     card.add(mat.E).add(mat.G).add(mat.nu);
 }
 
-/// Adds a blank for a TREF that was not given: TEMPERATURE(INITIAL) may take its place.
+/// Adds TREF, blank if it was not given: then TEMPERATURE(INITIAL) may replace it.
 CardFields& add_tref(CardFields& card, const std::optional<double>& tref) {
   return tref ? card.add(*tref) : card.add_blank();
 }

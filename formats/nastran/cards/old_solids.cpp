@@ -57,7 +57,7 @@ void parse_cihex3(Card& card, Reading& r) {
   add_solid(card, r, std::move(e), "CIHEX3", "PIHEX");
 }
 
-/// PID MID CID NIP AR ALPHA BETA. NIP stays zero where it is blank: what that means is the element's.
+/// PID MID CID NIP AR ALPHA BETA. NIP stays zero if it is blank: what that means is the element's.
 void parse_pihex(Card& card, Reading& r) {
   records::Psolid p;
   card.read_ids(0, {{"PID", p.id}, {"MID", p.mid}});

@@ -106,7 +106,7 @@ void parse_pshear(Card& card, Reading& r) {
   }
 }
 
-/// Blank where zero: readers of meshes take every number after PID for a grid.
+/// Adds THETA or MCID, blank if zero: mesh readers read every number after PID as a grid.
 void add_axes(const ShellElement& e, CardFields& card) {
   if (e.mcid)
     card.add(*e.mcid);

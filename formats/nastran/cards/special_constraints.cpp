@@ -1,4 +1,4 @@
-/// Rigid elements that are others in another writing, and RSPLINE.
+/// Rigid elements that are converted to other ones (RBAR1, RJOINT, RTRPLT, ...), and RSPLINE.
 #include <bit>
 
 #include "formats/nastran/detail/parsers.hpp"

@@ -55,7 +55,7 @@ void parse_genel(Card& card, Reading& r) {
   e.at = card.get_location();
   int i = read_pairs(card, 2, e.ui);
   if (card.is_word(i, "UD")) i = read_pairs(card, i + 1, e.ud);
-  card.use(1, card.get_size());  // what is left over is found below
+  card.use(1, card.get_size());  // superfluous fields are reported below
   const auto m = static_cast<Eigen::Index>(e.ui.size()), n = static_cast<Eigen::Index>(e.ud.size());
   if (card.is_ok() && m == 0) card.fail("deck.missing-field", 2, "UI1 is blank, expected a component at least");
   if (card.is_ok() && !card.is_word(i, "K") && !card.is_word(i, "Z"))

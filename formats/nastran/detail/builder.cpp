@@ -173,7 +173,7 @@ class Builder {
     const bool is_relative = Replicator::is_relative(text_);
     if (excess.data != nullptr && (is_relative || is_read(text_.name)))
       diagnostics_.error("deck.too-many-fields", deck_.locate(excess.data->at),
-                         text_.name + ": the free-field line has data behind a continuation mark",
+                         text_.name + ": the free-field line has data after a continuation mark",
                          "continue on another line that begins with a comma");
     else if (excess.number != nullptr && (is_relative || is_read(text_.name)))
       diagnostics_.warning("deck.too-many-fields", deck_.locate(excess.number->at),
@@ -234,7 +234,7 @@ class Builder {
     if (!text_.name.empty() && text_.name.front() == '/') {
       diagnostics_.warning("deck.delete-line", where(),
                            "'" + text_.name + "' deletes cards of an earlier run: not done",
-                           "a deck is read as it stands; take the cards out that should not count");
+                           "a deck is read as it stands; remove the cards that should not be used");
       return true;
     }
     if (text_.name.substr(0, 5) != "BEGIN") return false;
@@ -303,7 +303,7 @@ class Builder {
                                [&](const auto& selection) { return selection.second.*member == *set; });
   }
 
-  /// Nastran looks at selected sets alone: what is wrong with others is a warning, and they are not read.
+  /// Nastran uses selected sets only: errors in other sets are warnings, and these sets are not read.
   void parse_unselected(const NameEntry& entry) {
     Diagnostics own;
     Card card(text_, deck_.files, own);

@@ -243,7 +243,7 @@ class CaseControl {
     options_.combination_diagnostics->error("deck.combination", deck_.locate(at_), what, advice);
   }
 
-  /// SUBCOM n, SYMCOM n, REPCASE n: what follows is of them alone.
+  /// SUBCOM n, SYMCOM n, REPCASE n: the commands that follow belong to them.
   void begin_combination(const Command& c) {
     end_combination();
     in_plot_section_ = skipping_ = false;
@@ -259,7 +259,7 @@ class CaseControl {
                        "number the subcases differently");
     if (c.word == "REPCASE") {
       if (real_ids_.empty())
-        fail_combination("REPCASE has no subcase before it", "write it behind the subcase that it repeats");
+        fail_combination("REPCASE has no subcase before it", "write it after the subcase that it repeats");
       else
         combination.terms = {{1.0, real_ids_.back()}};
     } else if (c.word == "SYMCOM") {
@@ -285,7 +285,7 @@ class CaseControl {
     }
     if (factors.empty() || factors.size() > of.size())
       return fail_combination(c.word + " has " + std::to_string(factors.size()) + " factors, " +
-                                  std::to_string(of.size()) + " subcases stand before it",
+                                  std::to_string(of.size()) + " subcases precede it",
                               "give a factor for each of the last subcases");
     combination.terms.clear();
     for (std::size_t i = 0; i < factors.size(); ++i)

@@ -13,14 +13,14 @@
 namespace bough::nastran::detail {
 
 struct ControlOptions {
-  /// Where what concerns responses goes; without it those commands are named as not used.
+  /// Receives the commands of responses; null: these commands are reported as not used.
   records::DynamicDeck* dynamics = nullptr;
-  /// Where SUBCOM, SYMCOM and REPCASE go, and what is wrong with them (deck.combination). Both or none; with dynamics.
+  /// Receives SUBCOM, SYMCOM and REPCASE, and their errors (deck.combination). Both or none; with dynamics.
   std::vector<records::CaseCombination>* combinations = nullptr;
   Diagnostics* combination_diagnostics = nullptr;
   bool notes_combinations = true;       ///< without `combinations`: they are named as not used
   LoadColumns* load_columns = nullptr;  ///< where P2G goes
-  bool is_response = true;              ///< with `dynamics`: commands that act in responses alone count
+  bool is_response = true;              ///< with `dynamics`: use the commands of responses
   bool is_complex = false;              ///< with `dynamics`: those of complex modes count (ReadOptions)
   /// Commands that are only warned of (deck.unsupported-command); of ReadOptions.
   std::vector<std::string> ignore_cards = {};

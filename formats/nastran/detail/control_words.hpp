@@ -14,8 +14,7 @@ namespace bough::nastran::detail {
 /// here.
 bool is_plain_command(std::string_view word);
 
-/// The command that Bough uses and that was meant, for a word that no Nastran knows; empty for known ones and when none
-/// is near.
+/// The supported command that is similar to an unknown word; empty for known words and if none is similar.
 std::string find_nearest_command(std::string_view word);
 
 /// Known commands that are not used, for one note.

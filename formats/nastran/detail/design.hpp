@@ -30,7 +30,7 @@ class Design {
   void finish(bool is_active, const std::string& sol, const records::Deck& deck, Diagnostics& diagnostics);
   /// Writes the values over the fields of a card.
   void apply(CardText& text);
-  /// Says what got what, and what was not found.
+  /// Reports the changed fields with their values, and names that were not found.
   void report(const records::Deck& deck, Diagnostics& diagnostics) const;
 
  private:

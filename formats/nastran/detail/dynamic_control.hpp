@@ -17,8 +17,8 @@ struct CommandText {
   records::CardLocation at;
 };
 
-/// Into `selected`, its place into `subcase`; Other: the command is none of these. Requests with a value that is none
-/// are Other too.
+/// Reads a command into `selected`, its location into `subcase`. Returns Other for other commands, and for requests
+/// with an invalid value.
 DynamicCommand read_dynamic_command(const CommandText& command, records::Subcase& subcase,
                                     records::DynamicSelection& selected);
 

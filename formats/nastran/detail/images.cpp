@@ -20,7 +20,7 @@ std::string_view slice(std::string_view text, std::size_t from, std::size_t leng
 bool is_mark(std::string_view field) { return !field.empty() && (field.front() == '+' || field.front() == '*'); }
 bool is_continuation(std::string_view first_field) { return first_field.empty() || is_mark(first_field); }
 std::string_view strip_mark(std::string_view tag) { return is_mark(tag) ? trim(tag.substr(1)) : tag; }
-/// Without all its marks: "++000001" continues "+000001" in decks that repeat the tag behind a mark of its own.
+/// Without all its marks: "++000001" continues "+000001" in decks that repeat the tag after a separate mark.
 std::string_view strip_marks(std::string_view tag) {
   while (is_mark(tag)) tag = trim(tag.substr(1));
   return tag;
@@ -94,7 +94,7 @@ class Grouper {
   void warn_of_empty(int line) {
     const auto& at = source_.lines[static_cast<std::size_t>(line)].at;
     diagnostics_.warning("deck.empty-line", {source_.files[static_cast<std::size_t>(at.file)], at.line, 0},
-                         "a continuation stands behind an empty line, which counts as none: these fields follow those "
+                         "a continuation follows an empty line, which counts as none: these fields follow those "
                          "of the line before it",
                          "write '+' in the empty line if it stands for eight blank fields, or remove it");
   }
@@ -118,8 +118,8 @@ class Grouper {
     return after == ends.end() ? -1 : *after;
   }
 
-  /// Tags first, over the whole deck, those that are equal to the letter before those that differ by marks; then what
-  /// only follows an untagged card.
+  /// Joins continuations: first by tags over the whole deck, equal tags before those that differ by marks only; then
+  /// continuations that follow an untagged card.
   void join_fragments() {
     Tails tails, bare_tails;
     for (int i = 0; i < static_cast<int>(result_.images.size()); ++i) {

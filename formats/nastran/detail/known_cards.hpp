@@ -1,5 +1,5 @@
 #pragma once
-/// \file Bulk data names of the Nastran family and what each would carry.
+/// \file Bulk data names of the Nastran family and the effect of each card.
 #include <optional>
 #include <string>
 #include <string_view>

@@ -174,7 +174,7 @@ bool is_known(const Names& names, const std::string& name) {
          (last != std::string::npos && last + 1 < name.size() && names.stems.count(name.substr(0, last + 1)) > 0);
 }
 
-/// Values that are none of their kind: fe.bad-param, and the card is taken as the message says or left out.
+/// Reports values of a wrong kind as fe.bad-param; the message contains the value that is used, or the card is dropped.
 void check_values(records::Deck& deck, Diagnostics& diagnostics, bool of_responses) {
   auto rules = get_rules();
   if (of_responses) rules.insert(rules.end(), get_response_rules().begin(), get_response_rules().end());

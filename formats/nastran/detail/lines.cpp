@@ -262,7 +262,7 @@ class Loader {
           "correct the name if another file was meant");
     if (!path && is_executive()) {
       diagnostics_.warning("deck.include-missing", where, "included file '" + name + "' does not exist",
-                           "it stands in the executive control, where DMAP is not run anyway");
+                           "it is in the executive control, where DMAP is not run anyway");
       return;
     }
     if (!path) {

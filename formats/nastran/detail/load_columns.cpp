@@ -89,7 +89,7 @@ class Maker {
   }
 
  private:
-  /// A LOAD card: `factor` times what `load` stands for.
+  /// Adds a LOAD card: `factor` times the loads of set `load`.
   void add_sum(int sid, int load, double factor, const records::CardLocation& at) {
     records::LoadCombination sum;
     sum.sid = sid;

@@ -20,8 +20,8 @@ records::InputRecord read_input(const Fields& table);
 /// Reads the terms of a line of sight. Reports toml.wrong-type, toml.wrong-length and toml.missing-key.
 std::vector<records::OpticalTerm> read_optical_terms(const Fields& table, const std::string& sensor,
                                                      Diagnostics& diagnostics);
-/// Mount, target, the other end, sequence, and what becomes of the measurement; refuses those that the type does not
-/// take.
+/// Reads mount, target, the other end, sequence and the processing of the measurement; rejects keys that do not belong
+/// to the type.
 void read_sensor_keys(const Fields& table, const std::string& path, const std::string& type,
                       records::SensorRecord& sensor, Diagnostics& diagnostics);
 

@@ -4,7 +4,7 @@
 
 namespace bough::toml_files {
 
-/// The tensor about the centre of mass; zero where the key is missing. Reports toml.wrong-length, toml.bad-value.
+/// The tensor about the centre of mass; zero if the key is missing. Reports toml.wrong-length, toml.bad-value.
 Eigen::Matrix3d read_inertia(const Fields& table, Diagnostics& diagnostics);
 
 }  // namespace bough::toml_files

@@ -4,8 +4,8 @@
 
 namespace bough::toml_files {
 
-/// Puts the numbers of [parameters] where "$name" stands. Reports "toml.unknown-parameter" and
-/// the warning "toml.unused-parameter".
+/// Replaces each "$name" by its number of [parameters]. Reports "toml.unknown-parameter" and the warning
+/// "toml.unused-parameter".
 void insert_parameters(Value& root, const std::string& file, Diagnostics& diagnostics);
 
 }  // namespace bough::toml_files

@@ -66,7 +66,7 @@ class Checker {
   Checker(const json& schema, const std::string& file, Diagnostics& diagnostics)
       : root_(schema), file_(file), diagnostics_(diagnostics) {}
 
-  /// `path`: where v stands, "body.modes"; `line`: of its key.
+  /// `path`: position of v in the document, "body.modes"; `line`: of its key.
   void check(const Value& v, const json& schema_or_ref, const std::string& path, int line) {
     if (schema_or_ref.contains("$ref")) {
       const std::string ref = schema_or_ref["$ref"];

@@ -1,6 +1,6 @@
 #pragma once
-/// \file Units of the signals of a system file: of sensors and actuators by what they are, of functions and
-/// controllers by what takes them.
+/// \file Units of the signals of a system file: of sensors and actuators by their type, of functions and controllers by
+/// the blocks that use them.
 #include <map>
 #include <optional>
 #include <string>
@@ -13,7 +13,7 @@
 
 namespace bough::toml_files {
 
-/// A wire: what arrives at an input, and the [[connect]] that it comes by.
+/// A connection: the signal of an input, and its [[connect]] table.
 struct Wire {
   std::string from;
   const toml::node* node = nullptr;
@@ -24,7 +24,7 @@ class SignalUnits {
   /// All arguments must outlive this; `facts` are those of the files of the bodies.
   SignalUnits(const toml::table& root, const records::UnitChange& change, const BodyFacts& facts);
 
-  /// Units of a hinge's coordinates as they stand in lists of positions and of rates, and of the efforts along them.
+  /// Units of a hinge's coordinates as they are in lists of positions and of rates, and of the efforts along them.
   std::vector<double> list_positions(const std::string& hinge) const;
   std::vector<double> list_rates(const std::string& hinge) const;
   std::vector<double> list_efforts(const std::string& hinge) const;

@@ -271,11 +271,11 @@ void change_function(const UnitTable& t, SignalUnits& units) {
     value = over[0].y;
     for (const auto& other : over)
       if (!is_near(other.x, x) || !is_near(other.y, value))
-        return t.error("toml.unit-use", "name", "it stands for different quantities", "make a function of each");
+        return t.error("toml.unit-use", "name", "it is used for different quantities", "make a function of each");
   }
   for (const double taken : units.list_demands(name))
     if (!is_near(taken, value))
-      return t.error("toml.unit-use", "name", "it stands for different quantities", "make a function of each");
+      return t.error("toml.unit-use", "name", "it is used for different quantities", "make a function of each");
   if (t.get("file") && !(is_near(value, 1) && is_near(x, 1)))
     return t.error("toml.unit-file", "file", "the table is in another file", "convert the columns by hand");
   for (const char* key : {"value", "before", "amplitude", "offset"}) t.scale_angles(key, value);

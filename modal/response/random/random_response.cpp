@@ -392,7 +392,7 @@ records::RandomResponse RandomAnalysis::calc_set(const InputSpectrum& input, con
       result.integral_error = integral->error();
     } catch (const ComputationError&) {
       diagnostics.warning("modal.random-unbounded", at,
-                          "the random response has no bound: a mode within the band of the frequencies has no damping",
+                          "the random response is unbounded: a mode within the band of the frequencies has no damping",
                           "give damping (SDAMPING, PARAM,G, GE, dampers)");
     }
   for (auto& set : list_sets(responses, at, diagnostics)) {

@@ -16,7 +16,7 @@ inline constexpr double kRmsWarning = 0.01;
 /// Represents the sets that RANDOM of the subcases selects.
 class RandomAnalysis {
  public:
-  /// Reports what is wrong with the cards before anything is solved: see InputSpectrum.
+  /// Reports errors of the cards before the solution: see InputSpectrum.
   RandomAnalysis(const records::DynamicDeck& deck, const std::vector<records::DynamicSubcase>& subcases,
                  Diagnostics& diagnostics);
   /// Returns true if no subcase selects RANDOM.

@@ -139,6 +139,66 @@ TEST(SectionLibrary, AreaAndMomentsOfEveryShape) {
   EXPECT_EQ(drawn, list_section_shapes());
 }
 
+/// The faces of the pictures against the outlines drawn by hand; of round ones the polygon of 16 sides between circles.
+TEST(SectionLibrary, FacesCoverEveryShape) {
+  const double u = 2 * kPi / kRoundSides, area = std::sin(u) / u, inertia = area * (2 + std::cos(u)) / 3;
+  for (const Drawn& d : draw_all()) {
+    const bool is_round = d.loops.front().size() > 100;
+    const double tolerance = is_round ? 1e-5 : 1e-12;
+    const Moments m = calc_moments(d.loops), faces = calc_moments(calc(d.shape, d.dims).faces);
+    EXPECT_NEAR(faces.A / m.A, is_round ? area : 1, tolerance) << d.shape;
+    EXPECT_NEAR(faces.xx / m.yy, is_round ? inertia : 1, tolerance) << d.shape;
+    EXPECT_NEAR(faces.yy / m.xx, is_round ? inertia : 1, tolerance) << d.shape;
+    EXPECT_NEAR(faces.xy, -m.xy, tolerance * (m.xx + m.yy)) << d.shape;
+  }
+}
+
+/// Flange 3 x 0.375 above a web 0.25 wide; the centroid by hand. Figures show x to the right and y up.
+TEST(SectionLibrary, CornersOfATee) {
+  const double web = 3.625 * 0.25, flange = 3 * 0.375, c = (web * 1.8125 + flange * 3.8125) / (web + flange);
+  const auto faces = calc("T", {3, 4, 0.375, 0.25}).faces;
+  ASSERT_EQ(faces.size(), 2U);
+  const Polygon expected_flange{{3.625 - c, 1.5}, {3.625 - c, -1.5}, {4 - c, -1.5}, {4 - c, 1.5}};
+  const Polygon expected_web{{-c, 0.125}, {-c, -0.125}, {3.625 - c, -0.125}, {3.625 - c, 0.125}};
+  for (std::size_t k = 0; k < 4; ++k) {
+    EXPECT_TRUE(faces[0][k].isApprox(expected_flange[k], 1e-12)) << faces[0][k].transpose();
+    EXPECT_TRUE(faces[1][k].isApprox(expected_web[k], 1e-12)) << faces[1][k].transpose();
+  }
+}
+
+/// A rectangle, also in rotated axes, and a tube come back; a section without inertia is a circle, without area
+/// nothing.
+TEST(EquivalentSections, ShapesComeBack) {
+  const double h = 0.3, w = 0.1, A = h * w, I1 = w * h * h * h / 12, I2 = h * w * w * w / 12;
+  for (const double angle : {0.0, 0.4}) {
+    const double mean = (I1 + I2) / 2, half = (I1 - I2) / 2;
+    const double a = mean + half * std::cos(2 * angle), b = mean - half * std::cos(2 * angle);
+    const auto found = find_equivalent_section(A, a, b, half * std::sin(2 * angle), 1e-5);
+    ASSERT_TRUE(found);
+    EXPECT_EQ(found->kind, EquivalentSection::Kind::Rectangle);
+    const auto faces = list_faces(*found);
+    const Eigen::Rotation2Dd turn(angle);
+    const Polygon corners{{h / 2, -w / 2}, {h / 2, w / 2}, {-h / 2, w / 2}, {-h / 2, -w / 2}};
+    for (std::size_t k = 0; k < 4; ++k) EXPECT_TRUE(faces[0][k].isApprox(turn * corners[k], 1e-12)) << k;
+  }
+  const double R = 0.2, r = 0.15, I = kPi / 4 * (std::pow(R, 4) - std::pow(r, 4));
+  const auto tube = find_equivalent_section(kPi * (R * R - r * r), I, I, 0, 2 * I);
+  ASSERT_TRUE(tube);
+  EXPECT_EQ(tube->kind, EquivalentSection::Kind::Ring);
+  EXPECT_NEAR(tube->d1, 2 * R, 1e-12);
+  EXPECT_NEAR(tube->d2, 2 * r, 1e-12);
+  EXPECT_EQ(list_faces(*tube).size(), static_cast<std::size_t>(kRoundSides));
+  const auto solid = find_equivalent_section(kPi * R * R, kPi / 4 * std::pow(R, 4), kPi / 4 * std::pow(R, 4), 0,
+                                             kPi / 2 * std::pow(R, 4));
+  ASSERT_TRUE(solid);
+  EXPECT_NEAR(solid->d1, 2 * R, 1e-12);
+  EXPECT_EQ(solid->d2, 0);
+  const auto rod = find_equivalent_section(kPi * R * R, 0, 0, 0, 0);
+  ASSERT_TRUE(rod);
+  EXPECT_NEAR(rod->d1, 2 * R, 1e-12);
+  EXPECT_FALSE(find_equivalent_section(0, 1, 1, 0, 1));
+}
+
 /// The shipped listing of the MSC/NX run of beam_modes prints K1 = K2 = 0.9 for ROD.
 TEST(SectionLibrary, ShearFactorsOfSolids) {
   EXPECT_EQ(calc("ROD", {2}).k1, 0.9);

@@ -256,7 +256,7 @@ TEST(Probes, RigidBarsOfMixedComponents) {
                            "CBAR,1,1,1,2,0.,1.,0.\nGRID,3,,1.,.5,0.\n"
                            "GRID,4,,2.,.5,0.\nCBAR,2,1,3,4,0.,1.,0.\nFORCE,2,4,,50.,.2,.4,1.\n";
   expect_same(bars + "RBAR,9,2,3,123456,,,123456\n", bars + "RBE2,9,2,123456,3\n");
-  // Independent at both ends: 12356 of 2 and 4 of 3 are the six of one body.
+  // Independent components at both ends: 12356 of grid 2 and 4 of grid 3 are six of one rigid body.
   expect_same(bars + "RBAR,9,2,3,12356,4,4,12356\n", bars + "RBE2,9,2,123456,3\n");
   // Rotations about y and z stay free at 3.
   expect_same(bars + "CELAS2,21,1000.,3,5\nCELAS2,22,1000.,3,6\nRBAR,9,2,3,123456,,,1234\n",

@@ -108,6 +108,8 @@ int demand_sound(const std::string& path, const std::string& where) {
   EXPECT_TRUE(file.is_valid());
   if (!file.is_valid()) return -1;
   const auto count = static_cast<int>(read_integer(file.get(), "num_samples"));
+  // A run that is marked complete is never resumed.
+  if (read_integer(file.get(), "completed") != 0) EXPECT_EQ(count, kNumSamples);
   const auto demand_channel = [&](const std::string& channel, int first, int size) {
     const auto values = read_rows(file.get(), channel);
     EXPECT_GE(values.size(), static_cast<std::size_t>(count * size)) << channel;

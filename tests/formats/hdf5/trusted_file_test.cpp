@@ -45,7 +45,7 @@ TEST(TrustedFile, IsLookedAtOnlyAfterItChanged) {
   std::filesystem::rename(copy, path);
   EXPECT_EQ(count_looks(path), 0) << "the same file by another name";
   std::ofstream(path, std::ios::app | std::ios::binary) << "more";
-  EXPECT_GT(count_looks(path), 0) << "bytes put behind it";
+  EXPECT_GT(count_looks(path), 0) << "bytes put after it";
   set_isolated_runner(before);
 }
 

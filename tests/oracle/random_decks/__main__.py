@@ -44,7 +44,7 @@ def examine(job):
 
 
 def examine_others(options):
-    """Decks that have no generator behind them."""
+    """Decks that were not made by the generator."""
     decks, num_wrong = list_decks(options.decks), 0
     for deck in decks:
         with tempfile.TemporaryDirectory(prefix="bough-oracle-") as folder:

@@ -1,4 +1,4 @@
-"""One seed: its structure, sound or spoiled, through the verbs; what is wrong with the answers."""
+"""One seed: its structure, valid or with a fault, through the commands; faults of the results."""
 import os
 import random
 
@@ -18,7 +18,7 @@ FORMATS = [("small",), ("large",), ("free",), ("small", "large", "free")]
 
 
 class Report:
-    """kind: ok, refused, unclear or wrong; what: why unclear, or what is wrong by verb; deck: the text."""
+    """kind: ok, refused, unclear or wrong; what: why unclear, or what is wrong by command; deck: the text."""
 
     def __init__(self, kind, what="", deck=""):
         self.kind, self.what, self.deck = kind, what, deck
@@ -111,7 +111,7 @@ class Examination:
         return None
 
     def try_verbs(self, matrices, truth, spectrum, eigrl):
-        """What is wrong by verb, and the worst exit code of modes, or of the other verbs where modes is not run."""
+        """Faults by command, and the worst exit code: of modes, or of the other commands if modes is not run."""
         code, found, self.refusal = 0, {}, ""
         for verb in self.verbs:
             wrong = None

@@ -91,7 +91,7 @@ def find_autospc(K, free, index, model, epsilon=1e-8):
 
 
 class Wrong(Exception):
-    """The program holds a dof that has stiffness, or leaves one that has none."""
+    """AUTOSPC constrains a DOF with stiffness, or does not constrain one without."""
 
 
 def accept_autospc(K, K_size, free, index, reported, epsilon=1e-8):

@@ -12,7 +12,7 @@ sys.path.insert(0, os.path.join(HERE, "../../cli"))
 sys.path.insert(0, HERE)
 from beams import axes_along, make_beams  # noqa: E402
 from corotational import Elements  # noqa: E402
-from structure import Manifold, Structure, exponents  # noqa: E402
+from structure import Manifold, Structure, Table, exponents  # noqa: E402
 from support import ProgramTest  # noqa: E402
 
 E, G, RHO = 7e10, 2.6e10, 2700.
@@ -107,6 +107,40 @@ class TestReduced(ProgramTest):
             C.reshape(-1, 6, 6)[:, :3, 3 + k] = mass[:, None] * np.cross(np.eye(3)[k], self.X)
         np.testing.assert_allclose(C.T @ phi, 0, atol=1e-9)
         self.check_tables(structure, phi, third, names, nodes, C)
+
+    def test_grid_at_the_mean_of_others(self):
+        """RBE3 of three grids of the frame, with the rotations of one; from its reference grid a bar to a mass."""
+        self.make('frame = "fixed"')
+        reference, tip = self.tip + 1, self.tip + 2
+        self.X = np.vstack([self.X, [(.8, .5, -.3), (1.2, .9, .1)]])
+        members = [(2, 1., 0.), (4, 2., 1), (8, .7, 0.)]       # index, weight, with its rotations
+        with open(self.path("frame.bdf")) as f:
+            deck = f.read().replace(
+                "ENDDATA", f"GRID,{reference},,.8,.5,-.3\nGRID,{tip},,1.2,.9,.1\nMAT1,2,{E!r},{G!r},,0.\n"
+                f"PBAR,2,2,{A!r},{I1!r},{I2!r},{J!r}\nCBAR,20,2,{reference},{tip},.3,.2,1.\nCONM2,21,{tip},,.2\n"
+                f"RBE3,30,,{reference},123456,1.,123,3,2.\n,123456,5,.7,123,9\nENDDATA")
+        self.write("frame.bdf", deck.replace(f"FORCE,20,{self.tip},", f"FORCE,20,{tip},"))
+        with open(self.path("frame.toml")) as f:
+            body = f.read().replace(f"interface = [{self.tip}]", f"interface = [{tip}, {reference}]")
+        self.write("frame.toml", body + "[body.stiffening]\norder = 3\nlarge = [1, 2, 3]\n")
+        self.bough("reduce", "frame.toml", "-o", "frame.h5", "-q")
+        nodes = np.array([(i, i + 1) for i in range(2 * NUM)] + [(reference - 1, tip - 1)])
+        v = np.array([(0., 1., 0.)] * NUM + [(1., 0., 0.)] * NUM + [(.3, .2, 1.)])
+        axes = np.concatenate([axes_along(self.X, nodes[i:i + 1], v[i]) for i in range(len(nodes))])
+        beams = make_beams(self.X, nodes, axes, E * A, G * J, E * I2, E * I1, (I1 + I2) / A)
+        arm = np.mean([np.linalg.norm(self.X[i] - self.X[reference - 1]) for i, _, _ in members])
+        structure = Structure(self.X, [Elements(**beams)], held=range(6),
+                              means=[(reference - 1, [(i, w, w * r * arm**2) for i, w, r in members])])
+        self.calc_mass = lambda nodes: TestReduced.calc_mass(self, nodes[:-1]) + .2 * (np.arange(len(self.X)) == tip - 1)
+        phi, third, names, K = self.read_tables()
+        np.testing.assert_allclose(np.diag(phi.T @ structure.K @ phi), np.diag(K), rtol=1e-7)
+        self.check_tables(structure, phi, third, names, nodes)
+        # The reference grid moves with the mean.
+        manifold = Manifold(structure, phi, order=4, W=self.calc_mode_loads(structure, phi, nodes))
+        for k in (2, 3, 4):
+            eta = Table.points(MODES, k)
+            u = Table(MODES, k, structure.complete(manifold.curve(eta, k + 1))[k][:, reference - 1]).c
+            np.testing.assert_allclose(third[f"node_{k}"][1], u, rtol=0, atol=1e-6 * np.abs(u).max(), err_msg=f"node {k}")
 
     def test_small_modes(self):
         """Two large modes of four: the manifold of these alone, and u₂ of other pairs that cancels their cubic energy."""

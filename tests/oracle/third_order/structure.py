@@ -3,16 +3,75 @@ import itertools
 
 import numpy as np
 
-from series import cross, multiply, rotate, spin_map
+from series import cross, inverse_spin_map, multiply, rotate, rotation_vector, spin_map
+
+
+class Mean:
+    """A dependent node at the weighted mean of others: place x̄ + R (X_d - X̄), rotation R of best fit, RᵀB symmetric with
+    B = Σ w x_i X_iᵀ + ½ Σ w_r R_i. members: (node, w, w_r)."""
+
+    def __init__(self, X, node, members):
+        self.node, self.nodes = node, [m[0] for m in members]
+        self.w, self.w_r = (np.array([m[k] for m in members]) for k in (1, 2))
+        self.share = self.w / self.w.sum()
+        centre = self.share @ X[self.nodes]
+        self.arms, self.arm = X[self.nodes] - centre, X[node] - centre
+        H = np.einsum("n,ni,nj->ij", self.w, self.arms, self.arms) + 0.5 * self.w_r.sum() * np.eye(3)
+        self.J = np.linalg.inv(np.trace(H) * np.eye(3) - H)
+
+    def find_rotation(self, w):
+        """R and RᵀB along the series."""
+        u = w[..., self.nodes, :3].copy()
+        u[0] += self.arms
+        B = np.einsum("...ni,nj,n->...ij", u, self.arms, self.w)
+        B += 0.5 * np.einsum("...nij,n->...ij", rotate(w[..., self.nodes, 3:]), self.w_r)
+        R = np.zeros_like(B)
+        R[0] = np.eye(3)
+        for _ in range(len(w) - 1):                      # one order more each time
+            H = multiply("...ji,...jk->...ik", R, B)
+            axis = np.stack([H[..., 2, 1] - H[..., 1, 2], H[..., 0, 2] - H[..., 2, 0], H[..., 1, 0] - H[..., 0, 1]], -1)
+            axis[0] = 0
+            R = multiply("...ij,...jk->...ik", R, rotate(np.einsum("ij,...j->...i", self.J, axis)))
+        return R, multiply("...ji,...jk->...ik", R, B)
+
+    def move(self, w):
+        R, _ = self.find_rotation(w)
+        w[..., self.node, 3:] = rotation_vector(R)
+        R[0] -= np.eye(3)
+        w[..., self.node, :3] = np.einsum("n,...ni->...i", self.share, w[..., self.nodes, :3]) + R @ self.arm
+
+    def pull_back(self, w, f):
+        R, H = self.find_rotation(w)
+        force, theta = f[..., self.node, :3], w[..., self.node, 3:]
+        arm = R @ self.arm
+        tau = cross(arm, force) + multiply("...ji,...j->...i", inverse_spin_map(theta), f[..., self.node, 3:])
+        A = -H
+        A[..., range(3), range(3)] += np.trace(H, axis1=-2, axis2=-1)[..., None]
+        tau, mu = multiply("...ji,...j->...i", R, tau), np.zeros_like(tau)
+        for k in range(len(w)):
+            right = tau[k] - sum((np.einsum("...ij,...j->...i", A[i], mu[k - i]) for i in range(1, k + 1)), 0 * tau[k])
+            mu[k] = right @ self.J
+        for i, node in enumerate(self.nodes):
+            f[..., node, :3] += self.share[i] * force + self.w[i] * multiply("...ij,...j->...i", R, np.cross(mu, self.arms[i]))
+            if self.w_r[i] == 0:
+                continue
+            Q = multiply("...ji,...jk->...ik", R, rotate(w[..., node, 3:]))
+            C = -Q
+            C[..., range(3), range(3)] += np.trace(Q, axis1=-2, axis2=-1)[..., None]
+            m = multiply("...ij,...j->...i", R, multiply("...ji,...j->...i", C, 0.5 * self.w_r[i] * mu))
+            f[..., node, 3:] += multiply("...ji,...j->...i", spin_map(w[..., node, 3:]), m)
+        f[..., self.node, :] = 0
 
 
 class Structure:
-    """X (nodes, 3). Links (dependent, independent): rigid, the dependent node with all six of its dofs."""
+    """X (nodes, 3). Links (dependent, independent): rigid, the dependent node with all six of its dofs; means (dependent,
+    [(node, weight, weight of rotations), ...]), of nodes that depend on no others."""
 
-    def __init__(self, X, groups, links=(), held=()):
+    def __init__(self, X, groups, links=(), held=(), means=()):
         self.X, self.groups, self.links = np.asarray(X, float), groups, list(links)
+        self.means = [Mean(self.X, *m) for m in means]
         self.num_dofs = 6 * len(X)
-        dependent = [6 * d + k for d, _ in self.links for k in range(6)]
+        dependent = [6 * d + k for d in [d for d, _ in self.links] + [m.node for m in self.means] for k in range(6)]
         self.independent = np.setdiff1d(np.arange(self.num_dofs), dependent)
         self.held = np.asarray(sorted(held), int)
         self.free = np.setdiff1d(self.independent, self.held)
@@ -21,6 +80,11 @@ class Structure:
             s = self.X[d] - self.X[i]
             self.T[6 * d:6 * d + 6] = self.T[6 * i:6 * i + 6]
             self.T[6 * d:6 * d + 3] += np.cross(self.T[6 * i + 3:6 * i + 6].T, s).T
+        for mean in self.means:
+            w = np.zeros((2, self.num_dofs, len(X), 6))
+            w[1] = self.T.reshape(len(X), 6, -1).transpose(2, 0, 1)
+            mean.move(w)
+            self.T[6 * mean.node:6 * mean.node + 6] = w[1, :, mean.node].T
         self.T = self.T[:, self.independent]
         K = np.zeros((self.num_dofs,) * 2)
         for g in groups:
@@ -37,11 +101,15 @@ class Structure:
             R[0] -= np.eye(3)
             w[..., d, :] = w[..., i, :]
             w[..., d, :3] += np.einsum("...ij,j->...i", R, self.X[d] - self.X[i])
+        for mean in self.means:
+            mean.move(w)
         return w
 
     def pull_back(self, w, f):
         """Forces on independent dofs (and zero on the others) of forces f on all dofs at w."""
         f = f.reshape(w.shape).copy()
+        for mean in self.means:
+            mean.pull_back(w, f)
         for d, i in reversed(self.links):
             theta = w[..., i, 3:]
             arm = np.einsum("...ij,j->...i", rotate(theta), self.X[d] - self.X[i])

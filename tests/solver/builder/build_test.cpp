@@ -169,7 +169,7 @@ TEST_F(BuildTest, UnknownNodeOfAForce) {
 
 TEST_F(BuildTest, SecondInboardHingeClosesALoop) {
   spec_.hinges.push_back(make_hinge_record("strut", HingeType::Revolute, "ground", "arm"));
-  expect_error("system.loop", "'arm' already hangs on hinge 'root' (hub - arm - ground)");
+  expect_error("system.loop", "'arm' is already attached to hinge 'root' (hub - arm - ground)");
 }
 
 TEST_F(BuildTest, RingWithoutGroundIsALoop) {

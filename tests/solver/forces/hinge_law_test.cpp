@@ -115,7 +115,7 @@ TEST(HingeLaw, ABeltDragsAMassByStickAndSlip) {
   spec.simulation.output_step = 1e-3;
   spec.simulation.integrator = "bdf";
   spec.simulation.relative_tolerance = spec.simulation.absolute_tolerance = 1e-11;
-  const MemorySink sink = run_kept(spec, 1e-3);  // work is held to the root of the tolerance
+  const MemorySink sink = run_kept(spec, 1e-3);  // the tolerance of work is the root of the absolute tolerance
   const VectorXd t = sink.time(), v = sink.get("/bodies/mass/velocity").col(0);
   const VectorXd length = sink.get("/forces/spring/length");
   std::vector<double> falls;  // it moves back from here on

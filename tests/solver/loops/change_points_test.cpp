@@ -171,7 +171,7 @@ TEST(Drivers, TwoOfOneCoordinateAreAnError) {
   EXPECT_TRUE(run(spec).outcome.completed);
 }
 
-// Forty loops, as the library has it: rows of A meet their neighbours only.
+// Forty loops in a chain, as in the IFToMM library: each row of A is coupled to its neighbours only.
 TEST(ChangePoints, FortyLoopsInOneChain) {
   auto spec = make_n_four_bar(40);
   spec.simulation.duration = 2;

@@ -143,6 +143,20 @@ TEST(Margins, AnUndampedPoleIsNoCrossing) {
   }
 }
 
+/// L = k / (s² + 4) passes through -1 at ω² = 4 + k: no phase margin and no delay margin, on whichever side of the real
+/// axis round-off has put it.
+TEST(Margins, AtMinusOneThereIsNoDelay) {
+  for (const double k : {0.7, 1.7, 3.0, 5.0, 11.3}) {
+    const auto m = make_siso({0, k}, {1, 0, 4});
+    const auto margins = calc_margins(m, calc_frequency_response(m));
+    ASSERT_FALSE(margins.phase.empty()) << k;
+    const auto& last = margins.phase.back();
+    EXPECT_NEAR(last.frequency_hz * 2 * std::numbers::pi, std::sqrt(4 + k), 1e-9) << k;
+    EXPECT_NEAR(last.margin, 0, 1e-9) << k;
+    EXPECT_NEAR(last.delay, 0, 1e-9) << k;
+  }
+}
+
 TEST(Margins, OfAnUndampedPoleBelowOneAreItsTwoCrossings) {
   // L = 0.5 (1 + 0.01 s) / (1 + s²): |L| = 1 on both sides of the pole at 1.
   const auto m = make_siso({0.005, 0.5}, {1, 0, 1});

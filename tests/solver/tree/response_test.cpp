@@ -211,7 +211,7 @@ TEST(Pivots, FromRoundingAreNamed) {
       EXPECT_EQ(e.items()[0].id, "solver.indefinite-mass");
       EXPECT_NE(std::string(e.what()).find(
                     "rod.toml:7: error: the articulated mass matrix of body 'rod' is not positive definite at t = "
-                    "0.25: next to nothing moves along coordinate 1 of its hinge 'ball'"),
+                    "0.25: almost no mass moves along coordinate 1 of its hinge 'ball'"),
                 std::string::npos)
           << e.what();
     }
