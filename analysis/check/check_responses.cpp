@@ -50,17 +50,26 @@ ResponseCheck check_response(const records::DynamicDeck& deck, const records::Dy
   response::ResponseOptions options;
   options.is_over_time = solution.is_over_time;
   options.is_direct = solution.is_direct;
+  options.with_random = subcase.dynamics.random != 0;
   response::choose_damping(deck, subcase, options, model, found);
+  found.throw_if_errors();
+  response::check_rotors(model, deck, subcase, options, found);
   return row;
 }
 
-void check_complex(const records::DynamicDeck& deck, Diagnostics& diagnostics) {
+void check_complex(const records::DynamicDeck& deck, SubcaseModels& models, Diagnostics& diagnostics) {
   SubcaseFailures failures(deck.subcases.size(), deck.subcases.size());
   for (const auto& subcase : deck.subcases) {
     const auto selection = deck.selections.find(subcase.id);
+    const records::DynamicSubcase chosen(
+        subcase, selection == deck.selections.end() ? records::DynamicSelection{} : selection->second);
     try {
-      modal::complex_modes::choose_method(
-          deck, {subcase, selection == deck.selections.end() ? records::DynamicSelection{} : selection->second}, 0);
+      modal::complex_modes::choose_method(deck, chosen, 0);
+      Diagnostics found;
+      modal::complex_modes::check_selections(models.get(chosen), deck, chosen, has_modal_complex_modes(deck.sol),
+                                             found);
+      found.throw_if_errors();
+      add_new(found, diagnostics);
     } catch (const Failure& failure) {
       failures.add(subcase.id, failure);
     }
@@ -74,11 +83,11 @@ std::vector<ResponseCheck> check_responses(const records::DynamicDeck& deck, con
                                            const fe::ModelOptions& options, Diagnostics& diagnostics) {
   std::vector<ResponseCheck> rows;
   const auto* solution = find_response_solution(deck.sol);
+  SubcaseModels models(deck, model, options);
   if (!solution) {
-    if (asks_complex_modes(deck, options.ignore_cards)) check_complex(deck, diagnostics);
+    if (asks_complex_modes(deck, options.ignore_cards)) check_complex(deck, models, diagnostics);
     return rows;
   }
-  SubcaseModels models(deck, model, options);
   std::vector<records::DynamicSubcase> subcases;
   try {
     subcases = response::choose_response_subcases(deck, options.subcase, solution->is_over_time);

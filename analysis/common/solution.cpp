@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <set>
 
@@ -147,6 +148,11 @@ bool asks_complex_modes(const records::Deck& deck, const std::vector<std::string
   return other && other->has_complex_modes && std::none_of(ignored.begin(), ignored.end(), [](const std::string& name) {
            return name == "CMETHOD" || name == "cmethod" || name == "EIGC";
          });
+}
+
+bool has_modal_complex_modes(const std::string& sol) {
+  static const std::array modal{"110", "29", "SEMCEIG", "MCEIG"};
+  return std::find(modal.begin(), modal.end(), sol) != modal.end();
 }
 
 }  // namespace bough::analysis

@@ -29,5 +29,7 @@ const ResponseSolution* find_response_solution(const std::string& sol);
 
 /// Returns true for SOL 107, 110 and their kin unless CMETHOD (or EIGC) is among the names of --ignore.
 bool asks_complex_modes(const records::Deck& deck, const std::vector<std::string>& ignored);
+/// Returns true for SOL 110 and its kin, whose complex modes are those of real modes.
+bool has_modal_complex_modes(const std::string& sol);
 
 }  // namespace bough::analysis

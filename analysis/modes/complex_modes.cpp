@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <optional>
 
 #include "analysis/common/inputs.hpp"
+#include "analysis/common/solution.hpp"
 #include "analysis/listing/listing.hpp"
 #include "analysis/modes/rotor_speeds.hpp"
 #include "base/phase.hpp"
@@ -15,11 +15,6 @@
 
 namespace bough::analysis {
 namespace {
-
-bool is_by_modes(const std::string& sol) {
-  static const std::array modal{"110", "29", "SEMCEIG", "MCEIG"};
-  return std::find(modal.begin(), modal.end(), sol) != modal.end();
-}
 
 /// Vector of the listing with the shape of one mode in displacement (CD) axes; none if the case control does not
 /// request it.
@@ -110,7 +105,7 @@ ModesAnswer solve_complex_modes(const ModesRequest& request, const std::vector<i
   const auto deck = read_loads_deck_or_throw(request.deck, model_options, false, diagnostics, true);
   const auto sources = calc_sources(deck.files);
   modal::complex_modes::ComplexModesOptions solver;
-  solver.is_by_modes = is_by_modes(deck.sol);
+  solver.is_by_modes = has_modal_complex_modes(deck.sol);
   // In SOL 110 the number of real modes is that of EIGRL.
   solver.num_modes = request.eigen.number;
   solver.has_shapes = true;

@@ -454,6 +454,43 @@ struct ComplexModesSolver::Prepared {
   }
 };
 
+namespace {
+
+/// What a subcase selects besides its method: damping, direct input, rotors.
+struct Selections {
+  records::DynamicSubcase without_input;  ///< K2PP is no part of the structure here: neither G nor ALPHA2 acts on it
+  response::DampingChoice damping;
+  PhysicalInput input;
+  std::optional<rotors::RotorCase> rotor_case;
+};
+
+Selections read_selections(const fe::Model& model, const records::DynamicDeck& deck,
+                           const records::DynamicSubcase& subcase, bool is_by_modes, Diagnostics& diagnostics) {
+  Selections found;
+  found.without_input = subcase;
+  auto& d = found.without_input.dynamics;
+  for (auto* list : {&d.k2pp, &d.m2pp, &d.b2pp}) list->clear();
+  response::ResponseOptions damping_options;
+  damping_options.is_direct = !is_by_modes;
+  found.damping = response::choose_damping(deck, found.without_input, damping_options, model, diagnostics);
+  found.input = collect_physical_input(model, deck, subcase, diagnostics);
+  found.rotor_case = rotors::choose_rotors(model, deck, subcase, rotors::RotorUse::Eigenvalues, diagnostics);
+  if (!is_by_modes && d.sdamping != 0)
+    diagnostics.warning("modal.no-modes", deck.locate(subcase.find_command("SDAMPING")),
+                        "SDAMPING damps modes: the direct solution leaves it out, as in Nastran",
+                        "damp by PARAM,G, GE or dampers, or solve by modes (SOL 110)");
+  return found;
+}
+
+}  // namespace
+
+void check_selections(const fe::Model& model, const records::DynamicDeck& deck, const records::DynamicSubcase& subcase,
+                      bool is_by_modes, Diagnostics& diagnostics) {
+  const auto found = read_selections(model, deck, subcase, is_by_modes, diagnostics);
+  diagnostics.throw_if_errors();
+  if (found.rotor_case) fe::find_rotors(model, found.rotor_case->axes, diagnostics);
+}
+
 ComplexModesSolver::ComplexModesSolver(const records::DynamicDeck& deck, const fe::ModelOptions& model_options,
                                        const records::DynamicSubcase& subcase, const ComplexModesOptions& options,
                                        Diagnostics& diagnostics) {
@@ -463,21 +500,12 @@ ComplexModesSolver::ComplexModesSolver(const records::DynamicDeck& deck, const f
   prepared_ = std::make_unique<Prepared>(deck, subcase, options, std::move(model));
   auto& p = *prepared_;
   p.method = method;
-  // K2PP is no part of the structure here: neither G nor ALPHA2 acts on it.
-  auto without_input = subcase;
-  auto& d = without_input.dynamics;
-  for (auto* list : {&d.k2pp, &d.m2pp, &d.b2pp}) list->clear();
-  response::ResponseOptions damping_options;
-  damping_options.is_direct = !options.is_by_modes;
-  const auto damping = response::choose_damping(deck, without_input, damping_options, p.model, diagnostics);
-  p.input = collect_physical_input(p.model, deck, subcase, diagnostics);
-  p.rotor_case = rotors::choose_rotors(p.model, deck, subcase, rotors::RotorUse::Eigenvalues, diagnostics);
+  auto [without_input, damping, input, rotor_case] =
+      read_selections(p.model, deck, subcase, options.is_by_modes, diagnostics);
   diagnostics.throw_if_errors();
+  p.input = std::move(input);
+  p.rotor_case = std::move(rotor_case);
   if (p.rotor_case) p.rotor_terms.emplace(p.model, *p.rotor_case, damping.g, diagnostics);
-  if (!options.is_by_modes && d.sdamping != 0)
-    diagnostics.warning("modal.no-modes", deck.locate(subcase.find_command("SDAMPING")),
-                        "SDAMPING damps modes: the direct solution leaves it out, as in Nastran",
-                        "damp by PARAM,G, GE or dampers, or solve by modes (SOL 110)");
   p.problem = options.is_by_modes
                   ? make_modal_problem(p.system, deck, without_input, damping, p.input, options, diagnostics)
                   : make_direct_problem(p.system, deck, without_input, damping, p.input);

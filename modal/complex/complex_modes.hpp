@@ -31,6 +31,11 @@ struct SpeedModes {
 const records::ComplexMethod& choose_method(const records::DynamicDeck& deck, const records::DynamicSubcase& subcase,
                                             int num_modes);
 
+/// Reads what ComplexModesSolver reads of a subcase before it solves: damping, direct input, rotors. Reports the errors
+/// and warnings of its constructor; throws the errors that hide others. \param model  of the subcase.
+void check_selections(const fe::Model& model, const records::DynamicDeck& deck, const records::DynamicSubcase& subcase,
+                      bool is_by_modes, Diagnostics& diagnostics);
+
 /// Complex modes of a subcase with its SPC, MPC, damping, K2PP, B2PP, M2PP, TFL and rotors.
 class ComplexModesSolver {
  public:

@@ -178,13 +178,12 @@ DampingChoice choose_damping(const records::DynamicDeck& deck, const records::Dy
 
 namespace {
 
-/// Rotors of RGYRO; nullptr without.
-std::shared_ptr<const RotorResponse> make_rotors(const fe::Model& model, const records::DynamicDeck& deck,
-                                                 const records::DynamicSubcase& subcase, const ResponseOptions& options,
-                                                 double g, const std::vector<OutputChoice>& outputs,
-                                                 Diagnostics& diagnostics) {
-  const auto rotor_case = rotors::choose_rotors(model, deck, subcase, rotors::RotorUse::Frequency, diagnostics);
-  if (!rotor_case) return nullptr;
+/// Rotors of RGYRO that the response supports; none without RGYRO.
+std::optional<rotors::RotorCase> choose_supported_rotors(const fe::Model& model, const records::DynamicDeck& deck,
+                                                         const records::DynamicSubcase& subcase,
+                                                         const ResponseOptions& options, Diagnostics& diagnostics) {
+  auto rotor_case = rotors::choose_rotors(model, deck, subcase, rotors::RotorUse::Frequency, diagnostics);
+  if (!rotor_case) return rotor_case;
   const auto at = deck.locate(subcase.find_command("RGYRO"));
   if (options.is_over_time)
     diagnostics.error("modal.rotor-unsupported", at, "RGYRO is not supported over time",
@@ -194,6 +193,17 @@ std::shared_ptr<const RotorResponse> make_rotors(const fe::Model& model, const r
                       "RANDOM by modes is not supported with rotors: its modal integrals have no gyroscopic terms",
                       "solve directly (SOL 108, --direct)");
   diagnostics.throw_if_errors();
+  return rotor_case;
+}
+
+/// nullptr without RGYRO.
+std::shared_ptr<const RotorResponse> make_rotors(const fe::Model& model, const records::DynamicDeck& deck,
+                                                 const records::DynamicSubcase& subcase, const ResponseOptions& options,
+                                                 double g, const std::vector<OutputChoice>& outputs,
+                                                 Diagnostics& diagnostics) {
+  const auto rotor_case = choose_supported_rotors(model, deck, subcase, options, diagnostics);
+  if (!rotor_case) return nullptr;
+  const auto at = deck.locate(subcase.find_command("RGYRO"));
   const auto is_fixed = [&](int grid) {
     const auto& node = model.node(model.find_node(grid));
     return std::any_of(model.fixed_dofs().begin(), model.fixed_dofs().end(),
@@ -240,6 +250,12 @@ void report_modal(const records::DynamicDeck& deck, const records::DynamicSubcas
 }
 
 }  // namespace
+
+void check_rotors(const fe::Model& model, const records::DynamicDeck& deck, const records::DynamicSubcase& subcase,
+                  const ResponseOptions& options, Diagnostics& diagnostics) {
+  if (const auto rotor_case = choose_supported_rotors(model, deck, subcase, options, diagnostics))
+    fe::find_rotors(model, rotor_case->axes, diagnostics);
+}
 
 std::vector<records::DynamicSubcase> choose_response_subcases(const records::DynamicDeck& deck, int asked,
                                                               bool is_over_time) {

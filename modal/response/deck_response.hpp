@@ -44,6 +44,11 @@ std::unique_ptr<fe::StaticSolver> make_residual_solver(const fe::System& system,
 DampingChoice choose_damping(const records::DynamicDeck& deck, const records::DynamicSubcase& subcase,
                              const ResponseOptions& options, const fe::Model& model, Diagnostics& diagnostics);
 
+/// Reports what is wrong with the rotors of RGYRO of the subcase, as the solver does before it solves. Throws the
+/// errors that hide others.
+void check_rotors(const fe::Model& model, const records::DynamicDeck& deck, const records::DynamicSubcase& subcase,
+                  const ResponseOptions& options, Diagnostics& diagnostics);
+
 /// Model and modes are kept while constraints and METHOD stay the same.
 class DeckResponseSolver {
  public:

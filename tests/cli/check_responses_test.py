@@ -41,8 +41,9 @@ TRANSIENT = "TSTEP = 7\nDLOAD = 13\nSDAMPING = 4"
 
 
 class CheckResponses(ProgramTest):
-    def deck(self, sol, case):
-        return self.write("deck.bdf", CASE.format(sol=sol, case=case) + MODEL)
+    def deck(self, sol, case, cards=()):
+        model = MODEL.replace("ENDDATA", "\n".join([*cards, "ENDDATA"]))
+        return self.write("deck.bdf", CASE.format(sol=sol, case=case) + model)
 
     def ask(self, *call):
         return served.run([PROGRAM, *call], cwd=self.folder, timeout=HANG)
@@ -87,6 +88,29 @@ class CheckResponses(ProgramTest):
                 (107, "modes", "", "modal.no-complex-method")]:
             with self.subTest(sol=sol, case=case):
                 file = self.deck(sol, case)
+                ids = [re.findall(r"error: .*\[([a-z]+\.[a-z0-9-]+)\]", run.stderr)
+                       for run in (self.ask(verb, file, "-o", "out.h5"), self.ask("check", file))]
+                self.assertIn(error, ids[0])
+                self.assertEqual(ids[0], ids[1])
+                self.bough("check", file, code=1)
+
+    def test_rotors_and_direct_input(self):
+        """Direct input, transfer functions and rotors that the deck does not have are the errors of the solution."""
+        line, spin, speed = "ROTORG,7,1,2", "RSPINR,7,1,2,RPM,1.", "RGYRO,9,ASYNC,7,RPM,,,8"
+        rotors = [([], "modal.missing-rotor"), ([speed, "RSPEED,8,0.,10.,2"], "modal.missing-rotor"),
+                  (["ROTORG,7,1,2,55", spin, speed, "RSPEED,8,0.,10.,2"], "modal.rotor-line"),
+                  ([line, spin, speed], "modal.missing-rotor"),
+                  (["ROTORG,7,2,3", "GRID,3,,2.,0.,0.", "RSPINR,7,2,3,RPM,1.", "CBAR,2,1,2,3,0.,1.,0.", "RGYRO,9,ASYNC,7,RPM,,,50.",
+                    "PLOTEL,9,1,2"], "modal.rotor-element")]
+        cases = [(107, "CMETHOD = 8\nK2PP = NIX", [], "fe.missing-direct"), (107, "CMETHOD = 8\nTFL = 9", [], "modal.missing-transfer"),
+                 (110, "CMETHOD = 8\nSDAMPING = 99", [], "modal.missing-table"),
+                 *[(107, "CMETHOD = 8\nRGYRO = 9", *rotor) for rotor in rotors],
+                 *[(sol, FREQUENCY.replace("SDAMPING = 4\n", "") + "\nRGYRO = 9", *rotor) for rotor in rotors for sol in (108, 111)],
+                 (112, TRANSIENT + "\nRGYRO = 9", [line, spin, "RGYRO,9,ASYNC,7,RPM,,,50."], "modal.rotor-unsupported")]
+        for sol, case, cards, error in cases:
+            with self.subTest(sol=sol, case=case, cards=cards):
+                verb = {107: "modes", 110: "modes", 112: "transient"}.get(sol, "frequency")
+                file = self.deck(sol, case, cards)
                 ids = [re.findall(r"error: .*\[([a-z]+\.[a-z0-9-]+)\]", run.stderr)
                        for run in (self.ask(verb, file, "-o", "out.h5"), self.ask("check", file))]
                 self.assertIn(error, ids[0])
