@@ -86,6 +86,18 @@ records::Deck read_static_deck(const StaticRequest& request, Diagnostics& diagno
   return deck;
 }
 
+/// Warns of options of nonlinear solutions that are given with a linear one.
+void warn_of_nonlinear_options(const StaticRequest& request, const records::Deck& deck, Diagnostics& diagnostics) {
+  std::string names;
+  if (request.has_arc_length) names = "--arc-length";
+  if (request.has_increments || request.num_increments != StaticRequest::kDefaultIncrements)
+    names += names.empty() ? "--increments" : " and --increments";
+  if (names.empty()) return;
+  diagnostics.warning("cli.nonlinear-option", deck.locate({0, 0}),
+                      "the solution is linear, found " + names + ", without effect",
+                      "give --nonlinear, or leave the option out");
+}
+
 }  // namespace
 
 StaticAnswer solve_static(const StaticRequest& request, StaticReceiver& receiver, Events& events) {
@@ -99,6 +111,7 @@ StaticAnswer solve_static(const StaticRequest& request, StaticReceiver& receiver
   with_prior_messages(diagnostics, [&] {
     subcases = fe::choose_static_subcases(deck, request.model.subcase);
     is_nonlinear = choose_static_solution(deck, request.is_linear, request.is_nonlinear, diagnostics);
+    if (!is_nonlinear) warn_of_nonlinear_options(request, deck, diagnostics);
     if (is_nonlinear && is_one_of_many())
       throw InputError("cli.nonlinear-ranks", {}, "nonlinear statics run on one process, found several ranks",
                        "leave mpirun out");

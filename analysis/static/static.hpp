@@ -14,16 +14,18 @@
 namespace bough::analysis {
 
 struct StaticRequest {
+  static constexpr int kDefaultIncrements = 10;
   std::string deck;  ///< file
   ModelChoice model;
   std::vector<std::string> grid_forces;  ///< ids of grids whose forces are listed, or "all"; empty: none
   bool is_linear = false;                ///< the linear solution of a nonlinear SOL
   /// Large displacements and rotations; also without it where a nonlinear SOL has PARAM,LGDISP,1 or 2.
   bool is_nonlinear = false;
-  int num_increments = 10;      ///< of each subcase of these
-  bool has_strains = false;     ///< strains of elements too
-  bool has_listing = false;     ///< print file of the output requests
-  bool has_arc_length = false;  ///< nonlinear subcases pass limit points
+  int num_increments = kDefaultIncrements;  ///< of each subcase of these
+  bool has_increments = false;              ///< num_increments is given, even as the default
+  bool has_strains = false;                 ///< strains of elements too
+  bool has_listing = false;                 ///< print file of the output requests
+  bool has_arc_length = false;              ///< nonlinear subcases pass limit points
 };
 
 /// Takes the subcases in the order of the deck, those of one model together, combinations last.

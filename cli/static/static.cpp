@@ -88,7 +88,8 @@ void add_static(CLI::App& app, Action& action) {
   verb->add_flag("--nonlinear", o->request.is_nonlinear,
                  "Large displacements and rotations, elastic materials; the way of SOL 106 with PARAM,LGDISP,1");
   verb->add_option("--increments", o->request.num_increments, "Load steps of each nonlinear subcase (default: 10)")
-      ->check(is_within(1, 100000));
+      ->check(is_within(1, 100000))
+      ->each([options = o](const std::string&) { options->request.has_increments = true; });
   verb->add_flag("--arc-length", o->request.has_arc_length,
                  "Nonlinear subcases follow their path through limit points (snap-through)");
   verb->add_option("--vtu", o->vtu, "Write the displacements of every subcase to this file for ParaView");

@@ -249,8 +249,15 @@ class Collector {
     for (const auto& area : deck_.dynamics.areas) {
       if (area.sid != load.excite) continue;
       is_found = true;
-      if (const int row = find_dof(model_, deck_, area.g, area.c, "DAREA", area.at, diagnostics_); row >= 0)
-        F_cd[row] += area.value;
+      const int row = find_dof(model_, deck_, area.g, area.c, "DAREA", area.at, diagnostics_);
+      if (row < 0) continue;
+      F_cd[row] += area.value;
+      if (area.value != 0 && is_held(row))
+        diagnostics_.warning("modal.load-on-spc", deck_.locate(area.at),
+                             "DAREA " + std::to_string(area.sid) + " acts on component " + std::to_string(area.c) +
+                                 " of grid " + std::to_string(area.g) +
+                                 ", which an SPC holds: it loads the support and moves nothing",
+                             "load a free component, or move the support by SPCD with TYPE DISP, VELO or ACCE");
     }
     turn_to_basic(model_, F_cd);
     F += F_cd;
@@ -280,6 +287,15 @@ class Collector {
     auto parts = split(load, F, [](int row) { return row; });
     for (auto& part : parts) turn_to_basic(model_, part.pattern);
     return parts;
+  }
+
+  /// Returns true if an SPC of the subcase, of the grid or of the model holds a row of the g-set in CD axes.
+  bool is_held(int row) const {
+    const auto& fixed = model_.fixed_dofs();
+    if (!std::binary_search(fixed.begin(), fixed.end(), row)) return false;
+    return std::none_of(model_.autospc().begin(), model_.autospc().end(), [&](const auto& entry) {
+      return model_.node(model_.find_node(entry.node)).first_gdof + std::max(entry.component - 1, 0) == row;
+    });
   }
 
   std::vector<Part> list_motions(const DynamicLoad& load) {

@@ -38,7 +38,7 @@ struct Excitation {
 
 /// Of DLOAD of the subcase, over time or over frequency. Reports modal.no-dynamic-load, modal.missing-load,
 /// modal.wrong-load, modal.missing-table, modal.unsupported-load, fe.missing-grid, fe.bad-component,
-/// fe.spcd-not-fixed, fe.load-autospc, modal.unbalance-rate (warnings) and what is wrong with static
+/// fe.spcd-not-fixed, fe.load-autospc, modal.load-on-spc, modal.unbalance-rate (warnings) and what is wrong with static
 /// loads.
 Excitation calc_excitation(const fe::Model& model, const records::DynamicDeck& deck,
                            const records::DynamicSubcase& subcase, bool is_over_time, Diagnostics& diagnostics);

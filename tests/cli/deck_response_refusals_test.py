@@ -42,6 +42,7 @@ class Refusals(ProgramTest):
         for card, says in [("TABLED1,3\n,0.,1.,2.,1.", "ENDT"), ("TABLED1,3\n,0.,1.,2.,1.,1.,1.,ENDT", "one direction"),
                            ("TABLED1,3\n,0.,1.,1.,1.,1.,0.,ENDT", "jumps at its first or last"),
                            ("TABLED2,3,1.\n,0.,0.,0.,1.,1.,1.,ENDT", "jumps at its first or last"),
+                           ("TABLED1,3\n,0.,1.,ENDT", "expected two"), ("TABLED2,3,1.\n,0.,1.,ENDT", "expected two"),
                            ("TABLED1,3,LOG\n,0.,1.,2.,1.,ENDT", "LOG axis"), ("TABLED3,3,0.,0.\n,0.,1.,2.,1.,ENDT", "X2"),
                            ("TLOAD2,3,10,,,1.,1.", "T2"), ("RLOAD1,3,10", "TC and TD"), ("RLOAD2,3,10", "TB"),
                            ("FREQ1,5,1.", "DF"), ("FREQ2,5,0.,1.", "F1"), ("FREQ3,5,1.,2.,,1", "NEF"), ("FREQ4,5,1.,2.,2.", "FSPD"),
@@ -59,6 +60,18 @@ class Refusals(ProgramTest):
             self.write("d.bdf", self.deck(good + card))
             said = self.bough("frequency", "d.bdf").stderr
             self.assertRegex(said, f"warning: .*{says}.*no subcase selects the set")
+
+    def test_a_load_on_a_support(self):
+        """DAREA at a component that an SPC holds moves nothing: a warning of every solution, and of `check`."""
+        load = "DAREA,10,1,1,2.\nDAREA,10,2,3,5.\n"
+        for verb, sol, case, bulk in (("frequency", 108, "FREQUENCY = 5", "RLOAD1,9,10,,,1.\nFREQ,5,1."),
+                                      ("frequency", 111, "FREQUENCY = 5", "RLOAD1,9,10,,,1.\nFREQ,5,1."),
+                                      ("transient", 112, "TSTEP = 5", "TLOAD2,9,10,,,0.,1.\nTSTEP,5,4,.1")):
+            self.write("d.bdf", self.deck(load + bulk, f"DLOAD = 9\n{case}", sol))
+            for command in (verb, "check"):
+                stderr = self.bough(command, "d.bdf").stderr
+                self.assertEqual(stderr.count("[modal.load-on-spc]"), 1, stderr)
+                self.assertIn("component 3 of grid 2", stderr)
 
     def test_unbounded(self):
         self.refuse("modal.unbounded-response", self.deck(f"RLOAD1,9,10,,,1.\nDAREA,10,1,1,2.\nFREQ4,5,.1,1.,.1,1"), code=3,

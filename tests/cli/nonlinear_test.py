@@ -82,6 +82,16 @@ class Nonlinear(ProgramTest):
                 if name == "same":
                     np.testing.assert_allclose(found[1][1], found[1][0], rtol=1e-12, atol=1e-15)
 
+    def test_options_of_nonlinear_solutions(self):
+        """A linear solution has no increments and no path: options that change nothing are a warning."""
+        self.write("a.bdf", DECK)
+        for options, name in ((["--arc-length"], "--arc-length"), (["--increments", "10"], "--increments"),
+                              (["--arc-length", "--increments", "4"], "--arc-length and --increments")):
+            self.assertIn(f"found {name}, without effect", self.bough("static", "a.bdf", "--linear", *options).stderr)
+            self.assertNotIn("cli.nonlinear-option", self.bough("static", "a.bdf", "--nonlinear", *options).stderr)
+        self.write("b.bdf", DECK.replace("SOL 106", "SOL 101"))
+        self.assertIn("[cli.nonlinear-option]", self.bough("static", "b.bdf", "--arc-length").stderr)
+
     def test_refusals(self):
         self.write("a.bdf", DECK.replace("PARAM,LGDISP,1\n", ""))
         self.fails(1, "static", "a.bdf", says=["--nonlinear", "--linear"], error="cli.nonlinear-static")

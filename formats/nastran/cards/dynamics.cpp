@@ -204,6 +204,8 @@ records::DynamicTable read_table_head(Card& card, int kind) {
   return read_kind_head(card, &records::DynamicTable::id, "TID", kind);
 }
 void add_table(Card& card, DynamicCards& r, records::DynamicTable table) {
+  if (card.is_ok() && table.kind != 4 && table.points.size() < 2)
+    card.fail("deck.missing-field", 10, "the table has one pair x y, expected two at least");
   add_unique(card, r.tables, std::move(table), &std::remove_reference_t<decltype(table)>::id);
 }
 
