@@ -456,7 +456,7 @@ struct ComplexModesSolver::Prepared {
 
 namespace {
 
-/// What a subcase selects besides its method: damping, direct input, rotors.
+/// Selections of a subcase in addition to its method: damping, direct input, rotors.
 struct Selections {
   records::DynamicSubcase without_input;  ///< K2PP is no part of the structure here: neither G nor ALPHA2 acts on it
   response::DampingChoice damping;
