@@ -174,9 +174,11 @@ class Places(Edits):
 class Curves(Edits):
     def open_curves(self, text=CURVES):
         page = self.show("curves.toml", text)
+        self.wait_for_check()  # the page moves when the messages come
         page.click("details.functions summary")
-        self.wait("studio.view.diagrams.editors.get('thrust')?.chart.frame")
-        page.show(".curve-editor canvas.overlay")
+        self.wait("studio.view.diagrams.editors.get('thrust')?.chart")
+        page.show(".curve-editor canvas.overlay")  # a chart is drawn when it is in view
+        self.wait("studio.view.diagrams.editors.get('thrust').chart.frame")
         return page
 
     def get_points(self):
