@@ -70,8 +70,13 @@ ReducedBody reduce(const records::Deck& deck, const records::BodySpec& spec, con
   const BodyRequest request{deck, spec, options, nullptr, diagnostics};
   if (!spec.preload || !spec.preload->is_nonlinear) return reduce_body(request);
   check_spec(request);
+  if (linear::initialize_petsc().size > 1) {
+    diagnostics.error("reduce.bad-preload", spec.preload->at,
+                      "nonlinear = true is given, but nonlinear statics run on one process, found several ranks",
+                      "leave mpirun out");
+    diagnostics.throw_if_errors();
+  }
   request.report("preload under large displacements");
-  linear::initialize_petsc();
   const fe::DeformedPreload preload = calc_nonlinear_preload(request);
   return reduce_body({preload.deck, spec, options, nullptr, diagnostics, preload.prestress});
 }

@@ -172,6 +172,11 @@ class NonlinearPreload(ProgramTest):
             self.write("b.toml", f'[body]\nname = "b"\ndeck = "deck.bdf"\nframe = "{frame}"\ninterface = [{tip}]\n'
                        f"[body.modes]\nnumber = 4\n[body.preload]\n{preload}\n")
             self.fails(1, "reduce", "b.toml", "-o", "x.h5", says=[says], error="reduce.bad-preload")
+        self.write("b.toml", f'[body]\nname = "b"\ndeck = "deck.bdf"\nframe = "fixed"\ninterface = [{tip}]\n'
+                   "[body.modes]\nnumber = 4\n[body.preload]\nload_set = 5\nnonlinear = true\n")
+        ranks = self.bough("reduce", "b.toml", "-o", "x.h5", code=1,
+                           launcher=["mpirun", "--allow-run-as-root", "--oversubscribe", "-n", "2"])
+        self.assertIn("found several ranks; leave mpirun out [reduce.bad-preload]", ranks.stderr)
         bend = "PBEND,3,1,4.-4,3.-8,5.-8,6.-8,2,1.5\nCBEND,105,3,3,10,0.,1.,0.,1\n"
         self.write("deck.bdf", deck.replace("ENDDATA", bend + "ENDDATA"))
         self.write("b.toml", f'[body]\nname = "b"\ndeck = "deck.bdf"\nframe = "fixed"\ninterface = [{tip}]\n'
