@@ -180,7 +180,7 @@ Eigen::Matrix<double, 9, 12> calc_stressed_motion(const BeamField& field, double
   return Q;
 }
 
-/// Polar radius² of the section. Without torsional stiffness the twist is anybody's, AUTOSPC's in skew axes: no work
+/// Polar radius² of the section. Without torsional stiffness the twist is undetermined, AUTOSPC's in skew axes: no work
 /// for N on it.
 double calc_twist_radius2(const BeamField& field, const BeamSection& s) {
   return field.active().torsion ? s.n.squaredNorm() + (s.A > 0 ? (s.I1 + s.I2) / s.A : 0) : 0;
@@ -209,7 +209,7 @@ void Beam::add_geometric_stiffness(const Eigen::Ref<const VectorXd>& force, doub
   if (has_pins()) add_pin_stiffness(force, scale, K_G);
 }
 
-/// Products of q at the points, once for all loads. Arms and pins have terms of their own.
+/// Products of q at the points, once for all loads. Arms and pins have separate terms.
 void Beam::add_projected_geometric_stiffness(const Eigen::Ref<const MatrixXd>& U, const Eigen::Ref<const MatrixXd>& Phi,
                                              GeometricProjection& sums) const {
   if (has_arms() || has_pins()) return StressState::add_projected_geometric_stiffness(U, Phi, sums);

@@ -38,7 +38,7 @@ Vector3d calc_centre(SolidKind kind) {
 }
 
 /// Natural gradients of the incompatible modes, each of no mean over the element: 1 - ξ², 1 - η², 1 - ζ² of the brick;
-/// r², s², rs less their linear parts, and 1 - ζ², of the wedge.
+/// r², s², rs minus their linear parts, and 1 - ζ², of the wedge.
 Eigen::Matrix3Xd calc_mode_gradients(SolidKind kind, const Vector3d& at) {
   if (kind == SolidKind::Hexa) return Matrix3d(-2 * at.asDiagonal());
   const double r = at.x() - 1.0 / 3, s = at.y() - 1.0 / 3;
@@ -317,17 +317,17 @@ SolidQuality calc_quality(const SolidGeometry& geometry) {
   Eigen::Matrix3Xd x(3, m), dshape(3, m);
   VectorXd shape(m);
   for (int i = 0; i < m; ++i) x.col(i) = geometry.x[static_cast<std::size_t>(i)];
-  double volume = 0, reference = 0, least = 1e300, most = -1e300;
+  double volume = 0, reference = 0, min_J = 1e300, max_J = -1e300;
   for (const auto& point : list_points(geometry, false)) {
     calc_solid_shape(geometry.kind, geometry.midside, point.natural, shape, dshape);
     const double J = Matrix3d(dshape * x.transpose()).determinant();
     volume += point.weight * J;
     reference += point.weight;
-    least = std::min(least, J);
-    most = std::max(most, J);
+    min_J = std::min(min_J, J);
+    max_J = std::max(max_J, J);
   }
   if (volume == 0) return {};
-  return {volume, (volume > 0 ? least : most) * reference / volume};
+  return {volume, (volume > 0 ? min_J : max_J) * reference / volume};
 }
 
 void turn_round(SolidGeometry& geometry, std::vector<int>& nodes) {

@@ -45,7 +45,7 @@ SolidQuality calc_quality(const SolidGeometry& geometry);
 /// `nodes`.
 void turn_round(SolidGeometry& geometry, std::vector<int>& nodes);
 
-/// Thermal expansion in basic axes, Voigt as the law.
+/// Thermal expansion in basic axes, Voigt as the elasticity.
 struct SolidExpansion {
   Eigen::Matrix<double, 6, 1> alpha = Eigen::Matrix<double, 6, 1>::Zero();
   std::optional<double> tref;  ///< empty: TEMPERATURE(INITIAL)

@@ -14,7 +14,7 @@ namespace {
 
 static_assert(sizeof(PetscInt) == sizeof(int), "rows are handed to PETSc as int");
 
-/// Of whole pages; what is read there afterwards is zero.
+/// Returns whole pages to the system; they read as zero afterwards.
 template <class T>
 void give_back(T* data, std::size_t size) {
   const auto page = static_cast<std::uintptr_t>(sysconf(_SC_PAGESIZE));

@@ -20,7 +20,7 @@ namespace {
 
 constexpr double kUnknown = std::numeric_limits<double>::infinity();
 
-/// The number behind `key` in a file of such lines; nothing if there is none ("max" of a control group).
+/// The number after `key` in a file of such lines; nothing if there is none ("max" of a control group).
 double read_number(const std::string& path, const std::string& key, double otherwise) {
   std::ifstream file(path);
   for (std::string line; std::getline(file, line);) {
@@ -50,16 +50,16 @@ double calc_free_of_groups() {
   std::string group;
   for (std::string line; std::getline(file, line);)
     if (line.rfind("0::/", 0) == 0) group = line.substr(3);
-  double least = kUnknown;
+  double free = kUnknown;
   while (!group.empty()) {
     const std::string folder = "/sys/fs/cgroup" + (group == "/" ? "" : group) + "/";
-    const double most = read_number(folder + "memory.max", "", kUnknown);
+    const double group_limit = read_number(folder + "memory.max", "", kUnknown);
     const double used =
         read_number(folder + "memory.current", "", 0) - read_number(folder + "memory.stat", "inactive_file", 0);
-    least = std::min(least, most - used);
+    free = std::min(free, group_limit - used);
     group = group == "/" ? "" : group.substr(0, std::max<std::size_t>(group.rfind('/'), 1));
   }
-  return least;
+  return free;
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 #pragma once
-/// \file Loops for processors with AVX2 beside loops for all others: templates on the numbers in a register, of which
+/// \file Loops for processors with AVX2 and loops for all others: templates on the numbers in a register, of which
 /// one is compiled with BOUGH_WIDE and taken where has_wide().
 
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(BOUGH_NARROW)

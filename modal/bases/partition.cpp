@@ -169,7 +169,7 @@ linear::PetscMat make_petsc(const SparseRows& S, const linear::SymmetricMatrix& 
   check_petsc(MatCreate(PETSC_COMM_WORLD, result.out()));
   check_petsc(MatSetSizes(result.get(), last - first, PETSC_DECIDE, PETSC_DETERMINE, static_cast<PetscInt>(S.cols())));
   check_petsc(MatSetType(result.get(), MATAIJ));
-  // Of the two only the one of the type that one process or several have does anything.
+  // One of the two calls acts: that of the matrix type of one process, or of several.
   check_petsc(MatSeqAIJSetPreallocationCSR(result.get(), starts.data(), columns.data(), values.data()));
   check_petsc(MatMPIAIJSetPreallocationCSR(result.get(), starts.data(), columns.data(), values.data()));
   return result;

@@ -1,5 +1,5 @@
 #pragma once
-/// \file The dofs of the interface nodes as coordinates of their own: q_f = S_i q_i + S_b u_b.
+/// \file The dofs of the interface nodes as separate coordinates: q_f = S_i q_i + S_b u_b.
 #include <utility>
 #include <vector>
 

@@ -45,7 +45,7 @@ void add_frequencies(const FrequencyList& list, const VectorXd& natural_hz, std:
     default:
       break;
   }
-  // What lies between F1 and F2 counts, whatever mode it is of (MSC Quick Reference Guide, FREQ4, FREQ5).
+  // Every frequency between F1 and F2 counts, whatever its mode (MSC Quick Reference Guide, FREQ4, FREQ5).
   const double slack = 1e-12;
   const auto add = [&](double f) {
     if (f >= list.f1 * (1 - slack) && f <= list.f2 * (1 + slack)) hz.push_back(f);
@@ -126,10 +126,10 @@ VectorXd make_frequencies(const records::DynamicDeck& deck, const records::Dynam
         "widen F1 to F2, or take more modes");
   if (hz.empty()) return {};
   std::sort(hz.begin(), hz.end());
-  const double least = records::get_real_param(deck, "DFREQ", 1e-5, diagnostics) * (hz.back() - hz.front());
+  const double min_distance = records::get_real_param(deck, "DFREQ", 1e-5, diagnostics) * (hz.back() - hz.front());
   std::vector<double> kept;
   for (const double f : hz)
-    if (kept.empty() || f - kept.back() > least) kept.push_back(f);
+    if (kept.empty() || f - kept.back() > min_distance) kept.push_back(f);
   if (subcase.dynamics.ofreq != 0) kept = choose_shown(deck, subcase, kept, diagnostics);
   return Eigen::Map<const VectorXd>(kept.data(), static_cast<Eigen::Index>(kept.size()));
 }
