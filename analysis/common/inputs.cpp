@@ -73,7 +73,7 @@ void demand_deck(const std::string& path) {
   if (!is_hdf5 && !has_suffix(path, ".toml")) return;
   throw InputError("cli.wrong-file", {path},
                    std::string("the file is ") + (is_hdf5 ? "HDF5" : "TOML") + ", expected a Nastran deck",
-                   is_hdf5 ? "bough info tells what it holds" : "bough check tells what it is");
+                   is_hdf5 ? "bough info lists its contents" : "bough check identifies it");
 }
 
 records::Deck read_deck_once(const std::string& path, const std::vector<std::string>& ignore_cards,

@@ -82,7 +82,7 @@ void note_solution(const records::Deck& deck, Diagnostics& diagnostics) {
   else if (other)
     diagnostics.note("cli.other-solution", deck.locate({0, 0}), fmt::format("SOL {} is {}", deck.sol, other->name),
                      other->has_complex_modes ? "bough modes gives them; with --ignore CMETHOD the real ones"
-                                              : "this is the linear solution of the cards as they stand");
+                                              : "this is the linear solution of the unchanged cards");
 }
 
 namespace {

@@ -73,7 +73,7 @@ void report_time(const records::SystemSpec& spec, const hdf5::ResultsFile& resul
       : !is_run    ? "controllers, actuators and lags start from the states in which they rest there"
       : has_memory ? "controllers, actuators and lag, delay and random walk of sensors start from no state of their "
                      "own, but for momentum of wheels and gimbal angles; bough run --resume continues with their states"
-                   : "controllers and lags of actuators start as the system file says; momentum of wheels and gimbal "
+                   : "controllers and lags of actuators start as in the system file; momentum of wheels and gimbal "
                      "angles are those of the file");
   if (reached > t + 1e-12 * std::max(std::abs(reached), std::abs(results.time[0])))
     diagnostics.warning(
@@ -240,7 +240,7 @@ std::optional<records::Checkpoint> find_start_control(const std::string& path, c
   const int own = nz - system.num_momentum_out();
   if (found.state.size() != nq + nu + own + 2 || (control ? control->size() - 1 : 0) != held) {
     diagnostics.note("cli.start-state", {path}, "it has other controllers or actuators than this system",
-                     "they start as the system file says");
+                     "they start as in the system file");
     return {};
   }
   records::Checkpoint start;

@@ -55,7 +55,7 @@ void note_requests(const records::Deck& deck, const records::CaseRequests& reque
                    const std::vector<std::pair<std::string, std::string>>& options, Diagnostics& diagnostics) {
   for (const auto& [command, option] : options) {
     if (!asks_for(requests, command)) continue;
-    diagnostics.note("cli.request-by-option", deck.locate({}), "the deck asks for " + command, option + " gives it");
+    diagnostics.note("cli.request-by-option", deck.locate({}), "the deck requests " + command, option + " gives it");
   }
 }
 
@@ -71,7 +71,7 @@ ListingMaker::ListingMaker(const records::Deck& deck, const records::CaseRequest
     : deck_(deck), requests_(requests), limits_(list_stress_limits(deck)) {
   for (const auto& [id, selection] : requests_.selections) lists_all_ = lists_all_ && selection.outputs.empty();
   if (lists_all_)
-    diagnostics.note("cli.listing-default", deck.locate({}), "the deck asks for no result: the listing has all of them",
+    diagnostics.note("cli.listing-default", deck.locate({}), "the deck requests no result: the listing has all of them",
                      "write DISPLACEMENT = ALL, SPCFORCES = ALL, FORCE = ALL, STRESS = ALL in the case control");
   report_sets(diagnostics);
 }

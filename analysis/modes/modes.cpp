@@ -159,7 +159,7 @@ ModesAnswer solve_modes(const ModesRequest& request, ModesReceiver& receiver, Ev
   std::vector<Task> tasks;
   with_prior_messages(diagnostics, [&] { tasks = choose_tasks(request, deck); });
   if (modal::is_buckling_solution(deck) && !request.eigen.buckling)
-    diagnostics.note("cli.buckling-deck", deck.locate({}), "the deck asks for buckling (SOL " + deck.sol + ")",
+    diagnostics.note("cli.buckling-deck", deck.locate({}), "the deck requests buckling (SOL " + deck.sol + ")",
                      "these are its normal modes; --buckling gives the load factors");
   if (!request.eigen.buckling && asks_complex_modes(deck, model_options.ignore_cards)) {
     std::vector<int> subcases;

@@ -142,7 +142,7 @@ ListReader::Token ListReader::next() {
   const auto star = token.text.find('*');
   int repeat = 0;
   if (star == std::string::npos || !is_digit(token.text[0]) || !parse(token.text.substr(0, star), repeat)) return token;
-  if (repeat < 1) return token;  // "0*1" is no number: the caller says so
+  if (repeat < 1) return token;  // "0*1" is no number: the caller reports it
   token.repeat = repeat;
   token.text.erase(0, star + 1);
   if (token.text.empty()) token.kind = Kind::Null;

@@ -62,7 +62,7 @@ bool check_flexible(const records::BodyRecord& r, const records::FlexBody& flex,
     diagnostics.error(
         "system.missing-integrals", r.at,
         "the file '" + r.file + "' of body " + quote(r.name) + " has no '" + flex.integrals_method + "' mass integrals",
-        "write it anew with reduce");
+        "write it again with reduce");
   }
   auto check_count = [&](const std::vector<double>& values, const char* key, bool one_is_enough) {
     const int count = static_cast<int>(values.size());
@@ -85,7 +85,7 @@ bool check_flexible(const records::BodyRecord& r, const records::FlexBody& flex,
                         "the file '" + r.file + "' of body " + quote(r.name) +
                             " holds no K_G1: inertial loads do not "
                             "stiffen it",
-                        "write it anew with reduce, or set stiffening = false");
+                        "write it again with reduce, or set stiffening = false");
   }
   return diagnostics.num_errors() == errors;
 }

@@ -18,13 +18,13 @@ std::vector<double> list_instants(const std::vector<SampleTimes>& samples, doubl
 struct Jacobian {
   MatrixXd value, error;
   MatrixXd kink;               ///< half of the difference between the one-sided derivatives
-  std::vector<LawKink> kinks;  ///< laws that make it
+  std::vector<LawKink> kinks;  ///< functions that make it
 };
 
 /// Error bound of derivatives.
 struct Uncertainty {
   double relative = 0;         ///< the largest error or kink, relative to the scale of its row
-  std::vector<LawKink> kinks;  ///< laws with two slopes
+  std::vector<LawKink> kinks;  ///< functions with two slopes
 
   /// Rows with scale 0 are left out.
   void add(const Jacobian& jacobian, const VectorXd& scale);

@@ -1,5 +1,5 @@
 #pragma once
-/// \file Derivatives of functions that evaluate a system, by differences with tangents in place of its laws; their
+/// \file Derivatives of functions that evaluate a system, by differences with tangents in place of its functions; their
 /// steps.
 #include <functional>
 #include <vector>
@@ -15,8 +15,8 @@ namespace bough::solver {
 /// Laws are their tangents at f(0) (solver/state/law_tangents.hpp), so that `step` need suit the geometry only.
 ///
 /// \param tangents  scratch.
-/// \param kinks  gains the laws with two slopes that have an effect; nullptr: not requested.
-/// \return Difference::kink holds the effect of laws with two slopes at f(0).
+/// \param kinks  gains the functions with two slopes that have an effect; nullptr: not requested.
+/// \return Difference::kink holds the effect of functions with two slopes at f(0).
 /// \throws as solver::differentiate.
 Difference differentiate_system(SystemData& data, LawTangents& tangents, const std::function<VectorXd(double)>& f,
                                 double step, std::vector<LawKink>* kinks = nullptr);

@@ -155,7 +155,7 @@ void parse_tic(Card& card, DynamicCards& r) {
   if (card.is_ok()) r.initial.push_back(m);
 }
 
-/// Pairs from field `first` on, up to ENDT; ascending, as they stand or the other way round.
+/// Pairs from field `first` on, up to ENDT; ascending, unchanged or reversed.
 std::vector<std::pair<double, double>> read_points(Card& card, int first) {
   std::vector<std::pair<double, double>> points;
   bool has_end = false;

@@ -234,7 +234,7 @@ class Builder {
     if (!text_.name.empty() && text_.name.front() == '/') {
       diagnostics_.warning("deck.delete-line", where(),
                            "'" + text_.name + "' deletes cards of an earlier run: not done",
-                           "a deck is read as it stands; remove the cards that should not be used");
+                           "a deck is read unchanged; remove the cards that should not be used");
       return true;
     }
     if (text_.name.substr(0, 5) != "BEGIN") return false;

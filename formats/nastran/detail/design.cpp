@@ -70,7 +70,7 @@ void Design::finish(bool is_active, const std::string& sol, const records::Deck&
     diagnostics.note("deck.design-values", deck.locate(at),
                      "design variables give no values: SOL is " + (sol.empty() ? std::string("not given") : sol) +
                          ", and only SOL 200 takes them",
-                     "the properties are as their own cards say");
+                     "the properties are those of their cards");
     return;
   }
   for (const auto& link : links_) {
@@ -153,7 +153,7 @@ void Design::report(const records::Deck& deck, Diagnostics& diagnostics) const {
       diagnostics.warning("deck.design-relation", deck.locate(relation.at),
                           relation.card + " " + std::to_string(relation.id) + " gives no value: " + relation.type +
                               " " + std::to_string(relation.target) + " '" + relation.name + "' is not found",
-                          "the property stays as its card says; write the number of the field for its name");
+                          "the property stays that of its card; write the number of the field for its name");
     else if (count++ < most_shown)
       done += (done.empty() ? "" : ", ") + relation.done;
   }
@@ -165,7 +165,7 @@ void Design::report(const records::Deck& deck, Diagnostics& diagnostics) const {
     if (name.back() == '2')
       diagnostics.warning("deck.design-relation", deck.locate(first_.at(name)),
                           name + " is not evaluated (" + std::to_string(number) + (number == 1 ? " card)" : " cards)"),
-                          "equations are not read: its properties stay as their cards say; write the values there");
+                          "equations are not read: its properties stay those of their cards; write the values there");
   }
 }
 
