@@ -13,8 +13,8 @@ from common import ROOMS, ROOT, line_of, list_files, read
 
 TABLE = os.path.join("tests", "architecture", "phrases.txt")
 # docs/commands.md has the strings of cli, which are counted there.
-EXEMPT = {"CHANGELOG.md", "docs/developer/unreleased.md", "docs/developer/changes-0.3.0.md", "docs/commands.md",
-          "tests/architecture/phrases.py"}
+EXEMPT = {"CHANGELOG.md", "docs/developer/unreleased.md", "docs/developer/changes-0.3.0.md",
+          "docs/developer/changes-0.2.0.md", "docs/commands.md", "tests/architecture/phrases.py"}
 
 # Rule: (where it is searched, regular expression, what to write).
 # prose: comments, strings and pages; start: the first word of a line of a comment; code: identifiers.
