@@ -64,6 +64,12 @@ void refuse_treetops_input(const std::string& path) {
                    "(docs/coming-from-treetops.md)");
 }
 
+void refuse_deck(const std::string& path) {
+  if (!has_suffix(path, ".bdf") && !has_suffix(path, ".nas")) return;
+  throw InputError("cli.wrong-file", {path}, "the file is a Nastran deck by its name, expected a system file",
+                   "bough init " + path + " writes a body file and a system file for it");
+}
+
 void demand_deck(const std::string& path) {
   demand_file(path);
   refuse_treetops_input(path);
