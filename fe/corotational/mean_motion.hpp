@@ -7,8 +7,8 @@
 
 namespace bough::fe {
 
-/// The mean of an RBE3 at a finite motion of its grids: place x̄ + R s of the end of an arm s, rotation R. MeanSeries is
-/// the same along a curve. A variation has six rows per member, displacements and spins in basic.
+/// The mean of an RBE3 at a finite motion of its grids: place x̄ + R s of the end of an arm s, rotation R. MeanSeries
+/// is the same along a curve. A variation has six rows per member, displacements and spins in basic.
 class MeanMotion {
  public:
   /// u: displacements of the members; rotations: theirs.
