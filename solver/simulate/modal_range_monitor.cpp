@@ -12,6 +12,9 @@
 namespace bough::solver {
 namespace {
 
+/// Deflection in sizes of the body above which round-off leaves the orders of its series apart.
+constexpr double kMeasuredWay = 1e-5;
+
 const TreeBody& get_body(const System& system, int body) { return system.tree.bodies[static_cast<size_t>(body)]; }
 
 }  // namespace
@@ -85,7 +88,8 @@ std::vector<ModalRangeMonitor::Crossing> ModalRangeMonitor::find_deflections(con
     if (!where) continue;
     const bool is_far = largest > kCheckedWay * w.size;
     // Clamped plates stretch at a way of their thickness.
-    if (!is_far && !body.soft_energy()) continue;
+    const bool is_third = body.third_order() && largest > kMeasuredWay * w.size;
+    if (!is_far && !is_third && !body.soft_energy()) continue;
     const auto report = [&](const std::string& limit, const std::string& advice) {
       w.reported = largest > w.size ? Range::Left : Range::Passed;
       found.push_back({w.body, "run.linear-limit",
@@ -105,8 +109,8 @@ std::vector<ModalRangeMonitor::Crossing> ModalRangeMonitor::find_deflections(con
                "linear modes are invalid there; ");
       continue;
     }
-    const double next =
-        is_far ? calc_next_order(body, *where, eta, w.size) : body.soft_energy()->calc_error(*where, body.K(), eta);
+    const double next = is_far || is_third ? calc_next_order(body, *where, eta, w.size)
+                                           : body.soft_energy()->calc_error(*where, body.K(), eta);
     if (next > kNextOrderLimit)
       report(": the next order of its displacements is estimated at " + short_text(100 * next) +
                  " % of that, more than " + short_text(100 * kNextOrderLimit) + " %",
