@@ -95,6 +95,29 @@ class Split(ProgramTest):
             for name in os.listdir(self.folder):
                 os.remove(self.path(name))
 
+    def test_static_deflection(self):
+        """The end under a small weight, at rest, of the parts and of the whole deck."""
+        gravity = np.array([0., -6e-3, -8e-3])
+        for deck, tip in ((make_boom(), 41), (make_l_frame(), 25)):
+            self.split(deck, "--parts", 4)
+            system = self.read("deck-run.toml").replace("[0.0, 0.0, -9.81]", str(gravity.tolist()))
+            system += f'\n[[sensor]]\nname = "tip"\ntype = "position"\nbody = "deck-4"\nnode = {tip}\n'
+            self.write("rest.toml", system)
+            self.bough("equilibrium", "rest.toml", "-o", "rest.h5", "-q")
+            card = "GRAV,9,,1.," + ",".join(map(repr, gravity.tolist())) + "\nENDDATA\n"
+            self.write("whole.bdf", deck.replace("SOL 103", "SOL 101").replace("SPC = 1\n", "SPC = 1\nLOAD = 9\n")
+                       .replace("ENDDATA\n", card))
+            self.bough("static", "whole.bdf", "-o", "whole.h5", "-q")
+            with h5py.File(self.path("rest.h5")) as f, h5py.File(self.path("whole.h5")) as g:
+                at = (g["dof_map"][:, 0] == tip) & (g["dof_map"][:, 1] <= 3)
+                u, place = g["subcases/0/displacement"][:][at], f["sensors/tip"][0]
+            x = next(line.split(",")[3:6] for line in deck.splitlines() if line.startswith(f"GRID,{tip},"))
+            off = np.linalg.norm(place - np.array(x, float) - u) / np.linalg.norm(u)
+            print(f"way {np.linalg.norm(u):.1e} m, of parts off by {off:.1e}")
+            self.assertLess(off, 1e-4)
+            for name in os.listdir(self.folder):
+                os.remove(self.path(name))
+
     def test_l_frame_twists_through_its_cuts(self):
         """Path over the corner; the twist of the first leg has mass only through the second."""
         answer, messages = self.split(make_l_frame(), "--parts", 4)
