@@ -152,7 +152,7 @@ std::vector<StartFile> make_start_files(const records::Deck& deck, const DeckSta
     if (interface.size() >= kMaxInterfaceGrids) interface.clear();
     interface.insert(interface.begin(), grid);
   }
-  std::string frame = "frame = \"free\"           # no constraints of the deck hold the body: free-free modes\n";
+  std::string frame = "frame = \"free\"           # or \"mean\": no constraints of the deck hold the body\n";
   if (is_fixed) frame = "frame = \"fixed\"          # the deck's constraints hold the body frame\n";
   if (grid > 0)
     frame = fmt::format(
