@@ -131,6 +131,10 @@ class Satellite(PageTest):
             self.assertTrue(page.run("""(() => { const { area, text } = studio.view.pane.editor, lines = text.split('\\n'), height = area.scrollHeight / lines.length;
               const k = lines.lastIndexOf('child_node = 1001') * height; return k >= area.scrollTop && k + height <= area.scrollTop + area.clientHeight; })()"""))
             self.pick_table("body", "file")
+        # At the end of the text the numbers of the lines are next to them.
+        offset = page.run("""new Promise((done) => { const { area, gutter } = studio.view.pane.editor; area.scrollTop = area.scrollHeight;
+          requestAnimationFrame(() => requestAnimationFrame(() => done(area.scrollTop > 0 ? gutter.scrollTop - area.scrollTop : NaN))); })""")
+        self.assertAlmostEqual(offset, 0, delta=1)
         # A function has the fields of its type.
         self.pick_table("function", "type")
         page.run("(() => { const s = document.querySelector('.add-form [name=type]'); s.value = 'step'; s.dispatchEvent(new Event('change')); })()")
