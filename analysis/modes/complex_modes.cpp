@@ -127,7 +127,8 @@ ModesAnswer solve_complex_modes(const ModesRequest& request, const std::vector<i
       const auto& control = found == deck.subcases.end() ? deck.subcases.front() : *found;
       const auto selection = deck.selections.find(control.id);
       subcase = {control, selection == deck.selections.end() ? records::DynamicSelection{} : selection->second};
-      model_options.prestress = calc_prestress(deck, model_options, own);
+      model_options.prestress =
+          modal::rotors::has_own_stress(deck, subcase) ? nullptr : calc_prestress(deck, model_options, own);
       events.show_progress(fmt::format("subcase {}", id));
       const modal::complex_modes::ComplexModesSolver modes(deck, model_options, subcase, solver, own);
       std::optional<double> speed;

@@ -145,6 +145,45 @@ void Solid::add_mass(MassKind kind, double scale, Eigen::Ref<MatrixXd> M) const 
     }
 }
 
+MassSamples Solid::sample_mass(MassKind kind, const SpinAxis& spin) const {
+  const int m = static_cast<int>(geometry_.x.size());
+  Matrix3Xd x(3, m), dshape(3, m);
+  for (int i = 0; i < m; ++i) x.col(i) = geometry_.x[static_cast<std::size_t>(i)] - spin.point;
+  MassSamples samples;
+  const auto add = [&](double mass, const VectorXd& shape, const Matrix3Xd& gradient) {
+    MassSample s;
+    s.mass = mass;
+    s.r = x * shape;
+    const VectorXd along = gradient.transpose() * spin.axis.cross(s.r);
+    s.N.setZero(3, 3 * m);
+    s.DN.setZero(3, 3 * m);
+    for (int i = 0; i < m; ++i) {
+      s.N.middleCols<3>(3 * i).diagonal().setConstant(shape[i]);
+      s.DN.middleCols<3>(3 * i).diagonal().setConstant(along[i]);
+    }
+    samples.push_back(std::move(s));
+  };
+  if (kind == MassKind::Consistent) {
+    for (const auto& f : calc_fields(true)) add(density_ * f.weight, f.shape, f.gradient);
+    return samples;
+  }
+  MatrixXd M = MatrixXd::Zero(3 * m, 3 * m);
+  add_mass(kind, 1, M);
+  const auto points = list_nodes(geometry_.kind, geometry_.midside);
+  VectorXd shape(m);
+  for (int i = 0; i < m; ++i) {
+    calc_solid_shape(geometry_.kind, geometry_.midside, points[static_cast<std::size_t>(i)], shape, dshape);
+    Matrix3d J = dshape * x.transpose();
+    if (!(J.determinant() > 0)) {  // corners of a brick that are one point: the gradient of its middle
+      VectorXd unused(m);
+      calc_solid_shape(geometry_.kind, geometry_.midside, calc_centre(geometry_.kind), unused, dshape);
+      J = dshape * x.transpose();
+    }
+    add(M(3 * i, 3 * i), shape, J.inverse() * dshape);
+  }
+  return samples;
+}
+
 MatrixXd Solid::calc_force_map(const std::vector<Field>& fields) const {
   const MatrixXd modes = calc_mode_map(fields, nullptr);
   MatrixXd map(num_internal_forces(), num_dofs());

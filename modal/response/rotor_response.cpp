@@ -11,6 +11,7 @@ linear::ComplexSparse RotorResponse::calc_stiffness(double hz) const {
     return linear::ComplexSparse(A.cast<Complex>() * factor);
   };
   linear::ComplexSparse Z = scaled(terms_.calc_circulation(speed), 1);
+  Z += scaled(terms_.calc_centrifugal(speed), 1);
   Z += scaled(terms_.calc_structural_circulation(speed, omega), 1);
   Z += scaled(terms_.calc_damping(speed), Complex(0, omega));
   Z += scaled(terms_.calc_structural(), Complex(0, 1));
