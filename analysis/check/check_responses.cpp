@@ -59,7 +59,9 @@ ResponseCheck check_response(const records::DynamicDeck& deck, const records::Dy
 
 void check_complex(const records::DynamicDeck& deck, SubcaseModels& models, Diagnostics& diagnostics) {
   SubcaseFailures failures(deck.subcases.size(), deck.subcases.size());
+  const auto ids = modal::complex_modes::list_subcases(deck);
   for (const auto& subcase : deck.subcases) {
+    if (ids.front() != 0 && std::find(ids.begin(), ids.end(), subcase.id) == ids.end()) continue;
     const auto selection = deck.selections.find(subcase.id);
     const records::DynamicSubcase chosen(
         subcase, selection == deck.selections.end() ? records::DynamicSelection{} : selection->second);

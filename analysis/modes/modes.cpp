@@ -161,11 +161,8 @@ ModesAnswer solve_modes(const ModesRequest& request, ModesReceiver& receiver, Ev
   if (modal::is_buckling_solution(deck) && !request.eigen.buckling)
     diagnostics.note("cli.buckling-deck", deck.locate({}), "the deck asks for buckling (SOL " + deck.sol + ")",
                      "these are its normal modes; --buckling gives the load factors");
-  if (!request.eigen.buckling && asks_complex_modes(deck, model_options.ignore_cards)) {
-    std::vector<int> subcases;
-    for (const auto& task : tasks) subcases.push_back(task.subcase);
-    return solve_complex_modes(request, subcases, receiver, events);
-  }
+  if (!request.eigen.buckling && asks_complex_modes(deck, model_options.ignore_cards))
+    return solve_complex_modes(request, receiver, events);
   note_solution(deck, diagnostics);
   receiver.begin(tasks.size(), false);
   ModesAnswer answer{SubcaseFailures(tasks.size(), deck.subcases.size()), {}, {}};

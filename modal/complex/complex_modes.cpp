@@ -367,6 +367,19 @@ void report_accuracy(const records::DynamicDeck& deck, const ComplexPairs& pairs
 
 }  // namespace
 
+std::vector<int> list_subcases(const records::DynamicDeck& deck) {
+  std::vector<int> chosen;
+  for (const auto& subcase : deck.subcases) {
+    const auto selection = deck.selections.find(subcase.id);
+    const bool is_preload = std::any_of(deck.subcases.begin(), deck.subcases.end(), [&](const auto& other) {
+      return other.id != subcase.id && (other.statsub == subcase.id || other.preload == subcase.id);
+    });
+    if (selection != deck.selections.end() && selection->second.cmethod != 0 && !is_preload)
+      chosen.push_back(subcase.id);
+  }
+  return chosen.empty() ? std::vector<int>{0} : chosen;
+}
+
 const records::ComplexMethod& choose_method(const records::DynamicDeck& deck, const records::DynamicSubcase& subcase,
                                             int num_modes) {
   static const records::ComplexMethod lanczos{0, "LAN", "MAX", 0, 0, 0, {}, {}};
