@@ -79,6 +79,11 @@ def make_deck(mesh, case, bulk, modes=6, coupled=True):
                       "EIGRL,1,,,20", f"EIGC,2,LAN,,,,,{modes}", *mesh.lines, f"ROTORG,1,1,THRU,{max(mesh.ids.values())}", *bulk, "ENDDATA", ""])
 
 
+def solve_all(M, B, K):
+    n = len(M)
+    return np.linalg.eigvals(np.block([[np.zeros((n, n)), np.eye(n)], [-np.linalg.solve(M, K), -np.linalg.solve(M, B)]]))
+
+
 class SpatialRotors(ProgramTest):
     def run_deck(self, deck):
         self.write("d.bdf", deck)
@@ -249,6 +254,28 @@ class SpatialRotors(ProgramTest):
             moved = np.concatenate([fixed + 1j * speed, fixed - 1j * speed])
             for value in poles["ROT"][:12]:
                 self.assertLess(np.abs(moved - value).min(), 1e-7 * abs(value), (c, value))
+
+    def test_unequal_shaft(self):
+        """A mass on a shaft of unequal stiffness, in the rotating frame: (λ² - Ω² + a²)(λ² - Ω² + b²) + 4 Ω² λ² = 0, unstable
+        for a < Ω < b, damped by a dashpot to ground: c (λ + Ω ẽ)."""
+        E, span, m = 2e11, 1.2, 3.0
+        I = (2e-8, 3e-8)
+        a, b = sorted(math.sqrt(48 * E * i / span**3 / m) for i in I)
+        for speed, c in ((0.5 * (a + b), 0.0), (0.5 * a, 30.0), (0.5 * (a + b), 30.0)):
+            grids = [f"GRID,{i + 1},,0.,0.,{number(i * span / 4)}" for i in range(5)] + [
+                f"CBAR,{i},1,{i},{i + 1},1.,0.,0." for i in range(1, 5)]
+            deck = "\n".join(["SOL 107", "CEND", "SPC = 1", "METHOD = 1", "CMETHOD = 2", "RMETHOD = 9", "BEGIN BULK", "EIGRL,1,,,4",
+                              "EIGC,2,HESS,,,,,8", *grids, f"PBAR,1,1,1.-3,{I[0]},{I[1]},4.-8", f"MAT1,1,{E},,.3", f"CONM2,9,3,,{m}",
+                              "SPC1,1,123,1,5", "SPC1,1,36,1,THRU,5", "ROTORG,1,1,THRU,5",
+                              *([f"CDAMP2,{20 + k},{c},3,{k}" for k in (1, 2)] if c else []), *rotord(speed, 1.0, 1, "ROT"), "ENDDATA", ""])
+            result = self.run_deck(deck)
+            found = np.array([complex(p["eigenvalue"]["real"], p["eigenvalue"]["imag"]) for p in result["modes"]])
+            M, W = np.eye(2), np.array([[0.0, -1.0], [1.0, 0.0]])
+            K = np.diag([a**2, b**2]) - speed**2 * M + speed * c / m * W
+            expected = solve_all(M, c / m * M + 2 * speed * W, K)
+            for value in expected[expected.imag >= 0]:
+                self.assertLess(np.abs(found - value).min(), 1e-7 * abs(value), (speed, c, found, expected))
+            self.assertEqual(max(found.real) > 1e-3, a < speed < b and c < 100)
 
     def test_wrong_input(self):
         """Errors of a body around its axis in the fixed and in the rotating frame; warnings of unequal directions."""
