@@ -452,8 +452,7 @@ RotorTerms::RotorTerms(const fe::Model& model, const RotorCase& rotor_case, doub
   for (std::size_t j = 0; j < rotors_.size(); ++j) {
     matrices_.push_back(fe::assemble_rotor(model, rotors_[j], case_.damping[j]));
     const auto& m = matrices_.back();
-    const bool is_damped = m.circulation.norm() + m.structural.norm() > 0;
-    if (rotors_[j].is_spatial && rotors_[j].frame == fe::RotorFrame::Fixed && is_damped)
+    if (rotors_[j].is_spatial && rotors_[j].frame == fe::RotorFrame::Fixed && m.circulation.norm() > 0)
       diagnostics.error(
           "modal.rotor-unsupported", case_.axes[j].at,
           "damping inside rotor " + std::to_string(rotors_[j].id) +

@@ -294,7 +294,13 @@ class SpatialRotors(ProgramTest):
                 self.write("d.bdf", deck)
                 result = self.fails(1, "modes", "d.bdf", error=error, says=says)
                 self.assertRegex(result.stderr, r"d\.bdf:\d+: error: ")
-        for deck in (make("ROT", rod), damped(make("ROT", w4="500."))):
+        driven = make_deck(mesh, ["RGYRO = 5", "DLOAD = 3", "FREQUENCY = 4"],
+                           [*bulk, "GRID,5002,,0.,0.,1.", "SPC1,1,123456,5002", "ROTORG,1,5000,5002", "RSPINR,1,5000,5002,FREQ,1.",
+                            "RGYRO,5,ASYNC,1,FREQ,,,40.", "FREQ,4,50.", "RLOAD1,3,6,,,1.", "DAREA,6,5000,4,1000."])
+        self.write("d.bdf", damped(driven).replace("SOL 107", "SOL 108"))
+        self.fails(1, "frequency", "d.bdf", error="modal.rotor-unsupported", says=["structural damping inside rotor 1", "GE"])
+        # Without W4, GE does not act on complex eigenvalues, as in Nastran.
+        for deck in (make("ROT", rod), damped(make("ROT", w4="500.")), damped(make("FIX"))):
             self.frequencies(deck)
         self.frequencies(make("ROT", ["CELAS2,9003,4.+5,5000,4"]))
         self.assertRegex(self.messages, "the stiffness of the supports of rotor 1 differs .*modal.rotor-asymmetric")
