@@ -86,16 +86,18 @@ void report_time(const records::SystemSpec& spec, const hdf5::ResultsFile& resul
 void set_rotors(records::SystemSpec& spec, Starter& starter) {
   struct Rotor {
     const char *type, *key;
-    std::size_t column, size, num_outputs;  ///< of the channel /actuators/NAME
+    std::size_t column, size;  ///< of the channel /actuators/NAME
   };
   constexpr Rotor rotors[] = {
-      {"wheel", "momentum", 1, 1, 3}, {"cmg", "angle", 1, 1, 2}, {"double_gimbal_cmg", "angle", 2, 2, 4}};
+      {"wheel", "momentum", 1, 1}, {"cmg", "angle", 1, 1}, {"double_gimbal_cmg", "angle", 2, 2}};
   for (auto& actuator : spec.actuators) {
     const std::string channel = "/actuators/" + actuator.name;
     const auto* rotor =
         std::find_if(std::begin(rotors), std::end(rotors), [&](const Rotor& one) { return actuator.type == one.type; });
     if (rotor == std::end(rotors) || !starter.has(channel)) continue;
-    const auto row = starter.read(channel, rotor->num_outputs);
+    // Later versions append outputs.
+    auto row = starter.read(channel, 0);
+    if (row.size() < rotor->column + rotor->size) row = starter.read(channel, rotor->column + rotor->size);
     if (row.empty()) continue;
     const auto first = row.begin() + static_cast<std::ptrdiff_t>(rotor->column);
     std::vector<double> start(first, first + static_cast<std::ptrdiff_t>(rotor->size));
