@@ -56,10 +56,13 @@ class DrawingBuilder {
     add_cells();
     add_faces();
     add_corners();
-    // Nodes that no element draws are points all the same: markers, interface nodes of rigid elements.
+    // Nodes that no element draws are points all the same: markers, interface nodes of rigid elements. Special nodes of
+    // a .FLX are none (records::is_special_node).
     const std::set<int> drawn(drawing.id.begin(), drawing.id.end());
+    const bool lists_points = mesh.blocks.empty() && !mesh.grid_id.empty();
+    const std::set<int> points(mesh.grid_id.begin(), mesh.grid_id.end());
     for (std::size_t i = 0; i < node_id.size(); ++i)
-      if (!drawn.contains(node_id[i]))
+      if (!drawn.contains(node_id[i]) && (!lists_points || points.contains(node_id[i])))
         add_point(node_id[i], node_xyz.row(static_cast<Eigen::Index>(i)), static_cast<int>(i));
     drawing.xyz.resize(static_cast<Eigen::Index>(places_.size()), 3);
     for (std::size_t i = 0; i < places_.size(); ++i) drawing.xyz.row(static_cast<Eigen::Index>(i)) = places_[i];

@@ -4,6 +4,7 @@
 #include <map>
 
 #include "solver/builder/build.hpp"
+#include "solver/builder/special_node.hpp"
 #include "solver/text/names.hpp"
 
 namespace bough::solver {
@@ -133,6 +134,7 @@ class Builder {
     const bool is_point = is_ball && p.isZero(0) &&
                           (r.type == ConstraintType::Hinge || r.type == ConstraintType::Distance || name == r.child);
     m.node = find_loaded_node(name, body, node, {true, !is_point}, r.at, user, diagnostics_);
+    m.node = reject_special_node(name, body, m.node, r.at, user, diagnostics_);
     if (m.node < 0) return std::nullopt;
     m.moves = body.nodes()[static_cast<size_t>(m.node)].moves;
     return m;
