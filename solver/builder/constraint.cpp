@@ -6,6 +6,7 @@
 #include "solver/builder/build.hpp"
 #include "solver/builder/special_node.hpp"
 #include "solver/text/names.hpp"
+#include "solver/tree/body_sizes.hpp"
 
 namespace bough::solver {
 
@@ -191,13 +192,16 @@ class Builder {
   Diagnostics& diagnostics_;
 };
 
-double calc_length(const Tree& tree) {
-  double length = 0;
-  for (const Marker& m : tree.markers) length = std::max(length, m.p_KM.norm());
+/// Largest distance of a marker or node from the origin of its body, or of a hinge at the start from its parent frame:
+/// positions have the roundoff of that.
+double calc_marker_reach(const Tree& tree) {
+  double reach = 0;
+  for (const Marker& m : tree.markers) reach = std::max(reach, m.p_KM.norm());
   for (const TreeBody& tb : tree.bodies) {
-    for (const Node& node : tb.body.nodes()) length = std::max(length, node.p.norm());
+    reach = std::max(reach, tb.initial_q.norm());
+    for (const Node& node : tb.body.nodes()) reach = std::max(reach, node.p.norm());
   }
-  return length > 0 ? length : 1;
+  return reach;
 }
 
 }  // namespace
@@ -206,7 +210,11 @@ void build_constraints(const records::SystemSpec& spec, const TreeOrder& order, 
                        Diagnostics& diagnostics) {
   Builder builder(spec, order, system, diagnostics);
   for (const auto& record : spec.constraints) builder.build(record);
-  system.loops.length = calc_length(system.tree);
+  // The relative tolerance of gaps, 1e-12, becomes 1e-15 of the reach.
+  constexpr double kRoundoffShare = 1e-3;
+  const VectorXd sizes = calc_body_sizes(system.tree);
+  const double size = sizes.size() > 0 ? sizes.maxCoeff() : 1;
+  system.loops.length = std::max(size, kRoundoffShare * calc_marker_reach(system.tree));
   finish_loops(system.tree, system.loops);
 }
 

@@ -1,5 +1,7 @@
 #include "solver/linear/equilibrium_residual.hpp"
 
+#include "solver/linear/sampled_system.hpp"
+
 namespace bough::solver {
 EquilibriumResidual::EquilibriumResidual(Plant& plant, const OperatingPoint& start)
     : plant_(&plant), point_(start), used_up_(plant.find_used_up()) {
@@ -37,7 +39,9 @@ void EquilibriumResidual::linearize() {
       both << moved.residual_, moved.rates_.head(num_dofs);
       return both;
     };
-    const VectorXd slope = plant_->differentiate(f, 0.5).calc_clean();
+    const int i = free_[static_cast<size_t>(j)];
+    const double first = i < num_dofs ? choose_displacement(*plant_, i) / step(j) : 1;
+    const VectorXd slope = plant_->differentiate(f, 0.5 * first).calc_clean();
     jacobian_.col(j) = rate_jacobian_.col(j) = slope.head(n);
     rate_jacobian_.col(j).head(num_dofs) = slope.tail(num_dofs);
   }

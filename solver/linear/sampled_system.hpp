@@ -35,6 +35,10 @@ struct Uncertainty {
 /// The largest entry of each row.
 VectorXd calc_row_scales(const MatrixXd& value);
 
+/// First displacement of a difference by dof i: its step, of a translation calc_far_step at least. After an evaluation
+/// of the plant.
+double choose_displacement(const Plant& plant, int i);
+
 /// A sum of length 1 of [δ; δu; δz; m] is changed by h; the step that suits column j.
 OperatingPoint displace_by_column(const Plant& plant, const OperatingPoint& point, int j, double h);
 double choose_step(const Plant& plant, const OperatingPoint& point, int j);

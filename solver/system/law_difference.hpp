@@ -21,8 +21,14 @@ namespace bough::solver {
 Difference differentiate_system(SystemData& data, LawTangents& tangents, const std::function<VectorXd(double)>& f,
                                 double step, std::vector<LawKink>* kinks = nullptr);
 
-/// Returns displacements that are large but not absurd, by row of u: 0.1 rad, 5 % of the size of the bodies, of a mode
-/// what deflects or rotates its body by as much.
+/// Returns displacements that are large but not absurd, by row of u: 0.1 rad; 5 % of the size of the largest body that
+/// a translation moves; of a mode, the amplitude that deflects its body by as much of its size, or rotates a node by
+/// 0.05 rad. The size of a body is the extent of its mass and nodes: origins of frames and places of hinges have no
+/// effect, except where no body that moves has an extent.
 VectorXd calc_displacement_steps(const Tree& tree);
+
+/// [L] Shortest first displacement of a difference by a translation: roundoff of positions, 1e-16 of the largest
+/// distance of a body's origin from the inertial one, is 1e-10 of it. After the positions of `data`.
+double calc_far_step(const TreeData& data);
 
 }  // namespace bough::solver
