@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "analysis/split/path.hpp"
+#include "base/platform.hpp"
 
 namespace bough::analysis::splitting {
 
@@ -40,7 +41,7 @@ class Groups {
 
 bool parse_number(std::string_view text, double& value) {
   const auto end = text.data() + text.size();
-  const auto result = std::from_chars(text.data() + (text.starts_with('+') ? 1 : 0), end, value);
+  const auto result = platform::read_number(text.data() + (text.starts_with('+') ? 1 : 0), end, value);
   return !text.empty() && result.ec == std::errc() && result.ptr == end && std::isfinite(value);
 }
 
@@ -142,7 +143,7 @@ ElementWord parse_element_word(const std::string& word) {
   const auto read_id = [&](std::string_view text) {
     int id = 0;
     const auto end = text.data() + text.size();
-    if (text.empty() || std::from_chars(text.data(), end, id).ptr != end || id <= 0) throw fail();
+    if (text.empty() || platform::read_number(text.data(), end, id).ptr != end || id <= 0) throw fail();
     return id;
   };
   std::string upper = word;

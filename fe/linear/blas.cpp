@@ -74,9 +74,9 @@ BOUGH_INLINE void add_tall(const Block& A, const Block& B, Eigen::Ref<Eigen::Mat
 
 using AddTall = void (*)(const Block&, const Block&, Eigen::Ref<Eigen::MatrixXd>&);
 void add_tall_narrow(const Block& A, const Block& B, Eigen::Ref<Eigen::MatrixXd>& C) { add_tall<2>(A, B, C); }
-#ifdef BOUGH_WIDE
-BOUGH_WIDE void add_tall_wide(const Block& A, const Block& B, Eigen::Ref<Eigen::MatrixXd>& C) { add_tall<4>(A, B, C); }
-AddTall get_add_tall() { return has_wide() ? add_tall_wide : add_tall_narrow; }
+#ifdef BOUGH_AVX2
+BOUGH_AVX2 void add_tall_wide(const Block& A, const Block& B, Eigen::Ref<Eigen::MatrixXd>& C) { add_tall<4>(A, B, C); }
+AddTall get_add_tall() { return platform::has_avx2() ? add_tall_wide : add_tall_narrow; }
 #else
 AddTall get_add_tall() { return add_tall_narrow; }
 #endif

@@ -94,15 +94,15 @@ struct Kernels {
 
 using Kernel = const double* (*)(const double* L, Index ld, Index num, double* z);
 
-#ifdef BOUGH_WIDE
+#ifdef BOUGH_AVX2
 #define BOUGH_KERNEL(name, M)                                                                 \
-  BOUGH_WIDE const double* name##_wide_##M(const double* L, Index ld, Index num, double* z) { \
+  BOUGH_AVX2 const double* name##_wide_##M(const double* L, Index ld, Index num, double* z) { \
     return Kernels<4, M>::name(L, ld, num, z);                                                \
   }                                                                                           \
   const double* name##_narrow_##M(const double* L, Index ld, Index num, double* z) {          \
     return Kernels<2, M>::name(L, ld, num, z);                                                \
   }                                                                                           \
-  Kernel get_##name##_##M() { return has_wide() ? name##_wide_##M : name##_narrow_##M; }
+  Kernel get_##name##_##M() { return platform::has_avx2() ? name##_wide_##M : name##_narrow_##M; }
 #else
 #define BOUGH_KERNEL(name, M)                                                        \
   const double* name##_narrow_##M(const double* L, Index ld, Index num, double* z) { \
