@@ -91,6 +91,7 @@ std::vector<ResponseCheck> check_responses(const records::DynamicDeck& deck, con
   std::vector<records::DynamicSubcase> subcases;
   try {
     subcases = response::choose_response_subcases(deck, options.subcase, solution->is_over_time);
+    check_nonlinear_transient(deck, subcases.size(), diagnostics);
     if (!solution->is_over_time) {
       Diagnostics found;
       response::RandomAnalysis(deck, subcases, found);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 
 #include "formats/records/params.hpp"
 
@@ -138,13 +139,19 @@ TimeGrid make_times(const records::DynamicDeck& deck, const records::DynamicSubc
                     Diagnostics& diagnostics) {
   const int set = subcase.dynamics.tstep;
   const auto& all = deck.dynamics.steps;
-  const auto card = std::find_if(all.begin(), all.end(), [&](const auto& s) { return s.sid == set; });
+  // TSTEPNL has negative ids; a deck with one kind of card may select it by either command.
+  const auto find = [&](int sid) {
+    return std::find_if(all.begin(), all.end(), [&](auto& s) { return s.sid == sid; });
+  };
+  const auto card = find(set) == all.end() ? find(-set) : find(set);
+  const std::string name = set < 0 ? "TSTEPNL" : "TSTEP";
   TimeGrid grid;
   if (set == 0 || card == all.end()) {
     diagnostics.error("modal.no-time-steps", deck.locate(subcase.find_command("TSTEP")),
-                      set == 0 ? "subcase " + std::to_string(subcase.id) + " selects no time steps"
-                               : "TSTEP = " + std::to_string(set) + " names no TSTEP card of the deck",
-                      "write TSTEP = n in the case control and a TSTEP card with this id");
+                      set == 0
+                          ? "subcase " + std::to_string(subcase.id) + " selects no time steps"
+                          : name + " = " + std::to_string(std::abs(set)) + " names no " + name + " card of the deck",
+                      "write " + name + " = n in the case control and a " + name + " card with this id");
     return grid;
   }
   std::vector<double> time{0};
