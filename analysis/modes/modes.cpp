@@ -114,7 +114,10 @@ SubcaseModes solve_task(const ModesRequest& request, const records::DynamicDeck&
   if (!task.buckling) pairs = modal::sort_negative(std::move(pairs));
   if (listing) {
     listing->add_weight(model);
-    listing->add_modes(model, pairs, num_residual, diagnostics);
+    if (task.buckling)
+      listing->add_buckling(model, pairs, task.buckling->buckling.id, diagnostics);
+    else
+      listing->add_modes(model, pairs, num_residual, diagnostics);
   }
   modal::ModesExtras extras{request.energies ? &deck : nullptr, request.about_grid};
   if (extras.about_grid == 0 && !is_buckling && selection)
