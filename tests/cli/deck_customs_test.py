@@ -222,6 +222,7 @@ class Equations(Decks):
         for text, expected in [
                 ("DEQATN  7       F(A,B,C) = A + B*C\n", 14.),
                 ("DEQATN  7       F(A,B,C) = (A +\n        B) * C ;\n        G = F - 2.*A ; H = G/2.\n", 8.),
+                ("DEQATN         7QUAD(a,b,c)=a*b**2+c\n", 22.),
                 ("DEQATN,7,F(A,B,C)=MAX(A,B,C)**2-SQRT(C)\n", 14.),
                 ("DEQATN  7       F(A,B,C)=A**B**2/C\n", 128.),
                 ("DEQATN  7       F(A,B,C)=-A**2+PI(1)*0.+MIN(A,B)*C+1/2\n", 4.),
@@ -232,6 +233,20 @@ class Equations(Decks):
     def test_materials_take_equations_too(self):
         deck = self.make_deck("DVMREL2,1,MAT1,1,E,,,7\n,DESVAR,2\n", "DEQATN  7       F(B)=1.+4*B\n")
         self.assertRegex(self.list_hz(deck)[1], "deck.design-values")
+
+    def test_end_b_of_a_beam_takes_values(self):
+        """A cantilever whose I1 is 2 at its root and 4 at its tip, by equations, is that of its card."""
+        def make(a, b, more=""):
+            return ("SOL 200\nCEND\nSPC = 1\nMETHOD = 1\nANALYSIS = MODES\nBEGIN BULK\nEIGRL,1,,,2\nSPC1,1,123456,1\n"
+                    "GRID,1,,0.,0.,0.\nGRID,2,,1.,0.,0.\nGRID,3,,2.,0.,0.\nCBEAM,1,1,1,2,0.,1.,0.\nCBEAM,2,1,2,3,0.,1.,0.\n"
+                    f"MAT1,1,7.+4,,.3,1.\nPBEAM,1,1,1.,{a},3.,,5.,\n,1.,1.\n,YES,.5,1.,3.,3.,,5.,\n,1.,1.\n,NO,1.,1.,{b},3.,,5.\n"
+                    f"{more}ENDDATA\n")
+        relations = ("DESVAR,1,X,2.\nDEQATN  7       F(X)=X\nDEQATN  8       F(X)=X**2\nDVPREL2,1,PBEAM,1,I1(A),,,7\n,DESVAR,1\n"
+                     "DVPREL2,2,PBEAM,1,I1(B),,,8\n,DESVAR,1\n")
+        by_card, _ = self.list_hz(make("2.", "4."))
+        by_equations, messages = self.list_hz(make("9.", "9.", relations))
+        np.testing.assert_allclose(by_equations, by_card, rtol=1e-12)
+        self.assertNotIn("warning", messages)
 
     def test_what_has_no_value_is_an_error(self):
         for text, words in [("", "the deck has no DEQATN 7"), ("DEQATN  7       F(A,B)=A+B\n", "it has 2 arguments"),

@@ -264,10 +264,12 @@ double evaluate(std::string_view equation, const std::vector<double>& values) {
 }  // namespace
 
 std::optional<int> find_equation_id(const CardText& text) {
-  std::string_view line = text.lines.front().text;
-  line.remove_prefix(std::min(line.find_first_of(", "), line.size()));
-  const auto first = std::min(line.find_first_not_of(", "), line.size());
-  return parse_int(find_first_word(line.substr(first)));
+  const std::string_view line = text.lines.front().text;
+  const auto end = std::min(line.find_first_of(", "), line.size());
+  if (end == line.size()) return std::nullopt;
+  // Fixed fields: columns 9 to 16, and the equation may follow without a blank.
+  return parse_int(line[end] == ',' ? trim(line.substr(end + 1, line.find(',', end + 1) - end - 1))
+                                    : trim(line.substr(8, 8)));
 }
 
 std::string join_equation(const CardText& text) {
