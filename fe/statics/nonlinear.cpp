@@ -520,10 +520,9 @@ void NonlinearStatics::go_to(const StaticLoad& to, const FollowerLoads& moving, 
       residual_ = evaluate(F_).residual;
       char share[32];
       std::snprintf(share, sizeof share, "%.4g", 100 * reached);
-      throw ComputationError("fe.no-equilibrium", {},
+      throw ComputationError("fe.no-equilibrium", options.at,
                              "no stable static equilibrium is found beyond " + std::string(share) + " % of the load",
-                             "look for buckling or a snap-through there: lower the load, give --arc-length to pass "
-                             "it, enforce displacements, or give more --increments");
+                             options.advice);
     }
   }
   report_turned_ties(diagnostics);

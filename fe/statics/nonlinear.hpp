@@ -4,6 +4,7 @@
 /// Elements are linear in frames that follow their nodes (fe/corotational), rigid elements turn as rigid bodies, other
 /// constraint equations are linear in displacements and rotation vectors. Theory: docs/theory/nonlinear-statics.md.
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "fe/corotational/corotational_element.hpp"
@@ -18,6 +19,11 @@ struct NonlinearOptions {
   int max_iterations = 25;  ///< of Newton's method in a step
   /// Follows the path through limit points, unstable states included, to where the load is reached first.
   bool has_arc_length = false;
+  /// Place and advice of fe.no-equilibrium of steps without arc length.
+  SourceLocation at;
+  std::string advice =
+      "look for buckling or a snap-through there: lower the load, give --arc-length to pass it, enforce displacements, "
+      "or give more --increments";
 };
 
 /// Places of all nodes. Start: undeformed.
