@@ -5,15 +5,15 @@
 #include <csignal>
 #include <cstring>
 #include <exception>
-#include <fstream>
 #include <new>
 #include <utility>
 
 #include <fcntl.h>
-#include <malloc.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
+
+#include "base/platform.hpp"
 
 // GCC has the macro, clang the feature; either keeps terabytes of address space.
 #if defined(__has_feature)
@@ -36,13 +36,6 @@ void limit(decltype(RLIMIT_CPU) resource, double limit_value) {
   setrlimit(resource, &now);
 }
 
-[[maybe_unused]] double get_memory() {
-  std::ifstream in("/proc/self/statm");
-  double pages = 0;
-  in >> pages;
-  return pages * static_cast<double>(sysconf(_SC_PAGESIZE));
-}
-
 void write_all(int descriptor, const std::string& text) {
   for (std::size_t at = 0; at < text.size();) {
     const auto done = ::write(descriptor, text.data() + at, text.size() - at);
@@ -60,11 +53,11 @@ void write_all(int descriptor, const std::string& text) {
     ::dup2(null, STDOUT_FILENO);
     ::dup2(null, STDERR_FILENO);
   }
-  ::mallopt(M_PERTURB, 0x5A);  // memory that was never set shows here, and not where it matters
+  platform::fill_fresh_memory();  // memory that was never set shows here, and not where it matters
   limit(RLIMIT_CORE, 0);
   limit(RLIMIT_CPU, limits.seconds);
 #if !defined(__SANITIZE_ADDRESS__) && !BOUGH_HAS_ADDRESS_SANITIZER
-  limit(RLIMIT_AS, get_memory() + limits.bytes);
+  limit(RLIMIT_AS, platform::get_address_space_bytes() + limits.bytes);
 #endif
   try {
     write_all(descriptor, task(path));
@@ -90,7 +83,7 @@ IsolatedResult run_in_process(const std::string& path, IsolatedTask task, const 
                               const std::string& library) {
   int ends[2];
   pid_t child = -1;
-  const bool has_pipe = ::pipe2(ends, O_CLOEXEC) == 0;
+  const bool has_pipe = platform::open_pipe(ends);
   if (has_pipe) child = ::fork();
   if (child == 0) become_worker(path, task, limits, ends[1]);
   if (child < 0) {

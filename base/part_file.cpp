@@ -12,6 +12,7 @@
 #include <filesystem>
 
 #include "base/file_roles.hpp"
+#include "base/platform.hpp"
 
 namespace bough {
 
@@ -47,18 +48,8 @@ void drop_part(int slot) {
   if (slot >= 0) std::free(get_parts()[static_cast<std::size_t>(slot)].exchange(nullptr));
 }
 
-struct flock make_lock(off_t byte) {
-  struct flock lock {};
-  lock.l_type = F_WRLCK;
-  lock.l_whence = SEEK_SET;
-  lock.l_start = byte;
-  lock.l_len = 1;
-  return lock;
-}
-
 LockState lock_byte(int descriptor, off_t byte) {
-  auto lock = make_lock(byte);
-  if (::fcntl(descriptor, F_OFD_SETLK, &lock) == 0) return LockState::Held;
+  if (platform::lock_byte(descriptor, byte)) return LockState::Held;
   return errno == EAGAIN || errno == EACCES ? LockState::Busy : LockState::Unsupported;
 }
 
@@ -158,9 +149,7 @@ bool PartFile::write(const char* data, std::size_t size) {
 }
 
 void PartFile::start_sync() {
-#ifdef SYNC_FILE_RANGE_WRITE
-  if (!error_) static_cast<void>(::sync_file_range(descriptor_, 0, 0, SYNC_FILE_RANGE_WRITE));  // a wish, no more
-#endif
+  if (!error_) platform::start_sync(descriptor_);
 }
 
 bool PartFile::commit() {
@@ -226,8 +215,7 @@ LockState lock_file(int descriptor) { return lock_byte(descriptor, kGrowingByte)
 bool is_file_locked(const std::string& path) {
   const int descriptor = ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
   if (descriptor < 0) return false;
-  auto lock = make_lock(kGrowingByte);
-  const bool is_locked = ::fcntl(descriptor, F_OFD_GETLK, &lock) == 0 && lock.l_type != F_UNLCK;
+  const bool is_locked = platform::is_byte_locked(descriptor, kGrowingByte);
   ::close(descriptor);
   return is_locked;
 }

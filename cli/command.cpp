@@ -28,12 +28,29 @@ struct Verb {
 constexpr Verb kVerbs[] = {BOUGH_COMMANDS(BOUGH_LIST_COMMAND)};
 #undef BOUGH_LIST_COMMAND
 
+/// Headings of `bough --help`, each above the command that begins it and those up to the next.
+struct Heading {
+  std::string_view first;
+  const char* text;
+};
+constexpr Heading kHeadings[] = {{"check", "Decks"},
+                                 {"split", "Flexible bodies"},
+                                 {"run", "Multibody systems"},
+                                 {"export", "Results, pictures, files of other programs"},
+                                 {"init", "Projects"}};
+
 /// Adds one command, or all: setting up the options of all takes longer than solving a small deck.
 void add_verbs(CLI::App& app, cli::Action& action, std::string_view only = {}) {
   const bool is_verb =
       std::any_of(std::begin(kVerbs), std::end(kVerbs), [&](const Verb& verb) { return verb.name == only; });
-  for (const auto& verb : kVerbs)
-    if (!is_verb || verb.name == only) verb.add(app, action);
+  const char* heading = kHeadings[0].text;
+  for (const auto& verb : kVerbs) {
+    for (const auto& each : kHeadings)
+      if (each.first == verb.name) heading = each.text;
+    if (is_verb && verb.name != only) continue;
+    verb.add(app, action);
+    app.get_subcommand(std::string(verb.name))->group(heading);
+  }
 }
 
 std::vector<std::string> get_names(const CLI::App& app) {

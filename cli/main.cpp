@@ -2,6 +2,7 @@
 
 #include <cstdio>
 
+#include "base/platform.hpp"
 #include "cli/common/interrupt.hpp"
 #include "cli/common/memory_limit.hpp"
 #include "cli/common/user_code.hpp"
@@ -12,7 +13,7 @@ namespace {
 
 /// Handles signals from the moment the program is loaded: its libraries take longer to start than some commands to run.
 /// Not in the library of the commands, since a Python process that loads it keeps its own signals.
-__attribute__((section(".preinit_array"), used)) void (*const begin)() = bough::cli::end_cleanly_on_signals;
+BOUGH_CALL_AT_LOAD(bough::cli::end_cleanly_on_signals)
 
 }  // namespace
 

@@ -4,6 +4,8 @@
 add_library(bough_flags INTERFACE)
 target_compile_options(bough_flags INTERFACE $<BUILD_INTERFACE:-Wall;-Wextra;-Wpedantic;-Wshadow>
   $<BUILD_INTERFACE:$<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>>
+  # A failed demand names its source by the path in the repository: builds in different folders give the same bytes.
+  $<BUILD_INTERFACE:-fmacro-prefix-map=${CMAKE_SOURCE_DIR}/=>
   # Names that neighbours of a unity group share; fields that have defaults; the report page in one literal.
   "$<BUILD_INTERFACE:$<$<CXX_COMPILER_ID:Clang>:-Wno-shadow;-Wno-missing-field-initializers;-Wno-overlength-strings>>")
 if(BOUGH_SANITIZE)

@@ -11,19 +11,13 @@
 #include <stdexcept>
 #include <type_traits>
 
+#include "base/platform.hpp"
 #include "embed/fmi2_types.h"
 #include "embed/fmi3_types.h"
 
 namespace bough::cosim {
 namespace {
 
-#if defined(__aarch64__)
-constexpr const char* kFolder2 = "linuxaarch64";
-constexpr const char* kFolder3 = "aarch64-linux";
-#else
-constexpr const char* kFolder2 = "linux64";
-constexpr const char* kFolder3 = "x86_64-linux";
-#endif
 constexpr const char* kName = "controller";
 constexpr int kWarning = 1, kDiscard = 2, kFatal = 4;
 
@@ -390,7 +384,8 @@ class Slave3 final : public SlaveBase {
 }  // namespace
 
 std::string get_binary_path(const fmu::ForeignModel& model, const std::string& folder) {
-  return folder + "/binaries/" + (model.version == 2 ? kFolder2 : kFolder3) + "/" + model.identifier + ".so";
+  return folder + "/binaries/" + (model.version == 2 ? platform::kFmi2Platform : platform::kFmi3Platform) + "/" +
+         model.identifier + platform::kLibrarySuffix;
 }
 
 std::unique_ptr<Slave> load_slave(const fmu::ForeignModel& model, const std::string& folder, SlaveVariables variables) {

@@ -29,7 +29,7 @@ typedef struct bough_simulation bough_simulation;
 typedef enum bough_status {
   BOUGH_OK = 0,
   BOUGH_TERMINATED = 1,    /* advance: an event has ended the run, or its end is reached; bough_last_message says which */
-  BOUGH_BAD_ARGUMENT = 2,  /* a null pointer, an index that does not exist, a time that lies behind, NaN, a dead handle */
+  BOUGH_BAD_ARGUMENT = 2,  /* a null pointer, an index that does not exist, a time that has passed, NaN, a dead handle */
   BOUGH_BAD_INPUT = 3,     /* a file or a setting is not good */
   BOUGH_FAILED = 4,        /* the computation: diverged, no energy balance, a user library; the simulation is over */
   BOUGH_OUT_OF_MEMORY = 5,
@@ -55,7 +55,7 @@ typedef struct bough_message {
   char advice[1024]; /* what to do about it */
 } bough_message;
 
-/** For bough_start. Start from bough_default_options(); zero or null: as the system file says. */
+/** For bough_start. Start from bough_default_options(); zero or null: as in the system file. */
 typedef struct bough_options {
   size_t size;            /* sizeof(bough_options) */
   const char *integrator; /* "rk4", "implicit", "rk", "radau", "adams", "bdf" */

@@ -7,6 +7,7 @@
 #include "base/diagnostic.hpp"
 #include "formats/flat/flex_body.hpp"
 #include "formats/flx/flx_file.hpp"
+#include "formats/flx/special_nodes.hpp"
 
 namespace bough::embed {
 namespace {
@@ -40,6 +41,7 @@ records::FlexBody read_body(const std::string& name, Diagnostics&, const std::op
   const auto file = flx::read_flx(path, parsed->body_id);
   std::vector<std::string> lacking;
   auto body = flx::make_flex_body(file, lacking);
+  flx::add_special_nodes(file, body);
   give_rigid_part(body, file.has_rigid, given, path);
   return body;
 }

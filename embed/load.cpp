@@ -5,6 +5,7 @@
 #include <charconv>
 #include <filesystem>
 
+#include "base/platform.hpp"
 #include "formats/flx/flx_file.hpp"
 #include "formats/toml/specs.hpp"
 #include "formats/toml/system_text.hpp"
@@ -58,7 +59,7 @@ std::vector<std::pair<std::string, std::string>> split_settings(const std::vecto
     const auto sign = text.find('=');
     std::string value = sign == std::string::npos ? "" : text.substr(sign + 1);
     double number = 0;
-    const auto [end, failed] = std::from_chars(value.data(), value.data() + value.size(), number);
+    const auto [end, failed] = platform::read_number(value.data(), value.data() + value.size(), number);
     if (value.empty() || failed != std::errc() || end != value.data() + value.size())
       throw InputError("cli.bad-setting", {path}, "the setting " + text + " is not NAME=NUMBER", "write name=1.5");
     // TOML wants a digit on both sides of a point.

@@ -74,8 +74,8 @@ class BlockLanczos {
 BlockLanczos::BlockLanczos(BlockLanczosProblem problem)
     : problem_(std::move(problem)), width_(static_cast<int>(problem_.start.cols())) {
   const auto n = problem_.start.rows(), b = problem_.start.cols();
-  const Eigen::Index asked = problem_.max_subspace > 0 ? problem_.max_subspace : 2 * problem_.num_wanted + 8 * b;
-  const auto room = std::max(asked, problem_.num_wanted + 2 * b) + b;
+  const Eigen::Index requested = problem_.max_subspace > 0 ? problem_.max_subspace : 2 * problem_.num_wanted + 8 * b;
+  const auto room = std::max(requested, problem_.num_wanted + 2 * b) + b;
   V_.resize(n, room);
   T_ = MatrixXd::Zero(room, room);
   // Through A⁻¹B once: a start outside the range of A⁻¹B stays in the vectors where B is singular.
@@ -119,14 +119,15 @@ void BlockLanczos::orthonormalize(MatrixXd& W, MatrixXd& C, MatrixXd& R) {
   R = MatrixXd::Identity(W.cols(), W.cols());
   MatrixXd B_W = problem_.multiply_mass(W);
   const bool has_known = problem_.deflate.cols() > 0;
-  // What the recurrence couples first: left in, it would carry errors of the basis into the other directions, which
-  // grow by the ratio of both from block to block. Known vectors, whose θ may be much larger, are off before.
+  // Vectors that the recurrence couples come first: left in, they would carry errors of the basis into the other
+  // directions, which grow by the ratio of both from block to block. Known vectors, whose θ may be much larger, are off
+  // before.
   if (is_recurrent_ && has_known) {
     subtract(problem_.deflate, linear::calc_inner_products(problem_.deflate, B_W), W);
     B_W = problem_.multiply_mass(W);
   }
   const double near = is_recurrent_ ? relieve(W, B_W, C) : 0;
-  const double most = is_recurrent_ ? 20 : 2;  // that a pass may take off
+  const double max_ratio = is_recurrent_ ? 20 : 2;  // that a pass may subtract
   for (int pass = 0; pass < 5 && W.cols() > 0; ++pass) {
     VectorXd squares =
         VectorXd::Zero(W.cols());  // squared norms of the given W: the projected-out part plus the remainder
@@ -146,12 +147,12 @@ void BlockLanczos::orthonormalize(MatrixXd& W, MatrixXd& C, MatrixXd& R) {
     const double given = std::sqrt(squares.cwiseAbs().maxCoeff());
     if (pass == 0) scale_ = std::max({scale_, near, given});
     // Lengths: of the operator's result in the first pass, of unit vectors later.
-    // Shorter ones are roundoff, and at length one what they have where nothing has mass would be all of them.
+    // Shorter ones are roundoff; scaled to length one, their massless part would dominate.
     const VectorXd length = make_unit(G, pass == 0 ? kDependentBlock * scale_ : kDependentColumn, W, B_W, R);
     if (length.size() == 0) break;
-    // What roundoff left along the basis has grown as `given` to the least of them, that of columns among themselves
-    // as their ratio squared.
-    if (given > most * length.minCoeff()) continue;
+    // Roundoff along the basis has grown by `given` over the shortest column, that of columns among themselves by the
+    // square of their ratio.
+    if (given > max_ratio * length.minCoeff()) continue;
     if (length.maxCoeff() > 3 * length.minCoeff())
       make_unit(linear::calc_inner_products(W, B_W), kDependentColumn, W, B_W, R);
     break;
@@ -196,14 +197,14 @@ int BlockLanczos::calc_ritz() {
   error_ = residual.colwise().norm().transpose().cwiseQuotient(theta_.cwiseAbs());
   const int num_strict = problem_.num_wanted - problem_.num_guard;
   // Roundoff of the largest θ, which after a restart couples all of the basis to what follows.
-  const double floor = kResidualFloor * scale_, most = std::min(kMaxFloor, 1000 * problem_.tolerance);
+  const double floor = kResidualFloor * scale_, max_ratio = std::min(kMaxFloor, 1000 * problem_.tolerance);
   int converged = 0;
   for (; converged < size_; ++converged) {
     const double theta = problem_.positive_only ? theta_(converged) : std::abs(theta_(converged));
     if (!(theta > 0)) break;
     const bool is_rough = converged >= num_strict && theta < (1 - kGuardGap) * std::abs(theta_(num_strict - 1));
     const double allowed =
-        is_rough ? kGuardResidual * theta : std::max(problem_.tolerance * theta, std::min(floor, most * theta));
+        is_rough ? kGuardResidual * theta : std::max(problem_.tolerance * theta, std::min(floor, max_ratio * theta));
     if (next_.cols() > 0 && residual.col(converged).norm() > allowed) break;
   }
   return converged;

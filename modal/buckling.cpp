@@ -35,14 +35,14 @@ class BucklingModes {
   EigenPairs solve();
 
  private:
-  /// Which load factors: both signs by magnitude, or one sign.
+  /// Load factors that are sought: both signs by magnitude, or one sign.
   enum Side { Negative = -1, Both = 0, Positive = 1 };
 
   /// Up to `number` more, by magnitude.
   void add_roots(Side side, int number, Roots& roots);
   int count_below(Side side, double magnitude) const;
-  /// The first `wanted` of one side (or both), complete; `available` exist at most.
-  void find(Side side, int wanted, int available, Roots& roots);
+  /// The first `requested` of one side (or both), complete; `available` exist at most.
+  void find(Side side, int requested, int available, Roots& roots);
   Roots find_in_range();
   Roots find_on_side(Side side, double low, double high);
   /// The first `number` in the range.
@@ -111,9 +111,9 @@ int BucklingModes::count_below(Side side, double magnitude) const {
   return sum;
 }
 
-void BucklingModes::find(Side side, int wanted, int available, Roots& roots) {
+void BucklingModes::find(Side side, int requested, int available, Roots& roots) {
   detail::RootSearch search;
-  search.wanted = std::min(wanted, available);
+  search.requested = std::min(requested, available);
   search.num_available = available;
   search.by_magnitude = true;
   search.counts = options_.check_inertia;
@@ -121,7 +121,7 @@ void BucklingModes::find(Side side, int wanted, int available, Roots& roots) {
   search.closeness = [](const Roots&, int) { return detail::kCloseness; };
   search.roundoff = [](const Roots&, int) { return 0.0; };
   search.count = [&](double mu) { return mu > 0 ? count_below(side, mu) : 0; };
-  search.solve(roots, search.wanted + std::max(4, wanted / 10));
+  search.solve(roots, search.requested + std::max(4, requested / 10));
   const auto result = detail::search_roots(search, roots);
   detail::report_count(result, 0, "load factors", search.counts, diagnostics_);
   count_ = result.count < 0 || count_ < -1 ? -2 : std::max(count_, 0) + result.count;
@@ -132,12 +132,12 @@ void BucklingModes::find(Side side, int wanted, int available, Roots& roots) {
 Roots BucklingModes::find_on_side(Side side, double low, double high) {
   Roots roots = make_none(pencil_);
   if (!(high > low)) return roots;
-  // How many there are at all: without this the solver would look for the last of a kind that does not exist.
+  // Number of load factors that exist: without it the solver would look for the last of a kind that does not exist.
   const double end = std::min(high, 1e6 / largest_theta_);
   const int available = count_below(side, end), below = low > 0 ? count_below(side, low) : 0;
   if (available < 0 || below < 0) detail::throw_singular(pencil_, 0);
-  const int wanted = std::min(below + options_.num_modes, available);
-  if (wanted > below) find(side, wanted, available, roots);
+  const int requested = std::min(below + options_.num_modes, available);
+  if (requested > below) find(side, requested, available, roots);
   return roots;
 }
 
@@ -188,23 +188,23 @@ EigenPairs BucklingModes::solve() {
             " rigid-body motion(s) are free",
         "add SPC cards and select them with SPC in the case control");
   Roots roots = make_none(pencil_);
-  int wanted = options_.num_modes;
-  if (wanted > 0 && (options_.min_hz || options_.max_hz)) {
+  int requested = options_.num_modes;
+  if (requested > 0 && (options_.min_hz || options_.max_hz)) {
     roots = find_in_range();
   } else {
     double bound = 0;
     for (const auto& end : {options_.min_hz, options_.max_hz})
       if (end) bound = std::max(bound, std::abs(*end));
-    if (wanted <= 0) wanted = bound > 0 ? count_below(Both, bound) : pencil_.size();
-    if (wanted < 0) detail::throw_singular(pencil_, 0);
-    if (wanted > 0) find(Both, wanted, pencil_.size(), roots);
-    if (roots.size() < wanted && options_.num_modes > 0)
+    if (requested <= 0) requested = bound > 0 ? count_below(Both, bound) : pencil_.size();
+    if (requested < 0) detail::throw_singular(pencil_, 0);
+    if (requested > 0) find(Both, requested, pencil_.size(), roots);
+    if (roots.size() < requested && options_.num_modes > 0)
       diagnostics_.warning("modal.fewer-modes", {},
                            "the load has " + std::to_string(roots.size()) + " buckling modes, " +
-                               std::to_string(wanted) + " were asked for",
+                               std::to_string(requested) + " were asked for",
                            "ask for fewer");
   }
-  auto pairs = make_pairs(std::move(roots), wanted);
+  auto pairs = make_pairs(std::move(roots), requested);
   if (pairs.lambda.size() == 0)
     diagnostics_.warning("modal.empty-range", {}, "no load factor is in the requested range",
                          "widen V1 and V2 of the card; a load that only stiffens has negative load factors alone");

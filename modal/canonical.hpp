@@ -24,22 +24,22 @@ MatrixXd calc_cluster_rotation(const VectorXd& weights, const Eigen::Ref<const M
 /// those before it, so that what roundoff left of the others in a low one is none of their forces.
 void orthonormalize_ascending(const MatrixXd& G, MatrixXd& X);
 
-/// Subtracts from X what it has of the M-orthonormal R, twice.
+/// Projects the M-orthonormal R out of X, twice.
 void project_out(const linear::SymmetricMatrix& M, const MatrixXd& R, MatrixXd& X);
 
 /// Makes the component of largest magnitude of each column positive, the first among those within 1e-6 of it.
 void fix_signs(MatrixXd& Phi);
 
-/// That component of each column; zero of columns without rows.
+/// Largest component of each column; zero for columns without rows.
 VectorXd find_largest(const Eigen::Ref<const MatrixXd>& X);
 
-/// One basis of each repeated eigenvalue, fixed by the model alone. `find_end` gives the position behind the cluster
+/// One basis of each repeated eigenvalue, fixed by the model alone. `find_end` gives the position after the cluster
 /// that starts at one; the columns of X of a cluster are rotated by calc_cluster_rotation() of what `expand` makes of
 /// them (displacements of the g-set), and its values become their mean. `rotation`, if any, is rotated with X.
 void make_canonical(const VectorXd& weights, int first, const std::function<int(int)>& find_end,
                     const std::function<MatrixXd(const MatrixXd&)>& expand, VectorXd& values, MatrixXd& X,
                     MatrixXd* rotation = nullptr);
-/// The same with clusters of values within kCloseness of each other.
+/// Makes vectors canonical, with clusters of values within kCloseness of each other.
 void make_canonical(const VectorXd& weights, const std::function<MatrixXd(const MatrixXd&)>& expand, VectorXd& values,
                     MatrixXd& X, MatrixXd* rotation = nullptr);
 

@@ -21,7 +21,7 @@ using detail::NormalModes;
 /// Solves by the chosen EPS type (choose_solver), and again by block Lanczos if Krylov-Schur has missed modes.
 Answer solve_twice(NormalModes& modes, const EigenOptions& options) {
   Answer answer = modes.solve(options.solver);
-  if (!answer.is_sound && modes.has_second_solver()) answer = modes.solve(detail::kBlockLanczos);
+  if (!answer.is_valid && modes.has_second_solver()) answer = modes.solve(detail::kBlockLanczos);
   return answer;
 }
 
@@ -34,7 +34,7 @@ Answer find_answer(const fe::System& system, const EigenOptions& options) {
   try {
     NormalModes modes(system, options, detail::find_rigid_motions);
     answer = solve_twice(modes, options);
-    if (answer->is_clean()) return std::move(*answer);
+    if (answer->is_accurate()) return std::move(*answer);
   } catch (const ComputationError& error) {
     if (error.items().front().id == "modal.no-mass") throw;
     refusal = error;
@@ -43,8 +43,8 @@ Answer find_answer(const fe::System& system, const EigenOptions& options) {
     NormalModes modes(system, options, detail::find_null_motions);
     if (modes.knows_motions()) {
       Answer other = solve_twice(modes, options);
-      const bool is_better = !answer || !answer->is_sound || other.worst() < answer->worst();
-      if (is_better && other.is_sound && other.worst_roundoff < detail::kVagueRoundoff) answer = std::move(other);
+      const bool is_better = !answer || !answer->is_valid || other.worst() < answer->worst();
+      if (is_better && other.is_valid && other.worst_roundoff < detail::kVagueRoundoff) answer = std::move(other);
     }
   } catch (const ComputationError&) {  // keep the first diagnostics: they are closer to the model
   }
@@ -58,11 +58,11 @@ constexpr int most_whole = 1000;
 /// Recomputes ill-conditioned modes from the strain of the elements. Soft modes that are not requested may mix with
 /// requested ones if K does not separate them: further modes are computed as long as this reduces the error.
 detail::Restored find_soft(const fe::System& system, const EigenOptions& options, EigenPairs& pairs) {
-  constexpr int most = 400;
+  constexpr int max_modes = 400;
   const auto number = static_cast<int>(pairs.lambda.size());
   auto restored = detail::restore_digits(system, number, !options.min_hz, pairs);
   if (options.min_hz || options.max_hz) return restored;
-  for (int more = 2 * number + 10; more < most; more = 2 * more + 10) {
+  for (int more = 2 * number + 10; more < max_modes; more = 2 * more + 10) {
     if (!restored.is_done || restored.error <= detail::kSureError) break;
     EigenOptions wider = options;
     wider.num_modes = std::min(more, system.model.num_fdofs());
@@ -147,7 +147,7 @@ EigenPairs calc_normal_modes(const fe::System& system, const EigenOptions& optio
   auto answer = find_answer(system, options);
   if (answer.pairs.Phi.cols() > detail::kColumnsAtOnce) linear::release_freed_memory();
   const auto restored = find_soft(system, options, answer.pairs);
-  for (const auto& item : answer.said.items())
+  for (const auto& item : answer.diagnostics.items())
     if (!restored.is_done || item.id != "modal.roundoff") diagnostics.add(item);
   detail::warn_of_lost_digits(restored, diagnostics);
   linear::check_residuals(answer.pairs.residual, "mode", diagnostics);

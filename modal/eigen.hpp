@@ -19,9 +19,9 @@ struct EigenOptions {
   double tolerance = 1e-12;
   bool check_inertia = true;  ///< Sylvester count: no mode missed below the highest
   std::string solver = {};    ///< EPS type of SLEPc (find_eps_type); empty: the one that suits the model
-  std::function<void(int converged, int wanted)> progress;
+  std::function<void(int converged, int requested)> progress;
   const linear::SymmetricFactor* factor = nullptr;  ///< LLᵀ of K of the system, where the caller has it: saves one
-  int least_rows_to_release = 500000;  ///< from so many f-dofs on K gives its memory back while Lanczos runs
+  int least_rows_to_release = 500000;  ///< from this number of f-dofs on K gives its memory back while Lanczos runs
 };
 
 /// K φ = λ M φ, φᵀMφ = 1, ascending λ. Sign rule: the component of largest magnitude (first by g-dof among those
@@ -45,7 +45,7 @@ struct EigenPairs {
 /// modal.massless-motion, modal.empty-range, modal.roundoff. Throws ComputationError modal.no-dofs, modal.no-mass,
 /// modal.singular-shift, modal.missed-modes, modal.unsuited-solver.
 EigenPairs calc_normal_modes(const fe::System& system, const EigenOptions& options, Diagnostics& diagnostics);
-/// The same with matrices that nobody else needs.
+/// Normal modes with matrices that no other caller needs.
 EigenPairs calc_normal_modes(const fe::Model& model, const EigenOptions& options, Diagnostics& diagnostics);
 
 /// (K + λ K_G) φ = 0, K_G of a load and its static displacement u_g: load factors λ nearest zero, by magnitude; φᵀKφ
@@ -55,14 +55,14 @@ EigenPairs calc_normal_modes(const fe::Model& model, const EigenOptions& options
 EigenPairs calc_buckling_modes(const fe::System& system, const fe::AppliedLoad& load, const VectorXd& u_g,
                                const EigenOptions& options, Diagnostics& diagnostics,
                                const fe::InitialForces* initial = nullptr);
-/// The same with matrices that nobody else needs.
+/// Buckling modes with matrices that no other caller needs.
 EigenPairs calc_buckling_modes(const fe::Model& model, const fe::AppliedLoad& load, const VectorXd& u_g,
                                const EigenOptions& options, Diagnostics& diagnostics,
                                const fe::InitialForces* initial = nullptr);
 
 /// m_eff,j,r = (Φ_Rᵀ M φ_j)_r² / (φ_jᵀ M φ_j), n x 6, about Bo.
 MatrixXd calc_effective_mass(const fe::Model& model, const MatrixXd& Phi);
-/// The same with M Φ on the g-set at hand.
+/// Modal effective mass from a given M Φ on the g-set.
 MatrixXd calc_effective_mass(const fe::Model& model, const MatrixXd& Phi, const MatrixXd& M_Phi);
 
 }  // namespace bough::modal

@@ -21,7 +21,7 @@ namespace {
 
 using Eigen::Index;
 
-constexpr int kMostDofs = 24;        // of an element taken apart
+constexpr int kMaxDofs = 24;         // of an element taken apart
 constexpr double kRoundoff = 1e-13;  // of uᵀK_e u, over its parts
 constexpr double kNoMotion = 1e-13;  // scaled principal stiffness of an element's rigid-body motions
 constexpr double kNoStrain = 1e-22;  // energy over its parts: the square of the round-off of doubles
@@ -125,7 +125,8 @@ class SoftModes {
   }
 
   void find_ritz() {
-    // By the elements: where constraints have large factors, sums over the f-set lose digits of the mass too.
+    // Mass is summed by elements: where constraints have large factors, sums over the f-set lose digits of the mass
+    // too.
     const auto& model = pencil_.model;
     orthonormalize_ascending(fe::calc_mass_gram(model, model.mass_kind(), model.T() * X_), X_);
     const auto strain = calc_element_strain(pencil_.model, pencil_.model.T() * X_, true);
@@ -176,7 +177,7 @@ void replace(const Pencil& pencil, const SoftModes& better, const std::vector<In
 
 }  // namespace
 
-ElementStrain calc_element_strain(const fe::Model& model, const MatrixXd& X_g, bool is_fine) {
+ElementStrain calc_element_strain(const fe::Model& model, const MatrixXd& X_g, bool decompose) {
   const Index m = X_g.cols();
   ElementStrain strain{MatrixXd::Zero(X_g.rows(), m), MatrixXd::Zero(m, m), VectorXd::Zero(m), VectorXd::Zero(m)};
   MatrixXd K, u, forces;
@@ -185,7 +186,7 @@ ElementStrain calc_element_strain(const fe::Model& model, const MatrixXd& X_g, b
     model.add_stiffness(element, K);
     if (K.isZero(0)) return;
     u = X_g(element.gdofs(), Eigen::all);
-    add_element(K, u, is_fine ? kMostDofs : 0, forces, strain);
+    add_element(K, u, decompose ? kMaxDofs : 0, forces, strain);
     for (int i = 0; i < element.num_dofs(); ++i) strain.forces.row(element.gdofs()[i]) += forces.row(i);
   });
   linear::sum_over_ranks(strain.forces);
@@ -234,7 +235,7 @@ std::string find_stiffest(const fe::Model& model) {
   for (const auto& node : model.nodes())
     for (int c = 0; c < node.num_dofs; ++c)
       kind_of[static_cast<std::size_t>(node.first_gdof + c)] = node.num_dofs == 1 ? 2 : c / 3;
-  std::array<double, 3> least{}, most{};
+  std::array<double, 3> min_size{}, max_size{};
   std::array<std::string, 3> name;
   for (const auto& element : model.elements()) {
     MatrixXd K = MatrixXd::Zero(element->num_dofs(), element->num_dofs());
@@ -247,14 +248,14 @@ std::string find_stiffest(const fe::Model& model) {
     }
     for (std::size_t k = 0; k < 3; ++k) {
       if (!(size[k] > 0)) continue;
-      if (!(least[k] > 0) || size[k] < least[k]) least[k] = size[k];
-      if (size[k] > most[k]) most[k] = size[k], name[k] = element->card() + " " + std::to_string(element->id());
+      if (!(min_size[k] > 0) || size[k] < min_size[k]) min_size[k] = size[k];
+      if (size[k] > max_size[k]) max_size[k] = size[k], name[k] = element->card() + " " + std::to_string(element->id());
     }
   }
   std::string stiffest;
   double ratio = kStiff;
   for (std::size_t k = 0; k < 3; ++k) {
-    if (least[k] > 0 && most[k] / least[k] > ratio) ratio = most[k] / least[k], stiffest = name[k];
+    if (min_size[k] > 0 && max_size[k] / min_size[k] > ratio) ratio = max_size[k] / min_size[k], stiffest = name[k];
   }
   return stiffest;
 }
@@ -268,7 +269,7 @@ Restored restore_digits(const fe::System& system, int number, bool is_from_first
   const fe::Model& model = system.model;
   if (has_given_blocks(model)) return {};
   if (model.prestress() || model.omitted() || pairs.lambda.size() == 0) return {};
-  // Those below the last soft one too: what is left out of them would grow by the ratio of the eigenvalues.
+  // Modes below the last soft one are included: their errors would grow by the ratio of the eigenvalues.
   Index num_soft = 0;
   for (Index j = 0; j < pairs.energy_share.size(); ++j)
     if (pairs.energy_share(j) < kSoft) num_soft = j + 1;

@@ -15,18 +15,18 @@ struct ElementStrain {
   VectorXd whole;   ///< part of it by elements that are not decomposed, m
 };
 
-/// Of displacements X_g, num_gdofs x m; replicated. `is_fine`: elements of up to 24 dofs are taken apart into their
-/// principal stiffnesses K_e = Σ κ v vᵀ (v scaled by the root of the diagonal, κ below 1e-13 is none): the energy
-/// Σ κ (vᵀu)² loses only the square of roundoff, where uᵀ(K_e u) loses roundoff itself. Others by K_e u; energy below
-/// 1e-13 of its parts is none.
-ElementStrain calc_element_strain(const fe::Model& model, const MatrixXd& X_g, bool is_fine);
+/// Strain energies and forces of displacements X_g, num_gdofs x m; replicated. `decompose`: elements of up to 24 dofs
+/// are taken apart into their principal stiffnesses K_e = Σ κ v vᵀ (v scaled by the root of the diagonal, κ below 1e-13
+/// is none): the energy Σ κ (vᵀu)² loses only the square of roundoff, where uᵀ(K_e u) loses roundoff itself. Others by
+/// K_e u; energy below 1e-13 of its parts is none.
+ElementStrain calc_element_strain(const fe::Model& model, const MatrixXd& X_g, bool decompose);
 
 /// Eigenvalues (returned) and vectors (V) of a symmetric positive semidefinite G by Jacobi's rotations, small ones to
 /// the digits that diag(G)^-½ G diag(G)^-½ allows, however large others are (Demmel, Veselić, SIAM J. Matrix Anal.
 /// Appl. 13, 1992). In the order of G's columns.
 VectorXd calc_graded_eigenvalues(MatrixXd G, MatrixXd& V);
 
-/// What the elements say of modes.
+/// Modes refined by the strain of the elements.
 struct Restored {
   bool is_done = false;  ///< the modes were improved
   double error = 0;      ///< relative, of the worst eigenvalue of the first `number` modes

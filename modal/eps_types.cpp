@@ -17,7 +17,7 @@ namespace {
 using Eigen::VectorXd;
 using linear::check_petsc;
 
-/// What both types have in eps->data.
+/// Data of both types in eps->data.
 class OwnSolver {
  public:
   virtual ~OwnSolver() = default;
@@ -127,8 +127,8 @@ PetscErrorCode set_up_sort(EPS eps) {
   PetscFunctionReturn(0);
 }
 
-/// A basis of so many columns without storage, which a type would give it (compute_vectors): EPSSolve sets its active
-/// columns.
+/// A basis of the given number of columns without storage, which a type would give it (compute_vectors): EPSSolve sets
+/// its active columns.
 void set_basis_size(EPS eps, PetscInt number) {
   Mat B = nullptr;
   linear::PetscVec like;

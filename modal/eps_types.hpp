@@ -2,8 +2,8 @@
 /// \file Eigensolvers of Bough as EPS types of SLEPc: "bough-block-lanczos" and "bough-low-rank".
 ///
 /// Internal to modal. Both ask for an ST "bough-factor" (factored_transform.hpp), whose operator they apply to blocks
-/// of vectors. EPS keeps what it has a place for (number, tolerance, target, monitors, eigenvalues, the reason of the
-/// end); what it has none for is set by the functions below.
+/// of vectors. EPS keeps the data for which it has a place (number, tolerance, target, monitors, eigenvalues, the
+/// reason of the end); the functions below set the others.
 #include <slepceps.h>
 
 #include <Eigen/SparseCore>
@@ -47,7 +47,7 @@ void set_settings(EPS eps, LowRankSettings settings);
 /// in memory, as EPSGetEigenvector would make.
 MatrixXd take_vectors(EPS eps, Eigen::VectorXd& values);
 
-/// What a function of ours threw within SLEPc; null: nothing.
+/// Exception that a callback threw within SLEPc; null: nothing.
 std::exception_ptr get_failure(EPS eps);
 
 }  // namespace bough::modal::detail

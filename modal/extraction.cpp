@@ -125,13 +125,13 @@ linear::PetscVec make_vector(const linear::SymmetricMatrix& A, const Eigen::Ref<
 
 struct Watch {
   std::function<void(int, int)> progress;
-  int wanted = 0;
+  int num_modes = 0;
 };
 
 PetscErrorCode report_progress(EPS, PetscInt, PetscInt converged, PetscScalar*, PetscScalar*, PetscReal*, PetscInt,
                                void* context) {
   const auto* watch = static_cast<const Watch*>(context);
-  watch->progress(std::min(static_cast<int>(converged), watch->wanted), watch->wanted);
+  watch->progress(std::min(static_cast<int>(converged), watch->num_modes), watch->num_modes);
   return 0;
 }
 
@@ -171,8 +171,8 @@ void drop_roundoff(const EigenProblem& problem, Extraction& result) {
 /// One solution by SLEPc.
 class EpsRun {
  public:
-  EpsRun(const EigenProblem& problem, FactoredOperator& op, const std::string& type, int wanted, int room)
-      : problem_(problem), op_(op), wanted_(wanted), room_(room) {
+  EpsRun(const EigenProblem& problem, FactoredOperator& op, const std::string& type, int num_modes, int room)
+      : problem_(problem), op_(op), wanted_(num_modes), room_(room) {
     check_petsc(EPSCreate(PETSC_COMM_WORLD, eps_.out()));
     check_petsc(EPSSetOperators(eps(), A_.get(), B_.get()));
     check_petsc(EPSSetProblemType(eps(), EPS_GHEP));
@@ -302,7 +302,8 @@ class EpsRun {
     if (type == EPSLANCZOS) check_petsc(EPSLanczosSetReorthog(eps(), EPS_LANCZOS_REORTHOG_FULL));
     MatrixXd start = make_start(problem_, 1);
     if (type == EPSLOBPCG) {
-      // As many as its blocks ask for, all in the range of F⁻¹B, which the iteration does not leave: B may be singular.
+      // Start vectors for all columns of the blocks, in the range of F⁻¹B, which the iteration does not leave: B may be
+      // singular.
       const int block = std::min(16, wanted_);
       start = op_.solve(op_.multiply_mass(make_start(problem_, ((wanted_ - 1) / block + 2) * block)));
     }
@@ -370,7 +371,7 @@ Extraction extract(const EigenProblem& problem) {
   initialize_slepc();
   const PetscInt size = get_size(problem);
   const int room = problem.max_subspace > 0 ? std::min<int>(problem.max_subspace, size) : static_cast<int>(size);
-  const int wanted = std::clamp(problem.num_wanted, 1, std::max(1, room));
+  const int num_modes = std::clamp(problem.num_wanted, 1, std::max(1, room));
   const std::string requested = find_requested(problem);
   if (requested == kLowRank && !problem.low_rank)
     throw_unsuited(requested, "the mass matrix has no low rank, or the problem is not one of normal modes");
@@ -379,7 +380,7 @@ Extraction extract(const EigenProblem& problem) {
   facts.has_low_rank = problem.low_rank;
   facts.is_near_shift = is_near(problem);
   facts.num_rows = size;
-  facts.num_wanted = wanted;
+  facts.num_wanted = num_modes;
   facts.room = room;
   facts.has_many_copies = problem.block > 0;
   const auto choose = [&] { return requested.empty() ? choose_solver(facts) : requested; };
@@ -395,14 +396,14 @@ Extraction extract(const EigenProblem& problem) {
 
   std::string type = choose(), reason;
   for (int attempt = 0; attempt < 2; ++attempt) {
-    if (auto result = EpsRun(problem, factored->op, type, wanted, room).run(reason)) return std::move(*result);
+    if (auto result = EpsRun(problem, factored->op, type, num_modes, room).run(reason)) return std::move(*result);
     if (!requested.empty()) throw_unsuited(requested, reason);
     if (problem.restore) problem.restore();
     type = type == EPSKRYLOVSCHUR ? kBlockLanczos : EPSKRYLOVSCHUR;
   }
   throw ComputationError(
       "modal.no-convergence", {},
-      "the eigenvalue solver found no " + std::to_string(wanted) + " modes: it did not converge",
+      "the eigenvalue solver found no " + std::to_string(num_modes) + " modes: it did not converge",
       "ask for fewer modes; look for parts that nothing holds, and for very soft parts next to very stiff "
       "ones");
 }

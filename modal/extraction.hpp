@@ -52,7 +52,7 @@ struct EigenProblem {
   const Eigen::SparseMatrix<double>* low_rank = nullptr;  ///< C of B = C Cᵀ where B has a low rank
   linear::SymmetricMatrix stiffness;  ///< with `low_rank`: A without the springs that only `deflate` moves
   bool projects_deflate = false;      ///< with `low_rank`: A has such springs
-  std::function<void(int converged, int wanted)> progress = {};
+  std::function<void(int converged, int requested)> progress = {};
   /// From `release` on A is not needed any more, `restore` asks for it back. The caller brings
   /// it back in the end, when the factor's memory is free again.
   std::function<void()> release = {}, restore = {};
@@ -65,7 +65,7 @@ struct Extraction {
   SolverUse by;              ///< read back from the EPS
 };
 
-/// What choose_solver() decides by.
+/// Properties by which choose_solver() decides.
 struct SolverFacts {
   bool has_low_rank = false;     ///< B = C Cᵀ with few columns is at hand
   bool is_near_shift = true;     ///< else the largest θ (buckling)

@@ -38,10 +38,10 @@ void register_factored_transform();
 /// Makes `st` a "bough-factor" that applies `op`, which outlives its use.
 void set_operator(ST st, const FactoredOperator& op);
 
-/// Of an ST of this type; null of any other.
+/// Operator of an ST of this type; null for any other.
 const FactoredOperator* find_operator(ST st);
 
-/// What the operator threw within SLEPc; null: nothing.
+/// Exception that the operator threw within SLEPc; null: nothing.
 std::exception_ptr get_failure(ST st);
 
 /// Runs a function that may throw where C code calls: keeps the exception and returns an error code.

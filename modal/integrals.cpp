@@ -61,8 +61,9 @@ MassTimes make_mass_times(const fe::Model& model, fe::MassKind kind) {
   return [&model, kind](const MatrixXd& X) { return fe::calc_mass_times(model, kind, X); };
 }
 
-/// Whether M is one mass of the nodes in all directions, and none of rotations. Then the Gram matrix of e_a×u_j is made
-/// of the products of components, as the momentum formulas are: both are the same, and these a sixth of the work.
+/// Returns true if M is one mass of the nodes in all directions, and none of rotations. Then the Gram matrix of e_a×u_j
+/// is made of the products of components, as the momentum formulas are: both are the same, and these a sixth of the
+/// work.
 bool moves_alike(const NodalDofs& dofs, const MassTimes& mass_times) {
   constexpr double kSame = 1e-13;
   MatrixXd X = MatrixXd::Zero(dofs.num_dofs, 4);  // different numbers that cannot cancel; rotations last

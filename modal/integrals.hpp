@@ -30,7 +30,7 @@ MassIntegrals calc_named_integrals(const fe::Model& model, fe::MassKind kind, co
 /// X -> M X for a mass matrix known only by its products, ndof x m.
 using MassTimes = std::function<MatrixXd(const MatrixXd&)>;
 
-/// The same sets for any mass matrix and dof map: the model may lack dofs at its nodes and have generalized ones
+/// Sets of integrals for any mass matrix and dof map: the model may lack dofs at its nodes and have generalized ones
 /// besides (NASA-CR-202063 4.2.2). Phi: num_dofs x n.
 MassIntegrals calc_momentum_integrals(const NodalDofs& dofs, const MassTimes& mass_times, const MatrixXd& Phi,
                                       const Vector3d& reference = Vector3d::Zero());

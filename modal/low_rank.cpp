@@ -174,12 +174,12 @@ Roots solve_low_rank(const LowRankProblem& problem) {
   // In stages: next to values a million times as large roundoff is all that G has of the small ones.
   Roots all{VectorXd(0), MatrixXd(problem.C->rows(), 0)};
   MatrixXd known = problem.known;
-  const auto wanted = std::min<Eigen::Index>(problem.num_wanted, problem.C->cols() - known.cols());
-  while (all.size() < wanted) {
-    Roots stage = solve_stage(problem, known, static_cast<int>(wanted) - all.size());
+  const auto requested = std::min<Eigen::Index>(problem.num_wanted, problem.C->cols() - known.cols());
+  while (all.size() < requested) {
+    Roots stage = solve_stage(problem, known, static_cast<int>(requested) - all.size());
     if (stage.size() == 0) break;
     if (all.size() > 0) solve_among(problem.K, problem.M, stage);
-    if (all.size() + stage.size() < wanted) {
+    if (all.size() + stage.size() < requested) {
       MatrixXd X = stage.X;
       orthonormalize_ascending(X.transpose() * linear::multiply(problem.M, X), X);
       known = join(known, X);

@@ -23,7 +23,7 @@ bool ModeRange::fit(const EigenOptions& options, const VectorXd& lambda, int cut
   if (!options.min_hz && !options.max_hz) return false;
   const auto count_below = [&](double bound) {
     const auto below = static_cast<int>((lambda.head(cut).array() < bound).count());
-    // The root behind the complete ones is below too: there may be more of them.
+    // The root after the complete ones is below too: there may be more of them.
     const bool goes_on = below == cut && cut < std::min<Eigen::Index>(available, lambda.size()) && lambda(cut) < bound;
     return goes_on ? 2 * cut + 8 : below;
   };

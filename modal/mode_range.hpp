@@ -1,5 +1,5 @@
 #pragma once
-/// \file Which of the ascending modes are wanted: a number, a range of frequencies, or both.
+/// \file Range of requested modes, ascending: a number, a range of frequencies, or both.
 #include "modal/eigen.hpp"
 
 namespace bough::modal::detail {

@@ -14,7 +14,7 @@ struct ModesExtras {
   bool has_shapes = true;                         ///< the shapes and what is drawn; else the record has neither
 };
 
-/// What is below zero first (fe.preload-tips), then as found: the order of the record.
+/// Sorts eigenvalues below zero to the front (fe.preload-tips), the others as found: the order of the record.
 EigenPairs sort_negative(EigenPairs pairs);
 
 /// Mass properties about the origin, shapes at the grids, residuals; of normal modes (not of buckling) frequencies,

@@ -1,6 +1,6 @@
 #pragma once
-/// \file Which row of a vector is which displacement of which node: what the integrals and the inertial loads need to
-/// know of a model, be it Bough's own or matrices from elsewhere (NASA-CR-202063 4.2.2, degree-of-freedom map).
+/// \file Map from displacements of nodes to rows of a vector: the description of a model that the integrals and the
+/// inertial loads need, be it Bough's own or matrices from elsewhere (NASA-CR-202063 4.2.2, degree-of-freedom map).
 #include "fe/model/model.hpp"
 
 namespace bough::modal {

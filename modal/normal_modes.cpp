@@ -23,7 +23,7 @@ std::vector<std::pair<int, double>> make_springs(const std::vector<int>& dofs, c
   return springs;
 }
 
-/// What many vectors had: the next ones are longer and would not fit where these were.
+/// Releases the memory of many vectors: the next ones are longer and would not fit there.
 void release_columns(Eigen::Index number) {
   if (number > kColumnsAtOnce) linear::release_freed_memory();
 }
@@ -35,38 +35,39 @@ void NormalModes::add_supports() {
   supported_ = linear::add_diagonal(pencil_.K, make_springs(rigid_.supports, pencil_.K_diagonal));
 }
 
-void warn_of_cut_root(int num_more, Diagnostics& said) {
+void warn_of_cut_root(int num_more, Diagnostics& diagnostics) {
   const std::string more = std::to_string(num_more);
-  said.warning("modal.cut-root", {},
-               "the last mode belongs to a repeated root: " + more + " more mode(s) have the same frequency",
-               "ask for " + more + " more");
+  diagnostics.warning("modal.cut-root", {},
+                      "the last mode belongs to a repeated root: " + more + " more mode(s) have the same frequency",
+                      "ask for " + more + " more");
 }
 
-void warn_of_fewer(int found, int asked, bool is_range, Diagnostics& said) {
-  said.warning("modal.fewer-modes", {},
-               "the model has " + std::to_string(found) + " modes" +
-                   (is_range ? " from the start of the range on, " : ", ") + std::to_string(asked) + " were asked for",
-               "ask for fewer, or use a finer mesh or a consistent mass");
+void warn_of_fewer(int found, int requested, bool is_range, Diagnostics& diagnostics) {
+  diagnostics.warning("modal.fewer-modes", {},
+                      "the model has " + std::to_string(found) + " modes" +
+                          (is_range ? " from the start of the range on, " : ", ") + std::to_string(requested) +
+                          " were asked for",
+                      "ask for fewer, or use a finer mesh or a consistent mass");
 }
 
-EigenPairs NormalModes::answer_nothing(Diagnostics& said) {
-  said.warning("modal.empty-range", {}, "no mode is in the requested frequency range",
-               "widen the range of EIGRL or of --min-hz and --max-hz");
+EigenPairs NormalModes::answer_nothing(Diagnostics& diagnostics) {
+  diagnostics.warning("modal.empty-range", {}, "no mode is in the requested frequency range",
+                      "widen the range of EIGRL or of --min-hz and --max-hz");
   found_ = {VectorXd(0), MatrixXd(pencil_.size(), 0)};
   num_zero_ = 0;
-  return make_pairs(0, range_.last, said);
+  return make_pairs(0, range_.last, diagnostics);
 }
 
 /// A spring to ground on one dof of each massless motion: strain and mass of every eigenvector are indifferent to how
 /// much of the motion is in it, so nothing else changes.
-void NormalModes::hold_massless(Diagnostics& said) {
+void NormalModes::hold_massless(Diagnostics& diagnostics) {
   if (rigid_.held.empty()) return;
   springs_ = make_springs(rigid_.held, pencil_.K_diagonal);
   pencil_.K = linear::add_diagonal(pencil_.K, springs_);  // the system's own stays as it is
   has_own_stiffness_ = false;
   std::string where;
   for (const int f : rigid_.held) where += (where.empty() ? "" : ", ") + describe(pencil_.model, f);
-  said.warning(
+  diagnostics.warning(
       "modal.massless-motion", {},
       std::to_string(rigid_.held.size()) + " rigid-body motion(s) have neither strain nor mass; held at " + where,
       "use a consistent mass or give the model inertia about that axis");
@@ -187,7 +188,7 @@ bool NormalModes::add_far_below(int missing) {
 
 RootSearchResult NormalModes::search() {
   RootSearch search;
-  search.wanted = std::min(range_.last - num_rigid(), solver_->num_available());
+  search.requested = std::min(range_.last - num_rigid(), solver_->num_available());
   search.num_available = solver_->num_available();
   search.counts = options_.check_inertia;
   search.lowest = num_rigid() > 0 && !(found_.size() > 0 && found_.value(0) < 0) ? 0 : -shift_;
@@ -214,7 +215,7 @@ bool NormalModes::fit_range(int cut) {
   return range_.fit(options_, lambda, cut, num_rigid() + solver_->num_available());
 }
 
-/// Whether as many roots as M has rank are found, each a root indeed: then no count can find more.
+/// Returns true if as many eigenvalues as the rank of M are found and verified: then no count can find more.
 bool NormalModes::has_every_root() {
   if (!solver_->knows_rank()) return false;
   add_roots(found_, solver_->num_available() - found_.size(), 0);
@@ -225,7 +226,7 @@ bool NormalModes::has_every_root() {
   return residual.size() > 0 && residual.maxCoeff() <= linear::kResidualError;
 }
 
-EigenPairs NormalModes::make_pairs(int cut, int count, Diagnostics& said) {
+EigenPairs NormalModes::make_pairs(int cut, int count, Diagnostics& diagnostics) {
   const int k = std::min(num_rigid(), cut);
   Found found{VectorXd(cut), MatrixXd(pencil_.size(), cut), k, num_rigid() + num_zero_};
   for (int i = 0; i < cut; ++i) found.lambda(i) = value(i);
@@ -234,10 +235,10 @@ EigenPairs NormalModes::make_pairs(int cut, int count, Diagnostics& said) {
   release_columns(cut);
   found.first = std::min(range_.first, cut);
   found.size = std::clamp(range_.last, found.first, cut) - found.first;
-  return finish_pairs(std::move(found), count, said);
+  return finish_pairs(std::move(found), count, diagnostics);
 }
 
-/// Of some columns at a time.
+/// Residuals, computed for some columns at a time.
 VectorXd NormalModes::calc_residuals(const VectorXd& lambda, const MatrixXd& X) const {
   VectorXd residual(X.cols());
   for (Eigen::Index c = 0; c < X.cols(); c += kColumnsAtOnce) {
@@ -252,7 +253,7 @@ VectorXd NormalModes::calc_residuals(const VectorXd& lambda, const MatrixXd& X) 
   return residual;
 }
 
-EigenPairs NormalModes::finish_pairs(Found found, int count, Diagnostics& said) {
+EigenPairs NormalModes::finish_pairs(Found found, int count, Diagnostics& diagnostics) {
   const auto& model = pencil_.model;
   auto& [lambda, X, k, num_zero, first, size] = found;
   const auto cut = static_cast<int>(lambda.size());
@@ -299,7 +300,7 @@ EigenPairs NormalModes::finish_pairs(Found found, int count, Diagnostics& said) 
   pairs.num_rigid = std::clamp(num_zero - first, 0, size);
   pairs.inertia_count = count;
   pairs.num_massless = static_cast<int>(rigid_.held.size());
-  warn_of_roundoff(pencil_, pairs.lambda, X, pairs.num_rigid, said);
+  warn_of_roundoff(pencil_, pairs.lambda, X, pairs.num_rigid, diagnostics);
   worst_roundoff_ = 0;
   pairs.energy_share.resize(size);
   for (int j = 0; j < size; ++j) {
@@ -311,12 +312,12 @@ EigenPairs NormalModes::finish_pairs(Found found, int count, Diagnostics& said) 
   return pairs;
 }
 
-EigenPairs NormalModes::find_pairs(const std::string& eps_type, bool& is_sound, Diagnostics& said) {
+EigenPairs NormalModes::find_pairs(const std::string& eps_type, bool& is_valid, Diagnostics& diagnostics) {
   choose_range();
-  is_sound = true;
+  is_valid = true;
   // Where it costs little the roots decide that too.
-  if (range_.is_empty() && range_.first > 100) return answer_nothing(said);
-  if (auto pairs = find_window(said)) return std::move(*pairs);
+  if (range_.is_empty() && range_.first > 100) return answer_nothing(diagnostics);
+  if (auto pairs = find_window(diagnostics)) return std::move(*pairs);
   make_solver(eps_type);
   find_first();
   auto result = search();
@@ -325,33 +326,34 @@ EigenPairs NormalModes::find_pairs(const std::string& eps_type, bool& is_sound, 
     cut = result.cut;
     result = search();
   }
-  if (range_.is_empty() && (options_.min_hz || options_.max_hz)) return answer_nothing(said);
+  if (range_.is_empty() && (options_.min_hz || options_.max_hz)) return answer_nothing(diagnostics);
   // A range from --min-hz on was cut to what exists already.
   const bool has_open_end = options_.num_modes > 0 && !options_.max_hz;
-  const int wanted = has_open_end ? range_.first + options_.num_modes : range_.last, cut = num_rigid() + result.cut;
+  const int requested = has_open_end ? range_.first + options_.num_modes : range_.last, cut = num_rigid() + result.cut;
   if (result.is_missing && has_every_root()) {
     result.is_missing = false;
     std::swap(result.doubtful, result.count);
     result.count = -1;
   }
   if (result.is_missing) {
-    is_sound = false;
+    is_valid = false;
     if (eps_type.empty() && has_second_solver()) return {};
   }
-  report_count(result, num_rigid(), "modes", options_.check_inertia, said);
+  report_count(result, num_rigid(), "modes", options_.check_inertia, diagnostics);
   range_.last = std::min(range_.last, cut);
-  if (range_.last < wanted && options_.num_modes > 0)
-    warn_of_fewer(std::max(0, range_.last - range_.first), wanted - range_.first, options_.min_hz.has_value(), said);
+  if (range_.last < requested && options_.num_modes > 0)
+    warn_of_fewer(std::max(0, range_.last - range_.first), requested - range_.first, options_.min_hz.has_value(),
+                  diagnostics);
   int copies = 0;  // of the last one, that are left out
   if (range_.last > 0)
     for (int i = range_.last; i < cut && value(i) - value(i - 1) <= kCutRoot * value(i); ++i) ++copies;
-  if (copies > 0 && value(range_.last) > 0) warn_of_cut_root(copies, said);
+  if (copies > 0 && value(range_.last) > 0) warn_of_cut_root(copies, diagnostics);
   const int num_above = range_.last > 0 ? cut - range_.last - copies : 0;  // found to see the ends of the range
-  auto pairs = make_pairs(cut, result.count < 0 ? -1 : num_rigid() + result.count - num_above, said);
+  auto pairs = make_pairs(cut, result.count < 0 ? -1 : num_rigid() + result.count - num_above, diagnostics);
   pairs.solvers = solver_->get_uses();
-  // As many vectors as modes, orthogonal and each with a small residual: they are there, whatever the pivots say.
-  if (options_.check_inertia && result.count < 0) is_sound = overlap_ < kOverlap;
-  is_sound = is_sound && (pairs.residual.size() == 0 || pairs.residual.maxCoeff() <= linear::kResidualError);
+  // A complete set of orthogonal vectors with small residuals is valid, whatever the count of pivots.
+  if (options_.check_inertia && result.count < 0) is_valid = overlap_ < kOverlap;
+  is_valid = is_valid && (pairs.residual.size() == 0 || pairs.residual.maxCoeff() <= linear::kResidualError);
   return pairs;
 }
 
@@ -366,7 +368,7 @@ NormalModes::NormalModes(const fe::System& system, const EigenOptions& options, 
       factor_(options.factor ? options.factor : system.factor),
       pencil_(system),
       rigid_(find_rigid(pencil_)) {
-  rigid_.massless.resize(pencil_.size(), 0);  // nobody asks for them
+  rigid_.massless.resize(pencil_.size(), 0);  // no function uses them
   if (!(pencil_.M_diagonal.maxCoeff() > 0))
     throw ComputationError("modal.no-mass", {}, "no free dof of the model has mass",
                            "give RHO in MAT1, NSM in a property, or CONM2 and CMASS cards");
@@ -376,8 +378,8 @@ NormalModes::NormalModes(const fe::System& system, const EigenOptions& options, 
 
 Answer NormalModes::solve(const std::string& eps_type) {
   Answer answer;
-  answer.said = about_model_;
-  answer.pairs = find_pairs(eps_type, answer.is_sound, answer.said);
+  answer.diagnostics = about_model_;
+  answer.pairs = find_pairs(eps_type, answer.is_valid, answer.diagnostics);
   answer.worst_roundoff = worst_roundoff_;
   return answer;
 }

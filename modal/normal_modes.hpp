@@ -16,20 +16,20 @@ namespace bough::modal::detail {
 /// The modes computed by one method, with their residuals.
 struct Answer {
   EigenPairs pairs;
-  bool is_sound = false;
-  Diagnostics said;
+  bool is_valid = false;
+  Diagnostics diagnostics;
   double worst_roundoff = 0;  ///< relative, of the eigenvalues with strain
 
   /// Largest residual of the eigenpairs; 0 without any.
   double worst() const { return pairs.residual.size() > 0 ? pairs.residual.maxCoeff() : 0; }
   /// No mode may be missing, and no residual needs a word.
-  bool is_clean() const { return is_sound && worst() <= linear::kResidualWarning; }
+  bool is_accurate() const { return is_valid && worst() <= linear::kResidualWarning; }
 };
 
 /// Adds the warning "modal.cut-root": `num_more` further modes have the frequency of the last one.
-void warn_of_cut_root(int num_more, Diagnostics& said);
+void warn_of_cut_root(int num_more, Diagnostics& diagnostics);
 /// Adds the warning "modal.fewer-modes". \param is_range  the number was requested from the start of a range on.
-void warn_of_fewer(int found, int asked, bool is_range, Diagnostics& said);
+void warn_of_fewer(int found, int requested, bool is_range, Diagnostics& diagnostics);
 
 class NormalModes {
  public:
@@ -50,8 +50,8 @@ class NormalModes {
   /// Eigenvalue by position in the whole list: rigid ones, then the found ones.
   double value(int i) const { return i < num_rigid() + num_zero_ ? 0 : found_.value(i - num_rigid()); }
   int count_below(double lambda) const;
-  EigenPairs answer_nothing(Diagnostics& said);
-  void hold_massless(Diagnostics& said);
+  EigenPairs answer_nothing(Diagnostics& diagnostics);
+  void hold_massless(Diagnostics& diagnostics);
   void add_supports();
   void choose_range();
   void make_solver(const std::string& eps_type);
@@ -64,10 +64,10 @@ class NormalModes {
   RootSearchResult search();
   bool fit_range(int cut);
   bool has_every_root();
-  /// Computes the modes by the named EPS type, or the one chosen for the problem; `is_sound` is false if modes are
+  /// Computes the modes by the named EPS type, or the one chosen for the problem; `is_valid` is false if modes are
   /// missing or a residual is large.
-  EigenPairs find_pairs(const std::string& eps_type, bool& is_sound, Diagnostics& said);
-  EigenPairs make_pairs(int cut, int count, Diagnostics& said);
+  EigenPairs find_pairs(const std::string& eps_type, bool& is_valid, Diagnostics& diagnostics);
+  EigenPairs make_pairs(int cut, int count, Diagnostics& diagnostics);
   /// M-orthonormal values and vectors of whole clusters, the first `num_known` and `num_zero` without strain; those of
   /// [first, first + size) are wanted.
   struct Found {
@@ -76,10 +76,10 @@ class NormalModes {
     int num_known = 0, num_zero = 0, first = 0, size = 0;
   };
   VectorXd calc_residuals(const VectorXd& lambda, const MatrixXd& X) const;
-  EigenPairs finish_pairs(Found found, int count, Diagnostics& said);
+  EigenPairs finish_pairs(Found found, int count, Diagnostics& diagnostics);
   /// A range with many more modes below it than in it, by a shift inside; nothing where that is not for the model or
   /// does not find as many as the inertia at both ends says.
-  std::optional<EigenPairs> find_window(Diagnostics& said);
+  std::optional<EigenPairs> find_window(Diagnostics& diagnostics);
   struct Edge {
     double mu = 0;
     int count = -1;  ///< of roots below

@@ -45,12 +45,12 @@ std::optional<MatrixXd> find_null_space(const Pencil& pencil, const VectorXd& D,
   const linear::SymmetricFactor factor(linear::add_diagonal(pencil.K, linear::kNullShift * D), false,
                                        linear::FactorMethod::Pivoting);
   if (factor.is_singular()) return std::nullopt;
-  constexpr Index most = 400;
+  constexpr Index max_motions = 400;
   for (Index m = expected + 6;; m *= 2) {
-    m = std::min<Index>({m, most, pencil.size()});
+    m = std::min<Index>({m, max_motions, pencil.size()});
     MatrixXd Y = find_null_motions_of(pencil, D, factor, m);
     if (Y.cols() < m || m == pencil.size()) return Y;
-    if (m == most) return std::nullopt;
+    if (m == max_motions) return std::nullopt;
   }
 }
 
@@ -58,11 +58,11 @@ void append(MatrixXd& A, const MatrixXd& B) { A = join(A, B); }
 
 /// Makes the D-orthonormal motions Y orthogonal under D and M, normal under M, by descending mass. In rounds: a motion
 /// with little mass per D among such with much keeps its digits. Those that have none in roundoff, next to their parts
-/// or next to the others, go to `massless`: as modes their zero would be vague by 1e-3 of what the others have.
+/// or next to the others, go to `massless`: as modes their zero would be vague by 1e-3 of the others.
 MatrixXd split_by_mass(const Pencil& pencil, const VectorXd& D, MatrixXd Y, MatrixXd& massless) {
   MatrixXd heavy(Y.rows(), 0);
   const double nothing = kDofMassShare * (pencil.M_diagonal.array() / D.array()).maxCoeff();  // of a single dof
-  double most = 0;
+  double max_motions = 0;
   while (Y.cols() > 0) {
     for (int pass = 0; pass < 2 && heavy.cols() > 0; ++pass)
       Y -= heavy * (pencil.calc_M_times(heavy).transpose() * Y).eval();
@@ -71,10 +71,10 @@ MatrixXd split_by_mass(const Pencil& pencil, const VectorXd& D, MatrixXd Y, Matr
     const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(linear::symmetrize(G));
     Y = (Y * solver.eigenvectors()).eval();
     const VectorXd mass = solver.eigenvalues(), parts = Y.cwiseAbs2().transpose() * pencil.M_diagonal;
-    most = std::max(most, mass.maxCoeff());
+    max_motions = std::max(max_motions, mass.maxCoeff());
     std::vector<Index> next, none, later;
     for (Index c = Y.cols() - 1; c >= 0; --c) {
-      const bool is_light = !(mass(c) > std::max(kMasslessShare * std::max(parts(c), most), nothing));
+      const bool is_light = !(mass(c) > std::max(kMasslessShare * std::max(parts(c), max_motions), nothing));
       (is_light ? none : mass(c) > kMassRound * mass.maxCoeff() ? next : later).push_back(c);
     }
     append(massless, Y(Eigen::all, none));
@@ -84,7 +84,7 @@ MatrixXd split_by_mass(const Pencil& pencil, const VectorXd& D, MatrixXd Y, Matr
   return heavy;
 }
 
-/// As many dofs as X has columns, whose holding holds every combination of them.
+/// Chooses one DOF for each column of X so that constraining them constrains every combination of the columns.
 std::vector<int> choose_dofs(const VectorXd& D, const MatrixXd& X) {
   std::vector<int> dofs;
   if (X.cols() == 0) return dofs;

@@ -211,7 +211,7 @@ Strainless find_strainless(const Pencil& pencil, const Vector3d& centre) {
   return result;
 }
 
-/// Of the motions of the whole.
+/// Rigid-body motions of the whole model.
 RigidMotions find_global_motions(const Pencil& pencil) {
   const auto& model = pencil.model;
   RigidMotions result;

@@ -49,7 +49,7 @@ struct RigidMotions {
 };
 
 /// The combinations (s x m) of Y (n x s) whose forces K Y c are roundoff in every row, 1e-9 of the sum of their terms:
-/// a stiff part that a soft one holds moves with next to none of its own energy, but the rows of the soft one see a
+/// a stiff part that a soft one holds moves with a negligible part of its energy, but the rows of the soft one see a
 /// force.
 /// `floor`: share of the root of K_ii that counts as a term too, for Y of unit length under diag K with roundoff in it.
 MatrixXd find_forceless(const Pencil& pencil, const MatrixXd& Y, double floor = 0);

@@ -21,7 +21,7 @@ struct PencilProblem {
   const linear::SymmetricFactor* factor = nullptr;  ///< of K, where the caller has it
   double tolerance = 1e-12;
   std::string solver = {};  ///< EPS type that is asked for (EigenProblem)
-  std::function<void(int converged, int wanted)> progress = {};
+  std::function<void(int converged, int requested)> progress = {};
   std::function<void()> release = {}, restore = {};  ///< of K, where it may be away (EigenProblem)
 };
 
@@ -35,13 +35,13 @@ class PencilSolver {
   int num_available() const { return num_available_; }
   /// Returns true if M = C Cᵀ has been found, so that its rank is known.
   bool knows_rank() const { return C_.has_value(); }
-  /// Of all solutions.
+  /// Solvers that were used, of all solutions.
   const std::vector<SolverUse>& get_uses() const { return uses_; }
 
   /// Adds the next `number` roots above those in `roots`, the last `num_guard` of them rough; all that exist where
   /// there are fewer. K + shift M is factored. False where that is singular, or with `definite_only` not definite.
   /// With `supported` that is factored instead, and shift is 0: M x of what is orthogonal to the rigid-body motions is
-  /// in balance, so the springs see no force, and what they hold of the rigid-body motions is taken out of the
+  /// in balance, so the springs see no force, and their share of the rigid-body motions is projected out of the
   /// solution.
   ///
   /// With M = C Cᵀ of low rank all of them are found again each time, `roots` with them.

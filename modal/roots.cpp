@@ -42,9 +42,9 @@ double get_key(const RootSearch& search, const Roots& roots, int i) {
   return search.by_magnitude ? std::abs(roots.value(i)) : roots.value(i);
 }
 
-/// First position at or after `wanted` with a gap in the list, where an inertia count is possible. -1: none yet.
+/// First position at or after `requested` with a gap in the list, where an inertia count is possible. -1: none yet.
 int find_cut(const RootSearch& search, const Roots& roots) {
-  for (int c = std::max(search.wanted, 0); c < roots.size(); ++c) {
+  for (int c = std::max(search.requested, 0); c < roots.size(); ++c) {
     const double tolerance = c > 0 ? search.closeness(roots, c - 1) : kCloseness, below = get_key(search, roots, c - 1);
     if (get_key(search, roots, c) - below > std::max(kGap, 2 * tolerance) * std::abs(below + search.shift)) return c;
   }
@@ -90,7 +90,7 @@ RootSearchResult search_roots(const RootSearch& search, Roots& roots) {
   int best_cut = -1, best_size = 0, num_stuck = 0;
   int num_without_gap = 0, known = 0;  // as many roots are there, found or not
   for (;;) {
-    int missing = search.wanted - roots.size(), cut = -1, count = -1;
+    int missing = search.requested - roots.size(), cut = -1, count = -1;
     if (missing <= 0) {
       cut = find_cut(search, roots);
       if (cut < 0 && known <= roots.size() && search.counts && ++num_without_gap % 3 == 0) known = count_if_memory(-1);

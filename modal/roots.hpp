@@ -26,13 +26,13 @@ struct Roots {
   void add(const VectorXd& values, MatrixXd vectors, bool by_magnitude = false);
 };
 
-/// Of roots that were missed so many are looked for at once, with two to show the gap: copies of a root mostly, which a
+/// Number of missed eigenvalues that are sought together, with two more to show the gap: mostly copies of one, which a
 /// block of as many columns finds in a few solutions.
 constexpr int kMaxMissing = 46, kMaxMissingColumns = kMaxMissing + 2;
 
 /// A request for eigenvalues of one kind of problem. Positions count the eigenvalues without the known motions.
 struct RootSearch {
-  int wanted = 0;
+  int requested = 0;
   int num_available = 0;      ///< no more roots than this exist
   bool by_magnitude = false;  ///< order
   bool counts = true;         ///< Sylvester: no root missed below the highest
@@ -54,13 +54,13 @@ struct RootSearchResult {
   std::string no_memory = {};  ///< reason if memory was short for the factor of the inertia count
 };
 
-/// Repeats solve, gap, count until the first `wanted` roots are complete or the solver has no more. An inertia below
-/// what was found is tried again further into the gap; roots with vectors of their own prove it wrong, not the roots.
+/// Repeats solve, gap, count until the first `requested` roots are complete or the solver has no more. An inertia below
+/// what was found is tried again further into the gap; roots with separate vectors prove it wrong, not the roots.
 RootSearchResult search_roots(const RootSearch& search, Roots& roots);
 
 /// Throws ComputationError("modal.missed-modes") if eigenvalues are missing; warns "modal.uncertain-count" if the
 /// requested count is unreliable, "modal.not-counted" if memory was short. `name`: "modes", "load factors";
-/// `num_known`: motions counted beside them.
+/// `num_known`: motions counted in addition to them.
 void report_count(const RootSearchResult& result, int num_known, const std::string& name, bool counts,
                   Diagnostics& diagnostics);
 

@@ -1,5 +1,5 @@
 #pragma once
-/// \file Which eigensolver of SLEPc made an answer.
+/// \file Eigensolver of SLEPc that computed a solution.
 #include <string>
 #include <vector>
 

@@ -30,7 +30,7 @@ std::vector<int> list_mode_subcases(const records::Deck& deck) {
   return chosen.empty() ? std::vector<int>{0} : chosen;
 }
 
-std::vector<BucklingCases> list_buckling_cases(const records::Deck& deck, int asked) {
+std::vector<BucklingCases> list_buckling_cases(const records::Deck& deck, int requested) {
   const auto is_loaded = [](const records::Subcase& s) { return s.load != 0 || s.temperature != 0; };
   std::vector<records::Subcase> buckling;
   const auto collect = [&](const auto& belongs) {
@@ -46,19 +46,19 @@ std::vector<BucklingCases> list_buckling_cases(const records::Deck& deck, int as
   for (const auto& b : buckling)
     for (const auto& s : deck.subcases) {
       if (!is_loaded(s) || (b.statsub != 0 && s.id != b.statsub)) continue;
-      if (b.statsub == 0 && asked != 0 && b.id != asked && s.id != asked) continue;
+      if (b.statsub == 0 && requested != 0 && b.id != requested && s.id != requested) continue;
       // With a preload alone the load to scale is another one, if there is another.
       const auto is_other = [&](const auto& other) { return is_loaded(other) && other.id != b.preload; };
       if (b.statsub == 0 && s.id == b.preload && std::any_of(deck.subcases.begin(), deck.subcases.end(), is_other))
         continue;
-      const bool is_asked = asked == 0 || b.id == asked || s.id == asked;
+      const bool is_asked = requested == 0 || b.id == requested || s.id == requested;
       if (is_asked && seen.insert({s.id, b.method, b.spc, b.mpc, b.suport1}).second) cases.push_back({s, b});
       break;
     }
-  const auto is_id = [asked](const auto& s) { return s.id == asked; };
-  if (asked != 0 && std::none_of(deck.subcases.begin(), deck.subcases.end(), is_id)) {  // build_model() reports it
+  const auto is_id = [requested](const auto& s) { return s.id == requested; };
+  if (requested != 0 && std::none_of(deck.subcases.begin(), deck.subcases.end(), is_id)) {  // build_model() reports it
     cases.emplace_back();
-    cases.back().statics.id = asked;
+    cases.back().statics.id = requested;
   }
   for (const auto& b : buckling) {
     const auto is_statsub = [&](const auto& s) { return s.id == b.statsub; };

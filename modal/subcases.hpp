@@ -1,5 +1,5 @@
 #pragma once
-/// \file Which subcases SOL 103 solves, which SOL 105 pairs, and the load factors of a pair.
+/// \file Subcases that SOL 103 solves, pairs of SOL 105, and the load factors of a pair.
 #include "fe/statics/static_case.hpp"
 #include "modal/eigen.hpp"
 
@@ -18,9 +18,9 @@ struct BucklingCases {
 };
 
 /// Every pair of subcases that SOL 105 solves: those with STATSUB, else those with METHOD and without a load of their
-/// own, else those with METHOD, each with the static subcase that it names or with the first. `asked`: a subcase of the
-/// pair, 0 for all. Throws InputError cli.no-static-load.
-std::vector<BucklingCases> list_buckling_cases(const records::Deck& deck, int asked);
+/// own, else those with METHOD, each with the static subcase that it names or with the first. `requested`: a subcase of
+/// the pair, 0 for all. Throws InputError cli.no-static-load.
+std::vector<BucklingCases> list_buckling_cases(const records::Deck& deck, int requested);
 
 /// The load that the factors multiply: "load factors of LOAD 3, TEMPERATURE 5 (subcase 1)".
 std::string describe_load(const records::Subcase& statics);

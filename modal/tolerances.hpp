@@ -31,24 +31,24 @@ inline constexpr double kShiftedMechanismEnergy = 3e-16;
 
 // ---- Motions without mass
 
-/// Of the largest generalized mass, or of the sum of parts: a motion with less has none. Above: a light part loses its
-/// mode of 0 Hz. Below: roundoff of masses that cancel becomes a mode with a value of anything.
+/// Share of the largest generalized mass, or of the sum of parts, below which a motion has none. Above: a light part
+/// loses its mode of 0 Hz. Below: roundoff of masses that cancel becomes a mode with a value of anything.
 inline constexpr double kMasslessShare = 1e-13;
-/// The same of the mass that dofs without stiffness share (RBE3, MPC), before and after rigid-body motions are taken
+/// Share of the mass that dofs without stiffness share (RBE3, MPC), before and after rigid-body motions are taken
 /// out.
 inline constexpr double kLooseMassShare = 1e-12, kLooseRestShare = 1e-10;
-/// Of a basic motion's own mass, what the motions before it leave: less is none of its own.
+/// Share of its mass that a basic motion keeps after those before it are projected out: below it there is none.
 inline constexpr double kOwnMassShare = 1e-8;
 /// Masses within this ratio keep their digits in one round of the split by mass.
 inline constexpr double kMassRound = 1e-6;
-/// Of the largest mass per stiffness of a dof.
+/// Share of the largest mass per stiffness of a dof.
 inline constexpr double kDofMassShare = 1e-18;
 /// Relative size of the eigenvalues of a Gram matrix of trial motions that are dependent.
 inline constexpr double kDependentMotions = 1e-10, kDependentPolynomials = 1e-9;
 
 // ---- The shift of a free body
 
-/// Of the first eigenvalue as it is estimated.
+/// Share of the estimated first eigenvalue.
 inline constexpr double kShiftOfEstimate = 0.01;
 /// Shift over the first eigenvalue with strain. Above: the vectors lose digits. Below: zero-energy motions get into
 /// them. Outside it becomes kShiftOfFirst of it.
@@ -74,15 +74,16 @@ inline constexpr double kMoveOfPivot = 1e-9, kMoveOfLoadFactor = 1e-6;
 
 // ---- What a solution is worth
 
-/// Of the largest 1/(λ - σ): smaller ones have no digit, and beyond the rank of B are roundoff (1.5e-15 was seen).
+/// Share of the largest 1/(λ - σ): smaller values have no digit, and beyond the rank of B are roundoff (1.5e-15 was
+/// seen).
 inline constexpr double kNoDigit = 1e-14;
-/// The same of buckling, whose θ = 0 are dofs that no internal force stiffens.
+/// Share for buckling, whose θ = 0 are dofs that no internal force stiffens.
 inline constexpr double kNoLoadFactor = 1e-12;
 /// Relative residual of block Lanczos from 5,000 rows on: values are right to its square, and roundoff of K alone turns
 /// the vectors further. Not where a shift stands for supports: what is left of stiff parts in a vector counts by their
 /// stiffness over the shift.
 inline constexpr double kBlockTolerance = 1e-10;
-/// Of preconditioned eigensolvers, which stop by |Kx - λMx|: their values are right to its square.
+/// Tolerance of preconditioned eigensolvers, which stop by |Kx - λMx|: their values are right to its square.
 inline constexpr double kPreconditionedTolerance = 1e-8;
 /// Largest entry of XᵀMX - I of vectors as they are found. Above it two of them may be one.
 inline constexpr double kOverlap = 1e-6;
@@ -99,7 +100,7 @@ inline constexpr double kNegative = 1e-12;
 // ---- Block Lanczos
 
 /// Length of a direction of a new block over the largest so far, and over one in later passes: less is roundoff of the
-/// basis, and at length one what it has where nothing has mass would be all of it.
+/// basis, and scaled to length one its massless part would dominate.
 inline constexpr double kDependentBlock = 1e-12, kDependentColumn = 1e-6;
 /// Residual over the largest θ: roundoff that a restart spreads over the basis; at most kMaxFloor of θ itself.
 inline constexpr double kResidualFloor = 1e-14, kMaxFloor = 1e-9;
@@ -111,7 +112,7 @@ inline constexpr double kGuardResidual = 1e-4, kGuardGap = 1e-3;
 /// Pivot of the mass scaled to a unit diagonal that ends its factor, entry that is dropped, and diagonal that says that
 /// the mass is not semi-definite.
 inline constexpr double kRankPivot = 1e-12, kRankEntry = 1e-17, kRankNegative = -1e-8;
-/// How far above the first eigenvalue of a stage the digits of CᵀA⁻¹C suffice.
+/// Ratio to the first eigenvalue of a stage up to which the digits of CᵀA⁻¹C suffice.
 inline constexpr double kStageReach = 1e6;
 
 // ---- Bases: constraint modes, residual vectors, frames
@@ -124,7 +125,7 @@ inline constexpr double kMasslessCoordinate = 1e-20;
 inline constexpr double kStiffCoordinate = 1e-14;
 /// Eigenvalue of the scaled Gram matrix of mass, over the largest, below which directions have no mass.
 inline constexpr double kMasslessDirection = 1e-12;
-/// The same of strain energy, of directions scaled to unit energy: less is a linear dependence.
+/// Share of strain energy, of directions scaled to unit energy: less is a linear dependence.
 inline constexpr double kDependentDirection = 1e-10;
 /// Load left after the inertia of the body balances it, over the load. Above: soft residual vectors are lost. Below:
 /// roundoff of a uniform acceleration becomes one.
@@ -137,7 +138,7 @@ inline constexpr double kHeldFlexibility = 1e-8;
 inline constexpr double kMasslessVector = 1e-11;
 /// Norm of a residual vector over that of its load's static response: less is a combination of the others.
 inline constexpr double kDependentResidual = 1e-6;
-/// The same over what a vector of the lowest frequency would have, in roundoff of the static solution.
+/// Norm over that of a vector of the lowest frequency, in roundoff of the static solution.
 inline constexpr double kResidualRoundoff = 1e-11;
 /// Entry of a constraint equation over its largest, after the others are eliminated: less follows from them.
 inline constexpr double kDependentEquation = 1e-10;

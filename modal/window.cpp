@@ -11,9 +11,9 @@ namespace bough::modal::detail {
 namespace {
 
 /// Fewer below the range are found along with it in the time that factors with pivots take.
-constexpr int kFewBelow = 60;
-constexpr int kMostOfShift = 80;  ///< more are divided
-constexpr int kGuard = 4;         ///< beyond the edges, to show the gaps
+constexpr int kMaxModesBelow = 60;
+constexpr int kMaxModesOfShift = 80;  ///< more are divided
+constexpr int kGuard = 4;             ///< beyond the edges, to show the gaps
 
 /// Between two eigenvalues, of which the larger may be out of all proportion.
 double find_middle(double below, double above) {
@@ -36,12 +36,13 @@ std::optional<NormalModes::Edge> NormalModes::find_upper_edge(const Edge& lower)
     edge.mu += 2 * step;
   }
   below = lower.mu;
-  const int least = std::min(range_.last + 1, edge.count), most = range_.last + 2 * (range_.last - range_.first) + 20;
-  for (int attempt = 0; attempt < 60 && (edge.count > most || edge.mu > 1.2 * below); ++attempt) {
+  const int min_number = std::min(range_.last + 1, edge.count),
+            max_count = range_.last + 2 * (range_.last - range_.first) + 20;
+  for (int attempt = 0; attempt < 60 && (edge.count > max_count || edge.mu > 1.2 * below); ++attempt) {
     const double middle = find_middle(below, edge.mu);
     const int number = count_below(middle);
     if (number < 0) return std::nullopt;
-    if (number >= least)
+    if (number >= min_number)
       edge = {middle, number};
     else
       below = middle;
@@ -55,7 +56,7 @@ bool NormalModes::add_window(const Edge& lower, const Edge& upper, Roots& roots,
   const int inside = upper.count - lower.count;
   const double middle = find_middle(lower.mu, upper.mu);
   if (inside <= 0) return inside == 0;
-  if (inside > kMostOfShift && middle - lower.mu > kGap * lower.mu) {
+  if (inside > kMaxModesOfShift && middle - lower.mu > kGap * lower.mu) {
     const Edge between{middle, count_below(middle)};
     return between.count >= 0 && add_window(lower, between, roots, uses) && add_window(between, upper, roots, uses);
   }
@@ -90,16 +91,17 @@ bool NormalModes::add_window(const Edge& lower, const Edge& upper, Roots& roots,
   return false;
 }
 
-std::optional<EigenPairs> NormalModes::find_window(Diagnostics& said) {
-  const int asked = range_.last - range_.first;
-  if (!options_.min_hz || asked <= 0 || range_.first <= std::max(kFewBelow, 2 * asked)) return std::nullopt;
+std::optional<EigenPairs> NormalModes::find_window(Diagnostics& diagnostics) {
+  const int requested = range_.last - range_.first;
+  if (!options_.min_hz || requested <= 0 || range_.first <= std::max(kMaxModesBelow, 2 * requested))
+    return std::nullopt;
   const Edge lower{calc_lower(options_), range_.first};
   const auto upper = find_upper_edge(lower);
   if (!upper || upper->count < lower.count) return std::nullopt;
-  const int inside = upper->count - lower.count, number = std::min(asked, inside);
+  const int inside = upper->count - lower.count, number = std::min(requested, inside);
   if (inside == 0) {
     range_.last = range_.first;
-    return answer_nothing(said);
+    return answer_nothing(diagnostics);
   }
   Roots roots{VectorXd(0), MatrixXd(pencil_.size(), 0)};
   std::vector<SolverUse> uses;
@@ -109,12 +111,12 @@ std::optional<EigenPairs> NormalModes::find_window(Diagnostics& said) {
   while (cut < inside && found.lambda(cut) - found.lambda(cut - 1) <= kGap * found.lambda(cut)) ++cut;
   Diagnostics own;
   if (cut > number) warn_of_cut_root(cut - number, own);
-  if (number < asked) warn_of_fewer(number, asked, true, own);
+  if (number < requested) warn_of_fewer(number, requested, true, own);
   auto pairs = finish_pairs(std::move(found), options_.check_inertia ? range_.first + cut : -1, own);
   if (!(overlap_ < kOverlap && pairs.residual.maxCoeff() <= linear::kResidualError)) return std::nullopt;
   pairs.solvers = std::move(uses);
   range_.last = range_.first + number;
-  for (const auto& item : own.items()) said.add(item);
+  for (const auto& item : own.items()) diagnostics.add(item);
   return pairs;
 }
 

@@ -12,7 +12,7 @@ struct Axis {
   int exponent = 0;                 ///< a multiple of 3; 0 for numbers of everyday size
 };
 
-/// Ticks at 1, 2, 2.5 or 5 times a power of ten, about `wanted` of them. When `widen`, the ends move out to a little
+/// Ticks at 1, 2, 2.5 or 5 times a power of ten, about `num_ticks` of them. When `widen`, the ends move out to a little
 /// more than the data; otherwise they stay. A range of no width is opened. With `base_step` ticks are at its multiples:
 /// 45 degrees, 90, 180 and so on.
 Axis make_axis(double min, double max, int num_ticks, bool widen, double base_step = 0);

@@ -56,10 +56,13 @@ class DrawingBuilder {
     add_cells();
     add_faces();
     add_corners();
-    // Nodes that no element draws are points all the same: markers, interface nodes of rigid elements.
+    // Nodes that no element draws are points all the same: markers, interface nodes of rigid elements. Special nodes of
+    // a .FLX are none (records::is_special_node).
     const std::set<int> drawn(drawing.id.begin(), drawing.id.end());
+    const bool lists_points = mesh.blocks.empty() && !mesh.grid_id.empty();
+    const std::set<int> points(mesh.grid_id.begin(), mesh.grid_id.end());
     for (std::size_t i = 0; i < node_id.size(); ++i)
-      if (!drawn.contains(node_id[i]))
+      if (!drawn.contains(node_id[i]) && (!lists_points || points.contains(node_id[i])))
         add_point(node_id[i], node_xyz.row(static_cast<Eigen::Index>(i)), static_cast<int>(i));
     drawing.xyz.resize(static_cast<Eigen::Index>(places_.size()), 3);
     for (std::size_t i = 0; i < places_.size(); ++i) drawing.xyz.row(static_cast<Eigen::Index>(i)) = places_[i];
@@ -260,7 +263,9 @@ Drawing make_drawing(const records::BodyMesh& mesh, const std::vector<int>& node
   return std::move(builder.drawing);
 }
 
-Drawing make_drawing(const records::FlexBody& body, bool all_shapes) {
+namespace {
+
+Drawing make_flexible_drawing(const records::FlexBody& body, bool all_shapes) {
   if (body.mesh_phi.size() > 0) {
     std::vector<Eigen::MatrixXd> phi;
     for (std::size_t i = 0; i < body.mesh.grid_id.size(); ++i)
@@ -279,6 +284,14 @@ Drawing make_drawing(const records::FlexBody& body, bool all_shapes) {
     phi[static_cast<std::size_t>(found->second)].row(code - 1) = body.full_phi.row(row);
   }
   return make_drawing(body.mesh, body.mesh.grid_id, body.mesh.grid_xyz, phi, all_shapes);
+}
+
+}  // namespace
+
+Drawing make_drawing(const records::FlexBody& body, bool all_shapes) {
+  auto drawing = make_flexible_drawing(body, all_shapes);
+  drawing.interface = body.interface_nodes;
+  return drawing;
 }
 
 Drawing make_box(double mass, const Eigen::Vector3d& cg, const Eigen::Matrix3d& inertia,
@@ -358,6 +371,8 @@ std::string to_json_text(const Drawing& drawing) {
                       {"edges", pack_indices(drawing.edges)},     {"ghosts", pack_indices(drawing.ghosts)},
                       {"shapes", nlohmann::json::array()},        {"dropped", drawing.num_dropped}};
   json["id"] = pack_indices(std::vector<std::uint32_t>(drawing.id.begin(), drawing.id.end()));
+  if (!drawing.interface.empty())
+    json["interface"] = pack_indices(std::vector<std::uint32_t>(drawing.interface.begin(), drawing.interface.end()));
   for (const auto& shape : drawing.shapes) {
     const double largest = shape.size() > 0 ? shape.cwiseAbs().maxCoeff() : 0;
     json["shapes"].push_back({{"largest", largest}, {"data", pack_shorts(flatten(shape), largest)}});

@@ -30,6 +30,7 @@ struct ElementField {
 
 struct Drawing {
   std::vector<int> id;                          ///< node of each point; empty for a rigid body
+  std::vector<int> interface;                   ///< interface nodes of a flexible body
   Eigen::MatrixXd xyz;                          ///< k x 3
   std::vector<std::uint32_t> triangles, edges;  ///< three and two points each; edges bound the elements
   std::vector<std::uint32_t> ghosts;            ///< edges of elements of which not every grid has a shape

@@ -6,7 +6,7 @@
 
 namespace bough::report {
 
-/// Every so many samples are on the page, of channels that people read (sensors, hinges, energy ...) and of the others
+/// One of several samples is on the page, of channels that people read (sensors, hinges, energy ...) and of the others
 /// (bodies, reactions, mass): 1 where all fit.
 struct Strides {
   long first = 1, others = 1;

@@ -108,7 +108,7 @@ std::string make_hankel(const records::Hankel& hankel) {
   std::string html =
       "<details><summary>" + std::to_string(hankel.value.size()) + "</summary>\n" + table.to_html(400) + "</details>\n";
   if (hankel.num_left_out > 0)
-    html += make_text(fmt::format("Of what decays; {} poles that do not are left out.", hankel.num_left_out), "note");
+    html += make_text(fmt::format("Of the stable part; {} other poles are left out.", hankel.num_left_out), "note");
   return html;
 }
 

@@ -6,8 +6,8 @@
 
 namespace bough::report {
 
-/// No line is wider than `width` characters (40 at least); `height` lines are the frame. Curves are told apart by
-/// colour where has_color.
+/// No line is wider than `width` characters (40 at least); `height` lines are the frame. Curves differ by colour where
+/// has_color.
 std::string draw_text(const Plot& plot, int width, int height, bool has_color);
 
 }  // namespace bough::report

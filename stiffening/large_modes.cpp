@@ -12,6 +12,8 @@ namespace {
 constexpr double kReferenceWay = 0.1;
 /// A mode that the reference load moves by this share of the softest one's way, or more, is large.
 constexpr double kSoft = 0.05;
+/// Length that makes a displacement of a rotation, in sizes of the model.
+constexpr double kTurnedShare = 0.1;
 /// Another mode is small if bending of the large ones moves it by more than this number of its ways under the load.
 constexpr double kFollows = 2;
 
@@ -24,10 +26,13 @@ double calc_model_size(const fe::Model& model) {
   return box.isEmpty() ? 0 : box.diagonal().norm();
 }
 
-VectorXd calc_largest_ways(const fe::Model& model, const MatrixXd& Phi) {
+VectorXd calc_largest_ways(const fe::Model& model, const MatrixXd& Phi, double arm) {
   VectorXd ways = VectorXd::Zero(Phi.cols());
-  for (const auto& node : model.nodes())
-    if (node.num_dofs == 6) ways = ways.cwiseMax(Phi.middleRows<3>(node.first_gdof).colwise().norm().transpose());
+  for (const auto& node : model.nodes()) {
+    if (node.num_dofs != 6) continue;
+    ways = ways.cwiseMax(Phi.middleRows<3>(node.first_gdof).colwise().norm().transpose());
+    if (arm > 0) ways = ways.cwiseMax(arm * Phi.middleRows<3>(node.first_gdof + 3).colwise().norm().transpose());
+  }
   return ways;
 }
 
@@ -67,15 +72,13 @@ std::vector<int> find_named_large_modes(const BodyRequest& request, int num_mode
 }
 
 std::vector<int> find_default_large_modes(const fe::Model& model, const MatrixXd& Phi, const MatrixXd& gradient,
-                                          const std::vector<records::ModeKind>& kind) {
+                                          std::vector<int> large, bool counts_rotations) {
   const auto n = static_cast<int>(Phi.cols());
-  const VectorXd ways = calc_largest_ways(model, Phi);
-  std::vector<int> large;
-  for (int j = 0; j < n; ++j)
-    if (kind[static_cast<std::size_t>(j)] == records::ModeKind::Normal) large.push_back(j);
+  const double size = calc_model_size(model);
+  const VectorXd ways = calc_largest_ways(model, Phi, counts_rotations ? kTurnedShare * size : 0);
   const double softest = ways.size() > 0 ? ways.maxCoeff() : 0;
   if (!(softest > 0)) return large;
-  const VectorXd amplitude = kReferenceWay * calc_model_size(model) / (softest * softest) * ways;
+  const VectorXd amplitude = kReferenceWay * size / (softest * softest) * ways;
   const Eigen::MatrixXi exponents = records::list_exponents(n, 2);
   /// Static amplitude of mode j due to the quadratic terms of the other large modes.
   const auto calc_coupled = [&](int j) {
@@ -106,6 +109,34 @@ std::vector<int> find_default_large_modes(const fe::Model& model, const MatrixXd
   large.resize(std::min<std::size_t>(large.size(), kDefaultLargeModes));
   std::sort(large.begin(), large.end());
   return large;
+}
+
+MatrixXd calc_compliant_directions(const fe::Model& model, const MatrixXd& Phi, const MatrixXd& K,
+                                   const std::vector<int>& interface_nodes) {
+  const double arm = kTurnedShare * calc_model_size(model);
+  const Eigen::Index n = Phi.cols();
+  MatrixXd of_grids = MatrixXd::Zero(n, n), of_interface = of_grids;
+  int num_grids = 0, num_interface = 0;
+  for (const auto& node : model.nodes()) {
+    if (node.num_dofs != 6) continue;
+    const MatrixXd u = Phi.middleRows<3>(node.first_gdof), turned = arm * Phi.middleRows<3>(node.first_gdof + 3);
+    const MatrixXd square = u.transpose() * u + turned.transpose() * turned;
+    of_grids += square;
+    ++num_grids;
+    if (std::find(interface_nodes.begin(), interface_nodes.end(), node.id) == interface_nodes.end()) continue;
+    of_interface += square;
+    ++num_interface;
+  }
+  of_grids /= std::max(1, num_grids);
+  if (num_interface > 0) of_grids += of_interface / num_interface;
+  const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd> eigen(of_grids, K);
+  MatrixXd directions = eigen.eigenvectors().rowwise().reverse();
+  for (Eigen::Index j = 0; j < n; ++j) {  // a sign that does not depend on the solver
+    Eigen::Index largest = 0;
+    directions.col(j).cwiseAbs().maxCoeff(&largest);
+    if (directions(largest, j) < 0) directions.col(j) *= -1;
+  }
+  return directions;
 }
 
 }  // namespace bough::stiffening

@@ -13,13 +13,20 @@ std::vector<int> find_named_large_modes(const BodyRequest& request, int num_mode
 /// Diagonal of the box around the grids [L]; 0 without grids.
 double calc_model_size(const fe::Model& model);
 
-/// Largest translation of a grid in each mode.
-VectorXd calc_largest_ways(const fe::Model& model, const MatrixXd& Phi);
+/// Largest translation of a grid in each mode, or rotation times `arm` [L] if that is more.
+VectorXd calc_largest_ways(const fe::Model& model, const MatrixXd& Phi, double arm = 0);
 
-/// The soft normal modes (docs/theory/third-order.md, "Large modes"): those that a reference load moves by more than
-/// bending of the others does; at most kDefaultLargeModes, from 0, ascending. Phi: num_gdofs x n, of unit strain
-/// energy; gradient: of V₃ by the amplitudes, n x monomials of degree 2 of all modes.
+/// Combinations of shapes, orthonormal under K, from the most compliant: n x n. The compliance of a shape is the mean
+/// square displacement of the grids and that of the interface nodes, rotations times a tenth of the size of the model,
+/// over its strain energy. Phi: num_gdofs x n; K: n x n, their stiffness.
+MatrixXd calc_compliant_directions(const fe::Model& model, const MatrixXd& Phi, const MatrixXd& K,
+                                   const std::vector<int>& interface_nodes);
+
+/// The soft ones of the modes `large` (docs/theory/third-order.md, "Large modes"): those that a reference load moves by
+/// more than bending of the others does; at most kDefaultLargeModes, ascending. Phi: num_gdofs x n, of unit strain
+/// energy; gradient: of V₃ by the amplitudes, n x monomials of degree 2 of all modes; counts_rotations: as
+/// calc_compliant_directions does.
 std::vector<int> find_default_large_modes(const fe::Model& model, const MatrixXd& Phi, const MatrixXd& gradient,
-                                          const std::vector<records::ModeKind>& kind);
+                                          std::vector<int> large, bool counts_rotations);
 
 }  // namespace bough::stiffening

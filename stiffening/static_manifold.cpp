@@ -137,9 +137,25 @@ StaticManifold::StaticManifold(const BodyRequest& request, const fe::Model& mode
   for (Index j = 0; j < n; ++j) scale_[j] = 1 / std::sqrt(basis.stiffness(j, j));  // a shape of unit strain energy
   Phi_ = basis.Phi * scale_.asDiagonal();
   K_ = scale_.asDiagonal() * basis.stiffness * scale_.asDiagonal();
+  mass_ = scale_.asDiagonal() * basis.mass * scale_.asDiagonal();
   K_factor_.compute(K_);
   set_rigid_motions(request, M);
   if (has_frame_) set_loads(request, basis, M);
+}
+
+void StaticManifold::turn(const MatrixXd& D) {
+  BOUGH_DEMAND(fields_.empty() && turned_.size() == 0);
+  turned_ = D.transpose() * K_ * scale_.cwiseInverse().asDiagonal();
+  Phi_ *= D;
+  if (psi_.size() > 0) {
+    psi_ *= D;
+    W_ *= D;
+  }
+  K_ = D.transpose() * K_ * D;
+  K_factor_.compute(K_);
+  // The amplitude of a combination has the unit of a mode's: it is of unit modal mass.
+  eigenvalue_ = (D.transpose() * mass_ * D).diagonal().cwiseInverse();
+  scale_ = eigenvalue_.cwiseSqrt().cwiseInverse();
 }
 
 void StaticManifold::set_rigid_motions(const BodyRequest& request, const linear::SymmetricMatrix& M) {

@@ -57,6 +57,14 @@ class StaticManifold {
   /// Adds u₂ of all modes and returns the gradient of V₃ by the amplitudes, n x monomials. `lattice`: of degree 2 in
   /// all modes. No mode has a part of u₂ until select_large().
   MatrixXd begin(const Lattice& lattice);
+  /// Takes combinations of the modes in their place, columns of D, of unit strain energy and orthogonal under K; before
+  /// begin(). D: n x n, of modes of unit strain energy.
+  void turn(const MatrixXd& D);
+  /// Amplitudes of the combinations at unit strain energy by those of the modes, n x n; empty without turn().
+  const MatrixXd& turned() const { return turned_; }
+  /// Stiffness of the modes of unit strain energy, n x n.
+  const MatrixXd& stiffness() const { return K_; }
+
   /// Selects the modes whose amplitudes u₃ and u₄ have, ascending. The others take the part of u₂ that cancels their
   /// cubic strain energy (theory: small modes). `gradient`: the result of begin().
   void select_large(const std::vector<int>& large, const MatrixXd& gradient);
@@ -161,6 +169,7 @@ class StaticManifold {
   /// Zero for residual vectors.
   MatrixXd W_, psi_;
   MatrixXd K_;  ///< of the scaled modes
+  MatrixXd mass_, turned_;
   Eigen::LDLT<MatrixXd> K_factor_, K_small_;
   std::vector<MatrixXd> fields_;       ///< degree 2, 3, ...; num_gdofs x monomials
   std::vector<MatrixXd> multipliers_;  ///< the same; n x monomials

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <set>
+#include <utility>
 
 #include "fe/corotational/corotational_element.hpp"
 #include "fe/elements/carried.hpp"
@@ -264,19 +265,39 @@ MatrixXd calc_block(const StaticManifold& manifold, const fe::Model& model, int 
 
 namespace {
 
-/// Clamped at its frame node, a body bends by residual vectors: small modes, without terms of degree 4.
-void warn_of_held_frame(const BodyRequest& request, const ModalBasis& basis) {
-  const auto& interface = request.spec.interface_nodes;
-  const auto& nodes = request.spec.frame_nodes;
-  const auto held = std::find_first_of(nodes.begin(), nodes.end(), interface.begin(), interface.end());
-  if (!request.moves_to_frame() || held == nodes.end() ||
+/// Polynomials of degree 2 in y = Q x become those of x: monomials of y x monomials of x.
+MatrixXd calc_substitution(const MatrixXd& Q) {
+  const int n = static_cast<int>(Q.rows());
+  const Eigen::MatrixXi exponents = records::list_exponents(n, 2);
+  std::vector<std::pair<int, int>> pairs;
+  for (Eigen::Index i = 0; i < exponents.rows(); ++i) {
+    std::vector<int> factors;
+    for (int j = 0; j < n; ++j) factors.insert(factors.end(), static_cast<std::size_t>(exponents(i, j)), j);
+    pairs.emplace_back(factors[0], factors[1]);
+  }
+  MatrixXd X(exponents.rows(), exponents.rows());
+  for (std::size_t i = 0; i < pairs.size(); ++i)
+    for (std::size_t k = 0; k < pairs.size(); ++k) {
+      const auto [a, b] = pairs[i];
+      const auto [c, d] = pairs[k];
+      double& x = X(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k));
+      x = Q(a, c) * Q(b, d);
+      if (c != d) x += Q(a, d) * Q(b, c);
+    }
+  return X;
+}
+
+/// Large modes that the body file names leave residual vectors small: a free body that an interface node holds bends by
+/// them, without terms of degree 4.
+void warn_of_held_frame(const BodyRequest& request, const ModalBasis& basis, const std::vector<int>& named) {
+  if (named.empty() || !request.is_free() ||
       std::find(basis.kind.begin(), basis.kind.end(), ModeKind::Residual) == basis.kind.end())
     return;
-  request.warning("reduce.held-frame",
-                  "the body of third order has residual vectors and the interface node " + std::to_string(*held) +
-                      " at its frame: clamped there by a hinge it bends by small modes, whose terms of degree 4 are "
-                      "left out, 2 to 8 % at deflections of 0.02 sizes in some frames",
-                  "for a clamped root set frame = \"fixed\" and hold the grid by an SPC, or set order = 2");
+  request.warning_at(
+      "stiffening/large", "reduce.held-frame",
+      "[body.stiffening] large names modes of a free body with residual vectors: held by a hinge it bends by "
+      "residual vectors, whose terms of degree 4 are left out, 2 to 80 % at deflections of 0.02 sizes",
+      "remove 'large': combinations of modes and residual vectors are large then");
 }
 
 }  // namespace
@@ -294,7 +315,7 @@ void set_third_order(const BodyRequest& request, const fe::Model& model, const M
                      "select normal modes alone: residual vectors follow them");
     request.diagnostics.throw_if_errors();
   }
-  warn_of_held_frame(request, basis);
+  warn_of_held_frame(request, basis, large);
   const int max_large = large.empty() ? std::min(n, kDefaultLargeModes) : static_cast<int>(large.size());
   double num_columns = records::count_monomials(n, 2) * 2;
   for (int k = 3; k <= ThirdOrder::kMaxField; ++k) num_columns += 2 * records::count_monomials(max_large, k);
@@ -309,6 +330,13 @@ void set_third_order(const BodyRequest& request, const fe::Model& model, const M
     request.diagnostics.throw_if_errors();
   }
 
+  // Loads at the interface bend the body by normal modes and residual vectors together: their soft combinations are the
+  // large amplitudes.
+  const bool turns =
+      large.empty() && std::find(basis.kind.begin(), basis.kind.end(), ModeKind::Residual) != basis.kind.end();
+  if (turns)
+    manifold.turn(calc_compliant_directions(model, manifold.Phi(), manifold.stiffness(), request.spec.interface_nodes));
+
   // Degree 2 is of all modes: stiffening by loads concerns the small ones as well.
   const Lattice pairs(n, 2);
   const auto report_points = [&](const std::string& stage, const Lattice& lattice) {
@@ -316,13 +344,23 @@ void set_third_order(const BodyRequest& request, const fe::Model& model, const M
   };
   report_points("degree 2", pairs);
   const MatrixXd on_modes = manifold.begin(pairs);  // n x pairs
-  if (large.empty()) large = find_default_large_modes(model, manifold.Phi(), on_modes, basis.kind);
-  request.report("third order: large modes " + list_modes(large));
+  if (large.empty()) {
+    for (int j = 0; j < n; ++j)
+      if (turns || !is_static(j)) large.push_back(j);
+    large = find_default_large_modes(model, manifold.Phi(), on_modes, std::move(large), turns);
+  }
+  request.report(std::string("third order: large ") + (turns ? "directions " : "modes ") + list_modes(large));
   manifold.select_large(large, on_modes);
   const int N = static_cast<int>(large.size());
   ThirdOrder third;
   third.large = large;
   const VectorXd scale = manifold.scale(), large_scale = scale(large);
+  MatrixXd to_modes;  // of degree 2
+  if (turns) {
+    third.directions = large_scale.asDiagonal() * manifold.turned()(large, Eigen::all);
+    third.count_directions();
+    to_modes = calc_substitution(manifold.turned());
+  }
   std::vector<MatrixXd> work;  // forces on the large modes at the lattice of degree k, k = 3..6
   std::vector<Lattice> lattices;
   for (int k = 3; k <= ThirdOrder::kMaxEnergy; ++k) lattices.emplace_back(N, k);
@@ -378,7 +416,10 @@ void set_third_order(const BodyRequest& request, const fe::Model& model, const M
     const auto at = static_cast<std::size_t>(k - ThirdOrder::kMinField);
     const Eigen::MatrixXi& exponents = get_lattice(k).exponents();
     const auto unscaled = [&](MatrixXd c) {
-      unscale(exponents, k == 2 ? scale : large_scale, c);
+      if (k == 2 && turns)
+        c *= to_modes;
+      else
+        unscale(exponents, k == 2 ? scale : large_scale, c);
       return MatrixXd(c.transpose());
     };
     const MatrixXd& u = manifold.field(k);

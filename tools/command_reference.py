@@ -28,6 +28,14 @@ def list_commands(program):
     return re.findall(r"^\.B bough (\S+)$", print_page(program, "--man-page"), re.MULTILINE)
 
 
+def list_headings(program):
+    """(heading, names) of the commands in `bough --help`."""
+    page, known = print_page(program, "--help"), set(list_commands(program))
+    blocks = re.findall(r"^(\S[^\n]*):\n((?:  [^\n]*\n)+)", page, re.MULTILINE)
+    named = [(heading, re.findall(r"^  ([a-z]+) ", block, re.MULTILINE)) for heading, block in blocks]
+    return [(heading, names) for heading, names in named if names and set(names) <= known]
+
+
 def strip(line):
     """Text of a line of roff without fonts and escapes."""
     text = re.sub(r"\\f[BIRP]", "", line)
@@ -86,7 +94,11 @@ def make_section(command, page):
 
 def make_page(program):
     commands = list_commands(program)
-    text = HEAD + textwrap.fill(", ".join(f"[{c}](#{c})" for c in commands), 120) + "\n\n"
+    text = HEAD
+    for heading, names in list_headings(program):
+        links = ", ".join(f"[{c}](#{c})" for c in names)
+        text += textwrap.fill(f"* {heading}: {links}", 120, subsequent_indent="  ") + "\n"
+    text += "\n"
     text += "".join(make_section(c, print_page(program, f"--man-page={c}")) for c in commands)
     return text.rstrip("\n") + "\n"
 

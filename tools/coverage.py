@@ -84,7 +84,9 @@ def main():
     if not profiles or not objects:
         sys.exit(f"error: no counts in {build}; build it with the preset coverage (docs/developer/coverage.md)")
     merged = os.path.join(build, "coverage.profdata")
-    subprocess.run([find_tool("llvm-profdata"), "merge", "--sparse", "-o", merged, *profiles], check=True)
+    # A test that kills a process may leave one of the files incomplete: it is reported and left out.
+    subprocess.run([find_tool("llvm-profdata"), "merge", "--sparse", "--failure-mode=all", "-o", merged, *profiles],
+                   check=True)
     chosen = [f"-object={path}" for path in objects[1:]]
     counted = [find_tool("llvm-cov"), "export", "--summary-only", f"-instr-profile={merged}", objects[0], *chosen]
     summary = json.loads(subprocess.run(counted, check=True, capture_output=True, text=True).stdout)

@@ -2,7 +2,8 @@
 """studio_film.py BUILD/bin/bough FILM.webm: films the studio from a deck to a body, a run, poles and a page.
 
 The film is the test cli.studio_browser (Flow.test_deck_to_page) with a picture after each event of mouse and keys; the
-recorder of the browser (MediaRecorder) makes WebM of them, 30 seconds at 300 kbit/s, with a dot where the pointer is.
+recorder of the browser (MediaRecorder) makes WebM of them, 30 seconds of at most 1,200 kbit/s, with a dot where the
+pointer is.
 Needs chromium; pictures of BOUGH_ARTEFACTS are made too where that is set."""
 import base64
 import json
@@ -11,7 +12,7 @@ import sys
 import unittest
 
 SOURCE = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
-SECONDS, WIDTH, HEIGHT, MAX_FRAMES, BITS = 30, 1000, 654, 150, 300000
+SECONDS, WIDTH, HEIGHT, MAX_FRAMES, BITS = 30, 1000, 654, 150, 1200000
 
 # Draws the pictures one by one for equal times; the recorder takes what the canvas shows.
 RECORD = """(async () => {

@@ -298,7 +298,7 @@ def verify_friction(b):
 def verify_gyroscope(b):
     """Reaction of a control moment gyroscope on a base that turns about x: -δ' g x h - ω x h, in the axes of the base."""
     rate, h, t = 0.3, 1.5, 2.5
-    moment, q = b.run(toml(
+    moment, q, gyro = b.run(toml(
         table("body", "ship", mass=10.0, inertia=[3.0, 4.0, 5.0]),
         table("function", "spin", "ramp", value=10 * rate, **{"from": 0.0, "to": 10.0}),
         table("function", "gimbal", "sine", amplitude=0.4, omega=2.0),
@@ -306,7 +306,7 @@ def verify_gyroscope(b):
         table("actuator", "gyro", "cmg", body="ship", input="gimbal", gimbal_axis=[0.0, 0.0, 1.0],
               spin_axis=[0.0, 1.0, 0.0], momentum=h, angle=0.2),
         section("simulation", duration=2.0, start=0.5, output_step=0.1, **ACCURATE)),
-        "hinges/axis/reaction_moment", "hinges/axis/q")
+        "hinges/axis/reaction_moment", "hinges/axis/q", "actuators/gyro")
     turn = q[-1].item()
     _, y, z = moment[-1]  # in the axes of the ground
     along = math.cos(turn) * z - math.sin(turn) * y
@@ -318,6 +318,8 @@ def verify_gyroscope(b):
     b.add("gyroscope on a base that turns", "moment about y [N m]", across, -command * h * math.sin(delta), 1e-9, source)
     b.add("gyroscope on a base that turns", "torque of the gimbal's drive [N m]", along, rate * h * math.cos(delta), 1e-9,
           "g . (omega x h)")
+    b.add("gyroscope on a base that turns", "output of the gimbal's motor [N m]", gyro[-1, 2], rate * h * math.cos(delta),
+          1e-9, "g . (omega x h)")
 
 
 def verify(bough, folder, add):

@@ -11,6 +11,7 @@
 #include <iostream>
 
 #include "analysis/common/output_folder.hpp"
+#include "base/platform.hpp"
 
 namespace bough::analysis {
 
@@ -58,12 +59,7 @@ std::string find_error(const std::string& path) {
   return last;
 }
 
-long get_memory_kb() {
-  std::ifstream in("/proc/self/statm");
-  long size = 0, resident = 0;
-  in >> size >> resident;
-  return resident * (sysconf(_SC_PAGESIZE) / 1024);
-}
+long get_memory_kb() { return static_cast<long>(platform::get_resident_bytes() / 1024); }
 
 /// A crash on demand, so that the tests can see one.
 void crash_if_told(int number) {
@@ -89,7 +85,7 @@ void run_steps(const BatchPlan& plan, const BatchCase& one, const RunCommand& ru
 
 bool send_line(int fd, const std::string& text) {
   for (std::size_t sent = 0; sent < text.size();) {
-    const auto n = send(fd, text.data() + sent, text.size() - sent, MSG_NOSIGNAL);
+    const auto n = platform::send_quietly(fd, text.data() + sent, text.size() - sent);
     if (n <= 0) return false;
     sent += static_cast<std::size_t>(n);
   }

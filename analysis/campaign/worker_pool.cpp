@@ -2,9 +2,6 @@
 
 #include <fcntl.h>
 #include <poll.h>
-#ifdef __linux__
-#include <sys/prctl.h>
-#endif
 #include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -14,6 +11,8 @@
 #include <cstdlib>
 #include <cstring>
 #include <sstream>
+
+#include "base/platform.hpp"
 
 namespace bough::analysis {
 
@@ -33,7 +32,7 @@ struct Worker {
 /// parameters too.
 void clear_launch() {
   const bool is_launched = std::getenv("OMPI_COMM_WORLD_SIZE") != nullptr || std::getenv("PMIX_RANK") != nullptr;
-  for (char** entry = environ; *entry != nullptr;) {
+  for (char** entry = platform::get_environment(); *entry != nullptr;) {
     const std::string text = *entry;
     const bool is_launch = text.rfind("OMPI_COMM_", 0) == 0 || text.rfind("OMPI_UNIVERSE", 0) == 0 ||
                            text.rfind("PMIX_", 0) == 0 || text.rfind("PMI_", 0) == 0 ||
@@ -46,9 +45,7 @@ void clear_launch() {
 }
 
 [[noreturn]] void become_worker(const PoolOptions& options, int fd) {
-#ifdef __linux__
-  prctl(PR_SET_PDEATHSIG, SIGKILL);  // no worker outlives this program
-#endif
+  platform::end_with_parent();
   setpgid(0, 0);  // Ctrl-C is for the parent to act on
   std::signal(SIGINT, SIG_DFL);
   std::signal(SIGTERM, SIG_DFL);
@@ -60,8 +57,8 @@ void clear_launch() {
   setenv("OPENBLAS_NUM_THREADS", "1", 0);
   auto words = options.command;
   words.push_back(std::to_string(fd));
-  // In a Python process /proc/self/exe is the interpreter; the module says how to come here again, a word a line.
-  std::string program = "/proc/self/exe";
+  // In a Python process the executable is the interpreter; the module says how to come here again, a word a line.
+  std::string program = platform::get_executable();
   if (const char* launcher = std::getenv("BOUGH_WORKER_LAUNCHER")) {
     std::vector<std::string> launch;
     std::istringstream lines(launcher);
@@ -105,7 +102,7 @@ class Pool {
 
   Worker start() {
     int ends[2];
-    if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0)
+    if (!platform::open_socket_pair(ends))
       throw ComputationError("batch.no-worker", {}, std::string("no socket for a worker: ") + std::strerror(errno),
                              "use fewer with -j");
     const pid_t pid = fork();
@@ -142,7 +139,7 @@ class Pool {
     worker.begin = Clock::now();
     const auto line = std::to_string(worker.number) + "\n";
     // A worker that is gone already shows as the end of its answers.
-    (void)!send(worker.fd, line.data(), line.size(), MSG_NOSIGNAL);
+    (void)!platform::send_quietly(worker.fd, line.data(), line.size());
   }
 
   void wait() {

@@ -309,7 +309,7 @@ CheckAnswer check_hdf5(const std::string& file) {
                       "bough info FILE lists what is in it; bough report FILE makes a page of it");
   } else {
     diagnostics.error("cli.unknown-format", {file},
-                      "an HDF5 file without a format that Bough knows" +
+                      "an HDF5 file without a format of Bough" +
                           (found == info.attributes.end() ? std::string() : ", found \"" + format + "\""),
                       "expected bough-flexbody, bough-modes, bough-results, bough-static, bough-linear or "
                       "bough-matrices");

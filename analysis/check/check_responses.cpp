@@ -59,7 +59,9 @@ ResponseCheck check_response(const records::DynamicDeck& deck, const records::Dy
 
 void check_complex(const records::DynamicDeck& deck, SubcaseModels& models, Diagnostics& diagnostics) {
   SubcaseFailures failures(deck.subcases.size(), deck.subcases.size());
+  const auto ids = modal::complex_modes::list_subcases(deck);
   for (const auto& subcase : deck.subcases) {
+    if (ids.front() != 0 && std::find(ids.begin(), ids.end(), subcase.id) == ids.end()) continue;
     const auto selection = deck.selections.find(subcase.id);
     const records::DynamicSubcase chosen(
         subcase, selection == deck.selections.end() ? records::DynamicSelection{} : selection->second);
@@ -91,6 +93,7 @@ std::vector<ResponseCheck> check_responses(const records::DynamicDeck& deck, con
   std::vector<records::DynamicSubcase> subcases;
   try {
     subcases = response::choose_response_subcases(deck, options.subcase, solution->is_over_time);
+    check_nonlinear_transient(deck, subcases.size(), diagnostics);
     if (!solution->is_over_time) {
       Diagnostics found;
       response::RandomAnalysis(deck, subcases, found);

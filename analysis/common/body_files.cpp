@@ -9,6 +9,7 @@
 #include "base/diagnostic.hpp"
 #include "formats/flat/flex_body.hpp"
 #include "formats/flx/flx_file.hpp"
+#include "formats/flx/special_nodes.hpp"
 #include "formats/hdf5/files.hpp"
 
 namespace bough::analysis {
@@ -46,7 +47,7 @@ void add_note(const flx::FlxFile& file, const std::string& path, std::vector<std
   if (!file.has_rigid) lacking.insert(lacking.begin(), "centre of mass and inertia");
   std::string what =
       fmt::format("the file does not hold {}; its values have {} digits", fmt::join(lacking, ", "), file.digits);
-  if (!file.special_id.empty()) what += "; its special nodes are passed over: a run stiffens without them";
+  if (!file.special_id.empty()) what += "; its special nodes take forces, actuators and sensors";
   for (const auto& item : diagnostics.items())
     if (item.id == "flx.not-carried" && item.what == what) return;
   diagnostics.note("flx.not-carried", {path}, what,
@@ -58,13 +59,14 @@ struct Read {
   bool has_rigid = true;
 };
 
-Read read_any(const std::string& name, Diagnostics& diagnostics) {
+Read read_any(const std::string& name, bool is_moving, Diagnostics& diagnostics) {
   if (is_flat(name)) return {flat::read_flex_body(name), true};
   const auto parsed = flx::parse_flx_name(name);
   if (!parsed) return {hdf5::read_flex_body(name), true};
   const auto file = flx::read_flx(parsed->path, parsed->body_id);
   std::vector<std::string> lacking;
   Read read{flx::make_flex_body(file, lacking), file.has_rigid};
+  if (is_moving) flx::add_special_nodes(file, read.body);
   read.body.source = calc_sources({parsed->path});
   add_note(file, parsed->path, std::move(lacking), diagnostics);
   return read;
@@ -73,12 +75,12 @@ Read read_any(const std::string& name, Diagnostics& diagnostics) {
 }  // namespace
 
 records::FlexBody read_body(const std::string& name, Diagnostics& diagnostics) {
-  return read_any(name, diagnostics).body;
+  return read_any(name, false, diagnostics).body;
 }
 
 records::FlexBody read_moving_body(const std::string& name, Diagnostics& diagnostics,
                                    const std::optional<RigidPart>& given) {
-  auto [body, has_rigid] = read_any(name, diagnostics);
+  auto [body, has_rigid] = read_any(name, true, diagnostics);
   const std::string path = get_body_path(name);
   embed::give_rigid_part(body, has_rigid, given, path);
   return std::move(body);

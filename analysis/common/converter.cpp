@@ -6,6 +6,7 @@
 
 #include "base/diagnostic.hpp"
 #include "base/part_file.hpp"
+#include "base/platform.hpp"
 
 namespace bough::analysis {
 
@@ -24,7 +25,8 @@ void write_converted(const std::string& path, const std::string& text, const Con
   arguments.push_back(nullptr);
   pid_t child = 0;
   int status = 0;
-  const int failed = posix_spawnp(&child, words[0].c_str(), nullptr, nullptr, arguments.data(), environ);
+  const int failed =
+      posix_spawnp(&child, words[0].c_str(), nullptr, nullptr, arguments.data(), platform::get_environment());
   const bool is_drawn = failed == 0 && waitpid(child, &status, 0) == child && WIFEXITED(status);
   if (is_drawn && WEXITSTATUS(status) == 0 && part.commit()) return;
   // 127: some systems report a missing program only through the child.

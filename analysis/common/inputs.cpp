@@ -64,6 +64,12 @@ void refuse_treetops_input(const std::string& path) {
                    "(docs/coming-from-treetops.md)");
 }
 
+void refuse_deck(const std::string& path) {
+  if (!has_suffix(path, ".bdf") && !has_suffix(path, ".nas")) return;
+  throw InputError("cli.wrong-file", {path}, "the file is a Nastran deck by its name, expected a system file",
+                   "bough init " + path + " writes a body file and a system file for it");
+}
+
 void demand_deck(const std::string& path) {
   demand_file(path);
   refuse_treetops_input(path);
@@ -73,7 +79,7 @@ void demand_deck(const std::string& path) {
   if (!is_hdf5 && !has_suffix(path, ".toml")) return;
   throw InputError("cli.wrong-file", {path},
                    std::string("the file is ") + (is_hdf5 ? "HDF5" : "TOML") + ", expected a Nastran deck",
-                   is_hdf5 ? "bough info tells what it holds" : "bough check tells what it is");
+                   is_hdf5 ? "bough info lists its contents" : "bough check identifies it");
 }
 
 records::Deck read_deck_once(const std::string& path, const std::vector<std::string>& ignore_cards,

@@ -35,6 +35,8 @@ void demand_file(const std::string& path);
 void demand_kind(const std::string& path, const std::string& kind, const std::string& expected);
 /// Throws InputError "cli.wrong-file" for a .INT file of TREETOPS: it is recognized by its name, and no deck.
 void refuse_treetops_input(const std::string& path);
+/// Throws InputError "cli.wrong-file" for a deck in place of a system file, by its name: .bdf, .nas.
+void refuse_deck(const std::string& path);
 /// Demands that the file is a deck; InputError("cli.wrong-file") if it is HDF5 or TOML.
 void demand_deck(const std::string& path);
 

@@ -65,7 +65,7 @@ std::string share(const std::function<std::string()>& make) {
     } catch (const Failure& failure) {
       failed = to_text(failure);
     } catch (const std::exception& error) {
-      failed = to_text(ComputationError({}, {}, error.what(), "the first process of the run says so"));
+      failed = to_text(ComputationError({}, {}, error.what(), "the first process of the run reports it"));
     }
   }
   broadcast(failed);

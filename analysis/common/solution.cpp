@@ -82,7 +82,7 @@ void note_solution(const records::Deck& deck, Diagnostics& diagnostics) {
   else if (other)
     diagnostics.note("cli.other-solution", deck.locate({0, 0}), fmt::format("SOL {} is {}", deck.sol, other->name),
                      other->has_complex_modes ? "bough modes gives them; with --ignore CMETHOD the real ones"
-                                              : "this is the linear solution of the cards as they stand");
+                                              : "this is the linear solution of the unchanged cards");
 }
 
 namespace {
@@ -128,6 +128,32 @@ bool choose_static_solution(const records::Deck& deck, bool is_linear, bool is_n
   return false;
 }
 
+namespace {
+
+/// Nonlinear transient response, of structures (129) and of structures with heat (159).
+bool is_nonlinear_transient(const std::string& sol) {
+  static const std::set<std::string> all{"99", "129", "NLTRAN", "159", "NLTCSH"};
+  return all.count(sol) > 0;
+}
+
+}  // namespace
+
+void check_nonlinear_transient(const records::Deck& deck, std::size_t num_subcases, Diagnostics& diagnostics) {
+  if (!is_nonlinear_transient(deck.sol)) return;
+  auto names = list_nonlinear_cards(deck);
+  if (has_large_displacements(deck)) names += names.empty() ? "PARAM,LGDISP" : ", PARAM,LGDISP";
+  if (!names.empty())
+    diagnostics.error("cli.nonlinear-transient", deck.locate({0, 0}),
+                      fmt::format("SOL {} is {}, found {}, which the linear response does not follow", deck.sol,
+                                  find_other_solution(deck.sol)->name, names),
+                      "take these cards away, or give transient --linear");
+  if (num_subcases > 1)
+    diagnostics.error("cli.nonlinear-transient", deck.locate({0, 0}),
+                      fmt::format("each subcase of SOL {} starts where the one before ended, found {} subcases",
+                                  deck.sol, num_subcases),
+                      "give --subcase n for one that starts from rest, or transient --linear for all from rest");
+}
+
 const ResponseSolution* find_response_solution(const std::string& sol) {
   static const ResponseSolution direct_frequency{false, true}, modal_frequency{false, false};
   static const ResponseSolution direct_transient{true, true}, modal_transient{true, false};
@@ -140,6 +166,7 @@ const ResponseSolution* find_response_solution(const std::string& sol) {
       {"SEMFREQ", &modal_frequency}, {"12", &modal_transient},       {"31", &modal_transient},
       {"112", &modal_transient},     {"MTRAN", &modal_transient},    {"SEMTRAN", &modal_transient}};
   const auto found = all.find(sol);
+  if (found == all.end() && is_nonlinear_transient(sol)) return &direct_transient;
   return found == all.end() ? nullptr : found->second;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 /// \file Requests of the deck's SOL other than linear statics, modes and buckling.
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -24,7 +25,13 @@ struct ResponseSolution {
   bool is_over_time;
   bool is_direct;  ///< without modes
 };
-/// nullptr for another SOL; by number and by name of the MSC, NX and COSMIC sequences.
+/// Adds cli.nonlinear-transient if a SOL of nonlinear transient response (129 and its kin) has cards of nonlinear
+/// materials, contact or large displacements, or several subcases, which continue one another.
+/// \param num_subcases  those to be solved.
+void check_nonlinear_transient(const records::Deck& deck, std::size_t num_subcases, Diagnostics& diagnostics);
+
+/// nullptr for another SOL; by number and by name of the MSC, NX and COSMIC sequences. Nonlinear transient response
+/// is direct transient response.
 const ResponseSolution* find_response_solution(const std::string& sol);
 
 /// Returns true for SOL 107, 110 and their kin unless CMETHOD (or EIGC) is among the names of --ignore.

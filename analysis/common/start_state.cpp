@@ -73,7 +73,7 @@ void report_time(const records::SystemSpec& spec, const hdf5::ResultsFile& resul
       : !is_run    ? "controllers, actuators and lags start from the states in which they rest there"
       : has_memory ? "controllers, actuators and lag, delay and random walk of sensors start from no state of their "
                      "own, but for momentum of wheels and gimbal angles; bough run --resume continues with their states"
-                   : "controllers and lags of actuators start as the system file says; momentum of wheels and gimbal "
+                   : "controllers and lags of actuators start as in the system file; momentum of wheels and gimbal "
                      "angles are those of the file");
   if (reached > t + 1e-12 * std::max(std::abs(reached), std::abs(results.time[0])))
     diagnostics.warning(
@@ -86,16 +86,18 @@ void report_time(const records::SystemSpec& spec, const hdf5::ResultsFile& resul
 void set_rotors(records::SystemSpec& spec, Starter& starter) {
   struct Rotor {
     const char *type, *key;
-    std::size_t column, size, num_outputs;  ///< of the channel /actuators/NAME
+    std::size_t column, size;  ///< of the channel /actuators/NAME
   };
   constexpr Rotor rotors[] = {
-      {"wheel", "momentum", 1, 1, 3}, {"cmg", "angle", 1, 1, 2}, {"double_gimbal_cmg", "angle", 2, 2, 4}};
+      {"wheel", "momentum", 1, 1}, {"cmg", "angle", 1, 1}, {"double_gimbal_cmg", "angle", 2, 2}};
   for (auto& actuator : spec.actuators) {
     const std::string channel = "/actuators/" + actuator.name;
     const auto* rotor =
         std::find_if(std::begin(rotors), std::end(rotors), [&](const Rotor& one) { return actuator.type == one.type; });
     if (rotor == std::end(rotors) || !starter.has(channel)) continue;
-    const auto row = starter.read(channel, rotor->num_outputs);
+    // Later versions append outputs.
+    auto row = starter.read(channel, 0);
+    if (row.size() < rotor->column + rotor->size) row = starter.read(channel, rotor->column + rotor->size);
     if (row.empty()) continue;
     const auto first = row.begin() + static_cast<std::ptrdiff_t>(rotor->column);
     std::vector<double> start(first, first + static_cast<std::ptrdiff_t>(rotor->size));
@@ -240,7 +242,7 @@ std::optional<records::Checkpoint> find_start_control(const std::string& path, c
   const int own = nz - system.num_momentum_out();
   if (found.state.size() != nq + nu + own + 2 || (control ? control->size() - 1 : 0) != held) {
     diagnostics.note("cli.start-state", {path}, "it has other controllers or actuators than this system",
-                     "they start as the system file says");
+                     "they start as in the system file");
     return {};
   }
   records::Checkpoint start;

@@ -22,8 +22,8 @@ struct StartPoint {
 /// Puts the last sample of a results file (of run or equilibrium) into the records: position and rate of every hinge
 /// coordinate that is not prescribed, eta and eta_dot of every flexible body, mass of tanks, momentum of wheels and
 /// gimbal angles, and the modes that events left (start_modes.hpp).
-/// Reports "cli.start-mismatch" for what the file lacks or has in another size, "cli.start-earlier" (warning) where the
-/// run went on after its last sample.
+/// Reports "cli.start-mismatch" for data missing in the file or of another size, "cli.start-earlier" (warning) where
+/// the run went on after its last sample.
 StartPoint set_start_state(records::SystemSpec& spec, const std::string& path, Diagnostics& diagnostics);
 
 /// Closes the constraints of the start. Warns "cli.start-motion" of each prescribed coordinate that does not start

@@ -19,7 +19,7 @@ class SubcaseFailures {
   void add(int subcase, const Failure& failure);
   /// Returns true if no subcase has failed.
   bool is_empty() const { return failed_.empty(); }
-  /// Every message once, its errors with the subcases that they are about; without the warnings that are `said`.
+  /// Every message once, its errors with the subcases that they are about; without the warnings of `prior`.
   std::vector<Diagnostic> get_items(const Diagnostics& prior = {}) const;
   /// Exit code of report_failure for the worst failure; 0 without failures.
   int get_exit_code() const { return exit_code_; }
@@ -37,7 +37,7 @@ class SubcaseFailures {
 
 /// Adds what is new: the model of each subcase says again what the deck made the first one say.
 void add_new(const Diagnostics& from, Diagnostics& to);
-/// Warnings alone: what was said before a failure, which has its errors itself.
+/// Warnings alone: those issued before a failure, which has its errors itself.
 void add_warnings(const Diagnostics& from, Diagnostics& to);
 
 }  // namespace bough::analysis

@@ -89,9 +89,13 @@ class PartReducer {
     const Places main(deck_, diagnostics_);
     std::map<int, Places> own;
     for (const auto* part : parts) own.emplace(part->id, Places(*part->deck, diagnostics_));
-    std::vector<std::map<int, int>> joined;
-    for (const auto* part : parts) joined.push_back(find_boundary(*part, main, own));
-    for (std::size_t k = 0; k < parts.size(); ++k) reduce(*parts[k], joined[k], list_neighbors(parts, joined, k));
+    std::vector<std::map<int, int>> joined, scalars;
+    for (const auto* part : parts) {
+      joined.push_back(find_boundary(*part, main, own));
+      scalars.push_back(extract_scalar_points(*part, joined.back()));
+    }
+    for (std::size_t k = 0; k < parts.size(); ++k)
+      reduce(*parts[k], joined[k], scalars[k], list_neighbors(parts, joined, k));
     // The grids that sections and main bulk data share, for what needs them all.
     for (std::size_t k = 0; k < parts.size(); ++k)
       deck_.super.seconct.push_back({parts[k]->id, 0, 0, {joined[k].begin(), joined[k].end()}, parts[k]->at});
@@ -182,6 +186,29 @@ class PartReducer {
     return joined;
   }
 
+  /// Moves the scalar points of the section out of the pairs that SECONCT joins; every other pair is to name a grid of
+  /// the section. Kinds of the points of the main bulk data are checked when the superelement is made.
+  std::map<int, int> extract_scalar_points(const DeckSection& section, std::map<int, int>& joined) {
+    const Deck& deck = *section.deck;
+    std::set<int> grids, scalars(deck.scalar_points.begin(), deck.scalar_points.end());
+    for (const auto& grid : deck.grids) grids.insert(grid.id);
+    std::map<int, int> found;
+    for (auto pair = joined.begin(); pair != joined.end();) {
+      if (grids.count(pair->first) > 0) {
+        ++pair;
+        continue;
+      }
+      if (scalars.count(pair->first) > 0)
+        found.insert(*pair);
+      else
+        error("fe.part-boundary", section.at,
+              fmt::format("SECONCT names point {}, which superelement {} does not have", pair->first, section.id),
+              "correct the id, or add its GRID or SPOINT to the section");
+      pair = joined.erase(pair);
+    }
+    return found;
+  }
+
   /// Grids of a section that SEBNDRY names, 0 or more; without SEBNDRY all grids are searched.
   std::optional<std::set<int>> find_searched(const DeckSection& section, const Places& own) {
     std::optional<std::set<int>> searched;
@@ -200,7 +227,9 @@ class PartReducer {
     return searched;
   }
 
-  void reduce(const DeckSection& section, const std::map<int, int>& joined, records::SuperelementCards neighbors) {
+  /// \param joined   grids of the section and of the main bulk data, \param scalars its scalar points and theirs.
+  void reduce(const DeckSection& section, const std::map<int, int>& joined, const std::map<int, int>& scalars,
+              records::SuperelementCards neighbors) {
     if (joined.empty())
       return error("fe.part-boundary", section.at,
                    fmt::format("superelement {} joins no grid of the main bulk data", section.id),
@@ -218,6 +247,7 @@ class PartReducer {
     s.at = section.at;
     s.section = section.deck;
     s.joined = joined;
+    s.joined.insert(scalars.begin(), scalars.end());
     s.tolerance = get_tolerance(section.id);
     condense(part, section, s);
     if (s.K.size() > 0) deck_.superelements.push_back(std::move(s));
@@ -269,10 +299,11 @@ class PartReducer {
     for (const auto& term : part.qset) points.insert(term.g);
     std::erase_if(constrained.scalar_points, [&](int id) { return points.count(id) > 0; });
     std::erase_if(constrained.aset, [&](const auto& term) { return points.count(term.g) > 0; });
+    constrained.subcases.clear();
     constrained.qset.clear();
     constrained.bset.clear();
     constrained.cset.clear();
-    auto& subcase = constrained.subcases.front();
+    auto& subcase = constrained.subcases.emplace_back();
     subcase.spc =
         choose_set(section, [&](const auto& one) { return has_set(part.spc, part.spcadd, one.spc) ? one.spc : 0; });
     subcase.mpc =
@@ -280,17 +311,19 @@ class PartReducer {
     const auto model = fe::build_model(constrained, {}, diagnostics_);
     const fe::System system(model);
     std::vector<int> grids;
-    for (const auto& [id, other] : s.joined) grids.push_back(id);
+    for (const auto& [id, other] : s.joined)
+      if (points.count(id) == 0) grids.push_back(id);
     const modal::bases::FixedInterface fixed(system, grids, diagnostics_);
     const MatrixXd constraint_modes = fixed.calc_constraint_modes();
     const auto nb = constraint_modes.cols();
     for (const auto& [id, component] : fixed.partition().boundary) {
       if (s.points.empty() || s.points.back().id != id) s.points.push_back({id, 0});
+      if (is_scalar(model, id)) continue;
       s.points.back().c |= 1U << static_cast<unsigned>(component - 1);
     }
     const auto modes = calc_component_modes(part, section, fixed, constraint_modes.rows());
     const auto nq = modes.Phi.cols();
-    add_generalized(nq, s);
+    add_generalized(nq, points, s);
     MatrixXd Psi(constraint_modes.rows(), nb + nq);
     Psi << constraint_modes, modes.Phi;
     report_supported_mass(model, fixed, Psi, section);
@@ -345,6 +378,7 @@ class PartReducer {
     for (Index i = 0; i < static_cast<Index>(boundary.size()); ++i) {
       const auto& [id, component] = boundary[static_cast<std::size_t>(i)];
       const fe::Node& node = model.node(model.find_node(id));
+      if (node.num_dofs == 1) continue;
       const int c = (component - 1) % 3, half = component > 3 ? 3 : 0;
       moved += Psi.col(i) * (node.R_basic_cd.col(c).transpose() * Phi_R.middleRows(node.first_gdof + half, 3));
     }
@@ -387,9 +421,9 @@ class PartReducer {
     for (Index i = 0; i < nb; ++i) {
       const auto& [id, component] = boundary[static_cast<std::size_t>(i)];
       const fe::Node& node = model.node(model.find_node(id));
-      const int c = (component - 1) % 3, half = component > 3 ? 3 : 0;
-      loads.F.middleRows(node.first_gdof + half, 3).leftCols(n) += node.R_basic_cd.col(c) * s.K.row(i);
-      if (m > 0) loads.F.middleRows(node.first_gdof + half, 3).rightCols(m) -= node.R_basic_cd.col(c) * s.P.row(i);
+      const auto [first, unit] = make_unit(node, component);
+      loads.F.middleRows(first, unit.size()).leftCols(n) += unit * s.K.row(i);
+      if (m > 0) loads.F.middleRows(first, unit.size()).rightCols(m) -= unit * s.P.row(i);
     }
     loads.F.middleCols(nb, nq) = motions.force.rightCols(nq);
     if (m > 0 && nq > 0)
@@ -420,15 +454,23 @@ class PartReducer {
     }
   }
 
+  static bool is_scalar(const fe::Model& model, int id) { return model.node(model.find_node(id)).num_dofs == 1; }
+
+  /// Unit displacement of a component in the displacement axes of its node, basic axes: the first g-dof and 3 values,
+  /// or 1 of a scalar point.
+  static std::pair<Index, VectorXd> make_unit(const fe::Node& node, int component) {
+    if (node.num_dofs == 1) return {node.first_gdof, VectorXd::Ones(1)};
+    return {node.first_gdof + (component > 3 ? 3 : 0), node.R_basic_cd.col((component - 1) % 3)};
+  }
+
   /// Diagonal of K before condensation at the dofs of the boundary.
   static VectorXd calc_boundary_stiffness(const fe::Model& model, const modal::bases::FixedInterface& fixed) {
     const auto& boundary = fixed.partition().boundary;
     MatrixXd unit = MatrixXd::Zero(model.num_gdofs(), static_cast<Index>(boundary.size()));
     for (Index i = 0; i < unit.cols(); ++i) {
       const auto& [id, component] = boundary[static_cast<std::size_t>(i)];
-      const fe::Node& node = model.node(model.find_node(id));
-      const int c = (component - 1) % 3, half = component > 3 ? 3 : 0;
-      unit.block<3, 1>(node.first_gdof + half, i) = node.R_basic_cd.col(c);
+      const auto [first, direction] = make_unit(model.node(model.find_node(id)), component);
+      unit.col(i).segment(first, direction.size()) = direction;
     }
     return unit.cwiseProduct(fe::calc_stiffness_times(model, unit)).colwise().sum();
   }
@@ -472,7 +514,9 @@ class PartReducer {
       error("fe.part-modes", at,
             fmt::format("superelement {} has {} generalized coordinates, and METHOD selects no EIGRL of its section",
                         section.id, count),
-            "write EIGRL with the id of METHOD in the section too");
+            fmt::format("write EIGRL with the id of METHOD in the section, METHOD above all subcases or in a subcase "
+                        "of SUPER = {}",
+                        section.id));
       return modes;
     }
     const int number = method->num_modes > 0 ? static_cast<int>(std::min<Index>(method->num_modes, count)) : 0;
@@ -495,8 +539,18 @@ class PartReducer {
     return set == 0 || found == deck.eigen_methods.end() ? nullptr : &*found;
   }
 
-  /// Generalized coordinates are scalar points of the main bulk data with ids above all others.
-  void add_generalized(Index number, Superelement& s) {
+  /// Generalized coordinates in ascending order of the points of QSET. One that SECONCT joins is a scalar point of the
+  /// main bulk data; the others become scalar points with ids above all others.
+  void add_generalized(Index number, const std::set<int>& points, Superelement& s) {
+    Index used = 0;
+    for (const int id : points) {
+      if (s.joined.count(id) == 0) continue;
+      if (used++ < number)
+        s.points.push_back({id, 0});
+      else
+        s.joined.erase(id);  // fewer modes than points
+    }
+    number -= std::min(used, number);
     if (number == 0) return;
     int highest = 0;
     for (const Deck* deck : {static_cast<const Deck*>(&deck_), s.section.get()}) {
@@ -571,8 +625,11 @@ class PartReducer {
   /// The set of constraints of the section that the subcases select; they may not select several.
   template <class Get>
   int choose_set(const DeckSection& section, const Get& get) {
+    // Subcases of SUPER = n are of the section alone.
+    const auto& own = section.deck->subcases;
+    const bool has_own = std::any_of(own.begin(), own.end(), [](const auto& subcase) { return subcase.id > 0; });
     std::set<int> sets;
-    for (const auto& subcase : deck_.subcases)
+    for (const auto& subcase : has_own ? own : deck_.subcases)
       if (const int set = get(subcase)) sets.insert(set);
     if (sets.size() > 1)
       error("fe.part-boundary", section.at,

@@ -79,6 +79,7 @@ LoadedSystem load_system(const std::string& path, Diagnostics& diagnostics, Load
   if (!options.text) {
     demand_file(path);
     refuse_treetops_input(path);
+    refuse_deck(path);
   }
   const std::string start_from = options.start_from;
   StartPoint start;

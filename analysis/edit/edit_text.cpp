@@ -170,8 +170,11 @@ std::string EditText::make_value(const KindHelp* kind, const std::string& key, c
   if (text.empty()) throw InputError("cli.edit-command", {}, "the value of " + key + " is missing", "write key=value");
   const bool is_value = toml_files::is_value(text);
   const auto* help = kind == nullptr ? nullptr : kind->find(key);
-  // Keys of a function depend on its type and are checked by `check`; keys of no function are rejected here.
-  if (help == nullptr && kind != nullptr && kind->kind == "function")
+  // Keys of a function depend on its type and are checked by `check`; keys of no function are rejected here. Angles may
+  // be in degrees.
+  const bool in_degrees =
+      kind != nullptr && key.ends_with("_deg") && kind->find(key.substr(0, key.size() - 4)) != nullptr;
+  if (help == nullptr && !in_degrees && kind != nullptr && kind->kind == "function")
     throw InputError("toml.unknown-key", {}, "unknown key '" + key + "' in a function",
                      "'help function' lists the keys");
   if (help == nullptr || !help->takes_text) {

@@ -1,7 +1,5 @@
 #include "analysis/export/export_fmu.hpp"
 
-#include <link.h>
-
 #include <algorithm>
 #include <charconv>
 #include <filesystem>
@@ -17,6 +15,7 @@
 #include "analysis/common/system_files.hpp"
 #include "analysis/common/text_file.hpp"
 #include "analysis/export/fmu_units.hpp"
+#include "base/platform.hpp"
 #include "base/version.hpp"
 #include "embed/bough.h"
 #include "embed/dependencies.hpp"
@@ -173,27 +172,20 @@ class Packing {
 
 /// Files of the loaded libraries whose names start with one of the prefixes, by name.
 std::map<std::string, std::string> list_loaded(std::initializer_list<std::string_view> prefixes) {
-  struct Search {
-    std::initializer_list<std::string_view> prefixes;
-    std::map<std::string, std::string> paths;
-  } search{prefixes, {}};
-  dl_iterate_phdr(
-      [](dl_phdr_info* info, std::size_t, void* data) {
-        auto& given = *static_cast<Search*>(data);
-        const std::string path = info->dlpi_name, name = fs::path(path).filename().string();
-        for (const auto prefix : given.prefixes)
-          if (name.starts_with(prefix)) given.paths[name] = path;
-        return 0;
-      },
-      &search);
-  return search.paths;
+  std::map<std::string, std::string> paths;
+  for (const auto& path : platform::list_libraries()) {
+    const std::string name = fs::path(path).filename().string();
+    for (const auto prefix : prefixes)
+      if (name.starts_with(prefix)) paths[name] = path;
+  }
+  return paths;
 }
 
 /// The binary of FMUs in the build tree or where it is installed: below a folder above the Python module if this code
 /// is part of it, or above the program.
 std::string find_binary() {
   std::error_code failed;
-  const auto program = fs::read_symlink("/proc/self/exe", failed);
+  const auto program = platform::find_executable(failed);
   std::vector<fs::path> starts;
   for (const auto& [name, path] : list_loaded({"_bough."})) starts.push_back(fs::canonical(path, failed));
   starts.push_back(program);
@@ -366,10 +358,11 @@ FmuSummary export_fmu(const std::string& file, const std::string& output, const 
 
   if (!options.units.empty()) demand_labels(options.units, spec.units, {file});
   set_units(model, options.units.empty() ? name_labelled_set(spec.units) : options.units, d);
-  const std::string folder = options.version == 2 ? "binaries/linux64/" : "binaries/x86_64-linux/";
+  const std::string folder =
+      std::string("binaries/") + (options.version == 2 ? platform::kFmi2Platform : platform::kFmi3Platform) + "/";
   std::vector<fmu::ArchiveEntry> entries{
       {"modelDescription.xml", options.version == 2 ? format_fmi2(d) : format_fmi3(d)},
-      {folder + d.identifier + ".so", read_bytes(binary), true}};
+      {folder + d.identifier + platform::kLibrarySuffix, read_bytes(binary), true}};
   for (auto& entry : collect_libraries(folder)) entries.push_back(std::move(entry));
   entries.push_back({std::string("resources/") + fmi::kManifest, manifest});
   for (const auto& resource : resources) entries.push_back({"resources/" + resource.name, resource.bytes});

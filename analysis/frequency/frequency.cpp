@@ -79,6 +79,9 @@ DeckResponseAnswer solve_deck_response(const DeckResponseRequest& request, Event
     demand_grids(request, deck);
     subcases = modal::response::choose_response_subcases(deck, request.model.subcase, request.is_transient);
     if (request.is_transient) note_random(deck, subcases, diagnostics);
+    Diagnostics of_solution;
+    if (request.is_transient && !request.is_linear) check_nonlinear_transient(deck, subcases.size(), of_solution);
+    of_solution.throw_if_errors();
     Diagnostics own;
     random = std::make_unique<modal::response::RandomAnalysis>(
         deck, request.is_transient ? std::vector<records::DynamicSubcase>{} : subcases, own);

@@ -19,6 +19,7 @@ struct DeckResponseRequest {
   ModelChoice model;
   EigenChoice eigen;
   bool is_transient = false;
+  bool is_linear = false;                    ///< of decks of nonlinear transient response, whatever cards they have
   bool is_direct = false, is_modal = false;  ///< whatever SOL is; neither: by SOL
   bool no_residuals = false;                 ///< modes without residual vectors of the loads
   bool has_listing = false;                  ///< print file of the output requests

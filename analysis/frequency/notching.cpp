@@ -8,6 +8,7 @@
 #include <map>
 
 #include "base/diagnostic.hpp"
+#include "base/platform.hpp"
 #include "formats/export/random_text.hpp"
 #include "formats/export/response_text.hpp"
 
@@ -23,7 +24,7 @@ using Eigen::VectorXd;
 
 double read_number(std::string_view word, const std::string& text) {
   double value = 0;
-  const auto [end, code] = std::from_chars(word.data(), word.data() + word.size(), value);
+  const auto [end, code] = platform::read_number(word.data(), word.data() + word.size(), value);
   if (word.empty() || code != std::errc() || end != word.data() + word.size() || !std::isfinite(value))
     fail(fmt::format("cannot read \"{}\": \"{}\" is not a number", text, word),
          "write --limit acceleration:12:3=80, --limit acceleration:12:3=80@20:100 or --notch 20:40=0.5");

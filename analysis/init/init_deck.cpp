@@ -152,7 +152,7 @@ std::vector<StartFile> make_start_files(const records::Deck& deck, const DeckSta
     if (interface.size() >= kMaxInterfaceGrids) interface.clear();
     interface.insert(interface.begin(), grid);
   }
-  std::string frame = "frame = \"free\"           # no constraints of the deck hold the body: free-free modes\n";
+  std::string frame = "frame = \"free\"           # or \"mean\": no constraints of the deck hold the body\n";
   if (is_fixed) frame = "frame = \"fixed\"          # the deck's constraints hold the body frame\n";
   if (grid > 0)
     frame = fmt::format(
@@ -172,7 +172,7 @@ std::vector<StartFile> make_start_files(const records::Deck& deck, const DeckSta
   // with ten of them). The residual vectors do it, and their own fast motion is damped out.
   if (grid > 0)
     modes +=
-        "residual = [\"interface\"]  # what the hinge holds in its other directions\n\n[body.damping]\n"
+        "residual = [\"interface\"]  # loads of the hinge in its constrained directions\n\n[body.damping]\n"
         "ratio = 0.005            # of the modes\nresidual_ratio = 1.0     # of the residual vectors: much faster than "
         "the modes\n";
   // Texts that begin with $ are parameters, and a body's name cannot begin with "./".

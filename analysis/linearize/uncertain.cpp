@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "analysis/linearize/operating_point.hpp"
+#include "base/platform.hpp"
 #include "solver/linear/linearize.hpp"
 #include "solver/statespace/uncertainty.hpp"
 
@@ -16,7 +17,7 @@ namespace {
 
 bool parse_number(const std::string& text, double& value) {
   const auto end = text.data() + text.size();
-  const auto [at, error] = std::from_chars(text.data(), end, value);
+  const auto [at, error] = platform::read_number(text.data(), end, value);
   return error == std::errc() && at == end && std::isfinite(value);
 }
 

@@ -18,6 +18,7 @@
 #include "fe/statics/reactions.hpp"
 #include "fe/statics/static_case.hpp"
 #include "formats/nastran/dynamic_reader.hpp"
+#include "formats/records/group_names.hpp"
 #include "formats/records/params.hpp"
 
 namespace bough::analysis {
@@ -51,11 +52,31 @@ bool asks_for(const records::CaseRequests& requests, const std::string& command)
                      [&](const auto& combination) { return asks(combination.selection); });
 }
 
+namespace {
+
+/// Notes the requests with PUNCH, of which static and modes write no file.
+void note_punch(const records::Deck& deck, const records::CaseRequests& requests, Diagnostics& diagnostics) {
+  std::set<std::string> commands;
+  for (const auto& [id, selection] : requests.selections)
+    for (const auto& [command, request] : selection.outputs)
+      if (request.is_punched && !request.is_none) commands.insert(command + "(PUNCH)");
+  if (commands.empty()) return;
+  std::string list;
+  for (const auto& command : commands) list += (list.empty() ? "" : ", ") + command;
+  diagnostics.note("cli.request-by-option", deck.locate({}),
+                   "the deck requests " + list + ", and no punch file of statics or modes is written",
+                   "--op2 FILE and -o FILE.h5 give these results; frequency and transient have --punch FILE");
+}
+
+}  // namespace
+
 void note_requests(const records::Deck& deck, const records::CaseRequests& requests,
                    const std::vector<std::pair<std::string, std::string>>& options, Diagnostics& diagnostics) {
+  const bool is_first = std::any_of(options.begin(), options.end(), [](const auto& one) { return one.first == "ESE"; });
+  if (is_first) note_punch(deck, requests, diagnostics);
   for (const auto& [command, option] : options) {
     if (!asks_for(requests, command)) continue;
-    diagnostics.note("cli.request-by-option", deck.locate({}), "the deck asks for " + command, option + " gives it");
+    diagnostics.note("cli.request-by-option", deck.locate({}), "the deck requests " + command, option + " gives it");
   }
 }
 
@@ -71,9 +92,10 @@ ListingMaker::ListingMaker(const records::Deck& deck, const records::CaseRequest
     : deck_(deck), requests_(requests), limits_(list_stress_limits(deck)) {
   for (const auto& [id, selection] : requests_.selections) lists_all_ = lists_all_ && selection.outputs.empty();
   if (lists_all_)
-    diagnostics.note("cli.listing-default", deck.locate({}), "the deck asks for no result: the listing has all of them",
+    diagnostics.note("cli.listing-default", deck.locate({}), "the deck requests no result: the listing has all of them",
                      "write DISPLACEMENT = ALL, SPCFORCES = ALL, FORCE = ALL, STRESS = ALL in the case control");
   report_sets(diagnostics);
+  note_punch(deck, requests, diagnostics);
 }
 
 void ListingMaker::report_sets(Diagnostics& diagnostics) const {
@@ -205,8 +227,13 @@ void ListingMaker::add_stresses(const fe::Model& model, const ElementIndex& elem
                                 const std::vector<records::ElementStresses>& stresses,
                                 const std::vector<records::ElementForces>& forces, ListedStep& step,
                                 Diagnostics& diagnostics) {
+  if (!lists_all_ && choose(step.subcase, "STRAIN")) note_unlisted("strains (STRAIN)", diagnostics);
   const auto choice = choose(step.subcase, "STRESS");
   if (!choice) return;
+  for (const auto& of_card : forces)
+    if (records::get_card_of_group(of_card.card).starts_with("CBUSH") && left_out_.insert("CBUSH").second)
+      diagnostics.note("cli.unlisted-elements", deck_.locate({}), "the listing has no stresses of " + of_card.card,
+                       "write FORCE = ALL: they are its forces times the recovery coefficients of PBUSH");
   for (const auto& of_card : stresses) {
     auto block = make_listed_stresses(model, elements, deck_, of_card, forces, limits_,
                                       [&](int id) { return choice->contains(id); });
@@ -299,7 +326,36 @@ void ListingMaker::add_modes(const fe::Model& model, const modal::EigenPairs& pa
     mass.cycles = pairs.lambda.cwiseAbs().cwiseSqrt() / (2 * M_PI);
     listing_.effective_mass.push_back(std::move(mass));
   }
-  const bool has_reactions = choose(subcase, "SPCFORCES").has_value();
+  add_shapes(
+      model, pairs, roots,
+      [&](Index j) -> VectorXd {
+        return fe::calc_stiffness_times(model, pairs.Phi.col(j)) - pairs.lambda(j) * M_Phi.col(j);
+      },
+      diagnostics);
+  listing_.roots.push_back(std::move(roots));
+}
+
+void ListingMaker::add_buckling(const fe::Model& model, const modal::EigenPairs& pairs, int subcase,
+                                Diagnostics& diagnostics) {
+  records::ListedRoots roots{make_step(subcase)};
+  roots.eigenvalue = pairs.lambda;
+  roots.stiffness = pairs.Phi.cwiseProduct(fe::calc_stiffness_times(model, pairs.Phi)).colwise().sum();
+  roots.mass = roots.stiffness.cwiseQuotient(pairs.lambda);
+  if (!lists_all_ && choose(subcase, "SPCFORCES") && left_out_.insert("SPCFORCES").second)
+    diagnostics.note("cli.unlisted-elements", deck_.locate({}),
+                     "the listing has no constraint forces of buckling shapes",
+                     "nothing to do: its forces and stresses are those of the shapes");
+  add_shapes(model, pairs, roots, {}, diagnostics);
+  listing_.roots.push_back(std::move(roots));
+}
+
+void ListingMaker::add_shapes(const fe::Model& model, const modal::EigenPairs& pairs, const records::ListedRoots& roots,
+                              const std::function<VectorXd(Index)>& reactions, Diagnostics& diagnostics) {
+  const int subcase = roots.subcase;
+  ListedStep step;
+  static_cast<records::ListedHeading&>(step) = roots;
+  if (!lists_all_ && choose(subcase, "STRAIN")) note_unlisted("strains (STRAIN)", diagnostics);
+  const bool has_reactions = reactions && choose(subcase, "SPCFORCES").has_value();
   const bool has_forces = choose(subcase, "FORCE").has_value(), has_stresses = choose(subcase, "STRESS").has_value();
   const bool has_energies = !lists_all_ && choose(subcase, "ESE").has_value();
   const auto elements = has_forces || has_stresses ? index_elements(model) : ElementIndex{};
@@ -311,8 +367,7 @@ void ListingMaker::add_modes(const fe::Model& model, const modal::EigenPairs& pa
     mode.cycles = std::sqrt(std::abs(pairs.lambda(j))) / (2 * M_PI);
     add_vector(model, "DISPLACEMENT", ListedKind::Eigenvector, pairs.Phi.col(j), mode);
     if (has_reactions) {
-      const VectorXd residual = fe::calc_stiffness_times(model, pairs.Phi.col(j)) - pairs.lambda(j) * M_Phi.col(j);
-      VectorXd reaction = fe::calc_reactions(model, residual);
+      VectorXd reaction = fe::calc_reactions(model, reactions(j));
       add_vector(model, "SPCFORCES", ListedKind::SpcForce, reaction, mode);
     }
     if (has_forces || has_stresses || has_energies) {
@@ -325,7 +380,6 @@ void ListingMaker::add_modes(const fe::Model& model, const modal::EigenPairs& pa
     }
     listing_.steps.push_back(std::move(mode));
   }
-  listing_.roots.push_back(std::move(roots));
 }
 
 }  // namespace bough::analysis

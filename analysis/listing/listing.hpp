@@ -1,5 +1,6 @@
 #pragma once
 /// \file --f06 and --op2: results in Nastran's order and axes, as the output requests of the case control say.
+#include <functional>
 #include <map>
 #include <optional>
 #include <set>
@@ -40,6 +41,9 @@ class ListingMaker {
   void add_weight(const fe::Model& model);
   /// `pairs` in their order of the record, residual vectors last; masses of modes: φᵀMφ. Collective.
   void add_modes(const fe::Model& model, const modal::EigenPairs& pairs, int num_residual, Diagnostics& diagnostics);
+  /// Adds load factors and shapes of a buckling subcase, with the forces and stresses of its shapes. Generalized
+  /// stiffness φᵀKφ, generalized mass φᵀKφ / λ. Collective.
+  void add_buckling(const fe::Model& model, const modal::EigenPairs& pairs, int subcase, Diagnostics& diagnostics);
   /// Adds the results of a static subcase as its output requests select them: displacements, loads, constraint forces,
   /// elements.
   void add_static(const fe::Model& model, const records::StaticSubcase& solved, Diagnostics& diagnostics);
@@ -76,6 +80,9 @@ class ListingMaker {
   void add_energies(const std::vector<records::ElementForces>& elements, double total, records::ListedStep& step) const;
   void add_grid_forces(const fe::Model& model, const std::vector<records::GridForce>& forces,
                        records::ListedStep& step) const;
+  /// A step of vectors, forces, stresses and energies for each column of `Phi`. `reactions`: of shape j; empty: none.
+  void add_shapes(const fe::Model& model, const modal::EigenPairs& pairs, const records::ListedRoots& roots,
+                  const std::function<Eigen::VectorXd(Eigen::Index)>& reactions, Diagnostics& diagnostics);
   void report_sets(Diagnostics& diagnostics) const;
 
   const records::Deck& deck_;

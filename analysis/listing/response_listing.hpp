@@ -7,8 +7,8 @@
 namespace bough::analysis {
 
 /// Displacements, velocities, accelerations and forces of constraints at the points that were chosen, forces and
-/// stresses of the chosen elements; complex over frequency, magnitude and phase (0 to 360 degrees) where the deck asks
-/// for it; random responses at the points. `model`: any of the subcases'. Reports cli.unlisted-elements.
+/// stresses of the chosen elements; complex over frequency, magnitude and phase (0 to 360 degrees) where the deck
+/// requests for it; random responses at the points. `model`: any of the subcases'. Reports cli.unlisted-elements.
 records::Listing make_response_listing(const records::DeckResponse& response, const records::Deck& deck,
                                        const fe::Model& model, Diagnostics& diagnostics);
 

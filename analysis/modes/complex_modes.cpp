@@ -95,14 +95,15 @@ void refuse_complex_option(bool is_given, const char* option) {
                      "leave the option out, or --ignore CMETHOD for the real modes");
 }
 
-ModesAnswer solve_complex_modes(const ModesRequest& request, const std::vector<int>& subcases, ModesReceiver& receiver,
-                                Events& events) {
+ModesAnswer solve_complex_modes(const ModesRequest& request, ModesReceiver& receiver, Events& events) {
   refuse_complex_option(request.energies, "--ese");
   refuse_complex_option(request.about_grid != 0, "--meffmass");
-  receiver.begin(subcases.size(), true);
   Diagnostics diagnostics;
   auto model_options = make_model_options(request.model);
   const auto deck = read_loads_deck_or_throw(request.deck, model_options, false, diagnostics, true);
+  const auto subcases =
+      request.model.subcase != 0 ? std::vector<int>{request.model.subcase} : modal::complex_modes::list_subcases(deck);
+  receiver.begin(subcases.size(), true);
   const auto sources = calc_sources(deck.files);
   modal::complex_modes::ComplexModesOptions solver;
   solver.is_by_modes = has_modal_complex_modes(deck.sol);
@@ -127,7 +128,8 @@ ModesAnswer solve_complex_modes(const ModesRequest& request, const std::vector<i
       const auto& control = found == deck.subcases.end() ? deck.subcases.front() : *found;
       const auto selection = deck.selections.find(control.id);
       subcase = {control, selection == deck.selections.end() ? records::DynamicSelection{} : selection->second};
-      model_options.prestress = calc_prestress(deck, model_options, own);
+      model_options.prestress =
+          modal::rotors::has_own_stress(deck, subcase) ? nullptr : calc_prestress(deck, model_options, own);
       events.show_progress(fmt::format("subcase {}", id));
       const modal::complex_modes::ComplexModesSolver modes(deck, model_options, subcase, solver, own);
       std::optional<double> speed;

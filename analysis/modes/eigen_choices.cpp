@@ -32,7 +32,7 @@ modal::EigenOptions choose_eigen_options(const EigenChoice& choice, const record
   if (method != 0 && !card)
     diagnostics.warning("cli.no-method", deck.locate(records::find_selection(deck, "METHOD", method)),
                         fmt::format("METHOD = {} names no EIGRL or EIGR card of the deck", method),
-                        "add the card or correct the id; --number, --min-hz and --max-hz go before it");
+                        "add the card or correct the id; --number, --min-hz and --max-hz take precedence");
   eigen.num_modes = 0;
   eigen.check_inertia = !choice.no_check;
   if (!choice.solver.empty()) eigen.solver = modal::find_eps_type(choice.solver);
@@ -60,7 +60,7 @@ void note_method_number(const EigenChoice& choice, const records::Deck& deck, in
   diagnostics.note("cli.method-number", deck.locate(card->at),
                    fmt::format("{} {}: ND = {} bounds the range of --max-hz too; there may be more modes in it",
                                card->is_eigrl ? "EIGRL" : "EIGR", card->sid, card->num_modes),
-                   "--number goes before it");
+                   "--number takes precedence");
 }
 
 bool counts_whatever_range(const records::EigenMethod& card) {

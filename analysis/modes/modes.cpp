@@ -114,7 +114,10 @@ SubcaseModes solve_task(const ModesRequest& request, const records::DynamicDeck&
   if (!task.buckling) pairs = modal::sort_negative(std::move(pairs));
   if (listing) {
     listing->add_weight(model);
-    listing->add_modes(model, pairs, num_residual, diagnostics);
+    if (task.buckling)
+      listing->add_buckling(model, pairs, task.buckling->buckling.id, diagnostics);
+    else
+      listing->add_modes(model, pairs, num_residual, diagnostics);
   }
   modal::ModesExtras extras{request.energies ? &deck : nullptr, request.about_grid};
   if (extras.about_grid == 0 && !is_buckling && selection)
@@ -159,13 +162,10 @@ ModesAnswer solve_modes(const ModesRequest& request, ModesReceiver& receiver, Ev
   std::vector<Task> tasks;
   with_prior_messages(diagnostics, [&] { tasks = choose_tasks(request, deck); });
   if (modal::is_buckling_solution(deck) && !request.eigen.buckling)
-    diagnostics.note("cli.buckling-deck", deck.locate({}), "the deck asks for buckling (SOL " + deck.sol + ")",
+    diagnostics.note("cli.buckling-deck", deck.locate({}), "the deck requests buckling (SOL " + deck.sol + ")",
                      "these are its normal modes; --buckling gives the load factors");
-  if (!request.eigen.buckling && asks_complex_modes(deck, model_options.ignore_cards)) {
-    std::vector<int> subcases;
-    for (const auto& task : tasks) subcases.push_back(task.subcase);
-    return solve_complex_modes(request, subcases, receiver, events);
-  }
+  if (!request.eigen.buckling && asks_complex_modes(deck, model_options.ignore_cards))
+    return solve_complex_modes(request, receiver, events);
   note_solution(deck, diagnostics);
   receiver.begin(tasks.size(), false);
   ModesAnswer answer{SubcaseFailures(tasks.size(), deck.subcases.size()), {}, {}};

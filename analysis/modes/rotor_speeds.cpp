@@ -85,7 +85,9 @@ std::optional<Root> find_root(const ComplexModesSolver& solver, const Bracket& b
 
 class Sweep {
  public:
-  Sweep(const ComplexModesSolver& solver, Events& events) : solver_(solver), events_(events) {}
+  /// \param has_critical  critical speeds are found: not in the rotating frame, whose frequencies are others.
+  Sweep(const ComplexModesSolver& solver, bool has_critical, Events& events)
+      : solver_(solver), has_critical_(has_critical), events_(events) {}
 
   void solve(const std::vector<double>& speeds) {
     for (std::size_t k = 0; k < speeds.size(); ++k) {
@@ -170,7 +172,7 @@ class Sweep {
       };
       const auto excess = [](double speed, std::complex<double> l) { return l.imag() - std::abs(speed); };
       const double excess_low = excess(low, before), excess_high = excess(high, lambda);
-      if ((excess_low > 0 && excess_high <= 0) || (excess_low < 0 && excess_high >= 0))
+      if (has_critical_ && ((excess_low > 0 && excess_high <= 0) || (excess_low < 0 && excess_high >= 0)))
         if (const auto root = find(excess); root && is_resonant(root->lambda)) critical_.push_back(root->point);
       const double noise = kDampingRoundoff * std::abs(lambda);
       const bool is_onset = before.real() < -noise && lambda.real() > noise,
@@ -188,6 +190,7 @@ class Sweep {
   }
 
   const ComplexModesSolver& solver_;
+  const bool has_critical_;
   Events& events_;
   int num_modes_ = 0;
   std::vector<Branch> branches_;
@@ -210,7 +213,7 @@ RotorSpeeds calc_rotor_speeds(const ComplexModesSolver& solver, const std::strin
     result.rotors.push_back({rotor.id, static_cast<int>(rotor.nodes.size()), static_cast<int>(rotor.elements.size()),
                              rotor.mass, rotor.polar_inertia});
   if (rotors.is_synchronous) return result;
-  Sweep sweep(solver, events);
+  Sweep sweep(solver, !rotors.is_rotating, events);
   sweep.solve(rotors.speeds);
   sweep.fill(rotors.speeds, result);
   if (sweep.num_lost() > 0)

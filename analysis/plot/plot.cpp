@@ -137,7 +137,7 @@ void check_choices(const PlotRequest& request) {
     throw InputError("cli.bad-range", {}, fmt::format("the window {:g} is empty", fmt::join(c.window, " to ")),
                      "give --window T0,T1 with T1 above T0");
   if (c.difference && request.files.size() < 2)
-    throw InputError("cli.nothing-to-plot", {}, "--difference takes two files", "name the run to take off first");
+    throw InputError("cli.nothing-to-plot", {}, "--difference takes two files", "name the run to subtract first");
 }
 
 /// Rejects options for curves that a file of this kind does not have.

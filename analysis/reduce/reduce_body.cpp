@@ -25,7 +25,7 @@ namespace fs = std::filesystem;
 namespace {
 
 /// RESVEC of the deck, as `modes` has it: loads of the subcase, unit forces of USETi and RVDOFi. Only for a deck on the
-/// command line, a body file says itself what is in the body. Empty if the deck does not ask for them.
+/// command line, a body file specifies the contents of the body. Empty if the deck does not request them.
 std::optional<records::DynamicDeck> read_residuals(const records::BodySpec& spec, const fe::ModelOptions& model_options,
                                                    const records::Deck& deck, records::DynamicSelection& selection,
                                                    Diagnostics& diagnostics) {

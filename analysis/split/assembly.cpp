@@ -118,6 +118,28 @@ void check_independent(const Structure& structure, const Joint& joint, const std
           "move the cut by an element");
 }
 
+/// Reports parts whose grids are all in the joint: its RBE2 leaves them no deformation.
+void check_extent(const Structure& structure, const Partition& partition, const Joint& joint,
+                  Diagnostics& diagnostics) {
+  std::map<int, std::size_t> num_grids, num_cut;
+  for (const auto& [grid, parts] : partition.grid_parts)
+    for (const int part : parts) ++num_grids[part];
+  for (const int grid : joint.grids)
+    for (const int part : partition.grid_parts.at(grid)) ++num_cut[part];
+  for (const auto& [part, number] : num_cut) {
+    if (number < num_grids[part]) continue;
+    std::vector<std::size_t> own;
+    for (std::size_t i = 0; i < structure.elements.size(); ++i)
+      if (partition.element_part[i] == part) own.push_back(i);
+    const auto& first = structure.elements[own.front()];
+    diagnostics.error(
+        "split.part-on-cut", structure.locate(first.at),
+        fmt::format("the part of {}{} lies on its cut: a rigid element joins all of its {} grids", name_item(first),
+                    own.size() > 1 ? fmt::format(" and {} more elements", own.size() - 1) : "", number),
+        "leave these elements in the part along which they run, or add elements off the cut to them");
+  }
+}
+
 /// "RBE2 5" by dependent grid.
 std::map<int, std::string> name_dependent(const Structure& structure) {
   std::map<int, std::string> names;
@@ -197,7 +219,9 @@ std::vector<Joint> find_joints(const Structure& structure, const Partition& part
       throw InputError("split.bad-choice", structure.locate({}),
                        "--interface average needs a deck whose grids do not all hold a component",
                        "use --interface rigid");
-    if (joint.is_new && !joint.is_average) check_independent(structure, joint, dependent, diagnostics);
+    if (!joint.is_new || joint.is_average) continue;
+    check_independent(structure, joint, dependent, diagnostics);
+    check_extent(structure, partition, joint, diagnostics);
   }
   diagnostics.throw_if_errors();
   return joints;

@@ -16,7 +16,8 @@ const std::vector<ElementRole>& get_roles(bool is_rigid) {
 }
 
 DeckItem make_item(const records::ElementView& view) {
-  DeckItem item{view.id, view.property, view.card, view.grids, view.is_grounded, false, view.has_moments, view.at};
+  DeckItem item{view.id, view.property,    view.card, view.grids, view.is_grounded,
+                false,   view.has_moments, view.at,   view.centre};
   std::sort(item.grids.begin(), item.grids.end());
   item.grids.erase(std::unique(item.grids.begin(), item.grids.end()), item.grids.end());
   std::erase(item.grids, 0);

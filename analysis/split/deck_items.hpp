@@ -17,6 +17,7 @@ struct DeckItem {
   bool is_drawn = false;     ///< PLOTEL
   bool has_moments = false;  ///< transfers moments at its grids
   records::CardLocation at;
+  int centre = 0;  ///< reference grid of an RBE3; hub of other rigid elements
 };
 
 // The kinds are rows of formats/records/element_cards.cpp.

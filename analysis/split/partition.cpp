@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "analysis/split/path.hpp"
+#include "base/platform.hpp"
 
 namespace bough::analysis::splitting {
 
@@ -40,7 +41,7 @@ class Groups {
 
 bool parse_number(std::string_view text, double& value) {
   const auto end = text.data() + text.size();
-  const auto result = std::from_chars(text.data() + (text.starts_with('+') ? 1 : 0), end, value);
+  const auto result = platform::read_number(text.data() + (text.starts_with('+') ? 1 : 0), end, value);
   return !text.empty() && result.ec == std::errc() && result.ptr == end && std::isfinite(value);
 }
 
@@ -142,7 +143,7 @@ ElementWord parse_element_word(const std::string& word) {
   const auto read_id = [&](std::string_view text) {
     int id = 0;
     const auto end = text.data() + text.size();
-    if (text.empty() || std::from_chars(text.data(), end, id).ptr != end || id <= 0) throw fail();
+    if (text.empty() || platform::read_number(text.data(), end, id).ptr != end || id <= 0) throw fail();
     return id;
   };
   std::string upper = word;
@@ -317,9 +318,27 @@ int number_keys(std::vector<int>& keys) {
   return static_cast<int>(number.size());
 }
 
-/// Elements of one key that are connected get one number; returns the number of them.
-int separate_pieces(const Structure& structure, std::vector<int>& keys) {
+/// Joins the pieces at the grids of an RBE3 if they are two at most: its equations move the reference grid as the mean
+/// of the others, so that one piece carries the other. Pieces at held grids are one, which the ground joins.
+/// \return false for more pieces
+bool join_by_mean(const DeckItem& rbe3, const std::set<int>& held, Groups& group) {
+  std::set<int> held_roots, pieces;
+  for (const int grid : held) held_roots.insert(group.find(grid));
+  for (const int grid : rbe3.grids) {
+    const int root = group.find(grid);
+    pieces.insert(held_roots.count(root) > 0 ? 0 : root);
+  }
+  if (pieces.size() > 2) return false;
+  group.join(rbe3.grids);
+  return true;
+}
+
+/// Elements of one key that are connected get one number; returns the number of them. `joins_pieces`: as that of
+/// Partition.
+int separate_pieces(const Structure& structure, std::vector<int>& keys, std::vector<char>& joins_pieces) {
   std::map<int, Groups> groups;
+  std::map<int, std::vector<std::size_t>> means;  // key: RBE3 by index
+  joins_pieces.assign(structure.rigid.size(), 0);
   std::map<int, std::set<int>> keys_at;
   for (std::size_t i = 0; i < keys.size(); ++i) {
     if (keys[i] < 0) continue;
@@ -327,14 +346,32 @@ int separate_pieces(const Structure& structure, std::vector<int>& keys) {
     for (const int grid : structure.elements[i].grids) keys_at[grid].insert(keys[i]);
   }
   // A rigid element connects the pieces of the part that has all of its grids.
-  for (const auto& rigid : structure.rigid)
+  for (std::size_t i = 0; i < structure.rigid.size(); ++i) {
+    const auto& rigid = structure.rigid[i];
     for (auto& [key, group] : groups) {
       const auto is_of_part = [&, &k = key](int grid) {
         const auto found = keys_at.find(grid);
         return found == keys_at.end() || found->second.count(k) > 0;
       };
-      if (std::all_of(rigid.grids.begin(), rigid.grids.end(), is_of_part)) group.join(rigid.grids);
+      if (!std::all_of(rigid.grids.begin(), rigid.grids.end(), is_of_part)) continue;
+      if (rigid.card == "RBE3")
+        means[key].push_back(i);
+      else
+        group.join(rigid.grids);
     }
+  }
+  for (auto& [key, left] : means) {
+    std::set<int> held;
+    for (const auto& [grid, mask] : structure.held)
+      if (const auto found = keys_at.find(grid); found != keys_at.end() && found->second.count(key) > 0)
+        held.insert(grid);
+    const auto is_joined = [&, &group = groups[key]](std::size_t i) {
+      return join_by_mean(structure.rigid[i], held, group);
+    };
+    while (std::erase_if(left, is_joined) > 0) {  // two pieces that one joins are one for the others
+    }
+    for (const std::size_t i : left) joins_pieces[i] = 1;
+  }
   std::map<std::pair<int, int>, int> number;
   for (std::size_t i = 0; i < keys.size(); ++i) {
     if (keys[i] < 0) continue;
@@ -372,6 +409,21 @@ int merge_small(const Structure& structure, int num_pieces, double min_elements,
   return num_merged;
 }
 
+/// Names one grid in each part that the RBE3 joins.
+void report_pieces(const Structure& structure, const DeckItem& rbe3, const std::map<int, std::set<int>>& parts_of,
+                   Diagnostics& diagnostics) {
+  std::set<std::set<int>> parts;
+  std::vector<int> grids;
+  for (const int grid : rbe3.grids)
+    if (const auto found = parts_of.find(grid); found != parts_of.end() && parts.insert(found->second).second)
+      grids.push_back(grid);
+  diagnostics.error("split.rbe3-pieces", structure.locate(rbe3.at),
+                    fmt::format("{} alone joins the pieces of a part, at grids {}: its equations give a mean motion, "
+                                "which holds no piece against the others",
+                                name_item(rbe3), fmt::join(grids, ", ")),
+                    "join the pieces by elements or an RBE2, or cut where elements or the ground join them");
+}
+
 }  // namespace
 
 Partition assign_elements(const Structure& structure, const SplitChoice& choice) {
@@ -381,17 +433,20 @@ Partition assign_elements(const Structure& structure, const SplitChoice& choice)
     throw InputError("split.bad-choice", {},
                      num_choices == 0 ? "nothing tells where to cut the deck" : "two ways to cut the deck are given",
                      "give one of --parts, --plane, --elements and --grids");
+  if (choice.num_parts == 1)
+    throw InputError("split.bad-choice", {}, "--parts is 1, which cuts nothing",
+                     "give --parts 2 or more, or make one body of the deck by bough reduce");
   Keys keys = choice.num_parts > 0       ? cut_along(structure, choice)
               : !choice.planes.empty()   ? cut_by_planes(structure, choice.planes)
               : !choice.elements.empty() ? cut_by_elements(structure, choice.elements)
                                          : cut_at_grids(structure, choice.grids);
   Partition partition;
   const int num_chosen = number_keys(keys.key);
-  if (num_chosen < 2 && choice.num_parts != 1)
+  if (num_chosen < 2)
     throw InputError("split.nothing-separated", structure.locate({}),
                      "the cut separates nothing: all elements are in one part",
                      "name some of the elements, or leave some to the other part");
-  int num_pieces = separate_pieces(structure, keys.key);
+  int num_pieces = separate_pieces(structure, keys.key, partition.joins_pieces);
   if (keys.merges_small) {
     const auto num_elements = std::count_if(keys.key.begin(), keys.key.end(), [](int key) { return key >= 0; });
     partition.num_merged =
@@ -451,6 +506,11 @@ void assign_attached(const Structure& structure, Partition& partition) {
       }
       if (!has_any) continue;
       is_changed = true;
+      if (common.empty() && partition.joins_pieces[i] != 0) {
+        report_pieces(structure, rigid, of_elements, diagnostics);
+        partition.rigid_part[i] = 0;
+        continue;
+      }
       if (common.empty()) {
         diagnostics.error("split.rigid-across-cut", structure.locate(rigid.at),
                           fmt::format("{} joins grids of several parts: the cut goes through it", name_item(rigid)),

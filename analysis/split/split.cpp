@@ -330,12 +330,14 @@ void warn_of_error(const Reduction& reduction, const Structure& structure, const
                    const fe::Model& model, Diagnostics& diagnostics) {
   const double error = reduction.calc_error();
   if (!(error > kMaxSplitError)) return;
-  const bool has_rigid =
-      std::any_of(assembly.joints.begin(), assembly.joints.end(), [](const auto& joint) { return joint.is_new; });
+  const bool has_wide = has_rigid_joint(assembly);
+  const bool is_average =
+      std::any_of(assembly.joints.begin(), assembly.joints.end(), [](const auto& joint) { return joint.is_average; });
   const auto spring = find_grounding_spring(model);
   const std::string cause =
       !spring.empty() ? "; " + spring + " strains in rigid-body motion: a part that moves is held against the ground"
-      : has_rigid     ? "; cuts along several grids join these by a rigid element"
+      : is_average    ? "; cuts along several grids join these by their mean motion (RBE3)"
+      : has_wide      ? "; cuts along several grids join these by a rigid element (RBE2)"
                       : "";
   diagnostics.warning(
       "split.inaccurate", structure.locate({}),
@@ -344,8 +346,8 @@ void warn_of_error(const Reduction& reduction, const Structure& structure, const
                   error, kMaxSplitError, cause),
       !spring.empty()
           ? "give the spring grids at one place with equal displacement axes, or replace it by a CBUSH or CROD"
-      : has_rigid
-          ? "cut where the section is stiff, or try the other --interface"
+      : has_wide
+          ? fmt::format("cut where the section is stiff, or try --interface {}", is_average ? "rigid" : "average")
           : "raise max_frequency of the body files, refine the mesh, or give the grids of the cuts inertia about "
             "all axes by small CONM2 cards, or by PARAM,COUPMASS,1 in a deck without it");
 }

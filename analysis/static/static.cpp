@@ -156,7 +156,7 @@ StaticAnswer solve_static(const StaticRequest& request, StaticReceiver& receiver
     if (one.failure) std::rethrow_exception(one.failure);
     if (listing) {
       listing->add_weight(solver.model());
-      listing->add_static(solver.model(), *one.result, one.said);
+      listing->add_static(solver.model(), *one.result, one.diagnostics);
     }
     if (lists_forces) keep_grid_forces(request.grid_forces, *one.result);
   };
@@ -170,7 +170,7 @@ StaticAnswer solve_static(const StaticRequest& request, StaticReceiver& receiver
       } catch (const Failure& failure) {
         answer.failures.add(id, failure);
       }
-      add_new(one.said, diagnostics);
+      add_new(one.diagnostics, diagnostics);
     }
     if (solved.empty()) continue;
     if (is_empty) receiver.set_model(solver.model());

@@ -213,7 +213,7 @@ void add(const analysis::FlexBodyCheck& check, std::string& text, nlohmann::json
                   num_modes ? check.frequency_hz[num_modes - 1] : 0.0, check.num_nodes, check.num_interface_nodes);
   text += fmt::format("geometric stiffness: {} of 12 inertial loads, {} locators; asymmetry {:.1e}\n",
                       check.num_kg_inertial, check.num_locators, check.kg_asymmetry);
-  if (!check.large.empty()) text += fmt::format("third order: {} large\n", count(check.large.size(), "mode"));
+  if (!check.large.empty()) text += fmt::format("third order: {} large\n", count(check.large.size(), "amplitude"));
   if (check.reach) {
     const auto& reach = *check.reach;
     text += fmt::format(

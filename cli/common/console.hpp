@@ -74,8 +74,8 @@ class Console {
 /// Everything printed so far goes out: ComputationError("cli.write") when it does not, or did not before.
 void flush_data();
 
-/// The first `most` messages of each id, severity and file, in their order; one line where the next would stand says
-/// how many follow.
+/// The first `max_shown` messages of each id, severity and file, in their order; one line where the next would stand
+/// says how many follow.
 std::vector<Diagnostic> shorten(const std::vector<Diagnostic>& items, std::size_t max_shown = 10);
 
 /// Prints the diagnostics of a Failure and gives the exit code.

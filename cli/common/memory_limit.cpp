@@ -13,6 +13,7 @@
 
 #include "base/diagnostic.hpp"
 #include "base/part_file.hpp"
+#include "base/platform.hpp"
 #include "cli/common/console.hpp"
 
 namespace bough::cli {
@@ -59,7 +60,7 @@ void catch_crashes() {
 void prepare_for_memory_limit(char** arguments) {
   if (!is_limited() || std::getenv(kThreads) != nullptr) return;
   setenv(kThreads, "1", 1);
-  execv("/proc/self/exe", arguments);  // where that fails, the threads stay
+  execv(platform::get_executable().c_str(), arguments);  // where that fails, the threads stay
 }
 
 void set_work_space_aside() {

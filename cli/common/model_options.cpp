@@ -16,7 +16,7 @@ void add_model_options(CLI::App& verb, analysis::ModelChoice& choice) {
 }
 
 void add_listing_options(CLI::App& verb, analysis::ListingFiles& files) {
-  verb.add_option("--f06", files.f06, "Write a listing in Nastran's order, as the output requests of the deck say");
+  verb.add_option("--f06", files.f06, "Write a listing in Nastran's order, by the output requests of the deck");
   verb.add_option("--op2", files.op2, "Write the same as a Nastran OUTPUT2 file");
 }
 

@@ -1,6 +1,5 @@
 #include "cli/common/user_code.hpp"
 
-#include <sys/syscall.h>
 #include <unistd.h>
 
 #include <charconv>
@@ -10,6 +9,7 @@
 
 #include "base/foreign_call.hpp"
 #include "base/part_file.hpp"
+#include "base/platform.hpp"
 #include "cli/common/console.hpp"
 
 namespace bough::cli {
@@ -108,8 +108,6 @@ void end_if_in_user_code(const char* call) noexcept {
                      "control.library-exited");
 }
 
-void leave_at_once(int code) noexcept {
-  while (true) ::syscall(SYS_exit_group, code);
-}
+void leave_at_once(int code) noexcept { platform::end_process(code); }
 
 }  // namespace bough::cli

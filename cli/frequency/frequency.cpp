@@ -97,6 +97,10 @@ void add_response_verb(CLI::App& app, Action& action, bool is_over_time, const c
   verb->add_flag("--full", o->full, "Every curve in the table, their samples in --json");
   verb->add_option("--csv", o->csv, "Write the curves to this file of comma-separated values");
   verb->add_option("--punch", o->punch, "Write the curves to this Nastran punch file");
+  if (is_over_time)
+    verb->add_flag("--linear", o->request.is_linear,
+                   "Solve decks of nonlinear transient response (SOL 129, 99, 159) linearly, whatever cards of "
+                   "nonlinear materials, contact and large displacements they have, each subcase from rest");
   if (!is_over_time) {
     verb->add_option("--limit", o->limits,
                      "Notch the input: NAME=VALUE or NAME=VALUE@MIN:MAX (Hz), the largest magnitude of an output, as "

@@ -7,7 +7,7 @@
 
 namespace bough::cli {
 
-/// Frequencies or times, coordinates, and the largest values of each quantity: at most `most` curves of each, the
+/// Frequencies or times, coordinates, and the largest values of each quantity: at most `max_curves` of each, the
 /// largest first.
 std::string format_response(const records::ResponseSubcase& subcase, bool is_over_time, std::size_t max_curves);
 /// Peaks of every curve; with `full` their samples too.

@@ -6,6 +6,8 @@
 #include <sstream>
 #include <string_view>
 
+#include "base/platform.hpp"
+
 namespace bough::cli {
 
 namespace fs = std::filesystem;
@@ -16,7 +18,7 @@ namespace {
 /// and build folders do not count: they move and vanish, and the line would stay.
 fs::path find_schemas() {
   std::error_code failed;
-  const auto program = fs::read_symlink("/proc/self/exe", failed).parent_path();
+  const auto program = platform::find_executable(failed).parent_path();
   std::vector<fs::path> places{program / "../share"};
   const char* const given = std::getenv("XDG_DATA_DIRS");
   std::istringstream list(given != nullptr && *given != '\0' ? given : "/usr/local/share:/usr/share");

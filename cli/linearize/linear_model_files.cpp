@@ -44,7 +44,7 @@ std::string format_hankel(const records::Hankel& hankel) {
   if (shown < hankel.value.size()) text += fmt::format(" ... ({})", hankel.value.size());
   text += "\n";
   if (hankel.num_left_out > 0)
-    text += fmt::format("of what decays; left out: {} that {}\n",
+    text += fmt::format("of the stable part; left out: {} that {}\n",
                         count(static_cast<std::size_t>(hankel.num_left_out), "pole"),
                         hankel.num_left_out == 1 ? "does not" : "do not");
   return text;

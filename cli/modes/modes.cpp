@@ -201,7 +201,6 @@ void add_modes(CLI::App& app, Action& action) {
   verb->add_option("--compare", o->compare, "Modes file or flexible body: the modes side by side with it, with MAC");
   verb->add_option("--vtu", o->vtu, "Write the mode shapes to this file for ParaView");
   add_listing_options(*verb, o->listing);
-  verb->get_option("--f06")->excludes(buckling);
   verb->get_option("--op2")->excludes(buckling);
   add_model_options(*verb, o->request.model);
   add_common_options(*verb, *o, kOutput | kJson, "Write the modes to this HDF5 file");

@@ -258,9 +258,11 @@ std::string name_table(const std::vector<toml_files::TableItem>& items, int line
   return found == items.end() ? "" : found->path();
 }
 
-/// Block diagram and curves of the functions of a system file's text, each with its line.
+/// Block diagram and curves of the functions of a system file's text, each with its line; of the text after `commands`
+/// of `bough edit`, if there are some.
 json answer_diagram(const json& request) {
-  const auto name = get_file(request), text = get_text(request, "text");
+  const auto name = get_file(request);
+  const auto text = get_text(request.contains("commands") ? answer_edit(request) : request, "text");
   Diagnostics diagnostics;
   // Not built: a system whose controller has lost its input is drawn too.
   const auto spec = toml_files::read_system_spec_text(text, name, diagnostics);
@@ -297,13 +299,14 @@ json answer_diagram(const json& request) {
                          {"line", find_line("function", curve.name)},
                          {"x", std::vector<double>(curve.x.begin(), curve.x.end())},
                          {"y", std::vector<double>(curve.y.begin(), curve.y.end())}});
-    const auto path = name_table(items, find_line("function", curve.name));
-    if (curve.type != "table" || path.empty()) continue;
-    // The points as the text has them: their curve is edited by the page.
-    functions.back()["points"] = {{"path", path},
-                                  {"x", toml_files::get_value_text(text, path + ".x")},
-                                  {"y", toml_files::get_value_text(text, path + ".y")},
-                                  {"interpolation", toml_files::get_value_text(text, path + ".interpolation")}};
+    // Numbers and lists as the text has them: the page changes them in the curve.
+    const auto item = std::find_if(items.begin(), items.end(),
+                                   [&](const auto& i) { return i.kind == "function" && i.name == curve.name; });
+    if (item == items.end()) continue;
+    auto values = json::object();
+    for (const auto& key : item->keys) values[key] = toml_files::get_value_text(text, item->path() + "." + key);
+    functions.back()["path"] = item->path();
+    functions.back()["values"] = values;
   }
   return {{"nodes", nodes}, {"edges", edges}, {"functions", functions}};
 }

@@ -16,8 +16,7 @@
 #include <utility>
 
 #include "base/diagnostic.hpp"
-
-extern char** environ;
+#include "base/platform.hpp"
 
 namespace bough::cli {
 
@@ -34,7 +33,7 @@ using Clock = std::chrono::steady_clock;
 class Pipe {
  public:
   Pipe() {
-    if (pipe2(ends_, O_CLOEXEC) != 0) fail("no pipe for a process", errno);
+    if (!platform::open_pipe(ends_)) fail("no pipe for a process", errno);
   }
   ~Pipe() {
     close_end(0);
@@ -66,7 +65,7 @@ pid_t spawn(const std::vector<std::string>& words, const std::string& folder, in
     posix_spawn_file_actions_addopen(&actions, 2, "/dev/null", O_WRONLY, 0);
   else
     posix_spawn_file_actions_adddup2(&actions, err, 2);
-  posix_spawn_file_actions_addclosefrom_np(&actions, 3);
+  const short closing = platform::close_other_descriptors(actions);
   posix_spawnattr_t attributes;
   posix_spawnattr_init(&attributes);
   sigset_t defaults;
@@ -74,21 +73,22 @@ pid_t spawn(const std::vector<std::string>& words, const std::string& folder, in
   for (const int signal : {SIGPIPE, SIGINT, SIGTERM, SIGHUP}) sigaddset(&defaults, signal);
   posix_spawnattr_setsigdefault(&attributes, &defaults);
   posix_spawnattr_setpgroup(&attributes, 0);
-  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETPGROUP);
+  posix_spawnattr_setflags(&attributes, static_cast<short>(POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETPGROUP | closing));
   std::vector<std::string> arguments{"bough"};
   arguments.insert(arguments.end(), words.begin(), words.end());
   std::vector<char*> argv;
   for (auto& word : arguments) argv.push_back(word.data());
   argv.push_back(nullptr);
   std::vector<std::string> values;
-  for (char** entry = environ; *entry != nullptr; ++entry)
+  for (char** entry = platform::get_environment(); *entry != nullptr; ++entry)
     if (std::strncmp(*entry, "BOUGH_FOLDER=", 13) != 0) values.emplace_back(*entry);
   values.push_back("BOUGH_FOLDER=" + folder);
   std::vector<char*> envp;
   for (auto& value : values) envp.push_back(value.data());
   envp.push_back(nullptr);
   pid_t pid = 0;
-  const int error = posix_spawn(&pid, "/proc/self/exe", &actions, &attributes, argv.data(), envp.data());
+  const int error =
+      posix_spawn(&pid, platform::get_executable().c_str(), &actions, &attributes, argv.data(), envp.data());
   posix_spawn_file_actions_destroy(&actions);
   posix_spawnattr_destroy(&attributes);
   if (error != 0) fail("no process for a command", error);

@@ -31,7 +31,7 @@ constexpr std::size_t kMaxJobs = 8;  ///< that go on at the same time
 
 std::string make_token() {
   unsigned char bytes[16];
-  if (getrandom(bytes, sizeof bytes, 0) != static_cast<ssize_t>(sizeof bytes))
+  if (getentropy(bytes, sizeof bytes) != 0)
     throw ComputationError("studio.no-process", {}, "the system gives no random numbers", "try again");
   std::string token;
   for (const unsigned char byte : bytes) {

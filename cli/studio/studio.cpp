@@ -1,3 +1,4 @@
+#include "base/platform.hpp"
 #include "cli/verbs.hpp"
 
 #include <spawn.h>
@@ -20,8 +21,6 @@
 #include "cli/common/options.hpp"
 #include "cli/studio/answers.hpp"
 #include "cli/studio/server.hpp"
-
-extern char** environ;
 
 namespace bough::cli {
 
@@ -47,7 +46,7 @@ void open_browser(const std::string& address) {
   std::string program = "xdg-open", argument = address;
   char* words[] = {program.data(), argument.data(), nullptr};
   pid_t pid = 0;
-  if (posix_spawnp(&pid, "xdg-open", nullptr, nullptr, words, environ) != 0) return;
+  if (posix_spawnp(&pid, "xdg-open", nullptr, nullptr, words, platform::get_environment()) != 0) return;
   std::thread([pid] {
     int status = 0;
     waitpid(pid, &status, 0);

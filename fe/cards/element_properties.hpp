@@ -1,5 +1,5 @@
 #pragma once
-/// \file Which property an element has.
+/// \file Property card of each element.
 #include <unordered_map>
 
 #include "formats/records/deck.hpp"

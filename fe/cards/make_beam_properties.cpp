@@ -121,7 +121,7 @@ std::shared_ptr<BeamProperty> BeamProperties::make(const records::Pbarl& card) {
   property->stations = {s};
   property->points_a = property->points_b = section->points;
   property->material = make_isotropic(*material);
-  // As for a PBAR, I12 rules the shear factors out. The bar's axis is its centroid: n stays zero.
+  // Shear factors are ruled out by I12, as for a PBAR. The bar's axis is its centroid: n stays zero.
   property->k1 = s.I12 == 0 ? section->k1 : 0;
   property->k2 = s.I12 == 0 ? section->k2 : 0;
   return check(*property, who, card.at) ? property : nullptr;

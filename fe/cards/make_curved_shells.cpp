@@ -73,9 +73,9 @@ void unite_normals(Maker& maker, std::vector<ReadyShell>& shells) {
     Vector3d& total = sum.try_emplace(node, Vector3d::Zero()).first->second;
     total += total.dot(normal) < 0 ? Vector3d(-normal) : normal;
   });
-  const double least = std::cos(limit * std::numbers::pi / 180);
+  const double min_cosine = std::cos(limit * std::numbers::pi / 180);
   for_each([&](int node, const Vector3d& normal) {
-    if (std::abs(sum[node].normalized().dot(normal)) < least) broken.insert(node);
+    if (std::abs(sum[node].normalized().dot(normal)) < min_cosine) broken.insert(node);
   });
   for_each([&](int node, Vector3d& normal) {
     if (broken.count(node) > 0) return;

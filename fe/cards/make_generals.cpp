@@ -48,7 +48,7 @@ std::optional<std::vector<Component>> find_components(Maker& maker, const std::v
   return found;
 }
 
-/// What a rigid-body motion about the origin does to each component (m x 6); scalar points do not move.
+/// Displacements of each component in the rigid-body motions about the origin (m x 6); scalar points do not move.
 MatrixXd calc_rigid_rows(const Maker& maker, const std::vector<Component>& components) {
   MatrixXd rows = MatrixXd::Zero(static_cast<Eigen::Index>(components.size()), 6);
   for (std::size_t i = 0; i < components.size(); ++i) {

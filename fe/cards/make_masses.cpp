@@ -23,13 +23,13 @@ void make_conm1(Maker& maker, const Conm1& card) {
                                     " is not the mass of a rigid body (one mass in all directions, coupled to "
                                     "rotations by m s): what spin does to it is an approximation",
                                 "give a CONM2, or accept the approximation");
-  // By the roots of its diagonal, so that masses and inertias are of one size.
+  // Scaled by the square roots of its diagonal, so that masses and inertias are of one size.
   const Eigen::Matrix<double, 6, 1> root =
       card.m.diagonal().cwiseAbs().cwiseSqrt().unaryExpr([](double r) { return r > 0 ? r : 1.0; });
   const Eigen::Matrix<double, 6, 6> scaled =
       root.cwiseInverse().asDiagonal() * card.m * root.cwiseInverse().asDiagonal();
-  const double least = Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>>(scaled).eigenvalues()[0];
-  if (least < -1e-9)
+  const double min_eigenvalue = Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>>(scaled).eigenvalues()[0];
+  if (min_eigenvalue < -1e-9)
     maker.diagnostics().warning("fe.indefinite-mass", maker.deck().locate(card.at),
                                 who + " has negative energy in some motion of its grid, which no mass has",
                                 "give the diagonal terms too; no M_ij is larger than the root of M_ii M_jj");

@@ -58,7 +58,7 @@ RodProperty make_tube(const records::Mat1& material, const records::Ptube& tube)
     per_A += g.weight / area(od);
     per_J += g.weight / polar(od);
   }
-  const double least = std::min(tube.od, od2);
+  const double min_diameter = std::min(tube.od, od2);
   return {material.E / per_A,
           material.G / per_J,
           material.rho * area(tube.od) + tube.nsm,
@@ -66,8 +66,8 @@ RodProperty make_tube(const records::Mat1& material, const records::Ptube& tube)
           material.alpha,
           material.tref,
           material.ge,
-          area(least),
-          least / 2 / polar(least),
+          area(min_diameter),
+          min_diameter / 2 / polar(min_diameter),
           material.E,
           material.G};
 }

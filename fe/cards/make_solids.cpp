@@ -34,7 +34,7 @@ std::shared_ptr<const SolidExpansion> share_expansion(const SolidExpansion& expa
   return expansion.alpha.isZero(0) ? nullptr : std::make_shared<const SolidExpansion>(expansion);
 }
 
-/// The law and density a PSOLID names, made once; empty after reporting.
+/// Elasticity and density of the material that a PSOLID names, made once; empty after reporting.
 class MaterialMaker {
  public:
   explicit MaterialMaker(Maker& maker) : maker_(maker), mat9_(maker.deck().mat9) {}
@@ -85,11 +85,11 @@ class MaterialMaker {
 /// points; without, TWO or THREE and FULL together are the plain element. Other combinations are the default, which is
 /// said once a property: FULL alone (as in Nastran), and reduced shear without bubbles (Nastran's own).
 SolidScheme choose_scheme(Maker& maker, const records::Psolid& property, const records::SolidElement& card,
-                          std::set<int>& said) {
+                          std::set<int>& reported) {
   if (!card.midsides.empty()) return {property.points, true};
   if (card.corners.size() == 4 || (!property.is_full && property.points == 0)) return {};
   if (property.is_full && property.points > 0) return {property.points, true};
-  if (said.insert(property.id).second)
+  if (reported.insert(property.id).second)
     maker.diagnostics().note(
         "fe.solid-scheme", maker.deck().locate(property.at),
         "PSOLID " + std::to_string(property.id) +
@@ -116,7 +116,7 @@ void make_solids(Maker& maker) {
   const RecordIndex<records::Psolid> psolid(deck.psolid);
   MaterialMaker materials(maker);
   std::map<int, std::shared_ptr<const SolidExpansion>> expansions;  // by PSOLID
-  std::set<int> said, bad_axes;
+  std::set<int> reported, bad_axes;
   LeftHanded turned;
   for (const auto& card : deck.solids) {
     const std::string who = card.card + " " + std::to_string(card.id);
@@ -144,7 +144,7 @@ void make_solids(Maker& maker) {
       geometry.x.push_back(maker.nodes().node(n).x);
       centre += geometry.x.back() / static_cast<double>(nodes.size());
     }
-    geometry.scheme = choose_scheme(maker, *property, card, said);
+    geometry.scheme = choose_scheme(maker, *property, card, reported);
     const SolidQuality quality = calc_quality(geometry);
     if (!(quality.smallest_ratio > 0)) {
       maker.error("fe.bad-solid", card.at,

@@ -1,5 +1,6 @@
 #pragma once
-/// \file What the makers of each element family share: the deck, look-ups by id that report, dofs of nodes. Internal.
+/// \file Tools that the makers of each element family share: the deck, look-ups by id that report, dofs of nodes.
+/// Internal.
 #include <functional>
 #include <unordered_map>
 

@@ -56,7 +56,7 @@ double calc_element_mass(const Element& element) {
 
 namespace {
 
-/// Of each element that can carry nonstructural mass: its property id and the types that name it.
+/// An element that can carry nonstructural mass: its property id and the types that name it.
 struct Owner {
   int pid = 0;
   const char* type = "";
@@ -111,14 +111,14 @@ bool names(const records::NonstructuralMass& card, int id) {
 }
 
 /// PCOMPG, of which PCOMP was made when it was read, and the library sections go by either name.
-bool is_type(const std::string& wanted, const std::string& type) {
+bool is_type(const std::string& requested, const std::string& type) {
   const auto family = [](const std::string& name) {
     if (name == "PCOMPG") return std::string("PCOMP");
     if (name == "PBARL") return std::string("PBAR");
     if (name == "PBEAML" || name == "PBCOMP") return std::string("PBEAM");
     return name;
   };
-  return family(wanted) == family(type);
+  return family(requested) == family(type);
 }
 
 std::set<int> expand(const records::Deck& deck, int set) {

@@ -78,7 +78,7 @@ std::optional<ResolvedShell> resolve_shell(Maker& maker, ShellSections& sections
 
 namespace {
 
-/// The same in all directions of the plane: material axes do not matter.
+/// Returns true if the section is equal in all directions of its plane: material axes do not matter.
 bool is_isotropic(const ShellSection& section) {
   const auto differs = [](const auto& a, const auto& b) { return (a - b).norm() > 1e-10 * a.norm(); };
   const ShellSection turned = rotate_section(section, 0.5);
@@ -107,9 +107,9 @@ std::optional<double> calc_material_angle(Maker& maker, const ResolvedShell& she
   if (normal.cross(axis).norm() < 1e-6) {
     if (is_isotropic(*shell.section)) return 0;
     // Curved shells ask at every point.
-    const auto& said = maker.diagnostics().items();
+    const auto& messages = maker.diagnostics().items();
     const std::string what = field + "whose x-axis is normal to the element; its y-axis is taken in place of it";
-    if (said.empty() || said.back().what != what)
+    if (messages.empty() || messages.back().what != what)
       maker.diagnostics().warning("fe.bad-material-axes", maker.deck().locate(card.at), what,
                                   "name a system whose x-axis has a part in the element, or give THETA");
     axis = axes.col(1);

@@ -1,5 +1,5 @@
 #pragma once
-/// \file What every shell card needs before it becomes an element: grids, property, material angle, surface normals.
+/// \file Data of a shell card before it becomes an element: grids, property, material angle, surface normals.
 /// Internal.
 #include <unordered_map>
 #include <utility>
@@ -18,7 +18,7 @@ struct ResolvedShell {
   std::vector<Vector3d> x;                ///< corners in basic
   Vector3d normal = Vector3d::UnitZ();    ///< of the mean plane of the corners
   const ShellSection* section = nullptr;  ///< in material axes, at the mean of the corner thicknesses
-  /// Of the corners: T1... with TFLAG applied, the property's where blank; empty = uniform.
+  /// Thickness at the corners: T1... with TFLAG applied, the property's where blank; empty = uniform.
   std::vector<double> thickness;
 };
 
@@ -29,7 +29,7 @@ std::optional<ResolvedShell> resolve_shell(Maker& maker, ShellSections& sections
 /// where that is normal to an isotropic shell. Empty after reporting fe.missing-coordinates or fe.bad-material-axes.
 std::optional<double> calc_material_angle(Maker& maker, const ResolvedShell& shell, const Vector3d& x,
                                           const Vector3d& normal, const Vector3d& side);
-/// The same at the centre of the corners, from side 1-2.
+/// Angle of the material axis at the centre of the corners, from side 1-2.
 std::optional<double> calc_material_angle(Maker& maker, const ResolvedShell& shell);
 
 /// Unit normals (basic) of the flat shells of sections (BEGIN SUPER) at the grids, ids of the deck, to which SECONCT

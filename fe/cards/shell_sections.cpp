@@ -71,7 +71,8 @@ std::optional<PlaneMaterial> ShellSections::make_material(int mid, const std::st
   if (const auto* m = mat2_.find(mid)) {
     PlaneMaterial p;
     p.Q = m->G;
-    p.G << m->G(0, 0), m->G(0, 1), m->G(0, 1), m->G(1, 1);  // a MAT2 named by MID3 gives G11 G12 G22 of the shear law
+    p.G << m->G(0, 0), m->G(0, 1), m->G(0, 1),
+        m->G(1, 1);  // a MAT2 named by MID3 gives G11 G12 G22 of the shear stiffness
     p.rho = m->rho;
     p.shear_rigid = true;  // no shear flexibility if the section is a ply
     p.alpha = m->alpha;
@@ -204,7 +205,8 @@ void ShellSections::stack_smeared(const records::Pcomp& p, std::vector<LaminateL
   }
 }
 
-/// Of LAM = SMEAR as of a PSHELL; of SMCORE its three layers, which have no separate limits.
+/// Sets stress output: for LAM = SMEAR that of a PSHELL, for SMCORE that of its three layers, which have no separate
+/// limits.
 void ShellSections::set_stress(const records::Pcomp& p, const std::vector<LaminateLayer>& layers, double z0,
                                ShellSection& section) const {
   static const std::map<std::string, FailureTheory> theories{{"HILL", FailureTheory::Hill},

@@ -31,7 +31,7 @@ class ShellSections {
   std::optional<PlaneMaterial> find_plane_strain(const records::Pshell& p);
   std::optional<ShellSection> make_pshell(const records::Pshell& p, const std::string& who,
                                           const records::CardLocation& at, std::optional<double> thickness);
-  /// Of A, B, D with the expansions of MID1 and MID2.
+  /// Sets the thermal expansion of A, B, D from those of MID1 and MID2.
   void set_expansion(const PlaneMaterial& membrane, const PlaneMaterial& bending, ShellSection& section) const;
   std::optional<ShellSection> make_pcomp(const records::Pcomp& p);
   /// The plies, or the layers that stand for them, as stresses are given of them.

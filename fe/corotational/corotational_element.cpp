@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Eigenvalues>
-
 #include "base/rotation.hpp"
 #include "fe/elements/solve_in_range.hpp"
 #include "fe/elements/stress_state.hpp"
@@ -19,13 +17,6 @@ constexpr double kRotationWeight = 1e-3;
 constexpr double kRigidTolerance = 1e-8;  // of K times rigid-body motion
 
 }  // namespace
-
-Matrix3d invert_symmetric(const Matrix3d& A) {
-  const Eigen::SelfAdjointEigenSolver<Matrix3d> eigen(A);
-  Vector3d inverse = eigen.eigenvalues();
-  for (double& value : inverse) value = value > 1e-12 * eigen.eigenvalues()[2] ? 1 / value : 0;
-  return eigen.eigenvectors() * inverse.asDiagonal() * eigen.eigenvectors().transpose();
-}
 
 bool CorotationalElement::find_stiffness(const Element& element, const std::vector<Node>& nodes) {
   const int N = element.num_dofs();

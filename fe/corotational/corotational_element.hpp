@@ -5,6 +5,7 @@
 /// element from its K_G. Theory: docs/theory/third-order.md (1) to (3).
 #include <vector>
 
+#include "fe/corotational/best_fit.hpp"
 #include "fe/corotational/series.hpp"
 #include "fe/elements/element.hpp"
 #include "fe/elements/thermal_loads.hpp"
@@ -23,12 +24,9 @@ struct FiniteForces {
   MatrixXd H;           ///< N x N: ∂g/∂d
 };
 
-/// Vector of A - Aᵀ: A_32 - A_23 and so on.
-Vector3d calc_axis(const Matrix3d& A);
-/// Inverse of a symmetric matrix without directions whose eigenvalue is 1e-12 of the largest (rods: no twist).
-Matrix3d invert_symmetric(const Matrix3d& A);
-/// T⁻¹(θ) of calc_rotation_tangent, and θ of exp(θ̃) = R, |θ| ≤ π.
+/// T⁻¹(θ) of calc_rotation_tangent.
 Matrix3d calc_inverse_rotation_tangent(const Vector3d& theta);
+/// θ of exp(θ̃) = R, |θ| ≤ π.
 Vector3d calc_rotation_log(const Matrix3d& R);
 /// ∂(T⁻ᵀ(θ) g)/∂θ with g fixed.
 Matrix3d calc_inverse_tangent_slope(const Vector3d& theta, const Vector3d& g);

@@ -1,18 +1,14 @@
 #include <cmath>
 
-#include <Eigen/SVD>
-
 #include "base/rotation.hpp"
+#include "fe/corotational/best_fit.hpp"
 #include "fe/corotational/corotational_element.hpp"
 
 namespace bough::fe {
 
-Vector3d calc_axis(const Matrix3d& A) { return {A(2, 1) - A(1, 2), A(0, 2) - A(2, 0), A(1, 0) - A(0, 1)}; }
-
 namespace {
 
 using Eigen::Index;
-using Matrix3N = Eigen::Matrix<double, 3, Eigen::Dynamic>;
 
 /// b of T⁻¹(θ) = 1 - ½ θ̃ + b θ̃² as a function of |θ|², and its derivative.
 std::pair<double, double> calc_inverse_coefficient(double square) {
@@ -29,16 +25,6 @@ std::pair<double, double> calc_inverse_coefficient(double square) {
     b = b * square + kTerms[k];
   }
   return {b, derivative};
-}
-
-Matrix3d subtract_from_trace(const Matrix3d& A) { return A.trace() * Matrix3d::Identity() - A; }
-
-/// The rotation nearest to B.
-Matrix3d find_nearest_rotation(const Matrix3d& B) {
-  const Eigen::JacobiSVD<Matrix3d> svd(B, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  Vector3d sign(1, 1, 1);
-  if (svd.matrixU().determinant() * svd.matrixV().determinant() < 0) sign[2] = -1;
-  return svd.matrixU() * sign.asDiagonal() * svd.matrixV().transpose();
 }
 
 }  // namespace
@@ -93,28 +79,25 @@ FiniteForces CorotationalElement::calc_finite(const Eigen::Ref<const VectorXd>& 
   const auto row_x = [&](Index k) { return translations_[static_cast<std::size_t>(k)]; };
   const auto row_t = [&](Index k) { return rotations_[static_cast<std::size_t>(k)]; };
 
-  // The frame: R_B nearest to the nodes.
+  // The frame: R nearest to the nodes.
   Matrix3Xd x = arms_;
-  Matrix3d B = Matrix3d::Zero();
-  for (Index k = 0; k < num_nodes; ++k) x.col(k) += u.segment<3>(row_x(k));
-  x.colwise() -= x.rowwise().mean().eval();
+  std::vector<FitGrid> grids;
   for (Index k = 0; k < num_nodes; ++k) {
-    B += x.col(k) * arms_.col(k).transpose();
-    if (row_t(k) >= 0) B += c * rotations[static_cast<std::size_t>(k)];
+    x.col(k) += u.segment<3>(row_x(k));
+    grids.push_back({arms_.col(k), 1, c, row_x(k), row_t(k)});
   }
-  const Matrix3d R = find_nearest_rotation(B), Rt = R.transpose();
-  const Matrix3d H = 0.5 * (Rt * B + (Rt * B).transpose()), S_inverse = invert_symmetric(subtract_from_trace(H));
+  x.colwise() -= x.rowwise().mean().eval();
+  const BestFit fit(grids, x, rotations, static_cast<int>(N));
+  const Matrix3d &R = fit.R(), Rt = R.transpose();
 
   FiniteForces result;
   result.d = VectorXd::Zero(N);
-  std::vector<Matrix3d> Q(static_cast<std::size_t>(num_nodes), Matrix3d::Identity());
   Matrix3Xd y(3, num_nodes), theta = Matrix3Xd::Zero(3, num_nodes);
   for (Index k = 0; k < num_nodes; ++k) {
     y.col(k) = Rt * x.col(k);
     result.d.segment<3>(row_x(k)) = y.col(k) - arms_.col(k);
     if (row_t(k) < 0) continue;
-    Q[static_cast<std::size_t>(k)] = Rt * rotations[static_cast<std::size_t>(k)];
-    theta.col(k) = calc_rotation_log(Q[static_cast<std::size_t>(k)]);
+    theta.col(k) = calc_rotation_log(fit.Q(static_cast<std::size_t>(k)));
     result.d.segment<3>(row_t(k)) = theta.col(k);
     result.max_turn = std::max(result.max_turn, theta.col(k).norm());
   }
@@ -122,33 +105,24 @@ FiniteForces CorotationalElement::calc_finite(const Eigen::Ref<const VectorXd>& 
   const VectorXd& g = result.g;
 
   // Derivatives by the displacements and spins of the nodes: G of the frame's spin in its own axes, D of d.
-  Matrix3N G = Matrix3N::Zero(3, N);
-  for (Index k = 0; k < num_nodes; ++k) {
-    G.middleCols<3>(row_x(k)) += skew(arms_.col(k)) * Rt;
-    if (row_t(k) >= 0) G.middleCols<3>(row_t(k)) += c * subtract_from_trace(Q[static_cast<std::size_t>(k)]) * Rt;
-  }
-  G = (S_inverse * G).eval();
+  const Matrix3N& G = fit.G();
   Matrix3N mean = Matrix3N::Zero(3, N);
   for (Index k = 0; k < num_nodes; ++k) mean.middleCols<3>(row_x(k)) += Rt / static_cast<double>(num_nodes);
   MatrixXd D = MatrixXd::Zero(N, N);
-  std::vector<Matrix3N> spin(static_cast<std::size_t>(num_nodes));  // of the node, seen from the frame
   for (Index k = 0; k < num_nodes; ++k) {
     auto rows = D.middleRows<3>(row_x(k));
     rows = skew(y.col(k)) * G - mean;
     rows.middleCols<3>(row_x(k)) += Rt;
     if (row_t(k) < 0) continue;
-    auto& v = spin[static_cast<std::size_t>(k)];
-    v = -G;
-    v.middleCols<3>(row_t(k)) += Rt;
-    D.middleRows<3>(row_t(k)) = calc_inverse_rotation_tangent(theta.col(k)) * v;
+    D.middleRows<3>(row_t(k)) =
+        calc_inverse_rotation_tangent(theta.col(k)) * fit.calc_relative_spin(static_cast<std::size_t>(k));
   }
   result.f = D.transpose() * g;
 
   // ∂f = Dᵀ H D + ∂(Dᵀ) g. With the forces p and moments m of g in the frame, mu = S⁻¹ Σ (y × p + m):
   // f_x = R (p - mean p - mu × a), f_φ = R (m - c (tr Q 1 - Qᵀ) mu).
   Vector3d tau = Vector3d::Zero(), p_mean = Vector3d::Zero();
-  Matrix3N d_tau = Matrix3N::Zero(3, N), d_H_mu = Matrix3N::Zero(3, N);
-  Eigen::RowVectorXd d_trace = Eigen::RowVectorXd::Zero(N);
+  Matrix3N d_tau = Matrix3N::Zero(3, N);
   Matrix3Xd m = Matrix3Xd::Zero(3, num_nodes);
   std::vector<Matrix3N> d_m(static_cast<std::size_t>(num_nodes));
   for (Index k = 0; k < num_nodes; ++k) {
@@ -163,29 +137,17 @@ FiniteForces CorotationalElement::calc_finite(const Eigen::Ref<const VectorXd>& 
     tau += m.col(k);
     d_tau += d_m[static_cast<std::size_t>(k)];
   }
-  const Vector3d mu = S_inverse * tau;
-  d_H_mu = skew(H * mu) * G;
-  for (Index k = 0; k < num_nodes; ++k) {
-    d_H_mu.middleCols<3>(row_x(k)) += arms_.col(k).dot(mu) * Rt;
-    d_trace.segment<3>(row_x(k)) += arms_.col(k).transpose() * Rt;
-    if (row_t(k) < 0) continue;
-    const Matrix3d& Q_k = Q[static_cast<std::size_t>(k)];
-    d_H_mu.middleCols<3>(row_t(k)) -= c * skew(Q_k * mu) * Rt;
-    d_trace.segment<3>(row_t(k)) -= c * calc_axis(Q_k).transpose() * Rt;
-  }
-  const Matrix3N d_mu = S_inverse * (d_tau - mu * d_trace + d_H_mu);
+  const Vector3d mu = fit.calc_mu(tau);
+  const Matrix3N d_mu = fit.calc_mu_slope(mu, d_tau);
   result.K = D.transpose() * result.H * D;
   for (Index k = 0; k < num_nodes; ++k) {
     const Vector3d arm = arms_.col(k), p = g.segment<3>(row_x(k));
     const Vector3d h = p - p_mean - mu.cross(arm);
     result.K.middleRows<3>(row_x(k)) += R * (skew(arm) * d_mu - skew(h) * G);
     if (row_t(k) < 0) continue;
-    const Matrix3d& Q_k = Q[static_cast<std::size_t>(k)];
-    const auto& v = spin[static_cast<std::size_t>(k)];
-    const Matrix3d back = subtract_from_trace(Q_k).transpose();
-    const Vector3d n = m.col(k) - c * back * mu;
-    const Matrix3N d_back = -mu * (calc_axis(Q_k).transpose() * v) - Q_k.transpose() * skew(mu) * v + back * d_mu;
-    result.K.middleRows<3>(row_t(k)) += R * (d_m[static_cast<std::size_t>(k)] - c * d_back - skew(n) * G);
+    const auto at = static_cast<std::size_t>(k);
+    const Vector3d n = m.col(k) - c * fit.back(at) * mu;
+    result.K.middleRows<3>(row_t(k)) += R * (d_m[at] - c * fit.calc_back_slope(at, mu, d_mu) - skew(n) * G);
   }
   return result;
 }

@@ -1,6 +1,6 @@
 #include "fe/corotational/mean_series.hpp"
 
-#include "fe/corotational/corotational_element.hpp"
+#include "fe/corotational/best_fit.hpp"
 
 namespace bough::fe {
 

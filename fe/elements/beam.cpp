@@ -109,23 +109,52 @@ void Beam::add_consistent_mass(double scale, Eigen::Ref<MatrixXd> M) const {
   add_at_grids(line.M, scale, M);
 }
 
-void Beam::add_gyroscopic(MassKind kind, const Vector3d& axis, double scale, Eigen::Ref<MatrixXd> G) const {
+MassSamples Beam::sample_mass(MassKind kind, const Eigen::Ref<const Matrix3Xd>& x, const SpinAxis& spin) const {
+  const Matrix3d& R = geometry_.R_basic_element;
   const bool is_consistent = kind == MassKind::Consistent;
-  const Matrix3d skew_axis = skew(geometry_.R_basic_element.transpose() * axis);
-  Matrix12d local = Matrix12d::Zero();
-  double end[2] = {0, 0};
-  for (const auto& point : is_consistent ? field_->calc_points(4, 7) : field_->calc_points(2, 3)) {
-    const double t = point.x / geometry_.length;
-    const double polar = point.weight * calc_section_mass(*property_, property_->calc_section(t), is_consistent)(3, 3);
-    end[0] += (1 - t) * polar;
-    end[1] += t * polar;
-    if (!is_consistent) continue;
-    Matrix6x12d D;
-    field_->calc_shape(point.x, &D, nullptr);
-    local -= polar * D.bottomRows<3>().transpose() * (skew_axis * D.bottomRows<3>());
+  MassSamples samples;
+  // U, Theta: motion of the axis of the beam at `place`, in basic; m: mass of the section in element axes.
+  const auto add = [&](const Matrix6d& m, const Vector3d& place, const Matrix3Xd& U, const Matrix3Xd& Theta,
+                       const Vector3d& arm) {
+    MassSample s;
+    s.mass = m(0, 0);
+    const Vector3d p = s.mass > 0 ? Vector3d(0, m(3, 2), -m(3, 1)) / s.mass : Vector3d(Vector3d::Zero());
+    s.arm = arm + R * p;
+    s.r = place + R * p - spin.point;
+    s.N = U - skew(R * p) * Theta;
+    s.DN = -skew(spin.axis.cross(s.r)) * Theta;
+    s.Theta = Theta;
+    s.J = R * (m.bottomRightCorner<3, 3>() + s.mass * skew(p) * skew(p)) * R.transpose();
+    samples.push_back(std::move(s));
+  };
+  if (is_consistent) {
+    const Matrix12d T = calc_end_map();
+    for (const auto& point : field_->calc_points(4, 7)) {
+      Matrix6x12d D;
+      field_->calc_shape(point.x, &D, nullptr);
+      const Matrix6x12d motion = D * T;
+      add(point.weight * calc_section_mass(*property_, property_->calc_section(point.x / geometry_.length), true),
+          x.col(0) + geometry_.wa + R.col(0) * point.x, R * motion.topRows<3>(), R * motion.bottomRows<3>(),
+          Vector3d::Zero());
+    }
+    return samples;
   }
-  if (is_consistent) return add_at_grids(local, scale, G);
-  for (int k = 0; k < 2; ++k) G.block<3, 3>(6 * k + 3, 6 * k + 3) -= scale * end[k] * skew(axis);
+  Matrix6d end[2] = {Matrix6d::Zero(), Matrix6d::Zero()};
+  for (const auto& point : field_->calc_points(2, 3)) {
+    const double t = point.x / geometry_.length;
+    const Matrix6d m = point.weight * calc_section_mass(*property_, property_->calc_section(t), false);
+    end[0] += (1 - t) * m;
+    end[1] += t * m;
+  }
+  for (int k = 0; k < 2; ++k) {
+    const Vector3d& arm = k == 0 ? geometry_.wa : geometry_.wb;
+    Matrix3Xd U = Matrix3Xd::Zero(3, 12), Theta = U;
+    U.middleCols<3>(6 * k).setIdentity();
+    U.middleCols<3>(6 * k + 3) = -skew(arm);
+    Theta.middleCols<3>(6 * k + 3).setIdentity();
+    add(end[k], x.col(k) + arm, U, Theta, arm);
+  }
+  return samples;
 }
 
 void Beam::calc_internal_forces(const Eigen::Ref<const VectorXd>& u, Eigen::Ref<VectorXd> force) const {
@@ -180,7 +209,7 @@ Eigen::Matrix<double, 9, 12> calc_stressed_motion(const BeamField& field, double
   return Q;
 }
 
-/// Polar radius² of the section. Without torsional stiffness the twist is anybody's, AUTOSPC's in skew axes: no work
+/// Polar radius² of the section. Without torsional stiffness the twist is undetermined, AUTOSPC's in skew axes: no work
 /// for N on it.
 double calc_twist_radius2(const BeamField& field, const BeamSection& s) {
   return field.active().torsion ? s.n.squaredNorm() + (s.A > 0 ? (s.I1 + s.I2) / s.A : 0) : 0;
@@ -209,7 +238,7 @@ void Beam::add_geometric_stiffness(const Eigen::Ref<const VectorXd>& force, doub
   if (has_pins()) add_pin_stiffness(force, scale, K_G);
 }
 
-/// Products of q at the points, once for all loads. Arms and pins have terms of their own.
+/// Products of q at the points, once for all loads. Arms and pins have separate terms.
 void Beam::add_projected_geometric_stiffness(const Eigen::Ref<const MatrixXd>& U, const Eigen::Ref<const MatrixXd>& Phi,
                                              GeometricProjection& sums) const {
   if (has_arms() || has_pins()) return StressState::add_projected_geometric_stiffness(U, Phi, sums);

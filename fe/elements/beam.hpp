@@ -11,6 +11,7 @@
 #include "fe/elements/beam_field.hpp"
 #include "fe/elements/carried.hpp"
 #include "fe/elements/element.hpp"
+#include "fe/elements/spin.hpp"
 #include "fe/elements/stress_recovery.hpp"
 #include "fe/elements/stress_state.hpp"
 #include "fe/elements/thermal_loads.hpp"
@@ -49,9 +50,10 @@ class Beam final : public Element, public StressState, public StressRecovery, pu
   /// CBAR torsional inertia in both, and consistent axial terms.
   void add_mass(MassKind kind, double scale, Eigen::Ref<MatrixXd> M) const override;
 
-  /// G += scale G_e, 12 x 12, per unit of spin about a unit axis in basic along the beam: -∫ D_θᵀ ρI_p ẽ D_θ dx for the
-  /// consistent mass, at the ends for the lumped one; ρI_p the polar inertia that the mass matrix has. Skew-symmetric.
-  void add_gyroscopic(MassKind kind, const Vector3d& axis, double scale, Eigen::Ref<MatrixXd> G) const;
+  /// The mass at points: those of the quadrature of the consistent mass, or the ends for the lumped one, each with the
+  /// inertia of its piece of the section that the mass matrix has. The beam turns the points around it as rigid
+  /// sections. \param x  ends in basic.
+  MassSamples sample_mass(MassKind kind, const Eigen::Ref<const Matrix3Xd>& x, const SpinAxis& spin) const;
 
   const OffsetMass* offset_mass(MassKind kind) const override;
   bool add_carried(MassKind kind, const Eigen::Ref<const Matrix3Xd>& x, CarriedMass& carried) const override;

@@ -31,7 +31,7 @@ MassMoments turn_and_scale(const MassMoments& a, const Matrix3d& R, double scale
   return {scale * a.m, scale * R * a.S, scale * R * a.E * R.transpose()};
 }
 
-/// About a point `arm` behind.
+/// Inertia about a point at -`arm`.
 MassMoments shift(const MassMoments& a, const Vector3d& arm) {
   const Matrix3d cross = arm * a.S.transpose();
   return {a.m, a.S + a.m * arm, a.E + cross + cross.transpose() + a.m * arm * arm.transpose()};

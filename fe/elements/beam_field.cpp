@@ -93,11 +93,11 @@ const BeamField::Shape* BeamField::find_kept(double x) const {
 
 std::shared_ptr<const BeamField> BeamFields::find(std::shared_ptr<const BeamProperty> property, double length) {
   // With more lengths than this the beams are a mesh of all kinds, and the kept shapes would fill memory.
-  constexpr std::size_t kMost = 512;
+  constexpr std::size_t kMaxFields = 512;
   const std::pair key(std::move(property), length);
   if (const auto known = fields_.find(key); known != fields_.end()) return known->second;
   auto field = std::make_shared<BeamField>(*key.first, length);
-  if (fields_.size() >= kMost) return field;
+  if (fields_.size() >= kMaxFields) return field;
   field->keep_shapes();
   fields_.emplace(key, field);
   return field;

@@ -63,7 +63,7 @@ Matrix6d calc_flexibility(const BendGeometry& g, const Eigen::Matrix<double, 6, 
   return F;
 }
 
-/// Rigid motion of x by that of a point `arm` behind it.
+/// Rigid-body motion of x by that of a point at -`arm` from it.
 Matrix6d calc_carry(const Vector3d& arm) {
   Matrix6d T = Matrix6d::Identity();
   T.topRightCorner<3, 3>() = -skew(arm);

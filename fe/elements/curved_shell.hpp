@@ -8,8 +8,8 @@
 /// is not. Inner degrees of freedom, condensed: a bubble of d (both shapes; without it the thin element locks) and one
 /// of u in the tangent plane (quadrilateral: then its membrane is complete to second order on every straight-sided
 /// shape). An absent midside node lies midway, turns by the mean, and moves as the Hermite beam between its corners
-/// does along the normal. Drilling: penalty on θ·n - ½ rot u, weight as PARAM,K6ROT. The law is taken in local axes at
-/// each point.
+/// does along the normal. Drilling: penalty on θ·n - ½ rot u, weight as PARAM,K6ROT. The elasticity is taken in local
+/// axes at each point.
 #include "fe/elements/carried.hpp"
 #include "fe/elements/element.hpp"
 #include "fe/elements/stress_recovery.hpp"

@@ -2,7 +2,7 @@
 /// \file Element: stiffness, mass, DOFs and shape; further questions by interfaces. One pair of files per element.
 ///
 /// All matrices are in basic axes at the element's grid points (offsets and pin releases are already inside), in the
-/// order of get_gdofs(). Functions add into the caller's storage and keep no scratch of their own: an element is const.
+/// order of get_gdofs(). Functions add into the caller's storage and keep no scratch: an element is const.
 #include <memory>
 #include <set>
 #include <string>
@@ -80,7 +80,7 @@ class Element {
   /// K += (g + GE) K_e, N x N: the imaginary part of the stiffness (Nastran's K4 with g of PARAM,G).
   virtual void add_structural_damping(double g, Eigen::Ref<MatrixXd> K) const;
 
-  // Further questions, each an interface of its own; nullptr if the element has none.
+  // Further questions, each a separate interface; nullptr if the element has none.
 
   /// Internal forces and geometric stiffness (stress_state.hpp).
   virtual const StressState* stress_state() const { return nullptr; }
@@ -113,7 +113,7 @@ class NodeTable {
  public:
   virtual ~NodeTable() = default;
   virtual int find_node(int id) const = 0;  ///< index, -1 when absent
-  /// Its GRID card has an error of its own: who names it need not say that it is missing.
+  /// Its GRID card has an error already: a card that names it does not report it as missing.
   virtual bool is_refused(int /*id*/) const { return false; }
   /// Node by its index, valid as long as the table.
   virtual const Node& node(int index) const = 0;
@@ -126,7 +126,7 @@ class NodeTable {
 
 struct ElementList {
   std::vector<std::unique_ptr<const Element>> elements;
-  /// Of what add() was given; an element that is put into `elements` directly is not counted.
+  /// Names of the cards that add() was given; an element that is put into `elements` directly is not counted.
   std::set<std::string> cards;
   bool has_damping = false;
 

@@ -3,12 +3,12 @@
 ///
 /// S. J. Garvey, "The quadrilateral shear panel", Aircraft Engineering 23 (1951) 134-135; NASTRAN Theoretical Manual
 /// (NASA SP-221), 5.3. The lines of the two pencils through the points where opposite sides meet carry shear alone.
-/// That field is the projective image of constant shear in a square: with homogeneous weights w_i of the corners (the
-/// areas of the triangles of the three others), linear over the square, the shear flow is s w² on every line of both
-/// pencils, and s w_i w_j is its mean along the side ij. Its complementary energy gives the stiffness, by 8 x 8 Gauss
-/// points (a parallelogram: A/(G t) (1 + 2 cot² α/(1 + ν)), the manual's). Half of each side's force acts on either
-/// end, as in NASTRAN. A warped panel is computed on its mean plane; forces normal to it at the corners, of least norm,
-/// put those at the true corners into equilibrium.
+/// The shear field is the projective image of constant shear in a square: with homogeneous weights w_i of the corners
+/// (the areas of the triangles of the three others), linear over the square, the shear flow is s w² on every line of
+/// both pencils, and s w_i w_j is its mean along the side ij. Its complementary energy gives the stiffness, by 8 x 8
+/// Gauss points (a parallelogram: A/(G t) (1 + 2 cot² α/(1 + ν)), the manual's). Half of each side's force acts on
+/// either end, as in NASTRAN. A warped panel is computed on its mean plane; forces normal to it at the corners, of
+/// least norm, put those at the true corners into equilibrium.
 #include <array>
 
 #include "fe/elements/element.hpp"

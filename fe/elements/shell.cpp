@@ -1,5 +1,6 @@
 #include "fe/elements/shell.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/rotation.hpp"
@@ -189,6 +190,78 @@ void Shell::add_mass_of(MassKind kind, double scale, Eigen::Ref<MatrixXd> M) con
       }
       if (inertia != 0) M.block<3, 3>(6 * i + 3, 6 * j + 3) += part * inertia * tangent;
     }
+}
+
+namespace {
+
+/// Derivatives by x and y of the shapes at corner k.
+template <int N>
+Eigen::Matrix<double, 2, N> calc_corner_gradient(const shell::Corners<N>& xy, int k) {
+  Eigen::Matrix<double, 2, N> by_natural;
+  if constexpr (N == 3) {
+    by_natural << -1, 1, 0, -1, 0, 1;
+  } else {
+    constexpr double kR[4] = {-1, 1, 1, -1}, kS[4] = {-1, -1, 1, 1};
+    for (int i = 0; i < 4; ++i) {
+      by_natural(0, i) = 0.25 * kR[i] * (1 + kS[i] * kS[k]);
+      by_natural(1, i) = 0.25 * kS[i] * (1 + kR[i] * kR[k]);
+    }
+  }
+  return (by_natural * xy.transpose()).inverse() * by_natural;
+}
+
+}  // namespace
+
+template <int N>
+MassSamples Shell::sample_mass_of(MassKind kind, const Eigen::Ref<const Matrix3Xd>& x, const SpinAxis& spin) const {
+  const Vector3d z = R_.col(2);
+  const double d = z_offset_ + section_.mass_offset;
+  MassSamples samples;
+  const auto add = [&](double mass, const Eigen::Matrix<double, N, 1>& shape, const Eigen::Matrix<double, 2, N>& dshape,
+                       double height) {
+    MassSample s;
+    s.mass = mass;
+    s.arm = height * z;
+    s.r = x * shape - spin.point + s.arm;
+    // e x r of the surface in the tangents of the surface and its normal, along which displacements change by θ x n.
+    Matrix3d tangents;
+    tangents.leftCols<2>() = x * dshape.transpose();
+    tangents.col(2) = tangents.col(0).cross(tangents.col(1)).normalized();
+    const Vector3d c = tangents.inverse() * spin.axis.cross(s.r - s.arm);
+    const Vector3d turned = c[2] * tangents.col(2) + spin.axis.cross(s.arm);
+    s.N.setZero(3, 6 * N);
+    s.DN.setZero(3, 6 * N);
+    s.Theta.setZero(3, 6 * N);
+    for (int i = 0; i < N; ++i) {
+      const double along = c[0] * dshape(0, i) + c[1] * dshape(1, i);
+      s.N.middleCols<3>(6 * i).diagonal().setConstant(shape[i]);
+      s.N.middleCols<3>(6 * i + 3) = -shape[i] * skew(s.arm);
+      s.DN.middleCols<3>(6 * i).diagonal().setConstant(along);
+      s.DN.middleCols<3>(6 * i + 3) = -along * skew(s.arm) - shape[i] * skew(turned);
+      s.Theta.middleCols<3>(6 * i + 3).diagonal().setConstant(shape[i]);
+    }
+    samples.push_back(std::move(s));
+  };
+  if (kind == MassKind::Lumped) {
+    const Eigen::Matrix<double, N, N> area = calc_mass_areas_of<N>(kind);
+    for (int k = 0; k < N; ++k)
+      add(section_.mass * area(k, k), Eigen::Matrix<double, N, 1>::Unit(k),
+          calc_corner_gradient<N>(get_corners<N>(), k), d);
+    return samples;
+  }
+  const double radius = section_.mass > 0 ? std::sqrt(std::max(section_.rotary_inertia, 0.0) / section_.mass) : 0;
+  for (const auto& p : calc_points<N>(get_corners<N>())) {
+    if (!(radius > 0)) {
+      add(section_.mass * p.weight, p.shape, p.dshape, d);
+      continue;
+    }
+    for (const double side : {-radius, radius}) add(0.5 * section_.mass * p.weight, p.shape, p.dshape, d + side);
+  }
+  return samples;
+}
+
+MassSamples Shell::sample_mass(MassKind kind, const Eigen::Ref<const Matrix3Xd>& x, const SpinAxis& spin) const {
+  return num_nodes_ == 4 ? sample_mass_of<4>(kind, x, spin) : sample_mass_of<3>(kind, x, spin);
 }
 
 template <int N>

@@ -17,6 +17,7 @@
 #include "fe/elements/carried.hpp"
 #include "fe/elements/element.hpp"
 #include "fe/elements/shell_fields.hpp"
+#include "fe/elements/spin.hpp"
 #include "fe/elements/stress_recovery.hpp"
 #include "fe/elements/stress_state.hpp"
 #include "fe/elements/thermal_loads.hpp"
@@ -41,6 +42,9 @@ class Shell final : public Element, public StressState, public StressRecovery, p
   ElementShape shape() const override;
   void add_stiffness(double scale, Eigen::Ref<MatrixXd> K) const override;
   void add_mass(MassKind kind, double scale, Eigen::Ref<MatrixXd> M) const override;
+  /// The mass at points: those of the quadrature of the consistent mass, in halves at both sides of the middle for the
+  /// rotary inertia, or the corners for the lumped mass. \param x  corners in basic.
+  MassSamples sample_mass(MassKind kind, const Eigen::Ref<const Matrix3Xd>& x, const SpinAxis& spin) const;
   const OffsetMass* offset_mass(MassKind kind) const override;
   bool add_carried(MassKind kind, const Eigen::Ref<const Matrix3Xd>& x, CarriedMass& carried) const override;
   const StressState* stress_state() const override { return this; }
@@ -98,6 +102,8 @@ class Shell final : public Element, public StressState, public StressRecovery, p
   template <int N>
   Eigen::Matrix<double, N, N> calc_mass_areas_of(MassKind kind) const;
   MatrixXd calc_mass_areas(MassKind kind) const;
+  template <int N>
+  MassSamples sample_mass_of(MassKind kind, const Eigen::Ref<const Matrix3Xd>& x, const SpinAxis& spin) const;
   template <int N>
   void add_mass_of(MassKind kind, double scale, Eigen::Ref<MatrixXd> M) const;
   template <int N>

@@ -38,7 +38,7 @@ Vector3d calc_centre(SolidKind kind) {
 }
 
 /// Natural gradients of the incompatible modes, each of no mean over the element: 1 - ξ², 1 - η², 1 - ζ² of the brick;
-/// r², s², rs less their linear parts, and 1 - ζ², of the wedge.
+/// r², s², rs minus their linear parts, and 1 - ζ², of the wedge.
 Eigen::Matrix3Xd calc_mode_gradients(SolidKind kind, const Vector3d& at) {
   if (kind == SolidKind::Hexa) return Matrix3d(-2 * at.asDiagonal());
   const double r = at.x() - 1.0 / 3, s = at.y() - 1.0 / 3;
@@ -143,6 +143,45 @@ void Solid::add_mass(MassKind kind, double scale, Eigen::Ref<MatrixXd> M) const 
           kind == MassKind::Lumped ? (diagonal > 0 ? scalar(i, i) * total / diagonal : 0) : scalar(i, j);
       for (int a = 0; a < 3; ++a) M(3 * i + a, 3 * j + a) += scale * value;
     }
+}
+
+MassSamples Solid::sample_mass(MassKind kind, const SpinAxis& spin) const {
+  const int m = static_cast<int>(geometry_.x.size());
+  Matrix3Xd x(3, m), dshape(3, m);
+  for (int i = 0; i < m; ++i) x.col(i) = geometry_.x[static_cast<std::size_t>(i)] - spin.point;
+  MassSamples samples;
+  const auto add = [&](double mass, const VectorXd& shape, const Matrix3Xd& gradient) {
+    MassSample s;
+    s.mass = mass;
+    s.r = x * shape;
+    const VectorXd along = gradient.transpose() * spin.axis.cross(s.r);
+    s.N.setZero(3, 3 * m);
+    s.DN.setZero(3, 3 * m);
+    for (int i = 0; i < m; ++i) {
+      s.N.middleCols<3>(3 * i).diagonal().setConstant(shape[i]);
+      s.DN.middleCols<3>(3 * i).diagonal().setConstant(along[i]);
+    }
+    samples.push_back(std::move(s));
+  };
+  if (kind == MassKind::Consistent) {
+    for (const auto& f : calc_fields(true)) add(density_ * f.weight, f.shape, f.gradient);
+    return samples;
+  }
+  MatrixXd M = MatrixXd::Zero(3 * m, 3 * m);
+  add_mass(kind, 1, M);
+  const auto points = list_nodes(geometry_.kind, geometry_.midside);
+  VectorXd shape(m);
+  for (int i = 0; i < m; ++i) {
+    calc_solid_shape(geometry_.kind, geometry_.midside, points[static_cast<std::size_t>(i)], shape, dshape);
+    Matrix3d J = dshape * x.transpose();
+    if (!(J.determinant() > 0)) {  // corners of a brick that are one point: the gradient of its middle
+      VectorXd unused(m);
+      calc_solid_shape(geometry_.kind, geometry_.midside, calc_centre(geometry_.kind), unused, dshape);
+      J = dshape * x.transpose();
+    }
+    add(M(3 * i, 3 * i), shape, J.inverse() * dshape);
+  }
+  return samples;
 }
 
 MatrixXd Solid::calc_force_map(const std::vector<Field>& fields) const {
@@ -317,17 +356,17 @@ SolidQuality calc_quality(const SolidGeometry& geometry) {
   Eigen::Matrix3Xd x(3, m), dshape(3, m);
   VectorXd shape(m);
   for (int i = 0; i < m; ++i) x.col(i) = geometry.x[static_cast<std::size_t>(i)];
-  double volume = 0, reference = 0, least = 1e300, most = -1e300;
+  double volume = 0, reference = 0, min_J = 1e300, max_J = -1e300;
   for (const auto& point : list_points(geometry, false)) {
     calc_solid_shape(geometry.kind, geometry.midside, point.natural, shape, dshape);
     const double J = Matrix3d(dshape * x.transpose()).determinant();
     volume += point.weight * J;
     reference += point.weight;
-    least = std::min(least, J);
-    most = std::max(most, J);
+    min_J = std::min(min_J, J);
+    max_J = std::max(max_J, J);
   }
   if (volume == 0) return {};
-  return {volume, (volume > 0 ? least : most) * reference / volume};
+  return {volume, (volume > 0 ? min_J : max_J) * reference / volume};
 }
 
 void turn_round(SolidGeometry& geometry, std::vector<int>& nodes) {

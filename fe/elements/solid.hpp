@@ -11,6 +11,7 @@
 /// consistent one, scaled (Hinton, Rock & Zienkiewicz 1976). SolidScheme takes the inner modes away or sets the order
 /// of the quadrature, as IN and ISOP of PSOLID do.
 #include "fe/elements/element.hpp"
+#include "fe/elements/spin.hpp"
 #include "fe/elements/stress_recovery.hpp"
 #include "fe/elements/stress_state.hpp"
 #include "fe/elements/thermal_loads.hpp"
@@ -45,7 +46,7 @@ SolidQuality calc_quality(const SolidGeometry& geometry);
 /// `nodes`.
 void turn_round(SolidGeometry& geometry, std::vector<int>& nodes);
 
-/// Thermal expansion in basic axes, Voigt as the law.
+/// Thermal expansion in basic axes, Voigt as the elasticity.
 struct SolidExpansion {
   Eigen::Matrix<double, 6, 1> alpha = Eigen::Matrix<double, 6, 1>::Zero();
   std::optional<double> tref;  ///< empty: TEMPERATURE(INITIAL)
@@ -61,6 +62,9 @@ class Solid final : public Element, public StressState, public StressRecovery, p
   ElementShape shape() const override;
   void add_stiffness(double scale, Eigen::Ref<MatrixXd> K) const override;
   void add_mass(MassKind kind, double scale, Eigen::Ref<MatrixXd> M) const override;
+  /// The mass at points: those of the quadrature of the consistent mass, or the nodes for the lumped one, with the
+  /// gradient of the shapes there. Without the incompatible modes, as in the mass.
+  MassSamples sample_mass(MassKind kind, const SpinAxis& spin) const;
   const StressState* stress_state() const override { return this; }
   /// The six stresses at every quadrature point, in basic axes.
   int num_internal_forces() const override { return 6 * num_points_; }

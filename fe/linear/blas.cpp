@@ -74,9 +74,9 @@ BOUGH_INLINE void add_tall(const Block& A, const Block& B, Eigen::Ref<Eigen::Mat
 
 using AddTall = void (*)(const Block&, const Block&, Eigen::Ref<Eigen::MatrixXd>&);
 void add_tall_narrow(const Block& A, const Block& B, Eigen::Ref<Eigen::MatrixXd>& C) { add_tall<2>(A, B, C); }
-#ifdef BOUGH_WIDE
-BOUGH_WIDE void add_tall_wide(const Block& A, const Block& B, Eigen::Ref<Eigen::MatrixXd>& C) { add_tall<4>(A, B, C); }
-AddTall get_add_tall() { return has_wide() ? add_tall_wide : add_tall_narrow; }
+#ifdef BOUGH_AVX2
+BOUGH_AVX2 void add_tall_wide(const Block& A, const Block& B, Eigen::Ref<Eigen::MatrixXd>& C) { add_tall<4>(A, B, C); }
+AddTall get_add_tall() { return platform::has_avx2() ? add_tall_wide : add_tall_narrow; }
 #else
 AddTall get_add_tall() { return add_tall_narrow; }
 #endif
@@ -90,8 +90,8 @@ void multiply(bool transposed, const Block& A, const Block& B, double beta, Eige
   const double one = 1;
   // OpenBLAS copies A, which takes longer than the product where B is narrow (72 by 4 columns of 240,000 rows: 17 ms,
   // here 11 ms).
-  constexpr Index kNarrow = 8, kManyRows = 2000;
-  if (!transposed && B.cols() <= kNarrow && C.rows() >= kManyRows && (beta == 0 || beta == 1)) {
+  constexpr Index kNarrow = 8, kMinRows = 2000;
+  if (!transposed && B.cols() <= kNarrow && C.rows() >= kMinRows && (beta == 0 || beta == 1)) {
     if (beta == 0) C.setZero();
     return get_add_tall()(A, B, C);
   }
@@ -102,9 +102,9 @@ void multiply(bool transposed, const Block& A, const Block& B, double beta, Eige
 /// (40 by 4 columns of 240,000 rows: 5.9 ms, at once 9.8 ms).
 void multiply_in_slices(const Block& A, const Block& B, double beta, Eigen::Ref<Eigen::MatrixXd> C) {
   constexpr double kSmall = 6e5;  // products; up to 1e6 are small to OpenBLAS
-  constexpr Eigen::Index kLeast = 512;
+  constexpr Eigen::Index kMinSlice = 512;
   const auto slice = static_cast<Eigen::Index>(kSmall / static_cast<double>(C.size()));
-  if (slice < kLeast || slice >= A.rows()) return multiply(true, A, B, beta, C);
+  if (slice < kMinSlice || slice >= A.rows()) return multiply(true, A, B, beta, C);
   for (Eigen::Index first = 0; first < A.rows(); first += slice) {
     const auto num = std::min(slice, A.rows() - first);
     multiply(true, A.middleRows(first, num), B.middleRows(first, num), first == 0 ? beta : 1, C);

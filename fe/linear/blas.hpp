@@ -5,7 +5,7 @@
 
 namespace bough::linear {
 
-/// C = op(A) B + beta C, op(A) = Aᵀ when `transposed`; column-major blocks with leading dimensions of their own.
+/// C = op(A) B + beta C, op(A) = Aᵀ when `transposed`; column-major blocks with separate leading dimensions.
 void multiply_dense(bool transposed, const Eigen::Ref<const Eigen::MatrixXd>& A,
                     const Eigen::Ref<const Eigen::MatrixXd>& B, double beta, Eigen::Ref<Eigen::MatrixXd> C);
 /// Aᵀ B.

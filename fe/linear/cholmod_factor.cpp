@@ -68,9 +68,10 @@ class CholmodSolver final : public FactorSolver {
     check_cholmod(common_->status);
     if (!factor_) return false;
     // A megabyte is available: the request to the system takes as long as such a factor.
-    constexpr double kFewEntries = 1e5;
+    constexpr double kMinCheckedEntries = 1e5;
     num_entries_ = common_->lnz;
-    if (num_entries_ >= kFewEntries) require_memory(static_cast<double>(matrix.nrow), num_entries_, calc_free_memory());
+    if (num_entries_ >= kMinCheckedEntries)
+      require_memory(static_cast<double>(matrix.nrow), num_entries_, calc_free_memory());
     cholmod_factorize(&matrix, factor_, common_.get());
     check_cholmod(common_->status);
     return common_->status == CHOLMOD_OK && factor_->minor >= factor_->n;

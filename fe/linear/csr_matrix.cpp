@@ -1,6 +1,5 @@
 #include "fe/linear/csr_matrix.hpp"
 
-#include <sys/mman.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -8,19 +7,20 @@
 #include <utility>
 
 #include "base/diagnostic.hpp"
+#include "base/platform.hpp"
 
 namespace bough::linear {
 namespace {
 
 static_assert(sizeof(PetscInt) == sizeof(int), "rows are handed to PETSc as int");
 
-/// Of whole pages; what is read there afterwards is zero.
+/// Returns whole pages to the system; they read as zero afterwards.
 template <class T>
 void give_back(T* data, std::size_t size) {
   const auto page = static_cast<std::uintptr_t>(sysconf(_SC_PAGESIZE));
   const auto begin = (reinterpret_cast<std::uintptr_t>(data) + page - 1) / page * page;
   const auto end = reinterpret_cast<std::uintptr_t>(data + size) / page * page;
-  if (end > begin) madvise(reinterpret_cast<void*>(begin), end - begin, MADV_DONTNEED);
+  if (end > begin) platform::discard_pages(reinterpret_cast<void*>(begin), reinterpret_cast<void*>(end));
 }
 
 }  // namespace

@@ -15,10 +15,10 @@ struct Csr {
   std::vector<int> groups;  ///< where the runs of rows with the same elements start, and the end
 };
 
-/// Room for so many entries, none set.
+/// Room for the given number of entries, none set.
 Csr make_csr(std::size_t num_rows, std::size_t num_entries);
 
-/// The rows of a rank, from row `first` on: columns of its own rows, counted from these, and all others, as PETSc keeps
+/// The rows of a rank, from row `first` on: columns of local rows, counted from these, and all others, as PETSc keeps
 /// them.
 std::vector<Csr> split_columns(const Csr& rows, int first);
 

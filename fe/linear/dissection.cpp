@@ -7,7 +7,7 @@ namespace bough::linear {
 namespace {
 
 /// Rows between the parts, of all: their dense blocks are factored three times.
-constexpr double kMostBetween = 0.12;
+constexpr double kMaxSeparatorShare = 0.12;
 
 }  // namespace
 
@@ -16,7 +16,7 @@ std::vector<int> calc_postorder(const std::vector<const MatrixRows*>& matrices, 
   const auto n = static_cast<int>(rows.size());
   std::vector<int> place(static_cast<std::size_t>(size), n);
   for (int i = 0; i < n; ++i) place[static_cast<std::size_t>(rows[static_cast<std::size_t>(i)])] = i;
-  // The root of the tree so far that i is in, by short cuts that every search leaves behind.
+  // The root of the tree so far that i is in, by short cuts that every search adds.
   std::vector<int> parent(rows.size(), -1), above(rows.size(), -1);
   for (int j = 0; j < n; ++j)
     for (const MatrixRows* matrix : matrices) {
@@ -48,16 +48,16 @@ std::vector<int> calc_postorder(const std::vector<const MatrixRows*>& matrices, 
   return order;
 }
 
-std::optional<TwoParts> find_parts(const SymmetricMatrix& A, PetscInt least) {
+std::optional<TwoParts> find_parts(const SymmetricMatrix& A, PetscInt min_rows) {
   const auto size_of = [](const auto& rows) { return static_cast<double>(rows.size()); };
   if (get_num_threads() > 1) {
-    const auto two = find_two_parts(A, least);
+    const auto two = find_two_parts(A, min_rows);
     const double first = two ? size_of(two->first) : 0, second = two ? size_of(two->second) : 0;
-    if (two && size_of(two->between) < kMostBetween * (first + second) &&
+    if (two && size_of(two->between) < kMaxSeparatorShare * (first + second) &&
         std::min(first, second) > 0.3 * std::max(first, second))
       return *two;
   }
-  const auto order = find_elimination_order(A, least);
+  const auto order = find_elimination_order(A, min_rows);
   if (!order) return std::nullopt;
   return TwoParts{*order, {}, {}};
 }

@@ -35,7 +35,7 @@ std::vector<int> calc_postorder(const std::vector<const MatrixRows*>& matrices, 
 
 /// Partitions A into one or two subdomains: one if there is one thread, or if two would be unbalanced or have a large
 /// separator. Empty if A has no row groups or less than `least` rows.
-std::optional<TwoParts> find_parts(const SymmetricMatrix& A, PetscInt least);
+std::optional<TwoParts> find_parts(const SymmetricMatrix& A, PetscInt min_rows);
 
 /// work(p) of all parts, one or two, at once.
 template <class Work>

@@ -33,9 +33,9 @@ std::vector<PartFronts> analyse(const RowSum& sum, const TwoParts& cut) {
   for (const auto* rows : {&cut.first, &cut.second})
     if (!rows->empty()) own.push_back(rows);
   std::vector<PartFronts> parts(own.size());
-  std::vector<int> is_fine(own.size(), 0);
-  do_all(own.size(), [&](std::size_t p) { is_fine[p] = parts[p].analyse(sum, *own[p], cut.between); });
-  if (std::all_of(is_fine.begin(), is_fine.end(), [](int one) { return one != 0; })) return parts;
+  std::vector<int> is_analyzed(own.size(), 0);
+  do_all(own.size(), [&](std::size_t p) { is_analyzed[p] = parts[p].analyse(sum, *own[p], cut.between); });
+  if (std::all_of(is_analyzed.begin(), is_analyzed.end(), [](int one) { return one != 0; })) return parts;
   return {};
 }
 
@@ -75,9 +75,9 @@ int count_of_sum(const RowSum& sum, TwoParts cut) {
 }  // namespace
 
 std::optional<int> count_negative_by_fronts(const SymmetricMatrix& A, double factor, const SymmetricMatrix& B,
-                                            PetscInt least) {
+                                            PetscInt min_rows) {
   if (initialize_petsc().size > 1 || A.low_rank() || B.low_rank()) return std::nullopt;
-  auto cut = find_parts(A, least);
+  auto cut = find_parts(A, min_rows);
   if (!cut) return std::nullopt;
   std::sort(cut->between.begin(), cut->between.end());
   int count = -1;

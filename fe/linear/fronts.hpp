@@ -12,10 +12,10 @@ namespace bough::linear {
 /// front's own
 /// rows are eliminated by LLᵀ where they are positive, else by LDLᵀ with pivoting among them (Bunch & Kaufman). Empty,
 /// for a method that pivots freely: where that is not enough, pivots being so small that their front adds to a row more
-/// than `kMostGrowth` times what A and B have on its diagonal; matrices of less than `least` rows, without row groups,
-/// or with a low-rank part; several processes. Throws "fe.out-of-memory".
+/// than `kMaxGrowth` times what A and B have on its diagonal; matrices of less than `min_rows` rows, without row
+/// groups, or with a low-rank part; several processes. Throws "fe.out-of-memory".
 std::optional<int> count_negative_by_fronts(const SymmetricMatrix& A, double factor, const SymmetricMatrix& B,
-                                            PetscInt least = 3000);
+                                            PetscInt min_rows = 3000);
 
 /// Negative eigenvalues of a dense matrix, of which the lower triangle is given and lost; -1 where a pivot is zero.
 int count_negative_of_dense(Eigen::MatrixXd& S);

@@ -33,7 +33,7 @@ std::vector<idx_t> find_separator(Graph& graph) {
   idx_t num = graph.size(), size = 0, options[METIS_NOPTIONS];
   METIS_SetDefaultOptions(options);
   options[METIS_OPTION_NUMBERING] = 0;
-  options[METIS_OPTION_UFACTOR] = 50;  // a twentieth more than half; by itself it takes a fifth
+  options[METIS_OPTION_UFACTOR] = 50;  // 5 % more than half; its default is 20 %
   std::vector<idx_t> part(graph.weight.size());
   if (graph.neighbours.empty() ||
       METIS_ComputeVertexSeparator(&num, graph.start.data(), graph.neighbours.data(), graph.weight.data(), options,

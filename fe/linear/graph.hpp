@@ -21,7 +21,7 @@ Graph take_vertices(const Graph& graph, const std::vector<idx_t>& which);
 std::vector<idx_t> find_dissection(Graph& graph);
 
 /// Two parts of about the same weight and few vertices between, the part (0, 1) or 2 of each. METIS cuts by vertices:
-/// ends of the edges that a cut by edges has are a third more on a plate. Empty if it fails.
+/// ends of the edges that a cut by edges has are 33 % more on a plate. Empty if it fails.
 std::vector<idx_t> find_separator(Graph& graph);
 
 }  // namespace bough::linear

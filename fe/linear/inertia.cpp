@@ -21,14 +21,14 @@ namespace {
 using Eigen::MatrixXd;
 
 /// MUMPS takes longer than this to set up for fewer rows.
-constexpr PetscInt kFewRows = 160;
+constexpr PetscInt kDenseMaxRows = 160;
 
 /// Negative eigenvalues of A + factor B by LDLᵀ with pivots of one or two rows wherever they are (Bunch & Kaufman), -1
 /// where one is zero; empty if the matrices are of another kind or have more rows.
 std::optional<int> count_dense(const SymmetricMatrix& A, double factor, const SymmetricMatrix& B) {
   if (initialize_petsc().size > 1 || A.low_rank() || B.low_rank()) return std::nullopt;
   const PetscInt size = A.num_rows();
-  if (size < 1 || size > kFewRows) return std::nullopt;
+  if (size < 1 || size > kDenseMaxRows) return std::nullopt;
   MatrixXd S = MatrixXd::Zero(size, size);  // lower triangle
   for (const auto& [matrix, scale] : {std::pair(A.sparse(), 1.0), std::pair(B.sparse(), factor)}) {
     PetscBool is_by_rows = PETSC_FALSE;

@@ -47,9 +47,9 @@ LowRankPart make_form_part(const SparseColumns& X, const MatrixXd& K) {
   const VectorXd inverse = unit.cwiseInverse();
   const Eigen::SelfAdjointEigenSolver<MatrixXd> parts(inverse.asDiagonal() * K * inverse.asDiagonal());
   std::vector<Eigen::Index> kept;
-  const double most = K.size() ? parts.eigenvalues().cwiseAbs().maxCoeff() : 0;
+  const double max_eigenvalue = K.size() ? parts.eigenvalues().cwiseAbs().maxCoeff() : 0;
   for (Eigen::Index i = 0; i < K.rows(); ++i)
-    if (std::abs(parts.eigenvalues()(i)) > 1e-14 * most) kept.push_back(i);
+    if (std::abs(parts.eigenvalues()(i)) > 1e-14 * max_eigenvalue) kept.push_back(i);
   const VectorXd values = parts.eigenvalues()(kept);
   const MatrixXd Q = unit.asDiagonal() * parts.eigenvectors()(Eigen::all, kept);
   LowRankPart part;

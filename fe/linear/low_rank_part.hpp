@@ -21,7 +21,7 @@ struct LowRankPart {
   Eigen::VectorXd calc_diagonal() const;  ///< O(entries of U, times its rank where columns are dense)
 };
 
-/// X K Xᵀ, K symmetric; what of K is roundoff beside the rest is left out.
+/// X K Xᵀ, K symmetric; eigenvalues of K that are roundoff are left out.
 LowRankPart make_form_part(const Eigen::SparseMatrix<double>& X, const Eigen::MatrixXd& K);
 /// V Dᵀ + D Vᵀ + D K Dᵀ of sparse D and V, n x r, and a symmetric K. Where a column of V and that of K are zero, that
 /// of D is left out; without V the rank is that of K, else twice the columns.

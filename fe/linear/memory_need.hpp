@@ -11,12 +11,11 @@ double calc_free_memory();
 /// Bytes in a unit that a person reads: "31 GB", "1.4 GB", "240 MB".
 std::string format_bytes(double bytes);
 
-/// Bytes of a supernodal LLᵀ whose columns hold so many entries: supernodes are merged, which adds a tenth or two, and
-/// one front more is worked on.
+/// Bytes of a supernodal LLᵀ whose columns hold the given number of entries: supernodes are merged, which adds a tenth
+/// or two, and one front more is worked on.
 double calc_factor_bytes(double num_entries);
 
-/// Throws ComputationError "fe.out-of-memory" where a factor of so many equations and entries needs more than
-/// `free_bytes`.
+/// Throws ComputationError "fe.out-of-memory" where a factor of that size needs more than `free_bytes`.
 void require_memory(double num_equations, double num_entries, double free_bytes);
 
 /// Returns free pages, which the C library keeps, to the system before the step with the largest memory.

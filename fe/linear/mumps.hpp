@@ -6,7 +6,7 @@
 
 namespace bough::linear {
 
-/// What a MUMPS factorization ended with (INFOG(1), INFOG(2)).
+/// State in which a MUMPS factorization ended (INFOG(1), INFOG(2)).
 enum class FactorState { Done, Singular, NeedsWorkspace };
 /// Throws ComputationError "fe.out-of-memory" or "fe.factorization" for an error that more workspace does not cure.
 FactorState judge_factorization(int status, int detail);

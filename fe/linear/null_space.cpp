@@ -31,13 +31,13 @@ void reduce_columns(MatrixXd& X) {
   }
 }
 
-/// Motions among the m softest with less energy than `most`.
+/// Motions among the m softest with less energy than `max_energy`.
 MatrixXd find_soft_motions(const SymmetricMatrix& K, const VectorXd& D, const SymmetricFactor& factor, Eigen::Index m,
-                           double most) {
+                           double max_energy) {
   const SoftSpace space = calc_soft_space(K, D, factor, m);
   std::vector<int> found;
   for (int c = 0; c < m; ++c)
-    if (space.energy[c] < most) found.push_back(c);
+    if (space.energy[c] < max_energy) found.push_back(c);
   return space.X(Eigen::all, found);
 }
 
@@ -69,15 +69,16 @@ double calc_softest_energy(const SymmetricMatrix& K, const RowKinds& kinds, cons
   return std::abs(x.dot(multiply(K, x).col(0)));
 }
 
-MatrixXd find_mechanisms(const SymmetricMatrix& K, const RowKinds& kinds, int expected, double most) {
+MatrixXd find_mechanisms(const SymmetricMatrix& K, const RowKinds& kinds, int expected, double max_energy) {
   const VectorXd D = fill_diagonal(get_diagonal(K), kinds);
   const Eigen::Index n = D.size();
   const SymmetricFactor factor(add_diagonal(K, kNullShift * D), false, FactorMethod::Pivoting);
   if (factor.is_singular()) return MatrixXd(n, 0);
-  const Eigen::Index m = std::min<Eigen::Index>(n, std::clamp(expected + 2, 6, kMostMechanisms));
-  MatrixXd basis = find_soft_motions(K, D, factor, m, most);
-  const Eigen::Index all = std::min<Eigen::Index>(n, kMostMechanisms);
-  if (basis.cols() == m && m < all) basis = find_soft_motions(K, D, factor, all, most);  // there may be more of them
+  const Eigen::Index m = std::min<Eigen::Index>(n, std::clamp(expected + 2, 6, kMaxMechanisms));
+  MatrixXd basis = find_soft_motions(K, D, factor, m, max_energy);
+  const Eigen::Index all = std::min<Eigen::Index>(n, kMaxMechanisms);
+  if (basis.cols() == m && m < all)
+    basis = find_soft_motions(K, D, factor, all, max_energy);  // there may be more of them
   reduce_columns(basis);
   return basis;
 }

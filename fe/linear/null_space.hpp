@@ -7,11 +7,12 @@ namespace bough::linear {
 
 /// Share of the diagonal's energy xᵀDx below which xᵀKx counts as none: a solution along x would be round-off.
 inline constexpr double kMechanismEnergy = 4e-15;
-/// The same where a solution has already failed by its residual: round-off of the elements may leave a mechanism more.
+/// Bound on the energy after a solution has failed by its residual: round-off of the elements may leave a mechanism
+/// more.
 inline constexpr double kSoftMotionEnergy = 100 * kMechanismEnergy;
 
 /// More of them are not looked for.
-inline constexpr int kMostMechanisms = 24;
+inline constexpr int kMaxMechanisms = 24;
 
 /// Share of D = diag K that makes a singular K definite. Above: digits of K are lost. Below: there is no factor.
 inline constexpr double kNullShift = 1e-13;
@@ -32,7 +33,7 @@ SoftSpace calc_soft_space(const SymmetricMatrix& K, const Eigen::VectorXd& D, co
 double calc_softest_energy(const SymmetricMatrix& K, const RowKinds& kinds, const SymmetricFactor& factor);
 
 /// A basis (num_rows x k) of the motions with xᵀKx < `energy` xᵀDx, by inverse iteration of K + kNullShift D on at
-/// least `expected` vectors; k = 0 when there are none, k ≤ kMostMechanisms. Columns are reduced: each has a unit entry
+/// least `expected` vectors; k = 0 when there are none, k ≤ kMaxMechanisms. Columns are reduced: each has a unit entry
 /// (largest by complete pivoting) where the others are zero, so separate mechanisms stay separate.
 Eigen::MatrixXd find_mechanisms(const SymmetricMatrix& K, const RowKinds& kinds, int expected,
                                 double energy = kMechanismEnergy);

@@ -44,10 +44,10 @@ std::vector<PetscInt> list_rows(const std::vector<idx_t>& groups, const std::vec
 /// Calls `use(graph, group_start)` with the graph of the row groups of A; not where A has none, is smaller than
 /// `least`, or lives on several processes.
 template <class Use>
-void visit_group_graph(const SymmetricMatrix& A, PetscInt least, const Use& use) {
+void visit_group_graph(const SymmetricMatrix& A, PetscInt min_rows, const Use& use) {
   const auto groups = A.row_order().groups;
   PetscInt size = A.num_rows();
-  if (!groups || size < least || initialize_petsc().size > 1) return;
+  if (!groups || size < min_rows || initialize_petsc().size > 1) return;
   const PetscInt *row_start = nullptr, *columns = nullptr;
   PetscBool done = PETSC_FALSE;
   check_petsc(MatGetRowIJ(A.sparse(), 0, PETSC_FALSE, PETSC_FALSE, &size, &row_start, &columns, &done));
@@ -108,23 +108,23 @@ void take_row_order(const SymmetricMatrix& whole, const std::vector<int>& kept, 
   part.row_order().order = std::make_shared<const std::vector<PetscInt>>(std::move(order));
 }
 
-std::shared_ptr<const std::vector<PetscInt>> find_elimination_order(const SymmetricMatrix& A, PetscInt least) {
+std::shared_ptr<const std::vector<PetscInt>> find_elimination_order(const SymmetricMatrix& A, PetscInt min_rows) {
   auto& known = A.row_order().order;
-  if (A.num_rows() < least) return nullptr;
+  if (A.num_rows() < min_rows) return nullptr;
   if (known) return known;
-  visit_group_graph(A, least, [&](Graph& graph, const std::vector<int>& group_start) {
+  visit_group_graph(A, min_rows, [&](Graph& graph, const std::vector<int>& group_start) {
     std::vector<PetscInt> order = list_rows(find_dissection(graph), group_start);
     if (!order.empty()) known = std::make_shared<const std::vector<PetscInt>>(std::move(order));
   });
   return known;
 }
 
-std::shared_ptr<const TwoParts> find_two_parts(const SymmetricMatrix& A, PetscInt least) {
-  if (A.num_rows() < least) return nullptr;
+std::shared_ptr<const TwoParts> find_two_parts(const SymmetricMatrix& A, PetscInt min_rows) {
+  if (A.num_rows() < min_rows) return nullptr;
   auto& known = A.row_order().parts;
   if (known && are_apart(A, *known)) return known;
   std::optional<TwoParts> result;
-  visit_group_graph(A, least, [&](Graph& graph, const std::vector<int>& group_start) {
+  visit_group_graph(A, min_rows, [&](Graph& graph, const std::vector<int>& group_start) {
     const std::vector<idx_t> part = find_separator(graph);
     if (part.empty()) return;
     std::vector<idx_t> groups[3];

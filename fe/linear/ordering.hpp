@@ -18,11 +18,12 @@ void take_row_order(const SymmetricMatrix& whole, const std::vector<int>& kept, 
 
 /// Nested dissection (METIS; Karypis & Kumar, SIAM J. Sci. Comput. 20 (1998) 359) of the graph of row groups, some
 /// thirty times smaller than the graph of rows (Ashcraft, SIAM J. Sci. Comput. 16 (1995) 1404). Null, for the solver's
-/// own choice, where A has no groups or less than `least` rows, or lives on several processes. Costs O(nonzeros) the
+/// own choice, where A has no groups or less than `min_rows` rows, or lives on several processes. Costs O(nonzeros) the
 /// first time; A keeps it, and sums with A take it along.
-std::shared_ptr<const std::vector<PetscInt>> find_elimination_order(const SymmetricMatrix& A, PetscInt least = 3000);
+std::shared_ptr<const std::vector<PetscInt>> find_elimination_order(const SymmetricMatrix& A, PetscInt min_rows = 3000);
 
-/// The same with the first dissection told apart, kept alike; null as find_elimination_order(), and below `least` rows.
-std::shared_ptr<const TwoParts> find_two_parts(const SymmetricMatrix& A, PetscInt least);
+/// Elimination order with the two subdomains of the first dissection, cached as find_elimination_order() does; null in
+/// its cases and below `min_rows` rows.
+std::shared_ptr<const TwoParts> find_two_parts(const SymmetricMatrix& A, PetscInt min_rows);
 
 }  // namespace bough::linear

@@ -20,10 +20,10 @@ void PartFactor::take(const MatrixRows& A, const std::vector<PetscInt>& rows, st
   start_.assign(1, 0);
   row_.clear();
   value_.clear();
-  std::size_t most = rows.size();  // of the lower triangle
-  for (const PetscInt row : rows) most += static_cast<std::size_t>(A.start[row + 1] - A.start[row]);
-  row_.reserve(most / 2);
-  value_.reserve(most / 2);
+  std::size_t max_entries = rows.size();  // of the lower triangle
+  for (const PetscInt row : rows) max_entries += static_cast<std::size_t>(A.start[row + 1] - A.start[row]);
+  row_.reserve(max_entries / 2);
+  value_.reserve(max_entries / 2);
   for (std::size_t j = 0; j < rows.size(); ++j) {
     const bool is_between = j >= num_own;
     for (PetscInt k = A.start[rows[j]]; k < A.start[rows[j] + 1]; ++k) {
@@ -115,7 +115,7 @@ MatrixXd PartFactor::take_schur() {
 
 void PartFactor::forward(const Eigen::Ref<const MatrixXd>& B, MatrixXd& carried) {
   const auto n_p = static_cast<Eigen::Index>(rows_.size()), n_s = num_between_, m = B.cols();
-  Z_.resize(m <= kFewSides ? kFewSides : kManySides, n_p + n_s);
+  Z_.resize(m <= kNarrowRhs ? kNarrowRhs : kWideRhs, n_p + n_s);
   for (Eigen::Index i = 0; i < n_p; ++i) {
     double* z = Z_.col(i).data();
     const double* b = B.data() + rows_[static_cast<std::size_t>(i)];

@@ -11,7 +11,7 @@
 
 namespace bough::linear {
 
-/// Of one subdomain with the separator rows: its LLᵀ by CHOLMOD, and the trailing block of that as a dense
+/// Factor of one subdomain with the separator rows: its LLᵀ by CHOLMOD, and the trailing block of that as a dense
 /// matrix (substructures: Przemieniecki, AIAA J. 1 (1963) 138).
 class PartFactor {
  public:
@@ -37,7 +37,7 @@ class PartFactor {
   bool factor();
   /// L_ss L_ssᵀ = D_p - K_sp K_pp⁻¹ K_ps, once after factor(): L_ss is not kept, since no solution needs it.
   Eigen::MatrixXd take_schur();
-  /// K_pp z = B_p as far as L goes; `carried`, kFewSides or kManySides x separator rows, becomes K_sp K_pp⁻¹ B_p.
+  /// K_pp z = B_p as far as L goes; `carried`, kNarrowRhs or kWideRhs x separator rows, becomes K_sp K_pp⁻¹ B_p.
   void forward(const Eigen::Ref<const Eigen::MatrixXd>& B, Eigen::MatrixXd& carried);
   /// Then X_p, from the solution of the separator rows.
   void backward(const Eigen::MatrixXd& X_s, Eigen::Ref<Eigen::MatrixXd> X);

@@ -11,9 +11,9 @@ namespace {
 
 /// Largest growth of a diagonal entry in a front, relative to its value in the matrices. LLᵀ of a definite matrix
 /// subtracts at most that value; a factor of 100 costs two digits of sixteen.
-constexpr double kMostGrowth = 100;
+constexpr double kMaxGrowth = 100;
 
-/// Of LDLᵀ as LAPACK's sytrf leaves it.
+/// Number of negative pivots of LDLᵀ in the form of LAPACK's sytrf.
 int count_negative_pivots(const double* D, PetscBLASInt n, const PetscBLASInt* order) {
   int negative = 0;
   for (PetscBLASInt j = 0; j < n; ++j) {
@@ -147,7 +147,7 @@ int FrontElimination::eliminate(double* F, PetscBLASInt ld, int num, int num_row
         right_[static_cast<std::size_t>(i) * static_cast<std::size_t>(num) + static_cast<std::size_t>(j)] =
             below[i + static_cast<std::ptrdiff_t>(j) * ld];
     dsytrs2_("L", &n, &m, pivots_.data(), &n, pivot_order_.data(), right_.data(), &n, work_.data(), &info);
-    // By blocks of columns, the lower triangle only.
+    // Update by blocks of columns, the lower triangle only.
     constexpr int kColumns = 64;
     for (int first = 0; first < m; first += kColumns) {
       const PetscBLASInt width = std::min(kColumns, m - first), height = m - first;
@@ -163,7 +163,7 @@ int FrontElimination::eliminate(double* F, PetscBLASInt ld, int num, int num_row
 int PartFronts::eliminate(int num, int num_rows, const int* rows) {
   const int negative = elimination_.eliminate(front_.data(), num_rows, num, num_rows);
   for (int i = 0; i < num_rows - num && negative >= 0; ++i)
-    if (!(elimination_.change(i) <= kMostGrowth * diagonal_(rows[num + i]))) return -1;
+    if (!(elimination_.change(i) <= kMaxGrowth * diagonal_(rows[num + i]))) return -1;
   return negative;
 }
 
@@ -238,7 +238,7 @@ int count_by_blocks(MatrixXd S) {
     if (own < 0) return -1;
     negative += own;
     for (int i = first + num; i < n; ++i)
-      if (!(elimination.change(i - first - num) <= kMostGrowth * size(i))) return -1;
+      if (!(elimination.change(i - first - num) <= kMaxGrowth * size(i))) return -1;
   }
   return negative;
 }

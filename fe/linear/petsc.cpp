@@ -58,7 +58,7 @@ Function* find_function(const char* name) {
 
 /// One thread in CHOLMOD, and in OpenBLAS unless the user says otherwise: the factors' dense blocks are small, and
 /// threads that wait for each other by spinning double the time on a busy machine and add a fifth on a quiet one. Two
-/// parts of a model are work enough for two (threads.hpp). CHOLMOD asks OpenMP for a number of threads of its own,
+/// parts of a model are work enough for two (threads.hpp). CHOLMOD asks OpenMP for a separate number of threads,
 /// whatever OMP_NUM_THREADS says; no level of parallel regions means one. Found by name, since other libraries may be
 /// installed.
 void hold_threads() {
@@ -67,7 +67,7 @@ void hold_threads() {
   if (const auto set = find_function<void(int)>("openblas_set_num_threads")) set(1);
 }
 
-/// What MPI looks for while it starts, unless the user says it. A process that no launcher started needs no daemon and
+/// Chooses the transports of MPI, unless the user has set them. A process that no launcher started needs no daemon and
 /// no network transport: making them ready takes ten times as long as the rest of its start (360 ms against 30 ms).
 /// Ranks that are all on one machine need no network either: asking every kind of it takes 200 ms.
 void choose_transport() {

@@ -22,7 +22,8 @@ struct MpiWorld {
 /// Initializes MPI and PETSc in the first call and returns rank and size; signal handlers stay those of the process.
 MpiWorld initialize_petsc();
 
-/// How deep parallel regions of OpenMP may be nested from this thread on: 0 is one thread. Returns what it was before;
+/// Sets how deep parallel regions of OpenMP may be nested from this thread on: 0 is one thread. Returns what it was
+/// before;
 /// nothing happens where no library of the process uses OpenMP.
 int set_openmp_levels(int levels);
 

@@ -29,7 +29,7 @@ MatrixXd calc_residual(const SymmetricMatrix& A, const Eigen::Ref<const MatrixXd
     visit_rows(A.sparse(), [&](const MatrixRows& rows, PetscInt) { R = subtract_precisely(rows, X, B); });
     return R;
   }
-  // What cancels between the two parts of a sum has more digits too.
+  // Terms that cancel between the two parts of a sum have more digits too.
   Eigen::Matrix<long double, Eigen::Dynamic, Eigen::Dynamic> of_part;
   const LowRankPart* part = A.low_rank();
   if (part) {

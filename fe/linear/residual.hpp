@@ -1,5 +1,5 @@
 #pragma once
-/// \file How far a solution is from solving its equations: one measure for modes, load factors and static solutions.
+/// \file Residual of a solution: one measure for modes, load factors and static solutions.
 #include <string>
 #include <string_view>
 
@@ -24,12 +24,12 @@ inline constexpr double kResidualWarning = 1e-8, kResidualError = 1e-5;
 Eigen::VectorXd calc_residuals(const Eigen::MatrixXd& D, const Eigen::MatrixXd& X, const Eigen::MatrixXd& Y,
                                const Eigen::MatrixXd& F, const RowKinds& kinds = {});
 
-/// Of static solutions, K X = F with Y = K X: the above, or the work of what is not balanced over the work of the load
-/// (Nastran's epsilon) where that is larger: a motion that nothing holds hides in the former behind its own size.
+/// Residuals of static solutions, K X = F with Y = K X: the above, or the work of the residual force over that of the
+/// load (Nastran's epsilon) where that is larger: a motion that nothing holds hides in the former behind its own size.
 Eigen::VectorXd calc_static_residuals(const Eigen::VectorXd& K_diagonal, const Eigen::MatrixXd& X,
                                       const Eigen::MatrixXd& Y, const Eigen::MatrixXd& F, const RowKinds& kinds = {});
 
-/// The same of eigenpairs with F = M X Λ: D = |K_ii| + |λ_j| |M_ii|.
+/// Residuals of eigenpairs, with F = M X Λ: D = |K_ii| + |λ_j| |M_ii|.
 Eigen::VectorXd calc_pair_residuals(const Eigen::VectorXd& K_diagonal, const Eigen::VectorXd& M_diagonal,
                                     const Eigen::VectorXd& lambda, const Eigen::Ref<const Eigen::MatrixXd>& X,
                                     const Eigen::MatrixXd& KX, const Eigen::MatrixXd& MX, const RowKinds& kinds);

@@ -22,8 +22,8 @@ std::array<double, num_kinds> find_largest(const VectorXd& D, const RowKinds& ki
   BOUGH_DEMAND(kinds.empty() || static_cast<Eigen::Index>(kinds.size()) == D.size());
   std::array<double, num_kinds> largest{};
   for (Eigen::Index i = 0; i < D.size(); ++i) {
-    double& most = largest[get_kind(kinds, i)];
-    most = std::max(most, D(i));
+    double& maximum = largest[get_kind(kinds, i)];
+    maximum = std::max(maximum, D(i));
   }
   return largest;
 }
@@ -35,8 +35,8 @@ VectorXd fill_diagonal(VectorXd D, const RowKinds& kinds) {
   const auto largest = find_largest(D, kinds);
   const double any = *std::max_element(largest.begin(), largest.end());
   for (Eigen::Index i = 0; i < D.size(); ++i) {
-    const double most = largest[get_kind(kinds, i)];
-    if (D(i) <= 1e-14 * most) D(i) = most > 0 ? most : any > 0 ? any : 1;
+    const double maximum = largest[get_kind(kinds, i)];
+    if (D(i) <= 1e-14 * maximum) D(i) = maximum > 0 ? maximum : any > 0 ? any : 1;
   }
   return D;
 }

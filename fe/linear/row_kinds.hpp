@@ -1,6 +1,6 @@
 #pragma once
-/// \file What the rows of a stiffness matrix measure: forces and moments differ by a length, so that how much smaller
-/// the one is than the other says nothing but which units were taken.
+/// \file Kinds of rows of a stiffness matrix, forces and moments: they differ by a length, so their ratio depends on
+/// the units.
 #include <vector>
 
 #include <Eigen/Dense>

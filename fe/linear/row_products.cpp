@@ -1,11 +1,12 @@
 #include "fe/linear/row_products.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "fe/linear/threads.hpp"
 #include "fe/linear/wide.hpp"
 
-#ifdef BOUGH_WIDE
+#ifdef BOUGH_AVX2
 #include <immintrin.h>
 #endif
 
@@ -26,15 +27,27 @@ void subtract_narrow(const MatrixRows& A, int first, int last, const double* X, 
   for (int row = first; row < last; ++row)
     for (Index c = 0; c < kAtOnce; ++c) {
       double& y = Y[kAtOnce * row + c];
-      long double sum = y;
-      for (PetscInt k = A.start[row]; k < A.start[row + 1]; ++k)
-        sum -= static_cast<long double>(A.value[k]) * X[kAtOnce * A.column[k] + c];
-      y = static_cast<double>(sum);
+      if constexpr (platform::kHasExtended) {
+        long double sum = y;
+        for (PetscInt k = A.start[row]; k < A.start[row + 1]; ++k)
+          sum -= static_cast<long double>(A.value[k]) * X[kAtOnce * A.column[k] + c];
+        y = static_cast<double>(sum);
+      } else {
+        double sum = y, rest = 0;
+        for (PetscInt k = A.start[row]; k < A.start[row + 1]; ++k) {
+          const double a = -A.value[k], x = X[kAtOnce * A.column[k] + c];
+          const double product = a * x, of_product = std::fma(a, x, -product);
+          const double next = sum + product, part = next - sum;
+          rest += of_product + ((sum - (next - part)) + (product - part));
+          sum = next;
+        }
+        y = sum + rest;
+      }
     }
 }
 
-#ifdef BOUGH_WIDE
-BOUGH_WIDE void subtract_wide(const MatrixRows& A, int first, int last, const double* X, double* Y) {
+#ifdef BOUGH_AVX2
+BOUGH_AVX2 void subtract_wide(const MatrixRows& A, int first, int last, const double* X, double* Y) {
   for (int row = first; row < last; ++row) {
     __m256d sum = _mm256_loadu_pd(Y + kAtOnce * row), rest = _mm256_setzero_pd();
     for (PetscInt k = A.start[row]; k < A.start[row + 1]; ++k) {
@@ -49,7 +62,7 @@ BOUGH_WIDE void subtract_wide(const MatrixRows& A, int first, int last, const do
   }
 }
 
-SubtractRows get_subtract() { return has_wide() ? subtract_wide : subtract_narrow; }
+SubtractRows get_subtract() { return platform::has_avx2() ? subtract_wide : subtract_narrow; }
 #else
 SubtractRows get_subtract() { return subtract_narrow; }
 #endif

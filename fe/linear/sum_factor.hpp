@@ -17,7 +17,7 @@ class SumSolver final : public FactorSolver {
   Eigen::MatrixXd solve(const Eigen::Ref<const Eigen::MatrixXd>& B) const override;
   const char* name() const override { return sparse_->name(); }
   double num_entries() const override { return sparse_->num_entries(); }
-  /// Negative eigenvalues of A less those of A_0: (A_0 U; Uᵀ -W⁻¹) has the inertia of A_0 and -S together, and that of
+  /// Negative eigenvalues of A minus those of A_0: (A_0 U; Uᵀ -W⁻¹) has the inertia of A_0 and -S together, and that of
   /// -W⁻¹ and A (Haynsworth, Linear Algebra Appl. 1 (1968) 73).
   int num_extra_negative() const { return num_extra_negative_; }
 

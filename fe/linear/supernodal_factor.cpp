@@ -33,8 +33,8 @@ class SupernodalSolver final : public FactorSolver {
 MatrixXd SupernodalSolver::solve(const Eigen::Ref<const MatrixXd>& B) const {
   const std::size_t num = part.size();
   MatrixXd X(B.rows(), B.cols());
-  for (Eigen::Index first = 0; first < B.cols(); first += kManySides) {
-    const auto m = std::min(kManySides, B.cols() - first);
+  for (Eigen::Index first = 0; first < B.cols(); first += kWideRhs) {
+    const auto m = std::min(kWideRhs, B.cols() - first);
     const auto B_block = B.middleCols(first, m);
     auto X_block = X.middleCols(first, m);
     std::vector<MatrixXd> carried(num);
@@ -52,10 +52,10 @@ MatrixXd SupernodalSolver::solve(const Eigen::Ref<const MatrixXd>& B) const {
 
 }  // namespace
 
-SupernodalFactor make_supernodal_factor(const SymmetricMatrix& A, PetscInt least) {
+SupernodalFactor make_supernodal_factor(const SymmetricMatrix& A, PetscInt min_rows) {
   SupernodalFactor result;
   if (initialize_petsc().size > 1) return result;
-  auto cut = find_parts(A, least);
+  auto cut = find_parts(A, min_rows);
   if (!cut) return result;
   auto parts = std::make_unique<SupernodalSolver>();
   parts->between = std::move(cut->between);
@@ -65,16 +65,16 @@ SupernodalFactor make_supernodal_factor(const SymmetricMatrix& A, PetscInt least
   const std::size_t num = own.size();
   for (std::size_t p = 0; p < num; ++p) parts->part.push_back(std::make_unique<PartFactor>());
 
-  std::vector<char> is_fine(num, 0);
+  std::vector<char> is_done(num, 0);
   VectorXd delta;
   visit_rows(A.sparse(), [&](const MatrixRows& rows, PetscInt size) {
     delta = calc_separator_shift(rows, parts->between, size);
     do_all(num, [&](std::size_t p) {
-      is_fine[p] =
+      is_done[p] =
           parts->part[p]->analyse(rows, size, std::move(own[p]), parts->between, delta, static_cast<int>(num)) ? 1 : 0;
     });
   });
-  const auto are_all = [&] { return std::all_of(is_fine.begin(), is_fine.end(), [](char one) { return one != 0; }); };
+  const auto are_all = [&] { return std::all_of(is_done.begin(), is_done.end(), [](char one) { return one != 0; }); };
   if (!are_all()) return result;
   double num_entries = 0;
   for (const auto& part : parts->part) num_entries += part->num_entries();
@@ -85,8 +85,8 @@ SupernodalFactor make_supernodal_factor(const SymmetricMatrix& A, PetscInt least
 
   std::vector<MatrixXd> schur(num);
   do_all(num, [&](std::size_t p) {
-    is_fine[p] = parts->part[p]->factor() ? 1 : 0;
-    if (is_fine[p] != 0) schur[p] = parts->part[p]->take_schur();
+    is_done[p] = parts->part[p]->factor() ? 1 : 0;
+    if (is_done[p] != 0) schur[p] = parts->part[p]->take_schur();
   });
   result.is_definite = are_all();
   if (!result.is_definite) return result;

@@ -8,7 +8,7 @@
 namespace bough::linear {
 
 /// Smaller matrices gain nothing.
-constexpr PetscInt kLeastSupernodalRows = 20000;
+constexpr PetscInt kMinSupernodalRows = 20000;
 
 struct SupernodalFactor {
   FactorSolverHandle solver;  ///< null if another type of factor is required
@@ -23,6 +23,6 @@ struct SupernodalFactor {
 /// (calc_separator_shift) makes D_p definite whatever the other part carries. Empty: several processes, matrices that
 /// are small or have no groups of rows. One part where many rows lie between. Deterministic, but the last digits are
 /// those of the parts.
-SupernodalFactor make_supernodal_factor(const SymmetricMatrix& A, PetscInt least = kLeastSupernodalRows);
+SupernodalFactor make_supernodal_factor(const SymmetricMatrix& A, PetscInt min_rows = kMinSupernodalRows);
 
 }  // namespace bough::linear

@@ -52,7 +52,7 @@ BOUGH_INLINE const double* forward_group(const double* L, Index ld, Index j, dou
   return L;
 }
 
-/// The same of Lᵀ, from the end of their entries. \return their begin.
+/// Solves a group of columns with Lᵀ, from the end of their entries. \return their begin.
 template <int W, int M, int C>
 BOUGH_INLINE const double* backward_group(const double* L, Index ld, Index j, double* z) {
   Row<W, M> x[C];
@@ -94,15 +94,15 @@ struct Kernels {
 
 using Kernel = const double* (*)(const double* L, Index ld, Index num, double* z);
 
-#ifdef BOUGH_WIDE
+#ifdef BOUGH_AVX2
 #define BOUGH_KERNEL(name, M)                                                                 \
-  BOUGH_WIDE const double* name##_wide_##M(const double* L, Index ld, Index num, double* z) { \
+  BOUGH_AVX2 const double* name##_wide_##M(const double* L, Index ld, Index num, double* z) { \
     return Kernels<4, M>::name(L, ld, num, z);                                                \
   }                                                                                           \
   const double* name##_narrow_##M(const double* L, Index ld, Index num, double* z) {          \
     return Kernels<2, M>::name(L, ld, num, z);                                                \
   }                                                                                           \
-  Kernel get_##name##_##M() { return has_wide() ? name##_wide_##M : name##_narrow_##M; }
+  Kernel get_##name##_##M() { return platform::has_avx2() ? name##_wide_##M : name##_narrow_##M; }
 #else
 #define BOUGH_KERNEL(name, M)                                                        \
   const double* name##_narrow_##M(const double* L, Index ld, Index num, double* z) { \
@@ -115,11 +115,11 @@ BOUGH_KERNEL(forward, 8)
 BOUGH_KERNEL(backward, 4)
 BOUGH_KERNEL(backward, 8)
 
-/// Of the rows of the largest supernode.
+/// Workspace for the rows of the largest supernode.
 std::vector<double> make_room(const Supernodes& L, Index m) {
-  int most = 0;
-  for (int k = 0; k < L.num; ++k) most = std::max(most, L.row_at[k + 1] - L.row_at[k]);
-  return std::vector<double>(static_cast<std::size_t>(most * m));
+  int max_rows = 0;
+  for (int k = 0; k < L.num; ++k) max_rows = std::max(max_rows, L.row_at[k + 1] - L.row_at[k]);
+  return std::vector<double>(static_cast<std::size_t>(max_rows * m));
 }
 
 template <int M>
@@ -181,11 +181,11 @@ std::ptrdiff_t pack_supernodes(const Supernodes& L, const int* value_at, double*
 
 namespace {
 
-/// few() for kFewSides right-hand sides, many() for kManySides, which are the rows of Z.
+/// few() for kNarrowRhs right-hand sides, many() for kWideRhs, which are the rows of Z.
 template <class Few, class Many>
 void solve_by_width(const Eigen::MatrixXd& Z, const Few& few, const Many& many) {
-  BOUGH_DEMAND(Z.rows() == kFewSides || Z.rows() == kManySides);
-  if (Z.rows() == kFewSides)
+  BOUGH_DEMAND(Z.rows() == kNarrowRhs || Z.rows() == kWideRhs);
+  if (Z.rows() == kNarrowRhs)
     few();
   else
     many();
@@ -195,14 +195,14 @@ void solve_by_width(const Eigen::MatrixXd& Z, const Few& few, const Many& many) 
 
 void solve_lower(const Supernodes& L, Eigen::MatrixXd& Z) {
   solve_by_width(
-      Z, [&] { solve_forward<kFewSides>(L, get_forward_4(), Z.data()); },
-      [&] { solve_forward<kManySides>(L, get_forward_8(), Z.data()); });
+      Z, [&] { solve_forward<kNarrowRhs>(L, get_forward_4(), Z.data()); },
+      [&] { solve_forward<kWideRhs>(L, get_forward_8(), Z.data()); });
 }
 
 void solve_lower_transposed(const Supernodes& L, Eigen::MatrixXd& Z) {
   solve_by_width(
-      Z, [&] { solve_backward<kFewSides>(L, get_backward_4(), Z.data()); },
-      [&] { solve_backward<kManySides>(L, get_backward_8(), Z.data()); });
+      Z, [&] { solve_backward<kNarrowRhs>(L, get_backward_4(), Z.data()); },
+      [&] { solve_backward<kWideRhs>(L, get_backward_8(), Z.data()); });
 }
 
 }  // namespace bough::linear

@@ -23,9 +23,9 @@ std::ptrdiff_t pack_supernodes(const Supernodes& L, const int* value_at, double*
 
 /// Right-hand sides that are solved for together: L is read once for all of them, from memory, which is what a solution
 /// waits for.
-constexpr Eigen::Index kFewSides = 4, kManySides = 8;
+constexpr Eigen::Index kNarrowRhs = 4, kWideRhs = 8;
 
-/// Z (kFewSides or kManySides x n, a column for each row of L): the first `size` columns become L⁻¹Z; the others lose
+/// Z (kNarrowRhs or kWideRhs x n, a column for each row of L): the first `size` columns become L⁻¹Z; the others lose
 /// what L carries into them, L_s L⁻¹Z.
 void solve_lower(const Supernodes& L, Eigen::MatrixXd& Z);
 /// The first `size` columns of Z become those of L⁻ᵀZ, the others being the solution already.

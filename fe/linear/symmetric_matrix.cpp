@@ -11,7 +11,7 @@ namespace {
 
 using Eigen::VectorXd;
 
-/// On several ranks the sums of Uᵀx are of all; y of its own rows.
+/// On several ranks the sums of Uᵀx are of all; y of the local rows.
 PetscErrorCode multiply_sum(Mat shell, Vec x, Vec y) {
   void* context = nullptr;
   check_petsc(MatShellGetContext(shell, static_cast<void*>(&context)));

@@ -15,7 +15,7 @@ struct TwoParts {
   std::vector<PetscInt> first, second, between;
 };
 
-/// What is known of the order in which the rows of a matrix are eliminated; null: nothing (ordering.hpp).
+/// Known order in which the rows of a matrix are eliminated; null: unknown (ordering.hpp).
 struct RowOrder {
   std::shared_ptr<const std::vector<int>> groups;  ///< run i of rows that couple alike is [groups[i], groups[i + 1])
   std::shared_ptr<const std::vector<PetscInt>> order;

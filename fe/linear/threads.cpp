@@ -36,7 +36,7 @@ bool has_limited_memory() {
 int get_num_threads() {
   if (initialize_petsc().size > 1) return 1;  // the ranks are threads enough
   if (has_limited_memory()) return 1;
-  if (const char* asked = std::getenv("OMP_NUM_THREADS")) return std::max(1, std::atoi(asked));
+  if (const char* setting = std::getenv("OMP_NUM_THREADS")) return std::max(1, std::atoi(setting));
   return static_cast<int>(std::clamp(std::thread::hardware_concurrency(), 1U, 2U));
 }
 
@@ -64,15 +64,15 @@ void do_both(const std::function<void()>& first, const std::function<void()>& se
   if (failure) std::rethrow_exception(failure);
 }
 
-void do_halves(int size, int least, const std::function<void(int, int)>& work) {
-  if (get_num_threads() < 2 || size < 2 * least) return work(0, size);
+void do_halves(int size, int min_size, const std::function<void(int, int)>& work) {
+  if (get_num_threads() < 2 || size < 2 * min_size) return work(0, size);
   do_both([&] { work(0, size / 2); }, [&] { work(size / 2, size); });
 }
 
 void do_columns(std::ptrdiff_t rows, std::ptrdiff_t columns, const std::function<void(int, int)>& work) {
-  constexpr std::ptrdiff_t kLeast = 5000;  // fewer are done before a thread has started
+  constexpr std::ptrdiff_t kMinRows = 5000;  // fewer are done before a thread has started
   const auto num = static_cast<int>(columns);
-  do_halves(num, rows > kLeast ? 1 : num, work);
+  do_halves(num, rows > kMinRows ? 1 : num, work);
 }
 
 }  // namespace bough::linear

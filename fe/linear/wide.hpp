@@ -1,11 +1,8 @@
 #pragma once
-/// \file Loops for processors with AVX2 beside loops for all others: templates on the numbers in a register, of which
-/// one is compiled with BOUGH_WIDE and taken where has_wide().
+/// \file Loops for processors with AVX2 and for all others: templates on the numbers in a register, of which one is
+/// compiled with BOUGH_AVX2 and taken if platform::has_avx2().
 
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(BOUGH_NARROW)
-#define BOUGH_WIDE __attribute__((target("avx2,fma")))
-#endif
-#define BOUGH_INLINE inline __attribute__((always_inline))
+#include "base/platform.hpp"
 
 namespace bough::linear {
 
@@ -20,13 +17,5 @@ template <>
 struct Register<2> {
   using type = double __attribute__((vector_size(16)));
 };
-
-#ifdef BOUGH_WIDE
-/// Returns true if the processor has AVX2 and FMA.
-inline bool has_wide() {
-  static const bool has = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
-  return has;
-}
-#endif
 
 }  // namespace bough::linear

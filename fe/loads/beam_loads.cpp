@@ -44,9 +44,17 @@ bool for_each_beam_load(const LoadTarget& t, const Visit& visit) {
     if (!is_here(card)) continue;
     const auto found = beams.find(card.element);
     if (found == beams.end()) {
-      t.diagnostics.error("fe.missing-element", t.deck.locate(card.at),
-                          "PLOAD1 on element " + std::to_string(card.element) + ": no CBAR or CBEAM has this id",
-                          "correct the element id");
+      const auto& all = t.model.elements();
+      const auto other = std::find_if(all.begin(), all.end(), [&](auto& e) { return e->id() == card.element; });
+      if (other == all.end())
+        t.diagnostics.error("fe.missing-element", t.deck.locate(card.at),
+                            "PLOAD1 on element " + std::to_string(card.element) + ": no CBAR or CBEAM has this id",
+                            "correct the element id");
+      else
+        t.diagnostics.error("fe.missing-element", t.deck.locate(card.at),
+                            "PLOAD1 on element " + std::to_string(card.element) + ", a " + (*other)->card() +
+                                ": PLOAD1 is supported on CBAR and CBEAM alone",
+                            "give the load by FORCE and MOMENT at the grids of the element");
       continue;
     }
     const auto& beam = *t.model.elements()[static_cast<std::size_t>(found->second)]->as_beam();

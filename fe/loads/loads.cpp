@@ -28,15 +28,15 @@ bool add_directed_loads(const LoadTarget& t) {
     const std::string card = std::string(load.is_moment ? "MOMENT" : "FORCE") + (load.is_cross ? "2" : "1");
     const int index = t.find_grid(load.g, card, load.at);
     std::array<Vector3d, 4> x;
-    bool is_good = index >= 0;
+    bool is_valid = index >= 0;
     FollowerForce moving{index, load.is_moment, load.is_cross, t.scale * load.f, {}};
     for (std::size_t i = 0; i < (load.is_cross ? 4u : 2u); ++i) {
       const int k = t.find_grid(load.grids[i], card, load.at);
-      is_good = is_good && k >= 0;
+      is_valid = is_valid && k >= 0;
       moving.nodes[i] = k;
       if (k >= 0) x[i] = t.model.node(k).x;
     }
-    if (!is_good) continue;
+    if (!is_valid) continue;
     Vector3d direction = x[1] - x[0];
     double size = direction.norm();
     if (load.is_cross) {

@@ -156,10 +156,10 @@ class SurfaceLoads {
     std::vector<int> nodes;
     std::vector<Vector3d> corners, midside;
     std::vector<char> has_midside;
-    bool is_good = true;
+    bool is_valid = true;
     const auto add_node = [&](int grid) {
       const int index = t_.find_grid(grid, card, at);
-      is_good = is_good && index >= 0;
+      is_valid = is_valid && index >= 0;
       nodes.push_back(index);
       return index >= 0 ? t_.model.node(index).x : Vector3d(Vector3d::Zero());
     };
@@ -168,7 +168,7 @@ class SurfaceLoads {
       has_midside.push_back(grid > 0);
       midside.push_back(grid > 0 ? add_node(grid) : Vector3d(Vector3d::Zero()));
     }
-    if (!is_good) return;
+    if (!is_valid) return;
     const Eigen::Matrix3Xd f = calc_face_load(corners, midside, has_midside, p, traction);
     for (std::size_t i = 0; i < nodes.size(); ++i)
       t_.F.segment<3>(t_.model.node(nodes[i]).first_gdof) += t_.scale * f.col(static_cast<Eigen::Index>(i));

@@ -33,13 +33,13 @@ struct Rows {
   std::vector<int> elements;  ///< those that touch the rows, ascending
 };
 
-/// What is added, elements and others: their g-dofs, and the columns of T that these rows have, each once and
+/// Terms of the sum, elements and others: their g-dofs, and the columns of T that these rows have, each once and
 /// ascending.
 class Parts {
  public:
   Parts(const SparseRows& T, std::vector<const std::vector<int>*> parts) : gdofs_(std::move(parts)) {
     std::vector<int> seconds;
-    linear::do_halves(size(), kLeast, [&](int from, int to) {
+    linear::do_halves(size(), kMinSize, [&](int from, int to) {
       std::vector<int> columns, all;
       for (int e = from; e < to; ++e) {
         calc_element_columns(T, this->gdofs(e), columns);
@@ -59,7 +59,7 @@ class Parts {
   }
 
  private:
-  static constexpr int kLeast = 2000;  ///< fewer are done before a thread has started
+  static constexpr int kMinSize = 2000;  ///< fewer are done before a thread has started
   std::vector<const std::vector<int>*> gdofs_;
   std::vector<int> sizes_ = std::vector<int>(gdofs_.size());
   std::vector<std::ptrdiff_t> start_ = std::vector<std::ptrdiff_t>(gdofs_.size() + 1);

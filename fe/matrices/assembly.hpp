@@ -15,7 +15,7 @@ enum class MatrixKind { Stiffness, Other };
 /// (wide_part.hpp). O(elements).
 linear::SymmetricMatrix assemble(const Model& model, DofSet set, MatrixKind kind, const AddElementMatrix& add,
                                  std::vector<QuadraticForm> forms = {});
-/// The same of the elements that `takes` says, on the g-set; the others are not asked.
+/// Sum over the elements for which `takes` is true, on the g-set; add is not called for the others.
 using TakesElement = std::function<bool(const Element&)>;
 linear::SymmetricMatrix assemble_some(const Model& model, const AddElementMatrix& add, const TakesElement& takes);
 /// Sum over elements that no model has yet, on the g-set, whole on every rank.
@@ -25,8 +25,8 @@ SparseRows sum_elements(const Elements& elements, int num_gdofs, const AddElemen
 linear::SymmetricMatrix assemble_stiffness(const Model& model, DofSet set);
 /// M of a kind on a set, times WTMASS.
 linear::SymmetricMatrix assemble_mass(const Model& model, DofSet set, MassKind kind);
-/// Gives the memory of K of the f-set back to the system as long as nobody reads it, until restore_stiffness() makes it
-/// again, bit for bit. False, and nothing happens, where K has a part of low rank or is on several processes.
+/// Gives the memory of K of the f-set back to the system as long as no function reads it, until restore_stiffness()
+/// makes it again, bit for bit. False, and nothing happens, where K has a part of low rank or is on several processes.
 bool drop_stiffness(const linear::SymmetricMatrix& K);
 /// Assembles K again after drop_stiffness(), equal bit for bit.
 void restore_stiffness(const Model& model, const linear::SymmetricMatrix& K);
@@ -34,15 +34,15 @@ void restore_stiffness(const Model& model, const linear::SymmetricMatrix& K);
 linear::SymmetricMatrix assemble_damping(const Model& model, DofSet set);
 /// Products with the g-set mass matrix without forming it: M X, num_gdofs x k, replicated on every rank. O(elements k).
 MatrixXd calc_mass_times(const Model& model, MassKind kind, const Eigen::Ref<const MatrixXd>& X_g);
-/// The same with K. `energy`, if given: ½ x_eᵀ K_e x_e, elements x k, of this rank's elements; others have zeros.
+/// Product K X_g. `energy`, if given: ½ x_eᵀ K_e x_e, elements x k, of this rank's elements; others have zeros.
 MatrixXd calc_stiffness_times(const Model& model, const Eigen::Ref<const MatrixXd>& X_g, MatrixXd* energy = nullptr);
-/// The same with the share of K that is K_G0 of the prestress.
+/// Product with the share of K that is K_G0 of the prestress.
 MatrixXd calc_prestress_times(const Model& model, const Eigen::Ref<const MatrixXd>& X_g);
-/// The same with B.
+/// Product with B.
 MatrixXd calc_damping_times(const Model& model, const Eigen::Ref<const MatrixXd>& X_g);
 /// Σ (g + GE of the element) K_e X, the structural damping of stiffness; direct matrices (K2GG) have g alone.
 MatrixXd calc_structural_damping_times(const Model& model, double g, const Eigen::Ref<const MatrixXd>& X_g);
-/// Whether any element damps.
+/// Returns true if any element damps.
 bool has_damping(const Model& model);
 
 /// Mass properties about `reference` (basic), with the model's own mass kind.

@@ -157,18 +157,20 @@ ElementQuality calc_quality(const std::string& type, const std::vector<Vector3d>
   const bool is_plane = topology.neighbours[0].size() == 2;
   const Vector3d mean =
       type == "quad4" ? (at(2) - at(0)).cross(at(3) - at(1)).normalized() : Vector3d(Vector3d::Zero());
-  double least = INFINITY, most = -INFINITY;
+  double min_value = INFINITY, max_value = -INFINITY;
   for (int i = 0; i < static_cast<int>(topology.neighbours.size()); ++i) {
     const auto& n = topology.neighbours[static_cast<std::size_t>(i)];
     const Vector3d normal = (at(n[0]) - at(i)).cross(at(n[1]) - at(i));
     const double value = !is_plane ? normal.dot(at(n[2]) - at(i)) : type == "quad4" ? normal.dot(mean) : normal.norm();
-    least = std::min(least, value);
-    most = std::max(most, value);
+    min_value = std::min(min_value, value);
+    max_value = std::max(max_value, value);
     if (type == "quad4" && normal.norm() > 0)
       quality.warp_deg =
           std::max(quality.warp_deg, std::atan2(normal.cross(mean).norm(), normal.dot(mean)) * 180 / M_PI);
   }
-  quality.jacobian = topology.neighbours.size() == 1 ? (least > 0 ? 1 : -1) : most > 0 ? least / most : -1;
+  quality.jacobian = topology.neighbours.size() == 1 ? (min_value > 0 ? 1 : -1)
+                     : max_value > 0                 ? min_value / max_value
+                                                     : -1;
   return quality;
 }
 

@@ -98,12 +98,12 @@ double estimate_factor_entries(const Model& model) {
   return dofs_of_grid * dofs_of_grid * count_entries(graph, order, place);
 }
 
-void require_memory_for_factor(const Model& model, int least) {
-  constexpr double kMostCounted = 2147483647;
-  if (model.num_fdofs() < least || linear::initialize_petsc().size > 1) return;
+void require_memory_for_factor(const Model& model, int min_fdofs) {
+  constexpr double kMaxCounted = 2147483647;
+  if (model.num_fdofs() < min_fdofs || linear::initialize_petsc().size > 1) return;
   const double num_entries = estimate_factor_entries(model), num_equations = model.num_fdofs();
   linear::require_memory(num_equations, num_entries, linear::calc_free_memory());
-  if (num_entries > kMostCounted)
+  if (num_entries > kMaxCounted)
     throw ComputationError("fe.out-of-memory", {},
                            "the factor of " + std::to_string(model.num_fdofs()) + " equations needs about " +
                                linear::format_bytes(linear::calc_factor_bytes(num_entries)) +

@@ -8,8 +8,8 @@ namespace bough::fe {
 /// dissection (METIS), times the dofs of a grid each way. A tenth of the time of the factor or less.
 double estimate_factor_entries(const Model& model);
 
-/// Throws ComputationError "fe.out-of-memory" where the factor of so many equations or more will not fit the memory, or
-/// the numbers that CHOLMOD counts with; on one process.
-void require_memory_for_factor(const Model& model, int least = 500'000);
+/// Throws ComputationError "fe.out-of-memory" where the factor of at least `min_fdofs` equations will not fit the
+/// memory, or the numbers that CHOLMOD counts with; on one process.
+void require_memory_for_factor(const Model& model, int min_fdofs = 500'000);
 
 }  // namespace bough::fe

@@ -4,8 +4,8 @@
 
 namespace bough::fe {
 
-/// As Nastran prints it (MSC Nastran Reference Guide, Grid Point Weight Generator): before PARAM,WTMASS, so weights
-/// where that turns weight into mass.
+/// Grid point weight as Nastran prints it (MSC Nastran Reference Guide, Grid Point Weight Generator): before
+/// PARAM,WTMASS, so weights where that turns weight into mass.
 struct GridPointWeight {
   int grid = 0;                           ///< of the reference point; 0: the origin of basic
   Vector3d reference = Vector3d::Zero();  ///< in basic
@@ -20,7 +20,7 @@ struct GridPointWeight {
 
 /// About grid `grid` (0: the origin of basic). Throws InputError("fe.missing-grid").
 GridPointWeight calc_grid_point_weight(const Model& model, int grid);
-/// The same from a rigid mass matrix (x y z, rotations about x y z) about the reference.
+/// Grid point weight from a rigid mass matrix (x y z, rotations about x y z) about the reference.
 GridPointWeight calc_grid_point_weight(const Eigen::Matrix<double, 6, 6>& MO);
 
 }  // namespace bough::fe

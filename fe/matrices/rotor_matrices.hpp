@@ -7,18 +7,27 @@
 
 namespace bough::fe {
 
-/// A line of grids that spins about itself.
+/// Frame of the displacements: fixed in space, or turning with the rotor.
+enum class RotorFrame { Fixed, Rotating };
+
+/// Grids that spin about an axis: on it, or all around it.
 struct RotorAxis {
   int id = 0;
   std::vector<int> grids;             ///< ids
   Vector3d axis = Vector3d::UnitX();  ///< unit vector in basic; positive spin by the right-hand rule
   SourceLocation at;
+  Vector3d point = Vector3d::Zero();  ///< [L] a point of the axis
+  bool is_spatial = false;            ///< grids are around the axis: a body of shells, solids and bars
+  RotorFrame frame = RotorFrame::Fixed;
 };
 
 /// Grids and elements of a rotor in a model.
 struct Rotor {
   int id = 0;
   Vector3d axis = Vector3d::UnitX();
+  Vector3d point = Vector3d::Zero();
+  bool is_spatial = false;
+  RotorFrame frame = RotorFrame::Fixed;
   std::vector<int> nodes;                ///< indices into Model::nodes()
   std::vector<const Element*> elements;  ///< all of their grids are on the rotor
   double mass = 0, polar_inertia = 0;    ///< [M], [M L²] about the axis, with PARAM,WTMASS
@@ -43,14 +52,24 @@ using SparseColumns = Eigen::SparseMatrix<double>;
 /// num_gdofs x num_gdofs, basic axes, of one rotor. With ẽ the cross product with the axis at each grid, translations
 /// and rotations, the motion in the rotating frame changes by u̇ - Ω ẽ u.
 struct RotorMatrices {
-  SparseColumns gyroscopic;  ///< G: Ω G is part of B
-  SparseColumns damping;     ///< α1 M + α2 K and viscous equivalents: part of B, without the dampers B_e, which B has
+  SparseColumns gyroscopic;  ///< G: Ω G is part of B; of the whole model in the rotating frame
+  /// Ω² times it is part of K, symmetric: convection of momentum of a spatial rotor in the fixed frame, centrifugal
+  /// softening of the whole model in the rotating one. Without the geometric stiffness of the centrifugal stress.
+  SparseColumns centrifugal;
+  SparseColumns damping;  ///< α1 M + α2 K and viscous equivalents: part of B, without the dampers B_e, which B has
   SparseColumns circulation;  ///< -B_R ẽ: times Ω part of K
   SparseColumns structural;   ///< H = g K + K4: its imaginary part at frequency ω if it has no viscous equivalent
   SparseColumns structural_circulation;  ///< -H ẽ: times Ω/ω part of K if it has no viscous equivalent
 };
-/// Assembles the matrices of a rotor. O(elements of the rotor).
+/// Assembles the matrices of a rotor. O(elements of the rotor; of the model in the rotating frame).
 RotorMatrices assemble_rotor(const Model& model, const Rotor& rotor, const RotorDamping& damping);
+/// Centrifugal load of a spatial rotor [num_gdofs] at unit spin, with its stiffness from loads on arms.
+struct CentrifugalLoad {
+  VectorXd F;
+  SparseColumns stiffness;
+};
+/// -∫ N^T ρ ẽẽ r dV by the mass samples of the elements.
+CentrifugalLoad calc_centrifugal_load(const Model& model, const Rotor& rotor);
 /// Σ (g + GE) K_e of the elements of a rotor: its part of the structural damping of the model.
 SparseColumns assemble_rotor_structural(const Model& model, const Rotor& rotor, double g);
 

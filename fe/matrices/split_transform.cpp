@@ -26,8 +26,8 @@ struct RowBasis {
   Triplets coefficients;  ///< row of T, basis row
 };
 
-/// Nothing if there are more than `most` directions.
-std::optional<RowBasis> find_row_basis(const SparseRows& T, const std::vector<int>& wide, std::size_t most) {
+/// Nothing if there are more than `max_columns` directions.
+std::optional<RowBasis> find_row_basis(const SparseRows& T, const std::vector<int>& wide, std::size_t max_columns) {
   RowBasis basis;
   VectorXd rest = VectorXd::Zero(T.cols());
   for (const int row : wide) {
@@ -46,7 +46,7 @@ std::optional<RowBasis> find_row_basis(const SparseRows& T, const std::vector<in
       if (c[k] != 0) basis.coefficients.emplace_back(row, static_cast<int>(k), c[k]);
     const double left = rest.norm();
     if (left <= 1e-14 * size) continue;
-    if (basis.rows.size() == most) return std::nullopt;
+    if (basis.rows.size() == max_columns) return std::nullopt;
     basis.coefficients.emplace_back(row, static_cast<int>(basis.rows.size()), left);
     basis.rows.push_back(rest / left);
   }
@@ -72,7 +72,7 @@ std::vector<int> find_parts(const Model& model, const SparseRows& T) {
   return parent;
 }
 
-/// What a rigid-body motion, a column of six with rotations times the size of the model, does to the f-dofs.
+/// Displacements of the f-dofs in the rigid-body motions, six columns, rotations times the size of the model.
 struct Motions {
   MatrixXd rows;  ///< num_fdofs x 6
   VectorXd unit;  ///< 1 for displacements, the size for rotations
@@ -152,7 +152,7 @@ int get_max_dense_terms() {
 }
 
 std::optional<SplitTransform> split_transform(const Model& model, bool keeps_supports) {
-  constexpr std::size_t most = 240;          // columns of dense storage
+  constexpr std::size_t max_columns = 240;   // columns of dense storage
   if (model.omitted()) return std::nullopt;  // every row is dense
   const SparseRows& T = model.T();
   for (int limit = get_max_dense_terms(); limit < T.cols(); limit *= 2) {
@@ -160,7 +160,7 @@ std::optional<SplitTransform> split_transform(const Model& model, bool keeps_sup
     for (int row = 0; row < T.rows(); ++row)
       if (T.outerIndexPtr()[row + 1] - T.outerIndexPtr()[row] > limit) wide.push_back(row);
     if (wide.empty()) return std::nullopt;
-    const auto basis = find_row_basis(T, wide, most);
+    const auto basis = find_row_basis(T, wide, max_columns);
     if (!basis) continue;  // the narrowest as any other
     SplitTransform split;
     std::vector<char> is_wide(static_cast<std::size_t>(T.rows()), 0);

@@ -61,7 +61,7 @@ linear::LowRankPart calc_wide_part(const Model& model, const SplitTransform& spl
 }
 
 linear::LowRankPart take_wide_forms(const Model& model, std::vector<QuadraticForm>& forms) {
-  constexpr Eigen::Index most = 500;  // columns of dense storage
+  constexpr Eigen::Index max_columns = 500;  // columns of dense storage
   const auto count = [&](std::size_t limit) {
     Eigen::Index rows = 0;
     for (const auto& form : forms)
@@ -69,7 +69,7 @@ linear::LowRankPart take_wide_forms(const Model& model, std::vector<QuadraticFor
     return rows;
   };
   auto limit = static_cast<std::size_t>(get_max_dense_terms());
-  while (count(limit) > most) limit *= 2;
+  while (count(limit) > max_columns) limit *= 2;
   linear::LowRankPart part;
   for (const auto& form : forms) {
     if (form.gdofs.size() <= limit) continue;

@@ -1,6 +1,6 @@
 #pragma once
-/// \file What is not sparse of TᵀAT: what hangs on constraints over many dofs, as an RBE3 over a whole panel is, and
-/// quadratic forms over many dofs (docs/adr/0013-wide-constraints.md).
+/// \file Dense part of TᵀAT: constraints over many dofs, such as an RBE3 over a whole panel, and quadratic forms over
+/// many dofs (docs/adr/0013-wide-constraints.md).
 #include <functional>
 #include <optional>
 
@@ -19,8 +19,8 @@ struct SplitTransform {
   SparseRows G;  ///< r x num_fdofs, dense rows
 };
 
-/// A row of T with more entries than this is wide: below it the dense block that it makes costs next to nothing. Tests
-/// lower it by PETSc's option -bough_max_dense_terms.
+/// A row of T with more entries than this is wide: below it the cost of its dense block is negligible. Tests lower it
+/// by PETSc's option -bough_max_dense_terms.
 inline constexpr int kMaxDenseTerms = 300;
 /// Returns kMaxDenseTerms or the value of -bough_max_dense_terms; initializes PETSc.
 int get_max_dense_terms();

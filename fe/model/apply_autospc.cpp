@@ -12,10 +12,10 @@ namespace {
 
 /// Columns of T that belong to `ldofs`, in this order; `column_ldof`: of all of them.
 SparseRows take_columns(const SparseRows& T, const std::vector<int>& column_ldof, const std::vector<int>& ldofs) {
-  std::unordered_map<int, int> wanted, place;
-  for (size_t k = 0; k < ldofs.size(); ++k) wanted.emplace(ldofs[k], static_cast<int>(k));
-  for (size_t f = 0; f < column_ldof.size() && !wanted.empty(); ++f)
-    if (const auto found = wanted.find(column_ldof[f]); found != wanted.end())
+  std::unordered_map<int, int> requested, place;
+  for (size_t k = 0; k < ldofs.size(); ++k) requested.emplace(ldofs[k], static_cast<int>(k));
+  for (size_t f = 0; f < column_ldof.size() && !requested.empty(); ++f)
+    if (const auto found = requested.find(column_ldof[f]); found != requested.end())
       place.emplace(static_cast<int>(f), found->second);
   std::vector<Eigen::Triplet<double>> entries;
   for (int row = 0; row < T.outerSize() && !place.empty(); ++row)
@@ -42,7 +42,8 @@ void ModelBuilder::apply_autospc(const Elimination& first) {
                                                   [](const AutospcEntry& entry) { return entry.is_skew; });
   std::vector<double> mass(model_.autospc_.size(), 0);
   if (asks_mass) mass = calc_masses(model_, first.fdof_ldof, model_.autospc_);
-  std::set<int> massive;  // nodes; rotations have negligible mass, and rigid-body motions are told by their components
+  std::set<int>
+      massive;  // nodes; rotations have negligible mass, and rigid-body motions are recognized by their components
   for (size_t e = 0; e < mass.size(); ++e)
     if (mass[e] > 0 && !only_null && model_.autospc_[e].component <= 3) massive.insert(model_.autospc_[e].node);
   int num_massive = 0, num_skew = 0;

@@ -16,8 +16,8 @@ namespace bough::fe {
 /// grid point singularity processing, PARAM,EPZERO).
 /// The stiffness of a prestressed model has that of its stress; what it softens is left free, as no support may hide
 /// that it buckles. T of `model` = constraints before AUTOSPC; fdof_ldof as in Elimination.
-/// Entries whose component has stiffness of its own, as at the end of an oblique rod, say so (is_skew) and have the
-/// terms by which the components follow each other when the direction itself is held. By node and component.
+/// Entries whose component has stiffness, as at the end of an oblique rod, say so (is_skew) and have the terms by which
+/// the components follow each other when the direction itself is held. By node and component.
 std::vector<AutospcEntry> find_singular_dofs(const Model& model, const std::vector<int>& fdof_ldof, double epsilon);
 
 /// The mass of each of `entries`, its own and of dofs that follow it (the diagonal of M before AUTOSPC).

@@ -257,16 +257,16 @@ void ModelBuilder::add_mpc(const records::Mpc& mpc) {
                        "put a term with a coefficient first");
     return;
   }
-  bool is_good = true;
+  bool is_valid = true;
   for (const auto& term : mpc.terms) {
     const int ldof = model_.find_ldof(term.g, term.c, equation.card, at, diagnostics_);
-    is_good = is_good && ldof >= 0;
+    is_valid = is_valid && ldof >= 0;
     if (&term == &mpc.terms.front())
       equation.dependent = ldof;
     else if (term.a != 0)
       equation.terms.emplace_back(ldof, -term.a / mpc.terms.front().a);
   }
-  if (is_good) equations_.push_back(std::move(equation));
+  if (is_valid) equations_.push_back(std::move(equation));
 }
 
 void ModelBuilder::collect_equations() {

@@ -168,7 +168,7 @@ std::vector<ConstraintEquation> resolve_chains(int num_ldofs, std::vector<Constr
                                                Diagnostics& diagnostics) {
   const int num = static_cast<int>(equations.size());
   std::vector<int> equation_of(num_ldofs, -1);
-  bool is_good = true;
+  bool is_valid = true;
   for (int e = 0; e < num; ++e) {
     int& owner = equation_of[equations[e].dependent];
     if (owner >= 0) {
@@ -176,11 +176,11 @@ std::vector<ConstraintEquation> resolve_chains(int num_ldofs, std::vector<Constr
                         name_dof(equations[e].dependent) + " is made dependent by " + equations[e].card +
                             " and already by " + equations[owner].card,
                         "make it dependent in one of them only");
-      is_good = false;
+      is_valid = false;
     }
     owner = e;
   }
-  if (!is_good) return {};
+  if (!is_valid) return {};
 
   // Groups of equations that name each other, what each group names before it.
   std::vector<Term> terms;

@@ -221,7 +221,7 @@ void add_rbe3(const records::Rbe3& record, const NodeTable& nodes, const SourceL
   unit << 1, 1, 1, 1 / arm, 1 / arm, 1 / arm;
   Matrix6d R = Matrix6d::Zero();
   R.topLeftCorner<3, 3>() = R.bottomRightCorner<3, 3>() = reference->R_basic_cd.transpose();
-  // Grids on a line say nothing of a rotation about it; what does not depend on that is as well defined as ever.
+  // Grids on a line do not determine a rotation about it; what does not depend on that is as well defined as ever.
   const Eigen::SelfAdjointEigenSolver<Matrix6d> parts(unit.asDiagonal() * A * unit.asDiagonal());
   Matrix6d inverse = Matrix6d::Zero();
   bool is_determined = true;

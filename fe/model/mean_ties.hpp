@@ -31,7 +31,8 @@ class MeanTies {
   /// The tie of a node; nullptr: none.
   const MeanTie* find(int node) const;
   /// The mean of a tie.
-  const WeightedMean& get_mean(const MeanTie& tie) const { return means_[static_cast<std::size_t>(tie.mean)]; }
+  const WeightedMean& get_mean(const MeanTie& tie) const { return get_mean(tie.mean); }
+  const WeightedMean& get_mean(int mean) const { return means_[static_cast<std::size_t>(mean)]; }
   /// Ids of grids and scalar points that equations join to others in no such way: MPC, splines, some components alone.
   const std::vector<int>& others() const { return others_; }
 

@@ -23,7 +23,7 @@ namespace {
 /// Id and nodes of elements, by how they are drawn.
 using Shapes = std::map<std::string, std::vector<std::pair<int, std::vector<int>>>>;
 
-/// Whether it is drawn; a scalar point is nowhere.
+/// Returns true if an element is drawn; a scalar point has no position.
 bool is_drawn(const ElementShape& shape, const std::vector<Node>& nodes) {
   return !shape.type.empty() && std::all_of(shape.nodes.begin(), shape.nodes.end(),
                                             [&](int k) { return nodes[static_cast<size_t>(k)].num_dofs == 6; });

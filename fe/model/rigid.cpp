@@ -236,17 +236,17 @@ void add_rbar(const records::Rbar& record, const NodeTable& nodes, const SourceL
 void add_rbe1(const records::Rbe1& record, const NodeTable& nodes, const SourceLocation& at, Diagnostics& diagnostics,
               std::vector<ConstraintEquation>& equations, std::vector<Link>& links) {
   const std::string card = "RBE1 " + std::to_string(record.id);
-  bool is_good = !record.independent.empty();
+  bool is_valid = !record.independent.empty();
   const auto find = [&](const std::vector<records::GridComponents>& terms) {
     std::vector<BodyTerm> found;
     for (const auto& term : terms) {
       found.push_back({find_rigid_grid(term.g, card, nodes, at, diagnostics), term.c});
-      is_good = is_good && found.back().node;
+      is_valid = is_valid && found.back().node;
     }
     return found;
   };
   const auto independent = find(record.independent), dependent = find(record.dependent);
-  if (!is_good) return;
+  if (!is_valid) return;
   for (const auto& m : dependent)
     for (const auto& n : independent)
       if (m.node == n.node && (m.c & n.c) != 0) {

@@ -283,7 +283,7 @@ LibrarySection calc_box(double w, double h, double top, double bottom, double le
   o.add_wall(x1, y1, x0, y1, top);
   o.add_wall(x0, y1, x0, y0, left);
   LibrarySection s = calc_from_outline(o);
-  // As MSC Nastran prints them: the clear walls along the shear over the area.
+  // Shear factors as MSC Nastran prints them: the clear walls along the shear over the area.
   s.k1 = (left + right) * (h - top - bottom) / s.A;
   s.k2 = (top + bottom) * (w - left - right) / s.A;
   return s;

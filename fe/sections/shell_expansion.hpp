@@ -1,5 +1,5 @@
 #pragma once
-/// \file What a plate's section does when it is heated: included by shell_section.hpp.
+/// \file Thermal expansion of the section of a plate: included by shell_section.hpp.
 #include <optional>
 
 #include <Eigen/Dense>

@@ -8,7 +8,7 @@ namespace bough::fe {
 
 ShellSection rotate_section(const ShellSection& section, double angle) {
   const double c = std::cos(angle), s = std::sin(angle);
-  // Strains in material axes from strains in element axes; the law transforms as TᵀCT (Jones, eq. 2.81).
+  // Strains in material axes from strains in element axes; the stiffness transforms as TᵀCT (Jones, eq. 2.81).
   Eigen::Matrix3d t;
   t << c * c, s * s, c * s, s * s, c * c, -c * s, -2 * c * s, 2 * c * s, c * c - s * s;
   Eigen::Matrix2d r;

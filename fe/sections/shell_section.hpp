@@ -1,5 +1,5 @@
 #pragma once
-/// \file Stress resultants of a plate per unit width: the constitutive law a shell element sees.
+/// \file Stress resultants of a plate per unit width: the constitutive law of a shell element.
 #include <memory>
 
 #include <Eigen/Dense>
@@ -27,8 +27,8 @@ struct ShellSection {
   std::shared_ptr<const ShellStress> stress;        ///< where its stresses are given; empty: nowhere
 };
 
-/// The same section seen from axes turned by `angle` (radians) about z from its own: the element's x-axis lies at
-/// -angle from the material's.
+/// Section seen from axes turned by `angle` (radians) about z from its own: the element's x-axis lies at -angle from
+/// the material's.
 ShellSection rotate_section(const ShellSection& section, double angle);
 
 }  // namespace bough::fe

@@ -7,8 +7,8 @@
 namespace bough::fe {
 
 /// Homogeneous: N/t + z M/I at z1 and z2, the linear distribution that has the resultants N and M. Laminate: strains
-/// [ε; κ] of the resultants by the section's own law, in the middle of each ply, in its axes 1 and 2 (Jones, "Mechanics
-/// of composite materials", 2nd ed., 4.2); between plies the shear that keeps them in equilibrium.
+/// [ε; κ] of the resultants by the section's stiffness, in the middle of each ply, in its axes 1 and 2 (Jones,
+/// "Mechanics of composite materials", 2nd ed., 4.2); between plies the shear that keeps them in equilibrium.
 struct ShellStress {
   struct Layer {
     double z = 0;                                 ///< of its middle, above the reference surface
@@ -33,15 +33,16 @@ struct ShellStress {
 std::vector<StressPoint> list_stress_points(const ShellSection& section);
 /// Stresses there per [N; M; Q], rows as list_stress_names().
 Eigen::Matrix<double, Eigen::Dynamic, 8> calc_stress_map(const ShellSection& section);
-/// What the temperature t + z g adds in the plies; empty for one material.
+/// Thermal strains of the plies by the temperature t + z g; empty for one material.
 Eigen::VectorXd calc_ply_expansion(const ShellSection& section, double t, double g);
 
-/// Those points but the bonds, and the reference surface, "mid": its strains and curvatures.
+/// Points of strain output: those of stresses but the bonds, and the reference surface, "mid": its strains and
+/// curvatures.
 std::vector<StressPoint> list_strain_points(const ShellSection& section);
 /// Mechanical strains there per [N; M]: ε + z κ of [ε; κ] = [A B; B D]⁻¹ [N; M]. Without membrane (bending) stiffness
 /// the section has no strain of that kind.
 Eigen::Matrix<double, Eigen::Dynamic, 6> calc_strain_map(const ShellSection& section);
-/// What the temperature t + z g adds: the free expansion of the section as a whole.
+/// Thermal strains by the temperature t + z g: the free expansion of the section as a whole.
 Eigen::VectorXd calc_section_expansion(const ShellSection& section, double t, double g);
 
 }  // namespace bough::fe

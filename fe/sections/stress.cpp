@@ -20,7 +20,7 @@ std::string add_point(const std::string& component, const StressPoint& point) {
 
 bool has_bond_index(const StressPoint& point) { return point.theory != FailureTheory::None && point.bond > 0; }
 
-/// What a point adds to its components.
+/// Names of the results that are derived from the components of a point.
 std::vector<std::string> list_derived(const StressPoint& point, bool of_strain) {
   if (of_strain && (point.kind == StressKind::Rod || point.kind == StressKind::Ply)) return {};
   switch (point.kind) {
@@ -168,7 +168,7 @@ PointResults::PointResults(std::vector<StressPoint> points, bool of_strain)
 void PointResults::calc(const Eigen::Ref<const VectorXd>& given, Eigen::Ref<VectorXd> out) const {
   BOUGH_DEMAND(out.size() == size_);
   Eigen::Index from = 0, to = 0;
-  double most = -HUGE_VAL, least = HUGE_VAL;
+  double max_stress = -HUGE_VAL, min_stress = HUGE_VAL;
   for (std::size_t p = 0; p < points_.size(); ++p) {
     const auto n = num_components_[p], d = num_derived_[p];
     out.segment(to, n) = given.segment(from, n);
@@ -176,15 +176,15 @@ void PointResults::calc(const Eigen::Ref<const VectorXd>& given, Eigen::Ref<Vect
     const bool is_beside = points_[p].kind == StressKind::Mid || (points_[p].kind == StressKind::Bond && d == 0);
     if (!is_beside) {
       const double value = d > 0 ? out[to + n] : given[from];
-      most = std::max(most, value);
-      least = std::min(least, value);
+      max_stress = std::max(max_stress, value);
+      min_stress = std::min(min_stress, value);
     }
     from += n;
     to += n + d;
   }
   BOUGH_DEMAND(from == given.size());
-  if (num_extremes_ > 0) out[to] = most;
-  if (num_extremes_ > 1) out[to + 1] = least;
+  if (num_extremes_ > 0) out[to] = max_stress;
+  if (num_extremes_ > 1) out[to + 1] = min_stress;
 }
 
 double calc_plane_von_mises_strain(const Vector3d& e) {

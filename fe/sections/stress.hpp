@@ -46,8 +46,8 @@ std::vector<std::string> list_result_names(const std::vector<StressPoint>& point
 Eigen::VectorXd calc_stress_results(const std::vector<StressPoint>& points,
                                     const Eigen::Ref<const Eigen::VectorXd>& stress);
 
-/// The same of strains (shears are angles γ): "xx@top", "von_mises@top", "major@top", ..., and over all points of an
-/// element "max", "min", "von_mises". Plies derive nothing.
+/// Names of derived strains (shears are angles γ): "xx@top", "von_mises@top", "major@top", ..., and over all points of
+/// an element "max", "min", "von_mises". Plies derive nothing.
 std::vector<std::string> list_strain_result_names(const std::vector<StressPoint>& points);
 Eigen::VectorXd calc_strain_results(const std::vector<StressPoint>& points,
                                     const Eigen::Ref<const Eigen::VectorXd>& strain);
@@ -77,7 +77,7 @@ Eigen::VectorXd halve_shears(StressKind kind, Eigen::VectorXd strain);
 
 /// √(σx² - σxσy + σy² + 3τ²).
 double calc_plane_von_mises(const Eigen::Vector3d& stress);
-/// Of xx yy zz xy yz zx.
+/// Von Mises stress of xx yy zz xy yz zx.
 double calc_solid_von_mises(const Eigen::Matrix<double, 6, 1>& stress);
 
 /// Failure index of a ply for stresses 11 22 12: 1 on the limit. Hill: σ1²/X² - σ1σ2/X² + σ2²/Y² + τ²/S²; Hoffman and

@@ -86,7 +86,7 @@ ThinWallResult calc_thin_wall(const std::vector<Wall>& walls) {
       g_energy[i] = 0;
       for (const GaussPoint& p : get_gauss_points(3)) g_energy[i] += p.weight * length_over_t[i] * calc_g(w, p.x);
     }
-    // What leaves each node must enter it: B q0 + (end part of B) g_end = 0.
+    // Shear flow balances at each node: B q0 + (end part of B) g_end = 0.
     VectorXd q0 = lu.solve(-B.cwiseMax(0) * g_end);
     if (has_cells) q0 -= Z * cells.ldlt().solve(Z.transpose() * (length_over_t.cwiseProduct(q0) + g_energy));
     double torque = 0;

@@ -50,6 +50,35 @@ const std::vector<std::pair<int, int>>& get_edges(SolidKind kind) {
   return kind == SolidKind::Hexa ? kHexaEdges : kind == SolidKind::Penta ? kPentaEdges : kTetraEdges;
 }
 
+std::vector<Eigen::Vector3d> list_nodes(SolidKind kind, const std::vector<int>& midside) {
+  std::vector<Eigen::Vector3d> nodes;
+  for (int i = 0; i < get_num_corners(kind); ++i) {
+    if (kind == SolidKind::Hexa)
+      nodes.emplace_back(kHexaCorner[i][0], kHexaCorner[i][1], kHexaCorner[i][2]);
+    else if (kind == SolidKind::Penta)
+      nodes.emplace_back(i % 3 == 1, i % 3 == 2, i < 3 ? -1 : 1);
+    else
+      nodes.emplace_back(i == 1, i == 2, i == 3);
+  }
+  const auto set = [&](int node, const Eigen::Vector3d& at) {
+    if (node < 0) return;
+    if (nodes.size() <= static_cast<std::size_t>(node)) nodes.resize(static_cast<std::size_t>(node) + 1);
+    nodes[static_cast<std::size_t>(node)] = at;
+  };
+  const auto& edges = get_edges(kind);
+  for (std::size_t e = 0; e < edges.size(); ++e) {
+    const Eigen::Vector3d a = nodes[static_cast<std::size_t>(edges[e].first)],
+                          b = nodes[static_cast<std::size_t>(edges[e].second)];
+    if (is_cubic(midside)) {
+      set(midside[2 * e], (2 * a + b) / 3);
+      set(midside[2 * e + 1], (a + 2 * b) / 3);
+    } else if (e < midside.size()) {
+      set(midside[e], (a + b) / 2);
+    }
+  }
+  return nodes;
+}
+
 void calc_solid_shape(SolidKind kind, const std::vector<int>& midside, const Eigen::Vector3d& natural,
                       Eigen::VectorXd& shape, Eigen::Matrix3Xd& dshape) {
   const int corners = get_num_corners(kind);

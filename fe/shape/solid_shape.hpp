@@ -30,6 +30,9 @@ inline bool is_cubic(const std::vector<int>& midside) { return midside.size() ==
 void calc_solid_shape(SolidKind kind, const std::vector<int>& midside, const Eigen::Vector3d& natural,
                       Eigen::VectorXd& shape, Eigen::Matrix3Xd& dshape);
 
+/// Natural coordinates of the m nodes, in deck order.
+std::vector<Eigen::Vector3d> list_nodes(SolidKind kind, const std::vector<int>& midside);
+
 /// Full integration of the stiffness, or of the mass when `mass` is true. `order` 2 or 3 sets the points of the
 /// stiffness: 2³ or 3³ of a brick, 2 or 3 along the axis of a wedge with three in its triangle, or nine, seven with
 /// midside nodes; 0: by the nodes.

@@ -68,7 +68,7 @@ SurfaceShapes calc_surface_shapes(int n, const std::vector<char>& has_midside, d
         const Term t = calc_cubic_bump(near, far, r, s);
         result.all[next] = t.value;
         result.dall.col(next++) = t.gradient;
-        // What is linear has 2/3 and 1/3 there.
+        // Linear functions have 2/3 and 1/3 there.
         result.all[near] -= 2. / 3 * t.value;
         result.dall.col(near) -= 2. / 3 * t.gradient;
         result.all[far] -= 1. / 3 * t.value;

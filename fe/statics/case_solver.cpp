@@ -14,14 +14,14 @@
 namespace bough::fe {
 namespace {
 
-constexpr std::size_t kMostHeated = 16;
+constexpr std::size_t kMaxHeated = 16;
 
-/// Of `left` subcases in as few groups as there must be, each a little smaller than the one before it: what the caller
-/// does with the last has no other in addition.
+/// Size of the next group of `left` subcases: as few groups as possible, each a little smaller than the one before it,
+/// since the work after the last group overlaps with no other.
 std::size_t choose_group(std::size_t left) {
-  const std::size_t num = (left + CaseSolver::kMostTogether - 1) / CaseSolver::kMostTogether,
+  const std::size_t num = (left + CaseSolver::kMaxTogether - 1) / CaseSolver::kMaxTogether,
                     even = (left + num - 1) / num;
-  return num == 1 ? left : std::min(even + even / 10, CaseSolver::kMostTogether);
+  return num == 1 ? left : std::min(even + even / 10, CaseSolver::kMaxTogether);
 }
 
 /// Selections that two subcases share if they share the model and its factor.
@@ -29,7 +29,7 @@ std::array<int, 5> list_held(const records::Subcase& subcase) {
   return {subcase.spc, subcase.mpc, subcase.suport1, subcase.preload, subcase.initial_temperature};
 }
 
-/// What solve_static_cases gives; the head is there.
+/// Takes over the results of solve_static_cases; the head stays.
 void take(records::StaticSubcase&& from, records::StaticSubcase& to) {
   from.id = to.id;
   from.label = std::move(to.label);
@@ -42,7 +42,7 @@ void take(records::StaticSubcase&& from, records::StaticSubcase& to) {
 
 }  // namespace
 
-std::vector<records::Subcase> choose_static_subcases(const records::Deck& deck, int asked) {
+std::vector<records::Subcase> choose_static_subcases(const records::Deck& deck, int requested) {
   const auto enforces = [&](int set) {
     return set != 0 && std::any_of(deck.spc.begin(), deck.spc.end(), [](const auto& spc) { return spc.d != 0; });
   };
@@ -51,9 +51,9 @@ std::vector<records::Subcase> choose_static_subcases(const records::Deck& deck, 
   };
   std::vector<records::Subcase> chosen;
   for (const auto& subcase : deck.subcases)
-    if (asked != 0 ? subcase.id == asked : is_loaded(subcase)) chosen.push_back(subcase);
+    if (requested != 0 ? subcase.id == requested : is_loaded(subcase)) chosen.push_back(subcase);
   const bool has_load = std::any_of(chosen.begin(), chosen.end(), is_loaded);
-  if (has_load || (asked != 0 && chosen.empty())) return chosen;
+  if (has_load || (requested != 0 && chosen.empty())) return chosen;
   throw InputError("cli.no-static-load", {deck.files.empty() ? std::string{} : deck.files[0]},
                    "a static solution needs a subcase with LOAD or TEMPERATURE(LOAD), found none",
                    "write LOAD = n in the case control");
@@ -67,16 +67,16 @@ std::vector<CaseSolver::Solved> CaseSolver::solve_next(std::span<const records::
   BOUGH_DEMAND(!left.empty());
   std::vector<Solved> solved(1);
   try {
-    prepare(left.front(), solved.front().said);
+    prepare(left.front(), solved.front().diagnostics);
   } catch (const Failure&) {
     solved.front().failure = std::current_exception();
     return solved;
   }
   // Heated elements keep a kilobyte each and subcase.
   std::size_t count = 0, num_heated = 0;
-  const std::size_t most = choose_group(left.size());
-  for (; count < (nonlinear_ ? 1 : most) && is_prepared_for(left[count]); ++count)
-    if (left[count].temperature != 0 && ++num_heated > kMostHeated) break;
+  const std::size_t max_cases = choose_group(left.size());
+  for (; count < (nonlinear_ ? 1 : max_cases) && is_prepared_for(left[count]); ++count)
+    if (left[count].temperature != 0 && ++num_heated > kMaxHeated) break;
   solved.resize(count);
   std::vector<StaticLoad> loads(count);
   for (std::size_t k = 0; k < count; ++k) {
@@ -89,7 +89,7 @@ std::vector<CaseSolver::Solved> CaseSolver::solve_next(std::span<const records::
       solved[k].failure = std::current_exception();
       continue;
     }
-    for (const auto& item : own.items()) solved[k].said.add(item);
+    for (const auto& item : own.items()) solved[k].diagnostics.add(item);
     auto& result = solved[k].result.emplace();
     result.id = subcase.id;
     result.label = subcase.label.empty() ? subcase.subtitle : subcase.label;
@@ -105,15 +105,15 @@ std::vector<CaseSolver::Solved> CaseSolver::solve_next(std::span<const records::
 }
 
 MatrixXd CaseSolver::solve_displacements(std::span<const StaticLoad> loads, std::span<Solved> solved) const {
-  std::vector<const StaticLoad*> wanted;
+  std::vector<const StaticLoad*> requested;
   for (std::size_t k = 0; k < loads.size(); ++k)
-    if (solved[k].result) wanted.push_back(&loads[k]);
-  if (wanted.empty()) return {};
-  if (wanted.size() > 1) {
+    if (solved[k].result) requested.push_back(&loads[k]);
+  if (requested.empty()) return {};
+  if (requested.size() > 1) {
     Diagnostics own;
     try {
       MatrixXd energy;
-      auto together = solve_static_cases(*model_, *solver_, wanted, suport_, &own, &energy);
+      auto together = solve_static_cases(*model_, *solver_, requested, suport_, &own, &energy);
       if (own.items().empty()) {
         auto next = together.begin();
         for (auto& one : solved)
@@ -128,7 +128,7 @@ MatrixXd CaseSolver::solve_displacements(std::span<const StaticLoad> loads, std:
     Diagnostics own;
     try {
       take(solve_static_case(*model_, *solver_, loads[k], suport_, &own), *solved[k].result);
-      for (const auto& item : own.items()) solved[k].said.add(item);
+      for (const auto& item : own.items()) solved[k].diagnostics.add(item);
     } catch (const Failure&) {
       solved[k].failure = std::current_exception();
       solved[k].result.reset();
@@ -161,7 +161,7 @@ void CaseSolver::add_element_results(std::span<const StaticLoad> loads, const Ma
   for (std::size_t k = 0; k < solved.size(); ++k) {
     if (!solved[k].result) continue;
     auto& result = *solved[k].result;
-    cases.push_back({&result.displacement, result.load_set, &loads[k].initial, &solved[k].said,
+    cases.push_back({&result.displacement, result.load_set, &loads[k].initial, &solved[k].diagnostics,
                      nonlinear_ ? &path_->deformed() : nullptr});
     of.push_back(k);
   }

@@ -13,7 +13,7 @@ namespace bough::fe {
 
 /// The subcases with a load, temperatures, or displacements enforced by their SPC set; the requested one in any case
 /// (0: all; empty if the deck does not contain it). Throws InputError cli.no-static-load.
-std::vector<records::Subcase> choose_static_subcases(const records::Deck& deck, int asked);
+std::vector<records::Subcase> choose_static_subcases(const records::Deck& deck, int requested);
 
 /// Solves subcases one after the other; model and factor are kept while the constraints stay the same.
 class CaseSolver {
@@ -36,12 +36,12 @@ class CaseSolver {
   struct Solved {
     std::optional<records::StaticSubcase> result;
     std::exception_ptr failure;
-    Diagnostics said;
+    Diagnostics diagnostics;
   };
-  /// Of the first of `left` (not empty) and as many after it as are held alike, at most kMostTogether: one model, and
-  /// their elements are formed once. A subcase's result does not depend on the others.
+  /// Solves the first of `left` (not empty) and those after it that are constrained alike, at most kMaxTogether, with
+  /// one model whose elements are formed once. A subcase's result does not depend on the others.
   std::vector<Solved> solve_next(std::span<const records::Subcase> left);
-  static constexpr std::size_t kMostTogether = 40;  ///< eights for the factor; a dozen copies on the g-set
+  static constexpr std::size_t kMaxTogether = 40;  ///< eights for the factor; a dozen copies on the g-set
 
   const Model& model() const { return *model_; }  ///< of the last subcase that had one
 

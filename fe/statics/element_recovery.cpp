@@ -262,10 +262,11 @@ std::vector<ElementResults> recover_elements(const Model& model, const records::
   for (std::size_t c = 0; c < cases.size(); ++c) {
     BOUGH_DEMAND(cases[c].u_g->size() == model.num_gdofs());
     is_heated = is_heated || (cases[c].initial && !cases[c].initial->of.empty());
-    Diagnostics unheard;
+    Diagnostics ignored;
     if (cases[c].load > 0) interior[c] = calc_interior_values(model, deck, cases[c].load);
     if (cases[c].load > 0)
-      end_loads[c] = calc_beam_end_loads(model, deck, cases[c].load, cases[c].said ? *cases[c].said : unheard);
+      end_loads[c] =
+          calc_beam_end_loads(model, deck, cases[c].load, cases[c].diagnostics ? *cases[c].diagnostics : ignored);
   }
   std::optional<ForceTables> forces;
   std::optional<PointTables> stresses, strains;

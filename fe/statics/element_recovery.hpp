@@ -16,7 +16,7 @@ struct RecoveryCase {
   const VectorXd* u_g = nullptr;           ///< num_gdofs
   int load = 0;                            ///< LOAD: loads along beams; 0: none
   const InitialForces* initial = nullptr;  ///< of heated elements
-  Diagnostics* said = nullptr;             ///< of the loads along beams; may be null
+  Diagnostics* diagnostics = nullptr;      ///< of the loads along beams; may be null
   /// Elements by themselves, instead of u_g.
   const DeformedElements* deformed = nullptr;
 };

@@ -37,11 +37,11 @@ std::vector<records::ElementStresses> calc_element_strains(const Model& model, c
 std::vector<records::GridForce> calc_grid_forces(const Model& model, const records::StaticSubcase& solved,
                                                  const InitialForces& initial, const std::vector<int>& grids) {
   using Vector6d = Eigen::Matrix<double, 6, 1>;
-  const std::set<int> wanted(grids.begin(), grids.end());
+  const std::set<int> requested(grids.begin(), grids.end());
   std::map<int, std::vector<records::GridForce>> of;  // by node index
   for (std::size_t k = 0; k < model.nodes().size(); ++k) {
     const Node& node = model.nodes()[k];
-    if (node.num_dofs == 6 && (wanted.empty() || wanted.contains(node.id))) of[static_cast<int>(k)];
+    if (node.num_dofs == 6 && (requested.empty() || requested.contains(node.id))) of[static_cast<int>(k)];
   }
   MatrixXd K;
   for (const auto& element : model.elements()) {

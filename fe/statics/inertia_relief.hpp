@@ -1,6 +1,6 @@
 #pragma once
-/// \file What moves with the dofs of SUPORT, and inertia relief. Source: MSC Nastran Linear Static Analysis User's
-/// Guide, "Inertia Relief"; Quick Reference Guide, PARAM,INREL.
+/// \file Rigid-body motions by the dofs of SUPORT, and inertia relief. Source: MSC Nastran Linear Static Analysis
+/// User's Guide, "Inertia Relief"; Quick Reference Guide, PARAM,INREL.
 #include "fe/loads/loads.hpp"
 #include "fe/model/suport.hpp"
 #include "fe/statics/statics.hpp"
@@ -12,7 +12,7 @@ enum class InertiaRelief { None, Supported, Free };
 /// Reports fe.bad-param.
 InertiaRelief read_inertia_relief(const records::Deck& deck, Diagnostics& diagnostics);
 
-/// What a static solution holds beside its SPC, and what moves with it.
+/// Reference set of a static solution, constrained in addition to its SPC, and its rigid-body motions.
 struct Suport {
   InertiaRelief relief = InertiaRelief::None;
   std::vector<int> fdofs;  ///< r
@@ -47,7 +47,7 @@ VectorXd calc_acceleration(const Suport& suport, const VectorXd& F_g);
 /// are not those of one rigid body.
 void add_relief(const Model& model, const Suport& suport, AppliedLoad& load);
 
-/// INREL -2: u less its rigid part in the sense of the mass, so that ΦᵀM u = 0.
+/// INREL -2: u minus its rigid part in the sense of the mass, so that ΦᵀM u = 0.
 void remove_rigid_part(const Suport& suport, VectorXd& u_g);
 
 }  // namespace bough::fe

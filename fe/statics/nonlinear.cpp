@@ -70,7 +70,7 @@ void demand_nonlinear_loads(const records::Deck& deck, int load_set) {
 }  // namespace
 
 NonlinearStatics::NonlinearStatics(const Model& model, const records::Deck& deck)
-    : model_(model), deck_(deck), arms_(model) {
+    : model_(model), deck_(deck), ties_(deck, model) {
   Diagnostics diagnostics;
   const auto at = deck.locate({});
   if (model.omitted() || model.prestress())
@@ -136,10 +136,10 @@ void NonlinearStatics::evaluate_element(int e, const Element& element, FiniteFor
   forces = corotational.calc_finite(u, rotations, heat);
 }
 
-/// Nodes that equations join otherwise than as rigid bodies, and those of them whose rotations occur in the equations.
+/// Nodes of linear equations, and those of them whose rotations occur in the equations.
 void NonlinearStatics::find_linear_ties() {
   std::vector<char> is_tied(model_.nodes().size(), 0), is_turned(model_.nodes().size(), 0);
-  for (const int id : arms_.others()) {
+  for (const int id : ties_.others()) {
     const int k = model_.find_node(id);
     const Node& node = model_.node(k);
     is_tied[static_cast<std::size_t>(k)] = 1;
@@ -159,101 +159,45 @@ void NonlinearStatics::find_linear_ties() {
   }
 }
 
-/// Dofs of grids at rigid arms become those of their parents: δu = δu_p + δφ_p × r, δφ = δφ_p.
-void NonlinearStatics::move_to_parents(std::vector<int>& gdofs, MatrixXd& K) const {
-  if (arms_.list().empty()) return;
-  const auto N = static_cast<Index>(gdofs.size());
-  Triplets entries;
-  std::vector<int> columns;
-  const auto find_column = [&](int dof) {
-    const auto found = std::find(columns.begin(), columns.end(), dof);
-    if (found != columns.end()) return static_cast<int>(found - columns.begin());
-    columns.push_back(dof);
-    return static_cast<int>(columns.size()) - 1;
-  };
-  bool is_moved = false;
-  for (Index i = 0; i < N; ++i) {
-    const int dof = gdofs[static_cast<std::size_t>(i)];
-    const int k = node_of_[static_cast<std::size_t>(dof)];
-    const Node& node = model_.nodes()[static_cast<std::size_t>(k)];
-    const RigidArm* arm = arms_.find(k);
-    const int component = dof - node.first_gdof;
-    if (!arm || !(component < 3 ? arm->translates : arm->rotates)) {
-      entries.emplace_back(i, find_column(dof), 1);
-      continue;
-    }
-    is_moved = true;
-    const int first = model_.nodes()[static_cast<std::size_t>(arm->parent)].first_gdof;
-    entries.emplace_back(i, find_column(first + component), 1);
-    if (component >= 3) continue;
-    const Matrix3d back = -skew(state_.R[static_cast<std::size_t>(arm->parent)] * arm->arm);
-    for (int a = 0; a < 3; ++a) entries.emplace_back(i, find_column(first + 3 + a), back(component, a));
-  }
-  if (!is_moved) return;
-  Eigen::SparseMatrix<double> A(N, static_cast<Index>(columns.size()));
-  A.setFromTriplets(entries.begin(), entries.end());
-  const MatrixXd dense = A;
-  K = (dense.transpose() * K * dense).eval();
-  gdofs = std::move(columns);
+/// Forces conjugate to the unknowns: those of grids that follow others at these, and Tᵀ(θ) m where rotation vectors are
+/// the unknowns. At the state of the last evaluate().
+VectorXd NonlinearStatics::collect(const VectorXd& residual) const {
+  return basis_.rows() > 0 ? VectorXd(basis_.transpose() * residual) : residual;
 }
 
-/// Forces on grids at rigid arms moved to their parents.
-VectorXd NonlinearStatics::collect_arms(VectorXd residual) const {
-  for (const RigidArm& arm : arms_.list()) {
-    const int from = model_.nodes()[static_cast<std::size_t>(arm.node)].first_gdof,
-              to = model_.nodes()[static_cast<std::size_t>(arm.parent)].first_gdof;
-    if (arm.translates) {
-      const Vector3d force = residual.segment<3>(from), r = state_.R[static_cast<std::size_t>(arm.parent)] * arm.arm;
-      residual.segment<3>(to) += force;
-      residual.segment<3>(to + 3) += r.cross(force);
-      residual.segment<3>(from).setZero();
+/// From displacements and spins of all nodes to the unknowns: those of the grids that follow none, rotation vectors of
+/// the nodes in linear equations. AᵀKA, and the change of Tᵀ(θ) m.
+void NonlinearStatics::move_to_unknowns(Tangent& tangent) {
+  basis_ = ties_.is_empty() ? SparseRows() : ties_.calc_basis(state_);
+  if (turned_by_vector_.empty() && ties_.is_empty()) return;
+  SparseRows slope(model_.num_gdofs(), model_.num_gdofs());
+  if (!turned_by_vector_.empty()) {
+    std::vector<char> is_turned(model_.nodes().size(), 0);
+    for (const int k : turned_by_vector_) is_turned[static_cast<std::size_t>(k)] = 1;
+    const VectorXd moved = collect(tangent.residual);
+    Triplets turns, slopes;
+    for (std::size_t k = 0; k < is_turned.size(); ++k) {
+      const Node& node = model_.nodes()[k];
+      const int num_plain = is_turned[k] ? 3 : node.num_dofs;
+      for (int i = 0; i < num_plain; ++i) turns.emplace_back(node.first_gdof + i, node.first_gdof + i, 1);
+      if (!is_turned[k]) continue;
+      const int first = node.first_gdof + 3;
+      const Vector3d theta = state_.u.segment<3>(first);
+      const Matrix3d turn = calc_rotation_tangent(theta);
+      const Vector3d conjugate = turn.transpose() * moved.segment<3>(first);
+      const Matrix3d of_moment = -turn.transpose() * calc_inverse_tangent_slope(theta, conjugate);  // T⁻ᵀ(Tᵀm) = m
+      for (int a = 0; a < 3; ++a)
+        for (int b = 0; b < 3; ++b) {
+          turns.emplace_back(first + a, first + b, turn(a, b));
+          slopes.emplace_back(first + a, first + b, of_moment(a, b));
+        }
     }
-    if (arm.rotates) {
-      residual.segment<3>(to + 3) += residual.segment<3>(from + 3);
-      residual.segment<3>(from + 3).setZero();
-    }
+    SparseRows B(model_.num_gdofs(), model_.num_gdofs());
+    B.setFromTriplets(turns.begin(), turns.end());
+    slope.setFromTriplets(slopes.begin(), slopes.end());
+    basis_ = ties_.is_empty() ? B : SparseRows(basis_ * B);
   }
-  return residual;
-}
-
-/// Forces conjugate to the unknowns: those of collect_arms(), and Tᵀ(θ) m where rotation vectors are the unknowns.
-VectorXd NonlinearStatics::collect(VectorXd residual) const {
-  residual = collect_arms(std::move(residual));
-  for (const int k : turned_by_vector_) {
-    const int first = model_.node(k).first_gdof + 3;
-    residual.segment<3>(first) =
-        (calc_rotation_tangent(state_.u.segment<3>(first)).transpose() * residual.segment<3>(first)).eval();
-  }
-  return residual;
-}
-
-/// From spins to rotation vectors of the nodes in linear equations: BᵀKB and the change of Tᵀ(θ) m.
-void NonlinearStatics::use_rotation_vectors(Tangent& tangent) const {
-  if (turned_by_vector_.empty()) return;
-  std::vector<char> is_turned(model_.nodes().size(), 0);
-  for (const int k : turned_by_vector_) is_turned[static_cast<std::size_t>(k)] = 1;
-  const VectorXd moved = collect_arms(tangent.residual);
-  Triplets basis, slopes;
-  for (std::size_t k = 0; k < is_turned.size(); ++k) {
-    const Node& node = model_.nodes()[k];
-    const int num_plain = is_turned[k] ? 3 : node.num_dofs;
-    for (int i = 0; i < num_plain; ++i) basis.emplace_back(node.first_gdof + i, node.first_gdof + i, 1);
-    if (!is_turned[k]) continue;
-    const int first = node.first_gdof + 3;
-    const Vector3d theta = state_.u.segment<3>(first);
-    const Matrix3d turn = calc_rotation_tangent(theta);
-    const Vector3d conjugate = turn.transpose() * moved.segment<3>(first);
-    const Matrix3d slope = -turn.transpose() * calc_inverse_tangent_slope(theta, conjugate);  // of Tᵀm, T⁻ᵀ(Tᵀm) = m
-    for (int a = 0; a < 3; ++a)
-      for (int b = 0; b < 3; ++b) {
-        basis.emplace_back(first + a, first + b, turn(a, b));
-        slopes.emplace_back(first + a, first + b, slope(a, b));
-      }
-  }
-  Eigen::SparseMatrix<double, Eigen::RowMajor> B(model_.num_gdofs(), model_.num_gdofs()), D = B;
-  B.setFromTriplets(basis.begin(), basis.end());
-  D.setFromTriplets(slopes.begin(), slopes.end());
-  tangent.K = (Eigen::SparseMatrix<double, Eigen::RowMajor>(B.transpose()) * tangent.K * B + D).eval();
+  tangent.K = (SparseRows(basis_.transpose()) * tangent.K * basis_ + slope).eval();
 }
 
 /// F: dead forces.
@@ -277,10 +221,9 @@ NonlinearStatics::Tangent NonlinearStatics::evaluate(const VectorXd& F) {
       owner.deformed_.forces[static_cast<std::size_t>(e)] = forces.f;
       owner.energies_[e] = forces.energy;
       f(element.gdofs()) += forces.f;
-      add_stiffness(element.gdofs(), std::move(forces.K));
+      add_stiffness(element.gdofs(), forces.K);
     }
-    void add_stiffness(std::vector<int> gdofs, MatrixXd K) {
-      owner.move_to_parents(gdofs, K);
+    void add_stiffness(const std::vector<int>& gdofs, const MatrixXd& K) {
       for (std::size_t i = 0; i < gdofs.size(); ++i)
         for (std::size_t j = 0; j < gdofs.size(); ++j)
           if (const double value = K(static_cast<Index>(i), static_cast<Index>(j)); value != 0)
@@ -301,15 +244,6 @@ NonlinearStatics::Tangent NonlinearStatics::evaluate(const VectorXd& F) {
   tangent.residual = sum.f - calc_forces(F);
   visit_follower_stiffness(model_, followers_, state_.u,
                            [&](const std::vector<int>& gdofs, const MatrixXd& K) { sum.add_stiffness(gdofs, K); });
-  // The moment r × f of an arm turns with it: δ(r × f) = f̃ r̃ δφ.
-  for (const RigidArm& arm : arms_.list()) {
-    if (!arm.translates) continue;
-    const int first = model_.nodes()[static_cast<std::size_t>(arm.parent)].first_gdof + 3;
-    const Vector3d force = tangent.residual.segment<3>(model_.nodes()[static_cast<std::size_t>(arm.node)].first_gdof);
-    const Matrix3d turn = skew(force) * skew(state_.R[static_cast<std::size_t>(arm.parent)] * arm.arm);
-    for (int a = 0; a < 3; ++a)
-      for (int b = 0; b < 3; ++b) sum.entries.emplace_back(first + a, first + b, turn(a, b));
-  }
   for (const ArmLoad& load : arm_loads_) {
     const auto& R = state_.R[static_cast<std::size_t>(node_of_[static_cast<std::size_t>(load.first_rotation)])];
     const Vector3d arm = R * load.arm;
@@ -319,9 +253,10 @@ NonlinearStatics::Tangent NonlinearStatics::evaluate(const VectorXd& F) {
       for (int b = 0; b < 3; ++b)
         sum.entries.emplace_back(load.first_rotation + a, load.first_rotation + b, turn(a, b));
   }
+  ties_.add_slopes(state_, tangent.residual, sum.entries);
   tangent.K.resize(model_.num_gdofs(), model_.num_gdofs());
   tangent.K.setFromTriplets(sum.entries.begin(), sum.entries.end());
-  use_rotation_vectors(tangent);
+  move_to_unknowns(tangent);
   if (is_symmetric_)
     tangent.K = (0.5 * (tangent.K + Eigen::SparseMatrix<double, Eigen::RowMajor>(tangent.K.transpose()))).eval();
   return tangent;
@@ -398,7 +333,7 @@ void NonlinearStatics::set_loads(const PathLoad& from, const PathLoad& to, doubl
   }
 }
 
-/// `step`: displacements and spins, or changes of rotation vectors, num_gdofs; rows of grids at rigid arms are not
+/// `step`: displacements and spins, or changes of rotation vectors, num_gdofs; rows of grids that follow others are not
 /// read.
 void NonlinearStatics::advance(const VectorXd& step) {
   for (std::size_t k = 0; k < model_.nodes().size(); ++k) {
@@ -415,13 +350,7 @@ void NonlinearStatics::advance(const VectorXd& step) {
     state_.u.segment<3>(first) += step.segment<3>(first);
     state_.R[static_cast<std::size_t>(k)] = calc_rotation_exp(state_.u.segment<3>(first));
   }
-  for (const RigidArm& arm : arms_.list()) {
-    const Matrix3d& R = state_.R[static_cast<std::size_t>(arm.parent)];
-    const int from = model_.nodes()[static_cast<std::size_t>(arm.parent)].first_gdof,
-              to = model_.nodes()[static_cast<std::size_t>(arm.node)].first_gdof;
-    if (arm.translates) state_.u.segment<3>(to) = state_.u.segment<3>(from) + R * arm.arm - arm.arm;
-    if (arm.rotates) state_.R[static_cast<std::size_t>(arm.node)] = R;
-  }
+  ties_.follow(state_);
 }
 
 /// TᵀKT.
@@ -520,10 +449,9 @@ void NonlinearStatics::go_to(const StaticLoad& to, const FollowerLoads& moving, 
       residual_ = evaluate(F_).residual;
       char share[32];
       std::snprintf(share, sizeof share, "%.4g", 100 * reached);
-      throw ComputationError("fe.no-equilibrium", {},
+      throw ComputationError("fe.no-equilibrium", options.at,
                              "no stable static equilibrium is found beyond " + std::string(share) + " % of the load",
-                             "look for buckling or a snap-through there: lower the load, give --arc-length to pass "
-                             "it, enforce displacements, or give more --increments");
+                             options.advice);
     }
   }
   report_turned_ties(diagnostics);
@@ -537,7 +465,7 @@ void NonlinearStatics::go_to_load_set(const StaticLoad& to, int set, const Nonli
   go_to(to, has_followers ? find_follower_loads(model_, deck_, set) : FollowerLoads(), options, diagnostics);
 }
 
-/// Equations of RBE3, MPC and single components are those of small rotations.
+/// Equations of MPC and single components are those of small rotations.
 void NonlinearStatics::report_turned_ties(Diagnostics& diagnostics) const {
   constexpr double kSmall = 0.1;  // rad: 0.5 % of the arms
   double largest = 0;
@@ -552,11 +480,11 @@ void NonlinearStatics::report_turned_ties(Diagnostics& diagnostics) const {
   char angle[32];
   std::snprintf(angle, sizeof angle, "%.3g", largest);
   diagnostics.warning("fe.nonlinear-link", {},
-                      "RBE3, MPC or rigid elements of single components tie grids " + list_ids(ids) +
+                      "MPC, RBE3 or rigid elements of single components tie grids " + list_ids(ids) +
                           ", which turn by up to " + angle +
                           " rad; the equations are linear in displacements, as in "
                           "Nastran, and hold for small rotations",
-                      "tie the grids by RBE2 or RBAR with 123456 if the error matters");
+                      "tie the grids by RBE2, RBAR or RBE3 with 123456 if the error matters");
 }
 
 VectorXd NonlinearStatics::make_displacement() const {
@@ -578,8 +506,7 @@ records::StaticSubcase NonlinearStatics::make_result() const {
   result.reaction = calc_reactions(model_, collect(residual_));
   result.mpc_force = residual_ - result.reaction;
   std::vector<bool> is_tied(model_.nodes().size(), false);
-  for (const RigidArm& arm : arms_.list())
-    for (const int k : {arm.node, arm.parent}) is_tied[static_cast<std::size_t>(k)] = true;
+  for (const int k : ties_.list_nodes()) is_tied[static_cast<std::size_t>(k)] = true;
   for (const int k : tied_) is_tied[static_cast<std::size_t>(k)] = true;
   for (std::size_t k = 0; k < is_tied.size(); ++k)  // else it is the error of the solution
     if (const Node& node = model_.nodes()[k]; !is_tied[k])

@@ -1,15 +1,17 @@
 #pragma once
 /// \file Static equilibrium under large displacements and rotations, elastic material: load steps, Newton's method.
 ///
-/// Elements are linear in frames that follow their nodes (fe/corotational), rigid elements turn as rigid bodies, other
-/// constraint equations are linear in displacements and rotation vectors. Theory: docs/theory/nonlinear-statics.md.
+/// Elements are linear in frames that follow their nodes (fe/corotational), rigid elements turn as rigid bodies, RBE3
+/// with the mean of their grids, other constraint equations are linear in displacements and rotation vectors. Theory:
+/// docs/theory/nonlinear-statics.md.
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "fe/corotational/corotational_element.hpp"
 #include "fe/loads/follower_loads.hpp"
-#include "fe/model/rigid_arms.hpp"
 #include "fe/statics/element_recovery.hpp"
+#include "fe/statics/finite_ties.hpp"
 
 namespace bough::fe {
 
@@ -18,14 +20,11 @@ struct NonlinearOptions {
   int max_iterations = 25;  ///< of Newton's method in a step
   /// Follows the path through limit points, unstable states included, to where the load is reached first.
   bool has_arc_length = false;
-};
-
-/// Places of all nodes. Start: undeformed.
-struct DeformedState {
-  /// num_gdofs: translations and scalar points in basic; rotation vectors of the nodes that linear equations turn,
-  /// other rows of rotations are zero.
-  VectorXd u;
-  std::vector<Matrix3d> R;  ///< rotation of every node
+  /// Place and advice of fe.no-equilibrium of steps without arc length.
+  SourceLocation at;
+  std::string advice =
+      "look for buckling or a snap-through there: lower the load, give --arc-length to pass it, enforce displacements, "
+      "or give more --increments";
 };
 
 class NonlinearStatics {
@@ -73,10 +72,8 @@ class NonlinearStatics {
   VectorXd calc_forces(const VectorXd& dead) const;
   void set_loads(const PathLoad& from, const PathLoad& to, double share);
   void evaluate_element(int e, const Element& element, FiniteForces& forces) const;
-  void move_to_parents(std::vector<int>& gdofs, MatrixXd& K) const;
-  VectorXd collect_arms(VectorXd residual) const;
-  VectorXd collect(VectorXd residual) const;
-  void use_rotation_vectors(Tangent& tangent) const;
+  VectorXd collect(const VectorXd& residual) const;
+  void move_to_unknowns(Tangent& tangent);
   void report_turned_ties(Diagnostics& diagnostics) const;
   void advance(const VectorXd& step);
   Eigen::SparseMatrix<double, Eigen::RowMajor> reduce(const Eigen::SparseMatrix<double, Eigen::RowMajor>& K) const;
@@ -88,20 +85,21 @@ class NonlinearStatics {
 
   const Model& model_;
   const records::Deck& deck_;
-  RigidArms arms_;
+  FiniteTies ties_;
   std::vector<int> node_of_;                                      ///< node of each g-dof
   std::vector<char> is_stiff_;                                    ///< of each element
   std::vector<std::unique_ptr<const CorotationalElement>> kept_;  ///< stored if there is memory; otherwise recomputed
   std::vector<ArmLoad> offset_masses_;                            ///< force: of a unit acceleration, its size the mass
-  std::vector<int> tied_;              ///< nodes that equations join otherwise than as rigid bodies: RBE3, MPC
+  std::vector<int> tied_;              ///< nodes of linear equations: MPC, RBE3 of single components
   std::vector<int> turned_by_vector_;  ///< of these: rotation vectors are their unknowns
   std::vector<ArmLoad> arm_loads_;     ///< of the state, as the next two
   FollowerLoads followers_;
   InitialForces heat_;
   bool is_symmetric_ = true;  ///< false: moments about fixed axes, or loads that follow the grids
   DeformedState state_;
-  VectorXd F_, d_;  ///< of the last state: dead forces, enforced displacements
-  PathLoad load_;   ///< that the last go_to() reached
+  SparseRows basis_;  ///< of evaluate(): displacements and spins of all nodes by the unknowns; no rows: the identity
+  VectorXd F_, d_;    ///< of the last state: dead forces, enforced displacements
+  PathLoad load_;     ///< that the last go_to() reached
   DeformedElements deformed_;
   VectorXd energies_, residual_;
   double residual_work_ = 0, energy_ = 0, max_turn_ = 0, last_rate_ = 0;

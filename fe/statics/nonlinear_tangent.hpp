@@ -53,7 +53,7 @@ class TangentFactor {
   bool is_made_ = false, is_stable_ = false, is_lu_ = false;
 };
 
-/// Forces and stiffness at a state, on the g-set without the grids at rigid arms, which are those of their parents.
+/// Forces at a state, and stiffness by the unknowns: on the g-set, without the grids that follow others.
 struct NonlinearStatics::Tangent {
   Eigen::SparseMatrix<double, Eigen::RowMajor> K;
   VectorXd residual;  ///< f - F, at the grids where they act

@@ -177,7 +177,18 @@ DeformedPreload calc_nonlinear_preload(const records::Deck& deck, ModelOptions o
   report_dead_loads(deck, subcase.load, own);
   own.throw_if_errors();
   NonlinearStatics path(model, deck);
-  path.go_to_load_set(load, preload.load, {}, own);
+  NonlinearOptions path_options;
+  path_options.at = preload.at;
+  path_options.advice =
+      "the structure buckles or snaps through there: lower the load of the preload, or leave nonlinear = true out if "
+      "its displacements are small";
+  try {
+    path.go_to_load_set(load, preload.load, path_options, own);
+  } catch (const ComputationError&) {
+    // A mechanism that no load stiffens is named by grid and component.
+    if (path.num_steps() == 0 && model.num_fdofs() > 0) StaticSolver(model, get_stiffness(model), {});
+    throw;
+  }
   const auto found = path.make_result();
   DeformedPreload result{make_deformed_deck(deck, model, path.state(), own), nullptr};
   for (const Node& node : model.nodes())

@@ -20,8 +20,8 @@ linear::SymmetricMatrix lift(const linear::SymmetricMatrix& A, const linear::Row
   return linear::add_diagonal(A, 1e-13 * linear::raise_diagonal(linear::get_diagonal(A).cwiseAbs(), kinds, 1e-6));
 }
 
-/// Whether A, which is not positive definite, has a negative eigenvalue beyond roundoff; those of motions without
-/// stiffness are none.
+/// Returns true if A, which is not positive definite, has a negative eigenvalue beyond roundoff; those of motions
+/// without stiffness are none.
 bool has_negative(const linear::SymmetricMatrix& A, const linear::RowKinds& kinds) {
   const linear::SymmetricMatrix lifted = lift(A, kinds);
   if (linear::initialize_petsc().size == 1) return !linear::SymmetricFactor::try_definite(lifted);
@@ -45,12 +45,12 @@ int count_tipping(const Model& model, const linear::SymmetricMatrix& K) {
   const double roundoff = 1e-14 * linear::get_diagonal(K).cwiseAbs().sum() * R.cwiseAbs2().maxCoeff();
   if (!(elastic.norm() < 1e-6 * G.norm() + roundoff)) return 0;  // springs to ground
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> solver(linear::symmetrize(G));
-  const double most = solver.eigenvalues().cwiseAbs().maxCoeff();
+  const double largest = solver.eigenvalues().cwiseAbs().maxCoeff();
   const VectorXd force = (MatrixXd(model.T().transpose() * K_G_R) * solver.eigenvectors()).colwise().norm();
   int count = 0;
   for (int i = 0; i < 6; ++i) {
     const double g = solver.eigenvalues()[i];
-    count += g < -1e-9 * most || (g <= 1e-9 * most && force[i] > 1e-6 * force.maxCoeff()) ? 1 : 0;
+    count += g < -1e-9 * largest || (g <= 1e-9 * largest && force[i] > 1e-6 * force.maxCoeff()) ? 1 : 0;
   }
   return count;
 }

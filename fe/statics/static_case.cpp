@@ -60,7 +60,7 @@ std::vector<bool> find_untied(const Model& model) {
   std::vector<int> columns_of(nodes.size(), 0);
   std::vector<bool> is_untied(nodes.size(), true);
   for (const SparseRows* map : {&model.T(), &model.T_fixed()}) {
-    constexpr int kNone = -1, kMany = -2;
+    constexpr int kNone = -1, kSeveral = -2;
     std::vector<int> node_of(static_cast<std::size_t>(map->cols()), kNone);
     const auto visit = [&](const auto& act) {
       for (std::size_t n = 0; n < nodes.size(); ++n)
@@ -74,11 +74,11 @@ std::vector<bool> find_untied(const Model& model) {
         node = static_cast<int>(n);
         ++columns_of[n];
       } else if (node != static_cast<int>(n)) {
-        node = kMany;
+        node = kSeveral;
       }
     });
     visit([&](std::size_t n, std::size_t column) {
-      if (node_of[column] == kMany) is_untied[n] = false;
+      if (node_of[column] == kSeveral) is_untied[n] = false;
     });
   }
   for (std::size_t n = 0; n < nodes.size(); ++n)
@@ -96,7 +96,7 @@ VectorXd calc_reactions(const Model& model, const VectorXd& residual) {
 
 std::vector<std::string> list_lost_loads(const Model& model, const VectorXd& F) {
   std::vector<std::pair<double, const AutospcEntry*>> found;
-  const double least = 1e-9 * F.cwiseAbs().maxCoeff();
+  const double min_force = 1e-9 * F.cwiseAbs().maxCoeff();
   for (const auto& entry : model.autospc()) {
     const Node& node = model.node(model.find_node(entry.node));
     const int c = std::max(entry.component - 1, 0);
@@ -106,7 +106,7 @@ std::vector<std::string> list_lost_loads(const Model& model, const VectorXd& F) 
     const double f = node.num_dofs == 1
                          ? F[node.first_gdof]
                          : F.segment<3>(node.first_gdof + 3 * (c / 3)).dot(node.R_basic_cd * n.normalized());
-    if (std::abs(f) > least) found.emplace_back(f, &entry);
+    if (std::abs(f) > min_force) found.emplace_back(f, &entry);
   }
   std::stable_sort(found.begin(), found.end(),
                    [](const auto& a, const auto& b) { return std::abs(a.first) > std::abs(b.first); });

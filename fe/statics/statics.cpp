@@ -48,7 +48,7 @@ double calc_model_size(const Model& model) {
     Diagnostic item;
     item.id = "fe.mechanism";
     item.what = "the stiffness matrix is singular: mechanism " + std::to_string(c + 1) + " of " +
-                std::to_string(motions.cols()) + (motions.cols() < linear::kMostMechanisms ? "" : " or more") +
+                std::to_string(motions.cols()) + (motions.cols() < linear::kMaxMechanisms ? "" : " or more") +
                 " moves most at " + describe_motion(model, kept, motions.col(c), size);
     item.advice = "hold or stiffen these dofs (components in the displacement axes of the grids)";
     const auto& subcase = model.subcase();
@@ -94,20 +94,20 @@ StaticSolver::StaticSolver(const Model& model, const linear::SymmetricMatrix& K_
   // Null pivots are a suspicion; the energy of the motion decides. A singular matrix may also factor without one, and
   // by LLᵀ, which is quicker, always without: then it is pivoted to see how many motions there are.
   impl_->factor.emplace(K, true);
-  const auto is_sound = [&] {
+  const auto is_accurate = [&] {
     return !impl_->factor->is_singular() &&
            linear::calc_softest_energy(K, impl_->kinds, *impl_->factor) >= linear::kMechanismEnergy;
   };
   if (impl_->factor->is_definite()) {
-    if (is_sound()) return;
+    if (is_accurate()) return;
     impl_->factor.emplace(K, true, linear::FactorMethod::Pivoting);
   }
   const int suspects = impl_->factor->is_singular() ? 1 : impl_->factor->num_null_pivots();
-  if (suspects == 0 && is_sound()) return;
+  if (suspects == 0 && is_accurate()) return;
   const MatrixXd motions = linear::find_mechanisms(K, impl_->kinds, suspects);
   if (motions.cols() > 0) throw_mechanisms(model, kept, motions);
   impl_->factor.emplace(K, false, linear::FactorMethod::Pivoting);
-  if (!is_sound())
+  if (!is_accurate())
     throw ComputationError("fe.mechanism", {}, "the stiffness matrix is singular to working precision",
                            "look for very soft and very stiff parts side by side, or for values that are not numbers");
 }
@@ -141,10 +141,10 @@ MatrixXd StaticSolver::solve(const Eigen::Ref<const MatrixXd>& F_g, Diagnostics*
   // One refinement with a residual of more digits: a slender line of 1000 elements gains three (Higham, Accuracy and
   // Stability of Numerical Algorithms, 2nd ed., ch. 12).
   u_kept += impl_->factor->solve(calc_residual(impl_->K, u_kept, F_kept));
-  Diagnostics unheard;
+  Diagnostics ignored;
   linear::check_residuals(linear::calc_static_residuals(linear::get_diagonal(impl_->K), u_kept,
                                                         multiply(impl_->K, u_kept), F_kept, impl_->kinds),
-                          "load case", diagnostics ? *diagnostics : unheard);
+                          "load case", diagnostics ? *diagnostics : ignored);
   u_f(impl_->kept, Eigen::all) = u_kept;
   MatrixXd u_g = T * u_f;
   if (impl_->omitted) u_g += impl_->omitted(F_g);  // K_oo^-1 P_o

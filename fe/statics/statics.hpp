@@ -19,7 +19,7 @@ class StaticSolver {
   /// u_g (num_gdofs x m) for loads F_g (num_gdofs x m) in basic on the g-set; both replicated on every rank. Throws
   /// ComputationError("fe.residual") where the forces of u do not balance the loads; its warning needs `diagnostics`.
   MatrixXd solve(const Eigen::Ref<const MatrixXd>& F_g, Diagnostics* diagnostics = nullptr) const;
-  /// After a residual that failed: throws ComputationError("fe.mechanism") where a motion has next to no strain.
+  /// After a residual that failed: throws ComputationError("fe.mechanism") where a motion has negligible strain.
   /// `model`: the one this was made of.
   void demand_no_mechanism(const Model& model) const;
   /// LLᵀ of K on the whole f-set, as long as this lives; nullptr where dofs are held or K took pivoting.

@@ -15,7 +15,10 @@ namespace {
 
 using Eigen::Index;
 
-constexpr double kGrounded = 1e-9;   // share of strain energy: condensation leaves 1e-13
+constexpr double kGrounded = 1e-9;  // share of strain energy: condensation leaves 1e-13
+/// Strain energy of a rigid-body motion over the kinetic energy at the highest held frequency: below is round-off, all
+/// that a statically determinate boundary has.
+constexpr double kRoundoff = 1e-12;
 constexpr double kCoupled = 1e-8;    // of sqrt(K_bb K_qq)
 constexpr double kNegative = -1e-9;  // of a mass with a diagonal of ones
 
@@ -133,6 +136,12 @@ SuperelementCheck check_superelement(const records::Deck& deck, const records::S
     if (!q.empty() && Eigen::LLT<MatrixXd>(M_qq).info() == Eigen::Success) {
       const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd> held(K_qq, M_qq, Eigen::EigenvaluesOnly);
       check.held_hz = held.eigenvalues().cwiseMax(0).cwiseSqrt() / (2 * std::numbers::pi);
+      const MatrixXd M_bb = s.M(b, b);
+      for (int r = 0; r < 6; ++r) {
+        const auto motion = boundary.Phi_r.col(r);
+        const double kinetic = held.eigenvalues().cwiseMax(0).maxCoeff() * M_bb.diagonal().dot(motion.cwiseAbs2());
+        if (std::abs(motion.dot(force.col(r))) < kRoundoff * kinetic) check.rigid_energy[r] = 0;
+      }
     }
   }
 

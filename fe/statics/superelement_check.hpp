@@ -9,7 +9,7 @@ struct SuperelementCheck {
   std::string file;  ///< of its matrices
   int num_grids = 0, num_points = 0;
   /// Strain energy of each of the six rigid-body motions of the boundary grids, divided by the largest that the
-  /// diagonal of K would allow: 1e-15 to 1e-13 after a condensation.
+  /// diagonal of K would allow: 1e-15 to 1e-13 after a condensation; 0 if K is round-off, as of one boundary grid.
   Eigen::Matrix<double, 6, 1> rigid_energy = Eigen::Matrix<double, 6, 1>::Zero();
   double rigid_force = 0, rigid_moment = 0;  ///< largest of K_bb Φ_r, motions about the centre of the boundary
   records::MassProperties mass;              ///< of Φ_rᵀ M_bb Φ_r about the basic origin

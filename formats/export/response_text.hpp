@@ -25,7 +25,7 @@ std::vector<NamedCurve> list_curves(const records::ResponseSubcase& subcase);
 std::string make_response_csv(const records::DeckResponse& response);
 
 /// frequency_hz or time, then a column per curve and part: real and imag, or magnitude and phase (degrees, -180 to 180)
-/// as the deck asks; over time one. Of several subcases the curves of each stand below each other, with the column
+/// as the deck requests; over time one. Of several subcases the curves of each stand below each other, with the column
 /// `subcase` first; all have the columns of the first.
 std::vector<CsvColumn> make_response_columns(const records::ResponseSubcase& subcase);
 

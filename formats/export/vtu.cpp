@@ -14,7 +14,7 @@ namespace bough::exports {
 
 namespace {
 
-static_assert(std::endian::native == std::endian::little, "the files say LittleEndian");
+static_assert(std::endian::native == std::endian::little, "the files are marked LittleEndian");
 
 struct CellType {
   std::string_view name;

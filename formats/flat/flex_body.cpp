@@ -13,6 +13,7 @@
 #include <map>
 #include <optional>
 #include <type_traits>
+#include <utility>
 
 #include "base/diagnostic.hpp"
 #include "base/file_roles.hpp"
@@ -69,21 +70,22 @@ requires(!EigenDense<Node> && requires { typename Node::value_type; }) struct Le
 /// Shape of a number, a matrix or nested containers of equal matrices; short where a container is empty.
 template <class Node>
 Shape measure(const Node& node, bool is_transposed) {
-  if constexpr (Leaf<Node>) {
-    return {};
-  } else if constexpr (EigenDense<Node>) {
-    if constexpr (Node::IsVectorAtCompileTime) return {node.size()};
-    return is_transposed ? Shape{node.cols(), node.rows()} : Shape{node.rows(), node.cols()};
-  } else {
-    Shape shape{detail::count(node)}, of_item;
+  Shape shape;
+  if constexpr (EigenDense<Node>) {
+    shape = {node.rows(), node.cols()};
+    if (is_transposed) std::swap(shape[0], shape[1]);
+    if (Node::IsVectorAtCompileTime) shape = {node.size()};
+  } else if constexpr (!Leaf<Node>) {
+    Shape of_item;
     for (const auto& item : node) {
       const bool is_first = &item == &*node.begin();
       if (is_first) of_item = measure(item, is_transposed);
       BOUGH_DEMAND(is_first || measure(item, is_transposed) == of_item);
     }
+    shape = {detail::count(node)};
     shape.insert(shape.end(), of_item.begin(), of_item.end());
-    return shape;
   }
+  return shape;
 }
 
 template <class Node>

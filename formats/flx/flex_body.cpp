@@ -2,6 +2,7 @@
 
 #include "base/diagnostic.hpp"
 #include "formats/flx/flx_file.hpp"
+#include "formats/flx/special_nodes.hpp"
 
 namespace bough::flx {
 
@@ -76,6 +77,14 @@ records::FlexBody make_flex_body(const FlxFile& file, std::vector<std::string>& 
   if (file.modopt == 1) lacking.insert(lacking.begin(), "integrals of second order, which count as zero");
   if (file.modopt == 2) lacking.insert(lacking.begin(), "integrals of first and second order, which count as zero");
   return body;
+}
+
+void add_special_nodes(const FlxFile& file, records::FlexBody& body) {
+  const auto first = static_cast<Eigen::Index>(body.node_id.size());
+  body.node_id.insert(body.node_id.end(), file.special_id.begin(), file.special_id.end());
+  body.phi.insert(body.phi.end(), file.special_gains.begin(), file.special_gains.end());
+  body.node_xyz.conservativeResize(static_cast<Eigen::Index>(body.node_id.size()), 3);
+  body.node_xyz.bottomRows(body.node_xyz.rows() - first).setZero();
 }
 
 }  // namespace bough::flx

@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "base/file_roles.hpp"
+#include "base/platform.hpp"
 
 namespace bough::flx {
 
@@ -20,7 +21,7 @@ bool is_digit(char c) { return c >= '0' && c <= '9'; }
 bool parse(std::string_view text, int& value) {
   if (!text.empty() && text[0] == '+') text.remove_prefix(1);
   if (text.empty() || (text[0] == '-' && text.size() == 1)) return false;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  const auto [end, error] = platform::read_number(text.data(), text.data() + text.size(), value);
   return error == std::errc{} && end == text.data() + text.size() && (text[0] == '-' || is_digit(text[0]));
 }
 
@@ -52,7 +53,7 @@ bool parse(std::string_view text, double& value) {
     }
   }
   if (!has_digit) return false;
-  const auto [end, error] = std::from_chars(plain.data(), plain.data() + plain.size(), value);
+  const auto [end, error] = platform::read_number(plain.data(), plain.data() + plain.size(), value);
   // Too small for a double: zero, as Fortran has it. Too large stays an error.
   if (error == std::errc::result_out_of_range && end == plain.data() + plain.size()) {
     const auto exponent = plain.find('e');
@@ -142,7 +143,7 @@ ListReader::Token ListReader::next() {
   const auto star = token.text.find('*');
   int repeat = 0;
   if (star == std::string::npos || !is_digit(token.text[0]) || !parse(token.text.substr(0, star), repeat)) return token;
-  if (repeat < 1) return token;  // "0*1" is no number: the caller says so
+  if (repeat < 1) return token;  // "0*1" is no number: the caller reports it
   token.repeat = repeat;
   token.text.erase(0, star + 1);
   if (token.text.empty()) token.kind = Kind::Null;

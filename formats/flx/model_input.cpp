@@ -257,7 +257,7 @@ void check_symmetry(const SparseMatrix& matrix, const std::string& item, const s
   if (part > 1e-8)
     diagnostics.warning("flx.unsymmetric", {path},
                         fmt::format("{} is not symmetric: |A - A'| is {:.1e} of |A|", item, part),
-                        "check its rows; it is used as it stands");
+                        "check its rows; it is used unchanged");
 }
 
 }  // namespace

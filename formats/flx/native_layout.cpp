@@ -7,7 +7,7 @@ namespace bough::flx {
 
 namespace {
 
-/// Every line starts with its label and the indices of its first value (docs/formats/flx.md). The reader knows the
+/// Every line starts with its label and the indices of its first value (docs/formats/flx.md). The reader uses the
 /// labels, not the columns.
 constexpr const char* kNative = R"layout(
 text "FLX {version} Bough flexible body, see docs/formats/flx.md"

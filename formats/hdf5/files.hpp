@@ -1,6 +1,6 @@
 #pragma once
-/// \file Bough's HDF5 files (docs/formats): flexible body, modes, results. Written beside and renamed: whole or not at
-/// all (results: readable while they grow, finished or not).
+/// \file Bough's HDF5 files (docs/formats): flexible body, modes, results. Written to a temporary name and renamed:
+/// whole or not at all (results: readable while they grow, finished or not).
 #include <chrono>
 #include <limits>
 #include <map>

@@ -8,6 +8,7 @@
 
 #include "base/isolated.hpp"
 #include "base/part_file.hpp"
+#include "base/platform.hpp"
 
 namespace bough::hdf5 {
 
@@ -21,17 +22,18 @@ constexpr double kSeconds = 5, kSecondsPerByte = 1e-6;
 using Stamp = std::array<long long, 5>;
 
 Stamp make_stamp(const struct stat& state) {
+  const auto changed = platform::get_change_time(state);
   return {static_cast<long long>(state.st_dev), static_cast<long long>(state.st_ino),
-          static_cast<long long>(state.st_size), static_cast<long long>(state.st_mtim.tv_sec),
-          static_cast<long long>(state.st_mtim.tv_nsec)};
+          static_cast<long long>(state.st_size), static_cast<long long>(changed.tv_sec),
+          static_cast<long long>(changed.tv_nsec)};
 }
 
 /// File times have a resolution of some 10 ms: a file may change twice within it without a sign.
 bool is_older(const struct stat& state, double seconds) {
   timespec now{};
   ::clock_gettime(CLOCK_REALTIME, &now);
-  return static_cast<double>(now.tv_sec - state.st_mtim.tv_sec) +
-             1e-9 * static_cast<double>(now.tv_nsec - state.st_mtim.tv_nsec) >
+  const auto changed = platform::get_change_time(state);
+  return static_cast<double>(now.tv_sec - changed.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec - changed.tv_nsec) >
          seconds;
 }
 

@@ -45,7 +45,7 @@ void write_recovery(FileWriter& file, const records::FlexBody& body) {
                       "ascending lexical order of their exponents",
                   "F/E^" + std::to_string(k)});
     write_rows(file, path + "/inertial", block, block.inertial,
-               {"what the modes leave out of the static answer to each inertial load: element, component, load",
+               {"residual of the modes in the static answer to each inertial load: element, component, load",
                 "F per L/T^2, 1/T^2"});
     write_rows(file, path + "/external", block, block.external,
                {"the same of each locator's load: element, component, locator", "F per load"});

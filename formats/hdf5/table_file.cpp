@@ -51,7 +51,7 @@ Eigen::MatrixXd read_numbers(const std::string& path, const std::string& dataset
   FileReader file(path);
   const std::string name = dataset.empty() || dataset[0] != '/' ? "/" + dataset : dataset;
   const auto fail = [&](const char* id, const std::string& what) {
-    return InputError(id, {path}, what, "bough info lists what the file holds");
+    return InputError(id, {path}, what, "bough info lists the contents of the file");
   };
   if (!file.has(name)) throw fail("hdf5.missing", name + " is missing");
   const Handle object(H5Dopen2(file.get(), name.c_str(), H5P_DEFAULT), H5Dclose);

@@ -18,7 +18,12 @@ void write_third_order(FileWriter& file, const records::FlexBody& body) {
   if (third.empty()) return;
   std::vector<int> numbers;
   for (const int j : third.large) numbers.push_back(j + 1);
-  file.write_integers("/third_order/large", numbers, {"the large modes, from 1", "1"});
+  // One of both: programs that do not know directions find that the modes are missing.
+  if (third.directions.size() > 0)
+    file.write_matrix("/third_order/directions", third.directions,
+                      {"large amplitudes by those of all modes: direction, mode", "1"});
+  else
+    file.write_integers("/third_order/large", numbers, {"the large modes, from 1", "1"});
   for (int k = ThirdOrder::kMinEnergy; k <= ThirdOrder::kMaxEnergy; ++k)
     file.write_vector(name_degree("/third_order/energy", k),
                       third.energy[static_cast<std::size_t>(k - ThirdOrder::kMinEnergy)],
@@ -65,8 +70,13 @@ void read_third_order(FileReader& file, records::FlexBody& body) {
   if (!file.has("/third_order")) return;
   ThirdOrder& third = body.third_order;
   const int n = body.num_modes();
-  third.large = file.read_integers("/third_order/large", -1);
-  for (int& j : third.large) --j;
+  if (file.has("/third_order/directions")) {
+    third.directions = file.read_matrix("/third_order/directions", -1, n);
+    third.count_directions();
+  } else {
+    third.large = file.read_integers("/third_order/large", -1);
+    for (int& j : third.large) --j;
+  }
   const int N = third.num_large();
   if (!records::is_valid_choice(third.large, n)) return;  // find_body_faults() says so
   for (int k = ThirdOrder::kMinEnergy; k <= ThirdOrder::kMaxEnergy; ++k)

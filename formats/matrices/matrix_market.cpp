@@ -55,7 +55,7 @@ class MarketReader {
     while (in_.next_line())
       if (!trim(in_.get_line()).empty())
         in_.fail("matrices.market", "found " + quote(in_.get_line()) + " after the last entry",
-                 "the size line says too few entries: write the file again");
+                 "the size line gives too few entries: write the file again");
     Matrix matrix;
     matrix.form = num_rows_ != num_cols_ ? kRectangular : triangle_ == Triangle::Mirror ? kSymmetric : kSquare;
     entries.mirror(triangle_);

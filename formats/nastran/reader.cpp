@@ -23,12 +23,14 @@ void fill_deck(const detail::Source& source, const ReadOptions& options, records
   requested.is_complex = options.is_complex;
   detail::LoadColumns columns;
   requested.load_columns = &columns;
+  detail::ComponentCases component_cases;
+  requested.component_cases = &component_cases;
   const auto bulk = detail::split_bulk(source);
   for (const auto& section : bulk.sections) requested.superelements.insert(section.id);
   const auto first_line = detail::read_control(source, deck, diagnostics, requested);
   detail::read_bulk(bulk.has_sections() ? bulk.main : source, first_line, options, deck, diagnostics, dynamics);
   detail::read_assigned_files(source, deck);
-  detail::read_sections(bulk, options, deck, diagnostics);
+  detail::read_sections(bulk, component_cases, options, deck, diagnostics);
   detail::add_load_columns(columns, deck, diagnostics);
   detail::report_params(deck, options.ignore_cards, diagnostics, dynamics != nullptr);
 }

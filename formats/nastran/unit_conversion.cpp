@@ -101,18 +101,16 @@ void UnitConverter::scale_point(int field, Axes axes) {
 void UnitConverter::scale_lengths(int field, int cid) {
   if (get_axes(cid) != Axes::Rectangular) {
     for (int i = field; i < field + 3; ++i)
-      if (!get(i).empty()) return fail(i, "its coordinate system has angles");
+      if (!get(i).empty() && parse_real(get(i)) != 0.0) return fail(i, "its coordinate system has angles");
   }
   scale(field, field + 2, "L");
 }
 
 void UnitConverter::scale_by(Motion motion, int field, const char* translation, const char* rotation,
                              const char* mixed) {
-  if (motion == Motion::Mixed && std::string_view(mixed) == "?" && factors_.length != 1) {
-    if (parse_real(get(field)).value_or(1) != 0)
-      fail(field, "it acts between a translation and a rotation, whose forces take different factors");
-    return;
-  }
+  if (parse_real(get(field)).value_or(get(field).empty() ? 0 : 1) == 0) return;  // blank is zero
+  if (motion == Motion::Mixed && std::string_view(mixed) == "?" && factors_.length != 1)
+    return fail(field, "it acts between a translation and a rotation, whose forces take different factors");
   if (motion == Motion::Mixed && std::string_view(mixed) == "?") mixed = translation;
   scale(field, motion == Motion::Translation ? translation
                : motion == Motion::Rotation  ? rotation

@@ -8,7 +8,7 @@ namespace bough::nastran {
 
 enum class FieldFormat {
   Large,  ///< a card in 8 columns where every number is exact there, else in 16: ten digits at least, mostly all
-  Small,  ///< always 8 columns: what fits of a real, as old programs want it
+  Small,  ///< always 8 columns: as many digits of a real as fit, for old programs
   Free    ///< between commas with 17 digits where needed: read back bit for bit
 };
 

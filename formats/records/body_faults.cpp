@@ -83,6 +83,12 @@ Faults find_unknown_names(const FlexBody& body) {
     faults.push_back("/third_order/large holds " + std::to_string(body.third_order.num_large()) + " of " +
                      std::to_string(body.num_modes()) + " modes, expected 1 to " + std::to_string(kMaxLargeModes) +
                      " mode numbers, ascending, of at most " + std::to_string(kMaxThirdOrderModes) + " modes");
+  const auto& directions = body.third_order.directions;
+  if (directions.size() > 0 &&
+      (directions.rows() != body.third_order.num_large() || directions.cols() != body.num_modes()))
+    faults.push_back("/third_order/directions is " + std::to_string(directions.rows()) + " x " +
+                     std::to_string(directions.cols()) + ", expected " + std::to_string(body.third_order.num_large()) +
+                     " x " + std::to_string(body.num_modes()));
   if (!are_modes(body.next_order.modes, body.num_modes()) || body.next_order.modes.size() > kMaxLargeModes)
     faults.push_back("/next_order/modes is expected to hold at most " + std::to_string(kMaxLargeModes) +
                      " mode numbers up to " + std::to_string(body.num_modes()) + ", ascending");

@@ -10,7 +10,7 @@
 
 namespace bough::records {
 
-/// Keys of a table that depend on its type, as they stand there; which are taken is the type's business.
+/// Keys of a table that depend on its type, unchanged; the type decides which are used.
 struct Settings {
   std::map<std::string, std::vector<double>> numbers;     ///< a number or a list of numbers
   std::map<std::string, Eigen::MatrixXd> matrices;        ///< a list of rows, or out of `file`

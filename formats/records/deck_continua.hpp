@@ -11,7 +11,7 @@
 
 namespace bough::records {
 
-/// MAT2: anisotropic plane-stress law, 3 x 3 symmetric.
+/// MAT2: anisotropic plane-stress elasticity, 3 x 3 symmetric.
 struct Mat2 {
   int id = 0;
   Eigen::Matrix3d G = Eigen::Matrix3d::Zero();
@@ -29,7 +29,7 @@ struct PlyStrength {
   bool is_strain = false;
 };
 
-/// MAT8: orthotropic plane-stress law. G1z, G2z zero: no transverse shear flexibility from this material.
+/// MAT8: orthotropic plane-stress elasticity. G1z, G2z zero: no transverse shear flexibility from this material.
 struct Mat8 {
   int id = 0;
   double E1 = 0, E2 = 0, nu12 = 0, G12 = 0, G1z = 0, G2z = 0, rho = 0;

@@ -53,10 +53,12 @@ struct ValueList {  ///< DDVAL
 /// ROTORD of Simcenter Nastran: speeds and rotors on one card.
 struct RotorSweepCard {
   struct Rotor {
-    int id = 0, line = 0;   ///< RID, RSET
-    double speed = 1;       ///< RSPEED, relative to the speeds of the card
-    int cid = 0;            ///< RCORD: turns about its z axis
-    double w3 = 0, w4 = 0;  ///< [1/T]
+    int id = 0, line = 0;      ///< RID, RSET
+    double speed = 1;          ///< RSPEED, relative to the speeds of the card
+    int cid = 0;               ///< RCORD: turns about its z axis
+    bool is_rotating = false;  ///< REFSYS of the card: ROT, else FIX
+    bool has_stress = false;   ///< RFORCE names the centrifugal load
+    double w3 = 0, w4 = 0;     ///< [1/T]
     CardLocation at;
   };
   int sid = 0, count = 1;

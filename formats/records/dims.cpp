@@ -3,6 +3,8 @@
 #include <charconv>
 #include <sstream>
 
+#include "base/platform.hpp"
+
 namespace bough::records {
 
 std::optional<std::array<double, 3>> parse_dims(const std::string& text) {
@@ -20,7 +22,7 @@ std::optional<std::array<double, 3>> parse_dims(const std::string& text) {
     double power = sign;
     if (const auto hat = word.find('^'); hat != std::string::npos) {
       double value = 0;
-      const auto [end, failed] = std::from_chars(word.data() + hat + 1, word.data() + word.size(), value);
+      const auto [end, failed] = platform::read_number(word.data() + hat + 1, word.data() + word.size(), value);
       if (failed != std::errc() || end != word.data() + word.size()) return {};
       power = sign * value;
       word.resize(hat);

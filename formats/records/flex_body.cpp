@@ -1,5 +1,7 @@
 #include "formats/records/flex_body.hpp"
 
+#include "formats/records/special_nodes.hpp"
+
 #include <algorithm>
 #include <unordered_map>
 #include <unordered_set>
@@ -9,6 +11,12 @@ namespace bough::records {
 int FlexBody::find_node(int id) const {
   const auto it = std::find(node_id.begin(), node_id.end(), id);
   return it == node_id.end() ? -1 : static_cast<int>(it - node_id.begin());
+}
+
+bool is_special_node(const FlexBody& body, int k) {
+  const auto& points = body.mesh.grid_id;
+  if (points.empty() || !body.mesh.blocks.empty()) return false;
+  return std::find(points.begin(), points.end(), body.node_id[static_cast<std::size_t>(k)]) == points.end();
 }
 
 int FlexBody::find_locator(int node, int direction) const {

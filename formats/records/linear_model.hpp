@@ -93,8 +93,8 @@ struct LinearModel {
   std::vector<UncertainParameter> uncertainty;
 };
 
-/// M δ̈ + D δ̇ + K δ = F u + Z z, δ the displacements of the DOFs, z the states behind their rates, of controllers,
-/// actuators and sensors: n x n, n x n, n x n, n x num_inputs, n x nz.
+/// M δ̈ + D δ̇ + K δ = F u + Z z, δ the displacements of the DOFs, z the other states, of controllers, actuators and
+/// sensors: n x n, n x n, n x n, n x num_inputs, n x nz.
 struct SecondOrder {
   Eigen::MatrixXd M, D, K, F, Z;
 };

@@ -2,6 +2,8 @@
 
 #include <charconv>
 
+#include "base/platform.hpp"
+
 namespace bough::records {
 namespace {
 
@@ -19,7 +21,7 @@ std::optional<double> parse_real(std::string_view text) {
   if (!is_digit(first) && first != '.') return std::nullopt;  // from_chars would take "inf" and "nan"
   double value = 0;
   const char* const last = text.data() + text.size();
-  const auto [end, error] = std::from_chars(text.data(), last, value);
+  const auto [end, error] = platform::read_number(text.data(), last, value);
   if (end == last) {
     if (error == std::errc()) return value;
     return std::nullopt;
@@ -36,7 +38,7 @@ std::optional<double> parse_real(std::string_view text) {
   std::size_t n = mantissa;
   buffer[n++] = 'e';
   for (std::size_t i = mantissa + (has_letter ? 1 : 0); i < text.size(); ++i) buffer[n++] = text[i];
-  const auto again = std::from_chars(buffer, buffer + n, value);
+  const auto again = platform::read_number(buffer, buffer + n, value);
   if (again.ec != std::errc() || again.ptr != buffer + n) return std::nullopt;
   return value;
 }

@@ -14,7 +14,7 @@ namespace bough::records {
 ///
 ///     offset + matrix η + beyond (monomials of η) + inertial (A_I - A_I of the preload) + external f
 ///
-/// `matrix` is mode displacement. `inertial` and `external` are what the modes leave out of the static answer to each
+/// `matrix` is mode displacement. `inertial` and `external` are the residual of the modes in the static answer to each
 /// unit load (docs/theory/recovery.md): with them it is mode acceleration.
 struct RecoveryBlock {
   std::string name;  ///< of the card; with a number where elements of one card differ in their rows: "CBAR-2"

@@ -1,5 +1,7 @@
 #include "formats/records/third_order.hpp"
 
+#include <numeric>
+
 namespace bough::records {
 
 int count_monomials(int n, int degree) {
@@ -25,6 +27,11 @@ Eigen::MatrixXi list_exponents(int n, int degree) {
   };
   if (n > 0) fill(fill, 0, degree);
   return all;
+}
+
+void ThirdOrder::count_directions() {
+  large.resize(static_cast<std::size_t>(directions.rows()));
+  std::iota(large.begin(), large.end(), 0);
 }
 
 bool are_modes(const std::vector<int>& numbers, int num_modes) {

@@ -27,7 +27,7 @@ bool are_modes(const std::vector<int>& numbers, int num_modes);
 bool is_valid_choice(const std::vector<int>& large, int num_modes);
 
 /// Polynomials are packed: one coefficient per monomial of a degree, in the order of list_exponents. Those of degree 2
-/// are of all n modes, those of other degrees of the N large ones.
+/// are of all n modes, those of other degrees of the N large amplitudes.
 struct ThirdOrder {
   static constexpr int kMinEnergy = 3, kMaxEnergy = 6;  ///< degrees of the strain energy
   static constexpr int kMinField = 2, kMaxField = 4;    ///< degrees of displacements
@@ -36,6 +36,9 @@ struct ThirdOrder {
   using Tables = std::array<Eigen::MatrixXd, kMaxField - kMinField + 1>;
 
   std::vector<int> large;  ///< N mode numbers from 0, ascending; empty: no third order
+  /// N x n: the large amplitudes are y = directions η, of the unit of η, and `large` has their numbers from 0; empty:
+  /// they are those of the modes `large`.
+  Eigen::MatrixXd directions;
   std::array<Eigen::VectorXd, kMaxEnergy - kMinEnergy + 1> energy;  ///< of the large modes, beyond ½ ηᵀKη
   /// Strain energy of two large modes and a third mode that is not large: monomials of degree 2 x other modes.
   Eigen::MatrixXd energy_small;
@@ -46,6 +49,8 @@ struct ThirdOrder {
   std::vector<Tables> node;             ///< [interface node] columns: translations and rotation vector
   Tables load;                          ///< columns: work of the load of each locator
 
+  /// Sets `large` to the numbers of the directions.
+  void count_directions();
   /// Returns true if the body has no displacements of third order.
   bool empty() const { return large.empty(); }
   /// Number N of large modes.

@@ -4,6 +4,7 @@
 #include <map>
 
 #include "base/file_roles.hpp"
+#include "base/platform.hpp"
 #include "formats/sid/sid.hpp"
 
 namespace bough::sid {
@@ -59,13 +60,13 @@ class Reader {
         text.begin(), text.end(), [](char c) { return c == 'D' || c == 'd'; }, 'E');
     if (!text.empty() && text.front() == '+') text.erase(0, 1);
     double value = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    const auto [end, error] = platform::read_number(text.data(), text.data() + text.size(), value);
     if (error != std::errc() || end != text.data() + text.size()) fail("expected a number, found \"" + value_ + "\"");
     return value;
   }
   int get_int() const {
     int value = 0;
-    const auto [end, error] = std::from_chars(value_.data(), value_.data() + value_.size(), value);
+    const auto [end, error] = platform::read_number(value_.data(), value_.data() + value_.size(), value);
     if (error != std::errc() || end != value_.data() + value_.size() || value < 0)
       fail("expected a whole number, found \"" + value_ + "\"");
     return value;

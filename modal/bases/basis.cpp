@@ -151,8 +151,8 @@ Basis calc_free_interface_basis(const fe::System& system, const BasisOptions& op
   return basis;
 }
 
-/// What the directions X of Craig-Bampton coordinates do at the interface, each: "turning of grid 31 about (0.33 0.67
-/// 0.67)".
+/// Describes the motion of the interface in each of the directions X of Craig-Bampton coordinates: "turning of grid 31
+/// about (0.33 0.67 0.67)".
 std::string describe_directions(const fe::Model& model, const Basis& basis, const MatrixXd& X) {
   std::string text;
   for (Eigen::Index c = 0; c < X.cols(); ++c) {

@@ -49,7 +49,7 @@ Basis calc_basis(const fe::System& system, const BasisOptions& options, const St
 /// Columns of the basis, in this order.
 Basis select_columns(const Basis& basis, const std::vector<int>& columns);
 
-/// The basis of a free body seen from a frame: the rigid-body motion that the conditions demand is taken out of each
+/// The basis of a free body seen from a frame: the rigid-body motion that the conditions demand is subtracted from each
 /// vector and M is computed again; K, lambda stay. Raw Craig-Bampton coordinates are only possible in the frame of an
 /// interface node, whose own six constraint modes go. Throws InputError("modal.raw-frame") for another.
 void move_to_frame(const fe::Model& model, const FrameSpec& frame, Basis& basis);

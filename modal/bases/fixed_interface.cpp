@@ -53,25 +53,25 @@ struct FixedInterface::Impl {
     };
     K_ii = take_interior(K);
     M_ii = take_interior(system.M);
-    const auto is_sound = [&] {
+    const auto is_accurate = [&] {
       return !factor->is_singular() && linear::calc_softest_energy(K_ii, kinds, *factor) >= linear::kMechanismEnergy;
     };
     factor.emplace(K_ii, false);
-    if (!is_sound()) throw_mechanism(model, part, K_ii);
+    if (!is_accurate()) throw_mechanism(model, part, K_ii);
   }
-  /// As StaticSolver::solve: one refinement with a residual of more digits.
+  /// Solution with one refinement, as in StaticSolver::solve, with a residual of more digits.
   MatrixXd solve_refined(const MatrixXd& F_i) const {
     MatrixXd X = factor->solve(F_i);
     X += factor->solve(linear::calc_residual(K_ii, X, F_i));
-    Diagnostics unheard;
+    Diagnostics ignored;
     linear::check_residuals(
         linear::calc_static_residuals(linear::get_diagonal(K_ii), X, linear::multiply(K_ii, X), F_i, kinds),
-        "load case with the interface held", unheard);
+        "load case with the interface held", ignored);
     return X;
   }
   MatrixXd expand(const MatrixXd& X_i) const { return model.T() * MatrixXd(part.S_i * X_i); }
   int count_below(double hz) const;
-  detail::RootSearchResult find_roots(int wanted, detail::PencilSolver& solver, detail::Roots& roots) const;
+  detail::RootSearchResult find_roots(int requested, detail::PencilSolver& solver, detail::Roots& roots) const;
   void make_canonical(VectorXd& lambda, MatrixXd& X) const;
 };
 
@@ -116,16 +116,16 @@ int FixedInterface::Impl::count_below(double hz) const {
                          "ask for a number of modes instead of a highest frequency");
 }
 
-detail::RootSearchResult FixedInterface::Impl::find_roots(int wanted, detail::PencilSolver& solver,
+detail::RootSearchResult FixedInterface::Impl::find_roots(int requested, detail::PencilSolver& solver,
                                                           detail::Roots& roots) const {
   detail::RootSearch search;
-  search.wanted = wanted;
+  search.requested = requested;
   search.num_available = solver.num_available();
   search.solve = [&](detail::Roots& known, int number) { solver.solve(0, number, 0, false, known); };
   search.closeness = [](const detail::Roots&, int) { return detail::kCloseness; };
   search.roundoff = [](const detail::Roots&, int) { return 0.0; };
   search.count = [&](double mu) { return detail::count_roots_below(K_ii, M_ii, mu); };
-  solver.solve(0, wanted + 2, 2, false, roots);
+  solver.solve(0, requested + 2, 2, false, roots);
   return detail::search_roots(search, roots);
 }
 
@@ -135,9 +135,9 @@ ModeSet FixedInterface::calc_modes(int number, std::optional<double> max_hz, Dia
   const auto size = static_cast<int>(in.part.interior.size());
   ModeSet set{VectorXd(0), MatrixXd(in.model.num_gdofs(), 0), {}};
   if (size == 0) return set;
-  int wanted = number > 0 ? number : (max_hz ? size : 0);
-  if (max_hz) wanted = std::min(wanted, in.count_below(*max_hz));
-  if (wanted == 0) return set;
+  int requested = number > 0 ? number : (max_hz ? size : 0);
+  if (max_hz) requested = std::min(requested, in.count_below(*max_hz));
+  if (requested == 0) return set;
 
   const VectorXd K_diagonal = linear::get_diagonal(in.K_ii);
   detail::PencilProblem problem;
@@ -148,19 +148,19 @@ ModeSet FixedInterface::calc_modes(int number, std::optional<double> max_hz, Dia
   problem.rigid.resize(size, 0);
   problem.factor = &*in.factor;
   problem.solver = eps_type;
-  detail::PencilSolver solver(problem, wanted);
+  detail::PencilSolver solver(problem, requested);
   detail::Roots roots{VectorXd(0), MatrixXd(size, 0)};
-  const auto result = in.find_roots(wanted, solver, roots);
+  const auto result = in.find_roots(requested, solver, roots);
   detail::report_count(result, 0, "modes with the interface held", true, diagnostics);
-  if (result.cut < wanted)
+  if (result.cut < requested)
     diagnostics.warning("modal.fewer-modes", {},
                         "the model has " + std::to_string(result.cut) + " modes with its interface held, " +
-                            std::to_string(wanted) + " were asked for",
+                            std::to_string(requested) + " were asked for",
                         "ask for fewer, or use a finer mesh or a consistent mass");
   roots.keep(result.cut);
   if (result.cut == 0) return set;
   in.make_canonical(roots.value, roots.X);
-  roots.keep(std::min(wanted, result.cut));
+  roots.keep(std::min(requested, result.cut));
   const VectorXd residual = linear::calc_residuals(
       linear::calc_residual_scale(K_diagonal, problem.M_diagonal, roots.value), roots.X,
       linear::multiply(in.K_ii, roots.X), linear::multiply(in.M_ii, roots.X) * roots.value.asDiagonal(), in.kinds);

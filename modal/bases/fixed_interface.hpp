@@ -9,7 +9,7 @@
 
 namespace bough::modal::bases {
 
-/// How modes that were solved for were checked.
+/// Checks of the modes of a solution.
 struct ModesCheck {
   int num_found = 0;       ///< up to the highest that is complete with its copies, rigid motions included
   int inertia_count = -1;  ///< of the factor (Sylvester), as many where none is missed; -1: none to be trusted

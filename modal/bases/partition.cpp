@@ -15,13 +15,18 @@ namespace {
 
 using Row = std::map<int, double>;  ///< by f-dof
 
-/// The displacement of a node along an axis of its displacement system, as a row over the f-set.
+/// The displacement of a node along an axis of its displacement system, or of a scalar point, as a row over the f-set.
 Row make_row(const fe::Model& model, int node_index, int component) {
   const int fdof = model.find_fdof(node_index, component);
   if (fdof >= 0) return {{fdof, 1.0}};
   const auto& node = model.node(node_index);
   const int c = component - 1;
   Row row;
+  if (node.num_dofs == 1) {
+    for (SparseRows::InnerIterator it(model.T(), node.first_gdof); it; ++it)
+      row[static_cast<int>(it.col())] += it.value();
+    return row;
+  }
   for (int k = 0; k < 3; ++k) {
     const double weight = node.R_basic_cd(k, c % 3);
     if (weight == 0) continue;
@@ -79,8 +84,8 @@ Partition make_partition(const fe::Model& model, const std::vector<int>& nodes, 
   std::vector<std::pair<int, int>> order;
   for (const int id : nodes) {
     const int index = model.find_node(id);
-    BOUGH_DEMAND(index >= 0 && model.node(index).num_dofs == 6);
-    for (int c = 1; c <= 6; ++c) {
+    BOUGH_DEMAND(index >= 0);
+    for (int c = 1; c <= model.node(index).num_dofs; ++c) {
       if (std::find(order.begin(), order.end(), std::pair{id, c}) != order.end()) continue;
       Row row = make_row(model, index, c);
       if (find_largest(row) == 0) continue;
@@ -169,7 +174,7 @@ linear::PetscMat make_petsc(const SparseRows& S, const linear::SymmetricMatrix& 
   check_petsc(MatCreate(PETSC_COMM_WORLD, result.out()));
   check_petsc(MatSetSizes(result.get(), last - first, PETSC_DECIDE, PETSC_DETERMINE, static_cast<PetscInt>(S.cols())));
   check_petsc(MatSetType(result.get(), MATAIJ));
-  // Of the two only the one of the type that one process or several have does anything.
+  // One of the two calls acts: that of the matrix type of one process, or of several.
   check_petsc(MatSeqAIJSetPreallocationCSR(result.get(), starts.data(), columns.data(), values.data()));
   check_petsc(MatMPIAIJSetPreallocationCSR(result.get(), starts.data(), columns.data(), values.data()));
   return result;

@@ -1,5 +1,5 @@
 #pragma once
-/// \file The dofs of the interface nodes as coordinates of their own: q_f = S_i q_i + S_b u_b.
+/// \file The dofs of the interface nodes as separate coordinates: q_f = S_i q_i + S_b u_b.
 #include <utility>
 #include <vector>
 
@@ -15,7 +15,7 @@ using fe::SparseRows;
 /// (the reference grid of an RBE3, a grid of an RBE2) takes the place of the f-dof that weighs most in it, found by
 /// elimination with column pivoting. With direct dofs only, S_i and S_b are columns of the identity.
 struct Partition {
-  std::vector<std::pair<int, int>> boundary;  ///< nb: node id, component 1..6 in the node's displacement axes
+  std::vector<std::pair<int, int>> boundary;  ///< nb: node id, component 1..6 in its displacement axes; scalar point: 1
   std::vector<int> interior;                  ///< f-dof of each column of S_i, ascending
   SparseRows S_i;                             ///< num_fdofs x ni
   MatrixXd S_b;                               ///< num_fdofs x nb

@@ -12,8 +12,8 @@ namespace bough::modal::bases {
 
 namespace {
 
-/// Coordinates to units in which each has mass 1; those whose mass is next to none for their stiffness (frequencies
-/// 1e7 times that of the softest) go by their stiffness, so that their mass stays next to none.
+/// Coordinates to units in which each has mass 1; those whose mass is negligible for their stiffness (frequencies 1e7
+/// times that of the softest) go by their stiffness, so that their mass stays negligible.
 VectorXd calc_mass_scale(const MatrixXd& M, const MatrixXd& K) {
   const VectorXd m = M.diagonal(), k = K.diagonal();
   double longest = 0;  // 1/ω²
@@ -21,14 +21,14 @@ VectorXd calc_mass_scale(const MatrixXd& M, const MatrixXd& K) {
     if (m(j) > 0 && k(j) > 0) longest = std::max(longest, m(j) / k(j));
   VectorXd scale = VectorXd::Zero(m.size());
   for (Eigen::Index j = 0; j < m.size(); ++j) {
-    const double least = k(j) > 0 ? longest * k(j) : 0;
-    const double mass = m(j) > detail::kStiffCoordinate * least ? m(j) : least;
+    const double min_norm = k(j) > 0 ? longest * k(j) : 0;
+    const double mass = m(j) > detail::kStiffCoordinate * min_norm ? m(j) : min_norm;
     if (mass > 0) scale(j) = 1 / std::sqrt(mass);
   }
   return scale;
 }
 
-/// Of the directions Z, those that strain: Y with YᵀKY = 1. The others are dependent vectors.
+/// Elastic directions among Z: Y with YᵀKY = 1. The others are dependent vectors.
 MatrixXd find_stiff(const MatrixXd& Z, const MatrixXd& K) {
   if (Z.cols() == 0) return Z;
   const VectorXd diagonal = (Z.cwiseAbs2().transpose() * K.diagonal().cwiseMax(0)).cwiseSqrt();
@@ -107,10 +107,10 @@ VectorXd calc_least_norms(const fe::Model& model, const MatrixXd& kept, const Ma
   };
   for (Eigen::Index i = 0; i < F.cols(); ++i)
     if (!is_held(i)) longest = std::max(longest, norm(i) * norm(i) / flexibility(i));
-  VectorXd least(F.cols());
+  VectorXd min_norm(F.cols());
   for (Eigen::Index i = 0; i < F.cols(); ++i)
-    least(i) = is_held(i) ? HUGE_VAL : detail::kResidualRoundoff * std::sqrt(longest * flexibility(i));
-  return least;
+    min_norm(i) = is_held(i) ? HUGE_VAL : detail::kResidualRoundoff * std::sqrt(longest * flexibility(i));
+  return min_norm;
 }
 
 /// Returns true if no grid and no scalar point has a force: a force moves the mass of its grid, which a large mass that
@@ -144,7 +144,7 @@ ResidualVectors calc_residual_vectors(const fe::Model& model, const StaticSolve&
   if (rigid.cols() > 0) X -= rigid * (rigid.transpose() * times_M(X));
   const MatrixXd X_static = X;
   const VectorXd before = X.cwiseProduct(times_M(X)).colwise().sum().cwiseMax(0).cwiseSqrt();
-  const VectorXd least = calc_least_norms(model, kept, F_e, X, before);
+  const VectorXd min_norm = calc_least_norms(model, kept, F_e, X, before);
 
   MatrixXd Q(F.rows(), rigid.cols() + kept.cols());
   Q << rigid, kept;
@@ -167,7 +167,7 @@ ResidualVectors calc_residual_vectors(const fe::Model& model, const StaticSolve&
       const bool is_massless = carried > 0 && std::sqrt(detail::kMasslessVector) * std::abs(moved) > carried &&
                                is_moment(model, F.col(used[i]));
       if (pass == 0 && (is_balanced || is_massless ||
-                        !(norm > std::max(detail::kDependentResidual * before(used[i]), least(used[i]))))) {
+                        !(norm > std::max(detail::kDependentResidual * before(used[i]), min_norm(used[i]))))) {
         X.col(c).setZero();
         MX.col(c).setZero();
         (is_balanced ? balanced : result.unused).push_back(used[i]);

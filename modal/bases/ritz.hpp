@@ -9,7 +9,7 @@ namespace bough::modal::bases {
 
 /// K N = M N D of m x m matrices, ascending, NᵀMN = 1. Directions whose share of M is below 1e-12 are no motion of
 /// their own, so N may have fewer than m columns: dependent vectors go, massless ones follow the others statically
-/// (Guyan). Solved as M x = θ K x where K is definite: the lowest values keep their digits beside values many orders
+/// (Guyan). Solved as M x = θ K x where K is definite: the lowest values keep their digits next to values many orders
 /// larger.
 struct RitzPairs {
   VectorXd lambda;
@@ -30,7 +30,7 @@ struct ResidualVectors {
   ModeSet modes;            ///< pseudo-modes: unit generalized mass, orthogonal to `rigid` and `kept`
   MatrixXd share;           ///< m x n: part of mode j that load i brought, columns sum to one
   std::vector<int> unused;  ///< loads whose static solution the kept modes and the loads before hold already
-  /// Loads without a vector whose static solution moves next to no mass and is held by nothing: the part that is lost,
+  /// Loads without a vector whose static solution moves negligible mass and is held by nothing: the part that is lost,
   /// by flexibility (0 to 1).
   std::vector<std::pair<int, double>> massless;
 };

@@ -78,6 +78,9 @@ StiffnessDifference compare(const std::string& load, const MatrixXd& a, const Ma
   return d;
 }
 
+/// Cosine between the same direction of two bodies, at least.
+constexpr double kSameDirection = 0.999;
+
 /// Coefficients of one degree by the exponents of other modes: mode of a paired with the mode of b, for each large
 /// mode.
 VectorXd permute(const VectorXd& of_b, int degree, const std::vector<int>& order) {
@@ -91,12 +94,32 @@ VectorXd permute(const VectorXd& of_b, int degree, const std::vector<int>& order
 
 std::string describe_order(const FlexBody& body) {
   if (body.third_order.empty()) return "second order";
+  if (body.third_order.directions.size() > 0)
+    return "third order (" + std::to_string(body.third_order.num_large()) + " large directions)";
   std::string text;
   for (const int mode : body.third_order.large) text += (text.empty() ? "" : ", ") + std::to_string(mode + 1);
   return "third order (large modes " + text + ")";
 }
 
-/// Returns false if a large mode of one body is none of the other.
+/// A large amplitude by those of all modes of `body` that have a pair, at unit strain energy and with the signs of the
+/// first body: directions x pairs.
+MatrixXd calc_paired_directions(const FlexBody& a, const FlexBody& body, const std::vector<ModePair>& pairs,
+                                bool is_first) {
+  const auto& third = body.third_order;
+  MatrixXd rows(third.num_large(), static_cast<Index>(pairs.size()));
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    const int mode = is_first ? pairs[i].a : pairs[i].b;
+    const double scale =
+        (is_first ? 1 : pairs[i].sign) / std::sqrt(a.eigenvalue[pairs[i].a] * body.modal_mass(mode, mode));
+    for (Index f = 0; f < rows.rows(); ++f)
+      rows(f, static_cast<Index>(i)) =
+          scale * (third.directions.size() > 0 ? third.directions(f, mode)
+                                               : (third.large[static_cast<std::size_t>(f)] == mode ? 1.0 : 0.0));
+  }
+  return rows;
+}
+
+/// Returns false if a large mode or direction of one body is none of the other.
 bool compare_energies(const FlexBody& a, const FlexBody& b, const std::vector<ModePair>& pairs,
                       std::vector<StiffnessDifference>& differences) {
   const auto &x = a.third_order, &y = b.third_order;
@@ -104,15 +127,14 @@ bool compare_energies(const FlexBody& a, const FlexBody& b, const std::vector<Mo
   if (x.num_large() != y.num_large()) return false;
   std::vector<int> order;  // place in b's large modes of each of a's
   VectorXd scale(x.num_large()), scale_b(x.num_large());
-  for (const int mode : x.large) {
-    const auto pair = std::find_if(pairs.begin(), pairs.end(), [&](const ModePair& p) { return p.a == mode; });
-    if (pair == pairs.end()) return false;
-    const auto found = std::find(y.large.begin(), y.large.end(), pair->b);
-    if (found == y.large.end()) return false;
-    const auto at = static_cast<Index>(order.size());
-    scale[at] = 1 / std::sqrt(a.eigenvalue[mode] * a.modal_mass(mode, mode));
-    scale_b[at] = pair->sign / std::sqrt(a.eigenvalue[mode] * b.modal_mass(pair->b, pair->b));
-    order.push_back(static_cast<int>(found - y.large.begin()));
+  const MatrixXd of_a = calc_paired_directions(a, a, pairs, true), of_b = calc_paired_directions(a, b, pairs, false);
+  for (Index f = 0; f < of_a.rows(); ++f) {
+    const VectorXd along = of_b.rowwise().normalized() * of_a.row(f).normalized().transpose();
+    Index found = 0;
+    if (!(along.cwiseAbs().maxCoeff(&found) > kSameDirection)) return false;
+    scale[f] = of_a.row(f).norm();
+    scale_b[f] = (along[found] < 0 ? -1 : 1) * of_b.row(found).norm();
+    order.push_back(static_cast<int>(found));
   }
   const auto calc_scaled = [&](VectorXd c, int degree, const VectorXd& s) {
     const Eigen::MatrixXi exponents = records::list_exponents(x.num_large(), degree);

@@ -9,8 +9,8 @@ namespace bough::modal {
 /// offset = place of b. Other modes are left out; `pairs` and `a` say which.
 records::FlexBody align_body(const records::FlexBody& a, const records::FlexBody& b, const std::vector<ModePair>& pairs,
                              const Vector3d& offset);
-/// Whether Γ3 of the exact set holds after align_body: with another origin it takes the momentum of the translation
-/// dofs alone, which a body does not keep.
+/// Returns true if Γ3 of the exact set holds after align_body: with another origin it takes the momentum of the
+/// translation dofs alone, which a body does not keep.
 bool can_move_gamma3(const Vector3d& offset);
 /// a's modes that have a partner.
 records::FlexBody keep_paired(const records::FlexBody& a, const std::vector<ModePair>& pairs);

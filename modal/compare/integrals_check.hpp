@@ -27,7 +27,7 @@ MatrixXd calc_integral_norms(const records::MassIntegrals& set);
 /// that Schwarz's inequality allows: |Γ0|² <= m M_jj, |Γ1|² and |Γ3|² <= tr J M_jj, |Γ2|² and |Γ4|² <= M_jj tr M.
 MatrixXd calc_integral_differences(const records::MassIntegrals& a, const records::MassIntegrals& b,
                                    const MatrixXd& largest);
-/// That largest value, n x 5.
+/// Largest value of each integral, n x 5.
 MatrixXd calc_integral_scale(const records::FlexBody& body);
 
 /// Captured by the first j modes, with their modal mass M: Γ0 M⁻¹ Γ0ᵀ -> m 1, Γ1 M⁻¹ Γ1ᵀ -> J, Γ1 M⁻¹ Γ0ᵀ -> m c̃ on a

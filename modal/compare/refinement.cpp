@@ -47,14 +47,14 @@ double calc_element_size(const records::BodyMesh& mesh) {
 }
 
 double calc_observed_order(const std::array<double, 3>& value, const std::array<double, 3>& h) {
-  constexpr double kEqual = 1e-10, kLeast = 0.1, kMost = 12;
+  constexpr double kEqual = 1e-10, kMinOrder = 0.1, kMaxOrder = 12;
   const double first = value[0] - value[1], second = value[1] - value[2];
   const double size = std::max({std::abs(value[0]), std::abs(value[1]), std::abs(value[2])});
   if (!(std::abs(second) > kEqual * size) || !(std::abs(first) > kEqual * size)) return kNothing;
   const auto excess = [&](double p) {
     return (std::pow(h[0] / h[2], p) - std::pow(h[1] / h[2], p)) / (std::pow(h[1] / h[2], p) - 1) - first / second;
   };
-  double low = kLeast, high = kMost;
+  double low = kMinOrder, high = kMaxOrder;
   if (!(excess(low) < 0) || !(excess(high) > 0)) return kNothing;
   for (int i = 0; i < 100; ++i) {
     const double middle = 0.5 * (low + high);

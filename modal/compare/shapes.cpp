@@ -206,12 +206,12 @@ MassMac calc_mass_mac(const ModalModel& a, const ModalModel& b, const NodeMatch&
 
 std::vector<ModePair> pair_modes(const ModalModel& a, const ModalModel& b, const NodeMatch& match,
                                  const MatrixXd& mac) {
-  constexpr double kLeast = 0.05;
+  constexpr double kMinMac = 0.05;
   const Shapes s(a, b, match);
   std::vector<ModePair> all, pairs;
   for (Index i = 0; i < mac.rows(); ++i)
     for (Index j = 0; j < mac.cols(); ++j)
-      if (mac(i, j) >= kLeast) all.push_back({static_cast<int>(i), static_cast<int>(j), mac(i, j), 0, 1});
+      if (mac(i, j) >= kMinMac) all.push_back({static_cast<int>(i), static_cast<int>(j), mac(i, j), 0, 1});
   // Where shapes are as good as equal (a double root), the nearer number.
   std::sort(all.begin(), all.end(), [](const ModePair& p, const ModePair& q) {
     if (std::abs(p.mac - q.mac) > 1e-9) return p.mac > q.mac;

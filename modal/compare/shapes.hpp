@@ -14,7 +14,7 @@ using Eigen::MatrixXd;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-/// What bodies and modes files have in common.
+/// Data that bodies and modes files have in common.
 struct ModalModel {
   std::string name;
   double mass = 0;
@@ -51,8 +51,8 @@ NodeMatch match_nodes(const ModalModel& a, const ModalModel& b);
 /// modes that turn nodes without moving them, 0 when only one does.
 MatrixXd calc_mac(const ModalModel& a, const ModalModel& b, const NodeMatch& match);
 
-/// The same with Mass as weight. dof_map: rows of the matrix (node id of a, code 1..6). Nothing, and the number of
-/// missing rows, when a row of the matrix with mass has no matched node.
+/// MAC with Mass as weight. dof_map: rows of the matrix (node id of a, code 1..6). Nothing, and the number of missing
+/// rows, when a row of the matrix with mass has no matched node.
 struct MassMac {
   std::optional<MatrixXd> mac;
   int num_missing = 0;

@@ -367,6 +367,19 @@ void report_accuracy(const records::DynamicDeck& deck, const ComplexPairs& pairs
 
 }  // namespace
 
+std::vector<int> list_subcases(const records::DynamicDeck& deck) {
+  std::vector<int> chosen;
+  for (const auto& subcase : deck.subcases) {
+    const auto selection = deck.selections.find(subcase.id);
+    const bool is_preload = std::any_of(deck.subcases.begin(), deck.subcases.end(), [&](const auto& other) {
+      return other.id != subcase.id && (other.statsub == subcase.id || other.preload == subcase.id);
+    });
+    if (selection != deck.selections.end() && selection->second.cmethod != 0 && !is_preload)
+      chosen.push_back(subcase.id);
+  }
+  return chosen.empty() ? std::vector<int>{0} : chosen;
+}
+
 const records::ComplexMethod& choose_method(const records::DynamicDeck& deck, const records::DynamicSubcase& subcase,
                                             int num_modes) {
   static const records::ComplexMethod lanczos{0, "LAN", "MAX", 0, 0, 0, {}, {}};
@@ -421,14 +434,15 @@ struct ComplexModesSolver::Prepared {
       return ComplexSparse(A.cast<Complex>() * factor);
     };
     if (speed) {
-      problem.add(builder, complex(rotor_terms->calc_circulation(*speed), 1) + without,
-                  complex(rotor_terms->calc_damping(*speed), 1), ComplexSparse(n, n));
+      const fe::SparseColumns K = rotor_terms->calc_circulation(*speed) + rotor_terms->calc_centrifugal(*speed);
+      problem.add(builder, complex(K, 1) + without, complex(rotor_terms->calc_damping(*speed), 1), ComplexSparse(n, n));
       return builder.build();
     }
     const auto terms = rotor_terms->calc_synchronous();
-    problem.add(builder, complex(terms.circulation, 1) + without,
-                complex(terms.damping, 1) + complex(terms.circulation_rate, Complex(0, -1)),
-                complex(terms.gyroscopic_rate, Complex(0, -1)));
+    // ω = -iλ, ω² = -λ².
+    problem.add(builder, complex(terms.circulation + terms.centrifugal, 1) + without,
+                complex(terms.damping, 1) + complex(terms.circulation_rate + terms.centrifugal_rate, Complex(0, -1)),
+                complex(terms.gyroscopic_rate, Complex(0, -1)) + complex(terms.centrifugal_square, -1));
     return builder.build();
   }
 
@@ -475,6 +489,11 @@ Selections read_selections(const fe::Model& model, const records::DynamicDeck& d
   found.damping = response::choose_damping(deck, found.without_input, damping_options, model, diagnostics);
   found.input = collect_physical_input(model, deck, subcase, diagnostics);
   found.rotor_case = rotors::choose_rotors(model, deck, subcase, rotors::RotorUse::Eigenvalues, diagnostics);
+  if (found.rotor_case && found.rotor_case->is_rotating &&
+      (found.input.B.nonZeros() > 0 || found.input.M.nonZeros() > 0))
+    diagnostics.error("modal.rotor-unsupported", deck.locate(subcase.find_command("RMETHOD")),
+                      "B2PP, M2PP and TFL are matrices of the fixed frame, ROTORD has REFSYS = ROT",
+                      "give dampers by CDAMP2, masses by CONM2, or solve in the fixed frame (REFSYS = FIX)");
   if (!is_by_modes && d.sdamping != 0)
     diagnostics.warning("modal.no-modes", deck.locate(subcase.find_command("SDAMPING")),
                         "SDAMPING damps modes: the direct solution leaves it out, as in Nastran",

@@ -26,6 +26,10 @@ struct SpeedModes {
   Eigen::VectorXd whirl;         ///< as ComplexModesResult::whirl
 };
 
+/// Lists the subcases with CMETHOD, without those whose load is the preload of another (STATSUB); the first subcase if
+/// there are none.
+std::vector<int> list_subcases(const records::DynamicDeck& deck);
+
 /// EIGC of CMETHOD of the subcase; without CMETHOD the Lanczos method where `num_modes` is given. Throws InputError
 /// modal.missing-complex-method, modal.no-complex-method.
 const records::ComplexMethod& choose_method(const records::DynamicDeck& deck, const records::DynamicSubcase& subcase,

@@ -20,6 +20,11 @@ constexpr double kRitzTolerance = 1e-12;
 constexpr double kSingularGrowth = 1e14;
 /// Residual above which a pair is one of the infinite eigenvalues of a singular mass matrix.
 constexpr double kNoPair = 1e-4;
+/// Round-off makes infinite eigenvalues finite, of this θ relative to the largest. Residuals of pairs that far from the
+/// shift are small, for λ² M and λ B are large.
+constexpr double kFar = 1e-5, kMaxFarResidual = 1e-8;
+/// Residual above which a shape is refined.
+constexpr double kRefined = 1e-11;
 constexpr double kMaxResidual = 1e-5;  ///< as of real modes: above the round-off of K x of soft modes
 constexpr double kSameEigenvalue = 1e-6;
 constexpr double kRealPart = 1e-7;  ///< eigenvalues closer to the real axis, relative, are real
@@ -229,6 +234,24 @@ double calc_residual(const QuadraticPencil& pencil, Complex lambda, const Vector
   return size > 0 ? (k + b + m).norm() / size : 0;
 }
 
+/// x = -Q(σ)⁻¹ (λ - σ) (B + (λ + σ) M) x holds for a pair. From an approximate shape it removes the part of eigenvalues
+/// farther from σ: round-off of a Schur form in stiff shapes, of which a soft one has large forces. Returns the
+/// residual and leaves shapes that do not gain.
+double refine_shape(const QuadraticPencil& pencil, const linear::ComplexLu& factor, Complex sigma, Complex lambda,
+                    Eigen::Ref<VectorXcd> x) {
+  double residual = calc_residual(pencil, lambda, x);
+  for (int pass = 0; pass < 2 && residual > kRefined; ++pass) {
+    const VectorXcd right = (sigma - lambda) * (pencil.B * x + (lambda + sigma) * (pencil.M * x));
+    VectorXcd trial = factor.solve(right);
+    trial.normalize();
+    const double of_trial = calc_residual(pencil, lambda, trial);
+    if (!(of_trial < residual)) break;
+    x = trial;
+    residual = of_trial;
+  }
+  return residual;
+}
+
 /// Left vectors in the order of `pairs`: those of the transposed pencil with the same eigenvalue.
 MatrixXcd match_left(const ComplexPairs& pairs, const RitzPairs& left, Complex sigma) {
   const Index n = pairs.X.rows();
@@ -269,12 +292,12 @@ double calc_biorthogonality(const QuadraticPencil& pencil, const ComplexPairs& p
 
 /// The pairs with Im λ ≥ 0 in their order; `lambda` in the units of the scaled pencil.
 ComplexPairs choose_pairs(const ScaledPencil& scaled, const RitzPairs& ritz, Complex sigma,
-                          const SolverOptions& options) {
+                          const linear::ComplexLu& factor, const SolverOptions& options) {
   const Index n = scaled.pencil.size();
   ComplexPairs pairs;
   struct Item {
     Complex lambda;
-    Index column;
+    VectorXcd x;
     double residual;
   };
   std::vector<Item> items;
@@ -282,16 +305,16 @@ ComplexPairs choose_pairs(const ScaledPencil& scaled, const RitzPairs& ritz, Com
   for (Index j = 0; j < ritz.theta.size(); ++j) {
     if (!(std::abs(ritz.theta(j)) > 1e-15 * largest)) continue;
     Complex lambda = sigma + 1.0 / ritz.theta(j);
-    const VectorXcd x = ritz.W.col(j).head(n);
+    VectorXcd x = ritz.W.col(j).head(n);
     if (std::abs(lambda) * scaled.scale < options.zero) lambda = 0;
-    const double residual = calc_residual(scaled.pencil, lambda, x);
-    if (residual > kNoPair) continue;
+    const double residual = refine_shape(scaled.pencil, factor, sigma, lambda, x);
+    if (residual > (std::abs(ritz.theta(j)) > kFar * largest ? kNoPair : kMaxFarResidual)) continue;
     if (std::abs(lambda.imag()) <= kRealPart * std::abs(lambda)) lambda.imag(0);
     if (lambda.imag() < 0) {
       ++pairs.num_mirrored;
       continue;
     }
-    items.push_back({lambda, j, residual});
+    items.push_back({lambda, std::move(x), residual});
   }
   // |Im λ| of multiple eigenvalues differs in round-off only.
   std::stable_sort(items.begin(), items.end(), [](const Item& a, const Item& b) {
@@ -325,7 +348,7 @@ ComplexPairs choose_pairs(const ScaledPencil& scaled, const RitzPairs& ritz, Com
     const auto& item = items[static_cast<std::size_t>(j)];
     pairs.lambda(j) = item.lambda;
     pairs.residual(j) = item.residual;
-    pairs.X.col(j) = ritz.W.col(item.column).head(n);
+    pairs.X.col(j) = item.x;
   }
   return pairs;
 }
@@ -350,7 +373,7 @@ ComplexPairs solve_pencil(const QuadraticPencil& pencil, const SolverOptions& op
     return is_dense ? solve_dense(op) : solve_krylov(op, 2 * options.num_modes + 2, options.max_restarts, is_enough);
   };
   const auto ritz = solve(false);
-  auto pairs = choose_pairs(scaled, ritz, sigma, options);
+  auto pairs = choose_pairs(scaled, ritz, sigma, *factor, options);
   pairs.num_iterations = ritz.num_applied;
   if (pairs.residual.size() > 0 && pairs.residual.maxCoeff() > kMaxResidual)
     throw ComputationError("modal.complex-convergence", {},

@@ -5,6 +5,10 @@
 #include <functional>
 #include <map>
 
+#include "fe/elements/stress_state.hpp"
+#include "fe/loads/second_order.hpp"
+#include "fe/matrices/system.hpp"
+#include "fe/statics/statics.hpp"
 #include "formats/records/element_cards.hpp"
 #include "formats/records/params.hpp"
 
@@ -221,7 +225,10 @@ class Chooser {
       if (grids.empty()) continue;
       const Vector3d from = model_.node(model_.find_node(grids.front())).x;
       const Vector3d axis = model_.calc_axes(rotor.cid, from, deck_.locate(rotor.at), diagnostics_).col(2);
-      add_axis({rotor.line, grids, axis, deck_.locate(line->at)}, from);
+      const Vector3d origin = model_.calc_point(rotor.cid, Vector3d::Zero(), deck_.locate(rotor.at), diagnostics_);
+      add_axis({rotor.line, grids, axis, deck_.locate(line->at)}, has_grids_around(grids, axis, from) ? origin : from);
+      case_.is_rotating = rotor.is_rotating;
+      case_.axes.back().frame = rotor.is_rotating ? fe::RotorFrame::Rotating : fe::RotorFrame::Fixed;
       RotorDamping damping;
       add_structural(damping, g_, rotor.w3, rotor.w4, rotor.line, rotor.at, {"PARAM,G", "W3", "W4"});
       case_.damping.push_back(damping);
@@ -263,7 +270,27 @@ class Chooser {
     return grids;
   }
 
+  /// Returns true if grids are around the axis: three or more, not in one plane with it.
+  bool has_grids_around(const std::vector<int>& grids, const Vector3d& axis, const Vector3d& point) const {
+    fe::Matrix3d spread = fe::Matrix3d::Zero();
+    double largest = 0;
+    for (const int id : grids) {
+      Vector3d r = model_.node(model_.find_node(id)).x - point;
+      largest = std::max(largest, r.norm());
+      r -= axis * axis.dot(r);
+      spread += r * r.transpose();
+    }
+    const Eigen::SelfAdjointEigenSolver<fe::Matrix3d> sizes(spread, Eigen::EigenvaluesOnly);
+    return sizes.eigenvalues()[1] > kMaxDistance * kMaxDistance * largest * largest;
+  }
+
   void add_axis(RotorAxis axis, const Vector3d& from) {
+    axis.point = from;
+    axis.is_spatial = has_grids_around(axis.grids, axis.axis, from);
+    if (axis.is_spatial) {
+      case_.axes.push_back(std::move(axis));
+      return;
+    }
     double length = 0, farthest = 0;
     int grid = 0;
     for (const int id : axis.grids) {
@@ -278,7 +305,7 @@ class Chooser {
       diagnostics_.error(
           "modal.rotor-line", axis.at,
           "grid " + std::to_string(grid) + " of rotor " + std::to_string(axis.id) + " is " + text + " from the axis",
-          "list grids on one line; give the mass of discs to grids on it by CONM2");
+          "list grids on one line, with the mass of discs by CONM2, or all grids of a body around it");
     }
     case_.axes.push_back(std::move(axis));
   }
@@ -352,6 +379,38 @@ class Chooser {
   RotorCase case_;
 };
 
+/// The matrix of the centrifugal force with K_G of the stress that it causes, per square of the spin: of the elements
+/// of the rotor, of links, and of loads on arms.
+fe::SparseColumns calc_centrifugal_stiffness(const fe::Model& model, const fe::Rotor& rotor,
+                                             const fe::SparseColumns& of_force) {
+  if (!rotor.is_spatial) return of_force;
+  const auto load = fe::calc_centrifugal_load(model, rotor);
+  if (load.F.isZero(0)) return of_force;
+  const fe::StaticSolver solver(model, fe::get_stiffness(model));
+  const fe::MatrixXd u = solver.solve(load.F);
+  std::vector<Eigen::Triplet<double>> terms;
+  const auto add = [&](const std::vector<int>& dofs, const fe::MatrixXd& K) {
+    for (Eigen::Index j = 0; j < K.cols(); ++j)
+      for (Eigen::Index i = 0; i < K.rows(); ++i)
+        if (K(i, j) != 0)
+          terms.emplace_back(dofs[static_cast<std::size_t>(i)], dofs[static_cast<std::size_t>(j)], K(i, j));
+  };
+  for (const fe::Element* element : rotor.elements) {
+    const fe::StressState* state = element->stress_state();
+    if (state == nullptr) continue;
+    VectorXd force = VectorXd::Zero(state->num_internal_forces());
+    state->calc_internal_forces(u(element->gdofs(), 0), force);
+    fe::MatrixXd K = fe::MatrixXd::Zero(element->num_dofs(), element->num_dofs());
+    state->add_geometric_stiffness(force, 1, K);
+    add(element->gdofs(), K);
+  }
+  fe::AppliedLoads applied{load.F, fe::MatrixXd::Zero(12, 1), {}};
+  for (const auto& form : fe::calc_second_order(model, applied, u)) add(form.gdofs, fe::calc_form(form, 0));
+  fe::SparseColumns total(model.num_gdofs(), model.num_gdofs());
+  total.setFromTriplets(terms.begin(), terms.end());
+  return of_force + load.stiffness + total;
+}
+
 }  // namespace
 
 double SpeedRelation::evaluate(double reference) const {
@@ -378,6 +437,12 @@ std::optional<RotorCase> choose_rotors(const fe::Model& model, const records::Dy
   return Chooser(model, deck, subcase, use, diagnostics).choose();
 }
 
+bool has_own_stress(const records::DynamicDeck& deck, const records::DynamicSubcase& subcase) {
+  const auto* card = find(deck.dynamics.rotors.sweeps, &records::RotorSweepCard::sid, subcase.dynamics.rmethod);
+  return card != nullptr &&
+         std::any_of(card->rotors.begin(), card->rotors.end(), [](const auto& r) { return r.has_stress; });
+}
+
 RotorTerms::RotorTerms(const fe::Model& model, const RotorCase& rotor_case, double g, Diagnostics& diagnostics)
     : case_(rotor_case),
       num_gdofs_(model.num_gdofs()),
@@ -386,8 +451,26 @@ RotorTerms::RotorTerms(const fe::Model& model, const RotorCase& rotor_case, doub
   diagnostics.throw_if_errors();
   for (std::size_t j = 0; j < rotors_.size(); ++j) {
     matrices_.push_back(fe::assemble_rotor(model, rotors_[j], case_.damping[j]));
+    const auto& m = matrices_.back();
+    if (rotors_[j].is_spatial && rotors_[j].frame == fe::RotorFrame::Fixed && m.circulation.norm() > 0)
+      diagnostics.error(
+          "modal.rotor-unsupported", case_.axes[j].at,
+          "damping inside rotor " + std::to_string(rotors_[j].id) +
+              ", whose grids are around its axis, is not supported in the fixed frame",
+          "leave GR, GE, ALPHAR1, ALPHAR2 and its dampers out, or solve in the rotating frame (ROTORD with "
+          "REFSYS = ROT)");
+    // A_I: accelerations, angular accelerations, then squares and products of the spin.
+    const fe::Prestress* prestress = model.prestress();
+    if (rotors_[j].is_spatial && prestress != nullptr && !prestress->A_I.tail<6>().isZero(0))
+      diagnostics.error("modal.rotor-unsupported", prestress->at,
+                        "the preload by " + prestress->name +
+                            " has the centrifugal load of RFORCE, whose stress rotor " + std::to_string(rotors_[j].id) +
+                            " has already, at each speed",
+                        "leave RFORCE out of STATSUB, or name its set in RFORCE of ROTORD");
+    centrifugal_.push_back(calc_centrifugal_stiffness(model, rotors_[j], m.centrifugal));
     model_structural_ += fe::assemble_rotor_structural(model, rotors_[j], g);
   }
+  diagnostics.throw_if_errors();
 }
 
 fe::SparseColumns RotorTerms::sum(const std::function<double(std::size_t)>& factor,
@@ -406,13 +489,28 @@ fe::SparseColumns RotorTerms::calc_circulation(double reference) const {
   return sum([&](std::size_t j) { return case_.relations[j].evaluate(reference); }, &fe::RotorMatrices::circulation);
 }
 
+fe::SparseColumns RotorTerms::calc_centrifugal(double reference) const {
+  return sum_centrifugal([&](std::size_t j) { return std::pow(case_.relations[j].evaluate(reference), 2); });
+}
+
+fe::SparseColumns RotorTerms::sum_centrifugal(const std::function<double(std::size_t)>& factor) const {
+  fe::SparseColumns total(num_gdofs_, num_gdofs_);
+  for (std::size_t j = 0; j < centrifugal_.size(); ++j)
+    if (const double f = factor(j); f != 0) total += f * centrifugal_[j];
+  return total;
+}
+
 RotorTerms::Synchronous RotorTerms::calc_synchronous() const {
   const auto offset = [&](std::size_t j) { return case_.relations[j].find_line().value_or(std::pair(0.0, 1.0)).first; };
   const auto rate = [&](std::size_t j) { return case_.relations[j].find_line().value_or(std::pair(0.0, 1.0)).second; };
   return {
       sum(offset, &fe::RotorMatrices::gyroscopic) + sum([](std::size_t) { return 1.0; }, &fe::RotorMatrices::damping),
-      sum(offset, &fe::RotorMatrices::circulation), sum(rate, &fe::RotorMatrices::gyroscopic),
-      sum(rate, &fe::RotorMatrices::circulation)};
+      sum(offset, &fe::RotorMatrices::circulation),
+      sum(rate, &fe::RotorMatrices::gyroscopic),
+      sum(rate, &fe::RotorMatrices::circulation),
+      sum_centrifugal([&](std::size_t j) { return offset(j) * offset(j); }),
+      sum_centrifugal([&](std::size_t j) { return 2 * offset(j) * rate(j); }),
+      sum_centrifugal([&](std::size_t j) { return rate(j) * rate(j); })};
 }
 
 fe::SparseColumns RotorTerms::calc_structural() const {

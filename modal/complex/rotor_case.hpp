@@ -34,6 +34,7 @@ struct RotorCase {
   int reference = 0;            ///< rotor id; 0: the speeds of ROTORD
   std::vector<double> speeds;   ///< [1/T] of the reference, ascending; of asynchronous analyses
   double low = 0, high = 0;     ///< [1/T] range of synchronous analyses
+  bool is_rotating = false;     ///< displacements in the frame of the only rotor
   double shapes_at = -1;        ///< [1/T] speed of the shapes that are kept; negative: the last
   std::vector<fe::RotorAxis> axes;
   std::vector<fe::RotorDamping> damping;  ///< of each axis
@@ -49,10 +50,15 @@ enum class RotorUse { Eigenvalues, Frequency };
 std::optional<RotorCase> choose_rotors(const fe::Model& model, const records::DynamicDeck& deck,
                                        const records::DynamicSubcase& subcase, RotorUse use, Diagnostics& diagnostics);
 
+/// Returns true if ROTORD of the subcase names the centrifugal stress of its rotors (RFORCE): that of RotorTerms, at
+/// each speed, is in place of the preload of STATSUB.
+bool has_own_stress(const records::DynamicDeck& deck, const records::DynamicSubcase& subcase);
+
 /// Matrices of all rotors of a case on the g-set.
 class RotorTerms {
  public:
-  /// Reports what fe::find_rotors does. Throws them.
+  /// Reports what fe::find_rotors does, and modal.rotor-unsupported. Throws them, and fe.mechanism if K cannot hold the
+  /// centrifugal load of a rotor.
   RotorTerms(const fe::Model& model, const RotorCase& rotor_case, double g, Diagnostics& diagnostics);
 
   /// Rotors in the order of the axes of the case.
@@ -61,11 +67,14 @@ class RotorTerms {
   fe::SparseColumns calc_damping(double reference) const;
   /// Part of K, unsymmetric: Σ Ω_j R_j.
   fe::SparseColumns calc_circulation(double reference) const;
+  /// Part of K: Σ Ω_j² S_j, of the centrifugal force and its stress.
+  fe::SparseColumns calc_centrifugal(double reference) const;
   /// Terms with the frequency as speed, of relations that are lines Ω_j = a_j + b_j ω: those with a_j, and Σ b_j G_j,
   /// Σ b_j R_j.
   struct Synchronous {
-    fe::SparseColumns damping, circulation;               ///< at ω = 0
-    fe::SparseColumns gyroscopic_rate, circulation_rate;  ///< derivatives with respect to ω
+    fe::SparseColumns damping, circulation;                               ///< at ω = 0
+    fe::SparseColumns gyroscopic_rate, circulation_rate;                  ///< derivatives with respect to ω
+    fe::SparseColumns centrifugal, centrifugal_rate, centrifugal_square;  ///< Σ a_j² S_j, Σ 2 a_j b_j S_j, Σ b_j² S_j
   };
   /// Matrices of analyses at the speed of the motion. \pre all relations are lines.
   Synchronous calc_synchronous() const;
@@ -80,11 +89,13 @@ class RotorTerms {
  private:
   fe::SparseColumns sum(const std::function<double(std::size_t)>& factor,
                         fe::SparseColumns fe::RotorMatrices::*member) const;
+  fe::SparseColumns sum_centrifugal(const std::function<double(std::size_t)>& factor) const;
 
   const RotorCase case_;
   Eigen::Index num_gdofs_;
   std::vector<fe::Rotor> rotors_;
   std::vector<fe::RotorMatrices> matrices_;
+  std::vector<fe::SparseColumns> centrifugal_;  ///< S_j, with the stress
   fe::SparseColumns model_structural_;
 };
 

@@ -40,7 +40,7 @@ class ResidualRecord {
   double rest_ = 0, size_ = 0;
 };
 
-/// Of a direct solution: warning, or ComputationError, modal.response-accuracy.
+/// Reports the residual of a direct solution: warning, or ComputationError, modal.response-accuracy.
 void report_residual(double residual, const SourceLocation& at, Diagnostics& diagnostics);
 
 /// Warning, or ComputationError, modal.response-accuracy.

@@ -19,10 +19,10 @@
 namespace bough::modal::response {
 namespace {
 
-/// Steps at corners of loads: each has a matrix exponential of its own.
-constexpr int kMostCorners = 2000, kMostCoupled = 50;
-/// Solved directly: each has two factorizations of its own.
-constexpr int kMostFactored = 20;
+/// Steps at corners of loads: each has a separate matrix exponential.
+constexpr int kMaxCorners = 2000, kMaxCoupled = 50;
+/// Solved directly: each has two separate factorizations.
+constexpr int kMaxFactored = 20;
 
 double to_hz(double lambda) { return std::sqrt(std::max(lambda, 0.0)) / (2 * std::numbers::pi); }
 
@@ -32,7 +32,7 @@ ModeBasis calc_mode_basis(const fe::System& system, const EigenOptions& options,
                           int& num_massless, Diagnostics& diagnostics) {
   EigenPairs low;
   const double lowest = std::max(options.min_hz.value_or(0), records::get_real_param(deck, "LFREQ", 0, diagnostics));
-  EigenOptions wanted = options;
+  EigenOptions chosen_options = options;
   ModeBasis basis;
   if (options.min_hz && *options.min_hz > 0) {
     EigenOptions below = options;
@@ -42,18 +42,18 @@ ModeBasis calc_mode_basis(const fe::System& system, const EigenOptions& options,
     Diagnostics unsaid;
     low = calc_normal_modes(system, below, unsaid);
   } else {
-    wanted.min_hz.reset();
+    chosen_options.min_hz.reset();
   }
-  const auto pairs = calc_normal_modes(system, wanted, diagnostics);
+  const auto pairs = calc_normal_modes(system, chosen_options, diagnostics);
   num_massless = std::max(pairs.num_massless, low.num_massless);
   const auto num_low = low.lambda.size();
   std::vector<int> kept;
   const double highest = records::get_real_param(deck, "HFREQ", 1e30, diagnostics);
-  const double most = records::get_real_param(deck, "LMODES", 0, diagnostics);
+  const double max_modes = records::get_real_param(deck, "LMODES", 0, diagnostics);
   for (int j = 0; j < pairs.lambda.size(); ++j) {
     // A root at V1 itself is in both.
     if (num_low > 0 && pairs.lambda(j) <= low.lambda(num_low - 1) * (1 + detail::kSameEigenvalue)) continue;
-    if (to_hz(pairs.lambda(j)) > highest || (most > 0 && static_cast<double>(kept.size()) >= most)) break;
+    if (to_hz(pairs.lambda(j)) > highest || (max_modes > 0 && static_cast<double>(kept.size()) >= max_modes)) break;
     kept.push_back(j);
   }
   const auto num = num_low + static_cast<Eigen::Index>(kept.size());
@@ -232,7 +232,7 @@ AddedCoordinates project_rotors(const std::shared_ptr<const RotorResponse>& roto
   };
 }
 
-/// What a solution without modes has no use for.
+/// Reports inputs that a solution without modes does not use.
 void report_modal(const records::DynamicDeck& deck, const records::DynamicSubcase& subcase, bool is_over_time,
                   Diagnostics& diagnostics) {
   if (subcase.dynamics.sdamping != 0)
@@ -257,24 +257,24 @@ void check_rotors(const fe::Model& model, const records::DynamicDeck& deck, cons
     fe::find_rotors(model, rotor_case->axes, diagnostics);
 }
 
-std::vector<records::DynamicSubcase> choose_response_subcases(const records::DynamicDeck& deck, int asked,
+std::vector<records::DynamicSubcase> choose_response_subcases(const records::DynamicDeck& deck, int requested,
                                                               bool is_over_time) {
   std::vector<records::DynamicSubcase> chosen;
   for (const auto& subcase : deck.subcases) {
     const auto selection = deck.selections.find(subcase.id);
     const bool has_load = selection != deck.selections.end() &&
                           (selection->second.dload != 0 || (is_over_time && selection->second.ic != 0));
-    if (asked != 0 ? subcase.id == asked : has_load)
+    if (requested != 0 ? subcase.id == requested : has_load)
       chosen.emplace_back(subcase,
                           selection != deck.selections.end() ? selection->second : records::DynamicSelection{});
   }
-  if (!chosen.empty() || asked != 0) return chosen;
+  if (!chosen.empty() || requested != 0) return chosen;
   throw InputError("modal.no-dynamic-load", deck.locate({}),
                    std::string("no subcase selects a DLOAD") + (is_over_time ? " or IC" : ""),
                    "write DLOAD = n in the case control, with RLOAD or TLOAD cards");
 }
 
-/// What does not depend on the loads.
+/// Model and matrices that do not depend on the loads.
 struct DeckResponseSolver::Prepared {
   Prepared(fe::Model&& built) : model(std::move(built)), system(model) {}
   const fe::Model model;
@@ -379,7 +379,7 @@ void DeckResponseSolver::solve_by_modes(const Task& task, const records::Dynamic
   result.damping_ratio = response.damping_ratio.head(response.num_dynamic());
   if (options_.is_over_time) {
     const auto steps =
-        refine_times(deck_, excitation, grid, response.is_coupled ? kMostCoupled : kMostCorners, diagnostics);
+        refine_times(deck_, excitation, grid, response.is_coupled ? kMaxCoupled : kMaxCorners, diagnostics);
     const auto history = calc_history(response, excitation, steps);
     result.solution_error = history.step_error;
     recover(model, response, excitation, damping, outputs, history, result);
@@ -415,7 +415,7 @@ void DeckResponseSolver::solve_directly(const Task& task, const records::Dynamic
   };
   if (options_.is_over_time)
     result.solution_error = solve_history(model, direct, excitation, start,
-                                          refine_times(deck_, excitation, grid, kMostFactored, diagnostics), take);
+                                          refine_times(deck_, excitation, grid, kMaxFactored, diagnostics), take);
   else
     result.solution_error =
         solve_spectrum(model, direct, excitation, hz, take, diagnostics,

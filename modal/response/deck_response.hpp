@@ -17,11 +17,11 @@ struct ResponseOptions {
   bool is_direct = false;                ///< without modes
   std::optional<bool> residual_vectors;  ///< overrules RESVEC of the deck (default: yes)
   std::vector<int> grids;                ///< displacement, velocity, acceleration of these besides
-  bool with_listing = false;             ///< what a listing needs is recovered too
+  bool with_listing = false;             ///< recovers the data of a listing too
   bool with_random = false;              ///< keeps what modal integrals of a random response need
   /// EIGRL or EIGR of the subcase, with the command line.
   std::function<EigenOptions(const records::DynamicSubcase&, Diagnostics&)> choose_eigen;
-  /// Of the subcase's STATSUB; may be empty.
+  /// Prestress of the subcase's STATSUB; may be empty.
   std::function<std::shared_ptr<const fe::Prestress>(const fe::ModelOptions&, const records::DynamicSubcase&,
                                                      Diagnostics&)>
       choose_prestress;
@@ -29,7 +29,7 @@ struct ResponseOptions {
 
 /// The subcases with DLOAD, over time also those with IC; the one asked for in any case. Throws InputError
 /// modal.no-dynamic-load.
-std::vector<records::DynamicSubcase> choose_response_subcases(const records::DynamicDeck& deck, int asked,
+std::vector<records::DynamicSubcase> choose_response_subcases(const records::DynamicDeck& deck, int requested,
                                                               bool is_over_time = false);
 
 /// Modes of EIGRL in unit generalized mass, and the modes below its V1, whose static part residual vectors do not

@@ -23,7 +23,7 @@ using Matrix3cd = Eigen::Matrix3cd;
 constexpr int kStages = 3;
 /// Times whose solutions are held at a time.
 constexpr Index kHeldTimes = 64;
-/// The time in which a jump is over, per step: what it leaves out of a mode is of the size of its square.
+/// The time in which a jump is over, per step: its error in a mode is of the size of its square.
 constexpr double kJumpShare = 1e-5;
 
 /// Hairer & Wanner, table IV.5.6, and G = A⁻ᵀ = P Λ P⁻¹: the real eigenvalue first, then one of the pair.
@@ -244,8 +244,8 @@ class DirectMotion {
   /// M⁻¹ F, nothing if there is no mass.
   MatrixXd divide_by_mass(const MatrixXd& F) { return solve_quick(times(m_.M, solve_quick(F))); }
 
-  /// What changes at step i at once; `column`: where it is shown, or -1. Shown is the mean of before and after, at the
-  /// start what is after.
+  /// Jump at step i; `column`: its position in the output, or -1. The output is the mean of both limits, at the start
+  /// the right limit.
   void jump(Index i, Index column) {
     const auto change = [i](const Sides& s) -> VectorXd { return s.after.col(i) - s.before.col(i); };
     const VectorXd d = change(supports_.d), d_dot = change(supports_.d_dot);

@@ -52,7 +52,7 @@ DirectModel make_direct_model(const fe::System& system, const records::DynamicDe
   direct.M = system.M;
   direct.K_diagonal = system.K_diagonal;
   direct.M_diagonal = system.M_diagonal;
-  // What g and α2 act on: all but K2PP.
+  // Stiffness on which g and α2 act: all but K2PP.
   SymmetricMatrix structure = system.K;
   if (damping.times_direct) {
     const auto none = [](const fe::Element&, Eigen::Ref<MatrixXd>) {};

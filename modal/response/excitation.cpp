@@ -333,7 +333,7 @@ class Collector {
                                    : "add the cards or correct the id");
   }
 
-  /// What of `all` has equal delay and phase; `get_row`: the g-row of an entry.
+  /// Parts of `all` that have equal delay and phase; `get_row`: the g-row of an entry.
   template <class GetRow>
   std::vector<Part> split(const DynamicLoad& load, const VectorXd& all, const GetRow& get_row) {
     if (load.delay_set == 0 && load.phase_set == 0) return {{all, load.delay, load.phase_deg}};

@@ -1,5 +1,5 @@
 #pragma once
-/// \file What drives a response: patterns of loads and of motions of the supports, each times a function of frequency
+/// \file Excitation of a response: patterns of loads and of motions of the supports, each times a function of frequency
 /// or of time. Source: MSC Nastran Quick Reference Guide, RLOAD1, RLOAD2, TLOAD1, TLOAD2, DLOAD, LSEQ.
 #include <complex>
 #include <vector>
@@ -36,10 +36,10 @@ struct Excitation {
   MatrixXd residual = {};  ///< num_gdofs x n: loads that get residual vectors and drive nothing; empty without
 };
 
-/// Of DLOAD of the subcase, over time or over frequency. Reports modal.no-dynamic-load, modal.missing-load,
-/// modal.wrong-load, modal.missing-table, modal.unsupported-load, fe.missing-grid, fe.bad-component,
-/// fe.spcd-not-fixed, fe.load-autospc, modal.load-on-spc, modal.unbalance-rate (warnings) and what is wrong with static
-/// loads.
+/// Excitation by the DLOAD of the subcase, over time or over frequency. Reports modal.no-dynamic-load,
+/// modal.missing-load, modal.wrong-load, modal.missing-table, modal.unsupported-load, fe.missing-grid,
+/// fe.bad-component, fe.spcd-not-fixed, fe.load-autospc, modal.load-on-spc, modal.unbalance-rate (warnings) and what is
+/// wrong with static loads.
 Excitation calc_excitation(const fe::Model& model, const records::DynamicDeck& deck,
                            const records::DynamicSubcase& subcase, bool is_over_time, Diagnostics& diagnostics);
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 
 #include "formats/records/params.hpp"
 
@@ -45,7 +46,7 @@ void add_frequencies(const FrequencyList& list, const VectorXd& natural_hz, std:
     default:
       break;
   }
-  // What lies between F1 and F2 counts, whatever mode it is of (MSC Quick Reference Guide, FREQ4, FREQ5).
+  // Every frequency between F1 and F2 counts, whatever its mode (MSC Quick Reference Guide, FREQ4, FREQ5).
   const double slack = 1e-12;
   const auto add = [&](double f) {
     if (f >= list.f1 * (1 - slack) && f <= list.f2 * (1 + slack)) hz.push_back(f);
@@ -126,10 +127,10 @@ VectorXd make_frequencies(const records::DynamicDeck& deck, const records::Dynam
         "widen F1 to F2, or take more modes");
   if (hz.empty()) return {};
   std::sort(hz.begin(), hz.end());
-  const double least = records::get_real_param(deck, "DFREQ", 1e-5, diagnostics) * (hz.back() - hz.front());
+  const double min_distance = records::get_real_param(deck, "DFREQ", 1e-5, diagnostics) * (hz.back() - hz.front());
   std::vector<double> kept;
   for (const double f : hz)
-    if (kept.empty() || f - kept.back() > least) kept.push_back(f);
+    if (kept.empty() || f - kept.back() > min_distance) kept.push_back(f);
   if (subcase.dynamics.ofreq != 0) kept = choose_shown(deck, subcase, kept, diagnostics);
   return Eigen::Map<const VectorXd>(kept.data(), static_cast<Eigen::Index>(kept.size()));
 }
@@ -138,13 +139,19 @@ TimeGrid make_times(const records::DynamicDeck& deck, const records::DynamicSubc
                     Diagnostics& diagnostics) {
   const int set = subcase.dynamics.tstep;
   const auto& all = deck.dynamics.steps;
-  const auto card = std::find_if(all.begin(), all.end(), [&](const auto& s) { return s.sid == set; });
+  // TSTEPNL has negative ids; a deck with one kind of card may select it by either command.
+  const auto find = [&](int sid) {
+    return std::find_if(all.begin(), all.end(), [&](auto& s) { return s.sid == sid; });
+  };
+  const auto card = find(set) == all.end() ? find(-set) : find(set);
+  const std::string name = set < 0 ? "TSTEPNL" : "TSTEP";
   TimeGrid grid;
   if (set == 0 || card == all.end()) {
     diagnostics.error("modal.no-time-steps", deck.locate(subcase.find_command("TSTEP")),
-                      set == 0 ? "subcase " + std::to_string(subcase.id) + " selects no time steps"
-                               : "TSTEP = " + std::to_string(set) + " names no TSTEP card of the deck",
-                      "write TSTEP = n in the case control and a TSTEP card with this id");
+                      set == 0
+                          ? "subcase " + std::to_string(subcase.id) + " selects no time steps"
+                          : name + " = " + std::to_string(std::abs(set)) + " names no " + name + " card of the deck",
+                      "write " + name + " = n in the case control and a " + name + " card with this id");
     return grid;
   }
   std::vector<double> time{0};

@@ -6,7 +6,8 @@ namespace bough::modal::response {
 
 using Eigen::VectorXd;
 
-/// Of every FREQx card of the set, Hz, ascending; copies nearer than PARAM,DFREQ (1e-5) of the range count once.
+/// Frequencies of every FREQx card of the set, Hz, ascending; copies nearer than PARAM,DFREQ (1e-5) of the range count
+/// once.
 /// `natural_hz`: ascending, for FREQ3 to FREQ5. Reports modal.no-frequencies.
 VectorXd make_frequencies(const records::DynamicDeck& deck, const records::DynamicSubcase& subcase,
                           const VectorXd& natural_hz, Diagnostics& diagnostics);

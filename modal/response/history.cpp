@@ -142,7 +142,7 @@ class Motion {
     }
   }
 
-  /// What the supports do at once, the structure does not: Φ q jumps against Ψ d.
+  /// Supports may jump, the structure does not: Φ q jumps against Ψ d.
   void jump(Eigen::Index i) {
     const auto m = excitation_.F.cols(), k = excitation_.D.cols();
     if (k == 0) return;
@@ -163,7 +163,7 @@ class Motion {
     // An impulse of the supports counts as spread over the step.
     h.a.block(m, column, k, 1) -= jump_v / (0.5 * (step_before(i) + step_after(i)));
     h.q.col(column).head(n_) = q_;
-    // What has no mass follows its loads at once.
+    // Massless coordinates follow their loads without delay.
     h.q.col(column).tail(model_.num_massless) = model_.P.bottomRows(model_.num_massless) * h.a.col(column);
     h.q_dot.col(column).head(n_) = v;
     h.q_ddot.col(column).head(n_) = P_ * h.a.col(column) - D_ * v - model_.lambda.head(n_).cwiseProduct(q_);

@@ -15,12 +15,12 @@ namespace {
 using Kind = records::DynamicLoad::Kind;
 using Type = records::DynamicLoad::Excitation;
 
-/// Of a pulse shorter than this many steps.
+/// Pulses shorter than this number of steps are divided into parts.
 constexpr int kShortPulse = 16, kPulseParts = 32;
-/// Steps in a period of TLOAD2 below which it is said.
-constexpr double kFewSteps = 10;
-/// Corners of a motion that need no word.
-constexpr int kFewCorners = 4;
+/// Steps in a period of TLOAD2 below which a warning is issued.
+constexpr double kMinSteps = 10;
+/// Largest number of corners of a motion without a warning.
+constexpr int kMaxSilentCorners = 4;
 
 std::string describe(const ExcitationTerm& term) {
   return (term.card->kind == Kind::Tload1 ? "TLOAD1 " : "TLOAD2 ") + std::to_string(term.card->sid);
@@ -61,7 +61,7 @@ std::vector<double> list_corners(const ExcitationTerm& term, const TimeGrid& gri
   return times;
 }
 
-/// By how much a line between the steps around t misses the load there; 0 at a step and outside.
+/// Distance of the load at t from a line between the steps around t; 0 at a step and outside.
 double calc_missed(const ExcitationTerm& term, const VectorXd& time, double t) {
   const double* first = time.data();
   const auto i = std::upper_bound(first, first + time.size(), t) - first;
@@ -89,7 +89,7 @@ class Refiner {
   Refiner(const records::DynamicDeck& deck, const Excitation& excitation, TimeGrid grid, Diagnostics& diagnostics)
       : deck_(deck), excitation_(excitation), grid_(std::move(grid)), diagnostics_(diagnostics) {}
 
-  TimeGrid refine(int most) {
+  TimeGrid refine(int max_corners) {
     for (const auto* terms : {&excitation_.forces, &excitation_.motions})
       for (const auto& term : *terms) {
         if (!said_.insert({term.card, term.delay}).second) continue;
@@ -97,7 +97,7 @@ class Refiner {
         report_before_table(term);
         if (terms == &excitation_.motions) report_corners(term);
       }
-    add_corners(most);
+    add_corners(max_corners);
     return std::move(grid_);
   }
 
@@ -109,9 +109,9 @@ class Refiner {
     for (Eigen::Index i = 1; i < n; ++i)
       if (grid_.time(i) > term.card->t1 + term.delay && grid_.time(i - 1) < term.card->t2 + term.delay)
         longest = std::max(longest, grid_.time(i) - grid_.time(i - 1));
-    const double steps = longest > 0 ? 1 / (std::abs(term.card->frequency_hz) * longest) : kFewSteps;
+    const double steps = longest > 0 ? 1 / (std::abs(term.card->frequency_hz) * longest) : kMinSteps;
     const bool is_short = term.card->t2 - term.card->t1 < kShortPulse * longest;  // divided, see list_corners
-    if (steps >= kFewSteps || (is_short && term.card->excitation == Type::Force)) return;
+    if (steps >= kMinSteps || (is_short && term.card->excitation == Type::Force)) return;
     diagnostics_.warning("modal.coarse-steps", deck_.locate(term.card->at),
                          describe(term) + ": " + format(steps) + " steps in a period of " +
                              format(1 / std::abs(term.card->frequency_hz)) +
@@ -141,7 +141,7 @@ class Refiner {
       after(i) = calc_history(term, grid_.time(i), Side::After, 0);
     }
     const auto curve = make_curve(grid_.time, before, after);
-    if (curve.num_corners <= kFewCorners) return;
+    if (curve.num_corners <= kMaxSilentCorners) return;
     diagnostics_.warning("modal.motion-corners", deck_.locate(term.card->at),
                          describe(term) + " moves supports along a line with " + std::to_string(curve.num_corners) +
                              " corners, the first at t = " + format(grid_.time(curve.first_corner)) +
@@ -150,16 +150,16 @@ class Refiner {
   }
 
   /// Corners that the steps miss are added until none is: a new step may reveal others near it.
-  void add_corners(int most) {
+  void add_corners(int max_corners) {
     const TimeGrid given = grid_;
     for (const auto& term : excitation_.forces)
       largest_.push_back(calc_largest(term, grid_, list_corners(term, grid_)));
     while (true) {
       auto missed = list_missed();
       if (missed.empty()) break;
-      const int left = most - static_cast<int>(grid_.time.size() - given.time.size());
+      const int left = max_corners - static_cast<int>(grid_.time.size() - given.time.size());
       if (static_cast<int>(missed.size()) > left) {
-        report_missed(missed[static_cast<std::size_t>(left)], most);
+        report_missed(missed[static_cast<std::size_t>(left)], max_corners);
         missed.resize(static_cast<std::size_t>(left));
       }
       const auto before = grid_.time.size();
@@ -189,10 +189,10 @@ class Refiner {
     return order;
   }
 
-  void report_missed(const std::pair<double, double>& next, int most) {
+  void report_missed(const std::pair<double, double>& next, int max_corners) {
     if (next.first <= 0.01) return;
     diagnostics_.warning("modal.load-between-steps", deck_.locate(excitation_.forces.front().card->at),
-                         "the loads have more than " + std::to_string(most) +
+                         "the loads have more than " + std::to_string(max_corners) +
                              " corners between the steps; at t = " + format(next.second) +
                              " a line between the steps misses " + format(100 * next.first) + " % of the largest value",
                          "take steps as fine as the tables of the loads");
@@ -224,9 +224,9 @@ class Refiner {
 
 }  // namespace
 
-TimeGrid refine_times(const records::DynamicDeck& deck, const Excitation& excitation, TimeGrid grid, int most,
+TimeGrid refine_times(const records::DynamicDeck& deck, const Excitation& excitation, TimeGrid grid, int max_corners,
                       Diagnostics& diagnostics) {
-  return Refiner(deck, excitation, std::move(grid), diagnostics).refine(most);
+  return Refiner(deck, excitation, std::move(grid), diagnostics).refine(max_corners);
 }
 
 }  // namespace bough::modal::response

@@ -89,7 +89,7 @@ std::vector<OutputChoice> choose_outputs(const fe::Model& model, const records::
       for (const int id : extra_grids)
         if (std::find(output.ids.begin(), output.ids.end(), id) == output.ids.end()) output.ids.push_back(id);
     if (output.quantity == "spc_force") {
-      // As in Nastran, of the grids that something holds.
+      // Grids that are constrained, as in Nastran.
       const auto& fixed = model.fixed_dofs();
       std::erase_if(output.ids, [&](int id) {
         const auto& node = model.node(model.find_node(id));
@@ -107,7 +107,7 @@ std::vector<OutputChoice> choose_outputs(const fe::Model& model, const records::
   outputs.back().quantity = "displacement";
   outputs.back().ids = list_driven_grids(model, deck, subcase, excitation);
   diagnostics.note("modal.default-output", deck.locate({}),
-                   "the deck asks for no result: the displacements of the grids that are driven are given",
+                   "the deck requests no result: the displacements of the grids that are driven are given",
                    "write DISPLACEMENT = n and SET n = ids in the case control, or --grid");
   return outputs;
 }

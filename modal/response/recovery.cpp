@@ -57,7 +57,7 @@ MatrixXd pick_held(const fe::Model& model, const MatrixXd& Y, const std::vector<
   return rows;
 }
 
-/// What the chosen elements of one card give, all components of one after the other.
+/// Results of the chosen elements of one card, all components of one after the other.
 struct ElementGroup {
   std::string name;  ///< of fe::ElementGroup
   std::vector<std::string> components;
@@ -115,9 +115,9 @@ std::vector<std::string> list_stress_components(const fe::Element& element, bool
 
 std::vector<ElementGroup> list_groups(const fe::Model& model, const std::vector<int>& chosen, bool of_stress,
                                       bool is_over_time) {
-  const std::set<int> wanted(chosen.begin(), chosen.end());
+  const std::set<int> requested(chosen.begin(), chosen.end());
   const auto found = fe::group_elements(model, [&](const fe::Element& element, int) {
-    if (wanted.count(element.id()) == 0) return std::vector<std::string>{};
+    if (requested.count(element.id()) == 0) return std::vector<std::string>{};
     // Groups of static results in both domains.
     return of_stress ? list_stress_components(element, true) : fe::list_force_components(element);
   });
@@ -240,7 +240,7 @@ Values stack(const Values& q, const Values& d) {
   return z;
 }
 
-/// By modes: u = W z.
+/// Recovery by modes: u = W z.
 template <class Values>
 Apply<Values> make_apply(const MatrixXd& W, const std::array<Values, 3>& z) {
   return [&](const LinearMap& map, int order) -> Values { return map(W) * z[static_cast<std::size_t>(order)]; };

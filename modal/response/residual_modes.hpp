@@ -1,5 +1,5 @@
 #pragma once
-/// \file RESVEC of normal modes: residual vectors of the deck's loads behind its modes.
+/// \file RESVEC of normal modes: residual vectors of the deck's loads after its modes.
 #include <string>
 
 #include "fe/matrices/system.hpp"

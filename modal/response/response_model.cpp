@@ -14,8 +14,8 @@
 namespace bough::modal::response {
 namespace {
 
-/// Most directions of dampers that become residual vectors of their own.
-constexpr int kMostDamperDirections = 60;
+/// Largest number of directions of dampers that become separate residual vectors.
+constexpr int kMaxDamperDirections = 60;
 
 /// Eigenvalue of a residual vector over that of the highest mode, from which on it has no mass (a frequency 1000 times
 /// as high): with more of them M and K lose their digits, with fewer mass is neglected.
@@ -43,7 +43,7 @@ MatrixXd calc_damper_loads(const fe::Model& model, const MatrixXd& Phi) {
   }
   const auto n = static_cast<Eigen::Index>(rows.size());
   if (n == 0) return none;
-  if (n > 6 * kMostDamperDirections) return fe::calc_damping_times(model, Phi);
+  if (n > 6 * kMaxDamperDirections) return fe::calc_damping_times(model, Phi);
   MatrixXd dense = MatrixXd::Zero(n, n);
   for (Eigen::Index i = 0; i < n; ++i) {
     const auto row = static_cast<std::size_t>(rows[static_cast<std::size_t>(i)]);
@@ -66,7 +66,7 @@ MatrixXd calc_damper_loads(const fe::Model& model, const MatrixXd& Phi) {
     load(rows) = root.cwiseProduct(solver.eigenvectors().col(c));
     loads = join_columns(loads, load);
   }
-  return loads.cols() > kMostDamperDirections ? fe::calc_damping_times(model, Phi) : loads;
+  return loads.cols() > kMaxDamperDirections ? fe::calc_damping_times(model, Phi) : loads;
 }
 
 bool is_off_diagonal(const MatrixXd& A) {
@@ -144,7 +144,7 @@ class Maker {
   MatrixXd calc_inner_loads(const MatrixXd& Phi) const {
     const MatrixXd loads = calc_damper_loads(model_, Phi);
     if (damping_.is_over_time && damping_.w4 <= 0) return loads;
-    const MatrixXd X = Phi.leftCols(std::min<Eigen::Index>(Phi.cols(), kMostDamperDirections));
+    const MatrixXd X = Phi.leftCols(std::min<Eigen::Index>(Phi.cols(), kMaxDamperDirections));
     MatrixXd S = fe::calc_structural_damping_times(model_, 0, X);
     if (S.size() == 0 || S.isZero(0)) return loads;
     const MatrixXd K = fe::calc_stiffness_times(model_, X);
@@ -204,8 +204,8 @@ class Maker {
     r.num_normal -= out;
   }
 
-  /// What the shapes leave out of the static solutions where that does more than 1e-10 of the work of the load: there
-  /// is negligible mass in it, or a residual vector would have it. Orthonormal in K.
+  /// Adds the remainder of the static solutions in the shapes if its work is above 1e-10 of that of the load: its mass
+  /// is negligible, or a residual vector would have it. Orthonormal in K.
   void add_massless(const MatrixXd& loads, ResponseModel& r) const {
     const MatrixXd Phi_r = rigid(), F = bases::equilibrate(model_, Phi_r, loads);
     MatrixXd rest = solve_within(F);

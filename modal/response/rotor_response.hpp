@@ -14,8 +14,8 @@ class RotorResponse {
         speed_(rotor_case.speeds.empty() ? 0 : rotor_case.speeds.front()),
         terms_(model, rotor_case, g, diagnostics) {}
 
-  /// Z = Σ iω (Ω G + C) + Ω R + i H + Ω/ω (-H ẽ), minus the part of the model's structural damping that H replaces;
-  /// num_gdofs x num_gdofs, basic axes. Ω is the speed of RGYRO, or ω of synchronous analyses.
+  /// Z = Σ iω (Ω G + C) + Ω R + Ω² S + i H + Ω/ω (-H ẽ), minus the part of the model's structural damping that H
+  /// replaces; num_gdofs x num_gdofs, basic axes. Ω is the speed of RGYRO, or ω of synchronous analyses.
   linear::ComplexSparse calc_stiffness(double hz) const;
   /// Returns true if the excitation has the speed of the reference rotor.
   bool is_synchronous() const { return is_synchronous_; }

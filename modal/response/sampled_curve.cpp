@@ -11,10 +11,10 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-/// How much a second difference exceeds its neighbours at a corner.
+/// Ratio by which a second difference exceeds its neighbours at a corner.
 constexpr double kCornerRatio = 8;
 /// Where two steps at the end differ by more, the end is a parabola.
-constexpr double kMostUneven = 3;
+constexpr double kMaxUneven = 3;
 
 /// Second derivatives at the nodes of a spline, from its chords' slopes s and their changes; not a knot at the ends.
 VectorXd solve_spline(const VectorXd& h, const VectorXd& change) {
@@ -31,7 +31,7 @@ VectorXd solve_spline(const VectorXd& h, const VectorXd& change) {
     x(i) = 6 * change(i);
   }
   // M at an end: on the line of the two next to it, M0 = M1 + share (M1 - M2).
-  const auto calc_share = [](double end, double next) { return end > kMostUneven * next ? 0 : end / next; };
+  const auto calc_share = [](double end, double next) { return end > kMaxUneven * next ? 0 : end / next; };
   const double first = calc_share(h(0), h(1)), last = calc_share(h(n - 2), h(n - 3));
   diagonal(0) += h(0) * (1 + first);
   upper(0) -= h(0) * first;

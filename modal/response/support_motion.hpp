@@ -14,7 +14,7 @@ struct SupportMotion {
   Sides d, d_dot, d_ddot;  ///< k x nt, rows as the columns of Excitation::D
 };
 /// TYPE ACCE is a line over each step; velocities and displacements are splines (sampled_curve.hpp). Before the first
-/// step all is at rest: what the supports have then, they have by a jump.
+/// step all is at rest: the motion of the supports then is a jump.
 SupportMotion sample_support_motion(const Excitation& excitation, const TimeGrid& grid);
 
 /// The forces p (m x nt) at the steps.

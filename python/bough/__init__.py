@@ -59,7 +59,7 @@ def call(*words):
 
 @_contextlib.contextmanager
 def _worker_launcher():
-    """Workers of `batch` are processes of their own: how each comes into this module again, a word a line."""
+    """Workers of `batch` are separate processes: how each comes into this module again, a word a line."""
     name, before = "BOUGH_WORKER_LAUNCHER", _os.environ.get("BOUGH_WORKER_LAUNCHER")
     code = "import sys; sys.path.insert(0, sys.argv[1]); import bough; sys.exit(bough.call(*sys.argv[2:]))"
     folder = _os.path.dirname(_os.path.dirname(_os.path.abspath(__file__)))

@@ -9,6 +9,7 @@ export class Drawing {
     this.edges = unpack_indices(json.edges);
     this.ghosts = unpack_indices(json.ghosts);
     this.ids = json.id ? unpack_indices(json.id) : new Uint32Array();  // node of each point
+    this.interface = new Set(json.interface ? unpack_indices(json.interface) : []);
     this.packed = json.shapes;
     this.matrices = null;
     this.shapes = new Array(json.shapes.length);
@@ -25,6 +26,15 @@ export class Drawing {
       const groups = [...new Set(fields?.list.map((f) => f.group))];
       this.fields = groups.flatMap((group) => fields.list.filter((f) => f.group === group));
     }
+  }
+
+  /** Points where hinges, forces and sensors are set: interface nodes, and nodes that no element draws. @returns {Set<number>} */
+  find_attachments() {
+    if (!this.attachments) {
+      const drawn = new Set([...this.triangles, ...this.edges, ...this.ghosts]);
+      this.attachments = new Set([...this.ids.keys()].filter((k) => this.interface.has(this.ids[k]) || (this.ids[k] > 0 && !drawn.has(k))));
+    }
+    return this.attachments;
   }
 
   /**

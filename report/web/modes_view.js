@@ -99,7 +99,7 @@ export class ModesView {
 
   play(is_on) {
     this.is_playing = is_on;
-    this.play_button.textContent = is_on ? "⏸ pause" : "▶ play";
+    this.play_button.textContent = is_on ? "❚❚ pause" : "▶ play";
     this.viewer.set_played(is_on);
     let last = performance.now();
     const step = (now) => {

@@ -37,6 +37,8 @@ export class MotionView {
     this.color_by = 0;
     this.is_playing = false;
     this.is_looping = false;  // starts again at the end
+    /** Marks interface nodes, and nodes that no element draws: a click takes them, through faces too. */
+    this.has_node_marks = false;
     /** More things before all others, of places of bodies and the size of the scene. @type {((places: any[], size: number) => any[]) | null} */
     this.make_overlay = null;
     /** Ways in the world by index of the body, for bodies that are drawn elsewhere. @type {Map<number, number[]>} */
@@ -238,7 +240,7 @@ export class MotionView {
   play(is_on) {
     if (is_on === this.is_playing) return;
     this.is_playing = is_on;
-    this.play_button.textContent = is_on ? "⏸ pause" : "▶ play";
+    this.play_button.textContent = is_on ? "❚❚ pause" : "▶ play";
     this.viewer.set_played(is_on && !this.recorder);  // a film has all faces
     if (!is_on) return this.recorder?.stop();
     if (this.time >= this.last) this.time = this.first;
@@ -285,7 +287,7 @@ export class MotionView {
 
   draw() {
     if (!this.viewer?.home || !this.clock) return;
-    const size = this.viewer.extent, things = [], boxes = [];
+    const size = this.viewer.extent, things = [], boxes = [], nodes = [];
     const places = this.get_places();
     if (this.has_frames) things.push(...make_triad([0, 0, 0], [[1, 0, 0], [0, 1, 0], [0, 0, 1]], 0.1 * size));
     this.bodies.forEach((body, k) => {
@@ -295,11 +297,13 @@ export class MotionView {
       // Boxes of rigid bodies are seen through, after what they may hold.
       const is_box = d.packed.length === 0 && d.triangles.length > 0;
       const colors = this.most && d.matrix && eta.length > 0 ? { elements: d.elements, levels: this.get_levels(d, eta) } : {};
-      const pick = d.ids.length > 0 ? { body: body.name, ids: d.ids, describe: (k) => d.describe(k, body.name + ", ", `displacement ${format_number(d.size[k] / (this.scale || 1), 4)}`) } : {};
+      const marked = this.has_node_marks ? d.find_attachments() : null;
+      if (marked && marked.size > 0) nodes.push({ points: Float32Array.from([...marked].flatMap((k) => [...body.world.subarray(3 * k, 3 * k + 3)])), color: get_css("--mark"), dots: true });
+      const pick = d.ids.length > 0 ? { body: body.name, ids: d.ids, marked, describe: (k) => d.describe(k, body.name + ", ", `displacement ${format_number(d.size[k] / (this.scale || 1), 4)}`) } : {};
       (is_box ? boxes : things).push({ ...colors, ...pick, alpha: is_box ? 0.4 : 1, points: body.world, size: d.size, triangles: d.triangles, edges: d.edges, ghosts: d.ghosts, color: get_style(k).color, by_level: this.color_by === 1 && eta.length > 0, dots: d.triangles.length === 0 });
       if (this.has_frames) things.push(...make_triad(p, [0, 1, 2].map((c) => R.map((row) => row[c])), 0.06 * size));
     });
-    this.viewer.marks = [...this.marks.make_things(places, this.time, size), ...(this.make_overlay?.(places, size) ?? [])];
+    this.viewer.marks = [...nodes, ...this.marks.make_things(places, this.time, size), ...(this.make_overlay?.(places, size) ?? [])];
     if (this.follow >= 0) {
       const p = places[this.follow].p;
       if (this.before) this.viewer.target = this.viewer.target.map((t, i) => t + p[i] - this.before[i]);

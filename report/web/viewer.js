@@ -435,8 +435,8 @@ export class Viewer {
     return { eye: this.target.map((t, i) => t + this.distance * back[i]), direction: way.map((v) => v / length) };
   }
 
-  // A click names the nearest node that no face hides: things with `ids` and `describe(index)`; of things with
-  // `describe_element(element)` the element too.
+  // A click names the nearest node that no face hides: things with `ids` and `describe(index)`, of which
+  // those `marked` are seen through faces; of things with `describe_element(element)` the element too.
   pick(event) {
     const rect = this.canvas.getBoundingClientRect(), view = this.make_view(), ray = this.make_ray(event);
     const click = [event.clientX - rect.left, event.clientY - rect.top], near = [];
@@ -450,12 +450,19 @@ export class Viewer {
       }
     }
     near.sort((a, b) => a.distance - b.distance);
-    const found = near.slice(0, 40).find(({ thing, k }) => !is_hidden(this.things, ray.eye, thing, k, 1e-4 * this.extent)) ?? null;
+    const found = near.slice(0, 40).find(({ thing, k }) => thing.marked?.has(k) || !is_hidden(this.things, ray.eye, thing, k, 1e-4 * this.extent)) ?? null;
     const element = this.find_element(ray, click, view, rect);
     const texts = [...(element ? [() => element.thing.describe_element(element.element)] : []), ...(found ? [() => found.thing.describe(found.k)] : [])];
-    this.picked = texts.length > 0 ? () => texts.map((text) => text()).join("\n") : null;
+    const beyond = element && !found ? this.find_place_of_click(ray) : null;
+    this.set_tip(texts.length > 0 ? () => texts.map((text) => text()).join("\n") : null, () => (found ? found.thing.points.subarray(3 * found.k, 3 * found.k + 3) : beyond));
     this.on_pick?.(found && { thing: found.thing, index: found.k, id: found.thing.ids[found.k] }, element);
-    this.place_tip(found?.at ?? (element && click), rect);
+    this.update_tip();
+  }
+
+  // Where the ray meets a face, or as far from the eye as the middle of the view.
+  find_place_of_click(ray) {
+    const distance = find_front(this.things, ray)?.distance ?? Math.hypot(...ray.eye.map((e, i) => this.target[i] - e));
+    return ray.eye.map((e, i) => e + distance * ray.direction[i]);
   }
 
   open_menu(event) {
@@ -484,22 +491,24 @@ export class Viewer {
   // Labels the node with this id (of this body) as a click on it does, without calling on_pick; no label if there is none.
   name_node(id, body = undefined) {
     const thing = this.things.find((t) => t.describe && (body === undefined || t.body === body) && t.ids.includes(id)), k = thing ? thing.ids.indexOf(id) : -1;
-    const rect = this.canvas.getBoundingClientRect();
-    this.picked = thing ? () => thing.describe(k) : null;
-    this.place_tip(thing && project(this.make_view(), rect, thing.points.subarray(3 * k, 3 * k + 3)), rect);
-  }
-
-  place_tip(at, rect) {
-    this.tip.hidden = !at;
-    if (!at) return;
-    this.tip.style.left = Math.min(at[0] + 10, rect.width - 240) + "px";
-    this.tip.style.top = at[1] + 10 + "px";
+    this.set_tip(thing ? () => thing.describe(k) : null, () => thing.points.subarray(3 * k, 3 * k + 3));
     this.update_tip();
   }
 
-  // The value at the picked node, which goes with the time.
+  // What the label reads, and its place in the world; null: no label.
+  set_tip(picked, get_place) {
+    this.picked = picked;
+    this.get_tip_place = get_place;
+  }
+
+  // The label of the picked node goes with the node: its value with the time, its place with the camera.
   update_tip() {
-    if (this.picked) this.tip.textContent = this.picked();
+    const { clientWidth: width, clientHeight: height } = this.canvas, at = this.picked ? project(this.make_view(), { width, height }, this.get_tip_place()) : null;
+    this.tip.hidden = !at || at[0] < 0 || at[0] > width || at[1] < 0 || at[1] > height;
+    if (this.tip.hidden) return;
+    this.tip.textContent = this.picked();
+    this.tip.style.left = Math.min(at[0] + 10, width - 240) + "px";
+    this.tip.style.top = at[1] + 10 + "px";
   }
 
   // Frees the memory of the graphics card; a browser has few such contexts.

@@ -22,7 +22,7 @@ class Actuator : public Block {
 
  protected:
   double calc_command(const BlockInput& in, int i = 0) const;
-  /// The first slot of laws (evaluate_law) of a kind of actuator; those before are of the shaping.
+  /// The first slot of functions (evaluate_law) of a kind of actuator; those before are of the shaping.
   int law_slot() const { return 2 * sizes.inputs; }
   int num_lags() const { return lag_ > 0 ? sizes.inputs : 0; }
 

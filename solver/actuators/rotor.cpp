@@ -81,7 +81,8 @@ class Wheel final : public Rotor {
   }
 };
 
-/// The command is the rate of the gimbal; state: its angle. The spin's momentum is constant.
+/// The command is the rate of the gimbal; state: its angle. The spin's momentum is constant. The motor of the gimbal
+/// puts the component of ḣ = (ω + γ̇ g) × h along g on it, which is g·(ω × h).
 class SingleGimbal final : public Rotor {
  public:
   Vector3d gimbal = Vector3d::UnitZ(), spin = Vector3d::UnitX();
@@ -94,6 +95,7 @@ class SingleGimbal final : public Rotor {
   void calc_outputs(const BlockInput& in, double* y) const override {
     y[0] = calc_command(in);
     y[1] = in.z[num_lags()];
+    y[2] = (get_motion(in).R * gimbal).dot(calc_rate(in).cross(calc_spin(in)));
   }
   void calc_rates(const BlockInput& in, double* z_dot) const override {
     Rotor::calc_rates(in, z_dot);
@@ -116,7 +118,8 @@ class SingleGimbal final : public Rotor {
 };
 
 /// Commands: the rates of the outer gimbal, about o in its body, and of the inner one, about i, which the outer
-/// carries. States: their angles α and β; h = h₀ R_o(α) R_i(β) s, and the gimbals turn h at α̇ o + β̇ R_o(α) i.
+/// carries. States: their angles α and β; h = h₀ R_o(α) R_i(β) s, and the gimbals turn h at α̇ o + β̇ R_o(α) i. The
+/// motors put the components of ḣ along o and R_o(α) i on them.
 class DoubleGimbal final : public Rotor {
  public:
   Vector3d outer = Vector3d::UnitZ(), inner = Vector3d::UnitX(), spin = Vector3d::UnitY();
@@ -131,22 +134,28 @@ class DoubleGimbal final : public Rotor {
       y[i] = calc_command(in, i);
       y[2 + i] = in.z[num_lags() + i];
     }
+    const Vector3d h_dot = calc_momentum_rate(in, y);
+    const Matrix3d& R = get_motion(in).R;
+    y[4] = (R * outer).dot(h_dot);
+    y[5] = (R * (calc_outer(in) * inner)).dot(h_dot);
   }
   void calc_rates(const BlockInput& in, double* z_dot) const override {
     Rotor::calc_rates(in, z_dot);
     for (int i = 0; i < 2; ++i) z_dot[num_lags() + i] = calc_command(in, i);
   }
   void add_load(const BlockInput& in, const double* y, TreeData& data) const override {
-    const Matrix3d& R = get_motion(in).R;
-    const Matrix3d R_o = calc_outer(in);
-    const Vector3d turn = R * (y[0] * outer + y[1] * (R_o * inner));
-    add_moment(in, -(calc_rate(in) + turn).cross(calc_spin(in)), data);
+    add_moment(in, -calc_momentum_rate(in, y), data);
   }
   Vector3d calc_momentum(const BlockInput& in) const override {
     return in.motion->data[get_body(in)].state.R_WB * calc_spin(in);
   }
 
  private:
+  /// ḣ in B at the rates y[0] and y[1].
+  Vector3d calc_momentum_rate(const BlockInput& in, const double* y) const {
+    const Vector3d turn = get_motion(in).R * (y[0] * outer + y[1] * (calc_outer(in) * inner));
+    return (calc_rate(in) + turn).cross(calc_spin(in));
+  }
   Matrix3d calc_outer(const BlockInput& in) const {
     return Eigen::AngleAxisd(in.z[num_lags()], outer).toRotationMatrix();
   }
@@ -169,8 +178,8 @@ std::unique_ptr<Rotor> make_double_gimbal(SettingsReader& keys) {
   const VectorXd angles = keys.get_vector("angle", 2, 0);
   cmg->initial[0] = angles[0];
   cmg->initial[1] = angles[1];
-  cmg->dims = "1/T, 1/T, 1, 1";
-  cmg->description = "rates of the outer and the inner gimbal, their angles";
+  cmg->dims = "1/T, 1/T, 1, 1, F L, F L";
+  cmg->description = "rates of the outer and the inner gimbal, their angles, torques of their motors";
   cmg->read_shaping(keys, 2);
   cmg->sizes.states += 2;
   return cmg;
@@ -211,14 +220,14 @@ std::unique_ptr<Actuator> make_rotor(const records::ActuatorRecord& r, SettingsR
                 "has a spin_axis that is not normal to its gimbal_axis", "give it at gimbal angle zero");
     cmg->momentum = keys.get("momentum");
     cmg->initial = keys.get("angle", 0);
-    cmg->dims = "1/T, 1";
+    cmg->dims = "1/T, 1, F L";
     made = std::move(cmg);
   }
   made->marker = place.marker;
   made->read_shaping(keys);
   ++made->sizes.states;
   made->description = r.type == "wheel" ? "torque on the wheel, its momentum about its axis, its speed against the body"
-                                        : "rate and angle of the gimbal";
+                                        : "rate and angle of the gimbal, torque of its motor";
   return made;
 }
 

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "base/diagnostic.hpp"
+#include "formats/records/special_nodes.hpp"
 #include "solver/bodies/kernels.hpp"
 #include "solver/bodies/row_basis.hpp"
 #include "solver/bodies/soft_energy.hpp"
@@ -231,6 +232,11 @@ void Body::add_flexible_nodes(const records::FlexBody& flex) {
     if (is_rounding(node.phi, 1)) node.phi.setZero();
     if (is_rounding(node.psi, size)) node.psi.setZero();
     node.moves = !node.phi.isZero(0) || !node.psi.isZero(0);
+    if (records::is_special_node(flex, k)) {
+      node.is_material = false;
+      nodes_.push_back(std::move(node));
+      continue;
+    }
     const auto stack_locators = [&](int first_direction, RowMatrixXd& K2) {
       int locator[3];
       for (int a = 0; a < 3; ++a) locator[a] = flex.find_locator(node.id, first_direction + a);

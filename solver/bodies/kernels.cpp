@@ -2,10 +2,7 @@
 
 #include <cmath>
 
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(BOUGH_NARROW)
-#define BOUGH_WIDE __attribute__((target("avx2,fma")))
-#endif
-#define BOUGH_INLINE inline __attribute__((always_inline))
+#include "base/platform.hpp"
 
 // Wide registers are handed to inlined functions only: no ABI is at stake.
 #pragma GCC diagnostic push
@@ -264,10 +261,10 @@ struct Kernels {
   }
 };
 
-#ifdef BOUGH_WIDE
-const bool kHasWide = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
+#ifdef BOUGH_AVX2
+const bool kHasWide = platform::has_avx2();
 #define BOUGH_KERNEL(name, parameters, arguments)                        \
-  BOUGH_WIDE void name##_wide parameters { Kernels<4>::name arguments; } \
+  BOUGH_AVX2 void name##_wide parameters { Kernels<4>::name arguments; } \
   void name##_narrow parameters { Kernels<2>::name arguments; }
 #define BOUGH_CALL(name, arguments) kHasWide ? name##_wide arguments : name##_narrow arguments
 #else

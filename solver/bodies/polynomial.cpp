@@ -59,8 +59,21 @@ std::vector<int> list_all(std::size_t N) {
 
 }  // namespace
 
-Polynomials::Polynomials(int n, const std::vector<int>& large, int m) : m_(m), n_(n), stride_(pad(m)), large_(large) {
-  BOUGH_DEMAND(large.size() <= records::kMaxLargeModes && stride_ <= kMaxStride);
+void LargeAmplitudes::get(const ConstVectorRef& all, double* values) const {
+  if (directions.size() == 0) {
+    for (std::size_t f = 0; f < modes.size(); ++f) values[f] = all[modes[f]];
+    return;
+  }
+  for (Eigen::Index f = 0; f < directions.rows(); ++f) {
+    double sum = 0;
+    for (Eigen::Index j = 0; j < directions.cols(); ++j) sum += directions(f, j) * all[j];
+    values[f] = sum;
+  }
+}
+
+Polynomials::Polynomials(int n, LargeAmplitudes large, int m)
+    : m_(m), n_(n), stride_(pad(m)), large_(std::move(large)) {
+  BOUGH_DEMAND(large_.size() <= records::kMaxLargeModes && stride_ <= kMaxStride);
   G2_ = MatrixXd::Zero(stride_ * n_, n_);
 }
 
@@ -73,7 +86,7 @@ void Polynomials::add(int degree, const std::vector<int>& variables, const Matri
     });
     return;
   }
-  BOUGH_DEMAND(variables == large_);
+  BOUGH_DEMAND(variables == large_.modes);
   const auto N = static_cast<int>(large_.size());
   if (to_[0].empty()) {
     for (int r = 0; r < 3; ++r) {
@@ -90,7 +103,7 @@ void Polynomials::add(int degree, const std::vector<int>& variables, const Matri
   }
   MatrixXd& D = degree == 3 ? D3_ : D4_;
   const auto entries = list_factors(N, degree);
-  visit_monomials(list_all(large_.size()), degree, [&](Eigen::Index i, const Factors& factors, double factorial) {
+  visit_monomials(list_all(large_.modes.size()), degree, [&](Eigen::Index i, const Factors& factors, double factorial) {
     D.col(find_entry(entries, factors)).head(m_) += factorial * c.row(i).transpose();
   });
 }
@@ -103,9 +116,9 @@ void Polynomials::calc(const ConstVectorRef& eta, double* J, double* value, doub
   for (int j = 0; j < n_; ++j) half[j] = 0.5 * eta[j];
   add_product(J, stride_, n_, half, 1, p);
   if (scratch_rows_ > 0) {
-    const auto N = static_cast<Eigen::Index>(large_.size()), num_pairs = N * (N + 1) / 2;
+    const Eigen::Index N = large_.size(), num_pairs = N * (N + 1) / 2;
     double x[records::kMaxLargeModes];
-    for (Eigen::Index f = 0; f < N; ++f) x[f] = eta[large_[static_cast<std::size_t>(f)]];
+    large_.get(eta, x);
     // Second derivatives: D3 η of degree 3, half of D4 η η of degree 4.
     double *H = scratch, *A = H + stride_ * num_pairs, *B = A + stride_ * num_pairs, *J3 = B + stride_ * num_pairs,
            *J4 = J3 + stride_ * N, *C = J4 + stride_ * N;
@@ -118,7 +131,14 @@ void Polynomials::calc(const ConstVectorRef& eta, double* J, double* value, doub
     add_scaled(1, A, 0.5, B, stride_ * num_pairs, H);
     for (Eigen::Index f = 0; f < N; ++f) {
       const double *a = J3 + stride_ * f, *b = J4 + stride_ * f;
-      add_scaled(0.5, a, 1.0 / 6, b, stride_, J + stride_ * large_[static_cast<std::size_t>(f)]);
+      if (large_.directions.size() == 0) {
+        add_scaled(0.5, a, 1.0 / 6, b, stride_, J + stride_ * large_.modes[static_cast<std::size_t>(f)]);
+      } else {
+        for (int j = 0; j < n_; ++j) {
+          const double share = large_.directions(f, j);
+          add_scaled(0.5 * share, a, share / 6, b, stride_, J + stride_ * j);
+        }
+      }
       add_scaled(x[f] / 6, a, x[f] / 24, b, stride_, p);
     }
   }
@@ -134,17 +154,17 @@ void Polynomials::calc_bias(const ConstVectorRef& eta_dot, const double* scratch
     add_product(G2_.data() + G2_.rows() * k, stride_, k + 1, weight, 1, bias);
   }
   if (scratch_rows_ == 0) return;
-  double pairs[records::kMaxLargeModes * (records::kMaxLargeModes + 1) / 2];
+  double pairs[records::kMaxLargeModes * (records::kMaxLargeModes + 1) / 2], rate[records::kMaxLargeModes];
+  large_.get(eta_dot, rate);
   Eigen::Index num_pairs = 0;
-  for (std::size_t f = 0; f < large_.size(); ++f) {
-    for (std::size_t g = f; g < large_.size(); ++g)
-      pairs[num_pairs++] = (f == g ? 1 : 2) * eta_dot[large_[f]] * eta_dot[large_[g]];
+  for (Eigen::Index f = 0; f < large_.size(); ++f) {
+    for (Eigen::Index g = f; g < large_.size(); ++g) pairs[num_pairs++] = (f == g ? 1 : 2) * rate[f] * rate[g];
   }
   add_product(scratch, stride_, num_pairs, pairs, 1, bias);
 }
 
-Potential::Potential(int n, const std::vector<int>& large, int max_degree) : n_(n), large_(large) {
-  const auto N = static_cast<int>(large.size());
+Potential::Potential(int n, LargeAmplitudes large, int max_degree) : n_(n), large_(std::move(large)) {
+  const auto N = static_cast<int>(large_.size());
   BOUGH_DEMAND(N <= records::kMaxLargeModes && max_degree <= 6);
   int next = 0;
   for (int k = 1; k < max_degree; ++k) {
@@ -173,10 +193,10 @@ void Potential::add(int degree, const std::vector<int>& variables, const VectorX
     });
     return;
   }
-  BOUGH_DEMAND(variables == large_);
+  BOUGH_DEMAND(variables == large_.modes);
   const auto entries = list_factors(static_cast<int>(large_.size()), degree - 1);
   MatrixXd& G = degrees_[static_cast<std::size_t>(degree) - 2].G;
-  visit_monomials(list_all(large_.size()), degree, [&](Eigen::Index i, const Factors& factors, double) {
+  visit_monomials(list_all(large_.modes.size()), degree, [&](Eigen::Index i, const Factors& factors, double) {
     for (std::size_t at = 0; at < factors.size(); ++at) {
       Factors rest = factors;
       rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(at));
@@ -196,9 +216,9 @@ double Potential::calc(const ConstVectorRef& eta, double* gradient) const {
   g.setZero();
   if (G2_.size() > 0) g = G2_.lazyProduct(eta);
   double value = 0.5 * g.dot(eta);
-  const auto N = static_cast<Eigen::Index>(large_.size());
+  const Eigen::Index N = large_.size();
   double x[records::kMaxLargeModes], z[kMaxMonomials], part[records::kMaxLargeModes];
-  for (Eigen::Index f = 0; f < N; ++f) x[f] = eta[large_[static_cast<std::size_t>(f)]];
+  large_.get(eta, x);
   const double* shorter = x;
   for (std::size_t k = 1; k < degrees_.size(); ++k) {
     const Degree &degree = degrees_[k], &before = degrees_[k - 1];
@@ -211,7 +231,11 @@ double Potential::calc(const ConstVectorRef& eta, double* gradient) const {
     multiply_transposed(degree.G.data(), degree.padded, N, shorter, part);
     double along = 0;
     for (Eigen::Index f = 0; f < N; ++f) {
-      gradient[large_[static_cast<std::size_t>(f)]] += part[f];
+      if (large_.directions.size() == 0) {
+        gradient[large_.modes[static_cast<std::size_t>(f)]] += part[f];
+      } else {
+        for (int j = 0; j < n_; ++j) gradient[j] += part[f] * large_.directions(f, j);
+      }
       along += part[f] * x[f];
     }
     value += along / static_cast<double>(k + 2);

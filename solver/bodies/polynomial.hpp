@@ -2,12 +2,29 @@
 /// \file Polynomials of modal amplitudes, with gradients and rates (docs/theory/third-order.md; packed as
 /// records::ThirdOrder).
 #include <array>
+#include <utility>
 #include <vector>
 
 #include "formats/records/third_order.hpp"
 #include "solver/bodies/spatial.hpp"
 
 namespace bough::solver {
+
+/// Numbers of the large amplitudes among those of all modes, or N combinations of these.
+struct LargeAmplitudes {
+  std::vector<int> modes;
+  MatrixXd directions;  ///< N x n, as of records::ThirdOrder; empty: the modes
+
+  LargeAmplitudes() = default;
+  /// The amplitudes of these modes.
+  LargeAmplitudes(std::vector<int> large) : modes(std::move(large)) {}
+  /// Large amplitudes of a body of third order.
+  explicit LargeAmplitudes(const records::ThirdOrder& third) : modes(third.large), directions(third.directions) {}
+  /// Number N of large amplitudes.
+  Eigen::Index size() const { return static_cast<Eigen::Index>(modes.size()); }
+  /// Values of N amplitudes from those of all modes. No allocation.
+  void get(const ConstVectorRef& all, double* values) const;
+};
 
 /// m polynomials of degrees 2 (all n amplitudes) to 4 (the N large ones), by their symmetric derivative tensors.
 ///
@@ -20,7 +37,7 @@ class Polynomials {
   static constexpr int kMaxScratchRows = 244;
 
   Polynomials() = default;
-  Polynomials(int n, const std::vector<int>& large, int m);
+  Polynomials(int n, LargeAmplitudes large, int m);
 
   /// Adds c (monomials of the degree in the modes `variables`, packed, x m). Degrees 3 and 4: the large modes.
   void add(int degree, const std::vector<int>& variables, const MatrixXd& c);
@@ -44,7 +61,7 @@ class Polynomials {
  private:
   int m_ = 0, n_ = 0, scratch_rows_ = 0;
   Eigen::Index stride_ = 0;
-  std::vector<int> large_;
+  LargeAmplitudes large_;
   MatrixXd G2_;       ///< (stride n) x n: row q + stride j of column k is ∂²p_q/∂η_j∂η_k
   MatrixXd D3_, D4_;  ///< stride x entries i ≤ j ≤ k (≤ l) in lexical order; empty: no such degree
   std::array<std::vector<int>, 3> to_;  ///< [r]: entry of each of r + 1 sorted factors and one more, N per entry
@@ -54,7 +71,7 @@ class Polynomials {
 class Potential {
  public:
   Potential() = default;
-  Potential(int n, const std::vector<int>& large, int max_degree);
+  Potential(int n, LargeAmplitudes large, int max_degree);
 
   /// Adds c (monomials of the degree in the modes `variables`, packed). Degrees from 3 on: the large modes.
   void add(int degree, const std::vector<int>& variables, const VectorXd& c);
@@ -78,7 +95,7 @@ class Potential {
     MatrixXd G;                           ///< padded x N: ∂/∂η_f of the terms of one degree more
   };
   int n_ = 0;
-  std::vector<int> large_;
+  LargeAmplitudes large_;
   MatrixXd G2_;                  ///< n x n, second derivatives; empty: zero
   std::vector<Degree> degrees_;  ///< of monomials, 1 to max_degree - 1
 };

@@ -51,20 +51,25 @@ records::FlexBody make_linear_record(const records::FlexBody& flex) {
 ThirdOrderBody::ThirdOrderBody(const records::FlexBody& flex)
     : n_(flex.num_modes()),
       m_(flex.third_order.num_fields()),
-      large_(flex.third_order.large),
-      amplitudes_(n_, flex.third_order.large, m_),
-      energy_(n_, flex.third_order.large, ThirdOrder::kMaxEnergy),
+      large_(flex.third_order),
+      amplitudes_(n_, large_, m_),
+      energy_(n_, large_, ThirdOrder::kMaxEnergy),
       linear_(Body::make_flexible(make_linear_record(flex), -1, false, {})) {
   const ThirdOrder& third = flex.third_order;
   add_tables(n_, third, third.amplitudes, amplitudes_);
   for (int k = ThirdOrder::kMinEnergy; k <= ThirdOrder::kMaxEnergy; ++k)
     energy_.add(k, third.large, third.energy[static_cast<size_t>(k - ThirdOrder::kMinEnergy)]);
+  if (large_.directions.size() > 0) {
+    const MatrixXd& L = large_.directions;
+    of_directions_ = (L * flex.modal_stiffness.ldlt().solve(L.transpose())).diagonal().cwiseInverse();
+    return;
+  }
   for (int j = 0; j < n_; ++j) {
     if (!std::binary_search(third.large.begin(), third.large.end(), j)) small_.push_back(j);
   }
   if (third.energy_small.isZero(0)) small_.clear();
   if (small_.empty()) return;
-  on_small_ = Polynomials(n_, third.large, static_cast<int>(small_.size()));
+  on_small_ = Polynomials(n_, large_, static_cast<int>(small_.size()));
   on_small_.add(2, third.large, third.energy_small);
 }
 
@@ -92,7 +97,7 @@ bool ThirdOrderBody::is_exact(const records::FlexBody& flex, int node_id) {
 
 Polynomials ThirdOrderBody::make_node_motion(const records::FlexBody& flex, std::size_t k) const {
   const ThirdOrder& third = flex.third_order;
-  Polynomials motion(n_, third.large, 6);
+  Polynomials motion(n_, large_, 6);
   const auto found = std::find(flex.interface_nodes.begin(), flex.interface_nodes.end(), flex.node_id[k]);
   if (found != flex.interface_nodes.end()) {
     add_tables(n_, third, third.node[static_cast<size_t>(found - flex.interface_nodes.begin())], motion);
@@ -106,7 +111,7 @@ Polynomials ThirdOrderBody::make_node_motion(const records::FlexBody& flex, std:
 
 Potential ThirdOrderBody::make_load(const records::FlexBody& flex, int locator) const {
   const ThirdOrder& third = flex.third_order;
-  Potential load(n_, third.large, ThirdOrder::kMaxField);
+  Potential load(n_, large_, ThirdOrder::kMaxField);
   for (int k = ThirdOrder::kMinField; k <= ThirdOrder::kMaxField; ++k)
     load.add(k, list_variables(third, k, n_), third.load[static_cast<size_t>(k - ThirdOrder::kMinField)].col(locator));
   return load;
@@ -182,8 +187,15 @@ double ThirdOrderBody::calc_modal_force(const LinearField& field, const ThirdOrd
 }
 
 double ThirdOrderBody::calc_twice_small_energy(const MatrixXd& K, const ConstVectorRef& eta) const {
-  const auto is_small = [&](int j) { return !std::binary_search(large_.begin(), large_.end(), j); };
   double twice = 0;
+  if (large_.directions.size() > 0) {
+    double y[records::kMaxLargeModes];
+    large_.get(eta, y);
+    for (int j = 0; j < n_; ++j) twice += K.col(j).dot(eta) * eta[j];
+    for (Eigen::Index f = 0; f < large_.size(); ++f) twice -= of_directions_[f] * y[f] * y[f];
+    return std::max(twice, 0.0);
+  }
+  const auto is_small = [&](int j) { return !std::binary_search(large_.modes.begin(), large_.modes.end(), j); };
   for (int j = 0; j < n_; ++j)
     for (int k = 0; k < n_; ++k)
       if (is_small(j) && is_small(k)) twice += eta[j] * K(j, k) * eta[k];

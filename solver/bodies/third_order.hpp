@@ -36,12 +36,13 @@ class ThirdOrderBody {
   double calc_modal_force(const LinearField& field, const ThirdOrderData& data, int j) const;
   /// Strain energy beyond ½ ηᵀKη.
   double calc_energy(const ConstVectorRef& eta) const;
-  /// ζᵀKζ of the modes ζ that are not large. K: modal stiffness.
+  /// ζᵀKζ of the other modes, or of the complement of the directions. K: modal stiffness.
   double calc_twice_small_energy(const MatrixXd& K, const ConstVectorRef& eta) const;
 
  private:
   int n_ = 0, m_ = 0;
-  std::vector<int> large_;
+  LargeAmplitudes large_;
+  VectorXd of_directions_;  ///< stiffness of each direction
   Polynomials amplitudes_, on_small_;
   Potential energy_;
   std::vector<int> small_;

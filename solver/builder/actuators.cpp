@@ -28,8 +28,8 @@ constexpr Kind kKinds[] = {
     {"engine", 2, Where::Force, "F", make_node_actuator},
     {"torque_rod", 4, Where::Moment, "", make_node_actuator},
     {"wheel", 3, Where::Moment, "F L", make_rotor},
-    {"cmg", 2, Where::Moment, "1/T", make_rotor},
-    {"double_gimbal_cmg", 4, Where::Moment, "1/T", make_rotor},
+    {"cmg", 3, Where::Moment, "1/T", make_rotor},
+    {"double_gimbal_cmg", 6, Where::Moment, "1/T", make_rotor},
     {"modal", 1, Where::Mode, "", make_modal_actuator},
 };
 

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "solver/builder/build.hpp"
+#include "solver/builder/special_node.hpp"
 
 namespace bough::solver {
 
@@ -62,7 +63,7 @@ bool check_flexible(const records::BodyRecord& r, const records::FlexBody& flex,
     diagnostics.error(
         "system.missing-integrals", r.at,
         "the file '" + r.file + "' of body " + quote(r.name) + " has no '" + flex.integrals_method + "' mass integrals",
-        "write it anew with reduce");
+        "write it again with reduce");
   }
   auto check_count = [&](const std::vector<double>& values, const char* key, bool one_is_enough) {
     const int count = static_cast<int>(values.size());
@@ -85,7 +86,7 @@ bool check_flexible(const records::BodyRecord& r, const records::FlexBody& flex,
                         "the file '" + r.file + "' of body " + quote(r.name) +
                             " holds no K_G1: inertial loads do not "
                             "stiffen it",
-                        "write it anew with reduce, or set stiffening = false");
+                        "write it again with reduce, or set stiffening = false");
   }
   return diagnostics.num_errors() == errors;
 }
@@ -143,13 +144,15 @@ int find_loaded_node(const std::string& body_name, const Body& body, int id, Nod
     return -1;
   }
   const Node& node = body.nodes()[static_cast<size_t>(index)];
-  if ((load.force || load.moment) && !node.is_material) {
+  const bool is_special = is_special_node(body, index);
+  if ((load.force || load.moment) && !node.is_material && !is_special) {
     diagnostics.error("system.frame-node", where,
                       user + " acts at node 0 of body " + quote(body_name) +
                           ", the origin of a free frame, which is no point of the body",
                       "name one of its nodes, or reduce the body with a frame at a node");
     return -1;
   }
+  if (is_special) return index;  // loads at it do not stiffen
   if (load.moment && node.has_no_rotation()) {
     diagnostics.error("system.node-without-rotation", where,
                       user + " needs the rotation of node " + std::to_string(id) + " of body " + quote(body_name) +
@@ -166,6 +169,16 @@ int find_loaded_node(const std::string& body_name, const Body& body, int id, Nod
     return -1;
   }
   return index;
+}
+
+int reject_special_node(const std::string& body_name, const Body& body, int index, const SourceLocation& where,
+                        const std::string& user, Diagnostics& diagnostics) {
+  if (!is_special_node(body, index)) return index;
+  diagnostics.error("system.special-node", where,
+                    user + " attaches to node " + std::to_string(body.nodes()[static_cast<size_t>(index)].id) +
+                        " of body " + quote(body_name) + ", a special node of its .FLX, which is no point of the body",
+                    "name an output node; special nodes take forces, actuators and sensors");
+  return -1;
 }
 
 }  // namespace bough::solver

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "solver/builder/signals.hpp"
+#include "solver/builder/special_node.hpp"
 #include "solver/motion/stiffening_terms.hpp"
 #include "solver/text/names.hpp"
 
@@ -102,8 +103,9 @@ Marker build_attachment(const std::string& body_name, const Body& body, int node
       hinge.type == records::HingeType::Spherical && p.isZero(0) && hinge.stiffness.empty() && hinge.damping.empty();
   const bool is_free = hinge.type == records::HingeType::Free;
   const bool is_frame = is_free && node_id == 0 && hinge.stiffness.empty() && hinge.damping.empty();
-  a.node = std::max(0, find_loaded_node(body_name, body, node_id, {!is_frame, !is_ball && !is_free}, hinge.at,
-                                        "hinge " + quote(hinge.name), diagnostics));
+  const std::string user = "hinge " + quote(hinge.name);
+  a.node = find_loaded_node(body_name, body, node_id, {!is_frame, !is_ball && !is_free}, hinge.at, user, diagnostics);
+  a.node = std::max(0, reject_special_node(body_name, body, a.node, hinge.at, user, diagnostics));
   a.moves = body.nodes()[static_cast<size_t>(a.node)].moves;
   return a;
 }

@@ -4,7 +4,9 @@
 #include <map>
 
 #include "solver/builder/build.hpp"
+#include "solver/builder/special_node.hpp"
 #include "solver/text/names.hpp"
+#include "solver/tree/body_sizes.hpp"
 
 namespace bough::solver {
 
@@ -133,6 +135,7 @@ class Builder {
     const bool is_point = is_ball && p.isZero(0) &&
                           (r.type == ConstraintType::Hinge || r.type == ConstraintType::Distance || name == r.child);
     m.node = find_loaded_node(name, body, node, {true, !is_point}, r.at, user, diagnostics_);
+    m.node = reject_special_node(name, body, m.node, r.at, user, diagnostics_);
     if (m.node < 0) return std::nullopt;
     m.moves = body.nodes()[static_cast<size_t>(m.node)].moves;
     return m;
@@ -189,13 +192,16 @@ class Builder {
   Diagnostics& diagnostics_;
 };
 
-double calc_length(const Tree& tree) {
-  double length = 0;
-  for (const Marker& m : tree.markers) length = std::max(length, m.p_KM.norm());
+/// Largest distance of a marker or node from the origin of its body, or of a hinge at the start from its parent frame:
+/// positions have the roundoff of that.
+double calc_marker_reach(const Tree& tree) {
+  double reach = 0;
+  for (const Marker& m : tree.markers) reach = std::max(reach, m.p_KM.norm());
   for (const TreeBody& tb : tree.bodies) {
-    for (const Node& node : tb.body.nodes()) length = std::max(length, node.p.norm());
+    reach = std::max(reach, tb.initial_q.norm());
+    for (const Node& node : tb.body.nodes()) reach = std::max(reach, node.p.norm());
   }
-  return length > 0 ? length : 1;
+  return reach;
 }
 
 }  // namespace
@@ -204,7 +210,11 @@ void build_constraints(const records::SystemSpec& spec, const TreeOrder& order, 
                        Diagnostics& diagnostics) {
   Builder builder(spec, order, system, diagnostics);
   for (const auto& record : spec.constraints) builder.build(record);
-  system.loops.length = calc_length(system.tree);
+  // The relative tolerance of gaps, 1e-12, becomes 1e-15 of the reach.
+  constexpr double kRoundoffShare = 1e-3;
+  const VectorXd sizes = calc_body_sizes(system.tree);
+  const double size = sizes.size() > 0 ? sizes.maxCoeff() : 1;
+  system.loops.length = std::max(size, kRoundoffShare * calc_marker_reach(system.tree));
   finish_loops(system.tree, system.loops);
 }
 

@@ -102,7 +102,7 @@ class Library final : public UserBlock {
     if (in.tangents == nullptr) return law(in, y);
     if (f_.is_opaque)
       throw InputError("linear.fmu", at, label + " is an FMU, which no linear model can be made of",
-                       "put a linear law in its place, or set active = false");
+                       "put a linear controller in its place, or set active = false");
     std::vector<double> x(in.u, in.u + sizes.inputs);
     x.insert(x.end(), in.z, in.z + sizes.states);
     x.insert(x.end(), in.d, in.d + sizes.memory);

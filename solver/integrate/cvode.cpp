@@ -4,7 +4,9 @@
 #include <sunnonlinsol/sunnonlinsol_fixedpoint.h>
 
 #include <algorithm>
+#include <cstdlib>
 
+#include "solver/integrate/step_size.hpp"
 #include "solver/integrate/sundials.hpp"
 
 namespace bough::solver {
@@ -81,8 +83,10 @@ class CvodeStepper final : public Integrator {
     ode_.begin_step();
     const int flag = CVode(cvode_, t_stop_, y_, &t_, CV_ONE_STEP);
     if (flag >= 0) return;
-    const int row = find_worst();
-    detail::throw_failure(ode_, t_, "CVODE", CVodeGetReturnFlagName(flag), row);
+    char* const name = CVodeGetReturnFlagName(flag);
+    std::string what = std::string("CVODE returned ") + name;
+    std::free(name);
+    detail::throw_failure(ode_, t_, std::move(what), find_worst());
   }
 
   double time() const override { return t_; }

@@ -171,11 +171,7 @@ class ErkStepper final : public Integrator {
     ++statistics_.num_steps;
   }
 
-  [[noreturn]] void fail(const std::string& detail) {
-    ode_.throw_pending();
-    throw StepFailure{ode_.was_non_finite() ? StepFailure::Kind::NonFinite : StepFailure::Kind::Stalled, t_, detail,
-                      ode_.bad_time(), worst_};
-  }
+  [[noreturn]] void fail(std::string what) { detail::throw_failure(ode_, t_, std::move(what), worst_); }
 
   GuardedOde ode_;
   StepperOptions options_;

@@ -320,11 +320,7 @@ class RadauStepper final : public Integrator {
     ++statistics_.num_steps;
   }
 
-  [[noreturn]] void fail(const std::string& detail) {
-    ode_.throw_pending();
-    throw StepFailure{ode_.was_non_finite() ? StepFailure::Kind::NonFinite : StepFailure::Kind::Stalled, t_, detail,
-                      ode_.bad_time(), find_worst()};
-  }
+  [[noreturn]] void fail(std::string what) { detail::throw_failure(ode_, t_, std::move(what), find_worst()); }
 
   /// The state that errs most in its tolerance; -1 if the last step has no estimate.
   int find_worst() const {

@@ -49,4 +49,10 @@ std::string describe_rejection(double step, double error) {
   return text;
 }
 
+void throw_failure(GuardedOde& ode, double t, std::string detail, int row) {
+  ode.throw_pending();
+  throw StepFailure{ode.was_non_finite() ? StepFailure::Kind::NonFinite : StepFailure::Kind::Stalled, t,
+                    std::move(detail), ode.bad_time(), row};
+}
+
 }  // namespace bough::solver::detail

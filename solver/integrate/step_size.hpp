@@ -1,5 +1,5 @@
 #pragma once
-/// \file Norm of the local error, first step and end states of one-step methods.
+/// \file Norm of the local error, first step, end states and failures of steps.
 #include <string>
 
 #include "solver/integrate/integrator.hpp"
@@ -35,5 +35,10 @@ bool copy_end_state(double t, const LastStep& step, Eigen::Ref<VectorXd> y);
 
 /// "steps of 1e-09 err by 3.2 tolerances", for a StepFailure.
 std::string describe_rejection(double step, double error);
+
+/// Throws the pending exception of the equations after a failed step, or else a StepFailure.
+/// \param t    [T] start of the step.
+/// \param row  StepFailure::row.
+[[noreturn]] void throw_failure(GuardedOde& ode, double t, std::string detail, int row);
 
 }  // namespace bough::solver::detail

@@ -1,7 +1,5 @@
 #pragma once
 /// \file Owners of SUNDIALS handles; included by .cpp files of this folder only.
-#include <cstdlib>
-
 #include <cvode/cvode.h>
 #include <nvector/nvector_serial.h>
 #include <sundials/sundials_config.h>
@@ -74,15 +72,5 @@ inline int silence_messages(void* cvode) {
       cvode, [](int, const char*, const char*, char*, void*) {}, nullptr);
 }
 #endif
-
-/// After a failed step: what the equations threw, or a StepFailure.
-/// row: StepFailure::row.
-[[noreturn]] inline void throw_failure(GuardedOde& ode, double t, const char* method, char* flag_name, int row) {
-  std::string detail = std::string(method) + " returned " + flag_name;
-  std::free(flag_name);
-  ode.throw_pending();
-  throw StepFailure{ode.was_non_finite() ? StepFailure::Kind::NonFinite : StepFailure::Kind::Stalled, t,
-                    std::move(detail), ode.bad_time(), row};
-}
 
 }  // namespace bough::solver::detail

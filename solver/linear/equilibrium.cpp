@@ -204,8 +204,16 @@ Newton run_newton(const EquilibriumResidual& start) {
                               : "nothing holds it: take away the load, or give it a spring or a hinge");
 }
 
+[[noreturn]] void fail_beyond(const EquilibriumResidual& start, int diverged, const SourceLocation& at) {
+  throw ComputationError("equilibrium.not-converged", at,
+                         "no state of rest or steady spin was found: on the way downhill " + start.name(diverged) +
+                             " deflects its body by more than twice the size of the bodies",
+                         "lower the load, or cut the deck of the body into several bodies with bough split: its model "
+                         "is one of small deflections");
+}
+
 /// Newton's method from the start, when that leads to a state nearby; else it or that from where the way downhill ends:
-/// a stable one before one that is not, then the nearer.
+/// a stable one before one that is not, then the nearer. A way downhill out of the range of a body has no end.
 Newton search(const EquilibriumResidual& start, const SourceLocation& at) {
   Newton first = run_newton(start);
   const bool is_found = first.find_restless() < 0;
@@ -213,7 +221,12 @@ Newton search(const EquilibriumResidual& start, const SourceLocation& at) {
   if (is_found && first.is_direct() && calc_way(first.at()) <= kDirect && is_stable_rest(first.start()) &&
       is_stable_rest(first.at()))
     return first;
-  Newton second = run_newton(follow_gradient_flow(start));
+  GradientFlow flow = follow_gradient_flow(start);
+  if (flow.diverged >= 0) {
+    if (!is_found) fail_beyond(start, flow.diverged, at);
+    return first;
+  }
+  Newton second = run_newton(flow.end);
   const bool is_other = second.find_restless() < 0;
   if (!is_found && !is_other) fail(second, at);
   if (!is_found || !is_other) return is_found ? first : second;

@@ -1,8 +1,46 @@
 #include "solver/linear/equilibrium_residual.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "solver/linear/sampled_system.hpp"
+
 namespace bough::solver {
+namespace {
+
+/// Forces that change by less than this part of the largest change do not depend on a coordinate.
+constexpr double kIndependent = 1e-6;
+
+/// Rolling: sets the rates of coordinates on which forces depend, as a lean, to zero; others, as the angle of a wheel,
+/// may turn in a steady motion. The assembly of rates gives all of them values.
+void stop_positions(Plant& plant, OperatingPoint& point) {
+  const int n = plant.num_dofs();
+  plant.evaluate(point);
+  const VectorXd here = plant.calc_imbalance();
+  VectorXd change(n);
+  for (int i = 0; i < n; ++i) {
+    try {
+      OperatingPoint moved = point;
+      moved.q = plant.displace(point.q, 0.5 * plant.step(i) * VectorXd::Unit(n, i));
+      plant.evaluate(moved);
+      change[i] = (plant.calc_imbalance() - here).lpNorm<Eigen::Infinity>();
+    } catch (const ComputationError&) {
+      change[i] = std::numeric_limits<double>::infinity();  // it does not go as far
+    }
+  }
+  double largest = 0;
+  for (const double one : change)
+    if (std::isfinite(one)) largest = std::max(largest, one);
+  for (int i = 0; i < n; ++i)
+    if (change[i] > kIndependent * largest) point.u[i] = 0;
+}
+
+}  // namespace
+
 EquilibriumResidual::EquilibriumResidual(Plant& plant, const OperatingPoint& start)
     : plant_(&plant), point_(start), used_up_(plant.find_used_up()) {
+  if (plant.num_paths() > 0) stop_positions(plant, point_);
   for (int i = 0; i < plant.num_dofs(); ++i) {
     if (plant.is_mode(i)) point_.u[i] = 0;
     if (plant.is_mode(i) || point_.u[i] == 0) free_.push_back(i);
@@ -37,7 +75,9 @@ void EquilibriumResidual::linearize() {
       both << moved.residual_, moved.rates_.head(num_dofs);
       return both;
     };
-    const VectorXd slope = plant_->differentiate(f, 0.5).calc_clean();
+    const int i = free_[static_cast<size_t>(j)];
+    const double first = i < num_dofs ? choose_displacement(*plant_, i) / step(j) : 1;
+    const VectorXd slope = plant_->differentiate(f, 0.5 * first).calc_clean();
     jacobian_.col(j) = rate_jacobian_.col(j) = slope.head(n);
     rate_jacobian_.col(j).head(num_dofs) = slope.tail(num_dofs);
   }

@@ -30,7 +30,7 @@ class EquilibriumResidual {
   const VectorXd& residual() const { return residual_; }
   /// Rates of change: u̇ in place of M u̇, else as the residual; n.
   const VectorXd& rates() const { return rates_; }
-  /// Round-off of the residual in a steady spin; n.
+  /// Round-off of the residual; n.
   VectorXd calc_rounding() const;
   /// Derivatives of residual and rates by steps, n x m, of the last linearize.
   const MatrixXd& jacobian() const { return jacobian_; }

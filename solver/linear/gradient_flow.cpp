@@ -6,8 +6,9 @@ namespace bough::solver {
 namespace {
 
 constexpr int kMaxFlowSteps = 300;
-constexpr double kLongest = 5;   // steps of the plant: half a radian
-constexpr double kShort = 1e-6;  // from there on it is for Newton's method
+constexpr double kLongest = 5;         // steps of the plant: half a radian
+constexpr double kShort = 1e-6;        // from there on it is for Newton's method
+constexpr double kMaxDeflection = 40;  // steps of a modal coordinate: twice the size of the bodies, or 2 rad
 
 /// ∂u̇ with both sides in steps.
 MatrixXd calc_slope(const EquilibriumResidual& at) {
@@ -29,6 +30,17 @@ double calc_growth(const MatrixXd& slope) {
   return slope.size() > 0 ? Eigen::EigenSolver<MatrixXd>(slope, false).eigenvalues().real().maxCoeff() : 0;
 }
 
+/// Row of a modal coordinate that has travelled beyond kMaxDeflection; -1: none.
+int find_diverged(const EquilibriumResidual& at) {
+  for (size_t j = 0; j < at.free().size(); ++j) {
+    const int row = at.free()[j];
+    if (row < at.plant().num_dofs() && at.plant().is_mode(row) &&
+        std::abs(at.travel()[static_cast<Eigen::Index>(j)]) > kMaxDeflection)
+      return row;
+  }
+  return -1;
+}
+
 }  // namespace
 
 bool is_stable_rest(const EquilibriumResidual& at) {
@@ -36,7 +48,7 @@ bool is_stable_rest(const EquilibriumResidual& at) {
   return slope.size() == 0 || calc_growth(slope) <= 1e-7 * slope.cwiseAbs().maxCoeff();
 }
 
-EquilibriumResidual follow_gradient_flow(EquilibriumResidual from) {
+GradientFlow follow_gradient_flow(EquilibriumResidual from) {
   EquilibriumResidual at = std::move(from);
   for (int k = 0; k < kMaxFlowSteps; ++k) {
     at.linearize();
@@ -49,7 +61,7 @@ EquilibriumResidual follow_gradient_flow(EquilibriumResidual from) {
     for (int tries = 0; tries < 60 && !has_moved; ++tries, sigma *= 4) {
       const VectorXd step = (sigma * MatrixXd::Identity(slope.rows(), slope.cols()) - slope).partialPivLu().solve(pull);
       if (!step.allFinite() || step.cwiseAbs().maxCoeff() > kLongest) continue;
-      if (step.cwiseAbs().maxCoeff() < kShort) return at;
+      if (step.cwiseAbs().maxCoeff() < kShort) return {std::move(at)};
       try {
         EquilibriumResidual moved = at.move(step);
         // Past the bottom the pull turns round.
@@ -61,8 +73,9 @@ EquilibriumResidual follow_gradient_flow(EquilibriumResidual from) {
       }
     }
     if (!has_moved) break;
+    if (const int diverged = find_diverged(at); diverged >= 0) return {std::move(at), diverged};
   }
-  return at;
+  return {std::move(at)};
 }
 
 }  // namespace bough::solver

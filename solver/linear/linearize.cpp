@@ -295,7 +295,7 @@ void check_constancy(Plant& plant, const OperatingPoint& point, const Jacobian& 
   }
 }
 
-/// Names the laws with two slopes at the operating point, or what else makes the derivatives uncertain.
+/// Names the functions with two slopes at the operating point, or what else makes the derivatives uncertain.
 void warn_of_inaccurate(const Uncertainty& uncertainty, double difference, const SourceLocation& at,
                         Diagnostics& diagnostics) {
   const double worst = std::max(uncertainty.relative, difference);

@@ -140,7 +140,7 @@ class Plant {
   /// Computes f'(0) of a function that evaluates this plant, as evaluate, sample or sample_all.
   ///
   /// Laws are their tangents at f(0) meanwhile (solver/state/law_tangents.hpp), so that `step` need suit the geometry
-  /// only. Difference::kink holds the effect of laws that have two slopes there; `kinks` gains them.
+  /// only. Difference::kink holds the effect of functions that have two slopes there; `kinks` gains them.
   Difference differentiate(const std::function<VectorXd(double)>& f, double step,
                            std::vector<LawKink>* kinks = nullptr);
   /// [u̇; rates of states; y] with every function of time at its value, and `value` more of one input. May throw

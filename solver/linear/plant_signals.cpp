@@ -95,7 +95,7 @@ void Plant::add_outputs() {
 }
 
 Difference Plant::differentiate(const std::function<VectorXd(double)>& f, double step, std::vector<LawKink>* kinks) {
-  return differentiate_system(*data_, *tangents_, f, step, kinks);
+  return differentiate_system(*data_, *tangents_, f, step, lies_far(system_.tree, data_->tree), kinks);
 }
 
 VectorXd Plant::evaluate(const OperatingPoint& point, const PlantInput* input, double value) {

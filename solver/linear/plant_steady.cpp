@@ -10,6 +10,8 @@ constexpr double kAligned = 1e-9;  // of unit vectors
 constexpr double kRounding = 1e-12;
 /// Forces below this part of the sum of their terms are roundoff.
 constexpr double kCancelled = 1e-13;
+/// Step of a translation, of the reach.
+constexpr double kReachShare = 0.05;
 
 /// Free translations of a hinge on ground that a turn about ω maps onto each other. In Hp, as ω, v and the rest.
 struct FloatingBase {
@@ -92,11 +94,19 @@ VectorXd Plant::calc_imbalance() const {
 }
 
 VectorXd Plant::calc_spin_rounding(const OperatingPoint& point) const {
-  double w = 0;
+  double w = 0, reach = 0;
   for (int i = 0; i < num_dofs(); ++i)
     if (!is_mode(i) && dof_dims(i) == "1") w = std::max(w, std::abs(point.u[i]));
+  // Parents that turn by a motion count too, and positions far from their axis.
+  for (int b = 0; b < system_.num_bodies(); ++b) {
+    w = std::max(w, data_->tree[b].state.w_B.norm());
+    reach = std::max(reach, data_->tree[b].state.p_WBo.norm());
+  }
   VectorXd rounding(num_dofs());
-  for (int i = 0; i < num_dofs(); ++i) rounding[i] = 10 * kRounding * step(i) * w * w;
+  for (int i = 0; i < num_dofs(); ++i) {
+    const double way = dof_dims(i) == "L" ? std::max(step(i), kReachShare * reach) : step(i);
+    rounding[i] = 10 * kRounding * way * w * w;
+  }
   return rounding;
 }
 

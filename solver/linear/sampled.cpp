@@ -17,7 +17,7 @@ records::Multipliers calc_multipliers(Plant& plant, const OperatingPoint& point,
   if (plant.sampled_rows().empty()) return out;
   if (const std::string opaque = plant.find_opaque(); !opaque.empty()) {
     diagnostics.warning("linear.fmu-held", at, opaque + " is an FMU: there are no multipliers of the closed loops",
-                        "put a linear law in its place");
+                        "put a linear controller in its place");
     return out;
   }
   std::vector<double> cycles;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "solver/system/law_difference.hpp"
+
 namespace bough::solver {
 namespace {
 
@@ -100,9 +102,13 @@ OperatingPoint displace_by_column(const Plant& plant, const OperatingPoint& poin
   return moved;
 }
 
+double choose_displacement(const Plant& plant, int i) {
+  return plant.dof_dims(i) == "L" ? std::max(plant.step(i), calc_far_step(plant.data().tree)) : plant.step(i);
+}
+
 double choose_step(const Plant& plant, const OperatingPoint& point, int j) {
   const int n = plant.num_dofs(), nx = 2 * n + plant.num_states();
-  if (j < n) return plant.step(j);
+  if (j < n) return choose_displacement(plant, j);
   // The equations are quadratic in u: any step that is not lost in roundoff gives the same.
   if (j < 2 * n) return plant.step(j - n) * std::max(1.0, point.u.cwiseAbs().maxCoeff());
   if (j < nx) return plant.state_step(point, j - 2 * n);

@@ -18,13 +18,13 @@ std::vector<double> list_instants(const std::vector<SampleTimes>& samples, doubl
 struct Jacobian {
   MatrixXd value, error;
   MatrixXd kink;               ///< half of the difference between the one-sided derivatives
-  std::vector<LawKink> kinks;  ///< laws that make it
+  std::vector<LawKink> kinks;  ///< functions that make it
 };
 
 /// Error bound of derivatives.
 struct Uncertainty {
   double relative = 0;         ///< the largest error or kink, relative to the scale of its row
-  std::vector<LawKink> kinks;  ///< laws with two slopes
+  std::vector<LawKink> kinks;  ///< functions with two slopes
 
   /// Rows with scale 0 are left out.
   void add(const Jacobian& jacobian, const VectorXd& scale);
@@ -34,6 +34,10 @@ struct Uncertainty {
 
 /// The largest entry of each row.
 VectorXd calc_row_scales(const MatrixXd& value);
+
+/// First displacement of a difference by dof i: its step, of a translation calc_far_step at least. After an evaluation
+/// of the plant.
+double choose_displacement(const Plant& plant, int i);
 
 /// A sum of length 1 of [δ; δu; δz; m] is changed by h; the step that suits column j.
 OperatingPoint displace_by_column(const Plant& plant, const OperatingPoint& point, int j, double h);

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <random>
 
+#include "solver/tree/body_sizes.hpp"
+
 namespace bough::solver {
 
 namespace {
@@ -14,9 +16,11 @@ constexpr double kDependent = 1e-8;  // of the largest singular value
 /// Factor between the costs of two priorities: a coordinate of the higher one moves only if the others cannot close.
 constexpr double kPreference = 1e5;
 
-// The size of a step that counts as 1: a radian, the length of the system, a deflection of a hundredth of it or a
+// The size of a step that counts as 1: a radian, the size of the bodies, a deflection of a hundredth of it or a
 // rotation of a hundredth of a radian. A mode in twist has no more than rounding errors of translations.
-VectorXd calc_step_sizes(const Loops& loops, const Tree& tree) {
+VectorXd calc_step_sizes(const Tree& tree) {
+  const VectorXd sizes = calc_body_sizes(tree);
+  const double length = sizes.size() > 0 ? sizes.maxCoeff() : 1;
   VectorXd size = VectorXd::Ones(tree.num_u);
   for (const TreeBody& tb : tree.bodies) {
     VectorXd q = VectorXd::Zero(tb.num_hinge_q());
@@ -24,13 +28,13 @@ VectorXd calc_step_sizes(const Loops& loops, const Tree& tree) {
     HingeMotion motion;
     tb.hinge->calc_position(q.data(), motion);
     for (int i = 0; i < tb.num_hinge_u(); ++i) {
-      if (motion.H.col(i).tail<3>().isZero(0)) size[tb.u_offset + i] = loops.length;
+      if (motion.H.col(i).tail<3>().isZero(0)) size[tb.u_offset + i] = length;
     }
     for (int j = 0; j < tb.num_modes(); ++j) {
       double largest = 0;
       for (const Node& node : tb.body.nodes())
-        largest = std::max({largest, node.phi.col(j).norm(), loops.length * node.psi.col(j).norm()});
-      if (largest > 0) size[tb.eta_dot_offset() + j] = 0.01 * loops.length / largest;
+        if (node.is_material) largest = std::max({largest, node.phi.col(j).norm(), length * node.psi.col(j).norm()});
+      if (largest > 0) size[tb.eta_dot_offset() + j] = 0.01 * length / largest;
     }
   }
   return size;
@@ -139,7 +143,7 @@ Assembly assemble_positions(const Loops& loops, const Tree& tree, double t,
                             const std::vector<AssemblyPriority>& priority, Eigen::Ref<VectorXd> q, TreeData& tree_data,
                             LoopData& data) {
   Positions positions(loops, tree, t, tree_data, data);
-  const VectorXd sizes = calc_step_sizes(loops, tree), given = q;
+  const VectorXd sizes = calc_step_sizes(tree), given = q;
   positions.find_starts(given);
   const LoopData start = data;
   Assembly found;
@@ -179,7 +183,7 @@ Assembly assemble_positions(const Loops& loops, const Tree& tree, double t,
 Assembly assemble_rates(const Loops& loops, const Tree& tree, const std::vector<AssemblyPriority>& priority,
                         Eigen::Ref<MatrixXd> u, TreeData& tree_data, LoopData& data) {
   const MatrixXd G = calc_dense_rows(loops, tree, tree_data, data);
-  const VectorXd sizes = calc_step_sizes(loops, tree);
+  const VectorXd sizes = calc_step_sizes(tree);
   Assembly found;
   // Gaps are relative to the largest rate of the column.
   Eigen::RowVectorXd scale = u.colwise().lpNorm<Eigen::Infinity>().cwiseMax(1e-300);
@@ -232,7 +236,7 @@ void reduce_columns(Matrix6Xd& w) {
 std::vector<Redundancy> find_redundancies(const Loops& loops, const Tree& tree,
                                           const std::vector<AssemblyPriority>& priority, const TreeData& tree_data,
                                           const LoopData& data) {
-  const VectorXd size = mask(calc_step_sizes(loops, tree), priority, AssemblyPriority::Modal);
+  const VectorXd size = mask(calc_step_sizes(tree), priority, AssemblyPriority::Modal);
   const MatrixXd G = calc_dense_rows(loops, tree, tree_data, data) * size.asDiagonal();
   std::vector<Redundancy> found;
   MatrixXd basis(tree.num_u, 0);  // of the rows so far, orthonormal

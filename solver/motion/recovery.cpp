@@ -42,6 +42,11 @@ Recovery::~Recovery() = default;
 void Recovery::add_products(const records::FlexBody& flex) {
   using records::ThirdOrder;
   const int n = flex.num_modes();
+  large_ = LargeAmplitudes(flex.third_order);
+  // Large amplitudes are modes, or directions, numbered after all modes.
+  const auto find_amplitude = [&](int j) {
+    return large_.directions.size() > 0 ? n + j : large_.modes[static_cast<size_t>(j)];
+  };
   for (int k = ThirdOrder::kMinField; k <= ThirdOrder::kMaxField; ++k) {
     const auto exponents = records::list_exponents(flex.third_order.num_variables(k, n), k);
     for (Eigen::Index i = 0; i < exponents.rows(); ++i) {
@@ -49,7 +54,7 @@ void Recovery::add_products(const records::FlexBody& flex) {
       int factors = 0;
       for (int j = 0; j < exponents.cols(); ++j)
         for (int e = 0; e < exponents(i, j); ++e)
-          product.modes[static_cast<size_t>(factors++)] = k == 2 ? j : flex.third_order.large[static_cast<size_t>(j)];
+          product.modes[static_cast<size_t>(factors++)] = k == 2 ? j : find_amplitude(j);
       product.rows = VectorXd::Zero(matrix_.rows());
       Eigen::Index first = 0;
       for (const auto& block : flex.recovery) {
@@ -105,10 +110,14 @@ void Recovery::calc(const Motion& motion, int first, int count, double* out) con
   Eigen::Map<VectorXd> rows(out, count);
   rows = offset_.segment(first, count);
   rows.noalias() += matrix_.middleRows(first, count) * data.q.segment(tree[body_].eta_offset(), matrix_.cols());
+  const auto n = matrix_.cols();
+  const auto eta = data.q.segment(tree[body_].eta_offset(), n);
+  double large[records::kMaxLargeModes];
+  if (large_.directions.size() > 0) large_.get(eta, large);
   for (const auto& product : products_) {
     double value = 1;
     for (const int mode : product.modes)
-      if (mode >= 0) value *= data.q[tree[body_].eta_offset() + mode];
+      if (mode >= 0) value *= mode < n ? eta[mode] : large[mode - n];
     rows += value * product.rows.segment(first, count);
   }
   rows.noalias() += inertial_.middleRows(first, count) * A_I;

@@ -7,6 +7,7 @@
 #include <array>
 
 #include "formats/records/flex_body.hpp"
+#include "solver/bodies/polynomial.hpp"
 #include "solver/forces/applied.hpp"
 #include "solver/motion/motion.hpp"
 
@@ -52,13 +53,14 @@ class Recovery {
   };
   int body_;
   std::vector<Element> elements_;
-  /// Degree 2 to 4: the modes of each product, and rows x products.
+  /// Degree 2 to 4: the amplitudes of each product, and rows x products.
   struct Product {
-    std::array<int, 4> modes{-1, -1, -1, -1};  ///< -1: none
+    std::array<int, 4> modes{-1, -1, -1, -1};  ///< -1: none; from n on: directions
     VectorXd rows;
   };
   MatrixXd matrix_, inertial_;  ///< rows x n, rows x 12
   std::vector<Product> products_;
+  LargeAmplitudes large_;
   MatrixXd external_;  ///< rows x locators
   VectorXd offset_;
   Eigen::Matrix<double, 12, 1> preload_ = Eigen::Matrix<double, 12, 1>::Zero();

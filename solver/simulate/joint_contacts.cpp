@@ -198,7 +198,7 @@ bool JointContacts::can_strike(const HybridSystem& ode, const Watched& w) const 
 
 void JointContacts::fail_endless(const std::vector<std::string>& what) const {
   throw ComputationError("run.endless-impacts", system_.tree.bodies.front().hinge_at,
-                         "stops that throw each other back do not come to an end, last " + what.back(),
+                         "impacts between rigid stops repeat without end, last " + what.back(),
                          "give them a restitution below 1, or a stiffness in its place");
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "solver/bodies/extent.hpp"
 #include "solver/bodies/next_order.hpp"
 #include "solver/bodies/soft_energy.hpp"
 #include "solver/simulate/run.hpp"
@@ -11,6 +12,9 @@
 
 namespace bough::solver {
 namespace {
+
+/// Deflection in sizes of the body above which round-off leaves the orders of its series apart.
+constexpr double kMeasuredWay = 1e-5;
 
 const TreeBody& get_body(const System& system, int body) { return system.tree.bodies[static_cast<size_t>(body)]; }
 
@@ -22,17 +26,11 @@ double calc_body_size(const System& system, int b) {
   Eigen::AlignedBox3d box;
   double farthest = 0;  // from Bo
   for (const Node& node : body.nodes()) {
-    if (node.id != 0) box.extend(node.p);
+    if (node.id != 0 && node.is_material) box.extend(node.p);
     farthest = std::max(farthest, node.p.norm());
   }
   if (tb.on_child.node == 0 && tb.hinge->num_u() < 6) box.extend(tb.on_child.p_KM);
-  double size = box.isEmpty() ? 0 : box.diagonal().norm();
-  if (body.mass() > 0) {
-    // A box of edges a, b, c has tr I = m (a² + b² + c²) / 6 about its middle.
-    const Vector3d cg = Vector3d(body.M6()(1, 5), body.M6()(2, 3), body.M6()(0, 4)) / body.mass();
-    const double trace = body.M6().bottomRightCorner<3, 3>().trace() - 2 * body.mass() * cg.squaredNorm();
-    size = std::max(size, std::sqrt(6 * std::max(0.0, trace) / body.mass()));
-  }
+  const double size = std::max(calc_inertia_extent(body), box.isEmpty() ? 0 : box.diagonal().norm());
   return farthest > 0 && size > 0 ? std::min(farthest, size) : std::max(farthest, size);
 }
 
@@ -75,7 +73,7 @@ std::vector<ModalRangeMonitor::Crossing> ModalRangeMonitor::find_deflections(con
     double largest = 0;
     const Node* where = nullptr;
     for (const Node& node : body.nodes()) {
-      if (!node.moves) continue;
+      if (!node.moves || !node.is_material) continue;
       Vector3d d = Vector3d::Zero();
       for (int j = 0; j < eta.size(); ++j) d += node.phi.col(j) * eta[j];
       if (d.norm() <= largest) continue;
@@ -85,7 +83,8 @@ std::vector<ModalRangeMonitor::Crossing> ModalRangeMonitor::find_deflections(con
     if (!where) continue;
     const bool is_far = largest > kCheckedWay * w.size;
     // Clamped plates stretch at a way of their thickness.
-    if (!is_far && !body.soft_energy()) continue;
+    const bool is_third = body.third_order() && largest > kMeasuredWay * w.size;
+    if (!is_far && !is_third && !body.soft_energy()) continue;
     const auto report = [&](const std::string& limit, const std::string& advice) {
       w.reported = largest > w.size ? Range::Left : Range::Passed;
       found.push_back({w.body, "run.linear-limit",
@@ -105,8 +104,8 @@ std::vector<ModalRangeMonitor::Crossing> ModalRangeMonitor::find_deflections(con
                "linear modes are invalid there; ");
       continue;
     }
-    const double next =
-        is_far ? calc_next_order(body, *where, eta, w.size) : body.soft_energy()->calc_error(*where, body.K(), eta);
+    const double next = is_far || is_third ? calc_next_order(body, *where, eta, w.size)
+                                           : body.soft_energy()->calc_error(*where, body.K(), eta);
     if (next > kNextOrderLimit)
       report(": the next order of its displacements is estimated at " + short_text(100 * next) +
                  " % of that, more than " + short_text(100 * kNextOrderLimit) + " %",
@@ -142,7 +141,7 @@ VectorXd ModalRangeMonitor::calc_modal_limit() const {
     for (int j = 0; j < system_.num_modes(w.body); ++j) {
       double largest = 0;
       for (const Node& node : get_body(system_, w.body).body.nodes())
-        largest = std::max(largest, node.phi.col(j).norm());
+        if (node.is_material) largest = std::max(largest, node.phi.col(j).norm());
       if (largest > 0 && w.size > 0) reach[system_.eta_offset(w.body) + j] = w.size / largest;
     }
   }

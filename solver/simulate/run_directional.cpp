@@ -19,7 +19,11 @@ constexpr double kSignalStep = 1e-2;
 VectorXd Run::calc_state_steps() const {
   const System& system = ode_.system();
   const int num_q = ode_.num_q(), num_u = ode_.num_coordinates() - num_q;
-  const VectorXd steps = calc_displacement_steps(system.tree);
+  VectorXd steps = calc_displacement_steps(system.tree);
+  const double far = calc_far_step(ode_.data().tree);
+  for (const TreeBody& tb : system.tree.bodies)
+    for (int i = 0; i < tb.num_hinge_u(); ++i)
+      if (is_translation(tb, i)) steps[tb.u_offset + i] = std::max(steps[tb.u_offset + i], far);
   VectorXd all = VectorXd::Constant(ode_.size(), std::numeric_limits<double>::infinity());
   const double fastest = num_u > 0 ? y_.segment(num_q, num_u).lpNorm<Eigen::Infinity>() : 0;
   all.segment(num_q, num_u) = steps * std::max(1.0, fastest);
@@ -72,7 +76,7 @@ VectorXd Run::differentiate(const VectorXd& dx, const std::vector<std::pair<int,
         all << x_dot, sample;
         return all;
       },
-      step);
+      step, lies_far(ode_.system().tree, data.tree));
   return d.calc_clean();
 }
 

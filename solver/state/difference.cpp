@@ -30,9 +30,29 @@ struct Pair {
   VectorXd bend;                 ///< f'(0+) - f'(0-) by one-sided differences
 };
 
+/// Roundoff of the terms of f, of each entry: second differences, in steps so short that f is a straight line on either
+/// side of 0. Next to an equilibrium in orbit f is 1e-6 of its terms or less, so that its size says nothing.
+VectorXd measure_roundoff(const std::function<VectorXd(double)>& f, const VectorXd& f0, double step) {
+  constexpr double kShort = 1.3e-9, kLuck = 4;  // no power of two, which may leave no roundoff
+  VectorXd roundoff = VectorXd::Zero(f0.size());
+  for (const double h : {kShort * step, -kShort * step}) {
+    try {
+      const VectorXd at[] = {f(h), f(2 * h), f(3 * h), f(4 * h)};
+      for (int i = 0; i < 2; ++i) {
+        const VectorXd bend = at[i] - 2 * at[i + 1] + at[i + 2];
+        if (bend.allFinite()) roundoff = roundoff.cwiseMax(kLuck * bend.cwiseAbs());
+      }
+    } catch (const ComputationError&) {
+      // No value on that side.
+    }
+  }
+  return roundoff;
+}
+
 class Ladder {
  public:
-  Ladder(const std::function<VectorXd(double)>& f, const VectorXd& f0) : f_(f), f0_(f0) {}
+  Ladder(const std::function<VectorXd(double)>& f, const VectorXd& f0, const VectorXd& roundoff)
+      : f_(f), f0_(f0), roundoff_(roundoff) {}
 
   /// Returns false if f has no value there; why() then.
   bool calc_pair(double h, Pair& pair) {
@@ -63,8 +83,7 @@ class Ladder {
       const double h = pair.h;
       before.swap(row);
       row[0] = pair.slope;
-      // Roundoff of f alone; other losses show in the table.
-      const VectorXd rounding = kEpsilon / h * pair.size;
+      const VectorXd rounding = (kEpsilon * pair.size).cwiseMax(roundoff_) / h;
       if (level == 0) {
         best_.value = pair.slope;
         best_.error = VectorXd::Constant(pair.slope.size(), std::numeric_limits<double>::infinity());
@@ -109,7 +128,9 @@ class Ladder {
   /// Roundoff of f at its largest, of each entry.
   VectorXd calc_floor(const Pair& pair) const {
     const double all = pair.size.size() > 0 ? 16 * kEpsilon * pair.size.maxCoeff() : 0;
-    return (1e3 * kEpsilon * pair.size).cwiseMax(VectorXd::Constant(pair.size.size(), all)).cwiseMax(4 * noise_);
+    return (1e3 * kEpsilon * pair.size)
+        .cwiseMax(VectorXd::Constant(pair.size.size(), all))
+        .cwiseMax(4 * noise_.cwiseMax(roundoff_));
   }
 
   /// A value below its error is roundoff, unless f changes by the same amount at all short steps.
@@ -155,7 +176,7 @@ class Ladder {
     const VectorXd &apart = steps_apart_.back(), &apart_before = steps_apart_[steps_apart_.size() - 2];
     for (Eigen::Index e = 0; e < apart.size(); ++e) {
       if (std::max(best_.error[e], noise_[e] / best_step_[e]) <= kAgreed * std::abs(best_.value[e])) continue;
-      if (noise_[e] <= kEpsilon * std::max(1e3 * last.size[e], 16 * all)) continue;
+      if (noise_[e] <= std::max(kEpsilon * std::max(1e3 * last.size[e], 16 * all), roundoff_[e])) continue;
       if (!(apart[e] <= kSmall * all && apart[e] >= 0.25 * apart_before[e])) return false;
     }
     return true;
@@ -170,7 +191,7 @@ class Ladder {
   }
 
   const std::function<VectorXd(double)>& f_;
-  const VectorXd& f0_;
+  const VectorXd &f0_, &roundoff_;
   Difference best_;
   VectorXd best_step_, noise_;
   std::vector<Pair> pairs_;
@@ -187,9 +208,10 @@ VectorXd Difference::calc_clean() const {
   return clean;
 }
 
-Difference differentiate(const std::function<VectorXd(double)>& f, double step) {
+Difference differentiate(const std::function<VectorXd(double)>& f, double step, bool has_large_terms) {
   const VectorXd f0 = f(0);
-  Ladder ladder(f, f0);
+  const VectorXd roundoff = has_large_terms ? measure_roundoff(f, f0, step) : VectorXd(VectorXd::Zero(f0.size()));
+  Ladder ladder(f, f0, roundoff);
   ladder.run(step, kMaxHalvings);
   if (ladder.is_empty()) {
     if (ladder.why()) std::rethrow_exception(ladder.why());
@@ -218,7 +240,7 @@ Difference differentiate(const std::function<VectorXd(double)>& f, double step) 
     if (apart[e] > floor[e] + 10 * found.error[e] + 1e-6 * std::abs(found.value[e])) misled.push_back(e);
   }
   if (misled.empty()) return found;
-  Ladder fine(f, f0);
+  Ladder fine(f, f0, roundoff);
   fine.run(std::ldexp(step, -kRestartHalvings), kMaxHalvings - kRestartHalvings);
   if (fine.is_empty()) return found;
   const VectorXd fine_kinks = fine.calc_kinks();

@@ -22,8 +22,9 @@ struct Difference {
 /// "Accurate computation of F'(x) and F'(x)F''(x)", Adv. Eng. Software 4 (1982) 75). A function that is quadratic gives
 /// its derivative to roundoff. Steps shrink, to 1e-12 of the first, until two orders agree or roundoff is reached. A
 /// last, much shorter step checks that all were short enough; if it disagrees, the steps begin again near that one.
+/// \param has_large_terms  f is a small difference of its terms, whose roundoff is measured by eight evaluations more.
 /// \throws ComputationError what f throws for every step, or "linear.no-derivative" if f is never finite. Steps at
 ///     which f throws or is not finite are too long and are passed over.
-Difference differentiate(const std::function<Eigen::VectorXd(double)>& f, double step);
+Difference differentiate(const std::function<Eigen::VectorXd(double)>& f, double step, bool has_large_terms = false);
 
 }  // namespace bough::solver

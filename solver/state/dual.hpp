@@ -1,8 +1,9 @@
 #pragma once
 /// \file Dual numbers: a value and its derivative along one direction (forward automatic differentiation).
 ///
-/// Equal values compare by their derivatives: a piecewise smooth law, written with comparisons, yields its one-sided
-/// directional derivative at a kink. Source: Griewank & Walther, Evaluating Derivatives, 2nd ed. 2008, ch. 3 and 14.
+/// Equal values compare by their derivatives: a piecewise smooth function, written with comparisons, yields its
+/// one-sided directional derivative at a kink. Source: Griewank & Walther, Evaluating Derivatives, 2nd ed. 2008, ch. 3
+/// and 14.
 #include <algorithm>
 #include <cmath>
 

@@ -106,7 +106,7 @@ void LawTangents::evaluate(const LawOwner& owner, int slot, const std::vector<do
   if (k >= of.entries.size()) of.entries.resize(k + 1);
   Entry& entry = of.entries[k];
   const Map<const VectorXd> value(y, num_y);
-  // At the operating point the laws are evaluated again and again.
+  // At the operating point the functions are evaluated again and again.
   if (entry.x.size() == at.size() && entry.y.size() == num_y && entry.x == at && entry.y == value) return;
   entry.label = *owner.noun != 0 ? std::string(owner.noun) + " '" + owner.name + "'" : owner.name;
   entry.x = at;

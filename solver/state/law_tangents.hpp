@@ -1,10 +1,10 @@
 #pragma once
-/// \file Tangents of the small nonlinear laws of a system: tables, limits, contacts, friction, formulas.
+/// \file Tangents of the small nonlinear functions of a system: tables, limits, contacts, friction, formulas.
 ///
 /// Linear models are differences of the equations of motion. A difference step suits the geometry (0.1 rad, 5 % of the
-/// size of the bodies), not a law with limits, points of a table or a depth of penetration far below it. Each law is
-/// therefore replaced by its tangent at the operating point, y0 + G (x - x0), while the rest is differentiated: by the
-/// chain rule the derivative is the same, G is exact, and no step passes a kink.
+/// size of the bodies), not a function with limits, points of a table or a depth of penetration far below it. Each
+/// function is therefore replaced by its tangent at the operating point, y0 + G (x - x0), while the rest is
+/// differentiated: by the chain rule the derivative is the same, G is exact, and no step passes a kink.
 #include <array>
 #include <functional>
 #include <map>
@@ -17,14 +17,14 @@
 
 namespace bough::solver {
 
-/// Whose law it is; a name for messages: noun 'name', or the name alone if it is a label.
+/// Whose function it is; a name for messages: noun 'name', or the name alone if it is a label.
 struct LawOwner {
   const void* key;
   const char* noun;
   const std::string& name;
 };
 
-/// A law with two slopes at the operating point.
+/// A function with two slopes at the operating point.
 struct LawKink {
   std::string label;                        ///< "controller 'law'"
   double at = 0;                            ///< of the input x
@@ -33,20 +33,20 @@ struct LawKink {
 
 class LawTangents {
  public:
-  /// The derivative of a law along +1 or -1 times input i, at x: y and dy/dx_i, from that side.
+  /// The derivative of a function along +1 or -1 times input i, at x: y and dy/dx_i, from that side.
   using Slope = std::function<void(const double* x, int i, int direction, double* slope)>;
 
-  /// From now on laws are evaluated, and their tangents taken.
+  /// From now on functions are evaluated, and their tangents taken.
   void record();
-  /// From now on laws are their tangents; call it before each evaluation of the system.
+  /// From now on functions are their tangents; call it before each evaluation of the system.
   /// \param side  at a kink the slope above (1), below (-1), or the mean of both (0)
   void replay(int side);
-  /// From now on laws are evaluated.
+  /// From now on functions are evaluated.
   void stop() { mode_ = Mode::Off; }
-  /// Kinks of the laws whose inputs have moved since record().
+  /// Kinks of the functions whose inputs have moved since record().
   std::vector<LawKink> list_kinks() const;
 
-  /// One evaluation of the law `slot` of `owner`: y from x.
+  /// One evaluation of the function `slot` of `owner`: y from x.
   /// \param reach  of each input, the size of the terms that roundoff of x comes from, 0 for x itself; nullptr: the
   ///     slopes find kinks nearby themselves
   void evaluate(const LawOwner& owner, int slot, const std::vector<double>& x, const double* reach, int num_y,
@@ -72,7 +72,7 @@ class LawTangents {
   std::map<std::pair<const void*, int>, Law> laws_;
 };
 
-/// y(x) of a law that is a template of its number type, double or Dual; its tangent if a linear model is made.
+/// y(x) of a function that is a template of its number type, double or Dual; its tangent if a linear model is made.
 /// \param law  std::array<T, M> law(const std::array<T, N>& x)
 template <std::size_t M, std::size_t N, class Law>
 std::array<double, M> evaluate_law(LawTangents* tangents, const LawOwner& owner, int slot,
@@ -96,14 +96,14 @@ std::array<double, M> evaluate_law(LawTangents* tangents, const LawOwner& owner,
   return y;
 }
 
-/// Evaluates a law with one input and one output: T law(T x).
+/// Evaluates a function with one input and one output: T law(T x).
 template <class Law>
 double evaluate_scalar_law(LawTangents* tangents, const LawOwner& owner, int slot, double x, const Law& law) {
   if (tangents == nullptr) return law(x);
   return evaluate_law<1, 1>(tangents, owner, slot, {x}, [&](const auto& in) { return std::array{law(in[0])}; })[0];
 }
 
-/// Evaluates a law for doubles only (formulas, libraries of users): its slopes by differences.
+/// Evaluates a function for doubles only (formulas, libraries of users): its slopes by differences.
 void evaluate_black_box(LawTangents* tangents, const LawOwner& owner, int slot, const std::vector<double>& x, int num_y,
                         const std::function<void(const double* x, double* y)>& law, double* y);
 

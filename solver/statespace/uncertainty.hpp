@@ -28,8 +28,7 @@ struct ParameterEnds {
 /// \throws InputError "linear.not-affine" where the equations are not affine in a parameter or in all of them together,
 /// "linear.no-effect" where a parameter changes nothing.
 records::LinearModel make_uncertain_model(const records::LinearModel& nominal, const std::vector<ParameterEnds>& ends,
-                                          const records::LinearModel& together, double error,
-                                          const SourceLocation& at);
+                                          const records::LinearModel& together, double error, const SourceLocation& at);
 
 /// The model with w = δ z closed; delta: one value a parameter. \throws ComputationError "linear.no-inverse" where the
 /// loop has no solution.

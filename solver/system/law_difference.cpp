@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "solver/tree/body_sizes.hpp"
 #include "solver/tree/coordinates.hpp"
 
 namespace bough::solver {
@@ -10,20 +11,10 @@ namespace {
 
 constexpr double kAngle = 0.1, kShare = 0.05;
 
-/// Reach of the nodes and hinges of all bodies; 1 where all lie at the origin.
-double calc_size(const Tree& tree) {
-  double size = 0;
-  for (const TreeBody& tb : tree.bodies) {
-    for (const Node& node : tb.body.nodes()) size = std::max(size, node.p.norm());
-    size = std::max({size, tb.on_parent.p_KM.norm(), tb.on_child.p_KM.norm()});
-  }
-  return size > 0 ? size : 1;
-}
-
 }  // namespace
 
 Difference differentiate_system(SystemData& data, LawTangents& tangents, const std::function<VectorXd(double)>& f,
-                                double step, std::vector<LawKink>* kinks) {
+                                double step, bool is_far, std::vector<LawKink>* kinks) {
   struct Scope {
     TreeData& tree;
     ~Scope() { tree.tangents = nullptr; }
@@ -37,7 +28,7 @@ Difference differentiate_system(SystemData& data, LawTangents& tangents, const s
           tangents.replay(side);
           return f(h);
         },
-        step);
+        step, is_far);
   };
   Difference mean = differentiate_side(0);
   const auto found = tangents.list_kinks();
@@ -54,18 +45,36 @@ Difference differentiate_system(SystemData& data, LawTangents& tangents, const s
 }
 
 VectorXd calc_displacement_steps(const Tree& tree) {
-  const double size = calc_size(tree);
+  const VectorXd sizes = calc_body_sizes(tree);
+  VectorXd carried = sizes;
+  for (int b = tree.size() - 1; b >= 0; --b)
+    if (tree[b].parent >= 0) carried[tree[b].parent] = std::max(carried[tree[b].parent], carried[b]);
   VectorXd steps(tree.num_u);
-  for (const TreeBody& tb : tree.bodies) {
-    for (int i = 0; i < tb.num_hinge_u(); ++i) steps[tb.u_offset + i] = is_translation(tb, i) ? kShare * size : kAngle;
+  for (int b = 0; b < tree.size(); ++b) {
+    const TreeBody& tb = tree[b];
+    const double size = sizes[b];
+    for (int i = 0; i < tb.num_hinge_u(); ++i)
+      steps[tb.u_offset + i] = is_translation(tb, i) ? kShare * carried[b] : kAngle;
     for (int i = 0; i < tb.num_modes(); ++i) {
       double largest = 0;
-      for (const Node& node : tb.body.nodes()) largest = std::max(largest, node.phi.col(i).norm() / size);
-      for (const Node& node : tb.body.nodes()) largest = std::max(largest, node.psi.col(i).norm());
+      for (const Node& node : tb.body.nodes())
+        if (node.is_material) largest = std::max({largest, node.phi.col(i).norm() / size, node.psi.col(i).norm()});
       steps[tb.eta_dot_offset() + i] = largest > 0 ? kShare / largest : 1;
     }
   }
   return steps;
+}
+
+double calc_far_step(const TreeData& data) {
+  constexpr double kFarShare = 1e-6;
+  double reach = 0;
+  for (const BodyData& body : data.bodies) reach = std::max(reach, body.state.p_WBo.norm());
+  return kFarShare * reach;
+}
+
+bool lies_far(const Tree& tree, const TreeData& data) {
+  const VectorXd sizes = calc_body_sizes(tree);
+  return sizes.size() > 0 && calc_far_step(data) > 1e-3 * sizes.maxCoeff();
 }
 
 }  // namespace bough::solver

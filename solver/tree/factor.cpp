@@ -39,7 +39,7 @@ double calc_size(const BodyData& d, const ConstVectorRef& column) {
                          pivot < d.num_free
                              ? "give the body, or one that it carries, mass and inertia along that coordinate"
                              : "its mass integrals do not belong to one mass matrix, or its modes do what its hinge "
-                               "does: write the file anew with reduce, or keep fewer modes");
+                               "does: write the file again with reduce, or keep fewer modes");
 }
 
 // `added`: of the hinge's coordinates, free or not.

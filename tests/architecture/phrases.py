@@ -13,8 +13,8 @@ from common import ROOMS, ROOT, line_of, list_files, read
 
 TABLE = os.path.join("tests", "architecture", "phrases.txt")
 # docs/commands.md has the strings of cli, which are counted there.
-EXEMPT = {"CHANGELOG.md", "docs/developer/unreleased.md", "docs/developer/changes-0.3.0.md", "docs/commands.md",
-          "tests/architecture/phrases.py"}
+EXEMPT = {"CHANGELOG.md", "docs/developer/unreleased.md", "docs/developer/changes-0.3.0.md",
+          "docs/developer/changes-0.2.0.md", "docs/commands.md", "tests/architecture/phrases.py"}
 
 # Rule: (where it is searched, regular expression, what to write).
 # prose: comments, strings and pages; start: the first word of a line of a comment; code: identifiers.
@@ -58,7 +58,9 @@ RULES = {
                       "verified by; error; stable part"),
     "a-tenth-less": ("prose", r"\b(?:third|quarter|fifth|sixth|seventh|eighth|tenth|twelfth|fifteenth|twentieth) "
                               r"(?:to a \w+ )?(?:less|more|faster)\b", "percent, of what"),
-    "laws": ("prose", r"(?<![Cc]ontrol )(?<![Ff]orce )(?<![Ff]riction )\blaws?\b(?! of)", "controller, control law"),
+    # Names in quotes (controller 'law', law:2, law@1, law.fmu) and constitutive laws are no hits.
+    "laws": ("prose", r"(?<![Cc]ontrol )(?<![Ff]orce )(?<![Ff]riction )(?<![Cc]onstitutive )(?<!Sylvester's )(?<![\"'`/])"
+                      r"\blaws?\b(?!['\"`:@]|\.\w| = |\(| of)", "controller, control law"),
 }
 
 C_TOKEN = re.compile(r'//[^\n]*|/\*.*?\*/|R"(\w*)\(.*?\)\1"|"(?:\\.|[^"\\\n])*"|(?<![0-9a-fA-F])\'(?:\\.|[^\'\\\n])*\'', re.S)

@@ -223,6 +223,20 @@ class ComplexModes(ProgramTest):
             self.assertAlmostEqual(mode["damping"], 0.6 / np.sqrt(8.91), places=12)
             self.assertAlmostEqual(mode["frequency_hz"], np.sqrt(8.91) / (2 * np.pi), places=12)
 
+    def test_subcases(self):
+        """Every subcase with CMETHOD has its modes; a static one, whose load preloads another, has none."""
+        two = "SUBCASE 1\nCMETHOD = 9\nSUBCASE 2\nCMETHOD = 8"
+        self.write("d.bdf", make_chain("107", "EIGC,8,LAN,,,,,3", two).replace("CMETHOD = 9\n", "", 1))
+        result = json.loads(self.bough("modes", "d.bdf", "--json").stdout)
+        self.assertEqual([s["subcase"] for s in result["subcases"]], [1, 2])
+        expected = solve_dense(np.diag(MASS), np.zeros((N, N)), make_stiffness())
+        for one, number in zip(result["subcases"], (6, 3)):
+            found = [complex(m["eigenvalue"]["real"], m["eigenvalue"]["imag"]) for m in one["modes"]]
+            self.near(found, expected[:number])
+        static = "SUBCASE 1\nLOAD = 5\nSUBCASE 2\nSTATSUB = 1"
+        self.near(self.solve(make_chain("107", "FORCE,5,2,,1.,1.,0.,0.", static)), expected)
+        self.bough("check", "d.bdf")
+
     def test_overdamped(self):
         """Two real eigenvalues, g = 0."""
         for sol in ("107", "110"):

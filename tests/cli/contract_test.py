@@ -92,6 +92,8 @@ class Options(ProgramTest):
             self.fails(1, verb, "body.h5x", says=["is HDF5, expected a Nastran deck"], error="cli.wrong-file")
         self.fails(1, "modes", "boom.toml", says=["is TOML"], error="cli.wrong-file")
         self.fails(1, "run", "boom.toml", says=["is a body file", "bough reduce"], error="cli.wrong-file")
+        for verb in ("run", "equilibrium", "linearize"):
+            self.fails(1, verb, "boom.bdf", says=["is a Nastran deck", "bough init boom.bdf"], error="cli.wrong-file")
         self.fails(1, "reduce", "spinup.toml", says=["is a system file", "bough run"], error="cli.wrong-file")
         shutil.copy(os.path.join(SOURCE, "data/examples/ex06-campaign/campaign.toml"), self.folder)
         self.fails(1, "check", "campaign.toml", says=["bough batch", "--dry-run"], error="cli.wrong-file")

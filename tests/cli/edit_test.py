@@ -66,6 +66,10 @@ class Edit(ProgramTest):
         self.assertIn("scale = [1, 2,3]", self.read())
         wrong = self.edit("add function f type=step tme=2", code=1)
         self.assertIn("unknown key 'tme' in a function", wrong.stderr)
+        # Angles of a function in degrees; no key is made of the ending alone.
+        self.edit("add function wave type=sine amplitude=1 frequency_hz=1 phase_deg=30", "set function.wave.phase_deg=45", "save")
+        self.assertIn("phase_deg = 45", self.read())
+        self.assertIn("unknown key 'tme_deg' in a function", self.edit("add function f type=step tme_deg=2", code=1).stderr)
 
     def test_rename_follows_references_and_delete_asks_for_them(self):
         self.edit("rename pin root", "rename bob weight", "save")

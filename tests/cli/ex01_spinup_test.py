@@ -5,6 +5,7 @@ import sys
 import unittest
 
 import h5py
+import numpy as np
 
 from support import SOURCE, ProgramTest
 
@@ -55,6 +56,59 @@ class Spinup(ProgramTest):
         self.assertAlmostEqual(t[y.argmin()], 6.77, delta=0.03)
         self.write("bad.toml", text.replace("coordinate = 2", "coordinate = 9"))
         self.fails(1, "check", "bad.toml", says=["mode 9", "which has 3"], error="control.unknown-place")
+
+    def test_eq_18_by_jets_at_special_nodes_of_a_flx(self):
+        """A jet along x at each special node, as in the report, the first with minus their sum; modal
+        coordinates are displacements of special nodes."""
+        self.copy_example("ex01-spinup")
+        self.bough("reduce", "boom.toml", "-q")
+        self.bough("flx", "boom.h5", "--special-nodes", "--digits", "17", "-o", "boom.FLX", "-q")
+        nodes = json.loads(self.bough("flx", "--read", "boom.FLX", "--json").stdout)["special_nodes"]["id"]
+        with h5py.File(self.path("boom.h5")) as f:
+            K = f["stiffening/kg_inertial"][8]
+        n = len(K)
+        self.assertEqual(len(nodes), n + 1)
+        formulas = ["-u1^2*(" + " + ".join(f"{K[j, k]:.15g}*u{k + 2}" for k in range(n)) + ")" for j in range(n)]
+        formulas.insert(0, " - ".join(["0", *formulas]))
+        with open(self.path("spinup.toml")) as f:
+            text = f.read().replace("stiffening = true", "stiffening = false").replace("duration = 20.0", "duration = 8.0")
+        text = text.replace("boom.h5", "boom.FLX")
+        text += '\n[[sensor]]\nname = "gyro"\ntype = "gyro"\nbody = "boom"\nnode = %d\n' % nodes[0]
+        for j, node in enumerate(nodes[1:]):
+            text += f'[[sensor]]\nname = "eta{j + 1}"\ntype = "deflection"\nbody = "boom"\nnode = {node}\n'
+        text += '[[sensor]]\nname = "eta"\ntype = "modal_coordinate"\nbody = "boom"\n'
+        text += ('[[controller]]\nname = "stiffen"\ntype = "expression"\ninputs = ["gyro:z", '
+                 + ", ".join(f'"eta{k + 1}:1"' for k in range(n)) + "]\nexpression = ["
+                 + ", ".join(f'"{formula}"' for formula in formulas) + "]\n")
+        for j, node in enumerate(nodes):
+            text += (f'[[actuator]]\nname = "jet{j}"\ntype = "force"\nbody = "boom"\nnode = {node}\n'
+                     f'axis = [1.0, 0.0, 0.0]\ninput = "stiffen:{j + 1}"\n')
+        self.write("literal.toml", text)
+        done = self.bough("run", "literal.toml", "-o", "literal.h5")
+        self.assertIn("its special nodes take forces, actuators and sensors", done.stderr)
+        with h5py.File(self.path("literal.h5")) as f:
+            y, t, eta = f["sensors/tip_deflection"][:, 1], f["time"][:], f["sensors/eta"][:]
+            for j in range(n):
+                np.testing.assert_allclose(f[f"sensors/eta{j + 1}"][:, 0], eta[:, j], rtol=0, atol=1e-12)
+        self.assertAlmostEqual(y.min(), -0.5346, delta=2e-4)
+        self.assertAlmostEqual(t[y.argmin()], 6.77, delta=0.03)
+        # A flat copy has them too; bodies do not attach to them, and there are no others.
+        self.bough("export", "boom.FLX", "--to", "flat", "-o", "boom.flat", "-q")
+        self.write("flat.toml", text.replace("boom.FLX", "boom.flat"))
+        self.bough("run", "flat.toml", "-o", "flat.h5", "-q")
+        with h5py.File(self.path("flat.h5")) as f:
+            np.testing.assert_array_equal(f["sensors/tip_deflection"][:, 1], y)
+        self.write("held.toml", text + f"""
+[[constraint]]
+name = "held"
+type = "point_on_plane"
+child = "boom"
+child_node = {nodes[1]}
+""")
+        self.fails(1, "check", "held.toml", says=[f"node {nodes[1]} of body 'boom'", "a special node of its .FLX"],
+                   error="system.special-node")
+        self.write("other.toml", text.replace(f"node = {nodes[-1]}\naxis", f"node = {nodes[-1] + 1}\naxis"))
+        self.fails(1, "check", "other.toml", error="system.unknown-node")
 
 
 if __name__ == "__main__":

@@ -71,6 +71,37 @@ class Bicycle(ProgramTest):
         with open(self.path("lpv.csv")) as table:
             self.assertTrue(table.readline().startswith("point,speed,rider,"))
 
+    def turn(self, text, *options):
+        """Equilibrium of a system and a run from it: lean, steer, rates and heading over 20 s."""
+        self.write("turn.toml", text)
+        self.bough("equilibrium", "turn.toml", *options, "-o", "turn.h5")
+        self.bough("run", "turn.toml", *options, "--start-from", "turn.h5", "-o", "run.h5", "-q")
+        q, rate, steer, t = self.read_arrays("run.h5", "hinges/place/q", "hinges/place/qdot", "hinges/steer/q", "time")
+        return q, rate, np.ravel(steer), np.ravel(t)
+
+    def test_steady_turns_are_equilibria(self):
+        """The heading follows from the wheels: with the steer locked the bicycle leans as it must, and a run
+        from there goes round a circle."""
+        with open(self.path("bicycle.toml")) as f:
+            text = f.read().replace("duration = 5.0", "duration = 20.0\nrelative_tolerance = 1e-11\n"
+                                    "absolute_tolerance = 1e-12")
+        axis = "axis = [0.3090169943749474, 0.0, 0.9510565162951535]"
+        for steer, guess in ((0.05, 0.0), (0.2, 0.4), (-0.2, -0.4)):
+            place = f'translations = "xyz"\nguess = true\nposition = [0, {guess}, 0, 0, 0, 0]'
+            start = text.replace('translations = "xyz"', place)
+            q, rate, angle, t = self.turn(start.replace(axis, axis + f"\nposition = {steer}\nlocked = true"))
+            with self.subTest(steer=steer):
+                lean, heading = q[:, 1], rate[:, 0]
+                self.assertGreater(abs(lean[0]), 0.02)
+                self.assertGreater(lean[0] * heading[0], 0)  # inwards
+                np.testing.assert_allclose(angle, steer, atol=1e-12)
+                first = t <= 2.0  # the turn may be unstable: deviations grow by e in a third of a second
+                np.testing.assert_allclose(lean[first], lean[0], rtol=0, atol=1e-7)
+                np.testing.assert_allclose(heading[first], heading[0], rtol=1e-6)
+                # A circle: the velocity turns at the rate of the heading.
+                turned = np.unwrap(np.arctan2(rate[:, 4], rate[:, 3]))
+                np.testing.assert_allclose((turned - turned[0])[first], (heading[0] * (t - t[0]))[first], atol=1e-6)
+
     def test_a_parameter_twice_is_an_error(self):
         self.fails(2, "linearize", "bicycle.toml", "--sweep", "speed=1:2:2", "--sweep", "speed=1:2:2", error="cli.bad-sweep")
         self.fails(2, "linearize", "bicycle.toml", "--sweep", "speed=1:2:200", "--sweep", "rider=1:2:200", error="cli.bad-sweep")

@@ -43,11 +43,14 @@ class FmuTest(FmuCase):
         self.compare_cs("arm.toml", 3, event_mode=True)
 
     def test_examples_with_flexible_bodies(self):
-        for example, body, system, duration, output_step in (("robot-arm", "arm", "robot", 0.1, 2e-3),
-                                                             ("satellite", "wing", "pointing", 1.0, 0.05)):
+        for example, body, system, duration, output_step, more in (
+                ("robot-arm", "arm", "robot", 0.1, 2e-3, ""), ("satellite", "wing", "pointing", 1.0, 0.05, ""),
+                ("spinup", "boom", "spinup", 1.0, 0.05, "\n[body.stiffening]\norder = 3\n")):
             with self.subTest(example=example):
                 self.bough("init", example)
                 folder = os.path.join(example, "")
+                with open(self.path(folder + body + ".toml"), "a", encoding="utf-8") as f:
+                    f.write(more)
                 self.bough("reduce", folder + body + ".toml", "-o", folder + body + ".h5")
                 with open(self.path(folder + system + ".toml"), encoding="utf-8") as f:
                     text = f.read()

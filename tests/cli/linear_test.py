@@ -374,6 +374,29 @@ class Equilibrium(LinearTest):
             section("simulation", duration=1.0, gravity=[0.0, 0.0, -9.81])))
         self.fails(3, "equilibrium", "stone.toml", says=["stone:z", "9.81"], error="equilibrium.not-converged")
 
+    def test_body_far_beyond_its_range(self):
+        """The energy of a bent frame of third order falls without end under a large load: the search ends when a mode
+        deflects by twice the size of the bodies."""
+        corners = np.array([(0., 0., 0.), (1.1, 0., 0.), (1.5, .7, .2), (1.2, .9, .8)])
+        deck = ("SOL 103\nCEND\nSPC = 1\nBEGIN BULK\nPARAM,COUPMASS,1\nMAT1,1,7.+10,2.7+10,,2700.\n"
+                "PBAR,1,1,4.-5,3.-10,9.-10,5.-10\nSPC1,1,123456,1\nGRID,1,,0.,0.,0.\n")
+        for s, v in enumerate(("0.,1.,0.", "0.,0.,1.", "1.,0.,0.")):
+            for k in range(1, 5):
+                x, g = corners[s] + (corners[s + 1] - corners[s]) * k / 4, 4 * s + k
+                deck += f"GRID,{g + 1},,{x[0]:.5f},{x[1]:.5f},{x[2]:.5f}\nCBAR,{g},1,{g},{g + 1},{v}\n"
+        self.write("frame.bdf", deck + "ENDDATA\n")
+        self.write("frame.toml", '[body]\nname = "b"\ndeck = "frame.bdf"\nframe = "node"\nframe_nodes = [1]\n'
+                   'interface = [1, 9, 13]\n[body.modes]\nnumber = 6\nresidual = ["interface"]\n[body.stiffening]\norder = 3\nlarge = 6\n')
+        self.bough("reduce", "frame.toml", "-o", "frame.h5", "-q")
+        self.write("s.toml", toml(
+            table("body", "b", file="frame.h5"), table("hinge", "h", "fixed", child="b", child_node=1),
+            table("force", "f", body="b", node=9, force=[-1.5, 2.4, .6], frame="inertial"),
+            table("force", "g", body="b", node=13, force=[.9, -1.2, 3.6], frame="inertial"),
+            section("simulation", duration=1.0, gravity=[0.0, 0.0, 0.0])))
+        output = self.fails(3, "equilibrium", "s.toml", says=["on the way downhill b:eta", "bough split"],
+                          error="equilibrium.not-converged").stderr
+        self.assertNotIn("iterations", output)
+
     def test_a_body_spins_about_a_mass_centre_beside_its_origin(self):
         """Its nutation is that of a free rigid body, ω √((C - A)(C - B) / (A B))."""
         self.write("sat.toml", toml(

@@ -78,7 +78,7 @@ class LostLoads(ProgramTest):
             self.fails(1, "static", "r.bdf", says=["ENDDATA", "r.bdf:21"])
         self.write("r.bdf", head + "ENDDATA\n")
         text = self.bough("static", "r.bdf").stderr
-        self.assertIn("the deck asks for ESE", text)
+        self.assertIn("the deck requests ESE", text)
         self.assertIn("--grid-forces all", text)
         self.assertNotIn("nothing to do", text)
 

@@ -164,6 +164,49 @@ class NonlinearPreload(ProgramTest):
         print(f"sag {depth / span:.4f}, lambda² {squared:.2f}: {np.round(ratio[:6], 4)} exact {np.round(exact, 4)}")
         np.testing.assert_allclose(np.sort(ratio)[:6], exact, rtol=4e-3)
 
+    def write_column(self, load, held):
+        """Cantilever of 1.7 m under `load` times its buckling load, and its body file with the preload in line 6."""
+        A, I, length, num = 4e-4, 6e-9, 1.7, 12
+        force = load * np.pi**2 * E * I / (4 * length**2)
+        text = "SOL 106\nCEND\nSPC = 1\nLOAD = 5\nBEGIN BULK\nPARAM,LGDISP,1\n"
+        text += f"MAT1,1,{E!r},,.3,{RHO!r}\nPBAR,1,1,{A!r},{I!r},3.-8,5.-9\nSPC1,1,{held},1\n"
+        for i in range(num + 1):
+            text += write_card("GRID", i + 1, "", length * i / num, 0., 0.)
+        for i in range(num):
+            text += write_card("CBAR", i + 1, 1, i + 1, i + 2, 0., 1., 0.)
+        self.write("deck.bdf", text + write_card("FORCE", 5, num + 1, 0, 1., -force, 0., 0.) + "ENDDATA\n")
+        self.write("b.toml", '[body]\nname = "b"\ndeck = "deck.bdf"\n[body.modes]\nnumber = 4\n[body.preload]\n'
+                   "load_set = 5\nnonlinear = true\n")
+
+    def test_load_above_the_buckling_load(self):
+        """The advice is that of a body file, at the line of its preload; Euler's load is the share that is reached."""
+        for load in (1.01, 1.3):
+            self.write_column(load, 123456)
+            output = self.fails(3, "reduce", "b.toml", "-o", "x.h5", error="fe.no-equilibrium",
+                              says=["b.toml:6: error: no stable static equilibrium", "lower the load of the preload"]).stderr
+            for option in ("--arc-length", "--increments"):
+                self.assertNotIn(option, output)
+            self.assertAlmostEqual(float(output.split("beyond ")[1].split()[0]) * load, 100, delta=.5)
+        self.assertIn("--arc-length", self.fails(3, "static", "deck.bdf", error="fe.no-equilibrium").stderr)
+
+    def test_mechanism(self):
+        """The message of a mechanism is that of statics."""
+        self.write_column(.5, 123)
+        output = []
+        for arguments in (("static", "deck.bdf"), ("reduce", "b.toml", "-o", "x.h5")):
+            text = self.fails(1, *arguments, error="fe.mechanism", says=["mechanism 1 of 3"]).stderr
+            output.append([line.split("error: ")[1] for line in text.splitlines() if "error: " in line])
+        self.assertEqual(output[0], output[1])
+
+    def test_tension_holds_a_mechanism(self):
+        """A pinned boom that the preload pulls swings as a rod: ω² = 3 F/(ρ A L²), bending left out."""
+        self.write_column(-.05, 1234)
+        self.bough("reduce", "b.toml", "-o", "x.h5", "-q")
+        with h5py.File(self.path("x.h5")) as f:
+            hz = f["modes/frequency_hz"][:2]
+        force = .05 * np.pi**2 * E * 6e-9 / (4 * 1.7**2)
+        np.testing.assert_allclose(hz, np.sqrt(3 * force / (RHO * 4e-4 * 1.7**2)) / (2 * np.pi), rtol=.01)
+
     def test_what_it_cannot_do_is_named(self):
         deck, tip = self.make_frame(8, (1., 0., 0.))
         for preload, frame, says in (("spin = [0.0, 0.0, 1.0]\nnonlinear = true", "fixed", "spin"),

@@ -113,8 +113,11 @@ class Nonlinear(ProgramTest):
         self.assertNotIn("dead-load", self.bough("static", "p.bdf").stderr)  # it follows its face
 
     def test_ties_that_turn(self):
-        self.write("a.bdf", DECK.replace("ENDDATA", "GRID,31,,1.,0.,.1\nRBE3,9,,31,123,1.,123456,20,21\nENDDATA"))
-        self.assertIn("[fe.nonlinear-link]", self.bough("static", "a.bdf").stderr)
+        """Whole grids follow the mean of others exactly; single components are linear equations."""
+        for rbe3, is_linear in (("31,123,1.,123456,20,21", False), ("31,123456,1.,123456,20,21", False),
+                                ("31,1234,1.,123456,20,21", True), ("31,123,1.,12345,20,21", True)):
+            self.write("a.bdf", DECK.replace("ENDDATA", f"GRID,31,,1.,0.,.1\nRBE3,9,,{rbe3}\nENDDATA"))
+            self.assertEqual("[fe.nonlinear-link]" in self.bough("static", "a.bdf").stderr, is_linear, rbe3)
 
 
 if __name__ == "__main__":

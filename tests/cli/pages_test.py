@@ -238,7 +238,7 @@ PAGES = {
         left_out=("--refinement", "--test", "--sensors")),  # compare_test.py: three meshes; correlation_test.py
     **{f"data/examples/{name}/README.md": example(name) for name in (
         "ex02-hub", "ex03-two-link", "ex07-four-bar", "ex08-satellite", "ex09-stage-separation", "ex10-robot-arm",
-        "ex11-rotor-blade", "ex12-launcher", "ex13-observatory", "ex14-rotor", "ex15-bicycle")},
+        "ex11-rotor-blade", "ex12-launcher", "ex13-observatory", "ex14-rotor", "ex15-bicycle", "ex16-random", "ex17-component")},
 }
 for page_name, page_needs in PAGES.items():
     add_page(page_name, page_needs)

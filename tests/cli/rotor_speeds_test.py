@@ -64,6 +64,29 @@ class RotorSpeeds(ProgramTest):
             for phrase in phrases:
                 self.assertIn(phrase, text)
 
+    def test_stiff_shapes(self):
+        """A disc amid a stiff massless shaft on soft bearings, by modes and by the full matrices: its tilt and translations
+        have closed forms. Infinite eigenvalues and round-off in stiff shapes stopped the solution at some speeds."""
+        k, mass, across, polar, arm = 1974.0, 0.15, 2500.0, 1250.0, 500.0
+        ground = [line for g, x in ((201, -arm), (211, arm)) for line in (
+            f"GRID,{g},,0.,0.,{x}", *(f"CELAS2,{g + 20 * c},{k},{g},{c}" for c in (1, 2)),
+            *(f"CDAMP2,{g + 20 * c + 50},1.-6,{g},{c}" for c in (1, 2)), f"SPC1,1,36,{g - 200}",
+            f"RBE2,{g + 50},{g - 200},12,{g}")]
+        bulk = ["ROTORG,11,1,6,11", "ROTORD,99,0.,200.,118,FIX,-1.,,CPS", ",NO,1.-5,2", ",,11,,1,0.,0.",
+                "CORD2R,1,,0.,0.,0.,0.,0.,1.", ",1.,0.,0.", "EIGRL,1,,,2", "EIGC,2,LAN,,,,,4",
+                "PBAR,9,9,7853.98,4.909+6,4.909+6,9.817+6", "MAT1,9,2.+9,,.3", "GRID,1,,0.,0.,-500.", "GRID,6,,0.,0.,0.",
+                "GRID,11,,0.,0.,500.", "CBAR,1,9,1,6,1.,0.,0.", "CBAR,2,9,6,11,1.,0.,0.", f"CONM2,60,6,,{mass}",
+                f",{across},,{across},,,{polar}", *ground]
+        rigid, tilt = math.sqrt(2 * k / mass), 2 * k * arm**2
+        forward = math.sqrt(tilt / (across - polar))
+        backward = math.sqrt(tilt / (across + polar))
+        for sol in (110, 107):
+            self.write("d.bdf", "\n".join([f"SOL {sol}", "CEND", "SPC=1", "METHOD=1", "CMETHOD=2", "RMETHOD=99",
+                                           "BEGIN BULK", *bulk, "ENDDATA"]))
+            result = json.loads(self.bough("modes", "d.bdf", "--json").stdout)["rotors"]
+            speeds = sorted(p["speed"] for p in result["critical_speeds"])
+            np.testing.assert_allclose(speeds, sorted([rigid, rigid, backward, forward]), rtol=2e-5, err_msg=str(sol))
+
     def test_overdamped(self):
         """Synchronous, M λ² + (c_e + 2 c_i) λ + k = 0 backward: a critical speed below ζ = 1/√2 alone; no count of instability."""
         for ratio, number in ((0.6, 2), (0.8, 1)):

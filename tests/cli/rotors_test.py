@@ -382,11 +382,10 @@ class Rotors(ProgramTest):
                 else:
                     self.poles(deck)
         for bulk, error, *says in (
-                ("ROTORD,9,0.,1.,2", "deck.missing-field", "FIX"),
-                ("ROTORD,9,0.,1.,2,ROT", "deck.field-range", "FIX"),
+                ("ROTORD,9,0.,1.,2", "deck.missing-field", "RSET"),
+                ("ROTORD,9,0.,1.,2,ROT\n,\n,1,7\n,2,7", "deck.field-range", "several rotors"),
                 ("ROTORD,9,0.,1.,2,FIX", "deck.missing-field", "RSET"),
                 ("ROTORD,9,0.,1.,2,FIX\n,\n,1,8,,4", "modal.missing-rotor", "RSET 8"),
-                ("ROTORD,9,0.,1.,2,FIX\n,\n,1,7,,,,,3", "deck.field-range", "RFORCE"),
                 ("ROTORD,9,0.,1.,2,FIX\n,\n,1,7", "modal.rotor-line", "from the axis"),
                 ("ROTORD,8,0.,1.,2,FIX\n,\n,1,7", "modal.missing-rotor", "RMETHOD = 9")):
             self.fails_with(make([bulk], "RMETHOD = 9"), error, *says)

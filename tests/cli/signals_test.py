@@ -180,7 +180,7 @@ class DoubleGimbal(ProgramTest):
         with h5py.File(self.path("flyer.h5")) as f:
             momentum = f["/momentum/angular"][:]
             self.assertLess(np.abs(momentum - momentum[0]).max(), 1e-7)
-            np.testing.assert_allclose(f["/actuators/gimbals"][0, 2:], np.radians([10.0, -20.0]), atol=1e-12)
+            np.testing.assert_allclose(f["/actuators/gimbals"][0, 2:4], np.radians([10.0, -20.0]), atol=1e-12)
 
 
 class Functions(ProgramTest):

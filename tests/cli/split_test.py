@@ -80,9 +80,9 @@ class Split(ProgramTest):
         self.assertAlmostEqual(answer["parts_mass"] / answer["mass"], 1, delta=1e-12)
         self.assertAlmostEqual(sum(part["mass"] for part in answer["parts"]) / answer["mass"], 1, delta=1e-12)
 
-    def test_boom_in_one_four_and_eight_parts(self):
+    def test_boom_in_two_four_and_eight_parts(self):
         """First frequencies by the closed form of a clamped beam, too."""
-        for parts in (1, 4, 8):
+        for parts in (2, 4, 8):
             answer, messages = self.split(make_boom(), "--parts", parts)
             self.assertEqual(len(answer["parts"]), parts)
             self.assertEqual([p["elements"] for p in answer["parts"]], parts * [40 // parts])
@@ -92,6 +92,29 @@ class Split(ProgramTest):
             exact = 1.875104069 ** 2 / (2 * np.pi) * np.sqrt(7e10 * 1e-8 / (mass * 8. ** 4))
             self.assertAlmostEqual(answer["frequencies"][0]["parts_hz"] / exact, 1, delta=1e-4)
             self.assertAlmostEqual(answer["mass"] / (8 * mass), 1, delta=1e-12)
+            for name in os.listdir(self.folder):
+                os.remove(self.path(name))
+
+    def test_static_deflection(self):
+        """The end under a small weight, at rest, of the parts and of the whole deck."""
+        gravity = np.array([0., -6e-3, -8e-3])
+        for deck, tip in ((make_boom(), 41), (make_l_frame(), 25)):
+            self.split(deck, "--parts", 4)
+            system = self.read("deck-run.toml").replace("[0.0, 0.0, -9.81]", str(gravity.tolist()))
+            system += f'\n[[sensor]]\nname = "tip"\ntype = "position"\nbody = "deck-4"\nnode = {tip}\n'
+            self.write("rest.toml", system)
+            self.bough("equilibrium", "rest.toml", "-o", "rest.h5", "-q")
+            card = "GRAV,9,,1.," + ",".join(map(repr, gravity.tolist())) + "\nENDDATA\n"
+            self.write("whole.bdf", deck.replace("SOL 103", "SOL 101").replace("SPC = 1\n", "SPC = 1\nLOAD = 9\n")
+                       .replace("ENDDATA\n", card))
+            self.bough("static", "whole.bdf", "-o", "whole.h5", "-q")
+            with h5py.File(self.path("rest.h5")) as f, h5py.File(self.path("whole.h5")) as g:
+                at = (g["dof_map"][:, 0] == tip) & (g["dof_map"][:, 1] <= 3)
+                u, place = g["subcases/0/displacement"][:][at], f["sensors/tip"][0]
+            x = next(line.split(",")[3:6] for line in deck.splitlines() if line.startswith(f"GRID,{tip},"))
+            off = np.linalg.norm(place - np.array(x, float) - u) / np.linalg.norm(u)
+            print(f"way {np.linalg.norm(u):.1e} m, of parts off by {off:.1e}")
+            self.assertLess(off, 1e-4)
             for name in os.listdir(self.folder):
                 os.remove(self.path(name))
 
@@ -236,6 +259,7 @@ class Split(ProgramTest):
         answer, messages = self.split(make_plate(), "--parts", 3, number=5)
         self.assertEqual(len(answer["parts"]), 3)
         self.assertIn("[split.inaccurate]", messages)
+        self.assertIn("by a rigid element (RBE2); cut where the section is stiff, or try --interface average", messages)
         rigid = make_plate(more="SPC1,1,123456,1,14,27,40\n" + "".join(
             f"GRID,{100 + c},,{.1 * c:.6g},.15,0.\nRBE2,{900 + c},{100 + c},123456,{c + 1},{c + 14},{c + 27},{c + 40}\n"
             for c in (4, 8)))
@@ -250,6 +274,7 @@ class Split(ProgramTest):
         """RBE3 leave the sections free to bend: the parts are softer than the deck."""
         answer, messages = self.split(make_plate(), "--parts", 3, "--interface", "average", number=5)
         self.assertIn("[split.inaccurate]", messages)
+        self.assertIn("by their mean motion (RBE3); cut where the section is stiff, or try --interface rigid", messages)
         self.assertEqual(self.read("deck-2.bdf").count("RBE3"), 2)
         hz = np.array([[f["deck_hz"], f["parts_hz"]] for f in answer["frequencies"]])
         self.assertTrue((hz[:, 1] < hz[:, 0]).all(), hz)
@@ -321,10 +346,40 @@ class Split(ProgramTest):
                (("--elements", "1-8"), "split.nothing-separated", "one part"),
                (("--elements", "1-3", "--elements", "3-5"), "split.element-in-two-parts", "deck.bdf:"),
                (("--elements", "90"), "split.unknown-element", "90"), (("--elements", "a"), "split.bad-choice", "--elements"),
+               (("--parts", "1"), "split.bad-choice", "cuts nothing"),
                (("--parts", "9"), "split.too-many-parts", "--parts 8")]
         for arguments, error, words in bad:
             self.fails(1, "split", "deck.bdf", *arguments, error=error, says=[words])
         self.assertEqual(os.listdir(self.folder), ["deck.bdf"])
+
+    def make_tripod(self, more):
+        """Three legs of six bars from the ground; RBE3 90 joins their ends 7, 17, 27 to grid 80."""
+        ends = np.array([[(0., 0., 0.), (.4, .1, 1.)], [(1., 0., 0.), (.6, .1, 1.)], [(.5, .8, 0.), (.5, .3, 1.)]])
+        legs = "".join(make_line([a + (b - a) * i / 6 for i in range(7)], 10 * leg + 1) for leg, (a, b) in enumerate(ends))
+        return make_deck(legs + "GRID,80,,.5,.2,1.1\nCONM2,81,80,,.3\n" + more + "RBE3,90,,80,123456,1.,123,7,17,\n,27\n",
+                         more="SPC1,1,123456,1,11,21\n")
+
+    def test_pieces_that_an_rbe3_alone_joins(self):
+        """A mean motion carries one piece: legs cut from the ground are loose under it, a mast on it is not."""
+        deck = self.make_tripod("")
+        self.write("deck.bdf", deck)
+        for arguments in (("--parts", 3), ("--grids", "4,14,24"), ("--grids", 4)):
+            output = self.fails(1, "split", "deck.bdf", *arguments, error="split.rbe3-pieces",
+                              says=["deck.bdf:", "RBE3 90 alone joins the pieces", "at grids 7, 17, 27"]).stderr
+            self.assertNotIn("mechanism", output)
+        # Legs at the ground are one piece: the part holds its RBE3. So are two pieces with the reference grid at one.
+        mast = make_line([(.5, .2, 1.1 + .2 * i) for i in range(6)], 80).replace("GRID,80,,0.5,0.2,1.1\n", "")
+        answer, _ = self.split(self.make_tripod(mast.replace("CBAR,81,", "CBAR,181,")), "--grids", 82, number=6)
+        self.assertEqual([p["elements"] for p in answer["parts"]], [20 + 1, 3])
+        self.compare(answer, 6)
+
+    def test_part_within_its_cut(self):
+        """A stiffener along the edge of a skin: each of its grids is in the cut, which a rigid element joins."""
+        bars = "PBAR,2,1,1.-4,2.-8,1.-8,2.-8\n" + "".join(f"CBAR,{900 + i},2,{i},{i + 1},0.,0.,1.\n" for i in range(1, 13))
+        self.write("deck.bdf", make_plate(more="SPC1,1,123456,14,27,40\n" + bars))
+        output = self.fails(1, "split", "deck.bdf", "--elements", "property:2", error="split.part-on-cut",
+                          says=["deck.bdf:", "CBAR 901 and 11 more elements", "13 grids"]).stderr
+        self.assertEqual(output.count("error:"), 1)
 
     def test_bad_decks_are_named(self):
         boom = make_boom(n=8)

@@ -171,7 +171,15 @@ class Places(Edits):
         np.testing.assert_allclose(self.get_place("hand"), [math.cos(0.6), math.sin(0.6), 0], atol=1e-6)
 
 
-class Curves(Edits):
+class CurveTest(Edits):
+    def settle(self):
+        """The curve is that of the text."""
+        self.wait("studio.view.diagrams.drawn === studio.view.pane.text && [...studio.view.diagrams.editors.values()].every((e) => e.pending === 0 && e.chart.frame)")
+        self.wait_for_check()
+        self.browser.show(".curve-editor canvas.overlay")
+
+
+class Curves(CurveTest):
     def open_curves(self, text=CURVES):
         page = self.show("curves.toml", text)
         self.wait_for_check()  # the page moves when the messages come
@@ -184,12 +192,6 @@ class Curves(Edits):
     def get_points(self):
         function = tomllib.loads(self.get_text())["function"][0]
         return list(zip(function["x"], function["y"]))
-
-    def settle(self):
-        """The curve is that of the text."""
-        self.wait("studio.view.diagrams.drawn === studio.view.pane.text && [...studio.view.diagrams.editors.values()].every((e) => e.pending === 0 && e.chart.frame)")
-        self.wait_for_check()
-        self.browser.show(".curve-editor canvas.overlay")
 
     def get_pixel(self):
         return self.browser.run("(({ range: r, frame: f }) => [(r.x1 - r.x0) / f.width, (r.y1 - r.y0) / f.height])(studio.view.diagrams.editors.get('thrust').chart)")

@@ -51,7 +51,7 @@ class ThirdOrderModes(ProgramTest):
                    f"[body.modes]\nnumber = {modes}\n{more}[body.stiffening]\n{keys}\n")
         self.bough("reduce", "mast.toml", "-o", "mast.h5", "-q")
         with h5py.File(self.path("mast.h5")) as f:
-            large = list(f["third_order/large"][:]) if "third_order" in f else []
+            large = list(f["third_order/large"][:]) if "third_order/large" in f else []
             return f["modes/frequency_hz"][:], large
 
     def write_system(self, force=None, eta=None):
@@ -127,8 +127,8 @@ class ThirdOrderModes(ProgramTest):
             print(f"frame {frame}, {modes} modes: off by {100 * off:.3f} % of {np.linalg.norm(exact) / LENGTH:.3f} lengths")
             self.assertLess(off, 1e-3)
         self.assertNotIn("held-frame", self.bough("reduce", "mast.toml", "-o", "mast.h5").stderr)
-        self.make_rod("node", 6, "interface", 3)
-        self.assertRegex(self.bough("reduce", "mast.toml", "-o", "mast.h5").stderr, r"interface node 1 at its frame.*\[reduce.held-frame\]")
+        self.make_rod("node", 6, "interface", "3\nlarge = 3")
+        self.assertRegex(self.bough("reduce", "mast.toml", "-o", "mast.h5").stderr, r"mast.toml:\d+: warning: .*\[reduce.held-frame\]")
 
     def test_bending_residuals_follow_before_twist(self):
         """A moment that bends and twists; the twist is more compliant than residual vectors of bending, which follow. 14 and 40 %
@@ -182,6 +182,41 @@ class ThirdOrderModes(ProgramTest):
                 off = np.linalg.norm(f["sensors/end"][-1] - exact) / np.linalg.norm(exact)
             print(f"L-frame, {modes} modes and residual vectors: off by {100 * off:.3f} % of {np.linalg.norm(exact):.3f} m")
             self.assertLess(off, 2e-3)
+
+    def test_chain_held_away_from_its_frame(self):
+        """Three legs in space whose frame is not where a hinge clamps them: free modes and residual vectors together make
+        the deflection. 13 % off before at 0.03 sizes with 20 modes, 400 % with the frame at the hinge."""
+        corners, num = np.array([(0, 0, 0), (1.1, 0, 0), (1.5, .7, .2), (1.2, .9, .8)], float), 6
+        X = np.concatenate([corners[:1]] + [a + (b - a) * np.arange(1, num + 1)[:, None] / num
+                                            for a, b in zip(corners[:-1], corners[1:])])
+        tip, y = len(X), np.array([.1, 0., 1.])
+        bulk = ["PARAM,COUPMASS,1", f"MAT1,1,{E!r},{G!r},,{RHO!r}", "PBAR,1,1,4.-5,2.-10,6.-10,1.-9"]
+        bulk += [f"GRID,{i + 1},,{a!r},{b!r},{c!r}" for i, (a, b, c) in enumerate(X.tolist())]
+        bulk += [f"CBAR,{i + 1},1,{i + 1},{i + 2}," + ",".join(map(str, y)) for i in range(3 * num)]
+        self.write("mast.bdf", "\n".join(["SOL 103", "CEND", "BEGIN BULK", *bulk, "ENDDATA"]))
+        for load, key in (("FORCE", "force"), ("MOMENT", "moment")):
+            value = [.12, -.16, .48] if key == "force" else [.1, -.2, .3]
+            self.write("whole.bdf", "\n".join(["SOL 106", "CEND", "SPC = 1", "LOAD = 1", "BEGIN BULK", "PARAM,LGDISP,1", *bulk,
+                                               "SPC1,1,123456,1", f"{load},1,{tip},,1.,{value[0]},{value[1]},{value[2]}", "ENDDATA"]))
+            self.bough("static", "whole.bdf", "-o", "whole.h5", "-q")
+            with h5py.File(self.path("whole.h5")) as f:
+                exact = f["/subcases/0/displacement"][6 * (tip - 1):6 * (tip - 1) + 3]
+            for frame, modes, limit in (("node\"\nframe_nodes = [7]", 6, .01), ("node\"\nframe_nodes = [7]", 20, 5e-3),
+                                        ("node\"\nframe_nodes = [1]", 20, 1e-4), ("mean\"", 20, 1e-4)):
+                self.write("mast.toml", f'[body]\nname = "mast"\ndeck = "mast.bdf"\nframe = "{frame}\ninterface = [1, {tip}]\n'
+                           f'[body.modes]\nnumber = {modes}\nresidual = ["interface"]\n[body.stiffening]\norder = 3\n')
+                self.bough("reduce", "mast.toml", "-o", "mast.h5", "-q")
+                self.write("rod.toml", '[[body]]\nname = "mast"\nfile = "mast.h5"\n[[hinge]]\nname = "foot"\ntype = "fixed"\n'
+                           f'child = "mast"\nchild_node = 1\n[[force]]\nname = "pull"\nbody = "mast"\nnode = {tip}\n{key} = {value}\n'
+                           f'frame = "inertial"\n[[sensor]]\nname = "end"\ntype = "position"\nbody = "mast"\nnode = {tip}\n'
+                           "[simulation]\nduration = 1.0\n")
+                off = np.linalg.norm(self.read_rest("rod.toml", "end") - corners[-1] - exact) / np.linalg.norm(exact)
+                name = frame.replace('"\n', ", ").rstrip('"')
+                print(f"{key}, frame {name}, {modes} modes: off by {100 * off:.4f} % of {np.linalg.norm(exact) / 1.9:.3f} sizes")
+                self.assertLess(off, limit)
+        self.bough("export", "mast.h5", "--to", "flat", "-o", "mast.flat", "-q")
+        energies = self.bough("compare", "mast.h5", "mast.flat").stdout.split("strain energy of third order")[1]
+        self.assertEqual(re.findall(r"degree \d .* (\S+)", energies), 4 * ["0.00e+00"])
 
     def test_plate_with_residual_vectors(self):
         """A cantilever plate of shells, residual vectors at a corner up to 2e5 times as stiff as its first mode, against
@@ -256,7 +291,7 @@ class ThirdOrderModes(ProgramTest):
         frequency, large = self.make(4, more='residual = ["interface"]\n')
         off["residual"] = np.linalg.norm(self.find_rest() - exact) / np.linalg.norm(exact)
         print(f"4 modes and residual vectors to {frequency[-1]:.0f} Hz, large {large}: {100 * off['residual']:.3f} %")
-        self.assertEqual(large, [1, 2, 3, 4])
+        self.assertEqual(large, [])
         self.make(8, "order = 2")
         print(f"order 2: {100 * np.linalg.norm(self.find_rest() - exact) / np.linalg.norm(exact):.2f} %")
         self.assertLess(max(off.values()), 1e-3)

@@ -20,7 +20,7 @@ struct Diagonal {
 
   RootSearch make_search(int wanted) {
     RootSearch search;
-    search.wanted = wanted;
+    search.requested = wanted;
     search.num_available = static_cast<int>(all.size());
     search.solve = [this](Roots& roots, int number) {
       ++num_solves;

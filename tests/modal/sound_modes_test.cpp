@@ -157,7 +157,7 @@ struct FakeRoots {
 
   modal::detail::RootSearchResult run(int wanted, modal::detail::Roots& roots) const {
     modal::detail::RootSearch search;
-    search.wanted = wanted;
+    search.requested = wanted;
     search.num_available = size;
     search.solve = [this](modal::detail::Roots& known, int number) {
       const int more = std::min({number, found_at_once, size - known.size()});

@@ -175,6 +175,16 @@ class Parts(unittest.TestCase):
         done = compute()
         self.assertEqual(done.returncode, 0, done.stderr)
 
+    def test_programs_do_not_contain_the_folder_of_the_sources(self):
+        """Else builds in different folders differ (docs/developer/release.md)."""
+        made = [PROGRAM, *(os.path.join(BUILD, "lib", name) for name in ("libbough.so", "bough_fmu.so"))]
+        module = os.path.join(BUILD, "python/bough")
+        made += [os.path.join(module, name) for name in os.listdir(module) if name.endswith(".so")]
+        for path in filter(os.path.exists, made):
+            run("objcopy", "-O", "binary", "--only-section=.rodata", path, self.path("constants"))
+            with open(self.path("constants"), "rb") as f:
+                self.assertNotIn(SOURCE.encode() + b"/", f.read(), path)
+
     @unittest.skipUnless('VERSION_ID="12"' in open("/etc/os-release").read(), "releases are made on Debian 12")
     @needs_patchelf
     def test_check_of_this_build(self):

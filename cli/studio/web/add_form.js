@@ -14,7 +14,7 @@ const kCommon = {
   simulation: ["duration", "output_step", "gravity"],
 };
 // Examples of values that no type alone tells.
-const kExamples = { "body.inertia": "[Ixx, Iyy, Izz] about cg", "body.cg": "[x, y, z]" };
+const kExamples = { "body.inertia": "[Ixx, Iyy, Izz] about cg" };
 const kAxes = { x: "[1.0, 0.0, 0.0]", y: "[0.0, 1.0, 0.0]", z: "[0.0, 0.0, 1.0]" };
 
 /**
@@ -31,6 +31,21 @@ const to_shown = (text) => /^"([^"\\]*)"$|^'([^']*)'$/.exec(text)?.slice(1).find
 // A value with blanks outside brackets and quotes is one word of a command in quotes.
 const to_word = (value) => (/^["'[{]/.test(value) || !/\s/.test(value) ? value : `"${value.replaceAll('"', "")}"`);
 
+/** Types of the table that a key belongs to: its description begins with them, "step, pulse: the time …". @param {Key} key @param {string[]} types */
+const list_types = (key, types) => {
+  const words = /^([\w, ]+):/.exec(key.description)?.[1].split(", ") ?? [];
+  return words.every((word) => types.includes(word)) ? words : [];
+};
+
+/** What a key means; a key in degrees has the description of the one in radians. @param {Kind} kind @param {Key} key */
+const describe_key = (kind, key) => {
+  const other = key.name.endsWith("_deg") ? kind.keys.find((k) => `${k.name}_deg` === key.name) : undefined;
+  return key.description || (other ? `${other.description} Here in degrees.` : "");
+};
+
+/** What an empty field shows. @param {Kind} kind @param {Key} key */
+const get_example = (kind, key) => kExamples[`${kind.kind}.${key.name}`] ?? (key.default && key.default !== "[0,0,0]" ? key.default : key.type === "array of 3" ? "[x, y, z]" : key.default || key.type);
+
 export function make_add_form(studio, view) {
   const host = el("div", { class: "fields" });
   const tables = el("select", { "aria-label": "table of the form" });
@@ -44,8 +59,11 @@ export function make_add_form(studio, view) {
   let item = null;
   /** @type {Map<string, string>} what its fields showed first */
   let before = new Map();
+  let given_name = "";  // of a new table, by the form
   let was_added = false, shown_text = "", next = "";
   let is_end_chosen = false;
+  /** Keys that are shown because of the type. @type {Set<string>} */
+  const of_type = new Set();
   let end = "parent";  // which end of a hinge a click in the scene fills in
   const list_names = (kind) => items.filter((i) => i.kind === kind && i.name).map((i) => i.name);
   const get_value = (name) => fields.get(name)?.value ?? "";
@@ -58,14 +76,58 @@ export function make_add_form(studio, view) {
   };
   /** @param {Kind} kind @param {Key} key @param {string} value */
   const add_field = (kind, key, value = "") => {
-    const choices = get_choices(kind, key), title = key.description, name = key.name;
+    const choices = get_choices(kind, key), title = describe_key(kind, key), name = key.name;
     const field = /** @type {HTMLInputElement | HTMLSelectElement} */ (choices.length > 0
       ? el("select", { name, title, required: key.required }, el("option", { value: "" }, key.required ? "choose …" : key.default ? `default: ${key.default}` : "none"), ...[...new Set([...choices, ...(value ? [value] : [])])].map((c) => el("option", { value: c }, c)))
-      : el("input", { type: "text", name, placeholder: kExamples[`${kind.kind}.${name}`] ?? (key.default || key.type), title, required: key.required }));
+      : el("input", { type: "text", name, placeholder: get_example(kind, key), title, required: key.required }));
     field.value = value;
     fields.set(name, field);
     const along = name.startsWith("axis") ? [el("span", { class: "along" }, ...Object.entries(kAxes).map(([axis, text]) => make_button(axis, `Along ${axis}`, () => (field.value = text))))] : [];
-    host.append(el("label", {}, name + " ", field), ...along);
+    more.before(el("label", {}, name + " ", field), ...along);
+    if (name === "type") field.addEventListener("change", () => follow_type(kind));
+    if (kind.kind === "body" && name === "file") field.addEventListener("change", () => name_by_file(field.value));
+  };
+  // The list of further keys. A letter or an arrow key chooses in the closed list before the key is the wanted one: then
+  // Enter takes it, or leaving the list.
+  const more = el("select", { "aria-label": "another key", title: "A further key of the table; Enter takes it" });
+  let is_by_key = false;
+  const list_rest = (kind) => {
+    const rest = kind.keys.filter((k) => !fields.has(k.name));
+    more.replaceChildren(el("option", { value: "" }, "another key …"), ...rest.map((k) => el("option", { value: k.name, title: describe_key(kind, k) }, k.name)));
+    more.hidden = rest.length === 0;
+  };
+  const take_key = (is_left = false) => {
+    const kind = get_kind(), key = kind?.keys.find((k) => k.name === more.value);
+    if (!kind || !key) return;
+    add_field(kind, key);
+    list_rest(kind);
+    is_by_key = false;
+    if (!is_left) fields.get(key.name)?.focus();
+  };
+  more.addEventListener("pointerdown", () => (is_by_key = false));
+  more.addEventListener("keydown", (event) => {
+    is_by_key = ![" ", "F4"].includes(event.key) && !event.altKey;  // these open the list
+    if (event.key !== "Enter" || !more.value) return;
+    event.preventDefault();
+    take_key();
+  });
+  more.addEventListener("change", () => !is_by_key && take_key());
+  more.addEventListener("blur", () => is_by_key && take_key(true));
+  /** Fields of the keys of the type that is chosen; those of the type before go if they are empty. @param {Kind} kind */
+  const follow_type = (kind) => {
+    const type = get_value("type"), types = kind.keys.find((k) => k.name === "type")?.choices ?? [];
+    const wanted = type ? kind.keys.filter((k) => list_types(k, types).includes(type)) : [];
+    for (const name of of_type) {
+      if (wanted.some((k) => k.name === name) || get_value(name) !== "") continue;
+      fields.get(name)?.closest("label")?.remove();
+      fields.delete(name);
+      of_type.delete(name);
+    }
+    for (const key of wanted.filter((k) => !fields.has(k.name))) {
+      add_field(kind, key);
+      of_type.add(key.name);
+    }
+    list_rest(kind);
   };
   // A new hinge holds the first body that no hinge has as its child: on the parent of the last hinge, else on the first
   // other body, or the ground.
@@ -77,7 +139,7 @@ export function make_add_form(studio, view) {
   };
   // Names that were added after the form was shown.
   const refresh_choices = () => {
-    const kind = all.find((k) => k.kind === (item ? item.kind : tables.selectedOptions[0]?.dataset.kind));
+    const kind = get_kind();
     for (const [name, field] of fields) {
       const key = kind?.keys.find((k) => k.name === name);
       if (!kind || !key || field.tagName !== "SELECT") continue;
@@ -85,10 +147,19 @@ export function make_add_form(studio, view) {
       field.append(...get_choices(kind, key).filter((c) => !there.has(c)).map((c) => el("option", { value: c }, c)));
     }
   };
+  /** The kind of the table in the form. */
+  const get_kind = () => all.find((k) => k.kind === (item ? item.kind : tables.selectedOptions[0]?.dataset.kind));
   const make_name = (kind) => {
     let k = 1;
     while (items.some((i) => i.name === kind + k)) ++k;
     return kind + k;
+  };
+  /** A new body that nobody has named yet gets the name of its file. @param {string} file */
+  const name_by_file = (file) => {
+    const field = fields.get("name"), stem = file.replace(/^.*\//, "").replace(/\.[^.]*$/, "");
+    if (item || !field || !stem || field.value !== given_name) return;
+    given_name = items.some((i) => i.kind === "body" && i.name === stem) ? make_name(stem) : stem;
+    field.value = given_name;
   };
   const list_shown = (kind, values) => {
     const first = kCommon[kind.kind] ?? ["name"], order = (k) => (first.includes(k.name) ? first.indexOf(k.name) : 99);
@@ -96,26 +167,15 @@ export function make_add_form(studio, view) {
   };
   /** @param {Kind} kind @param {Map<string, string>} values */
   const show_fields = (kind, values) => {
-    host.replaceChildren();
+    host.replaceChildren(more);
     fields.clear();
+    of_type.clear();
     before = values;
-    const shown = list_shown(kind, values);
-    for (const key of shown) add_field(kind, key, values.get(key.name));
-    const rest = kind.keys.filter((k) => !shown.includes(k));
-    if (rest.length > 0) {
-      const more = el("select", { "aria-label": "another key" }, el("option", { value: "" }, "another key …"), ...rest.map((k) => el("option", { value: k.name }, k.name)));
-      more.addEventListener("change", () => {
-        const name = more.value;
-        add_field(kind, /** @type {Key} */ (rest.find((k) => k.name === name)));
-        more.selectedOptions[0].remove();
-        more.value = "";
-        host.append(more);  // below the new field
-        fields.get(name)?.focus();
-      });
-      host.append(more);
-    }
+    for (const key of list_shown(kind, values)) add_field(kind, key, values.get(key.name));
+    follow_type(kind);
     ends.hidden = !fields.has("parent");
     hint.hidden = ends.hidden && !(fields.has("body") && fields.has("node"));
+    view.mark_nodes();
     set_end(ends.hidden || (get_value("parent") && get_value("parent") !== "ground") || !item && list_names("body").length > 1 ? "parent" : "child");
   };
   const is_shown = (values) => fields.size > 0 && values.size === before.size && [...values].every(([name, text]) => before.get(name) === text);
@@ -123,12 +183,13 @@ export function make_add_form(studio, view) {
   const show = (is_refresh = false) => studio.attempt(async () => {
     const at = Number(tables.value);
     item = at < 0 ? null : (items[at] ?? null);
-    const kind = all.find((k) => k.kind === (item ? item.kind : tables.selectedOptions[0]?.dataset.kind));
+    const kind = get_kind();
     add_button.textContent = item ? "Change" : "Add";
     delete_button.hidden = !item || !kind?.list;
     if (!kind) return host.replaceChildren();
     if (!item) {
-      const values = new Map(kind.keys.some((k) => k.name === "name") ? [["name", make_name(kind.kind)]] : []);
+      given_name = make_name(kind.kind);
+      const values = new Map(kind.keys.some((k) => k.name === "name") ? [["name", given_name]] : []);
       return show_fields(kind, kind.kind === "hinge" ? set_hinge(values) : values);
     }
     const { path } = item, { values } = await ask("table", { text: view.pane.text, path });
@@ -136,7 +197,7 @@ export function make_add_form(studio, view) {
     if (item?.path === path && !(is_refresh && is_shown(shown))) show_fields(kind, shown);
   });
   const apply = () => studio.attempt(async () => {
-    const kind = all.find((k) => k.kind === (item ? item.kind : tables.selectedOptions[0].dataset.kind));
+    const kind = get_kind();
     const now = [...fields].map(([key, f]) => /** @type {[string, string]} */ ([key, f.value.trim()]));
     if (!item) {
       const words = now.filter(([, v]) => v !== "").map(([key, v]) => `${key}=${to_word(v)}`);
@@ -185,6 +246,7 @@ export function make_add_form(studio, view) {
     const option = present.find((o) => o.dataset.path === chosen) ?? fresh.find((o) => o.dataset.kind === kind);
     if (option) option.selected = true;
   };
+  fold.addEventListener("toggle", () => view.mark_nodes());
   fold.addEventListener("toggle", () => fold.open && all.length === 0 && studio.attempt(async () => {
     all = (await ask("schema", { kind: "system" })).kinds;
     fill_list();
@@ -220,5 +282,7 @@ export function make_add_form(studio, view) {
     if (item || was_added) show(Boolean(item));
     was_added = false;
   };
-  return { element: fold, take, update };
+  /** True if the form is open with fields for a node. */
+  const takes_nodes = () => fold.open && !hint.hidden;
+  return { element: fold, take, update, takes_nodes };
 }

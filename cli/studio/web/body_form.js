@@ -1,6 +1,6 @@
 // From picked grids and a few choices to a body file and a first system file: the texts of bough init, then edited by
 // the commands of bough edit.
-import { ask, history } from "./api.js";
+import { StudioError, ask, history } from "./api.js";
 import { el, make_button, make_check, make_select } from "./page_parts.js";
 import { save_text } from "./parts.js";
 
@@ -28,6 +28,9 @@ export function make_body_form(studio, deck, on_change) {
   const make_texts = async () => {
     const { files } = await ask("start", { file: deck, hinge: joint === 1 ? (grids[0] ?? 0) : 0 });
     const commands = [];
+    // bough init writes "fixed" for each deck whose constraints hold the body, as long as no hinge does.
+    if (kFrames[frame] === "fixed" && joint === 0 && !/^frame = "fixed"/m.test(files[0].text))
+      throw new StudioError([{ severity: "error", id: "", file: "", line: 0, what: `no constraints that ${deck} selects hold the body, as frame "fixed" needs`, advice: "choose frame free or mean, or give the deck SPC cards and SPC = n in its case control" }]);
     if (frame > 0) commands.push(`set body.frame=${kFrames[frame]}`);
     if (grids.length > 0) commands.push(`set body.interface=[${grids.join(", ")}]`);
     if (basis > 0) commands.push(`set body.modes.basis=${kBases[basis]}`);
@@ -38,7 +41,8 @@ export function make_body_form(studio, deck, on_change) {
     return { body: { name: files[0].name, text }, system: files[1], line };
   };
   const make = () => studio.attempt(async () => {
-    const { body, system, line } = await make_texts();
+    button.disabled = true;  // the texts take a moment
+    const { body, system, line } = await make_texts().finally(() => (button.disabled = false));
     const known = await ask("read", { file: body.name }).catch(() => ({ text: "", hash: "" }));
     const is_there = await ask("read", { file: system.name }).then(() => true, () => false);
     const saved = await save_text(body.name, known.text, body.text, known.hash, is_there ? [] : [{ file: system.name, text: system.text }]);
@@ -47,11 +51,12 @@ export function make_body_form(studio, deck, on_change) {
     await studio.refresh();
     await studio.open(body.name);
   });
+  const button = Object.assign(make_button("Make body file …", "Shows the file before it is written", make), { className: "main make-body" });
   const element = el("section", { class: "body-form" }, el("h3", {}, "Make a body"),
     el("div", { class: "tools" }, make_check("a click adds an interface node", true, (on) => (is_picking = on))),
     el("div", { class: "row" }, "interface ", list),
     el("div", { class: "tools" }, make_select("frame", kFrames, (i) => (frame = i)), make_select("basis", kBases, (i) => (basis = i)), el("label", {}, "modes ", number)),
-    el("div", { class: "tools" }, make_select("in the system", kJoints, (i) => (joint = i)), Object.assign(make_button("Make body file …", "Shows the file before it is written", make), { className: "main make-body" })));
+    el("div", { class: "tools" }, make_select("in the system", kJoints, (i) => (joint = i)), button));
   update();
   const take = (grid) => {
     if (!is_picking || grids.includes(grid)) return;

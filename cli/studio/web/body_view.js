@@ -99,7 +99,9 @@ export class BodyView {
     this.progress.finish(done);
     this.pane.messages.show(done.messages, "Reduced.");
     await this.studio.refresh();
-    if (done.code === 0) await this.show_result();
+    if (done.code !== 0) return;
+    await this.show_result();
+    this.result.scrollIntoView({ block: "start" });
   }
 
   async show_result() {

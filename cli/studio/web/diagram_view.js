@@ -2,8 +2,9 @@
 import { ask } from "./api.js";
 import { Chart } from "./chart.js";
 import { Connections, is_editable } from "./connections.js";
-import { CurveEditor, is_plain } from "./curve_editor.js";
+import { CurveEditor } from "./curve_editor.js";
 import { lay_out } from "./diagram_layout.js";
+import { list_handles } from "./function_handles.js";
 import { el, make_button } from "./page_parts.js";
 
 const kNamespace = "http://www.w3.org/2000/svg";
@@ -98,9 +99,10 @@ export class DiagramPanels {
     this.curves.dataset.count = String(answer.functions.length);
   }
 
-  draw_function({ name, type, of_time, line, x, y, points }, go) {
-    if (points && is_plain(points)) {
-      const editor = new CurveEditor(this.view, { name, type, line, x, y, points }, this.editors.get(name));
+  draw_function(curve, go) {
+    const { name, type, of_time, line, x, y, values } = curve;
+    if (values && list_handles(type, values, x).length > 0) {
+      const editor = new CurveEditor(this.view, curve, this.editors.get(name));
       this.editors.set(name, editor);
       return el("div", {}, make_button(`${name}: line ${line}`, "Go to the function in the text", () => go(line)), editor.element);
     }

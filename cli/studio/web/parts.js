@@ -202,20 +202,32 @@ export class Editor {
     if (text === this.last) return;
     this.before.push(this.last);
     this.after = [];
-    this.put(text);
+    this.put(text, this.last);
     this.on_change();
   }
-  put(text) {
+  /** @param {string | null} before  brings the lines into view that differ from this text */
+  put(text, before = null) {
     const { scrollTop } = this.area;
     this.area.value = this.last = text;
     this.area.scrollTop = scrollTop;
+    if (before !== null) this.reveal(before.split("\n"), text.split("\n"));
     this.number();
+  }
+  /** Scrolls only if a changed line is out of view. @param {string[]} before  @param {string[]} now */
+  reveal(before, now) {
+    const first = now.findIndex((line, i) => line !== before[i]);
+    if (first < 0) return;
+    let same = 0;  // lines at the end
+    while (same < Math.min(now.length, before.length) - first && now[now.length - 1 - same] === before[before.length - 1 - same]) ++same;
+    const { scrollTop, clientHeight, scrollHeight } = this.area, height = scrollHeight / now.length;
+    const top = first * height, bottom = (now.length - same) * height;
+    if (top < scrollTop || bottom > scrollTop + clientHeight) this.area.scrollTop = Math.max(0, Math.min(top - 2 * height, bottom + 2 * height - Math.min(clientHeight, bottom - top + 4 * height)));
   }
   step(from, to) {
     this.keep();
     if (from.length === 0) return;
     to.push(this.last);
-    this.put(from.pop());
+    this.put(from.pop(), this.last);
     this.on_change();
   }
   undo() {
@@ -244,5 +256,38 @@ export class Editor {
     this.area.setSelectionRange(from, from + (lines[line - 1]?.length ?? 0));
     const height = this.area.scrollHeight / lines.length;
     this.area.scrollTop = Math.max(0, (line - 6) * height);
+  }
+}
+
+/** The scene in a corner of the window while its place is scrolled away: what moves it is below. */
+export class FloatingScene {
+  /** @param {HTMLElement} place  where the scene belongs, first in it  @param {HTMLElement} scene */
+  constructor(place, scene) {
+    this.place = place;
+    this.scene = scene;
+    scene.append(Object.assign(make_button("✕", "Back to its place", () => this.hide()), { className: "to-place" }));
+    this.on_scroll = () => this.is_floating && !this.is_away() && this.hide();
+    document.addEventListener("scroll", this.on_scroll, { capture: true, passive: true });
+  }
+  get is_floating() {
+    return this.scene.classList.contains("floating");
+  }
+  /** Less than a third of it would be in view at its place. */
+  is_away() {
+    if (!this.is_floating) this.height = this.scene.offsetHeight;
+    const { top } = this.place.getBoundingClientRect(), view = this.place.parentElement?.getBoundingClientRect();
+    return view !== undefined && Math.min(view.bottom, top + this.height) - Math.max(view.top, top) < this.height / 3;
+  }
+  show() {
+    if (this.is_floating || !this.is_away()) return;
+    this.place.style.minHeight = `${this.place.offsetHeight}px`;  // the page below stays where it is
+    this.scene.classList.add("floating");
+  }
+  hide() {
+    this.scene.classList.remove("floating");
+    this.place.style.minHeight = "";
+  }
+  dispose() {
+    document.removeEventListener("scroll", this.on_scroll, { capture: true });
   }
 }

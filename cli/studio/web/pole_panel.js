@@ -52,6 +52,7 @@ export class PolePanel {
       motion.is_looping = true;
       motion.seconds = 1.5;
       motion.play(true);
+      this.view.floating.show();
       this.view.picked.textContent = `shape of the pole ${describe(poles, i, this.unit)}`;
       this.view.scene.dataset.pole = String(pole);
     });

@@ -9,7 +9,7 @@ import { HingePlaces } from "./hinge_places.js";
 import { HistoryView, RunSet } from "./history.js";
 import { MotionView } from "./motion_view.js";
 import { el, make_button } from "./page_parts.js";
-import { make_progress, show_history } from "./parts.js";
+import { FloatingScene, make_progress, show_history } from "./parts.js";
 import { PolePanel } from "./pole_panel.js";
 import { TextPane } from "./text_view.js";
 import { Viewer } from "./viewer.js";
@@ -47,6 +47,7 @@ export class SystemView {
       button("Save as page", "bough report of the run and its bodies: one HTML file", () => this.report(), "save-page"),
       button("Copy commands …", "The lines that do the same in a shell", () => show_history(), "copy"));
     this.element = el("div", { class: "split reverse" }, el("div", { class: "side wide" }, this.add_form.element, this.pane.element), el("div", { class: "work-column" }, this.actions, this.parameters, this.progress.element, this.picked, this.hinge_axes.element, this.hinge_places.element, this.scene, this.diagrams.element, this.result));
+    this.floating = new FloatingScene(this.scene, this.viewer.element);
     this.join().then((found) => !found && studio.has(this.output) && this.show_results());
   }
 
@@ -93,6 +94,7 @@ export class SystemView {
     const before = this.motion;
     before?.play(false);
     this.motion = new MotionView(run, this.viewer, earlier);
+    this.mark_nodes();
     if (home && is_kept) Object.assign(this.viewer, { yaw, pitch, distance, target });
     if (at_end) this.motion.set_time(this.motion.last);
     this.attach_tools();
@@ -100,8 +102,17 @@ export class SystemView {
     this.scene.replaceChildren(this.motion.element);
     this.viewer.draw();  // on the page: before, the canvas has no size
     if (before) this.motion.take_over(before);
+    run.link.on("pick", () => this.floating.show());
     this.scene.dataset.samples = String(run.time.length);
     delete this.scene.dataset.pole;
+  }
+
+  /** Interface nodes, and nodes that no element draws, are marked while the form takes a node. */
+  mark_nodes() {
+    const is_on = this.add_form.takes_nodes();
+    if (!this.motion || this.motion.has_node_marks === is_on) return;
+    this.motion.has_node_marks = is_on;
+    this.motion.draw();
   }
 
   /** Tools with handles in the scene; the first one that has a handle under the pointer takes a drag. */
@@ -255,6 +266,7 @@ export class SystemView {
     });
     this.result.replaceChildren(el("h2", {}, output), this.shown.element);
     this.result.dataset.ready = verb;
+    this.result.scrollIntoView({ block: "start" });
   }
 
   report() {
@@ -278,6 +290,7 @@ export class SystemView {
     this.is_following = true;  // joins no more
     this.motion?.play(false);
     this.viewer.dispose();
+    this.floating.dispose();
     this.shown?.dispose();
   }
 }

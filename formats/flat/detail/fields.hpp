@@ -84,8 +84,13 @@ template <class Archive, class Body>
 void visit_third_order(Archive& archive, Body& body, long n) {
   using Third = records::ThirdOrder;
   auto& third = body.third_order;
-  if (!archive.has("/third_order/large", !third.empty())) return;
-  archive.array("/third_order/large", third.large, {-1}, {.max_value = static_cast<int>(n) - 1});
+  if (archive.has("/third_order/directions", third.directions.size() > 0)) {
+    archive.array("/third_order/directions", third.directions, {-1, n});
+    if constexpr (Archive::kReads) third.count_directions();
+  } else {
+    if (!archive.has("/third_order/large", !third.empty())) return;
+    archive.array("/third_order/large", third.large, {-1}, {.max_value = static_cast<int>(n) - 1});
+  }
   const long N = count(third.large);
   if (!records::is_valid_choice(third.large, static_cast<int>(n))) return;  // find_body_faults() says so
   const auto name = [](const char* word, int degree) {

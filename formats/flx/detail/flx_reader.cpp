@@ -7,6 +7,8 @@
 #include <limits>
 #include <sstream>
 
+#include "base/platform.hpp"
+
 namespace bough::flx::detail {
 
 namespace {
@@ -16,7 +18,7 @@ constexpr double kUnset = std::numeric_limits<double>::quiet_NaN();
 
 template <class Number>
 bool parse_all(const std::string& word, Number& value) {
-  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+  const auto [end, error] = platform::read_number(word.data(), word.data() + word.size(), value);
   return error == std::errc{} && end == word.data() + word.size();
 }
 

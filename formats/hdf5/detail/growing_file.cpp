@@ -11,6 +11,7 @@
 #include <unistd.h>
 
 #include "base/diagnostic.hpp"
+#include "base/platform.hpp"
 
 namespace bough::hdf5 {
 
@@ -105,7 +106,7 @@ void GrowingFile::truncate(std::uint64_t size) {
 
 void GrowingFile::sync() {
   errno = 0;
-  check(::fdatasync(part_->get_descriptor()) == 0 || errno == EINVAL, "the file cannot be written");
+  check(platform::sync_data(part_->get_descriptor()) || errno == EINVAL, "the file cannot be written");
 }
 
 void GrowingFile::check_name() {

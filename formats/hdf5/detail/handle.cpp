@@ -4,9 +4,9 @@
 #include <cerrno>
 
 #include <fcntl.h>
-#include <sys/mman.h>
 #include <unistd.h>
 
+#include "base/platform.hpp"
 #include "formats/hdf5/lost_file.hpp"
 
 namespace bough::hdf5 {
@@ -58,7 +58,7 @@ bool reserve_space(hid_t file, hsize_t more) {
   hsize_t size = 0;
   const int descriptor = get_descriptor(file);
   if (descriptor < 0 || H5Fget_filesize(file, &size) < 0 || size + more == 0) return true;
-  if (::fallocate(descriptor, FALLOC_FL_KEEP_SIZE, 0, static_cast<off_t>(size + more)) == 0) return true;
+  if (platform::reserve_space(descriptor, static_cast<off_t>(size + more))) return true;
   // Some file systems cannot reserve; there the write itself has to show.
   if (errno == ENOSPC || errno == EFBIG || errno == EDQUOT || errno == EIO) return false;
   errno = 0;
@@ -69,7 +69,7 @@ bool flush_file(hid_t file) { return reserve_space(file, 0) && H5Fflush(file, H5
 
 void abandon_writes(hid_t file) {
   const int descriptor = get_descriptor(file);
-  const int memory = descriptor < 0 ? -1 : ::memfd_create("abandoned", MFD_CLOEXEC);
+  const int memory = descriptor < 0 ? -1 : platform::open_nameless_file();
   if (memory < 0) return;
   ::dup2(memory, descriptor);
   ::close(memory);

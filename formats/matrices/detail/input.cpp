@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "base/file_roles.hpp"
+#include "base/platform.hpp"
 
 namespace bough::matrices::detail {
 
@@ -32,7 +33,7 @@ std::optional<long> parse_integer(std::string_view text) {
   text = trim(text);
   if (!text.empty() && text.front() == '+') text.remove_prefix(1);
   long value = 0;
-  const auto result = std::from_chars(text.data(), text.data() + text.size(), value);
+  const auto result = platform::read_number(text.data(), text.data() + text.size(), value);
   if (text.empty() || result.ec != std::errc{} || result.ptr != text.data() + text.size()) return {};
   return value;
 }
@@ -50,7 +51,7 @@ std::optional<double> parse_real(std::string_view text) {
     if (sign != std::string::npos) plain.insert(sign, 1, 'e');
   }
   double value = 0;
-  const auto result = std::from_chars(plain.data(), plain.data() + plain.size(), value);
+  const auto result = platform::read_number(plain.data(), plain.data() + plain.size(), value);
   const bool is_small = result.ec == std::errc::result_out_of_range && plain.find("e-") != std::string::npos;
   if (is_small && result.ptr == plain.data() + plain.size()) return 0.0;
   if (result.ec != std::errc{} || result.ptr != plain.data() + plain.size() || !std::isfinite(value)) return {};

@@ -9,7 +9,7 @@
 
 namespace bough::matrices::detail {
 
-/// Throws InputError "matrices.cannot-open"; `most` bytes at most.
+/// Throws InputError "matrices.cannot-open"; at most `max_bytes` bytes.
 std::string read_bytes(const std::string& path, std::size_t max_bytes = std::string::npos);
 
 /// A whole number with blanks around; nothing else.

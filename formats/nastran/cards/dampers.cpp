@@ -104,7 +104,7 @@ void parse_pbush1d(Card& card, Reading& r) {
     const auto part = card.read_word(line, "the part", "", {"SHOCKA", "SPRING", "DAMPER", "GENER"});
     if (!part.empty())
       card.warn("deck.nonlinear-part", line, part + " of PBUSH1D " + std::to_string(p.id) + " is not used",
-                "K, C and M of the first line are what the element has");
+                "the element has K, C and M of the first line alone");
   }
   if (r.claim(IdSpace::Bush1dProperty, p.id, card)) r.deck.pbush1d.push_back(p);
 }

@@ -155,7 +155,7 @@ void parse_tic(Card& card, DynamicCards& r) {
   if (card.is_ok()) r.initial.push_back(m);
 }
 
-/// Pairs from field `first` on, up to ENDT; ascending, as they stand or the other way round.
+/// Pairs from field `first` on, up to ENDT; ascending, unchanged or reversed.
 std::vector<std::pair<double, double>> read_points(Card& card, int first) {
   std::vector<std::pair<double, double>> points;
   bool has_end = false;
@@ -368,6 +368,24 @@ void parse_tstep(Card& card, DynamicCards& r) {
     if (card.is_ok()) card.demand(part.count <= 10'000'000, i, "N", "1 to 10000000");
     steps.parts.push_back(part);
   }
+  add_unique(card, r.steps, std::move(steps), &std::remove_reference_t<decltype(steps)>::sid);
+}
+
+/// SID NDT DT NO: the time steps, as those of TSTEP; the other fields control the iterations. The sign of sid tells
+/// TSTEPNL from TSTEP, whose ids are separate.
+void parse_tstepnl(Card& card, DynamicCards& r) {
+  records::TimeSteps steps;
+  steps.sid = -card.read_id(0, "SID");
+  steps.at = card.get_location();
+  records::TimeSteps::Part part;
+  part.count = card.read_id(1, "NDT");
+  part.step = card.read_real(2, "DT");
+  part.every = card.read_int(3, "NO", 1);
+  if (card.is_ok()) card.demand(part.step > 0, 2, "DT", "a number above 0");
+  if (card.is_ok()) card.demand(part.count <= 10'000'000, 1, "NDT", "1 to 10000000");
+  if (part.every <= 0) part.every = part.count;  // output at the last step
+  card.use(4, card.get_size());
+  steps.parts.push_back(part);
   add_unique(card, r.steps, std::move(steps), &std::remove_reference_t<decltype(steps)>::sid);
 }
 
@@ -615,6 +633,7 @@ const DynamicParserTable& get_dynamic_parsers() {
                                         {"FREQ4", {parse_freq4, ". Hz Hz . ."}},
                                         {"FREQ5", {parse_freq5, ". Hz Hz"}},
                                         {"TSTEP", {parse_tstep, nullptr, convert_tstep}},
+                                        {"TSTEPNL", {parse_tstepnl, ". . T"}},
                                         {"USET", {parse_uset, ""}},
                                         {"USET1", {parse_uset1, ""}},
                                         {"RVDOF", {parse_rvdof, ""}},
@@ -630,7 +649,7 @@ const DynamicParserTable& get_dynamic_parsers() {
 int records::DynamicSelection::*find_selection_of(std::string_view card) {
   using records::DynamicSelection;
   if (card.substr(0, 4) == "FREQ") return &DynamicSelection::frequency;
-  if (card == "TSTEP") return &DynamicSelection::tstep;
+  if (card == "TSTEP" || card == "TSTEPNL") return &DynamicSelection::tstep;
   if (card == "TIC") return &DynamicSelection::ic;
   if (card == "RANDPS" || card == "RANDT1") return &DynamicSelection::random;
   if (card == "RCROSS") return &DynamicSelection::rcross;

@@ -93,7 +93,7 @@ void parse_mat9(Card& card, Reading& r) {
   if (r.claim(IdSpace::Material, mat.id, card)) r.deck.mat9.push_back(mat);
 }
 
-/// MAT11, an orthotropic solid, becomes the MAT9 of the same law.
+/// MAT11, an orthotropic solid, becomes a MAT9 of equal elasticity.
 void parse_mat11(Card& card, Reading& r) {
   records::Mat9 mat;
   mat.id = card.read_id(0, "MID");

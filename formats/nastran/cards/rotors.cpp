@@ -132,8 +132,7 @@ void parse_rotord(Card& card, DynamicCards& r) {
   s.sid = card.read_id(0, "SID");
   card.read_reals(1, {{"RSTART", s.first, {}}, {"RSTEP", s.step, {}}});
   s.count = card.read_id(3, "NUMSTEP");
-  if (card.read_word(4, "REFSYS", "ROT", {"FIX", "ROT"}) == "ROT")
-    card.demand(false, 4, "REFSYS", "FIX: rotors are solved in the fixed reference system");
+  const bool is_rotating = card.read_word(4, "REFSYS", "ROT", {"FIX", "ROT"}) == "ROT";
   s.shapes_at = card.read_real(5, "CMOUT", 0.0);
   const auto unit = card.read_word(6, "RUNIT", "RPM", {"RPM", "CPS", "HZ", "RAD"});
   const double factor = unit == "RPM" ? pi / 30 : unit == "RAD" ? 1 : 2 * pi;
@@ -148,13 +147,16 @@ void parse_rotord(Card& card, DynamicCards& r) {
     rotor.cid = card.read_reference(i + 3, "RCORD");
     rotor.w3 = card.read_real(i + 4, "W3", 0.0);
     rotor.w4 = card.read_real(i + 5, "W4", 0.0);
+    rotor.is_rotating = is_rotating;
+    rotor.has_stress = card.read_reference(i + 6, "RFORCE") != 0;
     rotor.at = card.get_location();
-    if (card.is_ok() && card.read_reference(i + 6, "RFORCE") != 0)
-      card.demand(false, i + 6, "RFORCE", "a blank field: the stress of the rotation is not taken into account");
     s.rotors.push_back(rotor);
   }
   if (card.is_ok() && s.rotors.empty())
     card.fail("deck.missing-field", 16, "no line with RSET follows, expected one for each rotor");
+  if (card.is_ok())
+    card.demand(!is_rotating || s.rotors.size() == 1, 4, "REFSYS",
+                "FIX for several rotors: one frame turns with one of them");
   if (card.is_ok()) card.demand(s.first >= 0, 1, "RSTART", "zero or above");
   if (card.is_ok()) card.demand(s.step > 0 || s.count == 1, 2, "RSTEP", "a step above 0");
   if (card.is_ok()) card.demand(s.count <= 100'000, 3, "NUMSTEP", "1 to 100000");

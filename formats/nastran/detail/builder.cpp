@@ -141,7 +141,7 @@ class Builder {
     auto name = make_upper(first);
     if (name.back() == '*') name = trim(std::string_view(name).substr(0, name.size() - 1));
     if (ignored_.count(name) > 0) return;
-    if (Design::is_design(name)) {
+    if (Design::is_design(name) || Design::is_of_equations(name)) {
       join(card, text_);
       design_.add(text_, deck_.files, diagnostics_);
     }
@@ -234,7 +234,7 @@ class Builder {
     if (!text_.name.empty() && text_.name.front() == '/') {
       diagnostics_.warning("deck.delete-line", where(),
                            "'" + text_.name + "' deletes cards of an earlier run: not done",
-                           "a deck is read as it stands; remove the cards that should not be used");
+                           "a deck is read unchanged; remove the cards that should not be used");
       return true;
     }
     if (text_.name.substr(0, 5) != "BEGIN") return false;
@@ -300,7 +300,7 @@ class Builder {
     const auto member = find_selection_of(text_.name);
     const auto set = member && !text_.fields.empty() ? parse_int(text_.fields.front()) : std::nullopt;
     return set && std::none_of(dynamics_->selections.begin(), dynamics_->selections.end(),
-                               [&](const auto& selection) { return selection.second.*member == *set; });
+                               [&](const auto& selection) { return std::abs(selection.second.*member) == *set; });
   }
 
   /// Nastran uses selected sets only: errors in other sets are warnings, and these sets are not read.
@@ -423,6 +423,7 @@ class Builder {
     const auto effect = find_effect(name);
     const auto where = deck_.locate(entry.first);
     const bool is_ignored = ignored_.count(name) > 0;
+    if (design_.uses(name) && !is_ignored) return;
     if (Design::is_design(name) && !is_ignored && !design_.is_empty()) {
       deck_.unused.push_back({name, records::CardEffect::None, entry.count, entry.first});
       return;  // design_ has said it

@@ -78,7 +78,7 @@ class Card {
   int find_leftover(int first) const;
   /// "field 4", "field 2 of line 3": as the manuals count, the name being field 1.
   static std::string name_field(int i);
-  /// Where field i stands: its line; less its column, which the mark at a terminal is for and no message tells.
+  /// Location of field i: its line, without its column, which is for the mark at a terminal alone.
   SourceLocation locate(int i) const;
 
   int read_int(int i, const char* what);  ///< required

@@ -9,6 +9,7 @@
 #include "formats/nastran/detail/control_lines.hpp"
 #include "formats/nastran/detail/control_words.hpp"
 #include "formats/nastran/detail/dynamic_control.hpp"
+#include "formats/nastran/detail/known_params.hpp"
 #include "formats/nastran/detail/matrix_selection.hpp"
 #include "formats/nastran/detail/text.hpp"
 
@@ -43,6 +44,7 @@ class CaseControl {
       at_ = source_.lines[i].at;
       std::string joined;
       auto command = split_command(source_.lines[i].text);
+      if (command.word.empty()) report_wordless(source_.lines[i].text);
       // A list such as SET goes on while lines end with a comma; a title may end with one.
       if (!is_title(command.word) && source_.lines[i].text.back() == ',') {
         joined = source_.lines[i].text;
@@ -69,7 +71,7 @@ class CaseControl {
   }
 
   void read_command(const Command& c, bool with_executive) {
-    if (c.word.empty()) return;
+    if (c.word.empty() || is_switched_off(c)) return;
     if (is_command(c.word, "OUTPUT", 4)) {
       in_plot_section_ = !c.options.empty();
       return;
@@ -78,7 +80,7 @@ class CaseControl {
       begin_subcase(c);
       return;
     }
-    if (in_plot_section_) return;
+    if (in_plot_section_) return report_misplaced(c.word);
     if (c.word == "SUBCOM" || c.word == "SYMCOM" || c.word == "REPCASE") {
       // Combinations of results: what follows belongs to them, not to the subcase before.
       if (options_.combinations) return begin_combination(c);
@@ -123,8 +125,10 @@ class CaseControl {
       read_named_set(c);
     else if (c.word == "PARAM")
       read_param(c);
+    else if (is_command(c.word, "ANALYSIS", 4) && make_upper(c.value).starts_with("HEAT"))
+      refuse({"ANALYSIS", "HEAT", "heat transfer, whose unknowns are temperatures"});
     else if (with_executive && is_command(c.word, "SOL", 3))
-      deck_.sol = make_upper(c.value.substr(0, c.value.find_first_of(" ,")));
+      deck_.sol = make_upper(c.value.substr(0, c.value.find_first_of(" ,\t")));
     else
       read_dynamic(c);
   }
@@ -138,7 +142,7 @@ class CaseControl {
     if ((is_response() || options_.is_complex) && read_rotor_selection(c)) return;
     if (const auto* acts = find_unsupported_command(c.word)) {
       if (acts->scope == CommandScope::StaticLoad) return read_unread_load(c, *acts);
-      if (acts->scope == CommandScope::Model || is_response()) return refuse(*acts);
+      if (acts->scope == CommandScope::Model || is_response() || is_modal_complex(*acts)) return refuse(*acts);
       return note(c.word);
     }
     if (!is_response() && (is_command(c.word, "RANDOM", 4) || is_command(c.word, "RCROSS", 4))) return note(c.word);
@@ -190,6 +194,41 @@ class CaseControl {
   }
 
   bool is_response() const { return dynamics_ && options_.is_response; }
+
+  /// Returns true for a selection of modes in complex modes by the modal method.
+  bool is_modal_complex(const UnsupportedCommand& command) const {
+    static const std::set<std::string> modal{"110", "29", "SEMCEIG", "MCEIG"};
+    return options_.is_complex && modal.count(deck_.sol) > 0 && std::string_view(command.name).starts_with("MOD");
+  }
+
+  /// SKIPON, SKIPOFF, SKIP ON, SKIP OFF: the commands between them are not part of the case control.
+  bool is_switched_off(const Command& c) {
+    const bool is_switch = c.word == "SKIPON" || c.word == "SKIPOFF" || c.word == "SKIP";
+    const auto value = c.word == "SKIP" ? make_upper(c.value) : c.word.substr(std::min<std::size_t>(4, c.word.size()));
+    if (is_switch && (value == "ON" || value == "OFF")) {
+      is_off_ = value == "ON";
+      return true;
+    }
+    return is_off_;
+  }
+
+  void report_wordless(std::string_view text) {
+    diagnostics_.warning("deck.unknown-case-control", deck_.locate(at_),
+                         "'" + std::string(trim(text)) + "' begins with no command; it is not used",
+                         "remove the line, or end the line before it with a comma to continue it");
+  }
+
+  /// Commands that select the model, its loads or its solution in a section of plots, where Nastran has none of them.
+  void report_misplaced(const std::string& word) {
+    static const std::set<std::string, std::less<>> selects{
+        "SPC",  "MPC",   "LOAD",    "METHOD", "METH",     "CMETHOD", "TEMPERATURE", "TEMP",    "DLOAD",  "FREQUENCY",
+        "FREQ", "TSTEP", "NSM",     "IC",     "SDAMPING", "SDAM",    "STATSUB",     "SUPORT1", "PARAM",  "K2GG",
+        "M2GG", "B2GG",  "LOADSET", "K2PP",   "M2PP",     "B2PP",    "TFL",         "RANDOM",  "AUTOSPC"};
+    if (selects.count(word) == 0) return;
+    diagnostics_.error("deck.case-control-value", deck_.locate(at_),
+                       word + " is in the section of plots that OUTPUT begins, where it selects nothing",
+                       "move it before OUTPUT");
+  }
 
   /// Reports a command that changes the results and is not supported.
   void refuse(const UnsupportedCommand& command) {
@@ -247,7 +286,7 @@ class CaseControl {
   void begin_combination(const Command& c) {
     end_combination();
     in_plot_section_ = skipping_ = false;
-    const auto id = parse_int(c.value.substr(0, c.value.find_first_of(" ,")));
+    const auto id = parse_int(c.value.substr(0, c.value.find_first_of(" ,\t")));
     records::CaseCombination combination;
     combination.control = above_;
     combination.selection = selection_above_;
@@ -306,7 +345,7 @@ class CaseControl {
   void begin_subcase(const Command& c) {
     end_combination();
     in_plot_section_ = skipping_ = false;
-    const auto id = parse_int(c.value.substr(0, c.value.find_first_of(" ,")));
+    const auto id = parse_int(c.value.substr(0, c.value.find_first_of(" ,\t")));
     if (!id || *id <= 0) {
       bad_value(c);
       return;
@@ -395,21 +434,37 @@ class CaseControl {
   void read_named_set(const Command& c) {
     const auto equals = c.value.find('=');
     const auto id = parse_int(trim(c.value.substr(0, equals)));
-    if (dynamics_ && id && equals != std::string_view::npos)
-      if (auto set = read_case_set(c.value.substr(equals + 1))) current_selection().sets[*id] = std::move(*set);
+    if (id && equals != std::string_view::npos)
+      if (auto set = read_case_set(c.value.substr(equals + 1))) {
+        case_sets_[*id] = *set;
+        if (dynamics_) current_selection().sets[*id] = std::move(*set);
+      }
     MatrixList names;
     if (id && equals != std::string_view::npos && read_matrix_names(trim(c.value.substr(equals + 1)), names))
       sets_[std::to_string(*id)] = std::move(names);
   }
 
   void read_param(const Command& c) {
+    // PARAM,NAME,VALUE; blanks, tabs and an equals sign separate too.
+    constexpr std::string_view separators = ", \t=";
     auto rest = c.value;
     if (!rest.empty() && rest.front() == ',') rest = trim(rest.substr(1));
-    const auto comma = rest.find(',');
-    if (comma == std::string_view::npos) return;
-    const auto value = rest.substr(comma + 1);
-    deck_.params.push_back(
-        {make_upper(trim(rest.substr(0, comma))), make_upper(trim(value.substr(0, value.find(',')))), at_});
+    const auto end = rest.find_first_of(separators);
+    const auto name = rest.substr(0, end);
+    if (end == std::string_view::npos || name.empty()) return bad_value(c, "a name and a value");
+    rest = trim(rest.substr(end));
+    if (rest.front() == ',' || rest.front() == '=') rest = trim(rest.substr(1));
+    records::Param param{make_upper(name), make_upper(rest.substr(0, rest.find_first_of(separators))), at_};
+    if (in_subcase_) {
+      const auto first = subcase_params_.emplace(param.name, param.value).first;
+      if (first->second != param.value && is_used_param(param.name, is_response()))
+        diagnostics_.warning("deck.subcase-param", deck_.locate(at_),
+                             "PARAM," + param.name + " is " + param.value + " in subcase " +
+                                 std::to_string(current().id) + " and " + first->second +
+                                 " in one before; this last value holds in all subcases",
+                             "solve the subcases with another value in another deck");
+    }
+    deck_.params.push_back(std::move(param));
   }
 
   /// EXTSEOUT(ASMBULK,EXTBULK,EXTID=n,MATOP4=unit)
@@ -424,29 +479,75 @@ class CaseControl {
     note("EXTSEOUT");
   }
 
-  /// Subcases of SUPER = n are of the component alone, which is reduced already.
+  /// Subcases of SUPER = n are of the component alone, which is reduced already. A SET n names several.
   void read_superelement(const Command& c) {
-    const auto id = parse_int(c.value.substr(0, c.value.find_first_of(" ,")));
-    if (in_subcase_ && id && options_.superelements.count(*id) > 0) component_cases_[current().id] = at_;
+    const auto id = parse_int(c.value.substr(0, c.value.find_first_of(" ,\t")));
+    if (!in_subcase_ || !id) return;
+    const auto set = case_sets_.find(*id);
+    if (set != case_sets_.end() && set->second.contains(0)) return;  // the residual structure
+    std::set<int> members;
+    for (const int one : options_.superelements)
+      if (set == case_sets_.end() ? one == *id : set->second.contains(one)) members.insert(one);
+    if (!members.empty()) component_cases_[current().id] = {std::move(members), at_};
+  }
+
+  /// Hands SPC, MPC and METHOD of the subcases of each superelement to its section.
+  void keep_component_cases() {
+    if (!options_.component_cases) return;
+    for (const auto& subcase : deck_.subcases) {
+      const auto found = component_cases_.find(subcase.id);
+      if (found == component_cases_.end()) continue;
+      Subcase own;
+      own.id = subcase.id;
+      own.spc = subcase.spc;
+      own.mpc = subcase.mpc;
+      own.method = subcase.method;
+      own.commands = subcase.commands;
+      for (const int id : found->second.members) (*options_.component_cases)[id].push_back(own);
+    }
+  }
+
+  /// Loads that subcases of superelements alone select, and no subcase of the model.
+  void report_component_loads() {
+    for (const auto& [name, set] : {std::pair{"LOAD", &Subcase::load}, std::pair{"TEMPERATURE", &Subcase::temperature}})
+      for (const auto& subcase : deck_.subcases) {
+        const auto found = component_cases_.find(subcase.id);
+        if (found == component_cases_.end() || subcase.*set == 0) continue;
+        const bool is_selected =
+            std::any_of(deck_.subcases.begin(), deck_.subcases.end(), [&, &set = set](const auto& other) {
+              return component_cases_.count(other.id) == 0 && other.*set == subcase.*set;
+            });
+        if (!is_selected)
+          diagnostics_.warning("deck.superelement-case", deck_.locate(found->second.at),
+                               std::string(name) + " = " + std::to_string(subcase.*set) + " of subcase " +
+                                   std::to_string(subcase.id) +
+                                   " of superelements alone is selected by no subcase of the model: it is not applied",
+                               std::string("write ") + name + " in a subcase of the model, for all superelements");
+      }
   }
 
   void drop_component_cases() {
     if (component_cases_.empty() || component_cases_.size() == deck_.subcases.size()) return;
+    report_component_loads();
     std::string ids;
-    for (const auto& [id, at] : component_cases_) {
+    for (const auto& [id, component_case] : component_cases_) {
       ids += (ids.empty() ? "" : ", ") + std::to_string(id);
       std::erase_if(deck_.subcases, [&, &n = id](const auto& subcase) { return subcase.id == n; });
       load_matrices_.erase(id);
       if (dynamics_) dynamics_->selections.erase(id);
     }
-    diagnostics_.note("deck.superelement-case", deck_.locate(component_cases_.begin()->second),
-                      "subcases of superelements alone are not solved: " + ids, "their output requests are not used");
+    diagnostics_.note("deck.superelement-case", deck_.locate(component_cases_.begin()->second.at),
+                      "subcases of superelements alone are not solved: " + ids,
+                      "SPC, MPC and METHOD in them are used, output requests are not");
   }
 
   void bad_value(const Command& c, const char* expected = "the number of a set") {
     diagnostics_.error("deck.case-control-value", deck_.locate(at_),
                        c.word + " selects '" + std::string(c.value) + "', expected " + expected,
-                       "write " + c.word + (std::string_view(expected) == "the number of a set" ? " = n" : " = NAME"));
+                       "write " + c.word +
+                           (c.word == "PARAM"                                     ? ", NAME, VALUE"
+                            : std::string_view(expected) == "the number of a set" ? " = n"
+                                                                                  : " = NAME"));
   }
 
   void note(const std::string& word) { ignored_.add(word, at_); }
@@ -454,6 +555,7 @@ class CaseControl {
   void finish() {
     end_combination();
     if (deck_.subcases.empty()) deck_.subcases.push_back(above_);
+    keep_component_cases();
     drop_component_cases();
     if (!in_subcase_) load_matrices_[0] = load_matrices_above_;
     if (dynamics_ && !in_subcase_) dynamics_->selections[0] = selection_above_;
@@ -482,7 +584,14 @@ class CaseControl {
   NamedSets sets_;
   MatrixList load_matrices_above_;           ///< P2G
   std::map<int, MatrixList> load_matrices_;  ///< by subcase
-  std::map<int, records::CardLocation> component_cases_;
+  struct ComponentCase {
+    std::set<int> members;  ///< superelements
+    records::CardLocation at;
+  };
+  std::map<int, ComponentCase> component_cases_;  ///< by subcase
+  std::map<int, records::CaseSet> case_sets_;     ///< SET of numbers
+  std::map<std::string, std::string> subcase_params_;
+  bool is_off_ = false;  ///< after SKIPON
 };
 
 }  // namespace
@@ -500,11 +609,11 @@ std::size_t read_control(const Source& source, records::Deck& deck, Diagnostics&
     diagnostics.error("deck.no-begin-bulk", deck.locate(source.lines[cend].at), "CEND is not followed by BEGIN BULK",
                       "write BEGIN BULK before the bulk data");
     begin = source.lines.size();
-    read_executive(source, cend, deck);
+    read_executive(source, cend, deck, diagnostics);
     CaseControl(source, deck, diagnostics, options).read(cend + 1, begin, false);
     return begin;
   }
-  if (cend != none) read_executive(source, cend, deck);
+  if (cend != none) read_executive(source, cend, deck, diagnostics);
   CaseControl(source, deck, diagnostics, options).read(cend == none ? 0 : cend + 1, begin, cend == none);
   return begin + 1;
 }

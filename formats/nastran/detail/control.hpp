@@ -1,6 +1,7 @@
 #pragma once
 /// \file Executive and case control: which solution, which sets.
 #include <cstddef>
+#include <map>
 #include <set>
 #include <string>
 #include <vector>
@@ -25,6 +26,8 @@ struct ControlOptions {
   /// Commands that are only warned of (deck.unsupported-command); of ReadOptions.
   std::vector<std::string> ignore_cards = {};
   std::set<int> superelements = {};  ///< that have a section: subcases of SUPER = n are not the model's
+  /// Receives SPC, MPC and METHOD of these subcases, by superelement; null: unused.
+  std::map<int, std::vector<records::Subcase>>* component_cases = nullptr;
 };
 
 /// Reads the sections before the bulk data into deck.sol, deck.subcases and (PARAM in case control) deck.params.

@@ -1,6 +1,7 @@
 #include "formats/nastran/detail/control_lines.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "formats/nastran/detail/text.hpp"
 
@@ -47,9 +48,18 @@ Sections find_sections(const Source& source) {
   return {cend, begin};
 }
 
-void read_executive(const Source& source, std::size_t last, records::Deck& deck) {
+void read_executive(const Source& source, std::size_t last, records::Deck& deck, Diagnostics& diagnostics) {
+  bool has_dmap = false;
   for (std::size_t i = 0; i < last; ++i) {
     const auto command = split_command(source.lines[i].text);
+    const bool is_dmap = command.word == "COMPILE" || command.word == "ALTER" || command.word == "MALTER";
+    if ((is_dmap && !std::exchange(has_dmap, true)) || command.word == "RESTART")
+      diagnostics.warning(
+          "deck.unused-executive", deck.locate(source.lines[i].at),
+          is_dmap ? command.word + " changes the solution sequence: DMAP is not executed, and the answer may differ"
+                  : "RESTART continues an earlier run: its model and its results are not read",
+          is_dmap ? "compare with the results of Nastran, or remove the DMAP statements"
+                  : "give the whole model in this deck");
     // "SOL 3,0" of the COSMIC programs names the solution and a subset of it.
     if (command.word == "SOL") deck.sol = make_upper(command.value.substr(0, command.value.find_first_of(" ,")));
   }

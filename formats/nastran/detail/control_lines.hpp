@@ -29,7 +29,7 @@ struct Sections {
 /// Finds CEND and the first BEGIN BULK; a bare BEGIN of a DMAP sequence before CEND does not count.
 Sections find_sections(const Source& source);
 
-/// SOL, out of the lines before `last`.
-void read_executive(const Source& source, std::size_t last, records::Deck& deck);
+/// SOL, out of the lines before `last`. Adds deck.unused-executive for DMAP and restarts.
+void read_executive(const Source& source, std::size_t last, records::Deck& deck, Diagnostics& diagnostics);
 
 }  // namespace bough::nastran::detail

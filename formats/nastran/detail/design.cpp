@@ -5,6 +5,7 @@
 
 #include "formats/nastran/detail/card_text.hpp"
 #include "formats/nastran/detail/design_fields.hpp"
+#include "formats/nastran/detail/equation.hpp"
 #include "formats/nastran/detail/text.hpp"
 
 namespace bough::nastran::detail {
@@ -29,8 +30,52 @@ bool Design::is_design(std::string_view name) {
          name == "DVPREL2" || name == "DVMREL2" || name == "DVCREL2";
 }
 
+bool Design::is_of_equations(std::string_view name) { return name == "DEQATN" || name == "DTABLE"; }
+
+/// LABL1 VALU1 LABL2 VALU2 ...
+void Design::read_constants(Card& card) {
+  for (int i = 0; i < card.get_size(); i += 2)
+    if (!card.is_blank(i, i + 2)) {
+      auto label = std::string(card.get_upper(i));
+      // An integer names a table, which equations of properties do not have.
+      if (const auto value = parse_real(card.get(i + 1)); value && !parse_int(card.get(i + 1)))
+        constants_[std::move(label)] = *value;
+    }
+}
+
+/// ID TYPE PID NAME PMIN PMAX EQID, then DESVAR and the ids of variables, DTABLE and the labels of constants.
+void Design::read_equation_relation(Card& card, const CardText& text) {
+  Relation relation;
+  relation.card = text.name;
+  relation.id = card.read_id(0, "ID");
+  relation.type = card.get_upper(1);
+  relation.target = card.read_id(2, "PID MID EID");
+  relation.name = card.get_upper(3);
+  relation.equation = card.read_id(6, "EQID");
+  std::string kind;
+  for (int i = 8; i < card.get_size(); ++i) {
+    if (card.is_blank(i)) continue;
+    if (i % 8 == 0)
+      kind = card.get_upper(i);
+    else if (kind == "DESVAR")
+      relation.variables.push_back(card.read_id(i, "DVIDi"));
+    else if (kind == "DTABLE")
+      relation.constants.emplace_back(card.get_upper(i));
+    else
+      card.fail("deck.bad-word", i, "'" + kind + "' begins the line, expected DESVAR or DTABLE", "correct the word");
+  }
+  relation.at = card.get_location();
+  if (card.is_ok()) relations_.push_back(std::move(relation));
+}
+
 void Design::add(const CardText& text, const std::vector<std::string>& files, Diagnostics& diagnostics) {
   Card card(text, files, diagnostics);
+  if (text.name == "DTABLE") return read_constants(card);
+  if (text.name == "DEQATN") {
+    const auto id = find_equation_id(text);
+    if (id) equations_.insert_or_assign(*id, Equation{join_equation(text), card.get_location()});
+    return;
+  }
   if (num_cards_[text.name]++ == 0) first_[text.name] = card.get_location();
   if (text.name == "DESVAR") {
     const int id = card.read_id(0, "ID");
@@ -59,7 +104,32 @@ void Design::add(const CardText& text, const std::vector<std::string>& files, Di
       relation.terms = read_terms(card, 8);
     relation.at = card.get_location();
     if (card.is_ok()) relations_.push_back(std::move(relation));
+  } else {
+    read_equation_relation(card, text);
   }
+}
+
+/// Replaces the equation of a relation by its value.
+void Design::evaluate(Relation& relation, const records::Deck& deck, Diagnostics& diagnostics) const {
+  const auto fail = [&](const std::string& what) {
+    relation.is_wrong = true;
+    diagnostics.error("deck.design-equation", deck.locate(relation.at),
+                      relation.card + " " + std::to_string(relation.id) + ": " + what,
+                      "correct it, or --ignore " + relation.card + " to keep the value of the card");
+  };
+  const auto found = equations_.find(relation.equation);
+  if (found == equations_.end()) return fail("the deck has no DEQATN " + std::to_string(relation.equation));
+  std::vector<double> values;
+  for (const int variable : relation.variables) values.push_back(find_value(variable, relation, deck, diagnostics));
+  for (const auto& label : relation.constants) {
+    const auto constant = constants_.find(label);
+    if (constant == constants_.end()) return fail("no DTABLE has the constant " + label);
+    values.push_back(constant->second);
+  }
+  const auto result = evaluate_equation(found->second.text, values);
+  if (!result.error.empty())
+    return fail("DEQATN " + std::to_string(relation.equation) + " has no value: " + result.error);
+  relation.c0 = result.value;
 }
 
 void Design::finish(bool is_active, const std::string& sol, const records::Deck& deck, Diagnostics& diagnostics) {
@@ -70,7 +140,7 @@ void Design::finish(bool is_active, const std::string& sol, const records::Deck&
     diagnostics.note("deck.design-values", deck.locate(at),
                      "design variables give no values: SOL is " + (sol.empty() ? std::string("not given") : sol) +
                          ", and only SOL 200 takes them",
-                     "the properties are as their own cards say");
+                     "the properties are those of their cards");
     return;
   }
   for (const auto& link : links_) {
@@ -82,6 +152,8 @@ void Design::finish(bool is_active, const std::string& sol, const records::Deck&
   for (std::size_t i = 0; i < relations_.size(); ++i)
     by_target_.emplace(std::pair(relations_[i].type, relations_[i].target), i);
   for (auto& relation : relations_) {
+    has_equations_ = has_equations_ || relation.equation > 0;
+    if (relation.equation > 0) evaluate(relation, deck, diagnostics);
     for (auto& [variable, coefficient] : relation.terms)
       relation.c0 += coefficient * find_value(variable, relation, deck, diagnostics);
     if (relation.by_value > 0) find_value(relation.by_value, relation, deck, diagnostics);
@@ -104,6 +176,7 @@ std::vector<records::DesignVariable> Design::list_variables() const {
   for (const auto& relation : relations_) {
     for (const auto& [variable, coefficient] : relation.terms) used.insert(variable);
     if (relation.by_value > 0) used.insert(relation.by_value);
+    used.insert(relation.variables.begin(), relation.variables.end());
   }
   for (auto link = links_.rbegin(); link != links_.rend(); ++link)
     if (used.count(link->variable) > 0)
@@ -124,6 +197,7 @@ void Design::apply(CardText& text) {
     const auto [begin, end] = by_target_.equal_range({text.name, *id});
     for (auto entry = begin; entry != end; ++entry) {
       auto& relation = relations_[entry->second];
+      if (relation.is_wrong) continue;
       const int i = find_design_field(text, relation.name, static_cast<int>(first));
       if (i < 0) continue;
       if (static_cast<std::size_t>(i) >= text.fields.size())
@@ -149,11 +223,12 @@ void Design::report(const records::Deck& deck, Diagnostics& diagnostics) const {
   std::string done;
   std::size_t count = 0;
   for (const auto& relation : relations_) {
+    if (relation.is_wrong) continue;
     if (!relation.is_done)
       diagnostics.warning("deck.design-relation", deck.locate(relation.at),
                           relation.card + " " + std::to_string(relation.id) + " gives no value: " + relation.type +
                               " " + std::to_string(relation.target) + " '" + relation.name + "' is not found",
-                          "the property stays as its card says; write the number of the field for its name");
+                          "the property stays that of its card; write the number of the field for its name");
     else if (count++ < most_shown)
       done += (done.empty() ? "" : ", ") + relation.done;
   }
@@ -161,12 +236,6 @@ void Design::report(const records::Deck& deck, Diagnostics& diagnostics) const {
   if (count > 0)
     diagnostics.note("deck.design-values", deck.locate(relations_.front().at),
                      "design variables give, as in SOL 200 at the start: " + done);
-  for (const auto& [name, number] : num_cards_) {
-    if (name.back() == '2')
-      diagnostics.warning("deck.design-relation", deck.locate(first_.at(name)),
-                          name + " is not evaluated (" + std::to_string(number) + (number == 1 ? " card)" : " cards)"),
-                          "equations are not read: its properties stay as their cards say; write the values there");
-  }
 }
 
 }  // namespace bough::nastran::detail

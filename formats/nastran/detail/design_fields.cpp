@@ -136,6 +136,20 @@ int find_dimension(const CardText& text, const std::string& name) {
   return is_end ? station + 1 + n : -1;
 }
 
+/// A(B) to NSM(B) of PBEAM: at the station X/XB = 1. A station has SO, X/XB, six values and, of SO = YES, a line of
+/// stress points.
+int find_beam_end(const CardText& text, const std::string& name) {
+  static const Names offsets{{"A(B)", 2}, {"I1(B)", 3}, {"I2(B)", 4}, {"I12(B)", 5}, {"J(B)", 6}, {"NSM(B)", 7}};
+  const auto offset = offsets.find(name);
+  if (offset == offsets.end()) return -1;
+  const auto is_station = [&](int at) {
+    return is_word(get(text, at), "YES") || is_word(get(text, at), "NO") || is_word(get(text, at), "YESA");
+  };
+  for (int at = is_station(8) ? 8 : 16; is_station(at); at += is_word(get(text, at), "YES") ? 16 : 8)
+    if (parse_real(get(text, at + 1)).value_or(1) == 1) return at + offset->second;
+  return -1;
+}
+
 /// K1 to K6, B1 to B6, GE1 to GE6, M of PBUSH: after the flag of their line.
 int find_bush_value(const CardText& text, const std::string& name) {
   for (const std::string_view flag : {"K", "B", "GE", "M"}) {
@@ -169,6 +183,7 @@ int find_design_field(const CardText& text, const std::string& name, int first) 
   if (card != get_names().end())
     if (const auto field = card->second.find(name); field != card->second.end()) return first + field->second;
   if (text.name == "PBARL" || text.name == "PBEAML") return find_dimension(text, name);
+  if (text.name == "PBEAM") return find_beam_end(text, name);
   if (text.name == "PBUSH") return find_bush_value(text, name);
   char end = 'A';
   if (text.name == "PCOMP") {

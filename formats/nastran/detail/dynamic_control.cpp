@@ -95,8 +95,12 @@ DynamicCommand read_effective_mass(const CommandText& c, DynamicSelection& selec
 DynamicCommand read_dynamic_command(const CommandText& c, records::Subcase& subcase, DynamicSelection& selected) {
   const auto letters = std::string_view(c.word).substr(0, 4);
   for (const auto& s : selections)
-    if (letters == s.letters && (letters != "SDAM" || c.options.empty() || c.options.starts_with("STR")))
-      return read_selection(c, s.name, selected.*s.set, subcase);
+    if (letters == s.letters && (letters != "SDAM" || c.options.empty() || c.options.starts_with("STR"))) {
+      const auto read = read_selection(c, s.name, selected.*s.set, subcase);
+      // Steps of TSTEPNL have negative ids (parse_tstepnl).
+      if (read == DynamicCommand::Read && c.word == "TSTEPNL") selected.tstep = -selected.tstep;
+      return read;
+    }
   if (c.word == "LOADSET") return read_selection(c, "LOADSET", selected.loadset, subcase);
   if (c.word == "IC" && (c.options.empty() || c.options == "PHYSICAL"))
     return read_selection(c, "IC", selected.ic, subcase);

@@ -121,6 +121,7 @@ constexpr std::string_view neutral_cards =
     "PLTSURF PMINC PORFCPL PORFGBG PORFLOW PORFLWT PORHOLE PORHYDS PORUDS PRAC2D PRAC3D PSHLPF PSPRMAT PVISC1 "
     "RANDVAR REFROT REFRTSE RELEX ROTOR SHREL SHRPOL SHRUDS SPHERE STOCHAS SURFINI TABL3D TABL3D0 TABLED6 TABLEM5 "
     "TABLUDS TCOMPG TICEL TICEUDS TICEUL1 TICREG TICVAL TIRE TODYNA TRICON UNGLUE WALL WETELME WETLOAD WETSURF "
+    "PLOTE EIDL EIDL2 EIDH EIDH2 "
     "YLDHY YLDJC YLDMC YLDMSS YLDPOL YLDRPL YLDSG YLDTM YLDUDS YLDVM YLDZA";
 
 /// A name listed twice has the first effect.
@@ -191,6 +192,10 @@ const char* find_loss(std::string_view name) {
   if (name == "ROTORG" || name == "ROTORD" || name == "RSPINR" || name == "RSPEED" || name == "RGYRO" ||
       name == "UNBALNC")
     return "rotors spin in SOL 107, 108, 110 and 111 alone: they are left out here";
+  static constexpr std::array generators{"EGRID", "GRIDD",  "GRIDG",  "GRIDMOD", "GRIDU",
+                                         "MAREA", "MPOINT", "INSECT", "TRICON",  "MESHON"};
+  if (std::find(generators.begin(), generators.end(), name) != generators.end())
+    return "MSGMESH is not executed: the grids and elements that it generates are missing; write them out with Nastran";
   if (name == "SPCOFF") return "AUTOSPC holds its dofs too when they have no stiffness";
   if (name == "SENQSET") return "sections have the component modes of QSET1 and SPOINT in their own bulk data alone";
   if (name == "SEEXCLD") return "its grids join by their places all the same; name the others by SEBNDRY";

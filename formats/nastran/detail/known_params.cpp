@@ -207,8 +207,10 @@ struct ActingParam {
   const char* what;
 };
 constexpr auto is_not_one = [](const std::string& v) { return parse_real(v).value_or(1) != 1; };
+constexpr auto is_yes = [](const std::string& v) { return v == "YES" || v == "Y"; };
 constexpr auto is_different = [](const std::string& v) { return v == "DIFF"; };
 constexpr std::array acting_params{
+    ActingParam{"HEATSTAT", false, is_yes, "computes temperatures by heat transfer, which are not computed here"},
     ActingParam{"CK3", false, is_not_one, "scales a part of the stiffness"},
     ActingParam{"CK41", true, is_not_one, "scales the structural damping"},
     ActingParam{"SHLDAMP", true, is_different, "damps shells by each of their materials"},
@@ -219,6 +221,8 @@ bool report_acting(const records::Deck& deck, const records::Param& param, bool 
                    const std::vector<std::string>& ignored, Diagnostics& diagnostics) {
   for (const auto& acting : acting_params) {
     if (param.name != acting.name || (acting.of_responses && !of_responses) || !acting.acts(param.value)) continue;
+    // Shells alone are damped differently.
+    if (param.name.starts_with("SHLD") && deck.shells.empty()) continue;
     const std::string what = "PARAM," + param.name + "," + param.value + " is not supported: it " + acting.what;
     if (std::any_of(ignored.begin(), ignored.end(), [&](const auto& name) { return make_upper(name) == param.name; }))
       diagnostics.warning("deck.unsupported-param", deck.locate(param.at), what, "ignored as asked");
@@ -231,6 +235,13 @@ bool report_acting(const records::Deck& deck, const records::Param& param, bool 
 }
 
 }  // namespace
+
+bool is_used_param(std::string_view name, bool of_responses) {
+  const auto has = [name](const std::vector<Rule>& rules) {
+    return std::any_of(rules.begin(), rules.end(), [name](const Rule& rule) { return rule.name == name; });
+  };
+  return name != "GRDPNT" && (has(get_rules()) || (of_responses && has(get_response_rules())));
+}
 
 void report_params(records::Deck& deck, const std::vector<std::string>& ignored, Diagnostics& diagnostics,
                    bool of_responses) {

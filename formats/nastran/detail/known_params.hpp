@@ -14,4 +14,7 @@ namespace bough::nastran::detail {
 void report_params(records::Deck& deck, const std::vector<std::string>& ignored, Diagnostics& diagnostics,
                    bool of_responses = false);
 
+/// Returns true if the parameter changes the answer; with `of_responses`, that of a response.
+bool is_used_param(std::string_view name, bool of_responses);
+
 }  // namespace bough::nastran::detail

@@ -70,7 +70,7 @@ void expand_ranges(Reading& reading);
 /// After the last card: the elements of NASTRAN-95 get their PSHELL and PSOLID. Adds deck.old-element,
 /// deck.old-property.
 void finish_old_elements(Reading& reading);
-/// After the last card: fluid grids and solids, and what is said of their dofs, are taken out. Adds deck.fluid.
+/// Removes fluid grids and solids, and the cards about their dofs, after the last card. Adds deck.fluid.
 void finish_fluid(Reading& reading);
 /// After the last card: polar terms become real and imaginary parts. Adds deck.missing-header, deck.duplicate-term.
 void finish_direct_matrices(Reading& reading);

@@ -109,8 +109,8 @@ struct BeamDefaults {
   std::string offt = "GGG";
 };
 
-/// Elements of NASTRAN-95 that are read as those of today. Each old property card has ids of its own, so that PSHELL
-/// and PSOLID get theirs when all cards are known.
+/// Elements of NASTRAN-95 that are read as those of today. Each old property card has a separate range of ids, so that
+/// PSHELL and PSOLID get theirs when all cards are known.
 struct OldElements {
   struct Use {
     std::size_t index = 0;  ///< in deck.shells or deck.solids
@@ -165,7 +165,7 @@ struct Reading {
   std::map<std::string, IdTable> named_ids_;
 };
 
-/// Ids of their own for rigid elements of NASTRAN-95 that share theirs with an element of another name.
+/// Separate ids for rigid elements of NASTRAN-95 that share theirs with an element of another name.
 void finish_rigid_ids(Reading& r);
 
 using CardParser = void (*)(Card&, Reading&);

@@ -78,8 +78,8 @@ BulkSections split_bulk(const Source& source) {
   return bulk;
 }
 
-void read_sections(const BulkSections& bulk, const ReadOptions& options, records::Deck& deck,
-                   Diagnostics& diagnostics) {
+void read_sections(const BulkSections& bulk, const ComponentCases& cases, const ReadOptions& options,
+                   records::Deck& deck, Diagnostics& diagnostics) {
   for (const auto& section : bulk.sections) {
     auto read = std::make_shared<records::Deck>();
     read->files = deck.files;
@@ -91,6 +91,7 @@ void read_sections(const BulkSections& bulk, const ReadOptions& options, records
       if (item.id != "deck.unused-card" || std::string_view("BCQ").find(item.what.front()) == std::string_view::npos ||
           item.what.substr(1, 3) != "SET")
         diagnostics.add(item);
+    if (const auto found = cases.find(section.id); found != cases.end()) read->subcases = found->second;
     deck.super.sections.push_back({section.id, std::move(read), section.at});
   }
 }

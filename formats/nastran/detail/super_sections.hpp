@@ -1,5 +1,8 @@
 #pragma once
 /// \file Sections of superelements (BEGIN SUPER) and the files of their matrices (ASSIGN INPUTT4).
+#include <map>
+#include <vector>
+
 #include "formats/nastran/detail/lines.hpp"
 #include "formats/nastran/reader.hpp"
 
@@ -22,8 +25,13 @@ struct BulkSections {
 /// empty.
 BulkSections split_bulk(const Source& source);
 
-/// Reads each section as a separate deck into deck.super.sections.
-void read_sections(const BulkSections& bulk, const ReadOptions& options, records::Deck& deck, Diagnostics& diagnostics);
+/// Subcases of superelements alone, by superelement: SPC, MPC and METHOD.
+using ComponentCases = std::map<int, std::vector<records::Subcase>>;
+
+/// Reads each section as a separate deck into deck.super.sections. Its subcases are those of `cases`, else one without
+/// an id.
+void read_sections(const BulkSections& bulk, const ComponentCases& cases, const ReadOptions& options,
+                   records::Deck& deck, Diagnostics& diagnostics);
 
 /// ASSIGN INPUTT4 of the file management section, by unit.
 void read_assigned_files(const Source& source, records::Deck& deck);

@@ -3,6 +3,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "base/platform.hpp"
 #include "formats/toml/detail/source_text.hpp"
 
 namespace bough::toml_files {
@@ -23,10 +24,11 @@ std::vector<std::string> split_cells(const std::string& line) {
 Setting read_cell(const std::string& cell) {
   const char *first = cell.data() + (cell.size() > 1 && cell[0] == '+' ? 1 : 0), *last = cell.data() + cell.size();
   long long integer = 0;
-  if (const auto r = std::from_chars(first, last, integer); r.ec == std::errc() && r.ptr == last)
+  if (const auto r = platform::read_number(first, last, integer); r.ec == std::errc() && r.ptr == last)
     return make_setting(static_cast<double>(integer), true);
   double real = 0;
-  if (const auto r = std::from_chars(first, last, real); r.ec == std::errc() && r.ptr == last && std::isfinite(real))
+  if (const auto r = platform::read_number(first, last, real);
+      r.ec == std::errc() && r.ptr == last && std::isfinite(real))
     return make_setting(real, false);
   if (cell == "true" || cell == "false") return {Kind::Boolean, cell, cell == "true" ? 1.0 : 0.0};
   return {Kind::Word, cell, 0};

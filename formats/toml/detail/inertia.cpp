@@ -6,8 +6,8 @@ namespace bough::toml_files {
 
 namespace {
 
-/// No body has a principal moment above the sum of the two others. A little above is a warning, of whoever runs it;
-/// this far above the numbers are in the wrong places. One about a single axis, the others zero, is a planar model.
+/// No body has a principal moment above the sum of the two others. A little above is a warning of the command that runs
+/// it; this far above the numbers are in the wrong places. One about a single axis, the others zero, is a planar model.
 void check_inertia(const Eigen::Matrix3d& inertia, const Fields& table, Diagnostics& diagnostics) {
   if (!inertia.allFinite()) return;
   const Eigen::Vector3d principal =

@@ -153,8 +153,8 @@ std::vector<double> SignalUnits::list_actuator_units(const toml::table& actuator
   if (type == "jet" || type == "engine") return {force(), c_.mass};
   if (type == "torque_rod") return {torque, torque, torque, torque};
   if (type == "wheel") return {torque, torque * c_.time, rate};
-  if (type == "cmg") return {rate, 1};
-  if (type == "double_gimbal_cmg") return {rate, rate, 1, 1};
+  if (type == "cmg") return {rate, 1, torque};
+  if (type == "double_gimbal_cmg") return {rate, rate, 1, 1, torque, torque};
   return {get_command_unit(actuator)};
 }
 

@@ -35,7 +35,7 @@ namespace {
 
 bool is_near(double a, double b) { return std::abs(a - b) <= 1e-13 * std::abs(b); }
 
-/// Units of what arrives, a number for each component as far as they are told apart.
+/// Units of what arrives, a number for each component as far as they differ.
 std::vector<double> list_inputs(const UnitTable& t, SignalUnits& units, const char* key, const char* port) {
   std::vector<double> all;
   for (const auto& wire : units.list_wires(t.table, key, port)) {

@@ -1,5 +1,5 @@
-// Grids at the mean of others along curves: rigid-body motions, finite motions by singular values, and forces as
-// derivatives of the work.
+// Grids at the mean of others, along curves and at finite motions: rigid-body motions, singular values, forces as
+// derivatives of the work, tangents by differences.
 #include "fe/corotational/mean_series.hpp"
 
 #include <gtest/gtest.h>
@@ -7,6 +7,7 @@
 #include <Eigen/SVD>
 
 #include "base/rotation.hpp"
+#include "fe/corotational/mean_motion.hpp"
 
 namespace bough::fe {
 namespace {
@@ -108,6 +109,77 @@ TEST(MeanSeries, ForcesAreDerivativesOfTheWork) {
     }
     EXPECT_NEAR(of_members, of_end, 1e-8) << order;
   }
+}
+
+/// A finite motion of the members, and what it varies by.
+struct FiniteMotion {
+  Matrix3Xd u = Matrix3Xd::Random(3, 3);
+  std::vector<Matrix3d> R;
+  FiniteMotion() {
+    for (int i = 0; i < 3; ++i) R.push_back(calc_rotation_exp(Vector3d(1.2, -0.9, 0.4) + 0.6 * Vector3d::Random()));
+    const Matrix3d all = calc_rotation_exp(Vector3d(1.2, -0.9, 0.4));
+    const WeightedMean mean = make_mean();
+    for (std::size_t i = 0; i < 3; ++i)
+      u.col(static_cast<Eigen::Index>(i)) =
+          0.4 * u.col(static_cast<Eigen::Index>(i)) + (all - Matrix3d::Identity()) * mean.members[i].arm;
+  }
+  FiniteMotion move(const VectorXd& change) const {
+    FiniteMotion moved = *this;
+    for (Eigen::Index i = 0; i < 3; ++i) {
+      moved.u.col(i) += change.segment<3>(6 * i);
+      auto& turned = moved.R[static_cast<std::size_t>(i)];
+      turned = calc_rotation_exp(Vector3d(change.segment<3>(6 * i + 3))) * turned;
+    }
+    return moved;
+  }
+};
+
+TEST(MeanMotion, IsTheBestFit) {
+  const WeightedMean mean = make_mean();
+  const FiniteMotion at;
+  Matrix3d B = Matrix3d::Zero();
+  Vector3d centre = Vector3d::Zero();
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    const auto& member = mean.members[static_cast<std::size_t>(i)];
+    centre += member.weight / 3.7 * at.u.col(i);
+    B += member.weight * (member.arm + at.u.col(i)) * member.arm.transpose() +
+         0.5 * member.turn_weight * at.R[static_cast<std::size_t>(i)];
+  }
+  const Eigen::JacobiSVD<Matrix3d> svd(B, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const Matrix3d R = svd.matrixU() * svd.matrixV().transpose();
+  const MeanMotion motion(mean, at.u, at.R);
+  EXPECT_GT((R - Matrix3d::Identity()).norm(), 1);
+  EXPECT_LT((motion.R() - R).norm(), 1e-13);
+  EXPECT_LT((motion.calc_displacement(kArm) - centre - R * kArm + kArm).norm(), 1e-13);
+}
+
+/// Central differences of places and rotations, and of the forces on the members.
+TEST(MeanMotion, TangentAndSlopeAreDerivatives) {
+  const WeightedMean mean = make_mean();
+  const FiniteMotion at;
+  const MeanMotion motion(mean, at.u, at.R);
+  const Vector3d force(3, -2, 1), moment(-0.5, 2, 0.7);
+  Eigen::Matrix<double, 6, 1> on_end;
+  on_end << force, moment;
+  const MatrixXd tangent = motion.calc_tangent(kArm), slope = motion.calc_slope(kArm, force, moment);
+  const double step = 1e-6;
+  for (Eigen::Index j = 0; j < 18; ++j) {
+    const FiniteMotion a = at.move(-step * VectorXd::Unit(18, j)), b = at.move(step * VectorXd::Unit(18, j));
+    const MeanMotion before(mean, a.u, a.R), after(mean, b.u, b.R);
+    const Vector3d moved = (after.calc_displacement(kArm) - before.calc_displacement(kArm)) / (2 * step);
+    const Matrix3d turned = (after.R() - before.R()) / (2 * step) * motion.R().transpose();
+    EXPECT_LT((moved - tangent.col(j).head<3>()).norm(), 1e-8) << j;
+    EXPECT_LT((turned - skew(tangent.col(j).tail<3>())).norm(), 1e-8) << j;
+    const VectorXd change = (after.calc_tangent(kArm) - before.calc_tangent(kArm)).transpose() * on_end / (2 * step);
+    EXPECT_LT((change - slope.col(j)).norm(), 1e-7 * (1 + slope.norm())) << j;
+  }
+  // Without moment there is a potential: by spins its second derivative is symmetric but for the moments on the grids.
+  const MatrixXd of_force = motion.calc_slope(kArm, force, Vector3d::Zero());
+  const VectorXd on_members = tangent.topRows<3>().transpose() * force;
+  MatrixXd skewed = MatrixXd::Zero(18, 18);
+  for (Eigen::Index i = 0; i < 3; ++i)
+    skewed.block<3, 3>(6 * i + 3, 6 * i + 3) = -skew(on_members.segment<3>(6 * i + 3));
+  EXPECT_LT((of_force - of_force.transpose() - skewed).norm(), 1e-12 * of_force.norm());
 }
 
 }  // namespace

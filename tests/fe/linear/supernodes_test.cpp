@@ -8,8 +8,8 @@
 
 // The same as compiled for a processor without wide registers, under another name.
 namespace bough::narrow {
-using linear::kFewSides;
-using linear::kManySides;
+using linear::kNarrowRhs;
+using linear::kWideRhs;
 using linear::Supernodes;
 }  // namespace bough::narrow
 #define BOUGH_NARROW
@@ -83,12 +83,12 @@ void expect_solutions(int size, Eigen::Index m) {
 }
 
 TEST(Supernodes, AreSolvedWithForwardsAndBackwards) {
-  for (const auto m : {kFewSides, kManySides}) expect_solutions(13, m);
+  for (const auto m : {kNarrowRhs, kWideRhs}) expect_solutions(13, m);
 }
 
 /// Supernodes cut after the first, second, third column of a group and between groups; the rest of L is not read.
 TEST(Supernodes, AreCutWhereColumnsEnd) {
-  for (const auto m : {kFewSides, kManySides})
+  for (const auto m : {kNarrowRhs, kWideRhs})
     for (int size = 1; size < 13; ++size) expect_solutions(size, m);
 }
 

@@ -127,7 +127,7 @@ TEST(ElementRecovery, SubcasesTogetherAreTheSubcasesAlone) {
     const auto own = alone.solve_next(std::span(deck.subcases).subspan(k, 1));
     ASSERT_EQ(own.size(), 1u);
     ASSERT_EQ(own[0].result.has_value(), all[k].result.has_value());
-    EXPECT_EQ(own[0].said.items().size(), all[k].said.items().size());
+    EXPECT_EQ(own[0].diagnostics.items().size(), all[k].diagnostics.items().size());
     if (!own[0].result) continue;
     const auto &a = *own[0].result, &b = *all[k].result;
     EXPECT_EQ(a.id, b.id);

@@ -258,8 +258,7 @@ TEST_F(LargeDisplacementLoads, AveragedForceIsDistributed) {
   const auto shared = solve(write_bars(8, 1, fork + shares, 1e9));
   EXPECT_GT(get_place(shared, 8).norm(), 0.4);
   EXPECT_LT((get_place(tied, 8) - get_place(shared, 8)).norm(), 1e-6);
-  ASSERT_EQ(tied.diagnostics.items().size(), 1u);
-  EXPECT_EQ(tied.diagnostics.items()[0].id, "fe.nonlinear-link");
+  EXPECT_TRUE(tied.diagnostics.items().empty());
 }
 
 /// Equations of displacements and of rotation vectors: two beams share what one of them is loaded by.

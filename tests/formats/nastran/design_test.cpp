@@ -52,9 +52,10 @@ TEST(Design, WhatIsNotDoneIsSaid) {
       read_design("200",
                   "DESVAR,1,X,2.\nPSHELL,1,1,.1\nDVPREL1,1,PSHELL,1,TT\n+,1,1.\nDVPREL1,2,PSHELL,7,T\n+,1,1.\n"
                   "DVPREL2,3,PSHELL,1,T,,,5\nDVPREL1,4,PSHELL,1,T\n+,9,1.\n");
-  EXPECT_EQ(r.count("deck.design-relation"), 4) << r.get_messages();
-  EXPECT_EQ(r.diagnostics.num_errors(), 1);  // DESVAR 9 is missing
-  EXPECT_NE(r.get_messages().find("DVPREL2 is not evaluated (1 card)"), std::string::npos);
+  EXPECT_EQ(r.count("deck.design-relation"), 3) << r.get_messages();
+  EXPECT_EQ(r.diagnostics.num_errors(), 2);  // DESVAR 9 and DEQATN 5 are missing
+  ASSERT_EQ(r.count("deck.design-equation"), 1);
+  EXPECT_NE(r.find("deck.design-equation")->what.find("has no DEQATN 5"), std::string::npos);
   EXPECT_NE(r.get_messages().find("PSHELL 1 'TT' is not found"), std::string::npos);
 }
 

@@ -26,7 +26,18 @@ VectorXd calc_packed(const MatrixXd& c, const VectorXd& x, int degree) {
   return sum;
 }
 
-class ThirdOrderTest : public ::testing::TestWithParam<std::vector<int>> {
+/// Large amplitudes of a body: modes, or combinations of all modes.
+struct Large {
+  std::vector<int> modes;
+  int num_directions = 0;
+};
+void PrintTo(const Large& large, std::ostream* out) {
+  *out << (large.num_directions > 0 ? "directions " : "modes ");
+  for (const int mode : large.modes) *out << mode;
+  if (large.num_directions > 0) *out << large.num_directions;
+}
+
+class ThirdOrderTest : public ::testing::TestWithParam<Large> {
  protected:
   ThirdOrderTest() : points_(make_point_body(kNumModes + kNumFields, 31, 0)) {
     make_orthonormal();
@@ -64,14 +75,18 @@ class ThirdOrderTest : public ::testing::TestWithParam<std::vector<int>> {
   void set_third_order() {
     Random random(17);
     ThirdOrder& third = flex_.third_order;
-    third.large = GetParam();
+    third.large = GetParam().modes;
+    if (const int num = GetParam().num_directions; num > 0) {
+      third.directions = MatrixXd::NullaryExpr(num, kNumModes, [&] { return random(0.7); });
+      third.count_directions();
+    }
     const int N = third.num_large();
     const auto fill = [&](int n, int degree, int columns, double scale) {
       return MatrixXd(
           MatrixXd::NullaryExpr(records::count_monomials(n, degree), columns, [&] { return random(scale); }));
     };
     for (int k = 3; k <= 6; ++k) third.energy[static_cast<size_t>(k - 3)] = fill(N, k, 1, 0.5);
-    third.energy_small = fill(N, 2, kNumModes - N, 0.5);
+    third.energy_small = fill(N, 2, kNumModes - N, third.directions.size() > 0 ? 0 : 0.5);
     flex_.interface_nodes = {101, 103};
     third.node.resize(2);
     const auto ne = static_cast<int>(flex_.locators.size());
@@ -86,9 +101,11 @@ class ThirdOrderTest : public ::testing::TestWithParam<std::vector<int>> {
     third.integrals = both_.integrals();
   }
 
-  VectorXd get_variables(int degree, const VectorXd& eta) const {
-    return degree == 2 ? eta : VectorXd(eta(flex_.third_order.large));
+  VectorXd get_large(const VectorXd& eta) const {
+    const ThirdOrder& third = flex_.third_order;
+    return third.directions.size() > 0 ? VectorXd(third.directions * eta) : VectorXd(eta(third.large));
   }
+  VectorXd get_variables(int degree, const VectorXd& eta) const { return degree == 2 ? eta : get_large(eta); }
   VectorXd calc_xi(const VectorXd& eta) const {
     VectorXd xi(kNumModes + kNumFields);
     xi << eta, VectorXd::Zero(kNumFields);
@@ -99,9 +116,10 @@ class ThirdOrderTest : public ::testing::TestWithParam<std::vector<int>> {
   }
   double calc_energy(const VectorXd& eta) const {
     const ThirdOrder& third = flex_.third_order;
-    const VectorXd x = eta(third.large);
+    const VectorXd x = get_large(eta);
     double V = 0.5 * eta.dot(flex_.modal_stiffness * eta);
     for (int k = 3; k <= 6; ++k) V += calc_packed(third.energy[static_cast<size_t>(k - 3)], x, k)[0];
+    if (third.directions.size() > 0) return V;
     const VectorXd on_small = calc_packed(third.energy_small, x, 2);
     for (int j = 0, s = 0; j < kNumModes; ++j)
       if (!std::count(third.large.begin(), third.large.end(), j)) V += eta[j] * on_small[s++];
@@ -223,7 +241,7 @@ TEST_P(ThirdOrderTest, WorkOfALoadIsItsPolynomial) {
 }
 
 INSTANTIATE_TEST_SUITE_P(LargeModes, ThirdOrderTest,
-                         ::testing::Values(std::vector<int>{0, 1, 2, 3}, std::vector<int>{0, 2}, std::vector<int>{3}));
+                         ::testing::Values(Large{{0, 1, 2, 3}}, Large{{0, 2}}, Large{{3}}, Large{{}, 3}, Large{{}, 1}));
 
 }  // namespace
 }  // namespace bough::solver::testing

@@ -24,6 +24,20 @@ records::SystemSpec make_flyer(const std::string& type) {
   return spec;
 }
 
+/// The body with two gimbals that turn at rates of one signal.
+records::SystemSpec make_double_gimbal() {
+  auto spec = make_flyer("double_gimbal_cmg");
+  spec.controllers = {make_law("rates", "expression", {"law"})};
+  spec.controllers[0].settings.words["expression"] = {"u1", "0.3 - 2*u1"};
+  spec.actuators[0].input = "rates";
+  spec.actuators[0].settings.numbers = {{"gimbal_axis", {0, 0, 1}},
+                                        {"inner_axis", {1, 0, 0}},
+                                        {"spin_axis", {0, 2, 0}},
+                                        {"momentum", {1.5}},
+                                        {"angle", {0.2, -0.4}}};
+  return spec;
+}
+
 TEST(Wheel, ExchangesMomentumAndKeepsTheWhole) {
   auto spec = make_flyer("wheel");
   spec.actuators[0].settings.numbers = {{"axis", {1, 2, -1}}, {"inertia", {0.05}}, {"momentum", {0.7}}};
@@ -62,17 +76,55 @@ TEST(ControlMomentGyro, KeepsTheWholeMomentum) {
   EXPECT_NEAR(cmg(100, 1), 0.2 * (1 - std::cos(10)), 1e-9);
 }
 
+/// Rate of the momentum of a rotor of momentum h, in the frame of a body that turns at `rate` while gimbals turn it at
+/// `turn`.
+Vector3d calc_momentum_rate(const Vector3d& rate, const Vector3d& turn, const Vector3d& h) {
+  return (rate + turn).cross(h);
+}
+
+// The motor of the gimbal: its torque by the rate of the rotor's momentum, its work by the balance of the body.
+TEST(ControlMomentGyro, TorqueOfTheGimbalMotorIsTheMomentumRateAboutItsAxis) {
+  auto spec = make_flyer("cmg");
+  spec.actuators[0].settings.numbers = {{"gimbal_axis", {0, 0, 1}}, {"spin_axis", {0, 2, 0}}, {"momentum", {1.5}}};
+  spec.sensors = {make_sensor("gyro", SensorType::Gyro, "rotor")};
+  const RunResult r = run(spec);
+  const MatrixXd cmg = r.sink.get("/actuators/drive"), rate = r.sink.get("/sensors/gyro");
+  ASSERT_EQ(cmg.cols(), 3);
+  double largest = 0;
+  for (int i = 0; i < cmg.rows(); ++i) {
+    const Vector3d h = 1.5 * Vector3d(-std::sin(cmg(i, 1)), std::cos(cmg(i, 1)), 0), turn(0, 0, cmg(i, 0));
+    EXPECT_NEAR(cmg(i, 2), calc_momentum_rate(rate.row(i), turn, h).z(), 1e-12);
+    largest = std::max(largest, std::abs(cmg(i, 2)));
+  }
+  EXPECT_GT(largest, 0.1);
+  // Work = ∫ torque · rate dt, by Simpson's rule.
+  const VectorXd power = cmg.col(2).cwiseProduct(cmg.col(0)), t = r.sink.time();
+  double work = 0;
+  for (int i = 0; i + 2 < t.size(); i += 2)
+    work += (t[i + 2] - t[i]) / 6 * (power[i] + 4 * power[i + 1] + power[i + 2]);
+  const MatrixXd kinetic = r.sink.get("/energy/kinetic");
+  EXPECT_NEAR(work, kinetic(kinetic.rows() - 1, 0) - kinetic(0, 0), 1e-5 * std::abs(work));
+}
+
+TEST(DoubleGimbal, TorquesOfTheMotorsAreTheMomentumRateAboutTheirAxes) {
+  auto spec = make_double_gimbal();
+  spec.sensors = {make_sensor("gyro", SensorType::Gyro, "rotor")};
+  const RunResult r = run(spec);
+  const MatrixXd cmg = r.sink.get("/actuators/drive"), rate = r.sink.get("/sensors/gyro");
+  ASSERT_EQ(cmg.cols(), 6);
+  for (int i = 0; i < cmg.rows(); ++i) {
+    const double a = cmg(i, 2), b = cmg(i, 3);
+    const Vector3d inner(std::cos(a), std::sin(a), 0), outer(0, 0, 1);
+    const Vector3d h = 1.5 * Vector3d(-std::sin(a) * std::cos(b), std::cos(a) * std::cos(b), std::sin(b));
+    const Vector3d h_dot = calc_momentum_rate(rate.row(i), cmg(i, 0) * outer + cmg(i, 1) * inner, h);
+    EXPECT_NEAR(cmg(i, 4), h_dot.dot(outer), 1e-12);
+    EXPECT_NEAR(cmg(i, 5), h_dot.dot(inner), 1e-12);
+  }
+}
+
 // Rates of both gimbals from one signal of two numbers; the reaction on the body is that of turning momentum.
 TEST(DoubleGimbal, KeepsTheWholeMomentum) {
-  auto spec = make_flyer("double_gimbal_cmg");
-  spec.controllers = {make_law("rates", "expression", {"law"})};
-  spec.controllers[0].settings.words["expression"] = {"u1", "0.3 - 2*u1"};
-  spec.actuators[0].input = "rates";
-  spec.actuators[0].settings.numbers = {{"gimbal_axis", {0, 0, 1}},
-                                        {"inner_axis", {1, 0, 0}},
-                                        {"spin_axis", {0, 2, 0}},
-                                        {"momentum", {1.5}},
-                                        {"angle", {0.2, -0.4}}};
+  auto spec = make_double_gimbal();
   const RunResult r = run(spec);
   const MatrixXd L = r.sink.get("/momentum/angular"), cmg = r.sink.get("/actuators/drive");
   EXPECT_LT((L.rowwise() - L.row(0)).cwiseAbs().maxCoeff(), 1e-10);
