@@ -12,8 +12,6 @@ namespace {
 constexpr double kReferenceWay = 0.1;
 /// A mode that the reference load moves by this share of the softest one's way, or more, is large.
 constexpr double kSoft = 0.05;
-/// Length that makes a displacement of a rotation, in sizes of the model.
-constexpr double kTurnedShare = 0.1;
 /// Another mode is small if bending of the large ones moves it by more than this number of its ways under the load.
 constexpr double kFollows = 2;
 

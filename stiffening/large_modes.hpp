@@ -4,6 +4,8 @@
 
 namespace bough::stiffening {
 
+/// Length that makes a displacement of a rotation, in sizes of the model.
+constexpr double kTurnedShare = 0.1;
 /// Max number of large modes if the body file selects none.
 constexpr int kDefaultLargeModes = 6;
 

@@ -27,8 +27,6 @@ using fe::SeriesVector;
 constexpr double kNoInertia = 1e-8;
 /// Reciprocal of the relative difference below which two compliances are alike.
 constexpr double kComplianceSteps = 1e4;
-/// Length that makes a displacement of a rotation, in sizes of the model.
-constexpr double kTurnedShare = 0.1;
 constexpr int kMinElementsOfThread = 50;
 
 std::vector<int> list_gdofs(const fe::Node& node) {

@@ -43,14 +43,19 @@ void Design::read_constants(Card& card) {
     }
 }
 
-/// ID TYPE PID NAME PMIN PMAX EQID, then DESVAR and the ids of variables, DTABLE and the labels of constants.
-void Design::read_equation_relation(Card& card, const CardText& text) {
+Design::Relation Design::read_head(Card& card, const CardText& text) {
   Relation relation;
   relation.card = text.name;
   relation.id = card.read_id(0, "ID");
   relation.type = card.get_upper(1);
   relation.target = card.read_id(2, "PID MID EID");
   relation.name = card.get_upper(3);
+  return relation;
+}
+
+/// ID TYPE PID NAME PMIN PMAX EQID, then DESVAR and the ids of variables, DTABLE and the labels of constants.
+void Design::read_equation_relation(Card& card, const CardText& text) {
+  Relation relation = read_head(card, text);
   relation.equation = card.read_id(6, "EQID");
   std::string kind;
   for (int i = 8; i < card.get_size(); ++i) {
@@ -91,12 +96,7 @@ void Design::add(const CardText& text, const std::vector<std::string>& files, Di
     link.terms = read_terms(card, 4);
     links_.push_back(std::move(link));
   } else if (text.name.back() == '1') {
-    Relation relation;
-    relation.card = text.name;
-    relation.id = card.read_id(0, "ID");
-    relation.type = card.get_upper(1);
-    relation.target = card.read_id(2, "PID MID EID");
-    relation.name = card.get_upper(3);
+    Relation relation = read_head(card, text);
     relation.c0 = card.read_real(6, "C0", 0.0);
     if (card.is_word(9, "PVAL"))
       relation.by_value = card.read_id(8, "DVID1");

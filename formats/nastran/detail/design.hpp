@@ -66,6 +66,8 @@ class Design {
     std::string text;
     records::CardLocation at;
   };
+  /// Returns a relation with its card, id, type, target and name.
+  static Relation read_head(Card& card, const CardText& text);
   void read_equation_relation(Card& card, const CardText& text);
   void read_constants(Card& card);
   void evaluate(Relation& relation, const records::Deck& deck, Diagnostics& diagnostics) const;
