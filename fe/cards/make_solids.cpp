@@ -2,6 +2,7 @@
 #include <optional>
 #include <set>
 
+#include "base/number_text.hpp"
 #include "fe/cards/maker.hpp"
 #include "fe/elements/solid.hpp"
 
@@ -60,9 +61,10 @@ class MaterialMaker {
     const auto* m = maker_.find_material(property.mid, name, property.at);
     if (!m) return std::nullopt;
     if (!(m->nu > -1 && m->nu < 0.5)) {
-      maker_.error("fe.bad-material", m->at,
-                   "MAT1 " + std::to_string(m->id) + " has nu = " + show(m->nu) + ", expected -1 < nu < 0.5 in a solid",
-                   "correct the material");
+      maker_.error(
+          "fe.bad-material", m->at,
+          "MAT1 " + std::to_string(m->id) + " has nu = " + show_number(m->nu) + ", expected -1 < nu < 0.5 in a solid",
+          "correct the material");
       return std::nullopt;
     }
     SolidMaterial material;
@@ -150,7 +152,7 @@ void make_solids(Maker& maker) {
       maker.error("fe.bad-solid", card.at,
                   who + (quality.volume == 0 ? std::string(" has no volume")
                                              : " folds over itself (least Jacobian over its mean " +
-                                                   show(quality.smallest_ratio) + ", expected above 0)"),
+                                                   show_number(quality.smallest_ratio) + ", expected above 0)"),
                   "check the order and the places of its grids");
       continue;
     }

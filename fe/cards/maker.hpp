@@ -67,9 +67,6 @@ class Maker {
   std::unordered_map<int, bool> material_ok_;
 };
 
-/// A number as a message shows it (six digits, exponent where needed).
-std::string show(double value);
-
 /// CBAR and CBEAM with PBAR, PBARL, PBEAM, PBEAML, PBCOMP.
 void make_beams(Maker& maker);
 /// CROD, CONROD, CTUBE.

@@ -5,6 +5,7 @@
 #include <set>
 #include <utility>
 
+#include "base/number_text.hpp"
 #include "fe/cards/maker.hpp"
 #include "fe/cards/nonstructural.hpp"
 #include "fe/model/coordinates.hpp"
@@ -174,8 +175,9 @@ void ModelBuilder::fix(const records::Spc& spc) {
       if (is_new || known->second == spc.d) continue;
       diagnostics_.warning("fe.enforced-twice", at,
                            "SPC set " + std::to_string(spc.sid) + " moves grid " + std::to_string(spc.g) +
-                               " component " + std::to_string(node.num_dofs == 1 ? 0 : c + 1) + " by " + show(spc.d) +
-                               ", and another card by " + show(known->second) + "; the last card is taken",
+                               " component " + std::to_string(node.num_dofs == 1 ? 0 : c + 1) + " by " +
+                               show_number(spc.d) + ", and another card by " + show_number(known->second) +
+                               "; the last card is taken",
                            "remove one of the two cards");
       known->second = spc.d;
     }
