@@ -287,6 +287,13 @@ class Builder {
     else
       entry->parser(card, reading_);
     if (card.is_ok()) leftovers_.add(card);
+    if (card.has_unkept()) keep_left_out("fields of " + text_.name + " that are not used");
+  }
+
+  /// Names what no record keeps, for a deck that is written.
+  void keep_left_out(const std::string& text) {
+    if (std::find(deck_.left_out.begin(), deck_.left_out.end(), text) == deck_.left_out.end())
+      deck_.left_out.push_back(text);
   }
 
   void keep_extra_points() {
@@ -295,8 +302,24 @@ class Builder {
     for (const int id : read_ids(card, 0, card.get_size(), "ID")) dynamics_->dynamics.extra_points.insert(id);
   }
 
-  /// Returns true if the card is of a set that a command selects, and no subcase does.
+  /// Returns true if a subcase selects a response, complex modes or residual vectors.
+  bool selects_dynamics() const {
+    using records::DynamicSelection;
+    static constexpr int DynamicSelection::*sets[] = {
+        &DynamicSelection::dload,   &DynamicSelection::loadset, &DynamicSelection::frequency,
+        &DynamicSelection::tstep,   &DynamicSelection::ic,      &DynamicSelection::sdamping,
+        &DynamicSelection::cmethod, &DynamicSelection::tfl,     &DynamicSelection::random,
+        &DynamicSelection::rcross,  &DynamicSelection::rgyro,   &DynamicSelection::rmethod};
+    return std::any_of(dynamics_->selections.begin(), dynamics_->selections.end(), [](const auto& one) {
+      return one.second.resvec.value_or(false) ||
+             std::any_of(std::begin(sets), std::end(sets), [&](auto set) { return one.second.*set != 0; });
+    });
+  }
+
+  /// Returns true if the card is of a set that a command selects, and no subcase does; or, of a deck that is written
+  /// again, if none selects any such card.
   bool is_unselected() const {
+    if (is_complex_ && !selects_dynamics()) return true;
     const auto member = find_selection_of(text_.name);
     const auto set = member && !text_.fields.empty() ? parse_int(text_.fields.front()) : std::nullopt;
     return set && std::none_of(dynamics_->selections.begin(), dynamics_->selections.end(),
@@ -315,7 +338,11 @@ class Builder {
       }
       diagnostics_.add(std::move(item));
     }
-    if (card.is_ok()) leftovers_.add(card);
+    if (card.is_ok())
+      leftovers_.add(card);
+    else
+      keep_left_out(text_.name + " with errors");
+    if (card.has_unkept()) keep_left_out("fields of " + text_.name + " that are not used");
   }
 
   void keep_unread_load() {

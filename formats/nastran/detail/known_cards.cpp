@@ -200,7 +200,7 @@ const char* find_loss(std::string_view name) {
   if (name == "SENQSET") return "sections have the component modes of QSET1 and SPOINT in their own bulk data alone";
   if (name == "SEEXCLD") return "its grids join by their places all the same; name the others by SEBNDRY";
   if (name.substr(0, 2) == "SE" && find_effect(name) && name != "SEQGP" && name != "SET" && name != "SEBULK" &&
-      name != "SECONCT" && name != "SELOAD")
+      name != "SECONCT" && name != "SEBNDRY" && name != "SELOAD")
     return "superelements are not formed: the whole model is solved at once";
   return nullptr;
 }
