@@ -23,14 +23,15 @@ constexpr std::size_t kMaxKept = std::size_t{1} << 31;
 /// Limit of a text that is read whole for its first bytes: a larger one may be a list of results that is no input.
 constexpr std::size_t kMaxText = std::size_t{1} << 29;
 
-/// Device, number, size and times of a file: they change when it is written or replaced.
-using FileState = std::tuple<dev_t, ino_t, off_t, time_t, long, time_t, long>;
+/// Device, number, size and time of a file: they change when it is written or replaced.
+using FileState = std::tuple<dev_t, ino_t, off_t, std::filesystem::file_time_type>;
 
 bool find_state(const std::string& path, FileState& state) {
   struct stat s {};
   if (::stat(path.c_str(), &s) != 0 || !S_ISREG(s.st_mode)) return false;
-  state = {s.st_dev, s.st_ino, s.st_size, s.st_mtim.tv_sec, s.st_mtim.tv_nsec, s.st_ctim.tv_sec, s.st_ctim.tv_nsec};
-  return true;
+  std::error_code failed;
+  state = {s.st_dev, s.st_ino, s.st_size, std::filesystem::last_write_time(path, failed)};
+  return !failed;
 }
 
 struct Input {

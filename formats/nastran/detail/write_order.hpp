@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <initializer_list>
 #include <map>
+#include <string_view>
 
 namespace bough::nastran::detail {
 
