@@ -31,7 +31,7 @@ struct LayoutRow {
 /// The rows of one kind of file.
 struct Layout {
   std::string_view format;  ///< root attribute `format`
-  std::string_view page;    ///< docs/formats/PAGE.md
+  std::string_view page;    ///< docs/formats/PAGE.md; empty: its rows are those of another format
   std::vector<LayoutRow> rows;
 };
 

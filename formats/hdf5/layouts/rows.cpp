@@ -39,7 +39,8 @@ std::vector<LayoutRow> list_mesh_rows() {
 const std::vector<Layout>& get_layouts() {
   static const std::vector<Layout> layouts{make_flex_body_layout(), make_modes_layout(),    make_complex_modes_layout(),
                                            make_static_layout(),    make_matrices_layout(), make_linear_layout(),
-                                           make_sweep_layout(),     make_response_layout(), make_budget_layout()};
+                                           make_sweep_layout(),     make_response_layout(), make_budget_layout(),
+                                           make_frequency_layout(), make_transient_layout()};
   return layouts;
 }
 

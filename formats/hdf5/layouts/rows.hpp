@@ -30,6 +30,10 @@ Layout make_linear_layout();
 Layout make_sweep_layout();
 /// Rows of the file of `response`.
 Layout make_response_layout();
+/// Rows of the files of `frequency` and `transient`, of which the page has one table.
+Layout make_frequency_layout();
+/// Rows of the file of `transient`.
+Layout make_transient_layout();
 /// Rows of the file of `response --budget`.
 Layout make_budget_layout();
 

@@ -172,6 +172,7 @@ TEST(Layouts, RowsAreUniqueAndDescribed) {
 
 TEST(Layouts, ManualHasTheTableOfEachLayout) {
   for (const auto& layout : get_layouts()) {
+    if (layout.page.empty()) continue;
     const std::string path = std::string(BOUGH_SOURCE_DIR) + "/docs/formats/" + std::string(layout.page) + ".md";
     std::ostringstream found;
     found << std::ifstream(path).rdbuf();
