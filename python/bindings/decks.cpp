@@ -77,18 +77,21 @@ py::tuple split(const std::string& deck, int parts, const std::string& along, St
   analysis::SplitAnswer answer;
   auto messages =
       run_request(deck, progress, [&](PythonEvents& events) { answer = analysis::split_deck(request, events); });
-  py::list made, frequencies;
+  py::list made, frequencies, deflections;
   for (auto& part : answer.parts) {
     py::dict one;
-    put(one, "name"_a = part.name, "parent"_a = part.parent, "node"_a = part.node, "elements"_a = part.num_elements,
-        "grids"_a = part.num_grids, "mass"_a = part.mass,
+    put(one, "name"_a = part.name, "parent"_a = part.parent, "node"_a = part.node, "joined_grids"_a = part.num_joined,
+        "elements"_a = part.num_elements, "grids"_a = part.num_grids, "mass"_a = part.mass,
         "body"_a = check ? py::cast(std::move(part.body)) : py::none());
     made.append(one);
   }
   for (const auto& frequency : answer.frequencies)
     frequencies.append(py::make_tuple(frequency.whole_hz, frequency.parts_hz));
+  for (const auto& deflection : answer.deflections)
+    deflections.append(py::make_tuple(deflection.load, deflection.deflection, deflection.error));
   py::dict d;
-  put(d, "mass"_a = answer.mass, "parts"_a = made, "frequencies"_a = frequencies, "files"_a = list_texts(answer.files));
+  put(d, "mass"_a = answer.mass, "parts"_a = made, "frequencies"_a = frequencies, "deflections"_a = deflections,
+      "files"_a = list_texts(answer.files));
   return py::make_tuple(d, std::move(messages));
 }
 

@@ -179,8 +179,8 @@ def split(deck, *, parts=0, along="path", planes=(), elements=(), grids=(), inte
     """A deck cut into several bodies: what `bough split` writes, as a dict; nothing is written.
 
     "files": {name: text} of a deck and a body file for each part, the system file last; "parts": a dict each with name,
-    parent, node, elements, grids, mass and (with check) its reduced "body"; "frequencies": (of the deck, of the parts)
-    in Hz; "mass". Cut by one of parts, planes=["x=2.5"], elements=["property:3", "1-200"], grids=[11, 21].
+    parent, node, joined_grids, elements, grids, mass and (with check) its reduced "body"; "frequencies": (of the deck,
+    of the parts) in Hz; "deflections": (static load, largest deflection, error of the parts); "mass". Cut by one of parts, planes=["x=2.5"], elements=["property:3", "1-200"], grids=[11, 21].
     """
     found, _ = _bough.split(_os.fspath(deck), parts=parts, along=along, planes=_words(planes),
                             elements=_words(elements), grids=_list(grids), interface=interface, name=name, modes=modes,
