@@ -4,6 +4,7 @@
 
 #include "formats/nastran/detail/dynamic_cards.hpp"
 #include "formats/nastran/detail/parsers.hpp"
+#include "formats/nastran/detail/table_points.hpp"
 #include "formats/nastran/detail/text.hpp"
 #include "formats/nastran/detail/unit_converter.hpp"
 
@@ -155,43 +156,6 @@ void parse_tic(Card& card, DynamicCards& r) {
   if (card.is_ok()) r.initial.push_back(m);
 }
 
-/// Pairs from field `first` on, up to ENDT; ascending, unchanged or reversed.
-std::vector<std::pair<double, double>> read_points(Card& card, int first) {
-  std::vector<std::pair<double, double>> points;
-  bool has_end = false;
-  for (int i = first; i < card.get_size() && card.is_ok(); i += 2) {
-    card.use(i, i + 2);
-    if (card.is_word(i, "ENDT") || card.is_word(i + 1, "ENDT")) {
-      if (!card.is_word(i, "ENDT"))
-        card.fail("deck.missing-field", i + 1, "ENDT is in place of y, expected the end after a pair x y");
-      card.use(i, card.get_size());
-      has_end = true;
-      break;
-    }
-    if (card.is_blank(i, i + 2) || card.is_word(i, "SKIP") || card.is_word(i + 1, "SKIP")) continue;
-    const double x = card.read_real(i, "x");
-    points.emplace_back(x, card.read_real(i + 1, "y"));
-  }
-  if (!card.is_ok()) return points;
-  if (points.empty()) card.fail("deck.missing-field", first, "no pair x y is given, expected one at least");
-  if (!has_end && card.is_ok()) card.fail("deck.missing-field", first, "the table does not end with ENDT");
-  if (points.size() > 1 && points.front().first > points.back().first) std::reverse(points.begin(), points.end());
-  for (std::size_t i = 1; i < points.size() && card.is_ok(); ++i)
-    if (points[i].first < points[i - 1].first || (i > 1 && points[i].first == points[i - 2].first))
-      card.fail("deck.field-range", first, "x does not go in one direction, or stands more than twice");
-  return points;
-}
-
-/// Beyond its ends a table goes on along the line of its last two points, which a jump there does not have.
-void refuse_jumps_at_ends(Card& card, const std::vector<std::pair<double, double>>& points) {
-  const std::size_t n = points.size();
-  if (n < 2 || !card.is_ok()) return;
-  if (points[0].first == points[1].first || points[n - 2].first == points[n - 1].first)
-    card.fail("deck.field-range", 8,
-              "the table jumps at its first or last two points, between which it goes on beyond its ends; one point "
-              "more before or behind the jump says how");
-}
-
 template <class Record>
 Record read_kind_head(Card& card, int Record::*id, const char* what, int kind) {
   Record record;
@@ -200,69 +164,14 @@ Record read_kind_head(Card& card, int Record::*id, const char* what, int kind) {
   record.at = card.get_location();
   return record;
 }
-records::DynamicTable read_table_head(Card& card, int kind) {
-  return read_kind_head(card, &records::DynamicTable::id, "TID", kind);
+void add_table(Card& card, DynamicCards& r, int kind) {
+  auto table = read_function_table(card, kind);
+  add_unique(card, r.tables, std::move(table), &records::DynamicTable::id);
 }
-void add_table(Card& card, DynamicCards& r, records::DynamicTable table) {
-  if (card.is_ok() && table.kind != 4 && table.points.size() < 2)
-    card.fail("deck.missing-field", 10, "the table has one pair x y, expected two at least");
-  add_unique(card, r.tables, std::move(table), &std::remove_reference_t<decltype(table)>::id);
-}
-
-/// Adds a table with the pairs of its card from the second line on.
-void add_table_of_points(Card& card, DynamicCards& r, records::DynamicTable table) {
-  table.points = read_points(card, 8);
-  refuse_jumps_at_ends(card, table.points);
-  add_table(card, r, std::move(table));
-}
-
-/// XAXIS YAXIS and how the table goes on beyond its ends, pairs from the second line on.
-void read_axes(Card& card, records::DynamicTable& t, const char* beyond_name) {
-  t.is_log_x = card.read_word(1, "XAXIS", "LINEAR", {"LINEAR", "LOG"}) == "LOG";
-  t.is_log_y = card.read_word(2, "YAXIS", "LINEAR", {"LINEAR", "LOG"}) == "LOG";
-  const int beyond = card.read_int(3, beyond_name, 0);
-  if (card.is_ok())
-    card.demand(beyond == 0 || beyond == 1, 3, beyond_name, "0 (the last line goes on) or 1 (end values)");
-  t.is_flat = beyond == 1;
-  t.points = read_points(card, 8);
-  if (!t.is_flat) refuse_jumps_at_ends(card, t.points);
-  for (const auto& [x, y] : t.points)
-    if (card.is_ok() && ((t.is_log_x && x <= 0) || (t.is_log_y && y <= 0)))
-      card.fail("deck.field-range", 8, "a LOG axis has a value that is not above 0");
-}
-
-/// TID XAXIS YAXIS, pairs from the second line on.
-void parse_tabled1(Card& card, DynamicCards& r) {
-  auto t = read_table_head(card, 1);
-  read_axes(card, t, "EXTRAP");
-  add_table(card, r, std::move(t));
-}
-void parse_tabled2(Card& card, DynamicCards& r) {
-  auto t = read_table_head(card, 2);
-  t.x1 = card.read_real(1, "X1", 0.0);
-  add_table_of_points(card, r, std::move(t));
-}
-void parse_tabled3(Card& card, DynamicCards& r) {
-  auto t = read_table_head(card, 3);
-  card.read_reals(1, {{"X1", t.x1, 0.0}, {"X2", t.x2}});
-  if (card.is_ok()) card.demand(t.x2 != 0, 2, "X2", "another number than 0");
-  add_table_of_points(card, r, std::move(t));
-}
-void parse_tabled4(Card& card, DynamicCards& r) {
-  auto t = read_table_head(card, 4);
-  card.read_reals(1, {{"X1", t.x1, 0.0}, {"X2", t.x2}, {"X3", t.x3}, {"X4", t.x4}});
-  if (card.is_ok()) card.demand(t.x2 != 0, 2, "X2", "another number than 0");
-  if (card.is_ok()) card.demand(t.x4 > t.x3, 4, "X4", "a number above X3");
-  for (int i = 8; i < card.get_size() && card.is_ok(); ++i) {
-    if (card.is_word(i, "ENDT")) {
-      card.use(i, card.get_size());
-      break;
-    }
-    t.coefficients.push_back(card.read_real(i, "Ai", 0.0));
-  }
-  if (card.is_ok() && t.coefficients.empty()) card.fail("deck.missing-field", 8, "no coefficient is given");
-  add_table(card, r, std::move(t));
-}
+void parse_tabled1(Card& card, DynamicCards& r) { add_table(card, r, 1); }
+void parse_tabled2(Card& card, DynamicCards& r) { add_table(card, r, 2); }
+void parse_tabled3(Card& card, DynamicCards& r) { add_table(card, r, 3); }
+void parse_tabled4(Card& card, DynamicCards& r) { add_table(card, r, 4); }
 
 void parse_tabdmp1(Card& card, DynamicCards& r) {
   records::DampingCurve t;
@@ -443,7 +352,7 @@ void parse_rcross(Card& card, DynamicCards& r) {
 
 /// TID XAXIS YAXIS FLAT, pairs from the second line on.
 void parse_tabrnd1(Card& card, DynamicCards& r) {
-  auto t = read_table_head(card, 1);
+  auto t = read_kind_head(card, &records::DynamicTable::id, "TID", 1);
   read_axes(card, t, "FLAT");
   add_unique(card, r.spectra, std::move(t), &std::remove_reference_t<decltype(t)>::id);
 }
@@ -597,52 +506,69 @@ std::string find_table_axis(const UnitConverter& u) {
   return u.keeps_time() ? "." : "?";
 }
 void convert_tabled1(UnitConverter& u) {
-  const auto axis = find_table_axis(u);
-  for (int i = 8; i < u.size(); i += 2) u.scale(i, axis);
+  const auto axis = find_table_axis(u), value = find_table_value(u);
+  for (int i = 8; i < u.size(); i += 2) {
+    u.scale(i, axis);
+    u.scale(i + 1, value);
+  }
 }
 void convert_tabled2(UnitConverter& u) {
   u.scale(1, find_table_axis(u));
   convert_tabled1(u);
 }
+void scale_table_values(UnitConverter& u, int first, int step) {
+  const auto value = find_table_value(u);
+  for (int i = first; i < u.size(); i += step) u.scale(i, value);
+}
 /// Scales X1 and X2; the table is one of (x - X1) / X2.
-void convert_tabled3(UnitConverter& u) { u.scale(1, 2, find_table_axis(u)); }
-void convert_tabled4(UnitConverter& u) { u.scale(1, 4, find_table_axis(u)); }
+void convert_tabled3(UnitConverter& u) {
+  u.scale(1, 2, find_table_axis(u));
+  scale_table_values(u, 9, 2);
+}
+void convert_tabled4(UnitConverter& u) {
+  u.scale(1, 4, find_table_axis(u));
+  scale_table_values(u, 8, 1);
+}
 
 }  // namespace
 
 const DynamicParserTable& get_dynamic_parsers() {
-  static const DynamicParserTable table{{"RLOAD1", {parse_rload1, nullptr, convert_load, note_rload}},
-                                        {"RLOAD2", {parse_rload2, nullptr, convert_load, note_rload}},
-                                        {"TLOAD1", {parse_tload1, nullptr, convert_tload1, note_tload1}},
-                                        {"TLOAD2", {parse_tload2, nullptr, convert_tload2, note_tload}},
-                                        {"DLOAD", {parse_dload, ""}},
-                                        {"DAREA", {parse_darea, nullptr, convert_darea}},
-                                        {"DELAY", {parse_delay, ". . . T . . T"}},
-                                        {"DPHASE", {parse_dphase, ""}},
-                                        {"LSEQ", {parse_lseq, ""}},
-                                        {"TIC", {parse_tic, nullptr, convert_tic}},
-                                        {"TABLED1", {parse_tabled1, nullptr, convert_tabled1}},
-                                        {"TABLED2", {parse_tabled2, nullptr, convert_tabled2}},
-                                        {"TABLED3", {parse_tabled3, nullptr, convert_tabled3}},
-                                        {"TABLED4", {parse_tabled4, nullptr, convert_tabled4}},
-                                        {"TABDMP1", {parse_tabdmp1, nullptr, convert_tabdmp1}},
-                                        {"FREQ", {parse_freq, nullptr, convert_freq}},
-                                        {"FREQ1", {parse_freq1, ". Hz Hz ."}},
-                                        {"FREQ2", {parse_freq2, ". Hz Hz ."}},
-                                        {"FREQ3", {parse_freq3, ". Hz Hz . . ."}},
-                                        {"FREQ4", {parse_freq4, ". Hz Hz . ."}},
-                                        {"FREQ5", {parse_freq5, ". Hz Hz"}},
-                                        {"TSTEP", {parse_tstep, nullptr, convert_tstep}},
-                                        {"TSTEPNL", {parse_tstepnl, ". . T"}},
-                                        {"USET", {parse_uset, ""}},
-                                        {"USET1", {parse_uset1, ""}},
-                                        {"RVDOF", {parse_rvdof, ""}},
-                                        {"RVDOF1", {parse_rvdof1, ""}},
-                                        {"RANDPS", {parse_randps, nullptr, convert_randps}},
-                                        {"RANDT1", {parse_randt1, ". . T T"}},
-                                        {"RCROSS", {parse_rcross, ""}},
-                                        {"TABRND1", {parse_tabrnd1, nullptr, convert_tabrnd1}},
-                                        {"TABRNDG", {parse_tabrndg, ". . T ?"}}};
+  static const DynamicParserTable table = [] {
+    DynamicParserTable all{{"RLOAD1", {parse_rload1, nullptr, convert_load, note_rload}},
+                           {"RLOAD2", {parse_rload2, nullptr, convert_load, note_rload}},
+                           {"TLOAD1", {parse_tload1, nullptr, convert_tload1, note_tload1}},
+                           {"TLOAD2", {parse_tload2, nullptr, convert_tload2, note_tload}},
+                           {"DLOAD", {parse_dload, ""}},
+                           {"DAREA", {parse_darea, nullptr, convert_darea}},
+                           {"DELAY", {parse_delay, ". . . T . . T"}},
+                           {"DPHASE", {parse_dphase, ""}},
+                           {"LSEQ", {parse_lseq, ""}},
+                           {"TIC", {parse_tic, nullptr, convert_tic}},
+                           {"TABLED1", {parse_tabled1, nullptr, convert_tabled1}},
+                           {"TABLED2", {parse_tabled2, nullptr, convert_tabled2}},
+                           {"TABLED3", {parse_tabled3, nullptr, convert_tabled3}},
+                           {"TABLED4", {parse_tabled4, nullptr, convert_tabled4}},
+                           {"TABDMP1", {parse_tabdmp1, nullptr, convert_tabdmp1}},
+                           {"FREQ", {parse_freq, nullptr, convert_freq}},
+                           {"FREQ1", {parse_freq1, ". Hz Hz ."}},
+                           {"FREQ2", {parse_freq2, ". Hz Hz ."}},
+                           {"FREQ3", {parse_freq3, ". Hz Hz . . ."}},
+                           {"FREQ4", {parse_freq4, ". Hz Hz . ."}},
+                           {"FREQ5", {parse_freq5, ". Hz Hz"}},
+                           {"TSTEP", {parse_tstep, nullptr, convert_tstep}},
+                           {"TSTEPNL", {parse_tstepnl, ". . T"}},
+                           {"USET", {parse_uset, ""}},
+                           {"USET1", {parse_uset1, ""}},
+                           {"RVDOF", {parse_rvdof, ""}},
+                           {"RVDOF1", {parse_rvdof1, ""}},
+                           {"RANDPS", {parse_randps, nullptr, convert_randps}},
+                           {"RANDT1", {parse_randt1, ". . T T"}},
+                           {"RCROSS", {parse_rcross, ""}},
+                           {"TABRND1", {parse_tabrnd1, nullptr, convert_tabrnd1}},
+                           {"TABRNDG", {parse_tabrndg, ". . T ?"}}};
+    add_frequency_table_parsers(all);
+    return all;
+  }();
   return table;
 }
 

@@ -138,6 +138,8 @@ class CaseControl {
     if ((is_response() || options_.is_complex) && read_direct_input(c)) return;
     if (options_.is_complex && is_command(c.word, "CMETHOD", 4))
       return read_set(c, "CMETHOD", current_selection().cmethod);
+    if ((is_response() || options_.is_complex) && c.word == "MODSEL")
+      return read_set(c, "MODSEL", current_selection().modsel);
     if (options_.is_complex && c.word == "TFL") return read_set(c, "TFL", current_selection().tfl);
     if ((is_response() || options_.is_complex) && read_rotor_selection(c)) return;
     if (const auto* acts = find_unsupported_command(c.word)) {

@@ -32,8 +32,12 @@ struct DynamicRow : CardFacts {
 using DynamicParserTable = std::unordered_map<std::string_view, DynamicRow>;
 
 /// xLOADn, DLOAD, DAREA, DELAY, DPHASE, LSEQ, TIC, TABLEDn, TABDMP1, FREQn, TSTEP, RANDPS, RANDT1, TABRND1,
-/// TABRNDG.
+/// TABRNDG, PELAST, PDAMPT, PBUSHT.
 const DynamicParserTable& get_dynamic_parsers();
+/// Adds PELAST, PDAMPT and PBUSHT.
+void add_frequency_table_parsers(DynamicParserTable& table);
+/// Dimension of the values of a TABLEDi by the properties that name it; "." of loads, "?" if they differ.
+std::string find_table_value(const UnitConverter& u);
 
 /// EIGC, TF, EPOINT: cards of complex modes alone.
 const DynamicParserTable& get_complex_parsers();
