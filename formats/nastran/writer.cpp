@@ -31,6 +31,7 @@ void write_selection(const records::Subcase& subcase, std::string& out) {
                                               {"LOAD", subcase.load},
                                               {"TEMPERATURE(LOAD)", subcase.temperature},
                                               {"TEMPERATURE(INITIAL)", subcase.initial_temperature},
+                                              {"TEMPERATURE(MATERIAL)", subcase.material_temperature},
                                               {"METHOD", subcase.method},
                                               {"STATSUB", subcase.statsub},
                                               {"STATSUB(PRELOAD)", subcase.preload},

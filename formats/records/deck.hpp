@@ -50,6 +50,7 @@ struct CoordSystem {
 struct Mat1 {
   int id = 0;
   double E = 0, G = 0, nu = 0;  ///< the missing one of three is already filled from E = 2(1+ν)G
+  char filled = 0;              ///< E, G or N (nu): the one that was missing
   double rho = 0, alpha = 0, ge = 0;
   std::optional<double> tref;     ///< empty: TEMPERATURE(INITIAL), or zero
   double st = 0, sc = 0, ss = 0;  ///< stress limits: tension, compression, shear; 0: none
@@ -372,6 +373,8 @@ struct Subcase {
   CardLocation preload_at;
   int temperature = 0;          ///< TEMPERATURE(LOAD) or (BOTH)
   int initial_temperature = 0;  ///< TEMPERATURE(INITIAL)
+  int material_temperature =
+      0;  ///< TEMPERATURE(MATERIAL), (BOTH) or without parentheses: where materials are evaluated
   int suport1 = 0, nsm = 0;
   int deform = 0;                                                ///< DEFORM, which is not read: an error where it loads
   std::vector<std::pair<double, std::string>> k2gg, m2gg, b2gg;  ///< (scale, DMIG name)

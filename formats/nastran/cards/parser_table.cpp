@@ -55,6 +55,7 @@ const ParserTable& get_card_parsers() {
     add_special_constraint_parsers(t);
     add_acceleration_parsers(t);
     add_superelement_parsers(t);
+    add_material_table_parsers(t);
     return t;
   }();
   return table;

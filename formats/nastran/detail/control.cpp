@@ -388,6 +388,7 @@ class CaseControl {
     int material = current().temperature;  // materials depend on the temperature where MATT1 and its kin are
     if (*kind == "MATERIAL") read_set(c, "TEMPERATURE(MATERIAL)", material);
     current().commands["TEMPERATURE(MATERIAL)"] = at_;
+    current().material_temperature = material;
     if (material == 0) current().commands.erase("TEMPERATURE(MATERIAL)");
   }
 
