@@ -92,5 +92,7 @@ void make_solids(Maker& maker);
 void make_bends(Maker& maker);
 /// GENEL.
 void make_generals(Maker& maker);
+/// CFAST, CWELD.
+void make_connectors(Maker& maker);
 
 }  // namespace bough::fe

@@ -37,7 +37,7 @@ class Evaluator {
     raise(deck.mat1), raise(deck.mat2), raise(deck.mat8), raise(deck.mat9);
     raise(deck.pbar), raise(deck.pbarl), raise(deck.pbeam), raise(deck.pbeaml), raise(s.pbcomp);
     raise(deck.prod), raise(deck.ptube), raise(deck.pshell), raise(deck.pcomp), raise(deck.pshear);
-    raise(deck.psolid), raise(s.pbend);
+    raise(deck.psolid), raise(s.pbend), raise(s.pweld);
   }
 
   std::unique_ptr<const Deck> evaluate() {
@@ -59,6 +59,12 @@ class Evaluator {
     for (auto& e : d.shear_panels)
       move(e, TemperatureKind::Plate, {e.grids.begin(), e.grids.end()}, "CSHEAR", d.pshear);
     for (auto& e : d.solids) move(e, TemperatureKind::Grids, join(e.corners, e.midsides), e.card.c_str(), d.psolid);
+    for (auto& e : d.special.cweld) {
+      std::vector<int> grids;
+      for (const int g : {e.gs, e.ga, e.gb})
+        if (g > 0) grids.push_back(g);
+      move(e, TemperatureKind::Grids, grids, "CWELD", d.special.pweld);
+    }
     if (num_missing_ > 1 && first_missing_)
       first_missing_->what += " (and " + std::to_string(num_missing_ - 1) + " elements more)";
     if (first_missing_) diagnostics_.add(*first_missing_);

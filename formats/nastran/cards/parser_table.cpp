@@ -56,6 +56,7 @@ const ParserTable& get_card_parsers() {
     add_acceleration_parsers(t);
     add_superelement_parsers(t);
     add_material_table_parsers(t);
+    add_connector_parsers(t);
     return t;
   }();
   return table;

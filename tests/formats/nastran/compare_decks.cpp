@@ -177,6 +177,25 @@ class Content {
     (*this)(r.id)(r.mid)(r.A)(r.I1)(r.I2)(r.J)(r.k1)(r.k2)(r.rb)(r.theta_b_deg)(r.nsm)(r.rc)(r.zc);
     return (*this)(r.delta_n)(r.is_pipe)(r.fsi)(r.rm)(r.t)(r.pressure);
   }
+  Content& operator()(const Cfast& r) {
+    return (*this)(r.id)(r.pid)(r.by_elements)(r.ida)(r.idb)(r.gs)(r.ga)(r.gb)(r.xs);
+  }
+  Content& operator()(const Pfast& r) {
+    (*this)(r.id)(r.d)(r.mcid)(r.mflag)(r.mass)(r.ge);
+    for (const double k : r.kt) (*this)(k);
+    for (const double k : r.kr) (*this)(k);
+    return *this;
+  }
+  Content& operator()(const Cweld& r) {
+    (*this)(r.id)(r.pid)(r.format)(r.gs)(r.ga)(r.gb)(r.types)(r.ida)(r.idb);
+    return (*this)(r.grids_a)(r.grids_b)(r.xs);
+  }
+  Content& operator()(const Pweld& r) { return (*this)(r.id)(r.mid)(r.d)(r.is_spot)(r.ld_min)(r.ld_max); }
+  Content& operator()(const MaterialTables& r) { return (*this)(r.material)(r.mid)(r.tables); }
+  Content& operator()(const FunctionTable& r) {
+    (*this)(r.id)(r.kind)(r.is_log_x)(r.is_log_y)(r.is_flat)(r.x1)(r.x2)(r.x3)(r.x4);
+    return (*this)(r.points)(r.coefficients);
+  }
   Content& operator()(const Cgap& r) { return (*this)(r.id)(r.pid)(r.ga)(r.gb)(r.g0)(r.v)(r.cid); }
   Content& operator()(const Pgap& r) { return (*this)(r.id)(r.u0)(r.f0)(r.ka)(r.kb)(r.kt); }
   Content& operator()(const NonstructuralMass& r) {
@@ -191,7 +210,7 @@ class Content {
   Content& operator()(const Param& r) { return (*this)(r.name)(r.value); }
   Content& operator()(const Subcase& r) {
     (*this)(r.id)(r.title)(r.subtitle)(r.label)(r.spc)(r.mpc)(r.load)(r.method)(r.statsub)(r.preload)(r.temperature);
-    (*this)(r.initial_temperature);
+    (*this)(r.initial_temperature)(r.material_temperature);
     return (*this)(r.suport1)(r.nsm)(r.k2gg)(r.m2gg)(r.b2gg);
   }
 
@@ -295,6 +314,12 @@ void expect_equal_decks(const Deck& a, const Deck& b, double tolerance) {
   BOUGH_COMPARE(special.pbend);
   BOUGH_COMPARE(special.cgap);
   BOUGH_COMPARE(special.pgap);
+  BOUGH_COMPARE(special.cfast);
+  BOUGH_COMPARE(special.pfast);
+  BOUGH_COMPARE(special.cweld);
+  BOUGH_COMPARE(special.pweld);
+  BOUGH_COMPARE(temperatures.materials);
+  BOUGH_COMPARE(temperatures.tables);
   BOUGH_COMPARE(special.nsm);
   BOUGH_COMPARE(special.nsmadd);
   BOUGH_COMPARE(special.rspline);
