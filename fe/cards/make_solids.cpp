@@ -87,7 +87,7 @@ class MaterialMaker {
 SolidScheme choose_scheme(Maker& maker, const records::Psolid& property, const records::SolidElement& card,
                           std::set<int>& reported) {
   if (!card.midsides.empty()) return {property.points, true};
-  if (card.corners.size() == 4 || (!property.is_full && property.points == 0)) return {};
+  if (card.corners.size() < 6 || (!property.is_full && property.points == 0)) return {};
   if (property.is_full && property.points > 0) return {property.points, true};
   if (reported.insert(property.id).second)
     maker.diagnostics().note(
@@ -121,9 +121,10 @@ void make_solids(Maker& maker) {
   for (const auto& card : deck.solids) {
     const std::string who = card.card + " " + std::to_string(card.id);
     SolidGeometry geometry;
-    geometry.kind = card.corners.size() == 8 ? SolidKind::Hexa
-                    : card.card == "CPENTA"  ? SolidKind::Penta
-                                             : SolidKind::Tetra;
+    geometry.kind = card.corners.size() == 8   ? SolidKind::Hexa
+                    : card.corners.size() == 6 ? SolidKind::Penta
+                    : card.corners.size() == 5 ? SolidKind::Pyramid
+                                               : SolidKind::Tetra;
     std::vector<int> nodes;
     for (int g : card.corners) nodes.push_back(maker.find_grid(g, who, card.at));
     for (int g : card.midsides) {

@@ -86,7 +86,7 @@ void make_shells(Maker& maker);
 void make_curved_shells(Maker& maker);
 /// CSHEAR.
 void make_shear_panels(Maker& maker);
-/// CHEXA, CPENTA, CTETRA, CIHEX3.
+/// CHEXA, CPENTA, CTETRA, CPYRAM, CIHEX3.
 void make_solids(Maker& maker);
 /// CBEND.
 void make_bends(Maker& maker);
