@@ -18,6 +18,7 @@ namespace {
 constexpr int kMaxShrinks = 4;        ///< halvings of the square of a connector at the rim of its patch
 constexpr double kNoLength = 1e-6;    ///< of the diameter: ends that coincide
 constexpr double kMaxAngleDeg = 20;   ///< between the shells (GSPROJ of SWLDPRM)
+constexpr double kContinues = 0.7;    ///< cosine between the normals of a shell and of one that continues it
 constexpr double kEqualAxes = 1e-6;   ///< difference of components of a unit vector
 constexpr double kShearFactor = 0.9;  ///< of a round section (PWELD)
 
@@ -58,6 +59,8 @@ class Facets {
       facet.x.col(static_cast<Eigen::Index>(i)) = maker_.nodes().node(facet.nodes[i]).x;
     }
     facet.centre = facet.x.leftCols(facet.num_corners).rowwise().mean();
+    const auto side = [&](int a, int b) { return Vector3d(facet.x.col(b) - facet.x.col(a)); };
+    facet.normal = side(0, 2).cross(facet.num_corners == 4 ? side(1, 3) : side(0, 1)).normalized();
     facet.radius = (facet.x.colwise() - facet.centre).colwise().norm().maxCoeff();
     return true;
   }
@@ -70,13 +73,14 @@ class Facets {
     const auto found = by_property_.find(pid);
     return found == by_property_.end() ? FacetList{} : found->second;
   }
-  /// The shell and those that share a grid with it, on its side of an edge of 90 degrees.
+  /// The shell and those that share a grid with it and continue it: no webs across it.
   FacetList list_around(const ShellFacet& facet) const {
     std::set<int> seen{facet.element};
     FacetList list{&facet};
     for (int k = 0; k < facet.num_corners; ++k)
       for (const auto* other : by_node_.at(facet.nodes[static_cast<std::size_t>(k)]))
-        if (seen.insert(other->element).second) list.push_back(other);
+        if (seen.insert(other->element).second && std::abs(other->normal.dot(facet.normal)) > kContinues)
+          list.push_back(other);
     return list;
   }
 
@@ -264,12 +268,15 @@ class ConnectorMaker {
       Vector3d along = end.at.facet->x.col(1) - end.at.facet->x.col(0);
       along = (along - along.dot(axis) * axis).normalized();
       const Vector3d across = axis.cross(along);
+      FacetList near;  // of a property with many shells those within reach of the square
+      for (const auto* facet : end.patch)
+        if ((facet->centre - end.at.x).norm() <= facet->radius + diameter) near.push_back(facet);
       double half = 0.25 * std::sqrt(std::numbers::pi) * diameter;
       std::vector<FacetPoint> points;
       for (int i = 0; i <= kMaxShrinks && points.size() < 4; ++i, half /= 2) {
         points.clear();
         for (const auto& [a, b] : {std::pair(-1, -1), std::pair(1, -1), std::pair(1, 1), std::pair(-1, 1)}) {
-          const auto found = project(end.patch, end.at.x + half * (a * along + b * across));
+          const auto found = project(near, end.at.x + half * (a * along + b * across));
           if (found) points.push_back(*found);
         }
       }

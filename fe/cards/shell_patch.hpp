@@ -14,7 +14,8 @@ struct ShellFacet {
   std::vector<int> nodes;  ///< indices, corners first
   int num_corners = 0;
   std::vector<char> has_midside;
-  Matrix3Xd x;  ///< of the nodes, basic
+  Matrix3Xd x;                          ///< of the nodes, basic
+  Vector3d normal = Vector3d::UnitZ();  ///< at the centre of the corners
   Vector3d centre = Vector3d::Zero();
   double radius = 0;  ///< around the centre of the corners
 };

@@ -83,6 +83,14 @@ class Connectors(ProgramTest):
                 swapped = f[[0, 2, 1, 3, 5, 4]]
                 np.testing.assert_allclose(np.abs(swapped), np.abs(force[0]), rtol=0, atol=1e-8 * np.abs(force).max())
 
+    def test_webs_are_no_part_of_the_patch(self):
+        """ELEM takes the named shell and those that continue it, although a web is nearer to GS."""
+        web = "GRID,407,,.2,.1,.1\nGRID,412,,.2,.2,.1\nCQUAD4,401,1,107,112,412,407\nSPC1,1,123456,900\n"
+        pfast = PFAST.format(d=".03", mass="")
+        found = [self.displacements(self.static(CLAMP + LOADS + web + pfast + text)) for text in (
+            "GRID,900,,.185,.17,.05\nCFAST,50,50,ELEM,105,205,900\n", "GRID,900,,.1,.1,.1\nCFAST,50,50,ELEM,105,205\n,.185,.17,0.\n")]
+        np.testing.assert_allclose(found[0], found[1], rtol=0, atol=1e-9 * np.abs(found[1]).max())
+
     def test_listing(self):
         """The f06 and the OP2 have the forces of the fastener, as those of the file."""
         fast = f"CFAST,50,50,PROP,1,2\n,{real(CENTRE[0])},{real(CENTRE[1])},0.\n" + PFAST.format(d=".03", mass="")
