@@ -50,11 +50,11 @@ struct CoordSystem {
 struct Mat1 {
   int id = 0;
   double E = 0, G = 0, nu = 0;  ///< the missing one of three is already filled from E = 2(1+ν)G
-  char filled = 0;              ///< E, G or N (nu): the one that was missing
   double rho = 0, alpha = 0, ge = 0;
   std::optional<double> tref;     ///< empty: TEMPERATURE(INITIAL), or zero
   double st = 0, sc = 0, ss = 0;  ///< stress limits: tension, compression, shear; 0: none
   CardLocation at;
+  char filled = 0;  ///< E, G or N (nu): the one that was missing on the card
 };
 
 /// Four times zero: where a section gives no points for stress (Eigen sets nothing by itself).
