@@ -1,10 +1,12 @@
 #include <algorithm>
+#include <charconv>
 #include <numbers>
 #include <set>
 #include <sstream>
 
 #include <Eigen/Eigenvalues>
 
+#include "formats/records/orbit.hpp"
 #include "formats/records/slosh.hpp"
 #include "formats/toml/detail/constraint_table.hpp"
 #include "formats/toml/detail/control_tables.hpp"
@@ -14,6 +16,7 @@
 #include "formats/toml/detail/function_table.hpp"
 #include "formats/toml/detail/hinge_table.hpp"
 #include "formats/toml/detail/inertia.hpp"
+#include "formats/toml/detail/orbit_table.hpp"
 #include "formats/toml/detail/parameters.hpp"
 #include "formats/toml/detail/references.hpp"
 #include "formats/toml/detail/schema.hpp"
@@ -176,6 +179,19 @@ void set_parameters(std::string& text, const std::string& path,
   }
 }
 
+/// BODY:NODE into its parts, unless a body has this name.
+void split_node(const records::SystemSpec& spec, std::string& name, int& node) {
+  const auto is_it = [&](const auto& body) { return body.name == name; };
+  const auto colon = name.rfind(':');
+  if (colon == std::string::npos || colon == 0 || std::any_of(spec.bodies.begin(), spec.bodies.end(), is_it)) return;
+  const char* const end = name.data() + name.size();
+  int id = 0;
+  const auto [last, failed] = std::from_chars(name.data() + colon + 1, end, id);
+  if (failed != std::errc() || last != end || id < 0) return;
+  node = id;
+  name.erase(colon);
+}
+
 }  // namespace
 
 records::SystemSpec read_system_spec(const std::string& path, Diagnostics& diagnostics,
@@ -214,6 +230,7 @@ records::SystemSpec read_system_spec_text(const std::string& text, const std::st
       if (entry.value.is_number()) spec.parameters.emplace_back(entry.key, entry.value.number);
   for (const Fields& table : fields.get_tables("body")) spec.bodies.push_back(read_body(table, path, diagnostics));
   for (const Fields& table : fields.get_tables("tank")) spec.tanks.push_back(read_tank(table, diagnostics));
+  for (const Fields& table : fields.get_tables("orbit")) spec.orbits.push_back(read_orbit(table, diagnostics));
   for (const Fields& table : fields.get_tables("hinge")) spec.hinges.push_back(read_hinge(table, diagnostics));
   for (const Fields& table : fields.get_tables("constraint"))
     spec.constraints.push_back(read_constraint(table, diagnostics));
@@ -233,6 +250,11 @@ records::SystemSpec read_system_spec_text(const std::string& text, const std::st
   for (const Fields& table : fields.get_tables("event")) spec.events.push_back(read_event(table, diagnostics));
   spec.simulation = read_simulation(fields.get_table("simulation"), diagnostics);
   if (!spec.tanks.empty()) records::add_slosh(spec, diagnostics);
+  records::add_orbits(spec, diagnostics);
+  for (auto& sensor : spec.sensors) {
+    if (!sensor.is_orbital) split_node(spec, sensor.relative_to, sensor.relative_node);
+    split_node(spec, sensor.frame, sensor.frame_node);
+  }
   check_names(spec, diagnostics);
   return spec;
 }

@@ -42,12 +42,21 @@ void change_body(const UnitTable& t, const records::UnitChange& c) {
 
 void change_tank(const UnitTable& t, const records::UnitChange& c) {
   for (const char* key : {"mass", "masses"}) t.scale(key, c.mass);
-  for (const char* key : {"position", "radius", "bore", "height", "exit_radius"}) t.scale(key, c.length);
+  for (const char* key :
+       {"position", "radius", "bore", "height", "exit_radius", "baffle_width", "baffle_depths", "baffle_amplitude"})
+    t.scale(key, c.length);
+  t.scale("slosh_viscosity", c.length * c.length / c.time);
   t.scale("density", c.mass / std::pow(c.length, 3));
   t.scale("slosh_acceleration", c.length / (c.time * c.time));
   for (const auto& [key, unit] : {std::pair{"cg", c.length}, std::pair{"inertia", c.mass * c.length * c.length}})
     if (const auto* rows = t.table[key].as_array())
       for (const auto& row : *rows) t.edits.scale(&row, unit);
+}
+
+void change_orbit(const UnitTable& t, const records::UnitChange& c) {
+  for (const char* key : {"semi_major_axis", "position"}) t.scale(key, c.length);
+  t.scale("velocity", c.length / c.time);
+  for (const char* key : {"inclination", "ascending_node", "periapsis", "true_anomaly"}) t.scale_angles(key);
 }
 
 void change_hinge(const UnitTable& t, const SignalUnits& units) {
@@ -191,6 +200,7 @@ void change_system(const toml::table& root, UnitEdits& edits, const records::Uni
   };
   visit("body", [&](const UnitTable& t) { change_body(t, c); });
   visit("tank", [&](const UnitTable& t) { change_tank(t, c); });
+  visit("orbit", [&](const UnitTable& t) { change_orbit(t, c); });
   visit("hinge", [&](const UnitTable& t) { change_hinge(t, units); });
   visit("constraint", [&](const UnitTable& t) { change_constraint(t, units); });
   visit("function", [&](const UnitTable& t) { change_function(t, units); });

@@ -148,7 +148,7 @@ void check_names(const records::SystemSpec& spec, Diagnostics& diagnostics) {
     checker.check(force.from.body, with({"ground"}), role, "body", force.at);
     checker.check(force.to.body, with({"ground"}), role, "body", force.at);
     for (const auto& name : force.bodies) checker.check(name, bodies, role, "body", force.at);
-    for (const auto* name : {&force.spring_table, &force.damper_table, &force.function})
+    for (const auto* name : {&force.spring_table, &force.damper_table, &force.function, &force.density_table})
       checker.check(*name, functions, role, "function", force.at);
   }
   for (const auto& sensor : spec.sensors) {

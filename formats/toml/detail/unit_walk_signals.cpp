@@ -255,6 +255,7 @@ std::vector<Characteristic> list_characteristics(const std::string& name, const 
   for (const auto* force : list_tables(root, "force")) {
     if (get_text(*force, "spring_table") == name) found.push_back({c.length, units.force()});
     if (get_text(*force, "damper_table") == name) found.push_back({c.length / c.time, units.force()});
+    if (get_text(*force, "density_table") == name) found.push_back({c.length, c.mass / std::pow(c.length, 3)});
   }
   return found;
 }
