@@ -30,6 +30,7 @@ struct RigidNode {
 struct BodyRecord {
   std::string name;
   std::string file;                 ///< flexible-body HDF5; empty = rigid
+  std::vector<std::string> levels;  ///< flexible: files of its fill levels, `file` is that of the start; empty: one
   bool is_unreadable = false;       ///< file: could not be read, which has been said
   double mass = 0;
   Vector3d cg = Vector3d::Zero();       ///< in B
@@ -116,7 +117,7 @@ struct SensorRecord {
 };
 
 enum class EventDirection { Both, Rising, Falling };
-enum class EventAction { Log, Stop, Lock, Release, Break, Close, Enable, Disable, Switch };
+enum class EventAction { Log, Stop, Lock, Release, Break, Close, Enable, Disable, Switch, Level };
 
 /// [[event]]: at a time, or where a signal crosses a value.
 struct UserEventRecord {
@@ -127,8 +128,9 @@ struct UserEventRecord {
   EventDirection direction = EventDirection::Both;
   double tolerance = 0;  ///< of the time found; 0: 1e-12 of the duration
   EventAction action = EventAction::Log;
-  std::string target;  ///< lock, release: hinge; break, close: constraint; enable, disable, switch: controller
-  int choice = 0;      ///< switch: the input that the controller passes on, 1-based
+  std::string target;  ///< lock, release: hinge; break, close: constraint; enable, disable, switch: controller; level:
+                       ///< body
+  int choice = 0;      ///< switch: the input that the controller passes on; level: of the body's levels; 1-based
   std::vector<int> coordinates;  ///< lock, release: 1-based rates of the hinge; empty: all
   SourceLocation at;
 };

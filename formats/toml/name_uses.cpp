@@ -20,7 +20,7 @@ const std::map<std::string, Keys>& get_name_keys() {
       {"body",
        {"hinge/parent", "hinge/child", "constraint/parent", "constraint/child", "force/body", "force/to_body",
         "force/bodies", "sensor/body", "sensor/frame", "sensor/relative_to", "sensor/to_body", "sensor/terms/body",
-        "orbit/body", "actuator/body", "tank/body"}},
+        "orbit/body", "event/body", "actuator/body", "tank/body"}},
       {"tank", {"actuator/tank"}},
       {"orbit", {"hinge/parent", "constraint/parent", "sensor/frame", "sensor/relative_to"}},
       {"hinge", {"constraint/terms/hinge", "sensor/hinge", "actuator/hinge", "event/hinge"}},

@@ -53,13 +53,18 @@ records::BodyRecord read_body(const Fields& table, const std::string& path, Diag
   body.num_modes = table.get_int("modes", -1);
   body.recover_all = table.get_bool("recover", false);
   body.recover = table.get_ints("recover");
+  for (const auto& level : table.get_strings("levels")) body.levels.push_back(resolve_path(path, level));
+  if (!body.levels.empty() && table.has("file") && std::count(body.levels.begin(), body.levels.end(), body.file) != 1)
+    diagnostics.error("toml.bad-value", table.locate("levels"),
+                      "'levels' of body '" + body.name + "' does not contain its file once",
+                      "list the files of all levels, that of the start among them");
   if (table.has("file")) {
     // A .FLX, under any name, may leave them to the system, as TREETOPS has it. The content decides when it is read.
     if (body.file.ends_with(".h5") || body.file.ends_with(".hdf5"))
       refuse_keys(table, {"cg", "inertia"}, "in body '" + body.name + "', which comes from a file", diagnostics);
     refuse_keys(table, {"nodes"}, "in body '" + body.name + "', which comes from a file", diagnostics);
   } else {
-    refuse_keys(table, {"stiffening", "eta", "eta_dot", "damping", "modes", "recover"},
+    refuse_keys(table, {"levels", "stiffening", "eta", "eta_dot", "damping", "modes", "recover"},
                 "in body '" + body.name + "', which is rigid", diagnostics);
   }
   return body;

@@ -147,6 +147,15 @@ Run::Run(const System& system, const records::SystemSpec& spec, RunSetup setup, 
   progress_.end = time_events_.end();
 }
 
+void Run::set_variant() {
+  const System& system = ode_.system();
+  setup_.recorder.set_system(system);
+  limit_.set_system(system);
+  joint_contacts_.set_system(system);
+  expected_data_ = system.make_data();
+  evaluated_.number = evaluated_.motion_number = -1;
+}
+
 void Run::start() {
   begin();
   if (outcome_ || time_ >= time_events_.end()) return;
