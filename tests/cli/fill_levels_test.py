@@ -146,6 +146,15 @@ class FillLevels(ProgramTest):
         mass = whole["system_mass/mass"].ravel()
         self.assertAlmostEqual(mass[-1], mass[0], places=9)
 
+    def test_a_mission_in_parts_goes_on_at_the_level_of_its_end(self):
+        whole, _ = self.run_system("w", make_system([switch(0.03, 2)], **MOVING, duration=0.08))
+        self.run_system("first", make_system([switch(0.03, 2)], **MOVING, duration=0.04))
+        second = make_system([], rate=MOVING["rate"]).replace("duration = 0.2", "start = 0.04\nduration = 0.04")
+        found, done = self.run_system("second", second, "--start-from", "first.h5")
+        self.assertIn("body 'stage' at level 2", done.stderr)
+        self.assertAlmostEqual(found["system_mass/mass"].flat[0], whole["system_mass/mass"].flat[-1], places=9)
+        np.testing.assert_allclose(found["sensors/top"][-1], whole["sensors/top"][-1], rtol=0, atol=1e-7)
+
     def test_what_cannot_be_is_named(self):
         self.write("few.toml", make_body("few", number=2).replace('deck = "few.bdf"', 'deck = "half.bdf"'))
         self.bough("reduce", "few.toml", "-q")
